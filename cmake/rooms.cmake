@@ -1,0 +1,33 @@
+# treacle_room(NAME SOURCES a.cpp ... DEPENDS core ... PRIVATE lib ...): static library treacle_NAME, alias treacle::NAME.
+function(treacle_room NAME)
+  cmake_parse_arguments(ROOM "" "" "SOURCES;DEPENDS;PRIVATE" ${ARGN})
+  add_library(treacle_${NAME} STATIC ${ROOM_SOURCES})
+  add_library(treacle::${NAME} ALIAS treacle_${NAME})
+  set_target_properties(treacle_${NAME} PROPERTIES EXPORT_NAME ${NAME} POSITION_INDEPENDENT_CODE ON)
+  target_include_directories(treacle_${NAME} PUBLIC
+    $<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_compile_features(treacle_${NAME} PUBLIC cxx_std_20)
+  foreach(dependency IN LISTS ROOM_DEPENDS)
+    target_link_libraries(treacle_${NAME} PUBLIC treacle_${dependency})
+  endforeach()
+  target_link_libraries(treacle_${NAME} PRIVATE ${ROOM_PRIVATE})
+  treacle_compile_options(treacle_${NAME})
+  set_property(GLOBAL APPEND PROPERTY TREACLE_ROOMS treacle_${NAME})
+endfunction()
+
+# treacle_kernels(NAME SOURCES foo.cu ... PRIVATE lib ...): adds CUDA sources to the library of a room.
+function(treacle_kernels NAME)
+  cmake_parse_arguments(KERNELS "" "" "SOURCES;PRIVATE" ${ARGN})
+  target_sources(treacle_${NAME} PRIVATE ${KERNELS_SOURCES})
+  target_link_libraries(treacle_${NAME} PRIVATE CUDA::cudart_static ${KERNELS_PRIVATE})
+endfunction()
+
+function(treacle_compile_options TARGET)
+  # No -ffast-math: sums keep their order. The two flags only free sqrt from errno and traps, which lets it vectorise.
+  target_compile_options(${TARGET} PRIVATE
+    $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wshadow -fno-math-errno -fno-trapping-math>
+    $<$<AND:$<COMPILE_LANGUAGE:CXX>,$<BOOL:${TREACLE_NATIVE}>>:-march=native>
+    $<$<AND:$<COMPILE_LANGUAGE:CXX>,$<BOOL:${TREACLE_WERROR}>>:-Werror>
+    $<$<COMPILE_LANGUAGE:CUDA>:--expt-relaxed-constexpr -Xcompiler=-Wall,-Wextra>  # std::span in device code
+    $<$<AND:$<COMPILE_LANGUAGE:CUDA>,$<BOOL:${TREACLE_WERROR}>>:-Werror all-warnings>)
+endfunction()
