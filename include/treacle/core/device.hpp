@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace treacle {
+
+struct DeviceInfo {
+  std::string name;
+  int computeMajor = 0, computeMinor = 0;  // compute capability
+  int multiprocessors = 0;
+  std::size_t memory = 0;  // [B]
+};
+
+/// The CUDA devices of this machine; empty in builds without CUDA and where there is no driver or no device.
+std::vector<DeviceInfo> cudaDevices();
+
+}  // namespace treacle

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cmath>
+
+// Masked intrinsics with all lanes on are the plain instructions, without g++'s warning about an undefined
+// operand.
+#ifdef __AVX512F__
+#include <immintrin.h>
+#endif
+
+namespace treacle {
+
+/// Eight doubles that the compiler keeps in vector registers of whatever width the processor has. Host only.
+inline constexpr int laneCount = 8;
+using Lanes = double __attribute__((vector_size(laneCount * sizeof(double))));
+
+inline Lanes broadcast(double a) { return Lanes{a, a, a, a, a, a, a, a}; }
+
+inline Lanes max(Lanes a, Lanes b) {
+#ifdef __AVX512F__
+  return (Lanes)_mm512_maskz_max_pd(0xff, (__m512d)a, (__m512d)b);
+#else
+  return a > b ? a : b;
+#endif
+}
+
+inline bool anyGreater(Lanes a, double bound) {
+  const auto greater = a > bound;
+  return (greater[0] | greater[1] | greater[2] | greater[3] | greater[4] | greater[5] | greater[6] | greater[7]) !=
+         0;
+}
+
+/// 1 / sqrt(x) to full double precision, x > 0.
+/// AVX-512: the 14-bit estimate and one step of fourth order (error e^4, e = 2^-13) instead of a division and a
+/// square root, which would take longer than the rest of a pair's work.
+inline Lanes inverseSqrt(Lanes x) {
+#ifdef __AVX512F__
+  const Lanes y = (Lanes)_mm512_maskz_rsqrt14_pd(0xff, (__m512d)x);
+  const Lanes e = 1.0 - x * y * y;
+  return y + y * e * (0.5 + e * (0.375 + e * 0.3125));
+#else
+  Lanes y;
+  for (int k = 0; k < laneCount; ++k) y[k] = 1.0 / std::sqrt(x[k]);
+  return y;
+#endif
+}
+
+}  // namespace treacle

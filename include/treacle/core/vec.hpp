@@ -1,0 +1,75 @@
+#pragma once
+
+#include "treacle/core/macros.hpp"
+
+#include <cmath>
+
+namespace treacle {
+
+/// Small fixed-size vector of D components. An aggregate: `Vec<2>{1.0, 2.0}`; `Vec<2>{}` is zero.
+template <int D, class T = double>
+struct Vec {
+  static_assert(D >= 1 && D <= 3);
+  static constexpr int dimensions = D;
+
+  T v[D];
+
+  TREACLE_HD constexpr T& operator[](int k) { return v[k]; }
+  TREACLE_HD constexpr const T& operator[](int k) const { return v[k]; }
+
+  TREACLE_HD static constexpr Vec filled(T value) {
+    Vec r{};
+    for (int k = 0; k < D; ++k) r.v[k] = value;
+    return r;
+  }
+
+  TREACLE_HD constexpr Vec& operator+=(const Vec& o) {
+    for (int k = 0; k < D; ++k) v[k] += o.v[k];
+    return *this;
+  }
+  TREACLE_HD constexpr Vec& operator-=(const Vec& o) {
+    for (int k = 0; k < D; ++k) v[k] -= o.v[k];
+    return *this;
+  }
+  TREACLE_HD constexpr Vec& operator*=(T s) {
+    for (int k = 0; k < D; ++k) v[k] *= s;
+    return *this;
+  }
+  TREACLE_HD friend constexpr Vec operator+(Vec a, const Vec& b) { return a += b; }
+  TREACLE_HD friend constexpr Vec operator-(Vec a, const Vec& b) { return a -= b; }
+  TREACLE_HD friend constexpr Vec operator*(Vec a, T s) { return a *= s; }
+  TREACLE_HD friend constexpr Vec operator*(T s, Vec a) { return a *= s; }
+  TREACLE_HD friend constexpr Vec operator-(Vec a) { return a *= T(-1); }
+  TREACLE_HD friend constexpr bool operator==(const Vec& a, const Vec& b) {
+    for (int k = 0; k < D; ++k)
+      if (a.v[k] != b.v[k]) return false;
+    return true;
+  }
+};
+
+template <int D, class T>
+TREACLE_HD constexpr T dot(const Vec<D, T>& a, const Vec<D, T>& b) {
+  T sum = a[0] * b[0];
+  for (int k = 1; k < D; ++k) sum += a[k] * b[k];
+  return sum;
+}
+
+template <int D, class T>
+TREACLE_HD constexpr T norm2(const Vec<D, T>& a) {
+  return dot(a, a);
+}
+
+template <int D, class T>
+TREACLE_HD T norm(const Vec<D, T>& a) {
+  return std::sqrt(norm2(a));
+}
+
+/// Conversion between dimensions: missing components become zero, surplus ones are dropped.
+template <int E, int D, class T>
+TREACLE_HD constexpr Vec<E, T> resized(const Vec<D, T>& a) {
+  Vec<E, T> r{};
+  for (int k = 0; k < (D < E ? D : E); ++k) r[k] = a[k];
+  return r;
+}
+
+}  // namespace treacle

@@ -1,0 +1,16 @@
+#pragma once
+
+namespace treacle {
+
+struct BuildInfo {
+  const char* version;
+  const char* commit;
+  const char* buildType;
+  const char* compiler;
+  const char* native;  // "ON": optimised for the processor of the building machine
+  const char* cuda;    // "ON": the CUDA backend was compiled
+};
+
+BuildInfo buildInfo();
+
+}  // namespace treacle
