@@ -1,0 +1,76 @@
+#pragma once
+
+#include "treacle/model/case.hpp"
+
+#include <span>
+#include <string_view>
+
+namespace treacle {
+
+/// The word that stands for a value in case files, on the command line and in summaries.
+template <class E>
+struct Named {
+  std::string_view name;
+  E value;
+};
+
+/// All words of an enumeration, the default first.
+template <class E>
+inline constexpr std::span<const Named<E>> namesOf{};
+
+namespace names {
+inline constexpr Named<ShapeKind> shape[] = {
+    {"box", ShapeKind::Box}, {"sphere", ShapeKind::Sphere}, {"cylinder", ShapeKind::Cylinder}};
+inline constexpr Named<BodyKind> body[] = {{"fluid", BodyKind::Fluid}, {"wall", BodyKind::Wall}};
+inline constexpr Named<KrylovKind> krylov[] = {{"cr", KrylovKind::Cr}, {"cg", KrylovKind::Cg}};
+inline constexpr Named<PreconditionerKind> preconditioner[] = {
+    {"bucket-multigrid", PreconditionerKind::BucketMultigrid},
+    {"block-jacobi", PreconditionerKind::BlockJacobi},
+    {"jacobi", PreconditionerKind::Jacobi},
+    {"none", PreconditionerKind::None}};
+inline constexpr Named<OperatorKind> operators[] = {{"matrix-free", OperatorKind::MatrixFree},
+                                                    {"assembled", OperatorKind::Assembled}};
+inline constexpr Named<Precision> precision[] = {{"double", Precision::Double}, {"mixed", Precision::Mixed}};
+inline constexpr Named<SmootherDiagonal> diagonal[] = {{"jacobi", SmootherDiagonal::Jacobi},
+                                                       {"extended-jacobi", SmootherDiagonal::ExtendedJacobi}};
+inline constexpr Named<OutputPrecision> output[] = {{"single", OutputPrecision::Single},
+                                                    {"double", OutputPrecision::Double}};
+}  // namespace names
+
+template <>
+inline constexpr std::span<const Named<ShapeKind>> namesOf<ShapeKind>{names::shape};
+template <>
+inline constexpr std::span<const Named<BodyKind>> namesOf<BodyKind>{names::body};
+template <>
+inline constexpr std::span<const Named<KrylovKind>> namesOf<KrylovKind>{names::krylov};
+template <>
+inline constexpr std::span<const Named<PreconditionerKind>> namesOf<PreconditionerKind>{names::preconditioner};
+template <>
+inline constexpr std::span<const Named<OperatorKind>> namesOf<OperatorKind>{names::operators};
+template <>
+inline constexpr std::span<const Named<Precision>> namesOf<Precision>{names::precision};
+template <>
+inline constexpr std::span<const Named<SmootherDiagonal>> namesOf<SmootherDiagonal>{names::diagonal};
+template <>
+inline constexpr std::span<const Named<OutputPrecision>> namesOf<OutputPrecision>{names::output};
+
+/// The word for a value, e.g. "bucket-multigrid".
+template <class E>
+constexpr std::string_view nameOf(E value) {
+  for (const Named<E>& n : namesOf<E>)
+    if (n.value == value) return n.name;
+  return {};
+}
+
+/// The words for the fields of frames, in the order of the files.
+struct OutputFieldName {
+  std::string_view name;
+  bool OutputFields::*flag;
+};
+inline constexpr OutputFieldName outputFieldNames[] = {{"velocity", &OutputFields::velocity},
+                                                       {"pressure", &OutputFields::pressure},
+                                                       {"number_density", &OutputFields::numberDensity},
+                                                       {"material", &OutputFields::material},
+                                                       {"id", &OutputFields::id}};
+
+}  // namespace treacle

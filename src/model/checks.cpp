@@ -1,0 +1,109 @@
+#include "treacle/model/checks.hpp"
+
+#include "treacle/model/shape.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace treacle {
+namespace {
+
+constexpr double rounding = 1e-6;  // relative error allowed in "a whole number of steps"
+
+bool wholeNumber(double x) { return std::abs(x - std::round(x)) <= rounding * std::max(1.0, std::abs(x)); }
+
+/// Extent of all fluid bodies along gravity [m].
+double fluidHeight(const Case& c) {
+  const double g = norm(c.gravity);
+  if (g == 0) return 0;
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const Body& body : c.bodies) {
+    if (body.kind != BodyKind::Fluid) continue;
+    const Extent box = boundingBox(body.shape, c.dimensions);
+    for (int k = 0; k < 8; ++k) {
+      const Vec<3> corner{k & 1 ? box.max[0] : box.min[0], k & 2 ? box.max[1] : box.min[1],
+                          k & 4 ? box.max[2] : box.min[2]};
+      const double along = dot(corner, c.gravity) / g;
+      low = std::min(low, along), high = std::max(high, along);
+    }
+  }
+  return std::max(0.0, high - low);
+}
+
+/// Thinnest extent of a wall [m], with the words that say where.
+std::pair<double, std::string> thickness(const Shape& s, int dimensions) {
+  if (s.kind == ShapeKind::Box) {
+    int thinnest = 0;
+    for (int k = 1; k < dimensions; ++k)
+      if (s.max[k] - s.min[k] < s.max[thinnest] - s.min[thinnest]) thinnest = k;
+    return {s.max[thinnest] - s.min[thinnest], std::string("along ") + "xyz"[thinnest]};
+  }
+  const double radial = s.innerRadius > 0 ? s.radius - s.innerRadius : 2 * s.radius;
+  const double length = norm(s.end - s.start);
+  if (s.kind == ShapeKind::Cylinder && length < radial) return {length, "along its axis"};
+  return {radial, s.innerRadius > 0 ? "between its radii" : "across"};
+}
+
+void warnCompression(const Case& c, std::vector<std::string>& warnings) {
+  for (const StabilityNumbers& n : stabilityNumbers(c)) {
+    if (n.compression <= 1 + rounding) continue;
+    warnings.push_back(
+        fmt::format("material '{}': dt kappa / lambda = {:.4g} is greater than 1, the step may be unstable; "
+                    "take bulk_modulus <= bulk_viscosity / step, or a shorter step",
+                    n.material, n.compression));
+  }
+}
+
+void warnThinWalls(const Case& c, std::vector<std::string>& warnings) {
+  for (const Body& body : c.bodies) {
+    if (body.kind != BodyKind::Wall) continue;
+    const auto [extent, where] = thickness(body.shape, c.dimensions);
+    if (extent >= c.viscosityRadius() * (1 - rounding)) continue;
+    warnings.push_back(fmt::format(
+        "wall '{}' is {} thick {}, thinner than the viscosity radius h_v = {} ({:g} spacings): fluid next to it "
+        "misses neighbours",
+        body.name, lengthText(extent), where, lengthText(c.viscosityRadius()), c.method.viscosityRadius));
+  }
+}
+
+void warnTimes(const Case& c, std::vector<std::string>& warnings) {
+  if (!wholeNumber(c.time.end / c.time.step))
+    warnings.push_back(fmt::format(
+        "time.end = {:g} s is not a whole number of steps of {:g} s; the run makes {} steps and ends at {:.6g} s",
+        c.time.end, c.time.step, c.steps(), static_cast<double>(c.steps()) * c.time.step));
+  if (c.output.interval > 0 && !wholeNumber(c.output.interval / c.time.step))
+    warnings.push_back(
+        fmt::format("output.interval = {:g} s is not a whole number of steps of {:g} s; frames are written at "
+                    "the nearest step",
+                    c.output.interval, c.time.step));
+}
+
+}  // namespace
+
+std::vector<StabilityNumbers> stabilityNumbers(const Case& c) {
+  std::vector<StabilityNumbers> numbers;
+  for (const Material& m : c.materials) {
+    const double diffusion = c.time.step / (m.density * c.spacing * c.spacing);
+    const double compression = m.bulkModulus == 0 ? 0 : c.time.step * m.bulkModulus / m.bulkViscosity;
+    numbers.push_back({m.name, compression, m.dynamicViscosity * diffusion, m.bulkViscosity * diffusion});
+  }
+  return numbers;
+}
+
+double courantNumber(const Case& c) {
+  double speed = std::sqrt(2 * norm(c.gravity) * fluidHeight(c));
+  for (const Body& body : c.bodies) speed = std::max(speed, norm(body.velocity));
+  return speed * c.time.step / c.spacing;
+}
+
+std::vector<std::string> caseWarnings(const Case& c) {
+  std::vector<std::string> warnings;
+  warnCompression(c, warnings);
+  warnThinWalls(c, warnings);
+  warnTimes(c, warnings);
+  return warnings;
+}
+
+}  // namespace treacle

@@ -1,0 +1,143 @@
+#include "treacle/model/create.hpp"
+
+#include "treacle/core/error.hpp"
+#include "treacle/model/shape.hpp"
+
+#include "lattice.hpp"
+#include "point_grid.hpp"
+
+#include <fmt/format.h>
+
+namespace treacle {
+namespace {
+
+template <int D>
+struct Filled {
+  const Body* body;
+  std::vector<Vec<D>> points;
+};
+
+/// The points of all bodies of one kind, not yet freed of overlaps.
+template <int D>
+std::vector<Filled<D>> fillBodies(const Case& c, BodyKind kind, std::vector<std::string>& notes) {
+  std::vector<Filled<D>> filled;
+  for (const Body& body : c.bodies)
+    if (body.kind == kind) filled.push_back({&body, latticePoints<D>(body, c.spacing, notes)});
+  return filled;
+}
+
+template <int D>
+std::size_t total(const std::vector<Filled<D>>& filled) {
+  std::size_t count = 0;
+  for (const Filled<D>& f : filled) count += f.points.size();
+  return count;
+}
+
+template <int D>
+void requireInside(const Domain& domain, const Filled<D>& f) {
+  for (const Vec<D>& x : f.points)
+    for (int k = 0; k < D; ++k)
+      if (!(x[k] >= domain.min[k] && x[k] < domain.max[k]))
+        throw InputError(fmt::format(
+            "body '{}' reaches out of the domain: a particle at {}, the domain is {} to {}", f.body->name,
+            positionText(resized<3>(x), D), positionText(domain.min, D), positionText(domain.max, D)));
+}
+
+/// Union in file order: drops points closer than half a spacing to an earlier one and puts the rest on the grid.
+template <int D>
+void unite(std::vector<Filled<D>>& filled, PointGrid<D>& grid, std::vector<std::string>& notes) {
+  for (std::uint32_t b = 0; b < filled.size(); ++b) {
+    auto& points = filled[b].points;
+    std::size_t kept = 0;
+    std::uint32_t other = PointGrid<D>::none;
+    for (const Vec<D>& x : points) {
+      if (const std::uint32_t tag = grid.find(x); tag != PointGrid<D>::none) {
+        other = tag;
+        continue;
+      }
+      grid.add(x, b);
+      points[kept++] = x;
+    }
+    if (kept < points.size())
+      notes.push_back(fmt::format("body '{}': {} of {} particles left out, their place is taken by body '{}'",
+                                  filled[b].body->name, points.size() - kept, points.size(),
+                                  filled[other].body->name));
+    points.resize(kept);
+  }
+}
+
+/// Errors: InputError for the first wall that shares places with the fluid.
+template <int D>
+void requireApart(const std::vector<Filled<D>>& fluid, const PointGrid<D>& grid,
+                  const std::vector<Filled<D>>& walls) {
+  for (const Filled<D>& wall : walls) {
+    std::vector<std::pair<std::uint32_t, Vec<D>>> hits;
+    for (const Vec<D>& x : wall.points)
+      if (const std::uint32_t tag = grid.find(x); tag != PointGrid<D>::none) hits.push_back({tag, x});
+    if (!hits.empty())
+      throw InputError(
+          fmt::format("fluid body '{}' and wall body '{}' overlap: {} wall particle{} closer than half a spacing "
+                      "to the fluid, "
+                      "the first at {}",
+                      fluid[hits[0].first].body->name, wall.body->name, hits.size(), hits.size() == 1 ? "" : "s",
+                      positionText(resized<3>(hits[0].second), D)));
+  }
+}
+
+template <int D>
+void append(const std::vector<Filled<D>>& filled, Particles<D>& particles, std::uint32_t& next) {
+  for (const Filled<D>& f : filled)
+    for (const Vec<D>& x : f.points) {
+      particles.position[next] = x;
+      particles.velocity[next] = resized<D>(f.body->velocity);
+      particles.pressure[next] = 0;
+      particles.numberDensity[next] = 0;
+      particles.material[next] = static_cast<std::uint8_t>(f.body->material);
+      particles.id[next] = next;
+      ++next;
+    }
+}
+
+}  // namespace
+
+template <int D>
+Particles<D> createParticles(const Case& c, std::vector<std::string>& notes,
+                             std::vector<std::uint32_t>* bodyCounts) {
+  auto fluid = fillBodies<D>(c, BodyKind::Fluid, notes);
+  auto walls = fillBodies<D>(c, BodyKind::Wall, notes);
+  if (total(fluid) == 0) throw InputError("the case has no fluid: no body of type \"fluid\" holds a particle");
+  if (total(fluid) + total(walls) > maxParticles)
+    throw InputError(fmt::format("the case would have {} particles, more than the limit of {}",
+                                 total(fluid) + total(walls), maxParticles));
+  for (const auto& f : fluid) requireInside(c.domain, f);
+  for (const auto& f : walls) requireInside(c.domain, f);
+
+  // Points exactly half a spacing apart, give or take rounding, do not count as overlapping.
+  const double radius = 0.5 * c.spacing * (1 - 1e-6);
+  PointGrid<D> fluidGrid(c.domain, radius, total(fluid));
+  unite(fluid, fluidGrid, notes);
+  {
+    PointGrid<D> wallGrid(c.domain, radius, total(walls));
+    unite(walls, wallGrid, notes);
+  }
+  requireApart(fluid, fluidGrid, walls);
+
+  Particles<D> particles;
+  particles.resize(static_cast<std::uint32_t>(total(fluid)), static_cast<std::uint32_t>(total(walls)));
+  std::uint32_t next = 0;
+  append(fluid, particles, next);
+  append(walls, particles, next);
+  if (bodyCounts) {
+    bodyCounts->assign(c.bodies.size(), 0);
+    for (const auto* group : {&fluid, &walls})
+      for (const Filled<D>& f : *group)
+        (*bodyCounts)[static_cast<std::size_t>(f.body - c.bodies.data())] =
+            static_cast<std::uint32_t>(f.points.size());
+  }
+  return particles;
+}
+
+template Particles<2> createParticles<2>(const Case&, std::vector<std::string>&, std::vector<std::uint32_t>*);
+template Particles<3> createParticles<3>(const Case&, std::vector<std::string>&, std::vector<std::uint32_t>*);
+
+}  // namespace treacle

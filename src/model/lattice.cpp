@@ -1,0 +1,97 @@
+#include "lattice.hpp"
+
+#include "treacle/core/error.hpp"
+#include "treacle/model/shape.hpp"
+
+#include <fmt/format.h>
+#include <cmath>
+
+namespace treacle {
+namespace {
+
+constexpr double rounding = 1e-6;  // [spacings]
+
+/// Lattice points `origin + k spacing` with low <= k < high on each axis.
+template <int D>
+struct Lattice {
+  Vec<D> origin;
+  Vec<D> low, high;  // whole numbers; double, so that absurd extents do not overflow
+
+  double points() const {
+    double product = 1;
+    for (int k = 0; k < D; ++k) product *= high[k] - low[k];
+    return product;
+  }
+};
+
+template <int D>
+Lattice<D> boxLattice(const Body& body, double spacing, std::vector<std::string>& notes) {
+  Lattice<D> lattice{};
+  for (int k = 0; k < D; ++k) {
+    const double min = body.shape.min[k], max = body.shape.max[k];
+    const double spacings = (max - min) / spacing;
+    const double count = std::max(1.0, std::round(spacings));
+    lattice.origin[k] = min + spacing / 2;
+    lattice.high[k] = count;
+    if (std::abs(spacings - count) > rounding * std::max(1.0, spacings))
+      notes.push_back(fmt::format(
+          "body '{}': {} along {} is {:.6g} spacings; filled with {:.0f} particle{} from its min corner ({})",
+          body.name, lengthText(max - min), "xyz"[k], spacings, count, count == 1 ? "" : "s",
+          lengthText(count * spacing)));
+  }
+  return lattice;
+}
+
+template <int D>
+Lattice<D> roundLattice(const Body& body, double spacing) {
+  const Shape& s = body.shape;
+  Lattice<D> lattice{};
+  lattice.origin = resized<D>(s.center);
+  if (s.kind == ShapeKind::Cylinder) {
+    // Half a spacing along the axis: layers of particles stand in the middle of slices, as in a box.
+    const Vec<D> axis = resized<D>(s.end - s.start);
+    lattice.origin = resized<D>(s.start) + axis * (spacing / 2 / norm(axis));
+  }
+  const Extent box = boundingBox(s, D);
+  for (int k = 0; k < D; ++k) {
+    lattice.low[k] = std::floor((box.min[k] - lattice.origin[k]) / spacing);
+    lattice.high[k] = std::ceil((box.max[k] - lattice.origin[k]) / spacing) + 1;
+  }
+  return lattice;
+}
+
+}  // namespace
+
+template <int D>
+std::vector<Vec<D>> latticePoints(const Body& body, double spacing, std::vector<std::string>& notes) {
+  const bool box = body.shape.kind == ShapeKind::Box;
+  const Lattice<D> lattice = box ? boxLattice<D>(body, spacing, notes) : roundLattice<D>(body, spacing);
+
+  const auto tooMany = [&] {
+    return InputError(
+        fmt::format("body '{}' would have more than {} particles; take a larger spacing or a lower "
+                    "resolution",
+                    body.name, maxParticles));
+  };
+  // A thin shell fills little of its bounding box; beyond 16 times the limit searching it is no use either.
+  if (lattice.points() > static_cast<double>(maxParticles) * (box ? 1 : 16)) throw tooMany();
+
+  std::vector<Vec<D>> points;
+  if (box) points.reserve(static_cast<std::size_t>(lattice.points()));
+  Vec<D> k = lattice.low;
+  for (int axis = 0; axis < D;) {
+    const Vec<D> x = lattice.origin + k * spacing;
+    if (box || contains<D>(body.shape, x, rounding * spacing)) points.push_back(x);
+    if (points.size() > maxParticles) throw tooMany();
+    for (axis = 0; axis < D; ++axis) {
+      if (++k[axis] < lattice.high[axis]) break;
+      k[axis] = lattice.low[axis];
+    }
+  }
+  return points;
+}
+
+template std::vector<Vec<2>> latticePoints<2>(const Body&, double, std::vector<std::string>&);
+template std::vector<Vec<3>> latticePoints<3>(const Body&, double, std::vector<std::string>&);
+
+}  // namespace treacle
