@@ -1,0 +1,91 @@
+#pragma once
+
+#include "treacle/core/macros.hpp"
+#include "treacle/core/vec.hpp"
+#include "treacle/search/hilbert.hpp"
+
+#include <cmath>
+#include <cstdint>
+
+namespace treacle {
+
+/// Search cells that tile the domain: floor(extent / radius) per axis, so that an edge is at least the radius.
+/// They are also the buckets of the multigrid's finest level [K23 sect. 3.2].
+template <int D>
+struct CellGrid {
+  /// Sort keys resolve a cell into 2^subBits parts per axis, so that consecutive particles are close together.
+  static constexpr int subBits = 2;
+
+  Vec<D> origin{};      // lower corner of the domain [m]
+  Vec<D> length{};      // of the domain [m]
+  Vec<D> edge{};        // of a cell [m]
+  Vec<D, int> count{};  // cells per axis
+  Vec<D, bool> periodic{};
+  int bits = 1;  // 2^bits cells per axis suffice
+
+  /// `radius`: largest interaction range [m], at most the domain's length on periodic axes / 3.
+  static CellGrid make(const Vec<D>& min, const Vec<D>& max, const Vec<D, bool>& periodic, double radius) {
+    CellGrid g;
+    g.origin = min;
+    g.length = max - min;
+    g.periodic = periodic;
+    for (int k = 0; k < D; ++k) {
+      // The guard keeps a domain of exactly n radii at n cells when the quotient rounds below n.
+      g.count[k] = static_cast<int>(std::floor(g.length[k] / radius * (1 + 1e-12)));
+      if (g.count[k] < 1) g.count[k] = 1;
+      g.edge[k] = g.length[k] / g.count[k];
+      while ((1 << g.bits) < g.count[k]) ++g.bits;
+    }
+    return g;
+  }
+
+  std::size_t cellCount() const {
+    std::size_t n = 1;
+    for (int k = 0; k < D; ++k) n *= static_cast<std::size_t>(count[k]);
+    return n;
+  }
+
+  TREACLE_HD Vec<D, int> cellOf(const Vec<D>& x) const {
+    Vec<D, int> c{};
+    for (int k = 0; k < D; ++k) c[k] = clampCell(static_cast<int>(std::floor((x[k] - origin[k]) / edge[k])), k);
+    return c;
+  }
+
+  TREACLE_HD std::size_t linear(const Vec<D, int>& c) const {
+    std::size_t index = 0;
+    for (int k = D - 1; k >= 0; --k) index = index * count[k] + c[k];
+    return index;
+  }
+
+  /// Sort key: Hilbert index at the resolution of sub-cells. key >> (D subBits) is the cell's Hilbert index, and
+  /// each further shift by D that of the bucket one level coarser.
+  TREACLE_HD std::uint64_t key(const Vec<D>& x) const {
+    Vec<D, std::uint32_t> p{};
+    for (int k = 0; k < D; ++k) {
+      const double s = (x[k] - origin[k]) / edge[k];
+      const int cell = clampCell(static_cast<int>(std::floor(s)), k);
+      int sub = static_cast<int>((s - cell) * (1 << subBits));
+      sub = sub < 0 ? 0 : sub >= (1 << subBits) ? (1 << subBits) - 1 : sub;
+      p[k] = static_cast<std::uint32_t>(cell << subBits | sub);
+    }
+    return hilbertIndex<D>(p, bits + subBits);
+  }
+
+  /// Moves x by whole domain lengths into the domain on periodic axes. Returns false where it lies outside on an
+  /// open one (or is not finite).
+  TREACLE_HD bool wrap(Vec<D>& x) const {
+    for (int k = 0; k < D; ++k) {
+      if (periodic[k]) {
+        x[k] -= length[k] * std::floor((x[k] - origin[k]) / length[k]);
+        if (x[k] >= origin[k] + length[k]) x[k] = origin[k];  // rounding of a value just below the lower end
+      }
+      if (!(x[k] >= origin[k] && x[k] <= origin[k] + length[k])) return false;
+    }
+    return true;
+  }
+
+ private:
+  TREACLE_HD int clampCell(int c, int k) const { return c < 0 ? 0 : c >= count[k] ? count[k] - 1 : c; }
+};
+
+}  // namespace treacle

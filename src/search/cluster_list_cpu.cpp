@@ -1,0 +1,153 @@
+#include "treacle/search/cluster_list.hpp"
+
+#include "treacle/core/lanes.hpp"
+#include "treacle/core/parallel.hpp"
+#include "treacle/search/cluster_lanes.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace treacle {
+namespace {
+
+/// The cells that a cluster's reach touches, counted on through periodic ends, and the images they belong to.
+template <int D>
+struct Reach {
+  Vec<D, int> first, last;
+
+  Reach(const CellGrid<D>& grid, const VecLanes<D>& x, double radius) {
+    for (int k = 0; k < D; ++k) {
+      double lo = x[k][0], hi = x[k][0];
+      for (int lane = 1; lane < laneCount; ++lane) {
+        lo = std::min(lo, x[k][lane]);
+        hi = std::max(hi, x[k][lane]);
+      }
+      first[k] = static_cast<int>(std::floor((lo - radius - grid.origin[k]) / grid.edge[k]));
+      last[k] = static_cast<int>(std::floor((hi + radius - grid.origin[k]) / grid.edge[k]));
+      if (!grid.periodic[k]) {
+        first[k] = std::clamp(first[k], 0, grid.count[k] - 1);
+        last[k] = std::clamp(last[k], 0, grid.count[k] - 1);
+      }
+    }
+  }
+};
+
+template <int D, class F>
+void forEachCell(const CellGrid<D>& grid, const Reach<D>& reach, F&& f) {
+  Vec<D, int> c = reach.first;
+  while (true) {
+    Vec<D, int> cell{};
+    std::uint32_t image = 0;
+    for (int k = D - 1; k >= 0; --k) {
+      const int turn = c[k] < 0 ? -1 : c[k] >= grid.count[k] ? 1 : 0;
+      cell[k] = c[k] - turn * grid.count[k];
+      image = 3 * image + (turn < 0 ? 2 : turn);
+    }
+    f(grid.linear(cell), image);
+    int k = 0;
+    while (k < D && ++c[k] > reach.last[k]) {
+      c[k] = reach.first[k];
+      ++k;
+    }
+    if (k == D) return;
+  }
+}
+
+template <int D>
+double nearestLane2(const VecLanes<D>& x, const Vec<D>& p) {
+  Lanes r2 = {};
+  for (int k = 0; k < D; ++k) r2 += (p[k] - x[k]) * (p[k] - x[k]);
+  double least = r2[0];
+  for (int lane = 1; lane < laneCount; ++lane) least = std::min(least, r2[lane]);
+  return least;
+}
+
+/// What visits one cluster's neighbours; the pass that counts and the one that fills differ in the sink alone.
+template <int D>
+struct ListBuilder {
+  const CellGrid<D>& grid;
+  const CellRanges<>& ranges;
+  std::span<const Vec<D>> position;
+  PeriodicImages<D> images;
+  ListRadii radii;
+
+  /// Calls sink(segment, entry) for every neighbour of the cluster.
+  template <class Sink>
+  void visit(const VecLanes<D>& x, Sink&& sink) const {
+    const double near2 = radii.near * radii.near, far2 = radii.far * radii.far;
+    const auto visitRange = [&](std::uint32_t begin, std::uint32_t end, std::uint32_t image, int firstSegment) {
+      for (std::uint32_t j = begin; j < end; ++j) {
+        const double r2 = nearestLane2(x, position[j] + images.shift[image]);
+        if (r2 <= near2)
+          sink(firstSegment, ListEntry::make(j, image));
+        else if (r2 <= far2)
+          sink(firstSegment + 1, ListEntry::make(j, image));
+      }
+    };
+    forEachCell(
+        grid, Reach<D>(grid, x, std::max(radii.near, radii.far)), [&](std::size_t cell, std::uint32_t image) {
+          visitRange(ranges.fluidBegin[cell], ranges.fluidEnd[cell], image,
+                     static_cast<int>(ListSegment::NearFluid));
+          visitRange(ranges.wallBegin[cell], ranges.wallEnd[cell], image, static_cast<int>(ListSegment::NearWall));
+        });
+  }
+};
+
+}  // namespace
+
+template <int D>
+PeriodicImages<D> periodicImages(const CellGrid<D>& grid) {
+  PeriodicImages<D> images;
+  for (int code = 0; code < images.count; ++code) {
+    for (int k = 0, digits = code; k < D; ++k, digits /= 3)
+      images.shift[code][k] = grid.length[k] * (digits % 3 == 2 ? -1 : digits % 3);
+  }
+  return images;
+}
+
+template <int D>
+void buildClusterList(Context<Cpu>&, const CellGrid<D>& grid, const CellRanges<>& ranges,
+                      std::span<const Vec<D>> position, std::uint32_t first, std::uint32_t last, ListRadii radii,
+                      bool onlyNextToFluid, ClusterList<>& list) {
+  list.first = first;
+  list.last = last;
+  const std::uint32_t clusters = list.clusterCount();
+  list.offset.resize(std::size_t{listSegments} * clusters + 1);
+  list.wraps.resize(clusters);
+  const ListBuilder<D> builder{grid, ranges, position, periodicImages(grid), radii};
+  const auto positionsOf = [&](std::size_t c) {
+    return loadPositions<D>(ClusterRange(list, static_cast<std::uint32_t>(c)), position, grid);
+  };
+
+  list.offset[0] = 0;
+  parallelForDynamic(clusters, parallelGrain / clusterSize, 32, [&](std::size_t c) {
+    std::array<std::uint64_t, listSegments> count{};
+    bool wraps = false;
+    builder.visit(positionsOf(c), [&](int segment, ListEntry e) {
+      ++count[segment];
+      wraps = wraps || e.image() != 0;
+    });
+    list.wraps[c] = wraps;
+    if (onlyNextToFluid && count[static_cast<int>(ListSegment::NearFluid)] == 0) count = {};
+    for (int s = 0; s < listSegments; ++s) list.offset[std::size_t{listSegments} * c + s + 1] = count[s];
+  });
+  for (std::size_t k = 1; k < list.offset.size(); ++k) list.offset[k] += list.offset[k - 1];
+
+  list.entry.resize(list.offset[list.offset.size() - 1]);
+  parallelForDynamic(clusters, parallelGrain / clusterSize, 32, [&](std::size_t c) {
+    const std::uint64_t* offset = &list.offset[std::size_t{listSegments} * c];
+    if (offset[0] == offset[listSegments]) return;
+    std::array<std::uint64_t, listSegments> next{};
+    for (int s = 0; s < listSegments; ++s) next[s] = offset[s];
+    builder.visit(positionsOf(c), [&](int segment, ListEntry e) { list.entry[next[segment]++] = e; });
+  });
+}
+
+template PeriodicImages<2> periodicImages<2>(const CellGrid<2>&);
+template PeriodicImages<3> periodicImages<3>(const CellGrid<3>&);
+template void buildClusterList<2>(Context<Cpu>&, const CellGrid<2>&, const CellRanges<>&, std::span<const Vec<2>>,
+                                  std::uint32_t, std::uint32_t, ListRadii, bool, ClusterList<>&);
+template void buildClusterList<3>(Context<Cpu>&, const CellGrid<3>&, const CellRanges<>&, std::span<const Vec<3>>,
+                                  std::uint32_t, std::uint32_t, ListRadii, bool, ClusterList<>&);
+
+}  // namespace treacle
