@@ -1,0 +1,75 @@
+#pragma once
+
+#include "treacle/model/case.hpp"
+#include "treacle/model/particles.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+
+namespace treacle {
+
+/// Sums and extremes of the state over the fluid particles.
+struct Diagnostics {
+  double kineticEnergy = 0;    // sum of m |u|^2 / 2 [J; per metre of depth in 2D]
+  double potentialEnergy = 0;  // -sum of m g.x, zero at the origin [J; per metre of depth in 2D]
+  double frontX = 0;           // largest x [m]
+  double top = 0;              // largest coordinate against gravity [m]
+  double maxSpeed = 0;         // [m/s]
+};
+
+/// Wall-clock seconds of one step, or summed over steps.
+struct PhaseSeconds {
+  double search = 0;        // cell keys, sort, permutation, cell ranges
+  double lists = 0;         // neighbour lists
+  double coefficients = 0;  // densities, right-hand side, operator coefficients (assembly included)
+  double coarse = 0;        // preconditioner set-up: diagonals, coarse operators
+  double solve = 0;         // Krylov iterations
+  double update = 0;        // pressure, motion, diagnostics
+
+  double total() const { return search + lists + coefficients + coarse + solve + update; }
+  PhaseSeconds& operator+=(const PhaseSeconds& o) {
+    search += o.search, lists += o.lists, coefficients += o.coefficients;
+    coarse += o.coarse, solve += o.solve, update += o.update;
+    return *this;
+  }
+};
+
+struct StepReport {
+  std::int64_t step = 0;  // number of steps done
+  double time = 0;        // [s], after the step
+  int iterations = 0;
+  double residual = 0;  // |r|^2 / |b|^2 at the end of the solve
+  Diagnostics diagnostics;
+  PhaseSeconds seconds;
+};
+
+/// One MPH-I simulation on the CPU: x^{k+1} = x^k + dt u^{k+1} with u^{k+1} from the implicit step
+/// [K23 eqs. (13)-(16)]. Results do not depend on the number of OpenMP threads.
+template <int D>
+class Simulation {
+ public:
+  /// `particles`: the state at `time` after `step` steps. Errors: std::bad_alloc.
+  Simulation(const Case& c, Particles<D> particles, std::int64_t step = 0, double time = 0);
+  ~Simulation();
+  Simulation(Simulation&&) noexcept;
+
+  /// One time step. Errors: RunError with the diagnosis (no convergence, a value not finite, a particle outside
+  /// an open domain); particles() and time() then still hold the last good state, that before the step.
+  StepReport advance();
+
+  const Particles<D>& particles() const;
+  double time() const;  // [s]
+  std::int64_t step() const;
+  std::size_t bytes() const;  // memory held [B]
+  Diagnostics diagnostics() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+extern template class Simulation<2>;
+extern template class Simulation<3>;
+
+}  // namespace treacle

@@ -1,0 +1,286 @@
+#include "treacle/step/simulation.hpp"
+
+#include "diagnostics.hpp"
+#include "mph_solver.hpp"
+#include "treacle/core/error.hpp"
+#include "treacle/core/timer.hpp"
+#include "treacle/search/cell_sort.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace treacle {
+namespace {
+
+template <int D>
+MphPairs<D> makePairs(const Case& c) {
+  MphPairs<D> pairs;
+  Vec<D, bool> periodic{};
+  for (int k = 0; k < D; ++k) periodic[k] = c.domain.periodic[k];
+  const double hp = c.pressureRadius(), hv = c.viscosityRadius();
+  pairs.grid =
+      CellGrid<D>::make(resized<D>(c.domain.min), resized<D>(c.domain.max), periodic, std::max(hv, 2 * hp));
+  pairs.images = periodicImages(pairs.grid);
+  pairs.pressureWeight = Weight<D>::make(hp, c.spacing);
+  pairs.viscosityWeight = Weight<D>::make(hv, c.spacing);
+  pairs.pressure = PairTerm::pressure(pairs.pressureWeight);
+  pairs.viscosity = PairTerm::viscosity(pairs.viscosityWeight);
+  pairs.materials = MaterialTable::make(c);
+  return pairs;
+}
+
+template <int D>
+std::string describe(const Vec<D>& x) {
+  std::string text = fmt::format("({:.6g}", x[0]);
+  for (int k = 1; k < D; ++k) text += fmt::format(", {:.6g}", x[k]);
+  return text + ")";
+}
+
+template <int D>
+bool isFinite(const Vec<D>& v) {
+  return std::isfinite(norm2(v));
+}
+
+}  // namespace
+
+template <int D>
+struct Simulation<D>::State {
+  Case c;
+  Particles<D> particles;
+  std::int64_t step;
+  double time;
+
+  Context<Cpu> context;
+  CellRanges<> ranges;
+  SortWorkspace<> sortWorkspace;
+  ClusterList<> fluidList, wallList;
+  MphPairs<D> pairs;
+  double restDensity;  // n_0 [-]
+  bool wallsMove = false;
+  Buffer<Block<D>> wallBlock;
+  Buffer<Vec<D>> wallGradient;
+  Buffer<double> elastic;                  // kappa [n - n_0]_+ per particle [Pa]
+  Buffer<double> divergence;               // C^T u per particle [1/s]
+  Buffer<Vec<D>> rhs, velocity, position;  // the step's results before they are accepted
+  MphSolver<D> solver;
+
+  State(const Case& theCase, Particles<D> state, std::int64_t startStep, double startTime)
+      : c(theCase),
+        particles(std::move(state)),
+        step(startStep),
+        time(startTime),
+        pairs(makePairs<D>(c)),
+        restDensity(latticeNumberDensity(pairs.pressureWeight, c.spacing)),
+        solver(c.solver) {
+    for (std::uint32_t i = particles.fluidCount; i < particles.count; ++i)
+      wallsMove = wallsMove || norm2(particles.velocity[i]) > 0;
+  }
+
+  WallTerms<D> wallTermsView() { return {wallBlock.span(), wallGradient.span()}; }
+
+  void search() { sortByCell(context, pairs.grid, particles, ranges, sortWorkspace); }
+
+  void buildLists() {
+    const double hp = c.pressureRadius();
+    const std::span<const Vec<D>> x = particles.position;
+    buildClusterList<D>(context, pairs.grid, ranges, x, 0, particles.fluidCount,
+                        {hp, std::max(c.viscosityRadius(), 2 * hp)}, false, fluidList);
+    buildClusterList<D>(context, pairs.grid, ranges, x, particles.fluidCount, ranges.activeCount, {hp, 0}, true,
+                        wallList);
+    pairs.fluidCount = particles.fluidCount;
+    pairs.activeCount = ranges.activeCount;
+    pairs.position = x;
+    pairs.material = particles.material;
+    pairs.fluidList = &fluidList;
+    pairs.wallList = &wallList;
+  }
+
+  void computeDensities() {
+    std::fill(particles.numberDensity.begin() + ranges.activeCount, particles.numberDensity.end(), 0.0);
+    std::fill(particles.pressure.begin() + ranges.activeCount, particles.pressure.end(), 0.0);
+    numberDensity<D>(context, pairs, particles.numberDensity.span().first(ranges.activeCount));
+  }
+
+  /// b of [K23 eq. (16)], and the terms of prescribed wall velocities.
+  void computeRightHandSide() {
+    const std::uint32_t n = particles.fluidCount, active = ranges.activeCount;
+    const Vec<D> gravity = resized<D>(c.gravity);
+    elastic.resize(active);
+    for (std::uint32_t i = 0; i < active; ++i)
+      elastic[i] = pairs.materials.bulkModulus[particles.material[i]] *
+                   std::max(particles.numberDensity[i] - restDensity, 0.0);
+    rhs.resize(n);
+    for (std::uint32_t i = 0; i < n; ++i) {
+      const int m = particles.material[i];
+      rhs[i] = pairs.materials.inertia[m] * particles.velocity[i] + pairs.materials.density[m] * gravity;
+    }
+    addPressureGradient<D>(context, pairs, elastic, -1.0, rhs);
+    if (wallsMove) addWallVelocities();
+  }
+
+  /// b -= A_full (0 on the fluid, u on the walls)
+  void addWallVelocities() {
+    const std::uint32_t n = particles.fluidCount, active = ranges.activeCount;
+    velocity.resize(active);
+    std::fill_n(velocity.begin(), n, Vec<D>{});
+    std::copy(particles.velocity.begin() + n, particles.velocity.begin() + active, velocity.begin() + n);
+    addWallDrag<D>(context, pairs, velocity, rhs);
+    divergence.resize(active);
+    treacle::divergence<D>(context, pairs, velocity, divergence);
+    for (std::uint32_t i = 0; i < active; ++i)
+      divergence[i] *= pairs.materials.bulkViscosity[particles.material[i]];
+    addPressureGradient<D>(context, pairs, divergence, -1.0, rhs);
+  }
+
+  void computeCoefficients() {
+    computeDensities();
+    wallBlock.resize(particles.fluidCount);
+    wallGradient.resize(particles.fluidCount);
+    wallTerms<D>(context, pairs, wallTermsView());
+    computeRightHandSide();
+    solver.prepareOperator(context, pairs, wallTermsView());
+  }
+
+  /// First guess: the last velocity. The solution stands in `velocity`, walls included.
+  SolveReport solve() {
+    const std::uint32_t n = particles.fluidCount;
+    velocity.resize(ranges.activeCount);
+    std::copy_n(particles.velocity.begin(), ranges.activeCount, velocity.begin());
+    const SolveReport report = solver.solve(context, rhs, velocity.span().first(n));
+    if (report.status != SolveStatus::Converged) throw RunError(diagnose(report));
+    return report;
+  }
+
+  std::string diagnose(const SolveReport& report) const {
+    const std::string numbers = fmt::format("|r|^2/|b|^2 = {:.3g} after {} iterations (tolerance {:.3g})",
+                                            report.residual, report.iterations, c.solver.tolerance);
+    switch (report.status) {
+      case SolveStatus::IterationLimit:
+        return "the linear solver did not converge: " + numbers +
+               "; raise solver.max_iterations, or reduce the time step or the bulk viscosity";
+      case SolveStatus::Breakdown:
+        return "the linear solver broke down, operator or preconditioner is not positive definite in working "
+               "precision: " +
+               numbers;
+      default:
+        return "the linear solver met a value that is not finite: " + numbers + "; " + firstNotFinite();
+    }
+  }
+
+  std::string firstNotFinite() const {
+    for (std::uint32_t i = 0; i < particles.fluidCount; ++i)
+      if (!isFinite(rhs[i]) || !isFinite(particles.position[i]))
+        return fmt::format("the right-hand side of particle {} at {} m is not finite", particles.id[i],
+                           describe(particles.position[i]));
+    return "the right-hand side is finite";
+  }
+
+  /// x^{k+1} = x^k + dt u^{k+1} [K23 eq. (15)], walls by their prescribed velocity; into `position`.
+  void move() {
+    position.resize(particles.count);
+    for (std::uint32_t i = 0; i < particles.count; ++i) {
+      const Vec<D>& u = i < particles.fluidCount ? velocity[i] : particles.velocity[i];
+      position[i] = particles.position[i] + c.time.step * u;
+      if (i >= particles.fluidCount && !wallsMove) continue;
+      if (!pairs.grid.wrap(position[i]))
+        throw RunError(fmt::format("{} particle {} left the domain: from {} m to {} m at velocity {} m/s",
+                                   i < particles.fluidCount ? "fluid" : "wall", particles.id[i],
+                                   describe(particles.position[i]), describe(position[i]), describe(u)));
+    }
+  }
+
+  /// Psi of [K23 eq. (14)] with the new velocities.
+  void computePressure() {
+    const std::uint32_t active = ranges.activeCount;
+    divergence.resize(active);
+    treacle::divergence<D>(context, pairs, velocity.span().first(active), divergence);
+    for (std::uint32_t i = 0; i < active; ++i)
+      particles.pressure[i] = pairs.materials.bulkViscosity[particles.material[i]] * divergence[i] + elastic[i];
+  }
+
+  void accept() {
+    std::copy_n(velocity.begin(), particles.fluidCount, particles.velocity.begin());
+    std::copy_n(position.begin(), particles.count, particles.position.begin());
+    ++step;
+    time = static_cast<double>(step) * c.time.step;
+  }
+
+  StepReport advance() {
+    StepReport report;
+    Timer timer;
+    search();
+    report.seconds.search = timer.lap();
+    buildLists();
+    report.seconds.lists = timer.lap();
+    computeCoefficients();
+    report.seconds.coefficients = timer.lap();
+    solver.preparePreconditioner(context, pairs, ranges, wallTermsView());
+    report.seconds.coarse = timer.lap();
+    const SolveReport solved = solve();
+    report.seconds.solve = timer.lap();
+    move();
+    computePressure();
+    accept();
+    report.diagnostics = computeDiagnostics(c, pairs.materials, particles);
+    report.seconds.update = timer.lap();
+    report.step = step;
+    report.time = time;
+    report.iterations = solved.iterations;
+    report.residual = solved.residual;
+    return report;
+  }
+
+  std::size_t bytes() {
+    std::size_t sum = ranges.bytes() + sortWorkspace.keyed.bytes() + sortWorkspace.field.bytes() +
+                      sortWorkspace.hasFluid.bytes() + fluidList.bytes() + wallList.bytes() + wallBlock.bytes() +
+                      wallGradient.bytes() + elastic.bytes() + divergence.bytes() + rhs.bytes() +
+                      velocity.bytes() + position.bytes() + solver.bytes();
+    particles.forEachField([&](const auto& field) { sum += field.bytes(); });
+    return sum;
+  }
+};
+
+template <int D>
+Simulation<D>::Simulation(const Case& c, Particles<D> particles, std::int64_t step, double time)
+    : state_(std::make_unique<State>(c, std::move(particles), step, time)) {
+  // Frame 0 shows number densities.
+  state_->search();
+  state_->buildLists();
+  state_->computeDensities();
+}
+template <int D>
+Simulation<D>::~Simulation() = default;
+template <int D>
+Simulation<D>::Simulation(Simulation&&) noexcept = default;
+
+template <int D>
+StepReport Simulation<D>::advance() {
+  return state_->advance();
+}
+template <int D>
+const Particles<D>& Simulation<D>::particles() const {
+  return state_->particles;
+}
+template <int D>
+double Simulation<D>::time() const {
+  return state_->time;
+}
+template <int D>
+std::int64_t Simulation<D>::step() const {
+  return state_->step;
+}
+template <int D>
+std::size_t Simulation<D>::bytes() const {
+  return state_->bytes();
+}
+template <int D>
+Diagnostics Simulation<D>::diagnostics() const {
+  return computeDiagnostics(state_->c, state_->pairs.materials, state_->particles);
+}
+
+template class Simulation<2>;
+template class Simulation<3>;
+
+}  // namespace treacle
