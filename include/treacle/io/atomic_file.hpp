@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string_view>
+#include <vector>
+
+namespace treacle {
+
+/// A file that appears under its name only once it is complete: written to `<path>.tmp`, synchronised to disk
+/// and renamed. Until commit() an older file of that name stays as it is.
+/// Errors, of every member: RunError with path and reason; the temporary file is then removed.
+/// A process that limits its file sizes has to ignore SIGXFSZ, otherwise the system ends it before the error
+/// shows.
+class AtomicFile {
+ public:
+  explicit AtomicFile(std::filesystem::path path);
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+  /// Without commit() the content is thrown away.
+  ~AtomicFile();
+
+  void write(const void* data, std::size_t bytes);
+  void write(std::string_view text) { write(text.data(), text.size()); }
+  void commit();
+
+  static std::filesystem::path temporaryName(std::filesystem::path path) { return path += ".tmp"; }
+
+ private:
+  void flush();
+  [[noreturn]] void fail();
+  void discard();
+
+  std::filesystem::path path_, temporary_;
+  std::vector<char> pending_;
+  int descriptor_ = -1;
+};
+
+/// AtomicFile in one go.
+void writeFile(const std::filesystem::path& path, std::string_view content);
+
+}  // namespace treacle

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "treacle/core/vec.hpp"
+#include "treacle/model/particles.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace treacle {
+
+/// A copy of one group of particles (fluid or walls) at one instant: what is written to and read from files.
+/// Always three components; fields that a file does not hold are empty.
+struct Frame {
+  int dimensions = 3;
+  double time = 0;                            // [s]
+  std::vector<Vec<3>> position;               // [m]
+  std::vector<Vec<3>> velocity;               // [m/s]
+  std::vector<double> pressure;               // [Pa]
+  std::vector<double> numberDensity;          // [-]
+  std::vector<std::int32_t> material;         // index into the case's materials
+  std::vector<std::uint32_t> id;
+};
+
+/// Copies particles [begin, end), sorted by id: files do not depend on how the search sorts.
+template <int D>
+Frame makeFrame(const Particles<D>& particles, std::uint32_t begin, std::uint32_t end, double time);
+
+extern template Frame makeFrame<2>(const Particles<2>&, std::uint32_t, std::uint32_t, double);
+extern template Frame makeFrame<3>(const Particles<3>&, std::uint32_t, std::uint32_t, double);
+
+}  // namespace treacle

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+namespace treacle {
+
+/// One time step in `history.csv`.
+struct HistoryRow {
+  std::int64_t step = 0;
+  double time = 0;  // [s], after the step
+  int iterations = 0;
+  double residual = 0;         // |r|^2 / |b|^2 at the end of the solve
+  double kineticEnergy = 0;    // [J; per metre of depth in 2D]
+  double potentialEnergy = 0;  // [J; per metre of depth in 2D]
+  double frontX = 0;           // largest x of the fluid [m]
+  double top = 0;              // largest coordinate of the fluid against gravity [m]
+  double maxSpeed = 0;         // [m/s]
+  double seconds = 0;          // wall-clock time of the step [s]
+};
+
+/// Appends rows to a new file, each handed to the system at once: a run that is killed leaves whole rows, and
+/// numbers read back to the same bits.
+/// Errors, of every member: RunError with path and reason; the file then ends with the last whole row.
+class HistoryWriter {
+ public:
+  /// Replaces an older file.
+  explicit HistoryWriter(std::filesystem::path path);
+  HistoryWriter(const HistoryWriter&) = delete;
+  HistoryWriter& operator=(const HistoryWriter&) = delete;
+  ~HistoryWriter();
+
+  void append(const HistoryRow& row);
+
+ private:
+  std::filesystem::path path_;
+  int descriptor_ = -1;
+  std::int64_t size_ = 0;  // [B] whole rows
+};
+
+/// All rows; an unfinished last line is left out. Errors: InputError with path and line.
+std::vector<HistoryRow> readHistory(const std::filesystem::path& path);
+
+}  // namespace treacle

@@ -1,0 +1,39 @@
+#pragma once
+
+#include "treacle/io/frame.hpp"
+#include "treacle/io/history.hpp"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace treacle {
+
+/// The field that colours the fluid.
+enum class PictureField { Speed, Pressure, NumberDensity };
+
+struct PictureOptions {
+  PictureField field = PictureField::Speed;
+  double spacing = 0;  // particle spacing: the diameter of the discs [m]
+  Vec<3> gravity{};    // 3D: its main axis points down in the picture [m/s2]
+  std::string title;
+  int width = 1200;  // [px]; the height follows from the shape of what is drawn
+  std::optional<double> minimum,
+      maximum;  // range of the colours; default: speed from 0, otherwise that of the data
+};
+
+/// Draws one frame as PNG, without a display: fluid coloured by a field, walls grey, axes, colour bar, title,
+/// time. 2D: seen along z. 3D: parallel projection from an oblique direction; of the walls only the sides that
+/// face the viewer are drawn, and nothing that hides the fluid. Particles whose position is not finite are left
+/// out. Errors: InputError if the frame does not hold the field, holds no particle, or spacing or width are
+/// unusable; RunError if the file cannot be written.
+void drawFrame(const std::filesystem::path& path, const Frame& fluid, const Frame& walls,
+               const PictureOptions& options);
+
+/// Draws iterations, energies, extents and largest speed over time as PNG.
+/// Errors: InputError if there are no rows; RunError if the file cannot be written.
+void drawHistory(const std::filesystem::path& path, const std::vector<HistoryRow>& rows,
+                 const std::string& title = {});
+
+}  // namespace treacle

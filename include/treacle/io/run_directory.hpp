@@ -1,0 +1,55 @@
+#pragma once
+
+#include "treacle/io/frame.hpp"
+#include "treacle/io/pvd.hpp"
+#include "treacle/model/case.hpp"
+
+#include <cstddef>
+#include <filesystem>
+#include <utility>
+#include <vector>
+
+namespace treacle {
+
+/// The directory that holds all files of one run; the only place that knows their names.
+class RunDirectory {
+ public:
+  /// Makes the directory (and its parents). One that holds anything is taken only with `force`; the files of an
+  /// older run are then removed, and nothing else.
+  /// Errors: InputError if it is not empty (without force), not writable or no directory, or if it holds a
+  /// case.toml but no run (that file is the user's and would be overwritten).
+  static RunDirectory create(const std::filesystem::path& path, bool force);
+
+  /// Opens the directory of an existing run. Errors: InputError if there is none.
+  static RunDirectory open(const std::filesystem::path& path);
+
+  /// Writes fluid and walls as the next frame and brings both indices up to date. Errors: RunError.
+  void writeFrame(const Frame& fluid, const Frame& walls, const OutputSettings& settings);
+  std::size_t frameCount() const { return fluidFrames_.size(); }
+  double frameTime(std::size_t frame) const { return fluidFrames_.at(frame).time; }  // [s]
+
+  const std::filesystem::path& path() const { return path_; }
+  std::filesystem::path caseFile() const { return path_ / "case.toml"; }
+  std::filesystem::path log() const { return path_ / "run.log"; }
+  std::filesystem::path history() const { return path_ / "history.csv"; }
+  std::filesystem::path summary() const { return path_ / "summary.json"; }
+  std::filesystem::path checkpoint() const { return path_ / "checkpoint.h5"; }
+  std::filesystem::path fluidIndex() const { return path_ / "fluid.pvd"; }
+  std::filesystem::path wallsIndex() const { return path_ / "walls.pvd"; }
+  std::filesystem::path fluidFrame(std::size_t frame) const;
+  std::filesystem::path wallsFrame(std::size_t frame) const;
+
+  std::filesystem::path finalPicture() const { return path_ / "final.png"; }
+  std::filesystem::path historyPicture() const { return path_ / "history.png"; }
+  std::filesystem::path framePicture(std::size_t frame) const;
+
+ private:
+  explicit RunDirectory(std::filesystem::path path) : path_(std::move(path)) {}
+  bool holdsRun() const;
+  void removeRun() const;
+
+  std::filesystem::path path_;
+  std::vector<PvdEntry> fluidFrames_, wallsFrames_;
+};
+
+}  // namespace treacle

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace treacle {
+
+/// What a run was and what it took: `summary.json`.
+struct RunSummary {
+  std::string version, commit;
+  std::string backend;    // "cpu" or "cuda"
+  std::string device;     // name of the processor or accelerator
+  int threads = 0;        // of the host
+  std::string precision;  // "double" or "mixed"
+  std::string title;      // of the case
+  int dimensions = 0;
+  std::uint64_t fluidParticles = 0, wallParticles = 0;
+
+  std::int64_t steps = 0;
+  double time = 0;  // simulation time reached [s]
+  double meanIterations = 0;
+  int firstIterations = 0, lastIterations = 0;
+
+  std::vector<std::pair<std::string, double>>
+      phaseSeconds;              // wall-clock time by phase, in the order of a step [s]
+  double wallSeconds = 0;        // of the whole run [s]
+  std::uint64_t peakMemory = 0;  // [B]
+
+  bool done = false;    // status "done" or "failed"
+  std::string message;  // diagnosis of a run that failed
+};
+
+/// Errors: RunError if the file cannot be written.
+void writeSummary(const std::filesystem::path& path, const RunSummary& summary);
+
+}  // namespace treacle

@@ -1,0 +1,237 @@
+#include "treacle/io/case_reader.hpp"
+
+#include "case_document.hpp"
+#include "case_section.hpp"
+#include "treacle/model/shape.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace treacle {
+namespace {
+
+using Keys = std::vector<std::string_view>;
+
+/// "[domain] must hold 'min'" with the file's place even where the whole table is missing.
+Section requiredSection(const Section& top, std::string_view key, const Keys& keys) {
+  if (!top.has(key)) throw top.error(key, fmt::format("missing; expected a table [{}]", key));
+  return top.section(key, fmt::format("[{}]", key), keys);
+}
+
+Domain readDomain(const Section& top, int dimensions) {
+  const Section s = requiredSection(top, "domain", {"min", "max", "periodic"});
+  Domain domain;
+  domain.min = s.vector("min", dimensions, "m");
+  domain.max = s.vector("max", dimensions, "m");
+  domain.periodic = s.flags("periodic", dimensions);
+  for (int k = 0; k < dimensions; ++k)
+    if (!(domain.min[k] < domain.max[k]))
+      throw s.error("max", fmt::format("expected more than min on every axis, found {} <= {} along {}",
+                                       domain.max[k], domain.min[k], "xyz"[k]));
+  return domain;
+}
+
+Material readMaterial(const toml::table& table, const std::string& name) {
+  const Section s(table, fmt::format("[[material]] '{}'", name),
+                  {"name", "density", "dynamic_viscosity", "bulk_viscosity", "bulk_modulus"});
+  Material m;
+  m.name = name;
+  m.density = s.number("density", Bound::Positive, "kg/m3");
+  m.dynamicViscosity = s.number("dynamic_viscosity", Bound::NonNegative, "Pa s");
+  m.bulkViscosity = s.number("bulk_viscosity", Bound::NonNegative, "Pa s");
+  m.bulkModulus = s.number("bulk_modulus", Bound::NonNegative, "Pa");
+  return m;
+}
+
+std::vector<Material> readMaterials(const Section& top) {
+  constexpr std::size_t most =
+      std::numeric_limits<std::uint8_t>::max() + std::size_t{1};  // of Particles::material
+  std::vector<Material> materials;
+  for (const toml::table* table : top.tables("material"))
+    materials.push_back(readMaterial(*table, (*table)["name"].value_or(std::string{})));
+  if (materials.size() > most)
+    throw top.error("material", fmt::format("expected at most {}, found {}", most, materials.size()));
+  return materials;
+}
+
+void readBox(const Section& s, int dimensions, Shape& shape) {
+  shape.min = s.vector("min", dimensions, "m");
+  shape.max = s.vector("max", dimensions, "m");
+  for (int k = 0; k < dimensions; ++k)
+    if (!(shape.min[k] < shape.max[k]))
+      throw s.error("max", fmt::format("expected more than min on every axis, found {} <= {} along {}",
+                                       shape.max[k], shape.min[k], "xyz"[k]));
+}
+
+void readRadii(const Section& s, Shape& shape) {
+  shape.radius = s.number("radius", Bound::Positive, "m");
+  shape.innerRadius = s.number("inner_radius", Bound::NonNegative, "m", 0.0);
+  if (shape.innerRadius >= shape.radius)
+    throw s.error("inner_radius",
+                  fmt::format("expected less than radius = {}, found {}", shape.radius, shape.innerRadius));
+}
+
+Body readBody(const toml::table& table, const std::string& name, int dimensions,
+              const std::vector<Material>& materials) {
+  Keys keys{"name", "type", "material", "shape", "velocity"};
+  const auto shapeWord = table["shape"].value_or(std::string_view{});
+  const bool box = shapeWord == "box", sphere = shapeWord == "sphere", cylinder = shapeWord == "cylinder";
+  const bool known = box || sphere || cylinder;
+  // Only the keys of the shape at hand, so that a radius given to a box is an error; all while it is unclear.
+  if (box || !known) keys.insert(keys.end(), {"min", "max"});
+  if (sphere || !known) keys.insert(keys.end(), {"center"});
+  if (cylinder || !known) keys.insert(keys.end(), {"start", "end"});
+  if (!box) keys.insert(keys.end(), {"radius", "inner_radius"});
+  const Section s(table, fmt::format("[[body]] '{}'{}", name, known ? fmt::format(" ({})", shapeWord) : ""), keys);
+
+  Body body;
+  body.name = name;
+  body.kind = s.choice<BodyKind>("type");
+  body.shape.kind = s.choice<ShapeKind>("shape");
+  body.velocity = s.vector("velocity", dimensions, "m/s", Vec<3>{});
+  switch (body.shape.kind) {
+    case ShapeKind::Box:
+      readBox(s, dimensions, body.shape);
+      break;
+    case ShapeKind::Sphere:
+      body.shape.center = s.vector("center", dimensions, "m");
+      readRadii(s, body.shape);
+      break;
+    case ShapeKind::Cylinder:
+      body.shape.start = s.vector("start", dimensions, "m");
+      body.shape.end = s.vector("end", dimensions, "m");
+      if (body.shape.start == body.shape.end) throw s.error("end", "expected a point other than start");
+      readRadii(s, body.shape);
+      break;
+  }
+
+  const std::string material = s.string("material");
+  const auto found = std::ranges::find(materials, material, &Material::name);
+  if (found == materials.end()) {
+    Keys names;
+    for (const Material& m : materials) names.push_back(m.name);
+    throw s.error("material", fmt::format("unknown material '{}'{}", material, suggestion(material, names)));
+  }
+  body.material = static_cast<int>(found - materials.begin());
+  return body;
+}
+
+std::vector<Body> readBodies(const Section& top, int dimensions, const std::vector<Material>& materials) {
+  std::vector<Body> bodies;
+  for (const toml::table* table : top.tables("body"))
+    bodies.push_back(readBody(*table, (*table)["name"].value_or(std::string{}), dimensions, materials));
+  if (std::ranges::none_of(bodies, [](const Body& b) { return b.kind == BodyKind::Fluid; }))
+    throw top.error("body", "no fluid: expected at least one [[body]] with type = \"fluid\"");
+  return bodies;
+}
+
+TimeSettings readTime(const Section& top, double resolution) {
+  const Section s = requiredSection(top, "time", {"step", "end"});
+  TimeSettings time;
+  time.step = s.number("step", Bound::Positive, "s") / resolution;
+  time.end = s.number("end", Bound::Positive, "s");
+  const double steps = time.end / time.step;
+  if (steps < 0.5)
+    throw s.error("end", fmt::format("expected at least one step of {} s, found {}", time.step, time.end));
+  if (steps > 1e15) throw s.error("step", fmt::format("{:.3g} steps to the end are too many", steps));
+  return time;
+}
+
+MethodSettings readMethod(const Section& top) {
+  const Section s = top.section("method", "[method]", {"name", "pressure_radius", "viscosity_radius"});
+  MethodSettings method;
+  method.name = s.string("name", method.name);
+  if (method.name != "mph-i") throw s.error("name", fmt::format("expected 'mph-i', found '{}'", method.name));
+  method.pressureRadius = s.number("pressure_radius", Bound::Positive, "spacings", method.pressureRadius);
+  method.viscosityRadius = s.number("viscosity_radius", Bound::Positive, "spacings", method.viscosityRadius);
+  return method;
+}
+
+SolverSettings readSolver(const Section& top) {
+  const Section s = top.section(
+      "solver", "[solver]",
+      {"krylov", "preconditioner", "tolerance", "max_iterations", "operator", "precision", "multigrid"});
+  SolverSettings solver;
+  solver.krylov = s.choice<KrylovKind>("krylov", solver.krylov);
+  solver.preconditioner = s.choice<PreconditionerKind>("preconditioner", solver.preconditioner);
+  solver.operatorKind = s.choice<OperatorKind>("operator", solver.operatorKind);
+  solver.precision = s.choice<Precision>("precision", solver.precision);
+  solver.tolerance = s.number("tolerance", Bound::Positive, "", solver.tolerance);
+  if (solver.tolerance >= 1)
+    throw s.error("tolerance", fmt::format("expected a number between 0 and 1, found {}", solver.tolerance));
+  solver.maxIterations = s.integer("max_iterations", 1, solver.maxIterations);
+
+  const Section m = s.section("multigrid", "[solver.multigrid]",
+                              {"finest_sweeps", "middle_sweeps", "coarsest_sweeps", "particle_diagonal"});
+  solver.multigrid.finestSweeps = m.integer("finest_sweeps", 1, solver.multigrid.finestSweeps);
+  solver.multigrid.middleSweeps = m.integer("middle_sweeps", 1, solver.multigrid.middleSweeps);
+  solver.multigrid.coarsestSweeps = m.integer("coarsest_sweeps", 1, solver.multigrid.coarsestSweeps);
+  solver.multigrid.particleDiagonal =
+      m.choice<SmootherDiagonal>("particle_diagonal", solver.multigrid.particleDiagonal);
+  return solver;
+}
+
+OutputSettings readOutput(const Section& top) {
+  const Section s = top.section("output", "[output]", {"interval", "fields", "format", "precision"});
+  OutputSettings output;
+  output.interval = s.number("interval", Bound::NonNegative, "s", output.interval);
+  output.precision = s.choice<OutputPrecision>("precision", output.precision);
+  if (const std::string format = s.string("format", "vtp"); format != "vtp")
+    throw s.error("format", fmt::format("expected 'vtp', found '{}'", format));
+  if (const auto words = s.strings("fields")) {
+    output.fields = {false, false, false, false, false};
+    for (const std::string& word : *words) {
+      const auto named = std::ranges::find(outputFieldNames, word, &OutputFieldName::name);
+      if (named == std::end(outputFieldNames)) {
+        Keys names;
+        for (const OutputFieldName& f : outputFieldNames) names.push_back(f.name);
+        throw s.error("fields", fmt::format("expected {}, found '{}'", listOf(names), word));
+      }
+      output.fields.*(named->flag) = true;
+    }
+  }
+  return output;
+}
+
+/// The search needs three cells along a periodic axis: with fewer, a particle would meet a neighbour twice.
+void requirePeriodicLength(const Section& top, const Case& c) {
+  constexpr int cells = 3;
+  const double edge = std::max(c.viscosityRadius(), 2 * c.pressureRadius());
+  for (int k = 0; k < c.dimensions; ++k) {
+    const double length = c.domain.max[k] - c.domain.min[k];
+    if (!c.domain.periodic[static_cast<std::size_t>(k)] || std::floor(length / edge) >= cells) continue;
+    const Section s = top.section("domain", "[domain]", {"min", "max", "periodic"});
+    throw s.error("periodic",
+                  fmt::format("the domain is {} long along {}; a periodic axis must hold {} search cells of edge "
+                              "max(h_v, 2 h_p) = {}: expected at least {}",
+                              lengthText(length), "xyz"[k], cells, lengthText(edge), lengthText(cells * edge)));
+  }
+}
+
+}  // namespace
+
+Case readCase(const std::filesystem::path& path, std::span<const std::string> overrides) {
+  const toml::table document = readDocument(path, overrides);
+  const Section top(document, "the case file", topLevelKeys);
+  Case c;
+  c.title = top.string("title", "");
+  c.dimensions = top.integer("dimensions", 2);
+  if (c.dimensions > 3) throw top.error("dimensions", fmt::format("expected 2 or 3, found {}", c.dimensions));
+  c.resolution = top.number("resolution", Bound::Positive, "", 1.0);
+  c.spacing = top.number("spacing", Bound::Positive, "m") / c.resolution;
+  c.domain = readDomain(top, c.dimensions);
+  c.gravity =
+      top.section("gravity", "[gravity]", {"acceleration"}).vector("acceleration", c.dimensions, "m/s2", Vec<3>{});
+  c.materials = readMaterials(top);
+  c.bodies = readBodies(top, c.dimensions, c.materials);
+  c.time = readTime(top, c.resolution);
+  c.method = readMethod(top);
+  c.solver = readSolver(top);
+  c.output = readOutput(top);
+  requirePeriodicLength(top, c);
+  return c;
+}
+
+}  // namespace treacle

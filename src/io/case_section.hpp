@@ -1,0 +1,66 @@
+#pragma once
+
+#include "suggestion.hpp"
+#include "treacle/core/error.hpp"
+#include "treacle/core/vec.hpp"
+#include "treacle/model/names.hpp"
+
+#include <toml++/toml.h>
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace treacle {
+
+enum class Bound { Positive, NonNegative, Any };
+
+/// One table of a case file with typed, checked access. Every error names the place, the key, what was found and
+/// what was expected. A value without a fallback is required. The table must outlive the section.
+class Section {
+ public:
+  /// `title`: how messages call the table, e.g. "[domain]". Errors: InputError for a key that is not in `keys`.
+  Section(const toml::table& table, std::string title, const std::vector<std::string_view>& keys);
+
+  bool has(std::string_view key) const { return table_->contains(key); }
+  const toml::table& table() const { return *table_; }
+
+  double number(std::string_view key, Bound bound, std::string_view unit,
+                std::optional<double> fallback = {}) const;
+  int integer(std::string_view key, int least, std::optional<int> fallback = {}) const;
+  std::string string(std::string_view key, std::optional<std::string> fallback = {}) const;
+  Vec<3> vector(std::string_view key, int dimensions, std::string_view unit,
+                std::optional<Vec<3>> fallback = {}) const;
+  std::array<bool, 3> flags(std::string_view key, int dimensions) const;  // one for all, or one per axis
+  std::optional<std::vector<std::string>> strings(std::string_view key) const;
+
+  template <class E>
+  E choice(std::string_view key, std::optional<E> fallback = {}) const {
+    if (fallback && !has(key)) return *fallback;
+    const std::string word = string(key);
+    std::vector<std::string_view> words;
+    for (const Named<E>& n : namesOf<E>) {
+      if (n.name == word) return n.value;
+      words.push_back(n.name);
+    }
+    throw error(key, "expected " + listOf(words) + ", found '" + word + "'");
+  }
+
+  /// The table under `key`, empty if it is not there.
+  Section section(std::string_view key, std::string title, const std::vector<std::string_view>& keys) const;
+  /// The entries of [[key]], at least one.
+  std::vector<const toml::table*> tables(std::string_view key) const;
+
+  /// "place: key in title: text", for the caller to throw; without a place of its own the key gets the table's.
+  InputError error(std::string_view key, const std::string& text) const;
+
+ private:
+  const toml::node& require(std::string_view key, const std::string& expected) const;
+  double finite(const toml::node& node, std::string_view key, const std::string& expected) const;
+
+  const toml::table* table_;
+  std::string title_;
+};
+
+}  // namespace treacle

@@ -1,0 +1,42 @@
+#include "treacle/io/frame.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+namespace treacle {
+
+namespace {
+
+template <class Out, class Buffer, class Convert>
+std::vector<Out> gathered(const Buffer& field, const std::vector<std::uint32_t>& order, Convert convert) {
+  std::vector<Out> values(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i) values[i] = convert(field[order[i]]);
+  return values;
+}
+
+}  // namespace
+
+template <int D>
+Frame makeFrame(const Particles<D>& particles, std::uint32_t begin, std::uint32_t end, double time) {
+  std::vector<std::uint32_t> order(end - begin);
+  std::iota(order.begin(), order.end(), begin);
+  std::sort(order.begin(), order.end(), [&](auto a, auto b) { return particles.id[a] < particles.id[b]; });
+
+  const auto inSpace = [](const Vec<D>& v) { return resized<3>(v); };
+  const auto same = [](auto value) { return value; };
+  Frame frame;
+  frame.dimensions = D;
+  frame.time = time;
+  frame.position = gathered<Vec<3>>(particles.position, order, inSpace);
+  frame.velocity = gathered<Vec<3>>(particles.velocity, order, inSpace);
+  frame.pressure = gathered<double>(particles.pressure, order, same);
+  frame.numberDensity = gathered<double>(particles.numberDensity, order, same);
+  frame.material = gathered<std::int32_t>(particles.material, order, same);
+  frame.id = gathered<std::uint32_t>(particles.id, order, same);
+  return frame;
+}
+
+template Frame makeFrame<2>(const Particles<2>&, std::uint32_t, std::uint32_t, double);
+template Frame makeFrame<3>(const Particles<3>&, std::uint32_t, std::uint32_t, double);
+
+}  // namespace treacle

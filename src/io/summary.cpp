@@ -1,0 +1,39 @@
+#include "treacle/io/summary.hpp"
+
+#include "treacle/io/atomic_file.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace treacle {
+
+void writeSummary(const std::filesystem::path& path, const RunSummary& s) {
+  using Json = nlohmann::ordered_json;
+  Json phases = Json::object();
+  for (const auto& [phase, seconds] : s.phaseSeconds) phases[phase] = seconds;
+
+  Json json;
+  json["status"] = s.done ? "done" : "failed";
+  json["message"] = s.message;
+  json["title"] = s.title;
+  json["version"] = s.version;
+  json["commit"] = s.commit;
+  json["backend"] = s.backend;
+  json["device"] = s.device;
+  json["threads"] = s.threads;
+  json["precision"] = s.precision;
+  json["dimensions"] = s.dimensions;
+  json["fluid_particles"] = s.fluidParticles;
+  json["wall_particles"] = s.wallParticles;
+  json["steps"] = s.steps;
+  json["time"] = s.time;
+  json["iterations"] = {{"mean", s.meanIterations}, {"first", s.firstIterations}, {"last", s.lastIterations}};
+  json["seconds_per_phase"] = phases;
+  json["wall_seconds"] = s.wallSeconds;
+  json["peak_memory_bytes"] = s.peakMemory;
+  json["memory_bytes_per_fluid_particle"] =
+      s.fluidParticles > 0 ? static_cast<double>(s.peakMemory) / static_cast<double>(s.fluidParticles) : 0.0;
+  // Titles and messages may hold file names in any encoding; they must not cost the summary.
+  writeFile(path, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
+}  // namespace treacle

@@ -1,0 +1,23 @@
+#include "text_file.hpp"
+
+#include "treacle/core/error.hpp"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <system_error>
+
+namespace treacle {
+
+std::string readTextFile(const std::filesystem::path& path) {
+  std::error_code error;
+  const auto size = std::filesystem::file_size(path, error);
+  if (error) throw InputError(fmt::format("{}: {}", path.string(), error.message()));
+  std::string text(size, '\0');
+  std::ifstream stream(path, std::ios::binary);
+  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (!stream) throw InputError(fmt::format("{}: cannot be read", path.string()));
+  return text;
+}
+
+}  // namespace treacle

@@ -1,0 +1,42 @@
+#include "vtk_xml.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <string>
+
+namespace treacle {
+
+std::optional<std::string_view> nextTag(std::string_view xml, std::string_view name, std::size_t& from) {
+  const std::size_t begin = xml.find(fmt::format("<{} ", name), from);
+  if (begin == xml.npos) return std::nullopt;
+  const std::size_t end = xml.find('>', begin);
+  if (end == xml.npos) return std::nullopt;
+  from = end + 1;
+  return xml.substr(begin, end - begin);
+}
+
+std::optional<std::string_view> attribute(std::string_view tag, std::string_view name) {
+  const std::string opening = fmt::format(" {}=\"", name);
+  const std::size_t found = tag.find(opening);
+  if (found == tag.npos) return std::nullopt;
+  const std::size_t begin = found + opening.size();
+  const std::size_t end = tag.find('"', begin);
+  if (end == tag.npos) return std::nullopt;
+  return tag.substr(begin, end - begin);
+}
+
+template <class T>
+std::optional<T> parseNumber(std::string_view text) {
+  T value{};
+  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || stop != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+template std::optional<double> parseNumber<double>(std::string_view);
+template std::optional<int> parseNumber<int>(std::string_view);
+template std::optional<std::int64_t> parseNumber<std::int64_t>(std::string_view);
+template std::optional<std::uint64_t> parseNumber<std::uint64_t>(std::string_view);
+
+}  // namespace treacle

@@ -1,0 +1,161 @@
+#include "treacle/core/error.hpp"
+#include "treacle/io/vtp.hpp"
+#include "vtk_xml.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <string>
+
+namespace treacle {
+
+namespace {
+
+constexpr std::size_t largestHeader = 1 << 16;  // [B] ours are about 2 KiB
+
+/// Reader of one file: the XML part is held as text, arrays are read from the stream one by one.
+class VtpReader {
+ public:
+  explicit VtpReader(const std::filesystem::path& path) : path_(path), stream_(path, std::ios::binary) {
+    std::error_code error;
+    fileSize_ = std::filesystem::file_size(path, error);
+    if (error) fail(error.message());
+    if (!stream_) fail("cannot be opened");
+    readHeader();
+  }
+
+  Frame frame() {
+    Frame frame;
+    frame.time = fieldValue<double>("TimeValue");
+    frame.dimensions = fieldValue<int>("dimensions");
+    if (frame.dimensions != 2 && frame.dimensions != 3) foreign("'dimensions' is neither 2 nor 3");
+    readVectors("position", frame.position);
+    if (frame.position.size() != count_) foreign("no particle positions");
+    readVectors("velocity", frame.velocity);
+    readScalars("pressure", frame.pressure);
+    readScalars("number_density", frame.numberDensity);
+    readScalars("material", frame.material);
+    readScalars("id", frame.id);
+    return frame;
+  }
+
+ private:
+  [[noreturn]] void fail(std::string_view what) const {
+    throw InputError(fmt::format("{}: {}", path_.string(), what));
+  }
+  [[noreturn]] void foreign(std::string_view what) const {
+    fail(fmt::format("not a particle file written by treacle ({})", what));
+  }
+  [[noreturn]] void truncated() const { fail("truncated: the file ends before its data does"); }
+
+  void readHeader() {
+    header_.resize(std::min<std::uint64_t>(largestHeader, fileSize_));
+    stream_.read(header_.data(), static_cast<std::streamsize>(header_.size()));
+    constexpr std::string_view opening = "<AppendedData encoding=\"raw\">";
+    const std::size_t appended = header_.find(opening);
+    std::size_t from = 0;
+    const auto file = nextTag(header_, "VTKFile", from);
+    if (!file || attribute(*file, "type") != "PolyData") foreign("no VTK PolyData");
+    if (attribute(*file, "byte_order") != vtkByteOrder || attribute(*file, "header_type") != "UInt64")
+      foreign(fmt::format("expected byte order {} and UInt64 headers", vtkByteOrder));
+    if (appended == header_.npos) {
+      if (fileSize_ <= largestHeader) truncated();
+      foreign("no raw appended data");
+    }
+    const std::size_t underscore = header_.find('_', appended + opening.size());
+    if (underscore == header_.npos) truncated();
+    dataBegin_ = underscore + 1;
+    header_.resize(appended);
+
+    from = 0;
+    const auto piece = nextTag(header_, "Piece", from);
+    const auto points = piece ? attribute(*piece, "NumberOfPoints") : std::nullopt;
+    const auto count = points ? parseNumber<std::uint64_t>(*points) : std::nullopt;
+    if (!count) foreign("no number of points");
+    count_ = *count;
+    // Checked before anybody reserves memory for that many particles.
+    if (count_ > (fileSize_ - dataBegin_) / sizeof(Vec<3, float>)) truncated();
+  }
+
+  /// The tag of the array of that name; `from` is behind it afterwards.
+  std::optional<std::string_view> findArray(std::string_view name, std::size_t& from) const {
+    while (const auto tag = nextTag(header_, "DataArray", from))
+      if (attribute(*tag, "Name") == name) return tag;
+    return std::nullopt;
+  }
+
+  template <class T>
+  T fieldValue(std::string_view name) const {
+    std::size_t begin = 0;
+    if (!findArray(name, begin)) foreign(fmt::format("no field '{}'", name));
+    const std::string_view text = std::string_view(header_).substr(begin, header_.find('<', begin) - begin);
+    const auto value = parseNumber<T>(text);
+    if (!value) foreign(fmt::format("field '{}' is no number", name));
+    return *value;
+  }
+
+  /// Leaves the stream at the first value.
+  void seekValues(std::string_view name, std::string_view tag, std::uint64_t bytes) {
+    const auto text = attribute(tag, "offset");
+    const auto offset = text ? parseNumber<std::uint64_t>(*text) : std::nullopt;
+    if (!offset) foreign(fmt::format("array '{}' is not appended", name));
+    std::uint64_t stored = 0;
+    const std::uint64_t room = fileSize_ - dataBegin_;
+    if (*offset > room || room - *offset < sizeof stored) truncated();
+    stream_.seekg(static_cast<std::streamoff>(dataBegin_ + *offset));
+    stream_.read(reinterpret_cast<char*>(&stored), sizeof stored);
+    if (stored != bytes) foreign(fmt::format("array '{}' has {} bytes, expected {}", name, stored, bytes));
+    if (room - *offset - sizeof stored < bytes) truncated();
+  }
+
+  template <class T, class Sink>
+  void readValues(std::string_view name, std::string_view tag, std::uint64_t count, Sink sink) {
+    seekValues(name, tag, count * sizeof(T));
+    std::vector<T> block(std::min<std::uint64_t>(count, 1 << 16));
+    for (std::uint64_t begin = 0; begin < count; begin += block.size()) {
+      const std::size_t size = std::min<std::uint64_t>(block.size(), count - begin);
+      stream_.read(reinterpret_cast<char*>(block.data()), static_cast<std::streamsize>(size * sizeof(T)));
+      if (!stream_) truncated();
+      for (std::size_t k = 0; k < size; ++k) sink(begin + k, block[k]);
+    }
+  }
+
+  /// Fields that the file does not hold stay empty.
+  template <class Value, class Sink>
+  void readArray(std::string_view name, std::uint64_t components, std::vector<Value>& out, Sink sink) {
+    std::size_t from = 0;
+    const auto tag = findArray(name, from);
+    if (!tag) return;
+    const auto type = attribute(*tag, "type");
+    out.resize(count_);
+    const std::uint64_t count = count_ * components;
+    if (type == vtkType<float>()) return readValues<float>(name, *tag, count, sink);
+    if (type == vtkType<double>()) return readValues<double>(name, *tag, count, sink);
+    if (type == vtkType<std::int32_t>()) return readValues<std::int32_t>(name, *tag, count, sink);
+    if (type == vtkType<std::uint32_t>()) return readValues<std::uint32_t>(name, *tag, count, sink);
+    foreign(fmt::format("array '{}' has an unexpected type", name));
+  }
+
+  void readVectors(std::string_view name, std::vector<Vec<3>>& out) {
+    readArray(name, 3, out, [&](std::size_t k, auto value) { out[k / 3].v[k % 3] = static_cast<double>(value); });
+  }
+
+  template <class T>
+  void readScalars(std::string_view name, std::vector<T>& out) {
+    readArray(name, 1, out, [&](std::size_t k, auto value) { out[k] = static_cast<T>(value); });
+  }
+
+  std::filesystem::path path_;
+  std::ifstream stream_;
+  std::uint64_t fileSize_ = 0;   // [B]
+  std::uint64_t dataBegin_ = 0;  // [B] where the appended block starts
+  std::uint64_t count_ = 0;      // particles
+  std::string header_;
+};
+
+}  // namespace
+
+Frame readVtp(const std::filesystem::path& path) { return VtpReader(path).frame(); }
+
+}  // namespace treacle
