@@ -1,0 +1,60 @@
+#include "commands.hpp"
+#include "machine.hpp"
+#include "memory.hpp"
+#include "run_log.hpp"
+#include "treacle/io/case_reader.hpp"
+#include "treacle/model/checks.hpp"
+#include "treacle/model/create.hpp"
+#include "treacle/model/names.hpp"
+
+#include <fmt/format.h>
+
+namespace treacle {
+namespace {
+
+struct Counts {
+  std::uint32_t fluid = 0, walls = 0;
+  std::vector<std::uint32_t> bodies;
+};
+
+template <int D>
+Counts countParticles(const Case& c, std::vector<std::string>& warnings) {
+  Counts counts;
+  const Particles<D> particles = createParticles<D>(c, warnings, &counts.bodies);
+  counts.fluid = particles.fluidCount, counts.walls = particles.wallCount();
+  return counts;
+}
+
+void printCounts(const Case& c, const Counts& counts) {
+  fmt::print("# particles: {} fluid, {} wall\n", counts.fluid, counts.walls);
+  for (std::size_t b = 0; b < c.bodies.size(); ++b)
+    fmt::print("#   {} '{}': {}\n", nameOf(c.bodies[b].kind), c.bodies[b].name, counts.bodies[b]);
+  fmt::print("# memory: about {} needed, {} available\n",
+             bytesText(estimatedMemory(c, counts.fluid, counts.walls)), bytesText(availableMemory()));
+}
+
+void printNumbers(const Case& c) {
+  fmt::print("# steps: {}\n", c.steps());
+  fmt::print("# Courant number: {:.4g}\n", courantNumber(c));
+  for (const StabilityNumbers& n : stabilityNumbers(c))
+    fmt::print(
+        "# material '{}': dt kappa / lambda = {:.4g} (stable up to 1), diffusion numbers d_mu = {:.4g}, "
+        "d_lambda = {:.4g}\n",
+        n.material, n.compression, n.shearDiffusion, n.bulkDiffusion);
+}
+
+}  // namespace
+
+void checkCommand(const CaseOptions& options) {
+  const Case c = readCase(options.file, options.overrides);
+  std::vector<std::string> warnings;
+  const Counts counts = c.dimensions == 2 ? countParticles<2>(c, warnings) : countParticles<3>(c, warnings);
+  for (std::string& warning : caseWarnings(c)) warnings.push_back(std::move(warning));
+  printCounts(c, counts);
+  printNumbers(c);
+  fmt::print("\n{}", caseText(c));
+  std::fflush(stdout);
+  for (const std::string& warning : warnings) printWarning(warning);
+}
+
+}  // namespace treacle

@@ -1,0 +1,47 @@
+#pragma once
+
+#include "treacle/io/picture.hpp"
+#include "treacle/model/case.hpp"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace treacle {
+
+enum class BackendChoice { Auto, Cpu, Cuda };
+
+/// A case file with what the command line changes in it.
+struct CaseOptions {
+  std::filesystem::path file;
+  std::vector<std::string> overrides;  // "key=value"
+};
+
+struct RunOptions {
+  CaseOptions input;
+  std::filesystem::path directory;  // empty: "<case name>-run" in the current directory
+  BackendChoice backend = BackendChoice::Auto;
+  int threads = 0;                     // 0: as many as OpenMP takes by itself
+  std::optional<Precision> precision;  // default: the case's
+  std::optional<double> endTime;       // [s] default: the case's
+  bool force = false;
+  bool quiet = false;
+};
+
+struct PlotOptions {
+  std::filesystem::path directory;
+  std::string frame = "last";  // or a number
+  PictureField field = PictureField::Speed;
+  bool history = false;          // the curves of history.csv instead of a frame
+  std::filesystem::path output;  // empty: into the run directory
+};
+
+/// The commands of the program. They print to stdout, warnings to stderr.
+/// Errors: InputError, RunError, std::bad_alloc.
+void runCommand(const RunOptions& options);
+void checkCommand(const CaseOptions& options);
+void infoCommand();
+void plotCommand(const PlotOptions& options);
+
+}  // namespace treacle

@@ -1,0 +1,36 @@
+#include "interrupt.hpp"
+
+#include <csignal>
+
+namespace treacle {
+namespace {
+
+volatile std::sig_atomic_t received = 0;  // a handler can reach nothing else
+
+void remember(int signal) { received = signal; }
+
+}  // namespace
+
+void catchInterrupts() {
+  struct sigaction action {};
+  action.sa_handler = remember;
+  action.sa_flags = static_cast<int>(SA_RESETHAND);  // the second signal meets the default handler
+  sigemptyset(&action.sa_mask);
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+}
+
+const char* interruptSignal() {
+  switch (received) {
+    case 0:
+      return nullptr;
+    case SIGINT:
+      return "SIGINT";
+    default:
+      return "SIGTERM";
+  }
+}
+
+void ignoreFileSizeSignal() { std::signal(SIGXFSZ, SIG_IGN); }
+
+}  // namespace treacle

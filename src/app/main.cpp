@@ -1,0 +1,126 @@
+#include "commands.hpp"
+#include "interrupt.hpp"
+#include "treacle/core/error.hpp"
+#include "treacle/core/version.hpp"
+#include "treacle/model/names.hpp"
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <new>
+#include <span>
+#include <string>
+
+namespace {
+
+using namespace treacle;
+
+constexpr Named<BackendChoice> backendNames[] = {
+    {"auto", BackendChoice::Auto}, {"cpu", BackendChoice::Cpu}, {"cuda", BackendChoice::Cuda}};
+constexpr Named<PictureField> fieldNames[] = {{"speed", PictureField::Speed},
+                                              {"pressure", PictureField::Pressure},
+                                              {"number_density", PictureField::NumberDensity}};
+
+/// An option that takes one of some words and stores the value that the word stands for.
+template <class E, class Target>
+void addChoice(CLI::App& command, const std::string& option, std::span<const Named<E>> words, Target& target,
+               const std::string& help) {
+  std::string list;
+  for (const Named<E>& w : words) list += fmt::format("{}{}", list.empty() ? "" : "|", w.name);
+  const auto store = [option, words, list, &target](const std::string& word) {
+    for (const Named<E>& w : words)
+      if (w.name == word) {
+        target = w.value;
+        return;
+      }
+    throw CLI::ValidationError(option, fmt::format("expected {}, found '{}'", list, word));
+  };
+  command.add_option_function<std::string>(option, store, help)->type_name(list);
+}
+
+CLI::Validator positive() {
+  const auto check = [](const std::string& text) {
+    double x = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), x);
+    const bool good = error == std::errc{} && end == text.data() + text.size() && std::isfinite(x) && x > 0;
+    return good ? std::string{} : fmt::format("expected a positive number, found '{}'", text);
+  };
+  return CLI::Validator(check, "");
+}
+
+void addCase(CLI::App& command, CaseOptions& options) {
+  command.add_option("CASE", options.file, "Case file (TOML)")->required();
+  command
+      .add_option("--set", options.overrides, "Override a key, e.g. --set fluid.dynamic_viscosity=5; repeatable")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+}
+
+void addRun(CLI::App& app, RunOptions& options) {
+  CLI::App* run = app.add_subcommand("run", "Run a case");
+  addCase(*run, options.input);
+  run->add_option("-o,--output", options.directory, "Run directory; default: the case's name with -run")
+      ->type_name("DIR");
+  addChoice<BackendChoice>(*run, "--backend", backendNames, options.backend, "auto is the CPU in this version");
+  run->add_option("--threads", options.threads, "Number of threads")->type_name("N")->check(positive());
+  addChoice<Precision>(*run, "--precision", namesOf<Precision>, options.precision,
+                       "mixed: preconditioner in single precision; default: solver.precision of the case");
+  run->add_option("--end-time", options.endTime, "End of the run instead of time.end [s]")
+      ->type_name("T")
+      ->check(positive());
+  run->add_flag("--force", options.force, "Replace the run that the directory holds");
+  run->add_flag("-q,--quiet", options.quiet, "Print nothing but errors");
+  run->callback([&options] { runCommand(options); });
+}
+
+void addPlot(CLI::App& app, PlotOptions& options) {
+  CLI::App* plot = app.add_subcommand("plot", "Draw a frame or the history of a run as PNG");
+  plot->add_option("DIR", options.directory, "Run directory")->required();
+  plot->add_option("--frame", options.frame, "Number of the frame, or last")->type_name("N");
+  addChoice<PictureField>(*plot, "--field", fieldNames, options.field, "What the colours show; default: speed");
+  plot->add_flag("--history", options.history, "Curves of iterations, energies and extents over time");
+  plot->add_option("-o,--output", options.output, "PNG file; default: in the run directory")->type_name("FILE");
+  plot->callback([&options] { plotCommand(options); });
+}
+
+int report(const std::string& text, ExitCode code) {
+  fmt::print(stderr, "treacle: error: {}\n", text);
+  return static_cast<int>(code);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Particle solver for highly viscous, incompressible free-surface flow", "treacle");
+  app.set_version_flag("--version", fmt::format("treacle {} ({})", buildInfo().version, buildInfo().commit));
+  app.footer("Exit codes: 0 done, 2 bad input, 3 the run failed.");
+  RunOptions run;
+  CaseOptions check;
+  PlotOptions plot;
+  addRun(app, run);
+  CLI::App* checkApp = app.add_subcommand("check", "Check a case; prints it with all keys, counts and stability");
+  addCase(*checkApp, check);
+  checkApp->callback([&check] { checkCommand(check); });
+  app.add_subcommand("info", "Version, build options and devices")->callback([] { infoCommand(); });
+  addPlot(app, plot);
+
+  ignoreFileSizeSignal();
+  try {
+    app.parse(argc, argv);
+    if (app.get_subcommands().empty())
+      throw InputError("expected a command: run, check, info or plot; treacle --help tells more");
+  } catch (const CLI::ParseError& e) {
+    if (e.get_exit_code() == 0) return app.exit(e);  // help and version
+    return report(fmt::format("{}; --help tells more", e.what()), ExitCode::BadInput);
+  } catch (const InputError& e) {
+    return report(e.what(), ExitCode::BadInput);
+  } catch (const std::bad_alloc&) {
+    return report("memory exhausted", ExitCode::RunFailed);
+  } catch (const std::exception& e) {
+    return report(e.what(), ExitCode::RunFailed);
+  }
+  return static_cast<int>(ExitCode::Done);
+}

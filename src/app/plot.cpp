@@ -1,0 +1,51 @@
+#include "commands.hpp"
+#include "treacle/core/error.hpp"
+#include "treacle/io/case_reader.hpp"
+#include "treacle/io/history.hpp"
+#include "treacle/io/picture.hpp"
+#include "treacle/io/run_directory.hpp"
+#include "treacle/io/vtp.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+
+namespace treacle {
+namespace {
+
+std::size_t frameNumber(const PlotOptions& options, const RunDirectory& run) {
+  const std::size_t count = run.frameCount();
+  if (count == 0) throw InputError(fmt::format("{}: the run has no frame", run.path().string()));
+  if (options.frame == "last") return count - 1;
+  std::size_t number = 0;
+  const char* end = options.frame.data() + options.frame.size();
+  const auto [stop, error] = std::from_chars(options.frame.data(), end, number);
+  if (error != std::errc{} || stop != end || number >= count)
+    throw InputError(
+        fmt::format("--frame {}: expected 'last' or a number from 0 to {}", options.frame, count - 1));
+  return number;
+}
+
+}  // namespace
+
+void plotCommand(const PlotOptions& options) {
+  const RunDirectory run = RunDirectory::open(options.directory);
+  const Case c = readCase(run.caseFile());
+  std::filesystem::path output = options.output;
+  if (options.history) {
+    if (output.empty()) output = run.historyPicture();
+    drawHistory(output, readHistory(run.history()), c.title);
+  } else {
+    const std::size_t frame = frameNumber(options, run);
+    if (output.empty()) output = run.framePicture(frame);
+    PictureOptions picture;
+    picture.field = options.field;
+    picture.spacing = c.spacing;
+    picture.gravity = c.gravity;
+    picture.title = c.title;
+    drawFrame(output, readVtp(run.fluidFrame(frame)), readVtp(run.wallsFrame(frame)), picture);
+  }
+  fmt::print("{}\n", output.string());
+}
+
+}  // namespace treacle

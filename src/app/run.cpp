@@ -1,0 +1,173 @@
+#include "commands.hpp"
+#include "interrupt.hpp"
+#include "machine.hpp"
+#include "memory.hpp"
+#include "progress.hpp"
+#include "recorder.hpp"
+#include "run_log.hpp"
+#include "treacle/core/error.hpp"
+#include "treacle/core/timer.hpp"
+#include "treacle/core/version.hpp"
+#include "treacle/io/atomic_file.hpp"
+#include "treacle/io/case_reader.hpp"
+#include "treacle/model/checks.hpp"
+#include "treacle/model/create.hpp"
+#include "treacle/model/names.hpp"
+
+#include <fmt/format.h>
+#include <omp.h>
+
+#include <functional>
+#include <new>
+#include <optional>
+
+namespace treacle {
+namespace {
+
+/// One run from the first frame to the summary. Whatever goes wrong on the way, the last good state, the picture
+/// and the summary are still written as far as that is possible.
+template <int D>
+class Run {
+ public:
+  Run(const Case& c, RunDirectory directory, bool quiet)
+      : case_(c), directory_(std::move(directory)), log_(directory_.log(), quiet), progress_(c.steps(), quiet) {}
+
+  /// Errors: RunError with the diagnosis, after everything is written.
+  void execute(Particles<D> particles, const std::vector<std::string>& warnings) {
+    describe(particles);
+    for (const std::string& warning : warnings) log_.warning(warning);
+    attempt([&] {
+      writeFile(directory_.caseFile(), caseText(case_));
+      simulation_.emplace(case_, std::move(particles));
+      recorder_.emplace(case_, directory_);
+      recorder_->writeFrame(*simulation_);
+      advanceToEnd();
+    });
+    finish();
+  }
+
+ private:
+  void describe(const Particles<D>& particles) {
+    const BuildInfo build = buildInfo();
+    summary_.version = build.version, summary_.commit = build.commit;
+    summary_.backend = "cpu", summary_.device = processorName();
+    summary_.threads = omp_get_max_threads();
+    summary_.precision = nameOf(case_.solver.precision);
+    summary_.title = case_.title;
+    summary_.dimensions = D;
+    summary_.fluidParticles = particles.fluidCount, summary_.wallParticles = particles.wallCount();
+    log_.info(fmt::format("treacle {} ({}), {} threads on {}", build.version, build.commit, summary_.threads,
+                          summary_.device));
+    say(fmt::format("{}: {} fluid and {} wall particles, {} steps of {:g} s, into {}",
+                    case_.title.empty() ? "case" : case_.title, particles.fluidCount, particles.wallCount(),
+                    case_.steps(), case_.time.step, directory_.path().string()));
+  }
+
+  void advanceToEnd() {
+    while (simulation_->step() < case_.steps() && !interruptSignal()) {
+      const StepReport report = simulation_->advance();
+      const std::size_t frames = directory_.frameCount();
+      recorder_->record(report, *simulation_);
+      if (directory_.frameCount() > frames)
+        log_.info(fmt::format("frame {}: step {}, t = {:.6g} s, {} iterations", frames, report.step, report.time,
+                              report.iterations));
+      progress_.update(report);
+    }
+    if (simulation_->step() < case_.steps()) throw RunError(fmt::format("stopped by {}", interruptSignal()));
+  }
+
+  /// Keeps the diagnosis of the first thing that goes wrong.
+  void attempt(const std::function<void()>& action) {
+    std::string diagnosis;
+    try {
+      action();
+      return;
+    } catch (const std::bad_alloc&) {
+      diagnosis = "memory exhausted";
+    } catch (const std::runtime_error& e) {
+      diagnosis = e.what();
+    }
+    if (simulation_)
+      diagnosis =
+          fmt::format("after step {} (t = {:.6g} s): {}", simulation_->step(), simulation_->time(), diagnosis);
+    log_.error(diagnosis);
+    if (failure_.empty()) failure_ = diagnosis;
+  }
+
+  void finish() {
+    if (simulation_ && recorder_) {
+      attempt([&] { recorder_->writeFrame(*simulation_); });
+      attempt([&] { recorder_->drawPicture(*simulation_); });
+      summary_.steps = simulation_->step(), summary_.time = simulation_->time();
+      recorder_->summarise(summary_);
+    }
+    summary_.wallSeconds = timer_.lap();
+    summary_.peakMemory = peakMemory();
+    summary_.done = failure_.empty();
+    summary_.message = failure_;
+    attempt([&] { writeSummary(directory_.summary(), summary_); });
+    if (!failure_.empty()) throw RunError(failure_ + lastStateText());
+    say(fmt::format("done: {} steps in {}, {:.1f} iterations per step, {} of memory", summary_.steps,
+                    durationText(summary_.wallSeconds), summary_.meanIterations, bytesText(summary_.peakMemory)));
+    progress_.message(fmt::format("picture: {}\nParaView: {}", directory_.finalPicture().string(),
+                                  directory_.fluidIndex().string()));
+  }
+
+  std::string lastStateText() const {
+    if (directory_.frameCount() == 0) return {};
+    const std::size_t last = directory_.frameCount() - 1;
+    return fmt::format("\nThe last state written is frame {} (t = {:.6g} s) in {}", last,
+                       directory_.frameTime(last), directory_.path().string());
+  }
+
+  void say(const std::string& text) {
+    log_.info(text);
+    progress_.message(text);
+  }
+
+  Timer timer_;
+  const Case& case_;
+  RunDirectory directory_;
+  RunLog log_;
+  Progress progress_;
+  std::optional<Simulation<D>> simulation_;
+  std::optional<Recorder<D>> recorder_;
+  RunSummary summary_;
+  std::string failure_;
+};
+
+Case caseOf(const RunOptions& options) {
+  Case c = readCase(options.input.file, options.input.overrides);
+  if (options.precision) c.solver.precision = *options.precision;
+  if (options.endTime) {
+    c.time.end = *options.endTime;
+    if (c.steps() < 1)
+      throw InputError(
+          fmt::format("--end-time: expected at least one step of {:g} s, found {:g}", c.time.step, c.time.end));
+  }
+  return c;
+}
+
+template <int D>
+void runCase(const Case& c, const RunOptions& options) {
+  std::vector<std::string> warnings;
+  Particles<D> particles = createParticles<D>(c, warnings);
+  for (std::string& warning : caseWarnings(c)) warnings.push_back(std::move(warning));
+  requireMemory(c, particles.fluidCount, particles.wallCount());
+  const auto directory = options.directory.empty() ? options.input.file.stem().concat("-run") : options.directory;
+  catchInterrupts();
+  Run<D> run(c, RunDirectory::create(directory, options.force), options.quiet);
+  run.execute(std::move(particles), warnings);
+}
+
+}  // namespace
+
+void runCommand(const RunOptions& options) {
+  if (options.backend == BackendChoice::Cuda)
+    throw InputError("--backend cuda: MPH-I runs on the CPU in this version; expected 'auto' or 'cpu'");
+  if (options.threads > 0) omp_set_num_threads(options.threads);
+  const Case c = caseOf(options);
+  c.dimensions == 2 ? runCase<2>(c, options) : runCase<3>(c, options);
+}
+
+}  // namespace treacle
