@@ -1,0 +1,49 @@
+#pragma once
+
+#include "treacle/search/cell_sort.hpp"
+#include "treacle/search/cluster_list.hpp"
+
+#include <random>
+
+namespace treacle::test {
+
+/// Particles at random places of a box, the first axis periodic and the last open, before any sort.
+template <int D>
+struct RandomParticles {
+  Context<Cpu> context;
+  Particles<D> particles;
+  double radius = 0;
+  CellGrid<D> grid;
+  CellRanges<> ranges;
+  SortWorkspace<> workspace;
+
+  RandomParticles(std::uint32_t fluid, std::uint32_t wall, unsigned seed) {
+    // About ten neighbours each; at least three cells along the periodic axes.
+    radius = std::min(0.3, std::pow(10.0 / (fluid + wall), 1.0 / D));
+    Vec<D, bool> periodic{};
+    for (int k = 0; k + 1 < D; ++k) periodic[k] = true;
+    grid = CellGrid<D>::make(Vec<D>{}, Vec<D>::filled(1), periodic, radius);
+    particles.resize(fluid, wall);
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> unit(0, 1);
+    for (std::uint32_t i = 0; i < particles.count; ++i) {
+      for (int k = 0; k < D; ++k) {
+        particles.position[i][k] = unit(random);
+        particles.velocity[i][k] = unit(random);
+      }
+      if (i < fluid) particles.position[i][D - 1] *= 0.5;  // leaves walls without fluid near them
+      particles.pressure[i] = particles.numberDensity[i] = 0;
+      particles.material[i] = 0;
+      particles.id[i] = i;
+    }
+  }
+
+  double distance(const Vec<D>& a, const Vec<D>& b) const {
+    Vec<D> d = b - a;
+    for (int k = 0; k < D; ++k)
+      if (grid.periodic[k]) d[k] -= grid.length[k] * std::round(d[k] / grid.length[k]);
+    return norm(d);
+  }
+};
+
+}  // namespace treacle::test

@@ -1,0 +1,303 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "command.hpp"
+#include "treacle/io/vtp.hpp"
+
+namespace treacle::test {
+namespace {
+
+using testing::EndsWith;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::StartsWith;
+
+/// A change of the small case that makes it unusable, and the message that says so.
+struct BadCase {
+  const char* name;
+  const char* from;
+  const char* to;
+  const char* message;
+};
+
+void PrintTo(const BadCase& bad, std::ostream* out) { *out << bad.name; }
+
+class BadInput : public testing::TestWithParam<BadCase> {};
+
+TEST_P(BadInput, isRejectedWithPlaceAndReason) {
+  const BadCase& bad = GetParam();
+  Workshop shop;
+  shop.put("bad.toml", replaced(smallCase, bad.from, bad.to));
+  for (const char* command : {"check bad.toml", "run bad.toml"}) {
+    const Outcome outcome = shop.call(command);
+    EXPECT_EQ(outcome.exitCode, 2);
+    EXPECT_THAT(outcome.err, StartsWith(std::string("treacle: error: ") + bad.message));
+    EXPECT_THAT(outcome.out, IsEmpty());
+    EXPECT_FALSE(std::filesystem::exists(shop / "bad-run"));
+  }
+}
+
+constexpr BadCase badCases[] = {
+    {"brokenToml", "max = [12e-3, 12e-3]", "max = [12e-3, 12e-3", "bad.toml:9:1: not valid TOML: "},
+    {"keyTwice", "spacing = 1e-3", "spacing = 1e-3\nspacing = 2e-3", "bad.toml:4:"},
+    {"unknownKey", "dynamic_viscosity", "dinamic_viscosity",
+     "bad.toml:15:1: unknown key 'dinamic_viscosity' in [[material]] 'syrup'; did you mean 'dynamic_viscosity' "
+     "[Pa s]?"},
+    {"bareViscosity", "dynamic_viscosity", "viscosity",
+     "bad.toml:15:1: unknown key 'viscosity' in [[material]] 'syrup'; did you mean 'dynamic_viscosity' [Pa s]?"},
+    {"unknownKeyNearNone", "interval", "zzz",
+     "bad.toml:40:1: unknown key 'zzz' in [output]; expected 'interval', 'fields', 'format' or 'precision'"},
+    {"unknownTable", "[gravity]", "[gravty]",
+     "bad.toml:9:2: unknown key 'gravty' in the case file; did you mean 'gravity'?"},
+    {"keyOfAnotherShape", "max = [6e-3, 6e-3]", "max = [6e-3, 6e-3]\nradius = 1",
+     "bad.toml:26:1: unknown key 'radius' in [[body]] 'column' (box); expected 'name', 'type', 'material', "
+     "'shape', "
+     "'velocity', 'min' or 'max'"},
+    {"missingKey", "density = 1000\n", "",
+     "bad.toml:12:1: density in [[material]] 'syrup': missing; expected a positive number [kg/m3]"},
+    {"missingTable", "[time]\nstep = 1e-3\nend = 2e-3\n", "",
+     "bad.toml:1:1: time in the case file: missing; "
+     "expected a table [time]"},
+    {"stringForNumber", "density = 1000", "density = \"1000\"",
+     "bad.toml:14:11: density in [[material]] 'syrup': expected a positive number [kg/m3], found the string "
+     "\"1000\""},
+    {"numberForString", "type = \"fluid\"", "type = 1",
+     "bad.toml:21:8: type in [[body]] 'column' (box): expected a string, found 1"},
+    {"numberForVector", "max = [6e-3, 6e-3]", "max = 6e-3",
+     "bad.toml:25:7: max in [[body]] 'column' (box): expected an array of 2 finite numbers [m], found 0.006"},
+    {"vectorOfWrongLength", "acceleration = [0, -10]", "acceleration = [0, 0, -10]",
+     "bad.toml:10:16: acceleration in [gravity]: expected an array of 2 finite numbers [m/s2], found an array of "
+     "3"},
+    {"fractionForInteger", "[output]", "[solver]\nmax_iterations = 1.5\n[output]",
+     "bad.toml:40:18: max_iterations in [solver]: expected a whole number of at least 1, found 1.5"},
+    {"wrongPeriodic", "[gravity]", "periodic = [true, 1]\n[gravity]",
+     "bad.toml:9:12: periodic in [domain]: expected true, false or an array of 2 of them, found an array of 2"},
+    {"tableForList", "[[material]]", "[material]",
+     "bad.toml:12:1: material in the case file: expected at least one [[material]], found a table"},
+    {"dimensions", "dimensions = 2", "dimensions = 4",
+     "bad.toml:2:14: dimensions in the case file: expected 2 or 3, found 4"},
+    {"zeroDensity", "density = 1000", "density = 0",
+     "bad.toml:14:11: density in [[material]] 'syrup': expected a positive number [kg/m3], found 0"},
+    {"negativeDensity", "density = 1000", "density = -1000",
+     "bad.toml:14:11: density in [[material]] 'syrup': expected a positive number [kg/m3], found -1000"},
+    {"zeroSpacing", "spacing = 1e-3", "spacing = 0.0",
+     "bad.toml:3:11: spacing in the case file: expected a positive number [m], found 0"},
+    {"negativeSpacing", "spacing = 1e-3", "spacing = -1e-3",
+     "bad.toml:3:11: spacing in the case file: expected a positive number [m], found -0.001"},
+    {"zeroStep", "step = 1e-3", "step = 0",
+     "bad.toml:36:8: step in [time]: expected a positive number [s], found 0"},
+    {"negativeStep", "step = 1e-3", "step = -1e-3",
+     "bad.toml:36:8: step in [time]: expected a positive number [s], found -0.001"},
+    {"negativeEnd", "end = 2e-3", "end = -1",
+     "bad.toml:37:7: end in [time]: expected a positive number [s], found -1"},
+    {"endBeforeFirstStep", "end = 2e-3", "end = 1e-4",
+     "bad.toml:37:7: end in [time]: expected at least one step of 0.001 s, found 0.0001"},
+    {"negativeViscosity", "dynamic_viscosity = 10", "dynamic_viscosity = -10",
+     "bad.toml:15:21: dynamic_viscosity in [[material]] 'syrup': expected a number not less than 0 [Pa s], found "
+     "-10"},
+    {"nan", "bulk_modulus = 1e6", "bulk_modulus = nan",
+     "bad.toml:17:16: bulk_modulus in [[material]] 'syrup': expected a number not less than 0 [Pa], found nan"},
+    {"infinity", "min = [0, 0]", "min = [0, -inf]",
+     "bad.toml:24:7: min in [[body]] 'column' (box): expected an array of 2 finite numbers [m], found -inf"},
+    {"zeroRadius", "[output]", "[method]\npressure_radius = 0\n[output]",
+     "bad.toml:40:19: pressure_radius in [method]: expected a positive number [spacings], found 0"},
+    {"unknownMaterial", "material = \"syrup\"", "material = \"sirup\"",
+     "bad.toml:22:12: material in [[body]] 'column' (box): unknown material 'sirup'; did you mean 'syrup'?"},
+    {"unknownChoice", "[output]", "[solver]\nkrylov = \"gmres\"\n[output]",
+     "bad.toml:40:10: krylov in [solver]: expected 'cr' or 'cg', found 'gmres'"},
+    {"unknownShape", "shape = \"box\"", "shape = \"cone\"",
+     "bad.toml:23:9: shape in [[body]] 'column': expected 'box', 'sphere' or 'cylinder', found 'cone'"},
+    {"unknownField", "interval = 1e-3", "interval = 1e-3\nfields = [\"speed\"]",
+     "bad.toml:41:10: fields in [output]: expected 'velocity', 'pressure', 'number_density', 'material' or 'id', "
+     "found 'speed'"},
+    {"minAboveMax", "max = [6e-3, 6e-3]", "max = [6e-3, -6e-3]",
+     "bad.toml:25:7: max in [[body]] 'column' (box): expected more than min on every axis, found -0.006 <= 0 "
+     "along y"},
+    {"emptyDomain", "max = [12e-3, 12e-3]", "max = [-4e-3, 12e-3]",
+     "bad.toml:7:7: max in [domain]: expected more than min on every axis, found -0.004 <= -0.004 along x"},
+    {"shortPeriodicAxis", "max = [12e-3, 12e-3]", "max = [6e-3, 12e-3]\nperiodic = true",
+     "bad.toml:8:12: periodic in [domain]: the domain is 10 mm long along x; a periodic axis must hold 3 search "
+     "cells "
+     "of edge max(h_v, 2 h_p) = 3.5 mm: expected at least 10.5 mm"},
+    {"noName", "name = \"column\"\n", "", "bad.toml:19:1: every [[body]] needs a name: name = \"...\""},
+    {"nameTwice", "name = \"floor\"", "name = \"column\"", "bad.toml:27:1: two [[body]] are named 'column'"},
+    {"noFluid", "type = \"fluid\"", "type = \"wall\"",
+     "bad.toml:19:1: body in the case file: no fluid: expected at least one [[body]] with type = \"fluid\""},
+    {"overlap", "max = [12e-3, 0]", "max = [12e-3, 1e-3]",
+     "fluid body 'column' and wall body 'floor' overlap: 6 wall particles closer than half a spacing to the "
+     "fluid, "
+     "the first at (0.5, 0.5) mm"},
+    {"outsideDomain", "max = [6e-3, 6e-3]", "max = [6e-3, 13e-3]",
+     "body 'column' reaches out of the domain: a particle at (0.5, 12.5) mm, the domain is (-4, -4) mm to (12, "
+     "12) "
+     "mm"},
+    {"tooManyParticles", "spacing = 1e-3", "spacing = 1e-9",
+     "body 'column' would have more than 134217728 particles; take a larger spacing or a lower resolution"},
+    {"baseMissing", "title", "base = \"none.toml\"\ntitle", "bad.toml:1:8: base: no such case file: none.toml"},
+    {"baseIsItself", "title", "base = \"bad.toml\"\ntitle", "bad.toml:1:8: base: 'bad.toml' inherits from itself"},
+};
+
+INSTANTIATE_TEST_SUITE_P(Case, BadInput, testing::ValuesIn(badCases),
+                         [](const auto& test) { return test.param.name; });
+
+/// A command line that is rejected on a sound case.
+struct BadLine {
+  const char* name;
+  const char* arguments;
+  const char* message;  // part of what is printed
+};
+
+void PrintTo(const BadLine& bad, std::ostream* out) { *out << bad.name; }
+
+class BadArguments : public testing::TestWithParam<BadLine> {};
+
+TEST_P(BadArguments, areRejectedWithReason) {
+  const BadLine& bad = GetParam();
+  Workshop shop;
+  shop.put("small.toml", smallCase);
+  const Outcome outcome = shop.call(bad.arguments);
+  EXPECT_EQ(outcome.exitCode, 2);
+  EXPECT_THAT(outcome.err, HasSubstr(bad.message));
+  EXPECT_FALSE(std::filesystem::exists(shop / "small-run"));
+}
+
+constexpr BadLine badLines[] = {
+    {"noCommand", "", "expected a command: run, check, info or plot"},
+    {"unknownCommand", "rum small.toml", "rum"},
+    {"noCase", "run", "CASE is required"},
+    {"unknownOption", "run small.toml --fast", "--fast"},
+    {"missingFile", "run none.toml", "treacle: error: none.toml: no such case file"},
+    {"directoryAsFile", "check .", "treacle: error: .: is a directory"},
+    {"cuda", "run small.toml --backend cuda", "--backend cuda: MPH-I runs on the CPU in this version"},
+    {"unknownBackend", "run small.toml --backend gpu", "--backend: expected auto|cpu|cuda, found 'gpu'"},
+    {"unknownPrecision", "run small.toml --precision half", "--precision: expected double|mixed, found 'half'"},
+    {"noThreads", "run small.toml --threads 0", "--threads: expected a positive number, found '0'"},
+    {"negativeEndTime", "run small.toml --end-time=-1", "--end-time: expected a positive number, found '-1'"},
+    {"endTimeBelowStep", "run small.toml --end-time 1e-4", "--end-time: expected at least one step of 0.001 s"},
+    {"setWithoutValue", "run small.toml --set spacing", "--set spacing: expected key=value"},
+    {"setUnknownKey", "run small.toml --set spaceing=1",
+     "--set spaceing=1: unknown key 'spaceing'; did you mean "
+     "'spacing'?"},
+    {"setUnknownKeyOfMaterial", "run small.toml --set syrup.densty=1",
+     "--set syrup.densty=1: unknown key 'densty' in [[material]] 'syrup'; did you mean 'density'?"},
+    {"setUnknownBody", "run small.toml --set body.colum.shape=box",
+     "--set body.colum.shape=box: there is no [[body]] 'colum'; did you mean 'column'?"},
+    {"setWrongType", "run small.toml --set time.end=soon",
+     "--set time.end=soon: end in [time]: expected a positive number [s], found the string \"soon\""},
+    {"setImpossibleValue", "run small.toml --set material.syrup.density=-1",
+     "--set material.syrup.density=-1: density in [[material]] 'syrup': expected a positive number [kg/m3], found "
+     "-1"},
+    {"setBase", "run small.toml --set base=x.toml", "--set base=x.toml: base can only be given in a case file"},
+    {"setWholeMaterial", "run small.toml --set syrup=1", "--set syrup=1: expected material.syrup.key=value"},
+    {"plotOfNoRun", "plot .", "not the directory of a run"},
+};
+
+INSTANTIATE_TEST_SUITE_P(Line, BadArguments, testing::ValuesIn(badLines),
+                         [](const auto& test) { return test.param.name; });
+
+TEST(BadBase, cycleOverSeveralFiles) {
+  Workshop shop;
+  shop.put("a.toml", "base = \"sub/b.toml\"\n");
+  shop.put("sub/b.toml", "base = \"../a.toml\"\n");
+  const Outcome outcome = shop.call("check a.toml");
+  EXPECT_EQ(outcome.exitCode, 2);
+  EXPECT_EQ(outcome.err, "treacle: error: sub/b.toml:1:8: base: '../a.toml' inherits from itself\n");
+}
+
+TEST(BadBase, errorsNameTheFileThatHoldsTheValue) {
+  Workshop shop;
+  shop.put("base.toml", replaced(smallCase, "density = 1000", "density = -1"));
+  shop.put("derived.toml", "base = \"base.toml\"\n[time]\nend = 1\n");
+  EXPECT_THAT(shop.call("check derived.toml").err, StartsWith("treacle: error: base.toml:14:11: density"));
+  shop.put("derived.toml", "base = \"base.toml\"\n[[material]]\nname = \"syrup\"\ndensity = -2\n");
+  EXPECT_THAT(shop.call("check derived.toml").err, StartsWith("treacle: error: derived.toml:4:11: density"));
+}
+
+TEST(BadOutput, fileInTheWay) {
+  Workshop shop;
+  shop.put("small.toml", smallCase);
+  shop.put("taken", "something");
+  const Outcome outcome = shop.call("run small.toml -o taken");
+  EXPECT_EQ(outcome.exitCode, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("taken"));
+  EXPECT_EQ(shop.content("taken"), "something");
+  EXPECT_EQ(shop.call("run small.toml -o taken/below").exitCode, 2);
+}
+
+TEST(BadOutput, existingRunWithoutForce) {
+  Workshop shop;
+  shop.put("small.toml", smallCase);
+  ASSERT_EQ(shop.call("run small.toml --threads 1").exitCode, 0);
+  const std::string history = shop.content("small-run/history.csv");
+  const Outcome outcome = shop.call("run small.toml --threads 1");
+  EXPECT_EQ(outcome.exitCode, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("--force"));
+  EXPECT_EQ(shop.content("small-run/history.csv"), history);
+  EXPECT_EQ(shop.call("run small.toml --threads 1 --force").exitCode, 0);
+}
+
+TEST(FullDisk, endsTheRunWithDiagnosisAndLeavesNoPartOfAFile) {
+  Workshop shop;
+  shop.put("small.toml", smallCase);
+  // 4 KiB a file: enough for the texts, not for the walls of a frame.
+  const Outcome outcome = shop.call("run small.toml --threads 1", "trap '' XFSZ; ulimit -f 8;");
+  EXPECT_EQ(outcome.exitCode, 3);
+  EXPECT_THAT(outcome.err, HasSubstr("small-run/frames/"));
+  EXPECT_THAT(outcome.err, HasSubstr("File too large"));
+  for (const auto& entry : std::filesystem::directory_iterator(shop / "small-run/frames")) {
+    EXPECT_EQ(entry.path().extension(), ".vtp");
+    EXPECT_NO_THROW(readVtp(entry.path()));
+  }
+  EXPECT_THAT(shop.content("small-run/summary.json"), HasSubstr("\"status\": \"failed\""));
+  EXPECT_THAT(shop.content("small-run/case.toml"), EndsWith("precision = \"single\"\n"));
+}
+
+/// Warnings: the case is run nevertheless.
+struct Warning {
+  const char* name;
+  const char* from;
+  const char* to;
+  const char* text;
+};
+
+void PrintTo(const Warning& warning, std::ostream* out) { *out << warning.name; }
+
+class Warnings : public testing::TestWithParam<Warning> {};
+
+TEST_P(Warnings, areShownByCheckAndRunAndLogged) {
+  const Warning& warning = GetParam();
+  Workshop shop;
+  shop.put("case.toml", replaced(smallCase, warning.from, warning.to));
+  const std::string line = std::string("treacle: warning: ") + warning.text + "\n";
+  const Outcome check = shop.call("check case.toml");
+  EXPECT_EQ(check.exitCode, 0);
+  EXPECT_THAT(check.err, HasSubstr(line));
+  const Outcome run = shop.call("run case.toml --threads 1");
+  EXPECT_EQ(run.exitCode, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr(line));
+  EXPECT_THAT(shop.content("case-run/run.log"), HasSubstr(std::string("warning: ") + warning.text));
+  EXPECT_THAT(shop.call("run case.toml --threads 1 --force --quiet").err, IsEmpty());
+}
+
+constexpr Warning warnings[] = {
+    {"thinWall", "min = [-4e-3, -4e-3]\nmax = [12e-3, 0]", "min = [-4e-3, -2e-3]\nmax = [12e-3, 0]",
+     "wall 'floor' is 2 mm thick along y, thinner than the viscosity radius h_v = 3.5 mm (3.5 spacings): fluid "
+     "next "
+     "to it misses neighbours"},
+    {"unstableCompression", "bulk_modulus = 1e6", "bulk_modulus = 2e7",
+     "material 'syrup': dt kappa / lambda = 2 is greater than 1, the step may be unstable; take bulk_modulus <= "
+     "bulk_viscosity / step, or a shorter step"},
+    {"spacingThatDoesNotDivide", "max = [6e-3, 6e-3]", "max = [6e-3, 6.4e-3]",
+     "body 'column': 6.4 mm along y is 6.4 spacings; filled with 6 particles from its min corner (6 mm)"},
+    {"endBetweenSteps", "end = 2e-3", "end = 2.3e-3",
+     "time.end = 0.0023 s is not a whole number of steps of 0.001 s; the run makes 2 steps and ends at 0.002 s"},
+    {"outputBetweenSteps", "interval = 1e-3", "interval = 1.2e-3",
+     "output.interval = 0.0012 s is not a whole number of steps of 0.001 s; frames are written at the nearest "
+     "step"},
+};
+
+INSTANTIATE_TEST_SUITE_P(Case, Warnings, testing::ValuesIn(warnings),
+                         [](const auto& test) { return test.param.name; });
+
+}  // namespace
+}  // namespace treacle::test

@@ -1,0 +1,229 @@
+#include "treacle/io/case_reader.hpp"
+
+#include <gtest/gtest.h>
+
+#include "command.hpp"
+
+namespace treacle::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+Case readBack(const Case& c) {
+  Workshop shop;
+  shop.put("resolved.toml", caseText(c));
+  return readCase(shop / "resolved.toml");
+}
+
+std::vector<fs::path> caseFiles() {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::recursive_directory_iterator(TREACLE_CASES))
+    if (entry.path().extension() == ".toml") files.push_back(entry.path());
+  return files;
+}
+
+TEST(caseFiles, allAreReadAndTheirResolvedTextGivesTheSameCase) {
+  const auto files = caseFiles();
+  EXPECT_GE(files.size(), 8u);
+  for (const fs::path& file : files)
+    for (const char* resolution : {"resolution=0.5", "resolution=1", "resolution=3", "resolution=64"}) {
+      const std::string overrides[] = {resolution};
+      Case c = readCase(file, overrides);
+      EXPECT_EQ(std::string("resolution=") + (c.resolution == 0.5 ? "0.5" : std::to_string(int(c.resolution))),
+                resolution);
+      c.resolution = 1;  // applied
+      EXPECT_EQ(readBack(c), c) << file;
+    }
+}
+
+TEST(caseFiles, damBreakIsThatOfThePaper) {  // [K23 Table 1]
+  const std::string overrides[] = {"resolution=4"};
+  const Case c = readCase(fs::path(TREACLE_CASES) / "dam-break-2d.toml", overrides);
+  EXPECT_EQ(c.spacing, 0.25e-3);
+  EXPECT_EQ(c.time, (TimeSettings{0.25e-3, 0.2}));
+  EXPECT_EQ(c.steps(), 800);
+  EXPECT_EQ(c.gravity, (Vec<3>{0, -10, 0}));
+  EXPECT_EQ(c.materials, (std::vector<Material>{{"fluid", 1e3, 10, 1e4, 1e6}}));
+  EXPECT_EQ(c.domain, (Domain{{-0.01, -0.01}, {0.04, 0.04}, {true, true, false}}));
+  EXPECT_EQ(c.pressureRadius(), 1.75 * 0.25e-3);
+  EXPECT_EQ(c.viscosityRadius(), 3.5 * 0.25e-3);
+  ASSERT_EQ(c.bodies.size(), 3u);
+  EXPECT_EQ(c.bodies[0].shape.max, (Vec<3>{0.02, 0.02, 0}));
+}
+
+TEST(caseFiles, smallCasesScaleGravityAndViscosities) {  // [K23 Table 3]
+  const Case base = readCase(fs::path(TREACLE_CASES) / "dam-break-2d.toml");
+  for (const int factor : {2, 4, 8, 16, 32, 64}) {
+    const std::string name = "dam-break-2d-d" + std::to_string(factor) + ".toml";
+    const Case c = readCase(fs::path(TREACLE_CASES) / "small" / name);
+    Case expected = base;
+    expected.title = c.title;
+    expected.gravity = base.gravity * factor;
+    expected.materials[0].dynamicViscosity *= factor;
+    expected.materials[0].bulkViscosity *= factor;
+    EXPECT_EQ(c, expected) << name;
+  }
+}
+
+const char* const fullCase = R"(
+title = "Quotes \" and \\ and\nlines, ümlauts"
+dimensions = 3
+spacing = 0.3
+resolution = 1.5
+[domain]
+min = [-20, -20, -20]
+max = [20, 20, 20]
+periodic = [false, true, false]
+[gravity]
+acceleration = [0.1, -9.81, 1e-300]
+[[material]]
+name = "a"
+density = 1234.5678901234567
+dynamic_viscosity = 0
+bulk_viscosity = 1e5
+bulk_modulus = 3
+[[material]]
+name = "b c"
+density = 1
+dynamic_viscosity = 0.1
+bulk_viscosity = 1e-7
+bulk_modulus = 0
+[[body]]
+name = "ball"
+type = "fluid"
+material = "b c"
+shape = "sphere"
+center = [1, 2, 3]
+radius = 4.1
+inner_radius = 0.5
+velocity = [1, -2, 3.5]
+[[body]]
+name = "rod"
+type = "wall"
+material = "a"
+shape = "cylinder"
+start = [-9, 0, 0]
+end = [-9, 5, 1]
+radius = 2
+[time]
+step = 1e-3
+end = 7
+[method]
+pressure_radius = 2
+viscosity_radius = 3
+[solver]
+krylov = "cg"
+preconditioner = "block-jacobi"
+operator = "assembled"
+precision = "mixed"
+tolerance = 1e-10
+max_iterations = 77
+[solver.multigrid]
+finest_sweeps = 1
+middle_sweeps = 5
+coarsest_sweeps = 6
+particle_diagonal = "extended-jacobi"
+[output]
+interval = 0.25
+fields = ["id", "pressure"]
+precision = "double"
+)";
+
+TEST(readCase, takesEveryKey) {
+  Workshop shop;
+  shop.put("full.toml", fullCase);
+  Case c = readCase(shop / "full.toml");
+
+  Case expected;
+  expected.title = "Quotes \" and \\ and\nlines, ümlauts";
+  expected.dimensions = 3;
+  expected.spacing = 0.3 / 1.5;
+  expected.resolution = 1.5;
+  expected.domain = {{-20, -20, -20}, {20, 20, 20}, {false, true, false}};
+  expected.gravity = {0.1, -9.81, 1e-300};
+  expected.materials = {{"a", 1234.5678901234567, 0, 1e5, 3}, {"b c", 1, 0.1, 1e-7, 0}};
+  Shape ball, rod;
+  ball.kind = ShapeKind::Sphere, ball.center = {1, 2, 3}, ball.radius = 4.1, ball.innerRadius = 0.5;
+  rod.kind = ShapeKind::Cylinder, rod.start = {-9, 0, 0}, rod.end = {-9, 5, 1}, rod.radius = 2;
+  expected.bodies = {{"ball", BodyKind::Fluid, 1, {1, -2, 3.5}, ball}, {"rod", BodyKind::Wall, 0, {}, rod}};
+  expected.time = {1e-3 / 1.5, 7};
+  expected.method = {"mph-i", 2, 3};
+  expected.solver.krylov = KrylovKind::Cg;
+  expected.solver.preconditioner = PreconditionerKind::BlockJacobi;
+  expected.solver.operatorKind = OperatorKind::Assembled;
+  expected.solver.precision = Precision::Mixed;
+  expected.solver.tolerance = 1e-10;
+  expected.solver.maxIterations = 77;
+  expected.solver.multigrid = {1, 5, 6, SmootherDiagonal::ExtendedJacobi};
+  expected.output = {0.25, {false, true, false, false, true}, OutputPrecision::Double};
+  EXPECT_EQ(c, expected);
+
+  c.resolution = 1;
+  EXPECT_EQ(readBack(c), c);
+}
+
+TEST(readCase, mergesOntoItsBase) {
+  Workshop shop;
+  shop.put("cases/base.toml", smallCase);
+  shop.put("cases/middle.toml", "base = \"base.toml\"\n[time]\nend = 3e-3\n[output]\nfields = [\"id\"]\n");
+  shop.put("derived.toml", R"(base = "cases/middle.toml"
+[output]
+fields = ["velocity"]
+[[material]]
+name = "water"
+density = 998
+dynamic_viscosity = 1e-3
+bulk_viscosity = 1
+bulk_modulus = 1
+[[body]]
+name = "floor"
+material = "water"
+[[material]]
+name = "syrup"
+density = 1500
+)");
+  const Case base = readCase(shop / "cases/base.toml"), c = readCase(shop / "derived.toml");
+  Case expected = base;
+  expected.time.end = 3e-3;
+  expected.output.fields = {true, false, false, false, false};
+  expected.materials[0].density = 1500;
+  expected.materials.push_back({"water", 998, 1e-3, 1, 1});
+  expected.bodies[1].material = 1;
+  EXPECT_EQ(c, expected);
+}
+
+TEST(readCase, overridesComeOnTop) {
+  Workshop shop;
+  shop.put("case.toml", smallCase);
+  const Case base = readCase(shop / "case.toml");
+  const std::string overrides[] = {"syrup.density=2e3",
+                                   "material.syrup.dynamic_viscosity = 5",
+                                   "title=A new title",
+                                   "body.column.velocity=[1, 0]",
+                                   "solver.krylov=cg",
+                                   "solver.multigrid.finest_sweeps=7",
+                                   "domain.periodic=true",
+                                   "syrup.density=3e3",
+                                   "body.\"floor\".velocity=[0,1]"};
+  Case expected = base;
+  expected.materials[0].density = 3e3;
+  expected.materials[0].dynamicViscosity = 5;
+  expected.title = "A new title";
+  expected.bodies[0].velocity = {1, 0, 0};
+  expected.bodies[1].velocity = {0, 1, 0};
+  expected.solver.krylov = KrylovKind::Cg;
+  expected.solver.multigrid.finestSweeps = 7;
+  expected.domain.periodic = {true, true, false};
+  EXPECT_EQ(readCase(shop / "case.toml", overrides), expected);
+}
+
+TEST(readCase, nameOfMaterialAndBodyNeedsTheList) {
+  Workshop shop;
+  shop.put("case.toml", replaced(smallCase, "name = \"column\"", "name = \"syrup\""));
+  const std::string ambiguous[] = {"syrup.density=1"}, clear[] = {"material.syrup.density=1"};
+  EXPECT_THROW(readCase(shop / "case.toml", ambiguous), std::runtime_error);
+  EXPECT_EQ(readCase(shop / "case.toml", clear).materials[0].density, 1);
+}
+
+}  // namespace
+}  // namespace treacle::test

@@ -1,0 +1,112 @@
+#pragma once
+
+#include <gtest/gtest.h>
+#include <stdlib.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+#include <string>
+
+namespace treacle::test {
+
+/// What one call of the command left.
+struct Outcome {
+  int exitCode = -1;  // -1: ended by a signal
+  std::string out, err;
+};
+
+/// A fresh directory, gone with the object, in which the built command is called.
+class Workshop {
+ public:
+  Workshop() {
+    std::string name = (std::filesystem::temp_directory_path() / "treacle-app-XXXXXX").string();
+    if (!::mkdtemp(name.data())) throw std::runtime_error("no temporary directory");
+    path_ = name;
+  }
+  Workshop(const Workshop&) = delete;
+  Workshop& operator=(const Workshop&) = delete;
+  ~Workshop() {
+    std::error_code error;
+    std::filesystem::remove_all(path_, error);
+  }
+
+  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+
+  void put(const std::string& name, const std::string& text) const {
+    std::filesystem::create_directories((path_ / name).parent_path());
+    std::ofstream(path_ / name, std::ios::binary) << text;
+  }
+
+  std::string content(const std::string& name) const {
+    std::ifstream file(path_ / name, std::ios::binary);
+    EXPECT_TRUE(file) << name;
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+
+  /// `treacle ARGUMENTS` by the shell, after the shell commands `before`.
+  Outcome call(const std::string& arguments, const std::string& before = "") const {
+    const std::string line = "cd '" + path_.string() + "' || exit 99; { " + before + " '" + TREACLE_BINARY + "' " +
+                             arguments + "; } >stdout.txt 2>stderr.txt";
+    const int status = std::system(line.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content("stdout.txt"), content("stderr.txt")};
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// A case of few particles and two steps that stands alone.
+inline const std::string smallCase = R"(title = "Small dam break"
+dimensions = 2
+spacing = 1e-3
+
+[domain]
+min = [-4e-3, -4e-3]
+max = [12e-3, 12e-3]
+
+[gravity]
+acceleration = [0, -10]
+
+[[material]]
+name = "syrup"
+density = 1000
+dynamic_viscosity = 10
+bulk_viscosity = 1e4
+bulk_modulus = 1e6
+
+[[body]]
+name = "column"
+type = "fluid"
+material = "syrup"
+shape = "box"
+min = [0, 0]
+max = [6e-3, 6e-3]
+
+[[body]]
+name = "floor"
+type = "wall"
+material = "syrup"
+shape = "box"
+min = [-4e-3, -4e-3]
+max = [12e-3, 0]
+
+[time]
+step = 1e-3
+end = 2e-3
+
+[output]
+interval = 1e-3
+)";
+
+/// The text with one occurrence of `from` replaced.
+inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  if (at == text.npos) throw std::logic_error("not in the text: " + from);
+  return text.replace(at, from.size(), to);
+}
+
+}  // namespace treacle::test

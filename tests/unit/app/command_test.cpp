@@ -1,0 +1,202 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "command.hpp"
+#include "treacle/io/case_reader.hpp"
+#include "treacle/io/history.hpp"
+#include "treacle/io/run_directory.hpp"
+#include "treacle/io/vtp.hpp"
+
+namespace treacle::test {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::StartsWith;
+
+constexpr std::string_view pngSignature = "\x89PNG";
+
+/// A workshop with the small case in small.toml.
+Workshop& prepared(Workshop& shop) {
+  shop.put("small.toml", smallCase);
+  return shop;
+}
+
+TEST(helpAndVersion, documentTheExitCodes) {
+  Workshop shop;
+  const Outcome help = shop.call("--help");
+  EXPECT_EQ(help.exitCode, 0);
+  EXPECT_THAT(help.out, HasSubstr("Exit codes: 0 done, 2 bad input, 3 the run failed."));
+  const Outcome version = shop.call("--version");
+  EXPECT_EQ(version.exitCode, 0);
+  EXPECT_THAT(version.out, StartsWith("treacle "));
+}
+
+TEST(info, namesVersionAndThreads) {
+  Workshop shop;
+  const Outcome outcome = shop.call("info", "OMP_NUM_THREADS=1");
+  EXPECT_EQ(outcome.exitCode, 0);
+  EXPECT_THAT(outcome.out, HasSubstr("threads     1\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("CUDA "));
+}
+
+TEST(check, printsCountsNumbersAndCaseThatCanBeRunAgain) {
+  Workshop shop;
+  const Outcome outcome = prepared(shop).call("check small.toml --set resolution=2 --set 'column.velocity=[1,0]'");
+  EXPECT_EQ(outcome.exitCode, 0);
+  EXPECT_THAT(outcome.err, IsEmpty());
+  EXPECT_THAT(outcome.out, HasSubstr("# particles: 144 fluid, 256 wall\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("#   fluid 'column': 144\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("#   wall 'floor': 256\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("# steps: 4\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("# Courant number: 1\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("dt kappa / lambda = 0.05 (stable up to 1), diffusion numbers d_mu = 20, "
+                                     "d_lambda = 2e+04\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("# memory: about "));
+  shop.put("again.toml", outcome.out);
+  const std::string overrides[] = {"resolution=2", "column.velocity=[1,0]"};
+  Case expected = readCase(shop / "small.toml", overrides);
+  expected.resolution = 1;
+  EXPECT_EQ(readCase(shop / "again.toml"), expected);
+}
+
+TEST(run, leavesAllFiles) {
+  Workshop shop;
+  const Outcome outcome = prepared(shop).call("run small.toml --threads 1 -o out/here --end-time 3e-3");
+  EXPECT_EQ(outcome.exitCode, 0);
+  EXPECT_THAT(outcome.err, IsEmpty());
+  EXPECT_THAT(outcome.out,
+              StartsWith("Small dam break: 36 fluid and 64 wall particles, 3 steps of 0.001 s, into "));
+  EXPECT_THAT(outcome.out, HasSubstr("step 3/3  t = 0.003 s"));
+  EXPECT_THAT(outcome.out, HasSubstr("picture: out/here/final.png\nParaView: out/here/fluid.pvd\n"));
+  EXPECT_EQ(outcome.out.find('\r'), outcome.out.npos) << "no rewritten lines where stdout is no terminal";
+
+  const RunDirectory run = RunDirectory::open(shop / "out/here");
+  ASSERT_EQ(run.frameCount(), 4u);
+  for (std::size_t k = 0; k < 4; ++k) EXPECT_NEAR(run.frameTime(k), 1e-3 * static_cast<double>(k), 1e-12);
+  const Frame first = readVtp(run.fluidFrame(0)), last = readVtp(run.fluidFrame(3));
+  EXPECT_EQ(first.position.size(), 36u);
+  EXPECT_EQ(readVtp(run.wallsFrame(3)).position.size(), 64u);
+  EXPECT_NE(first.position, last.position);
+
+  const auto rows = readHistory(run.history());
+  ASSERT_EQ(rows.size(), 3u);
+  EXPECT_EQ(rows[2].step, 3);
+  EXPECT_GT(rows[0].iterations, 1);
+  EXPECT_LE(rows[0].residual, 1e-12);
+  EXPECT_EQ(readCase(run.caseFile()).time.end, 3e-3);
+  EXPECT_THAT(shop.content("out/here/final.png"), StartsWith(std::string(pngSignature)));
+  const std::string summary = shop.content("out/here/summary.json");
+  EXPECT_THAT(summary, HasSubstr("\"status\": \"done\""));
+  EXPECT_THAT(summary, HasSubstr("\"steps\": 3"));
+  EXPECT_THAT(summary, HasSubstr("\"threads\": 1"));
+  EXPECT_THAT(shop.content("out/here/run.log"), HasSubstr("done: 3 steps"));
+}
+
+TEST(run, framesFollowSimulationTime) {
+  Workshop shop;
+  // Steps of 0.7 ms; the multiples of 1 ms fall to steps 1 (0.7), 3 (2.1), 4 (2.8); then the end, step 5.
+  prepared(shop).call("run small.toml --threads 1 --set time.step=7e-4 --end-time 3.5e-3");
+  const RunDirectory run = RunDirectory::open(shop / "small-run");
+  std::vector<int> steps;
+  for (std::size_t k = 0; k < run.frameCount(); ++k)
+    steps.push_back(static_cast<int>(std::lround(run.frameTime(k) / 7e-4)));
+  EXPECT_THAT(steps, testing::ElementsAre(0, 1, 3, 4, 5));
+  EXPECT_EQ(shop.call("run small.toml --threads 1 --force --set output.interval=0").exitCode, 0);
+  EXPECT_EQ(RunDirectory::open(shop / "small-run").frameCount(), 2u);
+}
+
+TEST(run, quietPrintsNothing) {
+  Workshop shop;
+  const Outcome outcome = prepared(shop).call("run small.toml --threads 1 --quiet");
+  EXPECT_EQ(outcome.exitCode, 0);
+  EXPECT_THAT(outcome.out, IsEmpty());
+  EXPECT_THAT(outcome.err, IsEmpty());
+}
+
+TEST(run, resolvedCaseGivesTheSameRun) {
+  Workshop shop;
+  ASSERT_EQ(prepared(shop).call("run small.toml --threads 1 --set resolution=2 --set syrup.density=1200").exitCode,
+            0);
+  ASSERT_EQ(shop.call("run small-run/case.toml --threads 1 -o again").exitCode, 0);
+  for (const char* frame : {"fluid_000000.vtp", "fluid_000002.vtp", "walls_000002.vtp"})
+    EXPECT_EQ(shop.content(std::string("small-run/frames/") + frame),
+              shop.content(std::string("again/frames/") + frame));
+}
+
+TEST(run, withoutConvergenceFailsAndKeepsTheLastGoodState) {
+  Workshop shop;
+  const Outcome outcome = prepared(shop).call("run small.toml --threads 1 --set solver.max_iterations=3");
+  EXPECT_EQ(outcome.exitCode, 3);
+  EXPECT_THAT(outcome.err, StartsWith("treacle: error: after step 0 (t = 0 s): "));
+  EXPECT_THAT(outcome.err, HasSubstr("The last state written is frame 0 (t = 0 s) in small-run"));
+  EXPECT_EQ(RunDirectory::open(shop / "small-run").frameCount(), 1u);
+  const std::string summary = shop.content("small-run/summary.json");
+  EXPECT_THAT(summary, HasSubstr("\"status\": \"failed\""));
+  EXPECT_THAT(summary, HasSubstr("after step 0"));
+  EXPECT_THAT(shop.content("small-run/run.log"), HasSubstr("error: after step 0"));
+}
+
+TEST(run, particleThatLeavesOpenDomainEndsTheRun) {
+  Workshop shop;
+  const Outcome outcome =
+      prepared(shop).call("run small.toml --threads 1 --end-time 0.02 --set 'column.velocity=[0,20]'");
+  EXPECT_EQ(outcome.exitCode, 3);
+  EXPECT_THAT(outcome.err, HasSubstr("domain"));
+  const RunDirectory run = RunDirectory::open(shop / "small-run");
+  const Frame last = readVtp(run.fluidFrame(run.frameCount() - 1));
+  for (const Vec<3>& x : last.position) EXPECT_LE(x[1], 12e-3);
+}
+
+TEST(run, stopsOnSignalAfterTheStepWithLastFrameAndSummary) {
+  for (const char* signal : {"INT", "TERM"}) {
+    Workshop shop;
+    const std::string script = std::string(
+                                   "run small.toml --threads 1 --quiet --end-time 3 & run=$!; "
+                                   "while [ ! -s small-run/history.csv ]; do sleep 0.05; done; sleep 0.3; "
+                                   "kill -") +
+                               signal + " $run; wait $run";
+    const Outcome outcome = prepared(shop).call(script);
+    EXPECT_EQ(outcome.exitCode, 3);
+    const std::string summary = shop.content("small-run/summary.json");
+    EXPECT_THAT(summary, HasSubstr("\"status\": \"failed\""));
+    EXPECT_THAT(summary, HasSubstr(std::string("stopped by SIG") + signal));
+    const RunDirectory run = RunDirectory::open(shop / "small-run");
+    const auto rows = readHistory(run.history());
+    ASSERT_FALSE(rows.empty());
+    EXPECT_EQ(run.frameTime(run.frameCount() - 1), rows.back().time);
+  }
+}
+
+TEST(run, caseThatDoesNotFitIntoMemoryIsRefused) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the address sanitizer needs more address space than the limit of this test";
+#endif
+  Workshop shop;
+  // 3.8 million particles; the limit leaves room to create them, not to run them.
+  const Outcome outcome =
+      prepared(shop).call("run small.toml --threads 1 --set resolution=200", "ulimit -v 1500000;");
+  EXPECT_EQ(outcome.exitCode, 3);
+  EXPECT_THAT(outcome.err, HasSubstr("particles need about "));
+  EXPECT_THAT(outcome.err, HasSubstr("available"));
+  EXPECT_FALSE(std::filesystem::exists(shop / "small-run"));
+}
+
+TEST(plot, drawsFramesAndHistory) {
+  Workshop shop;
+  ASSERT_EQ(prepared(shop).call("run small.toml --threads 1 --quiet").exitCode, 0);
+  EXPECT_EQ(shop.call("plot small-run --frame 1 --field pressure").out, "small-run/frames/fluid_000001.png\n");
+  EXPECT_THAT(shop.content("small-run/frames/fluid_000001.png"), StartsWith(std::string(pngSignature)));
+  EXPECT_EQ(shop.call("plot small-run -o last.png").exitCode, 0);
+  EXPECT_THAT(shop.content("last.png"), StartsWith(std::string(pngSignature)));
+  EXPECT_EQ(shop.call("plot small-run --history").exitCode, 0);
+  EXPECT_THAT(shop.content("small-run/history.png"), StartsWith(std::string(pngSignature)));
+  const Outcome outcome = shop.call("plot small-run --frame 9");
+  EXPECT_EQ(outcome.exitCode, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("--frame 9: expected 'last' or a number from 0 to 2"));
+}
+
+}  // namespace
+}  // namespace treacle::test

@@ -1,0 +1,61 @@
+#include "treacle/io/frame.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+#include <random>
+
+using namespace treacle;
+
+namespace {
+
+/// Ids shuffled within fluid and walls; every field of a particle follows from its id.
+template <int D>
+Particles<D> shuffledParticles(std::uint32_t fluid, std::uint32_t walls) {
+  Particles<D> particles;
+  particles.resize(fluid, walls);
+  std::iota(particles.id.begin(), particles.id.end(), 0u);
+  std::mt19937 generator(7);
+  std::shuffle(particles.id.begin(), particles.id.begin() + fluid, generator);
+  std::shuffle(particles.id.begin() + fluid, particles.id.end(), generator);
+  for (std::uint32_t i = 0; i < particles.count; ++i) {
+    const double id = particles.id[i];
+    for (int k = 0; k < D; ++k) particles.position[i][k] = id + 0.1 * k, particles.velocity[i][k] = -id - 0.1 * k;
+    particles.pressure[i] = 2 * id;
+    particles.numberDensity[i] = 3 * id;
+    particles.material[i] = static_cast<std::uint8_t>(particles.id[i] % 200);
+  }
+  return particles;
+}
+
+template <int D>
+void expectSortedCopy(std::uint32_t begin, std::uint32_t end) {
+  const Frame frame = makeFrame(shuffledParticles<D>(1000, 500), begin, end, 0.25);
+  ASSERT_EQ(frame.id.size(), end - begin);
+  EXPECT_EQ(frame.dimensions, D);
+  EXPECT_EQ(frame.time, 0.25);
+  for (std::uint32_t i = 0; i < end - begin; ++i) {
+    const double id = begin + i;
+    ASSERT_EQ(frame.id[i], begin + i);
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_EQ(frame.position[i][k], k < D ? id + 0.1 * k : 0);
+      EXPECT_EQ(frame.velocity[i][k], k < D ? -id - 0.1 * k : 0);
+    }
+    EXPECT_EQ(frame.pressure[i], 2 * id);
+    EXPECT_EQ(frame.numberDensity[i], 3 * id);
+    EXPECT_EQ(frame.material[i], static_cast<std::int32_t>((begin + i) % 200));
+  }
+}
+
+}  // namespace
+
+TEST(MakeFrame, CopiesAGroupInTheOrderOfIds) {
+  expectSortedCopy<2>(0, 1000);
+  expectSortedCopy<3>(1000, 1500);
+}
+
+TEST(MakeFrame, EmptyGroup) {
+  const Frame frame = makeFrame(shuffledParticles<2>(5, 0), 5, 5, 0);
+  EXPECT_TRUE(frame.position.empty());
+}

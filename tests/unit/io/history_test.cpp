@@ -1,0 +1,97 @@
+#include "treacle/io/history.hpp"
+
+#include "limited_files.hpp"
+#include "temporary_directory.hpp"
+#include "treacle/core/error.hpp"
+
+#include <cmath>
+#include <limits>
+
+using namespace treacle;
+using namespace treacle::test;
+
+namespace {
+
+constexpr const char* header =
+    "step,time,iterations,residual,kinetic_energy,potential_energy,front_x,top,max_speed,seconds\n";
+
+HistoryRow row(int k) {
+  return {k,        k / 3.0,      200 + k,       1e-13 / (k + 1), std::exp(-k),
+          -0.1 * k, std::sqrt(k), 1.0 / (k + 7), 1e300 * k,       1e-300};
+}
+
+bool equal(const HistoryRow& a, const HistoryRow& b) {
+  return a.step == b.step && a.time == b.time && a.iterations == b.iterations && a.residual == b.residual &&
+         a.kineticEnergy == b.kineticEnergy && a.potentialEnergy == b.potentialEnergy && a.frontX == b.frontX &&
+         a.top == b.top && a.maxSpeed == b.maxSpeed && a.seconds == b.seconds;
+}
+
+}  // namespace
+
+TEST(History, FormatIsFixed) {
+  TemporaryDirectory directory;
+  HistoryWriter writer(directory / "history.csv");
+  EXPECT_EQ(content(directory / "history.csv"), header);
+  writer.append({3, 0.003, 233, 9.5e-13, 1e-6, 0.04, 0.02125, 0.0195, 0.5, 0.25});
+  // Seen without closing the writer.
+  EXPECT_EQ(content(directory / "history.csv"),
+            std::string(header) + "3,0.003,233,9.5e-13,1e-06,0.04,0.02125,0.0195,0.5,0.25\n");
+}
+
+TEST(History, ReadsBackToTheSameBits) {
+  TemporaryDirectory directory;
+  {
+    HistoryWriter writer(directory / "history.csv");
+    for (int k = 0; k < 500; ++k) writer.append(row(k));
+  }
+  const std::vector<HistoryRow> rows = readHistory(directory / "history.csv");
+  ASSERT_EQ(rows.size(), 500u);
+  for (int k = 0; k < 500; ++k) EXPECT_TRUE(equal(rows[static_cast<std::size_t>(k)], row(k))) << k;
+}
+
+TEST(History, NotANumberIsKept) {
+  TemporaryDirectory directory;
+  HistoryRow bad = row(1);
+  bad.maxSpeed = std::numeric_limits<double>::quiet_NaN();
+  bad.top = -std::numeric_limits<double>::infinity();
+  HistoryWriter(directory / "history.csv").append(bad);
+  const HistoryRow read = readHistory(directory / "history.csv").at(0);
+  EXPECT_TRUE(std::isnan(read.maxSpeed));
+  EXPECT_EQ(read.top, bad.top);
+}
+
+TEST(History, UnfinishedLastLineIsLeftOut) {
+  TemporaryDirectory directory;
+  put(directory / "history.csv", std::string(header) + "1,2,3,4,5,6,7,8,9,10\n2,3,4,5");
+  EXPECT_EQ(readHistory(directory / "history.csv").size(), 1u);
+}
+
+TEST(History, BadLinesAreNamed) {
+  TemporaryDirectory directory;
+  const auto path = directory / "history.csv";
+  for (const char* bad : {"1,2,3,4,5,6,7,8,9\n", "1,2,3,4,5,6,7,8,9,10,11\n", "1,2,3,x,5,6,7,8,9,10\n", "\n",
+                          "1,2,3.5,4,5,6,7,8,9,10\n", "1 2 3 4 5 6 7 8 9 10\n"}) {
+    put(path, std::string(header) + "1,2,3,4,5,6,7,8,9,10\n" + bad);
+    const std::string message = messageOf<InputError>([&] { readHistory(path); });
+    EXPECT_EQ(message.find(path.string() + ":3: expected ten numbers"), 0u) << message;
+  }
+  put(path, "time,step\n");
+  EXPECT_NE(messageOf<InputError>([&] { readHistory(path); }).find("expected the header"), std::string::npos);
+  EXPECT_THROW(readHistory(directory / "none.csv"), InputError);
+}
+
+TEST(History, FullDiskLeavesWholeRows) {
+  TemporaryDirectory directory;
+  const auto path = directory / "history.csv";
+  EXPECT_TRUE(withFileLimit(1000, [&] {
+    HistoryWriter writer(path);
+    const std::string message = messageOf<RunError>([&] {
+      for (int k = 0; k < 100; ++k) writer.append(row(k));
+    });
+    return message == "cannot write " + path.string() + ": File too large";
+  }));
+  const std::string text = content(path);
+  EXPECT_EQ(text.back(), '\n');
+  EXPECT_GT(text.size(), 800u);
+  EXPECT_GE(readHistory(path).size(), 5u);
+}

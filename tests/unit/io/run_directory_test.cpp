@@ -1,0 +1,140 @@
+#include "treacle/io/run_directory.hpp"
+
+#include "sample_frame.hpp"
+#include "temporary_directory.hpp"
+#include "treacle/core/error.hpp"
+#include "treacle/io/history.hpp"
+#include "treacle/io/vtp.hpp"
+
+#include <unistd.h>
+
+#include <set>
+
+using namespace treacle;
+using namespace treacle::test;
+namespace fs = std::filesystem;
+
+namespace {
+
+std::set<std::string> filesIn(const fs::path& directory) {
+  std::set<std::string> names;
+  for (const auto& entry : fs::recursive_directory_iterator(directory))
+    if (!entry.is_directory()) names.insert(fs::relative(entry.path(), directory).string());
+  return names;
+}
+
+Frame frameAt(double time, std::uint32_t count) {
+  Frame frame = sampleFrame(2, count);
+  frame.time = time;
+  return frame;
+}
+
+void expectRefused(const fs::path& path, bool force, const std::string& part) {
+  const std::string message = messageOf<InputError>([&] { RunDirectory::create(path, force); });
+  EXPECT_NE(message.find(path.string()), std::string::npos) << message;
+  EXPECT_NE(message.find(part), std::string::npos) << message;
+}
+
+}  // namespace
+
+TEST(RunDirectory, IsMadeWithItsParents) {
+  TemporaryDirectory directory;
+  const RunDirectory run = RunDirectory::create(directory / "a/b", false);
+  EXPECT_TRUE(fs::is_directory(directory / "a/b/frames"));
+  EXPECT_EQ(run.caseFile(), directory / "a/b/case.toml");
+  EXPECT_EQ(run.fluidFrame(12), directory / "a/b/frames/fluid_000012.vtp");
+  EXPECT_EQ(run.wallsFrame(1234567), directory / "a/b/frames/walls_1234567.vtp");
+}
+
+TEST(RunDirectory, AnEmptyDirectoryIsTaken) {
+  TemporaryDirectory directory;
+  EXPECT_NO_THROW(RunDirectory::create(directory.path(), false));
+}
+
+TEST(RunDirectory, FramesAndIndices) {
+  TemporaryDirectory directory;
+  RunDirectory run = RunDirectory::create(directory / "run", false);
+  run.writeFrame(frameAt(0, 30), frameAt(0, 20), {});
+  run.writeFrame(frameAt(0.1, 30), frameAt(0.1, 20), {});
+  EXPECT_EQ(content(run.fluidIndex()),
+            "<?xml version=\"1.0\"?>\n"
+            "<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n"
+            "  <Collection>\n"
+            "    <DataSet timestep=\"0\" part=\"0\" file=\"frames/fluid_000000.vtp\"/>\n"
+            "    <DataSet timestep=\"0.1\" part=\"0\" file=\"frames/fluid_000001.vtp\"/>\n"
+            "  </Collection>\n</VTKFile>\n");
+  const std::set<std::string> expected{"fluid.pvd",
+                                       "walls.pvd",
+                                       "frames/fluid_000000.vtp",
+                                       "frames/fluid_000001.vtp",
+                                       "frames/walls_000000.vtp",
+                                       "frames/walls_000001.vtp"};
+  EXPECT_EQ(filesIn(directory / "run"), expected);
+  EXPECT_EQ(readVtp(run.fluidFrame(1)).position.size(), 30u);
+  EXPECT_EQ(readVtp(run.wallsFrame(1)).position.size(), 20u);
+
+  RunDirectory opened = RunDirectory::open(directory / "run");
+  ASSERT_EQ(opened.frameCount(), 2u);
+  EXPECT_EQ(opened.frameTime(1), 0.1);
+  opened.writeFrame(frameAt(0.2, 30), frameAt(0.2, 20), {});
+  EXPECT_EQ(readPvd(run.wallsIndex()).at(2).file, "frames/walls_000002.vtp");
+  EXPECT_EQ(readPvd(run.wallsIndex()).at(0).time, 0);
+}
+
+TEST(RunDirectory, AnOldRunNeedsForce) {
+  TemporaryDirectory directory;
+  RunDirectory run = RunDirectory::create(directory.path(), false);
+  run.writeFrame(frameAt(0, 3), frameAt(0, 3), {});
+  expectRefused(directory.path(), false, "--force");
+  EXPECT_EQ(run.frameCount(), 1u);
+  EXPECT_TRUE(fs::exists(run.fluidFrame(0)));
+}
+
+TEST(RunDirectory, ForceRemovesTheOldRunAndNothingElse) {
+  TemporaryDirectory directory;
+  RunDirectory run = RunDirectory::create(directory.path(), false);
+  run.writeFrame(frameAt(0, 3), frameAt(0, 3), {});
+  for (const fs::path& path :
+       {run.caseFile(), run.log(), run.history(), run.summary(), run.finalPicture(), run.historyPicture(),
+        run.framePicture(0), run.checkpoint(), run.fluidFrame(1000000), directory / "history.csv.tmp",
+        directory / "frames/walls_000007.vtp.tmp"})
+    put(path, "old");
+  const std::set<std::string> foreign{"notes.txt", "frames/fluid_1.vtp", "frames/fluid_00000a.vtp",
+                                      "frames/my.png"};
+  for (const std::string& name : foreign) put(directory / name, "mine");
+
+  const RunDirectory again = RunDirectory::create(directory.path(), true);
+  EXPECT_EQ(filesIn(directory.path()), foreign);
+  EXPECT_EQ(again.frameCount(), 0u);
+}
+
+TEST(RunDirectory, ForceDoesNotTakeTheUsersCase) {
+  TemporaryDirectory directory;
+  put(directory / "case.toml", "mine");
+  expectRefused(directory.path(), true, "case.toml");
+  EXPECT_EQ(content(directory / "case.toml"), "mine");
+}
+
+TEST(RunDirectory, UnusablePaths) {
+  TemporaryDirectory directory;
+  put(directory / "file", "text");
+  expectRefused(directory / "file", true, "no directory");
+  expectRefused(directory / "file/below", false, "cannot be created");
+  expectRefused("/proc/treacle-run", false, "cannot be created");
+}
+
+TEST(RunDirectory, NotWritable) {
+  if (::geteuid() == 0) GTEST_SKIP() << "root may write everywhere";
+  TemporaryDirectory directory;
+  fs::permissions(directory.path(), fs::perms::owner_read | fs::perms::owner_exec);
+  expectRefused(directory.path(), false, "not writable");
+  fs::permissions(directory.path(), fs::perms::owner_all);
+}
+
+TEST(RunDirectory, OpenNeedsARun) {
+  TemporaryDirectory directory;
+  const std::string message = messageOf<InputError>([&] { RunDirectory::open(directory.path()); });
+  EXPECT_NE(message.find("fluid.pvd"), std::string::npos) << message;
+  put(directory / "fluid.pvd", "<VTKFile type=\"PolyData\" >");
+  EXPECT_THROW(RunDirectory::open(directory.path()), InputError);
+}

@@ -1,0 +1,63 @@
+#include "treacle/io/summary.hpp"
+
+#include "temporary_directory.hpp"
+
+#include <nlohmann/json.hpp>
+
+using namespace treacle;
+using namespace treacle::test;
+
+namespace {
+
+RunSummary summary() {
+  RunSummary s;
+  s.version = "1.2.3", s.commit = "abcdef", s.backend = "cpu", s.device = "some processor", s.threads = 2;
+  s.precision = "double", s.title = "Dam \"break\" µ", s.dimensions = 2;
+  s.fluidParticles = 400, s.wallParticles = 900, s.steps = 200, s.time = 0.2;
+  s.meanIterations = 233.25, s.firstIterations = 338, s.lastIterations = 243;
+  s.phaseSeconds = {{"search", 0.5}, {"solve", 1.5}};
+  s.wallSeconds = 2.25, s.peakMemory = 1000000, s.done = true;
+  return s;
+}
+
+}  // namespace
+
+TEST(Summary, HoldsEverything) {
+  TemporaryDirectory directory;
+  writeSummary(directory / "summary.json", summary());
+  const auto json = nlohmann::ordered_json::parse(content(directory / "summary.json"));
+  EXPECT_EQ(json["status"], "done");
+  EXPECT_EQ(json["message"], "");
+  EXPECT_EQ(json["title"], "Dam \"break\" µ");
+  EXPECT_EQ(json["version"], "1.2.3");
+  EXPECT_EQ(json["commit"], "abcdef");
+  EXPECT_EQ(json["backend"], "cpu");
+  EXPECT_EQ(json["device"], "some processor");
+  EXPECT_EQ(json["threads"], 2);
+  EXPECT_EQ(json["precision"], "double");
+  EXPECT_EQ(json["dimensions"], 2);
+  EXPECT_EQ(json["fluid_particles"], 400);
+  EXPECT_EQ(json["wall_particles"], 900);
+  EXPECT_EQ(json["steps"], 200);
+  EXPECT_EQ(json["time"], 0.2);
+  EXPECT_EQ(json["iterations"]["mean"], 233.25);
+  EXPECT_EQ(json["iterations"]["first"], 338);
+  EXPECT_EQ(json["iterations"]["last"], 243);
+  EXPECT_EQ(json["seconds_per_phase"].dump(), R"({"search":0.5,"solve":1.5})");
+  EXPECT_EQ(json["wall_seconds"], 2.25);
+  EXPECT_EQ(json["peak_memory_bytes"], 1000000);
+  EXPECT_EQ(json["memory_bytes_per_fluid_particle"], 2500.0);
+}
+
+TEST(Summary, FailedRunWithoutParticlesAndWithAForeignFileName) {
+  TemporaryDirectory directory;
+  RunSummary s = summary();
+  s.done = false;
+  s.message = "cannot write /tmp/\xff.vtp";  // no UTF-8
+  s.fluidParticles = 0;
+  writeSummary(directory / "summary.json", s);
+  const auto json = nlohmann::json::parse(content(directory / "summary.json"));
+  EXPECT_EQ(json["status"], "failed");
+  EXPECT_EQ(json["message"], "cannot write /tmp/\uFFFD.vtp");
+  EXPECT_EQ(json["memory_bytes_per_fluid_particle"], 0.0);
+}

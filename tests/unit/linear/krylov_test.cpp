@@ -1,0 +1,121 @@
+#include "treacle/linear/krylov.hpp"
+
+#include "support/oracle.hpp"
+
+#include <gtest/gtest.h>
+
+namespace treacle::test {
+namespace {
+
+using Flat = std::span<const double>;
+
+/// A real system of the method, its direct solution, and maps for the solvers.
+struct System {
+  Context<Cpu> context;
+  Eigen::MatrixXd a;
+  Eigen::VectorXd b, exact;
+
+  System() {
+    Scene<2> s = makeScene<2>();
+    a = Oracle<2>(s).matrix();
+    b = randomVector(a.rows(), 1);
+    exact = a.ldlt().solve(b);
+  }
+  auto multiply() const {
+    return [this](Flat x, std::span<double> y) {
+      Eigen::Map<Eigen::VectorXd>(y.data(), a.rows()) = a * Eigen::Map<const Eigen::VectorXd>(x.data(), a.rows());
+    };
+  }
+  auto jacobi() const {
+    return [this](Flat r, std::span<double> z) {
+      for (std::size_t i = 0; i < r.size(); ++i) z[i] = r[i] / a(i, i);
+    };
+  }
+  template <class Solve, class K>
+  SolveReport run(Solve&& solve, const K& k, Eigen::VectorXd& x, StoppingRule rule) {
+    KrylovWorkspace<> workspace;
+    return solve(multiply(), k, Flat(b.data(), b.size()), std::span<double>(x.data(), x.size()), rule, workspace);
+  }
+};
+
+const auto cg = [](auto&&... args) {
+  static Context<Cpu> context;
+  return conjugateGradient(context, args...);
+};
+const auto cr = [](auto&&... args) {
+  static Context<Cpu> context;
+  return conjugateResidual(context, args...);
+};
+
+TEST(Krylov, AgreesWithTheDirectSolution) {
+  System s;
+  const auto identity = [](Flat r, std::span<double> z) { std::copy(r.begin(), r.end(), z.begin()); };
+  const auto check = [&](auto&& solve, auto&& k) {
+    Eigen::VectorXd x = s.exact.norm() * randomVector(s.b.size(), 2);
+    const SolveReport report = s.run(solve, k, x, {1e-24, 5000});
+    EXPECT_EQ(report.status, SolveStatus::Converged);
+    EXPECT_GT(report.iterations, 10);
+    EXPECT_LT((x - s.exact).norm(), 1e-8 * s.exact.norm());
+    EXPECT_LT((s.b - s.a * x).squaredNorm(), 1e-20 * s.b.squaredNorm());
+  };
+  check(cg, identity);
+  check(cr, identity);
+  check(cg, s.jacobi());
+  check(cr, s.jacobi());
+}
+
+TEST(Krylov, StopsAtOnceAtTheSolution) {
+  System s;
+  Eigen::VectorXd x = s.exact;
+  EXPECT_EQ(s.run(cr, s.jacobi(), x, {1e-12, 100}).iterations, 0);
+  EXPECT_EQ(x, s.exact);
+}
+
+TEST(Krylov, HasTheResidualItReports) {
+  System s;
+  for (double tolerance : {1e-4, 1e-8, 1e-12}) {
+    Eigen::VectorXd x = Eigen::VectorXd::Zero(s.b.size());
+    const SolveReport report = s.run(cr, s.jacobi(), x, {tolerance, 5000});
+    const double actual = (s.b - s.a * x).squaredNorm() / s.b.squaredNorm();
+    EXPECT_LE(report.residual, tolerance);
+    EXPECT_NEAR(actual, report.residual, 1e-3 * tolerance);
+  }
+}
+
+TEST(Krylov, ReportsTheIterationLimit) {
+  System s;
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(s.b.size());
+  const SolveReport report = s.run(cg, s.jacobi(), x, {1e-24, 3});
+  EXPECT_EQ(report.status, SolveStatus::IterationLimit);
+  EXPECT_EQ(report.iterations, 3);
+}
+
+TEST(Krylov, ReportsAnIndefiniteOperator) {
+  System s;
+  s.a = -s.a;
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(s.b.size());
+  const auto identity = [](Flat r, std::span<double> z) { std::copy(r.begin(), r.end(), z.begin()); };
+  EXPECT_EQ(s.run(cg, identity, x, {1e-12, 100}).status, SolveStatus::Breakdown);
+  x.setZero();
+  EXPECT_EQ(s.run(cr, identity, x, {1e-12, 100}).status, SolveStatus::Breakdown);
+}
+
+TEST(Krylov, ReportsValuesThatAreNotFinite) {
+  System s;
+  s.b[3] = NAN;
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(s.b.size());
+  EXPECT_EQ(s.run(cg, s.jacobi(), x, {1e-12, 100}).status, SolveStatus::NotFinite);
+  EXPECT_EQ(s.run(cr, s.jacobi(), x, {1e-12, 100}).status, SolveStatus::NotFinite);
+}
+
+TEST(Krylov, AZeroRightHandSideHasTheZeroSolution) {
+  System s;
+  s.b.setZero();
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(s.b.size());
+  const SolveReport report = s.run(cr, s.jacobi(), x, {1e-12, 100});
+  EXPECT_EQ(report.status, SolveStatus::Converged);
+  EXPECT_EQ(report.iterations, 0);
+}
+
+}  // namespace
+}  // namespace treacle::test

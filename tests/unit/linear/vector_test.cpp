@@ -1,0 +1,73 @@
+#include "treacle/linear/vector.hpp"
+#include "support/scene.hpp"
+#include "support/tolerances.hpp"
+#include "treacle/core/block.hpp"
+
+#include <gtest/gtest.h>
+#include <omp.h>
+
+namespace treacle::test {
+namespace {
+
+std::span<const double> view(const Eigen::VectorXd& v) { return {v.data(), static_cast<std::size_t>(v.size())}; }
+std::span<double> view(Eigen::VectorXd& v) { return {v.data(), static_cast<std::size_t>(v.size())}; }
+
+TEST(VectorOperations, EqualEigen) {
+  Context<Cpu> context;
+  for (Eigen::Index n : {0, 1, 31, 33, 4096, 4097, 30011}) {
+    const Eigen::VectorXd p = randomVector(n, 1), q = randomVector(n, 2), u = randomVector(n, 3);
+    Eigen::VectorXd x = randomVector(n, 4), r = randomVector(n, 5), s = randomVector(n, 6);
+    const double scale = std::max(1.0, p.norm() * q.norm());
+    EXPECT_NEAR(dot(context, view(p), view(q)), p.dot(q), kernelTolerance * scale);
+
+    const Eigen::VectorXd x1 = x + 0.3 * p, r1 = r - 0.3 * q, s1 = s - 0.3 * u;
+    const double rr = updateCr(context, 0.3, {view(p), view(q), view(u), view(x), view(r), view(s)});
+    EXPECT_LE((x - x1).norm() + (r - r1).norm() + (s - s1).norm(), kernelTolerance * (1 + x1.norm()));
+    EXPECT_NEAR(rr, r1.squaredNorm(), kernelTolerance * (1 + r1.squaredNorm()));
+
+    Eigen::VectorXd direct = x;
+    direction(context, view(p), -0.7, view(direct));
+    EXPECT_LE((direct - (p - 0.7 * x)).norm(), kernelTolerance * (1 + direct.norm()));
+
+    Eigen::VectorXd res = q;
+    EXPECT_NEAR(residual(context, view(p), view(res)), (p - q).squaredNorm(),
+                kernelTolerance * (1 + res.squaredNorm()));
+    EXPECT_EQ(res, p - q);
+  }
+}
+
+TEST(VectorOperations, DoNotDependOnTheNumberOfThreads) {
+  Context<Cpu> context;
+  const Eigen::VectorXd x = randomVector(100003, 1), y = randomVector(100003, 2);
+  omp_set_num_threads(1);
+  const double one = dot(context, view(x), view(y));
+  omp_set_num_threads(5);
+  EXPECT_EQ(one, dot(context, view(x), view(y)));
+}
+
+template <int D>
+void checkInverse() {
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    Eigen::MatrixXd g = Eigen::Map<Eigen::MatrixXd>(randomVector(D * D, seed).data(), D, D);
+    const Eigen::MatrixXd m = g * g.transpose() + 0.1 * Eigen::MatrixXd::Identity(D, D);
+    Block<D> b{};
+    for (int r = 0; r < D; ++r)
+      for (int c = 0; c < D; ++c) b(r, c) = m(r, c);
+    const Block<D> inv = inverse(b);
+    Eigen::MatrixXd product(D, D);
+    for (int r = 0; r < D; ++r)
+      for (int c = 0; c < D; ++c) {
+        product(r, c) = 0;
+        for (int k = 0; k < D; ++k) product(r, c) += inv(r, k) * b(k, c);
+      }
+    EXPECT_LT((product - Eigen::MatrixXd::Identity(D, D)).norm(), 1e-10);
+  }
+}
+
+TEST(Block, InverseTimesItselfIsTheIdentity) {
+  checkInverse<2>();
+  checkInverse<3>();
+}
+
+}  // namespace
+}  // namespace treacle::test

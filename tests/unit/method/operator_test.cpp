@@ -1,0 +1,167 @@
+#include "support/oracle.hpp"
+#include "support/tolerances.hpp"
+#include "treacle/linear/block_csr.hpp"
+
+#include <gtest/gtest.h>
+#include <omp.h>
+
+namespace treacle::test {
+namespace {
+
+template <int D>
+BlockCsr<D> assembled(Scene<D>& s) {
+  GradientRows<D> rows;
+  gradientRows(s.context, s.pairs, rows);
+  BlockCsr<D> a;
+  assemble(s.context, s.pairs, s.terms(), rows, a);
+  return a;
+}
+
+template <int D>
+Eigen::MatrixXd dense(const BlockCsr<D>& a) {
+  Eigen::MatrixXd m = Eigen::MatrixXd::Zero(D * a.rows(), D * a.rows());
+  for (std::uint32_t i = 0; i < a.rows(); ++i)
+    for (std::uint64_t k = a.rowStart[i]; k < a.rowStart[i + 1]; ++k)
+      for (int r = 0; r < D; ++r)
+        for (int c = 0; c < D; ++c) m(D * i + r, D * a.column[k] + c) += a.block[k](r, c);
+  return m;
+}
+
+template <int D>
+void checkAgainstEquations(Walls walls) {
+  Scene<D> s = makeScene<D>(walls);
+  const Eigen::MatrixXd expected = Oracle<D>(s).matrix();
+  MphOperator<D> a;
+  a.prepare(s.context, s.pairs, s.terms());
+  const Eigen::MatrixXd free =
+      denseOf(s.unknowns(), [&](const Eigen::VectorXd& x) { return applyOperator(s, a, x); });
+  EXPECT_LT((free - expected).norm(), operatorTolerance * expected.norm());
+  EXPECT_LT((dense(assembled(s)) - expected).norm(), operatorTolerance * expected.norm());
+
+  std::vector<Block<D>> diagonal(s.n());
+  diagonalBlocks<D>(s.context, s.pairs, s.terms(), diagonal);
+  for (std::uint32_t i = 0; i < s.n(); ++i)
+    for (int r = 0; r < D; ++r)
+      for (int c = 0; c < D; ++c)
+        ASSERT_NEAR(diagonal[i](r, c), expected(D * i + r, D * i + c), operatorTolerance * expected.norm());
+}
+
+TEST(Operator, EqualsTheEquationsMatrix) {
+  checkAgainstEquations<2>(Walls::Floor);
+  checkAgainstEquations<3>(Walls::Floor);
+  checkAgainstEquations<2>(Walls::None);
+}
+
+template <int D>
+void checkMatrixFreeAgainstAssembled() {
+  for (unsigned seed : {1u, 2u, 3u}) {
+    Scene<D> s = makeScene<D>(Walls::Floor, seed, 0.4);
+    MphOperator<D> a;
+    a.prepare(s.context, s.pairs, s.terms());
+    const BlockCsr<D> matrix = assembled(s);
+    const Eigen::VectorXd x = randomVector(s.unknowns(), seed);
+    const auto u = unflat<D>(x);
+    std::vector<Vec<D>> y(u.size());
+    multiply<D, double>(s.context, matrix, u, y);
+    EXPECT_LT((applyOperator(s, a, x) - flat<D>(y)).norm(), operatorTolerance * flat<D>(y).norm());
+  }
+}
+
+TEST(Operator, MatrixFreeEqualsAssembledOnRandomVectors) {
+  checkMatrixFreeAgainstAssembled<2>();
+  checkMatrixFreeAgainstAssembled<3>();
+}
+
+/// A u - rho/dt u = (dD/du) / dV  [K23 eqs. (8), (10)]
+template <int D>
+void checkDissipationGradient() {
+  Scene<D> s = makeScene<D>();
+  const Oracle<D> oracle(s);
+  MphOperator<D> a;
+  a.prepare(s.context, s.pairs, s.terms());
+  const Eigen::VectorXd x = randomVector(s.unknowns(), 5);
+  Eigen::VectorXd all = Eigen::VectorXd::Zero(D * oracle.count());
+  all.head(s.unknowns()) = x;
+  Eigen::VectorXd force = applyOperator(s, a, x);
+  for (Eigen::Index k = 0; k < s.unknowns(); ++k) force[k] -= oracle.material(k / D).density / oracle.dt * x[k];
+  for (Eigen::Index k = 0; k < s.unknowns(); k += 23) {
+    Eigen::VectorXd plus = all, minus = all;
+    plus[k] += 1;
+    minus[k] -= 1;
+    const double gradient = (oracle.dissipation(plus) - oracle.dissipation(minus)) / 2 / s.volume();
+    ASSERT_NEAR(force[k], gradient, 1e-9 * force.cwiseAbs().maxCoeff()) << "unknown " << k;
+  }
+}
+
+TEST(Operator, IsTheGradientOfTheDissipationFunction) {
+  checkDissipationGradient<2>();
+  checkDissipationGradient<3>();
+}
+
+template <int D>
+void checkPositiveDefinite() {
+  Scene<D> s = makeScene<D>();
+  MphOperator<D> a;
+  a.prepare(s.context, s.pairs, s.terms());
+  const Eigen::MatrixXd m =
+      denseOf(s.unknowns(), [&](const Eigen::VectorXd& x) { return applyOperator(s, a, x); });
+  EXPECT_LT((m - m.transpose()).norm(), operatorTolerance * m.norm());
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(m, Eigen::EigenvaluesOnly);
+  EXPECT_GE(eigen.eigenvalues()[0], 1.1e3 / 1e-3 * (1 - 1e-9));  // rho/dt of the lighter material
+}
+
+TEST(Operator, IsSymmetricPositiveDefinite) {
+  checkPositiveDefinite<2>();
+  checkPositiveDefinite<3>();
+}
+
+/// Without walls the viscous and pressure forces are pairwise opposite: they sum to zero, and so does their
+/// moment.
+template <int D>
+void checkMomentum() {
+  Scene<D> s = makeScene<D>(Walls::None);
+  MphOperator<D> a;
+  a.prepare(s.context, s.pairs, s.terms());
+  const Eigen::VectorXd x = randomVector(s.unknowns(), 6);
+  Eigen::VectorXd force = applyOperator(s, a, x);
+  for (Eigen::Index k = 0; k < s.unknowns(); ++k)
+    force[k] -= s.c.materials[s.particles.material[k / D]].density / s.c.time.step * x[k];
+  const auto f = unflat<D>(force);
+  Vec<D> sum{};
+  for (const auto& v : f) sum += v;
+  EXPECT_LT(norm(sum), operatorTolerance * force.norm());
+}
+
+TEST(Operator, ConservesLinearMomentumWithoutWalls) {
+  checkMomentum<2>();
+  checkMomentum<3>();
+}
+
+TEST(Operator, DoesNotDependOnTheNumberOfThreads) {
+  Scene<2> s = makeScene<2>();
+  const Eigen::VectorXd x = randomVector(s.unknowns(), 7);
+  Eigen::VectorXd results[2];
+  for (int run = 0; run < 2; ++run) {
+    omp_set_num_threads(run == 0 ? 1 : 4);
+    MphOperator<2> a;
+    a.prepare(s.context, s.pairs, s.terms());
+    results[run] = applyOperator(s, a, x);
+  }
+  EXPECT_EQ(results[0], results[1]);
+}
+
+TEST(Operator, TreatsOneMaterialAsTwoEqualOnes) {
+  // Same constants under one name and under two: the sums must not care.
+  Scene<3> two = makeScene<3>(Walls::Floor, 1, 0.2, false), one = makeScene<3>(Walls::Floor, 1, 0.2, false);
+  one.c.materials.pop_back();
+  std::fill(one.particles.material.begin(), one.particles.material.end(), std::uint8_t{0});
+  prepare(one);
+  MphOperator<3> a, b;
+  a.prepare(two.context, two.pairs, two.terms());
+  b.prepare(one.context, one.pairs, one.terms());
+  const Eigen::VectorXd x = randomVector(two.unknowns(), 9), y = applyOperator(two, a, x);
+  EXPECT_LT((y - applyOperator(one, b, x)).norm(), operatorTolerance * y.norm());
+}
+
+}  // namespace
+}  // namespace treacle::test

@@ -1,0 +1,96 @@
+#include "treacle/model/checks.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "sample_case.hpp"
+
+namespace treacle::test {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+Case damBreak() {
+  Case c = emptyCase(2);
+  c.spacing = 1e-3;
+  c.gravity = {0, -10};
+  c.bodies = {makeBody("column", BodyKind::Fluid, box({0, 0}, {20e-3, 20e-3})),
+              makeBody("floor", BodyKind::Wall, box({0, -10e-3}, {40e-3, 0}))};
+  return c;
+}
+
+TEST(stabilityNumbers, areThoseOfThePaper) {  // [K23 Table 2], case x1
+  const auto numbers = stabilityNumbers(damBreak());
+  ASSERT_EQ(numbers.size(), 1u);
+  EXPECT_EQ(numbers[0].material, "syrup");
+  EXPECT_DOUBLE_EQ(numbers[0].compression, 0.1);
+  EXPECT_DOUBLE_EQ(numbers[0].shearDiffusion, 10);
+  EXPECT_DOUBLE_EQ(numbers[0].bulkDiffusion, 1e4);
+}
+
+TEST(courantNumber, takesTheFastestOfFallFluidAndWalls) {
+  Case c = damBreak();
+  EXPECT_NEAR(courantNumber(c), std::sqrt(2 * 10 * 20e-3), 1e-12);
+  c.bodies[0].velocity = {3, 4};
+  EXPECT_NEAR(courantNumber(c), 5, 1e-12);
+  c.bodies[1].velocity = {0, -6};
+  EXPECT_NEAR(courantNumber(c), 6, 1e-12);
+  c = damBreak();
+  c.gravity = {-10 * std::sqrt(0.5), -10 * std::sqrt(0.5)};  // along the diagonal of the column
+  EXPECT_NEAR(courantNumber(c), std::sqrt(2 * 10 * 20e-3 * std::sqrt(2.0)), 1e-12);
+}
+
+TEST(caseWarnings, noneForTheDamBreak) { EXPECT_THAT(caseWarnings(damBreak()), IsEmpty()); }
+
+TEST(caseWarnings, unstableCompression) {
+  Case c = damBreak();
+  c.materials[0].bulkModulus = 1e4 / 1e-3;  // exactly lambda / dt
+  EXPECT_THAT(caseWarnings(c), IsEmpty());
+  c.materials[0].bulkModulus *= 1.1;
+  EXPECT_THAT(caseWarnings(c),
+              ElementsAre(AllOf(HasSubstr("material 'syrup': dt kappa / lambda = 1.1 is greater than 1"))));
+  c.materials[0].bulkViscosity = 0;
+  EXPECT_THAT(caseWarnings(c), ElementsAre(HasSubstr("dt kappa / lambda = inf")));
+}
+
+struct WallCase {
+  Shape shape;
+  const char* where;  // empty: thick enough
+};
+
+TEST(caseWarnings, wallsThinnerThanTheViscosityRadius) {  // h_v = 3.5
+  for (const auto& [shape, where] :
+       {WallCase{box({0, -3.5}, {40, 0}), ""}, WallCase{box({0, -3.4}, {40, 0}), "3.4 m thick along y"},
+        WallCase{box({0, -9}, {3, 0}), "3 m thick along x"}, WallCase{sphere({0, 0}, 10, 6.5), ""},
+        WallCase{sphere({0, 0}, 10, 7), "3 m thick between its radii"},
+        WallCase{sphere({0, 0}, 1.5), "3 m thick across"},
+        WallCase{cylinder({0, 0}, {2, 0}, 10), "2 m thick along its axis"}}) {
+    Case c = emptyCase(2);
+    c.bodies = {makeBody("wall", BodyKind::Wall, shape)};
+    if (*where)
+      EXPECT_THAT(caseWarnings(c), ElementsAre(AllOf(HasSubstr("wall 'wall' is "), HasSubstr(where),
+                                                     HasSubstr("h_v = 3.5 m (3.5 spacings)"))));
+    else
+      EXPECT_THAT(caseWarnings(c), IsEmpty());
+    c.bodies[0].kind = BodyKind::Fluid;
+    EXPECT_THAT(caseWarnings(c), IsEmpty());
+  }
+}
+
+TEST(caseWarnings, timesThatAreNotWholeNumbersOfSteps) {
+  Case c = damBreak();
+  c.time.end = 0.2004;
+  c.output.interval = 1.5e-3;
+  EXPECT_THAT(caseWarnings(c), ElementsAre(HasSubstr("makes 200 steps and ends at 0.2 s"),
+                                           HasSubstr("output.interval = 0.0015 s")));
+  c.time = {1e-3 / 64, 0.2};  // whole but for rounding
+  c.output.interval = 0.01;
+  EXPECT_THAT(caseWarnings(c), IsEmpty());
+  EXPECT_EQ(c.steps(), 12800);
+}
+
+}  // namespace
+}  // namespace treacle::test

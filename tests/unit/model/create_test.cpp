@@ -1,0 +1,198 @@
+#include "treacle/model/create.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "sample_case.hpp"
+#include "treacle/core/error.hpp"
+
+namespace treacle::test {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+template <int D>
+std::string messageOfCreation(const Case& c) {
+  std::vector<std::string> notes;
+  try {
+    createParticles<D>(c, notes);
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return "no error";
+}
+
+template <int D>
+double leastDistance(const Particles<D>& p) {
+  double least = 1e300;
+  for (std::uint32_t i = 0; i < p.count; ++i)
+    for (std::uint32_t j = 0; j < i; ++j) least = std::min(least, norm(p.position[i] - p.position[j]));
+  return least;
+}
+
+TEST(createParticles, fillsBoxesWithCellCentredLattices) {
+  Case c = emptyCase(2);
+  c.materials.push_back(c.materials[0]);
+  c.bodies = {makeBody("wall", BodyKind::Wall, box({-4, -2}, {0, 3})),
+              makeBody("drop", BodyKind::Fluid, box({0, 0}, {3, 2}))};
+  c.bodies[0].velocity = {0, 7};
+  c.bodies[1].velocity = {5, 0};
+  c.bodies[1].material = 1;
+  std::vector<std::string> notes;
+  std::vector<std::uint32_t> counts;
+  const Particles<2> p = createParticles<2>(c, notes, &counts);
+  EXPECT_THAT(notes, IsEmpty());
+  EXPECT_THAT(counts, ElementsAre(20, 6));
+  ASSERT_EQ(p.fluidCount, 6u);
+  ASSERT_EQ(p.wallCount(), 20u);
+  // Fluid first although its body comes second in the file, x fastest.
+  EXPECT_EQ(p.position[0], (Vec<2>{0.5, 0.5}));
+  EXPECT_EQ(p.position[1], (Vec<2>{1.5, 0.5}));
+  EXPECT_EQ(p.position[3], (Vec<2>{0.5, 1.5}));
+  EXPECT_EQ(p.position[6], (Vec<2>{-3.5, -1.5}));
+  for (std::uint32_t i = 0; i < p.count; ++i) {
+    const bool fluid = i < 6;
+    EXPECT_EQ(p.velocity[i], fluid ? (Vec<2>{5, 0}) : (Vec<2>{0, 7}));
+    EXPECT_EQ(p.material[i], fluid ? 1 : 0);
+    EXPECT_EQ(p.id[i], i);
+    EXPECT_EQ(p.pressure[i], 0);
+    EXPECT_EQ(p.numberDensity[i], 0);
+  }
+}
+
+TEST(createParticles, roundsBoxesToWholeNumbersAndSaysSo) {
+  Case c = emptyCase(3);
+  c.spacing = 1e-3;
+  c.bodies = {makeBody("column", BodyKind::Fluid, box({0, 0, 0}, {20.4e-3, 0.2e-3, 2e-3}))};
+  std::vector<std::string> notes;
+  EXPECT_EQ(createParticles<3>(c, notes).count, 20u * 1 * 2);
+  EXPECT_THAT(notes,
+              ElementsAre("body 'column': 20.4 mm along x is 20.4 spacings; filled with 20 particles from its "
+                          "min corner (20 mm)",
+                          "body 'column': 0.2 mm along y is 0.2 spacings; filled with 1 particle from its "
+                          "min corner (1 mm)"));
+}
+
+TEST(createParticles, extentsThatMissWholeNumbersByRoundingAreWhole) {
+  Case c = emptyCase(2);
+  c.spacing = 1e-3 / 64;
+  c.bodies = {makeBody("column", BodyKind::Fluid, box({0.1, 0.3}, {0.12, 0.302}))};
+  std::vector<std::string> notes;
+  EXPECT_EQ(createParticles<2>(c, notes).count, 1280u * 128);
+  EXPECT_THAT(notes, IsEmpty());
+}
+
+TEST(createParticles, discHasPointAtCentre) {
+  Case c = emptyCase(2);
+  c.bodies = {makeBody("disc", BodyKind::Fluid, sphere({0.25, -3.5}, 2))};
+  std::vector<std::string> notes;
+  const Particles<2> p = createParticles<2>(c, notes);
+  EXPECT_EQ(p.count, 13u);  // lattice points within distance 2 of the origin
+  EXPECT_EQ(std::count(p.position.begin(), p.position.end(), (Vec<2>{0.25, -3.5})), 1);
+}
+
+TEST(createParticles, ballAndItsShellPartTheLattice) {
+  Case c = emptyCase(3);
+  c.bodies = {makeBody("all", BodyKind::Fluid, sphere({0, 0, 0}, 5))};
+  std::vector<std::string> notes;
+  const std::uint32_t whole = createParticles<3>(c, notes).count;
+  EXPECT_EQ(whole, 515u);  // points of the cubic lattice within distance 5: OEIS A000605
+  c.bodies = {makeBody("ball", BodyKind::Fluid, sphere({0, 0, 0}, 3)),
+              makeBody("shell", BodyKind::Wall, sphere({0, 0, 0}, 5, 3))};
+  const Particles<3> p = createParticles<3>(c, notes);
+  EXPECT_EQ(p.fluidCount, 123u);
+  EXPECT_EQ(p.count, whole);
+}
+
+TEST(createParticles, cylinderHasLayersInTheMiddleOfSlices) {
+  Case c = emptyCase(3);
+  c.bodies = {makeBody("rod", BodyKind::Fluid, cylinder({1, 2, 3}, {1, 2, 7}, 1))};
+  std::vector<std::string> notes;
+  const Particles<3> p = createParticles<3>(c, notes);
+  EXPECT_EQ(p.count, 4u * 5);
+  const auto [low, high] =
+      std::minmax_element(p.position.begin(), p.position.end(), [](auto& a, auto& b) { return a[2] < b[2]; });
+  EXPECT_DOUBLE_EQ((*low)[2], 3.5);
+  EXPECT_DOUBLE_EQ((*high)[2], 6.5);
+}
+
+TEST(createParticles, cylinderInTwoDimensionsIsStrip) {
+  Case c = emptyCase(2);
+  c.bodies = {makeBody("channel", BodyKind::Wall, cylinder({0, 0}, {10, 0}, 4, 2)),
+              makeBody("stream", BodyKind::Fluid, cylinder({0, 0}, {10, 0}, 2))};
+  std::vector<std::string> notes;
+  const Particles<2> p = createParticles<2>(c, notes);
+  EXPECT_EQ(p.fluidCount, 10u * 5);
+  EXPECT_EQ(p.wallCount(), 10u * 4);
+}
+
+TEST(createParticles, earlierBodyKeepsThePlace) {
+  Case c = emptyCase(2);
+  c.bodies = {makeBody("first", BodyKind::Fluid, box({0, 0}, {4, 4})),
+              makeBody("second", BodyKind::Fluid, box({2.2, 0}, {6.2, 4}))};
+  std::vector<std::string> notes;
+  std::vector<std::uint32_t> counts;
+  const Particles<2> p = createParticles<2>(c, notes, &counts);
+  EXPECT_THAT(counts, ElementsAre(16, 8));
+  EXPECT_THAT(notes,
+              ElementsAre("body 'second': 8 of 16 particles left out, their place is taken by body 'first'"));
+  EXPECT_GE(leastDistance(p), 0.5);
+  EXPECT_EQ(p.position[16], (Vec<2>{4.7, 0.5}));
+}
+
+TEST(createParticles, overlapCountsAcrossPeriodicBoundaries) {
+  Case c = emptyCase(2);
+  c.domain = {{0, 0}, {20, 20}, {true, false, false}};
+  // Both lattices stand 0.2 from the boundary in x: 0.4 apart across it.
+  c.bodies = {makeBody("left", BodyKind::Fluid, box({-0.3, 0}, {1.7, 4})),
+              makeBody("right", BodyKind::Fluid, box({18.3, 0}, {20.3, 4}))};
+  std::vector<std::string> notes;
+  EXPECT_EQ(createParticles<2>(c, notes).count, 8u + 4);
+  c.domain.periodic[0] = false;
+  EXPECT_EQ(createParticles<2>(c, notes).count, 8u + 8);
+}
+
+TEST(createParticles, rejectsFluidInsideWall) {
+  Case c = emptyCase(2);
+  c.bodies = {makeBody("column", BodyKind::Fluid, box({0, 0}, {4, 4})),
+              makeBody("floor", BodyKind::Wall, box({0, -4}, {10, 1}))};
+  EXPECT_EQ(
+      messageOfCreation<2>(c),
+      "fluid body 'column' and wall body 'floor' overlap: 4 wall particles closer than half a spacing to the "
+      "fluid, the first at (500, 500) mm");
+  c.bodies[1].shape = box({0, -4.4}, {10, 0.6});  // lattices 0.4 apart: still too near
+  EXPECT_THAT(messageOfCreation<2>(c), HasSubstr("4 wall particles"));
+  c.bodies[1].shape = box({0, -4.5}, {10, 0.5});  // half a spacing exactly is allowed
+  EXPECT_EQ(messageOfCreation<2>(c), "no error");
+}
+
+TEST(createParticles, rejectsCaseWithoutFluid) {
+  Case c = emptyCase(2);
+  c.bodies = {makeBody("floor", BodyKind::Wall, box({0, -4}, {10, 0}))};
+  EXPECT_THAT(messageOfCreation<2>(c), HasSubstr("no fluid"));
+  c.bodies = {makeBody("mist", BodyKind::Fluid, sphere({0, 0}, 0.4, 0.3))};
+  EXPECT_THAT(messageOfCreation<2>(c), HasSubstr("no fluid"));
+}
+
+TEST(createParticles, rejectsBodyOutsideDomain) {
+  Case c = emptyCase(2);
+  c.bodies = {makeBody("drop", BodyKind::Fluid, box({98, 0}, {102, 2}))};
+  EXPECT_EQ(messageOfCreation<2>(c),
+            "body 'drop' reaches out of the domain: a particle at (100.5, 0.5) m, the domain is (-100, -100) m to "
+            "(100, 100) m");
+}
+
+TEST(createParticles, rejectsMoreParticlesThanTheLimitBeforeFillingThem) {
+  Case c = emptyCase(3);
+  for (const Shape& shape : {box({0, 0, 0}, {1e6, 1e6, 1e6}), sphere({0, 0, 0}, 1e6)}) {
+    c.bodies = {makeBody("ocean", BodyKind::Fluid, shape)};
+    EXPECT_THAT(messageOfCreation<3>(c), HasSubstr("body 'ocean' would have more than 134217728 particles"));
+  }
+}
+
+}  // namespace
+}  // namespace treacle::test

@@ -1,0 +1,80 @@
+#include "support/random_particles.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+namespace treacle::test {
+namespace {
+
+template <int D>
+void checkSort(std::uint32_t fluid, std::uint32_t wall) {
+  RandomParticles<D> r(fluid, wall, fluid + 7);
+  std::vector<Vec<D>> before(r.particles.position.begin(), r.particles.position.end());
+  sortByCell(r.context, r.grid, r.particles, r.ranges, r.workspace);
+  const Particles<D>& p = r.particles;
+
+  std::set<std::uint32_t> fluidIds(p.id.begin(), p.id.begin() + fluid), wallIds(p.id.begin() + fluid, p.id.end());
+  EXPECT_EQ(fluidIds.size(), fluid);
+  EXPECT_EQ(wallIds.size(), wall);
+  for (std::uint32_t i = 0; i < p.count; ++i) ASSERT_EQ(p.position[i], before[p.id[i]]) << "fields went apart";
+  for (std::uint32_t i = 0; i < fluid; ++i) ASSERT_EQ(r.ranges.key[i], r.grid.key(p.position[i]));
+  EXPECT_TRUE(std::is_sorted(r.ranges.key.begin(), r.ranges.key.end()));
+
+  // Each particle stands in its cell's range, and the ranges hold nobody else.
+  std::size_t inRanges = 0;
+  for (std::size_t cell = 0; cell < r.grid.cellCount(); ++cell) {
+    for (std::uint32_t i = r.ranges.fluidBegin[cell]; i < r.ranges.fluidEnd[cell]; ++i)
+      ASSERT_EQ(r.grid.linear(r.grid.cellOf(p.position[i])), cell);
+    for (std::uint32_t i = r.ranges.wallBegin[cell]; i < r.ranges.wallEnd[cell]; ++i)
+      ASSERT_EQ(r.grid.linear(r.grid.cellOf(p.position[i])), cell);
+    inRanges +=
+        r.ranges.fluidEnd[cell] - r.ranges.fluidBegin[cell] + r.ranges.wallEnd[cell] - r.ranges.wallBegin[cell];
+  }
+  EXPECT_EQ(inRanges, r.ranges.activeCount);
+
+  // No wall within the radius of fluid may count as inactive.
+  for (std::uint32_t j = r.ranges.activeCount; j < p.count; ++j)
+    for (std::uint32_t i = 0; i < std::min(fluid, 200u); ++i)
+      ASSERT_GT(r.distance(p.position[i], p.position[j]), r.radius);
+}
+
+TEST(CellSort, SortsFieldsTogetherAndFillsRanges) {
+  for (std::uint32_t n : {1u, 31u, 33u, 1000u, 12345u}) {
+    checkSort<2>(n, n / 2);
+    checkSort<3>(n, n / 3);
+  }
+  checkSort<2>(40, 0);
+}
+
+TEST(CellSort, IsStable) {
+  RandomParticles<2> r(100, 10, 3);
+  for (auto& x : r.particles.position) x = {0.5, 0.5};
+  sortByCell(r.context, r.grid, r.particles, r.ranges, r.workspace);
+  EXPECT_TRUE(std::is_sorted(r.particles.id.begin(), r.particles.id.end()));
+}
+
+TEST(CellGrid, TilesTheDomainByFloorOfExtentOverRadius) {
+  const auto g = CellGrid<3>::make({-0.01, -0.02, -0.01}, {0.04, 0.02, 0.04}, {true, true, true}, 0.007);
+  EXPECT_EQ(g.count, (Vec<3, int>{7, 5, 7}));  // as in the authors' 3D x2 case
+  const auto exact = CellGrid<2>::make({0, 0}, {0.7, 0.3}, {false, false}, 0.1);
+  EXPECT_EQ(exact.count, (Vec<2, int>{7, 3}));
+}
+
+TEST(CellGrid, WrapsPeriodicAxesAndReportsOpenOnes) {
+  const auto g = CellGrid<2>::make({0, 0}, {1, 1}, {true, false}, 0.1);
+  Vec<2> x{-0.25, 0.5};
+  EXPECT_TRUE(g.wrap(x));
+  EXPECT_DOUBLE_EQ(x[0], 0.75);
+  x = {0.5, 1.01};
+  EXPECT_FALSE(g.wrap(x));
+  x = {0.5, NAN};
+  EXPECT_FALSE(g.wrap(x));
+  x = {-1e-20, 0.5};
+  EXPECT_TRUE(g.wrap(x));
+  EXPECT_LT(x[0], 1.0);
+}
+
+}  // namespace
+}  // namespace treacle::test
