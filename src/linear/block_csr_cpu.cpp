@@ -6,14 +6,7 @@ namespace treacle {
 
 template <int D, class T>
 void multiply(Context<Cpu>&, const BlockCsr<D, T>& a, std::span<const Vec<D, T>> x, std::span<Vec<D, T>> y) {
-  const std::uint32_t rows = a.rows();
-  const std::uint32_t* column = a.column.data();
-  const Block<D, T>* block = a.block.data();
-  parallelFor(rows, parallelGrain, [=, &a](std::size_t i) {
-    Vec<D, T> sum{};
-    for (std::uint64_t k = a.rowStart[i]; k < a.rowStart[i + 1]; ++k) sum += block[k] * x[column[k]];
-    y[i] = sum;
-  });
+  parallelFor(a.rows(), parallelGrain, [=, &a](std::size_t i) { y[i] = rowProduct(a, i, x.data()); });
 }
 
 template <int D, class T, class S>

@@ -82,8 +82,7 @@ void BucketMultigrid<D, T>::sweep(Level& level) {
   const BlockCsr<D, T>& a = level.a;
   const std::uint32_t rows = a.rows();
   parallelFor(rows, parallelGrain, [&](std::size_t i) {
-    Vec<D, T> r = level.b[i];
-    for (std::uint64_t k = a.rowStart[i]; k < a.rowStart[i + 1]; ++k) r -= a.block[k] * level.x[a.column[k]];
+    const Vec<D, T> r = level.b[i] - rowProduct(a, i, level.x.data());
     for (int c = 0; c < D; ++c) level.next[i][c] = level.x[i][c] + level.inverseDiagonal[i][c] * r[c];
   });
   std::swap(level.x, level.next);
@@ -106,10 +105,8 @@ void BucketMultigrid<D, T>::cycle(Context<Cpu>& context, std::size_t r) {
   const std::uint32_t coarseRows = coarse.a.rows();
   parallelFor(coarseRows, parallelGrain >> D, [&](std::size_t p) {
     Vec<D, T> sum{};
-    for (std::uint32_t i = members[p]; i < members[p + 1]; ++i) {
-      sum += level.b[i];
-      for (std::uint64_t k = a.rowStart[i]; k < a.rowStart[i + 1]; ++k) sum -= a.block[k] * level.x[a.column[k]];
-    }
+    for (std::uint32_t i = members[p]; i < members[p + 1]; ++i)
+      sum += level.b[i] - rowProduct(a, i, level.x.data());
     coarse.b[p] = sum;
   });
   cycle(context, r + 1);

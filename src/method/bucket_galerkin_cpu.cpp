@@ -39,7 +39,7 @@ Vec<D, int> cellOffset(const CellGrid<D>& grid, const Vec<D, int>& a, const Vec<
 template <int D>
 Vec<D, int> lowerCell(const CellGrid<D>& grid, const Vec<D>& x, const Vec<D, int>& cell) {
   Vec<D, int> lower{};
-  for (int k = 0; k < D; ++k) lower[k] = (x[k] - grid.origin[k]) / grid.edge[k] - cell[k] < 0.5 ? -1 : 0;
+  for (int k = 0; k < D; ++k) lower[k] = x[k] < grid.origin[k] + (cell[k] + 0.5) * grid.edge[k] ? -1 : 0;
   return lower;
 }
 
@@ -139,6 +139,7 @@ struct BucketRow {
       const int mine = columnSlot<D>(-lower);
       if (mine < 0) continue;
       const Vec<D>* column = &columns[std::size_t{slots} * k];
+      if (norm2(column[mine]) == 0) continue;  // k's neighbourhood does not reach into this bucket
       const double lambda = pairs.materials.bulkViscosity[pairs.material[k]];
       for (int s = 0; s < slots; ++s) {
         const Vec<D, int> other = lower + digits<D>(s, 2, 0);

@@ -44,28 +44,22 @@ VecLanes<D> difference(const MphPairs<D>& pairs, ListEntry e, const VecLanes<D>&
   return d;
 }
 
-/// (1/r - 1/h_v) / r^2, without viscosity and factor.
-template <int D>
-Lanes viscousCoefficient(const MphPairs<D>& pairs, Lanes inverseR) {
-  return reach(inverseR, pairs.viscosity) * (inverseR * inverseR);
-}
-
 }  // namespace
 
 template <int D>
 void MphOperator<D>::countEntries() {
   const ClusterList<>& list = *pairs_->fluidList;
   const std::uint32_t clusters = list.clusterCount();
-  nearStart_.resize(clusters + 1);
-  farStart_.resize(clusters + 1);
-  nearStart_[0] = farStart_[0] = 0;
+  viscousStart_.resize(clusters + 1);
+  pressureStart_.resize(clusters + 1);
+  viscousStart_[0] = pressureStart_[0] = 0;
   for (std::uint32_t c = 0; c < clusters; ++c) {
     const auto size = [&](ListSegment s) { return list.segment(c, s).size(); };
-    nearStart_[c + 1] = nearStart_[c] + size(ListSegment::NearFluid) + size(ListSegment::NearWall);
-    farStart_[c + 1] = farStart_[c] + size(ListSegment::FarFluid);
+    viscousStart_[c + 1] = viscousStart_[c] + size(ListSegment::NearFluid) + size(ListSegment::FarFluid);
+    pressureStart_[c + 1] = pressureStart_[c] + size(ListSegment::NearFluid) + size(ListSegment::NearWall);
   }
-  near_.resize(nearStart_[clusters] * clusterSize);
-  far_.resize(farStart_[clusters] * clusterSize);
+  viscous_.resize(viscousStart_[clusters] * clusterSize);
+  pressure_.resize(pressureStart_[clusters] * clusterSize);
 }
 
 template <int D>
@@ -78,16 +72,17 @@ void MphOperator<D>::prepare(Context<Cpu>&, const MphPairs<D>& pairs, const Wall
   const ClusterList<>& list = *pairs.fluidList;
   forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const VecLanes<D>& x, std::uint32_t c) {
     const ViscosityLanes<D> viscosity(pairs, range);
-    std::uint64_t next = nearStart_[c];
-    for (ListSegment s : {ListSegment::NearFluid, ListSegment::NearWall})
-      for (ListEntry e : list.segment(c, s))
-        storeCoefficient(near_, next++, PairLanes<D>(pairs.positionOf(e), x, floor2).inverseR);
-    next = farStart_[c];
-    for (ListEntry e : list.segment(c, ListSegment::FarFluid)) {
-      const PairLanes<D> pair(pairs.positionOf(e), x, floor2);
-      storeCoefficient(far_, next++,
-                       viscosity.ofMaterial[pairs.material[e.index()]] * viscousCoefficient(pairs, pair.inverseR));
-    }
+    std::uint64_t nextViscous = viscousStart_[c], nextPressure = pressureStart_[c];
+    for (ListSegment s : {ListSegment::NearFluid, ListSegment::FarFluid, ListSegment::NearWall})
+      for (ListEntry e : list.segment(c, s)) {
+        const PairLanes<D> pair(pairs.positionOf(e), x, floor2);
+        if (s != ListSegment::NearWall)
+          storeCoefficient(viscous_, nextViscous++,
+                           viscosity.ofMaterial[pairs.material[e.index()]] * pair.reach(pairs.viscosity) *
+                               pair.inverseR * pair.inverseR);
+        if (s != ListSegment::FarFluid)
+          storeCoefficient(pressure_, nextPressure++, pairs.pressure.factor * pair.reach(pairs.pressure));
+      }
   });
 }
 
@@ -107,30 +102,20 @@ void MphOperator<D>::viscosityAndDivergence(std::span<const Vec<D>> u, std::span
     const VecLanes<D> ui = loadLanes<D>(range, u);
     VecLanes<D> force = {};  // minus the viscous part of A u
     Lanes divergence = {};
-    const ViscosityLanes<D> viscosity(pairs, range);
     withImages(list.wraps[c], [&]<bool Wraps>() {
-      const auto along = [&](std::uint32_t j, const VecLanes<D>& d) {
-        Lanes sum = (u[j][0] - ui[0]) * d[0];
-        for (int k = 1; k < D; ++k) sum += (u[j][k] - ui[k]) * d[k];
-        return sum;
+      std::uint64_t nextViscous = viscousStart_[c], nextPressure = pressureStart_[c];
+      const auto add = [&](ListEntry e, bool near) {
+        const VecLanes<D> d = difference<Wraps, D>(pairs, e, x);
+        const Vec<D>& uj = u[indexOf<Wraps>(e)];
+        Lanes along = (uj[0] - ui[0]) * d[0];
+        for (int k = 1; k < D; ++k) along += (uj[k] - ui[k]) * d[k];
+        if (near) divergence -= loadCoefficient(pressure_, nextPressure++) * along;
+        const Lanes f = loadCoefficient(viscous_, nextViscous++) * along;
+        for (int k = 0; k < D; ++k) force[k] += f * d[k];
       };
-      std::uint64_t next = nearStart_[c];
-      for (ListEntry e : list.segment(c, ListSegment::NearFluid)) {
-        const std::uint32_t j = indexOf<Wraps>(e);
-        const VecLanes<D> d = difference<Wraps, D>(pairs, e, x);
-        const Lanes s = along(j, d), inverseR = loadCoefficient(near_, next++);
-        divergence -= reach(inverseR, pairs.pressure) * s;
-        const Lanes f = viscosity.ofMaterial[pairs.material[j]] * viscousCoefficient(pairs, inverseR) * s;
-        for (int k = 0; k < D; ++k) force[k] += f * d[k];
-      }
-      next = farStart_[c];
-      for (ListEntry e : list.segment(c, ListSegment::FarFluid)) {
-        const VecLanes<D> d = difference<Wraps, D>(pairs, e, x);
-        const Lanes f = loadCoefficient(far_, next++) * along(indexOf<Wraps>(e), d);
-        for (int k = 0; k < D; ++k) force[k] += f * d[k];
-      }
+      for (ListEntry e : list.segment(c, ListSegment::NearFluid)) add(e, true);
+      for (ListEntry e : list.segment(c, ListSegment::FarFluid)) add(e, false);
     });
-    divergence *= pairs.pressure.factor;
     for (std::uint32_t lane = 0; lane < range.count; ++lane) {
       const std::uint32_t i = range.first + lane;
       Vec<D> yi = terms_.block[i] * u[i];
@@ -177,17 +162,16 @@ void MphOperator<D>::addGradient(std::span<Vec<D>> y) {
     const Lanes qi = loadLanes(range, q_.span());
     VecLanes<D> sum = {};
     withImages(list.wraps[c], [&]<bool Wraps>() {
-      std::uint64_t next = nearStart_[c];
+      std::uint64_t next = pressureStart_[c];
       for (ListSegment s : {ListSegment::NearFluid, ListSegment::NearWall})
         for (ListEntry e : list.segment(c, s)) {
-          const Lanes inverseR = loadCoefficient(near_, next++);
-          const Lanes f = reach(inverseR, pairs.pressure) * (qi + q_[indexOf<Wraps>(e)]);
+          const Lanes f = loadCoefficient(pressure_, next++) * (qi + q_[indexOf<Wraps>(e)]);
           const VecLanes<D> d = difference<Wraps, D>(pairs, e, x);
           for (int k = 0; k < D; ++k) sum[k] += f * d[k];
         }
     });
     for (std::uint32_t lane = 0; lane < range.count; ++lane)
-      for (int k = 0; k < D; ++k) y[range.first + lane][k] += pairs.pressure.factor * sum[k][lane];
+      for (int k = 0; k < D; ++k) y[range.first + lane][k] += sum[k][lane];
   });
 }
 

@@ -10,9 +10,6 @@ namespace treacle {
 /// cluster's list, and two may coincide; their differences are then zero and so is every term, whatever 1/r.
 inline constexpr double tinyDistance2 = 1e-24;
 
-/// (1/r - 1/h), zero outside the radius.
-inline Lanes reach(Lanes inverseR, const PairTerm& term) { return max(inverseR - term.inverseRadius, Lanes{}); }
-
 /// One neighbour as the lanes of a cluster see it.
 template <int D>
 struct PairLanes {
@@ -28,7 +25,8 @@ struct PairLanes {
     inverseR = inverseSqrt(max(r2, broadcast(floor2)));
   }
 
-  Lanes reach(const PairTerm& term) const { return treacle::reach(inverseR, term); }
+  /// (1/r - 1/h), zero outside the radius.
+  Lanes reach(const PairTerm& term) const { return max(inverseR - term.inverseRadius, Lanes{}); }
 };
 
 template <int D>

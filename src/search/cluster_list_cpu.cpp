@@ -22,8 +22,8 @@ struct Reach {
         lo = std::min(lo, x[k][lane]);
         hi = std::max(hi, x[k][lane]);
       }
-      first[k] = static_cast<int>(std::floor((lo - radius - grid.origin[k]) / grid.edge[k]));
-      last[k] = static_cast<int>(std::floor((hi + radius - grid.origin[k]) / grid.edge[k]));
+      first[k] = static_cast<int>(std::floor((lo - radius - grid.origin[k]) * grid.inverseEdge[k]));
+      last[k] = static_cast<int>(std::floor((hi + radius - grid.origin[k]) * grid.inverseEdge[k]));
       if (!grid.periodic[k]) {
         first[k] = std::clamp(first[k], 0, grid.count[k] - 1);
         last[k] = std::clamp(last[k], 0, grid.count[k] - 1);
@@ -53,15 +53,6 @@ void forEachCell(const CellGrid<D>& grid, const Reach<D>& reach, F&& f) {
   }
 }
 
-template <int D>
-double nearestLane2(const VecLanes<D>& x, const Vec<D>& p) {
-  Lanes r2 = {};
-  for (int k = 0; k < D; ++k) r2 += (p[k] - x[k]) * (p[k] - x[k]);
-  double least = r2[0];
-  for (int lane = 1; lane < laneCount; ++lane) least = std::min(least, r2[lane]);
-  return least;
-}
-
 /// What visits one cluster's neighbours; the pass that counts and the one that fills differ in the sink alone.
 template <int D>
 struct ListBuilder {
@@ -77,10 +68,12 @@ struct ListBuilder {
     const double near2 = radii.near * radii.near, far2 = radii.far * radii.far;
     const auto visitRange = [&](std::uint32_t begin, std::uint32_t end, std::uint32_t image, int firstSegment) {
       for (std::uint32_t j = begin; j < end; ++j) {
-        const double r2 = nearestLane2(x, position[j] + images.shift[image]);
-        if (r2 <= near2)
+        const Vec<D> xj = position[j] + images.shift[image];
+        Lanes r2 = {};
+        for (int k = 0; k < D; ++k) r2 += (xj[k] - x[k]) * (xj[k] - x[k]);
+        if (anyAtMost(r2, near2))
           sink(firstSegment, ListEntry::make(j, image));
-        else if (r2 <= far2)
+        else if (anyAtMost(r2, far2))
           sink(firstSegment + 1, ListEntry::make(j, image));
       }
     };

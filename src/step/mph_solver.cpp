@@ -123,7 +123,8 @@ SolveReport MphSolver<D>::iterate(Context<Cpu>& context, const Operator& a, cons
                                   std::span<const Vec<D>> b, std::span<Vec<D>> u) {
   const std::span<const double> rhs(reinterpret_cast<const double*>(b.data()), b.size() * D);
   const std::span<double> x(reinterpret_cast<double*>(u.data()), u.size() * D);
-  const StoppingRule rule{settings_.tolerance, settings_.maxIterations};
+  const double refresh = settings_.precision == Precision::Mixed ? 1e-4 : 0;
+  const StoppingRule rule{settings_.tolerance, settings_.maxIterations, refresh};
   return settings_.krylov == KrylovKind::Cg ? conjugateGradient(context, a, k, rhs, x, rule, krylov_)
                                             : conjugateResidual(context, a, k, rhs, x, rule, krylov_);
 }

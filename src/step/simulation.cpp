@@ -4,7 +4,7 @@
 #include "mph_solver.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/core/timer.hpp"
-#include "treacle/search/cell_sort.hpp"
+#include "treacle/method/neighbourhood.hpp"
 
 #include <fmt/format.h>
 
@@ -13,23 +13,6 @@
 
 namespace treacle {
 namespace {
-
-template <int D>
-MphPairs<D> makePairs(const Case& c) {
-  MphPairs<D> pairs;
-  Vec<D, bool> periodic{};
-  for (int k = 0; k < D; ++k) periodic[k] = c.domain.periodic[k];
-  const double hp = c.pressureRadius(), hv = c.viscosityRadius();
-  pairs.grid =
-      CellGrid<D>::make(resized<D>(c.domain.min), resized<D>(c.domain.max), periodic, std::max(hv, 2 * hp));
-  pairs.images = periodicImages(pairs.grid);
-  pairs.pressureWeight = Weight<D>::make(hp, c.spacing);
-  pairs.viscosityWeight = Weight<D>::make(hv, c.spacing);
-  pairs.pressure = PairTerm::pressure(pairs.pressureWeight);
-  pairs.viscosity = PairTerm::viscosity(pairs.viscosityWeight);
-  pairs.materials = MaterialTable::make(c);
-  return pairs;
-}
 
 template <int D>
 std::string describe(const Vec<D>& x) {
@@ -53,10 +36,8 @@ struct Simulation<D>::State {
   double time;
 
   Context<Cpu> context;
-  CellRanges<> ranges;
-  SortWorkspace<> sortWorkspace;
-  ClusterList<> fluidList, wallList;
-  MphPairs<D> pairs;
+  Neighbourhood<D> neighbourhood;
+  const MphPairs<D>& pairs;
   double restDensity;  // n_0 [-]
   bool wallsMove = false;
   Buffer<Block<D>> wallBlock;
@@ -71,7 +52,8 @@ struct Simulation<D>::State {
         particles(std::move(state)),
         step(startStep),
         time(startTime),
-        pairs(makePairs<D>(c)),
+        neighbourhood(c),
+        pairs(neighbourhood.pairs()),
         restDensity(latticeNumberDensity(pairs.pressureWeight, c.spacing)),
         solver(c.solver) {
     for (std::uint32_t i = particles.fluidCount; i < particles.count; ++i)
@@ -80,32 +62,15 @@ struct Simulation<D>::State {
 
   WallTerms<D> wallTermsView() { return {wallBlock.span(), wallGradient.span()}; }
 
-  void search() { sortByCell(context, pairs.grid, particles, ranges, sortWorkspace); }
-
-  void buildLists() {
-    const double hp = c.pressureRadius();
-    const std::span<const Vec<D>> x = particles.position;
-    buildClusterList<D>(context, pairs.grid, ranges, x, 0, particles.fluidCount,
-                        {hp, std::max(c.viscosityRadius(), 2 * hp)}, false, fluidList);
-    buildClusterList<D>(context, pairs.grid, ranges, x, particles.fluidCount, ranges.activeCount, {hp, 0}, true,
-                        wallList);
-    pairs.fluidCount = particles.fluidCount;
-    pairs.activeCount = ranges.activeCount;
-    pairs.position = x;
-    pairs.material = particles.material;
-    pairs.fluidList = &fluidList;
-    pairs.wallList = &wallList;
-  }
-
   void computeDensities() {
-    std::fill(particles.numberDensity.begin() + ranges.activeCount, particles.numberDensity.end(), 0.0);
-    std::fill(particles.pressure.begin() + ranges.activeCount, particles.pressure.end(), 0.0);
-    numberDensity<D>(context, pairs, particles.numberDensity.span().first(ranges.activeCount));
+    std::fill(particles.numberDensity.begin() + pairs.activeCount, particles.numberDensity.end(), 0.0);
+    std::fill(particles.pressure.begin() + pairs.activeCount, particles.pressure.end(), 0.0);
+    numberDensity<D>(context, pairs, particles.numberDensity.span().first(pairs.activeCount));
   }
 
   /// b of [K23 eq. (16)], and the terms of prescribed wall velocities.
   void computeRightHandSide() {
-    const std::uint32_t n = particles.fluidCount, active = ranges.activeCount;
+    const std::uint32_t n = particles.fluidCount, active = pairs.activeCount;
     const Vec<D> gravity = resized<D>(c.gravity);
     elastic.resize(active);
     for (std::uint32_t i = 0; i < active; ++i)
@@ -122,7 +87,7 @@ struct Simulation<D>::State {
 
   /// b -= A_full (0 on the fluid, u on the walls)
   void addWallVelocities() {
-    const std::uint32_t n = particles.fluidCount, active = ranges.activeCount;
+    const std::uint32_t n = particles.fluidCount, active = pairs.activeCount;
     velocity.resize(active);
     std::fill_n(velocity.begin(), n, Vec<D>{});
     std::copy(particles.velocity.begin() + n, particles.velocity.begin() + active, velocity.begin() + n);
@@ -146,8 +111,8 @@ struct Simulation<D>::State {
   /// First guess: the last velocity. The solution stands in `velocity`, walls included.
   SolveReport solve() {
     const std::uint32_t n = particles.fluidCount;
-    velocity.resize(ranges.activeCount);
-    std::copy_n(particles.velocity.begin(), ranges.activeCount, velocity.begin());
+    velocity.resize(pairs.activeCount);
+    std::copy_n(particles.velocity.begin(), pairs.activeCount, velocity.begin());
     const SolveReport report = solver.solve(context, rhs, velocity.span().first(n));
     if (report.status != SolveStatus::Converged) throw RunError(diagnose(report));
     return report;
@@ -193,7 +158,7 @@ struct Simulation<D>::State {
 
   /// Psi of [K23 eq. (14)] with the new velocities.
   void computePressure() {
-    const std::uint32_t active = ranges.activeCount;
+    const std::uint32_t active = pairs.activeCount;
     divergence.resize(active);
     treacle::divergence<D>(context, pairs, velocity.span().first(active), divergence);
     for (std::uint32_t i = 0; i < active; ++i)
@@ -210,13 +175,13 @@ struct Simulation<D>::State {
   StepReport advance() {
     StepReport report;
     Timer timer;
-    search();
+    neighbourhood.sort(context, particles);
     report.seconds.search = timer.lap();
-    buildLists();
+    neighbourhood.buildLists(context, particles);
     report.seconds.lists = timer.lap();
     computeCoefficients();
     report.seconds.coefficients = timer.lap();
-    solver.preparePreconditioner(context, pairs, ranges, wallTermsView());
+    solver.preparePreconditioner(context, pairs, neighbourhood.ranges(), wallTermsView());
     report.seconds.coarse = timer.lap();
     const SolveReport solved = solve();
     report.seconds.solve = timer.lap();
@@ -233,10 +198,8 @@ struct Simulation<D>::State {
   }
 
   std::size_t bytes() {
-    std::size_t sum = ranges.bytes() + sortWorkspace.keyed.bytes() + sortWorkspace.field.bytes() +
-                      sortWorkspace.hasFluid.bytes() + fluidList.bytes() + wallList.bytes() + wallBlock.bytes() +
-                      wallGradient.bytes() + elastic.bytes() + divergence.bytes() + rhs.bytes() +
-                      velocity.bytes() + position.bytes() + solver.bytes();
+    std::size_t sum = neighbourhood.bytes() + wallBlock.bytes() + wallGradient.bytes() + elastic.bytes() +
+                      divergence.bytes() + rhs.bytes() + velocity.bytes() + position.bytes() + solver.bytes();
     particles.forEachField([&](const auto& field) { sum += field.bytes(); });
     return sum;
   }
@@ -245,9 +208,10 @@ struct Simulation<D>::State {
 template <int D>
 Simulation<D>::Simulation(const Case& c, Particles<D> particles, std::int64_t step, double time)
     : state_(std::make_unique<State>(c, std::move(particles), step, time)) {
+  state_->neighbourhood.sort(state_->context, state_->particles);
+  if (step > 0) return;  // the state has the densities of its last step
   // Frame 0 shows number densities.
-  state_->search();
-  state_->buildLists();
+  state_->neighbourhood.buildLists(state_->context, state_->particles);
   state_->computeDensities();
 }
 template <int D>

@@ -2,13 +2,14 @@
 
 #include "treacle/method/assemble.hpp"
 #include "treacle/method/mph_operator.hpp"
+#include "treacle/method/neighbourhood.hpp"
 #include "treacle/method/pair_sums.hpp"
 #include "treacle/model/case.hpp"
 #include "treacle/search/buckets.hpp"
-#include "treacle/search/cell_sort.hpp"
 
 #include <Eigen/Dense>
 
+#include <memory>
 #include <random>
 #include <vector>
 
@@ -21,16 +22,15 @@ struct Scene {
   Case c;
   Particles<D> particles;
   Context<Cpu> context;
-  CellRanges<> ranges;
-  SortWorkspace<> workspace;
-  ClusterList<> fluidList, wallList;
-  MphPairs<D> pairs;
+  std::unique_ptr<Neighbourhood<D>> neighbourhood;
   Buffer<Block<D>> wallBlock;
   Buffer<Vec<D>> wallGradient;
 
   WallTerms<D> terms() { return {wallBlock.span(), wallGradient.span()}; }
   double volume() const { return std::pow(c.spacing, D); }
-  std::uint32_t n() const { return pairs.fluidCount; }
+  const MphPairs<D>& pairs() const { return neighbourhood->pairs(); }
+  const CellRanges<>& ranges() const { return neighbourhood->ranges(); }
+  std::uint32_t n() const { return pairs().fluidCount; }
   Eigen::Index unknowns() const { return Eigen::Index{D} * n(); }
 };
 
@@ -83,33 +83,12 @@ Particles<D> jitteredLattice(const Case& c, double jitter, unsigned seed, InFlui
 /// Brings particles into the state of a step before its solve.
 template <int D>
 void prepare(Scene<D>& s) {
-  Vec<D, bool> periodic{};
-  for (int k = 0; k < D; ++k) periodic[k] = s.c.domain.periodic[k];
-  const double hp = s.c.pressureRadius(), hv = s.c.viscosityRadius();
-  MphPairs<D>& p = s.pairs;
-  p.grid =
-      CellGrid<D>::make(resized<D>(s.c.domain.min), resized<D>(s.c.domain.max), periodic, std::max(hv, 2 * hp));
-  p.images = periodicImages(p.grid);
-  sortByCell(s.context, p.grid, s.particles, s.ranges, s.workspace);
-  const std::span<const Vec<D>> x = s.particles.position;
-  buildClusterList<D>(s.context, p.grid, s.ranges, x, 0, s.particles.fluidCount, {hp, std::max(hv, 2 * hp)}, false,
-                      s.fluidList);
-  buildClusterList<D>(s.context, p.grid, s.ranges, x, s.particles.fluidCount, s.ranges.activeCount, {hp, 0}, true,
-                      s.wallList);
-  p.fluidCount = s.particles.fluidCount;
-  p.activeCount = s.ranges.activeCount;
-  p.position = x;
-  p.material = s.particles.material;
-  p.fluidList = &s.fluidList;
-  p.wallList = &s.wallList;
-  p.pressureWeight = Weight<D>::make(hp, s.c.spacing);
-  p.viscosityWeight = Weight<D>::make(hv, s.c.spacing);
-  p.pressure = PairTerm::pressure(p.pressureWeight);
-  p.viscosity = PairTerm::viscosity(p.viscosityWeight);
-  p.materials = MaterialTable::make(s.c);
-  s.wallBlock.resize(p.fluidCount);
-  s.wallGradient.resize(p.fluidCount);
-  wallTerms<D>(s.context, p, s.terms());
+  s.neighbourhood = std::make_unique<Neighbourhood<D>>(s.c);
+  s.neighbourhood->sort(s.context, s.particles);
+  s.neighbourhood->buildLists(s.context, s.particles);
+  s.wallBlock.resize(s.n());
+  s.wallGradient.resize(s.n());
+  wallTerms<D>(s.context, s.pairs(), s.terms());
 }
 
 enum class Walls { Floor, None };
@@ -148,6 +127,16 @@ inline Eigen::VectorXd randomVector(Eigen::Index n, unsigned seed) {
   Eigen::VectorXd v(n);
   for (double& x : v) x = normal(random);
   return v;
+}
+
+template <int D>
+Eigen::MatrixXd dense(const BlockCsr<D>& a) {
+  Eigen::MatrixXd m = Eigen::MatrixXd::Zero(D * a.rows(), D * a.rows());
+  for (std::uint32_t i = 0; i < a.rows(); ++i)
+    for (std::uint64_t k = a.rowStart[i]; k < a.rowStart[i + 1]; ++k)
+      for (int r = 0; r < D; ++r)
+        for (int c = 0; c < D; ++c) m(D * i + r, D * a.column[k] + c) += a.block[k](r, c);
+  return m;
 }
 
 /// Dense matrix of a linear map by its action on the unit vectors.

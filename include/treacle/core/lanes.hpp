@@ -24,10 +24,15 @@ inline Lanes max(Lanes a, Lanes b) {
 #endif
 }
 
-inline bool anyGreater(Lanes a, double bound) {
-  const auto greater = a > bound;
-  return (greater[0] | greater[1] | greater[2] | greater[3] | greater[4] | greater[5] | greater[6] | greater[7]) !=
-         0;
+/// Whether a <= bound in some lane.
+inline bool anyAtMost(Lanes a, double bound) {
+#ifdef __AVX512F__
+  return _mm512_cmp_pd_mask((__m512d)a, _mm512_set1_pd(bound), _CMP_LE_OQ) != 0;
+#else
+  bool any = false;
+  for (int k = 0; k < laneCount; ++k) any |= a[k] <= bound;
+  return any;
+#endif
 }
 
 /// 1 / sqrt(x) to full double precision, x > 0.

@@ -3,6 +3,7 @@
 #include "treacle/core/backend.hpp"
 #include "treacle/core/block.hpp"
 #include "treacle/core/buffer.hpp"
+#include "treacle/linear/row_sum.hpp"
 
 #include <cstdint>
 #include <span>
@@ -19,6 +20,16 @@ struct BlockCsr {
   std::uint32_t rows() const { return rowStart.empty() ? 0 : static_cast<std::uint32_t>(rowStart.size() - 1); }
   std::size_t bytes() const { return rowStart.bytes() + column.bytes() + block.bytes(); }
 };
+
+/// One row of A x.
+template <int D, class T>
+inline Vec<D, T> rowProduct(const BlockCsr<D, T>& a, std::size_t row, const Vec<D, T>* x) {
+  const Block<D, T>* block = a.block.data();
+  const std::uint32_t* column = a.column.data();
+  RowSum<D, T> sum;
+  for (std::uint64_t k = a.rowStart[row], end = a.rowStart[row + 1]; k < end; ++k) sum.add(block[k], x[column[k]]);
+  return sum.total();
+}
 
 /// y = A x; spans of A.rows() blocks.
 template <int D, class T>

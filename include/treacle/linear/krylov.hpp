@@ -12,6 +12,10 @@ namespace treacle {
 struct StoppingRule {
   double tolerance = 1e-12;  // bound on |r|^2 / |b|^2
   int maxIterations = 5000;
+  /// CR: s = K r is computed anew when |r|^2 has fallen by this factor since the last time; 0: never. The
+  /// recursion for s keeps the rounding errors of K, and in single precision those outgrow s before the tolerance
+  /// is reached.
+  double refresh = 0;
 };
 
 enum class SolveStatus { Converged, IterationLimit, Breakdown, NotFinite };
@@ -106,7 +110,12 @@ SolveReport conjugateResidual(Context<Backend>& context, const Operator& a, cons
   double rr = residual(context, b, r), rhoOld = 1;
   if (done(rr, 0, report)) return report;
   m(std::span<const double>(r), s.span());
+  double rrOfS = rr;
   for (int k = 0; !done(rr, k, report); ++k) {
+    if (rr < rule.refresh * rrOfS) {
+      m(std::span<const double>(r), s.span());
+      rrOfS = rr;
+    }
     a(std::span<const double>(s), y.span());
     const double rho = dot(context, s, y);
     if (k == 0) {

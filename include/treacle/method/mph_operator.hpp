@@ -10,7 +10,7 @@ namespace treacle {
 
 /// A = rho/dt I + V + C Lambda C^T applied from pair sums [K23 eq. (16)], walls at rest. What stays the same
 /// through a solve is kept: one number per pair and term, from which a product needs no root; directions come from
-/// the positions. Per fluid particle that is about 0.5 kB in 2D and 2.5 kB in 3D, read once per product.
+/// the positions. Per fluid particle that is about 0.8 kB in 2D and 3 kB in 3D, read once per product.
 template <int D>
 class MphOperator {
  public:
@@ -21,7 +21,7 @@ class MphOperator {
   void multiply(Context<Cpu>&, std::span<const Vec<D>> u, std::span<Vec<D>> y);
 
   std::size_t bytes() const {
-    return nearStart_.bytes() + farStart_.bytes() + near_.bytes() + far_.bytes() + q_.bytes();
+    return viscousStart_.bytes() + pressureStart_.bytes() + viscous_.bytes() + pressure_.bytes() + q_.bytes();
   }
 
  private:
@@ -32,11 +32,13 @@ class MphOperator {
 
   const MphPairs<D>* pairs_ = nullptr;
   WallTerms<D> terms_{};
-  // Eight numbers, one per lane, for entries of the fluid clusters' lists; starts count entries.
-  Buffer<std::uint64_t> nearStart_, farStart_;
-  Buffer<double> near_;  // near fluid, then near walls: 1/r [1/m], from which both terms follow
-  Buffer<double> far_;   // far fluid: c of the viscous block c d d^T
-  Buffer<double> q_;     // lambda C^T u, per particle
+  // Eight numbers, one per lane, for entries of the fluid clusters' lists; starts count entries. That 1/r alone
+  // would give both terms of a near pair does not pay: the arithmetic takes longer than the second number's way to
+  // the core.
+  Buffer<std::uint64_t> viscousStart_, pressureStart_;
+  Buffer<double> viscous_;   // near and far fluid: c of the viscous block c d d^T
+  Buffer<double> pressure_;  // near fluid, then near walls: g of -e w' = g d
+  Buffer<double> q_;         // lambda C^T u, per particle
 };
 
 }  // namespace treacle

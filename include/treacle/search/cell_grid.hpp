@@ -16,10 +16,11 @@ struct CellGrid {
   /// Sort keys resolve a cell into 2^subBits parts per axis, so that consecutive particles are close together.
   static constexpr int subBits = 2;
 
-  Vec<D> origin{};      // lower corner of the domain [m]
-  Vec<D> length{};      // of the domain [m]
-  Vec<D> edge{};        // of a cell [m]
-  Vec<D, int> count{};  // cells per axis
+  Vec<D> origin{};       // lower corner of the domain [m]
+  Vec<D> length{};       // of the domain [m]
+  Vec<D> edge{};         // of a cell [m]
+  Vec<D> inverseEdge{};  // [1/m]
+  Vec<D, int> count{};   // cells per axis
   Vec<D, bool> periodic{};
   int bits = 1;  // 2^bits cells per axis suffice
 
@@ -34,6 +35,7 @@ struct CellGrid {
       g.count[k] = static_cast<int>(std::floor(g.length[k] / radius * (1 + 1e-12)));
       if (g.count[k] < 1) g.count[k] = 1;
       g.edge[k] = g.length[k] / g.count[k];
+      g.inverseEdge[k] = g.count[k] / g.length[k];
       while ((1 << g.bits) < g.count[k]) ++g.bits;
     }
     return g;
@@ -47,7 +49,8 @@ struct CellGrid {
 
   TREACLE_HD Vec<D, int> cellOf(const Vec<D>& x) const {
     Vec<D, int> c{};
-    for (int k = 0; k < D; ++k) c[k] = clampCell(static_cast<int>(std::floor((x[k] - origin[k]) / edge[k])), k);
+    for (int k = 0; k < D; ++k)
+      c[k] = clampCell(static_cast<int>(std::floor((x[k] - origin[k]) * inverseEdge[k])), k);
     return c;
   }
 
@@ -62,7 +65,7 @@ struct CellGrid {
   TREACLE_HD std::uint64_t key(const Vec<D>& x) const {
     Vec<D, std::uint32_t> p{};
     for (int k = 0; k < D; ++k) {
-      const double s = (x[k] - origin[k]) / edge[k];
+      const double s = (x[k] - origin[k]) * inverseEdge[k];
       const int cell = clampCell(static_cast<int>(std::floor(s)), k);
       int sub = static_cast<int>((s - cell) * (1 << subBits));
       sub = sub < 0 ? 0 : sub >= (1 << subBits) ? (1 << subBits) - 1 : sub;

@@ -83,7 +83,7 @@ inline VecLanes<D> loadPositions(const ClusterRange& range, std::span<const Vec<
   for (int k = 0; k < D; ++k) {
     if (!grid.periodic[k]) continue;
     const Lanes away = x[k] - x[k][0];
-    if (!anyGreater(max(away, -away), 0.5 * grid.length[k])) continue;
+    if (!anyAtMost(-max(away, -away), -0.5 * grid.length[k])) continue;
     for (int lane = 1; lane < laneCount; ++lane)
       x[k][lane] -= grid.length[k] * std::round(away[lane] / grid.length[k]);
   }

@@ -20,13 +20,13 @@ struct Preconditioners {
 
   explicit Preconditioners(CycleSweeps sweeps) : inverse(s.n()), blocks(s.n()) {
     std::vector<Block<D>> diagonal(s.n());
-    diagonalBlocks<D>(s.context, s.pairs, s.terms(), diagonal);
+    diagonalBlocks<D>(s.context, s.pairs(), s.terms(), diagonal);
     jacobiInverse<D, T>(s.context, diagonal, inverse);
     blockInverse<D, T>(s.context, diagonal, blocks);
-    findBuckets(s.context, s.ranges.key, D * CellGrid<D>::subBits, D, levels);
+    findBuckets(s.context, s.ranges().key, D * CellGrid<D>::subBits, D, levels);
     Buffer<Vec<D>> columns;
     BlockCsr<D> a0;
-    bucketGalerkin(s.context, s.pairs, s.ranges, levels, s.terms(), columns, a0);
+    bucketGalerkin(s.context, s.pairs(), s.ranges(), levels, s.terms(), columns, a0);
     multigrid.setup(s.context, a0, {levels.begin.begin(), levels.begin.end()}, sweeps);
   }
 
@@ -80,12 +80,7 @@ TEST(Preconditioner, IsSymmetricPositiveDefinite) {
 /// M of [K23 eqs. (43)-(45)] by the recursion of the paper on dense matrices.
 template <int D>
 Eigen::MatrixXd cycleMatrix(const Preconditioners<D, double>& p, std::size_t level, const CycleSweeps& sweeps) {
-  const auto& csr = p.multigrid.matrix(level);
-  Eigen::MatrixXd a = Eigen::MatrixXd::Zero(D * csr.rows(), D * csr.rows());
-  for (std::uint32_t i = 0; i < csr.rows(); ++i)
-    for (std::uint64_t k = csr.rowStart[i]; k < csr.rowStart[i + 1]; ++k)
-      for (int r = 0; r < D; ++r)
-        for (int c = 0; c < D; ++c) a(D * i + r, D * csr.column[k] + c) = csr.block[k](r, c);
+  const Eigen::MatrixXd a = dense(p.multigrid.matrix(level));
   const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(a.rows(), a.rows());
   const Eigen::MatrixXd smoother =
       (2 * a.cwiseAbs().rowwise().sum().cwiseInverse()).asDiagonal();  // D^-1, D_ii = sum |A_ij| / 2

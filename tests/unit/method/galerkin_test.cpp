@@ -19,25 +19,15 @@ Eigen::MatrixXd prolongation(std::span<const std::uint32_t> begin) {
   return p;
 }
 
-template <int D, class T>
-Eigen::MatrixXd dense(const BlockCsr<D, T>& a) {
-  Eigen::MatrixXd m = Eigen::MatrixXd::Zero(D * a.rows(), D * a.rows());
-  for (std::uint32_t i = 0; i < a.rows(); ++i)
-    for (std::uint64_t k = a.rowStart[i]; k < a.rowStart[i + 1]; ++k)
-      for (int r = 0; r < D; ++r)
-        for (int c = 0; c < D; ++c) m(D * i + r, D * a.column[k] + c) += a.block[k](r, c);
-  return m;
-}
-
 template <int D>
 void checkGalerkin(Walls walls) {
   Scene<D> s = makeScene<D>(walls);
   BucketLevels<> levels;
-  findBuckets(s.context, s.ranges.key, D * CellGrid<D>::subBits, D, levels);
+  findBuckets(s.context, s.ranges().key, D * CellGrid<D>::subBits, D, levels);
   ASSERT_GT(levels.begin.size(), 1u);
   Buffer<Vec<D>> columns;
   BlockCsr<D> a0;
-  bucketGalerkin(s.context, s.pairs, s.ranges, levels, s.terms(), columns, a0);
+  bucketGalerkin(s.context, s.pairs(), s.ranges(), levels, s.terms(), columns, a0);
 
   Eigen::MatrixXd p = prolongation<D>(levels.begin[0].span());
   Eigen::MatrixXd expected = p.transpose() * Oracle<D>(s).matrix() * p;

@@ -11,20 +11,10 @@ namespace {
 template <int D>
 BlockCsr<D> assembled(Scene<D>& s) {
   GradientRows<D> rows;
-  gradientRows(s.context, s.pairs, rows);
+  gradientRows(s.context, s.pairs(), rows);
   BlockCsr<D> a;
-  assemble(s.context, s.pairs, s.terms(), rows, a);
+  assemble(s.context, s.pairs(), s.terms(), rows, a);
   return a;
-}
-
-template <int D>
-Eigen::MatrixXd dense(const BlockCsr<D>& a) {
-  Eigen::MatrixXd m = Eigen::MatrixXd::Zero(D * a.rows(), D * a.rows());
-  for (std::uint32_t i = 0; i < a.rows(); ++i)
-    for (std::uint64_t k = a.rowStart[i]; k < a.rowStart[i + 1]; ++k)
-      for (int r = 0; r < D; ++r)
-        for (int c = 0; c < D; ++c) m(D * i + r, D * a.column[k] + c) += a.block[k](r, c);
-  return m;
 }
 
 template <int D>
@@ -32,14 +22,14 @@ void checkAgainstEquations(Walls walls) {
   Scene<D> s = makeScene<D>(walls);
   const Eigen::MatrixXd expected = Oracle<D>(s).matrix();
   MphOperator<D> a;
-  a.prepare(s.context, s.pairs, s.terms());
+  a.prepare(s.context, s.pairs(), s.terms());
   const Eigen::MatrixXd free =
       denseOf(s.unknowns(), [&](const Eigen::VectorXd& x) { return applyOperator(s, a, x); });
   EXPECT_LT((free - expected).norm(), operatorTolerance * expected.norm());
   EXPECT_LT((dense(assembled(s)) - expected).norm(), operatorTolerance * expected.norm());
 
   std::vector<Block<D>> diagonal(s.n());
-  diagonalBlocks<D>(s.context, s.pairs, s.terms(), diagonal);
+  diagonalBlocks<D>(s.context, s.pairs(), s.terms(), diagonal);
   for (std::uint32_t i = 0; i < s.n(); ++i)
     for (int r = 0; r < D; ++r)
       for (int c = 0; c < D; ++c)
@@ -57,7 +47,7 @@ void checkMatrixFreeAgainstAssembled() {
   for (unsigned seed : {1u, 2u, 3u}) {
     Scene<D> s = makeScene<D>(Walls::Floor, seed, 0.4);
     MphOperator<D> a;
-    a.prepare(s.context, s.pairs, s.terms());
+    a.prepare(s.context, s.pairs(), s.terms());
     const BlockCsr<D> matrix = assembled(s);
     const Eigen::VectorXd x = randomVector(s.unknowns(), seed);
     const auto u = unflat<D>(x);
@@ -78,7 +68,7 @@ void checkDissipationGradient() {
   Scene<D> s = makeScene<D>();
   const Oracle<D> oracle(s);
   MphOperator<D> a;
-  a.prepare(s.context, s.pairs, s.terms());
+  a.prepare(s.context, s.pairs(), s.terms());
   const Eigen::VectorXd x = randomVector(s.unknowns(), 5);
   Eigen::VectorXd all = Eigen::VectorXd::Zero(D * oracle.count());
   all.head(s.unknowns()) = x;
@@ -102,7 +92,7 @@ template <int D>
 void checkPositiveDefinite() {
   Scene<D> s = makeScene<D>();
   MphOperator<D> a;
-  a.prepare(s.context, s.pairs, s.terms());
+  a.prepare(s.context, s.pairs(), s.terms());
   const Eigen::MatrixXd m =
       denseOf(s.unknowns(), [&](const Eigen::VectorXd& x) { return applyOperator(s, a, x); });
   EXPECT_LT((m - m.transpose()).norm(), operatorTolerance * m.norm());
@@ -121,7 +111,7 @@ template <int D>
 void checkMomentum() {
   Scene<D> s = makeScene<D>(Walls::None);
   MphOperator<D> a;
-  a.prepare(s.context, s.pairs, s.terms());
+  a.prepare(s.context, s.pairs(), s.terms());
   const Eigen::VectorXd x = randomVector(s.unknowns(), 6);
   Eigen::VectorXd force = applyOperator(s, a, x);
   for (Eigen::Index k = 0; k < s.unknowns(); ++k)
@@ -144,7 +134,7 @@ TEST(Operator, DoesNotDependOnTheNumberOfThreads) {
   for (int run = 0; run < 2; ++run) {
     omp_set_num_threads(run == 0 ? 1 : 4);
     MphOperator<2> a;
-    a.prepare(s.context, s.pairs, s.terms());
+    a.prepare(s.context, s.pairs(), s.terms());
     results[run] = applyOperator(s, a, x);
   }
   EXPECT_EQ(results[0], results[1]);
@@ -157,8 +147,8 @@ TEST(Operator, TreatsOneMaterialAsTwoEqualOnes) {
   std::fill(one.particles.material.begin(), one.particles.material.end(), std::uint8_t{0});
   prepare(one);
   MphOperator<3> a, b;
-  a.prepare(two.context, two.pairs, two.terms());
-  b.prepare(one.context, one.pairs, one.terms());
+  a.prepare(two.context, two.pairs(), two.terms());
+  b.prepare(one.context, one.pairs(), one.terms());
   const Eigen::VectorXd x = randomVector(two.unknowns(), 9), y = applyOperator(two, a, x);
   EXPECT_LT((y - applyOperator(one, b, x)).norm(), operatorTolerance * y.norm());
 }

@@ -10,13 +10,13 @@ template <int D>
 void checkNumberDensity(Walls walls) {
   Scene<D> s = makeScene<D>(walls);
   const Oracle<D> oracle(s);
-  std::vector<double> n(s.pairs.activeCount);
-  numberDensity<D>(s.context, s.pairs, n);
-  for (std::uint32_t i = 0; i < s.pairs.activeCount; ++i) {
+  std::vector<double> n(s.pairs().activeCount);
+  numberDensity<D>(s.context, s.pairs(), n);
+  for (std::uint32_t i = 0; i < s.pairs().activeCount; ++i) {
     if (i >= s.n() && n[i] == 0) continue;  // walls without fluid next to them are left out
     ASSERT_NEAR(n[i], oracle.numberDensity(i), kernelTolerance) << "particle " << i;
   }
-  for (std::uint32_t i = s.n(); i < s.pairs.activeCount; ++i)
+  for (std::uint32_t i = s.n(); i < s.pairs().activeCount; ++i)
     for (std::uint32_t j = 0; j < s.n() && n[i] == 0; ++j) ASSERT_GT(oracle.difference(i, j).norm(), oracle.hp);
 }
 
@@ -31,14 +31,14 @@ void checkGradientAndDivergence() {
   Scene<D> s = makeScene<D>();
   const Oracle<D> oracle(s);
   const Eigen::MatrixXd c = oracle.gradientMatrix();
-  const std::uint32_t active = s.pairs.activeCount;
+  const std::uint32_t active = s.pairs().activeCount;
 
   Eigen::VectorXd q = Eigen::VectorXd::Zero(oracle.count());
   q.head(active) = randomVector(active, 2);
   // Walls out of the fluid's reach have no column, and their q does not matter.
   std::vector<double> qOf(q.data(), q.data() + active);
   std::vector<Vec<D>> y(s.n(), Vec<D>{});
-  addPressureGradient<D>(s.context, s.pairs, qOf, -1.0, y);
+  addPressureGradient<D>(s.context, s.pairs(), qOf, -1.0, y);
   const Eigen::VectorXd expected = -(c * q);
   EXPECT_LT((flat<D>(y) - expected).norm(), operatorTolerance * expected.norm());
 
@@ -46,7 +46,7 @@ void checkGradientAndDivergence() {
   u.head(s.unknowns()) = randomVector(s.unknowns(), 3);
   std::vector<double> div(active);
   const auto velocity = unflat<D>(u);
-  divergence<D>(s.context, s.pairs, velocity, div);
+  divergence<D>(s.context, s.pairs(), velocity, div);
   const Eigen::VectorXd expectedDiv = (c.transpose() * u.head(s.unknowns())).head(active);
   EXPECT_LT((Eigen::Map<Eigen::VectorXd>(div.data(), active) - expectedDiv).norm(),
             operatorTolerance * expectedDiv.norm());
@@ -59,9 +59,9 @@ TEST(PressureGradient, AndDivergenceAreEachOthersTranspose) {
 
 TEST(Divergence, IsZeroWhenFluidAndWallsMoveTogether) {
   Scene<3> s = makeScene<3>();
-  const std::vector<Vec<3>> u(s.pairs.activeCount, Vec<3>{0.3, -1.2, 2.0});
-  std::vector<double> div(s.pairs.activeCount);
-  divergence<3>(s.context, s.pairs, u, div);
+  const std::vector<Vec<3>> u(s.pairs().activeCount, Vec<3>{0.3, -1.2, 2.0});
+  std::vector<double> div(s.pairs().activeCount);
+  divergence<3>(s.context, s.pairs(), u, div);
   for (double d : div) ASSERT_EQ(d, 0);
 }
 
@@ -75,7 +75,7 @@ TEST(WallDrag, IsTheDissipationGradientOfMovingWalls) {
   u.tail(2 * (oracle.count() - s.n())) = randomVector(2 * (oracle.count() - s.n()), 8);
   std::vector<Vec<2>> y(s.n(), Vec<2>{});
   const auto velocity = unflat<2>(u);
-  addWallDrag<2>(s.context, s.pairs, std::span(velocity).first(s.pairs.activeCount), y);
+  addWallDrag<2>(s.context, s.pairs(), std::span(velocity).first(s.pairs().activeCount), y);
   const double scale = flat<2>(y).cwiseAbs().maxCoeff();
   for (Eigen::Index k = 0; k < s.unknowns(); k += 7) {
     Eigen::VectorXd plus = u, minus = u;

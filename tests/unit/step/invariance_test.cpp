@@ -90,10 +90,10 @@ void checkTranslation() {
   Scene<D> s = start<D>();
   Particles<D> moved = copyOf(s.particles);
   Vec<D> shift{};
-  for (int k = 0; k < D; ++k) shift[k] = (k + 2) * s.pairs.grid.edge[k];
+  for (int k = 0; k < D; ++k) shift[k] = (k + 2) * s.pairs().grid.edge[k];
   for (auto& x : moved.position) {
     x += shift;
-    ASSERT_TRUE(s.pairs.grid.wrap(x));
+    ASSERT_TRUE(s.pairs().grid.wrap(x));
   }
   auto a = positionsAfter<D>(s.c, copyOf(s.particles), steps);
   const auto b = positionsAfter<D>(s.c, std::move(moved), steps);

@@ -1,0 +1,45 @@
+#pragma once
+
+#include "treacle/core/block.hpp"
+
+#include <cstring>
+
+namespace treacle {
+
+/// Sum of block-vector products along a matrix row. Products are collected element by element and added up once at the
+/// end, so that no addition waits for the one before. Host only.
+template <int D, class T>
+class RowSum {
+ public:
+  void add(const Block<D, T>& m, const Vec<D, T>& x) {
+    for (int r = 0; r < D; ++r)
+      for (int c = 0; c < D; ++c) part_(r, c) += m(r, c) * x[c];
+  }
+  Vec<D, T> total() const {
+    Vec<D, T> y{};
+    for (int r = 0; r < D; ++r)
+      for (int c = 0; c < D; ++c) y[r] += part_(r, c);
+    return y;
+  }
+
+ private:
+  Block<D, T> part_{};
+};
+
+/// In two dimensions a block fills one vector register.
+template <class T>
+class RowSum<2, T> {
+ public:
+  void add(const Block<2, T>& m, const Vec<2, T>& x) {
+    Four a;
+    std::memcpy(&a, &m, sizeof(a));
+    part_ += a * Four{x[0], x[1], x[0], x[1]};
+  }
+  Vec<2, T> total() const { return {part_[0] + part_[1], part_[2] + part_[3]}; }
+
+ private:
+  typedef T Four __attribute__((vector_size(4 * sizeof(T))));
+  Four part_ = {};
+};
+
+}  // namespace treacle
