@@ -25,6 +25,7 @@ struct RunOptions {
   int threads = 0;                     // 0: as many as OpenMP takes by itself
   std::optional<Precision> precision;  // default: the case's
   std::optional<double> endTime;       // [s] default: the case's
+  std::filesystem::path resume;        // checkpoint to continue from; empty: start from the case's bodies
   bool force = false;
   bool quiet = false;
 };

@@ -1,6 +1,7 @@
 #include "commands.hpp"
 #include "machine.hpp"
 #include "memory.hpp"
+#include "treacle/core/device.hpp"
 #include "treacle/core/version.hpp"
 
 #include <fmt/format.h>
@@ -20,6 +21,9 @@ void infoCommand() {
   fmt::print("threads     {}\n", omp_get_max_threads());
   fmt::print("memory      {} available\n", bytesText(availableMemory()));
   fmt::print("CUDA        {}\n", build.cuda == std::string_view("ON") ? "compiled" : "not compiled");
+  for (const DeviceInfo& device : cudaDevices())
+    fmt::print("device      {}, sm_{}{}, {} multiprocessors, {}\n", device.name, device.computeMajor,
+               device.computeMinor, device.multiprocessors, bytesText(device.memory));
 }
 
 }  // namespace treacle

@@ -71,6 +71,7 @@ void addRun(CLI::App& app, RunOptions& options) {
   run->add_option("--end-time", options.endTime, "End of the run instead of time.end [s]")
       ->type_name("T")
       ->check(positive());
+  run->add_option("--resume", options.resume, "Checkpoint to continue from")->type_name("FILE");
   run->add_flag("--force", options.force, "Replace the run that the directory holds");
   run->add_flag("-q,--quiet", options.quiet, "Print nothing but errors");
   run->callback([&options] { runCommand(options); });

@@ -8,21 +8,23 @@
 namespace treacle {
 namespace {
 
-/// Bytes per particle at the peak of a step.
+/// Bytes at the peak of a run, measured on the dam breaks.
 struct BytesPerParticle {
-  std::uint64_t matrixFree;      // state, neighbour lists, solver vectors; fluid and walls
-  std::uint64_t assembledExtra;  // the matrix; fluid only: neighbours times (block + column index)
+  std::uint64_t state;       // fluid and walls: fields, sort, and the copies that a frame is written from
+  std::uint64_t matrixFree;  // fluid: neighbour lists, pair coefficients, preconditioner, solver vectors
+  std::uint64_t assembled;   // fluid: the matrix in place of the coefficients
 };
-constexpr BytesPerParticle bytesPerParticle2D{700, 38 * (32 + 4)};
-constexpr BytesPerParticle bytesPerParticle3D{1200, 180 * (72 + 4)};
+constexpr BytesPerParticle bytesPerParticle2D{200, 1400, 2100};
+constexpr BytesPerParticle bytesPerParticle3D{300, 4200, 14300};
 constexpr std::uint64_t programBytes = 16 << 20;  // the program itself, its libraries and a picture
 
 }  // namespace
 
 std::uint64_t estimatedMemory(const Case& c, std::uint64_t fluidParticles, std::uint64_t wallParticles) {
   const BytesPerParticle& bytes = c.dimensions == 2 ? bytesPerParticle2D : bytesPerParticle3D;
-  const std::uint64_t matrix = c.solver.operatorKind == OperatorKind::Assembled ? bytes.assembledExtra : 0;
-  return programBytes + (fluidParticles + wallParticles) * bytes.matrixFree + fluidParticles * matrix;
+  const std::uint64_t solver =
+      c.solver.operatorKind == OperatorKind::Assembled ? bytes.assembled : bytes.matrixFree;
+  return programBytes + (fluidParticles + wallParticles) * bytes.state + fluidParticles * solver;
 }
 
 void requireMemory(const Case& c, std::uint64_t fluidParticles, std::uint64_t wallParticles) {

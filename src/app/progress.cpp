@@ -16,8 +16,14 @@ constexpr auto plainPause = 60s;
 
 }  // namespace
 
-Progress::Progress(std::int64_t steps, bool quiet)
-    : steps_(steps), quiet_(quiet), terminal_(::isatty(STDOUT_FILENO) == 1), start_(Clock::now()), last_(start_) {}
+Progress::Progress(std::int64_t start, std::int64_t steps, bool quiet)
+    : first_(start),
+      steps_(steps),
+      quiet_(quiet),
+      terminal_(::isatty(STDOUT_FILENO) == 1),
+      tenths_(10 * start / steps),
+      start_(Clock::now()),
+      last_(start_) {}
 
 void Progress::update(const StepReport& report) {
   if (quiet_) return;
@@ -48,7 +54,8 @@ void Progress::message(const std::string& text) {
 
 std::string Progress::line(const StepReport& report) const {
   const double elapsed = std::chrono::duration<double>(Clock::now() - start_).count();
-  const double left = elapsed / static_cast<double>(report.step) * static_cast<double>(steps_ - report.step);
+  const double left =
+      elapsed / static_cast<double>(report.step - first_) * static_cast<double>(steps_ - report.step);
   return fmt::format("step {}/{}  t = {:.4g} s  {} iterations  {} left", report.step, steps_, report.time,
                      report.iterations, durationText(left));
 }

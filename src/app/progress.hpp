@@ -12,7 +12,8 @@ namespace treacle {
 /// otherwise plain lines, one for every tenth of the run and at least one a minute.
 class Progress {
  public:
-  Progress(std::int64_t steps, bool quiet);
+  /// `start`: the step that the run starts at.
+  Progress(std::int64_t start, std::int64_t steps, bool quiet);
 
   void update(const StepReport& report);
 
@@ -24,10 +25,10 @@ class Progress {
 
   std::string line(const StepReport& report) const;
 
-  std::int64_t steps_;
+  std::int64_t first_, steps_;
   bool quiet_, terminal_;
   bool lineOpen_ = false;  // the cursor stands behind an unfinished line
-  std::int64_t tenths_ = 0;
+  std::int64_t tenths_;
   Clock::time_point start_, last_;
 };
 

@@ -1,9 +1,8 @@
 #include "recorder.hpp"
 
 #include "treacle/core/timer.hpp"
+#include "treacle/io/checkpoint.hpp"
 #include "treacle/io/picture.hpp"
-
-#include <cmath>
 
 namespace treacle {
 namespace {
@@ -35,17 +34,8 @@ void Recorder<D>::record(const StepReport& report, const Simulation<D>& simulati
   Timer timer;
   history_.append(historyRow(report));
   outputSeconds_ += timer.lap();
-  if (frameDue(report)) writeFrame(simulation);
-}
-
-template <int D>
-bool Recorder<D>::frameDue(const StepReport& report) {
-  if (case_.output.interval <= 0) return false;
-  // Half a step ahead: each multiple of the interval gets the step nearest to it, whatever the rounding of time.
-  const auto passed = static_cast<std::int64_t>((report.time + case_.time.step / 2) / case_.output.interval);
-  if (passed == intervalsPassed_) return false;
-  intervalsPassed_ = passed;
-  return true;
+  if (frames_.due(report.time)) writeFrame(simulation);
+  if (checkpoints_.due(report.time)) writeCheckpoint(simulation);
 }
 
 template <int D>
@@ -54,6 +44,15 @@ void Recorder<D>::writeFrame(const Simulation<D>& simulation) {
   Timer timer;
   directory_.writeFrame(fluidFrame(simulation), wallsFrame(simulation), case_.output);
   frameStep_ = simulation.step();
+  outputSeconds_ += timer.lap();
+}
+
+template <int D>
+void Recorder<D>::writeCheckpoint(const Simulation<D>& simulation) {
+  if (checkpointStep_ == simulation.step()) return;
+  Timer timer;
+  treacle::writeCheckpoint(directory_.checkpoint(), simulation.particles(), simulation.step(), simulation.time());
+  checkpointStep_ = simulation.step();
   outputSeconds_ += timer.lap();
 }
 

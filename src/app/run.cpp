@@ -4,6 +4,7 @@
 #include "memory.hpp"
 #include "progress.hpp"
 #include "recorder.hpp"
+#include "resume.hpp"
 #include "run_log.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/core/timer.hpp"
@@ -24,22 +25,26 @@
 namespace treacle {
 namespace {
 
-/// One run from the first frame to the summary. Whatever goes wrong on the way, the last good state, the picture
-/// and the summary are still written as far as that is possible.
+/// One run from the first frame to the summary. Whatever goes wrong on the way, the last good state (checkpoint
+/// and frame), the picture and the summary are still written as far as that is possible.
 template <int D>
 class Run {
  public:
-  Run(const Case& c, RunDirectory directory, bool quiet)
-      : case_(c), directory_(std::move(directory)), log_(directory_.log(), quiet), progress_(c.steps(), quiet) {}
+  Run(const Case& c, Checkpoint<D> start, RunDirectory directory, bool quiet)
+      : case_(c),
+        start_(std::move(start)),
+        directory_(std::move(directory)),
+        log_(directory_.log(), quiet),
+        progress_(start_.step, c.steps(), quiet) {}
 
   /// Errors: RunError with the diagnosis, after everything is written.
-  void execute(Particles<D> particles, const std::vector<std::string>& warnings) {
-    describe(particles);
+  void execute(const std::vector<std::string>& warnings) {
+    describe(start_.particles);
     for (const std::string& warning : warnings) log_.warning(warning);
     attempt([&] {
       writeFile(directory_.caseFile(), caseText(case_));
-      simulation_.emplace(case_, std::move(particles));
-      recorder_.emplace(case_, directory_);
+      simulation_.emplace(case_, std::move(start_.particles), start_.step, start_.time);
+      recorder_.emplace(case_, directory_, start_.time);
       recorder_->writeFrame(*simulation_);
       advanceToEnd();
     });
@@ -61,6 +66,7 @@ class Run {
     say(fmt::format("{}: {} fluid and {} wall particles, {} steps of {:g} s, into {}",
                     case_.title.empty() ? "case" : case_.title, particles.fluidCount, particles.wallCount(),
                     case_.steps(), case_.time.step, directory_.path().string()));
+    if (start_.step > 0) say(fmt::format("continues after step {} (t = {:.6g} s)", start_.step, start_.time));
   }
 
   void advanceToEnd() {
@@ -96,6 +102,7 @@ class Run {
 
   void finish() {
     if (simulation_ && recorder_) {
+      attempt([&] { recorder_->writeCheckpoint(*simulation_); });
       attempt([&] { recorder_->writeFrame(*simulation_); });
       attempt([&] { recorder_->drawPicture(*simulation_); });
       summary_.steps = simulation_->step(), summary_.time = simulation_->time();
@@ -114,10 +121,16 @@ class Run {
   }
 
   std::string lastStateText() const {
-    if (directory_.frameCount() == 0) return {};
-    const std::size_t last = directory_.frameCount() - 1;
-    return fmt::format("\nThe last state written is frame {} (t = {:.6g} s) in {}", last,
-                       directory_.frameTime(last), directory_.path().string());
+    std::string text;
+    if (directory_.frameCount() > 0) {
+      const std::size_t last = directory_.frameCount() - 1;
+      text += fmt::format("\nThe last state written is frame {} (t = {:.6g} s) in {}", last,
+                          directory_.frameTime(last), directory_.path().string());
+    }
+    if (std::filesystem::exists(directory_.checkpoint()))
+      text +=
+          fmt::format("\nContinue from the last checkpoint with --resume {}", directory_.checkpoint().string());
+    return text;
   }
 
   void say(const std::string& text) {
@@ -127,6 +140,7 @@ class Run {
 
   Timer timer_;
   const Case& case_;
+  Checkpoint<D> start_;
   RunDirectory directory_;
   RunLog log_;
   Progress progress_;
@@ -148,16 +162,26 @@ Case caseOf(const RunOptions& options) {
   return c;
 }
 
+/// --force would remove the checkpoint before another one exists.
+void requireElsewhere(const std::filesystem::path& directory, const std::filesystem::path& checkpoint) {
+  using std::filesystem::weakly_canonical;
+  if (!checkpoint.empty() && weakly_canonical(checkpoint).parent_path() == weakly_canonical(directory))
+    throw InputError(fmt::format("--resume {}: lies in the run directory; choose another one with --output",
+                                 checkpoint.string()));
+}
+
 template <int D>
 void runCase(const Case& c, const RunOptions& options) {
   std::vector<std::string> warnings;
-  Particles<D> particles = createParticles<D>(c, warnings);
+  Checkpoint<D> start{createParticles<D>(c, warnings)};
   for (std::string& warning : caseWarnings(c)) warnings.push_back(std::move(warning));
-  requireMemory(c, particles.fluidCount, particles.wallCount());
+  requireMemory(c, start.particles.fluidCount, start.particles.wallCount());
   const auto directory = options.directory.empty() ? options.input.file.stem().concat("-run") : options.directory;
+  requireElsewhere(directory, options.resume);
+  if (!options.resume.empty()) start = resumedState<D>(c, options.resume, start.particles);
   catchInterrupts();
-  Run<D> run(c, RunDirectory::create(directory, options.force), options.quiet);
-  run.execute(std::move(particles), warnings);
+  Run<D> run(c, std::move(start), RunDirectory::create(directory, options.force), options.quiet);
+  run.execute(warnings);
 }
 
 }  // namespace

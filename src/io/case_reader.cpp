@@ -174,9 +174,11 @@ SolverSettings readSolver(const Section& top) {
 }
 
 OutputSettings readOutput(const Section& top) {
-  const Section s = top.section("output", "[output]", {"interval", "fields", "format", "precision"});
+  const Section s =
+      top.section("output", "[output]", {"interval", "checkpoint_interval", "fields", "format", "precision"});
   OutputSettings output;
   output.interval = s.number("interval", Bound::NonNegative, "s", output.interval);
+  output.checkpointInterval = s.number("checkpoint_interval", Bound::NonNegative, "s", output.checkpointInterval);
   output.precision = s.choice<OutputPrecision>("precision", output.precision);
   if (const std::string format = s.string("format", "vtp"); format != "vtp")
     throw s.error("format", fmt::format("expected 'vtp', found '{}'", format));

@@ -109,6 +109,7 @@ void writeOutput(Text& text, const OutputSettings& output) {
     if (output.fields.*(f.flag)) fields.push_back(tomlString(f.name));
   line(text, "\n[output]");
   line(text, "interval = {}", output.interval);
+  line(text, "checkpoint_interval = {}", output.checkpointInterval);
   line(text, "fields = [{}]", fmt::join(fields, ", "));
   line(text, "format = \"vtp\"");
   line(text, "precision = \"{}\"", nameOf(output.precision));

@@ -6,8 +6,8 @@
 
 namespace treacle {
 
-/// Sum of block-vector products along a matrix row. Products are collected element by element and added up once at the
-/// end, so that no addition waits for the one before. Host only.
+/// Sum of block-vector products along a matrix row. Products are collected element by element and added up once at
+/// the end, so that no addition waits for the one before. Host only.
 template <int D, class T>
 class RowSum {
  public:

@@ -111,7 +111,8 @@ struct OutputFields {
 enum class OutputPrecision { Single, Double };
 
 struct OutputSettings {
-  double interval = 0;  // between frames [s]; 0: first and last frame only
+  double interval = 0;            // between frames [s]; 0: first and last frame only
+  double checkpointInterval = 0;  // between checkpoints [s]; 0: at the end of the run only
   OutputFields fields;
   OutputPrecision precision = OutputPrecision::Single;
 

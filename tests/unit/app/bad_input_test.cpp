@@ -46,7 +46,8 @@ constexpr BadCase badCases[] = {
     {"bareViscosity", "dynamic_viscosity", "viscosity",
      "bad.toml:15:1: unknown key 'viscosity' in [[material]] 'syrup'; did you mean 'dynamic_viscosity' [Pa s]?"},
     {"unknownKeyNearNone", "interval", "zzz",
-     "bad.toml:40:1: unknown key 'zzz' in [output]; expected 'interval', 'fields', 'format' or 'precision'"},
+     "bad.toml:40:1: unknown key 'zzz' in [output]; expected 'interval', 'checkpoint_interval', 'fields', "
+     "'format' or 'precision'"},
     {"unknownTable", "[gravity]", "[gravty]",
      "bad.toml:9:2: unknown key 'gravty' in the case file; did you mean 'gravity'?"},
     {"keyOfAnotherShape", "max = [6e-3, 6e-3]", "max = [6e-3, 6e-3]\nradius = 1",

@@ -125,6 +125,7 @@ coarsest_sweeps = 6
 particle_diagonal = "extended-jacobi"
 [output]
 interval = 0.25
+checkpoint_interval = 0.5
 fields = ["id", "pressure"]
 precision = "double"
 )";
@@ -155,7 +156,7 @@ TEST(readCase, takesEveryKey) {
   expected.solver.tolerance = 1e-10;
   expected.solver.maxIterations = 77;
   expected.solver.multigrid = {1, 5, 6, SmootherDiagonal::ExtendedJacobi};
-  expected.output = {0.25, {false, true, false, false, true}, OutputPrecision::Double};
+  expected.output = {0.25, 0.5, {false, true, false, false, true}, OutputPrecision::Double};
   EXPECT_EQ(c, expected);
 
   c.resolution = 1;

@@ -5,6 +5,7 @@
 
 #include "command.hpp"
 #include "treacle/io/case_reader.hpp"
+#include "treacle/io/checkpoint.hpp"
 #include "treacle/io/history.hpp"
 #include "treacle/io/run_directory.hpp"
 #include "treacle/io/vtp.hpp"
@@ -150,7 +151,7 @@ TEST(run, particleThatLeavesOpenDomainEndsTheRun) {
   for (const Vec<3>& x : last.position) EXPECT_LE(x[1], 12e-3);
 }
 
-TEST(run, stopsOnSignalAfterTheStepWithLastFrameAndSummary) {
+TEST(run, stopsOnSignalAfterTheStepWithLastFrameCheckpointAndSummary) {
   for (const char* signal : {"INT", "TERM"}) {
     Workshop shop;
     const std::string script = std::string(
@@ -167,6 +168,7 @@ TEST(run, stopsOnSignalAfterTheStepWithLastFrameAndSummary) {
     const auto rows = readHistory(run.history());
     ASSERT_FALSE(rows.empty());
     EXPECT_EQ(run.frameTime(run.frameCount() - 1), rows.back().time);
+    EXPECT_EQ(readCheckpoint<2>(run.checkpoint()).time, rows.back().time);
   }
 }
 

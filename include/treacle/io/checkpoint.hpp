@@ -1,0 +1,35 @@
+#pragma once
+
+#include "treacle/model/particles.hpp"
+
+#include <cstdint>
+#include <filesystem>
+
+namespace treacle {
+
+/// The complete state of a simulation after a step: continued from here, it gives the same bits as without the
+/// interruption.
+template <int D>
+struct Checkpoint {
+  Particles<D> particles;  // in the order they had, which decides the rounding of later steps
+  std::int64_t step = 0;   // number of steps done
+  double time = 0;         // [s]
+};
+
+/// Writes an HDF5 file under a temporary name, then renames it: an older checkpoint stays until the new one is
+/// complete. Takes as much memory as the particles meanwhile. Errors: RunError with path and reason.
+template <int D>
+void writeCheckpoint(const std::filesystem::path& path, const Particles<D>& particles, std::int64_t step,
+                     double time);
+
+/// Reads a file of writeCheckpoint. Errors: InputError with path and reason for a file that is missing, foreign,
+/// truncated, damaged, or of another version or dimension.
+template <int D>
+Checkpoint<D> readCheckpoint(const std::filesystem::path& path);
+
+extern template void writeCheckpoint<2>(const std::filesystem::path&, const Particles<2>&, std::int64_t, double);
+extern template void writeCheckpoint<3>(const std::filesystem::path&, const Particles<3>&, std::int64_t, double);
+extern template Checkpoint<2> readCheckpoint<2>(const std::filesystem::path&);
+extern template Checkpoint<3> readCheckpoint<3>(const std::filesystem::path&);
+
+}  // namespace treacle

@@ -1,0 +1,35 @@
+#pragma once
+
+#include "treacle/model/case.hpp"
+
+#include <cstdint>
+
+namespace treacle {
+
+/// Tells after which steps something regular is due: for every multiple of an interval of simulation time, the
+/// step nearest to it.
+class Interval {
+ public:
+  /// `length`: [s], 0: never due. `start`: the time that a run starts at [s]; what was due up to then is done.
+  Interval(double length, const TimeSettings& time, double start)
+      : length_(length), halfStep_(time.step / 2), passed_(multiples(start)) {}
+
+  /// To be asked after every step, with its time [s].
+  bool due(double time) {
+    const std::int64_t now = multiples(time);
+    const bool isDue = now != passed_;
+    passed_ = now;
+    return isDue;
+  }
+
+ private:
+  /// Half a step ahead: nearest to the multiple, whatever the rounding of time.
+  std::int64_t multiples(double time) const {
+    return length_ > 0 ? static_cast<std::int64_t>((time + halfStep_) / length_) : 0;
+  }
+
+  double length_, halfStep_;  // [s]
+  std::int64_t passed_;       // multiples of the interval
+};
+
+}  // namespace treacle

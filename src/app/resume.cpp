@@ -1,0 +1,65 @@
+#include "resume.hpp"
+
+#include "treacle/core/error.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace treacle {
+namespace {
+
+[[noreturn]] void refuse(const std::filesystem::path& file, const std::string& why) {
+  throw InputError(fmt::format("--resume {}: {}", file.string(), why));
+}
+
+template <int D>
+bool isInside(const Domain& domain, const Vec<D>& x) {
+  for (int k = 0; k < D; ++k)
+    if (!(x[k] >= domain.min[k] && x[k] <= domain.max[k])) return false;  // NaN as well
+  return true;
+}
+
+template <int D>
+void requireFit(const Case& c, const std::filesystem::path& file, const Particles<D>& p,
+                const Particles<D>& made) {
+  if (p.fluidCount != made.fluidCount || p.count != made.count)
+    refuse(file,
+           fmt::format("{} fluid and {} wall particles, but the case has {} and {}; expected the case and the "
+                       "resolution that were run",
+                       p.fluidCount, p.wallCount(), made.fluidCount, made.wallCount()));
+  for (std::uint32_t i = 0; i < p.count; ++i) {
+    if (p.material[i] >= c.materials.size())
+      refuse(file, fmt::format("particle {} has material {}, but the case has only {}", p.id[i], p.material[i],
+                               c.materials.size()));
+    if (!isInside(c.domain, p.position[i]))
+      refuse(file, fmt::format("particle {} lies outside the domain of the case", p.id[i]));
+  }
+}
+
+std::int64_t stepAt(double time, const TimeSettings& settings, const std::filesystem::path& file) {
+  const double steps = time / settings.step, whole = std::round(steps);
+  if (!(std::abs(steps - whole) < 1e-6))
+    refuse(file, fmt::format("its time {:g} s is not a whole number of steps of {:g} s (time.step)", time,
+                             settings.step));
+  return static_cast<std::int64_t>(whole);
+}
+
+}  // namespace
+
+template <int D>
+Checkpoint<D> resumedState(const Case& c, const std::filesystem::path& file, const Particles<D>& made) {
+  Checkpoint<D> state = readCheckpoint<D>(file);
+  requireFit(c, file, state.particles, made);
+  state.step = stepAt(state.time, c.time, file);
+  if (state.step >= c.steps())
+    refuse(file, fmt::format("its time {:g} s is not before the end of the run, {:g} s; choose a later one with "
+                             "--end-time",
+                             state.time, c.time.end));
+  return state;
+}
+
+template Checkpoint<2> resumedState<2>(const Case&, const std::filesystem::path&, const Particles<2>&);
+template Checkpoint<3> resumedState<3>(const Case&, const std::filesystem::path&, const Particles<3>&);
+
+}  // namespace treacle

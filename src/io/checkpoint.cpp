@@ -1,0 +1,196 @@
+#include "treacle/io/checkpoint.hpp"
+
+#include "hdf5.hpp"
+#include "treacle/core/error.hpp"
+#include "treacle/io/atomic_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <string_view>
+
+namespace treacle {
+namespace {
+
+constexpr std::string_view formatName = "treacle checkpoint";
+constexpr std::int32_t formatVersion = 1;
+
+/// Calls f(name, field) for every field. The binding names all members of Particles: it does not compile once one
+/// is added that is not written here.
+template <class P, class F>
+void forEachNamedField(P& particles, F&& f) {
+  auto& [fluidCount, count, position, velocity, pressure, numberDensity, material, id] = particles;
+  f("position", position), f("velocity", velocity), f("pressure", pressure);
+  f("number_density", numberDensity), f("material", material), f("id", id);
+}
+
+/// Type of a value in the file and in memory.
+struct Layout {
+  hid_t file, memory;
+  hsize_t components;
+};
+
+Layout layoutOf(const double*) { return {H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, 1}; }
+Layout layoutOf(const std::uint8_t*) { return {H5T_STD_U8LE, H5T_NATIVE_UINT8, 1}; }
+Layout layoutOf(const std::int32_t*) { return {H5T_STD_I32LE, H5T_NATIVE_INT32, 1}; }
+Layout layoutOf(const std::uint32_t*) { return {H5T_STD_U32LE, H5T_NATIVE_UINT32, 1}; }
+Layout layoutOf(const std::int64_t*) { return {H5T_STD_I64LE, H5T_NATIVE_INT64, 1}; }
+template <int D>
+Layout layoutOf(const Vec<D>*) {
+  static_assert(sizeof(Vec<D>) == D * sizeof(double));
+  return {H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, D};
+}
+
+/// Vectors make a table of count rows and D columns.
+struct Extents {
+  int rank;
+  std::array<hsize_t, 2> size;
+
+  Extents(std::uint32_t count, const Layout& layout)
+      : rank(layout.components == 1 ? 1 : 2), size{count, layout.components} {}
+};
+
+Hdf5Handle formatType() { return {H5Tcreate(H5T_STRING, formatName.size() + 1), H5Tclose}; }
+
+void writeAttribute(hid_t file, const char* name, hid_t fileType, hid_t memoryType, const void* value) {
+  const Hdf5Handle scalar(H5Screate(H5S_SCALAR), H5Sclose);
+  const Hdf5Handle attribute(H5Acreate2(file, name, fileType, scalar, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  hdf5Checked(H5Awrite(attribute, memoryType, value));
+}
+
+template <class T>
+void writeAttribute(hid_t file, const char* name, const T& value) {
+  const Layout layout = layoutOf(&value);
+  writeAttribute(file, name, layout.file, layout.memory, &value);
+}
+
+template <class T>
+T readAttribute(hid_t file, const char* name) {
+  const Hdf5Handle attribute(H5Aopen(file, name, H5P_DEFAULT), H5Aclose);
+  T value{};
+  hdf5Checked(H5Aread(attribute, layoutOf(&value).memory, &value));
+  return value;
+}
+
+template <class T>
+void writeField(hid_t file, const char* name, const Buffer<T>& field, std::uint32_t count) {
+  const Layout layout = layoutOf(field.data());
+  const Extents extents(count, layout);
+  const Hdf5Handle space(H5Screate_simple(extents.rank, extents.size.data(), nullptr), H5Sclose);
+  const Hdf5Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  // Without the date the same state gives the same file.
+  hdf5Checked(H5Pset_obj_track_times(properties, false));
+  const Hdf5Handle dataset(H5Dcreate2(file, name, layout.file, space, H5P_DEFAULT, properties, H5P_DEFAULT),
+                           H5Dclose);
+  hdf5Checked(H5Dwrite(dataset, layout.memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, field.data()));
+}
+
+template <class T>
+void readField(hid_t file, const char* name, Buffer<T>& field, std::uint32_t count) {
+  const Layout layout = layoutOf(field.data());
+  const Extents expected(count, layout);
+  const Hdf5Handle dataset(H5Dopen2(file, name, H5P_DEFAULT), H5Dclose);
+  const Hdf5Handle space(H5Dget_space(dataset), H5Sclose);
+  Extents found = expected;
+  if (H5Sget_simple_extent_ndims(space) != expected.rank ||
+      H5Sget_simple_extent_dims(space, found.size.data(), nullptr) < 0 ||
+      !std::equal(found.size.begin(), found.size.begin() + expected.rank, expected.size.begin()))
+    throw Hdf5Error(fmt::format("the field {} does not have {} values", name, count));
+  field.resize(count);
+  hdf5Checked(H5Dread(dataset, layout.memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, field.data()));
+}
+
+template <int D>
+void fill(hid_t file, const Particles<D>& particles, std::int64_t step, double time) {
+  const Hdf5Handle text = formatType();
+  writeAttribute(file, "format", text, text, formatName.data());
+  writeAttribute(file, "version", formatVersion);
+  writeAttribute(file, "dimensions", std::int32_t{D});
+  writeAttribute(file, "step", step);
+  writeAttribute(file, "time", time);
+  writeAttribute(file, "fluid_count", particles.fluidCount);
+  writeAttribute(file, "wall_count", particles.wallCount());
+  forEachNamedField(particles,
+                    [&](const char* name, const auto& field) { writeField(file, name, field, particles.count); });
+}
+
+/// Errors: Hdf5Error unless the file says that it is a checkpoint of this version and dimension.
+void requireFormat(hid_t file, int dimensions) {
+  std::string format(formatName.size() + 1, '\0');
+  if (hdf5Checked(H5Aexists(file, "format")) > 0) {
+    const Hdf5Handle attribute(H5Aopen(file, "format", H5P_DEFAULT), H5Aclose);
+    hdf5Checked(H5Aread(attribute, formatType(), format.data()));
+  }
+  if (format.c_str() != formatName) throw Hdf5Error("an HDF5 file of another program");
+  if (const auto version = readAttribute<std::int32_t>(file, "version"); version != formatVersion)
+    throw Hdf5Error(fmt::format("version {}, expected {}", version, formatVersion));
+  if (const auto found = readAttribute<std::int32_t>(file, "dimensions"); found != dimensions)
+    throw Hdf5Error(fmt::format("{} dimensions, expected {}", found, dimensions));
+}
+
+void requireReadable(const std::filesystem::path& path) {
+  std::error_code error;
+  static_cast<void>(std::filesystem::file_size(path, error));
+  if (error) throw InputError(fmt::format("{}: {}", path.string(), error.message()));
+  if (!std::ifstream(path)) throw InputError(fmt::format("{}: cannot be read", path.string()));
+  if (H5Fis_hdf5(path.c_str()) <= 0)
+    throw InputError(fmt::format("{}: not a treacle checkpoint: not an HDF5 file", path.string()));
+}
+
+}  // namespace
+
+template <int D>
+void writeCheckpoint(const std::filesystem::path& path, const Particles<D>& particles, std::int64_t step,
+                     double time) {
+  const Hdf5Silence silence;
+  try {
+    // HDF5 makes the file in memory: it cannot close a file that a full disk keeps it from finishing.
+    std::size_t bytes = 1 << 16;
+    forEachNamedField(particles, [&](const char*, const auto& field) { bytes += field.bytes(); });
+    const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+    hdf5Checked(H5Pset_fapl_core(access, bytes, false));
+    // It would read an existing file of this name first; below a file there is none.
+    const auto name = path / "memory";
+    const Hdf5Handle file(H5Fcreate(name.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose);
+    fill(file, particles, step, time);
+    hdf5Checked(H5Fflush(file, H5F_SCOPE_LOCAL));
+    const ssize_t size = hdf5Checked(H5Fget_file_image(file, nullptr, 0));
+    void* image = nullptr;  // takes the address of the driver's pointer to its memory: the bytes without a copy
+    hdf5Checked(H5Fget_vfd_handle(file, access, &image));
+    AtomicFile target(path);
+    target.write(*static_cast<const void* const*>(image), static_cast<std::size_t>(size));
+    target.commit();
+  } catch (const Hdf5Error& e) {
+    throw RunError(fmt::format("cannot write {}: {}", path.string(), e.what()));
+  }
+}
+
+template <int D>
+Checkpoint<D> readCheckpoint(const std::filesystem::path& path) {
+  const Hdf5Silence silence;
+  requireReadable(path);
+  try {
+    const Hdf5Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+    requireFormat(file, D);
+    Checkpoint<D> checkpoint;
+    checkpoint.step = readAttribute<std::int64_t>(file, "step");
+    checkpoint.time = readAttribute<double>(file, "time");
+    Particles<D>& particles = checkpoint.particles;
+    particles.fluidCount = readAttribute<std::uint32_t>(file, "fluid_count");
+    particles.count = particles.fluidCount + readAttribute<std::uint32_t>(file, "wall_count");
+    forEachNamedField(particles,
+                      [&](const char* name, auto& field) { readField(file, name, field, particles.count); });
+    return checkpoint;
+  } catch (const Hdf5Error& e) {
+    throw InputError(fmt::format("{}: no usable checkpoint: {}", path.string(), e.what()));
+  }
+}
+
+template void writeCheckpoint<2>(const std::filesystem::path&, const Particles<2>&, std::int64_t, double);
+template void writeCheckpoint<3>(const std::filesystem::path&, const Particles<3>&, std::int64_t, double);
+template Checkpoint<2> readCheckpoint<2>(const std::filesystem::path&);
+template Checkpoint<3> readCheckpoint<3>(const std::filesystem::path&);
+
+}  // namespace treacle

@@ -1,0 +1,159 @@
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "command.hpp"
+#include "treacle/io/checkpoint.hpp"
+#include "treacle/io/history.hpp"
+#include "treacle/io/run_directory.hpp"
+
+namespace treacle::test {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+/// A workshop with 8 steps of the small case on a moving floor in case.toml.
+Workshop& prepared(Workshop& shop) {
+  shop.put("case.toml", replaced(replaced(smallCase, "max = [12e-3, 0]", "max = [12e-3, 0]\nvelocity = [0.05, 0]"),
+                                 "end = 2e-3", "end = 8e-3"));
+  return shop;
+}
+
+std::string frame(const std::string& run, const std::string& group, std::size_t number) {
+  return fmt::format("{}/frames/{}_{:06}.vtp", run, group, number);
+}
+
+void expectSameFrames(const Workshop& shop, std::size_t whole, std::size_t resumed) {
+  for (const char* group : {"fluid", "walls"})
+    EXPECT_EQ(shop.content(frame("whole", group, whole)), shop.content(frame("resumed", group, resumed))) << group;
+}
+
+void expectRefused(const Workshop& shop, const std::string& arguments, const std::string& message) {
+  const Outcome outcome = shop.call("run case.toml -o other --resume " + arguments);
+  EXPECT_EQ(outcome.exitCode, 2);
+  EXPECT_THAT(outcome.err, StartsWith("treacle: error: "));
+  EXPECT_THAT(outcome.err, HasSubstr(message));
+  EXPECT_FALSE(std::filesystem::exists(shop / "other"));
+}
+
+TEST(resume, givesTheSameBitsAsAnUnbrokenRun) {
+  Workshop shop;
+  const std::string options = " --set output.precision=double --set time.step=7e-4 --threads 1";
+  ASSERT_EQ(prepared(shop).call("run case.toml -o whole --end-time 7e-3" + options).exitCode, 0);
+  ASSERT_EQ(shop.call("run case.toml -o half --end-time 3.5e-3" + options).exitCode, 0);
+  const Outcome outcome =
+      shop.call("run case.toml -o resumed --end-time 7e-3 --resume half/checkpoint.h5" + options);
+  ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("continues after step 5 (t = 0.0035 s)"));
+
+  const auto whole = readHistory(shop / "whole/history.csv"), resumed = readHistory(shop / "resumed/history.csv");
+  ASSERT_EQ(whole.size(), 10u);
+  ASSERT_EQ(resumed.size(), 5u);
+  for (std::size_t k = 0; k < 5; ++k) {
+    EXPECT_EQ(resumed[k].step, whole[5 + k].step);
+    EXPECT_EQ(resumed[k].time, whole[5 + k].time);
+    EXPECT_EQ(resumed[k].iterations, whole[5 + k].iterations);
+    EXPECT_EQ(resumed[k].residual, whole[5 + k].residual);
+    EXPECT_EQ(resumed[k].kineticEnergy, whole[5 + k].kineticEnergy);
+  }
+  EXPECT_EQ(shop.content("whole/checkpoint.h5"), shop.content("resumed/checkpoint.h5"));
+  // Frames fall to steps 0, 1, 3, 4, 6, 7, 9 (6.3 ms), 10; that of the state resumed from is an extra one.
+  const auto first = RunDirectory::open(shop / "whole"), second = RunDirectory::open(shop / "resumed");
+  ASSERT_EQ(first.frameCount(), 8u);
+  ASSERT_EQ(second.frameCount(), 5u);
+  for (std::size_t k = 1; k < 5; ++k) expectSameFrames(shop, 3 + k, k);
+  EXPECT_EQ(second.frameTime(0), 5 * 7e-4);
+}
+
+TEST(resume, startsWithTheFrameThatTheRunEndedWith) {
+  Workshop shop;
+  ASSERT_EQ(prepared(shop).call("run case.toml -o whole --threads 1 --end-time 4e-3").exitCode, 0);
+  ASSERT_EQ(shop.call("run case.toml -o resumed --threads 1 --resume whole/checkpoint.h5").exitCode, 0);
+  expectSameFrames(shop, 4, 0);
+}
+
+TEST(resume, continuesAFailedRun) {
+  Workshop shop;
+  const Outcome failed = prepared(shop).call("run case.toml -o failed --threads 1 --set solver.max_iterations=3");
+  EXPECT_EQ(failed.exitCode, 3);
+  EXPECT_THAT(failed.err, HasSubstr("Continue from the last checkpoint with --resume failed/checkpoint.h5"));
+  ASSERT_EQ(shop.call("run case.toml -o resumed --threads 1 --resume failed/checkpoint.h5").exitCode, 0);
+  ASSERT_EQ(shop.call("run case.toml -o whole --threads 1").exitCode, 0);
+  expectSameFrames(shop, 8, 8);
+}
+
+TEST(resume, continuesWithAShorterStep) {
+  Workshop shop;
+  ASSERT_EQ(prepared(shop).call("run case.toml -o whole --threads 1 --end-time 4e-3").exitCode, 0);
+  ASSERT_EQ(
+      shop.call("run case.toml -o finer --threads 1 --set time.step=5e-4 --resume whole/checkpoint.h5").exitCode,
+      0);
+  const auto rows = readHistory(shop / "finer/history.csv");
+  ASSERT_EQ(rows.size(), 8u);
+  EXPECT_EQ(rows[0].step, 9);
+  EXPECT_EQ(rows[0].time, 9 * 5e-4);
+}
+
+TEST(resume, checkpointsFollowTheirInterval) {
+  Workshop shop;
+  // Ended at once, without the time to write a last one: the checkpoint is that of a multiple of 3 ms.
+  const std::string script =
+      "run case.toml -o out --threads 1 --quiet --end-time 30 --set output.checkpoint_interval=3e-3 "
+      "--set output.interval=0 --set 'floor.velocity=[0, 0]' --set 'gravity.acceleration=[0, -1e-3]' & run=$!; "
+      "while [ ! -s out/checkpoint.h5 ]; do sleep 0.05; done; kill -KILL $run; wait $run";
+  prepared(shop).call(script);
+  const Checkpoint<2> checkpoint = readCheckpoint<2>(shop / "out/checkpoint.h5");
+  EXPECT_GT(checkpoint.step, 0);
+  EXPECT_EQ(checkpoint.step % 3, 0);
+}
+
+TEST(resume, refusesWhatDoesNotFit) {
+  Workshop shop;
+  ASSERT_EQ(prepared(shop).call("run case.toml -o whole --threads 1 --end-time 3e-3").exitCode, 0);
+  shop.put("text.h5", "no checkpoint");
+  shop.put("cut.h5", shop.content("whole/checkpoint.h5").substr(0, 4000));
+  expectRefused(shop, "none.h5", "none.h5: No such file or directory");
+  expectRefused(shop, "text.h5", "text.h5: not a treacle checkpoint: not an HDF5 file");
+  expectRefused(shop, "cut.h5", "cut.h5: no usable checkpoint: truncated file");
+  expectRefused(shop, "whole/checkpoint.h5 --end-time 3e-3",
+                "its time 0.003 s is not before the end of the run, 0.003 s; choose a later one with --end-time");
+  expectRefused(shop, "whole/checkpoint.h5 --set time.step=2e-3",
+                "its time 0.003 s is not a whole number of steps of 0.002 s (time.step)");
+  expectRefused(shop, "whole/checkpoint.h5 --set resolution=2",
+                "36 fluid and 64 wall particles, but the case has 144 and 256");
+}
+
+TEST(resume, refusesToReplaceItsOwnCheckpoint) {
+  Workshop shop;
+  ASSERT_EQ(prepared(shop).call("run case.toml --threads 1 --end-time 3e-3").exitCode, 0);
+  const Outcome outcome = shop.call("run case.toml --force --resume ./case-run/checkpoint.h5");
+  EXPECT_EQ(outcome.exitCode, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("lies in the run directory; choose another one with --output"));
+  EXPECT_EQ(readCheckpoint<2>(shop / "case-run/checkpoint.h5").step, 3);
+}
+
+TEST(resume, refusesOtherDimensionsMaterialsAndDomains) {
+  Workshop shop;
+  prepared(shop);
+  const auto put = [&](auto change) {
+    Particles<2> p;
+    p.resize(36, 64);
+    for (std::uint32_t i = 0; i < p.count; ++i) p.position[i] = {{1e-3, 1e-3}}, p.material[i] = 0, p.id[i] = i;
+    change(p);
+    writeCheckpoint<2>(shop / "c.h5", p, 1, 1e-3);
+  };
+  put([](Particles<2>& p) { p.material[7] = 1; });
+  expectRefused(shop, "c.h5", "particle 7 has material 1, but the case has only 1");
+  put([](Particles<2>& p) { p.position[99][1] = 13e-3; });
+  expectRefused(shop, "c.h5", "particle 99 lies outside the domain of the case");
+  put([](Particles<2>& p) { p.position[3][0] = std::nan(""); });
+  expectRefused(shop, "c.h5", "particle 3 lies outside the domain of the case");
+  writeCheckpoint<3>(shop / "c.h5", Particles<3>{}, 1, 1e-3);
+  expectRefused(shop, "c.h5", "3 dimensions, expected 2");
+}
+
+}  // namespace
+}  // namespace treacle::test
