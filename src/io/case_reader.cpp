@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace treacle {
 namespace {
@@ -46,13 +45,11 @@ Material readMaterial(const toml::table& table, const std::string& name) {
 }
 
 std::vector<Material> readMaterials(const Section& top) {
-  constexpr std::size_t most =
-      std::numeric_limits<std::uint8_t>::max() + std::size_t{1};  // of Particles::material
   std::vector<Material> materials;
   for (const toml::table* table : top.tables("material"))
     materials.push_back(readMaterial(*table, (*table)["name"].value_or(std::string{})));
-  if (materials.size() > most)
-    throw top.error("material", fmt::format("expected at most {}, found {}", most, materials.size()));
+  if (materials.size() > maxMaterials)
+    throw top.error("material", fmt::format("expected at most {}, found {}", maxMaterials, materials.size()));
   return materials;
 }
 

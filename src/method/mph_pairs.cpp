@@ -7,7 +7,7 @@ namespace treacle {
 MaterialTable MaterialTable::make(const Case& c) {
   MaterialTable t{};
   t.count = static_cast<int>(c.materials.size());
-  if (t.count > maxMaterials)
+  if (c.materials.size() > maxMaterials)
     throw InputError("the case has " + std::to_string(t.count) + " materials; at most " +
                      std::to_string(maxMaterials) + " are possible");
   for (int i = 0; i < t.count; ++i) {

@@ -10,9 +10,6 @@
 
 namespace treacle {
 
-/// Largest number of materials of one case.
-inline constexpr int maxMaterials = 16;
-
 /// Material constants as the pair sums look them up, by material index.
 struct MaterialTable {
   int count = 0;

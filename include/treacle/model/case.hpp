@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -22,6 +23,9 @@ struct Material {
 
   bool operator==(const Material&) const = default;
 };
+
+/// Largest number of materials of one case: pair sums look their constants up in small tables.
+inline constexpr std::size_t maxMaterials = 16;
 
 enum class ShapeKind { Box, Sphere, Cylinder };
 

@@ -1,6 +1,11 @@
 #include "treacle/io/case_reader.hpp"
 
+#include "treacle/core/error.hpp"
+
 #include <gtest/gtest.h>
+
+#include <fstream>
+#include <iterator>
 
 #include "command.hpp"
 
@@ -62,6 +67,27 @@ TEST(caseFiles, smallCasesScaleGravityAndViscosities) {  // [K23 Table 3]
     expected.materials[0].dynamicViscosity *= factor;
     expected.materials[0].bulkViscosity *= factor;
     EXPECT_EQ(c, expected) << name;
+  }
+}
+
+TEST(readCase, takesSixteenMaterialsAndNoMore) {
+  std::ifstream file(fs::path(TREACLE_CASES) / "dam-break-2d.toml");
+  std::string text{std::istreambuf_iterator<char>(file), {}};
+  const auto append = [&](int number) {
+    text += "\n[[material]]\nname = \"m" + std::to_string(number) +
+            "\"\ndensity = 1\ndynamic_viscosity = 1\nbulk_viscosity = 1\nbulk_modulus = 0\n";
+  };
+  Workshop shop;
+  for (int number = 2; number <= 16; ++number) append(number);
+  shop.put("sixteen.toml", text);
+  EXPECT_EQ(readCase(shop / "sixteen.toml").materials.size(), 16u);
+  append(17);
+  shop.put("seventeen.toml", text);
+  try {
+    readCase(shop / "seventeen.toml");
+    FAIL() << "seventeen materials were taken";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("expected at most 16, found 17"), std::string::npos) << error.what();
   }
 }
 
