@@ -65,7 +65,8 @@ void directionChunk(const double* z, double beta, double* p, std::size_t n) {
 }  // namespace
 
 double dot(Context<Cpu>&, std::span<const double> x, std::span<const double> y) {
-  return sumChunks(x.size(), [&](std::size_t k, std::size_t n) { return dotChunk(&x[k], &y[k], n); });
+  return sumChunks(x.size(),
+                   [&](std::size_t k, std::size_t n) { return dotChunk(x.data() + k, y.data() + k, n); });
 }
 
 void copy(Context<Cpu>&, std::span<const double> from, std::span<double> to) {
@@ -73,32 +74,35 @@ void copy(Context<Cpu>&, std::span<const double> from, std::span<double> to) {
 }
 
 double residual(Context<Cpu>&, std::span<const double> b, std::span<double> r) {
-  return sumChunks(b.size(), [&](std::size_t k, std::size_t n) { return residualChunk(&b[k], &r[k], n); });
+  return sumChunks(b.size(),
+                   [&](std::size_t k, std::size_t n) { return residualChunk(b.data() + k, r.data() + k, n); });
 }
 
 void direction(Context<Cpu>&, std::span<const double> z, double beta, std::span<double> p) {
-  sumChunks(z.size(), [&](std::size_t k, std::size_t n) { return directionChunk(&z[k], beta, &p[k], n), 0.0; });
+  sumChunks(z.size(), [&](std::size_t k, std::size_t n) {
+    return directionChunk(z.data() + k, beta, p.data() + k, n), 0.0;
+  });
 }
 
 double updateCg(Context<Cpu>&, double alpha, const CgVectors& v) {
   return sumChunks(v.x.size(), [&](std::size_t k, std::size_t n) {
-    addChunk(alpha, &v.p[k], &v.x[k], n);
-    return subtractChunk(alpha, &v.q[k], &v.r[k], n);
+    addChunk(alpha, v.p.data() + k, v.x.data() + k, n);
+    return subtractChunk(alpha, v.q.data() + k, v.r.data() + k, n);
   });
 }
 
 double updateCr(Context<Cpu>&, double alpha, const CrVectors& v) {
   return sumChunks(v.x.size(), [&](std::size_t k, std::size_t n) {
-    addChunk(alpha, &v.p[k], &v.x[k], n);
-    addChunk(-alpha, &v.u[k], &v.s[k], n);
-    return subtractChunk(alpha, &v.q[k], &v.r[k], n);
+    addChunk(alpha, v.p.data() + k, v.x.data() + k, n);
+    addChunk(-alpha, v.u.data() + k, v.s.data() + k, n);
+    return subtractChunk(alpha, v.q.data() + k, v.r.data() + k, n);
   });
 }
 
 void directionsCr(Context<Cpu>&, double beta, const CrDirections& v) {
   sumChunks(v.s.size(), [&](std::size_t k, std::size_t n) {
-    directionChunk(&v.s[k], beta, &v.p[k], n);
-    return directionChunk(&v.y[k], beta, &v.q[k], n), 0.0;
+    directionChunk(v.s.data() + k, beta, v.p.data() + k, n);
+    return directionChunk(v.y.data() + k, beta, v.q.data() + k, n), 0.0;
   });
 }
 
