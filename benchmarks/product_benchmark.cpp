@@ -1,6 +1,6 @@
 // One product with A, matrix-free and assembled, on the dam breaks of [K23]; one thread.
 //   product_benchmark --benchmark_out=FILE.json --benchmark_out_format=json
-// Counters: microseconds per particle; GB/s of what the operator keeps, read once per product.
+// Counters: time per million particles; GB/s of what the operator keeps, read once per product.
 
 #include "treacle/core/version.hpp"
 #include "treacle/io/case_reader.hpp"
@@ -53,7 +53,7 @@ struct Start {
 void report(benchmark::State& state, double particles, std::size_t bytes) {
   const double products = static_cast<double>(state.iterations());
   state.counters["particles"] = particles;
-  state.counters["us/particle"] =
+  state.counters["per_Mparticle"] =
       benchmark::Counter(particles * products * 1e-6, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
   state.counters["B/particle"] = static_cast<double>(bytes) / particles;
   state.counters["GB/s"] =
