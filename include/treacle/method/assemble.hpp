@@ -9,12 +9,10 @@ namespace treacle {
 
 /// The rows of C as lists: per particle its neighbours within h_p, with g = -e w'^p [1/m] seen from the row's
 /// particle. C_ij = g_ij, C_ii = sum_j g_ij, and C_ji = -g_ij.
-struct GradientRowsIndex {
+template <int D>
+struct GradientRows {
   Buffer<std::uint64_t> rowStart;  // activeCount + 1
   Buffer<std::uint32_t> neighbour;
-};
-template <int D>
-struct GradientRows : GradientRowsIndex {
   Buffer<Vec<D>> g;
 
   std::size_t bytes() const { return rowStart.bytes() + neighbour.bytes() + g.bytes(); }
