@@ -1,14 +1,11 @@
 #pragma once
 
-#include <gtest/gtest.h>
-#include <stdlib.h>
+#include "support/temporary_directory.hpp"
+
 #include <sys/wait.h>
 
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <stdexcept>
 #include <string>
 
 namespace treacle::test {
@@ -20,43 +17,23 @@ struct Outcome {
 };
 
 /// A fresh directory, gone with the object, in which the built command is called.
-class Workshop {
+class Workshop : public TemporaryDirectory {
  public:
-  Workshop() {
-    std::string name = (std::filesystem::temp_directory_path() / "treacle-app-XXXXXX").string();
-    if (!::mkdtemp(name.data())) throw std::runtime_error("no temporary directory");
-    path_ = name;
-  }
-  Workshop(const Workshop&) = delete;
-  Workshop& operator=(const Workshop&) = delete;
-  ~Workshop() {
-    std::error_code error;
-    std::filesystem::remove_all(path_, error);
-  }
-
-  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-
   void put(const std::string& name, const std::string& text) const {
-    std::filesystem::create_directories((path_ / name).parent_path());
-    std::ofstream(path_ / name, std::ios::binary) << text;
+    const auto file = *this / name;
+    std::filesystem::create_directories(file.parent_path());
+    test::put(file, text);
   }
 
-  std::string content(const std::string& name) const {
-    std::ifstream file(path_ / name, std::ios::binary);
-    EXPECT_TRUE(file) << name;
-    return {std::istreambuf_iterator<char>(file), {}};
-  }
+  std::string content(const std::string& name) const { return test::content(*this / name); }
 
   /// `treacle ARGUMENTS` by the shell, after the shell commands `before`.
   Outcome call(const std::string& arguments, const std::string& before = "") const {
-    const std::string line = "cd '" + path_.string() + "' || exit 99; { " + before + " '" + TREACLE_BINARY + "' " +
-                             arguments + "; } >stdout.txt 2>stderr.txt";
+    const std::string line = "cd '" + path().string() + "' || exit 99; { " + before + " '" + TREACLE_BINARY +
+                             "' " + arguments + "; } >stdout.txt 2>stderr.txt";
     const int status = std::system(line.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content("stdout.txt"), content("stderr.txt")};
   }
-
- private:
-  std::filesystem::path path_;
 };
 
 /// A case of few particles and two steps that stands alone.

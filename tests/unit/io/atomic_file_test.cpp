@@ -1,7 +1,7 @@
 #include "treacle/io/atomic_file.hpp"
 
 #include "limited_files.hpp"
-#include "temporary_directory.hpp"
+#include "support/temporary_directory.hpp"
 #include "treacle/core/error.hpp"
 
 using namespace treacle;

@@ -2,7 +2,7 @@
 
 #include "color_map.hpp"
 #include "limited_files.hpp"
-#include "temporary_directory.hpp"
+#include "support/temporary_directory.hpp"
 #include "treacle/core/error.hpp"
 
 #include <cairo.h>

@@ -1,7 +1,7 @@
 #include "treacle/io/run_directory.hpp"
 
 #include "sample_frame.hpp"
-#include "temporary_directory.hpp"
+#include "support/temporary_directory.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/io/history.hpp"
 #include "treacle/io/vtp.hpp"

@@ -1,6 +1,6 @@
 #include "treacle/io/summary.hpp"
 
-#include "temporary_directory.hpp"
+#include "support/temporary_directory.hpp"
 
 #include <nlohmann/json.hpp>
 

@@ -2,7 +2,7 @@
 
 #include "limited_files.hpp"
 #include "sample_frame.hpp"
-#include "temporary_directory.hpp"
+#include "support/temporary_directory.hpp"
 #include "treacle/core/error.hpp"
 
 #include <cstring>
