@@ -3,17 +3,17 @@
 #include "treacle/core/parallel.hpp"
 
 #include <algorithm>
-#include <vector>
 
 namespace treacle {
 namespace {
 
 /// Runs body(begin, length) on chunks of fixed length and adds what it returns in the order of the chunks.
 template <class F>
-double sumChunks(std::size_t n, F&& body) {
+double sumChunks(Context<Cpu>& context, std::size_t n, F&& body) {
   const std::size_t chunks = (n + reductionChunk - 1) / reductionChunk;
   if (chunks <= 1) return body(std::size_t{0}, n);
-  std::vector<double> partial(chunks);
+  std::vector<double>& partial = context.partialSums;
+  partial.resize(chunks);
   parallelFor(chunks, 2, [&](std::size_t c) {
     const std::size_t begin = c * reductionChunk;
     partial[c] = body(begin, std::min(reductionChunk, n - begin));
@@ -64,8 +64,8 @@ void directionChunk(const double* z, double beta, double* p, std::size_t n) {
 
 }  // namespace
 
-double dot(Context<Cpu>&, std::span<const double> x, std::span<const double> y) {
-  return sumChunks(x.size(),
+double dot(Context<Cpu>& context, std::span<const double> x, std::span<const double> y) {
+  return sumChunks(context, x.size(),
                    [&](std::size_t k, std::size_t n) { return dotChunk(x.data() + k, y.data() + k, n); });
 }
 
@@ -73,34 +73,34 @@ void copy(Context<Cpu>&, std::span<const double> from, std::span<double> to) {
   std::copy(from.begin(), from.end(), to.begin());
 }
 
-double residual(Context<Cpu>&, std::span<const double> b, std::span<double> r) {
-  return sumChunks(b.size(),
+double residual(Context<Cpu>& context, std::span<const double> b, std::span<double> r) {
+  return sumChunks(context, b.size(),
                    [&](std::size_t k, std::size_t n) { return residualChunk(b.data() + k, r.data() + k, n); });
 }
 
-void direction(Context<Cpu>&, std::span<const double> z, double beta, std::span<double> p) {
-  sumChunks(z.size(), [&](std::size_t k, std::size_t n) {
+void direction(Context<Cpu>& context, std::span<const double> z, double beta, std::span<double> p) {
+  sumChunks(context, z.size(), [&](std::size_t k, std::size_t n) {
     return directionChunk(z.data() + k, beta, p.data() + k, n), 0.0;
   });
 }
 
-double updateCg(Context<Cpu>&, double alpha, const CgVectors& v) {
-  return sumChunks(v.x.size(), [&](std::size_t k, std::size_t n) {
+double updateCg(Context<Cpu>& context, double alpha, const CgVectors& v) {
+  return sumChunks(context, v.x.size(), [&](std::size_t k, std::size_t n) {
     addChunk(alpha, v.p.data() + k, v.x.data() + k, n);
     return subtractChunk(alpha, v.q.data() + k, v.r.data() + k, n);
   });
 }
 
-double updateCr(Context<Cpu>&, double alpha, const CrVectors& v) {
-  return sumChunks(v.x.size(), [&](std::size_t k, std::size_t n) {
+double updateCr(Context<Cpu>& context, double alpha, const CrVectors& v) {
+  return sumChunks(context, v.x.size(), [&](std::size_t k, std::size_t n) {
     addChunk(alpha, v.p.data() + k, v.x.data() + k, n);
     addChunk(-alpha, v.u.data() + k, v.s.data() + k, n);
     return subtractChunk(alpha, v.q.data() + k, v.r.data() + k, n);
   });
 }
 
-void directionsCr(Context<Cpu>&, double beta, const CrDirections& v) {
-  sumChunks(v.s.size(), [&](std::size_t k, std::size_t n) {
+void directionsCr(Context<Cpu>& context, double beta, const CrDirections& v) {
+  sumChunks(context, v.s.size(), [&](std::size_t k, std::size_t n) {
     directionChunk(v.s.data() + k, beta, v.p.data() + k, n);
     return directionChunk(v.y.data() + k, beta, v.q.data() + k, n), 0.0;
   });
