@@ -19,6 +19,7 @@ endfunction()
 function(treacle_kernels NAME)
   cmake_parse_arguments(KERNELS "" "" "SOURCES;PRIVATE" ${ARGN})
   target_sources(treacle_${NAME} PRIVATE ${KERNELS_SOURCES})
+  target_include_directories(treacle_${NAME} PRIVATE ${CMAKE_SOURCE_DIR}/kernels)
   target_link_libraries(treacle_${NAME} PRIVATE CUDA::cudart_static ${KERNELS_PRIVATE})
 endfunction()
 
@@ -28,6 +29,6 @@ function(treacle_compile_options TARGET)
     $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wshadow -fno-math-errno -fno-trapping-math>
     $<$<AND:$<COMPILE_LANGUAGE:CXX>,$<BOOL:${TREACLE_NATIVE}>>:-march=native>
     $<$<AND:$<COMPILE_LANGUAGE:CXX>,$<BOOL:${TREACLE_WERROR}>>:-Werror>
-    $<$<COMPILE_LANGUAGE:CUDA>:--expt-relaxed-constexpr -Xcompiler=-Wall,-Wextra>  # std::span in device code
+    $<$<COMPILE_LANGUAGE:CUDA>:--expt-relaxed-constexpr --extended-lambda -Xcompiler=-Wall,-Wextra>  # std::span and loop bodies in device code
     $<$<AND:$<COMPILE_LANGUAGE:CUDA>,$<BOOL:${TREACLE_WERROR}>>:-Werror all-warnings>)
 endfunction()

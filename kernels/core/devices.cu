@@ -1,6 +1,6 @@
 #include "treacle/core/device.hpp"
 
-#include "cuda_check.hpp"
+#include "core/cuda_check.hpp"
 
 namespace treacle {
 

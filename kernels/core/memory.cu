@@ -1,6 +1,7 @@
-#include "treacle/core/cuda.hpp"
+#include "core/launch.hpp"
 
-#include "cuda_check.hpp"
+#include <cstdint>
+#include <new>
 
 namespace treacle {
 namespace {
@@ -14,20 +15,61 @@ __global__ void fillWithNaN(unsigned* words, std::size_t count) {
 }
 #endif
 
+cudaMemPool_t makePool() {
+  int device = 0;
+  TREACLE_CUDA_CHECK(cudaGetDevice(&device));
+  cudaMemPoolProps properties{};
+  properties.allocType = cudaMemAllocationTypePinned;
+  properties.location = {cudaMemLocationTypeDevice, device};
+  cudaMemPool_t pool = nullptr;
+  TREACLE_CUDA_CHECK(cudaMemPoolCreate(&pool, &properties));
+  // What is freed stays in the pool: the next step asks for it again.
+  std::uint64_t keep = ~std::uint64_t{0};
+  TREACLE_CUDA_CHECK(cudaMemPoolSetAttribute(pool, cudaMemPoolAttrReleaseThreshold, &keep));
+  return pool;
+}
+
 }  // namespace
 
-Context<Cuda>::Context() { TREACLE_CUDA_CHECK(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking)); }
+Context<Cuda>::Context() {
+  TREACLE_CUDA_CHECK(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking));
+  pool_ = makePool();
+  partialSums_ = static_cast<double*>(deviceAllocate(*this, maxPartialSums * sizeof(double)));
+  ticket_ = static_cast<unsigned*>(deviceAllocate(*this, sizeof(unsigned)));
+  clearBytes(*this, ticket_, sizeof(unsigned));
+}
 
 Context<Cuda>::~Context() {
-  if (stream_) cudaStreamDestroy(stream_);
+  for (void* memory : {static_cast<void*>(partialSums_), static_cast<void*>(ticket_), scratch_})
+    if (memory) deviceRelease(*this, memory);
+  cudaStreamSynchronize(stream_);
+  cudaMemPoolDestroy(pool_);
+  cudaStreamDestroy(stream_);
 }
 
 void Context<Cuda>::synchronize() const { TREACLE_CUDA_CHECK(cudaStreamSynchronize(stream_)); }
 
+std::size_t Context<Cuda>::peakBytes() const {
+  std::uint64_t peak = 0;
+  TREACLE_CUDA_CHECK(cudaMemPoolGetAttribute(pool_, cudaMemPoolAttrUsedMemHigh, &peak));
+  return peak;
+}
+
+void* Context<Cuda>::scratch(std::size_t bytes) {
+  if (bytes > scratchBytes_) {
+    if (scratch_) deviceRelease(*this, scratch_);
+    scratch_ = nullptr;
+    scratchBytes_ = 0;
+    scratch_ = deviceAllocate(*this, bytes);
+    scratchBytes_ = bytes;
+  }
+  return scratch_;
+}
+
 void* deviceAllocate(const Context<Cuda>& context, std::size_t bytes) {
   if (bytes == 0) return nullptr;
   void* memory = nullptr;
-  const cudaError_t status = cudaMallocAsync(&memory, bytes, context.stream());
+  const cudaError_t status = cudaMallocFromPoolAsync(&memory, bytes, context.pool(), context.stream());
   if (status == cudaErrorMemoryAllocation) {
     cudaGetLastError();  // the error is reported here and must not meet the next call
     throw std::bad_alloc();
@@ -35,10 +77,7 @@ void* deviceAllocate(const Context<Cuda>& context, std::size_t bytes) {
   TREACLE_CUDA_CHECK(status);
 #ifndef NDEBUG
   const std::size_t words = bytes / sizeof(unsigned);
-  if (words > 0)
-    fillWithNaN<<<static_cast<unsigned>((words + 255) / 256), 256, 0, context.stream()>>>(
-        static_cast<unsigned*>(memory), words);
-  TREACLE_CUDA_CHECK(cudaGetLastError());
+  launch(context, blocksFor(words, 256), 256, 0, fillWithNaN, static_cast<unsigned*>(memory), words);
 #endif
   return memory;
 }
@@ -48,13 +87,35 @@ void deviceRelease(const Context<Cuda>& context, void* memory) noexcept {
 }
 
 void copyBytesToDevice(const Context<Cuda>& context, const void* host, void* device, std::size_t bytes) {
+  if (bytes == 0) return;
   TREACLE_CUDA_CHECK(cudaMemcpyAsync(device, host, bytes, cudaMemcpyHostToDevice, context.stream()));
   context.synchronize();
 }
 
 void copyBytesToHost(const Context<Cuda>& context, const void* device, void* host, std::size_t bytes) {
+  if (bytes == 0) return;
   TREACLE_CUDA_CHECK(cudaMemcpyAsync(host, device, bytes, cudaMemcpyDeviceToHost, context.stream()));
   context.synchronize();
+}
+
+void copyBytesOnDevice(const Context<Cuda>& context, const void* from, void* to, std::size_t bytes) {
+  if (bytes == 0) return;
+  TREACLE_CUDA_CHECK(cudaMemcpyAsync(to, from, bytes, cudaMemcpyDeviceToDevice, context.stream()));
+}
+
+void clearBytes(const Context<Cuda>& context, void* memory, std::size_t bytes) {
+  if (bytes == 0) return;
+  TREACLE_CUDA_CHECK(cudaMemsetAsync(memory, 0, bytes, context.stream()));
+}
+
+PinnedMemory::PinnedMemory(void* memory, std::size_t bytes) {
+  if (bytes == 0) return;
+  TREACLE_CUDA_CHECK(cudaHostRegister(memory, bytes, cudaHostRegisterDefault));
+  memory_ = memory;
+}
+
+PinnedMemory::~PinnedMemory() {
+  if (memory_) cudaHostUnregister(memory_);
 }
 
 }  // namespace treacle

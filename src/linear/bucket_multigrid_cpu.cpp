@@ -61,7 +61,7 @@ void coarsen(Context<Cpu>&, const BlockCsr<D, T>& fine, std::span<const std::uin
 }
 
 template <int D, class T>
-void BucketMultigrid<D, T>::setup(Context<Cpu>& context, const BlockCsr<D>& finest,
+void BucketMultigrid<D, T, Cpu>::setup(Context<Cpu>& context, const BlockCsr<D>& finest,
                                   std::vector<std::span<const std::uint32_t>> members, const CycleSweeps& sweeps) {
   members_ = std::move(members);
   sweeps_ = sweeps;
@@ -78,7 +78,7 @@ void BucketMultigrid<D, T>::setup(Context<Cpu>& context, const BlockCsr<D>& fine
 
 /// x += D^-1 (b - A x)  [K23 eq. (42)]
 template <int D, class T>
-void BucketMultigrid<D, T>::sweep(Level& level) {
+void BucketMultigrid<D, T, Cpu>::sweep(Level& level) {
   const BlockCsr<D, T>& a = level.a;
   const std::uint32_t rows = a.rows();
   parallelFor(rows, parallelGrain, [&](std::size_t i) {
@@ -89,7 +89,7 @@ void BucketMultigrid<D, T>::sweep(Level& level) {
 }
 
 template <int D, class T>
-void BucketMultigrid<D, T>::cycle(Context<Cpu>& context, std::size_t r) {
+void BucketMultigrid<D, T, Cpu>::cycle(Context<Cpu>& context, std::size_t r) {
   Level& level = levels_[r];
   const BlockCsr<D, T>& a = level.a;
   const bool coarsest = r + 1 == levels_.size();
@@ -117,7 +117,7 @@ void BucketMultigrid<D, T>::cycle(Context<Cpu>& context, std::size_t r) {
 }
 
 template <int D, class T>
-void BucketMultigrid<D, T>::apply(Context<Cpu>& context, std::span<const Vec<D, T>> inverse,
+void BucketMultigrid<D, T, Cpu>::apply(Context<Cpu>& context, std::span<const Vec<D, T>> inverse,
                                   std::span<const Vec<D>> r, std::span<Vec<D>> z) {
   Level& finest = levels_[0];
   const auto members = members_[0];
@@ -135,7 +135,7 @@ void BucketMultigrid<D, T>::apply(Context<Cpu>& context, std::span<const Vec<D, 
 }
 
 template <int D, class T>
-std::size_t BucketMultigrid<D, T>::bytes() const {
+std::size_t BucketMultigrid<D, T, Cpu>::bytes() const {
   std::size_t sum = 0;
   for (const Level& l : levels_)
     sum += l.a.bytes() + l.inverseDiagonal.bytes() + l.b.bytes() + l.x.bytes() + l.next.bytes();
@@ -145,7 +145,7 @@ std::size_t BucketMultigrid<D, T>::bytes() const {
 #define TREACLE_INSTANTIATE(D, T)                                                                   \
   template void coarsen<D, T>(Context<Cpu>&, const BlockCsr<D, T>&, std::span<const std::uint32_t>, \
                               BlockCsr<D, T>&);                                                     \
-  template class BucketMultigrid<D, T>;
+  template class BucketMultigrid<D, T, Cpu>;
 TREACLE_INSTANTIATE(2, double)
 TREACLE_INSTANTIATE(3, double)
 TREACLE_INSTANTIATE(2, float)

@@ -32,7 +32,7 @@ double dotChunk(const double* x, const double* y, std::size_t n) {
   return sum;
 }
 
-double residualChunk(const double* b, double* r, std::size_t n) {
+double subtractFromChunk(const double* b, double* r, std::size_t n) {
   double sum = 0;
 #pragma omp simd reduction(+ : sum)
   for (std::size_t i = 0; i < n; ++i) {
@@ -62,48 +62,67 @@ void directionChunk(const double* z, double beta, double* p, std::size_t n) {
   for (std::size_t i = 0; i < n; ++i) p[i] = z[i] + beta * p[i];
 }
 
-}  // namespace
-
 double dot(Context<Cpu>& context, std::span<const double> x, std::span<const double> y) {
   return sumChunks(context, x.size(),
                    [&](std::size_t k, std::size_t n) { return dotChunk(x.data() + k, y.data() + k, n); });
 }
 
+}  // namespace
+
 void copy(Context<Cpu>&, std::span<const double> from, std::span<double> to) {
   std::copy(from.begin(), from.end(), to.begin());
 }
 
-double residual(Context<Cpu>& context, std::span<const double> b, std::span<double> r) {
-  return sumChunks(context, b.size(),
-                   [&](std::size_t k, std::size_t n) { return residualChunk(b.data() + k, r.data() + k, n); });
+void residual(Context<Cpu>& context, std::span<const double> b, std::span<double> r, KrylovScalars* scalars) {
+  const double rr = sumChunks(context, b.size(), [&](std::size_t k, std::size_t n) {
+    return subtractFromChunk(b.data() + k, r.data() + k, n);
+  });
+  scalars->start(dot(context, b, b), rr);
 }
 
-void direction(Context<Cpu>& context, std::span<const double> z, double beta, std::span<double> p) {
+void directionDot(Context<Cpu>& context, std::span<const double> x, std::span<const double> y,
+                  KrylovScalars* scalars) {
+  scalars->setDirection(dot(context, x, y));
+}
+
+void stepDot(Context<Cpu>& context, std::span<const double> x, std::span<const double> y, KrylovScalars* scalars) {
+  scalars->setStep(dot(context, x, y));
+}
+
+void direction(Context<Cpu>& context, std::span<const double> z, std::span<double> p, const KrylovScalars* scalars) {
+  if (scalars->iteration == 0) return copy(context, z, p);
   sumChunks(context, z.size(), [&](std::size_t k, std::size_t n) {
-    return directionChunk(z.data() + k, beta, p.data() + k, n), 0.0;
+    return directionChunk(z.data() + k, scalars->beta, p.data() + k, n), 0.0;
   });
 }
 
-double updateCg(Context<Cpu>& context, double alpha, const CgVectors& v) {
-  return sumChunks(context, v.x.size(), [&](std::size_t k, std::size_t n) {
+void directionsCr(Context<Cpu>& context, const CrDirections& v, const KrylovScalars* scalars) {
+  if (scalars->iteration == 0) {
+    copy(context, v.s, v.p);
+    copy(context, v.y, v.q);
+    return;
+  }
+  sumChunks(context, v.s.size(), [&](std::size_t k, std::size_t n) {
+    directionChunk(v.s.data() + k, scalars->beta, v.p.data() + k, n);
+    return directionChunk(v.y.data() + k, scalars->beta, v.q.data() + k, n), 0.0;
+  });
+}
+
+void updateCg(Context<Cpu>& context, const CgVectors& v, KrylovScalars* scalars) {
+  const double alpha = scalars->alpha;
+  scalars->endIteration(sumChunks(context, v.x.size(), [&](std::size_t k, std::size_t n) {
     addChunk(alpha, v.p.data() + k, v.x.data() + k, n);
     return subtractChunk(alpha, v.q.data() + k, v.r.data() + k, n);
-  });
+  }));
 }
 
-double updateCr(Context<Cpu>& context, double alpha, const CrVectors& v) {
-  return sumChunks(context, v.x.size(), [&](std::size_t k, std::size_t n) {
+void updateCr(Context<Cpu>& context, const CrVectors& v, KrylovScalars* scalars) {
+  const double alpha = scalars->alpha;
+  scalars->endIteration(sumChunks(context, v.x.size(), [&](std::size_t k, std::size_t n) {
     addChunk(alpha, v.p.data() + k, v.x.data() + k, n);
     addChunk(-alpha, v.u.data() + k, v.s.data() + k, n);
     return subtractChunk(alpha, v.q.data() + k, v.r.data() + k, n);
-  });
-}
-
-void directionsCr(Context<Cpu>& context, double beta, const CrDirections& v) {
-  sumChunks(context, v.s.size(), [&](std::size_t k, std::size_t n) {
-    directionChunk(v.s.data() + k, beta, v.p.data() + k, n);
-    return directionChunk(v.y.data() + k, beta, v.q.data() + k, n), 0.0;
-  });
+  }));
 }
 
 }  // namespace treacle

@@ -132,7 +132,7 @@ template <int D>
 void diagonalBlocks(Context<Cpu>&, const MphPairs<D>& pairs, const WallTerms<D>& terms,
                     std::span<Block<D>> diagonal) {
   const double floor2 = distanceFloor2(pairs);
-  const ClusterList<>& list = *pairs.fluidList;
+  const ClusterListView& list = pairs.fluidList;
   forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const VecLanes<D>& x, std::uint32_t c) {
     const ViscosityLanes<D> viscosity(pairs, range);
     Lanes block[D][D] = {};

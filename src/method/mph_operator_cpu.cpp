@@ -47,8 +47,8 @@ VecLanes<D> difference(const MphPairs<D>& pairs, ListEntry e, const VecLanes<D>&
 }  // namespace
 
 template <int D>
-void MphOperator<D>::countEntries() {
-  const ClusterList<>& list = *pairs_->fluidList;
+void MphOperator<D, Cpu>::countEntries() {
+  const ClusterListView& list = pairs_->fluidList;
   const std::uint32_t clusters = list.clusterCount();
   viscousStart_.resize(clusters + 1);
   pressureStart_.resize(clusters + 1);
@@ -63,13 +63,13 @@ void MphOperator<D>::countEntries() {
 }
 
 template <int D>
-void MphOperator<D>::prepare(Context<Cpu>&, const MphPairs<D>& pairs, const WallTerms<D>& terms) {
+void MphOperator<D, Cpu>::prepare(Context<Cpu>&, const MphPairs<D>& pairs, const WallTerms<D>& terms) {
   pairs_ = &pairs;
   terms_ = terms;
   q_.resize(pairs.activeCount);
   countEntries();
   const double floor2 = distanceFloor2(pairs);
-  const ClusterList<>& list = *pairs.fluidList;
+  const ClusterListView& list = pairs.fluidList;
   forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const VecLanes<D>& x, std::uint32_t c) {
     const ViscosityLanes<D> viscosity(pairs, range);
     std::uint64_t nextViscous = viscousStart_[c], nextPressure = pressureStart_[c];
@@ -87,7 +87,7 @@ void MphOperator<D>::prepare(Context<Cpu>&, const MphPairs<D>& pairs, const Wall
 }
 
 template <int D>
-void MphOperator<D>::multiply(Context<Cpu>&, std::span<const Vec<D>> u, std::span<Vec<D>> y) {
+void MphOperator<D, Cpu>::multiply(Context<Cpu>&, std::span<const Vec<D>> u, std::span<Vec<D>> y) {
   viscosityAndDivergence(u, y);
   wallDivergence(u);
   addGradient(y);
@@ -95,9 +95,9 @@ void MphOperator<D>::multiply(Context<Cpu>&, std::span<const Vec<D>> u, std::spa
 
 /// y = (rho/dt I + V) u, and q = lambda C^T u on the fluid.
 template <int D>
-void MphOperator<D>::viscosityAndDivergence(std::span<const Vec<D>> u, std::span<Vec<D>> y) {
+void MphOperator<D, Cpu>::viscosityAndDivergence(std::span<const Vec<D>> u, std::span<Vec<D>> y) {
   const MphPairs<D>& pairs = *pairs_;
-  const ClusterList<>& list = *pairs.fluidList;
+  const ClusterListView& list = pairs.fluidList;
   forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const VecLanes<D>& x, std::uint32_t c) {
     const VecLanes<D> ui = loadLanes<D>(range, u);
     VecLanes<D> force = {};  // minus the viscous part of A u
@@ -130,9 +130,9 @@ void MphOperator<D>::viscosityAndDivergence(std::span<const Vec<D>> u, std::span
 
 /// q = lambda C^T u on the walls; they are few, so their coefficients are not kept.
 template <int D>
-void MphOperator<D>::wallDivergence(std::span<const Vec<D>> u) {
+void MphOperator<D, Cpu>::wallDivergence(std::span<const Vec<D>> u) {
   const MphPairs<D>& pairs = *pairs_;
-  const ClusterList<>& list = *pairs.wallList;
+  const ClusterListView& list = pairs.wallList;
   const double floor2 = distanceFloor2(pairs);
   parallelFor(list.clusterCount(), parallelGrain / clusterSize, [&](std::size_t c) {
     const ClusterRange range(list, static_cast<std::uint32_t>(c));
@@ -155,9 +155,9 @@ void MphOperator<D>::wallDivergence(std::span<const Vec<D>> u) {
 
 /// y += C q
 template <int D>
-void MphOperator<D>::addGradient(std::span<Vec<D>> y) {
+void MphOperator<D, Cpu>::addGradient(std::span<Vec<D>> y) {
   const MphPairs<D>& pairs = *pairs_;
-  const ClusterList<>& list = *pairs.fluidList;
+  const ClusterListView& list = pairs.fluidList;
   forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const VecLanes<D>& x, std::uint32_t c) {
     const Lanes qi = loadLanes(range, q_.span());
     VecLanes<D> sum = {};
@@ -175,7 +175,7 @@ void MphOperator<D>::addGradient(std::span<Vec<D>> y) {
   });
 }
 
-template class MphOperator<2>;
-template class MphOperator<3>;
+template class MphOperator<2, Cpu>;
+template class MphOperator<3, Cpu>;
 
 }  // namespace treacle

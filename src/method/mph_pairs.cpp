@@ -2,6 +2,8 @@
 
 #include "treacle/core/error.hpp"
 
+#include <algorithm>
+
 namespace treacle {
 
 MaterialTable MaterialTable::make(const Case& c) {
@@ -23,5 +25,25 @@ MaterialTable MaterialTable::make(const Case& c) {
   }
   return t;
 }
+
+template <int D>
+MphPairs<D> makePairs(const Case& c) {
+  Vec<D, bool> periodic{};
+  for (int k = 0; k < D; ++k) periodic[k] = c.domain.periodic[k];
+  const double hp = c.pressureRadius(), hv = c.viscosityRadius();
+  MphPairs<D> pairs;
+  pairs.grid =
+      CellGrid<D>::make(resized<D>(c.domain.min), resized<D>(c.domain.max), periodic, std::max(hv, 2 * hp));
+  pairs.images = periodicImages(pairs.grid);
+  pairs.pressureWeight = Weight<D>::make(hp, c.spacing);
+  pairs.viscosityWeight = Weight<D>::make(hv, c.spacing);
+  pairs.pressure = PairTerm::pressure(pairs.pressureWeight);
+  pairs.viscosity = PairTerm::viscosity(pairs.viscosityWeight);
+  pairs.materials = MaterialTable::make(c);
+  return pairs;
+}
+
+template MphPairs<2> makePairs<2>(const Case&);
+template MphPairs<3> makePairs<3>(const Case&);
 
 }  // namespace treacle

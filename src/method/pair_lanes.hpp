@@ -36,7 +36,7 @@ inline double distanceFloor2(const MphPairs<D>& pairs) {
 
 /// Runs body(range, lane positions, cluster) for every cluster of the list.
 template <int D, class F>
-inline void forEachCluster(const MphPairs<D>& pairs, const ClusterList<>& list, F&& body) {
+inline void forEachCluster(const MphPairs<D>& pairs, const ClusterListView& list, F&& body) {
   parallelFor(list.clusterCount(), parallelGrain / clusterSize, [&](std::size_t index) {
     const auto c = static_cast<std::uint32_t>(index);
     const ClusterRange range(list, c);

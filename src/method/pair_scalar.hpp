@@ -8,7 +8,7 @@ namespace treacle {
 /// image that the list means. Neighbours of the cluster that are not i's are among them, and so is i itself.
 template <int D, class F>
 inline void forEachEntry(const MphPairs<D>& pairs, std::uint32_t i, ListSegment segment, F&& f) {
-  const ClusterList<>& list = i < pairs.fluidCount ? *pairs.fluidList : *pairs.wallList;
+  const ClusterListView& list = i < pairs.fluidCount ? pairs.fluidList : pairs.wallList;
   const std::uint32_t cluster = (i - list.first) / clusterSize;
   // A list's images are seen from the cluster's first particle; i may stand across a periodic end from it.
   Vec<D> xi = pairs.position[i];

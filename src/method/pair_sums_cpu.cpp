@@ -14,11 +14,11 @@ template <int D>
 void numberDensity(Context<Cpu>&, const MphPairs<D>& pairs, std::span<double> n) {
   const double floor2 = distanceFloor2(pairs);
   const double h = pairs.pressureWeight.radius, scale = pairs.pressureWeight.scale;
-  for (const ClusterList<>* list : {pairs.fluidList, pairs.wallList})
-    forEachCluster<D>(pairs, *list, [&](const ClusterRange& range, const VecLanes<D>& x, std::uint32_t c) {
+  for (const ClusterListView& list : {pairs.fluidList, pairs.wallList})
+    forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const VecLanes<D>& x, std::uint32_t c) {
       Lanes sum = {};
       for (ListSegment s : nearSegments)
-        for (ListEntry e : list->segment(c, s)) {
+        for (ListEntry e : list.segment(c, s)) {
           const PairLanes<D> pair(pairs.positionOf(e), x, floor2);
           const Lanes part = max(1.0 - 1.0 / (pair.inverseR * h), Lanes{});
           Lanes w = scale * part * part;
@@ -34,7 +34,7 @@ template <int D>
 void addPressureGradient(Context<Cpu>&, const MphPairs<D>& pairs, std::span<const double> q, double factor,
                          std::span<Vec<D>> y) {
   const double floor2 = distanceFloor2(pairs);
-  const ClusterList<>& list = *pairs.fluidList;
+  const ClusterListView& list = pairs.fluidList;
   forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const VecLanes<D>& x, std::uint32_t c) {
     const Lanes qi = loadLanes(range, q);
     VecLanes<D> sum = {};
@@ -53,12 +53,12 @@ void addPressureGradient(Context<Cpu>&, const MphPairs<D>& pairs, std::span<cons
 template <int D>
 void divergence(Context<Cpu>&, const MphPairs<D>& pairs, std::span<const Vec<D>> u, std::span<double> div) {
   const double floor2 = distanceFloor2(pairs);
-  for (const ClusterList<>* list : {pairs.fluidList, pairs.wallList})
-    forEachCluster<D>(pairs, *list, [&](const ClusterRange& range, const VecLanes<D>& x, std::uint32_t c) {
+  for (const ClusterListView& list : {pairs.fluidList, pairs.wallList})
+    forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const VecLanes<D>& x, std::uint32_t c) {
       const VecLanes<D> ui = loadLanes<D>(range, u);
       Lanes sum = {};
       for (ListSegment s : nearSegments)
-        for (ListEntry e : list->segment(c, s)) {
+        for (ListEntry e : list.segment(c, s)) {
           const PairLanes<D> pair(pairs.positionOf(e), x, floor2);
           Lanes along = {};
           for (int k = 0; k < D; ++k) along += (u[e.index()][k] - ui[k]) * pair.d[k];
@@ -71,7 +71,7 @@ void divergence(Context<Cpu>&, const MphPairs<D>& pairs, std::span<const Vec<D>>
 template <int D>
 void wallTerms(Context<Cpu>&, const MphPairs<D>& pairs, const WallTerms<D>& terms) {
   const double floor2 = distanceFloor2(pairs);
-  const ClusterList<>& list = *pairs.fluidList;
+  const ClusterListView& list = pairs.fluidList;
   forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const VecLanes<D>& x, std::uint32_t c) {
     const ViscosityLanes<D> viscosity(pairs, range);
     Lanes block[D][D] = {};
@@ -101,7 +101,7 @@ void wallTerms(Context<Cpu>&, const MphPairs<D>& pairs, const WallTerms<D>& term
 template <int D>
 void addWallDrag(Context<Cpu>&, const MphPairs<D>& pairs, std::span<const Vec<D>> u, std::span<Vec<D>> y) {
   const double floor2 = distanceFloor2(pairs);
-  const ClusterList<>& list = *pairs.fluidList;
+  const ClusterListView& list = pairs.fluidList;
   forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const VecLanes<D>& x, std::uint32_t c) {
     const ViscosityLanes<D> viscosity(pairs, range);
     VecLanes<D> yi = loadLanes<D>(range, std::span<const Vec<D>>(y));

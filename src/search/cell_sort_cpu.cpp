@@ -13,24 +13,6 @@ using KeyedIndex = SortWorkspace<>::KeyedIndex;
 /// Keys of inactive walls sort behind those of all active ones.
 constexpr std::uint64_t inactive = std::uint64_t{1} << 63;
 
-template <int D, class F>
-void forEachAdjacentCell(const CellGrid<D>& grid, const Vec<D, int>& cell, F&& f) {
-  int offsets = 1;
-  for (int k = 0; k < D; ++k) offsets *= 3;
-  for (int o = 0; o < offsets; ++o) {
-    Vec<D, int> c = cell;
-    bool inside = true;
-    for (int k = 0, digits = o; k < D; ++k, digits /= 3) {
-      c[k] += digits % 3 - 1;
-      if (grid.periodic[k])
-        c[k] = (c[k] + grid.count[k]) % grid.count[k];
-      else
-        inside = inside && c[k] >= 0 && c[k] < grid.count[k];
-    }
-    if (inside) f(c);
-  }
-}
-
 /// Sorts keyed[begin, end), which holds these particles' keys and indices, and brings their fields into its order.
 template <int D>
 void sortGroup(Particles<D>& particles, std::uint32_t begin, std::uint32_t end, SortWorkspace<>& workspace) {

@@ -66,6 +66,9 @@ class Buffer<T, Cpu> {
     size_ = size;
   }
 
+  /// The same for code that is written for all backends.
+  void resize(const Context<Cpu>&, std::size_t size) { resize(size); }
+
   T* data() { return data_; }
   const T* data() const { return data_; }
   std::size_t size() const { return size_; }

@@ -3,6 +3,7 @@
 #include "treacle/core/backend.hpp"
 #include "treacle/core/block.hpp"
 #include "treacle/core/buffer.hpp"
+#include "treacle/core/cuda.hpp"
 #include "treacle/linear/row_sum.hpp"
 
 #include <cstdint>
@@ -10,7 +11,8 @@
 
 namespace treacle {
 
-/// Square sparse matrix of D x D blocks in compressed rows; columns ascend within a row.
+/// Square sparse matrix of D x D blocks in compressed rows; columns ascend within a row (on the device: in any
+/// order).
 template <int D, class T = double, class Backend = Cpu>
 struct BlockCsr {
   Buffer<std::uint64_t, Backend> rowStart;  // rows + 1
@@ -34,9 +36,13 @@ inline Vec<D, T> rowProduct(const BlockCsr<D, T>& a, std::size_t row, const Vec<
 /// y = A x; spans of A.rows() blocks.
 template <int D, class T>
 void multiply(Context<Cpu>&, const BlockCsr<D, T>& a, std::span<const Vec<D, T>> x, std::span<Vec<D, T>> y);
+template <int D, class T>
+void multiply(Context<Cuda>&, const BlockCsr<D, T, Cuda>& a, std::span<const Vec<D, T>> x, std::span<Vec<D, T>> y);
 
 /// Diagonal of the extended Jacobi smoother, half the row sums of |A_ij| [K23 eq. (41)]; the inverse is stored.
 template <int D, class T, class S>
 void extendedJacobiInverse(Context<Cpu>&, const BlockCsr<D, T>& a, std::span<Vec<D, S>> inverse);
+template <int D, class T, class S>
+void extendedJacobiInverse(Context<Cuda>&, const BlockCsr<D, T, Cuda>& a, std::span<Vec<D, S>> inverse);
 
 }  // namespace treacle

@@ -14,18 +14,28 @@ namespace treacle {
 template <int D, class T>
 void applyDiagonal(Context<Cpu>&, std::span<const Vec<D, T>> inverse, std::span<const Vec<D>> r,
                    std::span<Vec<D>> z);
+template <int D, class T>
+void applyDiagonal(Context<Cuda>&, std::span<const Vec<D, T>> inverse, std::span<const Vec<D>> r,
+                   std::span<Vec<D>> z);
 
 /// K = block diagonal
 template <int D, class T>
 void applyBlockDiagonal(Context<Cpu>&, std::span<const Block<D, T>> inverse, std::span<const Vec<D>> r,
                         std::span<Vec<D>> z);
+template <int D, class T>
+void applyBlockDiagonal(Context<Cuda>&, std::span<const Block<D, T>> inverse, std::span<const Vec<D>> r,
+                        std::span<Vec<D>> z);
 
 /// 1 / A_ii of the diagonal blocks.
 template <int D, class T>
 void jacobiInverse(Context<Cpu>&, std::span<const Block<D>> diagonal, std::span<Vec<D, T>> inverse);
+template <int D, class T>
+void jacobiInverse(Context<Cuda>&, std::span<const Block<D>> diagonal, std::span<Vec<D, T>> inverse);
 
 /// Inverses of the diagonal blocks.
 template <int D, class T>
 void blockInverse(Context<Cpu>&, std::span<const Block<D>> diagonal, std::span<Block<D, T>> inverse);
+template <int D, class T>
+void blockInverse(Context<Cuda>&, std::span<const Block<D>> diagonal, std::span<Block<D, T>> inverse);
 
 }  // namespace treacle

@@ -26,6 +26,7 @@ class RowSum {
   Block<D, T> part_{};
 };
 
+#ifndef __CUDACC__  // whose front end knows no vectors of dependent size, and which compiles no host loop
 /// In two dimensions a block fills one vector register.
 template <class T>
 class RowSum<2, T> {
@@ -41,5 +42,6 @@ class RowSum<2, T> {
   typedef T Four __attribute__((vector_size(4 * sizeof(T))));
   Four part_ = {};
 };
+#endif
 
 }  // namespace treacle

@@ -1,40 +1,56 @@
 #pragma once
 
 #include "treacle/core/backend.hpp"
+#include "treacle/linear/krylov_scalars.hpp"
 
 #include <span>
 
 namespace treacle {
 
-/// The vector operations that a Krylov loop consists of. All spans have the same length. Sums have a fixed order:
-/// they do not depend on the number of threads.
+/// The vector operations that a Krylov loop consists of. All spans have the same length; `scalars` and the spans
+/// are in the backend's memory. Sums have a fixed order: they do not depend on the number of threads.
 
-double dot(Context<Cpu>&, std::span<const double> x, std::span<const double> y);
 void copy(Context<Cpu>&, std::span<const double> from, std::span<double> to);
-/// r = b - r; returns r.r
-double residual(Context<Cpu>&, std::span<const double> b, std::span<double> r);
-/// p = z + beta p
-void direction(Context<Cpu>&, std::span<const double> z, double beta, std::span<double> p);
+void copy(Context<Cuda>&, std::span<const double> from, std::span<double> to);
 
-/// One conjugate-gradient update; 6 vectors of traffic: x += alpha p, r -= alpha q; returns r.r
-struct CgVectors {
-  std::span<const double> p, q;
-  std::span<double> x, r;
-};
-double updateCg(Context<Cpu>&, double alpha, const CgVectors& v);
+/// r = b - r, and scalars.start(b.b, r.r)
+void residual(Context<Cpu>&, std::span<const double> b, std::span<double> r, KrylovScalars* scalars);
+void residual(Context<Cuda>&, std::span<const double> b, std::span<double> r, KrylovScalars* scalars);
 
-/// One conjugate-residual update; 9 vectors of traffic: x += alpha p, r -= alpha q, s -= alpha u; returns r.r
-struct CrVectors {
-  std::span<const double> p, q, u;
-  std::span<double> x, r, s;
-};
-double updateCr(Context<Cpu>&, double alpha, const CrVectors& v);
+/// scalars.setDirection(x.y): beta
+void directionDot(Context<Cpu>&, std::span<const double> x, std::span<const double> y, KrylovScalars* scalars);
+void directionDot(Context<Cuda>&, std::span<const double> x, std::span<const double> y, KrylovScalars* scalars);
 
-/// p = s + beta p, q = y + beta q; 6 vectors of traffic
+/// scalars.setStep(x.y): alpha
+void stepDot(Context<Cpu>&, std::span<const double> x, std::span<const double> y, KrylovScalars* scalars);
+void stepDot(Context<Cuda>&, std::span<const double> x, std::span<const double> y, KrylovScalars* scalars);
+
+/// p = z + beta p, in the first iteration p = z; 3 vectors of traffic
+void direction(Context<Cpu>&, std::span<const double> z, std::span<double> p, const KrylovScalars* scalars);
+void direction(Context<Cuda>&, std::span<const double> z, std::span<double> p, const KrylovScalars* scalars);
+
+/// p = s + beta p, q = y + beta q, likewise; 6 vectors of traffic
 struct CrDirections {
   std::span<const double> s, y;
   std::span<double> p, q;
 };
-void directionsCr(Context<Cpu>&, double beta, const CrDirections& v);
+void directionsCr(Context<Cpu>&, const CrDirections& v, const KrylovScalars* scalars);
+void directionsCr(Context<Cuda>&, const CrDirections& v, const KrylovScalars* scalars);
+
+/// x += alpha p, r -= alpha q, and scalars.endIteration(r.r); 6 vectors of traffic
+struct CgVectors {
+  std::span<const double> p, q;
+  std::span<double> x, r;
+};
+void updateCg(Context<Cpu>&, const CgVectors& v, KrylovScalars* scalars);
+void updateCg(Context<Cuda>&, const CgVectors& v, KrylovScalars* scalars);
+
+/// x += alpha p, r -= alpha q, s -= alpha u, and scalars.endIteration(r.r); 9 vectors of traffic
+struct CrVectors {
+  std::span<const double> p, q, u;
+  std::span<double> x, r, s;
+};
+void updateCr(Context<Cpu>&, const CrVectors& v, KrylovScalars* scalars);
+void updateCr(Context<Cuda>&, const CrVectors& v, KrylovScalars* scalars);
 
 }  // namespace treacle

@@ -12,5 +12,8 @@ namespace treacle {
 template <int D>
 void bucketGalerkin(Context<Cpu>&, const MphPairs<D>&, const CellRanges<>&, const BucketLevels<>&,
                     const WallTerms<D>&, Buffer<Vec<D>>& columns, BlockCsr<D>& a0);
+template <int D>
+void bucketGalerkin(Context<Cuda>&, const MphPairs<D>&, const CellRanges<Cuda>&, const BucketLevels<Cuda>&,
+                    const WallTerms<D>&, Buffer<Vec<D>, Cuda>& columns, BlockCsr<D, double, Cuda>& a0);
 
 }  // namespace treacle

@@ -11,8 +11,11 @@ namespace treacle {
 /// A = rho/dt I + V + C Lambda C^T applied from pair sums [K23 eq. (16)], walls at rest. What stays the same
 /// through a solve is kept: one number per pair and term, from which a product needs no root; directions come from
 /// the positions. Per fluid particle that is about 0.8 kB in 2D and 3 kB in 3D, read once per product.
+template <int D, class Backend = Cpu>
+class MphOperator;
+
 template <int D>
-class MphOperator {
+class MphOperator<D, Cpu> {
  public:
   /// Computes the pair coefficients. `pairs` and the terms' spans must outlive the products.
   void prepare(Context<Cpu>&, const MphPairs<D>& pairs, const WallTerms<D>& terms);
@@ -39,6 +42,24 @@ class MphOperator {
   Buffer<double> viscous_;   // near and far fluid: c of the viscous block c d d^T
   Buffer<double> pressure_;  // near fluid, then near walls: g of -e w' = g d
   Buffer<double> q_;         // lambda C^T u, per particle
+};
+
+/// The same on a device, where arithmetic costs less than memory: nothing is kept, a product computes the pair
+/// terms from the positions.
+template <int D>
+class MphOperator<D, Cuda> {
+ public:
+  void prepare(Context<Cuda>&, const MphPairs<D>& pairs, const WallTerms<D>& terms);
+  void multiply(Context<Cuda>&, std::span<const Vec<D>> u, std::span<Vec<D>> y);
+  /// The same product in single precision, for preconditioners; q: workspace of activeCount. Needs lists.
+  void multiplySingle(Context<Cuda>&, std::span<const Vec<D, float>> u, std::span<float> q,
+                      std::span<Vec<D, float>> y);
+  std::size_t bytes() const { return q_.bytes(); }
+
+ private:
+  const MphPairs<D>* pairs_ = nullptr;
+  WallTerms<D> terms_{};
+  Buffer<double, Cuda> q_;  // lambda C^T u, per particle
 };
 
 }  // namespace treacle

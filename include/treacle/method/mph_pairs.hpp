@@ -3,6 +3,7 @@
 #include "treacle/method/weight.hpp"
 #include "treacle/model/case.hpp"
 #include "treacle/search/cell_grid.hpp"
+#include "treacle/search/cell_sort.hpp"
 #include "treacle/search/cluster_list.hpp"
 
 #include <cstdint>
@@ -22,22 +23,27 @@ struct MaterialTable {
   static MaterialTable make(const Case& c);
 };
 
-/// What every pair sum of a step reads. Particles [0, fluidCount) are fluid, [fluidCount, activeCount) the walls
+/// What every pair sum of a step reads, in host or device memory. Particles [0, fluidCount) are fluid, [fluidCount, activeCount) the walls
 /// near it. Spans and pointers belong to the step's owner.
 template <int D>
 struct MphPairs {
   std::uint32_t fluidCount = 0, activeCount = 0;
   std::span<const Vec<D>> position;  // [m]
   std::span<const std::uint8_t> material;
-  const ClusterList<>* fluidList = nullptr;  // near h_p, far max(h_v, 2 h_p)
-  const ClusterList<>* wallList = nullptr;   // near h_p only
+  ClusterListView fluidList;  // near h_p, far max(h_v, 2 h_p)
+  ClusterListView wallList;   // near h_p only
+  CellRangesView cells;
   CellGrid<D> grid;
   PeriodicImages<D> images;
   Weight<D> pressureWeight{}, viscosityWeight{};
   PairTerm pressure{}, viscosity{};
   MaterialTable materials;
 
-  Vec<D> positionOf(ListEntry e) const { return position[e.index()] + images.shift[e.image()]; }
+  TREACLE_HD Vec<D> positionOf(ListEntry e) const { return position[e.index()] + images.shift[e.image()]; }
 };
+
+/// The constants of a case, without particles.
+template <int D>
+MphPairs<D> makePairs(const Case& c);
 
 }  // namespace treacle

@@ -82,6 +82,8 @@ enum class PreconditionerKind { None, Jacobi, BlockJacobi, BucketMultigrid };
 enum class OperatorKind { MatrixFree, Assembled };
 enum class Precision { Double, Mixed };
 enum class SmootherDiagonal { Jacobi, ExtendedJacobi };
+enum class NeighbourKind { Lists, Ranges };
+enum class CoarseKind { Auto, Direct, Spgemm };
 
 /// Bucket multigrid [K23 sect. 3.2]. The defaults are those of the authors' program; the paper as printed
 /// has 2, 2, 4 and the extended Jacobi diagonal on the particles.
@@ -90,6 +92,8 @@ struct MultigridSettings {
   int middleSweeps = 3;    // pre and post sweeps each, levels between
   int coarsestSweeps = 4;  // sweeps on the last level
   SmootherDiagonal particleDiagonal = SmootherDiagonal::Jacobi;
+  /// On a GPU: coarse operators from sums of pair terms, or as products of sparse matrices.
+  CoarseKind coarseOperators = CoarseKind::Auto;
 
   bool operator==(const MultigridSettings&) const = default;
 };
@@ -98,6 +102,7 @@ struct SolverSettings {
   KrylovKind krylov = KrylovKind::Cr;
   PreconditionerKind preconditioner = PreconditionerKind::BucketMultigrid;
   OperatorKind operatorKind = OperatorKind::MatrixFree;
+  NeighbourKind neighbours = NeighbourKind::Lists;  // on a GPU; ranges: no memory for lists, more time
   double tolerance = 1e-12;  // bound on |r|^2 / |b|^2
   int maxIterations = 5000;
   Precision precision = Precision::Double;  // mixed: the preconditioner works in single precision

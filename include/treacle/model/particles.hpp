@@ -4,8 +4,17 @@
 #include "treacle/core/vec.hpp"
 
 #include <cstdint>
+#include <type_traits>
 
 namespace treacle {
+
+/// Calls f with every field of the sets of particles, f(a.position, b.position, ...) and so on: what permutes,
+/// saves, copies or compares particles cannot forget one.
+template <class F, class... Sets>
+void forEachFieldOf(F&& f, Sets&... sets) {
+  f(sets.position...), f(sets.velocity...), f(sets.pressure...), f(sets.numberDensity...), f(sets.material...),
+      f(sets.id...);
+}
 
 /// The only owner of per-particle fields. Fluid particles come first, [0, fluidCount), then wall particles,
 /// [fluidCount, count); inside both groups the search keeps them sorted by cell. `id` names a particle for
@@ -24,16 +33,24 @@ struct Particles {
 
   std::uint32_t wallCount() const { return count - fluidCount; }
 
-  void resize(std::uint32_t fluid, std::uint32_t wall) {
+  /// The content is undefined afterwards. Errors: std::bad_alloc.
+  void resize(std::uint32_t fluid, std::uint32_t wall) requires std::is_same_v<Backend, Cpu> {
+    resize(Context<Cpu>{}, fluid, wall);
+  }
+  void resize(const Context<Backend>& context, std::uint32_t fluid, std::uint32_t wall) {
     fluidCount = fluid;
     count = fluid + wall;
-    forEachField([this](auto& field) { field.resize(count); });
+    forEachField([&](auto& field) { field.resize(context, count); });
   }
 
-  /// Calls f with every field: what permutes, saves or compares particles cannot forget one.
+  /// Calls f with every field.
   template <class F>
   void forEachField(F&& f) {
-    f(position), f(velocity), f(pressure), f(numberDensity), f(material), f(id);
+    forEachFieldOf(f, *this);
+  }
+  template <class F>
+  void forEachField(F&& f) const {
+    forEachFieldOf(f, *this);
   }
 };
 

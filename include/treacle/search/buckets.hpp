@@ -2,6 +2,7 @@
 
 #include "treacle/core/backend.hpp"
 #include "treacle/core/buffer.hpp"
+#include "treacle/core/cuda.hpp"
 
 #include <cstdint>
 #include <span>
@@ -19,11 +20,18 @@ struct BucketLevels {
   Buffer<std::uint32_t, Backend> bucketOf;  // per fluid particle: its level-0 bucket
 
   std::uint32_t count(std::size_t level) const { return static_cast<std::uint32_t>(begin[level].size() - 1); }
+  std::size_t bytes() const {
+    std::size_t sum = bucketOf.bytes();
+    for (const auto& level : begin) sum += level.bytes();
+    return sum;
+  }
 };
 
 /// `key`: ascending sort keys of the fluid particles; key >> cellShift is the cell's Hilbert index, and dropping
 /// another `dimensions` bits gives each coarser bucket's.
 void findBuckets(Context<Cpu>&, std::span<const std::uint64_t> key, int cellShift, int dimensions,
                  BucketLevels<>& levels);
+void findBuckets(Context<Cuda>&, std::span<const std::uint64_t> key, int cellShift, int dimensions,
+                 BucketLevels<Cuda>& levels);
 
 }  // namespace treacle

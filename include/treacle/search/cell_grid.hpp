@@ -60,6 +60,16 @@ struct CellGrid {
     return index;
   }
 
+  /// The inverse of linear().
+  TREACLE_HD Vec<D, int> cellAt(std::size_t index) const {
+    Vec<D, int> c{};
+    for (int k = 0; k < D; ++k) {
+      c[k] = static_cast<int>(index % count[k]);
+      index /= count[k];
+    }
+    return c;
+  }
+
   /// Sort key: Hilbert index at the resolution of sub-cells. key >> (D subBits) is the cell's Hilbert index, and
   /// each further shift by D that of the bucket one level coarser.
   TREACLE_HD std::uint64_t key(const Vec<D>& x) const {
@@ -67,7 +77,8 @@ struct CellGrid {
     for (int k = 0; k < D; ++k) {
       const double s = (x[k] - origin[k]) * inverseEdge[k];
       const int cell = clampCell(static_cast<int>(std::floor(s)), k);
-      int sub = static_cast<int>((s - cell) * (1 << subBits));
+      // Not by (s - cell): that may be fused with the product in s, and hosts and devices would differ.
+      int sub = static_cast<int>(std::floor(s * (1 << subBits))) - (cell << subBits);
       sub = sub < 0 ? 0 : sub >= (1 << subBits) ? (1 << subBits) - 1 : sub;
       p[k] = static_cast<std::uint32_t>(cell << subBits | sub);
     }
@@ -90,5 +101,25 @@ struct CellGrid {
  private:
   TREACLE_HD int clampCell(int c, int k) const { return c < 0 ? 0 : c >= count[k] ? count[k] - 1 : c; }
 };
+
+/// Calls f with the cell itself and each one that touches it, across periodic ends too; with the same one several
+/// times where a periodic axis has fewer than three cells.
+template <int D, class F>
+TREACLE_HD void forEachAdjacentCell(const CellGrid<D>& grid, const Vec<D, int>& cell, F&& f) {
+  int offsets = 1;
+  for (int k = 0; k < D; ++k) offsets *= 3;
+  for (int o = 0; o < offsets; ++o) {
+    Vec<D, int> c = cell;
+    bool inside = true;
+    for (int k = 0, digits = o; k < D; ++k, digits /= 3) {
+      c[k] += digits % 3 - 1;
+      if (grid.periodic[k])
+        c[k] = (c[k] + grid.count[k]) % grid.count[k];
+      else
+        inside = inside && c[k] >= 0 && c[k] < grid.count[k];
+    }
+    if (inside) f(c);
+  }
+}
 
 }  // namespace treacle

@@ -2,6 +2,7 @@
 
 #include "treacle/core/backend.hpp"
 #include "treacle/core/buffer.hpp"
+#include "treacle/core/cuda.hpp"
 #include "treacle/model/particles.hpp"
 #include "treacle/search/cell_grid.hpp"
 
@@ -25,20 +26,55 @@ struct CellRanges {
   }
 };
 
+/// The ranges as kernels and pair sums read them; host or device memory.
+struct CellRangesView {
+  const std::uint32_t* fluidBegin = nullptr;
+  const std::uint32_t* fluidEnd = nullptr;
+  const std::uint32_t* wallBegin = nullptr;
+  const std::uint32_t* wallEnd = nullptr;
+};
+
+template <class Backend>
+CellRangesView viewOf(const CellRanges<Backend>& r) {
+  return {r.fluidBegin.data(), r.fluidEnd.data(), r.wallBegin.data(), r.wallEnd.data()};
+}
+
 template <class Backend = Cpu>
-struct SortWorkspace {
+struct SortWorkspace;
+
+template <>
+struct SortWorkspace<Cpu> {
   struct KeyedIndex {
     std::uint64_t key;
     std::uint32_t index;
   };
-  Buffer<KeyedIndex, Backend> keyed;
-  Buffer<std::byte, Backend> field;        // a permuted copy of one field
-  Buffer<std::uint8_t, Backend> hasFluid;  // per cell: fluid in it or next to it
+  Buffer<KeyedIndex> keyed;
+  Buffer<std::byte> field;        // a permuted copy of one field
+  Buffer<std::uint8_t> hasFluid;  // per cell: fluid in it or next to it
+
+  std::size_t bytes() const { return keyed.bytes() + field.bytes() + hasFluid.bytes(); }
+};
+
+template <>
+struct SortWorkspace<Cuda> {
+  Buffer<std::uint64_t, Cuda> key, sortedKey;
+  Buffer<std::uint32_t, Cuda> index, sortedIndex;
+  Buffer<std::byte, Cuda> field;
+  Buffer<std::uint8_t, Cuda> hasFluid;
+  Buffer<std::uint32_t, Cuda> count;  // of active walls
+
+  std::size_t bytes() const {
+    return key.bytes() + sortedKey.bytes() + index.bytes() + sortedIndex.bytes() + field.bytes() + hasFluid.bytes() +
+           count.bytes();
+  }
 };
 
 /// Sorts all fields by CellGrid::key, fluid, active and inactive walls each by itself, stably; fills the ranges.
 template <int D>
 void sortByCell(Context<Cpu>&, const CellGrid<D>& grid, Particles<D>& particles, CellRanges<>& ranges,
                 SortWorkspace<>& workspace);
+template <int D>
+void sortByCell(Context<Cuda>&, const CellGrid<D>& grid, Particles<D, Cuda>& particles, CellRanges<Cuda>& ranges,
+                SortWorkspace<Cuda>& workspace);
 
 }  // namespace treacle

@@ -24,7 +24,7 @@ struct ClusterRange {
   std::uint32_t first, count;
 
   ClusterRange(std::uint32_t begin, std::uint32_t end) : first(begin), count(std::min(clusterSize, end - begin)) {}
-  ClusterRange(const ClusterList<>& list, std::uint32_t cluster)
+  ClusterRange(const ClusterListView& list, std::uint32_t cluster)
       : ClusterRange(list.first + cluster * clusterSize, list.last) {}
   std::uint32_t particle(std::uint32_t lane) const { return first + std::min(lane, count - 1); }
 };

@@ -2,6 +2,7 @@
 
 #include "treacle/core/backend.hpp"
 #include "treacle/core/buffer.hpp"
+#include "treacle/core/cuda.hpp"
 #include "treacle/search/cell_grid.hpp"
 #include "treacle/search/cell_sort.hpp"
 
@@ -40,8 +41,22 @@ struct PeriodicImages {
 enum class ListSegment { NearFluid, FarFluid, NearWall, FarWall };
 inline constexpr int listSegments = 4;
 
-/// Lists of the clusters of particles [first, last): cluster c holds particles first + 8 c …; the last may be
-/// short. "Near": some lane lies within the near radius; "far": the others within the far radius.
+/// What pair sums read of the lists; host or device memory.
+struct ClusterListView {
+  std::uint32_t first = 0, last = 0;  // particles [first, last); cluster c holds particles first + 8 c …
+  const std::uint64_t* offset = nullptr;
+  const ListEntry* entry = nullptr;
+  const std::uint8_t* wraps = nullptr;
+
+  TREACLE_HD std::uint32_t clusterCount() const { return (last - first + clusterSize - 1) / clusterSize; }
+  std::span<const ListEntry> segment(std::uint32_t cluster, ListSegment s) const {
+    const std::size_t k = std::size_t{listSegments} * cluster + static_cast<int>(s);
+    return {entry + offset[k], offset[k + 1] - offset[k]};
+  }
+};
+
+/// Lists of the clusters of particles [first, last); the last cluster may be short. "Near": some lane lies within
+/// the near radius; "far": the others within the far radius.
 template <class Backend = Cpu>
 struct ClusterList {
   std::uint32_t first = 0, last = 0;
@@ -49,11 +64,10 @@ struct ClusterList {
   Buffer<ListEntry, Backend> entry;
   Buffer<std::uint8_t, Backend> wraps;  // per cluster: some entry means a periodic image other than 0
 
-  std::uint32_t clusterCount() const { return (last - first + clusterSize - 1) / clusterSize; }
-  std::span<const ListEntry> segment(std::uint32_t cluster, ListSegment s) const {
-    const std::size_t k = std::size_t{listSegments} * cluster + static_cast<int>(s);
-    return entry.span().subspan(offset[k], offset[k + 1] - offset[k]);
-  }
+  ClusterListView view() const { return {first, last, offset.data(), entry.data(), wraps.data()}; }
+  operator ClusterListView() const { return view(); }
+  std::uint32_t clusterCount() const { return view().clusterCount(); }
+  std::span<const ListEntry> segment(std::uint32_t cluster, ListSegment s) const { return view().segment(cluster, s); }
   std::size_t bytes() const { return offset.bytes() + entry.bytes() + wraps.bytes(); }
 };
 
@@ -71,5 +85,9 @@ template <int D>
 void buildClusterList(Context<Cpu>&, const CellGrid<D>& grid, const CellRanges<>& ranges,
                       std::span<const Vec<D>> position, std::uint32_t first, std::uint32_t last, ListRadii radii,
                       bool onlyNextToFluid, ClusterList<>& list);
+template <int D>
+void buildClusterList(Context<Cuda>&, const CellGrid<D>& grid, const CellRanges<Cuda>& ranges,
+                      std::span<const Vec<D>> position, std::uint32_t first, std::uint32_t last, ListRadii radii,
+                      bool onlyNextToFluid, ClusterList<Cuda>& list);
 
 }  // namespace treacle

@@ -44,9 +44,10 @@ struct StepReport {
   PhaseSeconds seconds;
 };
 
-/// One MPH-I simulation on the CPU: x^{k+1} = x^k + dt u^{k+1} with u^{k+1} from the implicit step
-/// [K23 eqs. (13)-(16)]. Results do not depend on the number of OpenMP threads.
-template <int D>
+/// One MPH-I simulation: x^{k+1} = x^k + dt u^{k+1} with u^{k+1} from the implicit step [K23 eqs. (13)-(16)]. On the
+/// device the step runs from the first sort to the last velocity; the host sees scalars. Results do not depend on
+/// the number of OpenMP threads, and the same run gives the same bits.
+template <int D, class Backend = Cpu>
 class Simulation {
  public:
   /// `particles`: the state at `time` after `step` steps. Errors: std::bad_alloc.
@@ -58,10 +59,14 @@ class Simulation {
   /// an open domain); particles() and time() then still hold the last good state, that before the step.
   StepReport advance();
 
-  const Particles<D>& particles() const;
+  /// Particles in the backend's memory.
+  const Particles<D, Backend>& particles() const;
+  /// All fields; waits until the data are there.
+  void copyParticles(Particles<D>& host) const;
   double time() const;  // [s]
   std::int64_t step() const;
-  std::size_t bytes() const;  // memory held [B]
+  std::size_t bytes() const;      // memory held [B]
+  std::size_t peakBytes() const;  // largest amount of device memory in use at one time [B]; 0 on the CPU
   Diagnostics diagnostics() const;
 
  private:
@@ -69,7 +74,9 @@ class Simulation {
   std::unique_ptr<State> state_;
 };
 
-extern template class Simulation<2>;
-extern template class Simulation<3>;
+extern template class Simulation<2, Cpu>;
+extern template class Simulation<3, Cpu>;
+extern template class Simulation<2, Cuda>;
+extern template class Simulation<3, Cuda>;
 
 }  // namespace treacle

@@ -18,20 +18,26 @@ TEST(VectorOperations, EqualEigen) {
     const Eigen::VectorXd p = randomVector(n, 1), q = randomVector(n, 2), u = randomVector(n, 3);
     Eigen::VectorXd x = randomVector(n, 4), r = randomVector(n, 5), s = randomVector(n, 6);
     const double scale = std::max(1.0, p.norm() * q.norm());
-    EXPECT_NEAR(dot(context, view(p), view(q)), p.dot(q), kernelTolerance * scale);
+    KrylovScalars scalars;
+    directionDot(context, view(p), view(q), &scalars);
+    EXPECT_NEAR(scalars.rho, p.dot(q), kernelTolerance * scale);
 
+    scalars.alpha = 0.3;
     const Eigen::VectorXd x1 = x + 0.3 * p, r1 = r - 0.3 * q, s1 = s - 0.3 * u;
-    const double rr = updateCr(context, 0.3, {view(p), view(q), view(u), view(x), view(r), view(s)});
+    updateCr(context, {view(p), view(q), view(u), view(x), view(r), view(s)}, &scalars);
     EXPECT_LE((x - x1).norm() + (r - r1).norm() + (s - s1).norm(), kernelTolerance * (1 + x1.norm()));
-    EXPECT_NEAR(rr, r1.squaredNorm(), kernelTolerance * (1 + r1.squaredNorm()));
+    EXPECT_NEAR(scalars.rr, r1.squaredNorm(), kernelTolerance * (1 + r1.squaredNorm()));
 
+    scalars.iteration = 1;
+    scalars.beta = -0.7;
     Eigen::VectorXd direct = x;
-    direction(context, view(p), -0.7, view(direct));
+    direction(context, view(p), view(direct), &scalars);
     EXPECT_LE((direct - (p - 0.7 * x)).norm(), kernelTolerance * (1 + direct.norm()));
 
     Eigen::VectorXd res = q;
-    EXPECT_NEAR(residual(context, view(p), view(res)), (p - q).squaredNorm(),
-                kernelTolerance * (1 + res.squaredNorm()));
+    residual(context, view(p), view(res), &scalars);
+    EXPECT_NEAR(scalars.rr, (p - q).squaredNorm(), kernelTolerance * (1 + res.squaredNorm()));
+    EXPECT_NEAR(scalars.bb, p.squaredNorm(), kernelTolerance * (1 + p.squaredNorm()));
     EXPECT_EQ(res, p - q);
   }
 }
@@ -39,10 +45,12 @@ TEST(VectorOperations, EqualEigen) {
 TEST(VectorOperations, DoNotDependOnTheNumberOfThreads) {
   Context<Cpu> context;
   const Eigen::VectorXd x = randomVector(100003, 1), y = randomVector(100003, 2);
+  KrylovScalars one, five;
   omp_set_num_threads(1);
-  const double one = dot(context, view(x), view(y));
+  directionDot(context, view(x), view(y), &one);
   omp_set_num_threads(5);
-  EXPECT_EQ(one, dot(context, view(x), view(y)));
+  directionDot(context, view(x), view(y), &five);
+  EXPECT_EQ(one.rho, five.rho);
 }
 
 template <int D>

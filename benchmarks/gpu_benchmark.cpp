@@ -1,0 +1,60 @@
+// Times the parts of a step on the GPU over the papers' cases and writes one JSON record.
+//   gpu_benchmark [--out FILE.json] [--cases DIR] [--only TEXT] [--quick]
+// Parts, by name: products/..., setup/..., solve/... Figures of one run belong together: compare them as ratios, the
+// machine may be shared.
+
+#include "gpu_products.hpp"
+#include "gpu_solves.hpp"
+#include "treacle/core/device.hpp"
+#include "treacle/core/version.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <fstream>
+
+namespace treacle {
+namespace {
+
+/// Bytes per second of a device-to-device copy, read and write counted.
+double copyBandwidth() {
+  Context<Cuda> context;
+  constexpr std::size_t bytes = std::size_t{1} << 30;
+  Buffer<std::byte, Cuda> from(context, bytes), to(context, bytes);
+  clearBytes(context, from.data(), bytes);
+  const double seconds = secondsOf(context, [&] { copyBytesOnDevice(context, from.data(), to.data(), bytes); });
+  return 2 * static_cast<double>(bytes) / seconds;
+}
+
+}  // namespace
+}  // namespace treacle
+
+int main(int argc, char** argv) {
+  using namespace treacle;
+  CLI::App app{"Times the parts of a step on the GPU"};
+  BenchmarkOptions options;
+  options.cases = TREACLE_CASES;
+  std::string out;
+  app.add_option("--out", out, "JSON record");
+  app.add_option("--cases", options.cases, "directory of the case files");
+  app.add_option("--only", options.only, "only parts whose name contains this");
+  app.add_flag("--quick", options.quick, "few steps, small cases");
+  CLI11_PARSE(app, argc, argv);
+
+  const auto devices = cudaDevices();
+  if (devices.empty()) {
+    fmt::print(stderr, "gpu_benchmark: no CUDA device on this machine\n");
+    return 2;
+  }
+  Record record;
+  const BuildInfo build = buildInfo();
+  record.json = {{"commit", build.commit}, {"compiler", build.compiler}, {"device", devices[0].name}};
+  record.copyBandwidth = copyBandwidth();
+  record.json["copy_bandwidth_GB_per_s"] = record.copyBandwidth * 1e-9;
+  fmt::print("{}, copy {:.2f} TB/s\n", devices[0].name, record.copyBandwidth * 1e-12);
+
+  benchmarkProducts<2>(options, record);
+  benchmarkProducts<3>(options, record);
+  benchmarkSolves(options, record);
+  if (!out.empty()) std::ofstream(out) << record.json.dump(1) << '\n';
+}

@@ -1,0 +1,147 @@
+#pragma once
+
+#include "gpu_record.hpp"
+#include "treacle/linear/bucket_multigrid.hpp"
+#include "treacle/linear/diagonal.hpp"
+#include "treacle/linear/galerkin_spgemm.hpp"
+#include "treacle/method/assemble.hpp"
+#include "treacle/method/bucket_galerkin.hpp"
+#include "treacle/method/mph_operator.hpp"
+#include "treacle/method/neighbourhood.hpp"
+#include "treacle/method/single_products.hpp"
+#include "treacle/model/create.hpp"
+#include "treacle/model/particles_copy.hpp"
+
+namespace treacle {
+
+/// A dam break at its start on the device, ready for products; the velocity is a smooth field.
+template <int D>
+struct DeviceStart {
+  Case c;
+  Context<Cuda> context;
+  Particles<D, Cuda> particles;
+  Neighbourhood<D, Cuda> neighbourhood;
+  Buffer<Block<D>, Cuda> wallBlock;
+  Buffer<Vec<D>, Cuda> wallGradient, u, y;
+  Buffer<Vec<D, float>, Cuda> uSingle, ySingle;
+  Buffer<float, Cuda> qSingle;
+
+  DeviceStart(const BenchmarkOptions& options, double resolution)
+      : c(paperCase<D>(options, resolution)), neighbourhood(c) {
+    std::vector<std::string> notes;
+    copyToDevice(context, createParticles<D>(c, notes), particles);
+    neighbourhood.sort(context, particles);
+    neighbourhood.buildLists(context, particles);
+    const std::uint32_t n = particles.fluidCount;
+    Buffer<Vec<D>> x;
+    copyToHost(context, std::span<const Vec<D>>(particles.position).first(n), x);
+    Buffer<Vec<D, float>> single(n);
+    for (std::uint32_t i = 0; i < n; ++i)
+      for (int k = 0; k < D; ++k) single[i][k] = static_cast<float>(x[i][k] = std::sin(300 * x[i][k]));
+    copyToDevice<Vec<D>>(context, x, u);
+    copyToDevice<Vec<D, float>>(context, single, uSingle);
+    for (auto* v : {&y, &wallGradient}) v->resize(context, n);
+    ySingle.resize(context, n);
+    qSingle.resize(context, pairs().activeCount);
+    wallBlock.resize(context, n);
+    wallTerms<D>(context, pairs(), terms());
+  }
+  const MphPairs<D>& pairs() const { return neighbourhood.pairs(); }
+  WallTerms<D> terms() { return {wallBlock.span(), wallGradient.span()}; }
+  std::uint32_t n() const { return particles.fluidCount; }
+};
+
+/// Bytes that a product with A reads and writes at least, matrix-free: positions, vectors, wall terms and lists, each
+/// once per pass.
+template <int D>
+double productBytes(DeviceStart<D>& s, std::size_t scalar) {
+  const double n = s.n(), active = s.pairs().activeCount;
+  const double list = 4.0 * static_cast<double>(valueOnHost(
+                                s.context, s.pairs().fluidList.offset + 4 * s.pairs().fluidList.clusterCount()));
+  const double vector = D * static_cast<double>(scalar);
+  return 2 * active * D * 8 + n * (4 * vector + sizeof(Block<D>) + sizeof(Vec<D>)) + 2 * active * scalar + 1.3 * list;
+}
+
+template <int D>
+void benchmarkSingle(const std::string& size, DeviceStart<D>& s, MphOperator<D, Cuda>& a, Record& record) {
+  const auto time = [&](auto&& work) { return secondsOf(s.context, work); };
+  record.add("products/A float/" + size, s.n(),
+             time([&] { a.multiplySingle(s.context, s.uSingle, s.qSingle, s.ySingle); }), productBytes(s, 4));
+  record.add("products/C p float/" + size, s.n(),
+             time([&] { pressureGradient<D>(s.context, s.pairs(), s.qSingle, s.ySingle); }));
+  record.add("products/C^T x float/" + size, s.n(),
+             time([&] { divergence<D>(s.context, s.pairs(), s.uSingle, s.qSingle); }));
+  record.add("products/C^T C p float/" + size, s.n(), time([&] {
+               pressureGradient<D>(s.context, s.pairs(), s.qSingle, s.ySingle);
+               divergence<D>(s.context, s.pairs(), s.ySingle, s.qSingle);
+             }));
+}
+
+template <int D>
+void benchmarkAssembled(const std::string& size, DeviceStart<D>& s, Record& record) {
+  GradientRows<D, Cuda> rows;
+  BlockCsr<D, double, Cuda> a;
+  record.add("setup/assemble/" + size, s.n(), secondsOf(s.context, [&] {
+               gradientRows(s.context, s.pairs(), rows);
+               assemble(s.context, s.pairs(), s.terms(), rows, a);
+             }, 3));
+  const double bytes = static_cast<double>(a.block.size() * sizeof(Block<D>) + a.column.size() * 4 +
+                                           a.rowStart.size() * 8 + 2 * s.n() * sizeof(Vec<D>));
+  record.add("products/A assembled/" + size, s.n(),
+             secondsOf(s.context, [&] { multiply<D, double>(s.context, a, s.u, s.y); }), bytes);
+
+  BucketLevels<Cuda> levels;
+  findBuckets(s.context, s.neighbourhood.ranges().key, D * CellGrid<D>::subBits, D, levels);
+  GalerkinSpgemm<D> spgemm;
+  BlockCsr<D, double, Cuda> a0;
+  record.add("setup/A^0 spgemm/" + size, s.n(),
+             secondsOf(s.context, [&] { spgemm.compute(s.context, a, levels.begin[0], a0); }, 3));
+}
+
+template <int D>
+void benchmarkSetup(const std::string& size, DeviceStart<D>& s, Record& record) {
+  auto& context = s.context;
+  record.add("setup/sort/" + size, s.n(), secondsOf(context, [&] { s.neighbourhood.sort(context, s.particles); }, 5));
+  record.add("setup/lists/" + size, s.n(),
+             secondsOf(context, [&] { s.neighbourhood.buildLists(context, s.particles); }, 5));
+  Buffer<Block<D>, Cuda> diagonal(context, s.n());
+  Buffer<Vec<D>, Cuda> inverse(context, s.n());
+  record.add("setup/diagonal/" + size, s.n(), secondsOf(context, [&] {
+               diagonalBlocks<D>(context, s.pairs(), s.terms(), diagonal);
+               jacobiInverse<D, double>(context, diagonal, inverse);
+             }, 5));
+  BucketLevels<Cuda> levels;
+  BlockCsr<D, double, Cuda> a0;
+  Buffer<Vec<D>, Cuda> columns;
+  record.add("setup/A^0 direct/" + size, s.n(), secondsOf(context, [&] {
+               findBuckets(context, s.neighbourhood.ranges().key, D * CellGrid<D>::subBits, D, levels);
+               bucketGalerkin(context, s.pairs(), s.neighbourhood.ranges(), levels, s.terms(), columns, a0);
+             }, 5));
+  BucketMultigrid<D, double, Cuda> k;
+  record.add("setup/coarse levels/" + size, s.n(), secondsOf(context, [&] {
+               k.setup(context, a0, {levels.begin.begin(), levels.begin.end()}, {});
+             }, 5));
+  record.add("solve/V-cycle/" + size, s.n(),
+             secondsOf(context, [&] { k.apply(context, inverse, s.u, s.y); }));
+}
+
+template <int D>
+void benchmarkProducts(const BenchmarkOptions& options, Record& record) {
+  const std::vector<double> sizes = D == 2 ? std::vector<double>{1, 4, 8, 16, 32} : std::vector<double>{1, 2, 4};
+  for (const double resolution : sizes) {
+    const std::string size = fmt::format("{}D x1/{:g}", D, resolution);
+    if (!(options.wants("products/" + size) || options.wants("setup/" + size)) ||
+        (options.quick && resolution != sizes.back()))
+      continue;
+    DeviceStart<D> s(options, resolution);
+    MphOperator<D, Cuda> a;
+    a.prepare(s.context, s.pairs(), s.terms());
+    record.add("products/A double/" + size, s.n(),
+               secondsOf(s.context, [&] { a.multiply(s.context, s.u, s.y); }), productBytes(s, 8));
+    benchmarkSingle(size, s, a, record);
+    benchmarkSetup(size, s, record);
+    benchmarkAssembled(size, s, record);
+  }
+}
+
+}  // namespace treacle

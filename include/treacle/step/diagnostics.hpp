@@ -1,0 +1,68 @@
+#pragma once
+
+#include "treacle/core/cuda.hpp"
+#include "treacle/core/macros.hpp"
+#include "treacle/method/mph_pairs.hpp"
+#include "treacle/step/simulation.hpp"
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <span>
+
+namespace treacle {
+
+/// The state of the fluid particles; spans in the backend's memory, all of the same length.
+template <int D>
+struct DiagnosticsInput {
+  std::span<const Vec<D>> position;  // [m]
+  std::span<const Vec<D>> velocity;  // [m/s]
+  std::span<const std::uint8_t> material;
+  MaterialTable materials;
+  Vec<D> gravity;      // [m/s2]
+  double spacing = 0;  // [m]
+};
+
+/// What a particle adds to the diagnostics.
+template <int D>
+struct DiagnosticsTerm {
+  double mass[maxMaterials];  // of a particle, by material [kg; per metre of depth in 2D]
+  Vec<D> gravity, up;
+
+  static DiagnosticsTerm make(const DiagnosticsInput<D>& in) {
+    DiagnosticsTerm t{};
+    const double volume = std::pow(in.spacing, D);  // [K23 eq. (11)]
+    for (int m = 0; m < in.materials.count; ++m) t.mass[m] = in.materials.density[m] * volume;
+    t.gravity = in.gravity;
+    t.up[D - 1] = 1;  // without gravity the last axis counts as height
+    if (const double g = norm(in.gravity); g > 0) t.up = in.gravity * (-1 / g);
+    return t;
+  }
+
+  TREACLE_HD Diagnostics operator()(const Vec<D>& x, const Vec<D>& u, int material) const {
+    const double speed2 = norm2(u);
+    return {0.5 * mass[material] * speed2, -mass[material] * dot(gravity, x), x[0], dot(up, x), std::sqrt(speed2)};
+  }
+};
+
+/// Of nobody.
+TREACLE_HD inline Diagnostics noDiagnostics() {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  return {0, 0, -infinity, -infinity, 0};
+}
+
+/// Of two sets of particles together.
+TREACLE_HD inline Diagnostics joined(const Diagnostics& a, const Diagnostics& b) {
+  return {a.kineticEnergy + b.kineticEnergy, a.potentialEnergy + b.potentialEnergy,
+          a.frontX < b.frontX ? b.frontX : a.frontX, a.top < b.top ? b.top : a.top,
+          a.maxSpeed < b.maxSpeed ? b.maxSpeed : a.maxSpeed};
+}
+
+/// Sums and extremes over the particles; the order of the sums depends on their number alone. Of no particles:
+/// zeros, and minus infinity for the two coordinates.
+template <int D>
+Diagnostics computeDiagnostics(Context<Cpu>&, const DiagnosticsInput<D>&);
+template <int D>
+Diagnostics computeDiagnostics(Context<Cuda>&, const DiagnosticsInput<D>&);
+
+}  // namespace treacle

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "core/launch.hpp"
+
+#include <cub/device/device_scan.cuh>
+
+namespace treacle {
+
+/// Turns the number of entries of each row, rowStart[0 … rows-1], into the start of each row and the end,
+/// rowStart[rows]. Returns the end; the host waits for it.
+inline std::uint64_t startRows(Context<Cuda>& context, Buffer<std::uint64_t, Cuda>& rowStart) {
+  std::size_t bytes = 0;
+  std::uint64_t* data = rowStart.data();
+  TREACLE_CUDA_CHECK(cub::DeviceScan::ExclusiveSum(nullptr, bytes, data, data, rowStart.size(), context.stream()));
+  TREACLE_CUDA_CHECK(
+      cub::DeviceScan::ExclusiveSum(context.scratch(bytes), bytes, data, data, rowStart.size(), context.stream()));
+  return valueOnHost(context, data + rowStart.size() - 1);
+}
+
+}  // namespace treacle

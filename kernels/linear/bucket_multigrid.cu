@@ -1,0 +1,240 @@
+#include "treacle/linear/bucket_multigrid.hpp"
+
+#include "linear/bucket_cycle.cuh"
+#include "treacle/linear/galerkin_spgemm.hpp"
+
+namespace treacle {
+namespace {
+
+/// One thread per bucket: tells the members whose they are.
+void fillParents(Context<Cuda>& context, std::span<const std::uint32_t> members, std::uint32_t* parent) {
+  const std::uint32_t* begin = members.data();
+  forEach(context, members.size() - 1, [=] __device__(std::size_t b) {
+    for (std::uint32_t i = begin[b]; i < begin[b + 1]; ++i) parent[i] = static_cast<std::uint32_t>(b);
+  });
+}
+
+/// One thread per number.
+template <int D, class T>
+void convert(Context<Cuda>& context, const BlockCsr<D, double, Cuda>& from, BlockCsr<D, T, Cuda>& to) {
+  to.rowStart.resize(context, from.rowStart.size());
+  to.column.resize(context, from.column.size());
+  to.block.resize(context, from.block.size());
+  copyBytesOnDevice(context, from.rowStart.data(), to.rowStart.data(), from.rowStart.size() * sizeof(std::uint64_t));
+  copyBytesOnDevice(context, from.column.data(), to.column.data(), from.column.size() * sizeof(std::uint32_t));
+  const double* source = reinterpret_cast<const double*>(from.block.data());
+  T* target = reinterpret_cast<T*>(to.block.data());
+  forEach(context, from.block.size() * D * D,
+          [=] __device__(std::size_t k) { target[k] = static_cast<T>(source[k]); });
+}
+
+/// One warp per bucket: b = sum of r over its particles, and the first sweep from zero, x = D^-1 b. No atomics.
+template <int D, class T>
+__global__ void restrictKernel(const CycleLevel<D, T> level, const Vec<D>* r, Vec<D, T>* b, Vec<D, T>* x) {
+  const std::uint32_t bucket = (blockIdx.x * blockDim.x + threadIdx.x) / 32;
+  if (bucket >= level.rows) return;
+  Vec<D> sum{};
+  for (std::uint32_t i = level.members[bucket] + threadIdx.x % 32; i < level.members[bucket + 1]; i += 32) sum += r[i];
+  Vec<D, T> total;
+  for (int k = 0; k < D; ++k) total[k] = static_cast<T>(warpSum(sum[k]));
+  if (threadIdx.x % 32 != 0) return;
+  b[bucket] = total;
+  x[bucket] = scaled(level.inverseDiagonal[bucket], total);
+}
+
+/// A few lanes per row: next = x + D^-1 (b - A x) [K23 eq. (42)], with x + P coarse in place of x where there is
+/// something coarse. No atomics.
+template <int D, class T, bool Prolong>
+__global__ void __launch_bounds__(128)
+    sweepKernel(const CycleLevel<D, T> level, const Vec<D, T>* b, const Vec<D, T>* x, Vec<D, T>* next,
+                const std::uint32_t* parent, const Vec<D, T>* coarse) {
+  const std::uint32_t row = (blockIdx.x * blockDim.x + threadIdx.x) / rowLanes<D>;
+  const bool valid = row < level.rows;
+  Vec<D, T> share{};
+  if (valid) {
+    if constexpr (Prolong)
+      share = rowShare(level, row, x, parent, coarse);
+    else
+      share = rowShare(level, row, x);
+  }
+  const Vec<D, T> sum = sumOverRowLanes(share);
+  if (!valid || threadIdx.x % rowLanes<D> != 0) return;
+  Vec<D, T> old = x[row];
+  if constexpr (Prolong) old += coarse[parent[row]];
+  next[row] = old + scaled(level.inverseDiagonal[row], b[row] - sum);
+}
+
+/// One warp per coarse bucket: coarse b = sum of b - A x over its members, and the first sweep there. No atomics.
+template <int D, class T>
+__global__ void restrictResidualKernel(const CycleLevel<D, T> level, const Vec<D, T>* b, const Vec<D, T>* x,
+                                       const CycleLevel<D, T> coarse, Vec<D, T>* coarseB, Vec<D, T>* coarseX) {
+  const std::uint32_t bucket = (blockIdx.x * blockDim.x + threadIdx.x) / 32;
+  if (bucket >= coarse.rows) return;
+  const int lane = threadIdx.x % 32;
+  const std::uint32_t first = coarse.members[bucket], last = coarse.members[bucket + 1];
+  Vec<D, T> sum{};
+  for (std::uint32_t i = first + lane / rowLanes<D>; i < last; i += 32 / rowLanes<D>) {
+    sum -= rowShare(level, i, x);
+    if (lane % rowLanes<D> == 0) sum += b[i];
+  }
+  for (int k = 0; k < D; ++k) sum[k] = warpSum(sum[k]);
+  if (lane != 0) return;
+  coarseB[bucket] = sum;
+  coarseX[bucket] = scaled(coarse.inverseDiagonal[bucket], sum);
+}
+
+/// One thread per unknown: z = diag(inverse) r + P x.
+template <int D, class T>
+__global__ void prolongKernel(std::size_t unknowns, const T* inverse, const double* r, const std::uint32_t* bucketOf,
+                              const Vec<D, T>* x, double* z) {
+  const std::size_t k = blockIdx.x * std::size_t{blockDim.x} + threadIdx.x;
+  if (k < unknowns) z[k] = inverse[k] * r[k] + x[bucketOf[k / D]][static_cast<int>(k % D)];
+}
+
+/// One warp per row: x = M b. No atomics.
+template <class T>
+__global__ void denseKernel(int unknowns, const T* matrix, const T* b, T* x) {
+  const int row = (blockIdx.x * blockDim.x + threadIdx.x) / 32;
+  if (row >= unknowns) return;
+  T sum = 0;
+  for (int k = threadIdx.x % 32; k < unknowns; k += 32) sum += matrix[static_cast<std::size_t>(row) * unknowns + k] * b[k];
+  sum = warpSum(sum);
+  if (threadIdx.x % 32 == 0) x[row] = sum;
+}
+
+constexpr int maxDenseLevels = 12;
+template <int D, class T>
+struct CycleLevels {
+  CycleLevel<D, T> level[maxDenseLevels];
+  int count;
+};
+
+/// One block per unit vector: runs the cycle on it and writes the result as a row of the (symmetric) matrix.
+template <int D, class T>
+__global__ void __launch_bounds__(256) denseSetupKernel(const __grid_constant__ CycleLevels<D, T> levels, T* matrix) {
+  extern __shared__ double shared[];
+  BlockCycle<D, T> cycle(levels.level, levels.count, reinterpret_cast<Vec<D, T>*>(shared));
+  const std::uint32_t unknowns = D * levels.level[0].rows;
+  T* b = reinterpret_cast<T*>(cycle.b(0));
+  for (std::uint32_t k = threadIdx.x; k < unknowns; k += blockDim.x) b[k] = k == blockIdx.x ? 1 : 0;
+  __syncthreads();
+  cycle.run();
+  const T* x = reinterpret_cast<const T*>(cycle.x(0));
+  for (std::uint32_t k = threadIdx.x; k < unknowns; k += blockDim.x)
+    matrix[static_cast<std::size_t>(blockIdx.x) * unknowns + k] = x[k];
+}
+
+}  // namespace
+
+template <int D, class T>
+CycleLevel<D, T> BucketMultigrid<D, T, Cuda>::view(std::size_t r) const {
+  const Level& l = levels_[r];
+  return {l.a.rows(),       l.a.rowStart.data(), l.a.column.data(), l.a.block.data(), l.inverseDiagonal.data(),
+          l.members.data(), l.parent.data(),     l.sweeps};
+}
+
+template <int D, class T>
+void BucketMultigrid<D, T, Cuda>::buildLevel(Context<Cuda>& context, std::size_t r,
+                                             const BlockCsr<D, double, Cuda>& a) {
+  Level& level = levels_[r];
+  convert<D, T>(context, a, level.a);
+  const std::uint32_t rows = a.rows();
+  for (Buffer<Vec<D, T>, Cuda>* v : {&level.inverseDiagonal, &level.b, &level.x, &level.next})
+    v->resize(context, rows);
+  extendedJacobiInverse<D, T, T>(context, level.a, level.inverseDiagonal);
+}
+
+template <int D, class T>
+void BucketMultigrid<D, T, Cuda>::setup(Context<Cuda>& context, const BlockCsr<D, double, Cuda>& finest,
+                                        std::vector<std::span<const std::uint32_t>> members,
+                                        const CycleSweeps& sweeps, GalerkinSpgemm<D>* spgemm) {
+  levels_.resize(members.size());
+  std::size_t memberCount = 0;
+  for (std::size_t r = 0; r < levels_.size(); ++r) {
+    Level& level = levels_[r];
+    level.members = members[r];
+    const bool coarsest = r + 1 == levels_.size();
+    level.sweeps = coarsest ? sweeps.coarsest : r == 0 ? sweeps.finest : sweeps.middle;
+    memberCount = r == 0 ? valueOnHost(context, &members[0].back()) : levels_[r - 1].a.rows();
+    level.parent.resize(context, memberCount);
+    fillParents(context, members[r], level.parent.data());
+    const BlockCsr<D, double, Cuda>& finer = r == 1 ? finest : levels_[r > 0 ? r - 1 : 0].galerkin;
+    if (r > 0 && spgemm)
+      spgemm->compute(context, finer, members[r], level.galerkin);
+    else if (r > 0)
+      coarsen<D, double>(context, finer, members[r], level.galerkin);
+    buildLevel(context, r, r == 0 ? finest : level.galerkin);
+  }
+  buildDense(context);
+}
+
+template <int D, class T>
+void BucketMultigrid<D, T, Cuda>::buildDense(Context<Cuda>& context) {
+  denseLevel_ = 0;
+  while (D * levels_[denseLevel_].a.rows() > denseUnknowns) ++denseLevel_;
+  CycleLevels<D, T> levels{};
+  std::size_t rows = 0;
+  for (std::size_t r = denseLevel_; r < levels_.size(); ++r) {
+    levels.level[levels.count++] = view(r);
+    rows += levels_[r].a.rows();
+  }
+  const std::uint32_t unknowns = D * levels_[denseLevel_].a.rows();
+  dense_.resize(context, std::size_t{unknowns} * unknowns);
+  const std::size_t shared = 3 * rows * sizeof(Vec<D, T>);
+  TREACLE_CUDA_CHECK(cudaFuncSetAttribute(denseSetupKernel<D, T>, cudaFuncAttributeMaxDynamicSharedMemorySize,
+                                          static_cast<int>(shared)));
+  launch(context, unknowns, 256, shared, denseSetupKernel<D, T>, levels, dense_.data());
+}
+
+template <int D, class T>
+void BucketMultigrid<D, T, Cuda>::cycle(Context<Cuda>& context, std::size_t r) {
+  Level& level = levels_[r];
+  if (r == denseLevel_) {
+    const int unknowns = static_cast<int>(D * level.a.rows());
+    launch(context, blocksFor(unknowns, 4), 128, 0, denseKernel<T>, unknowns, dense_.data(),
+           reinterpret_cast<const T*>(level.b.data()), reinterpret_cast<T*>(level.x.data()));
+    return;
+  }
+  const CycleLevel<D, T> here = view(r);
+  const unsigned blocks = blocksFor(std::size_t{here.rows} * rowLanes<D>, 128);
+  const auto sweep = [&](auto kernel, const std::uint32_t* parent, const Vec<D, T>* coarse) {
+    launch(context, blocks, 128, 0, kernel, here, level.b.data(), level.x.data(), level.next.data(), parent, coarse);
+    std::swap(level.x, level.next);
+  };
+  for (int s = 1; s < level.sweeps; ++s) sweep(sweepKernel<D, T, false>, nullptr, nullptr);
+  Level& coarse = levels_[r + 1];
+  launch(context, blocksFor(coarse.a.rows(), 4), 128, 0, restrictResidualKernel<D, T>, here, level.b.data(),
+         level.x.data(), view(r + 1), coarse.b.data(), coarse.x.data());
+  cycle(context, r + 1);
+  sweep(sweepKernel<D, T, true>, coarse.parent.data(), coarse.x.data());
+  for (int s = 1; s < level.sweeps; ++s) sweep(sweepKernel<D, T, false>, nullptr, nullptr);
+}
+
+template <int D, class T>
+void BucketMultigrid<D, T, Cuda>::apply(Context<Cuda>& context, std::span<const Vec<D, T>> inverse,
+                                        std::span<const Vec<D>> r, std::span<Vec<D>> z) {
+  Level& finest = levels_[0];
+  launch(context, blocksFor(finest.a.rows(), 4), 128, 0, restrictKernel<D, T>, view(0), r.data(), finest.b.data(),
+         finest.x.data());
+  cycle(context, 0);
+  const std::size_t unknowns = r.size() * D;
+  launch(context, blocksFor(unknowns, 256), 256, 0, prolongKernel<D, T>, unknowns,
+         reinterpret_cast<const T*>(inverse.data()), reinterpret_cast<const double*>(r.data()), finest.parent.data(),
+         finest.x.data(), reinterpret_cast<double*>(z.data()));
+}
+
+template <int D, class T>
+std::size_t BucketMultigrid<D, T, Cuda>::bytes() const {
+  std::size_t sum = dense_.bytes();
+  for (const Level& l : levels_)
+    sum += l.galerkin.bytes() + l.a.bytes() + l.inverseDiagonal.bytes() + l.b.bytes() + l.x.bytes() +
+           l.next.bytes() + l.parent.bytes();
+  return sum;
+}
+
+template class BucketMultigrid<2, double, Cuda>;
+template class BucketMultigrid<3, double, Cuda>;
+template class BucketMultigrid<2, float, Cuda>;
+template class BucketMultigrid<3, float, Cuda>;
+
+}  // namespace treacle

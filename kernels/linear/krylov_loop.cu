@@ -1,0 +1,74 @@
+#include "treacle/linear/krylov_loop.hpp"
+
+#include "core/launch.hpp"
+
+namespace treacle {
+namespace {
+
+/// One thread: another round of the loop while the scalars say Running.
+__global__ void setLoopCondition(cudaGraphConditionalHandle loop, const KrylovScalars* scalars) {
+  cudaGraphSetConditional(loop, scalars->status == SolveStatus::Running);
+}
+
+/// Owns a graph while it is being built.
+struct Graph {
+  cudaGraph_t graph = nullptr;
+  Graph() { TREACLE_CUDA_CHECK(cudaGraphCreate(&graph, 0)); }
+  Graph(const Graph&) = delete;
+  Graph& operator=(const Graph&) = delete;
+  ~Graph() { cudaGraphDestroy(graph); }
+};
+
+}  // namespace
+
+KrylovLoop<Cuda>::~KrylovLoop() {
+  if (graph_) cudaGraphExecDestroy(graph_);
+}
+
+KrylovScalars* KrylovLoop<Cuda>::begin(Context<Cuda>& context, const StoppingRule& rule) {
+  scalars_.resize(context, 1);
+  const KrylovScalars start{rule};
+  copyBytesToDevice(context, &start, scalars_.data(), sizeof(start));
+  return scalars_.data();
+}
+
+SolveReport KrylovLoop<Cuda>::report(Context<Cuda>& context) const {
+  return valueOnHost(context, scalars_.data()).report();
+}
+
+void KrylovLoop<Cuda>::record(Context<Cuda>& context, const std::function<void()>& body) {
+  if (graph_) TREACLE_CUDA_CHECK(cudaGraphExecDestroy(std::exchange(graph_, nullptr)));
+  Graph whole;
+  cudaGraphConditionalHandle loop;
+  TREACLE_CUDA_CHECK(cudaGraphConditionalHandleCreate(&loop, whole.graph, 1, cudaGraphCondAssignDefault));
+  cudaGraphNodeParams node{};
+  node.type = cudaGraphNodeTypeConditional;
+  node.conditional.handle = loop;
+  node.conditional.type = cudaGraphCondTypeWhile;
+  node.conditional.size = 1;
+  cudaGraphNode_t added;
+  TREACLE_CUDA_CHECK(cudaGraphAddNode(&added, whole.graph, nullptr, nullptr, 0, &node));
+
+  TREACLE_CUDA_CHECK(cudaStreamBeginCaptureToGraph(context.stream(), node.conditional.phGraph_out[0], nullptr,
+                                                   nullptr, 0, cudaStreamCaptureModeThreadLocal));
+  try {
+    body();
+    launch(context, 1, 1, 0, setLoopCondition, loop, scalars_.data());
+  } catch (...) {
+    cudaGraph_t unfinished = nullptr;
+    cudaStreamEndCapture(context.stream(), &unfinished);
+    throw;
+  }
+  cudaGraph_t captured = nullptr;
+  TREACLE_CUDA_CHECK(cudaStreamEndCapture(context.stream(), &captured));
+  TREACLE_CUDA_CHECK(cudaGraphInstantiate(&graph_, whole.graph, 0));
+}
+
+SolveReport KrylovLoop<Cuda>::run(Context<Cuda>& context) {
+  KrylovScalars* scalars = scalars_.data();
+  forEach(context, 1, [=] __device__(std::size_t) { scalars->status = SolveStatus::Running; });
+  TREACLE_CUDA_CHECK(cudaGraphLaunch(graph_, context.stream()));
+  return report(context);
+}
+
+}  // namespace treacle

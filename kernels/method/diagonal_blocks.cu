@@ -1,0 +1,84 @@
+#include "method/cluster_sum.cuh"
+#include "method/pair_terms.cuh"
+#include "treacle/method/assemble.hpp"
+
+namespace treacle {
+namespace {
+
+/// Sums of a diagonal block of A per fluid particle: the upper triangle of V_ii + sum_j lambda_j C_ij C_ij^T, then
+/// C_ii. The viscous part of walls stands in the wall terms.
+template <int D>
+struct DiagonalTerms {
+  static constexpr int triangle = D * (D + 1) / 2, values = triangle + D;
+  static constexpr bool uses(ListSegment s) { return s != ListSegment::FarWall; }
+  struct Other {
+    double lambda;
+    std::uint8_t material;
+  };
+  using Own = std::uint8_t;  // material
+
+  PairConstants<D, double> constants;
+  double* sums;  // `values` per fluid particle
+
+  __device__ Own loadOwn(const MphPairs<D>& pairs, std::uint32_t i) const { return pairs.material[i]; }
+  __device__ Other loadOther(const MphPairs<D>& pairs, std::uint32_t j) const {
+    const std::uint8_t material = pairs.material[j];
+    return {pairs.materials.bulkViscosity[material], material};
+  }
+
+  template <ListSegment S>
+  __device__ void add(const MphPairs<D>& pairs, double* sum, const Vec<D>& d, double inverseR, Own own,
+                      const Other& other) const {
+    const double g = constants.pressureFactor * constants.pressureReach(inverseR);
+    double f = other.lambda * g * g;
+    if constexpr (isFluid(S))
+      f += pairs.materials.pairViscosity[own][other.material] * constants.viscosityFactor *
+           constants.viscosityReach(inverseR);
+    int n = 0;
+    for (int r = 0; r < D; ++r)
+      for (int c = r; c < D; ++c) sum[n++] += f * d[r] * d[c];
+    for (int r = 0; r < D; ++r) sum[n++] += g * d[r];
+  }
+
+  __device__ void store(const MphPairs<D>&, std::uint32_t i, int n, double sum) const {
+    sums[std::size_t{values} * i + n] = sum;
+  }
+};
+
+}  // namespace
+
+template <int D>
+void diagonalBlocks(Context<Cuda>& context, const MphPairs<D>& pairs, const WallTerms<D>& terms,
+                    std::span<Block<D>> diagonal) {
+  using Terms = DiagonalTerms<D>;
+  Buffer<double, Cuda> sums(context, std::size_t{Terms::values} * pairs.fluidCount);
+  const ListTask<Terms> task{pairs.fluidList, {PairConstants<D, double>::make(pairs, 1), sums.data()}};
+  if (!pairs.fluidList.offset)
+    launchClusterSums<D, double, Sharing<2, 1, true>>(context, pairs, task, 1);
+  else if (pairs.fluidList.clusterCount() < fewClusters)
+    launchClusterSums<D, double, Sharing<2, 4>>(context, pairs, task, 1);
+  else
+    launchClusterSums<D, double, Sharing<2, 1>>(context, pairs, task, 1);
+
+  forEach(context, pairs.fluidCount,
+          [sums = sums.data(), wall = terms.block.data(), material = pairs.material.data(),
+           table = pairs.materials, blocks = diagonal.data()] __device__(std::size_t i) {
+            const double* sum = sums + std::size_t{Terms::values} * i;
+            Block<D> block = wall[i];
+            Vec<D> own;
+            for (int r = 0; r < D; ++r) own[r] = sum[Terms::triangle + r];
+            for (int r = 0; r < D; ++r)
+              for (int c = r; c < D; ++c) {
+                const double value = *sum++;
+                block(r, c) += value;
+                if (c != r) block(c, r) += value;
+              }
+            block.addOuter(table.bulkViscosity[material[i]], own, own);
+            blocks[i] = block;
+          });
+}
+
+template void diagonalBlocks<2>(Context<Cuda>&, const MphPairs<2>&, const WallTerms<2>&, std::span<Block<2>>);
+template void diagonalBlocks<3>(Context<Cuda>&, const MphPairs<3>&, const WallTerms<3>&, std::span<Block<3>>);
+
+}  // namespace treacle

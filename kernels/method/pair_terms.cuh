@@ -1,0 +1,155 @@
+#pragma once
+
+#include "method/cluster_sum.cuh"
+#include "treacle/method/pair_sums.hpp"
+
+namespace treacle {
+
+/// The constants of the pair terms in the arithmetic and the unit of length of a kernel (Frame).
+template <int D, class T>
+struct PairConstants {
+  T inversePressureRadius, inverseViscosityRadius;  // 1/h
+  T pressureFactor;                                 // of (1/r - 1/h) d
+  T viscosityFactor;                                // of mu (1/r - 1/h) / r^2 d d^T
+
+  static PairConstants make(const MphPairs<D>& pairs, double unit) {
+    return {static_cast<T>(pairs.pressure.inverseRadius * unit), static_cast<T>(pairs.viscosity.inverseRadius * unit),
+            static_cast<T>(pairs.pressure.factor), static_cast<T>(pairs.viscosity.factor / unit)};
+  }
+  /// (1/r - 1/h), zero outside the radius.
+  __device__ T pressureReach(T inverseR) const { return positivePart(inverseR - inversePressureRadius); }
+  /// (1/r - 1/h) / r^2, zero outside the radius.
+  __device__ T viscosityReach(T inverseR) const {
+    return positivePart(inverseR - inverseViscosityRadius) * (inverseR * inverseR);
+  }
+};
+
+/// Empty parts of lists count for nobody.
+constexpr bool isFluid(ListSegment s) { return s == ListSegment::NearFluid || s == ListSegment::FarFluid; }
+constexpr bool isNear(ListSegment s) { return s == ListSegment::NearFluid || s == ListSegment::NearWall; }
+constexpr bool isWall(ListSegment s) { return !isFluid(s); }
+
+/// (a - b).d
+template <int D, class T>
+__device__ inline T differenceAlong(const Vec<D, T>& a, const Vec<D, T>& b, const Vec<D, T>& d) {
+  T sum = (a[0] - b[0]) * d[0];
+  for (int k = 1; k < D; ++k) sum = fma(a[k] - b[k], d[k], sum);
+  return sum;
+}
+
+template <int D, class T>
+__device__ inline void addScaled(T* sum, T factor, const Vec<D, T>& d) {
+  for (int k = 0; k < D; ++k) sum[k] = fma(factor, d[k], sum[k]);
+}
+
+template <int D, class T>
+struct VelocityOf {
+  Vec<D, T> u;
+  std::uint8_t material;
+};
+
+/// y = (rho/dt I + V) u and q = lambda C^T u per fluid particle, walls at rest [K23 eq. (16)]: the first pass of a
+/// product A u. With OneMaterial no material is looked up in the pairs.
+template <int D, class T, bool OneMaterial>
+struct ViscosityAndDivergence {
+  static constexpr int values = D + 1;
+  static constexpr bool uses(ListSegment s) { return isFluid(s); }
+  using Own = VelocityOf<D, T>;
+  using Other = VelocityOf<D, T>;
+
+  PairConstants<D, T> constants;
+  WallTerms<D> wall;
+  const Vec<D, T>* u;
+  Vec<D, T>* y;
+  T* q;
+
+  __device__ Own loadOwn(const MphPairs<D>& pairs, std::uint32_t i) const {
+    return {u[i], OneMaterial ? std::uint8_t{0} : pairs.material[i]};
+  }
+  __device__ Other loadOther(const MphPairs<D>& pairs, std::uint32_t j) const { return loadOwn(pairs, j); }
+
+  template <ListSegment S>
+  __device__ void add(const MphPairs<D>& pairs, T* sum, const Vec<D, T>& d, T inverseR, const Own& own,
+                      const Other& other) const {
+    const T along = differenceAlong(other.u, own.u, d);
+    T f = constants.viscosityReach(inverseR) * along;
+    if constexpr (!OneMaterial) f *= static_cast<T>(pairs.materials.pairViscosity[own.material][other.material]);
+    addScaled(sum, f, d);
+    if constexpr (isNear(S)) sum[D] = fma(constants.pressureReach(inverseR), along, sum[D]);
+  }
+
+  __device__ void store(const MphPairs<D>& pairs, std::uint32_t i, int n, T sum) const {
+    const Vec<D, T> ui = u[i];
+    if (n < D) {
+      const double mu = OneMaterial ? pairs.materials.pairViscosity[0][0] : 1.0;
+      T own = 0;
+      for (int c = 0; c < D; ++c) own += static_cast<T>(wall.block[i](n, c)) * ui[c];
+      y[i][n] = own - constants.viscosityFactor * static_cast<T>(mu) * sum;
+    } else {
+      // Walls at rest: (0 - u_i).e w' summed over walls = u_i.(sum of -e w').
+      T div = -constants.pressureFactor * sum;
+      for (int c = 0; c < D; ++c) div += ui[c] * static_cast<T>(wall.gradient[i][c]);
+      q[i] = static_cast<T>(pairs.materials.bulkViscosity[pairs.material[i]]) * div;
+    }
+  }
+};
+
+/// div = C^T u per particle [1/s] [K23 eq. (14)], or, with Scaled, lambda C^T u. With WallsAtRest u has only fluid
+/// particles.
+template <int D, class T, bool WallsAtRest, bool Scaled>
+struct Divergence {
+  static constexpr int values = 1;
+  static constexpr bool uses(ListSegment s) {
+    return s == ListSegment::NearFluid || (!WallsAtRest && s == ListSegment::NearWall);
+  }
+  using Own = Vec<D, T>;
+  using Other = Vec<D, T>;
+
+  PairConstants<D, T> constants;
+  const Vec<D, T>* u;
+  T* div;
+
+  __device__ Own loadOwn(const MphPairs<D>& pairs, std::uint32_t i) const {
+    return WallsAtRest && i >= pairs.fluidCount ? Vec<D, T>{} : u[i];
+  }
+  __device__ Other loadOther(const MphPairs<D>&, std::uint32_t j) const { return u[j]; }
+
+  template <ListSegment>
+  __device__ void add(const MphPairs<D>&, T* sum, const Vec<D, T>& d, T inverseR, const Own& own,
+                      const Other& other) const {
+    sum[0] = fma(constants.pressureReach(inverseR), differenceAlong(other, own, d), sum[0]);
+  }
+  __device__ void store(const MphPairs<D>& pairs, std::uint32_t i, int, T sum) const {
+    const double lambda = Scaled ? pairs.materials.bulkViscosity[pairs.material[i]] : 1.0;
+    div[i] = -constants.pressureFactor * static_cast<T>(lambda) * sum;
+  }
+};
+
+/// y = C q, or y += factor C q with Add, per fluid particle; q per particle.
+template <int D, class T, bool Add>
+struct PressureGradient {
+  static constexpr int values = D;
+  static constexpr bool uses(ListSegment s) { return isNear(s); }
+  using Own = T;
+  using Other = T;
+
+  PairConstants<D, T> constants;
+  const T* q;
+  Vec<D, T>* y;
+  T factor = 1;
+
+  __device__ Own loadOwn(const MphPairs<D>&, std::uint32_t i) const { return q[i]; }
+  __device__ Other loadOther(const MphPairs<D>&, std::uint32_t j) const { return q[j]; }
+
+  template <ListSegment>
+  __device__ void add(const MphPairs<D>&, T* sum, const Vec<D, T>& d, T inverseR, const Own& own,
+                      const Other& other) const {
+    addScaled(sum, constants.pressureReach(inverseR) * (own + other), d);
+  }
+  __device__ void store(const MphPairs<D>&, std::uint32_t i, int n, T sum) const {
+    const T value = factor * constants.pressureFactor * sum;
+    y[i][n] = Add ? y[i][n] + value : value;
+  }
+};
+
+}  // namespace treacle

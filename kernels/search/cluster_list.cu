@@ -1,0 +1,98 @@
+#include "core/launch.hpp"
+#include "search/cluster_candidates.cuh"
+
+#include <cub/device/device_scan.cuh>
+
+namespace treacle {
+namespace {
+
+template <int D>
+struct BuildArguments {
+  CellGrid<D> grid;
+  CellRangesView cells;
+  const Vec<D>* position;
+  ListRadii radii;
+  bool onlyNextToFluid;
+  std::uint32_t first, last, clusters;
+  std::uint64_t* offset;
+  ListEntry* entry;
+  std::uint8_t* wraps;
+};
+
+constexpr int warpsPerBlock = 4;
+
+/// One warp per cluster: counts the entries of its four segments into offset[4 c + 1 …], or, with Fill, writes them
+/// in the order of the walk. No atomics.
+template <int D, bool Fill>
+__global__ void __launch_bounds__(32 * warpsPerBlock) buildKernel(const __grid_constant__ BuildArguments<D> a) {
+  const std::uint32_t cluster = blockIdx.x * warpsPerBlock + threadIdx.x / 32;
+  if (cluster >= a.clusters) return;
+  std::uint64_t* offset = a.offset + std::size_t{listSegments} * cluster;
+  if (Fill && offset[0] == offset[listSegments]) return;
+  const std::uint32_t first = a.first + clusterSize * cluster;
+  const unsigned lane = threadIdx.x % 32, before = (1u << lane) - 1;
+
+  std::uint64_t nearFluid = 0, farFluid = 0, nearWall = 0, farWall = 0;
+  if (Fill) nearFluid = offset[0], farFluid = offset[1], nearWall = offset[2], farWall = offset[3];
+  bool wraps = false;
+  const ClusterCandidates<D> candidates(a.grid, a.cells, a.position, first, min(clusterSize, a.last - first));
+  candidates.forEach(a.radii, true, true, [&](ListEntry e, bool near, bool far, bool wall) {
+    const unsigned nearLanes = __ballot_sync(~0u, near), farLanes = __ballot_sync(~0u, far);
+    std::uint64_t& nextNear = wall ? nearWall : nearFluid;
+    std::uint64_t& nextFar = wall ? farWall : farFluid;
+    if (Fill) {
+      if (near) a.entry[nextNear + __popc(nearLanes & before)] = e;
+      if (far) a.entry[nextFar + __popc(farLanes & before)] = e;
+    }
+    nextNear += __popc(nearLanes);
+    nextFar += __popc(farLanes);
+    wraps |= e.image() != 0 && (nearLanes | farLanes) != 0;
+  });
+  if (Fill || lane != 0) return;
+  const bool empty = a.onlyNextToFluid && nearFluid == 0;
+  offset[1] = empty ? 0 : nearFluid, offset[2] = empty ? 0 : farFluid;
+  offset[3] = empty ? 0 : nearWall, offset[4] = empty ? 0 : farWall;
+  a.wraps[cluster] = wraps;
+  if (cluster == 0) a.offset[0] = 0;
+}
+
+}  // namespace
+
+template <int D>
+void buildClusterList(Context<Cuda>& context, const CellGrid<D>& grid, const CellRanges<Cuda>& ranges,
+                      std::span<const Vec<D>> position, std::uint32_t first, std::uint32_t last, ListRadii radii,
+                      bool onlyNextToFluid, ClusterList<Cuda>& list) {
+  list.first = first;
+  list.last = last;
+  const std::uint32_t clusters = list.clusterCount();
+  const std::size_t offsets = std::size_t{listSegments} * clusters + 1;
+  list.offset.resize(context, offsets);
+  list.wraps.resize(context, clusters);
+  if (clusters == 0) {
+    clearBytes(context, list.offset.data(), sizeof(std::uint64_t));
+    list.entry.resize(context, 0);
+    return;
+  }
+  BuildArguments<D> arguments{grid,  viewOf(ranges), position.data(),    radii,   onlyNextToFluid,  first,
+                              last,  clusters,       list.offset.data(), nullptr, list.wraps.data()};
+  const unsigned blocks = blocksFor(clusters, warpsPerBlock);
+  launch(context, blocks, 32 * warpsPerBlock, 0, buildKernel<D, false>, arguments);
+
+  std::size_t bytes = 0;
+  std::uint64_t* offset = list.offset.data();
+  TREACLE_CUDA_CHECK(cub::DeviceScan::InclusiveSum(nullptr, bytes, offset, offset, offsets, context.stream()));
+  TREACLE_CUDA_CHECK(cub::DeviceScan::InclusiveSum(context.scratch(bytes), bytes, offset, offset, offsets,
+                                                   context.stream()));
+  list.entry.resize(context, valueOnHost(context, offset + offsets - 1));
+  arguments.entry = list.entry.data();
+  launch(context, blocks, 32 * warpsPerBlock, 0, buildKernel<D, true>, arguments);
+}
+
+template void buildClusterList<2>(Context<Cuda>&, const CellGrid<2>&, const CellRanges<Cuda>&,
+                                  std::span<const Vec<2>>, std::uint32_t, std::uint32_t, ListRadii, bool,
+                                  ClusterList<Cuda>&);
+template void buildClusterList<3>(Context<Cuda>&, const CellGrid<3>&, const CellRanges<Cuda>&,
+                                  std::span<const Vec<3>>, std::uint32_t, std::uint32_t, ListRadii, bool,
+                                  ClusterList<Cuda>&);
+
+}  // namespace treacle

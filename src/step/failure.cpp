@@ -1,0 +1,62 @@
+#include "failure.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace treacle {
+namespace {
+
+template <int D>
+std::string describe(const Vec<D>& x) {
+  std::string text = fmt::format("({:.6g}", x[0]);
+  for (int k = 1; k < D; ++k) text += fmt::format(", {:.6g}", x[k]);
+  return text + ")";
+}
+
+template <int D>
+bool isFinite(const Vec<D>& v) {
+  return std::isfinite(norm2(v));
+}
+
+}  // namespace
+
+std::string describeFailure(const SolveReport& report, double tolerance) {
+  const std::string numbers = fmt::format("|r|^2/|b|^2 = {:.3g} after {} iterations (tolerance {:.3g})",
+                                          report.residual, report.iterations, tolerance);
+  switch (report.status) {
+    case SolveStatus::IterationLimit:
+      return "the linear solver did not converge: " + numbers +
+             "; raise solver.max_iterations, or reduce the time step or the bulk viscosity";
+    case SolveStatus::Breakdown:
+      return "the linear solver broke down, operator or preconditioner is not positive definite in working "
+             "precision: " +
+             numbers;
+    default:
+      return "the linear solver met a value that is not finite: " + numbers;
+  }
+}
+
+template <int D>
+std::string describeNotFinite(const Particles<D>& particles, std::span<const Vec<D>> b) {
+  for (std::uint32_t i = 0; i < particles.fluidCount; ++i)
+    if (!isFinite(b[i]) || !isFinite(particles.position[i]))
+      return fmt::format("the right-hand side of particle {} at {} m is not finite", particles.id[i],
+                         describe(particles.position[i]));
+  return "the right-hand side is finite";
+}
+
+template <int D>
+std::string describeLeaving(const Particles<D>& particles, std::uint32_t i, const Vec<D>& u, double dt) {
+  const Vec<D>& x = particles.position[i];
+  return fmt::format("{} particle {} left the domain: from {} m to {} m at velocity {} m/s",
+                     i < particles.fluidCount ? "fluid" : "wall", particles.id[i], describe(x), describe(x + dt * u),
+                     describe(u));
+}
+
+template std::string describeNotFinite<2>(const Particles<2>&, std::span<const Vec<2>>);
+template std::string describeNotFinite<3>(const Particles<3>&, std::span<const Vec<3>>);
+template std::string describeLeaving<2>(const Particles<2>&, std::uint32_t, const Vec<2>&, double);
+template std::string describeLeaving<3>(const Particles<3>&, std::uint32_t, const Vec<3>&, double);
+
+}  // namespace treacle

@@ -1,0 +1,148 @@
+#include "treacle/step/simulation.hpp"
+#include "support/gpu.hpp"
+#include "support/scene.hpp"
+#include "treacle/core/error.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+namespace treacle::test {
+namespace {
+
+/// A jittered body of fluid on a floor that moves.
+template <int D>
+Particles<D> bodyOnFloor(const Case& c, double floorSpeed) {
+  const double l = c.spacing;
+  Particles<D> p = jitteredLattice<D>(
+      c, 0.1, 1, [&](const Vec<D>& x) { return x[D - 1] >= 4 * l && x[D - 1] < 9 * l && x[0] < 8 * l; },
+      [&](const Vec<D>& x) { return x[D - 1] < 4 * l; });
+  for (std::uint32_t i = 0; i < p.count; ++i) p.velocity[i] = {};
+  for (std::uint32_t i = p.fluidCount; i < p.count; ++i) p.velocity[i][0] = floorSpeed;
+  return p;
+}
+
+Case stepCase(int dimensions, const SolverSettings& solver) {
+  Case c = sceneCase(dimensions);
+  c.time.step = 5e-4;
+  c.gravity[dimensions - 1] = -10;
+  c.solver = solver;
+  return c;
+}
+
+std::vector<SolverSettings> allSolvers() {
+  std::vector<SolverSettings> all;
+  for (const auto k : {PreconditionerKind::None, PreconditionerKind::Jacobi, PreconditionerKind::BlockJacobi,
+                       PreconditionerKind::BucketMultigrid})
+    for (const auto krylov : {KrylovKind::Cg, KrylovKind::Cr}) {
+      SolverSettings s;
+      s.preconditioner = k;
+      s.krylov = krylov;
+      all.push_back(s);
+      s.precision = Precision::Mixed;
+      all.push_back(s);
+    }
+  SolverSettings s;
+  s.operatorKind = OperatorKind::Assembled;
+  all.push_back(s);
+  s.multigrid.coarseOperators = CoarseKind::Spgemm;
+  all.push_back(s);
+  s.multigrid.particleDiagonal = SmootherDiagonal::ExtendedJacobi;
+  all.push_back(s);
+  s = {};
+  s.neighbours = NeighbourKind::Ranges;
+  all.push_back(s);
+  return all;
+}
+
+template <int D>
+double farthest(const Particles<D>& a, const Particles<D>& b) {
+  std::vector<Vec<D>> x(a.count);
+  for (std::uint32_t i = 0; i < a.count; ++i) x[a.id[i]] = a.position[i];
+  double distance = 0;
+  for (std::uint32_t i = 0; i < b.count; ++i) distance = std::max(distance, norm(b.position[i] - x[b.id[i]]));
+  return distance;
+}
+
+template <int D>
+void compareSteps(const SolverSettings& settings) {
+  const Case c = stepCase(D, settings);
+  Simulation<D> cpu(c, bodyOnFloor<D>(c, 0.02));
+  Simulation<D, Cuda> cuda(c, bodyOnFloor<D>(c, 0.02));
+  for (int step = 0; step < 5; ++step) {
+    const StepReport a = cpu.advance(), b = cuda.advance();
+    EXPECT_NEAR(b.iterations, a.iterations, std::max(1.0, 0.03 * a.iterations));
+    EXPECT_LE(b.residual, c.solver.tolerance);
+    EXPECT_NEAR(b.diagnostics.kineticEnergy, a.diagnostics.kineticEnergy, 1e-5 * a.diagnostics.kineticEnergy);
+    EXPECT_NEAR(b.diagnostics.frontX, a.diagnostics.frontX, 1e-6 * c.domain.max[0]);
+  }
+  Particles<D> found;
+  cuda.copyParticles(found);
+  EXPECT_LE(farthest(cpu.particles(), found), 1e-4 * c.spacing);
+}
+
+TEST(SimulationTwin, StepsLikeTheCpuWithEverySolver) {
+  TREACLE_SKIP_WITHOUT_GPU();
+  for (const SolverSettings& s : allSolvers()) {
+    SCOPED_TRACE(testing::Message() << "preconditioner " << static_cast<int>(s.preconditioner) << ", krylov "
+                                    << static_cast<int>(s.krylov) << ", precision " << static_cast<int>(s.precision)
+                                    << ", operator " << static_cast<int>(s.operatorKind) << ", coarse "
+                                    << static_cast<int>(s.multigrid.coarseOperators) << ", neighbours "
+                                    << static_cast<int>(s.neighbours));
+    compareSteps<2>(s);
+    compareSteps<3>(s);
+  }
+}
+
+template <int D>
+std::vector<std::byte> stateAfter(const Case& c, int steps) {
+  Simulation<D, Cuda> s(c, bodyOnFloor<D>(c, 0));
+  for (int step = 0; step < steps; ++step) s.advance();
+  Particles<D> p;
+  s.copyParticles(p);
+  std::vector<std::byte> bits;
+  p.forEachField([&](const auto& field) {
+    const auto bytes = std::as_bytes(field.span());
+    bits.insert(bits.end(), bytes.begin(), bytes.end());
+  });
+  return bits;
+}
+
+TEST(SimulationTwin, RunTwiceGivesTheSameBits) {
+  TREACLE_SKIP_WITHOUT_GPU();
+  EXPECT_EQ(stateAfter<2>(stepCase(2, {}), 10), stateAfter<2>(stepCase(2, {}), 10));
+  EXPECT_EQ(stateAfter<3>(stepCase(3, {}), 5), stateAfter<3>(stepCase(3, {}), 5));
+}
+
+TEST(SimulationTwin, KeepsTheLastGoodStateWhenTheSolverFails) {
+  TREACLE_SKIP_WITHOUT_GPU();
+  SolverSettings settings;
+  settings.maxIterations = 3;
+  const Case c = stepCase(2, settings);
+  Simulation<2, Cuda> s(c, bodyOnFloor<2>(c, 0));
+  Particles<2> before, after;
+  s.copyParticles(before);
+  EXPECT_THROW(s.advance(), RunError);
+  s.copyParticles(after);
+  EXPECT_EQ(farthest(before, after), 0);
+  EXPECT_EQ(s.step(), 0);
+}
+
+TEST(SimulationTwin, NamesTheParticleThatLeavesAnOpenDomain) {
+  TREACLE_SKIP_WITHOUT_GPU();
+  Case c = stepCase(2, {});
+  c.domain.periodic = {};
+  Particles<2> p = bodyOnFloor<2>(c, 0);
+  for (std::uint32_t i = 0; i < p.fluidCount; ++i) p.velocity[i][0] = -10;
+  Simulation<2, Cuda> s(c, std::move(p));
+  try {
+    s.advance();
+    FAIL() << "nothing was thrown";
+  } catch (const RunError& e) {
+    EXPECT_NE(std::string(e.what()).find("left the domain"), std::string::npos) << e.what();
+  }
+  EXPECT_EQ(s.step(), 0);
+}
+
+}  // namespace
+}  // namespace treacle::test
