@@ -163,7 +163,7 @@ TEST_P(BadArguments, areRejectedWithReason) {
 }
 
 constexpr BadLine badLines[] = {
-    {"noCommand", "", "expected a command: run, check, info or plot"},
+    {"noCommand", "", "expected a command: run, check, plot, compare or info"},
     {"unknownCommand", "rum small.toml", "rum"},
     {"noCase", "run", "CASE is required"},
     {"unknownOption", "run small.toml --fast", "--fast"},

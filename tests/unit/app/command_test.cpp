@@ -29,7 +29,7 @@ TEST(helpAndVersion, documentTheExitCodes) {
   Workshop shop;
   const Outcome help = shop.call("--help");
   EXPECT_EQ(help.exitCode, 0);
-  EXPECT_THAT(help.out, HasSubstr("Exit codes: 0 done, 2 bad input, 3 the run failed."));
+  EXPECT_THAT(help.out, HasSubstr("Exit codes: 0 done, 1 compared runs differ, 2 bad input, 3 the run failed."));
   const Outcome version = shop.call("--version");
   EXPECT_EQ(version.exitCode, 0);
   EXPECT_THAT(version.out, StartsWith("treacle "));
