@@ -27,6 +27,7 @@ struct RunOptions {
   std::optional<Precision> precision;  // default: the case's
   std::optional<double> endTime;       // [s] default: the case's
   std::filesystem::path resume;        // checkpoint to continue from; empty: start from the case's bodies
+  bool timings = false;                // seconds of the phases in history.csv
   bool force = false;
   bool quiet = false;
 };

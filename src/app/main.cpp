@@ -103,6 +103,7 @@ void addRun(CLI::App& app, RunOptions& options) {
       ->type_name("T")
       ->check(positive());
   run->add_option("--resume", options.resume, "Checkpoint to continue from")->type_name("FILE");
+  run->add_flag("--timings", options.timings, "Seconds of each phase of a step in history.csv");
   run->add_flag("--force", options.force, "Replace the run that the directory holds");
   run->add_flag("-q,--quiet", options.quiet, "Print nothing but errors");
   run->callback([&options] { runCommand(options); });

@@ -228,6 +228,16 @@ const Particles<D>& Simulation<D>::particles() const {
   return state_->particles;
 }
 template <int D>
+void Simulation<D>::copyParticles(Particles<D>& host) const {
+  const Particles<D>& p = state_->particles;
+  host.resize(p.fluidCount, p.wallCount());
+  // The bindings name all members: a field that is added does not compile until it is copied.
+  const auto& [fluidCount, count, position, velocity, pressure, numberDensity, material, id] = p;
+  const auto copy = [](const auto& from, auto& to) { std::copy(from.begin(), from.end(), to.begin()); };
+  copy(position, host.position), copy(velocity, host.velocity), copy(pressure, host.pressure);
+  copy(numberDensity, host.numberDensity), copy(material, host.material), copy(id, host.id);
+}
+template <int D>
 double Simulation<D>::time() const {
   return state_->time;
 }

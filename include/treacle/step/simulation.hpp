@@ -59,6 +59,8 @@ class Simulation {
   StepReport advance();
 
   const Particles<D>& particles() const;
+  /// Copies all fields, in the order the search keeps them; memory of `host` is kept while it suffices.
+  void copyParticles(Particles<D>& host) const;
   double time() const;  // [s]
   std::int64_t step() const;
   std::size_t bytes() const;  // memory held [B]
