@@ -1,5 +1,6 @@
 #pragma once
 
+#include "treacle/io/compare.hpp"
 #include "treacle/io/picture.hpp"
 #include "treacle/model/case.hpp"
 
@@ -26,6 +27,7 @@ struct RunOptions {
   std::optional<Precision> precision;  // default: the case's
   std::optional<double> endTime;       // [s] default: the case's
   std::filesystem::path resume;        // checkpoint to continue from; empty: start from the case's bodies
+  bool timings = false;                // seconds of the phases in history.csv
   bool force = false;
   bool quiet = false;
 };
@@ -38,11 +40,24 @@ struct PlotOptions {
   std::filesystem::path output;  // empty: into the run directory
 };
 
+struct CompareOptions {
+  std::filesystem::path a, b;  // run directories; b is the reference
+  std::vector<ComparedField> fields{ComparedField::Position, ComparedField::Velocity};
+  double bound = 1e-5;        // on relative differences
+  std::filesystem::path csv;  // empty: no table is written
+  bool quiet = false;
+};
+
+/// Exit code of `compare` for runs that differ by more than the bound.
+inline constexpr int runsDiffer = 1;
+
 /// The commands of the program. They print to stdout, warnings to stderr.
 /// Errors: InputError, RunError, std::bad_alloc.
 void runCommand(const RunOptions& options);
 void checkCommand(const CaseOptions& options);
 void infoCommand();
 void plotCommand(const PlotOptions& options);
+/// Whether the runs agree within the bound.
+bool compareCommand(const CompareOptions& options);
 
 }  // namespace treacle

@@ -24,29 +24,60 @@ constexpr Named<PictureField> fieldNames[] = {{"speed", PictureField::Speed},
                                               {"pressure", PictureField::Pressure},
                                               {"number_density", PictureField::NumberDensity}};
 
+template <class E>
+std::string listOf(std::span<const Named<E>> words) {
+  std::string list;
+  for (const Named<E>& w : words) list += fmt::format("{}{}", list.empty() ? "" : "|", w.name);
+  return list;
+}
+
+template <class E>
+E valueOf(const std::string& option, std::span<const Named<E>> words, const std::string& word) {
+  for (const Named<E>& w : words)
+    if (w.name == word) return w.value;
+  throw CLI::ValidationError(option, fmt::format("expected {}, found '{}'", listOf(words), word));
+}
+
 /// An option that takes one of some words and stores the value that the word stands for.
 template <class E, class Target>
 void addChoice(CLI::App& command, const std::string& option, std::span<const Named<E>> words, Target& target,
                const std::string& help) {
-  std::string list;
-  for (const Named<E>& w : words) list += fmt::format("{}{}", list.empty() ? "" : "|", w.name);
-  const auto store = [option, words, list, &target](const std::string& word) {
-    for (const Named<E>& w : words)
-      if (w.name == word) {
-        target = w.value;
-        return;
-      }
-    throw CLI::ValidationError(option, fmt::format("expected {}, found '{}'", list, word));
+  const auto store = [option, words, &target](const std::string& word) { target = valueOf(option, words, word); };
+  command.add_option_function<std::string>(option, store, help)->type_name(listOf(words));
+}
+
+/// The same for an option that can be given several times; the first time replaces the default.
+template <class E>
+void addChoices(CLI::App& command, const std::string& option, std::span<const Named<E>> words,
+                std::vector<E>& target, const std::string& help) {
+  const auto store = [option, words, &target](const std::vector<std::string>& given) {
+    target.clear();
+    for (const std::string& word : given) target.push_back(valueOf(option, words, word));
   };
-  command.add_option_function<std::string>(option, store, help)->type_name(list);
+  command.add_option_function<std::vector<std::string>>(option, store, help)
+      ->type_name(listOf(words))
+      ->allow_extra_args(false);
+}
+
+bool isNumber(const std::string& text, double& x) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), x);
+  return error == std::errc{} && end == text.data() + text.size() && std::isfinite(x);
 }
 
 CLI::Validator positive() {
   const auto check = [](const std::string& text) {
     double x = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), x);
-    const bool good = error == std::errc{} && end == text.data() + text.size() && std::isfinite(x) && x > 0;
+    const bool good = isNumber(text, x) && x > 0;
     return good ? std::string{} : fmt::format("expected a positive number, found '{}'", text);
+  };
+  return CLI::Validator(check, "");
+}
+
+CLI::Validator notNegative() {
+  const auto check = [](const std::string& text) {
+    double x = 0;
+    const bool good = isNumber(text, x) && x >= 0;
+    return good ? std::string{} : fmt::format("expected a number not less than 0, found '{}'", text);
   };
   return CLI::Validator(check, "");
 }
@@ -72,6 +103,7 @@ void addRun(CLI::App& app, RunOptions& options) {
       ->type_name("T")
       ->check(positive());
   run->add_option("--resume", options.resume, "Checkpoint to continue from")->type_name("FILE");
+  run->add_flag("--timings", options.timings, "Seconds of each phase of a step in history.csv");
   run->add_flag("--force", options.force, "Replace the run that the directory holds");
   run->add_flag("-q,--quiet", options.quiet, "Print nothing but errors");
   run->callback([&options] { runCommand(options); });
@@ -87,6 +119,22 @@ void addPlot(CLI::App& app, PlotOptions& options) {
   plot->callback([&options] { plotCommand(options); });
 }
 
+/// `agree`: what the command found.
+void addCompare(CLI::App& app, CompareOptions& options, bool& agree) {
+  CLI::App* compare = app.add_subcommand("compare", "Compare two runs particle by particle");
+  compare->add_option("A", options.a, "Run directory")->required();
+  compare->add_option("B", options.b, "Run directory of the reference")->required();
+  compare
+      ->add_option("--bound", options.bound, "Largest relative difference that counts as agreement; default: 1e-5")
+      ->type_name("X")
+      ->check(notNegative());
+  addChoices<ComparedField>(*compare, "--field", namesOf<ComparedField>, options.fields,
+                            "Field that the bound applies to; repeatable; default: position and velocity");
+  compare->add_option("--csv", options.csv, "Write the table of the frames as CSV")->type_name("FILE");
+  compare->add_flag("-q,--quiet", options.quiet, "Print the verdict only");
+  compare->callback([&options, &agree] { agree = compareCommand(options); });
+}
+
 int report(const std::string& text, ExitCode code) {
   fmt::print(stderr, "treacle: error: {}\n", text);
   return static_cast<int>(code);
@@ -97,22 +145,25 @@ int report(const std::string& text, ExitCode code) {
 int main(int argc, char** argv) {
   CLI::App app("Particle solver for highly viscous, incompressible free-surface flow", "treacle");
   app.set_version_flag("--version", fmt::format("treacle {} ({})", buildInfo().version, buildInfo().commit));
-  app.footer("Exit codes: 0 done, 2 bad input, 3 the run failed.");
+  app.footer("Exit codes: 0 done, 1 compared runs differ, 2 bad input, 3 the run failed.");
   RunOptions run;
   CaseOptions check;
   PlotOptions plot;
+  CompareOptions compare;
+  bool agree = true;
   addRun(app, run);
   CLI::App* checkApp = app.add_subcommand("check", "Check a case; prints it with all keys, counts and stability");
   addCase(*checkApp, check);
   checkApp->callback([&check] { checkCommand(check); });
   app.add_subcommand("info", "Version, build options and devices")->callback([] { infoCommand(); });
   addPlot(app, plot);
+  addCompare(app, compare, agree);
 
   ignoreFileSizeSignal();
   try {
     app.parse(argc, argv);
     if (app.get_subcommands().empty())
-      throw InputError("expected a command: run, check, info or plot; treacle --help tells more");
+      throw InputError("expected a command: run, check, plot, compare or info; treacle --help tells more");
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return app.exit(e);  // help and version
     return report(fmt::format("{}; --help tells more", e.what()), ExitCode::BadInput);
@@ -123,5 +174,5 @@ int main(int argc, char** argv) {
   } catch (const std::exception& e) {
     return report(e.what(), ExitCode::RunFailed);
   }
-  return static_cast<int>(ExitCode::Done);
+  return agree ? static_cast<int>(ExitCode::Done) : runsDiffer;
 }

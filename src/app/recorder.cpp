@@ -4,26 +4,53 @@
 #include "treacle/io/checkpoint.hpp"
 #include "treacle/io/picture.hpp"
 
+#include <fmt/format.h>
+
 namespace treacle {
 namespace {
 
 template <int D>
-Frame fluidFrame(const Simulation<D>& s) {
-  return makeFrame(s.particles(), 0, s.particles().fluidCount, s.time());
+Frame fluidFrame(const Snapshot<D>& s) {
+  return makeFrame(s.particles, 0, s.particles.fluidCount, s.time);
 }
 
 template <int D>
-Frame wallsFrame(const Simulation<D>& s) {
-  return makeFrame(s.particles(), s.particles().fluidCount, s.particles().count, s.time());
+Frame wallsFrame(const Snapshot<D>& s) {
+  return makeFrame(s.particles, s.particles.fluidCount, s.particles.count, s.time);
 }
 
 HistoryRow historyRow(const StepReport& r) {
   const Diagnostics& d = r.diagnostics;
-  return {r.step,   r.time, r.iterations, r.residual,       d.kineticEnergy, d.potentialEnergy,
-          d.frontX, d.top,  d.maxSpeed,   r.seconds.total()};
+  const PhaseSeconds& s = r.seconds;
+  return {r.step,
+          r.time,
+          r.iterations,
+          r.residual,
+          d.kineticEnergy,
+          d.potentialEnergy,
+          d.frontX,
+          d.top,
+          d.maxSpeed,
+          s.total(),
+          {s.search, s.lists, s.coefficients, s.coarse, s.solve, s.update}};
 }
 
 }  // namespace
+
+template <int D>
+Recorder<D>::Recorder(const Case& c, RunDirectory& directory, RunLog& log, double start, bool timings)
+    : case_(c),
+      directory_(directory),
+      log_(log),
+      history_(directory.history(), timings),
+      frames_(c.output.interval, c.time, start),
+      checkpoints_(c.output.checkpointInterval, c.time, start),
+      output_([this](const Snapshot<D>& snapshot) { write(snapshot); }) {}
+
+template <int D>
+void Recorder<D>::begin(const Simulation<D>& simulation) {
+  handOver(simulation, true, false);
+}
 
 template <int D>
 void Recorder<D>::record(const StepReport& report, const Simulation<D>& simulation) {
@@ -34,35 +61,41 @@ void Recorder<D>::record(const StepReport& report, const Simulation<D>& simulati
   Timer timer;
   history_.append(historyRow(report));
   outputSeconds_ += timer.lap();
-  if (frames_.due(report.time)) writeFrame(simulation);
-  if (checkpoints_.due(report.time)) writeCheckpoint(simulation);
+  const bool frame = frames_.due(report.time), checkpoint = checkpoints_.due(report.time);
+  if (frame || checkpoint) handOver(simulation, frame, checkpoint);
+}
+
+template <int D>
+void Recorder<D>::wait() {
+  Timer timer;
+  output_.wait();
+  outputSeconds_ += timer.lap();
 }
 
 template <int D>
 void Recorder<D>::writeFrame(const Simulation<D>& simulation) {
+  wait();
   if (frameStep_ == simulation.step()) return;
-  Timer timer;
-  directory_.writeFrame(fluidFrame(simulation), wallsFrame(simulation), case_.output);
-  frameStep_ = simulation.step();
-  outputSeconds_ += timer.lap();
+  handOver(simulation, true, false);
+  wait();
 }
 
 template <int D>
 void Recorder<D>::writeCheckpoint(const Simulation<D>& simulation) {
+  wait();
   if (checkpointStep_ == simulation.step()) return;
-  Timer timer;
-  treacle::writeCheckpoint(directory_.checkpoint(), simulation.particles(), simulation.step(), simulation.time());
-  checkpointStep_ = simulation.step();
-  outputSeconds_ += timer.lap();
+  handOver(simulation, false, true);
+  wait();
 }
 
 template <int D>
-void Recorder<D>::drawPicture(const Simulation<D>& simulation) const {
+void Recorder<D>::drawPicture(const Simulation<D>& simulation) {
   PictureOptions options;
   options.spacing = case_.spacing;
   options.gravity = case_.gravity;
   options.title = case_.title;
-  drawFrame(directory_.finalPicture(), fluidFrame(simulation), wallsFrame(simulation), options);
+  const Snapshot<D>& state = copyState(simulation);
+  drawFrame(directory_.finalPicture(), fluidFrame(state), wallsFrame(state), options);
 }
 
 template <int D>
@@ -74,6 +107,41 @@ void Recorder<D>::summarise(RunSummary& summary) const {
       {"search", seconds_.search}, {"lists", seconds_.lists}, {"coefficients", seconds_.coefficients},
       {"coarse", seconds_.coarse}, {"solve", seconds_.solve}, {"update", seconds_.update},
       {"output", outputSeconds_}};
+  summary.outputThreadSeconds = output_.busySeconds();
+}
+
+template <int D>
+Snapshot<D>& Recorder<D>::copyState(const Simulation<D>& simulation) {
+  Snapshot<D>& snapshot = output_.next();
+  simulation.copyParticles(snapshot.particles);
+  snapshot.step = simulation.step();
+  snapshot.time = simulation.time();
+  return snapshot;
+}
+
+template <int D>
+void Recorder<D>::handOver(const Simulation<D>& simulation, bool frame, bool checkpoint) {
+  Timer timer;
+  Snapshot<D>& snapshot = copyState(simulation);
+  snapshot.iterations = lastIterations_;
+  snapshot.frame = frame, snapshot.checkpoint = checkpoint;
+  output_.handOver();
+  outputSeconds_ += timer.lap();
+}
+
+/// Called by the output thread.
+template <int D>
+void Recorder<D>::write(const Snapshot<D>& s) {
+  if (s.frame) {
+    const std::size_t number = directory_.frameCount();
+    directory_.writeFrame(fluidFrame(s), wallsFrame(s), case_.output);
+    frameStep_ = s.step;
+    log_.info(fmt::format("frame {}: step {}, t = {:.6g} s, {} iterations", number, s.step, s.time, s.iterations));
+  }
+  if (s.checkpoint) {
+    treacle::writeCheckpoint(directory_.checkpoint(), s.particles, s.step, s.time);
+    checkpointStep_ = s.step;
+  }
 }
 
 template class Recorder<2>;

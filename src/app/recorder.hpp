@@ -1,6 +1,8 @@
 #pragma once
 
 #include "interval.hpp"
+#include "output_thread.hpp"
+#include "run_log.hpp"
 #include "treacle/io/history.hpp"
 #include "treacle/io/run_directory.hpp"
 #include "treacle/io/summary.hpp"
@@ -11,43 +13,50 @@
 
 namespace treacle {
 
-/// Writes what a run leaves behind: frames, history, checkpoints, picture, summary. Errors, of every member:
-/// RunError.
+/// Writes what a run leaves behind: frames, history, checkpoints, picture, summary. Frames and checkpoints are
+/// written by another thread, from a copy of the particles, while the simulation goes on; until wait() the run
+/// directory and the files in it are that thread's. Errors, of every member but summarise: RunError or
+/// std::bad_alloc, also for what was to be written since the call before.
 template <int D>
 class Recorder {
  public:
-  /// `start`: simulation time at which the run starts [s].
-  Recorder(const Case& c, RunDirectory& directory, double start)
-      : case_(c),
-        directory_(directory),
-        history_(directory.history()),
-        frames_(c.output.interval, c.time, start),
-        checkpoints_(c.output.checkpointInterval, c.time, start) {}
+  /// `start`: simulation time at which the run starts [s]. `timings`: the history has the seconds of the phases.
+  Recorder(const Case& c, RunDirectory& directory, RunLog& log, double start, bool timings);
+
+  /// The frame of the state at the start.
+  void begin(const Simulation<D>& simulation);
 
   /// A history row for every step, a frame and a checkpoint when they are due.
   void record(const StepReport& report, const Simulation<D>& simulation);
 
-  /// The state as it is, unless it is the last frame already.
-  void writeFrame(const Simulation<D>& simulation);
+  /// Returns when all frames and checkpoints up to now are on disk.
+  void wait();
 
-  /// The state as it is, unless it is in the checkpoint already.
+  /// The state as it is, unless it is the last frame, or in the checkpoint, already; on disk when they return.
+  void writeFrame(const Simulation<D>& simulation);
   void writeCheckpoint(const Simulation<D>& simulation);
 
-  void drawPicture(const Simulation<D>& simulation) const;
+  void drawPicture(const Simulation<D>& simulation);
 
-  /// Fills in steps, iterations and seconds per phase.
+  /// Fills in iterations and seconds. To be called after wait().
   void summarise(RunSummary& summary) const;
 
  private:
+  Snapshot<D>& copyState(const Simulation<D>& simulation);
+  void handOver(const Simulation<D>& simulation, bool frame, bool checkpoint);
+  void write(const Snapshot<D>& snapshot);
+
   const Case& case_;
   RunDirectory& directory_;
+  RunLog& log_;
   HistoryWriter history_;
   Interval frames_, checkpoints_;
-  std::int64_t frameStep_ = -1, checkpointStep_ = -1;  // of the last ones
+  std::int64_t frameStep_ = -1, checkpointStep_ = -1;  // of the last ones on disk; written by the output thread
   std::int64_t steps_ = 0, iterations_ = 0;
   int firstIterations_ = 0, lastIterations_ = 0;
   PhaseSeconds seconds_;
-  double outputSeconds_ = 0;
+  double outputSeconds_ = 0;  // that the simulation had to wait
+  OutputThread<D> output_;    // last: it uses the others
 };
 
 extern template class Recorder<2>;

@@ -30,12 +30,13 @@ namespace {
 template <int D>
 class Run {
  public:
-  Run(const Case& c, Checkpoint<D> start, RunDirectory directory, bool quiet)
+  Run(const Case& c, Checkpoint<D> start, RunDirectory directory, const RunOptions& options)
       : case_(c),
         start_(std::move(start)),
         directory_(std::move(directory)),
-        log_(directory_.log(), quiet),
-        progress_(start_.step, c.steps(), quiet) {}
+        timings_(options.timings),
+        log_(directory_.log(), options.quiet),
+        progress_(start_.step, c.steps(), options.quiet) {}
 
   /// Errors: RunError with the diagnosis, after everything is written.
   void execute(const std::vector<std::string>& warnings) {
@@ -44,8 +45,8 @@ class Run {
     attempt([&] {
       writeFile(directory_.caseFile(), caseText(case_));
       simulation_.emplace(case_, std::move(start_.particles), start_.step, start_.time);
-      recorder_.emplace(case_, directory_, start_.time);
-      recorder_->writeFrame(*simulation_);
+      recorder_.emplace(case_, directory_, log_, start_.time, timings_);
+      recorder_->begin(*simulation_);
       advanceToEnd();
     });
     finish();
@@ -72,11 +73,7 @@ class Run {
   void advanceToEnd() {
     while (simulation_->step() < case_.steps() && !interruptSignal()) {
       const StepReport report = simulation_->advance();
-      const std::size_t frames = directory_.frameCount();
       recorder_->record(report, *simulation_);
-      if (directory_.frameCount() > frames)
-        log_.info(fmt::format("frame {}: step {}, t = {:.6g} s, {} iterations", frames, report.step, report.time,
-                              report.iterations));
       progress_.update(report);
     }
     if (simulation_->step() < case_.steps()) throw RunError(fmt::format("stopped by {}", interruptSignal()));
@@ -102,6 +99,7 @@ class Run {
 
   void finish() {
     if (simulation_ && recorder_) {
+      attempt([&] { recorder_->wait(); });
       attempt([&] { recorder_->writeCheckpoint(*simulation_); });
       attempt([&] { recorder_->writeFrame(*simulation_); });
       attempt([&] { recorder_->drawPicture(*simulation_); });
@@ -142,6 +140,7 @@ class Run {
   const Case& case_;
   Checkpoint<D> start_;
   RunDirectory directory_;
+  bool timings_;
   RunLog log_;
   Progress progress_;
   std::optional<Simulation<D>> simulation_;
@@ -180,7 +179,7 @@ void runCase(const Case& c, const RunOptions& options) {
   requireElsewhere(directory, options.resume);
   if (!options.resume.empty()) start = resumedState<D>(c, options.resume, start.particles);
   catchInterrupts();
-  Run<D> run(c, std::move(start), RunDirectory::create(directory, options.force), options.quiet);
+  Run<D> run(c, std::move(start), RunDirectory::create(directory, options.force), options);
   run.execute(warnings);
 }
 

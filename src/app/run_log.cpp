@@ -14,7 +14,7 @@ void printWarning(const std::string& text) { fmt::print(stderr, "treacle: warnin
 
 RunLog::RunLog(const std::filesystem::path& path, bool quiet) : quiet_(quiet) {
   try {
-    auto sink = std::make_shared<spdlog::sinks::basic_file_sink_st>(path.string(), true);
+    auto sink = std::make_shared<spdlog::sinks::basic_file_sink_mt>(path.string(), true);
     logger_ = std::make_shared<spdlog::logger>("run", std::move(sink));
   } catch (const spdlog::spdlog_ex& e) {
     throw RunError(fmt::format("{}: {}", path.string(), e.what()));

@@ -14,7 +14,7 @@ namespace treacle {
 void printWarning(const std::string& text);
 
 /// `run.log` of a run directory, one dated line per event. A disk that fills up does not stop the run here: the
-/// lines are lost.
+/// lines are lost. info() may be called by several threads.
 class RunLog {
  public:
   /// `quiet`: warnings go into the file only. Errors: RunError if the file cannot be opened.

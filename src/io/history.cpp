@@ -19,38 +19,49 @@ namespace treacle {
 namespace {
 
 constexpr std::string_view columns =
-    "step,time,iterations,residual,kinetic_energy,potential_energy,front_x,top,max_speed,seconds\n";
+    "step,time,iterations,residual,kinetic_energy,potential_energy,front_x,top,max_speed,seconds";
+constexpr std::string_view timingColumns = ",search_s,lists_s,coefficients_s,coarse_s,solve_s,update_s";
+
+std::string header(bool timings) {
+  return fmt::format("{}{}\n", columns, timings ? timingColumns : std::string_view{});
+}
 
 /// Calls f with every value of the row in the order of the columns.
 template <class Row, class F>
-void forEachColumn(Row& row, F&& f) {
+void forEachColumn(Row& row, bool timings, F&& f) {
   f(row.step), f(row.time), f(row.iterations), f(row.residual), f(row.kineticEnergy), f(row.potentialEnergy);
   f(row.frontX), f(row.top), f(row.maxSpeed), f(row.seconds);
+  if (!timings) return;
+  auto& t = row.timings;
+  f(t.search), f(t.lists), f(t.coefficients), f(t.coarse), f(t.solve), f(t.update);
 }
 
-HistoryRow parseRow(std::string_view line, const std::string& where) {
+HistoryRow parseRow(std::string_view line, bool timings, const std::string& where) {
   HistoryRow row;
   const char* next = line.data();
   const char* const end = line.data() + line.size();
   bool first = true, good = true;
-  forEachColumn(row, [&](auto& value) {
+  forEachColumn(row, timings, [&](auto& value) {
     if (!std::exchange(first, false)) good = good && next != end && *next++ == ',';
     if (!good) return;
     const auto result = std::from_chars(next, end, value);
     good = result.ec == std::errc{};
     next = result.ptr;
   });
-  if (!good || next != end) throw InputError(fmt::format("{}: expected ten numbers, found '{}'", where, line));
+  if (!good || next != end)
+    throw InputError(fmt::format("{}: expected {} numbers, found '{}'", where, timings ? "sixteen" : "ten", line));
   return row;
 }
 
 }  // namespace
 
-HistoryWriter::HistoryWriter(std::filesystem::path path) : path_(std::move(path)) {
-  writeFile(path_, columns);
+HistoryWriter::HistoryWriter(std::filesystem::path path, bool timings)
+    : path_(std::move(path)), timings_(timings) {
+  const std::string firstLine = header(timings_);
+  writeFile(path_, firstLine);
   descriptor_ = ::open(path_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
   if (descriptor_ < 0) throw RunError(writeFailure(path_, errno));
-  size_ = static_cast<std::int64_t>(columns.size());
+  size_ = static_cast<std::int64_t>(firstLine.size());
 }
 
 HistoryWriter::~HistoryWriter() {
@@ -59,7 +70,7 @@ HistoryWriter::~HistoryWriter() {
 
 void HistoryWriter::append(const HistoryRow& row) {
   std::string line;
-  forEachColumn(row, [&](auto value) { line += fmt::format("{},", value); });
+  forEachColumn(row, timings_, [&](auto value) { line += fmt::format("{},", value); });
   line.back() = '\n';
   if (!writeAll(descriptor_, line.data(), line.size())) {
     std::string message = writeFailure(path_, errno);
@@ -71,13 +82,14 @@ void HistoryWriter::append(const HistoryRow& row) {
 
 std::vector<HistoryRow> readHistory(const std::filesystem::path& path) {
   const std::string text = readTextFile(path);
-  if (!text.starts_with(columns))
-    throw InputError(fmt::format("{}:1: not a history written by treacle; expected the header {}", path.string(),
-                                 columns.substr(0, columns.size() - 1)));
+  const bool timings = text.starts_with(header(true));
+  if (!timings && !text.starts_with(header(false)))
+    throw InputError(
+        fmt::format("{}:1: not a history written by treacle; expected the header {}", path.string(), columns));
   std::vector<HistoryRow> rows;
-  std::size_t begin = columns.size();
+  std::size_t begin = header(timings).size();
   for (std::size_t end; (end = text.find('\n', begin)) != text.npos; begin = end + 1)
-    rows.push_back(parseRow(std::string_view(text).substr(begin, end - begin),
+    rows.push_back(parseRow(std::string_view(text).substr(begin, end - begin), timings,
                             fmt::format("{}:{}", path.string(), rows.size() + 2)));
   return rows;
 }

@@ -6,6 +6,11 @@
 
 namespace treacle {
 
+/// Wall-clock seconds of the phases of a step.
+struct HistoryTimings {
+  double search = 0, lists = 0, coefficients = 0, coarse = 0, solve = 0, update = 0;  // [s]
+};
+
 /// One time step in `history.csv`.
 struct HistoryRow {
   std::int64_t step = 0;
@@ -18,6 +23,7 @@ struct HistoryRow {
   double top = 0;              // largest coordinate of the fluid against gravity [m]
   double maxSpeed = 0;         // [m/s]
   double seconds = 0;          // wall-clock time of the step [s]
+  HistoryTimings timings{};    // zero if the file does not hold them
 };
 
 /// Appends rows to a new file, each handed to the system at once: a run that is killed leaves whole rows, and
@@ -25,8 +31,8 @@ struct HistoryRow {
 /// Errors, of every member: RunError with path and reason; the file then ends with the last whole row.
 class HistoryWriter {
  public:
-  /// Replaces an older file.
-  explicit HistoryWriter(std::filesystem::path path);
+  /// Replaces an older file. `timings`: with columns for the phases.
+  explicit HistoryWriter(std::filesystem::path path, bool timings = false);
   HistoryWriter(const HistoryWriter&) = delete;
   HistoryWriter& operator=(const HistoryWriter&) = delete;
   ~HistoryWriter();
@@ -35,11 +41,12 @@ class HistoryWriter {
 
  private:
   std::filesystem::path path_;
+  bool timings_;
   int descriptor_ = -1;
   std::int64_t size_ = 0;  // [B] whole rows
 };
 
-/// All rows; an unfinished last line is left out. Errors: InputError with path and line.
+/// All rows, with or without timings; an unfinished last line is left out. Errors: InputError with path and line.
 std::vector<HistoryRow> readHistory(const std::filesystem::path& path);
 
 }  // namespace treacle

@@ -2,11 +2,14 @@
 #include <gtest/gtest.h>
 
 #include "command.hpp"
+#include "treacle/io/history.hpp"
+#include "treacle/io/run_directory.hpp"
 #include "treacle/io/vtp.hpp"
 
 namespace treacle::test {
 namespace {
 
+using testing::ContainsRegex;
 using testing::EndsWith;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -163,7 +166,7 @@ TEST_P(BadArguments, areRejectedWithReason) {
 }
 
 constexpr BadLine badLines[] = {
-    {"noCommand", "", "expected a command: run, check, info or plot"},
+    {"noCommand", "", "expected a command: run, check, plot, compare or info"},
     {"unknownCommand", "rum small.toml", "rum"},
     {"noCase", "run", "CASE is required"},
     {"unknownOption", "run small.toml --fast", "--fast"},
@@ -251,6 +254,29 @@ TEST(FullDisk, endsTheRunWithDiagnosisAndLeavesNoPartOfAFile) {
   }
   EXPECT_THAT(shop.content("small-run/summary.json"), HasSubstr("\"status\": \"failed\""));
   EXPECT_THAT(shop.content("small-run/case.toml"), EndsWith("precision = \"single\"\n"));
+}
+
+TEST(FullDisk, foundByTheOutputThreadEndsTheRunAndKeepsTheFrames) {
+  Workshop shop;
+  shop.put("small.toml", smallCase);
+  // 8 KiB a file: enough for the frames, not for a checkpoint. Without the first one the run would take hours.
+  const Outcome outcome = shop.call(
+      "run small.toml --threads 1 --end-time 30 --set output.checkpoint_interval=2e-3 "
+      "--set 'gravity.acceleration=[0, -1e-3]'",
+      "trap '' XFSZ; ulimit -f 16;");
+  EXPECT_EQ(outcome.exitCode, 3);
+  EXPECT_THAT(outcome.err, ContainsRegex("treacle: error: after step [0-9]+ .*: cannot write "
+                                         "small-run/checkpoint.h5: File too large\n"));
+  EXPECT_FALSE(std::filesystem::exists(shop / "small-run/checkpoint.h5"));
+  // The last state is on disk, with all frames before it.
+  const RunDirectory run = RunDirectory::open(shop / "small-run");
+  const auto rows = readHistory(run.history());
+  ASSERT_EQ(run.frameCount(), rows.size() + 1);
+  for (std::size_t k = 1; k < run.frameCount(); ++k) {
+    EXPECT_EQ(run.frameTime(k), rows[k - 1].time);
+    EXPECT_EQ(readVtp(run.fluidFrame(k)).time, rows[k - 1].time);
+  }
+  EXPECT_THAT(shop.content("small-run/summary.json"), HasSubstr("checkpoint.h5: File too large"));
 }
 
 /// Warnings: the case is run nevertheless.

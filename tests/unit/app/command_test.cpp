@@ -29,7 +29,7 @@ TEST(helpAndVersion, documentTheExitCodes) {
   Workshop shop;
   const Outcome help = shop.call("--help");
   EXPECT_EQ(help.exitCode, 0);
-  EXPECT_THAT(help.out, HasSubstr("Exit codes: 0 done, 2 bad input, 3 the run failed."));
+  EXPECT_THAT(help.out, HasSubstr("Exit codes: 0 done, 1 compared runs differ, 2 bad input, 3 the run failed."));
   const Outcome version = shop.call("--version");
   EXPECT_EQ(version.exitCode, 0);
   EXPECT_THAT(version.out, StartsWith("treacle "));
@@ -93,7 +93,28 @@ TEST(run, leavesAllFiles) {
   EXPECT_THAT(summary, HasSubstr("\"status\": \"done\""));
   EXPECT_THAT(summary, HasSubstr("\"steps\": 3"));
   EXPECT_THAT(summary, HasSubstr("\"threads\": 1"));
-  EXPECT_THAT(shop.content("out/here/run.log"), HasSubstr("done: 3 steps"));
+  EXPECT_THAT(summary, HasSubstr("\"output_thread_seconds\": "));
+  const std::string log = shop.content("out/here/run.log");
+  EXPECT_THAT(log, HasSubstr("frame 0: step 0, t = 0 s, 0 iterations"));
+  EXPECT_THAT(log, HasSubstr("frame 3: step 3, t = 0.003 s, "));
+  EXPECT_THAT(log, HasSubstr("done: 3 steps"));
+}
+
+TEST(run, historyHasTheTimingsThatWereAskedFor) {
+  Workshop shop;
+  ASSERT_EQ(prepared(shop).call("run small.toml --threads 1 --quiet --timings").exitCode, 0);
+  const auto rows = readHistory(shop / "small-run/history.csv");
+  ASSERT_EQ(rows.size(), 2u);
+  for (const HistoryRow& row : rows) {
+    const HistoryTimings& t = row.timings;
+    for (const double seconds : {t.search, t.lists, t.coefficients, t.coarse, t.solve, t.update})
+      EXPECT_GT(seconds, 0);
+    EXPECT_NEAR(t.search + t.lists + t.coefficients + t.coarse + t.solve + t.update, row.seconds,
+                1e-9 * row.seconds);
+  }
+  EXPECT_EQ(shop.call("plot small-run --history").exitCode, 0);
+  ASSERT_EQ(shop.call("run small.toml --threads 1 --quiet -o plain").exitCode, 0);
+  EXPECT_EQ(shop.call("compare small-run plain --bound 0").exitCode, 0);
 }
 
 TEST(run, framesFollowSimulationTime) {

@@ -49,6 +49,29 @@ TEST(History, ReadsBackToTheSameBits) {
   for (int k = 0; k < 500; ++k) EXPECT_TRUE(equal(rows[static_cast<std::size_t>(k)], row(k))) << k;
 }
 
+TEST(History, TimingsAreColumnsOfTheirOwn) {
+  TemporaryDirectory directory;
+  const auto path = directory / "history.csv";
+  HistoryRow timed = row(3);
+  timed.timings = {1, 2, 3, 4, 5.5, 6};
+  HistoryWriter(path, true).append(timed);
+  const std::string text = content(path), names = header;
+  EXPECT_EQ(text.substr(0, text.find('\n')),
+            names.substr(0, names.size() - 1) + ",search_s,lists_s,coefficients_s,coarse_s,solve_s,update_s");
+  EXPECT_TRUE(text.ends_with(",1e-300,1,2,3,4,5.5,6\n")) << text;
+  const HistoryRow read = readHistory(path).at(0);
+  EXPECT_TRUE(equal(read, timed));
+  EXPECT_EQ(read.timings.search, 1);
+  EXPECT_EQ(read.timings.lists, 2);
+  EXPECT_EQ(read.timings.coefficients, 3);
+  EXPECT_EQ(read.timings.coarse, 4);
+  EXPECT_EQ(read.timings.solve, 5.5);
+  EXPECT_EQ(read.timings.update, 6);
+  put(path, text + "1,2,3,4,5,6,7,8,9,10\n");
+  EXPECT_NE(messageOf<InputError>([&] { readHistory(path); }).find(":3: expected sixteen numbers"),
+            std::string::npos);
+}
+
 TEST(History, NotANumberIsKept) {
   TemporaryDirectory directory;
   HistoryRow bad = row(1);

@@ -1,0 +1,19 @@
+#pragma once
+
+#include "treacle/model/particles.hpp"
+
+#include <cstdint>
+
+namespace treacle {
+
+/// A copy of the state after a step, and what is to be written of it.
+template <int D>
+struct Snapshot {
+  Particles<D> particles;
+  std::int64_t step = 0;
+  double time = 0;     // [s]
+  int iterations = 0;  // of the step; 0 for the state at the start
+  bool frame = false, checkpoint = false;
+};
+
+}  // namespace treacle
