@@ -130,9 +130,7 @@ void benchmarkProducts(const BenchmarkOptions& options, Record& record) {
   const std::vector<double> sizes = D == 2 ? std::vector<double>{1, 4, 8, 16, 32} : std::vector<double>{1, 2, 4};
   for (const double resolution : sizes) {
     const std::string size = fmt::format("{}D x1/{:g}", D, resolution);
-    if (!(options.wants("products/" + size) || options.wants("setup/" + size)) ||
-        (options.quick && resolution != sizes.back()))
-      continue;
+    if (!options.wants("products setup " + size) || (options.quick && resolution != sizes.back())) continue;
     DeviceStart<D> s(options, resolution);
     MphOperator<D, Cuda> a;
     a.prepare(s.context, s.pairs(), s.terms());

@@ -2,6 +2,7 @@
 
 #include "gpu_record.hpp"
 #include "treacle/model/create.hpp"
+#include "treacle/model/names.hpp"
 #include "treacle/step/simulation.hpp"
 
 namespace treacle {
@@ -11,18 +12,19 @@ struct SolveRun {
   int dimensions;
   double resolution;
   int steps, timed;
-  const char* preconditioner;
-  const char* coarse = "auto";
+  PreconditionerKind preconditioner;
+  CoarseKind coarse = CoarseKind::Auto;
 };
 
 template <int D>
 void benchmarkSolve(const BenchmarkOptions& options, const SolveRun& run, Record& record) {
-  const std::string name = fmt::format("solve/{}D x1/{:g}/{}/{}/steps {}-{}", D, run.resolution, run.preconditioner,
-                                       run.coarse, run.steps - run.timed + 1, run.steps);
+  const std::string name = fmt::format("solve/{}D x1/{:g}/{}{}/steps {}-{}", D, run.resolution,
+                                       nameOf(run.preconditioner), run.coarse == CoarseKind::Spgemm ? " spgemm" : "",
+                                       run.steps - run.timed + 1, run.steps);
   if (!options.wants(name)) return;
-  const Case c = paperCase<D>(options, run.resolution,
-                              {fmt::format("solver.preconditioner={}", run.preconditioner),
-                               fmt::format("solver.multigrid.coarse_operators={}", run.coarse)});
+  Case c = paperCase<D>(options, run.resolution);
+  c.solver.preconditioner = run.preconditioner;
+  c.solver.multigrid.coarseOperators = run.coarse;
   std::vector<std::string> notes;
   Particles<D> particles = createParticles<D>(c, notes);
   const std::uint64_t n = particles.fluidCount, all = particles.count;
@@ -61,7 +63,7 @@ void benchmarkSolve(const BenchmarkOptions& options, const SolveRun& run, Record
 
 inline void benchmarkSolves(const BenchmarkOptions& options, Record& record) {
   std::vector<SolveRun> runs;
-  for (const char* k : {"bucket-multigrid", "none"}) {
+  for (const auto k : {PreconditionerKind::BucketMultigrid, PreconditionerKind::None}) {
     runs.push_back({2, 1, 200, 10, k});
     runs.push_back({2, 2, 400, 10, k});
     runs.push_back({2, 4, 20, 5, k});
@@ -73,8 +75,10 @@ inline void benchmarkSolves(const BenchmarkOptions& options, Record& record) {
     runs.push_back({3, 2, 2, 1, k});
     runs.push_back({3, 4, 2, 1, k});
   }
-  for (const double resolution : {1.0, 4.0, 16.0}) runs.push_back({2, resolution, 2, 1, "bucket-multigrid", "spgemm"});
-  for (const double resolution : {1.0, 2.0, 4.0}) runs.push_back({3, resolution, 2, 1, "bucket-multigrid", "spgemm"});
+  for (const double resolution : {1.0, 4.0, 16.0})
+    runs.push_back({2, resolution, 2, 1, PreconditionerKind::BucketMultigrid, CoarseKind::Spgemm});
+  for (const double resolution : {1.0, 2.0, 4.0})
+    runs.push_back({3, resolution, 2, 1, PreconditionerKind::BucketMultigrid, CoarseKind::Spgemm});
   for (SolveRun run : runs) {
     if (options.quick) run.steps = run.timed = std::min(run.timed, 2);
     run.dimensions == 2 ? benchmarkSolve<2>(options, run, record) : benchmarkSolve<3>(options, run, record);

@@ -3,16 +3,29 @@
 #include "core/cuda_check.hpp"
 
 namespace treacle {
+namespace {
+
+/// 0 where the device is reserved for another process, or does not answer: not an error of those who only look.
+std::size_t freeMemory(int device) {
+  std::size_t free = 0, total = 0;
+  if (cudaSetDevice(device) == cudaSuccess && cudaMemGetInfo(&free, &total) == cudaSuccess) return free;
+  cudaGetLastError();  // the error must not meet the next call
+  return 0;
+}
+
+}  // namespace
 
 std::vector<DeviceInfo> cudaDevices() {
-  int count = 0;
-  if (cudaGetDeviceCount(&count) != cudaSuccess) return {};  // no driver or no device: not an error here
+  int count = 0, current = 0;
+  if (cudaGetDeviceCount(&count) != cudaSuccess || count == 0) return {};  // not an error here
+  TREACLE_CUDA_CHECK(cudaGetDevice(&current));
   std::vector<DeviceInfo> devices;
   for (int d = 0; d < count; ++d) {
     cudaDeviceProp p;
     TREACLE_CUDA_CHECK(cudaGetDeviceProperties(&p, d));
-    devices.push_back({p.name, p.major, p.minor, p.multiProcessorCount, p.totalGlobalMem});
+    devices.push_back({p.name, p.major, p.minor, p.multiProcessorCount, p.totalGlobalMem, freeMemory(d)});
   }
+  if (cudaSetDevice(current) != cudaSuccess) cudaGetLastError();  // those who compute will be told
   return devices;
 }
 

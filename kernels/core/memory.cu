@@ -1,7 +1,6 @@
 #include "core/launch.hpp"
 
 #include <cstdint>
-#include <new>
 
 namespace treacle {
 namespace {
@@ -72,7 +71,9 @@ void* deviceAllocate(const Context<Cuda>& context, std::size_t bytes) {
   const cudaError_t status = cudaMallocFromPoolAsync(&memory, bytes, context.pool(), context.stream());
   if (status == cudaErrorMemoryAllocation) {
     cudaGetLastError();  // the error is reported here and must not meet the next call
-    throw std::bad_alloc();
+    std::size_t free = 0, total = 0;
+    TREACLE_CUDA_CHECK(cudaMemGetInfo(&free, &total));
+    throw DeviceMemoryExhausted(context.peakBytes(), total);
   }
   TREACLE_CUDA_CHECK(status);
 #ifndef NDEBUG
@@ -110,8 +111,10 @@ void clearBytes(const Context<Cuda>& context, void* memory, std::size_t bytes) {
 
 PinnedMemory::PinnedMemory(void* memory, std::size_t bytes) {
   if (bytes == 0) return;
-  TREACLE_CUDA_CHECK(cudaHostRegister(memory, bytes, cudaHostRegisterDefault));
-  memory_ = memory;
+  if (cudaHostRegister(memory, bytes, cudaHostRegisterDefault) == cudaSuccess)
+    memory_ = memory;
+  else
+    cudaGetLastError();  // the error must not meet the next call
 }
 
 PinnedMemory::~PinnedMemory() {

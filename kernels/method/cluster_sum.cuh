@@ -4,6 +4,12 @@
 #include "search/cluster_candidates.cuh"
 #include "treacle/method/mph_pairs.hpp"
 
+#ifndef TREACLE_OWN
+#define TREACLE_OWN 4
+#endif
+#ifndef TREACLE_MINBLOCKS
+#define TREACLE_MINBLOCKS 1
+#endif
 namespace treacle {
 
 /// 1 / sqrt(x), x > 0, to full double precision: the hardware's estimate (2^-22) and one step of third order.
@@ -88,31 +94,41 @@ __device__ inline T transposedSum(const T* v) {
   }
 }
 
-/// Calls visit(integral_constant<ListSegment>, entry) for the entries of the segments that the terms need, every
-/// `slots * warps`-th in each lane, from `slot` on.
-template <class Terms, class S, class Visit>
-__device__ void walkLists(const ClusterListView& list, std::uint32_t cluster, int slot, Visit&& visit) {
-  constexpr std::uint32_t stride = S::slots * S::warps;
+/// Runs along a part of a list, every `stride`-th entry from k on: load(entry) starts the loads of a neighbour, add(what
+/// was loaded, k) uses them one round later, while those of the next are on their way.
+template <int Stride, class Load, class Add>
+__device__ inline void pipeline(const ListEntry* entry, std::uint32_t k, std::uint32_t count, Load&& load, Add&& add) {
+  if (k >= count) return;
+  auto loaded = load(entry[k]);
+  std::uint32_t next = k + Stride;
+  ListEntry nextEntry = next < count ? entry[next] : ListEntry{0};
+  while (next < count) {
+    const auto nextLoaded = load(nextEntry);
+    if (next + Stride < count) nextEntry = entry[next + Stride];
+    add(loaded, k);
+    loaded = nextLoaded;
+    k = next;
+    next += Stride;
+  }
+  add(loaded, k);
+}
+
+/// The entries of the segments that the terms need: add(what was loaded, segment).
+template <class Terms, class S, class Load, class Add>
+__device__ void walkLists(const ClusterListView& list, std::uint32_t cluster, int slot, Load&& load, Add&& add) {
   const std::uint64_t* offset = list.offset + std::size_t{listSegments} * cluster;
-  const auto walk = [&](auto segment) {
-    constexpr int s = static_cast<int>(decltype(segment)::value);
-    if constexpr (Terms::uses(decltype(segment)::value)) {
-      const ListEntry* entry = list.entry + offset[s];
-      const auto count = static_cast<std::uint32_t>(offset[s + 1] - offset[s]);
-      std::uint32_t k = slot;
-      ListEntry next = k < count ? entry[k] : ListEntry{0};
-      while (k < count) {
-        const ListEntry e = next;
-        k += stride;
-        if (k < count) next = entry[k];  // on its way while this one is worked on
-        visit(segment, e);
-      }
-    }
+  const auto walk = [&](ListSegment near, ListSegment far) {
+    const bool usesNear = Terms::uses(near), usesFar = Terms::uses(far);
+    if (!usesNear && !usesFar) return;
+    const std::uint64_t begin = offset[static_cast<int>(usesNear ? near : far)];
+    const auto nearCount = static_cast<std::uint32_t>(offset[static_cast<int>(near) + 1] - begin);
+    const auto count = usesFar ? static_cast<std::uint32_t>(offset[static_cast<int>(far) + 1] - begin) : nearCount;
+    pipeline<S::slots * S::warps>(list.entry + begin, slot, count, load, [&](const auto& loaded, std::uint32_t k) {
+      add(loaded, !usesFar || (usesNear && k < nearCount) ? near : far);
+    });
   };
-  walk(std::integral_constant<ListSegment, ListSegment::NearFluid>{});
-  walk(std::integral_constant<ListSegment, ListSegment::FarFluid>{});
-  walk(std::integral_constant<ListSegment, ListSegment::NearWall>{});
-  walk(std::integral_constant<ListSegment, ListSegment::FarWall>{});
+  walk(ListSegment::NearFluid, ListSegment::FarFluid);
+  walk(ListSegment::NearWall, ListSegment::FarWall);
 }
 
 /// The same from the cell ranges: candidates within reach are queued until a warp has enough of them. All of them
@@ -122,20 +138,24 @@ __device__ bool walkRanges(const MphPairs<D>& pairs, std::uint32_t first, std::u
   __shared__ ListEntry queues[S::warpsPerBlock][64];
   ListEntry* queue = queues[threadIdx.x / 32];
   const int lane = threadIdx.x % 32, slot = lane % S::slots;
-  const ClusterCandidates<D> candidates(pairs.grid, pairs.cells, pairs.position.data(), first, count);
-  const auto pass = [&](auto segment, bool walls, double radius) {
+  __shared__ typename ClusterCandidates<D>::Shared shared[S::warpsPerBlock];
+  const ClusterCandidates<D> candidates(pairs.grid, pairs.cells, pairs.position.data(), first, count,
+                                        shared[threadIdx.x / 32]);
+  const auto pass = [&](bool walls, bool counts, double radius) {
     int queued = 0;
     bool any = false;
     const auto work = [&](int entries) {
       __syncwarp();
-      for (int k = slot; k < entries; k += S::slots) visit(segment, queue[k]);
+      for (int k = slot; k < entries; k += S::slots)
+        visit(queue[k], walls ? ListSegment::NearWall : ListSegment::NearFluid);
       __syncwarp();
     };
     candidates.forEach({radius, 0}, !walls, walls, [&](ListEntry e, bool near, bool, bool) {
       const unsigned hits = __ballot_sync(~0u, near);
-      if (near) queue[queued + __popc(hits & ((1u << lane) - 1))] = e;
-      queued += __popc(hits);
+      if (near && counts) queue[queued + __popc(hits & ((1u << lane) - 1))] = e;
       any |= hits != 0;
+      if (!counts) return;
+      queued += __popc(hits);
       if (queued < 32) return;
       work(32);
       queued -= 32;
@@ -145,11 +165,12 @@ __device__ bool walkRanges(const MphPairs<D>& pairs, std::uint32_t first, std::u
     return any;
   };
   const double near = pairs.pressureWeight.radius;
-  const bool fluid = pass(std::integral_constant<ListSegment, ListSegment::NearFluid>{}, false,
-                          Terms::uses(ListSegment::FarFluid) ? pairs.viscosityWeight.radius : near);
-  if (Terms::uses(ListSegment::NearWall))
-    pass(std::integral_constant<ListSegment, ListSegment::NearWall>{}, true,
-         Terms::uses(ListSegment::FarWall) ? pairs.viscosityWeight.radius : near);
+  constexpr bool usesFluid = Terms::uses(ListSegment::NearFluid), usesWalls = Terms::uses(ListSegment::NearWall);
+  const auto radius = [&](ListSegment far) {
+    return Terms::uses(far) ? pairs.viscosityWeight.radius : pairs.pressureWeight.radius;
+  };
+  const bool fluid = usesFluid || first >= pairs.fluidCount ? pass(false, usesFluid, radius(ListSegment::FarFluid)) : true;
+  if (usesWalls) pass(true, true, radius(ListSegment::FarWall));
   return fluid;
 }
 
@@ -157,7 +178,7 @@ __device__ bool walkRanges(const MphPairs<D>& pairs, std::uint32_t first, std::u
 ///   Own loadOwn(pairs, i), Other loadOther(pairs, j)   what they read of a particle
 ///   values                                             how many sums a particle has
 ///   uses(segment)                                      which parts of the lists count
-///   add<segment>(pairs, sums, d, 1/r, own, other)
+///   add(pairs, sums, d, 1/r, own, other, segment)
 ///   store(pairs, i, n, sum)                            called once per particle and sum
 template <int D, class T, class S, class Terms>
 class ClusterSum {
@@ -175,45 +196,47 @@ class ClusterSum {
   /// `part`: which of the cluster's warps this is; `exchange`: room for the sums of the block's lanes.
   __device__ void run(const Terms& terms, double unit, int part, T (*exchange)[32]) const {
     const int lane = threadIdx.x % 32, group = lane / S::slots, slot = lane % S::slots;
+    const bool wraps = S::ranges || list_.wraps[cluster_];
     const Vec<D> origin = pairs_.position[first_];
     const Frame<D, T> frame(origin, unit);
+    const Vec<D, T> mine = frame.local(positionOf(lane % clusterSize, origin, wraps));
     Vec<D, T> x[S::own];
     typename Terms::Own own[S::own];
     T sum[paddedSums] = {};
 #pragma unroll
     for (int t = 0; t < S::own; ++t) {
-      const std::uint32_t i = particle(group * S::own + t);
-      Vec<D> xi = pairs_.position[i];
-      for (int k = 0; k < D; ++k) {
-        const double away = xi[k] - origin[k];
-        if (fabs(away) > 0.5 * pairs_.grid.length[k] && pairs_.grid.periodic[k])
-          xi[k] -= pairs_.grid.length[k] * round(away / pairs_.grid.length[k]);
-      }
-      x[t] = frame.local(xi);
-      own[t] = terms.loadOwn(pairs_, i);
+      for (int k = 0; k < D; ++k) x[t][k] = __shfl_sync(~0u, mine[k], group * S::own + t);
+      own[t] = terms.loadOwn(pairs_, particle(group * S::own + t));
     }
     const double h = pairs_.pressureWeight.radius / unit;
     const T floor = static_cast<T>(distanceFloor<T> * h * h);
-    const auto visit = [&](auto segment, ListEntry e) {
-      const std::uint32_t j = e.index();
-      Vec<D> xj = pairs_.position[j];
-      if (e.image() != 0) xj += pairs_.images.shift[e.image()];
-      const Vec<D, T> local = frame.local(xj);
-      const typename Terms::Other other = terms.loadOther(pairs_, j);
+
+    struct Loaded {
+      Vec<D> x;
+      typename Terms::Other other;
+    };
+    const auto load = [&](ListEntry e) {
+      Vec<D> xj = pairs_.position[e.index()];
+      if (wraps && e.image() != 0) xj += pairs_.images.shift[e.image()];
+      return Loaded{xj, terms.loadOther(pairs_, e.index())};
+    };
+    const auto add = [&](const Loaded& loaded, ListSegment segment) {
+      const Vec<D, T> local = frame.local(loaded.x);
 #pragma unroll
       for (int t = 0; t < S::own; ++t) {
         const Vec<D, T> d = local - x[t];
         T r2 = floor;
         for (int k = 0; k < D; ++k) r2 = fma(d[k], d[k], r2);
-        terms.template add<decltype(segment)::value>(pairs_, &sum[t * values], d, inverseSqrt(r2), own[t], other);
+        terms.add(pairs_, &sum[t * values], d, inverseSqrt(r2), own[t], loaded.other, segment);
       }
     };
     if constexpr (S::ranges) {
-      const bool fluid = walkRanges<Terms, S>(pairs_, first_, count_, visit);
+      const bool fluid =
+          walkRanges<Terms, S>(pairs_, first_, count_, [&](ListEntry e, ListSegment s) { add(load(e), s); });
       if (first_ >= pairs_.fluidCount && !fluid)  // lists leave such walls out
         for (T& value : sum) value = 0;
     } else {
-      walkLists<Terms, S>(list_, cluster_, slot + S::slots * part, visit);
+      walkLists<Terms, S>(list_, cluster_, slot + S::slots * part, load, add);
     }
     store(terms, sum, part, exchange);
   }
@@ -222,6 +245,17 @@ class ClusterSum {
   /// Sums of one lane, filled up to a multiple of the group's lanes.
   static constexpr int rounds = (sums + S::slots - 1) / S::slots;
   static constexpr int paddedSums = rounds * S::slots;
+
+  /// At the image nearest to the cluster's first particle.
+  __device__ Vec<D> positionOf(int own, const Vec<D>& origin, bool wraps) const {
+    Vec<D> x = pairs_.position[particle(own)];
+    if (!wraps) return x;
+    for (int k = 0; k < D; ++k) {
+      const double away = x[k] - origin[k], length = pairs_.grid.length[k];
+      if (pairs_.grid.periodic[k] && fabs(away) > 0.5 * length) x[k] -= length * round(away / length);
+    }
+    return x;
+  }
 
   __device__ std::uint32_t particle(int own) const { return first_ + min(static_cast<std::uint32_t>(own), count_ - 1); }
 
@@ -275,7 +309,7 @@ __device__ inline void sumOverList(const MphPairs<D>& pairs, const ListTask<Term
 /// Warps share clusters as S says. Reads positions, lists and what the terms read of both particles of a pair; writes
 /// what the terms store. No atomics.
 template <int D, class T, class S, class Terms>
-__global__ void __launch_bounds__(32 * S::warpsPerBlock)
+__global__ void __launch_bounds__(32 * S::warpsPerBlock, TREACLE_MINBLOCKS)
     clusterSumKernel(const __grid_constant__ MphPairs<D> pairs, const __grid_constant__ ListTask<Terms> task,
                      double unit) {
   sumOverList<D, T, S>(pairs, task, blockIdx.x, unit);
@@ -283,7 +317,7 @@ __global__ void __launch_bounds__(32 * S::warpsPerBlock)
 
 /// The same for two lists at once: first the clusters of a, then those of b.
 template <int D, class T, class S, class A, class B>
-__global__ void __launch_bounds__(32 * S::warpsPerBlock)
+__global__ void __launch_bounds__(32 * S::warpsPerBlock, TREACLE_MINBLOCKS)
     clusterSumsKernel(const __grid_constant__ MphPairs<D> pairs, const __grid_constant__ ListTask<A> a,
                       const __grid_constant__ ListTask<B> b, double unit) {
   const unsigned blocksOfA = a.template blocks<S>();
@@ -315,7 +349,7 @@ void withListSharing(const MphPairs<D>& pairs, F&& f) {
   if (pairs.fluidList.clusterCount() < fewClusters)
     f(Sharing<4, 4>{});
   else
-    f(Sharing<4, 1>{});
+    f(Sharing<TREACLE_OWN, 1>{});
 }
 /// The same, also for pairs without lists.
 template <int D, class F>

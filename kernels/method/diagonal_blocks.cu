@@ -26,12 +26,11 @@ struct DiagonalTerms {
     return {pairs.materials.bulkViscosity[material], material};
   }
 
-  template <ListSegment S>
   __device__ void add(const MphPairs<D>& pairs, double* sum, const Vec<D>& d, double inverseR, Own own,
-                      const Other& other) const {
+                      const Other& other, ListSegment segment) const {
     const double g = constants.pressureFactor * constants.pressureReach(inverseR);
     double f = other.lambda * g * g;
-    if constexpr (isFluid(S))
+    if (isFluid(segment))
       f += pairs.materials.pairViscosity[own][other.material] * constants.viscosityFactor *
            constants.viscosityReach(inverseR);
     int n = 0;
@@ -44,6 +43,26 @@ struct DiagonalTerms {
     sums[std::size_t{values} * i + n] = sum;
   }
 };
+
+/// One thread per fluid particle; reads its sums and its wall block; writes its diagonal block. No atomics.
+template <int D>
+__global__ void finishKernel(const __grid_constant__ MphPairs<D> pairs, const double* sums, const Block<D>* wall,
+                             Block<D>* diagonal) {
+  const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
+  if (i >= pairs.fluidCount) return;
+  const double* sum = sums + std::size_t{DiagonalTerms<D>::values} * i;
+  Block<D> block = wall[i];
+  for (int r = 0; r < D; ++r)
+    for (int c = r; c < D; ++c) {
+      const double value = *sum++;
+      block(r, c) += value;
+      if (c != r) block(c, r) += value;
+    }
+  Vec<D> own;
+  for (int r = 0; r < D; ++r) own[r] = sum[r];
+  block.addOuter(pairs.materials.bulkViscosity[pairs.material[i]], own, own);
+  diagonal[i] = block;
+}
 
 }  // namespace
 
@@ -60,22 +79,8 @@ void diagonalBlocks(Context<Cuda>& context, const MphPairs<D>& pairs, const Wall
   else
     launchClusterSums<D, double, Sharing<2, 1>>(context, pairs, task, 1);
 
-  forEach(context, pairs.fluidCount,
-          [sums = sums.data(), wall = terms.block.data(), material = pairs.material.data(),
-           table = pairs.materials, blocks = diagonal.data()] __device__(std::size_t i) {
-            const double* sum = sums + std::size_t{Terms::values} * i;
-            Block<D> block = wall[i];
-            Vec<D> own;
-            for (int r = 0; r < D; ++r) own[r] = sum[Terms::triangle + r];
-            for (int r = 0; r < D; ++r)
-              for (int c = r; c < D; ++c) {
-                const double value = *sum++;
-                block(r, c) += value;
-                if (c != r) block(c, r) += value;
-              }
-            block.addOuter(table.bulkViscosity[material[i]], own, own);
-            blocks[i] = block;
-          });
+  launch(context, blocksFor(pairs.fluidCount, 256), 256, 0, finishKernel<D>, pairs, sums.data(),
+         terms.block.data(), diagonal.data());
 }
 
 template void diagonalBlocks<2>(Context<Cuda>&, const MphPairs<2>&, const WallTerms<2>&, std::span<Block<2>>);

@@ -19,8 +19,7 @@ struct NumberDensity {
   __device__ Own loadOwn(const MphPairs<D>&, std::uint32_t i) const { return i; }
   __device__ Other loadOther(const MphPairs<D>&, std::uint32_t j) const { return j; }
 
-  template <ListSegment>
-  __device__ void add(const MphPairs<D>&, double* sum, const Vec<D>&, double inverseR, Own own, Other other) const {
+  __device__ void add(const MphPairs<D>&, double* sum, const Vec<D>&, double inverseR, Own own, Other other, ListSegment) const {
     const double part = positivePart(1 - inverseRadius / inverseR);
     if (own != other) sum[0] += part * part;
   }
@@ -47,9 +46,8 @@ struct WallSums {
   __device__ Own loadOwn(const MphPairs<D>& pairs, std::uint32_t i) const { return pairs.material[i]; }
   __device__ Other loadOther(const MphPairs<D>& pairs, std::uint32_t j) const { return pairs.material[j]; }
 
-  template <ListSegment>
   __device__ void add(const MphPairs<D>& pairs, double* sum, const Vec<D>& d, double inverseR, Own own,
-                      Other other) const {
+                      Other other, ListSegment) const {
     const double f = wallViscosity(pairs, constants, inverseR, own, other);
     for (int r = 0; r < D; ++r) addScaled(sum + r * D, f * d[r], d);
     addScaled(sum + D * D, constants.pressureReach(inverseR), d);
@@ -79,9 +77,8 @@ struct WallDrag {
   __device__ Own loadOwn(const MphPairs<D>& pairs, std::uint32_t i) const { return {Vec<D>{}, pairs.material[i]}; }
   __device__ Other loadOther(const MphPairs<D>& pairs, std::uint32_t j) const { return {u[j], pairs.material[j]}; }
 
-  template <ListSegment>
   __device__ void add(const MphPairs<D>& pairs, double* sum, const Vec<D>& d, double inverseR, const Own& own,
-                      const Other& other) const {
+                      const Other& other, ListSegment) const {
     const double f = wallViscosity(pairs, constants, inverseR, own.material, other.material);
     addScaled(sum, f * dot(d, other.u), d);
   }

@@ -68,14 +68,13 @@ struct ViscosityAndDivergence {
   }
   __device__ Other loadOther(const MphPairs<D>& pairs, std::uint32_t j) const { return loadOwn(pairs, j); }
 
-  template <ListSegment S>
   __device__ void add(const MphPairs<D>& pairs, T* sum, const Vec<D, T>& d, T inverseR, const Own& own,
-                      const Other& other) const {
+                      const Other& other, ListSegment segment) const {
     const T along = differenceAlong(other.u, own.u, d);
     T f = constants.viscosityReach(inverseR) * along;
     if constexpr (!OneMaterial) f *= static_cast<T>(pairs.materials.pairViscosity[own.material][other.material]);
     addScaled(sum, f, d);
-    if constexpr (isNear(S)) sum[D] = fma(constants.pressureReach(inverseR), along, sum[D]);
+    if (isNear(segment)) sum[D] = fma(constants.pressureReach(inverseR), along, sum[D]);
   }
 
   __device__ void store(const MphPairs<D>& pairs, std::uint32_t i, int n, T sum) const {
@@ -114,9 +113,8 @@ struct Divergence {
   }
   __device__ Other loadOther(const MphPairs<D>&, std::uint32_t j) const { return u[j]; }
 
-  template <ListSegment>
   __device__ void add(const MphPairs<D>&, T* sum, const Vec<D, T>& d, T inverseR, const Own& own,
-                      const Other& other) const {
+                      const Other& other, ListSegment) const {
     sum[0] = fma(constants.pressureReach(inverseR), differenceAlong(other, own, d), sum[0]);
   }
   __device__ void store(const MphPairs<D>& pairs, std::uint32_t i, int, T sum) const {
@@ -141,9 +139,8 @@ struct PressureGradient {
   __device__ Own loadOwn(const MphPairs<D>&, std::uint32_t i) const { return q[i]; }
   __device__ Other loadOther(const MphPairs<D>&, std::uint32_t j) const { return q[j]; }
 
-  template <ListSegment>
   __device__ void add(const MphPairs<D>&, T* sum, const Vec<D, T>& d, T inverseR, const Own& own,
-                      const Other& other) const {
+                      const Other& other, ListSegment) const {
     addScaled(sum, constants.pressureReach(inverseR) * (own + other), d);
   }
   __device__ void store(const MphPairs<D>&, std::uint32_t i, int n, T sum) const {

@@ -30,12 +30,11 @@ struct RestrictedColumns {
     return pairs.grid.cellOf(pairs.position[j]);
   }
 
-  template <ListSegment S>
   __device__ void add(const MphPairs<D>& pairs, double* sum, const Vec<D>& d, double inverseR, const Own& own,
-                      const Other& other) const {
+                      const Other& other, ListSegment segment) const {
     const double g = constants.pressureFactor * constants.pressureReach(inverseR);
     // A neighbour in none of the cells is at distance h_p to rounding, where g vanishes.
-    const int slot = isFluid(S) ? columnSlot<D>(cellOffset(pairs.grid, own.cell, other) - own.lower) : -1;
+    const int slot = isFluid(segment) ? columnSlot<D>(cellOffset(pairs.grid, own.cell, other) - own.lower) : -1;
 #pragma unroll
     for (int s = 0; s < slots; ++s) {
       const double weight = g * ((s == own.slot) - (s == slot));

@@ -10,25 +10,36 @@ namespace treacle {
 template <int D>
 class ClusterCandidates {
  public:
-  /// `count` particles from `first`; `position` of the whole set.
+  /// A warp's working memory.
+  struct Shared {
+    Vec<D> x[clusterSize];
+    ListEntry entry[64];  // candidates near the cluster's bounding box, not yet tested
+    bool wall[64];
+  };
+
+  /// `count` particles from `first`; `position` of the whole set. With all lanes of the warp.
   __device__ ClusterCandidates(const CellGrid<D>& grid, const CellRangesView& cells, const Vec<D>* position,
-                               std::uint32_t first, std::uint32_t count)
-      : grid_(grid), cells_(cells), position_(position) {
-#pragma unroll
-    for (int t = 0; t < static_cast<int>(clusterSize); ++t) {
-      const std::uint32_t i = first + (t < static_cast<int>(count) ? t : count - 1);
-      x_[t] = position[i];
-      for (int k = 0; k < D; ++k) {
-        if (grid.periodic[k] && fabs(x_[t][k] - x_[0][k]) > 0.5 * grid.length[k])
-          x_[t][k] -= grid.length[k] * round((x_[t][k] - x_[0][k]) / grid.length[k]);
-        low_[k] = t == 0 ? x_[0][k] : fmin(low_[k], x_[t][k]);
-        high_[k] = t == 0 ? x_[0][k] : fmax(high_[k], x_[t][k]);
+                               std::uint32_t first, std::uint32_t count, Shared& shared)
+      : grid_(grid), cells_(cells), position_(position), shared_(shared) {
+    const std::uint32_t own = threadIdx.x % clusterSize;
+    Vec<D> x = position[first + (own < count ? own : count - 1)];
+    const Vec<D> origin = position[first];
+    for (int k = 0; k < D; ++k) {
+      if (grid.periodic[k] && fabs(x[k] - origin[k]) > 0.5 * grid.length[k])
+        x[k] -= grid.length[k] * round((x[k] - origin[k]) / grid.length[k]);
+      low_[k] = high_[k] = x[k];
+      for (int offset = 1; offset < static_cast<int>(clusterSize); offset *= 2) {
+        low_[k] = fmin(low_[k], __shfl_xor_sync(~0u, low_[k], offset));
+        high_[k] = fmax(high_[k], __shfl_xor_sync(~0u, high_[k], offset));
       }
     }
+    __syncwarp();
+    if (threadIdx.x % 32 < clusterSize) shared.x[own] = x;
+    __syncwarp();
   }
 
-  /// Calls visit(entry, near, far, wall) for chunks of candidates, with all lanes of the warp: `near` where some
-  /// particle of the cluster lies within radii.near, `far` where not, but within radii.far.
+  /// Calls visit(entry, near, far, wall) with all lanes of the warp, a candidate each: `near` where some particle of the
+  /// cluster lies within radii.near, `far` where not, but within radii.far.
   template <class Visit>
   __device__ void forEach(const ListRadii& radii, bool fluid, bool walls, Visit&& visit) const {
     const double reach = fmax(radii.near, radii.far);
@@ -46,19 +57,20 @@ class ClusterCandidates {
       cells *= size[k];
     }
     // Each lane looks one cell up; then all lanes go through the ranges found.
-    const int lane = threadIdx.x % 32;
+    int queued = 0;
     for (int base = 0; base < cells; base += 32) {
-      const Cell mine = lookUp(first, size, base + lane, cells, reach);
+      const Cell mine = lookUp(first, size, base + threadIdx.x % 32, cells, reach);
       for (unsigned left = __ballot_sync(~0u, mine.occupied); left != 0; left &= left - 1) {
         const int from = __ffs(left) - 1;
         const auto shared = [&](std::uint32_t v) { return __shfl_sync(~0u, v, from); };
         const std::uint32_t image = shared(mine.image);
         const std::uint32_t fluidBegin = shared(mine.fluidBegin), fluidEnd = shared(mine.fluidEnd);
         const std::uint32_t wallBegin = shared(mine.wallBegin), wallEnd = shared(mine.wallEnd);
-        if (fluid) visitRange(fluidBegin, fluidEnd, image, false, radii, visit);
-        if (walls) visitRange(wallBegin, wallEnd, image, true, radii, visit);
+        if (fluid) collect(fluidBegin, fluidEnd, image, false, radii, queued, visit);
+        if (walls) collect(wallBegin, wallEnd, image, true, radii, queued, visit);
       }
     }
+    test(queued, radii, visit);
   }
 
  private:
@@ -86,12 +98,16 @@ class ClusterCandidates {
       distance2 += gap * gap;
       cell[k] = c;
     }
+    const Vec<D, int> unwrapped = cell;
     for (int k = D - 1; k >= 0; --k) {
       const int turn = cell[k] < 0 ? -1 : cell[k] >= grid_.count[k] ? 1 : 0;
       cell[k] -= turn * grid_.count[k];
       result.image = 3 * result.image + (turn < 0 ? 2 : turn);
     }
-    if (distance2 > reach * reach * (1 + 1e-9)) return result;  // a margin for the rounding of the cell's corner
+    // The margin is for the rounding of the cell's corner. A cluster that a jump of the curve tears apart has a large
+    // box with little in reach.
+    const double reach2 = reach * reach * (1 + 1e-9);
+    if (distance2 > reach2 || distanceToCell(unwrapped) > reach2) return result;
     const std::size_t linear = grid_.linear(cell);
     result.fluidBegin = cells_.fluidBegin[linear], result.fluidEnd = cells_.fluidEnd[linear];
     result.wallBegin = cells_.wallBegin[linear], result.wallEnd = cells_.wallEnd[linear];
@@ -99,36 +115,85 @@ class ClusterCandidates {
     return result;
   }
 
+  /// Square of the distance of a cell from the nearest particle of the cluster [m2].
+  __device__ double distanceToCell(const Vec<D, int>& cell) const {
+    double nearest2 = 1e300;
+    for (int t = 0; t < static_cast<int>(clusterSize); ++t) {
+      double distance2 = 0;
+      for (int k = 0; k < D; ++k) {
+        const double lower = grid_.origin[k] + cell[k] * grid_.edge[k], x = shared_.x[t][k];
+        const double gap = fmax(fmax(lower - x, x - lower - grid_.edge[k]), 0.0);
+        distance2 += gap * gap;
+      }
+      nearest2 = fmin(nearest2, distance2);
+    }
+    return nearest2;
+  }
+
+  /// Queues the particles of a range that are within reach of the bounding box.
   template <class Visit>
-  __device__ void visitRange(std::uint32_t begin, std::uint32_t end, std::uint32_t image, bool wall,
-                             const ListRadii& radii, Visit&& visit) const {
-    const double near2 = radii.near * radii.near, far2 = radii.far * radii.far;
+  __device__ void collect(std::uint32_t begin, std::uint32_t end, std::uint32_t image, bool wall,
+                          const ListRadii& radii, int& queued, Visit&& visit) const {
+    const double reach2 = fmax(radii.near * radii.near, radii.far * radii.far);
+    const int lane = threadIdx.x % 32;
     Vec<D> shift{};
     for (int k = 0; k < D; ++k) shift[k] = shiftOf(image, k);
     for (std::uint32_t chunk = begin; chunk < end; chunk += 32) {
-      const std::uint32_t j = chunk + threadIdx.x % 32;
-      double r2 = 1e300;
-      if (j < end) {
+      const std::uint32_t j = chunk + lane;
+      bool inside = j < end;
+      if (inside) {
         const Vec<D> xj = position_[j] + shift;
         double box2 = 0;
         for (int k = 0; k < D; ++k) {
           const double gap = fmax(fmax(xj[k] - high_[k], low_[k] - xj[k]), 0.0);
           box2 += gap * gap;
         }
-        if (box2 <= fmax(near2, far2)) {
-#pragma unroll
-          for (int t = 0; t < static_cast<int>(clusterSize); ++t) r2 = fmin(r2, norm2(xj - x_[t]));
-        }
+        inside = box2 <= reach2;
       }
-      const bool near = r2 <= near2;
-      visit(ListEntry::make(j, image), near, !near && r2 <= far2, wall);
+      const unsigned lanes = __ballot_sync(~0u, inside);
+      if (inside) {
+        const int place = queued + __popc(lanes & ((1u << lane) - 1));
+        shared_.entry[place] = ListEntry::make(j, image);
+        shared_.wall[place] = wall;
+      }
+      queued += __popc(lanes);
+      if (queued < 32) continue;
+      test(32, radii, visit);
+      queued -= 32;
+      if (lane < queued) {
+        shared_.entry[lane] = shared_.entry[lane + 32];
+        shared_.wall[lane] = shared_.wall[lane + 32];
+      }
+      __syncwarp();
     }
+  }
+
+  /// Measures the first `count` of the queue against all particles of the cluster.
+  template <class Visit>
+  __device__ void test(int count, const ListRadii& radii, Visit&& visit) const {
+    __syncwarp();
+    const int lane = threadIdx.x % 32;
+    double r2 = 1e300;
+    ListEntry e{0};
+    bool wall = false;
+    if (lane < count) {
+      e = shared_.entry[lane];
+      wall = shared_.wall[lane];
+      Vec<D> xj = position_[e.index()];
+      if (e.image() != 0)
+        for (int k = 0; k < D; ++k) xj[k] += shiftOf(e.image(), k);
+#pragma unroll
+      for (int t = 0; t < static_cast<int>(clusterSize); ++t) r2 = fmin(r2, norm2(xj - shared_.x[t]));
+    }
+    const bool near = r2 <= radii.near * radii.near;
+    visit(e, near, !near && r2 <= radii.far * radii.far, wall);
+    __syncwarp();
   }
 
   const CellGrid<D>& grid_;
   const CellRangesView& cells_;
   const Vec<D>* position_;
-  Vec<D> x_[clusterSize];
+  Shared& shared_;
   Vec<D> low_{}, high_{};  // bounding box
 };
 

@@ -24,7 +24,8 @@ constexpr int warpsPerBlock = 4;
 /// One warp per cluster: counts the entries of its four segments into offset[4 c + 1 …], or, with Fill, writes them
 /// in the order of the walk. No atomics.
 template <int D, bool Fill>
-__global__ void __launch_bounds__(32 * warpsPerBlock) buildKernel(const __grid_constant__ BuildArguments<D> a) {
+__global__ void __launch_bounds__(32 * warpsPerBlock, 6)
+    buildKernel(const __grid_constant__ BuildArguments<D> a) {
   const std::uint32_t cluster = blockIdx.x * warpsPerBlock + threadIdx.x / 32;
   if (cluster >= a.clusters) return;
   std::uint64_t* offset = a.offset + std::size_t{listSegments} * cluster;
@@ -32,26 +33,29 @@ __global__ void __launch_bounds__(32 * warpsPerBlock) buildKernel(const __grid_c
   const std::uint32_t first = a.first + clusterSize * cluster;
   const unsigned lane = threadIdx.x % 32, before = (1u << lane) - 1;
 
-  std::uint64_t nearFluid = 0, farFluid = 0, nearWall = 0, farWall = 0;
-  if (Fill) nearFluid = offset[0], farFluid = offset[1], nearWall = offset[2], farWall = offset[3];
+  std::uint64_t next[listSegments] = {};
+  if (Fill)
+    for (int s = 0; s < listSegments; ++s) next[s] = offset[s];
   bool wraps = false;
-  const ClusterCandidates<D> candidates(a.grid, a.cells, a.position, first, min(clusterSize, a.last - first));
+  __shared__ typename ClusterCandidates<D>::Shared shared[warpsPerBlock];
+  const ClusterCandidates<D> candidates(a.grid, a.cells, a.position, first, min(clusterSize, a.last - first),
+                                        shared[threadIdx.x / 32]);
   candidates.forEach(a.radii, true, true, [&](ListEntry e, bool near, bool far, bool wall) {
-    const unsigned nearLanes = __ballot_sync(~0u, near), farLanes = __ballot_sync(~0u, far);
-    std::uint64_t& nextNear = wall ? nearWall : nearFluid;
-    std::uint64_t& nextFar = wall ? farWall : farFluid;
-    if (Fill) {
-      if (near) a.entry[nextNear + __popc(nearLanes & before)] = e;
-      if (far) a.entry[nextFar + __popc(farLanes & before)] = e;
-    }
-    nextNear += __popc(nearLanes);
-    nextFar += __popc(farLanes);
-    wraps |= e.image() != 0 && (nearLanes | farLanes) != 0;
+    const auto append = [&](ListSegment segment, bool mine) {
+      const unsigned lanes = __ballot_sync(~0u, mine);
+      std::uint64_t& end = next[static_cast<int>(segment)];
+      if (Fill && mine) a.entry[end + __popc(lanes & before)] = e;
+      end += __popc(lanes);
+    };
+    append(ListSegment::NearFluid, near && !wall);
+    append(ListSegment::FarFluid, far && !wall);
+    append(ListSegment::NearWall, near && wall);
+    append(ListSegment::FarWall, far && wall);
+    wraps |= __any_sync(~0u, (near || far) && e.image() != 0);
   });
   if (Fill || lane != 0) return;
-  const bool empty = a.onlyNextToFluid && nearFluid == 0;
-  offset[1] = empty ? 0 : nearFluid, offset[2] = empty ? 0 : farFluid;
-  offset[3] = empty ? 0 : nearWall, offset[4] = empty ? 0 : farWall;
+  const bool empty = a.onlyNextToFluid && next[static_cast<int>(ListSegment::NearFluid)] == 0;
+  for (int s = 0; s < listSegments; ++s) offset[s + 1] = empty ? 0 : next[s];
   a.wraps[cluster] = wraps;
   if (cluster == 0) a.offset[0] = 0;
 }

@@ -1,3 +1,4 @@
+#include "backend.hpp"
 #include "commands.hpp"
 #include "machine.hpp"
 #include "memory.hpp"
@@ -25,12 +26,20 @@ Counts countParticles(const Case& c, std::vector<std::string>& warnings) {
   return counts;
 }
 
+void printMemory(const Case& c, ParticleNumbers particles) {
+  fmt::print("# memory: about {} needed, {} available\n", bytesText(estimatedMemory(c, particles, false)),
+             bytesText(availableMemory()));
+  const auto device = deviceFor(BackendChoice::Auto);
+  fmt::print("# device memory: about {} needed", bytesText(estimatedDeviceMemory(c, particles)));
+  if (device) fmt::print(", {} available on {}", bytesText(device->freeMemory), device->name);
+  fmt::print("; beside it about {} of the host\n", bytesText(estimatedMemory(c, particles, true)));
+}
+
 void printCounts(const Case& c, const Counts& counts) {
   fmt::print("# particles: {} fluid, {} wall\n", counts.fluid, counts.walls);
   for (std::size_t b = 0; b < c.bodies.size(); ++b)
     fmt::print("#   {} '{}': {}\n", nameOf(c.bodies[b].kind), c.bodies[b].name, counts.bodies[b]);
-  fmt::print("# memory: about {} needed, {} available\n",
-             bytesText(estimatedMemory(c, counts.fluid, counts.walls)), bytesText(availableMemory()));
+  printMemory(c, {counts.fluid, counts.walls});
 }
 
 void printNumbers(const Case& c) {

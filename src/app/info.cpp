@@ -1,7 +1,7 @@
+#include "backend.hpp"
 #include "commands.hpp"
 #include "machine.hpp"
 #include "memory.hpp"
-#include "treacle/core/device.hpp"
 #include "treacle/core/version.hpp"
 
 #include <fmt/format.h>
@@ -22,8 +22,8 @@ void infoCommand() {
   fmt::print("memory      {} available\n", bytesText(availableMemory()));
   fmt::print("CUDA        {}\n", build.cuda == std::string_view("ON") ? "compiled" : "not compiled");
   for (const DeviceInfo& device : cudaDevices())
-    fmt::print("device      {}, sm_{}{}, {} multiprocessors, {}\n", device.name, device.computeMajor,
-               device.computeMinor, device.multiprocessors, bytesText(device.memory));
+    fmt::print("device      {}, {} multiprocessors, {}, {} available\n", deviceText(device),
+               device.multiprocessors, bytesText(device.memory), bytesText(device.freeMemory));
 }
 
 }  // namespace treacle

@@ -95,7 +95,8 @@ void addRun(CLI::App& app, RunOptions& options) {
   addCase(*run, options.input);
   run->add_option("-o,--output", options.directory, "Run directory; default: the case's name with -run")
       ->type_name("DIR");
-  addChoice<BackendChoice>(*run, "--backend", backendNames, options.backend, "auto is the CPU in this version");
+  addChoice<BackendChoice>(*run, "--backend", backendNames, options.backend,
+                           "auto: a GPU where there is one, else the CPU");
   run->add_option("--threads", options.threads, "Number of threads")->type_name("N")->check(positive());
   addChoice<Precision>(*run, "--precision", namesOf<Precision>, options.precision,
                        "mixed: preconditioner in single precision; default: solver.precision of the case");

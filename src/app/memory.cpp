@@ -8,30 +8,81 @@
 namespace treacle {
 namespace {
 
-/// Bytes at the peak of a run, measured on the dam breaks.
-struct BytesPerParticle {
-  std::uint64_t state;       // fluid and walls: fields, sort, two copies to be written, and a frame
+/// What of a solve decides on its memory.
+enum class Storage { MatrixFree, Ranges, Assembled, Spgemm };
+
+/// Bytes of the host at the peak of a run, measured on the dam breaks.
+struct HostBytes {
+  std::uint64_t snapshots;   // fluid and walls: two copies to be written, and a frame
+  std::uint64_t state;       // fluid and walls: fields and sort
   std::uint64_t matrixFree;  // fluid: neighbour lists, pair coefficients, preconditioner, solver vectors
   std::uint64_t assembled;   // fluid: the matrix in place of the coefficients
 };
-constexpr BytesPerParticle bytesPerParticle2D{310, 1400, 2100};
-constexpr BytesPerParticle bytesPerParticle3D{440, 4200, 14300};
+constexpr HostBytes hostBytes2D{210, 100, 1400, 2100};
+constexpr HostBytes hostBytes3D{300, 140, 4200, 14300};
 constexpr std::uint64_t programBytes = 26 << 20;  // the program itself, its libraries and a picture
+constexpr std::uint64_t driverBytes = 300 << 20;  // what CUDA takes of the host
+
+/// Bytes of the device at the peak of a run.
+struct DeviceBytes {
+  std::uint64_t wall;
+  std::uint64_t matrixFree, ranges, assembled, spgemm;  // per fluid particle
+};
+constexpr DeviceBytes deviceBytes2D{110, 560, 440, 2600, 12000};
+constexpr DeviceBytes deviceBytes3D{130, 900, 600, 15500, 70000};
+
+/// `onDevice`: ranges and products of sparse matrices exist on devices only.
+Storage storageOf(const SolverSettings& solver, bool onDevice) {
+  const bool multigrid = solver.preconditioner == PreconditionerKind::BucketMultigrid;
+  if (onDevice && multigrid && solver.multigrid.coarseOperators == CoarseKind::Spgemm) return Storage::Spgemm;
+  if (solver.operatorKind == OperatorKind::Assembled ||
+      (multigrid && solver.multigrid.particleDiagonal == SmootherDiagonal::ExtendedJacobi))
+    return Storage::Assembled;
+  return onDevice && solver.neighbours == NeighbourKind::Ranges ? Storage::Ranges : Storage::MatrixFree;
+}
+
+std::uint64_t perFluidParticle(const DeviceBytes& bytes, Storage storage) {
+  switch (storage) {
+    case Storage::MatrixFree:
+      return bytes.matrixFree;
+    case Storage::Ranges:
+      return bytes.ranges;
+    case Storage::Assembled:
+      return bytes.assembled;
+    case Storage::Spgemm:
+      break;
+  }
+  return bytes.spgemm;
+}
 
 }  // namespace
 
-std::uint64_t estimatedMemory(const Case& c, std::uint64_t fluidParticles, std::uint64_t wallParticles) {
-  const BytesPerParticle& bytes = c.dimensions == 2 ? bytesPerParticle2D : bytesPerParticle3D;
+std::uint64_t estimatedMemory(const Case& c, ParticleNumbers n, bool onDevice) {
+  const HostBytes& bytes = c.dimensions == 2 ? hostBytes2D : hostBytes3D;
+  const std::uint64_t all = n.fluid + n.wall;
+  if (onDevice) return programBytes + driverBytes + all * bytes.snapshots;
   const std::uint64_t solver =
-      c.solver.operatorKind == OperatorKind::Assembled ? bytes.assembled : bytes.matrixFree;
-  return programBytes + (fluidParticles + wallParticles) * bytes.state + fluidParticles * solver;
+      storageOf(c.solver, false) == Storage::Assembled ? bytes.assembled : bytes.matrixFree;
+  return programBytes + all * (bytes.snapshots + bytes.state) + n.fluid * solver;
 }
 
-void requireMemory(const Case& c, std::uint64_t fluidParticles, std::uint64_t wallParticles) {
-  const std::uint64_t needed = estimatedMemory(c, fluidParticles, wallParticles), available = availableMemory();
+std::uint64_t estimatedDeviceMemory(const Case& c, ParticleNumbers n) {
+  const DeviceBytes& bytes = c.dimensions == 2 ? deviceBytes2D : deviceBytes3D;
+  return n.fluid * perFluidParticle(bytes, storageOf(c.solver, true)) + n.wall * bytes.wall;
+}
+
+void requireMemory(const Case& c, ParticleNumbers n, const DeviceInfo* device) {
+  const std::uint64_t needed = estimatedMemory(c, n, device != nullptr), available = availableMemory();
   if (needed > available)
     throw RunError(fmt::format("{} particles need about {} of memory, {} available; take a lower resolution",
-                               fluidParticles + wallParticles, bytesText(needed), bytesText(available)));
+                               n.fluid + n.wall, bytesText(needed), bytesText(available)));
+  if (!device) return;
+  const std::uint64_t onDevice = estimatedDeviceMemory(c, n);
+  if (onDevice > device->freeMemory)
+    throw RunError(
+        fmt::format("{} particles need about {} of device memory, {} available on {}; take a lower resolution or "
+                    "--backend cpu",
+                    n.fluid + n.wall, bytesText(onDevice), bytesText(device->freeMemory), device->name));
 }
 
 std::string bytesText(std::uint64_t bytes) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "treacle/core/device.hpp"
 #include "treacle/model/case.hpp"
 
 #include <cstdint>
@@ -7,11 +8,21 @@
 
 namespace treacle {
 
-/// Memory that a run of the case will need at its peak, from the bytes per particle that were measured [B].
-std::uint64_t estimatedMemory(const Case& c, std::uint64_t fluidParticles, std::uint64_t wallParticles);
+/// Numbers of particles, as many as a run of the case has.
+struct ParticleNumbers {
+  std::uint64_t fluid = 0, wall = 0;
+};
 
-/// Errors: RunError where the case clearly needs more than is available.
-void requireMemory(const Case& c, std::uint64_t fluidParticles, std::uint64_t wallParticles);
+/// Memory of the host that a run of the case will need at its peak, from the bytes per particle that were
+/// measured [B]. `onDevice`: the run computes on a GPU.
+std::uint64_t estimatedMemory(const Case& c, ParticleNumbers particles, bool onDevice);
+
+/// The same for the memory of the GPU.
+std::uint64_t estimatedDeviceMemory(const Case& c, ParticleNumbers particles);
+
+/// `device`: what the run computes on, null for the CPU. Errors: RunError where the case clearly needs more memory
+/// than the host, or the device, has free.
+void requireMemory(const Case& c, ParticleNumbers particles, const DeviceInfo* device);
 
 /// "1.5 GiB", "12 MiB".
 std::string bytesText(std::uint64_t bytes);

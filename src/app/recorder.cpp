@@ -38,22 +38,24 @@ HistoryRow historyRow(const StepReport& r) {
 }  // namespace
 
 template <int D>
-Recorder<D>::Recorder(const Case& c, RunDirectory& directory, RunLog& log, double start, bool timings)
+Recorder<D>::Recorder(const Case& c, RunDirectory& directory, RunLog& log, double start, bool timings,
+                      CopyState copyState)
     : case_(c),
       directory_(directory),
       log_(log),
+      copyState_(std::move(copyState)),
       history_(directory.history(), timings),
       frames_(c.output.interval, c.time, start),
       checkpoints_(c.output.checkpointInterval, c.time, start),
       output_([this](const Snapshot<D>& snapshot) { write(snapshot); }) {}
 
 template <int D>
-void Recorder<D>::begin(const Simulation<D>& simulation) {
-  handOver(simulation, true, false);
+void Recorder<D>::begin() {
+  handOver(takeSnapshot(), true, false);
 }
 
 template <int D>
-void Recorder<D>::record(const StepReport& report, const Simulation<D>& simulation) {
+void Recorder<D>::record(const StepReport& report) {
   if (steps_++ == 0) firstIterations_ = report.iterations;
   lastIterations_ = report.iterations;
   iterations_ += report.iterations;
@@ -62,7 +64,7 @@ void Recorder<D>::record(const StepReport& report, const Simulation<D>& simulati
   history_.append(historyRow(report));
   outputSeconds_ += timer.lap();
   const bool frame = frames_.due(report.time), checkpoint = checkpoints_.due(report.time);
-  if (frame || checkpoint) handOver(simulation, frame, checkpoint);
+  if (frame || checkpoint) handOver(takeSnapshot(), frame, checkpoint);
 }
 
 template <int D>
@@ -73,28 +75,30 @@ void Recorder<D>::wait() {
 }
 
 template <int D>
-void Recorder<D>::writeFrame(const Simulation<D>& simulation) {
+void Recorder<D>::writeFrame() {
   wait();
-  if (frameStep_ == simulation.step()) return;
-  handOver(simulation, true, false);
-  wait();
-}
-
-template <int D>
-void Recorder<D>::writeCheckpoint(const Simulation<D>& simulation) {
-  wait();
-  if (checkpointStep_ == simulation.step()) return;
-  handOver(simulation, false, true);
+  Snapshot<D>& snapshot = takeSnapshot();
+  if (frameStep_ == snapshot.step) return;
+  handOver(snapshot, true, false);
   wait();
 }
 
 template <int D>
-void Recorder<D>::drawPicture(const Simulation<D>& simulation) {
+void Recorder<D>::writeCheckpoint() {
+  wait();
+  Snapshot<D>& snapshot = takeSnapshot();
+  if (checkpointStep_ == snapshot.step) return;
+  handOver(snapshot, false, true);
+  wait();
+}
+
+template <int D>
+void Recorder<D>::drawPicture() {
   PictureOptions options;
   options.spacing = case_.spacing;
   options.gravity = case_.gravity;
   options.title = case_.title;
-  const Snapshot<D>& state = copyState(simulation);
+  const Snapshot<D>& state = takeSnapshot();
   drawFrame(directory_.finalPicture(), fluidFrame(state), wallsFrame(state), options);
 }
 
@@ -111,22 +115,19 @@ void Recorder<D>::summarise(RunSummary& summary) const {
 }
 
 template <int D>
-Snapshot<D>& Recorder<D>::copyState(const Simulation<D>& simulation) {
+Snapshot<D>& Recorder<D>::takeSnapshot() {
+  Timer timer;
   Snapshot<D>& snapshot = output_.next();
-  simulation.copyParticles(snapshot.particles);
-  snapshot.step = simulation.step();
-  snapshot.time = simulation.time();
+  copyState_(snapshot);
+  outputSeconds_ += timer.lap();
   return snapshot;
 }
 
 template <int D>
-void Recorder<D>::handOver(const Simulation<D>& simulation, bool frame, bool checkpoint) {
-  Timer timer;
-  Snapshot<D>& snapshot = copyState(simulation);
+void Recorder<D>::handOver(Snapshot<D>& snapshot, bool frame, bool checkpoint) {
   snapshot.iterations = lastIterations_;
   snapshot.frame = frame, snapshot.checkpoint = checkpoint;
   output_.handOver();
-  outputSeconds_ += timer.lap();
 }
 
 /// Called by the output thread.

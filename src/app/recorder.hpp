@@ -10,6 +10,7 @@
 #include "treacle/step/simulation.hpp"
 
 #include <cstdint>
+#include <functional>
 
 namespace treacle {
 
@@ -20,35 +21,39 @@ namespace treacle {
 template <int D>
 class Recorder {
  public:
+  /// Copies particles, step and time of the simulation into a snapshot.
+  using CopyState = std::function<void(Snapshot<D>&)>;
+
   /// `start`: simulation time at which the run starts [s]. `timings`: the history has the seconds of the phases.
-  Recorder(const Case& c, RunDirectory& directory, RunLog& log, double start, bool timings);
+  Recorder(const Case& c, RunDirectory& directory, RunLog& log, double start, bool timings, CopyState copyState);
 
   /// The frame of the state at the start.
-  void begin(const Simulation<D>& simulation);
+  void begin();
 
   /// A history row for every step, a frame and a checkpoint when they are due.
-  void record(const StepReport& report, const Simulation<D>& simulation);
+  void record(const StepReport& report);
 
   /// Returns when all frames and checkpoints up to now are on disk.
   void wait();
 
   /// The state as it is, unless it is the last frame, or in the checkpoint, already; on disk when they return.
-  void writeFrame(const Simulation<D>& simulation);
-  void writeCheckpoint(const Simulation<D>& simulation);
+  void writeFrame();
+  void writeCheckpoint();
 
-  void drawPicture(const Simulation<D>& simulation);
+  void drawPicture();
 
   /// Fills in iterations and seconds. To be called after wait().
   void summarise(RunSummary& summary) const;
 
  private:
-  Snapshot<D>& copyState(const Simulation<D>& simulation);
-  void handOver(const Simulation<D>& simulation, bool frame, bool checkpoint);
+  Snapshot<D>& takeSnapshot();
+  void handOver(Snapshot<D>& snapshot, bool frame, bool checkpoint);
   void write(const Snapshot<D>& snapshot);
 
   const Case& case_;
   RunDirectory& directory_;
   RunLog& log_;
+  CopyState copyState_;
   HistoryWriter history_;
   Interval frames_, checkpoints_;
   std::int64_t frameStep_ = -1, checkpointStep_ = -1;  // of the last ones on disk; written by the output thread

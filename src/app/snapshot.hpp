@@ -3,6 +3,7 @@
 #include "treacle/model/particles.hpp"
 
 #include <cstdint>
+#include <memory>
 
 namespace treacle {
 
@@ -10,6 +11,7 @@ namespace treacle {
 template <int D>
 struct Snapshot {
   Particles<D> particles;
+  std::shared_ptr<const void> pinned;  // what lets a device copy to them directly; gone before they are
   std::int64_t step = 0;
   double time = 0;     // [s]
   int iterations = 0;  // of the step; 0 for the state at the start

@@ -2,6 +2,7 @@
 
 #include "case_document.hpp"
 #include "case_section.hpp"
+#include "case_settings.hpp"
 #include "treacle/model/shape.hpp"
 
 #include <fmt/format.h>
@@ -13,14 +14,8 @@ namespace {
 
 using Keys = std::vector<std::string_view>;
 
-/// "[domain] must hold 'min'" with the file's place even where the whole table is missing.
-Section requiredSection(const Section& top, std::string_view key, const Keys& keys) {
-  if (!top.has(key)) throw top.error(key, fmt::format("missing; expected a table [{}]", key));
-  return top.section(key, fmt::format("[{}]", key), keys);
-}
-
 Domain readDomain(const Section& top, int dimensions) {
-  const Section s = requiredSection(top, "domain", {"min", "max", "periodic"});
+  const Section s = top.required("domain", {"min", "max", "periodic"});
   Domain domain;
   domain.min = s.vector("min", dimensions, "m");
   domain.max = s.vector("max", dimensions, "m");
@@ -122,76 +117,6 @@ std::vector<Body> readBodies(const Section& top, int dimensions, const std::vect
   if (std::ranges::none_of(bodies, [](const Body& b) { return b.kind == BodyKind::Fluid; }))
     throw top.error("body", "no fluid: expected at least one [[body]] with type = \"fluid\"");
   return bodies;
-}
-
-TimeSettings readTime(const Section& top, double resolution) {
-  const Section s = requiredSection(top, "time", {"step", "end"});
-  TimeSettings time;
-  time.step = s.number("step", Bound::Positive, "s") / resolution;
-  time.end = s.number("end", Bound::Positive, "s");
-  const double steps = time.end / time.step;
-  if (steps < 0.5)
-    throw s.error("end", fmt::format("expected at least one step of {} s, found {}", time.step, time.end));
-  if (steps > 1e15) throw s.error("step", fmt::format("{:.3g} steps to the end are too many", steps));
-  return time;
-}
-
-MethodSettings readMethod(const Section& top) {
-  const Section s = top.section("method", "[method]", {"name", "pressure_radius", "viscosity_radius"});
-  MethodSettings method;
-  method.name = s.string("name", method.name);
-  if (method.name != "mph-i") throw s.error("name", fmt::format("expected 'mph-i', found '{}'", method.name));
-  method.pressureRadius = s.number("pressure_radius", Bound::Positive, "spacings", method.pressureRadius);
-  method.viscosityRadius = s.number("viscosity_radius", Bound::Positive, "spacings", method.viscosityRadius);
-  return method;
-}
-
-SolverSettings readSolver(const Section& top) {
-  const Section s = top.section(
-      "solver", "[solver]",
-      {"krylov", "preconditioner", "tolerance", "max_iterations", "operator", "precision", "multigrid"});
-  SolverSettings solver;
-  solver.krylov = s.choice<KrylovKind>("krylov", solver.krylov);
-  solver.preconditioner = s.choice<PreconditionerKind>("preconditioner", solver.preconditioner);
-  solver.operatorKind = s.choice<OperatorKind>("operator", solver.operatorKind);
-  solver.precision = s.choice<Precision>("precision", solver.precision);
-  solver.tolerance = s.number("tolerance", Bound::Positive, "", solver.tolerance);
-  if (solver.tolerance >= 1)
-    throw s.error("tolerance", fmt::format("expected a number between 0 and 1, found {}", solver.tolerance));
-  solver.maxIterations = s.integer("max_iterations", 1, solver.maxIterations);
-
-  const Section m = s.section("multigrid", "[solver.multigrid]",
-                              {"finest_sweeps", "middle_sweeps", "coarsest_sweeps", "particle_diagonal"});
-  solver.multigrid.finestSweeps = m.integer("finest_sweeps", 1, solver.multigrid.finestSweeps);
-  solver.multigrid.middleSweeps = m.integer("middle_sweeps", 1, solver.multigrid.middleSweeps);
-  solver.multigrid.coarsestSweeps = m.integer("coarsest_sweeps", 1, solver.multigrid.coarsestSweeps);
-  solver.multigrid.particleDiagonal =
-      m.choice<SmootherDiagonal>("particle_diagonal", solver.multigrid.particleDiagonal);
-  return solver;
-}
-
-OutputSettings readOutput(const Section& top) {
-  const Section s =
-      top.section("output", "[output]", {"interval", "checkpoint_interval", "fields", "format", "precision"});
-  OutputSettings output;
-  output.interval = s.number("interval", Bound::NonNegative, "s", output.interval);
-  output.checkpointInterval = s.number("checkpoint_interval", Bound::NonNegative, "s", output.checkpointInterval);
-  output.precision = s.choice<OutputPrecision>("precision", output.precision);
-  if (const std::string format = s.string("format", "vtp"); format != "vtp")
-    throw s.error("format", fmt::format("expected 'vtp', found '{}'", format));
-  if (const auto words = s.strings("fields")) {
-    output.fields = {false, false, false, false, false};
-    for (const std::string& word : *words) {
-      const auto named = std::ranges::find(outputFieldNames, word, &OutputFieldName::name);
-      if (named == std::end(outputFieldNames)) {
-        Keys names;
-        for (const OutputFieldName& f : outputFieldNames) names.push_back(f.name);
-        throw s.error("fields", fmt::format("expected {}, found '{}'", listOf(names), word));
-      }
-      output.fields.*(named->flag) = true;
-    }
-  }
-  return output;
 }
 
 /// The search needs three cells along a periodic axis: with fewer, a particle would meet a neighbour twice.

@@ -150,6 +150,11 @@ Section Section::section(std::string_view key, std::string title,
   return Section(*node->as_table(), std::move(title), keys);
 }
 
+Section Section::required(std::string_view key, const std::vector<std::string_view>& keys) const {
+  if (!has(key)) throw error(key, fmt::format("missing; expected a table [{}]", key));
+  return section(key, fmt::format("[{}]", key), keys);
+}
+
 std::vector<const toml::table*> Section::tables(std::string_view key) const {
   const std::string expected = fmt::format("at least one [[{}]]", key);
   const toml::node& node = require(key, expected);

@@ -49,6 +49,8 @@ class Section {
 
   /// The table under `key`, empty if it is not there.
   Section section(std::string_view key, std::string title, const std::vector<std::string_view>& keys) const;
+  /// The same for a table that must be there: the message has the file's place even where it is missing.
+  Section required(std::string_view key, const std::vector<std::string_view>& keys) const;
   /// The entries of [[key]], at least one.
   std::vector<const toml::table*> tables(std::string_view key) const;
 

@@ -93,6 +93,7 @@ void writeSettings(Text& text, const Case& c) {
   line(text, "krylov = \"{}\"", nameOf(c.solver.krylov));
   line(text, "preconditioner = \"{}\"", nameOf(c.solver.preconditioner));
   line(text, "operator = \"{}\"", nameOf(c.solver.operatorKind));
+  line(text, "neighbours = \"{}\"", nameOf(c.solver.neighbours));
   line(text, "precision = \"{}\"", nameOf(c.solver.precision));
   line(text, "tolerance = {}", c.solver.tolerance);
   line(text, "max_iterations = {}", c.solver.maxIterations);
@@ -101,6 +102,7 @@ void writeSettings(Text& text, const Case& c) {
   line(text, "middle_sweeps = {}", c.solver.multigrid.middleSweeps);
   line(text, "coarsest_sweeps = {}", c.solver.multigrid.coarsestSweeps);
   line(text, "particle_diagonal = \"{}\"", nameOf(c.solver.multigrid.particleDiagonal));
+  line(text, "coarse_operators = \"{}\"", nameOf(c.solver.multigrid.coarseOperators));
 }
 
 void writeOutput(Text& text, const OutputSettings& output) {

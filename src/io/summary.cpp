@@ -31,6 +31,7 @@ void writeSummary(const std::filesystem::path& path, const RunSummary& s) {
   json["output_thread_seconds"] = s.outputThreadSeconds;
   json["wall_seconds"] = s.wallSeconds;
   json["peak_memory_bytes"] = s.peakMemory;
+  json["peak_device_memory_bytes"] = s.peakDeviceMemory;
   json["memory_bytes_per_fluid_particle"] =
       s.fluidParticles > 0 ? static_cast<double>(s.peakMemory) / static_cast<double>(s.fluidParticles) : 0.0;
   // Titles and messages may hold file names in any encoding; they must not cost the summary.

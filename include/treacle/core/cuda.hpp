@@ -3,6 +3,7 @@
 #include "treacle/core/buffer.hpp"
 
 #include <algorithm>
+#include <new>
 #include <span>
 #include <utility>
 
@@ -47,7 +48,20 @@ class Context<Cuda> {
   std::size_t scratchBytes_ = 0;
 };
 
-/// Stream-ordered memory of the context's pool. Errors: std::bad_alloc when the device has no more.
+/// The device has not enough memory for what was asked of it.
+class DeviceMemoryExhausted : public std::bad_alloc {
+ public:
+  DeviceMemoryExhausted(std::size_t peak, std::size_t total) : peak_(peak), total_(total) {}
+
+  std::size_t peakBytes() const { return peak_; }    // largest amount that was in use at one time [B]
+  std::size_t totalBytes() const { return total_; }  // of the device [B]
+  const char* what() const noexcept override { return "device memory exhausted"; }
+
+ private:
+  std::size_t peak_, total_;
+};
+
+/// Stream-ordered memory of the context's pool. Errors: DeviceMemoryExhausted.
 void* deviceAllocate(const Context<Cuda>&, std::size_t bytes);
 void deviceRelease(const Context<Cuda>&, void* memory) noexcept;
 /// Copies that wait until the data are there.
@@ -146,7 +160,8 @@ T valueOnHost(const Context<Cuda>& context, const T* device) {
   return value;
 }
 
-/// Host memory that the device copies to and from without a detour, as long as this object lives.
+/// Host memory that the device copies to and from without a detour, as long as this object lives. Where the system
+/// does not allow that, copies take the detour.
 class PinnedMemory {
  public:
   PinnedMemory() = default;

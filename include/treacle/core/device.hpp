@@ -10,7 +10,8 @@ struct DeviceInfo {
   std::string name;
   int computeMajor = 0, computeMinor = 0;  // compute capability
   int multiprocessors = 0;
-  std::size_t memory = 0;  // [B]
+  std::size_t memory = 0;      // [B]
+  std::size_t freeMemory = 0;  // [B]; 0 where the device cannot be used
 };
 
 /// The CUDA devices of this machine; empty in builds without CUDA and where there is no driver or no device.

@@ -25,10 +25,11 @@ struct RunSummary {
   int firstIterations = 0, lastIterations = 0;
 
   std::vector<std::pair<std::string, double>>
-      phaseSeconds;                // wall-clock time by phase, in the order of a step [s]
-  double outputThreadSeconds = 0;  // writing frames and checkpoints beside the computation [s]
-  double wallSeconds = 0;          // of the whole run [s]
-  std::uint64_t peakMemory = 0;    // [B]
+      phaseSeconds;                    // wall-clock time by phase, in the order of a step [s]
+  double outputThreadSeconds = 0;      // writing frames and checkpoints beside the computation [s]
+  double wallSeconds = 0;              // of the whole run [s]
+  std::uint64_t peakMemory = 0;        // of the host [B]
+  std::uint64_t peakDeviceMemory = 0;  // of the accelerator [B]; 0 on the CPU
 
   bool done = false;    // status "done" or "failed"
   std::string message;  // diagnosis of a run that failed

@@ -33,6 +33,10 @@ inline constexpr Named<OperatorKind> operators[] = {{"matrix-free", OperatorKind
 inline constexpr Named<Precision> precision[] = {{"double", Precision::Double}, {"mixed", Precision::Mixed}};
 inline constexpr Named<SmootherDiagonal> diagonal[] = {{"jacobi", SmootherDiagonal::Jacobi},
                                                        {"extended-jacobi", SmootherDiagonal::ExtendedJacobi}};
+inline constexpr Named<NeighbourKind> neighbours[] = {{"lists", NeighbourKind::Lists},
+                                                      {"ranges", NeighbourKind::Ranges}};
+inline constexpr Named<CoarseKind> coarse[] = {
+    {"auto", CoarseKind::Auto}, {"direct", CoarseKind::Direct}, {"spgemm", CoarseKind::Spgemm}};
 inline constexpr Named<OutputPrecision> output[] = {{"single", OutputPrecision::Single},
                                                     {"double", OutputPrecision::Double}};
 }  // namespace names
@@ -51,6 +55,10 @@ template <>
 inline constexpr std::span<const Named<Precision>> namesOf<Precision>{names::precision};
 template <>
 inline constexpr std::span<const Named<SmootherDiagonal>> namesOf<SmootherDiagonal>{names::diagonal};
+template <>
+inline constexpr std::span<const Named<NeighbourKind>> namesOf<NeighbourKind>{names::neighbours};
+template <>
+inline constexpr std::span<const Named<CoarseKind>> namesOf<CoarseKind>{names::coarse};
 template <>
 inline constexpr std::span<const Named<OutputPrecision>> namesOf<OutputPrecision>{names::output};
 

@@ -109,6 +109,22 @@ constexpr BadCase badCases[] = {
      "bad.toml:22:12: material in [[body]] 'column' (box): unknown material 'sirup'; did you mean 'syrup'?"},
     {"unknownChoice", "[output]", "[solver]\nkrylov = \"gmres\"\n[output]",
      "bad.toml:40:10: krylov in [solver]: expected 'cr' or 'cg', found 'gmres'"},
+    {"unknownNeighbours", "[output]", "[solver]\nneighbours = \"tree\"\n[output]",
+     "bad.toml:40:14: neighbours in [solver]: expected 'lists' or 'ranges', found 'tree'"},
+    {"unknownCoarseOperators", "[output]", "[solver.multigrid]\ncoarse_operators = \"dense\"\n[output]",
+     "bad.toml:40:20: coarse_operators in [solver.multigrid]: expected 'auto', 'direct' or 'spgemm', found "
+     "'dense'"},
+    {"rangesForTheMatrix", "[output]", "[solver]\noperator = \"assembled\"\nneighbours = \"ranges\"\n[output]",
+     "bad.toml:41:14: neighbours in [solver]: expected 'lists' with operator = 'assembled', found 'ranges': the "
+     "matrix is assembled from lists"},
+    {"rangesForTheMatrixDiagonal", "[output]",
+     "[solver]\nneighbours = \"ranges\"\nmultigrid.particle_diagonal = \"extended-jacobi\"\n[output]",
+     "bad.toml:40:14: neighbours in [solver]: expected 'lists' with multigrid.particle_diagonal = "
+     "'extended-jacobi', found 'ranges'"},
+    {"rangesForMatrixProducts", "[output]",
+     "[solver]\nneighbours = \"ranges\"\nmultigrid.coarse_operators = \"spgemm\"\n[output]",
+     "bad.toml:40:14: neighbours in [solver]: expected 'lists' with multigrid.coarse_operators = 'spgemm', found "
+     "'ranges'"},
     {"unknownShape", "shape = \"box\"", "shape = \"cone\"",
      "bad.toml:23:9: shape in [[body]] 'column': expected 'box', 'sphere' or 'cylinder', found 'cone'"},
     {"unknownField", "interval = 1e-3", "interval = 1e-3\nfields = [\"speed\"]",
@@ -172,7 +188,6 @@ constexpr BadLine badLines[] = {
     {"unknownOption", "run small.toml --fast", "--fast"},
     {"missingFile", "run none.toml", "treacle: error: none.toml: no such case file"},
     {"directoryAsFile", "check .", "treacle: error: .: is a directory"},
-    {"cuda", "run small.toml --backend cuda", "--backend cuda: MPH-I runs on the CPU in this version"},
     {"unknownBackend", "run small.toml --backend gpu", "--backend: expected auto|cpu|cuda, found 'gpu'"},
     {"unknownPrecision", "run small.toml --precision half", "--precision: expected double|mixed, found 'half'"},
     {"noThreads", "run small.toml --threads 0", "--threads: expected a positive number, found '0'"},

@@ -149,6 +149,7 @@ finest_sweeps = 1
 middle_sweeps = 5
 coarsest_sweeps = 6
 particle_diagonal = "extended-jacobi"
+coarse_operators = "spgemm"
 [output]
 interval = 0.25
 checkpoint_interval = 0.5
@@ -181,11 +182,23 @@ TEST(readCase, takesEveryKey) {
   expected.solver.precision = Precision::Mixed;
   expected.solver.tolerance = 1e-10;
   expected.solver.maxIterations = 77;
-  expected.solver.multigrid = {1, 5, 6, SmootherDiagonal::ExtendedJacobi};
+  expected.solver.multigrid = {1, 5, 6, SmootherDiagonal::ExtendedJacobi, CoarseKind::Spgemm};
   expected.output = {0.25, 0.5, {false, true, false, false, true}, OutputPrecision::Double};
   EXPECT_EQ(c, expected);
 
   c.resolution = 1;
+  EXPECT_EQ(readBack(c), c);
+}
+
+TEST(readCase, takesRangesWithTheMatrixFreeOperator) {
+  Workshop shop;
+  shop.put("case.toml", smallCase);
+  const std::string overrides[] = {"solver.neighbours=ranges", "solver.multigrid.coarse_operators=direct"};
+  Case expected = readCase(shop / "case.toml");
+  expected.solver.neighbours = NeighbourKind::Ranges;
+  expected.solver.multigrid.coarseOperators = CoarseKind::Direct;
+  const Case c = readCase(shop / "case.toml", overrides);
+  EXPECT_EQ(c, expected);
   EXPECT_EQ(readBack(c), c);
 }
 

@@ -56,6 +56,7 @@ TEST(check, printsCountsNumbersAndCaseThatCanBeRunAgain) {
   EXPECT_THAT(outcome.out, HasSubstr("dt kappa / lambda = 0.05 (stable up to 1), diffusion numbers d_mu = 20, "
                                      "d_lambda = 2e+04\n"));
   EXPECT_THAT(outcome.out, HasSubstr("# memory: about "));
+  EXPECT_THAT(outcome.out, HasSubstr("# device memory: about "));
   shop.put("again.toml", outcome.out);
   const std::string overrides[] = {"resolution=2", "column.velocity=[1,0]"};
   Case expected = readCase(shop / "small.toml", overrides);
@@ -200,7 +201,7 @@ TEST(run, caseThatDoesNotFitIntoMemoryIsRefused) {
   Workshop shop;
   // 3.8 million particles; the limit leaves room to create them, not to run them.
   const Outcome outcome =
-      prepared(shop).call("run small.toml --threads 1 --set resolution=200", "ulimit -v 1500000;");
+      prepared(shop).call("run small.toml --backend cpu --threads 1 --set resolution=200", "ulimit -v 1500000;");
   EXPECT_EQ(outcome.exitCode, 3);
   EXPECT_THAT(outcome.err, HasSubstr("particles need about "));
   EXPECT_THAT(outcome.err, HasSubstr("available"));

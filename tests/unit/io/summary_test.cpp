@@ -16,7 +16,8 @@ RunSummary summary() {
   s.fluidParticles = 400, s.wallParticles = 900, s.steps = 200, s.time = 0.2;
   s.meanIterations = 233.25, s.firstIterations = 338, s.lastIterations = 243;
   s.phaseSeconds = {{"search", 0.5}, {"solve", 1.5}};
-  s.outputThreadSeconds = 0.125, s.wallSeconds = 2.25, s.peakMemory = 1000000, s.done = true;
+  s.outputThreadSeconds = 0.125, s.wallSeconds = 2.25, s.peakMemory = 1000000, s.peakDeviceMemory = 3000000,
+  s.done = true;
   return s;
 }
 
@@ -47,6 +48,7 @@ TEST(Summary, HoldsEverything) {
   EXPECT_EQ(json["output_thread_seconds"], 0.125);
   EXPECT_EQ(json["wall_seconds"], 2.25);
   EXPECT_EQ(json["peak_memory_bytes"], 1000000);
+  EXPECT_EQ(json["peak_device_memory_bytes"], 3000000);
   EXPECT_EQ(json["memory_bytes_per_fluid_particle"], 2500.0);
 }
 

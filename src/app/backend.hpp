@@ -1,0 +1,28 @@
+#pragma once
+
+#include "commands.hpp"
+#include "treacle/core/device.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace treacle {
+
+#ifdef TREACLE_HAS_CUDA
+inline constexpr bool cudaCompiled = true;
+#else
+inline constexpr bool cudaCompiled = false;
+#endif
+
+/// The device that a run computes on, the first one that CUDA names; empty: the CPU. Errors: InputError where CUDA
+/// is asked for and the build or the machine does not have it.
+std::optional<DeviceInfo> deviceFor(BackendChoice choice);
+
+/// "NVIDIA H200 (sm_90)"
+std::string deviceText(const DeviceInfo& device);
+
+/// Settings of the case that the CPU has no use for.
+std::vector<std::string> cpuWarnings(const Case& c);
+
+}  // namespace treacle

@@ -1,0 +1,171 @@
+#pragma once
+
+#include "commands.hpp"
+#include "interrupt.hpp"
+#include "machine.hpp"
+#include "memory.hpp"
+#include "pinned_snapshot.hpp"
+#include "progress.hpp"
+#include "recorder.hpp"
+#include "run_log.hpp"
+#include "treacle/core/error.hpp"
+#include "treacle/core/timer.hpp"
+#include "treacle/core/version.hpp"
+#include "treacle/io/atomic_file.hpp"
+#include "treacle/io/case_reader.hpp"
+#include "treacle/io/checkpoint.hpp"
+#include "treacle/model/names.hpp"
+
+#include <fmt/format.h>
+#include <omp.h>
+
+#include <functional>
+#include <new>
+#include <optional>
+#include <type_traits>
+
+namespace treacle {
+
+/// One run from the first frame to the summary. Whatever goes wrong on the way, the last good state (checkpoint
+/// and frame), the picture and the summary are still written as far as that is possible.
+template <int D, class Backend>
+class Run {
+ public:
+  /// `device`: its name for the user.
+  Run(const Case& c, Checkpoint<D> start, RunDirectory directory, const RunOptions& options, std::string device)
+      : case_(c),
+        device_(std::move(device)),
+        start_(std::move(start)),
+        directory_(std::move(directory)),
+        timings_(options.timings),
+        log_(directory_.log(), options.quiet),
+        progress_(start_.step, c.steps(), options.quiet) {}
+
+  /// Errors: RunError with the diagnosis, after everything is written.
+  void execute(const std::vector<std::string>& warnings) {
+    describe(start_.particles);
+    for (const std::string& warning : warnings) log_.warning(warning);
+    attempt([&] {
+      writeFile(directory_.caseFile(), caseText(case_));
+      simulation_.emplace(case_, std::move(start_.particles), start_.step, start_.time);
+      recorder_.emplace(case_, directory_, log_, start_.time, timings_, [this](Snapshot<D>& s) { copyState(s); });
+      recorder_->begin();
+      advanceToEnd();
+    });
+    finish();
+  }
+
+ private:
+  void describe(const Particles<D>& particles) {
+    const BuildInfo build = buildInfo();
+    summary_.version = build.version, summary_.commit = build.commit;
+    summary_.backend = onDevice ? "cuda" : "cpu", summary_.device = device_;
+    summary_.threads = omp_get_max_threads();
+    summary_.precision = nameOf(case_.solver.precision);
+    summary_.title = case_.title;
+    summary_.dimensions = D;
+    summary_.fluidParticles = particles.fluidCount, summary_.wallParticles = particles.wallCount();
+    log_.info(fmt::format("treacle {} ({}), backend {}, {}, {} threads of the host", build.version, build.commit,
+                          summary_.backend, device_, summary_.threads));
+    say(fmt::format("{}: {} fluid and {} wall particles, {} steps of {:g} s, into {}",
+                    case_.title.empty() ? "case" : case_.title, particles.fluidCount, particles.wallCount(),
+                    case_.steps(), case_.time.step, directory_.path().string()));
+    if (start_.step > 0) say(fmt::format("continues after step {} (t = {:.6g} s)", start_.step, start_.time));
+  }
+
+  void advanceToEnd() {
+    while (simulation_->step() < case_.steps() && !interruptSignal()) {
+      const StepReport report = simulation_->advance();
+      recorder_->record(report);
+      progress_.update(report);
+    }
+    if (simulation_->step() < case_.steps()) throw RunError(fmt::format("stopped by {}", interruptSignal()));
+  }
+
+  void copyState(Snapshot<D>& snapshot) {
+    if constexpr (onDevice)
+      resizePinned(snapshot, simulation_->particles().fluidCount, simulation_->particles().wallCount());
+    simulation_->copyParticles(snapshot.particles);
+    snapshot.step = simulation_->step();
+    snapshot.time = simulation_->time();
+  }
+
+  /// Keeps the diagnosis of the first thing that goes wrong.
+  void attempt(const std::function<void()>& action) {
+    std::string diagnosis;
+    try {
+      action();
+      return;
+    } catch (const DeviceMemoryExhausted& e) {
+      diagnosis = fmt::format("device memory exhausted: {} in use at the peak, {} on the device",
+                              bytesText(e.peakBytes()), bytesText(e.totalBytes()));
+    } catch (const std::bad_alloc&) {
+      diagnosis = "memory exhausted";
+    } catch (const std::runtime_error& e) {
+      diagnosis = e.what();
+    }
+    if (simulation_)
+      diagnosis =
+          fmt::format("after step {} (t = {:.6g} s): {}", simulation_->step(), simulation_->time(), diagnosis);
+    log_.error(diagnosis);
+    if (failure_.empty()) failure_ = diagnosis;
+  }
+
+  void finish() {
+    if (simulation_ && recorder_) {
+      attempt([&] { recorder_->wait(); });
+      attempt([&] { recorder_->writeCheckpoint(); });
+      attempt([&] { recorder_->writeFrame(); });
+      attempt([&] { recorder_->drawPicture(); });
+      summary_.steps = simulation_->step(), summary_.time = simulation_->time();
+      recorder_->summarise(summary_);
+    }
+    if (simulation_) attempt([&] { summary_.peakDeviceMemory = simulation_->peakBytes(); });
+    summary_.wallSeconds = timer_.lap();
+    summary_.peakMemory = peakMemory();
+    summary_.done = failure_.empty();
+    summary_.message = failure_;
+    attempt([&] { writeSummary(directory_.summary(), summary_); });
+    if (!failure_.empty()) throw RunError(failure_ + lastStateText());
+    say(fmt::format("done: {} steps in {}, {:.1f} iterations per step, {} of memory{}", summary_.steps,
+                    durationText(summary_.wallSeconds), summary_.meanIterations, bytesText(summary_.peakMemory),
+                    onDevice ? fmt::format(", {} of the device's", bytesText(summary_.peakDeviceMemory)) : ""));
+    progress_.message(fmt::format("picture: {}\nParaView: {}", directory_.finalPicture().string(),
+                                  directory_.fluidIndex().string()));
+  }
+
+  std::string lastStateText() const {
+    std::string text;
+    if (directory_.frameCount() > 0) {
+      const std::size_t last = directory_.frameCount() - 1;
+      text += fmt::format("\nThe last state written is frame {} (t = {:.6g} s) in {}", last,
+                          directory_.frameTime(last), directory_.path().string());
+    }
+    if (std::filesystem::exists(directory_.checkpoint()))
+      text +=
+          fmt::format("\nContinue from the last checkpoint with --resume {}", directory_.checkpoint().string());
+    return text;
+  }
+
+  void say(const std::string& text) {
+    log_.info(text);
+    progress_.message(text);
+  }
+
+  static constexpr bool onDevice = std::is_same_v<Backend, Cuda>;
+
+  Timer timer_;
+  const Case& case_;
+  std::string device_;
+  Checkpoint<D> start_;
+  RunDirectory directory_;
+  bool timings_;
+  RunLog log_;
+  Progress progress_;
+  std::optional<Simulation<D, Backend>> simulation_;
+  std::optional<Recorder<D>> recorder_;
+  RunSummary summary_;
+  std::string failure_;
+};
+
+}  // namespace treacle

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "case_section.hpp"
+#include "treacle/model/case.hpp"
+
+namespace treacle {
+
+/// The tables of a case file that say how to run it. `top`: the whole file. Errors: InputError.
+TimeSettings readTime(const Section& top, double resolution);
+MethodSettings readMethod(const Section& top);
+SolverSettings readSolver(const Section& top);
+OutputSettings readOutput(const Section& top);
+
+}  // namespace treacle

@@ -1,0 +1,86 @@
+#include "memory.hpp"
+
+#include "treacle/core/error.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace treacle {
+namespace {
+
+using testing::HasSubstr;
+
+Case caseOf(int dimensions) {
+  Case c;
+  c.dimensions = dimensions;
+  return c;
+}
+
+constexpr ParticleNumbers some{1000, 500};
+
+TEST(DeviceMemory, GrowsWithWhatTheSolverStores) {
+  for (const int dimensions : {2, 3}) {
+    Case ranges = caseOf(dimensions), lists = ranges, diagonal = ranges, assembled = ranges, products = ranges;
+    ranges.solver.neighbours = NeighbourKind::Ranges;
+    diagonal.solver.multigrid.particleDiagonal = SmootherDiagonal::ExtendedJacobi;
+    assembled.solver.operatorKind = OperatorKind::Assembled;
+    products.solver.multigrid.coarseOperators = CoarseKind::Spgemm;
+    EXPECT_LT(estimatedDeviceMemory(ranges, some), estimatedDeviceMemory(lists, some));
+    EXPECT_LT(estimatedDeviceMemory(lists, some), estimatedDeviceMemory(assembled, some));
+    EXPECT_EQ(estimatedDeviceMemory(diagonal, some), estimatedDeviceMemory(assembled, some));
+    EXPECT_LT(estimatedDeviceMemory(assembled, some), estimatedDeviceMemory(products, some));
+  }
+}
+
+TEST(DeviceMemory, SettingsOfAMultigridThatIsNotUsedDoNotCount) {
+  Case c = caseOf(3);
+  const std::uint64_t plain = estimatedDeviceMemory(c, some);
+  c.solver.preconditioner = PreconditionerKind::BlockJacobi;
+  c.solver.multigrid.coarseOperators = CoarseKind::Spgemm;
+  c.solver.multigrid.particleDiagonal = SmootherDiagonal::ExtendedJacobi;
+  EXPECT_EQ(estimatedDeviceMemory(c, some), plain);
+}
+
+TEST(DeviceMemory, IsProportionalToTheNumbersAndLessForWalls) {
+  const Case c = caseOf(3);
+  const std::uint64_t fluid = estimatedDeviceMemory(c, {1, 0}), wall = estimatedDeviceMemory(c, {0, 1});
+  EXPECT_GT(wall, 0u);
+  EXPECT_LT(wall, fluid);
+  constexpr std::uint64_t many = std::uint64_t{1} << 27;  // more than 32 bits hold
+  EXPECT_EQ(estimatedDeviceMemory(c, {many, many}), many * (fluid + wall));
+}
+
+TEST(HostMemory, HoldsNoSolverWhereTheRunIsOnADevice) {
+  constexpr ParticleNumbers many{1'000'000, 1'000'000};
+  Case c = caseOf(3);
+  const std::uint64_t onDevice = estimatedMemory(c, many, true), matrixFree = estimatedMemory(c, many, false);
+  EXPECT_LT(onDevice, matrixFree);
+  // What lies on a device only makes no difference to the CPU.
+  c.solver.neighbours = NeighbourKind::Ranges;
+  EXPECT_EQ(estimatedMemory(c, many, false), matrixFree);
+  c.solver.operatorKind = OperatorKind::Assembled;
+  EXPECT_GT(estimatedMemory(c, many, false), matrixFree);
+  EXPECT_EQ(estimatedMemory(c, many, true), onDevice);
+}
+
+TEST(DeviceMemory, ARunThatDoesNotFitIsRefused) {
+  const Case c = caseOf(2);
+  DeviceInfo device;
+  device.name = "Some GPU";
+  device.memory = std::size_t{1} << 40;
+  device.freeMemory = estimatedDeviceMemory(c, some);
+  EXPECT_NO_THROW(requireMemory(c, some, &device));
+  --device.freeMemory;
+  EXPECT_NO_THROW(requireMemory(c, some, nullptr));
+  try {
+    requireMemory(c, some, &device);
+    FAIL() << "a run that does not fit was let through";
+  } catch (const RunError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("1500 particles need about "));
+    EXPECT_THAT(error.what(), HasSubstr(" of device memory, "));
+    EXPECT_THAT(error.what(), HasSubstr(" available on Some GPU"));
+  }
+}
+
+}  // namespace
+}  // namespace treacle
