@@ -124,6 +124,17 @@ __global__ void __launch_bounds__(256) denseSetupKernel(const __grid_constant__ 
     matrix[static_cast<std::size_t>(blockIdx.x) * unknowns + k] = x[k];
 }
 
+/// One thread per pair of entries. The cycle is symmetric but for its rounding errors; as a matrix those would be the
+/// same in every application, and CR in single precision stalls on them.
+template <class T>
+void symmetrise(Context<Cuda>& context, std::uint32_t unknowns, T* matrix) {
+  const std::size_t n = unknowns;
+  forEach(context, n * n, [=] __device__(std::size_t k) {
+    const std::size_t i = k / n, j = k % n;
+    if (i < j) matrix[i * n + j] = matrix[j * n + i] = (matrix[i * n + j] + matrix[j * n + i]) / 2;
+  });
+}
+
 }  // namespace
 
 template <int D, class T>
@@ -184,6 +195,7 @@ void BucketMultigrid<D, T, Cuda>::buildDense(Context<Cuda>& context) {
   TREACLE_CUDA_CHECK(cudaFuncSetAttribute(denseSetupKernel<D, T>, cudaFuncAttributeMaxDynamicSharedMemorySize,
                                           static_cast<int>(shared)));
   launch(context, unknowns, 256, shared, denseSetupKernel<D, T>, levels, dense_.data());
+  symmetrise(context, unknowns, dense_.data());
 }
 
 template <int D, class T>

@@ -8,7 +8,7 @@
 #define TREACLE_OWN 4
 #endif
 #ifndef TREACLE_MINBLOCKS
-#define TREACLE_MINBLOCKS 1
+#define TREACLE_MINBLOCKS 4
 #endif
 namespace treacle {
 

@@ -5,29 +5,62 @@
 namespace treacle {
 namespace {
 
-/// Bytes that one product moves at least, per fluid particle in 3D: position 24, u 24 read and y 24 written, wall
-/// terms 96, the list (about 40 entries per particle, 160), q 8 written; second pass: position 24, q 8, y 48, near list
-/// 44. The arithmetic takes longer (docs/performance.md).
+/// The self terms: those of the walls and the inertia, and the sums over the fluid.
+template <int D>
+struct SelfSums {
+  static constexpr int values = D * D + D;
+  static constexpr bool uses(ListSegment s) { return isFluid(s); }
+  using Own = std::uint8_t;  // material
+  using Other = std::uint8_t;
+
+  PairConstants<D, double> constants;
+  WallTerms<D> wall;
+  Block<D>* block;
+  Vec<D>* gradient;
+
+  __device__ Own loadOwn(const MphPairs<D>& pairs, std::uint32_t i) const { return pairs.material[i]; }
+  __device__ Other loadOther(const MphPairs<D>& pairs, std::uint32_t j) const { return pairs.material[j]; }
+
+  __device__ void add(const MphPairs<D>& pairs, double* sum, const Vec<D>& d, double inverseR, Own own, Other other,
+                      ListSegment) const {
+    const double f = pairs.materials.pairViscosity[own][other] * constants.viscosityReach(inverseR);
+    for (int r = 0; r < D; ++r) addScaled(sum + r * D, f * d[r], d);
+    addScaled(sum + D * D, constants.pressureReach(inverseR), d);
+  }
+  __device__ void store(const MphPairs<D>&, std::uint32_t i, int n, double sum) const {
+    if (n < D * D)
+      block[i].a[n] = wall.block[i].a[n] + constants.viscosityFactor * sum;
+    else
+      gradient[i][n - D * D] = wall.gradient[i][n - D * D] + constants.pressureFactor * sum;
+  }
+};
+
 template <int D, class T, class S, bool OneMaterial>
-void product(Context<Cuda>& context, const MphPairs<D>& pairs, const WallTerms<D>& wall, const Vec<D, T>* u,
-             Vec<D, T>* y, T* q) {
+void firstPass(Context<Cuda>& context, const MphPairs<D>& pairs, const SelfTerms<D>& self, const Vec<D, T>* u,
+               Vec<D, T>* y, T* q) {
   const double unit = frameUnit<T>(pairs.viscosityWeight.radius);
   const auto constants = PairConstants<D, T>::make(pairs, unit);
-  const ListTask<ViscosityAndDivergence<D, T, OneMaterial>> onFluid{pairs.fluidList, {constants, wall, u, y, q}};
+  const ListTask<ViscosityAndDivergence<D, T, OneMaterial>> onFluid{pairs.fluidList, {constants, self, u, y, q}};
   const ListTask<Divergence<D, T, true, true>> onWalls{pairs.wallList, {constants, u, q}};
   launchClusterSums<D, T, S>(context, pairs, onFluid, onWalls, unit);
-
-  const ListTask<PressureGradient<D, T, true>> gradient{pairs.fluidList, {constants, q, y}};
-  launchClusterSums<D, T, S>(context, pairs, gradient, unit);
 }
 
 template <int D, class T, class S>
-void productOf(Context<Cuda>& context, const MphPairs<D>& pairs, const WallTerms<D>& wall, const Vec<D, T>* u,
+void firstPass(Context<Cuda>& context, const MphPairs<D>& pairs, const SelfTerms<D>& self, const Vec<D, T>* u,
                Vec<D, T>* y, T* q) {
   if (pairs.materials.count == 1)
-    product<D, T, S, true>(context, pairs, wall, u, y, q);
+    firstPass<D, T, S, true>(context, pairs, self, u, y, q);
   else
-    product<D, T, S, false>(context, pairs, wall, u, y, q);
+    firstPass<D, T, S, false>(context, pairs, self, u, y, q);
+}
+
+/// y += C q
+template <int D, class T, class S>
+void secondPass(Context<Cuda>& context, const MphPairs<D>& pairs, const T* q, Vec<D, T>* y) {
+  const double unit = frameUnit<T>(pairs.viscosityWeight.radius);
+  using Terms = PressureGradient<D, T, true>;
+  launchClusterSums<D, T, S>(context, pairs,
+                             ListTask<Terms>{pairs.fluidList, {PairConstants<D, T>::make(pairs, unit), q, y}}, unit);
 }
 
 }  // namespace
@@ -35,22 +68,39 @@ void productOf(Context<Cuda>& context, const MphPairs<D>& pairs, const WallTerms
 template <int D>
 void MphOperator<D, Cuda>::prepare(Context<Cuda>& context, const MphPairs<D>& pairs, const WallTerms<D>& terms) {
   pairs_ = &pairs;
-  terms_ = terms;
   q_.resize(context, pairs.activeCount);
+  selfBlock_.resize(context, pairs.fluidCount);
+  selfGradient_.resize(context, pairs.fluidCount);
+  const ListTask<SelfSums<D>> sums{pairs.fluidList,
+                                   {PairConstants<D, double>::make(pairs, 1), terms, selfBlock_.data(),
+                                    selfGradient_.data()}};
+  if (pairs.fluidList.offset) {
+    launchClusterSums<D, double, Sharing<2, 1>>(context, pairs, sums, 1.0);
+    near_.prepare(context, pairs);
+  } else {
+    launchClusterSums<D, double, Sharing<2, 1, true>>(context, pairs, sums, 1.0);
+  }
 }
 
 template <int D>
 void MphOperator<D, Cuda>::multiply(Context<Cuda>& context, std::span<const Vec<D>> u, std::span<Vec<D>> y) {
+  const SelfTerms<D> self{selfBlock_, selfGradient_};
   withSharing(*pairs_, [&](auto sharing) {
-    productOf<D, double, decltype(sharing)>(context, *pairs_, terms_, u.data(), y.data(), q_.data());
+    firstPass<D, double, decltype(sharing)>(context, *pairs_, self, u.data(), y.data(), q_.data());
   });
+  if (pairs_->fluidList.offset)
+    near_.addPressureGradient(context, q_, y);
+  else
+    secondPass<D, double, Sharing<4, 1, true>>(context, *pairs_, q_.data(), y.data());
 }
 
 template <int D>
 void MphOperator<D, Cuda>::multiplySingle(Context<Cuda>& context, std::span<const Vec<D, float>> u,
                                           std::span<float> q, std::span<Vec<D, float>> y) {
+  const SelfTerms<D> self{selfBlock_, selfGradient_};
   withListSharing(*pairs_, [&](auto sharing) {
-    productOf<D, float, decltype(sharing)>(context, *pairs_, terms_, u.data(), y.data(), q.data());
+    firstPass<D, float, decltype(sharing)>(context, *pairs_, self, u.data(), y.data(), q.data());
+    secondPass<D, float, decltype(sharing)>(context, *pairs_, q.data(), y.data());
   });
 }
 

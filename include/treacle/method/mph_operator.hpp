@@ -1,6 +1,7 @@
 #pragma once
 
 #include "treacle/core/buffer.hpp"
+#include "treacle/method/near_products.hpp"
 #include "treacle/method/pair_sums.hpp"
 
 #include <cstdint>
@@ -44,8 +45,8 @@ class MphOperator<D, Cpu> {
   Buffer<double> q_;         // lambda C^T u, per particle
 };
 
-/// The same on a device, where arithmetic costs less than memory: nothing is kept, a product computes the pair
-/// terms from the positions.
+/// The same on a device, where arithmetic costs less than memory: pair terms are computed from the positions in every
+/// product; kept are each particle's self terms, and lists of the neighbours within h_p.
 template <int D>
 class MphOperator<D, Cuda> {
  public:
@@ -54,12 +55,15 @@ class MphOperator<D, Cuda> {
   /// The same product in single precision, for preconditioners; q: workspace of activeCount. Needs lists.
   void multiplySingle(Context<Cuda>&, std::span<const Vec<D, float>> u, std::span<float> q,
                       std::span<Vec<D, float>> y);
-  std::size_t bytes() const { return q_.bytes(); }
+  const NearProducts<D>& near() const { return near_; }
+  std::size_t bytes() const { return q_.bytes() + selfBlock_.bytes() + selfGradient_.bytes() + near_.bytes(); }
 
  private:
   const MphPairs<D>* pairs_ = nullptr;
-  WallTerms<D> terms_{};
-  Buffer<double, Cuda> q_;  // lambda C^T u, per particle
+  Buffer<Block<D>, Cuda> selfBlock_;   // diagonal block of rho/dt I + V, per fluid particle
+  Buffer<Vec<D>, Cuda> selfGradient_;  // C_ii
+  Buffer<double, Cuda> q_;             // lambda C^T u, per particle
+  NearProducts<D> near_;
 };
 
 }  // namespace treacle

@@ -66,12 +66,15 @@ double farthest(const Particles<D>& a, const Particles<D>& b) {
 
 template <int D>
 void compareSteps(const SolverSettings& settings) {
+  // Residuals of CG go up and down; in single precision the CPU's own variants (matrix-free, assembled) differ by 9 %.
+  const bool rough = settings.krylov == KrylovKind::Cg || settings.precision == Precision::Mixed;
+  const double spread = rough ? 0.15 : 0.03;
   const Case c = stepCase(D, settings);
   Simulation<D> cpu(c, bodyOnFloor<D>(c, 0.02));
   Simulation<D, Cuda> cuda(c, bodyOnFloor<D>(c, 0.02));
   for (int step = 0; step < 5; ++step) {
     const StepReport a = cpu.advance(), b = cuda.advance();
-    EXPECT_NEAR(b.iterations, a.iterations, std::max(1.0, 0.03 * a.iterations));
+    EXPECT_NEAR(b.iterations, a.iterations, std::max(1.0, spread * a.iterations));
     EXPECT_LE(b.residual, c.solver.tolerance);
     EXPECT_NEAR(b.diagnostics.kineticEnergy, a.diagnostics.kineticEnergy, 1e-5 * a.diagnostics.kineticEnergy);
     EXPECT_NEAR(b.diagnostics.frontX, a.diagnostics.frontX, 1e-6 * c.domain.max[0]);
