@@ -50,15 +50,16 @@ struct DeviceStart {
   std::uint32_t n() const { return particles.fluidCount; }
 };
 
-/// Bytes that a product with A reads and writes at least, matrix-free: positions, vectors, wall terms and lists, each
-/// once per pass.
+/// Bytes that a product with A reads and writes at least, matrix-free: positions, vectors, wall terms and lists,
+/// each once per pass.
 template <int D>
 double productBytes(DeviceStart<D>& s, std::size_t scalar) {
   const double n = s.n(), active = s.pairs().activeCount;
   const double list = 4.0 * static_cast<double>(valueOnHost(
                                 s.context, s.pairs().fluidList.offset + 4 * s.pairs().fluidList.clusterCount()));
   const double vector = D * static_cast<double>(scalar);
-  return 2 * active * D * 8 + n * (4 * vector + sizeof(Block<D>) + sizeof(Vec<D>)) + 2 * active * scalar + 1.3 * list;
+  return 2 * active * D * 8 + n * (4 * vector + sizeof(Block<D>) + sizeof(Vec<D>)) + 2 * active * scalar +
+         1.3 * list;
 }
 
 template <int D>
@@ -80,10 +81,14 @@ template <int D>
 void benchmarkAssembled(const std::string& size, DeviceStart<D>& s, Record& record) {
   GradientRows<D, Cuda> rows;
   BlockCsr<D, double, Cuda> a;
-  record.add("setup/assemble/" + size, s.n(), secondsOf(s.context, [&] {
-               gradientRows(s.context, s.pairs(), rows);
-               assemble(s.context, s.pairs(), s.terms(), rows, a);
-             }, 3));
+  record.add("setup/assemble/" + size, s.n(),
+             secondsOf(
+                 s.context,
+                 [&] {
+                   gradientRows(s.context, s.pairs(), rows);
+                   assemble(s.context, s.pairs(), s.terms(), rows, a);
+                 },
+                 3));
   const double bytes = static_cast<double>(a.block.size() * sizeof(Block<D>) + a.column.size() * 4 +
                                            a.rowStart.size() * 8 + 2 * s.n() * sizeof(Vec<D>));
   record.add("products/A assembled/" + size, s.n(),
@@ -94,34 +99,49 @@ void benchmarkAssembled(const std::string& size, DeviceStart<D>& s, Record& reco
   GalerkinSpgemm<D> spgemm;
   BlockCsr<D, double, Cuda> a0;
   record.add("setup/A^0 spgemm/" + size, s.n(),
-             secondsOf(s.context, [&] { spgemm.compute(s.context, a, levels.begin[0], a0); }, 3));
+             secondsOf(
+                 s.context, [&] { spgemm.compute(s.context, a, levels.begin[0], a0); }, 3));
 }
 
 template <int D>
 void benchmarkSetup(const std::string& size, DeviceStart<D>& s, Record& record) {
   auto& context = s.context;
-  record.add("setup/sort/" + size, s.n(), secondsOf(context, [&] { s.neighbourhood.sort(context, s.particles); }, 5));
+  record.add("setup/sort/" + size, s.n(),
+             secondsOf(
+                 context, [&] { s.neighbourhood.sort(context, s.particles); }, 5));
   record.add("setup/lists/" + size, s.n(),
-             secondsOf(context, [&] { s.neighbourhood.buildLists(context, s.particles); }, 5));
+             secondsOf(
+                 context, [&] { s.neighbourhood.buildLists(context, s.particles); }, 5));
   Buffer<Block<D>, Cuda> diagonal(context, s.n());
   Buffer<Vec<D>, Cuda> inverse(context, s.n());
-  record.add("setup/diagonal/" + size, s.n(), secondsOf(context, [&] {
-               diagonalBlocks<D>(context, s.pairs(), s.terms(), diagonal);
-               jacobiInverse<D, double>(context, diagonal, inverse);
-             }, 5));
+  record.add("setup/diagonal/" + size, s.n(),
+             secondsOf(
+                 context,
+                 [&] {
+                   diagonalBlocks<D>(context, s.pairs(), s.terms(), diagonal);
+                   jacobiInverse<D, double>(context, diagonal, inverse);
+                 },
+                 5));
   BucketLevels<Cuda> levels;
   BlockCsr<D, double, Cuda> a0;
   Buffer<Vec<D>, Cuda> columns;
-  record.add("setup/A^0 direct/" + size, s.n(), secondsOf(context, [&] {
-               findBuckets(context, s.neighbourhood.ranges().key, D * CellGrid<D>::subBits, D, levels);
-               bucketGalerkin(context, s.pairs(), s.neighbourhood.ranges(), levels, s.terms(), columns, a0);
-             }, 5));
+  record.add("setup/A^0 direct/" + size, s.n(),
+             secondsOf(
+                 context,
+                 [&] {
+                   findBuckets(context, s.neighbourhood.ranges().key, D * CellGrid<D>::subBits, D, levels);
+                   bucketGalerkin(context, s.pairs(), s.neighbourhood.ranges(), levels, s.terms(), columns, a0);
+                 },
+                 5));
   BucketMultigrid<D, double, Cuda> k;
-  record.add("setup/coarse levels/" + size, s.n(), secondsOf(context, [&] {
-               k.setup(context, a0, {levels.begin.begin(), levels.begin.end()}, {});
-             }, 5));
-  record.add("solve/V-cycle/" + size, s.n(),
-             secondsOf(context, [&] { k.apply(context, inverse, s.u, s.y); }));
+  record.add("setup/coarse levels/" + size, s.n(),
+             secondsOf(
+                 context,
+                 [&] {
+                   k.setup(context, a0, {levels.begin.begin(), levels.begin.end()}, {});
+                 },
+                 5));
+  record.add("solve/V-cycle/" + size, s.n(), secondsOf(context, [&] { k.apply(context, inverse, s.u, s.y); }));
 }
 
 template <int D>
@@ -133,9 +153,11 @@ void benchmarkProducts(const BenchmarkOptions& options, Record& record) {
     DeviceStart<D> s(options, resolution);
     MphOperator<D, Cuda> a;
     a.prepare(s.context, s.pairs(), s.terms());
-    record.add("setup/operator/" + size, s.n(), secondsOf(s.context, [&] { a.prepare(s.context, s.pairs(), s.terms()); }, 5));
-    record.add("products/A double/" + size, s.n(),
-               secondsOf(s.context, [&] { a.multiply(s.context, s.u, s.y); }), productBytes(s, 8));
+    record.add("setup/operator/" + size, s.n(),
+               secondsOf(
+                   s.context, [&] { a.prepare(s.context, s.pairs(), s.terms()); }, 5));
+    record.add("products/A double/" + size, s.n(), secondsOf(s.context, [&] { a.multiply(s.context, s.u, s.y); }),
+               productBytes(s, 8));
     benchmarkSingle(size, s, a, record);
     benchmarkSetup(size, s, record);
     benchmarkAssembled(size, s, record);

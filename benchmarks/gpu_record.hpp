@@ -17,6 +17,7 @@ struct BenchmarkOptions {
   std::string cases;  // directory
   std::string only;
   bool quick = false;
+  double largest = 0;  // resolution of a 3D dam break that is run alone, for one step
 
   bool wants(const std::string& name) const { return name.find(only) != name.npos; }
 };

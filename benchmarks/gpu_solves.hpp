@@ -18,9 +18,9 @@ struct SolveRun {
 
 template <int D>
 void benchmarkSolve(const BenchmarkOptions& options, const SolveRun& run, Record& record) {
-  const std::string name = fmt::format("solve/{}D x1/{:g}/{}{}/steps {}-{}", D, run.resolution,
-                                       nameOf(run.preconditioner), run.coarse == CoarseKind::Spgemm ? " spgemm" : "",
-                                       run.steps - run.timed + 1, run.steps);
+  const std::string name =
+      fmt::format("solve/{}D x1/{:g}/{}{}/steps {}-{}", D, run.resolution, nameOf(run.preconditioner),
+                  run.coarse == CoarseKind::Spgemm ? " spgemm" : "", run.steps - run.timed + 1, run.steps);
   if (!options.wants(name)) return;
   Case c = paperCase<D>(options, run.resolution);
   c.solver.preconditioner = run.preconditioner;
@@ -54,10 +54,11 @@ void benchmarkSolve(const BenchmarkOptions& options, const SolveRun& run, Record
                                  {"setup_share", setup / seconds.total()},
                                  {"peak_bytes", simulation.peakBytes()},
                                  {"bytes_per_fluid_particle", static_cast<double>(simulation.peakBytes()) / n}});
-  fmt::print("{:<56} {:>9} fluid {:>7.1f} iterations, solve {:>9.3f} ms, step {:>9.3f} ms, set-up {:>4.1f} %, "
-             "{:.0f} B per particle\n",
-             name, n, static_cast<double>(iterations) / run.timed, seconds.solve * perStep, seconds.total() * perStep,
-             100 * setup / seconds.total(), static_cast<double>(simulation.peakBytes()) / n);
+  fmt::print(
+      "{:<56} {:>9} fluid {:>7.1f} iterations, solve {:>9.3f} ms, step {:>9.3f} ms, set-up {:>4.1f} %, "
+      "{:.0f} B per particle\n",
+      name, n, static_cast<double>(iterations) / run.timed, seconds.solve * perStep, seconds.total() * perStep,
+      100 * setup / seconds.total(), static_cast<double>(simulation.peakBytes()) / n);
   std::fflush(stdout);
 }
 
@@ -79,6 +80,7 @@ inline void benchmarkSolves(const BenchmarkOptions& options, Record& record) {
     runs.push_back({2, resolution, 2, 1, PreconditionerKind::BucketMultigrid, CoarseKind::Spgemm});
   for (const double resolution : {1.0, 2.0, 4.0})
     runs.push_back({3, resolution, 2, 1, PreconditionerKind::BucketMultigrid, CoarseKind::Spgemm});
+  if (options.largest > 0) runs = {{3, options.largest, 1, 1, PreconditionerKind::BucketMultigrid}};
   for (SolveRun run : runs) {
     if (options.quick) run.steps = run.timed = std::min(run.timed, 2);
     run.dimensions == 2 ? benchmarkSolve<2>(options, run, record) : benchmarkSolve<3>(options, run, record);

@@ -47,8 +47,8 @@ __device__ void finishReduction(double blockValue, double* partial, unsigned* ti
 /// One thread per element, grid-stride: body(i) returns what element i adds; finish(sum) runs once at the end.
 /// One atomic per block, for the count of blocks that are done.
 template <class Body, class Finish>
-__global__ void __launch_bounds__(256) reduceKernel(std::size_t count, Body body, Finish finish, double* partial,
-                                                    unsigned* ticket) {
+__global__ void __launch_bounds__(256)
+    reduceKernel(std::size_t count, Body body, Finish finish, double* partial, unsigned* ticket) {
   double sum = 0;
   for (std::size_t i = blockIdx.x * 256ull + threadIdx.x; i < count; i += gridDim.x * 256ull) sum += body(i);
   finishReduction(blockSum(sum), partial, ticket, finish);

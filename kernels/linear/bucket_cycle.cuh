@@ -89,7 +89,8 @@ class BlockCycle {
 
   __device__ void firstSweep(int r) {
     const CycleLevel<D, T>& a = levels_[r];
-    for (std::uint32_t i = threadIdx.x; i < a.rows; i += blockDim.x) x(r)[i] = scaled(a.inverseDiagonal[i], b(r)[i]);
+    for (std::uint32_t i = threadIdx.x; i < a.rows; i += blockDim.x)
+      x(r)[i] = scaled(a.inverseDiagonal[i], b(r)[i]);
     __syncthreads();
   }
 
@@ -123,7 +124,8 @@ class BlockCycle {
     const Vec<D, T>*from = x(r), *rhs = b(r);
     forEachRow(coarse.rows, [&](std::uint32_t p, bool valid) {
       Vec<D, T> share{}, sumOfB{};
-      for (std::uint32_t i = valid ? coarse.members[p] : 0, end = valid ? coarse.members[p + 1] : 0; i < end; ++i) {
+      for (std::uint32_t i = valid ? coarse.members[p] : 0, end = valid ? coarse.members[p + 1] : 0; i < end;
+           ++i) {
         share += rowShare(a, i, from);
         sumOfB += rhs[i];
       }

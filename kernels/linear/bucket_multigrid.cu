@@ -1,6 +1,7 @@
 #include "treacle/linear/bucket_multigrid.hpp"
 
 #include "linear/bucket_cycle.cuh"
+#include "linear/row_sums.cuh"
 #include "treacle/linear/galerkin_spgemm.hpp"
 
 namespace treacle {
@@ -20,7 +21,8 @@ void convert(Context<Cuda>& context, const BlockCsr<D, double, Cuda>& from, Bloc
   to.rowStart.resize(context, from.rowStart.size());
   to.column.resize(context, from.column.size());
   to.block.resize(context, from.block.size());
-  copyBytesOnDevice(context, from.rowStart.data(), to.rowStart.data(), from.rowStart.size() * sizeof(std::uint64_t));
+  copyBytesOnDevice(context, from.rowStart.data(), to.rowStart.data(),
+                    from.rowStart.size() * sizeof(std::uint64_t));
   copyBytesOnDevice(context, from.column.data(), to.column.data(), from.column.size() * sizeof(std::uint32_t));
   const double* source = reinterpret_cast<const double*>(from.block.data());
   T* target = reinterpret_cast<T*>(to.block.data());
@@ -34,7 +36,8 @@ __global__ void restrictKernel(const CycleLevel<D, T> level, const Vec<D>* r, Ve
   const std::uint32_t bucket = (blockIdx.x * blockDim.x + threadIdx.x) / 32;
   if (bucket >= level.rows) return;
   Vec<D> sum{};
-  for (std::uint32_t i = level.members[bucket] + threadIdx.x % 32; i < level.members[bucket + 1]; i += 32) sum += r[i];
+  for (std::uint32_t i = level.members[bucket] + threadIdx.x % 32; i < level.members[bucket + 1]; i += 32)
+    sum += r[i];
   Vec<D, T> total;
   for (int k = 0; k < D; ++k) total[k] = static_cast<T>(warpSum(sum[k]));
   if (threadIdx.x % 32 != 0) return;
@@ -42,51 +45,63 @@ __global__ void restrictKernel(const CycleLevel<D, T> level, const Vec<D>* r, Ve
   x[bucket] = scaled(level.inverseDiagonal[bucket], total);
 }
 
-/// A few lanes per row: next = x + D^-1 (b - A x) [K23 eq. (42)], with x + P coarse in place of x where there is
-/// something coarse. No atomics.
+/// x, or x + P coarse where there is something coarse.
 template <int D, class T, bool Prolong>
-__global__ void __launch_bounds__(128)
-    sweepKernel(const CycleLevel<D, T> level, const Vec<D, T>* b, const Vec<D, T>* x, Vec<D, T>* next,
-                const std::uint32_t* parent, const Vec<D, T>* coarse) {
-  const std::uint32_t row = (blockIdx.x * blockDim.x + threadIdx.x) / rowLanes<D>;
-  const bool valid = row < level.rows;
-  Vec<D, T> share{};
-  if (valid) {
-    if constexpr (Prolong)
-      share = rowShare(level, row, x, parent, coarse);
-    else
-      share = rowShare(level, row, x);
-  }
-  const Vec<D, T> sum = sumOverRowLanes(share);
-  if (!valid || threadIdx.x % rowLanes<D> != 0) return;
-  Vec<D, T> old = x[row];
-  if constexpr (Prolong) old += coarse[parent[row]];
-  next[row] = old + scaled(level.inverseDiagonal[row], b[row] - sum);
-}
+struct Iterate {
+  const Vec<D, T>* x;
+  const std::uint32_t* parent;
+  const Vec<D, T>* coarse;
 
-/// One warp per coarse bucket: coarse b = sum of b - A x over its members, and the first sweep there. No atomics.
-template <int D, class T>
-__global__ void restrictResidualKernel(const CycleLevel<D, T> level, const Vec<D, T>* b, const Vec<D, T>* x,
-                                       const CycleLevel<D, T> coarse, Vec<D, T>* coarseB, Vec<D, T>* coarseX) {
-  const std::uint32_t bucket = (blockIdx.x * blockDim.x + threadIdx.x) / 32;
-  if (bucket >= coarse.rows) return;
-  const int lane = threadIdx.x % 32;
-  const std::uint32_t first = coarse.members[bucket], last = coarse.members[bucket + 1];
-  Vec<D, T> sum{};
-  for (std::uint32_t i = first + lane / rowLanes<D>; i < last; i += 32 / rowLanes<D>) {
-    sum -= rowShare(level, i, x);
-    if (lane % rowLanes<D> == 0) sum += b[i];
+  __device__ T at(std::size_t i, int c) const {
+    if constexpr (Prolong) return x[i][c] + coarse[parent[i]][c];
+    return x[i][c];
   }
-  for (int k = 0; k < D; ++k) sum[k] = warpSum(sum[k]);
-  if (lane != 0) return;
-  coarseB[bucket] = sum;
-  coarseX[bucket] = scaled(coarse.inverseDiagonal[bucket], sum);
+  __device__ T operator()(T value, const std::uint32_t* column, int c) const { return value * at(*column, c); }
+};
+
+/// next = x + D^-1 (b - A x) [K23 eq. (42)]
+template <int D, class T, bool Prolong>
+struct StoreSweep {
+  Iterate<D, T, Prolong> x;
+  const Vec<D, T>* b;
+  const Vec<D, T>* inverseDiagonal;
+  Vec<D, T>* next;
+
+  __device__ void operator()(std::size_t row, int r, T sum) const {
+    next[row][r] = x.at(row, r) + inverseDiagonal[row][r] * (b[row][r] - sum);
+  }
+};
+
+/// One block per coarse bucket, a warp per member at a time: coarse b = sum of b - A x over the members, and the
+/// first sweep there. No atomics.
+template <int D, class T>
+__global__ void __launch_bounds__(256)
+    restrictResidualKernel(const BlockCsrView<D, T> a, const Vec<D, T>* b, const Vec<D, T>* x,
+                           const CycleLevel<D, T> coarse, Vec<D, T>* coarseB, Vec<D, T>* coarseX) {
+  __shared__ Vec<D, T> sums[8];
+  const RowLanes<D, 32 / (D * D)> lanes;
+  const Iterate<D, T, false> iterate{x, nullptr, nullptr};
+  const std::uint32_t bucket = blockIdx.x, first = coarse.members[bucket], last = coarse.members[bucket + 1];
+  const int warp = threadIdx.x / 32;
+  T sum = 0;
+  for (std::uint32_t i = first + warp; i < last; i += 8) {
+    const T product = lanes.template sum<Reading::Cached>(a, i, lanes.group == 0, iterate);
+    if (lanes.holdsSum()) sum += b[i][lanes.r()] - product;
+  }
+  if (lanes.holdsSum()) sums[warp][lanes.r()] = sum;
+  __syncthreads();
+  if (threadIdx.x >= D) return;
+  const int r = static_cast<int>(threadIdx.x);
+  T total = 0;
+  for (int w = 0; w < 8; ++w) total += sums[w][r];
+  coarseB[bucket][r] = total;
+  coarseX[bucket][r] = coarse.inverseDiagonal[bucket][r] * total;
 }
 
 /// One thread per unknown: z = diag(inverse) r + P x.
 template <int D, class T>
-__global__ void prolongKernel(std::size_t unknowns, const T* inverse, const double* r, const std::uint32_t* bucketOf,
-                              const Vec<D, T>* x, double* z) {
+__global__ void prolongKernel(std::size_t unknowns, const T* inverse, const double* r,
+                              const std::uint32_t* bucketOf, const Vec<D, T>* x, double* z) {
   const std::size_t k = blockIdx.x * std::size_t{blockDim.x} + threadIdx.x;
   if (k < unknowns) z[k] = inverse[k] * r[k] + x[bucketOf[k / D]][static_cast<int>(k % D)];
 }
@@ -97,7 +112,9 @@ __global__ void denseKernel(int unknowns, const T* matrix, const T* b, T* x) {
   const int row = (blockIdx.x * blockDim.x + threadIdx.x) / 32;
   if (row >= unknowns) return;
   T sum = 0;
-  for (int k = threadIdx.x % 32; k < unknowns; k += 32) sum += matrix[static_cast<std::size_t>(row) * unknowns + k] * b[k];
+  const T* mine = matrix + static_cast<std::size_t>(row) * unknowns;
+#pragma unroll 8
+  for (int k = threadIdx.x % 32; k < unknowns; k += 32) sum += mine[k] * b[k];
   sum = warpSum(sum);
   if (threadIdx.x % 32 == 0) x[row] = sum;
 }
@@ -111,7 +128,8 @@ struct CycleLevels {
 
 /// One block per unit vector: runs the cycle on it and writes the result as a row of the (symmetric) matrix.
 template <int D, class T>
-__global__ void __launch_bounds__(256) denseSetupKernel(const __grid_constant__ CycleLevels<D, T> levels, T* matrix) {
+__global__ void __launch_bounds__(256)
+    denseSetupKernel(const __grid_constant__ CycleLevels<D, T> levels, T* matrix) {
   extern __shared__ double shared[];
   BlockCycle<D, T> cycle(levels.level, levels.count, reinterpret_cast<Vec<D, T>*>(shared));
   const std::uint32_t unknowns = D * levels.level[0].rows;
@@ -124,8 +142,8 @@ __global__ void __launch_bounds__(256) denseSetupKernel(const __grid_constant__ 
     matrix[static_cast<std::size_t>(blockIdx.x) * unknowns + k] = x[k];
 }
 
-/// One thread per pair of entries. The cycle is symmetric but for its rounding errors; as a matrix those would be the
-/// same in every application, and CR in single precision stalls on them.
+/// One thread per pair of entries. The cycle is symmetric but for its rounding errors; as a matrix those would be
+/// the same in every application, and CR in single precision stalls on them.
 template <class T>
 void symmetrise(Context<Cuda>& context, std::uint32_t unknowns, T* matrix) {
   const std::size_t n = unknowns;
@@ -207,19 +225,20 @@ void BucketMultigrid<D, T, Cuda>::cycle(Context<Cuda>& context, std::size_t r) {
            reinterpret_cast<const T*>(level.b.data()), reinterpret_cast<T*>(level.x.data()));
     return;
   }
-  const CycleLevel<D, T> here = view(r);
-  const unsigned blocks = blocksFor(std::size_t{here.rows} * rowLanes<D>, 128);
-  const auto sweep = [&](auto kernel, const std::uint32_t* parent, const Vec<D, T>* coarse) {
-    launch(context, blocks, 128, 0, kernel, here, level.b.data(), level.x.data(), level.next.data(), parent, coarse);
+  const auto sweep = [&]<bool Prolong>(const std::uint32_t* parent, const Vec<D, T>* coarse) {
+    const Iterate<D, T, Prolong> x{level.x.data(), parent, coarse};
+    rowSums<Reading::Cached>(
+        context, level.a, x,
+        StoreSweep<D, T, Prolong>{x, level.b.data(), level.inverseDiagonal.data(), level.next.data()});
     std::swap(level.x, level.next);
   };
-  for (int s = 1; s < level.sweeps; ++s) sweep(sweepKernel<D, T, false>, nullptr, nullptr);
+  for (int s = 1; s < level.sweeps; ++s) sweep.template operator()<false>(nullptr, nullptr);
   Level& coarse = levels_[r + 1];
-  launch(context, blocksFor(coarse.a.rows(), 4), 128, 0, restrictResidualKernel<D, T>, here, level.b.data(),
+  launch(context, coarse.a.rows(), 256, 0, restrictResidualKernel<D, T>, viewOf(level.a), level.b.data(),
          level.x.data(), view(r + 1), coarse.b.data(), coarse.x.data());
   cycle(context, r + 1);
-  sweep(sweepKernel<D, T, true>, coarse.parent.data(), coarse.x.data());
-  for (int s = 1; s < level.sweeps; ++s) sweep(sweepKernel<D, T, false>, nullptr, nullptr);
+  sweep.template operator()<true>(coarse.parent.data(), coarse.x.data());
+  for (int s = 1; s < level.sweeps; ++s) sweep.template operator()<false>(nullptr, nullptr);
 }
 
 template <int D, class T>
@@ -231,8 +250,8 @@ void BucketMultigrid<D, T, Cuda>::apply(Context<Cuda>& context, std::span<const 
   cycle(context, 0);
   const std::size_t unknowns = r.size() * D;
   launch(context, blocksFor(unknowns, 256), 256, 0, prolongKernel<D, T>, unknowns,
-         reinterpret_cast<const T*>(inverse.data()), reinterpret_cast<const double*>(r.data()), finest.parent.data(),
-         finest.x.data(), reinterpret_cast<double*>(z.data()));
+         reinterpret_cast<const T*>(inverse.data()), reinterpret_cast<const double*>(r.data()),
+         finest.parent.data(), finest.x.data(), reinterpret_cast<double*>(z.data()));
 }
 
 template <int D, class T>

@@ -19,46 +19,72 @@ BlockCsrView<D, T> viewOf(const BlockCsr<D, T, Cuda>& a) {
   return {a.rows(), a.rowStart.data(), a.column.data(), a.block.data()};
 }
 
-/// A group of Blocks D^2 lanes per block row: consecutive lanes read consecutive numbers of the row's storage, so
-/// each keeps its place (r, c) within the blocks, and `Blocks` blocks are in work at a time. Reads the matrix and
-/// what `term` reads; writes what `store` writes. No atomics.
-template <int D, class T, int Blocks, class Term, class Store>
-__global__ void __launch_bounds__(256) rowSumsKernel(BlockCsrView<D, T> a, Term term, Store store) {
-  constexpr int elements = D * D, lanes = Blocks * elements, rowsPerWarp = 32 / lanes;
-  const int lane = threadIdx.x % 32, group = lane / lanes, beside = lane % lanes / elements, e = lane % elements;
-  const int r = e / D, c = e % D;
-  const std::uint64_t row = (blockIdx.x * std::uint64_t{8} + threadIdx.x / 32) * rowsPerWarp + group;
-  const bool used = group < rowsPerWarp && row < a.rows;
-  T sum = 0;
-  if (used) {
-    const std::uint64_t begin = a.rowStart[row];
-    const auto count = static_cast<std::uint32_t>(a.rowStart[row + 1] - begin);
-    const std::uint32_t* column = a.column + begin;
-    const T* value = a.block[begin].a + e;
-#pragma unroll 4
-    for (std::uint32_t k = beside; k < count; k += Blocks)
-      sum += term(__ldcs(value + k * elements), column + k, c);
+/// How a row's storage is read: once per product, or again soon, from the cache.
+enum class Reading { Streamed, Cached };
+
+/// A warp's lanes in groups of Blocks D^2, one per block row: consecutive lanes read consecutive numbers of the
+/// row's storage, so each keeps its place (r, c) within the blocks, and `Blocks` blocks are in work at a time.
+template <int D, int Blocks>
+struct RowLanes {
+  static constexpr int elements = D * D, lanes = Blocks * elements, rowsPerWarp = 32 / lanes;
+  int group, beside, e;
+
+  __device__ RowLanes()
+      : group(threadIdx.x % 32 / lanes),
+        beside(threadIdx.x % 32 % lanes / elements),
+        e(threadIdx.x % 32 % lanes % elements) {}
+  __device__ int r() const { return e / D; }
+  __device__ int c() const { return e % D; }
+  /// Whether this lane has the sum of component r() in the end.
+  __device__ bool holdsSum() const { return group < rowsPerWarp && beside == 0 && c() == 0; }
+
+  /// Sum of term(A_(r,c), place of the column index, c) over a row; with all lanes of the warp, `used` where the
+  /// lane's group has a row.
+  template <Reading How, class T, class Term>
+  __device__ T sum(const BlockCsrView<D, T>& a, std::uint64_t row, bool used, const Term& term) const {
+    T mine = 0;
+    if (used) {
+      const std::uint64_t begin = a.rowStart[row];
+      const auto count = static_cast<std::uint32_t>(a.rowStart[row + 1] - begin);
+      const std::uint32_t* column = a.column + begin;
+      const T* value = a.block[begin].a + e;
+#pragma unroll 8
+      for (std::uint32_t k = beside; k < count; k += Blocks)
+        mine += term(How == Reading::Streamed ? __ldcs(value + k * elements) : __ldg(value + k * elements),
+                     column + k, c());
+    }
+    // Over the columns of the blocks, then over the blocks side by side.
+    T total = mine;
+    for (int s = 1; s < D; ++s) total += __shfl_down_sync(~0u, mine, s);
+    const T ofBlock = total;
+    if constexpr ((Blocks & (Blocks - 1)) == 0)
+      for (int s = Blocks / 2; s > 0; s /= 2) total += __shfl_down_sync(~0u, total, s * elements);
+    else
+      for (int s = 1; s < Blocks; ++s) total += __shfl_down_sync(~0u, ofBlock, s * elements);
+    return total;
   }
-  // Over the columns of the blocks, then over the blocks side by side; the first lane of each has the sum.
-  T total = sum;
-  for (int s = 1; s < D; ++s) total += __shfl_down_sync(~0u, sum, s);
-  const T ofBlock = total;
-  if constexpr ((Blocks & (Blocks - 1)) == 0)
-    for (int s = Blocks / 2; s > 0; s /= 2) total += __shfl_down_sync(~0u, total, s * elements);
-  else
-    for (int s = 1; s < Blocks; ++s) total += __shfl_down_sync(~0u, ofBlock, s * elements);
-  if (used && beside == 0 && c == 0) store(row, r, total);
+};
+
+/// A group of lanes per block row (RowLanes). Reads the matrix and what `term` reads; writes what `store` writes.
+/// No atomics.
+template <int D, class T, int Blocks, Reading How, class Term, class Store>
+__global__ void __launch_bounds__(256) rowSumsKernel(BlockCsrView<D, T> a, Term term, Store store) {
+  const RowLanes<D, Blocks> lanes;
+  const std::uint64_t row = (blockIdx.x * std::uint64_t{8} + threadIdx.x / 32) * lanes.rowsPerWarp + lanes.group;
+  const bool used = lanes.group < lanes.rowsPerWarp && row < a.rows;
+  const T total = lanes.template sum<How>(a, row, used, term);
+  if (used && lanes.holdsSum()) store(row, lanes.r(), total);
 }
 
 /// For every component r of every block row: store(row, r, sum of term(A_(r,c), place of the column index, c) over
 /// the row's blocks and their columns c). The order of a sum depends on the matrix alone.
-template <int D, class T, class Term, class Store>
+template <Reading How, int D, class T, class Term, class Store>
 void rowSums(const Context<Cuda>& context, const BlockCsr<D, T, Cuda>& a, Term term, Store store) {
   // As many blocks at a time as a warp has room for; where rows are shorter than that, several rows to a warp.
   constexpr int wide = 32 / (D * D), narrow = D == 2 ? 4 : 1;
   const auto start = [&](auto blocks) {
     constexpr int Blocks = decltype(blocks)::value, rowsPerWarp = 32 / (Blocks * D * D);
-    launch(context, blocksFor(a.rows(), 8 * rowsPerWarp), 256, 0, rowSumsKernel<D, T, Blocks, Term, Store>,
+    launch(context, blocksFor(a.rows(), 8 * rowsPerWarp), 256, 0, rowSumsKernel<D, T, Blocks, How, Term, Store>,
            viewOf(a), term, store);
   };
   if (2 * a.block.size() < 3 * wide * std::size_t{a.rows()})

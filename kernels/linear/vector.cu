@@ -31,14 +31,16 @@ void directionDot(Context<Cuda>& context, std::span<const double> x, std::span<c
       [=] __device__(double sum) { scalars->setDirection(sum); });
 }
 
-void stepDot(Context<Cuda>& context, std::span<const double> x, std::span<const double> y, KrylovScalars* scalars) {
+void stepDot(Context<Cuda>& context, std::span<const double> x, std::span<const double> y,
+             KrylovScalars* scalars) {
   const double *px = x.data(), *py = y.data();
   reduce(
       context, x.size(), [=] __device__(std::size_t i) { return px[i] * py[i]; },
       [=] __device__(double sum) { scalars->setStep(sum); });
 }
 
-void direction(Context<Cuda>& context, std::span<const double> z, std::span<double> p, const KrylovScalars* scalars) {
+void direction(Context<Cuda>& context, std::span<const double> z, std::span<double> p,
+               const KrylovScalars* scalars) {
   const double* pz = z.data();
   double* pp = p.data();
   forEach(context, z.size(), [=] __device__(std::size_t i) {

@@ -4,12 +4,6 @@
 #include "search/cluster_candidates.cuh"
 #include "treacle/method/mph_pairs.hpp"
 
-#ifndef TREACLE_OWN
-#define TREACLE_OWN 4
-#endif
-#ifndef TREACLE_MINBLOCKS
-#define TREACLE_MINBLOCKS 4
-#endif
 namespace treacle {
 
 /// 1 / sqrt(x), x > 0, to full double precision: the hardware's estimate (2^-22) and one step of third order.
@@ -29,41 +23,98 @@ __device__ inline double positivePart(double a) {
 }
 __device__ inline float positivePart(float a) { return fmaxf(a, 0.f); }
 
-/// Lengths in the arithmetic of a kernel: double as they are; float from the cluster's first particle and in units
-/// of h, differences of positions being formed in double.
-template <int D, class T>
-struct Frame;
-template <int D>
-struct Frame<D, double> {
-  __device__ Frame(const Vec<D>&, double) {}
-  __device__ Vec<D> local(const Vec<D>& x) const { return x; }
-};
-template <int D>
-struct Frame<D, float> {
-  Vec<D> origin;
-  double inverseUnit;
-  __device__ Frame(const Vec<D>& o, double unit) : origin(o), inverseUnit(1 / unit) {}
-  __device__ Vec<D, float> local(const Vec<D>& x) const {
-    Vec<D, float> r;
-    for (int k = 0; k < D; ++k) r[k] = static_cast<float>((x[k] - origin[k]) * inverseUnit);
-    return r;
-  }
-};
-/// The unit of length of the arithmetic [m].
-template <class T>
-inline double frameUnit(double farRadius) {
-  return std::is_same_v<T, double> ? 1.0 : farRadius;
-}
-
-/// Squares of distances get this fraction of h^2 added: a particle meets itself in its cluster's list, and two may
-/// coincide; their differences are then zero and so is every term, whatever 1/r.
+/// Squares of distances get this fraction of h_p^2 added: a particle meets itself in its cluster's list, and two
+/// may coincide; their differences are then zero and so is every term, whatever 1/r.
 template <class T>
 inline constexpr double distanceFloor = std::is_same_v<T, double> ? 1e-24 : 1e-12;
 
-/// How a warp shares the work on a cluster: each lane keeps `Own` of its eight particles, so that a neighbour, once
-/// loaded, serves that many pairs; the lanes that keep the same particles take turns with the neighbours. `Warps`
-/// warps share one cluster's neighbours: small systems would otherwise leave the card idle.
-/// With Ranges there are no lists.
+/// Positions as a kernel's arithmetic takes them.
+template <int D, class T>
+struct Places;
+
+template <int D>
+struct Places<D, double> {
+  using Stored = Vec<D>;
+  double floor;
+
+  static Places make(const MphPairs<D>& pairs) {
+    const double h = pairs.pressureWeight.radius;
+    return {distanceFloor<double> * h * h};
+  }
+  static double unit(const MphPairs<D>&) { return 1; }  // of length [m]
+
+  /// Particle i of a cluster, at the image nearest to the cluster's first particle.
+  __device__ Stored own(const MphPairs<D>& pairs, std::uint32_t i, std::uint32_t first, bool wraps) const {
+    Vec<D> x = pairs.position[i];
+    if (!wraps) return x;
+    for (int k = 0; k < D; ++k) {
+      const double away = x[k] - pairs.position[first][k], length = pairs.grid.length[k];
+      if (pairs.grid.periodic[k] && fabs(away) > 0.5 * length) x[k] -= length * round(away / length);
+    }
+    return x;
+  }
+  __device__ Stored neighbour(const MphPairs<D>& pairs, ListEntry e, bool wraps) const {
+    Vec<D> x = pairs.position[e.index()];
+    if (wraps && e.image() != 0) x += pairs.images.shift[e.image()];
+    return x;
+  }
+  __device__ Vec<D> local(const Stored& x, const Stored&) const { return x; }
+  /// Whether differences of local positions may mean another image: not here, images are in the lists.
+  __device__ static bool tornApart(const Vec<D>&) { return false; }
+  __device__ static void bringHome(Vec<D>&) {}
+};
+
+/// In single precision: differences of positions in units of 2^-32 of the domain's length are exact, and those
+/// across periodic ends come out right by themselves; local positions count from the cluster's first particle, in
+/// h_v.
+template <int D>
+struct Places<D, float> {
+  using Stored = int4;
+  float floor;
+  const int4* fixed;
+  Vec<D, float> scale;
+  Vec<D, float> period;  // in h_v; infinite on open axes
+
+  static Places make(const MphPairs<D>& pairs, const std::int32_t* fixed) {
+    const double h = pairs.pressureWeight.radius / unit(pairs);
+    Places p{static_cast<float>(distanceFloor<float> * h * h), reinterpret_cast<const int4*>(fixed), {}, {}};
+    for (int k = 0; k < D; ++k) {
+      const double length = pairs.grid.length[k] / unit(pairs);
+      p.scale[k] = static_cast<float>(length / 4294967296.0);
+      p.period[k] = static_cast<float>(pairs.grid.periodic[k] ? length : 1e30);
+    }
+    return p;
+  }
+  static double unit(const MphPairs<D>& pairs) { return pairs.viscosityWeight.radius; }
+
+  __device__ Stored own(const MphPairs<D>&, std::uint32_t i, std::uint32_t, bool) const { return fixed[i]; }
+  __device__ Stored neighbour(const MphPairs<D>&, ListEntry e, bool) const { return fixed[e.index()]; }
+  __device__ Vec<D, float> local(const Stored& x, const Stored& origin) const {
+    const auto axis = [](int a, int b) {
+      return static_cast<float>(static_cast<int>(static_cast<unsigned>(a) - static_cast<unsigned>(b)));
+    };
+    Vec<D, float> d;
+    d[0] = axis(x.x, origin.x) * scale[0];
+    d[1] = axis(x.y, origin.y) * scale[1];
+    if constexpr (D == 3) d[2] = axis(x.z, origin.z) * scale[2];
+    return d;
+  }
+  /// A particle this far from its cluster's first one may have neighbours that are nearer to the first one's other
+  /// side: then each difference has to be brought home.
+  __device__ bool tornApart(const Vec<D, float>& own) const {
+    bool torn = false;
+    for (int k = 0; k < D; ++k) torn = torn || fabsf(own[k]) > 0.5f * period[k] - 1.01f;
+    return torn;
+  }
+  __device__ void bringHome(Vec<D, float>& d) const {
+    for (int k = 0; k < D; ++k) d[k] -= period[k] * rintf(d[k] / period[k]);
+  }
+};
+
+/// How a warp shares the work on a cluster: each lane keeps `Own` of its eight particles, so that a neighbour,
+/// once loaded, serves that many pairs; the lanes that keep the same particles take turns with the neighbours.
+/// `Warps` warps share one cluster's neighbours: small systems would otherwise leave the card idle. With Ranges
+/// there are no lists.
 template <int Own_, int Warps_, bool Ranges_ = false>
 struct Sharing {
   static constexpr int own = Own_, warps = Warps_;
@@ -75,8 +126,8 @@ struct Sharing {
   static constexpr int clustersPerBlock = warpsPerBlock / warps;
 };
 
-/// Adds up v[0 … N-1] over the lanes of each group of N (a power of two): afterwards lane n of the group holds the sum
-/// of v[n]. N - 1 exchanges instead of N log N.
+/// Adds up v[0 … N-1] over the lanes of each group of N (a power of two): afterwards lane n of the group holds the
+/// sum of v[n]. N - 1 exchanges instead of N log N.
 template <int N, class T>
 __device__ inline T transposedSum(const T* v) {
   if constexpr (N == 1) {
@@ -94,10 +145,11 @@ __device__ inline T transposedSum(const T* v) {
   }
 }
 
-/// Runs along a part of a list, every `stride`-th entry from k on: load(entry) starts the loads of a neighbour, add(what
-/// was loaded, k) uses them one round later, while those of the next are on their way.
+/// Runs along a part of a list, every `stride`-th entry from k on: load(entry) starts the loads of a neighbour,
+/// add(what was loaded, k) uses them one round later, while those of the next are on their way.
 template <int Stride, class Load, class Add>
-__device__ inline void pipeline(const ListEntry* entry, std::uint32_t k, std::uint32_t count, Load&& load, Add&& add) {
+__device__ inline void pipeline(const ListEntry* entry, std::uint32_t k, std::uint32_t count, Load&& load,
+                                Add&& add) {
   if (k >= count) return;
   auto loaded = load(entry[k]);
   std::uint32_t next = k + Stride;
@@ -169,7 +221,8 @@ __device__ bool walkRanges(const MphPairs<D>& pairs, std::uint32_t first, std::u
   const auto radius = [&](ListSegment far) {
     return Terms::uses(far) ? pairs.viscosityWeight.radius : pairs.pressureWeight.radius;
   };
-  const bool fluid = usesFluid || first >= pairs.fluidCount ? pass(false, usesFluid, radius(ListSegment::FarFluid)) : true;
+  const bool fluid =
+      usesFluid || first >= pairs.fluidCount ? pass(false, usesFluid, radius(ListSegment::FarFluid)) : true;
   if (usesWalls) pass(true, true, radius(ListSegment::FarWall));
   return fluid;
 }
@@ -194,12 +247,12 @@ class ClusterSum {
         count_(min(clusterSize, list.last - first_)) {}
 
   /// `part`: which of the cluster's warps this is; `exchange`: room for the sums of the block's lanes.
-  __device__ void run(const Terms& terms, double unit, int part, T (*exchange)[32]) const {
+  __device__ void run(const Terms& terms, const Places<D, T>& places, int part, T (*exchange)[32]) const {
     const int lane = threadIdx.x % 32, group = lane / S::slots, slot = lane % S::slots;
     const bool wraps = S::ranges || list_.wraps[cluster_];
-    const Vec<D> origin = pairs_.position[first_];
-    const Frame<D, T> frame(origin, unit);
-    const Vec<D, T> mine = frame.local(positionOf(lane % clusterSize, origin, wraps));
+    const auto origin = places.own(pairs_, first_, first_, wraps);
+    const Vec<D, T> mine = places.local(places.own(pairs_, particle(lane % clusterSize), first_, wraps), origin);
+    const bool torn = __any_sync(~0u, places.tornApart(mine));
     Vec<D, T> x[S::own];
     typename Terms::Own own[S::own];
     T sum[paddedSums] = {};
@@ -208,24 +261,20 @@ class ClusterSum {
       for (int k = 0; k < D; ++k) x[t][k] = __shfl_sync(~0u, mine[k], group * S::own + t);
       own[t] = terms.loadOwn(pairs_, particle(group * S::own + t));
     }
-    const double h = pairs_.pressureWeight.radius / unit;
-    const T floor = static_cast<T>(distanceFloor<T> * h * h);
-
     struct Loaded {
-      Vec<D> x;
+      typename Places<D, T>::Stored x;
       typename Terms::Other other;
     };
     const auto load = [&](ListEntry e) {
-      Vec<D> xj = pairs_.position[e.index()];
-      if (wraps && e.image() != 0) xj += pairs_.images.shift[e.image()];
-      return Loaded{xj, terms.loadOther(pairs_, e.index())};
+      return Loaded{places.neighbour(pairs_, e, wraps), terms.loadOther(pairs_, e.index())};
     };
     const auto add = [&](const Loaded& loaded, ListSegment segment) {
-      const Vec<D, T> local = frame.local(loaded.x);
+      const Vec<D, T> local = places.local(loaded.x, origin);
 #pragma unroll
       for (int t = 0; t < S::own; ++t) {
-        const Vec<D, T> d = local - x[t];
-        T r2 = floor;
+        Vec<D, T> d = local - x[t];
+        if (torn) places.bringHome(d);
+        T r2 = places.floor;
         for (int k = 0; k < D; ++k) r2 = fma(d[k], d[k], r2);
         terms.add(pairs_, &sum[t * values], d, inverseSqrt(r2), own[t], loaded.other, segment);
       }
@@ -246,18 +295,9 @@ class ClusterSum {
   static constexpr int rounds = (sums + S::slots - 1) / S::slots;
   static constexpr int paddedSums = rounds * S::slots;
 
-  /// At the image nearest to the cluster's first particle.
-  __device__ Vec<D> positionOf(int own, const Vec<D>& origin, bool wraps) const {
-    Vec<D> x = pairs_.position[particle(own)];
-    if (!wraps) return x;
-    for (int k = 0; k < D; ++k) {
-      const double away = x[k] - origin[k], length = pairs_.grid.length[k];
-      if (pairs_.grid.periodic[k] && fabs(away) > 0.5 * length) x[k] -= length * round(away / length);
-    }
-    return x;
+  __device__ std::uint32_t particle(int own) const {
+    return first_ + min(static_cast<std::uint32_t>(own), count_ - 1);
   }
-
-  __device__ std::uint32_t particle(int own) const { return first_ + min(static_cast<std::uint32_t>(own), count_ - 1); }
 
   __device__ void store(const Terms& terms, T (&sum)[paddedSums], int part, T (*exchange)[32]) const {
     const int lane = threadIdx.x % 32, group = lane / S::slots, slot = lane % S::slots;
@@ -284,6 +324,10 @@ class ClusterSum {
   std::uint32_t cluster_, first_, count_;
 };
 
+/// Blocks that a multiprocessor is to hold at once: bounds the registers of a thread.
+template <class T, class S>
+inline constexpr int residentBlocks = (std::is_same_v<T, double> ? 16 : 24) / S::warpsPerBlock;
+
 /// A list and what is to be added up over it.
 template <class Terms>
 struct ListTask {
@@ -298,46 +342,47 @@ struct ListTask {
 
 template <int D, class T, class S, class Terms>
 __device__ inline void sumOverList(const MphPairs<D>& pairs, const ListTask<Terms>& task, unsigned block,
-                                   double unit) {
+                                   const Places<D, T>& places) {
   __shared__ T exchange[S::warpsPerBlock][32];
   const int warp = threadIdx.x / 32;
   const std::uint32_t cluster = block * S::clustersPerBlock + warp / S::warps;
   if (cluster < task.list.clusterCount())
-    ClusterSum<D, T, S, Terms>(pairs, task.list, cluster).run(task.terms, unit, warp % S::warps, exchange);
+    ClusterSum<D, T, S, Terms>(pairs, task.list, cluster).run(task.terms, places, warp % S::warps, exchange);
 }
 
-/// Warps share clusters as S says. Reads positions, lists and what the terms read of both particles of a pair; writes
-/// what the terms store. No atomics.
+/// Warps share clusters as S says. Reads positions, lists and what the terms read of both particles of a pair;
+/// writes what the terms store. No atomics.
 template <int D, class T, class S, class Terms>
-__global__ void __launch_bounds__(32 * S::warpsPerBlock, TREACLE_MINBLOCKS)
+__global__ void __launch_bounds__(32 * S::warpsPerBlock, residentBlocks<T, S>)
     clusterSumKernel(const __grid_constant__ MphPairs<D> pairs, const __grid_constant__ ListTask<Terms> task,
-                     double unit) {
-  sumOverList<D, T, S>(pairs, task, blockIdx.x, unit);
+                     const __grid_constant__ Places<D, T> places) {
+  sumOverList<D, T, S>(pairs, task, blockIdx.x, places);
 }
 
 /// The same for two lists at once: first the clusters of a, then those of b.
 template <int D, class T, class S, class A, class B>
-__global__ void __launch_bounds__(32 * S::warpsPerBlock, TREACLE_MINBLOCKS)
+__global__ void __launch_bounds__(32 * S::warpsPerBlock, residentBlocks<T, S>)
     clusterSumsKernel(const __grid_constant__ MphPairs<D> pairs, const __grid_constant__ ListTask<A> a,
-                      const __grid_constant__ ListTask<B> b, double unit) {
+                      const __grid_constant__ ListTask<B> b, const __grid_constant__ Places<D, T> places) {
   const unsigned blocksOfA = a.template blocks<S>();
   if (blockIdx.x < blocksOfA)
-    sumOverList<D, T, S>(pairs, a, blockIdx.x, unit);
+    sumOverList<D, T, S>(pairs, a, blockIdx.x, places);
   else
-    sumOverList<D, T, S>(pairs, b, blockIdx.x - blocksOfA, unit);
+    sumOverList<D, T, S>(pairs, b, blockIdx.x - blocksOfA, places);
 }
 
 template <int D, class T, class S, class Terms>
-void launchClusterSums(Context<Cuda>& context, const MphPairs<D>& pairs, const ListTask<Terms>& task, double unit) {
-  launch(context, task.template blocks<S>(), 32 * S::warpsPerBlock, 0, clusterSumKernel<D, T, S, Terms>, pairs, task,
-         unit);
+void launchClusterSums(Context<Cuda>& context, const MphPairs<D>& pairs, const ListTask<Terms>& task,
+                       const Places<D, T>& places) {
+  launch(context, task.template blocks<S>(), 32 * S::warpsPerBlock, 0, clusterSumKernel<D, T, S, Terms>, pairs,
+         task, places);
 }
 
 template <int D, class T, class S, class A, class B>
-void launchClusterSums(Context<Cuda>& context, const MphPairs<D>& pairs, const ListTask<A>& a, const ListTask<B>& b,
-                       double unit) {
+void launchClusterSums(Context<Cuda>& context, const MphPairs<D>& pairs, const ListTask<A>& a,
+                       const ListTask<B>& b, const Places<D, T>& places) {
   launch(context, a.template blocks<S>() + b.template blocks<S>(), 32 * S::warpsPerBlock, 0,
-         clusterSumsKernel<D, T, S, A, B>, pairs, a, b, unit);
+         clusterSumsKernel<D, T, S, A, B>, pairs, a, b, places);
 }
 
 /// Systems with fewer clusters share each of them among four warps.
@@ -349,7 +394,7 @@ void withListSharing(const MphPairs<D>& pairs, F&& f) {
   if (pairs.fluidList.clusterCount() < fewClusters)
     f(Sharing<4, 4>{});
   else
-    f(Sharing<TREACLE_OWN, 1>{});
+    f(Sharing<4, 1>{});
 }
 /// The same, also for pairs without lists.
 template <int D, class F>

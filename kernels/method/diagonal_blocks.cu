@@ -73,11 +73,11 @@ void diagonalBlocks(Context<Cuda>& context, const MphPairs<D>& pairs, const Wall
   Buffer<double, Cuda> sums(context, std::size_t{Terms::values} * pairs.fluidCount);
   const ListTask<Terms> task{pairs.fluidList, {PairConstants<D, double>::make(pairs, 1), sums.data()}};
   if (!pairs.fluidList.offset)
-    launchClusterSums<D, double, Sharing<2, 1, true>>(context, pairs, task, 1);
+    launchClusterSums<D, double, Sharing<2, 1, true>>(context, pairs, task, Places<D, double>::make(pairs));
   else if (pairs.fluidList.clusterCount() < fewClusters)
-    launchClusterSums<D, double, Sharing<2, 4>>(context, pairs, task, 1);
+    launchClusterSums<D, double, Sharing<2, 4>>(context, pairs, task, Places<D, double>::make(pairs));
   else
-    launchClusterSums<D, double, Sharing<2, 1>>(context, pairs, task, 1);
+    launchClusterSums<D, double, Sharing<2, 1>>(context, pairs, task, Places<D, double>::make(pairs));
 
   launch(context, blocksFor(pairs.fluidCount, 256), 256, 0, finishKernel<D>, pairs, sums.data(),
          terms.block.data(), diagonal.data());

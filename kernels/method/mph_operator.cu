@@ -21,8 +21,8 @@ struct SelfSums {
   __device__ Own loadOwn(const MphPairs<D>& pairs, std::uint32_t i) const { return pairs.material[i]; }
   __device__ Other loadOther(const MphPairs<D>& pairs, std::uint32_t j) const { return pairs.material[j]; }
 
-  __device__ void add(const MphPairs<D>& pairs, double* sum, const Vec<D>& d, double inverseR, Own own, Other other,
-                      ListSegment) const {
+  __device__ void add(const MphPairs<D>& pairs, double* sum, const Vec<D>& d, double inverseR, Own own,
+                      Other other, ListSegment) const {
     const double f = pairs.materials.pairViscosity[own][other] * constants.viscosityReach(inverseR);
     for (int r = 0; r < D; ++r) addScaled(sum + r * D, f * d[r], d);
     addScaled(sum + D * D, constants.pressureReach(inverseR), d);
@@ -36,31 +36,21 @@ struct SelfSums {
 };
 
 template <int D, class T, class S, bool OneMaterial>
-void firstPass(Context<Cuda>& context, const MphPairs<D>& pairs, const SelfTerms<D>& self, const Vec<D, T>* u,
-               Vec<D, T>* y, T* q) {
-  const double unit = frameUnit<T>(pairs.viscosityWeight.radius);
-  const auto constants = PairConstants<D, T>::make(pairs, unit);
+void firstPass(Context<Cuda>& context, const MphPairs<D>& pairs, const Places<D, T>& places,
+               const SelfTerms<D>& self, const Vec<D, T>* u, Vec<D, T>* y, T* q) {
+  const auto constants = PairConstants<D, T>::make(pairs, places.unit(pairs));
   const ListTask<ViscosityAndDivergence<D, T, OneMaterial>> onFluid{pairs.fluidList, {constants, self, u, y, q}};
   const ListTask<Divergence<D, T, true, true>> onWalls{pairs.wallList, {constants, u, q}};
-  launchClusterSums<D, T, S>(context, pairs, onFluid, onWalls, unit);
+  launchClusterSums<D, T, S>(context, pairs, onFluid, onWalls, places);
 }
 
 template <int D, class T, class S>
-void firstPass(Context<Cuda>& context, const MphPairs<D>& pairs, const SelfTerms<D>& self, const Vec<D, T>* u,
-               Vec<D, T>* y, T* q) {
+void firstPass(Context<Cuda>& context, const MphPairs<D>& pairs, const Places<D, T>& places,
+               const SelfTerms<D>& self, const Vec<D, T>* u, Vec<D, T>* y, T* q) {
   if (pairs.materials.count == 1)
-    firstPass<D, T, S, true>(context, pairs, self, u, y, q);
+    firstPass<D, T, S, true>(context, pairs, places, self, u, y, q);
   else
-    firstPass<D, T, S, false>(context, pairs, self, u, y, q);
-}
-
-/// y += C q
-template <int D, class T, class S>
-void secondPass(Context<Cuda>& context, const MphPairs<D>& pairs, const T* q, Vec<D, T>* y) {
-  const double unit = frameUnit<T>(pairs.viscosityWeight.radius);
-  using Terms = PressureGradient<D, T, true>;
-  launchClusterSums<D, T, S>(context, pairs,
-                             ListTask<Terms>{pairs.fluidList, {PairConstants<D, T>::make(pairs, unit), q, y}}, unit);
+    firstPass<D, T, S, false>(context, pairs, places, self, u, y, q);
 }
 
 }  // namespace
@@ -71,37 +61,39 @@ void MphOperator<D, Cuda>::prepare(Context<Cuda>& context, const MphPairs<D>& pa
   q_.resize(context, pairs.activeCount);
   selfBlock_.resize(context, pairs.fluidCount);
   selfGradient_.resize(context, pairs.fluidCount);
-  const ListTask<SelfSums<D>> sums{pairs.fluidList,
-                                   {PairConstants<D, double>::make(pairs, 1), terms, selfBlock_.data(),
-                                    selfGradient_.data()}};
+  const ListTask<SelfSums<D>> sums{
+      pairs.fluidList, {PairConstants<D, double>::make(pairs, 1), terms, selfBlock_.data(), selfGradient_.data()}};
+  const auto places = Places<D, double>::make(pairs);
   if (pairs.fluidList.offset) {
-    launchClusterSums<D, double, Sharing<2, 1>>(context, pairs, sums, 1.0);
+    launchClusterSums<D, double, Sharing<2, 1>>(context, pairs, sums, places);
     near_.prepare(context, pairs);
   } else {
-    launchClusterSums<D, double, Sharing<2, 1, true>>(context, pairs, sums, 1.0);
+    launchClusterSums<D, double, Sharing<2, 1, true>>(context, pairs, sums, places);
   }
 }
 
 template <int D>
 void MphOperator<D, Cuda>::multiply(Context<Cuda>& context, std::span<const Vec<D>> u, std::span<Vec<D>> y) {
   const SelfTerms<D> self{selfBlock_, selfGradient_};
+  const auto places = Places<D, double>::make(*pairs_);
   withSharing(*pairs_, [&](auto sharing) {
-    firstPass<D, double, decltype(sharing)>(context, *pairs_, self, u.data(), y.data(), q_.data());
+    firstPass<D, double, decltype(sharing)>(context, *pairs_, places, self, u.data(), y.data(), q_.data());
   });
   if (pairs_->fluidList.offset)
     near_.addPressureGradient(context, q_, y);
   else
-    secondPass<D, double, Sharing<4, 1, true>>(context, *pairs_, q_.data(), y.data());
+    addPressureGradient<D>(context, *pairs_, q_, 1.0, y);
 }
 
 template <int D>
 void MphOperator<D, Cuda>::multiplySingle(Context<Cuda>& context, std::span<const Vec<D, float>> u,
                                           std::span<float> q, std::span<Vec<D, float>> y) {
   const SelfTerms<D> self{selfBlock_, selfGradient_};
+  const auto places = Places<D, float>::make(*pairs_, near_.fixedPosition().data());
   withListSharing(*pairs_, [&](auto sharing) {
-    firstPass<D, float, decltype(sharing)>(context, *pairs_, self, u.data(), y.data(), q.data());
-    secondPass<D, float, decltype(sharing)>(context, *pairs_, q.data(), y.data());
+    firstPass<D, float, decltype(sharing)>(context, *pairs_, places, self, u.data(), y.data(), q.data());
   });
+  near_.addPressureGradient(context, q, y);
 }
 
 template class MphOperator<2, Cuda>;

@@ -9,8 +9,8 @@ namespace {
 
 constexpr unsigned slice = 32;
 
-/// One thread per particle, a warp per slice; reads cluster lists and positions. Without Fill writes the rows of its
-/// slice, with Fill its entries. Walls list fluid alone. No atomics.
+/// One thread per particle, a warp per slice; reads cluster lists and positions. Without Fill writes the rows of
+/// its slice, with Fill its entries. Walls list fluid alone. No atomics.
 template <int D, bool Fill>
 __global__ void __launch_bounds__(128)
     listKernel(const __grid_constant__ MphPairs<D> pairs, std::uint64_t* sliceStart, ListEntry* entry) {
@@ -31,7 +31,8 @@ __global__ void __launch_bounds__(128)
     for (std::uint64_t k = offset[static_cast<int>(segment)]; k < end; ++k) {
       const ListEntry e = list.entry[k];
       if (e.index() == i || norm2(pairs.positionOf(e) - xi) >= h2) continue;
-      if (Fill) entry[base + std::uint64_t{slice} * count] = imageFrom(pairs, i, list.first + cluster * clusterSize, e);
+      if (Fill)
+        entry[base + std::uint64_t{slice} * count] = imageFrom(pairs, i, list.first + cluster * clusterSize, e);
       ++count;
     }
   }
@@ -50,34 +51,50 @@ __device__ inline std::int32_t fixed(const CellGrid<D>& grid, double x, int k) {
   return static_cast<std::int32_t>(static_cast<std::uint32_t>(__double2ull_rn(turns * 4294967296.0)));
 }
 
-/// Runs body(row's entry) along the list of a particle, four loads ahead.
-template <class Body>
+/// Runs along the list of a particle: add(load(entry)), the loads of four neighbours being on their way together.
+template <class Load, class Add>
 __device__ inline void alongList(const std::uint64_t* sliceStart, const ListEntry* entry, std::uint32_t i,
-                                 Body&& body) {
+                                 Load&& load, Add&& add) {
+  constexpr int batch = 4;
   const std::uint64_t begin = sliceStart[i / slice];
   const auto rows = static_cast<int>(sliceStart[i / slice + 1] - begin);
   const ListEntry* mine = entry + begin * slice + i % slice;
-#pragma unroll 4
-  for (int r = 0; r < rows; ++r) body(mine[static_cast<std::size_t>(r) * slice]);
+  const auto at = [&](int row) { return mine[static_cast<std::size_t>(row) * slice]; };
+  int r = 0;
+  for (; r + batch <= rows; r += batch) {
+    decltype(load(at(0))) loaded[batch];
+#pragma unroll
+    for (int k = 0; k < batch; ++k) loaded[k] = load(at(r + k));
+#pragma unroll
+    for (int k = 0; k < batch; ++k) add(loaded[k]);
+  }
+  for (; r < rows; ++r) add(load(at(r)));
 }
 
 /// One thread per fluid particle: y += C q; reads positions and q of the neighbours. No atomics.
 template <int D>
 __global__ void __launch_bounds__(128)
     addGradientKernel(const __grid_constant__ MphPairs<D> pairs, PairConstants<D, double> constants,
-                      const std::uint64_t* sliceStart, const ListEntry* entry, const double* __restrict__ q, Vec<D>* y) {
+                      const std::uint64_t* sliceStart, const ListEntry* entry, const double* __restrict__ q,
+                      Vec<D>* y) {
   const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
   if (i >= pairs.fluidCount) return;
   const Vec<D>* __restrict__ position = pairs.position.data();
   const Vec<D> xi = position[i];
   const double qi = q[i], h = pairs.pressureWeight.radius, floor = distanceFloor<double> * h * h;
   Vec<D> sum{};
-  alongList(sliceStart, entry, i, [&](ListEntry e) {
-    Vec<D> d = position[e.index()] - xi;
-    if (e.image() != 0) d += pairs.images.shift[e.image()];
+  struct Loaded {
+    Vec<D> x;
+    double q;
+    std::uint32_t image;
+  };
+  const auto load = [&](ListEntry e) { return Loaded{position[e.index()], q[e.index()], e.image()}; };
+  alongList(sliceStart, entry, i, load, [&](const Loaded& other) {
+    Vec<D> d = other.x - xi;
+    if (other.image != 0) d += pairs.images.shift[other.image];
     double r2 = floor;
     for (int k = 0; k < D; ++k) r2 = fma(d[k], d[k], r2);
-    addScaled(&sum[0], constants.pressureReach(inverseSqrt(r2)) * (qi + q[e.index()]), d);
+    addScaled(&sum[0], constants.pressureReach(inverseSqrt(r2)) * (qi + other.q), d);
   });
   y[i] += constants.pressureFactor * sum;
 }
@@ -87,47 +104,37 @@ template <int D>
 struct SingleView {
   const std::uint64_t* sliceStart;
   const ListEntry* entry;
-  const int4* position;
-  Vec<D, float> unit;  // of the fixed positions, in h_p
-  float pressureFactor;
-  float floor;
+  Places<D, float> places;
+  PairConstants<D, float> constants;
   std::uint32_t fluidCount, activeCount;
+
+  __device__ float reach(const Vec<D, float>& d) const {
+    float r2 = places.floor;
+    for (int k = 0; k < D; ++k) r2 = fmaf(d[k], d[k], r2);
+    return constants.pressureReach(inverseSqrt(r2));
+  }
 };
 
-template <int D>
-__device__ inline Vec<D, float> difference(const SingleView<D>& v, const int4& a, const int4& b) {
-  const auto axis = [](int p, int q) {
-    return static_cast<float>(static_cast<int>(static_cast<unsigned>(p) - static_cast<unsigned>(q)));
-  };
-  Vec<D, float> d;
-  d[0] = axis(a.x, b.x) * v.unit[0];
-  d[1] = axis(a.y, b.y) * v.unit[1];
-  if constexpr (D == 3) d[2] = axis(a.z, b.z) * v.unit[2];
-  return d;
-}
-
-/// (1/r - 1) in units of h_p, zero outside the radius.
-template <int D>
-__device__ inline float reach(const SingleView<D>& v, const Vec<D, float>& d) {
-  float r2 = v.floor;
-  for (int k = 0; k < D; ++k) r2 = fmaf(d[k], d[k], r2);
-  return fmaxf(inverseSqrt(r2) - 1.f, 0.f);
-}
-
-/// One thread per fluid particle: y = C q. No atomics.
-template <int D>
+/// One thread per fluid particle: y = C q, or y += C q. No atomics.
+template <int D, bool Add>
 __global__ void __launch_bounds__(128)
     gradientKernel(const __grid_constant__ SingleView<D> v, const float* __restrict__ q, Vec<D, float>* y) {
   const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
   if (i >= v.fluidCount) return;
-  const int4 xi = v.position[i];
+  const int4 xi = v.places.fixed[i];
   const float qi = q[i];
   Vec<D, float> sum{};
-  alongList(v.sliceStart, v.entry, i, [&](ListEntry e) {
-    const Vec<D, float> d = difference(v, v.position[e.index()], xi);
-    addScaled(&sum[0], reach(v, d) * (qi + q[e.index()]), d);
+  struct Loaded {
+    int4 x;
+    float q;
+  };
+  const auto load = [&](ListEntry e) { return Loaded{v.places.fixed[e.index()], q[e.index()]}; };
+  alongList(v.sliceStart, v.entry, i, load, [&](const Loaded& other) {
+    const Vec<D, float> d = v.places.local(other.x, xi);
+    addScaled(&sum[0], v.reach(d) * (qi + other.q), d);
   });
-  y[i] = v.pressureFactor * sum;
+  const Vec<D, float> result = v.constants.pressureFactor * sum;
+  y[i] = Add ? y[i] + result : result;
 }
 
 /// One thread per particle: div = C^T u. No atomics.
@@ -136,32 +143,34 @@ __global__ void __launch_bounds__(128)
     divergenceKernel(const __grid_constant__ SingleView<D> v, const Vec<D, float>* __restrict__ u, float* div) {
   const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
   if (i >= v.activeCount) return;
-  const int4 xi = v.position[i];
+  const int4 xi = v.places.fixed[i];
   const Vec<D, float> ui = i < v.fluidCount ? u[i] : Vec<D, float>{};
   float sum = 0;
-  alongList(v.sliceStart, v.entry, i, [&](ListEntry e) {
+  struct Loaded {
+    int4 x;
+    Vec<D, float> u;
+  };
+  const auto load = [&](ListEntry e) {
     const std::uint32_t j = e.index();
-    const Vec<D, float> d = difference(v, v.position[j], xi);
-    const Vec<D, float> uj = j < v.fluidCount ? u[j] : Vec<D, float>{};
-    sum = fmaf(reach(v, d), differenceAlong(uj, ui, d), sum);
+    return Loaded{v.places.fixed[j], j < v.fluidCount ? u[j] : Vec<D, float>{}};
+  };
+  alongList(v.sliceStart, v.entry, i, load, [&](const Loaded& other) {
+    const Vec<D, float> d = v.places.local(other.x, xi);
+    sum = fmaf(v.reach(d), differenceAlong(other.u, ui, d), sum);
   });
-  div[i] = -v.pressureFactor * sum;
+  div[i] = -v.constants.pressureFactor * sum;
 }
 
 template <int D>
 SingleView<D> singleView(const MphPairs<D>& pairs, const Buffer<std::uint64_t, Cuda>& sliceStart,
                          const Buffer<ListEntry, Cuda>& entry, const Buffer<std::int32_t, Cuda>& position) {
-  const double h = pairs.pressureWeight.radius;
-  SingleView<D> v{sliceStart.data(),
-                  entry.data(),
-                  reinterpret_cast<const int4*>(position.data()),
-                  {},
-                  static_cast<float>(pairs.pressure.factor),
-                  static_cast<float>(distanceFloor<float>),
-                  pairs.fluidCount,
-                  pairs.activeCount};
-  for (int k = 0; k < D; ++k) v.unit[k] = static_cast<float>(pairs.grid.length[k] / 4294967296.0 / h);
-  return v;
+  using P = Places<D, float>;
+  return {sliceStart.data(),
+          entry.data(),
+          P::make(pairs, position.data()),
+          PairConstants<D, float>::make(pairs, P::unit(pairs)),
+          pairs.fluidCount,
+          pairs.activeCount};
 }
 
 }  // namespace
@@ -194,9 +203,16 @@ void NearProducts<D>::addPressureGradient(Context<Cuda>& context, std::span<cons
 }
 
 template <int D>
+void NearProducts<D>::addPressureGradient(Context<Cuda>& context, std::span<const float> q,
+                                          std::span<Vec<D, float>> y) const {
+  launch(context, blocksFor(pairs_->fluidCount, 128), 128, 0, gradientKernel<D, true>,
+         singleView(*pairs_, sliceStart_, entry_, fixedPosition_), q.data(), y.data());
+}
+
+template <int D>
 void NearProducts<D>::pressureGradient(Context<Cuda>& context, std::span<const float> q,
                                        std::span<Vec<D, float>> y) const {
-  launch(context, blocksFor(pairs_->fluidCount, 128), 128, 0, gradientKernel<D>,
+  launch(context, blocksFor(pairs_->fluidCount, 128), 128, 0, gradientKernel<D, false>,
          singleView(*pairs_, sliceStart_, entry_, fixedPosition_), q.data(), y.data());
 }
 

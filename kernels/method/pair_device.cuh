@@ -44,8 +44,8 @@ __device__ void forEachNear(const MphPairs<D>& pairs, std::uint32_t i, F&& f) {
   }
 }
 
-/// A cluster's entry as particle i itself sees it: where a periodic end runs between i and the cluster's first particle,
-/// another image is meant.
+/// A cluster's entry as particle i itself sees it: where a periodic end runs between i and the cluster's first
+/// particle, another image is meant.
 template <int D>
 __device__ ListEntry imageFrom(const MphPairs<D>& pairs, std::uint32_t i, std::uint32_t first, ListEntry e) {
   const Vec<D> d = pairs.positionOf(e) - positionInCluster(pairs, first, i);

@@ -19,7 +19,8 @@ struct NumberDensity {
   __device__ Own loadOwn(const MphPairs<D>&, std::uint32_t i) const { return i; }
   __device__ Other loadOther(const MphPairs<D>&, std::uint32_t j) const { return j; }
 
-  __device__ void add(const MphPairs<D>&, double* sum, const Vec<D>&, double inverseR, Own own, Other other, ListSegment) const {
+  __device__ void add(const MphPairs<D>&, double* sum, const Vec<D>&, double inverseR, Own own, Other other,
+                      ListSegment) const {
     const double part = positivePart(1 - inverseRadius / inverseR);
     if (own != other) sum[0] += part * part;
   }
@@ -99,14 +100,15 @@ void withStepSharing(const MphPairs<D>& pairs, F&& f) {
 template <int D, class Terms>
 void sumOnFluid(Context<Cuda>& context, const MphPairs<D>& pairs, const Terms& terms) {
   withStepSharing(pairs, [&](auto sharing) {
-    launchClusterSums<D, double, decltype(sharing)>(context, pairs, ListTask<Terms>{pairs.fluidList, terms}, 1.0);
+    launchClusterSums<D, double, decltype(sharing)>(context, pairs, ListTask<Terms>{pairs.fluidList, terms},
+                                                    Places<D, double>::make(pairs));
   });
 }
 template <int D, class Terms>
 void sumOnAll(Context<Cuda>& context, const MphPairs<D>& pairs, const Terms& terms) {
   withStepSharing(pairs, [&](auto sharing) {
     const ListTask<Terms> fluid{pairs.fluidList, terms}, walls{pairs.wallList, terms};
-    launchClusterSums<D, double, decltype(sharing)>(context, pairs, fluid, walls, 1.0);
+    launchClusterSums<D, double, decltype(sharing)>(context, pairs, fluid, walls, Places<D, double>::make(pairs));
   });
 }
 
@@ -119,14 +121,15 @@ void numberDensity(Context<Cuda>& context, const MphPairs<D>& pairs, std::span<d
 }
 
 template <int D>
-void addPressureGradient(Context<Cuda>& context, const MphPairs<D>& pairs, std::span<const double> q, double factor,
-                         std::span<Vec<D>> y) {
+void addPressureGradient(Context<Cuda>& context, const MphPairs<D>& pairs, std::span<const double> q,
+                         double factor, std::span<Vec<D>> y) {
   const auto constants = PairConstants<D, double>::make(pairs, 1);
   sumOnFluid(context, pairs, PressureGradient<D, double, true>{constants, q.data(), y.data(), factor});
 }
 
 template <int D>
-void divergence(Context<Cuda>& context, const MphPairs<D>& pairs, std::span<const Vec<D>> u, std::span<double> div) {
+void divergence(Context<Cuda>& context, const MphPairs<D>& pairs, std::span<const Vec<D>> u,
+                std::span<double> div) {
   const auto constants = PairConstants<D, double>::make(pairs, 1);
   sumOnAll(context, pairs, Divergence<D, double, false, false>{constants, u.data(), div.data()});
 }
@@ -137,7 +140,8 @@ void wallTerms(Context<Cuda>& context, const MphPairs<D>& pairs, const WallTerms
 }
 
 template <int D>
-void addWallDrag(Context<Cuda>& context, const MphPairs<D>& pairs, std::span<const Vec<D>> u, std::span<Vec<D>> y) {
+void addWallDrag(Context<Cuda>& context, const MphPairs<D>& pairs, std::span<const Vec<D>> u,
+                 std::span<Vec<D>> y) {
   sumOnFluid(context, pairs, WallDrag<D>{PairConstants<D, double>::make(pairs, 1), u.data(), y.data()});
 }
 

@@ -13,8 +13,9 @@ struct PairConstants {
   T viscosityFactor;                                // of mu (1/r - 1/h) / r^2 d d^T
 
   static PairConstants make(const MphPairs<D>& pairs, double unit) {
-    return {static_cast<T>(pairs.pressure.inverseRadius * unit), static_cast<T>(pairs.viscosity.inverseRadius * unit),
-            static_cast<T>(pairs.pressure.factor), static_cast<T>(pairs.viscosity.factor / unit)};
+    return {static_cast<T>(pairs.pressure.inverseRadius * unit),
+            static_cast<T>(pairs.viscosity.inverseRadius * unit), static_cast<T>(pairs.pressure.factor),
+            static_cast<T>(pairs.viscosity.factor / unit)};
   }
   /// (1/r - 1/h), zero outside the radius.
   __device__ T pressureReach(T inverseR) const { return positivePart(inverseR - inversePressureRadius); }
@@ -57,8 +58,8 @@ struct SelfTerms {
 
 /// y = (rho/dt I + V) u and q = lambda C^T u per fluid particle, walls at rest [K23 eq. (16)]: the first pass of a
 /// product A u. The sums run over the neighbours' velocities alone, u_i meets the particle's self terms: three
-/// subtractions and three registers per pair less than with u_j - u_i. With OneMaterial no material is looked up in
-/// the pairs.
+/// subtractions and three registers per pair less than with u_j - u_i. With OneMaterial no material is looked up
+/// in the pairs.
 template <int D, class T, bool OneMaterial>
 struct ViscosityAndDivergence {
   static constexpr int values = D + 1;
@@ -77,8 +78,8 @@ struct ViscosityAndDivergence {
   }
   __device__ Other loadOther(const MphPairs<D>& pairs, std::uint32_t j) const { return {u[j], loadOwn(pairs, j)}; }
 
-  __device__ void add(const MphPairs<D>& pairs, T* sum, const Vec<D, T>& d, T inverseR, Own own, const Other& other,
-                      ListSegment segment) const {
+  __device__ void add(const MphPairs<D>& pairs, T* sum, const Vec<D, T>& d, T inverseR, Own own,
+                      const Other& other, ListSegment segment) const {
     const T along = dot(d, other.u);
     T f = constants.viscosityReach(inverseR) * along;
     if constexpr (!OneMaterial) f *= static_cast<T>(pairs.materials.pairViscosity[own][other.material]);

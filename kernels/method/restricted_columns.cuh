@@ -54,9 +54,10 @@ void restrictedColumns(Context<Cuda>& context, const MphPairs<D>& pairs, Buffer<
   const Terms terms{PairConstants<D, double>::make(pairs, 1), reinterpret_cast<double*>(columns.data())};
   const ListTask<Terms> fluid{pairs.fluidList, terms}, walls{pairs.wallList, terms};
   if (pairs.fluidList.offset)
-    launchClusterSums<D, double, Sharing<1, 1>>(context, pairs, fluid, walls, 1);
+    launchClusterSums<D, double, Sharing<1, 1>>(context, pairs, fluid, walls, Places<D, double>::make(pairs));
   else
-    launchClusterSums<D, double, Sharing<1, 1, true>>(context, pairs, fluid, walls, 1);
+    launchClusterSums<D, double, Sharing<1, 1, true>>(context, pairs, fluid, walls,
+                                                      Places<D, double>::make(pairs));
 }
 
 }  // namespace treacle

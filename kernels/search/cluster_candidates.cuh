@@ -5,8 +5,8 @@
 
 namespace treacle {
 
-/// Walks the sorted cell ranges around one cluster; a warp works together, one lane per candidate. The order of the
-/// candidates is that of the CPU's lists.
+/// Walks the sorted cell ranges around one cluster; a warp works together, one lane per candidate. The order of
+/// the candidates is that of the CPU's lists.
 template <int D>
 class ClusterCandidates {
  public:
@@ -38,8 +38,8 @@ class ClusterCandidates {
     __syncwarp();
   }
 
-  /// Calls visit(entry, near, far, wall) with all lanes of the warp, a candidate each: `near` where some particle of the
-  /// cluster lies within radii.near, `far` where not, but within radii.far.
+  /// Calls visit(entry, near, far, wall) with all lanes of the warp, a candidate each: `near` where some particle
+  /// of the cluster lies within radii.near, `far` where not, but within radii.far.
   template <class Visit>
   __device__ void forEach(const ListRadii& radii, bool fluid, bool walls, Visit&& visit) const {
     const double reach = fmax(radii.near, radii.far);
@@ -104,8 +104,8 @@ class ClusterCandidates {
       cell[k] -= turn * grid_.count[k];
       result.image = 3 * result.image + (turn < 0 ? 2 : turn);
     }
-    // The margin is for the rounding of the cell's corner. A cluster that a jump of the curve tears apart has a large
-    // box with little in reach.
+    // The margin is for the rounding of the cell's corner. A cluster that a jump of the curve tears apart has a
+    // large box with little in reach.
     const double reach2 = reach * reach * (1 + 1e-9);
     if (distance2 > reach2 || distanceToCell(unwrapped) > reach2) return result;
     const std::size_t linear = grid_.linear(cell);

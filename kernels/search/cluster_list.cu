@@ -21,11 +21,10 @@ struct BuildArguments {
 
 constexpr int warpsPerBlock = 4;
 
-/// One warp per cluster: counts the entries of its four segments into offset[4 c + 1 …], or, with Fill, writes them
-/// in the order of the walk. No atomics.
+/// One warp per cluster: counts the entries of its four segments into offset[4 c + 1 …], or, with Fill, writes
+/// them in the order of the walk. No atomics.
 template <int D, bool Fill>
-__global__ void __launch_bounds__(32 * warpsPerBlock, 6)
-    buildKernel(const __grid_constant__ BuildArguments<D> a) {
+__global__ void __launch_bounds__(32 * warpsPerBlock, 6) buildKernel(const __grid_constant__ BuildArguments<D> a) {
   const std::uint32_t cluster = blockIdx.x * warpsPerBlock + threadIdx.x / 32;
   if (cluster >= a.clusters) return;
   std::uint64_t* offset = a.offset + std::size_t{listSegments} * cluster;
@@ -77,16 +76,16 @@ void buildClusterList(Context<Cuda>& context, const CellGrid<D>& grid, const Cel
     list.entry.resize(context, 0);
     return;
   }
-  BuildArguments<D> arguments{grid,  viewOf(ranges), position.data(),    radii,   onlyNextToFluid,  first,
-                              last,  clusters,       list.offset.data(), nullptr, list.wraps.data()};
+  BuildArguments<D> arguments{grid, viewOf(ranges), position.data(),    radii,   onlyNextToFluid,  first,
+                              last, clusters,       list.offset.data(), nullptr, list.wraps.data()};
   const unsigned blocks = blocksFor(clusters, warpsPerBlock);
   launch(context, blocks, 32 * warpsPerBlock, 0, buildKernel<D, false>, arguments);
 
   std::size_t bytes = 0;
   std::uint64_t* offset = list.offset.data();
   TREACLE_CUDA_CHECK(cub::DeviceScan::InclusiveSum(nullptr, bytes, offset, offset, offsets, context.stream()));
-  TREACLE_CUDA_CHECK(cub::DeviceScan::InclusiveSum(context.scratch(bytes), bytes, offset, offset, offsets,
-                                                   context.stream()));
+  TREACLE_CUDA_CHECK(
+      cub::DeviceScan::InclusiveSum(context.scratch(bytes), bytes, offset, offset, offsets, context.stream()));
   list.entry.resize(context, valueOnHost(context, offset + offsets - 1));
   arguments.entry = list.entry.data();
   launch(context, blocks, 32 * warpsPerBlock, 0, buildKernel<D, true>, arguments);

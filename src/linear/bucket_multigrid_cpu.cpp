@@ -62,7 +62,8 @@ void coarsen(Context<Cpu>&, const BlockCsr<D, T>& fine, std::span<const std::uin
 
 template <int D, class T>
 void BucketMultigrid<D, T, Cpu>::setup(Context<Cpu>& context, const BlockCsr<D>& finest,
-                                  std::vector<std::span<const std::uint32_t>> members, const CycleSweeps& sweeps) {
+                                       std::vector<std::span<const std::uint32_t>> members,
+                                       const CycleSweeps& sweeps) {
   members_ = std::move(members);
   sweeps_ = sweeps;
   levels_.resize(members_.size());
@@ -118,7 +119,7 @@ void BucketMultigrid<D, T, Cpu>::cycle(Context<Cpu>& context, std::size_t r) {
 
 template <int D, class T>
 void BucketMultigrid<D, T, Cpu>::apply(Context<Cpu>& context, std::span<const Vec<D, T>> inverse,
-                                  std::span<const Vec<D>> r, std::span<Vec<D>> z) {
+                                       std::span<const Vec<D>> r, std::span<Vec<D>> z) {
   Level& finest = levels_[0];
   const auto members = members_[0];
   const std::uint32_t buckets = finest.a.rows();

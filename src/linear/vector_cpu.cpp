@@ -89,7 +89,8 @@ void stepDot(Context<Cpu>& context, std::span<const double> x, std::span<const d
   scalars->setStep(dot(context, x, y));
 }
 
-void direction(Context<Cpu>& context, std::span<const double> z, std::span<double> p, const KrylovScalars* scalars) {
+void direction(Context<Cpu>& context, std::span<const double> z, std::span<double> p,
+               const KrylovScalars* scalars) {
   if (scalars->iteration == 0) return copy(context, z, p);
   sumChunks(context, z.size(), [&](std::size_t k, std::size_t n) {
     return directionChunk(z.data() + k, scalars->beta, p.data() + k, n), 0.0;

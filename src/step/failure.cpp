@@ -50,8 +50,8 @@ template <int D>
 std::string describeLeaving(const Particles<D>& particles, std::uint32_t i, const Vec<D>& u, double dt) {
   const Vec<D>& x = particles.position[i];
   return fmt::format("{} particle {} left the domain: from {} m to {} m at velocity {} m/s",
-                     i < particles.fluidCount ? "fluid" : "wall", particles.id[i], describe(x), describe(x + dt * u),
-                     describe(u));
+                     i < particles.fluidCount ? "fluid" : "wall", particles.id[i], describe(x),
+                     describe(x + dt * u), describe(u));
 }
 
 template std::string describeNotFinite<2>(const Particles<2>&, std::span<const Vec<2>>);

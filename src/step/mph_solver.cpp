@@ -32,7 +32,8 @@ bool MphSolver<D, Backend>::needsAssembled() const {
 }
 
 template <int D, class Backend>
-void MphSolver<D, Backend>::prepareOperator(Context<Backend>& context, const MphPairs<D>& pairs, const WallTerms<D>& terms) {
+void MphSolver<D, Backend>::prepareOperator(Context<Backend>& context, const MphPairs<D>& pairs,
+                                            const WallTerms<D>& terms) {
   if (settings_.operatorKind == OperatorKind::MatrixFree) matrixFree_.prepare(context, pairs, terms);
   if (!needsAssembled()) return;
   gradientRows(context, pairs, rows_);
@@ -41,7 +42,7 @@ void MphSolver<D, Backend>::prepareOperator(Context<Backend>& context, const Mph
 
 template <int D, class Backend>
 void MphSolver<D, Backend>::preparePreconditioner(Context<Backend>& context, const MphPairs<D>& pairs,
-                                         const CellRanges<Backend>& ranges, const WallTerms<D>& terms) {
+                                                  const CellRanges<Backend>& ranges, const WallTerms<D>& terms) {
   if (settings_.precision == Precision::Mixed)
     prepare(context, pairs, ranges, terms, single_);
   else
@@ -90,7 +91,8 @@ void MphSolver<D, Backend>::prepareMultigrid(Context<Backend>& context, const Mp
 }
 
 template <int D, class Backend>
-SolveReport MphSolver<D, Backend>::solve(Context<Backend>& context, std::span<const Vec<D>> b, std::span<Vec<D>> u) {
+SolveReport MphSolver<D, Backend>::solve(Context<Backend>& context, std::span<const Vec<D>> b,
+                                         std::span<Vec<D>> u) {
   const auto matrixFree = [&](std::span<const double> x, std::span<double> y) {
     matrixFree_.multiply(context, asVectors<D>(x), asVectors<D>(y));
   };
@@ -107,7 +109,7 @@ SolveReport MphSolver<D, Backend>::solve(Context<Backend>& context, std::span<co
 template <int D, class Backend>
 template <class T, class Operator>
 SolveReport MphSolver<D, Backend>::solveWith(Context<Backend>& context, const Operator& a, Preconditioner<T>& k,
-                                    std::span<const Vec<D>> b, std::span<Vec<D>> u) {
+                                             std::span<const Vec<D>> b, std::span<Vec<D>> u) {
   using Flat = std::span<const double>;
   switch (settings_.preconditioner) {
     case PreconditionerKind::Jacobi:
@@ -141,7 +143,7 @@ SolveReport MphSolver<D, Backend>::solveWith(Context<Backend>& context, const Op
 template <int D, class Backend>
 template <class Operator, class Apply>
 SolveReport MphSolver<D, Backend>::iterate(Context<Backend>& context, const Operator& a, const Apply& k,
-                                  std::span<const Vec<D>> b, std::span<Vec<D>> u) {
+                                           std::span<const Vec<D>> b, std::span<Vec<D>> u) {
   const std::span<const double> rhs(reinterpret_cast<const double*>(b.data()), b.size() * D);
   const std::span<double> x(reinterpret_cast<double*>(u.data()), u.size() * D);
   const double refresh = settings_.precision == Precision::Mixed ? 1e-4 : 0;

@@ -22,7 +22,8 @@ class MphSolver {
   void prepareOperator(Context<Backend>&, const MphPairs<D>&, const WallTerms<D>&);
 
   /// Diagonals and coarse operators.
-  void preparePreconditioner(Context<Backend>&, const MphPairs<D>&, const CellRanges<Backend>&, const WallTerms<D>&);
+  void preparePreconditioner(Context<Backend>&, const MphPairs<D>&, const CellRanges<Backend>&,
+                             const WallTerms<D>&);
 
   /// `u`: first guess and solution, per fluid particle.
   SolveReport solve(Context<Backend>&, std::span<const Vec<D>> b, std::span<Vec<D>> u);

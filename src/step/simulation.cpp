@@ -40,7 +40,8 @@ void toBackend(Context<Cuda>& context, const Particles<D>& host, Particles<D, Cu
 template <int D>
 void toHost(const Context<Cpu>&, const Particles<D>& particles, Particles<D>& host) {
   host.resize(particles.fluidCount, particles.wallCount());
-  forEachFieldOf([](const auto& from, auto& to) { std::copy(from.begin(), from.end(), to.begin()); }, particles, host);
+  forEachFieldOf([](const auto& from, auto& to) { std::copy(from.begin(), from.end(), to.begin()); }, particles,
+                 host);
 }
 template <int D>
 void toHost(const Context<Cuda>& context, const Particles<D, Cuda>& particles, Particles<D>& host) {
@@ -100,7 +101,8 @@ struct Simulation<D, Backend>::State {
   /// b of [K23 eq. (16)], and the terms of prescribed wall velocities.
   void computeRightHandSide() {
     elastic.resize(context, pairs.activeCount);
-    elasticPressure<D>(context, pairs, particles.numberDensity.span().first(pairs.activeCount), restDensity, elastic);
+    elasticPressure<D>(context, pairs, particles.numberDensity.span().first(pairs.activeCount), restDensity,
+                       elastic);
     rhs.resize(context, particles.fluidCount);
     inertiaAndGravity<D>(context, pairs, particles.velocity.span().first(particles.fluidCount),
                          resized<D>(c.gravity), rhs);
@@ -163,9 +165,8 @@ struct Simulation<D, Backend>::State {
   void moveRange(std::uint32_t begin, std::uint32_t end, std::span<const Vec<D>> u) {
     const std::span<const Vec<D>> x = particles.position;
     const std::uint32_t size = end - begin;
-    const std::uint32_t out =
-        moveParticles<D>(context, pairs.grid, c.time.step, x.subspan(begin, size), u.subspan(begin, size),
-                         position.span().subspan(begin, size));
+    const std::uint32_t out = moveParticles<D>(context, pairs.grid, c.time.step, x.subspan(begin, size),
+                                               u.subspan(begin, size), position.span().subspan(begin, size));
     if (out == nobody) return;
     Particles<D> host;
     toHost(context, particles, host);
@@ -195,9 +196,9 @@ struct Simulation<D, Backend>::State {
 
   Diagnostics diagnostics() const {
     const std::uint32_t n = particles.fluidCount;
-    return computeDiagnostics<D>(context,
-                                 {particles.position.span().first(n), particles.velocity.span().first(n),
-                                  particles.material.span().first(n), pairs.materials, resized<D>(c.gravity), c.spacing});
+    return computeDiagnostics<D>(
+        context, {particles.position.span().first(n), particles.velocity.span().first(n),
+                  particles.material.span().first(n), pairs.materials, resized<D>(c.gravity), c.spacing});
   }
 
   /// Runs one phase under its name in a profiler, and takes its time.
@@ -215,9 +216,8 @@ struct Simulation<D, Backend>::State {
     phase("search", [&] { neighbourhood.sort(context, particles); });
     phase("lists", [&] { neighbourhood.buildLists(context, particles); });
     phase("coefficients", [&] { computeCoefficients(); });
-    phase("coarse operators", [&] {
-      solver.preparePreconditioner(context, pairs, neighbourhood.ranges(), wallTermsView());
-    });
+    phase("coarse operators",
+          [&] { solver.preparePreconditioner(context, pairs, neighbourhood.ranges(), wallTermsView()); });
     phase("solve", [&] { solved = solve(); });
     phase("update", [&] {
       move();

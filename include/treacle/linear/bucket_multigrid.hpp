@@ -56,13 +56,13 @@ class GalerkinSpgemm;
 template <int D, class T>
 struct CycleLevel;
 
-/// The same on a device. An apply() is a fixed series of kernels, two per sweep and level at most; from the first level
-/// with at most `denseUnknowns` unknowns on, the whole rest of the cycle is one symmetric matrix, made at setup by
-/// running the cycle on the unit vectors: small levels would otherwise take a launch per sweep.
+/// The same on a device. An apply() is a fixed series of kernels, two per sweep and level at most; from the first
+/// level with at most `denseUnknowns` unknowns on, the whole rest of the cycle is one symmetric matrix, made at
+/// setup by running the cycle on the unit vectors: small levels would otherwise take a launch per sweep.
 template <int D, class T>
 class BucketMultigrid<D, T, Cuda> {
  public:
-  static constexpr std::uint32_t denseUnknowns = 768;
+  static constexpr std::uint32_t denseUnknowns = 1100;
 
   /// As on the CPU. With `spgemm` the coarse operators are its products, else sums of entries (coarsen).
   void setup(Context<Cuda>&, const BlockCsr<D, double, Cuda>& finest,
@@ -80,8 +80,8 @@ class BucketMultigrid<D, T, Cuda> {
     BlockCsr<D, double, Cuda> galerkin;  // empty at level 0, where it is the caller's
     BlockCsr<D, T, Cuda> a;              // the same in the cycle's precision
     Buffer<Vec<D, T>, Cuda> inverseDiagonal;
-    Buffer<Vec<D, T>, Cuda> b, x, next;        // right-hand side, iterate, and where a sweep writes
-    Buffer<std::uint32_t, Cuda> parent;        // per member (particle or finer bucket): its bucket
+    Buffer<Vec<D, T>, Cuda> b, x, next;  // right-hand side, iterate, and where a sweep writes
+    Buffer<std::uint32_t, Cuda> parent;  // per member (particle or finer bucket): its bucket
     std::span<const std::uint32_t> members;
     int sweeps = 0;
   };

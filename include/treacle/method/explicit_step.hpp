@@ -39,8 +39,8 @@ void bulkPressure(Context<Cuda>&, const MphPairs<D>&, std::span<const double> di
 /// No particle.
 inline constexpr std::uint32_t nobody = ~std::uint32_t{0};
 
-/// moved_i = x_i + dt u_i [K23 eq. (15)] for all particles of the span, brought back into periodic domains. Returns
-/// the first particle that left an open one (or is not finite), or `nobody`.
+/// moved_i = x_i + dt u_i [K23 eq. (15)] for all particles of the span, brought back into periodic domains.
+/// Returns the first particle that left an open one (or is not finite), or `nobody`.
 template <int D>
 std::uint32_t moveParticles(Context<Cpu>&, const CellGrid<D>& grid, double dt, std::span<const Vec<D>> x,
                             std::span<const Vec<D>> u, std::span<Vec<D>> moved);

@@ -45,8 +45,8 @@ class MphOperator<D, Cpu> {
   Buffer<double> q_;         // lambda C^T u, per particle
 };
 
-/// The same on a device, where arithmetic costs less than memory: pair terms are computed from the positions in every
-/// product; kept are each particle's self terms, and lists of the neighbours within h_p.
+/// The same on a device, where arithmetic costs less than memory: pair terms are computed from the positions in
+/// every product; kept are each particle's self terms, and lists of the neighbours within h_p.
 template <int D>
 class MphOperator<D, Cuda> {
  public:

@@ -23,8 +23,8 @@ struct MaterialTable {
   static MaterialTable make(const Case& c);
 };
 
-/// What every pair sum of a step reads, in host or device memory. Particles [0, fluidCount) are fluid, [fluidCount, activeCount) the walls
-/// near it. Spans and pointers belong to the step's owner.
+/// What every pair sum of a step reads, in host or device memory. Particles [0, fluidCount) are fluid,
+/// [fluidCount, activeCount) the walls near it. Spans and pointers belong to the step's owner.
 template <int D>
 struct MphPairs {
   std::uint32_t fluidCount = 0, activeCount = 0;

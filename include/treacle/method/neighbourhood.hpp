@@ -24,8 +24,8 @@ class Neighbourhood {
     sortByCell(context, pairs_.grid, particles, ranges_, workspace_);
   }
 
-  /// Neighbour lists of the sorted particles; pairs() then looks at them until the next sort. On a device the case may
-  /// do without lists: pair sums then walk the cell ranges, and the views have clusters but no entries.
+  /// Neighbour lists of the sorted particles; pairs() then looks at them until the next sort. On a device the case
+  /// may do without lists: pair sums then walk the cell ranges, and the views have clusters but no entries.
   void buildLists(Context<Backend>& context, const Particles<D, Backend>& particles) {
     const std::uint32_t fluid = particles.fluidCount, active = ranges_.activeCount;
     pairs_.fluidCount = fluid;

@@ -103,7 +103,7 @@ struct SolverSettings {
   PreconditionerKind preconditioner = PreconditionerKind::BucketMultigrid;
   OperatorKind operatorKind = OperatorKind::MatrixFree;
   NeighbourKind neighbours = NeighbourKind::Lists;  // on a GPU; ranges: no memory for lists, more time
-  double tolerance = 1e-12;  // bound on |r|^2 / |b|^2
+  double tolerance = 1e-12;                         // bound on |r|^2 / |b|^2
   int maxIterations = 5000;
   Precision precision = Precision::Double;  // mixed: the preconditioner works in single precision
   MultigridSettings multigrid;

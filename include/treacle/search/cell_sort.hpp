@@ -64,8 +64,8 @@ struct SortWorkspace<Cuda> {
   Buffer<std::uint32_t, Cuda> count;  // of active walls
 
   std::size_t bytes() const {
-    return key.bytes() + sortedKey.bytes() + index.bytes() + sortedIndex.bytes() + field.bytes() + hasFluid.bytes() +
-           count.bytes();
+    return key.bytes() + sortedKey.bytes() + index.bytes() + sortedIndex.bytes() + field.bytes() +
+           hasFluid.bytes() + count.bytes();
   }
 };
 

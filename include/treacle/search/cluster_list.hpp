@@ -67,7 +67,9 @@ struct ClusterList {
   ClusterListView view() const { return {first, last, offset.data(), entry.data(), wraps.data()}; }
   operator ClusterListView() const { return view(); }
   std::uint32_t clusterCount() const { return view().clusterCount(); }
-  std::span<const ListEntry> segment(std::uint32_t cluster, ListSegment s) const { return view().segment(cluster, s); }
+  std::span<const ListEntry> segment(std::uint32_t cluster, ListSegment s) const {
+    return view().segment(cluster, s);
+  }
   std::size_t bytes() const { return offset.bytes() + entry.bytes() + wraps.bytes(); }
 };
 

@@ -44,9 +44,9 @@ struct StepReport {
   PhaseSeconds seconds;
 };
 
-/// One MPH-I simulation: x^{k+1} = x^k + dt u^{k+1} with u^{k+1} from the implicit step [K23 eqs. (13)-(16)]. On the
-/// device the step runs from the first sort to the last velocity; the host sees scalars. Results do not depend on
-/// the number of OpenMP threads, and the same run gives the same bits.
+/// One MPH-I simulation: x^{k+1} = x^k + dt u^{k+1} with u^{k+1} from the implicit step [K23 eqs. (13)-(16)]. On
+/// the device the step runs from the first sort to the last velocity; the host sees scalars. Results do not depend
+/// on the number of OpenMP threads, and the same run gives the same bits.
 template <int D, class Backend = Cpu>
 class Simulation {
  public:

@@ -107,7 +107,7 @@ TEST(VectorTwin, SumsHaveTheSameBitsEachTime) {
 /// b = x by the given method, A = K = identity.
 template <class Backend>
 SolveReport solveIdentity(Context<Backend>& context, std::span<const double> b, std::span<double> x, bool cg,
-                                   const StoppingRule& rule) {
+                          const StoppingRule& rule) {
   KrylovWorkspace<Backend> workspace;
   const auto identity = [&](std::span<const double> in, std::span<double> out) { copy(context, in, out); };
   return cg ? conjugateGradient(context, identity, identity, b, x, rule, workspace)

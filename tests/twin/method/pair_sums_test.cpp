@@ -37,7 +37,10 @@ struct SumsTwin {
   std::uint32_t n, active;
 
   SumsTwin(Walls walls, bool lists, bool twoMaterials)
-      : s(makeScene<D>(walls, 3, 0.2, twoMaterials)), d(s), n(s.pairs().fluidCount), active(s.pairs().activeCount) {
+      : s(makeScene<D>(walls, 3, 0.2, twoMaterials)),
+        d(s),
+        n(s.pairs().fluidCount),
+        active(s.pairs().activeCount) {
     if (!twoMaterials) {
       d.pairs.materials.count = 1;
       for (auto& m : s.particles.material) m = 0;

@@ -66,7 +66,8 @@ double farthest(const Particles<D>& a, const Particles<D>& b) {
 
 template <int D>
 void compareSteps(const SolverSettings& settings) {
-  // Residuals of CG go up and down; in single precision the CPU's own variants (matrix-free, assembled) differ by 9 %.
+  // Residuals of CG go up and down; in single precision the CPU's own variants (matrix-free, assembled) differ by
+  // 9 %.
   const bool rough = settings.krylov == KrylovKind::Cg || settings.precision == Precision::Mixed;
   const double spread = rough ? 0.15 : 0.03;
   const Case c = stepCase(D, settings);
@@ -88,8 +89,9 @@ TEST(SimulationTwin, StepsLikeTheCpuWithEverySolver) {
   TREACLE_SKIP_WITHOUT_GPU();
   for (const SolverSettings& s : allSolvers()) {
     SCOPED_TRACE(testing::Message() << "preconditioner " << static_cast<int>(s.preconditioner) << ", krylov "
-                                    << static_cast<int>(s.krylov) << ", precision " << static_cast<int>(s.precision)
-                                    << ", operator " << static_cast<int>(s.operatorKind) << ", coarse "
+                                    << static_cast<int>(s.krylov) << ", precision "
+                                    << static_cast<int>(s.precision) << ", operator "
+                                    << static_cast<int>(s.operatorKind) << ", coarse "
                                     << static_cast<int>(s.multigrid.coarseOperators) << ", neighbours "
                                     << static_cast<int>(s.neighbours));
     compareSteps<2>(s);
