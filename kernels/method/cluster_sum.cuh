@@ -90,13 +90,15 @@ struct Places<D, float> {
   __device__ Stored own(const MphPairs<D>&, std::uint32_t i, std::uint32_t, bool) const { return fixed[i]; }
   __device__ Stored neighbour(const MphPairs<D>&, ListEntry e, bool) const { return fixed[e.index()]; }
   __device__ Vec<D, float> local(const Stored& x, const Stored& origin) const {
-    const auto axis = [](int a, int b) {
-      return static_cast<float>(static_cast<int>(static_cast<unsigned>(a) - static_cast<unsigned>(b)));
+    // Rounded here: fused into a later subtraction, a particle would not be at distance zero from itself.
+    const auto axis = [this](int a, int b, int k) {
+      const auto difference = static_cast<int>(static_cast<unsigned>(a) - static_cast<unsigned>(b));
+      return __fmul_rn(static_cast<float>(difference), scale[k]);
     };
     Vec<D, float> d;
-    d[0] = axis(x.x, origin.x) * scale[0];
-    d[1] = axis(x.y, origin.y) * scale[1];
-    if constexpr (D == 3) d[2] = axis(x.z, origin.z) * scale[2];
+    d[0] = axis(x.x, origin.x, 0);
+    d[1] = axis(x.y, origin.y, 1);
+    if constexpr (D == 3) d[2] = axis(x.z, origin.z, 2);
     return d;
   }
   /// A particle this far from its cluster's first one may have neighbours that are nearer to the first one's other

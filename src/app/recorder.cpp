@@ -1,6 +1,7 @@
 #include "recorder.hpp"
 
 #include "treacle/core/timer.hpp"
+#include "treacle/core/trace.hpp"
 #include "treacle/io/checkpoint.hpp"
 #include "treacle/io/picture.hpp"
 
@@ -133,6 +134,7 @@ void Recorder<D>::handOver(Snapshot<D>& snapshot, bool frame, bool checkpoint) {
 /// Called by the output thread.
 template <int D>
 void Recorder<D>::write(const Snapshot<D>& s) {
+  const TraceRange range("output");
   if (s.frame) {
     const std::size_t number = directory_.frameCount();
     directory_.writeFrame(fluidFrame(s), wallsFrame(s), case_.output);
