@@ -1,6 +1,7 @@
 #include "core/launch.hpp"
 
 #include <cstdint>
+#include <cstdlib>
 
 namespace treacle {
 namespace {
@@ -30,7 +31,7 @@ cudaMemPool_t makePool() {
 
 }  // namespace
 
-Context<Cuda>::Context() {
+Context<Cuda>::Context() : usesGraphs_(std::getenv("TREACLE_NO_GRAPHS") == nullptr) {
   TREACLE_CUDA_CHECK(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking));
   pool_ = makePool();
   partialSums_ = static_cast<double*>(deviceAllocate(*this, maxPartialSums * sizeof(double)));

@@ -11,6 +11,7 @@ namespace treacle {
 inline std::uint64_t startRows(Context<Cuda>& context, Buffer<std::uint64_t, Cuda>& rowStart) {
   std::size_t bytes = 0;
   std::uint64_t* data = rowStart.data();
+  clearBytes(context, data + rowStart.size() - 1, sizeof(std::uint64_t));  // read, though it does not count
   TREACLE_CUDA_CHECK(cub::DeviceScan::ExclusiveSum(nullptr, bytes, data, data, rowStart.size(), context.stream()));
   TREACLE_CUDA_CHECK(
       cub::DeviceScan::ExclusiveSum(context.scratch(bytes), bytes, data, data, rowStart.size(), context.stream()));

@@ -38,6 +38,10 @@ SolveReport KrylovLoop<Cuda>::report(Context<Cuda>& context) const {
 
 void KrylovLoop<Cuda>::record(Context<Cuda>& context, const std::function<void()>& body) {
   if (graph_) TREACLE_CUDA_CHECK(cudaGraphExecDestroy(std::exchange(graph_, nullptr)));
+  if (!context.usesGraphs()) {
+    body_ = body;
+    return;
+  }
   Graph whole;
   cudaGraphConditionalHandle loop;
   TREACLE_CUDA_CHECK(cudaGraphConditionalHandleCreate(&loop, whole.graph, 1, cudaGraphCondAssignDefault));
@@ -67,8 +71,16 @@ void KrylovLoop<Cuda>::record(Context<Cuda>& context, const std::function<void()
 SolveReport KrylovLoop<Cuda>::run(Context<Cuda>& context) {
   KrylovScalars* scalars = scalars_.data();
   forEach(context, 1, [=] __device__(std::size_t) { scalars->status = SolveStatus::Running; });
-  TREACLE_CUDA_CHECK(cudaGraphLaunch(graph_, context.stream()));
-  return report(context);
+  if (graph_) {
+    TREACLE_CUDA_CHECK(cudaGraphLaunch(graph_, context.stream()));
+    return report(context);
+  }
+  SolveReport now;
+  do {
+    body_();
+    now = report(context);
+  } while (now.status == SolveStatus::Running);
+  return now;
 }
 
 }  // namespace treacle

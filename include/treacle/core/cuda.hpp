@@ -27,6 +27,10 @@ class Context<Cuda> {
   CUmemPoolHandle_st* pool() const { return pool_; }
   void synchronize() const;
 
+  /// Whether iterations run as graphs. The environment variable TREACLE_NO_GRAPHS makes the host launch each
+  /// kernel: slower, but debuggers and sanitizers see every launch.
+  bool usesGraphs() const { return usesGraphs_; }
+
   /// Largest amount of device memory that was in use at one time [B].
   std::size_t peakBytes() const;
 
@@ -46,6 +50,7 @@ class Context<Cuda> {
   unsigned* ticket_ = nullptr;
   void* scratch_ = nullptr;
   std::size_t scratchBytes_ = 0;
+  bool usesGraphs_ = true;
 };
 
 /// The device has not enough memory for what was asked of it.

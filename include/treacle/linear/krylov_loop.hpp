@@ -55,6 +55,7 @@ class KrylovLoop<Cuda> {
  private:
   Buffer<KrylovScalars, Cuda> scalars_;
   CUgraphExec_st* graph_ = nullptr;
+  std::function<void()> body_;  // where the context does without graphs
 };
 
 }  // namespace treacle

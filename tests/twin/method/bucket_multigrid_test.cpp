@@ -33,6 +33,9 @@ std::vector<Vec<D>> randomInverse(const BlockCsr<D>& a0, std::uint32_t n) {
   return unflat<D>(random.cast<float>().cast<double>());
 }
 
+/// A cycle multiplies the rounding errors of its operators: by 2 to 3 in these scenes.
+constexpr double cycleTolerance = 10 * operatorTolerance;
+
 /// K of one scene on the device against K of the CPU, made from the same A^0.
 template <int D>
 struct CycleTwin {
@@ -97,13 +100,13 @@ struct CycleTwin {
     auto multigrid = makeDevice<double>(sweeps);
     EXPECT_EQ(multigrid.levelCount(), d.hostLevels.begin.size());
     const Buffer<Vec<D>> z = apply(multigrid, r), again = apply(multigrid, r);
-    EXPECT_LE(relativeDifference<double>(z.span(), std::span<const Vec<D>>(expected)), operatorTolerance);
+    EXPECT_LE(relativeDifference<double>(z.span(), std::span<const Vec<D>>(expected)), cycleTolerance);
     EXPECT_EQ(std::memcmp(z.data(), again.data(), z.span().size_bytes()), 0) << "not the same bits";
     checkSymmetric(apply(multigrid, other), z);
 
     GalerkinSpgemm<D> spgemm;
     auto byProducts = makeDevice<double>(sweeps, &spgemm);
-    EXPECT_LE(relativeDifference<double>(apply(byProducts, r), z), operatorTolerance);
+    EXPECT_LE(relativeDifference<double>(apply(byProducts, r), z), cycleTolerance);
   }
 
   /// other . K r = r . K other
