@@ -20,8 +20,8 @@ std::vector<Vec<D, T>> converted(const std::vector<Vec<D>>& from) {
   return to;
 }
 
-/// Random positive numbers about as large as what the cycle adds to them, so that neither part of K hides errors
-/// of the other; single precision holds them exactly, and both precisions apply the same K.
+/// Random positive numbers so large that neither part of K hides errors of the other; single precision holds them
+/// exactly, and both precisions apply the same K.
 template <int D>
 std::vector<Vec<D>> randomInverse(const BlockCsr<D>& a0, std::uint32_t n) {
   double trace = 0;
@@ -29,12 +29,9 @@ std::vector<Vec<D>> randomInverse(const BlockCsr<D>& a0, std::uint32_t n) {
     for (std::uint64_t k = a0.rowStart[i]; k < a0.rowStart[i + 1]; ++k)
       for (int c = 0; a0.column[k] == i && c < D; ++c) trace += a0.block[k](c, c);
   const Eigen::VectorXd random =
-      D * a0.rows() / trace * (randomVector(Eigen::Index{D} * n, 6).array().abs() + 0.1);
+      10 * D * a0.rows() / trace * (randomVector(Eigen::Index{D} * n, 6).array().abs() + 0.1);
   return unflat<D>(random.cast<float>().cast<double>());
 }
-
-/// A cycle multiplies the rounding errors of its operators: by 2 to 3 in these scenes.
-constexpr double cycleTolerance = 10 * operatorTolerance;
 
 /// K of one scene on the device against K of the CPU, made from the same A^0.
 template <int D>
@@ -56,7 +53,7 @@ struct CycleTwin {
     inverse = randomInverse(finest, s.n());
   }
 
-  std::uint32_t finestUnknowns() const { return D * d.hostLevels.count(0); }
+  std::uint32_t unknownsOn(std::size_t level) const { return D * d.hostLevels.count(level); }
 
   std::vector<Vec<D>> onCpu(const CycleSweeps& sweeps) {
     const auto& begin = d.hostLevels.begin;
@@ -96,17 +93,17 @@ struct CycleTwin {
     ASSERT_GT(cycle, 0.01 * all);
   }
 
-  void checkDouble(const CycleSweeps& sweeps, const std::vector<Vec<D>>& expected) {
+  void checkDouble(const CycleSweeps& sweeps, const std::vector<Vec<D>>& expected, double tolerance) {
     auto multigrid = makeDevice<double>(sweeps);
     EXPECT_EQ(multigrid.levelCount(), d.hostLevels.begin.size());
     const Buffer<Vec<D>> z = apply(multigrid, r), again = apply(multigrid, r);
-    EXPECT_LE(relativeDifference<double>(z.span(), std::span<const Vec<D>>(expected)), cycleTolerance);
+    EXPECT_LE(relativeDifference<double>(z.span(), std::span<const Vec<D>>(expected)), tolerance);
     EXPECT_EQ(std::memcmp(z.data(), again.data(), z.span().size_bytes()), 0) << "not the same bits";
     checkSymmetric(apply(multigrid, other), z);
 
     GalerkinSpgemm<D> spgemm;
     auto byProducts = makeDevice<double>(sweeps, &spgemm);
-    EXPECT_LE(relativeDifference<double>(apply(byProducts, r), z), cycleTolerance);
+    EXPECT_LE(relativeDifference<double>(apply(byProducts, r), z), tolerance);
   }
 
   /// other . K r = r . K other
@@ -123,24 +120,30 @@ struct CycleTwin {
     EXPECT_EQ(std::memcmp(z.data(), again.data(), z.span().size_bytes()), 0) << "not the same bits";
   }
 
-  void checkAll(const char* what) {
+  void checkAll(const char* what, double tolerance) {
     for (const CycleSweeps& sweeps : {CycleSweeps{2, 3, 4}, CycleSweeps{2, 2, 4}}) {
       SCOPED_TRACE(testing::Message() << D << "D, " << what << ", " << sweeps.middle
                                       << " sweeps on middle levels");
       const std::vector<Vec<D>> expected = onCpu(sweeps);
       checkScale(expected);
-      checkDouble(sweeps, expected);
+      checkDouble(sweeps, expected, tolerance);
       checkSingle(sweeps, expected);
     }
   }
 };
 
+/// Without walls inertia alone holds a body: its coarse operators are small differences of large numbers, and K
+/// magnifies the rounding errors of another order of summation some ten thousand times. In single precision that
+/// would be visible were the coarse operators not summed in double precision.
 template <int D>
 void checkSmall() {
   for (const Walls walls : {Walls::Floor, Walls::None}) {
     CycleTwin<D> twin(makeScene<D>(walls));
-    ASSERT_LE(twin.finestUnknowns(), (BucketMultigrid<D, double, Cuda>::denseUnknowns));
-    twin.checkAll(walls == Walls::Floor ? "floor" : "no walls");
+    ASSERT_LE(twin.unknownsOn(0), (BucketMultigrid<D, double, Cuda>::denseUnknowns));
+    if (walls == Walls::Floor)
+      twin.checkAll("floor", operatorTolerance);
+    else
+      twin.checkAll("no walls", 100 * operatorTolerance);
   }
 }
 
@@ -151,16 +154,16 @@ TEST(BucketMultigridTwin, EqualsTheCpuAsOneDenseMatrix) {
 }
 
 template <int D>
-void checkLarge() {
+void checkLarge(std::size_t levelsAboveDense) {
   CycleTwin<D> twin(makeLargeScene<D>());
-  ASSERT_GT(twin.finestUnknowns(), (BucketMultigrid<D, double, Cuda>::denseUnknowns));
-  twin.checkAll("many particles");
+  ASSERT_GT(twin.unknownsOn(levelsAboveDense - 1), (BucketMultigrid<D, double, Cuda>::denseUnknowns));
+  twin.checkAll("many particles", operatorTolerance);
 }
 
 TEST(BucketMultigridTwin, EqualsTheCpuWithLevelsAboveTheDenseOne) {
   TREACLE_SKIP_WITHOUT_GPU();
-  checkLarge<2>();
-  checkLarge<3>();
+  checkLarge<2>(2);
+  checkLarge<3>(1);
 }
 
 }  // namespace

@@ -1,0 +1,117 @@
+#pragma once
+
+#include "treacle/method/mph_pairs.hpp"
+
+#include <cstdint>
+#include <type_traits>
+
+namespace treacle {
+
+/// 1 / sqrt(x), x > 0, to full double precision: the hardware's estimate (2^-22) and one step of third order.
+__device__ inline double inverseSqrt(double x) {
+  double y;
+  asm("rsqrt.approx.ftz.f64 %0, %1;" : "=d"(y) : "d"(x));
+  const double e = fma(-x * y, y, 1.0);
+  return fma(y * e, fma(e, 0.375, 0.5), y);
+}
+/// The same to single precision.
+__device__ inline float inverseSqrt(float x) { return rsqrtf(x); }
+
+/// a where it is positive, else zero; without occupying the double-precision units.
+__device__ inline double positivePart(double a) {
+  const int high = __double2hiint(a), keep = ~(high >> 31);
+  return __hiloint2double(high & keep, __double2loint(a) & keep);
+}
+__device__ inline float positivePart(float a) { return fmaxf(a, 0.f); }
+
+/// Squares of distances get this fraction of h_p^2 added: a particle meets itself in its cluster's list, and two
+/// may coincide; their differences are then zero and so is every term, whatever 1/r.
+template <class T>
+inline constexpr double distanceFloor = std::is_same_v<T, double> ? 1e-24 : 1e-12;
+
+/// Positions as a kernel's arithmetic takes them.
+template <int D, class T>
+struct Places;
+
+template <int D>
+struct Places<D, double> {
+  using Stored = Vec<D>;
+  double floor;
+
+  static Places make(const MphPairs<D>& pairs) {
+    const double h = pairs.pressureWeight.radius;
+    return {distanceFloor<double> * h * h};
+  }
+  static double unit(const MphPairs<D>&) { return 1; }  // of length [m]
+
+  /// Particle i of a cluster, at the image nearest to the cluster's first particle.
+  __device__ Stored own(const MphPairs<D>& pairs, std::uint32_t i, std::uint32_t first, bool wraps) const {
+    Vec<D> x = pairs.position[i];
+    if (!wraps) return x;
+    for (int k = 0; k < D; ++k) {
+      const double away = x[k] - pairs.position[first][k], length = pairs.grid.length[k];
+      if (pairs.grid.periodic[k] && fabs(away) > 0.5 * length) x[k] -= length * round(away / length);
+    }
+    return x;
+  }
+  __device__ Stored neighbour(const MphPairs<D>& pairs, ListEntry e, bool wraps) const {
+    Vec<D> x = pairs.position[e.index()];
+    if (wraps && e.image() != 0) x += pairs.images.shift[e.image()];
+    return x;
+  }
+  __device__ Vec<D> local(const Stored& x, const Stored&) const { return x; }
+  /// Whether differences of local positions may mean another image: not here, images are in the lists.
+  __device__ static bool tornApart(const Vec<D>&) { return false; }
+  __device__ static void bringHome(Vec<D>&) {}
+};
+
+/// In single precision: differences of positions in units of 2^-32 of the domain's length are exact, and those
+/// across periodic ends come out right by themselves; local positions count from the cluster's first particle, in
+/// h_v.
+template <int D>
+struct Places<D, float> {
+  using Stored = int4;
+  float floor;
+  const int4* fixed;
+  Vec<D, float> scale;
+  Vec<D, float> period;  // in h_v; infinite on open axes
+
+  static Places make(const MphPairs<D>& pairs, const std::int32_t* fixed) {
+    const double h = pairs.pressureWeight.radius / unit(pairs);
+    Places p{static_cast<float>(distanceFloor<float> * h * h), reinterpret_cast<const int4*>(fixed), {}, {}};
+    for (int k = 0; k < D; ++k) {
+      const double length = pairs.grid.length[k] / unit(pairs);
+      p.scale[k] = static_cast<float>(length / 4294967296.0);
+      p.period[k] = static_cast<float>(pairs.grid.periodic[k] ? length : 1e30);
+    }
+    return p;
+  }
+  static double unit(const MphPairs<D>& pairs) { return pairs.viscosityWeight.radius; }
+
+  __device__ Stored own(const MphPairs<D>&, std::uint32_t i, std::uint32_t, bool) const { return fixed[i]; }
+  __device__ Stored neighbour(const MphPairs<D>&, ListEntry e, bool) const { return fixed[e.index()]; }
+  __device__ Vec<D, float> local(const Stored& x, const Stored& origin) const {
+    // Rounded here: fused into a later subtraction, a particle would not be at distance zero from itself.
+    const auto axis = [this](int a, int b, int k) {
+      const auto difference = static_cast<int>(static_cast<unsigned>(a) - static_cast<unsigned>(b));
+      return __fmul_rn(static_cast<float>(difference), scale[k]);
+    };
+    Vec<D, float> d;
+    d[0] = axis(x.x, origin.x, 0);
+    d[1] = axis(x.y, origin.y, 1);
+    if constexpr (D == 3) d[2] = axis(x.z, origin.z, 2);
+    return d;
+  }
+  /// A particle this far from its cluster's first one may have neighbours that are nearer to the first one's other
+  /// side: then each difference has to be brought home.
+  __device__ bool tornApart(const Vec<D, float>& own) const {
+    bool torn = false;
+    for (int k = 0; k < D; ++k) torn = torn || fabsf(own[k]) > 0.5f * period[k] - 1.01f;
+    return torn;
+  }
+  __device__ void bringHome(Vec<D, float>& d) const {
+    for (int k = 0; k < D; ++k) d[k] -= period[k] * rintf(d[k] / period[k]);
+  }
+};
+
+}  // namespace treacle
