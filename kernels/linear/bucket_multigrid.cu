@@ -1,19 +1,12 @@
 #include "treacle/linear/bucket_multigrid.hpp"
 
 #include "linear/bucket_cycle.cuh"
+#include "linear/parents.cuh"
 #include "linear/row_sums.cuh"
 #include "treacle/linear/galerkin_spgemm.hpp"
 
 namespace treacle {
 namespace {
-
-/// One thread per bucket: tells the members whose they are.
-void fillParents(Context<Cuda>& context, std::span<const std::uint32_t> members, std::uint32_t* parent) {
-  const std::uint32_t* begin = members.data();
-  forEach(context, members.size() - 1, [=] __device__(std::size_t b) {
-    for (std::uint32_t i = begin[b]; i < begin[b + 1]; ++i) parent[i] = static_cast<std::uint32_t>(b);
-  });
-}
 
 /// One thread per number.
 template <int D, class T>
@@ -119,7 +112,8 @@ __global__ void denseKernel(int unknowns, const T* matrix, const T* b, T* x) {
   if (threadIdx.x % 32 == 0) x[row] = sum;
 }
 
-constexpr int maxDenseLevels = 12;
+constexpr int maxDenseLevels = 32;                 // keys have at most 31 levels
+constexpr std::size_t maxSharedBytes = 200 << 10;  // of the block that runs the dense part of the cycle
 template <int D, class T>
 struct CycleLevels {
   CycleLevel<D, T> level[maxDenseLevels];
@@ -178,15 +172,13 @@ void BucketMultigrid<D, T, Cuda>::setup(Context<Cuda>& context, const BlockCsr<D
                                         std::vector<std::span<const std::uint32_t>> members,
                                         const CycleSweeps& sweeps, GalerkinSpgemm<D>* spgemm) {
   levels_.resize(members.size());
-  std::size_t memberCount = 0;
   for (std::size_t r = 0; r < levels_.size(); ++r) {
     Level& level = levels_[r];
     level.members = members[r];
     const bool coarsest = r + 1 == levels_.size();
     level.sweeps = coarsest ? sweeps.coarsest : r == 0 ? sweeps.finest : sweeps.middle;
-    memberCount = r == 0 ? valueOnHost(context, &members[0].back()) : levels_[r - 1].a.rows();
-    level.parent.resize(context, memberCount);
-    fillParents(context, members[r], level.parent.data());
+    const std::uint32_t memberCount = r == 0 ? valueOnHost(context, &members[0].back()) : levels_[r - 1].a.rows();
+    findParents(context, members[r], memberCount, level.parent);
     const BlockCsr<D, double, Cuda>& finer = r == 1 ? finest : levels_[r > 0 ? r - 1 : 0].galerkin;
     if (r > 0 && spgemm)
       spgemm->compute(context, finer, members[r], level.galerkin);
@@ -199,17 +191,20 @@ void BucketMultigrid<D, T, Cuda>::setup(Context<Cuda>& context, const BlockCsr<D
 
 template <int D, class T>
 void BucketMultigrid<D, T, Cuda>::buildDense(Context<Cuda>& context) {
+  // Scattered drops have many levels with hardly fewer buckets each: the cycle below must fit into one block, too.
+  const auto sharedBytes = [&](std::size_t level) {
+    std::size_t rows = 0;
+    for (std::size_t r = level; r < levels_.size(); ++r) rows += levels_[r].a.rows();
+    return 3 * rows * sizeof(Vec<D, T>);
+  };
   denseLevel_ = 0;
-  while (D * levels_[denseLevel_].a.rows() > denseUnknowns) ++denseLevel_;
+  while (D * levels_[denseLevel_].a.rows() > denseUnknowns || sharedBytes(denseLevel_) > maxSharedBytes)
+    ++denseLevel_;
   CycleLevels<D, T> levels{};
-  std::size_t rows = 0;
-  for (std::size_t r = denseLevel_; r < levels_.size(); ++r) {
-    levels.level[levels.count++] = view(r);
-    rows += levels_[r].a.rows();
-  }
+  for (std::size_t r = denseLevel_; r < levels_.size(); ++r) levels.level[levels.count++] = view(r);
   const std::uint32_t unknowns = D * levels_[denseLevel_].a.rows();
   dense_.resize(context, std::size_t{unknowns} * unknowns);
-  const std::size_t shared = 3 * rows * sizeof(Vec<D, T>);
+  const std::size_t shared = sharedBytes(denseLevel_);
   TREACLE_CUDA_CHECK(cudaFuncSetAttribute(denseSetupKernel<D, T>, cudaFuncAttributeMaxDynamicSharedMemorySize,
                                           static_cast<int>(shared)));
   launch(context, unknowns, 256, shared, denseSetupKernel<D, T>, levels, dense_.data());

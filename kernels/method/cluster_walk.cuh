@@ -87,11 +87,11 @@ __device__ bool walkRanges(const MphPairs<D>& pairs, std::uint32_t first, std::u
       work(32);
       queued -= 32;
       if (lane < queued) queue[lane] = queue[lane + 32];
+      __syncwarp();
     });
     work(queued);
     return any;
   };
-  const double near = pairs.pressureWeight.radius;
   constexpr bool usesFluid = Terms::uses(ListSegment::NearFluid), usesWalls = Terms::uses(ListSegment::NearWall);
   const auto radius = [&](ListSegment far) {
     return Terms::uses(far) ? pairs.viscosityWeight.radius : pairs.pressureWeight.radius;

@@ -40,7 +40,7 @@ __global__ void __launch_bounds__(128)
     const auto rows = static_cast<std::uint32_t>(sliceStart[s + 1] - sliceStart[s]);
     for (; count < rows; ++count) entry[base + std::uint64_t{slice} * count] = ListEntry::make(i, 0);
   } else {
-    const unsigned rows = __reduce_max_sync(__activemask(), count);
+    const unsigned rows = __reduce_max_sync(~0u, count);
     if (index % slice == 0) sliceStart[s] = rows;
   }
 }

@@ -5,7 +5,7 @@
 
 namespace treacle {
 
-/// The constants of the pair terms in the arithmetic and the unit of length of a kernel (Frame).
+/// The constants of the pair terms in the arithmetic and the unit of length of a kernel (Places).
 template <int D, class T>
 struct PairConstants {
   T inversePressureRadius, inverseViscosityRadius;  // 1/h
@@ -25,7 +25,6 @@ struct PairConstants {
   }
 };
 
-/// Empty parts of lists count for nobody.
 constexpr bool isFluid(ListSegment s) { return s == ListSegment::NearFluid || s == ListSegment::FarFluid; }
 constexpr bool isNear(ListSegment s) { return s == ListSegment::NearFluid || s == ListSegment::NearWall; }
 constexpr bool isWall(ListSegment s) { return !isFluid(s); }
