@@ -22,8 +22,9 @@ void benchmarkSolve(const BenchmarkOptions& options, const SolveRun& run, Record
       fmt::format("solve/{}D x1/{:g}/{}{}/steps {}-{}", D, run.resolution, nameOf(run.preconditioner),
                   run.coarse == CoarseKind::Spgemm ? " spgemm" : "", run.steps - run.timed + 1, run.steps);
   if (!options.wants(name)) return;
-  Case c = paperCase<D>(options, run.resolution);
-  c.solver.preconditioner = run.preconditioner;
+  // Krylov method and precision follow from the preconditioner.
+  Case c =
+      paperCase<D>(options, run.resolution, {fmt::format("solver.preconditioner={}", nameOf(run.preconditioner))});
   c.solver.multigrid.coarseOperators = run.coarse;
   std::vector<std::string> notes;
   Particles<D> particles = createParticles<D>(c, notes);

@@ -1,0 +1,74 @@
+#pragma once
+
+#include "gpu_record.hpp"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace treacle {
+
+struct SolveOptions : BenchmarkOptions {
+  std::string states;                      // directory of files of study_state.py
+  std::string checkpoint, checkpointCase;  // a late state of a run, and its case
+  std::vector<std::string> solvers;        // settings of treacle's solver; empty: the default list
+  std::vector<double> sizes2, sizes3;      // resolutions of the dam breaks
+  int steps = 0;                           // that the dam breaks are run before the system is taken
+  int repetitions = 3;
+  double tolerance = 1e-12;  // of all methods
+  int maxIterations = 20000;
+};
+
+inline double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
+/// One method on one system.
+struct SolveResult {
+  std::string system, method;
+  std::uint64_t fluidCount = 0;
+  int iterations = 0;
+  bool converged = false;
+  double solveSeconds = 0;      // from the first guess to the solution, the recording of a graph included
+  double iterationSeconds = 0;  // the same without recording; 0: not known
+  double setupSeconds = 0;      // from the neighbour lists on: matrix or operator, preconditioner
+  double trueResidual = 0;      // |b - A u| / |b| with the assembled matrix
+  std::string how;              // libraries, kind of loop
+};
+
+/// What a run of the benchmark leaves behind.
+struct SolveRecord {
+  nlohmann::ordered_json json;
+  bool failed = false;
+
+  void heading() const {
+    fmt::print("{:<22} {:>8}  {:<44} {:>6} {:>10} {:>10} {:>10} {:>9}\n", "system", "fluid", "method", "its",
+               "solve ms", "its. ms", "set-up ms", "residual");
+  }
+  void add(const SolveResult& r) {
+    json["solves"].push_back({{"system", r.system},
+                              {"fluid_particles", r.fluidCount},
+                              {"method", r.method},
+                              {"converged", r.converged},
+                              {"iterations", r.iterations},
+                              {"solve_ms", r.solveSeconds * 1e3},
+                              {"iterations_ms", r.iterationSeconds * 1e3},
+                              {"setup_ms", r.setupSeconds * 1e3},
+                              {"true_residual", r.trueResidual},
+                              {"how", r.how}});
+    fmt::print("{:<22} {:>8}  {:<44} {:>6} {:>10.3f} {:>10.3f} {:>10.3f} {:>9.1e}{}\n", r.system, r.fluidCount,
+               r.method, r.iterations, r.solveSeconds * 1e3, r.iterationSeconds * 1e3, r.setupSeconds * 1e3,
+               r.trueResidual, r.converged ? "" : "  NOT CONVERGED");
+    std::fflush(stdout);
+    failed |= !r.converged;
+  }
+  void addFailure(const std::string& system, const std::string& method, const std::string& why) {
+    json["failures"].push_back({{"system", system}, {"method", method}, {"error", why}});
+    fmt::print("{:<22} {:>8}  {:<44} FAILED: {}\n", system, "", method, why);
+    std::fflush(stdout);
+    failed = true;
+  }
+};
+
+}  // namespace treacle
