@@ -1,6 +1,7 @@
 #include "treacle/linear/bucket_multigrid.hpp"
 
 #include "linear/bucket_cycle.cuh"
+#include "linear/dense_product.cuh"
 #include "linear/parents.cuh"
 #include "linear/row_sums.cuh"
 #include "treacle/linear/galerkin_spgemm.hpp"
@@ -24,13 +25,13 @@ void convert(Context<Cuda>& context, const BlockCsr<D, double, Cuda>& from, Bloc
 }
 
 /// One warp per bucket: b = sum of r over its particles, and the first sweep from zero, x = D^-1 b. No atomics.
-template <int D, class T>
-__global__ void restrictKernel(const CycleLevel<D, T> level, const Vec<D>* r, Vec<D, T>* b, Vec<D, T>* x) {
+template <int D, class T, class V>
+__global__ void restrictKernel(const CycleLevel<D, T> level, const V* r, Vec<D, T>* b, Vec<D, T>* x) {
   const std::uint32_t bucket = (blockIdx.x * blockDim.x + threadIdx.x) / 32;
   if (bucket >= level.rows) return;
   Vec<D> sum{};
   for (std::uint32_t i = level.members[bucket] + threadIdx.x % 32; i < level.members[bucket + 1]; i += 32)
-    sum += r[i];
+    for (int k = 0; k < D; ++k) sum[k] += r[i][k];
   Vec<D, T> total;
   for (int k = 0; k < D; ++k) total[k] = static_cast<T>(warpSum(sum[k]));
   if (threadIdx.x % 32 != 0) return;
@@ -97,19 +98,6 @@ __global__ void prolongKernel(std::size_t unknowns, const T* inverse, const doub
                               const std::uint32_t* bucketOf, const Vec<D, T>* x, double* z) {
   const std::size_t k = blockIdx.x * std::size_t{blockDim.x} + threadIdx.x;
   if (k < unknowns) z[k] = inverse[k] * r[k] + x[bucketOf[k / D]][static_cast<int>(k % D)];
-}
-
-/// One warp per row: x = M b. No atomics.
-template <class T>
-__global__ void denseKernel(int unknowns, const T* matrix, const T* b, T* x) {
-  const int row = (blockIdx.x * blockDim.x + threadIdx.x) / 32;
-  if (row >= unknowns) return;
-  T sum = 0;
-  const T* mine = matrix + static_cast<std::size_t>(row) * unknowns;
-#pragma unroll 8
-  for (int k = threadIdx.x % 32; k < unknowns; k += 32) sum += mine[k] * b[k];
-  sum = warpSum(sum);
-  if (threadIdx.x % 32 == 0) x[row] = sum;
 }
 
 constexpr int maxDenseLevels = 32;                 // keys have at most 31 levels
@@ -240,13 +228,29 @@ template <int D, class T>
 void BucketMultigrid<D, T, Cuda>::apply(Context<Cuda>& context, std::span<const Vec<D, T>> inverse,
                                         std::span<const Vec<D>> r, std::span<Vec<D>> z) {
   Level& finest = levels_[0];
-  launch(context, blocksFor(finest.a.rows(), 4), 128, 0, restrictKernel<D, T>, view(0), r.data(), finest.b.data(),
-         finest.x.data());
+  launch(context, blocksFor(finest.a.rows(), 4), 128, 0, restrictKernel<D, T, Vec<D>>, view(0), r.data(),
+         finest.b.data(), finest.x.data());
   cycle(context, 0);
   const std::size_t unknowns = r.size() * D;
   launch(context, blocksFor(unknowns, 256), 256, 0, prolongKernel<D, T>, unknowns,
          reinterpret_cast<const T*>(inverse.data()), reinterpret_cast<const double*>(r.data()),
          finest.parent.data(), finest.x.data(), reinterpret_cast<double*>(z.data()));
+}
+
+template <int D, class T>
+void BucketMultigrid<D, T, Cuda>::correct(Context<Cuda>& context, std::span<const Gathered<D, T>> r,
+                                          std::span<Gathered<D, T>> z, std::span<Gathered<D, T>> x) {
+  Level& finest = levels_[0];
+  launch(context, blocksFor(finest.a.rows(), 4), 128, 0, restrictKernel<D, T, Gathered<D, T>>, view(0), r.data(),
+         finest.b.data(), finest.x.data());
+  cycle(context, 0);
+  forEach(context, r.size(),
+          [coarse = finest.x.data(), bucketOf = finest.parent.data(), z = z.data(),
+           x = x.data()] __device__(std::size_t i) {
+            const Vec<D, T> e = coarse[bucketOf[i]];
+            z[i] = e;
+            x[i] += e;
+          });
 }
 
 template <int D, class T>

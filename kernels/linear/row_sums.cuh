@@ -78,19 +78,25 @@ __global__ void __launch_bounds__(256) rowSumsKernel(BlockCsrView<D, T> a, Term 
 
 /// For every component r of every block row: store(row, r, sum of term(A_(r,c), place of the column index, c) over
 /// the row's blocks and their columns c). The order of a sum depends on the matrix alone.
+/// `blocks`: how many the matrix has.
 template <Reading How, int D, class T, class Term, class Store>
-void rowSums(const Context<Cuda>& context, const BlockCsr<D, T, Cuda>& a, Term term, Store store) {
+void rowSums(const Context<Cuda>& context, const BlockCsrView<D, T>& a, std::uint64_t blocks, Term term,
+             Store store) {
   // As many blocks at a time as a warp has room for; where rows are shorter than that, several rows to a warp.
-  constexpr int wide = 32 / (D * D), narrow = D == 2 ? 4 : 1;
-  const auto start = [&](auto blocks) {
-    constexpr int Blocks = decltype(blocks)::value, rowsPerWarp = 32 / (Blocks * D * D);
-    launch(context, blocksFor(a.rows(), 8 * rowsPerWarp), 256, 0, rowSumsKernel<D, T, Blocks, How, Term, Store>,
-           viewOf(a), term, store);
+  constexpr int wide = 32 / (D * D), narrow = D == 1 ? 8 : D == 2 ? 4 : 1;
+  const auto start = [&](auto atATime) {
+    constexpr int Blocks = decltype(atATime)::value, rowsPerWarp = 32 / (Blocks * D * D);
+    launch(context, blocksFor(a.rows, 8 * rowsPerWarp), 256, 0, rowSumsKernel<D, T, Blocks, How, Term, Store>, a,
+           term, store);
   };
-  if (2 * a.block.size() < 3 * wide * std::size_t{a.rows()})
+  if (2 * blocks < 3 * wide * std::uint64_t{a.rows})
     start(std::integral_constant<int, narrow>{});
   else
     start(std::integral_constant<int, wide>{});
+}
+template <Reading How, int D, class T, class Term, class Store>
+void rowSums(const Context<Cuda>& context, const BlockCsr<D, T, Cuda>& a, Term term, Store store) {
+  rowSums<How>(context, viewOf(a), a.block.size(), term, store);
 }
 
 /// The term of a matrix-vector product.

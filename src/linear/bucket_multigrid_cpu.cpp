@@ -117,21 +117,43 @@ void BucketMultigrid<D, T, Cpu>::cycle(Context<Cpu>& context, std::size_t r) {
   for (int s = 0; s < sweeps; ++s) sweep(level);
 }
 
+/// b = R r on the finest level.
+template <int D, class T>
+template <class V>
+void BucketMultigrid<D, T, Cpu>::restrict(std::span<const V> r) {
+  Level& finest = levels_[0];
+  const auto members = members_[0];
+  parallelFor(finest.a.rows(), parallelGrain, [&](std::size_t b) {
+    Vec<D> sum{};
+    for (std::uint32_t i = members[b]; i < members[b + 1]; ++i)
+      for (int c = 0; c < D; ++c) sum[c] += r[i][c];
+    for (int c = 0; c < D; ++c) finest.b[b][c] = static_cast<T>(sum[c]);
+  });
+}
+
 template <int D, class T>
 void BucketMultigrid<D, T, Cpu>::apply(Context<Cpu>& context, std::span<const Vec<D, T>> inverse,
                                        std::span<const Vec<D>> r, std::span<Vec<D>> z) {
-  Level& finest = levels_[0];
-  const auto members = members_[0];
-  const std::uint32_t buckets = finest.a.rows();
-  parallelFor(buckets, parallelGrain, [&](std::size_t b) {
-    Vec<D> sum{};
-    for (std::uint32_t i = members[b]; i < members[b + 1]; ++i) sum += r[i];
-    for (int c = 0; c < D; ++c) finest.b[b][c] = static_cast<T>(sum[c]);
-  });
+  restrict(r);
   cycle(context, 0);
-  parallelFor(buckets, parallelGrain, [&](std::size_t b) {
+  const auto members = members_[0];
+  parallelFor(levels_[0].a.rows(), parallelGrain, [&](std::size_t b) {
     for (std::uint32_t i = members[b]; i < members[b + 1]; ++i)
-      for (int c = 0; c < D; ++c) z[i][c] = inverse[i][c] * r[i][c] + finest.x[b][c];
+      for (int c = 0; c < D; ++c) z[i][c] = inverse[i][c] * r[i][c] + levels_[0].x[b][c];
+  });
+}
+
+template <int D, class T>
+void BucketMultigrid<D, T, Cpu>::correct(Context<Cpu>& context, std::span<const Gathered<D, T>> r,
+                                         std::span<Gathered<D, T>> z, std::span<Gathered<D, T>> x) {
+  restrict(r);
+  cycle(context, 0);
+  const auto members = members_[0];
+  parallelFor(levels_[0].a.rows(), parallelGrain, [&](std::size_t b) {
+    for (std::uint32_t i = members[b]; i < members[b + 1]; ++i) {
+      z[i] = levels_[0].x[b];
+      x[i] += levels_[0].x[b];
+    }
   });
 }
 

@@ -1,27 +1,11 @@
 #include "treacle/linear/vector.hpp"
 
-#include "treacle/core/parallel.hpp"
+#include "sum_chunks.hpp"
 
 #include <algorithm>
 
 namespace treacle {
 namespace {
-
-/// Runs body(begin, length) on chunks of fixed length and adds what it returns in the order of the chunks.
-template <class F>
-double sumChunks(Context<Cpu>& context, std::size_t n, F&& body) {
-  const std::size_t chunks = (n + reductionChunk - 1) / reductionChunk;
-  if (chunks <= 1) return body(std::size_t{0}, n);
-  std::vector<double>& partial = context.partialSums;
-  partial.resize(chunks);
-  parallelFor(chunks, 2, [&](std::size_t c) {
-    const std::size_t begin = c * reductionChunk;
-    partial[c] = body(begin, std::min(reductionChunk, n - begin));
-  });
-  double sum = 0;
-  for (double p : partial) sum += p;
-  return sum;
-}
 
 // The loops over a chunk take bare pointers: through a closure's references g++ 12 turns them into gathers.
 

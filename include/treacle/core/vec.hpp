@@ -47,6 +47,14 @@ struct Vec {
   }
 };
 
+/// A vector quantity that neighbours gather: three components are padded to four, so that a device fetches them at
+/// once.
+template <int D, class T>
+struct alignas((D == 3 ? 4 : D) * sizeof(T)) Gathered : Vec<D, T> {
+  Gathered() = default;
+  TREACLE_HD constexpr Gathered(const Vec<D, T>& vec) : Vec<D, T>(vec) {}
+};
+
 template <int D, class T>
 TREACLE_HD constexpr T dot(const Vec<D, T>& a, const Vec<D, T>& b) {
   T sum = a[0] * b[0];

@@ -31,6 +31,9 @@ class BucketMultigrid<D, T, Cpu> {
 
   /// z = diag(inverse) r + P M^0 R r, per particle. `inverse`: D^-1 of the particles.
   void apply(Context<Cpu>&, std::span<const Vec<D, T>> inverse, std::span<const Vec<D>> r, std::span<Vec<D>> z);
+  /// z = P M^0 R r and x += z, per particle: the coarse correction of a smoother on the particles.
+  void correct(Context<Cpu>&, std::span<const Gathered<D, T>> r, std::span<Gathered<D, T>> z,
+               std::span<Gathered<D, T>> x);
 
   std::size_t levelCount() const { return levels_.size(); }
   const BlockCsr<D, T>& matrix(std::size_t level) const { return levels_[level].a; }
@@ -43,6 +46,8 @@ class BucketMultigrid<D, T, Cpu> {
     Buffer<Vec<D, T>> b, x, next;  // right-hand side, iterate, and where a sweep writes
   };
 
+  template <class V>
+  void restrict(std::span<const V> r);
   void cycle(Context<Cpu>& context, std::size_t level);
   void sweep(Level& level);
 
@@ -69,6 +74,8 @@ class BucketMultigrid<D, T, Cuda> {
              std::vector<std::span<const std::uint32_t>> members, const CycleSweeps& sweeps,
              GalerkinSpgemm<D>* spgemm = nullptr);
   void apply(Context<Cuda>&, std::span<const Vec<D, T>> inverse, std::span<const Vec<D>> r, std::span<Vec<D>> z);
+  void correct(Context<Cuda>&, std::span<const Gathered<D, T>> r, std::span<Gathered<D, T>> z,
+               std::span<Gathered<D, T>> x);
 
   std::size_t levelCount() const { return levels_.size(); }
   /// Level r > 0: A^r in double precision.

@@ -21,7 +21,8 @@ enum class SolveStatus { Running, Refresh, Converged, IterationLimit, Breakdown,
 struct SolveReport {
   SolveStatus status = SolveStatus::Converged;
   int iterations = 0;
-  double residual = 0;  // |r|^2 / |b|^2 of the recursion
+  double residual = 0;       // |r|^2 / |b|^2 of the recursion
+  double startResidual = 0;  // that of the first guess
 };
 
 /// The scalars of a Krylov loop and its stopping test. They stay in the backend's memory: inside an iteration the
@@ -31,6 +32,7 @@ struct KrylovScalars {
   StoppingRule rule;
   double bb = 0;  // |b|^2
   double rr = 0;  // |r|^2
+  double rrAtStart = 0;
   double rrOfLastRefresh = 0;
   double rho = 0, alpha = 0, beta = 0;
   int iteration = 0;
@@ -38,7 +40,7 @@ struct KrylovScalars {
 
   TREACLE_HD void start(double bSquared, double rSquared) {
     bb = bSquared;
-    rr = rrOfLastRefresh = rSquared;
+    rr = rrAtStart = rrOfLastRefresh = rSquared;
     iteration = 0;
     status = SolveStatus::Running;
     test();
@@ -64,7 +66,10 @@ struct KrylovScalars {
     }
   }
 
-  SolveReport report() const { return {status, iteration, bb > 0 ? rr / bb : rr}; }
+  SolveReport report() const {
+    const double scale = bb > 0 ? bb : 1;
+    return {status, iteration, rr / scale, rrAtStart / scale};
+  }
 
  private:
   TREACLE_HD static bool isFinite(double x) { return x - x == 0; }

@@ -1,0 +1,147 @@
+#include "treacle/linear/hat_cycle.hpp"
+
+#include "treacle/core/parallel.hpp"
+
+namespace treacle {
+namespace {
+
+/// store(k, number k of A x) for all numbers
+template <class T, int B, class Store>
+void rowSums(const HatMatrix<T, B>& a, const T* x, Store&& store) {
+  const auto* block = reinterpret_cast<const Block<B, T>*>(a.value);
+  const auto* at = reinterpret_cast<const Vec<B, T>*>(x);
+  parallelFor(a.rows, parallelGrain, [&](std::size_t row) {
+    RowSum<B, T> sum;
+    for (std::uint64_t k = a.rowStart[row], end = a.rowStart[row + 1]; k < end; ++k)
+      sum.add(block[k], at[a.column[k]]);
+    const Vec<B, T> total = sum.total();
+    for (int c = 0; c < B; ++c) store(row * B + c, total[c]);
+  });
+}
+
+/// sum += weight v_node
+template <int B, class T>
+void addScaled(Vec<B, T>& sum, double weight, const T* v, std::uint32_t node) {
+  for (int c = 0; c < B; ++c) sum[c] += static_cast<T>(weight) * v[std::size_t{node} * B + c];
+}
+
+}  // namespace
+
+template <class T, int B>
+void hatValues(Context<Cpu>&, const BlockCsr<B>& a, std::span<T> value, std::span<T> inverseDiagonal) {
+  parallelFor(a.rows(), parallelGrain, [&](std::size_t i) {
+    Vec<B> diagonal{};
+    for (std::uint64_t k = a.rowStart[i]; k < a.rowStart[i + 1]; ++k) {
+      const Block<B>& block = a.block[k];
+      for (int c = 0; c < B && a.column[k] == i; ++c) diagonal[c] = block(c, c);
+      for (int e = 0; e < B * B && !value.empty(); ++e) value[k * B * B + e] = static_cast<T>(block.a[e]);
+    }
+    for (int c = 0; c < B; ++c)
+      inverseDiagonal[i * B + c] = diagonal[c] > 0 ? static_cast<T>(1 / diagonal[c]) : T(0);
+  });
+}
+
+template <class T, int B>
+void hatMultiply(Context<Cpu>&, const HatMatrix<T, B>& a, std::span<const T> x, std::span<T> y) {
+  rowSums(a, x.data(), [&](std::size_t k, T sum) { y[k] = sum; });
+}
+
+template <class T>
+void hatFirstStep(Context<Cpu>&, std::size_t unknowns, const HatVectors<T>& v) {
+  const T gain = ChebyshevStep<T>::at(1).gain / *v.lambdaMax;
+  parallelFor(unknowns, parallelGrain,
+              [&](std::size_t i) { v.x[i] = v.z[0][i] = gain * v.inverseDiagonal[i] * v.b[i]; });
+}
+
+template <class T, int B>
+void hatStep(Context<Cpu>&, const HatMatrix<T, B>& a, ChebyshevStep<T> step, const HatVectors<T>& v, const T* from,
+             int last) {
+  const T* z = v.z[last];
+  T* next = v.z[1 - last];
+  const T gain = step.gain / *v.lambdaMax;
+  rowSums(a, z, [&](std::size_t k, T sum) {
+    v.res[k] = from[k] - sum;
+    next[k] = step.previous * z[k] + gain * v.inverseDiagonal[k] * v.res[k];
+    v.x[k] += next[k];
+  });
+}
+
+template <class T, int B>
+void hatResidual(Context<Cpu>&, const HatMatrix<T, B>& a, const HatVectors<T>& v, const T* from, int last) {
+  rowSums(a, v.z[last], [&](std::size_t k, T sum) { v.res[k] = from[k] - sum; });
+}
+
+template <int D, int B, class T>
+void hatRestrict(Context<Cpu>&, const HatNodes<D>& fine, const HatNodes<D>& coarse, const T* res,
+                 const HatVectors<T>& v) {
+  const HatNodesView<D> from = fine.view(), to = coarse.view();
+  const T gain = v.lambdaMax ? ChebyshevStep<T>::at(1).gain / *v.lambdaMax : T(0);
+  parallelFor(to.count, parallelGrain, [&](std::size_t row) {
+    Vec<B, T> sum{};
+    forEachFine(from.lattice, to.pointOf(row), [&](const Vec<D, int>& p, double weight) {
+      const std::uint32_t i = from.at(p);
+      if (i != noNode) addScaled(sum, weight, res, i);
+    });
+    for (int c = 0; c < B; ++c) {
+      const std::size_t k = row * B + c;
+      v.b[k] = sum[c];
+      if (v.lambdaMax) v.x[k] = v.z[0][k] = gain * v.inverseDiagonal[k] * sum[c];
+    }
+  });
+}
+
+template <int D, int B, class T>
+void hatProlong(Context<Cpu>&, const HatNodes<D>& fine, const HatNodes<D>& coarse, const T* e,
+                const HatVectors<T>& v) {
+  const HatNodesView<D> to = fine.view(), from = coarse.view();
+  parallelFor(to.count, parallelGrain, [&](std::size_t row) {
+    Vec<B, T> sum{};
+    forEachCoarse(to.lattice, to.pointOf(row),
+                  [&](const Vec<D, int>& p, double weight) { addScaled(sum, weight, e, from.at(p)); });
+    for (int c = 0; c < B; ++c) {
+      v.z[0][row * B + c] = sum[c];
+      v.x[row * B + c] += sum[c];
+    }
+  });
+}
+
+template <class T>
+void denseMultiply(Context<Cpu>&, std::uint32_t rows, const T* matrix, const T* b, T* x) {
+  parallelFor(rows, 64, [=](std::size_t i) {
+    T sum = 0;
+    for (std::size_t k = 0; k < rows; ++k) sum += matrix[i * rows + k] * b[k];
+    x[i] = sum;
+  });
+}
+
+#define TREACLE_INSTANTIATE(T)                                                     \
+  template void hatFirstStep<T>(Context<Cpu>&, std::size_t, const HatVectors<T>&); \
+  template void denseMultiply<T>(Context<Cpu>&, std::uint32_t, const T*, const T*, T*);
+#define TREACLE_INSTANTIATE_PRODUCTS(T, B)                                                                   \
+  template void hatValues<T, B>(Context<Cpu>&, const BlockCsr<B>&, std::span<T>, std::span<T>);              \
+  template void hatMultiply<T, B>(Context<Cpu>&, const HatMatrix<T, B>&, std::span<const T>, std::span<T>);  \
+  template void hatStep<T, B>(Context<Cpu>&, const HatMatrix<T, B>&, ChebyshevStep<T>, const HatVectors<T>&, \
+                              const T*, int);                                                                \
+  template void hatResidual<T, B>(Context<Cpu>&, const HatMatrix<T, B>&, const HatVectors<T>&, const T*, int);
+#define TREACLE_INSTANTIATE_TRANSFERS(D, B, T)                                                        \
+  template void hatRestrict<D, B, T>(Context<Cpu>&, const HatNodes<D>&, const HatNodes<D>&, const T*, \
+                                     const HatVectors<T>&);                                           \
+  template void hatProlong<D, B, T>(Context<Cpu>&, const HatNodes<D>&, const HatNodes<D>&, const T*,  \
+                                    const HatVectors<T>&);
+#define TREACLE_INSTANTIATE_ALL(T)       \
+  TREACLE_INSTANTIATE(T)                 \
+  TREACLE_INSTANTIATE_PRODUCTS(T, 1)     \
+  TREACLE_INSTANTIATE_PRODUCTS(T, 2)     \
+  TREACLE_INSTANTIATE_PRODUCTS(T, 3)     \
+  TREACLE_INSTANTIATE_TRANSFERS(2, 1, T) \
+  TREACLE_INSTANTIATE_TRANSFERS(2, 2, T) \
+  TREACLE_INSTANTIATE_TRANSFERS(3, 1, T) \
+  TREACLE_INSTANTIATE_TRANSFERS(3, 3, T)
+TREACLE_INSTANTIATE_ALL(double)
+TREACLE_INSTANTIATE_ALL(float)
+#undef TREACLE_INSTANTIATE
+#undef TREACLE_INSTANTIATE_PRODUCTS
+#undef TREACLE_INSTANTIATE_TRANSFERS
+#undef TREACLE_INSTANTIATE_ALL
+
+}  // namespace treacle

@@ -1,0 +1,57 @@
+#include "treacle/linear/dense_inverse.hpp"
+
+#include "support/hats.hpp"
+#include "support/scene.hpp"
+#include "support/tolerances.hpp"
+
+#include <gtest/gtest.h>
+
+namespace treacle::test {
+namespace {
+
+template <class T, int B>
+Eigen::MatrixXd inverseOf(const BlockCsr<B>& a) {
+  Context<Cpu> context;
+  const Eigen::Index n = B * a.rows();
+  std::vector<T> inverse(n * n);
+  denseInverse<T>(context, a, inverse);
+  return Eigen::Map<const Eigen::MatrixX<T>>(inverse.data(), n, n).template cast<double>();
+}
+
+template <class T, int B>
+void checkInverse(const BlockCsr<B>& a, double tolerance) {
+  Eigen::MatrixXd regularised = dense(a);
+  const Eigen::VectorXd diagonal = regularised.diagonal();
+  for (Eigen::Index i = 0; i < diagonal.size(); ++i)
+    regularised(i, i) += regularisation<T>(diagonal[i], diagonal.maxCoeff());
+  const Eigen::MatrixXd expected = regularised.inverse(), found = inverseOf<T>(a);
+  EXPECT_EQ(found, found.transpose());
+  EXPECT_LE((found - expected).norm(), tolerance * expected.norm());
+}
+
+TEST(DenseInverse, IsTheInverseAndSymmetric) {
+  for (const HatCase<3>& c : hatCases<3>(4)) checkInverse<double>(HatProblem<3, 3>(c).a, 1e-9);
+  for (const HatCase<2>& c : hatCases<2>(14)) {
+    SCOPED_TRACE(c.name);
+    const HatProblem<2> problem(c);
+    checkInverse<double>(problem.a, 1e-9);
+    checkInverse<float>(problem.a, singleTolerance);
+    checkInverse<double>(HatProblem<2, 2>(c).a, 1e-9);
+  }
+}
+
+TEST(DenseInverse, SolvesSingularSystemsThatHaveASolution) {
+  const HatProblem<2> problem(hatCases<2>(9)[0], 0);
+  const Eigen::MatrixXd a = dense(problem.a), inverse = inverseOf<double>(problem.a);
+  const Eigen::VectorXd b = a * randomVector(a.rows(), 3);
+  EXPECT_LE((a * (inverse * b) - b).norm(), 1e-4 * b.norm());
+}
+
+TEST(DenseInverse, GivesZerosWhereThereIsNoPivot) {
+  HatProblem<2> problem(hatCases<2>(4)[0]);
+  for (Block<1>& block : problem.a.block) block.a[0] = 0;
+  EXPECT_EQ(inverseOf<double>(problem.a).norm(), 0);
+}
+
+}  // namespace
+}  // namespace treacle::test
