@@ -31,6 +31,12 @@ __device__ inline T transposedSum(const T* v) {
 ///   uses(segment)                                      which parts of the lists count
 ///   add(pairs, sums, d, 1/r, own, other, segment)
 ///   store(pairs, i, n, sum)                            called once per particle and sum
+/// or, with a type StoresVectors, store(pairs, i, sums) once per particle.
+template <class Terms>
+inline constexpr bool storesVectors = requires {
+  typename Terms::StoresVectors;
+};
+
 template <int D, class T, class S, class Terms>
 class ClusterSum {
  public:
@@ -113,7 +119,15 @@ class ClusterSum {
       }
       const int n = r * S::slots + slot, t = n / values;
       const std::uint32_t own = group * S::own + t;
-      if (n < sums && own < count_) terms.store(pairs_, first_ + own, n % values, total);
+      const bool used = n < sums && own < count_;
+      if constexpr (storesVectors<Terms>) {
+        static_assert(rounds == 1);
+        Vec<values, T> all;
+        for (int c = 0; c < values; ++c) all[c] = __shfl_sync(~0u, total, lane - n % values + c);
+        if (used && n % values == 0) terms.store(pairs_, first_ + own, all);
+      } else {
+        if (used) terms.store(pairs_, first_ + own, n % values, total);
+      }
     }
   }
 

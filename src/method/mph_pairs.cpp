@@ -32,6 +32,7 @@ MphPairs<D> makePairs(const Case& c) {
   for (int k = 0; k < D; ++k) periodic[k] = c.domain.periodic[k];
   const double hp = c.pressureRadius(), hv = c.viscosityRadius();
   MphPairs<D> pairs;
+  pairs.spacing = c.spacing;
   pairs.grid =
       CellGrid<D>::make(resized<D>(c.domain.min), resized<D>(c.domain.max), periodic, std::max(hv, 2 * hp));
   pairs.images = periodicImages(pairs.grid);

@@ -56,6 +56,8 @@ class MphOperator<D, Cuda> {
   void multiplySingle(Context<Cuda>&, std::span<const Vec<D, float>> u, std::span<float> q,
                       std::span<Vec<D, float>> y);
   const NearProducts<D>& near() const { return near_; }
+  /// Diagonal block of rho/dt I + V, per fluid particle.
+  std::span<const Block<D>> selfBlock() const { return selfBlock_; }
   std::size_t bytes() const { return q_.bytes() + selfBlock_.bytes() + selfGradient_.bytes() + near_.bytes(); }
 
  private:

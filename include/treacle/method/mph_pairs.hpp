@@ -35,6 +35,7 @@ struct MphPairs {
   CellRangesView cells;
   CellGrid<D> grid;
   PeriodicImages<D> images;
+  double spacing = 0;  // l [m]
   Weight<D> pressureWeight{}, viscosityWeight{};
   PairTerm pressure{}, viscosity{};
   MaterialTable materials;

@@ -8,6 +8,9 @@
 
 namespace treacle {
 
+/// Particles per slice of the lists.
+inline constexpr unsigned nearSlice = 32;
+
 /// Products with C and C^T on a device from lists of each particle's own neighbours within h_p: a third of what
 /// the lists of clusters hold in 3D, and these products are short of time, not of memory. Needs the lists of
 /// clusters.
@@ -30,12 +33,15 @@ class NearProducts {
   /// exact, and those across periodic ends come out right by themselves.
   std::span<const std::int32_t> fixedPosition() const { return fixedPosition_; }
 
+  std::span<const std::uint64_t> sliceStart() const { return sliceStart_; }
+  std::span<const ListEntry> entries() const { return entry_; }
+
   std::size_t bytes() const { return sliceStart_.bytes() + entry_.bytes() + fixedPosition_.bytes(); }
 
  private:
   const MphPairs<D>* pairs_ = nullptr;
-  // Slices of 32 particles, each with as many rows of 32 entries as its longest list; shorter ones are filled up
-  // with the particle itself, with which every term is zero.
+  // Slices of nearSlice particles, each with as many rows of that many entries as its longest list; shorter ones
+  // are filled up with the particle itself, with which every term is zero.
   Buffer<std::uint64_t, Cuda> sliceStart_;  // in rows
   Buffer<ListEntry, Cuda> entry_;
   Buffer<std::int32_t, Cuda> fixedPosition_;

@@ -31,16 +31,22 @@ struct Weight {
   }
 };
 
-/// n_0 of [K23 eq. (7)]: the number density in a full cubic lattice of the given spacing.
-template <int D>
-double latticeNumberDensity(const Weight<D>& weight, double spacing) {
-  const int reach = static_cast<int>(std::ceil(weight.radius / spacing));
+/// Sum of f(r) over the other points of a full cubic lattice within `radius`, r their distance [m].
+template <int D, class F>
+double latticeSum(double radius, double spacing, F&& f) {
+  const int reach = static_cast<int>(std::ceil(radius / spacing));
   double sum = 0;
   for (int z = D == 3 ? -reach : 0; z <= (D == 3 ? reach : 0); ++z)
     for (int y = -reach; y <= reach; ++y)
       for (int x = -reach; x <= reach; ++x)
-        if (x != 0 || y != 0 || z != 0) sum += weight.value(spacing * std::sqrt(double(x * x + y * y + z * z)));
+        if (x != 0 || y != 0 || z != 0) sum += f(spacing * std::sqrt(double(x * x + y * y + z * z)));
   return sum;
+}
+
+/// n_0 of [K23 eq. (7)]: the number density in a full cubic lattice of the given spacing.
+template <int D>
+double latticeNumberDensity(const Weight<D>& weight, double spacing) {
+  return latticeSum<D>(weight.radius, spacing, [&](double r) { return weight.value(r); });
 }
 
 /// Pair terms of the momentum equation [K23 eq. (4)] for d = x_j - x_i, in the form the sums need: functions of

@@ -1,0 +1,443 @@
+#include "treacle/method/hat_grid.hpp"
+
+#include "core/reduce.cuh"
+#include "method/near_sums.cuh"
+#include "treacle/method/hat_cells.hpp"
+
+namespace treacle {
+namespace {
+
+template <int D>
+constexpr int slots = D == 2 ? 9 : 27;  // nodes that the neighbours of a particle touch
+
+template <int D, class T>
+__device__ inline T cornerWeight(const Vec<D, T>& place, int corner) {
+  T weight = 1;
+  for (int k = 0; k < D; ++k) weight *= corner >> k & 1 ? place[k] : 1 - place[k];
+  return weight;
+}
+
+/// Products of the columns of C P are the same small matrix for all particles of a half cell: they touch the same
+/// 3^D nodes. Cells are numbered by the node at their lower corner.
+template <int D, class T>
+struct CellParts {
+  static constexpr int halves = 1 << D, gram = slots<D> * slots<D>, corners = 1 << D, mass = corners * corners;
+  T* grams;   // per cell and half: sum of w (C P)_n.(C P)_m over its fluid particles
+  T* masses;  // per cell: sum of shift hat_a hat_b over its particles, a and b corners
+
+  __host__ __device__ static constexpr std::size_t numbers() { return halves * gram + mass; }
+};
+
+/// What the kernels of the pressures' Galerkin operator read and write.
+template <int D, class T>
+struct PressureGalerkin {
+  HatCells<D> cells;
+  HatNodesView<D> nodes;
+  NearView<D, T> near;
+  Vec<D, T> toCells;  // unit of length of `near` in cells
+  ProjectionTable<double> table;
+  CellRangesView ranges;
+  const Vec<D>* position;
+  const std::uint8_t* material;
+  CellParts<D, T> parts;
+  const std::uint64_t* rowStart;
+  const std::uint32_t* column;
+  double* value;
+};
+
+/// (C P)_in of a fluid particle for one of the 3^D nodes around it, and w times it.
+template <int D, class T>
+__device__ inline Vec<D, T> pressureColumn(const PressureGalerkin<D, T>& g, std::uint32_t i, const Vec<D>& place,
+                                           int n) {
+  Vec<D, T> s;  // from the node, in cells
+  for (int k = 0, digits = n; k < D; ++k, digits /= 3)
+    s[k] = static_cast<T>(place[k]) + static_cast<T>((place[k] < 0.5 ? 1 : 0) - digits % 3);
+  const auto hat = [&](const Vec<D, T>& at) {
+    T weight = 1;
+    for (int k = 0; k < D; ++k) weight *= positivePart(1 - fabs(at[k]));
+    return weight;
+  };
+  const T own = hat(s);
+  const auto xi = g.near.own(i);
+  Vec<D, T> sum{};
+  alongList(
+      g.near.sliceStart, g.near.entry, i, [&](ListEntry e) { return g.near.other(e); },
+      [&](const typename NearView<D, T>::Stored& other) {
+        const Vec<D, T> d = g.near.difference(other, xi);
+        Vec<D, T> at;
+        for (int k = 0; k < D; ++k) at[k] = fma(d[k], g.toCells[k], s[k]);
+        addScaled(&sum[0], pressureReach(g.near, d) * (own + hat(at)), d);
+      });
+  return g.near.constants.pressureFactor * sum;
+}
+
+/// One block per cell: the columns of C P of its fluid particles, a few at a time in shared memory, and from them
+/// the matrices of its halves; then the corner hats of all its particles, and the mass matrix. Each thread owns
+/// its entries. No atomics.
+template <int D, class T>
+__global__ void __launch_bounds__(D == 2 ? 96 : 256)
+    cellPartsKernel(const __grid_constant__ PressureGalerkin<D, T> g) {
+  using Parts = CellParts<D, T>;
+  constexpr int threads = D == 2 ? 96 : 256, batch = D == 2 ? 16 : 48, width = D * slots<D>;
+  constexpr int mine = (Parts::gram + threads - 1) / threads;
+  __shared__ T columns[batch][width];
+  __shared__ T weight[batch];
+  __shared__ int half[batch];
+  const Vec<D, int> cell = g.nodes.pointOf(blockIdx.x);
+  for (int k = 0; k < D; ++k)
+    if (cell[k] >= g.cells.grid.count[k]) return;  // the last nodes of an open axis are no lower corners
+  const std::size_t c = g.cells.grid.linear(cell);
+  const std::uint32_t begin = g.ranges.fluidBegin[c], end = g.ranges.fluidEnd[c];
+  T* grams = g.parts.grams + blockIdx.x * std::size_t{Parts::halves} * Parts::gram;
+
+  for (std::uint32_t first = begin; first < end || first == begin; first += batch) {
+    const int count = static_cast<int>(min(end - first, std::uint32_t{batch}));
+    __syncthreads();
+    for (int t = threadIdx.x; t < count * slots<D>; t += threads) {
+      const int p = t / slots<D>, n = t % slots<D>;
+      const std::uint32_t i = first + p;
+      const Vec<D> place = g.cells.fraction(g.position[i], cell);
+      const Vec<D, T> column = pressureColumn(g, i, place, n);
+      for (int k = 0; k < D; ++k) columns[p][n * D + k] = column[k];
+      if (n > 0) continue;
+      weight[p] = static_cast<T>(g.table.weight[g.material[i]]);
+      int h = 0;
+      for (int k = 0; k < D; ++k) h |= place[k] < 0.5 ? 0 : 1 << k;
+      half[p] = h;
+    }
+    __syncthreads();
+    for (int h = 0; h < Parts::halves; ++h) {
+      T sum[mine] = {};
+      for (int p = 0; p < count; ++p) {
+        if (half[p] != h) continue;
+#pragma unroll
+        for (int m = 0; m < mine; ++m) {
+          const int e = threadIdx.x + m * threads;
+          if (e >= Parts::gram) break;
+          const T *a = &columns[p][e / slots<D> * D], *b = &columns[p][e % slots<D> * D];
+          T product = a[0] * b[0];
+          for (int k = 1; k < D; ++k) product = fma(a[k], b[k], product);
+          sum[m] = fma(weight[p], product, sum[m]);
+        }
+      }
+#pragma unroll
+      for (int m = 0; m < mine; ++m) {
+        const int e = threadIdx.x + m * threads;
+        if (e >= Parts::gram) break;
+        T* target = grams + h * Parts::gram + e;
+        *target = first == begin ? sum[m] : *target + sum[m];
+      }
+    }
+  }
+
+  if (threadIdx.x >= Parts::mass) return;
+  const int a = static_cast<int>(threadIdx.x) / Parts::corners, b = static_cast<int>(threadIdx.x) % Parts::corners;
+  double sum = 0;
+  const auto add = [&](std::uint32_t from, std::uint32_t to) {
+    for (std::uint32_t i = from; i < to; ++i) {
+      const Vec<D> place = g.cells.fraction(g.position[i], cell);
+      sum += g.table.shift[g.material[i]] * cornerWeight(place, a) * cornerWeight(place, b);
+    }
+  };
+  add(begin, end);
+  add(g.ranges.wallBegin[c], g.ranges.wallEnd[c]);
+  g.parts.masses[blockIdx.x * std::size_t{Parts::mass} + threadIdx.x] = static_cast<T>(sum);
+}
+
+/// A warp per row and 32 of its entries, one lane each: adds up what the half cells and cells around have for the
+/// two nodes. No atomics.
+template <int D, class T>
+__global__ void __launch_bounds__(128) pressureGalerkinKernel(const __grid_constant__ PressureGalerkin<D, T> g) {
+  using Parts = CellParts<D, T>;
+  constexpr std::uint32_t parts = D == 2 ? 1 : 4;
+  const std::uint32_t warp = blockIdx.x * (blockDim.x / 32) + threadIdx.x / 32, row = warp / parts;
+  if (row >= g.nodes.count) return;
+  const std::uint64_t entry = g.rowStart[row] + 32 * (warp % parts) + threadIdx.x % 32;
+  if (entry >= g.rowStart[row + 1]) return;
+  const Vec<D, int> node = g.nodes.pointOf(row), other = g.nodes.pointOf(g.column[entry]);
+  double sum = 0;
+  g.cells.forEachCellAround(node, 2, [&](const Vec<D, int>& cell) {
+    const std::uint32_t c = g.nodes.at(cell);
+    if (c == noNode) return;
+    // In which half a node is among the three per axis, and as which: bit h of `halves`, base-3 digit of the slot.
+    for (int h = 0; h < Parts::halves; ++h) {
+      Vec<D, int> lowest;
+      for (int k = 0; k < D; ++k) lowest[k] = cell[k] - (h >> k & 1 ? 0 : 1);
+      const int n = g.cells.slot(node, lowest), m = g.cells.slot(other, lowest);
+      if (n < 0 || m < 0) continue;
+      sum += g.parts.grams[(c * std::size_t{Parts::halves} + h) * Parts::gram + n * slots<D> + m];
+    }
+    if (!g.cells.isCorner(node, cell) || !g.cells.isCorner(other, cell)) return;
+    int a = 0, b = 0;
+    for (int k = 0; k < D; ++k) {
+      a |= g.cells.above(node[k], cell[k], k) << k;
+      b |= g.cells.above(other[k], cell[k], k) << k;
+    }
+    sum += g.parts.masses[c * std::size_t{Parts::mass} + a * Parts::corners + b];
+  });
+  g.value[entry] = sum;
+}
+
+/// Moments of the viscous pairs; as SelfSums in form.
+template <int D, class T>
+struct MomentSums {
+  static constexpr int values = momentCount<D>;
+  static constexpr bool uses(ListSegment s) { return isFluid(s); }
+  using Own = std::uint8_t;  // material
+  using Other = std::uint8_t;
+
+  PairConstants<D, double> constants;
+  ViscousMoments<D, T>* moments;
+
+  __device__ Own loadOwn(const MphPairs<D>& pairs, std::uint32_t i) const { return pairs.material[i]; }
+  __device__ Other loadOther(const MphPairs<D>& pairs, std::uint32_t j) const { return pairs.material[j]; }
+  __device__ void add(const MphPairs<D>& pairs, double* sum, const Vec<D>& d, double inverseR, Own own,
+                      Other other, ListSegment) const {
+    const double f = pairs.materials.pairViscosity[own][other] * constants.viscosityReach(inverseR);
+    forEachMoment<D>(d, [&](int m, double product) { sum[m] = fma(f, product, sum[m]); });
+  }
+  __device__ void store(const MphPairs<D>&, std::uint32_t i, int n, double sum) const {
+    moments[i].m[n] = static_cast<T>(0.5 * viscousGalerkinFactor * constants.viscosityFactor * sum);
+  }
+};
+
+/// What the Galerkin kernel of the velocities reads and writes.
+template <int D, class T>
+struct ViscousGalerkin {
+  HatCells<D> cells;
+  HatNodesView<D> nodes;
+  CellRangesView ranges;
+  const Vec<D>* position;
+  const ViscousMoments<D, T>* moments;
+  const Block<D>* own;  // inertia and walls
+  const std::uint64_t* rowStart;
+  const std::uint32_t* column;
+  Block<D>* block;
+};
+
+/// A warp per row, a lane per entry; reads the moments and places of the fluid around the row's node. No atomics.
+template <int D, class T>
+__global__ void __launch_bounds__(128) viscousGalerkinKernel(const __grid_constant__ ViscousGalerkin<D, T> g) {
+  const std::uint32_t row = blockIdx.x * (blockDim.x / 32) + threadIdx.x / 32;
+  if (row >= g.nodes.count) return;
+  const std::uint64_t entry = g.rowStart[row] + threadIdx.x % 32;
+  if (entry >= g.rowStart[row + 1]) return;
+  const Vec<D, int> node = g.nodes.pointOf(row), other = g.nodes.pointOf(g.column[entry]);
+  Block<D> sum{};
+  g.cells.forEachCellAround(node, 1, [&](const Vec<D, int>& cell) {
+    if (!g.cells.isCorner(other, cell)) return;
+    const std::size_t c = g.cells.grid.linear(cell);
+    for (std::uint32_t i = g.ranges.fluidBegin[c]; i < g.ranges.fluidEnd[c]; ++i) {
+      const Vec<D> f = g.cells.fraction(g.position[i], cell);
+      Vec<D, T> place, p, q;
+      for (int k = 0; k < D; ++k) place[k] = static_cast<T>(f[k]);
+      T own, others;
+      g.cells.cornerHat(node, cell, place, own, p);
+      g.cells.cornerHat(other, cell, place, others, q);
+      const Block<D, T> viscous = g.moments[i].between(p, q);
+      for (int k = 0; k < D * D; ++k) sum.a[k] += viscous.a[k] + own * others * g.own[i].a[k];
+    }
+  });
+  g.block[entry] = sum;
+}
+
+/// The cell below a node with bit k of `corner` set, else above it; false where there is none.
+template <int D>
+__device__ inline bool cellBeside(const HatCells<D>& cells, Vec<D, int>& cell, int corner) {
+  bool inside = true;
+  for (int k = 0; k < D; ++k) {
+    cell[k] -= corner >> k & 1;
+    if (cells.grid.periodic[k] && cell[k] < 0) cell[k] += cells.grid.count[k];
+    inside = inside && cell[k] >= 0 && cell[k] < cells.grid.count[k];
+  }
+  return inside;
+}
+
+/// A warp per node, its lanes in groups, one group per cell around it: b = P^T r, for scalars per particle
+/// (Numbers = 1) or vectors per fluid particle. No atomics.
+template <int D, class T, int Numbers, class V>
+__global__ void __launch_bounds__(128)
+    restrictKernel(const __grid_constant__ HatCells<D> cells, const HatNodesView<D> nodes,
+                   const CellRangesView ranges, const Vec<D, T>* place, const V* r, T* b) {
+  constexpr int groups = 1 << D, lanes = 32 / groups;
+  const std::uint32_t n = blockIdx.x * (blockDim.x / 32) + threadIdx.x / 32;
+  if (n >= nodes.count) return;
+  const int corner = static_cast<int>(threadIdx.x % 32) / lanes, lane = static_cast<int>(threadIdx.x % lanes);
+  Vec<D, int> cell = nodes.pointOf(n);
+  T sum[Numbers] = {};
+  const auto add = [&](std::uint32_t begin, std::uint32_t end) {
+    for (std::uint32_t i = begin + lane; i < end; i += lanes) {
+      const T weight = cornerWeight(place[i], corner);
+      if constexpr (Numbers == 1) {
+        sum[0] = fma(weight, r[i], sum[0]);
+      } else {
+        const Vec<D, T> v = fetch(&r[i]);
+        for (int k = 0; k < D; ++k) sum[k] = fma(weight, v[k], sum[k]);
+      }
+    }
+  };
+  if (cellBeside(cells, cell, corner)) {
+    const std::size_t c = cells.grid.linear(cell);
+    add(ranges.fluidBegin[c], ranges.fluidEnd[c]);
+    if constexpr (Numbers == 1) add(ranges.wallBegin[c], ranges.wallEnd[c]);
+  }
+  for (int k = 0; k < Numbers; ++k) {
+    const T total = warpSum(sum[k]);
+    if (threadIdx.x % 32 == k) b[std::size_t{Numbers} * n + k] = total;
+  }
+}
+
+/// Calls f(node, weight) for the corners of the cell of a particle.
+template <int D, class T, class F>
+__device__ inline void forEachCorner(const HatCells<D>& cells, const HatNodesView<D>& nodes, const Vec<D>& x,
+                                     const Vec<D, T>& place, F&& f) {
+  const Vec<D, int> cell = cells.grid.cellOf(x);
+  for (int o = 0; o < 1 << D; ++o) {
+    Vec<D, int> node = cell;
+    for (int k = 0; k < D; ++k)
+      if ((o >> k & 1) && ++node[k] == nodes.lattice.count[k]) node[k] = 0;  // only on periodic axes
+    f(nodes.at(node), cornerWeight(place, o));
+  }
+}
+
+}  // namespace
+
+template <int D>
+void findHatNodes(Context<Cuda>& context, const MphPairs<D>& pairs, HatsOn what, HatNodes<D, Cuda>& nodes) {
+  const HatCells<D> cells{pairs.grid};
+  HatLattice<D> lattice;
+  for (int k = 0; k < D; ++k) lattice.count[k] = cells.nodesOn(k);
+  lattice.periodic = pairs.grid.periodic;
+  Buffer<std::uint8_t, Cuda> active(context, lattice.points());
+  forEach(context, lattice.points(),
+          [cells, lattice, ranges = pairs.cells, walls = what == HatsOn::Active,
+           active = active.data()] __device__(std::size_t p) {
+            bool any = false;
+            cells.forEachCellAround(lattice.at(p), 1, [&](const Vec<D, int>& cell) {
+              const std::size_t c = cells.grid.linear(cell);
+              any = any || ranges.fluidEnd[c] > ranges.fluidBegin[c] ||
+                    (walls && ranges.wallEnd[c] > ranges.wallBegin[c]);
+            });
+            active[p] = any;
+          });
+  numberNodes(context, lattice, active, nodes);
+}
+
+template <int D, class T>
+void pressureGalerkin(Context<Cuda>& context, const MphPairs<D>& pairs, const NearProducts<D>& near,
+                      const ProjectionTable<double>& table, const HatNodes<D, Cuda>& nodes, Buffer<T, Cuda>& parts,
+                      BlockCsr<1, double, Cuda>& s) {
+  using Parts = CellParts<D, T>;
+  const auto view = NearView<D, T>::make(pairs, near);
+  double unit = 1;
+  if constexpr (std::is_same_v<T, float>) unit = view.places.unit(pairs);
+  Vec<D, T> toCells;
+  for (int k = 0; k < D; ++k) toCells[k] = static_cast<T>(unit * pairs.grid.inverseEdge[k]);
+  parts.resize(context, Parts::numbers() * nodes.count());
+  hatPattern(context, nodes, s);
+  const PressureGalerkin<D, T> g{
+      .cells = {pairs.grid},
+      .nodes = nodes.view(),
+      .near = view,
+      .toCells = toCells,
+      .table = table,
+      .ranges = pairs.cells,
+      .position = pairs.position.data(),
+      .material = pairs.material.data(),
+      .parts = {parts.data(), parts.data() + std::size_t{Parts::halves} * Parts::gram * nodes.count()},
+      .rowStart = s.rowStart.data(),
+      .column = s.column.data(),
+      .value = reinterpret_cast<double*>(s.block.data())};
+  launch(context, nodes.count(), D == 2 ? 96 : 256, 0, cellPartsKernel<D, T>, g);
+  launch(context, D == 2 ? blocksFor(nodes.count(), 4) : nodes.count(), 128, 0, pressureGalerkinKernel<D, T>, g);
+}
+
+template <int D, class T>
+void viscousGalerkin(Context<Cuda>& context, const MphPairs<D>& pairs, const WallTerms<D>& terms,
+                     const HatNodes<D, Cuda>& nodes, Buffer<ViscousMoments<D, T>, Cuda>& moments,
+                     BlockCsr<D, double, Cuda>& a) {
+  using Terms = MomentSums<D, T>;
+  moments.resize(context, pairs.fluidCount);
+  const ListTask<Terms> task{pairs.fluidList, {PairConstants<D, double>::make(pairs, 1), moments.data()}};
+  launchClusterSums<D, double, Sharing<2, 1>>(context, pairs, task, Places<D, double>::make(pairs));
+
+  hatPattern(context, nodes, a, 1);
+  const ViscousGalerkin<D, T> g{HatCells<D>{pairs.grid}, nodes.view(),    pairs.cells,
+                                pairs.position.data(),   moments.data(),  terms.block.data(),
+                                a.rowStart.data(),       a.column.data(), a.block.data()};
+  launch(context, blocksFor(nodes.count(), 4), 128, 0, viscousGalerkinKernel<D, T>, g);
+}
+
+template <int D, class T>
+void HatTransfer<D, T, Cuda>::prepare(Context<Cuda>& context, const MphPairs<D>& pairs) {
+  pairs_ = &pairs;
+  place_.resize(context, pairs.activeCount);
+  forEach(context, pairs.activeCount,
+          [cells = HatCells<D>{pairs.grid}, x = pairs.position.data(),
+           place = place_.data()] __device__(std::size_t i) {
+            const Vec<D> f = cells.fraction(x[i], cells.grid.cellOf(x[i]));
+            for (int k = 0; k < D; ++k) place[i][k] = static_cast<T>(f[k]);
+          });
+}
+
+template <int D, class T>
+void HatTransfer<D, T, Cuda>::restrict(Context<Cuda>& context, const HatNodes<D, Cuda>& nodes,
+                                       std::span<const T> r, std::span<T> b) const {
+  launch(context, blocksFor(nodes.count(), 4), 128, 0, restrictKernel<D, T, 1, T>, HatCells<D>{pairs_->grid},
+         nodes.view(), pairs_->cells, place_.data(), r.data(), b.data());
+}
+
+template <int D, class T>
+void HatTransfer<D, T, Cuda>::restrict(Context<Cuda>& context, const HatNodes<D, Cuda>& nodes,
+                                       std::span<const Gathered<D, T>> r, std::span<T> b) const {
+  launch(context, blocksFor(nodes.count(), 4), 128, 0, restrictKernel<D, T, D, Gathered<D, T>>,
+         HatCells<D>{pairs_->grid}, nodes.view(), pairs_->cells, place_.data(), r.data(), b.data());
+}
+
+/// One thread per particle.
+template <int D, class T>
+void HatTransfer<D, T, Cuda>::prolong(Context<Cuda>& context, const HatNodes<D, Cuda>& nodes, std::span<const T> e,
+                                      ScalarField<T, Cuda> z, std::span<T> x) const {
+  forEach(context, pairs_->activeCount,
+          [cells = HatCells<D>{pairs_->grid}, nodes = nodes.view(), position = pairs_->position.data(),
+           place = place_.data(), e = e.data(), z, x = x.data()] __device__(std::size_t i) {
+            T sum = 0;
+            forEachCorner(cells, nodes, position[i], place[i],
+                          [&](std::uint32_t n, T weight) { sum = fma(weight, e[n], sum); });
+            z[i] = sum;
+            x[i] += sum;
+          });
+}
+
+template <int D, class T>
+void HatTransfer<D, T, Cuda>::prolong(Context<Cuda>& context, const HatNodes<D, Cuda>& nodes, std::span<const T> e,
+                                      std::span<Gathered<D, T>> z, std::span<Gathered<D, T>> x) const {
+  forEach(context, pairs_->fluidCount,
+          [cells = HatCells<D>{pairs_->grid}, nodes = nodes.view(), position = pairs_->position.data(),
+           place = place_.data(), e = e.data(), z = z.data(), x = x.data()] __device__(std::size_t i) {
+            Vec<D, T> sum{};
+            forEachCorner(cells, nodes, position[i], place[i], [&](std::uint32_t n, T weight) {
+              for (int k = 0; k < D; ++k) sum[k] = fma(weight, e[std::size_t{D} * n + k], sum[k]);
+            });
+            z[i] = sum;
+            x[i] = fetch(&x[i]) + sum;
+          });
+}
+
+#define TREACLE_INSTANTIATE(D, T)                                                                    \
+  template void pressureGalerkin<D, T>(Context<Cuda>&, const MphPairs<D>&, const NearProducts<D>&,   \
+                                       const ProjectionTable<double>&, const HatNodes<D, Cuda>&,     \
+                                       Buffer<T, Cuda>&, BlockCsr<1, double, Cuda>&);                \
+  template void viscousGalerkin<D, T>(Context<Cuda>&, const MphPairs<D>&, const WallTerms<D>&,       \
+                                      const HatNodes<D, Cuda>&, Buffer<ViscousMoments<D, T>, Cuda>&, \
+                                      BlockCsr<D, double, Cuda>&);                                   \
+  template class HatTransfer<D, T, Cuda>;
+template void findHatNodes<2>(Context<Cuda>&, const MphPairs<2>&, HatsOn, HatNodes<2, Cuda>&);
+template void findHatNodes<3>(Context<Cuda>&, const MphPairs<3>&, HatsOn, HatNodes<3, Cuda>&);
+TREACLE_INSTANTIATE(2, double)
+TREACLE_INSTANTIATE(3, double)
+TREACLE_INSTANTIATE(2, float)
+TREACLE_INSTANTIATE(3, float)
+#undef TREACLE_INSTANTIATE
+
+}  // namespace treacle

@@ -1,0 +1,192 @@
+#include "treacle/method/particle_products.hpp"
+
+#include "method/near_sums.cuh"
+
+namespace treacle {
+namespace {
+
+/// store(i, ((rho/dt I + V) u)_i) per fluid particle; as ViscosityAndDivergence without the divergence.
+template <int D, class T, bool OneMaterial, class Store>
+struct Viscosity {
+  using StoresVectors = void;
+  static constexpr int values = D;
+  static constexpr bool uses(ListSegment s) { return isFluid(s); }
+  using Own = std::uint8_t;  // material
+  using Other = VelocityOf<D, T>;
+
+  PairConstants<D, T> constants;
+  const Block<D, T>* selfBlock;
+  const Gathered<D, T>* u;
+  Store result;
+
+  __device__ Own loadOwn(const MphPairs<D>& pairs, std::uint32_t i) const {
+    return OneMaterial ? std::uint8_t{0} : pairs.material[i];
+  }
+  __device__ Other loadOther(const MphPairs<D>& pairs, std::uint32_t j) const {
+    return {fetch(&u[j]), loadOwn(pairs, j)};
+  }
+  __device__ void add(const MphPairs<D>& pairs, T* sum, const Vec<D, T>& d, T inverseR, Own own,
+                      const Other& other, ListSegment) const {
+    T f = constants.viscosityReach(inverseR) * dot(d, other.u);
+    if constexpr (!OneMaterial) f *= static_cast<T>(pairs.materials.pairViscosity[own][other.material]);
+    addScaled(sum, f, d);
+  }
+  __device__ void store(const MphPairs<D>& pairs, std::uint32_t i, const Vec<D, T>& sum) const {
+    const T mu = OneMaterial ? static_cast<T>(pairs.materials.pairViscosity[0][0]) : T(1);
+    result(i, selfBlock[i] * fetch(&u[i]) - constants.viscosityFactor * mu * sum);
+  }
+};
+
+template <int D, class T>
+Places<D, T> placesOf(const MphPairs<D>& pairs, const NearProducts<D>& near) {
+  if constexpr (std::is_same_v<T, double>)
+    return Places<D, T>::make(pairs);
+  else
+    return Places<D, T>::make(pairs, near.fixedPosition().data());
+}
+
+/// One thread per particle: the inverse diagonal of S', from the positions of the neighbours. No atomics.
+template <int D, class T>
+__global__ void __launch_bounds__(128)
+    pressureDiagonalKernel(const __grid_constant__ NearView<D, T> view, const std::uint8_t* material,
+                           const __grid_constant__ ProjectionTable<T> table, T* inverseDiagonal) {
+  const std::uint32_t k = blockIdx.x * blockDim.x + threadIdx.x;
+  if (k >= view.activeCount) return;
+  const auto xk = view.own(k);
+  Vec<D, T> own{};
+  T others = 0;
+  struct Loaded {
+    typename NearView<D, T>::Stored x;
+    T weight;
+  };
+  const auto load = [&](ListEntry e) {
+    const std::uint32_t j = e.index();
+    return Loaded{view.other(e), j < view.fluidCount ? table.weight[material[j]] : T(0)};
+  };
+  alongList(view.sliceStart, view.entry, k, load, [&](const Loaded& other) {
+    const Vec<D, T> d = view.difference(other.x, xk), g = pressureReach(view, d) * d;
+    own += g;
+    others += other.weight * norm2(g);
+  });
+  if (k < view.fluidCount) others += table.weight[material[k]] * norm2(own);
+  const T factor = view.constants.pressureFactor;
+  inverseDiagonal[k] = 1 / (table.shift[material[k]] + factor * factor * others);
+}
+
+}  // namespace
+
+template <int D, class T>
+void ParticleProducts<D, T, Cuda>::prepare(Context<Cuda>& context, const MphPairs<D>& pairs, const WallTerms<D>&,
+                                           const MphOperator<D, Cuda>& a) {
+  pairs_ = &pairs;
+  a_ = &a;
+  scalars_.resize(context, pairs.activeCount);
+  vectors_.resize(context, pairs.activeCount);
+  clearBytes(context, vectors_.data(), vectors_.size() * sizeof(vectors_.data()[0]));
+  if constexpr (std::is_same_v<T, float>)
+    forEach(context, pairs.activeCount,
+            [position = a.near().fixedPosition().data(), scalars = scalars_.data(),
+             vectors = vectors_.data()] __device__(std::size_t i) {
+              for (int k = 0; k < 3; ++k) scalars[i].position[k] = position[4 * i + k];
+              if constexpr (D == 2)
+                for (int k = 0; k < 2; ++k) vectors[i].position[k] = position[4 * i + k];
+            });
+  selfBlock_.resize(context, pairs.fluidCount);
+  const double* from = a.selfBlock()[0].a;
+  T* to = selfBlock_.data()->a;
+  forEach(context, std::size_t{D * D} * pairs.fluidCount,
+          [=] __device__(std::size_t k) { to[k] = static_cast<T>(from[k]); });
+}
+
+template <int D, class T>
+void ParticleProducts<D, T, Cuda>::gather(Context<Cuda>& context, std::span<const T> x) {
+  forEach(context, x.size(), [from = x.data(), to = scalars()] __device__(std::size_t k) { to[k] = from[k]; });
+}
+
+template <int D, class T>
+void ParticleProducts<D, T, Cuda>::gather(Context<Cuda>& context, std::span<const Gathered<D, T>> u) {
+  forEach(context, u.size(),
+          [from = u.data(), to = vectors()] __device__(std::size_t i) { to.set(i, fetch(&from[i])); });
+}
+
+template <int D, class T>
+void ParticleProducts<D, T, Cuda>::gatherWeighted(Context<Cuda>& context, const ProjectionTable<T>& table,
+                                                  std::span<const Vec<D>> u) {
+  forEach(context, u.size(),
+          [table, material = pairs_->material.data(), from = u.data(), to = vectors()] __device__(std::size_t i) {
+            Vec<D, T> v;
+            for (int k = 0; k < D; ++k) v[k] = table.weight[material[i]] * static_cast<T>(from[i][k]);
+            to.set(i, v);
+          });
+}
+
+template <int D, class T>
+template <class Store>
+void ParticleProducts<D, T, Cuda>::gradient(Context<Cuda>& context, ScalarField<T, Cuda> q,
+                                            const Store& store) const {
+  const auto view = NearView<D, T>::make(*pairs_, a_->near());
+  if constexpr (std::is_same_v<T, float>)
+    nearGradient(context, view, PlacedScalars<D>{q.at}, store);
+  else
+    nearGradient(context, view, PlainScalars<D, T>{q.at}, store);
+}
+
+template <int D, class T>
+template <class Store>
+void ParticleProducts<D, T, Cuda>::divergence(Context<Cuda>& context, VectorField<D, T, Cuda> u,
+                                              const Store& store) const {
+  const auto view = NearView<D, T>::make(*pairs_, a_->near());
+  if constexpr (std::is_same_v<T, float> && D == 2)
+    nearDivergence(context, view, PlacedVectors{u.at}, store);
+  else
+    nearDivergence(context, view, PlainVectors<D, T, Gathered<D, T>>{u.at}, store);
+}
+
+template <int D, class T>
+template <class Store>
+void ParticleProducts<D, T, Cuda>::viscous(Context<Cuda>& context, const Gathered<D, T>* u,
+                                           const Store& store) const {
+  const auto places = placesOf<D, T>(*pairs_, a_->near());
+  const auto constants = PairConstants<D, T>::make(*pairs_, places.unit(*pairs_));
+  withListSharing(*pairs_, [&](auto sharing) {
+    const auto start = [&](auto oneMaterial) {
+      using Terms = Viscosity<D, T, decltype(oneMaterial)::value, Store>;
+      launchClusterSums<D, T, decltype(sharing)>(
+          context, *pairs_, ListTask<Terms>{pairs_->fluidList, {constants, selfBlock_.data(), u, store}}, places);
+    };
+    if (pairs_->materials.count == 1)
+      start(std::true_type{});
+    else
+      start(std::false_type{});
+  });
+}
+
+template <int D, class T>
+void ParticleProducts<D, T, Cuda>::inverseDiagonals(Context<Cuda>& context, const ProjectionTable<T>& table,
+                                                    std::span<T> pressure, std::span<Block<D, T>> velocity) const {
+  launch(context, blocksFor(pairs_->activeCount, 128), 128, 0, pressureDiagonalKernel<D, T>,
+         NearView<D, T>::make(*pairs_, a_->near()), pairs_->material.data(), table, pressure.data());
+  forEach(context, pairs_->fluidCount, [from = selfBlock_.data(), to = velocity.data()] __device__(std::size_t i) {
+    to[i] = inverse(from[i]);
+  });
+}
+
+#define TREACLE_GRADIENT(D, T, ...)                                                                              \
+  template void ParticleProducts<D, T, Cuda>::gradient(Context<Cuda>&, ScalarField<T, Cuda>, const __VA_ARGS__&) \
+      const;
+#define TREACLE_DIVERGENCE(D, T, ...)                                                             \
+  template void ParticleProducts<D, T, Cuda>::divergence(Context<Cuda>&, VectorField<D, T, Cuda>, \
+                                                         const __VA_ARGS__&) const;
+#define TREACLE_VISCOUS(D, T, ...)                                                                               \
+  template void ParticleProducts<D, T, Cuda>::viscous(Context<Cuda>&, const Gathered<D, T>*, const __VA_ARGS__&) \
+      const;
+#define TREACLE_INSTANTIATE(D, T)              \
+  template class ParticleProducts<D, T, Cuda>; \
+  TREACLE_FOR_EACH_STORE(D, T, Cuda)
+TREACLE_INSTANTIATE(2, double)
+TREACLE_INSTANTIATE(3, double)
+TREACLE_INSTANTIATE(2, float)
+TREACLE_INSTANTIATE(3, float)
+#undef TREACLE_INSTANTIATE
+
+}  // namespace treacle
