@@ -7,6 +7,7 @@
 #include "treacle/model/checks.hpp"
 #include "treacle/model/create.hpp"
 #include "treacle/model/names.hpp"
+#include "treacle/step/solve_stages.hpp"
 
 #include <fmt/format.h>
 
@@ -44,6 +45,7 @@ void printCounts(const Case& c, const Counts& counts) {
 
 void printNumbers(const Case& c) {
   fmt::print("# steps: {}\n", c.steps());
+  fmt::print("# solver: {}\n", solverText(solveStages(c).front()));
   fmt::print("# Courant number: {:.4g}\n", courantNumber(c));
   for (const StabilityNumbers& n : stabilityNumbers(c))
     fmt::print(

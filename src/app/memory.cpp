@@ -17,9 +17,13 @@ struct HostBytes {
   std::uint64_t state;       // fluid and walls: fields and sort
   std::uint64_t matrixFree;  // fluid: neighbour lists, pair coefficients, preconditioner, solver vectors
   std::uint64_t assembled;   // fluid: the matrix in place of the coefficients
+  std::uint64_t projected;   // fluid: what projected-multigrid takes more than the others
+  std::uint64_t beside;      // fluid: the coefficients that it needs beside an assembled matrix
+  std::uint64_t memory;      // fluid: acceleration and jerk, in the state and in each copy of it
 };
-constexpr HostBytes hostBytes2D{210, 100, 1400, 2100};
-constexpr HostBytes hostBytes3D{300, 140, 4200, 14300};
+constexpr HostBytes hostBytes2D{210, 100, 1400, 2100, 620, 780, 32};
+constexpr HostBytes hostBytes3D{300, 140, 4200, 14300, 2150, 2750, 48};
+constexpr std::uint64_t copiesToBeWritten = 3;    // two snapshots, and the file of a checkpoint
 constexpr std::uint64_t programBytes = 26 << 20;  // the program itself, its libraries and a picture
 constexpr std::uint64_t driverBytes = 300 << 20;  // what CUDA takes of the host
 
@@ -29,8 +33,8 @@ struct DeviceBytes {
   std::uint64_t wall;
   std::uint64_t matrixFree, ranges, assembled, spgemm;  // per fluid particle
 };
-constexpr DeviceBytes deviceBytes2D{5'000'000, 119, 660, 560, 2040, 10730};
-constexpr DeviceBytes deviceBytes3D{12'000'000, 190, 1130, 900, 14020, 97500};
+constexpr DeviceBytes deviceBytes2D{5'000'000, 119, 692, 592, 2072, 10762};
+constexpr DeviceBytes deviceBytes3D{12'000'000, 190, 1178, 948, 14068, 97548};
 
 /// `onDevice`: ranges and products of sparse matrices exist on devices only.
 Storage storageOf(const SolverSettings& solver, bool onDevice) {
@@ -61,10 +65,13 @@ std::uint64_t perFluidParticle(const DeviceBytes& bytes, Storage storage) {
 std::uint64_t estimatedMemory(const Case& c, ParticleNumbers n, bool onDevice) {
   const HostBytes& bytes = c.dimensions == 2 ? hostBytes2D : hostBytes3D;
   const std::uint64_t all = n.fluid + n.wall;
-  if (onDevice) return programBytes + driverBytes + all * bytes.snapshots;
-  const std::uint64_t solver =
-      storageOf(c.solver, false) == Storage::Assembled ? bytes.assembled : bytes.matrixFree;
-  return programBytes + all * (bytes.snapshots + bytes.state) + n.fluid * solver;
+  const std::uint64_t snapshots = all * bytes.snapshots + n.fluid * copiesToBeWritten * bytes.memory;
+  if (onDevice) return programBytes + driverBytes + snapshots;
+  const bool assembled = storageOf(c.solver, false) == Storage::Assembled;
+  std::uint64_t solver = assembled ? bytes.assembled : bytes.matrixFree;
+  if (c.solver.preconditioner == PreconditionerKind::ProjectedMultigrid)
+    solver += bytes.projected + (assembled ? bytes.beside : 0);
+  return programBytes + snapshots + all * bytes.state + n.fluid * (bytes.memory + solver);
 }
 
 std::uint64_t estimatedDeviceMemory(const Case& c, ParticleNumbers n) {

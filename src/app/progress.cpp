@@ -46,9 +46,14 @@ void Progress::update(const StepReport& report) {
 
 void Progress::message(const std::string& text) {
   if (quiet_) return;
+  endLine();
+  fmt::print("{}\n", text);
+  std::fflush(stdout);
+}
+
+void Progress::endLine() {
   if (lineOpen_) fmt::print("\n");
   lineOpen_ = false;
-  fmt::print("{}\n", text);
   std::fflush(stdout);
 }
 

@@ -17,6 +17,9 @@ class Progress {
 
   void update(const StepReport& report);
 
+  /// Ends the progress line, for something else to be printed below it.
+  void endLine();
+
   /// Prints a line of its own, below which the progress line goes on.
   void message(const std::string& text);
 

@@ -23,17 +23,10 @@ Frame wallsFrame(const Snapshot<D>& s) {
 HistoryRow historyRow(const StepReport& r) {
   const Diagnostics& d = r.diagnostics;
   const PhaseSeconds& s = r.seconds;
-  return {r.step,
-          r.time,
-          r.iterations,
-          r.residual,
-          d.kineticEnergy,
-          d.potentialEnergy,
-          d.frontX,
-          d.top,
-          d.maxSpeed,
-          s.total(),
-          {s.search, s.lists, s.coefficients, s.coarse, s.solve, s.update}};
+  return {r.step,     r.time,          r.iterations,
+          r.residual, d.kineticEnergy, d.potentialEnergy,
+          d.frontX,   d.top,           d.maxSpeed,
+          s.total(),  r.fallbacks,     {s.search, s.lists, s.coefficients, s.coarse, s.solve, s.update}};
 }
 
 }  // namespace
@@ -60,6 +53,7 @@ void Recorder<D>::record(const StepReport& report) {
   if (steps_++ == 0) firstIterations_ = report.iterations;
   lastIterations_ = report.iterations;
   iterations_ += report.iterations;
+  fallbacks_ += report.fallbacks;
   seconds_ += report.seconds;
   Timer timer;
   history_.append(historyRow(report));
@@ -108,6 +102,7 @@ void Recorder<D>::summarise(RunSummary& summary) const {
   summary.meanIterations = steps_ > 0 ? static_cast<double>(iterations_) / static_cast<double>(steps_) : 0;
   summary.firstIterations = firstIterations_;
   summary.lastIterations = lastIterations_;
+  summary.fallbacks = fallbacks_;
   summary.phaseSeconds = {
       {"search", seconds_.search}, {"lists", seconds_.lists}, {"coefficients", seconds_.coefficients},
       {"coarse", seconds_.coarse}, {"solve", seconds_.solve}, {"update", seconds_.update},

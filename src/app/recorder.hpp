@@ -42,7 +42,7 @@ class Recorder {
 
   void drawPicture();
 
-  /// Fills in iterations and seconds. To be called after wait().
+  /// Fills in iterations, fallbacks and seconds. To be called after wait().
   void summarise(RunSummary& summary) const;
 
  private:
@@ -59,6 +59,7 @@ class Recorder {
   std::int64_t frameStep_ = -1, checkpointStep_ = -1;  // of the last ones on disk; written by the output thread
   std::int64_t steps_ = 0, iterations_ = 0;
   int firstIterations_ = 0, lastIterations_ = 0;
+  std::int64_t fallbacks_ = 0;
   PhaseSeconds seconds_;
   double outputSeconds_ = 0;  // that the simulation had to wait
   OutputThread<D> output_;    // last: it uses the others

@@ -15,6 +15,7 @@
 #include "treacle/io/case_reader.hpp"
 #include "treacle/io/checkpoint.hpp"
 #include "treacle/model/names.hpp"
+#include "treacle/step/solve_stages.hpp"
 
 #include <fmt/format.h>
 #include <omp.h>
@@ -23,6 +24,7 @@
 #include <new>
 #include <optional>
 #include <type_traits>
+#include <utility>
 
 namespace treacle {
 
@@ -70,6 +72,7 @@ class Run {
     say(fmt::format("{}: {} fluid and {} wall particles, {} steps of {:g} s, into {}",
                     case_.title.empty() ? "case" : case_.title, particles.fluidCount, particles.wallCount(),
                     case_.steps(), case_.time.step, directory_.path().string()));
+    log_.info("solver: " + solverText(solveStages(case_).front()));
     if (start_.step > 0) say(fmt::format("continues after step {} (t = {:.6g} s)", start_.step, start_.time));
   }
 
@@ -77,9 +80,18 @@ class Run {
     while (simulation_->step() < case_.steps() && !interruptSignal()) {
       const StepReport report = simulation_->advance();
       recorder_->record(report);
+      if (report.fallbacks > 0) warnOfFallback(report);
       progress_.update(report);
     }
     if (simulation_->step() < case_.steps()) throw RunError(fmt::format("stopped by {}", interruptSignal()));
+  }
+
+  void warnOfFallback(const StepReport& report) {
+    if (std::exchange(fellBack_, true)) return;
+    progress_.endLine();
+    log_.warning(fmt::format(
+        "step {}: the linear solver had to fall back after {}; further steps that do are counted in {}",
+        report.step, report.failures, directory_.history().filename().string()));
   }
 
   void copyState(Snapshot<D>& snapshot) {
@@ -166,6 +178,7 @@ class Run {
   std::optional<Recorder<D>> recorder_;
   RunSummary summary_;
   std::string failure_;
+  bool fellBack_ = false;
 };
 
 }  // namespace treacle

@@ -19,15 +19,26 @@ MultigridSettings readMultigrid(const Section& solver) {
   return multigrid;
 }
 
-/// The matrix is assembled from neighbour lists.
-void requireNoMatrix(const Section& s, const SolverSettings& solver) {
+ProjectedSettings readProjected(const Section& solver) {
+  const Section s = solver.section("projected", "[solver.projected]",
+                                   {"pressure_degree", "grid_degree", "velocity_degree", "iteration_bound"});
+  ProjectedSettings projected;
+  projected.pressureDegree = s.integer("pressure_degree", 0, projected.pressureDegree);
+  projected.gridDegree = s.integer("grid_degree", 0, projected.gridDegree);
+  projected.velocityDegree = s.integer("velocity_degree", 0, projected.velocityDegree);
+  projected.iterationBound = s.integer("iteration_bound", 1, projected.iterationBound);
+  return projected;
+}
+
+/// What needs neighbour lists.
+void refuseWithoutLists(const Section& s, const SolverSettings& solver) {
   const auto refuse = [&](std::string_view key, std::string_view word) {
     throw s.error("neighbours",
-                  fmt::format("expected 'lists' with {} = '{}', found 'ranges': the matrix is assembled "
-                              "from lists",
-                              key, word));
+                  fmt::format("expected 'lists' with {} = '{}', found 'ranges': that needs lists", key, word));
   };
   const MultigridSettings& m = solver.multigrid;
+  if (solver.preconditioner == PreconditionerKind::ProjectedMultigrid)
+    refuse("preconditioner", nameOf(solver.preconditioner));
   if (solver.operatorKind == OperatorKind::Assembled) refuse("operator", nameOf(solver.operatorKind));
   if (m.particleDiagonal == SmootherDiagonal::ExtendedJacobi)
     refuse("multigrid.particle_diagonal", nameOf(m.particleDiagonal));
@@ -61,19 +72,22 @@ MethodSettings readMethod(const Section& top) {
 SolverSettings readSolver(const Section& top) {
   const Section s = top.section("solver", "[solver]",
                                 {"krylov", "preconditioner", "tolerance", "max_iterations", "operator",
-                                 "neighbours", "precision", "multigrid"});
+                                 "neighbours", "precision", "first_guess", "multigrid", "projected"});
   SolverSettings solver;
-  solver.krylov = s.choice<KrylovKind>("krylov", solver.krylov);
   solver.preconditioner = s.choice<PreconditionerKind>("preconditioner", solver.preconditioner);
+  const bool projected = solver.preconditioner == PreconditionerKind::ProjectedMultigrid;
+  solver.krylov = s.choice<KrylovKind>("krylov", projected ? KrylovKind::Cg : KrylovKind::Cr);
   solver.operatorKind = s.choice<OperatorKind>("operator", solver.operatorKind);
   solver.neighbours = s.choice<NeighbourKind>("neighbours", solver.neighbours);
-  solver.precision = s.choice<Precision>("precision", solver.precision);
+  solver.precision = s.choice<Precision>("precision", projected ? Precision::Mixed : Precision::Double);
+  solver.firstGuess = s.choice<FirstGuess>("first_guess", solver.firstGuess);
   solver.tolerance = s.number("tolerance", Bound::Positive, "", solver.tolerance);
   if (solver.tolerance >= 1)
     throw s.error("tolerance", fmt::format("expected a number between 0 and 1, found {}", solver.tolerance));
   solver.maxIterations = s.integer("max_iterations", 1, solver.maxIterations);
   solver.multigrid = readMultigrid(s);
-  if (solver.neighbours == NeighbourKind::Ranges) requireNoMatrix(s, solver);
+  solver.projected = readProjected(s);
+  if (solver.neighbours == NeighbourKind::Ranges) refuseWithoutLists(s, solver);
   return solver;
 }
 

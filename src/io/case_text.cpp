@@ -95,6 +95,7 @@ void writeSettings(Text& text, const Case& c) {
   line(text, "operator = \"{}\"", nameOf(c.solver.operatorKind));
   line(text, "neighbours = \"{}\"", nameOf(c.solver.neighbours));
   line(text, "precision = \"{}\"", nameOf(c.solver.precision));
+  line(text, "first_guess = \"{}\"", nameOf(c.solver.firstGuess));
   line(text, "tolerance = {}", c.solver.tolerance);
   line(text, "max_iterations = {}", c.solver.maxIterations);
   line(text, "\n[solver.multigrid]");
@@ -103,6 +104,11 @@ void writeSettings(Text& text, const Case& c) {
   line(text, "coarsest_sweeps = {}", c.solver.multigrid.coarsestSweeps);
   line(text, "particle_diagonal = \"{}\"", nameOf(c.solver.multigrid.particleDiagonal));
   line(text, "coarse_operators = \"{}\"", nameOf(c.solver.multigrid.coarseOperators));
+  line(text, "\n[solver.projected]");
+  line(text, "pressure_degree = {}", c.solver.projected.pressureDegree);
+  line(text, "grid_degree = {}", c.solver.projected.gridDegree);
+  line(text, "velocity_degree = {}", c.solver.projected.velocityDegree);
+  line(text, "iteration_bound = {}", c.solver.projected.iterationBound);
 }
 
 void writeOutput(Text& text, const OutputSettings& output) {

@@ -15,15 +15,25 @@ namespace treacle {
 namespace {
 
 constexpr std::string_view formatName = "treacle checkpoint";
-constexpr std::int32_t formatVersion = 1;
+constexpr std::int32_t formatVersion = 2;  // 1: without acceleration and jerk
 
-/// Calls f(name, field) for every field. The binding names all members of Particles: it does not compile once one
+/// A field as the file holds it.
+struct FieldInfo {
+  const char* name;
+  std::uint32_t count;     // of its values
+  std::int32_t since = 1;  // first version of the format with it; it counts as zero in older files
+};
+
+/// Calls f(info, field) for every field. The binding names all members of Particles: it does not compile once one
 /// is added that is not written here.
 template <class P, class F>
 void forEachNamedField(P& particles, F&& f) {
-  auto& [fluidCount, count, position, velocity, pressure, numberDensity, material, id] = particles;
-  f("position", position), f("velocity", velocity), f("pressure", pressure);
-  f("number_density", numberDensity), f("material", material), f("id", id);
+  auto& [fluidCount, count, position, velocity, pressure, numberDensity, material, id, acceleration, jerk] =
+      particles;
+  f(FieldInfo{"position", count}, position), f(FieldInfo{"velocity", count}, velocity);
+  f(FieldInfo{"pressure", count}, pressure), f(FieldInfo{"number_density", count}, numberDensity);
+  f(FieldInfo{"material", count}, material), f(FieldInfo{"id", count}, id);
+  f(FieldInfo{"acceleration", fluidCount, 2}, acceleration), f(FieldInfo{"jerk", fluidCount, 2}, jerk);
 }
 
 /// Type of a value in the file and in memory.
@@ -75,30 +85,30 @@ T readAttribute(hid_t file, const char* name) {
 }
 
 template <class T>
-void writeField(hid_t file, const char* name, const Buffer<T>& field, std::uint32_t count) {
+void writeField(hid_t file, const FieldInfo& info, const Buffer<T>& field) {
   const Layout layout = layoutOf(field.data());
-  const Extents extents(count, layout);
+  const Extents extents(info.count, layout);
   const Hdf5Handle space(H5Screate_simple(extents.rank, extents.size.data(), nullptr), H5Sclose);
   const Hdf5Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
   // Without the date the same state gives the same file.
   hdf5Checked(H5Pset_obj_track_times(properties, false));
-  const Hdf5Handle dataset(H5Dcreate2(file, name, layout.file, space, H5P_DEFAULT, properties, H5P_DEFAULT),
+  const Hdf5Handle dataset(H5Dcreate2(file, info.name, layout.file, space, H5P_DEFAULT, properties, H5P_DEFAULT),
                            H5Dclose);
   hdf5Checked(H5Dwrite(dataset, layout.memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, field.data()));
 }
 
 template <class T>
-void readField(hid_t file, const char* name, Buffer<T>& field, std::uint32_t count) {
+void readField(hid_t file, const FieldInfo& info, Buffer<T>& field) {
   const Layout layout = layoutOf(field.data());
-  const Extents expected(count, layout);
-  const Hdf5Handle dataset(H5Dopen2(file, name, H5P_DEFAULT), H5Dclose);
+  const Extents expected(info.count, layout);
+  const Hdf5Handle dataset(H5Dopen2(file, info.name, H5P_DEFAULT), H5Dclose);
   const Hdf5Handle space(H5Dget_space(dataset), H5Sclose);
   Extents found = expected;
   if (H5Sget_simple_extent_ndims(space) != expected.rank ||
       H5Sget_simple_extent_dims(space, found.size.data(), nullptr) < 0 ||
       !std::equal(found.size.begin(), found.size.begin() + expected.rank, expected.size.begin()))
-    throw Hdf5Error(fmt::format("the field {} does not have {} values", name, count));
-  field.resize(count);
+    throw Hdf5Error(fmt::format("the field {} does not have {} values", info.name, info.count));
+  field.resize(info.count);
   hdf5Checked(H5Dread(dataset, layout.memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, field.data()));
 }
 
@@ -112,22 +122,24 @@ void fill(hid_t file, const Particles<D>& particles, std::int64_t step, double t
   writeAttribute(file, "time", time);
   writeAttribute(file, "fluid_count", particles.fluidCount);
   writeAttribute(file, "wall_count", particles.wallCount());
-  forEachNamedField(particles,
-                    [&](const char* name, const auto& field) { writeField(file, name, field, particles.count); });
+  forEachNamedField(particles, [&](const FieldInfo& info, const auto& field) { writeField(file, info, field); });
 }
 
-/// Errors: Hdf5Error unless the file says that it is a checkpoint of this version and dimension.
-void requireFormat(hid_t file, int dimensions) {
+/// Version of the file. Errors: Hdf5Error unless it says that it is a checkpoint of a known version and this
+/// dimension.
+std::int32_t requireFormat(hid_t file, int dimensions) {
   std::string format(formatName.size() + 1, '\0');
   if (hdf5Checked(H5Aexists(file, "format")) > 0) {
     const Hdf5Handle attribute(H5Aopen(file, "format", H5P_DEFAULT), H5Aclose);
     hdf5Checked(H5Aread(attribute, formatType(), format.data()));
   }
   if (format.c_str() != formatName) throw Hdf5Error("an HDF5 file of another program");
-  if (const auto version = readAttribute<std::int32_t>(file, "version"); version != formatVersion)
-    throw Hdf5Error(fmt::format("version {}, expected {}", version, formatVersion));
+  const auto version = readAttribute<std::int32_t>(file, "version");
+  if (version < 1 || version > formatVersion)
+    throw Hdf5Error(fmt::format("version {}, expected 1 to {}", version, formatVersion));
   if (const auto found = readAttribute<std::int32_t>(file, "dimensions"); found != dimensions)
     throw Hdf5Error(fmt::format("{} dimensions, expected {}", found, dimensions));
+  return version;
 }
 
 void requireReadable(const std::filesystem::path& path) {
@@ -148,7 +160,7 @@ void writeCheckpoint(const std::filesystem::path& path, const Particles<D>& part
   try {
     // HDF5 makes the file in memory: it cannot close a file that a full disk keeps it from finishing.
     std::size_t bytes = 1 << 16;
-    forEachNamedField(particles, [&](const char*, const auto& field) { bytes += field.bytes(); });
+    forEachNamedField(particles, [&](const FieldInfo&, const auto& field) { bytes += field.bytes(); });
     const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
     hdf5Checked(H5Pset_fapl_core(access, bytes, false));
     // It would read an existing file of this name first; below a file there is none.
@@ -173,15 +185,18 @@ Checkpoint<D> readCheckpoint(const std::filesystem::path& path) {
   requireReadable(path);
   try {
     const Hdf5Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
-    requireFormat(file, D);
+    const std::int32_t version = requireFormat(file, D);
     Checkpoint<D> checkpoint;
     checkpoint.step = readAttribute<std::int64_t>(file, "step");
     checkpoint.time = readAttribute<double>(file, "time");
     Particles<D>& particles = checkpoint.particles;
     particles.fluidCount = readAttribute<std::uint32_t>(file, "fluid_count");
     particles.count = particles.fluidCount + readAttribute<std::uint32_t>(file, "wall_count");
-    forEachNamedField(particles,
-                      [&](const char* name, auto& field) { readField(file, name, field, particles.count); });
+    forEachNamedField(particles, [&]<class T>(const FieldInfo& info, Buffer<T>& field) {
+      if (version >= info.since) return readField(file, info, field);
+      field.resize(info.count);
+      std::fill(field.begin(), field.end(), T{});
+    });
     return checkpoint;
   } catch (const Hdf5Error& e) {
     throw InputError(fmt::format("{}: no usable checkpoint: {}", path.string(), e.what()));

@@ -20,28 +20,47 @@ namespace {
 
 constexpr std::string_view columns =
     "step,time,iterations,residual,kinetic_energy,potential_energy,front_x,top,max_speed,seconds";
+constexpr std::string_view fallbackColumn = ",fallbacks";
 constexpr std::string_view timingColumns = ",search_s,lists_s,coefficients_s,coarse_s,solve_s,update_s";
 
-std::string header(bool timings) {
-  return fmt::format("{}{}\n", columns, timings ? timingColumns : std::string_view{});
+/// Which columns a file has beside those that all have.
+struct Layout {
+  bool fallbacks = true;  // not in older files
+  bool timings = false;
+};
+
+std::string header(const Layout& layout) {
+  return fmt::format("{}{}{}\n", columns, layout.fallbacks ? fallbackColumn : "",
+                     layout.timings ? timingColumns : "");
 }
 
 /// Calls f with every value of the row in the order of the columns.
 template <class Row, class F>
-void forEachColumn(Row& row, bool timings, F&& f) {
+void forEachColumn(Row& row, const Layout& layout, F&& f) {
   f(row.step), f(row.time), f(row.iterations), f(row.residual), f(row.kineticEnergy), f(row.potentialEnergy);
   f(row.frontX), f(row.top), f(row.maxSpeed), f(row.seconds);
-  if (!timings) return;
+  if (layout.fallbacks) f(row.fallbacks);
+  if (!layout.timings) return;
   auto& t = row.timings;
   f(t.search), f(t.lists), f(t.coefficients), f(t.coarse), f(t.solve), f(t.update);
 }
 
-HistoryRow parseRow(std::string_view line, bool timings, const std::string& where) {
+Layout layoutOf(std::string_view text, const std::filesystem::path& path) {
+  for (const bool fallbacks : {true, false})
+    for (const bool timings : {true, false})
+      if (text.starts_with(header({fallbacks, timings}))) return {fallbacks, timings};
+  throw InputError(fmt::format("{}:1: not a history written by treacle; expected the header {}{}", path.string(),
+                               columns, fallbackColumn));
+}
+
+HistoryRow parseRow(std::string_view line, const Layout& layout, const std::string& where) {
   HistoryRow row;
   const char* next = line.data();
   const char* const end = line.data() + line.size();
   bool first = true, good = true;
-  forEachColumn(row, timings, [&](auto& value) {
+  int expected = 0;
+  forEachColumn(row, layout, [&](auto& value) {
+    ++expected;
     if (!std::exchange(first, false)) good = good && next != end && *next++ == ',';
     if (!good) return;
     const auto result = std::from_chars(next, end, value);
@@ -49,7 +68,7 @@ HistoryRow parseRow(std::string_view line, bool timings, const std::string& wher
     next = result.ptr;
   });
   if (!good || next != end)
-    throw InputError(fmt::format("{}: expected {} numbers, found '{}'", where, timings ? "sixteen" : "ten", line));
+    throw InputError(fmt::format("{}: expected {} numbers, found '{}'", where, expected, line));
   return row;
 }
 
@@ -57,7 +76,7 @@ HistoryRow parseRow(std::string_view line, bool timings, const std::string& wher
 
 HistoryWriter::HistoryWriter(std::filesystem::path path, bool timings)
     : path_(std::move(path)), timings_(timings) {
-  const std::string firstLine = header(timings_);
+  const std::string firstLine = header({.timings = timings_});
   writeFile(path_, firstLine);
   descriptor_ = ::open(path_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
   if (descriptor_ < 0) throw RunError(writeFailure(path_, errno));
@@ -70,7 +89,7 @@ HistoryWriter::~HistoryWriter() {
 
 void HistoryWriter::append(const HistoryRow& row) {
   std::string line;
-  forEachColumn(row, timings_, [&](auto value) { line += fmt::format("{},", value); });
+  forEachColumn(row, {.timings = timings_}, [&](auto value) { line += fmt::format("{},", value); });
   line.back() = '\n';
   if (!writeAll(descriptor_, line.data(), line.size())) {
     std::string message = writeFailure(path_, errno);
@@ -82,14 +101,11 @@ void HistoryWriter::append(const HistoryRow& row) {
 
 std::vector<HistoryRow> readHistory(const std::filesystem::path& path) {
   const std::string text = readTextFile(path);
-  const bool timings = text.starts_with(header(true));
-  if (!timings && !text.starts_with(header(false)))
-    throw InputError(
-        fmt::format("{}:1: not a history written by treacle; expected the header {}", path.string(), columns));
+  const Layout layout = layoutOf(text, path);
   std::vector<HistoryRow> rows;
-  std::size_t begin = header(timings).size();
+  std::size_t begin = header(layout).size();
   for (std::size_t end; (end = text.find('\n', begin)) != text.npos; begin = end + 1)
-    rows.push_back(parseRow(std::string_view(text).substr(begin, end - begin), timings,
+    rows.push_back(parseRow(std::string_view(text).substr(begin, end - begin), layout,
                             fmt::format("{}:{}", path.string(), rows.size() + 2)));
   return rows;
 }

@@ -23,6 +23,7 @@ void sortGroup(Particles<D>& particles, std::uint32_t begin, std::uint32_t end, 
   if (std::is_sorted(keyed.begin(), keyed.end(), before)) return;  // walls at rest, most of the time
   std::sort(keyed.begin(), keyed.end(), before);
   particles.forEachField([&]<class T>(Buffer<T>& field) {
+    if (field.size() < end) return;  // a field that walls do not have
     workspace.field.resize(keyed.size() * sizeof(T));
     T* sorted = reinterpret_cast<T*>(workspace.field.data());
     parallelFor(keyed.size(), parallelGrain, [&](std::size_t i) { sorted[i] = field[keyed[i].index]; });

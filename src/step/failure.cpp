@@ -1,5 +1,7 @@
 #include "failure.hpp"
 
+#include "treacle/step/solve_stages.hpp"
+
 #include <fmt/format.h>
 
 #include <cmath>
@@ -21,9 +23,18 @@ bool isFinite(const Vec<D>& v) {
 
 }  // namespace
 
-std::string describeFailure(const SolveReport& report, double tolerance) {
-  const std::string numbers = fmt::format("|r|^2/|b|^2 = {:.3g} after {} iterations (tolerance {:.3g})",
-                                          report.residual, report.iterations, tolerance);
+std::string describeStage(const SolverSettings& stage, const SolveReport& report) {
+  const std::string_view what = report.status == SolveStatus::IterationLimit ? "no convergence"
+                                : report.status == SolveStatus::Breakdown    ? "breakdown"
+                                                                             : "a value that is not finite";
+  return fmt::format("{}: {} after {} iterations, |r|^2/|b|^2 = {:.3g}", solverText(stage), what,
+                     report.iterations, report.residual);
+}
+
+std::string describeFailure(const SolveReport& report, double tolerance, const std::string& failures) {
+  std::string numbers = fmt::format("|r|^2/|b|^2 = {:.3g} after {} iterations (tolerance {:.3g})", report.residual,
+                                    report.iterations, tolerance);
+  if (!failures.empty()) numbers += fmt::format("; tried before: {}", failures);
   switch (report.status) {
     case SolveStatus::IterationLimit:
       return "the linear solver did not converge: " + numbers +

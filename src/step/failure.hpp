@@ -2,6 +2,7 @@
 
 #include "treacle/core/error.hpp"
 #include "treacle/linear/krylov_scalars.hpp"
+#include "treacle/model/case.hpp"
 #include "treacle/model/particles.hpp"
 
 #include <cstdint>
@@ -10,8 +11,11 @@
 
 namespace treacle {
 
-/// The diagnosis of a solve that did not converge.
-std::string describeFailure(const SolveReport& report, double tolerance);
+/// Why one way of solving was given up, e.g. "cr, bucket-multigrid, double: breakdown after 3 iterations, ...".
+std::string describeStage(const SolverSettings& stage, const SolveReport& report);
+
+/// The diagnosis of a solve that did not converge; `failures`: of the stages before the last one.
+std::string describeFailure(const SolveReport& report, double tolerance, const std::string& failures);
 
 /// Where the right-hand side b (per fluid particle) is not finite.
 template <int D>

@@ -1,7 +1,11 @@
 #include "mph_solver.hpp"
 
+#include "failure.hpp"
 #include "treacle/linear/diagonal.hpp"
 #include "treacle/method/bucket_galerkin.hpp"
+
+#include <algorithm>
+#include <cmath>
 
 namespace treacle {
 namespace {
@@ -15,26 +19,42 @@ template <int D>
 std::span<Vec<D>> asVectors(std::span<double> flat) {
   return {reinterpret_cast<Vec<D>*>(flat.data()), flat.size() / D};
 }
+template <int D>
+std::span<const double> flat(std::span<const Vec<D>> v) {
+  return {reinterpret_cast<const double*>(v.data()), v.size() * D};
+}
+template <int D>
+std::span<double> flat(std::span<Vec<D>> v) {
+  return {reinterpret_cast<double*>(v.data()), v.size() * D};
+}
+
+template <int D>
+ProjectionDegrees degreesOf(const ProjectedSettings& s, const MphPairs<D>& pairs) {
+  return chooseDegrees({s.pressureDegree, s.gridDegree, s.velocityDegree}, projectionConstants(pairs));
+}
 
 }  // namespace
 
 template <int D, class Backend>
 bool MphSolver<D, Backend>::usesSpgemm() const {
-  return onDevice && settings_.preconditioner == PreconditionerKind::BucketMultigrid &&
-         settings_.multigrid.coarseOperators == CoarseKind::Spgemm;
+  return onDevice && stage().preconditioner == PreconditionerKind::BucketMultigrid &&
+         stage().multigrid.coarseOperators == CoarseKind::Spgemm;
 }
 
 template <int D, class Backend>
 bool MphSolver<D, Backend>::needsAssembled() const {
-  return settings_.operatorKind == OperatorKind::Assembled || usesSpgemm() ||
-         (settings_.preconditioner == PreconditionerKind::BucketMultigrid &&
-          settings_.multigrid.particleDiagonal == SmootherDiagonal::ExtendedJacobi);
+  return stage().operatorKind == OperatorKind::Assembled || usesSpgemm() ||
+         (stage().preconditioner == PreconditionerKind::BucketMultigrid &&
+          stage().multigrid.particleDiagonal == SmootherDiagonal::ExtendedJacobi);
 }
 
 template <int D, class Backend>
 void MphSolver<D, Backend>::prepareOperator(Context<Backend>& context, const MphPairs<D>& pairs,
                                             const WallTerms<D>& terms) {
-  if (settings_.operatorKind == OperatorKind::MatrixFree) matrixFree_.prepare(context, pairs, terms);
+  stage_ = 0;
+  if (stage().operatorKind == OperatorKind::MatrixFree ||
+      stage().preconditioner == PreconditionerKind::ProjectedMultigrid)
+    matrixFree_.prepare(context, pairs, terms);
   if (!needsAssembled()) return;
   gradientRows(context, pairs, rows_);
   assemble(context, pairs, terms, rows_, assembled_);
@@ -43,10 +63,18 @@ void MphSolver<D, Backend>::prepareOperator(Context<Backend>& context, const Mph
 template <int D, class Backend>
 void MphSolver<D, Backend>::preparePreconditioner(Context<Backend>& context, const MphPairs<D>& pairs,
                                                   const CellRanges<Backend>& ranges, const WallTerms<D>& terms) {
-  if (settings_.precision == Precision::Mixed)
-    prepare(context, pairs, ranges, terms, single_);
+  pairs_ = &pairs;
+  ranges_ = &ranges;
+  terms_ = terms;
+  prepareStage(context);
+}
+
+template <int D, class Backend>
+void MphSolver<D, Backend>::prepareStage(Context<Backend>& context) {
+  if (stage().precision == Precision::Mixed)
+    prepare(context, *pairs_, *ranges_, terms_, single_);
   else
-    prepare(context, pairs, ranges, terms, double_);
+    prepare(context, *pairs_, *ranges_, terms_, double_);
 }
 
 template <int D, class Backend>
@@ -54,17 +82,19 @@ template <class T>
 void MphSolver<D, Backend>::prepare(Context<Backend>& context, const MphPairs<D>& pairs,
                                     const CellRanges<Backend>& ranges, const WallTerms<D>& terms,
                                     Preconditioner<T>& k) {
-  if (settings_.preconditioner == PreconditionerKind::None) return;
+  if (stage().preconditioner == PreconditionerKind::None) return;
+  if (stage().preconditioner == PreconditionerKind::ProjectedMultigrid)
+    return k.projected.setup(context, pairs, terms, matrixFree_, degreesOf(stage().projected, pairs));
   diagonal_.resize(context, pairs.fluidCount);
   diagonalBlocks<D>(context, pairs, terms, diagonal_);
-  if (settings_.preconditioner == PreconditionerKind::BlockJacobi) {
+  if (stage().preconditioner == PreconditionerKind::BlockJacobi) {
     k.blockInverse.resize(context, pairs.fluidCount);
     blockInverse<D, T>(context, diagonal_, k.blockInverse);
     return;
   }
   k.inverse.resize(context, pairs.fluidCount);
   jacobiInverse<D, T>(context, diagonal_, k.inverse);
-  if (settings_.preconditioner == PreconditionerKind::BucketMultigrid)
+  if (stage().preconditioner == PreconditionerKind::BucketMultigrid)
     prepareMultigrid(context, pairs, ranges, terms, k);
 }
 
@@ -73,7 +103,7 @@ template <class T>
 void MphSolver<D, Backend>::prepareMultigrid(Context<Backend>& context, const MphPairs<D>& pairs,
                                              const CellRanges<Backend>& ranges, const WallTerms<D>& terms,
                                              Preconditioner<T>& k) {
-  const MultigridSettings& m = settings_.multigrid;
+  const MultigridSettings& m = stage().multigrid;
   if (m.particleDiagonal == SmootherDiagonal::ExtendedJacobi)
     extendedJacobiInverse<D, double, T>(context, assembled_, k.inverse);
   findBuckets(context, ranges.key, D * CellGrid<D>::subBits, D, levels_);
@@ -91,8 +121,42 @@ void MphSolver<D, Backend>::prepareMultigrid(Context<Backend>& context, const Mp
 }
 
 template <int D, class Backend>
-SolveReport MphSolver<D, Backend>::solve(Context<Backend>& context, std::span<const Vec<D>> b,
-                                         std::span<Vec<D>> u) {
+StagedReport MphSolver<D, Backend>::solve(Context<Backend>& context, std::span<const Vec<D>> b,
+                                          std::span<Vec<D>> u) {
+  if (stage_ + 1 < stages_.size()) {
+    guess_.resize(context, u.size());
+    copy(context, flat<D>(u), flat<D>(guess_.span()));
+  }
+  StagedReport total;
+  while (true) {
+    const SolveReport report = solveStage(context, b, u);
+    const int iterations = total.iterations + report.iterations;
+    static_cast<SolveReport&>(total) = report;
+    total.iterations = iterations;
+    // No other way helps where the system itself or the guess is not finite.
+    const bool hopeless = !std::isfinite(report.startResidual);
+    if (report.status == SolveStatus::Converged || hopeless || stage_ + 1 == stages_.size()) return total;
+    total.failures += (total.fallbacks++ > 0 ? "; " : "") + describeStage(stage(), report);
+    keepBetter(context, report, u);
+    ++stage_;
+    prepareStage(context);
+  }
+}
+
+/// Of the guess that a stage started from and what it made of it.
+template <int D, class Backend>
+void MphSolver<D, Backend>::keepBetter(Context<Backend>& context, const SolveReport& report, std::span<Vec<D>> u) {
+  // A step with a value that is not finite may have spoiled u after the residual was taken.
+  const bool better = report.status != SolveStatus::NotFinite && report.residual < report.startResidual;
+  if (better)
+    copy(context, flat<D>(u), flat<D>(guess_.span()));
+  else
+    copy(context, flat<D>(guess_.span()), flat<D>(u));
+}
+
+template <int D, class Backend>
+SolveReport MphSolver<D, Backend>::solveStage(Context<Backend>& context, std::span<const Vec<D>> b,
+                                              std::span<Vec<D>> u) {
   const auto matrixFree = [&](std::span<const double> x, std::span<double> y) {
     matrixFree_.multiply(context, asVectors<D>(x), asVectors<D>(y));
   };
@@ -100,10 +164,10 @@ SolveReport MphSolver<D, Backend>::solve(Context<Backend>& context, std::span<co
     multiply<D, double>(context, assembled_, asVectors<D>(x), asVectors<D>(y));
   };
   const auto withOperator = [&](const auto& a) {
-    return settings_.precision == Precision::Mixed ? solveWith(context, a, single_, b, u)
-                                                   : solveWith(context, a, double_, b, u);
+    return stage().precision == Precision::Mixed ? solveWith(context, a, single_, b, u)
+                                                 : solveWith(context, a, double_, b, u);
   };
-  return settings_.operatorKind == OperatorKind::Assembled ? withOperator(assembled) : withOperator(matrixFree);
+  return stage().operatorKind == OperatorKind::Assembled ? withOperator(assembled) : withOperator(matrixFree);
 }
 
 template <int D, class Backend>
@@ -111,7 +175,7 @@ template <class T, class Operator>
 SolveReport MphSolver<D, Backend>::solveWith(Context<Backend>& context, const Operator& a, Preconditioner<T>& k,
                                              std::span<const Vec<D>> b, std::span<Vec<D>> u) {
   using Flat = std::span<const double>;
-  switch (settings_.preconditioner) {
+  switch (stage().preconditioner) {
     case PreconditionerKind::Jacobi:
       return iterate(
           context, a,
@@ -133,6 +197,11 @@ SolveReport MphSolver<D, Backend>::solveWith(Context<Backend>& context, const Op
             k.multigrid.apply(context, k.inverse, asVectors<D>(r), asVectors<D>(z));
           },
           b, u);
+    case PreconditionerKind::ProjectedMultigrid:
+      return iterate(
+          context, a,
+          [&](Flat r, std::span<double> z) { k.projected.apply(context, asVectors<D>(r), asVectors<D>(z)); }, b,
+          u);
     case PreconditionerKind::None:
       break;
   }
@@ -144,19 +213,20 @@ template <int D, class Backend>
 template <class Operator, class Apply>
 SolveReport MphSolver<D, Backend>::iterate(Context<Backend>& context, const Operator& a, const Apply& k,
                                            std::span<const Vec<D>> b, std::span<Vec<D>> u) {
-  const std::span<const double> rhs(reinterpret_cast<const double*>(b.data()), b.size() * D);
-  const std::span<double> x(reinterpret_cast<double*>(u.data()), u.size() * D);
-  const double refresh = settings_.precision == Precision::Mixed ? 1e-4 : 0;
-  const StoppingRule rule{settings_.tolerance, settings_.maxIterations, refresh};
-  return settings_.krylov == KrylovKind::Cg ? conjugateGradient(context, a, k, rhs, x, rule, krylov_)
-                                            : conjugateResidual(context, a, k, rhs, x, rule, krylov_);
+  const double refresh = stage().precision == Precision::Mixed ? 1e-4 : 0;
+  const StoppingRule rule{stage().tolerance, stage().maxIterations, refresh};
+  return stage().krylov == KrylovKind::Cg
+             ? conjugateGradient(context, a, k, flat<D>(b), flat<D>(u), rule, krylov_)
+             : conjugateResidual(context, a, k, flat<D>(b), flat<D>(u), rule, krylov_);
 }
 
 template <int D, class Backend>
 std::size_t MphSolver<D, Backend>::bytes() const {
   std::size_t sum = rows_.bytes() + assembled_.bytes() + bucketMatrix_.bytes() + matrixFree_.bytes() +
-                    levels_.bytes() + columns_.bytes() + diagonal_.bytes() + krylov_.bytes();
-  const auto add = [&](const auto& k) { sum += k.inverse.bytes() + k.blockInverse.bytes() + k.multigrid.bytes(); };
+                    levels_.bytes() + columns_.bytes() + diagonal_.bytes() + krylov_.bytes() + guess_.bytes();
+  const auto add = [&](const auto& k) {
+    sum += k.inverse.bytes() + k.blockInverse.bytes() + k.multigrid.bytes() + k.projected.bytes();
+  };
   add(double_), add(single_);
   return sum;
 }

@@ -5,28 +5,41 @@
 #include "treacle/linear/krylov.hpp"
 #include "treacle/method/assemble.hpp"
 #include "treacle/method/mph_operator.hpp"
+#include "treacle/method/projected_multigrid.hpp"
 #include "treacle/model/case.hpp"
 #include "treacle/search/buckets.hpp"
 
+#include <string>
 #include <type_traits>
+#include <vector>
 
 namespace treacle {
+
+/// What became of a solve in stages: status and residual of the last one, iterations of all.
+struct StagedReport : SolveReport {
+  int fallbacks = 0;     // stages that were tried before the last one
+  std::string failures;  // which these were, and why they were given up
+};
 
 /// The linear solve of a step: A u = b with the operator, preconditioner and Krylov method of the case.
 template <int D, class Backend = Cpu>
 class MphSolver {
  public:
-  explicit MphSolver(const SolverSettings& settings) : settings_(settings) {}
+  /// Without any fallback.
+  explicit MphSolver(const SolverSettings& settings) : stages_{settings} {}
+  /// `stages`: of solveStages(); all with the same operator.
+  explicit MphSolver(std::vector<SolverSettings> stages) : stages_(std::move(stages)) {}
 
-  /// Pair coefficients or matrix. `pairs` and the terms' spans must outlive the solve.
+  /// Pair coefficients or matrix; the first stage is next. `pairs` and the terms' spans must outlive the solve.
   void prepareOperator(Context<Backend>&, const MphPairs<D>&, const WallTerms<D>&);
 
-  /// Diagonals and coarse operators.
+  /// Diagonals and coarse operators. All arguments must outlive the solve, which may come back to them.
   void preparePreconditioner(Context<Backend>&, const MphPairs<D>&, const CellRanges<Backend>&,
                              const WallTerms<D>&);
 
-  /// `u`: first guess and solution, per fluid particle.
-  SolveReport solve(Context<Backend>&, std::span<const Vec<D>> b, std::span<Vec<D>> u);
+  /// `u`: first guess and solution, per fluid particle. A stage that fails is followed by the next one, from the
+  /// best guess there is.
+  StagedReport solve(Context<Backend>&, std::span<const Vec<D>> b, std::span<Vec<D>> u);
 
   std::size_t bytes() const;
 
@@ -37,13 +50,18 @@ class MphSolver {
     Buffer<Vec<D, T>, Backend> inverse;         // jacobi, and the particles of bucket-multigrid
     Buffer<Block<D, T>, Backend> blockInverse;  // block-jacobi
     BucketMultigrid<D, T, Backend> multigrid;   // bucket-multigrid
+    ProjectedMultigrid<D, T, Backend> projected;
   };
 
   static constexpr bool onDevice = std::is_same_v<Backend, Cuda>;
   struct Nothing {};
 
+  const SolverSettings& stage() const { return stages_[stage_]; }
   bool usesSpgemm() const;
   bool needsAssembled() const;
+  void prepareStage(Context<Backend>&);
+  SolveReport solveStage(Context<Backend>&, std::span<const Vec<D>> b, std::span<Vec<D>> u);
+  void keepBetter(Context<Backend>&, const SolveReport&, std::span<Vec<D>> u);
   template <class T>
   void prepareMultigrid(Context<Backend>&, const MphPairs<D>&, const CellRanges<Backend>&, const WallTerms<D>&,
                         Preconditioner<T>&);
@@ -57,7 +75,12 @@ class MphSolver {
   SolveReport iterate(Context<Backend>&, const Operator& a, const Apply& k, std::span<const Vec<D>> b,
                       std::span<Vec<D>> u);
 
-  SolverSettings settings_;
+  std::vector<SolverSettings> stages_;
+  std::size_t stage_ = 0;  // the one that is prepared
+  const MphPairs<D>* pairs_ = nullptr;
+  const CellRanges<Backend>* ranges_ = nullptr;
+  WallTerms<D> terms_{};
+  Buffer<Vec<D>, Backend> guess_;  // the best one known, where there is a stage to fall back to
   GradientRows<D, Backend> rows_;
   BlockCsr<D, double, Backend> assembled_;
   MphOperator<D, Backend> matrixFree_;

@@ -8,6 +8,8 @@
 #include "treacle/method/neighbourhood.hpp"
 #include "treacle/model/particles_copy.hpp"
 #include "treacle/step/diagnostics.hpp"
+#include "treacle/step/first_guess.hpp"
+#include "treacle/step/solve_stages.hpp"
 
 namespace treacle {
 namespace {
@@ -85,9 +87,12 @@ struct Simulation<D, Backend>::State {
         neighbourhood(c),
         pairs(neighbourhood.pairs()),
         restDensity(latticeNumberDensity(pairs.pressureWeight, c.spacing)),
-        solver(c.solver) {
+        solver(solveStages(c)) {
     toBackend(context, std::move(state), particles);
+    if (step == 0) forEachFluidFieldOf([&](auto& field) { clear(context, field.span()); }, particles);
   }
+
+  FlowMemory<D> memory() { return {particles.acceleration.span(), particles.jerk.span()}; }
 
   WallTerms<D> wallTermsView() { return {wallBlock.span(), wallGradient.span()}; }
 
@@ -133,13 +138,17 @@ struct Simulation<D, Backend>::State {
     solver.prepareOperator(context, pairs, wallTermsView());
   }
 
-  /// First guess: the last velocity. The solution stands in `velocity`, walls included.
-  SolveReport solve() {
-    velocity.resize(context, pairs.activeCount);
-    copyValues(context, std::span<const Vec<D>>(particles.velocity).first(pairs.activeCount), velocity.data());
-    const SolveReport report = solver.solve(context, rhs, velocity.span().first(particles.fluidCount));
+  /// The solution stands in `velocity`, walls included.
+  StagedReport solve() {
+    const std::uint32_t n = particles.fluidCount, active = pairs.activeCount;
+    const std::span<const Vec<D>> last = particles.velocity;
+    velocity.resize(context, active);
+    copyValues(context, last.subspan(n, active - n), velocity.data() + n);
+    extrapolate<D>(context, Extrapolation<D>::make(c.solver.firstGuess, c.time.step), last.first(n), memory(),
+                   velocity.span().first(n));
+    StagedReport report = solver.solve(context, rhs, velocity.span().first(particles.fluidCount));
     if (report.status == SolveStatus::Converged) return report;
-    std::string diagnosis = describeFailure(report, c.solver.tolerance);
+    std::string diagnosis = describeFailure(report, c.solver.tolerance, report.failures);
     if (report.status == SolveStatus::NotFinite) diagnosis += "; " + notFiniteOnHost();
     throw RunError(diagnosis);
   }
@@ -188,7 +197,10 @@ struct Simulation<D, Backend>::State {
 
   void accept() {
     const std::uint32_t moved = wallsMove ? particles.count : particles.fluidCount;
-    copyValues(context, std::span<const Vec<D>>(velocity).first(particles.fluidCount), particles.velocity.data());
+    const std::span<const Vec<D>> u = std::span<const Vec<D>>(velocity).first(particles.fluidCount);
+    // The velocities of the start are given, no solution: nothing follows from the way to the first one.
+    if (step > 0) remember<D>(context, c.time.step, particles.velocity.span().first(u.size()), u, memory());
+    copyValues(context, u, particles.velocity.data());
     copyValues(context, std::span<const Vec<D>>(position).first(moved), particles.position.data());
     ++step;
     time = static_cast<double>(step) * c.time.step;
@@ -211,7 +223,7 @@ struct Simulation<D, Backend>::State {
 
   StepReport advance() {
     StepReport report;
-    SolveReport solved;
+    StagedReport solved;
     clock.start(context);
     phase("search", [&] { neighbourhood.sort(context, particles); });
     phase("lists", [&] { neighbourhood.buildLists(context, particles); });
@@ -231,6 +243,8 @@ struct Simulation<D, Backend>::State {
     report.time = time;
     report.iterations = solved.iterations;
     report.residual = solved.residual;
+    report.fallbacks = solved.fallbacks;
+    report.failures = std::move(solved.failures);
     return report;
   }
 

@@ -31,7 +31,11 @@ struct RandomParticles {
         particles.position[i][k] = unit(random);
         particles.velocity[i][k] = unit(random);
       }
-      if (i < fluid) particles.position[i][D - 1] *= 0.5;  // leaves walls without fluid near them
+      if (i < fluid) {
+        particles.position[i][D - 1] *= 0.5;  // leaves walls without fluid near them
+        particles.acceleration[i] = -particles.position[i];
+        particles.jerk[i] = -particles.velocity[i];
+      }
       particles.pressure[i] = particles.numberDensity[i] = 0;
       particles.material[i] = 0;
       particles.id[i] = i;

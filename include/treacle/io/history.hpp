@@ -23,6 +23,7 @@ struct HistoryRow {
   double top = 0;              // largest coordinate of the fluid against gravity [m]
   double maxSpeed = 0;         // [m/s]
   double seconds = 0;          // wall-clock time of the step [s]
+  int fallbacks = 0;           // of the linear solver; zero if the file, of an earlier version, does not hold them
   HistoryTimings timings{};    // zero if the file does not hold them
 };
 
@@ -46,7 +47,8 @@ class HistoryWriter {
   std::int64_t size_ = 0;  // [B] whole rows
 };
 
-/// All rows, with or without timings; an unfinished last line is left out. Errors: InputError with path and line.
+/// All rows, with or without timings, also of versions that did not count fallbacks; an unfinished last line is
+/// left out. Errors: InputError with path and line.
 std::vector<HistoryRow> readHistory(const std::filesystem::path& path);
 
 }  // namespace treacle

@@ -78,12 +78,13 @@ struct MethodSettings {
 };
 
 enum class KrylovKind { Cg, Cr };
-enum class PreconditionerKind { None, Jacobi, BlockJacobi, BucketMultigrid };
+enum class PreconditionerKind { None, Jacobi, BlockJacobi, BucketMultigrid, ProjectedMultigrid };
 enum class OperatorKind { MatrixFree, Assembled };
 enum class Precision { Double, Mixed };
 enum class SmootherDiagonal { Jacobi, ExtendedJacobi };
 enum class NeighbourKind { Lists, Ranges };
 enum class CoarseKind { Auto, Direct, Spgemm };
+enum class FirstGuess { Last, Linear, Quadratic };
 
 /// Bucket multigrid [K23 sect. 3.2]. The defaults are those of the authors' program; the paper as printed
 /// has 2, 2, 4 and the extended Jacobi diagonal on the particles.
@@ -98,15 +99,29 @@ struct MultigridSettings {
   bool operator==(const MultigridSettings&) const = default;
 };
 
+/// Projected multigrid (docs/solver.md). Degrees are those of its smoothers; 0: chosen by the program.
+struct ProjectedSettings {
+  int pressureDegree = 0;    // of the pressures on the particles
+  int gridDegree = 0;        // of the pressures on the background grids
+  int velocityDegree = 0;    // of the velocities on the particles
+  int iterationBound = 100;  // a solve that needs more is tried in other ways
+
+  bool operator==(const ProjectedSettings&) const = default;
+};
+
 struct SolverSettings {
-  KrylovKind krylov = KrylovKind::Cr;
-  PreconditionerKind preconditioner = PreconditionerKind::BucketMultigrid;
+  KrylovKind krylov = KrylovKind::Cg;  // case files: cr unless the preconditioner is projected-multigrid
+  PreconditionerKind preconditioner = PreconditionerKind::ProjectedMultigrid;
   OperatorKind operatorKind = OperatorKind::MatrixFree;
   NeighbourKind neighbours = NeighbourKind::Lists;  // on a GPU; ranges: no memory for lists, more time
   double tolerance = 1e-12;                         // bound on |r|^2 / |b|^2
   int maxIterations = 5000;
-  Precision precision = Precision::Double;  // mixed: the preconditioner works in single precision
+  /// Mixed: the preconditioner works in single precision. Case files: double unless it is projected-multigrid.
+  Precision precision = Precision::Mixed;
+  /// A solve starts from the velocities of the last step, or from those of two or three extrapolated.
+  FirstGuess firstGuess = FirstGuess::Quadratic;
   MultigridSettings multigrid;
+  ProjectedSettings projected;
 
   bool operator==(const SolverSettings&) const = default;
 };

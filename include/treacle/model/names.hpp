@@ -22,21 +22,24 @@ namespace names {
 inline constexpr Named<ShapeKind> shape[] = {
     {"box", ShapeKind::Box}, {"sphere", ShapeKind::Sphere}, {"cylinder", ShapeKind::Cylinder}};
 inline constexpr Named<BodyKind> body[] = {{"fluid", BodyKind::Fluid}, {"wall", BodyKind::Wall}};
-inline constexpr Named<KrylovKind> krylov[] = {{"cr", KrylovKind::Cr}, {"cg", KrylovKind::Cg}};
+inline constexpr Named<KrylovKind> krylov[] = {{"cg", KrylovKind::Cg}, {"cr", KrylovKind::Cr}};
 inline constexpr Named<PreconditionerKind> preconditioner[] = {
+    {"projected-multigrid", PreconditionerKind::ProjectedMultigrid},
     {"bucket-multigrid", PreconditionerKind::BucketMultigrid},
     {"block-jacobi", PreconditionerKind::BlockJacobi},
     {"jacobi", PreconditionerKind::Jacobi},
     {"none", PreconditionerKind::None}};
 inline constexpr Named<OperatorKind> operators[] = {{"matrix-free", OperatorKind::MatrixFree},
                                                     {"assembled", OperatorKind::Assembled}};
-inline constexpr Named<Precision> precision[] = {{"double", Precision::Double}, {"mixed", Precision::Mixed}};
+inline constexpr Named<Precision> precision[] = {{"mixed", Precision::Mixed}, {"double", Precision::Double}};
 inline constexpr Named<SmootherDiagonal> diagonal[] = {{"jacobi", SmootherDiagonal::Jacobi},
                                                        {"extended-jacobi", SmootherDiagonal::ExtendedJacobi}};
 inline constexpr Named<NeighbourKind> neighbours[] = {{"lists", NeighbourKind::Lists},
                                                       {"ranges", NeighbourKind::Ranges}};
 inline constexpr Named<CoarseKind> coarse[] = {
     {"auto", CoarseKind::Auto}, {"direct", CoarseKind::Direct}, {"spgemm", CoarseKind::Spgemm}};
+inline constexpr Named<FirstGuess> firstGuess[] = {
+    {"quadratic", FirstGuess::Quadratic}, {"linear", FirstGuess::Linear}, {"last", FirstGuess::Last}};
 inline constexpr Named<OutputPrecision> output[] = {{"single", OutputPrecision::Single},
                                                     {"double", OutputPrecision::Double}};
 }  // namespace names
@@ -59,6 +62,8 @@ template <>
 inline constexpr std::span<const Named<NeighbourKind>> namesOf<NeighbourKind>{names::neighbours};
 template <>
 inline constexpr std::span<const Named<CoarseKind>> namesOf<CoarseKind>{names::coarse};
+template <>
+inline constexpr std::span<const Named<FirstGuess>> namesOf<FirstGuess>{names::firstGuess};
 template <>
 inline constexpr std::span<const Named<OutputPrecision>> namesOf<OutputPrecision>{names::output};
 

@@ -8,12 +8,25 @@
 
 namespace treacle {
 
+/// The fields that walls do not have.
+template <class F, class... Sets>
+void forEachFluidFieldOf(F&& f, Sets&... sets) {
+  f(sets.acceleration...), f(sets.jerk...);
+}
+
+/// The fields that fluid and walls have.
+template <class F, class... Sets>
+void forEachSharedFieldOf(F&& f, Sets&... sets) {
+  f(sets.position...), f(sets.velocity...), f(sets.pressure...), f(sets.numberDensity...), f(sets.material...),
+      f(sets.id...);
+}
+
 /// Calls f with every field of the sets of particles, f(a.position, b.position, ...) and so on: what permutes,
 /// saves, copies or compares particles cannot forget one.
 template <class F, class... Sets>
 void forEachFieldOf(F&& f, Sets&... sets) {
-  f(sets.position...), f(sets.velocity...), f(sets.pressure...), f(sets.numberDensity...), f(sets.material...),
-      f(sets.id...);
+  forEachSharedFieldOf(f, sets...);
+  forEachFluidFieldOf(f, sets...);
 }
 
 /// The only owner of per-particle fields. Fluid particles come first, [0, fluidCount), then wall particles,
@@ -31,6 +44,11 @@ struct Particles {
   Buffer<std::uint8_t, Backend> material;  // index into Case::materials
   Buffer<std::uint32_t, Backend> id;
 
+  // The memory of the flow: what the first guess of a solve is extrapolated from. Walls have none, and it is not
+  // part of the state that frames show. Undefined before the first step.
+  Buffer<Vec<D>, Backend> acceleration;  // (u^k - u^{k-1}) / dt of the fluid [m/s2]; zero: not known
+  Buffer<Vec<D>, Backend> jerk;          // that of the acceleration, of the fluid [m/s3]; zero: not known
+
   std::uint32_t wallCount() const { return count - fluidCount; }
 
   /// The content is undefined afterwards. Errors: std::bad_alloc.
@@ -40,7 +58,11 @@ struct Particles {
   void resize(const Context<Backend>& context, std::uint32_t fluid, std::uint32_t wall) {
     fluidCount = fluid;
     count = fluid + wall;
-    forEachField([&](auto& field) { field.resize(context, count); });
+    const auto resizeTo = [&](std::uint32_t size) {
+      return [&, size](auto& field) { field.resize(context, size); };
+    };
+    forEachSharedFieldOf(resizeTo(count), *this);
+    forEachFluidFieldOf(resizeTo(fluid), *this);
   }
 
   /// Calls f with every field.

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <string>
 
 namespace treacle {
 
@@ -38,8 +39,10 @@ struct PhaseSeconds {
 struct StepReport {
   std::int64_t step = 0;  // number of steps done
   double time = 0;        // [s], after the step
-  int iterations = 0;
-  double residual = 0;  // |r|^2 / |b|^2 at the end of the solve
+  int iterations = 0;     // of all ways in which the solve was tried
+  double residual = 0;    // |r|^2 / |b|^2 at the end of the solve
+  int fallbacks = 0;      // ways that failed (solveStages)
+  std::string failures;   // which, and why
   Diagnostics diagnostics;
   PhaseSeconds seconds;
 };

@@ -33,23 +33,28 @@ Case stepCase(int dimensions, const SolverSettings& solver) {
 std::vector<SolverSettings> allSolvers() {
   std::vector<SolverSettings> all;
   for (const auto k : {PreconditionerKind::None, PreconditionerKind::Jacobi, PreconditionerKind::BlockJacobi,
-                       PreconditionerKind::BucketMultigrid})
+                       PreconditionerKind::BucketMultigrid, PreconditionerKind::ProjectedMultigrid})
     for (const auto krylov : {KrylovKind::Cg, KrylovKind::Cr}) {
       SolverSettings s;
       s.preconditioner = k;
       s.krylov = krylov;
+      s.precision = Precision::Double;
       all.push_back(s);
       s.precision = Precision::Mixed;
       all.push_back(s);
     }
-  SolverSettings s;
+  SolverSettings papers;
+  papers.preconditioner = PreconditionerKind::BucketMultigrid;
+  papers.krylov = KrylovKind::Cr;
+  papers.precision = Precision::Double;
+  SolverSettings s = papers;
   s.operatorKind = OperatorKind::Assembled;
   all.push_back(s);
   s.multigrid.coarseOperators = CoarseKind::Spgemm;
   all.push_back(s);
   s.multigrid.particleDiagonal = SmootherDiagonal::ExtendedJacobi;
   all.push_back(s);
-  s = {};
+  s = papers;
   s.neighbours = NeighbourKind::Ranges;
   all.push_back(s);
   return all;

@@ -52,7 +52,7 @@ TEST(backend, cpuIsTakenWhereItIsAskedForOrAllThereIs) {
 TEST(backend, settingsForGpusAreNotedOnTheCpu) {
   Workshop shop;
   prepared(shop);
-  const std::string run = "run small.toml --backend cpu --threads 1 ";
+  const std::string run = "run small.toml --backend cpu --threads 1 --set solver.preconditioner=bucket-multigrid ";
   const Outcome ranges = shop.call(run + "--set solver.neighbours=ranges -o ranges");
   EXPECT_EQ(ranges.exitCode, 0);
   EXPECT_EQ(ranges.err,
@@ -87,11 +87,12 @@ TEST_P(OnDevice, agreesWithTheCpu) {
   EXPECT_GT(summary["seconds_per_phase"]["solve"], 0.0);
 }
 
+#define BUCKETS "--set solver.preconditioner=bucket-multigrid "
 INSTANTIATE_TEST_SUITE_P(Run, OnDevice,
-                         testing::Values("", "--set solver.operator=assembled", "--set solver.neighbours=ranges",
-                                         "--set solver.multigrid.coarse_operators=spgemm",
-                                         "--set solver.multigrid.particle_diagonal=extended-jacobi",
-                                         "--set solver.krylov=cg --precision mixed",
+                         testing::Values("", "--precision double", "--set solver.operator=assembled", BUCKETS,
+                                         BUCKETS "--precision mixed", BUCKETS "--set solver.neighbours=ranges",
+                                         BUCKETS "--set solver.multigrid.coarse_operators=spgemm",
+                                         BUCKETS "--set solver.multigrid.particle_diagonal=extended-jacobi",
                                          "--set 'floor.velocity=[0.05, 0]' --set resolution=4"));
 
 TEST(onDevice, autoTakesTheDevice) {

@@ -108,22 +108,35 @@ constexpr BadCase badCases[] = {
     {"unknownMaterial", "material = \"syrup\"", "material = \"sirup\"",
      "bad.toml:22:12: material in [[body]] 'column' (box): unknown material 'sirup'; did you mean 'syrup'?"},
     {"unknownChoice", "[output]", "[solver]\nkrylov = \"gmres\"\n[output]",
-     "bad.toml:40:10: krylov in [solver]: expected 'cr' or 'cg', found 'gmres'"},
+     "bad.toml:40:10: krylov in [solver]: expected 'cg' or 'cr', found 'gmres'"},
+    {"unknownPreconditioner", "[output]", "[solver]\npreconditioner = \"ilu\"\n[output]",
+     "bad.toml:40:18: preconditioner in [solver]: expected 'projected-multigrid', 'bucket-multigrid', "
+     "'block-jacobi', 'jacobi' or 'none', found 'ilu'"},
+    {"negativeDegree", "[output]", "[solver.projected]\npressure_degree = -1\n[output]",
+     "bad.toml:40:19: pressure_degree in [solver.projected]: expected a whole number of at least 0, found -1"},
+    {"noIterations", "[output]", "[solver.projected]\niteration_bound = 0\n[output]",
+     "bad.toml:40:19: iteration_bound in [solver.projected]: expected a whole number of at least 1, found 0"},
     {"unknownNeighbours", "[output]", "[solver]\nneighbours = \"tree\"\n[output]",
      "bad.toml:40:14: neighbours in [solver]: expected 'lists' or 'ranges', found 'tree'"},
     {"unknownCoarseOperators", "[output]", "[solver.multigrid]\ncoarse_operators = \"dense\"\n[output]",
      "bad.toml:40:20: coarse_operators in [solver.multigrid]: expected 'auto', 'direct' or 'spgemm', found "
      "'dense'"},
-    {"rangesForTheMatrix", "[output]", "[solver]\noperator = \"assembled\"\nneighbours = \"ranges\"\n[output]",
-     "bad.toml:41:14: neighbours in [solver]: expected 'lists' with operator = 'assembled', found 'ranges': the "
-     "matrix is assembled from lists"},
+    {"rangesForTheDefaultPreconditioner", "[output]", "[solver]\nneighbours = \"ranges\"\n[output]",
+     "bad.toml:40:14: neighbours in [solver]: expected 'lists' with preconditioner = 'projected-multigrid', found "
+     "'ranges': that needs lists"},
+    {"rangesForTheMatrix", "[output]",
+     "[solver]\npreconditioner = \"none\"\noperator = \"assembled\"\nneighbours = \"ranges\"\n[output]",
+     "bad.toml:42:14: neighbours in [solver]: expected 'lists' with operator = 'assembled', found 'ranges': that "
+     "needs lists"},
     {"rangesForTheMatrixDiagonal", "[output]",
-     "[solver]\nneighbours = \"ranges\"\nmultigrid.particle_diagonal = \"extended-jacobi\"\n[output]",
-     "bad.toml:40:14: neighbours in [solver]: expected 'lists' with multigrid.particle_diagonal = "
+     "[solver]\npreconditioner = \"bucket-multigrid\"\nneighbours = \"ranges\"\n"
+     "multigrid.particle_diagonal = \"extended-jacobi\"\n[output]",
+     "bad.toml:41:14: neighbours in [solver]: expected 'lists' with multigrid.particle_diagonal = "
      "'extended-jacobi', found 'ranges'"},
     {"rangesForMatrixProducts", "[output]",
-     "[solver]\nneighbours = \"ranges\"\nmultigrid.coarse_operators = \"spgemm\"\n[output]",
-     "bad.toml:40:14: neighbours in [solver]: expected 'lists' with multigrid.coarse_operators = 'spgemm', found "
+     "[solver]\npreconditioner = \"bucket-multigrid\"\nneighbours = \"ranges\"\n"
+     "multigrid.coarse_operators = \"spgemm\"\n[output]",
+     "bad.toml:41:14: neighbours in [solver]: expected 'lists' with multigrid.coarse_operators = 'spgemm', found "
      "'ranges'"},
     {"unknownShape", "shape = \"box\"", "shape = \"cone\"",
      "bad.toml:23:9: shape in [[body]] 'column': expected 'box', 'sphere' or 'cylinder', found 'cone'"},
@@ -189,7 +202,7 @@ constexpr BadLine badLines[] = {
     {"missingFile", "run none.toml", "treacle: error: none.toml: no such case file"},
     {"directoryAsFile", "check .", "treacle: error: .: is a directory"},
     {"unknownBackend", "run small.toml --backend gpu", "--backend: expected auto|cpu|cuda, found 'gpu'"},
-    {"unknownPrecision", "run small.toml --precision half", "--precision: expected double|mixed, found 'half'"},
+    {"unknownPrecision", "run small.toml --precision half", "--precision: expected mixed|double, found 'half'"},
     {"noThreads", "run small.toml --threads 0", "--threads: expected a positive number, found '0'"},
     {"negativeEndTime", "run small.toml --end-time=-1", "--end-time: expected a positive number, found '-1'"},
     {"endTimeBelowStep", "run small.toml --end-time 1e-4", "--end-time: expected at least one step of 0.001 s"},

@@ -6,6 +6,7 @@
 
 #include <fstream>
 #include <iterator>
+#include <tuple>
 
 #include "command.hpp"
 
@@ -142,6 +143,7 @@ krylov = "cg"
 preconditioner = "block-jacobi"
 operator = "assembled"
 precision = "mixed"
+first_guess = "linear"
 tolerance = 1e-10
 max_iterations = 77
 [solver.multigrid]
@@ -150,6 +152,11 @@ middle_sweeps = 5
 coarsest_sweeps = 6
 particle_diagonal = "extended-jacobi"
 coarse_operators = "spgemm"
+[solver.projected]
+pressure_degree = 7
+grid_degree = 3
+velocity_degree = 1
+iteration_bound = 55
 [output]
 interval = 0.25
 checkpoint_interval = 0.5
@@ -180,9 +187,11 @@ TEST(readCase, takesEveryKey) {
   expected.solver.preconditioner = PreconditionerKind::BlockJacobi;
   expected.solver.operatorKind = OperatorKind::Assembled;
   expected.solver.precision = Precision::Mixed;
+  expected.solver.firstGuess = FirstGuess::Linear;
   expected.solver.tolerance = 1e-10;
   expected.solver.maxIterations = 77;
   expected.solver.multigrid = {1, 5, 6, SmootherDiagonal::ExtendedJacobi, CoarseKind::Spgemm};
+  expected.solver.projected = {7, 3, 1, 55};
   expected.output = {0.25, 0.5, {false, true, false, false, true}, OutputPrecision::Double};
   EXPECT_EQ(c, expected);
 
@@ -193,13 +202,33 @@ TEST(readCase, takesEveryKey) {
 TEST(readCase, takesRangesWithTheMatrixFreeOperator) {
   Workshop shop;
   shop.put("case.toml", smallCase);
-  const std::string overrides[] = {"solver.neighbours=ranges", "solver.multigrid.coarse_operators=direct"};
+  const std::string overrides[] = {"solver.preconditioner=bucket-multigrid", "solver.neighbours=ranges",
+                                   "solver.multigrid.coarse_operators=direct"};
   Case expected = readCase(shop / "case.toml");
+  expected.solver.preconditioner = PreconditionerKind::BucketMultigrid;
+  expected.solver.krylov = KrylovKind::Cr;
+  expected.solver.precision = Precision::Double;
   expected.solver.neighbours = NeighbourKind::Ranges;
   expected.solver.multigrid.coarseOperators = CoarseKind::Direct;
   const Case c = readCase(shop / "case.toml", overrides);
   EXPECT_EQ(c, expected);
   EXPECT_EQ(readBack(c), c);
+}
+
+TEST(readCase, krylovMethodAndPrecisionFollowFromThePreconditionerUnlessGiven) {
+  Workshop shop;
+  shop.put("case.toml", smallCase);
+  const auto solverOf = [&](const std::vector<std::string>& overrides) {
+    const SolverSettings s = readCase(shop / "case.toml", overrides).solver;
+    return std::tuple(s.preconditioner, s.krylov, s.precision);
+  };
+  using enum PreconditionerKind;
+  EXPECT_EQ(solverOf({}), std::tuple(ProjectedMultigrid, KrylovKind::Cg, Precision::Mixed));
+  EXPECT_EQ(solverOf({"solver.krylov=cr", "solver.precision=double"}),
+            std::tuple(ProjectedMultigrid, KrylovKind::Cr, Precision::Double));
+  EXPECT_EQ(solverOf({"solver.preconditioner=jacobi"}), std::tuple(Jacobi, KrylovKind::Cr, Precision::Double));
+  EXPECT_EQ(solverOf({"solver.preconditioner=bucket-multigrid", "solver.krylov=cg", "solver.precision=mixed"}),
+            std::tuple(BucketMultigrid, KrylovKind::Cg, Precision::Mixed));
 }
 
 TEST(readCase, mergesOntoItsBase) {

@@ -13,6 +13,7 @@
 namespace treacle::test {
 namespace {
 
+using testing::ContainsRegex;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::StartsWith;
@@ -52,6 +53,9 @@ TEST(check, printsCountsNumbersAndCaseThatCanBeRunAgain) {
   EXPECT_THAT(outcome.out, HasSubstr("#   fluid 'column': 144\n"));
   EXPECT_THAT(outcome.out, HasSubstr("#   wall 'floor': 256\n"));
   EXPECT_THAT(outcome.out, HasSubstr("# steps: 4\n"));
+  EXPECT_THAT(outcome.out,
+              ContainsRegex("# solver: cg, projected-multigrid, mixed: pressure degree [0-9]+, grid degree "
+                            "[0-9]+, velocity degree [0-9]+\n"));
   EXPECT_THAT(outcome.out, HasSubstr("# Courant number: 1\n"));
   EXPECT_THAT(outcome.out, HasSubstr("dt kappa / lambda = 0.05 (stable up to 1), diffusion numbers d_mu = 20, "
                                      "d_lambda = 2e+04\n"));
@@ -160,6 +164,25 @@ TEST(run, withoutConvergenceFailsAndKeepsTheLastGoodState) {
   EXPECT_THAT(summary, HasSubstr("\"status\": \"failed\""));
   EXPECT_THAT(summary, HasSubstr("after step 0"));
   EXPECT_THAT(shop.content("small-run/run.log"), HasSubstr("error: after step 0"));
+}
+
+TEST(run, warnsOnceOfFallbacksAndCountsThem) {
+  Workshop shop;
+  const Outcome outcome =
+      prepared(shop).call("run small.toml --threads 1 --set solver.projected.iteration_bound=2 -o fallbacks");
+  EXPECT_EQ(outcome.exitCode, 0);
+  const std::string warning = "step 1: the linear solver had to fall back after cg, projected-multigrid, mixed";
+  EXPECT_THAT(outcome.err, StartsWith("treacle: warning: " + warning));
+  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+  const std::string log = shop.content("fallbacks/run.log");
+  EXPECT_THAT(log, HasSubstr("info: solver: cg, projected-multigrid, mixed: pressure degree "));
+  EXPECT_THAT(log, HasSubstr("warning: " + warning));
+  for (const HistoryRow& row : readHistory(shop / "fallbacks/history.csv")) EXPECT_EQ(row.fallbacks, 2);
+  EXPECT_THAT(shop.content("fallbacks/summary.json"), HasSubstr("\"fallbacks\": 4"));
+
+  ASSERT_EQ(shop.call("run small.toml --threads 1 -o plain").exitCode, 0);
+  for (const HistoryRow& row : readHistory(shop / "plain/history.csv")) EXPECT_EQ(row.fallbacks, 0);
+  EXPECT_EQ(shop.call("compare fallbacks plain --quiet").exitCode, 0);
 }
 
 TEST(run, particleThatLeavesOpenDomainEndsTheRun) {

@@ -13,6 +13,7 @@ using testing::HasSubstr;
 Case caseOf(int dimensions) {
   Case c;
   c.dimensions = dimensions;
+  c.solver.preconditioner = PreconditionerKind::BucketMultigrid;
   return c;
 }
 
@@ -63,6 +64,21 @@ TEST(HostMemory, HoldsNoSolverWhereTheRunIsOnADevice) {
   c.solver.operatorKind = OperatorKind::Assembled;
   EXPECT_GT(estimatedMemory(c, many, false), matrixFree);
   EXPECT_EQ(estimatedMemory(c, many, true), onDevice);
+}
+
+TEST(HostMemory, ProjectedMultigridTakesMoreAndMostBesideAMatrix) {
+  for (const int dimensions : {2, 3}) {
+    Case bucket = caseOf(dimensions), projected = bucket;
+    projected.solver.preconditioner = PreconditionerKind::ProjectedMultigrid;
+    const auto more = [&] {
+      return estimatedMemory(projected, some, false) - estimatedMemory(bucket, some, false);
+    };
+    const std::uint64_t besideLists = more();
+    EXPECT_GT(besideLists, 0u);
+    bucket.solver.operatorKind = projected.solver.operatorKind = OperatorKind::Assembled;
+    EXPECT_GT(more(), besideLists);
+    EXPECT_EQ(estimatedMemory(projected, some, true), estimatedMemory(bucket, some, true));
+  }
 }
 
 TEST(DeviceMemory, ARunThatDoesNotFitIsRefused) {

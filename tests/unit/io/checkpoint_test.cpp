@@ -5,6 +5,7 @@
 #include "treacle/core/error.hpp"
 #include "treacle/io/atomic_file.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <hdf5.h>
 
@@ -49,6 +50,8 @@ void expectSame(const Particles<D>& a, const Particles<D>& b) {
   EXPECT_TRUE(sameBits(a.numberDensity, b.numberDensity));
   EXPECT_TRUE(sameBits(a.material, b.material));
   EXPECT_TRUE(sameBits(a.id, b.id));
+  EXPECT_TRUE(sameBits(a.acceleration, b.acceleration));
+  EXPECT_TRUE(sameBits(a.jerk, b.jerk));
 }
 
 template <int D>
@@ -69,6 +72,12 @@ void changeAttribute(const std::filesystem::path& path, const char* name, int va
   const hid_t attribute = H5Aopen(file, name, H5P_DEFAULT);
   ASSERT_GE(H5Awrite(attribute, H5T_NATIVE_INT, &value), 0);
   H5Aclose(attribute);
+  H5Fclose(file);
+}
+
+void removeField(const std::filesystem::path& path, const char* name) {
+  const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  ASSERT_GE(H5Ldelete(file, name, H5P_DEFAULT), 0);
   H5Fclose(file);
 }
 
@@ -139,8 +148,25 @@ TEST(Checkpoint, OtherVersionsAndDimensionsAreRefused) {
   const auto path = directory / "c.h5";
   writeCheckpoint<3>(path, randomParticles<3>(5, 5), 1, 1);
   EXPECT_THAT(refusal<2>(path), HasSubstr("3 dimensions, expected 2"));
-  changeAttribute(path, "version", 2);
-  EXPECT_THAT(refusal<3>(path), HasSubstr("version 2, expected 1"));
+  for (const int version : {0, 3}) {
+    changeAttribute(path, "version", version);
+    EXPECT_THAT(refusal<3>(path), HasSubstr(fmt::format("version {}, expected 1 to 2", version)));
+  }
+}
+
+TEST(Checkpoint, TheFirstVersionIsReadWithoutMemoryOfTheFlow) {
+  TemporaryDirectory directory;
+  const auto path = directory / "c.h5";
+  Particles<3> particles = randomParticles<3>(33, 31);
+  writeCheckpoint<3>(path, particles, 7, time3);
+  removeField(path, "acceleration");
+  removeField(path, "jerk");
+  EXPECT_THAT(refusal<3>(path), HasSubstr("acceleration"));
+  changeAttribute(path, "version", 1);
+  const Checkpoint<3> read = readCheckpoint<3>(path);
+  EXPECT_EQ(read.step, 7);
+  for (auto* field : {&particles.acceleration, &particles.jerk}) std::fill(field->begin(), field->end(), Vec<3>{});
+  expectSame(read.particles, particles);
 }
 
 TEST(Checkpoint, DamagedFilesAreRefused) {

@@ -5,6 +5,7 @@
 #include "treacle/core/error.hpp"
 
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 using namespace treacle;
@@ -13,17 +14,19 @@ using namespace treacle::test;
 namespace {
 
 constexpr const char* header =
+    "step,time,iterations,residual,kinetic_energy,potential_energy,front_x,top,max_speed,seconds,fallbacks\n";
+constexpr const char* earlierHeader =
     "step,time,iterations,residual,kinetic_energy,potential_energy,front_x,top,max_speed,seconds\n";
 
 HistoryRow row(int k) {
-  return {k,        k / 3.0,      200 + k,       1e-13 / (k + 1), std::exp(-k),
-          -0.1 * k, std::sqrt(k), 1.0 / (k + 7), 1e300 * k,       1e-300};
+  return {k,         k / 3.0, 200 + k, 1e-13 / (k + 1), std::exp(-k), -0.1 * k, std::sqrt(k), 1.0 / (k + 7),
+          1e300 * k, 1e-300,  k % 3};
 }
 
 bool equal(const HistoryRow& a, const HistoryRow& b) {
   return a.step == b.step && a.time == b.time && a.iterations == b.iterations && a.residual == b.residual &&
          a.kineticEnergy == b.kineticEnergy && a.potentialEnergy == b.potentialEnergy && a.frontX == b.frontX &&
-         a.top == b.top && a.maxSpeed == b.maxSpeed && a.seconds == b.seconds;
+         a.top == b.top && a.maxSpeed == b.maxSpeed && a.seconds == b.seconds && a.fallbacks == b.fallbacks;
 }
 
 }  // namespace
@@ -32,10 +35,10 @@ TEST(History, FormatIsFixed) {
   TemporaryDirectory directory;
   HistoryWriter writer(directory / "history.csv");
   EXPECT_EQ(content(directory / "history.csv"), header);
-  writer.append({3, 0.003, 233, 9.5e-13, 1e-6, 0.04, 0.02125, 0.0195, 0.5, 0.25});
+  writer.append({3, 0.003, 233, 9.5e-13, 1e-6, 0.04, 0.02125, 0.0195, 0.5, 0.25, 2});
   // Seen without closing the writer.
   EXPECT_EQ(content(directory / "history.csv"),
-            std::string(header) + "3,0.003,233,9.5e-13,1e-06,0.04,0.02125,0.0195,0.5,0.25\n");
+            std::string(header) + "3,0.003,233,9.5e-13,1e-06,0.04,0.02125,0.0195,0.5,0.25,2\n");
 }
 
 TEST(History, ReadsBackToTheSameBits) {
@@ -52,13 +55,13 @@ TEST(History, ReadsBackToTheSameBits) {
 TEST(History, TimingsAreColumnsOfTheirOwn) {
   TemporaryDirectory directory;
   const auto path = directory / "history.csv";
-  HistoryRow timed = row(3);
+  HistoryRow timed = row(4);
   timed.timings = {1, 2, 3, 4, 5.5, 6};
   HistoryWriter(path, true).append(timed);
   const std::string text = content(path), names = header;
   EXPECT_EQ(text.substr(0, text.find('\n')),
             names.substr(0, names.size() - 1) + ",search_s,lists_s,coefficients_s,coarse_s,solve_s,update_s");
-  EXPECT_TRUE(text.ends_with(",1e-300,1,2,3,4,5.5,6\n")) << text;
+  EXPECT_TRUE(text.ends_with(",1e-300,1,1,2,3,4,5.5,6\n")) << text;
   const HistoryRow read = readHistory(path).at(0);
   EXPECT_TRUE(equal(read, timed));
   EXPECT_EQ(read.timings.search, 1);
@@ -68,8 +71,23 @@ TEST(History, TimingsAreColumnsOfTheirOwn) {
   EXPECT_EQ(read.timings.solve, 5.5);
   EXPECT_EQ(read.timings.update, 6);
   put(path, text + "1,2,3,4,5,6,7,8,9,10\n");
-  EXPECT_NE(messageOf<InputError>([&] { readHistory(path); }).find(":3: expected sixteen numbers"),
-            std::string::npos);
+  EXPECT_NE(messageOf<InputError>([&] { readHistory(path); }).find(":3: expected 17 numbers"), std::string::npos);
+}
+
+TEST(History, FilesFromBeforeFallbacksWereCountedAreRead) {
+  TemporaryDirectory directory;
+  const auto path = directory / "history.csv";
+  put(path, std::string(earlierHeader) + "1,2,3,4,5,6,7,8,9,10\n");
+  HistoryRow read = readHistory(path).at(0);
+  EXPECT_EQ(read.seconds, 10);
+  EXPECT_EQ(read.fallbacks, 0);
+  put(path, std::string(earlierHeader, std::strlen(earlierHeader) - 1) +
+                ",search_s,lists_s,coefficients_s,coarse_s,solve_s,update_s\n"
+                "1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16\n");
+  read = readHistory(path).at(0);
+  EXPECT_EQ(read.fallbacks, 0);
+  EXPECT_EQ(read.timings.search, 11);
+  EXPECT_EQ(read.timings.update, 16);
 }
 
 TEST(History, NotANumberIsKept) {
@@ -85,18 +103,19 @@ TEST(History, NotANumberIsKept) {
 
 TEST(History, UnfinishedLastLineIsLeftOut) {
   TemporaryDirectory directory;
-  put(directory / "history.csv", std::string(header) + "1,2,3,4,5,6,7,8,9,10\n2,3,4,5");
+  put(directory / "history.csv", std::string(header) + "1,2,3,4,5,6,7,8,9,10,0\n2,3,4,5");
   EXPECT_EQ(readHistory(directory / "history.csv").size(), 1u);
 }
 
 TEST(History, BadLinesAreNamed) {
   TemporaryDirectory directory;
   const auto path = directory / "history.csv";
-  for (const char* bad : {"1,2,3,4,5,6,7,8,9\n", "1,2,3,4,5,6,7,8,9,10,11\n", "1,2,3,x,5,6,7,8,9,10\n", "\n",
-                          "1,2,3.5,4,5,6,7,8,9,10\n", "1 2 3 4 5 6 7 8 9 10\n"}) {
-    put(path, std::string(header) + "1,2,3,4,5,6,7,8,9,10\n" + bad);
+  for (const char* bad :
+       {"1,2,3,4,5,6,7,8,9,10\n", "1,2,3,4,5,6,7,8,9,10,11,12\n", "1,2,3,x,5,6,7,8,9,10,0\n", "\n",
+        "1,2,3.5,4,5,6,7,8,9,10,0\n", "1,2,3,4,5,6,7,8,9,10,0.5\n", "1 2 3 4 5 6 7 8 9 10 0\n"}) {
+    put(path, std::string(header) + "1,2,3,4,5,6,7,8,9,10,0\n" + bad);
     const std::string message = messageOf<InputError>([&] { readHistory(path); });
-    EXPECT_EQ(message.find(path.string() + ":3: expected ten numbers"), 0u) << message;
+    EXPECT_EQ(message.find(path.string() + ":3: expected 11 numbers"), 0u) << message;
   }
   put(path, "time,step\n");
   EXPECT_NE(messageOf<InputError>([&] { readHistory(path); }).find("expected the header"), std::string::npos);

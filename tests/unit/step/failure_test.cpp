@@ -23,7 +23,11 @@ TEST(Failure, OfTheSolverKeepsTheLastGoodState) {
   std::vector<Vec<2>> before(s.particles.count);
   for (std::uint32_t i = 0; i < s.particles.count; ++i) before[s.particles.id[i]] = s.particles.position[i];
   Simulation<2> simulation(s.c, std::move(s.particles));
-  EXPECT_NE(failureOf(simulation).find("did not converge"), std::string::npos);
+  const std::string message = failureOf(simulation);
+  EXPECT_NE(message.find("did not converge"), std::string::npos) << message;
+  EXPECT_NE(message.find("after 6 iterations"), std::string::npos) << message;
+  for (const char* stage : {"projected-multigrid, mixed", "projected-multigrid, double"})
+    EXPECT_NE(message.find(stage), std::string::npos) << message;
   EXPECT_EQ(simulation.step(), 0);
   const Particles<2>& p = simulation.particles();
   for (std::uint32_t i = 0; i < p.count; ++i) ASSERT_EQ(p.position[i], before[p.id[i]]);

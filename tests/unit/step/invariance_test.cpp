@@ -34,15 +34,11 @@ template <int D>
 Particles<D> reordered(const Particles<D>& from, const std::function<std::uint32_t(std::uint32_t)>& source) {
   Particles<D> p;
   p.resize(from.fluidCount, from.wallCount());
-  for (std::uint32_t i = 0; i < p.count; ++i) {
-    const std::uint32_t j = source(i);
-    p.position[i] = from.position[j];
-    p.velocity[i] = from.velocity[j];
-    p.pressure[i] = from.pressure[j];
-    p.numberDensity[i] = from.numberDensity[j];
-    p.material[i] = from.material[j];
-    p.id[i] = from.id[j];
-  }
+  forEachFieldOf(
+      [&](auto& field, const auto& values) {
+        for (std::uint32_t i = 0; i < field.size(); ++i) field[i] = values[source(i)];
+      },
+      p, from);
   return p;
 }
 
@@ -157,14 +153,12 @@ TEST(Invariance, ResultsDoNotDependOnTheNumberOfThreads) {
 
 TEST(Invariance, AContinuedRunGivesTheSameBits) {
   Scene<2> s = start<2>();
-  const auto whole = positionsAfter<2>(s.c, copyOf(s.particles), 4);
+  const auto whole = positionsAfter<2>(s.c, copyOf(s.particles), 6);
   Simulation<2> first(s.c, copyOf(s.particles));
-  first.advance();
-  first.advance();
+  for (int k = 0; k < 3; ++k) first.advance();  // enough for a first guess of second order
   Simulation<2> second(s.c, copyOf(first.particles()), first.step(), first.time());
-  second.advance();
-  const StepReport last = second.advance();
-  EXPECT_EQ(last.step, 4);
+  for (int k = 0; k < 3; ++k) second.advance();
+  EXPECT_EQ(second.step(), 6);
   const Particles<2>& p = second.particles();
   for (std::uint32_t i = 0; i < p.count; ++i) ASSERT_EQ(p.position[i], whole[p.id[i]]);
 }

@@ -69,12 +69,14 @@ void checkStep(OperatorKind operatorKind, PreconditionerKind preconditioner, Kry
 TEST(Simulation, StepEqualsTheDirectSolution) {
   using enum PreconditionerKind;
   for (OperatorKind a : {OperatorKind::MatrixFree, OperatorKind::Assembled})
-    for (PreconditionerKind k : {None, Jacobi, BlockJacobi, BucketMultigrid})
+    for (PreconditionerKind k : {None, Jacobi, BlockJacobi, BucketMultigrid, ProjectedMultigrid})
       for (KrylovKind krylov : {KrylovKind::Cg, KrylovKind::Cr}) checkStep<2>(a, k, krylov, Precision::Double);
   checkStep<3>(OperatorKind::MatrixFree, BucketMultigrid, KrylovKind::Cr, Precision::Double);
   checkStep<2>(OperatorKind::MatrixFree, BucketMultigrid, KrylovKind::Cg, Precision::Mixed);
   checkStep<2>(OperatorKind::MatrixFree, BucketMultigrid, KrylovKind::Cr, Precision::Mixed);
   checkStep<2>(OperatorKind::MatrixFree, BlockJacobi, KrylovKind::Cg, Precision::Mixed);
+  checkStep<2>(OperatorKind::MatrixFree, ProjectedMultigrid, KrylovKind::Cg, Precision::Mixed);
+  checkStep<3>(OperatorKind::MatrixFree, ProjectedMultigrid, KrylovKind::Cg, Precision::Mixed);
 }
 
 /// Without gravity and bulk modulus every step dissipates.

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "treacle/model/case.hpp"
+
+#include <string>
+#include <vector>
+
+namespace treacle {
+
+/// The ways in which the linear systems of a case are solved, each one the fallback of the one before it. Those of
+/// the projected multigrid have their degrees filled in and stop early: one that needs so many iterations is not
+/// what this preconditioner is chosen for, and another way is cheaper.
+std::vector<SolverSettings> solveStages(const Case& c);
+
+/// "cg, projected-multigrid, mixed: pressure degree 8, grid degree 4, velocity degree 2"
+std::string solverText(const SolverSettings& settings);
+
+}  // namespace treacle

@@ -1,0 +1,54 @@
+#include "treacle/step/solve_stages.hpp"
+
+#include "treacle/method/projected_multigrid.hpp"
+#include "treacle/model/names.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace treacle {
+namespace {
+
+ProjectionDegrees degreesOf(const Case& c) {
+  const ProjectedSettings& s = c.solver.projected;
+  const ProjectionConstants constants =
+      c.dimensions == 2 ? projectionConstants(makePairs<2>(c)) : projectionConstants(makePairs<3>(c));
+  return chooseDegrees({s.pressureDegree, s.gridDegree, s.velocityDegree}, constants);
+}
+
+}  // namespace
+
+std::vector<SolverSettings> solveStages(const Case& c) {
+  if (c.solver.preconditioner != PreconditionerKind::ProjectedMultigrid) return {c.solver};
+  const ProjectionDegrees degrees = degreesOf(c);
+  const int bound = c.solver.projected.iterationBound;
+
+  SolverSettings first = c.solver;
+  first.projected = {degrees.pressure, degrees.grid, degrees.velocity, bound};
+  first.maxIterations = std::min(bound, c.solver.maxIterations);
+
+  SolverSettings stronger = first;
+  stronger.projected.pressureDegree *= 2;
+  stronger.projected.velocityDegree += 1;
+  stronger.precision = Precision::Double;
+
+  SolverSettings papers = c.solver;
+  papers.krylov = KrylovKind::Cr;
+  papers.preconditioner = PreconditionerKind::BucketMultigrid;
+  papers.precision = Precision::Double;
+  papers.multigrid = {};
+  return {first, stronger, papers};
+}
+
+std::string solverText(const SolverSettings& settings) {
+  std::string text = fmt::format("{}, {}, {}", nameOf(settings.krylov), nameOf(settings.preconditioner),
+                                 nameOf(settings.precision));
+  if (settings.preconditioner == PreconditionerKind::ProjectedMultigrid)
+    text +=
+        fmt::format(": pressure degree {}, grid degree {}, velocity degree {}", settings.projected.pressureDegree,
+                    settings.projected.gridDegree, settings.projected.velocityDegree);
+  return text;
+}
+
+}  // namespace treacle
