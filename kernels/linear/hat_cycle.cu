@@ -1,5 +1,6 @@
 #include "treacle/linear/hat_cycle.hpp"
 
+#include "core/reduce.cuh"
 #include "linear/dense_product.cuh"
 #include "linear/row_sums.cuh"
 
@@ -96,6 +97,26 @@ __global__ void valuesKernel(BlockCsrView<B, double> a, T* value, T* inverseDiag
   }
 }
 
+/// One warp per coarse node, a lane per fine one around it: b = P^T res, and the first smoothing step unless the
+/// level is the dense one. No atomics.
+template <int D, int B, class T>
+__global__ void restrictKernel(const HatNodesView<D> fine, const HatNodesView<D> coarse, const T* res, T* b,
+                               const FirstStep<T> first) {
+  const std::uint32_t row = (blockIdx.x * blockDim.x + threadIdx.x) / 32;
+  const int lane = static_cast<int>(threadIdx.x % 32);
+  if (row >= coarse.count) return;
+  Vec<D, int> p{};
+  double weight;
+  const bool exists = lane < fineSteps<D> && finePoint(fine.lattice, coarse.pointOf(row), lane, p, weight);
+  const std::uint32_t i = exists ? fine.at(p) : noNode;
+  for (int c = 0; c < B; ++c) {
+    const T sum = warpSum(i == noNode ? T(0) : static_cast<T>(weight) * res[std::size_t{i} * B + c]);
+    if (lane != c) continue;
+    b[std::size_t{row} * B + c] = sum;
+    if (first.lambdaMax) first(std::size_t{row} * B + c, sum);
+  }
+}
+
 }  // namespace
 
 template <class T, int B>
@@ -131,18 +152,8 @@ void hatResidual(Context<Cuda>& context, const HatMatrix<T, B>& a, const HatVect
 template <int D, int B, class T>
 void hatRestrict(Context<Cuda>& context, const HatNodes<D, Cuda>& fine, const HatNodes<D, Cuda>& coarse,
                  const T* res, const HatVectors<T>& v) {
-  forEach(
-      context, std::size_t{B} * coarse.count(),
-      [from = fine.view(), to = coarse.view(), res, b = v.b, first = FirstStep<T>(v)] __device__(std::size_t k) {
-        const std::uint32_t row = static_cast<std::uint32_t>(k / B), c = static_cast<std::uint32_t>(k % B);
-        T sum = 0;
-        forEachFine(from.lattice, to.pointOf(row), [&](const Vec<D, int>& p, double weight) {
-          const std::uint32_t i = from.at(p);
-          if (i != noNode) sum += static_cast<T>(weight) * res[std::size_t{i} * B + c];
-        });
-        b[k] = sum;
-        if (first.lambdaMax) first(k, sum);
-      });
+  launch(context, blocksFor(coarse.count(), 4), 128, 0, restrictKernel<D, B, T>, fine.view(), coarse.view(), res,
+         v.b, FirstStep<T>(v));
 }
 
 template <int D, int B, class T>

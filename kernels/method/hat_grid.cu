@@ -17,6 +17,14 @@ __device__ inline T cornerWeight(const Vec<D, T>& place, int corner) {
   return weight;
 }
 
+/// Which corner of a cell a node is: bit k is set for the upper one of axis k.
+template <int D>
+__device__ inline int cornerOf(const HatCells<D>& cells, const Vec<D, int>& node, const Vec<D, int>& cell) {
+  int corner = 0;
+  for (int k = 0; k < D; ++k) corner |= cells.above(node[k], cell[k], k) << k;
+  return corner;
+}
+
 /// Products of the columns of C P are the same small matrix for all particles of a half cell: they touch the same
 /// 3^D nodes. Cells are numbered by the node at their lower corner.
 template <int D, class T>
@@ -144,6 +152,26 @@ __global__ void __launch_bounds__(D == 2 ? 96 : 256)
   g.parts.masses[blockIdx.x * std::size_t{Parts::mass} + threadIdx.x] = static_cast<T>(sum);
 }
 
+/// Of the six half cells along an axis that touch a node: the cell, the node's place among the half's three nodes,
+/// and the place of another node, -1 where it is not one of them. They go from two cells below the node to the one
+/// above.
+struct HalfCell {
+  int cell, own, other;
+};
+template <int D>
+__device__ inline HalfCell halfCellAt(const HatCells<D>& cells, const Vec<D, int>& node, const Vec<D, int>& other,
+                                      int axis, int t) {
+  const int count = cells.grid.count[axis], lowest = node[axis] - 2 + t / 2;
+  int cell = node[axis] - 2 + (t + 1) / 2;
+  bool exists = true;
+  if (cells.grid.periodic[axis])
+    cell = cell < 0 ? cell + count : cell >= count ? cell - count : cell;
+  else
+    exists = cell >= 0 && cell < count;
+  const int place = cells.above(other[axis], lowest, axis);
+  return {cell, 2 - t / 2, exists && place >= 0 && place <= 2 ? place : -1};
+}
+
 /// A warp per row and 32 of its entries, one lane each: adds up what the half cells and cells around have for the
 /// two nodes. No atomics.
 template <int D, class T>
@@ -156,24 +184,30 @@ __global__ void __launch_bounds__(128) pressureGalerkinKernel(const __grid_const
   if (entry >= g.rowStart[row + 1]) return;
   const Vec<D, int> node = g.nodes.pointOf(row), other = g.nodes.pointOf(g.column[entry]);
   double sum = 0;
-  g.cells.forEachCellAround(node, 2, [&](const Vec<D, int>& cell) {
+  for (int tz = 0; tz < (D == 3 ? 6 : 1); ++tz) {
+    const HalfCell z = D == 3 ? halfCellAt(g.cells, node, other, D - 1, tz) : HalfCell{0, 0, 0};
+    for (int ty = 0; ty < 6 && z.other >= 0; ++ty) {
+      const HalfCell y = halfCellAt(g.cells, node, other, 1, ty);
+      for (int tx = 0; tx < 6 && y.other >= 0; ++tx) {
+        const HalfCell x = halfCellAt(g.cells, node, other, 0, tx);
+        if (x.other < 0) continue;
+        Vec<D, int> cell;
+        cell[0] = x.cell, cell[1] = y.cell;
+        if constexpr (D == 3) cell[2] = z.cell;
+        const std::uint32_t c = g.nodes.at(cell);
+        if (c == noNode) continue;
+        // Every second half cell from the first one on is an upper half.
+        const int half = (~tx & 1) | (~ty & 1) << 1 | (D == 3 ? (~tz & 1) << 2 : 0);
+        const int n = x.own + 3 * (y.own + 3 * z.own), m = x.other + 3 * (y.other + 3 * z.other);
+        sum += g.parts.grams[(c * std::size_t{Parts::halves} + half) * Parts::gram + n * slots<D> + m];
+      }
+    }
+  }
+  g.cells.forEachCellAround(node, 1, [&](const Vec<D, int>& cell) {
     const std::uint32_t c = g.nodes.at(cell);
-    if (c == noNode) return;
-    // In which half a node is among the three per axis, and as which: bit h of `halves`, base-3 digit of the slot.
-    for (int h = 0; h < Parts::halves; ++h) {
-      Vec<D, int> lowest;
-      for (int k = 0; k < D; ++k) lowest[k] = cell[k] - (h >> k & 1 ? 0 : 1);
-      const int n = g.cells.slot(node, lowest), m = g.cells.slot(other, lowest);
-      if (n < 0 || m < 0) continue;
-      sum += g.parts.grams[(c * std::size_t{Parts::halves} + h) * Parts::gram + n * slots<D> + m];
-    }
-    if (!g.cells.isCorner(node, cell) || !g.cells.isCorner(other, cell)) return;
-    int a = 0, b = 0;
-    for (int k = 0; k < D; ++k) {
-      a |= g.cells.above(node[k], cell[k], k) << k;
-      b |= g.cells.above(other[k], cell[k], k) << k;
-    }
-    sum += g.parts.masses[c * std::size_t{Parts::mass} + a * Parts::corners + b];
+    if (c == noNode || !g.cells.isCorner(other, cell)) return;
+    sum += g.parts.masses[c * std::size_t{Parts::mass} + cornerOf(g.cells, node, cell) * Parts::corners +
+                          cornerOf(g.cells, other, cell)];
   });
   g.value[entry] = sum;
 }
@@ -201,21 +235,55 @@ struct MomentSums {
   }
 };
 
-/// What the Galerkin kernel of the velocities reads and writes.
+/// What the kernels of the velocities' Galerkin operator read and write. Cells are numbered as in CellParts.
 template <int D, class T>
 struct ViscousGalerkin {
+  static constexpr int corners = 1 << D, pairs = corners * corners;
   HatCells<D> cells;
   HatNodesView<D> nodes;
   CellRangesView ranges;
   const Vec<D>* position;
   const ViscousMoments<D, T>* moments;
   const Block<D>* own;  // inertia and walls
+  Block<D, T>* parts;   // per cell: one block per pair of corners
   const std::uint64_t* rowStart;
   const std::uint32_t* column;
   Block<D>* block;
 };
 
-/// A warp per row, a lane per entry; reads the moments and places of the fluid around the row's node. No atomics.
+/// One thread per cell and pair of its corners; reads the moments and places of the cell's fluid. No atomics.
+template <int D, class T>
+__global__ void __launch_bounds__(128) viscousPartsKernel(const __grid_constant__ ViscousGalerkin<D, T> g) {
+  constexpr int pairs = ViscousGalerkin<D, T>::pairs, corners = ViscousGalerkin<D, T>::corners;
+  const std::uint32_t thread = blockIdx.x * blockDim.x + threadIdx.x, c = thread / pairs;
+  if (c >= g.nodes.count) return;
+  const int a = static_cast<int>(thread) % pairs / corners, b = static_cast<int>(thread) % corners;
+  const Vec<D, int> cell = g.nodes.pointOf(c);
+  for (int k = 0; k < D; ++k)
+    if (cell[k] >= g.cells.grid.count[k]) return;  // the last nodes of an open axis are no lower corners
+  const auto hat = [&](const Vec<D, T>& place, int corner, Vec<D, T>& gradient) {
+    for (int k = 0; k < D; ++k) {
+      gradient[k] = static_cast<T>(corner >> k & 1 ? g.cells.grid.inverseEdge[k] : -g.cells.grid.inverseEdge[k]);
+      for (int other = 0; other < D; ++other)
+        if (other != k) gradient[k] *= corner >> other & 1 ? place[other] : 1 - place[other];
+    }
+    return cornerWeight(place, corner);
+  };
+  Block<D> sum{};
+  const std::size_t linear = g.cells.grid.linear(cell);
+  for (std::uint32_t i = g.ranges.fluidBegin[linear]; i < g.ranges.fluidEnd[linear]; ++i) {
+    const Vec<D> f = g.cells.fraction(g.position[i], cell);
+    Vec<D, T> place, p, q;
+    for (int k = 0; k < D; ++k) place[k] = static_cast<T>(f[k]);
+    const T mass = hat(place, a, p) * hat(place, b, q);
+    const Block<D, T> viscous = g.moments[i].between(p, q);
+    for (int k = 0; k < D * D; ++k) sum.a[k] += viscous.a[k] + mass * static_cast<T>(g.own[i].a[k]);
+  }
+  for (int k = 0; k < D * D; ++k) g.parts[thread].a[k] = static_cast<T>(sum.a[k]);
+}
+
+/// One thread per row and adjacent node, 32 to a row; adds up the parts of the cells that both are corners of. No
+/// atomics.
 template <int D, class T>
 __global__ void __launch_bounds__(128) viscousGalerkinKernel(const __grid_constant__ ViscousGalerkin<D, T> g) {
   const std::uint32_t row = blockIdx.x * (blockDim.x / 32) + threadIdx.x / 32;
@@ -225,18 +293,12 @@ __global__ void __launch_bounds__(128) viscousGalerkinKernel(const __grid_consta
   const Vec<D, int> node = g.nodes.pointOf(row), other = g.nodes.pointOf(g.column[entry]);
   Block<D> sum{};
   g.cells.forEachCellAround(node, 1, [&](const Vec<D, int>& cell) {
-    if (!g.cells.isCorner(other, cell)) return;
-    const std::size_t c = g.cells.grid.linear(cell);
-    for (std::uint32_t i = g.ranges.fluidBegin[c]; i < g.ranges.fluidEnd[c]; ++i) {
-      const Vec<D> f = g.cells.fraction(g.position[i], cell);
-      Vec<D, T> place, p, q;
-      for (int k = 0; k < D; ++k) place[k] = static_cast<T>(f[k]);
-      T own, others;
-      g.cells.cornerHat(node, cell, place, own, p);
-      g.cells.cornerHat(other, cell, place, others, q);
-      const Block<D, T> viscous = g.moments[i].between(p, q);
-      for (int k = 0; k < D * D; ++k) sum.a[k] += viscous.a[k] + own * others * g.own[i].a[k];
-    }
+    const std::uint32_t c = g.nodes.at(cell);
+    if (c == noNode || !g.cells.isCorner(other, cell)) return;
+    const int pair =
+        cornerOf(g.cells, node, cell) * ViscousGalerkin<D, T>::corners + cornerOf(g.cells, other, cell);
+    const Block<D, T> part = g.parts[c * std::size_t{ViscousGalerkin<D, T>::pairs} + pair];
+    for (int k = 0; k < D * D; ++k) sum.a[k] += part.a[k];
   });
   g.block[entry] = sum;
 }
@@ -355,16 +417,26 @@ void pressureGalerkin(Context<Cuda>& context, const MphPairs<D>& pairs, const Ne
 template <int D, class T>
 void viscousGalerkin(Context<Cuda>& context, const MphPairs<D>& pairs, const WallTerms<D>& terms,
                      const HatNodes<D, Cuda>& nodes, Buffer<ViscousMoments<D, T>, Cuda>& moments,
-                     BlockCsr<D, double, Cuda>& a) {
+                     Buffer<T, Cuda>& parts, BlockCsr<D, double, Cuda>& a) {
   using Terms = MomentSums<D, T>;
+  constexpr int cornerPairs = ViscousGalerkin<D, T>::pairs;
   moments.resize(context, pairs.fluidCount);
   const ListTask<Terms> task{pairs.fluidList, {PairConstants<D, double>::make(pairs, 1), moments.data()}};
   launchClusterSums<D, double, Sharing<2, 1>>(context, pairs, task, Places<D, double>::make(pairs));
 
+  parts.resize(context, std::size_t{D * D * cornerPairs} * nodes.count());
   hatPattern(context, nodes, a, 1);
-  const ViscousGalerkin<D, T> g{HatCells<D>{pairs.grid}, nodes.view(),    pairs.cells,
-                                pairs.position.data(),   moments.data(),  terms.block.data(),
-                                a.rowStart.data(),       a.column.data(), a.block.data()};
+  const ViscousGalerkin<D, T> g{.cells = {pairs.grid},
+                                .nodes = nodes.view(),
+                                .ranges = pairs.cells,
+                                .position = pairs.position.data(),
+                                .moments = moments.data(),
+                                .own = terms.block.data(),
+                                .parts = reinterpret_cast<Block<D, T>*>(parts.data()),
+                                .rowStart = a.rowStart.data(),
+                                .column = a.column.data(),
+                                .block = a.block.data()};
+  launch(context, blocksFor(std::size_t{nodes.count()} * cornerPairs, 128), 128, 0, viscousPartsKernel<D, T>, g);
   launch(context, blocksFor(nodes.count(), 4), 128, 0, viscousGalerkinKernel<D, T>, g);
 }
 
@@ -430,7 +502,7 @@ void HatTransfer<D, T, Cuda>::prolong(Context<Cuda>& context, const HatNodes<D, 
                                        Buffer<T, Cuda>&, BlockCsr<1, double, Cuda>&);                \
   template void viscousGalerkin<D, T>(Context<Cuda>&, const MphPairs<D>&, const WallTerms<D>&,       \
                                       const HatNodes<D, Cuda>&, Buffer<ViscousMoments<D, T>, Cuda>&, \
-                                      BlockCsr<D, double, Cuda>&);                                   \
+                                      Buffer<T, Cuda>&, BlockCsr<D, double, Cuda>&);                 \
   template class HatTransfer<D, T, Cuda>;
 template void findHatNodes<2>(Context<Cuda>&, const MphPairs<2>&, HatsOn, HatNodes<2, Cuda>&);
 template void findHatNodes<3>(Context<Cuda>&, const MphPairs<3>&, HatsOn, HatNodes<3, Cuda>&);

@@ -45,6 +45,38 @@ Places<D, T> placesOf(const MphPairs<D>& pairs, const NearProducts<D>& near) {
     return Places<D, T>::make(pairs, near.fixedPosition().data());
 }
 
+/// Positions of the single-precision products. In three dimensions 16 bits have to do, of which the multiples of a
+/// length above twice h_p are left out: differences stay exact, and particles are displaced by 3e-5 spacings, in
+/// all products alike.
+template <int D>
+struct CoarsePositions {
+  std::uint32_t periods[D];
+
+  __device__ std::uint32_t of(std::uint32_t fixed, int k) const {
+    return D == 2 ? fixed : (fixed * periods[k] + 0x8000u) & 0xffff0000u;
+  }
+};
+template <int D>
+CoarsePositions<D> coarsePositions(const MphPairs<D>& pairs) {
+  CoarsePositions<D> c;
+  for (int k = 0; k < D; ++k)
+    c.periods[k] = D == 2 ? 1u
+                          : static_cast<std::uint32_t>(
+                                std::max(pairs.grid.length[k] / (2.2 * pairs.pressureWeight.radius), 1.0));
+  return c;
+}
+
+/// The lists with these positions.
+template <int D, class T>
+NearView<D, T> viewOf(const MphPairs<D>& pairs, const NearProducts<D>& near) {
+  NearView<D, T> view = NearView<D, T>::make(pairs, near);
+  if constexpr (std::is_same_v<T, float>) {
+    const CoarsePositions<D> coarse = coarsePositions(pairs);
+    for (int k = 0; k < D; ++k) view.places.scale[k] /= static_cast<float>(coarse.periods[k]);
+  }
+  return view;
+}
+
 /// One thread per particle: the inverse diagonal of S', from the positions of the neighbours. No atomics.
 template <int D, class T>
 __global__ void __launch_bounds__(128)
@@ -80,17 +112,25 @@ void ParticleProducts<D, T, Cuda>::prepare(Context<Cuda>& context, const MphPair
                                            const MphOperator<D, Cuda>& a) {
   pairs_ = &pairs;
   a_ = &a;
-  scalars_.resize(context, pairs.activeCount);
+  for (auto& field : scalars_) field.resize(context, pairs.activeCount);
   vectors_.resize(context, pairs.activeCount);
   clearBytes(context, vectors_.data(), vectors_.size() * sizeof(vectors_.data()[0]));
   if constexpr (std::is_same_v<T, float>)
-    forEach(context, pairs.activeCount,
-            [position = a.near().fixedPosition().data(), scalars = scalars_.data(),
-             vectors = vectors_.data()] __device__(std::size_t i) {
-              for (int k = 0; k < 3; ++k) scalars[i].position[k] = position[4 * i + k];
-              if constexpr (D == 2)
-                for (int k = 0; k < 2; ++k) vectors[i].position[k] = position[4 * i + k];
-            });
+    forEach(
+        context, pairs.activeCount,
+        [coarse = coarsePositions(pairs), position = a.near().fixedPosition().data(), first = scalars_[0].data(),
+         second = scalars_[1].data(), vectors = vectors_.data()] __device__(std::size_t i) {
+          std::uint32_t x[3] = {};
+          for (int k = 0; k < D; ++k) x[k] = coarse.of(static_cast<std::uint32_t>(position[4 * i + k]), k);
+          for (int k = 0; k < 3; ++k)
+            first[i].position[k] = second[i].position[k] = static_cast<std::int32_t>(x[k]);
+          if constexpr (D == 2) {
+            for (int k = 0; k < D; ++k) vectors[i].position[k] = static_cast<std::int32_t>(x[k]);
+          } else {
+            vectors[i].word[0] = x[0] >> 16 | x[1];
+            for (int k = 0; k < 3; ++k) vectors[i].word[k + 1] = x[2] >> (16 + 6 * k) & PlacedVector<3>::low;
+          }
+        });
   selfBlock_.resize(context, pairs.fluidCount);
   const double* from = a.selfBlock()[0].a;
   T* to = selfBlock_.data()->a;
@@ -100,7 +140,7 @@ void ParticleProducts<D, T, Cuda>::prepare(Context<Cuda>& context, const MphPair
 
 template <int D, class T>
 void ParticleProducts<D, T, Cuda>::gather(Context<Cuda>& context, std::span<const T> x) {
-  forEach(context, x.size(), [from = x.data(), to = scalars()] __device__(std::size_t k) { to[k] = from[k]; });
+  forEach(context, x.size(), [from = x.data(), to = scalars(0)] __device__(std::size_t k) { to[k] = from[k]; });
 }
 
 template <int D, class T>
@@ -120,26 +160,50 @@ void ParticleProducts<D, T, Cuda>::gatherWeighted(Context<Cuda>& context, const 
           });
 }
 
+/// Calls f(view, what gathers q).
+template <int D, class T, class F>
+void withScalars(const MphPairs<D>& pairs, const NearProducts<D>& near, ScalarField<T, Cuda> q, F&& f) {
+  const auto view = viewOf<D, T>(pairs, near);
+  if constexpr (std::is_same_v<T, float>)
+    f(view, PlacedScalars<D>{q.at});
+  else
+    f(view, PlainScalars<D, T>{q.at});
+}
+
 template <int D, class T>
 template <class Store>
 void ParticleProducts<D, T, Cuda>::gradient(Context<Cuda>& context, ScalarField<T, Cuda> q,
                                             const Store& store) const {
-  const auto view = NearView<D, T>::make(*pairs_, a_->near());
-  if constexpr (std::is_same_v<T, float>)
-    nearGradient(context, view, PlacedScalars<D>{q.at}, store);
-  else
-    nearGradient(context, view, PlainScalars<D, T>{q.at}, store);
+  withScalars(*pairs_, a_->near(), q,
+              [&](const auto& view, const auto& scalars) { nearGradient(context, view, scalars, store); });
 }
 
 template <int D, class T>
 template <class Store>
 void ParticleProducts<D, T, Cuda>::divergence(Context<Cuda>& context, VectorField<D, T, Cuda> u,
                                               const Store& store) const {
-  const auto view = NearView<D, T>::make(*pairs_, a_->near());
-  if constexpr (std::is_same_v<T, float> && D == 2)
-    nearDivergence(context, view, PlacedVectors{u.at}, store);
+  const auto view = viewOf<D, T>(*pairs_, a_->near());
+  if constexpr (std::is_same_v<T, float>)
+    nearDivergence(context, view, PlacedVectors<D>{u.at}, store);
   else
     nearDivergence(context, view, PlainVectors<D, T, Gathered<D, T>>{u.at}, store);
+}
+
+template <int D, class T>
+template <class Store>
+void ParticleProducts<D, T, Cuda>::schur(Context<Cuda>& context, const ProjectionTable<T>& table,
+                                         ScalarField<T, Cuda> q, const Store& store) {
+  const std::uint8_t* material = pairs_->material.data();
+  if (pairs_->activeCount <= onePassParticles<D>) {
+    withScalars(*pairs_, a_->near(), q, [&](const auto& view, const auto& scalars) {
+      nearSchur(context, view, scalars, table, material, store);
+    });
+    return;
+  }
+  withScalars(*pairs_, a_->near(), q, [&](const auto& view, const auto& scalars) {
+    nearGradient(context, view, scalars, StoreWeighted<D, T, Cuda>{table, material, vectors()});
+  });
+  divergence(context, vectors(), store);
 }
 
 template <int D, class T>
@@ -177,6 +241,9 @@ void ParticleProducts<D, T, Cuda>::inverseDiagonals(Context<Cuda>& context, cons
 #define TREACLE_DIVERGENCE(D, T, ...)                                                             \
   template void ParticleProducts<D, T, Cuda>::divergence(Context<Cuda>&, VectorField<D, T, Cuda>, \
                                                          const __VA_ARGS__&) const;
+#define TREACLE_SCHUR(D, T, ...)                                                               \
+  template void ParticleProducts<D, T, Cuda>::schur(Context<Cuda>&, const ProjectionTable<T>&, \
+                                                    ScalarField<T, Cuda>, const __VA_ARGS__&);
 #define TREACLE_VISCOUS(D, T, ...)                                                                               \
   template void ParticleProducts<D, T, Cuda>::viscous(Context<Cuda>&, const Gathered<D, T>*, const __VA_ARGS__&) \
       const;

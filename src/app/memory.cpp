@@ -32,9 +32,10 @@ struct DeviceBytes {
   std::uint64_t fixed;  // the dense tail of the V-cycle, most of the time
   std::uint64_t wall;
   std::uint64_t matrixFree, ranges, assembled, spgemm;  // per fluid particle
+  std::uint64_t projected;                              // likewise: what projected-multigrid takes more
 };
-constexpr DeviceBytes deviceBytes2D{5'000'000, 119, 692, 592, 2072, 10762};
-constexpr DeviceBytes deviceBytes3D{12'000'000, 190, 1178, 948, 14068, 97548};
+constexpr DeviceBytes deviceBytes2D{5'000'000, 119, 692, 592, 2072, 10762, 210};
+constexpr DeviceBytes deviceBytes3D{12'000'000, 190, 1178, 948, 14068, 97548, 780};
 
 /// `onDevice`: ranges and products of sparse matrices exist on devices only.
 Storage storageOf(const SolverSettings& solver, bool onDevice) {
@@ -76,7 +77,10 @@ std::uint64_t estimatedMemory(const Case& c, ParticleNumbers n, bool onDevice) {
 
 std::uint64_t estimatedDeviceMemory(const Case& c, ParticleNumbers n) {
   const DeviceBytes& bytes = c.dimensions == 2 ? deviceBytes2D : deviceBytes3D;
-  return bytes.fixed + n.fluid * perFluidParticle(bytes, storageOf(c.solver, true)) + n.wall * bytes.wall;
+  const bool projected = c.solver.preconditioner == PreconditionerKind::ProjectedMultigrid;
+  return bytes.fixed +
+         n.fluid * (perFluidParticle(bytes, storageOf(c.solver, true)) + (projected ? bytes.projected : 0)) +
+         n.wall * bytes.wall;
 }
 
 void requireMemory(const Case& c, ParticleNumbers n, const DeviceInfo* device) {

@@ -31,73 +31,83 @@ void storeCoefficient(Buffer<T>& values, std::uint64_t entry, const Lanes& lanes
 }
 
 template <class T>
-LanesOf<T> loadCoefficient(const Buffer<T>& values, std::uint64_t entry) {
+LanesOf<T> loadLanes(const T* values) {
   LanesOf<T> lanes;
-  std::memcpy(&lanes, values.data() + entry * clusterSize, sizeof(lanes));
+  std::memcpy(&lanes, values, sizeof(lanes));
   return lanes;
 }
 
-/// D components of eight particles.
-template <int D, class T>
-struct VectorLanes {
-  LanesOf<T> c[D];
-
-  template <class V>
-  VectorLanes(const ClusterRange& range, const V* values) {
-    for (std::uint32_t lane = 0; lane < clusterSize; ++lane)
-      for (int k = 0; k < D; ++k) c[k][lane] = values[range.particle(lane)][k];
-  }
-};
-
-/// Walks the lists of one cluster: positions relative to the neighbours in the precision of the products.
+/// Walks the lists of one cluster: coefficients, and positions relative to the neighbours, in the precision of the
+/// products.
 template <int D, class T>
 class ClusterWalk {
  public:
+  /// `lanes`: positions of all clusters, D times eight numbers each.
   ClusterWalk(const MphPairs<D>& pairs, const ClusterListView& list, std::uint32_t cluster,
-              const Vec<D, T>* position)
-      : range(list, cluster),
-        pairs_(pairs),
-        list_(list),
-        cluster_(cluster),
-        position_(position),
-        x_(range, position) {
-    const Vec<D, T>& first = position[range.first];
-    for (int k = 0; k < D; ++k)
-      for (std::uint32_t lane = 1; pairs.grid.periodic[k] && lane < clusterSize; ++lane) {
-        const T length = static_cast<T>(pairs.grid.length[k]);
-        x_.c[k][lane] -= length * std::round((x_.c[k][lane] - first[k]) / length);
-      }
+              const Vec<D, T>* position, const T* lanes)
+      : range(list, cluster), pairs_(pairs), list_(list), cluster_(cluster), position_(position) {
+    for (int k = 0; k < D; ++k) x_[k] = loadLanes(lanes + (std::size_t{D} * cluster + k) * clusterSize);
   }
 
-  /// Calls f(j, d) for the entries of a segment; d = x_j - x_i.
+  /// Calls f(half, j, c, d) for the entries of a segment; c: the eight coefficients, d = x_j - x_i; `half`
+  /// alternates between 0 and 1, so that two sums in turn hide the latency of the additions.
   template <class F>
-  void forEach(ListSegment segment, F&& f) const {
-    list_.wraps[cluster_] ? walk<true>(segment, f) : walk<false>(segment, f);
+  void forEach(ListSegment segment, const T*& coefficient, F&& f) const {
+    list_.wraps[cluster_] ? walk<true>(segment, coefficient, f) : walk<false>(segment, coefficient, f);
   }
 
   const ClusterRange range;
 
  private:
   template <bool Wraps, class F>
-  void walk(ListSegment segment, F&& f) const {
-    for (ListEntry e : list_.segment(cluster_, segment)) {
+  void walk(ListSegment segment, const T*& coefficient, F&& f) const {
+    const std::span<const ListEntry> entries = list_.segment(cluster_, segment);
+    const T* next = coefficient;
+    const auto visit = [&](int half, ListEntry e) {
       const std::uint32_t j = Wraps ? e.index() : e.bits;
       LanesOf<T> d[D];
       for (int k = 0; k < D; ++k) {
         T xj = position_[j][k];
         if constexpr (Wraps) xj += static_cast<T>(pairs_.images.shift[e.image()][k]);
-        d[k] = xj - x_.c[k];
+        d[k] = xj - x_[k];
       }
-      f(j, d);
+      f(half, j, loadLanes(next), d);
+      next += clusterSize;
+    };
+    std::size_t p = 0;
+    for (; p + 1 < entries.size(); p += 2) {
+      visit(0, entries[p]);
+      visit(1, entries[p + 1]);
     }
+    if (p < entries.size()) visit(0, entries[p]);
+    coefficient = next;
   }
 
   const MphPairs<D>& pairs_;
   const ClusterListView& list_;
   std::uint32_t cluster_;
   const Vec<D, T>* position_;
-  VectorLanes<D, T> x_;
+  LanesOf<T> x_[D];
 };
+
+/// Positions of the clusters of a list, at the image nearest to the cluster's first particle.
+template <int D, class T>
+void positionLanes(const MphPairs<D>& pairs, const ClusterListView& list, const Buffer<Vec<D, T>>& position,
+                   Buffer<T>& lanes) {
+  lanes.resize(std::size_t{D} * clusterSize * list.clusterCount());
+  parallelFor(list.clusterCount(), parallelGrain / clusterSize, [&](std::size_t c) {
+    const ClusterRange range(list, static_cast<std::uint32_t>(c));
+    const Vec<D, T>& first = position[range.first];
+    for (int k = 0; k < D; ++k) {
+      const T length = static_cast<T>(pairs.grid.length[k]);
+      for (std::uint32_t lane = 0; lane < clusterSize; ++lane) {
+        T x = position[range.particle(lane)][k];
+        if (pairs.grid.periodic[k]) x -= length * std::round((x - first[k]) / length);
+        lanes[(c * D + k) * clusterSize + lane] = x;
+      }
+    }
+  });
+}
 
 template <class F>
 void forEachClusterOf(const ClusterListView& list, F&& f) {
@@ -105,13 +115,58 @@ void forEachClusterOf(const ClusterListView& list, F&& f) {
               [&](std::size_t c) { f(static_cast<std::uint32_t>(c)); });
 }
 
-template <int D, class T, class Store>
-void storeVectors(const ClusterRange& range, const LanesOf<T>* sum, const Store& store) {
-  for (std::uint32_t lane = 0; lane < range.count; ++lane) {
-    Vec<D, T> v;
-    for (int k = 0; k < D; ++k) v[k] = sum[k][lane];
-    store(range.first + lane, v);
+/// f(lane) for the particles of a cluster, which are independent of each other: a full cluster as one vector.
+template <class F>
+void forEachLane(const ClusterRange& range, F&& f) {
+  if (range.count == clusterSize) {
+#pragma GCC ivdep
+    for (std::size_t lane = 0; lane < clusterSize; ++lane) f(lane);
+  } else {
+    for (std::size_t lane = 0; lane < range.count; ++lane) f(lane);
   }
+}
+
+/// Stores the sums sumOf(i, lane). A single material is known before the loop and needs no look-up per particle.
+template <int D, class Store, class F>
+void storeSums(const MphPairs<D>& pairs, const ClusterRange& range, const Store& store, F&& sumOf) {
+  const std::size_t first = range.first;
+  if (pairs.materials.count == 1)
+    forEachLane(range, [&](std::size_t lane) { store.put(first + lane, sumOf(first + lane, lane), 0); });
+  else
+    forEachLane(range, [&](std::size_t lane) {
+      store.put(first + lane, sumOf(first + lane, lane), pairs.material[first + lane]);
+    });
+}
+
+/// The sum of both halves, lane by lane.
+template <int D, class T>
+struct VectorSums {
+  T at[D][clusterSize];
+
+  explicit VectorSums(const LanesOf<T> (&sum)[2][D]) {
+    for (int k = 0; k < D; ++k) {
+      const LanesOf<T> total = sum[0][k] + sum[1][k];
+      std::memcpy(at[k], &total, sizeof(total));
+    }
+  }
+  Vec<D, T> operator[](std::size_t lane) const {
+    Vec<D, T> v;
+    for (int k = 0; k < D; ++k) v[k] = at[k][lane];
+    return v;
+  }
+};
+
+/// Sum of g d.u_j over near fluid.
+template <int D, class T>
+VectorSums<1, T> sumAlong(const ClusterWalk<D, T>& walk, const T* coefficient, const Gathered<D, T>* u) {
+  LanesOf<T> sum[2][1] = {};
+  walk.forEach(ListSegment::NearFluid, coefficient,
+               [&](int half, std::uint32_t j, const LanesOf<T>& g, const LanesOf<T>* d) {
+                 LanesOf<T> along = u[j][0] * d[0];
+                 for (int k = 1; k < D; ++k) along += u[j][k] * d[k];
+                 sum[half][0] += g * along;
+               });
+  return VectorSums<1, T>(sum);
 }
 
 /// Where the entries of each cluster's segments start, counted over clusters.
@@ -143,8 +198,10 @@ void ParticleProducts<D, T, Cpu>::prepare(Context<Cpu>&, const MphPairs<D>& pair
   pressure_.resize(pressureStart_[pairs.fluidList.clusterCount()] * clusterSize);
   wall_.resize(wallStart_[pairs.wallList.clusterCount()] * clusterSize);
   selfBlock_.resize(pairs.fluidCount);
-  scalars_.resize(pairs.activeCount);
+  for (Buffer<T>& field : scalars_) field.resize(pairs.activeCount);
   vectors_.resize(pairs.fluidCount);
+  positionLanes(pairs, pairs.fluidList, position_, fluidLanes_);
+  positionLanes(pairs, pairs.wallList, position_, wallLanes_);
   const double floor2 = distanceFloor2(pairs);
 
   forEachCluster<D>(pairs, pairs.fluidList, [&](const ClusterRange& range, const VecLanes<D>& x, std::uint32_t c) {
@@ -174,6 +231,29 @@ void ParticleProducts<D, T, Cpu>::prepare(Context<Cpu>&, const MphPairs<D>& pair
       storeCoefficient(wall_, next++, pairs.pressure.factor * pair.reach(pairs.pressure));
     }
   });
+  sumGradients();
+}
+
+/// G_i = sum of g d over all neighbours: what the particle's own pressure and velocity meet, which then need not
+/// be added per pair.
+template <int D, class T>
+void ParticleProducts<D, T, Cpu>::sumGradients() {
+  const ClusterListView& list = pairs_->fluidList;
+  gradient_.resize(fluidLanes_.size());
+  forEachClusterOf(list, [&](std::uint32_t c) {
+    const ClusterWalk<D, T> walk(*pairs_, list, c, position_.data(), fluidLanes_.data());
+    LanesOf<T> sum[2][D] = {};
+    const T* coefficient = &pressure_[pressureStart_[c] * clusterSize];
+    const auto add = [&](int half, std::uint32_t, const LanesOf<T>& f, const LanesOf<T>* d) {
+      for (int k = 0; k < D; ++k) sum[half][k] += f * d[k];
+    };
+    walk.forEach(ListSegment::NearFluid, coefficient, add);
+    walk.forEach(ListSegment::NearWall, coefficient, add);
+    for (int k = 0; k < D; ++k) {
+      const LanesOf<T> total = sum[0][k] + sum[1][k];
+      std::memcpy(&gradient_[(std::size_t{D} * c + k) * clusterSize], &total, sizeof(total));
+    }
+  });
 }
 
 template <int D, class T>
@@ -181,17 +261,22 @@ template <class Store>
 void ParticleProducts<D, T, Cpu>::gradient(Context<Cpu>&, ScalarField<T, Cpu> q, const Store& store) const {
   const ClusterListView& list = pairs_->fluidList;
   forEachClusterOf(list, [&](std::uint32_t c) {
-    const ClusterWalk<D, T> walk(*pairs_, list, c, position_.data());
-    LanesOf<T> own, sum[D] = {};
-    for (std::uint32_t lane = 0; lane < clusterSize; ++lane) own[lane] = q[walk.range.particle(lane)];
-    std::uint64_t next = pressureStart_[c];
-    const auto add = [&](std::uint32_t j, const LanesOf<T>* d) {
-      const LanesOf<T> f = loadCoefficient(pressure_, next++) * (own + q[j]);
-      for (int k = 0; k < D; ++k) sum[k] += f * d[k];
+    const ClusterWalk<D, T> walk(*pairs_, list, c, position_.data(), fluidLanes_.data());
+    LanesOf<T> sum[2][D] = {};
+    const T* coefficient = pressure_.data() + pressureStart_[c] * clusterSize;
+    const auto add = [&](int half, std::uint32_t j, const LanesOf<T>& g, const LanesOf<T>* d) {
+      const LanesOf<T> f = g * q[j];
+      for (int k = 0; k < D; ++k) sum[half][k] += f * d[k];
     };
-    walk.forEach(ListSegment::NearFluid, add);
-    walk.forEach(ListSegment::NearWall, add);
-    storeVectors<D, T>(walk.range, sum, store);
+    walk.forEach(ListSegment::NearFluid, coefficient, add);
+    walk.forEach(ListSegment::NearWall, coefficient, add);
+    const VectorSums<D, T> sums(sum);
+    const T* own = &gradient_[std::size_t{D} * clusterSize * c];
+    storeSums(*pairs_, walk.range, store, [&](std::size_t i, std::size_t lane) {
+      Vec<D, T> total;
+      for (int k = 0; k < D; ++k) total[k] = sums.at[k][lane] + own[k * clusterSize + lane] * q[i];
+      return total;
+    });
   });
 }
 
@@ -200,37 +285,33 @@ template <class Store>
 void ParticleProducts<D, T, Cpu>::divergence(Context<Cpu>&, VectorField<D, T, Cpu> field,
                                              const Store& store) const {
   const Gathered<D, T>* u = field.at;
-  const auto storeSums = [&](const ClusterRange& range, const LanesOf<T>& sum) {
-    for (std::uint32_t lane = 0; lane < range.count; ++lane) store(range.first + lane, -sum[lane]);
-  };
   forEachClusterOf(pairs_->fluidList, [&](std::uint32_t c) {
-    const ClusterWalk<D, T> walk(*pairs_, pairs_->fluidList, c, position_.data());
-    const VectorLanes<D, T> own(walk.range, u);
-    LanesOf<T> sum = {};
-    std::uint64_t next = pressureStart_[c];
-    walk.forEach(ListSegment::NearFluid, [&](std::uint32_t j, const LanesOf<T>* d) {
-      LanesOf<T> along = (u[j][0] - own.c[0]) * d[0];
-      for (int k = 1; k < D; ++k) along += (u[j][k] - own.c[k]) * d[k];
-      sum += loadCoefficient(pressure_, next++) * along;
+    const ClusterWalk<D, T> walk(*pairs_, pairs_->fluidList, c, position_.data(), fluidLanes_.data());
+    const VectorSums<1, T> sums = sumAlong(walk, pressure_.data() + pressureStart_[c] * clusterSize, u);
+    // Walls are at rest, so all neighbours meet -u_i.
+    const T* own = &gradient_[std::size_t{D} * clusterSize * c];
+    storeSums(*pairs_, walk.range, store, [&](std::size_t i, std::size_t lane) {
+      T total = sums.at[0][lane];
+      for (int k = 0; k < D; ++k) total -= own[k * clusterSize + lane] * u[i][k];
+      return total;
     });
-    // Walls at rest: (0 - u_i).g summed over walls.
-    for (std::uint32_t lane = 0; lane < walk.range.count; ++lane) {
-      const std::uint32_t i = walk.range.first + lane;
-      for (int k = 0; k < D; ++k) sum[lane] -= u[i][k] * static_cast<T>(terms_.gradient[i][k]);
-    }
-    storeSums(walk.range, sum);
   });
-  forEachClusterOf(pairs_->wallList, [&](std::uint32_t c) {
-    const ClusterWalk<D, T> walk(*pairs_, pairs_->wallList, c, position_.data());
-    LanesOf<T> sum = {};
-    std::uint64_t next = wallStart_[c];
-    walk.forEach(ListSegment::NearFluid, [&](std::uint32_t j, const LanesOf<T>* d) {
-      LanesOf<T> along = u[j][0] * d[0];
-      for (int k = 1; k < D; ++k) along += u[j][k] * d[k];
-      sum += loadCoefficient(wall_, next++) * along;
-    });
-    storeSums(walk.range, sum);
+  const ClusterListView& walls = pairs_->wallList;
+  forEachClusterOf(walls, [&](std::uint32_t c) {
+    if (walls.segment(c, ListSegment::NearFluid).empty())
+      return storeSums(*pairs_, ClusterRange(walls, c), store, [](std::size_t, std::size_t) { return T(0); });
+    const ClusterWalk<D, T> walk(*pairs_, walls, c, position_.data(), wallLanes_.data());
+    const VectorSums<1, T> sums = sumAlong(walk, wall_.data() + wallStart_[c] * clusterSize, u);
+    storeSums(*pairs_, walk.range, store, [&](std::size_t, std::size_t lane) { return sums.at[0][lane]; });
   });
+}
+
+template <int D, class T>
+template <class Store>
+void ParticleProducts<D, T, Cpu>::schur(Context<Cpu>& context, const ProjectionTable<T>& table,
+                                        ScalarField<T, Cpu> q, const Store& store) {
+  gradient(context, q, StoreWeighted<D, T, Cpu>{table, pairs_->material.data(), vectors()});
+  divergence(context, vectors(), store);
 }
 
 template <int D, class T>
@@ -238,19 +319,20 @@ template <class Store>
 void ParticleProducts<D, T, Cpu>::viscous(Context<Cpu>&, const Gathered<D, T>* u, const Store& store) const {
   const ClusterListView& list = pairs_->fluidList;
   forEachClusterOf(list, [&](std::uint32_t c) {
-    const ClusterWalk<D, T> walk(*pairs_, list, c, position_.data());
-    LanesOf<T> sum[D] = {};
-    std::uint64_t next = viscousStart_[c];
-    const auto add = [&](std::uint32_t j, const LanesOf<T>* d) {
+    const ClusterWalk<D, T> walk(*pairs_, list, c, position_.data(), fluidLanes_.data());
+    LanesOf<T> sum[2][D] = {};
+    const T* coefficient = viscous_.data() + viscousStart_[c] * clusterSize;
+    const auto add = [&](int half, std::uint32_t j, const LanesOf<T>& v, const LanesOf<T>* d) {
       LanesOf<T> along = u[j][0] * d[0];
       for (int k = 1; k < D; ++k) along += u[j][k] * d[k];
-      const LanesOf<T> f = loadCoefficient(viscous_, next++) * along;
-      for (int k = 0; k < D; ++k) sum[k] += f * d[k];
+      const LanesOf<T> f = v * along;
+      for (int k = 0; k < D; ++k) sum[half][k] += f * d[k];
     };
-    walk.forEach(ListSegment::NearFluid, add);
-    walk.forEach(ListSegment::FarFluid, add);
-    storeVectors<D, T>(walk.range, sum, [&](std::uint32_t i, const Vec<D, T>& neighbours) {
-      store(i, selfBlock_[i] * u[i] - neighbours);
+    walk.forEach(ListSegment::NearFluid, coefficient, add);
+    walk.forEach(ListSegment::FarFluid, coefficient, add);
+    const VectorSums<D, T> sums(sum);
+    storeSums(*pairs_, walk.range, store, [&](std::size_t i, std::size_t lane) {
+      return selfBlock_[i] * static_cast<const Vec<D, T>&>(u[i]) - sums[lane];
     });
   });
 }
@@ -277,7 +359,7 @@ void ParticleProducts<D, T, Cpu>::inverseDiagonals(Context<Cpu>&, const Projecti
 
 template <int D, class T>
 void ParticleProducts<D, T, Cpu>::gather(Context<Cpu>&, std::span<const T> x) {
-  std::copy(x.begin(), x.end(), scalars_.begin());
+  std::copy(x.begin(), x.end(), scalars_[0].begin());
 }
 
 template <int D, class T>
@@ -295,8 +377,9 @@ void ParticleProducts<D, T, Cpu>::gatherWeighted(Context<Cpu>&, const Projection
 
 template <int D, class T>
 std::size_t ParticleProducts<D, T, Cpu>::bytes() const {
-  return scalars_.bytes() + vectors_.bytes() + position_.bytes() + viscousStart_.bytes() + pressureStart_.bytes() +
-         wallStart_.bytes() + viscous_.bytes() + pressure_.bytes() + wall_.bytes() + selfBlock_.bytes();
+  return scalars_[0].bytes() + scalars_[1].bytes() + vectors_.bytes() + position_.bytes() + viscousStart_.bytes() +
+         pressureStart_.bytes() + wallStart_.bytes() + viscous_.bytes() + pressure_.bytes() + wall_.bytes() +
+         selfBlock_.bytes() + fluidLanes_.bytes() + wallLanes_.bytes() + gradient_.bytes();
 }
 
 #define TREACLE_GRADIENT(D, T, ...)                                                                           \
@@ -305,6 +388,9 @@ std::size_t ParticleProducts<D, T, Cpu>::bytes() const {
 #define TREACLE_DIVERGENCE(D, T, ...)                                                          \
   template void ParticleProducts<D, T, Cpu>::divergence(Context<Cpu>&, VectorField<D, T, Cpu>, \
                                                         const __VA_ARGS__&) const;
+#define TREACLE_SCHUR(D, T, ...)                                                                                  \
+  template void ParticleProducts<D, T, Cpu>::schur(Context<Cpu>&, const ProjectionTable<T>&, ScalarField<T, Cpu>, \
+                                                   const __VA_ARGS__&);
 #define TREACLE_VISCOUS(D, T, ...)                                                                             \
   template void ParticleProducts<D, T, Cpu>::viscous(Context<Cpu>&, const Gathered<D, T>*, const __VA_ARGS__&) \
       const;

@@ -37,15 +37,17 @@ ProjectionConstants projectionConstants(const MphPairs<D>& pairs) {
     c.lambda[m] = std::max(t.bulkViscosity[m], 1e-4 * natural);
     c.stiffness = std::max(c.stiffness, c.lambda[m] / natural);
   }
+  for (int k = 0; k < D; ++k) c.extent = std::max(c.extent, pairs.grid.length[k] / pairs.spacing);
   return c;
 }
 template ProjectionConstants projectionConstants(const MphPairs<2>&);
 template ProjectionConstants projectionConstants(const MphPairs<3>&);
 
 ProjectionDegrees chooseDegrees(ProjectionDegrees chosen, const ProjectionConstants& constants) {
-  // Pressures of short wavelength that C hardly sees have eigenvalues of S' down to 1/stiffness of the largest;
-  // measured in docs/solver.md.
-  const double wanted = 8 * std::pow(constants.stiffness / 100, 0.3);
+  // Pressures of short wavelength that C hardly sees have eigenvalues of S' down to 1/stiffness of the largest. In
+  // large bodies that have flowed far, a higher degree costs no time and saves iterations (docs/solver.md).
+  const double size = std::clamp(std::cbrt(constants.extent / 300), 1.0, 1.35);
+  const double wanted = 8 * std::pow(constants.stiffness / 100, 0.3) * size;
   if (chosen.pressure == 0) chosen.pressure = std::clamp(static_cast<int>(std::lround(wanted)), 4, 40);
   if (chosen.grid == 0) chosen.grid = 4;
   if (chosen.velocity == 0) chosen.velocity = 2;
@@ -65,13 +67,10 @@ void ProjectedMultigrid<D, T, Backend>::setup(Context<Backend>& context, const M
   products_.inverseDiagonals(context, table_, inversePressure_, inverseVelocity_);
   setupGrids(context, terms, a, constants.table<double>(gridPressureShift));
 
-  const std::uint8_t* material = pairs.material.data();
   const auto product = [&](std::span<const T> x, std::span<T> y) {
     products_.gather(context, x);
-    products_.gradient(context, products_.scalars(),
-                       StoreWeighted<D, T, Backend>{table_, material, products_.vectors()});
-    products_.divergence(context, products_.vectors(),
-                         StorePressure<T, Backend>{table_, material, products_.scalars(), y.data()});
+    products_.schur(context, table_, products_.scalars(),
+                    StorePressure<T, Backend>{table_, pairs.material.data(), products_.scalars(), y.data()});
   };
   lambdaMax_.run(context, product, inversePressure_);
 }
@@ -89,7 +88,10 @@ void ProjectedMultigrid<D, T, Backend>::setupGrids(Context<Backend>& context, co
   pressureGrids_.setup(context, pressureNodes_, pressureMatrix_, degrees_.grid);
 
   findHatNodes(context, *pairs_, HatsOn::Fluid, velocityNodes_);
-  viscousGalerkin(context, *pairs_, terms, velocityNodes_, moments_, velocityMatrix_);
+  if constexpr (std::is_same_v<Backend, Cuda>)
+    viscousGalerkin(context, *pairs_, terms, velocityNodes_, moments_, galerkinWorkspace_, velocityMatrix_);
+  else
+    viscousGalerkin(context, *pairs_, terms, velocityNodes_, moments_, velocityMatrix_);
   velocityGrids_.setup(context, velocityNodes_, velocityMatrix_, degrees_.velocity, 1);
 }
 
@@ -102,29 +104,26 @@ void ProjectedMultigrid<D, T, Backend>::allocate(Context<Backend>& context, std:
     v->resize(context, fluid);
 }
 
-/// Step i of the smoother of S', or the residual for the grids.
+/// p = Q b, and where it is gathered; the right-hand side and the first smoothing step of it are there.
 template <int D, class T, class Backend>
-template <StepKind Kind>
-void ProjectedMultigrid<D, T, Backend>::pressureStep(Context<Backend>& context, int i) {
-  const std::uint8_t* material = pairs_->material.data();
-  products_.gradient(context, products_.scalars(),
-                     StoreWeighted<D, T, Backend>{table_, material, products_.vectors()});
-  products_.divergence(
-      context, products_.vectors(),
-      PressureStep<T, Backend, Kind>{table_, material, inversePressure_.data(), lambdaMax_.largest(),
-                                     ChebyshevStep<T>::at(i), pressureVectors()});
-}
-
-/// p = Q b, also left where it is gathered; the right-hand side and the first smoothing step of it are there.
-template <int D, class T, class Backend>
-void ProjectedMultigrid<D, T, Backend>::pressureCycle(Context<Backend>& context) {
-  for (int i = 2; i <= degrees_.pressure; ++i) pressureStep<StepKind::Next>(context, i);
-  pressureStep<StepKind::Residual>(context, 1);
+ScalarField<T, Backend> ProjectedMultigrid<D, T, Backend>::pressureCycle(Context<Backend>& context) {
+  int last = 0;  // which of the two fields has the latest correction; the same at the start of each cycle
+  const auto step = [&]<StepKind Kind>(int i, std::integral_constant<StepKind, Kind>) {
+    products_.schur(context, table_, products_.scalars(last),
+                    PressureStep<T, Backend, Kind>{table_, pairs_->material.data(), inversePressure_.data(),
+                                                   lambdaMax_.largest(), ChebyshevStep<T>::at(i),
+                                                   pressureVectors(last), products_.scalars(1 - last)});
+    if (Kind != StepKind::Residual) last = 1 - last;
+  };
+  constexpr std::integral_constant<StepKind, StepKind::Next> next;
+  for (int i = 2; i <= degrees_.pressure; ++i) step(i, next);
+  step(1, std::integral_constant<StepKind, StepKind::Residual>{});
   transfer_.restrict(context, pressureNodes_, pressureResidual_.span(), pressureGrids_.rhs());
   pressureGrids_.cycle(context);
-  transfer_.prolong(context, pressureNodes_, pressureGrids_.solution(), products_.scalars(), p_);
-  for (int i = 1; i < degrees_.pressure; ++i) pressureStep<StepKind::Next>(context, i);
-  pressureStep<StepKind::Last>(context, degrees_.pressure);
+  transfer_.prolong(context, pressureNodes_, pressureGrids_.solution(), products_.scalars(last), p_);
+  for (int i = 1; i < degrees_.pressure; ++i) step(i, next);
+  step(degrees_.pressure, std::integral_constant<StepKind, StepKind::Last>{});
+  return products_.scalars(last);
 }
 
 /// y = B residual, likewise.
@@ -155,19 +154,19 @@ void ProjectedMultigrid<D, T, Backend>::apply(Context<Backend>& context, std::sp
   const auto startPressure = [&]<bool Subtract>(std::bool_constant<Subtract>) {
     products_.divergence(context, products_.vectors(),
                          StartPressure<T, Backend, Subtract>{table_, material, inversePressure_.data(),
-                                                             lambdaMax_.largest(), first, pressureVectors()});
+                                                             lambdaMax_.largest(), first, pressureVectors(0)});
   };
   products_.gatherWeighted(context, table_, r);
   startPressure(std::false_type{});
-  pressureCycle(context);
-  products_.gradient(context, products_.scalars(),
+  const ScalarField<T, Backend> p = pressureCycle(context);
+  products_.gradient(context, p,
                      StartVelocity<D, T>{r.data(), inverseVelocity_.data(),
                                          first.gain / static_cast<T>(viscousLambdaMax), velocityVectors(0)});
   velocityCycle(context);
   products_.gather(context, y_.span());
   startPressure(std::true_type{});
-  pressureCycle(context);
-  products_.gradient(context, products_.scalars(), FinishVelocity<D, T>{table_, material, y_.data(), z.data()});
+  const ScalarField<T, Backend> q = pressureCycle(context);
+  products_.gradient(context, q, FinishVelocity<D, T>{table_, material, y_.data(), z.data()});
 }
 
 template <int D, class T, class Backend>

@@ -136,24 +136,34 @@ TREACLE_HD void forEachCoarse(const HatLattice<D>& fine, const Vec<D, int>& poin
   }
 }
 
-/// The transpose: f(finePoint, weight) for the points where the hat of `coarsePoint` does not vanish, possibly
-/// with the same one twice.
+/// The transpose has 3^D steps: the fine point of one of them, and the weight of the hat of `coarsePoint` there;
+/// false where there is no such point. On short periodic axes two steps may lead to the same point.
+template <int D>
+TREACLE_HD bool finePoint(const HatLattice<D>& fine, const Vec<D, int>& coarsePoint, int step, Vec<D, int>& p,
+                          double& weight) {
+  weight = 1;
+  bool exists = true;
+  for (int k = 0; k < D; ++k, step /= 3) {
+    const int offset = step % 3 - 1, n = fine.count[k];
+    p[k] = 2 * coarsePoint[k] + offset;
+    if (offset != 0) weight /= 2;
+    if (fine.periodic[k] && n % 2 == 0) p[k] = p[k] < 0 ? p[k] + n : p[k] >= n ? p[k] - n : p[k];
+    exists = exists && p[k] >= 0 && p[k] < n;
+  }
+  return exists;
+}
+template <int D>
+inline constexpr int fineSteps = D == 1   ? 3
+                                 : D == 2 ? 9
+                                          : 27;
+
+/// f(finePoint, weight) for all of them.
 template <int D, class F>
 TREACLE_HD void forEachFine(const HatLattice<D>& fine, const Vec<D, int>& coarsePoint, F&& f) {
-  int steps = 1;
-  for (int k = 0; k < D; ++k) steps *= 3;
-  for (int s = 0; s < steps; ++s) {
+  for (int s = 0; s < fineSteps<D>; ++s) {
     Vec<D, int> p{};
-    double weight = 1;
-    bool exists = true;
-    for (int k = 0, digits = s; k < D; ++k, digits /= 3) {
-      const int step = digits % 3 - 1, n = fine.count[k];
-      p[k] = 2 * coarsePoint[k] + step;
-      if (step != 0) weight /= 2;
-      if (fine.periodic[k] && n % 2 == 0) p[k] = p[k] < 0 ? p[k] + n : p[k] >= n ? p[k] - n : p[k];
-      exists = exists && p[k] >= 0 && p[k] < n;
-    }
-    if (exists) f(p, weight);
+    double weight;
+    if (finePoint(fine, coarsePoint, s, p, weight)) f(p, weight);
   }
 }
 template <int D, class F>

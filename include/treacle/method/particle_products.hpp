@@ -27,6 +27,9 @@ class ParticleProducts<D, T, Cpu> {
   /// store(k, (C^T u)_k) per particle, walls at rest; u per fluid particle.
   template <class Store>
   void divergence(Context<Cpu>&, VectorField<D, T, Cpu> u, const Store& store) const;
+  /// store(k, (C^T W C q)_k) per particle; vectors() is workspace.
+  template <class Store>
+  void schur(Context<Cpu>&, const ProjectionTable<T>& table, ScalarField<T, Cpu> q, const Store& store);
   /// store(i, ((rho/dt I + V) u)_i) per fluid particle.
   template <class Store>
   void viscous(Context<Cpu>&, const Gathered<D, T>* u, const Store& store) const;
@@ -35,21 +38,26 @@ class ParticleProducts<D, T, Cpu> {
   void inverseDiagonals(Context<Cpu>&, const ProjectionTable<T>& table, std::span<T> pressure,
                         std::span<Block<D, T>> velocity) const;
 
-  /// What `gradient` and `divergence` gather: one field each, valid until prepare() is called again.
-  ScalarField<T, Cpu> scalars() { return {scalars_.data()}; }
+  /// What `gradient` and `divergence` gather: two fields of scalars and one of vectors, valid until prepare() is
+  /// called again.
+  ScalarField<T, Cpu> scalars(int which = 0) { return {scalars_[which].data()}; }
   VectorField<D, T, Cpu> vectors() { return {vectors_.data()}; }
-  /// scalars() = x, per particle; vectors() = u, or W u, per fluid particle.
+  /// scalars(0) = x, per particle; vectors() = u, or W u, per fluid particle.
   void gather(Context<Cpu>&, std::span<const T> x);
   void gather(Context<Cpu>&, std::span<const Gathered<D, T>> u);
   void gatherWeighted(Context<Cpu>&, const ProjectionTable<T>& table, std::span<const Vec<D>> u);
   std::size_t bytes() const;
 
  private:
+  void sumGradients();
+
   const MphPairs<D>* pairs_ = nullptr;
   WallTerms<D> terms_{};
-  Buffer<T> scalars_;
+  Buffer<T> scalars_[2];
   Buffer<Gathered<D, T>> vectors_;
   Buffer<Vec<D, T>> position_;  // from the domain's corner [m]
+  // D times eight numbers per cluster: positions likewise, and the sum of g d over all neighbours.
+  Buffer<T> fluidLanes_, wallLanes_, gradient_;
   // Eight numbers per list entry, one per lane; starts count entries.
   Buffer<std::uint64_t> viscousStart_, pressureStart_, wallStart_;
   Buffer<T> viscous_;              // near and far fluid of fluid clusters: c of the viscous block c d d^T
@@ -68,20 +76,24 @@ class ParticleProducts<D, T, Cuda> {
   template <class Store>
   void divergence(Context<Cuda>&, VectorField<D, T, Cuda> u, const Store& store) const;
   template <class Store>
+  void schur(Context<Cuda>&, const ProjectionTable<T>& table, ScalarField<T, Cuda> q, const Store& store);
+  template <class Store>
   void viscous(Context<Cuda>&, const Gathered<D, T>* u, const Store& store) const;
   void inverseDiagonals(Context<Cuda>&, const ProjectionTable<T>& table, std::span<T> pressure,
                         std::span<Block<D, T>> velocity) const;
-  ScalarField<T, Cuda> scalars() { return {scalars_.data()}; }
+  ScalarField<T, Cuda> scalars(int which = 0) { return {scalars_[which].data()}; }
   VectorField<D, T, Cuda> vectors() { return {vectors_.data()}; }
   void gather(Context<Cuda>&, std::span<const T> x);
   void gather(Context<Cuda>&, std::span<const Gathered<D, T>> u);
   void gatherWeighted(Context<Cuda>&, const ProjectionTable<T>& table, std::span<const Vec<D>> u);
-  std::size_t bytes() const { return selfBlock_.bytes() + scalars_.bytes() + vectors_.bytes(); }
+  std::size_t bytes() const {
+    return selfBlock_.bytes() + scalars_[0].bytes() + scalars_[1].bytes() + vectors_.bytes();
+  }
 
  private:
   const MphPairs<D>* pairs_ = nullptr;
   const MphOperator<D, Cuda>* a_ = nullptr;
-  Buffer<typename ScalarField<T, Cuda>::Element, Cuda> scalars_;
+  Buffer<typename ScalarField<T, Cuda>::Element, Cuda> scalars_[2];
   Buffer<typename VectorField<D, T, Cuda>::Element, Cuda> vectors_;  // those of walls are zero
   Buffer<Block<D, T>, Cuda> selfBlock_;                              // diagonal block of rho/dt I + V
 };

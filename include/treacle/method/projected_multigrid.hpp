@@ -23,6 +23,7 @@ struct ProjectionConstants {
   double weight[maxMaterials];  // w [m3 s/kg]: inverse diagonal of rho/dt I + V in a full lattice
   double lambda[maxMaterials];  // lambda [Pa s], at least so large that S' stays finite
   double stiffness;  // largest lambda w (C^T C)_kk in a full lattice: how much stiffer the bulk viscosity is
+  double extent;     // of the domain, in spacings
 
   /// `shift` of S' in units of 1/lambda.
   template <class T>
@@ -54,15 +55,13 @@ class ProjectedMultigrid {
   void allocate(Context<Backend>&, std::size_t fluid, std::size_t active);
   void setupGrids(Context<Backend>&, const WallTerms<D>&, const MphOperator<D, Backend>&,
                   const ProjectionTable<double>&);
-  PressureVectors<T, Backend> pressureVectors() {
-    return {pressureResidual_.data(), products_.scalars(), p_.data()};
+  PressureVectors<T, Backend> pressureVectors(int correction) {
+    return {pressureResidual_.data(), products_.scalars(correction), p_.data()};
   }
   SmootherVectors<Gathered<D, T>> velocityVectors(int correction) {
     return {velocityResidual_.data(), correction_[correction].data(), y_.data()};
   }
-  template <StepKind Kind>
-  void pressureStep(Context<Backend>&, int i);
-  void pressureCycle(Context<Backend>&);
+  ScalarField<T, Backend> pressureCycle(Context<Backend>&);
   void velocityCycle(Context<Backend>&);
 
   const MphPairs<D>* pairs_ = nullptr;

@@ -7,13 +7,15 @@
 #include "treacle/linear/chebyshev.hpp"
 #include "treacle/method/mph_pairs.hpp"
 
+#include <bit>
 #include <cstdint>
 
 namespace treacle {
 
 /// What the projected multigrid does with each sum over neighbours, the same on all backends. One call per
-/// particle; nothing here reads another particle, so a sum may be taken from `correction` while it is overwritten
-/// elsewhere only where the text says so.
+/// particle, by store(k, sum), or store.put(k, sum, m) where the material m is at hand; nothing here reads another
+/// particle, so a sum may be taken from `correction` while it is overwritten elsewhere only where the text says
+/// so.
 
 /// Per material, in the precision of the preconditioner.
 template <class T>
@@ -56,18 +58,34 @@ struct VectorField {
   Element* at;
   TREACLE_HD void set(std::size_t i, const Vec<D, T>& v) const { at[i] = v; }
 };
-struct alignas(16) PlacedVector {
+template <int D>
+struct PlacedVector;
+template <>
+struct alignas(16) PlacedVector<2> {
   std::int32_t position[2];
   float value[2];
-};
-template <>
-struct VectorField<2, float, Cuda> {
-  using Element = PlacedVector;
-  Element* at;
-  TREACLE_HD void set(std::size_t i, const Vec<2, float>& v) const {
-    at[i].value[0] = v[0];
-    at[i].value[1] = v[1];
+
+  TREACLE_HD void set(const Vec<2, float>& v) {
+    value[0] = v[0];
+    value[1] = v[1];
   }
+};
+/// Three dimensions fit, too, where positions have 16 bits each (ParticleProducts) and numbers 26: word 0 has two
+/// positions, the low six bits of the others the third one.
+template <>
+struct alignas(16) PlacedVector<3> {
+  std::uint32_t word[4];
+  static constexpr std::uint32_t low = 63;
+
+  TREACLE_HD void set(const Vec<3, float>& v) {
+    for (int k = 0; k < 3; ++k) word[k + 1] = (std::bit_cast<std::uint32_t>(v[k]) & ~low) | (word[k + 1] & low);
+  }
+};
+template <int D>
+struct VectorField<D, float, Cuda> {
+  using Element = PlacedVector<D>;
+  Element* at;
+  TREACLE_HD void set(std::size_t i, const Vec<D, float>& v) const { at[i].set(v); }
 };
 
 /// The three vectors of a Chebyshev smoother: residual, last correction z, iterate x.
@@ -90,9 +108,10 @@ struct StartPressure {
   ChebyshevStep<T> step;
   PressureVectors<T, Backend> v;
 
-  TREACLE_HD void operator()(std::uint32_t k, T divergence) const {
+  TREACLE_HD void operator()(std::uint32_t k, T divergence) const { put(k, divergence, material[k]); }
+  TREACLE_HD void put(std::size_t k, T divergence, std::uint8_t m) const {
     T b = divergence;
-    if constexpr (Subtract) b -= table.inverseLambda[material[k]] * v.solution[k];
+    if constexpr (Subtract) b -= table.inverseLambda[m] * v.solution[k];
     v.residual[k] = b;
     v.solution[k] = v.correction[k] = step.gain / *lambdaMax * inverseDiagonal[k] * b;
   }
@@ -111,13 +130,16 @@ struct PressureStep {
   const T* lambdaMax;
   ChebyshevStep<T> step;
   PressureVectors<T, Backend> v;
+  ScalarField<T, Backend> next;  // another one than the correction, which neighbours may still gather
 
-  TREACLE_HD void operator()(std::uint32_t k, T divergence) const {
-    const T z = v.correction[k], r = v.residual[k] - (divergence + table.shift[material[k]] * z);
+  TREACLE_HD void operator()(std::uint32_t k, T divergence) const { put(k, divergence, material[k]); }
+  TREACLE_HD void put(std::size_t k, T divergence, std::uint8_t m) const {
+    const T z = v.correction[k], r = v.residual[k] - (divergence + table.shift[m] * z);
     v.residual[k] = r;
     if constexpr (Kind != StepKind::Residual) {
-      const T next = step.previous * z + step.gain / *lambdaMax * inverseDiagonal[k] * r, x = v.solution[k] + next;
-      v.correction[k] = Kind == StepKind::Next ? next : x;
+      const T change = step.previous * z + step.gain / *lambdaMax * inverseDiagonal[k] * r;
+      const T x = v.solution[k] + change;
+      next[k] = Kind == StepKind::Next ? change : x;
       v.solution[k] = x;
     }
   }
@@ -131,8 +153,9 @@ struct StorePressure {
   ScalarField<T, Backend> x;
   T* y;
 
-  TREACLE_HD void operator()(std::uint32_t k, T divergence) const {
-    y[k] = divergence + table.shift[material[k]] * x[k];
+  TREACLE_HD void operator()(std::uint32_t k, T divergence) const { put(k, divergence, material[k]); }
+  TREACLE_HD void put(std::size_t k, T divergence, std::uint8_t m) const {
+    y[k] = divergence + table.shift[m] * x[k];
   }
 };
 
@@ -143,8 +166,9 @@ struct StoreWeighted {
   const std::uint8_t* material;
   VectorField<D, T, Backend> y;
 
-  TREACLE_HD void operator()(std::uint32_t i, const Vec<D, T>& gradient) const {
-    y.set(i, table.weight[material[i]] * gradient);
+  TREACLE_HD void operator()(std::uint32_t i, const Vec<D, T>& gradient) const { put(i, gradient, material[i]); }
+  TREACLE_HD void put(std::size_t i, const Vec<D, T>& gradient, std::uint8_t m) const {
+    y.set(i, table.weight[m] * gradient);
   }
 };
 
@@ -160,7 +184,8 @@ struct StartVelocity {
   T gain;  // of the first step, divided by viscousLambdaMax
   SmootherVectors<Gathered<D, T>> v;
 
-  TREACLE_HD void operator()(std::uint32_t i, const Vec<D, T>& gradient) const {
+  TREACLE_HD void operator()(std::uint32_t i, const Vec<D, T>& gradient) const { put(i, gradient, 0); }
+  TREACLE_HD void put(std::size_t i, const Vec<D, T>& gradient, std::uint8_t) const {
     Vec<D, T> b;
     for (int k = 0; k < D; ++k) b[k] = static_cast<T>(r[i][k]) - gradient[k];
     v.residual[i] = b;
@@ -177,7 +202,8 @@ struct VelocityStep {
   SmootherVectors<Gathered<D, T>> v;
   Gathered<D, T>* next;
 
-  TREACLE_HD void operator()(std::uint32_t i, const Vec<D, T>& product) const {
+  TREACLE_HD void operator()(std::uint32_t i, const Vec<D, T>& product) const { put(i, product, 0); }
+  TREACLE_HD void put(std::size_t i, const Vec<D, T>& product, std::uint8_t) const {
     const Vec<D, T> r = v.residual[i] - product;
     v.residual[i] = r;
     if constexpr (!ResidualOnly) {
@@ -196,8 +222,9 @@ struct FinishVelocity {
   const Gathered<D, T>* y;
   Vec<D>* z;
 
-  TREACLE_HD void operator()(std::uint32_t i, const Vec<D, T>& gradient) const {
-    const T w = table.weight[material[i]];
+  TREACLE_HD void operator()(std::uint32_t i, const Vec<D, T>& gradient) const { put(i, gradient, material[i]); }
+  TREACLE_HD void put(std::size_t i, const Vec<D, T>& gradient, std::uint8_t m) const {
+    const T w = table.weight[m];
     for (int k = 0; k < D; ++k) z[i][k] = y[i][k] - w * gradient[k];
   }
 };
@@ -205,15 +232,16 @@ struct FinishVelocity {
 }  // namespace treacle
 
 /// Everything that a sum is stored by, for explicit instantiation.
-#define TREACLE_FOR_EACH_STORE(D, T, Backend)                            \
-  TREACLE_GRADIENT(D, T, StoreWeighted<D, T, Backend>)                   \
-  TREACLE_GRADIENT(D, T, StartVelocity<D, T>)                            \
-  TREACLE_GRADIENT(D, T, FinishVelocity<D, T>)                           \
-  TREACLE_DIVERGENCE(D, T, StartPressure<T, Backend, false>)             \
-  TREACLE_DIVERGENCE(D, T, StartPressure<T, Backend, true>)              \
-  TREACLE_DIVERGENCE(D, T, PressureStep<T, Backend, StepKind::Residual>) \
-  TREACLE_DIVERGENCE(D, T, PressureStep<T, Backend, StepKind::Next>)     \
-  TREACLE_DIVERGENCE(D, T, PressureStep<T, Backend, StepKind::Last>)     \
-  TREACLE_DIVERGENCE(D, T, StorePressure<T, Backend>)                    \
-  TREACLE_VISCOUS(D, T, VelocityStep<D, T, false>)                       \
+#define TREACLE_FOR_EACH_STORE(D, T, Backend)                       \
+  TREACLE_GRADIENT(D, T, StoreWeighted<D, T, Backend>)              \
+  TREACLE_GRADIENT(D, T, StartVelocity<D, T>)                       \
+  TREACLE_GRADIENT(D, T, FinishVelocity<D, T>)                      \
+  TREACLE_DIVERGENCE(D, T, StartPressure<T, Backend, false>)        \
+  TREACLE_DIVERGENCE(D, T, StartPressure<T, Backend, true>)         \
+  TREACLE_DIVERGENCE(D, T, StorePressure<T, Backend>)               \
+  TREACLE_SCHUR(D, T, PressureStep<T, Backend, StepKind::Residual>) \
+  TREACLE_SCHUR(D, T, PressureStep<T, Backend, StepKind::Next>)     \
+  TREACLE_SCHUR(D, T, PressureStep<T, Backend, StepKind::Last>)     \
+  TREACLE_SCHUR(D, T, StorePressure<T, Backend>)                    \
+  TREACLE_VISCOUS(D, T, VelocityStep<D, T, false>)                  \
   TREACLE_VISCOUS(D, T, VelocityStep<D, T, true>)

@@ -12,7 +12,7 @@ namespace treacle {
 /// what this preconditioner is chosen for, and another way is cheaper.
 std::vector<SolverSettings> solveStages(const Case& c);
 
-/// "cg, projected-multigrid, mixed: pressure degree 8, grid degree 4, velocity degree 2"
+/// "cg, projected-multigrid, mixed: pressure degree 9, grid degree 4, velocity degree 2"
 std::string solverText(const SolverSettings& settings);
 
 }  // namespace treacle

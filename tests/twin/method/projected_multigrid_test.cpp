@@ -10,8 +10,9 @@
 namespace treacle::test {
 namespace {
 
+/// In single precision both backends have rounded positions, the device in three dimensions to 3e-5 spacings.
 template <class T>
-constexpr double toleranceOf = std::is_same_v<T, double> ? operatorTolerance : 30 * singleTolerance;
+constexpr double toleranceOf = std::is_same_v<T, double> ? operatorTolerance : 200 * singleTolerance;
 
 /// One scene with its products and preconditioner on both backends.
 template <int D, class T>
@@ -93,6 +94,15 @@ struct Twin {
         StorePressure<T, Cuda>{table, d.pairs.material.data(), productsOnDevice.scalars(), divOnDevice.data()});
     EXPECT_LE(differ(copyToHost(d.context, divOnDevice), div), toleranceOf<T>) << "divergence";
 
+    products.gather(s.context, q.span());
+    productsOnDevice.gather(d.context, copyToDevice<T>(d.context, q).span());
+    products.schur(s.context, table, products.scalars(),
+                   StorePressure<T, Cpu>{table, s.pairs().material.data(), products.scalars(), div.data()});
+    productsOnDevice.schur(
+        d.context, table, productsOnDevice.scalars(),
+        StorePressure<T, Cuda>{table, d.pairs.material.data(), productsOnDevice.scalars(), divOnDevice.data()});
+    EXPECT_LE(differ(copyToHost(d.context, divOnDevice), div), toleranceOf<T>) << "S'";
+
     Buffer<T> pressure(active());
     Buffer<Block<D, T>> velocity(s.n());
     Buffer<T, Cuda> pressureOnDevice(d.context, active());
@@ -164,7 +174,7 @@ struct Twin {
     BlockCsr<D> velocity;
     BlockCsr<D, double, Cuda> velocityOnDevice;
     viscousGalerkin(s.context, s.pairs(), s.terms(), fluidNodes, moments, velocity);
-    viscousGalerkin(d.context, d.pairs, d.terms(), fluidNodesOnDevice, momentsOnDevice, velocityOnDevice);
+    viscousGalerkin(d.context, d.pairs, d.terms(), fluidNodesOnDevice, momentsOnDevice, parts, velocityOnDevice);
     checkNodes(fluidNodes, fluidNodesOnDevice, std::span<const Block<D>>(velocity.block.span()),
                copyToHost(d.context, velocityOnDevice.block), "P^T K0 P");
     checkTransfer(nodes, nodesOnDevice, fluidNodes, fluidNodesOnDevice);

@@ -82,7 +82,7 @@ void compareSteps(const SolverSettings& settings) {
     const StepReport a = cpu.advance(), b = cuda.advance();
     EXPECT_NEAR(b.iterations, a.iterations, std::max(1.0, spread * a.iterations));
     EXPECT_LE(b.residual, c.solver.tolerance);
-    EXPECT_NEAR(b.diagnostics.kineticEnergy, a.diagnostics.kineticEnergy, 1e-5 * a.diagnostics.kineticEnergy);
+    EXPECT_NEAR(b.diagnostics.kineticEnergy, a.diagnostics.kineticEnergy, 1e-4 * a.diagnostics.kineticEnergy);
     EXPECT_NEAR(b.diagnostics.frontX, a.diagnostics.frontX, 1e-6 * c.domain.max[0]);
   }
   Particles<D> found;
@@ -127,6 +127,7 @@ TEST(SimulationTwin, RunTwiceGivesTheSameBits) {
 TEST(SimulationTwin, KeepsTheLastGoodStateWhenTheSolverFails) {
   TREACLE_SKIP_WITHOUT_GPU();
   SolverSettings settings;
+  settings.tolerance = 1e-30;  // out of reach for every stage of the solver
   settings.maxIterations = 3;
   const Case c = stepCase(2, settings);
   Simulation<2, Cuda> s(c, bodyOnFloor<2>(c, 0));
