@@ -28,10 +28,12 @@ template <int D, class T>
 void pressureColumns(const MphPairs<D>& pairs, const HatCells<D>& cells, Buffer<Vec<D, T>>& columns) {
   columns.resize(std::size_t{slots<D>} * pairs.fluidCount);
   const auto addHats = [&](const Vec<D>& s, const Vec<D>& g, std::array<Vec<D>, slots<D>>& sum) {
+    double hat[D][3];
+    for (int k = 0; k < D; ++k)
+      for (int n = 0; n < 3; ++n) hat[k][n] = std::max(0.0, 1 - std::abs(s[k] - n));
     for (int n = 0; n < slots<D>; ++n) {
       double weight = 1;
-      for (int k = 0, digits = n; k < D; ++k, digits /= 3)
-        weight *= std::max(0.0, 1 - std::abs(s[k] - digits % 3));
+      for (int k = 0, digits = n; k < D; ++k, digits /= 3) weight *= hat[k][digits % 3];
       sum[n] += weight * g;
     }
   };
@@ -89,7 +91,7 @@ class RowEntries {
   std::uint64_t operator[](int offset) const { return entry_[offset]; }
 
   /// The offset from one slot of a particle (base 3) to another.
-  static int between(int from, int to) {
+  static constexpr int between(int from, int to) {
     int offset = 0, step = 1;
     for (int k = 0; k < D; ++k, from /= 3, to /= 3, step *= 5) offset += step * (to % 3 - from % 3 + 2);
     return offset;
@@ -98,6 +100,15 @@ class RowEntries {
  private:
   std::array<std::uint64_t, offsets> entry_;
 };
+
+/// Offset from slot 0 to each slot.
+template <int D>
+constexpr auto offsetOfSlot = [] {
+  std::array<int, slots<D>> offset{};
+  for (int slot = 0; slot < slots<D>; ++slot)
+    offset[slot] = RowEntries<D>::between(0, slot) - RowEntries<D>::between(0, 0);
+  return offset;
+}();
 
 /// Calls f(corner, weight) for the corners of a cell at a place in it; bit k of `corner`: the upper one of axis k.
 template <int D, class T, class F>
@@ -185,8 +196,9 @@ void pressureGalerkin(Context<Cpu>& context, const MphPairs<D>& pairs, const Pro
         if (own < 0) continue;
         const Vec<D, T>* column = &columns[std::size_t{slots<D>} * i];
         const Vec<D> weighted = table.weight[pairs.material[i]] * toDouble(column[own]);
+        const int from = RowEntries<D>::between(own, 0);
         for (int other = 0; other < slots<D>; ++other)
-          sum[RowEntries<D>::between(own, other)] += dot(weighted, toDouble(column[other]));
+          sum[from + offsetOfSlot<D>[other]] += dot(weighted, toDouble(column[other]));
       }
     });
     cells.forEachCellAround(node, 1, [&](const Vec<D, int>& cell) {
@@ -206,6 +218,22 @@ void pressureGalerkin(Context<Cpu>& context, const MphPairs<D>& pairs, const Pro
   });
 }
 
+/// Blocks below the diagonal from those above.
+template <int D>
+void mirrorUpper(BlockCsr<D>& a) {
+  parallelFor(a.rows(), parallelGrain, [&](std::size_t row) {
+    for (std::uint64_t e = a.rowStart[row]; e < a.rowStart[row + 1]; ++e) {
+      const std::size_t other = a.column[e];
+      if (other >= row) continue;
+      const std::uint32_t *begin = &a.column[a.rowStart[other]],
+                          *end = begin + (a.rowStart[other + 1] - a.rowStart[other]);
+      const Block<D>& above = a.block[a.rowStart[other] + (std::find(begin, end, row) - begin)];
+      for (int r = 0; r < D; ++r)
+        for (int c = 0; c < D; ++c) a.block[e](r, c) = above(c, r);
+    }
+  });
+}
+
 template <int D, class T>
 void viscousGalerkin(Context<Cpu>& context, const MphPairs<D>& pairs, const WallTerms<D>& terms,
                      const HatNodes<D>& nodes, Buffer<ViscousMoments<D, T>>& moments, BlockCsr<D>& a) {
@@ -215,6 +243,7 @@ void viscousGalerkin(Context<Cpu>& context, const MphPairs<D>& pairs, const Wall
   parallelFor(nodes.count(), parallelGrain / 16, [&](std::size_t row) {
     const Vec<D, int> node = nodes.lattice.at(nodes.point[row]);
     for (std::uint64_t e = a.rowStart[row]; e < a.rowStart[row + 1]; ++e) {
+      if (a.column[e] < row) continue;
       const Vec<D, int> other = nodes.lattice.at(nodes.point[a.column[e]]);
       Block<D> sum{};
       cells.forEachCellAround(node, 1, [&](const Vec<D, int>& cell) {
@@ -233,6 +262,7 @@ void viscousGalerkin(Context<Cpu>& context, const MphPairs<D>& pairs, const Wall
       a.block[e] = sum;
     }
   });
+  mirrorUpper(a);
 }
 
 template <int D, class T>

@@ -51,8 +51,9 @@ class ClusterWalk {
 
   /// Calls f(half, j, c, d) for the entries of a segment; c: the eight coefficients, d = x_j - x_i; `half`
   /// alternates between 0 and 1, so that two sums in turn hide the latency of the additions.
+  /// Always inline: the sums are to stay in registers.
   template <class F>
-  void forEach(ListSegment segment, const T*& coefficient, F&& f) const {
+  [[gnu::always_inline]] void forEach(ListSegment segment, const T*& coefficient, F&& f) const {
     list_.wraps[cluster_] ? walk<true>(segment, coefficient, f) : walk<false>(segment, coefficient, f);
   }
 
@@ -60,7 +61,7 @@ class ClusterWalk {
 
  private:
   template <bool Wraps, class F>
-  void walk(ListSegment segment, const T*& coefficient, F&& f) const {
+  [[gnu::always_inline]] void walk(ListSegment segment, const T*& coefficient, F&& f) const {
     const std::span<const ListEntry> entries = list_.segment(cluster_, segment);
     const T* next = coefficient;
     const auto visit = [&](int half, ListEntry e) {
@@ -127,8 +128,10 @@ void forEachLane(const ClusterRange& range, F&& f) {
 }
 
 /// Stores the sums sumOf(i, lane). A single material is known before the loop and needs no look-up per particle.
+/// `flatten`: the compiler vectorises only what it has inlined.
 template <int D, class Store, class F>
-void storeSums(const MphPairs<D>& pairs, const ClusterRange& range, const Store& store, F&& sumOf) {
+[[gnu::flatten]] void storeSums(const MphPairs<D>& pairs, const ClusterRange& range, const Store& store,
+                                F&& sumOf) {
   const std::size_t first = range.first;
   if (pairs.materials.count == 1)
     forEachLane(range, [&](std::size_t lane) { store.put(first + lane, sumOf(first + lane, lane), 0); });
@@ -156,14 +159,37 @@ struct VectorSums {
   }
 };
 
-/// Sum of g d.u_j over near fluid.
+/// The vectors of a cluster's particles, lane by lane.
 template <int D, class T>
-VectorSums<1, T> sumAlong(const ClusterWalk<D, T>& walk, const T* coefficient, const Gathered<D, T>* u) {
+inline void loadVectors(const ClusterRange& range, const Gathered<D, T>* u, LanesOf<T> (&lanes)[D]) {
+  T at[D][clusterSize];
+  if (range.count == clusterSize) {
+    const Gathered<D, T>* first = u + range.first;
+    for (std::size_t lane = 0; lane < clusterSize; ++lane)
+      for (int k = 0; k < D; ++k) at[k][lane] = first[lane][k];
+  } else {
+    for (std::uint32_t lane = 0; lane < clusterSize; ++lane)
+      for (int k = 0; k < D; ++k) at[k][lane] = u[range.particle(lane)][k];
+  }
+  for (int k = 0; k < D; ++k) lanes[k] = loadLanes(at[k]);
+}
+
+/// Sum of g d.(u_j - u_i) over near fluid; walls at rest have no `own` velocities. The differences are formed pair
+/// by pair, because that of a rigid motion must vanish to the last bit: the bulk viscosity would amplify the rest.
+template <bool Moving, int D, class T>
+inline VectorSums<1, T> sumAlong(const ClusterWalk<D, T>& walk, const T* coefficient, const Gathered<D, T>* u,
+                                 const LanesOf<T>* own = nullptr) {
   LanesOf<T> sum[2][1] = {};
   walk.forEach(ListSegment::NearFluid, coefficient,
                [&](int half, std::uint32_t j, const LanesOf<T>& g, const LanesOf<T>* d) {
-                 LanesOf<T> along = u[j][0] * d[0];
-                 for (int k = 1; k < D; ++k) along += u[j][k] * d[k];
+                 const auto relative = [&](int k) {
+                   if constexpr (Moving)
+                     return u[j][k] - own[k];
+                   else
+                     return u[j][k];
+                 };
+                 LanesOf<T> along = relative(0) * d[0];
+                 for (int k = 1; k < D; ++k) along += relative(k) * d[k];
                  sum[half][0] += g * along;
                });
   return VectorSums<1, T>(sum);
@@ -234,24 +260,29 @@ void ParticleProducts<D, T, Cpu>::prepare(Context<Cpu>&, const MphPairs<D>& pair
   sumGradients();
 }
 
-/// G_i = sum of g d over all neighbours: what the particle's own pressure and velocity meet, which then need not
-/// be added per pair.
+/// Sums of g d over walls, which meet the particle's own velocity, and over all neighbours, which meet its own
+/// pressure: neither need be added per pair.
 template <int D, class T>
 void ParticleProducts<D, T, Cpu>::sumGradients() {
   const ClusterListView& list = pairs_->fluidList;
   gradient_.resize(fluidLanes_.size());
+  wallGradient_.resize(fluidLanes_.size());
   forEachClusterOf(list, [&](std::uint32_t c) {
     const ClusterWalk<D, T> walk(*pairs_, list, c, position_.data(), fluidLanes_.data());
-    LanesOf<T> sum[2][D] = {};
-    const T* coefficient = &pressure_[pressureStart_[c] * clusterSize];
-    const auto add = [&](int half, std::uint32_t, const LanesOf<T>& f, const LanesOf<T>* d) {
-      for (int k = 0; k < D; ++k) sum[half][k] += f * d[k];
+    LanesOf<T> fluid[D] = {}, walls[D] = {};
+    const T* coefficient = pressure_.data() + pressureStart_[c] * clusterSize;
+    const auto addTo = [&](LanesOf<T>* sum) {
+      return [sum](int, std::uint32_t, const LanesOf<T>& g, const LanesOf<T>* d) {
+        for (int k = 0; k < D; ++k) sum[k] += g * d[k];
+      };
     };
-    walk.forEach(ListSegment::NearFluid, coefficient, add);
-    walk.forEach(ListSegment::NearWall, coefficient, add);
+    walk.forEach(ListSegment::NearFluid, coefficient, addTo(fluid));
+    walk.forEach(ListSegment::NearWall, coefficient, addTo(walls));
     for (int k = 0; k < D; ++k) {
-      const LanesOf<T> total = sum[0][k] + sum[1][k];
-      std::memcpy(&gradient_[(std::size_t{D} * c + k) * clusterSize], &total, sizeof(total));
+      const LanesOf<T> all = fluid[k] + walls[k];
+      const std::size_t at = (std::size_t{D} * c + k) * clusterSize;
+      std::memcpy(&wallGradient_[at], &walls[k], sizeof(all));
+      std::memcpy(&gradient_[at], &all, sizeof(all));
     }
   });
 }
@@ -287,12 +318,14 @@ void ParticleProducts<D, T, Cpu>::divergence(Context<Cpu>&, VectorField<D, T, Cp
   const Gathered<D, T>* u = field.at;
   forEachClusterOf(pairs_->fluidList, [&](std::uint32_t c) {
     const ClusterWalk<D, T> walk(*pairs_, pairs_->fluidList, c, position_.data(), fluidLanes_.data());
-    const VectorSums<1, T> sums = sumAlong(walk, pressure_.data() + pressureStart_[c] * clusterSize, u);
-    // Walls are at rest, so all neighbours meet -u_i.
-    const T* own = &gradient_[std::size_t{D} * clusterSize * c];
+    LanesOf<T> ui[D];
+    loadVectors(walk.range, u, ui);
+    const T* coefficient = pressure_.data() + pressureStart_[c] * clusterSize;
+    const VectorSums<1, T> sums = sumAlong<true>(walk, coefficient, u, ui);
+    const T* walls = &wallGradient_[std::size_t{D} * clusterSize * c];
     storeSums(*pairs_, walk.range, store, [&](std::size_t i, std::size_t lane) {
-      T total = sums.at[0][lane];
-      for (int k = 0; k < D; ++k) total -= own[k * clusterSize + lane] * u[i][k];
+      T total = -sums.at[0][lane];
+      for (int k = 0; k < D; ++k) total += walls[k * clusterSize + lane] * u[i][k];
       return total;
     });
   });
@@ -301,8 +334,8 @@ void ParticleProducts<D, T, Cpu>::divergence(Context<Cpu>&, VectorField<D, T, Cp
     if (walls.segment(c, ListSegment::NearFluid).empty())
       return storeSums(*pairs_, ClusterRange(walls, c), store, [](std::size_t, std::size_t) { return T(0); });
     const ClusterWalk<D, T> walk(*pairs_, walls, c, position_.data(), wallLanes_.data());
-    const VectorSums<1, T> sums = sumAlong(walk, wall_.data() + wallStart_[c] * clusterSize, u);
-    storeSums(*pairs_, walk.range, store, [&](std::size_t, std::size_t lane) { return sums.at[0][lane]; });
+    const VectorSums<1, T> sums = sumAlong<false>(walk, wall_.data() + wallStart_[c] * clusterSize, u);
+    storeSums(*pairs_, walk.range, store, [&](std::size_t, std::size_t lane) { return -sums.at[0][lane]; });
   });
 }
 
@@ -379,7 +412,7 @@ template <int D, class T>
 std::size_t ParticleProducts<D, T, Cpu>::bytes() const {
   return scalars_[0].bytes() + scalars_[1].bytes() + vectors_.bytes() + position_.bytes() + viscousStart_.bytes() +
          pressureStart_.bytes() + wallStart_.bytes() + viscous_.bytes() + pressure_.bytes() + wall_.bytes() +
-         selfBlock_.bytes() + fluidLanes_.bytes() + wallLanes_.bytes() + gradient_.bytes();
+         selfBlock_.bytes() + fluidLanes_.bytes() + wallLanes_.bytes() + gradient_.bytes() + wallGradient_.bytes();
 }
 
 #define TREACLE_GRADIENT(D, T, ...)                                                                           \

@@ -56,8 +56,8 @@ class ParticleProducts<D, T, Cpu> {
   Buffer<T> scalars_[2];
   Buffer<Gathered<D, T>> vectors_;
   Buffer<Vec<D, T>> position_;  // from the domain's corner [m]
-  // D times eight numbers per cluster: positions likewise, and the sum of g d over all neighbours.
-  Buffer<T> fluidLanes_, wallLanes_, gradient_;
+  // D times eight numbers per cluster: positions likewise, and sums of g d over all neighbours and over walls.
+  Buffer<T> fluidLanes_, wallLanes_, gradient_, wallGradient_;
   // Eight numbers per list entry, one per lane; starts count entries.
   Buffer<std::uint64_t> viscousStart_, pressureStart_, wallStart_;
   Buffer<T> viscous_;              // near and far fluid of fluid clusters: c of the viscous block c d d^T
