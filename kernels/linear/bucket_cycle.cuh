@@ -18,7 +18,7 @@ struct CycleLevel {
   int sweeps;
 };
 
-/// Lanes that share a row: rows have at most 3^D blocks.
+/// Lanes that share a row: rows have at most 3^D blocks, those of single numbers (D = 1) up to 27.
 template <int D>
 inline constexpr int rowLanes = D == 2 ? 4 : 8;
 

@@ -24,14 +24,29 @@ void convert(Context<Cuda>& context, const BlockCsr<D, double, Cuda>& from, Bloc
           [=] __device__(std::size_t k) { target[k] = static_cast<T>(source[k]); });
 }
 
-/// One warp per bucket: b = sum of r over its particles, and the first sweep from zero, x = D^-1 b. No atomics.
-template <int D, class T, class V>
-__global__ void restrictKernel(const CycleLevel<D, T> level, const V* r, Vec<D, T>* b, Vec<D, T>* x) {
+/// Component k of particle i.
+template <class V>
+struct All {
+  const V* r;
+  __device__ double operator()(std::uint32_t i, int k) const { return r[i][k]; }
+};
+/// The same, but nothing of what is not an unknown.
+template <int D, class T>
+struct Unknowns {
+  const Vec<D, T>* inverse;
+  const Vec<D>* r;
+  __device__ double operator()(std::uint32_t i, int k) const { return inverse[i][k] == 0 ? 0 : r[i][k]; }
+};
+
+/// One warp per bucket: b = sum of value(particle, component) over its particles, and the first sweep from zero,
+/// x = D^-1 b. No atomics.
+template <int D, class T, class Value>
+__global__ void restrictKernel(const CycleLevel<D, T> level, const Value value, Vec<D, T>* b, Vec<D, T>* x) {
   const std::uint32_t bucket = (blockIdx.x * blockDim.x + threadIdx.x) / 32;
   if (bucket >= level.rows) return;
   Vec<D> sum{};
   for (std::uint32_t i = level.members[bucket] + threadIdx.x % 32; i < level.members[bucket + 1]; i += 32)
-    for (int k = 0; k < D; ++k) sum[k] += r[i][k];
+    for (int k = 0; k < D; ++k) sum[k] += value(i, k);
   Vec<D, T> total;
   for (int k = 0; k < D; ++k) total[k] = static_cast<T>(warpSum(sum[k]));
   if (threadIdx.x % 32 != 0) return;
@@ -92,12 +107,13 @@ __global__ void __launch_bounds__(256)
   coarseX[bucket][r] = coarse.inverseDiagonal[bucket][r] * total;
 }
 
-/// One thread per unknown: z = diag(inverse) r + P x.
+/// One thread per unknown: z = diag(inverse) r + P x, zero where the inverse is.
 template <int D, class T>
 __global__ void prolongKernel(std::size_t unknowns, const T* inverse, const double* r,
                               const std::uint32_t* bucketOf, const Vec<D, T>* x, double* z) {
   const std::size_t k = blockIdx.x * std::size_t{blockDim.x} + threadIdx.x;
-  if (k < unknowns) z[k] = inverse[k] * r[k] + x[bucketOf[k / D]][static_cast<int>(k % D)];
+  if (k >= unknowns) return;
+  z[k] = inverse[k] == 0 ? 0 : inverse[k] * r[k] + x[bucketOf[k / D]][static_cast<int>(k % D)];
 }
 
 constexpr int maxDenseLevels = 32;                 // keys have at most 31 levels
@@ -186,8 +202,10 @@ void BucketMultigrid<D, T, Cuda>::buildDense(Context<Cuda>& context) {
     return 3 * rows * sizeof(Vec<D, T>);
   };
   denseLevel_ = 0;
-  while (D * levels_[denseLevel_].a.rows() > denseUnknowns || sharedBytes(denseLevel_) > maxSharedBytes)
+  while (denseLevel_ < levels_.size() &&
+         (D * levels_[denseLevel_].a.rows() > denseUnknowns || sharedBytes(denseLevel_) > maxSharedBytes))
     ++denseLevel_;
+  if (denseLevel_ == levels_.size()) return;  // the last of few levels may be large
   CycleLevels<D, T> levels{};
   for (std::size_t r = denseLevel_; r < levels_.size(); ++r) levels.level[levels.count++] = view(r);
   const std::uint32_t unknowns = D * levels_[denseLevel_].a.rows();
@@ -216,6 +234,7 @@ void BucketMultigrid<D, T, Cuda>::cycle(Context<Cuda>& context, std::size_t r) {
     std::swap(level.x, level.next);
   };
   for (int s = 1; s < level.sweeps; ++s) sweep.template operator()<false>(nullptr, nullptr);
+  if (r + 1 == levels_.size()) return;
   Level& coarse = levels_[r + 1];
   launch(context, coarse.a.rows(), 256, 0, restrictResidualKernel<D, T>, viewOf(level.a), level.b.data(),
          level.x.data(), view(r + 1), coarse.b.data(), coarse.x.data());
@@ -228,7 +247,8 @@ template <int D, class T>
 void BucketMultigrid<D, T, Cuda>::apply(Context<Cuda>& context, std::span<const Vec<D, T>> inverse,
                                         std::span<const Vec<D>> r, std::span<Vec<D>> z) {
   Level& finest = levels_[0];
-  launch(context, blocksFor(finest.a.rows(), 4), 128, 0, restrictKernel<D, T, Vec<D>>, view(0), r.data(),
+  const Unknowns<D, T> value{inverse.data(), r.data()};
+  launch(context, blocksFor(finest.a.rows(), 4), 128, 0, restrictKernel<D, T, Unknowns<D, T>>, view(0), value,
          finest.b.data(), finest.x.data());
   cycle(context, 0);
   const std::size_t unknowns = r.size() * D;
@@ -241,7 +261,8 @@ template <int D, class T>
 void BucketMultigrid<D, T, Cuda>::correct(Context<Cuda>& context, std::span<const Gathered<D, T>> r,
                                           std::span<Gathered<D, T>> z, std::span<Gathered<D, T>> x) {
   Level& finest = levels_[0];
-  launch(context, blocksFor(finest.a.rows(), 4), 128, 0, restrictKernel<D, T, Gathered<D, T>>, view(0), r.data(),
+  const All<Gathered<D, T>> value{r.data()};
+  launch(context, blocksFor(finest.a.rows(), 4), 128, 0, restrictKernel<D, T, All<Gathered<D, T>>>, view(0), value,
          finest.b.data(), finest.x.data());
   cycle(context, 0);
   forEach(context, r.size(),
@@ -262,8 +283,10 @@ std::size_t BucketMultigrid<D, T, Cuda>::bytes() const {
   return sum;
 }
 
+template class BucketMultigrid<1, double, Cuda>;
 template class BucketMultigrid<2, double, Cuda>;
 template class BucketMultigrid<3, double, Cuda>;
+template class BucketMultigrid<1, float, Cuda>;
 template class BucketMultigrid<2, float, Cuda>;
 template class BucketMultigrid<3, float, Cuda>;
 

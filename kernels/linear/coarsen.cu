@@ -12,8 +12,9 @@ namespace {
 constexpr int warpsPerBlock = 4;
 constexpr std::uint64_t overflow = std::uint64_t{1} << 40;  // counted by a row with too many columns
 
+/// Adjacent buckets, itself included; one lane each. Single numbers may be of two or three dimensions.
 template <int D>
-constexpr int maxColumns = D == 2 ? 9 : 27;  // adjacent buckets, itself included; one lane each
+constexpr int maxColumns = D == 2 ? 9 : 27;
 
 /// One warp per coarse row; reads the columns of its fine rows and their parents; writes the number of distinct
 /// parents to rowStart, or, with Fill, the parents, in the order in which they first appear. No atomics.
@@ -92,8 +93,10 @@ void coarsen(Context<Cuda>& context, const BlockCsr<D, T, Cuda>& fine, std::span
 #define TREACLE_INSTANTIATE(D, T)                                                                          \
   template void coarsen<D, T>(Context<Cuda>&, const BlockCsr<D, T, Cuda>&, std::span<const std::uint32_t>, \
                               BlockCsr<D, T, Cuda>&);
+TREACLE_INSTANTIATE(1, double)
 TREACLE_INSTANTIATE(2, double)
 TREACLE_INSTANTIATE(3, double)
+TREACLE_INSTANTIATE(1, float)
 TREACLE_INSTANTIATE(2, float)
 TREACLE_INSTANTIATE(3, float)
 #undef TREACLE_INSTANTIATE

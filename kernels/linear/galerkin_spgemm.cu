@@ -23,159 +23,180 @@ struct ScalarView {
 ScalarView viewOf(ScalarCsr& m) { return {m.start.data(), m.column.data(), m.value.data()}; }
 
 /// One warp per block row; reads its blocks; writes the scalar rows. No atomics.
-template <int D>
-__global__ void __launch_bounds__(32 * warpsPerBlock) scalarRowsKernel(BlockCsrView<D, double> a, ScalarView to) {
+template <int B>
+__global__ void __launch_bounds__(32 * warpsPerBlock) scalarRowsKernel(BlockCsrView<B, double> a, ScalarView to) {
   const std::uint32_t row = blockIdx.x * warpsPerBlock + threadIdx.x / 32, lane = threadIdx.x % 32;
   if (row >= a.rows) return;
   const std::uint64_t begin = a.rowStart[row];
-  const auto length = static_cast<std::uint32_t>(a.rowStart[row + 1] - begin) * D;
-  const std::uint64_t base = begin * (D * D);
-  if (lane < D) to.start[row * D + lane] = static_cast<std::int32_t>(base + lane * length);
-  if (row + 1 == a.rows && lane == D) to.start[a.rows * D] = static_cast<std::int32_t>(base + D * length);
-  for (std::uint32_t e = lane; e < length * D; e += 32) {
-    const std::uint32_t k = e / (D * D), r = e / D % D, c = e % D;
-    const std::uint64_t place = base + r * length + k * D + c;
-    to.column[place] = static_cast<std::int32_t>(a.column[begin + k] * D + c);
+  const auto length = static_cast<std::uint32_t>(a.rowStart[row + 1] - begin) * B;
+  const std::uint64_t base = begin * (B * B);
+  if (lane < B) to.start[row * B + lane] = static_cast<std::int32_t>(base + lane * length);
+  if (row + 1 == a.rows && lane == B) to.start[a.rows * B] = static_cast<std::int32_t>(base + B * length);
+  for (std::uint32_t e = lane; e < length * B; e += 32) {
+    const std::uint32_t k = e / (B * B), r = e / B % B, c = e % B;
+    const std::uint64_t place = base + r * length + k * B + c;
+    to.column[place] = static_cast<std::int32_t>(a.column[begin + k] * B + c);
     to.value[place] = a.block[begin].a[e];
   }
 }
 
 /// One thread per block row; reads its first scalar row, columns ascending; writes the number of its blocks to
 /// rowStart, or, with Fill, their columns. No atomics.
-template <int D, bool Fill>
+template <int B, bool Fill>
 __global__ void blockColumnsKernel(std::uint32_t rows, ScalarView from, std::uint64_t* rowStart,
                                    std::uint32_t* column) {
   const std::uint32_t row = blockIdx.x * blockDim.x + threadIdx.x;
   if (row >= rows) return;
-  const std::int32_t begin = from.start[row * D], count = (from.start[row * D + 1] - begin) / D;
+  const std::int32_t begin = from.start[row * B], count = (from.start[row * B + 1] - begin) / B;
   if (!Fill) rowStart[row] = count;
   for (std::int32_t k = 0; Fill && k < count; ++k)
-    column[rowStart[row] + k] = static_cast<std::uint32_t>(from.column[begin + k * D] / D);
+    column[rowStart[row] + k] = static_cast<std::uint32_t>(from.column[begin + k * B] / B);
 }
 
-template <int D>
-void writeProlongation(const Context<Cuda>& context, const std::uint32_t* parent, std::int64_t n, ScalarView p) {
+/// The summation over members: P has a one per row.
+template <int B>
+void writeSummation(const Context<Cuda>& context, const std::uint32_t* parent, std::int64_t n, ScalarView p) {
   forEach(context, static_cast<std::size_t>(n) + 1, [=] __device__(std::size_t e) {
     p.start[e] = static_cast<std::int32_t>(e);
     if (e == static_cast<std::size_t>(n)) return;
-    p.column[e] = static_cast<std::int32_t>(D * parent[e / D] + e % D);
+    p.column[e] = static_cast<std::int32_t>(B * parent[e / B] + e % B);
     p.value[e] = 1;
   });
 }
 
-/// The entries by fine rows, the starts by coarse ones.
-template <int D>
-void writeRestriction(const Context<Cuda>& context, const std::uint32_t* members, const std::uint32_t* parent,
-                      std::int64_t n, std::int64_t coarse, ScalarView r) {
-  forEach(context, static_cast<std::size_t>(n), [=] __device__(std::size_t e) {
-    const auto i = static_cast<std::uint32_t>(e / D), c = static_cast<std::uint32_t>(e % D);
-    const std::uint32_t first = members[parent[i]], count = members[parent[i] + 1] - first;
-    const std::uint32_t place = D * first + c * count + (i - first);
-    r.column[place] = static_cast<std::int32_t>(e);
-    r.value[place] = 1;
-  });
-  forEach(context, static_cast<std::size_t>(coarse) + 1, [=] __device__(std::size_t e) {
-    const bool end = e == static_cast<std::size_t>(coarse);
-    const std::uint32_t first = members[e / D], count = end ? 0 : members[e / D + 1] - first;
-    r.start[e] = static_cast<std::int32_t>(D * first + e % D * count);
+/// Every row of the weights B times, once per unknown.
+template <int B>
+void writeProlongation(const Context<Cuda>& context, BlockCsrView<1, double> weights, ScalarView p) {
+  forEach(context, std::size_t{B} * weights.rows + 1, [=] __device__(std::size_t e) {
+    const std::size_t row = e / B;
+    const int c = static_cast<int>(e % B);
+    const std::uint64_t begin = weights.rowStart[row];
+    const auto count = row == weights.rows ? 0 : static_cast<std::int32_t>(weights.rowStart[row + 1] - begin);
+    const std::int32_t start = static_cast<std::int32_t>(B * begin) + c * count;
+    p.start[e] = start;
+    for (std::int32_t k = 0; k < count; ++k) {
+      p.column[start + k] = static_cast<std::int32_t>(B * weights.column[begin + k] + c);
+      p.value[start + k] = weights.block[begin + k].a[0];
+    }
   });
 }
 
 /// The scalar rows of a block row have the same pattern, since blocks are full.
-template <int D>
+template <int B>
 void writeBlocks(const Context<Cuda>& context, std::uint32_t rows, ScalarView from, const std::uint64_t* rowStart,
-                 Block<D>* block) {
-  forEach(context, std::size_t{D} * rows, [=] __device__(std::size_t e) {
-    const int r = static_cast<int>(e % D);
+                 Block<B>* block) {
+  forEach(context, std::size_t{B} * rows, [=] __device__(std::size_t e) {
+    const int r = static_cast<int>(e % B);
     const std::int32_t begin = from.start[e], count = from.start[e + 1] - begin;
-    for (std::int32_t k = 0; k < count; ++k) block[rowStart[e / D] + k / D](r, k % D) = from.value[begin + k];
+    for (std::int32_t k = 0; k < count; ++k) block[rowStart[e / B] + k / B](r, k % B) = from.value[begin + k];
   });
+}
+
+/// A number of nonzeros, if cuSPARSE can take it.
+std::int64_t countable(std::uint64_t entries) {
+  if (entries > std::numeric_limits<std::int32_t>::max())
+    throw RunError(
+        "a matrix has " + std::to_string(entries) +
+        " nonzeros, more than the 32-bit indices of cuSPARSE's products hold; the route 'direct' to the coarse "
+        "operators has no such limit");
+  return static_cast<std::int64_t>(entries);
+}
+
+/// A matrix without entries.
+template <int B>
+void clear(const Context<Cuda>& context, std::uint32_t rows, BlockCsr<B, double, Cuda>& a) {
+  a.rowStart.resize(context, std::size_t{rows} + 1);
+  clearBytes(context, a.rowStart.data(), a.rowStart.span().size_bytes());
+  a.column.resize(context, 0);
+  a.block.resize(context, 0);
 }
 
 }  // namespace
 
-template <int D>
-struct GalerkinSpgemm<D>::Impl {
+template <int B>
+struct GalerkinSpgemm<B>::Impl {
   ScalarProduct product;
   ScalarCsr a, p, r, ap, rap;
   Buffer<std::uint32_t, Cuda> parent;
 
-  void setMatrix(const Context<Cuda>& context, const BlockCsr<D, double, Cuda>& fine) {
-    const std::uint64_t entries = fine.block.size() * (D * D);
-    if (entries > std::numeric_limits<std::int32_t>::max())
-      throw RunError(
-          "the system matrix has " + std::to_string(entries) +
-          " nonzeros, more than the 32-bit indices of cuSPARSE's products hold; the route 'direct' to the "
-          "coarse operators has no such limit");
-    const std::int64_t n = std::int64_t{D} * fine.rows();
+  void setMatrix(const Context<Cuda>& context, const BlockCsr<B, double, Cuda>& fine) {
+    const std::int64_t n = std::int64_t{B} * fine.rows();
     a.resize(context, n, n);
-    a.reserveEntries(context, static_cast<std::int64_t>(entries));
-    launch(context, blocksFor(fine.rows(), warpsPerBlock), 32 * warpsPerBlock, 0, scalarRowsKernel<D>,
+    a.reserveEntries(context, countable(fine.block.size() * (B * B)));
+    launch(context, blocksFor(fine.rows(), warpsPerBlock), 32 * warpsPerBlock, 0, scalarRowsKernel<B>,
            treacle::viewOf(fine), viewOf(a));
   }
 
-  /// P has a one per row; R = P^T has the rows of a coarse row's components behind each other.
-  void setTransfer(const Context<Cuda>& context, std::span<const std::uint32_t> members, std::uint32_t fineRows) {
-    const std::int64_t n = std::int64_t{D} * fineRows;
-    const auto coarse = std::int64_t{D} * static_cast<std::int64_t>(members.size() - 1);
-    p.resize(context, n, coarse);
-    r.resize(context, coarse, n);
+  void setSummation(const Context<Cuda>& context, std::span<const std::uint32_t> members, std::uint32_t fineRows) {
+    const std::int64_t n = std::int64_t{B} * fineRows;
+    p.resize(context, n, std::int64_t{B} * static_cast<std::int64_t>(members.size() - 1));
     p.reserveEntries(context, n);
-    r.reserveEntries(context, n);
     findParents(context, members, fineRows, parent);
-    writeProlongation<D>(context, parent.data(), n, viewOf(p));
-    writeRestriction<D>(context, members.data(), parent.data(), n, coarse, viewOf(r));
+    writeSummation<B>(context, parent.data(), n, viewOf(p));
   }
 
-  void takeResult(Context<Cuda>& context, std::uint32_t rows, BlockCsr<D, double, Cuda>& coarse) {
+  void setProlongation(const Context<Cuda>& context, const Prolongation<Cuda>& weights) {
+    p.resize(context, std::int64_t{B} * weights.rows(), std::int64_t{B} * weights.coarseRows);
+    p.reserveEntries(context, countable(B * weights.block.size()));
+    writeProlongation<B>(context, treacle::viewOf(weights), viewOf(p));
+  }
+
+  /// coarse = P^T A P with the P that is there.
+  void compute(Context<Cuda>& context, const BlockCsr<B, double, Cuda>& fine, BlockCsr<B, double, Cuda>& coarse) {
+    setMatrix(context, fine);
+    product.transpose(context, p, r);
+    product.compute(context, a, p, ap);
+    product.compute(context, r, ap, rap);
+    takeResult(context, static_cast<std::uint32_t>(p.columns / B), coarse);
+  }
+
+  void takeResult(Context<Cuda>& context, std::uint32_t rows, BlockCsr<B, double, Cuda>& coarse) {
     coarse.rowStart.resize(context, std::size_t{rows} + 1);
     std::uint32_t* none = nullptr;
-    launch(context, blocksFor(rows, 256), 256, 0, blockColumnsKernel<D, false>, rows, viewOf(rap),
+    launch(context, blocksFor(rows, 256), 256, 0, blockColumnsKernel<B, false>, rows, viewOf(rap),
            coarse.rowStart.data(), none);
     const std::uint64_t entries = startRows(context, coarse.rowStart);
     coarse.column.resize(context, entries);
     coarse.block.resize(context, entries);
-    launch(context, blocksFor(rows, 256), 256, 0, blockColumnsKernel<D, true>, rows, viewOf(rap),
+    launch(context, blocksFor(rows, 256), 256, 0, blockColumnsKernel<B, true>, rows, viewOf(rap),
            coarse.rowStart.data(), coarse.column.data());
-    writeBlocks<D>(context, rows, viewOf(rap), coarse.rowStart.data(), coarse.block.data());
+    writeBlocks<B>(context, rows, viewOf(rap), coarse.rowStart.data(), coarse.block.data());
   }
 };
 
-template <int D>
-GalerkinSpgemm<D>::GalerkinSpgemm() : impl_(std::make_unique<Impl>()) {}
-template <int D>
-GalerkinSpgemm<D>::GalerkinSpgemm(GalerkinSpgemm&&) noexcept = default;
-template <int D>
-GalerkinSpgemm<D>& GalerkinSpgemm<D>::operator=(GalerkinSpgemm&&) noexcept = default;
-template <int D>
-GalerkinSpgemm<D>::~GalerkinSpgemm() = default;
+template <int B>
+GalerkinSpgemm<B>::GalerkinSpgemm() : impl_(std::make_unique<Impl>()) {}
+template <int B>
+GalerkinSpgemm<B>::GalerkinSpgemm(GalerkinSpgemm&&) noexcept = default;
+template <int B>
+GalerkinSpgemm<B>& GalerkinSpgemm<B>::operator=(GalerkinSpgemm&&) noexcept = default;
+template <int B>
+GalerkinSpgemm<B>::~GalerkinSpgemm() = default;
 
-template <int D>
-void GalerkinSpgemm<D>::compute(Context<Cuda>& context, const BlockCsr<D, double, Cuda>& fine,
-                                std::span<const std::uint32_t> members, BlockCsr<D, double, Cuda>& coarse) {
-  const auto rows = static_cast<std::uint32_t>(members.size() - 1);
-  if (fine.block.empty()) {
-    coarse.rowStart.resize(context, std::size_t{rows} + 1);
-    clearBytes(context, coarse.rowStart.data(), coarse.rowStart.span().size_bytes());
-    coarse.column.resize(context, 0);
-    coarse.block.resize(context, 0);
-    return;
-  }
-  Impl& m = *impl_;
-  m.setMatrix(context, fine);
-  m.setTransfer(context, members, fine.rows());
-  m.product.compute(context, m.a, m.p, m.ap);
-  m.product.compute(context, m.r, m.ap, m.rap);
-  m.takeResult(context, rows, coarse);
+template <int B>
+void GalerkinSpgemm<B>::compute(Context<Cuda>& context, const BlockCsr<B, double, Cuda>& fine,
+                                const Prolongation<Cuda>& prolongation, BlockCsr<B, double, Cuda>& coarse) {
+  if (fine.block.empty() || prolongation.block.empty()) return clear(context, prolongation.coarseRows, coarse);
+  impl_->setProlongation(context, prolongation);
+  impl_->compute(context, fine, coarse);
 }
 
-template <int D>
-std::size_t GalerkinSpgemm<D>::bytes() const {
+template <int B>
+void GalerkinSpgemm<B>::compute(Context<Cuda>& context, const BlockCsr<B, double, Cuda>& fine,
+                                std::span<const std::uint32_t> members, BlockCsr<B, double, Cuda>& coarse) {
+  if (fine.block.empty()) return clear(context, static_cast<std::uint32_t>(members.size() - 1), coarse);
+  impl_->setSummation(context, members, fine.rows());
+  impl_->compute(context, fine, coarse);
+}
+
+template <int B>
+std::size_t GalerkinSpgemm<B>::bytes() const {
   std::size_t sum = impl_->product.bytes() + impl_->parent.bytes();
   for (const ScalarCsr* m : {&impl_->a, &impl_->p, &impl_->r, &impl_->ap, &impl_->rap}) sum += m->bytes();
   return sum;
 }
 
+template class GalerkinSpgemm<1>;
 template class GalerkinSpgemm<2>;
 template class GalerkinSpgemm<3>;
 

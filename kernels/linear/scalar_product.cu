@@ -105,6 +105,22 @@ bool ScalarProduct::attempt(Context<Cuda>& context, const ScalarCsr& a, const Sc
   return true;
 }
 
+void ScalarProduct::transpose(Context<Cuda>& context, const ScalarCsr& a, ScalarCsr& t) {
+  const std::size_t entries = a.column.size();
+  t.resize(context, a.columns, a.rows);
+  t.reserveEntries(context, static_cast<std::int64_t>(entries));
+  const auto call = [&](auto function, auto rest) {
+    return function(handle_, static_cast<int>(a.rows), static_cast<int>(a.columns), static_cast<int>(entries),
+                    a.value.data(), a.start.data(), a.column.data(), t.value.data(), t.start.data(),
+                    t.column.data(), CUDA_R_64F, CUSPARSE_ACTION_NUMERIC, CUSPARSE_INDEX_BASE_ZERO,
+                    CUSPARSE_CSR2CSC_ALG1, rest);
+  };
+  TREACLE_CUSPARSE_CHECK(cusparseSetStream(handle_, context.stream()));
+  std::size_t bytes = 0;
+  TREACLE_CUSPARSE_CHECK(call(cusparseCsr2cscEx2_bufferSize, &bytes));
+  TREACLE_CUSPARSE_CHECK(call(cusparseCsr2cscEx2, workspace(context, work_, bytes)));
+}
+
 void ScalarProduct::compute(Context<Cuda>& context, const ScalarCsr& a, const ScalarCsr& b, ScalarCsr& c) {
   TREACLE_CUSPARSE_CHECK(cusparseSetStream(handle_, context.stream()));
   for (; algorithm_ < algorithmCount; ++algorithm_) {
@@ -118,8 +134,8 @@ void ScalarProduct::compute(Context<Cuda>& context, const ScalarCsr& a, const Sc
   }
   algorithm_ = 0;
   throw RunError(
-      "cuSPARSE has too few resources for the product of the system matrix with the restriction to the buckets; "
-      "the route 'direct' needs no such product");
+      "cuSPARSE has too few resources for the matrix products that give the coarse operators; the route 'direct' "
+      "needs no such products");
 }
 
 }  // namespace treacle

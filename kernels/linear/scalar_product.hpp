@@ -33,6 +33,8 @@ class ScalarProduct {
   ScalarProduct(const ScalarProduct&) = delete;
   ~ScalarProduct() { cusparseDestroy(handle_); }
 
+  /// t = a^T, columns ascending. `a` must have entries.
+  void transpose(Context<Cuda>&, const ScalarCsr& a, ScalarCsr& t);
   /// c = a b. Columns of c ascend within a row. Errors: RunError when no algorithm has the resources.
   void compute(Context<Cuda>&, const ScalarCsr& a, const ScalarCsr& b, ScalarCsr& c);
   std::size_t bytes() const { return estimate_.bytes() + memory_.bytes() + work_.bytes(); }

@@ -80,11 +80,17 @@ void lanczosFinish(Context<Cuda>& context, const LanczosScalars* scalars, double
   launch(context, 1, 32, 0, largestKernel<T>, scalars, margin, largest);
 }
 
-#define TREACLE_INSTANTIATE(T)                                                 \
-  template void lanczosStart<T>(Context<Cuda>&, const LanczosVectors<T>&);     \
-  template void lanczosStep<T>(Context<Cuda>&, const LanczosVectors<T>&);      \
-  template void lanczosDirection<T>(Context<Cuda>&, const LanczosVectors<T>&); \
-  template void lanczosFinish<T>(Context<Cuda>&, const LanczosScalars*, double, T*);
+template <class T>
+void setNumber(Context<Cuda>& context, T value, T* to) {
+  forEach(context, 1, [=] __device__(std::size_t) { *to = value; });
+}
+
+#define TREACLE_INSTANTIATE(T)                                                       \
+  template void lanczosStart<T>(Context<Cuda>&, const LanczosVectors<T>&);           \
+  template void lanczosStep<T>(Context<Cuda>&, const LanczosVectors<T>&);            \
+  template void lanczosDirection<T>(Context<Cuda>&, const LanczosVectors<T>&);       \
+  template void lanczosFinish<T>(Context<Cuda>&, const LanczosScalars*, double, T*); \
+  template void setNumber<T>(Context<Cuda>&, T, T*);
 TREACLE_INSTANTIATE(double)
 TREACLE_INSTANTIATE(float)
 #undef TREACLE_INSTANTIATE

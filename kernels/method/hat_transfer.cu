@@ -68,7 +68,7 @@ __device__ inline void forEachCorner(const HatCells<D>& cells, const HatNodesVie
 }  // namespace
 
 template <int D>
-void findHatNodes(Context<Cuda>& context, const MphPairs<D>& pairs, HatsOn what, HatNodes<D, Cuda>& nodes) {
+void findHatNodes(Context<Cuda>& context, const SortedParticles<D>& pairs, HatsOn what, HatNodes<D, Cuda>& nodes) {
   const HatCells<D> cells{pairs.grid};
   HatLattice<D> lattice;
   for (int k = 0; k < D; ++k) lattice.count[k] = cells.nodesOn(k);
@@ -89,7 +89,7 @@ void findHatNodes(Context<Cuda>& context, const MphPairs<D>& pairs, HatsOn what,
 }
 
 template <int D, class T>
-void HatTransfer<D, T, Cuda>::prepare(Context<Cuda>& context, const MphPairs<D>& pairs) {
+void HatTransfer<D, T, Cuda>::prepare(Context<Cuda>& context, const SortedParticles<D>& pairs) {
   pairs_ = &pairs;
   place_.resize(context, pairs.activeCount);
   forEach(context, pairs.activeCount,
@@ -129,6 +129,20 @@ void HatTransfer<D, T, Cuda>::prolong(Context<Cuda>& context, const HatNodes<D, 
           });
 }
 
+/// One thread per particle.
+template <int D, class T>
+void HatTransfer<D, T, Cuda>::addProlonged(Context<Cuda>& context, const HatNodes<D, Cuda>& nodes,
+                                           std::span<const T> e, std::span<T> x) const {
+  forEach(context, pairs_->activeCount,
+          [cells = HatCells<D>{pairs_->grid}, nodes = nodes.view(), position = pairs_->position.data(),
+           place = place_.data(), e = e.data(), x = x.data()] __device__(std::size_t i) {
+            T sum = x[i];
+            forEachCorner(cells, nodes, position[i], place[i],
+                          [&](std::uint32_t n, T weight) { sum = fma(weight, e[n], sum); });
+            x[i] = sum;
+          });
+}
+
 template <int D, class T>
 void HatTransfer<D, T, Cuda>::prolong(Context<Cuda>& context, const HatNodes<D, Cuda>& nodes, std::span<const T> e,
                                       std::span<Gathered<D, T>> z, std::span<Gathered<D, T>> x) const {
@@ -144,8 +158,8 @@ void HatTransfer<D, T, Cuda>::prolong(Context<Cuda>& context, const HatNodes<D, 
           });
 }
 
-template void findHatNodes<2>(Context<Cuda>&, const MphPairs<2>&, HatsOn, HatNodes<2, Cuda>&);
-template void findHatNodes<3>(Context<Cuda>&, const MphPairs<3>&, HatsOn, HatNodes<3, Cuda>&);
+template void findHatNodes<2>(Context<Cuda>&, const SortedParticles<2>&, HatsOn, HatNodes<2, Cuda>&);
+template void findHatNodes<3>(Context<Cuda>&, const SortedParticles<3>&, HatsOn, HatNodes<3, Cuda>&);
 template class HatTransfer<2, double, Cuda>;
 template class HatTransfer<3, double, Cuda>;
 template class HatTransfer<2, float, Cuda>;

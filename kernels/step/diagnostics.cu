@@ -9,7 +9,7 @@
 namespace treacle {
 namespace {
 
-constexpr unsigned blockSize = 256, maxBlocks = 132 * 8;
+constexpr unsigned blockSize = 256, maxBlocks = 132 * 4;
 constexpr std::size_t doubles = sizeof(Diagnostics) / sizeof(double);
 static_assert(doubles * (maxBlocks + 1) <= Context<Cuda>::maxPartialSums);
 
@@ -19,8 +19,11 @@ struct Join {
 
 /// Past the first-level cache, which does not see what other blocks wrote.
 __device__ Diagnostics loadShared(const Diagnostics* d) {
-  return {__ldcg(&d->kineticEnergy), __ldcg(&d->potentialEnergy), __ldcg(&d->frontX), __ldcg(&d->top),
-          __ldcg(&d->maxSpeed)};
+  Diagnostics copy;
+  const auto* from = reinterpret_cast<const double*>(d);
+  auto* to = reinterpret_cast<double*>(&copy);
+  for (std::size_t k = 0; k < doubles; ++k) to[k] = __ldcg(from + k);
+  return copy;
 }
 
 /// One thread per particle, grid-stride; reads position, velocity and material, writes one partial result per
@@ -28,15 +31,15 @@ __device__ Diagnostics loadShared(const Diagnostics* d) {
 /// of blocks that are done. The order of the sums is fixed.
 template <int D>
 __global__ void __launch_bounds__(blockSize)
-    diagnosticsKernel(std::span<const Vec<D>> x, std::span<const Vec<D>> u, std::span<const std::uint8_t> material,
-                      DiagnosticsTerm<D> term, Diagnostics* partial, unsigned* ticket) {
+    diagnosticsKernel(const __grid_constant__ DiagnosticsInput<D> in, const __grid_constant__ DiagnosticsTerm<D> term,
+                      Diagnostics* partial, unsigned* ticket) {
   using Reduce = cub::BlockReduce<Diagnostics, blockSize>;
   __shared__ typename Reduce::TempStorage temporary;
   __shared__ bool last;
   Diagnostics own = noDiagnostics();
-  for (std::size_t i = blockIdx.x * std::size_t{blockSize} + threadIdx.x; i < x.size();
+  for (std::size_t i = blockIdx.x * std::size_t{blockSize} + threadIdx.x; i < in.position.size();
        i += gridDim.x * std::size_t{blockSize})
-    own = joined(own, term(x[i], u[i], material[i]));
+    own = joined(own, term(in, i));
   own = Reduce(temporary).Reduce(own, Join{});
   if (threadIdx.x == 0) {
     partial[blockIdx.x] = own;
@@ -61,9 +64,9 @@ template <int D>
 Diagnostics computeDiagnostics(Context<Cuda>& context, const DiagnosticsInput<D>& in) {
   auto* partial = reinterpret_cast<Diagnostics*>(context.partialSums());
   const unsigned blocks = std::min(std::max(blocksFor(in.position.size(), 2 * blockSize), 1u), maxBlocks);
-  launch(context, blocks, blockSize, 0, diagnosticsKernel<D>, in.position, in.velocity, in.material,
-         DiagnosticsTerm<D>::make(in), partial, context.ticket());
-  return valueOnHost(context, partial + blocks);
+  launch(context, blocks, blockSize, 0, diagnosticsKernel<D>, in, DiagnosticsTerm<D>::make(in),
+         partial, context.ticket());
+  return averaged(valueOnHost(context, partial + blocks), in.position.size());
 }
 
 template Diagnostics computeDiagnostics<2>(Context<Cuda>&, const DiagnosticsInput<2>&);

@@ -11,6 +11,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 namespace treacle {
 namespace {
 
@@ -44,14 +46,20 @@ void printCounts(const Case& c, const Counts& counts) {
 }
 
 void printNumbers(const Case& c) {
-  fmt::print("# steps: {}\n", c.steps());
+  if (c.time.stepsVary())
+    fmt::print("# steps: {:.0f} or more\n", std::ceil(c.time.end / c.time.step * (1 - 1e-9)));
+  else
+    fmt::print("# steps: {}\n", c.steps());
   fmt::print("# solver: {}\n", solverText(solveStages(c).front()));
   fmt::print("# Courant number: {:.4g}\n", courantNumber(c));
   for (const StabilityNumbers& n : stabilityNumbers(c))
-    fmt::print(
-        "# material '{}': dt kappa / lambda = {:.4g} (stable up to 1), diffusion numbers d_mu = {:.4g}, "
-        "d_lambda = {:.4g}\n",
-        n.material, n.compression, n.shearDiffusion, n.bulkDiffusion);
+    if (c.method.kind == MethodKind::Isph)
+      fmt::print("# material '{}': diffusion number d_mu = {:.4g}\n", n.material, n.shearDiffusion);
+    else
+      fmt::print(
+          "# material '{}': dt kappa / lambda = {:.4g} (stable up to 1), diffusion numbers d_mu = {:.4g}, "
+          "d_lambda = {:.4g}\n",
+          n.material, n.compression, n.shearDiffusion, n.bulkDiffusion);
 }
 
 }  // namespace

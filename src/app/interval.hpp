@@ -7,12 +7,12 @@
 namespace treacle {
 
 /// Tells after which steps something regular is due: for every multiple of an interval of simulation time, the
-/// step nearest to it.
+/// step nearest to it, or where steps vary in length the first one at or after it.
 class Interval {
  public:
   /// `length`: [s], 0: never due. `start`: the time that a run starts at [s]; what was due up to then is done.
   Interval(double length, const TimeSettings& time, double start)
-      : length_(length), halfStep_(time.step / 2), passed_(multiples(start)) {}
+      : length_(length), ahead_(time.stepsVary() ? rounding * length : time.step / 2), passed_(multiples(start)) {}
 
   /// To be asked after every step, with its time [s].
   bool due(double time) {
@@ -23,13 +23,15 @@ class Interval {
   }
 
  private:
-  /// Half a step ahead: nearest to the multiple, whatever the rounding of time.
+  static constexpr double rounding = 1e-9;  // of the time of a multiple, in intervals
+
   std::int64_t multiples(double time) const {
-    return length_ > 0 ? static_cast<std::int64_t>((time + halfStep_) / length_) : 0;
+    return length_ > 0 ? static_cast<std::int64_t>((time + ahead_) / length_) : 0;
   }
 
-  double length_, halfStep_;  // [s]
-  std::int64_t passed_;       // multiples of the interval
+  double length_;        // [s]
+  double ahead_;         // [s] half a step: nearest to the multiple, whatever the rounding of time
+  std::int64_t passed_;  // multiples of the interval
 };
 
 }  // namespace treacle

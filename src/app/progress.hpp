@@ -1,5 +1,6 @@
 #pragma once
 
+#include "treacle/model/case.hpp"
 #include "treacle/step/simulation.hpp"
 
 #include <chrono>
@@ -9,11 +10,12 @@
 namespace treacle {
 
 /// Tells the user on stdout how far a run is: on a terminal one line that is rewritten a few times per second,
-/// otherwise plain lines, one for every tenth of the run and at least one a minute.
+/// otherwise plain lines, one for every tenth of the run and at least one a minute. Where steps vary in length
+/// their number is not known, and the way to the end is that of the time.
 class Progress {
  public:
-  /// `start`: the step that the run starts at.
-  Progress(std::int64_t start, std::int64_t steps, bool quiet);
+  /// `step`, `time`: those that the run starts at. The case must outlive this.
+  Progress(const Case& c, std::int64_t step, double time, bool quiet);
 
   void update(const StepReport& report);
 
@@ -27,11 +29,13 @@ class Progress {
   using Clock = std::chrono::steady_clock;
 
   std::string line(const StepReport& report) const;
+  double done(std::int64_t step, double time) const;
 
-  std::int64_t first_, steps_;
+  const Case& case_;
+  double first_;  // part of the whole that was done at the start
   bool quiet_, terminal_;
   bool lineOpen_ = false;  // the cursor stands behind an unfinished line
-  std::int64_t tenths_;
+  int tenths_;
   Clock::time_point start_, last_;
 };
 

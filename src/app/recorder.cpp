@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace treacle {
 namespace {
 
@@ -23,10 +25,15 @@ Frame wallsFrame(const Snapshot<D>& s) {
 HistoryRow historyRow(const StepReport& r) {
   const Diagnostics& d = r.diagnostics;
   const PhaseSeconds& s = r.seconds;
-  return {r.step,     r.time,          r.iterations,
-          r.residual, d.kineticEnergy, d.potentialEnergy,
-          d.frontX,   d.top,           d.maxSpeed,
-          s.total(),  r.fallbacks,     {s.search, s.lists, s.coefficients, s.coarse, s.solve, s.update}};
+  HistoryRow row;
+  row.step = r.step, row.time = r.time, row.timeStep = r.timeStep;
+  row.iterations = r.iterations, row.residual = r.residual, row.fallbacks = r.fallbacks;
+  row.kineticEnergy = d.kineticEnergy, row.potentialEnergy = d.potentialEnergy;
+  row.frontX = d.frontX, row.top = d.top, row.maxSpeed = d.maxSpeed;
+  row.meanDensity = d.meanDensityRatio, row.densityError = d.meanDensityError;
+  row.seconds = s.total();
+  row.timings = {s.search, s.lists, s.coefficients, s.coarse, s.solve, s.update};
+  return row;
 }
 
 }  // namespace
@@ -55,6 +62,9 @@ void Recorder<D>::record(const StepReport& report) {
   iterations_ += report.iterations;
   fallbacks_ += report.fallbacks;
   seconds_ += report.seconds;
+  meanDensity_ = report.diagnostics.meanDensityRatio;
+  densityError_ = report.diagnostics.meanDensityError;
+  largestDensityError_ = std::max(largestDensityError_, densityError_);
   Timer timer;
   history_.append(historyRow(report));
   outputSeconds_ += timer.lap();
@@ -103,6 +113,9 @@ void Recorder<D>::summarise(RunSummary& summary) const {
   summary.firstIterations = firstIterations_;
   summary.lastIterations = lastIterations_;
   summary.fallbacks = fallbacks_;
+  summary.meanDensity = meanDensity_;
+  summary.densityError = densityError_;
+  summary.largestDensityError = largestDensityError_;
   summary.phaseSeconds = {
       {"search", seconds_.search}, {"lists", seconds_.lists}, {"coefficients", seconds_.coefficients},
       {"coarse", seconds_.coarse}, {"solve", seconds_.solve}, {"update", seconds_.update},

@@ -42,7 +42,7 @@ class Recorder {
 
   void drawPicture();
 
-  /// Fills in iterations, fallbacks and seconds. To be called after wait().
+  /// Fills in iterations, fallbacks, densities and seconds. To be called after wait().
   void summarise(RunSummary& summary) const;
 
  private:
@@ -60,6 +60,7 @@ class Recorder {
   std::int64_t steps_ = 0, iterations_ = 0;
   int firstIterations_ = 0, lastIterations_ = 0;
   std::int64_t fallbacks_ = 0;
+  double meanDensity_ = 0, densityError_ = 0, largestDensityError_ = 0;
   PhaseSeconds seconds_;
   double outputSeconds_ = 0;  // that the simulation had to wait
   OutputThread<D> output_;    // last: it uses the others

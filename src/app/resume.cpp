@@ -1,6 +1,7 @@
 #include "resume.hpp"
 
 #include "treacle/core/error.hpp"
+#include "treacle/model/names.hpp"
 
 #include <fmt/format.h>
 
@@ -29,11 +30,26 @@ void requireFit(const Case& c, const std::filesystem::path& file, const Particle
                        "resolution that were run",
                        p.fluidCount, p.wallCount(), made.fluidCount, made.wallCount()));
   for (std::uint32_t i = 0; i < p.count; ++i) {
+    if (p.id[i] >= p.count)
+      refuse(file, fmt::format("a particle has id {}, expected less than {}", p.id[i], p.count));
     if (p.material[i] >= c.materials.size())
       refuse(file, fmt::format("particle {} has material {}, but the case has only {}", p.id[i], p.material[i],
                                c.materials.size()));
     if (!isInside(c.domain, p.position[i]))
       refuse(file, fmt::format("particle {} lies outside the domain of the case", p.id[i]));
+  }
+}
+
+/// Bodies that an older file does not name are those that the case makes the particles of. Errors: InputError for
+/// a body that the case does not have, or that is of the other kind.
+template <int D>
+void setBodies(const Case& c, const std::filesystem::path& file, const Particles<D>& made, Particles<D>& p) {
+  for (std::uint32_t i = 0; i < p.count; ++i) {
+    if (p.body[i] == unknownBody) p.body[i] = made.body[p.id[i]];
+    const BodyKind kind = i < p.fluidCount ? BodyKind::Fluid : BodyKind::Wall;
+    if (p.body[i] >= c.bodies.size() || c.bodies[p.body[i]].kind != kind)
+      refuse(file, fmt::format("particle {} belongs to body {}, which is no {} body of the case", p.id[i],
+                               p.body[i], nameOf(kind)));
   }
 }
 
@@ -51,8 +67,9 @@ template <int D>
 Checkpoint<D> resumedState(const Case& c, const std::filesystem::path& file, const Particles<D>& made) {
   Checkpoint<D> state = readCheckpoint<D>(file);
   requireFit(c, file, state.particles, made);
-  state.step = stepAt(state.time, c.time, file);
-  if (state.step >= c.steps())
+  setBodies(c, file, made, state.particles);
+  if (!c.time.stepsVary()) state.step = stepAt(state.time, c.time, file);
+  if (c.atEnd(state.step, state.time))
     refuse(file, fmt::format("its time {:g} s is not before the end of the run, {:g} s; choose a later one with "
                              "--end-time",
                              state.time, c.time.end));

@@ -8,9 +8,9 @@
 namespace treacle {
 
 /// The state in a checkpoint file, for a run of the case; its step counts in time steps of the case, which need
-/// not be those of the interrupted run. `made`: the particles that the case starts with.
-/// Errors: InputError if the file cannot be used, if it does not fit the case (numbers of particles, materials,
-/// domain, time step), or if its time is not before the end.
+/// not be those of the interrupted run, or where these vary in length it is that of the file. `made`: the
+/// particles that the case starts with. Errors: InputError if the file cannot be used, if it does not fit the case
+/// (numbers of particles, materials, bodies, domain, time step), or if its time is not before the end.
 template <int D>
 Checkpoint<D> resumedState(const Case& c, const std::filesystem::path& file, const Particles<D>& made);
 

@@ -23,7 +23,7 @@ Case caseOf(const RunOptions& options) {
   if (options.precision) c.solver.precision = *options.precision;
   if (options.endTime) {
     c.time.end = *options.endTime;
-    if (c.steps() < 1)
+    if (!c.time.stepsVary() && c.steps() < 1)
       throw InputError(
           fmt::format("--end-time: expected at least one step of {:g} s, found {:g}", c.time.step, c.time.end));
   }

@@ -41,7 +41,7 @@ class Run {
         directory_(std::move(directory)),
         timings_(options.timings),
         log_(directory_.log(), options.quiet),
-        progress_(start_.step, c.steps(), options.quiet) {}
+        progress_(c, start_.step, start_.time, options.quiet) {}
 
   /// Errors: RunError with the diagnosis, after everything is written.
   void execute(const std::vector<std::string>& warnings) {
@@ -69,21 +69,29 @@ class Run {
     summary_.fluidParticles = particles.fluidCount, summary_.wallParticles = particles.wallCount();
     log_.info(fmt::format("treacle {} ({}), backend {}, {}, {} threads of the host", build.version, build.commit,
                           summary_.backend, device_, summary_.threads));
-    say(fmt::format("{}: {} fluid and {} wall particles, {} steps of {:g} s, into {}",
-                    case_.title.empty() ? "case" : case_.title, particles.fluidCount, particles.wallCount(),
-                    case_.steps(), case_.time.step, directory_.path().string()));
+    say(fmt::format("{}: {} fluid and {} wall particles, {}, into {}", case_.title.empty() ? "case" : case_.title,
+                    particles.fluidCount, particles.wallCount(), stepsText(), directory_.path().string()));
     log_.info("solver: " + solverText(solveStages(case_).front()));
     if (start_.step > 0) say(fmt::format("continues after step {} (t = {:.6g} s)", start_.step, start_.time));
   }
 
+  std::string stepsText() const {
+    const TimeSettings& time = case_.time;
+    if (!time.stepsVary()) return fmt::format("{} steps of {:g} s", case_.steps(), time.step);
+    return fmt::format("steps of at most {:g} s and Courant number {:g} to {:g} s", time.step, time.courant,
+                       time.end);
+  }
+
+  bool atEnd() const { return case_.atEnd(simulation_->step(), simulation_->time()); }
+
   void advanceToEnd() {
-    while (simulation_->step() < case_.steps() && !interruptSignal()) {
+    while (!atEnd() && !interruptSignal()) {
       const StepReport report = simulation_->advance();
       recorder_->record(report);
       if (report.fallbacks > 0) warnOfFallback(report);
       progress_.update(report);
     }
-    if (simulation_->step() < case_.steps()) throw RunError(fmt::format("stopped by {}", interruptSignal()));
+    if (!atEnd()) throw RunError(fmt::format("stopped by {}", interruptSignal()));
   }
 
   void warnOfFallback(const StepReport& report) {

@@ -3,6 +3,7 @@
 #include "case_document.hpp"
 #include "case_section.hpp"
 #include "case_settings.hpp"
+#include "case_width.hpp"
 #include "treacle/model/shape.hpp"
 
 #include <fmt/format.h>
@@ -27,22 +28,27 @@ Domain readDomain(const Section& top, int dimensions) {
   return domain;
 }
 
-Material readMaterial(const toml::table& table, const std::string& name) {
-  const Section s(table, fmt::format("[[material]] '{}'", name),
-                  {"name", "density", "dynamic_viscosity", "bulk_viscosity", "bulk_modulus"});
+Material readMaterial(const toml::table& table, const std::string& name, MethodKind method) {
+  const Keys mphKeys{"bulk_viscosity", "bulk_modulus"};
+  const bool isph = method == MethodKind::Isph;
+  Keys keys{"name", "density", "dynamic_viscosity"};
+  if (!isph) keys.insert(keys.end(), mphKeys.begin(), mphKeys.end());
+  const Section s(table, fmt::format("[[material]] '{}'", name), keys,
+                  isph ? keysOf(MethodKind::MphI, mphKeys) : ForeignKeys{});
   Material m;
   m.name = name;
   m.density = s.number("density", Bound::Positive, "kg/m3");
   m.dynamicViscosity = s.number("dynamic_viscosity", Bound::NonNegative, "Pa s");
+  if (isph) return m;
   m.bulkViscosity = s.number("bulk_viscosity", Bound::NonNegative, "Pa s");
   m.bulkModulus = s.number("bulk_modulus", Bound::NonNegative, "Pa");
   return m;
 }
 
-std::vector<Material> readMaterials(const Section& top) {
+std::vector<Material> readMaterials(const Section& top, MethodKind method) {
   std::vector<Material> materials;
   for (const toml::table* table : top.tables("material"))
-    materials.push_back(readMaterial(*table, (*table)["name"].value_or(std::string{})));
+    materials.push_back(readMaterial(*table, (*table)["name"].value_or(std::string{}), method));
   if (materials.size() > maxMaterials)
     throw top.error("material", fmt::format("expected at most {}, found {}", maxMaterials, materials.size()));
   return materials;
@@ -65,9 +71,19 @@ void readRadii(const Section& s, Shape& shape) {
                   fmt::format("expected less than radius = {}, found {}", shape.radius, shape.innerRadius));
 }
 
+Oscillation readOscillation(const Section& body, const std::string& name, int dimensions) {
+  const Section s = body.section("oscillation", fmt::format("the oscillation of [[body]] '{}'", name),
+                                 {"amplitude", "period", "phase"});
+  Oscillation oscillation;
+  oscillation.amplitude = s.vector("amplitude", dimensions, "m");
+  oscillation.period = s.number("period", Bound::Positive, "s");
+  oscillation.phase = s.number("phase", Bound::Any, "rad", oscillation.phase);
+  return oscillation;
+}
+
 Body readBody(const toml::table& table, const std::string& name, int dimensions,
               const std::vector<Material>& materials) {
-  Keys keys{"name", "type", "material", "shape", "velocity"};
+  Keys keys{"name", "type", "material", "shape", "velocity", "oscillation"};
   const auto shapeWord = table["shape"].value_or(std::string_view{});
   const bool box = shapeWord == "box", sphere = shapeWord == "sphere", cylinder = shapeWord == "cylinder";
   const bool known = box || sphere || cylinder;
@@ -83,6 +99,10 @@ Body readBody(const toml::table& table, const std::string& name, int dimensions,
   body.kind = s.choice<BodyKind>("type");
   body.shape.kind = s.choice<ShapeKind>("shape");
   body.velocity = s.vector("velocity", dimensions, "m/s", Vec<3>{});
+  if (s.has("oscillation")) {
+    if (body.kind != BodyKind::Wall) throw s.error("oscillation", "only a body of type \"wall\" can have one");
+    body.oscillation = readOscillation(s, name, dimensions);
+  }
   switch (body.shape.kind) {
     case ShapeKind::Box:
       readBox(s, dimensions, body.shape);
@@ -114,6 +134,8 @@ std::vector<Body> readBodies(const Section& top, int dimensions, const std::vect
   std::vector<Body> bodies;
   for (const toml::table* table : top.tables("body"))
     bodies.push_back(readBody(*table, (*table)["name"].value_or(std::string{}), dimensions, materials));
+  if (bodies.size() > maxBodies)
+    throw top.error("body", fmt::format("expected at most {}, found {}", maxBodies, bodies.size()));
   if (std::ranges::none_of(bodies, [](const Body& b) { return b.kind == BodyKind::Fluid; }))
     throw top.error("body", "no fluid: expected at least one [[body]] with type = \"fluid\"");
   return bodies;
@@ -122,15 +144,17 @@ std::vector<Body> readBodies(const Section& top, int dimensions, const std::vect
 /// The search needs three cells along a periodic axis: with fewer, a particle would meet a neighbour twice.
 void requirePeriodicLength(const Section& top, const Case& c) {
   constexpr int cells = 3;
-  const double edge = std::max(c.viscosityRadius(), 2 * c.pressureRadius());
+  const double edge = c.searchEdge();
+  const std::string_view edgeText = c.method.kind == MethodKind::Isph ? "2 h" : "max(h_v, 2 h_p)";
   for (int k = 0; k < c.dimensions; ++k) {
     const double length = c.domain.max[k] - c.domain.min[k];
     if (!c.domain.periodic[static_cast<std::size_t>(k)] || std::floor(length / edge) >= cells) continue;
     const Section s = top.section("domain", "[domain]", {"min", "max", "periodic"});
-    throw s.error("periodic",
-                  fmt::format("the domain is {} long along {}; a periodic axis must hold {} search cells of edge "
-                              "max(h_v, 2 h_p) = {}: expected at least {}",
-                              lengthText(length), "xyz"[k], cells, lengthText(edge), lengthText(cells * edge)));
+    throw s.error(
+        "periodic",
+        fmt::format("the domain is {} long along {}; a periodic axis must hold {} search cells of edge "
+                    "{} = {}: expected at least {}",
+                    lengthText(length), "xyz"[k], cells, edgeText, lengthText(edge), lengthText(cells * edge)));
   }
 }
 
@@ -148,11 +172,12 @@ Case readCase(const std::filesystem::path& path, std::span<const std::string> ov
   c.domain = readDomain(top, c.dimensions);
   c.gravity =
       top.section("gravity", "[gravity]", {"acceleration"}).vector("acceleration", c.dimensions, "m/s2", Vec<3>{});
-  c.materials = readMaterials(top);
-  c.bodies = readBodies(top, c.dimensions, c.materials);
-  c.time = readTime(top, c.resolution);
   c.method = readMethod(top);
-  c.solver = readSolver(top);
+  c.materials = readMaterials(top, c.method.kind);
+  c.bodies = readBodies(top, c.dimensions, c.materials);
+  applyWidth(top, c);
+  c.time = readTime(top, c.resolution);
+  c.solver = readSolver(top, c.method.kind);
   c.output = readOutput(top);
   requirePeriodicLength(top, c);
   return c;

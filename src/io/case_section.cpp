@@ -47,13 +47,17 @@ bool satisfies(double x, Bound bound) {
 
 }  // namespace
 
-Section::Section(const toml::table& table, std::string title, const std::vector<std::string_view>& keys)
+Section::Section(const toml::table& table, std::string title, const std::vector<std::string_view>& keys,
+                 const ForeignKeys& foreign)
     : table_(&table), title_(std::move(title)) {
   for (auto&& [key, value] : table) {
     if (std::ranges::find(keys, key.str()) != keys.end()) continue;
     const toml::source_region& place = key.source().path ? key.source() : value.source();
-    throw InputError(
-        fmt::format("{}unknown key '{}' in {}{}", placeOf(place), key.str(), title_, suggestion(key.str(), keys)));
+    const bool known = std::ranges::find(foreign.keys, key.str()) != foreign.keys.end();
+    throw InputError(fmt::format("{}unknown key '{}' in {}{}", placeOf(place), key.str(), title_,
+                                 known
+                                     ? fmt::format(": it belongs to {}; expected {}", foreign.owner, listOf(keys))
+                                     : suggestion(key.str(), keys)));
   }
 }
 
@@ -114,6 +118,13 @@ Vec<3> Section::vector(std::string_view key, int dimensions, std::string_view un
   return x;
 }
 
+bool Section::flag(std::string_view key, bool fallback) const {
+  const toml::node* node = table_->get(key);
+  if (!node) return fallback;
+  if (!node->is_boolean()) throw error(key, fmt::format("expected true or false, found {}", describe(*node)));
+  return node->as_boolean()->get();
+}
+
 std::array<bool, 3> Section::flags(std::string_view key, int dimensions) const {
   std::array<bool, 3> flags{};
   const toml::node* node = table_->get(key);
@@ -141,13 +152,13 @@ std::optional<std::vector<std::string>> Section::strings(std::string_view key) c
   return words;
 }
 
-Section Section::section(std::string_view key, std::string title,
-                         const std::vector<std::string_view>& keys) const {
+Section Section::section(std::string_view key, std::string title, const std::vector<std::string_view>& keys,
+                         const ForeignKeys& foreign) const {
   static const toml::table empty;
   const toml::node* node = table_->get(key);
   if (!node) return Section(empty, std::move(title), keys);
   if (!node->is_table()) throw error(key, fmt::format("expected a table, found {}", describe(*node)));
-  return Section(*node->as_table(), std::move(title), keys);
+  return Section(*node->as_table(), std::move(title), keys, foreign);
 }
 
 Section Section::required(std::string_view key, const std::vector<std::string_view>& keys) const {

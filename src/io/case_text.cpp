@@ -67,6 +67,7 @@ void writeWorld(Text& text, const Case& c) {
     line(text, "name = {}", tomlString(m.name));
     line(text, "density = {}", m.density);
     line(text, "dynamic_viscosity = {}", m.dynamicViscosity);
+    if (c.method.kind == MethodKind::Isph) continue;
     line(text, "bulk_viscosity = {}", m.bulkViscosity);
     line(text, "bulk_modulus = {}", m.bulkModulus);
   }
@@ -78,37 +79,72 @@ void writeWorld(Text& text, const Case& c) {
     line(text, "shape = \"{}\"", nameOf(b.shape.kind));
     writeShape(text, b.shape, c.dimensions);
     line(text, "velocity = {}", array(b.velocity, c.dimensions));
+    if (const Oscillation& o = b.oscillation; o.period > 0)
+      line(text, "oscillation = {{ amplitude = {}, period = {}, phase = {} }}", array(o.amplitude, c.dimensions),
+           o.period, o.phase);
   }
 }
 
-void writeSettings(Text& text, const Case& c) {
+void writeTime(Text& text, const TimeSettings& time) {
   line(text, "\n[time]");
-  line(text, "step = {}", c.time.step);
-  line(text, "end = {}", c.time.end);
+  line(text, "step = {}", time.step);
+  line(text, "end = {}", time.end);
+  line(text, "courant = {}", time.courant);
+}
+
+void writeMethod(Text& text, const MethodSettings& method) {
   line(text, "\n[method]");
-  line(text, "name = {}", tomlString(c.method.name));
-  line(text, "pressure_radius = {}", c.method.pressureRadius);
-  line(text, "viscosity_radius = {}", c.method.viscosityRadius);
-  line(text, "\n[solver]");
-  line(text, "krylov = \"{}\"", nameOf(c.solver.krylov));
-  line(text, "preconditioner = \"{}\"", nameOf(c.solver.preconditioner));
-  line(text, "operator = \"{}\"", nameOf(c.solver.operatorKind));
-  line(text, "neighbours = \"{}\"", nameOf(c.solver.neighbours));
-  line(text, "precision = \"{}\"", nameOf(c.solver.precision));
-  line(text, "first_guess = \"{}\"", nameOf(c.solver.firstGuess));
-  line(text, "tolerance = {}", c.solver.tolerance);
-  line(text, "max_iterations = {}", c.solver.maxIterations);
+  line(text, "name = \"{}\"", nameOf(method.kind));
+  if (method.kind == MethodKind::MphI) {
+    line(text, "pressure_radius = {}", method.pressureRadius);
+    line(text, "viscosity_radius = {}", method.viscosityRadius);
+    return;
+  }
+  const IsphSettings& isph = method.isph;
+  line(text, "kernel = \"{}\"", nameOf(isph.kernel));
+  line(text, "smoothing_ratio = {}", isph.smoothingRatio);
+  line(text, "alpha = {}", isph.alpha);
+  line(text, "walls = \"{}\"", nameOf(isph.walls));
+  line(text, "viscosity = \"{}\"", nameOf(isph.viscosity));
+  line(text, "shifting = {}", isph.shifting);
+  line(text, "negative_pressure = {}", isph.negativePressure);
+}
+
+void writeMphSolver(Text& text, const SolverSettings& solver) {
+  line(text, "operator = \"{}\"", nameOf(solver.operatorKind));
+  line(text, "neighbours = \"{}\"", nameOf(solver.neighbours));
   line(text, "\n[solver.multigrid]");
-  line(text, "finest_sweeps = {}", c.solver.multigrid.finestSweeps);
-  line(text, "middle_sweeps = {}", c.solver.multigrid.middleSweeps);
-  line(text, "coarsest_sweeps = {}", c.solver.multigrid.coarsestSweeps);
-  line(text, "particle_diagonal = \"{}\"", nameOf(c.solver.multigrid.particleDiagonal));
-  line(text, "coarse_operators = \"{}\"", nameOf(c.solver.multigrid.coarseOperators));
+  line(text, "finest_sweeps = {}", solver.multigrid.finestSweeps);
+  line(text, "middle_sweeps = {}", solver.multigrid.middleSweeps);
+  line(text, "coarsest_sweeps = {}", solver.multigrid.coarsestSweeps);
+  line(text, "particle_diagonal = \"{}\"", nameOf(solver.multigrid.particleDiagonal));
+  line(text, "coarse_operators = \"{}\"", nameOf(solver.multigrid.coarseOperators));
   line(text, "\n[solver.projected]");
-  line(text, "pressure_degree = {}", c.solver.projected.pressureDegree);
-  line(text, "grid_degree = {}", c.solver.projected.gridDegree);
-  line(text, "velocity_degree = {}", c.solver.projected.velocityDegree);
-  line(text, "iteration_bound = {}", c.solver.projected.iterationBound);
+  line(text, "pressure_degree = {}", solver.projected.pressureDegree);
+  line(text, "grid_degree = {}", solver.projected.gridDegree);
+  line(text, "velocity_degree = {}", solver.projected.velocityDegree);
+  line(text, "iteration_bound = {}", solver.projected.iterationBound);
+}
+
+void writeIsphSolver(Text& text, const SolverSettings& solver) {
+  line(text, "\n[solver.cells]");
+  line(text, "levels = {}", solver.cells.levels);
+  line(text, "sweeps = {}", solver.cells.sweeps);
+  line(text, "\n[solver.hats]");
+  line(text, "particle_degree = {}", solver.hats.particleDegree);
+  line(text, "grid_degree = {}", solver.hats.gridDegree);
+  line(text, "iteration_bound = {}", solver.hats.iterationBound);
+}
+
+void writeSolver(Text& text, const SolverSettings& solver, MethodKind method) {
+  line(text, "\n[solver]");
+  line(text, "krylov = \"{}\"", nameOf(solver.krylov));
+  line(text, "preconditioner = \"{}\"", nameOf(solver.preconditioner));
+  line(text, "precision = \"{}\"", nameOf(solver.precision));
+  line(text, "first_guess = \"{}\"", nameOf(solver.firstGuess));
+  line(text, "tolerance = {}", solver.tolerance);
+  line(text, "max_iterations = {}", solver.maxIterations);
+  method == MethodKind::Isph ? writeIsphSolver(text, solver) : writeMphSolver(text, solver);
 }
 
 void writeOutput(Text& text, const OutputSettings& output) {
@@ -129,7 +165,9 @@ std::string caseText(const Case& c) {
   Text text;
   line(text, "# SI units. Base file, resolution and command-line settings are applied; every key is explicit.");
   writeWorld(text, c);
-  writeSettings(text, c);
+  writeTime(text, c.time);
+  writeMethod(text, c.method);
+  writeSolver(text, c.solver, c.method.kind);
   writeOutput(text, c.output);
   return fmt::to_string(text);
 }

@@ -10,29 +10,32 @@
 #include <array>
 #include <fstream>
 #include <string_view>
+#include <type_traits>
 
 namespace treacle {
 namespace {
 
 constexpr std::string_view formatName = "treacle checkpoint";
-constexpr std::int32_t formatVersion = 2;  // 1: without acceleration and jerk
+constexpr std::int32_t formatVersion = 3;  // 1: without acceleration and jerk; 2: without bodies
 
 /// A field as the file holds it.
 struct FieldInfo {
   const char* name;
   std::uint32_t count;     // of its values
-  std::int32_t since = 1;  // first version of the format with it; it counts as zero in older files
+  std::int32_t since = 1;  // first version of the format with it
+  std::uint8_t older = 0;  // what whole numbers count as in older files; others are zero
 };
 
 /// Calls f(info, field) for every field. The binding names all members of Particles: it does not compile once one
 /// is added that is not written here.
 template <class P, class F>
 void forEachNamedField(P& particles, F&& f) {
-  auto& [fluidCount, count, position, velocity, pressure, numberDensity, material, id, acceleration, jerk] =
+  auto& [fluidCount, count, position, velocity, pressure, numberDensity, material, body, id, acceleration, jerk] =
       particles;
   f(FieldInfo{"position", count}, position), f(FieldInfo{"velocity", count}, velocity);
   f(FieldInfo{"pressure", count}, pressure), f(FieldInfo{"number_density", count}, numberDensity);
-  f(FieldInfo{"material", count}, material), f(FieldInfo{"id", count}, id);
+  f(FieldInfo{"material", count}, material), f(FieldInfo{"body", count, 3, unknownBody}, body);
+  f(FieldInfo{"id", count}, id);
   f(FieldInfo{"acceleration", fluidCount, 2}, acceleration), f(FieldInfo{"jerk", fluidCount, 2}, jerk);
 }
 
@@ -195,7 +198,9 @@ Checkpoint<D> readCheckpoint(const std::filesystem::path& path) {
     forEachNamedField(particles, [&]<class T>(const FieldInfo& info, Buffer<T>& field) {
       if (version >= info.since) return readField(file, info, field);
       field.resize(info.count);
-      std::fill(field.begin(), field.end(), T{});
+      T older{};
+      if constexpr (std::is_integral_v<T>) older = static_cast<T>(info.older);
+      std::fill(field.begin(), field.end(), older);
     });
     return checkpoint;
   } catch (const Hdf5Error& e) {

@@ -32,6 +32,7 @@ Frame makeFrame(const Particles<D>& particles, std::uint32_t begin, std::uint32_
   frame.pressure = gathered<double>(particles.pressure, order, same);
   frame.numberDensity = gathered<double>(particles.numberDensity, order, same);
   frame.material = gathered<std::int32_t>(particles.material, order, same);
+  frame.body = gathered<std::int32_t>(particles.body, order, same);
   frame.id = gathered<std::uint32_t>(particles.id, order, same);
   return frame;
 }

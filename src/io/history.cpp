@@ -18,39 +18,48 @@ namespace treacle {
 
 namespace {
 
-constexpr std::string_view columns =
-    "step,time,iterations,residual,kinetic_energy,potential_energy,front_x,top,max_speed,seconds";
-constexpr std::string_view fallbackColumn = ",fallbacks";
+constexpr std::string_view solveColumns =
+    ",iterations,residual,kinetic_energy,potential_energy,front_x,top,max_speed";
 constexpr std::string_view timingColumns = ",search_s,lists_s,coefficients_s,coarse_s,solve_s,update_s";
 
 /// Which columns a file has beside those that all have.
 struct Layout {
-  bool fallbacks = true;  // not in older files
+  int version = newest;  // of the columns: 2 has fallbacks, 3 the time step and densities
   bool timings = false;
+
+  static constexpr int newest = 3;
 };
 
-std::string header(const Layout& layout) {
-  return fmt::format("{}{}{}\n", columns, layout.fallbacks ? fallbackColumn : "",
-                     layout.timings ? timingColumns : "");
+/// The header without the end of its line.
+std::string columns(const Layout& layout) {
+  return fmt::format("step,time{}{}{},seconds{}{}", layout.version >= 3 ? ",time_step" : "", solveColumns,
+                     layout.version >= 3 ? ",mean_density,density_error" : "",
+                     layout.version >= 2 ? ",fallbacks" : "", layout.timings ? timingColumns : "");
 }
+
+std::string header(const Layout& layout) { return columns(layout) + '\n'; }
 
 /// Calls f with every value of the row in the order of the columns.
 template <class Row, class F>
 void forEachColumn(Row& row, const Layout& layout, F&& f) {
-  f(row.step), f(row.time), f(row.iterations), f(row.residual), f(row.kineticEnergy), f(row.potentialEnergy);
-  f(row.frontX), f(row.top), f(row.maxSpeed), f(row.seconds);
-  if (layout.fallbacks) f(row.fallbacks);
+  f(row.step), f(row.time);
+  if (layout.version >= 3) f(row.timeStep);
+  f(row.iterations), f(row.residual), f(row.kineticEnergy), f(row.potentialEnergy);
+  f(row.frontX), f(row.top), f(row.maxSpeed);
+  if (layout.version >= 3) f(row.meanDensity), f(row.densityError);
+  f(row.seconds);
+  if (layout.version >= 2) f(row.fallbacks);
   if (!layout.timings) return;
   auto& t = row.timings;
   f(t.search), f(t.lists), f(t.coefficients), f(t.coarse), f(t.solve), f(t.update);
 }
 
 Layout layoutOf(std::string_view text, const std::filesystem::path& path) {
-  for (const bool fallbacks : {true, false})
+  for (int version = Layout::newest; version > 0; --version)
     for (const bool timings : {true, false})
-      if (text.starts_with(header({fallbacks, timings}))) return {fallbacks, timings};
-  throw InputError(fmt::format("{}:1: not a history written by treacle; expected the header {}{}", path.string(),
-                               columns, fallbackColumn));
+      if (text.starts_with(header({version, timings}))) return {version, timings};
+  throw InputError(
+      fmt::format("{}:1: not a history written by treacle; expected the header {}", path.string(), columns({})));
 }
 
 HistoryRow parseRow(std::string_view line, const Layout& layout, const std::string& where) {

@@ -28,6 +28,7 @@ void writeSummary(const std::filesystem::path& path, const RunSummary& s) {
   json["time"] = s.time;
   json["iterations"] = {{"mean", s.meanIterations}, {"first", s.firstIterations}, {"last", s.lastIterations}};
   json["fallbacks"] = s.fallbacks;
+  json["density"] = {{"mean", s.meanDensity}, {"error", s.densityError}, {"largest_error", s.largestDensityError}};
   json["seconds_per_phase"] = phases;
   json["output_thread_seconds"] = s.outputThreadSeconds;
   json["wall_seconds"] = s.wallSeconds;

@@ -36,6 +36,7 @@ class VtpReader {
     readScalars("pressure", frame.pressure);
     readScalars("number_density", frame.numberDensity);
     readScalars("material", frame.material);
+    readScalars("body", frame.body);
     readScalars("id", frame.id);
     return frame;
   }

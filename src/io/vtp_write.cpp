@@ -54,6 +54,7 @@ std::vector<DataArray> pointData(const Frame& frame, const OutputFields& fields)
     arrays.push_back(scalarArray<Real>("number_density", frame.numberDensity));
   if (fields.material && !frame.material.empty())
     arrays.push_back(scalarArray<std::int32_t>("material", frame.material));
+  if (fields.body && !frame.body.empty()) arrays.push_back(scalarArray<std::int32_t>("body", frame.body));
   if (fields.id && !frame.id.empty()) arrays.push_back(scalarArray<std::uint32_t>("id", frame.id));
   return arrays;
 }

@@ -17,7 +17,7 @@ void extendedJacobiInverse(Context<Cpu>&, const BlockCsr<D, T>& a, std::span<Vec
     for (std::uint64_t k = a.rowStart[i]; k < a.rowStart[i + 1]; ++k)
       for (int r = 0; r < D; ++r)
         for (int c = 0; c < D; ++c) sum[r] += std::abs(a.block[k](r, c));
-    for (int r = 0; r < D; ++r) inverse[i][r] = static_cast<S>(2 / sum[r]);
+    for (int r = 0; r < D; ++r) inverse[i][r] = sum[r] == 0 ? S(0) : static_cast<S>(2 / sum[r]);
   });
 }
 
@@ -25,11 +25,14 @@ void extendedJacobiInverse(Context<Cpu>&, const BlockCsr<D, T>& a, std::span<Vec
   template void multiply<D, T>(Context<Cpu>&, const BlockCsr<D, T>&, std::span<const Vec<D, T>>, \
                                std::span<Vec<D, T>>);                                            \
   template void extendedJacobiInverse<D, T, T>(Context<Cpu>&, const BlockCsr<D, T>&, std::span<Vec<D, T>>);
+TREACLE_INSTANTIATE(1, double)
 TREACLE_INSTANTIATE(2, double)
 TREACLE_INSTANTIATE(3, double)
+TREACLE_INSTANTIATE(1, float)
 TREACLE_INSTANTIATE(2, float)
 TREACLE_INSTANTIATE(3, float)
 #undef TREACLE_INSTANTIATE
+template void extendedJacobiInverse<1, double, float>(Context<Cpu>&, const BlockCsr<1>&, std::span<Vec<1, float>>);
 template void extendedJacobiInverse<2, double, float>(Context<Cpu>&, const BlockCsr<2>&, std::span<Vec<2, float>>);
 template void extendedJacobiInverse<3, double, float>(Context<Cpu>&, const BlockCsr<3>&, std::span<Vec<3, float>>);
 

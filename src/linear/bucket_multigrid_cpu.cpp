@@ -39,9 +39,11 @@ void coarsen(Context<Cpu>&, const BlockCsr<D, T>& fine, std::span<const std::uin
   parallelFor(rows, parallelGrain, [&](std::size_t i) {
     const auto [begin, end] = entriesOf(i);
     auto& list = columns[i];
-    for (std::uint64_t k = begin; k < end; ++k) list.push_back(parent[fine.column[k]]);
-    std::sort(list.begin(), list.end());
-    list.erase(std::unique(list.begin(), list.end()), list.end());
+    for (std::uint64_t k = begin; k < end; ++k) {
+      const std::uint32_t column = parent[fine.column[k]];
+      const auto place = std::lower_bound(list.begin(), list.end(), column);
+      if (place == list.end() || *place != column) list.insert(place, column);
+    }
   });
   for (std::uint32_t i = 0; i < rows; ++i) coarse.rowStart[i + 1] = coarse.rowStart[i] + columns[i].size();
 
@@ -117,16 +119,16 @@ void BucketMultigrid<D, T, Cpu>::cycle(Context<Cpu>& context, std::size_t r) {
   for (int s = 0; s < sweeps; ++s) sweep(level);
 }
 
-/// b = R r on the finest level.
+/// b = R value(particle, component) on the finest level.
 template <int D, class T>
-template <class V>
-void BucketMultigrid<D, T, Cpu>::restrict(std::span<const V> r) {
+template <class Value>
+void BucketMultigrid<D, T, Cpu>::restrict(const Value& value) {
   Level& finest = levels_[0];
   const auto members = members_[0];
   parallelFor(finest.a.rows(), parallelGrain, [&](std::size_t b) {
     Vec<D> sum{};
     for (std::uint32_t i = members[b]; i < members[b + 1]; ++i)
-      for (int c = 0; c < D; ++c) sum[c] += r[i][c];
+      for (int c = 0; c < D; ++c) sum[c] += value(i, c);
     for (int c = 0; c < D; ++c) finest.b[b][c] = static_cast<T>(sum[c]);
   });
 }
@@ -134,19 +136,19 @@ void BucketMultigrid<D, T, Cpu>::restrict(std::span<const V> r) {
 template <int D, class T>
 void BucketMultigrid<D, T, Cpu>::apply(Context<Cpu>& context, std::span<const Vec<D, T>> inverse,
                                        std::span<const Vec<D>> r, std::span<Vec<D>> z) {
-  restrict(r);
+  restrict([&](std::uint32_t i, int c) { return inverse[i][c] == 0 ? 0 : r[i][c]; });
   cycle(context, 0);
   const auto members = members_[0];
   parallelFor(levels_[0].a.rows(), parallelGrain, [&](std::size_t b) {
     for (std::uint32_t i = members[b]; i < members[b + 1]; ++i)
-      for (int c = 0; c < D; ++c) z[i][c] = inverse[i][c] * r[i][c] + levels_[0].x[b][c];
+      for (int c = 0; c < D; ++c) z[i][c] = inverse[i][c] == 0 ? 0 : inverse[i][c] * r[i][c] + levels_[0].x[b][c];
   });
 }
 
 template <int D, class T>
 void BucketMultigrid<D, T, Cpu>::correct(Context<Cpu>& context, std::span<const Gathered<D, T>> r,
                                          std::span<Gathered<D, T>> z, std::span<Gathered<D, T>> x) {
-  restrict(r);
+  restrict([&](std::uint32_t i, int c) { return r[i][c]; });
   cycle(context, 0);
   const auto members = members_[0];
   parallelFor(levels_[0].a.rows(), parallelGrain, [&](std::size_t b) {
@@ -169,8 +171,10 @@ std::size_t BucketMultigrid<D, T, Cpu>::bytes() const {
   template void coarsen<D, T>(Context<Cpu>&, const BlockCsr<D, T>&, std::span<const std::uint32_t>, \
                               BlockCsr<D, T>&);                                                     \
   template class BucketMultigrid<D, T, Cpu>;
+TREACLE_INSTANTIATE(1, double)
 TREACLE_INSTANTIATE(2, double)
 TREACLE_INSTANTIATE(3, double)
+TREACLE_INSTANTIATE(1, float)
 TREACLE_INSTANTIATE(2, float)
 TREACLE_INSTANTIATE(3, float)
 #undef TREACLE_INSTANTIATE

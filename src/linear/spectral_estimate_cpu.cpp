@@ -62,11 +62,17 @@ void lanczosFinish(Context<Cpu>&, const LanczosScalars* scalars, double margin, 
   *largest = static_cast<T>(margin * upper);
 }
 
-#define TREACLE_INSTANTIATE(T)                                                \
-  template void lanczosStart<T>(Context<Cpu>&, const LanczosVectors<T>&);     \
-  template void lanczosStep<T>(Context<Cpu>&, const LanczosVectors<T>&);      \
-  template void lanczosDirection<T>(Context<Cpu>&, const LanczosVectors<T>&); \
-  template void lanczosFinish<T>(Context<Cpu>&, const LanczosScalars*, double, T*);
+template <class T>
+void setNumber(Context<Cpu>&, T value, T* to) {
+  *to = value;
+}
+
+#define TREACLE_INSTANTIATE(T)                                                      \
+  template void lanczosStart<T>(Context<Cpu>&, const LanczosVectors<T>&);           \
+  template void lanczosStep<T>(Context<Cpu>&, const LanczosVectors<T>&);            \
+  template void lanczosDirection<T>(Context<Cpu>&, const LanczosVectors<T>&);       \
+  template void lanczosFinish<T>(Context<Cpu>&, const LanczosScalars*, double, T*); \
+  template void setNumber<T>(Context<Cpu>&, T, T*);
 TREACLE_INSTANTIATE(double)
 TREACLE_INSTANTIATE(float)
 #undef TREACLE_INSTANTIATE

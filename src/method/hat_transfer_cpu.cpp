@@ -8,7 +8,7 @@
 namespace treacle {
 
 template <int D>
-void findHatNodes(Context<Cpu>& context, const MphPairs<D>& pairs, HatsOn what, HatNodes<D>& nodes) {
+void findHatNodes(Context<Cpu>& context, const SortedParticles<D>& pairs, HatsOn what, HatNodes<D>& nodes) {
   const HatCells<D> cells{pairs.grid};
   HatLattice<D> lattice;
   for (int k = 0; k < D; ++k) lattice.count[k] = cells.nodesOn(k);
@@ -24,7 +24,7 @@ void findHatNodes(Context<Cpu>& context, const MphPairs<D>& pairs, HatsOn what, 
 }
 
 template <int D, class T>
-void HatTransfer<D, T, Cpu>::prepare(Context<Cpu>&, const MphPairs<D>& pairs) {
+void HatTransfer<D, T, Cpu>::prepare(Context<Cpu>&, const SortedParticles<D>& pairs) {
   pairs_ = &pairs;
   corner_.resize(std::size_t{corners} * pairs.activeCount);
   place_.resize(pairs.activeCount);
@@ -46,7 +46,7 @@ void HatTransfer<D, T, Cpu>::prepare(Context<Cpu>&, const MphPairs<D>& pairs) {
 
 /// b of each node from the particles of the cells around it: add(sums, particle, weight).
 template <int D, class T, class F, class Add>
-void gatherAtNodes(const MphPairs<D>& pairs, const HatNodes<D>& nodes, const Buffer<Vec<D, T>>& place,
+void gatherAtNodes(const SortedParticles<D>& pairs, const HatNodes<D>& nodes, const Buffer<Vec<D, T>>& place,
                    F&& forEachIn, Add&& add) {
   const HatCells<D> cells{pairs.grid};
   parallelFor(nodes.count(), parallelGrain, [&](std::size_t n) {
@@ -97,6 +97,14 @@ void HatTransfer<D, T, Cpu>::prolong(Context<Cpu>&, const HatNodes<D>& nodes, st
 }
 
 template <int D, class T>
+void HatTransfer<D, T, Cpu>::addProlonged(Context<Cpu>&, const HatNodes<D>& nodes, std::span<const T> e,
+                                          std::span<T> x) const {
+  parallelFor(pairs_->activeCount, parallelGrain, [&](std::size_t i) {
+    forEachCorner(place_[i], [&](int o, T weight) { x[i] += weight * e[nodes.nodeAt[corner_[corners * i + o]]]; });
+  });
+}
+
+template <int D, class T>
 void HatTransfer<D, T, Cpu>::prolong(Context<Cpu>&, const HatNodes<D>& nodes, std::span<const T> e,
                                      std::span<Gathered<D, T>> z, std::span<Gathered<D, T>> x) const {
   parallelFor(pairs_->fluidCount, parallelGrain, [&](std::size_t i) {
@@ -110,8 +118,8 @@ void HatTransfer<D, T, Cpu>::prolong(Context<Cpu>&, const HatNodes<D>& nodes, st
   });
 }
 
-template void findHatNodes<2>(Context<Cpu>&, const MphPairs<2>&, HatsOn, HatNodes<2>&);
-template void findHatNodes<3>(Context<Cpu>&, const MphPairs<3>&, HatsOn, HatNodes<3>&);
+template void findHatNodes<2>(Context<Cpu>&, const SortedParticles<2>&, HatsOn, HatNodes<2>&);
+template void findHatNodes<3>(Context<Cpu>&, const SortedParticles<3>&, HatsOn, HatNodes<3>&);
 template class HatTransfer<2, double, Cpu>;
 template class HatTransfer<3, double, Cpu>;
 template class HatTransfer<2, float, Cpu>;

@@ -85,14 +85,14 @@ void ProjectedMultigrid<D, T, Backend>::setupGrids(Context<Backend>& context, co
     pressureGalerkin(context, *pairs_, a.near(), table, pressureNodes_, galerkinWorkspace_, pressureMatrix_);
   else
     pressureGalerkin(context, *pairs_, table, pressureNodes_, galerkinWorkspace_, pressureMatrix_);
-  pressureGrids_.setup(context, pressureNodes_, pressureMatrix_, degrees_.grid);
+  pressureGrids_.setup(context, pressureNodes_, pressureMatrix_, {degrees_.grid});
 
   findHatNodes(context, *pairs_, HatsOn::Fluid, velocityNodes_);
   if constexpr (std::is_same_v<Backend, Cuda>)
     viscousGalerkin(context, *pairs_, terms, velocityNodes_, moments_, galerkinWorkspace_, velocityMatrix_);
   else
     viscousGalerkin(context, *pairs_, terms, velocityNodes_, moments_, velocityMatrix_);
-  velocityGrids_.setup(context, velocityNodes_, velocityMatrix_, degrees_.velocity, 1);
+  velocityGrids_.setup(context, velocityNodes_, velocityMatrix_, {degrees_.velocity, 1});
 }
 
 template <int D, class T, class Backend>

@@ -1,6 +1,5 @@
-#include "hat_loops.hpp"
+#include "corner_galerkin.hpp"
 #include "pair_lanes.hpp"
-#include "treacle/core/parallel.hpp"
 #include "treacle/method/hat_grid.hpp"
 
 namespace treacle {
@@ -32,53 +31,20 @@ void viscousMoments(const MphPairs<D>& pairs, Buffer<ViscousMoments<D, T>>& mome
   });
 }
 
-/// Blocks below the diagonal from those above.
-template <int D>
-void mirrorUpper(BlockCsr<D>& a) {
-  parallelFor(a.rows(), parallelGrain, [&](std::size_t row) {
-    for (std::uint64_t e = a.rowStart[row]; e < a.rowStart[row + 1]; ++e) {
-      const std::size_t other = a.column[e];
-      if (other >= row) continue;
-      const std::uint32_t *begin = &a.column[a.rowStart[other]],
-                          *end = begin + (a.rowStart[other + 1] - a.rowStart[other]);
-      const Block<D>& above = a.block[a.rowStart[other] + (std::find(begin, end, row) - begin)];
-      for (int r = 0; r < D; ++r)
-        for (int c = 0; c < D; ++c) a.block[e](r, c) = above(c, r);
-    }
-  });
-}
-
 }  // namespace
 
 template <int D, class T>
 void viscousGalerkin(Context<Cpu>& context, const MphPairs<D>& pairs, const WallTerms<D>& terms,
                      const HatNodes<D>& nodes, Buffer<ViscousMoments<D, T>>& moments, BlockCsr<D>& a) {
-  const HatCells<D> cells{pairs.grid};
   viscousMoments(pairs, moments);
-  hatPattern(context, nodes, a, 1);
-  parallelFor(nodes.count(), parallelGrain / 16, [&](std::size_t row) {
-    const Vec<D, int> node = nodes.lattice.at(nodes.point[row]);
-    for (std::uint64_t e = a.rowStart[row]; e < a.rowStart[row + 1]; ++e) {
-      if (a.column[e] < row) continue;
-      const Vec<D, int> other = nodes.lattice.at(nodes.point[a.column[e]]);
-      Block<D> sum{};
-      cells.forEachCellAround(node, 1, [&](const Vec<D, int>& cell) {
-        if (!cells.isCorner(other, cell)) return;
-        const std::size_t c = pairs.grid.linear(cell);
-        for (std::uint32_t i = pairs.cells.fluidBegin[c]; i < pairs.cells.fluidEnd[c]; ++i) {
-          const Vec<D> place = cells.fraction(pairs.position[i], cell);
-          double own, others;
-          Vec<D> p, q;
-          cells.cornerHat(node, cell, place, own, p);
-          cells.cornerHat(other, cell, place, others, q);
-          sum += toDouble(moments[i]).between(p, q);
-          for (int k = 0; k < D * D; ++k) sum.a[k] += own * others * terms.block[i].a[k];
-        }
-      });
-      a.block[e] = sum;
-    }
-  });
-  mirrorUpper(a);
+  cornerGalerkin<D, D>(
+      context, pairs, nodes,
+      [&](std::uint32_t i, const CornerHat<D>& p, const CornerHat<D>& q) {
+        Block<D> sum = toDouble(moments[i]).between(p.gradient, q.gradient);
+        for (int k = 0; k < D * D; ++k) sum.a[k] += p.value * q.value * terms.block[i].a[k];
+        return sum;
+      },
+      a);
 }
 
 #define TREACLE_INSTANTIATE(D, T)                                                                                 \

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace treacle {
 namespace {
@@ -46,6 +47,18 @@ std::pair<double, std::string> thickness(const Shape& s, int dimensions) {
   return {radial, s.innerRadius > 0 ? "between its radii" : "across"};
 }
 
+/// Largest speed of a fluid body at the start, of a wall at any time [m/s].
+double largestSpeed(const Body& body) {
+  const Oscillation& o = body.oscillation;
+  return norm(body.velocity) + (o.period > 0 ? 2 * std::numbers::pi * norm(o.amplitude) / o.period : 0);
+}
+
+/// What the interaction radius is called.
+std::string_view reachName(const Case& c) {
+  if (c.method.kind == MethodKind::Isph) return "reach 2 h of the kernel";
+  return c.viscosityRadius() < c.pressureRadius() ? "pressure radius h_p" : "viscosity radius h_v";
+}
+
 void warnCompression(const Case& c, std::vector<std::string>& warnings) {
   for (const StabilityNumbers& n : stabilityNumbers(c)) {
     if (n.compression <= 1 + rounding) continue;
@@ -60,12 +73,23 @@ void warnThinWalls(const Case& c, std::vector<std::string>& warnings) {
   for (const Body& body : c.bodies) {
     if (body.kind != BodyKind::Wall) continue;
     const auto [extent, where] = thickness(body.shape, c.dimensions);
-    if (extent >= c.viscosityRadius() * (1 - rounding)) continue;
+    const double reach = c.interactionRadius();
+    if (extent >= reach * (1 - rounding)) continue;
     warnings.push_back(fmt::format(
-        "wall '{}' is {} thick {}, thinner than the viscosity radius h_v = {} ({:g} spacings): fluid next to it "
-        "misses neighbours",
-        body.name, lengthText(extent), where, lengthText(c.viscosityRadius()), c.method.viscosityRadius));
+        "wall '{}' is {} thick {}, thinner than the {} = {} ({:g} spacings): fluid next to it misses neighbours",
+        body.name, lengthText(extent), where, reachName(c), lengthText(reach), reach / c.spacing));
   }
+}
+
+/// The forces of MPH-I are implicit but for gravity; ISPH moves on what it has at the start of a step.
+void warnCourant(const Case& c, std::vector<std::string>& warnings) {
+  constexpr double largest = 0.5;
+  if (c.method.kind != MethodKind::Isph) return;
+  if (const double number = courantNumber(c); number > largest * (1 + rounding))
+    warnings.push_back(
+        fmt::format("the Courant number of steps of {:g} s is {:.3g}, more than {:g}: the step may be unstable; "
+                    "take a shorter one, or let time.courant limit it",
+                    c.time.step, number, largest));
 }
 
 void warnTimes(const Case& c, std::vector<std::string>& warnings) {
@@ -86,7 +110,8 @@ std::vector<StabilityNumbers> stabilityNumbers(const Case& c) {
   std::vector<StabilityNumbers> numbers;
   for (const Material& m : c.materials) {
     const double diffusion = c.time.step / (m.density * c.spacing * c.spacing);
-    const double compression = m.bulkModulus == 0 ? 0 : c.time.step * m.bulkModulus / m.bulkViscosity;
+    const bool elastic = c.method.kind == MethodKind::MphI && m.bulkModulus > 0;
+    const double compression = elastic ? c.time.step * m.bulkModulus / m.bulkViscosity : 0;
     numbers.push_back({m.name, compression, m.dynamicViscosity * diffusion, m.bulkViscosity * diffusion});
   }
   return numbers;
@@ -94,15 +119,17 @@ std::vector<StabilityNumbers> stabilityNumbers(const Case& c) {
 
 double courantNumber(const Case& c) {
   double speed = std::sqrt(2 * norm(c.gravity) * fluidHeight(c));
-  for (const Body& body : c.bodies) speed = std::max(speed, norm(body.velocity));
-  return speed * c.time.step / c.spacing;
+  for (const Body& body : c.bodies) speed = std::max(speed, largestSpeed(body));
+  const double number = speed * c.time.step / c.spacing;
+  return c.time.stepsVary() ? std::min(number, c.time.courant) : number;
 }
 
 std::vector<std::string> caseWarnings(const Case& c) {
   std::vector<std::string> warnings;
   warnCompression(c, warnings);
+  warnCourant(c, warnings);
   warnThinWalls(c, warnings);
-  warnTimes(c, warnings);
+  if (!c.time.stepsVary()) warnTimes(c, warnings);
   return warnings;
 }
 

@@ -85,17 +85,20 @@ void requireApart(const std::vector<Filled<D>>& fluid, const PointGrid<D>& grid,
 }
 
 template <int D>
-void append(const std::vector<Filled<D>>& filled, Particles<D>& particles, std::uint32_t& next) {
-  for (const Filled<D>& f : filled)
+void append(const Case& c, const std::vector<Filled<D>>& filled, Particles<D>& particles, std::uint32_t& next) {
+  for (const Filled<D>& f : filled) {
+    const auto body = static_cast<std::uint8_t>(f.body - c.bodies.data());
     for (const Vec<D>& x : f.points) {
       particles.position[next] = x;
       particles.velocity[next] = resized<D>(f.body->velocity);
       particles.pressure[next] = 0;
       particles.numberDensity[next] = 0;
       particles.material[next] = static_cast<std::uint8_t>(f.body->material);
+      particles.body[next] = body;
       particles.id[next] = next;
       ++next;
     }
+  }
 }
 
 }  // namespace
@@ -125,8 +128,8 @@ Particles<D> createParticles(const Case& c, std::vector<std::string>& notes,
   Particles<D> particles;
   particles.resize(static_cast<std::uint32_t>(total(fluid)), static_cast<std::uint32_t>(total(walls)));
   std::uint32_t next = 0;
-  append(fluid, particles, next);
-  append(walls, particles, next);
+  append(c, fluid, particles, next);
+  append(c, walls, particles, next);
   if (bodyCounts) {
     bodyCounts->assign(c.bodies.size(), 0);
     for (const auto* group : {&fluid, &walls})

@@ -6,9 +6,8 @@ template <int D>
 Diagnostics computeDiagnostics(Context<Cpu>&, const DiagnosticsInput<D>& in) {
   const auto term = DiagnosticsTerm<D>::make(in);
   Diagnostics d = noDiagnostics();
-  for (std::size_t i = 0; i < in.position.size(); ++i)
-    d = joined(d, term(in.position[i], in.velocity[i], in.material[i]));
-  return d;
+  for (std::size_t i = 0; i < in.position.size(); ++i) d = joined(d, term(in, i));
+  return averaged(d, in.position.size());
 }
 
 template Diagnostics computeDiagnostics<2>(Context<Cpu>&, const DiagnosticsInput<2>&);

@@ -1,11 +1,7 @@
 #include "mph_solver.hpp"
 
-#include "failure.hpp"
 #include "treacle/linear/diagonal.hpp"
 #include "treacle/method/bucket_galerkin.hpp"
-
-#include <algorithm>
-#include <cmath>
 
 namespace treacle {
 namespace {
@@ -127,28 +123,15 @@ StagedReport MphSolver<D, Backend>::solve(Context<Backend>& context, std::span<c
     guess_.resize(context, u.size());
     copy(context, flat<D>(u), flat<D>(guess_.span()));
   }
-  StagedReport total;
-  while (true) {
-    const SolveReport report = solveStage(context, b, u);
-    const int iterations = total.iterations + report.iterations;
-    static_cast<SolveReport&>(total) = report;
-    total.iterations = iterations;
-    // No other way helps where the system itself or the guess is not finite.
-    const bool hopeless = !std::isfinite(report.startResidual);
-    if (report.status == SolveStatus::Converged || hopeless || stage_ + 1 == stages_.size()) return total;
-    total.failures += (total.fallbacks++ > 0 ? "; " : "") + describeStage(stage(), report);
-    keepBetter(context, report, u);
-    ++stage_;
-    prepareStage(context);
-  }
+  return solveInStages(
+      stages_, stage_, [&] { return solveStage(context, b, u); },
+      [&](const SolveReport& report) { keepBetter(context, report, u); }, [&] { prepareStage(context); });
 }
 
 /// Of the guess that a stage started from and what it made of it.
 template <int D, class Backend>
 void MphSolver<D, Backend>::keepBetter(Context<Backend>& context, const SolveReport& report, std::span<Vec<D>> u) {
-  // A step with a value that is not finite may have spoiled u after the residual was taken.
-  const bool better = report.status != SolveStatus::NotFinite && report.residual < report.startResidual;
-  if (better)
+  if (isBetter(report))
     copy(context, flat<D>(u), flat<D>(guess_.span()));
   else
     copy(context, flat<D>(guess_.span()), flat<D>(u));
@@ -202,7 +185,7 @@ SolveReport MphSolver<D, Backend>::solveWith(Context<Backend>& context, const Op
           context, a,
           [&](Flat r, std::span<double> z) { k.projected.apply(context, asVectors<D>(r), asVectors<D>(z)); }, b,
           u);
-    case PreconditionerKind::None:
+    default:
       break;
   }
   return iterate(

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "staged_report.hpp"
 #include "treacle/linear/bucket_multigrid.hpp"
 #include "treacle/linear/galerkin_spgemm.hpp"
 #include "treacle/linear/krylov.hpp"
@@ -9,17 +10,10 @@
 #include "treacle/model/case.hpp"
 #include "treacle/search/buckets.hpp"
 
-#include <string>
 #include <type_traits>
 #include <vector>
 
 namespace treacle {
-
-/// What became of a solve in stages: status and residual of the last one, iterations of all.
-struct StagedReport : SolveReport {
-  int fallbacks = 0;     // stages that were tried before the last one
-  std::string failures;  // which these were, and why they were given up
-};
 
 /// The linear solve of a step: A u = b with the operator, preconditioner and Krylov method of the case.
 template <int D, class Backend = Cpu>

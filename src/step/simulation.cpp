@@ -1,35 +1,16 @@
 #include "treacle/step/simulation.hpp"
 
 #include "failure.hpp"
-#include "mph_solver.hpp"
+#include "step_method.hpp"
 #include "treacle/core/phase_clock.hpp"
 #include "treacle/core/trace.hpp"
 #include "treacle/method/explicit_step.hpp"
-#include "treacle/method/neighbourhood.hpp"
 #include "treacle/model/particles_copy.hpp"
 #include "treacle/step/diagnostics.hpp"
-#include "treacle/step/first_guess.hpp"
-#include "treacle/step/solve_stages.hpp"
+#include "treacle/step/wall_motion.hpp"
 
 namespace treacle {
 namespace {
-
-template <class T>
-void copyValues(Context<Cpu>&, std::span<const T> from, T* to) {
-  std::copy(from.begin(), from.end(), to);
-}
-template <class T>
-void copyValues(Context<Cuda>& context, std::span<const T> from, T* to) {
-  copyBytesOnDevice(context, from.data(), to, from.size_bytes());
-}
-template <class T>
-void clear(Context<Cpu>&, std::span<T> values) {
-  std::fill(values.begin(), values.end(), T{});
-}
-template <class T>
-void clear(Context<Cuda>& context, std::span<T> values) {
-  clearBytes(context, values.data(), values.size_bytes());
-}
 
 template <int D>
 void toBackend(Context<Cpu>&, Particles<D> host, Particles<D>& particles) {
@@ -39,15 +20,9 @@ template <int D>
 void toBackend(Context<Cuda>& context, const Particles<D>& host, Particles<D, Cuda>& particles) {
   copyToDevice(context, host, particles);
 }
-template <int D>
-void toHost(const Context<Cpu>&, const Particles<D>& particles, Particles<D>& host) {
-  host.resize(particles.fluidCount, particles.wallCount());
-  forEachFieldOf([](const auto& from, auto& to) { std::copy(from.begin(), from.end(), to.begin()); }, particles,
-                 host);
-}
-template <int D>
-void toHost(const Context<Cuda>& context, const Particles<D, Cuda>& particles, Particles<D>& host) {
-  copyToHost(context, particles, host);
+
+bool someWallOscillates(const Case& c) {
+  return std::ranges::any_of(c.bodies, [](const Body& b) { return b.oscillation.period > 0; });
 }
 
 template <int D>
@@ -59,158 +34,113 @@ bool someWallMoves(const Particles<D>& particles) {
 
 }  // namespace
 
-template <int D, class Backend>
-struct Simulation<D, Backend>::State {
-  Case c;
-  std::int64_t step;
-  double time;
-  bool wallsMove;
+template <int D>
+void toHost(const Context<Cpu>&, const Particles<D>& particles, Particles<D>& host) {
+  host.resize(particles.fluidCount, particles.wallCount());
+  forEachFieldOf([](const auto& from, auto& to) { std::copy(from.begin(), from.end(), to.begin()); }, particles,
+                 host);
+}
+template <int D>
+void toHost(const Context<Cuda>& context, const Particles<D, Cuda>& particles, Particles<D>& host) {
+  copyToHost(context, particles, host);
+}
 
-  mutable Context<Backend> context;
-  Particles<D, Backend> particles;
-  Neighbourhood<D, Backend> neighbourhood;
-  const MphPairs<D>& pairs;
-  double restDensity;  // n_0 [-]
-  Buffer<Block<D>, Backend> wallBlock;
-  Buffer<Vec<D>, Backend> wallGradient;
-  Buffer<double, Backend> elastic;                  // kappa [n - n_0]_+ per particle [Pa]
-  Buffer<double, Backend> divergence;               // C^T u per particle [1/s]
-  Buffer<Vec<D>, Backend> rhs, velocity, position;  // the step's results before they are accepted
-  MphSolver<D, Backend> solver;
+template <int D, class Backend>
+struct Simulation<D, Backend>::State : FlowState<D, Backend> {
+  using Flow = FlowState<D, Backend>;
+  using Flow::c, Flow::context, Flow::particles, Flow::step, Flow::time, Flow::timeStep, Flow::velocity,
+      Flow::position, Flow::wallsMove;
+
+  bool wallsOscillate;
+  Buffer<Vec<D>, Backend> bodyVelocity;
+  std::unique_ptr<StepMethod<D, Backend>> method;
   PhaseClock<Backend> clock;
+  double lastSpeed = 0;  // of the fastest particle [m/s]
 
   State(const Case& theCase, Particles<D> state, std::int64_t startStep, double startTime)
-      : c(theCase),
-        step(startStep),
-        time(startTime),
-        wallsMove(someWallMoves(state)),
-        neighbourhood(c),
-        pairs(neighbourhood.pairs()),
-        restDensity(latticeNumberDensity(pairs.pressureWeight, c.spacing)),
-        solver(solveStages(c)) {
+      : Flow(theCase, startStep, startTime), wallsOscillate(someWallOscillates(theCase)) {
+    wallsMove = wallsOscillate || someWallMoves(state);
     toBackend(context, std::move(state), particles);
-    if (step == 0) forEachFluidFieldOf([&](auto& field) { clear(context, field.span()); }, particles);
+    if (step == 0) forEachFluidFieldOf([&](auto& field) { clearValues(context, field.span()); }, particles);
+    method = c.method.kind == MethodKind::Isph ? makeIsphStep(static_cast<Flow&>(*this))
+                                               : makeMphStep(static_cast<Flow&>(*this));
+    method->sort();
+    if (step == 0) {  // else the state has the densities of its last step
+      method->buildLists();
+      method->computeDensities();
+    }
+    if (c.time.courant > 0) lastSpeed = diagnostics().maxSpeed;
   }
 
-  FlowMemory<D> memory() { return {particles.acceleration.span(), particles.jerk.span()}; }
-
-  WallTerms<D> wallTermsView() { return {wallBlock.span(), wallGradient.span()}; }
-
-  void computeDensities() {
-    const std::uint32_t active = pairs.activeCount;
-    clear(context, particles.numberDensity.span().subspan(active));
-    clear(context, particles.pressure.span().subspan(active));
-    numberDensity<D>(context, pairs, particles.numberDensity.span().first(active));
+  /// With a Courant number, no particle goes farther than that many spacings, and the last step meets the end.
+  void chooseTimeStep() {
+    if (c.time.courant == 0) return;
+    timeStep = c.time.step;
+    if (lastSpeed * timeStep > c.time.courant * c.spacing) timeStep = c.time.courant * c.spacing / lastSpeed;
+    const double rest = c.time.end - time;
+    if (rest > 0 && timeStep > rest * (1 - 1e-9)) timeStep = rest;
   }
 
-  /// b of [K23 eq. (16)], and the terms of prescribed wall velocities.
-  void computeRightHandSide() {
-    elastic.resize(context, pairs.activeCount);
-    elasticPressure<D>(context, pairs, particles.numberDensity.span().first(pairs.activeCount), restDensity,
-                       elastic);
-    rhs.resize(context, particles.fluidCount);
-    inertiaAndGravity<D>(context, pairs, particles.velocity.span().first(particles.fluidCount),
-                         resized<D>(c.gravity), rhs);
-    addPressureGradient<D>(context, pairs, elastic, -1.0, rhs);
-    if (wallsMove) addWallVelocities();
-  }
-
-  /// b -= A_full (0 on the fluid, u on the walls)
-  void addWallVelocities() {
-    const std::uint32_t n = particles.fluidCount, active = pairs.activeCount;
-    const std::span<const Vec<D>> u = particles.velocity;
-    velocity.resize(context, active);
-    clear(context, velocity.span().first(n));
-    copyValues(context, u.subspan(n, active - n), velocity.data() + n);
-    addWallDrag<D>(context, pairs, velocity, rhs);
-    divergence.resize(context, active);
-    treacle::divergence<D>(context, pairs, velocity, divergence);
-    bulkPressure<D>(context, pairs, divergence, {}, divergence);
-    addPressureGradient<D>(context, pairs, divergence, -1.0, rhs);
-  }
-
-  void computeCoefficients() {
-    computeDensities();
-    wallBlock.resize(context, particles.fluidCount);
-    wallGradient.resize(context, particles.fluidCount);
-    wallTerms<D>(context, pairs, wallTermsView());
-    computeRightHandSide();
-    solver.prepareOperator(context, pairs, wallTermsView());
-  }
-
-  /// The solution stands in `velocity`, walls included.
-  StagedReport solve() {
-    const std::uint32_t n = particles.fluidCount, active = pairs.activeCount;
-    const std::span<const Vec<D>> last = particles.velocity;
-    velocity.resize(context, active);
-    copyValues(context, last.subspan(n, active - n), velocity.data() + n);
-    extrapolate<D>(context, Extrapolation<D>::make(c.solver.firstGuess, c.time.step), last.first(n), memory(),
-                   velocity.span().first(n));
-    StagedReport report = solver.solve(context, rhs, velocity.span().first(particles.fluidCount));
-    if (report.status == SolveStatus::Converged) return report;
-    std::string diagnosis = describeFailure(report, c.solver.tolerance, report.failures);
-    if (report.status == SolveStatus::NotFinite) diagnosis += "; " + notFiniteOnHost();
-    throw RunError(diagnosis);
-  }
-
-  std::string notFiniteOnHost() {
-    Particles<D> host;
-    toHost(context, particles, host);
-    Buffer<Vec<D>> b(rhs.size());
-    if constexpr (std::is_same_v<Backend, Cuda>)
-      copyToHost(context, std::span<const Vec<D>>(rhs), b);
-    else
-      copyValues(context, std::span<const Vec<D>>(rhs), b.data());
-    return describeNotFinite<D>(host, b);
+  /// Velocities of walls that oscillate, for the step at hand.
+  void moveBodies() {
+    if (!wallsOscillate) return;
+    std::vector<Vec<D>> u, a;
+    for (const Body& body : c.bodies) {
+      u.push_back(resized<D>(wallVelocity(body, time, timeStep)));
+      a.push_back(resized<D>(wallAcceleration(body, time + timeStep)));
+    }
+    fromHost(context, std::span<const Vec<D>>(u), bodyVelocity);
+    fromHost(context, std::span<const Vec<D>>(a), this->bodyAcceleration);
+    const std::uint32_t n = particles.fluidCount;
+    setWallVelocities<D>(context, particles.body.span().subspan(n), bodyVelocity,
+                         particles.velocity.span().subspan(n));
   }
 
   /// x^{k+1} of [K23 eq. (15)] into `position`; walls by their prescribed velocity.
   void move() {
     position.resize(context, particles.count);
-    moveRange(0, particles.fluidCount, velocity);
-    if (wallsMove) moveRange(particles.fluidCount, particles.count, particles.velocity);
+    moveRange(0, particles.fluidCount, method->transport());
+    if (wallsMove)
+      moveRange(particles.fluidCount, particles.count, particles.velocity.span().subspan(particles.fluidCount));
   }
 
+  /// `u`: of the particles from `begin` on.
   void moveRange(std::uint32_t begin, std::uint32_t end, std::span<const Vec<D>> u) {
     const std::span<const Vec<D>> x = particles.position;
     const std::uint32_t size = end - begin;
-    const std::uint32_t out = moveParticles<D>(context, pairs.grid, c.time.step, x.subspan(begin, size),
-                                               u.subspan(begin, size), position.span().subspan(begin, size));
+    const std::uint32_t out = moveParticles<D>(context, method->grid(), timeStep, x.subspan(begin, size),
+                                               u.first(size), position.span().subspan(begin, size));
     if (out == nobody) return;
     Particles<D> host;
     toHost(context, particles, host);
     Vec<D> uOut{};
     if constexpr (std::is_same_v<Backend, Cuda>)
-      uOut = valueOnHost(context, &u[begin + out]);
+      uOut = valueOnHost(context, &u[out]);
     else
-      uOut = u[begin + out];
-    throw RunError(describeLeaving<D>(host, begin + out, uOut, c.time.step));
-  }
-
-  /// Psi of [K23 eq. (14)] with the new velocities.
-  void computePressure() {
-    const std::uint32_t active = pairs.activeCount;
-    divergence.resize(context, active);
-    treacle::divergence<D>(context, pairs, velocity.span().first(active), divergence);
-    bulkPressure<D>(context, pairs, divergence, elastic, particles.pressure.span().first(active));
+      uOut = u[out];
+    throw RunError(describeLeaving<D>(host, begin + out, uOut, timeStep));
   }
 
   void accept() {
     const std::uint32_t moved = wallsMove ? particles.count : particles.fluidCount;
-    const std::span<const Vec<D>> u = std::span<const Vec<D>>(velocity).first(particles.fluidCount);
-    // The velocities of the start are given, no solution: nothing follows from the way to the first one.
-    if (step > 0) remember<D>(context, c.time.step, particles.velocity.span().first(u.size()), u, memory());
-    copyValues(context, u, particles.velocity.data());
+    method->accept();
+    copyValues(context, std::span<const Vec<D>>(velocity).first(particles.fluidCount), particles.velocity.data());
     copyValues(context, std::span<const Vec<D>>(position).first(moved), particles.position.data());
     ++step;
-    time = static_cast<double>(step) * c.time.step;
+    time = c.time.courant > 0 ? time + timeStep : static_cast<double>(step) * c.time.step;
   }
 
   Diagnostics diagnostics() const {
     const std::uint32_t n = particles.fluidCount;
-    return computeDiagnostics<D>(
-        context, {particles.position.span().first(n), particles.velocity.span().first(n),
-                  particles.material.span().first(n), pairs.materials, resized<D>(c.gravity), c.spacing});
+    DiagnosticsInput<D> in;
+    in.position = particles.position.span().first(n);
+    in.velocity = particles.velocity.span().first(n);
+    in.material = particles.material.span().first(n);
+    in.materials = method->materials();
+    in.gravity = resized<D>(c.gravity);
+    in.spacing = c.spacing;
+    method->describe(in);
+    return computeDiagnostics<D>(context, in);
   }
 
   /// Runs one phase under its name in a profiler, and takes its time.
@@ -224,23 +154,25 @@ struct Simulation<D, Backend>::State {
   StepReport advance() {
     StepReport report;
     StagedReport solved;
+    chooseTimeStep();
+    moveBodies();
     clock.start(context);
-    phase("search", [&] { neighbourhood.sort(context, particles); });
-    phase("lists", [&] { neighbourhood.buildLists(context, particles); });
-    phase("coefficients", [&] { computeCoefficients(); });
-    phase("coarse operators",
-          [&] { solver.preparePreconditioner(context, pairs, neighbourhood.ranges(), wallTermsView()); });
-    phase("solve", [&] { solved = solve(); });
+    phase("search", [&] { method->sort(); });
+    phase("lists", [&] { method->buildLists(); });
+    phase("coefficients", [&] { method->computeCoefficients(); });
+    phase("coarse operators", [&] { method->preparePreconditioner(); });
+    phase("solve", [&] { solved = method->solve(); });
     phase("update", [&] {
       move();
-      computePressure();
       accept();
       report.diagnostics = diagnostics();
     });
+    lastSpeed = report.diagnostics.maxSpeed;
     const std::vector<double>& s = clock.seconds();
     report.seconds = {s[0], s[1], s[2], s[3], s[4], s[5]};
     report.step = step;
     report.time = time;
+    report.timeStep = timeStep;
     report.iterations = solved.iterations;
     report.residual = solved.residual;
     report.fallbacks = solved.fallbacks;
@@ -249,8 +181,7 @@ struct Simulation<D, Backend>::State {
   }
 
   std::size_t bytes() const {
-    std::size_t sum = neighbourhood.bytes() + wallBlock.bytes() + wallGradient.bytes() + elastic.bytes() +
-                      divergence.bytes() + rhs.bytes() + velocity.bytes() + position.bytes() + solver.bytes();
+    std::size_t sum = velocity.bytes() + position.bytes() + method->bytes();
     particles.forEachField([&](const auto& field) { sum += field.bytes(); });
     return sum;
   }
@@ -258,13 +189,7 @@ struct Simulation<D, Backend>::State {
 
 template <int D, class Backend>
 Simulation<D, Backend>::Simulation(const Case& c, Particles<D> particles, std::int64_t step, double time)
-    : state_(std::make_unique<State>(c, std::move(particles), step, time)) {
-  state_->neighbourhood.sort(state_->context, state_->particles);
-  if (step > 0) return;  // the state has the densities of its last step
-  // Frame 0 shows number densities.
-  state_->neighbourhood.buildLists(state_->context, state_->particles);
-  state_->computeDensities();
-}
+    : state_(std::make_unique<State>(c, std::move(particles), step, time)) {}
 template <int D, class Backend>
 Simulation<D, Backend>::~Simulation() = default;
 template <int D, class Backend>
@@ -304,6 +229,12 @@ Diagnostics Simulation<D, Backend>::diagnostics() const {
   return state_->diagnostics();
 }
 
+template void toHost<2>(const Context<Cpu>&, const Particles<2>&, Particles<2>&);
+template void toHost<3>(const Context<Cpu>&, const Particles<3>&, Particles<3>&);
+#ifdef TREACLE_HAS_CUDA
+template void toHost<2>(const Context<Cuda>&, const Particles<2, Cuda>&, Particles<2>&);
+template void toHost<3>(const Context<Cuda>&, const Particles<3, Cuda>&, Particles<3>&);
+#endif
 template class Simulation<2, Cpu>;
 template class Simulation<3, Cpu>;
 #ifdef TREACLE_HAS_CUDA

@@ -17,9 +17,26 @@ ProjectionDegrees degreesOf(const Case& c) {
   return chooseDegrees({s.pressureDegree, s.gridDegree, s.velocityDegree}, constants);
 }
 
+/// The hat multigrid gives up early and is tried again in double precision; the last resort takes no
+/// preconditioner that could fail.
+std::vector<SolverSettings> isphStages(const Case& c) {
+  if (c.solver.preconditioner != PreconditionerKind::HatMultigrid) return {c.solver};
+  SolverSettings first = c.solver;
+  if (first.hats.gridDegree == 0) first.hats.gridDegree = 1;
+  first.maxIterations = std::min(first.hats.iterationBound, c.solver.maxIterations);
+  SolverSettings exact = first;
+  exact.precision = Precision::Double;
+  exact.hats.gridDegree += 1;
+  SolverSettings plain = c.solver;
+  plain.preconditioner = PreconditionerKind::Jacobi;
+  plain.precision = Precision::Double;
+  return {first, exact, plain};
+}
+
 }  // namespace
 
 std::vector<SolverSettings> solveStages(const Case& c) {
+  if (c.method.kind == MethodKind::Isph) return isphStages(c);
   if (c.solver.preconditioner != PreconditionerKind::ProjectedMultigrid) return {c.solver};
   const ProjectionDegrees degrees = degreesOf(c);
   const int bound = c.solver.projected.iterationBound;
@@ -48,6 +65,12 @@ std::string solverText(const SolverSettings& settings) {
     text +=
         fmt::format(": pressure degree {}, grid degree {}, velocity degree {}", settings.projected.pressureDegree,
                     settings.projected.gridDegree, settings.projected.velocityDegree);
+  if (settings.preconditioner == PreconditionerKind::HatMultigrid)
+    text += fmt::format(": grid degree {}", settings.hats.gridDegree);
+  if (settings.preconditioner == PreconditionerKind::CellMultigrid)
+    text += fmt::format(": {} levels, {} sweeps",
+                        settings.cells.levels > 0 ? std::to_string(settings.cells.levels) : "all",
+                        settings.cells.sweeps);
   return text;
 }
 

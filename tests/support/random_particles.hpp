@@ -38,6 +38,7 @@ struct RandomParticles {
       }
       particles.pressure[i] = particles.numberDensity[i] = 0;
       particles.material[i] = 0;
+      particles.body[i] = static_cast<std::uint8_t>(i % 7);
       particles.id[i] = i;
     }
   }

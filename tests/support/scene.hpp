@@ -75,6 +75,7 @@ Particles<D> jitteredLattice(const Case& c, double jitter, unsigned seed, InFlui
     for (int k = 0; k < D; ++k) p.velocity[i][k] = i < p.fluidCount ? offset(random) : 0;
     p.pressure[i] = p.numberDensity[i] = 0;
     p.material[i] = static_cast<std::uint8_t>(p.position[i][0] > 0.4 * c.domain.max[0]);
+    p.body[i] = 0;
     p.id[i] = i;
   }
   return p;

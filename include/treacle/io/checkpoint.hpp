@@ -22,7 +22,8 @@ template <int D>
 void writeCheckpoint(const std::filesystem::path& path, const Particles<D>& particles, std::int64_t step,
                      double time);
 
-/// Reads a file of writeCheckpoint. Errors: InputError with path and reason for a file that is missing, foreign,
+/// Reads a file of writeCheckpoint. Files of earlier versions lack fields: what is not known of the flow's memory
+/// is zero, bodies are unknownBody. Errors: InputError with path and reason for a file that is missing, foreign,
 /// truncated, damaged, or of another version or dimension.
 template <int D>
 Checkpoint<D> readCheckpoint(const std::filesystem::path& path);

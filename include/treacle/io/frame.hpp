@@ -18,6 +18,7 @@ struct Frame {
   std::vector<double> pressure;        // [Pa]
   std::vector<double> numberDensity;   // [-]
   std::vector<std::int32_t> material;  // index into the case's materials
+  std::vector<std::int32_t> body;      // index into the case's bodies
   std::vector<std::uint32_t> id;
 };
 

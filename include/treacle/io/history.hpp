@@ -14,7 +14,8 @@ struct HistoryTimings {
 /// One time step in `history.csv`.
 struct HistoryRow {
   std::int64_t step = 0;
-  double time = 0;  // [s], after the step
+  double time = 0;      // [s], after the step
+  double timeStep = 0;  // [s]; zero, like the densities, if the file, of an earlier version, does not hold them
   int iterations = 0;
   double residual = 0;         // |r|^2 / |b|^2 at the end of the solve
   double kineticEnergy = 0;    // [J; per metre of depth in 2D]
@@ -22,6 +23,8 @@ struct HistoryRow {
   double frontX = 0;           // largest x of the fluid [m]
   double top = 0;              // largest coordinate of the fluid against gravity [m]
   double maxSpeed = 0;         // [m/s]
+  double meanDensity = 0;      // mean of rho / rho_0 over the fluid
+  double densityError = 0;     // mean of |rho / rho_0 - 1| away from free surfaces
   double seconds = 0;          // wall-clock time of the step [s]
   int fallbacks = 0;           // of the linear solver; zero if the file, of an earlier version, does not hold them
   HistoryTimings timings{};    // zero if the file does not hold them
@@ -47,8 +50,8 @@ class HistoryWriter {
   std::int64_t size_ = 0;  // [B] whole rows
 };
 
-/// All rows, with or without timings, also of versions that did not count fallbacks; an unfinished last line is
-/// left out. Errors: InputError with path and line.
+/// All rows, with or without timings, also of versions that had fewer columns; an unfinished last line is left
+/// out. Errors: InputError with path and line.
 std::vector<HistoryRow> readHistory(const std::filesystem::path& path);
 
 }  // namespace treacle

@@ -23,7 +23,9 @@ struct RunSummary {
   double time = 0;  // simulation time reached [s]
   double meanIterations = 0;
   int firstIterations = 0, lastIterations = 0;
-  std::int64_t fallbacks = 0;  // of the linear solver, all steps together
+  std::int64_t fallbacks = 0;                // of the linear solver, all steps together
+  double meanDensity = 0, densityError = 0;  // of the last step, as in the history
+  double largestDensityError = 0;            // of all steps
 
   std::vector<std::pair<std::string, double>>
       phaseSeconds;                    // wall-clock time by phase, in the order of a step [s]

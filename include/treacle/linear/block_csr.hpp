@@ -39,7 +39,8 @@ void multiply(Context<Cpu>&, const BlockCsr<D, T>& a, std::span<const Vec<D, T>>
 template <int D, class T>
 void multiply(Context<Cuda>&, const BlockCsr<D, T, Cuda>& a, std::span<const Vec<D, T>> x, std::span<Vec<D, T>> y);
 
-/// Diagonal of the extended Jacobi smoother, half the row sums of |A_ij| [K23 eq. (41)]; the inverse is stored.
+/// Diagonal of the extended Jacobi smoother, half the row sums of |A_ij| [K23 eq. (41)]; the inverse is stored,
+/// zero for a row without entries.
 template <int D, class T, class S>
 void extendedJacobiInverse(Context<Cpu>&, const BlockCsr<D, T>& a, std::span<Vec<D, S>> inverse);
 template <int D, class T, class S>

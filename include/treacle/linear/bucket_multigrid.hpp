@@ -17,19 +17,21 @@ struct CycleSweeps {
 
 /// K = D^-1 + P M^0 R of [K23 eq. (43)]: a diagonal on the particles plus a V-cycle on the buckets, whose
 /// operators are Galerkin products by summation [K23 eqs. (35)-(38)] and whose smoother is the extended Jacobi
-/// iteration [K23 eq. (42)]. T is the precision of everything inside; the vectors outside are double.
+/// iteration [K23 eq. (42)]. D numbers per particle and bucket: as many as space has dimensions, or one in any
+/// space. T is the precision of everything inside; the vectors outside are double.
 template <int D, class T, class Backend = Cpu>
 class BucketMultigrid;
 
 template <int D, class T>
 class BucketMultigrid<D, T, Cpu> {
  public:
-  /// `finest`: A^0 = R A P, one row per level-0 bucket. `members`: per level the first member of each bucket and
-  /// the end (BucketLevels::begin); they must outlive the last apply().
+  /// `finest`: A^0 = R A P, one row per level-0 bucket; rows without entries get no correction. `members`: per
+  /// level the first member of each bucket and the end (BucketLevels::begin); they must outlive the last apply().
   void setup(Context<Cpu>&, const BlockCsr<D>& finest, std::vector<std::span<const std::uint32_t>> members,
              const CycleSweeps& sweeps);
 
-  /// z = diag(inverse) r + P M^0 R r, per particle. `inverse`: D^-1 of the particles.
+  /// z = diag(inverse) r + P M^0 R r, per particle. `inverse`: D^-1 of the particles; zero: not an unknown, P has
+  /// no such row.
   void apply(Context<Cpu>&, std::span<const Vec<D, T>> inverse, std::span<const Vec<D>> r, std::span<Vec<D>> z);
   /// z = P M^0 R r and x += z, per particle: the coarse correction of a smoother on the particles.
   void correct(Context<Cpu>&, std::span<const Gathered<D, T>> r, std::span<Gathered<D, T>> z,
@@ -46,8 +48,8 @@ class BucketMultigrid<D, T, Cpu> {
     Buffer<Vec<D, T>> b, x, next;  // right-hand side, iterate, and where a sweep writes
   };
 
-  template <class V>
-  void restrict(std::span<const V> r);
+  template <class Value>
+  void restrict(const Value& value);
   void cycle(Context<Cpu>& context, std::size_t level);
   void sweep(Level& level);
 
@@ -62,8 +64,9 @@ template <int D, class T>
 struct CycleLevel;
 
 /// The same on a device. An apply() is a fixed series of kernels, two per sweep and level at most; from the first
-/// level with at most `denseUnknowns` unknowns on, the whole rest of the cycle is one symmetric matrix, made at
-/// setup by running the cycle on the unit vectors: small levels would otherwise take a launch per sweep.
+/// level with at most `denseUnknowns` unknowns on, if there is one, the whole rest of the cycle is one symmetric
+/// matrix, made at setup by running the cycle on the unit vectors: small levels would otherwise take a launch per
+/// sweep.
 template <int D, class T>
 class BucketMultigrid<D, T, Cuda> {
  public:
@@ -99,8 +102,8 @@ class BucketMultigrid<D, T, Cuda> {
   void cycle(Context<Cuda>&, std::size_t level);
 
   std::vector<Level> levels_;
-  std::size_t denseLevel_ = 0;
-  Buffer<T, Cuda> dense_;  // of denseLevel_, row-major
+  std::size_t denseLevel_ = 0;  // levels_.size(): none
+  Buffer<T, Cuda> dense_;       // of denseLevel_, row-major
 };
 
 /// Galerkin operator of the next coarser level by summation, A^{r+1} = R A^r P [K23 eq. (38)]. `members`: first
@@ -108,7 +111,7 @@ class BucketMultigrid<D, T, Cuda> {
 template <int D, class T>
 void coarsen(Context<Cpu>&, const BlockCsr<D, T>& fine, std::span<const std::uint32_t> members,
              BlockCsr<D, T>& coarse);
-/// On the device a row may have up to 3^D coarse columns, as adjacent buckets do; more: RunError.
+/// On the device a row may have up to 3^D coarse columns (D = 1: 27), as adjacent buckets do; more: RunError.
 template <int D, class T>
 void coarsen(Context<Cuda>&, const BlockCsr<D, T, Cuda>& fine, std::span<const std::uint32_t> members,
              BlockCsr<D, T, Cuda>& coarse);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "treacle/linear/block_csr.hpp"
+#include "treacle/linear/prolongation.hpp"
 
 #include <cstdint>
 #include <memory>
@@ -8,10 +8,14 @@
 
 namespace treacle {
 
-/// Galerkin operators R A P, P = R^T the summation over members, as two sparse matrix products of cuSPARSE. Takes
-/// any assembled matrix; the price are scalar copies of A, P and R, which it keeps from call to call with all
-/// workspace.
-template <int D>
+/// How coarse operators are made on a device: by loops that know the grid, or as sparse matrix products of
+/// cuSPARSE. The CPU has the former only.
+enum class GalerkinRoute { Sums, Spgemm };
+
+/// Galerkin operators P^T A P of B unknowns per row as two sparse matrix products of cuSPARSE [O23 eq. (15)].
+/// Takes any assembled matrix and any prolongation; the price are scalar copies of A, P and P^T, which it keeps
+/// from call to call with all workspace.
+template <int B>
 class GalerkinSpgemm {
  public:
   GalerkinSpgemm();
@@ -19,10 +23,15 @@ class GalerkinSpgemm {
   GalerkinSpgemm& operator=(GalerkinSpgemm&&) noexcept;
   ~GalerkinSpgemm();
 
-  /// `members`: first fine row of each coarse one, and the end; device memory. Errors: RunError when the matrix
-  /// has more nonzeros than cuSPARSE can count, or cuSPARSE finds no way to multiply it; std::bad_alloc.
-  void compute(Context<Cuda>&, const BlockCsr<D, double, Cuda>& fine, std::span<const std::uint32_t> members,
-               BlockCsr<D, double, Cuda>& coarse);
+  /// The blocks of `coarse` are those that some product adds to, zero or not: the diagonal is among them wherever
+  /// a fine row with a diagonal has a weight. Errors: RunError when a matrix has more nonzeros than cuSPARSE can
+  /// count, or cuSPARSE finds no way to multiply it; std::bad_alloc.
+  void compute(Context<Cuda>&, const BlockCsr<B, double, Cuda>& fine, const Prolongation<Cuda>& prolongation,
+               BlockCsr<B, double, Cuda>& coarse);
+  /// The same with the summation over members as P^T. `members`: first fine row of each coarse one, and the end;
+  /// device memory.
+  void compute(Context<Cuda>&, const BlockCsr<B, double, Cuda>& fine, std::span<const std::uint32_t> members,
+               BlockCsr<B, double, Cuda>& coarse);
 
   /// Device memory that is kept [B].
   std::size_t bytes() const;

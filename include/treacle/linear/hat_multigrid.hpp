@@ -1,15 +1,29 @@
 #pragma once
 
 #include "treacle/linear/dense_inverse.hpp"
+#include "treacle/linear/galerkin_spgemm.hpp"
 #include "treacle/linear/hat_cycle.hpp"
 #include "treacle/linear/spectral_estimate.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <type_traits>
 #include <vector>
 
 namespace treacle {
+
+/// What smoothers divide by: the diagonal, with the largest eigenvalue that belongs to it, which Lanczos' method
+/// estimates; or the sums of absolute values of the rows, which bound it. The second needs no estimate and does
+/// not suffer from single nodes, at the edge of a splash, that a particle hardly reaches.
+enum class HatSmoother { Diagonal, RowSums };
+
+struct HatOptions {
+  int degree = 1;                             // >= 1, of the Chebyshev smoothers
+  int reach = hatReach;                       // of the finest matrix
+  GalerkinRoute route = GalerkinRoute::Sums;  // to the coarser operators; any finest pattern will do for Spgemm
+  HatSmoother smoother = HatSmoother::Diagonal;
+};
 
 /// Symmetric V-cycle on hat functions of edge h, 2h, 4h, ...: Galerkin operators, fourth-kind Chebyshev smoothing
 /// on the diagonal before and after each coarse correction, the inverse on the last level. B unknowns per node
@@ -25,9 +39,9 @@ class HatMultigrid {
       : denseUnknowns_(denseUnknowns) {}
 
   /// `finest`: symmetric positive (semi-)definite, within the pattern of hatPattern(nodes, reach). Both must stay
-  /// where and what they are until the last cycle. `degree` >= 1 of the smoother.
+  /// where and what they are until the last cycle.
   void setup(Context<Backend>& context, const HatNodes<D, Backend>& nodes,
-             const BlockCsr<B, double, Backend>& finest, int degree, int reach = hatReach);
+             const BlockCsr<B, double, Backend>& finest, const HatOptions& options);
 
   /// B numbers per finest node, in the backend's memory; a cycle leaves the right-hand side as it is.
   std::span<T> rhs() { return levels_.front().b; }
@@ -42,6 +56,13 @@ class HatMultigrid {
   std::size_t bytes() const;
 
  private:
+  static constexpr bool onDevice = !std::is_same_v<Backend, Cpu>;
+  struct Nothing {};
+  /// Kept from setup to setup.
+  struct Products {
+    GalerkinSpgemm<B> galerkin;
+    Prolongation<Backend> prolongation;
+  };
   struct Level {
     HatNodes<D, Backend> nodes;             // empty on the finest level, where
     BlockCsr<B, double, Backend> galerkin;  // they are the caller's
@@ -59,29 +80,31 @@ class HatMultigrid {
   std::size_t unknowns(std::size_t l) const { return std::size_t{B} * nodes(l).count(); }
   bool isDense(std::size_t l) const { return isLast(l) && unknowns(l) <= denseUnknowns_; }
   /// A last level too large to invert has nothing below that would help.
-  int degreeOf(std::size_t l) const { return isLast(l) ? 4 * degree_ : degree_; }
+  int degreeOf(std::size_t l) const { return isLast(l) ? 4 * options_.degree : options_.degree; }
 
   HatMatrix<T, B> matrix(std::size_t l) const;
   HatVectors<T> vectors(std::size_t l);
-  void addCoarserLevels(Context<Backend>& context, int reach);
+  void addCoarserLevels(Context<Backend>& context);
+  void coarsen(Context<Backend>& context, std::size_t l);
   void prepareSmoother(Context<Backend>& context, std::size_t l);
   void cycle(Context<Backend>& context, std::size_t l);
 
   const HatNodes<D, Backend>* finestNodes_ = nullptr;
   const BlockCsr<B, double, Backend>* finestMatrix_ = nullptr;
   std::vector<Level> levels_;
-  Buffer<T, Backend> inverse_;  // of the last level
+  std::conditional_t<onDevice, std::optional<Products>, Nothing> products_;  // once they are asked for
+  Buffer<T, Backend> inverse_;                                               // of the last level
   std::uint32_t denseUnknowns_;
-  int degree_ = 1;
+  HatOptions options_;
 };
 
 template <int D, class T, class Backend, int B>
 void HatMultigrid<D, T, Backend, B>::setup(Context<Backend>& context, const HatNodes<D, Backend>& finestNodes,
-                                           const BlockCsr<B, double, Backend>& finest, int degree, int reach) {
+                                           const BlockCsr<B, double, Backend>& finest, const HatOptions& options) {
   finestNodes_ = &finestNodes;
   finestMatrix_ = &finest;
-  degree_ = degree;
-  addCoarserLevels(context, reach);
+  options_ = options;
+  addCoarserLevels(context);
   for (std::size_t l = 0; l < levels_.size(); ++l) {
     levels_[l].b.resize(context, unknowns(l));
     levels_[l].x.resize(context, unknowns(l));
@@ -94,7 +117,7 @@ void HatMultigrid<D, T, Backend, B>::setup(Context<Backend>& context, const HatN
 
 /// The memory of an earlier setup's levels is used again.
 template <int D, class T, class Backend, int B>
-void HatMultigrid<D, T, Backend, B>::addCoarserLevels(Context<Backend>& context, int reach) {
+void HatMultigrid<D, T, Backend, B>::addCoarserLevels(Context<Backend>& context) {
   std::size_t count = 1;
   if (levels_.empty()) levels_.resize(1);
   for (; unknowns(count - 1) > denseUnknowns_; ++count) {
@@ -104,9 +127,23 @@ void HatMultigrid<D, T, Backend, B>::addCoarserLevels(Context<Backend>& context,
     coarserNodes<D>(context, fine, coarse.nodes);
     // Scattered drops have as many coarse nodes as fine ones, or more.
     if (B * coarse.nodes.count() > denseUnknowns_ && coarse.nodes.count() > 0.9 * fine.count()) break;
-    coarsenHats<D>(context, fine, operatorOf(count - 1), coarse.nodes, coarse.galerkin, reach);
+    coarsen(context, count - 1);
   }
   levels_.resize(count);
+}
+
+/// The operator of level l + 1, whose nodes are there.
+template <int D, class T, class Backend, int B>
+void HatMultigrid<D, T, Backend, B>::coarsen(Context<Backend>& context, std::size_t l) {
+  Level& coarse = levels_[l + 1];
+  if constexpr (onDevice)
+    if (options_.route == GalerkinRoute::Spgemm) {
+      if (!products_) products_.emplace();
+      hatProlongation<D>(context, nodes(l), coarse.nodes, products_->prolongation);
+      products_->galerkin.compute(context, operatorOf(l), products_->prolongation, coarse.galerkin);
+      return;
+    }
+  coarsenHats<D>(context, nodes(l), operatorOf(l), coarse.nodes, coarse.galerkin, options_.reach);
 }
 
 template <int D, class T, class Backend, int B>
@@ -116,6 +153,12 @@ void HatMultigrid<D, T, Backend, B>::prepareSmoother(Context<Backend>& context, 
     v->resize(context, unknowns(l));
   if (!std::is_same_v<T, double>) level.value.resize(context, B * B * operatorOf(l).block.size());
   hatValues<T>(context, operatorOf(l), level.value, level.inverseDiagonal);
+  if (options_.smoother == HatSmoother::RowSums) {
+    const auto inverse = reinterpret_cast<Vec<B, T>*>(level.inverseDiagonal.data());
+    extendedJacobiInverse<B>(context, operatorOf(l), std::span<Vec<B, T>>{inverse, operatorOf(l).rows()});
+    level.lambdaMax.assume(context, T(2));  // halves of the sums
+    return;
+  }
   level.lambdaMax.run(
       context, [&, a = matrix(l)](std::span<const T> x, std::span<T> y) { hatMultiply<T>(context, a, x, y); },
       level.inverseDiagonal);
@@ -162,13 +205,15 @@ void HatMultigrid<D, T, Backend, B>::cycle(Context<Backend>& context, std::size_
   cycle(context, l + 1);
   hatProlong<D, B, T>(context, nodes(l), nodes(l + 1), coarse.x, v);
   last = 0;
-  for (int i = 1; i <= degree_; ++i, last = 1 - last)
+  for (int i = 1; i <= options_.degree; ++i, last = 1 - last)
     hatStep<T>(context, a, ChebyshevStep<T>::at(i), v, v.res, last);
 }
 
 template <int D, class T, class Backend, int B>
 std::size_t HatMultigrid<D, T, Backend, B>::bytes() const {
   std::size_t sum = inverse_.bytes();
+  if constexpr (onDevice)
+    if (products_) sum += products_->galerkin.bytes() + products_->prolongation.bytes();
   for (const Level& l : levels_) {
     sum += l.nodes.bytes() + l.galerkin.bytes() + l.value.bytes() + l.inverseDiagonal.bytes();
     sum += l.lambdaMax.bytes() + l.b.bytes() + l.res.bytes() + l.x.bytes() + l.z0.bytes() + l.z1.bytes();

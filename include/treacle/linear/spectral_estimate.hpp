@@ -43,6 +43,12 @@ void lanczosFinish(Context<Cpu>&, const LanczosScalars* scalars, double margin, 
 template <class T>
 void lanczosFinish(Context<Cuda>&, const LanczosScalars* scalars, double margin, T* largest);
 
+/// *to = value
+template <class T>
+void setNumber(Context<Cpu>&, T value, T* to);
+template <class T>
+void setNumber(Context<Cuda>&, T value, T* to);
+
 /// Largest eigenvalue of D^-1 A for symmetric positive (semi-)definite A and diagonal D, a little above rather
 /// than below: what a Chebyshev smoother divides by. The host never waits.
 template <class T, class Backend = Cpu>
@@ -56,6 +62,7 @@ class SpectralEstimate {
   void run(Context<Backend>& context, const Operator& a, std::span<const T> inverseDiagonal, int steps = 10) {
     const std::size_t n = inverseDiagonal.size();
     for (Buffer<T, Backend>* v : {&r_, &p_, &q_}) v->resize(context, n);
+    known_ = 0;
     scalars_.resize(context, 1);
     largest_.resize(context, 1);
     const LanczosVectors<T> v{inverseDiagonal, r_, p_, q_, scalars_.data()};
@@ -69,6 +76,14 @@ class SpectralEstimate {
     lanczosFinish<T>(context, scalars_.data(), margin, largest_.data());
   }
 
+  /// A bound that is known.
+  void assume(Context<Backend>& context, T bound) {
+    if (known_ == bound) return;
+    largest_.resize(context, 1);
+    setNumber(context, bound, largest_.data());
+    known_ = bound;
+  }
+
   /// The estimate, margin included; 1 where no unknown takes part. In the backend's memory.
   const T* largest() const { return largest_.data(); }
 
@@ -78,6 +93,7 @@ class SpectralEstimate {
   Buffer<T, Backend> r_, p_, q_;
   Buffer<LanczosScalars, Backend> scalars_;
   Buffer<T, Backend> largest_;
+  T known_ = 0;  // what was assumed last; 0: nothing
 };
 
 }  // namespace treacle

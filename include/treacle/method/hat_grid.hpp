@@ -24,9 +24,9 @@ enum class HatsOn { Active, Fluid };
 
 /// The corners of the cells that hold active particles, or fluid.
 template <int D>
-void findHatNodes(Context<Cpu>&, const MphPairs<D>& pairs, HatsOn what, HatNodes<D>& nodes);
+void findHatNodes(Context<Cpu>&, const SortedParticles<D>& pairs, HatsOn what, HatNodes<D>& nodes);
 template <int D>
-void findHatNodes(Context<Cuda>&, const MphPairs<D>& pairs, HatsOn what, HatNodes<D, Cuda>& nodes);
+void findHatNodes(Context<Cuda>&, const SortedParticles<D>& pairs, HatsOn what, HatNodes<D, Cuda>& nodes);
 
 /// Galerkin operator P^T S' P of the pressures, from pair sums; S' itself is not needed. Workspace in the
 /// precision T: `columns`, the 3^D vectors of C P per fluid particle; on a device, where `near` has the lists of
@@ -61,8 +61,8 @@ class HatTransfer;
 template <int D, class T>
 class HatTransfer<D, T, Cpu> {
  public:
-  /// `pairs` must outlive the transfers; all nodes given later stand on their search cells.
-  void prepare(Context<Cpu>&, const MphPairs<D>& pairs);
+  /// `particles` must outlive the transfers; all nodes given later stand on their search cells.
+  void prepare(Context<Cpu>&, const SortedParticles<D>& particles);
   /// b = P^T r; r per particle.
   void restrict(Context<Cpu>&, const HatNodes<D>& nodes, std::span<const T> r, std::span<T> b) const;
   /// The same for velocities; r per fluid particle.
@@ -72,11 +72,13 @@ class HatTransfer<D, T, Cpu> {
                std::span<T> x) const;
   void prolong(Context<Cpu>&, const HatNodes<D>& nodes, std::span<const T> e, std::span<Gathered<D, T>> z,
                std::span<Gathered<D, T>> x) const;
+  /// x += P e
+  void addProlonged(Context<Cpu>&, const HatNodes<D>& nodes, std::span<const T> e, std::span<T> x) const;
   std::size_t bytes() const { return corner_.bytes() + place_.bytes(); }
 
  private:
   static constexpr int corners = 1 << D;
-  const MphPairs<D>* pairs_ = nullptr;
+  const SortedParticles<D>* pairs_ = nullptr;
   Buffer<std::uint32_t> corner_;  // per particle: the lattice points at the corners of its cell
   Buffer<Vec<D, T>> place_;       // per particle: where it stands in there, 0 … 1 per axis
 };
@@ -84,7 +86,7 @@ class HatTransfer<D, T, Cpu> {
 template <int D, class T>
 class HatTransfer<D, T, Cuda> {
  public:
-  void prepare(Context<Cuda>&, const MphPairs<D>& pairs);
+  void prepare(Context<Cuda>&, const SortedParticles<D>& pairs);
   void restrict(Context<Cuda>&, const HatNodes<D, Cuda>& nodes, std::span<const T> r, std::span<T> b) const;
   void restrict(Context<Cuda>&, const HatNodes<D, Cuda>& nodes, std::span<const Gathered<D, T>> r,
                 std::span<T> b) const;
@@ -92,10 +94,11 @@ class HatTransfer<D, T, Cuda> {
                std::span<T> x) const;
   void prolong(Context<Cuda>&, const HatNodes<D, Cuda>& nodes, std::span<const T> e, std::span<Gathered<D, T>> z,
                std::span<Gathered<D, T>> x) const;
+  void addProlonged(Context<Cuda>&, const HatNodes<D, Cuda>& nodes, std::span<const T> e, std::span<T> x) const;
   std::size_t bytes() const { return place_.bytes(); }
 
  private:
-  const MphPairs<D>* pairs_ = nullptr;
+  const SortedParticles<D>* pairs_ = nullptr;
   Buffer<Vec<D, T>, Cuda> place_;
 };
 

@@ -1,13 +1,11 @@
 #pragma once
 
+#include "treacle/method/sorted_particles.hpp"
 #include "treacle/method/weight.hpp"
 #include "treacle/model/case.hpp"
-#include "treacle/search/cell_grid.hpp"
-#include "treacle/search/cell_sort.hpp"
 #include "treacle/search/cluster_list.hpp"
 
 #include <cstdint>
-#include <span>
 
 namespace treacle {
 
@@ -21,26 +19,22 @@ struct MaterialTable {
   double pairViscosity[maxMaterials][maxMaterials];  // mu_ij = 2 mu_i mu_j / (mu_i + mu_j) [Pa s]
 
   static MaterialTable make(const Case& c);
+  void setTimeStep(double dt) {
+    for (int m = 0; m < count; ++m) inertia[m] = density[m] / dt;
+  }
 };
 
-/// What every pair sum of a step reads, in host or device memory. Particles [0, fluidCount) are fluid,
-/// [fluidCount, activeCount) the walls near it. Spans and pointers belong to the step's owner.
+/// What every pair sum of a step reads.
 template <int D>
-struct MphPairs {
-  std::uint32_t fluidCount = 0, activeCount = 0;
-  std::span<const Vec<D>> position;  // [m]
-  std::span<const std::uint8_t> material;
+struct MphPairs : SortedParticles<D> {
   ClusterListView fluidList;  // near h_p, far max(h_v, 2 h_p)
   ClusterListView wallList;   // near h_p only
-  CellRangesView cells;
-  CellGrid<D> grid;
   PeriodicImages<D> images;
-  double spacing = 0;  // l [m]
   Weight<D> pressureWeight{}, viscosityWeight{};
   PairTerm pressure{}, viscosity{};
   MaterialTable materials;
 
-  TREACLE_HD Vec<D> positionOf(ListEntry e) const { return position[e.index()] + images.shift[e.image()]; }
+  TREACLE_HD Vec<D> positionOf(ListEntry e) const { return this->position[e.index()] + images.shift[e.image()]; }
 };
 
 /// The constants of a case, without particles.

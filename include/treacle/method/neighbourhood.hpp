@@ -45,6 +45,9 @@ class Neighbourhood {
     pairs_.wallList = wallList_.view();
   }
 
+  /// Of the step at hand [s].
+  void setTimeStep(double dt) { pairs_.materials.setTimeStep(dt); }
+
   const MphPairs<D>& pairs() const { return pairs_; }
   const CellGrid<D>& grid() const { return pairs_.grid; }
   const CellRanges<Backend>& ranges() const { return ranges_; }

@@ -2,6 +2,7 @@
 
 #include "treacle/core/vec.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -27,6 +28,9 @@ struct Material {
 /// Largest number of materials of one case: pair sums look their constants up in small tables.
 inline constexpr std::size_t maxMaterials = 16;
 
+/// Largest number of bodies: particles keep theirs in one byte, of which one value says that it is not known.
+inline constexpr std::size_t maxBodies = 255;
+
 enum class ShapeKind { Box, Sphere, Cylinder };
 
 /// A region of space. In two dimensions a sphere is a disc and a cylinder a strip along its axis.
@@ -43,6 +47,15 @@ struct Shape {
 
 enum class BodyKind { Fluid, Wall };
 
+/// Displacement of a wall from where it starts: amplitude (sin(2 pi t / period + phase) - sin(phase)).
+struct Oscillation {
+  Vec<3> amplitude{};  // [m]
+  double period = 0;   // [s]; 0: none
+  double phase = 0;    // [rad]
+
+  bool operator==(const Oscillation&) const = default;
+};
+
 /// Particles of one kind and material that fill a shape.
 struct Body {
   std::string name;
@@ -50,6 +63,7 @@ struct Body {
   int material = 0;   // index into Case::materials
   Vec<3> velocity{};  // fluid: at the start; wall: prescribed translation [m/s]
   Shape shape;
+  Oscillation oscillation{};  // of a wall, on top of its velocity
 
   bool operator==(const Body&) const = default;
 };
@@ -62,23 +76,54 @@ struct Domain {
 };
 
 struct TimeSettings {
-  double step = 0;  // [s]
-  double end = 0;   // [s]
+  double step = 0;     // [s]; with a Courant number the largest one
+  double end = 0;      // [s]
+  double courant = 0;  // distance of the fastest particle in a step, in spacings; 0: all steps have one length
+
+  bool stepsVary() const { return courant > 0; }
 
   bool operator==(const TimeSettings&) const = default;
 };
 
-/// Effective radii in particle spacings [K23 Table 1].
+enum class MethodKind { MphI, Isph };
+enum class KernelKind { CubicSpline, WendlandC2 };
+enum class WallSlip { NoSlip, FreeSlip };
+enum class ViscousStep { Auto, Explicit, Implicit };
+
+/// Incompressible SPH by projection [O23]; docs/isph.md.
+struct IsphSettings {
+  KernelKind kernel = KernelKind::CubicSpline;
+  double smoothingRatio = 1.2;  // h / l; both kernels reach 2 h
+  double alpha = 0.01;          // share of the density error that a step is to correct [O23 eq. (10)]
+  WallSlip walls = WallSlip::NoSlip;
+  ViscousStep viscosity = ViscousStep::Auto;  // Auto: implicit where the explicit step would be unstable
+  double shifting = 0;                        // coefficient of particle shifting, 0: off
+  bool negativePressure = false;              // false: negative pressures are cut to zero
+
+  bool operator==(const IsphSettings&) const = default;
+};
+
 struct MethodSettings {
-  std::string name = "mph-i";
+  MethodKind kind = MethodKind::MphI;
+  // Effective radii of MPH-I in particle spacings [K23 Table 1].
   double pressureRadius = 1.75;  // h_p / l
   double viscosityRadius = 3.5;  // h_v / l
+  IsphSettings isph;
 
   bool operator==(const MethodSettings&) const = default;
 };
 
 enum class KrylovKind { Cg, Cr };
-enum class PreconditionerKind { None, Jacobi, BlockJacobi, BucketMultigrid, ProjectedMultigrid };
+/// For MPH-I all but the last two; for ISPH none, Jacobi and the last two.
+enum class PreconditionerKind {
+  None,
+  Jacobi,
+  BlockJacobi,
+  BucketMultigrid,
+  ProjectedMultigrid,
+  CellMultigrid,
+  HatMultigrid
+};
 enum class OperatorKind { MatrixFree, Assembled };
 enum class Precision { Double, Mixed };
 enum class SmootherDiagonal { Jacobi, ExtendedJacobi };
@@ -109,25 +154,46 @@ struct ProjectedSettings {
   bool operator==(const ProjectedSettings&) const = default;
 };
 
+/// Background-cell multigrid of ISPH, MGCG(m, n) of [O23 sect. 3.2].
+struct CellSettings {
+  int levels = 0;  // m; 0: down to the coarsest cells
+  int sweeps = 4;  // n, before and after each coarse correction
+
+  bool operator==(const CellSettings&) const = default;
+};
+
+/// Hat-function multigrid of ISPH (docs/isph.md). Degrees of its smoothers; 0: chosen by the program.
+struct HatSettings {
+  int particleDegree = 0;
+  int gridDegree = 0;
+  int iterationBound = 100;  // a solve that needs more is tried in other ways
+
+  bool operator==(const HatSettings&) const = default;
+};
+
 struct SolverSettings {
-  KrylovKind krylov = KrylovKind::Cg;  // case files: cr unless the preconditioner is projected-multigrid
+  // The defaults are those of MPH-I; case files have others for ISPH and for other preconditioners.
+  KrylovKind krylov = KrylovKind::Cg;
   PreconditionerKind preconditioner = PreconditionerKind::ProjectedMultigrid;
   OperatorKind operatorKind = OperatorKind::MatrixFree;
   NeighbourKind neighbours = NeighbourKind::Lists;  // on a GPU; ranges: no memory for lists, more time
   double tolerance = 1e-12;                         // bound on |r|^2 / |b|^2
   int maxIterations = 5000;
-  /// Mixed: the preconditioner works in single precision. Case files: double unless it is projected-multigrid.
+  /// Mixed: the preconditioner works in single precision.
   Precision precision = Precision::Mixed;
-  /// A solve starts from the velocities of the last step, or from those of two or three extrapolated.
+  /// A solve starts from the velocities of the last step, or from those of two or three extrapolated. ISPH: from
+  /// the pressures of the last step.
   FirstGuess firstGuess = FirstGuess::Quadratic;
   MultigridSettings multigrid;
   ProjectedSettings projected;
+  CellSettings cells;
+  HatSettings hats;
 
   bool operator==(const SolverSettings&) const = default;
 };
 
 struct OutputFields {
-  bool velocity = true, pressure = true, numberDensity = true, material = true, id = true;
+  bool velocity = true, pressure = true, numberDensity = true, material = true, body = true, id = true;
 
   bool operator==(const OutputFields&) const = default;
 };
@@ -159,7 +225,23 @@ struct Case {
 
   double pressureRadius() const { return method.pressureRadius * spacing; }    // h_p [m]
   double viscosityRadius() const { return method.viscosityRadius * spacing; }  // h_v [m]
+  /// Smoothing length h of ISPH [m].
+  double smoothingLength() const { return method.isph.smoothingRatio * spacing; }
+  /// Farthest distance at which particles act on each other [m].
+  double interactionRadius() const {
+    return method.kind == MethodKind::Isph ? 2 * smoothingLength() : std::max(viscosityRadius(), pressureRadius());
+  }
+  /// Smallest edge of the search cells [m].
+  double searchEdge() const {
+    return method.kind == MethodKind::Isph ? 2 * smoothingLength()
+                                           : std::max(viscosityRadius(), 2 * pressureRadius());
+  }
+  /// Steps to the end, where all have one length.
   std::int64_t steps() const { return std::llround(time.end / time.step); }
+  /// Whether a run that has made so many steps, and is at time `now` [s], is at its end.
+  bool atEnd(std::int64_t step, double now) const {
+    return time.stepsVary() ? now >= time.end * (1 - 1e-9) : step >= steps();
+  }
 
   bool operator==(const Case&) const = default;
 };

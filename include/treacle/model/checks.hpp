@@ -10,7 +10,7 @@ namespace treacle {
 /// Dimensionless numbers of one material at the case's time step and spacing.
 struct StabilityNumbers {
   std::string material;
-  double compression = 0;     // dt kappa / lambda, at most 1 for a stable step [K23 eq. (12)]
+  double compression = 0;     // dt kappa / lambda, at most 1 for a stable step [K23 eq. (12)]; 0 for ISPH
   double shearDiffusion = 0;  // d_mu = mu dt / (rho l^2) [K23 Table 2]
   double bulkDiffusion = 0;   // d_lambda = lambda dt / (rho l^2); Table 2 prints a tenth of it
 };
@@ -18,11 +18,11 @@ struct StabilityNumbers {
 std::vector<StabilityNumbers> stabilityNumbers(const Case& c);
 
 /// dt U / l, where U is the largest of the initial speeds, the wall speeds and the speed of a free fall over the
-/// height of the fluid.
+/// height of the fluid; at most time.courant where that limits the steps.
 double courantNumber(const Case& c);
 
-/// What a user should know although the case can be run: unstable compression, thin walls, times that are not
-/// whole numbers of steps.
+/// What a user should know although the case can be run: unstable compression, long steps of ISPH, thin walls,
+/// times that are not whole numbers of steps.
 std::vector<std::string> caseWarnings(const Case& c);
 
 }  // namespace treacle

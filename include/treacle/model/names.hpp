@@ -22,11 +22,19 @@ namespace names {
 inline constexpr Named<ShapeKind> shape[] = {
     {"box", ShapeKind::Box}, {"sphere", ShapeKind::Sphere}, {"cylinder", ShapeKind::Cylinder}};
 inline constexpr Named<BodyKind> body[] = {{"fluid", BodyKind::Fluid}, {"wall", BodyKind::Wall}};
+inline constexpr Named<MethodKind> method[] = {{"mph-i", MethodKind::MphI}, {"isph", MethodKind::Isph}};
+inline constexpr Named<KernelKind> kernel[] = {{"cubic-spline", KernelKind::CubicSpline},
+                                               {"wendland-c2", KernelKind::WendlandC2}};
+inline constexpr Named<WallSlip> slip[] = {{"no-slip", WallSlip::NoSlip}, {"free-slip", WallSlip::FreeSlip}};
+inline constexpr Named<ViscousStep> viscous[] = {
+    {"auto", ViscousStep::Auto}, {"explicit", ViscousStep::Explicit}, {"implicit", ViscousStep::Implicit}};
 inline constexpr Named<KrylovKind> krylov[] = {{"cg", KrylovKind::Cg}, {"cr", KrylovKind::Cr}};
 inline constexpr Named<PreconditionerKind> preconditioner[] = {
     {"projected-multigrid", PreconditionerKind::ProjectedMultigrid},
     {"bucket-multigrid", PreconditionerKind::BucketMultigrid},
     {"block-jacobi", PreconditionerKind::BlockJacobi},
+    {"hat-multigrid", PreconditionerKind::HatMultigrid},
+    {"cell-multigrid", PreconditionerKind::CellMultigrid},
     {"jacobi", PreconditionerKind::Jacobi},
     {"none", PreconditionerKind::None}};
 inline constexpr Named<OperatorKind> operators[] = {{"matrix-free", OperatorKind::MatrixFree},
@@ -48,6 +56,14 @@ template <>
 inline constexpr std::span<const Named<ShapeKind>> namesOf<ShapeKind>{names::shape};
 template <>
 inline constexpr std::span<const Named<BodyKind>> namesOf<BodyKind>{names::body};
+template <>
+inline constexpr std::span<const Named<MethodKind>> namesOf<MethodKind>{names::method};
+template <>
+inline constexpr std::span<const Named<KernelKind>> namesOf<KernelKind>{names::kernel};
+template <>
+inline constexpr std::span<const Named<WallSlip>> namesOf<WallSlip>{names::slip};
+template <>
+inline constexpr std::span<const Named<ViscousStep>> namesOf<ViscousStep>{names::viscous};
 template <>
 inline constexpr std::span<const Named<KrylovKind>> namesOf<KrylovKind>{names::krylov};
 template <>
@@ -84,6 +100,7 @@ inline constexpr OutputFieldName outputFieldNames[] = {{"velocity", &OutputField
                                                        {"pressure", &OutputFields::pressure},
                                                        {"number_density", &OutputFields::numberDensity},
                                                        {"material", &OutputFields::material},
+                                                       {"body", &OutputFields::body},
                                                        {"id", &OutputFields::id}};
 
 }  // namespace treacle

@@ -18,7 +18,7 @@ void forEachFluidFieldOf(F&& f, Sets&... sets) {
 template <class F, class... Sets>
 void forEachSharedFieldOf(F&& f, Sets&... sets) {
   f(sets.position...), f(sets.velocity...), f(sets.pressure...), f(sets.numberDensity...), f(sets.material...),
-      f(sets.id...);
+      f(sets.body...), f(sets.id...);
 }
 
 /// Calls f with every field of the sets of particles, f(a.position, b.position, ...) and so on: what permutes,
@@ -28,6 +28,9 @@ void forEachFieldOf(F&& f, Sets&... sets) {
   forEachSharedFieldOf(f, sets...);
   forEachFluidFieldOf(f, sets...);
 }
+
+/// In place of a body: not known. Case files have fewer bodies than this.
+inline constexpr std::uint8_t unknownBody = 255;
 
 /// The only owner of per-particle fields. Fluid particles come first, [0, fluidCount), then wall particles,
 /// [fluidCount, count); inside both groups the search keeps them sorted by cell. `id` names a particle for
@@ -42,6 +45,7 @@ struct Particles {
   Buffer<double, Backend> pressure;        // Psi [Pa]
   Buffer<double, Backend> numberDensity;   // n [-]
   Buffer<std::uint8_t, Backend> material;  // index into Case::materials
+  Buffer<std::uint8_t, Backend> body;      // index into Case::bodies
   Buffer<std::uint32_t, Backend> id;
 
   // The memory of the flow: what the first guess of a solve is extrapolated from. Walls have none, and it is not

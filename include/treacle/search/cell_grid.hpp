@@ -70,6 +70,17 @@ struct CellGrid {
     return c;
   }
 
+  /// From x to the nearest periodic image of y [m], for both inside the domain.
+  TREACLE_HD Vec<D> difference(const Vec<D>& x, const Vec<D>& y) const {
+    Vec<D> d = y - x;
+    for (int k = 0; k < D; ++k) {
+      if (!periodic[k]) continue;
+      if (d[k] > 0.5 * length[k]) d[k] -= length[k];
+      if (d[k] < -0.5 * length[k]) d[k] += length[k];
+    }
+    return d;
+  }
+
   /// Sort key: Hilbert index at the resolution of sub-cells. key >> (D subBits) is the cell's Hilbert index, and
   /// each further shift by D that of the bucket one level coarser.
   TREACLE_HD std::uint64_t key(const Vec<D>& x) const {

@@ -21,6 +21,9 @@ struct DiagnosticsInput {
   MaterialTable materials;
   Vec<D> gravity;      // [m/s2]
   double spacing = 0;  // [m]
+  // Of ISPH, else empty.
+  std::span<const double> density;        // <rho> / rho
+  std::span<const std::uint8_t> surface;  // 1: at the free surface
 };
 
 /// What a particle adds to the diagnostics.
@@ -39,23 +42,42 @@ struct DiagnosticsTerm {
     return t;
   }
 
-  TREACLE_HD Diagnostics operator()(const Vec<D>& x, const Vec<D>& u, int material) const {
-    const double speed2 = norm2(u);
-    return {0.5 * mass[material] * speed2, -mass[material] * dot(gravity, x), x[0], dot(up, x), std::sqrt(speed2)};
+  /// Of particle i; means are sums until the end.
+  TREACLE_HD Diagnostics operator()(const DiagnosticsInput<D>& in, std::size_t i) const {
+    const Vec<D>&x = in.position[i], &u = in.velocity[i];
+    const double speed2 = norm2(u), m = mass[in.material[i]];
+    Diagnostics d{0.5 * m * speed2, -m * dot(gravity, x), x[0], dot(up, x), std::sqrt(speed2)};
+    if (in.density.empty()) return d;
+    d.meanDensityRatio = in.density[i];
+    d.interiorParticles = !in.surface[i];
+    d.meanDensityError = in.surface[i] ? 0 : std::abs(in.density[i] - 1);
+    return d;
   }
 };
 
 /// Of nobody.
 TREACLE_HD inline Diagnostics noDiagnostics() {
   constexpr double infinity = std::numeric_limits<double>::infinity();
-  return {0, 0, -infinity, -infinity, 0};
+  return {0, 0, -infinity, -infinity};
 }
 
 /// Of two sets of particles together.
 TREACLE_HD inline Diagnostics joined(const Diagnostics& a, const Diagnostics& b) {
-  return {a.kineticEnergy + b.kineticEnergy, a.potentialEnergy + b.potentialEnergy,
-          a.frontX < b.frontX ? b.frontX : a.frontX, a.top < b.top ? b.top : a.top,
-          a.maxSpeed < b.maxSpeed ? b.maxSpeed : a.maxSpeed};
+  return {a.kineticEnergy + b.kineticEnergy,
+          a.potentialEnergy + b.potentialEnergy,
+          a.frontX < b.frontX ? b.frontX : a.frontX,
+          a.top < b.top ? b.top : a.top,
+          a.maxSpeed < b.maxSpeed ? b.maxSpeed : a.maxSpeed,
+          a.meanDensityRatio + b.meanDensityRatio,
+          a.meanDensityError + b.meanDensityError,
+          a.interiorParticles + b.interiorParticles};
+}
+
+/// Sums into means; `count` of particles.
+inline Diagnostics averaged(Diagnostics d, std::size_t count) {
+  if (count > 0) d.meanDensityRatio /= static_cast<double>(count);
+  if (d.interiorParticles > 0) d.meanDensityError /= d.interiorParticles;
+  return d;
 }
 
 /// Sums and extremes over the particles; the order of the sums depends on their number alone. Of no particles:

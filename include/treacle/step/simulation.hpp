@@ -17,6 +17,10 @@ struct Diagnostics {
   double frontX = 0;           // largest x [m]
   double top = 0;              // largest coordinate against gravity [m]
   double maxSpeed = 0;         // [m/s]
+  // Of ISPH; zero for MPH-I.
+  double meanDensityRatio = 0;   // mean of <rho> / rho
+  double meanDensityError = 0;   // mean of |<rho> / rho - 1| over the particles that are not at the free surface
+  double interiorParticles = 0;  // number of these
 };
 
 /// Wall-clock seconds of one step, or summed over steps.
@@ -39,6 +43,7 @@ struct PhaseSeconds {
 struct StepReport {
   std::int64_t step = 0;  // number of steps done
   double time = 0;        // [s], after the step
+  double timeStep = 0;    // [s]
   int iterations = 0;     // of all ways in which the solve was tried
   double residual = 0;    // |r|^2 / |b|^2 at the end of the solve
   int fallbacks = 0;      // ways that failed (solveStages)
@@ -47,9 +52,10 @@ struct StepReport {
   PhaseSeconds seconds;
 };
 
-/// One MPH-I simulation: x^{k+1} = x^k + dt u^{k+1} with u^{k+1} from the implicit step [K23 eqs. (13)-(16)]. On
-/// the device the step runs from the first sort to the last velocity; the host sees scalars. Results do not depend
-/// on the number of OpenMP threads, and the same run gives the same bits.
+/// A simulation: x^{k+1} = x^k + dt u^{k+1} with u^{k+1} from the implicit step of MPH-I [K23 eqs. (13)-(16)] or
+/// the projection of ISPH [O23 eqs. (7)-(11)]. On the device the step runs from the first sort to the last
+/// velocity; the host sees scalars. Results do not depend on the number of OpenMP threads, and the same run gives
+/// the same bits.
 template <int D, class Backend = Cpu>
 class Simulation {
  public:

@@ -42,8 +42,10 @@ TEST(BlockCsr, MultipliesLikeTheCpu) {
   TREACLE_SKIP_WITHOUT_GPU();
   for (std::uint32_t rows : {0u, 1u, 31u, 33u, 10007u})
     for (std::uint32_t reach : {0u, 1u, 5u, 16u, 100u}) {
+      checkTwins<1, double>(rows, reach, operatorTolerance);
       checkTwins<2, double>(rows, reach, operatorTolerance);
       checkTwins<3, double>(rows, reach, operatorTolerance);
+      checkTwins<1, float>(rows, reach, singleTolerance);
       checkTwins<2, float>(rows, reach, singleTolerance);
       checkTwins<3, float>(rows, reach, singleTolerance);
     }

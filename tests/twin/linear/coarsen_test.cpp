@@ -28,8 +28,10 @@ void checkTwins(std::uint32_t rows, double tolerance) {
 TEST(Coarsen, SumsLikeTheCpu) {
   TREACLE_SKIP_WITHOUT_GPU();
   for (std::uint32_t rows : {0u, 1u, 31u, 33u, 10007u}) {
+    checkTwins<1, double>(rows, operatorTolerance);
     checkTwins<2, double>(rows, operatorTolerance);
     checkTwins<3, double>(rows, operatorTolerance);
+    checkTwins<1, float>(rows, singleTolerance);
     checkTwins<2, float>(rows, singleTolerance);
     checkTwins<3, float>(rows, singleTolerance);
   }

@@ -76,7 +76,7 @@ struct Cycles {
   Context<Cpu> host;
   Context<Cuda>& context;
   HatMultigrid<D, T, Cpu, B> onCpu{50 * B};
-  HatMultigrid<D, T, Cuda, B> onGpu{50 * B};
+  HatMultigrid<D, T, Cuda, B> onGpu{50 * B}, byProducts{50 * B};
 
   explicit Cycles(Context<Cuda>& c) : context(c) {}
 
@@ -85,23 +85,30 @@ struct Cycles {
                                     << degree << ", " << B << " numbers per node"
                                     << (sizeof(T) == 4 ? ", single precision" : ""));
     Both<D, B> both(context, c);
-    onCpu.setup(host, both.host.nodes, both.host.a, degree, both.host.reach);
-    onGpu.setup(context, both.nodes, both.a, degree, both.host.reach);
+    onCpu.setup(host, both.host.nodes, both.host.a, {degree, both.host.reach});
+    onGpu.setup(context, both.nodes, both.a, {degree, both.host.reach});
     ASSERT_EQ(onGpu.levelCount(), onCpu.levelCount());
     std::vector<T> b(both.host.unknowns());
     for (std::size_t i = 0; i < b.size(); ++i) onCpu.rhs()[i] = b[i] = pseudoRandom(static_cast<std::uint32_t>(i));
     ASSERT_EQ(onGpu.rhs().size(), b.size());
-    copyBytesToDevice(context, b.data(), onGpu.rhs().data(), b.size() * sizeof(T));
+    const auto setRhs = [&](std::span<T> rhs) {
+      copyBytesToDevice(context, b.data(), rhs.data(), b.size() * sizeof(T));
+    };
+    setRhs(onGpu.rhs());
     onCpu.cycle(host);
-    const Buffer<T> x = cycle(), again = cycle();
+    const Buffer<T> x = cycle(onGpu), again = cycle(onGpu);
     EXPECT_LE((relativeDifference<T>(x.span(), onCpu.solution())), tolerance);
     EXPECT_TRUE(std::equal(x.begin(), x.end(), again.begin())) << "not the same bits";
+    if (degree != 2) return;
+    byProducts.setup(context, both.nodes, both.a, {degree, both.host.reach, GalerkinRoute::Spgemm});
+    setRhs(byProducts.rhs());
+    EXPECT_LE((relativeDifference<T>(cycle(byProducts).span(), onCpu.solution())), tolerance) << "by SpGEMM";
   }
 
-  Buffer<T> cycle() {
+  Buffer<T> cycle(HatMultigrid<D, T, Cuda, B>& multigrid) {
     Buffer<T> x;
-    onGpu.cycle(context);
-    copyToHost<T>(context, onGpu.solution(), x);
+    multigrid.cycle(context);
+    copyToHost<T>(context, multigrid.solution(), x);
     return x;
   }
 };

@@ -35,6 +35,7 @@ void checkAllSizes() {
 
 TEST(GalerkinSpgemm, GivesTheSameAsSummation) {
   TREACLE_SKIP_WITHOUT_GPU();
+  checkAllSizes<1>();
   checkAllSizes<2>();
   checkAllSizes<3>();
 }

@@ -40,6 +40,9 @@ TEST_P(BadInput, isRejectedWithPlaceAndReason) {
   }
 }
 
+/// What a material of ISPH does not have; in its place, from line 16 on, a case can name the method.
+constexpr const char* bulk = "bulk_viscosity = 1e4\nbulk_modulus = 1e6\n";
+
 constexpr BadCase badCases[] = {
     {"brokenToml", "max = [12e-3, 12e-3]", "max = [12e-3, 12e-3", "bad.toml:9:1: not valid TOML: "},
     {"keyTwice", "spacing = 1e-3", "spacing = 1e-3\nspacing = 2e-3", "bad.toml:4:"},
@@ -55,8 +58,7 @@ constexpr BadCase badCases[] = {
      "bad.toml:9:2: unknown key 'gravty' in the case file; did you mean 'gravity'?"},
     {"keyOfAnotherShape", "max = [6e-3, 6e-3]", "max = [6e-3, 6e-3]\nradius = 1",
      "bad.toml:26:1: unknown key 'radius' in [[body]] 'column' (box); expected 'name', 'type', 'material', "
-     "'shape', "
-     "'velocity', 'min' or 'max'"},
+     "'shape', 'velocity', 'oscillation', 'min' or 'max'"},
     {"missingKey", "density = 1000\n", "",
      "bad.toml:12:1: density in [[material]] 'syrup': missing; expected a positive number [kg/m3]"},
     {"missingTable", "[time]\nstep = 1e-3\nend = 2e-3\n", "",
@@ -141,8 +143,9 @@ constexpr BadCase badCases[] = {
     {"unknownShape", "shape = \"box\"", "shape = \"cone\"",
      "bad.toml:23:9: shape in [[body]] 'column': expected 'box', 'sphere' or 'cylinder', found 'cone'"},
     {"unknownField", "interval = 1e-3", "interval = 1e-3\nfields = [\"speed\"]",
-     "bad.toml:41:10: fields in [output]: expected 'velocity', 'pressure', 'number_density', 'material' or 'id', "
-     "found 'speed'"},
+     "bad.toml:41:10: fields in [output]: expected 'velocity', 'pressure', 'number_density', 'material', 'body' "
+     "or "
+     "'id', found 'speed'"},
     {"minAboveMax", "max = [6e-3, 6e-3]", "max = [6e-3, -6e-3]",
      "bad.toml:25:7: max in [[body]] 'column' (box): expected more than min on every axis, found -0.006 <= 0 "
      "along y"},
@@ -152,6 +155,100 @@ constexpr BadCase badCases[] = {
      "bad.toml:8:12: periodic in [domain]: the domain is 10 mm long along x; a periodic axis must hold 3 search "
      "cells "
      "of edge max(h_v, 2 h_p) = 3.5 mm: expected at least 10.5 mm"},
+    {"unknownMethod", "[output]", "[method]\nname = \"sph\"\nalpha = 2\n[output]",
+     "bad.toml:40:8: name in [method]: expected 'mph-i' or 'isph', found 'sph'"},
+    {"numberForMethod", "[output]", "[method]\nname = 1\n[output]",
+     "bad.toml:40:8: name in [method]: expected a string, found 1"},
+    {"keyOfIsph", "[output]", "[method]\nviscosity = \"explicit\"\n[output]",
+     "bad.toml:40:1: unknown key 'viscosity' in [method]: it belongs to the method 'isph'; expected 'name', "
+     "'pressure_radius' or 'viscosity_radius'"},
+    {"keyOfMph", bulk, "[method]\nname = \"isph\"\npressure_radius = 2\n",
+     "bad.toml:18:1: unknown key 'pressure_radius' in [method] (isph): it belongs to the method 'mph-i'; expected "
+     "'name', 'kernel', 'smoothing_ratio', 'alpha', 'walls', 'viscosity', 'shifting' or 'negative_pressure'"},
+    {"misspeltKeyOfIsph", bulk, "[method]\nname = \"isph\"\nsmoothing = 1.2\n",
+     "bad.toml:18:1: unknown key 'smoothing' in [method] (isph); did you mean 'smoothing_ratio'?"},
+    {"bulkViscosityOfIsph", "bulk_modulus = 1e6\n", "[method]\nname = \"isph\"\n",
+     "bad.toml:16:1: unknown key 'bulk_viscosity' in [[material]] 'syrup': it belongs to the method 'mph-i'; "
+     "expected "
+     "'name', 'density' or 'dynamic_viscosity'"},
+    {"bulkModulusOfIsph", "bulk_viscosity = 1e4\nbulk_modulus = 1e6\n",
+     "bulk_modulus = 1e6\n[method]\nname = \"isph\"\n",
+     "bad.toml:16:1: unknown key 'bulk_modulus' in [[material]]"},
+    {"missingBulkModulus", "bulk_modulus = 1e6\n", "",
+     "bad.toml:12:1: bulk_modulus in [[material]] 'syrup': missing; expected a number not less than 0 [Pa]"},
+    {"smallSmoothingRatio", bulk, "[method]\nname = \"isph\"\nsmoothing_ratio = 0.89\n",
+     "bad.toml:18:19: smoothing_ratio in [method] (isph): expected a number from 0.9 to 2, found 0.89: with less "
+     "the "
+     "sums have too few neighbours"},
+    {"largeSmoothingRatio", bulk, "[method]\nname = \"isph\"\nsmoothing_ratio = 2.01\n",
+     "bad.toml:18:19: smoothing_ratio in [method] (isph): expected a number from 0.9 to 2, found 2.01"},
+    {"largeAlpha", bulk, "[method]\nname = \"isph\"\nalpha = 1.5\n",
+     "bad.toml:18:9: alpha in [method] (isph): expected a number from 0 to 1, found 1.5"},
+    {"negativeAlpha", bulk, "[method]\nname = \"isph\"\nalpha = -0.1\n",
+     "bad.toml:18:9: alpha in [method] (isph): expected a number not less than 0, found -0.1"},
+    {"negativeShifting", bulk, "[method]\nname = \"isph\"\nshifting = -1\n",
+     "bad.toml:18:12: shifting in [method] (isph): expected a number not less than 0, found -1"},
+    {"unknownKernel", bulk, "[method]\nname = \"isph\"\nkernel = \"gauss\"\n",
+     "bad.toml:18:10: kernel in [method] (isph): expected 'cubic-spline' or 'wendland-c2', found 'gauss'"},
+    {"unknownWalls", bulk, "[method]\nname = \"isph\"\nwalls = \"slip\"\n",
+     "bad.toml:18:9: walls in [method] (isph): expected 'no-slip' or 'free-slip', found 'slip'"},
+    {"unknownViscousStep", bulk, "[method]\nname = \"isph\"\nviscosity = 1\n",
+     "bad.toml:18:13: viscosity in [method] (isph): expected a string, found 1"},
+    {"numberForFlag", bulk, "[method]\nname = \"isph\"\nnegative_pressure = 1\n",
+     "bad.toml:18:21: negative_pressure in [method] (isph): expected true or false, found 1"},
+    {"preconditionerOfMph", bulk, "[method]\nname = \"isph\"\n[solver]\npreconditioner = \"bucket-multigrid\"\n",
+     "bad.toml:19:18: preconditioner in [solver] (isph): expected 'hat-multigrid', 'cell-multigrid', 'jacobi' or "
+     "'none', found 'bucket-multigrid'"},
+    {"preconditionerOfIsph", "[output]", "[solver]\npreconditioner = \"hat-multigrid\"\n[output]",
+     "bad.toml:40:18: preconditioner in [solver]: expected 'projected-multigrid', 'bucket-multigrid', "
+     "'block-jacobi', 'jacobi' or 'none', found 'hat-multigrid'"},
+    {"extrapolationForIsph", bulk, "[method]\nname = \"isph\"\n[solver]\nfirst_guess = \"linear\"\n",
+     "bad.toml:19:15: first_guess in [solver] (isph): expected 'last', found 'linear'"},
+    {"operatorForIsph", bulk, "[method]\nname = \"isph\"\n[solver]\noperator = \"assembled\"\n",
+     "bad.toml:19:1: unknown key 'operator' in [solver] (isph): it belongs to the method 'mph-i'; expected "
+     "'krylov', "
+     "'preconditioner', 'tolerance', 'max_iterations', 'precision', 'first_guess', 'cells' or 'hats'"},
+    {"neighboursForIsph", bulk, "[method]\nname = \"isph\"\n[solver]\nneighbours = \"lists\"\n",
+     "bad.toml:19:1: unknown key 'neighbours' in [solver] (isph): it belongs to the method 'mph-i'"},
+    {"projectedForIsph", bulk, "[method]\nname = \"isph\"\n[solver.projected]\ngrid_degree = 2\n",
+     "bad.toml:18:9: unknown key 'projected' in [solver] (isph): it belongs to the method 'mph-i'"},
+    {"multigridForIsph", bulk, "[method]\nname = \"isph\"\n[solver.multigrid]\nfinest_sweeps = 2\n",
+     "bad.toml:18:9: unknown key 'multigrid' in [solver] (isph): it belongs to the method 'mph-i'"},
+    {"cellsForMph", "[output]", "[solver.cells]\nlevels = 2\n[output]",
+     "bad.toml:39:9: unknown key 'cells' in [solver]: it belongs to the method 'isph'; expected 'krylov'"},
+    {"noSweeps", bulk, "[method]\nname = \"isph\"\n[solver.cells]\nsweeps = 0\n",
+     "bad.toml:19:10: sweeps in [solver.cells]: expected a whole number of at least 1, found 0"},
+    {"negativeLevels", bulk, "[method]\nname = \"isph\"\n[solver.cells]\nlevels = -1\n",
+     "bad.toml:19:10: levels in [solver.cells]: expected a whole number of at least 0, found -1"},
+    {"negativeHatDegree", bulk, "[method]\nname = \"isph\"\n[solver.hats]\nparticle_degree = -1\n",
+     "bad.toml:19:19: particle_degree in [solver.hats]: expected a whole number of at least 0, found -1"},
+    {"noHatIterations", bulk, "[method]\nname = \"isph\"\n[solver.hats]\niteration_bound = 0\n",
+     "bad.toml:19:19: iteration_bound in [solver.hats]: expected a whole number of at least 1, found 0"},
+    {"negativeCourantNumber", "end = 2e-3", "end = 2e-3\ncourant = -0.1",
+     "bad.toml:38:11: courant in [time]: expected a number not less than 0, found -0.1"},
+    {"oscillatingFluid", "max = [6e-3, 6e-3]",
+     "max = [6e-3, 6e-3]\noscillation = { amplitude = [1e-3, 0], period = 1 }",
+     "bad.toml:26:15: oscillation in [[body]] 'column' (box): only a body of type \"wall\" can have one"},
+    {"oscillationWithoutPeriod", "max = [12e-3, 0]", "max = [12e-3, 0]\noscillation = { amplitude = [1e-3, 0] }",
+     "bad.toml:34:15: period in the oscillation of [[body]] 'floor': missing; expected a positive number [s]"},
+    {"oscillationWithoutAmplitude", "max = [12e-3, 0]", "max = [12e-3, 0]\noscillation = { period = 1 }",
+     "bad.toml:34:15: amplitude in the oscillation of [[body]] 'floor': missing; expected an array of 2 finite "
+     "numbers [m]"},
+    {"oscillationIsATable", "max = [12e-3, 0]", "max = [12e-3, 0]\noscillation = 1",
+     "bad.toml:34:15: oscillation in [[body]] 'floor' (box): expected a table, found 1"},
+    {"unknownKeyOfOscillation", "max = [12e-3, 0]",
+     "max = [12e-3, 0]\noscillation = { amplitude = [1e-3, 0], period = 1, frequency = 1 }",
+     "bad.toml:34:52: unknown key 'frequency' in the oscillation of [[body]] 'floor'; expected 'amplitude', "
+     "'period' "
+     "or 'phase'"},
+    {"widthWithoutAxis", "[output]", "[width]\nfactor = 4\n[output]",
+     "bad.toml:39:1: axis in [width]: missing; expected a string"},
+    {"widthAlongNoAxis", "[output]", "[width]\naxis = \"z\"\nfrom = 0\nto = 1\n[output]",
+     "bad.toml:40:8: axis in [width]: expected 'x' or 'y', found 'z'"},
+    {"widthOfNothing", "[output]", "[width]\naxis = \"x\"\nfrom = 1\nto = 1\n[output]",
+     "bad.toml:42:6: to in [width]: expected more than from = 1, found 1"},
+    {"widthTimesNothing", "[output]", "[width]\naxis = \"x\"\nfrom = 0\nto = 1\nfactor = 0\n[output]",
+     "bad.toml:43:10: factor in [width]: expected a positive number, found 0"},
     {"noName", "name = \"column\"\n", "", "bad.toml:19:1: every [[body]] needs a name: name = \"...\""},
     {"nameTwice", "name = \"floor\"", "name = \"column\"", "bad.toml:27:1: two [[body]] are named 'column'"},
     {"noFluid", "type = \"fluid\"", "type = \"wall\"",
@@ -204,6 +301,8 @@ constexpr BadLine badLines[] = {
     {"unknownBackend", "run small.toml --backend gpu", "--backend: expected auto|cpu|cuda, found 'gpu'"},
     {"unknownPrecision", "run small.toml --precision half", "--precision: expected mixed|double, found 'half'"},
     {"noThreads", "run small.toml --threads 0", "--threads: expected a positive number, found '0'"},
+    {"factorWithoutWidth", "run small.toml --set width.factor=4",
+     "--set width.factor=4: axis in [width]: missing; expected a string"},
     {"negativeEndTime", "run small.toml --end-time=-1", "--end-time: expected a positive number, found '-1'"},
     {"endTimeBelowStep", "run small.toml --end-time 1e-4", "--end-time: expected at least one step of 0.001 s"},
     {"setWithoutValue", "run small.toml --set spacing", "--set spacing: expected key=value"},

@@ -30,7 +30,7 @@ std::vector<fs::path> caseFiles() {
 
 TEST(caseFiles, allAreReadAndTheirResolvedTextGivesTheSameCase) {
   const auto files = caseFiles();
-  EXPECT_GE(files.size(), 8u);
+  EXPECT_GE(files.size(), 12u);
   for (const fs::path& file : files)
     for (const char* resolution : {"resolution=0.5", "resolution=1", "resolution=3", "resolution=64"}) {
       const std::string overrides[] = {resolution};
@@ -132,9 +132,11 @@ shape = "cylinder"
 start = [-9, 0, 0]
 end = [-9, 5, 1]
 radius = 2
+oscillation = { amplitude = [0.1, 0, -2], period = 3, phase = 0.7 }
 [time]
 step = 1e-3
 end = 7
+courant = 0.3
 [method]
 pressure_radius = 2
 viscosity_radius = 3
@@ -160,7 +162,7 @@ iteration_bound = 55
 [output]
 interval = 0.25
 checkpoint_interval = 0.5
-fields = ["id", "pressure"]
+fields = ["id", "pressure", "body"]
 precision = "double"
 )";
 
@@ -180,9 +182,10 @@ TEST(readCase, takesEveryKey) {
   Shape ball, rod;
   ball.kind = ShapeKind::Sphere, ball.center = {1, 2, 3}, ball.radius = 4.1, ball.innerRadius = 0.5;
   rod.kind = ShapeKind::Cylinder, rod.start = {-9, 0, 0}, rod.end = {-9, 5, 1}, rod.radius = 2;
-  expected.bodies = {{"ball", BodyKind::Fluid, 1, {1, -2, 3.5}, ball}, {"rod", BodyKind::Wall, 0, {}, rod}};
-  expected.time = {1e-3 / 1.5, 7};
-  expected.method = {"mph-i", 2, 3};
+  expected.bodies = {{"ball", BodyKind::Fluid, 1, {1, -2, 3.5}, ball, {}},
+                     {"rod", BodyKind::Wall, 0, {}, rod, {{0.1, 0, -2}, 3, 0.7}}};
+  expected.time = {1e-3 / 1.5, 7, 0.3};
+  expected.method.pressureRadius = 2, expected.method.viscosityRadius = 3;
   expected.solver.krylov = KrylovKind::Cg;
   expected.solver.preconditioner = PreconditionerKind::BlockJacobi;
   expected.solver.operatorKind = OperatorKind::Assembled;
@@ -192,7 +195,7 @@ TEST(readCase, takesEveryKey) {
   expected.solver.maxIterations = 77;
   expected.solver.multigrid = {1, 5, 6, SmootherDiagonal::ExtendedJacobi, CoarseKind::Spgemm};
   expected.solver.projected = {7, 3, 1, 55};
-  expected.output = {0.25, 0.5, {false, true, false, false, true}, OutputPrecision::Double};
+  expected.output = {0.25, 0.5, {false, true, false, false, true, true}, OutputPrecision::Double};
   EXPECT_EQ(c, expected);
 
   c.resolution = 1;
@@ -254,7 +257,7 @@ density = 1500
   const Case base = readCase(shop / "cases/base.toml"), c = readCase(shop / "derived.toml");
   Case expected = base;
   expected.time.end = 3e-3;
-  expected.output.fields = {true, false, false, false, false};
+  expected.output.fields = {true, false, false, false, false, false};
   expected.materials[0].density = 1500;
   expected.materials.push_back({"water", 998, 1e-3, 1, 1});
   expected.bodies[1].material = 1;

@@ -86,4 +86,8 @@ inline std::string replaced(std::string text, const std::string& from, const std
   return text.replace(at, from.size(), to);
 }
 
+/// The same for ISPH.
+inline const std::string smallIsphCase =
+    replaced(smallCase, "bulk_viscosity = 1e4\nbulk_modulus = 1e6\n", "\n[method]\nname = \"isph\"\n");
+
 }  // namespace treacle::test

@@ -68,6 +68,15 @@ TEST(check, printsCountsNumbersAndCaseThatCanBeRunAgain) {
   EXPECT_EQ(readCase(shop / "again.toml"), expected);
 }
 
+TEST(check, countsTheLeastStepsWhereTheyVary) {
+  Workshop shop;
+  const Outcome outcome = prepared(shop).call("check small.toml --set time.courant=0.1 --set time.step=1.5e-3");
+  EXPECT_EQ(outcome.exitCode, 0);
+  EXPECT_THAT(outcome.err, IsEmpty());
+  EXPECT_THAT(outcome.out, HasSubstr("# steps: 2 or more\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("# Courant number: 0.1\n"));
+}
+
 TEST(run, leavesAllFiles) {
   Workshop shop;
   const Outcome outcome = prepared(shop).call("run small.toml --threads 1 -o out/here --end-time 3e-3");
@@ -133,6 +142,35 @@ TEST(run, framesFollowSimulationTime) {
   EXPECT_THAT(steps, testing::ElementsAre(0, 1, 3, 4, 5));
   EXPECT_EQ(shop.call("run small.toml --threads 1 --force --set output.interval=0").exitCode, 0);
   EXPECT_EQ(RunDirectory::open(shop / "small-run").frameCount(), 2u);
+}
+
+TEST(run, stepsFollowTheCourantNumberAndMeetTheEnd) {
+  Workshop shop;
+  const Outcome outcome =
+      prepared(shop).call("run small.toml --threads 1 --set time.courant=0.002 --end-time 4e-3");
+  ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, IsEmpty());
+  EXPECT_THAT(outcome.out,
+              HasSubstr("64 wall particles, steps of at most 0.001 s and Courant number 0.002 to 0.004 s"));
+  EXPECT_THAT(outcome.out, HasSubstr("  t = 0.004 s (100 %)  "));
+  const RunDirectory run = RunDirectory::open(shop / "small-run");
+  const auto rows = readHistory(run.history());
+  ASSERT_GT(rows.size(), 4u);
+  double time = 0, speed = 0;
+  for (const HistoryRow& row : rows) {
+    EXPECT_LE(row.timeStep, 1e-3);
+    EXPECT_LE(row.timeStep * speed, 0.002 * 1e-3 * (1 + 1e-9));
+    EXPECT_NEAR(row.time, time + row.timeStep, 1e-15);
+    time = row.time, speed = row.maxSpeed;
+  }
+  EXPECT_EQ(rows[0].timeStep, 1e-3);
+  EXPECT_NEAR(time, 4e-3, 1e-15);
+  // The frame of a multiple of 1 ms is the first one that is not before it.
+  ASSERT_EQ(run.frameCount(), 5u);
+  for (std::size_t k = 1; k < 5; ++k) {
+    EXPECT_GE(run.frameTime(k), 1e-3 * static_cast<double>(k) * (1 - 1e-9));
+    EXPECT_LT(run.frameTime(k), 1e-3 * static_cast<double>(k) + 1e-3);
+  }
 }
 
 TEST(run, quietPrintsNothing) {

@@ -49,6 +49,7 @@ void expectSame(const Particles<D>& a, const Particles<D>& b) {
   EXPECT_TRUE(sameBits(a.pressure, b.pressure));
   EXPECT_TRUE(sameBits(a.numberDensity, b.numberDensity));
   EXPECT_TRUE(sameBits(a.material, b.material));
+  EXPECT_TRUE(sameBits(a.body, b.body));
   EXPECT_TRUE(sameBits(a.id, b.id));
   EXPECT_TRUE(sameBits(a.acceleration, b.acceleration));
   EXPECT_TRUE(sameBits(a.jerk, b.jerk));
@@ -148,17 +149,23 @@ TEST(Checkpoint, OtherVersionsAndDimensionsAreRefused) {
   const auto path = directory / "c.h5";
   writeCheckpoint<3>(path, randomParticles<3>(5, 5), 1, 1);
   EXPECT_THAT(refusal<2>(path), HasSubstr("3 dimensions, expected 2"));
-  for (const int version : {0, 3}) {
+  for (const int version : {0, 4}) {
     changeAttribute(path, "version", version);
-    EXPECT_THAT(refusal<3>(path), HasSubstr(fmt::format("version {}, expected 1 to 2", version)));
+    EXPECT_THAT(refusal<3>(path), HasSubstr(fmt::format("version {}, expected 1 to 3", version)));
   }
 }
 
-TEST(Checkpoint, TheFirstVersionIsReadWithoutMemoryOfTheFlow) {
+TEST(Checkpoint, EarlierVersionsAreReadWithoutBodiesAndMemoryOfTheFlow) {
   TemporaryDirectory directory;
   const auto path = directory / "c.h5";
   Particles<3> particles = randomParticles<3>(33, 31);
   writeCheckpoint<3>(path, particles, 7, time3);
+  removeField(path, "body");
+  EXPECT_THAT(refusal<3>(path), HasSubstr("body"));
+  changeAttribute(path, "version", 2);
+  std::fill(particles.body.begin(), particles.body.end(), unknownBody);
+  expectSame(readCheckpoint<3>(path).particles, particles);
+
   removeField(path, "acceleration");
   removeField(path, "jerk");
   EXPECT_THAT(refusal<3>(path), HasSubstr("acceleration"));

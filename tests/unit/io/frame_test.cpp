@@ -25,6 +25,7 @@ Particles<D> shuffledParticles(std::uint32_t fluid, std::uint32_t walls) {
     particles.pressure[i] = 2 * id;
     particles.numberDensity[i] = 3 * id;
     particles.material[i] = static_cast<std::uint8_t>(particles.id[i] % 200);
+    particles.body[i] = static_cast<std::uint8_t>(particles.id[i] % 255);
   }
   return particles;
 }
@@ -45,6 +46,7 @@ void expectSortedCopy(std::uint32_t begin, std::uint32_t end) {
     EXPECT_EQ(frame.pressure[i], 2 * id);
     EXPECT_EQ(frame.numberDensity[i], 3 * id);
     EXPECT_EQ(frame.material[i], static_cast<std::int32_t>((begin + i) % 200));
+    EXPECT_EQ(frame.body[i], static_cast<std::int32_t>((begin + i) % 255));
   }
 }
 

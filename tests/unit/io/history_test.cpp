@@ -14,19 +14,31 @@ using namespace treacle::test;
 namespace {
 
 constexpr const char* header =
-    "step,time,iterations,residual,kinetic_energy,potential_energy,front_x,top,max_speed,seconds,fallbacks\n";
-constexpr const char* earlierHeader =
+    "step,time,time_step,iterations,residual,kinetic_energy,potential_energy,front_x,top,max_speed,mean_density,"
+    "density_error,seconds,fallbacks\n";
+constexpr const char* firstHeader =
     "step,time,iterations,residual,kinetic_energy,potential_energy,front_x,top,max_speed,seconds\n";
+constexpr const char* secondHeader =
+    "step,time,iterations,residual,kinetic_energy,potential_energy,front_x,top,max_speed,seconds,fallbacks\n";
+constexpr const char* timingColumns = ",search_s,lists_s,coefficients_s,coarse_s,solve_s,update_s";
+
+/// A header with other columns at its end.
+std::string extended(const char* columns) {
+  return std::string(columns, std::strlen(columns) - 1) + timingColumns + "\n";
+}
 
 HistoryRow row(int k) {
-  return {k,         k / 3.0, 200 + k, 1e-13 / (k + 1), std::exp(-k), -0.1 * k, std::sqrt(k), 1.0 / (k + 7),
-          1e300 * k, 1e-300,  k % 3};
+  return {k,        k / 3.0,      0.1 * k,       200 + k,   1e-13 / (k + 1),    std::exp(-k),
+          -0.1 * k, std::sqrt(k), 1.0 / (k + 7), 1e300 * k, 1 - 0.01 / (k + 1), 1e-3 / (k + 3),
+          1e-300,   k % 3};
 }
 
 bool equal(const HistoryRow& a, const HistoryRow& b) {
-  return a.step == b.step && a.time == b.time && a.iterations == b.iterations && a.residual == b.residual &&
-         a.kineticEnergy == b.kineticEnergy && a.potentialEnergy == b.potentialEnergy && a.frontX == b.frontX &&
-         a.top == b.top && a.maxSpeed == b.maxSpeed && a.seconds == b.seconds && a.fallbacks == b.fallbacks;
+  return a.step == b.step && a.time == b.time && a.timeStep == b.timeStep && a.iterations == b.iterations &&
+         a.residual == b.residual && a.kineticEnergy == b.kineticEnergy &&
+         a.potentialEnergy == b.potentialEnergy && a.frontX == b.frontX && a.top == b.top &&
+         a.maxSpeed == b.maxSpeed && a.meanDensity == b.meanDensity && a.densityError == b.densityError &&
+         a.seconds == b.seconds && a.fallbacks == b.fallbacks;
 }
 
 }  // namespace
@@ -35,10 +47,10 @@ TEST(History, FormatIsFixed) {
   TemporaryDirectory directory;
   HistoryWriter writer(directory / "history.csv");
   EXPECT_EQ(content(directory / "history.csv"), header);
-  writer.append({3, 0.003, 233, 9.5e-13, 1e-6, 0.04, 0.02125, 0.0195, 0.5, 0.25, 2});
+  writer.append({3, 0.003, 1e-3, 233, 9.5e-13, 1e-6, 0.04, 0.02125, 0.0195, 0.5, 0.998, 0.015, 0.25, 2});
   // Seen without closing the writer.
   EXPECT_EQ(content(directory / "history.csv"),
-            std::string(header) + "3,0.003,233,9.5e-13,1e-06,0.04,0.02125,0.0195,0.5,0.25,2\n");
+            std::string(header) + "3,0.003,0.001,233,9.5e-13,1e-06,0.04,0.02125,0.0195,0.5,0.998,0.015,0.25,2\n");
 }
 
 TEST(History, ReadsBackToTheSameBits) {
@@ -58,9 +70,8 @@ TEST(History, TimingsAreColumnsOfTheirOwn) {
   HistoryRow timed = row(4);
   timed.timings = {1, 2, 3, 4, 5.5, 6};
   HistoryWriter(path, true).append(timed);
-  const std::string text = content(path), names = header;
-  EXPECT_EQ(text.substr(0, text.find('\n')),
-            names.substr(0, names.size() - 1) + ",search_s,lists_s,coefficients_s,coarse_s,solve_s,update_s");
+  const std::string text = content(path);
+  EXPECT_TRUE(text.starts_with(extended(header))) << text;
   EXPECT_TRUE(text.ends_with(",1e-300,1,1,2,3,4,5.5,6\n")) << text;
   const HistoryRow read = readHistory(path).at(0);
   EXPECT_TRUE(equal(read, timed));
@@ -71,23 +82,28 @@ TEST(History, TimingsAreColumnsOfTheirOwn) {
   EXPECT_EQ(read.timings.solve, 5.5);
   EXPECT_EQ(read.timings.update, 6);
   put(path, text + "1,2,3,4,5,6,7,8,9,10\n");
-  EXPECT_NE(messageOf<InputError>([&] { readHistory(path); }).find(":3: expected 17 numbers"), std::string::npos);
+  EXPECT_NE(messageOf<InputError>([&] { readHistory(path); }).find(":3: expected 20 numbers"), std::string::npos);
 }
 
-TEST(History, FilesFromBeforeFallbacksWereCountedAreRead) {
+TEST(History, FilesOfEarlierVersionsAreRead) {
   TemporaryDirectory directory;
   const auto path = directory / "history.csv";
-  put(path, std::string(earlierHeader) + "1,2,3,4,5,6,7,8,9,10\n");
-  HistoryRow read = readHistory(path).at(0);
-  EXPECT_EQ(read.seconds, 10);
-  EXPECT_EQ(read.fallbacks, 0);
-  put(path, std::string(earlierHeader, std::strlen(earlierHeader) - 1) +
-                ",search_s,lists_s,coefficients_s,coarse_s,solve_s,update_s\n"
-                "1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16\n");
-  read = readHistory(path).at(0);
-  EXPECT_EQ(read.fallbacks, 0);
-  EXPECT_EQ(read.timings.search, 11);
-  EXPECT_EQ(read.timings.update, 16);
+  const auto read = [&](const std::string& text) {
+    put(path, text);
+    return readHistory(path).at(0);
+  };
+  HistoryRow expected{1, 2, 0, 3, 4, 5, 6, 7, 8, 9, 0, 0, 10, 0};
+  EXPECT_TRUE(equal(read(std::string(firstHeader) + "1,2,3,4,5,6,7,8,9,10\n"), expected));
+  HistoryRow timed = read(extended(firstHeader) + "1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16\n");
+  EXPECT_TRUE(equal(timed, expected));
+  EXPECT_EQ(timed.timings.search, 11);
+  EXPECT_EQ(timed.timings.update, 16);
+  expected.fallbacks = 11;
+  EXPECT_TRUE(equal(read(std::string(secondHeader) + "1,2,3,4,5,6,7,8,9,10,11\n"), expected));
+  timed = read(extended(secondHeader) + "1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17\n");
+  EXPECT_TRUE(equal(timed, expected));
+  EXPECT_EQ(timed.timings.search, 12);
+  EXPECT_EQ(timed.timings.update, 17);
 }
 
 TEST(History, NotANumberIsKept) {
@@ -103,19 +119,19 @@ TEST(History, NotANumberIsKept) {
 
 TEST(History, UnfinishedLastLineIsLeftOut) {
   TemporaryDirectory directory;
-  put(directory / "history.csv", std::string(header) + "1,2,3,4,5,6,7,8,9,10,0\n2,3,4,5");
+  put(directory / "history.csv", std::string(header) + "1,2,3,4,5,6,7,8,9,10,11,12,13,0\n2,3,4,5");
   EXPECT_EQ(readHistory(directory / "history.csv").size(), 1u);
 }
 
 TEST(History, BadLinesAreNamed) {
   TemporaryDirectory directory;
   const auto path = directory / "history.csv";
-  for (const char* bad :
-       {"1,2,3,4,5,6,7,8,9,10\n", "1,2,3,4,5,6,7,8,9,10,11,12\n", "1,2,3,x,5,6,7,8,9,10,0\n", "\n",
-        "1,2,3.5,4,5,6,7,8,9,10,0\n", "1,2,3,4,5,6,7,8,9,10,0.5\n", "1 2 3 4 5 6 7 8 9 10 0\n"}) {
-    put(path, std::string(header) + "1,2,3,4,5,6,7,8,9,10,0\n" + bad);
+  for (const char* bad : {"1,2,3,4,5,6,7,8,9,10,11,12,13\n", "1,2,3,4,5,6,7,8,9,10,11,12,13,14,15\n",
+                          "1,2,3,4,x,6,7,8,9,10,11,12,13,0\n", "\n", "1,2,3,4.5,5,6,7,8,9,10,11,12,13,0\n",
+                          "1,2,3,4,5,6,7,8,9,10,11,12,13,0.5\n", "1 2 3 4 5 6 7 8 9 10 11 12 13 0\n"}) {
+    put(path, std::string(header) + "1,2,3,4,5,6,7,8,9,10,11,12,13,0\n" + bad);
     const std::string message = messageOf<InputError>([&] { readHistory(path); });
-    EXPECT_EQ(message.find(path.string() + ":3: expected 11 numbers"), 0u) << message;
+    EXPECT_EQ(message.find(path.string() + ":3: expected 14 numbers"), 0u) << message;
   }
   put(path, "time,step\n");
   EXPECT_NE(messageOf<InputError>([&] { readHistory(path); }).find("expected the header"), std::string::npos);

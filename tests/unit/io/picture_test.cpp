@@ -223,8 +223,11 @@ TEST(Picture, HistoryCurvesAreThere) {
     std::vector<HistoryRow> rows;
     for (int k = 1; k <= count; ++k) {
       const double t = 0.2 * k / count;
-      rows.push_back(
-          {k, t, 230 + k % 9, 1e-13, t * (0.2 - t), 1 - t, 0.02 + t, 0.02 - 0.01 * t, std::sin(40 * t), 0.1});
+      HistoryRow row;
+      row.step = k, row.time = t, row.iterations = 230 + k % 9;
+      row.kineticEnergy = t * (0.2 - t), row.potentialEnergy = 1 - t;
+      row.frontX = 0.02 + t, row.top = 0.02 - 0.01 * t, row.maxSpeed = std::sin(40 * t);
+      rows.push_back(row);
     }
     drawHistory(directory / "a.png", rows, "Test");
     const Png png(directory / "a.png");

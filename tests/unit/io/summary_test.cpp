@@ -15,6 +15,7 @@ RunSummary summary() {
   s.precision = "double", s.title = "Dam \"break\" µ", s.dimensions = 2;
   s.fluidParticles = 400, s.wallParticles = 900, s.steps = 200, s.time = 0.2;
   s.meanIterations = 233.25, s.firstIterations = 338, s.lastIterations = 243, s.fallbacks = 7;
+  s.meanDensity = 0.998, s.densityError = 0.0625, s.largestDensityError = 0.125;
   s.phaseSeconds = {{"search", 0.5}, {"solve", 1.5}};
   s.outputThreadSeconds = 0.125, s.wallSeconds = 2.25, s.peakMemory = 1000000, s.peakDeviceMemory = 3000000,
   s.done = true;
@@ -45,6 +46,7 @@ TEST(Summary, HoldsEverything) {
   EXPECT_EQ(json["iterations"]["first"], 338);
   EXPECT_EQ(json["iterations"]["last"], 243);
   EXPECT_EQ(json["fallbacks"], 7);
+  EXPECT_EQ(json["density"].dump(), R"({"mean":0.998,"error":0.0625,"largest_error":0.125})");
   EXPECT_EQ(json["seconds_per_phase"].dump(), R"({"search":0.5,"solve":1.5})");
   EXPECT_EQ(json["output_thread_seconds"], 0.125);
   EXPECT_EQ(json["wall_seconds"], 2.25);

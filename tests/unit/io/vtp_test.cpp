@@ -61,8 +61,9 @@ void expectFile(const RawVtp& file, const Frame& frame, const std::string& realT
                              std::to_string(n) + "\" "),
             std::string::npos);
   const std::map<std::string, std::string> types{
-      {"velocity", realType}, {"pressure", realType}, {"number_density", realType}, {"material", "Int32"},
-      {"id", "UInt32"},       {"position", realType}, {"connectivity", "Int32"},    {"offsets", "Int32"}};
+      {"velocity", realType}, {"pressure", realType},    {"number_density", realType},
+      {"material", "Int32"},  {"body", "Int32"},         {"id", "UInt32"},
+      {"position", realType}, {"connectivity", "Int32"}, {"offsets", "Int32"}};
   EXPECT_EQ(file.type, types);
   const auto position = file.values<Real>("position"), velocity = file.values<Real>("velocity");
   const auto pressure = file.values<Real>("pressure"), density = file.values<Real>("number_density");
@@ -85,6 +86,7 @@ void expectFile(const RawVtp& file, const Frame& frame, const std::string& realT
     ASSERT_EQ(offsets[i], static_cast<std::int32_t>(i + 1));
   }
   EXPECT_EQ(file.values<std::int32_t>("material"), frame.material);
+  EXPECT_EQ(file.values<std::int32_t>("body"), frame.body);
   EXPECT_EQ(file.values<std::uint32_t>("id"), frame.id);
 }
 
@@ -123,6 +125,7 @@ TEST(Vtp, DoublePrecisionReadsBackToTheSameBits) {
     EXPECT_EQ(read.pressure, frame.pressure);
     EXPECT_EQ(read.numberDensity, frame.numberDensity);
     EXPECT_EQ(read.material, frame.material);
+    EXPECT_EQ(read.body, frame.body);
     EXPECT_EQ(read.id, frame.id);
   }
 }
@@ -145,7 +148,7 @@ TEST(Vtp, HoldsOnlySelectedFields) {
   TemporaryDirectory directory;
   const Frame frame = sampleFrame(2, 50);
   OutputFields fields;
-  fields.pressure = fields.id = fields.material = false;
+  fields.pressure = fields.id = fields.material = fields.body = false;
   writeVtp(directory / "a.vtp", frame, fields, OutputPrecision::Double);
   const RawVtp raw(directory / "a.vtp");
   EXPECT_EQ(raw.bytes.size(), 5u);  // velocity, number_density, position, connectivity, offsets
@@ -153,7 +156,7 @@ TEST(Vtp, HoldsOnlySelectedFields) {
   const Frame read = readVtp(directory / "a.vtp");
   EXPECT_TRUE(read.velocity == frame.velocity);
   EXPECT_EQ(read.numberDensity, frame.numberDensity);
-  EXPECT_TRUE(read.pressure.empty() && read.material.empty() && read.id.empty());
+  EXPECT_TRUE(read.pressure.empty() && read.material.empty() && read.body.empty() && read.id.empty());
 }
 
 TEST(Vtp, TruncatedFilesAreRefusedWhereverTheyEnd) {

@@ -5,6 +5,8 @@
 
 #include "sample_case.hpp"
 
+#include <numbers>
+
 namespace treacle::test {
 namespace {
 
@@ -41,6 +43,87 @@ TEST(courantNumber, takesTheFastestOfFallFluidAndWalls) {
   c = damBreak();
   c.gravity = {-10 * std::sqrt(0.5), -10 * std::sqrt(0.5)};  // along the diagonal of the column
   EXPECT_NEAR(courantNumber(c), std::sqrt(2 * 10 * 20e-3 * std::sqrt(2.0)), 1e-12);
+}
+
+TEST(courantNumber, takesTheTopSpeedOfAnOscillation) {
+  Case c = damBreak();
+  c.bodies[1].oscillation = {{0.3, 0.4}, 2 * std::numbers::pi / 10, 1};
+  EXPECT_NEAR(courantNumber(c), 5, 1e-12);
+  c.bodies[1].velocity = {3, 0};
+  EXPECT_NEAR(courantNumber(c), 8, 1e-12);
+}
+
+TEST(courantNumber, isBoundedWhereItLimitsTheSteps) {
+  Case c = damBreak();
+  c.bodies[0].velocity = {3, 4};
+  c.time.courant = 0.2;
+  EXPECT_EQ(courantNumber(c), 0.2);
+  c.time.courant = 20;
+  EXPECT_NEAR(courantNumber(c), 5, 1e-12);
+}
+
+/// ISPH knows neither bulk modulus nor bulk viscosity; what stands there counts for nothing.
+Case isphDamBreak() {
+  Case c = damBreak();
+  c.method.kind = MethodKind::Isph;
+  c.materials[0].bulkModulus = 1, c.materials[0].bulkViscosity = 0;
+  c.time.step = 1e-4;
+  return c;
+}
+
+TEST(stabilityNumbers, haveNoCompressionForIsph) {
+  const auto numbers = stabilityNumbers(isphDamBreak());
+  EXPECT_EQ(numbers[0].compression, 0);
+  EXPECT_DOUBLE_EQ(numbers[0].shearDiffusion, 1);
+}
+
+TEST(caseWarnings, noneForTheIsphDamBreak) { EXPECT_THAT(caseWarnings(isphDamBreak()), IsEmpty()); }
+
+TEST(caseWarnings, longStepsOfIsph) {
+  Case c = isphDamBreak();
+  c.bodies[0].velocity = {5.1, 0};
+  EXPECT_THAT(caseWarnings(c), ElementsAre(HasSubstr("Courant number of steps of 0.0001 s is 0.51")));
+  c.time.courant = 0.25;
+  EXPECT_THAT(caseWarnings(c), IsEmpty());
+  c.time.courant = 0;
+  c.method.kind = MethodKind::MphI;
+  c.materials[0].bulkViscosity = 1;
+  EXPECT_THAT(caseWarnings(c), IsEmpty());
+}
+
+TEST(caseWarnings, wallsThinnerThanTheReachOfTheKernel) {
+  Case c = isphDamBreak();
+  c.bodies[1].shape = box({0, -2.4e-3}, {40e-3, 0});
+  EXPECT_THAT(caseWarnings(c), IsEmpty());
+  c.method.isph.smoothingRatio = 1.3;
+  EXPECT_THAT(
+      caseWarnings(c),
+      ElementsAre("wall 'floor' is 2.4 mm thick along y, thinner than the reach 2 h of the kernel = 2.6 mm "
+                  "(2.6 spacings): fluid next to it misses neighbours"));
+  c = damBreak();
+  c.method.pressureRadius = 11;
+  EXPECT_THAT(caseWarnings(c), ElementsAre(HasSubstr("pressure radius h_p = 11 mm (11 spacings)")));
+}
+
+TEST(Case, radiiFollowFromTheMethod) {
+  Case c = damBreak();
+  EXPECT_DOUBLE_EQ(c.interactionRadius(), 3.5e-3);
+  EXPECT_DOUBLE_EQ(c.searchEdge(), 3.5e-3);
+  c.method.viscosityRadius = 2;
+  EXPECT_DOUBLE_EQ(c.interactionRadius(), 2e-3);
+  EXPECT_DOUBLE_EQ(c.searchEdge(), 3.5e-3);
+  c.method.kind = MethodKind::Isph;
+  EXPECT_DOUBLE_EQ(c.interactionRadius(), 2.4e-3);
+  EXPECT_DOUBLE_EQ(c.searchEdge(), 2.4e-3);
+}
+
+TEST(Case, endsAfterItsStepsOrWhereTheyVaryAtItsTime) {
+  Case c = damBreak();
+  EXPECT_FALSE(c.atEnd(199, 1));
+  EXPECT_TRUE(c.atEnd(200, 0));
+  c.time.courant = 0.2;
+  EXPECT_FALSE(c.atEnd(10000, 0.2 * (1 - 1e-8)));
+  EXPECT_TRUE(c.atEnd(1, 0.2 * (1 - 1e-10)));
 }
 
 TEST(caseWarnings, noneForTheDamBreak) { EXPECT_THAT(caseWarnings(damBreak()), IsEmpty()); }
@@ -86,6 +169,8 @@ TEST(caseWarnings, timesThatAreNotWholeNumbersOfSteps) {
   c.output.interval = 1.5e-3;
   EXPECT_THAT(caseWarnings(c), ElementsAre(HasSubstr("makes 200 steps and ends at 0.2 s"),
                                            HasSubstr("output.interval = 0.0015 s")));
+  c.time.courant = 0.2;  // steps vary: no time is a multiple of theirs
+  EXPECT_THAT(caseWarnings(c), IsEmpty());
   c.time = {1e-3 / 64, 0.2};  // whole but for rounding
   c.output.interval = 0.01;
   EXPECT_THAT(caseWarnings(c), IsEmpty());

@@ -58,6 +58,7 @@ TEST(createParticles, fillsBoxesWithCellCentredLattices) {
     const bool fluid = i < 6;
     EXPECT_EQ(p.velocity[i], fluid ? (Vec<2>{5, 0}) : (Vec<2>{0, 7}));
     EXPECT_EQ(p.material[i], fluid ? 1 : 0);
+    EXPECT_EQ(p.body[i], fluid ? 1 : 0);
     EXPECT_EQ(p.id[i], i);
     EXPECT_EQ(p.pressure[i], 0);
     EXPECT_EQ(p.numberDensity[i], 0);
@@ -142,6 +143,7 @@ TEST(createParticles, earlierBodyKeepsThePlace) {
               ElementsAre("body 'second': 8 of 16 particles left out, their place is taken by body 'first'"));
   EXPECT_GE(leastDistance(p), 0.5);
   EXPECT_EQ(p.position[16], (Vec<2>{4.7, 0.5}));
+  for (std::uint32_t i = 0; i < p.count; ++i) EXPECT_EQ(p.body[i], i < 16 ? 0 : 1);
 }
 
 TEST(createParticles, overlapCountsAcrossPeriodicBoundaries) {

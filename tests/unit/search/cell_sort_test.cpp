@@ -19,6 +19,7 @@ void checkSort(std::uint32_t fluid, std::uint32_t wall) {
   EXPECT_EQ(fluidIds.size(), fluid);
   EXPECT_EQ(wallIds.size(), wall);
   for (std::uint32_t i = 0; i < p.count; ++i) ASSERT_EQ(p.position[i], before[p.id[i]]) << "fields went apart";
+  for (std::uint32_t i = 0; i < p.count; ++i) ASSERT_EQ(p.body[i], p.id[i] % 7) << "fields went apart";
   for (std::uint32_t i = 0; i < fluid; ++i) ASSERT_EQ(p.acceleration[i], -p.position[i]) << "fields went apart";
   for (std::uint32_t i = 0; i < fluid; ++i) ASSERT_EQ(r.ranges.key[i], r.grid.key(p.position[i]));
   EXPECT_TRUE(std::is_sorted(r.ranges.key.begin(), r.ranges.key.end()));

@@ -1,0 +1,70 @@
+#pragma once
+
+#include "treacle/method/mph_pairs.hpp"
+#include "treacle/method/smoothing_kernel.hpp"
+#include "treacle/method/sorted_particles.hpp"
+#include "treacle/search/neighbour_rows.hpp"
+
+#include <cstdint>
+#include <span>
+
+namespace treacle {
+
+/// A particle is at the free surface where it has few neighbours, or where they stand on one side of it: its
+/// density is below `sparse` of that of a full lattice, or below `dense` with a lack of neighbours |sum V grad W|
+/// above `oneSided`, in units of 1/l. The first catches spray and threads, the second sheets and surfaces, and not
+/// the hollows that open for a few steps inside a splashing body. Single particles jammed into walls have no
+/// equation to take a pressure from: with less than fewest() fluid neighbours (a corner has 7 in 2D and 16 in 3D)
+/// they count, too.
+struct SurfaceCriterion {
+  double sparse = 0.75, dense = 1.05, oneSided = 0.2;
+  TREACLE_HD static constexpr int fewest(int dimensions) { return dimensions == 2 ? 4 : 8; }
+};
+
+/// What the sums of ISPH read: sorted particles, their neighbours and the constants of the case.
+template <int D>
+struct IsphPairs : SortedParticles<D> {
+  NeighbourRowsView fluidRows;     // FluidOfFluid
+  std::uint64_t fluidEntries = 0;  // of these rows
+  NeighbourRowsView wallRows;      // WallsOfFluid
+  NeighbourRowsView wallsOwn;      // FluidOfWalls
+  const std::uint8_t* body = nullptr;
+  const Vec<D>* bodyAcceleration = nullptr;  // per body: of walls with a prescribed motion [m/s2]
+  SmoothingKernel<D> kernel{};
+  MaterialTable materials;
+  SurfaceCriterion surface;
+  Vec<D> gravity{};               // [m/s2]
+  double volume = 0;              // of a particle, l^D [m^D]
+  double latticeDensity = 0;      // sum of V W over a full lattice [-]
+  double wallContact = 0;         // |sum V grad W| of a wall whose first layer is one spacing away [1/m]
+  double timeStep = 0;            // [s]
+  double alpha = 0;               // [-]
+  bool noSlip = true;             // walls hold the fluid by its viscosity
+  bool negativePressure = false;  // or cut to zero
+
+  /// V |W'| / r [1/m2]: V grad_i W = slope (x_j - x_i).
+  TREACLE_HD double slope(double r) const { return volume * kernel.slope(r); }
+  /// Coefficient of p_i - p_j in the pressure equation [O23 eq. (11)], with 1/rho of the pair's mean [m/kg].
+  TREACLE_HD double pressureCoefficient(double r, std::uint8_t a, std::uint8_t b) const {
+    return 4 * slope(r) / (materials.density[a] + materials.density[b]);
+  }
+  /// Pressure that a fluid particle with pressure p sees in a wall at distance d: the wall holds it against
+  /// gravity in the frame of the wall, dp/dn = rho (g - a_wall).n.
+  TREACLE_HD double wallPressure(double p, std::uint32_t fluid, std::uint32_t wall, const Vec<D>& d) const {
+    Vec<D> g = gravity;
+    if (bodyAcceleration) g -= bodyAcceleration[body[wall]];
+    const double outside = p + materials.density[this->material[fluid]] * dot(g, d);
+    return negativePressure || outside > 0 ? outside : 0;
+  }
+};
+
+/// The constants of a case, without particles.
+template <int D>
+IsphPairs<D> makeIsphPairs(const Case& c);
+
+/// Largest time step [s] at which the explicit viscous step of a case is used: half of what is stable in a full
+/// neighbourhood; infinite without viscosity.
+template <int D>
+double explicitViscousLimit(const IsphPairs<D>& pairs);
+
+}  // namespace treacle

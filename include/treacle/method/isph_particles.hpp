@@ -1,0 +1,58 @@
+#pragma once
+
+#include "treacle/core/cuda.hpp"
+#include "treacle/core/vec.hpp"
+
+#include <cstdint>
+#include <span>
+
+namespace treacle {
+
+/// What an ISPH step does fluid particle by fluid particle, without neighbours; spans in the backend's memory.
+
+/// p = 0 at the free surface and, where `cut`, where it is negative.
+void settlePressure(Context<Cpu>&, std::span<const std::uint8_t> surface, bool cut, std::span<double> p);
+void settlePressure(Context<Cuda>&, std::span<const std::uint8_t> surface, bool cut, std::span<double> p);
+
+/// Shifting towards where neighbours lack: displacement -coefficient l^2 sum V grad W, at most a tenth of l, not
+/// at the free surface.
+struct Shifting {
+  double coefficient;  // [-]
+  double spacing;      // l [m]
+  double timeStep;     // [s]
+};
+
+/// transport = velocity + displacement / dt: what the particles move with.
+template <int D>
+void shiftedVelocity(Context<Cpu>&, const Shifting& shifting, std::span<const Vec<D>> deficit,
+                     std::span<const std::uint8_t> surface, std::span<const Vec<D>> velocity,
+                     std::span<Vec<D>> transport);
+template <int D>
+void shiftedVelocity(Context<Cuda>&, const Shifting& shifting, std::span<const Vec<D>> deficit,
+                     std::span<const std::uint8_t> surface, std::span<const Vec<D>> velocity,
+                     std::span<Vec<D>> transport);
+
+/// The two formulas, for one particle.
+TREACLE_HD inline double settledPressure(bool surface, bool cut, double p) {
+  return surface || (cut && p < 0) ? 0 : p;
+}
+template <int D>
+TREACLE_HD Vec<D> shiftedVelocity(const Shifting& s, const Vec<D>& deficit, bool surface, const Vec<D>& velocity) {
+  if (surface) return velocity;
+  Vec<D> displacement = (-s.coefficient * s.spacing * s.spacing) * deficit;
+  const double length = norm(displacement), most = 0.1 * s.spacing;
+  if (length > most) displacement *= most / length;
+  return velocity + (1 / s.timeStep) * displacement;
+}
+
+/// component k of v as a vector of numbers, and back.
+template <int D>
+void takeComponent(Context<Cpu>&, std::span<const Vec<D>> v, int k, std::span<double> x);
+template <int D>
+void takeComponent(Context<Cuda>&, std::span<const Vec<D>> v, int k, std::span<double> x);
+template <int D>
+void putComponent(Context<Cpu>&, std::span<const double> x, int k, std::span<Vec<D>> v);
+template <int D>
+void putComponent(Context<Cuda>&, std::span<const double> x, int k, std::span<Vec<D>> v);
+
+}  // namespace treacle

@@ -1,0 +1,85 @@
+#pragma once
+
+#include "treacle/core/backend.hpp"
+#include "treacle/core/buffer.hpp"
+#include "treacle/core/cuda.hpp"
+#include "treacle/search/cell_grid.hpp"
+#include "treacle/search/cell_sort.hpp"
+
+#include <cstdint>
+#include <span>
+
+namespace treacle {
+
+/// Whose rows, and who stands in them.
+enum class RowKind {
+  FluidOfFluid,  // the fluid around each fluid particle, itself included: also the pattern of a matrix
+  WallsOfFluid,  // the walls around each fluid particle
+  FluidOfWalls   // the fluid around each active wall particle
+};
+
+/// Neighbours of every particle in compressed rows, the near ones first: row k, of particle first + k, is
+/// column[rowStart[k] … rowStart[k+1]-1], and its first nearCount[k] lie within the near radius. Of a pair the
+/// nearest periodic images are meant (CellGrid::difference).
+struct NeighbourRowsView {
+  std::uint32_t first = 0, count = 0;
+  const std::uint64_t* rowStart = nullptr;
+  const std::uint32_t* nearCount = nullptr;
+  const std::uint32_t* column = nullptr;
+};
+
+template <class Backend = Cpu>
+struct NeighbourRows {
+  std::uint32_t first = 0;
+  Buffer<std::uint64_t, Backend> rowStart;
+  Buffer<std::uint32_t, Backend> nearCount, column;
+
+  NeighbourRowsView view() const {
+    return {first, static_cast<std::uint32_t>(nearCount.size()), rowStart.data(), nearCount.data(), column.data()};
+  }
+  std::size_t bytes() const { return rowStart.bytes() + nearCount.bytes() + column.bytes(); }
+};
+
+struct RowRadii {
+  double near, far;  // [m]
+};
+
+/// Fills the rows with all particles of the kind within the far radius, in the order of the cells around a
+/// particle. `fluidCount`, `activeCount`: fluid particles come first, then the active walls.
+template <int D>
+void findNeighbours(Context<Cpu>&, const CellGrid<D>& grid, const CellRangesView& cells,
+                    std::span<const Vec<D>> position, std::uint32_t fluidCount, std::uint32_t activeCount,
+                    RowRadii radii, RowKind kind, NeighbourRows<>& rows);
+template <int D>
+void findNeighbours(Context<Cuda>&, const CellGrid<D>& grid, const CellRangesView& cells,
+                    std::span<const Vec<D>> position, std::uint32_t fluidCount, std::uint32_t activeCount,
+                    RowRadii radii, RowKind kind, NeighbourRows<Cuda>& rows);
+
+/// The rows of a kind: whose they are, and who is looked for.
+struct RowSearch {
+  std::uint32_t first, count;
+  bool walls;
+
+  static RowSearch make(RowKind kind, std::uint32_t fluidCount, std::uint32_t activeCount) {
+    if (kind == RowKind::FluidOfWalls) return {fluidCount, activeCount - fluidCount, false};
+    return {0, fluidCount, kind == RowKind::WallsOfFluid};
+  }
+};
+
+/// Calls f(j, near) for the neighbours of particle i.
+template <int D, class F>
+TREACLE_HD void forEachNeighbour(const CellGrid<D>& grid, const CellRangesView& cells, const Vec<D>* position,
+                                 std::uint32_t i, const RowRadii& radii, bool walls, F&& f) {
+  const Vec<D> x = position[i];
+  const double near2 = radii.near * radii.near, far2 = radii.far * radii.far;
+  forEachAdjacentCell(grid, grid.cellOf(x), [&](const Vec<D, int>& cell) {
+    const std::size_t c = grid.linear(cell);
+    const std::uint32_t end = walls ? cells.wallEnd[c] : cells.fluidEnd[c];
+    for (std::uint32_t j = walls ? cells.wallBegin[c] : cells.fluidBegin[c]; j < end; ++j) {
+      const double r2 = norm2(grid.difference(x, position[j]));
+      if (r2 < far2) f(j, r2 < near2);
+    }
+  });
+}
+
+}  // namespace treacle

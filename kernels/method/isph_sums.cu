@@ -1,0 +1,107 @@
+#include "treacle/method/isph_sums.hpp"
+
+#include "core/launch.hpp"
+
+namespace treacle {
+namespace {
+
+/// Lanes that share a particle's neighbours.
+constexpr int rowLanes = 8;
+
+template <int Values>
+__device__ inline void sumOverLanes(double* sum) {
+  for (int n = 0; n < Values; ++n)
+    for (int s = rowLanes / 2; s > 0; s /= 2) sum[n] += __shfl_xor_sync(~0u, sum[n], s);
+}
+
+/// visit(j, d, r) for this lane's share of a row.
+template <int D, class Visit>
+__device__ inline void visitRow(const IsphPairs<D>& pairs, const NeighbourRowsView& rows, std::uint32_t row,
+                                const Vec<D>& x, Visit&& visit) {
+  const std::uint64_t end = rows.rowStart[row + 1];
+  for (std::uint64_t k = rows.rowStart[row] + threadIdx.x % rowLanes; k < end; k += rowLanes) {
+    const std::uint32_t j = rows.column[k];
+    const Vec<D> d = pairs.grid.difference(x, pairs.position[j]);
+    visit(j, d, norm(d));
+  }
+}
+
+/// Eight lanes per fluid particle; reads its neighbours and what the term reads; writes what the term stores. No
+/// atomics.
+template <int D, class Term>
+__global__ void __launch_bounds__(128) fluidSumsKernel(const __grid_constant__ IsphPairs<D> pairs, Term term) {
+  const std::uint32_t i = (blockIdx.x * blockDim.x + threadIdx.x) / rowLanes;
+  const bool used = i < pairs.fluidCount;
+  double sum[Term::values] = {};
+  if (used) {
+    const Vec<D> x = pairs.position[i];
+    visitRow(pairs, pairs.fluidRows, i, x,
+             [&](std::uint32_t j, const Vec<D>& d, double r) { term.fluid(pairs, i, j, d, r, sum); });
+    visitRow(pairs, pairs.wallRows, i, x,
+             [&](std::uint32_t j, const Vec<D>& d, double r) { term.wall(pairs, i, j, d, r, sum); });
+  }
+  sumOverLanes<Term::values>(sum);
+  if (used && threadIdx.x % rowLanes == 0) term.store(pairs, i, sum);
+}
+
+/// The same per active wall particle and its fluid neighbours.
+template <int D, class Term>
+__global__ void __launch_bounds__(128) wallSumsKernel(const __grid_constant__ IsphPairs<D> pairs, Term term) {
+  const std::uint32_t row = (blockIdx.x * blockDim.x + threadIdx.x) / rowLanes, i = pairs.wallsOwn.first + row;
+  const bool used = row < pairs.wallsOwn.count;
+  double sum[Term::values] = {};
+  if (used)
+    visitRow(pairs, pairs.wallsOwn, row, pairs.position[i],
+             [&](std::uint32_t j, const Vec<D>& d, double r) { term.fluid(pairs, i, j, d, r, sum); });
+  sumOverLanes<Term::values>(sum);
+  if (used && threadIdx.x % rowLanes == 0) term.store(pairs, i, sum);
+}
+
+/// One thread per fluid particle and row of the matrix. No atomics.
+template <int D, class T, class Row>
+__global__ void __launch_bounds__(128)
+    pairMatrixKernel(const __grid_constant__ IsphPairs<D> pairs, Row row, PairMatrixParts<D, T> parts) {
+  const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
+  if (i < pairs.fluidCount) PairMatrixRow<D, T, Row>{pairs, row, parts}.fill(i);
+}
+
+}  // namespace
+
+template <int D, class Term>
+void sumOnFluid(Context<Cuda>& context, const IsphPairs<D>& pairs, const Term& term) {
+  launch(context, blocksFor(std::size_t{pairs.fluidCount} * rowLanes, 128), 128, 0, fluidSumsKernel<D, Term>,
+         pairs, term);
+}
+
+template <int D, class Term>
+void sumOnWalls(Context<Cuda>& context, const IsphPairs<D>& pairs, const Term& term) {
+  launch(context, blocksFor(std::size_t{pairs.wallsOwn.count} * rowLanes, 128), 128, 0, wallSumsKernel<D, Term>,
+         pairs, term);
+}
+
+template <int D, class T, class Row>
+void fillPairMatrix(Context<Cuda>& context, const IsphPairs<D>& pairs, const Row& row,
+                    const PairMatrixParts<D, T>& parts) {
+  launch(context, blocksFor(pairs.fluidCount, 128), 128, 0, pairMatrixKernel<D, T, Row>, pairs, row, parts);
+}
+
+#define TREACLE_INSTANTIATE(D)                                                                 \
+  template void sumOnFluid(Context<Cuda>&, const IsphPairs<D>&, const DensityTerm<D>&);        \
+  template void sumOnFluid(Context<Cuda>&, const IsphPairs<D>&, const PredictorTerm<D>&);      \
+  template void sumOnFluid(Context<Cuda>&, const IsphPairs<D>&, const ViscousSourceTerm<D>&);  \
+  template void sumOnFluid(Context<Cuda>&, const IsphPairs<D>&, const PressureSourceTerm<D>&); \
+  template void sumOnFluid(Context<Cuda>&, const IsphPairs<D>&, const CorrectorTerm<D>&);      \
+  template void sumOnWalls(Context<Cuda>&, const IsphPairs<D>&, const WallPressureTerm<D>&);   \
+  template void fillPairMatrix(Context<Cuda>&, const IsphPairs<D>&, const PressureRow<D>&,     \
+                               const PairMatrixParts<D, double>&);                             \
+  template void fillPairMatrix(Context<Cuda>&, const IsphPairs<D>&, const PressureRow<D>&,     \
+                               const PairMatrixParts<D, float>&);                              \
+  template void fillPairMatrix(Context<Cuda>&, const IsphPairs<D>&, const ViscousRow<D>&,      \
+                               const PairMatrixParts<D, double>&);                             \
+  template void fillPairMatrix(Context<Cuda>&, const IsphPairs<D>&, const ViscousRow<D>&,      \
+                               const PairMatrixParts<D, float>&);
+TREACLE_INSTANTIATE(2)
+TREACLE_INSTANTIATE(3)
+#undef TREACLE_INSTANTIATE
+
+}  // namespace treacle

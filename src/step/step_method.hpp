@@ -1,0 +1,50 @@
+#pragma once
+
+#include "flow_state.hpp"
+#include "staged_report.hpp"
+#include "treacle/step/diagnostics.hpp"
+
+#include <memory>
+
+namespace treacle {
+
+/// What a method does in a time step, in this order, on a state that it refers to.
+template <int D, class Backend>
+class StepMethod {
+ public:
+  virtual ~StepMethod() = default;
+
+  /// Sorts the particles into cells.
+  virtual void sort() = 0;
+  virtual void buildLists() = 0;
+  /// Densities of frame 0, where no step has been made.
+  virtual void computeDensities() = 0;
+  /// Everything that the linear system consists of, for state.timeStep.
+  virtual void computeCoefficients() = 0;
+  virtual void preparePreconditioner() = 0;
+  /// The velocities of the fluid at the end of the step, into state.velocity. Errors: RunError.
+  virtual StagedReport solve() = 0;
+  /// The velocities that the fluid's particles move with.
+  virtual std::span<const Vec<D>> transport() = 0;
+  /// Writes what the particles shall hold but for position and velocity, which are still those before the step.
+  virtual void accept() = 0;
+  /// Completes what the diagnostics of a step are made of.
+  virtual void describe(DiagnosticsInput<D>&) const {}
+
+  virtual const CellGrid<D>& grid() const = 0;
+  virtual const MaterialTable& materials() const = 0;
+  virtual std::size_t bytes() const = 0;
+};
+
+template <int D, class Backend>
+std::unique_ptr<StepMethod<D, Backend>> makeMphStep(FlowState<D, Backend>& state);
+template <int D, class Backend>
+std::unique_ptr<StepMethod<D, Backend>> makeIsphStep(FlowState<D, Backend>& state);
+
+/// All fields on the host, to describe what went wrong.
+template <int D>
+void toHost(const Context<Cpu>&, const Particles<D>& particles, Particles<D>& host);
+template <int D>
+void toHost(const Context<Cuda>&, const Particles<D, Cuda>& particles, Particles<D>& host);
+
+}  // namespace treacle

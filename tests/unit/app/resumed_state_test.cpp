@@ -1,0 +1,79 @@
+#include "resume.hpp"
+
+#include "support/temporary_directory.hpp"
+#include "treacle/core/error.hpp"
+#include "treacle/io/case_reader.hpp"
+#include "treacle/model/create.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "command.hpp"
+
+namespace treacle::test {
+namespace {
+
+using testing::HasSubstr;
+
+/// A checkpoint of the small case, its particles in an order that is not that of their ids.
+struct Resumed {
+  Workshop shop;
+  Case c;
+  Particles<2> made, saved;
+
+  Resumed() {
+    shop.put("case.toml", smallCase);
+    c = readCase(shop / "case.toml");
+    std::vector<std::string> notes;
+    made = createParticles<2>(c, notes);
+    saved = createParticles<2>(c, notes);
+    std::reverse(saved.id.begin(), saved.id.begin() + saved.fluidCount);
+    std::reverse(saved.id.begin() + saved.fluidCount, saved.id.end());
+  }
+
+  Checkpoint<2> state(std::int64_t step, double time) {
+    writeCheckpoint<2>(shop / "c.h5", saved, step, time);
+    return resumedState<2>(c, shop / "c.h5", made);
+  }
+
+  std::string message(std::int64_t step, double time) {
+    return messageOf<InputError>([&] { state(step, time); });
+  }
+};
+
+TEST(resumedState, takesStepAndTimeFromTheFileWhereStepsVary) {
+  Resumed r;
+  EXPECT_EQ(r.state(77, 1e-3).step, 1);
+  EXPECT_THAT(r.message(77, 1.234e-3), HasSubstr("is not a whole number of steps"));
+  r.c.time.courant = 0.2;
+  const Checkpoint<2> state = r.state(77, 1.234e-3);
+  EXPECT_EQ(state.step, 77);
+  EXPECT_EQ(state.time, 1.234e-3);
+  EXPECT_THAT(r.message(1, 2e-3), HasSubstr("its time 0.002 s is not before the end of the run"));
+}
+
+TEST(resumedState, takesBodiesThatTheFileDoesNotKnowFromTheCase) {
+  Resumed r;
+  std::fill(r.saved.body.begin(), r.saved.body.end(), unknownBody);
+  const Checkpoint<2> state = r.state(1, 1e-3);
+  for (std::uint32_t i = 0; i < state.particles.count; ++i)
+    EXPECT_EQ(state.particles.body[i], i < state.particles.fluidCount ? 0 : 1);
+  EXPECT_EQ(state.particles.id[0], state.particles.fluidCount - 1);
+}
+
+TEST(resumedState, refusesBodiesAndIdsThatTheCaseDoesNotHave) {
+  Resumed r;
+  r.saved.body[3] = 2;
+  EXPECT_THAT(r.message(1, 1e-3), HasSubstr("belongs to body 2, which is no fluid body of the case"));
+  r.saved.body[3] = 0;
+  r.saved.body[r.saved.fluidCount] = 0;
+  EXPECT_THAT(r.message(1, 1e-3), HasSubstr("belongs to body 0, which is no wall body of the case"));
+  r.saved.body[r.saved.fluidCount] = 1;
+  r.saved.id[5] = 100;
+  EXPECT_THAT(r.message(1, 1e-3), HasSubstr("a particle has id 100, expected less than 100"));
+}
+
+}  // namespace
+}  // namespace treacle::test
