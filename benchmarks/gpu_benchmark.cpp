@@ -13,22 +13,6 @@
 
 #include <fstream>
 
-namespace treacle {
-namespace {
-
-/// Bytes per second of a device-to-device copy, read and write counted.
-double copyBandwidth() {
-  Context<Cuda> context;
-  constexpr std::size_t bytes = std::size_t{1} << 30;
-  Buffer<std::byte, Cuda> from(context, bytes), to(context, bytes);
-  clearBytes(context, from.data(), bytes);
-  const double seconds = secondsOf(context, [&] { copyBytesOnDevice(context, from.data(), to.data(), bytes); });
-  return 2 * static_cast<double>(bytes) / seconds;
-}
-
-}  // namespace
-}  // namespace treacle
-
 int main(int argc, char** argv) {
   using namespace treacle;
   CLI::App app{"Times the parts of a step on the GPU"};

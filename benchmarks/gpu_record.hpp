@@ -53,6 +53,16 @@ double secondsOf(Context<Cuda>& context, F&& work, int repetitions = 20) {
   return clock.seconds()[0] / repetitions;
 }
 
+/// Bytes per second of a device-to-device copy, read and write counted.
+inline double copyBandwidth() {
+  Context<Cuda> context;
+  constexpr std::size_t bytes = std::size_t{1} << 30;
+  Buffer<std::byte, Cuda> from(context, bytes), to(context, bytes);
+  clearBytes(context, from.data(), bytes);
+  const double seconds = secondsOf(context, [&] { copyBytesOnDevice(context, from.data(), to.data(), bytes); });
+  return 2 * static_cast<double>(bytes) / seconds;
+}
+
 template <int D>
 Case paperCase(const BenchmarkOptions& options, double resolution, std::vector<std::string> settings = {}) {
   settings.push_back(fmt::format("resolution={}", resolution));

@@ -63,6 +63,13 @@ class ConstVector {
 
 }  // namespace
 
+std::string CusparseHandle::version() const {
+  int number = 0;
+  TREACLE_CUSPARSE_CHECK(cusparseGetVersion(handle_, &number));
+  return std::to_string(number / 1000) + "." + std::to_string(number / 100 % 10) + "." +
+         std::to_string(number % 100);
+}
+
 template <int D>
 void scalarMatrix(const Context<Cuda>& context, const BlockCsr<D, double, Cuda>& from, ScalarCsr& to) {
   const std::uint64_t entries = from.block.size() * (D * D);
@@ -112,13 +119,24 @@ void transferMatrices(const Context<Cuda>& context, std::span<const std::uint32_
   });
 }
 
+void leaveOut(const Context<Cuda>& context, std::span<const double> inverse, ScalarCsr& restriction,
+              ScalarCsr& prolongation) {
+  // One entry per fine row in both.
+  forEach(context, inverse.size(),
+          [inverse = inverse.data(), down = restriction.value.data(), row = restriction.column.data(),
+           up = prolongation.value.data()] __device__(std::size_t e) {
+            up[e] = inverse[e] == 0 ? 0 : 1;
+            down[e] = inverse[row[e]] == 0 ? 0 : 1;
+          });
+}
+
 void extendedJacobi(const Context<Cuda>& context, const ScalarCsr& a, Buffer<double, Cuda>& inverse) {
   inverse.resize(context, static_cast<std::size_t>(a.rows));
   forEach(context, inverse.size(),
           [to = inverse.data(), start = a.start.data(), value = a.value.data()] __device__(std::size_t row) {
             double sum = 0;
             for (std::int32_t k = start[row]; k < start[row + 1]; ++k) sum += fabs(value[k]);
-            to[row] = 2 / sum;
+            to[row] = sum > 0 ? 2 / sum : 0;
           });
 }
 
@@ -165,6 +183,7 @@ void LibraryProduct::multiply(double alpha, std::span<const double> x, double be
   template void scalarMatrix<D>(const Context<Cuda>&, const BlockCsr<D, double, Cuda>&, ScalarCsr&);     \
   template void transferMatrices<D>(const Context<Cuda>&, std::span<const std::uint32_t>, std::uint32_t, \
                                     ScalarCsr&, ScalarCsr&);
+TREACLE_INSTANTIATE(1)
 TREACLE_INSTANTIATE(2)
 TREACLE_INSTANTIATE(3)
 #undef TREACLE_INSTANTIATE

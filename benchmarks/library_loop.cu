@@ -14,7 +14,7 @@ constexpr const char* graphKind = "graph per iteration";
 constexpr const char* callKind = "single calls";
 
 void report(const char* what, const std::exception& error) {
-  std::fprintf(stderr, "solve_benchmark: no %s: %s\n", what, error.what());
+  std::fprintf(stderr, "CUDA libraries: no %s: %s\n", what, error.what());
   cudaGetLastError();  // must not meet the next call
 }
 

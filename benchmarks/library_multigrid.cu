@@ -29,17 +29,17 @@ void correct(const Context<Cuda>& context, std::span<const double> w, std::span<
 
 template <int D>
 void LibraryMultigrid<D>::setup(Context<Cuda>& context, cusparseHandle_t handle, const ScalarCsr& a,
-                                std::span<const double> inverse, const BucketLevels<Cuda>& buckets,
-                                cusparseSpMVAlg_t algorithm) {
+                                const LibraryCycle& cycle, cusparseSpMVAlg_t algorithm) {
   context_ = &context;
-  inverse_ = inverse;
-  while (levels_.size() > buckets.begin.size()) levels_.pop_back();
-  while (levels_.size() < buckets.begin.size()) levels_.push_back(std::make_unique<Level>());
+  inverse_ = cycle.inverse;
+  while (levels_.size() > cycle.members.size()) levels_.pop_back();
+  while (levels_.size() < cycle.members.size()) levels_.push_back(std::make_unique<Level>());
   for (std::size_t l = 0; l < levels_.size(); ++l) {
     Level& level = *levels_[l];
     const ScalarCsr& fine = l == 0 ? a : levels_[l - 1]->a;
-    transferMatrices<D>(context, buckets.begin[l], static_cast<std::uint32_t>(fine.rows / D), level.restriction,
+    transferMatrices<D>(context, cycle.members[l], static_cast<std::uint32_t>(fine.rows / D), level.restriction,
                         level.prolongation);
+    if (D == 1 && l == 0) leaveOut(context, cycle.inverse, level.restriction, level.prolongation);
     product_.compute(context, fine, level.prolongation, ap_);
     product_.compute(context, level.restriction, ap_, level.a);
     extendedJacobi(context, level.a, level.inverse);
@@ -48,7 +48,8 @@ void LibraryMultigrid<D>::setup(Context<Cuda>& context, cusparseHandle_t handle,
     level.byProlongation.prepare(context, handle, level.prolongation, algorithm);
     for (auto* v : {&level.b, &level.x, &level.product})
       v->resize(context, static_cast<std::size_t>(level.a.rows));
-    level.sweeps = l + 1 == levels_.size() ? 4 : l == 0 ? 2 : 3;
+    const CycleSweeps& sweeps = cycle.sweeps;
+    level.sweeps = l + 1 == levels_.size() ? sweeps.coarsest : l == 0 ? sweeps.finest : sweeps.middle;
   }
 }
 
@@ -83,6 +84,7 @@ void LibraryMultigrid<D>::apply(std::span<const double> r, std::span<double> z) 
   finest.byProlongation.multiply(1, finest.x, 1, z);
 }
 
+template class LibraryMultigrid<1>;
 template class LibraryMultigrid<2>;
 template class LibraryMultigrid<3>;
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "library_csr.hpp"
-#include "treacle/search/buckets.hpp"
+#include "treacle/linear/bucket_multigrid.hpp"
 
 #include <memory>
 #include <span>
@@ -9,15 +9,20 @@
 
 namespace treacle {
 
-/// The bucket multigrid of [K23 sect. 3.2] as a user of the CUDA libraries writes it, with the sweeps and the
-/// diagonal of the authors' program: coarse operators by cusparseSpGEMM, all products by cusparseSpMV, double
-/// precision.
+/// What a cycle is made of. All must outlive it.
+struct LibraryCycle {
+  std::span<const double> inverse;  // 1 / A_ii; zero (D = 1 only): not an unknown, P has no such row
+  std::span<const Buffer<std::uint32_t, Cuda>> members;  // BucketLevels::begin of the levels that are wanted
+  CycleSweeps sweeps;
+};
+
+/// The bucket multigrid of [K23 sect. 3.2] and [O23 eqs. (12)-(17)], D numbers per bucket, as a user of the CUDA
+/// libraries writes it: coarse operators by cusparseSpGEMM, all products by cusparseSpMV, double precision.
 template <int D>
 class LibraryMultigrid {
  public:
-  /// `inverse`: 1 / A_ii. It, the matrix and the levels must outlive this.
-  void setup(Context<Cuda>&, cusparseHandle_t, const ScalarCsr& a, std::span<const double> inverse,
-             const BucketLevels<Cuda>&, cusparseSpMVAlg_t);
+  /// The matrix must outlive this.
+  void setup(Context<Cuda>&, cusparseHandle_t, const ScalarCsr& a, const LibraryCycle&, cusparseSpMVAlg_t);
 
   /// z = diag(inverse) r + P M^0 R r [K23 eq. (43)].
   void apply(std::span<const double> r, std::span<double> z);

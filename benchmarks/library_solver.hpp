@@ -1,90 +1,56 @@
 #pragma once
 
-#include "library_blas.hpp"
-#include "library_loop.hpp"
+#include "library_krylov.hpp"
 #include "library_multigrid.hpp"
 #include "treacle/core/block.hpp"
 #include "treacle/method/assemble.hpp"
 #include "treacle/method/mph_pairs.hpp"
+#include "treacle/search/buckets.hpp"
 
 #include <span>
 #include <string>
 
 namespace treacle {
 
-/// A solver of plain cuSPARSE and cuBLAS calls in double precision, a graph of them per iteration: the baseline.
+/// A solver of plain cuSPARSE and cuBLAS calls in double precision: the baseline of MPH-I.
 enum class LibraryMethod {
-  MultigridCr,    // MGCR of [K23 eqs. (21)-(32)] with the bucket multigrid
+  MultigridCr,    // MGCR of [K23 eqs. (21)-(32)] with the bucket multigrid, the sweeps of the authors' program
   Cr,             // without preconditioner
   BlockJacobiCg,  // inverses of the diagonal blocks, which no library has: own kernel
-};
-
-/// A handle of cuSPARSE on a stream.
-class CusparseHandle {
- public:
-  explicit CusparseHandle(const Context<Cuda>& context) {
-    TREACLE_CUSPARSE_CHECK(cusparseCreate(&handle_));
-    TREACLE_CUSPARSE_CHECK(cusparseSetStream(handle_, context.stream()));
-  }
-  CusparseHandle(const CusparseHandle&) = delete;
-  ~CusparseHandle() { cusparseDestroy(handle_); }
-  operator cusparseHandle_t() const { return handle_; }
-  std::string version() const;
-
- private:
-  cusparseHandle_t handle_ = nullptr;
-};
-
-/// The scalars that cuBLAS reads and writes, in device memory.
-struct LibraryCoefficients {
-  double sum, sumOfB;
-  double alpha, minusAlpha, beta, one;
 };
 
 template <int D>
 class LibrarySolver {
  public:
   LibrarySolver(Context<Cuda>& context, LibraryMethod method, cusparseSpMVAlg_t algorithm)
-      : context_(context), method_(method), algorithm_(algorithm), cusparse_(context), blas_(context) {}
+      : context_(context),
+        method_(method),
+        algorithm_(algorithm),
+        krylov_(context, method == LibraryMethod::BlockJacobiCg ? KrylovKind::Cg : KrylovKind::Cr) {}
 
   /// Preconditioner and products. `a` and the keys of the fluid particles (CellRanges::key) must outlive this.
   void setup(const MphPairs<D>&, const WallTerms<D>&, const ScalarCsr& a, std::span<const std::uint64_t> key);
 
-  /// Prepares solve(b, u), whose memory it writes to, for these very spans.
+  /// Prepares solve(), which starts from u and writes the solution there, for these very spans.
   void record(std::span<const Vec<D>> b, std::span<Vec<D>> u, const StoppingRule&);
-  /// `u`: first guess and solution.
-  SolveReport solve();
+  SolveReport solve() { return krylov_.solve(); }
 
   /// How it worked: libraries and loop.
-  std::string libraries() const { return "cuSPARSE " + cusparse_.version() + ", " + blas_.name(); }
-  const std::string& loop() const { return loop_.kind(); }
+  std::string libraries() const { return krylov_.libraries(); }
+  const std::string& loop() const { return krylov_.loop(); }
 
  private:
-  using Flat = std::span<const double>;
-
-  void start();
-  void iterateCr();
-  void iterateCg();
-  void applyPreconditioner(Flat r, std::span<double> z);
+  LibraryKrylov::Preconditioner preconditioner();
 
   Context<Cuda>& context_;
   LibraryMethod method_;
   cusparseSpMVAlg_t algorithm_;
-  CusparseHandle cusparse_;
-  LibraryBlas blas_;
+  LibraryKrylov krylov_;
   LibraryProduct byA_;
   BucketLevels<Cuda> buckets_;
   LibraryMultigrid<D> multigrid_;
   Buffer<Block<D>, Cuda> diagonal_, blockInverse_;
   Buffer<Vec<D>, Cuda> inverse_;
-
-  Flat b_;
-  std::span<double> x_;
-  Buffer<double, Cuda> r_, s_, p_, q_, y_;
-  Buffer<LibraryCoefficients, Cuda> coefficients_;
-  KrylovScalars* scalars_ = nullptr;
-  StoppingRule rule_;
-  LibraryLoop loop_;
 };
 
 }  // namespace treacle

@@ -43,16 +43,6 @@ void compare(const SolveOptions& options, const std::string& name, LinearSystem<
   for (const std::string& s : solversOf(options)) comparison.runTreacle(s);
 }
 
-/// A system that cannot be made fails alone.
-template <class F>
-void guarded(const std::string& name, SolveRecord& record, F&& work) {
-  try {
-    work();
-  } catch (const std::exception& error) {
-    record.addFailure(name, "(all)", error.what());
-  }
-}
-
 /// The right-hand side must be the study's: else this is not its system. Its elastic part is a difference of
 /// nearly equal densities times kappa, which leaves 1e-10 of the rounding.
 template <int D>

@@ -30,17 +30,20 @@ struct SolveResult {
   std::uint64_t fluidCount = 0;
   int iterations = 0;
   bool converged = false;
-  double solveSeconds = 0;      // from the first guess to the solution, the recording of a graph included
-  double iterationSeconds = 0;  // the same without recording; 0: not known
-  double setupSeconds = 0;      // from the neighbour lists on: matrix or operator, preconditioner
-  double trueResidual = 0;      // |b - A u| / |b| with the assembled matrix
-  std::string how;              // libraries, kind of loop
+  double solveSeconds = 0;       // from the first guess to the solution, the recording of a graph included
+  double iterationSeconds = 0;   // the same without recording; 0: not known
+  double setupSeconds = 0;       // from the neighbour lists on: matrix or operator, preconditioner
+  double matrixSeconds = 0;      // the matrix' part of these; 0: not known
+  double bytesPerIteration = 0;  // that the method must move; 0: not counted
+  double trueResidual = 0;       // |b - A u| / |b| with the assembled matrix
+  std::string how;               // libraries, kind of loop
 };
 
 /// What a run of the benchmark leaves behind.
 struct SolveRecord {
   nlohmann::ordered_json json;
   bool failed = false;
+  double copyBandwidth = 0;  // [B/s]; 0: not measured
 
   void heading() const {
     fmt::print("{:<22} {:>8}  {:<44} {:>6} {:>10} {:>10} {:>10} {:>9}\n", "system", "fluid", "method", "its",
@@ -57,9 +60,16 @@ struct SolveRecord {
                               {"setup_ms", r.setupSeconds * 1e3},
                               {"true_residual", r.trueResidual},
                               {"how", r.how}});
-    fmt::print("{:<22} {:>8}  {:<44} {:>6} {:>10.3f} {:>10.3f} {:>10.3f} {:>9.1e}{}\n", r.system, r.fluidCount,
+    if (r.matrixSeconds > 0) json["solves"].back()["matrix_ms"] = r.matrixSeconds * 1e3;
+    const double share = shareOfCopy(r);
+    if (share > 0) {
+      json["solves"].back()["bytes_per_iteration"] = r.bytesPerIteration;
+      json["solves"].back()["share_of_copy_bandwidth"] = share;
+    }
+    fmt::print("{:<22} {:>8}  {:<44} {:>6} {:>10.3f} {:>10.3f} {:>10.3f} {:>9.1e}{}{}\n", r.system, r.fluidCount,
                r.method, r.iterations, r.solveSeconds * 1e3, r.iterationSeconds * 1e3, r.setupSeconds * 1e3,
-               r.trueResidual, r.converged ? "" : "  NOT CONVERGED");
+               r.trueResidual, share > 0 ? fmt::format("  {:.0f} % of copy", 100 * share) : "",
+               r.converged ? "" : "  NOT CONVERGED");
     std::fflush(stdout);
     failed |= !r.converged;
   }
@@ -69,6 +79,22 @@ struct SolveRecord {
     std::fflush(stdout);
     failed = true;
   }
+
+ private:
+  double shareOfCopy(const SolveResult& r) const {
+    if (copyBandwidth == 0 || r.iterationSeconds == 0) return 0;
+    return r.bytesPerIteration * r.iterations / r.iterationSeconds / copyBandwidth;
+  }
 };
+
+/// A system that cannot be made fails alone.
+template <class F>
+void guarded(const std::string& name, SolveRecord& record, F&& work) {
+  try {
+    work();
+  } catch (const std::exception& error) {
+    record.addFailure(name, "(all)", error.what());
+  }
+}
 
 }  // namespace treacle

@@ -117,6 +117,22 @@ void permute(Context<Cuda>& context, SortWorkspace<Cuda>& w, Buffer<T, Cuda>& fi
   copyBytesOnDevice(context, sorted, field.data(), field.size() * sizeof(T));
 }
 
+/// The same for the modes, one after the other in one field; one thread per particle and mode.
+template <int D>
+void permuteModes(Context<Cuda>& context, SortWorkspace<Cuda>& w, Particles<D, Cuda>& particles) {
+  Buffer<Vec<D, float>, Cuda>& field = particles.modes.vectors;
+  if (field.empty()) return;
+  w.field.resize(context, field.size() * sizeof(Vec<D, float>));
+  auto* sorted = reinterpret_cast<Vec<D, float>*>(w.field.data());
+  forEach(context, field.size(),
+          [sorted, from = field.data(), index = w.sortedIndex.data(),
+           fluid = std::size_t{particles.fluidCount}] __device__(std::size_t k) {
+            const std::size_t i = k % fluid;
+            sorted[k] = from[k - i + index[i]];
+          });
+  copyBytesOnDevice(context, sorted, field.data(), field.size() * sizeof(Vec<D, float>));
+}
+
 }  // namespace
 
 template <int D>
@@ -144,7 +160,10 @@ void sortByCell(Context<Cuda>& context, const CellGrid<D>& grid, Particles<D, Cu
   fillRanges(context, grid, fluid, walls, w.sortedKey.data(), w.sortedIndex.data() + fluid, position,
              ranges.wallBegin, ranges.wallEnd, w.count.data() + 1);
 
-  particles.forEachField([&](auto& field) { permute(context, w, field); });
+  const auto permuteField = [&](auto& field) { permute(context, w, field); };
+  forEachSharedFieldOf(permuteField, particles);
+  forEachFluidFieldOf(permuteField, particles);
+  permuteModes(context, w, particles);
   ranges.activeCount = fluid + valueOnHost(context, w.count.data() + 1);
 }
 

@@ -48,6 +48,17 @@ struct CompareOptions {
   bool quiet = false;
 };
 
+struct ConvergenceOptions {
+  CaseOptions input;
+  std::optional<double> at;          // [s] default: the start, or the checkpoint's time
+  std::vector<std::string> solvers;  // "key=value key=value" of [solver]; empty: some of the method
+  std::filesystem::path directory;   // empty: "<case name>-convergence" in the current directory
+  BackendChoice backend = BackendChoice::Auto;
+  int threads = 0;                     // 0: as many as OpenMP takes by itself
+  std::optional<Precision> precision;  // default: the case's
+  std::filesystem::path resume;        // checkpoint to start from; empty: the case's bodies
+};
+
 /// Exit code of `compare` for runs that differ by more than the bound.
 inline constexpr int runsDiffer = 1;
 
@@ -57,6 +68,7 @@ void runCommand(const RunOptions& options);
 void checkCommand(const CaseOptions& options);
 void infoCommand();
 void plotCommand(const PlotOptions& options);
+void convergenceCommand(const ConvergenceOptions& options);
 /// Whether the runs agree within the bound.
 bool compareCommand(const CompareOptions& options);
 

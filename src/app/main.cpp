@@ -90,24 +90,48 @@ void addCase(CLI::App& command, CaseOptions& options) {
       ->allow_extra_args(false);
 }
 
+/// What a case is computed with, and from where on.
+template <class Options>
+void addMachine(CLI::App& command, Options& options) {
+  addChoice<BackendChoice>(command, "--backend", backendNames, options.backend,
+                           "auto: a GPU where there is one, else the CPU");
+  command.add_option("--threads", options.threads, "Number of threads")->type_name("N")->check(positive());
+  addChoice<Precision>(command, "--precision", namesOf<Precision>, options.precision,
+                       "mixed: preconditioner in single precision; default: solver.precision of the case");
+  command.add_option("--resume", options.resume, "Checkpoint to continue from")->type_name("FILE");
+}
+
 void addRun(CLI::App& app, RunOptions& options) {
   CLI::App* run = app.add_subcommand("run", "Run a case");
   addCase(*run, options.input);
   run->add_option("-o,--output", options.directory, "Run directory; default: the case's name with -run")
       ->type_name("DIR");
-  addChoice<BackendChoice>(*run, "--backend", backendNames, options.backend,
-                           "auto: a GPU where there is one, else the CPU");
-  run->add_option("--threads", options.threads, "Number of threads")->type_name("N")->check(positive());
-  addChoice<Precision>(*run, "--precision", namesOf<Precision>, options.precision,
-                       "mixed: preconditioner in single precision; default: solver.precision of the case");
+  addMachine(*run, options);
   run->add_option("--end-time", options.endTime, "End of the run instead of time.end [s]")
       ->type_name("T")
       ->check(positive());
-  run->add_option("--resume", options.resume, "Checkpoint to continue from")->type_name("FILE");
   run->add_flag("--timings", options.timings, "Seconds of each phase of a step in history.csv");
   run->add_flag("--force", options.force, "Replace the run that the directory holds");
   run->add_flag("-q,--quiet", options.quiet, "Print nothing but errors");
   run->callback([&options] { runCommand(options); });
+}
+
+void addConvergence(CLI::App& app, ConvergenceOptions& options) {
+  CLI::App* command = app.add_subcommand("convergence", "Compare solvers on one linear system of a case");
+  addCase(*command, options.input);
+  command->add_option("--at", options.at, "Time of the system [s]; default: the first step")
+      ->type_name("T")
+      ->check(notNegative());
+  command
+      ->add_option("--solver", options.solvers,
+                   "A solver: what it has other than the case, as keys of [solver]; repeatable; default: some of "
+                   "the method")
+      ->type_name("\"KEY=VALUE ...\"")
+      ->allow_extra_args(false);
+  command->add_option("-o,--output", options.directory, "Directory; default: the case's name with -convergence")
+      ->type_name("DIR");
+  addMachine(*command, options);
+  command->callback([&options] { convergenceCommand(options); });
 }
 
 void addPlot(CLI::App& app, PlotOptions& options) {
@@ -151,6 +175,7 @@ int main(int argc, char** argv) {
   CaseOptions check;
   PlotOptions plot;
   CompareOptions compare;
+  ConvergenceOptions convergence;
   bool agree = true;
   addRun(app, run);
   CLI::App* checkApp = app.add_subcommand("check", "Check a case; prints it with all keys, counts and stability");
@@ -159,12 +184,14 @@ int main(int argc, char** argv) {
   app.add_subcommand("info", "Version, build options and devices")->callback([] { infoCommand(); });
   addPlot(app, plot);
   addCompare(app, compare, agree);
+  addConvergence(app, convergence);
 
   ignoreFileSizeSignal();
   try {
     app.parse(argc, argv);
     if (app.get_subcommands().empty())
-      throw InputError("expected a command: run, check, plot, compare or info; treacle --help tells more");
+      throw InputError(
+          "expected a command: run, check, plot, compare, convergence or info; treacle --help tells more");
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return app.exit(e);  // help and version
     return report(fmt::format("{}; --help tells more", e.what()), ExitCode::BadInput);

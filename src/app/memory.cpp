@@ -2,8 +2,11 @@
 
 #include "machine.hpp"
 #include "treacle/core/error.hpp"
+#include "treacle/linear/deflation_scalars.hpp"
 
 #include <fmt/format.h>
+
+#include <algorithm>
 
 namespace treacle {
 namespace {
@@ -37,6 +40,24 @@ struct DeviceBytes {
 constexpr DeviceBytes deviceBytes2D{5'000'000, 119, 692, 592, 2072, 10762, 210};
 constexpr DeviceBytes deviceBytes3D{12'000'000, 190, 1178, 948, 14068, 97548, 780};
 
+/// What modes take of one fluid particle. In two dimensions a solver takes some before long; in three it seldom
+/// finds any worth taking, and where there is no memory for them it does without.
+struct ModeBytes {
+  std::uint64_t kept = 0;  // in the state and in each copy of it
+  std::uint64_t used = 0;  // in a solve, recorded vectors or A W; and for the sort
+};
+
+ModeBytes modeBytes(const Case& c) {
+  const SolverSettings& s = c.solver;
+  if (c.dimensions == 3 || c.method.kind != MethodKind::MphI || s.krylov != KrylovKind::Cg ||
+      s.preconditioner != PreconditionerKind::ProjectedMultigrid || s.deflation == 0)
+    return {};
+  const std::uint64_t modes = static_cast<std::uint64_t>(s.deflation), components = 2;
+  constexpr std::uint64_t recorded = DeflationScalars::maxBasis * sizeof(float);
+  const std::uint64_t kept = components * modes * sizeof(float);
+  return {kept, components * std::max(recorded, modes * sizeof(double)) + kept};
+}
+
 /// `onDevice`: ranges and products of sparse matrices exist on devices only.
 Storage storageOf(const SolverSettings& solver, bool onDevice) {
   const bool multigrid = solver.preconditioner == PreconditionerKind::BucketMultigrid;
@@ -66,21 +87,25 @@ std::uint64_t perFluidParticle(const DeviceBytes& bytes, Storage storage) {
 std::uint64_t estimatedMemory(const Case& c, ParticleNumbers n, bool onDevice) {
   const HostBytes& bytes = c.dimensions == 2 ? hostBytes2D : hostBytes3D;
   const std::uint64_t all = n.fluid + n.wall;
-  const std::uint64_t snapshots = all * bytes.snapshots + n.fluid * copiesToBeWritten * bytes.memory;
+  const ModeBytes modes = modeBytes(c);
+  const std::uint64_t snapshots =
+      all * bytes.snapshots + n.fluid * copiesToBeWritten * (bytes.memory + modes.kept);
   if (onDevice) return programBytes + driverBytes + snapshots;
   const bool assembled = storageOf(c.solver, false) == Storage::Assembled;
   std::uint64_t solver = assembled ? bytes.assembled : bytes.matrixFree;
   if (c.solver.preconditioner == PreconditionerKind::ProjectedMultigrid)
     solver += bytes.projected + (assembled ? bytes.beside : 0);
-  return programBytes + snapshots + all * bytes.state + n.fluid * (bytes.memory + solver);
+  return programBytes + snapshots + all * bytes.state +
+         n.fluid * (bytes.memory + solver + modes.kept + modes.used);
 }
 
 std::uint64_t estimatedDeviceMemory(const Case& c, ParticleNumbers n) {
   const DeviceBytes& bytes = c.dimensions == 2 ? deviceBytes2D : deviceBytes3D;
   const bool projected = c.solver.preconditioner == PreconditionerKind::ProjectedMultigrid;
-  return bytes.fixed +
-         n.fluid * (perFluidParticle(bytes, storageOf(c.solver, true)) + (projected ? bytes.projected : 0)) +
-         n.wall * bytes.wall;
+  const ModeBytes modes = modeBytes(c);
+  const std::uint64_t ofFluid = perFluidParticle(bytes, storageOf(c.solver, true)) +
+                                (projected ? bytes.projected : 0) + modes.kept + modes.used;
+  return bytes.fixed + n.fluid * ofFluid + n.wall * bytes.wall;
 }
 
 void requireMemory(const Case& c, ParticleNumbers n, const DeviceInfo* device) {

@@ -64,11 +64,17 @@ std::int64_t stepAt(double time, const TimeSettings& settings, const std::filesy
 }  // namespace
 
 template <int D>
-Checkpoint<D> resumedState(const Case& c, const std::filesystem::path& file, const Particles<D>& made) {
+Checkpoint<D> fittingState(const Case& c, const std::filesystem::path& file, const Particles<D>& made) {
   Checkpoint<D> state = readCheckpoint<D>(file);
   requireFit(c, file, state.particles, made);
   setBodies(c, file, made, state.particles);
   if (!c.time.stepsVary()) state.step = stepAt(state.time, c.time, file);
+  return state;
+}
+
+template <int D>
+Checkpoint<D> resumedState(const Case& c, const std::filesystem::path& file, const Particles<D>& made) {
+  Checkpoint<D> state = fittingState<D>(c, file, made);
   if (c.atEnd(state.step, state.time))
     refuse(file, fmt::format("its time {:g} s is not before the end of the run, {:g} s; choose a later one with "
                              "--end-time",
@@ -76,6 +82,8 @@ Checkpoint<D> resumedState(const Case& c, const std::filesystem::path& file, con
   return state;
 }
 
+template Checkpoint<2> fittingState<2>(const Case&, const std::filesystem::path&, const Particles<2>&);
+template Checkpoint<3> fittingState<3>(const Case&, const std::filesystem::path&, const Particles<3>&);
 template Checkpoint<2> resumedState<2>(const Case&, const std::filesystem::path&, const Particles<2>&);
 template Checkpoint<3> resumedState<3>(const Case&, const std::filesystem::path&, const Particles<3>&);
 

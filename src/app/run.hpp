@@ -104,7 +104,8 @@ class Run {
 
   void copyState(Snapshot<D>& snapshot) {
     if constexpr (onDevice)
-      resizePinned(snapshot, simulation_->particles().fluidCount, simulation_->particles().wallCount());
+      resizePinned(snapshot, simulation_->particles().fluidCount, simulation_->particles().wallCount(),
+                   simulation_->particles().modeCount());
     simulation_->copyParticles(snapshot.particles);
     snapshot.step = simulation_->step();
     snapshot.time = simulation_->time();

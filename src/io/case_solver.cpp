@@ -8,7 +8,7 @@ namespace {
 using Keys = std::vector<std::string_view>;
 
 const Keys sharedKeys{"krylov", "preconditioner", "tolerance", "max_iterations", "precision", "first_guess"};
-const Keys mphKeys{"operator", "neighbours", "multigrid", "projected"};
+const Keys mphKeys{"operator", "neighbours", "deflation", "multigrid", "projected"};
 const Keys isphKeys{"cells", "hats"};
 
 MultigridSettings readMultigrid(const Section& solver) {
@@ -96,6 +96,9 @@ SolverSettings defaultsOf(MethodKind method) {
 void readMphSolver(const Section& s, SolverSettings& solver) {
   solver.operatorKind = s.choice<OperatorKind>("operator", solver.operatorKind);
   solver.neighbours = s.choice<NeighbourKind>("neighbours", solver.neighbours);
+  solver.deflation = s.integer("deflation", 0, solver.deflation);
+  if (solver.deflation > maxModes)
+    throw s.error("deflation", fmt::format("expected at most {} modes, found {}", maxModes, solver.deflation));
   solver.multigrid = readMultigrid(s);
   solver.projected = readProjected(s);
   if (solver.neighbours == NeighbourKind::Ranges) refuseWithoutLists(s, solver);

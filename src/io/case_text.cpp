@@ -113,6 +113,7 @@ void writeMethod(Text& text, const MethodSettings& method) {
 void writeMphSolver(Text& text, const SolverSettings& solver) {
   line(text, "operator = \"{}\"", nameOf(solver.operatorKind));
   line(text, "neighbours = \"{}\"", nameOf(solver.neighbours));
+  line(text, "deflation = {}", solver.deflation);
   line(text, "\n[solver.multigrid]");
   line(text, "finest_sweeps = {}", solver.multigrid.finestSweeps);
   line(text, "middle_sweeps = {}", solver.multigrid.middleSweeps);

@@ -16,7 +16,7 @@ namespace treacle {
 namespace {
 
 constexpr std::string_view formatName = "treacle checkpoint";
-constexpr std::int32_t formatVersion = 3;  // 1: without acceleration and jerk; 2: without bodies
+constexpr std::int32_t formatVersion = 3;  // 1: without acceleration and jerk; 2: without bodies and modes
 
 /// A field as the file holds it.
 struct FieldInfo {
@@ -30,13 +30,14 @@ struct FieldInfo {
 /// is added that is not written here.
 template <class P, class F>
 void forEachNamedField(P& particles, F&& f) {
-  auto& [fluidCount, count, position, velocity, pressure, numberDensity, material, body, id, acceleration, jerk] =
-      particles;
+  auto& [fluidCount, count, position, velocity, pressure, numberDensity, material, body, id, acceleration, jerk,
+         modes] = particles;
   f(FieldInfo{"position", count}, position), f(FieldInfo{"velocity", count}, velocity);
   f(FieldInfo{"pressure", count}, pressure), f(FieldInfo{"number_density", count}, numberDensity);
   f(FieldInfo{"material", count}, material), f(FieldInfo{"body", count, 3, unknownBody}, body);
   f(FieldInfo{"id", count}, id);
   f(FieldInfo{"acceleration", fluidCount, 2}, acceleration), f(FieldInfo{"jerk", fluidCount, 2}, jerk);
+  f(FieldInfo{"modes", static_cast<std::uint32_t>(modes.vectors.size()), 3}, modes.vectors);
 }
 
 /// Type of a value in the file and in memory.
@@ -54,6 +55,11 @@ template <int D>
 Layout layoutOf(const Vec<D>*) {
   static_assert(sizeof(Vec<D>) == D * sizeof(double));
   return {H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, D};
+}
+template <int D>
+Layout layoutOf(const Vec<D, float>*) {
+  static_assert(sizeof(Vec<D, float>) == D * sizeof(float));
+  return {H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, D};
 }
 
 /// Vectors make a table of count rows and D columns.
@@ -125,6 +131,10 @@ void fill(hid_t file, const Particles<D>& particles, std::int64_t step, double t
   writeAttribute(file, "time", time);
   writeAttribute(file, "fluid_count", particles.fluidCount);
   writeAttribute(file, "wall_count", particles.wallCount());
+  const ModeAge& age = particles.modes.age;
+  writeAttribute(file, "mode_count", particles.modeCount());
+  writeAttribute(file, "modes_due", age.due);
+  writeAttribute(file, "modes_fewest_iterations", age.fewest);
   forEachNamedField(particles, [&](const FieldInfo& info, const auto& field) { writeField(file, info, field); });
 }
 
@@ -195,6 +205,12 @@ Checkpoint<D> readCheckpoint(const std::filesystem::path& path) {
     Particles<D>& particles = checkpoint.particles;
     particles.fluidCount = readAttribute<std::uint32_t>(file, "fluid_count");
     particles.count = particles.fluidCount + readAttribute<std::uint32_t>(file, "wall_count");
+    if (version >= 3) {
+      const auto modes = readAttribute<std::uint32_t>(file, "mode_count");
+      particles.modes.vectors.resize(std::size_t{particles.fluidCount} * modes);
+      particles.modes.age = {readAttribute<std::int32_t>(file, "modes_due"),
+                             readAttribute<std::int32_t>(file, "modes_fewest_iterations")};
+    }
     forEachNamedField(particles, [&]<class T>(const FieldInfo& info, Buffer<T>& field) {
       if (version >= info.since) return readField(file, info, field);
       field.resize(info.count);

@@ -9,20 +9,14 @@
 namespace treacle {
 namespace {
 
-/// Sum of c x over the first `count` entries of a row.
-template <class T, class X>
-X neighbourSum(const PairMatrix<T>& a, std::size_t row, std::uint64_t count, const X* x) {
-  const std::uint64_t begin = a.rowStart[row];
-  X sum = 0;
-  for (std::uint64_t k = begin; k < begin + count; ++k) sum += a.coefficient[k] * x[a.column[k]];
-  return sum;
-}
-
-/// r - A_near x of a row, with its own part left to the caller: the diagonal of the cut matrix times x_i is
-/// x_i / inverseNear.
+/// r - A x of a row with the smoothers' matrix.
 template <class T>
 T nearRest(const PairMatrix<T>& a, std::size_t row, double r, const T* x) {
-  return static_cast<T>(r) - x[row] / a.inverseNear[row] + neighbourSum(a, row, a.nearCount[row], x);
+  const T unit = static_cast<T>(a.unit), inverseUnit = 1 / unit;
+  T sum = 0;
+  for (std::uint64_t k = a.start[row]; k < a.start[row + 1]; ++k)
+    sum += static_cast<T>(static_cast<int>(a.coefficient[k] * inverseUnit + T(0.5))) * x[a.column[k]];
+  return static_cast<T>(r) - x[row] / a.inverseNear[row] + unit * sum;
 }
 
 }  // namespace
@@ -30,7 +24,11 @@ T nearRest(const PairMatrix<T>& a, std::size_t row, double r, const T* x) {
 template <class T>
 void multiply(Context<Cpu>&, const PairMatrix<T>& a, std::span<const double> x, std::span<double> y) {
   parallelFor(a.rows, parallelGrain, [&](std::size_t i) {
-    y[i] = a.diagonal[i] * x[i] - neighbourSum(a, i, a.rowStart[i + 1] - a.rowStart[i], x.data());
+    double sum = 0;
+    for (const std::size_t section : {i, a.rows + i})
+      for (std::uint64_t k = a.start[section]; k < a.start[section + 1]; ++k)
+        sum += a.coefficient[k] * x[a.column[k]];
+    y[i] = a.diagonal[i] * x[i] - sum;
   });
 }
 
@@ -69,8 +67,9 @@ void compressed(Context<Cpu>&, const PairMatrix<T>& a, BlockCsr<1>& result) {
     entries.clear();
     if (!(a.diagonal[i] > 0)) return;
     entries.emplace_back(static_cast<std::uint32_t>(i), a.diagonal[i]);
-    for (std::uint64_t k = a.rowStart[i]; k < a.rowStart[i + 1]; ++k)
-      if (a.coefficient[k] > 0) entries.emplace_back(a.column[k], -static_cast<double>(a.coefficient[k]));
+    for (const std::size_t section : {i, a.rows + i})
+      for (std::uint64_t k = a.start[section]; k < a.start[section + 1]; ++k)
+        if (a.coefficient[k] > 0) entries.emplace_back(a.column[k], -static_cast<double>(a.coefficient[k]));
   };
   for (std::size_t i = 0; i < a.rows; ++i) {
     takeRow(i);

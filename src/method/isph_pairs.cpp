@@ -37,7 +37,8 @@ IsphPairs<D> makeIsphPairs(const Case& c) {
   pairs.volume = std::pow(c.spacing, D);
   const auto weight = [&](double r) { return pairs.kernel.value(r); };
   pairs.latticeDensity = pairs.volume * (weight(0) + latticeSum<D>(pairs.kernel.radius(), c.spacing, weight));
-  pairs.wallContact = slopeOfHalfLattice(pairs);
+  // A thousandth more, so that rounding does not decide about particles that start at that distance.
+  pairs.wallContact = 1.001 * slopeOfHalfLattice(pairs);
   pairs.timeStep = c.time.step;
   pairs.alpha = s.alpha;
   pairs.noSlip = s.walls == WallSlip::NoSlip;

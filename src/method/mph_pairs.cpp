@@ -21,6 +21,7 @@ MaterialTable MaterialTable::make(const Case& c) {
     for (int j = 0; j < t.count; ++j) {
       const double a = m.dynamicViscosity, b = c.materials[j].dynamicViscosity;
       t.pairViscosity[i][j] = a + b > 0 ? 2 * a * b / (a + b) : 0;
+      t.pairMobility[i][j] = 4 / (m.density + c.materials[j].density);
     }
   }
   return t;

@@ -22,13 +22,18 @@ void sortGroup(Particles<D>& particles, std::uint32_t begin, std::uint32_t end, 
   };
   if (std::is_sorted(keyed.begin(), keyed.end(), before)) return;  // walls at rest, most of the time
   std::sort(keyed.begin(), keyed.end(), before);
-  particles.forEachField([&]<class T>(Buffer<T>& field) {
-    if (field.size() < end) return;  // a field that walls do not have
+  const auto permute = [&]<class T>(T* field) {  // one value per particle
     workspace.field.resize(keyed.size() * sizeof(T));
     T* sorted = reinterpret_cast<T*>(workspace.field.data());
     parallelFor(keyed.size(), parallelGrain, [&](std::size_t i) { sorted[i] = field[keyed[i].index]; });
-    std::memcpy(field.data() + begin, sorted, keyed.size() * sizeof(T));
-  });
+    std::memcpy(field + begin, sorted, keyed.size() * sizeof(T));
+  };
+  const auto permuteField = [&](auto& field) { permute(field.data()); };
+  forEachSharedFieldOf(permuteField, particles);
+  if (begin > 0 || end > particles.fluidCount) return;
+  forEachFluidFieldOf(permuteField, particles);
+  for (std::uint32_t m = 0; m < particles.modeCount(); ++m)
+    permute(particles.modes.vectors.data() + std::size_t{m} * particles.fluidCount);
 }
 
 template <int D>

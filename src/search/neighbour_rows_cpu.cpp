@@ -13,20 +13,21 @@ void findNeighbours(Context<Cpu>&, const CellGrid<D>& grid, const CellRangesView
     forEachNeighbour(grid, cells, position.data(), search.first + static_cast<std::uint32_t>(row), radii,
                      search.walls, f);
   };
+  const std::size_t count = search.count;
   rows.first = search.first;
-  rows.nearCount.resize(search.count);
-  rows.rowStart.resize(std::size_t{search.count} + 1);
-  rows.rowStart[0] = 0;
-  parallelFor(search.count, parallelGrain, [&](std::size_t row) {
-    std::uint32_t all = 0, near = 0;
-    forEach(row, [&](std::uint32_t, bool isNear) { ++all, near += isNear; });
-    rows.rowStart[row + 1] = all;
-    rows.nearCount[row] = near;
+  rows.count = search.count;
+  rows.start.resize(2 * count + 1);
+  rows.start[0] = 0;
+  parallelFor(count, parallelGrain, [&](std::size_t row) {
+    std::uint32_t near = 0, far = 0;
+    forEach(row, [&](std::uint32_t, bool isNear) { ++(isNear ? near : far); });
+    rows.start[row + 1] = near;
+    rows.start[count + row + 1] = far;
   });
-  for (std::size_t row = 0; row < search.count; ++row) rows.rowStart[row + 1] += rows.rowStart[row];
-  rows.column.resize(rows.rowStart[search.count]);
-  parallelFor(search.count, parallelGrain, [&](std::size_t row) {
-    std::uint64_t near = rows.rowStart[row], far = near + rows.nearCount[row];
+  for (std::size_t row = 0; row < 2 * count; ++row) rows.start[row + 1] += rows.start[row];
+  rows.column.resize(rows.start[2 * count]);
+  parallelFor(count, parallelGrain, [&](std::size_t row) {
+    std::uint64_t near = rows.start[row], far = rows.start[count + row];
     forEach(row, [&](std::uint32_t j, bool isNear) { rows.column[isNear ? near++ : far++] = j; });
   });
 }

@@ -118,7 +118,10 @@ void MphSolver<D, Backend>::prepareMultigrid(Context<Backend>& context, const Mp
 
 template <int D, class Backend>
 StagedReport MphSolver<D, Backend>::solve(Context<Backend>& context, std::span<const Vec<D>> b,
-                                          std::span<Vec<D>> u) {
+                                          std::span<Vec<D>> u, SolverModes<D, Backend>* modes, double* history) {
+  modes_ = modes;
+  history_ = history;
+  if (modes_ && !deflates(0)) modes_->drop();  // of a state that another solver made
   if (stage_ + 1 < stages_.size()) {
     guess_.resize(context, u.size());
     copy(context, flat<D>(u), flat<D>(guess_.span()));
@@ -197,16 +200,28 @@ template <class Operator, class Apply>
 SolveReport MphSolver<D, Backend>::iterate(Context<Backend>& context, const Operator& a, const Apply& k,
                                            std::span<const Vec<D>> b, std::span<Vec<D>> u) {
   const double refresh = stage().precision == Precision::Mixed ? 1e-4 : 0;
-  const StoppingRule rule{stage().tolerance, stage().maxIterations, refresh};
-  return stage().krylov == KrylovKind::Cg
-             ? conjugateGradient(context, a, k, flat<D>(b), flat<D>(u), rule, krylov_)
-             : conjugateResidual(context, a, k, flat<D>(b), flat<D>(u), rule, krylov_);
+  const StoppingRule rule{stage().tolerance, stage().maxIterations, refresh, history_};
+  if (stage().krylov == KrylovKind::Cr)
+    return conjugateResidual(context, a, k, flat<D>(b), flat<D>(u), rule, krylov_);
+  if (!modes_ || !deflates(stage_)) return conjugateGradient(context, a, k, flat<D>(b), flat<D>(u), rule, krylov_);
+  Deflation<Backend>& deflation = keeper_.prepare(context, *modes_, u.size(), stage().deflation);
+  const SolveReport report = conjugateGradient(context, a, k, flat<D>(b), flat<D>(u), rule, krylov_, deflation);
+  keeper_.finish(context, *modes_, report, stage().deflation);
+  return report;
+}
+
+template <int D, class Backend>
+bool MphSolver<D, Backend>::deflates(std::size_t stage) const {
+  const SolverSettings& s = stages_[stage];
+  return stage == 0 && s.deflation > 0 && s.krylov == KrylovKind::Cg &&
+         s.preconditioner == PreconditionerKind::ProjectedMultigrid;
 }
 
 template <int D, class Backend>
 std::size_t MphSolver<D, Backend>::bytes() const {
   std::size_t sum = rows_.bytes() + assembled_.bytes() + bucketMatrix_.bytes() + matrixFree_.bytes() +
-                    levels_.bytes() + columns_.bytes() + diagonal_.bytes() + krylov_.bytes() + guess_.bytes();
+                    levels_.bytes() + columns_.bytes() + diagonal_.bytes() + krylov_.bytes() + guess_.bytes() +
+                    keeper_.bytes();
   const auto add = [&](const auto& k) {
     sum += k.inverse.bytes() + k.blockInverse.bytes() + k.multigrid.bytes() + k.projected.bytes();
   };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "mode_keeper.hpp"
 #include "staged_report.hpp"
 #include "treacle/linear/bucket_multigrid.hpp"
 #include "treacle/linear/galerkin_spgemm.hpp"
@@ -32,8 +33,11 @@ class MphSolver {
                              const WallTerms<D>&);
 
   /// `u`: first guess and solution, per fluid particle. A stage that fails is followed by the next one, from the
-  /// best guess there is.
-  StagedReport solve(Context<Backend>&, std::span<const Vec<D>> b, std::span<Vec<D>> u);
+  /// best guess there is. The first one is deflated by `modes`, in the order of the fluid, and takes them anew
+  /// when they are due; a failure drops them. Null: no solve is deflated. `history`: StoppingRule's, of the last
+  /// stage.
+  StagedReport solve(Context<Backend>&, std::span<const Vec<D>> b, std::span<Vec<D>> u,
+                     SolverModes<D, Backend>* modes = nullptr, double* history = nullptr);
 
   std::size_t bytes() const;
 
@@ -68,6 +72,7 @@ class MphSolver {
   template <class Operator, class Apply>
   SolveReport iterate(Context<Backend>&, const Operator& a, const Apply& k, std::span<const Vec<D>> b,
                       std::span<Vec<D>> u);
+  bool deflates(std::size_t stage) const;
 
   std::vector<SolverSettings> stages_;
   std::size_t stage_ = 0;  // the one that is prepared
@@ -86,6 +91,9 @@ class MphSolver {
   Preconditioner<double> double_;
   Preconditioner<float> single_;
   KrylovWorkspace<Backend> krylov_;
+  ModeKeeper<D, Backend> keeper_;
+  SolverModes<D, Backend>* modes_ = nullptr;
+  double* history_ = nullptr;
 };
 
 }  // namespace treacle

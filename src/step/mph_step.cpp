@@ -1,5 +1,6 @@
 #include "mph_solver.hpp"
 #include "step_method.hpp"
+#include "take_trial.hpp"
 #include "treacle/method/explicit_step.hpp"
 #include "treacle/method/neighbourhood.hpp"
 #include "treacle/step/first_guess.hpp"
@@ -49,13 +50,35 @@ class MphStep final : public StepMethod<D, Backend> {
     const std::span<const Vec<D>> last = s_.particles.velocity;
     s_.velocity.resize(s_.context, active);
     copyValues(s_.context, last.subspan(n, active - n), s_.velocity.data() + n);
-    extrapolate<D>(s_.context, Extrapolation<D>::make(s_.c.solver.firstGuess, s_.timeStep), last.first(n),
-                   memory(), s_.velocity.span().first(n));
-    StagedReport report = solver_.solve(s_.context, rhs_, s_.velocity.span().first(n));
+    guess(s_.velocity.span().first(n));
+    StagedReport report = solver_.solve(s_.context, rhs_, s_.velocity.span().first(n), &s_.particles.modes);
     if (report.status == SolveStatus::Converged) return report;
     std::string diagnosis = describeFailure(report, s_.c.solver.tolerance, report.failures);
     if (report.status == SolveStatus::NotFinite) diagnosis += "; " + notFiniteOnHost();
     throw RunError(diagnosis);
+  }
+
+  /// With the modes of the state where the settings have it deflate, as the next step would.
+  SolverTrial solveBy(const SolverSettings& settings) override {
+    const SolverSettings stage = singleStage(s_.c, settings);
+    MphSolver<D, Backend> solver(stage);
+    Buffer<Vec<D>, Backend> u;
+    u.resize(s_.context, pairs_.fluidCount);
+    return takeTrial(
+        s_.context, stage,
+        [&] {
+          solver.prepareOperator(s_.context, pairs_, wallTermsView());
+          solver.preparePreconditioner(s_.context, pairs_, neighbourhood_.ranges(), wallTermsView());
+        },
+        [&](double* history) {
+          guess(u);
+          const SolverModes<D, Backend>& kept = s_.particles.modes;
+          SolverModes<D, Backend> modes;
+          modes.vectors.resize(s_.context, kept.vectors.size());
+          copyValues(s_.context, kept.vectors.span(), modes.vectors.data());
+          modes.age = kept.age;
+          return solver.solve(s_.context, rhs_, u, &modes, history);
+        });
   }
 
   std::span<const Vec<D>> transport() override { return s_.velocity.span().first(pairs_.fluidCount); }
@@ -81,6 +104,10 @@ class MphStep final : public StepMethod<D, Backend> {
 
  private:
   FlowMemory<D> memory() { return {s_.particles.acceleration.span(), s_.particles.jerk.span()}; }
+  void guess(std::span<Vec<D>> u) {
+    extrapolate<D>(s_.context, Extrapolation<D>::make(s_.c.solver.firstGuess, s_.timeStep),
+                   s_.particles.velocity.span().first(u.size()), memory(), u);
+  }
   WallTerms<D> wallTermsView() { return {wallBlock_.span(), wallGradient_.span()}; }
 
   /// b of [K23 eq. (16)], and the terms of prescribed wall velocities.

@@ -32,8 +32,10 @@ class PairSolver {
     withPrecision([&](auto& data) { prepare(context, data); });
   }
   /// `x`: first guess and solution; what a row of zeros has there stays as it is. Several solves may follow each
-  /// other with one matrix; a stage that failed is not tried again.
-  StagedReport solve(Context<Backend>& context, std::span<const double> b, std::span<double> x) {
+  /// other with one matrix; a stage that failed is not tried again. `history`: StoppingRule's, of the last stage.
+  StagedReport solve(Context<Backend>& context, std::span<const double> b, std::span<double> x,
+                     double* history = nullptr) {
+    history_ = history;
     keep(context, x);
     return solveInStages(
         stages_, stage_,
@@ -53,18 +55,22 @@ class PairSolver {
     std::size_t sum = diagonal_.bytes() + moments_.bytes() + compressed_.bytes() + levels_.bytes() +
                       guess_.bytes() + krylov_.bytes();
     const auto add = [&](const auto& data) {
-      sum += data.coefficient.bytes() + data.inverseNear.bytes() + data.hats.bytes() + data.cells.bytes();
+      sum += data.coefficient.bytes() + data.word.bytes() + data.low.bytes() + data.inverseNear.bytes() +
+             data.hats.bytes() + data.cells.bytes();
     };
     add(double_), add(single_);
     return sum;
   }
 
  private:
+  static constexpr bool onDevice = std::is_same_v<Backend, Cuda>;
+
   /// The matrix and its preconditioner in the precision of a stage.
   template <class T>
   struct Data {
-    using Number = T;
     Buffer<T, Backend> coefficient, inverseNear;
+    Buffer<std::uint32_t, Backend> word;
+    Buffer<std::uint16_t, Backend> low;
     PairMatrix<T> matrix;
     HatPreconditioner<D, T, Backend> hats;
     CellMultigrid<T, Backend> cells;
@@ -83,14 +89,27 @@ class PairSolver {
   template <class T>
   void fill(Context<Backend>& context, Data<T>& data) {
     const NeighbourRowsView& rows = pairs_->fluidRows;
-    data.coefficient.resize(context, pairs_->fluidEntries);
+    const std::size_t entries = pairs_->fluidEntries;
+    const bool packed = onDevice && std::is_same_v<T, float> && rows.count <= PackedPair::maxRows;
+    data.coefficient.resize(context, packed ? 0 : entries);
+    data.word.resize(context, packed ? entries : 0);
+    data.low.resize(context, packed ? entries : 0);
     data.inverseNear.resize(context, rows.count);
     diagonal_.resize(context, rows.count);
     moments_.resize(context, rows.count);
-    fillPairMatrix(context, *pairs_, row_,
-                   PairMatrixParts<D, T>{data.coefficient, diagonal_, data.inverseNear, moments_});
-    data.matrix = {rows.count,       rows.rowStart,          rows.nearCount, rows.column, data.coefficient.data(),
-                   diagonal_.data(), data.inverseNear.data()};
+    const double unit = row_.largest(*pairs_) / 255;
+    fillPairMatrix(
+        context, *pairs_, row_,
+        PairMatrixParts<D, T>{data.coefficient, data.word, data.low, unit, diagonal_, data.inverseNear, moments_});
+    data.matrix = {.rows = rows.count,
+                   .start = rows.start,
+                   .column = rows.column,
+                   .coefficient = data.coefficient.data(),
+                   .word = packed ? data.word.data() : nullptr,
+                   .low = data.low.data(),
+                   .unit = unit,
+                   .diagonal = diagonal_.data(),
+                   .inverseNear = data.inverseNear.data()};
   }
 
   template <class T>
@@ -109,7 +128,7 @@ class PairSolver {
     using Flat = std::span<const double>;
     const auto a = [&](Flat from, std::span<double> to) { multiply(context, data.matrix, from, to); };
     const auto with = [&](const auto& k) {
-      const StoppingRule rule{stage().tolerance, stage().maxIterations};
+      const StoppingRule rule{stage().tolerance, stage().maxIterations, 0, history_};
       return conjugateGradient(context, a, k, b, x, rule, krylov_);
     };
     switch (stage().preconditioner) {
@@ -135,6 +154,7 @@ class PairSolver {
   const IsphPairs<D>* pairs_ = nullptr;
   const CellRanges<Backend>* ranges_ = nullptr;
   Row row_{};
+  double* history_ = nullptr;
   Buffer<double, Backend> diagonal_;
   Buffer<PairMoments<D>, Backend> moments_;
   BlockCsr<1, double, Backend> compressed_;

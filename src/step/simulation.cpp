@@ -36,7 +36,8 @@ bool someWallMoves(const Particles<D>& particles) {
 
 template <int D>
 void toHost(const Context<Cpu>&, const Particles<D>& particles, Particles<D>& host) {
-  host.resize(particles.fluidCount, particles.wallCount());
+  host.resize(particles.fluidCount, particles.wallCount(), particles.modeCount());
+  host.modes.age = particles.modes.age;
   forEachFieldOf([](const auto& from, auto& to) { std::copy(from.begin(), from.end(), to.begin()); }, particles,
                  host);
 }
@@ -180,6 +181,17 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     return report;
   }
 
+  std::vector<SolverTrial> convergence(std::span<const SolverSettings> solvers) {
+    chooseTimeStep();
+    moveBodies();
+    method->sort();
+    method->buildLists();
+    method->computeCoefficients();
+    std::vector<SolverTrial> trials;
+    for (const SolverSettings& solver : solvers) trials.push_back(method->solveBy(solver));
+    return trials;
+  }
+
   std::size_t bytes() const {
     std::size_t sum = velocity.bytes() + position.bytes() + method->bytes();
     particles.forEachField([&](const auto& field) { sum += field.bytes(); });
@@ -198,6 +210,10 @@ Simulation<D, Backend>::Simulation(Simulation&&) noexcept = default;
 template <int D, class Backend>
 StepReport Simulation<D, Backend>::advance() {
   return state_->advance();
+}
+template <int D, class Backend>
+std::vector<SolverTrial> Simulation<D, Backend>::convergence(std::span<const SolverSettings> solvers) {
+  return state_->convergence(solvers);
 }
 template <int D, class Backend>
 const Particles<D, Backend>& Simulation<D, Backend>::particles() const {

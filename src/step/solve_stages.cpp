@@ -46,12 +46,14 @@ std::vector<SolverSettings> solveStages(const Case& c) {
   first.maxIterations = std::min(bound, c.solver.maxIterations);
 
   SolverSettings stronger = first;
+  stronger.deflation = 0;
   stronger.projected.pressureDegree *= 2;
   stronger.projected.velocityDegree += 1;
   stronger.precision = Precision::Double;
 
   SolverSettings papers = c.solver;
   papers.krylov = KrylovKind::Cr;
+  papers.deflation = 0;
   papers.preconditioner = PreconditionerKind::BucketMultigrid;
   papers.precision = Precision::Double;
   papers.multigrid = {};
@@ -65,6 +67,9 @@ std::string solverText(const SolverSettings& settings) {
     text +=
         fmt::format(": pressure degree {}, grid degree {}, velocity degree {}", settings.projected.pressureDegree,
                     settings.projected.gridDegree, settings.projected.velocityDegree);
+  if (settings.preconditioner == PreconditionerKind::ProjectedMultigrid && settings.krylov == KrylovKind::Cg &&
+      settings.deflation > 0)
+    text += fmt::format(", deflation by up to {} modes", settings.deflation);
   if (settings.preconditioner == PreconditionerKind::HatMultigrid)
     text += fmt::format(": grid degree {}", settings.hats.gridDegree);
   if (settings.preconditioner == PreconditionerKind::CellMultigrid)

@@ -3,6 +3,7 @@
 #include "flow_state.hpp"
 #include "staged_report.hpp"
 #include "treacle/step/diagnostics.hpp"
+#include "treacle/step/solver_trial.hpp"
 
 #include <memory>
 
@@ -22,9 +23,13 @@ class StepMethod {
   /// Everything that the linear system consists of, for state.timeStep.
   virtual void computeCoefficients() = 0;
   virtual void preparePreconditioner() = 0;
-  /// The velocities of the fluid at the end of the step, into state.velocity. Errors: RunError.
+  /// The linear system. Errors: RunError.
   virtual StagedReport solve() = 0;
-  /// The velocities that the fluid's particles move with.
+  /// Solves the same system, once the coefficients are there, in another way from the same first guess, without
+  /// any fallback. Of the state nothing is changed.
+  virtual SolverTrial solveBy(const SolverSettings&) = 0;
+  /// The velocities of the fluid at the end of the step are in state.velocity afterwards; returns those that the
+  /// particles move with.
   virtual std::span<const Vec<D>> transport() = 0;
   /// Writes what the particles shall hold but for position and velocity, which are still those before the step.
   virtual void accept() = 0;

@@ -23,7 +23,7 @@ struct RandomParticles {
     Vec<D, bool> periodic{};
     for (int k = 0; k + 1 < D; ++k) periodic[k] = true;
     grid = CellGrid<D>::make(Vec<D>{}, Vec<D>::filled(1), periodic, radius);
-    particles.resize(fluid, wall);
+    particles.resize(fluid, wall, seed % 3);
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> unit(0, 1);
     for (std::uint32_t i = 0; i < particles.count; ++i) {
@@ -35,6 +35,9 @@ struct RandomParticles {
         particles.position[i][D - 1] *= 0.5;  // leaves walls without fluid near them
         particles.acceleration[i] = -particles.position[i];
         particles.jerk[i] = -particles.velocity[i];
+        for (std::uint32_t m = 0; m < particles.modeCount(); ++m)
+          particles.modes.vectors[std::size_t{m} * fluid + i] =
+              Vec<D, float>::filled(static_cast<float>(i + 0.25 * m));
       }
       particles.pressure[i] = particles.numberDensity[i] = 0;
       particles.material[i] = 0;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "treacle/io/convergence.hpp"
 #include "treacle/io/frame.hpp"
 #include "treacle/io/history.hpp"
 
@@ -35,5 +36,11 @@ void drawFrame(const std::filesystem::path& path, const Frame& fluid, const Fram
 /// Errors: InputError if there are no rows; RunError if the file cannot be written.
 void drawHistory(const std::filesystem::path& path, const std::vector<HistoryRow>& rows,
                  const std::string& title = {});
+
+/// Draws residuals over iterations as PNG, on a logarithmic axis, one curve per solver; below it their names with
+/// iterations and milliseconds. Residuals that are zero or not finite are left out. `remark`: at the right of the
+/// title. Errors: InputError if there is no curve; RunError if the file cannot be written.
+void drawConvergence(const std::filesystem::path& path, const std::vector<ConvergenceCurve>& curves,
+                     const std::string& title = {}, const std::string& remark = {});
 
 }  // namespace treacle

@@ -13,6 +13,9 @@ struct StoppingRule {
   /// recursion for s keeps the rounding errors of K, and in single precision those outgrow s before the tolerance
   /// is reached.
   double refresh = 0;
+  /// Where to leave |r|^2 / |b|^2 at the start and after each iteration: maxIterations + 1 numbers in the
+  /// backend's memory. Null: nowhere.
+  double* history = nullptr;
 };
 
 /// Running: another iteration is due. Refresh: the same, once s = K r has been computed anew.
@@ -43,6 +46,7 @@ struct KrylovScalars {
     rr = rrAtStart = rrOfLastRefresh = rSquared;
     iteration = 0;
     status = SolveStatus::Running;
+    record();
     test();
   }
   TREACLE_HD void setDirection(double newRho) {
@@ -59,6 +63,7 @@ struct KrylovScalars {
     if (status != SolveStatus::Running) return;
     rr = rSquared;
     ++iteration;
+    record();
     test();
     if (status == SolveStatus::Running && rr < rule.refresh * rrOfLastRefresh) {
       rrOfLastRefresh = rr;
@@ -66,13 +71,15 @@ struct KrylovScalars {
     }
   }
 
-  SolveReport report() const {
-    const double scale = bb > 0 ? bb : 1;
-    return {status, iteration, rr / scale, rrAtStart / scale};
-  }
+  SolveReport report() const { return {status, iteration, rr / scale(), rrAtStart / scale()}; }
 
  private:
   TREACLE_HD static bool isFinite(double x) { return x - x == 0; }
+  TREACLE_HD double scale() const { return bb > 0 ? bb : 1; }
+
+  TREACLE_HD void record() {
+    if (rule.history) rule.history[iteration] = rr / scale();
+  }
 
   /// A zero right-hand side asks for a zero residual.
   TREACLE_HD void test() {

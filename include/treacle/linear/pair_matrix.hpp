@@ -3,6 +3,7 @@
 #include "treacle/core/backend.hpp"
 #include "treacle/core/buffer.hpp"
 #include "treacle/core/cuda.hpp"
+#include "treacle/core/macros.hpp"
 #include "treacle/linear/block_csr.hpp"
 
 #include <cstdint>
@@ -10,23 +11,63 @@
 
 namespace treacle {
 
-/// Symmetric matrix of pair coefficients c >= 0 on rows that belong to someone else, (A x)_i = diagonal_i x_i -
-/// sum_k c_k x_column(k), each row beginning with its near neighbours. The matrix cut to these, with the diagonal
-/// less the coefficients that are cut off, smooths as well as the whole one and is less than half as long. A row
-/// may hold its own column, with the coefficient zero. A row of zeros is an unknown that stays zero. In the
-/// backend's memory.
+/// How an entry is packed.
+struct PackedPair {
+  static constexpr std::uint32_t columnBits = 24, maxRows = 1u << 23;
+
+  /// Whole units of a coefficient.
+  TREACLE_HD static std::uint32_t whole(double c, double unit) {
+    return static_cast<std::uint32_t>(c / unit + 0.5);
+  }
+  TREACLE_HD static std::uint32_t word(std::uint32_t column, double c, double unit) {
+    return column << 8 | whole(c, unit);
+  }
+  /// The rest lies between -1/2 and 1/2 units.
+  TREACLE_HD static std::uint16_t low(double c, double unit) {
+    const double rest = (c / unit - whole(c, unit)) * 65536 + 32768.5;
+    return static_cast<std::uint16_t>(rest < 65535 ? rest : 65535);
+  }
+  /// The coefficient in units.
+  TREACLE_HD static double value(std::uint32_t word, std::uint16_t low) {
+    const int fixed = static_cast<int>((word & 255) << 16) + static_cast<int>(low) - 32768;
+    return fixed * (1.0 / 65536);
+  }
+  TREACLE_HD static std::uint32_t column(std::uint32_t word, std::uint32_t row) {
+    const auto away = static_cast<std::int32_t>(((word >> 8) - row) << 8) >> 8;
+    return row + static_cast<std::uint32_t>(away);
+  }
+};
+
+/// Symmetric matrix of pair coefficients 0 <= c <= 255 unit on rows that belong to someone else, (A x)_i =
+/// diagonal_i x_i - sum_k c_k x_column(k). The entries of all rows' near neighbours come first, then those of the
+/// far ones, as in NeighbourRows. A row may hold its own column, with the coefficient zero; a row of zeros is an
+/// unknown that stays zero. In the backend's memory.
+///
+/// Smoothers take the matrix cut to near neighbours, with coefficients rounded to whole units, and the diagonal
+/// that belongs to them: it smooths as well as the whole one with a fraction of its bytes.
+///
+/// On a device in single precision the entries are packed: `word` has the low 24 bits of the column and the whole
+/// units of c, `low` the rest of c, 24 bits in all. That is enough where no two neighbours are 2^23 rows apart;
+/// larger matrices have `coefficient`.
 template <class T>
 struct PairMatrix {
   std::uint32_t rows = 0;
-  const std::uint64_t* rowStart = nullptr;   // rows + 1
-  const std::uint32_t* nearCount = nullptr;  // per row
-  const std::uint32_t* column = nullptr;
-  const T* coefficient = nullptr;
+  const std::uint64_t* start = nullptr;   // 2 rows + 1
+  const std::uint32_t* column = nullptr;  // of every entry
+  const T* coefficient = nullptr;         // likewise; null where packed
+  const std::uint32_t* word = nullptr;
+  const std::uint16_t* low = nullptr;
+  double unit = 1;
   const double* diagonal = nullptr;
-  const T* inverseNear = nullptr;  // 1 / diagonal of the cut matrix, or 0
+  const T* inverseNear = nullptr;  // 1 / diagonal of the smoothers' matrix, or 0
+
+  TREACLE_HD double coefficientAt(std::uint64_t k) const {
+    return word ? unit * PackedPair::value(word[k], low[k]) : static_cast<double>(coefficient[k]);
+  }
 };
 
-/// y = A x; per iteration of CG rows (4 + sizeof(T)) bytes per neighbour and 36 per row.
+/// y = A x; it reads 4 + sizeof(T) bytes per entry, 6 where packed, and 40 per row; the two that follow 4 +
+/// sizeof(T) bytes, 4 where packed, per near entry.
 template <class T>
 void multiply(Context<Cpu>&, const PairMatrix<T>& a, std::span<const double> x, std::span<double> y);
 template <class T>

@@ -43,10 +43,10 @@ struct IsphPairs : SortedParticles<D> {
   bool negativePressure = false;  // or cut to zero
 
   /// V |W'| / r [1/m2]: V grad_i W = slope (x_j - x_i).
-  TREACLE_HD double slope(double r) const { return volume * kernel.slope(r); }
+  TREACLE_HD double slope(const Distance& r) const { return volume * kernel.slope(r); }
   /// Coefficient of p_i - p_j in the pressure equation [O23 eq. (11)], with 1/rho of the pair's mean [m/kg].
-  TREACLE_HD double pressureCoefficient(double r, std::uint8_t a, std::uint8_t b) const {
-    return 4 * slope(r) / (materials.density[a] + materials.density[b]);
+  TREACLE_HD double pressureCoefficient(const Distance& r, std::uint8_t a, std::uint8_t b) const {
+    return materials.pairMobility[a][b] * slope(r);
   }
   /// Pressure that a fluid particle with pressure p sees in a wall at distance d: the wall holds it against
   /// gravity in the frame of the wall, dp/dn = rho (g - a_wall).n.

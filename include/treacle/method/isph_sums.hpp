@@ -38,62 +38,78 @@ struct PairMoments {
   }
 };
 
-/// What a matrix of pairs consists of, on the rows of `pairs`.
+/// What a matrix of pairs consists of, on the rows of `pairs`; packed or not (PairMatrix).
 template <int D, class T>
 struct PairMatrixParts {
-  std::span<T> coefficient;  // per entry of the fluid rows
+  std::span<T> coefficient;  // per entry of the fluid rows; empty where packed
+  std::span<std::uint32_t> word;
+  std::span<std::uint16_t> low;
+  double unit;
   std::span<double> diagonal;
   std::span<T> inverseNear;
   std::span<PairMoments<D>> moments;
+
+  /// Stores entry k, which stands for column j; returns it as it is stored.
+  TREACLE_HD double put(std::uint64_t k, std::uint32_t j, double c) const {
+    if (word.empty()) return coefficient[k] = static_cast<T>(c);
+    word[k] = PackedPair::word(j, c, unit);
+    low[k] = PackedPair::low(c, unit);
+    return unit * PackedPair::value(word[k], low[k]);
+  }
 };
 
-/// Fills the parts of a matrix whose rows are PressureRow or ViscousRow. The diagonal is made of the coefficients
-/// as they are stored: a matrix in single precision is another one, but no less symmetric and semidefinite.
+/// Fills the parts of a matrix whose rows are PressureRow or ViscousRow. Diagonals are made of the coefficients as
+/// they are stored: a matrix in single precision is another one, but no less symmetric and semidefinite.
 template <int D, class T, class Row>
 void fillPairMatrix(Context<Cpu>&, const IsphPairs<D>& pairs, const Row& row, const PairMatrixParts<D, T>& parts);
 template <int D, class T, class Row>
 void fillPairMatrix(Context<Cuda>&, const IsphPairs<D>& pairs, const Row& row, const PairMatrixParts<D, T>& parts);
 
-/// Row i of a matrix of pairs: what both backends do.
+/// What both backends do with a row of such a matrix.
 template <int D, class T, class Row>
 struct PairMatrixRow {
+  static constexpr int moments = D * (D + 1) / 2, values = 3 + moments;
+  enum { Known, All, Near, Moments };  // places of the sums
+
   const IsphPairs<D>& pairs;
   const Row& row;
   const PairMatrixParts<D, T>& parts;
 
-  TREACLE_HD void fill(std::uint32_t i) const {
+  /// Entry k of row i, at x.
+  TREACLE_HD void entry(std::uint32_t i, const Vec<D>& x, std::uint64_t k, double* sum) const {
     const NeighbourRowsView& rows = pairs.fluidRows;
-    const bool unknown = row.isUnknown(i);
-    const Vec<D> x = pairs.position[i];
-    double known = unknown ? row.own(pairs, i) : 0, near = 0, far = 0;
-    double m[D * (D + 1) / 2] = {};
-    const std::uint64_t begin = rows.rowStart[i], nearEnd = begin + rows.nearCount[i], end = rows.rowStart[i + 1];
-    for (std::uint64_t k = begin; k < end; ++k) {
-      const std::uint32_t j = rows.column[k];
-      T c = 0;
-      if (unknown && j != i) {
-        const Vec<D> d = pairs.grid.difference(x, pairs.position[j]);
-        const double exact = row.coefficient(pairs, i, j, norm(d));
-        if (row.isUnknown(j)) {
-          c = static_cast<T>(exact);
-          (k < nearEnd ? near : far) += c;
-          for (int a = 0, n = 0; a < D; ++a)
-            for (int b = a; b < D; ++b, ++n) m[n] += 0.5 * exact * d[a] * d[b];
-        } else {
-          known += exact;
-        }
+    const std::uint32_t j = rows.column[k];
+    double c = 0;
+    Vec<D> d{};
+    if (row.isUnknown(i) && j != i) {
+      d = pairs.grid.difference(x, pairs.position[j]);
+      c = row.coefficient(pairs, i, j, Distance(d));
+      if (!row.isUnknown(j)) {
+        sum[Known] += c;
+        c = 0;
       }
-      parts.coefficient[k] = c;
     }
-    for (std::uint64_t k = pairs.wallRows.rowStart[i]; unknown && k < pairs.wallRows.rowStart[i + 1]; ++k) {
-      const std::uint32_t j = pairs.wallRows.column[k];
-      known += row.wall(pairs, i, j, norm(pairs.grid.difference(x, pairs.position[j])));
-    }
-    parts.diagonal[i] = known + near + far;
-    parts.inverseNear[i] = known + near > 0 ? static_cast<T>(1 / (known + near)) : T(0);
-    PairMoments<D>& moments = parts.moments[i];
-    for (int n = 0; n < D * (D + 1) / 2; ++n) moments.m[n] = static_cast<float>(m[n]);
-    moments.own = static_cast<float>(known);
+    const double stored = parts.put(k, j, c);
+    sum[All] += stored;
+    if (k < rows.start[rows.count])
+      sum[Near] += parts.unit * static_cast<int>(static_cast<T>(stored) * static_cast<T>(1 / parts.unit) + T(0.5));
+    for (int a = 0, n = Moments; a < D; ++a)
+      for (int b = a; b < D; ++b, ++n) sum[n] += 0.5 * stored * d[a] * d[b];
+  }
+  /// A wall next to it.
+  TREACLE_HD void wall(std::uint32_t i, const Vec<D>& x, std::uint64_t k, double* sum) const {
+    if (!row.isUnknown(i)) return;
+    const std::uint32_t j = pairs.wallRows.column[k];
+    sum[Known] += row.wall(pairs, i, j, Distance(pairs.grid.difference(x, pairs.position[j])));
+  }
+  TREACLE_HD void finish(std::uint32_t i, const double* sum) const {
+    const double known = row.isUnknown(i) ? sum[Known] + row.own(pairs, i) : 0;
+    const double near = known + sum[Near];
+    parts.diagonal[i] = known + sum[All];
+    parts.inverseNear[i] = near > 0 ? static_cast<T>(1 / near) : T(0);
+    PairMoments<D>& m = parts.moments[i];
+    for (int n = 0; n < moments; ++n) m.m[n] = static_cast<float>(sum[Moments + n]);
+    m.own = static_cast<float>(known);
   }
 };
 

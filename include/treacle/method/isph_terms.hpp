@@ -2,6 +2,7 @@
 
 #include "treacle/method/isph_pairs.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
@@ -19,14 +20,14 @@ struct DensityTerm {
   Vec<D>* deficit;        // sum V grad W [1/m]: points to where the neighbours are
   std::uint8_t* surface;  // 1: at the free surface, p = 0
 
-  TREACLE_HD void fluid(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d, double r,
-                        double* sum) const {
+  TREACLE_HD void fluid(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d,
+                        const Distance& r, double* sum) const {
     wall(pairs, i, j, d, r, sum);
     sum[1 + D] += 1;
   }
-  TREACLE_HD void wall(const IsphPairs<D>& pairs, std::uint32_t, std::uint32_t, const Vec<D>& d, double r,
+  TREACLE_HD void wall(const IsphPairs<D>& pairs, std::uint32_t, std::uint32_t, const Vec<D>& d, const Distance& r,
                        double* sum) const {
-    sum[0] += pairs.volume * pairs.kernel.value(r);
+    sum[0] += pairs.volume * pairs.kernel.value(r.r);
     const double slope = pairs.slope(r);
     for (int k = 0; k < D; ++k) sum[1 + k] += slope * d[k];
   }
@@ -52,12 +53,12 @@ struct PredictorTerm {
   Vec<D>* predicted;
   bool viscous;
 
-  TREACLE_HD void fluid(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>&, double r,
-                        double* sum) const {
+  TREACLE_HD void fluid(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>&,
+                        const Distance& r, double* sum) const {
     add(pairs, i, j, 2 * pairs.slope(r), sum);
   }
-  TREACLE_HD void wall(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>&, double r,
-                       double* sum) const {
+  TREACLE_HD void wall(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>&,
+                       const Distance& r, double* sum) const {
     if (pairs.noSlip) add(pairs, i, j, 4 * pairs.slope(r), sum);
   }
   TREACLE_HD void add(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, double factor,
@@ -73,6 +74,32 @@ struct PredictorTerm {
   }
 };
 
+/// Two terms in one walk over the neighbours; neither reads what the other stores.
+template <class First, class Second>
+struct BothTerms {
+  static constexpr int values = First::values + Second::values;
+  First first;
+  Second second;
+
+  template <int D>
+  TREACLE_HD void fluid(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d,
+                        const Distance& r, double* sum) const {
+    first.fluid(pairs, i, j, d, r, sum);
+    second.fluid(pairs, i, j, d, r, sum + First::values);
+  }
+  template <int D>
+  TREACLE_HD void wall(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d,
+                       const Distance& r, double* sum) const {
+    first.wall(pairs, i, j, d, r, sum);
+    second.wall(pairs, i, j, d, r, sum + First::values);
+  }
+  template <int D>
+  TREACLE_HD void store(const IsphPairs<D>& pairs, std::uint32_t i, const double* sum) const {
+    first.store(pairs, i, sum);
+    second.store(pairs, i, sum + First::values);
+  }
+};
+
 /// Right-hand side of the implicit viscous step, rho/dt v + rho g and the pull of no-slip walls, by component.
 template <int D>
 struct ViscousSourceTerm {
@@ -80,9 +107,10 @@ struct ViscousSourceTerm {
   const Vec<D>* velocity;
   double* source[D];
 
-  TREACLE_HD void fluid(const IsphPairs<D>&, std::uint32_t, std::uint32_t, const Vec<D>&, double, double*) const {}
-  TREACLE_HD void wall(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>&, double r,
-                       double* sum) const {
+  TREACLE_HD void fluid(const IsphPairs<D>&, std::uint32_t, std::uint32_t, const Vec<D>&, const Distance&,
+                        double*) const {}
+  TREACLE_HD void wall(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>&,
+                       const Distance& r, double* sum) const {
     if (!pairs.noSlip) return;
     const double c = 4 * pairs.slope(r) * pairs.materials.pairViscosity[pairs.material[i]][pairs.material[j]];
     for (int k = 0; k < D; ++k) sum[k] += c * velocity[j][k];
@@ -105,12 +133,12 @@ struct PressureSourceTerm {
   const std::uint8_t* surface;
   double* source;
 
-  TREACLE_HD void fluid(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d, double r,
-                        double* sum) const {
+  TREACLE_HD void fluid(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d,
+                        const Distance& r, double* sum) const {
     sum[0] += pairs.slope(r) * dot(predicted[j] - predicted[i], d);
   }
-  TREACLE_HD void wall(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d, double r,
-                       double* sum) const {
+  TREACLE_HD void wall(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d,
+                       const Distance& r, double* sum) const {
     sum[0] += 2 * pairs.slope(r) * dot(predicted[j] - predicted[i], d);
   }
   TREACLE_HD void store(const IsphPairs<D>& pairs, std::uint32_t i, const double* sum) const {
@@ -130,13 +158,13 @@ struct CorrectorTerm {
   const Vec<D>* predicted;  // of fluid; walls: their velocity
   Vec<D>* velocity;
 
-  TREACLE_HD void fluid(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d, double r,
-                        double* sum) const {
+  TREACLE_HD void fluid(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d,
+                        const Distance& r, double* sum) const {
     const double c = (pressure[i] + pressure[j]) * pairs.slope(r);
     for (int k = 0; k < D; ++k) sum[k] += c * d[k];
   }
-  TREACLE_HD void wall(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d, double r,
-                       double* sum) const {
+  TREACLE_HD void wall(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d,
+                       const Distance& r, double* sum) const {
     const double slope = pairs.slope(r), c = (pressure[i] + pairs.wallPressure(pressure[i], i, j, d)) * slope;
     for (int k = 0; k < D; ++k) {
       sum[k] += c * d[k];
@@ -168,9 +196,9 @@ struct WallPressureTerm {
   const double* pressure;
   double* result;  // of the walls, at their index
 
-  TREACLE_HD void fluid(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d, double r,
-                        double* sum) const {
-    const double w = pairs.kernel.value(r);
+  TREACLE_HD void fluid(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d,
+                        const Distance& r, double* sum) const {
+    const double w = pairs.kernel.value(r.r);
     sum[0] += w * pairs.wallPressure(pressure[j], j, i, -1.0 * d);
     sum[1] += w;
   }
@@ -186,10 +214,16 @@ struct PressureRow {
   const std::uint8_t* surface;
 
   TREACLE_HD bool isUnknown(std::uint32_t i) const { return !surface[i]; }
-  TREACLE_HD double coefficient(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, double r) const {
+  TREACLE_HD double coefficient(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j,
+                                const Distance& r) const {
     return pairs.pressureCoefficient(r, pairs.material[i], pairs.material[j]);
   }
-  TREACLE_HD double wall(const IsphPairs<D>&, std::uint32_t, std::uint32_t, double) const { return 0; }
+  /// Bound on all of them.
+  double largest(const IsphPairs<D>& pairs) const {
+    const MaterialTable& m = pairs.materials;
+    return 2 * pairs.slope(0) / *std::min_element(m.density, m.density + m.count);
+  }
+  TREACLE_HD double wall(const IsphPairs<D>&, std::uint32_t, std::uint32_t, const Distance&) const { return 0; }
   TREACLE_HD double own(const IsphPairs<D>&, std::uint32_t) const { return 0; }
 };
 
@@ -197,10 +231,17 @@ struct PressureRow {
 template <int D>
 struct ViscousRow {
   TREACLE_HD bool isUnknown(std::uint32_t) const { return true; }
-  TREACLE_HD double coefficient(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, double r) const {
+  TREACLE_HD double coefficient(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j,
+                                const Distance& r) const {
     return 2 * pairs.slope(r) * pairs.materials.pairViscosity[pairs.material[i]][pairs.material[j]];
   }
-  TREACLE_HD double wall(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, double r) const {
+  double largest(const IsphPairs<D>& pairs) const {
+    double viscosity = 0;
+    for (int m = 0; m < pairs.materials.count; ++m)
+      viscosity = std::max(viscosity, pairs.materials.pairViscosity[m][m]);
+    return 2 * pairs.slope(0) * viscosity;
+  }
+  TREACLE_HD double wall(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Distance& r) const {
     return pairs.noSlip ? 2 * coefficient(pairs, i, j, r) : 0;
   }
   TREACLE_HD double own(const IsphPairs<D>& pairs, std::uint32_t i) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "treacle/core/inverse_sqrt.hpp"
 #include "treacle/core/macros.hpp"
 #include "treacle/core/vec.hpp"
 #include "treacle/model/case.hpp"
@@ -8,6 +9,19 @@
 #include <numbers>
 
 namespace treacle {
+
+/// A distance and its inverse [m, 1/m]; of a particle to itself both are zero.
+struct Distance {
+  double r, inverse;
+
+  TREACLE_HD Distance(double distance) : r(distance), inverse(distance > 0 ? 1 / distance : 0) {}
+  template <int D>
+  TREACLE_HD explicit Distance(const Vec<D>& d) {
+    const double r2 = norm2(d);
+    inverse = r2 > 0 ? inverseSqrt(r2) : 0;
+    r = r2 * inverse;
+  }
+};
 
 /// Smoothing function W(r, h) of SPH, zero from r = 2 h on [O23 eq. (3)].
 template <int D>
@@ -36,12 +50,12 @@ struct SmoothingKernel {
   }
 
   /// -W'(r) / r [1/m^(D+2)], >= 0: grad_i W = slope (x_j - x_i).
-  TREACLE_HD double slope(double r) const {
-    const double q = r * inverseLength, rest = q < 2 ? 2 - q : 0;
+  TREACLE_HD double slope(const Distance& d) const {
+    const double q = d.r * inverseLength, rest = q < 2 ? 2 - q : 0;
     const double perLength2 = scale * inverseLength * inverseLength;
     if (kind == KernelKind::WendlandC2) return perLength2 * 0.625 * rest * rest * rest;
     if (q < 1) return perLength2 * (3 - 2.25 * q);
-    return perLength2 * 0.75 * rest * rest / q;
+    return scale * inverseLength * 0.75 * rest * rest * d.inverse;
   }
 };
 

@@ -171,6 +171,9 @@ struct HatSettings {
   bool operator==(const HatSettings&) const = default;
 };
 
+/// Largest number of modes that a solve can be deflated by.
+inline constexpr int maxModes = 16;
+
 struct SolverSettings {
   // The defaults are those of MPH-I; case files have others for ISPH and for other preconditioners.
   KrylovKind krylov = KrylovKind::Cg;
@@ -184,6 +187,8 @@ struct SolverSettings {
   /// A solve starts from the velocities of the last step, or from those of two or three extrapolated. ISPH: from
   /// the pressures of the last step.
   FirstGuess firstGuess = FirstGuess::Quadratic;
+  /// Largest number of modes that conjugate gradients with the projected multigrid are deflated by; 0: none.
+  int deflation = 8;
   MultigridSettings multigrid;
   ProjectedSettings projected;
   CellSettings cells;

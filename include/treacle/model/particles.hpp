@@ -2,6 +2,7 @@
 
 #include "treacle/core/buffer.hpp"
 #include "treacle/core/vec.hpp"
+#include "treacle/model/solver_modes.hpp"
 
 #include <cstdint>
 #include <type_traits>
@@ -27,6 +28,7 @@ template <class F, class... Sets>
 void forEachFieldOf(F&& f, Sets&... sets) {
   forEachSharedFieldOf(f, sets...);
   forEachFluidFieldOf(f, sets...);
+  f(sets.modes.vectors...);
 }
 
 /// In place of a body: not known. Case files have fewer bodies than this.
@@ -53,13 +55,21 @@ struct Particles {
   Buffer<Vec<D>, Backend> acceleration;  // (u^k - u^{k-1}) / dt of the fluid [m/s2]; zero: not known
   Buffer<Vec<D>, Backend> jerk;          // that of the acceleration, of the fluid [m/s3]; zero: not known
 
+  // The memory of the solver, likewise.
+  SolverModes<D, Backend> modes;
+
   std::uint32_t wallCount() const { return count - fluidCount; }
+  std::uint32_t modeCount() const {
+    return fluidCount > 0 ? static_cast<std::uint32_t>(modes.vectors.size() / fluidCount) : 0;
+  }
 
   /// The content is undefined afterwards. Errors: std::bad_alloc.
-  void resize(std::uint32_t fluid, std::uint32_t wall) requires std::is_same_v<Backend, Cpu> {
-    resize(Context<Cpu>{}, fluid, wall);
+  void resize(std::uint32_t fluid, std::uint32_t wall,
+              std::uint32_t modeNumber = 0) requires std::is_same_v<Backend, Cpu> {
+    resize(Context<Cpu>{}, fluid, wall, modeNumber);
   }
-  void resize(const Context<Backend>& context, std::uint32_t fluid, std::uint32_t wall) {
+  void resize(const Context<Backend>& context, std::uint32_t fluid, std::uint32_t wall,
+              std::uint32_t modeNumber = 0) {
     fluidCount = fluid;
     count = fluid + wall;
     const auto resizeTo = [&](std::uint32_t size) {
@@ -67,6 +77,8 @@ struct Particles {
     };
     forEachSharedFieldOf(resizeTo(count), *this);
     forEachFluidFieldOf(resizeTo(fluid), *this);
+    modes.vectors.resize(context, std::size_t{fluid} * modeNumber);
+    modes.age = {};
   }
 
   /// Calls f with every field.

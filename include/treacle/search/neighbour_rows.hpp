@@ -18,26 +18,30 @@ enum class RowKind {
   FluidOfWalls   // the fluid around each active wall particle
 };
 
-/// Neighbours of every particle in compressed rows, the near ones first: row k, of particle first + k, is
-/// column[rowStart[k] … rowStart[k+1]-1], and its first nearCount[k] lie within the near radius. Of a pair the
-/// nearest periodic images are meant (CellGrid::difference).
+/// Neighbours of every particle in compressed rows, in two sections: first the near neighbours of all rows, then
+/// the far ones. Row k, of particle first + k, is column[start[k] … start[k+1]-1] and column[start[count+k] …
+/// start[count+k+1]-1]. Of a pair the nearest periodic images are meant (CellGrid::difference).
 struct NeighbourRowsView {
   std::uint32_t first = 0, count = 0;
-  const std::uint64_t* rowStart = nullptr;
-  const std::uint32_t* nearCount = nullptr;
+  const std::uint64_t* start = nullptr;
   const std::uint32_t* column = nullptr;
+
+  /// f(k) for the places of every `step`-th neighbour in each section of a row, from number `from` on.
+  template <class F>
+  TREACLE_HD void forEachPlace(std::uint32_t row, F&& f, std::uint32_t from = 0, std::uint32_t step = 1) const {
+    for (const std::uint64_t section : {std::uint64_t{row}, std::uint64_t{count} + row})
+      for (std::uint64_t k = start[section] + from, end = start[section + 1]; k < end; k += step) f(k);
+  }
 };
 
 template <class Backend = Cpu>
 struct NeighbourRows {
-  std::uint32_t first = 0;
-  Buffer<std::uint64_t, Backend> rowStart;
-  Buffer<std::uint32_t, Backend> nearCount, column;
+  std::uint32_t first = 0, count = 0;
+  Buffer<std::uint64_t, Backend> start;  // 2 count + 1
+  Buffer<std::uint32_t, Backend> column;
 
-  NeighbourRowsView view() const {
-    return {first, static_cast<std::uint32_t>(nearCount.size()), rowStart.data(), nearCount.data(), column.data()};
-  }
-  std::size_t bytes() const { return rowStart.bytes() + nearCount.bytes() + column.bytes(); }
+  NeighbourRowsView view() const { return {first, count, start.data(), column.data()}; }
+  std::size_t bytes() const { return start.bytes() + column.bytes(); }
 };
 
 struct RowRadii {

@@ -22,8 +22,8 @@ struct DiagnosticsInput {
   Vec<D> gravity;      // [m/s2]
   double spacing = 0;  // [m]
   // Of ISPH, else empty.
-  std::span<const double> density;        // <rho> / rho
-  std::span<const std::uint8_t> surface;  // 1: at the free surface
+  std::span<const double> density{};        // <rho> / rho
+  std::span<const std::uint8_t> surface{};  // 1: at the free surface
 };
 
 /// What a particle adds to the diagnostics.

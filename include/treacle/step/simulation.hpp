@@ -2,11 +2,14 @@
 
 #include "treacle/model/case.hpp"
 #include "treacle/model/particles.hpp"
+#include "treacle/step/solver_trial.hpp"
 
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
+#include <vector>
 
 namespace treacle {
 
@@ -67,6 +70,12 @@ class Simulation {
   /// One time step. Errors: RunError with the diagnosis (no convergence, a value not finite, a particle outside
   /// an open domain); particles() and time() then still hold the last good state, that before the step.
   StepReport advance();
+
+  /// Solves the linear system of the next step (ISPH: the pressure equation) by each of these solvers, from the
+  /// first guess of the case and without fallbacks. They must fit the method and the case's neighbours. The step
+  /// itself is still to be made, and gives the same bits as without. Errors: RunError where the system cannot be
+  /// set up; a solve that fails is a result.
+  std::vector<SolverTrial> convergence(std::span<const SolverSettings> solvers);
 
   /// Particles in the backend's memory.
   const Particles<D, Backend>& particles() const;

@@ -127,6 +127,11 @@ TEST(KrylovLoopTwin, EndsAsOnTheCpu) {
     EXPECT_LE(distance(b.host, copyToHost(cuda, x)), kernelTolerance);
     report = solveIdentity<Cuda>(cuda, b.device, x, cg, {1e-20, 10});
     EXPECT_EQ(report.iterations, 0) << "the solution as first guess";
+    Buffer<double, Cuda> history(cuda, 11);
+    clearBytes(cuda, x.data(), 8000);
+    report = solveIdentity<Cuda>(cuda, b.device, x, cg, {1e-20, 10, 0, history.data()});
+    EXPECT_EQ(copyToHost(cuda, history)[0], report.startResidual);
+    EXPECT_EQ(copyToHost(cuda, history)[1], report.residual);
 
     clearBytes(cuda, x.data(), 8000);
     report = solveIdentity<Cuda>(cuda, b.device, x, cg, {0, 0});

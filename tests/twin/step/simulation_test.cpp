@@ -1,6 +1,7 @@
 #include "treacle/step/simulation.hpp"
 #include "support/gpu.hpp"
 #include "support/scene.hpp"
+#include "support/stretched_body.hpp"
 #include "treacle/core/error.hpp"
 
 #include <gtest/gtest.h>
@@ -102,6 +103,48 @@ TEST(SimulationTwin, StepsLikeTheCpuWithEverySolver) {
     compareSteps<2>(s);
     compareSteps<3>(s);
   }
+}
+
+TEST(SimulationTwin, DeflatesLikeTheCpu) {
+  TREACLE_SKIP_WITHOUT_GPU();
+  StretchedBody a, b;
+  auto cpu = a.start(8);
+  auto cuda = b.start<Cuda>(8);
+  for (int step = 1; step <= 12; ++step) {
+    const StepReport expected = cpu.advance(), found = cuda.advance();
+    EXPECT_NEAR(found.iterations, expected.iterations, 2) << "step " << step;
+    EXPECT_EQ(found.fallbacks, 0);
+    // Values near the least one, and copies of values, may come and go.
+    EXPECT_NEAR(cuda.particles().modeCount(), cpu.particles().modeCount(), 1) << "step " << step;
+    EXPECT_EQ(cuda.particles().modes.age.due, cpu.particles().modes.age.due) << "step " << step;
+  }
+  EXPECT_GT(cuda.particles().modeCount(), 0u);
+  Particles<2> found;
+  cuda.copyParticles(found);
+  EXPECT_EQ(found.modeCount(), cuda.particles().modeCount());
+  EXPECT_LE(farthest(cpu.particles(), found), 1e-4 * a.c.spacing);
+}
+
+TEST(SimulationTwin, DeflatedStepsContinueFromACopyWithTheSameBits) {
+  TREACLE_SKIP_WITHOUT_GPU();
+  StretchedBody body;
+  auto whole = body.start<Cuda>(8);
+  for (int step = 1; step <= 5; ++step) whole.advance();
+  Particles<2> state;
+  whole.copyParticles(state);
+  Simulation<2, Cuda> resumed(body.c, std::move(state), whole.step(), whole.time());
+  for (int step = 6; step <= 9; ++step) EXPECT_EQ(resumed.advance().iterations, whole.advance().iterations);
+  Particles<2> a, b;
+  whole.copyParticles(a);
+  resumed.copyParticles(b);
+  EXPECT_GT(a.modeCount(), 0u);
+  EXPECT_EQ(a.modes.age, b.modes.age);
+  forEachFieldOf(
+      [](const auto& x, const auto& y) {
+        const auto p = std::as_bytes(x.span()), q = std::as_bytes(y.span());
+        EXPECT_TRUE(std::equal(p.begin(), p.end(), q.begin(), q.end()));
+      },
+      a, b);
 }
 
 template <int D>

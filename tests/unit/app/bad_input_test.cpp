@@ -118,6 +118,10 @@ constexpr BadCase badCases[] = {
      "bad.toml:40:19: pressure_degree in [solver.projected]: expected a whole number of at least 0, found -1"},
     {"noIterations", "[output]", "[solver.projected]\niteration_bound = 0\n[output]",
      "bad.toml:40:19: iteration_bound in [solver.projected]: expected a whole number of at least 1, found 0"},
+    {"negativeDeflation", "[output]", "[solver]\ndeflation = -1\n[output]",
+     "bad.toml:40:13: deflation in [solver]: expected a whole number of at least 0, found -1"},
+    {"manyModes", "[output]", "[solver]\ndeflation = 17\n[output]",
+     "bad.toml:40:13: deflation in [solver]: expected at most 16 modes, found 17"},
     {"unknownNeighbours", "[output]", "[solver]\nneighbours = \"tree\"\n[output]",
      "bad.toml:40:14: neighbours in [solver]: expected 'lists' or 'ranges', found 'tree'"},
     {"unknownCoarseOperators", "[output]", "[solver.multigrid]\ncoarse_operators = \"dense\"\n[output]",
@@ -292,7 +296,7 @@ TEST_P(BadArguments, areRejectedWithReason) {
 }
 
 constexpr BadLine badLines[] = {
-    {"noCommand", "", "expected a command: run, check, plot, compare or info"},
+    {"noCommand", "", "expected a command: run, check, plot, compare, convergence or info"},
     {"unknownCommand", "rum small.toml", "rum"},
     {"noCase", "run", "CASE is required"},
     {"unknownOption", "run small.toml --fast", "--fast"},

@@ -146,6 +146,7 @@ preconditioner = "block-jacobi"
 operator = "assembled"
 precision = "mixed"
 first_guess = "linear"
+deflation = 11
 tolerance = 1e-10
 max_iterations = 77
 [solver.multigrid]
@@ -191,6 +192,7 @@ TEST(readCase, takesEveryKey) {
   expected.solver.operatorKind = OperatorKind::Assembled;
   expected.solver.precision = Precision::Mixed;
   expected.solver.firstGuess = FirstGuess::Linear;
+  expected.solver.deflation = 11;
   expected.solver.tolerance = 1e-10;
   expected.solver.maxIterations = 77;
   expected.solver.multigrid = {1, 5, 6, SmootherDiagonal::ExtendedJacobi, CoarseKind::Spgemm};

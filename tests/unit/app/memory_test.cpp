@@ -77,8 +77,24 @@ TEST(HostMemory, ProjectedMultigridTakesMoreAndMostBesideAMatrix) {
     EXPECT_GT(besideLists, 0u);
     bucket.solver.operatorKind = projected.solver.operatorKind = OperatorKind::Assembled;
     EXPECT_GT(more(), besideLists);
+    projected.solver.deflation = 0;
     EXPECT_EQ(estimatedMemory(projected, some, true), estimatedMemory(bucket, some, true));
   }
+}
+
+TEST(HostMemory, HoldsModesWhereTheSolverHasSome) {
+  Case none = caseOf(2);
+  none.solver.preconditioner = PreconditionerKind::ProjectedMultigrid;
+  none.solver.deflation = 0;
+  Case few = none, many = none;
+  few.solver.deflation = 8, many.solver.deflation = 16;
+  for (const bool onDevice : {false, true}) {
+    EXPECT_GT(estimatedMemory(few, some, onDevice), estimatedMemory(none, some, onDevice));
+    EXPECT_GT(estimatedMemory(many, some, onDevice), estimatedMemory(few, some, onDevice));
+  }
+  EXPECT_GT(estimatedDeviceMemory(few, some), estimatedDeviceMemory(none, some));
+  many.solver.krylov = KrylovKind::Cr;
+  EXPECT_EQ(estimatedDeviceMemory(many, some), estimatedDeviceMemory(none, some));
 }
 
 TEST(DeviceMemory, ARunThatDoesNotFitIsRefused) {

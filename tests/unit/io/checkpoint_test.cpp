@@ -25,7 +25,8 @@ constexpr double time3 = 3 * 0.1;  // [s]; not the decimal 0.3
 template <int D>
 Particles<D> randomParticles(std::uint32_t fluid, std::uint32_t wall) {
   Particles<D> particles;
-  particles.resize(fluid, wall);
+  particles.resize(fluid, wall, fluid % 4);
+  particles.modes.age = {7, 13};
   std::mt19937_64 random(D);
   particles.forEachField([&](auto& field) {
     auto* bytes = reinterpret_cast<unsigned char*>(field.data());
@@ -53,6 +54,9 @@ void expectSame(const Particles<D>& a, const Particles<D>& b) {
   EXPECT_TRUE(sameBits(a.id, b.id));
   EXPECT_TRUE(sameBits(a.acceleration, b.acceleration));
   EXPECT_TRUE(sameBits(a.jerk, b.jerk));
+  EXPECT_EQ(a.modeCount(), b.modeCount());
+  EXPECT_TRUE(sameBits(a.modes.vectors, b.modes.vectors));
+  EXPECT_EQ(a.modes.age, b.modes.age);
 }
 
 template <int D>
@@ -160,10 +164,14 @@ TEST(Checkpoint, EarlierVersionsAreReadWithoutBodiesAndMemoryOfTheFlow) {
   const auto path = directory / "c.h5";
   Particles<3> particles = randomParticles<3>(33, 31);
   writeCheckpoint<3>(path, particles, 7, time3);
+  ASSERT_EQ(particles.modeCount(), 1u);
+  removeField(path, "modes");
+  EXPECT_THAT(refusal<3>(path), HasSubstr("modes"));
   removeField(path, "body");
   EXPECT_THAT(refusal<3>(path), HasSubstr("body"));
   changeAttribute(path, "version", 2);
   std::fill(particles.body.begin(), particles.body.end(), unknownBody);
+  particles.modes.drop();
   expectSame(readCheckpoint<3>(path).particles, particles);
 
   removeField(path, "acceleration");

@@ -82,6 +82,29 @@ TEST(Krylov, HasTheResidualItReports) {
   }
 }
 
+TEST(Krylov, LeavesTheHistoryOfItsResiduals) {
+  System s;
+  const auto check = [&](auto&& solve, double refresh) {
+    std::vector<double> history(5002, -1.0);
+    Eigen::VectorXd x = randomVector(s.b.size(), 3);
+    const SolveReport whole = s.run(solve, s.jacobi(), x, {1e-12, 5000, refresh, history.data()});
+    ASSERT_EQ(whole.status, SolveStatus::Converged);
+    ASSERT_GT(whole.iterations, 10);
+    EXPECT_EQ(history[0], whole.startResidual);
+    EXPECT_EQ(history[whole.iterations], whole.residual);
+    EXPECT_EQ(history[whole.iterations + 1], -1) << "nothing behind the end";
+    // What a solve that is cut off there reports.
+    for (int k : {1, 2, 9}) {
+      x = randomVector(s.b.size(), 3);
+      EXPECT_EQ(s.run(solve, s.jacobi(), x, {1e-12, k, refresh}).residual, history[k]);
+      EXPECT_NEAR((s.b - s.a * x).squaredNorm() / s.b.squaredNorm(), history[k], 1e-6 * history[k]);
+    }
+  };
+  check(cg, 0);
+  check(cr, 0);
+  check(cr, 1e-4);
+}
+
 TEST(Krylov, ReportsTheIterationLimit) {
   System s;
   Eigen::VectorXd x = Eigen::VectorXd::Zero(s.b.size());

@@ -21,6 +21,10 @@ void checkSort(std::uint32_t fluid, std::uint32_t wall) {
   for (std::uint32_t i = 0; i < p.count; ++i) ASSERT_EQ(p.position[i], before[p.id[i]]) << "fields went apart";
   for (std::uint32_t i = 0; i < p.count; ++i) ASSERT_EQ(p.body[i], p.id[i] % 7) << "fields went apart";
   for (std::uint32_t i = 0; i < fluid; ++i) ASSERT_EQ(p.acceleration[i], -p.position[i]) << "fields went apart";
+  for (std::uint32_t m = 0; m < p.modeCount(); ++m)
+    for (std::uint32_t i = 0; i < fluid; ++i)
+      ASSERT_EQ(p.modes.vectors[std::size_t{m} * fluid + i][0], static_cast<float>(p.id[i] + 0.25 * m))
+          << "fields went apart";
   for (std::uint32_t i = 0; i < fluid; ++i) ASSERT_EQ(r.ranges.key[i], r.grid.key(p.position[i]));
   EXPECT_TRUE(std::is_sorted(r.ranges.key.begin(), r.ranges.key.end()));
 

@@ -16,7 +16,8 @@ TEST(SolveStages, OfTheProjectedMultigridAreStrongerAndThenAnotherPreconditioner
   const std::vector<SolverSettings> stages = solveStages(c);
   ASSERT_EQ(stages.size(), 3u);
   EXPECT_EQ(solverText(stages[0]),
-            "cg, projected-multigrid, mixed: pressure degree 6, grid degree 3, velocity degree 2");
+            "cg, projected-multigrid, mixed: pressure degree 6, grid degree 3, velocity degree 2, "
+            "deflation by up to 8 modes");
   EXPECT_EQ(solverText(stages[1]),
             "cg, projected-multigrid, double: pressure degree 12, grid degree 3, velocity degree 3");
   EXPECT_EQ(solverText(stages[2]), "cr, bucket-multigrid, double");

@@ -1,0 +1,54 @@
+#pragma once
+
+#include "isph_matrix.hpp"
+#include "isph_step.hpp"
+#include "isph_traffic.hpp"
+#include "treacle/core/error.hpp"
+#include "treacle/model/particles_copy.hpp"
+
+#include <span>
+
+namespace treacle {
+
+/// The pressure equation A p = b of one step [O23 eq. (11)] with all that solvers start from.
+template <int D>
+class IsphSystem {
+ public:
+  /// `state`: the particles at the start of the step. Errors: InputError for walls that oscillate, whose motion a
+  /// simulation prescribes.
+  IsphSystem(const Case& c, const Particles<D>& state, double timeStep) : flow_(c, 0, 0), method_(flow_) {
+    for (const Body& body : c.bodies)
+      if (body.oscillation.period > 0) throw InputError("walls that oscillate are not compared");
+    copyToDevice(flow_.context, state, flow_.particles);
+    flow_.timeStep = timeStep;
+    method_.sort();
+    method_.buildLists();
+    method_.computeCoefficients();
+    guess_.resize(context(), fluidCount());
+    copyValues(context(), std::span<const double>(flow_.particles.pressure).first(fluidCount()), guess_.data());
+    clearKnown(context(), row(), guess_.span());
+  }
+  IsphSystem(const IsphSystem&) = delete;
+
+  Context<Cuda>& context() const { return flow_.context; }
+  std::uint32_t fluidCount() const { return flow_.particles.fluidCount; }
+  const IsphPairs<D>& pairs() const { return method_.pairs(); }
+  const CellRanges<Cuda>& ranges() const { return method_.ranges(); }
+  PressureRow<D> row() const { return method_.row(); }
+  std::span<const double> rightHandSide() const { return method_.source(); }
+  /// The last pressure, zero where that is prescribed.
+  std::span<const double> firstGuess() const { return guess_.span(); }
+
+  PressureSizes sizes() const {
+    constexpr double nearShare = 0.79;  // as in IsphStep
+    const double near = nearShare * pairs().kernel.radius();
+    return {D, fluidCount(), countPairs(context(), pairs(), near), gridSizes(context(), pairs())};
+  }
+
+ private:
+  FlowState<D, Cuda> flow_;
+  IsphStep<D, Cuda> method_;
+  Buffer<double, Cuda> guess_;
+};
+
+}  // namespace treacle

@@ -1,0 +1,46 @@
+#pragma once
+
+#include "treacle/core/buffer.hpp"
+#include "treacle/core/vec.hpp"
+
+#include <algorithm>
+#include <cstdint>
+
+namespace treacle {
+
+/// When the modes of a solver are to be taken anew: after so many solves, or when one takes a quarter more
+/// iterations than the best since the last time. The first solve of a run, from rest and without a guess, is not
+/// like the others.
+struct ModeAge {
+  static constexpr std::int32_t longest = 50, shortest = 10;  // solves with the same modes
+
+  std::int32_t due = 1;     // solves until then; negative: there are some worth taking
+  std::int32_t fewest = 0;  // iterations that one of the solves since the last time took; 0: not known
+
+  bool isDue() const { return due <= 0; }
+  bool areWorthTaking() const { return due < 0; }
+  void foundWorthTaking() { due = -1; }
+  void taken() { *this = {longest, 0}; }
+  /// After a solve with the present modes, or without any.
+  void solved(std::int32_t iterations) {
+    --due;
+    const std::int32_t before = fewest == 0 ? iterations : fewest;
+    fewest = std::min(before, iterations);
+    if (iterations >= before + std::max(2, before / 4) && due <= longest - shortest) due = 0;
+  }
+
+  bool operator==(const ModeAge&) const = default;
+};
+
+/// Displacements that the preconditioner of MPH-I's solver does badly at, and that its solves are deflated by.
+/// They change slowly with the flow, so they are carried along by its particles.
+template <int D, class Backend = Cpu>
+struct SolverModes {
+  Buffer<Vec<D, float>, Backend> vectors;  // of the fluid, one mode after the other; none: not deflated
+  ModeAge age;
+
+  /// Without any, as at the start of a run.
+  void drop() { *this = {}; }
+};
+
+}  // namespace treacle

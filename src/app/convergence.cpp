@@ -1,0 +1,149 @@
+#include "treacle/io/convergence.hpp"
+#include "backend.hpp"
+#include "commands.hpp"
+#include "compared_solvers.hpp"
+#include "machine.hpp"
+#include "memory.hpp"
+#include "progress.hpp"
+#include "resume.hpp"
+#include "run_log.hpp"
+#include "treacle/core/cuda.hpp"
+#include "treacle/core/error.hpp"
+#include "treacle/io/case_reader.hpp"
+#include "treacle/io/picture.hpp"
+#include "treacle/model/checks.hpp"
+#include "treacle/model/create.hpp"
+#include "treacle/step/simulation.hpp"
+
+#include <fmt/format.h>
+#include <omp.h>
+
+#include <algorithm>
+#include <system_error>
+
+namespace treacle {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The state that the way to the system begins at; the case then ends where the system is to be.
+template <int D>
+Checkpoint<D> startOf(Case& c, const ConvergenceOptions& options, Particles<D> made) {
+  Checkpoint<D> start{std::move(made)};
+  if (!options.resume.empty()) start = fittingState<D>(c, options.resume, start.particles);
+  c.time.end = options.at.value_or(start.time);
+  if (c.time.stepsVary() ? c.time.end < start.time * (1 - 1e-9) : c.steps() < start.step)
+    throw InputError(
+        fmt::format("--at: expected at least the checkpoint's time, {:g} s, found {:g}", start.time, c.time.end));
+  return start;
+}
+
+template <int D, class Backend>
+void advanceToEnd(const Case& c, Simulation<D, Backend>& simulation) {
+  if (c.atEnd(simulation.step(), simulation.time())) return;
+  Progress progress(c, simulation.step(), simulation.time(), false);
+  while (!c.atEnd(simulation.step(), simulation.time())) try {
+      progress.update(simulation.advance());
+    } catch (const RunError& error) {
+      progress.endLine();
+      throw RunError(
+          fmt::format("after step {} (t = {:.6g} s): {}", simulation.step(), simulation.time(), error.what()));
+    }
+}
+
+const char* outcomeText(SolveStatus status) {
+  switch (status) {
+    case SolveStatus::Converged:
+      return "converged";
+    case SolveStatus::IterationLimit:
+      return "iteration limit";
+    case SolveStatus::Breakdown:
+      return "breakdown";
+    default:
+      return "not finite";
+  }
+}
+
+/// Solvers may differ in what solverText() does not tell.
+void numberEqualNames(std::vector<ConvergenceCurve>& curves) {
+  for (std::size_t k = 0; k < curves.size(); ++k) {
+    int number = 1;
+    const std::string name = curves[k].solver;
+    for (std::size_t later = k + 1; later < curves.size(); ++later)
+      if (curves[later].solver == name) curves[later].solver += fmt::format(" ({})", ++number);
+    if (number > 1) curves[k].solver += " (1)";
+  }
+}
+
+void printTable(const std::vector<ConvergenceCurve>& curves) {
+  std::size_t widest = 6;
+  for (const ConvergenceCurve& curve : curves) widest = std::max(widest, curve.solver.size());
+  fmt::print("{:{}}  iterations  |r| / |b|  set-up [ms]  solve [ms]\n", "solver", widest);
+  for (const ConvergenceCurve& c : curves)
+    fmt::print("{:{}}  {:10}  {:9.2e}  {:11.3f}  {:10.3f}{}\n", c.solver, widest, c.iterations(), c.lastResidual(),
+               1e3 * c.setupSeconds, 1e3 * c.solveSeconds, c.outcome == "converged" ? "" : "  " + c.outcome);
+}
+
+template <int D, class Backend>
+void compareSolvers(const Case& c, Checkpoint<D> start, const std::vector<SolverSettings>& solvers,
+                    const fs::path& directory) {
+  Simulation<D, Backend> simulation(c, std::move(start.particles), start.step, start.time);
+  advanceToEnd(c, simulation);
+  const std::string where = fmt::format("step {}, from t = {:.6g} s", simulation.step() + 1, simulation.time());
+  std::vector<ConvergenceCurve> curves;
+  for (SolverTrial& trial : simulation.convergence(solvers))
+    curves.push_back({std::move(trial.solver), outcomeText(trial.report.status), std::move(trial.residuals),
+                      trial.setupSeconds, trial.solveSeconds});
+  numberEqualNames(curves);
+  fmt::print("{}: {}, {} fluid particles\n", c.title.empty() ? "case" : c.title, where,
+             simulation.particles().fluidCount);
+  printTable(curves);
+  writeConvergence(directory / "convergence.csv", curves);
+  writeSolvers(directory / "solvers.csv", curves);
+  drawConvergence(directory / "convergence.png", curves, c.title, where);
+  fmt::print("picture: {}\n", (directory / "convergence.png").string());
+}
+
+fs::path directoryOf(const ConvergenceOptions& options) {
+  const fs::path path =
+      options.directory.empty() ? options.input.file.stem().concat("-convergence") : options.directory;
+  std::error_code error;
+  fs::create_directories(path, error);
+  if (!error && !fs::is_directory(path)) error = std::make_error_code(std::errc::not_a_directory);
+  if (error)
+    throw InputError(fmt::format("output directory {}: cannot be created: {}", path.string(), error.message()));
+  return path;
+}
+
+template <int D>
+void compareFor(Case c, const ConvergenceOptions& options, const std::optional<DeviceInfo>& device) {
+  const std::vector<SolverSettings> solvers = comparedSolvers(options, c.method.kind);
+  std::vector<std::string> warnings;
+  Particles<D> made = createParticles<D>(c, warnings);
+  for (std::string& warning : caseWarnings(c)) warnings.push_back(std::move(warning));
+  if (!device)
+    for (std::string& warning : cpuWarnings(c)) warnings.push_back(std::move(warning));
+  for (Case with = c; const SolverSettings& solver : solvers) {
+    with.solver = solver;
+    requireMemory(with, {made.fluidCount, made.wallCount()}, device ? &*device : nullptr);
+  }
+  Checkpoint<D> start = startOf<D>(c, options, std::move(made));
+  const fs::path directory = directoryOf(options);
+  for (const std::string& warning : warnings) printWarning(warning);
+  fmt::print("{}\n",
+             device ? deviceText(*device) : fmt::format("{}, {} threads", processorName(), omp_get_max_threads()));
+  if constexpr (cudaCompiled)
+    if (device) return compareSolvers<D, Cuda>(c, std::move(start), solvers, directory);
+  compareSolvers<D, Cpu>(c, std::move(start), solvers, directory);
+}
+
+}  // namespace
+
+void convergenceCommand(const ConvergenceOptions& options) {
+  const std::optional<DeviceInfo> device = deviceFor(options.backend);
+  if (options.threads > 0) omp_set_num_threads(options.threads);
+  const Case c = readCase(options.input.file, overridesOf(options));
+  c.dimensions == 2 ? compareFor<2>(c, options, device) : compareFor<3>(c, options, device);
+}
+
+}  // namespace treacle

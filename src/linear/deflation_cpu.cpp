@@ -1,0 +1,139 @@
+#include "treacle/linear/deflation.hpp"
+
+#include "sum_chunks.hpp"
+#include "treacle/linear/vector.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace treacle {
+namespace {
+
+// As in vector_cpu.cpp, the loops over a chunk take bare pointers.
+
+template <class T>
+double dotChunk(const T* x, const double* y, std::size_t n) {
+  double sum = 0;
+#pragma omp simd reduction(+ : sum)
+  for (std::size_t i = 0; i < n; ++i) sum += double(x[i]) * y[i];
+  return sum;
+}
+
+template <class T, class U>
+void addChunk(double c, const T* x, U* y, std::size_t n) {
+#pragma omp simd
+  for (std::size_t i = 0; i < n; ++i) y[i] += static_cast<U>(c * x[i]);
+}
+
+void directionChunk(const double* z, double beta, double* p, std::size_t n) {
+#pragma omp simd
+  for (std::size_t i = 0; i < n; ++i) p[i] = z[i] + beta * p[i];
+}
+
+void narrowChunk(double c, const double* x, float* y, std::size_t n) {
+#pragma omp simd
+  for (std::size_t i = 0; i < n; ++i) y[i] = static_cast<float>(c * x[i]);
+}
+
+/// Runs body(begin, length) on chunks of fixed length.
+template <class F>
+void forChunks(std::size_t n, F&& body) {
+  const std::size_t chunks = (n + reductionChunk - 1) / reductionChunk;
+  parallelFor(chunks, 2, [&](std::size_t c) {
+    const std::size_t begin = c * reductionChunk;
+    body(begin, std::min(reductionChunk, n - begin));
+  });
+}
+
+/// sums[j] = column j times y, chunk by chunk, so that y is read once.
+template <class T>
+void products(Context<Cpu>& context, const T* columns, int count, std::span<const double> y, double* sums) {
+  const std::size_t n = y.size(), chunks = (n + reductionChunk - 1) / reductionChunk;
+  std::vector<double>& partial = context.partialSums;
+  partial.resize(chunks * count);
+  forChunks(n, [&](std::size_t k, std::size_t length) {
+    for (int j = 0; j < count; ++j)
+      partial[k / reductionChunk * count + j] = dotChunk(columns + j * n + k, y.data() + k, length);
+  });
+  std::fill_n(sums, count, 0.0);
+  for (std::size_t c = 0; c < chunks; ++c)
+    for (int j = 0; j < count; ++j) sums[j] += partial[c * count + j];
+}
+
+template <class T>
+void setWeights(Context<Cpu>& context, const Deflated& d, const T* columns, std::span<const double> y) {
+  double sums[DeflationScalars::maxModes];
+  products(context, columns, d.modes, y, sums);
+  for (int j = 0; j < d.modes; ++j) d.scalars->setWeight(j, sums, d.modes);
+}
+
+}  // namespace
+
+void widen(Context<Cpu>&, std::span<const float> from, std::span<double> to) {
+  parallelFor(from.size(), parallelGrain, [&](std::size_t i) { to[i] = from[i]; });
+}
+
+void galerkinRow(Context<Cpu>& context, const Deflated& d, int j) {
+  const std::size_t n = d.w.size() / d.modes;
+  products(context, d.w.data(), d.modes, d.aw.subspan(j * n, n), &d.scalars->galerkin(j, 0));
+}
+
+void setInverse(Context<Cpu>&, const ModeMatrix& inverse, DeflationScalars* to) { to->inverse = inverse; }
+
+void deflateGuess(Context<Cpu>& context, const Deflated& d, std::span<double> x, std::span<double> r,
+                  KrylovScalars* krylov) {
+  setWeights(context, d, d.w.data(), r);
+  const std::size_t n = x.size();
+  krylov->start(krylov->bb, sumChunks(context, n, [&](std::size_t k, std::size_t length) {
+                  for (int j = 0; j < d.modes; ++j) {
+                    const double c = d.scalars->weight[j];
+                    addChunk(c, d.w.data() + j * n + k, x.data() + k, length);
+                    addChunk(-c, d.aw.data() + j * n + k, r.data() + k, length);
+                  }
+                  return dotChunk(r.data() + k, r.data() + k, length);
+                }));
+}
+
+void deflatedDirection(Context<Cpu>& context, const Deflated& d, std::span<const double> r,
+                       std::span<const double> z, std::span<double> p, KrylovScalars* krylov) {
+  directionDot(context, r, z, krylov);
+  setWeights(context, d, d.aw.data(), z);
+  const std::size_t n = z.size();
+  const bool first = krylov->iteration == 0;
+  forChunks(n, [&](std::size_t k, std::size_t length) {
+    if (first)
+      std::copy_n(z.data() + k, length, p.data() + k);
+    else
+      directionChunk(z.data() + k, krylov->beta, p.data() + k, length);
+    for (int j = 0; j < d.modes; ++j)
+      addChunk(-d.scalars->weight[j], d.w.data() + j * n + k, p.data() + k, length);
+  });
+}
+
+void recordedDirection(Context<Cpu>& context, std::span<const double> r, std::span<const double> z,
+                       std::span<double> p, KrylovScalars* krylov, DeflationScalars* scalars,
+                       std::span<float> basis) {
+  directionDot(context, r, z, krylov);
+  scalars->record(*krylov);
+  direction(context, z, p, krylov);
+  const int i = krylov->iteration;
+  if (basis.empty() || i >= DeflationScalars::maxBasis) return;
+  const double c = (i % 2 ? -1 : 1) / std::sqrt(krylov->rho);
+  float* column = basis.data() + i * z.size();
+  forChunks(z.size(), [&](std::size_t k, std::size_t n) { narrowChunk(c, z.data() + k, column + k, n); });
+}
+
+void combine(Context<Cpu>&, std::span<const float> basis, const RitzVectors& ritz, std::span<float> w) {
+  if (ritz.modes == 0) return;
+  const std::size_t n = w.size() / ritz.modes;
+  forChunks(n, [&](std::size_t k, std::size_t length) {
+    for (int j = 0; j < ritz.modes; ++j) {
+      float* mode = w.data() + j * n + k;
+      std::fill_n(mode, length, 0.0f);
+      for (int i = 0; i < ritz.rows; ++i) addChunk(ritz.coefficient[j][i], basis.data() + i * n + k, mode, length);
+    }
+  });
+}
+
+}  // namespace treacle

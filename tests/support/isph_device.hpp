@@ -1,0 +1,99 @@
+#pragma once
+
+#include "support/device_particles.hpp"
+#include "support/device_scene.hpp"
+#include "support/isph_scene.hpp"
+#include "support/matrices.hpp"
+
+namespace treacle::test {
+
+inline NeighbourRows<Cuda> onDevice(const Context<Cuda>& context, const NeighbourRows<>& rows) {
+  NeighbourRows<Cuda> copy;
+  copy.first = rows.first;
+  copy.count = rows.count;
+  copyToDevice<std::uint64_t>(context, rows.start, copy.start);
+  copyToDevice<std::uint32_t>(context, rows.column, copy.column);
+  return copy;
+}
+
+/// A scene of ISPH as the CPU prepared it, in device memory.
+template <int D>
+struct DeviceIsph {
+  Context<Cuda> context;
+  Particles<D, Cuda> particles;
+  CellRanges<Cuda> ranges;
+  NeighbourRows<Cuda> fluidRows, wallRows, wallsOwn;
+  Buffer<double, Cuda> density;
+  Buffer<std::uint8_t, Cuda> surface;
+  IsphPairs<D> pairs;  // looks at the members above
+
+  explicit DeviceIsph(const IsphScene<D>& s) : pairs(s.pairs) {
+    particles = onDevice(context, s.particles);
+    ranges = onDevice(context, s.ranges);
+    fluidRows = onDevice(context, s.fluidRows);
+    wallRows = onDevice(context, s.wallRows);
+    wallsOwn = onDevice(context, s.wallsOwn);
+    copyToDevice<double>(context, s.density, density);
+    copyToDevice<std::uint8_t>(context, s.surface, surface);
+    pairs.position = particles.position;
+    pairs.material = particles.material;
+    pairs.body = particles.body.data();
+    pairs.cells = viewOf(ranges);
+    pairs.fluidRows = fluidRows.view();
+    pairs.wallRows = wallRows.view();
+    pairs.wallsOwn = wallsOwn.view();
+  }
+  DeviceIsph(const DeviceIsph&) = delete;
+};
+
+/// PairSystem in device memory, packed or not, made there.
+template <int D, class T>
+struct DevicePairSystem {
+  Buffer<T, Cuda> coefficient, inverseNear;
+  Buffer<std::uint32_t, Cuda> word;
+  Buffer<std::uint16_t, Cuda> low;
+  Buffer<double, Cuda> diagonal;
+  Buffer<PairMoments<D>, Cuda> moments;
+  PairMatrix<T> a;
+
+  template <class Row>
+  DevicePairSystem(DeviceIsph<D>& d, const Row& row, bool packed) {
+    const std::uint32_t n = d.pairs.fluidCount;
+    coefficient.resize(d.context, packed ? 0 : d.pairs.fluidEntries);
+    word.resize(d.context, packed ? d.pairs.fluidEntries : 0);
+    low.resize(d.context, packed ? d.pairs.fluidEntries : 0);
+    inverseNear.resize(d.context, n);
+    diagonal.resize(d.context, n);
+    moments.resize(d.context, n);
+    PairMatrixParts<D, T> parts{};
+    parts.coefficient = coefficient;
+    parts.word = word;
+    parts.low = low;
+    parts.unit = row.largest(d.pairs) / 255;
+    parts.diagonal = diagonal;
+    parts.inverseNear = inverseNear;
+    parts.moments = moments;
+    fillPairMatrix(d.context, d.pairs, row, parts);
+    a.rows = n;
+    a.start = d.pairs.fluidRows.start;
+    a.column = d.pairs.fluidRows.column;
+    a.coefficient = coefficient.data();
+    a.word = packed ? word.data() : nullptr;
+    a.low = low.data();
+    a.unit = parts.unit;
+    a.diagonal = diagonal.data();
+    a.inverseNear = inverseNear.data();
+  }
+  DevicePairSystem(const DevicePairSystem&) = delete;
+};
+
+/// |x - y| / |y| of a result in device memory.
+template <class V>
+double differ(const Context<Cuda>& context, const Buffer<V, Cuda>& found, std::span<const V> expected) {
+  const Buffer<V> x = copyToHost(context, found);
+  using T = std::conditional_t<std::is_same_v<V, float>, float, double>;
+  if (x.size() != expected.size()) return std::numeric_limits<double>::infinity();
+  return relativeDifference<T>(x.span(), expected);
+}
+
+}  // namespace treacle::test

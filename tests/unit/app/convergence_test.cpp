@@ -1,0 +1,152 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <sstream>
+#include <vector>
+
+#include "command.hpp"
+
+namespace treacle::test {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::StartsWith;
+
+/// A row of solvers.csv; the name stands in quotes.
+struct Row {
+  std::string solver, outcome;
+  int iterations = 0;
+  double residual = 0, setup = 0, solve = 0;
+};
+
+std::vector<Row> solversOf(const std::string& text) {
+  std::istringstream lines(text);
+  std::string line;
+  std::getline(lines, line);
+  EXPECT_EQ(line, "solver,outcome,iterations,relative_residual,setup_s,solve_s");
+  std::vector<Row> rows;
+  while (std::getline(lines, line)) {
+    Row row;
+    const std::size_t quote = line.find('"', 1);
+    row.solver = line.substr(1, quote - 1);
+    std::istringstream rest(line.substr(quote + 2));
+    std::getline(rest, row.outcome, ',');
+    char comma = 0;
+    rest >> row.iterations >> comma >> row.residual >> comma >> row.setup >> comma >> row.solve;
+    EXPECT_TRUE(rest) << line;
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+/// Calls the command, and looks at its files: every curve from iteration 0 to the end that the table tells.
+std::vector<Row> rowsOf(const Workshop& shop, const std::string& arguments, const std::string& directory) {
+  const Outcome outcome = shop.call("convergence " + arguments + " --backend cpu --threads 1");
+  EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, IsEmpty());
+  EXPECT_THAT(outcome.out, HasSubstr("iterations  |r| / |b|  set-up [ms]  solve [ms]\n"));
+  EXPECT_THAT(shop.content(directory + "/convergence.png"), StartsWith("\x89PNG"));
+  const std::vector<Row> rows = solversOf(shop.content(directory + "/solvers.csv"));
+  const std::string curves = shop.content(directory + "/convergence.csv");
+  EXPECT_THAT(curves, StartsWith("solver,iteration,relative_residual\n"));
+  std::size_t lines = 1;
+  for (const Row& row : rows) {
+    EXPECT_THAT(outcome.out, HasSubstr("\n" + row.solver + " "));
+    EXPECT_THAT(curves, HasSubstr("\n\"" + row.solver + "\",0,"));
+    EXPECT_THAT(curves, HasSubstr("\n\"" + row.solver + "\"," + std::to_string(row.iterations) + ","));
+    lines += static_cast<std::size_t>(row.iterations) + 1;
+  }
+  EXPECT_EQ(static_cast<std::size_t>(std::count(curves.begin(), curves.end(), '\n')), lines);
+  return rows;
+}
+
+TEST(convergence, comparesTheSolversOfEachMethod) {
+  Workshop shop;
+  shop.put("small.toml", smallCase);
+  shop.put("water.toml", smallIsphCase);
+  for (const auto& [name, own] : {std::pair{"small", "projected-multigrid"}, {"water", "hat-multigrid"}}) {
+    const std::string file = name;
+    const std::vector<Row> rows = rowsOf(shop, file + ".toml", file + "-convergence");
+    ASSERT_EQ(rows.size(), 5u);
+    for (const Row& row : rows) {
+      EXPECT_EQ(row.outcome, "converged") << row.solver;
+      EXPECT_GT(row.iterations, 0);
+      EXPECT_LE(row.residual, 1e-6);
+      EXPECT_GT(row.setup, 0);
+      EXPECT_GT(row.solve, 0);
+    }
+    EXPECT_THAT(rows.front().solver, HasSubstr("none"));
+    EXPECT_THAT(rows.back().solver, HasSubstr(own));
+    EXPECT_LT(rows.back().iterations, rows.front().iterations);
+  }
+}
+
+TEST(convergence, takesSolversTimeAndCheckpoint) {
+  Workshop shop;
+  shop.put("small.toml", smallCase);
+  const std::string solvers =
+      " --solver 'krylov=cg preconditioner=block-jacobi tolerance=1e-8' --solver 'max_iterations=1' --solver ''"
+      " --solver 'multigrid.finest_sweeps=1' -o out/a";
+  const std::vector<Row> rows = rowsOf(shop, "small.toml --at 2e-3 --precision double" + solvers, "out/a");
+  ASSERT_EQ(rows.size(), 4u);
+  EXPECT_EQ(rows[0].solver, "cg, block-jacobi, double");
+  EXPECT_LE(rows[0].residual, 1e-4);
+  EXPECT_EQ(rows[1].outcome, "iteration limit");
+  EXPECT_EQ(rows[1].iterations, 1);
+  EXPECT_EQ(rows[2].outcome, "converged");
+  // Two that differ in what their name does not say, and one that has the same name.
+  EXPECT_THAT(rows[1].solver, testing::EndsWith(" (1)"));
+  EXPECT_THAT(rows[3].solver, testing::EndsWith(" (3)"));
+
+  // The same system from a checkpoint, without --at and with it.
+  ASSERT_EQ(shop.call("run small.toml --quiet --threads 1 --precision double --backend cpu").exitCode, 0);
+  const std::string resumed = "small.toml --resume small-run/checkpoint.h5 --precision double" + solvers;
+  EXPECT_EQ(rowsOf(shop, resumed, "out/a")[0].residual, rows[0].residual);
+  EXPECT_EQ(rowsOf(shop, resumed + " --at 2e-3", "out/a")[0].residual, rows[0].residual);
+  EXPECT_NE(rowsOf(shop, resumed + " --at 3e-3", "out/a")[0].residual, rows[0].residual);
+  const Outcome early = shop.call("convergence --at 1e-3 " + resumed);
+  EXPECT_EQ(early.exitCode, 2);
+  EXPECT_THAT(early.err, HasSubstr("--at: expected at least the checkpoint's time, 0.002 s, found 0.001"));
+}
+
+TEST(convergence, badSolversAreBadInput) {
+  Workshop shop;
+  shop.put("small.toml", smallCase);
+  const auto expectRefused = [&](const std::string& arguments, const std::string& message) {
+    const Outcome outcome = shop.call("convergence small.toml " + arguments);
+    EXPECT_EQ(outcome.exitCode, 2) << arguments;
+    EXPECT_THAT(outcome.err, HasSubstr(message));
+    EXPECT_FALSE(std::filesystem::exists(shop / "small-convergence"));
+  };
+  expectRefused(
+      "--solver krilov=cg",
+      "treacle: error: --solver \"krilov=cg\": unknown key 'krilov' in [solver]; did you mean 'krylov'?");
+  expectRefused(
+      "--solver 'krylov=cg precision=half'",
+      "--solver \"krylov=cg precision=half\": precision in [solver]: expected 'mixed' or 'double', found "
+      "'half'");
+  expectRefused("--solver cg", "--solver \"cg\": expected key=value");
+  expectRefused("--solver cells.levels=1", "unknown key 'cells' in [solver]: it belongs to the method 'isph'");
+  expectRefused("--solver first_guess=last", "first_guess: is the same for all solvers of a comparison");
+  expectRefused("--solver neighbours=ranges", "change it in the case, --set solver.neighbours");
+  expectRefused("--at=-1", "--at: expected a number not less than 0, found '-1'");
+  expectRefused("--resume none.h5", "none.h5");
+  expectRefused("--output small.toml", "output directory small.toml: cannot be created");
+}
+
+TEST(convergence, aRunThatFailsOnTheWaySaysWhere) {
+  Workshop shop;
+  shop.put("small.toml", smallCase);
+  const Outcome outcome = shop.call(
+      "convergence small.toml --at 2e-3 --backend cpu --set solver.preconditioner=none --set "
+      "solver.max_iterations=2");
+  EXPECT_EQ(outcome.exitCode, 3);
+  EXPECT_THAT(outcome.err,
+              StartsWith("treacle: error: after step 0 (t = 0 s): the linear solver did not converge"));
+}
+
+}  // namespace
+}  // namespace treacle::test

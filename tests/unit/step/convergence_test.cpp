@@ -1,0 +1,125 @@
+#include "support/isph_cases.hpp"
+#include "support/stretched_body.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace treacle::test {
+namespace {
+
+/// What every trial has, whatever became of it.
+void checkCurve(const SolverTrial& trial) {
+  SCOPED_TRACE(trial.solver);
+  ASSERT_EQ(trial.residuals.size(), static_cast<std::size_t>(trial.report.iterations) + 1);
+  EXPECT_EQ(trial.residuals.front(), std::sqrt(trial.report.startResidual));
+  EXPECT_EQ(trial.residuals.back(), std::sqrt(trial.report.residual));
+  EXPECT_GT(trial.setupSeconds, 0);
+  EXPECT_GT(trial.solveSeconds, 0);
+}
+
+template <int D>
+Particles<D> stateOf(const Simulation<D>& simulation) {
+  Particles<D> state;
+  simulation.copyParticles(state);
+  return state;
+}
+
+template <int D>
+void expectSameState(const Particles<D>& a, const Particles<D>& b) {
+  forEachFieldOf(
+      [](const auto& x, const auto& y) {
+        ASSERT_EQ(x.size(), y.size());
+        const auto p = std::as_bytes(x.span()), q = std::as_bytes(y.span());
+        EXPECT_TRUE(std::equal(p.begin(), p.end(), q.begin()));
+      },
+      a, b);
+  EXPECT_EQ(a.modes.age, b.modes.age);
+}
+
+/// The case's own solver does what it does in the next step, and the others leave no trace in it.
+template <int D>
+void checkTrials(Simulation<D>& compared, Simulation<D>& plain, const std::vector<SolverSettings>& solvers,
+                 int steps) {
+  for (int step = 0; step < steps; ++step) {
+    const std::vector<SolverTrial> trials = compared.convergence(solvers);
+    ASSERT_EQ(trials.size(), solvers.size());
+    const StepReport report = compared.advance(), expected = plain.advance();
+    for (std::size_t k = 0; k < trials.size(); ++k) {
+      checkCurve(trials[k]);
+      EXPECT_EQ(trials[k].report.status, SolveStatus::Converged) << trials[k].solver;
+      EXPECT_LE(trials[k].report.residual, solvers[k].tolerance);
+      // The first guess is the same, unless modes improve it.
+      const double start = trials[0].report.startResidual;
+      if (solvers[k].deflation == 0) {
+        EXPECT_NEAR(trials[k].report.startResidual, start, 1e-9 * start);
+      }
+    }
+    EXPECT_EQ(trials.back().report.iterations, expected.iterations) << "step " << step;
+    EXPECT_EQ(trials.back().report.residual, expected.residual);
+    EXPECT_EQ(report.residual, expected.residual);
+    expectSameState(stateOf(compared), stateOf(plain));
+  }
+}
+
+TEST(Convergence, OfMphLeavesTheNextStepAsItIs) {
+  StretchedBody a, b;
+  auto compared = a.start(8), plain = b.start(8);
+  SolverSettings none = a.c.solver;
+  none.preconditioner = PreconditionerKind::None;
+  none.krylov = KrylovKind::Cr;
+  none.deflation = 0;
+  SolverSettings assembled = none;
+  assembled.operatorKind = OperatorKind::Assembled;
+  assembled.preconditioner = PreconditionerKind::BucketMultigrid;
+  assembled.precision = Precision::Double;
+  SolverSettings shallow = a.c.solver;
+  shallow.deflation = 0;
+  checkTrials(compared, plain, {none, assembled, shallow, a.c.solver}, 5);  // modes are there from step 4 on
+  EXPECT_EQ(compared.particles().modeCount(), 8u);
+}
+
+template <int D>
+void checkIsph() {
+  using enum PreconditionerKind;
+  Case c = tankCase(D, D == 2 ? 16 : 8, D == 2 ? 14 : 7);
+  c.solver.preconditioner = HatMultigrid;
+  c.solver.deflation = 0;
+  c.time.courant = 0.1;
+  for (Body& body : c.bodies)
+    if (body.kind == BodyKind::Wall) body.oscillation = {{0.005, 0, 0}, 0.1, 0.3};
+  // In double precision: a matrix in single precision has another first residual.
+  c.solver.precision = Precision::Double;
+  std::vector<SolverSettings> solvers;
+  for (const PreconditionerKind kind : {None, Jacobi, CellMultigrid, HatMultigrid}) {
+    solvers.push_back(c.solver);
+    solvers.back().preconditioner = kind;
+  }
+  Simulation<D> compared(c, created<D>(c)), plain(c, created<D>(c));
+  checkTrials(compared, plain, solvers, 4);
+}
+
+TEST(Convergence, OfIsphLeavesTheNextStepAsItIs) {
+  checkIsph<2>();
+  checkIsph<3>();
+}
+
+TEST(Convergence, ASolveThatFailsIsAResult) {
+  StretchedBody body;
+  auto simulation = body.start(0);
+  SolverSettings few = body.c.solver;
+  few.maxIterations = 2;
+  SolverSettings bounded = body.c.solver;
+  bounded.projected.iterationBound = 2;  // that of stages, of which a trial has one
+  const std::vector<SolverTrial> trials = simulation.convergence(std::vector{few, bounded});
+  EXPECT_EQ(trials[0].report.status, SolveStatus::IterationLimit);
+  EXPECT_EQ(trials[0].residuals.size(), 3u);
+  EXPECT_EQ(trials[1].report.status, SolveStatus::Converged);
+  EXPECT_GT(trials[1].report.iterations, 2);
+  for (const SolverTrial& trial : trials) checkCurve(trial);
+  EXPECT_NE(trials[0].solver.find("projected-multigrid, mixed: pressure degree 4"), std::string::npos);
+  EXPECT_TRUE(simulation.convergence({}).empty());
+}
+
+}  // namespace
+}  // namespace treacle::test

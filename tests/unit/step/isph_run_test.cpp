@@ -1,0 +1,147 @@
+#include "support/isph_cases.hpp"
+#include "support/isph_oracle.hpp"
+
+#include <gtest/gtest.h>
+#include <omp.h>
+
+namespace treacle::test {
+namespace {
+
+TEST(IsphRun, TimeStepFollowsTheCourantNumberAndMeetsTheEnd) {
+  Case c = tankCase(2, 10, 10);
+  c.time = {2e-3, 0.0123, 0.2};
+  Simulation<2> simulation(c, [&] {
+    Particles<2> p = created<2>(c);
+    for (std::uint32_t i = 0; i < p.fluidCount; ++i) p.velocity[i] = {0, 2};
+    return p;
+  }());
+  double speed = 2, time = 0;
+  int limited = 0;
+  while (!c.atEnd(simulation.step(), simulation.time())) {
+    const StepReport report = simulation.advance();
+    EXPECT_LE(report.timeStep, c.time.step);
+    EXPECT_LE(report.timeStep * speed, 0.2 * c.spacing * (1 + 1e-12));
+    limited += std::abs(report.timeStep * speed - 0.2 * c.spacing) < 1e-9 * c.spacing;
+    time += report.timeStep;
+    EXPECT_DOUBLE_EQ(report.time, time);
+    speed = report.diagnostics.maxSpeed;
+    ASSERT_LT(simulation.step(), 100);
+  }
+  EXPECT_GE(limited, 10);
+  EXPECT_NEAR(simulation.time(), c.time.end, 1e-15);
+}
+
+TEST(IsphRun, ShiftingLeavesTheSurfaceWhereItsVelocityTakesIt) {
+  Case c = tankCase(2, 12, 10);
+  c.method.isph.shifting = 0.5;
+  Particles<2> start = created<2>(c);
+  for (std::uint32_t i = 0; i < start.fluidCount; ++i)
+    for (int k = 0; k < 2; ++k) start.position[i][k] += 0.1 * c.spacing * pseudoRandom(2 * i + k);
+  const Particles<2> before = copyOf(start);
+  const IsphScene<2> s(c, copyOf(start));
+  std::vector<bool> surface(start.count);
+  for (std::uint32_t i = 0; i < s.n(); ++i) surface[s.particles.id[i]] = s.surface[i];
+  Simulation<2> simulation(c, std::move(start));
+  simulation.advance();
+  const Particles<2>& p = simulation.particles();
+  int shifted = 0;
+  for (std::uint32_t i = 0; i < p.fluidCount; ++i) {
+    const double way = norm(p.position[i] - before.position[p.id[i]] - c.time.step * p.velocity[i]);
+    EXPECT_LE(way, 0.1 * c.spacing * (1 + 1e-9));
+    EXPECT_TRUE(!surface[p.id[i]] || way <= 1e-15) << way;
+    shifted += way > 1e-3 * c.spacing;
+  }
+  EXPECT_GT(shifted, 50);
+}
+
+/// A tank whose water has been stirred.
+Particles<2> stirred(const Case& c) {
+  Particles<2> p = created<2>(c);
+  for (std::uint32_t i = 0; i < p.fluidCount; ++i)
+    for (int k = 0; k < 2; ++k) p.velocity[i][k] = 0.1 * pseudoRandom(2 * i + k);
+  return p;
+}
+
+/// What the twin tests count on: rounding alone does not drive runs apart in a few steps.
+TEST(IsphRun, RunsWithUnlikeRoundingStayTogether) {
+  Case c = tankCase(2, 24, 20);
+  c.solver.tolerance = 1e-24;
+  for (Body& body : c.bodies)
+    if (body.kind == BodyKind::Wall) body.oscillation = {{0.005, 0, 0}, 0.1, 0.3};
+  const auto after = [&](PreconditionerKind preconditioner, Precision precision) {
+    c.solver.preconditioner = preconditioner;
+    c.solver.precision = precision;
+    Particles<2> start = stirred(c);
+    for (std::uint32_t i = 0; i < start.fluidCount; ++i)
+      for (int k = 0; k < 2; ++k) start.position[i][k] += 0.05 * c.spacing * pseudoRandom(2 * i + k);
+    Simulation<2> simulation(c, std::move(start));
+    for (int k = 0; k < 20; ++k) simulation.advance();
+    std::vector<Vec<2>> x(simulation.particles().count);
+    for (std::uint32_t i = 0; i < x.size(); ++i)
+      x[simulation.particles().id[i]] = simulation.particles().position[i];
+    return x;
+  };
+  using enum PreconditionerKind;
+  const auto reference = after(HatMultigrid, Precision::Double);
+  const auto apart = [&](const std::vector<Vec<2>>& x) {
+    double most = 0;
+    for (std::size_t i = 0; i < x.size(); ++i) most = std::max(most, norm(x[i] - reference[i]));
+    return most / c.spacing;
+  };
+  EXPECT_LE(apart(after(Jacobi, Precision::Double)), 1e-9);
+  EXPECT_LE(apart(after(CellMultigrid, Precision::Double)), 1e-9);
+  EXPECT_LE(apart(after(HatMultigrid, Precision::Mixed)), 1e-5);
+}
+
+TEST(IsphRun, ResultsDoNotDependOnTheNumberOfThreads) {
+  Case c = tankCase(2, 40, 30);  // enough for loops to run in parallel
+  for (const double viscosity : {1e-3, 1e3}) {
+    c.materials[0].dynamicViscosity = viscosity;
+    const auto after = [&](int threads) {
+      omp_set_num_threads(threads);
+      Simulation<2> simulation(c, stirred(c));
+      for (int k = 0; k < 4; ++k) simulation.advance();
+      omp_set_num_threads(1);
+      return copyOf(simulation.particles());
+    };
+    EXPECT_TRUE(sameBits(after(1), after(3)));
+  }
+}
+
+TEST(IsphRun, AContinuedRunGivesTheSameBits) {
+  Case c = tankCase(2, 14, 10);
+  c.time.courant = 0.1;
+  for (Body& body : c.bodies)
+    if (body.kind == BodyKind::Wall) body.oscillation = {{0.01, 0, 0}, 0.1, 0.3};
+  Simulation<2> whole(c, stirred(c));
+  for (int k = 0; k < 8; ++k) whole.advance();
+  Simulation<2> first(c, stirred(c));
+  for (int k = 0; k < 5; ++k) first.advance();
+  Simulation<2> second(c, copyOf(first.particles()), first.step(), first.time());
+  for (int k = 0; k < 3; ++k) second.advance();
+  EXPECT_EQ(second.step(), 8);
+  EXPECT_EQ(second.time(), whole.time());
+  EXPECT_TRUE(sameBits(whole.particles(), second.particles()));
+}
+
+TEST(IsphRun, DiagnosticsHoldTheDensities) {
+  const Case c = tankCase(2, 16, 12);
+  Simulation<2> simulation(c, created<2>(c));
+  const IsphScene<2> s(c, created<2>(c));
+  const IsphOracle<2> oracle(s);
+  double mean = 0, error = 0, interior = 0;
+  for (std::uint32_t i = 0; i < s.n(); ++i) {
+    mean += oracle.density(i) / s.n();
+    if (s.surface[i]) continue;
+    error += std::abs(oracle.density(i) - 1);
+    ++interior;
+  }
+  for (const Diagnostics& d : {simulation.diagnostics(), simulation.advance().diagnostics}) {
+    EXPECT_NEAR(d.meanDensityRatio, mean, 1e-12);
+    EXPECT_NEAR(d.meanDensityError, error / interior, 1e-12);
+    EXPECT_EQ(d.interiorParticles, interior);
+  }
+}
+
+}  // namespace
+}  // namespace treacle::test

@@ -1,0 +1,170 @@
+#include "support/isph_cases.hpp"
+#include "support/isph_oracle.hpp"
+
+#include <gtest/gtest.h>
+
+namespace treacle::test {
+namespace {
+
+/// v and p after one step from the formulas of [O23 eqs. (7)-(11)], with a direct solution.
+template <int D>
+struct DirectStep {
+  std::vector<Vec<D>> velocity;  // by id
+  std::vector<double> pressure;
+
+  explicit DirectStep(const Case& c, Particles<D> start) : velocity(start.count), pressure(start.count) {
+    const IsphScene<D> s(c, std::move(start));
+    const IsphOracle<D> oracle(s);
+    std::vector<Vec<D>> v(s.particles.velocity.begin(), s.particles.velocity.end());
+    std::vector<Vec<D>> predicted = v;
+    for (std::uint32_t i = 0; i < s.n(); ++i) predicted[i] = oracle.predicted(v, i);
+    Eigen::MatrixXd a = oracle.pressureMatrix([&](std::uint32_t i) { return !s.surface[i]; });
+    Eigen::VectorXd b = Eigen::VectorXd::Zero(s.n());
+    for (std::uint32_t i = 0; i < s.n(); ++i) s.surface[i] ? a(i, i) = 1 : b[i] = oracle.source(predicted, i);
+    const Eigen::VectorXd solution = a.ldlt().solve(b);
+    std::vector<double> p(solution.begin(), solution.end());
+    for (double& x : p)
+      if (!c.method.isph.negativePressure) x = std::max(0.0, x);
+    const std::vector<Vec<D>> rest(c.bodies.size() + 1);
+    for (std::uint32_t i = 0; i < s.n(); ++i) {
+      const Vec<D> corrected = oracle.corrected(predicted, p, i, rest);
+      velocity[s.particles.id[i]] = s.surface[i] ? oracle.stopped(corrected, v, i) : corrected;
+      pressure[s.particles.id[i]] = p[i];
+    }
+  }
+};
+
+template <int D>
+void checkStep(PreconditionerKind preconditioner, Precision precision, bool negativePressure) {
+  SCOPED_TRACE(testing::Message() << D << "D, preconditioner " << static_cast<int>(preconditioner)
+                                  << ", precision " << static_cast<int>(precision));
+  Case c = tankCase(D, D == 2 ? 11 : 6, D == 2 ? 9 : 5);
+  c.method.isph.negativePressure = negativePressure;
+  c.solver.preconditioner = preconditioner;
+  c.solver.precision = precision;
+  c.solver.tolerance = 1e-24;
+  Particles<D> start = created<D>(c);
+  for (std::uint32_t i = 0; i < start.fluidCount; ++i)
+    for (int k = 0; k < D; ++k) {
+      start.position[i][k] += 0.08 * c.spacing * pseudoRandom(D * i + k);
+      start.velocity[i][k] = 0.02 * pseudoRandom(D * i + k + 99999);
+    }
+  const DirectStep<D> expected(c, copyOf(start));
+  const Particles<D> before = copyOf(start);
+  Simulation<D> simulation(c, std::move(start));
+  const StepReport report = simulation.advance();
+  EXPECT_EQ(report.fallbacks, 0) << report.failures;
+  EXPECT_LE(report.residual, c.solver.tolerance);
+  double scale = 0;
+  for (double p : expected.pressure) scale = std::max(scale, p);
+  // The matrix itself is rounded to single precision.
+  const double tolerance = precision == Precision::Mixed ? 1e-5 : 1e-9;
+  const Particles<D>& p = simulation.particles();
+  for (std::uint32_t i = 0; i < p.fluidCount; ++i) {
+    const std::uint32_t id = p.id[i];
+    ASSERT_NEAR(p.pressure[i], expected.pressure[id], tolerance * scale);
+    ASSERT_LE(norm(p.velocity[i] - expected.velocity[id]), tolerance * 0.1);
+    ASSERT_LE(norm(p.position[i] - before.position[id] - c.time.step * p.velocity[i]), 1e-15);
+  }
+}
+
+TEST(IsphStep, EqualsTheDirectSolutionWithEveryPreconditioner) {
+  using enum PreconditionerKind;
+  for (const PreconditionerKind k : {None, Jacobi, CellMultigrid, HatMultigrid})
+    for (const Precision precision : {Precision::Double, Precision::Mixed}) {
+      checkStep<2>(k, precision, false);
+      checkStep<3>(k, precision, true);
+    }
+}
+
+/// Mean |p - rho g depth| below the surface, in units of the pressure at the floor.
+template <int D>
+double pressureError(const Case& c, const Particles<D>& p, double depth) {
+  return fluidMean(p, [&](std::uint32_t i) {
+    const double below = (tankCorner + depth) * c.spacing - p.position[i][D - 1];
+    return std::abs(p.pressure[i] - 1000 * 9.81 * below) / (1000 * 9.81 * depth * c.spacing);
+  });
+}
+
+template <int D>
+void checkTank(double width, double depth, int steps) {
+  const Case c = tankCase(D, width, depth);
+  Simulation<D> simulation(c, created<D>(c));
+  const Vec<D> before = centreOfMass(simulation.particles());
+  double error = 0, fastest = 0;
+  for (int k = 0; k < steps; ++k) {
+    const StepReport report = simulation.advance();
+    EXPECT_EQ(report.fallbacks, 0) << report.failures;
+    fastest = report.diagnostics.maxSpeed;
+    if (2 * k >= steps) error += pressureError<D>(c, simulation.particles(), depth) / (steps - (steps + 1) / 2);
+  }
+  EXPECT_LT(error, 0.04);
+  EXPECT_LT(norm(centreOfMass(simulation.particles()) - before), 0.01 * depth * c.spacing);
+  // Nothing moves but for the settling of the lattice.
+  EXPECT_LT(fastest, 0.1 * std::sqrt(2 * 9.81 * depth * c.spacing));
+}
+
+TEST(IsphStep, WaterInATankStaysAtRestUnderItsHydrostaticPressure) {
+  checkTank<2>(16, 20, 300);
+  checkTank<3>(8, 10, 100);
+}
+
+TEST(IsphStep, AParticleThrownAtAWallDoesNotGetThrough) {
+  for (const double speed : {0.5, 2.0, 8.0}) {
+    Case c = tankCase(2, 12, 6);
+    c.gravity = {};
+    c.time.step = 0.2 * c.spacing / speed;
+    const double floor = tankCorner * c.spacing;
+    Particles<2> all = created<2>(c);
+    std::vector<Vec<2>> walls(all.position.begin() + all.fluidCount, all.position.end());
+    Particles<2> p = particlesAt<2>({{floor + 6.2 * c.spacing, floor + 4 * c.spacing}}, walls);
+    p.velocity[0] = {0.3 * speed, -speed};
+    Simulation<2> simulation(c, std::move(p));
+    double lowest = INFINITY;
+    for (int k = 0; k < 200; ++k) {
+      simulation.advance();
+      lowest = std::min(lowest, simulation.particles().position[0][1] - floor);
+      // It goes on along the floor, and then up the side.
+      const Vec<2> v = simulation.particles().velocity[0];
+      if (k == 50) {
+        EXPECT_LT(norm(v - Vec<2>{0.3 * speed, 0}), 0.02 * speed) << speed;
+      }
+      ASSERT_LT(simulation.particles().position[0][0], floor + 12 * c.spacing - 0.25 * c.spacing) << speed;
+    }
+    // Half a spacing from the wall is where a lattice would have it; it gets there within a step.
+    EXPECT_GT(lowest, 0.25 * c.spacing) << speed;
+    EXPECT_LT(lowest, 0.55 * c.spacing) << speed;
+    EXPECT_LT(norm(simulation.particles().velocity[0]), 0.31 * speed);
+  }
+}
+
+TEST(IsphStep, AMovingWallPushesAFreeParticle) {
+  Case c = tankCase(2, 12, 6);
+  c.gravity = {};
+  const double floor = tankCorner * c.spacing;
+  Particles<2> all = created<2>(c);
+  std::vector<Vec<2>> walls(all.position.begin() + all.fluidCount, all.position.end());
+  Particles<2> p = particlesAt<2>({{floor + 6.2 * c.spacing, floor + 1 * c.spacing}}, walls);
+  for (std::uint32_t i = 1; i < p.count; ++i) p.velocity[i] = {0, 0.5};
+  Simulation<2> simulation(c, std::move(p));
+  for (int k = 0; k < 60; ++k) simulation.advance();
+  EXPECT_NEAR(simulation.particles().velocity[0][1], 0.5, 1e-3);
+  EXPECT_GT(simulation.particles().position[0][1], floor + 0.5 * 0.06 + 0.25 * c.spacing);
+}
+
+TEST(IsphStep, ADropInFreeFallKeepsItsMomentum) {
+  Case c = waterCase(3, {20, 20, 20});
+  c.gravity = {0.5, 0, -9.81};
+  c.materials[0].dynamicViscosity = 1;
+  c.solver.tolerance = 1e-20;
+  Particles<3> p = particlesAt<3>(latticeAt<3>(Vec<3>::filled(0.06), {7, 6, 8}, c.spacing));
+  for (std::uint32_t i = 0; i < p.count; ++i)
+    for (int k = 0; k < 3; ++k) p.velocity[i][k] = 0.2 * pseudoRandom(3 * i + k);
+  const Vec<3> before = meanVelocity(p);
+  Simulation<3> simulation(c, std::move(p));
+  for (int k = 0; k < 20; ++k) simulation.advance();
+  EXPECT_LE(norm(meanVelocity(simulation.particles()) - before - simulation.time() * c.gravity), 1e-12);
+}
+
+}  // namespace
+}  // namespace treacle::test

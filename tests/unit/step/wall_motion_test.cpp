@@ -1,0 +1,141 @@
+#include "treacle/step/wall_motion.hpp"
+
+#include "support/isph_cases.hpp"
+
+#include <gtest/gtest.h>
+
+namespace treacle::test {
+namespace {
+
+const Body shaken = [] {
+  Body body;
+  body.kind = BodyKind::Wall;
+  body.velocity = {0.1, 0, -0.2};
+  body.oscillation = {{0.02, -0.01, 0}, 0.5, 0.7};
+  return body;
+}();
+
+/// Where the body is at time t, from where it started.
+Vec<3> displacement(double t) {
+  const Oscillation& o = shaken.oscillation;
+  return t * shaken.velocity + (std::sin(2 * M_PI * t / o.period + o.phase) - std::sin(o.phase)) * o.amplitude;
+}
+
+TEST(WallMotion, VelocityTakesTheWallToItsPlaceAtTheEndOfTheStep) {
+  Vec<3> way{};
+  double t = 0;
+  for (int k = 0; k < 100; ++k) {
+    const double dt = 0.01 * (1 + 0.5 * pseudoRandom(k));
+    way += dt * wallVelocity(shaken, t, dt);
+    t += dt;
+    ASSERT_LE(norm(way - displacement(t)), 1e-15 * (k + 10));
+  }
+}
+
+TEST(WallMotion, AccelerationIsThatOfTheDisplacement) {
+  const double e = 1e-4;
+  for (double t = 0; t < 1; t += 0.037) {
+    const Vec<3> a = (1 / (e * e)) * (displacement(t + e) - 2.0 * displacement(t) + displacement(t - e));
+    EXPECT_LE(norm(wallAcceleration(shaken, t) - a), 1e-5 * 4 * M_PI * M_PI / 0.25);
+  }
+}
+
+TEST(WallMotion, WithoutOscillationIsTheBodysVelocity) {
+  Body body = shaken;
+  body.oscillation = {};
+  EXPECT_EQ(wallVelocity(body, 3, 0.1), body.velocity);
+  EXPECT_EQ(wallAcceleration(body, 3), (Vec<3>{}));
+}
+
+TEST(WallMotion, EveryWallTakesTheVelocityOfItsBody) {
+  Context<Cpu> context;
+  const std::vector<Vec<2>> ofBody = randomVelocities<2>(5, 1);
+  for (const std::size_t walls : {0, 1, 33, 1000}) {
+    std::vector<std::uint8_t> body;
+    for (std::size_t i = 0; i < walls; ++i) body.push_back(static_cast<std::uint8_t>(i * i % 5));
+    std::vector<Vec<2>> velocity(walls);
+    setWallVelocities<2>(context, body, ofBody, velocity);
+    for (std::size_t i = 0; i < walls; ++i) ASSERT_EQ(velocity[i], ofBody[body[i]]);
+  }
+}
+
+Case shakenTank(double width, double depth, const Oscillation& o) {
+  Case c = tankCase(2, width, depth);
+  for (Body& body : c.bodies)
+    if (body.kind == BodyKind::Wall) body.oscillation = o;
+  return c;
+}
+
+TEST(WallMotion, WallsOfASimulationAreWhereTheirMotionPutsThem) {
+  // With steps of unequal length, for both methods.
+  Case c = shakenTank(10, 8, {{0.01, 0.002, 0}, 0.2, 0.4});
+  c.bodies[2].oscillation = {};
+  c.bodies[2].velocity = {-0.05, 0, 0};
+  c.time.courant = 0.1;
+  for (const MethodKind method : {MethodKind::Isph, MethodKind::MphI}) {
+    c.method.kind = method;
+    if (method == MethodKind::MphI) {
+      c.materials[0] = {"syrup", 1000, 10, 1e4, 1e5};
+      c.solver = {};
+    }
+    Particles<2> p = created<2>(c);
+    const Particles<2> start = copyOf(p);
+    for (std::uint32_t i = 0; i < start.count; ++i) ASSERT_EQ(start.id[i], i);
+    Simulation<2> simulation(c, std::move(p));
+    for (int k = 0; k < 20; ++k) simulation.advance();
+    const double t = simulation.time();
+    const Particles<2>& now = simulation.particles();
+    for (std::uint32_t i = now.fluidCount; i < now.count; ++i) {
+      const Oscillation& o = c.bodies[now.body[i]].oscillation;
+      Vec<2> way = t * resized<2>(c.bodies[now.body[i]].velocity);
+      if (o.period > 0)
+        way += (std::sin(2 * M_PI * t / o.period + o.phase) - std::sin(o.phase)) * resized<2>(o.amplitude);
+      ASSERT_LE(norm(now.position[i] - start.position[now.id[i]] - way), 1e-14);
+    }
+  }
+}
+
+TEST(WallMotion, WaterInANarrowShakenTankGoesAlong) {
+  // Its first mode has a period of sqrt(4 pi w / g) = 0.36 s: shaken slowly, it rides with the tank.
+  const Oscillation slow{{0.02, 0, 0}, 1.5, -M_PI / 2};
+  const Case c = shakenTank(10, 16, slow);
+  Simulation<2> simulation(c, created<2>(c));
+  const double start = centreOfMass(simulation.particles())[0];
+  const double top = 2 * M_PI / slow.period * slow.amplitude[0];
+  double worst = 0, last = 0, mean = 0;
+  while (simulation.time() < 0.75 - 1e-9) {
+    last = simulation.time();
+    simulation.advance();
+    const double wall = wallVelocity(c.bodies[1], last, c.time.step)[0];
+    worst = std::max(worst, std::abs(meanVelocity(simulation.particles())[0] - wall) / top);
+    mean += wall * c.time.step;
+  }
+  EXPECT_NEAR(mean, 0.04, 1e-12) << "from end to end";
+  EXPECT_NEAR(centreOfMass(simulation.particles())[0] - start, 0.04, 0.1 * c.spacing);
+  EXPECT_LT(worst, 0.15);
+}
+
+TEST(WallMotion, AcceleratedTanksHoldTheirWaterByPressure) {
+  // In a tank that accelerates evenly, say falls with g, water does not feel its weight.
+  Case c = shakenTank(12, 10, {});
+  const double period = 4;
+  for (Body& body : c.bodies)
+    if (body.kind == BodyKind::Wall) {
+      const double omega = 2 * M_PI / period;
+      body.oscillation = {{0, 9.81 / (omega * omega), 0}, period, M_PI / 2};  // at rest, downwards with g
+    }
+  c.time.end = 0.05;
+  c.domain.min[1] -= 0.1;
+  Simulation<2> falling(c, created<2>(c));
+  for (int k = 0; k < 20; ++k) falling.advance();
+  Case still = shakenTank(12, 10, {});
+  Simulation<2> standing(still, created<2>(still));
+  for (int k = 0; k < 20; ++k) standing.advance();
+  const auto pressure = [](const Simulation<2>& s) {
+    return fluidMean(s.particles(), [&](std::uint32_t i) { return s.particles().pressure[i]; });
+  };
+  EXPECT_LT(pressure(falling), 0.05 * pressure(standing));
+}
+
+}  // namespace
+}  // namespace treacle::test
