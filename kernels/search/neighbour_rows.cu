@@ -20,6 +20,7 @@ struct RoughSearch {
   float nearIn = 0, nearOut = 0, farIn = 0, farOut = 0;
   Vec<D, float> length;
   bool walls;
+  const std::uint8_t* used = nullptr;  // per cell: whether its particles may have neighbours; null: all
 
   /// hit(j, near) for the neighbours of particle i, in the order of forEachNeighbour.
   template <class Hit>
@@ -27,6 +28,7 @@ struct RoughSearch {
     const Vec<D> x = exact[i];
     const float4 own = rough[i];
     const Vec<D, int> centre = grid.cellOf(x);
+    if (used && !used[grid.linear(centre)]) return;
     const auto wrapped = [&](int c, int axis) {
       return !grid.periodic[axis]    ? c
              : c < 0                 ? c + grid.count[axis]
@@ -87,6 +89,21 @@ struct RoughSearch {
   }
 };
 
+/// One thread per cell: whether it holds fluid and has walls in itself or beside it, as few cells do.
+template <int D>
+void markFluidNearWalls(const Context<Cuda>& context, const CellGrid<D>& grid, const CellRangesView& cells,
+                        std::uint8_t* marked) {
+  forEach(context, grid.cellCount(), [grid, cells, marked] __device__(std::size_t c) {
+    bool any = false;
+    if (cells.fluidEnd[c] > cells.fluidBegin[c])
+      forEachAdjacentCell(grid, grid.cellAt(c), [&](const Vec<D, int>& cell) {
+        const std::size_t other = grid.linear(cell);
+        any = any || cells.wallEnd[other] > cells.wallBegin[other];
+      });
+    marked[c] = any;
+  });
+}
+
 /// One thread per particle.
 template <int D>
 void findRoughPlaces(const Context<Cuda>& context, const CellGrid<D>& grid, std::span<const Vec<D>> x,
@@ -117,6 +134,12 @@ void findNeighbours(Context<Cuda>& context, const CellGrid<D>& grid, const CellR
                         .far2 = radii.far * radii.far,
                         .length = {},
                         .walls = search.walls};
+  Buffer<std::uint8_t, Cuda> nearWalls;
+  if (search.walls) {
+    nearWalls.resize(context, grid.cellCount());
+    markFluidNearWalls(context, grid, cells, nearWalls.data());
+    around.used = nearWalls.data();
+  }
   double longest = 0;
   for (int k = 0; k < D; ++k) {
     around.length[k] = static_cast<float>(grid.length[k]);

@@ -101,8 +101,7 @@ class IsphStep final : public StepMethod<D, Backend> {
   std::span<const Vec<D>> transport() override {
     settlePressure(s_.context, surface_, !pairs_.negativePressure, solution_);
     s_.velocity.resize(s_.context, pairs_.fluidCount);
-    sumOnFluid(s_.context, pairs_,
-               CorrectorTerm<D>{solution_.data(), surface_.data(), predicted_.data(), s_.velocity.data()});
+    sumOnFluid(s_.context, pairs_, CorrectorTerm<D>{solution_.data(), predicted_.data(), s_.velocity.data()});
     const double coefficient = s_.c.method.isph.shifting;
     if (coefficient == 0) return s_.velocity.span();
     transport_.resize(s_.context, pairs_.fluidCount);

@@ -130,9 +130,9 @@ struct IsphOracle {
     });
     return v[i] - (dt / material(i).density) * sum;
   }
-  /// What a particle at the free surface keeps of v where it is nearer to a wall than a lattice point: not the
-  /// part into the wall, whose mean velocity, by slope, is that of its particles in `v`.
-  Vec<D> stopped(const Vec<D>& moving, const std::vector<Vec<D>>& v, std::uint32_t i) const {
+  /// What a particle keeps of v where it is nearer to a wall than a lattice point, or clearly nearer if it has
+  /// pressure: not the part into the wall, whose mean velocity, by slope, is that of its particles in `v`.
+  Vec<D> stopped(const Vec<D>& moving, const std::vector<Vec<D>>& v, double p, std::uint32_t i) const {
     double touching = 0, weights = 0;
     for (const Vec<D>& x : latticeAt<D>(Vec<D>::filled(-3 * l), Vec<D, int>::filled(7), l))
       if (x[D - 1] < -0.5 * l) touching += volume * kernelSlope(norm(x)) * x[D - 1] / norm(x);
@@ -143,7 +143,7 @@ struct IsphOracle {
       mean += laplacian(i, j) * v[j];
       weights += laplacian(i, j);
     });
-    if (norm(towards) <= 1.001 * touching) return moving;
+    if (norm(towards) <= (p > 0 ? 1.3 : 1.0) * 1.001 * touching) return moving;
     const Vec<D> normal = (1 / norm(towards)) * towards;
     return moving - std::max(0.0, dot(moving - (1 / weights) * mean, normal)) * normal;
   }

@@ -29,6 +29,10 @@ void pairGalerkin(Context<Cuda>&, const SortedParticles<D>& particles, std::span
 template <int D, class T, class Backend = Cpu>
 class HatPreconditioner {
  public:
+  HatPreconditioner() = default;
+  /// Grids of so many unknowns at most are solved by their inverse.
+  explicit HatPreconditioner(std::uint32_t denseUnknowns) : grids_(denseUnknowns) {}
+
   /// Arguments must outlive the last apply(). `gridDegree` of the smoother on the grids.
   void setup(Context<Backend>& context, const SortedParticles<D>& particles, const PairMatrix<T>& a,
              std::span<const PairMoments<D>> moments, int gridDegree) {

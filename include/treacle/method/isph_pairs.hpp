@@ -33,14 +33,15 @@ struct IsphPairs : SortedParticles<D> {
   SmoothingKernel<D> kernel{};
   MaterialTable materials;
   SurfaceCriterion surface;
-  Vec<D> gravity{};               // [m/s2]
-  double volume = 0;              // of a particle, l^D [m^D]
-  double latticeDensity = 0;      // sum of V W over a full lattice [-]
-  double wallContact = 0;         // |sum V grad W| of a wall whose first layer is one spacing away [1/m]
-  double timeStep = 0;            // [s]
-  double alpha = 0;               // [-]
-  bool noSlip = true;             // walls hold the fluid by its viscosity
-  bool negativePressure = false;  // or cut to zero
+  Vec<D> gravity{};           // [m/s2]
+  double volume = 0;          // of a particle, l^D [m^D]
+  double latticeDensity = 0;  // sum of V W over a full lattice [-]
+  double wallContact = 0;     // |sum V grad W| of a wall whose first layer is one spacing away [1/m]
+  static constexpr double pressedContact = 1.3;  // so much more where pressure pushes back
+  double timeStep = 0;                           // [s]
+  double alpha = 0;                              // [-]
+  bool noSlip = true;                            // walls hold the fluid by its viscosity
+  bool negativePressure = false;                 // or cut to zero
 
   /// V |W'| / r [1/m2]: V grad_i W = slope (x_j - x_i).
   TREACLE_HD double slope(const Distance& r) const { return volume * kernel.slope(r); }

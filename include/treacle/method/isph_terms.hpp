@@ -154,7 +154,6 @@ template <int D>
 struct CorrectorTerm {
   static constexpr int values = 3 * D + 1;
   const double* pressure;
-  const std::uint8_t* surface;
   const Vec<D>* predicted;  // of fluid; walls: their velocity
   Vec<D>* velocity;
 
@@ -181,7 +180,8 @@ struct CorrectorTerm {
       towards[k] = sum[D + k];
       wallVelocity[k] = sum[2 * D + k] / (sum[3 * D] > 0 ? sum[3 * D] : 1);
     }
-    if (surface[i] && norm(towards) > pairs.wallContact) {
+    const double contact = pairs.wallContact * (pressure[i] > 0 ? pairs.pressedContact : 1);
+    if (norm(towards) > contact) {
       const double into = dot(v - wallVelocity, towards) / norm2(towards);
       if (into > 0) v -= into * towards;
     }

@@ -35,7 +35,8 @@ struct MatrixTwin {
 
   void checkParts() {
     EXPECT_LE(differ<double>(d.context, device.diagonal, host.diagonal.span()), toleranceOf<T>);
-    EXPECT_LE(differ<T>(d.context, device.inverseNear, host.inverseNear.span()), 10 * singleTolerance);
+    // Coefficients on the border of two whole units may fall to either.
+    EXPECT_LE(differ<T>(d.context, device.inverseNear, host.inverseNear.span()), 1e-4);
     const Buffer<PairMoments<D>> moments = copyToHost(d.context, device.moments);
     std::vector<float> a, b;
     for (std::uint32_t i = 0; i < n; ++i) {
@@ -83,8 +84,9 @@ struct MatrixTwin {
   }
 
   void checkPreconditioner() {
-    HatPreconditioner<D, T> k;
-    HatPreconditioner<D, T, Cuda> kOnDevice;
+    constexpr std::uint32_t denseUnknowns = 300;  // by default other ones on a device, hence other levels
+    HatPreconditioner<D, T> k(denseUnknowns);
+    HatPreconditioner<D, T, Cuda> kOnDevice(denseUnknowns);
     k.setup(s.context, s.pairs, host.a, host.moments, 2);
     kOnDevice.setup(d.context, d.pairs, device.a, device.moments, 2);
     EXPECT_EQ(kOnDevice.gridLevels(), k.gridLevels());

@@ -78,9 +78,8 @@ struct SumsTwin {
 
     std::vector<Vec<D>> corrected(n);
     Buffer<Vec<D>, Cuda> foundVelocity(d.context, n);
-    sumOnFluid(s.context, s.pairs, CorrectorTerm<D>{p.data(), s.surface.data(), v.data(), corrected.data()});
-    sumOnFluid(d.context, d.pairs,
-               CorrectorTerm<D>{pOnDevice.data(), d.surface.data(), vOnDevice.data(), foundVelocity.data()});
+    sumOnFluid(s.context, s.pairs, CorrectorTerm<D>{p.data(), v.data(), corrected.data()});
+    sumOnFluid(d.context, d.pairs, CorrectorTerm<D>{pOnDevice.data(), vOnDevice.data(), foundVelocity.data()});
     expectClose(foundVelocity, corrected, "corrector");
 
     std::vector<double> walls(active);

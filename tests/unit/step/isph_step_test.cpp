@@ -28,7 +28,7 @@ struct DirectStep {
     const std::vector<Vec<D>> rest(c.bodies.size() + 1);
     for (std::uint32_t i = 0; i < s.n(); ++i) {
       const Vec<D> corrected = oracle.corrected(predicted, p, i, rest);
-      velocity[s.particles.id[i]] = s.surface[i] ? oracle.stopped(corrected, v, i) : corrected;
+      velocity[s.particles.id[i]] = oracle.stopped(corrected, v, p[i], i);
       pressure[s.particles.id[i]] = p[i];
     }
   }
