@@ -8,16 +8,16 @@ namespace treacle {
 
 namespace {
 
-/// |sum V grad W| over the half of a lattice that lies below a particle [1/m].
+/// Share of a lattice's density that the half of it below a particle makes up.
 template <int D>
-double slopeOfHalfLattice(const IsphPairs<D>& pairs) {
+double shareOfHalfLattice(const IsphPairs<D>& pairs) {
   const int reach = static_cast<int>(std::ceil(pairs.kernel.radius() / pairs.spacing));
   double sum = 0;
   for (int z = D == 3 ? -reach : 0; z <= (D == 3 ? reach : 0); ++z)
     for (int x = -reach; x <= reach; ++x)
       for (int y = 1; y <= reach; ++y)
-        sum += pairs.slope(pairs.spacing * std::sqrt(double(x * x + y * y + z * z))) * pairs.spacing * y;
-  return sum;
+        sum += pairs.volume * pairs.kernel.value(pairs.spacing * std::sqrt(double(x * x + y * y + z * z)));
+  return sum / pairs.latticeDensity;
 }
 
 }  // namespace
@@ -38,7 +38,7 @@ IsphPairs<D> makeIsphPairs(const Case& c) {
   const auto weight = [&](double r) { return pairs.kernel.value(r); };
   pairs.latticeDensity = pairs.volume * (weight(0) + latticeSum<D>(pairs.kernel.radius(), c.spacing, weight));
   // A thousandth more, so that rounding does not decide about particles that start at that distance.
-  pairs.wallContact = 1.001 * slopeOfHalfLattice(pairs);
+  pairs.contact.touching = 1.001 * shareOfHalfLattice(pairs);
   pairs.timeStep = c.time.step;
   pairs.alpha = s.alpha;
   pairs.noSlip = s.walls == WallSlip::NoSlip;

@@ -133,19 +133,23 @@ struct IsphOracle {
   /// What a particle keeps of v where it is nearer to a wall than a lattice point, or clearly nearer if it has
   /// pressure: not the part into the wall, whose mean velocity, by slope, is that of its particles in `v`.
   Vec<D> stopped(const Vec<D>& moving, const std::vector<Vec<D>>& v, double p, std::uint32_t i) const {
-    double touching = 0, weights = 0;
-    for (const Vec<D>& x : latticeAt<D>(Vec<D>::filled(-3 * l), Vec<D, int>::filled(7), l))
-      if (x[D - 1] < -0.5 * l) touching += volume * kernelSlope(norm(x)) * x[D - 1] / norm(x);
+    double touching = 0, full = 0, share = 0, weights = 0;
+    for (const Vec<D>& x : latticeAt<D>(Vec<D>::filled(-3 * l), Vec<D, int>::filled(7), l)) {
+      full += volume * kernel(norm(x));
+      if (x[D - 1] < -0.5 * l) touching += volume * kernel(norm(x));
+    }
     Vec<D> towards{}, mean{};
     forEachOther(i, [&](std::uint32_t j) {
       if (!isWall(j)) return;
+      share += volume * kernel(norm(apart(i, j))) / full;
       towards += gradient(i, j);
       mean += laplacian(i, j) * v[j];
       weights += laplacian(i, j);
     });
-    if (norm(towards) <= (p > 0 ? 1.3 : 1.0) * 1.001 * touching) return moving;
+    if (share <= (p > 0 ? 0.35 : 1.001 * touching / full)) return moving;
     const Vec<D> normal = (1 / norm(towards)) * towards;
-    return moving - std::max(0.0, dot(moving - (1 / weights) * mean, normal)) * normal;
+    const double away = share > 0.6 ? 0.02 * l / dt : 0;
+    return moving - std::max(0.0, dot(moving - (1 / weights) * mean, normal) + away) * normal;
   }
   /// Mean over the fluid that a wall has around it, by kernel.
   double wallPressure(const std::vector<double>& p, std::uint32_t wall,

@@ -21,6 +21,13 @@ struct SurfaceCriterion {
   TREACLE_HD static constexpr int fewest(int dimensions) { return dimensions == 2 ? 4 : 8; }
 };
 
+/// Shares of a particle's density that walls make up.
+struct WallContact {
+  double touching = 0;    // with a flat wall whose first layer is one spacing away
+  double pressed = 0.35;  // 0.3 spacings nearer
+  double inside = 0.6;    // on the first layer; three walls that meet come to 0.5
+};
+
 /// What the sums of ISPH read: sorted particles, their neighbours and the constants of the case.
 template <int D>
 struct IsphPairs : SortedParticles<D> {
@@ -36,12 +43,11 @@ struct IsphPairs : SortedParticles<D> {
   Vec<D> gravity{};           // [m/s2]
   double volume = 0;          // of a particle, l^D [m^D]
   double latticeDensity = 0;  // sum of V W over a full lattice [-]
-  double wallContact = 0;     // |sum V grad W| of a wall whose first layer is one spacing away [1/m]
-  static constexpr double pressedContact = 1.3;  // so much more where pressure pushes back
-  double timeStep = 0;                           // [s]
-  double alpha = 0;                              // [-]
-  bool noSlip = true;                            // walls hold the fluid by its viscosity
-  bool negativePressure = false;                 // or cut to zero
+  WallContact contact;
+  double timeStep = 0;            // [s]
+  double alpha = 0;               // [-]
+  bool noSlip = true;             // walls hold the fluid by its viscosity
+  bool negativePressure = false;  // or cut to zero
 
   /// V |W'| / r [1/m2]: V grad_i W = slope (x_j - x_i).
   TREACLE_HD double slope(const Distance& r) const { return volume * kernel.slope(r); }

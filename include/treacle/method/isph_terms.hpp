@@ -148,11 +148,12 @@ struct PressureSourceTerm {
 };
 
 /// v = v* - dt grad p / rho [O23 eq. (8)], the gradient in its symmetric form [O23 eq. (5)]: it keeps momentum and
-/// drives particles apart. Particles at the free surface have no pressure of their own to stop them at a wall:
-/// those closer to it than half a spacing lose the velocity into it.
+/// drives particles apart. Particles without pressure have nothing to stop them at a wall: those closer to it than
+/// half a spacing lose the velocity into it; others do when they are closer still, in impacts that a step does not
+/// resolve. Whoever got inside nevertheless leaves at a fiftieth of a spacing per step.
 template <int D>
 struct CorrectorTerm {
-  static constexpr int values = 3 * D + 1;
+  static constexpr int values = 3 * D + 2;
   const double* pressure;
   const Vec<D>* predicted;  // of fluid; walls: their velocity
   Vec<D>* velocity;
@@ -171,6 +172,7 @@ struct CorrectorTerm {
       sum[2 * D + k] += slope * predicted[j][k];
     }
     sum[3 * D] += slope;
+    sum[3 * D + 1] += pairs.kernel.value(r.r);
   }
   TREACLE_HD void store(const IsphPairs<D>& pairs, std::uint32_t i, const double* sum) const {
     const double factor = pairs.timeStep / pairs.materials.density[pairs.material[i]];
@@ -180,10 +182,12 @@ struct CorrectorTerm {
       towards[k] = sum[D + k];
       wallVelocity[k] = sum[2 * D + k] / (sum[3 * D] > 0 ? sum[3 * D] : 1);
     }
-    const double contact = pairs.wallContact * (pressure[i] > 0 ? pairs.pressedContact : 1);
-    if (norm(towards) > contact) {
-      const double into = dot(v - wallVelocity, towards) / norm2(towards);
-      if (into > 0) v -= into * towards;
+    const WallContact& contact = pairs.contact;
+    const double share = sum[3 * D + 1] * pairs.volume / pairs.latticeDensity;
+    if (share > (pressure[i] > 0 ? contact.pressed : contact.touching) && norm2(towards) > 0) {
+      const double away = share > contact.inside ? 0.02 * pairs.spacing / pairs.timeStep : 0, g = norm(towards);
+      const double into = dot(v - wallVelocity, towards) / g + away;
+      if (into > 0) v -= (into / g) * towards;
     }
     velocity[i] = v;
   }
