@@ -31,8 +31,8 @@ __device__ Diagnostics loadShared(const Diagnostics* d) {
 /// of blocks that are done. The order of the sums is fixed.
 template <int D>
 __global__ void __launch_bounds__(blockSize)
-    diagnosticsKernel(const __grid_constant__ DiagnosticsInput<D> in, const __grid_constant__ DiagnosticsTerm<D> term,
-                      Diagnostics* partial, unsigned* ticket) {
+    diagnosticsKernel(const __grid_constant__ DiagnosticsInput<D> in,
+                      const __grid_constant__ DiagnosticsTerm<D> term, Diagnostics* partial, unsigned* ticket) {
   using Reduce = cub::BlockReduce<Diagnostics, blockSize>;
   __shared__ typename Reduce::TempStorage temporary;
   __shared__ bool last;
@@ -64,8 +64,8 @@ template <int D>
 Diagnostics computeDiagnostics(Context<Cuda>& context, const DiagnosticsInput<D>& in) {
   auto* partial = reinterpret_cast<Diagnostics*>(context.partialSums());
   const unsigned blocks = std::min(std::max(blocksFor(in.position.size(), 2 * blockSize), 1u), maxBlocks);
-  launch(context, blocks, blockSize, 0, diagnosticsKernel<D>, in, DiagnosticsTerm<D>::make(in),
-         partial, context.ticket());
+  launch(context, blocks, blockSize, 0, diagnosticsKernel<D>, in, DiagnosticsTerm<D>::make(in), partial,
+         context.ticket());
   return averaged(valueOnHost(context, partial + blocks), in.position.size());
 }
 

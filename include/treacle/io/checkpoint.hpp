@@ -23,8 +23,8 @@ void writeCheckpoint(const std::filesystem::path& path, const Particles<D>& part
                      double time);
 
 /// Reads a file of writeCheckpoint. Files of earlier versions lack fields: what is not known of the flow's memory
-/// is zero, bodies are unknownBody, the solver has no modes. Errors: InputError with path and reason for a file that is missing, foreign,
-/// truncated, damaged, or of another version or dimension.
+/// is zero, bodies are unknownBody, the solver has no modes. Errors: InputError with path and reason for a file
+/// that is missing, foreign, truncated, damaged, or of another version or dimension.
 template <int D>
 Checkpoint<D> readCheckpoint(const std::filesystem::path& path);
 

@@ -116,5 +116,22 @@ TEST(DeviceMemory, ARunThatDoesNotFitIsRefused) {
   }
 }
 
+/// Peaks of runs of the ISPH dam breaks, on an H200 and on one CPU.
+TEST(Memory, OfIsphIsNearWhatRunsTook) {
+  Case c;
+  c.method.kind = MethodKind::Isph;
+  c.solver.preconditioner = PreconditionerKind::HatMultigrid;
+  const auto expectNear = [](std::uint64_t estimate, double measured) {
+    EXPECT_NEAR(static_cast<double>(estimate), measured, 0.12 * measured);
+  };
+  c.dimensions = 2;
+  expectNear(estimatedDeviceMemory(c, {819'200, 909'312}), 741.4e6);
+  expectNear(estimatedMemory(c, {51'200, 56'832}, false), 96.8e6);
+  c.dimensions = 3;
+  expectNear(estimatedDeviceMemory(c, {3'751'744, 2'695'656}), 5060.8e6);
+  expectNear(estimatedDeviceMemory(c, {937'936, 722'568}), 1286.5e6);
+  expectNear(estimatedMemory(c, {175'863, 188'190}, false), 317.3e6);
+}
+
 }  // namespace
 }  // namespace treacle
