@@ -51,6 +51,7 @@ void printNumbers(const Case& c) {
   else
     fmt::print("# steps: {}\n", c.steps());
   fmt::print("# solver: {}\n", solverText(solveStages(c).front()));
+  if (c.method.kind == MethodKind::Isph) fmt::print("# viscous step: {}\n", viscousText(c));
   fmt::print("# Courant number: {:.4g}\n", courantNumber(c));
   for (const StabilityNumbers& n : stabilityNumbers(c))
     if (c.method.kind == MethodKind::Isph)

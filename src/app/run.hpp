@@ -72,6 +72,7 @@ class Run {
     say(fmt::format("{}: {} fluid and {} wall particles, {}, into {}", case_.title.empty() ? "case" : case_.title,
                     particles.fluidCount, particles.wallCount(), stepsText(), directory_.path().string()));
     log_.info("solver: " + solverText(solveStages(case_).front()));
+    if (case_.method.kind == MethodKind::Isph) log_.info("viscous step: " + viscousText(case_));
     if (start_.step > 0) say(fmt::format("continues after step {} (t = {:.6g} s)", start_.step, start_.time));
   }
 

@@ -162,11 +162,7 @@ class IsphStep final : public StepMethod<D, Backend> {
   }
   DensityTerm<D> densityTerm() { return {s_.particles.numberDensity.data(), deficit_.data(), surface_.data()}; }
 
-  bool isImplicit() const {
-    const ViscousStep wanted = s_.c.method.isph.viscosity;
-    if (!std::isfinite(viscousLimit_)) return false;
-    return wanted == ViscousStep::Implicit || (wanted == ViscousStep::Auto && s_.timeStep > viscousLimit_);
-  }
+  bool isImplicit() const { return isViscousStepImplicit(s_.c.method.isph.viscosity, viscousLimit_, s_.timeStep); }
 
   /// predicted = v* of (rho/dt - mu lap) v* = rho/dt v + rho g, one component after the other.
   void solveViscosity() {

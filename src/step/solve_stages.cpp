@@ -1,11 +1,13 @@
 #include "treacle/step/solve_stages.hpp"
 
+#include "treacle/method/isph_pairs.hpp"
 #include "treacle/method/projected_multigrid.hpp"
 #include "treacle/model/names.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace treacle {
 namespace {
@@ -58,6 +60,15 @@ std::vector<SolverSettings> solveStages(const Case& c) {
   papers.precision = Precision::Double;
   papers.multigrid = {};
   return {first, stronger, papers};
+}
+
+std::string viscousText(const Case& c) {
+  const double limit =
+      c.dimensions == 2 ? explicitViscousLimit(makeIsphPairs<2>(c)) : explicitViscousLimit(makeIsphPairs<3>(c));
+  if (std::isinf(limit)) return "none: no viscosity";
+  const bool implicit = isViscousStepImplicit(c.method.isph.viscosity, limit, c.time.step);
+  return fmt::format("{} ({} time steps of {:.3g} s)", implicit ? "implicit" : "explicit",
+                     implicit ? "explicit would bear" : "up to", limit);
 }
 
 std::string solverText(const SolverSettings& settings) {

@@ -5,6 +5,7 @@
 #include "treacle/method/sorted_particles.hpp"
 #include "treacle/search/neighbour_rows.hpp"
 
+#include <cmath>
 #include <cstdint>
 #include <span>
 
@@ -73,5 +74,11 @@ IsphPairs<D> makeIsphPairs(const Case& c);
 /// neighbourhood; infinite without viscosity.
 template <int D>
 double explicitViscousLimit(const IsphPairs<D>& pairs);
+
+/// Whether a step of dt [s] is implicit in the viscosity; `limit`: explicitViscousLimit.
+inline bool isViscousStepImplicit(ViscousStep wanted, double limit, double dt) {
+  if (std::isinf(limit)) return false;
+  return wanted == ViscousStep::Implicit || (wanted == ViscousStep::Auto && dt > limit);
+}
 
 }  // namespace treacle

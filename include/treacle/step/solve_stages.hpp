@@ -15,4 +15,7 @@ std::vector<SolverSettings> solveStages(const Case& c);
 /// "cg, projected-multigrid, mixed: pressure degree 9, grid degree 4, velocity degree 2"
 std::string solverText(const SolverSettings& settings);
 
+/// How ISPH takes the viscous step of a case, e.g. "explicit (up to time steps of 0.011 s)".
+std::string viscousText(const Case& c);
+
 }  // namespace treacle

@@ -1,5 +1,6 @@
 #include "support/isph_cases.hpp"
 #include "support/isph_oracle.hpp"
+#include "treacle/step/solve_stages.hpp"
 
 #include <gtest/gtest.h>
 
@@ -175,6 +176,19 @@ TEST(IsphViscosity, LimitIsHalfOfWhatIsStableOnALattice) {
   double sum = 0;
   oracle.forEachOther(middle, [&](std::uint32_t j) { sum -= 2 * oracle.laplacian(middle, j); });
   EXPECT_NEAR(explicitViscousLimit(s.pairs), 0.5 / (1e-6 * sum), 1e-9 / (1e-6 * sum));
+}
+
+TEST(IsphViscosity, TextSaysHowTheStepIsTaken) {
+  Layer layer(6, 0);
+  EXPECT_EQ(viscousText(layer.c), "none: no viscosity");
+  layer.c.materials[0].dynamicViscosity = 1e-3;
+  const double limit = explicitViscousLimit(makeIsphPairs<2>(layer.c));
+  layer.c.time.step = 0.9 * limit;
+  EXPECT_TRUE(viscousText(layer.c).starts_with("explicit (up to")) << viscousText(layer.c);
+  layer.c.time.step = 1.1 * limit;
+  EXPECT_TRUE(viscousText(layer.c).starts_with("implicit (explicit would bear")) << viscousText(layer.c);
+  layer.c.method.isph.viscosity = ViscousStep::Explicit;
+  EXPECT_TRUE(viscousText(layer.c).starts_with("explicit")) << viscousText(layer.c);
 }
 
 TEST(IsphViscosity, WithoutViscosityNothingHoldsTheFluid) {
