@@ -40,8 +40,7 @@ class IsphSystem {
   std::span<const double> firstGuess() const { return guess_.span(); }
 
   PressureSizes sizes() const {
-    constexpr double nearShare = 0.79;  // as in IsphStep
-    const double near = nearShare * pairs().kernel.radius();
+    const double near = IsphStep<D, Cuda>::nearShare * pairs().kernel.radius();
     return {D, fluidCount(), countPairs(context(), pairs(), near), gridSizes(context(), pairs())};
   }
 

@@ -44,9 +44,8 @@ CellSettings readCells(const Section& solver) {
 }
 
 HatSettings readHats(const Section& solver) {
-  const Section s = solver.section("hats", "[solver.hats]", {"particle_degree", "grid_degree", "iteration_bound"});
+  const Section s = solver.section("hats", "[solver.hats]", {"grid_degree", "iteration_bound"});
   HatSettings hats;
-  hats.particleDegree = s.integer("particle_degree", 0, hats.particleDegree);
   hats.gridDegree = s.integer("grid_degree", 0, hats.gridDegree);
   hats.iterationBound = s.integer("iteration_bound", 1, hats.iterationBound);
   return hats;

@@ -132,7 +132,6 @@ void writeIsphSolver(Text& text, const SolverSettings& solver) {
   line(text, "levels = {}", solver.cells.levels);
   line(text, "sweeps = {}", solver.cells.sweeps);
   line(text, "\n[solver.hats]");
-  line(text, "particle_degree = {}", solver.hats.particleDegree);
   line(text, "grid_degree = {}", solver.hats.gridDegree);
   line(text, "iteration_bound = {}", solver.hats.iterationBound);
 }

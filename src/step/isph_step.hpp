@@ -68,7 +68,7 @@ class IsphStep final : public StepMethod<D, Backend> {
     sumOnFluid(s_.context, pairs_,
                PressureSourceTerm<D>{predicted_.data(), s_.particles.numberDensity.data(), surface_.data(),
                                      source_.data()});
-    pressure_.prepareMatrix(s_.context, pairs_, PressureRow<D>{surface_.data()});
+    pressure_.prepareMatrix(s_.context, pairs_, row());
   }
 
   void preparePreconditioner() override { pressure_.preparePreconditioner(s_.context, ranges_); }
@@ -135,12 +135,18 @@ class IsphStep final : public StepMethod<D, Backend> {
   std::size_t bytes() const override {
     return ranges_.bytes() + workspace_.bytes() + fluidRows_.bytes() + wallRows_.bytes() + wallsOwn_.bytes() +
            deficit_.bytes() + surface_.bytes() + predicted_.bytes() + source_.bytes() + solution_.bytes() +
-           transport_.bytes() + pressure_.bytes() + viscosity_.bytes();
+           transport_.bytes() + pressure_.bytes() + viscosity_.bytes() + componentBytes();
   }
 
- private:
   /// Pairs up to this share of the kernel's radius make the smoother's matrix: 1.9 l with the usual kernel.
   static constexpr double nearShare = 0.79;
+
+ private:
+  std::size_t componentBytes() const {
+    std::size_t sum = 0;
+    for (const auto& component : component_) sum += component.bytes();
+    return sum;
+  }
 
   void find(RowKind kind, NeighbourRows<Backend>& rows) {
     const double radius = pairs_.kernel.radius();
@@ -205,7 +211,7 @@ class IsphStep final : public StepMethod<D, Backend> {
   Buffer<Vec<D>, Backend> deficit_;
   Buffer<std::uint8_t, Backend> surface_;
   Buffer<Vec<D>, Backend> predicted_;          // v*; walls: their velocities
-  Buffer<double, Backend> source_, solution_;  // of the pressure equation
+  Buffer<double, Backend> source_, solution_;  // of the pressure equation; before, a component of v*
   Buffer<double, Backend> component_[D];       // of the viscous step's right-hand side
   Buffer<Vec<D>, Backend> transport_;
   PairSolver<D, Backend, PressureRow<D>> pressure_;

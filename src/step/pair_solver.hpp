@@ -11,7 +11,7 @@
 
 namespace treacle {
 
-/// A x = b for a matrix of pairs (ISPH's pressure and viscous step), by conjugate gradients with the
+/// A x = b for a matrix of pairs (ISPH's pressure and viscous step), with the Krylov method and the
 /// preconditioner of the case. `Row`: PressureRow or ViscousRow.
 template <int D, class Backend, class Row>
 class PairSolver {
@@ -128,8 +128,10 @@ class PairSolver {
     using Flat = std::span<const double>;
     const auto a = [&](Flat from, std::span<double> to) { multiply(context, data.matrix, from, to); };
     const auto with = [&](const auto& k) {
-      const StoppingRule rule{stage().tolerance, stage().maxIterations, 0, history_};
-      return conjugateGradient(context, a, k, b, x, rule, krylov_);
+      const double refresh = stage().precision == Precision::Mixed ? 1e-4 : 0;
+      const StoppingRule rule{stage().tolerance, stage().maxIterations, refresh, history_};
+      return stage().krylov == KrylovKind::Cg ? conjugateGradient(context, a, k, b, x, rule, krylov_)
+                                              : conjugateResidual(context, a, k, b, x, rule, krylov_);
     };
     switch (stage().preconditioner) {
       case PreconditionerKind::HatMultigrid:

@@ -30,6 +30,7 @@ std::vector<SolverSettings> isphStages(const Case& c) {
   exact.precision = Precision::Double;
   exact.hats.gridDegree += 1;
   SolverSettings plain = c.solver;
+  plain.krylov = KrylovKind::Cg;
   plain.preconditioner = PreconditionerKind::Jacobi;
   plain.precision = Precision::Double;
   return {first, exact, plain};

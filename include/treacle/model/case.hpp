@@ -162,10 +162,9 @@ struct CellSettings {
   bool operator==(const CellSettings&) const = default;
 };
 
-/// Hat-function multigrid of ISPH (docs/isph.md). Degrees of its smoothers; 0: chosen by the program.
+/// Hat-function multigrid of ISPH (docs/isph.md).
 struct HatSettings {
-  int particleDegree = 0;
-  int gridDegree = 0;
+  int gridDegree = 0;        // of the smoothers on its grids; 0: chosen by the program
   int iterationBound = 100;  // a solve that needs more is tried in other ways
 
   bool operator==(const HatSettings&) const = default;

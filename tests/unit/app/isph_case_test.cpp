@@ -113,7 +113,6 @@ max_iterations = 66
 levels = 3
 sweeps = 2
 [solver.hats]
-particle_degree = 4
 grid_degree = 5
 iteration_bound = 44
 )";
@@ -125,7 +124,7 @@ iteration_bound = 44
   expected.solver.tolerance = 1e-9;
   expected.solver.maxIterations = 66;
   expected.solver.cells = {3, 2};
-  expected.solver.hats = {4, 5, 44};
+  expected.solver.hats = {5, 44};
   const Case c =
       readText(replaced(text, "name = \"isph\"\n",
                         "name = \"isph\"\nkernel = \"wendland-c2\"\nsmoothing_ratio = 1.5\nalpha = 0.2\n"

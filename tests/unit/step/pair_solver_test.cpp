@@ -109,5 +109,19 @@ TEST(PairSolver, DefaultIsFlatInTheSizeOfTheColumnAndPlainIterationsGrow) {
   }
 }
 
+TEST(PairSolver, ConjugateResidualsTakeAsManyIterations) {
+  Column column({9, 9, 9});
+  for (const PreconditionerKind kind :
+       {PreconditionerKind::Jacobi, PreconditionerKind::CellMultigrid, PreconditionerKind::HatMultigrid})
+    for (const Precision precision : {Precision::Double, Precision::Mixed}) {
+      column.s.c.solver.krylov = KrylovKind::Cg;
+      const int cg = column.iterations(kind, precision);
+      column.s.c.solver.krylov = KrylovKind::Cr;
+      const int cr = column.iterations(kind, precision);
+      EXPECT_LE(cr, cg + 2);
+      EXPECT_GE(cr, cg - 4);
+    }
+}
+
 }  // namespace
 }  // namespace treacle::test
