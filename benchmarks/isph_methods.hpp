@@ -55,31 +55,15 @@ class IsphComparison {
  private:
   template <class F>
   void attempt(const std::string& method, F&& solve) {
-    if (!options_.wants(name_ + "/" + method)) return;
     SolveResult result;
     result.system = name_;
     result.method = method;
     result.fluidCount = system_.fluidCount();
-    try {
-      solve(result);
-      result.trueResidual = trueResidual();
-      record_.add(result);
-    } catch (const std::exception& error) {
-      record_.addFailure(name_, method, error.what());
-    }
+    treacle::attempt(options_, record_, result, solve, [&] { return trueResidual(); });
   }
-
-  /// After one call that warms up.
   template <class F>
   double medianSeconds(F&& work) {
-    std::vector<double> seconds;
-    for (int k = 0; k <= options_.repetitions; ++k) {
-      clock_.start(context_);
-      work();
-      clock_.mark(context_);
-      seconds.push_back(clock_.seconds()[0]);
-    }
-    return median({seconds.begin() + 1, seconds.end()});
+    return treacle::medianSeconds(context_, options_.repetitions, work);
   }
 
   void setFirstGuess() { copyValues(context_, system_.firstGuess(), x_.data()); }

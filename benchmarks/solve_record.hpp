@@ -3,6 +3,7 @@
 #include "gpu_record.hpp"
 
 #include <algorithm>
+#include <exception>
 #include <string>
 #include <vector>
 
@@ -94,6 +95,35 @@ void guarded(const std::string& name, SolveRecord& record, F&& work) {
     work();
   } catch (const std::exception& error) {
     record.addFailure(name, "(all)", error.what());
+  }
+}
+
+/// Median device seconds of `work`, after one call that warms up.
+template <class F>
+double medianSeconds(Context<Cuda>& context, int repetitions, F&& work) {
+  PhaseClock<Cuda> clock;
+  std::vector<double> seconds;
+  for (int k = 0; k <= repetitions; ++k) {
+    clock.start(context);
+    work();
+    clock.mark(context);
+    seconds.push_back(clock.seconds()[0]);
+  }
+  return median({seconds.begin() + 1, seconds.end()});
+}
+
+/// One method on one system: solve(result) fills in what it finds, trueResidual() looks at the solution. A method
+/// that cannot be tried fails alone.
+template <class Solve, class Residual>
+void attempt(const BenchmarkOptions& options, SolveRecord& record, SolveResult result, Solve&& solve,
+             Residual&& trueResidual) {
+  if (!options.wants(result.system + "/" + result.method)) return;
+  try {
+    solve(result);
+    result.trueResidual = trueResidual();
+    record.add(result);
+  } catch (const std::exception& error) {
+    record.addFailure(result.system, result.method, error.what());
   }
 }
 
