@@ -1,0 +1,60 @@
+"""What a validation study is: one case file, run at several resolutions and held against an exact or published solution."""
+
+import math
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Callable
+
+cases = Path(__file__).parent / "cases"
+
+
+@dataclass
+class Outcome:
+    """What one run gave. errors: relative to the exact solution's size; values: measured numbers worth a column, with their
+    unit in the name; curves: for the picture, name to (x, y); exact: likewise for the exact solution."""
+
+    errors: dict
+    values: dict = field(default_factory=dict)
+    curves: dict = field(default_factory=dict)
+    exact: dict = field(default_factory=dict)
+
+
+@dataclass
+class Level:
+    """One run of a study: the resolution of the case file and further overrides."""
+
+    resolution: float
+    settings: tuple = ()
+
+    @property
+    def label(self):
+        return f"x{self.resolution:g}" + "".join(" " + s for s in self.settings)
+
+
+@dataclass
+class Study:
+    """levels: from coarse to fine; the first is what continuous integration runs. bars: largest error allowed there, by the
+    names of Outcome.errors; every bar must be met. measure: takes a Run (treacle_data) to an Outcome. sizes: what orders are
+    counted in, a function of the level; particle spacing unless told."""
+
+    name: str
+    title: str
+    levels: list
+    bars: dict
+    measure: Callable
+    x_label: str
+    y_label: str
+    settings: tuple = ()
+    case: str = ""
+    size: Callable = staticmethod(lambda level: 1 / level.resolution)
+
+    @property
+    def case_file(self):
+        return cases / (self.case or self.name + ".toml")
+
+
+def order(error_coarse, error_fine, size_coarse, size_fine):
+    """Observed order of convergence between two runs; None where an error is zero."""
+    if not (error_coarse > 0 and error_fine > 0):
+        return None
+    return math.log(error_coarse / error_fine) / math.log(size_coarse / size_fine)

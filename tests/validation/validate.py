@@ -1,0 +1,131 @@
+#!/usr/bin/env python3
+"""Validation studies of treacle: runs cases with exact or published solutions and measures the errors.
+
+    validate.py --program build/release/bin/treacle couette            # the coarse level, against its bars (as ctest does)
+    validate.py --program ... --all-levels --record record.json        # every study, every level
+    validate.py --report record.json                                   # tables and pictures of docs/validation.md
+
+Exit codes: 0 all bars are met, 1 one is not, 2 bad input, 3 a run failed.
+"""
+
+import argparse
+import importlib
+import json
+import sys
+import tempfile
+from pathlib import Path
+
+here = Path(__file__).resolve().parent
+sys.path[:0] = [str(here), str(here.parents[1] / "scripts")]
+
+import treacle_data  # noqa: E402
+from study import order  # noqa: E402
+
+names = sorted(file.stem for file in (here / "studies").glob("*.py") if not file.stem.startswith("_"))
+
+
+def load(name):
+    return importlib.import_module("studies." + name).study
+
+
+def thinned(curves, most=200):
+    """As lists, of at most so many points."""
+    result = {}
+    for name, (x, y) in curves.items():
+        step = max(1, -(-len(x) // most))
+        result[name] = [[float(f"{v:.6g}") for v in values[::step]] for values in (x, y)]
+    return result
+
+
+def run_level(study, level, options, directory):
+    words = ["--backend", options.backend] + (["--threads", str(options.threads)] if options.threads else [])
+    settings = [f"resolution={level.resolution}", *study.settings, *level.settings]
+    run = treacle_data.run_case(options.program, study.case_file, directory, settings, words)
+    outcome = study.measure(run)
+    return {
+        "level": level.label,
+        "size": study.size(level),
+        "particles": run.summary["fluid_particles"],
+        "steps": run.summary["steps"],
+        "iterations": run.summary["iterations"]["mean"],
+        "seconds": round(run.seconds, 2),
+        "backend": run.summary["backend"],
+        "device": run.summary["device"],
+        "commit": run.summary["commit"],
+        "errors": {name: float(value) for name, value in outcome.errors.items()},
+        "values": {name: float(value) for name, value in outcome.values.items()},
+        "curves": thinned(outcome.curves),
+        "exact": thinned(outcome.exact),
+    }
+
+
+def print_level(study, row, last, bars):
+    """One block of lines; returns whether all bars are met."""
+    print(f"{study.name} {row['level']}: {row['particles']} particles, {row['steps']} steps, "
+          f"{row['iterations']:.1f} iterations, {row['seconds']} s ({row['backend']})")
+    missing = sorted(set(bars or {}) - set(row["errors"]))
+    for name in missing:
+        print(f"  error {name}: not measured, bar NOT MET")
+    good = not missing
+    for name, error in row["errors"].items():
+        text = f"  error {name}: {error:.3e}"
+        if last and (p := order(last["errors"][name], error, last["size"], row["size"])) is not None:
+            text += f", order {p:.2f}"
+        if name in (bars or {}):
+            met = error <= bars[name]  # false for what is not a number
+            good = good and met
+            text += f", bar {bars[name]:g}: {'met' if met else 'NOT MET'}"
+        print(text)
+    for name, value in row["values"].items():
+        print(f"  {name}: {value:.6g}")
+    sys.stdout.flush()
+    return good
+
+
+def run_study(study, options, scratch):
+    rows, good = [], True
+    for number, level in enumerate(study.levels if options.all_levels else study.levels[:1]):
+        row = run_level(study, level, options, scratch / f"{study.name}-{number}")
+        bars = study.bars if number == 0 else None
+        good = print_level(study, row, rows[-1] if rows else None, bars) and good
+        rows.append(row)
+    return rows, good
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("studies", nargs="*", metavar="STUDY", help="; ".join(names) + "; all without one")
+    parser.add_argument("--program", type=Path, help="the command treacle")
+    parser.add_argument("--backend", default="auto", choices=["auto", "cpu", "cuda"])
+    parser.add_argument("--threads", type=int, default=0)
+    parser.add_argument("--all-levels", action="store_true", help="not the coarse level alone")
+    parser.add_argument("--record", type=Path, help="JSON file that the results of these studies are put into")
+    parser.add_argument("--keep", type=Path, help="folder for the run directories, which are deleted otherwise")
+    parser.add_argument("--report", type=Path, metavar="RECORD", help="writes tables and pictures from a record")
+    options = parser.parse_args()
+    if unknown := set(options.studies) - set(names):
+        parser.error(f"unknown study {', '.join(sorted(unknown))}; expected {', '.join(names)}")
+    if options.report:
+        import report
+        return report.write(json.loads(options.report.read_text()), [load(name) for name in names])
+    if not options.program:
+        parser.error("--program is required")
+
+    record = json.loads(options.record.read_text()) if options.record and options.record.exists() else {}
+    good = True
+    with tempfile.TemporaryDirectory() as scratch:
+        for name in options.studies or names:
+            rows, met = run_study(load(name), options, options.keep or Path(scratch))
+            record[name] = rows
+            good = good and met
+            if options.record:  # after each, so that a later failure loses nothing
+                options.record.write_text(json.dumps(record, indent=1) + "\n")
+    return 0 if good else 1
+
+
+if __name__ == "__main__":
+    try:
+        sys.exit(main())
+    except treacle_data.RunFailed as failure:
+        print(f"validate: {failure}", file=sys.stderr)
+        sys.exit(3)
