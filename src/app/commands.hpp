@@ -41,10 +41,11 @@ struct PlotOptions {
 };
 
 struct CompareOptions {
-  std::filesystem::path a, b;  // run directories; b is the reference
+  std::filesystem::path a, b;  // run directories or CSV files of particles; b is the reference
   std::vector<ComparedField> fields{ComparedField::Position, ComparedField::Velocity};
-  double bound = 1e-5;        // on relative differences
-  std::filesystem::path csv;  // empty: no table is written
+  double bound = 1e-5;         // on relative differences
+  std::optional<double> time;  // [s] of the frame that is compared with a file; default: the last
+  std::filesystem::path csv;   // empty: no table is written
   bool quiet = false;
 };
 

@@ -1,28 +1,13 @@
 #include "treacle/io/compare.hpp"
 #include "commands.hpp"
+#include "compare_files.hpp"
+#include "compare_tables.hpp"
+#include "treacle/core/error.hpp"
 
 #include <fmt/format.h>
 
 namespace treacle {
 namespace {
-
-void printFrames(const RunDifference& difference) {
-  fmt::print("{:>12}", "");
-  for (const char* field : {"position [m]", "velocity [m/s]", "pressure [Pa]", "number density"})
-    fmt::print("  {:>27}", field);
-  fmt::print("\n{:>12}", "t [s]");
-  for (std::size_t k = 0; k < comparedFieldCount; ++k) fmt::print("  {:>9}{:>9}{:>9}", "max", "rms", "relative");
-  fmt::print("\n");
-  for (const FrameDifference& frame : difference.frames) {
-    fmt::print("{:12.6g}", frame.time);
-    for (const auto& d : frame.fields)
-      if (d)
-        fmt::print("  {:9.2e}{:9.2e}{:9.2e}", d->maximum, d->rms, d->relative);
-      else
-        fmt::print("  {0:>9}{0:>9}{0:>9}", "-");
-    fmt::print("\n");
-  }
-}
 
 void printUnmatched(const std::filesystem::path& run, const std::vector<double>& times) {
   if (times.empty()) return;
@@ -51,20 +36,21 @@ void printVerdict(const RunDifference& difference, const CompareOptions& options
                frame[excess->field]->relative, frame.time, frame.frameA, frame.frameB, options.bound);
     return;
   }
-  std::string fields;
-  for (const ComparedField field : options.fields)
-    fields += fmt::format("{}{}", fields.empty() ? "" : ", ", nameOf(field));
-  fmt::print("agree within {:g} in {} frames: {}\n", options.bound, difference.frames.size(), fields);
+  fmt::print("agree within {:g} in {} frames: {}\n", options.bound, difference.frames.size(),
+             listOf(options.fields));
 }
 
 }  // namespace
 
 bool compareCommand(const CompareOptions& options) {
+  if (isParticleFile(options.a) || isParticleFile(options.b)) return compareFiles(options);
+  if (options.time)
+    throw InputError("--time: two runs are compared at all times that they share; expected a CSV file as A or B");
   const RunDirectory a = RunDirectory::open(options.a), b = RunDirectory::open(options.b);
   const RunDifference difference = compareRuns(a, b);
   const std::optional<Excess> excess = firstExcess(difference, options.fields, options.bound);
   if (!options.quiet) {
-    printFrames(difference);
+    printFrames(difference.frames);
     printUnmatched(options.a, difference.onlyInA);
     printUnmatched(options.b, difference.onlyInB);
     printHistory(difference.history);

@@ -146,16 +146,21 @@ void addPlot(CLI::App& app, PlotOptions& options) {
 
 /// `agree`: what the command found.
 void addCompare(CLI::App& app, CompareOptions& options, bool& agree) {
-  CLI::App* compare = app.add_subcommand("compare", "Compare two runs particle by particle");
-  compare->add_option("A", options.a, "Run directory")->required();
-  compare->add_option("B", options.b, "Run directory of the reference")->required();
+  CLI::App* compare = app.add_subcommand("compare", "Compare two runs, or a run and particles in a CSV file");
+  compare->add_option("A", options.a, "Run directory or CSV file")->required();
+  compare->add_option("B", options.b, "Run directory or CSV file of the reference")->required();
   compare
       ->add_option("--bound", options.bound, "Largest relative difference that counts as agreement; default: 1e-5")
       ->type_name("X")
       ->check(notNegative());
   addChoices<ComparedField>(*compare, "--field", namesOf<ComparedField>, options.fields,
                             "Field that the bound applies to; repeatable; default: position and velocity");
-  compare->add_option("--csv", options.csv, "Write the table of the frames as CSV")->type_name("FILE");
+  compare
+      ->add_option("--time", options.time,
+                   "With a CSV file: the frame of the run nearest to this time [s]; default: the last")
+      ->type_name("T")
+      ->check(notNegative());
+  compare->add_option("--csv", options.csv, "Write the table as CSV")->type_name("FILE");
   compare->add_flag("-q,--quiet", options.quiet, "Print the verdict only");
   compare->callback([&options, &agree] { agree = compareCommand(options); });
 }

@@ -21,6 +21,11 @@ Box Box::joined(const Box& other) const {
   return box;
 }
 
+double Box::longestSide() const {
+  const Vec<3> side = max - min;
+  return std::max({side[0], side[1], side[2]});
+}
+
 Box boundsOf(const std::vector<Vec<3>>& position, double margin) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   const Vec<3> half = Vec<3>::filled(margin);

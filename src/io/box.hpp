@@ -13,6 +13,7 @@ struct Box {
   Vec<3> corner(int bits) const;
   /// Smallest box that holds both.
   Box joined(const Box& other) const;
+  double longestSide() const;  // [m]
 };
 
 /// Smallest box around all positions, widened by `margin` on each side [m]; without positions min is +inf, max

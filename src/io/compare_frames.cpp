@@ -1,3 +1,4 @@
+#include "box.hpp"
 #include "relative.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/io/compare.hpp"
@@ -33,9 +34,11 @@ struct MatchedFrames {
     if (a.id.size() != b.id.size())
       throw InputError(fmt::format("{} and {} fluid particles", a.id.size(), b.id.size()));
     orderA = idOrder(a), orderB = idOrder(b);
-    for (std::size_t k = 0; k < orderA.size(); ++k)
-      if (const auto idA = a.id[orderA[k]], idB = b.id[orderB[k]]; idA != idB)
-        throw InputError(fmt::format("particle {} is in only one of them", std::min(idA, idB)));
+    for (std::size_t k = 0; k < orderA.size(); ++k) {
+      const auto idA = a.id[orderA[k]], idB = b.id[orderB[k]];
+      if (idA != idB) throw InputError(fmt::format("particle {} is in only one of them", std::min(idA, idB)));
+      if (k > 0 && idA == a.id[orderA[k - 1]]) throw InputError(fmt::format("two particles have the id {}", idA));
+    }
   }
 
   /// distance(i, j): between the values of particle i of a and particle j of b; size(j): of that of b.
@@ -79,19 +82,8 @@ struct MatchedFrames {
       return norm(d);
     };
     FieldDifference d = difference(distance, [](std::size_t) { return 0.0; });
-    d.relative = relativeTo(longestSide() + reference.spacing, d.rms);
+    d.relative = relativeTo(boundsOf(b.position, reference.spacing / 2).longestSide(), d.rms);
     return d;
-  }
-
-  /// Between the outermost particles of b [m].
-  double longestSide() const {
-    double longest = 0;
-    for (int k = 0; k < b.dimensions; ++k) {
-      const auto less = [k](const Vec<3>& x, const Vec<3>& y) { return x[k] < y[k]; };
-      const auto [low, high] = std::minmax_element(b.position.begin(), b.position.end(), less);
-      if (low != b.position.end()) longest = std::max(longest, (*high)[k] - (*low)[k]);
-    }
-    return longest;
   }
 };
 

@@ -145,6 +145,12 @@ TEST(CompareFrames, RefusesOtherParticles) {
     return messageOf<InputError>([&] { compareFrames(a, square(), referenceCase()); });
   };
   EXPECT_EQ(message([](Frame& a) { a.id[3] = 7; }), "particle 3 is in only one of them");
+  const auto twice = [] {
+    Frame f = square();
+    f.id[2] = 1;
+    compareFrames(f, f, referenceCase());
+  };
+  EXPECT_EQ(messageOf<InputError>(twice), "two particles have the id 1");
   EXPECT_EQ(message([](Frame& a) { a.id.clear(); }),
             "particles have no ids; expected 'id' in output.fields of both runs");
   EXPECT_EQ(message([](Frame& a) { a = sampleFrame(2, 5); }), "5 and 4 fluid particles");

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+namespace treacle {
+
+/// The lines of a text that hold something: without blank lines and comments (#), line ends of either kind and
+/// the mark that some programs put before UTF-8.
+class TextLines {
+ public:
+  explicit TextLines(std::string_view text);
+
+  std::optional<std::string_view> next();
+  std::size_t number() const { return number_; }  // of the last line, from 1
+
+ private:
+  std::string_view rest_;
+  std::size_t number_ = 0;
+};
+
+/// Between the fields of a line: the first comma, semicolon or tab outside of double quotes, otherwise ' ', which
+/// stands for any number of blanks and tabs.
+char separatorOf(std::string_view line);
+
+/// The fields without the blanks and the double quotes around them.
+void splitLine(std::string_view line, char separator, std::vector<std::string_view>& fields);
+
+}  // namespace treacle
