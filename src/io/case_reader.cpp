@@ -81,9 +81,22 @@ Oscillation readOscillation(const Section& body, const std::string& name, int di
   return oscillation;
 }
 
+void readVelocity(const Section& s, int dimensions, Body& body) {
+  const Formulas velocity = s.formulas("velocity", dimensions, "m/s");
+  body.velocity = velocity.number;
+  body.velocityExpression = velocity.text;
+  if (body.kind != BodyKind::Wall) return;
+  for (const std::string& text : velocity.text)
+    if (!text.empty())
+      throw s.error("velocity",
+                    fmt::format("only a body of type \"fluid\" can have expressions; expected an array "
+                                "of {} finite numbers [m/s], found \"{}\"",
+                                dimensions, text));
+}
+
 Body readBody(const toml::table& table, const std::string& name, int dimensions,
               const std::vector<Material>& materials) {
-  Keys keys{"name", "type", "material", "shape", "velocity", "oscillation"};
+  Keys keys{"name", "type", "material", "shape", "where", "velocity", "oscillation"};
   const auto shapeWord = table["shape"].value_or(std::string_view{});
   const bool box = shapeWord == "box", sphere = shapeWord == "sphere", cylinder = shapeWord == "cylinder";
   const bool known = box || sphere || cylinder;
@@ -98,7 +111,8 @@ Body readBody(const toml::table& table, const std::string& name, int dimensions,
   body.name = name;
   body.kind = s.choice<BodyKind>("type");
   body.shape.kind = s.choice<ShapeKind>("shape");
-  body.velocity = s.vector("velocity", dimensions, "m/s", Vec<3>{});
+  body.where = s.expression("where", dimensions);
+  readVelocity(s, dimensions, body);
   if (s.has("oscillation")) {
     if (body.kind != BodyKind::Wall) throw s.error("oscillation", "only a body of type \"wall\" can have one");
     body.oscillation = readOscillation(s, name, dimensions);

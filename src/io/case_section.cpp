@@ -1,6 +1,7 @@
 #include "case_section.hpp"
 
 #include "case_document.hpp"
+#include "treacle/model/expression.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -109,13 +110,47 @@ Vec<3> Section::vector(std::string_view key, int dimensions, std::string_view un
                        std::optional<Vec<3>> fallback) const {
   if (fallback && !has(key)) return *fallback;
   const std::string expected = fmt::format("an array of {} finite numbers [{}]", dimensions, unit);
+  const toml::array& array = arrayOf(key, dimensions, expected);
+  Vec<3> x{};
+  for (int k = 0; k < dimensions; ++k) x[k] = finite(array[static_cast<std::size_t>(k)], key, expected);
+  return x;
+}
+
+const toml::array& Section::arrayOf(std::string_view key, int entries, const std::string& expected) const {
   const toml::node& node = require(key, expected);
   const toml::array* array = node.as_array();
-  if (!array || array->size() != static_cast<std::size_t>(dimensions))
+  if (!array || array->size() != static_cast<std::size_t>(entries))
     throw error(key, fmt::format("expected {}, found {}", expected, describe(node)));
-  Vec<3> x{};
-  for (int k = 0; k < dimensions; ++k) x[k] = finite((*array)[static_cast<std::size_t>(k)], key, expected);
-  return x;
+  return *array;
+}
+
+Formulas Section::formulas(std::string_view key, int dimensions, std::string_view unit) const {
+  Formulas formulas;
+  if (!has(key)) return formulas;
+  const std::string expected = fmt::format("an array of {} finite numbers or expressions [{}]", dimensions, unit);
+  const toml::array& array = arrayOf(key, dimensions, expected);
+  for (std::size_t k = 0; k < array.size(); ++k)
+    if (array[k].is_string())
+      formulas.text[k] = expression(array[k], key, dimensions);
+    else
+      formulas.number[static_cast<int>(k)] = finite(array[k], key, expected);
+  return formulas;
+}
+
+std::string Section::expression(std::string_view key, int dimensions) const {
+  if (!has(key)) return {};
+  return expression(*table_->get(key), key, dimensions);
+}
+
+std::string Section::expression(const toml::node& node, std::string_view key, int dimensions) const {
+  if (!node.is_string()) throw error(key, fmt::format("expected an expression, found {}", describe(node)));
+  const std::string& text = node.as_string()->get();
+  try {
+    Expression{text, dimensions};
+  } catch (const InputError& e) {
+    throw error(key, e.what());
+  }
+  return text;
 }
 
 bool Section::flag(std::string_view key, bool fallback) const {

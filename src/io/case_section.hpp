@@ -22,6 +22,12 @@ struct ForeignKeys {
   std::string owner;
 };
 
+/// A vector that may have expressions (model/expression.hpp) in place of numbers.
+struct Formulas {
+  Vec<3> number{};
+  std::array<std::string, 3> text;  // empty: a number
+};
+
 /// One table of a case file with typed, checked access. Every error names the place, the key, what was found and
 /// what was expected. A value without a fallback is required. The table must outlive the section.
 class Section {
@@ -40,6 +46,8 @@ class Section {
   std::string string(std::string_view key, std::optional<std::string> fallback = {}) const;
   Vec<3> vector(std::string_view key, int dimensions, std::string_view unit,
                 std::optional<Vec<3>> fallback = {}) const;
+  Formulas formulas(std::string_view key, int dimensions, std::string_view unit) const;  // fallback: zero
+  std::string expression(std::string_view key, int dimensions) const;                    // fallback: none
   bool flag(std::string_view key, bool fallback) const;
   std::array<bool, 3> flags(std::string_view key, int dimensions) const;  // one for all, or one per axis
   std::optional<std::vector<std::string>> strings(std::string_view key) const;
@@ -76,6 +84,8 @@ class Section {
 
  private:
   const toml::node& require(std::string_view key, const std::string& expected) const;
+  const toml::array& arrayOf(std::string_view key, int entries, const std::string& expected) const;
+  std::string expression(const toml::node& node, std::string_view key, int dimensions) const;
   double finite(const toml::node& node, std::string_view key, const std::string& expected) const;
 
   const toml::table* table_;

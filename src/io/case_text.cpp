@@ -50,6 +50,15 @@ void writeShape(Text& text, const Shape& s, int dimensions) {
   line(text, "inner_radius = {}", s.innerRadius);
 }
 
+void writeVelocity(Text& text, const Body& b, int dimensions) {
+  std::vector<std::string> entries;
+  for (int k = 0; k < dimensions; ++k) {
+    const std::string& expression = b.velocityExpression[static_cast<std::size_t>(k)];
+    entries.push_back(expression.empty() ? fmt::format("{}", b.velocity[k]) : tomlString(expression));
+  }
+  line(text, "velocity = [{}]", fmt::join(entries, ", "));
+}
+
 void writeWorld(Text& text, const Case& c) {
   line(text, "title = {}", tomlString(c.title));
   line(text, "dimensions = {}", c.dimensions);
@@ -78,7 +87,8 @@ void writeWorld(Text& text, const Case& c) {
     line(text, "material = {}", tomlString(c.materials[static_cast<std::size_t>(b.material)].name));
     line(text, "shape = \"{}\"", nameOf(b.shape.kind));
     writeShape(text, b.shape, c.dimensions);
-    line(text, "velocity = {}", array(b.velocity, c.dimensions));
+    if (!b.where.empty()) line(text, "where = {}", tomlString(b.where));
+    writeVelocity(text, b, c.dimensions);
     if (const Oscillation& o = b.oscillation; o.period > 0)
       line(text, "oscillation = {{ amplitude = {}, period = {}, phase = {} }}", array(o.amplitude, c.dimensions),
            o.period, o.phase);

@@ -3,6 +3,7 @@
 #include "treacle/core/error.hpp"
 #include "treacle/model/shape.hpp"
 
+#include "body_points.hpp"
 #include "lattice.hpp"
 #include "point_grid.hpp"
 
@@ -22,7 +23,7 @@ template <int D>
 std::vector<Filled<D>> fillBodies(const Case& c, BodyKind kind, std::vector<std::string>& notes) {
   std::vector<Filled<D>> filled;
   for (const Body& body : c.bodies)
-    if (body.kind == kind) filled.push_back({&body, latticePoints<D>(body, c.spacing, notes)});
+    if (body.kind == kind) filled.push_back({&body, bodyPoints<D>(c, body, notes)});
   return filled;
 }
 
@@ -88,9 +89,10 @@ template <int D>
 void append(const Case& c, const std::vector<Filled<D>>& filled, Particles<D>& particles, std::uint32_t& next) {
   for (const Filled<D>& f : filled) {
     const auto body = static_cast<std::uint8_t>(f.body - c.bodies.data());
+    const StartVelocity<D> velocity(*f.body);
     for (const Vec<D>& x : f.points) {
       particles.position[next] = x;
-      particles.velocity[next] = resized<D>(f.body->velocity);
+      particles.velocity[next] = velocity.at(x);
       particles.pressure[next] = 0;
       particles.numberDensity[next] = 0;
       particles.material[next] = static_cast<std::uint8_t>(f.body->material);

@@ -56,14 +56,17 @@ struct Oscillation {
   bool operator==(const Oscillation&) const = default;
 };
 
-/// Particles of one kind and material that fill a shape.
+/// Particles of one kind and material that fill a shape. Expressions are those of model/expression.hpp; an empty
+/// one is none.
 struct Body {
   std::string name;
   BodyKind kind = BodyKind::Fluid;
   int material = 0;   // index into Case::materials
   Vec<3> velocity{};  // fluid: at the start; wall: prescribed translation [m/s]
   Shape shape;
-  Oscillation oscillation{};  // of a wall, on top of its velocity
+  Oscillation oscillation{};                        // of a wall, on top of its velocity
+  std::array<std::string, 3> velocityExpression{};  // of a fluid, in place of a component of its velocity [m/s]
+  std::string where{};                              // there are particles only where it is not zero
 
   bool operator==(const Body&) const = default;
 };

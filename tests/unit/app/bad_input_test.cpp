@@ -58,7 +58,7 @@ constexpr BadCase badCases[] = {
      "bad.toml:9:2: unknown key 'gravty' in the case file; did you mean 'gravity'?"},
     {"keyOfAnotherShape", "max = [6e-3, 6e-3]", "max = [6e-3, 6e-3]\nradius = 1",
      "bad.toml:26:1: unknown key 'radius' in [[body]] 'column' (box); expected 'name', 'type', 'material', "
-     "'shape', 'velocity', 'oscillation', 'min' or 'max'"},
+     "'shape', 'where', 'velocity', 'oscillation', 'min' or 'max'"},
     {"missingKey", "density = 1000\n", "",
      "bad.toml:12:1: density in [[material]] 'syrup': missing; expected a positive number [kg/m3]"},
     {"missingTable", "[time]\nstep = 1e-3\nend = 2e-3\n", "",
@@ -233,6 +233,40 @@ constexpr BadCase badCases[] = {
     {"oscillatingFluid", "max = [6e-3, 6e-3]",
      "max = [6e-3, 6e-3]\noscillation = { amplitude = [1e-3, 0], period = 1 }",
      "bad.toml:26:15: oscillation in [[body]] 'column' (box): only a body of type \"wall\" can have one"},
+    {"velocityOfAnUnknownName", "max = [6e-3, 6e-3]", "max = [6e-3, 6e-3]\nvelocity = [0, \"x*speed\"]",
+     "bad.toml:26:12: velocity in [[body]] 'column' (box): expected an expression in x, y [m] and the constant "
+     "pi, "
+     "found \"x*speed\": Unexpected token \"speed\" found at position 2."},
+    {"velocityWithoutText", "max = [6e-3, 6e-3]", "max = [6e-3, 6e-3]\nvelocity = [0, \"\"]",
+     "bad.toml:26:12: velocity in [[body]] 'column' (box): expected an expression in x, y [m] and the constant "
+     "pi, "
+     "found \"\": Expression is empty."},
+    {"velocityOfWrongLength", "max = [6e-3, 6e-3]", "max = [6e-3, 6e-3]\nvelocity = \"x\"",
+     "bad.toml:26:12: velocity in [[body]] 'column' (box): expected an array of 2 finite numbers or expressions "
+     "[m/s], found the string \"x\""},
+    {"velocityOfAFlag", "max = [6e-3, 6e-3]", "max = [6e-3, 6e-3]\nvelocity = [0, true]",
+     "bad.toml:26:12: velocity in [[body]] 'column' (box): expected an array of 2 finite numbers or expressions "
+     "[m/s], found true"},
+    {"velocityNotFinite", "max = [6e-3, 6e-3]", "max = [6e-3, 6e-3]\nvelocity = [0, \"log(y - 1e-3)\"]",
+     "velocity of body 'column': \"log(y - 1e-3)\" is not a number for the particle at (0.5, 0.5) mm; expected a "
+     "finite "
+     "number"},
+    {"expressionForAWallsVelocity", "max = [12e-3, 0]", "max = [12e-3, 0]\nvelocity = [\"y\", 0]",
+     "bad.toml:34:12: velocity in [[body]] 'floor' (box): only a body of type \"fluid\" can have expressions; "
+     "expected an array of 2 finite numbers [m/s], found \"y\""},
+    {"conditionThatAssigns", "max = [6e-3, 6e-3]", "max = [6e-3, 6e-3]\nwhere = \"x = 0\"",
+     "bad.toml:26:9: where in [[body]] 'column' (box): expected an expression in x, y [m] and the constant pi, "
+     "found \"x = 0\": a single = (== compares)"},
+    {"conditionOfTwoDimensions", "max = [6e-3, 6e-3]", "max = [6e-3, 6e-3]\nwhere = \"z < 1\"",
+     "bad.toml:26:9: where in [[body]] 'column' (box): expected an expression in x, y [m] and the constant pi, "
+     "found \"z < 1\": Unexpected token \"z "},
+    {"conditionWithoutEnd", "max = [6e-3, 6e-3]", "max = [6e-3, 6e-3]\nwhere = \"x <\"",
+     "bad.toml:26:9: where in [[body]] 'column' (box): expected an expression in x, y [m] and the constant pi, "
+     "found \"x <\": Unexpected end of expression"},
+    {"conditionIsAFlag", "max = [6e-3, 6e-3]", "max = [6e-3, 6e-3]\nwhere = true",
+     "bad.toml:26:9: where in [[body]] 'column' (box): expected an expression, found true"},
+    {"conditionThatLeavesNoFluid", "max = [6e-3, 6e-3]", "max = [6e-3, 6e-3]\nwhere = \"y > 1\"",
+     "the case has no fluid: no body of type \"fluid\" holds a particle"},
     {"oscillationWithoutPeriod", "max = [12e-3, 0]", "max = [12e-3, 0]\noscillation = { amplitude = [1e-3, 0] }",
      "bad.toml:34:15: period in the oscillation of [[body]] 'floor': missing; expected a positive number [s]"},
     {"oscillationWithoutAmplitude", "max = [12e-3, 0]", "max = [12e-3, 0]\noscillation = { period = 1 }",

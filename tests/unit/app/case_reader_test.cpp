@@ -123,7 +123,8 @@ shape = "sphere"
 center = [1, 2, 3]
 radius = 4.1
 inner_radius = 0.5
-velocity = [1, -2, 3.5]
+velocity = [1, "-2*sin(\t2*pi*z)", 3.5]
+where = "x > 0 || y != 1e-3"
 [[body]]
 name = "rod"
 type = "wall"
@@ -183,8 +184,10 @@ TEST(readCase, takesEveryKey) {
   Shape ball, rod;
   ball.kind = ShapeKind::Sphere, ball.center = {1, 2, 3}, ball.radius = 4.1, ball.innerRadius = 0.5;
   rod.kind = ShapeKind::Cylinder, rod.start = {-9, 0, 0}, rod.end = {-9, 5, 1}, rod.radius = 2;
-  expected.bodies = {{"ball", BodyKind::Fluid, 1, {1, -2, 3.5}, ball, {}},
+  expected.bodies = {{"ball", BodyKind::Fluid, 1, {1, 0, 3.5}, ball},
                      {"rod", BodyKind::Wall, 0, {}, rod, {{0.1, 0, -2}, 3, 0.7}}};
+  expected.bodies[0].velocityExpression[1] = "-2*sin(\t2*pi*z)";
+  expected.bodies[0].where = "x > 0 || y != 1e-3";
   expected.time = {1e-3 / 1.5, 7, 0.3};
   expected.method.pressureRadius = 2, expected.method.viscosityRadius = 3;
   expected.solver.krylov = KrylovKind::Cg;

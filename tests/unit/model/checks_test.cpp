@@ -45,6 +45,14 @@ TEST(courantNumber, takesTheFastestOfFallFluidAndWalls) {
   EXPECT_NEAR(courantNumber(c), std::sqrt(2 * 10 * 20e-3 * std::sqrt(2.0)), 1e-12);
 }
 
+TEST(courantNumber, takesTheFastestParticleWhereVelocitiesAreExpressions) {
+  Case c = damBreak();
+  c.bodies[0].velocityExpression = {"1e3*x*3", "1e3*x*4", ""};
+  EXPECT_NEAR(courantNumber(c), 5 * 19.5, 1e-9);
+  c.bodies[0].where = "x < 8e-3";
+  EXPECT_NEAR(courantNumber(c), 5 * 7.5, 1e-9);
+}
+
 TEST(courantNumber, takesTheTopSpeedOfAnOscillation) {
   Case c = damBreak();
   c.bodies[1].oscillation = {{0.3, 0.4}, 2 * std::numbers::pi / 10, 1};

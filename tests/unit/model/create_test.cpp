@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "sample_case.hpp"
 #include "treacle/core/error.hpp"
@@ -144,6 +145,66 @@ TEST(createParticles, earlierBodyKeepsThePlace) {
   EXPECT_GE(leastDistance(p), 0.5);
   EXPECT_EQ(p.position[16], (Vec<2>{4.7, 0.5}));
   for (std::uint32_t i = 0; i < p.count; ++i) EXPECT_EQ(p.body[i], i < 16 ? 0 : 1);
+}
+
+TEST(createParticles, conditionsCutBodies) {
+  Case c = emptyCase(2);
+  c.bodies = {makeBody("sea", BodyKind::Fluid, box({0, 0}, {20, 10})),
+              makeBody("bed", BodyKind::Wall, box({0, 0}, {20, 10}))};
+  // A wavy surface between lattice points: fluid above, wall below.
+  c.bodies[0].where = "y > 4.2 + 2*sin(2*pi*x/20)";
+  c.bodies[1].where = "y <= 4.2 + 2*sin(2*pi*x/20)";
+  std::vector<std::string> notes;
+  std::vector<std::uint32_t> counts;
+  const Particles<2> p = createParticles<2>(c, notes, &counts);
+  EXPECT_THAT(notes, IsEmpty());
+  EXPECT_EQ(p.count, 200u);
+  EXPECT_EQ(counts[0] + counts[1], 200u);
+  for (std::uint32_t i = 0; i < p.count; ++i)
+    EXPECT_EQ(p.position[i][1] > 4.2 + 2 * std::sin(M_PI * p.position[i][0] / 10), i < p.fluidCount);
+}
+
+TEST(createParticles, conditionsThatNeverHoldAreNoted) {
+  Case c = emptyCase(2);
+  c.bodies = {makeBody("sea", BodyKind::Fluid, box({0, 0}, {4, 2})),
+              makeBody("mist", BodyKind::Fluid, box({0, 2}, {4, 4}))};
+  c.bodies[1].where = "y < 2";
+  std::vector<std::string> notes;
+  EXPECT_EQ(createParticles<2>(c, notes).count, 8u);
+  EXPECT_THAT(notes, ElementsAre("body 'mist': where = \"y < 2\" holds at none of its 8 particles"));
+  c.bodies[0].where = "0";
+  EXPECT_THAT(messageOfCreation<2>(c), HasSubstr("no fluid"));
+}
+
+TEST(createParticles, velocitiesCanBeExpressions) {
+  Case c = emptyCase(3);
+  c.bodies = {makeBody("vortex", BodyKind::Fluid, box({0, 0, 0}, {3, 4, 2})),
+              makeBody("calm", BodyKind::Fluid, box({5, 0, 0}, {7, 1, 1}))};
+  c.bodies[0].velocity = {0, 7, 0};
+  c.bodies[0].velocityExpression = {"x*y - z", "", "sqrt(x)"};
+  std::vector<std::string> notes;
+  const Particles<3> p = createParticles<3>(c, notes);
+  ASSERT_EQ(p.fluidCount, 26u);
+  for (std::uint32_t i = 0; i < 24; ++i) {
+    const Vec<3>& x = p.position[i];
+    EXPECT_EQ(p.velocity[i], (Vec<3>{x[0] * x[1] - x[2], 7, std::sqrt(x[0])}));
+  }
+  EXPECT_EQ(p.velocity[24], (Vec<3>{}));
+}
+
+TEST(createParticles, rejectsExpressionsThatAreNotFiniteAtAParticle) {
+  Case c = emptyCase(2);
+  c.bodies = {makeBody("drop", BodyKind::Fluid, box({0, 0}, {2, 1}))};
+  c.bodies[0].velocityExpression = {"", "1/(x - 1.5)", ""};
+  EXPECT_EQ(
+      messageOfCreation<2>(c),
+      "velocity of body 'drop': \"1/(x - 1.5)\" is infinite for the particle at (1.5, 0.5) m; expected a finite "
+      "number");
+  c.bodies[0].where = "x < 1";  // no particle stands there
+  EXPECT_EQ(messageOfCreation<2>(c), "no error");
+  c.bodies[0].where = "sqrt(x - 1)";
+  EXPECT_THAT(messageOfCreation<2>(c),
+              HasSubstr("where of body 'drop': \"sqrt(x - 1)\" is not a number for the particle"));
 }
 
 TEST(createParticles, overlapCountsAcrossPeriodicBoundaries) {

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "treacle/core/vec.hpp"
+
+#include <memory>
+#include <string>
+
+namespace treacle {
+
+/// A formula of a case file in the coordinates x, y and, in three dimensions, z [m], with the constant pi.
+/// Whatever the locale, numbers have a point and arguments are separated by commas. Not for several threads at
+/// once.
+class Expression {
+ public:
+  /// Errors: InputError with what was expected and what is wrong with the text.
+  Expression(const std::string& text, int dimensions);
+  ~Expression();
+  Expression(Expression&&) noexcept;
+
+  /// Its value at x; comparisons give 0 or 1. Need not be finite.
+  double operator()(const Vec<3>& x) const;
+
+ private:
+  struct Parser;
+  std::unique_ptr<Parser> parser_;
+};
+
+}  // namespace treacle

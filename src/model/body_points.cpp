@@ -1,0 +1,60 @@
+#include "body_points.hpp"
+
+#include "lattice.hpp"
+#include "treacle/core/error.hpp"
+#include "treacle/model/shape.hpp"
+
+#include <fmt/format.h>
+#include <cmath>
+
+namespace treacle {
+namespace {
+
+/// Errors: InputError for a value that is not finite.
+template <int D>
+double valueAt(const Vec<D>& x, const Expression& expression, const Body& body, const char* key,
+               const std::string& text) {
+  const double value = expression(resized<3>(x));
+  if (!std::isfinite(value))
+    throw InputError(fmt::format("{} of body '{}': \"{}\" is {} for the particle at {}; expected a finite number",
+                                 key, body.name, text, std::isnan(value) ? "not a number" : "infinite",
+                                 positionText(resized<3>(x), D)));
+  return value;
+}
+
+}  // namespace
+
+template <int D>
+std::vector<Vec<D>> bodyPoints(const Case& c, const Body& body, std::vector<std::string>& notes) {
+  std::vector<Vec<D>> points = latticePoints<D>(body, c.spacing, notes);
+  if (body.where.empty()) return points;
+  const Expression where(body.where, D);
+  const std::size_t all = points.size();
+  std::erase_if(points, [&](const Vec<D>& x) { return valueAt(x, where, body, "where", body.where) == 0; });
+  if (points.empty())
+    notes.push_back(
+        fmt::format("body '{}': where = \"{}\" holds at none of its {} particles", body.name, body.where, all));
+  return points;
+}
+
+template <int D>
+StartVelocity<D>::StartVelocity(const Body& body) : body_(body), expressions_(D) {
+  for (std::size_t k = 0; k < D; ++k)
+    if (const std::string& text = body.velocityExpression[k]; !text.empty()) expressions_[k].emplace(text, D);
+}
+
+template <int D>
+Vec<D> StartVelocity<D>::at(const Vec<D>& x) const {
+  Vec<D> u = resized<D>(body_.velocity);
+  for (std::size_t k = 0; k < D; ++k)
+    if (expressions_[k])
+      u[static_cast<int>(k)] = valueAt(x, *expressions_[k], body_, "velocity", body_.velocityExpression[k]);
+  return u;
+}
+
+template std::vector<Vec<2>> bodyPoints<2>(const Case&, const Body&, std::vector<std::string>&);
+template std::vector<Vec<3>> bodyPoints<3>(const Case&, const Body&, std::vector<std::string>&);
+template class StartVelocity<2>;
+template class StartVelocity<3>;
+
+}  // namespace treacle

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "treacle/model/case.hpp"
+#include "treacle/model/expression.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace treacle {
+
+/// The lattice points of a body (lattice.hpp) at which its condition `where` holds; a note says where there is
+/// none. Errors: InputError for too many points, or where the condition is no number.
+template <int D>
+std::vector<Vec<D>> bodyPoints(const Case& c, const Body& body, std::vector<std::string>& notes);
+
+/// What the particles of a body start with.
+template <int D>
+class StartVelocity {
+ public:
+  explicit StartVelocity(const Body& body);
+
+  /// At x [m/s]. Errors: InputError where it is not finite.
+  Vec<D> at(const Vec<D>& x) const;
+
+ private:
+  const Body& body_;
+  std::vector<std::optional<Expression>> expressions_;  // of the components
+};
+
+}  // namespace treacle
