@@ -14,11 +14,12 @@ namespace treacle {
 template <int D>
 class IsphSystem {
  public:
-  /// `state`: the particles at the start of the step. Errors: InputError for walls that oscillate, whose motion a
-  /// simulation prescribes.
+  /// `state`: the particles at the start of the step. Errors: InputError for walls that oscillate or rotate, whose
+  /// motion a simulation prescribes.
   IsphSystem(const Case& c, const Particles<D>& state, double timeStep) : flow_(c, 0, 0), method_(flow_) {
     for (const Body& body : c.bodies)
-      if (body.oscillation.period > 0) throw InputError("walls that oscillate are not compared");
+      if (body.oscillation.period > 0 || body.rotation)
+        throw InputError("walls that oscillate or rotate are not compared");
     copyToDevice(flow_.context, state, flow_.particles);
     flow_.timeStep = timeStep;
     method_.sort();

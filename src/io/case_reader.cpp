@@ -81,6 +81,20 @@ Oscillation readOscillation(const Section& body, const std::string& name, int di
   return oscillation;
 }
 
+Rotation readRotation(const Section& body, const std::string& name, int dimensions) {
+  Keys keys{"center", "speed"};
+  if (dimensions == 3) keys.push_back("axis");
+  const Section s = body.section("rotation", fmt::format("the rotation of [[body]] '{}'", name), keys);
+  Rotation rotation;
+  rotation.center = s.vector("center", dimensions, "m");
+  rotation.speed = s.number("speed", Bound::Any, "rad/s");
+  if (dimensions == 2) return rotation;
+  rotation.axis = s.vector("axis", dimensions, "any unit");
+  if (const double length = norm(rotation.axis); length == 0 || !std::isfinite(length))
+    throw s.error("axis", fmt::format("expected a direction, found a vector of length {}", length));
+  return rotation;
+}
+
 void readVelocity(const Section& s, int dimensions, Body& body) {
   const Formulas velocity = s.formulas("velocity", dimensions, "m/s");
   body.velocity = velocity.number;
@@ -96,7 +110,7 @@ void readVelocity(const Section& s, int dimensions, Body& body) {
 
 Body readBody(const toml::table& table, const std::string& name, int dimensions,
               const std::vector<Material>& materials) {
-  Keys keys{"name", "type", "material", "shape", "where", "velocity", "oscillation"};
+  Keys keys{"name", "type", "material", "shape", "where", "velocity", "oscillation", "rotation"};
   const auto shapeWord = table["shape"].value_or(std::string_view{});
   const bool box = shapeWord == "box", sphere = shapeWord == "sphere", cylinder = shapeWord == "cylinder";
   const bool known = box || sphere || cylinder;
@@ -116,6 +130,10 @@ Body readBody(const toml::table& table, const std::string& name, int dimensions,
   if (s.has("oscillation")) {
     if (body.kind != BodyKind::Wall) throw s.error("oscillation", "only a body of type \"wall\" can have one");
     body.oscillation = readOscillation(s, name, dimensions);
+  }
+  if (s.has("rotation")) {
+    if (body.kind != BodyKind::Wall) throw s.error("rotation", "only a body of type \"wall\" can have one");
+    body.rotation = readRotation(s, name, dimensions);
   }
   switch (body.shape.kind) {
     case ShapeKind::Box:

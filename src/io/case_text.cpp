@@ -59,6 +59,11 @@ void writeVelocity(Text& text, const Body& b, int dimensions) {
   line(text, "velocity = [{}]", fmt::join(entries, ", "));
 }
 
+void writeRotation(Text& text, const Rotation& r, int dimensions) {
+  const std::string axis = dimensions == 3 ? ", axis = " + array(r.axis, 3) : "";
+  line(text, "rotation = {{ center = {}, speed = {}{} }}", array(r.center, dimensions), r.speed, axis);
+}
+
 void writeWorld(Text& text, const Case& c) {
   line(text, "title = {}", tomlString(c.title));
   line(text, "dimensions = {}", c.dimensions);
@@ -92,6 +97,7 @@ void writeWorld(Text& text, const Case& c) {
     if (const Oscillation& o = b.oscillation; o.period > 0)
       line(text, "oscillation = {{ amplitude = {}, period = {}, phase = {} }}", array(o.amplitude, c.dimensions),
            o.period, o.phase);
+    if (b.rotation) writeRotation(text, *b.rotation, c.dimensions);
   }
 }
 

@@ -41,9 +41,11 @@ void applyWidth(const Section& top, Case& c) {
   width.factor = s.number("factor", Bound::Positive, "", width.factor);
   if (width.factor == 1) return;  // to the bit
   width.stretch(c.domain.min), width.stretch(c.domain.max);
-  for (Body& body : c.bodies)
+  for (Body& body : c.bodies) {
     for (Vec<3> Shape::*x : {&Shape::min, &Shape::max, &Shape::center, &Shape::start, &Shape::end})
       width.stretch(body.shape.*x);
+    if (body.rotation) width.stretch(body.rotation->center);
+  }
 }
 
 }  // namespace treacle

@@ -38,13 +38,15 @@ std::vector<Vec<D>> bodyPoints(const Case& c, const Body& body, std::vector<std:
 }
 
 template <int D>
-StartVelocity<D>::StartVelocity(const Body& body) : body_(body), expressions_(D) {
+StartVelocity<D>::StartVelocity(const Case& c, const Body& body)
+    : body_(body), wall_(wallMotion<D>(c.domain, body, 0, 0)), expressions_(D) {
   for (std::size_t k = 0; k < D; ++k)
     if (const std::string& text = body.velocityExpression[k]; !text.empty()) expressions_[k].emplace(text, D);
 }
 
 template <int D>
 Vec<D> StartVelocity<D>::at(const Vec<D>& x) const {
+  if (body_.kind == BodyKind::Wall) return wall_.velocityAt(x);
   Vec<D> u = resized<D>(body_.velocity);
   for (std::size_t k = 0; k < D; ++k)
     if (expressions_[k])

@@ -2,6 +2,7 @@
 
 #include "treacle/model/case.hpp"
 #include "treacle/model/expression.hpp"
+#include "treacle/model/wall_motion.hpp"
 
 #include <optional>
 #include <string>
@@ -18,13 +19,14 @@ std::vector<Vec<D>> bodyPoints(const Case& c, const Body& body, std::vector<std:
 template <int D>
 class StartVelocity {
  public:
-  explicit StartVelocity(const Body& body);
+  StartVelocity(const Case& c, const Body& body);
 
   /// At x [m/s]. Errors: InputError where it is not finite.
   Vec<D> at(const Vec<D>& x) const;
 
  private:
   const Body& body_;
+  WallMotion<D> wall_;
   std::vector<std::optional<Expression>> expressions_;  // of the components
 };
 

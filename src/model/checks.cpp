@@ -48,22 +48,21 @@ std::pair<double, std::string> thickness(const Shape& s, int dimensions) {
   return {radial, s.innerRadius > 0 ? "between its radii" : "across"};
 }
 
-/// Largest speed of a body's particles at the start [m/s].
+/// Largest speed of a fluid body at the start, of a wall at any time [m/s].
 template <int D>
-double largestStartSpeed(const Case& c, const Body& body) {
-  const StartVelocity<D> velocity(body);
+double largestSpeed(const Case& c, const Body& body) {
+  const Oscillation& o = body.oscillation;
+  const double carried =
+      norm(body.velocity) + (o.period > 0 ? 2 * std::numbers::pi * norm(o.amplitude) / o.period : 0);
+  const bool expressions = body.velocityExpression != decltype(body.velocityExpression){};
+  if (!expressions && !body.rotation) return carried;
+  const StartVelocity<D> velocity(c, body);
+  const WallMotion<D> wall = wallMotion<D>(c.domain, body, 0, 0);
   std::vector<std::string> notes;
   double speed = 0;
-  for (const Vec<D>& x : bodyPoints<D>(c, body, notes)) speed = std::max(speed, norm(velocity.at(x)));
-  return speed;
-}
-
-/// Largest speed of a fluid body at the start, of a wall at any time [m/s].
-double largestSpeed(const Case& c, const Body& body) {
-  if (body.velocityExpression != decltype(body.velocityExpression){})
-    return c.dimensions == 2 ? largestStartSpeed<2>(c, body) : largestStartSpeed<3>(c, body);
-  const Oscillation& o = body.oscillation;
-  return norm(body.velocity) + (o.period > 0 ? 2 * std::numbers::pi * norm(o.amplitude) / o.period : 0);
+  for (const Vec<D>& x : bodyPoints<D>(c, body, notes))
+    speed = std::max(speed, norm(body.rotation ? wall.swirl(wall.arm(x)) : velocity.at(x)));
+  return body.rotation ? carried + speed : speed;
 }
 
 /// What the interaction radius is called.
@@ -132,7 +131,8 @@ std::vector<StabilityNumbers> stabilityNumbers(const Case& c) {
 
 double courantNumber(const Case& c) {
   double speed = std::sqrt(2 * norm(c.gravity) * fluidHeight(c));
-  for (const Body& body : c.bodies) speed = std::max(speed, largestSpeed(c, body));
+  for (const Body& body : c.bodies)
+    speed = std::max(speed, c.dimensions == 2 ? largestSpeed<2>(c, body) : largestSpeed<3>(c, body));
   const double number = speed * c.time.step / c.spacing;
   return c.time.stepsVary() ? std::min(number, c.time.courant) : number;
 }

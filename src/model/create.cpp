@@ -8,6 +8,8 @@
 #include "point_grid.hpp"
 
 #include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
 
 namespace treacle {
 namespace {
@@ -42,6 +44,29 @@ void requireInside(const Domain& domain, const Filled<D>& f) {
         throw InputError(fmt::format(
             "body '{}' reaches out of the domain: a particle at {}, the domain is {} to {}", f.body->name,
             positionText(resized<3>(x), D), positionText(domain.min, D), positionText(domain.max, D)));
+}
+
+/// The nearest image of its centre must stay the same one as a wall turns. Errors: InputError for a wall that
+/// would reach half a period from it.
+template <int D>
+void requireTurnable(const Domain& domain, const Filled<D>& f) {
+  if (!f.body->rotation) return;
+  const Vec<3> axis = f.body->rotation->direction();
+  for (int k = 0; k < D; ++k) {
+    const double across = std::sqrt(std::max(0.0, 1 - axis[k] * axis[k]));
+    if (!domain.periodic[static_cast<std::size_t>(k)] || across < 1e-6) continue;
+    double reach = 0;
+    for (const Vec<D>& x : f.points) {
+      const Vec<3> d = resized<3>(x) - f.body->rotation->center;
+      const double along = dot(d, axis), radius = norm(d - along * axis);
+      reach = std::max(reach, std::abs(along * axis[k]) + radius * across);
+    }
+    if (const double half = (domain.max[k] - domain.min[k]) / 2; reach >= half)
+      throw InputError(fmt::format(
+          "rotating wall '{}' reaches {} along the periodic {} axis from its centre; expected less than half the "
+          "domain, {}",
+          f.body->name, lengthText(reach), "xyz"[k], lengthText(half)));
+  }
 }
 
 /// Union in file order: drops points closer than half a spacing to an earlier one and puts the rest on the grid.
@@ -89,7 +114,7 @@ template <int D>
 void append(const Case& c, const std::vector<Filled<D>>& filled, Particles<D>& particles, std::uint32_t& next) {
   for (const Filled<D>& f : filled) {
     const auto body = static_cast<std::uint8_t>(f.body - c.bodies.data());
-    const StartVelocity<D> velocity(*f.body);
+    const StartVelocity<D> velocity(c, *f.body);
     for (const Vec<D>& x : f.points) {
       particles.position[next] = x;
       particles.velocity[next] = velocity.at(x);
@@ -115,7 +140,7 @@ Particles<D> createParticles(const Case& c, std::vector<std::string>& notes,
     throw InputError(fmt::format("the case would have {} particles, more than the limit of {}",
                                  total(fluid) + total(walls), maxParticles));
   for (const auto& f : fluid) requireInside(c.domain, f);
-  for (const auto& f : walls) requireInside(c.domain, f);
+  for (const auto& f : walls) requireInside(c.domain, f), requireTurnable(c.domain, f);
 
   // Points exactly half a spacing apart, give or take rounding, do not count as overlapping.
   const double radius = 0.5 * c.spacing * (1 - 1e-6);

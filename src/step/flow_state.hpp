@@ -3,6 +3,7 @@
 #include "treacle/core/cuda.hpp"
 #include "treacle/model/case.hpp"
 #include "treacle/model/particles.hpp"
+#include "treacle/model/wall_motion.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -21,7 +22,7 @@ struct FlowState {
 
   mutable Context<Backend> context;
   Particles<D, Backend> particles;
-  Buffer<Vec<D>, Backend> bodyAcceleration;    // per body: of a wall that oscillates [m/s2]
+  Buffer<WallMotion<D>, Backend> wallMotion;   // per body, of the step; empty: all walls keep their velocities
   Buffer<Vec<D>, Backend> velocity, position;  // the step's results before they are accepted
 
   FlowState(const Case& theCase, std::int64_t startStep, double startTime)

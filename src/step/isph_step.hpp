@@ -33,7 +33,7 @@ class IsphStep final : public StepMethod<D, Backend> {
     pairs_.material = p.material;
     pairs_.cells = viewOf(ranges_);
     pairs_.body = p.body.data();
-    pairs_.bodyAcceleration = s_.bodyAcceleration.empty() ? nullptr : s_.bodyAcceleration.data();
+    pairs_.wallMotion = s_.wallMotion.empty() ? nullptr : s_.wallMotion.data();
     find(RowKind::FluidOfFluid, fluidRows_);
     find(RowKind::WallsOfFluid, wallRows_);
     find(RowKind::FluidOfWalls, wallsOwn_);

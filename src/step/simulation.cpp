@@ -24,6 +24,9 @@ void toBackend(Context<Cuda>& context, const Particles<D>& host, Particles<D, Cu
 bool someWallOscillates(const Case& c) {
   return std::ranges::any_of(c.bodies, [](const Body& b) { return b.oscillation.period > 0; });
 }
+bool someWallRotates(const Case& c) {
+  return std::ranges::any_of(c.bodies, [](const Body& b) { return b.rotation.has_value(); });
+}
 
 template <int D>
 bool someWallMoves(const Particles<D>& particles) {
@@ -52,15 +55,17 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
   using Flow::c, Flow::context, Flow::particles, Flow::step, Flow::time, Flow::timeStep, Flow::velocity,
       Flow::position, Flow::wallsMove;
 
-  bool wallsOscillate;
-  Buffer<Vec<D>, Backend> bodyVelocity;
+  bool wallsRotate, wallVelocitiesChange;
+  Buffer<Vec<D>, Backend> wallChord;  // per wall particle, where some rotate [m/s]
   std::unique_ptr<StepMethod<D, Backend>> method;
   PhaseClock<Backend> clock;
   double lastSpeed = 0;  // of the fastest particle [m/s]
 
   State(const Case& theCase, Particles<D> state, std::int64_t startStep, double startTime)
-      : Flow(theCase, startStep, startTime), wallsOscillate(someWallOscillates(theCase)) {
-    wallsMove = wallsOscillate || someWallMoves(state);
+      : Flow(theCase, startStep, startTime),
+        wallsRotate(someWallRotates(theCase)),
+        wallVelocitiesChange(wallsRotate || someWallOscillates(theCase)) {
+    wallsMove = wallVelocitiesChange || someWallMoves(state);
     toBackend(context, std::move(state), particles);
     if (step == 0) forEachFluidFieldOf([&](auto& field) { clearValues(context, field.span()); }, particles);
     method = c.method.kind == MethodKind::Isph ? makeIsphStep(static_cast<Flow&>(*this))
@@ -82,27 +87,33 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     if (rest > 0 && timeStep > rest * (1 - 1e-9)) timeStep = rest;
   }
 
-  /// Velocities of walls that oscillate, for the step at hand.
-  void moveBodies() {
-    if (!wallsOscillate) return;
-    std::vector<Vec<D>> u, a;
-    for (const Body& body : c.bodies) {
-      u.push_back(resized<D>(wallVelocity(body, time, timeStep)));
-      a.push_back(resized<D>(wallAcceleration(body, time + timeStep)));
-    }
-    fromHost(context, std::span<const Vec<D>>(u), bodyVelocity);
-    fromHost(context, std::span<const Vec<D>>(a), this->bodyAcceleration);
+  MovingWalls<D> walls() const {
     const std::uint32_t n = particles.fluidCount;
-    setWallVelocities<D>(context, particles.body.span().subspan(n), bodyVelocity,
-                         particles.velocity.span().subspan(n));
+    return {this->wallMotion, particles.body.span().subspan(n), particles.position.span().subspan(n)};
   }
 
-  /// x^{k+1} of [K23 eq. (15)] into `position`; walls by their prescribed velocity.
+  /// Motions and velocities of walls that oscillate or rotate, for the step at hand.
+  void moveBodies() {
+    if (!wallVelocitiesChange) return;
+    std::vector<WallMotion<D>> motion;
+    for (const Body& body : c.bodies) motion.push_back(treacle::wallMotion<D>(c.domain, body, time, timeStep));
+    fromHost(context, std::span<const WallMotion<D>>(motion), this->wallMotion);
+    setWallVelocities<D>(context, walls(), particles.velocity.span().subspan(particles.fluidCount));
+  }
+
+  /// What the walls move with.
+  std::span<const Vec<D>> wallTransport() {
+    if (!wallsRotate) return particles.velocity.span().subspan(particles.fluidCount);
+    wallChord.resize(context, particles.wallCount());
+    setWallChords<D>(context, walls(), wallChord);
+    return wallChord.span();
+  }
+
+  /// x^{k+1} of [K23 eq. (15)] into `position`; walls by their prescribed motion.
   void move() {
     position.resize(context, particles.count);
     moveRange(0, particles.fluidCount, method->transport());
-    if (wallsMove)
-      moveRange(particles.fluidCount, particles.count, particles.velocity.span().subspan(particles.fluidCount));
+    if (wallsMove) moveRange(particles.fluidCount, particles.count, wallTransport());
   }
 
   /// `u`: of the particles from `begin` on.
@@ -193,7 +204,7 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
   }
 
   std::size_t bytes() const {
-    std::size_t sum = velocity.bytes() + position.bytes() + method->bytes();
+    std::size_t sum = velocity.bytes() + position.bytes() + wallChord.bytes() + method->bytes();
     particles.forEachField([&](const auto& field) { sum += field.bytes(); });
     return sum;
   }

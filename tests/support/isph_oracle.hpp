@@ -114,9 +114,10 @@ struct IsphOracle {
     return -divergence(v, i) / dt - s.c.method.isph.alpha * (1 - density(i)) / (dt * dt);
   }
 
-  /// p of fluid particle i carried on to wall j hydrostatically, in the frame of the wall.
+  /// p of fluid particle i carried on to wall j hydrostatically, in the frame of the wall; accelerations of walls
+  /// by particle.
   double inWall(double p, std::uint32_t i, std::uint32_t j, const std::vector<Vec<D>>& acceleration) const {
-    const Vec<D> pull = resized<D>(s.c.gravity) - acceleration[s.particles.body[j]];
+    const Vec<D> pull = resized<D>(s.c.gravity) - acceleration[j];
     const double carried = p - material(i).density * dot(pull, apart(i, j));
     return s.c.method.isph.negativePressure ? carried : std::max(0.0, carried);
   }

@@ -3,6 +3,7 @@
 #include "treacle/method/mph_pairs.hpp"
 #include "treacle/method/smoothing_kernel.hpp"
 #include "treacle/method/sorted_particles.hpp"
+#include "treacle/model/wall_motion.hpp"
 #include "treacle/search/neighbour_rows.hpp"
 
 #include <cmath>
@@ -37,7 +38,7 @@ struct IsphPairs : SortedParticles<D> {
   NeighbourRowsView wallRows;      // WallsOfFluid
   NeighbourRowsView wallsOwn;      // FluidOfWalls
   const std::uint8_t* body = nullptr;
-  const Vec<D>* bodyAcceleration = nullptr;  // per body: of walls with a prescribed motion [m/s2]
+  const WallMotion<D>* wallMotion = nullptr;  // per body; none: no wall accelerates
   SmoothingKernel<D> kernel{};
   MaterialTable materials;
   SurfaceCriterion surface;
@@ -60,7 +61,7 @@ struct IsphPairs : SortedParticles<D> {
   /// gravity in the frame of the wall, dp/dn = rho (g - a_wall).n.
   TREACLE_HD double wallPressure(double p, std::uint32_t fluid, std::uint32_t wall, const Vec<D>& d) const {
     Vec<D> g = gravity;
-    if (bodyAcceleration) g -= bodyAcceleration[body[wall]];
+    if (wallMotion) g -= wallMotion[body[wall]].accelerationAt(this->position[wall]);
     const double outside = p + materials.density[this->material[fluid]] * dot(g, d);
     return negativePressure || outside > 0 ? outside : 0;
   }

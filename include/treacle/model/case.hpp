@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -56,6 +57,18 @@ struct Oscillation {
   bool operator==(const Oscillation&) const = default;
 };
 
+/// Rotation of a wall, counter-clockwise seen from the end of its axis. The centre goes along with the wall's
+/// translation and oscillation.
+struct Rotation {
+  Vec<3> center{};       // at the start [m]
+  Vec<3> axis{0, 0, 1};  // of any length but zero; in two dimensions this one
+  double speed = 0;      // [rad/s]
+
+  Vec<3> direction() const { return axis * (1 / norm(axis)); }
+
+  bool operator==(const Rotation&) const = default;
+};
+
 /// Particles of one kind and material that fill a shape. Expressions are those of model/expression.hpp; an empty
 /// one is none.
 struct Body {
@@ -65,6 +78,7 @@ struct Body {
   Vec<3> velocity{};  // fluid: at the start; wall: prescribed translation [m/s]
   Shape shape;
   Oscillation oscillation{};                        // of a wall, on top of its velocity
+  std::optional<Rotation> rotation{};               // of a wall, on top of both
   std::array<std::string, 3> velocityExpression{};  // of a fluid, in place of a component of its velocity [m/s]
   std::string where{};                              // there are particles only where it is not zero
 

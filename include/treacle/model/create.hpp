@@ -16,8 +16,8 @@ namespace treacle {
 /// out). Pressure and number density are 0; ids count from 0. Appends to `notes` what a user should know (a box
 /// that the spacing does not divide, particles left out, a condition that never holds); `bodyCounts` takes the
 /// number of particles of every body in file order. Errors: InputError if there is no fluid, if fluid and wall
-/// overlap, if a particle lies outside the domain, if there are more particles than 2^27, if an expression is not
-/// finite at a particle.
+/// overlap, if a particle lies outside the domain, if a wall cannot rotate in a periodic one, if there are more
+/// particles than 2^27, if an expression is not finite at a particle.
 template <int D>
 Particles<D> createParticles(const Case& c, std::vector<std::string>& notes,
                              std::vector<std::uint32_t>* bodyCounts = nullptr);

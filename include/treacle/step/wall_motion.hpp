@@ -1,27 +1,31 @@
 #pragma once
 
 #include "treacle/core/cuda.hpp"
-#include "treacle/core/vec.hpp"
-#include "treacle/model/case.hpp"
+#include "treacle/model/wall_motion.hpp"
 
 #include <cstdint>
 #include <span>
 
 namespace treacle {
 
-/// Mean velocity of a wall in the step of dt from time t on [m/s]: the walls are where their motion puts them at
-/// the end of each step.
-Vec<3> wallVelocity(const Body& body, double t, double dt);
-/// Its acceleration at time t [m/s2].
-Vec<3> wallAcceleration(const Body& body, double t);
+/// Wall particles and what moves them; spans in the backend's memory.
+template <int D>
+struct MovingWalls {
+  std::span<const WallMotion<D>> motion;  // per body of the case
+  std::span<const std::uint8_t> body;     // per wall particle, less than the number of bodies
+  std::span<const Vec<D>> position;       // likewise [m]
+};
 
-/// velocity[k] = bodyVelocity[body[k]] per wall particle; all in the backend's memory. Errors: none, body < size
-/// of bodyVelocity.
+/// The velocities of the rigid motions where the particles are, per wall particle [m/s].
 template <int D>
-void setWallVelocities(Context<Cpu>&, std::span<const std::uint8_t> body, std::span<const Vec<D>> bodyVelocity,
-                       std::span<Vec<D>> velocity);
+void setWallVelocities(Context<Cpu>&, const MovingWalls<D>& walls, std::span<Vec<D>> velocity);
 template <int D>
-void setWallVelocities(Context<Cuda>&, std::span<const std::uint8_t> body, std::span<const Vec<D>> bodyVelocity,
-                       std::span<Vec<D>> velocity);
+void setWallVelocities(Context<Cuda>&, const MovingWalls<D>& walls, std::span<Vec<D>> velocity);
+
+/// Their ways in the step over dt, likewise.
+template <int D>
+void setWallChords(Context<Cpu>&, const MovingWalls<D>& walls, std::span<Vec<D>> chord);
+template <int D>
+void setWallChords(Context<Cuda>&, const MovingWalls<D>& walls, std::span<Vec<D>> chord);
 
 }  // namespace treacle

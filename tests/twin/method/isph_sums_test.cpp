@@ -1,6 +1,7 @@
 #include "support/gpu.hpp"
 #include "support/isph_device.hpp"
 #include "support/tolerances.hpp"
+#include "support/wall_motions.hpp"
 #include "treacle/method/isph_particles.hpp"
 
 #include <gtest/gtest.h>
@@ -14,17 +15,19 @@ struct SumsTwin {
   IsphScene<D> s;
   DeviceIsph<D> d{s};
   std::uint32_t n = s.n(), active = s.pairs.activeCount;
-  std::vector<Vec<D>> v = randomVelocities<D>(active, 1), acceleration = randomVelocities<D>(2, 5);
+  std::vector<Vec<D>> v = randomVelocities<D>(active, 1);
+  std::vector<WallMotion<D>> motion = randomMotions<D>(s.c.domain, 2);
   std::vector<double> p = randomNumbers(n, 2);
-  Buffer<Vec<D>, Cuda> vOnDevice, accelerationOnDevice;
+  Buffer<Vec<D>, Cuda> vOnDevice;
+  Buffer<WallMotion<D>, Cuda> motionOnDevice;
   Buffer<double, Cuda> pOnDevice;
 
   explicit SumsTwin(IsphScene<D> scene) : s(std::move(scene)) {
     copyToDevice<Vec<D>>(d.context, v, vOnDevice);
-    copyToDevice<Vec<D>>(d.context, acceleration, accelerationOnDevice);
+    copyToDevice<WallMotion<D>>(d.context, motion, motionOnDevice);
     copyToDevice<double>(d.context, p, pOnDevice);
-    s.pairs.bodyAcceleration = acceleration.data();
-    d.pairs.bodyAcceleration = accelerationOnDevice.data();
+    s.pairs.wallMotion = motion.data();
+    d.pairs.wallMotion = motionOnDevice.data();
   }
 
   template <class V>

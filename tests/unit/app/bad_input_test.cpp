@@ -58,7 +58,7 @@ constexpr BadCase badCases[] = {
      "bad.toml:9:2: unknown key 'gravty' in the case file; did you mean 'gravity'?"},
     {"keyOfAnotherShape", "max = [6e-3, 6e-3]", "max = [6e-3, 6e-3]\nradius = 1",
      "bad.toml:26:1: unknown key 'radius' in [[body]] 'column' (box); expected 'name', 'type', 'material', "
-     "'shape', 'where', 'velocity', 'oscillation', 'min' or 'max'"},
+     "'shape', 'where', 'velocity', 'oscillation', 'rotation', 'min' or 'max'"},
     {"missingKey", "density = 1000\n", "",
      "bad.toml:12:1: density in [[material]] 'syrup': missing; expected a positive number [kg/m3]"},
     {"missingTable", "[time]\nstep = 1e-3\nend = 2e-3\n", "",
@@ -259,7 +259,7 @@ constexpr BadCase badCases[] = {
      "found \"x = 0\": a single = (== compares)"},
     {"conditionOfTwoDimensions", "max = [6e-3, 6e-3]", "max = [6e-3, 6e-3]\nwhere = \"z < 1\"",
      "bad.toml:26:9: where in [[body]] 'column' (box): expected an expression in x, y [m] and the constant pi, "
-     "found \"z < 1\": Unexpected token \"z "},
+     "found \"z < 1\": Unexpected token \"z\" found"},
     {"conditionWithoutEnd", "max = [6e-3, 6e-3]", "max = [6e-3, 6e-3]\nwhere = \"x <\"",
      "bad.toml:26:9: where in [[body]] 'column' (box): expected an expression in x, y [m] and the constant pi, "
      "found \"x <\": Unexpected end of expression"},
@@ -279,6 +279,24 @@ constexpr BadCase badCases[] = {
      "bad.toml:34:52: unknown key 'frequency' in the oscillation of [[body]] 'floor'; expected 'amplitude', "
      "'period' "
      "or 'phase'"},
+    {"rotatingFluid", "max = [6e-3, 6e-3]", "max = [6e-3, 6e-3]\nrotation = { center = [0, 0], speed = 1 }",
+     "bad.toml:26:12: rotation in [[body]] 'column' (box): only a body of type \"wall\" can have one"},
+    {"rotationWithoutCenter", "max = [12e-3, 0]", "max = [12e-3, 0]\nrotation = { speed = 1 }",
+     "bad.toml:34:12: center in the rotation of [[body]] 'floor': missing; expected an array of 2 finite numbers "
+     "[m]"},
+    {"rotationWithoutSpeed", "max = [12e-3, 0]", "max = [12e-3, 0]\nrotation = { center = [0, 0] }",
+     "bad.toml:34:12: speed in the rotation of [[body]] 'floor': missing; expected a finite number [rad/s]"},
+    {"rotationIsANumber", "max = [12e-3, 0]", "max = [12e-3, 0]\nrotation = 1",
+     "bad.toml:34:12: rotation in [[body]] 'floor' (box): expected a table, found 1"},
+    {"axisInThePlane", "max = [12e-3, 0]",
+     "max = [12e-3, 0]\nrotation = { center = [0, 0], speed = 1, axis = [0, 0, 1] }",
+     "bad.toml:34:42: unknown key 'axis' in the rotation of [[body]] 'floor'; expected 'center' or 'speed'"},
+    {"rotationAcrossAPeriod", "max = [12e-3, 12e-3]",
+     "max = [16e-3, 12e-3]\nperiodic = [true, false]\n[[body]]\nname = \"blade\"\ntype = \"wall\"\n"
+     "material = \"syrup\"\nshape = \"box\"\nmin = [7e-3, 1e-3]\nmax = [8e-3, 12e-3]\n"
+     "rotation = { center = [7.5e-3, 0.5e-3], speed = 1 }",
+     "rotating wall 'blade' reaches 11 mm along the periodic x axis from its centre; expected less than half the "
+     "domain, 10 mm"},
     {"widthWithoutAxis", "[output]", "[width]\nfactor = 4\n[output]",
      "bad.toml:39:1: axis in [width]: missing; expected a string"},
     {"widthAlongNoAxis", "[output]", "[width]\naxis = \"z\"\nfrom = 0\nto = 1\n[output]",

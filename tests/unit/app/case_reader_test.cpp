@@ -123,7 +123,7 @@ shape = "sphere"
 center = [1, 2, 3]
 radius = 4.1
 inner_radius = 0.5
-velocity = [1, "-2*sin(\t2*pi*z)", 3.5]
+velocity = [1, "-2*sin(2*pi*z)*\t1", 3.5]
 where = "x > 0 || y != 1e-3"
 [[body]]
 name = "rod"
@@ -134,6 +134,7 @@ start = [-9, 0, 0]
 end = [-9, 5, 1]
 radius = 2
 oscillation = { amplitude = [0.1, 0, -2], period = 3, phase = 0.7 }
+rotation = { center = [1, 0.3, -2], axis = [0.1, -0.7, 3], speed = -2.5 }
 [time]
 step = 1e-3
 end = 7
@@ -186,7 +187,8 @@ TEST(readCase, takesEveryKey) {
   rod.kind = ShapeKind::Cylinder, rod.start = {-9, 0, 0}, rod.end = {-9, 5, 1}, rod.radius = 2;
   expected.bodies = {{"ball", BodyKind::Fluid, 1, {1, 0, 3.5}, ball},
                      {"rod", BodyKind::Wall, 0, {}, rod, {{0.1, 0, -2}, 3, 0.7}}};
-  expected.bodies[0].velocityExpression[1] = "-2*sin(\t2*pi*z)";
+  expected.bodies[0].velocityExpression[1] = "-2*sin(2*pi*z)*\t1";
+  expected.bodies[1].rotation = Rotation{{1, 0.3, -2}, {0.1, -0.7, 3}, -2.5};
   expected.bodies[0].where = "x > 0 || y != 1e-3";
   expected.time = {1e-3 / 1.5, 7, 0.3};
   expected.method.pressureRadius = 2, expected.method.viscosityRadius = 3;

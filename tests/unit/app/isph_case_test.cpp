@@ -226,6 +226,10 @@ to = 6e-3
     for (Vec<3> Shape::*x : {&Shape::min, &Shape::max, &Shape::center, &Shape::start, &Shape::end})
       expectNear(two.bodies[b].shape.*x, expected.bodies[b].shape.*x);
   EXPECT_EQ(two.bodies[2].shape.radius, 1e-3);
+  const Case turning = readText(text, {"width.factor=2", "body.floor.rotation={center = [7e-3, 0], speed = 1}",
+                                       "body.column.where=x < 3e-3"});
+  expectNear(turning.bodies[1].rotation->center, {13e-3, 0, 0});
+  EXPECT_EQ(turning.bodies[0].where, "x < 3e-3") << "expressions are not scaled";
   // The shape that a radius gives is not stretched; a smaller width is one, too.
   EXPECT_NEAR(readText(text, {"width.factor=0.5"}).bodies[0].shape.max[0], 3e-3, 1e-15);
 }

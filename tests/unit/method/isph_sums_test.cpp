@@ -2,6 +2,7 @@
 
 #include "support/isph_oracle.hpp"
 #include "support/tolerances.hpp"
+#include "support/wall_motions.hpp"
 #include "treacle/method/isph_particles.hpp"
 
 #include <gtest/gtest.h>
@@ -21,20 +22,35 @@ double largest(const std::vector<double>& v) {
   return most;
 }
 
-/// The sums of one scene, with fluid that has velocities and pressures at random, and walls that accelerate.
+/// The sums of one scene, with fluid that has velocities and pressures at random, and walls that accelerate and
+/// rotate.
 template <int D>
 struct Sums {
   IsphScene<D> s;
   IsphOracle<D> oracle{s};
   std::vector<Vec<D>> velocity, acceleration;
+  std::vector<WallMotion<D>> motion;
   std::vector<double> pressure;
 
   explicit Sums(IsphScene<D> scene)
       : s(std::move(scene)),
         velocity(s.particles.velocity.begin(), s.particles.velocity.end()),
-        acceleration{randomVelocities<D>(2, 5)},
+        motion{randomMotions<D>(s.c.domain, 2)},
         pressure(randomNumbers(s.n(), 7)) {
     for (double& p : pressure) p *= 300;
+    for (std::uint32_t i = 0; i < s.particles.count; ++i) acceleration.push_back(accelerationOf(i));
+    s.pairs.wallMotion = motion.data();
+  }
+
+  /// omega x (omega x d) = (omega.d) omega - omega^2 d
+  Vec<D> accelerationOf(std::uint32_t i) const {
+    const WallMotion<D>& m = motion[s.particles.body[i]];
+    Vec<3> d = resized<3>(s.particles.position[i] - m.center);
+    for (int k = 0; k < D; ++k) {
+      const double length = s.c.domain.max[k] - s.c.domain.min[k];
+      if (s.c.domain.periodic[k]) d[k] -= length * std::round(d[k] / length);
+    }
+    return m.acceleration + resized<D>(dot(m.spin, d) * m.spin - norm2(m.spin) * d);
   }
 
   void checkDensity() {
@@ -73,7 +89,6 @@ struct Sums {
 
   void checkCorrector() {
     std::vector<Vec<D>> found(s.n());
-    s.pairs.bodyAcceleration = acceleration.data();
     IsphPairs<D> pairs = s.pairs;
     pairs.contact.touching = pairs.contact.pressed = 2;  // contact with walls is another matter
     sumOnFluid(s.context, pairs, CorrectorTerm<D>{pressure.data(), velocity.data(), found.data()});
@@ -84,7 +99,6 @@ struct Sums {
 
   void checkWallPressure() {
     std::vector<double> found(s.particles.count, NAN);
-    s.pairs.bodyAcceleration = acceleration.data();
     sumOnWalls(s.context, s.pairs, WallPressureTerm<D>{pressure.data(), found.data()});
     for (std::uint32_t i = s.n(); i < s.pairs.activeCount; ++i)
       ASSERT_NEAR(found[i], oracle.wallPressure(pressure, i, acceleration), operatorTolerance * largest(pressure));

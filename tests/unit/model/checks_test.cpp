@@ -61,6 +61,18 @@ TEST(courantNumber, takesTheTopSpeedOfAnOscillation) {
   EXPECT_NEAR(courantNumber(c), 8, 1e-12);
 }
 
+TEST(courantNumber, takesTheFastestPointOfARotatingWall) {
+  Case c = damBreak();
+  c.bodies[1].rotation = Rotation{{0, 0}, {0, 0, 1}, -1000};
+  EXPECT_NEAR(courantNumber(c), std::hypot(39.5, 9.5), 1e-9);
+  c.bodies[1].velocity = {3, 4};
+  EXPECT_NEAR(courantNumber(c), 5 + std::hypot(39.5, 9.5), 1e-9);
+  c.dimensions = 3;
+  c.bodies[0].shape.max[2] = c.bodies[1].shape.max[2] = 2e-3;
+  c.bodies[1].rotation->axis = {-2, 0, 0};
+  EXPECT_NEAR(courantNumber(c), 5 + std::hypot(9.5, 1.5), 1e-9);
+}
+
 TEST(courantNumber, isBoundedWhereItLimitsTheSteps) {
   Case c = damBreak();
   c.bodies[0].velocity = {3, 4};

@@ -192,6 +192,31 @@ TEST(createParticles, velocitiesCanBeExpressions) {
   EXPECT_EQ(p.velocity[24], (Vec<3>{}));
 }
 
+TEST(createParticles, wallsStartWithTheVelocityOfTheirMotion) {
+  Case c = emptyCase(2);
+  c.bodies = {makeBody("drop", BodyKind::Fluid, box({0, 0}, {1, 1})),
+              makeBody("blade", BodyKind::Wall, box({5, 0}, {8, 1}))};
+  c.bodies[1].velocity = {0.25, 0};
+  c.bodies[1].oscillation = {{0, 3}, 2 * M_PI, 0};  // at t = 0 by 3 m/s
+  c.bodies[1].rotation = Rotation{{4, 0.5}, {0, 0, 1}, 2};
+  std::vector<std::string> notes;
+  const Particles<2> p = createParticles<2>(c, notes);
+  for (int k = 0; k < 3; ++k) EXPECT_LE(norm(p.velocity[1 + k] - Vec<2>{0.25, 3 + 2 * (1.5 + k)}), 1e-14);
+}
+
+TEST(createParticles, rejectsRotationsAcrossHalfAPeriod) {
+  Case c = emptyCase(3);
+  c.domain = {{-10, -10, -10}, {10, 10, 10}, {false, false, true}};
+  c.bodies = {makeBody("drop", BodyKind::Fluid, box({0, 0, 0}, {1, 1, 1})),
+              makeBody("shaft", BodyKind::Wall, box({2, 2, -10}, {3, 3, 10}))};
+  c.bodies[1].rotation = Rotation{{2.5, 2.5, 0}, {0, 0, 3}, 1};
+  EXPECT_EQ(messageOfCreation<3>(c), "no error") << "about the periodic axis";
+  c.bodies[1].rotation->axis = {0, 1, 3};
+  EXPECT_THAT(messageOfCreation<3>(c), HasSubstr("rotating wall 'shaft' reaches"));
+  c.domain.periodic[2] = false;
+  EXPECT_EQ(messageOfCreation<3>(c), "no error");
+}
+
 TEST(createParticles, rejectsExpressionsThatAreNotFiniteAtAParticle) {
   Case c = emptyCase(2);
   c.bodies = {makeBody("drop", BodyKind::Fluid, box({0, 0}, {2, 1}))};

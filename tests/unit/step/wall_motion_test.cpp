@@ -1,6 +1,7 @@
 #include "treacle/step/wall_motion.hpp"
 
 #include "support/isph_cases.hpp"
+#include "support/wall_motions.hpp"
 
 #include <gtest/gtest.h>
 
@@ -47,15 +48,20 @@ TEST(WallMotion, WithoutOscillationIsTheBodysVelocity) {
   EXPECT_EQ(wallAcceleration(body, 3), (Vec<3>{}));
 }
 
-TEST(WallMotion, EveryWallTakesTheVelocityOfItsBody) {
+TEST(WallMotion, EveryWallTakesTheVelocityAndTheChordOfItsBody) {
   Context<Cpu> context;
-  const std::vector<Vec<2>> ofBody = randomVelocities<2>(5, 1);
+  const auto motions = randomMotions<2>({{-1, -1}, {1, 1}, {true, false, false}}, 5);
   for (const std::size_t walls : {0, 1, 33, 1000}) {
     std::vector<std::uint8_t> body;
     for (std::size_t i = 0; i < walls; ++i) body.push_back(static_cast<std::uint8_t>(i * i % 5));
-    std::vector<Vec<2>> velocity(walls);
-    setWallVelocities<2>(context, body, ofBody, velocity);
-    for (std::size_t i = 0; i < walls; ++i) ASSERT_EQ(velocity[i], ofBody[body[i]]);
+    const std::vector<Vec<2>> position = randomVelocities<2>(walls, 3);
+    std::vector<Vec<2>> velocity(walls), chord(walls);
+    setWallVelocities<2>(context, {motions, body, position}, velocity);
+    setWallChords<2>(context, {motions, body, position}, chord);
+    for (std::size_t i = 0; i < walls; ++i) {
+      ASSERT_LE(norm(velocity[i] - motions[body[i]].velocityAt(position[i])), 1e-13);
+      ASSERT_LE(norm(chord[i] - motions[body[i]].chordAt(position[i])), 1e-13);
+    }
   }
 }
 

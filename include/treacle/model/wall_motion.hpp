@@ -1,0 +1,63 @@
+#pragma once
+
+#include "treacle/core/macros.hpp"
+#include "treacle/core/vec.hpp"
+#include "treacle/model/case.hpp"
+
+#include <cmath>
+
+namespace treacle {
+
+/// The rigid motion of a wall in one step. Its particles go by the chords of their arcs, so that they stay on
+/// their circles; the fluid meets the velocities of the rigid motion where the particles are, which have no
+/// divergence and no part towards the centre.
+template <int D>
+struct WallMotion {
+  Vec<D> velocity{};      // of the centre, mean over the step [m/s]
+  Vec<D> acceleration{};  // of the centre, at the end of the step [m/s2]
+  Vec<D> center{};        // at the start of the step [m]
+  Vec<D> period{};        // of the domain, 0 on open axes [m]
+  Vec<3> spin{};          // omega [rad/s]
+  double along = 1;       // sin(omega dt) / (omega dt)
+  double inwards = 0;     // (1 - cos(omega dt)) / (omega^2 dt) [s]
+
+  /// From the nearest image of the centre to x [m].
+  TREACLE_HD Vec<D> arm(const Vec<D>& x) const {
+    Vec<D> d = x - center;
+    for (int k = 0; k < D; ++k)
+      if (period[k] > 0) d[k] -= period[k] * std::rint(d[k] / period[k]);
+    return d;
+  }
+  /// omega x d
+  TREACLE_HD Vec<D> swirl(const Vec<D>& d) const {
+    if constexpr (D == 2)
+      return {-spin[2] * d[1], spin[2] * d[0]};
+    else
+      return {spin[1] * d[2] - spin[2] * d[1], spin[2] * d[0] - spin[0] * d[2], spin[0] * d[1] - spin[1] * d[0]};
+  }
+
+  /// At x at the start of the step [m/s].
+  TREACLE_HD Vec<D> velocityAt(const Vec<D>& x) const { return velocity + swirl(arm(x)); }
+  /// By what dt is multiplied to give the way of a particle at x [m/s].
+  TREACLE_HD Vec<D> chordAt(const Vec<D>& x) const {
+    const Vec<D> u = swirl(arm(x));
+    return velocity + along * u + inwards * swirl(u);
+  }
+  /// Of a particle at x [m/s2].
+  TREACLE_HD Vec<D> accelerationAt(const Vec<D>& x) const { return acceleration + swirl(swirl(arm(x))); }
+};
+
+/// Mean velocity of a wall, or of its centre if it rotates, in the step of dt from time t on [m/s]: the walls are
+/// where their motion puts them at the end of each step. With dt = 0 that at time t.
+Vec<3> wallVelocity(const Body& body, double t, double dt);
+/// Its acceleration at time t [m/s2].
+Vec<3> wallAcceleration(const Body& body, double t);
+
+/// All of a wall's motion in that step.
+template <int D>
+WallMotion<D> wallMotion(const Domain& domain, const Body& body, double t, double dt);
+
+extern template WallMotion<2> wallMotion<2>(const Domain&, const Body&, double, double);
+extern template WallMotion<3> wallMotion<3>(const Domain&, const Body&, double, double);
+
+}  // namespace treacle
