@@ -94,7 +94,8 @@ __device__ bool walkRanges(const MphPairs<D>& pairs, std::uint32_t first, std::u
   };
   constexpr bool usesFluid = Terms::uses(ListSegment::NearFluid), usesWalls = Terms::uses(ListSegment::NearWall);
   const auto radius = [&](ListSegment far) {
-    return Terms::uses(far) ? pairs.viscosityWeight.radius : pairs.pressureWeight.radius;
+    const double near = pairs.pressureWeight.radius;
+    return Terms::uses(far) ? fmax(near, pairs.viscosityWeight.radius) : near;
   };
   const bool fluid =
       usesFluid || first >= pairs.fluidCount ? pass(false, usesFluid, radius(ListSegment::FarFluid)) : true;

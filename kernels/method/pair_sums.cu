@@ -1,6 +1,6 @@
 #include "treacle/method/pair_sums.hpp"
 
-#include "method/pair_terms.cuh"
+#include "method/step_sums.cuh"
 
 namespace treacle {
 namespace {
@@ -87,30 +87,6 @@ struct WallDrag {
     y[i][n] += constants.viscosityFactor * sum;
   }
 };
-
-/// Once per step: one form for all sizes.
-template <class F, int D>
-void withStepSharing(const MphPairs<D>& pairs, F&& f) {
-  if (pairs.fluidList.offset)
-    f(Sharing<2, 1>{});
-  else
-    f(Sharing<2, 1, true>{});
-}
-
-template <int D, class Terms>
-void sumOnFluid(Context<Cuda>& context, const MphPairs<D>& pairs, const Terms& terms) {
-  withStepSharing(pairs, [&](auto sharing) {
-    launchClusterSums<D, double, decltype(sharing)>(context, pairs, ListTask<Terms>{pairs.fluidList, terms},
-                                                    Places<D, double>::make(pairs));
-  });
-}
-template <int D, class Terms>
-void sumOnAll(Context<Cuda>& context, const MphPairs<D>& pairs, const Terms& terms) {
-  withStepSharing(pairs, [&](auto sharing) {
-    const ListTask<Terms> fluid{pairs.fluidList, terms}, walls{pairs.wallList, terms};
-    launchClusterSums<D, double, decltype(sharing)>(context, pairs, fluid, walls, Places<D, double>::make(pairs));
-  });
-}
 
 }  // namespace
 

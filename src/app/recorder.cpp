@@ -48,7 +48,9 @@ Recorder<D>::Recorder(const Case& c, RunDirectory& directory, RunLog& log, doubl
       history_(directory.history(), timings),
       frames_(c.output.interval, c.time, start),
       checkpoints_(c.output.checkpointInterval, c.time, start),
-      output_([this](const Snapshot<D>& snapshot) { write(snapshot); }) {}
+      output_([this](const Snapshot<D>& snapshot) { write(snapshot); }) {
+  if (c.output.balance) balance_.emplace(directory.balance(), c);
+}
 
 template <int D>
 void Recorder<D>::begin() {
@@ -67,6 +69,7 @@ void Recorder<D>::record(const StepReport& report) {
   largestDensityError_ = std::max(largestDensityError_, densityError_);
   Timer timer;
   history_.append(historyRow(report));
+  if (report.balance) balance_->append(report.step, report.time, *report.balance);
   outputSeconds_ += timer.lap();
   const bool frame = frames_.due(report.time), checkpoint = checkpoints_.due(report.time);
   if (frame || checkpoint) handOver(takeSnapshot(), frame, checkpoint);

@@ -3,6 +3,7 @@
 #include "interval.hpp"
 #include "output_thread.hpp"
 #include "run_log.hpp"
+#include "treacle/io/balance_writer.hpp"
 #include "treacle/io/history.hpp"
 #include "treacle/io/run_directory.hpp"
 #include "treacle/io/summary.hpp"
@@ -11,6 +12,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 
 namespace treacle {
 
@@ -30,7 +32,8 @@ class Recorder {
   /// The frame of the state at the start.
   void begin();
 
-  /// A history row for every step, a frame and a checkpoint when they are due.
+  /// Rows of the history and, where the case wants it, the balance for every step, a frame and a checkpoint when
+  /// they are due.
   void record(const StepReport& report);
 
   /// Returns when all frames and checkpoints up to now are on disk.
@@ -55,6 +58,7 @@ class Recorder {
   RunLog& log_;
   CopyState copyState_;
   HistoryWriter history_;
+  std::optional<BalanceWriter> balance_;
   Interval frames_, checkpoints_;
   std::int64_t frameStep_ = -1, checkpointStep_ = -1;  // of the last ones on disk; written by the output thread
   std::int64_t steps_ = 0, iterations_ = 0;

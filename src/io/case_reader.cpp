@@ -210,7 +210,7 @@ Case readCase(const std::filesystem::path& path, std::span<const std::string> ov
   applyWidth(top, c);
   c.time = readTime(top, c.resolution);
   c.solver = readSolver(top, c.method.kind);
-  c.output = readOutput(top);
+  c.output = readOutput(top, c.method.kind);
   requirePeriodicLength(top, c);
   return c;
 }

@@ -17,13 +17,18 @@ TimeSettings readTime(const Section& top, double resolution) {
   return time;
 }
 
-OutputSettings readOutput(const Section& top) {
+OutputSettings readOutput(const Section& top, MethodKind method) {
+  std::vector<std::string_view> keys{"interval", "checkpoint_interval", "fields", "format", "precision"};
+  const std::vector<std::string_view> mphKeys{"balance"};
+  const bool isph = method == MethodKind::Isph;
+  if (!isph) keys.insert(keys.end(), mphKeys.begin(), mphKeys.end());
   const Section s =
-      top.section("output", "[output]", {"interval", "checkpoint_interval", "fields", "format", "precision"});
+      top.section("output", "[output]", keys, isph ? keysOf(MethodKind::MphI, mphKeys) : ForeignKeys{});
   OutputSettings output;
   output.interval = s.number("interval", Bound::NonNegative, "s", output.interval);
   output.checkpointInterval = s.number("checkpoint_interval", Bound::NonNegative, "s", output.checkpointInterval);
   output.precision = s.choice<OutputPrecision>("precision", output.precision);
+  if (!isph) output.balance = s.flag("balance", output.balance);
   if (const std::string format = s.string("format", "vtp"); format != "vtp")
     throw s.error("format", fmt::format("expected 'vtp', found '{}'", format));
   if (const auto words = s.strings("fields")) {

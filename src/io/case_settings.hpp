@@ -9,7 +9,7 @@ namespace treacle {
 TimeSettings readTime(const Section& top, double resolution);
 MethodSettings readMethod(const Section& top);
 SolverSettings readSolver(const Section& top, MethodKind method);
-OutputSettings readOutput(const Section& top);
+OutputSettings readOutput(const Section& top, MethodKind method);
 
 /// Keys that only one method has, for the tables of the other.
 ForeignKeys keysOf(MethodKind owner, const std::vector<std::string_view>& keys);

@@ -163,7 +163,7 @@ void writeSolver(Text& text, const SolverSettings& solver, MethodKind method) {
   method == MethodKind::Isph ? writeIsphSolver(text, solver) : writeMphSolver(text, solver);
 }
 
-void writeOutput(Text& text, const OutputSettings& output) {
+void writeOutput(Text& text, const OutputSettings& output, MethodKind method) {
   std::vector<std::string> fields;
   for (const OutputFieldName& f : outputFieldNames)
     if (output.fields.*(f.flag)) fields.push_back(tomlString(f.name));
@@ -173,6 +173,7 @@ void writeOutput(Text& text, const OutputSettings& output) {
   line(text, "fields = [{}]", fmt::join(fields, ", "));
   line(text, "format = \"vtp\"");
   line(text, "precision = \"{}\"", nameOf(output.precision));
+  if (method == MethodKind::MphI) line(text, "balance = {}", output.balance);
 }
 
 }  // namespace
@@ -184,7 +185,7 @@ std::string caseText(const Case& c) {
   writeTime(text, c.time);
   writeMethod(text, c.method);
   writeSolver(text, c.solver, c.method.kind);
-  writeOutput(text, c.output);
+  writeOutput(text, c.output, c.method.kind);
   return fmt::to_string(text);
 }
 

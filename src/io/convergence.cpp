@@ -1,25 +1,15 @@
 #include "treacle/io/convergence.hpp"
 
+#include "csv_cell.hpp"
 #include "treacle/io/atomic_file.hpp"
 
 #include <fmt/format.h>
 
 namespace treacle {
-namespace {
-
-/// A cell of text: names of solvers have commas in them.
-std::string quoted(const std::string& text) {
-  std::string cell = "\"";
-  for (const char c : text) cell += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return cell + '"';
-}
-
-}  // namespace
-
 void writeConvergence(const std::filesystem::path& path, const std::vector<ConvergenceCurve>& curves) {
   std::string text = "solver,iteration,relative_residual\n";
   for (const ConvergenceCurve& curve : curves) {
-    const std::string name = quoted(curve.solver);
+    const std::string name = csvCell(curve.solver);
     for (std::size_t k = 0; k < curve.residuals.size(); ++k)
       text += fmt::format("{},{},{}\n", name, k, curve.residuals[k]);
   }
@@ -29,7 +19,7 @@ void writeConvergence(const std::filesystem::path& path, const std::vector<Conve
 void writeSolvers(const std::filesystem::path& path, const std::vector<ConvergenceCurve>& curves) {
   std::string text = "solver,outcome,iterations,relative_residual,setup_s,solve_s\n";
   for (const ConvergenceCurve& c : curves)
-    text += fmt::format("{},{},{},{},{},{}\n", quoted(c.solver), c.outcome, c.iterations(), c.lastResidual(),
+    text += fmt::format("{},{},{},{},{},{}\n", csvCell(c.solver), c.outcome, c.iterations(), c.lastResidual(),
                         c.setupSeconds, c.solveSeconds);
   writeFile(path, text);
 }

@@ -1,15 +1,10 @@
 #include "treacle/io/history.hpp"
 
-#include "posix.hpp"
 #include "text_file.hpp"
 #include "treacle/core/error.hpp"
-#include "treacle/io/atomic_file.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <cerrno>
 #include <charconv>
 #include <string>
 #include <utility>
@@ -84,28 +79,13 @@ HistoryRow parseRow(std::string_view line, const Layout& layout, const std::stri
 }  // namespace
 
 HistoryWriter::HistoryWriter(std::filesystem::path path, bool timings)
-    : path_(std::move(path)), timings_(timings) {
-  const std::string firstLine = header({.timings = timings_});
-  writeFile(path_, firstLine);
-  descriptor_ = ::open(path_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
-  if (descriptor_ < 0) throw RunError(writeFailure(path_, errno));
-  size_ = static_cast<std::int64_t>(firstLine.size());
-}
-
-HistoryWriter::~HistoryWriter() {
-  if (descriptor_ >= 0) ::close(descriptor_);
-}
+    : timings_(timings), file_(std::move(path), columns({.timings = timings})) {}
 
 void HistoryWriter::append(const HistoryRow& row) {
   std::string line;
   forEachColumn(row, {.timings = timings_}, [&](auto value) { line += fmt::format("{},", value); });
-  line.back() = '\n';
-  if (!writeAll(descriptor_, line.data(), line.size())) {
-    std::string message = writeFailure(path_, errno);
-    if (::ftruncate(descriptor_, size_) != 0) message += "; its last row is incomplete";
-    throw RunError(message);
-  }
-  size_ += static_cast<std::int64_t>(line.size());
+  line.pop_back();
+  file_.append(line);
 }
 
 std::vector<HistoryRow> readHistory(const std::filesystem::path& path) {

@@ -86,8 +86,8 @@ bool RunDirectory::holdsRun() const {
 }
 
 void RunDirectory::removeRun() const {
-  std::vector<fs::path> files{caseFile(),   log(),        history(),      summary(),       checkpoint(),
-                              fluidIndex(), wallsIndex(), finalPicture(), historyPicture()};
+  std::vector<fs::path> files{caseFile(),   log(),        history(),    balance(),      summary(),
+                              checkpoint(), fluidIndex(), wallsIndex(), finalPicture(), historyPicture()};
   for (std::size_t i = 0, named = files.size(); i < named; ++i)
     files.push_back(AtomicFile::temporaryName(files[i]));
   std::error_code error;

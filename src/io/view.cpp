@@ -8,10 +8,6 @@ namespace treacle {
 
 namespace {
 
-Vec<3> cross(const Vec<3>& a, const Vec<3>& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
 Vec<3> normalized(const Vec<3>& a) { return a * (1 / norm(a)); }
 
 }  // namespace

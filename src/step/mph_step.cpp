@@ -1,4 +1,5 @@
 #include "mph_solver.hpp"
+#include "step_balance.hpp"
 #include "step_method.hpp"
 #include "take_trial.hpp"
 #include "treacle/method/explicit_step.hpp"
@@ -89,17 +90,20 @@ class MphStep final : public StepMethod<D, Backend> {
     divergence_.resize(s_.context, active);
     divergence<D>(s_.context, pairs_, s_.velocity.span().first(active), divergence_);
     bulkPressure<D>(s_.context, pairs_, divergence_, elastic_, s_.particles.pressure.span().first(active));
+    if (s_.c.output.balance) lastBalance_ = balance_.make(s_, neighbourhood_, divergence_, elastic_);
     // The velocities of the start are given, no solution: nothing follows from the way to the first one.
     if (s_.step > 0)
       remember<D>(s_.context, s_.timeStep, s_.particles.velocity.span().first(n), s_.velocity.span().first(n),
                   memory());
   }
 
+  std::optional<Balance> balance() const override { return lastBalance_; }
+
   const CellGrid<D>& grid() const override { return pairs_.grid; }
   const MaterialTable& materials() const override { return pairs_.materials; }
   std::size_t bytes() const override {
     return neighbourhood_.bytes() + wallBlock_.bytes() + wallGradient_.bytes() + elastic_.bytes() +
-           divergence_.bytes() + rhs_.bytes() + solver_.bytes();
+           divergence_.bytes() + rhs_.bytes() + solver_.bytes() + balance_.bytes();
   }
 
  private:
@@ -157,6 +161,8 @@ class MphStep final : public StepMethod<D, Backend> {
   Buffer<double, Backend> divergence_;  // C^T u per particle [1/s]
   Buffer<Vec<D>, Backend> rhs_;
   MphSolver<D, Backend> solver_;
+  StepBalance<D, Backend> balance_;
+  std::optional<Balance> lastBalance_;
 };
 
 }  // namespace

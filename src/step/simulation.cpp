@@ -189,6 +189,7 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     report.residual = solved.residual;
     report.fallbacks = solved.fallbacks;
     report.failures = std::move(solved.failures);
+    report.balance = method->balance();
     return report;
   }
 

@@ -2,10 +2,12 @@
 
 #include "flow_state.hpp"
 #include "staged_report.hpp"
+#include "treacle/model/balance.hpp"
 #include "treacle/step/diagnostics.hpp"
 #include "treacle/step/solver_trial.hpp"
 
 #include <memory>
+#include <optional>
 
 namespace treacle {
 
@@ -33,6 +35,8 @@ class StepMethod {
   virtual std::span<const Vec<D>> transport() = 0;
   /// Writes what the particles shall hold but for position and velocity, which are still those before the step.
   virtual void accept() = 0;
+  /// Of the step that was accepted last, where the case wants it.
+  virtual std::optional<Balance> balance() const { return {}; }
   /// Completes what the diagnostics of a step are made of.
   virtual void describe(DiagnosticsInput<D>&) const {}
 

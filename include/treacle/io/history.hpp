@@ -1,5 +1,7 @@
 #pragma once
 
+#include "treacle/io/row_file.hpp"
+
 #include <cstdint>
 #include <filesystem>
 #include <vector>
@@ -30,24 +32,17 @@ struct HistoryRow {
   HistoryTimings timings{};    // zero if the file does not hold them
 };
 
-/// Appends rows to a new file, each handed to the system at once: a run that is killed leaves whole rows, and
-/// numbers read back to the same bits.
-/// Errors, of every member: RunError with path and reason; the file then ends with the last whole row.
+/// Appends rows to a new file; numbers read back to the same bits. Errors: those of RowFile.
 class HistoryWriter {
  public:
   /// Replaces an older file. `timings`: with columns for the phases.
   explicit HistoryWriter(std::filesystem::path path, bool timings = false);
-  HistoryWriter(const HistoryWriter&) = delete;
-  HistoryWriter& operator=(const HistoryWriter&) = delete;
-  ~HistoryWriter();
 
   void append(const HistoryRow& row);
 
  private:
-  std::filesystem::path path_;
   bool timings_;
-  int descriptor_ = -1;
-  std::int64_t size_ = 0;  // [B] whole rows
+  RowFile file_;
 };
 
 /// All rows, with or without timings, also of versions that had fewer columns; an unfinished last line is left

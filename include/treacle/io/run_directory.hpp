@@ -32,6 +32,7 @@ class RunDirectory {
   std::filesystem::path caseFile() const { return path_ / "case.toml"; }
   std::filesystem::path log() const { return path_ / "run.log"; }
   std::filesystem::path history() const { return path_ / "history.csv"; }
+  std::filesystem::path balance() const { return path_ / "balance.csv"; }
   std::filesystem::path summary() const { return path_ / "summary.json"; }
   std::filesystem::path checkpoint() const { return path_ / "checkpoint.h5"; }
   std::filesystem::path fluidIndex() const { return path_ / "fluid.pvd"; }

@@ -226,6 +226,7 @@ struct OutputSettings {
   double checkpointInterval = 0;  // between checkpoints [s]; 0: at the end of the run only
   OutputFields fields;
   OutputPrecision precision = OutputPrecision::Single;
+  bool balance = false;  // energy balance and loads on walls of each step; MPH-I only
 
   bool operator==(const OutputSettings&) const = default;
 };

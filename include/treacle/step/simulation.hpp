@@ -1,5 +1,6 @@
 #pragma once
 
+#include "treacle/model/balance.hpp"
 #include "treacle/model/case.hpp"
 #include "treacle/model/particles.hpp"
 #include "treacle/step/solver_trial.hpp"
@@ -7,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -52,6 +54,7 @@ struct StepReport {
   int fallbacks = 0;      // ways that failed (solveStages)
   std::string failures;   // which, and why
   Diagnostics diagnostics;
+  std::optional<Balance> balance;  // with OutputSettings::balance
   PhaseSeconds seconds;
 };
 

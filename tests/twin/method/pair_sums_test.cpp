@@ -2,6 +2,7 @@
 #include "support/device_scene.hpp"
 #include "support/gpu.hpp"
 #include "support/tolerances.hpp"
+#include "treacle/method/balance_sums.hpp"
 #include "treacle/method/mph_operator.hpp"
 
 #include <gtest/gtest.h>
@@ -88,6 +89,34 @@ struct SumsTwin {
     EXPECT_LE(difference<Vec<D>>(d.context, s.wallGradient.span(), gradient), kernelTolerance);
   }
 
+  void checkBalance() {
+    const auto u = randomVectors<D>(active, 6);
+    const Eigen::VectorXd q = randomVector(active, 7);
+    const std::span<const double> qs(q.data(), active);
+    const auto uDevice = copyToDevice<Vec<D>>(d.context, u);
+    Buffer<double> shear(n), divergence(active - n), density(active - n);
+    Buffer<Vec<D>> force(active - n);
+    Buffer<double, Cuda> shearFound(d.context, n), divergenceFound(d.context, active - n),
+        densityFound(d.context, active - n);
+    Buffer<Vec<D>, Cuda> forceFound(d.context, active - n);
+
+    shearDissipation<D>(s.context, s.pairs(), u, shear);
+    shearDissipation<D>(d.context, d.pairs, uDevice, shearFound);
+    EXPECT_LE(difference<double>(d.context, shear.span(), shearFound), kernelTolerance);
+
+    ClusterList<> walls;
+    buildClusterList<D>(s.context, s.pairs().grid, s.ranges(), s.pairs().position, n, active,
+                        {s.pairs().viscosityWeight.radius, 0}, true, walls);
+    const ClusterList<Cuda> wallsDevice = onDevice(d.context, walls);
+    fluidAtWalls<D>(s.context, s.pairs(), walls, u, qs, {force.span(), divergence.span(), density.span()});
+    fluidAtWalls<D>(d.context, d.pairs, d.pairs.wallList.offset ? wallsDevice.view() : d.pairs.wallList, uDevice,
+                    copyToDevice<double>(d.context, qs),
+                    {forceFound.span(), divergenceFound.span(), densityFound.span()});
+    EXPECT_LE(difference<Vec<D>>(d.context, force.span(), forceFound), kernelTolerance);
+    EXPECT_LE(difference<double>(d.context, divergence.span(), divergenceFound), kernelTolerance);
+    EXPECT_LE(difference<double>(d.context, density.span(), densityFound), kernelTolerance);
+  }
+
   void checkOperator() {
     const auto u = randomVectors<D>(n, 5);
     std::vector<Vec<D>> expected(n);
@@ -139,6 +168,7 @@ void checkAll(bool lists) {
       twin.checkScalars();
       twin.checkVectors();
       twin.checkWallTerms();
+      twin.checkBalance();
       twin.checkOperator();
       if (lists) twin.checkSingle();
     }

@@ -53,7 +53,7 @@ constexpr BadCase badCases[] = {
      "bad.toml:15:1: unknown key 'viscosity' in [[material]] 'syrup'; did you mean 'dynamic_viscosity' [Pa s]?"},
     {"unknownKeyNearNone", "interval", "zzz",
      "bad.toml:40:1: unknown key 'zzz' in [output]; expected 'interval', 'checkpoint_interval', 'fields', "
-     "'format' or 'precision'"},
+     "'format', 'precision' or 'balance'"},
     {"unknownTable", "[gravity]", "[gravty]",
      "bad.toml:9:2: unknown key 'gravty' in the case file; did you mean 'gravity'?"},
     {"keyOfAnotherShape", "max = [6e-3, 6e-3]", "max = [6e-3, 6e-3]\nradius = 1",

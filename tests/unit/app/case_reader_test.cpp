@@ -167,6 +167,7 @@ interval = 0.25
 checkpoint_interval = 0.5
 fields = ["id", "pressure", "body"]
 precision = "double"
+balance = true
 )";
 
 TEST(readCase, takesEveryKey) {
@@ -202,7 +203,7 @@ TEST(readCase, takesEveryKey) {
   expected.solver.maxIterations = 77;
   expected.solver.multigrid = {1, 5, 6, SmootherDiagonal::ExtendedJacobi, CoarseKind::Spgemm};
   expected.solver.projected = {7, 3, 1, 55};
-  expected.output = {0.25, 0.5, {false, true, false, false, true, true}, OutputPrecision::Double};
+  expected.output = {0.25, 0.5, {false, true, false, false, true, true}, OutputPrecision::Double, true};
   EXPECT_EQ(c, expected);
 
   c.resolution = 1;

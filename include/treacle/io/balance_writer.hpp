@@ -1,0 +1,27 @@
+#pragma once
+
+#include "treacle/io/row_file.hpp"
+#include "treacle/model/balance.hpp"
+#include "treacle/model/case.hpp"
+
+#include <cstdint>
+#include <filesystem>
+
+namespace treacle {
+
+/// Appends the balances of time steps to a new `balance.csv`; numbers read back to the same bits. Errors: those of
+/// RowFile.
+class BalanceWriter {
+ public:
+  /// Replaces an older file. The case names the walls and the dimension.
+  BalanceWriter(std::filesystem::path path, const Case& c);
+
+  /// `step` and `time` [s] after the step.
+  void append(std::int64_t step, double time, const Balance& balance);
+
+ private:
+  int dimensions_;
+  RowFile file_;
+};
+
+}  // namespace treacle

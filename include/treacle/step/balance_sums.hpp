@@ -1,0 +1,86 @@
+#pragma once
+
+#include "treacle/core/cuda.hpp"
+#include "treacle/core/macros.hpp"
+#include "treacle/method/mph_pairs.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace treacle {
+
+/// What active particles add to the powers of a step, per volume of a particle. Spans are in the backend's memory;
+/// those of walls start with the first wall particle.
+template <int D>
+struct PowerTerms {
+  enum { Shear, Bulk, Inertial, Elastic, ElasticEnergy, count };
+
+  std::uint32_t fluidCount;
+  MaterialTable materials;
+  std::span<const std::uint8_t> material;
+  std::span<const Vec<D>> before, after;   // u^k of the fluid, u^{k+1} of all [m/s]
+  std::span<const double> divergence;      // C^T u^{k+1} [1/s]
+  std::span<const double> elastic;         // kappa [n - n_0]_+ [Pa]
+  std::span<const double> shear;           // of the fluid [W/m3]
+  std::span<const double> wallDivergence;  // the fluid's parts of C^T u and n at walls
+  std::span<const double> wallDensity;
+
+  /// Pairs of walls do no work on the fluid, and what they are compressed by without fluid it cannot get back.
+  TREACLE_HD void add(std::size_t i, double* sums) const {
+    const int m = material[i];
+    const bool fluid = i < fluidCount;
+    const double worked = fluid ? divergence[i] : wallDivergence[i - fluidCount];
+    sums[Bulk] += materials.bulkViscosity[m] * divergence[i] * worked;
+    if (elastic[i] > 0) {
+      const double kappa = materials.bulkModulus[m], strain = elastic[i] / kappa;
+      const double without = fluid ? 0 : strain - wallDensity[i - fluidCount];
+      sums[Elastic] -= elastic[i] * worked;
+      sums[ElasticEnergy] += 0.5 * kappa * (strain * strain - (without > 0 ? without * without : 0));
+    }
+    if (!fluid) return;
+    sums[Shear] += shear[i];
+    sums[Inertial] += 0.5 * materials.inertia[m] * norm2(after[i] - before[i]);
+  }
+};
+
+/// Sums over active particles, in an order that depends on their number alone.
+template <int D>
+std::array<double, PowerTerms<D>::count> sumPowers(Context<Cpu>&, const PowerTerms<D>&, std::size_t active);
+template <int D>
+std::array<double, PowerTerms<D>::count> sumPowers(Context<Cuda>&, const PowerTerms<D>&, std::size_t active);
+
+/// What a body bears, per volume of a particle.
+struct LoadSums {
+  Vec<3> force, torque;  // [N/m3], [N/m2]; the torque about the origin
+  double power;          // of the fluid on the body [W/m3]
+};
+
+/// What active wall particles add to it; spans in the backend's memory, all of the same length.
+template <int D>
+struct LoadTerms {
+  static constexpr int count = sizeof(LoadSums) / sizeof(double);
+
+  std::span<const std::uint8_t> body;
+  std::span<const Vec<D>> position, velocity;  // [m], [m/s]
+  std::span<const Vec<D>> force;               // [N/m3]
+
+  TREACLE_HD void add(std::size_t i, double* sums) const {
+    const Vec<3> f = resized<3>(force[i]), torque = cross(resized<3>(position[i]), f);
+    for (int k = 0; k < 3; ++k) {
+      sums[k] += f[k];
+      sums[3 + k] += torque[k];
+    }
+    sums[6] += dot(force[i], velocity[i]);
+  }
+};
+
+/// Per body, in an order that depends on the number of wall particles alone. Errors: none, body < bodies.
+template <int D>
+std::vector<LoadSums> sumLoads(Context<Cpu>&, const LoadTerms<D>&, std::size_t bodies);
+template <int D>
+std::vector<LoadSums> sumLoads(Context<Cuda>&, const LoadTerms<D>&, std::size_t bodies);
+
+}  // namespace treacle

@@ -1,0 +1,56 @@
+#include "treacle/step/balance_sums.hpp"
+
+#include "core/reduce_many.cuh"
+
+namespace treacle {
+namespace {
+
+/// One block per body, its threads stride through all wall particles; reads their bodies, and places, velocities
+/// and forces of those of its own, writes the body's sums; no atomics.
+template <int D>
+__global__ void __launch_bounds__(256) sumLoadsKernel(const __grid_constant__ LoadTerms<D> terms, double* loads) {
+  double sums[LoadTerms<D>::count] = {};
+  for (std::size_t i = threadIdx.x; i < terms.body.size(); i += 256)
+    if (terms.body[i] == blockIdx.x) terms.add(i, sums);
+#pragma unroll
+  for (int n = 0; n < LoadTerms<D>::count; ++n) {
+    const double ofBlock = blockSum(sums[n]);
+    if (threadIdx.x == 0) loads[blockIdx.x * LoadTerms<D>::count + n] = ofBlock;
+  }
+}
+
+}  // namespace
+
+template <int D>
+std::array<double, PowerTerms<D>::count> sumPowers(Context<Cuda>& context, const PowerTerms<D>& terms,
+                                                   std::size_t active) {
+  constexpr int count = PowerTerms<D>::count;
+  using Sums = std::array<double, count>;
+  auto* result = static_cast<double*>(context.scratch(sizeof(Sums)));
+  reduceMany<count>(
+      context, active, [terms] __device__(std::size_t i, double* sums) { terms.add(i, sums); },
+      [result] __device__(const double* sums, int lane) {
+        if (lane < count) result[lane] = sums[lane];
+      });
+  return valueOnHost(context, reinterpret_cast<const Sums*>(result));
+}
+
+template <int D>
+std::vector<LoadSums> sumLoads(Context<Cuda>& context, const LoadTerms<D>& terms, std::size_t bodies) {
+  std::vector<LoadSums> loads(bodies);
+  const std::size_t bytes = bodies * sizeof(LoadSums);
+  auto* result = static_cast<double*>(context.scratch(bytes));
+  launch(context, static_cast<unsigned>(bodies), 256, 0, sumLoadsKernel<D>, terms, result);
+  copyBytesToHost(context, result, loads.data(), bytes);
+  return loads;
+}
+
+#define TREACLE_INSTANTIATE(D)                                                                         \
+  template std::array<double, PowerTerms<D>::count> sumPowers<D>(Context<Cuda>&, const PowerTerms<D>&, \
+                                                                 std::size_t);                         \
+  template std::vector<LoadSums> sumLoads<D>(Context<Cuda>&, const LoadTerms<D>&, std::size_t);
+TREACLE_INSTANTIATE(2)
+TREACLE_INSTANTIATE(3)
+#undef TREACLE_INSTANTIATE
+
+}  // namespace treacle

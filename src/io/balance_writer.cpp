@@ -1,0 +1,43 @@
+#include "treacle/io/balance_writer.hpp"
+
+#include "csv_cell.hpp"
+
+#include <fmt/format.h>
+
+#include <string>
+#include <utility>
+
+namespace treacle {
+namespace {
+
+std::string columns(const Case& c) {
+  std::string text =
+      "step,time,shear_dissipation,bulk_dissipation,inertial_loss,elastic_power,elastic_energy,wall_power";
+  for (const Body& body : c.bodies) {
+    if (body.kind != BodyKind::Wall) continue;
+    const auto add = [&](const std::string& quantity) { text += ',' + csvCell(body.name + quantity); };
+    for (int k = 0; k < c.dimensions; ++k) add(fmt::format("_force_{}", "xyz"[k]));
+    if (c.dimensions == 2)
+      add("_torque");
+    else
+      for (const char axis : {'x', 'y', 'z'}) add(fmt::format("_torque_{}", axis));
+  }
+  return text;
+}
+
+}  // namespace
+
+BalanceWriter::BalanceWriter(std::filesystem::path path, const Case& c)
+    : dimensions_(c.dimensions), file_(std::move(path), columns(c)) {}
+
+void BalanceWriter::append(std::int64_t step, double time, const Balance& b) {
+  std::string row = fmt::format("{},{},{},{},{},{},{},{}", step, time, b.shearDissipation, b.bulkDissipation,
+                                b.inertialLoss, b.elasticPower, b.elasticEnergy, b.wallPower);
+  for (const WallLoad& load : b.walls) {
+    for (int k = 0; k < dimensions_; ++k) row += fmt::format(",{}", load.force[k]);
+    for (int k = dimensions_ == 2 ? 2 : 0; k < 3; ++k) row += fmt::format(",{}", load.torque[k]);
+  }
+  file_.append(std::move(row));
+}
+
+}  // namespace treacle

@@ -1,0 +1,93 @@
+#pragma once
+
+#include "flow_state.hpp"
+#include "treacle/method/balance_sums.hpp"
+#include "treacle/method/neighbourhood.hpp"
+#include "treacle/model/balance.hpp"
+#include "treacle/step/balance_sums.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace treacle {
+
+/// The point about which the torque on a wall body is taken [m].
+inline Vec<3> torqueCentre(const Body&) { return {}; }
+
+/// Makes the balance of a step of MPH-I, and holds what that takes.
+template <int D, class Backend>
+class StepBalance {
+ public:
+  /// Once state.velocity and the pressures are those of the end of the step; positions and particles' velocities
+  /// are still those of its start. `divergence`: C^T u^{k+1}, `elastic`: kappa [n - n_0]_+, per active particle.
+  Balance make(FlowState<D, Backend>& s, const Neighbourhood<D, Backend>& neighbourhood,
+               std::span<const double> divergence, std::span<const double> elastic) {
+    const MphPairs<D>& pairs = neighbourhood.pairs();
+    sumPairs(s, neighbourhood);
+    Balance balance;
+    setPowers(s, pairs, divergence, elastic, balance);
+    setLoads(s, pairs, balance);
+    return balance;
+  }
+
+  std::size_t bytes() const {
+    return walls_.bytes() + shear_.bytes() + wallForce_.bytes() + wallDivergence_.bytes() + wallDensity_.bytes();
+  }
+
+ private:
+  void sumPairs(FlowState<D, Backend>& s, const Neighbourhood<D, Backend>& neighbourhood) {
+    const MphPairs<D>& pairs = neighbourhood.pairs();
+    const std::uint32_t n = pairs.fluidCount, active = pairs.activeCount;
+    ClusterListView walls = pairs.wallList;
+    if (walls.offset) {  // the lists of the step reach only as far as pressures
+      const double reach = std::max(pairs.pressureWeight.radius, pairs.viscosityWeight.radius);
+      buildClusterList<D>(s.context, pairs.grid, neighbourhood.ranges(), pairs.position, n, active, {reach, 0},
+                          true, walls_);
+      walls = walls_.view();
+    }
+    shear_.resize(s.context, n);
+    wallForce_.resize(s.context, active - n);
+    wallDivergence_.resize(s.context, active - n);
+    wallDensity_.resize(s.context, active - n);
+    shearDissipation<D>(s.context, pairs, s.velocity, shear_);
+    fluidAtWalls<D>(s.context, pairs, walls, s.velocity, s.particles.pressure.span().first(active),
+                    {wallForce_.span(), wallDivergence_.span(), wallDensity_.span()});
+  }
+
+  void setPowers(FlowState<D, Backend>& s, const MphPairs<D>& pairs, std::span<const double> divergence,
+                 std::span<const double> elastic, Balance& balance) {
+    using Terms = PowerTerms<D>;
+    const Terms terms{pairs.fluidCount, pairs.materials, pairs.material, s.particles.velocity, s.velocity,
+                      divergence,       elastic,         shear_,         wallDivergence_,      wallDensity_};
+    const auto sums = sumPowers<D>(s.context, terms, pairs.activeCount);
+    const double volume = std::pow(pairs.spacing, D);  // [K23 eq. (11)]
+    balance.shearDissipation = volume * sums[Terms::Shear];
+    balance.bulkDissipation = volume * sums[Terms::Bulk];
+    balance.inertialLoss = volume * sums[Terms::Inertial];
+    balance.elasticPower = volume * sums[Terms::Elastic];
+    balance.elasticEnergy = volume * sums[Terms::ElasticEnergy];
+  }
+
+  void setLoads(FlowState<D, Backend>& s, const MphPairs<D>& pairs, Balance& balance) {
+    const std::uint32_t n = pairs.fluidCount, walls = pairs.activeCount - n;
+    const LoadTerms<D> terms{s.particles.body.span().subspan(n, walls), pairs.position.subspan(n, walls),
+                             s.velocity.span().subspan(n, walls), wallForce_};
+    const std::vector<LoadSums> loads = sumLoads<D>(s.context, terms, s.c.bodies.size());
+    const double volume = std::pow(pairs.spacing, D);
+    for (std::size_t b = 0; b < loads.size(); ++b) {
+      if (s.c.bodies[b].kind != BodyKind::Wall) continue;
+      const LoadSums& load = loads[b];
+      balance.wallPower -= volume * load.power;
+      balance.walls.push_back(
+          {volume * load.force, volume * (load.torque - cross(torqueCentre(s.c.bodies[b]), load.force))});
+    }
+  }
+
+  ClusterList<Backend> walls_;
+  Buffer<double, Backend> shear_;           // [W/m3]
+  Buffer<Vec<D>, Backend> wallForce_;       // [N/m3]
+  Buffer<double, Backend> wallDivergence_;  // [1/s]
+  Buffer<double, Backend> wallDensity_;     // [-]
+};
+
+}  // namespace treacle

@@ -1,0 +1,81 @@
+#include "treacle/io/balance_writer.hpp"
+
+#include "limited_files.hpp"
+#include "support/temporary_directory.hpp"
+#include "treacle/core/error.hpp"
+
+#include <cmath>
+#include <sstream>
+
+using namespace treacle;
+using namespace treacle::test;
+
+namespace {
+
+constexpr const char* powers =
+    "step,time,shear_dissipation,bulk_dissipation,inertial_loss,elastic_power,elastic_energy,wall_power";
+
+Case caseOf(int dimensions, const std::vector<std::string>& walls) {
+  Case c;
+  c.dimensions = dimensions;
+  c.bodies.resize(1);
+  c.bodies[0].name = "pool";
+  for (const std::string& name : walls) {
+    c.bodies.emplace_back();
+    c.bodies.back().name = name;
+    c.bodies.back().kind = BodyKind::Wall;
+  }
+  return c;
+}
+
+}  // namespace
+
+TEST(BalanceWriter, FormatIsFixed) {
+  TemporaryDirectory directory;
+  const Balance balance{1, 2.5, 1e-3, -4, 1e-20, 0.1, {{{7, -8, 0}, {0, 0, 9}}, {{0.5, 1, 0}, {0, 0, -2}}}};
+  BalanceWriter plane(directory / "balance.csv", caseOf(2, {"floor", "lid"}));
+  plane.append(3, 0.003, balance);
+  // Seen without closing the writer.
+  EXPECT_EQ(content(directory / "balance.csv"),
+            std::string(powers) +
+                ",floor_force_x,floor_force_y,floor_torque,lid_force_x,lid_force_y,lid_torque\n"
+                "3,0.003,1,2.5,0.001,-4,1e-20,0.1,7,-8,9,0.5,1,-2\n");
+
+  BalanceWriter space(directory / "balance.csv", caseOf(3, {"the \"old\" tank, left"}));
+  space.append(4, 0.5, {0, 0, 0, 0, 0, 0, {{{1, 2, 3}, {4, 5, 6}}}});
+  std::string columns = powers;
+  for (const char* quantity : {"force_x", "force_y", "force_z", "torque_x", "torque_y", "torque_z"})
+    columns += ",\"the \"\"old\"\" tank, left_" + std::string(quantity) + '"';
+  EXPECT_EQ(content(directory / "balance.csv"), columns + "\n4,0.5,0,0,0,0,0,0,1,2,3,4,5,6\n");
+}
+
+TEST(BalanceWriter, NumbersReadBackToTheSameBits) {
+  TemporaryDirectory directory;
+  const auto value = [](int k) { return std::exp(20 * std::sin(k)) / 3; };
+  const Balance balance{
+      value(1), value(2), value(3), -value(4), value(5), value(6), {{{value(7), value(8), 0}, {0, 0, -value(9)}}}};
+  BalanceWriter(directory / "balance.csv", caseOf(2, {"floor"})).append(1, value(0), balance);
+  std::istringstream text(content(directory / "balance.csv"));
+  std::string cell;
+  std::getline(text, cell);
+  std::getline(text, cell, ',');
+  for (int k = 0; k < 10; ++k) {
+    std::getline(text, cell, ',');
+    EXPECT_EQ(std::stod(cell), k == 4 || k == 9 ? -value(k) : value(k));
+  }
+}
+
+TEST(BalanceWriter, FullDiskLeavesWholeRows) {
+  TemporaryDirectory directory;
+  const auto path = directory / "balance.csv";
+  EXPECT_TRUE(withFileLimit(1000, [&] {
+    BalanceWriter writer(path, caseOf(2, {"floor"}));
+    const std::string message = messageOf<RunError>([&] {
+      for (int k = 0; k < 100; ++k) writer.append(k, 0.1 * k, {1, 2, 3, 4, 5, 6, {{}}});
+    });
+    return message == "cannot write " + path.string() + ": File too large";
+  }));
+  const std::string text = content(path);
+  EXPECT_TRUE(text.ends_with(",1,2,3,4,5,6,0,0,0\n")) << text;
+  EXPECT_GT(text.size(), 900u);
+}

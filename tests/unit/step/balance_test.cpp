@@ -1,0 +1,283 @@
+#include "support/loaded_walls.hpp"
+#include "support/oracle.hpp"
+
+#include <gtest/gtest.h>
+#include <omp.h>
+
+namespace treacle::test {
+namespace {
+
+/// Momenta of the fluid [kg m/s, kg m2/s; per metre of depth in 2D], the second about the origin.
+struct Momenta {
+  Vec<3> linear{}, angular{};
+  double mass = 0;
+  Vec<3> moment{};  // sum of m x
+
+  template <int D>
+  Momenta(const Case& c, const Particles<D>& p) {
+    for (std::uint32_t i = 0; i < p.fluidCount; ++i) {
+      const double m = c.materials[p.material[i]].density * std::pow(c.spacing, D);
+      const Vec<3> x = resized<3>(p.position[i]), u = resized<3>(p.velocity[i]);
+      linear += m * u, angular += m * cross(x, u), moment += m * x;
+      mass += m;
+    }
+  }
+};
+
+template <int D>
+void checkEnergy(const Case&, Simulation<D>& s) {
+  const Diagnostics before = s.diagnostics();
+  const StepReport report = s.advance();
+  const Balance& b = *report.balance;
+  const double dt = report.timeStep, gained = report.diagnostics.kineticEnergy - before.kineticEnergy;
+  const double fallen = before.potentialEnergy - report.diagnostics.potentialEnergy;
+  const double lost = dt * (b.inertialLoss + b.shearDissipation + b.bulkDissipation);
+  const double given = dt * (b.elasticPower + b.wallPower) + fallen;
+  const double scale = std::abs(gained) + lost + std::abs(given);
+  EXPECT_NEAR(gained + lost, given, 1e-10 * scale);
+  // No term is so small that it could be missed.
+  for (const double term : {b.inertialLoss, b.shearDissipation, b.bulkDissipation, b.elasticPower, b.wallPower})
+    EXPECT_GT(std::abs(dt * term), 1e-6 * scale);
+  EXPECT_GT(std::abs(fallen), 1e-6 * scale);
+  EXPECT_GT(b.elasticEnergy, 0);
+}
+
+template <int D>
+void checkMomenta(const Case& c, Simulation<D>& s) {
+  const Momenta before(c, s.particles());
+  const StepReport report = s.advance();
+  const Momenta after(c, s.particles());
+  const double dt = report.timeStep;
+  Vec<3> force = -before.mass * c.gravity, torque = cross(c.gravity, before.moment);
+  double forces = norm(force), torques = norm(torque);
+  for (const WallLoad& load : report.balance->walls) {
+    EXPECT_GT(norm(load.force), 0);
+    force += load.force, torque += load.torque;
+    forces += norm(load.force), torques += norm(load.torque);
+  }
+  const Vec<3> linear = after.linear - before.linear, angular = after.angular - before.angular;
+  EXPECT_LE(norm(linear + dt * force), 1e-9 * (norm(linear) + dt * forces));
+  EXPECT_LE(norm(angular + dt * torque), 1e-9 * (norm(angular) + dt * torques));
+}
+
+/// Both, for walls that rest, slide past each other, and oscillate with steps of unequal length.
+template <int D, class Check>
+void checkMotions(Check&& check) {
+  for (const WallsMove how : {WallsMove::Apart, WallsMove::Oscillating}) {
+    LoadedWalls<D> start(how);
+    Simulation<D> s = start.template simulation<Cpu>();
+    for (int k = 0; k < 3; ++k) check(start.c, s);
+  }
+}
+
+TEST(Balance, EnergyIsConserved) {
+  checkMotions<2>(checkEnergy<2>);
+  checkMotions<3>(checkEnergy<3>);
+}
+
+TEST(Balance, ForcesOnWallsAreTheMomentumThatTheFluidLoses) {
+  checkMotions<2>(checkMomenta<2>);
+  checkMotions<3>(checkMomenta<3>);
+}
+
+/// The balance of [K23 eqs. (3)-(10)] from the formulas over all pairs, for the velocities at the end of a step.
+template <int D>
+struct PlainBalance {
+  using Vector = Eigen::Matrix<double, D, 1>;
+
+  const Scene<D>& s;
+  const Oracle<D> oracle{s};
+  std::vector<Vector> u;  // as the scene's particles
+
+  PlainBalance(const Scene<D>& scene, const Particles<D>& after) : s(scene), u(after.count) {
+    for (std::uint32_t i = 0; i < after.count; ++i)
+      for (int k = 0; k < D; ++k) u[after.id[i]][k] = after.velocity[i][k];
+  }
+
+  bool isFluid(std::uint32_t i) const { return i < s.particles.fluidCount; }
+
+  /// (u_ij.e_ij) w'_ij^p summed over the particles j that `counts` accepts, and n likewise.
+  template <class Counts>
+  double divergence(std::uint32_t i, Counts&& counts) const {
+    double sum = 0;
+    for (std::uint32_t j = 0; j < oracle.count(); ++j) {
+      if (j == i || !counts(j)) continue;
+      const Vector d = oracle.difference(i, j);
+      sum += (u[j] - u[i]).dot(d.normalized()) * oracle.dw(d.norm(), oracle.hp);
+    }
+    return sum;
+  }
+  double overDensity(std::uint32_t i, bool withFluid) const {
+    double n = 0;
+    for (std::uint32_t j = 0; j < oracle.count(); ++j)
+      if (j != i && (withFluid || !isFluid(j))) n += oracle.w(oracle.difference(i, j).norm(), oracle.hp);
+    const double rest = latticeNumberDensity(Weight<D>::make(oracle.hp, oracle.l), oracle.l);
+    return std::max(0.0, n - rest);
+  }
+  double elasticPressure(std::uint32_t i) const { return oracle.material(i).bulkModulus * overDensity(i, true); }
+
+  /// 2 (d+2) mu_ij (u_ij.e_ij) (-w'^v) / r_ij e_ij: on i, from j [N/m3].
+  Vector drag(std::uint32_t i, std::uint32_t j) const {
+    const Vector d = oracle.difference(i, j), e = d.normalized();
+    const double r = d.norm();
+    return -2 * (D + 2) * oracle.mu(i, j) * (u[j] - u[i]).dot(e) * oracle.dw(r, oracle.hv) / r * e;
+  }
+
+  /// Of floor and side, and the walls' power.
+  Balance walls() const {
+    const auto everyone = [](std::uint32_t) { return true; };
+    const double volume = s.volume();
+    std::vector<double> pressure;
+    for (std::uint32_t i = 0; i < oracle.count(); ++i)
+      pressure.push_back(oracle.material(i).bulkViscosity * divergence(i, everyone) + elasticPressure(i));
+    Balance b;
+    b.walls.resize(2);
+    for (std::uint32_t i = s.particles.fluidCount; i < oracle.count(); ++i)
+      for (std::uint32_t j = 0; j < s.particles.fluidCount; ++j) {
+        const Vector d = oracle.difference(i, j), e = d.normalized();
+        const Vector push = (pressure[i] + pressure[j]) * oracle.dw(d.norm(), oracle.hp) * e + drag(i, j);
+        Vec<3> force{};
+        for (int k = 0; k < D; ++k) force[k] = volume * push[k];
+        WallLoad& load = b.walls[s.particles.body[i] - 1];
+        load.force += force;
+        load.torque += cross(resized<3>(s.particles.position[i]), force);
+        b.wallPower -= volume * push.dot(u[i]);
+      }
+    return b;
+  }
+};
+
+/// A scene for the oracle and the state after a step from it.
+template <int D>
+struct Stepped {
+  Scene<D> before;
+  Simulation<D> simulation;
+  Balance balance;
+  PlainBalance<D> plain;
+
+  explicit Stepped(const LoadedWalls<D>& start)
+      : simulation(start.template simulation<Cpu>()),
+        balance(*simulation.advance().balance),
+        plain(filled(start), simulation.particles()) {}
+
+ private:
+  const Scene<D>& filled(const LoadedWalls<D>& start) {
+    before.c = start.c;
+    before.particles = start.copy();
+    return before;
+  }
+};
+
+template <int D>
+void checkLoads(WallsMove how) {
+  const Stepped<D> step{LoadedWalls<D>(how)};
+  const Balance expected = step.plain.walls();
+  ASSERT_EQ(step.balance.walls.size(), 2u);
+  ASSERT_EQ(expected.walls.size(), 2u);
+  for (std::size_t k = 0; k < 2; ++k) {
+    const WallLoad &a = expected.walls[k], &b = step.balance.walls[k];
+    EXPECT_LE(norm(a.force - b.force), 1e-9 * norm(a.force));
+    EXPECT_LE(norm(a.torque - b.torque), 1e-9 * norm(a.torque));
+  }
+  EXPECT_NEAR(step.balance.wallPower, expected.wallPower, 1e-9 * std::abs(expected.wallPower));
+  EXPECT_EQ(step.balance.wallPower == 0, how == WallsMove::Not);
+}
+
+TEST(Balance, LoadsAreTheSumsOverPairsOfWallAndFluid) {
+  for (const WallsMove how : {WallsMove::Not, WallsMove::Apart}) {
+    checkLoads<2>(how);
+    checkLoads<3>(how);
+  }
+}
+
+/// Between walls at rest the dissipations are twice Rayleigh's function, together and each without the other.
+template <int D>
+void checkDissipations() {
+  const LoadedWalls<D> start(WallsMove::Not);
+  const auto twiceRayleigh = [](const Stepped<D>& step) {
+    Eigen::VectorXd u(D * step.plain.oracle.count());
+    for (std::uint32_t i = 0; i < step.plain.oracle.count(); ++i) u.template segment<D>(D * i) = step.plain.u[i];
+    return 2 * step.plain.oracle.dissipation(u);
+  };
+  const Stepped<D> both(start);
+  const double whole = twiceRayleigh(both);
+  EXPECT_NEAR(both.balance.shearDissipation + both.balance.bulkDissipation, whole, 1e-9 * whole);
+
+  LoadedWalls<D> thin(WallsMove::Not);
+  for (Material& m : thin.c.materials) m.dynamicViscosity = m.bulkModulus = 0;
+  const Stepped<D> bulkOnly(thin);
+  EXPECT_EQ(bulkOnly.balance.shearDissipation, 0);
+  EXPECT_GT(bulkOnly.balance.bulkDissipation, 0);
+
+  LoadedWalls<D> soft(WallsMove::Not);
+  for (Material& m : soft.c.materials) m.bulkViscosity = m.bulkModulus = 0;
+  const Stepped<D> shearOnly(soft);
+  const double shear = twiceRayleigh(shearOnly);
+  EXPECT_EQ(shearOnly.balance.bulkDissipation, 0);
+  EXPECT_NEAR(shearOnly.balance.shearDissipation, shear, 1e-9 * shear);
+}
+
+TEST(Balance, DissipationsAreTwiceRayleighsFunction) {
+  checkDissipations<2>();
+  checkDissipations<3>();
+}
+
+template <int D>
+void checkElasticEnergy() {
+  const Stepped<D> step{LoadedWalls<D>(WallsMove::Apart)};
+  double energy = 0;
+  for (std::uint32_t i = 0; i < step.plain.oracle.count(); ++i) {
+    const double all = step.plain.overDensity(i, true);
+    const double ofWalls = step.plain.isFluid(i) ? 0 : step.plain.overDensity(i, false);
+    energy += step.plain.oracle.material(i).bulkModulus / 2 * (all * all - ofWalls * ofWalls);
+  }
+  energy *= step.before.volume();
+  EXPECT_NEAR(step.balance.elasticEnergy, energy, 1e-9 * energy);
+}
+
+TEST(Balance, ElasticEnergyIsThatOfTheDensities) {
+  checkElasticEnergy<2>();
+  checkElasticEnergy<3>();
+}
+
+TEST(Balance, ElasticPowerIsWhatTheElasticEnergyLoses) {
+  LoadedWalls<2> start(WallsMove::Not);
+  start.c.time.step = 1e-7;
+  Simulation<2> s = start.simulation<Cpu>();
+  const Balance first = *s.advance().balance, second = *s.advance().balance;
+  const double lost = (first.elasticEnergy - second.elasticEnergy) / start.c.time.step;
+  EXPECT_NEAR(first.elasticPower, lost, 1e-3 * std::abs(lost));
+}
+
+TEST(Balance, DoesNotDependOnTheNumberOfThreads) {
+  const LoadedWalls<3> start(WallsMove::Apart);
+  const auto balance = [&](int threads) {
+    omp_set_num_threads(threads);
+    Simulation<3> s = start.simulation<Cpu>();
+    return *s.advance().balance;
+  };
+  const Balance one = balance(1), three = balance(3);
+  EXPECT_EQ(one.shearDissipation, three.shearDissipation);
+  EXPECT_EQ(one.bulkDissipation, three.bulkDissipation);
+  EXPECT_EQ(one.elasticPower, three.elasticPower);
+  EXPECT_EQ(one.wallPower, three.wallPower);
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_EQ(one.walls[k].force, three.walls[k].force);
+    EXPECT_EQ(one.walls[k].torque, three.walls[k].torque);
+  }
+}
+
+TEST(Balance, IsMadeOnlyWhereItIsWanted) {
+  LoadedWalls<2> start(WallsMove::Not);
+  Simulation<2> with = start.simulation<Cpu>();
+  start.c.output.balance = false;
+  Simulation<2> without = start.simulation<Cpu>();
+  EXPECT_TRUE(with.advance().balance.has_value());
+  EXPECT_FALSE(without.advance().balance.has_value());
+  EXPECT_GT(with.bytes(), without.bytes());
+  for (std::uint32_t i = 0; i < with.particles().count; ++i)
+    ASSERT_EQ(with.particles().position[i], without.particles().position[i]);
+}
+
+}  // namespace
+}  // namespace treacle::test
