@@ -27,6 +27,10 @@ Vec<3> wallVelocity(const Body& body, double t, double dt) {
   return body.velocity + rate * o.amplitude;
 }
 
+Vec<3> wallCenter(const Body& body, double t) {
+  return body.rotation ? body.rotation->center + displacement(body, t) : Vec<3>{};
+}
+
 Vec<3> wallAcceleration(const Body& body, double t) {
   const Oscillation& o = body.oscillation;
   if (o.period == 0) return {};
@@ -40,7 +44,7 @@ WallMotion<D> wallMotion(const Domain& domain, const Body& body, double t, doubl
   m.velocity = resized<D>(wallVelocity(body, t, dt));
   m.acceleration = resized<D>(wallAcceleration(body, t + dt));
   if (!body.rotation) return m;
-  m.center = resized<D>(body.rotation->center + displacement(body, t));
+  m.center = resized<D>(wallCenter(body, t));
   for (int k = 0; k < D; ++k)
     if (domain.periodic[static_cast<std::size_t>(k)]) m.period[k] = domain.max[k] - domain.min[k];
   const double speed = body.rotation->speed, half = sinc(speed * dt / 2);

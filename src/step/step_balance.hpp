@@ -4,15 +4,13 @@
 #include "treacle/method/balance_sums.hpp"
 #include "treacle/method/neighbourhood.hpp"
 #include "treacle/model/balance.hpp"
+#include "treacle/model/wall_motion.hpp"
 #include "treacle/step/balance_sums.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 namespace treacle {
-
-/// The point about which the torque on a wall body is taken [m].
-inline Vec<3> torqueCentre(const Body&) { return {}; }
 
 /// Makes the balance of a step of MPH-I, and holds what that takes.
 template <int D, class Backend>
@@ -79,7 +77,7 @@ class StepBalance {
       const LoadSums& load = loads[b];
       balance.wallPower -= volume * load.power;
       balance.walls.push_back(
-          {volume * load.force, volume * (load.torque - cross(torqueCentre(s.c.bodies[b]), load.force))});
+          {volume * load.force, volume * (load.torque - cross(wallCenter(s.c.bodies[b], s.time), load.force))});
     }
   }
 

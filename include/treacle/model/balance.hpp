@@ -9,7 +9,7 @@ namespace treacle {
 /// What the fluid exerts on a wall body by pressure and viscosity; in 2D per metre of depth, the torque along z.
 struct WallLoad {
   Vec<3> force{};   // [N]
-  Vec<3> torque{};  // about the origin [N m]
+  Vec<3> torque{};  // about the wall's centre of rotation, else the origin [N m]
 };
 
 /// Where the energy of the fluid goes in one step of MPH-I, with the velocities at its end and the places at its

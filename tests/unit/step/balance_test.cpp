@@ -190,6 +190,20 @@ TEST(Balance, LoadsAreTheSumsOverPairsOfWallAndFluid) {
   }
 }
 
+/// A wall that turns, however slowly, has its torque about its centre, wherever its velocity has carried that.
+TEST(Balance, TorquesAreAboutTheCentreOfRotation) {
+  LoadedWalls<2> sliding(WallsMove::Apart), turning(WallsMove::Apart);
+  const Vec<3> center{0.01, -0.02, 0};
+  turning.c.bodies[2].rotation = Rotation{.center = center, .speed = 1e-30};
+  Simulation<2> a = sliding.simulation<Cpu>(), b = turning.simulation<Cpu>();
+  for (int k = 0; k < 3; ++k) {
+    const WallLoad origin = a.advance().balance->walls[1], load = b.advance().balance->walls[1];
+    const Vec<3> now = center + (k * sliding.c.time.step) * sliding.c.bodies[2].velocity;
+    EXPECT_GT(norm(cross(now, load.force)), 1e-3 * norm(origin.torque));
+    EXPECT_LE(norm(origin.torque - cross(now, load.force) - load.torque), 1e-9 * norm(origin.torque));
+  }
+}
+
 /// Between walls at rest the dissipations are twice Rayleigh's function, together and each without the other.
 template <int D>
 void checkDissipations() {
