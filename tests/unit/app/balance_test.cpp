@@ -86,7 +86,7 @@ TEST(balance, isNotForIsph) {
   const Outcome outcome = shop.call("run case.toml");
   EXPECT_EQ(outcome.exitCode, 2);
   EXPECT_THAT(outcome.err,
-              HasSubstr("case.toml:42:1: unknown key 'balance' in [output]: it belongs to the method 'mph-i'; "
+              HasSubstr("case.toml:41:1: unknown key 'balance' in [output]: it belongs to the method 'mph-i'; "
                         "expected 'interval', 'checkpoint_interval', 'fields', 'format' or 'precision'"));
 }
 

@@ -53,6 +53,16 @@ TEST(DeviceMemory, GrowsInProportionToTheNumbersAndLessForWalls) {
   EXPECT_EQ(estimatedDeviceMemory(c, {many, many}), fixed + many * (fluid + wall));
 }
 
+TEST(Memory, OfTheBalanceCountsWhereItIsMade) {
+  for (const int dimensions : {2, 3}) {
+    Case c = caseOf(dimensions), with = c;
+    with.output.balance = true;
+    EXPECT_GT(estimatedDeviceMemory(with, some), estimatedDeviceMemory(c, some));
+    EXPECT_GT(estimatedMemory(with, some, false), estimatedMemory(c, some, false));
+    EXPECT_EQ(estimatedMemory(with, some, true), estimatedMemory(c, some, true));
+  }
+}
+
 TEST(HostMemory, HoldsNoSolverWhereTheRunIsOnADevice) {
   constexpr ParticleNumbers many{1'000'000, 1'000'000};
   Case c = caseOf(3);
