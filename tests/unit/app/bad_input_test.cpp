@@ -436,7 +436,7 @@ TEST(FullDisk, endsTheRunWithDiagnosisAndLeavesNoPartOfAFile) {
     EXPECT_NO_THROW(readVtp(entry.path()));
   }
   EXPECT_THAT(shop.content("small-run/summary.json"), HasSubstr("\"status\": \"failed\""));
-  EXPECT_THAT(shop.content("small-run/case.toml"), EndsWith("precision = \"single\"\n"));
+  EXPECT_THAT(shop.content("small-run/case.toml"), EndsWith("balance = false\n"));
 }
 
 TEST(FullDisk, foundByTheOutputThreadEndsTheRunAndKeepsTheFrames) {
