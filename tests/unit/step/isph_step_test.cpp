@@ -25,7 +25,7 @@ struct DirectStep {
     std::vector<double> p(solution.begin(), solution.end());
     for (double& x : p)
       if (!c.method.isph.negativePressure) x = std::max(0.0, x);
-    const std::vector<Vec<D>> rest(c.bodies.size() + 1);
+    const std::vector<Vec<D>> rest(s.particles.count);
     for (std::uint32_t i = 0; i < s.n(); ++i) {
       const Vec<D> corrected = oracle.corrected(predicted, p, i, rest);
       velocity[s.particles.id[i]] = oracle.stopped(corrected, v, p[i], i);
