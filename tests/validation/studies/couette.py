@@ -1,7 +1,7 @@
 import numpy as np
 from study import Level, Outcome, Study
 
-H, U, nu = 0.02, 0.01, 1e-3  # gap [m], speed of the plate [m/s], kinematic viscosity [m2/s]
+H, U, nu, mu, length = 0.02, 0.2, 1e-3, 1.0, 0.02  # gap [m], plate [m/s], viscosity [m2/s], [Pa s], plates [m]
 
 
 def exact(y, t):
@@ -11,9 +11,18 @@ def exact(y, t):
     return y / H + (2 / np.pi * (-1.0) ** n / n * decay * np.sin(n * np.pi * y / H)).sum(axis=0)
 
 
+def steady(run):
+    """Means over the second half of the run: slope of u / U over y / H, shear stress on the plates / (mu U / H)."""
+    half = run.times[-1] / 2
+    slopes = [np.polyfit(f.position[:, 1] / H, f.velocity[:, 0] / U, 1)[0] for f in run.frames() if f.time > half]
+    late = run.balance["time"] > half
+    forces = (run.balance["lower plate_force_x"] - run.balance["upper plate_force_x"])[late] / 2
+    return np.mean(slopes), np.mean(forces) / (mu * U / H * length)
+
+
 def measure(run):
     errors, curves, solutions = {}, {}, {}
-    for t in (0.02, 0.08):
+    for t in (0.02, 0.08, 0.4):
         frame = run.frame(int(np.argmin(abs(run.times - t))))
         y, u = frame.position[:, 1], frame.velocity[:, 0] / U
         errors[f"t = {frame.time:g} s"] = np.sqrt(np.mean((u - exact(y, frame.time)) ** 2))
@@ -21,14 +30,22 @@ def measure(run):
         curves[f"t = {frame.time:g} s"] = (y[rows], u[rows])
         line = np.linspace(0, H, 101)
         solutions[f"exact, t = {frame.time:g} s"] = (line, exact(line, frame.time))
-    return Outcome(errors, {}, curves, solutions)
+    slope, stress = steady(run)
+    errors["viscosity"] = abs(stress / slope - 1)
+    spacing = np.sqrt(H * length / len(frame.id))
+    values = {
+        "stress / exact": stress,
+        "viscosity / mu": stress / slope,
+        "slip / spacing": H * (1 / slope - 1) / 2 / spacing,
+    }
+    return Outcome(errors, values, curves, solutions)
 
 
 study = Study(
     name="couette",
     title="Start-up of plane Couette flow",
-    levels=[Level(1), Level(2), Level(4)],
-    bars={"t = 0.02 s": 0.1, "t = 0.08 s": 0.1},
+    levels=[Level(1), Level(2), Level(4), Level(8)],
+    bars={"t = 0.02 s": 0.07, "t = 0.08 s": 0.055, "t = 0.4 s": 0.03, "viscosity": 0.02},
     measure=measure,
     x_label="y [m]",
     y_label="u / U",
