@@ -55,8 +55,10 @@ class ClusterSum {
     const int lane = threadIdx.x % 32, group = lane / S::slots, slot = lane % S::slots;
     const bool wraps = S::ranges || list_.wraps[cluster_];
     const auto origin = places.own(pairs_, first_, first_, wraps);
-    const Vec<D, T> mine = places.local(places.own(pairs_, particle(lane % clusterSize), first_, wraps), origin);
-    const bool torn = __any_sync(~0u, places.tornApart(mine));
+    const std::uint32_t laneOwn = particle(lane % clusterSize);
+    Vec<D, T> mine = places.local(places.own(pairs_, laneOwn, first_, wraps), origin);
+    const bool torn = Places<D, T>::imagesMayCount && __any_sync(~0u, places.tornApart(mine));
+    if (torn) mine = places.beside(pairs_, laneOwn, first_);
     Vec<D, T> x[S::own];
     typename Terms::Own own[S::own];
     T sum[paddedSums] = {};
@@ -69,28 +71,37 @@ class ClusterSum {
       typename Places<D, T>::Stored x;
       typename Terms::Other other;
     };
-    const auto load = [&](ListEntry e) {
-      return Loaded{places.neighbour(pairs_, e, wraps), terms.loadOther(pairs_, e.index())};
-    };
-    const auto add = [&](const Loaded& loaded, ListSegment segment) {
-      const Vec<D, T> local = places.local(loaded.x, origin);
+    const auto walk = [&](auto apart) {
+      const auto load = [&](ListEntry e) {
+        return Loaded{apart ? places.marked(e) : places.neighbour(pairs_, e, wraps),
+                      terms.loadOther(pairs_, e.index())};
+      };
+      const auto add = [&](const Loaded& loaded, ListSegment segment) {
+        const Vec<D, T> local = places.local(loaded.x, origin);
+        const Vec<D, T> listed = apart ? places.atImage(loaded.x, origin) : Vec<D, T>{};
 #pragma unroll
-      for (int t = 0; t < S::own; ++t) {
-        Vec<D, T> d = local - x[t];
-        if (torn) places.bringHome(d);
-        T r2 = places.floor;
-        for (int k = 0; k < D; ++k) r2 = fma(d[k], d[k], r2);
-        terms.add(pairs_, &sum[t * values], d, inverseSqrt(r2), own[t], loaded.other, segment);
+        for (int t = 0; t < S::own; ++t) {
+          Vec<D, T> d = local - x[t];
+          if (apart) places.bringHome(d, listed - x[t], loaded.x, particle(group * S::own + t));
+          T r2 = places.floor;
+          for (int k = 0; k < D; ++k) r2 = fma(d[k], d[k], r2);
+          terms.add(pairs_, &sum[t * values], d, inverseSqrt(r2), own[t], loaded.other, segment);
+        }
+      };
+      if constexpr (S::ranges) {
+        const bool fluid =
+            walkRanges<Terms, S>(pairs_, first_, count_, [&](ListEntry e, ListSegment s) { add(load(e), s); });
+        if (first_ >= pairs_.fluidCount && !fluid)  // lists leave such walls out
+          for (T& value : sum) value = 0;
+      } else {
+        walkLists<Terms, S>(list_, cluster_, slot + S::slots * part, load, add);
       }
     };
-    if constexpr (S::ranges) {
-      const bool fluid =
-          walkRanges<Terms, S>(pairs_, first_, count_, [&](ListEntry e, ListSegment s) { add(load(e), s); });
-      if (first_ >= pairs_.fluidCount && !fluid)  // lists leave such walls out
-        for (T& value : sum) value = 0;
-    } else {
-      walkLists<Terms, S>(list_, cluster_, slot + S::slots * part, load, add);
-    }
+    // A loop of its own: the other one has its registers for itself.
+    if (torn)
+      walk(std::true_type{});
+    else
+      walk(std::false_type{});
     store(terms, sum, part, exchange);
   }
 

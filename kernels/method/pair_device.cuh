@@ -16,7 +16,7 @@ __device__ Vec<D> nearestImage(const CellGrid<D>& grid, Vec<D> d) {
 /// Where particle i of a cluster stands as the cluster's list sees it: at the image nearest to the first particle.
 template <int D>
 __device__ Vec<D> positionInCluster(const MphPairs<D>& pairs, std::uint32_t first, std::uint32_t i) {
-  return pairs.position[first] + nearestImage(pairs.grid, pairs.position[i] - pairs.position[first]);
+  return pairs.grid.beside(pairs.position[first], pairs.position[i]);
 }
 
 /// -e w'^p = g of a pair with difference d, r2 = |d|^2 in (0, h_p^2) [1/m].

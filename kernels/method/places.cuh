@@ -46,13 +46,8 @@ struct Places<D, double> {
 
   /// Particle i of a cluster, at the image nearest to the cluster's first particle.
   __device__ Stored own(const MphPairs<D>& pairs, std::uint32_t i, std::uint32_t first, bool wraps) const {
-    Vec<D> x = pairs.position[i];
-    if (!wraps) return x;
-    for (int k = 0; k < D; ++k) {
-      const double away = x[k] - pairs.position[first][k], length = pairs.grid.length[k];
-      if (pairs.grid.periodic[k] && fabs(away) > 0.5 * length) x[k] -= length * round(away / length);
-    }
-    return x;
+    const Vec<D>& x = pairs.position[i];
+    return wraps ? pairs.grid.beside(pairs.position[first], x) : x;
   }
   __device__ Stored neighbour(const MphPairs<D>& pairs, ListEntry e, bool wraps) const {
     Vec<D> x = pairs.position[e.index()];
@@ -60,9 +55,14 @@ struct Places<D, double> {
     return x;
   }
   __device__ Vec<D> local(const Stored& x, const Stored&) const { return x; }
-  /// Whether differences of local positions may mean another image: not here, images are in the lists.
+
+  /// Whether differences of local positions can mean another image than the list does: not here, images are added.
+  static constexpr bool imagesMayCount = false;
   __device__ static bool tornApart(const Vec<D>&) { return false; }
-  __device__ static void bringHome(Vec<D>&) {}
+  __device__ static Vec<D> beside(const MphPairs<D>&, std::uint32_t, std::uint32_t) { return {}; }
+  __device__ static Stored marked(ListEntry) { return {}; }
+  __device__ static Vec<D> atImage(const Stored&, const Stored&) { return {}; }
+  __device__ static void bringHome(Vec<D>&, const Vec<D>&, const Stored&, std::uint32_t) {}
 };
 
 /// In single precision: differences of positions in units of 2^-32 of the domain's length are exact, and those
@@ -86,7 +86,7 @@ struct Places<D, float> {
     }
     return p;
   }
-  static double unit(const MphPairs<D>& pairs) { return pairs.viscosityWeight.radius; }
+  TREACLE_HD static double unit(const MphPairs<D>& pairs) { return pairs.viscosityWeight.radius; }
 
   __device__ Stored own(const MphPairs<D>&, std::uint32_t i, std::uint32_t, bool) const { return fixed[i]; }
   __device__ Stored neighbour(const MphPairs<D>&, ListEntry e, bool) const { return fixed[e.index()]; }
@@ -102,15 +102,52 @@ struct Places<D, float> {
     if constexpr (D == 3) d[2] = axis(x.z, origin.z, 2);
     return d;
   }
+  static constexpr bool imagesMayCount = true;
+
   /// A particle this far from its cluster's first one may have neighbours that are nearer to the first one's other
-  /// side: then each difference has to be brought home.
+  /// side, and a neighbour may be in the list at two images, each for other particles: then images count.
   __device__ bool tornApart(const Vec<D, float>& own) const {
     bool torn = false;
     for (int k = 0; k < D; ++k) torn = torn || fabsf(own[k]) > 0.5f * period[k] - 1.01f;
     return torn;
   }
-  __device__ void bringHome(Vec<D, float>& d) const {
-    for (int k = 0; k < D; ++k) d[k] -= period[k] * rintf(d[k] / period[k]);
+  /// Particle i from the cluster's first one, beside it as the lists see it.
+  __device__ static Vec<D, float> beside(const MphPairs<D>& pairs, std::uint32_t i, std::uint32_t first) {
+    const Vec<D> x = pairs.position[first], d = pairs.grid.beside(x, pairs.position[i]) - x;
+    Vec<D, float> single;
+    for (int k = 0; k < D; ++k) single[k] = static_cast<float>(d[k] / unit(pairs));
+    return single;
+  }
+  /// A neighbour's position together with its entry.
+  __device__ Stored marked(ListEntry e) const {
+    int4 x = fixed[e.index()];
+    x.w = static_cast<int>(e.bits);
+    return x;
+  }
+  /// A marked neighbour from the cluster's first particle, at its image; only so exact as to tell images apart.
+  __device__ Vec<D, float> atImage(const Stored& x, const Stored& origin) const {
+    const auto axis = [this](int a, int b, int k) {
+      return (static_cast<float>(static_cast<unsigned>(a)) - static_cast<float>(static_cast<unsigned>(b))) *
+             scale[k];
+    };
+    Vec<D, float> d;
+    d[0] = axis(x.x, origin.x, 0);
+    d[1] = axis(x.y, origin.y, 1);
+    if constexpr (D == 3) d[2] = axis(x.z, origin.z, 2);
+    std::uint32_t code = ListEntry{static_cast<std::uint32_t>(x.w)}.image();
+    for (int k = 0; k < D; ++k, code /= 3) d[k] += code % 3 == 0 ? 0.f : code % 3 == 1 ? period[k] : -period[k];
+    return d;
+  }
+  /// The difference d from particle i to a marked neighbour brought to the nearest image, if that is the one in
+  /// the list, which is `listed` away; else, and from i to itself, one that is out of reach.
+  __device__ void bringHome(Vec<D, float>& d, const Vec<D, float>& listed, const Stored& neighbour,
+                            std::uint32_t i) const {
+    bool other = ListEntry{static_cast<std::uint32_t>(neighbour.w)}.index() == i;
+    for (int k = 0; k < D; ++k) {
+      d[k] -= period[k] * rintf(d[k] / period[k]);
+      other = other || fabsf(listed[k] - d[k]) > 0.5f * period[k];
+    }
+    if (other) d[0] = 1e10f;
   }
 };
 

@@ -22,11 +22,8 @@ class ClusterCandidates {
                                std::uint32_t first, std::uint32_t count, Shared& shared)
       : grid_(grid), cells_(cells), position_(position), shared_(shared) {
     const std::uint32_t own = threadIdx.x % clusterSize;
-    Vec<D> x = position[first + (own < count ? own : count - 1)];
-    const Vec<D> origin = position[first];
+    const Vec<D> x = grid.beside(position[first], position[first + (own < count ? own : count - 1)]);
     for (int k = 0; k < D; ++k) {
-      if (grid.periodic[k] && fabs(x[k] - origin[k]) > 0.5 * grid.length[k])
-        x[k] -= grid.length[k] * round((x[k] - origin[k]) / grid.length[k]);
       low_[k] = high_[k] = x[k];
       for (int offset = 1; offset < static_cast<int>(clusterSize); offset *= 2) {
         low_[k] = fmin(low_[k], __shfl_xor_sync(~0u, low_[k], offset));

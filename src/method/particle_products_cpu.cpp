@@ -6,20 +6,22 @@
 namespace treacle {
 namespace {
 
-/// Positions of the clusters of a list, at the image nearest to the cluster's first particle.
+/// Positions of the clusters of a list, beside the cluster's first particle as the list sees them: which image
+/// that is, is decided in double precision.
 template <int D, class T>
 void positionLanes(const MphPairs<D>& pairs, const ClusterListView& list, const Buffer<Vec<D, T>>& position,
                    Buffer<T>& lanes) {
   lanes.resize(std::size_t{D} * clusterSize * list.clusterCount());
   parallelFor(list.clusterCount(), parallelGrain / clusterSize, [&](std::size_t c) {
     const ClusterRange range(list, static_cast<std::uint32_t>(c));
-    const Vec<D, T>& first = position[range.first];
-    for (int k = 0; k < D; ++k) {
-      const T length = static_cast<T>(pairs.grid.length[k]);
-      for (std::uint32_t lane = 0; lane < clusterSize; ++lane) {
-        T x = position[range.particle(lane)][k];
-        if (pairs.grid.periodic[k]) x -= length * std::round((x - first[k]) / length);
-        lanes[(c * D + k) * clusterSize + lane] = x;
+    for (std::uint32_t lane = 0; lane < clusterSize; ++lane) {
+      const std::uint32_t i = range.particle(lane);
+      const Vec<D>& there = pairs.position[i];
+      const Vec<D> here = pairs.grid.beside(pairs.position[range.first], there);
+      for (int k = 0; k < D; ++k) {
+        const T length = static_cast<T>(pairs.grid.length[k]);
+        const T shift = here[k] < there[k] ? -length : here[k] > there[k] ? length : 0;
+        lanes[(c * D + k) * clusterSize + lane] = position[i][k] + shift;
       }
     }
   });

@@ -81,6 +81,19 @@ struct CellGrid {
     return d;
   }
 
+  /// The periodic image of y that is nearest to x [m], for both inside the domain; where y is halfway, y itself.
+  /// Whatever uses the lists of a cluster must put its particles beside the first one in this way: in a lattice
+  /// halfway is a common place, and rounding the other way would mean another image than the lists do.
+  TREACLE_HD Vec<D> beside(const Vec<D>& x, Vec<D> y) const {
+    for (int k = 0; k < D; ++k) {
+      if (!periodic[k]) continue;
+      const double away = y[k] - x[k];
+      if (away > 0.5 * length[k]) y[k] -= length[k];
+      if (away < -0.5 * length[k]) y[k] += length[k];
+    }
+    return y;
+  }
+
   /// Sort key: Hilbert index at the resolution of sub-cells. key >> (D subBits) is the cell's Hilbert index, and
   /// each further shift by D that of the bucket one level coarser.
   TREACLE_HD std::uint64_t key(const Vec<D>& x) const {

@@ -80,12 +80,16 @@ template <int D>
 inline VecLanes<D> loadPositions(const ClusterRange& range, std::span<const Vec<D>> position,
                                  const CellGrid<D>& grid) {
   VecLanes<D> x = loadLanes<D>(range, position);
+  bool divided = false;
   for (int k = 0; k < D; ++k) {
-    if (!grid.periodic[k]) continue;
     const Lanes away = x[k] - x[k][0];
-    if (!anyAtMost(-max(away, -away), -0.5 * grid.length[k])) continue;
-    for (int lane = 1; lane < laneCount; ++lane)
-      x[k][lane] -= grid.length[k] * std::round(away[lane] / grid.length[k]);
+    divided = divided || (grid.periodic[k] && anyAtMost(-max(away, -away), -0.5 * grid.length[k]));
+  }
+  if (!divided) return x;
+  for (int lane = 1; lane < laneCount; ++lane) {
+    const Vec<D> y =
+        grid.beside(position[range.first], position[range.particle(static_cast<std::uint32_t>(lane))]);
+    for (int k = 0; k < D; ++k) x[k][lane] = y[k];
   }
   return x;
 }

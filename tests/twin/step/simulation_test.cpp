@@ -2,6 +2,7 @@
 #include "support/gpu.hpp"
 #include "support/scene.hpp"
 #include "support/stretched_body.hpp"
+#include "support/torn_cluster.hpp"
 #include "treacle/core/error.hpp"
 
 #include <gtest/gtest.h>
@@ -103,6 +104,33 @@ TEST(SimulationTwin, StepsLikeTheCpuWithEverySolver) {
     compareSteps<2>(s);
     compareSteps<3>(s);
   }
+}
+
+TEST(SimulationTwin, StepsLikeTheCpuWhereAClusterIsTorn) {
+  TREACLE_SKIP_WITHOUT_GPU();
+  const auto checkSteps = [](const SolverSettings& settings) {
+    Case c = tornClusterCase();
+    c.solver = settings;
+    Simulation<2> cpu(c, tornClusterParticles(c));
+    Simulation<2, Cuda> cuda(c, tornClusterParticles(c));
+    for (int step = 0; step < 3; ++step) {
+      const StepReport a = cpu.advance(), b = cuda.advance();
+      EXPECT_EQ(b.fallbacks, 0) << b.failures;
+      EXPECT_NEAR(b.iterations, a.iterations, std::max(1.0, 0.03 * a.iterations));
+    }
+    Particles<2> found;
+    cuda.copyParticles(found);
+    EXPECT_LE(farthest(cpu.particles(), found), 1e-4 * c.spacing);
+  };
+  SolverSettings s;
+  checkSteps(s);
+  s.precision = Precision::Double;
+  checkSteps(s);
+  s.preconditioner = PreconditionerKind::BucketMultigrid;
+  s.krylov = KrylovKind::Cr;
+  checkSteps(s);
+  s.operatorKind = OperatorKind::Assembled;
+  checkSteps(s);
 }
 
 TEST(SimulationTwin, DeflatesLikeTheCpu) {

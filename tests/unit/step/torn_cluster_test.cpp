@@ -1,0 +1,28 @@
+#include "support/torn_cluster.hpp"
+#include "treacle/step/simulation.hpp"
+
+#include <gtest/gtest.h>
+
+namespace treacle::test {
+namespace {
+
+TEST(TornCluster, SinglePrecisionSeesTheSameImages) {
+  const Case c = tornClusterCase();
+  Scene<2> s;
+  s.c = c;
+  s.particles = tornClusterParticles(c);
+  prepare(s);
+  ASSERT_GT(countTorn(s.pairs()), 0);
+
+  Case exact = c;
+  exact.solver.precision = Precision::Double;
+  Simulation<2> mixed(c, tornClusterParticles(c)), reference(exact, tornClusterParticles(exact));
+  const StepReport found = mixed.advance(), expected = reference.advance();
+  EXPECT_EQ(found.fallbacks, 0) << found.failures;
+  EXPECT_NEAR(found.iterations, expected.iterations, 1);
+  EXPECT_NEAR(found.diagnostics.kineticEnergy, expected.diagnostics.kineticEnergy,
+              1e-5 * expected.diagnostics.kineticEnergy);
+}
+
+}  // namespace
+}  // namespace treacle::test
