@@ -11,11 +11,7 @@ inline void forEachEntry(const MphPairs<D>& pairs, std::uint32_t i, ListSegment 
   const ClusterListView& list = i < pairs.fluidCount ? pairs.fluidList : pairs.wallList;
   const std::uint32_t cluster = (i - list.first) / clusterSize;
   // A list's images are seen from the cluster's first particle; i may stand across a periodic end from it.
-  Vec<D> xi = pairs.position[i];
-  const Vec<D>& origin = pairs.position[list.first + cluster * clusterSize];
-  for (int k = 0; k < D; ++k)
-    if (pairs.grid.periodic[k])
-      xi[k] -= pairs.grid.length[k] * std::round((xi[k] - origin[k]) / pairs.grid.length[k]);
+  const Vec<D> xi = pairs.grid.beside(pairs.position[list.first + cluster * clusterSize], pairs.position[i]);
   for (ListEntry e : list.segment(cluster, segment)) f(e, pairs.positionOf(e) - xi);
 }
 

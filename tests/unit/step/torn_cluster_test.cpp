@@ -24,5 +24,19 @@ TEST(TornCluster, SinglePrecisionSeesTheSameImages) {
               1e-5 * expected.diagnostics.kineticEnergy);
 }
 
+TEST(TornCluster, TheAssembledMatrixIsTheOperator) {
+  Case c = tornClusterCase();
+  c.solver.preconditioner = PreconditionerKind::BucketMultigrid;
+  c.solver.krylov = KrylovKind::Cr;
+  c.solver.precision = Precision::Double;
+  Case stored = c;
+  stored.solver.operatorKind = OperatorKind::Assembled;
+  Simulation<2> free(c, tornClusterParticles(c)), assembled(stored, tornClusterParticles(c));
+  const StepReport expected = free.advance(), found = assembled.advance();
+  EXPECT_NEAR(found.iterations, expected.iterations, 1 + 0.03 * expected.iterations);
+  EXPECT_NEAR(found.diagnostics.kineticEnergy, expected.diagnostics.kineticEnergy,
+              1e-5 * expected.diagnostics.kineticEnergy);
+}
+
 }  // namespace
 }  // namespace treacle::test
