@@ -95,7 +95,7 @@ def run_study(study, options, scratch):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("studies", nargs="*", metavar="STUDY", help="; ".join(names) + "; all without one")
-    parser.add_argument("--program", type=Path, help="the command treacle")
+    parser.add_argument("--program", type=lambda p: Path(p).absolute(), help="the command treacle")
     parser.add_argument("--backend", default="auto", choices=["auto", "cpu", "cuda"])
     parser.add_argument("--threads", type=int, default=0)
     parser.add_argument("--all-levels", action="store_true", help="not the coarse level alone")

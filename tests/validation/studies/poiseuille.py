@@ -1,0 +1,52 @@
+import numpy as np
+from study import Level, Outcome, Study
+
+H, g, nu, length = 0.02, 2.0, 1e-3, 0.02  # gap [m], acceleration [m/s2], kinematic viscosity [m2/s], plates [m]
+U = g * H**2 / (8 * nu)  # steady speed in the middle [m/s]
+
+
+def exact(y, t):
+    """Fourier series of the start-up: u(y, t) / U."""
+    n = np.arange(1, 400, 2)[:, None]
+    decay = np.exp(-((n * np.pi / H) ** 2) * nu * t)
+    return 4 * y / H * (1 - y / H) - (32 / (n * np.pi) ** 3 * decay * np.sin(n * np.pi * y / H)).sum(axis=0)
+
+
+def steady(run):
+    """Means over the second half of the run: viscosity / nu from the curvature of the profile, and how far outside of the plates
+    the parabola is zero [m]."""
+    fits = [np.polyfit(f.position[:, 1] / H - 0.5, f.velocity[:, 0] / U, 2)
+            for f in run.frames() if f.time > run.times[-1] / 2]
+    bend, _, top = np.mean(fits, axis=0)
+    return -4 / bend, H * (np.sqrt(-top / bend) - 0.5)
+
+
+def measure(run):
+    errors, curves, solutions = {}, {}, {}
+    for t in (0.02, 0.05, 0.4):
+        frame = run.frame(int(np.argmin(abs(run.times - t))))
+        y, u = frame.position[:, 1], frame.velocity[:, 0] / U
+        errors[f"t = {frame.time:g} s"] = np.sqrt(np.mean((u - exact(y, frame.time)) ** 2))
+        rows = np.argsort(y)
+        curves[f"t = {frame.time:g} s"] = (y[rows], u[rows])
+        line = np.linspace(0, H, 101)
+        solutions[f"exact, t = {frame.time:g} s"] = (line, exact(line, frame.time))
+    viscosity, slip = steady(run)
+    errors["viscosity"] = abs(viscosity - 1)
+    values = {
+        "flow rate / exact": np.mean(u) / (2 / 3),
+        "viscosity / mu": viscosity,
+        "slip / spacing": slip / np.sqrt(H * length / len(frame.id)),
+    }
+    return Outcome(errors, values, curves, solutions)
+
+
+study = Study(
+    name="poiseuille",
+    title="Start-up of plane Poiseuille flow",
+    levels=[Level(1), Level(2), Level(4), Level(8)],
+    bars={"t = 0.02 s": 0.042, "t = 0.05 s": 0.08, "t = 0.4 s": 0.18, "viscosity": 0.05},
+    measure=measure,
+    x_label="y [m]",
+    y_label="u / U",
+)

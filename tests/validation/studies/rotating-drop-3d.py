@@ -1,0 +1,12 @@
+from study import Level, Study
+from studies._rotation import measure
+
+study = Study(
+    name="rotating-drop-3d",
+    title="Free rotating ball",
+    levels=[Level(1), Level(2), Level(4)],
+    bars={"angular momentum": 2e-7, "momentum": 1e-7},
+    measure=measure,
+    x_label="t [s]",
+    y_label="angular velocity over that at the start",
+)

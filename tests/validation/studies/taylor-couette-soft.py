@@ -1,0 +1,14 @@
+from study import Level, Study
+from studies._cylinders import measure
+
+study = Study(
+    name="taylor-couette-soft",
+    title="Taylor-Couette flow, bulk viscosity / viscosity = 100",
+    levels=[Level(1), Level(2), Level(4)],
+    bars={"velocity": 0.07, "torque, inner": 0.1, "torque, outer": 0.1},
+    measure=measure,
+    x_label="r [m]",
+    y_label="speed / that of the inner cylinder",
+    case="taylor-couette.toml",
+    settings=("material.fluid.bulk_viscosity=1e2", "material.fluid.bulk_modulus=1e4"),
+)

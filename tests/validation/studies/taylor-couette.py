@@ -1,0 +1,12 @@
+from study import Level, Study
+from studies._cylinders import measure
+
+study = Study(
+    name="taylor-couette",
+    title="Taylor-Couette flow, bulk viscosity / viscosity = 1000",
+    levels=[Level(1), Level(2), Level(4)],
+    bars={"velocity": 0.095, "torque, inner": 0.36, "torque, outer": 0.36},
+    measure=measure,
+    x_label="r [m]",
+    y_label="speed / that of the inner cylinder",
+)

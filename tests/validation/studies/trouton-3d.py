@@ -1,0 +1,12 @@
+from study import Level, Study
+from studies._extension import measurement
+
+study = Study(
+    name="trouton-3d",
+    title="Bar that stretches under its own weight",
+    levels=[Level(1), Level(2), Level(4)],
+    bars={"extensional viscosity": 0.1, "rate of strain": 0.1},
+    measure=measurement(3, 0.04, 0.01),
+    x_label="initial height above the tip [mm]",
+    y_label="rate of strain [1/s]",
+)
