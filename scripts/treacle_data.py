@@ -19,6 +19,12 @@ class RunFailed(Exception):
     """treacle ended with another exit code than 0; the message holds the command and what it printed."""
 
 
+def json_text(value):
+    """Indented JSON with each list of numbers on one line."""
+    text = json.dumps(value, indent=1, ensure_ascii=False)
+    return re.sub(r"\[[^\[\]{}\"]*\]", lambda numbers: re.sub(r"\s+", " ", numbers[0]), text) + "\n"
+
+
 def call(command, **options):
     """Runs a command; returns what it printed to stdout. Raises RunFailed."""
     done = subprocess.run([str(word) for word in command], capture_output=True, text=True, **options)

@@ -60,7 +60,7 @@ class Laboratory:
         result |= {"quick": True} if self.quick else {}
         result["wall_seconds"] = round(time.perf_counter() - begin, 2)
         path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(json.dumps(result, indent=1) + "\n")
+        path.write_text(treacle_data.json_text(result))
         print(f"  {spec.key}: {result['wall_seconds']:.1f} s", flush=True)
         return "failed" not in result
 

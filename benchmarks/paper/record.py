@@ -1,13 +1,13 @@
 """Writes what items came to, and gathers measurements into one record."""
 
 import csv
-import json
 import shutil
 
 from draw import draw
 from plan import items, portion_of, portions
 from report import judged, machines, notes, used
 from spec import Results
+from treacle_data import json_text
 
 
 def write_item(item, results, out):
@@ -35,7 +35,7 @@ def write_item(item, results, out):
         "seconds": round(sum(m["wall_seconds"] for m in measured), 2),
         "quick": any(m.get("quick") for m in measured),
     }
-    (out / f"{item.name}.json").write_text(json.dumps(told, indent=1, ensure_ascii=False) + "\n")
+    (out / f"{item.name}.json").write_text(json_text(told))
     return told
 
 
@@ -65,7 +65,7 @@ def collect(folders, record):
         "quick": any(m.get("quick") for m in every),
     }
     content = {"about": about, "measurements": results.all, "statements": judged(results)}
-    record.write_text(json.dumps(content, indent=1, ensure_ascii=False) + "\n")
+    record.write_text(json_text(content))
     print(f"{record}: {len(results.all)} measurements")
 
 

@@ -119,7 +119,7 @@ def main():
             record[name] = rows
             good = good and met
             if options.record:  # after each, so that a later failure loses nothing
-                options.record.write_text(json.dumps(record, indent=1) + "\n")
+                options.record.write_text(treacle_data.json_text(record))
     return 0 if good else 1
 
 
