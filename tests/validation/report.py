@@ -31,6 +31,7 @@ def table(study, rows):
         cells += [number(row["values"][name]) for name in values]
         lines.append("| " + " | ".join(cells) + " |")
     bars = ", ".join(f"{name} {bar:g}" for name, bar in study.bars.items())
+    bars += "".join(f"; {name} from {low:g} to {high:g}" for name, (low, high) in study.ranges.items())
     machines = sorted({row["device"] for row in rows})
     lines += ["", f"Bars at the first level: {bars}. Run on {', '.join(machines)}; commit {rows[0]['commit']}."]
     return "\n".join(lines)

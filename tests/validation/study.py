@@ -34,7 +34,8 @@ class Level:
 @dataclass
 class Study:
     """levels: from coarse to fine; the first is what continuous integration runs. bars: largest error allowed there, by the
-    names of Outcome.errors; every bar must be met. measure: takes a Run (treacle_data) to an Outcome. sizes: what orders are
+    names of Outcome.errors; every bar must be met. ranges: least and largest of Outcome.values there: where the method itself is
+    off by more than a wrong constant would be, a bar alone would let that pass. measure: takes a Run (treacle_data) to an Outcome. sizes: what orders are
     counted in, a function of the level; particle spacing unless told."""
 
     name: str
@@ -45,6 +46,7 @@ class Study:
     x_label: str
     y_label: str
     settings: tuple = ()
+    ranges: dict = field(default_factory=dict)
     case: str = ""
     size: Callable = staticmethod(lambda level: 1 / level.resolution)
 

@@ -59,25 +59,32 @@ def run_level(study, level, options, directory):
     }
 
 
-def print_level(study, row, last, bars):
-    """One block of lines; returns whether all bars are met."""
+def print_level(study, row, last, judged):
+    """One block of lines; returns whether all bars are met and all values in their ranges, if the level is judged by them."""
     print(f"{study.name} {row['level']}: {row['particles']} particles, {row['steps']} steps, "
           f"{row['iterations']:.1f} iterations, {row['seconds']} s ({row['backend']})")
-    missing = sorted(set(bars or {}) - set(row["errors"]))
+    bars, ranges = (study.bars, study.ranges) if judged else ({}, {})
+    missing = sorted((set(bars) - set(row["errors"])) | (set(ranges) - set(row["values"])))
     for name in missing:
-        print(f"  error {name}: not measured, bar NOT MET")
+        print(f"  {name}: not measured, NOT MET")
     good = not missing
     for name, error in row["errors"].items():
         text = f"  error {name}: {error:.3e}"
         if last and (p := order(last["errors"][name], error, last["size"], row["size"])) is not None:
             text += f", order {p:.2f}"
-        if name in (bars or {}):
+        if name in bars:
             met = error <= bars[name]  # false for what is not a number
             good = good and met
             text += f", bar {bars[name]:g}: {'met' if met else 'NOT MET'}"
         print(text)
     for name, value in row["values"].items():
-        print(f"  {name}: {value:.6g}")
+        text = f"  {name}: {value:.6g}"
+        if name in ranges:
+            low, high = ranges[name]
+            met = low <= value <= high
+            good = good and met
+            text += f", range {low:g} to {high:g}: {'met' if met else 'NOT MET'}"
+        print(text)
     sys.stdout.flush()
     return good
 
@@ -86,8 +93,7 @@ def run_study(study, options, scratch):
     rows, good = [], True
     for number, level in enumerate(study.levels if options.all_levels else study.levels[:1]):
         row = run_level(study, level, options, scratch / f"{study.name}-{number}")
-        bars = study.bars if number == 0 else None
-        good = print_level(study, row, rows[-1] if rows else None, bars) and good
+        good = print_level(study, row, rows[-1] if rows else None, number == 0) and good
         rows.append(row)
     return rows, good
 

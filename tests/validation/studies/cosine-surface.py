@@ -31,6 +31,7 @@ study = Study(
     title="Levelling of a cosine surface",
     levels=[Level(1), Level(2), Level(4), Level(8)],
     bars={"rate": 0.05, "memory": 0.65, "amplitude at 1 / rate": 0.45},
+    ranges={"memory (exact 0)": (0.45, 0.65)},
     measure=measure,
     x_label="t [s]",
     y_label="amplitude over that at the start",

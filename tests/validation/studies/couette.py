@@ -1,5 +1,6 @@
 import numpy as np
 from study import Level, Outcome, Study
+from studies._channels import profiles
 
 H, U, nu, mu, length = 0.02, 0.2, 1e-3, 1.0, 0.02  # gap [m], plate [m/s], viscosity [m2/s], [Pa s], plates [m]
 
@@ -21,18 +22,10 @@ def steady(run):
 
 
 def measure(run):
-    errors, curves, solutions = {}, {}, {}
-    for t in (0.02, 0.08, 0.4):
-        frame = run.frame(int(np.argmin(abs(run.times - t))))
-        y, u = frame.position[:, 1], frame.velocity[:, 0] / U
-        errors[f"t = {frame.time:g} s"] = np.sqrt(np.mean((u - exact(y, frame.time)) ** 2))
-        rows = np.argsort(y)
-        curves[f"t = {frame.time:g} s"] = (y[rows], u[rows])
-        line = np.linspace(0, H, 101)
-        solutions[f"exact, t = {frame.time:g} s"] = (line, exact(line, frame.time))
+    errors, curves, solutions = profiles(run, (0.02, 0.08, 0.4), exact, H, U)
     slope, stress = steady(run)
     errors["viscosity"] = abs(stress / slope - 1)
-    spacing = np.sqrt(H * length / len(frame.id))
+    spacing = np.sqrt(H * length / run.summary["fluid_particles"])
     values = {
         "stress / exact": stress,
         "viscosity / mu": stress / slope,

@@ -6,6 +6,7 @@ study = Study(
     title="Bar that stretches under its own weight",
     levels=[Level(1), Level(2), Level(4)],
     bars={"extensional viscosity": 0.1, "rate of strain": 0.1},
+    ranges={"extensional viscosity / mu (exact 3)": (2.7, 2.88)},
     measure=measurement(3, 0.04, 0.01),
     x_label="initial height above the tip [mm]",
     y_label="rate of strain [1/s]",

@@ -6,6 +6,7 @@ study = Study(
     title="Sheet that stretches under its own weight",
     levels=[Level(1), Level(2), Level(4)],
     bars={"extensional viscosity": 0.13, "rate of strain": 0.13},
+    ranges={"extensional viscosity / mu (exact 4)": (4.25, 4.52)},
     measure=measurement(4, 0.048, 0.012),
     x_label="initial height above the tip [mm]",
     y_label="rate of strain [1/s]",
