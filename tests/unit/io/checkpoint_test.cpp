@@ -38,7 +38,7 @@ Particles<D> randomParticles(std::uint32_t fluid, std::uint32_t wall) {
 
 template <class T>
 bool sameBits(const Buffer<T>& a, const Buffer<T>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
+  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
 }
 
 template <int D>
