@@ -1,6 +1,7 @@
 """Runs treacle and reads what it leaves, as NumPy arrays in SI units. Used by the validation studies and the reproduction
 of the papers; needs Python 3.9 and NumPy."""
 
+import csv
 import json
 import re
 import subprocess
@@ -70,7 +71,7 @@ def read_vtp(path):
 def read_table(path):
     """A CSV file with a header line: a dictionary of arrays by column."""
     with open(path) as file:
-        names = file.readline().strip().split(",")
+        names = next(csv.reader(file))  # names of bodies may be in quotes
         rows = np.loadtxt(file, delimiter=",", ndmin=2)
     return {name: rows[:, column] for column, name in enumerate(names)} if rows.size else {n: np.empty(0) for n in names}
 

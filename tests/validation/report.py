@@ -5,6 +5,7 @@ import sys
 from pathlib import Path
 
 from study import order
+from treacle_figure import figure
 
 root = Path(__file__).resolve().parents[2]
 page = root / "docs" / "validation.md"
@@ -38,28 +39,15 @@ def table(study, rows):
 
 
 def draw(study, rows, path):
-    """The exact curves, and those of the coarsest and the finest level."""
-    import matplotlib
-
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
-
-    figure, axes = plt.subplots(figsize=(6.4, 4.2), dpi=110, layout="constrained")
+    """The exact curves, and those of the coarsest, a middle and the finest level."""
     shown = rows if len(rows) <= 3 else [rows[0], rows[len(rows) // 2], rows[-1]]
-    for name, (x, y) in rows[-1]["exact"].items():
-        axes.plot(x, y, "k-", linewidth=1, label=name)
-    for row, mark in zip(shown, ("o", "s", ".")):
-        for k, (name, (x, y)) in enumerate(row["curves"].items()):
-            axes.plot(x, y, mark, markersize=3, markerfacecolor="none", color=f"C{k}", alpha=0.8,
-                      label=f"{name}, {row['level']}")
-    axes.set_xlabel(study.x_label)
-    axes.set_ylabel(study.y_label)
-    axes.set_title(study.title, fontsize=10)
-    axes.grid(alpha=0.3)
-    axes.legend(fontsize=7)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(path)
-    plt.close(figure)
+    with figure(path, study.title, study.x_label, study.y_label) as axes:
+        for name, (x, y) in rows[-1]["exact"].items():
+            axes.plot(x, y, "k-", linewidth=1, label=name)
+        for row, mark in zip(shown, ("o", "s", ".")):
+            for k, (name, (x, y)) in enumerate(row["curves"].items()):
+                axes.plot(x, y, mark, markersize=3, markerfacecolor="none", color=f"C{k}", alpha=0.8,
+                          label=f"{name}, {row['level']}")
 
 
 def write(record, studies):

@@ -33,7 +33,7 @@ struct WallMotion {
     if constexpr (D == 2)
       return {-spin[2] * d[1], spin[2] * d[0]};
     else
-      return {spin[1] * d[2] - spin[2] * d[1], spin[2] * d[0] - spin[0] * d[2], spin[0] * d[1] - spin[1] * d[0]};
+      return cross(spin, d);
   }
 
   /// At x at the start of the step [m/s].

@@ -4,7 +4,6 @@
 #include "treacle/search/cluster_list.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 
 namespace treacle {
