@@ -4,12 +4,12 @@
 #include "treacle/linear/bucket_multigrid.hpp"
 #include "treacle/linear/diagonal.hpp"
 #include "treacle/linear/galerkin_spgemm.hpp"
-#include "treacle/method/assemble.hpp"
-#include "treacle/method/bucket_galerkin.hpp"
-#include "treacle/method/mph_operator.hpp"
-#include "treacle/method/neighbourhood.hpp"
 #include "treacle/model/create.hpp"
 #include "treacle/model/particles_copy.hpp"
+#include "treacle/mph/mph_assembly.hpp"
+#include "treacle/mph/mph_neighbourhood.hpp"
+#include "treacle/mph/mph_operator.hpp"
+#include "treacle/precondition/bucket_galerkin.hpp"
 
 namespace treacle {
 
@@ -19,7 +19,7 @@ struct DeviceStart {
   Case c;
   Context<Cuda> context;
   Particles<D, Cuda> particles;
-  Neighbourhood<D, Cuda> neighbourhood;
+  MphNeighbourhood<D, Cuda> neighbourhood;
   Buffer<Block<D>, Cuda> wallBlock;
   Buffer<Vec<D>, Cuda> wallGradient, u, y;
   Buffer<Vec<D, float>, Cuda> uSingle, ySingle;

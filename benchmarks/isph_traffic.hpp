@@ -2,7 +2,7 @@
 
 #include "isph_matrix.hpp"
 #include "treacle/linear/hat_multigrid.hpp"
-#include "treacle/method/hat_grid.hpp"
+#include "treacle/precondition/hat_grid.hpp"
 
 #include <vector>
 
@@ -25,7 +25,7 @@ struct PressureSizes {
 struct IterationBytes {
   const PressureSizes& sizes;
   double number;  // of the preconditioner and the coefficients [B]
-  bool packed;    // PairMatrix: 4 bytes per near entry of a smoother's product, 6 per entry of A p
+  bool packed;    // IsphMatrix: 4 bytes per near entry of a smoother's product, 6 per entry of A p
   int gridDegree = 1;
 
   double ofSolver(PreconditionerKind kind) const {
@@ -76,7 +76,7 @@ struct IterationBytes {
   }
 };
 
-/// The levels that HatPreconditioner makes on the fluid of `pairs`.
+/// The levels that IsphHatMultigrid makes on the fluid of `pairs`.
 template <int D>
 std::vector<PressureSizes::Grid> gridSizes(Context<Cuda>& context, const IsphPairs<D>& pairs) {
   SortedParticles<D> fluid = pairs;

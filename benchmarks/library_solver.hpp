@@ -3,8 +3,8 @@
 #include "library_krylov.hpp"
 #include "library_multigrid.hpp"
 #include "treacle/core/block.hpp"
-#include "treacle/method/assemble.hpp"
-#include "treacle/method/mph_pairs.hpp"
+#include "treacle/mph/mph_assembly.hpp"
+#include "treacle/mph/mph_pairs.hpp"
 #include "treacle/search/buckets.hpp"
 
 #include <span>

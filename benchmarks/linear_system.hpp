@@ -1,14 +1,14 @@
 #pragma once
 
 #include "treacle/linear/block_csr.hpp"
-#include "treacle/method/assemble.hpp"
-#include "treacle/method/explicit_step.hpp"
-#include "treacle/method/neighbourhood.hpp"
-#include "treacle/method/pair_sums.hpp"
-#include "treacle/method/weight.hpp"
 #include "treacle/model/case.hpp"
 #include "treacle/model/particles.hpp"
 #include "treacle/model/particles_copy.hpp"
+#include "treacle/mph/mph_assembly.hpp"
+#include "treacle/mph/mph_neighbourhood.hpp"
+#include "treacle/mph/mph_particles.hpp"
+#include "treacle/mph/mph_sums.hpp"
+#include "treacle/mph/weight.hpp"
 
 #include <span>
 #include <type_traits>
@@ -64,13 +64,12 @@ class LinearSystem {
     elastic.resize(context, pairs().activeCount);
     rhs_.resize(context, fluidCount());
     numberDensity<D>(context, pairs(), density);
-    elasticPressure<D>(context, pairs(), density, latticeNumberDensity(pairs().pressureWeight, c.spacing),
-                       elastic);
+    elasticPressure<D>(context, pairs(), density, elastic);
     inertiaAndGravity<D>(context, pairs(), firstGuess(), resized<D>(c.gravity), rhs_);
     addPressureGradient<D>(context, pairs(), elastic, -1.0, rhs_);
   }
 
-  Neighbourhood<D, Backend> neighbourhood_;
+  MphNeighbourhood<D, Backend> neighbourhood_;
   Buffer<Block<D>, Backend> wallBlock_;
   Buffer<Vec<D>, Backend> wallGradient_, rhs_;
   GradientRows<D, Backend> rows_;

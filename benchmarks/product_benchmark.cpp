@@ -4,10 +4,10 @@
 
 #include "treacle/core/version.hpp"
 #include "treacle/io/case_reader.hpp"
-#include "treacle/method/assemble.hpp"
-#include "treacle/method/mph_operator.hpp"
-#include "treacle/method/neighbourhood.hpp"
 #include "treacle/model/create.hpp"
+#include "treacle/mph/mph_assembly.hpp"
+#include "treacle/mph/mph_neighbourhood.hpp"
+#include "treacle/mph/mph_operator.hpp"
 
 #include <benchmark/benchmark.h>
 #include <omp.h>
@@ -23,7 +23,7 @@ struct Start {
   Case c;
   Particles<D> particles;
   Context<Cpu> context;
-  Neighbourhood<D> neighbourhood;
+  MphNeighbourhood<D> neighbourhood;
   Buffer<Block<D>> wallBlock;
   Buffer<Vec<D>> wallGradient, u, y;
 

@@ -5,7 +5,7 @@
 #include "mph_solver.hpp"
 #include "solve_record.hpp"
 #include "treacle/core/error.hpp"
-#include "treacle/method/mph_operator.hpp"
+#include "treacle/mph/mph_operator.hpp"
 
 #include <cmath>
 #include <new>

@@ -1,4 +1,5 @@
-#include "core/scan.cuh"
+#include "core/launch.hpp"
+#include "core/scan.hpp"
 #include "linear/parents.cuh"
 #include "linear/row_sums.cuh"
 #include "treacle/core/error.hpp"

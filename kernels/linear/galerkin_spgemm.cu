@@ -1,6 +1,7 @@
 #include "treacle/linear/galerkin_spgemm.hpp"
 
-#include "core/scan.cuh"
+#include "core/launch.hpp"
+#include "core/scan.hpp"
 #include "linear/parents.cuh"
 #include "linear/row_sums.cuh"
 #include "linear/scalar_product.hpp"

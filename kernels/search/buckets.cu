@@ -1,9 +1,7 @@
 #include "treacle/search/buckets.hpp"
 
 #include "core/launch.hpp"
-
-#include <thrust/iterator/counting_iterator.h>
-#include <cub/device/device_select.cuh>
+#include "core/scan.hpp"
 
 #include <algorithm>
 #include <array>
@@ -15,13 +13,10 @@ namespace {
 constexpr int maxLevels = 65;  // a key has 64 bits
 constexpr unsigned blockSize = 256;
 
-/// Whether the entry starts a run of keys that are equal above the lowest `shift` bits.
-struct StartsRun {
-  const std::uint64_t* key;
-  int shift;
-
-  __device__ bool operator()(std::uint32_t i) const { return i == 0 || (key[i] ^ key[i - 1]) >> shift != 0; }
-};
+/// Whether entry i starts a run of keys that are equal above the lowest `shift` bits.
+__device__ inline bool startsRun(const std::uint64_t* key, std::size_t i, int shift) {
+  return i == 0 || (key[i] ^ key[i - 1]) >> shift != 0;
+}
 
 /// One thread per particle, grid-stride; reads its key and the one before, adds to starts[l], where l is the last
 /// level at which it starts a bucket; integer atomics, one per block and level.
@@ -60,21 +55,19 @@ std::vector<std::uint32_t> countBuckets(Context<Cuda>& context, std::span<const 
   return counts;
 }
 
-/// begin = indices of the keys that start a run above the lowest `shift` bits (as many as it has room for), then
-/// the number of keys.
+/// begin = indices of the keys that start a run above the lowest `shift` bits. One thread per key in each of two
+/// loops, a sum over all between them; atomics no. `number`: workspace.
 void findRuns(Context<Cuda>& context, std::span<const std::uint64_t> key, int shift,
-              Buffer<std::uint32_t, Cuda>& begin, std::uint32_t* found) {
-  const auto n = static_cast<std::uint32_t>(key.size());
-  std::size_t bytes = 0;
-  void* temporary = nullptr;
-  const auto select = [&] {
-    TREACLE_CUDA_CHECK(cub::DeviceSelect::If(temporary, bytes, thrust::counting_iterator<std::uint32_t>(0),
-                                             begin.data(), found, n, StartsRun{key.data(), shift},
-                                             context.stream()));
-  };
-  select();  // asks for the size
-  temporary = context.scratch(std::max<std::size_t>(bytes, 1));
-  select();
+              Buffer<std::uint32_t, Cuda>& number, Buffer<std::uint32_t, Cuda>& begin) {
+  number.resize(context, key.size());
+  forEach(context, key.size(), [key = key.data(), shift, number = number.data()] __device__(std::size_t i) {
+    number[i] = startsRun(key, i, shift);
+  });
+  sumBefore(context, number.span());
+  forEach(context, key.size(),
+          [key = key.data(), shift, number = number.data(), begin = begin.data()] __device__(std::size_t i) {
+            if (startsRun(key, i, shift)) begin[number[i]] = static_cast<std::uint32_t>(i);
+          });
 }
 
 /// One thread per bucket; reads its begin and the key there, writes its key; the first writes the end of the level
@@ -107,14 +100,14 @@ void findBuckets(Context<Cuda>& context, std::span<const std::uint64_t> key, int
   levels.begin.resize(counts.size());
   // Keys of one level's buckets and of the next one's, in turns.
   Buffer<std::uint64_t, Cuda> even(context, counts[0]), odd(context, counts.size() > 1 ? counts[1] : 0);
-  Buffer<std::uint32_t, Cuda> found(context, 1);
+  Buffer<std::uint32_t, Cuda> number;
   std::span<const std::uint64_t> below = key;
   for (std::size_t level = 0; level < counts.size(); ++level) {
     Buffer<std::uint32_t, Cuda>& begin = levels.begin[level];
     Buffer<std::uint64_t, Cuda>& own = level % 2 == 0 ? even : odd;
     begin.resize(context, counts[level] + std::size_t{1});
     const int shift = cellShift + static_cast<int>(level) * dimensions;
-    if (!below.empty()) findRuns(context, below, shift, begin, found.data());
+    if (!below.empty()) findRuns(context, below, shift, number, begin);
     closeLevel(context, below, begin, own.data());
     below = {own.data(), counts[level]};
   }

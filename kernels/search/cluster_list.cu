@@ -1,7 +1,6 @@
 #include "core/launch.hpp"
+#include "core/scan.hpp"
 #include "search/cluster_candidates.cuh"
-
-#include <cub/device/device_scan.cuh>
 
 namespace treacle {
 namespace {
@@ -81,12 +80,8 @@ void buildClusterList(Context<Cuda>& context, const CellGrid<D>& grid, const Cel
   const unsigned blocks = blocksFor(clusters, warpsPerBlock);
   launch(context, blocks, 32 * warpsPerBlock, 0, buildKernel<D, false>, arguments);
 
-  std::size_t bytes = 0;
-  std::uint64_t* offset = list.offset.data();
-  TREACLE_CUDA_CHECK(cub::DeviceScan::InclusiveSum(nullptr, bytes, offset, offset, offsets, context.stream()));
-  TREACLE_CUDA_CHECK(
-      cub::DeviceScan::InclusiveSum(context.scratch(bytes), bytes, offset, offset, offsets, context.stream()));
-  list.entry.resize(context, valueOnHost(context, offset + offsets - 1));
+  sumUpTo(context, list.offset.span());
+  list.entry.resize(context, valueOnHost(context, list.offset.data() + offsets - 1));
   arguments.entry = list.entry.data();
   launch(context, blocks, 32 * warpsPerBlock, 0, buildKernel<D, true>, arguments);
 }

@@ -1,14 +1,16 @@
 #include "treacle/search/neighbour_rows.hpp"
 
-#include "core/scan.cuh"
+#include "core/launch.hpp"
+#include "core/scan.hpp"
 
 #include <algorithm>
 
 namespace treacle {
 namespace {
 
-/// Places in single precision, from the lower corner of the domain: enough to tell who is clearly inside or
-/// outside of the radii. Whoever is not is looked at again in double precision, so the rows are those of the CPU.
+/// LocalPositions in single precision, from the lower corner of the domain: enough to tell who is clearly inside
+/// or outside of the radii. Whoever is not is looked at again in double precision, so the rows are those of the
+/// CPU.
 template <int D>
 struct RoughSearch {
   CellGrid<D> grid;
@@ -92,15 +94,15 @@ struct RoughSearch {
 /// One thread per cell: whether it holds fluid and has walls in itself or beside it, as few cells do.
 template <int D>
 void markFluidNearWalls(const Context<Cuda>& context, const CellGrid<D>& grid, const CellRangesView& cells,
-                        std::uint8_t* marked) {
-  forEach(context, grid.cellCount(), [grid, cells, marked] __device__(std::size_t c) {
+                        std::uint8_t* withEntry) {
+  forEach(context, grid.cellCount(), [grid, cells, withEntry] __device__(std::size_t c) {
     bool any = false;
     if (cells.fluidEnd[c] > cells.fluidBegin[c])
       forEachAdjacentCell(grid, grid.cellAt(c), [&](const Vec<D, int>& cell) {
         const std::size_t other = grid.linear(cell);
         any = any || cells.wallEnd[other] > cells.wallBegin[other];
       });
-    marked[c] = any;
+    withEntry[c] = any;
   });
 }
 

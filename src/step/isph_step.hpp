@@ -1,9 +1,9 @@
 #pragma once
 
-#include "pair_solver.hpp"
+#include "isph_solver.hpp"
 #include "step_method.hpp"
 #include "take_trial.hpp"
-#include "treacle/method/isph_particles.hpp"
+#include "treacle/isph/isph_particles.hpp"
 #include "treacle/step/solve_stages.hpp"
 
 #include <fmt/format.h>
@@ -34,13 +34,13 @@ class IsphStep final : public StepMethod<D, Backend> {
     pairs_.cells = viewOf(ranges_);
     pairs_.body = p.body.data();
     pairs_.wallMotion = s_.wallMotion.empty() ? nullptr : s_.wallMotion.data();
-    find(RowKind::FluidOfFluid, fluidRows_);
-    find(RowKind::WallsOfFluid, wallRows_);
-    find(RowKind::FluidOfWalls, wallsOwn_);
-    pairs_.fluidRows = fluidRows_.view();
-    pairs_.fluidEntries = fluidRows_.column.size();
-    pairs_.wallRows = wallRows_.view();
-    pairs_.wallsOwn = wallsOwn_.view();
+    find(RowKind::FluidOfFluid, fluidOfFluid_);
+    find(RowKind::WallsOfFluid, wallsOfFluid_);
+    find(RowKind::FluidOfWalls, fluidOfWalls_);
+    pairs_.fluidOfFluid = fluidOfFluid_.view();
+    pairs_.fluidEntries = fluidOfFluid_.column.size();
+    pairs_.wallsOfFluid = wallsOfFluid_.view();
+    pairs_.fluidOfWalls = fluidOfWalls_.view();
   }
 
   void computeDensities() override {
@@ -133,9 +133,9 @@ class IsphStep final : public StepMethod<D, Backend> {
   const CellGrid<D>& grid() const override { return pairs_.grid; }
   const MaterialTable& materials() const override { return pairs_.materials; }
   std::size_t bytes() const override {
-    return ranges_.bytes() + workspace_.bytes() + fluidRows_.bytes() + wallRows_.bytes() + wallsOwn_.bytes() +
-           deficit_.bytes() + surface_.bytes() + predicted_.bytes() + source_.bytes() + solution_.bytes() +
-           transport_.bytes() + pressure_.bytes() + viscosity_.bytes() + componentBytes();
+    return ranges_.bytes() + workspace_.bytes() + fluidOfFluid_.bytes() + wallsOfFluid_.bytes() +
+           fluidOfWalls_.bytes() + deficit_.bytes() + surface_.bytes() + predicted_.bytes() + source_.bytes() +
+           solution_.bytes() + transport_.bytes() + pressure_.bytes() + viscosity_.bytes() + componentBytes();
   }
 
   /// Pairs up to this share of the kernel's radius make the smoother's matrix: 1.9 l with the usual kernel.
@@ -207,7 +207,7 @@ class IsphStep final : public StepMethod<D, Backend> {
   double viscousLimit_;  // [s]
   CellRanges<Backend> ranges_;
   SortWorkspace<Backend> workspace_;
-  NeighbourRows<Backend> fluidRows_, wallRows_, wallsOwn_;
+  NeighbourRows<Backend> fluidOfFluid_, wallsOfFluid_, fluidOfWalls_;
   Buffer<Vec<D>, Backend> deficit_;
   Buffer<std::uint8_t, Backend> surface_;
   Buffer<Vec<D>, Backend> predicted_;          // v*; walls: their velocities

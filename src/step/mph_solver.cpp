@@ -1,7 +1,7 @@
 #include "mph_solver.hpp"
 
 #include "treacle/linear/diagonal.hpp"
-#include "treacle/method/bucket_galerkin.hpp"
+#include "treacle/precondition/bucket_galerkin.hpp"
 
 namespace treacle {
 namespace {

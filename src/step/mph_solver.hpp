@@ -5,10 +5,10 @@
 #include "treacle/linear/bucket_multigrid.hpp"
 #include "treacle/linear/galerkin_spgemm.hpp"
 #include "treacle/linear/krylov.hpp"
-#include "treacle/method/assemble.hpp"
-#include "treacle/method/mph_operator.hpp"
-#include "treacle/method/projected_multigrid.hpp"
 #include "treacle/model/case.hpp"
+#include "treacle/mph/mph_assembly.hpp"
+#include "treacle/mph/mph_operator.hpp"
+#include "treacle/precondition/projected_multigrid.hpp"
 #include "treacle/search/buckets.hpp"
 
 #include <type_traits>

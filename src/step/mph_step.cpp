@@ -2,8 +2,8 @@
 #include "step_balance.hpp"
 #include "step_method.hpp"
 #include "take_trial.hpp"
-#include "treacle/method/explicit_step.hpp"
-#include "treacle/method/neighbourhood.hpp"
+#include "treacle/mph/mph_neighbourhood.hpp"
+#include "treacle/mph/mph_particles.hpp"
 #include "treacle/step/first_guess.hpp"
 #include "treacle/step/solve_stages.hpp"
 
@@ -15,11 +15,7 @@ template <int D, class Backend>
 class MphStep final : public StepMethod<D, Backend> {
  public:
   explicit MphStep(FlowState<D, Backend>& state)
-      : s_(state),
-        neighbourhood_(state.c),
-        pairs_(neighbourhood_.pairs()),
-        restDensity_(latticeNumberDensity(pairs_.pressureWeight, state.c.spacing)),
-        solver_(solveStages(state.c)) {}
+      : s_(state), neighbourhood_(state.c), pairs_(neighbourhood_.pairs()), solver_(solveStages(state.c)) {}
 
   void sort() override { neighbourhood_.sort(s_.context, s_.particles); }
   void buildLists() override { neighbourhood_.buildLists(s_.context, s_.particles); }
@@ -117,8 +113,7 @@ class MphStep final : public StepMethod<D, Backend> {
   /// b of [K23 eq. (16)], and the terms of prescribed wall velocities.
   void computeRightHandSide() {
     elastic_.resize(s_.context, pairs_.activeCount);
-    elasticPressure<D>(s_.context, pairs_, s_.particles.numberDensity.span().first(pairs_.activeCount),
-                       restDensity_, elastic_);
+    elasticPressure<D>(s_.context, pairs_, s_.particles.numberDensity.span().first(pairs_.activeCount), elastic_);
     rhs_.resize(s_.context, s_.particles.fluidCount);
     inertiaAndGravity<D>(s_.context, pairs_, s_.particles.velocity.span().first(s_.particles.fluidCount),
                          resized<D>(s_.c.gravity), rhs_);
@@ -152,9 +147,8 @@ class MphStep final : public StepMethod<D, Backend> {
   }
 
   FlowState<D, Backend>& s_;
-  Neighbourhood<D, Backend> neighbourhood_;
+  MphNeighbourhood<D, Backend> neighbourhood_;
   const MphPairs<D>& pairs_;
-  double restDensity_;  // n_0 [-]
   Buffer<Block<D>, Backend> wallBlock_;
   Buffer<Vec<D>, Backend> wallGradient_;
   Buffer<double, Backend> elastic_;     // kappa [n - n_0]_+ per particle [Pa]

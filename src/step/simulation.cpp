@@ -4,9 +4,9 @@
 #include "step_method.hpp"
 #include "treacle/core/phase_clock.hpp"
 #include "treacle/core/trace.hpp"
-#include "treacle/method/explicit_step.hpp"
 #include "treacle/model/particles_copy.hpp"
 #include "treacle/step/diagnostics.hpp"
+#include "treacle/step/move_particles.hpp"
 #include "treacle/step/wall_motion.hpp"
 
 namespace treacle {
@@ -122,7 +122,7 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     const std::uint32_t size = end - begin;
     const std::uint32_t out = moveParticles<D>(context, method->grid(), timeStep, x.subspan(begin, size),
                                                u.first(size), position.span().subspan(begin, size));
-    if (out == nobody) return;
+    if (out == noParticle) return;
     Particles<D> host;
     toHost(context, particles, host);
     Vec<D> uOut{};

@@ -1,8 +1,8 @@
 #include "treacle/step/solve_stages.hpp"
 
-#include "treacle/method/isph_pairs.hpp"
-#include "treacle/method/projected_multigrid.hpp"
+#include "treacle/isph/isph_pairs.hpp"
 #include "treacle/model/names.hpp"
+#include "treacle/precondition/projected_multigrid.hpp"
 
 #include <fmt/format.h>
 
@@ -15,7 +15,7 @@ namespace {
 ProjectionDegrees degreesOf(const Case& c) {
   const ProjectedSettings& s = c.solver.projected;
   const ProjectionConstants constants =
-      c.dimensions == 2 ? projectionConstants(makePairs<2>(c)) : projectionConstants(makePairs<3>(c));
+      c.dimensions == 2 ? projectionConstants(makeMphPairs<2>(c)) : projectionConstants(makeMphPairs<3>(c));
   return chooseDegrees({s.pressureDegree, s.gridDegree, s.velocityDegree}, constants);
 }
 

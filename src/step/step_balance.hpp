@@ -1,10 +1,10 @@
 #pragma once
 
 #include "flow_state.hpp"
-#include "treacle/method/balance_sums.hpp"
-#include "treacle/method/neighbourhood.hpp"
 #include "treacle/model/balance.hpp"
 #include "treacle/model/wall_motion.hpp"
+#include "treacle/mph/mph_balance.hpp"
+#include "treacle/mph/mph_neighbourhood.hpp"
 #include "treacle/step/balance_sums.hpp"
 
 #include <algorithm>
@@ -18,7 +18,7 @@ class StepBalance {
  public:
   /// Once state.velocity and the pressures are those of the end of the step; positions and particles' velocities
   /// are still those of its start. `divergence`: C^T u^{k+1}, `elastic`: kappa [n - n_0]_+, per active particle.
-  Balance make(FlowState<D, Backend>& s, const Neighbourhood<D, Backend>& neighbourhood,
+  Balance make(FlowState<D, Backend>& s, const MphNeighbourhood<D, Backend>& neighbourhood,
                std::span<const double> divergence, std::span<const double> elastic) {
     const MphPairs<D>& pairs = neighbourhood.pairs();
     sumPairs(s, neighbourhood);
@@ -33,12 +33,12 @@ class StepBalance {
   }
 
  private:
-  void sumPairs(FlowState<D, Backend>& s, const Neighbourhood<D, Backend>& neighbourhood) {
+  void sumPairs(FlowState<D, Backend>& s, const MphNeighbourhood<D, Backend>& neighbourhood) {
     const MphPairs<D>& pairs = neighbourhood.pairs();
     const std::uint32_t n = pairs.fluidCount, active = pairs.activeCount;
     ClusterListView walls = pairs.wallList;
     if (walls.offset) {  // the lists of the step reach only as far as pressures
-      const double reach = std::max(pairs.pressureWeight.radius, pairs.viscosityWeight.radius);
+      const double reach = std::max(pairs.terms.pressureRadius, pairs.terms.viscosityRadius);
       buildClusterList<D>(s.context, pairs.grid, neighbourhood.ranges(), pairs.position, n, active, {reach, 0},
                           true, walls_);
       walls = walls_.view();

@@ -22,7 +22,7 @@ struct DeviceIsph {
   Context<Cuda> context;
   Particles<D, Cuda> particles;
   CellRanges<Cuda> ranges;
-  NeighbourRows<Cuda> fluidRows, wallRows, wallsOwn;
+  NeighbourRows<Cuda> fluidOfFluid, wallsOfFluid, fluidOfWalls;
   Buffer<double, Cuda> density;
   Buffer<std::uint8_t, Cuda> surface;
   IsphPairs<D> pairs;  // looks at the members above
@@ -30,34 +30,34 @@ struct DeviceIsph {
   explicit DeviceIsph(const IsphScene<D>& s) : pairs(s.pairs) {
     particles = onDevice(context, s.particles);
     ranges = onDevice(context, s.ranges);
-    fluidRows = onDevice(context, s.fluidRows);
-    wallRows = onDevice(context, s.wallRows);
-    wallsOwn = onDevice(context, s.wallsOwn);
+    fluidOfFluid = onDevice(context, s.fluidOfFluid);
+    wallsOfFluid = onDevice(context, s.wallsOfFluid);
+    fluidOfWalls = onDevice(context, s.fluidOfWalls);
     copyToDevice<double>(context, s.density, density);
     copyToDevice<std::uint8_t>(context, s.surface, surface);
     pairs.position = particles.position;
     pairs.material = particles.material;
     pairs.body = particles.body.data();
     pairs.cells = viewOf(ranges);
-    pairs.fluidRows = fluidRows.view();
-    pairs.wallRows = wallRows.view();
-    pairs.wallsOwn = wallsOwn.view();
+    pairs.fluidOfFluid = fluidOfFluid.view();
+    pairs.wallsOfFluid = wallsOfFluid.view();
+    pairs.fluidOfWalls = fluidOfWalls.view();
   }
   DeviceIsph(const DeviceIsph&) = delete;
 };
 
-/// PairSystem in device memory, packed or not, made there.
+/// IsphTestSystem in device memory, packed or not, made there.
 template <int D, class T>
-struct DevicePairSystem {
+struct DeviceIsphTestSystem {
   Buffer<T, Cuda> coefficient, inverseNear;
   Buffer<std::uint32_t, Cuda> word;
   Buffer<std::uint16_t, Cuda> low;
   Buffer<double, Cuda> diagonal;
-  Buffer<PairMoments<D>, Cuda> moments;
-  PairMatrix<T> a;
+  Buffer<IsphMoments<D>, Cuda> moments;
+  IsphMatrix<T> a;
 
   template <class Row>
-  DevicePairSystem(DeviceIsph<D>& d, const Row& row, bool packed) {
+  DeviceIsphTestSystem(DeviceIsph<D>& d, const Row& row, bool packed) {
     const std::uint32_t n = d.pairs.fluidCount;
     coefficient.resize(d.context, packed ? 0 : d.pairs.fluidEntries);
     word.resize(d.context, packed ? d.pairs.fluidEntries : 0);
@@ -65,7 +65,7 @@ struct DevicePairSystem {
     inverseNear.resize(d.context, n);
     diagonal.resize(d.context, n);
     moments.resize(d.context, n);
-    PairMatrixParts<D, T> parts{};
+    IsphMatrixParts<D, T> parts{};
     parts.coefficient = coefficient;
     parts.word = word;
     parts.low = low;
@@ -73,10 +73,10 @@ struct DevicePairSystem {
     parts.diagonal = diagonal;
     parts.inverseNear = inverseNear;
     parts.moments = moments;
-    fillPairMatrix(d.context, d.pairs, row, parts);
+    fillIsphMatrix(d.context, d.pairs, row, parts);
     a.rows = n;
-    a.start = d.pairs.fluidRows.start;
-    a.column = d.pairs.fluidRows.column;
+    a.start = d.pairs.fluidOfFluid.start;
+    a.column = d.pairs.fluidOfFluid.column;
     a.coefficient = coefficient.data();
     a.word = packed ? word.data() : nullptr;
     a.low = low.data();
@@ -84,7 +84,7 @@ struct DevicePairSystem {
     a.diagonal = diagonal.data();
     a.inverseNear = inverseNear.data();
   }
-  DevicePairSystem(const DevicePairSystem&) = delete;
+  DeviceIsphTestSystem(const DeviceIsphTestSystem&) = delete;
 };
 
 /// |x - y| / |y| of a result in device memory.

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "support/scene.hpp"
+#include "treacle/isph/isph_sums.hpp"
 #include "treacle/linear/lanczos_scalars.hpp"
-#include "treacle/method/isph_sums.hpp"
 
 #include <algorithm>
 #include <vector>
@@ -18,7 +18,7 @@ struct IsphScene {
   IsphPairs<D> pairs;  // looks at the members around it
   CellRanges<> ranges;
   SortWorkspace<> workspace;
-  NeighbourRows<> fluidRows, wallRows, wallsOwn;
+  NeighbourRows<> fluidOfFluid, wallsOfFluid, fluidOfWalls;
   Buffer<double> density;
   Buffer<Vec<D>> deficit;
   Buffer<std::uint8_t> surface;
@@ -32,10 +32,10 @@ struct IsphScene {
     pairs.material = particles.material;
     pairs.body = particles.body.data();
     pairs.cells = viewOf(ranges);
-    pairs.fluidRows = find(RowKind::FluidOfFluid, fluidRows);
-    pairs.wallRows = find(RowKind::WallsOfFluid, wallRows);
-    pairs.wallsOwn = find(RowKind::FluidOfWalls, wallsOwn);
-    pairs.fluidEntries = fluidRows.column.size();
+    pairs.fluidOfFluid = find(RowKind::FluidOfFluid, fluidOfFluid);
+    pairs.wallsOfFluid = find(RowKind::WallsOfFluid, wallsOfFluid);
+    pairs.fluidOfWalls = find(RowKind::FluidOfWalls, fluidOfWalls);
+    pairs.fluidEntries = fluidOfFluid.column.size();
     density.resize(n());
     deficit.resize(n());
     surface.resize(n());
@@ -141,35 +141,35 @@ std::vector<Vec<D>> randomVelocities(std::size_t n, unsigned seed) {
 
 /// A matrix of pairs and what it is made of, not packed.
 template <int D, class T>
-struct PairSystem {
+struct IsphTestSystem {
   Buffer<T> coefficient, inverseNear;
   Buffer<double> diagonal;
-  Buffer<PairMoments<D>> moments;
-  PairMatrix<T> a;
+  Buffer<IsphMoments<D>> moments;
+  IsphMatrix<T> a;
 
   template <class Row>
-  PairSystem(IsphScene<D>& s, const Row& row)
+  IsphTestSystem(IsphScene<D>& s, const Row& row)
       : coefficient(s.pairs.fluidEntries), inverseNear(s.n()), diagonal(s.n()), moments(s.n()) {
-    PairMatrixParts<D, T> parts{};
+    IsphMatrixParts<D, T> parts{};
     parts.coefficient = coefficient;
     parts.unit = row.largest(s.pairs) / 255;
     parts.diagonal = diagonal;
     parts.inverseNear = inverseNear;
     parts.moments = moments;
-    fillPairMatrix(s.context, s.pairs, row, parts);
+    fillIsphMatrix(s.context, s.pairs, row, parts);
     a.rows = s.n();
-    a.start = s.pairs.fluidRows.start;
-    a.column = s.pairs.fluidRows.column;
+    a.start = s.pairs.fluidOfFluid.start;
+    a.column = s.pairs.fluidOfFluid.column;
     a.coefficient = coefficient.data();
     a.unit = parts.unit;
     a.diagonal = diagonal.data();
     a.inverseNear = inverseNear.data();
   }
-  PairSystem(const PairSystem&) = delete;
+  IsphTestSystem(const IsphTestSystem&) = delete;
 };
 
 template <class T>
-Eigen::MatrixXd dense(const PairMatrix<T>& a) {
+Eigen::MatrixXd dense(const IsphMatrix<T>& a) {
   Eigen::MatrixXd m = Eigen::MatrixXd::Zero(a.rows, a.rows);
   for (std::uint32_t i = 0; i < a.rows; ++i) {
     m(i, i) = a.diagonal[i];

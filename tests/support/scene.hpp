@@ -1,10 +1,10 @@
 #pragma once
 
-#include "treacle/method/assemble.hpp"
-#include "treacle/method/mph_operator.hpp"
-#include "treacle/method/neighbourhood.hpp"
-#include "treacle/method/pair_sums.hpp"
 #include "treacle/model/case.hpp"
+#include "treacle/mph/mph_assembly.hpp"
+#include "treacle/mph/mph_neighbourhood.hpp"
+#include "treacle/mph/mph_operator.hpp"
+#include "treacle/mph/mph_sums.hpp"
 #include "treacle/search/buckets.hpp"
 
 #include <Eigen/Dense>
@@ -22,7 +22,7 @@ struct Scene {
   Case c;
   Particles<D> particles;
   Context<Cpu> context;
-  std::unique_ptr<Neighbourhood<D>> neighbourhood;
+  std::unique_ptr<MphNeighbourhood<D>> neighbourhood;
   Buffer<Block<D>> wallBlock;
   Buffer<Vec<D>> wallGradient;
 
@@ -84,7 +84,7 @@ Particles<D> jitteredLattice(const Case& c, double jitter, unsigned seed, InFlui
 /// Brings particles into the state of a step before its solve.
 template <int D>
 void prepare(Scene<D>& s) {
-  s.neighbourhood = std::make_unique<Neighbourhood<D>>(s.c);
+  s.neighbourhood = std::make_unique<MphNeighbourhood<D>>(s.c);
   s.neighbourhood->sort(s.context, s.particles);
   s.neighbourhood->buildLists(s.context, s.particles);
   s.wallBlock.resize(s.n());

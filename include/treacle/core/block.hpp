@@ -43,20 +43,20 @@ struct Block {
 
 /// Inverse of a symmetric positive definite block by its adjugate.
 template <int D, class T>
-TREACLE_HD constexpr Block<D, T> inverse(const Block<D, T>& m) {
+TREACLE_HD Block<D, T> inverse(const Block<D, T>& m) {
   Block<D, T> r{};
   if constexpr (D == 1) {
     r.a[0] = T(1) / m.a[0];
   } else if constexpr (D == 2) {
-    const T det = m(0, 0) * m(1, 1) - m(0, 1) * m(1, 0);
+    const T det = multiplyAdd(m(0, 0), m(1, 1), -(m(0, 1) * m(1, 0)));
     r = {{m(1, 1) / det, -m(0, 1) / det, -m(1, 0) / det, m(0, 0) / det}};
   } else {
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) {
         const int a = (j + 1) % 3, b = (j + 2) % 3, c = (i + 1) % 3, d = (i + 2) % 3;
-        r(i, j) = m(a, c) * m(b, d) - m(a, d) * m(b, c);
+        r(i, j) = multiplyAdd(m(a, c), m(b, d), -(m(a, d) * m(b, c)));
       }
-    const T det = m(0, 0) * r(0, 0) + m(0, 1) * r(1, 0) + m(0, 2) * r(2, 0);
+    const T det = fixedDot(Vec<3, T>{m(0, 0), m(0, 1), m(0, 2)}, Vec<3, T>{r(0, 0), r(1, 0), r(2, 0)});
     for (int k = 0; k < 9; ++k) r.a[k] /= det;
   }
   return r;

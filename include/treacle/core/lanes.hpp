@@ -24,6 +24,8 @@ inline Lanes max(Lanes a, Lanes b) {
 #endif
 }
 
+inline Lanes positivePart(Lanes a) { return max(a, Lanes{}); }
+
 /// Whether a <= bound in some lane.
 inline bool anyAtMost(Lanes a, double bound) {
 #ifdef __AVX512F__

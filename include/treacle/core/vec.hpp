@@ -1,6 +1,6 @@
 #pragma once
 
-#include "treacle/core/macros.hpp"
+#include "treacle/core/multiply_add.hpp"
 
 #include <cmath>
 
@@ -59,6 +59,14 @@ template <int D, class T>
 TREACLE_HD constexpr T dot(const Vec<D, T>& a, const Vec<D, T>& b) {
   T sum = a[0] * b[0];
   for (int k = 1; k < D; ++k) sum += a[k] * b[k];
+  return sum;
+}
+
+/// The same to the last bit wherever it is formed (multiplyAdd).
+template <int D, class T>
+TREACLE_HD T fixedDot(const Vec<D, T>& a, const Vec<D, T>& b) {
+  T sum = multiplyAdd(a[0], b[0], a[1] * b[1]);
+  for (int k = 2; k < D; ++k) sum = multiplyAdd(a[k], b[k], sum);
   return sum;
 }
 

@@ -2,7 +2,7 @@
 
 #include "treacle/core/cuda.hpp"
 #include "treacle/core/macros.hpp"
-#include "treacle/method/mph_pairs.hpp"
+#include "treacle/mph/mph_pairs.hpp"
 #include "treacle/step/simulation.hpp"
 
 #include <cmath>

@@ -2,7 +2,7 @@
 #include "support/tolerances.hpp"
 #include "treacle/linear/bucket_multigrid.hpp"
 #include "treacle/linear/diagonal.hpp"
-#include "treacle/method/bucket_galerkin.hpp"
+#include "treacle/precondition/bucket_galerkin.hpp"
 
 #include <gtest/gtest.h>
 

@@ -31,7 +31,7 @@ void checkStep(OperatorKind operatorKind, PreconditionerKind preconditioner, Kry
   const Oracle<D> oracle(s);
   const Eigen::MatrixXd c = oracle.gradientMatrix();
   Eigen::VectorXd elastic(oracle.count()), b(s.unknowns());
-  const double restDensity = latticeNumberDensity(s.pairs().pressureWeight, s.c.spacing);
+  const double restDensity = latticeNumberDensity(Weight<D>::make(s.c.pressureRadius(), s.c.spacing), s.c.spacing);
   for (std::uint32_t i = 0; i < oracle.count(); ++i)
     elastic[i] = oracle.material(i).bulkModulus * std::max(0.0, oracle.numberDensity(i) - restDensity);
   for (Eigen::Index k = 0; k < s.unknowns(); ++k)

@@ -1,0 +1,255 @@
+#pragma once
+
+#include "treacle/isph/isph_pairs.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+namespace treacle {
+
+/// The formulas of ISPH, the same on all backends: what each neighbour adds to a particle's sums, and what is made
+/// of them. fluid() and wall() take neighbour j of particle i at d = x_j - x_i, r = |d|; the rows of fluid hold i
+/// itself, at r = 0. add(n, x) adds x to sum n. Pointers are in the backend's memory.
+
+/// Density and lack of neighbours, from which the free surface follows.
+template <int D>
+struct DensityTerm {
+  static constexpr int values = 2 + D;
+  double* density;        // <rho> / rho [-]
+  Vec<D>* deficit;        // sum V grad W [1/m]: points to where the neighbours are
+  std::uint8_t* surface;  // 1: at the free surface, p = 0
+
+  TREACLE_HD void fluid(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d,
+                        const Distance& r, double* sum) const {
+    wall(pairs, i, j, d, r, sum);
+    sum[1 + D] += 1;
+  }
+  TREACLE_HD void wall(const IsphPairs<D>& pairs, std::uint32_t, std::uint32_t, const Vec<D>& d, const Distance& r,
+                       double* sum) const {
+    sum[0] += pairs.volume * pairs.kernel.value(r.r);
+    const double slope = pairs.slope(r);
+    for (int k = 0; k < D; ++k) sum[1 + k] += slope * d[k];
+  }
+  TREACLE_HD void store(const IsphPairs<D>& pairs, std::uint32_t i, const double* sum) const {
+    const double ratio = sum[0] / pairs.latticeDensity;
+    Vec<D> lack;
+    for (int k = 0; k < D; ++k) lack[k] = sum[1 + k];
+    const SurfaceCriterion& s = pairs.surface;
+    density[i] = ratio;
+    deficit[i] = lack;
+    const double others = sum[1 + D] - 1;  // its row holds the particle itself
+    surface[i] =
+        others < s.fewest(D) || ratio < s.sparse || (ratio < s.dense && norm(lack) * pairs.spacing > s.oneSided);
+  }
+};
+
+/// v* = v + dt (nu lap v + g) [O23 eq. (7)] with the Laplacian of [O23 eq. (6)]. A no-slip wall is met with the
+/// fluid's velocity mirrored at the wall's.
+template <int D>
+struct PredictorTerm {
+  static constexpr int values = D;
+  const Vec<D>* velocity;
+  Vec<D>* predicted;
+  bool viscous;
+
+  TREACLE_HD void fluid(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>&,
+                        const Distance& r, double* sum) const {
+    add(pairs, i, j, 2 * pairs.slope(r), sum);
+  }
+  TREACLE_HD void wall(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>&,
+                       const Distance& r, double* sum) const {
+    if (pairs.noSlip) add(pairs, i, j, 4 * pairs.slope(r), sum);
+  }
+  TREACLE_HD void add(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, double factor,
+                      double* sum) const {
+    if (!viscous) return;
+    const double c = factor * pairs.pairViscosity(i, j);
+    for (int k = 0; k < D; ++k) sum[k] += c * (velocity[j][k] - velocity[i][k]);
+  }
+  TREACLE_HD void store(const IsphPairs<D>& pairs, std::uint32_t i, const double* sum) const {
+    const double density = pairs.density(i);
+    for (int k = 0; k < D; ++k)
+      predicted[i][k] = velocity[i][k] + pairs.timeStep * (sum[k] / density + pairs.gravity[k]);
+  }
+};
+
+/// Two terms in one walk over the neighbours; neither reads what the other stores.
+template <class First, class Second>
+struct BothTerms {
+  static constexpr int values = First::values + Second::values;
+  First first;
+  Second second;
+
+  template <int D>
+  TREACLE_HD void fluid(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d,
+                        const Distance& r, double* sum) const {
+    first.fluid(pairs, i, j, d, r, sum);
+    second.fluid(pairs, i, j, d, r, sum + First::values);
+  }
+  template <int D>
+  TREACLE_HD void wall(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d,
+                       const Distance& r, double* sum) const {
+    first.wall(pairs, i, j, d, r, sum);
+    second.wall(pairs, i, j, d, r, sum + First::values);
+  }
+  template <int D>
+  TREACLE_HD void store(const IsphPairs<D>& pairs, std::uint32_t i, const double* sum) const {
+    first.store(pairs, i, sum);
+    second.store(pairs, i, sum + First::values);
+  }
+};
+
+/// Right-hand side of the implicit viscous step, rho/dt v + rho g and the pull of no-slip walls, by component.
+template <int D>
+struct ViscousSourceTerm {
+  static constexpr int values = D;
+  const Vec<D>* velocity;
+  double* source[D];
+
+  TREACLE_HD void fluid(const IsphPairs<D>&, std::uint32_t, std::uint32_t, const Vec<D>&, const Distance&,
+                        double*) const {}
+  TREACLE_HD void wall(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>&,
+                       const Distance& r, double* sum) const {
+    if (!pairs.noSlip) return;
+    const double c = 4 * pairs.slope(r) * pairs.pairViscosity(i, j);
+    for (int k = 0; k < D; ++k) sum[k] += c * velocity[j][k];
+  }
+  TREACLE_HD void store(const IsphPairs<D>& pairs, std::uint32_t i, const double* sum) const {
+    const double density = pairs.density(i);
+    for (int k = 0; k < D; ++k)
+      source[k][i] = density * (velocity[i][k] / pairs.timeStep + pairs.gravity[k]) + sum[k];
+  }
+};
+
+/// Right-hand side of the pressure equation [O23 eq. (10)], divided by -rho: -div v* / dt + alpha (<rho>/rho - 1)
+/// / dt^2, zero at the free surface. Compression raises p. Walls are met with v* mirrored at the wall's velocity:
+/// with the wall's velocity itself half of the flow into it would be missed.
+template <int D>
+struct PressureSourceTerm {
+  static constexpr int values = 1;
+  const Vec<D>* predicted;  // of fluid; walls: their velocity
+  const double* density;    // <rho> / rho
+  const std::uint8_t* surface;
+  double* source;
+
+  TREACLE_HD void fluid(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d,
+                        const Distance& r, double* sum) const {
+    sum[0] += pairs.slope(r) * dot(predicted[j] - predicted[i], d);
+  }
+  TREACLE_HD void wall(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d,
+                       const Distance& r, double* sum) const {
+    sum[0] += 2 * pairs.slope(r) * dot(predicted[j] - predicted[i], d);
+  }
+  TREACLE_HD void store(const IsphPairs<D>& pairs, std::uint32_t i, const double* sum) const {
+    const double compression = pairs.alpha * (density[i] - 1) / (pairs.timeStep * pairs.timeStep);
+    source[i] = surface[i] ? 0 : compression - sum[0] / pairs.timeStep;
+  }
+};
+
+/// v = v* - dt grad p / rho [O23 eq. (8)], the gradient in its symmetric form [O23 eq. (5)]: it keeps momentum and
+/// drives particles apart. Particles without pressure have nothing to stop them at a wall: those closer to it than
+/// half a spacing lose the velocity into it; others do when they are closer still, in impacts that a step does not
+/// resolve. Whoever got inside nevertheless leaves at a fiftieth of a spacing per step.
+template <int D>
+struct CorrectorTerm {
+  static constexpr int values = 3 * D + 2;
+  const double* pressure;
+  const Vec<D>* predicted;  // of fluid; walls: their velocity
+  Vec<D>* velocity;
+
+  TREACLE_HD void fluid(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d,
+                        const Distance& r, double* sum) const {
+    const double c = (pressure[i] + pressure[j]) * pairs.slope(r);
+    for (int k = 0; k < D; ++k) sum[k] += c * d[k];
+  }
+  TREACLE_HD void wall(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d,
+                       const Distance& r, double* sum) const {
+    const double slope = pairs.slope(r), c = (pressure[i] + pairs.wallPressure(pressure[i], i, j, d)) * slope;
+    for (int k = 0; k < D; ++k) {
+      sum[k] += c * d[k];
+      sum[D + k] += slope * d[k];
+      sum[2 * D + k] += slope * predicted[j][k];
+    }
+    sum[3 * D] += slope;
+    sum[3 * D + 1] += pairs.kernel.value(r.r);
+  }
+  TREACLE_HD void store(const IsphPairs<D>& pairs, std::uint32_t i, const double* sum) const {
+    const double factor = pairs.timeStep / pairs.density(i);
+    Vec<D> v, towards, wallVelocity;
+    for (int k = 0; k < D; ++k) {
+      v[k] = predicted[i][k] - factor * sum[k];
+      towards[k] = sum[D + k];
+      wallVelocity[k] = sum[2 * D + k] / (sum[3 * D] > 0 ? sum[3 * D] : 1);
+    }
+    const WallContact& contact = pairs.contact;
+    const double share = sum[3 * D + 1] * pairs.volume / pairs.latticeDensity;
+    if (share > (pressure[i] > 0 ? contact.pressed : contact.touching) && norm2(towards) > 0) {
+      const double away = share > contact.inside ? 0.02 * pairs.spacing / pairs.timeStep : 0, g = norm(towards);
+      const double into = dot(v - wallVelocity, towards) / g + away;
+      if (into > 0) v -= (into / g) * towards;
+    }
+    velocity[i] = v;
+  }
+};
+
+/// Pressure that walls show: the mean of what their fluid neighbours see in them. Rows of walls: i is the wall.
+template <int D>
+struct WallPressureTerm {
+  static constexpr int values = 2;
+  const double* pressure;
+  double* result;  // of the walls, at their index
+
+  TREACLE_HD void fluid(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d,
+                        const Distance& r, double* sum) const {
+    const double w = pairs.kernel.value(r.r);
+    sum[0] += w * pairs.wallPressure(pressure[j], j, i, -1.0 * d);
+    sum[1] += w;
+  }
+  TREACLE_HD void store(const IsphPairs<D>&, std::uint32_t i, const double* sum) const {
+    result[i] = sum[1] > 0 ? sum[0] / sum[1] : 0;
+  }
+};
+
+/// Row i of the pressure matrix: off-diagonal elements of unknown neighbours in place of their columns, the
+/// diagonal with those of known pressure, zero. A particle at the free surface has a row of zeros.
+template <int D>
+struct PressureRow {
+  const std::uint8_t* surface;
+
+  TREACLE_HD bool isUnknown(std::uint32_t i) const { return !surface[i]; }
+  TREACLE_HD double coefficient(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j,
+                                const Distance& r) const {
+    return pairs.pressureCoefficient(r, pairs.substance(i), pairs.substance(j));
+  }
+  /// Bound on all of them.
+  double largest(const IsphPairs<D>& pairs) const {
+    const MaterialTable& m = pairs.materials;
+    return 2 * pairs.slope(0) / *std::min_element(m.density, m.density + m.count);
+  }
+  TREACLE_HD double wall(const IsphPairs<D>&, std::uint32_t, std::uint32_t, const Distance&) const { return 0; }
+  TREACLE_HD double own(const IsphPairs<D>&, std::uint32_t) const { return 0; }
+};
+
+/// The same of the implicit viscous step, rho/dt I - mu lap; all fluid is unknown.
+template <int D>
+struct ViscousRow {
+  TREACLE_HD bool isUnknown(std::uint32_t) const { return true; }
+  TREACLE_HD double coefficient(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j,
+                                const Distance& r) const {
+    return 2 * pairs.slope(r) * pairs.pairViscosity(i, j);
+  }
+  double largest(const IsphPairs<D>& pairs) const {
+    double viscosity = 0;
+    for (int m = 0; m < pairs.materials.count; ++m) viscosity = std::max(viscosity, pairs.materials.viscosity(m));
+    return 2 * pairs.slope(0) * viscosity;
+  }
+  TREACLE_HD double wall(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Distance& r) const {
+    return pairs.noSlip ? 2 * coefficient(pairs, i, j, r) : 0;
+  }
+  TREACLE_HD double own(const IsphPairs<D>& pairs, std::uint32_t i) const {
+    return pairs.density(i) / pairs.timeStep;
+  }
+};
+
+}  // namespace treacle

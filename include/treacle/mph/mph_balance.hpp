@@ -1,0 +1,37 @@
+#pragma once
+
+#include "treacle/mph/mph_pairs.hpp"
+
+#include <span>
+
+namespace treacle {
+
+/// Sums over neighbours that say where the energy of a step goes and what walls bear. u and pressure: per active
+/// particle, walls included.
+
+/// 2 (d+2) sum_j mu_ij (u_ij.e_ij)^2 (-w'_ij^v) / r_ij per fluid particle [W/m3], pairs of fluid shared by halves:
+/// the sum over the particles has each pair once, but those of walls [K23 eq. (10), twice its second term].
+template <int D>
+void shearDissipation(Context<Cpu>&, const MphPairs<D>&, std::span<const Vec<D>> u, std::span<double> dissipation);
+template <int D>
+void shearDissipation(Context<Cuda>&, const MphPairs<D>&, std::span<const Vec<D>> u,
+                      std::span<double> dissipation);
+
+/// What wall particles meet of the fluid, per active wall particle.
+template <int D>
+struct FluidAtWalls {
+  std::span<Vec<D>> force;       // pressure and viscosity on the wall [N/m3] [K23 eq. (4)]
+  std::span<double> divergence;  // its part of C^T u [1/s]
+  std::span<double> density;     // its part of n [-]
+};
+
+/// `walls`: the active wall particles with all fluid within reach as near; without entries where the pairs have
+/// no lists.
+template <int D>
+void fluidAtWalls(Context<Cpu>&, const MphPairs<D>&, const ClusterListView& walls, std::span<const Vec<D>> u,
+                  std::span<const double> pressure, const FluidAtWalls<D>&);
+template <int D>
+void fluidAtWalls(Context<Cuda>&, const MphPairs<D>&, const ClusterListView& walls, std::span<const Vec<D>> u,
+                  std::span<const double> pressure, const FluidAtWalls<D>&);
+
+}  // namespace treacle

@@ -1,0 +1,67 @@
+#pragma once
+
+#include "treacle/core/parallel.hpp"
+#include "treacle/mph/mph_pairs.hpp"
+#include "treacle/search/cluster_lanes.hpp"
+
+namespace treacle {
+
+/// Squares of distances below this fraction of h_p count as this fraction: a particle meets itself in its
+/// cluster's list, and two may coincide; their differences are then zero and so is every term, whatever 1/r.
+inline constexpr double tinyDistance2 = 1e-24;
+
+/// One neighbour as the lanes of a cluster see it.
+template <int D>
+struct PairLanes {
+  VecLanes<D> d;          // x_j - x_i [m]
+  PairDistance<Lanes> r;  // [m2, 1/m]
+
+  PairLanes(const Vec<D>& xj, const VecLanes<D>& x, double floor2) {
+    Lanes r2 = {};
+    for (int k = 0; k < D; ++k) {
+      d[k] = xj[k] - x[k];
+      r2 += d[k] * d[k];
+    }
+    r.square = max(r2, broadcast(floor2));
+    r.inverse = inverseSqrt(r.square);
+  }
+};
+
+template <int D>
+inline double distanceFloor2(const MphPairs<D>& pairs) {
+  return tinyDistance2 * pairs.terms.pressureRadius * pairs.terms.pressureRadius;
+}
+
+/// Runs body(range, lane positions, cluster) for every cluster of the list.
+template <int D, class F>
+inline void forEachCluster(const MphPairs<D>& pairs, const ClusterListView& list, F&& body) {
+  parallelFor(list.clusterCount(), parallelGrain / clusterSize, [&](std::size_t index) {
+    const auto c = static_cast<std::uint32_t>(index);
+    const ClusterRange range(list, c);
+    body(range, loadPositions<D>(range, pairs.position, pairs.grid), c);
+  });
+}
+
+/// mu_ij times the viscous factor, for the lanes of a cluster and a neighbour.
+template <int D>
+class ViscosityLanes {
+ public:
+  ViscosityLanes(const MphPairs<D>& pairs, const ClusterRange& range) : pairs_(pairs) {
+    const double factor = pairs.terms.viscousFactor;
+    if (pairs.isOneSubstance()) {
+      ofSubstance_[0] = broadcast(factor * pairs.onlyViscosity());
+      return;
+    }
+    for (int m = 0; m < pairs.materials.count; ++m)
+      for (std::uint32_t lane = 0; lane < clusterSize; ++lane)
+        ofSubstance_[m][lane] =
+            factor * pairs.viscosity(pairs.substance(range.particle(lane)), static_cast<Substance>(m));
+  }
+  Lanes with(std::uint32_t j) const { return ofSubstance_[pairs_.substance(j)]; }
+
+ private:
+  const MphPairs<D>& pairs_;
+  Lanes ofSubstance_[maxMaterials];
+};
+
+}  // namespace treacle

@@ -1,0 +1,66 @@
+#pragma once
+
+#include "treacle/model/case.hpp"
+#include "treacle/model/particles.hpp"
+#include "treacle/mph/mph_pairs.hpp"
+#include "treacle/search/cell_sort.hpp"
+
+#include <algorithm>
+#include <type_traits>
+
+namespace treacle {
+
+/// Who is whose neighbour: owns the cells, the lists and the constants that the pair sums of a step read.
+template <int D, class Backend = Cpu>
+class MphNeighbourhood {
+ public:
+  explicit MphNeighbourhood(const Case& c)
+      : pairs_(makeMphPairs<D>(c)),
+        useLists_(std::is_same_v<Backend, Cpu> || c.solver.neighbours == NeighbourKind::Lists) {}
+  MphNeighbourhood(const MphNeighbourhood&) = delete;
+
+  /// Sorts the particles into cells.
+  void sort(Context<Backend>& context, Particles<D, Backend>& particles) {
+    sortByCell(context, pairs_.grid, particles, ranges_, workspace_);
+  }
+
+  /// Neighbour lists of the sorted particles; pairs() then looks at them until the next sort. On a device the case
+  /// may do without lists: pair sums then walk the cell ranges, and the views have clusters but no entries.
+  void buildLists(Context<Backend>& context, const Particles<D, Backend>& particles) {
+    const std::uint32_t fluid = particles.fluidCount, active = ranges_.activeCount;
+    pairs_.fluidCount = fluid;
+    pairs_.activeCount = active;
+    pairs_.position = particles.position;
+    pairs_.material = particles.material;
+    pairs_.cells = viewOf(ranges_);
+    if (!useLists_) {
+      pairs_.fluidList = {0, fluid};
+      pairs_.wallList = {fluid, active};
+      return;
+    }
+    const double hp = pairs_.terms.pressureRadius, far = std::max(pairs_.terms.viscosityRadius, 2 * hp);
+    buildClusterList<D>(context, pairs_.grid, ranges_, pairs_.position, 0, fluid, {hp, far}, false, fluidList_);
+    buildClusterList<D>(context, pairs_.grid, ranges_, pairs_.position, fluid, active, {hp, 0}, true, wallList_);
+    pairs_.fluidList = fluidList_.view();
+    pairs_.wallList = wallList_.view();
+  }
+
+  /// Of the step at hand [s].
+  void setTimeStep(double dt) { pairs_.materials.setTimeStep(dt); }
+
+  const MphPairs<D>& pairs() const { return pairs_; }
+  const CellGrid<D>& grid() const { return pairs_.grid; }
+  const CellRanges<Backend>& ranges() const { return ranges_; }
+  std::size_t bytes() const {
+    return ranges_.bytes() + workspace_.bytes() + fluidList_.bytes() + wallList_.bytes();
+  }
+
+ private:
+  MphPairs<D> pairs_;
+  bool useLists_;
+  CellRanges<Backend> ranges_;
+  SortWorkspace<Backend> workspace_;
+  ClusterList<Backend> fluidList_, wallList_;
+};
+
+}  // namespace treacle

@@ -1,0 +1,52 @@
+#pragma once
+
+#include "treacle/core/cuda.hpp"
+#include "treacle/mph/mph_pairs.hpp"
+
+#include <cstdint>
+#include <span>
+
+namespace treacle {
+
+/// What a step of MPH-I does particle by particle, without neighbours. Spans "per particle" have activeCount, "per
+/// fluid particle" fluidCount elements.
+
+/// kappa [n - n_0]_+ per particle [Pa]: the explicit part of Psi [K23 eq. (14)], cut at the free surface.
+template <int D>
+void elasticPressure(Context<Cpu>&, const MphPairs<D>&, std::span<const double> n, std::span<double> elastic);
+template <int D>
+void elasticPressure(Context<Cuda>&, const MphPairs<D>&, std::span<const double> n, std::span<double> elastic);
+
+/// rho/dt u + rho g per fluid particle: b of [K23 eq. (16)] before the pair sums.
+template <int D>
+void inertiaAndGravity(Context<Cpu>&, const MphPairs<D>&, std::span<const Vec<D>> u, const Vec<D>& gravity,
+                       std::span<Vec<D>> b);
+template <int D>
+void inertiaAndGravity(Context<Cuda>&, const MphPairs<D>&, std::span<const Vec<D>> u, const Vec<D>& gravity,
+                       std::span<Vec<D>> b);
+
+/// pressure_i = lambda_i div_i + elastic_i per particle [Pa] [K23 eq. (14)]; an empty `elastic` counts as zero.
+/// `pressure` may be `div`.
+template <int D>
+void bulkPressure(Context<Cpu>&, const MphPairs<D>&, std::span<const double> div, std::span<const double> elastic,
+                  std::span<double> pressure);
+template <int D>
+void bulkPressure(Context<Cuda>&, const MphPairs<D>&, std::span<const double> div, std::span<const double> elastic,
+                  std::span<double> pressure);
+
+/// The formulas, for particle i.
+template <int D>
+TREACLE_HD double elasticPressureOf(const MphPairs<D>& pairs, std::uint32_t i, double n) {
+  return pairs.bulkModulus(i) * positivePart(n - pairs.restDensity);
+}
+template <int D>
+TREACLE_HD Vec<D> inertiaAndGravityOf(const MphPairs<D>& pairs, std::uint32_t i, const Vec<D>& u,
+                                      const Vec<D>& gravity) {
+  return pairs.inertia(i) * u + pairs.density(i) * gravity;
+}
+template <int D>
+TREACLE_HD double bulkPressureOf(const MphPairs<D>& pairs, std::uint32_t i, double div, double elastic) {
+  return pairs.bulkViscosity(i) * div + elastic;
+}
+
+}  // namespace treacle

@@ -1,0 +1,50 @@
+#pragma once
+
+#include "treacle/core/block.hpp"
+#include "treacle/mph/mph_pairs.hpp"
+
+#include <span>
+
+namespace treacle {
+
+/// Sums over neighbours that make up one step. Spans "per particle" have activeCount, "per fluid particle"
+/// fluidCount elements; results are overwritten unless the name says add.
+
+/// n_i = sum_j w_ij^p, per particle [K23 eq. (7)].
+template <int D>
+void numberDensity(Context<Cpu>&, const MphPairs<D>&, std::span<double> n);
+template <int D>
+void numberDensity(Context<Cuda>&, const MphPairs<D>&, std::span<double> n);
+
+/// y_i += factor (C q)_i = -factor sum_j (q_i + q_j) e_ij w'_ij^p per fluid particle; q per particle.
+template <int D>
+void addPressureGradient(Context<Cpu>&, const MphPairs<D>&, std::span<const double> q, double factor,
+                         std::span<Vec<D>> y);
+template <int D>
+void addPressureGradient(Context<Cuda>&, const MphPairs<D>&, std::span<const double> q, double factor,
+                         std::span<Vec<D>> y);
+
+/// (C^T u)_i = sum_j (u_j - u_i).e_ij w'_ij^p per particle [K23 eq. (14)]; u per particle, walls included.
+template <int D>
+void divergence(Context<Cpu>&, const MphPairs<D>&, std::span<const Vec<D>> u, std::span<double> div);
+template <int D>
+void divergence(Context<Cuda>&, const MphPairs<D>&, std::span<const Vec<D>> u, std::span<double> div);
+
+/// What the walls and the inertia put on a fluid particle's own velocity.
+template <int D>
+struct WallTerms {
+  std::span<Block<D>> block;   // rho/dt I + sum over walls of the viscous pair blocks, per fluid particle
+  std::span<Vec<D>> gradient;  // sum over walls of -e w'^p [1/m], per fluid particle
+};
+template <int D>
+void wallTerms(Context<Cpu>&, const MphPairs<D>&, const WallTerms<D>&);
+template <int D>
+void wallTerms(Context<Cuda>&, const MphPairs<D>&, const WallTerms<D>&);
+
+/// y_i += viscous force density of moving walls: sum over walls of the pair block times u_j, per fluid particle.
+template <int D>
+void addWallDrag(Context<Cpu>&, const MphPairs<D>&, std::span<const Vec<D>> u, std::span<Vec<D>> y);
+template <int D>
+void addWallDrag(Context<Cuda>&, const MphPairs<D>&, std::span<const Vec<D>> u, std::span<Vec<D>> y);
+
+}  // namespace treacle

@@ -1,0 +1,101 @@
+#pragma once
+
+#include "treacle/core/buffer.hpp"
+#include "treacle/mph/mph_operator.hpp"
+#include "treacle/mph/mph_sums.hpp"
+#include "treacle/precondition/projection_terms.hpp"
+
+#include <span>
+
+namespace treacle {
+
+/// The sums over neighbours that a preconditioner is made of, in its own precision T. `store` is called once per
+/// particle with the sum; which ones there are: projection_terms.hpp.
+template <int D, class T, class Backend = Cpu>
+class ParticleProducts;
+
+/// As MphOperator<D, Cpu>: one number per pair and term is kept.
+template <int D, class T>
+class ParticleProducts<D, T, Cpu> {
+ public:
+  /// `pairs` and the terms' spans must outlive the products. `a`: prepared.
+  void prepare(Context<Cpu>&, const MphPairs<D>& pairs, const WallTerms<D>& terms, const MphOperator<D, Cpu>& a);
+
+  /// store(i, (C q)_i) per fluid particle; q per particle.
+  template <class Store>
+  void gradient(Context<Cpu>&, ScalarField<T, Cpu> q, const Store& store) const;
+  /// store(k, (C^T u)_k) per particle, walls at rest; u per fluid particle.
+  template <class Store>
+  void divergence(Context<Cpu>&, VectorField<D, T, Cpu> u, const Store& store) const;
+  /// store(k, (C^T W C q)_k) per particle; vectors() is workspace.
+  template <class Store>
+  void schur(Context<Cpu>&, const ProjectionTable<T>& table, ScalarField<T, Cpu> q, const Store& store);
+  /// store(i, ((rho/dt I + V) u)_i) per fluid particle.
+  template <class Store>
+  void viscous(Context<Cpu>&, const Gathered<D, T>* u, const Store& store) const;
+
+  /// Inverse diagonal of S' per particle [Pa s], and inverse diagonal blocks of rho/dt I + V per fluid particle.
+  void inverseDiagonals(Context<Cpu>&, const ProjectionTable<T>& table, std::span<T> pressure,
+                        std::span<Block<D, T>> velocity) const;
+
+  /// What `gradient` and `divergence` gather: two fields of scalars and one of vectors, valid until prepare() is
+  /// called again.
+  ScalarField<T, Cpu> scalars(int which = 0) { return {scalars_[which].data()}; }
+  VectorField<D, T, Cpu> vectors() { return {vectors_.data()}; }
+  /// scalars(0) = x, per particle; vectors() = u, or W u, per fluid particle.
+  void gather(Context<Cpu>&, std::span<const T> x);
+  void gather(Context<Cpu>&, std::span<const Gathered<D, T>> u);
+  void gatherWeighted(Context<Cpu>&, const ProjectionTable<T>& table, std::span<const Vec<D>> u);
+  std::size_t bytes() const;
+
+ private:
+  void sumGradients();
+
+  const MphPairs<D>* pairs_ = nullptr;
+  WallTerms<D> terms_{};
+  Buffer<T> scalars_[2];
+  Buffer<Gathered<D, T>> vectors_;
+  Buffer<Vec<D, T>> position_;  // from the domain's corner [m]
+  // D times eight numbers per cluster: positions likewise, and sums of g d over all neighbours and over walls.
+  Buffer<T> fluidLanes_, wallLanes_, gradient_, wallGradient_;
+  // Eight numbers per list entry, one per lane; starts count entries.
+  Buffer<std::uint64_t> viscousStart_, pressureStart_, wallStart_;
+  Buffer<T> viscous_;              // near and far fluid of fluid clusters: c of the viscous block c d d^T
+  Buffer<T> pressure_;             // near fluid, then near walls: g of -e w' = g d
+  Buffer<T> wall_;                 // near fluid of wall clusters: likewise
+  Buffer<Block<D, T>> selfBlock_;  // diagonal block of rho/dt I + V
+};
+
+/// As MphOperator<D, Cuda>, whose lists it uses.
+template <int D, class T>
+class ParticleProducts<D, T, Cuda> {
+ public:
+  void prepare(Context<Cuda>&, const MphPairs<D>& pairs, const WallTerms<D>& terms, const MphOperator<D, Cuda>& a);
+  template <class Store>
+  void gradient(Context<Cuda>&, ScalarField<T, Cuda> q, const Store& store) const;
+  template <class Store>
+  void divergence(Context<Cuda>&, VectorField<D, T, Cuda> u, const Store& store) const;
+  template <class Store>
+  void schur(Context<Cuda>&, const ProjectionTable<T>& table, ScalarField<T, Cuda> q, const Store& store);
+  template <class Store>
+  void viscous(Context<Cuda>&, const Gathered<D, T>* u, const Store& store) const;
+  void inverseDiagonals(Context<Cuda>&, const ProjectionTable<T>& table, std::span<T> pressure,
+                        std::span<Block<D, T>> velocity) const;
+  ScalarField<T, Cuda> scalars(int which = 0) { return {scalars_[which].data()}; }
+  VectorField<D, T, Cuda> vectors() { return {vectors_.data()}; }
+  void gather(Context<Cuda>&, std::span<const T> x);
+  void gather(Context<Cuda>&, std::span<const Gathered<D, T>> u);
+  void gatherWeighted(Context<Cuda>&, const ProjectionTable<T>& table, std::span<const Vec<D>> u);
+  std::size_t bytes() const {
+    return selfBlock_.bytes() + scalars_[0].bytes() + scalars_[1].bytes() + vectors_.bytes();
+  }
+
+ private:
+  const MphPairs<D>* pairs_ = nullptr;
+  const MphOperator<D, Cuda>* a_ = nullptr;
+  Buffer<typename ScalarField<T, Cuda>::Element, Cuda> scalars_[2];
+  Buffer<typename VectorField<D, T, Cuda>::Element, Cuda> vectors_;  // those of walls are zero
+  Buffer<Block<D, T>, Cuda> selfBlock_;                              // diagonal block of rho/dt I + V
+};
+
+}  // namespace treacle

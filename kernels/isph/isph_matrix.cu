@@ -1,0 +1,222 @@
+#include "treacle/isph/isph_matrix.hpp"
+
+#include "core/launch.hpp"
+#include "core/scan.hpp"
+
+namespace treacle {
+namespace {
+
+/// Lanes that share a row: it has some 25 near neighbours and 57 in all in three dimensions, 9 and 20 in two.
+constexpr int allLanes = 8, nearLanes = 4;
+
+/// Entries as products read them: load(k) at once, then column and coefficient of what was loaded.
+template <class T>
+struct PlainEntries {
+  IsphMatrix<T> a;
+  T inverseUnit;
+
+  struct Entry {
+    std::uint32_t column = 0;
+    T coefficient = 0;
+  };
+
+  explicit PlainEntries(const IsphMatrix<T>& matrix) : a(matrix), inverseUnit(static_cast<T>(1 / matrix.unit)) {}
+  __device__ Entry load(std::uint64_t k) const { return {__ldcs(a.column + k), __ldcs(a.coefficient + k)}; }
+  __device__ Entry loadNear(std::uint64_t k) const { return load(k); }
+  __device__ std::uint32_t column(const Entry& e, std::uint32_t) const { return e.column; }
+  __device__ double exact(const Entry& e) const { return e.coefficient; }
+  __device__ T rounded(const Entry& e) const {
+    return static_cast<T>(static_cast<int>(e.coefficient * inverseUnit + T(0.5)));
+  }
+  __host__ __device__ double exactUnit() const { return 1; }
+};
+template <class T>
+struct PackedEntries {
+  IsphMatrix<T> a;
+
+  struct Entry {
+    std::uint32_t word = 0;
+    std::uint16_t low = 32768;
+  };
+
+  __device__ Entry load(std::uint64_t k) const { return {__ldcs(a.word + k), __ldcs(a.low + k)}; }
+  __device__ Entry loadNear(std::uint64_t k) const { return {__ldcs(a.word + k), 0}; }
+  __device__ std::uint32_t column(const Entry& e, std::uint32_t row) const {
+    return PackedEntry::column(e.word, row);
+  }
+  __device__ double exact(const Entry& e) const {
+    // A float holds the 24 bits.
+    return static_cast<float>(static_cast<int>((e.word & 255) << 16) + static_cast<int>(e.low) - 32768);
+  }
+  __device__ T rounded(const Entry& e) const { return static_cast<T>(e.word & 255); }
+  __host__ __device__ double exactUnit() const { return a.unit * (1.0 / 65536); }
+};
+
+/// sum of entries times x over one section of a row, by every `Lanes`-th entry, `Chunk` of them on their way at a
+/// time.
+template <int Lanes, int Chunk, bool Near, class X, class Entries>
+__device__ inline X sectionSum(const Entries& e, std::uint64_t section, std::uint32_t row, const X* x) {
+  const std::uint64_t begin = e.a.start[section];
+  const auto count = static_cast<std::uint32_t>(e.a.start[section + 1] - begin);
+  X sum = 0;
+  for (std::uint32_t first = threadIdx.x % Lanes; first < count; first += Lanes * Chunk) {
+    typename Entries::Entry entry[Chunk];
+    X value[Chunk];
+#pragma unroll
+    for (int c = 0; c < Chunk; ++c)
+      if (first + c * Lanes < count)
+        entry[c] = Near ? e.loadNear(begin + first + c * Lanes) : e.load(begin + first + c * Lanes);
+#pragma unroll
+    for (int c = 0; c < Chunk; ++c) value[c] = first + c * Lanes < count ? x[e.column(entry[c], row)] : X(0);
+#pragma unroll
+    for (int c = 0; c < Chunk; ++c) {
+      if constexpr (Near)
+        sum += e.rounded(entry[c]) * value[c];
+      else
+        sum += e.exact(entry[c]) * value[c];
+    }
+  }
+  return sum;
+}
+
+template <int Lanes, class X>
+__device__ inline X sumOfLanes(X sum) {
+  for (int s = Lanes / 2; s > 0; s /= 2) sum += __shfl_xor_sync(~0u, sum, s);
+  return sum;
+}
+
+/// Eight lanes per row; store(row, sum of c x over all entries), once. Reads the matrix and gathers x. No atomics.
+template <class Entries, class Store>
+__global__ void __launch_bounds__(256) allSumsKernel(Entries e, const double* x, Store store) {
+  const std::uint32_t row = (blockIdx.x * blockDim.x + threadIdx.x) / allLanes;
+  double sum = 0;
+  if (row < e.a.rows)
+    for (const std::uint64_t section : {std::uint64_t{row}, std::uint64_t{e.a.rows} + row})
+      sum += sectionSum<allLanes, 4, false>(e, section, row, x);
+  sum = sumOfLanes<allLanes>(sum);
+  if (row < e.a.rows && threadIdx.x % allLanes == 0) store(row, e.exactUnit() * sum);
+}
+
+/// Four lanes per row; the same over near entries, rounded.
+template <class T, class Entries, class Store>
+__global__ void __launch_bounds__(256) nearSumsKernel(Entries e, const T* x, Store store) {
+  const std::uint32_t row = (blockIdx.x * blockDim.x + threadIdx.x) / nearLanes;
+  T sum = 0;
+  if (row < e.a.rows) sum = sectionSum<nearLanes, 8, true>(e, row, row, x);
+  sum = sumOfLanes<nearLanes>(sum);
+  if (row < e.a.rows && threadIdx.x % nearLanes == 0) store(row, static_cast<T>(e.a.unit) * sum);
+}
+
+template <class T, class F>
+void withEntries(const IsphMatrix<T>& a, F&& f) {
+  if (a.word)
+    f(PackedEntries<T>{a});
+  else
+    f(PlainEntries<T>(a));
+}
+
+template <class T, class Store>
+void nearSums(const Context<Cuda>& context, const IsphMatrix<T>& a, const T* x, Store store) {
+  withEntries(a, [&](auto entries) {
+    launch(context, blocksFor(std::size_t{a.rows} * nearLanes, 256), 256, 0,
+           nearSumsKernel<T, decltype(entries), Store>, entries, x, store);
+  });
+}
+
+template <class T, class Store>
+void allSums(const Context<Cuda>& context, const IsphMatrix<T>& a, const double* x, Store store) {
+  withEntries(a, [&](auto entries) {
+    launch(context, blocksFor(std::size_t{a.rows} * allLanes, 256), 256, 0,
+           allSumsKernel<decltype(entries), Store>, entries, x, store);
+  });
+}
+
+}  // namespace
+
+template <class T>
+void multiply(Context<Cuda>& context, const IsphMatrix<T>& a, std::span<const double> x, std::span<double> y) {
+  allSums(context, a, x.data(),
+          [diagonal = a.diagonal, x = x.data(), y = y.data()] __device__(std::uint32_t i, double sum) {
+            y[i] = diagonal[i] * x[i] - sum;
+          });
+}
+
+template <class T>
+void firstSweep(Context<Cuda>& context, const IsphMatrix<T>& a, std::span<const double> r, std::span<T> x) {
+  forEach(context, a.rows, [inverse = a.inverseNear, r = r.data(), x = x.data()] __device__(std::size_t i) {
+    x[i] = inverse[i] * static_cast<T>(r[i]);
+  });
+}
+
+template <class T>
+void nearResidual(Context<Cuda>& context, const IsphMatrix<T>& a, std::span<const double> r, std::span<const T> x,
+                  std::span<T> res) {
+  nearSums(
+      context, a, x.data(),
+      [inverse = a.inverseNear, r = r.data(), x = x.data(), res = res.data()] __device__(std::uint32_t i, T sum) {
+        const T d = inverse[i];
+        res[i] = d > 0 ? static_cast<T>(r[i]) - x[i] / d + sum : T(0);
+      });
+}
+
+template <class T>
+void lastSweep(Context<Cuda>& context, const IsphMatrix<T>& a, std::span<const double> r, std::span<const T> x,
+               std::span<double> z) {
+  nearSums(context, a, x.data(),
+           [inverse = a.inverseNear, r = r.data(), x = x.data(), z = z.data()] __device__(std::uint32_t i, T sum) {
+             const T d = inverse[i];
+             z[i] = d > 0 ? x[i] + d * (static_cast<T>(r[i]) - x[i] / d + sum) : T(0);
+           });
+}
+
+template <class T>
+void jacobi(Context<Cuda>& context, const IsphMatrix<T>& a, std::span<const double> r, std::span<double> z) {
+  forEach(context, a.rows, [diagonal = a.diagonal, r = r.data(), z = z.data()] __device__(std::size_t i) {
+    z[i] = diagonal[i] > 0 ? r[i] / diagonal[i] : 0;
+  });
+}
+
+/// Twice one thread per row: it counts its entries, then writes them.
+template <class T>
+void compressed(Context<Cuda>& context, const IsphMatrix<T>& a, BlockCsr<1, double, Cuda>& result) {
+  const auto forEachEntry = [a] __device__(std::size_t i, auto&& f) {
+    if (!(a.diagonal[i] > 0)) return;
+    f(static_cast<std::uint32_t>(i), a.diagonal[i]);
+    for (const std::size_t section : {i, a.rows + i})
+      for (std::uint64_t k = a.start[section]; k < a.start[section + 1]; ++k)
+        if (const double c = a.coefficientAt(k); c > 0) f(a.column[k], -c);
+  };
+  result.rowStart.resize(context, std::size_t{a.rows} + 1);
+  forEach(context, a.rows, [forEachEntry, start = result.rowStart.data()] __device__(std::size_t i) {
+    std::uint64_t entries = 0;
+    forEachEntry(i, [&](std::uint32_t, double) { ++entries; });
+    start[i] = entries;
+  });
+  const std::uint64_t entries = startRows(context, result.rowStart);
+  result.column.resize(context, entries);
+  result.block.resize(context, entries);
+  forEach(context, a.rows,
+          [forEachEntry, start = result.rowStart.data(), column = result.column.data(),
+           block = result.block.data()] __device__(std::size_t i) {
+            std::uint64_t place = start[i];
+            forEachEntry(i, [&](std::uint32_t j, double value) {
+              column[place] = j;
+              block[place++].a[0] = value;
+            });
+          });
+}
+
+#define TREACLE_INSTANTIATE(T)                                                                                  \
+  template void multiply<T>(Context<Cuda>&, const IsphMatrix<T>&, std::span<const double>, std::span<double>);  \
+  template void firstSweep<T>(Context<Cuda>&, const IsphMatrix<T>&, std::span<const double>, std::span<T>);     \
+  template void nearResidual<T>(Context<Cuda>&, const IsphMatrix<T>&, std::span<const double>,                  \
+                                std::span<const T>, std::span<T>);                                              \
+  template void lastSweep<T>(Context<Cuda>&, const IsphMatrix<T>&, std::span<const double>, std::span<const T>, \
+                             std::span<double>);                                                                \
+  template void jacobi<T>(Context<Cuda>&, const IsphMatrix<T>&, std::span<const double>, std::span<double>);    \
+  template void compressed<T>(Context<Cuda>&, const IsphMatrix<T>&, BlockCsr<1, double, Cuda>&);
+TREACLE_INSTANTIATE(double)
+TREACLE_INSTANTIATE(float)
+#undef TREACLE_INSTANTIATE
+
+}  // namespace treacle

@@ -1,0 +1,136 @@
+#include "treacle/isph/isph_sums.hpp"
+
+#include "core/launch.hpp"
+
+namespace treacle {
+namespace {
+
+/// Lanes that share a particle's neighbours.
+constexpr int rowLanes = 8;
+constexpr std::uint32_t noColumn = ~0u;
+
+template <int Values>
+__device__ inline void sumOverLanes(double* sum) {
+  for (int n = 0; n < Values; ++n)
+    for (int s = rowLanes / 2; s > 0; s /= 2) sum[n] += __shfl_xor_sync(~0u, sum[n], s);
+}
+
+/// visit(j, d, r) for this lane's share of a row; the positions of four neighbours are on their way at a time.
+template <int D, class Visit>
+__device__ inline void visitRow(const IsphPairs<D>& pairs, const NeighbourRowsView& rows, std::uint32_t row,
+                                const Vec<D>& x, Visit&& visit) {
+  constexpr int chunk = 4;
+  for (const std::uint64_t section : {std::uint64_t{row}, std::uint64_t{rows.count} + row}) {
+    const std::uint64_t begin = rows.start[section];
+    const auto count = static_cast<std::uint32_t>(rows.start[section + 1] - begin);
+    for (std::uint32_t first = threadIdx.x % rowLanes; first < count; first += chunk * rowLanes) {
+      std::uint32_t column[chunk];
+      Vec<D> other[chunk];
+#pragma unroll
+      for (int c = 0; c < chunk; ++c)
+        column[c] = first + c * rowLanes < count ? __ldcs(rows.column + begin + first + c * rowLanes) : noColumn;
+#pragma unroll
+      for (int c = 0; c < chunk; ++c) other[c] = column[c] == noColumn ? x : pairs.position[column[c]];
+#pragma unroll
+      for (int c = 0; c < chunk; ++c) {
+        if (column[c] == noColumn) break;
+        const Vec<D> d = pairs.grid.difference(x, other[c]);
+        visit(column[c], d, Distance(d));
+      }
+    }
+  }
+}
+
+/// Eight lanes per fluid particle; reads its neighbours and what the term reads; writes what the term stores. No
+/// atomics.
+template <int D, class Term>
+__global__ void __launch_bounds__(128) fluidSumsKernel(const __grid_constant__ IsphPairs<D> pairs, Term term) {
+  const std::uint32_t i = (blockIdx.x * blockDim.x + threadIdx.x) / rowLanes;
+  const bool used = i < pairs.fluidCount;
+  double sum[Term::values] = {};
+  if (used) {
+    const Vec<D> x = pairs.position[i];
+    visitRow(pairs, pairs.fluidOfFluid, i, x,
+             [&](std::uint32_t j, const Vec<D>& d, const Distance& r) { term.fluid(pairs, i, j, d, r, sum); });
+    visitRow(pairs, pairs.wallsOfFluid, i, x,
+             [&](std::uint32_t j, const Vec<D>& d, const Distance& r) { term.wall(pairs, i, j, d, r, sum); });
+  }
+  sumOverLanes<Term::values>(sum);
+  if (used && threadIdx.x % rowLanes == 0) term.store(pairs, i, sum);
+}
+
+/// The same per active wall particle and its fluid neighbours.
+template <int D, class Term>
+__global__ void __launch_bounds__(128) wallSumsKernel(const __grid_constant__ IsphPairs<D> pairs, Term term) {
+  const std::uint32_t row = (blockIdx.x * blockDim.x + threadIdx.x) / rowLanes, i = pairs.fluidOfWalls.first + row;
+  const bool used = row < pairs.fluidOfWalls.count;
+  double sum[Term::values] = {};
+  if (used)
+    visitRow(pairs, pairs.fluidOfWalls, row, pairs.position[i],
+             [&](std::uint32_t j, const Vec<D>& d, const Distance& r) { term.fluid(pairs, i, j, d, r, sum); });
+  sumOverLanes<Term::values>(sum);
+  if (used && threadIdx.x % rowLanes == 0) term.store(pairs, i, sum);
+}
+
+/// Eight lanes per fluid particle and row of the matrix, which they write. No atomics.
+template <int D, class T, class Row>
+__global__ void __launch_bounds__(128)
+    isphMatrixKernel(const __grid_constant__ IsphPairs<D> pairs, Row row, IsphMatrixParts<D, T> parts) {
+  const std::uint32_t i = (blockIdx.x * blockDim.x + threadIdx.x) / rowLanes, lane = threadIdx.x % rowLanes;
+  const bool used = i < pairs.fluidCount;
+  const IsphMatrixRow<D, T, Row> filler{pairs, row, parts};
+  double sum[filler.values] = {};
+  if (used) {
+    const Vec<D> x = pairs.position[i];
+    pairs.fluidOfFluid.forEachPlace(
+        i, [&](std::uint64_t k) { filler.entry(i, x, k, sum); }, lane, rowLanes);
+    pairs.wallsOfFluid.forEachPlace(
+        i, [&](std::uint64_t k) { filler.wall(i, x, k, sum); }, lane, rowLanes);
+  }
+  sumOverLanes<filler.values>(sum);
+  if (used && lane == 0) filler.finish(i, sum);
+}
+
+}  // namespace
+
+template <int D, class Term>
+void sumOnFluid(Context<Cuda>& context, const IsphPairs<D>& pairs, const Term& term) {
+  launch(context, blocksFor(std::size_t{pairs.fluidCount} * rowLanes, 128), 128, 0, fluidSumsKernel<D, Term>,
+         pairs, term);
+}
+
+template <int D, class Term>
+void sumOnWalls(Context<Cuda>& context, const IsphPairs<D>& pairs, const Term& term) {
+  launch(context, blocksFor(std::size_t{pairs.fluidOfWalls.count} * rowLanes, 128), 128, 0,
+         wallSumsKernel<D, Term>, pairs, term);
+}
+
+template <int D, class T, class Row>
+void fillIsphMatrix(Context<Cuda>& context, const IsphPairs<D>& pairs, const Row& row,
+                    const IsphMatrixParts<D, T>& parts) {
+  launch(context, blocksFor(std::size_t{pairs.fluidCount} * rowLanes, 128), 128, 0, isphMatrixKernel<D, T, Row>,
+         pairs, row, parts);
+}
+
+#define TREACLE_INSTANTIATE(D)                                                                 \
+  template void sumOnFluid(Context<Cuda>&, const IsphPairs<D>&, const DensityTerm<D>&);        \
+  template void sumOnFluid(Context<Cuda>&, const IsphPairs<D>&, const PredictorTerm<D>&);      \
+  template void sumOnFluid(Context<Cuda>&, const IsphPairs<D>&,                                \
+                           const BothTerms<DensityTerm<D>, PredictorTerm<D>>&);                \
+  template void sumOnFluid(Context<Cuda>&, const IsphPairs<D>&, const ViscousSourceTerm<D>&);  \
+  template void sumOnFluid(Context<Cuda>&, const IsphPairs<D>&, const PressureSourceTerm<D>&); \
+  template void sumOnFluid(Context<Cuda>&, const IsphPairs<D>&, const CorrectorTerm<D>&);      \
+  template void sumOnWalls(Context<Cuda>&, const IsphPairs<D>&, const WallPressureTerm<D>&);   \
+  template void fillIsphMatrix(Context<Cuda>&, const IsphPairs<D>&, const PressureRow<D>&,     \
+                               const IsphMatrixParts<D, double>&);                             \
+  template void fillIsphMatrix(Context<Cuda>&, const IsphPairs<D>&, const PressureRow<D>&,     \
+                               const IsphMatrixParts<D, float>&);                              \
+  template void fillIsphMatrix(Context<Cuda>&, const IsphPairs<D>&, const ViscousRow<D>&,      \
+                               const IsphMatrixParts<D, double>&);                             \
+  template void fillIsphMatrix(Context<Cuda>&, const IsphPairs<D>&, const ViscousRow<D>&,      \
+                               const IsphMatrixParts<D, float>&);
+TREACLE_INSTANTIATE(2)
+TREACLE_INSTANTIATE(3)
+#undef TREACLE_INSTANTIATE
+
+}  // namespace treacle

@@ -1,0 +1,232 @@
+#pragma once
+
+#include "core/launch.hpp"
+#include "mph/cluster_walk.cuh"
+#include "mph/local_positions.cuh"
+
+namespace treacle {
+
+/// Adds up v[0 … N-1] over the lanes of each group of N (a power of two): afterwards lane n of the group holds the
+/// sum of v[n]. N - 1 exchanges instead of N log N.
+template <int N, class T>
+__device__ inline T transposedSum(const T* v) {
+  if constexpr (N == 1) {
+    return v[0];
+  } else {
+    constexpr int half = N / 2;
+    const bool upper = threadIdx.x & half;
+    T kept[half];
+#pragma unroll
+    for (int m = 0; m < half; ++m) {
+      const T give = upper ? v[m] : v[m + half];
+      kept[m] = (upper ? v[m + half] : v[m]) + __shfl_xor_sync(~0u, give, half);
+    }
+    return transposedSum<half>(kept);
+  }
+}
+
+/// Sums of pair terms over the neighbours of one cluster. `Terms` gives
+///   Own loadOwn(pairs, i), Other loadOther(pairs, j)   what they read of a particle
+///   values                                             how many sums a particle has
+///   uses(segment)                                      which parts of the lists count
+///   add(pairs, sums, d, distance, own, other, segment)
+///   store(pairs, i, n, sum)                            called once per particle and sum
+/// or, with a type StoresVectors, store(pairs, i, sums) once per particle.
+template <class Terms>
+inline constexpr bool storesVectors = requires {
+  typename Terms::StoresVectors;
+};
+
+template <int D, class T, class S, class Terms>
+class ClusterSum {
+ public:
+  static constexpr int values = Terms::values;
+  static constexpr int sums = S::own * values;
+
+  __device__ ClusterSum(const MphPairs<D>& pairs, const ClusterListView& list, std::uint32_t cluster)
+      : pairs_(pairs),
+        list_(list),
+        cluster_(cluster),
+        first_(list.first + clusterSize * cluster),
+        count_(min(clusterSize, list.last - first_)) {}
+
+  /// `part`: which of the cluster's warps this is; `exchange`: room for the sums of the block's lanes.
+  __device__ void run(const Terms& terms, const LocalPositions<D, T>& places, int part, T (*exchange)[32]) const {
+    const int lane = threadIdx.x % 32, group = lane / S::slots, slot = lane % S::slots;
+    const bool wraps = S::ranges || list_.wraps[cluster_];
+    const auto origin = places.own(pairs_, first_, first_, wraps);
+    const std::uint32_t laneOwn = particle(lane % clusterSize);
+    Vec<D, T> mine = places.local(places.own(pairs_, laneOwn, first_, wraps), origin);
+    const bool torn = LocalPositions<D, T>::imagesCount && __any_sync(~0u, places.imagesMayDiffer(mine));
+    if (torn) mine = places.beside(pairs_, laneOwn, first_);
+    Vec<D, T> x[S::own];
+    typename Terms::Own own[S::own];
+    T sum[paddedSums] = {};
+#pragma unroll
+    for (int t = 0; t < S::own; ++t) {
+      for (int k = 0; k < D; ++k) x[t][k] = __shfl_sync(~0u, mine[k], group * S::own + t);
+      own[t] = terms.loadOwn(pairs_, particle(group * S::own + t));
+    }
+    struct Loaded {
+      typename LocalPositions<D, T>::Stored x;
+      typename Terms::Other other;
+    };
+    const auto walk = [&](auto apart) {
+      const auto load = [&](ListEntry e) {
+        return Loaded{apart ? places.withEntry(e) : places.neighbour(pairs_, e, wraps),
+                      terms.loadOther(pairs_, e.index())};
+      };
+      const auto add = [&](const Loaded& loaded, ListSegment segment) {
+        const Vec<D, T> local = places.local(loaded.x, origin);
+        const Vec<D, T> listed = apart ? places.atImage(loaded.x, origin) : Vec<D, T>{};
+#pragma unroll
+        for (int t = 0; t < S::own; ++t) {
+          Vec<D, T> d = local - x[t];
+          if (apart) places.moveToListedImage(d, listed - x[t], loaded.x, particle(group * S::own + t));
+          T r2 = places.floor;
+          for (int k = 0; k < D; ++k) r2 = fma(d[k], d[k], r2);
+          terms.add(pairs_, &sum[t * values], d, PairDistance<T>{r2, inverseSqrt(r2)}, own[t], loaded.other,
+                    segment);
+        }
+      };
+      if constexpr (S::ranges) {
+        const bool fluid =
+            walkRanges<Terms, S>(pairs_, first_, count_, [&](ListEntry e, ListSegment s) { add(load(e), s); });
+        if (first_ >= pairs_.fluidCount && !fluid)  // lists leave such walls out
+          for (T& value : sum) value = 0;
+      } else {
+        walkLists<Terms, S>(list_, cluster_, slot + S::slots * part, load, add);
+      }
+    };
+    // A loop of its own: the other one has its registers for itself.
+    if (torn)
+      walk(std::true_type{});
+    else
+      walk(std::false_type{});
+    store(terms, sum, part, exchange);
+  }
+
+ private:
+  /// Sums of one lane, filled up to a multiple of the group's lanes.
+  static constexpr int rounds = (sums + S::slots - 1) / S::slots;
+  static constexpr int paddedSums = rounds * S::slots;
+
+  __device__ std::uint32_t particle(int own) const {
+    return first_ + min(static_cast<std::uint32_t>(own), count_ - 1);
+  }
+
+  __device__ void store(const Terms& terms, T (&sum)[paddedSums], int part, T (*exchange)[32]) const {
+    const int lane = threadIdx.x % 32, group = lane / S::slots, slot = lane % S::slots;
+#pragma unroll
+    for (int r = 0; r < rounds; ++r) {
+      T total = transposedSum<S::slots>(&sum[r * S::slots]);
+      if constexpr (S::warps > 1) {
+        const int warp = threadIdx.x / 32;
+        __syncthreads();
+        exchange[warp][lane] = total;
+        __syncthreads();
+        total = 0;
+        for (int w = 0; w < S::warps; ++w) total += exchange[warp - part + w][lane];
+        if (part != 0) continue;
+      }
+      const int n = r * S::slots + slot, t = n / values;
+      const std::uint32_t own = group * S::own + t;
+      const bool used = n < sums && own < count_;
+      if constexpr (storesVectors<Terms>) {
+        static_assert(rounds == 1);
+        Vec<values, T> all;
+        for (int c = 0; c < values; ++c) all[c] = __shfl_sync(~0u, total, lane - n % values + c);
+        if (used && n % values == 0) terms.store(pairs_, first_ + own, all);
+      } else {
+        if (used) terms.store(pairs_, first_ + own, n % values, total);
+      }
+    }
+  }
+
+  const MphPairs<D>& pairs_;
+  const ClusterListView& list_;
+  std::uint32_t cluster_, first_, count_;
+};
+
+/// Blocks that a multiprocessor is to hold at once: bounds the registers of a thread.
+template <class T, class S>
+inline constexpr int residentBlocks = (std::is_same_v<T, double> ? 16 : 24) / S::warpsPerBlock;
+
+/// A list and what is to be added up over it.
+template <class Terms>
+struct ListTask {
+  ClusterListView list;
+  Terms terms;
+
+  template <class S>
+  TREACLE_HD unsigned blocks() const {
+    return (list.clusterCount() + S::clustersPerBlock - 1) / S::clustersPerBlock;
+  }
+};
+
+template <int D, class T, class S, class Terms>
+__device__ inline void sumOverList(const MphPairs<D>& pairs, const ListTask<Terms>& task, unsigned block,
+                                   const LocalPositions<D, T>& places) {
+  __shared__ T exchange[S::warpsPerBlock][32];
+  const int warp = threadIdx.x / 32;
+  const std::uint32_t cluster = block * S::clustersPerBlock + warp / S::warps;
+  if (cluster < task.list.clusterCount())
+    ClusterSum<D, T, S, Terms>(pairs, task.list, cluster).run(task.terms, places, warp % S::warps, exchange);
+}
+
+/// Warps share clusters as S says. Reads positions, lists and what the terms read of both particles of a pair;
+/// writes what the terms store. No atomics.
+template <int D, class T, class S, class Terms>
+__global__ void __launch_bounds__(32 * S::warpsPerBlock, residentBlocks<T, S>)
+    clusterSumKernel(const __grid_constant__ MphPairs<D> pairs, const __grid_constant__ ListTask<Terms> task,
+                     const __grid_constant__ LocalPositions<D, T> places) {
+  sumOverList<D, T, S>(pairs, task, blockIdx.x, places);
+}
+
+/// The same for two lists at once: first the clusters of a, then those of b.
+template <int D, class T, class S, class A, class B>
+__global__ void __launch_bounds__(32 * S::warpsPerBlock, residentBlocks<T, S>)
+    clusterSumsKernel(const __grid_constant__ MphPairs<D> pairs, const __grid_constant__ ListTask<A> a,
+                      const __grid_constant__ ListTask<B> b, const __grid_constant__ LocalPositions<D, T> places) {
+  const unsigned blocksOfA = a.template blocks<S>();
+  if (blockIdx.x < blocksOfA)
+    sumOverList<D, T, S>(pairs, a, blockIdx.x, places);
+  else
+    sumOverList<D, T, S>(pairs, b, blockIdx.x - blocksOfA, places);
+}
+
+template <int D, class T, class S, class Terms>
+void launchClusterSums(Context<Cuda>& context, const MphPairs<D>& pairs, const ListTask<Terms>& task,
+                       const LocalPositions<D, T>& places) {
+  launch(context, task.template blocks<S>(), 32 * S::warpsPerBlock, 0, clusterSumKernel<D, T, S, Terms>, pairs,
+         task, places);
+}
+
+template <int D, class T, class S, class A, class B>
+void launchClusterSums(Context<Cuda>& context, const MphPairs<D>& pairs, const ListTask<A>& a,
+                       const ListTask<B>& b, const LocalPositions<D, T>& places) {
+  launch(context, a.template blocks<S>() + b.template blocks<S>(), 32 * S::warpsPerBlock, 0,
+         clusterSumsKernel<D, T, S, A, B>, pairs, a, b, places);
+}
+
+/// Systems with fewer clusters share each of them among four warps.
+inline constexpr std::uint32_t fewClusters = 3000;
+
+/// Calls f(Sharing) with what suits the lists of the pairs.
+template <int D, class F>
+void withListSharing(const MphPairs<D>& pairs, F&& f) {
+  if (pairs.fluidList.clusterCount() < fewClusters)
+    f(Sharing<4, 4>{});
+  else
+    f(Sharing<4, 1>{});
+}
+/// The same, also for pairs without lists.
+template <int D, class F>
+void withSharing(const MphPairs<D>& pairs, F&& f) {
+  if (pairs.fluidList.offset)
+    withListSharing(pairs, f);
+  else
+    f(Sharing<4, 1, true>{});
+}
+
+}  // namespace treacle

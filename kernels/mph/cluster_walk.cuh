@@ -1,0 +1,106 @@
+#pragma once
+
+#include "search/cluster_candidates.cuh"
+#include "treacle/mph/mph_pairs.hpp"
+
+namespace treacle {
+
+/// How a warp shares the work on a cluster: each lane keeps `Own` of its eight particles, so that a neighbour,
+/// once loaded, serves that many pairs; the lanes that keep the same particles take turns with the neighbours.
+/// `Warps` warps share one cluster's neighbours: small systems would otherwise leave the card idle. With Ranges
+/// there are no lists.
+template <int Own_, int Warps_, bool Ranges_ = false>
+struct Sharing {
+  static constexpr int own = Own_, warps = Warps_;
+  static constexpr bool ranges = Ranges_;
+  static_assert(!ranges || warps == 1);
+  static constexpr int groups = clusterSize / own;
+  static constexpr int slots = 32 / groups;
+  static constexpr int warpsPerBlock = 4;
+  static constexpr int clustersPerBlock = warpsPerBlock / warps;
+};
+
+/// Runs along a part of a list, every `stride`-th entry from k on: load(entry) starts the loads of a neighbour,
+/// add(what was loaded, k) uses them one round later, while those of the next are on their way.
+template <int Stride, class Load, class Add>
+__device__ inline void pipeline(const ListEntry* entry, std::uint32_t k, std::uint32_t count, Load&& load,
+                                Add&& add) {
+  if (k >= count) return;
+  auto loaded = load(entry[k]);
+  std::uint32_t next = k + Stride;
+  ListEntry nextEntry = next < count ? entry[next] : ListEntry{0};
+  while (next < count) {
+    const auto nextLoaded = load(nextEntry);
+    if (next + Stride < count) nextEntry = entry[next + Stride];
+    add(loaded, k);
+    loaded = nextLoaded;
+    k = next;
+    next += Stride;
+  }
+  add(loaded, k);
+}
+
+/// The entries of the segments that the terms need: add(what was loaded, segment).
+template <class Terms, class S, class Load, class Add>
+__device__ void walkLists(const ClusterListView& list, std::uint32_t cluster, int slot, Load&& load, Add&& add) {
+  const std::uint64_t* offset = list.offset + std::size_t{listSegments} * cluster;
+  const auto walk = [&](ListSegment near, ListSegment far) {
+    const bool usesNear = Terms::uses(near), usesFar = Terms::uses(far);
+    if (!usesNear && !usesFar) return;
+    const std::uint64_t begin = offset[static_cast<int>(usesNear ? near : far)];
+    const auto nearCount = static_cast<std::uint32_t>(offset[static_cast<int>(near) + 1] - begin);
+    const auto count = usesFar ? static_cast<std::uint32_t>(offset[static_cast<int>(far) + 1] - begin) : nearCount;
+    pipeline<S::slots * S::warps>(list.entry + begin, slot, count, load, [&](const auto& loaded, std::uint32_t k) {
+      add(loaded, !usesFar || (usesNear && k < nearCount) ? near : far);
+    });
+  };
+  walk(ListSegment::NearFluid, ListSegment::FarFluid);
+  walk(ListSegment::NearWall, ListSegment::FarWall);
+}
+
+/// The same from the cell ranges: candidates within reach are queued until a warp has enough of them. All of them
+/// count as near: terms vanish beyond their radius by themselves. Returns whether there was fluid.
+template <class Terms, class S, int D, class Visit>
+__device__ bool walkRanges(const MphPairs<D>& pairs, std::uint32_t first, std::uint32_t count, Visit&& visit) {
+  __shared__ ListEntry queues[S::warpsPerBlock][64];
+  ListEntry* queue = queues[threadIdx.x / 32];
+  const int lane = threadIdx.x % 32, slot = lane % S::slots;
+  __shared__ typename ClusterCandidates<D>::Shared shared[S::warpsPerBlock];
+  const ClusterCandidates<D> candidates(pairs.grid, pairs.cells, pairs.position.data(), first, count,
+                                        shared[threadIdx.x / 32]);
+  const auto pass = [&](bool walls, bool counts, double radius) {
+    int queued = 0;
+    bool any = false;
+    const auto work = [&](int entries) {
+      __syncwarp();
+      for (int k = slot; k < entries; k += S::slots)
+        visit(queue[k], walls ? ListSegment::NearWall : ListSegment::NearFluid);
+      __syncwarp();
+    };
+    candidates.forEach({radius, 0}, !walls, walls, [&](ListEntry e, bool near, bool, bool) {
+      const unsigned hits = __ballot_sync(~0u, near);
+      if (near && counts) queue[queued + __popc(hits & ((1u << lane) - 1))] = e;
+      any |= hits != 0;
+      if (!counts) return;
+      queued += __popc(hits);
+      if (queued < 32) return;
+      work(32);
+      queued -= 32;
+      if (lane < queued) queue[lane] = queue[lane + 32];
+      __syncwarp();
+    });
+    work(queued);
+    return any;
+  };
+  constexpr bool usesFluid = Terms::uses(ListSegment::NearFluid), usesWalls = Terms::uses(ListSegment::NearWall);
+  const auto radius = [&](ListSegment far) {
+    const double near = pairs.terms.pressureRadius;
+    return Terms::uses(far) ? fmax(near, pairs.terms.viscosityRadius) : near;
+  };
+  const bool fluid =
+      usesFluid || first >= pairs.fluidCount ? pass(false, usesFluid, radius(ListSegment::FarFluid)) : true;
+  if (usesWalls) pass(true, true, radius(ListSegment::FarWall));
+  return fluid;
+}
+
+}  // namespace treacle

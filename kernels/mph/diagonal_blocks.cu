@@ -1,0 +1,87 @@
+#include "mph/cluster_sum.cuh"
+#include "mph/product_terms.cuh"
+#include "treacle/mph/mph_assembly.hpp"
+
+namespace treacle {
+namespace {
+
+/// Sums of a diagonal block of A per fluid particle: the upper triangle of V_ii + sum_j lambda_j C_ij C_ij^T, then
+/// C_ii. The viscous part of walls stands in the wall terms.
+template <int D>
+struct DiagonalTerms {
+  static constexpr int triangle = D * (D + 1) / 2, values = triangle + D;
+  static constexpr bool uses(ListSegment s) { return s != ListSegment::FarWall; }
+  struct Other {
+    double lambda;
+    Substance substance;
+  };
+  using Own = Substance;
+
+  MphTerms<D, double> mph;
+  double* sums;  // `values` per fluid particle
+
+  __device__ Own loadOwn(const MphPairs<D>& pairs, std::uint32_t i) const { return pairs.substance(i); }
+  __device__ Other loadOther(const MphPairs<D>& pairs, std::uint32_t j) const {
+    return {pairs.bulkViscosity(j), pairs.substance(j)};
+  }
+
+  __device__ void add(const MphPairs<D>& pairs, double* sum, const Vec<D>& d, const PairDistance<double>& r,
+                      Own own, const Other& other, ListSegment segment) const {
+    const double g = mph.gradient(r);
+    double f = other.lambda * g * g;
+    if (isFluid(segment)) f += pairs.viscosity(own, other.substance) * mph.viscousFactor * mph.viscousShape(r);
+    int n = 0;
+    for (int r = 0; r < D; ++r)
+      for (int c = r; c < D; ++c) sum[n++] += f * d[r] * d[c];
+    for (int r = 0; r < D; ++r) sum[n++] += g * d[r];
+  }
+
+  __device__ void store(const MphPairs<D>&, std::uint32_t i, int n, double sum) const {
+    sums[std::size_t{values} * i + n] = sum;
+  }
+};
+
+/// One thread per fluid particle; reads its sums and its wall block; writes its diagonal block. No atomics.
+template <int D>
+__global__ void finishKernel(const __grid_constant__ MphPairs<D> pairs, const double* sums, const Block<D>* wall,
+                             Block<D>* diagonal) {
+  const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
+  if (i >= pairs.fluidCount) return;
+  const double* sum = sums + std::size_t{DiagonalTerms<D>::values} * i;
+  Block<D> block = wall[i];
+  for (int r = 0; r < D; ++r)
+    for (int c = r; c < D; ++c) {
+      const double value = *sum++;
+      block(r, c) += value;
+      if (c != r) block(c, r) += value;
+    }
+  Vec<D> own;
+  for (int r = 0; r < D; ++r) own[r] = sum[r];
+  block.addOuter(pairs.bulkViscosity(i), own, own);
+  diagonal[i] = block;
+}
+
+}  // namespace
+
+template <int D>
+void diagonalBlocks(Context<Cuda>& context, const MphPairs<D>& pairs, const WallTerms<D>& terms,
+                    std::span<Block<D>> diagonal) {
+  using Terms = DiagonalTerms<D>;
+  Buffer<double, Cuda> sums(context, std::size_t{Terms::values} * pairs.fluidCount);
+  const ListTask<Terms> task{pairs.fluidList, {pairs.terms, sums.data()}};
+  if (!pairs.fluidList.offset)
+    launchClusterSums<D, double, Sharing<2, 1, true>>(context, pairs, task,
+                                                      LocalPositions<D, double>::make(pairs));
+  else if (pairs.fluidList.clusterCount() < fewClusters)
+    launchClusterSums<D, double, Sharing<2, 4>>(context, pairs, task, LocalPositions<D, double>::make(pairs));
+  else
+    launchClusterSums<D, double, Sharing<2, 1>>(context, pairs, task, LocalPositions<D, double>::make(pairs));
+
+  launch(context, blocksFor(pairs.fluidCount, 256), 256, 0, finishKernel<D>, pairs, sums.data(),
+         terms.block.data(), diagonal.data());
+}
+
+template void diagonalBlocks<2>(Context<Cuda>&, const MphPairs<2>&, const WallTerms<2>&, std::span<Block<2>>);
+template void diagonalBlocks<3>(Context<Cuda>&, const MphPairs<3>&, const WallTerms<3>&, std::span<Block<3>>);
+
+}  // namespace treacle

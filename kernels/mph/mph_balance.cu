@@ -1,0 +1,103 @@
+#include "treacle/mph/mph_balance.hpp"
+
+#include "mph/step_sums.cuh"
+
+namespace treacle {
+namespace {
+
+/// 2 (d+2) mu (u_ij.e_ij)^2 (-w'^v) / r per fluid particle, half of a pair of fluid [K23 eq. (10)].
+template <int D>
+struct ShearDissipation {
+  static constexpr int values = 1;
+  static constexpr bool uses(ListSegment) { return true; }
+  using Own = VelocityOf<D, double>;
+  using Other = VelocityOf<D, double>;
+
+  MphTerms<D, double> mph;
+  const Vec<D>* u;
+  double* dissipation;
+
+  __device__ Own loadOwn(const MphPairs<D>& pairs, std::uint32_t i) const { return {u[i], pairs.substance(i)}; }
+  __device__ Other loadOther(const MphPairs<D>& pairs, std::uint32_t j) const { return loadOwn(pairs, j); }
+
+  __device__ void add(const MphPairs<D>& pairs, double* sum, const Vec<D>& d, const PairDistance<double>& r,
+                      const Own& own, const Other& other, ListSegment segment) const {
+    const double along = differenceAlong(other.u, own.u, d), share = isWall(segment) ? 1 : 0.5;
+    const double mu = pairs.viscosity(own.substance, other.substance);
+    sum[0] = fma(share * mu * mph.viscousShape(r), along * along, sum[0]);
+  }
+  __device__ void store(const MphPairs<D>&, std::uint32_t i, int, double sum) const {
+    dissipation[i] = mph.viscousFactor * sum;
+  }
+};
+
+/// Force on a wall particle [K23 eq. (4)], and the parts of its C^T u and n, from the fluid near it.
+template <int D>
+struct FluidAtWall {
+  static constexpr int values = D + 2;
+  static constexpr bool uses(ListSegment s) { return isFluid(s); }
+  struct Own {
+    Vec<D> u;
+    double pressure;
+    Substance substance;
+  };
+  using Other = Own;
+
+  MphTerms<D, double> mph;
+  const Vec<D>* u;
+  const double* pressure;
+  Vec<D>* force;  // of the first wall particle, like those below
+  double *divergence, *density;
+
+  __device__ Own loadOwn(const MphPairs<D>& pairs, std::uint32_t i) const {
+    return {u[i], pressure[i], pairs.substance(i)};
+  }
+  __device__ Other loadOther(const MphPairs<D>& pairs, std::uint32_t j) const { return loadOwn(pairs, j); }
+
+  __device__ void add(const MphPairs<D>& pairs, double* sum, const Vec<D>& d, const PairDistance<double>& r,
+                      const Own& own, const Other& other, ListSegment) const {
+    const double along = differenceAlong(other.u, own.u, d);
+    const double mu = pairs.viscosity(own.substance, other.substance);
+    const double g = mph.gradient(r);
+    const double viscous = mph.viscousFactor * mu * mph.viscousShape(r) * along;
+    addScaled(sum, viscous - g * (own.pressure + other.pressure), d);
+    sum[D] = fma(-g, along, sum[D]);
+    sum[D + 1] += mph.density(1.0, r);
+  }
+  __device__ void store(const MphPairs<D>& pairs, std::uint32_t i, int n, double sum) const {
+    const std::uint32_t wall = i - pairs.fluidCount;
+    if (n < D)
+      force[wall][n] = sum;
+    else if (n == D)
+      divergence[wall] = sum;
+    else
+      density[wall] = mph.densityFactor * sum;
+  }
+};
+
+}  // namespace
+
+template <int D>
+void shearDissipation(Context<Cuda>& context, const MphPairs<D>& pairs, std::span<const Vec<D>> u,
+                      std::span<double> dissipation) {
+  sumOnFluid(context, pairs, ShearDissipation<D>{pairs.terms, u.data(), dissipation.data()});
+}
+
+template <int D>
+void fluidAtWalls(Context<Cuda>& context, const MphPairs<D>& pairs, const ClusterListView& walls,
+                  std::span<const Vec<D>> u, std::span<const double> pressure, const FluidAtWalls<D>& out) {
+  sumOnList(context, pairs, walls,
+            FluidAtWall<D>{pairs.terms, u.data(), pressure.data(), out.force.data(), out.divergence.data(),
+                           out.density.data()});
+}
+
+#define TREACLE_INSTANTIATE(D)                                                                   \
+  template void shearDissipation<D>(Context<Cuda>&, const MphPairs<D>&, std::span<const Vec<D>>, \
+                                    std::span<double>);                                          \
+  template void fluidAtWalls<D>(Context<Cuda>&, const MphPairs<D>&, const ClusterListView&,      \
+                                std::span<const Vec<D>>, std::span<const double>, const FluidAtWalls<D>&);
+TREACLE_INSTANTIATE(2)
+TREACLE_INSTANTIATE(3)
+#undef TREACLE_INSTANTIATE
+
+}  // namespace treacle

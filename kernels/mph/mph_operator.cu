@@ -1,0 +1,101 @@
+#include "treacle/mph/mph_operator.hpp"
+
+#include "mph/product_terms.cuh"
+
+namespace treacle {
+namespace {
+
+/// The self terms: those of the walls and the inertia, and the sums over the fluid.
+template <int D>
+struct SelfSums {
+  static constexpr int values = D * D + D;
+  static constexpr bool uses(ListSegment s) { return isFluid(s); }
+  using Own = Substance;
+  using Other = Substance;
+
+  MphTerms<D, double> mph;
+  WallTerms<D> wall;
+  Block<D>* block;
+  Vec<D>* gradient;
+
+  __device__ Own loadOwn(const MphPairs<D>& pairs, std::uint32_t i) const { return pairs.substance(i); }
+  __device__ Other loadOther(const MphPairs<D>& pairs, std::uint32_t j) const { return pairs.substance(j); }
+
+  __device__ void add(const MphPairs<D>& pairs, double* sum, const Vec<D>& d, const PairDistance<double>& r,
+                      Own own, Other other, ListSegment) const {
+    const double f = pairs.viscosity(own, other) * mph.viscousShape(r);
+    for (int r = 0; r < D; ++r) addScaled(sum + r * D, f * d[r], d);
+    addScaled(sum + D * D, mph.gradientShape(r), d);
+  }
+  __device__ void store(const MphPairs<D>&, std::uint32_t i, int n, double sum) const {
+    if (n < D * D)
+      block[i].a[n] = wall.block[i].a[n] + mph.viscousFactor * sum;
+    else
+      gradient[i][n - D * D] = wall.gradient[i][n - D * D] + mph.gradientFactor * sum;
+  }
+};
+
+template <int D, class T, class S, bool OneSubstance>
+void firstPass(Context<Cuda>& context, const MphPairs<D>& pairs, const LocalPositions<D, T>& places,
+               const SelfTerms<D>& self, const Vec<D, T>* u, Vec<D, T>* y, T* q) {
+  const auto terms = pairs.terms.template inUnitsOf<T>(places.unit(pairs));
+  const ListTask<ViscosityAndDivergence<D, T, OneSubstance>> onFluid{pairs.fluidList, {terms, self, u, y, q}};
+  const ListTask<Divergence<D, T, true, true>> onWalls{pairs.wallList, {terms, u, q}};
+  launchClusterSums<D, T, S>(context, pairs, onFluid, onWalls, places);
+}
+
+template <int D, class T, class S>
+void firstPass(Context<Cuda>& context, const MphPairs<D>& pairs, const LocalPositions<D, T>& places,
+               const SelfTerms<D>& self, const Vec<D, T>* u, Vec<D, T>* y, T* q) {
+  if (pairs.isOneSubstance())
+    firstPass<D, T, S, true>(context, pairs, places, self, u, y, q);
+  else
+    firstPass<D, T, S, false>(context, pairs, places, self, u, y, q);
+}
+
+}  // namespace
+
+template <int D>
+void MphOperator<D, Cuda>::prepare(Context<Cuda>& context, const MphPairs<D>& pairs, const WallTerms<D>& terms) {
+  pairs_ = &pairs;
+  q_.resize(context, pairs.activeCount);
+  selfBlock_.resize(context, pairs.fluidCount);
+  selfGradient_.resize(context, pairs.fluidCount);
+  const ListTask<SelfSums<D>> sums{pairs.fluidList, {pairs.terms, terms, selfBlock_.data(), selfGradient_.data()}};
+  const auto places = LocalPositions<D, double>::make(pairs);
+  if (pairs.fluidList.offset) {
+    launchClusterSums<D, double, Sharing<2, 1>>(context, pairs, sums, places);
+    near_.prepare(context, pairs);
+  } else {
+    launchClusterSums<D, double, Sharing<2, 1, true>>(context, pairs, sums, places);
+  }
+}
+
+template <int D>
+void MphOperator<D, Cuda>::multiply(Context<Cuda>& context, std::span<const Vec<D>> u, std::span<Vec<D>> y) {
+  const SelfTerms<D> self{selfBlock_, selfGradient_};
+  const auto places = LocalPositions<D, double>::make(*pairs_);
+  withSharing(*pairs_, [&](auto sharing) {
+    firstPass<D, double, decltype(sharing)>(context, *pairs_, places, self, u.data(), y.data(), q_.data());
+  });
+  if (pairs_->fluidList.offset)
+    near_.addPressureGradient(context, q_, y);
+  else
+    addPressureGradient<D>(context, *pairs_, q_, 1.0, y);
+}
+
+template <int D>
+void MphOperator<D, Cuda>::multiplySingle(Context<Cuda>& context, std::span<const Vec<D, float>> u,
+                                          std::span<float> q, std::span<Vec<D, float>> y) {
+  const SelfTerms<D> self{selfBlock_, selfGradient_};
+  const auto places = LocalPositions<D, float>::make(*pairs_, near_.fixedPosition().data());
+  withListSharing(*pairs_, [&](auto sharing) {
+    firstPass<D, float, decltype(sharing)>(context, *pairs_, places, self, u.data(), y.data(), q.data());
+  });
+  near_.addPressureGradient(context, q, y);
+}
+
+template class MphOperator<2, Cuda>;
+template class MphOperator<3, Cuda>;
+
+}  // namespace treacle

@@ -1,0 +1,129 @@
+#include "treacle/mph/mph_sums.hpp"
+
+#include "mph/step_sums.cuh"
+
+namespace treacle {
+namespace {
+
+/// n_i = sum_j w_ij^p per particle [K23 eq. (7)].
+template <int D>
+struct NumberDensity {
+  static constexpr int values = 1;
+  static constexpr bool uses(ListSegment s) { return isNear(s); }
+  using Own = std::uint32_t;  // the index: a particle is not its own neighbour
+  using Other = std::uint32_t;
+
+  MphTerms<D> mph;
+  double* n;
+
+  __device__ Own loadOwn(const MphPairs<D>&, std::uint32_t i) const { return i; }
+  __device__ Other loadOther(const MphPairs<D>&, std::uint32_t j) const { return j; }
+
+  __device__ void add(const MphPairs<D>&, double* sum, const Vec<D>&, const PairDistance<double>& r, Own own,
+                      Other other, ListSegment) const {
+    if (own != other) sum[0] += mph.density(1.0, r);
+  }
+  __device__ void store(const MphPairs<D>&, std::uint32_t i, int, double sum) const {
+    n[i] = mph.densityFactor * sum;
+  }
+};
+
+template <int D>
+struct WallSums {
+  static constexpr int values = D * D + D;
+  static constexpr bool uses(ListSegment s) { return isWall(s); }
+  using Own = Substance;
+  using Other = Substance;
+
+  MphTerms<D, double> mph;
+  WallTerms<D> terms;
+
+  __device__ Own loadOwn(const MphPairs<D>& pairs, std::uint32_t i) const { return pairs.substance(i); }
+  __device__ Other loadOther(const MphPairs<D>& pairs, std::uint32_t j) const { return pairs.substance(j); }
+
+  __device__ void add(const MphPairs<D>& pairs, double* sum, const Vec<D>& d, const PairDistance<double>& r,
+                      Own own, Other other, ListSegment) const {
+    const double f = pairs.viscosity(own, other) * mph.viscousShape(r);
+    for (int r = 0; r < D; ++r) addScaled(sum + r * D, f * d[r], d);
+    addScaled(sum + D * D, mph.gradientShape(r), d);
+  }
+  __device__ void store(const MphPairs<D>& pairs, std::uint32_t i, int n, double sum) const {
+    if (n >= D * D) {
+      terms.gradient[i][n - D * D] = mph.gradientFactor * sum;
+    } else {
+      const bool diagonal = n % (D + 1) == 0;
+      terms.block[i].a[n] = mph.viscousFactor * sum + (diagonal ? pairs.inertia(i) : 0.0);
+    }
+  }
+};
+
+template <int D>
+struct WallDrag {
+  static constexpr int values = D;
+  static constexpr bool uses(ListSegment s) { return isWall(s); }
+  using Own = VelocityOf<D, double>;
+  using Other = VelocityOf<D, double>;
+
+  MphTerms<D, double> mph;
+  const Vec<D>* u;
+  Vec<D>* y;
+
+  __device__ Own loadOwn(const MphPairs<D>& pairs, std::uint32_t i) const {
+    return {Vec<D>{}, pairs.substance(i)};
+  }
+  __device__ Other loadOther(const MphPairs<D>& pairs, std::uint32_t j) const {
+    return {u[j], pairs.substance(j)};
+  }
+
+  __device__ void add(const MphPairs<D>& pairs, double* sum, const Vec<D>& d, const PairDistance<double>& r,
+                      const Own& own, const Other& other, ListSegment) const {
+    const double f = pairs.viscosity(own.substance, other.substance) * mph.viscousShape(r);
+    addScaled(sum, f * dot(d, other.u), d);
+  }
+  __device__ void store(const MphPairs<D>&, std::uint32_t i, int n, double sum) const {
+    y[i][n] += mph.viscousFactor * sum;
+  }
+};
+
+}  // namespace
+
+template <int D>
+void numberDensity(Context<Cuda>& context, const MphPairs<D>& pairs, std::span<double> n) {
+  sumOnAll(context, pairs, NumberDensity<D>{pairs.terms, n.data()});
+}
+
+template <int D>
+void addPressureGradient(Context<Cuda>& context, const MphPairs<D>& pairs, std::span<const double> q,
+                         double factor, std::span<Vec<D>> y) {
+  sumOnFluid(context, pairs, PressureGradient<D, double, true>{pairs.terms, q.data(), y.data(), factor});
+}
+
+template <int D>
+void divergence(Context<Cuda>& context, const MphPairs<D>& pairs, std::span<const Vec<D>> u,
+                std::span<double> div) {
+  sumOnAll(context, pairs, Divergence<D, double, false, false>{pairs.terms, u.data(), div.data()});
+}
+
+template <int D>
+void wallTerms(Context<Cuda>& context, const MphPairs<D>& pairs, const WallTerms<D>& terms) {
+  sumOnFluid(context, pairs, WallSums<D>{pairs.terms, terms});
+}
+
+template <int D>
+void addWallDrag(Context<Cuda>& context, const MphPairs<D>& pairs, std::span<const Vec<D>> u,
+                 std::span<Vec<D>> y) {
+  sumOnFluid(context, pairs, WallDrag<D>{pairs.terms, u.data(), y.data()});
+}
+
+#define TREACLE_INSTANTIATE(D)                                                                                 \
+  template void numberDensity<D>(Context<Cuda>&, const MphPairs<D>&, std::span<double>);                       \
+  template void addPressureGradient<D>(Context<Cuda>&, const MphPairs<D>&, std::span<const double>, double,    \
+                                       std::span<Vec<D>>);                                                     \
+  template void divergence<D>(Context<Cuda>&, const MphPairs<D>&, std::span<const Vec<D>>, std::span<double>); \
+  template void wallTerms<D>(Context<Cuda>&, const MphPairs<D>&, const WallTerms<D>&);                         \
+  template void addWallDrag<D>(Context<Cuda>&, const MphPairs<D>&, std::span<const Vec<D>>, std::span<Vec<D>>);
+TREACLE_INSTANTIATE(2)
+TREACLE_INSTANTIATE(3)
+#undef TREACLE_INSTANTIATE
+
+}  // namespace treacle

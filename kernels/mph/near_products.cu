@@ -1,0 +1,109 @@
+#include "treacle/mph/near_products.hpp"
+
+#include "core/launch.hpp"
+#include "core/scan.hpp"
+#include "mph/mph_neighbours.cuh"
+#include "mph/near_sums.cuh"
+
+namespace treacle {
+namespace {
+
+constexpr unsigned slice = nearSlice;
+
+/// One thread per particle, a warp per slice; reads cluster lists and positions. Without Fill writes the rows of
+/// its slice, with Fill its entries. Walls list fluid alone. No atomics.
+template <int D, bool Fill>
+__global__ void __launch_bounds__(128)
+    listKernel(const __grid_constant__ MphPairs<D> pairs, std::uint64_t* sliceStart, ListEntry* entry) {
+  const std::uint32_t index = blockIdx.x * blockDim.x + threadIdx.x, s = index / slice;
+  if (s * slice >= pairs.activeCount) return;
+  const std::uint32_t i = min(index, pairs.activeCount - 1);
+  const bool valid = index < pairs.activeCount, wall = i >= pairs.fluidCount;
+  const ClusterListView& list = wall ? pairs.wallList : pairs.fluidList;
+  const std::uint32_t cluster = (i - list.first) / clusterSize;
+  const Vec<D> xi = positionInCluster(pairs, list.first + cluster * clusterSize, i);
+  const double h2 = pairs.terms.pressureRadius * pairs.terms.pressureRadius;
+  const std::uint64_t* offset = list.offset + std::size_t{listSegments} * cluster;
+  std::uint32_t count = 0;
+  const std::uint64_t base = Fill ? sliceStart[s] * slice + index % slice : 0;
+  for (const ListSegment segment : {ListSegment::NearFluid, ListSegment::NearWall}) {
+    if (!valid || (wall && segment == ListSegment::NearWall)) continue;
+    const std::uint64_t end = offset[static_cast<int>(segment) + 1];
+    for (std::uint64_t k = offset[static_cast<int>(segment)]; k < end; ++k) {
+      const ListEntry e = list.entry[k];
+      if (e.index() == i || norm2(pairs.positionOf(e) - xi) >= h2) continue;
+      if (Fill)
+        entry[base + std::uint64_t{slice} * count] = imageFrom(pairs, i, list.first + cluster * clusterSize, e);
+      ++count;
+    }
+  }
+  if (Fill) {
+    const auto rows = static_cast<std::uint32_t>(sliceStart[s + 1] - sliceStart[s]);
+    for (; count < rows; ++count) entry[base + std::uint64_t{slice} * count] = ListEntry::make(i, 0);
+  } else {
+    const unsigned rows = __reduce_max_sync(~0u, count);
+    if (index % slice == 0) sliceStart[s] = rows;
+  }
+}
+
+template <int D>
+__device__ inline std::int32_t fixed(const CellGrid<D>& grid, double x, int k) {
+  const double turns = (x - grid.origin[k]) / grid.length[k];
+  return static_cast<std::int32_t>(static_cast<std::uint32_t>(__double2ull_rn(turns * 4294967296.0)));
+}
+
+}  // namespace
+
+template <int D>
+void NearProducts<D>::prepare(Context<Cuda>& context, const MphPairs<D>& pairs) {
+  pairs_ = &pairs;
+  const std::uint32_t slices = blocksFor(pairs.activeCount, slice);
+  const unsigned blocks = blocksFor(std::size_t{slices} * slice, 128);
+  sliceStart_.resize(context, std::size_t{slices} + 1);
+  launch(context, blocks, 128, 0, listKernel<D, false>, pairs, sliceStart_.data(), nullptr);
+  entry_.resize(context, startRows(context, sliceStart_) * slice);
+  launch(context, blocks, 128, 0, listKernel<D, true>, pairs, sliceStart_.data(), entry_.data());
+
+  fixedPosition_.resize(context, std::size_t{4} * pairs.activeCount);
+  auto* target = reinterpret_cast<int4*>(fixedPosition_.data());
+  const Vec<D>* position = pairs.position.data();
+  const CellGrid<D> grid = pairs.grid;
+  forEach(context, pairs.activeCount, [=] __device__(std::size_t i) {
+    const Vec<D> x = position[i];
+    target[i] = {fixed(grid, x[0], 0), fixed(grid, x[1], 1), D == 3 ? fixed(grid, x[D - 1], D - 1) : 0, 0};
+  });
+}
+
+template <int D>
+void NearProducts<D>::addPressureGradient(Context<Cuda>& context, std::span<const double> q,
+                                          std::span<Vec<D>> y) const {
+  nearGradient(context, NearView<D, double>::make(*pairs_, *this), PlainScalars<D, double>{q.data()},
+               [y = y.data()] __device__(std::uint32_t i, const Vec<D>& gradient) { y[i] += gradient; });
+}
+
+template <int D>
+void NearProducts<D>::addPressureGradient(Context<Cuda>& context, std::span<const float> q,
+                                          std::span<Vec<D, float>> y) const {
+  nearGradient(context, NearView<D, float>::make(*pairs_, *this), PlainScalars<D, float>{q.data()},
+               [y = y.data()] __device__(std::uint32_t i, const Vec<D, float>& gradient) { y[i] += gradient; });
+}
+
+template <int D>
+void NearProducts<D>::pressureGradient(Context<Cuda>& context, std::span<const float> q,
+                                       std::span<Vec<D, float>> y) const {
+  nearGradient(context, NearView<D, float>::make(*pairs_, *this), PlainScalars<D, float>{q.data()},
+               [y = y.data()] __device__(std::uint32_t i, const Vec<D, float>& gradient) { y[i] = gradient; });
+}
+
+template <int D>
+void NearProducts<D>::divergence(Context<Cuda>& context, std::span<const Vec<D, float>> u,
+                                 std::span<float> div) const {
+  nearDivergence(context, NearView<D, float>::make(*pairs_, *this),
+                 PlainVectors<D, float, Vec<D, float>>{u.data()},
+                 [div = div.data()] __device__(std::uint32_t k, float divergence) { div[k] = divergence; });
+}
+
+template class NearProducts<2>;
+template class NearProducts<3>;
+
+}  // namespace treacle

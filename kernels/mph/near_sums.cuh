@@ -1,0 +1,224 @@
+#pragma once
+
+#include "core/launch.hpp"
+#include "mph/product_terms.cuh"
+#include "treacle/mph/near_products.hpp"
+
+namespace treacle {
+
+/// Sums over each particle's own neighbours within h_p (NearProducts has the lists): C q and C^T u, handed to a
+/// `store` particle by particle.
+
+/// What the kernels read of the lists and positions in the arithmetic T.
+template <int D, class T>
+struct NearView;
+
+template <int D>
+struct NearView<D, double> {
+  using Stored = Vec<D>;
+  const std::uint64_t* sliceStart;
+  const ListEntry* entry;
+  std::uint32_t fluidCount, activeCount;
+  MphTerms<D, double> mph;
+  double floor;
+  const Vec<D>* position;
+  PeriodicImages<D> images;
+
+  static NearView make(const MphPairs<D>& pairs, const NearProducts<D>& near) {
+    return {near.sliceStart().data(), near.entries().data(), pairs.fluidCount,
+            pairs.activeCount,        pairs.terms,           LocalPositions<D, double>::make(pairs).floor,
+            pairs.position.data(),    pairs.images};
+  }
+  __device__ Stored own(std::uint32_t i) const { return position[i]; }
+  __device__ Stored other(ListEntry e) const {
+    Vec<D> x = position[e.index()];
+    if (e.image() != 0) x += images.shift[e.image()];
+    return x;
+  }
+  __device__ Vec<D> difference(const Stored& a, const Stored& b) const { return a - b; }
+};
+
+template <int D>
+struct NearView<D, float> {
+  using Stored = int4;
+  const std::uint64_t* sliceStart;
+  const ListEntry* entry;
+  std::uint32_t fluidCount, activeCount;
+  MphTerms<D, float> mph;
+  float floor;
+  LocalPositions<D, float> places;
+
+  static NearView make(const MphPairs<D>& pairs, const NearProducts<D>& near) {
+    const auto places = LocalPositions<D, float>::make(pairs, near.fixedPosition().data());
+    return {near.sliceStart().data(),
+            near.entries().data(),
+            pairs.fluidCount,
+            pairs.activeCount,
+            pairs.terms.template inUnitsOf<float>(places.unit(pairs)),
+            places.floor,
+            places};
+  }
+  __device__ Stored own(std::uint32_t i) const { return places.fixed[i]; }
+  __device__ Stored other(ListEntry e) const { return places.fixed[e.index()]; }
+  __device__ Vec<D, float> difference(const Stored& a, const Stored& b) const { return places.local(a, b); }
+};
+
+/// Of a pair whose difference is d.
+template <int D, class T>
+__device__ inline T gradientShape(const NearView<D, T>& view, const Vec<D, T>& d) {
+  T r2 = view.floor;
+  for (int k = 0; k < D; ++k) r2 = fma(d[k], d[k], r2);
+  return view.mph.gradientShape(PairDistance<T>{r2, inverseSqrt(r2)});
+}
+
+/// One fetch where the type allows it.
+template <int D, class T>
+__device__ inline Vec<D, T> fetch(const Gathered<D, T>* from) {
+  if constexpr (std::is_same_v<T, float> && D == 3) {
+    const float4 v = *reinterpret_cast<const float4*>(from);
+    return {v.x, v.y, v.z};
+  } else if constexpr (std::is_same_v<T, float> && D == 2) {
+    const float2 v = *reinterpret_cast<const float2*>(from);
+    return {v.x, v.y};
+  } else {
+    return *from;
+  }
+}
+template <int D, class T>
+__device__ inline Vec<D, T> fetch(const Vec<D, T>* from) {
+  return *from;
+}
+
+/// Runs along the list of a particle, every Split-th entry from `part` on: add(load(entry)), the loads of four
+/// neighbours being on their way together.
+template <int Split = 1, class Load, class Add>
+__device__ inline void alongList(const std::uint64_t* sliceStart, const ListEntry* entry, std::uint32_t i,
+                                 Load&& load, Add&& add, int part = 0) {
+  constexpr int batch = 4;
+  constexpr unsigned slice = nearSlice;
+  const std::uint64_t begin = sliceStart[i / slice];
+  const auto rows = static_cast<int>(sliceStart[i / slice + 1] - begin);
+  const ListEntry* mine = entry + begin * slice + i % slice;
+  const auto at = [&](int row) { return mine[static_cast<std::size_t>(row) * slice]; };
+  int r = part;
+  for (; r + (batch - 1) * Split < rows; r += batch * Split) {
+    decltype(load(at(0))) loaded[batch];
+#pragma unroll
+    for (int k = 0; k < batch; ++k) loaded[k] = load(at(r + k * Split));
+#pragma unroll
+    for (int k = 0; k < batch; ++k) add(loaded[k]);
+  }
+  for (; r < rows; r += Split) add(load(at(r)));
+}
+
+/// Sum over groups of Split consecutive lanes, in all of them.
+template <int Split, class T>
+__device__ inline T splitSum(T value) {
+  for (int offset = Split / 2; offset > 0; offset /= 2) value += __shfl_xor_sync(~0u, value, offset);
+  return value;
+}
+
+/// What a product reads of a particle: where it stands and the gathered quantity. `Fields` fetch both at once
+/// where they stand side by side.
+template <int D, class T>
+struct PlacedValue {
+  typename NearView<D, T>::Stored x;
+  T value;
+};
+template <int D, class T>
+struct PlainScalars {
+  const T* q;
+  __device__ PlacedValue<D, T> own(const NearView<D, T>& view, std::uint32_t i) const {
+    return {view.own(i), q[i]};
+  }
+  __device__ PlacedValue<D, T> other(const NearView<D, T>& view, ListEntry e) const {
+    return {view.other(e), q[e.index()]};
+  }
+};
+template <int D, class T>
+struct PlacedVelocity {
+  typename NearView<D, T>::Stored x;
+  Vec<D, T> u;
+};
+/// Walls have none.
+template <int D, class T, class V>
+struct PlainVectors {
+  const V* u;
+  __device__ PlacedVelocity<D, T> own(const NearView<D, T>& view, std::uint32_t k) const {
+    return {view.own(k), k < view.fluidCount ? fetch(&u[k]) : Vec<D, T>{}};
+  }
+  __device__ PlacedVelocity<D, T> other(const NearView<D, T>& view, ListEntry e) const {
+    const std::uint32_t j = e.index();
+    return {view.other(e), j < view.fluidCount ? fetch(&u[j]) : Vec<D, T>{}};
+  }
+};
+/// Split threads per fluid particle: store(i, (C q)_i); reads positions and q of the neighbours. No atomics.
+template <int Split, int D, class T, class Scalars, class Store>
+__global__ void __launch_bounds__(128) nearGradientKernel(const __grid_constant__ NearView<D, T> view,
+                                                          const Scalars q, const __grid_constant__ Store store) {
+  const std::uint32_t thread = blockIdx.x * blockDim.x + threadIdx.x, own = thread / Split;
+  if (Split == 1 && own >= view.fluidCount) return;
+  const std::uint32_t i = min(own, view.fluidCount - 1);  // all lanes of a warp take part in the sum
+  const auto mine = q.own(view, i);
+  Vec<D, T> sum{};
+  alongList<Split>(
+      view.sliceStart, view.entry, i, [&](ListEntry e) { return q.other(view, e); },
+      [&](const PlacedValue<D, T>& other) {
+        const Vec<D, T> d = view.difference(other.x, mine.x);
+        addScaled(&sum[0], gradientShape(view, d) * (mine.value + other.value), d);
+      },
+      thread % Split);
+  for (int k = 0; k < D; ++k) sum[k] = splitSum<Split>(sum[k]);
+  if (thread % Split == 0 && own == i) store(i, view.mph.gradientFactor * sum);
+}
+
+/// Split threads per particle: store(k, (C^T u)_k), walls at rest; reads positions and u of the neighbours. No
+/// atomics.
+template <int Split, int D, class T, class Vectors, class Store>
+__global__ void __launch_bounds__(128) nearDivergenceKernel(const __grid_constant__ NearView<D, T> view,
+                                                            const Vectors u, const __grid_constant__ Store store) {
+  const std::uint32_t thread = blockIdx.x * blockDim.x + threadIdx.x, own = thread / Split;
+  if (Split == 1 && own >= view.activeCount) return;
+  const std::uint32_t k = min(own, view.activeCount - 1);
+  const auto mine = u.own(view, k);
+  T sum = 0;
+  alongList<Split>(
+      view.sliceStart, view.entry, k, [&](ListEntry e) { return u.other(view, e); },
+      [&](const PlacedVelocity<D, T>& other) {
+        const Vec<D, T> d = view.difference(other.x, mine.x);
+        sum = fma(gradientShape(view, d), differenceAlong(other.u, mine.u, d), sum);
+      },
+      thread % Split);
+  sum = splitSum<Split>(sum);
+  if (thread % Split == 0 && own == k) store(k, -view.mph.gradientFactor * sum);
+}
+
+/// Calls f(Split): small systems leave lanes idle, and wait for the longest list.
+template <int D, class F>
+void withSplit(std::uint32_t particles, F&& f) {
+  constexpr std::uint32_t threads = 1u << 17;  // what a card runs at a time
+  if (D == 3 && particles < threads / 4)
+    f(std::integral_constant<int, 8>{});
+  else if (particles < threads)
+    f(std::integral_constant<int, 4>{});
+  else
+    f(std::integral_constant<int, 1>{});
+}
+
+template <int D, class T, class Scalars, class Store>
+void nearGradient(const Context<Cuda>& context, const NearView<D, T>& view, const Scalars& q, const Store& store) {
+  withSplit<D>(view.fluidCount, [&](auto split) {
+    launch(context, blocksFor(std::size_t{view.fluidCount} * split, 128), 128, 0,
+           nearGradientKernel<split, D, T, Scalars, Store>, view, q, store);
+  });
+}
+template <int D, class T, class Vectors, class Store>
+void nearDivergence(const Context<Cuda>& context, const NearView<D, T>& view, const Vectors& u,
+                    const Store& store) {
+  withSplit<D>(view.activeCount, [&](auto split) {
+    launch(context, blocksFor(std::size_t{view.activeCount} * split, 128), 128, 0,
+           nearDivergenceKernel<split, D, T, Vectors, Store>, view, u, store);
+  });
+}
+
+}  // namespace treacle

@@ -1,0 +1,140 @@
+#pragma once
+
+#include "mph/cluster_sum.cuh"
+#include "treacle/mph/mph_sums.hpp"
+
+namespace treacle {
+
+constexpr bool isFluid(ListSegment s) { return s == ListSegment::NearFluid || s == ListSegment::FarFluid; }
+constexpr bool isNear(ListSegment s) { return s == ListSegment::NearFluid || s == ListSegment::NearWall; }
+constexpr bool isWall(ListSegment s) { return !isFluid(s); }
+
+/// (a - b).d
+template <int D, class T>
+__device__ inline T differenceAlong(const Vec<D, T>& a, const Vec<D, T>& b, const Vec<D, T>& d) {
+  T sum = (a[0] - b[0]) * d[0];
+  for (int k = 1; k < D; ++k) sum = fma(a[k] - b[k], d[k], sum);
+  return sum;
+}
+
+template <int D, class T>
+__device__ inline void addScaled(T* sum, T factor, const Vec<D, T>& d) {
+  for (int k = 0; k < D; ++k) sum[k] = fma(factor, d[k], sum[k]);
+}
+
+template <int D, class T>
+struct VelocityOf {
+  Vec<D, T> u;
+  Substance substance;
+};
+
+/// What a fluid particle's own velocity meets in A: the diagonal block of rho/dt I + V, and C_ii; walls included.
+template <int D>
+struct SelfTerms {
+  std::span<const Block<D>> block;   // [kg/(m3 s)]
+  std::span<const Vec<D>> gradient;  // [1/m]
+};
+
+/// y = (rho/dt I + V) u and q = lambda C^T u per fluid particle, walls at rest [K23 eq. (16)]: the first pass of a
+/// product A u. The sums run over the neighbours' velocities alone, u_i meets the particle's self terms: three
+/// subtractions and three registers per pair less than with u_j - u_i. With OneSubstance none is looked up
+/// in the pairs.
+template <int D, class T, bool OneSubstance>
+struct ViscosityAndDivergence {
+  static constexpr int values = D + 1;
+  static constexpr bool uses(ListSegment s) { return isFluid(s); }
+  using Own = Substance;
+  using Other = VelocityOf<D, T>;
+
+  MphTerms<D, T> mph;
+  SelfTerms<D> self;
+  const Vec<D, T>* u;
+  Vec<D, T>* y;
+  T* q;
+
+  __device__ Own loadOwn(const MphPairs<D>& pairs, std::uint32_t i) const {
+    return OneSubstance ? Substance{0} : pairs.substance(i);
+  }
+  __device__ Other loadOther(const MphPairs<D>& pairs, std::uint32_t j) const { return {u[j], loadOwn(pairs, j)}; }
+
+  __device__ void add(const MphPairs<D>& pairs, T* sum, const Vec<D, T>& d, const PairDistance<T>& r, Own own,
+                      const Other& other, ListSegment segment) const {
+    const T along = dot(d, other.u);
+    T f = mph.viscousShape(r) * along;
+    if constexpr (!OneSubstance) f *= static_cast<T>(pairs.viscosity(own, other.substance));
+    addScaled(sum, f, d);
+    if (isNear(segment)) sum[D] = fma(mph.gradientShape(r), along, sum[D]);
+  }
+
+  __device__ void store(const MphPairs<D>& pairs, std::uint32_t i, int n, T sum) const {
+    const Vec<D, T> ui = u[i];
+    if (n < D) {
+      const double mu = OneSubstance ? pairs.onlyViscosity() : 1.0;
+      T own = 0;
+      for (int c = 0; c < D; ++c) own += static_cast<T>(self.block[i](n, c)) * ui[c];
+      y[i][n] = own - mph.viscousFactor * static_cast<T>(mu) * sum;
+    } else {
+      T div = -mph.gradientFactor * sum;
+      for (int c = 0; c < D; ++c) div += ui[c] * static_cast<T>(self.gradient[i][c]);
+      q[i] = static_cast<T>(pairs.bulkViscosity(i)) * div;
+    }
+  }
+};
+
+/// div = C^T u per particle [1/s] [K23 eq. (14)], or, with Scaled, lambda C^T u. With WallsAtRest u has only fluid
+/// particles.
+template <int D, class T, bool WallsAtRest, bool Scaled>
+struct Divergence {
+  static constexpr int values = 1;
+  static constexpr bool uses(ListSegment s) {
+    return s == ListSegment::NearFluid || (!WallsAtRest && s == ListSegment::NearWall);
+  }
+  using Own = Vec<D, T>;
+  using Other = Vec<D, T>;
+
+  MphTerms<D, T> mph;
+  const Vec<D, T>* u;
+  T* div;
+
+  __device__ Own loadOwn(const MphPairs<D>& pairs, std::uint32_t i) const {
+    return WallsAtRest && i >= pairs.fluidCount ? Vec<D, T>{} : u[i];
+  }
+  __device__ Other loadOther(const MphPairs<D>&, std::uint32_t j) const { return u[j]; }
+
+  __device__ void add(const MphPairs<D>&, T* sum, const Vec<D, T>& d, const PairDistance<T>& r, const Own& own,
+                      const Other& other, ListSegment) const {
+    sum[0] = fma(mph.gradientShape(r), differenceAlong(other, own, d), sum[0]);
+  }
+  __device__ void store(const MphPairs<D>& pairs, std::uint32_t i, int, T sum) const {
+    const double lambda = Scaled ? pairs.bulkViscosity(i) : 1.0;
+    div[i] = -mph.gradientFactor * static_cast<T>(lambda) * sum;
+  }
+};
+
+/// y = C q, or y += factor C q with Add, per fluid particle; q per particle.
+template <int D, class T, bool Add>
+struct PressureGradient {
+  static constexpr int values = D;
+  static constexpr bool uses(ListSegment s) { return isNear(s); }
+  using Own = T;
+  using Other = T;
+
+  MphTerms<D, T> mph;
+  const T* q;
+  Vec<D, T>* y;
+  T factor = 1;
+
+  __device__ Own loadOwn(const MphPairs<D>&, std::uint32_t i) const { return q[i]; }
+  __device__ Other loadOther(const MphPairs<D>&, std::uint32_t j) const { return q[j]; }
+
+  __device__ void add(const MphPairs<D>&, T* sum, const Vec<D, T>& d, const PairDistance<T>& r, const Own& own,
+                      const Other& other, ListSegment) const {
+    addScaled(sum, mph.gradientShape(r) * (own + other), d);
+  }
+  __device__ void store(const MphPairs<D>&, std::uint32_t i, int n, T sum) const {
+    const T value = factor * mph.gradientFactor * sum;
+    y[i][n] = Add ? y[i][n] + value : value;
+  }
+};
+
+}  // namespace treacle

@@ -1,0 +1,168 @@
+#include "core/reduce.cuh"
+#include "precondition/hat_corners.cuh"
+#include "precondition/placed_sums.cuh"
+#include "treacle/precondition/hat_grid.hpp"
+
+namespace treacle {
+namespace {
+
+/// The cell below a node with bit k of `corner` set, else above it; false where there is none.
+template <int D>
+__device__ inline bool cellBeside(const HatCells<D>& cells, Vec<D, int>& cell, int corner) {
+  bool inside = true;
+  for (int k = 0; k < D; ++k) {
+    cell[k] -= corner >> k & 1;
+    if (cells.grid.periodic[k] && cell[k] < 0) cell[k] += cells.grid.count[k];
+    inside = inside && cell[k] >= 0 && cell[k] < cells.grid.count[k];
+  }
+  return inside;
+}
+
+/// A warp per node, its lanes in groups, one group per cell around it: b = P^T r, for scalars per particle
+/// (Numbers = 1) or vectors per fluid particle. No atomics.
+template <int D, class T, int Numbers, class V>
+__global__ void __launch_bounds__(128)
+    restrictKernel(const __grid_constant__ HatCells<D> cells, const HatNodesView<D> nodes,
+                   const CellRangesView ranges, const Vec<D, T>* place, const V* r, T* b) {
+  constexpr int groups = 1 << D, lanes = 32 / groups;
+  const std::uint32_t n = blockIdx.x * (blockDim.x / 32) + threadIdx.x / 32;
+  if (n >= nodes.count) return;
+  const int corner = static_cast<int>(threadIdx.x % 32) / lanes, lane = static_cast<int>(threadIdx.x % lanes);
+  Vec<D, int> cell = nodes.pointOf(n);
+  T sum[Numbers] = {};
+  const auto add = [&](std::uint32_t begin, std::uint32_t end) {
+    for (std::uint32_t i = begin + lane; i < end; i += lanes) {
+      const T weight = cornerWeight(place[i], corner);
+      if constexpr (Numbers == 1) {
+        sum[0] = fma(weight, r[i], sum[0]);
+      } else {
+        const Vec<D, T> v = fetch(&r[i]);
+        for (int k = 0; k < D; ++k) sum[k] = fma(weight, v[k], sum[k]);
+      }
+    }
+  };
+  if (cellBeside(cells, cell, corner)) {
+    const std::size_t c = cells.grid.linear(cell);
+    add(ranges.fluidBegin[c], ranges.fluidEnd[c]);
+    if constexpr (Numbers == 1) add(ranges.wallBegin[c], ranges.wallEnd[c]);
+  }
+  for (int k = 0; k < Numbers; ++k) {
+    const T total = warpSum(sum[k]);
+    if (threadIdx.x % 32 == k) b[std::size_t{Numbers} * n + k] = total;
+  }
+}
+
+/// Calls f(node, weight) for the corners of the cell of a particle.
+template <int D, class T, class F>
+__device__ inline void forEachCorner(const HatCells<D>& cells, const HatNodesView<D>& nodes, const Vec<D>& x,
+                                     const Vec<D, T>& place, F&& f) {
+  const Vec<D, int> cell = cells.grid.cellOf(x);
+  for (int o = 0; o < 1 << D; ++o) {
+    Vec<D, int> node = cell;
+    for (int k = 0; k < D; ++k)
+      if ((o >> k & 1) && ++node[k] == nodes.lattice.count[k]) node[k] = 0;  // only on periodic axes
+    f(nodes.at(node), cornerWeight(place, o));
+  }
+}
+
+}  // namespace
+
+template <int D>
+void findHatNodes(Context<Cuda>& context, const SortedParticles<D>& pairs, HatsOn what, HatNodes<D, Cuda>& nodes) {
+  const HatCells<D> cells{pairs.grid};
+  HatLattice<D> lattice;
+  for (int k = 0; k < D; ++k) lattice.count[k] = cells.nodesOn(k);
+  lattice.periodic = pairs.grid.periodic;
+  Buffer<std::uint8_t, Cuda> active(context, lattice.points());
+  forEach(context, lattice.points(),
+          [cells, lattice, ranges = pairs.cells, walls = what == HatsOn::Active,
+           active = active.data()] __device__(std::size_t p) {
+            bool any = false;
+            cells.forEachCellAround(lattice.at(p), 1, [&](const Vec<D, int>& cell) {
+              const std::size_t c = cells.grid.linear(cell);
+              any = any || ranges.fluidEnd[c] > ranges.fluidBegin[c] ||
+                    (walls && ranges.wallEnd[c] > ranges.wallBegin[c]);
+            });
+            active[p] = any;
+          });
+  numberNodes(context, lattice, active, nodes);
+}
+
+template <int D, class T>
+void HatTransfer<D, T, Cuda>::prepare(Context<Cuda>& context, const SortedParticles<D>& pairs) {
+  pairs_ = &pairs;
+  place_.resize(context, pairs.activeCount);
+  forEach(context, pairs.activeCount,
+          [cells = HatCells<D>{pairs.grid}, x = pairs.position.data(),
+           place = place_.data()] __device__(std::size_t i) {
+            const Vec<D> f = cells.fraction(x[i], cells.grid.cellOf(x[i]));
+            for (int k = 0; k < D; ++k) place[i][k] = static_cast<T>(f[k]);
+          });
+}
+
+template <int D, class T>
+void HatTransfer<D, T, Cuda>::restrict(Context<Cuda>& context, const HatNodes<D, Cuda>& nodes,
+                                       std::span<const T> r, std::span<T> b) const {
+  launch(context, blocksFor(nodes.count(), 4), 128, 0, restrictKernel<D, T, 1, T>, HatCells<D>{pairs_->grid},
+         nodes.view(), pairs_->cells, place_.data(), r.data(), b.data());
+}
+
+template <int D, class T>
+void HatTransfer<D, T, Cuda>::restrict(Context<Cuda>& context, const HatNodes<D, Cuda>& nodes,
+                                       std::span<const Gathered<D, T>> r, std::span<T> b) const {
+  launch(context, blocksFor(nodes.count(), 4), 128, 0, restrictKernel<D, T, D, Gathered<D, T>>,
+         HatCells<D>{pairs_->grid}, nodes.view(), pairs_->cells, place_.data(), r.data(), b.data());
+}
+
+/// One thread per particle.
+template <int D, class T>
+void HatTransfer<D, T, Cuda>::prolong(Context<Cuda>& context, const HatNodes<D, Cuda>& nodes, std::span<const T> e,
+                                      ScalarField<T, Cuda> z, std::span<T> x) const {
+  forEach(context, pairs_->activeCount,
+          [cells = HatCells<D>{pairs_->grid}, nodes = nodes.view(), position = pairs_->position.data(),
+           place = place_.data(), e = e.data(), z, x = x.data()] __device__(std::size_t i) {
+            T sum = 0;
+            forEachCorner(cells, nodes, position[i], place[i],
+                          [&](std::uint32_t n, T weight) { sum = fma(weight, e[n], sum); });
+            z[i] = sum;
+            x[i] += sum;
+          });
+}
+
+/// One thread per particle.
+template <int D, class T>
+void HatTransfer<D, T, Cuda>::addProlonged(Context<Cuda>& context, const HatNodes<D, Cuda>& nodes,
+                                           std::span<const T> e, std::span<T> x) const {
+  forEach(context, pairs_->activeCount,
+          [cells = HatCells<D>{pairs_->grid}, nodes = nodes.view(), position = pairs_->position.data(),
+           place = place_.data(), e = e.data(), x = x.data()] __device__(std::size_t i) {
+            T sum = x[i];
+            forEachCorner(cells, nodes, position[i], place[i],
+                          [&](std::uint32_t n, T weight) { sum = fma(weight, e[n], sum); });
+            x[i] = sum;
+          });
+}
+
+template <int D, class T>
+void HatTransfer<D, T, Cuda>::prolong(Context<Cuda>& context, const HatNodes<D, Cuda>& nodes, std::span<const T> e,
+                                      std::span<Gathered<D, T>> z, std::span<Gathered<D, T>> x) const {
+  forEach(context, pairs_->fluidCount,
+          [cells = HatCells<D>{pairs_->grid}, nodes = nodes.view(), position = pairs_->position.data(),
+           place = place_.data(), e = e.data(), z = z.data(), x = x.data()] __device__(std::size_t i) {
+            Vec<D, T> sum{};
+            forEachCorner(cells, nodes, position[i], place[i], [&](std::uint32_t n, T weight) {
+              for (int k = 0; k < D; ++k) sum[k] = fma(weight, e[std::size_t{D} * n + k], sum[k]);
+            });
+            z[i] = sum;
+            x[i] = fetch(&x[i]) + sum;
+          });
+}
+
+template void findHatNodes<2>(Context<Cuda>&, const SortedParticles<2>&, HatsOn, HatNodes<2, Cuda>&);
+template void findHatNodes<3>(Context<Cuda>&, const SortedParticles<3>&, HatsOn, HatNodes<3, Cuda>&);
+template class HatTransfer<2, double, Cuda>;
+template class HatTransfer<3, double, Cuda>;
+template class HatTransfer<2, float, Cuda>;
+template class HatTransfer<3, float, Cuda>;
+
+}  // namespace treacle

@@ -1,0 +1,260 @@
+#include "treacle/precondition/particle_products.hpp"
+
+#include "precondition/placed_sums.cuh"
+
+namespace treacle {
+namespace {
+
+/// store(i, ((rho/dt I + V) u)_i) per fluid particle; as ViscosityAndDivergence without the divergence.
+template <int D, class T, bool OneSubstance, class Store>
+struct Viscosity {
+  using StoresVectors = void;
+  static constexpr int values = D;
+  static constexpr bool uses(ListSegment s) { return isFluid(s); }
+  using Own = Substance;
+  using Other = VelocityOf<D, T>;
+
+  MphTerms<D, T> mph;
+  const Block<D, T>* selfBlock;
+  const Gathered<D, T>* u;
+  Store result;
+
+  __device__ Own loadOwn(const MphPairs<D>& pairs, std::uint32_t i) const {
+    return OneSubstance ? Substance{0} : pairs.substance(i);
+  }
+  __device__ Other loadOther(const MphPairs<D>& pairs, std::uint32_t j) const {
+    return {fetch(&u[j]), loadOwn(pairs, j)};
+  }
+  __device__ void add(const MphPairs<D>& pairs, T* sum, const Vec<D, T>& d, const PairDistance<T>& r, Own own,
+                      const Other& other, ListSegment) const {
+    T f = mph.viscousShape(r) * dot(d, other.u);
+    if constexpr (!OneSubstance) f *= static_cast<T>(pairs.viscosity(own, other.substance));
+    addScaled(sum, f, d);
+  }
+  __device__ void store(const MphPairs<D>& pairs, std::uint32_t i, const Vec<D, T>& sum) const {
+    const T mu = OneSubstance ? static_cast<T>(pairs.onlyViscosity()) : T(1);
+    result(i, selfBlock[i] * fetch(&u[i]) - mph.viscousFactor * mu * sum);
+  }
+};
+
+template <int D, class T>
+LocalPositions<D, T> placesOf(const MphPairs<D>& pairs, const NearProducts<D>& near) {
+  if constexpr (std::is_same_v<T, double>)
+    return LocalPositions<D, T>::make(pairs);
+  else
+    return LocalPositions<D, T>::make(pairs, near.fixedPosition().data());
+}
+
+/// Positions of the single-precision products. In three dimensions 16 bits have to do, of which the multiples of a
+/// length above twice h_p are left out: differences stay exact, and particles are displaced by 3e-5 spacings, in
+/// all products alike.
+template <int D>
+struct CoarsePositions {
+  std::uint32_t periods[D];
+
+  __device__ std::uint32_t of(std::uint32_t fixed, int k) const {
+    return D == 2 ? fixed : (fixed * periods[k] + 0x8000u) & 0xffff0000u;
+  }
+};
+template <int D>
+CoarsePositions<D> coarsePositions(const MphPairs<D>& pairs) {
+  CoarsePositions<D> c;
+  for (int k = 0; k < D; ++k)
+    c.periods[k] =
+        D == 2
+            ? 1u
+            : static_cast<std::uint32_t>(std::max(pairs.grid.length[k] / (2.2 * pairs.terms.pressureRadius), 1.0));
+  return c;
+}
+
+/// The lists with these positions.
+template <int D, class T>
+NearView<D, T> viewOf(const MphPairs<D>& pairs, const NearProducts<D>& near) {
+  NearView<D, T> view = NearView<D, T>::make(pairs, near);
+  if constexpr (std::is_same_v<T, float>) {
+    const CoarsePositions<D> coarse = coarsePositions(pairs);
+    for (int k = 0; k < D; ++k) view.places.scale[k] /= static_cast<float>(coarse.periods[k]);
+  }
+  return view;
+}
+
+/// One thread per particle: the inverse diagonal of S', from the positions of the neighbours. No atomics.
+template <int D, class T>
+__global__ void __launch_bounds__(128)
+    pressureDiagonalKernel(const __grid_constant__ NearView<D, T> view, const std::uint8_t* material,
+                           const __grid_constant__ ProjectionTable<T> table, T* inverseDiagonal) {
+  const std::uint32_t k = blockIdx.x * blockDim.x + threadIdx.x;
+  if (k >= view.activeCount) return;
+  const auto xk = view.own(k);
+  Vec<D, T> own{};
+  T others = 0;
+  struct Loaded {
+    typename NearView<D, T>::Stored x;
+    T weight;
+  };
+  const auto load = [&](ListEntry e) {
+    const std::uint32_t j = e.index();
+    return Loaded{view.other(e), j < view.fluidCount ? table.weight[material[j]] : T(0)};
+  };
+  alongList(view.sliceStart, view.entry, k, load, [&](const Loaded& other) {
+    const Vec<D, T> d = view.difference(other.x, xk), g = gradientShape(view, d) * d;
+    own += g;
+    others += other.weight * norm2(g);
+  });
+  if (k < view.fluidCount) others += table.weight[material[k]] * norm2(own);
+  const T factor = view.mph.gradientFactor;
+  inverseDiagonal[k] = 1 / (table.shift[material[k]] + factor * factor * others);
+}
+
+}  // namespace
+
+template <int D, class T>
+void ParticleProducts<D, T, Cuda>::prepare(Context<Cuda>& context, const MphPairs<D>& pairs, const WallTerms<D>&,
+                                           const MphOperator<D, Cuda>& a) {
+  pairs_ = &pairs;
+  a_ = &a;
+  for (auto& field : scalars_) field.resize(context, pairs.activeCount);
+  vectors_.resize(context, pairs.activeCount);
+  clearBytes(context, vectors_.data(), vectors_.size() * sizeof(vectors_.data()[0]));
+  if constexpr (std::is_same_v<T, float>)
+    forEach(
+        context, pairs.activeCount,
+        [coarse = coarsePositions(pairs), position = a.near().fixedPosition().data(), first = scalars_[0].data(),
+         second = scalars_[1].data(), vectors = vectors_.data()] __device__(std::size_t i) {
+          std::uint32_t x[3] = {};
+          for (int k = 0; k < D; ++k) x[k] = coarse.of(static_cast<std::uint32_t>(position[4 * i + k]), k);
+          for (int k = 0; k < 3; ++k)
+            first[i].position[k] = second[i].position[k] = static_cast<std::int32_t>(x[k]);
+          if constexpr (D == 2) {
+            for (int k = 0; k < D; ++k) vectors[i].position[k] = static_cast<std::int32_t>(x[k]);
+          } else {
+            vectors[i].word[0] = x[0] >> 16 | x[1];
+            for (int k = 0; k < 3; ++k) vectors[i].word[k + 1] = x[2] >> (16 + 6 * k) & PlacedVector<3>::low;
+          }
+        });
+  selfBlock_.resize(context, pairs.fluidCount);
+  const double* from = a.selfBlock()[0].a;
+  T* to = selfBlock_.data()->a;
+  forEach(context, std::size_t{D * D} * pairs.fluidCount,
+          [=] __device__(std::size_t k) { to[k] = static_cast<T>(from[k]); });
+}
+
+template <int D, class T>
+void ParticleProducts<D, T, Cuda>::gather(Context<Cuda>& context, std::span<const T> x) {
+  forEach(context, x.size(), [from = x.data(), to = scalars(0)] __device__(std::size_t k) { to[k] = from[k]; });
+}
+
+template <int D, class T>
+void ParticleProducts<D, T, Cuda>::gather(Context<Cuda>& context, std::span<const Gathered<D, T>> u) {
+  forEach(context, u.size(),
+          [from = u.data(), to = vectors()] __device__(std::size_t i) { to.set(i, fetch(&from[i])); });
+}
+
+template <int D, class T>
+void ParticleProducts<D, T, Cuda>::gatherWeighted(Context<Cuda>& context, const ProjectionTable<T>& table,
+                                                  std::span<const Vec<D>> u) {
+  forEach(context, u.size(),
+          [table, material = pairs_->material.data(), from = u.data(), to = vectors()] __device__(std::size_t i) {
+            Vec<D, T> v;
+            for (int k = 0; k < D; ++k) v[k] = table.weight[material[i]] * static_cast<T>(from[i][k]);
+            to.set(i, v);
+          });
+}
+
+/// Calls f(view, what gathers q).
+template <int D, class T, class F>
+void withScalars(const MphPairs<D>& pairs, const NearProducts<D>& near, ScalarField<T, Cuda> q, F&& f) {
+  const auto view = viewOf<D, T>(pairs, near);
+  if constexpr (std::is_same_v<T, float>)
+    f(view, PlacedScalars<D>{q.at});
+  else
+    f(view, PlainScalars<D, T>{q.at});
+}
+
+template <int D, class T>
+template <class Store>
+void ParticleProducts<D, T, Cuda>::gradient(Context<Cuda>& context, ScalarField<T, Cuda> q,
+                                            const Store& store) const {
+  withScalars(*pairs_, a_->near(), q,
+              [&](const auto& view, const auto& scalars) { nearGradient(context, view, scalars, store); });
+}
+
+template <int D, class T>
+template <class Store>
+void ParticleProducts<D, T, Cuda>::divergence(Context<Cuda>& context, VectorField<D, T, Cuda> u,
+                                              const Store& store) const {
+  const auto view = viewOf<D, T>(*pairs_, a_->near());
+  if constexpr (std::is_same_v<T, float>)
+    nearDivergence(context, view, PlacedVectors<D>{u.at}, store);
+  else
+    nearDivergence(context, view, PlainVectors<D, T, Gathered<D, T>>{u.at}, store);
+}
+
+template <int D, class T>
+template <class Store>
+void ParticleProducts<D, T, Cuda>::schur(Context<Cuda>& context, const ProjectionTable<T>& table,
+                                         ScalarField<T, Cuda> q, const Store& store) {
+  const std::uint8_t* material = pairs_->material.data();
+  if (pairs_->activeCount <= onePassParticles<D>) {
+    withScalars(*pairs_, a_->near(), q, [&](const auto& view, const auto& scalars) {
+      nearSchur(context, view, scalars, table, material, store);
+    });
+    return;
+  }
+  withScalars(*pairs_, a_->near(), q, [&](const auto& view, const auto& scalars) {
+    nearGradient(context, view, scalars, StoreWeighted<D, T, Cuda>{table, material, vectors()});
+  });
+  divergence(context, vectors(), store);
+}
+
+template <int D, class T>
+template <class Store>
+void ParticleProducts<D, T, Cuda>::viscous(Context<Cuda>& context, const Gathered<D, T>* u,
+                                           const Store& store) const {
+  const auto places = placesOf<D, T>(*pairs_, a_->near());
+  const auto terms = pairs_->terms.template inUnitsOf<T>(places.unit(*pairs_));
+  withListSharing(*pairs_, [&](auto sharing) {
+    const auto start = [&](auto oneSubstance) {
+      using Terms = Viscosity<D, T, decltype(oneSubstance)::value, Store>;
+      launchClusterSums<D, T, decltype(sharing)>(
+          context, *pairs_, ListTask<Terms>{pairs_->fluidList, {terms, selfBlock_.data(), u, store}}, places);
+    };
+    if (pairs_->isOneSubstance())
+      start(std::true_type{});
+    else
+      start(std::false_type{});
+  });
+}
+
+template <int D, class T>
+void ParticleProducts<D, T, Cuda>::inverseDiagonals(Context<Cuda>& context, const ProjectionTable<T>& table,
+                                                    std::span<T> pressure, std::span<Block<D, T>> velocity) const {
+  launch(context, blocksFor(pairs_->activeCount, 128), 128, 0, pressureDiagonalKernel<D, T>,
+         NearView<D, T>::make(*pairs_, a_->near()), pairs_->material.data(), table, pressure.data());
+  forEach(context, pairs_->fluidCount, [from = selfBlock_.data(), to = velocity.data()] __device__(std::size_t i) {
+    to[i] = inverse(from[i]);
+  });
+}
+
+#define TREACLE_GRADIENT(D, T, ...)                                                                              \
+  template void ParticleProducts<D, T, Cuda>::gradient(Context<Cuda>&, ScalarField<T, Cuda>, const __VA_ARGS__&) \
+      const;
+#define TREACLE_DIVERGENCE(D, T, ...)                                                             \
+  template void ParticleProducts<D, T, Cuda>::divergence(Context<Cuda>&, VectorField<D, T, Cuda>, \
+                                                         const __VA_ARGS__&) const;
+#define TREACLE_SCHUR(D, T, ...)                                                               \
+  template void ParticleProducts<D, T, Cuda>::schur(Context<Cuda>&, const ProjectionTable<T>&, \
+                                                    ScalarField<T, Cuda>, const __VA_ARGS__&);
+#define TREACLE_VISCOUS(D, T, ...)                                                                               \
+  template void ParticleProducts<D, T, Cuda>::viscous(Context<Cuda>&, const Gathered<D, T>*, const __VA_ARGS__&) \
+      const;
+#define TREACLE_INSTANTIATE(D, T)              \
+  template class ParticleProducts<D, T, Cuda>; \
+  TREACLE_FOR_EACH_STORE(D, T, Cuda)
+TREACLE_INSTANTIATE(2, double)
+TREACLE_INSTANTIATE(3, double)
+TREACLE_INSTANTIATE(2, float)
+TREACLE_INSTANTIATE(3, float)
+#undef TREACLE_INSTANTIATE
+
+}  // namespace treacle

@@ -1,0 +1,239 @@
+#include "precondition/hat_corners.cuh"
+#include "precondition/placed_sums.cuh"
+#include "treacle/precondition/hat_grid.hpp"
+
+namespace treacle {
+namespace {
+
+template <int D>
+constexpr int slots = D == 2 ? 9 : 27;  // nodes that the neighbours of a particle touch
+
+/// Products of the columns of C P are the same small matrix for all particles of a half cell: they touch the same
+/// 3^D nodes. Cells are numbered by the node at their lower corner.
+template <int D, class T>
+struct CellParts {
+  static constexpr int halves = 1 << D, gram = slots<D> * slots<D>, corners = 1 << D, mass = corners * corners;
+  T* grams;   // per cell and half: sum of w (C P)_n.(C P)_m over its fluid particles
+  T* masses;  // per cell: sum of shift hat_a hat_b over its particles, a and b corners
+
+  __host__ __device__ static constexpr std::size_t numbers() { return halves * gram + mass; }
+};
+
+/// What the kernels of the pressures' Galerkin operator read and write.
+template <int D, class T>
+struct PressureGalerkin {
+  HatCells<D> cells;
+  HatNodesView<D> nodes;
+  NearView<D, T> near;
+  Vec<D, T> toCells;  // unit of length of `near` in cells
+  ProjectionTable<double> table;
+  CellRangesView ranges;
+  const Vec<D>* position;
+  const std::uint8_t* material;
+  CellParts<D, T> parts;
+  const std::uint64_t* rowStart;
+  const std::uint32_t* column;
+  double* value;
+};
+
+/// (C P)_in of a fluid particle for one of the 3^D nodes around it, and w times it.
+template <int D, class T>
+__device__ inline Vec<D, T> pressureColumn(const PressureGalerkin<D, T>& g, std::uint32_t i, const Vec<D>& place,
+                                           int n) {
+  Vec<D, T> s;  // from the node, in cells
+  for (int k = 0, digits = n; k < D; ++k, digits /= 3)
+    s[k] = static_cast<T>(place[k]) + static_cast<T>((place[k] < 0.5 ? 1 : 0) - digits % 3);
+  const auto hat = [&](const Vec<D, T>& at) {
+    T weight = 1;
+    for (int k = 0; k < D; ++k) weight *= positivePart(1 - fabs(at[k]));
+    return weight;
+  };
+  const T own = hat(s);
+  const auto xi = g.near.own(i);
+  Vec<D, T> sum{};
+  alongList(
+      g.near.sliceStart, g.near.entry, i, [&](ListEntry e) { return g.near.other(e); },
+      [&](const typename NearView<D, T>::Stored& other) {
+        const Vec<D, T> d = g.near.difference(other, xi);
+        Vec<D, T> at;
+        for (int k = 0; k < D; ++k) at[k] = fma(d[k], g.toCells[k], s[k]);
+        addScaled(&sum[0], gradientShape(g.near, d) * (own + hat(at)), d);
+      });
+  return g.near.mph.gradientFactor * sum;
+}
+
+/// One block per cell: the columns of C P of its fluid particles, a few at a time in shared memory, and from them
+/// the matrices of its halves; then the corner hats of all its particles, and the mass matrix. Each thread owns
+/// its entries. No atomics.
+template <int D, class T>
+__global__ void __launch_bounds__(D == 2 ? 96 : 256)
+    cellPartsKernel(const __grid_constant__ PressureGalerkin<D, T> g) {
+  using Parts = CellParts<D, T>;
+  constexpr int threads = D == 2 ? 96 : 256, batch = D == 2 ? 16 : 48, width = D * slots<D>;
+  constexpr int mine = (Parts::gram + threads - 1) / threads;
+  __shared__ T columns[batch][width];
+  __shared__ T weight[batch];
+  __shared__ int half[batch];
+  const Vec<D, int> cell = g.nodes.pointOf(blockIdx.x);
+  for (int k = 0; k < D; ++k)
+    if (cell[k] >= g.cells.grid.count[k]) return;  // the last nodes of an open axis are no lower corners
+  const std::size_t c = g.cells.grid.linear(cell);
+  const std::uint32_t begin = g.ranges.fluidBegin[c], end = g.ranges.fluidEnd[c];
+  T* grams = g.parts.grams + blockIdx.x * std::size_t{Parts::halves} * Parts::gram;
+
+  for (std::uint32_t first = begin; first < end || first == begin; first += batch) {
+    const int count = static_cast<int>(min(end - first, std::uint32_t{batch}));
+    __syncthreads();
+    for (int t = threadIdx.x; t < count * slots<D>; t += threads) {
+      const int p = t / slots<D>, n = t % slots<D>;
+      const std::uint32_t i = first + p;
+      const Vec<D> place = g.cells.fraction(g.position[i], cell);
+      const Vec<D, T> column = pressureColumn(g, i, place, n);
+      for (int k = 0; k < D; ++k) columns[p][n * D + k] = column[k];
+      if (n > 0) continue;
+      weight[p] = static_cast<T>(g.table.weight[g.material[i]]);
+      int h = 0;
+      for (int k = 0; k < D; ++k) h |= place[k] < 0.5 ? 0 : 1 << k;
+      half[p] = h;
+    }
+    __syncthreads();
+    for (int h = 0; h < Parts::halves; ++h) {
+      T sum[mine] = {};
+      for (int p = 0; p < count; ++p) {
+        if (half[p] != h) continue;
+#pragma unroll
+        for (int m = 0; m < mine; ++m) {
+          const int e = threadIdx.x + m * threads;
+          if (e >= Parts::gram) break;
+          const T *a = &columns[p][e / slots<D> * D], *b = &columns[p][e % slots<D> * D];
+          T product = a[0] * b[0];
+          for (int k = 1; k < D; ++k) product = fma(a[k], b[k], product);
+          sum[m] = fma(weight[p], product, sum[m]);
+        }
+      }
+#pragma unroll
+      for (int m = 0; m < mine; ++m) {
+        const int e = threadIdx.x + m * threads;
+        if (e >= Parts::gram) break;
+        T* target = grams + h * Parts::gram + e;
+        *target = first == begin ? sum[m] : *target + sum[m];
+      }
+    }
+  }
+
+  if (threadIdx.x >= Parts::mass) return;
+  const int a = static_cast<int>(threadIdx.x) / Parts::corners, b = static_cast<int>(threadIdx.x) % Parts::corners;
+  double sum = 0;
+  const auto add = [&](std::uint32_t from, std::uint32_t to) {
+    for (std::uint32_t i = from; i < to; ++i) {
+      const Vec<D> place = g.cells.fraction(g.position[i], cell);
+      sum += g.table.shift[g.material[i]] * cornerWeight(place, a) * cornerWeight(place, b);
+    }
+  };
+  add(begin, end);
+  add(g.ranges.wallBegin[c], g.ranges.wallEnd[c]);
+  g.parts.masses[blockIdx.x * std::size_t{Parts::mass} + threadIdx.x] = static_cast<T>(sum);
+}
+
+/// Of the six half cells along an axis that touch a node: the cell, the node's place among the half's three nodes,
+/// and the place of another node, -1 where it is not one of them. They go from two cells below the node to the one
+/// above.
+struct HalfCell {
+  int cell, own, other;
+};
+template <int D>
+__device__ inline HalfCell halfCellAt(const HatCells<D>& cells, const Vec<D, int>& node, const Vec<D, int>& other,
+                                      int axis, int t) {
+  const int count = cells.grid.count[axis], lowest = node[axis] - 2 + t / 2;
+  int cell = node[axis] - 2 + (t + 1) / 2;
+  bool exists = true;
+  if (cells.grid.periodic[axis])
+    cell = cell < 0 ? cell + count : cell >= count ? cell - count : cell;
+  else
+    exists = cell >= 0 && cell < count;
+  const int place = cells.above(other[axis], lowest, axis);
+  return {cell, 2 - t / 2, exists && place >= 0 && place <= 2 ? place : -1};
+}
+
+/// A warp per row and 32 of its entries, one lane each: adds up what the half cells and cells around have for the
+/// two nodes. No atomics.
+template <int D, class T>
+__global__ void __launch_bounds__(128) pressureGalerkinKernel(const __grid_constant__ PressureGalerkin<D, T> g) {
+  using Parts = CellParts<D, T>;
+  constexpr std::uint32_t parts = D == 2 ? 1 : 4;
+  const std::uint32_t warp = blockIdx.x * (blockDim.x / 32) + threadIdx.x / 32, row = warp / parts;
+  if (row >= g.nodes.count) return;
+  const std::uint64_t entry = g.rowStart[row] + 32 * (warp % parts) + threadIdx.x % 32;
+  if (entry >= g.rowStart[row + 1]) return;
+  const Vec<D, int> node = g.nodes.pointOf(row), other = g.nodes.pointOf(g.column[entry]);
+  double sum = 0;
+  for (int tz = 0; tz < (D == 3 ? 6 : 1); ++tz) {
+    const HalfCell z = D == 3 ? halfCellAt(g.cells, node, other, D - 1, tz) : HalfCell{0, 0, 0};
+    for (int ty = 0; ty < 6 && z.other >= 0; ++ty) {
+      const HalfCell y = halfCellAt(g.cells, node, other, 1, ty);
+      for (int tx = 0; tx < 6 && y.other >= 0; ++tx) {
+        const HalfCell x = halfCellAt(g.cells, node, other, 0, tx);
+        if (x.other < 0) continue;
+        Vec<D, int> cell;
+        cell[0] = x.cell, cell[1] = y.cell;
+        if constexpr (D == 3) cell[2] = z.cell;
+        const std::uint32_t c = g.nodes.at(cell);
+        if (c == noNode) continue;
+        // Every second half cell from the first one on is an upper half.
+        const int half = (~tx & 1) | (~ty & 1) << 1 | (D == 3 ? (~tz & 1) << 2 : 0);
+        const int n = x.own + 3 * (y.own + 3 * z.own), m = x.other + 3 * (y.other + 3 * z.other);
+        sum += g.parts.grams[(c * std::size_t{Parts::halves} + half) * Parts::gram + n * slots<D> + m];
+      }
+    }
+  }
+  g.cells.forEachCellAround(node, 1, [&](const Vec<D, int>& cell) {
+    const std::uint32_t c = g.nodes.at(cell);
+    if (c == noNode || !g.cells.isCorner(other, cell)) return;
+    sum += g.parts.masses[c * std::size_t{Parts::mass} + cornerOf(g.cells, node, cell) * Parts::corners +
+                          cornerOf(g.cells, other, cell)];
+  });
+  g.value[entry] = sum;
+}
+
+}  // namespace
+
+template <int D, class T>
+void pressureGalerkin(Context<Cuda>& context, const MphPairs<D>& pairs, const NearProducts<D>& near,
+                      const ProjectionTable<double>& table, const HatNodes<D, Cuda>& nodes, Buffer<T, Cuda>& parts,
+                      BlockCsr<1, double, Cuda>& s) {
+  using Parts = CellParts<D, T>;
+  const auto view = NearView<D, T>::make(pairs, near);
+  double unit = 1;
+  if constexpr (std::is_same_v<T, float>) unit = view.places.unit(pairs);
+  Vec<D, T> toCells;
+  for (int k = 0; k < D; ++k) toCells[k] = static_cast<T>(unit * pairs.grid.inverseEdge[k]);
+  parts.resize(context, Parts::numbers() * nodes.count());
+  hatPattern(context, nodes, s);
+  const PressureGalerkin<D, T> g{
+      .cells = {pairs.grid},
+      .nodes = nodes.view(),
+      .near = view,
+      .toCells = toCells,
+      .table = table,
+      .ranges = pairs.cells,
+      .position = pairs.position.data(),
+      .material = pairs.material.data(),
+      .parts = {parts.data(), parts.data() + std::size_t{Parts::halves} * Parts::gram * nodes.count()},
+      .rowStart = s.rowStart.data(),
+      .column = s.column.data(),
+      .value = reinterpret_cast<double*>(s.block.data())};
+  launch(context, nodes.count(), D == 2 ? 96 : 256, 0, cellPartsKernel<D, T>, g);
+  launch(context, D == 2 ? blocksFor(nodes.count(), 4) : nodes.count(), 128, 0, pressureGalerkinKernel<D, T>, g);
+}
+
+#define TREACLE_INSTANTIATE(D, T)                                                                  \
+  template void pressureGalerkin<D, T>(Context<Cuda>&, const MphPairs<D>&, const NearProducts<D>&, \
+                                       const ProjectionTable<double>&, const HatNodes<D, Cuda>&,   \
+                                       Buffer<T, Cuda>&, BlockCsr<1, double, Cuda>&);
+TREACLE_INSTANTIATE(2, double)
+TREACLE_INSTANTIATE(3, double)
+TREACLE_INSTANTIATE(2, float)
+TREACLE_INSTANTIATE(3, float)
+#undef TREACLE_INSTANTIATE
+
+}  // namespace treacle

@@ -1,0 +1,68 @@
+#include "treacle/isph/isph_pairs.hpp"
+
+#include "treacle/model/lattice_sum.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace treacle {
+
+namespace {
+
+/// Share of a lattice's density that the half of it below a particle makes up.
+template <int D>
+double shareOfHalfLattice(const IsphPairs<D>& pairs) {
+  const int reach = static_cast<int>(std::ceil(pairs.kernel.radius() / pairs.spacing));
+  double sum = 0;
+  for (int z = D == 3 ? -reach : 0; z <= (D == 3 ? reach : 0); ++z)
+    for (int x = -reach; x <= reach; ++x)
+      for (int y = 1; y <= reach; ++y)
+        sum += pairs.volume * pairs.kernel.value(pairs.spacing * std::sqrt(double(x * x + y * y + z * z)));
+  return sum / pairs.latticeDensity;
+}
+
+}  // namespace
+
+template <int D>
+IsphPairs<D> makeIsphPairs(const Case& c) {
+  Vec<D, bool> periodic{};
+  for (int k = 0; k < D; ++k) periodic[k] = c.domain.periodic[k];
+  const IsphSettings& s = c.method.isph;
+  IsphPairs<D> pairs;
+  pairs.spacing = c.spacing;
+  pairs.grid =
+      CellGrid<D>::make(resized<D>(c.domain.min), resized<D>(c.domain.max), periodic, 2 * c.smoothingLength());
+  pairs.kernel = SmoothingKernel<D>::make(s.kernel, c.smoothingLength());
+  pairs.materials = MaterialTable::make(c);
+  pairs.gravity = resized<D>(c.gravity);
+  pairs.volume = std::pow(c.spacing, D);
+  const auto weight = [&](double r) { return pairs.kernel.value(r); };
+  pairs.latticeDensity = pairs.volume * (weight(0) + latticeSum<D>(pairs.kernel.radius(), c.spacing, weight));
+  // A thousandth more, so that rounding does not decide about particles that start at that distance.
+  pairs.contact.touching = 1.001 * shareOfHalfLattice(pairs);
+  pairs.timeStep = c.time.step;
+  pairs.alpha = s.alpha;
+  pairs.noSlip = s.walls == WallSlip::NoSlip;
+  pairs.negativePressure = s.negativePressure;
+  return pairs;
+}
+
+template <int D>
+double explicitViscousLimit(const IsphPairs<D>& pairs) {
+  const double slopes =
+      latticeSum<D>(pairs.kernel.radius(), pairs.spacing, [&](double r) { return 2 * pairs.slope(r); });
+  double viscosity = 0;  // kinematic
+  for (int m = 0; m < pairs.materials.count; ++m)
+    viscosity = std::max(viscosity, pairs.materials.viscosity(m) / pairs.materials.density[m]);
+  return viscosity > 0 ? 0.5 / (viscosity * slopes) : std::numeric_limits<double>::infinity();
+}
+
+#define TREACLE_INSTANTIATE(D)                         \
+  template IsphPairs<D> makeIsphPairs<D>(const Case&); \
+  template double explicitViscousLimit<D>(const IsphPairs<D>&);
+TREACLE_INSTANTIATE(2)
+TREACLE_INSTANTIATE(3)
+#undef TREACLE_INSTANTIATE
+
+}  // namespace treacle

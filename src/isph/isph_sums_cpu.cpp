@@ -1,0 +1,74 @@
+#include "treacle/isph/isph_sums.hpp"
+
+#include "treacle/core/parallel.hpp"
+
+namespace treacle {
+
+template <int D, class Term>
+void sumOnFluid(Context<Cpu>&, const IsphPairs<D>& pairs, const Term& term) {
+  parallelFor(pairs.fluidCount, parallelGrain, [&](std::size_t row) {
+    const auto i = static_cast<std::uint32_t>(row);
+    const Vec<D> x = pairs.position[i];
+    double sum[Term::values] = {};
+    pairs.fluidOfFluid.forEachPlace(i, [&](std::uint64_t k) {
+      const std::uint32_t j = pairs.fluidOfFluid.column[k];
+      const Vec<D> d = pairs.grid.difference(x, pairs.position[j]);
+      term.fluid(pairs, i, j, d, Distance(d), sum);
+    });
+    pairs.wallsOfFluid.forEachPlace(i, [&](std::uint64_t k) {
+      const std::uint32_t j = pairs.wallsOfFluid.column[k];
+      const Vec<D> d = pairs.grid.difference(x, pairs.position[j]);
+      term.wall(pairs, i, j, d, Distance(d), sum);
+    });
+    term.store(pairs, i, sum);
+  });
+}
+
+template <int D, class Term>
+void sumOnWalls(Context<Cpu>&, const IsphPairs<D>& pairs, const Term& term) {
+  parallelFor(pairs.fluidOfWalls.count, parallelGrain, [&](std::size_t row) {
+    const std::uint32_t i = pairs.fluidOfWalls.first + static_cast<std::uint32_t>(row);
+    double sum[Term::values] = {};
+    pairs.fluidOfWalls.forEachPlace(static_cast<std::uint32_t>(row), [&](std::uint64_t k) {
+      const std::uint32_t j = pairs.fluidOfWalls.column[k];
+      const Vec<D> d = pairs.grid.difference(pairs.position[i], pairs.position[j]);
+      term.fluid(pairs, i, j, d, Distance(d), sum);
+    });
+    term.store(pairs, i, sum);
+  });
+}
+
+template <int D, class T, class Row>
+void fillIsphMatrix(Context<Cpu>&, const IsphPairs<D>& pairs, const Row& row, const IsphMatrixParts<D, T>& parts) {
+  const IsphMatrixRow<D, T, Row> filler{pairs, row, parts};
+  parallelFor(pairs.fluidCount, parallelGrain, [&](std::size_t index) {
+    const auto i = static_cast<std::uint32_t>(index);
+    double sum[filler.values] = {};
+    pairs.fluidOfFluid.forEachPlace(i, [&](std::uint64_t k) { filler.entry(i, pairs.position[i], k, sum); });
+    pairs.wallsOfFluid.forEachPlace(i, [&](std::uint64_t k) { filler.wall(i, pairs.position[i], k, sum); });
+    filler.finish(i, sum);
+  });
+}
+
+#define TREACLE_INSTANTIATE(D)                                                                \
+  template void sumOnFluid(Context<Cpu>&, const IsphPairs<D>&, const DensityTerm<D>&);        \
+  template void sumOnFluid(Context<Cpu>&, const IsphPairs<D>&, const PredictorTerm<D>&);      \
+  template void sumOnFluid(Context<Cpu>&, const IsphPairs<D>&,                                \
+                           const BothTerms<DensityTerm<D>, PredictorTerm<D>>&);               \
+  template void sumOnFluid(Context<Cpu>&, const IsphPairs<D>&, const ViscousSourceTerm<D>&);  \
+  template void sumOnFluid(Context<Cpu>&, const IsphPairs<D>&, const PressureSourceTerm<D>&); \
+  template void sumOnFluid(Context<Cpu>&, const IsphPairs<D>&, const CorrectorTerm<D>&);      \
+  template void sumOnWalls(Context<Cpu>&, const IsphPairs<D>&, const WallPressureTerm<D>&);   \
+  template void fillIsphMatrix(Context<Cpu>&, const IsphPairs<D>&, const PressureRow<D>&,     \
+                               const IsphMatrixParts<D, double>&);                            \
+  template void fillIsphMatrix(Context<Cpu>&, const IsphPairs<D>&, const PressureRow<D>&,     \
+                               const IsphMatrixParts<D, float>&);                             \
+  template void fillIsphMatrix(Context<Cpu>&, const IsphPairs<D>&, const ViscousRow<D>&,      \
+                               const IsphMatrixParts<D, double>&);                            \
+  template void fillIsphMatrix(Context<Cpu>&, const IsphPairs<D>&, const ViscousRow<D>&,      \
+                               const IsphMatrixParts<D, float>&);
+TREACLE_INSTANTIATE(2)
+TREACLE_INSTANTIATE(3)
+#undef TREACLE_INSTANTIATE
+
+}  // namespace treacle

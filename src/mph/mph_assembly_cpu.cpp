@@ -1,0 +1,171 @@
+#include "treacle/mph/mph_assembly.hpp"
+
+#include "treacle/core/parallel.hpp"
+#include "treacle/mph/mph_lanes.hpp"
+#include "treacle/mph/mph_neighbours.hpp"
+
+#include <algorithm>
+#include <vector>
+
+namespace treacle {
+namespace {
+
+constexpr ListSegment fluidSegments[] = {ListSegment::NearFluid, ListSegment::FarFluid};
+
+/// Column indices of row i, ascending: i and the fluid particles that V or C Lambda C^T can couple to it.
+template <int D>
+void rowPattern(const MphPairs<D>& pairs, std::uint32_t i, std::vector<std::uint32_t>& columns) {
+  const double radius2 = couplingRadius2(pairs);
+  columns.clear();
+  for (ListSegment s : fluidSegments)
+    forEachEntry(pairs, i, s, [&](ListEntry e, const Vec<D>& d) {
+      if (norm2(d) <= radius2) columns.push_back(e.index());
+    });
+  std::sort(columns.begin(), columns.end());
+}
+
+/// Writes the blocks of one row. `slot`: per fluid particle its place in the row, or none.
+template <int D>
+class RowAssembler {
+ public:
+  static constexpr std::uint32_t none = ~std::uint32_t{0};
+
+  RowAssembler(const MphPairs<D>& pairs, const GradientRows<D>& rows)
+      : pairs_(pairs), rows_(rows), slot_(pairs.fluidCount, none) {}
+
+  void write(std::uint32_t i, std::span<const std::uint32_t> columns, std::span<Block<D>> blocks,
+             const Block<D>& ownBlock) {
+    for (std::uint32_t k = 0; k < columns.size(); ++k) slot_[columns[k]] = k;
+    std::fill(blocks.begin(), blocks.end(), Block<D>{});
+    blocks[slot_[i]] += ownBlock;
+    addViscosity(i, blocks);
+    addPressure(i, blocks);
+    for (std::uint32_t c : columns) slot_[c] = none;
+  }
+
+ private:
+  void addViscosity(std::uint32_t i, std::span<Block<D>> blocks) {
+    const double h2 = pairs_.terms.viscosityRadius * pairs_.terms.viscosityRadius;
+    for (ListSegment s : fluidSegments)
+      forEachEntry(pairs_, i, s, [&](ListEntry e, const Vec<D>& d) {
+        const double r2 = norm2(d);
+        if (r2 >= h2 || r2 == 0) return;
+        const double mu = pairs_.pairViscosity(i, e.index());
+        const double c = pairs_.terms.viscous(mu * pairs_.terms.viscousFactor, ExactDistance(r2));
+        blocks[slot_[e.index()]].addOuter(-c, d, d);
+        blocks[slot_[i]].addOuter(c, d, d);
+      });
+  }
+
+  /// Row i of C Lambda C^T: over the pressures k that particle i feels, their columns of C.
+  void addPressure(std::uint32_t i, std::span<Block<D>> blocks) {
+    Vec<D> own{};
+    for (std::uint64_t m = rows_.rowStart[i]; m < rows_.rowStart[i + 1]; ++m) {
+      own += rows_.g[m];
+      addColumn(rows_.neighbour[m], rows_.g[m], blocks);
+    }
+    addColumn(i, own, blocks);
+  }
+
+  /// blocks += lambda_k c_ik c_jk^T over the fluid particles j of column k; c_jk = -g_kj, c_kk = sum_j g_kj.
+  void addColumn(std::uint32_t k, const Vec<D>& cik, std::span<Block<D>> blocks) {
+    const double lambda = pairs_.bulkViscosity(k);
+    Vec<D> own{};
+    for (std::uint64_t m = rows_.rowStart[k]; m < rows_.rowStart[k + 1]; ++m) {
+      own += rows_.g[m];
+      addBlock(rows_.neighbour[m], -lambda, cik, rows_.g[m], blocks);
+    }
+    addBlock(k, lambda, cik, own, blocks);
+  }
+
+  void addBlock(std::uint32_t j, double factor, const Vec<D>& a, const Vec<D>& b, std::span<Block<D>> blocks) {
+    // Walls have no column. A fluid particle without a slot is 2 h_p away to rounding, where the weights vanish.
+    if (j < pairs_.fluidCount && slot_[j] != none) blocks[slot_[j]].addOuter(factor, a, b);
+  }
+
+  const MphPairs<D>& pairs_;
+  const GradientRows<D>& rows_;
+  std::vector<std::uint32_t> slot_;
+};
+
+}  // namespace
+
+template <int D>
+void assemble(Context<Cpu>&, const MphPairs<D>& pairs, const WallTerms<D>& terms, const GradientRows<D>& rows,
+              BlockCsr<D>& a) {
+  const std::uint32_t n = pairs.fluidCount;
+  a.rowStart.resize(n + 1);
+  a.rowStart[0] = 0;
+#pragma omp parallel if (n > parallelGrain)
+  {
+    std::vector<std::uint32_t> columns;
+#pragma omp for schedule(static)
+    for (std::uint32_t i = 0; i < n; ++i) {
+      rowPattern(pairs, i, columns);
+      a.rowStart[i + 1] = columns.size();
+    }
+  }
+  for (std::uint32_t i = 0; i < n; ++i) a.rowStart[i + 1] += a.rowStart[i];
+  a.column.resize(a.rowStart[n]);
+  a.block.resize(a.rowStart[n]);
+
+#pragma omp parallel if (n > parallelGrain)
+  {
+    std::vector<std::uint32_t> columns;
+    RowAssembler<D> assembler(pairs, rows);
+#pragma omp for schedule(static)
+    for (std::uint32_t i = 0; i < n; ++i) {
+      rowPattern(pairs, i, columns);
+      std::copy(columns.begin(), columns.end(), a.column.begin() + a.rowStart[i]);
+      assembler.write(i, columns, a.block.span().subspan(a.rowStart[i], columns.size()), terms.block[i]);
+    }
+  }
+}
+
+template <int D>
+void diagonalBlocks(Context<Cpu>&, const MphPairs<D>& pairs, const WallTerms<D>& terms,
+                    std::span<Block<D>> diagonal) {
+  const double floor2 = distanceFloor2(pairs);
+  const ClusterListView& list = pairs.fluidList;
+  forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const VecLanes<D>& x, std::uint32_t c) {
+    const ViscosityLanes<D> viscosity(pairs, range);
+    Lanes block[D][D] = {};
+    VecLanes<D> own = {};
+    const auto add = [&](ListEntry e, bool wall) {
+      const PairLanes<D> pair(pairs.positionOf(e), x, floor2);
+      const Lanes g = pairs.terms.gradient(pair.r);
+      Lanes f = pairs.bulkViscosity(e.index()) * g * g;  // lambda_j C_ij C_ij^T
+      if (!wall)                                         // the viscous part of walls stands in terms.block
+        f += pairs.terms.viscous(viscosity.with(e.index()), pair.r);
+      for (int r = 0; r < D; ++r) {
+        own[r] += g * pair.d[r];
+        for (int k = 0; k < D; ++k) block[r][k] += f * pair.d[r] * pair.d[k];
+      }
+    };
+    for (ListEntry e : list.segment(c, ListSegment::NearFluid)) add(e, false);
+    for (ListEntry e : list.segment(c, ListSegment::FarFluid)) add(e, false);
+    for (ListEntry e : list.segment(c, ListSegment::NearWall)) add(e, true);
+
+    for (std::uint32_t lane = 0; lane < range.count; ++lane) {
+      const std::uint32_t i = range.first + lane;
+      Block<D> sum = terms.block[i];
+      Vec<D> cii{};
+      for (int r = 0; r < D; ++r) {
+        cii[r] = own[r][lane];
+        for (int k = 0; k < D; ++k) sum(r, k) += block[r][k][lane];
+      }
+      sum.addOuter(pairs.bulkViscosity(i), cii, cii);
+      diagonal[i] = sum;
+    }
+  });
+}
+
+#define TREACLE_INSTANTIATE(D)                                                                              \
+  template void assemble<D>(Context<Cpu>&, const MphPairs<D>&, const WallTerms<D>&, const GradientRows<D>&, \
+                            BlockCsr<D>&);                                                                  \
+  template void diagonalBlocks<D>(Context<Cpu>&, const MphPairs<D>&, const WallTerms<D>&, std::span<Block<D>>);
+TREACLE_INSTANTIATE(2)
+TREACLE_INSTANTIATE(3)
+#undef TREACLE_INSTANTIATE
+
+}  // namespace treacle

@@ -1,0 +1,68 @@
+#include "treacle/mph/mph_balance.hpp"
+
+#include "treacle/mph/mph_lanes.hpp"
+
+namespace treacle {
+
+template <int D>
+void shearDissipation(Context<Cpu>&, const MphPairs<D>& pairs, std::span<const Vec<D>> u,
+                      std::span<double> dissipation) {
+  const double floor2 = distanceFloor2(pairs);
+  const ClusterListView& list = pairs.fluidList;
+  forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const VecLanes<D>& x, std::uint32_t c) {
+    const ViscosityLanes<D> viscosity(pairs, range);
+    const VecLanes<D> ui = loadLanes<D>(range, u);
+    const auto sum = [&](ListSegment segment) {
+      Lanes total = {};
+      for (ListEntry e : list.segment(c, segment)) {
+        const PairLanes<D> pair(pairs.positionOf(e), x, floor2);
+        Lanes along = {};
+        for (int k = 0; k < D; ++k) along += (u[e.index()][k] - ui[k]) * pair.d[k];
+        along *= pair.r.inverse;
+        total += viscosity.with(e.index()) * pairs.terms.resistanceShape(pair.r) * along * along;
+      }
+      return total;
+    };
+    const Lanes ofFluid = sum(ListSegment::NearFluid) + sum(ListSegment::FarFluid);
+    storeLanes(range, 0.5 * ofFluid + sum(ListSegment::NearWall) + sum(ListSegment::FarWall), dissipation);
+  });
+}
+
+template <int D>
+void fluidAtWalls(Context<Cpu>&, const MphPairs<D>& pairs, const ClusterListView& walls, std::span<const Vec<D>> u,
+                  std::span<const double> pressure, const FluidAtWalls<D>& out) {
+  const double floor2 = distanceFloor2(pairs);
+  forEachCluster<D>(pairs, walls, [&](const ClusterRange& range, const VecLanes<D>& x, std::uint32_t c) {
+    const ViscosityLanes<D> viscosity(pairs, range);
+    const VecLanes<D> ui = loadLanes<D>(range, u);
+    const Lanes qi = loadLanes(range, pressure);
+    VecLanes<D> force = {};
+    Lanes divergence = {}, density = {};
+    for (ListEntry e : walls.segment(c, ListSegment::NearFluid)) {
+      const PairLanes<D> pair(pairs.positionOf(e), x, floor2);
+      Lanes along = {};
+      for (int k = 0; k < D; ++k) along += (u[e.index()][k] - ui[k]) * pair.d[k];
+      const Lanes g = pairs.terms.gradient(pair.r);
+      const Lanes f =
+          pairs.terms.viscous(viscosity.with(e.index()), pair.r) * along - g * (qi + pressure[e.index()]);
+      for (int k = 0; k < D; ++k) force[k] += f * pair.d[k];
+      divergence -= g * along;
+      density += pairs.terms.density(pairs.terms.densityFactor, pair.r);
+    }
+    const ClusterRange wall(range.first - walls.first, range.first - walls.first + range.count);
+    storeLanes<D>(wall, force, out.force);
+    storeLanes(wall, divergence, out.divergence);
+    storeLanes(wall, density, out.density);
+  });
+}
+
+#define TREACLE_INSTANTIATE(D)                                                                  \
+  template void shearDissipation<D>(Context<Cpu>&, const MphPairs<D>&, std::span<const Vec<D>>, \
+                                    std::span<double>);                                         \
+  template void fluidAtWalls<D>(Context<Cpu>&, const MphPairs<D>&, const ClusterListView&,      \
+                                std::span<const Vec<D>>, std::span<const double>, const FluidAtWalls<D>&);
+TREACLE_INSTANTIATE(2)
+TREACLE_INSTANTIATE(3)
+#undef TREACLE_INSTANTIATE
+
+}  // namespace treacle

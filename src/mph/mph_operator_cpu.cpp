@@ -1,0 +1,177 @@
+#include "treacle/mph/mph_operator.hpp"
+
+#include "treacle/mph/mph_lanes.hpp"
+
+namespace treacle {
+namespace {
+
+/// Entries ahead that are asked for: the neighbours' scattered reads keep the hardware from seeing the stream.
+constexpr std::uint64_t prefetchDistance = 32;
+
+Lanes loadCoefficient(const Buffer<double>& values, std::uint64_t entry) {
+  Lanes lanes;
+  __builtin_prefetch(values.data() + (entry + prefetchDistance) * clusterSize);
+  std::memcpy(&lanes, values.data() + entry * clusterSize, sizeof(lanes));
+  return lanes;
+}
+
+void storeCoefficient(Buffer<double>& values, std::uint64_t entry, Lanes lanes) {
+  std::memcpy(values.data() + entry * clusterSize, &lanes, sizeof(lanes));
+}
+
+/// Calls body.operator()<Wraps>(): a list that means no periodic image needs neither codes nor shifts.
+template <class F>
+void withImages(bool wraps, F&& body) {
+  wraps ? body.template operator()<true>() : body.template operator()<false>();
+}
+
+template <bool Wraps>
+std::uint32_t indexOf(ListEntry e) {
+  return Wraps ? e.index() : e.bits;
+}
+
+/// x_j - x_i for the lanes of a cluster.
+template <bool Wraps, int D>
+VecLanes<D> difference(const MphPairs<D>& pairs, ListEntry e, const VecLanes<D>& x) {
+  VecLanes<D> d;
+  if constexpr (Wraps) {
+    const Vec<D> xj = pairs.positionOf(e);
+    for (int k = 0; k < D; ++k) d[k] = xj[k] - x[k];
+  } else {
+    const Vec<D>& xj = pairs.position[e.bits];  // broadcast from memory
+    for (int k = 0; k < D; ++k) d[k] = xj[k] - x[k];
+  }
+  return d;
+}
+
+}  // namespace
+
+template <int D>
+void MphOperator<D, Cpu>::countEntries() {
+  const ClusterListView& list = pairs_->fluidList;
+  const std::uint32_t clusters = list.clusterCount();
+  viscousStart_.resize(clusters + 1);
+  pressureStart_.resize(clusters + 1);
+  viscousStart_[0] = pressureStart_[0] = 0;
+  for (std::uint32_t c = 0; c < clusters; ++c) {
+    const auto size = [&](ListSegment s) { return list.segment(c, s).size(); };
+    viscousStart_[c + 1] = viscousStart_[c] + size(ListSegment::NearFluid) + size(ListSegment::FarFluid);
+    pressureStart_[c + 1] = pressureStart_[c] + size(ListSegment::NearFluid) + size(ListSegment::NearWall);
+  }
+  viscous_.resize(viscousStart_[clusters] * clusterSize);
+  pressure_.resize(pressureStart_[clusters] * clusterSize);
+}
+
+template <int D>
+void MphOperator<D, Cpu>::prepare(Context<Cpu>&, const MphPairs<D>& pairs, const WallTerms<D>& terms) {
+  pairs_ = &pairs;
+  terms_ = terms;
+  q_.resize(pairs.activeCount);
+  countEntries();
+  const double floor2 = distanceFloor2(pairs);
+  const ClusterListView& list = pairs.fluidList;
+  forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const VecLanes<D>& x, std::uint32_t c) {
+    const ViscosityLanes<D> viscosity(pairs, range);
+    std::uint64_t nextViscous = viscousStart_[c], nextPressure = pressureStart_[c];
+    for (ListSegment s : {ListSegment::NearFluid, ListSegment::FarFluid, ListSegment::NearWall})
+      for (ListEntry e : list.segment(c, s)) {
+        const PairLanes<D> pair(pairs.positionOf(e), x, floor2);
+        if (s != ListSegment::NearWall)
+          storeCoefficient(viscous_, nextViscous++, pairs.terms.viscous(viscosity.with(e.index()), pair.r));
+        if (s != ListSegment::FarFluid) storeCoefficient(pressure_, nextPressure++, pairs.terms.gradient(pair.r));
+      }
+  });
+}
+
+template <int D>
+void MphOperator<D, Cpu>::multiply(Context<Cpu>&, std::span<const Vec<D>> u, std::span<Vec<D>> y) {
+  viscosityAndDivergence(u, y);
+  wallDivergence(u);
+  addGradient(y);
+}
+
+/// y = (rho/dt I + V) u, and q = lambda C^T u on the fluid.
+template <int D>
+void MphOperator<D, Cpu>::viscosityAndDivergence(std::span<const Vec<D>> u, std::span<Vec<D>> y) {
+  const MphPairs<D>& pairs = *pairs_;
+  const ClusterListView& list = pairs.fluidList;
+  forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const VecLanes<D>& x, std::uint32_t c) {
+    const VecLanes<D> ui = loadLanes<D>(range, u);
+    VecLanes<D> force = {};  // minus the viscous part of A u
+    Lanes divergence = {};
+    withImages(list.wraps[c], [&]<bool Wraps>() {
+      std::uint64_t nextViscous = viscousStart_[c], nextPressure = pressureStart_[c];
+      const auto add = [&](ListEntry e, bool near) {
+        const VecLanes<D> d = difference<Wraps, D>(pairs, e, x);
+        const Vec<D>& uj = u[indexOf<Wraps>(e)];
+        Lanes along = (uj[0] - ui[0]) * d[0];
+        for (int k = 1; k < D; ++k) along += (uj[k] - ui[k]) * d[k];
+        if (near) divergence -= loadCoefficient(pressure_, nextPressure++) * along;
+        const Lanes f = loadCoefficient(viscous_, nextViscous++) * along;
+        for (int k = 0; k < D; ++k) force[k] += f * d[k];
+      };
+      for (ListEntry e : list.segment(c, ListSegment::NearFluid)) add(e, true);
+      for (ListEntry e : list.segment(c, ListSegment::FarFluid)) add(e, false);
+    });
+    for (std::uint32_t lane = 0; lane < range.count; ++lane) {
+      const std::uint32_t i = range.first + lane;
+      Vec<D> yi = terms_.block[i] * u[i];
+      for (int k = 0; k < D; ++k) yi[k] -= force[k][lane];
+      y[i] = yi;
+      // Walls at rest: (0 - u_i).e w' summed over walls = u_i.(sum of -e w').
+      q_[i] = pairs.bulkViscosity(i) * (divergence[lane] + dot(u[i], terms_.gradient[i]));
+    }
+  });
+}
+
+/// q = lambda C^T u on the walls; they are few, so their coefficients are not kept.
+template <int D>
+void MphOperator<D, Cpu>::wallDivergence(std::span<const Vec<D>> u) {
+  const MphPairs<D>& pairs = *pairs_;
+  const ClusterListView& list = pairs.wallList;
+  const double floor2 = distanceFloor2(pairs);
+  parallelFor(list.clusterCount(), parallelGrain / clusterSize, [&](std::size_t c) {
+    const ClusterRange range(list, static_cast<std::uint32_t>(c));
+    const auto entries = list.segment(static_cast<std::uint32_t>(c), ListSegment::NearFluid);
+    Lanes sum = {};
+    if (!entries.empty()) {
+      const VecLanes<D> x = loadPositions<D>(range, pairs.position, pairs.grid);
+      for (ListEntry e : entries) {
+        const PairLanes<D> pair(pairs.positionOf(e), x, floor2);
+        Lanes along = {};
+        for (int k = 0; k < D; ++k) along += u[e.index()][k] * pair.d[k];
+        sum -= pairs.terms.gradient(pair.r) * along;
+      }
+      for (std::uint32_t lane = 0; lane < range.count; ++lane)
+        sum[lane] *= pairs.bulkViscosity(range.first + lane);
+    }
+    storeLanes(range, sum, q_);
+  });
+}
+
+/// y += C q
+template <int D>
+void MphOperator<D, Cpu>::addGradient(std::span<Vec<D>> y) {
+  const MphPairs<D>& pairs = *pairs_;
+  const ClusterListView& list = pairs.fluidList;
+  forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const VecLanes<D>& x, std::uint32_t c) {
+    const Lanes qi = loadLanes(range, q_.span());
+    VecLanes<D> sum = {};
+    withImages(list.wraps[c], [&]<bool Wraps>() {
+      std::uint64_t next = pressureStart_[c];
+      for (ListSegment s : {ListSegment::NearFluid, ListSegment::NearWall})
+        for (ListEntry e : list.segment(c, s)) {
+          const Lanes f = loadCoefficient(pressure_, next++) * (qi + q_[indexOf<Wraps>(e)]);
+          const VecLanes<D> d = difference<Wraps, D>(pairs, e, x);
+          for (int k = 0; k < D; ++k) sum[k] += f * d[k];
+        }
+    });
+    for (std::uint32_t lane = 0; lane < range.count; ++lane)
+      for (int k = 0; k < D; ++k) y[range.first + lane][k] += sum[k][lane];
+  });
+}
+
+template class MphOperator<2, Cpu>;
+template class MphOperator<3, Cpu>;
+
+}  // namespace treacle

@@ -1,0 +1,27 @@
+#include "treacle/mph/mph_pairs.hpp"
+
+#include <algorithm>
+
+namespace treacle {
+
+template <int D>
+MphPairs<D> makeMphPairs(const Case& c) {
+  Vec<D, bool> periodic{};
+  for (int k = 0; k < D; ++k) periodic[k] = c.domain.periodic[k];
+  const double hp = c.pressureRadius(), hv = c.viscosityRadius();
+  MphPairs<D> pairs;
+  pairs.spacing = c.spacing;
+  pairs.grid =
+      CellGrid<D>::make(resized<D>(c.domain.min), resized<D>(c.domain.max), periodic, std::max(hv, 2 * hp));
+  pairs.images = periodicImages(pairs.grid);
+  const auto pressureWeight = Weight<D>::make(hp, c.spacing);
+  pairs.terms = MphTerms<D>::make(pressureWeight, Weight<D>::make(hv, c.spacing));
+  pairs.restDensity = latticeNumberDensity(pressureWeight, c.spacing);
+  pairs.materials = MaterialTable::make(c);
+  return pairs;
+}
+
+template MphPairs<2> makeMphPairs<2>(const Case&);
+template MphPairs<3> makeMphPairs<3>(const Case&);
+
+}  // namespace treacle

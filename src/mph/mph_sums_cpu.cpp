@@ -1,0 +1,128 @@
+#include "treacle/mph/mph_sums.hpp"
+
+#include "treacle/mph/mph_lanes.hpp"
+
+namespace treacle {
+namespace {
+
+constexpr ListSegment nearSegments[] = {ListSegment::NearFluid, ListSegment::NearWall};
+constexpr ListSegment wallSegments[] = {ListSegment::NearWall, ListSegment::FarWall};
+
+}  // namespace
+
+template <int D>
+void numberDensity(Context<Cpu>&, const MphPairs<D>& pairs, std::span<double> n) {
+  const double floor2 = distanceFloor2(pairs);
+  for (const ClusterListView& list : {pairs.fluidList, pairs.wallList})
+    forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const VecLanes<D>& x, std::uint32_t c) {
+      Lanes sum = {};
+      for (ListSegment s : nearSegments)
+        for (ListEntry e : list.segment(c, s)) {
+          const PairLanes<D> pair(pairs.positionOf(e), x, floor2);
+          Lanes w = pairs.terms.density(pairs.terms.densityFactor, pair.r);
+          const std::uint32_t self = e.index() - range.first;
+          if (self < clusterSize) w[self] = 0;  // a particle is not its own neighbour
+          sum += w;
+        }
+      storeLanes(range, sum, n);
+    });
+}
+
+template <int D>
+void addPressureGradient(Context<Cpu>&, const MphPairs<D>& pairs, std::span<const double> q, double factor,
+                         std::span<Vec<D>> y) {
+  const double floor2 = distanceFloor2(pairs);
+  const ClusterListView& list = pairs.fluidList;
+  forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const VecLanes<D>& x, std::uint32_t c) {
+    const Lanes qi = loadLanes(range, q);
+    VecLanes<D> sum = {};
+    for (ListSegment s : nearSegments)
+      for (ListEntry e : list.segment(c, s)) {
+        const PairLanes<D> pair(pairs.positionOf(e), x, floor2);
+        const Lanes f = pairs.terms.gradientShape(pair.r) * (qi + q[e.index()]);
+        for (int k = 0; k < D; ++k) sum[k] += f * pair.d[k];
+      }
+    VecLanes<D> yi = loadLanes<D>(range, std::span<const Vec<D>>(y));
+    for (int k = 0; k < D; ++k) yi[k] += factor * pairs.terms.gradientFactor * sum[k];
+    storeLanes<D>(range, yi, y);
+  });
+}
+
+template <int D>
+void divergence(Context<Cpu>&, const MphPairs<D>& pairs, std::span<const Vec<D>> u, std::span<double> div) {
+  const double floor2 = distanceFloor2(pairs);
+  for (const ClusterListView& list : {pairs.fluidList, pairs.wallList})
+    forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const VecLanes<D>& x, std::uint32_t c) {
+      const VecLanes<D> ui = loadLanes<D>(range, u);
+      Lanes sum = {};
+      for (ListSegment s : nearSegments)
+        for (ListEntry e : list.segment(c, s)) {
+          const PairLanes<D> pair(pairs.positionOf(e), x, floor2);
+          Lanes along = {};
+          for (int k = 0; k < D; ++k) along += (u[e.index()][k] - ui[k]) * pair.d[k];
+          sum -= pairs.terms.gradientShape(pair.r) * along;
+        }
+      storeLanes(range, pairs.terms.gradientFactor * sum, div);
+    });
+}
+
+template <int D>
+void wallTerms(Context<Cpu>&, const MphPairs<D>& pairs, const WallTerms<D>& terms) {
+  const double floor2 = distanceFloor2(pairs);
+  const ClusterListView& list = pairs.fluidList;
+  forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const VecLanes<D>& x, std::uint32_t c) {
+    const ViscosityLanes<D> viscosity(pairs, range);
+    Lanes block[D][D] = {};
+    VecLanes<D> gradient = {};
+    for (ListSegment s : wallSegments)
+      for (ListEntry e : list.segment(c, s)) {
+        const PairLanes<D> pair(pairs.positionOf(e), x, floor2);
+        const Lanes f = pairs.terms.viscous(viscosity.with(e.index()), pair.r);
+        const Lanes g = pairs.terms.gradient(pair.r);
+        for (int r = 0; r < D; ++r) {
+          gradient[r] += g * pair.d[r];
+          for (int k = 0; k < D; ++k) block[r][k] += f * pair.d[r] * pair.d[k];
+        }
+      }
+    for (std::uint32_t lane = 0; lane < range.count; ++lane) {
+      const std::uint32_t i = range.first + lane;
+      terms.block[i] = Block<D>::diagonal(pairs.inertia(i));
+      for (int r = 0; r < D; ++r) {
+        terms.gradient[i][r] = gradient[r][lane];
+        for (int k = 0; k < D; ++k) terms.block[i](r, k) += block[r][k][lane];
+      }
+    }
+  });
+}
+
+template <int D>
+void addWallDrag(Context<Cpu>&, const MphPairs<D>& pairs, std::span<const Vec<D>> u, std::span<Vec<D>> y) {
+  const double floor2 = distanceFloor2(pairs);
+  const ClusterListView& list = pairs.fluidList;
+  forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const VecLanes<D>& x, std::uint32_t c) {
+    const ViscosityLanes<D> viscosity(pairs, range);
+    VecLanes<D> yi = loadLanes<D>(range, std::span<const Vec<D>>(y));
+    for (ListSegment s : wallSegments)
+      for (ListEntry e : list.segment(c, s)) {
+        const PairLanes<D> pair(pairs.positionOf(e), x, floor2);
+        Lanes along = {};
+        for (int k = 0; k < D; ++k) along += pair.d[k] * u[e.index()][k];
+        const Lanes f = pairs.terms.viscous(viscosity.with(e.index()), pair.r) * along;
+        for (int k = 0; k < D; ++k) yi[k] += f * pair.d[k];
+      }
+    storeLanes<D>(range, yi, y);
+  });
+}
+
+#define TREACLE_INSTANTIATE(D)                                                                                \
+  template void numberDensity<D>(Context<Cpu>&, const MphPairs<D>&, std::span<double>);                       \
+  template void addPressureGradient<D>(Context<Cpu>&, const MphPairs<D>&, std::span<const double>, double,    \
+                                       std::span<Vec<D>>);                                                    \
+  template void divergence<D>(Context<Cpu>&, const MphPairs<D>&, std::span<const Vec<D>>, std::span<double>); \
+  template void wallTerms<D>(Context<Cpu>&, const MphPairs<D>&, const WallTerms<D>&);                         \
+  template void addWallDrag<D>(Context<Cpu>&, const MphPairs<D>&, std::span<const Vec<D>>, std::span<Vec<D>>);
+TREACLE_INSTANTIATE(2)
+TREACLE_INSTANTIATE(3)
+#undef TREACLE_INSTANTIATE
+
+}  // namespace treacle

@@ -1,0 +1,219 @@
+#include "treacle/precondition/bucket_galerkin.hpp"
+
+#include "treacle/core/parallel.hpp"
+#include "treacle/mph/mph_lanes.hpp"
+#include "treacle/mph/mph_neighbours.hpp"
+
+#include <array>
+
+namespace treacle {
+namespace {
+
+constexpr std::uint32_t noBucket = ~std::uint32_t{0};
+
+template <int D>
+constexpr int power(int base) {
+  return D == 2 ? base * base : base * base * base;
+}
+
+/// Digits of `index` in the given base as a cell offset: 0 … 3^D-1 in base 3, minus one, are the adjacent cells.
+template <int D>
+Vec<D, int> digits(int index, int base, int shift) {
+  Vec<D, int> v{};
+  for (int k = 0; k < D; ++k, index /= base) v[k] = index % base + shift;
+  return v;
+}
+
+/// Cell b as seen from cell a, across periodic ends.
+template <int D>
+Vec<D, int> cellOffset(const CellGrid<D>& grid, const Vec<D, int>& a, const Vec<D, int>& b) {
+  Vec<D, int> o = b - a;
+  for (int k = 0; k < D; ++k)
+    if (grid.periodic[k]) o[k] += o[k] > 1 ? -grid.count[k] : o[k] < -1 ? grid.count[k] : 0;
+  return o;
+}
+
+/// A column k of R C touches at most two cells per axis: the particle's own, and on each axis the neighbour on the
+/// side of the half that x_k stands in, because h_p is at most half an edge. Returns the lower of them, from its
+/// own.
+template <int D>
+Vec<D, int> lowerCell(const CellGrid<D>& grid, const Vec<D>& x, const Vec<D, int>& cell) {
+  Vec<D, int> lower{};
+  for (int k = 0; k < D; ++k) lower[k] = x[k] < grid.origin[k] + (cell[k] + 0.5) * grid.edge[k] ? -1 : 0;
+  return lower;
+}
+
+/// Place of a cell (as an offset from the lower one) among the 2^D vectors of a column; -1: not one of them.
+template <int D>
+int columnSlot(const Vec<D, int>& fromLower) {
+  int slot = 0;
+  for (int k = D - 1; k >= 0; --k) {
+    if (fromLower[k] < 0 || fromLower[k] > 1) return -1;
+    slot = 2 * slot + fromLower[k];
+  }
+  return slot;
+}
+
+/// (R C)_{I k}: the sum of C_ik over the fluid particles i of each cell I.
+template <int D>
+void restrictedColumns(const MphPairs<D>& pairs, Buffer<Vec<D>>& columns) {
+  constexpr int slots = power<D>(2);
+  columns.resize(std::size_t{slots} * pairs.activeCount);
+  parallelFor(pairs.activeCount, parallelGrain, [&](std::size_t index) {
+    const auto k = static_cast<std::uint32_t>(index);
+    const Vec<D>& xk = pairs.position[k];
+    const Vec<D, int> cell = pairs.grid.cellOf(xk), lower = lowerCell(pairs.grid, xk, cell);
+    Vec<D>* column = &columns[std::size_t{slots} * k];
+    std::fill_n(column, slots, Vec<D>{});
+    Vec<D> own{};
+    forEachNear(pairs, k, [&](std::uint32_t j, const Vec<D>&, const Vec<D>& g) {
+      own += g;
+      if (j >= pairs.fluidCount) return;
+      const int slot = columnSlot<D>(cellOffset(pairs.grid, cell, pairs.grid.cellOf(pairs.position[j])) - lower);
+      if (slot >= 0) column[slot] -= g;  // else at distance h_p to rounding, where g vanishes
+    });
+    if (k < pairs.fluidCount) column[columnSlot<D>(-lower)] += own;
+  });
+}
+
+/// One row of A^0 on the 3^D adjacent cells.
+template <int D>
+struct BucketRow {
+  static constexpr int neighbours = power<D>(3);
+  static constexpr int self = neighbours / 2;
+
+  const MphPairs<D>& pairs;
+  const CellRanges<>& ranges;
+  const BucketLevels<>& levels;
+  std::uint32_t begin = 0, end = 0;            // the bucket's particles
+  std::array<Vec<D, int>, neighbours> cell{};  // inside the domain
+  std::array<std::size_t, neighbours> linear{};
+  std::array<std::uint32_t, neighbours> bucket{};  // noBucket: outside the domain or empty
+  std::array<bool, neighbours> inside{};
+  std::array<Vec<D>, neighbours> shift{};  // periodic shift of the neighbour's particles [m]
+  std::array<Block<D>, neighbours> block{};
+
+  BucketRow(const MphPairs<D>& p, const CellRanges<>& r, const BucketLevels<>& l, std::uint32_t b)
+      : pairs(p), ranges(r), levels(l), begin(l.begin[0][b]), end(l.begin[0][b + 1]) {
+    const Vec<D, int> own = p.grid.cellOf(p.position[begin]);
+    for (int o = 0; o < neighbours; ++o) {
+      Vec<D, int>& c = cell[o] = own + digits<D>(o, 3, -1);
+      inside[o] = true;
+      for (int k = 0; k < D; ++k) {
+        const int turn = c[k] < 0 ? -1 : c[k] >= p.grid.count[k] ? 1 : 0;
+        inside[o] = inside[o] && (turn == 0 || p.grid.periodic[k]);
+        c[k] -= turn * p.grid.count[k];
+        shift[o][k] = turn * p.grid.length[k];
+      }
+      linear[o] = inside[o] ? p.grid.linear(c) : 0;
+      const bool occupied = inside[o] && r.fluidEnd[linear[o]] > r.fluidBegin[linear[o]];
+      bucket[o] = occupied ? l.bucketOf[r.fluidBegin[linear[o]]] : noBucket;
+    }
+  }
+
+  void addPressure(const Buffer<Vec<D>>& columns) {
+    for (int o = 0; o < neighbours; ++o) {
+      if (!inside[o]) continue;
+      addColumns(o, ranges.fluidBegin[linear[o]], ranges.fluidEnd[linear[o]], columns);
+      addColumns(o, ranges.wallBegin[linear[o]], ranges.wallEnd[linear[o]], columns);
+    }
+  }
+
+  /// Pairs inside the bucket cancel in the sum; pairs across give -c d d^T there and +c d d^T here.
+  void addViscosity() {
+    for (int o = 0; o < neighbours; ++o) {
+      if (o == self || bucket[o] == noBucket) continue;
+      const Block<D> cross = crossViscosity(ranges.fluidBegin[linear[o]], ranges.fluidEnd[linear[o]], shift[o]);
+      block[o] -= cross;
+      block[self] += cross;
+    }
+  }
+
+ private:
+  void addColumns(int o, std::uint32_t first, std::uint32_t last, const Buffer<Vec<D>>& columns) {
+    constexpr int slots = power<D>(2);
+    const Vec<D, int> offset = digits<D>(o, 3, -1);
+    for (std::uint32_t k = first; k < last; ++k) {
+      const Vec<D>& xk = pairs.position[k];
+      const Vec<D, int> lower = offset + lowerCell(pairs.grid, xk, cell[o]);
+      const int mine = columnSlot<D>(-lower);
+      if (mine < 0) continue;
+      const Vec<D>* column = &columns[std::size_t{slots} * k];
+      if (norm2(column[mine]) == 0) continue;  // k's neighbourhood does not reach into this bucket
+      const double lambda = pairs.bulkViscosity(k);
+      for (int s = 0; s < slots; ++s) {
+        const Vec<D, int> other = lower + digits<D>(s, 2, 0);
+        int index = 0;
+        for (int a = D - 1; a >= 0; --a) index = 3 * index + other[a] + 1;
+        block[index].addOuter(lambda, column[mine], column[s]);
+      }
+    }
+  }
+
+  Block<D> crossViscosity(std::uint32_t first, std::uint32_t last, const Vec<D>& shiftBy) const {
+    const double floor2 = distanceFloor2(pairs), farAway = 1e6 * pairs.terms.viscosityRadius;
+    Lanes sum[D][D] = {};
+    for (std::uint32_t j = first; j < last; j += clusterSize) {
+      const ClusterRange range(j, last);
+      const ViscosityLanes<D> viscosity(pairs, range);
+      VecLanes<D> x = loadLanes<D>(range, pairs.position);
+      for (int k = 0; k < D; ++k) x[k] += shiftBy[k];
+      for (std::uint32_t lane = range.count; lane < clusterSize; ++lane) x[0][lane] += farAway;
+      for (std::uint32_t i = begin; i < end; ++i) {
+        const PairLanes<D> pair(pairs.position[i], x, floor2);
+        const Lanes f = pairs.terms.viscous(viscosity.with(i), pair.r);
+        for (int r = 0; r < D; ++r)
+          for (int k = 0; k < D; ++k) sum[r][k] += f * pair.d[r] * pair.d[k];
+      }
+    }
+    Block<D> total{};
+    for (int lane = 0; lane < laneCount; ++lane)
+      for (int r = 0; r < D; ++r)
+        for (int k = 0; k < D; ++k) total(r, k) += sum[r][k][lane];
+    return total;
+  }
+};
+
+}  // namespace
+
+template <int D>
+void bucketGalerkin(Context<Cpu>&, const MphPairs<D>& pairs, const CellRanges<>& ranges,
+                    const BucketLevels<>& levels, const WallTerms<D>& terms, Buffer<Vec<D>>& columns,
+                    BlockCsr<D>& a0) {
+  constexpr int neighbours = BucketRow<D>::neighbours;
+  restrictedColumns(pairs, columns);
+
+  const std::uint32_t rows = levels.count(0);
+  a0.rowStart.resize(rows + 1);
+  a0.rowStart[0] = 0;
+  for (std::uint32_t b = 0; b < rows; ++b) {
+    const BucketRow<D> row(pairs, ranges, levels, b);
+    const auto occupied = neighbours - std::count(row.bucket.begin(), row.bucket.end(), noBucket);
+    a0.rowStart[b + 1] = a0.rowStart[b] + occupied;
+  }
+  a0.column.resize(a0.rowStart[rows]);
+  a0.block.resize(a0.rowStart[rows]);
+
+  parallelForDynamic(rows, 8, 8, [&](std::size_t b) {
+    BucketRow<D> row(pairs, ranges, levels, static_cast<std::uint32_t>(b));
+    row.addPressure(columns);
+    row.addViscosity();
+    for (std::uint32_t i = row.begin; i < row.end; ++i) row.block[BucketRow<D>::self] += terms.block[i];
+
+    std::array<int, neighbours> order;
+    for (int o = 0; o < neighbours; ++o) order[o] = o;
+    std::sort(order.begin(), order.end(), [&](int p, int q) { return row.bucket[p] < row.bucket[q]; });
+    for (std::uint64_t k = a0.rowStart[b]; k < a0.rowStart[b + 1]; ++k) {
+      const int o = order[k - a0.rowStart[b]];
+      a0.column[k] = row.bucket[o];
+      a0.block[k] = row.block[o];
+    }
+  });
+}
+
+template void bucketGalerkin<2>(Context<Cpu>&, const MphPairs<2>&, const CellRanges<>&, const BucketLevels<>&,
+                                const WallTerms<2>&, Buffer<Vec<2>>&, BlockCsr<2>&);
+template void bucketGalerkin<3>(Context<Cpu>&, const MphPairs<3>&, const CellRanges<>&, const BucketLevels<>&,
+                                const WallTerms<3>&, Buffer<Vec<3>>&, BlockCsr<3>&);
+
+}  // namespace treacle

@@ -1,0 +1,353 @@
+#include "treacle/precondition/particle_products.hpp"
+
+#include "product_lanes.hpp"
+#include "treacle/mph/mph_neighbours.hpp"
+
+namespace treacle {
+namespace {
+
+/// Positions of the clusters of a list, beside the cluster's first particle as the list sees them: which image
+/// that is, is decided in double precision.
+template <int D, class T>
+void positionLanes(const MphPairs<D>& pairs, const ClusterListView& list, const Buffer<Vec<D, T>>& position,
+                   Buffer<T>& lanes) {
+  lanes.resize(std::size_t{D} * clusterSize * list.clusterCount());
+  parallelFor(list.clusterCount(), parallelGrain / clusterSize, [&](std::size_t c) {
+    const ClusterRange range(list, static_cast<std::uint32_t>(c));
+    for (std::uint32_t lane = 0; lane < clusterSize; ++lane) {
+      const std::uint32_t i = range.particle(lane);
+      const Vec<D>& there = pairs.position[i];
+      const Vec<D> here = pairs.grid.beside(pairs.position[range.first], there);
+      for (int k = 0; k < D; ++k) {
+        const T length = static_cast<T>(pairs.grid.length[k]);
+        const T shift = here[k] < there[k] ? -length : here[k] > there[k] ? length : 0;
+        lanes[(c * D + k) * clusterSize + lane] = position[i][k] + shift;
+      }
+    }
+  });
+}
+
+template <class F>
+void forEachClusterOf(const ClusterListView& list, F&& f) {
+  parallelFor(list.clusterCount(), parallelGrain / clusterSize,
+              [&](std::size_t c) { f(static_cast<std::uint32_t>(c)); });
+}
+
+/// f(lane) for the particles of a cluster, which are independent of each other: a full cluster as one vector.
+template <class F>
+void forEachLane(const ClusterRange& range, F&& f) {
+  if (range.count == clusterSize) {
+#pragma GCC ivdep
+    for (std::size_t lane = 0; lane < clusterSize; ++lane) f(lane);
+  } else {
+    for (std::size_t lane = 0; lane < range.count; ++lane) f(lane);
+  }
+}
+
+/// Stores the sums sumOf(i, lane). A single material is known before the loop and needs no look-up per particle.
+/// `flatten`: the compiler vectorises only what it has inlined.
+template <int D, class Store, class F>
+[[gnu::flatten]] void storeSums(const MphPairs<D>& pairs, const ClusterRange& range, const Store& store,
+                                F&& sumOf) {
+  const std::size_t first = range.first;
+  if (pairs.isOneSubstance())
+    forEachLane(range, [&](std::size_t lane) { store.put(first + lane, sumOf(first + lane, lane), 0); });
+  else
+    forEachLane(range, [&](std::size_t lane) {
+      store.put(first + lane, sumOf(first + lane, lane), pairs.material[first + lane]);
+    });
+}
+
+/// The sum of both halves, lane by lane.
+template <int D, class T>
+struct VectorSums {
+  T at[D][clusterSize];
+
+  explicit VectorSums(const LanesOf<T> (&sum)[2][D]) {
+    for (int k = 0; k < D; ++k) {
+      const LanesOf<T> total = sum[0][k] + sum[1][k];
+      std::memcpy(at[k], &total, sizeof(total));
+    }
+  }
+  Vec<D, T> operator[](std::size_t lane) const {
+    Vec<D, T> v;
+    for (int k = 0; k < D; ++k) v[k] = at[k][lane];
+    return v;
+  }
+};
+
+/// The vectors of a cluster's particles, lane by lane.
+template <int D, class T>
+inline void loadVectors(const ClusterRange& range, const Gathered<D, T>* u, LanesOf<T> (&lanes)[D]) {
+  T at[D][clusterSize];
+  if (range.count == clusterSize) {
+    const Gathered<D, T>* first = u + range.first;
+    for (std::size_t lane = 0; lane < clusterSize; ++lane)
+      for (int k = 0; k < D; ++k) at[k][lane] = first[lane][k];
+  } else {
+    for (std::uint32_t lane = 0; lane < clusterSize; ++lane)
+      for (int k = 0; k < D; ++k) at[k][lane] = u[range.particle(lane)][k];
+  }
+  for (int k = 0; k < D; ++k) lanes[k] = loadLanes(at[k]);
+}
+
+/// Sum of g d.(u_j - u_i) over near fluid; walls at rest have no `own` velocities. The differences are formed pair
+/// by pair, because that of a rigid motion must vanish to the last bit: the bulk viscosity would amplify the rest.
+template <bool Moving, int D, class T>
+inline VectorSums<1, T> sumAlong(const ClusterWalk<D, T>& walk, const T* coefficient, const Gathered<D, T>* u,
+                                 const LanesOf<T>* own = nullptr) {
+  LanesOf<T> sum[2][1] = {};
+  walk.forEach(ListSegment::NearFluid, coefficient,
+               [&](int half, std::uint32_t j, const LanesOf<T>& g, const LanesOf<T>* d) {
+                 const auto relative = [&](int k) {
+                   if constexpr (Moving)
+                     return u[j][k] - own[k];
+                   else
+                     return u[j][k];
+                 };
+                 LanesOf<T> along = relative(0) * d[0];
+                 for (int k = 1; k < D; ++k) along += relative(k) * d[k];
+                 sum[half][0] += g * along;
+               });
+  return VectorSums<1, T>(sum);
+}
+
+/// Where the entries of each cluster's segments start, counted over clusters.
+void countEntries(const ClusterListView& list, std::initializer_list<ListSegment> segments,
+                  Buffer<std::uint64_t>& start) {
+  start.resize(list.clusterCount() + 1);
+  start[0] = 0;
+  for (std::uint32_t c = 0; c < list.clusterCount(); ++c) {
+    start[c + 1] = start[c];
+    for (ListSegment s : segments) start[c + 1] += list.segment(c, s).size();
+  }
+}
+
+}  // namespace
+
+template <int D, class T>
+void ParticleProducts<D, T, Cpu>::prepare(Context<Cpu>&, const MphPairs<D>& pairs, const WallTerms<D>& terms,
+                                          const MphOperator<D, Cpu>&) {
+  using enum ListSegment;
+  pairs_ = &pairs;
+  terms_ = terms;
+  position_.resize(pairs.activeCount);
+  for (std::uint32_t i = 0; i < pairs.activeCount; ++i)
+    for (int k = 0; k < D; ++k) position_[i][k] = static_cast<T>(pairs.position[i][k] - pairs.grid.origin[k]);
+  countEntries(pairs.fluidList, {NearFluid, FarFluid}, viscousStart_);
+  countEntries(pairs.fluidList, {NearFluid, NearWall}, pressureStart_);
+  countEntries(pairs.wallList, {NearFluid}, wallStart_);
+  viscous_.resize(viscousStart_[pairs.fluidList.clusterCount()] * clusterSize);
+  pressure_.resize(pressureStart_[pairs.fluidList.clusterCount()] * clusterSize);
+  wall_.resize(wallStart_[pairs.wallList.clusterCount()] * clusterSize);
+  selfBlock_.resize(pairs.fluidCount);
+  for (Buffer<T>& field : scalars_) field.resize(pairs.activeCount);
+  vectors_.resize(pairs.fluidCount);
+  positionLanes(pairs, pairs.fluidList, position_, fluidLanes_);
+  positionLanes(pairs, pairs.wallList, position_, wallLanes_);
+  const double floor2 = distanceFloor2(pairs);
+
+  forEachCluster<D>(pairs, pairs.fluidList, [&](const ClusterRange& range, const VecLanes<D>& x, std::uint32_t c) {
+    const ViscosityLanes<D> viscosity(pairs, range);
+    std::uint64_t nextViscous = viscousStart_[c], nextPressure = pressureStart_[c];
+    Lanes self[D * D] = {};
+    for (ListSegment s : {NearFluid, FarFluid, NearWall})
+      for (ListEntry e : pairs.fluidList.segment(c, s)) {
+        const PairLanes<D> pair(pairs.positionOf(e), x, floor2);
+        if (s != FarFluid) storeCoefficient(pressure_, nextPressure++, pairs.terms.gradient(pair.r));
+        if (s == NearWall) continue;
+        const Lanes f = pairs.terms.viscous(viscosity.with(e.index()), pair.r);
+        storeCoefficient(viscous_, nextViscous++, f);
+        for (int r = 0; r < D; ++r)
+          for (int k = 0; k < D; ++k) self[r * D + k] += f * pair.d[r] * pair.d[k];
+      }
+    for (std::uint32_t lane = 0; lane < range.count; ++lane)
+      for (int e = 0; e < D * D; ++e)
+        selfBlock_[range.first + lane].a[e] = static_cast<T>(terms.block[range.first + lane].a[e] + self[e][lane]);
+  });
+  forEachCluster<D>(pairs, pairs.wallList, [&](const ClusterRange&, const VecLanes<D>& x, std::uint32_t c) {
+    std::uint64_t next = wallStart_[c];
+    for (ListEntry e : pairs.wallList.segment(c, NearFluid)) {
+      const PairLanes<D> pair(pairs.positionOf(e), x, floor2);
+      storeCoefficient(wall_, next++, pairs.terms.gradient(pair.r));
+    }
+  });
+  sumGradients();
+}
+
+/// Sums of g d over walls, which meet the particle's own velocity, and over all neighbours, which meet its own
+/// pressure: neither need be added per pair.
+template <int D, class T>
+void ParticleProducts<D, T, Cpu>::sumGradients() {
+  const ClusterListView& list = pairs_->fluidList;
+  gradient_.resize(fluidLanes_.size());
+  wallGradient_.resize(fluidLanes_.size());
+  forEachClusterOf(list, [&](std::uint32_t c) {
+    const ClusterWalk<D, T> walk(*pairs_, list, c, position_.data(), fluidLanes_.data());
+    LanesOf<T> fluid[D] = {}, walls[D] = {};
+    const T* coefficient = pressure_.data() + pressureStart_[c] * clusterSize;
+    const auto addTo = [&](LanesOf<T>* sum) {
+      return [sum](int, std::uint32_t, const LanesOf<T>& g, const LanesOf<T>* d) {
+        for (int k = 0; k < D; ++k) sum[k] += g * d[k];
+      };
+    };
+    walk.forEach(ListSegment::NearFluid, coefficient, addTo(fluid));
+    walk.forEach(ListSegment::NearWall, coefficient, addTo(walls));
+    for (int k = 0; k < D; ++k) {
+      const LanesOf<T> all = fluid[k] + walls[k];
+      const std::size_t at = (std::size_t{D} * c + k) * clusterSize;
+      std::memcpy(&wallGradient_[at], &walls[k], sizeof(all));
+      std::memcpy(&gradient_[at], &all, sizeof(all));
+    }
+  });
+}
+
+template <int D, class T>
+template <class Store>
+void ParticleProducts<D, T, Cpu>::gradient(Context<Cpu>&, ScalarField<T, Cpu> q, const Store& store) const {
+  const ClusterListView& list = pairs_->fluidList;
+  forEachClusterOf(list, [&](std::uint32_t c) {
+    const ClusterWalk<D, T> walk(*pairs_, list, c, position_.data(), fluidLanes_.data());
+    LanesOf<T> sum[2][D] = {};
+    const T* coefficient = pressure_.data() + pressureStart_[c] * clusterSize;
+    const auto add = [&](int half, std::uint32_t j, const LanesOf<T>& g, const LanesOf<T>* d) {
+      const LanesOf<T> f = g * q[j];
+      for (int k = 0; k < D; ++k) sum[half][k] += f * d[k];
+    };
+    walk.forEach(ListSegment::NearFluid, coefficient, add);
+    walk.forEach(ListSegment::NearWall, coefficient, add);
+    const VectorSums<D, T> sums(sum);
+    const T* own = &gradient_[std::size_t{D} * clusterSize * c];
+    storeSums(*pairs_, walk.range, store, [&](std::size_t i, std::size_t lane) {
+      Vec<D, T> total;
+      for (int k = 0; k < D; ++k) total[k] = sums.at[k][lane] + own[k * clusterSize + lane] * q[i];
+      return total;
+    });
+  });
+}
+
+template <int D, class T>
+template <class Store>
+void ParticleProducts<D, T, Cpu>::divergence(Context<Cpu>&, VectorField<D, T, Cpu> field,
+                                             const Store& store) const {
+  const Gathered<D, T>* u = field.at;
+  forEachClusterOf(pairs_->fluidList, [&](std::uint32_t c) {
+    const ClusterWalk<D, T> walk(*pairs_, pairs_->fluidList, c, position_.data(), fluidLanes_.data());
+    LanesOf<T> ui[D];
+    loadVectors(walk.range, u, ui);
+    const T* coefficient = pressure_.data() + pressureStart_[c] * clusterSize;
+    const VectorSums<1, T> sums = sumAlong<true>(walk, coefficient, u, ui);
+    const T* walls = &wallGradient_[std::size_t{D} * clusterSize * c];
+    storeSums(*pairs_, walk.range, store, [&](std::size_t i, std::size_t lane) {
+      T total = -sums.at[0][lane];
+      for (int k = 0; k < D; ++k) total += walls[k * clusterSize + lane] * u[i][k];
+      return total;
+    });
+  });
+  const ClusterListView& walls = pairs_->wallList;
+  forEachClusterOf(walls, [&](std::uint32_t c) {
+    if (walls.segment(c, ListSegment::NearFluid).empty())
+      return storeSums(*pairs_, ClusterRange(walls, c), store, [](std::size_t, std::size_t) { return T(0); });
+    const ClusterWalk<D, T> walk(*pairs_, walls, c, position_.data(), wallLanes_.data());
+    const VectorSums<1, T> sums = sumAlong<false>(walk, wall_.data() + wallStart_[c] * clusterSize, u);
+    storeSums(*pairs_, walk.range, store, [&](std::size_t, std::size_t lane) { return -sums.at[0][lane]; });
+  });
+}
+
+template <int D, class T>
+template <class Store>
+void ParticleProducts<D, T, Cpu>::schur(Context<Cpu>& context, const ProjectionTable<T>& table,
+                                        ScalarField<T, Cpu> q, const Store& store) {
+  gradient(context, q, StoreWeighted<D, T, Cpu>{table, pairs_->material.data(), vectors()});
+  divergence(context, vectors(), store);
+}
+
+template <int D, class T>
+template <class Store>
+void ParticleProducts<D, T, Cpu>::viscous(Context<Cpu>&, const Gathered<D, T>* u, const Store& store) const {
+  const ClusterListView& list = pairs_->fluidList;
+  forEachClusterOf(list, [&](std::uint32_t c) {
+    const ClusterWalk<D, T> walk(*pairs_, list, c, position_.data(), fluidLanes_.data());
+    LanesOf<T> sum[2][D] = {};
+    const T* coefficient = viscous_.data() + viscousStart_[c] * clusterSize;
+    const auto add = [&](int half, std::uint32_t j, const LanesOf<T>& v, const LanesOf<T>* d) {
+      LanesOf<T> along = u[j][0] * d[0];
+      for (int k = 1; k < D; ++k) along += u[j][k] * d[k];
+      const LanesOf<T> f = v * along;
+      for (int k = 0; k < D; ++k) sum[half][k] += f * d[k];
+    };
+    walk.forEach(ListSegment::NearFluid, coefficient, add);
+    walk.forEach(ListSegment::FarFluid, coefficient, add);
+    const VectorSums<D, T> sums(sum);
+    storeSums(*pairs_, walk.range, store, [&](std::size_t i, std::size_t lane) {
+      return selfBlock_[i] * static_cast<const Vec<D, T>&>(u[i]) - sums[lane];
+    });
+  });
+}
+
+template <int D, class T>
+void ParticleProducts<D, T, Cpu>::inverseDiagonals(Context<Cpu>&, const ProjectionTable<T>& table,
+                                                   std::span<T> pressure, std::span<Block<D, T>> velocity) const {
+  parallelFor(pairs_->activeCount, parallelGrain, [&](std::size_t index) {
+    const auto k = static_cast<std::uint32_t>(index);
+    T sum = table.shift[pairs_->material[k]];
+    Vec<D> own{};
+    forEachNear(*pairs_, k, [&](std::uint32_t j, const Vec<D>&, const Vec<D>& g) {
+      own += g;
+      if (j < pairs_->fluidCount) sum += table.weight[pairs_->material[j]] * static_cast<T>(fixedDot(g, g));
+    });
+    if (k < pairs_->fluidCount) {
+      sum += table.weight[pairs_->material[k]] * static_cast<T>(fixedDot(own, own));
+      velocity[k] = inverse(selfBlock_[k]);
+    }
+    pressure[k] = 1 / sum;
+  });
+}
+
+template <int D, class T>
+void ParticleProducts<D, T, Cpu>::gather(Context<Cpu>&, std::span<const T> x) {
+  std::copy(x.begin(), x.end(), scalars_[0].begin());
+}
+
+template <int D, class T>
+void ParticleProducts<D, T, Cpu>::gather(Context<Cpu>&, std::span<const Gathered<D, T>> u) {
+  std::copy(u.begin(), u.end(), vectors_.begin());
+}
+
+template <int D, class T>
+void ParticleProducts<D, T, Cpu>::gatherWeighted(Context<Cpu>&, const ProjectionTable<T>& table,
+                                                 std::span<const Vec<D>> u) {
+  parallelFor(u.size(), parallelGrain, [&](std::size_t i) {
+    for (int k = 0; k < D; ++k) vectors_[i][k] = table.weight[pairs_->material[i]] * static_cast<T>(u[i][k]);
+  });
+}
+
+template <int D, class T>
+std::size_t ParticleProducts<D, T, Cpu>::bytes() const {
+  return scalars_[0].bytes() + scalars_[1].bytes() + vectors_.bytes() + position_.bytes() + viscousStart_.bytes() +
+         pressureStart_.bytes() + wallStart_.bytes() + viscous_.bytes() + pressure_.bytes() + wall_.bytes() +
+         selfBlock_.bytes() + fluidLanes_.bytes() + wallLanes_.bytes() + gradient_.bytes() + wallGradient_.bytes();
+}
+
+#define TREACLE_GRADIENT(D, T, ...)                                                                           \
+  template void ParticleProducts<D, T, Cpu>::gradient(Context<Cpu>&, ScalarField<T, Cpu>, const __VA_ARGS__&) \
+      const;
+#define TREACLE_DIVERGENCE(D, T, ...)                                                          \
+  template void ParticleProducts<D, T, Cpu>::divergence(Context<Cpu>&, VectorField<D, T, Cpu>, \
+                                                        const __VA_ARGS__&) const;
+#define TREACLE_SCHUR(D, T, ...)                                                                                  \
+  template void ParticleProducts<D, T, Cpu>::schur(Context<Cpu>&, const ProjectionTable<T>&, ScalarField<T, Cpu>, \
+                                                   const __VA_ARGS__&);
+#define TREACLE_VISCOUS(D, T, ...)                                                                             \
+  template void ParticleProducts<D, T, Cpu>::viscous(Context<Cpu>&, const Gathered<D, T>*, const __VA_ARGS__&) \
+      const;
+#define TREACLE_INSTANTIATE(D, T)             \
+  template class ParticleProducts<D, T, Cpu>; \
+  TREACLE_FOR_EACH_STORE(D, T, Cpu)
+TREACLE_INSTANTIATE(2, double)
+TREACLE_INSTANTIATE(3, double)
+TREACLE_INSTANTIATE(2, float)
+TREACLE_INSTANTIATE(3, float)
+#undef TREACLE_INSTANTIATE
+
+}  // namespace treacle

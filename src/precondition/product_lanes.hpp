@@ -1,0 +1,93 @@
+#pragma once
+
+#include "treacle/mph/mph_lanes.hpp"
+
+#include <cstring>
+#include <limits>
+
+namespace treacle {
+
+/// Eight numbers of the preconditioner's precision.
+template <class T>
+struct LaneType;
+template <>
+struct LaneType<double> {
+  using type = Lanes;
+};
+template <>
+struct LaneType<float> {
+  using type = float __attribute__((vector_size(laneCount * sizeof(float))));
+};
+template <class T>
+using LanesOf = typename LaneType<T>::type;
+
+/// A particle meets itself at a 1/r so large that single precision may not hold its cube; the coefficient meets a
+/// difference of zero and may be zero, too.
+template <class T>
+inline void storeCoefficient(Buffer<T>& values, std::uint64_t entry, const Lanes& lanes) {
+  for (int k = 0; k < laneCount; ++k)
+    values[entry * clusterSize + k] = lanes[k] < std::numeric_limits<T>::max() ? static_cast<T>(lanes[k]) : T(0);
+}
+
+template <class T>
+inline LanesOf<T> loadLanes(const T* values) {
+  LanesOf<T> lanes;
+  std::memcpy(&lanes, values, sizeof(lanes));
+  return lanes;
+}
+
+/// Walks the lists of one cluster: coefficients, and positions relative to the neighbours, in the precision of the
+/// products.
+template <int D, class T>
+class ClusterWalk {
+ public:
+  /// `lanes`: positions of all clusters, D times eight numbers each.
+  ClusterWalk(const MphPairs<D>& pairs, const ClusterListView& list, std::uint32_t cluster,
+              const Vec<D, T>* position, const T* lanes)
+      : range(list, cluster), pairs_(pairs), list_(list), cluster_(cluster), position_(position) {
+    for (int k = 0; k < D; ++k) x_[k] = loadLanes(lanes + (std::size_t{D} * cluster + k) * clusterSize);
+  }
+
+  /// Calls f(half, j, c, d) for the entries of a segment; c: the eight coefficients, d = x_j - x_i; `half`
+  /// alternates between 0 and 1, so that two sums in turn hide the latency of the additions.
+  /// Always inline: the sums are to stay in registers.
+  template <class F>
+  [[gnu::always_inline]] void forEach(ListSegment segment, const T*& coefficient, F&& f) const {
+    list_.wraps[cluster_] ? walk<true>(segment, coefficient, f) : walk<false>(segment, coefficient, f);
+  }
+
+  const ClusterRange range;
+
+ private:
+  template <bool Wraps, class F>
+  [[gnu::always_inline]] void walk(ListSegment segment, const T*& coefficient, F&& f) const {
+    const std::span<const ListEntry> entries = list_.segment(cluster_, segment);
+    const T* next = coefficient;
+    const auto visit = [&](int half, ListEntry e) {
+      const std::uint32_t j = Wraps ? e.index() : e.bits;
+      LanesOf<T> d[D];
+      for (int k = 0; k < D; ++k) {
+        T xj = position_[j][k];
+        if constexpr (Wraps) xj += static_cast<T>(pairs_.images.shift[e.image()][k]);
+        d[k] = xj - x_[k];
+      }
+      f(half, j, loadLanes(next), d);
+      next += clusterSize;
+    };
+    std::size_t p = 0;
+    for (; p + 1 < entries.size(); p += 2) {
+      visit(0, entries[p]);
+      visit(1, entries[p + 1]);
+    }
+    if (p < entries.size()) visit(0, entries[p]);
+    coefficient = next;
+  }
+
+  const MphPairs<D>& pairs_;
+  const ClusterListView& list_;
+  std::uint32_t cluster_;
+  const Vec<D, T>* position_;
+  LanesOf<T> x_[D];
+};
+
+}  // namespace treacle

@@ -1,0 +1,176 @@
+#include "support/gpu.hpp"
+#include "support/isph_device.hpp"
+#include "support/tolerances.hpp"
+#include "support/wall_motions.hpp"
+#include "treacle/isph/isph_particles.hpp"
+
+#include <gtest/gtest.h>
+
+namespace treacle::test {
+namespace {
+
+/// The sums of a step on both backends.
+template <int D>
+struct SumsTwin {
+  IsphScene<D> s;
+  DeviceIsph<D> d{s};
+  std::uint32_t n = s.n(), active = s.pairs.activeCount;
+  std::vector<Vec<D>> v = randomVelocities<D>(active, 1);
+  std::vector<WallMotion<D>> motion = randomMotions<D>(s.c.domain, 2);
+  std::vector<double> p = randomNumbers(n, 2);
+  Buffer<Vec<D>, Cuda> vOnDevice;
+  Buffer<WallMotion<D>, Cuda> motionOnDevice;
+  Buffer<double, Cuda> pOnDevice;
+
+  explicit SumsTwin(IsphScene<D> scene) : s(std::move(scene)) {
+    copyToDevice<Vec<D>>(d.context, v, vOnDevice);
+    copyToDevice<WallMotion<D>>(d.context, motion, motionOnDevice);
+    copyToDevice<double>(d.context, p, pOnDevice);
+    s.pairs.wallMotion = motion.data();
+    d.pairs.wallMotion = motionOnDevice.data();
+  }
+
+  template <class V>
+  void expectClose(const Buffer<V, Cuda>& found, const std::vector<V>& expected, const char* what) {
+    EXPECT_LE(differ<V>(d.context, found, expected), 2 * kernelTolerance) << what;
+  }
+
+  void checkDensity() {
+    Buffer<double, Cuda> density(d.context, n);
+    Buffer<Vec<D>, Cuda> deficit(d.context, n);
+    Buffer<std::uint8_t, Cuda> surface(d.context, n);
+    sumOnFluid(d.context, d.pairs, DensityTerm<D>{density.data(), deficit.data(), surface.data()});
+    EXPECT_LE(differ<double>(d.context, density, s.density.span()), 2 * kernelTolerance);
+    // Of a full lattice the sum is zero but for rounding.
+    double apart = 0;
+    const Buffer<Vec<D>> lack = copyToHost(d.context, deficit);
+    for (std::uint32_t i = 0; i < n; ++i) apart = std::max(apart, norm(lack[i] - s.deficit[i]) * s.c.spacing);
+    EXPECT_LE(apart, 1e-13);
+    expectSameBits(d.context, s.surface, surface);
+  }
+
+  void checkPredictor() {
+    for (const bool viscous : {true, false}) {
+      std::vector<Vec<D>> expected(n);
+      Buffer<Vec<D>, Cuda> found(d.context, n);
+      sumOnFluid(s.context, s.pairs, PredictorTerm<D>{v.data(), expected.data(), viscous});
+      sumOnFluid(d.context, d.pairs, PredictorTerm<D>{vOnDevice.data(), found.data(), viscous});
+      expectClose(found, expected, "predictor");
+    }
+    ViscousSourceTerm<D> host{v.data(), {}}, device{vOnDevice.data(), {}};
+    std::vector<double> expected[D];
+    Buffer<double, Cuda> found[D];
+    for (int k = 0; k < D; ++k) {
+      expected[k].resize(n);
+      found[k].resize(d.context, n);
+      host.source[k] = expected[k].data(), device.source[k] = found[k].data();
+    }
+    sumOnFluid(s.context, s.pairs, host);
+    sumOnFluid(d.context, d.pairs, device);
+    for (int k = 0; k < D; ++k) expectClose(found[k], expected[k], "viscous source");
+  }
+
+  void checkPressure() {
+    std::vector<double> expected(n);
+    Buffer<double, Cuda> found(d.context, n);
+    sumOnFluid(s.context, s.pairs,
+               PressureSourceTerm<D>{v.data(), s.density.data(), s.surface.data(), expected.data()});
+    sumOnFluid(d.context, d.pairs,
+               PressureSourceTerm<D>{vOnDevice.data(), d.density.data(), d.surface.data(), found.data()});
+    expectClose(found, expected, "pressure source");
+
+    std::vector<Vec<D>> corrected(n);
+    Buffer<Vec<D>, Cuda> foundVelocity(d.context, n);
+    sumOnFluid(s.context, s.pairs, CorrectorTerm<D>{p.data(), v.data(), corrected.data()});
+    sumOnFluid(d.context, d.pairs, CorrectorTerm<D>{pOnDevice.data(), vOnDevice.data(), foundVelocity.data()});
+    expectClose(foundVelocity, corrected, "corrector");
+
+    std::vector<double> walls(active);
+    Buffer<double, Cuda> foundWalls = copyToDevice<double>(d.context, walls);
+    sumOnWalls(s.context, s.pairs, WallPressureTerm<D>{p.data(), walls.data()});
+    sumOnWalls(d.context, d.pairs, WallPressureTerm<D>{pOnDevice.data(), foundWalls.data()});
+    expectClose(foundWalls, walls, "wall pressure");
+  }
+
+  void checkAll() {
+    checkDensity();
+    checkPredictor();
+    checkPressure();
+  }
+};
+
+template <int D>
+void checkScenes() {
+  for (const Walls walls : {Walls::Floor, Walls::None})
+    for (const KernelKind kernel : {KernelKind::CubicSpline, KernelKind::WendlandC2}) {
+      IsphScene<D> s = makeIsphScene<D>(walls);
+      s.c.method.isph.kernel = kernel;
+      SumsTwin<D>(IsphScene<D>(s.c, std::move(s.particles))).checkAll();
+    }
+  SumsTwin<D>(makeLargeIsphScene<D>()).checkAll();
+  // Sizes at the edges of blocks and warps, without interior and without walls.
+  const Case c = waterCase(D, Vec<3>::filled(60));
+  for (const int count : {0, 1, 31, 33})
+    SumsTwin<D>(IsphScene<D>(c, particlesAt<D>(latticeAt<D>(
+                                    Vec<D>::filled(0.1),
+                                    [&] {
+                                      Vec<D, int> size = Vec<D, int>::filled(1);
+                                      size[0] = count;
+                                      return size;
+                                    }(),
+                                    c.spacing))))
+        .checkAll();
+}
+
+TEST(IsphSumsTwin, EqualTheCpu) {
+  TREACLE_SKIP_WITHOUT_GPU();
+  checkScenes<2>();
+  checkScenes<3>();
+}
+
+template <int D>
+void checkParticles() {
+  Context<Cpu> host;
+  Context<Cuda> context;
+  for (const std::size_t n : {0, 1, 31, 33, 20011}) {
+    std::vector<double> p = randomNumbers(n, 1);
+    std::vector<std::uint8_t> surface(n);
+    for (std::size_t i = 0; i < n; ++i) surface[i] = i % 3 == 0;
+    const auto surfaceOnDevice = copyToDevice<std::uint8_t>(context, surface);
+    for (const bool cut : {false, true}) {
+      std::vector<double> expected = p;
+      auto found = copyToDevice<double>(context, p);
+      settlePressure(host, surface, cut, expected);
+      settlePressure(context, surfaceOnDevice, cut, found);
+      EXPECT_EQ(differ<double>(context, found, expected), 0);
+    }
+    const auto deficit = randomVelocities<D>(n, 2), v = randomVelocities<D>(n, 3);
+    const auto vOnDevice = copyToDevice<Vec<D>>(context, v);
+    std::vector<Vec<D>> expected(n);
+    Buffer<Vec<D>, Cuda> found(context, n);
+    const Shifting shifting{0.3, 0.5, 1e-2};
+    shiftedVelocity<D>(host, shifting, deficit, surface, v, expected);
+    shiftedVelocity<D>(context, shifting, copyToDevice<Vec<D>>(context, deficit), surfaceOnDevice, vOnDevice,
+                       found);
+    EXPECT_LE(differ<Vec<D>>(context, found, expected), kernelTolerance);
+    for (int k = 0; k < D; ++k) {
+      std::vector<double> x(n);
+      Buffer<double, Cuda> xOnDevice(context, n);
+      takeComponent<D>(host, v, k, x);
+      takeComponent<D>(context, vOnDevice, k, xOnDevice);
+      EXPECT_EQ(differ<double>(context, xOnDevice, x), 0);
+      putComponent<D>(host, x, k, expected);
+      putComponent<D>(context, xOnDevice, k, found);
+    }
+    EXPECT_EQ(differ<Vec<D>>(context, found, expected), 0);
+  }
+}
+
+TEST(IsphParticlesTwin, EqualTheCpu) {
+  TREACLE_SKIP_WITHOUT_GPU();
+  checkParticles<2>();
+  checkParticles<3>();
+}
+
+}  // namespace
+}  // namespace treacle::test

@@ -1,0 +1,190 @@
+#include "treacle/mph/mph_sums.hpp"
+#include "support/device_scene.hpp"
+#include "support/gpu.hpp"
+#include "support/tolerances.hpp"
+#include "treacle/mph/mph_balance.hpp"
+#include "treacle/mph/mph_operator.hpp"
+
+#include <gtest/gtest.h>
+
+namespace treacle::test {
+namespace {
+
+template <class T>
+Eigen::VectorXd asVector(std::span<const T> values) {
+  const auto* numbers = reinterpret_cast<const double*>(values.data());
+  return Eigen::Map<const Eigen::VectorXd>(numbers, values.size_bytes() / sizeof(double));
+}
+
+/// The relative difference of two results, norm-wise.
+template <class T>
+double difference(const Context<Cuda>& context, std::span<const T> expected, const Buffer<T, Cuda>& found) {
+  const Buffer<T> onHost = copyToHost(context, found);
+  const Eigen::VectorXd e = asVector<T>(expected), f = asVector<T>(onHost.span());
+  EXPECT_EQ(e.size(), f.size());
+  return (e - f).norm() / (1e-300 + e.norm());
+}
+
+template <int D>
+std::vector<Vec<D>> randomVectors(std::uint32_t n, unsigned seed) {
+  return unflat<D>(randomVector(Eigen::Index{D} * n, seed));
+}
+
+/// The sums of a step on the device, with lists or from the cell ranges, against those of the CPU.
+template <int D>
+struct SumsTwin {
+  Scene<D> s;
+  DeviceScene<D> d;
+  std::uint32_t n, active;
+
+  SumsTwin(Walls walls, bool lists, bool twoMaterials)
+      : s(makeScene<D>(walls, 3, 0.2, twoMaterials)),
+        d(s),
+        n(s.pairs().fluidCount),
+        active(s.pairs().activeCount) {
+    if (!twoMaterials) {
+      d.pairs.materials.count = 1;
+      for (auto& m : s.particles.material) m = 0;
+      copyToDevice<std::uint8_t>(d.context, s.pairs().material, d.material);
+      wallTerms<D>(s.context, s.pairs(), s.terms());
+      copyToDevice<Block<D>>(d.context, s.wallBlock, d.wallBlock);
+    }
+    if (lists) return;
+    d.pairs.fluidList.offset = d.pairs.wallList.offset = nullptr;
+  }
+
+  void checkScalars() {
+    Buffer<double> expected(active);
+    Buffer<double, Cuda> found(d.context, active);
+    numberDensity<D>(s.context, s.pairs(), expected);
+    numberDensity<D>(d.context, d.pairs, found);
+    EXPECT_LE(difference<double>(d.context, expected.span(), found), kernelTolerance);
+
+    const auto u = randomVectors<D>(active, 1);
+    divergence<D>(s.context, s.pairs(), u, expected);
+    divergence<D>(d.context, d.pairs, copyToDevice<Vec<D>>(d.context, u), found);
+    EXPECT_LE(difference<double>(d.context, expected.span(), found), kernelTolerance);
+  }
+
+  void checkVectors() {
+    const Eigen::VectorXd q = randomVector(active, 2);
+    const std::span<const double> qs(q.data(), active);
+    std::vector<Vec<D>> expected = randomVectors<D>(n, 3);
+    auto found = copyToDevice<Vec<D>>(d.context, expected);
+    addPressureGradient<D>(s.context, s.pairs(), qs, -0.7, expected);
+    addPressureGradient<D>(d.context, d.pairs, copyToDevice<double>(d.context, qs), -0.7, found.span());
+    EXPECT_LE(difference<Vec<D>>(d.context, expected, found), kernelTolerance);
+
+    const auto u = randomVectors<D>(active, 4);
+    addWallDrag<D>(s.context, s.pairs(), u, expected);
+    addWallDrag<D>(d.context, d.pairs, copyToDevice<Vec<D>>(d.context, u), found.span());
+    EXPECT_LE(difference<Vec<D>>(d.context, expected, found), kernelTolerance);
+  }
+
+  void checkWallTerms() {
+    Buffer<Block<D>, Cuda> block(d.context, n);
+    Buffer<Vec<D>, Cuda> gradient(d.context, n);
+    wallTerms<D>(d.context, d.pairs, {block.span(), gradient.span()});
+    EXPECT_LE(difference<Block<D>>(d.context, s.wallBlock.span(), block), kernelTolerance);
+    EXPECT_LE(difference<Vec<D>>(d.context, s.wallGradient.span(), gradient), kernelTolerance);
+  }
+
+  void checkBalance() {
+    const auto u = randomVectors<D>(active, 6);
+    const Eigen::VectorXd q = randomVector(active, 7);
+    const std::span<const double> qs(q.data(), active);
+    const auto uDevice = copyToDevice<Vec<D>>(d.context, u);
+    Buffer<double> shear(n), divergence(active - n), density(active - n);
+    Buffer<Vec<D>> force(active - n);
+    Buffer<double, Cuda> shearFound(d.context, n), divergenceFound(d.context, active - n),
+        densityFound(d.context, active - n);
+    Buffer<Vec<D>, Cuda> forceFound(d.context, active - n);
+
+    shearDissipation<D>(s.context, s.pairs(), u, shear);
+    shearDissipation<D>(d.context, d.pairs, uDevice, shearFound);
+    EXPECT_LE(difference<double>(d.context, shear.span(), shearFound), kernelTolerance);
+
+    ClusterList<> walls;
+    buildClusterList<D>(s.context, s.pairs().grid, s.ranges(), s.pairs().position, n, active,
+                        {s.pairs().terms.viscosityRadius, 0}, true, walls);
+    const ClusterList<Cuda> wallsDevice = onDevice(d.context, walls);
+    fluidAtWalls<D>(s.context, s.pairs(), walls, u, qs, {force.span(), divergence.span(), density.span()});
+    fluidAtWalls<D>(d.context, d.pairs, d.pairs.wallList.offset ? wallsDevice.view() : d.pairs.wallList, uDevice,
+                    copyToDevice<double>(d.context, qs),
+                    {forceFound.span(), divergenceFound.span(), densityFound.span()});
+    EXPECT_LE(difference<Vec<D>>(d.context, force.span(), forceFound), kernelTolerance);
+    EXPECT_LE(difference<double>(d.context, divergence.span(), divergenceFound), kernelTolerance);
+    EXPECT_LE(difference<double>(d.context, density.span(), densityFound), kernelTolerance);
+  }
+
+  void checkOperator() {
+    const auto u = randomVectors<D>(n, 5);
+    std::vector<Vec<D>> expected(n);
+    MphOperator<D> host;
+    host.prepare(s.context, s.pairs(), s.terms());
+    host.multiply(s.context, u, expected);
+    MphOperator<D, Cuda> device;
+    device.prepare(d.context, d.pairs, d.terms());
+    Buffer<Vec<D>, Cuda> found(d.context, n), again(d.context, n);
+    const auto uDevice = copyToDevice<Vec<D>>(d.context, u);
+    device.multiply(d.context, uDevice, found);
+    EXPECT_LE(difference<Vec<D>>(d.context, expected, found), operatorTolerance);
+    device.multiply(d.context, uDevice, again);
+    EXPECT_EQ(difference<Vec<D>>(d.context, copyToHost(d.context, found).span(), again), 0) << "not the same bits";
+  }
+
+  void checkSingle() {
+    const auto u = randomVectors<D>(n, 5);
+    std::vector<Vec<D>> expected(n);
+    MphOperator<D> host;
+    host.prepare(s.context, s.pairs(), s.terms());
+    host.multiply(s.context, u, expected);
+    std::vector<Vec<D, float>> single(n);
+    for (std::uint32_t i = 0; i < n; ++i)
+      for (int k = 0; k < D; ++k) single[i][k] = static_cast<float>(u[i][k]);
+    MphOperator<D, Cuda> device;
+    device.prepare(d.context, d.pairs, d.terms());
+    Buffer<float, Cuda> q(d.context, active);
+    Buffer<Vec<D, float>, Cuda> y(d.context, n);
+    device.multiplySingle(d.context, copyToDevice<Vec<D, float>>(d.context, single), q, y);
+    const auto found = copyToHost(d.context, y);
+    double error = 0, norm = 0;
+    for (std::uint32_t i = 0; i < n; ++i)
+      for (int k = 0; k < D; ++k) {
+        error += std::pow(found[i][k] - expected[i][k], 2);
+        norm += std::pow(expected[i][k], 2);
+      }
+    EXPECT_LE(std::sqrt(error / norm), singleTolerance);
+  }
+};
+
+template <int D>
+void checkAll(bool lists) {
+  for (const Walls walls : {Walls::Floor, Walls::None})
+    for (const bool twoMaterials : {true, false}) {
+      SCOPED_TRACE(testing::Message() << D << "D, " << (walls == Walls::Floor ? "floor" : "no walls") << ", "
+                                      << (twoMaterials ? 2 : 1) << " materials");
+      SumsTwin<D> twin(walls, lists, twoMaterials);
+      twin.checkScalars();
+      twin.checkVectors();
+      twin.checkWallTerms();
+      twin.checkBalance();
+      twin.checkOperator();
+      if (lists) twin.checkSingle();
+    }
+}
+
+TEST(PairSumsTwin, EqualTheCpu) {
+  TREACLE_SKIP_WITHOUT_GPU();
+  checkAll<2>(true);
+  checkAll<3>(true);
+}
+
+TEST(PairSumsTwin, FromCellRangesEqualTheCpu) {
+  TREACLE_SKIP_WITHOUT_GPU();
+  checkAll<2>(false);
+  checkAll<3>(false);
+}
+
+}  // namespace
+}  // namespace treacle::test

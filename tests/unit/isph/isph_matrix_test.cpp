@@ -1,0 +1,216 @@
+#include "support/isph_oracle.hpp"
+#include "support/tolerances.hpp"
+
+#include <gtest/gtest.h>
+
+namespace treacle::test {
+namespace {
+
+template <class T>
+constexpr double toleranceOf = std::is_same_v<T, double> ? operatorTolerance : singleTolerance;
+
+Eigen::VectorXd applied(const auto& product, const Eigen::VectorXd& x) {
+  Eigen::VectorXd y = Eigen::VectorXd::Constant(x.size(), NAN);
+  product(std::span<const double>(x.data(), x.size()), std::span<double>(y.data(), y.size()));
+  return y;
+}
+
+/// A matrix of pairs against the one by the paper's formulas.
+template <int D, class T, class Row>
+void checkMatrix(IsphScene<D>& s, const Row& row, const Eigen::MatrixXd& expected) {
+  SCOPED_TRACE(testing::Message() << D << "D, " << (sizeof(T) == 4 ? "single" : "double"));
+  const IsphTestSystem<D, T> system(s, row);
+  const IsphMatrix<T>& a = system.a;
+  const Eigen::MatrixXd found = dense(a);
+  EXPECT_LE((found - expected).norm(), toleranceOf<T> * expected.norm());
+  EXPECT_EQ((found - found.transpose()).norm(), 0) << "not symmetric to the last bit";
+
+  // Rows sum up to what the diagonal holds beyond pairs of unknowns, in single precision, too.
+  const Eigen::VectorXd known = expected.rowwise().sum();
+  for (std::uint32_t i = 0; i < s.n(); ++i) {
+    ASSERT_NEAR(found.row(i).sum(), known[i], operatorTolerance * expected(i, i));
+    ASSERT_NEAR(system.moments[i].own, known[i], singleTolerance * expected(i, i));
+  }
+  // Half the sum of c d d^T.
+  const IsphOracle<D> oracle(s);
+  for (std::uint32_t i = 0; i < s.n(); i += 3) {
+    Eigen::Matrix<double, D, D> m = Eigen::Matrix<double, D, D>::Zero();
+    for (std::uint32_t j = 0; j < s.n(); ++j) {
+      if (j == i) continue;
+      const Vec<D> r = oracle.apart(i, j);
+      const Eigen::Map<const Eigen::Matrix<double, D, 1>> d(r.v);
+      m -= 0.5 * expected(i, j) * d * d.transpose();
+    }
+    for (int p = 0; p < D; ++p)
+      for (int q = 0; q < D; ++q) {
+        Vec<D, float> ep{}, eq{};
+        ep[p] = eq[q] = 1;
+        ASSERT_NEAR(system.moments[i].between(ep, eq), m(p, q), singleTolerance * (m.norm() + 1e-30));
+      }
+  }
+
+  const Eigen::VectorXd x = randomVector(s.n(), 3);
+  const auto whole = [&](auto from, auto to) { multiply(s.context, a, from, to); };
+  EXPECT_LE((applied(whole, x) - found * x).norm(), operatorTolerance * (found * x).norm());
+  const Eigen::VectorXd diagonal = found.diagonal();
+  const Eigen::VectorXd inverse = (diagonal.array() > 0).select(diagonal.cwiseInverse().array(), 0);
+  const auto scaled = [&](auto from, auto to) { jacobi(s.context, a, from, to); };
+  EXPECT_LE((applied(scaled, x) - inverse.cwiseProduct(x)).norm(), operatorTolerance * inverse.norm());
+
+  BlockCsr<1> csr;
+  compressed(s.context, a, csr);
+  EXPECT_EQ((dense(csr) - found).norm(), 0);
+  for (std::uint32_t i = 0; i < s.n(); ++i) {
+    EXPECT_TRUE(std::is_sorted(csr.column.begin() + csr.rowStart[i], csr.column.begin() + csr.rowStart[i + 1]));
+    EXPECT_EQ(csr.rowStart[i] == csr.rowStart[i + 1], expected(i, i) == 0) << "rows of zeros are empty";
+  }
+}
+
+template <int D>
+void checkMatrices() {
+  for (const Walls walls : {Walls::Floor, Walls::None})
+    for (const WallSlip slip : {WallSlip::NoSlip, WallSlip::FreeSlip}) {
+      IsphScene<D> s = makeIsphScene<D>(walls, 0.2);
+      s.c.method.isph.walls = slip;
+      s.pairs.noSlip = slip == WallSlip::NoSlip;
+      ASSERT_GT(s.surfaceCount(), 0u);
+      ASSERT_LT(s.surfaceCount(), s.n());
+      const IsphOracle<D> oracle(s);
+      const PressureRow<D> pressure{s.surface.data()};
+      const Eigen::MatrixXd p = oracle.pressureMatrix([&](std::uint32_t i) { return !s.surface[i]; });
+      checkMatrix<D, double>(s, pressure, p);
+      checkMatrix<D, float>(s, pressure, p);
+      const Eigen::MatrixXd v = oracle.viscousMatrix();
+      checkMatrix<D, double>(s, ViscousRow<D>{}, v);
+      checkMatrix<D, float>(s, ViscousRow<D>{}, v);
+    }
+}
+
+TEST(IsphMatrix, IsThatOfThePapersFormulas) {
+  checkMatrices<2>();
+  checkMatrices<3>();
+}
+
+/// The smoothers' matrix: near pairs alone, in whole units, and a diagonal that belongs to them.
+template <int D>
+Eigen::MatrixXd cutMatrix(const IsphScene<D>& s, const Eigen::MatrixXd& whole, double unit) {
+  const IsphOracle<D> oracle(s);
+  Eigen::MatrixXd cut = Eigen::MatrixXd::Zero(s.n(), s.n());
+  for (std::uint32_t i = 0; i < s.n(); ++i) {
+    cut(i, i) = whole.row(i).sum();
+    for (std::uint32_t j = 0; j < s.n(); ++j) {
+      if (j == i || norm(oracle.apart(i, j)) >= 0.79 * 2.4 * s.c.spacing) continue;
+      cut(i, j) = -unit * std::floor(-whole(i, j) / unit + 0.5);
+      cut(i, i) -= cut(i, j);
+    }
+  }
+  return cut;
+}
+
+template <int D, class T, class Row>
+void checkSweeps(IsphScene<D>& s, const Row& row) {
+  const IsphTestSystem<D, T> system(s, row);
+  const Eigen::MatrixXd cut = cutMatrix(s, dense(system.a), system.a.unit);
+  EXPECT_EQ((cut - cut.transpose()).norm(), 0);
+  EXPECT_LE((cut - dense(system.a)).norm(), 0.2 * cut.norm());
+  const Eigen::VectorXd r = randomVector(s.n(), 1), start = randomVector(s.n(), 2);
+  std::vector<T> from(start.begin(), start.end());
+  Eigen::VectorXd x(s.n()), unknown(s.n());
+  for (std::uint32_t i = 0; i < s.n(); ++i) unknown[i] = row.isUnknown(i), x[i] = from[i];
+  const Eigen::VectorXd inverse = (unknown.array() > 0).select(cut.diagonal().cwiseInverse().array(), 0);
+  const Eigen::VectorXd residual = unknown.cwiseProduct(r - cut * x);
+  const Eigen::VectorXd swept = unknown.cwiseProduct(x + inverse.cwiseProduct(residual));
+
+  const std::span<const double> rs(r.data(), s.n());
+  std::vector<T> out(s.n(), NAN);
+  std::vector<double> outDouble(s.n(), NAN);
+  const auto asVector = [](const auto& values) {
+    Eigen::VectorXd v(values.size());
+    for (std::size_t i = 0; i < values.size(); ++i) v[i] = values[i];
+    return v;
+  };
+  firstSweep<T>(s.context, system.a, rs, out);
+  EXPECT_LE((asVector(out) - inverse.cwiseProduct(r)).norm(), toleranceOf<T> * inverse.norm());
+  nearResidual<T>(s.context, system.a, rs, from, out);
+  EXPECT_LE((asVector(out) - residual).norm(), toleranceOf<T> * residual.norm());
+  lastSweep<T>(s.context, system.a, rs, from, outDouble);
+  EXPECT_LE((asVector(outDouble) - swept).norm(), toleranceOf<T> * x.norm());
+}
+
+template <int D>
+void checkAllSweeps() {
+  for (const Walls walls : {Walls::Floor, Walls::None}) {
+    IsphScene<D> s = makeIsphScene<D>(walls, 0.2);
+    checkSweeps<D, double>(s, PressureRow<D>{s.surface.data()});
+    checkSweeps<D, float>(s, PressureRow<D>{s.surface.data()});
+    checkSweeps<D, double>(s, ViscousRow<D>{});
+  }
+}
+
+TEST(IsphMatrix, SmoothersTakeNearPairsInWholeUnits) {
+  checkAllSweeps<2>();
+  checkAllSweeps<3>();
+}
+
+TEST(PackedEntry, HoldsColumnsAndTwentyFourBitsOfCoefficients) {
+  const double unit = 0.37, end = 255 * unit;
+  for (int n = 0; n <= 2000; ++n) {
+    const double c = end * n / 2000;
+    const std::uint32_t row = (n * 7919u) % 20000000u;
+    const auto step = static_cast<std::int32_t>(pseudoRandom(n) * 8388607);
+    const std::uint32_t column = row + static_cast<std::uint32_t>(step);
+    const std::uint32_t word = PackedEntry::word(column, c, unit);
+    ASSERT_EQ(PackedEntry::column(word, row), column);
+    ASSERT_NEAR(unit * PackedEntry::value(word, PackedEntry::low(c, unit)), c, 0.51 / 65536 * unit);
+    ASSERT_NEAR((word & 255) * unit, c, 0.5 * unit * (1 + 1e-12));
+  }
+  EXPECT_EQ(PackedEntry::value(PackedEntry::word(5, 0, unit), PackedEntry::low(0, unit)), 0);
+}
+
+template <int D>
+void checkPacked() {
+  IsphScene<D> s = makeIsphScene<D>();
+  const PressureRow<D> row{s.surface.data()};
+  const IsphTestSystem<D, double> plain(s, row);
+  Buffer<std::uint32_t> word(s.pairs.fluidEntries);
+  Buffer<std::uint16_t> low(s.pairs.fluidEntries);
+  Buffer<double> diagonal(s.n());
+  Buffer<float> inverseNear(s.n());
+  Buffer<IsphMoments<D>> moments(s.n());
+  IsphMatrixParts<D, float> parts{};
+  parts.word = word, parts.low = low, parts.unit = plain.a.unit;
+  parts.diagonal = diagonal, parts.inverseNear = inverseNear, parts.moments = moments;
+  fillIsphMatrix(s.context, s.pairs, row, parts);
+  IsphMatrix<float> a;
+  a.word = word.data(), a.low = low.data(), a.unit = parts.unit;
+  for (std::uint32_t i = 0; i < s.n(); ++i) {
+    double sum = 0;
+    s.pairs.fluidOfFluid.forEachPlace(i, [&](std::uint64_t k) {
+      ASSERT_NEAR(a.coefficientAt(k), plain.a.coefficientAt(k), 1e-5 * a.unit);
+      ASSERT_TRUE(plain.a.coefficientAt(k) > 0 || a.coefficientAt(k) == 0);
+      ASSERT_EQ(PackedEntry::column(word[k], i), s.pairs.fluidOfFluid.column[k]);
+      sum += a.coefficientAt(k);
+    });
+    // The diagonal is made of what is stored.
+    ASSERT_NEAR(diagonal[i], sum + moments[i].own, 1e-6 * diagonal[i]);
+    ASSERT_NEAR(diagonal[i], plain.diagonal[i], 1e-6 * diagonal[i]);
+    ASSERT_NEAR(inverseNear[i], plain.inverseNear[i], 1e-6 * inverseNear[i]);
+  }
+}
+
+TEST(IsphMatrix, MayBePacked) {
+  checkPacked<2>();
+  checkPacked<3>();
+}
+
+TEST(IsphMatrix, OfNobody) {
+  Case c = waterCase(2, {10, 10, 0});
+  IsphScene<2> s(c, particlesAt<2>({}, {{0.05, 0.05}}));
+  const IsphTestSystem<2, double> system(s, PressureRow<2>{s.surface.data()});
+  BlockCsr<1> csr;
+  compressed(s.context, system.a, csr);
+  EXPECT_EQ(csr.rows(), 0u);
+}
+
+}  // namespace
+}  // namespace treacle::test

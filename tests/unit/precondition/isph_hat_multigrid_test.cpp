@@ -1,0 +1,216 @@
+#include "treacle/precondition/isph_hat_multigrid.hpp"
+
+#include "support/isph_scene.hpp"
+#include "support/tolerances.hpp"
+#include "treacle/precondition/hat_cells.hpp"
+
+#include <gtest/gtest.h>
+
+namespace treacle::test {
+namespace {
+
+/// Fluid particles only, as the preconditioner sees them.
+template <int D>
+SortedParticles<D> fluidOf(const IsphScene<D>& s) {
+  SortedParticles<D> fluid = s.pairs;
+  fluid.activeCount = fluid.fluidCount;
+  fluid.cells.wallEnd = fluid.cells.wallBegin;
+  return fluid;
+}
+
+/// A jittered body of water at the corner of an open domain: linear fields have no jumps at its ends.
+template <int D>
+IsphScene<D> makeBody() {
+  const Case c = waterCase(D, {17, 14, D == 3 ? 13.0 : 0});
+  const Vec<D, int> count = resized<D>(D == 2 ? Vec<3, int>{13, 9} : Vec<3, int>{9, 8, 7});
+  auto points = latticeAt<D>(Vec<D>::filled(1.5 * c.spacing), count, c.spacing);
+  for (std::uint32_t i = 0; i < points.size(); ++i)
+    for (int k = 0; k < D; ++k) points[i][k] += 0.15 * c.spacing * pseudoRandom(D * i + k);
+  return {c, particlesAt<D>(points)};
+}
+
+/// A field on particles and on nodes, linear in space.
+template <int D>
+struct LinearField {
+  double constant;
+  Vec<D> gradient;
+
+  double at(const Vec<D>& x) const { return constant + dot(gradient, x); }
+  Eigen::VectorXd onParticles(const IsphScene<D>& s) const {
+    Eigen::VectorXd u(s.n());
+    for (std::uint32_t i = 0; i < s.n(); ++i) u[i] = at(s.particles.position[i]);
+    return u;
+  }
+  Eigen::VectorXd onNodes(const IsphScene<D>& s, const HatNodes<D>& nodes) const {
+    Eigen::VectorXd u(nodes.count());
+    for (std::uint32_t n = 0; n < nodes.count(); ++n) {
+      const Vec<D, int> p = nodes.lattice.at(nodes.point[n]);
+      Vec<D> x = s.pairs.grid.origin;
+      for (int k = 0; k < D; ++k) x[k] += p[k] * s.pairs.grid.edge[k];
+      u[n] = at(x);
+    }
+    return u;
+  }
+};
+
+template <int D, class T>
+struct Galerkin {
+  IsphScene<D>& s;
+  SortedParticles<D> fluid = fluidOf(s);
+  HatNodes<D> nodes;
+  Buffer<T> parts;
+  BlockCsr<1> grid;
+  Eigen::MatrixXd a, coarse;
+
+  template <class Row>
+  Galerkin(IsphScene<D>& scene, const Row& row) : s(scene) {
+    const IsphTestSystem<D, T> system(s, row);
+    findHatNodes(s.context, fluid, HatsOn::Fluid, nodes);
+    isphGalerkin(s.context, fluid, std::span<const IsphMoments<D>>(system.moments), nodes, parts, grid);
+    a = dense(system.a);
+    coarse = dense(grid);
+  }
+
+  /// v^T P^T A P u and what the operator makes of it.
+  void compare(const LinearField<D>& v, const LinearField<D>& u, double factor) {
+    const double exact = v.onParticles(s).dot(a * u.onParticles(s));
+    const double scale =
+        std::sqrt(v.onParticles(s).dot(a * v.onParticles(s)) * u.onParticles(s).dot(a * u.onParticles(s)));
+    EXPECT_NEAR(v.onNodes(s, nodes).dot(coarse * u.onNodes(s, nodes)), factor * exact, 3e-6 * scale);
+  }
+};
+
+template <int D, class T>
+void checkGalerkin() {
+  IsphScene<D> s = makeBody<D>();
+  LinearField<D> one{1, {}}, u{0, {}}, v{0, {}};
+  u.gradient[0] = 70, u.gradient[1] = -20;
+  v.gradient[D - 1] = 30, v.gradient[0] = 10;
+
+  // Without known pressures energies of linear fields are those of pairs, but for the factor, and constants have
+  // none.
+  const std::vector<std::uint8_t> none(s.n());
+  Galerkin<D, T> free(s, PressureRow<D>{none.data()});
+  EXPECT_LE((free.coarse - free.coarse.transpose()).norm(), operatorTolerance * free.coarse.norm());
+  free.compare(u, u, isphGalerkinFactor);
+  free.compare(v, u, isphGalerkinFactor);
+  EXPECT_LE((free.coarse * one.onNodes(s, free.nodes)).norm(), 3e-6 * free.coarse.norm());
+
+  // What stands on the diagonal alone is exact against constants.
+  Galerkin<D, T> held(s, PressureRow<D>{s.surface.data()});
+  held.compare(one, one, 1);
+  const Eigen::VectorXd known = held.a.rowwise().sum();
+  EXPECT_NEAR(one.onNodes(s, held.nodes).dot(held.coarse * u.onNodes(s, held.nodes)), known.dot(u.onParticles(s)),
+              3e-6 * known.norm() * u.onParticles(s).norm());
+}
+
+TEST(PairGalerkin, EqualsTheRestrictedMatrixForLinearFields) {
+  checkGalerkin<2, double>();
+  checkGalerkin<2, float>();
+  checkGalerkin<3, double>();
+  checkGalerkin<3, float>();
+}
+
+template <int D>
+void checkProduct() {
+  // Against P^T A P itself: the same energies of smooth fields within a fifth, whatever the walls and ends.
+  IsphScene<D> s = makeIsphScene<D>();
+  const IsphTestSystem<D, double> system(s, ViscousRow<D>{});
+  const SortedParticles<D> fluid = fluidOf(s);
+  HatNodes<D> nodes;
+  Buffer<double> parts;
+  BlockCsr<1> grid;
+  findHatNodes(s.context, fluid, HatsOn::Fluid, nodes);
+  isphGalerkin(s.context, fluid, std::span<const IsphMoments<D>>(system.moments), nodes, parts, grid);
+  const HatCells<D> cells{s.pairs.grid};
+  Eigen::MatrixXd p = Eigen::MatrixXd::Zero(s.n(), nodes.count());
+  for (std::uint32_t i = 0; i < s.n(); ++i) {
+    const Vec<D> x = s.particles.position[i];
+    const Vec<D, int> cell = s.pairs.grid.cellOf(x);
+    for (std::uint32_t n = 0; n < nodes.count(); ++n)
+      p(i, n) = cells.hat(nodes.lattice.at(nodes.point[n]), cell, cells.fraction(x, cell));
+    ASSERT_NEAR(p.row(i).sum(), 1, 1e-12);
+  }
+  const Eigen::MatrixXd exact = p.transpose() * dense(system.a) * p, found = dense(grid);
+  Eigen::VectorXd one = Eigen::VectorXd::Ones(nodes.count());
+  EXPECT_NEAR(one.dot(found * one), one.dot(exact * one), 1e-5 * one.dot(exact * one));
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
+      found, exact + 1e-9 * exact.norm() * Eigen::MatrixXd::Identity(found.rows(), found.rows()),
+      Eigen::EigenvaluesOnly);
+  EXPECT_GT(eigen.eigenvalues().minCoeff(), 0.5);
+}
+
+TEST(PairGalerkin, IsNoSmallerThanTheRestrictedMatrix) {
+  checkProduct<2>();
+  checkProduct<3>();
+}
+
+/// K as a dense matrix.
+template <int D, class T>
+Eigen::MatrixXd matrixOf(IsphScene<D>& s, const IsphTestSystem<D, T>& system, int degree,
+                         IsphHatMultigrid<D, T>& hats) {
+  hats.setup(s.context, s.pairs, system.a, system.moments, degree);
+  return denseOf(s.n(), [&](const Eigen::VectorXd& r) {
+    Eigen::VectorXd z = Eigen::VectorXd::Constant(r.size(), NAN);
+    hats.apply(s.context, {r.data(), s.n()}, {z.data(), s.n()});
+    return z;
+  });
+}
+
+template <int D, class T, class Row>
+void checkPreconditioner(IsphScene<D>& s, const Row& row, int degree) {
+  SCOPED_TRACE(testing::Message() << D << "D, " << (sizeof(T) == 4 ? "single" : "double") << ", degree "
+                                  << degree);
+  const double tolerance = sizeof(T) == 4 ? 10 * singleTolerance : operatorTolerance;
+  const IsphTestSystem<D, T> system(s, row);
+  IsphHatMultigrid<D, T> hats;
+  Eigen::MatrixXd k = matrixOf(s, system, degree, hats);
+  EXPECT_LE((k - k.transpose()).norm(), tolerance * k.norm());
+  EXPECT_GT(hats.gridLevels(), 0u);
+  Eigen::MatrixXd a = dense(system.a);
+  // Zero at the surface, positive definite elsewhere: with ones there instead the whole is.
+  for (std::uint32_t i = 0; i < s.n(); ++i) {
+    if (row.isUnknown(i)) continue;
+    ASSERT_EQ(k.row(i).cwiseAbs().sum() + k.col(i).cwiseAbs().sum(), 0);
+    k(i, i) = a(i, i) = 1;
+  }
+  const Eigen::MatrixXd symmetric = (k + k.transpose()) / 2;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(symmetric, Eigen::EigenvaluesOnly);
+  EXPECT_GT(eigen.eigenvalues()[0], 0);
+  // And near enough to the inverse: the spectrum of K A is short.
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> product(a, symmetric.inverse(),
+                                                                          Eigen::EigenvaluesOnly);
+  const double condition = product.eigenvalues().maxCoeff() / product.eigenvalues().minCoeff();
+  EXPECT_LT(condition, 6);
+}
+
+template <int D>
+void checkPreconditioners() {
+  for (const Walls walls : {Walls::Floor, Walls::None}) {
+    IsphScene<D> s = makeIsphScene<D>(walls);
+    for (const int degree : {1, 2}) {
+      checkPreconditioner<D, double>(s, PressureRow<D>{s.surface.data()}, degree);
+      checkPreconditioner<D, float>(s, PressureRow<D>{s.surface.data()}, degree);
+      checkPreconditioner<D, double>(s, ViscousRow<D>{}, degree);
+    }
+  }
+}
+
+TEST(IsphHatMultigrid, IsSymmetricPositiveDefiniteOnTheUnknowns) {
+  checkPreconditioners<2>();
+  checkPreconditioners<3>();
+}
+
+TEST(IsphHatMultigrid, OfNothingButSurfaceIsZero) {
+  Case c = waterCase(2, {20, 20, 0});
+  for (const int count : {0, 1, 5}) {
+    IsphScene<2> s(c, particlesAt<2>(latticeAt<2>({0.05, 0.05}, {count, 1}, c.spacing)));
+    ASSERT_EQ(s.surfaceCount(), s.n());
+    const IsphTestSystem<2, float> system(s, PressureRow<2>{s.surface.data()});
+    IsphHatMultigrid<2, float> hats;
+    EXPECT_EQ(matrixOf(s, system, 1, hats).norm(), 0);
+  }
+}
+
+}  // namespace
+}  // namespace treacle::test

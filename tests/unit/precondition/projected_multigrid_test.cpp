@@ -1,0 +1,275 @@
+#include "treacle/precondition/projected_multigrid.hpp"
+
+#include "support/oracle.hpp"
+#include "support/tolerances.hpp"
+
+#include <gtest/gtest.h>
+
+namespace treacle::test {
+namespace {
+
+/// Fluid that fills part of a domain of `size` spacings, which is three to five search cells, and its floor.
+template <int D>
+Scene<D> bodyIn(double size, bool periodic, Walls walls) {
+  Scene<D> s;
+  s.c = sceneCase(D);
+  for (int k = 0; k < D; ++k) s.c.domain.max[k] = size * s.c.spacing, s.c.domain.periodic[k] = periodic;
+  const double floor = walls == Walls::Floor ? 3 : 1, width = D == 2 ? size - 3 : 5;
+  s.particles = jitteredLattice<D>(
+      s.c, 0.2, 5,
+      [&](const Vec<D>& x) {
+        const Vec<D> y = x * (1 / s.c.spacing);
+        return y[0] > 1 && y[0] < 1 + width && y[D - 1] > floor && y[D - 1] < floor + 6 && (D == 2 || y[1] < 5);
+      },
+      [&](const Vec<D>& x) { return walls == Walls::Floor && x[D - 1] < floor * s.c.spacing; });
+  prepare(s);
+  return s;
+}
+
+/// Dense S', K0 and P of a scene by the products on unit vectors.
+template <int D, class T>
+struct Parts {
+  Scene<D> s;
+  ProjectionConstants constants;
+  MphOperator<D> a;
+  ParticleProducts<D, T> products;
+
+  explicit Parts(Scene<D> scene) : s(std::move(scene)), constants(projectionConstants(s.pairs())) {
+    a.prepare(s.context, s.pairs(), s.terms());
+    products.prepare(s.context, s.pairs(), s.terms(), a);
+  }
+
+  Eigen::Index active() const { return s.pairs().activeCount; }
+  const std::uint8_t* material() const { return s.pairs().material.data(); }
+
+  Eigen::MatrixXd pressureMatrix() {
+    const ProjectionTable<T> table = constants.table<T>();
+    return denseOf(active(), [&](const Eigen::VectorXd& e) {
+      Buffer<T> x(active()), y(active());
+      for (Eigen::Index k = 0; k < active(); ++k) x[k] = static_cast<T>(e[k]);
+      products.gather(s.context, x.span());
+      products.gradient(s.context, products.scalars(),
+                        StoreWeighted<D, T, Cpu>{table, material(), products.vectors()});
+      products.divergence(s.context, products.vectors(),
+                          StorePressure<T, Cpu>{table, material(), products.scalars(), y.data()});
+      Eigen::VectorXd result(active());
+      for (Eigen::Index k = 0; k < active(); ++k) result[k] = y[k];
+      return result;
+    });
+  }
+
+  Eigen::MatrixXd velocityMatrix() {
+    return denseOf(s.unknowns(), [&](const Eigen::VectorXd& e) {
+      Buffer<Gathered<D, T>> x(s.n()), residual(s.n());
+      for (Eigen::Index k = 0; k < s.unknowns(); ++k)
+        x[k / D][k % D] = static_cast<T>(e[k]), residual[k / D][k % D] = 0;
+      const VelocityStep<D, T, true> step{nullptr, T(0), T(0), {residual.data(), x.data(), nullptr}, nullptr};
+      products.viscous(s.context, x.data(), step);
+      Eigen::VectorXd y(s.unknowns());
+      for (Eigen::Index k = 0; k < s.unknowns(); ++k) y[k] = -residual[k / D][k % D];
+      return y;
+    });
+  }
+
+  /// P of scalars, from nodes to particles.
+  Eigen::MatrixXd prolongation(const HatNodes<D>& nodes) {
+    HatTransfer<D, T> transfer;
+    transfer.prepare(s.context, s.pairs());
+    Eigen::MatrixXd p(active(), nodes.count());
+    for (std::uint32_t n = 0; n < nodes.count(); ++n) {
+      Buffer<T> e(nodes.count()), z(active()), x(active());
+      std::fill(e.begin(), e.end(), T(0)), std::fill(x.begin(), x.end(), T(0));
+      e[n] = 1;
+      transfer.prolong(s.context, nodes, std::span<const T>(e), ScalarField<T, Cpu>{z.data()}, x.span());
+      for (Eigen::Index k = 0; k < active(); ++k) p(k, n) = z[k];
+    }
+    return p;
+  }
+};
+
+/// S' and K0 from the formulas of the paper and the weights of the preconditioner.
+template <int D>
+Eigen::MatrixXd pressureOracle(const Scene<D>& s, const ProjectionConstants& constants) {
+  const Oracle<D> oracle(s);
+  const Eigen::Index active = s.pairs().activeCount;
+  const Eigen::MatrixXd c = oracle.gradientMatrix();
+  EXPECT_EQ(c.rightCols(c.cols() - active).norm(), 0) << "a wall that matters is not active";
+  Eigen::VectorXd w(s.unknowns()), shift(active);
+  for (Eigen::Index k = 0; k < w.size(); ++k) w[k] = constants.weight[s.particles.material[k / D]];
+  for (Eigen::Index k = 0; k < active; ++k) shift[k] = pressureShift / oracle.material(k).bulkViscosity;
+  Eigen::MatrixXd expected = c.leftCols(active).transpose() * w.asDiagonal() * c.leftCols(active);
+  expected.diagonal() += shift;
+  return expected;
+}
+template <int D>
+Eigen::MatrixXd velocityOracle(const Scene<D>& s) {
+  const Oracle<D> oracle(s);
+  Eigen::MatrixXd k0 = oracle.viscosityMatrix();
+  for (Eigen::Index k = 0; k < k0.rows(); ++k) k0(k, k) += oracle.material(k / D).density / oracle.dt;
+  return k0;
+}
+
+template <int D, class T>
+void checkProducts(Scene<D> scene, double tolerance) {
+  Parts<D, T> parts(std::move(scene));
+  Scene<D>& s = parts.s;
+  const Eigen::MatrixXd pressure = parts.pressureMatrix(), velocity = parts.velocityMatrix();
+  const Eigen::MatrixXd expected = pressureOracle(s, parts.constants);
+  EXPECT_LT((pressure - expected).norm(), tolerance * expected.norm());
+  EXPECT_LT((velocity - velocityOracle(s)).norm(), tolerance * velocity.norm());
+
+  Buffer<T> inversePressure(parts.active());
+  Buffer<Block<D, T>> inverseVelocity(s.n());
+  parts.products.inverseDiagonals(s.context, parts.constants.template table<T>(), inversePressure,
+                                  inverseVelocity);
+  for (Eigen::Index k = 0; k < parts.active(); ++k)
+    ASSERT_NEAR(inversePressure[k] * pressure(k, k), 1, 100 * tolerance) << "particle " << k;
+  for (std::uint32_t i = 0; i < s.n(); ++i) {
+    Eigen::Matrix<double, D, D> inverse;
+    for (int e = 0; e < D * D; ++e) inverse(e / D, e % D) = inverseVelocity[i].a[e];
+    const Eigen::Matrix<double, D, D> block = velocity.template block<D, D>(D * i, D * i);
+    ASSERT_LT((inverse * block - Eigen::Matrix<double, D, D>::Identity()).norm(), 100 * tolerance) << i;
+  }
+}
+
+TEST(ParticleProducts, AreThoseOfTheFormulasAndInverseDiagonalsAreTheirs) {
+  for (const Walls walls : {Walls::Floor, Walls::None}) {
+    checkProducts<2, double>(makeScene<2>(walls), operatorTolerance);
+    checkProducts<3, double>(makeScene<3>(walls), operatorTolerance);
+    checkProducts<2, float>(makeScene<2>(walls), 3 * singleTolerance);
+    checkProducts<3, float>(makeScene<3>(walls), 3 * singleTolerance);
+  }
+}
+
+/// Every column of P sums up what the hat at one node says; the hats sum up to one.
+template <int D>
+void checkPressureGalerkin(Scene<D> scene) {
+  Parts<D, double> parts(std::move(scene));
+  Scene<D>& s = parts.s;
+  HatNodes<D> nodes;
+  findHatNodes(s.context, s.pairs(), HatsOn::Active, nodes);
+  Buffer<Vec<D>> columns;
+  BlockCsr<1> matrix;
+  pressureGalerkin(s.context, s.pairs(), parts.constants.template table<double>(), nodes, columns, matrix);
+  const Eigen::MatrixXd p = parts.prolongation(nodes);
+  EXPECT_LT((p * Eigen::VectorXd::Ones(p.cols()) - Eigen::VectorXd::Ones(p.rows())).norm(), operatorTolerance);
+  const Eigen::MatrixXd expected = p.transpose() * pressureOracle(s, parts.constants) * p;
+  EXPECT_LT((dense(matrix) - expected).norm(), operatorTolerance * expected.norm());
+
+  HatTransfer<D, double> transfer;
+  transfer.prepare(s.context, s.pairs());
+  const Eigen::VectorXd r = randomVector(parts.active(), 8);
+  std::vector<double> b(nodes.count());
+  transfer.restrict(s.context, nodes, std::span<const double>(r.data(), r.size()), std::span<double>(b));
+  const Eigen::VectorXd restricted = p.transpose() * r;
+  EXPECT_LT((Eigen::Map<Eigen::VectorXd>(b.data(), b.size()) - restricted).norm(),
+            operatorTolerance * restricted.norm());
+}
+
+TEST(HatGrid, PressureGalerkinOperatorIsTheRestrictedMatrix) {
+  for (const Walls walls : {Walls::Floor, Walls::None}) {
+    checkPressureGalerkin<2>(makeScene<2>(walls));
+    checkPressureGalerkin<3>(makeScene<3>(walls));
+    for (const bool periodic : {true, false}) {
+      checkPressureGalerkin<2>(bodyIn<2>(11, periodic, walls));
+      checkPressureGalerkin<3>(bodyIn<3>(11, periodic, walls));
+    }
+  }
+}
+
+/// Hats reproduce velocities that are linear in x, and their gradients: energies of such fields are exact but for
+/// the factor of the viscous part.
+template <int D>
+void checkViscousGalerkin() {
+  Parts<D, double> parts(bodyIn<D>(D == 2 ? 16 : 12, false, Walls::None));
+  Scene<D>& s = parts.s;
+  HatNodes<D> nodes;
+  findHatNodes(s.context, s.pairs(), HatsOn::Fluid, nodes);
+  Buffer<ViscousMoments<D, double>> moments;
+  BlockCsr<D> matrix;
+  viscousGalerkin(s.context, s.pairs(), s.terms(), nodes, moments, matrix);
+  const Eigen::MatrixXd grid = dense(matrix);
+  EXPECT_LT((grid - grid.transpose()).norm(), operatorTolerance * grid.norm());
+  EXPECT_GT(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(grid).eigenvalues()[0],
+            -operatorTolerance * grid.norm());
+
+  const Oracle<D> oracle(s);
+  Eigen::VectorXd inertia(s.unknowns());
+  for (Eigen::Index k = 0; k < inertia.size(); ++k) inertia[k] = oracle.material(k / D).density / oracle.dt;
+  const Eigen::MatrixXd viscosity = oracle.viscosityMatrix();
+  for (unsigned seed = 1; seed < 6; ++seed) {
+    const Eigen::VectorXd numbers = randomVector(D * D + D, seed);
+    const auto field = [&](const Vec<D>& x, int k) {
+      double u = 0;
+      for (int c = 0; c < D; ++c) u += numbers[D * k + c] * x[c] / s.c.spacing;
+      return u + numbers[D * D + k];
+    };
+    Eigen::VectorXd e(D * nodes.count()), u(s.unknowns());
+    for (std::uint32_t n = 0; n < nodes.count(); ++n) {
+      const Vec<D, int> node = nodes.lattice.at(nodes.point[n]);
+      Vec<D> x;
+      for (int k = 0; k < D; ++k) x[k] = s.pairs().grid.origin[k] + node[k] * s.pairs().grid.edge[k];
+      for (int k = 0; k < D; ++k) e[D * n + k] = field(x, k);
+    }
+    for (Eigen::Index k = 0; k < u.size(); ++k) u[k] = field(s.particles.position[k / D], static_cast<int>(k % D));
+    const double expected = u.dot(inertia.cwiseProduct(u)) + viscousGalerkinFactor * u.dot(viscosity * u),
+                 energy = e.dot(grid * e);
+    EXPECT_NEAR(energy, expected, 1e-10 * expected);
+  }
+}
+
+TEST(HatGrid, ViscousGalerkinOperatorIsExactForLinearVelocities) {
+  checkViscousGalerkin<2>();
+  checkViscousGalerkin<3>();
+}
+
+/// M by its action on unit vectors.
+template <int D, class T>
+Eigen::MatrixXd preconditioner(Parts<D, T>& parts, const ProjectionDegrees& degrees) {
+  Scene<D>& s = parts.s;
+  ProjectedMultigrid<D, T> m;
+  m.setup(s.context, s.pairs(), s.terms(), parts.a, degrees);
+  return denseOf(s.unknowns(), [&](const Eigen::VectorXd& r) {
+    std::vector<Vec<D>> z(s.n());
+    m.apply(s.context, unflat<D>(r), z);
+    return flat<D>(z);
+  });
+}
+
+template <int D, class T>
+void checkPreconditioner(Scene<D> scene, const ProjectionDegrees& degrees, double tolerance) {
+  SCOPED_TRACE(testing::Message() << D << " dimensions, " << sizeof(T) << " bytes, pressure degree "
+                                  << degrees.pressure);
+  Parts<D, T> parts(std::move(scene));
+  const Eigen::MatrixXd m = preconditioner(parts, degrees);
+  EXPECT_LT((m - m.transpose()).norm(), tolerance * m.norm());
+  const Eigen::MatrixXd symmetric = (m + m.transpose()) / 2;
+  EXPECT_EQ(Eigen::LLT<Eigen::MatrixXd>(symmetric).info(), Eigen::Success) << "not positive definite";
+  // Eigenvalues of M A are those of L^T M L with A = L L^T.
+  const Eigen::MatrixXd l = Eigen::LLT<Eigen::MatrixXd>(Oracle<D>(parts.s).matrix()).matrixL();
+  const Eigen::VectorXd eigenvalues =
+      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(l.transpose() * symmetric * l).eigenvalues();
+  EXPECT_GT(eigenvalues[0], 0.4);
+  EXPECT_LT(eigenvalues[eigenvalues.size() - 1], 3.5);
+}
+
+template <class T>
+void checkPreconditioners(double tolerance) {
+  for (const Walls walls : {Walls::Floor, Walls::None}) {
+    checkPreconditioner<2, T>(makeScene<2>(walls), {9, 4, 2}, tolerance);
+    checkPreconditioner<3, T>(makeScene<3>(walls), {9, 4, 2}, tolerance);
+  }
+  checkPreconditioner<2, T>(bodyIn<2>(11, true, Walls::Floor), {16, 3, 3}, tolerance);
+  checkPreconditioner<2, T>(bodyIn<2>(16, false, Walls::None), {16, 3, 1}, tolerance);
+}
+
+TEST(ProjectedMultigrid, IsSymmetricPositiveDefiniteAndNearTheInverseInDouble) {
+  checkPreconditioners<double>(1e-10);
+}
+
+TEST(ProjectedMultigrid, IsSymmetricPositiveDefiniteAndNearTheInverseInSingle) {
+  checkPreconditioners<float>(1e-4);
+}
+
+}  // namespace
+}  // namespace treacle::test

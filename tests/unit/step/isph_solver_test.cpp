@@ -1,0 +1,127 @@
+#include "isph_solver.hpp"
+
+#include "support/isph_cases.hpp"
+#include "support/matrices.hpp"
+#include "support/pressure_column.hpp"
+#include "treacle/step/solve_stages.hpp"
+
+#include <gtest/gtest.h>
+
+namespace treacle::test {
+namespace {
+
+/// The jittered columns of the study (PressureColumn) as particles of ISPH: spacing 1, p = 0 on the top and front
+/// layers, no walls.
+struct Column {
+  static Case columnCase(Vec<3, int> size) {
+    Case c = waterCase(3, {});
+    c.spacing = 1;
+    c.materials[0].density = 1;
+    c.time.step = 1;
+    for (int k = 0; k < 3; ++k) {
+      c.domain.min[k] = -0.37;
+      c.domain.max[k] = c.domain.min[k] + 2.4 * std::ceil((size[k] + 0.37) / 2.4);  // whole cells of the kernel
+    }
+    return c;
+  }
+  static Particles<3> points(Vec<3, int> size) {
+    std::vector<Vec<3>> x;
+    for (int i = 0; i < size[0] * size[1] * size[2]; ++i) {
+      Vec<3> at{double(i / (size[1] * size[2])), double(i / size[2] % size[1]), double(i % size[2])};
+      for (int k = 0; k < 3; ++k) at[k] += 0.15 * pseudoRandom(3 * i + k);
+      x.push_back(at);
+    }
+    return particlesAt<3>(x);
+  }
+
+  Vec<3, int> size;
+  IsphScene<3> s;
+  std::vector<double> b;
+
+  explicit Column(Vec<3, int> theSize) : size(theSize), s(columnCase(size), points(size)), b(s.n()) {
+    for (std::uint32_t i = 0; i < s.n(); ++i) {
+      const auto id = static_cast<int>(s.particles.id[i]);
+      s.surface[i] = id % size[2] == size[2] - 1 || id / (size[1] * size[2]) == size[0] - 1;
+      b[i] = s.surface[i] ? 0 : pseudoRandom(s.particles.id[i]);
+    }
+  }
+
+  /// Iterations to a relative residual of 1e-6 from zero.
+  int iterations(PreconditionerKind kind, Precision precision) {
+    s.c.solver.preconditioner = kind;
+    s.c.solver.precision = precision;
+    PairSolver<3, Cpu, PressureRow<3>> solver(solveStages(s.c));
+    solver.prepareMatrix(s.context, s.pairs, PressureRow<3>{s.surface.data()});
+    solver.preparePreconditioner(s.context, s.ranges);
+    std::vector<double> x(s.n());
+    const StagedReport report = solver.solve(s.context, b, x);
+    EXPECT_EQ(report.status, SolveStatus::Converged);
+    EXPECT_EQ(report.fallbacks, 0) << report.failures;
+    for (std::uint32_t i = 0; i < s.n(); ++i) EXPECT_TRUE(!s.surface[i] || x[i] == 0);
+    EXPECT_LE(trueResidual(x), 2e-6);
+    EXPECT_GT(solver.bytes(), 0u);
+    return report.iterations;
+  }
+
+  double trueResidual(const std::vector<double>& x) {
+    const IsphTestSystem<3, double> system(s, PressureRow<3>{s.surface.data()});
+    std::vector<double> y(s.n());
+    multiply<double>(s.context, system.a, x, y);
+    return relativeDifference<double>(y, b);
+  }
+};
+
+TEST(PairSolver, HasTheMatrixOfTheStudy) {
+  const Vec<3, int> size{9, 8, 7};
+  Column column(size);
+  const IsphTestSystem<3, double> system(column.s, PressureRow<3>{column.s.surface.data()});
+  const PressureColumn study(size);
+  std::vector<std::uint32_t> placeOf(study.count());
+  for (std::uint32_t i = 0; i < study.count(); ++i) placeOf[study.latticeOf[i]] = i;
+  const Eigen::MatrixXd expected = dense(study.a), found = dense(system.a);
+  for (std::uint32_t i = 0; i < column.s.n(); ++i)
+    for (std::uint32_t j = 0; j < column.s.n(); ++j)
+      ASSERT_NEAR(found(i, j), expected(placeOf[column.s.particles.id[i]], placeOf[column.s.particles.id[j]]),
+                  1e-13);
+}
+
+TEST(PairSolver, DefaultIsFlatInTheSizeOfTheColumnAndPlainIterationsGrow) {
+  using enum PreconditionerKind;
+  struct Study {
+    Vec<3, int> size;
+    int cg, cells;  // by the study's own program, which numbers cells from another corner
+  };
+  for (const Study& study : {Study{{9, 9, 9}, 35, 20},
+                             {{17, 9, 9}, 43, 21},
+                             {{17, 17, 17}, 59, 23},
+                             {{31, 17, 17}, 78, 24},
+                             {{31, 31, 31}, 105, 27}}) {
+    SCOPED_TRACE(testing::Message() << study.size[0] << " x " << study.size[1] << " x " << study.size[2]);
+    Column column(study.size);
+    const int jacobi = column.iterations(Jacobi, Precision::Double);
+    EXPECT_NEAR(column.iterations(None, Precision::Double), study.cg, 1);
+    EXPECT_NEAR(jacobi, study.cg, 0.25 * study.cg);
+    EXPECT_NEAR(column.iterations(CellMultigrid, Precision::Double), study.cells, 2);
+    const int hats = column.iterations(HatMultigrid, Precision::Mixed);
+    EXPECT_LE(hats, 7);
+    EXPECT_GE(hats, 5);
+    EXPECT_NEAR(column.iterations(HatMultigrid, Precision::Double), hats, 1);
+  }
+}
+
+TEST(PairSolver, ConjugateResidualsTakeAsManyIterations) {
+  Column column({9, 9, 9});
+  for (const PreconditionerKind kind :
+       {PreconditionerKind::Jacobi, PreconditionerKind::CellMultigrid, PreconditionerKind::HatMultigrid})
+    for (const Precision precision : {Precision::Double, Precision::Mixed}) {
+      column.s.c.solver.krylov = KrylovKind::Cg;
+      const int cg = column.iterations(kind, precision);
+      column.s.c.solver.krylov = KrylovKind::Cr;
+      const int cr = column.iterations(kind, precision);
+      EXPECT_LE(cr, cg + 2);
+      EXPECT_GE(cr, cg - 4);
+    }
+}
+
+}  // namespace
+}  // namespace treacle::test
