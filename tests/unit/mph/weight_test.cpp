@@ -54,7 +54,7 @@ void checkTerms(double unit, double tolerance) {
     const double slope = -v.derivative(r);
     EXPECT_NEAR(terms.density(terms.densityFactor, distance), p.value(r), tolerance * p.value(0));
     EXPECT_NEAR(terms.gradient(distance) * s, -p.derivative(r), tolerance * -p.derivative(0));
-    EXPECT_NEAR(terms.viscousFactor * terms.viscousShape(distance) * s * s / unit, 2 * (D + 2) * slope / r,
+    EXPECT_NEAR(terms.viscousFactor * terms.viscousShape(distance) * s * s, 2 * (D + 2) * slope / r,
                 tolerance * 2 * (D + 2) * slope / r);
     EXPECT_NEAR(terms.viscous(terms.viscousFactor, distance), terms.viscousFactor * terms.viscousShape(distance),
                 tolerance * terms.viscousFactor * terms.viscousShape(distance));
