@@ -28,7 +28,7 @@ namespace {
 template <int D>
 void compare(const IsphOptions& options, const std::string& name, const Case& c, const Particles<D>& state,
              double timeStep, SolveRecord& record) {
-  IsphSystem<D> system(c, state, timeStep);
+  IsphPressureSystem<D> system(c, state, timeStep);
   IsphComparison<D> comparison(options, name, system, record);
   for (const LibraryVariant& v : libraryVariants) comparison.runLibrary(v);
   for (const std::string& s : options.solvers.empty() ? defaultSolvers : options.solvers) comparison.runTreacle(s);

@@ -16,7 +16,7 @@ namespace treacle {
 template <int D>
 class IsphComparison {
  public:
-  IsphComparison(const IsphOptions& options, std::string name, IsphSystem<D>& system, SolveRecord& record)
+  IsphComparison(const IsphOptions& options, std::string name, IsphPressureSystem<D>& system, SolveRecord& record)
       : options_(options),
         name_(std::move(name)),
         system_(system),
@@ -69,7 +69,7 @@ class IsphComparison {
   void setFirstGuess() { copyValues(context_, system_.firstGuess(), x_.data()); }
 
   /// Median seconds of a solve after one that warms up.
-  double timeSolves(PairSolver<D, Cuda, PressureRow<D>>& solver, SolveReport& report) {
+  double timeSolves(IsphSolver<D, Cuda, PressureRow<D>>& solver, SolveReport& report) {
     std::vector<double> seconds;
     for (int k = 0; k <= options_.repetitions; ++k) {
       setFirstGuess();
@@ -84,7 +84,7 @@ class IsphComparison {
   void solveByTreacle(const SolverSettings& stage, SolveResult& result) {
     SolveReport report;
     const double perIteration = secondsPerIteration(stage);
-    PairSolver<D, Cuda, PressureRow<D>> solver({stage});
+    IsphSolver<D, Cuda, PressureRow<D>> solver({stage});
     prepare(solver, result);
     result.solveSeconds = timeSolves(solver, report);
     take(report, result);
@@ -92,10 +92,10 @@ class IsphComparison {
     result.how = "treacle";
   }
 
-  void prepare(PairSolver<D, Cuda, PressureRow<D>>& solver, SolveResult& result) {
-    result.matrixSeconds = medianSeconds([&] { solver.prepareMatrix(context_, system_.pairs(), system_.row()); });
-    result.setupSeconds =
-        result.matrixSeconds + medianSeconds([&] { solver.preparePreconditioner(context_, system_.ranges()); });
+  void prepare(IsphSolver<D, Cuda, PressureRow<D>>& solver, SolveResult& result) {
+    result.matrixSeconds =
+        medianSeconds([&] { solver.prepareMatrix(context_, system_.pairs(), system_.ranges(), system_.row()); });
+    result.setupSeconds = result.matrixSeconds + medianSeconds([&] { solver.preparePreconditioner(context_); });
   }
 
   /// What an iteration more costs, without the recording of the loop and the start: from solves that are stopped
@@ -105,9 +105,9 @@ class IsphComparison {
     stage.tolerance = std::numeric_limits<double>::min();
     const auto timeOf = [&](int iterations, SolveReport& report) {
       stage.maxIterations = iterations;
-      PairSolver<D, Cuda, PressureRow<D>> solver({stage});
-      solver.prepareMatrix(context_, system_.pairs(), system_.row());
-      solver.preparePreconditioner(context_, system_.ranges());
+      IsphSolver<D, Cuda, PressureRow<D>> solver({stage});
+      solver.prepareMatrix(context_, system_.pairs(), system_.ranges(), system_.row());
+      solver.preparePreconditioner(context_);
       return timeSolves(solver, report);
     };
     constexpr int few = 12;  // twice as many leave single precision no zero residual
@@ -172,7 +172,7 @@ class IsphComparison {
 
   const IsphOptions& options_;
   std::string name_;
-  IsphSystem<D>& system_;
+  IsphPressureSystem<D>& system_;
   SolveRecord& record_;
   Context<Cuda>& context_;
   PressureSizes sizes_;

@@ -12,24 +12,26 @@ namespace treacle {
 
 /// The pressure equation A p = b of one step [O23 eq. (11)] with all that solvers start from.
 template <int D>
-class IsphSystem {
+class IsphPressureSystem {
  public:
   /// `state`: the particles at the start of the step. Errors: InputError for walls that oscillate or rotate, whose
   /// motion a simulation prescribes.
-  IsphSystem(const Case& c, const Particles<D>& state, double timeStep) : flow_(c, 0, 0), method_(flow_) {
+  IsphPressureSystem(const Case& c, const Particles<D>& state, double timeStep) : flow_(c, 0, 0), method_(flow_) {
     for (const Body& body : c.bodies)
       if (body.oscillation.period > 0 || body.rotation)
         throw InputError("walls that oscillate or rotate are not compared");
     copyToDevice(flow_.context, state, flow_.particles);
     flow_.timeStep = timeStep;
-    method_.sort();
-    method_.buildLists();
-    method_.computeCoefficients();
+    method_.sortParticles();
+    method_.findNeighbours();
+    flow_.phases.start(flow_.context);
+    method_.predict();
+    method_.prepareSystem();
     guess_.resize(context(), fluidCount());
     copyValues(context(), std::span<const double>(flow_.particles.pressure).first(fluidCount()), guess_.data());
     clearKnown(context(), row(), guess_.span());
   }
-  IsphSystem(const IsphSystem&) = delete;
+  IsphPressureSystem(const IsphPressureSystem&) = delete;
 
   Context<Cuda>& context() const { return flow_.context; }
   std::uint32_t fluidCount() const { return flow_.particles.fluidCount; }

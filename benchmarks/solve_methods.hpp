@@ -2,7 +2,7 @@
 
 #include "library_solver.hpp"
 #include "linear_system.hpp"
-#include "mph_solver.hpp"
+#include "mph_system.hpp"
 #include "solve_record.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/mph/mph_operator.hpp"
@@ -100,8 +100,8 @@ class SolveComparison {
   void solveByTreacle(const SolverSettings& settings, SolveResult& result) {
     MphSolver<D, Cuda> solver(settings);
     result.setupSeconds = medianSeconds([&] {
-      solver.prepareOperator(context_, system_.pairs(), system_.terms());
-      solver.preparePreconditioner(context_, system_.pairs(), system_.ranges(), system_.terms());
+      solver.prepareOperator(context_, system_.pairs(), system_.ranges(), system_.terms());
+      solver.preparePreconditioner(context_);
     });
     SolveReport report;
     std::vector<double> seconds;

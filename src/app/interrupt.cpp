@@ -7,13 +7,13 @@ namespace {
 
 volatile std::sig_atomic_t received = 0;  // a handler can reach nothing else
 
-void remember(int signal) { received = signal; }
+void noteSignal(int signal) { received = signal; }
 
 }  // namespace
 
 void catchInterrupts() {
   struct sigaction action {};
-  action.sa_handler = remember;
+  action.sa_handler = noteSignal;
   action.sa_flags = static_cast<int>(SA_RESETHAND);  // the second signal meets the default handler
   sigemptyset(&action.sa_mask);
   sigaction(SIGINT, &action, nullptr);

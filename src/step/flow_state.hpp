@@ -1,5 +1,6 @@
 #pragma once
 
+#include "step_phases.hpp"
 #include "treacle/core/cuda.hpp"
 #include "treacle/model/case.hpp"
 #include "treacle/model/particles.hpp"
@@ -14,7 +15,7 @@ namespace treacle {
 /// The state of a simulation and what a step makes of it, the same for all methods.
 template <int D, class Backend>
 struct FlowState {
-  Case c;
+  Case theCase;
   std::int64_t step;  // steps done
   double time;        // [s]
   double timeStep;    // of the step at hand, or the last one [s]
@@ -25,8 +26,10 @@ struct FlowState {
   Buffer<WallMotion<D>, Backend> wallMotion;   // per body, of the step; empty: all walls keep their velocities
   Buffer<Vec<D>, Backend> velocity, position;  // the step's results before they are accepted
 
-  FlowState(const Case& theCase, std::int64_t startStep, double startTime)
-      : c(theCase), step(startStep), time(startTime), timeStep(theCase.time.step) {}
+  StepPhases<Backend> phases;  // of the step at hand
+
+  FlowState(const Case& c, std::int64_t startStep, double startTime)
+      : theCase(c), step(startStep), time(startTime), timeStep(c.time.step) {}
 };
 
 /// Copies and zeros within a backend's memory.

@@ -1,8 +1,7 @@
 #pragma once
 
-#include "staged_report.hpp"
+#include "staged_solver.hpp"
 #include "treacle/linear/cell_multigrid.hpp"
-#include "treacle/linear/krylov.hpp"
 #include "treacle/precondition/isph_hat_multigrid.hpp"
 #include "treacle/search/buckets.hpp"
 
@@ -11,49 +10,45 @@
 
 namespace treacle {
 
-/// A x = b for a matrix of pairs (ISPH's pressure and viscous step), with the Krylov method and the
-/// preconditioner of the case. `Row`: PressureRow or ViscousRow.
+/// The pressure equation of ISPH or its implicit viscous step: a matrix of pairs and its preconditioners. `Row`:
+/// PressureRow or ViscousRow.
 template <int D, class Backend, class Row>
-class PairSolver {
+class IsphSystem final : public StagedSystem<Backend> {
  public:
-  /// `stages`: of solveStages().
-  explicit PairSolver(std::vector<SolverSettings> stages) : stages_(std::move(stages)) {}
-
-  /// The matrix; the first stage is next. `pairs` and what the row reads must outlive the solves.
-  void prepareMatrix(Context<Backend>& context, const IsphPairs<D>& pairs, const Row& row) {
-    stage_ = 0;
+  /// What the matrix of a step is made of; it must outlive the solves.
+  void setStep(const IsphPairs<D>& pairs, const CellRanges<Backend>& ranges, const Row& row) {
     pairs_ = &pairs;
+    ranges_ = &ranges;
     row_ = row;
+  }
+
+  void prepareOperator(Context<Backend>& context, const SolverSettings& stage) override {
+    stage_ = stage;
     withPrecision([&](auto& data) { fill(context, data); });
   }
-  /// `ranges` must outlive the solves.
-  void preparePreconditioner(Context<Backend>& context, const CellRanges<Backend>& ranges) {
-    ranges_ = &ranges;
+  void preparePreconditioner(Context<Backend>& context, const SolverSettings&) override {
     withPrecision([&](auto& data) { prepare(context, data); });
   }
-  /// `x`: first guess and solution; what a row of zeros has there stays as it is. Several solves may follow each
-  /// other with one matrix; a stage that failed is not tried again. `history`: StoppingRule's, of the last stage.
-  StagedReport solve(Context<Backend>& context, std::span<const double> b, std::span<double> x,
-                     double* history = nullptr) {
-    history_ = history;
-    keep(context, x);
-    return solveInStages(
-        stages_, stage_,
-        [&] {
-          SolveReport report;
-          withPrecision([&](auto& data) { report = solveStage(context, data, b, x); });
-          return report;
-        },
-        [&](const SolveReport& report) {
-          if (isBetter(report)) return keep(context, x);
-          copy(context, std::span<const double>(guess_), x);
-        },
-        [&] { withPrecision([&](auto& data) { fill(context, data), prepare(context, data); }); });
+  void multiply(Context<Backend>& context, std::span<const double> x, std::span<double> y) override {
+    withPrecision([&](auto& data) { treacle::multiply(context, data.matrix, x, y); });
+  }
+  void precondition(Context<Backend>& context, std::span<const double> r, std::span<double> z) override {
+    withPrecision([&](auto& data) {
+      switch (stage_.preconditioner) {
+        case PreconditionerKind::HatMultigrid:
+          return data.hats.apply(context, r, z);
+        case PreconditionerKind::CellMultigrid:
+          return data.cells.apply(context, r, z);
+        case PreconditionerKind::Jacobi:
+          return jacobi(context, data.matrix, r, z);
+        default:
+          return copy(context, r, z);
+      }
+    });
   }
 
   std::size_t bytes() const {
-    std::size_t sum = diagonal_.bytes() + moments_.bytes() + compressed_.bytes() + levels_.bytes() +
-                      guess_.bytes() + krylov_.bytes();
+    std::size_t sum = diagonal_.bytes() + moments_.bytes() + compressed_.bytes() + levels_.bytes();
     const auto add = [&](const auto& data) {
       sum += data.coefficient.bytes() + data.word.bytes() + data.low.bytes() + data.inverseNear.bytes() +
              data.hats.bytes() + data.cells.bytes();
@@ -76,11 +71,9 @@ class PairSolver {
     CellMultigrid<T, Backend> cells;
   };
 
-  const SolverSettings& stage() const { return stages_[stage_]; }
-
   template <class F>
   void withPrecision(F&& f) {
-    if (stage().precision == Precision::Mixed)
+    if (stage_.precision == Precision::Mixed)
       f(single_);
     else
       f(double_);
@@ -114,57 +107,53 @@ class PairSolver {
 
   template <class T>
   void prepare(Context<Backend>& context, Data<T>& data) {
-    if (stage().preconditioner == PreconditionerKind::HatMultigrid)
-      data.hats.setup(context, *pairs_, data.matrix, moments_, stage().hats.gridDegree);
-    if (stage().preconditioner != PreconditionerKind::CellMultigrid) return;
+    if (stage_.preconditioner == PreconditionerKind::HatMultigrid)
+      data.hats.setup(context, *pairs_, data.matrix, moments_, stage_.hats.gridDegree);
+    if (stage_.preconditioner != PreconditionerKind::CellMultigrid) return;
     findBuckets(context, ranges_->key, D * CellGrid<D>::subBits, D, levels_);
     compressed(context, data.matrix, compressed_);
-    data.cells.setup(context, compressed_, levels_.begin, stage().cells.levels, stage().cells.sweeps);
+    data.cells.setup(context, compressed_, levels_.begin, stage_.cells.levels, stage_.cells.sweeps);
   }
 
-  template <class T>
-  SolveReport solveStage(Context<Backend>& context, Data<T>& data, std::span<const double> b,
-                         std::span<double> x) {
-    using Flat = std::span<const double>;
-    const auto a = [&](Flat from, std::span<double> to) { multiply(context, data.matrix, from, to); };
-    const auto with = [&](const auto& k) {
-      const double refresh = stage().precision == Precision::Mixed ? 1e-4 : 0;
-      const StoppingRule rule{stage().tolerance, stage().maxIterations, refresh, history_};
-      return stage().krylov == KrylovKind::Cg ? conjugateGradient(context, a, k, b, x, rule, krylov_)
-                                              : conjugateResidual(context, a, k, b, x, rule, krylov_);
-    };
-    switch (stage().preconditioner) {
-      case PreconditionerKind::HatMultigrid:
-        return with([&](Flat r, std::span<double> z) { data.hats.apply(context, r, z); });
-      case PreconditionerKind::CellMultigrid:
-        return with([&](Flat r, std::span<double> z) { data.cells.apply(context, r, z); });
-      case PreconditionerKind::Jacobi:
-        return with([&](Flat r, std::span<double> z) { jacobi(context, data.matrix, r, z); });
-      default:
-        return with([&](Flat r, std::span<double> z) { copy(context, r, z); });
-    }
-  }
-
-  void keep(Context<Backend>& context, std::span<const double> x) {
-    if (stage_ + 1 == stages_.size()) return;
-    guess_.resize(context, x.size());
-    copy(context, x, guess_.span());
-  }
-
-  std::vector<SolverSettings> stages_;
-  std::size_t stage_ = 0;  // the one that is prepared
+  SolverSettings stage_;  // the one that is prepared
   const IsphPairs<D>* pairs_ = nullptr;
   const CellRanges<Backend>* ranges_ = nullptr;
   Row row_{};
-  double* history_ = nullptr;
   Buffer<double, Backend> diagonal_;
   Buffer<IsphMoments<D>, Backend> moments_;
   BlockCsr<1, double, Backend> compressed_;
   BucketLevels<Backend> levels_;
-  Buffer<double, Backend> guess_;  // the best one known, where there is a stage to fall back to
   Data<double> double_;
   Data<float> single_;
-  KrylovWorkspace<Backend> krylov_;
+};
+
+/// A x = b for such a matrix, with the Krylov method and the preconditioner of the case.
+template <int D, class Backend, class Row>
+class IsphSolver {
+ public:
+  /// `stages`: of solveStages().
+  explicit IsphSolver(std::vector<SolverSettings> stages) : solver_(system_, std::move(stages)) {}
+  IsphSolver(const IsphSolver&) = delete;
+
+  /// The matrix; all arguments, and what the row reads, must outlive the solves.
+  void prepareMatrix(Context<Backend>& context, const IsphPairs<D>& pairs, const CellRanges<Backend>& ranges,
+                     const Row& row) {
+    system_.setStep(pairs, ranges, row);
+    solver_.prepareOperator(context);
+  }
+  void preparePreconditioner(Context<Backend>& context) { solver_.preparePreconditioner(context); }
+
+  /// `x`: first guess and solution; what a row of zeros has there stays as it is. The rest: StagedSolver.
+  StagedReport solve(Context<Backend>& context, std::span<const double> b, std::span<double> x,
+                     double* history = nullptr) {
+    return solver_.solve(context, b, x, nullptr, history);
+  }
+
+  std::size_t bytes() const { return system_.bytes() + solver_.bytes(); }
+
+ private:
+  IsphSystem<D, Backend, Row> system_;
+  StagedSolver<1, Backend> solver_;
 };
 
 }  // namespace treacle

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "failure.hpp"
 #include "isph_solver.hpp"
 #include "step_method.hpp"
 #include "take_trial.hpp"
@@ -17,23 +18,23 @@ template <int D, class Backend>
 class IsphStep final : public StepMethod<D, Backend> {
  public:
   explicit IsphStep(FlowState<D, Backend>& state)
-      : s_(state),
-        pairs_(makeIsphPairs<D>(state.c)),
+      : state_(state),
+        pairs_(makeIsphPairs<D>(state.theCase)),
         viscousLimit_(explicitViscousLimit(pairs_)),
-        pressure_(solveStages(state.c)),
-        viscosity_(solveStages(state.c)) {}
+        pressure_(solveStages(state.theCase)),
+        viscosity_(solveStages(state.theCase)) {}
 
-  void sort() override { sortByCell(s_.context, pairs_.grid, s_.particles, ranges_, workspace_); }
+  void sortParticles() override { sortByCell(state_.context, pairs_.grid, state_.particles, ranges_, workspace_); }
 
-  void buildLists() override {
-    const Particles<D, Backend>& p = s_.particles;
+  void findNeighbours() override {
+    const Particles<D, Backend>& p = state_.particles;
     pairs_.fluidCount = p.fluidCount;
     pairs_.activeCount = ranges_.activeCount;
     pairs_.position = p.position;
     pairs_.material = p.material;
     pairs_.cells = viewOf(ranges_);
     pairs_.body = p.body.data();
-    pairs_.wallMotion = s_.wallMotion.empty() ? nullptr : s_.wallMotion.data();
+    pairs_.wallMotion = state_.wallMotion.empty() ? nullptr : state_.wallMotion.data();
     find(RowKind::FluidOfFluid, fluidOfFluid_);
     find(RowKind::WallsOfFluid, wallsOfFluid_);
     find(RowKind::FluidOfWalls, fluidOfWalls_);
@@ -45,82 +46,84 @@ class IsphStep final : public StepMethod<D, Backend> {
 
   void computeDensities() override {
     prepareDensities();
-    sumOnFluid(s_.context, pairs_, densityTerm());
+    sumOnFluid(state_.context, pairs_, densityTerm());
   }
 
-  void computeCoefficients() override {
-    const std::uint32_t n = pairs_.fluidCount, active = pairs_.activeCount;
-    pairs_.timeStep = s_.timeStep;
-    pairs_.materials.setTimeStep(s_.timeStep);
-    prepareDensities();
-    predicted_.resize(s_.context, active);
-    copyValues(s_.context, std::span<const Vec<D>>(s_.particles.velocity).subspan(n, active - n),
-               predicted_.data() + n);
-    if (isImplicit()) {
-      sumOnFluid(s_.context, pairs_, densityTerm());
-      solveViscosity();
-    } else {
-      const PredictorTerm<D> predictor{s_.particles.velocity.data(), predicted_.data(),
+  /// v* of [O23 eq. (7)].
+  StagedReport predict() override {
+    pairs_.timeStep = state_.timeStep;
+    pairs_.materials.setTimeStep(state_.timeStep);
+    if (isImplicit()) return solveViscosity();
+    state_.phases.run(state_.context, phases::coefficients, [&] {
+      preparePrediction();
+      const PredictorTerm<D> predictor{state_.particles.velocity.data(), predicted_.data(),
                                        std::isfinite(viscousLimit_)};
-      sumOnFluid(s_.context, pairs_, BothTerms<DensityTerm<D>, PredictorTerm<D>>{densityTerm(), predictor});
-    }
-    source_.resize(s_.context, n);
-    sumOnFluid(s_.context, pairs_,
-               PressureSourceTerm<D>{predicted_.data(), s_.particles.numberDensity.data(), surface_.data(),
-                                     source_.data()});
-    pressure_.prepareMatrix(s_.context, pairs_, row());
+      sumOnFluid(state_.context, pairs_, BothTerms<DensityTerm<D>, PredictorTerm<D>>{densityTerm(), predictor});
+    });
+    return {};
   }
 
-  void preparePreconditioner() override { pressure_.preparePreconditioner(s_.context, ranges_); }
+  void prepareSystem() override {
+    source_.resize(state_.context, pairs_.fluidCount);
+    sumOnFluid(state_.context, pairs_,
+               PressureSourceTerm<D>{predicted_.data(), state_.particles.numberDensity.data(), surface_.data(),
+                                     source_.data()});
+    pressure_.prepareMatrix(state_.context, pairs_, ranges_, row());
+  }
+
+  void preparePreconditioner() override { pressure_.preparePreconditioner(state_.context); }
 
   StagedReport solve() override {
     guess(solution_);
-    const StagedReport report = pressure_.solve(s_.context, source_, solution_);
+    const StagedReport report = pressure_.solve(state_.context, source_, solution_);
     if (report.status != SolveStatus::Converged) fail("pressure", report);
     return report;
   }
 
   /// Of the pressure equation.
   SolverTrial solveBy(const SolverSettings& settings) override {
-    const SolverSettings stage = singleStage(s_.c, settings);
-    PairSolver<D, Backend, PressureRow<D>> solver({stage});
+    const SolverSettings stage = singleStage(state_.theCase, settings);
+    IsphSolver<D, Backend, PressureRow<D>> solver({stage});
     Buffer<double, Backend> x;
     return takeTrial(
-        s_.context, stage,
+        state_.context, stage,
         [&] {
-          solver.prepareMatrix(s_.context, pairs_, row());
-          solver.preparePreconditioner(s_.context, ranges_);
+          solver.prepareMatrix(state_.context, pairs_, ranges_, row());
+          solver.preparePreconditioner(state_.context);
         },
         [&](double* history) {
           guess(x);
-          return solver.solve(s_.context, source_, x, history);
+          return solver.solve(state_.context, source_, x, history);
         });
   }
 
-  /// The corrector.
-  std::span<const Vec<D>> transport() override {
-    settlePressure(s_.context, surface_, !pairs_.negativePressure, solution_);
-    s_.velocity.resize(s_.context, pairs_.fluidCount);
-    sumOnFluid(s_.context, pairs_, CorrectorTerm<D>{solution_.data(), predicted_.data(), s_.velocity.data()});
-    const double coefficient = s_.c.method.isph.shifting;
-    if (coefficient == 0) return s_.velocity.span();
-    transport_.resize(s_.context, pairs_.fluidCount);
-    shiftedVelocity<D>(s_.context, {coefficient, s_.c.spacing, s_.timeStep}, deficit_, surface_, s_.velocity,
-                       transport_);
+  void correctVelocities() override {
+    settlePressure(state_.context, surface_, !pairs_.negativePressure, solution_);
+    state_.velocity.resize(state_.context, pairs_.fluidCount);
+    sumOnFluid(state_.context, pairs_,
+               CorrectorTerm<D>{solution_.data(), predicted_.data(), state_.velocity.data()});
+  }
+
+  std::span<const Vec<D>> transportVelocities() override {
+    const double coefficient = state_.theCase.method.isph.shifting;
+    if (coefficient == 0) return state_.velocity.span();
+    transport_.resize(state_.context, pairs_.fluidCount);
+    shiftedVelocity<D>(state_.context, {coefficient, state_.theCase.spacing, state_.timeStep}, deficit_, surface_,
+                       state_.velocity, transport_);
     return transport_.span();
   }
 
   void accept() override {
     const std::uint32_t n = pairs_.fluidCount;
-    std::span<double> pressure = s_.particles.pressure;
-    copyValues(s_.context, std::span<const double>(solution_), pressure.data());
-    clearValues(s_.context, pressure.subspan(n));
-    sumOnWalls(s_.context, pairs_, WallPressureTerm<D>{solution_.data(), pressure.data()});
+    std::span<double> pressure = state_.particles.pressure;
+    copyValues(state_.context, std::span<const double>(solution_), pressure.data());
+    clearValues(state_.context, pressure.subspan(n));
+    sumOnWalls(state_.context, pairs_, WallPressureTerm<D>{solution_.data(), pressure.data()});
   }
 
   void describe(DiagnosticsInput<D>& in) const override {
-    if (surface_.size() != s_.particles.fluidCount) return;
-    in.density = s_.particles.numberDensity.span().first(s_.particles.fluidCount);
+    if (surface_.size() != state_.particles.fluidCount) return;
+    in.density = state_.particles.numberDensity.span().first(state_.particles.fluidCount);
     in.surface = surface_;
   }
 
@@ -150,59 +153,83 @@ class IsphStep final : public StepMethod<D, Backend> {
 
   void find(RowKind kind, NeighbourRows<Backend>& rows) {
     const double radius = pairs_.kernel.radius();
-    findNeighbours<D>(s_.context, pairs_.grid, pairs_.cells, pairs_.position, pairs_.fluidCount,
-                      pairs_.activeCount, {nearShare * radius, radius}, kind, rows);
+    treacle::findNeighbours<D>(state_.context, pairs_.grid, pairs_.cells, pairs_.position, pairs_.fluidCount,
+                               pairs_.activeCount, {nearShare * radius, radius}, kind, rows);
   }
 
   /// The pressures of the last step.
   void guess(Buffer<double, Backend>& x) const {
-    x.resize(s_.context, pairs_.fluidCount);
-    copyValues(s_.context, std::span<const double>(s_.particles.pressure).first(pairs_.fluidCount), x.data());
+    x.resize(state_.context, pairs_.fluidCount);
+    copyValues(state_.context, std::span<const double>(state_.particles.pressure).first(pairs_.fluidCount),
+               x.data());
   }
 
   void prepareDensities() {
     const std::uint32_t n = pairs_.fluidCount;
-    deficit_.resize(s_.context, n);
-    surface_.resize(s_.context, n);
-    clearValues(s_.context, s_.particles.numberDensity.span().subspan(n));
+    deficit_.resize(state_.context, n);
+    surface_.resize(state_.context, n);
+    clearValues(state_.context, state_.particles.numberDensity.span().subspan(n));
   }
-  DensityTerm<D> densityTerm() { return {s_.particles.numberDensity.data(), deficit_.data(), surface_.data()}; }
+  DensityTerm<D> densityTerm() {
+    return {state_.particles.numberDensity.data(), deficit_.data(), surface_.data()};
+  }
 
-  bool isImplicit() const { return isViscousStepImplicit(s_.c.method.isph.viscosity, viscousLimit_, s_.timeStep); }
+  bool isImplicit() const {
+    return isViscousStepImplicit(state_.theCase.method.isph.viscosity, viscousLimit_, state_.timeStep);
+  }
+
+  /// Room for v*, and the velocities of the walls in it.
+  void preparePrediction() {
+    const std::uint32_t n = pairs_.fluidCount, active = pairs_.activeCount;
+    prepareDensities();
+    predicted_.resize(state_.context, active);
+    copyValues(state_.context, std::span<const Vec<D>>(state_.particles.velocity).subspan(n, active - n),
+               predicted_.data() + n);
+  }
 
   /// predicted = v* of (rho/dt - mu lap) v* = rho/dt v + rho g, one component after the other.
-  void solveViscosity() {
+  StagedReport solveViscosity() {
+    state_.phases.run(state_.context, phases::coefficients, [&] {
+      preparePrediction();
+      sumOnFluid(state_.context, pairs_, densityTerm());
+      viscosity_.prepareMatrix(state_.context, pairs_, ranges_, ViscousRow<D>{});
+      ViscousSourceTerm<D> term{state_.particles.velocity.data(), {}};
+      for (int k = 0; k < D; ++k) {
+        component_[k].resize(state_.context, pairs_.fluidCount);
+        term.source[k] = component_[k].data();
+      }
+      sumOnFluid(state_.context, pairs_, term);
+    });
+    state_.phases.run(state_.context, phases::coarse, [&] { viscosity_.preparePreconditioner(state_.context); });
+    StagedReport total;
+    state_.phases.run(state_.context, phases::solve, [&] {
+      for (int k = 0; k < D; ++k) total = joined(std::move(total), solveComponent(k));
+    });
+    return total;
+  }
+
+  StagedReport solveComponent(int k) {
     const std::uint32_t n = pairs_.fluidCount;
-    viscosity_.prepareMatrix(s_.context, pairs_, ViscousRow<D>{});
-    viscosity_.preparePreconditioner(s_.context, ranges_);
-    ViscousSourceTerm<D> term{s_.particles.velocity.data(), {}};
-    for (int k = 0; k < D; ++k) {
-      component_[k].resize(s_.context, n);
-      term.source[k] = component_[k].data();
-    }
-    sumOnFluid(s_.context, pairs_, term);
-    solution_.resize(s_.context, n);
-    const std::span<const Vec<D>> last = std::span<const Vec<D>>(s_.particles.velocity).first(n);
-    for (int k = 0; k < D; ++k) {
-      takeComponent<D>(s_.context, last, k, solution_);
-      const StagedReport report = viscosity_.solve(s_.context, component_[k], solution_);
-      if (report.status != SolveStatus::Converged) fail("viscosity", report);
-      putComponent<D>(s_.context, solution_, k, predicted_.span().first(n));
-    }
+    solution_.resize(state_.context, n);
+    takeComponent<D>(state_.context, std::span<const Vec<D>>(state_.particles.velocity).first(n), k, solution_);
+    StagedReport report = viscosity_.solve(state_.context, component_[k], solution_);
+    if (report.status != SolveStatus::Converged) fail("viscosity", report);
+    putComponent<D>(state_.context, solution_, k, predicted_.span().first(n));
+    return report;
   }
 
   [[noreturn]] void fail(const char* what, const StagedReport& report) {
     std::string diagnosis =
-        fmt::format("{}: {}", what, describeFailure(report, s_.c.solver.tolerance, report.failures));
+        fmt::format("{}: {}", what, describeFailure(report, state_.theCase.solver.tolerance, report.failures));
     if (report.status == SolveStatus::NotFinite) {
       Particles<D> host;
-      toHost(s_.context, s_.particles, host);
+      toHost(state_.context, state_.particles, host);
       diagnosis += "; " + describeNotFinite<D>(host, host.velocity);
     }
     throw RunError(diagnosis);
   }
 
-  FlowState<D, Backend>& s_;
+  FlowState<D, Backend>& state_;
   IsphPairs<D> pairs_;
   double viscousLimit_;  // [s]
   CellRanges<Backend> ranges_;
@@ -214,8 +241,8 @@ class IsphStep final : public StepMethod<D, Backend> {
   Buffer<double, Backend> source_, solution_;  // of the pressure equation; before, a component of v*
   Buffer<double, Backend> component_[D];       // of the viscous step's right-hand side
   Buffer<Vec<D>, Backend> transport_;
-  PairSolver<D, Backend, PressureRow<D>> pressure_;
-  PairSolver<D, Backend, ViscousRow<D>> viscosity_;
+  IsphSolver<D, Backend, PressureRow<D>> pressure_;
+  IsphSolver<D, Backend, ViscousRow<D>> viscosity_;
 };
 
 }  // namespace treacle

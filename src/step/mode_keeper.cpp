@@ -57,11 +57,14 @@ void ModeKeeper<D, Backend>::finish(Context<Backend>& context, SolverModes<D, Ba
   deflation_.release();
 }
 
-template class ModeKeeper<2, Cpu>;
-template class ModeKeeper<3, Cpu>;
+#define TREACLE_INSTANTIATE(Backend)     \
+  template class ModeKeeper<1, Backend>; \
+  template class ModeKeeper<2, Backend>; \
+  template class ModeKeeper<3, Backend>;
+TREACLE_INSTANTIATE(Cpu)
 #ifdef TREACLE_HAS_CUDA
-template class ModeKeeper<2, Cuda>;
-template class ModeKeeper<3, Cuda>;
+TREACLE_INSTANTIATE(Cuda)
 #endif
+#undef TREACLE_INSTANTIATE
 
 }  // namespace treacle

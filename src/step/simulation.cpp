@@ -2,8 +2,6 @@
 
 #include "failure.hpp"
 #include "step_method.hpp"
-#include "treacle/core/phase_clock.hpp"
-#include "treacle/core/trace.hpp"
 #include "treacle/model/particles_copy.hpp"
 #include "treacle/step/diagnostics.hpp"
 #include "treacle/step/move_particles.hpp"
@@ -52,38 +50,38 @@ void toHost(const Context<Cuda>& context, const Particles<D, Cuda>& particles, P
 template <int D, class Backend>
 struct Simulation<D, Backend>::State : FlowState<D, Backend> {
   using Flow = FlowState<D, Backend>;
-  using Flow::c, Flow::context, Flow::particles, Flow::step, Flow::time, Flow::timeStep, Flow::velocity,
-      Flow::position, Flow::wallsMove;
+  using Flow::theCase, Flow::context, Flow::particles, Flow::step, Flow::time, Flow::timeStep, Flow::velocity,
+      Flow::position, Flow::wallsMove, Flow::phases;
 
   bool wallsRotate, wallVelocitiesChange;
   Buffer<Vec<D>, Backend> wallChord;  // per wall particle, where some rotate [m/s]
   std::unique_ptr<StepMethod<D, Backend>> method;
-  PhaseClock<Backend> clock;
   double lastSpeed = 0;  // of the fastest particle [m/s]
 
-  State(const Case& theCase, Particles<D> state, std::int64_t startStep, double startTime)
-      : Flow(theCase, startStep, startTime),
-        wallsRotate(someWallRotates(theCase)),
-        wallVelocitiesChange(wallsRotate || someWallOscillates(theCase)) {
+  State(const Case& c, Particles<D> state, std::int64_t startStep, double startTime)
+      : Flow(c, startStep, startTime),
+        wallsRotate(someWallRotates(c)),
+        wallVelocitiesChange(wallsRotate || someWallOscillates(c)) {
     wallsMove = wallVelocitiesChange || someWallMoves(state);
     toBackend(context, std::move(state), particles);
     if (step == 0) forEachFluidFieldOf([&](auto& field) { clearValues(context, field.span()); }, particles);
-    method = c.method.kind == MethodKind::Isph ? makeIsphStep(static_cast<Flow&>(*this))
-                                               : makeMphStep(static_cast<Flow&>(*this));
-    method->sort();
+    method = theCase.method.kind == MethodKind::Isph ? makeIsphStep(static_cast<Flow&>(*this))
+                                                     : makeMphStep(static_cast<Flow&>(*this));
+    method->sortParticles();
     if (step == 0) {  // else the state has the densities of its last step
-      method->buildLists();
+      method->findNeighbours();
       method->computeDensities();
     }
-    if (c.time.courant > 0) lastSpeed = diagnostics().maxSpeed;
+    if (theCase.time.courant > 0) lastSpeed = diagnostics().maxSpeed;
   }
 
   /// With a Courant number, no particle goes farther than that many spacings, and the last step meets the end.
   void chooseTimeStep() {
-    if (c.time.courant == 0) return;
-    timeStep = c.time.step;
-    if (lastSpeed * timeStep > c.time.courant * c.spacing) timeStep = c.time.courant * c.spacing / lastSpeed;
-    const double rest = c.time.end - time;
+    if (theCase.time.courant == 0) return;
+    timeStep = theCase.time.step;
+    if (lastSpeed * timeStep > theCase.time.courant * theCase.spacing)
+      timeStep = theCase.time.courant * theCase.spacing / lastSpeed;
+    const double rest = theCase.time.end - time;
     if (rest > 0 && timeStep > rest * (1 - 1e-9)) timeStep = rest;
   }
 
@@ -96,7 +94,8 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
   void moveBodies() {
     if (!wallVelocitiesChange) return;
     std::vector<WallMotion<D>> motion;
-    for (const Body& body : c.bodies) motion.push_back(treacle::wallMotion<D>(c.domain, body, time, timeStep));
+    for (const Body& body : theCase.bodies)
+      motion.push_back(treacle::wallMotion<D>(theCase.domain, body, time, timeStep));
     fromHost(context, std::span<const WallMotion<D>>(motion), this->wallMotion);
     setWallVelocities<D>(context, walls(), particles.velocity.span().subspan(particles.fluidCount));
   }
@@ -112,7 +111,7 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
   /// x^{k+1} of [K23 eq. (15)] into `position`; walls by their prescribed motion.
   void move() {
     position.resize(context, particles.count);
-    moveRange(0, particles.fluidCount, method->transport());
+    moveRange(0, particles.fluidCount, method->transportVelocities());
     if (wallsMove) moveRange(particles.fluidCount, particles.count, wallTransport());
   }
 
@@ -139,7 +138,7 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     copyValues(context, std::span<const Vec<D>>(velocity).first(particles.fluidCount), particles.velocity.data());
     copyValues(context, std::span<const Vec<D>>(position).first(moved), particles.position.data());
     ++step;
-    time = c.time.courant > 0 ? time + timeStep : static_cast<double>(step) * c.time.step;
+    time = theCase.time.courant > 0 ? time + timeStep : static_cast<double>(step) * theCase.time.step;
   }
 
   Diagnostics diagnostics() const {
@@ -149,18 +148,10 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     in.velocity = particles.velocity.span().first(n);
     in.material = particles.material.span().first(n);
     in.materials = method->materials();
-    in.gravity = resized<D>(c.gravity);
-    in.spacing = c.spacing;
+    in.gravity = resized<D>(theCase.gravity);
+    in.spacing = theCase.spacing;
     method->describe(in);
     return computeDiagnostics<D>(context, in);
-  }
-
-  /// Runs one phase under its name in a profiler, and takes its time.
-  template <class F>
-  void phase(const char* name, F&& work) {
-    const TraceRange range(name);
-    work();
-    clock.mark(context);
   }
 
   StepReport advance() {
@@ -168,20 +159,21 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     StagedReport solved;
     chooseTimeStep();
     moveBodies();
-    clock.start(context);
-    phase("search", [&] { method->sort(); });
-    phase("lists", [&] { method->buildLists(); });
-    phase("coefficients", [&] { method->computeCoefficients(); });
-    phase("coarse operators", [&] { method->preparePreconditioner(); });
-    phase("solve", [&] { solved = method->solve(); });
-    phase("update", [&] {
+    phases.start(context);
+    phases.run(context, treacle::phases::search, [&] { method->sortParticles(); });
+    phases.run(context, treacle::phases::lists, [&] { method->findNeighbours(); });
+    solved = method->predict();
+    phases.run(context, treacle::phases::coefficients, [&] { method->prepareSystem(); });
+    phases.run(context, treacle::phases::coarse, [&] { method->preparePreconditioner(); });
+    phases.run(context, treacle::phases::solve, [&] { solved = joined(std::move(solved), method->solve()); });
+    phases.run(context, treacle::phases::update, [&] {
+      method->correctVelocities();
       move();
       accept();
       report.diagnostics = diagnostics();
     });
     lastSpeed = report.diagnostics.maxSpeed;
-    const std::vector<double>& s = clock.seconds();
-    report.seconds = {s[0], s[1], s[2], s[3], s[4], s[5]};
+    report.seconds = phases.seconds();
     report.step = step;
     report.time = time;
     report.timeStep = timeStep;
@@ -196,9 +188,11 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
   std::vector<SolverTrial> convergence(std::span<const SolverSettings> solvers) {
     chooseTimeStep();
     moveBodies();
-    method->sort();
-    method->buildLists();
-    method->computeCoefficients();
+    phases.start(context);
+    method->sortParticles();
+    method->findNeighbours();
+    method->predict();
+    method->prepareSystem();
     std::vector<SolverTrial> trials;
     for (const SolverSettings& solver : solvers) trials.push_back(method->solveBy(solver));
     return trials;

@@ -18,13 +18,13 @@ class StepBalance {
  public:
   /// Once state.velocity and the pressures are those of the end of the step; positions and particles' velocities
   /// are still those of its start. `divergence`: C^T u^{k+1}, `elastic`: kappa [n - n_0]_+, per active particle.
-  Balance make(FlowState<D, Backend>& s, const MphNeighbourhood<D, Backend>& neighbourhood,
+  Balance make(FlowState<D, Backend>& state, const MphNeighbourhood<D, Backend>& neighbourhood,
                std::span<const double> divergence, std::span<const double> elastic) {
     const MphPairs<D>& pairs = neighbourhood.pairs();
-    sumPairs(s, neighbourhood);
+    sumPairs(state, neighbourhood);
     Balance balance;
-    setPowers(s, pairs, divergence, elastic, balance);
-    setLoads(s, pairs, balance);
+    setPowers(state, pairs, divergence, elastic, balance);
+    setLoads(state, pairs, balance);
     return balance;
   }
 
@@ -33,31 +33,31 @@ class StepBalance {
   }
 
  private:
-  void sumPairs(FlowState<D, Backend>& s, const MphNeighbourhood<D, Backend>& neighbourhood) {
+  void sumPairs(FlowState<D, Backend>& state, const MphNeighbourhood<D, Backend>& neighbourhood) {
     const MphPairs<D>& pairs = neighbourhood.pairs();
     const std::uint32_t n = pairs.fluidCount, active = pairs.activeCount;
     ClusterListView walls = pairs.wallList;
     if (walls.offset) {  // the lists of the step reach only as far as pressures
       const double reach = std::max(pairs.terms.pressureRadius, pairs.terms.viscosityRadius);
-      buildClusterList<D>(s.context, pairs.grid, neighbourhood.ranges(), pairs.position, n, active, {reach, 0},
+      buildClusterList<D>(state.context, pairs.grid, neighbourhood.ranges(), pairs.position, n, active, {reach, 0},
                           true, walls_);
       walls = walls_.view();
     }
-    shear_.resize(s.context, n);
-    wallForce_.resize(s.context, active - n);
-    wallDivergence_.resize(s.context, active - n);
-    wallDensity_.resize(s.context, active - n);
-    shearDissipation<D>(s.context, pairs, s.velocity, shear_);
-    fluidAtWalls<D>(s.context, pairs, walls, s.velocity, s.particles.pressure.span().first(active),
+    shear_.resize(state.context, n);
+    wallForce_.resize(state.context, active - n);
+    wallDivergence_.resize(state.context, active - n);
+    wallDensity_.resize(state.context, active - n);
+    shearDissipation<D>(state.context, pairs, state.velocity, shear_);
+    fluidAtWalls<D>(state.context, pairs, walls, state.velocity, state.particles.pressure.span().first(active),
                     {wallForce_.span(), wallDivergence_.span(), wallDensity_.span()});
   }
 
-  void setPowers(FlowState<D, Backend>& s, const MphPairs<D>& pairs, std::span<const double> divergence,
+  void setPowers(FlowState<D, Backend>& state, const MphPairs<D>& pairs, std::span<const double> divergence,
                  std::span<const double> elastic, Balance& balance) {
     using Terms = PowerTerms<D>;
-    const Terms terms{pairs.fluidCount, pairs.materials, pairs.material, s.particles.velocity, s.velocity,
-                      divergence,       elastic,         shear_,         wallDivergence_,      wallDensity_};
-    const auto sums = sumPowers<D>(s.context, terms, pairs.activeCount);
+    const Terms terms{pairs.fluidCount, pairs.materials, pairs.material, state.particles.velocity, state.velocity,
+                      divergence,       elastic,         shear_,         wallDivergence_,          wallDensity_};
+    const auto sums = sumPowers<D>(state.context, terms, pairs.activeCount);
     const double volume = std::pow(pairs.spacing, D);  // [K23 eq. (11)]
     balance.shearDissipation = volume * sums[Terms::Shear];
     balance.bulkDissipation = volume * sums[Terms::Bulk];
@@ -66,18 +66,19 @@ class StepBalance {
     balance.elasticEnergy = volume * sums[Terms::ElasticEnergy];
   }
 
-  void setLoads(FlowState<D, Backend>& s, const MphPairs<D>& pairs, Balance& balance) {
+  void setLoads(FlowState<D, Backend>& state, const MphPairs<D>& pairs, Balance& balance) {
     const std::uint32_t n = pairs.fluidCount, walls = pairs.activeCount - n;
-    const LoadTerms<D> terms{s.particles.body.span().subspan(n, walls), pairs.position.subspan(n, walls),
-                             s.velocity.span().subspan(n, walls), wallForce_};
-    const std::vector<LoadSums> loads = sumLoads<D>(s.context, terms, s.c.bodies.size());
+    const LoadTerms<D> terms{state.particles.body.span().subspan(n, walls), pairs.position.subspan(n, walls),
+                             state.velocity.span().subspan(n, walls), wallForce_};
+    const std::vector<LoadSums> loads = sumLoads<D>(state.context, terms, state.theCase.bodies.size());
     const double volume = std::pow(pairs.spacing, D);
     for (std::size_t b = 0; b < loads.size(); ++b) {
-      if (s.c.bodies[b].kind != BodyKind::Wall) continue;
+      if (state.theCase.bodies[b].kind != BodyKind::Wall) continue;
       const LoadSums& load = loads[b];
       balance.wallPower -= volume * load.power;
       balance.walls.push_back(
-          {volume * load.force, volume * (load.torque - cross(wallCenter(s.c.bodies[b], s.time), load.force))});
+          {volume * load.force,
+           volume * (load.torque - cross(wallCenter(state.theCase.bodies[b], state.time), load.force))});
     }
   }
 

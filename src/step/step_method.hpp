@@ -1,7 +1,7 @@
 #pragma once
 
 #include "flow_state.hpp"
-#include "staged_report.hpp"
+#include "staged_solver.hpp"
 #include "treacle/model/balance.hpp"
 #include "treacle/step/diagnostics.hpp"
 #include "treacle/step/solver_trial.hpp"
@@ -17,22 +17,25 @@ class StepMethod {
  public:
   virtual ~StepMethod() = default;
 
-  /// Sorts the particles into cells.
-  virtual void sort() = 0;
-  virtual void buildLists() = 0;
+  virtual void sortParticles() = 0;
+  virtual void findNeighbours() = 0;
   /// Densities of frame 0, where no step has been made.
   virtual void computeDensities() = 0;
+  /// What comes before the linear system, for state.timeStep: ISPH's velocities without pressure, which take
+  /// linear solves of their own where the viscosity is implicit. In phases of its own. Errors: RunError.
+  virtual StagedReport predict() { return {}; }
   /// Everything that the linear system consists of, for state.timeStep.
-  virtual void computeCoefficients() = 0;
+  virtual void prepareSystem() = 0;
   virtual void preparePreconditioner() = 0;
   /// The linear system. Errors: RunError.
   virtual StagedReport solve() = 0;
-  /// Solves the same system, once the coefficients are there, in another way from the same first guess, without
-  /// any fallback. Of the state nothing is changed.
+  /// Solves the same system, once it is prepared, in another way from the same first guess, without any fallback.
+  /// Of the state nothing is changed.
   virtual SolverTrial solveBy(const SolverSettings&) = 0;
-  /// The velocities of the fluid at the end of the step are in state.velocity afterwards; returns those that the
-  /// particles move with.
-  virtual std::span<const Vec<D>> transport() = 0;
+  /// Leaves the velocities of the fluid at the end of the step in state.velocity.
+  virtual void correctVelocities() {}
+  /// What the fluid moves with, once they are there.
+  virtual std::span<const Vec<D>> transportVelocities() = 0;
   /// Writes what the particles shall hold but for position and velocity, which are still those before the step.
   virtual void accept() = 0;
   /// Of the step that was accepted last, where the case wants it.

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <type_traits>
 #include <vector>
 
 namespace treacle {
@@ -10,6 +12,13 @@ struct Cuda {};
 
 template <class Backend>
 class Context;
+
+/// T on a device; on the CPU an object that holds nothing.
+struct Absent {
+  std::size_t bytes() const { return 0; }
+};
+template <class T, class Backend>
+using DeviceOnly = std::conditional_t<std::is_same_v<Backend, Cuda>, T, Absent>;
 
 /// The CPU needs no stream; parallel loops take their threads from OpenMP.
 template <>

@@ -60,18 +60,14 @@ class CellMultigrid {
 
   std::size_t levelCount() const { return cycle_.levelCount(); }
   std::size_t bytes() const {
-    std::size_t sum = inverseDiagonal_.bytes() + finest_.bytes() + cycle_.bytes();
-    if constexpr (onDevice) sum += spgemm_.bytes();
-    return sum;
+    return inverseDiagonal_.bytes() + finest_.bytes() + cycle_.bytes() + spgemm_.bytes();
   }
 
  private:
-  struct Nothing {};
-
   Buffer<T, Backend> inverseDiagonal_;   // of the particles
   BlockCsr<1, double, Backend> finest_;  // A_1
   BucketMultigrid<1, T, Backend> cycle_;
-  std::conditional_t<onDevice, GalerkinSpgemm<1>, Nothing> spgemm_;
+  DeviceOnly<GalerkinSpgemm<1>, Backend> spgemm_;
 };
 
 }  // namespace treacle

@@ -3,7 +3,7 @@
 #include "treacle/core/buffer.hpp"
 #include "treacle/core/cuda.hpp"
 #include "treacle/linear/deflation_scalars.hpp"
-#include "treacle/linear/krylov.hpp"
+#include "treacle/linear/vector.hpp"
 
 #include <cstddef>
 #include <span>
@@ -54,6 +54,14 @@ void recordedDirection(Context<Cuda>&, std::span<const double> r, std::span<cons
 void combine(Context<Cpu>&, std::span<const float> basis, const RitzVectors& ritz, std::span<float> w);
 void combine(Context<Cuda>&, std::span<const float> basis, const RitzVectors& ritz, std::span<float> w);
 
+/// scalars.setDirection(r.z), then p = z + beta p
+template <class Backend>
+void plainDirection(Context<Backend>& context, std::span<const double> r, std::span<const double> z,
+                    std::span<double> p, KrylovScalars* scalars) {
+  directionDot(context, r, z, scalars);
+  direction(context, z, p, scalars);
+}
+
 /// Conjugate gradients whose directions are A-orthogonal to a few given vectors W, the modes: the eigenvalues of
 /// M A that belong to them no longer slow the others down (docs/solver.md). The modes are Ritz vectors of an
 /// earlier solve that was recorded. A new A needs nothing but A W. W is kept in single precision; A W and E = W^T
@@ -66,49 +74,21 @@ class Deflation {
 
   /// The next solve, of n unknowns, is deflated by modes of that length; or recorded; or only its numbers are,
   /// which needs no memory and shows whether there are modes worth taking.
-  void deflateBy(std::span<const float> modes, std::size_t n) {
-    use_ = modes.empty() ? Use::Nothing : Use::Modes;
-    n_ = n;
-    modes_ = modes;
-  }
-  void recordNumbers(Context<Backend>& context) {
-    use_ = Use::Record;
-    recorded_ = {};
-    scalars_.resize(context, 1);
-  }
+  void deflateBy(std::span<const float> modes, std::size_t n);
+  void recordNumbers(Context<Backend>& context);
   /// Errors: std::bad_alloc.
-  void record(Context<Backend>& context, std::size_t n) {
-    recordNumbers(context);
-    work_.resize(context, n * DeflationScalars::maxBasis * sizeof(float));
-    recorded_ = {reinterpret_cast<float*>(work_.data()), n * DeflationScalars::maxBasis};
-  }
+  void record(Context<Backend>& context, std::size_t n);
 
   /// What conjugateGradient calls: before the solve (`spare`: a vector to use), for its first guess with the
   /// residual r, and for each direction.
-  template <class Operator>
-  void prepare(Context<Backend>&, const Operator& a, std::span<double> spare);
-  void guess(Context<Backend>& context, std::span<double> x, std::span<double> r, KrylovScalars* krylov) {
-    if (use_ == Use::Modes) deflateGuess(context, view(), x, r, krylov);
-  }
+  void prepare(Context<Backend>& context, const Product& a, std::span<double> spare);
+  void guess(Context<Backend>& context, std::span<double> x, std::span<double> r, KrylovScalars* krylov);
   void direction(Context<Backend>& context, std::span<const double> r, std::span<const double> z,
-                 std::span<double> p, KrylovScalars* krylov) {
-    switch (use_) {
-      case Use::Nothing:
-        return plainDirection(context, r, z, p, krylov);
-      case Use::Modes:
-        return deflatedDirection(context, view(), r, z, p, krylov);
-      case Use::Record:
-        return recordedDirection(context, r, z, p, krylov, scalars_.data(), recorded_);
-    }
-  }
+                 std::span<double> p, KrylovScalars* krylov);
 
   /// Modes of the solve that was recorded, which took so many iterations.
-  RitzVectors ritzVectors(Context<Backend>& context, int iterations, int most) const {
-    return largestRitzVectors(onHost(context), iterations, most, leastValue);
-  }
-  void takeModes(Context<Backend>& context, const RitzVectors& ritz, std::span<float> to) {
-    combine(context, recorded_, ritz, to);
-  }
+  RitzVectors ritzVectors(Context<Backend>& context, int iterations, int most) const;
+  void takeModes(Context<Backend>& context, const RitzVectors& ritz, std::span<float> to);
   /// Gives up the memory that only solves with modes, or such that are recorded, need.
   void release() { work_ = {}, recorded_ = {}; }
 
@@ -117,17 +97,9 @@ class Deflation {
  private:
   enum class Use { Nothing, Modes, Record };
 
-  DeflationScalars onHost(const Context<Backend>& context) const {
-    if constexpr (std::is_same_v<Backend, Cuda>)
-      return valueOnHost(context, scalars_.data());
-    else
-      return scalars_[0];
-  }
+  DeflationScalars onHost(const Context<Backend>& context) const;
   int modeCount() const { return static_cast<int>(modes_.size() / n_); }
-  Deflated view() {
-    const std::size_t size = modes_.size();
-    return {modes_, {reinterpret_cast<const double*>(work_.data()), size}, modeCount(), scalars_.data()};
-  }
+  Deflated view();
   std::span<double> product(int j) { return {reinterpret_cast<double*>(work_.data()) + j * n_, n_}; }
 
   Use use_ = Use::Nothing;
@@ -137,23 +109,5 @@ class Deflation {
   Buffer<std::byte, Backend> work_;  // A W, or the recorded vectors: no solve has both
   Buffer<DeflationScalars, Backend> scalars_;
 };
-
-template <class Backend>
-template <class Operator>
-void Deflation<Backend>::prepare(Context<Backend>& context, const Operator& a, std::span<double> spare) {
-  if (use_ != Use::Modes) return;
-  scalars_.resize(context, 1);
-  work_.resize(context, modes_.size() * sizeof(double));
-  for (int j = 0; j < modeCount(); ++j) {
-    widen(context, modes_.subspan(j * n_, n_), spare);
-    a(std::span<const double>(spare), product(j));
-    galerkinRow(context, view(), j);
-  }
-  ModeMatrix inverse;
-  if (invert(onHost(context).galerkin, modeCount(), inverse) > 0)
-    setInverse(context, inverse, scalars_.data());
-  else
-    use_ = Use::Nothing;
-}
 
 }  // namespace treacle

@@ -3,9 +3,13 @@
 #include "treacle/core/backend.hpp"
 #include "treacle/linear/krylov_scalars.hpp"
 
+#include <functional>
 #include <span>
 
 namespace treacle {
+
+/// y = A x, or z = K r, for vectors in the backend's memory.
+using Product = std::function<void(std::span<const double>, std::span<double>)>;
 
 /// The vector operations that a Krylov loop consists of. All spans have the same length; `scalars` and the spans
 /// are in the backend's memory. Sums have a fixed order: they do not depend on the number of threads.

@@ -210,6 +210,11 @@ struct SolverSettings {
   CellSettings cells;
   HatSettings hats;
 
+  /// Whether solves are deflated by modes: where `deflation` means anything.
+  bool deflates() const {
+    return deflation > 0 && krylov == KrylovKind::Cg && preconditioner == PreconditionerKind::ProjectedMultigrid;
+  }
+
   bool operator==(const SolverSettings&) const = default;
 };
 

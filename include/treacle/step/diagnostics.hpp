@@ -55,7 +55,7 @@ struct DiagnosticsTerm {
   }
 };
 
-/// Of nobody.
+/// Of no particle: what any other is joined to.
 TREACLE_HD inline Diagnostics noDiagnostics() {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   return {0, 0, -infinity, -infinity};

@@ -33,13 +33,13 @@ struct Extrapolation {
 
 /// The derivatives of a particle's motion after a step.
 template <int D>
-struct Remembered {
+struct MotionDerivatives {
   Vec<D> acceleration, jerk;
 
   /// A zero acceleration is one that is not known: a jerk would be that of no motion to motion.
-  TREACLE_HD static Remembered make(double dt, const Vec<D>& before, const Vec<D>& after,
-                                    const Vec<D>& lastAcceleration) {
-    Remembered r{(after - before) * (1 / dt), {}};
+  TREACLE_HD static MotionDerivatives make(double dt, const Vec<D>& before, const Vec<D>& after,
+                                           const Vec<D>& lastAcceleration) {
+    MotionDerivatives r{(after - before) * (1 / dt), {}};
     if (norm2(lastAcceleration) > 0) r.jerk = (r.acceleration - lastAcceleration) * (1 / dt);
     return r;
   }
@@ -56,10 +56,10 @@ void extrapolate(Context<Cuda>&, const Extrapolation<D>&, std::span<const Vec<D>
 /// Brings the memory of the fluid particles up to date after a step of dt [s] with their velocities before and
 /// after it.
 template <int D>
-void remember(Context<Cpu>&, double dt, std::span<const Vec<D>> before, std::span<const Vec<D>> after,
-              FlowMemory<D>);
+void updateFlowMemory(Context<Cpu>&, double dt, std::span<const Vec<D>> before, std::span<const Vec<D>> after,
+                      FlowMemory<D>);
 template <int D>
-void remember(Context<Cuda>&, double dt, std::span<const Vec<D>> before, std::span<const Vec<D>> after,
-              FlowMemory<D>);
+void updateFlowMemory(Context<Cuda>&, double dt, std::span<const Vec<D>> before, std::span<const Vec<D>> after,
+                      FlowMemory<D>);
 
 }  // namespace treacle

@@ -52,8 +52,8 @@ void checkSizes() {
     Pair<D> pair(fluid);
     Particles<D>& p = pair.host.particles;
     const std::span<const Vec<D>> u = p.velocity.span().first(fluid), v = pair.device.velocity.span().first(fluid);
-    remember<D>(pair.host.context, 0.1, u, pair.after, memoryOf(p));
-    remember<D>(pair.context, 0.1, v, pair.deviceAfter, memoryOf(pair.device));
+    updateFlowMemory<D>(pair.host.context, 0.1, u, pair.after, memoryOf(p));
+    updateFlowMemory<D>(pair.context, 0.1, v, pair.deviceAfter, memoryOf(pair.device));
     expectClose<D>(pair.context, p.acceleration, pair.device.acceleration);
     expectClose<D>(pair.context, p.jerk, pair.device.jerk);
     for (const FirstGuess order : {FirstGuess::Last, FirstGuess::Linear, FirstGuess::Quadratic}) {

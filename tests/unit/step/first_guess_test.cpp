@@ -26,7 +26,7 @@ struct Path {
     return u;
   }
   void step(int k, double length = dt) {
-    remember<2>(context, length, at((k - 1) * length), at(k * length), memory());
+    updateFlowMemory<2>(context, length, at((k - 1) * length), at(k * length), memory());
   }
   /// Largest error of the guess for the step to `t` from the velocities at t - length.
   double error(FirstGuess order, double t, double length = dt) {

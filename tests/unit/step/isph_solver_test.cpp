@@ -50,9 +50,9 @@ struct Column {
   int iterations(PreconditionerKind kind, Precision precision) {
     s.c.solver.preconditioner = kind;
     s.c.solver.precision = precision;
-    PairSolver<3, Cpu, PressureRow<3>> solver(solveStages(s.c));
-    solver.prepareMatrix(s.context, s.pairs, PressureRow<3>{s.surface.data()});
-    solver.preparePreconditioner(s.context, s.ranges);
+    IsphSolver<3, Cpu, PressureRow<3>> solver(solveStages(s.c));
+    solver.prepareMatrix(s.context, s.pairs, s.ranges, PressureRow<3>{s.surface.data()});
+    solver.preparePreconditioner(s.context);
     std::vector<double> x(s.n());
     const StagedReport report = solver.solve(s.context, b, x);
     EXPECT_EQ(report.status, SolveStatus::Converged);
@@ -71,7 +71,7 @@ struct Column {
   }
 };
 
-TEST(PairSolver, HasTheMatrixOfTheStudy) {
+TEST(IsphSolver, HasTheMatrixOfTheStudy) {
   const Vec<3, int> size{9, 8, 7};
   Column column(size);
   const IsphTestSystem<3, double> system(column.s, PressureRow<3>{column.s.surface.data()});
@@ -85,7 +85,7 @@ TEST(PairSolver, HasTheMatrixOfTheStudy) {
                   1e-13);
 }
 
-TEST(PairSolver, DefaultIsFlatInTheSizeOfTheColumnAndPlainIterationsGrow) {
+TEST(IsphSolver, DefaultIsFlatInTheSizeOfTheColumnAndPlainIterationsGrow) {
   using enum PreconditionerKind;
   struct Study {
     Vec<3, int> size;
@@ -109,7 +109,7 @@ TEST(PairSolver, DefaultIsFlatInTheSizeOfTheColumnAndPlainIterationsGrow) {
   }
 }
 
-TEST(PairSolver, ConjugateResidualsTakeAsManyIterations) {
+TEST(IsphSolver, ConjugateResidualsTakeAsManyIterations) {
   Column column({9, 9, 9});
   for (const PreconditionerKind kind :
        {PreconditionerKind::Jacobi, PreconditionerKind::CellMultigrid, PreconditionerKind::HatMultigrid})

@@ -1,6 +1,6 @@
 #include "treacle/step/solve_stages.hpp"
 
-#include "mph_solver.hpp"
+#include "mph_system.hpp"
 #include "support/oracle.hpp"
 #include "treacle/step/simulation.hpp"
 
@@ -57,8 +57,8 @@ struct System {
 
   StagedReport solve() {
     MphSolver<D> solver(solveStages(s.c));
-    solver.prepareOperator(s.context, s.pairs(), s.terms());
-    solver.preparePreconditioner(s.context, s.pairs(), s.ranges(), s.terms());
+    solver.prepareOperator(s.context, s.pairs(), s.ranges(), s.terms());
+    solver.preparePreconditioner(s.context);
     return solver.solve(s.context, b, u);
   }
 

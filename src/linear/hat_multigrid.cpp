@@ -1,0 +1,139 @@
+#include "treacle/linear/hat_multigrid.hpp"
+
+namespace treacle {
+
+template <int D, class T, class Backend, int B>
+void HatMultigrid<D, T, Backend, B>::setup(Context<Backend>& context, const HatNodes<D, Backend>& finestNodes,
+                                           const BlockCsr<B, double, Backend>& finest, const HatOptions& options) {
+  finestNodes_ = &finestNodes;
+  finestMatrix_ = &finest;
+  options_ = options;
+  addCoarserLevels(context);
+  for (std::size_t l = 0; l < levels_.size(); ++l) {
+    levels_[l].b.resize(context, unknowns(l));
+    levels_[l].x.resize(context, unknowns(l));
+    if (!isDense(l)) prepareSmoother(context, l);
+  }
+  const std::size_t last = levels_.size() - 1, n = isDense(last) ? unknowns(last) : 0;
+  inverse_.resize(context, n * n);
+  if (n > 0) denseInverse<T>(context, operatorOf(last), inverse_);
+}
+
+/// The memory of an earlier setup's levels is used again.
+template <int D, class T, class Backend, int B>
+void HatMultigrid<D, T, Backend, B>::addCoarserLevels(Context<Backend>& context) {
+  std::size_t count = 1;
+  if (levels_.empty()) levels_.resize(1);
+  for (; unknowns(count - 1) > denseUnknowns_; ++count) {
+    if (levels_.size() == count) levels_.emplace_back();
+    Level& coarse = levels_[count];
+    const HatNodes<D, Backend>& fine = nodes(count - 1);
+    coarserNodes<D>(context, fine, coarse.nodes);
+    // Scattered drops have as many coarse nodes as fine ones, or more.
+    if (B * coarse.nodes.count() > denseUnknowns_ && coarse.nodes.count() > 0.9 * fine.count()) break;
+    coarsen(context, count - 1);
+  }
+  levels_.resize(count);
+}
+
+/// The operator of level l + 1, whose nodes are there.
+template <int D, class T, class Backend, int B>
+void HatMultigrid<D, T, Backend, B>::coarsen(Context<Backend>& context, std::size_t l) {
+  Level& coarse = levels_[l + 1];
+  if constexpr (onDevice)
+    if (options_.route == GalerkinRoute::Spgemm) {
+      if (!products_) products_.emplace();
+      hatProlongation<D>(context, nodes(l), coarse.nodes, products_->prolongation);
+      products_->galerkin.compute(context, operatorOf(l), products_->prolongation, coarse.galerkin);
+      return;
+    }
+  coarsenHats<D>(context, nodes(l), operatorOf(l), coarse.nodes, coarse.galerkin, options_.reach);
+}
+
+template <int D, class T, class Backend, int B>
+void HatMultigrid<D, T, Backend, B>::prepareSmoother(Context<Backend>& context, std::size_t l) {
+  Level& level = levels_[l];
+  for (Buffer<T, Backend>* v : {&level.inverseDiagonal, &level.res, &level.z0, &level.z1})
+    v->resize(context, unknowns(l));
+  if (!std::is_same_v<T, double>) level.value.resize(context, B * B * operatorOf(l).block.size());
+  hatValues<T>(context, operatorOf(l), level.value, level.inverseDiagonal);
+  if (options_.smoother == HatSmoother::RowSums) {
+    const auto inverse = reinterpret_cast<Vec<B, T>*>(level.inverseDiagonal.data());
+    extendedJacobiInverse<B>(context, operatorOf(l), std::span<Vec<B, T>>{inverse, operatorOf(l).rows()});
+    level.lambdaMax.assume(context, T(2));  // halves of the sums
+    return;
+  }
+  level.lambdaMax.run(
+      context, [&, a = matrix(l)](std::span<const T> x, std::span<T> y) { hatMultiply<T>(context, a, x, y); },
+      level.inverseDiagonal);
+}
+
+template <int D, class T, class Backend, int B>
+HatMatrix<T, B> HatMultigrid<D, T, Backend, B>::matrix(std::size_t l) const {
+  const BlockCsr<B, double, Backend>& a = operatorOf(l);
+  HatMatrix<T, B> view{a.rows(), a.block.size(), a.rowStart.data(), a.column.data(), levels_[l].value.data()};
+  if constexpr (std::is_same_v<T, double>) view.value = reinterpret_cast<const double*>(a.block.data());
+  return view;
+}
+
+template <int D, class T, class Backend, int B>
+HatVectors<T> HatMultigrid<D, T, Backend, B>::vectors(std::size_t l) {
+  Level& v = levels_[l];
+  const T* lambdaMax = isDense(l) ? nullptr : v.lambdaMax.largest();
+  return {v.inverseDiagonal.data(), lambdaMax, v.b.data(), v.res.data(), v.x.data(), {v.z0.data(), v.z1.data()}};
+}
+
+template <int D, class T, class Backend, int B>
+void HatMultigrid<D, T, Backend, B>::cycle(Context<Backend>& context) {
+  if (!isDense(0)) hatFirstStep<T>(context, unknowns(0), vectors(0));
+  cycle(context, 0);
+}
+
+/// b, and the first smoothing step of it, are there; what comes out is x.
+template <int D, class T, class Backend, int B>
+void HatMultigrid<D, T, Backend, B>::cycle(Context<Backend>& context, std::size_t l) {
+  const HatVectors<T> v = vectors(l);
+  if (isDense(l))
+    return denseMultiply<T>(context, static_cast<std::uint32_t>(unknowns(l)), inverse_.data(), v.b, v.x);
+
+  const HatMatrix<T, B> a = matrix(l);
+  const T* from = v.b;
+  int last = 0;  // which z is the latest; the same at the start of each cycle
+  for (int i = 2; i <= degreeOf(l); ++i, last = 1 - last, from = v.res)
+    hatStep<T>(context, a, ChebyshevStep<T>::at(i), v, from, last);
+  if (isLast(l)) return;
+
+  hatResidual<T>(context, a, v, from, last);
+  const HatVectors<T> coarse = vectors(l + 1);
+  hatRestrict<D, B, T>(context, nodes(l), nodes(l + 1), v.res, coarse);
+  cycle(context, l + 1);
+  hatProlong<D, B, T>(context, nodes(l), nodes(l + 1), coarse.x, v);
+  last = 0;
+  for (int i = 1; i <= options_.degree; ++i, last = 1 - last)
+    hatStep<T>(context, a, ChebyshevStep<T>::at(i), v, v.res, last);
+}
+
+template <int D, class T, class Backend, int B>
+std::size_t HatMultigrid<D, T, Backend, B>::bytes() const {
+  std::size_t sum = inverse_.bytes() + (products_ ? products_->bytes() : 0);
+  for (const Level& l : levels_) {
+    sum += l.nodes.bytes() + l.galerkin.bytes() + l.value.bytes() + l.inverseDiagonal.bytes();
+    sum += l.lambdaMax.bytes() + l.b.bytes() + l.res.bytes() + l.x.bytes() + l.z0.bytes() + l.z1.bytes();
+  }
+  return sum;
+}
+
+#define TREACLE_INSTANTIATE(T, Backend)          \
+  template class HatMultigrid<2, T, Backend, 1>; \
+  template class HatMultigrid<2, T, Backend, 2>; \
+  template class HatMultigrid<3, T, Backend, 1>; \
+  template class HatMultigrid<3, T, Backend, 3>;
+TREACLE_INSTANTIATE(double, Cpu)
+TREACLE_INSTANTIATE(float, Cpu)
+#ifdef TREACLE_HAS_CUDA
+TREACLE_INSTANTIATE(double, Cuda)
+TREACLE_INSTANTIATE(float, Cuda)
+#endif
+#undef TREACLE_INSTANTIATE
+
+}  // namespace treacle

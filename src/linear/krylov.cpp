@@ -1,0 +1,77 @@
+#include "treacle/linear/krylov.hpp"
+
+namespace treacle {
+
+template <class Backend>
+SolveReport conjugateGradient(Context<Backend>& context, const Product& a, const Product& k,
+                              std::span<const double> b, std::span<double> x, const StoppingRule& rule,
+                              KrylovWorkspace<Backend>& workspace, Deflation<Backend>* deflation) {
+  workspace.resize(context, b.size());
+  auto& [r, z, p, q, spare] = workspace.vectors;
+  // z = K r is new in every iteration: nothing to refresh.
+  KrylovScalars* scalars = workspace.loop.begin(context, {rule.tolerance, rule.maxIterations, 0, rule.history});
+
+  if (deflation) deflation->prepare(context, a, spare.span());
+  a(x, r.span());
+  residual(context, b, r, scalars);
+  if (deflation) deflation->guess(context, x, r.span(), scalars);
+  const SolveReport atStart = workspace.loop.report(context);
+  if (atStart.status != SolveStatus::Running) return atStart;
+
+  workspace.loop.record(context, [&] {
+    k(r.span(), z.span());
+    if (deflation)
+      deflation->direction(context, r, z, p.span(), scalars);
+    else
+      plainDirection(context, r, z, p.span(), scalars);
+    a(p.span(), q.span());
+    stepDot(context, p, q, scalars);
+    updateCg(context, {p, q, x, r}, scalars);
+  });
+  return workspace.loop.run(context);
+}
+
+template <class Backend>
+SolveReport conjugateResidual(Context<Backend>& context, const Product& a, const Product& k,
+                              std::span<const double> b, std::span<double> x, const StoppingRule& rule,
+                              KrylovWorkspace<Backend>& workspace) {
+  workspace.resize(context, b.size());
+  // u = K q and y = A s are never alive together: one vector serves both.
+  auto& [r, s, p, q, y] = workspace.vectors;
+  auto& u = y;
+  KrylovScalars* scalars = workspace.loop.begin(context, rule);
+
+  a(x, r.span());
+  residual(context, b, r, scalars);
+  SolveReport report = workspace.loop.report(context);
+  if (report.status != SolveStatus::Running) return report;
+
+  workspace.loop.record(context, [&] {
+    a(s.span(), y.span());
+    directionDot(context, s, y, scalars);
+    directionsCr(context, {s, y, p, q}, scalars);
+    k(q.span(), u.span());
+    stepDot(context, q, u, scalars);
+    updateCr(context, {p, q, u, x, r, s}, scalars);
+  });
+  do {
+    k(r.span(), s.span());
+    report = workspace.loop.run(context);
+  } while (report.status == SolveStatus::Refresh);
+  return report;
+}
+
+#define TREACLE_INSTANTIATE(Backend)                                                                      \
+  template SolveReport conjugateGradient(Context<Backend>&, const Product&, const Product&,               \
+                                         std::span<const double>, std::span<double>, const StoppingRule&, \
+                                         KrylovWorkspace<Backend>&, Deflation<Backend>*);                 \
+  template SolveReport conjugateResidual(Context<Backend>&, const Product&, const Product&,               \
+                                         std::span<const double>, std::span<double>, const StoppingRule&, \
+                                         KrylovWorkspace<Backend>&);
+TREACLE_INSTANTIATE(Cpu)
+#ifdef TREACLE_HAS_CUDA
+TREACLE_INSTANTIATE(Cuda)
+#endif
+#undef TREACLE_INSTANTIATE
+
+}  // namespace treacle
