@@ -89,7 +89,7 @@ void benchmarkAssembled(const std::string& size, DeviceStart<D>& s, Record& reco
                    assemble(s.context, s.pairs(), s.terms(), rows, a);
                  },
                  3));
-  const double bytes = static_cast<double>(a.block.size() * sizeof(Block<D>) + a.column.size() * 4 +
+  const double bytes = static_cast<double>(a.value.size() * sizeof(Block<D>) + a.column.size() * 4 +
                                            a.rowStart.size() * 8 + 2 * s.n() * sizeof(Vec<D>));
   record.add("products/A assembled/" + size, s.n(),
              secondsOf(s.context, [&] { multiply<D, double>(s.context, a, s.u, s.y); }), bytes);

@@ -89,7 +89,7 @@ std::vector<PressureSizes::Grid> gridSizes(Context<Cuda>& context, const IsphPai
   findHatNodes(context, fluid, HatsOn::Fluid, nodes);
   while (true) {
     hatPattern(context, nodes, pattern, 1);
-    grids.push_back({nodes.count(), pattern.block.size(), nodes.count() <= denseNodes});
+    grids.push_back({nodes.count(), pattern.value.size(), nodes.count() <= denseNodes});
     if (grids.back().dense) return grids;
     coarserNodes<D>(context, nodes, coarser);
     if (coarser.count() > denseNodes && coarser.count() > 0.9 * nodes.count()) return grids;

@@ -1,8 +1,8 @@
 #include "library_csr.hpp"
 
 #include "core/launch.hpp"
-#include "linear/parents.cuh"
 #include "treacle/core/error.hpp"
+#include "treacle/linear/bucket_cycle.hpp"
 
 #include <limits>
 #include <string>
@@ -72,7 +72,7 @@ std::string CusparseHandle::version() const {
 
 template <int D>
 void scalarMatrix(const Context<Cuda>& context, const BlockCsr<D, double, Cuda>& from, ScalarCsr& to) {
-  const std::uint64_t entries = from.block.size() * (D * D);
+  const std::uint64_t entries = from.value.size() * (D * D);
   if (entries > std::numeric_limits<std::int32_t>::max())
     throw RunError("the matrix has " + std::to_string(entries) +
                    " nonzeros, more than cuSPARSE's 32-bit rows count");
@@ -80,20 +80,20 @@ void scalarMatrix(const Context<Cuda>& context, const BlockCsr<D, double, Cuda>&
   to.resize(context, n, n);
   to.reserveEntries(context, static_cast<std::int64_t>(entries));
   launch(context, blocksFor(from.rows(), warpsPerBlock), 32 * warpsPerBlock, 0, splitBlocksKernel<D>, from.rows(),
-         from.rowStart.data(), from.column.data(), from.block.data(), to.start.data(), to.column.data(),
+         from.rowStart.data(), from.column.data(), from.value.data(), to.start.data(), to.column.data(),
          to.value.data());
 }
 
 template <int D>
-void transferMatrices(const Context<Cuda>& context, std::span<const std::uint32_t> members, std::uint32_t fineRows,
+void transferMatrices(Context<Cuda>& context, std::span<const std::uint32_t> members, std::uint32_t fineRows,
                       ScalarCsr& restriction, ScalarCsr& prolongation) {
   const std::size_t n = std::size_t{D} * fineRows, coarse = D * (members.size() - 1);
   const auto rows = static_cast<std::int64_t>(n), coarseRows = static_cast<std::int64_t>(coarse);
   restriction.resize(context, coarseRows, rows);
   prolongation.resize(context, rows, coarseRows);
   for (ScalarCsr* m : {&restriction, &prolongation}) m->reserveEntries(context, rows);
-  Buffer<std::uint32_t, Cuda> parentOf;
-  findParents(context, members, fineRows, parentOf);
+  Buffer<std::uint32_t, Cuda> parentOf(context, fineRows);
+  findParents(context, members, parentOf.span());
   const std::uint32_t *parent = parentOf.data(), *first = members.data();
 
   forEach(context, n + 1,
@@ -179,10 +179,10 @@ void LibraryProduct::multiply(double alpha, std::span<const double> x, double be
                                       CUDA_R_64F, algorithm_, const_cast<std::byte*>(buffer_.data())));
 }
 
-#define TREACLE_INSTANTIATE(D)                                                                           \
-  template void scalarMatrix<D>(const Context<Cuda>&, const BlockCsr<D, double, Cuda>&, ScalarCsr&);     \
-  template void transferMatrices<D>(const Context<Cuda>&, std::span<const std::uint32_t>, std::uint32_t, \
-                                    ScalarCsr&, ScalarCsr&);
+#define TREACLE_INSTANTIATE(D)                                                                                 \
+  template void scalarMatrix<D>(const Context<Cuda>&, const BlockCsr<D, double, Cuda>&, ScalarCsr&);           \
+  template void transferMatrices<D>(Context<Cuda>&, std::span<const std::uint32_t>, std::uint32_t, ScalarCsr&, \
+                                    ScalarCsr&);
 TREACLE_INSTANTIATE(1)
 TREACLE_INSTANTIATE(2)
 TREACLE_INSTANTIATE(3)

@@ -32,7 +32,7 @@ void scalarMatrix(const Context<Cuda>&, const BlockCsr<D, double, Cuda>& from, S
 /// The summation over members, R, and P = R^T, for vectors of D components. `members`: first fine row of each
 /// coarse one, and the end; device memory.
 template <int D>
-void transferMatrices(const Context<Cuda>&, std::span<const std::uint32_t> members, std::uint32_t fineRows,
+void transferMatrices(Context<Cuda>&, std::span<const std::uint32_t> members, std::uint32_t fineRows,
                       ScalarCsr& restriction, ScalarCsr& prolongation);
 
 /// Weight zero for those rows of transfers between numbers (D = 1) for which `inverse` is zero.

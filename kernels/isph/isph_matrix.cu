@@ -194,10 +194,10 @@ void compressed(Context<Cuda>& context, const IsphMatrix<T>& a, BlockCsr<1, doub
   });
   const std::uint64_t entries = startRows(context, result.rowStart);
   result.column.resize(context, entries);
-  result.block.resize(context, entries);
+  result.value.resize(context, entries);
   forEach(context, a.rows,
           [forEachEntry, start = result.rowStart.data(), column = result.column.data(),
-           block = result.block.data()] __device__(std::size_t i) {
+           block = result.value.data()] __device__(std::size_t i) {
             std::uint64_t place = start[i];
             forEachEntry(i, [&](std::uint32_t j, double value) {
               column[place] = j;

@@ -27,12 +27,12 @@ struct StoreInverse {
 template <int D, class T>
 void multiply(Context<Cuda>& context, const BlockCsr<D, T, Cuda>& a, std::span<const Vec<D, T>> x,
               std::span<Vec<D, T>> y) {
-  rowSums<Reading::Streamed>(context, a, ProductWith<D, T>{x.data()}, StoreSum<D, T>{y.data()});
+  rowSums<Reading::Streamed>(context, viewOf(a), ProductWith<D, T>{x.data()}, StoreSum<D, T>{y.data()});
 }
 
 template <int D, class T, class S>
 void extendedJacobiInverse(Context<Cuda>& context, const BlockCsr<D, T, Cuda>& a, std::span<Vec<D, S>> inverse) {
-  rowSums<Reading::Streamed>(context, a, Magnitude<T>{}, StoreInverse<D, T, S>{inverse.data()});
+  rowSums<Reading::Streamed>(context, viewOf(a), Magnitude<T>{}, StoreInverse<D, T, S>{inverse.data()});
 }
 
 #define TREACLE_INSTANTIATE(D, T)                                                                       \

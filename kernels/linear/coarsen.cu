@@ -1,9 +1,8 @@
 #include "core/launch.hpp"
 #include "core/scan.hpp"
-#include "linear/parents.cuh"
 #include "linear/row_sums.cuh"
 #include "treacle/core/error.hpp"
-#include "treacle/linear/bucket_multigrid.hpp"
+#include "treacle/linear/bucket_cycle.hpp"
 
 #include <string>
 
@@ -19,9 +18,9 @@ constexpr int maxColumns = D == 2 ? 9 : 27;
 
 /// One warp per coarse row; reads the columns of its fine rows and their parents; writes the number of distinct
 /// parents to rowStart, or, with Fill, the parents, in the order in which they first appear. No atomics.
-template <int D, bool Fill>
+template <int D, class T, bool Fill>
 __global__ void __launch_bounds__(32 * warpsPerBlock)
-    patternKernel(BlockCsrView<D, std::byte> fine, std::uint32_t rows, const std::uint32_t* members,
+    patternKernel(BlockCsrView<D, T> fine, std::uint32_t rows, const std::uint32_t* members,
                   const std::uint32_t* parent, std::uint64_t* rowStart, std::uint32_t* column) {
   const std::uint32_t row = blockIdx.x * warpsPerBlock + threadIdx.x / 32;
   if (row >= rows) return;
@@ -59,7 +58,7 @@ __global__ void __launch_bounds__(256)
     const std::uint32_t mine = column[start + n / (D * D)], e = n % (D * D);
     T sum = 0;
     for (std::uint64_t k = begin; k < end; ++k)
-      if (parent[fine.column[k]] == mine) sum += fine.block[k].a[e];
+      if (parent[fine.column[k]] == mine) sum += fine.value[k].a[e];
     block[start].a[n] = sum;
   }
 }
@@ -70,25 +69,25 @@ template <int D, class T>
 void coarsen(Context<Cuda>& context, const BlockCsr<D, T, Cuda>& fine, std::span<const std::uint32_t> members,
              BlockCsr<D, T, Cuda>& coarse) {
   const auto rows = static_cast<std::uint32_t>(members.size() - 1);
-  Buffer<std::uint32_t, Cuda> parent;
-  findParents(context, members, fine.rows(), parent);
+  Buffer<std::uint32_t, Cuda> parent(context, fine.rows());
+  findParents(context, members, parent);
 
-  const BlockCsrView<D, std::byte> pattern{fine.rows(), fine.rowStart.data(), fine.column.data(), nullptr};
+  const BlockCsrView<D, T> pattern = viewOf(fine);
   const unsigned blocks = blocksFor(rows, warpsPerBlock), threads = 32 * warpsPerBlock;
   coarse.rowStart.resize(context, std::size_t{rows} + 1);
   std::uint32_t* none = nullptr;
-  launch(context, blocks, threads, 0, patternKernel<D, false>, pattern, rows, members.data(), parent.data(),
+  launch(context, blocks, threads, 0, patternKernel<D, T, false>, pattern, rows, members.data(), parent.data(),
          coarse.rowStart.data(), none);
   const std::uint64_t entries = startRows(context, coarse.rowStart);
   if (entries >= overflow)
     throw RunError("a bucket of the multigrid couples to more than " + std::to_string(maxColumns<D>) +
                    " buckets of its level");
   coarse.column.resize(context, entries);
-  coarse.block.resize(context, entries);
-  launch(context, blocks, threads, 0, patternKernel<D, true>, pattern, rows, members.data(), parent.data(),
+  coarse.value.resize(context, entries);
+  launch(context, blocks, threads, 0, patternKernel<D, T, true>, pattern, rows, members.data(), parent.data(),
          coarse.rowStart.data(), coarse.column.data());
   launch(context, rows, 256, 0, valuesKernel<D, T>, viewOf(fine), members.data(), parent.data(),
-         coarse.rowStart.data(), coarse.column.data(), coarse.block.data());
+         coarse.rowStart.data(), coarse.column.data(), coarse.value.data());
 }
 
 #define TREACLE_INSTANTIATE(D, T)                                                                          \

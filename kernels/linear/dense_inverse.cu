@@ -15,7 +15,7 @@ __global__ void fillKernel(BlockCsrView<B, double> a, std::uint32_t stride, doub
   if (row >= a.rows) return;
   constexpr unsigned elements = B * B;
   const std::uint64_t begin = a.rowStart[row];
-  const double* value = a.block[begin].a;
+  const double* value = a.value[begin].a;
   const auto numbers = static_cast<std::uint32_t>(a.rowStart[row + 1] - begin) * elements;
   for (std::uint32_t k = threadIdx.x % 32; k < numbers; k += 32) {
     const std::uint32_t i = row * B + k % elements / B, j = a.column[begin + k / elements] * B + k % B;

@@ -2,10 +2,10 @@
 
 #include "core/launch.hpp"
 #include "core/scan.hpp"
-#include "linear/parents.cuh"
 #include "linear/row_sums.cuh"
 #include "linear/scalar_product.hpp"
 #include "treacle/core/error.hpp"
+#include "treacle/linear/bucket_cycle.hpp"
 
 #include <limits>
 #include <string>
@@ -37,7 +37,7 @@ __global__ void __launch_bounds__(32 * warpsPerBlock) scalarRowsKernel(BlockCsrV
     const std::uint32_t k = e / (B * B), r = e / B % B, c = e % B;
     const std::uint64_t place = base + r * length + k * B + c;
     to.column[place] = static_cast<std::int32_t>(a.column[begin + k] * B + c);
-    to.value[place] = a.block[begin].a[e];
+    to.value[place] = a.value[begin].a[e];
   }
 }
 
@@ -77,7 +77,7 @@ void writeProlongation(const Context<Cuda>& context, BlockCsrView<1, double> wei
     p.start[e] = start;
     for (std::int32_t k = 0; k < count; ++k) {
       p.column[start + k] = static_cast<std::int32_t>(B * weights.column[begin + k] + c);
-      p.value[start + k] = weights.block[begin + k].a[0];
+      p.value[start + k] = weights.value[begin + k].a[0];
     }
   });
 }
@@ -109,7 +109,7 @@ void clear(const Context<Cuda>& context, std::uint32_t rows, BlockCsr<B, double,
   a.rowStart.resize(context, std::size_t{rows} + 1);
   clearBytes(context, a.rowStart.data(), a.rowStart.span().size_bytes());
   a.column.resize(context, 0);
-  a.block.resize(context, 0);
+  a.value.resize(context, 0);
 }
 
 }  // namespace
@@ -123,23 +123,25 @@ struct GalerkinSpgemm<B>::Impl {
   void setMatrix(const Context<Cuda>& context, const BlockCsr<B, double, Cuda>& fine) {
     const std::int64_t n = std::int64_t{B} * fine.rows();
     a.resize(context, n, n);
-    a.reserveEntries(context, countable(fine.block.size() * (B * B)));
+    a.reserveEntries(context, countable(fine.value.size() * (B * B)));
     launch(context, blocksFor(fine.rows(), warpsPerBlock), 32 * warpsPerBlock, 0, scalarRowsKernel<B>,
            treacle::viewOf(fine), viewOf(a));
   }
 
-  void setSummation(const Context<Cuda>& context, std::span<const std::uint32_t> members, std::uint32_t fineRows) {
+  void setSummation(Context<Cuda>& context, std::span<const std::uint32_t> members, std::uint32_t fineRows) {
     const std::int64_t n = std::int64_t{B} * fineRows;
     p.resize(context, n, std::int64_t{B} * static_cast<std::int64_t>(members.size() - 1));
     p.reserveEntries(context, n);
-    findParents(context, members, fineRows, parent);
+    parent.resize(context, fineRows);
+    findParents(context, members, parent);
     writeSummation<B>(context, parent.data(), n, viewOf(p));
   }
 
   void setProlongation(const Context<Cuda>& context, const Prolongation<Cuda>& weights) {
     p.resize(context, std::int64_t{B} * weights.rows(), std::int64_t{B} * weights.coarseRows);
-    p.reserveEntries(context, countable(B * weights.block.size()));
-    writeProlongation<B>(context, treacle::viewOf(weights), viewOf(p));
+    p.reserveEntries(context, countable(B * weights.value.size()));
+    writeProlongation<B>(context, treacle::viewOf(static_cast<const BlockCsr<1, double, Cuda>&>(weights)),
+                         viewOf(p));
   }
 
   /// coarse = P^T A P with the P that is there.
@@ -158,10 +160,10 @@ struct GalerkinSpgemm<B>::Impl {
            coarse.rowStart.data(), none);
     const std::uint64_t entries = startRows(context, coarse.rowStart);
     coarse.column.resize(context, entries);
-    coarse.block.resize(context, entries);
+    coarse.value.resize(context, entries);
     launch(context, blocksFor(rows, 256), 256, 0, blockColumnsKernel<B, true>, rows, viewOf(rap),
            coarse.rowStart.data(), coarse.column.data());
-    writeBlocks<B>(context, rows, viewOf(rap), coarse.rowStart.data(), coarse.block.data());
+    writeBlocks<B>(context, rows, viewOf(rap), coarse.rowStart.data(), coarse.value.data());
   }
 };
 
@@ -177,7 +179,7 @@ GalerkinSpgemm<B>::~GalerkinSpgemm() = default;
 template <int B>
 void GalerkinSpgemm<B>::compute(Context<Cuda>& context, const BlockCsr<B, double, Cuda>& fine,
                                 const Prolongation<Cuda>& prolongation, BlockCsr<B, double, Cuda>& coarse) {
-  if (fine.block.empty() || prolongation.block.empty()) return clear(context, prolongation.coarseRows, coarse);
+  if (fine.value.empty() || prolongation.value.empty()) return clear(context, prolongation.coarseRows, coarse);
   impl_->setProlongation(context, prolongation);
   impl_->compute(context, fine, coarse);
 }
@@ -185,7 +187,7 @@ void GalerkinSpgemm<B>::compute(Context<Cuda>& context, const BlockCsr<B, double
 template <int B>
 void GalerkinSpgemm<B>::compute(Context<Cuda>& context, const BlockCsr<B, double, Cuda>& fine,
                                 std::span<const std::uint32_t> members, BlockCsr<B, double, Cuda>& coarse) {
-  if (fine.block.empty()) return clear(context, static_cast<std::uint32_t>(members.size() - 1), coarse);
+  if (fine.value.empty()) return clear(context, static_cast<std::uint32_t>(members.size() - 1), coarse);
   impl_->setSummation(context, members, fine.rows());
   impl_->compute(context, fine, coarse);
 }

@@ -1,16 +1,10 @@
 #include "treacle/linear/hat_cycle.hpp"
 
 #include "core/reduce.cuh"
-#include "linear/dense_product.cuh"
 #include "linear/row_sums.cuh"
 
 namespace treacle {
 namespace {
-
-template <class T, int B>
-BlockCsrView<B, T> blockView(const HatMatrix<T, B>& a) {
-  return {a.rows, a.rowStart, a.column, reinterpret_cast<const Block<B, T>*>(a.value)};
-}
 
 /// The term of A x for numbers that are read again soon.
 template <class T, int B>
@@ -23,8 +17,8 @@ struct CachedProduct {
 
 /// store(k, number k of A x) for all numbers
 template <class T, int B, class Store>
-void products(const Context<Cuda>& context, const HatMatrix<T, B>& a, const T* x, Store store) {
-  rowSums<Reading::Cached>(context, blockView(a), a.entries, CachedProduct<T, B>{x},
+void products(const Context<Cuda>& context, const BlockCsrView<B, T>& a, const T* x, Store store) {
+  rowSums<Reading::Cached>(context, a, CachedProduct<T, B>{x},
                            [store] __device__(std::size_t row, int r, T sum) { store(row * B + r, sum); });
 }
 
@@ -74,12 +68,12 @@ struct FirstStep {
 
 /// One warp per block row; reads A; writes the values and the inverses of the diagonal elements. No atomics.
 template <class T, int B>
-__global__ void valuesKernel(BlockCsrView<B, double> a, T* value, T* inverseDiagonal) {
+__global__ void valuesKernel(BlockCsrView<B, double> a, Block<B, T>* value, T* inverseDiagonal) {
   const std::uint32_t row = (blockIdx.x * blockDim.x + threadIdx.x) / 32;
   if (row >= a.rows) return;
   constexpr unsigned elements = B * B;
   const std::uint64_t begin = a.rowStart[row];
-  const double* from = a.block[begin].a;
+  const double* from = a.value[begin].a;
   const auto numbers = static_cast<std::uint32_t>(a.rowStart[row + 1] - begin) * elements;
   double diagonal[B] = {};
   for (std::uint32_t k = threadIdx.x % 32; k < numbers; k += 32) {
@@ -88,7 +82,7 @@ __global__ void valuesKernel(BlockCsrView<B, double> a, T* value, T* inverseDiag
 #pragma unroll
     for (int c = 0; c < B; ++c)
       if (own && k % elements == c * (B + 1u)) diagonal[c] = v;
-    if (value) value[begin * elements + k] = static_cast<T>(v);
+    if (value) value[begin + k / elements].a[k % elements] = static_cast<T>(v);
   }
 #pragma unroll
   for (int c = 0; c < B; ++c) {
@@ -117,17 +111,30 @@ __global__ void restrictKernel(const HatNodesView<D> fine, const HatNodesView<D>
   }
 }
 
+/// One warp per row: x = M b. No atomics.
+template <class T>
+__global__ void denseKernel(int unknowns, const T* matrix, const T* b, T* x) {
+  const int row = (blockIdx.x * blockDim.x + threadIdx.x) / 32;
+  if (row >= unknowns) return;
+  T sum = 0;
+  const T* mine = matrix + static_cast<std::size_t>(row) * unknowns;
+#pragma unroll 8
+  for (int k = threadIdx.x % 32; k < unknowns; k += 32) sum += mine[k] * b[k];
+  sum = warpSum(sum);
+  if (threadIdx.x % 32 == 0) x[row] = sum;
+}
+
 }  // namespace
 
 template <class T, int B>
-void hatValues(Context<Cuda>& context, const BlockCsr<B, double, Cuda>& a, std::span<T> value,
+void hatValues(Context<Cuda>& context, const BlockCsr<B, double, Cuda>& a, std::span<Block<B, T>> value,
                std::span<T> inverseDiagonal) {
   launch(context, blocksFor(a.rows(), 4), 128, 0, valuesKernel<T, B>, viewOf(a),
          value.empty() ? nullptr : value.data(), inverseDiagonal.data());
 }
 
 template <class T, int B>
-void hatMultiply(Context<Cuda>& context, const HatMatrix<T, B>& a, std::span<const T> x, std::span<T> y) {
+void hatMultiply(Context<Cuda>& context, const BlockCsrView<B, T>& a, std::span<const T> x, std::span<T> y) {
   products(context, a, x.data(), StoreProduct<T>{y.data()});
 }
 
@@ -137,14 +144,14 @@ void hatFirstStep(Context<Cuda>& context, std::size_t unknowns, const HatVectors
 }
 
 template <class T, int B>
-void hatStep(Context<Cuda>& context, const HatMatrix<T, B>& a, ChebyshevStep<T> step, const HatVectors<T>& v,
+void hatStep(Context<Cuda>& context, const BlockCsrView<B, T>& a, ChebyshevStep<T> step, const HatVectors<T>& v,
              const T* from, int last) {
   const T* z = v.z[last];
   products(context, a, z, StoreStep<T>{step, v.inverseDiagonal, v.lambdaMax, from, z, v.res, v.z[1 - last], v.x});
 }
 
 template <class T, int B>
-void hatResidual(Context<Cuda>& context, const HatMatrix<T, B>& a, const HatVectors<T>& v, const T* from,
+void hatResidual(Context<Cuda>& context, const BlockCsrView<B, T>& a, const HatVectors<T>& v, const T* from,
                  int last) {
   products(context, a, v.z[last], StoreResidual<T>{from, v.res});
 }
@@ -179,12 +186,13 @@ void denseMultiply(Context<Cuda>& context, std::uint32_t rows, const T* matrix, 
 #define TREACLE_INSTANTIATE(T)                                                      \
   template void hatFirstStep<T>(Context<Cuda>&, std::size_t, const HatVectors<T>&); \
   template void denseMultiply<T>(Context<Cuda>&, std::uint32_t, const T*, const T*, T*);
-#define TREACLE_INSTANTIATE_PRODUCTS(T, B)                                                                     \
-  template void hatValues<T, B>(Context<Cuda>&, const BlockCsr<B, double, Cuda>&, std::span<T>, std::span<T>); \
-  template void hatMultiply<T, B>(Context<Cuda>&, const HatMatrix<T, B>&, std::span<const T>, std::span<T>);   \
-  template void hatStep<T, B>(Context<Cuda>&, const HatMatrix<T, B>&, ChebyshevStep<T>, const HatVectors<T>&,  \
-                              const T*, int);                                                                  \
-  template void hatResidual<T, B>(Context<Cuda>&, const HatMatrix<T, B>&, const HatVectors<T>&, const T*, int);
+#define TREACLE_INSTANTIATE_PRODUCTS(T, B)                                                                       \
+  template void hatValues<T, B>(Context<Cuda>&, const BlockCsr<B, double, Cuda>&, std::span<Block<B, T>>,        \
+                                std::span<T>);                                                                   \
+  template void hatMultiply<T, B>(Context<Cuda>&, const BlockCsrView<B, T>&, std::span<const T>, std::span<T>);  \
+  template void hatStep<T, B>(Context<Cuda>&, const BlockCsrView<B, T>&, ChebyshevStep<T>, const HatVectors<T>&, \
+                              const T*, int);                                                                    \
+  template void hatResidual<T, B>(Context<Cuda>&, const BlockCsrView<B, T>&, const HatVectors<T>&, const T*, int);
 #define TREACLE_INSTANTIATE_TRANSFERS(D, B, T)                                                                    \
   template void hatRestrict<D, B, T>(Context<Cuda>&, const HatNodes<D, Cuda>&, const HatNodes<D, Cuda>&,          \
                                      const T*, const HatVectors<T>&);                                             \

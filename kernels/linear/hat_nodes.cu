@@ -58,7 +58,7 @@ __global__ void __launch_bounds__(32 * warpsPerBlock)
     const std::uint32_t i = fine.at(p);  // the same in all lanes
     if (i == noNode) return;
     const std::uint64_t begin = a.rowStart[i];
-    const double* value = a.block[begin].a;
+    const double* value = a.value[begin].a;
     const auto numbers = static_cast<std::uint32_t>(a.rowStart[i + 1] - begin) * elements;
     for (std::uint32_t k = lane; k < numbers; k += 32) {
       const int place = box.placeOf(fine.pointOf(a.column[begin + k / elements]));
@@ -124,10 +124,10 @@ void hatProlongation(Context<Cuda>& context, const HatNodes<D, Cuda>& fine, cons
   });
   const std::uint64_t entries = startRows(context, p.rowStart);
   p.column.resize(context, entries);
-  p.block.resize(context, entries);
+  p.value.resize(context, entries);
   forEach(
       context, to.count,
-      [=, start = p.rowStart.data(), column = p.column.data(), weight = p.block.data()] __device__(std::size_t i) {
+      [=, start = p.rowStart.data(), column = p.column.data(), weight = p.value.data()] __device__(std::size_t i) {
         const auto w = HatWeights<D>::at(to, from, static_cast<std::uint32_t>(i));
         for (int k = 0; k < w.count; ++k) {
           column[start[i] + k] = w.node[k];
@@ -144,7 +144,7 @@ void hatPattern(Context<Cuda>& context, const HatNodes<D, Cuda>& nodes, BlockCsr
   launch(context, blocks, threads, 0, patternKernel<D, false>, nodes.view(), reach, a.rowStart.data(), none);
   const std::uint64_t entries = startRows(context, a.rowStart);
   a.column.resize(context, entries);
-  a.block.resize(context, entries);
+  a.value.resize(context, entries);
   launch(context, blocks, threads, 0, patternKernel<D, true>, nodes.view(), reach, a.rowStart.data(),
          a.column.data());
 }
@@ -157,7 +157,7 @@ void coarsenHats(Context<Cuda>& context, const HatNodes<D, Cuda>& fine, const Bl
   const std::size_t bytesPerWarp = places * sizeof(Block<B>);
   const auto warps = static_cast<unsigned>(std::min<std::size_t>(warpsPerBlock, sharedBytes / bytesPerWarp));
   launch(context, blocksFor(coarse.count(), warps), 32 * warps, warps * bytesPerWarp, coarsenKernel<D, B>,
-         fine.view(), viewOf(a), coarse.view(), viewOf(coarseA), reinterpret_cast<double*>(coarseA.block.data()),
+         fine.view(), viewOf(a), coarse.view(), viewOf(coarseA), reinterpret_cast<double*>(coarseA.value.data()),
          reach, places);
 }
 

@@ -5,20 +5,6 @@
 
 namespace treacle {
 
-/// What kernels read of a matrix.
-template <int D, class T>
-struct BlockCsrView {
-  std::uint32_t rows;
-  const std::uint64_t* rowStart;
-  const std::uint32_t* column;
-  const Block<D, T>* block;
-};
-
-template <int D, class T>
-BlockCsrView<D, T> viewOf(const BlockCsr<D, T, Cuda>& a) {
-  return {a.rows(), a.rowStart.data(), a.column.data(), a.block.data()};
-}
-
 /// How a row's storage is read: once per product, or again soon, from the cache.
 enum class Reading { Streamed, Cached };
 
@@ -47,7 +33,7 @@ struct RowLanes {
       const std::uint64_t begin = a.rowStart[row];
       const auto count = static_cast<std::uint32_t>(a.rowStart[row + 1] - begin);
       const std::uint32_t* column = a.column + begin;
-      const T* value = a.block[begin].a + e;
+      const T* value = a.value[begin].a + e;
 #pragma unroll 8
       for (std::uint32_t k = beside; k < count; k += Blocks)
         mine += term(How == Reading::Streamed ? __ldcs(value + k * elements) : __ldg(value + k * elements),
@@ -65,10 +51,22 @@ struct RowLanes {
   }
 };
 
-/// A group of lanes per block row (RowLanes). Reads the matrix and what `term` reads; writes what `store` writes.
-/// No atomics.
+/// What a term or a store is in column `column` of several vectors side by side; those without a member `in` know
+/// but one.
+template <class F>
+__device__ inline F inColumn(const F& f, unsigned column) {
+  if constexpr (requires { f.in(column); })
+    return f.in(column);
+  else
+    return f;
+}
+
+/// A group of lanes per block row (RowLanes) and column of vectors. Reads the matrix and what `term` reads; writes
+/// what `store` writes. No atomics.
 template <int D, class T, int Blocks, Reading How, class Term, class Store>
-__global__ void __launch_bounds__(256) rowSumsKernel(BlockCsrView<D, T> a, Term term, Store store) {
+__global__ void __launch_bounds__(256) rowSumsKernel(BlockCsrView<D, T> a, const Term terms, const Store stores) {
+  const Term term = inColumn(terms, blockIdx.y);
+  const Store store = inColumn(stores, blockIdx.y);
   const RowLanes<D, Blocks> lanes;
   const std::uint64_t row = (blockIdx.x * std::uint64_t{8} + threadIdx.x / 32) * lanes.rowsPerWarp + lanes.group;
   const bool used = lanes.group < lanes.rowsPerWarp && row < a.rows;
@@ -77,26 +75,22 @@ __global__ void __launch_bounds__(256) rowSumsKernel(BlockCsrView<D, T> a, Term 
 }
 
 /// For every component r of every block row: store(row, r, sum of term(A_(r,c), place of the column index, c) over
-/// the row's blocks and their columns c). The order of a sum depends on the matrix alone.
-/// `blocks`: how many the matrix has.
+/// the row's blocks and their columns c), for each of `columns` vectors. The order of a sum depends on the matrix
+/// alone.
 template <Reading How, int D, class T, class Term, class Store>
-void rowSums(const Context<Cuda>& context, const BlockCsrView<D, T>& a, std::uint64_t blocks, Term term,
-             Store store) {
+void rowSums(const Context<Cuda>& context, const BlockCsrView<D, T>& a, Term term, Store store,
+             unsigned columns = 1) {
   // As many blocks at a time as a warp has room for; where rows are shorter than that, several rows to a warp.
   constexpr int wide = 32 / (D * D), narrow = D == 1 ? 8 : D == 2 ? 4 : 1;
   const auto start = [&](auto atATime) {
     constexpr int Blocks = decltype(atATime)::value, rowsPerWarp = 32 / (Blocks * D * D);
-    launch(context, blocksFor(a.rows, 8 * rowsPerWarp), 256, 0, rowSumsKernel<D, T, Blocks, How, Term, Store>, a,
-           term, store);
+    launch(context, dim3(blocksFor(a.rows, 8 * rowsPerWarp), columns), 256, 0,
+           rowSumsKernel<D, T, Blocks, How, Term, Store>, a, term, store);
   };
-  if (2 * blocks < 3 * wide * std::uint64_t{a.rows})
+  if (2 * a.entries < 3 * wide * std::uint64_t{a.rows})
     start(std::integral_constant<int, narrow>{});
   else
     start(std::integral_constant<int, wide>{});
-}
-template <Reading How, int D, class T, class Term, class Store>
-void rowSums(const Context<Cuda>& context, const BlockCsr<D, T, Cuda>& a, Term term, Store store) {
-  rowSums<How>(context, viewOf(a), a.block.size(), term, store);
 }
 
 /// The term of a matrix-vector product.

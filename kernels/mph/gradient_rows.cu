@@ -39,10 +39,10 @@ void gradientRows(Context<Cuda>& context, const MphPairs<D>& pairs, GradientRows
   rows.rowStart.resize(context, std::size_t{pairs.activeCount} + 1);
   launch(context, blocks, threads, 0, countKernel<D>, pairs, rows.rowStart.data());
   const std::uint64_t entries = startRows(context, rows.rowStart);
-  rows.neighbour.resize(context, entries);
-  rows.g.resize(context, entries);
-  launch(context, blocks, threads, 0, fillKernel<D>, pairs, rows.rowStart.data(), rows.neighbour.data(),
-         rows.g.data());
+  rows.column.resize(context, entries);
+  rows.value.resize(context, entries);
+  launch(context, blocks, threads, 0, fillKernel<D>, pairs, rows.rowStart.data(), rows.column.data(),
+         rows.value.data());
 }
 
 template void gradientRows<2>(Context<Cuda>&, const MphPairs<2>&, GradientRows<2, Cuda>&);

@@ -62,18 +62,18 @@ void assemble(Context<Cuda>& context, const MphPairs<D>& pairs, const WallTerms<
   launch(context, blocks, threads, 0, patternKernel<D, false>, pairs, radius2, a.rowStart.data(), none);
   const std::uint64_t entries = startRows(context, a.rowStart);
   a.column.resize(context, entries);
-  a.block.resize(context, entries);
+  a.value.resize(context, entries);
   launch(context, blocks, threads, 0, patternKernel<D, true>, pairs, radius2, a.rowStart.data(), a.column.data());
 
   Buffer<Vec<D>, Cuda> own(context, n);
   forEach(context, n,
-          [start = rows.rowStart.data(), g = rows.g.data(), sums = own.data()] __device__(std::size_t i) {
+          [start = rows.rowStart.data(), g = rows.value.data(), sums = own.data()] __device__(std::size_t i) {
             Vec<D> sum{};
             for (std::uint64_t m = start[i]; m < start[i + 1]; ++m) sum += g[m];
             sums[i] = sum;
           });
-  const Assembly<D> assembly{rows.rowStart.data(), rows.neighbour.data(), rows.g.data(),   own.data(),
-                             terms.block.data(),   a.rowStart.data(),     a.column.data(), a.block.data()};
+  const Assembly<D> assembly{rows.rowStart.data(), rows.column.data(), rows.value.data(), own.data(),
+                             terms.block.data(),   a.rowStart.data(),  a.column.data(),   a.value.data()};
   launch(context, blocks, threads, 0, blocksKernel<D>, pairs, assembly);
 }
 

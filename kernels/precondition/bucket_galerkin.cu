@@ -110,10 +110,10 @@ void bucketGalerkin(Context<Cuda>& context, const MphPairs<D>& pairs, const Cell
   launch(context, blocks, threads, 0, patternKernel<D, false>, pairs, g);
   const std::uint64_t entries = startRows(context, a0.rowStart);
   a0.column.resize(context, entries);
-  a0.block.resize(context, entries);
+  a0.value.resize(context, entries);
   Buffer<Block<D>, Cuda> cross(context, entries);
   g.column = a0.column.data();
-  g.block = a0.block.data();
+  g.block = a0.value.data();
   g.cross = cross.data();
   launch(context, blocks, threads, 0, patternKernel<D, true>, pairs, g);
   launch(context, blocksFor(std::size_t{rows} * Galerkin<D>::self, warpsPerBlock), threads, 0,

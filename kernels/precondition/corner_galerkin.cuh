@@ -102,7 +102,7 @@ void cornerGalerkin(Context<Cuda>& context, const SortedParticles<D>& particles,
                                         .parts = reinterpret_cast<Block<B, T>*>(parts.data()),
                                         .rowStart = a.rowStart.data(),
                                         .column = a.column.data(),
-                                        .block = a.block.data()};
+                                        .block = a.value.data()};
   launch(context, blocksFor(std::size_t{nodes.count()} * pairs, 128), 128, 0, cornerPartsKernel<D, B, T, Term>, g);
   launch(context, blocksFor(nodes.count(), 4), 128, 0, cornerGalerkinKernel<D, B, T, Term>, g);
 }

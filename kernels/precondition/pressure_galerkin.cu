@@ -221,7 +221,7 @@ void pressureGalerkin(Context<Cuda>& context, const MphPairs<D>& pairs, const Ne
       .parts = {parts.data(), parts.data() + std::size_t{Parts::halves} * Parts::gram * nodes.count()},
       .rowStart = s.rowStart.data(),
       .column = s.column.data(),
-      .value = reinterpret_cast<double*>(s.block.data())};
+      .value = reinterpret_cast<double*>(s.value.data())};
   launch(context, nodes.count(), D == 2 ? 96 : 256, 0, cellPartsKernel<D, T>, g);
   launch(context, D == 2 ? blocksFor(nodes.count(), 4) : nodes.count(), 128, 0, pressureGalerkinKernel<D, T>, g);
 }

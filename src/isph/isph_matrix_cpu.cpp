@@ -76,14 +76,14 @@ void compressed(Context<Cpu>&, const IsphMatrix<T>& a, BlockCsr<1>& result) {
     result.rowStart[i + 1] = result.rowStart[i] + entries.size();
   }
   result.column.resize(result.rowStart[a.rows]);
-  result.block.resize(result.rowStart[a.rows]);
+  result.value.resize(result.rowStart[a.rows]);
   for (std::size_t i = 0; i < a.rows; ++i) {
     takeRow(i);
     std::sort(entries.begin(), entries.end());
     std::uint64_t place = result.rowStart[i];
     for (const auto& [j, value] : entries) {
       result.column[place] = j;
-      result.block[place++].a[0] = value;
+      result.value[place++].a[0] = value;
     }
   }
 }

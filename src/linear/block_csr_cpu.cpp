@@ -6,7 +6,8 @@ namespace treacle {
 
 template <int D, class T>
 void multiply(Context<Cpu>&, const BlockCsr<D, T>& a, std::span<const Vec<D, T>> x, std::span<Vec<D, T>> y) {
-  parallelFor(a.rows(), parallelGrain, [=, &a](std::size_t i) { y[i] = rowProduct(a, i, x.data()); });
+  parallelFor(a.rows(), parallelGrain,
+              [=, view = viewOf(a)](std::size_t i) { y[i] = rowProduct(view, i, x.data()); });
 }
 
 template <int D, class T, class S>
@@ -16,7 +17,7 @@ void extendedJacobiInverse(Context<Cpu>&, const BlockCsr<D, T>& a, std::span<Vec
     Vec<D, T> sum{};
     for (std::uint64_t k = a.rowStart[i]; k < a.rowStart[i + 1]; ++k)
       for (int r = 0; r < D; ++r)
-        for (int c = 0; c < D; ++c) sum[r] += std::abs(a.block[k](r, c));
+        for (int c = 0; c < D; ++c) sum[r] += std::abs(a.value[k](r, c));
     for (int r = 0; r < D; ++r) inverse[i][r] = sum[r] == 0 ? S(0) : static_cast<S>(2 / sum[r]);
   });
 }

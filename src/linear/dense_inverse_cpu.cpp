@@ -18,7 +18,7 @@ std::vector<double> lowerTriangle(const BlockCsr<B>& a) {
   for (std::size_t i = 0; i < n; ++i) {
     for (std::uint64_t k = a.rowStart[i / B]; k < a.rowStart[i / B + 1]; ++k)
       for (std::size_t c = 0, j = std::size_t{B} * a.column[k]; c < B && j <= i; ++c, ++j)
-        m[i * n + j] += a.block[k](static_cast<int>(i % B), static_cast<int>(c));
+        m[i * n + j] += a.value[k](static_cast<int>(i % B), static_cast<int>(c));
     largest = std::max(largest, m[i * n + i]);
   }
   for (std::size_t i = 0; i < n; ++i) m[i * n + i] += regularisation<T>(m[i * n + i], largest);

@@ -7,14 +7,10 @@ namespace {
 
 /// store(k, number k of A x) for all numbers
 template <class T, int B, class Store>
-void rowSums(const HatMatrix<T, B>& a, const T* x, Store&& store) {
-  const auto* block = reinterpret_cast<const Block<B, T>*>(a.value);
+void rowSums(const BlockCsrView<B, T>& a, const T* x, Store&& store) {
   const auto* at = reinterpret_cast<const Vec<B, T>*>(x);
   parallelFor(a.rows, parallelGrain, [&](std::size_t row) {
-    RowSum<B, T> sum;
-    for (std::uint64_t k = a.rowStart[row], end = a.rowStart[row + 1]; k < end; ++k)
-      sum.add(block[k], at[a.column[k]]);
-    const Vec<B, T> total = sum.total();
+    const Vec<B, T> total = rowProduct(a, row, at);
     for (int c = 0; c < B; ++c) store(row * B + c, total[c]);
   });
 }
@@ -28,13 +24,13 @@ void addScaled(Vec<B, T>& sum, double weight, const T* v, std::uint32_t node) {
 }  // namespace
 
 template <class T, int B>
-void hatValues(Context<Cpu>&, const BlockCsr<B>& a, std::span<T> value, std::span<T> inverseDiagonal) {
+void hatValues(Context<Cpu>&, const BlockCsr<B>& a, std::span<Block<B, T>> value, std::span<T> inverseDiagonal) {
   parallelFor(a.rows(), parallelGrain, [&](std::size_t i) {
     Vec<B> diagonal{};
     for (std::uint64_t k = a.rowStart[i]; k < a.rowStart[i + 1]; ++k) {
-      const Block<B>& block = a.block[k];
+      const Block<B>& block = a.value[k];
       for (int c = 0; c < B && a.column[k] == i; ++c) diagonal[c] = block(c, c);
-      for (int e = 0; e < B * B && !value.empty(); ++e) value[k * B * B + e] = static_cast<T>(block.a[e]);
+      for (int e = 0; e < B * B && !value.empty(); ++e) value[k].a[e] = static_cast<T>(block.a[e]);
     }
     for (int c = 0; c < B; ++c)
       inverseDiagonal[i * B + c] = diagonal[c] > 0 ? static_cast<T>(1 / diagonal[c]) : T(0);
@@ -42,7 +38,7 @@ void hatValues(Context<Cpu>&, const BlockCsr<B>& a, std::span<T> value, std::spa
 }
 
 template <class T, int B>
-void hatMultiply(Context<Cpu>&, const HatMatrix<T, B>& a, std::span<const T> x, std::span<T> y) {
+void hatMultiply(Context<Cpu>&, const BlockCsrView<B, T>& a, std::span<const T> x, std::span<T> y) {
   rowSums(a, x.data(), [&](std::size_t k, T sum) { y[k] = sum; });
 }
 
@@ -54,8 +50,8 @@ void hatFirstStep(Context<Cpu>&, std::size_t unknowns, const HatVectors<T>& v) {
 }
 
 template <class T, int B>
-void hatStep(Context<Cpu>&, const HatMatrix<T, B>& a, ChebyshevStep<T> step, const HatVectors<T>& v, const T* from,
-             int last) {
+void hatStep(Context<Cpu>&, const BlockCsrView<B, T>& a, ChebyshevStep<T> step, const HatVectors<T>& v,
+             const T* from, int last) {
   const T* z = v.z[last];
   T* next = v.z[1 - last];
   const T gain = step.gain / *v.lambdaMax;
@@ -67,7 +63,7 @@ void hatStep(Context<Cpu>&, const HatMatrix<T, B>& a, ChebyshevStep<T> step, con
 }
 
 template <class T, int B>
-void hatResidual(Context<Cpu>&, const HatMatrix<T, B>& a, const HatVectors<T>& v, const T* from, int last) {
+void hatResidual(Context<Cpu>&, const BlockCsrView<B, T>& a, const HatVectors<T>& v, const T* from, int last) {
   rowSums(a, v.z[last], [&](std::size_t k, T sum) { v.res[k] = from[k] - sum; });
 }
 
@@ -117,12 +113,12 @@ void denseMultiply(Context<Cpu>&, std::uint32_t rows, const T* matrix, const T* 
 #define TREACLE_INSTANTIATE(T)                                                     \
   template void hatFirstStep<T>(Context<Cpu>&, std::size_t, const HatVectors<T>&); \
   template void denseMultiply<T>(Context<Cpu>&, std::uint32_t, const T*, const T*, T*);
-#define TREACLE_INSTANTIATE_PRODUCTS(T, B)                                                                   \
-  template void hatValues<T, B>(Context<Cpu>&, const BlockCsr<B>&, std::span<T>, std::span<T>);              \
-  template void hatMultiply<T, B>(Context<Cpu>&, const HatMatrix<T, B>&, std::span<const T>, std::span<T>);  \
-  template void hatStep<T, B>(Context<Cpu>&, const HatMatrix<T, B>&, ChebyshevStep<T>, const HatVectors<T>&, \
-                              const T*, int);                                                                \
-  template void hatResidual<T, B>(Context<Cpu>&, const HatMatrix<T, B>&, const HatVectors<T>&, const T*, int);
+#define TREACLE_INSTANTIATE_PRODUCTS(T, B)                                                                      \
+  template void hatValues<T, B>(Context<Cpu>&, const BlockCsr<B>&, std::span<Block<B, T>>, std::span<T>);       \
+  template void hatMultiply<T, B>(Context<Cpu>&, const BlockCsrView<B, T>&, std::span<const T>, std::span<T>);  \
+  template void hatStep<T, B>(Context<Cpu>&, const BlockCsrView<B, T>&, ChebyshevStep<T>, const HatVectors<T>&, \
+                              const T*, int);                                                                   \
+  template void hatResidual<T, B>(Context<Cpu>&, const BlockCsrView<B, T>&, const HatVectors<T>&, const T*, int);
 #define TREACLE_INSTANTIATE_TRANSFERS(D, B, T)                                                        \
   template void hatRestrict<D, B, T>(Context<Cpu>&, const HatNodes<D>&, const HatNodes<D>&, const T*, \
                                      const HatVectors<T>&);                                           \

@@ -55,8 +55,8 @@ void HatMultigrid<D, T, Backend, B>::prepareSmoother(Context<Backend>& context, 
   Level& level = levels_[l];
   for (Buffer<T, Backend>* v : {&level.inverseDiagonal, &level.res, &level.z0, &level.z1})
     v->resize(context, unknowns(l));
-  if (!std::is_same_v<T, double>) level.value.resize(context, B * B * operatorOf(l).block.size());
-  hatValues<T>(context, operatorOf(l), level.value, level.inverseDiagonal);
+  if (!std::is_same_v<T, double>) level.value.resize(context, operatorOf(l).value.size());
+  hatValues<T, B>(context, operatorOf(l), level.value, level.inverseDiagonal);
   if (options_.smoother == HatSmoother::RowSums) {
     const auto inverse = reinterpret_cast<Vec<B, T>*>(level.inverseDiagonal.data());
     extendedJacobiInverse<B>(context, operatorOf(l), std::span<Vec<B, T>>{inverse, operatorOf(l).rows()});
@@ -69,10 +69,10 @@ void HatMultigrid<D, T, Backend, B>::prepareSmoother(Context<Backend>& context, 
 }
 
 template <int D, class T, class Backend, int B>
-HatMatrix<T, B> HatMultigrid<D, T, Backend, B>::matrix(std::size_t l) const {
+BlockCsrView<B, T> HatMultigrid<D, T, Backend, B>::matrix(std::size_t l) const {
   const BlockCsr<B, double, Backend>& a = operatorOf(l);
-  HatMatrix<T, B> view{a.rows(), a.block.size(), a.rowStart.data(), a.column.data(), levels_[l].value.data()};
-  if constexpr (std::is_same_v<T, double>) view.value = reinterpret_cast<const double*>(a.block.data());
+  BlockCsrView<B, T> view{a.rows(), a.value.size(), a.rowStart.data(), a.column.data(), levels_[l].value.data()};
+  if constexpr (std::is_same_v<T, double>) view.value = a.value.data();
   return view;
 }
 
@@ -96,7 +96,7 @@ void HatMultigrid<D, T, Backend, B>::cycle(Context<Backend>& context, std::size_
   if (isDense(l))
     return denseMultiply<T>(context, static_cast<std::uint32_t>(unknowns(l)), inverse_.data(), v.b, v.x);
 
-  const HatMatrix<T, B> a = matrix(l);
+  const BlockCsrView<B, T> a = matrix(l);
   const T* from = v.b;
   int last = 0;  // which z is the latest; the same at the start of each cycle
   for (int i = 2; i <= degreeOf(l); ++i, last = 1 - last, from = v.res)

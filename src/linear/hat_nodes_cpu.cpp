@@ -43,12 +43,12 @@ void hatProlongation(Context<Cpu>&, const HatNodes<D>& fine, const HatNodes<D>& 
   for (std::uint32_t i = 0; i < to.count; ++i)
     p.rowStart[i + 1] = p.rowStart[i] + HatWeights<D>::at(to, from, i).count;
   p.column.resize(p.rowStart[to.count]);
-  p.block.resize(p.rowStart[to.count]);
+  p.value.resize(p.rowStart[to.count]);
   parallelFor(to.count, parallelGrain, [&](std::size_t i) {
     const auto w = HatWeights<D>::at(to, from, static_cast<std::uint32_t>(i));
     for (int k = 0; k < w.count; ++k) {
       p.column[p.rowStart[i] + k] = w.node[k];
-      p.block[p.rowStart[i] + k] = {{w.weight[k]}};
+      p.value[p.rowStart[i] + k] = {{w.weight[k]}};
     }
   });
 }
@@ -71,7 +71,7 @@ void hatPattern(Context<Cpu>&, const HatNodes<D>& nodes, BlockCsr<B>& a, int rea
   });
   for (std::uint32_t i = 0; i < view.count; ++i) a.rowStart[i + 1] += a.rowStart[i];
   a.column.resize(a.rowStart[view.count]);
-  a.block.resize(a.rowStart[view.count]);
+  a.value.resize(a.rowStart[view.count]);
   parallelFor(view.count, parallelGrain, [&](std::size_t i) {
     std::uint64_t k = a.rowStart[i];
     forEachColumn(i, [&](std::uint32_t j) { a.column[k++] = j; });
@@ -100,7 +100,7 @@ void coarseRow(const HatNodesView<D>& fine, const BlockCsr<B>& a, const HatNodes
     if (i == noNode) return;
     for (std::uint64_t k = a.rowStart[i]; k < a.rowStart[i + 1]; ++k) {
       const int place = box.placeOf(fine.pointOf(a.column[k]));
-      if (place >= 0) addScaled(sums[place], weight, a.block[k]);
+      if (place >= 0) addScaled(sums[place], weight, a.value[k]);
     }
   });
   for (std::uint64_t k = coarseA.rowStart[row]; k < coarseA.rowStart[row + 1]; ++k) {
@@ -109,7 +109,7 @@ void coarseRow(const HatNodesView<D>& fine, const BlockCsr<B>& a, const HatNodes
       const int place = box.placeOf(p);
       if (place >= 0) addScaled(sum, weight, sums[place]);
     });
-    coarseA.block[k] = sum;
+    coarseA.value[k] = sum;
   }
 }
 

@@ -17,13 +17,13 @@ void gradientRows(Context<Cpu>&, const MphPairs<D>& pairs, GradientRows<D>& rows
   });
   for (std::uint32_t i = 0; i < pairs.activeCount; ++i) rows.rowStart[i + 1] += rows.rowStart[i];
 
-  rows.neighbour.resize(rows.rowStart[pairs.activeCount]);
-  rows.g.resize(rows.rowStart[pairs.activeCount]);
+  rows.column.resize(rows.rowStart[pairs.activeCount]);
+  rows.value.resize(rows.rowStart[pairs.activeCount]);
   parallelFor(pairs.activeCount, parallelGrain, [&](std::size_t i) {
     std::uint64_t next = rows.rowStart[i];
     forEachNear(pairs, static_cast<std::uint32_t>(i), [&](std::uint32_t j, const Vec<D>&, const Vec<D>& g) {
-      rows.neighbour[next] = j;
-      rows.g[next++] = g;
+      rows.column[next] = j;
+      rows.value[next++] = g;
     });
   });
 }

@@ -61,8 +61,8 @@ class RowAssembler {
   void addPressure(std::uint32_t i, std::span<Block<D>> blocks) {
     Vec<D> own{};
     for (std::uint64_t m = rows_.rowStart[i]; m < rows_.rowStart[i + 1]; ++m) {
-      own += rows_.g[m];
-      addColumn(rows_.neighbour[m], rows_.g[m], blocks);
+      own += rows_.value[m];
+      addColumn(rows_.column[m], rows_.value[m], blocks);
     }
     addColumn(i, own, blocks);
   }
@@ -72,8 +72,8 @@ class RowAssembler {
     const double lambda = pairs_.bulkViscosity(k);
     Vec<D> own{};
     for (std::uint64_t m = rows_.rowStart[k]; m < rows_.rowStart[k + 1]; ++m) {
-      own += rows_.g[m];
-      addBlock(rows_.neighbour[m], -lambda, cik, rows_.g[m], blocks);
+      own += rows_.value[m];
+      addBlock(rows_.column[m], -lambda, cik, rows_.value[m], blocks);
     }
     addBlock(k, lambda, cik, own, blocks);
   }
@@ -107,7 +107,7 @@ void assemble(Context<Cpu>&, const MphPairs<D>& pairs, const WallTerms<D>& terms
   }
   for (std::uint32_t i = 0; i < n; ++i) a.rowStart[i + 1] += a.rowStart[i];
   a.column.resize(a.rowStart[n]);
-  a.block.resize(a.rowStart[n]);
+  a.value.resize(a.rowStart[n]);
 
 #pragma omp parallel if (n > parallelGrain)
   {
@@ -117,7 +117,7 @@ void assemble(Context<Cpu>&, const MphPairs<D>& pairs, const WallTerms<D>& terms
     for (std::uint32_t i = 0; i < n; ++i) {
       rowPattern(pairs, i, columns);
       std::copy(columns.begin(), columns.end(), a.column.begin() + a.rowStart[i]);
-      assembler.write(i, columns, a.block.span().subspan(a.rowStart[i], columns.size()), terms.block[i]);
+      assembler.write(i, columns, a.value.span().subspan(a.rowStart[i], columns.size()), terms.block[i]);
     }
   }
 }

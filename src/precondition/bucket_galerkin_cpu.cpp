@@ -192,7 +192,7 @@ void bucketGalerkin(Context<Cpu>&, const MphPairs<D>& pairs, const CellRanges<>&
     a0.rowStart[b + 1] = a0.rowStart[b] + occupied;
   }
   a0.column.resize(a0.rowStart[rows]);
-  a0.block.resize(a0.rowStart[rows]);
+  a0.value.resize(a0.rowStart[rows]);
 
   parallelForDynamic(rows, 8, 8, [&](std::size_t b) {
     BucketRow<D> row(pairs, ranges, levels, static_cast<std::uint32_t>(b));
@@ -206,7 +206,7 @@ void bucketGalerkin(Context<Cpu>&, const MphPairs<D>& pairs, const CellRanges<>&
     for (std::uint64_t k = a0.rowStart[b]; k < a0.rowStart[b + 1]; ++k) {
       const int o = order[k - a0.rowStart[b]];
       a0.column[k] = row.bucket[o];
-      a0.block[k] = row.block[o];
+      a0.value[k] = row.block[o];
     }
   });
 }

@@ -26,9 +26,9 @@ void mirrorUpper(BlockCsr<B>& a) {
       if (other >= row) continue;
       const std::uint32_t *begin = &a.column[a.rowStart[other]],
                           *end = begin + (a.rowStart[other + 1] - a.rowStart[other]);
-      const Block<B>& above = a.block[a.rowStart[other] + (std::find(begin, end, row) - begin)];
+      const Block<B>& above = a.value[a.rowStart[other] + (std::find(begin, end, row) - begin)];
       for (int r = 0; r < B; ++r)
-        for (int c = 0; c < B; ++c) a.block[e](r, c) = above(c, r);
+        for (int c = 0; c < B; ++c) a.value[e](r, c) = above(c, r);
     }
   });
 }
@@ -57,7 +57,7 @@ void cornerGalerkin(Context<Cpu>& context, const SortedParticles<D>& particles, 
           sum += term(i, p, q);
         }
       });
-      a.block[e] = sum;
+      a.value[e] = sum;
     }
   });
   mirrorUpper(a);

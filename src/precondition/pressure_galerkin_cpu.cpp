@@ -143,9 +143,9 @@ void pressureGalerkin(Context<Cpu>& context, const MphPairs<D>& pairs, const Pro
         });
       });
     });
-    for (std::uint64_t e = s.rowStart[row]; e < s.rowStart[row + 1]; ++e) s.block[e].a[0] = 0;
+    for (std::uint64_t e = s.rowStart[row]; e < s.rowStart[row + 1]; ++e) s.value[e].a[0] = 0;
     for (int o = 0; o < RowEntries<D>::offsets; ++o)
-      if (entryAt[o] != RowEntries<D>::none) s.block[entryAt[o]].a[0] += sum[o];
+      if (entryAt[o] != RowEntries<D>::none) s.value[entryAt[o]].a[0] += sum[o];
   });
 }
 

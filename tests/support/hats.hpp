@@ -103,11 +103,11 @@ BlockCsr<B> hatLaplacian(const HatNodes<D>& nodes, double mass = 0.01, int reach
         continue;
       }
       const Block<B> coupling = hatCoupling<D, B>(nodes, i, a.column[k]);
-      a.block[k] = Block<B>{};
-      a.block[k] -= coupling;
+      a.value[k] = Block<B>{};
+      a.value[k] -= coupling;
       sum += coupling;
     }
-    a.block[diagonal] = sum;
+    a.value[diagonal] = sum;
   }
   return a;
 }
@@ -127,12 +127,5 @@ struct HatProblem {
 
   std::size_t unknowns() const { return std::size_t{B} * nodes.count(); }
 };
-
-/// What the cycle reads of a matrix on the host, in double precision.
-template <int B>
-HatMatrix<double, B> hatMatrix(const BlockCsr<B>& a) {
-  return {a.rows(), a.block.size(), a.rowStart.data(), a.column.data(),
-          reinterpret_cast<const double*>(a.block.data())};
-}
 
 }  // namespace treacle::test

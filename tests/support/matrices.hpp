@@ -29,9 +29,9 @@ BlockCsr<D, T> randomMatrix(std::uint32_t rows, std::uint32_t reach, unsigned se
     a.rowStart[i + 1] = column.size();
   }
   a.column.resize(column.size());
-  a.block.resize(column.size());
+  a.value.resize(column.size());
   std::copy(column.begin(), column.end(), a.column.begin());
-  for (Block<D, T>& block : a.block)
+  for (Block<D, T>& block : a.value)
     for (T& value : block.a) value = normal(random);
   return a;
 }
@@ -51,7 +51,7 @@ BlockCsr<D, T, Cuda> onDevice(const Context<Cuda>& context, const BlockCsr<D, T>
   BlockCsr<D, T, Cuda> copy;
   copyToDevice<std::uint64_t>(context, a.rowStart, copy.rowStart);
   copyToDevice<std::uint32_t>(context, a.column, copy.column);
-  copyToDevice<Block<D, T>>(context, a.block, copy.block);
+  copyToDevice<Block<D, T>>(context, a.value, copy.value);
   return copy;
 }
 
@@ -60,7 +60,7 @@ BlockCsr<D, T> onHost(const Context<Cuda>& context, const BlockCsr<D, T, Cuda>& 
   BlockCsr<D, T> copy;
   copyToHost<std::uint64_t>(context, a.rowStart, copy.rowStart);
   copyToHost<std::uint32_t>(context, a.column, copy.column);
-  copyToHost<Block<D, T>>(context, a.block, copy.block);
+  copyToHost<Block<D, T>>(context, a.value, copy.value);
   return copy;
 }
 
@@ -91,7 +91,7 @@ double valueDifference(const BlockCsr<D, T>& a, const BlockCsr<D, T>& b) {
   double difference = 0, norm = 0;
   for (std::uint32_t i = 0; i < b.rows(); ++i) {
     std::map<std::uint32_t, const Block<D, T>*> row;
-    for (std::uint64_t k = a.rowStart[i]; k < a.rowStart[i + 1]; ++k) row[a.column[k]] = &a.block[k];
+    for (std::uint64_t k = a.rowStart[i]; k < a.rowStart[i + 1]; ++k) row[a.column[k]] = &a.value[k];
     if (row.size() != a.rowStart[i + 1] - a.rowStart[i]) return differs;
     std::size_t found = 0;
     for (std::uint64_t k = b.rowStart[i]; k < b.rowStart[i + 1]; ++k) {
@@ -99,8 +99,8 @@ double valueDifference(const BlockCsr<D, T>& a, const BlockCsr<D, T>& b) {
       if (mine != row.end()) ++found;
       for (int e = 0; e < D * D; ++e) {
         const double value = mine == row.end() ? 0 : double(mine->second->a[e]);
-        difference += std::pow(value - double(b.block[k].a[e]), 2);
-        norm += std::pow(double(b.block[k].a[e]), 2);
+        difference += std::pow(value - double(b.value[k].a[e]), 2);
+        norm += std::pow(double(b.value[k].a[e]), 2);
       }
     }
     if (found != row.size()) return differs;

@@ -110,9 +110,9 @@ struct PressureColumn {
       a.rowStart[i + 1] = column.size();
     }
     a.column.resize(column.size());
-    a.block.resize(column.size());
+    a.value.resize(column.size());
     std::copy(column.begin(), column.end(), a.column.begin());
-    for (std::size_t k = 0; k < value.size(); ++k) a.block[k] = {{value[k]}};
+    for (std::size_t k = 0; k < value.size(); ++k) a.value[k] = {{value[k]}};
   }
 
   /// f(j) for all lattice points that jitter may have brought into the support of i.

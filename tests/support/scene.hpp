@@ -136,7 +136,7 @@ Eigen::MatrixXd dense(const BlockCsr<D>& a) {
   for (std::uint32_t i = 0; i < a.rows(); ++i)
     for (std::uint64_t k = a.rowStart[i]; k < a.rowStart[i + 1]; ++k)
       for (int r = 0; r < D; ++r)
-        for (int c = 0; c < D; ++c) m(D * i + r, D * a.column[k] + c) += a.block[k](r, c);
+        for (int c = 0; c < D; ++c) m(D * i + r, D * a.column[k] + c) += a.value[k](r, c);
   return m;
 }
 

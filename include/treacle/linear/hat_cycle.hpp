@@ -8,17 +8,6 @@
 
 namespace treacle {
 
-/// A level's matrix in the cycle's precision, with a pattern that belongs to someone else. In the backend's
-/// memory.
-template <class T, int B = 1>
-struct HatMatrix {
-  std::uint32_t rows = 0;     // nodes
-  std::uint64_t entries = 0;  // blocks
-  const std::uint64_t* rowStart = nullptr;
-  const std::uint32_t* column = nullptr;
-  const T* value = nullptr;  // B x B numbers per block, row-major
-};
-
 /// What the smoother of a level reads and writes; B numbers per node, node after node, in the backend's memory. z
 /// is read by neighbours while the next one is made, so there are two.
 template <class T>
@@ -32,18 +21,18 @@ struct HatVectors {
 // The operations that a V-cycle consists of; one kernel each. B numbers per node.
 
 /// value = A in the cycle's precision, inverseDiagonal = 1 / A_ii, or 0 where A_ii, a number on the diagonal, is
-/// not positive. Spans of B B a.block.size() and B a.rows(); an empty `value` is left alone.
+/// not positive. Spans of a.value.size() and B a.rows(); an empty `value` is left alone.
 template <class T, int B>
-void hatValues(Context<Cpu>&, const BlockCsr<B>& a, std::span<T> value, std::span<T> inverseDiagonal);
+void hatValues(Context<Cpu>&, const BlockCsr<B>& a, std::span<Block<B, T>> value, std::span<T> inverseDiagonal);
 template <class T, int B>
-void hatValues(Context<Cuda>&, const BlockCsr<B, double, Cuda>& a, std::span<T> value,
+void hatValues(Context<Cuda>&, const BlockCsr<B, double, Cuda>& a, std::span<Block<B, T>> value,
                std::span<T> inverseDiagonal);
 
 /// y = A x; B a.rows numbers each.
 template <class T, int B>
-void hatMultiply(Context<Cpu>&, const HatMatrix<T, B>& a, std::span<const T> x, std::span<T> y);
+void hatMultiply(Context<Cpu>&, const BlockCsrView<B, T>& a, std::span<const T> x, std::span<T> y);
 template <class T, int B>
-void hatMultiply(Context<Cuda>&, const HatMatrix<T, B>& a, std::span<const T> x, std::span<T> y);
+void hatMultiply(Context<Cuda>&, const BlockCsrView<B, T>& a, std::span<const T> x, std::span<T> y);
 
 /// First smoothing step from zero: z[0] = x = gain / lambdaMax D^-1 b
 template <class T>
@@ -54,17 +43,17 @@ void hatFirstStep(Context<Cuda>&, std::size_t unknowns, const HatVectors<T>& v);
 /// res = from - A z[last] (`from` is b or res), then
 /// z[1 - last] = previous z[last] + gain / lambdaMax D^-1 res and x += z[1 - last].
 template <class T, int B>
-void hatStep(Context<Cpu>&, const HatMatrix<T, B>& a, ChebyshevStep<T> step, const HatVectors<T>& v, const T* from,
-             int last);
+void hatStep(Context<Cpu>&, const BlockCsrView<B, T>& a, ChebyshevStep<T> step, const HatVectors<T>& v,
+             const T* from, int last);
 template <class T, int B>
-void hatStep(Context<Cuda>&, const HatMatrix<T, B>& a, ChebyshevStep<T> step, const HatVectors<T>& v,
+void hatStep(Context<Cuda>&, const BlockCsrView<B, T>& a, ChebyshevStep<T> step, const HatVectors<T>& v,
              const T* from, int last);
 
 /// res = from - A z[last]
 template <class T, int B>
-void hatResidual(Context<Cpu>&, const HatMatrix<T, B>& a, const HatVectors<T>& v, const T* from, int last);
+void hatResidual(Context<Cpu>&, const BlockCsrView<B, T>& a, const HatVectors<T>& v, const T* from, int last);
 template <class T, int B>
-void hatResidual(Context<Cuda>&, const HatMatrix<T, B>& a, const HatVectors<T>& v, const T* from, int last);
+void hatResidual(Context<Cuda>&, const BlockCsrView<B, T>& a, const HatVectors<T>& v, const T* from, int last);
 
 /// coarse.b = P^T res, and there the first smoothing step unless the level has no smoother (lambdaMax is null).
 template <int D, int B, class T>

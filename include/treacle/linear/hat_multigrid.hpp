@@ -68,7 +68,7 @@ class HatMultigrid {
   struct Level {
     HatNodes<D, Backend> nodes;             // empty on the finest level, where
     BlockCsr<B, double, Backend> galerkin;  // they are the caller's
-    Buffer<T, Backend> value;               // of the matrix; empty in double precision
+    Buffer<Block<B, T>, Backend> value;     // of the matrix; empty in double precision
     Buffer<T, Backend> inverseDiagonal;
     SpectralEstimate<T, Backend> lambdaMax;
     Buffer<T, Backend> b, res, x, z0, z1;
@@ -84,7 +84,7 @@ class HatMultigrid {
   /// A last level too large to invert has nothing below that would help.
   int degreeOf(std::size_t l) const { return isLast(l) ? 4 * options_.degree : options_.degree; }
 
-  HatMatrix<T, B> matrix(std::size_t l) const;
+  BlockCsrView<B, T> matrix(std::size_t l) const;
   HatVectors<T> vectors(std::size_t l);
   void addCoarserLevels(Context<Backend>& context);
   void coarsen(Context<Backend>& context, std::size_t l);

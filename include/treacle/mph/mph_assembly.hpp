@@ -15,16 +15,10 @@ double couplingRadius2(const MphPairs<D>& pairs) {
   return r * r * (1 + 1e-12);
 }
 
-/// The rows of C as lists: per particle its neighbours within h_p, with g = -e w'^p [1/m] seen from the row's
-/// particle. C_ij = g_ij, C_ii = sum_j g_ij, and C_ji = -g_ij.
+/// The rows of C: per particle its neighbours within h_p, with g = -e w'^p [1/m] seen from the row's particle.
+/// C_ij = g_ij, C_ii = sum_j g_ij, and C_ji = -g_ij.
 template <int D, class Backend = Cpu>
-struct GradientRows {
-  Buffer<std::uint64_t, Backend> rowStart;  // activeCount + 1
-  Buffer<std::uint32_t, Backend> neighbour;
-  Buffer<Vec<D>, Backend> g;
-
-  std::size_t bytes() const { return rowStart.bytes() + neighbour.bytes() + g.bytes(); }
-};
+using GradientRows = Csr<Vec<D>, Backend>;
 
 template <int D>
 void gradientRows(Context<Cpu>&, const MphPairs<D>&, GradientRows<D>& rows);

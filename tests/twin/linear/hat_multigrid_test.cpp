@@ -28,11 +28,12 @@ struct Both {
 /// Largest eigenvalue of D^-1 A as `backend` estimates it.
 template <class T, int B, class Backend>
 double estimate(Context<Backend>& context, const BlockCsr<B, double, Backend>& a, int steps) {
-  Buffer<T, Backend> value, inverse;
-  value.resize(context, B * B * a.block.size());
+  Buffer<Block<B, T>, Backend> value;
+  Buffer<T, Backend> inverse;
+  value.resize(context, a.value.size());
   inverse.resize(context, std::size_t{B} * a.rows());
-  hatValues<T>(context, a, value, inverse);
-  const HatMatrix<T, B> matrix{a.rows(), a.block.size(), a.rowStart.data(), a.column.data(), value.data()};
+  hatValues<T, B>(context, a, value, inverse);
+  const BlockCsrView<B, T> matrix{a.rows(), a.value.size(), a.rowStart.data(), a.column.data(), value.data()};
   SpectralEstimate<T, Backend> spectrum;
   spectrum.run(
       context, [&](std::span<const T> x, std::span<T> y) { hatMultiply<T>(context, matrix, x, y); }, inverse,

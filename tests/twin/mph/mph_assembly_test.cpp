@@ -27,11 +27,11 @@ void checkAssembly(Scene<D>& s) {
   gradientRows(s.context, s.pairs(), rows);
   gradientRows(device.context, device.pairs, deviceRows);
   const auto start = copyToHost(device.context, deviceRows.rowStart);
-  const auto neighbour = copyToHost(device.context, deviceRows.neighbour);
-  const auto g = copyToHost(device.context, deviceRows.g);
+  const auto neighbour = copyToHost(device.context, deviceRows.column);
+  const auto g = copyToHost(device.context, deviceRows.value);
   ASSERT_TRUE(std::equal(start.begin(), start.end(), rows.rowStart.begin(), rows.rowStart.end()));
-  ASSERT_TRUE(std::equal(neighbour.begin(), neighbour.end(), rows.neighbour.begin(), rows.neighbour.end()));
-  EXPECT_LE(relativeDifference<double>(g.span(), std::span<const Vec<D>>(rows.g)), operatorTolerance);
+  ASSERT_TRUE(std::equal(neighbour.begin(), neighbour.end(), rows.column.begin(), rows.column.end()));
+  EXPECT_LE(relativeDifference<double>(g.span(), std::span<const Vec<D>>(rows.value)), operatorTolerance);
 
   BlockCsr<D> a;
   BlockCsr<D, double, Cuda> deviceA;

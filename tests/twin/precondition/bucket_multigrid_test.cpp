@@ -27,7 +27,7 @@ std::vector<Vec<D>> randomInverse(const BlockCsr<D>& a0, std::uint32_t n) {
   double trace = 0;
   for (std::uint32_t i = 0; i < a0.rows(); ++i)
     for (std::uint64_t k = a0.rowStart[i]; k < a0.rowStart[i + 1]; ++k)
-      for (int c = 0; a0.column[k] == i && c < D; ++c) trace += a0.block[k](c, c);
+      for (int c = 0; a0.column[k] == i && c < D; ++c) trace += a0.value[k](c, c);
   const Eigen::VectorXd random =
       10 * D * a0.rows() / trace * (randomVector(Eigen::Index{D} * n, 6).array().abs() + 0.1);
   return unflat<D>(random.cast<float>().cast<double>());
@@ -139,7 +139,7 @@ template <int D>
 void checkSmall() {
   for (const Walls walls : {Walls::Floor, Walls::None}) {
     CycleTwin<D> twin(makeScene<D>(walls));
-    ASSERT_LE(twin.unknownsOn(0), (BucketMultigrid<D, double, Cuda>::denseUnknowns));
+    ASSERT_LE(twin.unknownsOn(0), (BucketMultigrid<D, double, Cuda>().denseUnknowns()));
     if (walls == Walls::Floor)
       twin.checkAll("floor", operatorTolerance);
     else
@@ -156,7 +156,7 @@ TEST(BucketMultigridTwin, EqualsTheCpuAsOneDenseMatrix) {
 template <int D>
 void checkLarge(std::size_t levelsAboveDense) {
   CycleTwin<D> twin(makeLargeScene<D>());
-  ASSERT_GT(twin.unknownsOn(levelsAboveDense - 1), (BucketMultigrid<D, double, Cuda>::denseUnknowns));
+  ASSERT_GT(twin.unknownsOn(levelsAboveDense - 1), (BucketMultigrid<D, double, Cuda>().denseUnknowns()));
   twin.checkAll("many particles", operatorTolerance);
 }
 

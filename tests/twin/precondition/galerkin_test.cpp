@@ -59,8 +59,8 @@ void checkLarge() {
   EXPECT_LE(matrixDifference(result, expected), operatorTolerance);
 
   const BlockCsr<D> again = deviceGalerkin(device, device.pairs);
-  for (std::size_t k = 0; k < result.block.size(); ++k)
-    for (int e = 0; e < D * D; ++e) ASSERT_EQ(again.block[k].a[e], result.block[k].a[e]);
+  for (std::size_t k = 0; k < result.value.size(); ++k)
+    for (int e = 0; e < D * D; ++e) ASSERT_EQ(again.value[k].a[e], result.value[k].a[e]);
 
   MphPairs<D> withoutLists = device.pairs;
   withoutLists.fluidList.offset = withoutLists.wallList.offset = nullptr;

@@ -166,8 +166,8 @@ struct Twin {
     const ProjectionTable<double> table = constants.template table<double>();
     pressureGalerkin(s.context, s.pairs(), table, nodes, columns, pressure);
     pressureGalerkin(d.context, d.pairs, aOnDevice.near(), table, nodesOnDevice, parts, pressureOnDevice);
-    checkNodes(nodes, nodesOnDevice, std::span<const Block<1>>(pressure.block.span()),
-               copyToHost(d.context, pressureOnDevice.block), "P^T S' P");
+    checkNodes(nodes, nodesOnDevice, std::span<const Block<1>>(pressure.value.span()),
+               copyToHost(d.context, pressureOnDevice.value), "P^T S' P");
 
     Buffer<ViscousMoments<D, T>> moments;
     Buffer<ViscousMoments<D, T>, Cuda> momentsOnDevice;
@@ -175,8 +175,8 @@ struct Twin {
     BlockCsr<D, double, Cuda> velocityOnDevice;
     viscousGalerkin(s.context, s.pairs(), s.terms(), fluidNodes, moments, velocity);
     viscousGalerkin(d.context, d.pairs, d.terms(), fluidNodesOnDevice, momentsOnDevice, parts, velocityOnDevice);
-    checkNodes(fluidNodes, fluidNodesOnDevice, std::span<const Block<D>>(velocity.block.span()),
-               copyToHost(d.context, velocityOnDevice.block), "P^T K0 P");
+    checkNodes(fluidNodes, fluidNodesOnDevice, std::span<const Block<D>>(velocity.value.span()),
+               copyToHost(d.context, velocityOnDevice.value), "P^T K0 P");
     checkTransfer(nodes, nodesOnDevice, fluidNodes, fluidNodesOnDevice);
   }
 

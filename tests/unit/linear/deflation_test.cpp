@@ -1,4 +1,5 @@
 #include "treacle/linear/deflation.hpp"
+#include "treacle/linear/krylov.hpp"
 
 #include <gtest/gtest.h>
 #include <Eigen/Dense>
@@ -118,7 +119,7 @@ TEST(Deflation, RecordingChangesNothingAndFindsNoModesWhereNoneArePaying) {
   expectSame(s.recorded());
   EXPECT_EQ(s.deflation.ritzVectors(s.context, plain.iterations, 8).modes, 0);
   s.deflation.recordNumbers(s.context);
-  expectSame(s.solve(s.deflation));
+  expectSame(s.solve(&s.deflation));
   EXPECT_EQ(s.deflation.ritzVectors(s.context, plain.iterations, 8).modes, 0);
   expectSame(s.deflated({}));
 }

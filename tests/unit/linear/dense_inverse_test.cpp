@@ -49,7 +49,7 @@ TEST(DenseInverse, SolvesSingularSystemsThatHaveASolution) {
 
 TEST(DenseInverse, GivesZerosWhereThereIsNoPivot) {
   HatProblem<2> problem(hatCases<2>(4)[0]);
-  for (Block<1>& block : problem.a.block) block.a[0] = 0;
+  for (Block<1>& block : problem.a.value) block.a[0] = 0;
   EXPECT_EQ(inverseOf<double>(problem.a).norm(), 0);
 }
 

@@ -35,7 +35,7 @@ void checkProlongation(const HatNodes<D>& fine, const HatNodes<D>& coarse) {
   for (std::uint32_t i = 0; i < p.rows(); ++i)
     for (std::uint64_t k = p.rowStart[i]; k < p.rowStart[i + 1]; ++k) {
       EXPECT_TRUE(k == p.rowStart[i] || p.column[k - 1] < p.column[k]);
-      sparse(i, p.column[k]) = p.block[k].a[0];
+      sparse(i, p.column[k]) = p.value[k].a[0];
     }
   EXPECT_EQ(sparse, (interpolation<D, 1>(fine, coarse)));
   EXPECT_EQ(sparse.rowwise().sum(), Eigen::VectorXd::Ones(p.rows()));
@@ -133,7 +133,7 @@ double contraction(HatMultigrid<D, T, Cpu, B>& multigrid, const BlockCsr<B>& a) 
   const std::uint32_t n = B * a.rows();
   const auto times = [&](const Eigen::VectorXd& x) {
     Eigen::VectorXd y(n);
-    hatMultiply<double>(context, hatMatrix(a), {x.data(), n}, {y.data(), n});
+    hatMultiply<double>(context, viewOf(a), {x.data(), n}, {y.data(), n});
     return y;
   };
   Eigen::VectorXd e = randomVector(n, 1);

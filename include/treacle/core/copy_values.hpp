@@ -1,0 +1,39 @@
+#pragma once
+
+#include "treacle/core/buffer.hpp"
+#include "treacle/core/cuda.hpp"
+
+#include <algorithm>
+#include <span>
+
+namespace treacle {
+
+/// Copies and zeros within a backend's memory.
+template <class T>
+void copyValues(Context<Cpu>&, std::span<const T> from, T* to) {
+  std::copy(from.begin(), from.end(), to);
+}
+template <class T>
+void copyValues(Context<Cuda>& context, std::span<const T> from, T* to) {
+  if (!from.empty()) copyBytesOnDevice(context, from.data(), to, from.size_bytes());
+}
+template <class T>
+void clearValues(Context<Cpu>&, std::span<T> values) {
+  std::fill(values.begin(), values.end(), T{});
+}
+template <class T>
+void clearValues(Context<Cuda>& context, std::span<T> values) {
+  if (!values.empty()) clearBytes(context, values.data(), values.size_bytes());
+}
+/// From the host's memory.
+template <class T>
+void fromHost(Context<Cpu>& context, std::span<const T> host, Buffer<T>& to) {
+  to.resize(context, host.size());
+  std::copy(host.begin(), host.end(), to.begin());
+}
+template <class T>
+void fromHost(Context<Cuda>& context, std::span<const T> host, Buffer<T, Cuda>& to) {
+  copyToDevice(context, host, to);
+}
+
+}  // namespace treacle

@@ -1,0 +1,201 @@
+#include "treacle/linear/bucket_cycle.hpp"
+
+#include "core/reduce.cuh"
+#include "linear/row_sums.cuh"
+
+namespace treacle {
+namespace {
+
+/// One warp per bucket: b = sum of r over its unknowns, and the first sweep from zero, x = D^-1 b. No atomics.
+template <int D, class T>
+__global__ void restrictKernel(const BucketLevel<D, T> level, const Vec<D, T>* inverse, const Vec<D>* r,
+                               const BucketVectors<D, T> v) {
+  const std::uint32_t bucket = (blockIdx.x * blockDim.x + threadIdx.x) / 32;
+  if (bucket >= level.a.rows) return;
+  Vec<D> sum{};
+  for (std::uint32_t i = level.members[bucket] + threadIdx.x % 32; i < level.members[bucket + 1]; i += 32)
+    for (int k = 0; k < D; ++k) sum[k] += inverse[i][k] == 0 ? 0 : r[i][k];
+  Vec<D, T> total;
+  for (int k = 0; k < D; ++k) total[k] = static_cast<T>(warpSum(sum[k]));
+  if (threadIdx.x % 32 != 0) return;
+  v.b[bucket] = total;
+  for (int k = 0; k < D; ++k) v.x[bucket][k] = level.inverseDiagonal[bucket][k] * total[k];
+}
+
+/// x, or x + P e where there is something coarse.
+template <int D, class T, bool Corrected>
+struct Iterate {
+  static constexpr bool corrected = Corrected;
+  const Vec<D, T>* x;
+  std::uint32_t rows;
+  const std::uint32_t* parent;
+  const Vec<D, T>* e;
+  std::uint32_t coarseRows;
+
+  __device__ Iterate in(unsigned column) const {
+    Iterate i = *this;
+    i.x += std::size_t{column} * rows;
+    if constexpr (Corrected) i.e += std::size_t{column} * coarseRows;
+    return i;
+  }
+  __device__ T at(std::size_t i, int c) const {
+    if constexpr (Corrected) return x[i][c] + e[parent[i]][c];
+    return x[i][c];
+  }
+  __device__ T operator()(T value, const std::uint32_t* column, int c) const { return value * at(*column, c); }
+};
+
+/// next = x + D^-1 (b - A x) [K23 eq. (42)]
+template <int D, class T, bool Corrected>
+struct StoreSweep {
+  Iterate<D, T, Corrected> x;
+  const Vec<D, T>* b;
+  const Vec<D, T>* inverseDiagonal;
+  Vec<D, T>* next;
+
+  __device__ StoreSweep in(unsigned column) const {
+    const std::size_t skipped = std::size_t{column} * x.rows;
+    return {x.in(column), b + skipped, inverseDiagonal, next + skipped};
+  }
+  __device__ void operator()(std::size_t row, int r, T sum) const {
+    next[row][r] = x.at(row, r) + inverseDiagonal[row][r] * (b[row][r] - sum);
+  }
+};
+
+/// One block per coarse bucket and column, a warp per member at a time: coarse b = sum of b - A x over the
+/// members, and the first sweep there. No atomics.
+template <int D, class T>
+__global__ void __launch_bounds__(256)
+    restrictResidualKernel(const BucketLevel<D, T> fine, const BucketVectors<D, T> v,
+                           const BucketLevel<D, T> coarse, const BucketVectors<D, T> coarseV) {
+  __shared__ Vec<D, T> sums[8];
+  const RowLanes<D, 32 / (D * D)> lanes;
+  const std::size_t skipped = std::size_t{blockIdx.y} * fine.a.rows;
+  const Iterate<D, T, false> iterate{v.x + skipped, fine.a.rows, nullptr, nullptr, 0};
+  const Vec<D, T>* b = v.b + skipped;
+  const std::uint32_t bucket = blockIdx.x, first = coarse.members[bucket], last = coarse.members[bucket + 1];
+  const int warp = threadIdx.x / 32;
+  T sum = 0;
+  for (std::uint32_t i = first + warp; i < last; i += 8) {
+    const T product = lanes.template sum<Reading::Cached>(fine.a, i, lanes.group == 0, iterate);
+    if (lanes.holdsSum()) sum += b[i][lanes.r()] - product;
+  }
+  if (lanes.holdsSum()) sums[warp][lanes.r()] = sum;
+  __syncthreads();
+  if (threadIdx.x >= D) return;
+  const int r = static_cast<int>(threadIdx.x);
+  T total = 0;
+  for (int w = 0; w < 8; ++w) total += sums[w][r];
+  const std::size_t place = std::size_t{blockIdx.y} * coarse.a.rows + bucket;
+  coarseV.b[place][r] = total;
+  coarseV.x[place][r] = coarse.inverseDiagonal[bucket][r] * total;
+}
+
+}  // namespace
+
+void findParents(Context<Cuda>& context, std::span<const std::uint32_t> members, std::span<std::uint32_t> parent) {
+  forEach(context, members.size() - 1, [begin = members.data(), to = parent.data()] __device__(std::size_t row) {
+    for (std::uint32_t i = begin[row]; i < begin[row + 1]; ++i) to[i] = static_cast<std::uint32_t>(row);
+  });
+}
+
+/// One thread per number.
+template <int D, class T>
+void convert(Context<Cuda>& context, const BlockCsr<D, double, Cuda>& from, BlockCsr<D, T, Cuda>& to) {
+  to.rowStart.resize(context, from.rowStart.size());
+  to.column.resize(context, from.column.size());
+  to.value.resize(context, from.value.size());
+  copyBytesOnDevice(context, from.rowStart.data(), to.rowStart.data(),
+                    from.rowStart.size() * sizeof(std::uint64_t));
+  copyBytesOnDevice(context, from.column.data(), to.column.data(), from.column.size() * sizeof(std::uint32_t));
+  const double* source = reinterpret_cast<const double*>(from.value.data());
+  T* target = reinterpret_cast<T*>(to.value.data());
+  forEach(context, from.value.size() * D * D,
+          [=] __device__(std::size_t k) { target[k] = static_cast<T>(source[k]); });
+}
+
+template <int D, class T>
+void bucketRestrict(Context<Cuda>& context, const BucketLevel<D, T>& level, std::span<const Vec<D, T>> inverse,
+                    std::span<const Vec<D>> r, const BucketVectors<D, T>& v) {
+  launch(context, blocksFor(level.a.rows, 4), 128, 0, restrictKernel<D, T>, level, inverse.data(), r.data(), v);
+}
+
+/// One thread per number of all columns.
+template <int D, class T>
+void bucketUnits(Context<Cuda>& context, const BucketLevel<D, T>& level, std::uint32_t first,
+                 const BucketVectors<D, T>& v) {
+  const std::size_t n = std::size_t{D} * level.a.rows;
+  forEach(context, n * v.columns,
+          [n, first, inverse = reinterpret_cast<const T*>(level.inverseDiagonal), b = reinterpret_cast<T*>(v.b),
+           x = reinterpret_cast<T*>(v.x)] __device__(std::size_t k) {
+            const bool one = k % n == first + k / n;
+            b[k] = one ? 1 : 0;
+            x[k] = one ? inverse[k % n] : 0;
+          });
+}
+
+template <int D, class T>
+void bucketSweep(Context<Cuda>& context, const BucketLevel<D, T>& level, const BucketVectors<D, T>& v,
+                 const BucketCorrection<D, T>* correction) {
+  const auto sweep = [&](const auto& x) {
+    using Store = StoreSweep<D, T, std::decay_t<decltype(x)>::corrected>;
+    rowSums<Reading::Cached>(context, level.a, x, Store{x, v.b, level.inverseDiagonal, v.next}, v.columns);
+  };
+  if (correction)
+    sweep(
+        Iterate<D, T, true>{v.x, level.a.rows, correction->level.parent, correction->e, correction->level.a.rows});
+  else
+    sweep(Iterate<D, T, false>{v.x, level.a.rows, nullptr, nullptr, 0});
+}
+
+template <int D, class T>
+void bucketRestrictResidual(Context<Cuda>& context, const BucketLevel<D, T>& level, const BucketVectors<D, T>& v,
+                            const BucketLevel<D, T>& coarse, const BucketVectors<D, T>& coarseV) {
+  launch(context, dim3(coarse.a.rows, v.columns), 256, 0, restrictResidualKernel<D, T>, level, v, coarse, coarseV);
+}
+
+/// One thread per unknown.
+template <int D, class T>
+void bucketProlong(Context<Cuda>& context, const BucketLevel<D, T>& level, const Vec<D, T>* x,
+                   std::span<const Vec<D, T>> inverse, std::span<const Vec<D>> r, std::span<Vec<D>> z) {
+  forEach(context, r.size() * D,
+          [inverse = reinterpret_cast<const T*>(inverse.data()), r = reinterpret_cast<const double*>(r.data()),
+           bucketOf = level.parent, x, z = reinterpret_cast<double*>(z.data())] __device__(std::size_t k) {
+            z[k] = inverse[k] == 0 ? 0 : inverse[k] * r[k] + x[bucketOf[k / D]][static_cast<int>(k % D)];
+          });
+}
+
+/// One thread per pair of entries.
+template <class T>
+void symmetrise(Context<Cuda>& context, std::uint32_t rows, T* matrix) {
+  const std::size_t n = rows;
+  forEach(context, n * n, [=] __device__(std::size_t k) {
+    const std::size_t i = k / n, j = k % n;
+    if (i < j) matrix[i * n + j] = matrix[j * n + i] = (matrix[i * n + j] + matrix[j * n + i]) / 2;
+  });
+}
+
+#define TREACLE_INSTANTIATE(D, T)                                                                          \
+  template void convert<D, T>(Context<Cuda>&, const BlockCsr<D, double, Cuda>&, BlockCsr<D, T, Cuda>&);    \
+  template void bucketRestrict<D, T>(Context<Cuda>&, const BucketLevel<D, T>&, std::span<const Vec<D, T>>, \
+                                     std::span<const Vec<D>>, const BucketVectors<D, T>&);                 \
+  template void bucketUnits<D, T>(Context<Cuda>&, const BucketLevel<D, T>&, std::uint32_t,                 \
+                                  const BucketVectors<D, T>&);                                             \
+  template void bucketSweep<D, T>(Context<Cuda>&, const BucketLevel<D, T>&, const BucketVectors<D, T>&,    \
+                                  const BucketCorrection<D, T>*);                                          \
+  template void bucketRestrictResidual<D, T>(Context<Cuda>&, const BucketLevel<D, T>&,                     \
+                                             const BucketVectors<D, T>&, const BucketLevel<D, T>&,         \
+                                             const BucketVectors<D, T>&);                                  \
+  template void bucketProlong<D, T>(Context<Cuda>&, const BucketLevel<D, T>&, const Vec<D, T>*,            \
+                                    std::span<const Vec<D, T>>, std::span<const Vec<D>>, std::span<Vec<D>>);
+TREACLE_INSTANTIATE(1, double)
+TREACLE_INSTANTIATE(2, double)
+TREACLE_INSTANTIATE(3, double)
+TREACLE_INSTANTIATE(1, float)
+TREACLE_INSTANTIATE(2, float)
+TREACLE_INSTANTIATE(3, float)
+#undef TREACLE_INSTANTIATE
+template void symmetrise<double>(Context<Cuda>&, std::uint32_t, double*);
+template void symmetrise<float>(Context<Cuda>&, std::uint32_t, float*);
+
+}  // namespace treacle
