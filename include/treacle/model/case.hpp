@@ -210,6 +210,11 @@ struct SolverSettings {
   CellSettings cells;
   HatSettings hats;
 
+  /// Whether solves of MPH-I are deflated, by modes kept from step to step.
+  bool deflates() const {
+    return deflation > 0 && krylov == KrylovKind::Cg && preconditioner == PreconditionerKind::ProjectedMultigrid;
+  }
+
   bool operator==(const SolverSettings&) const = default;
 };
 
