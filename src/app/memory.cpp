@@ -58,11 +58,8 @@ struct ModeBytes {
 };
 
 ModeBytes modeBytes(const Case& c) {
-  const SolverSettings& s = c.solver;
-  if (c.dimensions == 3 || c.method.kind != MethodKind::MphI || s.krylov != KrylovKind::Cg ||
-      s.preconditioner != PreconditionerKind::ProjectedMultigrid || s.deflation == 0)
-    return {};
-  const std::uint64_t modes = static_cast<std::uint64_t>(s.deflation), components = 2;
+  if (c.dimensions == 3 || c.method.kind != MethodKind::MphI || !c.solver.deflates()) return {};
+  const std::uint64_t modes = static_cast<std::uint64_t>(c.solver.deflation), components = 2;
   constexpr std::uint64_t recorded = DeflationScalars::maxBasis * sizeof(float);
   const std::uint64_t kept = components * modes * sizeof(float);
   return {kept, components * std::max(recorded, modes * sizeof(double)) + kept};

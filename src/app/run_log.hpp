@@ -1,12 +1,10 @@
 #pragma once
 
 #include <filesystem>
-#include <memory>
+#include <fstream>
+#include <mutex>
 #include <string>
-
-namespace spdlog {
-class logger;
-}
+#include <string_view>
 
 namespace treacle {
 
@@ -14,19 +12,21 @@ namespace treacle {
 void printWarning(const std::string& text);
 
 /// `run.log` of a run directory, one dated line per event. A disk that fills up does not stop the run here: the
-/// lines are lost. info() may be called by several threads.
+/// lines are lost. May be used by several threads.
 class RunLog {
  public:
   /// `quiet`: warnings go into the file only. Errors: RunError if the file cannot be opened.
   RunLog(const std::filesystem::path& path, bool quiet);
-  ~RunLog();
 
   void info(const std::string& text);
   void warning(const std::string& text);  // to stderr as well
   void error(const std::string& text);
 
  private:
-  std::shared_ptr<spdlog::logger> logger_;
+  void write(std::string_view level, const std::string& text);
+
+  std::ofstream file_;
+  std::mutex mutex_;
   bool quiet_;
 };
 

@@ -2,6 +2,7 @@
 
 #include "suggestion.hpp"
 #include "treacle/core/error.hpp"
+#include "treacle/model/case_keys.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -154,9 +155,9 @@ void applyOverride(toml::table& document, const std::string& text) {
     for (auto&& [name, entry] : *value.as_table()) overrideEntry(document, key.str(), name.str(), entry);
     return;
   }
-  if (std::ranges::find(topLevelKeys, key.str()) != topLevelKeys.end()) return merge(document, std::move(given));
+  std::vector<std::string_view> candidates = topLevelKeys(), owners;
+  if (std::ranges::find(candidates, key.str()) != candidates.end()) return merge(document, std::move(given));
 
-  std::vector<std::string_view> candidates = topLevelKeys, owners;
   for (std::string_view listName : namedLists)
     for (std::string_view name : namesIn(document, listName)) {
       candidates.push_back(name);
@@ -171,6 +172,12 @@ void applyOverride(toml::table& document, const std::string& text) {
 }
 
 }  // namespace
+
+std::vector<std::string_view> topLevelKeys() {
+  std::vector<std::string_view> known = keys::namesIn(Case{}, Case{});
+  known.insert(known.end(), {"base", "width"});
+  return known;
+}
 
 std::string placeOf(const toml::source_region& source) {
   if (!source.path) return {};

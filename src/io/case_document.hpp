@@ -10,9 +10,7 @@
 namespace treacle {
 
 /// Keys that may stand at the top of a case file.
-inline const std::vector<std::string_view> topLevelKeys = {
-    "title",    "dimensions", "spacing", "resolution", "base",   "domain", "gravity",
-    "material", "body",       "width",   "time",       "method", "solver", "output"};
+std::vector<std::string_view> topLevelKeys();
 
 /// "file:line:column: " or "--set key=value: ".
 std::string placeOf(const toml::source_region& source);

@@ -1,10 +1,9 @@
 #include "treacle/io/compare_sets.hpp"
 
 #include "box.hpp"
-#include "point_tree.hpp"
+#include "nearest_points.hpp"
 #include "relative.hpp"
 #include "treacle/core/error.hpp"
-#include "treacle/core/parallel.hpp"
 #include "treacle/io/atomic_file.hpp"
 
 #include <fmt/format.h>
@@ -110,8 +109,8 @@ class SetComparison {
   }
 
   void addDistances() {
-    nearestInB_ = nearest(a_, b_);
-    const Magnitudes a = distances(nearestInB_), b = distances(nearest(b_, a_));
+    nearestInB_ = nearestPoints(a_.position, b_.position, domain_);
+    const Magnitudes a = distances(nearestInB_), b = distances(nearestPoints(b_.position, a_.position, domain_));
     const auto addBoth = [&](const char* name, double fromA, double fromB) {
       d_.measures.push_back({fmt::format("nearest_{}", name), "m", fromA, fromB, std::nullopt,
                              relativeTo(longestSide_, std::max(fromA, fromB))});
@@ -121,15 +120,7 @@ class SetComparison {
     d_.nearest.fields[0] = {std::max(a.maximum, b.maximum), rms, relativeTo(longestSide_, rms)};
   }
 
-  /// For each particle of `from` the one of `to`.
-  std::vector<PointTree::Nearest> nearest(const Frame& from, const Frame& to) const {
-    const PointTree tree(to.position, to.dimensions, domain_);
-    std::vector<PointTree::Nearest> found(from.position.size());
-    parallelFor(found.size(), parallelGrain, [&](std::size_t k) { found[k] = tree.nearest(from.position[k]); });
-    return found;
-  }
-
-  static Magnitudes distances(const std::vector<PointTree::Nearest>& nearest) {
+  static Magnitudes distances(const std::vector<NearestPoint>& nearest) {
     return magnitudes(nearest.size(), [&](std::size_t k) { return std::sqrt(nearest[k].distance2); });
   }
 
@@ -156,7 +147,7 @@ class SetComparison {
   const Frame &a_, &b_;
   const Domain& domain_;
   double longestSide_;  // of b [m]
-  std::vector<PointTree::Nearest> nearestInB_;
+  std::vector<NearestPoint> nearestInB_;
   SetDifference d_;
 };
 

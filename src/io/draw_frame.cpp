@@ -72,7 +72,7 @@ struct Layout {
   double barLeft, barWidth;
 };
 
-Layout layoutFor(const Extent& extent, int width, bool solid, const Theme& theme) {
+Layout layoutFor(const PictureExtent& extent, int width, bool solid, const Theme& theme) {
   const double u = theme.unit, aspect = (extent.top - extent.bottom) / (extent.right - extent.left);
   Layout layout;
   layout.left = (solid ? 105 : 100) * u;
@@ -137,7 +137,7 @@ void drawFrame(const std::filesystem::path& path, const Frame& fluid, const Fram
   const Box box =
       boundsOf(fluidParticles, options.spacing / 2).joined(boundsOf(wallParticles, options.spacing / 2));
   View view = solid ? obliqueView(options.gravity) : View{};
-  const Extent extent = extentOf(box, view);
+  const PictureExtent extent = extentOf(box, view);
   const Theme theme{options.width / 1200.0};
   const Layout layout = layoutFor(extent, options.width, solid, theme);
   view.scale = layout.plotWidth / (extent.right - extent.left);

@@ -1,5 +1,7 @@
 #include "suggestion.hpp"
 
+#include "treacle/model/names.hpp"
+
 #include <fmt/format.h>
 #include <algorithm>
 #include <numeric>
@@ -33,15 +35,6 @@ std::string_view nearest(std::string_view word, const std::vector<std::string_vi
     if (const std::size_t d = editDistance(word, candidate); d < bestDistance) bestDistance = d, best = candidate;
   }
   return best;
-}
-
-std::string listOf(const std::vector<std::string_view>& words) {
-  std::string text;
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    if (i > 0) text += i + 1 == words.size() ? " or " : ", ";
-    text += fmt::format("'{}'", words[i]);
-  }
-  return text;
 }
 
 std::string suggestion(std::string_view word, const std::vector<std::string_view>& candidates) {

@@ -10,9 +10,6 @@ namespace treacle {
 /// by edit distance; empty when none is near.
 std::string_view nearest(std::string_view word, const std::vector<std::string_view>& candidates);
 
-/// "a, b or c", each in single quotes.
-std::string listOf(const std::vector<std::string_view>& words);
-
 /// "; did you mean 'x'?" or, when none is near, "; expected 'a', 'b' or 'c'".
 std::string suggestion(std::string_view word, const std::vector<std::string_view>& candidates);
 

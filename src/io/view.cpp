@@ -33,9 +33,9 @@ View obliqueView(const Vec<3>& gravity) {
   return view;
 }
 
-Extent extentOf(const Box& box, const View& view) {
+PictureExtent extentOf(const Box& box, const View& view) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
-  Extent e{infinity, -infinity, infinity, -infinity};
+  PictureExtent e{infinity, -infinity, infinity, -infinity};
   for (int bits = 0; bits < 8; ++bits) {
     const double x = dot(view.right, box.corner(bits)), y = dot(view.up, box.corner(bits));
     e.left = std::min(e.left, x), e.right = std::max(e.right, x);

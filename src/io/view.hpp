@@ -28,9 +28,9 @@ Upward upward(const Vec<3>& gravity);
 View obliqueView(const Vec<3>& gravity);
 
 /// Where the box lies in the picture, with `scale` 1 and `origin` 0.
-struct Extent {
+struct PictureExtent {
   double left = 0, right = 0, bottom = 0, top = 0;  // [m], y up
 };
-Extent extentOf(const Box& box, const View& view);
+PictureExtent extentOf(const Box& box, const View& view);
 
 }  // namespace treacle

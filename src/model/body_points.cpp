@@ -38,14 +38,14 @@ std::vector<Vec<D>> bodyPoints(const Case& c, const Body& body, std::vector<std:
 }
 
 template <int D>
-StartVelocity<D>::StartVelocity(const Case& c, const Body& body)
+InitialVelocity<D>::InitialVelocity(const Case& c, const Body& body)
     : body_(body), wall_(wallMotion<D>(c.domain, body, 0, 0)), expressions_(D) {
   for (std::size_t k = 0; k < D; ++k)
     if (const std::string& text = body.velocityExpression[k]; !text.empty()) expressions_[k].emplace(text, D);
 }
 
 template <int D>
-Vec<D> StartVelocity<D>::at(const Vec<D>& x) const {
+Vec<D> InitialVelocity<D>::at(const Vec<D>& x) const {
   if (body_.kind == BodyKind::Wall) return wall_.velocityAt(x);
   Vec<D> u = resized<D>(body_.velocity);
   for (std::size_t k = 0; k < D; ++k)
@@ -56,7 +56,7 @@ Vec<D> StartVelocity<D>::at(const Vec<D>& x) const {
 
 template std::vector<Vec<2>> bodyPoints<2>(const Case&, const Body&, std::vector<std::string>&);
 template std::vector<Vec<3>> bodyPoints<3>(const Case&, const Body&, std::vector<std::string>&);
-template class StartVelocity<2>;
-template class StartVelocity<3>;
+template class InitialVelocity<2>;
+template class InitialVelocity<3>;
 
 }  // namespace treacle

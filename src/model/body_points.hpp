@@ -17,9 +17,9 @@ std::vector<Vec<D>> bodyPoints(const Case& c, const Body& body, std::vector<std:
 
 /// What the particles of a body start with.
 template <int D>
-class StartVelocity {
+class InitialVelocity {
  public:
-  StartVelocity(const Case& c, const Body& body);
+  InitialVelocity(const Case& c, const Body& body);
 
   /// At x [m/s]. Errors: InputError where it is not finite.
   Vec<D> at(const Vec<D>& x) const;

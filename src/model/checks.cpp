@@ -56,7 +56,7 @@ double largestSpeed(const Case& c, const Body& body) {
       norm(body.velocity) + (o.period > 0 ? 2 * std::numbers::pi * norm(o.amplitude) / o.period : 0);
   const bool expressions = body.velocityExpression != decltype(body.velocityExpression){};
   if (!expressions && !body.rotation) return carried;
-  const StartVelocity<D> velocity(c, body);
+  const InitialVelocity<D> velocity(c, body);
   const WallMotion<D> wall = wallMotion<D>(c.domain, body, 0, 0);
   std::vector<std::string> notes;
   double speed = 0;

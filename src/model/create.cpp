@@ -114,7 +114,7 @@ template <int D>
 void append(const Case& c, const std::vector<Filled<D>>& filled, Particles<D>& particles, std::uint32_t& next) {
   for (const Filled<D>& f : filled) {
     const auto body = static_cast<std::uint8_t>(f.body - c.bodies.data());
-    const StartVelocity<D> velocity(c, *f.body);
+    const InitialVelocity<D> velocity(c, *f.body);
     for (const Vec<D>& x : f.points) {
       particles.position[next] = x;
       particles.velocity[next] = velocity.at(x);

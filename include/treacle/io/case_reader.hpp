@@ -8,9 +8,10 @@
 
 namespace treacle {
 
-/// Reads and checks a case file with everything it inherits by `base`; docs/cases.md lists the keys.
-/// `overrides`: "key=value" each, as given to --set, applied in order on top of the files.
-/// Errors: InputError that begins with file:line:column (or "--set ...") and says what was found and expected.
+/// Reads a case file with everything it inherits by `base`, and checks the case as requireValid does;
+/// docs/cases.md lists the keys. `overrides`: "key=value" each, as given to --set, applied in order on top of the
+/// files. Errors: InputError that begins with file:line:column (or "--set ...") and says what was found and
+/// expected.
 Case readCase(const std::filesystem::path& path, std::span<const std::string> overrides = {});
 
 /// The case as a complete TOML file: resolution applied (and therefore 1), every key explicit. Reading it gives

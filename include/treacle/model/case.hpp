@@ -13,8 +13,9 @@
 
 namespace treacle {
 
-/// The data of one simulation after reading and checking: SI units, resolution already applied.
-/// Two-dimensional cases leave the third component at zero.
+/// The data of one simulation: SI units, resolution already applied. Two-dimensional cases leave the third
+/// component at zero. A case read from a file is checked; for one made in code requireValid says what is wrong
+/// with it.
 
 struct Material {
   std::string name;
@@ -191,7 +192,7 @@ struct HatSettings {
 inline constexpr int maxModes = 16;
 
 struct SolverSettings {
-  // The defaults are those of MPH-I; case files have others for ISPH and for other preconditioners.
+  // The defaults are those of MPH-I; defaultSolver has others for ISPH and for other preconditioners.
   KrylovKind krylov = KrylovKind::Cg;
   PreconditionerKind preconditioner = PreconditionerKind::ProjectedMultigrid;
   OperatorKind operatorKind = OperatorKind::MatrixFree;
@@ -224,6 +225,7 @@ struct OutputFields {
   bool operator==(const OutputFields&) const = default;
 };
 
+enum class OutputFormat { Vtp };  // the only one
 enum class OutputPrecision { Single, Double };
 
 struct OutputSettings {

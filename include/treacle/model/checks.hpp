@@ -1,11 +1,18 @@
 #pragma once
 
 #include "treacle/model/case.hpp"
+#include "treacle/model/width.hpp"
 
 #include <string>
 #include <vector>
 
 namespace treacle {
+
+/// Whether a case can be run, as far as that can be said without its particles: each value by itself, as
+/// keys::visit bounds it, and what values must be together. Errors: CaseError, for the first that cannot be used.
+void requireValid(const Case& c);
+/// The same for a width of the case.
+void requireValid(const Width& width, const Case& c);
 
 /// Dimensionless numbers of one material at the case's time step and spacing.
 struct StabilityNumbers {

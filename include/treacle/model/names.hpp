@@ -1,9 +1,13 @@
 #pragma once
 
 #include "treacle/model/case.hpp"
+#include "treacle/model/width.hpp"
 
+#include <optional>
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 namespace treacle {
 
@@ -48,6 +52,9 @@ inline constexpr Named<CoarseKind> coarse[] = {
     {"auto", CoarseKind::Auto}, {"direct", CoarseKind::Direct}, {"spgemm", CoarseKind::Spgemm}};
 inline constexpr Named<FirstGuess> firstGuess[] = {
     {"quadratic", FirstGuess::Quadratic}, {"linear", FirstGuess::Linear}, {"last", FirstGuess::Last}};
+inline constexpr Named<Coordinate> coordinate[] = {
+    {"x", Coordinate::X}, {"y", Coordinate::Y}, {"z", Coordinate::Z}};
+inline constexpr Named<OutputFormat> format[] = {{"vtp", OutputFormat::Vtp}};
 inline constexpr Named<OutputPrecision> output[] = {{"single", OutputPrecision::Single},
                                                     {"double", OutputPrecision::Double}};
 }  // namespace names
@@ -81,6 +88,10 @@ inline constexpr std::span<const Named<CoarseKind>> namesOf<CoarseKind>{names::c
 template <>
 inline constexpr std::span<const Named<FirstGuess>> namesOf<FirstGuess>{names::firstGuess};
 template <>
+inline constexpr std::span<const Named<Coordinate>> namesOf<Coordinate>{names::coordinate};
+template <>
+inline constexpr std::span<const Named<OutputFormat>> namesOf<OutputFormat>{names::format};
+template <>
 inline constexpr std::span<const Named<OutputPrecision>> namesOf<OutputPrecision>{names::output};
 
 /// The word for a value, e.g. "bucket-multigrid".
@@ -90,6 +101,19 @@ constexpr std::string_view nameOf(E value) {
     if (n.value == value) return n.name;
   return {};
 }
+
+/// The value that a word stands for.
+template <class E>
+constexpr std::optional<E> valueNamed(std::string_view word) {
+  for (const Named<E>& n : namesOf<E>)
+    if (n.name == word) return n.value;
+  return std::nullopt;
+}
+
+/// "'a', 'b' or 'c'".
+std::string listOf(const std::vector<std::string_view>& words);
+/// "expected 'a', 'b' or 'c', found 'd'".
+std::string wrongWord(const std::vector<std::string_view>& words, std::string_view found);
 
 /// The words for the fields of frames, in the order of the files.
 struct OutputFieldName {

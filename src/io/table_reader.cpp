@@ -1,0 +1,208 @@
+#include "table_reader.hpp"
+
+#include "case_document.hpp"
+#include "suggestion.hpp"
+#include "treacle/model/expression.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace treacle {
+
+/// The method, on which the keys of other tables depend, is read before them.
+void TableReader::prepare(Case& c) {
+  (*this)({"method"}, c.method);
+  c.solver = defaultSolver(c.method.kind);
+}
+
+void TableReader::prepare(MethodSettings& method) {
+  (*this)({"name"}, method.kind);
+  nameMethod();
+}
+
+void TableReader::prepare(Body& body) {
+  const auto shape = lookUp<ShapeKind>("shape");
+  if (!shape) return;
+  body.shape.kind = *shape;
+  section_ = Section(section_.table(), fmt::format("{} ({})", section_.title(), nameOf(*shape)));
+}
+
+void TableReader::prepare(SolverSettings& solver) {
+  if (const auto preconditioner = lookUp<PreconditionerKind>("preconditioner"))
+    solver = defaultSolver(case_.method.kind, *preconditioner);
+  nameMethod();
+}
+
+/// In the title, for tables whose keys are others with ISPH.
+void TableReader::nameMethod() {
+  if (case_.method.kind == MethodKind::Isph) section_ = Section(section_.table(), section_.title() + " (isph)");
+}
+
+std::vector<std::string_view> TableReader::knownKeys(const Case&) const { return topLevelKeys(); }
+
+/// Only the keys of the shape at hand, so that a radius given to a box is an error; all while it is unclear.
+std::vector<std::string_view> TableReader::knownKeys(const Body& body) const {
+  if (lookUp<ShapeKind>("shape")) return keys::namesIn(body, case_);
+  std::vector<std::string_view> known;
+  for (const Named<ShapeKind>& shape : namesOf<ShapeKind>) {
+    Body other;
+    other.shape.kind = shape.value;
+    for (std::string_view key : keys::namesIn(other, case_))
+      if (std::ranges::find(known, key) == known.end()) known.push_back(key);
+  }
+  return known;
+}
+
+std::string TableReader::titleOf(std::string_view key) const {
+  if (path_.size() > 1) return fmt::format("the {} of [[{}]] '{}'", key, path_[0], path_[1]);
+  return path_.empty() ? fmt::format("[{}]", key) : fmt::format("[{}.{}]", path_[0], key);
+}
+
+TableReader TableReader::below(const toml::table& table, std::string title,
+                               std::initializer_list<std::string_view> keys) const {
+  CasePath path = path_;
+  path.insert(path.end(), keys.begin(), keys.end());
+  return {case_, sections_, Section(table, std::move(title)), std::move(path)};
+}
+
+double TableReader::number(const Key& key, const toml::node& node, const std::string& expected) const {
+  const std::optional<double> x = node.is_number() ? node.value<double>() : std::nullopt;
+  if (!x || !key.bound.holds(*x)) throw section_.unexpected(key, expected, node);
+  return *x;
+}
+
+std::string TableReader::expression(const Key& key, const toml::node& node) const {
+  if (!node.is_string()) throw section_.unexpected(key, "an expression", node);
+  const std::string& text = node.as_string()->get();
+  try {
+    Expression{text, case_.dimensions};
+  } catch (const InputError& e) {
+    throw section_.error(key.name, e.what());
+  }
+  return text;
+}
+
+const std::string* TableReader::word(const Key& key) const {
+  const std::string expected = "a string";
+  const toml::node* node = section_.value(key, expected);
+  if (node && !node->is_string()) throw section_.unexpected(key, expected, *node);
+  return node ? &node->as_string()->get() : nullptr;
+}
+
+const toml::table* TableReader::table(const Key& key) const {
+  const toml::node* node = section_.value(key, fmt::format("a table [{}]", key.name));
+  if (node && !node->is_table()) throw section_.unexpected(key, "a table", *node);
+  return node ? node->as_table() : nullptr;
+}
+
+std::vector<TableReader::Entry> TableReader::entries(const Key& key) const {
+  const std::string expected = expectedEntries(key);
+  const toml::node* node = section_.value(key, expected);
+  if (!node) return {};
+  if (!node->is_array_of_tables()) throw section_.unexpected(key, expected, *node);
+  std::vector<Entry> entries;
+  for (const toml::node& entry : *node->as_array())
+    entries.push_back({(*entry.as_table())["name"].value_or(std::string{}), entry.as_table()});
+  return entries;
+}
+
+const toml::array* TableReader::array(const Key& key, const std::string& expected) const {
+  const toml::node* node = section_.value(key, expected);
+  if (!node) return nullptr;
+  const toml::array* array = node->as_array();
+  if (!array || array->size() != static_cast<std::size_t>(case_.dimensions))
+    throw section_.unexpected(key, expected, *node);
+  return array;
+}
+
+void TableReader::operator()(const Key& key, double& x) const {
+  const std::string expected = expectedNumber(key);
+  if (const toml::node* node = section_.value(key, expected)) x = number(key, *node, expected);
+}
+
+void TableReader::operator()(const Key& key, int& x) const {
+  const std::string expected = expectedInteger(key);
+  const toml::node* node = section_.value(key, expected);
+  if (!node) return;
+  const auto* value = node->as_integer();
+  if (!value || !key.bound.holds(static_cast<double>(value->get())) ||
+      value->get() > std::numeric_limits<int>::max())
+    throw section_.unexpected(key, expected, *node);
+  x = static_cast<int>(value->get());
+}
+
+void TableReader::operator()(const Key& key, bool& flag) const {
+  const std::string expected = "true or false";
+  const toml::node* node = section_.value(key, expected);
+  if (!node) return;
+  if (!node->is_boolean()) throw section_.unexpected(key, expected, *node);
+  flag = node->as_boolean()->get();
+}
+
+void TableReader::operator()(const Key& key, std::array<bool, 3>& flags) const {
+  const auto axes = static_cast<std::size_t>(case_.dimensions);
+  const std::string expected = fmt::format("true, false or an array of {} of them", axes);
+  const toml::node* node = section_.value(key, expected);
+  if (!node) return;
+  const toml::array* array = node->as_array();
+  const bool fits =
+      array ? array->size() == axes && array->is_homogeneous(toml::node_type::boolean) : node->is_boolean();
+  if (!fits) throw section_.unexpected(key, expected, *node);
+  for (std::size_t k = 0; k < axes; ++k) flags[k] = (array ? (*array)[k] : *node).as_boolean()->get();
+}
+
+void TableReader::operator()(const Key& key, Vec<3>& x) const {
+  const std::string expected = expectedVector(key, case_.dimensions);
+  const toml::array* array = this->array(key, expected);
+  for (int k = 0; array && k < case_.dimensions; ++k)
+    x[k] = number(key, (*array)[static_cast<std::size_t>(k)], expected);
+}
+
+void TableReader::operator()(const Key& key, Vec<3>& numbers, std::array<std::string, 3>& texts) const {
+  const std::string expected = expectedVector(key, case_.dimensions, true);
+  const toml::array* array = this->array(key, expected);
+  for (std::size_t k = 0; array && k < array->size(); ++k)
+    if (const toml::node& node = (*array)[k]; node.is_string())
+      texts[k] = expression(key, node);
+    else
+      numbers[static_cast<int>(k)] = number(key, node, expected);
+}
+
+void TableReader::operator()(const Key& key, std::string& text) const {
+  if (const std::string* word = this->word(key)) text = *word;
+}
+
+void TableReader::operator()(const Key& key, std::string& text, keys::ExpressionTag) const {
+  if (const toml::node* node = section_.value(key, "an expression")) text = expression(key, *node);
+}
+
+void TableReader::operator()(const Key& key, int& index, keys::MaterialTag) const {
+  const std::string* name = word(key);
+  if (!name) return;
+  const auto found = std::ranges::find(case_.materials, *name, &Material::name);
+  if (found == case_.materials.end()) {
+    std::vector<std::string_view> names;
+    for (const Material& m : case_.materials) names.push_back(m.name);
+    throw section_.error(key.name, fmt::format("unknown material '{}'{}", *name, suggestion(*name, names)));
+  }
+  index = static_cast<int>(found - case_.materials.begin());
+}
+
+void TableReader::operator()(const Key& key, OutputFields& fields) const {
+  const std::string expected = "an array of strings";
+  const toml::node* node = section_.value(key, expected);
+  if (!node) return;
+  const toml::array* words = node->as_array();
+  if (!words || !(words->empty() || words->is_homogeneous(toml::node_type::string)))
+    throw section_.unexpected(key, expected, *node);
+  std::vector<std::string_view> names;
+  for (const OutputFieldName& f : outputFieldNames) names.push_back(f.name), fields.*(f.flag) = false;
+  for (const toml::node& entry : *words) {
+    const std::string& word = entry.as_string()->get();
+    const auto field = std::ranges::find(outputFieldNames, word, &OutputFieldName::name);
+    if (field == std::end(outputFieldNames)) throw section_.error(key.name, wrongWord(names, word));
+    fields.*(field->flag) = true;
+  }
+}
+
+}  // namespace treacle

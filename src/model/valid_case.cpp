@@ -1,0 +1,222 @@
+#include "treacle/core/error.hpp"
+#include "treacle/model/case_error.hpp"
+#include "treacle/model/case_keys.hpp"
+#include "treacle/model/checks.hpp"
+#include "treacle/model/expression.hpp"
+#include "treacle/model/shape.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+#include <utility>
+
+namespace treacle {
+namespace {
+
+/// One table of a case: its values are checked one by one, as a visitor of its keys, then by `requireSound`
+/// together.
+class Checker {
+ public:
+  Checker(const Case& c, CasePath path) : case_(c), path_(std::move(path)) {}
+
+  template <class Table>
+  void check(const Table& table) const {
+    keys::visit(*this, table, case_);
+    requireSound(*this, table);
+  }
+
+  const Case& wholeCase() const { return case_; }
+
+  /// `keys`: the way from this table.
+  [[noreturn]] void fail(std::initializer_list<std::string_view> keys, const std::string& text) const {
+    throw CaseError(below(keys), text);
+  }
+
+  void operator()(const Key&, bool) const {}
+  void operator()(const Key&, const std::array<bool, 3>&) const {}
+  void operator()(const Key&, const OutputFields&) const {}
+  void operator()(const Key& key, double x) const { require(key.bound.holds(x), key, expectedNumber(key), x); }
+  void operator()(const Key& key, int x) const { require(key.bound.holds(x), key, expectedInteger(key), x); }
+  void operator()(const Key& key, const Vec<3>& x) const {
+    requireVector(key, x, expectedVector(key, case_.dimensions));
+  }
+  void operator()(const Key& key, const std::string& text) const {
+    if (key.required && text.empty()) fail({key.name}, "missing; expected a string");
+  }
+  void operator()(const Key& key, const std::string& text, keys::ExpressionTag) const {
+    if (text.empty()) return;
+    try {
+      Expression{text, case_.dimensions};
+    } catch (const InputError& e) {
+      fail({key.name}, e.what());
+    }
+  }
+  void operator()(const Key& key, Vec<3> x, const std::array<std::string, 3>& texts) const {
+    for (int k = 0; k < case_.dimensions; ++k) {
+      const std::string& text = texts[static_cast<std::size_t>(k)];
+      (*this)(key, text, keys::expression);
+      if (!text.empty()) x[k] = 0;  // does not count
+    }
+    requireVector(key, x, expectedVector(key, case_.dimensions, true));
+  }
+  void operator()(const Key& key, int index, keys::MaterialTag) const {
+    const std::size_t count = case_.materials.size();
+    if (index < 0 || static_cast<std::size_t>(index) >= count)
+      fail({key.name}, fmt::format("expected the index of one of {} materials, found {}", count, index));
+  }
+  template <class E, class Fits = keys::AllFit>
+  requires std::is_enum_v<E>
+  void operator()(const Key& key, E value, Fits fits = {}) const {
+    const std::string_view word = nameOf(value);
+    if (word.empty() || !fits(value)) fail({key.name}, wrongWord(wordsThat<E>(fits), word));
+  }
+
+  template <class Table>
+  requires std::is_class_v<Table>
+  void operator()(const Key& key, const Table& table) const { Checker(case_, below({key.name})).check(table); }
+  void operator()(const Key& key, const Oscillation& oscillation) const {
+    if (oscillation != Oscillation{}) Checker(case_, below({key.name})).check(oscillation);
+  }
+  template <class Table>
+  void operator()(const Key& key, const std::optional<Table>& table) const {
+    if (table) (*this)(key, *table);
+  }
+  template <class Table>
+  void operator()(const Key& key, const std::vector<Table>& tables) const {
+    if (tables.empty()) fail({key.name}, fmt::format("missing; expected {}", expectedEntries(key)));
+    if (tables.size() > key.bound.most)
+      fail({key.name}, fmt::format("expected at most {}, found {}", key.bound.most, tables.size()));
+    for (std::size_t k = 0; k < tables.size(); ++k) {
+      const std::string& name = tables[k].name;
+      if (!name.empty() && std::ranges::count(tables, name, &Table::name) > 1)
+        fail({key.name}, fmt::format("two [[{}]] are named '{}'", key.name, name));
+      Checker(case_, below({key.name, name.empty() ? std::to_string(k) : name})).check(tables[k]);
+    }
+  }
+
+ private:
+  template <class T>
+  void require(bool sound, const Key& key, const std::string& expected, T found) const {
+    if (!sound) fail({key.name}, mismatch(key, expected, fmt::format("{}", found)));
+  }
+
+  void requireVector(const Key& key, const Vec<3>& x, const std::string& expected) const {
+    for (int k = 0; k < case_.dimensions; ++k) require(key.bound.holds(x[k]), key, expected, x[k]);
+    for (int k = case_.dimensions; k < 3; ++k)
+      if (x[k] != 0) fail({key.name}, fmt::format("expected 0 along {} in a plane, found {}", "xyz"[k], x[k]));
+  }
+
+  CasePath below(std::initializer_list<std::string_view> keys) const {
+    CasePath path = path_;
+    path.insert(path.end(), keys.begin(), keys.end());
+    return path;
+  }
+
+  const Case& case_;
+  CasePath path_;
+};
+
+template <class Table>
+void requireSound(const Checker&, const Table&) {}
+
+void requireOrder(const Checker& at, const Vec<3>& min, const Vec<3>& max) {
+  for (int k = 0; k < at.wholeCase().dimensions; ++k)
+    if (!(min[k] < max[k]))
+      at.fail({"max"}, fmt::format("expected more than min on every axis, found {} <= {} along {}", max[k], min[k],
+                                   "xyz"[k]));
+}
+
+void requireSound(const Checker& at, const Domain& d) { requireOrder(at, d.min, d.max); }
+
+void requireSound(const Checker& at, const Rotation& r) {
+  if (const double length = norm(r.axis); length == 0 || !std::isfinite(length))
+    at.fail({"axis"}, fmt::format("expected a direction, found a vector of length {}", length));
+}
+
+void requireSound(const Checker& at, const Shape& s) {
+  if (s.kind == ShapeKind::Box) return requireOrder(at, s.min, s.max);
+  if (s.kind == ShapeKind::Cylinder && s.start == s.end) at.fail({"end"}, "expected a point other than start");
+  if (s.innerRadius >= s.radius)
+    at.fail({"inner_radius"}, fmt::format("expected less than radius = {}, found {}", s.radius, s.innerRadius));
+}
+
+/// Only fluids start with velocities of their own for each particle, only walls are moved.
+void requireSound(const Checker& at, const Body& b) {
+  requireSound(at, b.shape);
+  if (b.kind == BodyKind::Fluid) {
+    constexpr const char* text = "only a body of type \"wall\" can have one";
+    if (b.oscillation != Oscillation{}) at.fail({"oscillation"}, text);
+    if (b.rotation) at.fail({"rotation"}, text);
+    return;
+  }
+  for (const std::string& text : b.velocityExpression)
+    if (!text.empty())
+      at.fail({"velocity"}, fmt::format("only a body of type \"fluid\" can have expressions; expected an array of "
+                                        "{} finite numbers [m/s], found \"{}\"",
+                                        at.wholeCase().dimensions, text));
+}
+
+void requireSound(const Checker& at, const Width& w) {
+  if (!(w.from < w.to)) at.fail({"to"}, fmt::format("expected more than from = {}, found {}", w.from, w.to));
+}
+
+void requireSound(const Checker& at, const TimeSettings& t) {
+  const double steps = t.end / t.step;
+  if (steps < 0.5 && !t.stepsVary())
+    at.fail({"end"}, fmt::format("expected at least one step of {} s, found {}", t.step, t.end));
+  if (steps > 1e15) at.fail({"step"}, fmt::format("{:.3g} steps to the end are too many", steps));
+}
+
+/// What works on neighbour lists cannot do without them.
+void requireSound(const Checker& at, const SolverSettings& s) {
+  if (at.wholeCase().method.kind != MethodKind::MphI || s.neighbours == NeighbourKind::Lists) return;
+  const auto refuse = [&](std::string_view key, std::string_view word) {
+    at.fail({"neighbours"},
+            fmt::format("expected 'lists' with {} = '{}', found 'ranges': that needs lists", key, word));
+  };
+  const MultigridSettings& m = s.multigrid;
+  if (s.preconditioner == PreconditionerKind::ProjectedMultigrid)
+    refuse("preconditioner", nameOf(s.preconditioner));
+  if (s.operatorKind == OperatorKind::Assembled) refuse("operator", nameOf(s.operatorKind));
+  if (m.particleDiagonal == SmootherDiagonal::ExtendedJacobi)
+    refuse("multigrid.particle_diagonal", nameOf(m.particleDiagonal));
+  if (m.coarseOperators == CoarseKind::Spgemm) refuse("multigrid.coarse_operators", nameOf(m.coarseOperators));
+}
+
+void requireSound(const Checker& at, const OutputSettings& o) {
+  const MethodKind method = at.wholeCase().method.kind;
+  if (o.balance && method != MethodKind::MphI)
+    at.fail({"balance"},
+            fmt::format("only the method '{}' has one, found '{}'", nameOf(MethodKind::MphI), nameOf(method)));
+}
+
+/// The search needs three cells along a periodic axis: with fewer, a particle would meet a neighbour twice.
+void requirePeriodicLength(const Checker& at, const Case& c) {
+  constexpr int cells = 3;
+  const double edge = c.searchEdge();
+  const std::string_view edgeText = c.method.kind == MethodKind::Isph ? "2 h" : "max(h_v, 2 h_p)";
+  for (int k = 0; k < c.dimensions; ++k) {
+    const double length = c.domain.max[k] - c.domain.min[k];
+    if (!c.domain.periodic[static_cast<std::size_t>(k)] || std::floor(length / edge) >= cells) continue;
+    at.fail(
+        {"domain", "periodic"},
+        fmt::format("the domain is {} long along {}; a periodic axis must hold {} search cells of edge {} = {}: "
+                    "expected at least {}",
+                    lengthText(length), "xyz"[k], cells, edgeText, lengthText(edge), lengthText(cells * edge)));
+  }
+}
+
+void requireSound(const Checker& at, const Case& c) {
+  if (std::ranges::none_of(c.bodies, [](const Body& b) { return b.kind == BodyKind::Fluid; }))
+    at.fail({"body"}, "no fluid: expected at least one [[body]] with type = \"fluid\"");
+  requirePeriodicLength(at, c);
+}
+
+}  // namespace
+
+void requireValid(const Case& c) { Checker(c, {}).check(c); }
+
+void requireValid(const Width& width, const Case& c) { Checker(c, {"width"}).check(width); }
+
+}  // namespace treacle
