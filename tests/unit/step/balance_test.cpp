@@ -269,7 +269,7 @@ TEST(Balance, ElasticPowerIsWhatTheElasticEnergyLoses) {
 TEST(Balance, DoesNotDependOnTheNumberOfThreads) {
   LoadedWalls<2> start(WallsMove::Apart, 10);
   start.c.solver.tolerance = 1e-8;
-  // Sums of fluid and of walls are over several chunks.
+  // Every loop runs on all threads, and dot products are sums over several chunks.
   ASSERT_GT(start.particles.fluidCount, reductionChunk);
   ASSERT_GT(start.particles.wallCount(), reductionChunk);
   const auto balance = [&](int threads) {
