@@ -109,7 +109,7 @@ TEST(Convergence, OfMphLeavesTheNextStepAsItIs) {
   // Without a preconditioner hundreds of iterations take longer than to set them up.
   const std::vector<SolverTrial> plainTrial = compared.convergence(std::vector{none});
   EXPECT_GT(plainTrial[0].report.iterations, 100);
-  EXPECT_GT(plainTrial[0].solveSeconds, plainTrial[0].setupSeconds);
+  EXPECT_GT(plainTrial[0].solveSeconds, 3 * plainTrial[0].setupSeconds);  // measured: a hundred times
 }
 
 template <int D>
