@@ -10,20 +10,23 @@ namespace treacle::test {
 enum class WallsMove { Not, Apart, Oscillating };
 
 /// A jittered block of two fluids, in motion under oblique gravity, in the corner of a floor and a side wall, two
-/// bodies that touch; nothing is periodic. The ids are the places in `particles`.
+/// bodies that touch; nothing is periodic. The ids are the places in `particles`. `finer`: so many particles along
+/// each millimetre.
 template <int D>
 struct LoadedWalls {
   Case c;
   Particles<D> particles;
 
-  explicit LoadedWalls(WallsMove how) : c(sceneCase(D)) {
+  explicit LoadedWalls(WallsMove how, int finer = 1) : c(sceneCase(D)) {
+    const double l = c.spacing;
+    c.spacing /= finer;
     c.domain.periodic = {};
     c.gravity[0] = 3;
     c.gravity[D - 1] = -10;
     c.solver.tolerance = 1e-24;
     c.output.balance = true;
     const int up = D - 1;
-    const double l = c.spacing, edge = c.domain.max[0] - l, height = (D == 2 ? 16 : 12) * l;
+    const double edge = c.domain.max[0] - l, height = (D == 2 ? 16 : 12) * l;
     const auto inside = [=](const Vec<D>& x) {
       return std::all_of(x.v, x.v + D, [=](double a) { return a > l && a < edge; });
     };

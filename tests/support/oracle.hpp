@@ -101,6 +101,35 @@ struct Oracle {
     return v;
   }
 
+  /// n_0: that of a particle in a full lattice.
+  double restDensity() const {
+    const int reach = static_cast<int>(std::ceil(hp / l)), side = 2 * reach + 1;
+    double n = -w(0, hp);
+    for (int place = 0; place < std::pow(side, D); ++place) {
+      double square = 0;
+      for (int k = 0, rest = place; k < D; ++k, rest /= side) square += std::pow(rest % side - reach, 2);
+      n += w(l * std::sqrt(square), hp);
+    }
+    return n;
+  }
+
+  /// kappa [n - n_0]_+ of all particles [Pa].
+  Eigen::VectorXd elasticPressure() const {
+    const double rest = restDensity();
+    Eigen::VectorXd p(count());
+    for (std::uint32_t i = 0; i < count(); ++i)
+      p[i] = material(i).bulkModulus * std::max(0.0, numberDensity(i) - rest);
+    return p;
+  }
+
+  /// b of eq. (16) between walls at rest.
+  Eigen::VectorXd rightHandSide() const {
+    Eigen::VectorXd b = -(gradientMatrix() * elasticPressure());
+    for (Eigen::Index k = 0; k < b.size(); ++k)
+      b[k] += material(k / D).density * (s.particles.velocity[k / D][k % D] / dt + s.c.gravity[k % D]);
+    return b;
+  }
+
   /// A of eq. (16).
   Eigen::MatrixXd matrix() const {
     Eigen::VectorXd inertia(s.unknowns()), lambda(count());

@@ -56,10 +56,10 @@ TEST(Isph, WaterAtRestHasTheHydrostaticPressure) {
   for (int k = 0; k + 1 < layers; ++k) {
     deviation += std::abs(sum[k] / count[k]) / (density * gravity * depth) / (layers - 1);
   }
-  // Measured: 0.4 %, 0.03 % of the depth, 0.2 %.
-  EXPECT_LE(deviation, 0.02);
-  EXPECT_LE(drift, 0.002 * depth);
-  EXPECT_LE(meanError / steps, 0.01);
+  // Measured: 0.39 %, 0.031 % of the depth, 0.16 %.
+  EXPECT_LE(deviation, 0.005);
+  EXPECT_LE(drift, 4e-4 * depth);
+  EXPECT_LE(meanError / steps, 0.002);
 }
 
 /// Where the front of a body of fluid is, but for what has splashed ahead.
@@ -74,25 +74,28 @@ TEST(Isph, DamBreakRunsOutAsInTheExperiment) {
   // Martin & Moyce (1952), Z / a against T = t sqrt(2 g / a), for a column of twice its width.
   const double times[] = {0.832, 1.219, 1.997, 2.547, 3.345, 4.034};
   const double fronts[] = {1.217, 1.474, 2.292, 2.995, 4.134, 4.944};
+  // How far this program is ahead of them [%]: no gate is lifted, and the floor has no boundary layer. Measured
+  // here; both precisions, other tolerances and preconditioners differ by 0.001 (density: 0.003), a step shorter
+  // by 5 % by up to 0.5.
+  const double ahead[] = {5.47, 9.95, 8.82, 7.26, 6.90, 11.64}, density = 1.503;
   const double a = 0.05715, unit = std::sqrt(a / (2 * 9.81));
   Flow run("isph-dam-break-2d.toml");
-  double before = 1, last = 0, density = 0, steps = 0;
+  double before = 1, last = 0, densityError = 0, steps = 0;
   std::size_t next = 0;
   while (next < std::size(times)) {
     const StepReport report = run.simulation.advance();
     const double front = frontOf(run.particles(), run.c.spacing) / a, now = report.time / unit;
     if (now >= times[next]) {
       const double at = before + (front - before) * (times[next] - last) / (now - last);
-      // Measured: 5 to 12 % ahead.
-      EXPECT_NEAR(at, fronts[next], 0.13 * fronts[next]) << "at T = " << times[next];
+      EXPECT_NEAR(100 * (at / fronts[next] - 1), ahead[next], 0.3) << "at T = " << times[next];
       ++next;
     }
-    EXPECT_LE(report.fallbacks, 1);
-    density += report.diagnostics.meanDensityError;
+    EXPECT_EQ(report.fallbacks, 0) << report.failures;
+    densityError += report.diagnostics.meanDensityError;
     ++steps;
     before = front, last = now;
   }
-  EXPECT_LE(density / steps, 0.02);  // measured: 1.5 %
+  EXPECT_LE(100 * densityError / steps, 1.05 * density);
 }
 
 }  // namespace

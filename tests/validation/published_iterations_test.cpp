@@ -11,7 +11,8 @@ namespace {
 
 /// The dam breaks of [K23] with the authors' algorithm (CR, bucket multigrid, their sweeps and first guess),
 /// against figures measured with the authors' published program: same equations on the same lattice, so positions
-/// agree to the solver's tolerance and iterations to the effect of rounding.
+/// agree to the solver's tolerance, here to the five digits that are published, and iterations to the effect of
+/// rounding: measured within 0.07 % (mean) and 0.5 % (at the end), the first solve to the iteration.
 struct Outcome {
   int firstIterations = 0;
   double meanIterations = 0;
@@ -49,27 +50,27 @@ void expectWithin(double value, double reference, double fraction, const char* w
 
 TEST(PublishedDamBreak, TwoDimensionsX1) {
   const Outcome o = run<2>("dam-break-2d.toml", {}, 200);
-  EXPECT_NEAR(o.firstIterations, 338, 2);
-  expectWithin(o.meanIterations, 233, 0.06, "mean iterations");
-  expectWithin(o.lastIterations, 243, 0.06, "iterations at 0.2 s");
-  expectWithin(o.diagnostics.frontX, 25.682 * mm, 1e-3, "front");
-  expectWithin(o.diagnostics.top, 19.028 * mm, 1e-3, "top");
-  expectWithin(o.centre[0], 11.964 * mm, 1e-3, "centre of mass, x");
-  expectWithin(o.centre[1], 7.967 * mm, 1e-3, "centre of mass, height");
+  EXPECT_NEAR(o.firstIterations, 338, 1);
+  expectWithin(o.meanIterations, 233, 0.01, "mean iterations");
+  expectWithin(o.lastIterations, 243, 0.02, "iterations at 0.2 s");
+  expectWithin(o.diagnostics.frontX, 25.682 * mm, 1e-4, "front");
+  expectWithin(o.diagnostics.top, 19.028 * mm, 1e-4, "top");
+  expectWithin(o.centre[0], 11.964 * mm, 1e-4, "centre of mass, x");
+  expectWithin(o.centre[1], 7.967 * mm, 1e-4, "centre of mass, height");
 }
 
 TEST(PublishedDamBreak, TwoDimensionsX1Half) {
   const Outcome o = run<2>("dam-break-2d.toml", {"resolution=2"}, 400);
-  EXPECT_NEAR(o.firstIterations, 377, 2);
-  expectWithin(o.meanIterations, 258, 0.06, "mean iterations");
-  expectWithin(o.lastIterations, 268, 0.06, "iterations at 0.2 s");
-  expectWithin(o.diagnostics.frontX, 25.925 * mm, 1e-3, "front");
-  expectWithin(o.diagnostics.top, 19.505 * mm, 1e-3, "top");
+  EXPECT_NEAR(o.firstIterations, 377, 1);
+  expectWithin(o.meanIterations, 258, 0.01, "mean iterations");
+  expectWithin(o.lastIterations, 268, 0.02, "iterations at 0.2 s");
+  expectWithin(o.diagnostics.frontX, 25.925 * mm, 1e-4, "front");
+  expectWithin(o.diagnostics.top, 19.505 * mm, 1e-4, "top");
 }
 
 TEST(PublishedDamBreak, UnpreconditionedX1) {
   const Outcome o = run<2>("dam-break-2d.toml", {"solver.preconditioner=none"}, 200);
-  expectWithin(o.lastIterations, 415, 0.06, "iterations of plain CR at 0.2 s");
+  expectWithin(o.lastIterations, 415, 0.02, "iterations of plain CR at 0.2 s");
 }
 
 TEST(PublishedDamBreak, AsPrintedNeedsTheIterationsOfAnIndependentProgram) {
@@ -77,22 +78,22 @@ TEST(PublishedDamBreak, AsPrintedNeedsTheIterationsOfAnIndependentProgram) {
   const Outcome o =
       run<2>("dam-break-2d.toml",
              {"solver.multigrid.middle_sweeps=2", "solver.multigrid.particle_diagonal=extended-jacobi"}, 200);
-  expectWithin(o.lastIterations, 251, 0.06, "iterations at 0.2 s");
+  expectWithin(o.lastIterations, 251, 0.02, "iterations at 0.2 s");
 }
 
 TEST(PublishedDamBreak, ThreeDimensionsX2) {
   const Outcome o = run<3>("dam-break-3d.toml", {"resolution=0.5"}, 100);
-  EXPECT_NEAR(o.firstIterations, 395, 2);
-  expectWithin(o.meanIterations, 284, 0.06, "mean iterations");
-  expectWithin(o.lastIterations, 273, 0.06, "iterations at 0.2 s");
-  expectWithin(o.diagnostics.frontX, 23.453 * mm, 1e-3, "front");
-  expectWithin(o.diagnostics.top, 18.204 * mm, 1e-3, "top");
-  expectWithin(o.centre[0], 11.234 * mm, 1e-3, "centre of mass, x");
-  expectWithin(o.centre[2], 7.187 * mm, 1e-3, "centre of mass, height");
+  EXPECT_NEAR(o.firstIterations, 395, 1);
+  expectWithin(o.meanIterations, 284, 0.01, "mean iterations");
+  expectWithin(o.lastIterations, 273, 0.02, "iterations at 0.2 s");
+  expectWithin(o.diagnostics.frontX, 23.453 * mm, 1e-4, "front");
+  expectWithin(o.diagnostics.top, 18.204 * mm, 1e-4, "top");
+  expectWithin(o.centre[0], 11.234 * mm, 1e-4, "centre of mass, x");
+  expectWithin(o.centre[2], 7.187 * mm, 1e-4, "centre of mass, height");
 }
 
 TEST(PublishedDamBreak, ThreeDimensionsX1FirstStep) {
-  EXPECT_NEAR(run<3>("dam-break-3d.toml", {}, 1).firstIterations, 450, 2);
+  EXPECT_NEAR(run<3>("dam-break-3d.toml", {}, 1).firstIterations, 450, 1);
 }
 
 }  // namespace

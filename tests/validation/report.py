@@ -32,9 +32,11 @@ def table(study, rows):
         cells += [number(row["values"][name]) for name in values]
         lines.append("| " + " | ".join(cells) + " |")
     bars = ", ".join(f"{name} {bar:g}" for name, bar in study.bars.items())
-    bars += "".join(f"; {name} from {low:g} to {high:g}" for name, (low, high) in study.ranges.items())
+    scheme = rows[0].get("scheme", "published")  # records from before there was another one do not say
+    ranges = "; ".join(f"{name} from {low:g} to {high:g}" for name, (low, high) in (study.ranges_of(scheme) or {}).items())
+    limits = f"Bars at the first level: {bars}. Scheme {scheme}" + (f": {ranges}" if ranges else "")
     machines = sorted({row["device"] for row in rows})
-    lines += ["", f"Bars at the first level: {bars}. Run on {', '.join(machines)}; commit {rows[0]['commit']}."]
+    lines += ["", f"{limits}. Run on {', '.join(machines)}; commit {rows[0]['commit']}."]
     return "\n".join(lines)
 
 

@@ -1,6 +1,7 @@
 """What a validation study is: one case file, run at several resolutions and held against an exact or published solution."""
 
 import math
+import re
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Callable
@@ -34,9 +35,10 @@ class Level:
 @dataclass
 class Study:
     """levels: from coarse to fine; the first is what continuous integration runs. bars: largest error allowed there, by the
-    names of Outcome.errors; every bar must be met. ranges: least and largest of Outcome.values there: where the method itself is
-    off by more than a wrong constant would be, a bar alone would let that pass. measure: takes a Run (treacle_data) to an Outcome. sizes: what orders are
-    counted in, a function of the level; particle spacing unless told."""
+    names of Outcome.errors; every bar must be met, whatever the scheme. ranges: by the scheme of the case, least and largest of
+    Outcome.values there: where a scheme itself is off by more than a wrong constant would be, a bar alone would let that pass. They
+    say what this scheme gives, not what is right, so better physics need a scheme of their own. measure: takes a Run
+    (treacle_data) to an Outcome. size: what orders are counted in, a function of the level; particle spacing unless told."""
 
     name: str
     title: str
@@ -53,6 +55,17 @@ class Study:
     @property
     def case_file(self):
         return cases / (self.case or self.name + ".toml")
+
+    def ranges_of(self, scheme):
+        """None where the study has ranges, but says nothing of this scheme; where the bars are enough for it, it says {}."""
+        return self.ranges.get(scheme) if self.ranges else {}
+
+
+def scheme_in(text):
+    """[method] scheme in the text of a case; a case without one is by the published formulas."""
+    method = text.partition("\n[method]\n")[2].partition("\n[")[0]
+    found = re.search(r'^scheme *= *"([^"]*)"', method, re.MULTILINE)
+    return found[1] if found else "published"
 
 
 def order(error_coarse, error_fine, size_coarse, size_fine):

@@ -19,7 +19,7 @@ here = Path(__file__).resolve().parent
 sys.path[:0] = [str(here), str(here.parents[1] / "scripts")]
 
 import treacle_data  # noqa: E402
-from study import order  # noqa: E402
+from study import order, scheme_in  # noqa: E402
 
 names = sorted(file.stem for file in (here / "studies").glob("*.py") if not file.stem.startswith("_"))
 
@@ -40,10 +40,13 @@ def thinned(curves, most=200):
 def run_level(study, level, options, directory):
     words = ["--backend", options.backend] + (["--threads", str(options.threads)] if options.threads else [])
     settings = [f"resolution={level.resolution}", *study.settings, *level.settings]
+    overrides = [word for setting in settings for word in ("--set", setting)]
+    scheme = scheme_in(treacle_data.call([options.program, "check", study.case_file, *overrides]))
     run = treacle_data.run_case(options.program, study.case_file, directory, settings, words)
     outcome = study.measure(run)
     return {
         "level": level.label,
+        "scheme": scheme,
         "size": study.size(level),
         "particles": run.summary["fluid_particles"],
         "steps": run.summary["steps"],
@@ -62,12 +65,16 @@ def run_level(study, level, options, directory):
 def print_level(study, row, last, judged):
     """One block of lines; returns whether all bars are met and all values in their ranges, if the level is judged by them."""
     print(f"{study.name} {row['level']}: {row['particles']} particles, {row['steps']} steps, "
-          f"{row['iterations']:.1f} iterations, {row['seconds']} s ({row['backend']})")
-    bars, ranges = (study.bars, study.ranges) if judged else ({}, {})
+          f"{row['iterations']:.1f} iterations, {row['seconds']} s ({row['backend']}), scheme {row['scheme']}")
+    bars, ranges = (study.bars, study.ranges_of(row["scheme"])) if judged else ({}, {})
+    good = ranges is not None
+    if not good:
+        print(f"  ranges of the scheme {row['scheme']}: the study has none, NOT MET")
+        ranges = {}
     missing = sorted((set(bars) - set(row["errors"])) | (set(ranges) - set(row["values"])))
     for name in missing:
         print(f"  {name}: not measured, NOT MET")
-    good = not missing
+    good = good and not missing
     for name, error in row["errors"].items():
         text = f"  error {name}: {error:.3e}"
         if last and (p := order(last["errors"][name], error, last["size"], row["size"])) is not None:
@@ -83,7 +90,7 @@ def print_level(study, row, last, judged):
             low, high = ranges[name]
             met = low <= value <= high
             good = good and met
-            text += f", range {low:g} to {high:g}: {'met' if met else 'NOT MET'}"
+            text += f", range {low:g} to {high:g} of {row['scheme']}: {'met' if met else 'NOT MET'}"
         print(text)
     sys.stdout.flush()
     return good

@@ -1,11 +1,17 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 #include <vector>
 
 #include "command.hpp"
+#include "treacle/core/timer.hpp"
+#include "treacle/io/case_reader.hpp"
+#include "treacle/model/create.hpp"
+#include "treacle/step/simulation.hpp"
 
 namespace treacle::test {
 namespace {
@@ -15,52 +21,103 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::StartsWith;
 
-/// A row of solvers.csv; the name stands in quotes.
+/// A row of solvers.csv, and its curve; the name stands in quotes.
 struct Row {
   std::string solver, outcome;
   int iterations = 0;
   double residual = 0, setup = 0, solve = 0;
+  std::vector<double> curve;
 };
 
-std::vector<Row> solversOf(const std::string& text) {
+/// The lines after the first, as the name and the rest of each.
+std::vector<std::pair<std::string, std::string>> namedLines(const std::string& text, const std::string& header) {
   std::istringstream lines(text);
   std::string line;
   std::getline(lines, line);
-  EXPECT_EQ(line, "solver,outcome,iterations,relative_residual,setup_s,solve_s");
-  std::vector<Row> rows;
+  EXPECT_EQ(line, header);
+  std::vector<std::pair<std::string, std::string>> named;
   while (std::getline(lines, line)) {
-    Row row;
     const std::size_t quote = line.find('"', 1);
-    row.solver = line.substr(1, quote - 1);
-    std::istringstream rest(line.substr(quote + 2));
+    named.emplace_back(line.substr(1, quote - 1), line.substr(quote + 2));
+  }
+  return named;
+}
+
+std::vector<Row> solversOf(const std::string& text) {
+  std::vector<Row> rows;
+  for (const auto& [name, values] :
+       namedLines(text, "solver,outcome,iterations,relative_residual,setup_s,solve_s")) {
+    Row row;
+    row.solver = name;
+    std::istringstream rest(values);
     std::getline(rest, row.outcome, ',');
     char comma = 0;
     rest >> row.iterations >> comma >> row.residual >> comma >> row.setup >> comma >> row.solve;
-    EXPECT_TRUE(rest) << line;
+    EXPECT_TRUE(rest) << values;
     rows.push_back(row);
   }
   return rows;
 }
 
-/// Calls the command, and looks at its files: every curve from iteration 0 to the end that the table tells.
+/// The curves of convergence.csv, one after the other, each from iteration 0 on.
+void readCurves(const std::string& text, std::vector<Row>& rows) {
+  std::size_t next = 0;
+  for (const auto& [name, values] : namedLines(text, "solver,iteration,relative_residual")) {
+    const bool first = values.starts_with("0,");
+    ASSERT_LT(next, rows.size() + !first);
+    Row& row = rows[first ? next++ : next - 1];
+    EXPECT_EQ(name, row.solver);
+    EXPECT_EQ(std::stoul(values), row.curve.size());
+    row.curve.push_back(std::stod(values.substr(values.find(',') + 1)));
+  }
+  EXPECT_EQ(next, rows.size());
+}
+
+/// Calls the command, and looks at its files: every curve goes from iteration 0 to the end that the table tells.
 std::vector<Row> rowsOf(const Workshop& shop, const std::string& arguments, const std::string& directory) {
+  Timer timer;
   const Outcome outcome = shop.call("convergence " + arguments + " --backend cpu --threads 1");
+  const double seconds = timer.lap();
   EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
   EXPECT_THAT(outcome.err, IsEmpty());
   EXPECT_THAT(outcome.out, HasSubstr("iterations  |r| / |b|  set-up [ms]  solve [ms]\n"));
   EXPECT_THAT(shop.content(directory + "/convergence.png"), StartsWith("\x89PNG"));
-  const std::vector<Row> rows = solversOf(shop.content(directory + "/solvers.csv"));
-  const std::string curves = shop.content(directory + "/convergence.csv");
-  EXPECT_THAT(curves, StartsWith("solver,iteration,relative_residual\n"));
-  std::size_t lines = 1;
+  std::vector<Row> rows = solversOf(shop.content(directory + "/solvers.csv"));
+  readCurves(shop.content(directory + "/convergence.csv"), rows);
+  double inRows = 0;
   for (const Row& row : rows) {
-    EXPECT_THAT(outcome.out, HasSubstr("\n" + row.solver + " "));
-    EXPECT_THAT(curves, HasSubstr("\n\"" + row.solver + "\",0,"));
-    EXPECT_THAT(curves, HasSubstr("\n\"" + row.solver + "\"," + std::to_string(row.iterations) + ","));
-    lines += static_cast<std::size_t>(row.iterations) + 1;
+    EXPECT_EQ(row.curve.size(), static_cast<std::size_t>(row.iterations) + 1);
+    EXPECT_EQ(row.curve.back(), row.residual);
+    EXPECT_THAT(outcome.out, testing::ContainsRegex("\n" + row.solver.substr(0, row.solver.find(" (")) + " "));
+    EXPECT_THAT(outcome.out, HasSubstr(fmt::format("  {:10}  {:9.2e}  {:11.3f}  {:10.3f}", row.iterations,
+                                                   row.residual, 1e3 * row.setup, 1e3 * row.solve)));
+    inRows += row.setup + row.solve;
   }
-  EXPECT_EQ(static_cast<std::size_t>(std::count(curves.begin(), curves.end(), '\n')), lines);
+  EXPECT_GT(inRows, 0);
+  EXPECT_LT(inRows, seconds);
   return rows;
+}
+
+/// What the same solvers do with the system after so many steps of the small case, by the library.
+void expectTrials(const Workshop& shop, const std::vector<Row>& rows, int steps,
+                  const std::vector<std::vector<std::string>>& settings) {
+  const Case c = readCase(shop / "small.toml", std::vector<std::string>{"solver.precision=double"});
+  std::vector<SolverSettings> solvers;
+  for (std::vector<std::string> own : settings) {
+    own.insert(own.begin(), "solver.precision=double");
+    solvers.push_back(readCase(shop / "small.toml", own).solver);
+  }
+  std::vector<std::string> notes;
+  Simulation<2> simulation(c, createParticles<2>(c, notes));
+  for (int k = 0; k < steps; ++k) simulation.advance();
+  const std::vector<SolverTrial> trials = simulation.convergence(solvers);
+  ASSERT_EQ(trials.size(), rows.size());
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    SCOPED_TRACE(rows[k].solver);
+    EXPECT_EQ(rows[k].iterations, trials[k].report.iterations);
+    EXPECT_EQ(rows[k].residual, std::sqrt(trials[k].report.residual));
+    EXPECT_EQ(rows[k].curve, trials[k].residuals);
+  }
 }
 
 TEST(convergence, comparesTheSolversOfEachMethod) {
@@ -73,10 +130,10 @@ TEST(convergence, comparesTheSolversOfEachMethod) {
     ASSERT_EQ(rows.size(), 5u);
     for (const Row& row : rows) {
       EXPECT_EQ(row.outcome, "converged") << row.solver;
-      EXPECT_GT(row.iterations, 0);
+      // It ends with the first residual below the tolerance.
       EXPECT_LE(row.residual, 1e-6);
-      EXPECT_GT(row.setup, 0);
-      EXPECT_GT(row.solve, 0);
+      EXPECT_GT(row.curve.end()[-2], 1e-6);
+      EXPECT_EQ(row.curve.front(), rows.front().curve.front()) << "another first guess";
     }
     EXPECT_THAT(rows.front().solver, HasSubstr("none"));
     EXPECT_THAT(rows.back().solver, HasSubstr(own));
@@ -97,6 +154,11 @@ TEST(convergence, takesSolversTimeAndCheckpoint) {
   EXPECT_EQ(rows[1].outcome, "iteration limit");
   EXPECT_EQ(rows[1].iterations, 1);
   EXPECT_EQ(rows[2].outcome, "converged");
+  expectTrials(shop, rows, 2,
+               {{"solver.krylov=cg", "solver.preconditioner=block-jacobi", "solver.tolerance=1e-8"},
+                {"solver.max_iterations=1"},
+                {},
+                {"solver.multigrid.finest_sweeps=1"}});
   // Two that differ in what their name does not say, and one that has the same name.
   EXPECT_THAT(rows[1].solver, testing::EndsWith(" (1)"));
   EXPECT_THAT(rows[3].solver, testing::EndsWith(" (3)"));

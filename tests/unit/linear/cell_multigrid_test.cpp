@@ -36,7 +36,6 @@ int mgcgIterations(const PressureColumn& column, int m, int n) {
   CellMultigrid<T> multigrid;
   multigrid.setup(context, column.a, levels.begin, m, n);
   EXPECT_EQ(multigrid.levelCount(), m == 0 ? levels.begin.size() : static_cast<std::size_t>(m));
-  EXPECT_GT(multigrid.bytes(), 0u);
   return iterations(column, [&](auto r, auto z) { multigrid.apply(context, r, z); });
 }
 

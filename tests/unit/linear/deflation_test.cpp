@@ -164,7 +164,7 @@ TEST(Deflation, InvertsTheSmallMatrix) {
   EXPECT_EQ(invertIt(), n);
   const Eigen::MatrixXd exact = e.inverse();
   for (int i = 0; i < n; ++i)
-    for (int j = 0; j < n; ++j) EXPECT_NEAR(inverse(i, j), exact(i, j), 1e-9 * exact.norm());
+    for (int j = 0; j < n; ++j) EXPECT_NEAR(inverse(i, j), exact(i, j), 1e-12 * exact.norm());
 
   // Without the third row and column.
   e.row(2) = e.row(0), e.col(2) = e.col(0), e(2, 2) = e(0, 0);
@@ -173,7 +173,7 @@ TEST(Deflation, InvertsTheSmallMatrix) {
   EXPECT_EQ(inverse(5, 2), 0);
   double product = 0;
   for (int j = 0; j < n; ++j) product += e(5, j) * inverse(j, 5);
-  EXPECT_NEAR(product, 1, 1e-9);
+  EXPECT_NEAR(product, 1, 1e-12);
 }
 
 }  // namespace

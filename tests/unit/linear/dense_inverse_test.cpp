@@ -44,7 +44,7 @@ TEST(DenseInverse, SolvesSingularSystemsThatHaveASolution) {
   const HatProblem<2> problem(hatCases<2>(9)[0], 0);
   const Eigen::MatrixXd a = dense(problem.a), inverse = inverseOf<double>(problem.a);
   const Eigen::VectorXd b = a * randomVector(a.rows(), 3);
-  EXPECT_LE((a * (inverse * b) - b).norm(), 1e-4 * b.norm());
+  EXPECT_LE((a * (inverse * b) - b).norm(), 1e-6 * b.norm());  // the regularisation; measured: 1.2e-7
 }
 
 TEST(DenseInverse, GivesZerosWhereThereIsNoPivot) {

@@ -55,8 +55,8 @@ TEST(Krylov, AgreesWithTheDirectSolution) {
     const SolveReport report = s.run(solve, k, x, {1e-24, 5000});
     EXPECT_EQ(report.status, SolveStatus::Converged);
     EXPECT_GT(report.iterations, 10);
-    EXPECT_LT((x - s.exact).norm(), 1e-8 * s.exact.norm());
-    EXPECT_LT((s.b - s.a * x).squaredNorm(), 1e-20 * s.b.squaredNorm());
+    EXPECT_LT((x - s.exact).norm(), 2e-11 * s.exact.norm());  // measured: 2e-12
+    EXPECT_LT((s.b - s.a * x).squaredNorm(), 1e-23 * s.b.squaredNorm());
   };
   check(cg, identity);
   check(cr, identity);
@@ -78,7 +78,7 @@ TEST(Krylov, HasTheResidualItReports) {
     const SolveReport report = s.run(cr, s.jacobi(), x, {tolerance, 5000});
     const double actual = (s.b - s.a * x).squaredNorm() / s.b.squaredNorm();
     EXPECT_LE(report.residual, tolerance);
-    EXPECT_NEAR(actual, report.residual, 1e-3 * tolerance);
+    EXPECT_NEAR(actual, report.residual, 1e-6 * tolerance);
   }
 }
 
@@ -97,7 +97,7 @@ TEST(Krylov, LeavesTheHistoryOfItsResiduals) {
     for (int k : {1, 2, 9}) {
       x = randomVector(s.b.size(), 3);
       EXPECT_EQ(s.run(solve, s.jacobi(), x, {1e-12, k, refresh}).residual, history[k]);
-      EXPECT_NEAR((s.b - s.a * x).squaredNorm() / s.b.squaredNorm(), history[k], 1e-6 * history[k]);
+      EXPECT_NEAR((s.b - s.a * x).squaredNorm() / s.b.squaredNorm(), history[k], 1e-12 * history[k]);
     }
   };
   check(cg, 0);

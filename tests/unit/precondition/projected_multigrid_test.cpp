@@ -214,7 +214,7 @@ void checkViscousGalerkin() {
     for (Eigen::Index k = 0; k < u.size(); ++k) u[k] = field(s.particles.position[k / D], static_cast<int>(k % D));
     const double expected = u.dot(inertia.cwiseProduct(u)) + viscousGalerkinFactor * u.dot(viscosity * u),
                  energy = e.dot(grid * e);
-    EXPECT_NEAR(energy, expected, 1e-10 * expected);
+    EXPECT_NEAR(energy, expected, operatorTolerance * expected);
   }
 }
 
@@ -264,7 +264,7 @@ void checkPreconditioners(double tolerance) {
 }
 
 TEST(ProjectedMultigrid, IsSymmetricPositiveDefiniteAndNearTheInverseInDouble) {
-  checkPreconditioners<double>(1e-10);
+  checkPreconditioners<double>(2e-12);  // measured: 3e-13
 }
 
 TEST(ProjectedMultigrid, IsSymmetricPositiveDefiniteAndNearTheInverseInSingle) {

@@ -1,5 +1,7 @@
 #include "support/loaded_walls.hpp"
 #include "support/oracle.hpp"
+#include "support/tolerances.hpp"
+#include "treacle/core/parallel.hpp"
 
 #include <gtest/gtest.h>
 #include <omp.h>
@@ -34,7 +36,7 @@ void checkEnergy(const Case&, Simulation<D>& s) {
   const double lost = dt * (b.inertialLoss + b.shearDissipation + b.bulkDissipation);
   const double given = dt * (b.elasticPower + b.wallPower) + fallen;
   const double scale = std::abs(gained) + lost + std::abs(given);
-  EXPECT_NEAR(gained + lost, given, 1e-10 * scale);
+  EXPECT_NEAR(gained + lost, given, 5e-12 * scale);  // measured: 4e-13
   // No term is so small that it could be missed.
   for (const double term : {b.inertialLoss, b.shearDissipation, b.bulkDissipation, b.elasticPower, b.wallPower})
     EXPECT_GT(std::abs(dt * term), 1e-6 * scale);
@@ -56,8 +58,9 @@ void checkMomenta(const Case& c, Simulation<D>& s) {
     forces += norm(load.force), torques += norm(load.torque);
   }
   const Vec<3> linear = after.linear - before.linear, angular = after.angular - before.angular;
-  EXPECT_LE(norm(linear + dt * force), 1e-9 * (norm(linear) + dt * forces));
-  EXPECT_LE(norm(angular + dt * torque), 1e-9 * (norm(angular) + dt * torques));
+  // Measured: 2e-11 and 4e-11, with residuals of 1e-12.
+  EXPECT_LE(norm(linear + dt * force), 2e-10 * (norm(linear) + dt * forces));
+  EXPECT_LE(norm(angular + dt * torque), 2e-10 * (norm(angular) + dt * torques));
 }
 
 /// Both, for walls that rest, slide past each other, and oscillate with steps of unequal length.
@@ -111,8 +114,7 @@ struct PlainBalance {
     double n = 0;
     for (std::uint32_t j = 0; j < oracle.count(); ++j)
       if (j != i && (withFluid || !isFluid(j))) n += oracle.w(oracle.difference(i, j).norm(), oracle.hp);
-    const double rest = latticeNumberDensity(Weight<D>::make(oracle.hp, oracle.l), oracle.l);
-    return std::max(0.0, n - rest);
+    return std::max(0.0, n - oracle.restDensity());
   }
   double elasticPressure(std::uint32_t i) const { return oracle.material(i).bulkModulus * overDensity(i, true); }
 
@@ -176,10 +178,11 @@ void checkLoads(WallsMove how) {
   ASSERT_EQ(expected.walls.size(), 2u);
   for (std::size_t k = 0; k < 2; ++k) {
     const WallLoad &a = expected.walls[k], &b = step.balance.walls[k];
-    EXPECT_LE(norm(a.force - b.force), 1e-9 * norm(a.force));
-    EXPECT_LE(norm(a.torque - b.torque), 1e-9 * norm(a.torque));
+    // Measured: 1e-12 and 2e-11.
+    EXPECT_LE(norm(a.force - b.force), 1e-11 * norm(a.force));
+    EXPECT_LE(norm(a.torque - b.torque), 1e-10 * norm(a.torque));
   }
-  EXPECT_NEAR(step.balance.wallPower, expected.wallPower, 1e-9 * std::abs(expected.wallPower));
+  EXPECT_NEAR(step.balance.wallPower, expected.wallPower, 1e-10 * std::abs(expected.wallPower));
   EXPECT_EQ(step.balance.wallPower == 0, how == WallsMove::Not);
 }
 
@@ -200,7 +203,7 @@ TEST(Balance, TorquesAreAboutTheCentreOfRotation) {
     const WallLoad origin = a.advance().balance->walls[1], load = b.advance().balance->walls[1];
     const Vec<3> now = center + (k * sliding.c.time.step) * sliding.c.bodies[2].velocity;
     EXPECT_GT(norm(cross(now, load.force)), 1e-3 * norm(origin.torque));
-    EXPECT_LE(norm(origin.torque - cross(now, load.force) - load.torque), 1e-9 * norm(origin.torque));
+    EXPECT_LE(norm(origin.torque - cross(now, load.force) - load.torque), operatorTolerance * norm(origin.torque));
   }
 }
 
@@ -215,7 +218,7 @@ void checkDissipations() {
   };
   const Stepped<D> both(start);
   const double whole = twiceRayleigh(both);
-  EXPECT_NEAR(both.balance.shearDissipation + both.balance.bulkDissipation, whole, 1e-9 * whole);
+  EXPECT_NEAR(both.balance.shearDissipation + both.balance.bulkDissipation, whole, operatorTolerance * whole);
 
   LoadedWalls<D> thin(WallsMove::Not);
   for (Material& m : thin.c.materials) m.dynamicViscosity = m.bulkModulus = 0;
@@ -228,7 +231,7 @@ void checkDissipations() {
   const Stepped<D> shearOnly(soft);
   const double shear = twiceRayleigh(shearOnly);
   EXPECT_EQ(shearOnly.balance.bulkDissipation, 0);
-  EXPECT_NEAR(shearOnly.balance.shearDissipation, shear, 1e-9 * shear);
+  EXPECT_NEAR(shearOnly.balance.shearDissipation, shear, operatorTolerance * shear);
 }
 
 TEST(Balance, DissipationsAreTwiceRayleighsFunction) {
@@ -246,7 +249,7 @@ void checkElasticEnergy() {
     energy += step.plain.oracle.material(i).bulkModulus / 2 * (all * all - ofWalls * ofWalls);
   }
   energy *= step.before.volume();
-  EXPECT_NEAR(step.balance.elasticEnergy, energy, 1e-9 * energy);
+  EXPECT_NEAR(step.balance.elasticEnergy, energy, operatorTolerance * energy);
 }
 
 TEST(Balance, ElasticEnergyIsThatOfTheDensities) {
@@ -264,16 +267,24 @@ TEST(Balance, ElasticPowerIsWhatTheElasticEnergyLoses) {
 }
 
 TEST(Balance, DoesNotDependOnTheNumberOfThreads) {
-  const LoadedWalls<3> start(WallsMove::Apart);
+  LoadedWalls<2> start(WallsMove::Apart, 10);
+  start.c.solver.tolerance = 1e-8;
+  // Every loop runs on all threads, and dot products are sums over several chunks.
+  ASSERT_GT(start.particles.fluidCount, reductionChunk);
+  ASSERT_GT(start.particles.wallCount(), reductionChunk);
   const auto balance = [&](int threads) {
     omp_set_num_threads(threads);
-    Simulation<3> s = start.simulation<Cpu>();
-    return *s.advance().balance;
+    Simulation<2> s = start.simulation<Cpu>();
+    const Balance b = *s.advance().balance;
+    omp_set_num_threads(1);
+    return b;
   };
   const Balance one = balance(1), three = balance(3);
   EXPECT_EQ(one.shearDissipation, three.shearDissipation);
   EXPECT_EQ(one.bulkDissipation, three.bulkDissipation);
+  EXPECT_EQ(one.inertialLoss, three.inertialLoss);
   EXPECT_EQ(one.elasticPower, three.elasticPower);
+  EXPECT_EQ(one.elasticEnergy, three.elasticEnergy);
   EXPECT_EQ(one.wallPower, three.wallPower);
   for (std::size_t k = 0; k < 2; ++k) {
     EXPECT_EQ(one.walls[k].force, three.walls[k].force);

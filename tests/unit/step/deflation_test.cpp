@@ -49,7 +49,7 @@ TEST(DeflatedSteps, TakeFewerIterationsToTheSameVelocities) {
     difference = std::max(difference, norm(q.velocity[i] - u[q.id[i]]));
     largest = std::max(largest, norm(q.velocity[i]));
   }
-  EXPECT_LT(difference, 1e-6 * largest);
+  EXPECT_LT(difference, 5e-8 * largest);  // measured: 8e-9
 }
 
 TEST(DeflatedSteps, ContinueFromACopyWithTheSameBits) {

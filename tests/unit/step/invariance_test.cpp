@@ -48,7 +48,7 @@ Particles<D> copyOf(const Particles<D>& p) {
 }
 
 constexpr int steps = 5;
-constexpr double rounding = 1e-11;  // [m]; particles are 1 mm apart
+constexpr double rounding = 1e-12;  // [m]; particles are 1 mm apart; measured: up to 1.5e-13
 
 template <int D>
 double largestDistance(const Case& c, const std::vector<Vec<D>>& a, const std::vector<Vec<D>>& b) {

@@ -92,7 +92,7 @@ TEST(IsphFailure, FallbacksAreCountedAndSolveTheSameEquation) {
       apart = std::max(apart, std::abs(fallen.particles().pressure[i] - direct.particles().pressure[i]));
       most = std::max(most, direct.particles().pressure[i]);
     }
-    EXPECT_LE(apart, 1e-4 * most);
+    EXPECT_LE(apart, 1e-7 * most);  // measured: 2e-8
   }
 }
 

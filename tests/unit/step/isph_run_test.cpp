@@ -88,9 +88,10 @@ TEST(IsphRun, RunsWithUnlikeRoundingStayTogether) {
     for (std::size_t i = 0; i < x.size(); ++i) most = std::max(most, norm(x[i] - reference[i]));
     return most / c.spacing;
   };
-  EXPECT_LE(apart(after(Jacobi, Precision::Double)), 1e-9);
-  EXPECT_LE(apart(after(CellMultigrid, Precision::Double)), 1e-9);
-  EXPECT_LE(apart(after(HatMultigrid, Precision::Mixed)), 1e-5);
+  // Measured: 1.3e-13, 3.6e-13, 5.9e-9.
+  EXPECT_LE(apart(after(Jacobi, Precision::Double)), 1e-11);
+  EXPECT_LE(apart(after(CellMultigrid, Precision::Double)), 1e-11);
+  EXPECT_LE(apart(after(HatMultigrid, Precision::Mixed)), 5e-8);
 }
 
 TEST(IsphRun, ResultsDoNotDependOnTheNumberOfThreads) {

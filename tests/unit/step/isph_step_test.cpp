@@ -58,7 +58,7 @@ void checkStep(PreconditionerKind preconditioner, Precision precision, bool nega
   double scale = 0;
   for (double p : expected.pressure) scale = std::max(scale, p);
   // The matrix itself is rounded to single precision.
-  const double tolerance = precision == Precision::Mixed ? 1e-5 : 1e-9;
+  const double tolerance = precision == Precision::Mixed ? 1e-7 : 1e-11;
   const Particles<D>& p = simulation.particles();
   for (std::uint32_t i = 0; i < p.fluidCount; ++i) {
     const std::uint32_t id = p.id[i];
@@ -86,27 +86,39 @@ double pressureError(const Case& c, const Particles<D>& p, double depth) {
   });
 }
 
+/// Largest values allowed for a tank at rest: mean error of the pressure over that at the floor, way of the centre
+/// of mass over the depth, and speeds, the fastest particle's and the root mean square, over that of a free fall
+/// through the depth.
+struct Rest {
+  double pressure, way, fastest, speed;
+};
+
 template <int D>
-void checkTank(double width, double depth, int steps) {
+void checkTank(double width, double depth, int steps, const Rest& most) {
   const Case c = tankCase(D, width, depth);
   Simulation<D> simulation(c, created<D>(c));
   const Vec<D> before = centreOfMass(simulation.particles());
-  double error = 0, fastest = 0;
+  const double fall = std::sqrt(2 * 9.81 * depth * c.spacing),
+               mass = 1000 * std::pow(width, D - 1) * depth * std::pow(c.spacing, D);
+  double error = 0, fastest = 0, energy = 0;
   for (int k = 0; k < steps; ++k) {
     const StepReport report = simulation.advance();
     EXPECT_EQ(report.fallbacks, 0) << report.failures;
-    fastest = report.diagnostics.maxSpeed;
+    fastest = std::max(fastest, report.diagnostics.maxSpeed);
+    energy = std::max(energy, report.diagnostics.kineticEnergy);
     if (2 * k >= steps) error += pressureError<D>(c, simulation.particles(), depth) / (steps - (steps + 1) / 2);
   }
-  EXPECT_LT(error, 0.04);
-  EXPECT_LT(norm(centreOfMass(simulation.particles()) - before), 0.01 * depth * c.spacing);
-  // Nothing moves but for the settling of the lattice.
-  EXPECT_LT(fastest, 0.1 * std::sqrt(2 * 9.81 * depth * c.spacing));
+  EXPECT_LE(error, most.pressure);
+  EXPECT_LE(norm(centreOfMass(simulation.particles()) - before), most.way * depth * c.spacing);
+  EXPECT_LE(fastest, most.fastest * fall);
+  EXPECT_LE(std::sqrt(2 * energy / mass), most.speed * fall);
 }
 
 TEST(IsphStep, WaterInATankStaysAtRestUnderItsHydrostaticPressure) {
-  checkTank<2>(16, 20, 300);
-  checkTank<3>(8, 10, 100);
+  // Nothing moves but for the settling of the lattice, fastest single particles of the surface. Measured: 0.0091,
+  // 3.3e-4, 0.073, 0.0107 in the plane and 0.0285, 5.0e-4, 0.075, 0.0125 in space, in both precisions.
+  checkTank<2>(16, 20, 300, {0.0105, 5e-4, 0.085, 0.0125});
+  checkTank<3>(8, 10, 100, {0.032, 7e-4, 0.085, 0.0145});
 }
 
 TEST(IsphStep, AParticleThrownAtAWallDoesNotGetThrough) {
@@ -148,7 +160,7 @@ TEST(IsphStep, AMovingWallPushesAFreeParticle) {
   for (std::uint32_t i = 1; i < p.count; ++i) p.velocity[i] = {0, 0.5};
   Simulation<2> simulation(c, std::move(p));
   for (int k = 0; k < 60; ++k) simulation.advance();
-  EXPECT_NEAR(simulation.particles().velocity[0][1], 0.5, 1e-3);
+  EXPECT_NEAR(simulation.particles().velocity[0][1], 0.5, 5e-5);  // measured: 1.6e-5
   EXPECT_GT(simulation.particles().position[0][1], floor + 0.5 * 0.06 + 0.25 * c.spacing);
 }
 
@@ -163,7 +175,7 @@ TEST(IsphStep, ADropInFreeFallKeepsItsMomentum) {
   const Vec<3> before = meanVelocity(p);
   Simulation<3> simulation(c, std::move(p));
   for (int k = 0; k < 20; ++k) simulation.advance();
-  EXPECT_LE(norm(meanVelocity(simulation.particles()) - before - simulation.time() * c.gravity), 1e-12);
+  EXPECT_LE(norm(meanVelocity(simulation.particles()) - before - simulation.time() * c.gravity), 1e-14);
 }
 
 }  // namespace

@@ -51,7 +51,7 @@ TEST(IsphViscosity, ShearOverANoSlipFloorDecaysAtItsRate) {
     layer.c.time.step = 0.5 * limit;
     const int steps = static_cast<int>(0.5 / layer.theory() / layer.c.time.step);
     const double rate = layer.rate(steps);
-    EXPECT_NEAR(rate, layer.theory(), 0.02 * layer.theory()) << steps << " steps";
+    EXPECT_NEAR(rate, layer.theory(), 0.01 * layer.theory()) << steps << " steps";  // measured: 0.6 %
   }
 }
 
@@ -65,11 +65,11 @@ TEST(IsphViscosity, FreeSlipFloorsDoNotHoldTheFluid) {
     const double before = meanVelocity(layer.particles())[0];
     const Simulation<2> simulation = layer.run(100);
     EXPECT_NEAR(meanVelocity(simulation.particles())[0], before, 1e-6 * before);
-    // And the shear is gone in the end.
+    // And the shear goes: from 0.57 to, measured, 0.18.
     double spread = 0;
     for (std::uint32_t i = 0; i < simulation.particles().fluidCount; ++i)
       spread = std::max(spread, std::abs(simulation.particles().velocity[i][0] - before));
-    EXPECT_LT(spread, 0.6 * before);
+    EXPECT_LT(spread, 0.25 * before);
   }
 }
 
@@ -102,7 +102,7 @@ TEST(IsphViscosity, ExplicitAndImplicitStepsAgreeForShortSteps) {
       return layer.run(1);
     };
     const double apart = difference(run(ViscousStep::Explicit), run(ViscousStep::Implicit), layer.particles());
-    EXPECT_LT(apart, part);
+    EXPECT_LT(apart, 0.12 * part);  // measured: 0.092
     EXPECT_TRUE(last == 0 || std::abs(apart / last - 0.5) < 0.05) << "not of first order in the time step";
     last = apart;
   }
@@ -122,7 +122,7 @@ TEST(IsphViscosity, ImplicitStepIsTheDirectSolution) {
   std::vector<double> found(s.n());
   for (std::uint32_t i = 0; i < s.n(); ++i)
     found[simulation.particles().id[i]] = simulation.particles().velocity[i][0];
-  for (std::uint32_t i = 0; i < s.n(); ++i) ASSERT_NEAR(found[s.particles.id[i]], expected[i], 1e-10);
+  for (std::uint32_t i = 0; i < s.n(); ++i) ASSERT_NEAR(found[s.particles.id[i]], expected[i], 1e-14);
 }
 
 TEST(IsphViscosity, ImplicitStepsAreStableWhereExplicitOnesAreNot) {
@@ -142,7 +142,7 @@ TEST(IsphViscosity, ImplicitStepsAreStableWhereExplicitOnesAreNot) {
   EXPECT_LT(energyAfter(ViscousStep::Explicit, 1, 40), 1);
   EXPECT_GT(energyAfter(ViscousStep::Explicit, 20, 3), 1e3);
   EXPECT_LT(energyAfter(ViscousStep::Implicit, 20, 3), 1);
-  EXPECT_LT(energyAfter(ViscousStep::Implicit, 1e5, 3), 1e-6);
+  EXPECT_LT(energyAfter(ViscousStep::Implicit, 1e5, 3), 1e-15);  // measured: 1e-17
 }
 
 TEST(IsphViscosity, AutoTakesTheExplicitStepUpToTheLimit) {
@@ -175,7 +175,7 @@ TEST(IsphViscosity, LimitIsHalfOfWhatIsStableOnALattice) {
     if (s.particles.id[i] == 171) middle = i;
   double sum = 0;
   oracle.forEachOther(middle, [&](std::uint32_t j) { sum -= 2 * oracle.laplacian(middle, j); });
-  EXPECT_NEAR(explicitViscousLimit(s.pairs), 0.5 / (1e-6 * sum), 1e-9 / (1e-6 * sum));
+  EXPECT_NEAR(explicitViscousLimit(s.pairs), 0.5 / (1e-6 * sum), 1e-12 / (1e-6 * sum));
 }
 
 TEST(IsphViscosity, TextSaysHowTheStepIsTaken) {

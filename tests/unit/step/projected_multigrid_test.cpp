@@ -1,4 +1,4 @@
-#include "support/scene.hpp"
+#include "support/oracle.hpp"
 #include "treacle/step/simulation.hpp"
 
 #include <gtest/gtest.h>
@@ -83,7 +83,7 @@ void expectSolution(const Flow<D>& flow) {
     largest = std::max(largest, norm(expected[i]));
   }
   EXPECT_GT(largest, 0);
-  EXPECT_LT(difference, 1e-6 * largest);
+  EXPECT_LT(difference, 1e-8 * largest);  // measured: 2e-9
 }
 
 /// Largest number of iterations of some steps; none falls back.
@@ -103,7 +103,7 @@ int iterationsOf(const Flow<D>& flow, int steps = 5) {
 template <int D>
 void expectFewIterations(const Flow<D>& flow) {
   SCOPED_TRACE(testing::Message() << D << " dimensions");
-  EXPECT_LE(iterationsOf(flow), 40);
+  EXPECT_LE(iterationsOf(flow), 26);  // measured: up to 23
   expectSolution(flow);
 }
 
@@ -262,21 +262,36 @@ Flow<D> damBreak(double ratio, double resolution) {
 TEST(ProjectedMultigrid, IterationsHardlyGrowWithBulkViscosity) {
   for (const double ratio : {1e2, 1e3, 1e4, 1e5}) {
     SCOPED_TRACE(testing::Message() << "bulk over shear viscosity " << ratio);
-    EXPECT_LE(iterationsOf(damBreak<2>(ratio, 2)), 30);
-    EXPECT_LE(iterationsOf(damBreak<3>(ratio, 0.5)), 30);
+    EXPECT_LE(iterationsOf(damBreak<2>(ratio, 2)), 24);  // measured: up to 20 and 21
+    EXPECT_LE(iterationsOf(damBreak<3>(ratio, 0.5)), 24);
   }
+}
+
+/// The velocities after the first step by a direct solution, from the formulas over all pairs.
+std::vector<Vec<2>> directVelocities(const Flow<2>& flow) {
+  Scene<2> s;
+  s.c = flow.c;
+  s.particles = flow.particles();
+  prepare(s);
+  const Oracle<2> oracle(s);
+  const Eigen::VectorXd solution = oracle.matrix().ldlt().solve(oracle.rightHandSide());
+  std::vector<Vec<2>> u(s.particles.count);
+  for (Eigen::Index k = 0; k < s.unknowns(); ++k) u[s.particles.id[k / 2]][k % 2] = solution[k];
+  return u;
 }
 
 TEST(ProjectedMultigrid, ReachesRoundingInBothPrecisionsWithBothKrylovMethods) {
   const Flow<2> flow = spray<2>();
-  SolverSettings reference;
-  const auto expected = firstVelocities<2>(flow, reference);
+  const auto expected = directVelocities(flow);
+  double largest = 0;
+  for (const Vec<2>& u : expected) largest = std::max(largest, norm(u));
   for (const Precision precision : {Precision::Mixed, Precision::Double})
     for (const KrylovKind krylov : {KrylovKind::Cg, KrylovKind::Cr}) {
       SolverSettings s;
       s.precision = precision, s.krylov = krylov;
       const auto u = firstVelocities<2>(flow, s);
-      for (std::size_t i = 0; i < u.size(); ++i) ASSERT_LT(norm(u[i] - expected[i]), 1e-9 * 0.01);
+      // Residuals of 1e-11; measured: 2e-10.
+      for (std::size_t i = 0; i < u.size(); ++i) ASSERT_LT(norm(u[i] - expected[i]), 1e-9 * largest);
     }
 }
 

@@ -29,17 +29,9 @@ void checkStep(OperatorKind operatorKind, PreconditionerKind preconditioner, Kry
   s.c.solver.precision = precision;
   s.c.solver.tolerance = 1e-20;
   const Oracle<D> oracle(s);
-  const Eigen::MatrixXd c = oracle.gradientMatrix();
-  Eigen::VectorXd elastic(oracle.count()), b(s.unknowns());
-  const double restDensity = latticeNumberDensity(Weight<D>::make(s.c.pressureRadius(), s.c.spacing), s.c.spacing);
-  for (std::uint32_t i = 0; i < oracle.count(); ++i)
-    elastic[i] = oracle.material(i).bulkModulus * std::max(0.0, oracle.numberDensity(i) - restDensity);
-  for (Eigen::Index k = 0; k < s.unknowns(); ++k)
-    b[k] =
-        oracle.material(k / D).density * (s.particles.velocity[k / D][k % D] / s.c.time.step + s.c.gravity[k % D]);
-  b -= c * elastic;
-  const Eigen::VectorXd u = oracle.matrix().ldlt().solve(b);
-  const Eigen::VectorXd divergence = c.transpose() * u;
+  const Eigen::VectorXd elastic = oracle.elasticPressure();
+  const Eigen::VectorXd u = oracle.matrix().ldlt().solve(oracle.rightHandSide());
+  const Eigen::VectorXd divergence = oracle.gradientMatrix().transpose() * u;
   std::vector<Vec<D>> x(s.particles.position.begin(), s.particles.position.begin() + s.n());
   std::vector<std::uint32_t> id(s.particles.id.begin(), s.particles.id.end());
   std::vector<double> pressure(s.n());
@@ -49,7 +41,7 @@ void checkStep(OperatorKind operatorKind, PreconditionerKind preconditioner, Kry
   const CellGrid<D> grid = s.pairs().grid;
   Simulation<D> simulation = start.simulation();
   const StepReport report = simulation.advance();
-  EXPECT_GT(report.iterations, 0);
+  EXPECT_LE(report.residual, s.c.solver.tolerance);
   EXPECT_EQ(report.step, 1);
   const double speed = u.cwiseAbs().maxCoeff(), stress = *std::max_element(pressure.begin(), pressure.end());
   for (std::uint32_t i = 0; i < s.n(); ++i) {
@@ -62,7 +54,7 @@ void checkStep(OperatorKind operatorKind, PreconditionerKind preconditioner, Kry
     }
     ASSERT_TRUE(grid.wrap(moved));
     for (int a = 0; a < D; ++a) ASSERT_NEAR(p.position[i][a], moved[a], 1e-7 * speed * s.c.time.step);
-    ASSERT_NEAR(p.pressure[i], pressure[k], 1e-6 * stress);
+    ASSERT_NEAR(p.pressure[i], pressure[k], 5e-8 * stress);  // measured: 1e-8
   }
 }
 
@@ -115,7 +107,7 @@ TEST(Simulation, ConservesLinearMomentumWithoutWallsAndGravity) {
   const Vec<2> before = momentum(start.scene.particles);
   Simulation<2> simulation = start.simulation();
   for (int k = 0; k < 10; ++k) simulation.advance();
-  EXPECT_LT(norm(momentum(simulation.particles()) - before), 1e-9 * scale);
+  EXPECT_LT(norm(momentum(simulation.particles()) - before), 1e-11 * scale);  // measured: 2e-12
 }
 
 TEST(Simulation, MovesWithItsWalls) {
@@ -126,7 +118,8 @@ TEST(Simulation, MovesWithItsWalls) {
   for (auto& u : start.scene.particles.velocity) u = velocity;
   Simulation<2> simulation = start.simulation();
   for (int k = 0; k < 5; ++k) simulation.advance();
-  for (const auto& u : simulation.particles().velocity) ASSERT_LT(norm(u - velocity), 1e-10);
+  // The first guess is the solution but for rounding.
+  for (const auto& u : simulation.particles().velocity) ASSERT_LT(norm(u - velocity), 1e-15);
 }
 
 TEST(Simulation, MovingWallDragsFluidAlong) {
@@ -140,7 +133,7 @@ TEST(Simulation, MovingWallDragsFluidAlong) {
   Vec<2> mean{};
   for (std::uint32_t i = 0; i < simulation.particles().fluidCount; ++i) mean += simulation.particles().velocity[i];
   mean *= 1.0 / simulation.particles().fluidCount;
-  EXPECT_NEAR(mean[0], 0.03, 1e-3);
+  EXPECT_NEAR(mean[0], 0.03, 3e-5);  // measured: 9e-6 less
 }
 
 TEST(Simulation, DiagnosticsAreTheSumsTheyAreCalled) {

@@ -84,7 +84,7 @@ void checkChain() {
   EXPECT_EQ(once.status, SolveStatus::Converged);
   EXPECT_EQ(once.fallbacks, 1) << once.failures;
   EXPECT_GE(once.iterations, report.iterations);
-  EXPECT_LT(once.startResidual, 1e-8) << "did not go on where the first stage ended";
+  EXPECT_LT(once.startResidual, 1e-10) << "did not go on where the first stage ended";
   EXPECT_LT(second.residual(), 2e-12);
 
   System<D> third;
@@ -92,8 +92,8 @@ void checkChain() {
   const StagedReport twice = third.solve();
   EXPECT_EQ(twice.status, SolveStatus::Converged);
   EXPECT_EQ(twice.fallbacks, 2);
-  EXPECT_GT(twice.iterations, 4);
-  EXPECT_LT(twice.startResidual, 0.1);
+  EXPECT_GT(twice.iterations, report.iterations);
+  EXPECT_LT(twice.startResidual, 1e-4);  // after four iterations; measured: 3e-6
   EXPECT_NE(twice.failures.find("projected-multigrid, mixed"), std::string::npos) << twice.failures;
   EXPECT_NE(twice.failures.find("projected-multigrid, double"), std::string::npos) << twice.failures;
   EXPECT_LT(third.residual(), 2e-12);

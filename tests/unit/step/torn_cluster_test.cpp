@@ -21,7 +21,7 @@ TEST(TornCluster, SinglePrecisionSeesTheSameImages) {
   EXPECT_EQ(found.fallbacks, 0) << found.failures;
   EXPECT_NEAR(found.iterations, expected.iterations, 1);
   EXPECT_NEAR(found.diagnostics.kineticEnergy, expected.diagnostics.kineticEnergy,
-              1e-5 * expected.diagnostics.kineticEnergy);
+              1e-8 * expected.diagnostics.kineticEnergy);  // measured: 1.5e-9
 }
 
 TEST(TornCluster, TheAssembledMatrixIsTheOperator) {
@@ -33,9 +33,9 @@ TEST(TornCluster, TheAssembledMatrixIsTheOperator) {
   stored.solver.operatorKind = OperatorKind::Assembled;
   Simulation<2> free(c, tornClusterParticles(c)), assembled(stored, tornClusterParticles(c));
   const StepReport expected = free.advance(), found = assembled.advance();
-  EXPECT_NEAR(found.iterations, expected.iterations, 1 + 0.03 * expected.iterations);
+  EXPECT_NEAR(found.iterations, expected.iterations, 1 + 0.01 * expected.iterations);  // measured: equal, 264
   EXPECT_NEAR(found.diagnostics.kineticEnergy, expected.diagnostics.kineticEnergy,
-              1e-5 * expected.diagnostics.kineticEnergy);
+              1e-12 * expected.diagnostics.kineticEnergy);  // measured: 2e-14
 }
 
 }  // namespace

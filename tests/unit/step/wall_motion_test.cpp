@@ -117,8 +117,9 @@ TEST(WallMotion, WaterInANarrowShakenTankGoesAlong) {
     mean += wall * c.time.step;
   }
   EXPECT_NEAR(mean, 0.04, 1e-12) << "from end to end";
-  EXPECT_NEAR(centreOfMass(simulation.particles())[0] - start, 0.04, 0.1 * c.spacing);
-  EXPECT_LT(worst, 0.15);
+  // Measured: 0.026 of the spacing, 0.060.
+  EXPECT_NEAR(centreOfMass(simulation.particles())[0] - start, 0.04, 0.04 * c.spacing);
+  EXPECT_LT(worst, 0.075);
 }
 
 TEST(WallMotion, AcceleratedTanksHoldTheirWaterByPressure) {
@@ -140,7 +141,7 @@ TEST(WallMotion, AcceleratedTanksHoldTheirWaterByPressure) {
   const auto pressure = [](const Simulation<2>& s) {
     return fluidMean(s.particles(), [&](std::uint32_t i) { return s.particles().pressure[i]; });
   };
-  EXPECT_LT(pressure(falling), 0.05 * pressure(standing));
+  EXPECT_LT(pressure(falling), 0.004 * pressure(standing));  // measured: 0.0021
 }
 
 }  // namespace

@@ -79,8 +79,8 @@ TEST(WallRotation, VelocityAndAccelerationAreThoseOfTheWay) {
   const double t = 0.4, e = 1e-4;
   const auto way = [&](double dt) { return dt * wallMotion<3>(open, body, t, dt).chordAt(x); };
   const WallMotion<3> m = wallMotion<3>(open, body, t, 0);
-  EXPECT_LE(norm(m.velocityAt(x) - (1 / (2 * e)) * (way(e) - way(-e))), 1e-5);
-  EXPECT_LE(norm(m.accelerationAt(x) - (1 / (e * e)) * (way(e) + way(-e))), 1e-4);
+  EXPECT_LE(norm(m.velocityAt(x) - (1 / (2 * e)) * (way(e) - way(-e))), 2e-6);
+  EXPECT_LE(norm(m.accelerationAt(x) - (1 / (e * e)) * (way(e) + way(-e))), 1e-5);
 }
 
 TEST(WallRotation, TurnsAboutTheNearestImageOfItsCentre) {
@@ -166,9 +166,10 @@ TEST(WallRotation, WaterInARotatingRingIsHeldByItsPressure) {
   const double energy = simulation.diagnostics().kineticEnergy;
   for (int k = 0; k < 50; ++k) simulation.advance();
   const Particles<2>& p = simulation.particles();
-  EXPECT_NEAR(pressureRatio(p, 0, p.fluidCount, 0.07, 1), 1, 0.15);
-  EXPECT_NEAR(pressureRatio(p, p.fluidCount, p.count, 0, 0.115), 1, 0.05) << "the ring's own acceleration counts";
-  EXPECT_NEAR(simulation.diagnostics().kineticEnergy / energy, 1, 0.005);
+  // Measured: 0.0088, 0.0073 and 0.0007.
+  EXPECT_NEAR(pressureRatio(p, 0, p.fluidCount, 0.07, 1), 1, 0.015);
+  EXPECT_NEAR(pressureRatio(p, p.fluidCount, p.count, 0, 0.115), 1, 0.012) << "the ring's own acceleration counts";
+  EXPECT_NEAR(simulation.diagnostics().kineticEnergy / energy, 1, 0.001);
 }
 
 TEST(WallRotation, WallsOfASimulationStayOnTheirCircles) {

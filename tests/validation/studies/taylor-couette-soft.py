@@ -6,7 +6,7 @@ study = Study(
     title="Taylor-Couette flow, bulk viscosity / viscosity = 100",
     levels=[Level(1), Level(2), Level(4)],
     bars={"velocity": 0.07, "torque, inner": 0.1, "torque, outer": 0.1},
-    ranges={"torque / exact, inner": (1.04, 1.12), "torque / exact, outer": (1.04, 1.12)},
+    ranges={"published": {"torque / exact, inner": (1.04, 1.12), "torque / exact, outer": (1.04, 1.12)}},
     measure=measure,
     x_label="r [m]",
     y_label="speed / that of the inner cylinder",

@@ -1,0 +1,53 @@
+"""How studies are judged: bars whatever the scheme, ranges by the scheme of the case."""
+
+import contextlib
+import io
+import unittest
+
+from study import Study, scheme_in
+from validate import print_level
+
+
+def judged(error, value, scheme, bars={"drag": 0.1}, ranges={"published": {"rate": (0.8, 0.9)}, "accurate": {"rate": (0.98, 1.02)}}):
+    """Whether a level with this error and this value is good, and what is printed."""
+    study = Study("sphere", "Sphere", [], bars, None, "", "", ranges=ranges)
+    row = {"level": "x1", "scheme": scheme, "size": 1, "particles": 1, "steps": 1, "iterations": 1, "seconds": 1, "backend": "cpu",
+           "errors": {"drag": error}, "values": {"rate": value}}
+    with contextlib.redirect_stdout(io.StringIO()) as printed:
+        good = print_level(study, row, None, True)
+    return good, printed.getvalue()
+
+
+class Judgement(unittest.TestCase):
+    def test_ranges_are_those_of_the_scheme(self):
+        self.assertTrue(judged(0.05, 0.85, "published")[0])
+        self.assertFalse(judged(0.05, 1.0, "published")[0])
+        self.assertTrue(judged(0.05, 1.0, "accurate")[0])
+        good, printed = judged(0.05, 0.85, "accurate")
+        self.assertFalse(good)
+        self.assertIn("scheme accurate", printed)
+        self.assertIn("rate: 0.85, range 0.98 to 1.02 of accurate: NOT MET", printed)
+
+    def test_bars_hold_for_every_scheme(self):
+        for scheme, value in ("published", 0.85), ("accurate", 1.0):
+            self.assertTrue(judged(0.1, value, scheme)[0])
+            self.assertFalse(judged(0.11, value, scheme)[0])
+            self.assertFalse(judged(float("nan"), value, scheme)[0])
+
+    def test_a_scheme_without_ranges_is_judged_only_where_the_study_says_so(self):
+        self.assertFalse(judged(0.05, 0.85, "other")[0])
+        self.assertTrue(judged(0.05, 0.85, "other", ranges={"published": {"rate": (0, 1)}, "other": {}})[0])
+        self.assertTrue(judged(0.05, 0.85, "other", ranges={})[0])
+
+    def test_what_was_not_measured_is_not_met(self):
+        self.assertFalse(judged(0.05, 0.85, "published", bars={"lift": 0.1})[0])
+        self.assertFalse(judged(0.05, 0.85, "published", ranges={"published": {"speed": (0, 1)}})[0])
+
+    def test_the_scheme_stands_under_method(self):
+        self.assertEqual(scheme_in('title = "x"\n\n[method]\nname = "mph-i"\nscheme = "accurate"\n\n[solver]\n'), "accurate")
+        self.assertEqual(scheme_in('title = "x"\n\n[method]\nname = "mph-i"\n\n[solver]\nscheme = "accurate"\n'), "published")
+        self.assertEqual(scheme_in('title = "x"\n'), "published")
+
+
+if __name__ == "__main__":
+    unittest.main()
