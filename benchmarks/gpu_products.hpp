@@ -26,7 +26,7 @@ struct DeviceStart {
   Buffer<float, Cuda> qSingle;
 
   DeviceStart(const BenchmarkOptions& options, double resolution)
-      : c(paperCase<D>(options, resolution)), neighbourhood(c) {
+      : c(paperCase(options, D, resolution)), neighbourhood(c) {
     std::vector<std::string> notes;
     copyToDevice(context, createParticles<D>(c, notes), particles);
     neighbourhood.sort(context, particles);

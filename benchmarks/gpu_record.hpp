@@ -63,10 +63,10 @@ inline double copyBandwidth() {
   return 2 * static_cast<double>(bytes) / seconds;
 }
 
-template <int D>
-Case paperCase(const BenchmarkOptions& options, double resolution, std::vector<std::string> settings = {}) {
+inline Case paperCase(const BenchmarkOptions& options, int dimensions, double resolution,
+                      std::vector<std::string> settings = {}) {
   settings.push_back(fmt::format("resolution={}", resolution));
-  return readCase(options.cases + (D == 2 ? "/dam-break-2d.toml" : "/dam-break-3d.toml"), settings);
+  return readCase(options.cases + (dimensions == 2 ? "/dam-break-2d.toml" : "/dam-break-3d.toml"), settings);
 }
 
 }  // namespace treacle

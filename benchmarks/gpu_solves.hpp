@@ -3,7 +3,7 @@
 #include "gpu_record.hpp"
 #include "treacle/model/create.hpp"
 #include "treacle/model/names.hpp"
-#include "treacle/step/simulation.hpp"
+#include "treacle/step/any_simulation.hpp"
 
 namespace treacle {
 
@@ -16,20 +16,18 @@ struct SolveRun {
   CoarseKind coarse = CoarseKind::Auto;
 };
 
-template <int D>
-void benchmarkSolve(const BenchmarkOptions& options, const SolveRun& run, Record& record) {
+inline void benchmarkSolve(const BenchmarkOptions& options, const SolveRun& run, Record& record) {
   const std::string name =
-      fmt::format("solve/{}D x1/{:g}/{}{}/steps {}-{}", D, run.resolution, nameOf(run.preconditioner),
+      fmt::format("solve/{}D x1/{:g}/{}{}/steps {}-{}", run.dimensions, run.resolution, nameOf(run.preconditioner),
                   run.coarse == CoarseKind::Spgemm ? " spgemm" : "", run.steps - run.timed + 1, run.steps);
   if (!options.wants(name)) return;
   // Krylov method and precision follow from the preconditioner.
-  Case c =
-      paperCase<D>(options, run.resolution, {fmt::format("solver.preconditioner={}", nameOf(run.preconditioner))});
+  Case c = paperCase(options, run.dimensions, run.resolution,
+                     {fmt::format("solver.preconditioner={}", nameOf(run.preconditioner))});
   c.solver.multigrid.coarseOperators = run.coarse;
   std::vector<std::string> notes;
-  Particles<D> particles = createParticles<D>(c, notes);
-  const std::uint64_t n = particles.fluidCount, all = particles.count;
-  Simulation<D, Cuda> simulation(c, std::move(particles));
+  AnySimulation simulation(c, createParticles(c, notes), BackendKind::Cuda);
+  const std::uint64_t n = simulation.numbers().fluid, all = n + simulation.numbers().wall;
   PhaseSeconds seconds;
   std::int64_t iterations = 0;
   StepReport last;
@@ -84,7 +82,7 @@ inline void benchmarkSolves(const BenchmarkOptions& options, Record& record) {
   if (options.largest > 0) runs = {{3, options.largest, 1, 1, PreconditionerKind::BucketMultigrid}};
   for (SolveRun run : runs) {
     if (options.quick) run.steps = run.timed = std::min(run.timed, 2);
-    run.dimensions == 2 ? benchmarkSolve<2>(options, run, record) : benchmarkSolve<3>(options, run, record);
+    benchmarkSolve(options, run, record);
   }
 }
 

@@ -41,19 +41,18 @@ void runCase(const IsphOptions& options, const Case& c, double width, SolveRecor
       fmt::format("{}D {}step {}", D, width > 0 ? fmt::format("width {:g} ", width) : "", options.steps + 1);
   guarded(name, record, [&] {
     std::vector<std::string> notes;
-    Particles<D> state = createParticles<D>(c, notes);
+    AnyParticles state(D);
     double timeStep = c.time.step;
     {
-      Simulation<D, Cuda> simulation(c, std::move(state));
+      AnySimulation simulation(c, createParticles(c, notes), BackendKind::Cuda);
       while (simulation.step() < options.steps) timeStep = simulation.advance().timeStep;
-      state = {};
       simulation.copyParticles(state);
       if (options.timedSteps > 0) {
         simulation.advance();
         timePhases(simulation, name, options.timedSteps, record);
       }
     }
-    compare<D>(options, name, c, state, timeStep, record);
+    compare<D>(options, name, c, state.of<D>(), timeStep, record);
   });
 }
 
@@ -64,7 +63,7 @@ void runCheckpoint(const IsphOptions& options, const Case& c, SolveRecord& recor
     const std::string name = fmt::format("{}D checkpoint {:.4g} s", D, state.time);
     if (options.timedSteps > 0) {
       Checkpoint<D> again = readCheckpoint<D>(options.checkpoint);
-      Simulation<D, Cuda> simulation(c, std::move(again.particles), state.step, state.time);
+      AnySimulation simulation(c, std::move(again.particles), BackendKind::Cuda, state.step, state.time);
       simulation.advance();
       timePhases(simulation, name, options.timedSteps, record);
     }
@@ -73,15 +72,15 @@ void runCheckpoint(const IsphOptions& options, const Case& c, SolveRecord& recor
 }
 
 /// Widens the case until it has the particles asked for.
-template <int D>
 void runLargest(const IsphOptions& options, SolveRecord& record) {
   std::vector<std::string> notes;
-  const double perWidth = createParticles<D>(options.readCaseAt(1), notes).fluidCount;
+  const Case narrow = options.readCaseAt(1);
+  const double perWidth = static_cast<double>(createParticles(narrow, notes).numbers().fluid);
   const double width = std::max(1.0, std::round(options.particles / perWidth));
-  const std::string name = fmt::format("{}D width {:g}", D, width);
+  const std::string name = fmt::format("{}D width {:g}", narrow.dimensions, width);
   guarded(name, record, [&] {
     const Case c = options.readCaseAt(width);
-    Simulation<D, Cuda> simulation(c, createParticles<D>(c, notes));
+    AnySimulation simulation(c, createParticles(c, notes), BackendKind::Cuda);
     simulation.advance();
     timePhases(simulation, name, std::max(options.timedSteps, 1), record);
   });
@@ -92,7 +91,7 @@ void run(const IsphOptions& options, SolveRecord& record) {
   const Case first = options.readCaseAt(0);
   if (first.method.kind != MethodKind::Isph) throw InputError(options.caseFile + ": not a case of ISPH");
   const bool flat = first.dimensions == 2;
-  if (options.particles > 0) return flat ? runLargest<2>(options, record) : runLargest<3>(options, record);
+  if (options.particles > 0) return runLargest(options, record);
   if (!options.checkpoint.empty())
     return flat ? runCheckpoint<2>(options, first, record) : runCheckpoint<3>(options, first, record);
   for (const double width : options.widths.empty() ? std::vector<double>{0} : options.widths) {

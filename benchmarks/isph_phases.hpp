@@ -2,13 +2,12 @@
 
 #include "isph_options.hpp"
 #include "solve_record.hpp"
-#include "treacle/step/simulation.hpp"
+#include "treacle/step/any_simulation.hpp"
 
 namespace treacle {
 
 /// Mean seconds per phase of `steps` steps; says what memory the simulation has needed so far.
-template <int D>
-void timePhases(Simulation<D, Cuda>& simulation, const std::string& name, int steps, SolveRecord& record) {
+inline void timePhases(AnySimulation& simulation, const std::string& name, int steps, SolveRecord& record) {
   PhaseSeconds sum;
   int iterations = 0, fallbacks = 0;
   for (int k = 0; k < steps; ++k) {
@@ -17,12 +16,12 @@ void timePhases(Simulation<D, Cuda>& simulation, const std::string& name, int st
     iterations += report.iterations;
     fallbacks += report.fallbacks;
   }
-  const Particles<D, Cuda>& p = simulation.particles();
+  const std::uint64_t fluid = simulation.numbers().fluid, all = fluid + simulation.numbers().wall;
   const double perStep = 1e3 / steps, meanIterations = static_cast<double>(iterations) / steps;
   const double bytes = static_cast<double>(simulation.peakBytes());
   record.json["steps"].push_back({{"system", name},
-                                  {"fluid_particles", p.fluidCount},
-                                  {"particles", p.count},
+                                  {"fluid_particles", fluid},
+                                  {"particles", all},
                                   {"steps", steps},
                                   {"iterations", meanIterations},
                                   {"fallbacks", fallbacks},
@@ -34,16 +33,16 @@ void timePhases(Simulation<D, Cuda>& simulation, const std::string& name, int st
                                   {"solve_ms", sum.solve * perStep},
                                   {"update_ms", sum.update * perStep},
                                   {"peak_bytes", simulation.peakBytes()},
-                                  {"bytes_per_particle", bytes / p.count},
-                                  {"bytes_per_fluid_particle", bytes / p.fluidCount}});
+                                  {"bytes_per_particle", bytes / all},
+                                  {"bytes_per_fluid_particle", bytes / fluid}});
   fmt::print(
       "{:<22} {:>8}  {} steps: {:.3f} ms each, search {:.3f}, lists {:.3f}, coefficients {:.3f}, coarse {:.3f}, "
       "solve "
       "{:.3f}, update {:.3f}; {:.1f} iterations, {:.1f} ns per fluid particle; {:.2f} GB, {:.0f} B per fluid "
       "particle\n",
-      name, p.fluidCount, steps, sum.total() * perStep, sum.search * perStep, sum.lists * perStep,
+      name, fluid, steps, sum.total() * perStep, sum.search * perStep, sum.lists * perStep,
       sum.coefficients * perStep, sum.coarse * perStep, sum.solve * perStep, sum.update * perStep, meanIterations,
-      sum.total() * 1e9 / steps / p.fluidCount, bytes * 1e-9, bytes / p.fluidCount);
+      sum.total() * 1e9 / steps / fluid, bytes * 1e-9, bytes / fluid);
   std::fflush(stdout);
 }
 

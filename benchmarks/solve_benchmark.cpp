@@ -65,7 +65,7 @@ void checkRightHandSide(LinearSystem<D, Cuda>& system, const StudyState& s) {
 
 template <int D>
 void runState(const SolveOptions& options, const std::string& name, const StudyState& s, SolveRecord& record) {
-  const Case c = paperCase<D>(options, 1e-3 / s.spacing);
+  const Case c = paperCase(options, D, 1e-3 / s.spacing);
   if (std::abs(c.time.step - s.timeStep) > 1e-9 * s.timeStep)
     throw InputError(fmt::format("time step {} s, that of the case is {} s", s.timeStep, c.time.step));
   LinearSystem<D, Cuda> system(c, particlesOf<D>(s));
@@ -105,7 +105,7 @@ void runDamBreak(const SolveOptions& options, double resolution, SolveRecord& re
   const std::string name = fmt::format("{}D x1/{:g} step {}", D, resolution, options.steps + 1);
   if (!wantsSystem(options, name)) return;
   guarded(name, record, [&] {
-    const Case c = paperCase<D>(options, resolution);
+    const Case c = paperCase(options, D, resolution);
     std::vector<std::string> notes;
     Particles<D> particles = createParticles<D>(c, notes);
     if (options.steps > 0) {

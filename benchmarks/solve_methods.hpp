@@ -69,7 +69,7 @@ class SolveComparison {
       std::vector<std::string> overrides;
       std::istringstream words(settings);
       for (std::string word; words >> word;) overrides.push_back("solver." + word);
-      SolverSettings solver = paperCase<D>(options_, 1, overrides).solver;
+      SolverSettings solver = paperCase(options_, D, 1, overrides).solver;
       solver.tolerance = options_.tolerance;
       solver.maxIterations = options_.maxIterations;
       solveByTreacle(solver, result);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "commands.hpp"
+#include "treacle/core/backend.hpp"
 #include "treacle/core/device.hpp"
 
 #include <optional>
@@ -8,12 +9,6 @@
 #include <vector>
 
 namespace treacle {
-
-#ifdef TREACLE_HAS_CUDA
-inline constexpr bool cudaCompiled = true;
-#else
-inline constexpr bool cudaCompiled = false;
-#endif
 
 /// The device that a run computes on, the first one that CUDA names; empty: the CPU. Errors: InputError where CUDA
 /// is asked for and the build or the machine does not have it.

@@ -16,19 +16,6 @@
 namespace treacle {
 namespace {
 
-struct Counts {
-  std::uint32_t fluid = 0, walls = 0;
-  std::vector<std::uint32_t> bodies;
-};
-
-template <int D>
-Counts countParticles(const Case& c, std::vector<std::string>& warnings) {
-  Counts counts;
-  const Particles<D> particles = createParticles<D>(c, warnings, &counts.bodies);
-  counts.fluid = particles.fluidCount, counts.walls = particles.wallCount();
-  return counts;
-}
-
 void printMemory(const Case& c, ParticleNumbers particles) {
   fmt::print("# memory: about {} needed, {} available\n", bytesText(estimatedMemory(c, particles, false)),
              bytesText(availableMemory()));
@@ -38,11 +25,11 @@ void printMemory(const Case& c, ParticleNumbers particles) {
   fmt::print("; beside it about {} of the host\n", bytesText(estimatedMemory(c, particles, true)));
 }
 
-void printCounts(const Case& c, const Counts& counts) {
-  fmt::print("# particles: {} fluid, {} wall\n", counts.fluid, counts.walls);
+void printParticles(const Case& c, ParticleNumbers particles, const std::vector<std::uint32_t>& ofBodies) {
+  fmt::print("# particles: {} fluid, {} wall\n", particles.fluid, particles.wall);
   for (std::size_t b = 0; b < c.bodies.size(); ++b)
-    fmt::print("#   {} '{}': {}\n", nameOf(c.bodies[b].kind), c.bodies[b].name, counts.bodies[b]);
-  printMemory(c, {counts.fluid, counts.walls});
+    fmt::print("#   {} '{}': {}\n", nameOf(c.bodies[b].kind), c.bodies[b].name, ofBodies[b]);
+  printMemory(c, particles);
 }
 
 void printNumbers(const Case& c) {
@@ -68,9 +55,10 @@ void printNumbers(const Case& c) {
 void checkCommand(const CaseOptions& options) {
   const Case c = readCase(options.file, options.overrides);
   std::vector<std::string> warnings;
-  const Counts counts = c.dimensions == 2 ? countParticles<2>(c, warnings) : countParticles<3>(c, warnings);
+  std::vector<std::uint32_t> ofBodies;
+  const ParticleNumbers particles = createParticles(c, warnings, &ofBodies).numbers();
   for (std::string& warning : caseWarnings(c)) warnings.push_back(std::move(warning));
-  printCounts(c, counts);
+  printParticles(c, particles, ofBodies);
   printNumbers(c);
   fmt::print("\n{}", caseText(c));
   std::fflush(stdout);

@@ -13,7 +13,7 @@
 #include "treacle/io/picture.hpp"
 #include "treacle/model/checks.hpp"
 #include "treacle/model/create.hpp"
-#include "treacle/step/simulation.hpp"
+#include "treacle/step/any_simulation.hpp"
 
 #include <fmt/format.h>
 #include <omp.h>
@@ -26,20 +26,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The state that the way to the system begins at; the case then ends where the system is to be.
-template <int D>
-Checkpoint<D> startOf(Case& c, const ConvergenceOptions& options, Particles<D> made) {
-  Checkpoint<D> start{std::move(made)};
-  if (!options.resume.empty()) start = fittingState<D>(c, options.resume, start.particles);
-  c.time.end = options.at.value_or(start.time);
-  if (c.time.stepsVary() ? c.time.end < start.time * (1 - 1e-9) : c.steps() < start.step)
-    throw InputError(
-        fmt::format("--at: expected at least the checkpoint's time, {:g} s, found {:g}", start.time, c.time.end));
+/// The state that the way to the system begins at; `until` then ends where the system is to be.
+StartState startOf(Case& until, const ConvergenceOptions& options, AnyParticles made) {
+  StartState start{std::move(made)};
+  if (!options.resume.empty()) start = fittingState(until, options.resume, start.particles);
+  until.time.end = options.at.value_or(start.time);
+  if (until.time.stepsVary() ? until.time.end < start.time * (1 - 1e-9) : until.steps() < start.step)
+    throw InputError(fmt::format("--at: expected at least the checkpoint's time, {:g} s, found {:g}", start.time,
+                                 until.time.end));
   return start;
 }
 
-template <int D, class Backend>
-void advanceToEnd(const Case& c, Simulation<D, Backend>& simulation) {
+void advanceToEnd(const Case& c, AnySimulation& simulation) {
   if (c.atEnd(simulation.step(), simulation.time())) return;
   Progress progress(c, simulation.step(), simulation.time(), false);
   while (!c.atEnd(simulation.step(), simulation.time())) try {
@@ -84,10 +82,8 @@ void printTable(const std::vector<ConvergenceCurve>& curves) {
                1e3 * c.setupSeconds, 1e3 * c.solveSeconds, c.outcome == "converged" ? "" : "  " + c.outcome);
 }
 
-template <int D, class Backend>
-void compareSolvers(const Case& c, Checkpoint<D> start, const std::vector<SolverSettings>& solvers,
+void compareSolvers(const Case& c, AnySimulation simulation, const std::vector<SolverSettings>& solvers,
                     const fs::path& directory) {
-  Simulation<D, Backend> simulation(c, std::move(start.particles), start.step, start.time);
   advanceToEnd(c, simulation);
   const std::string where = fmt::format("step {}, from t = {:.6g} s", simulation.step() + 1, simulation.time());
   std::vector<ConvergenceCurve> curves;
@@ -96,7 +92,7 @@ void compareSolvers(const Case& c, Checkpoint<D> start, const std::vector<Solver
                       trial.setupSeconds, trial.solveSeconds});
   numberEqualNames(curves);
   fmt::print("{}: {}, {} fluid particles\n", c.title.empty() ? "case" : c.title, where,
-             simulation.particles().fluidCount);
+             simulation.numbers().fluid);
   printTable(curves);
   writeConvergence(directory / "convergence.csv", curves);
   writeSolvers(directory / "solvers.csv", curves);
@@ -115,35 +111,32 @@ fs::path directoryOf(const ConvergenceOptions& options) {
   return path;
 }
 
-template <int D>
-void compareFor(Case c, const ConvergenceOptions& options, const std::optional<DeviceInfo>& device) {
-  const std::vector<SolverSettings> solvers = comparedSolvers(options, c.method.kind);
-  std::vector<std::string> warnings;
-  Particles<D> made = createParticles<D>(c, warnings);
-  for (std::string& warning : caseWarnings(c)) warnings.push_back(std::move(warning));
-  if (!device)
-    for (std::string& warning : cpuWarnings(c)) warnings.push_back(std::move(warning));
-  for (Case with = c; const SolverSettings& solver : solvers) {
-    with.solver = solver;
-    requireMemory(with, {made.fluidCount, made.wallCount()}, device ? &*device : nullptr);
-  }
-  Checkpoint<D> start = startOf<D>(c, options, std::move(made));
-  const fs::path directory = directoryOf(options);
-  for (const std::string& warning : warnings) printWarning(warning);
-  fmt::print("{}\n",
-             device ? deviceText(*device) : fmt::format("{}, {} threads", processorName(), omp_get_max_threads()));
-  if constexpr (cudaCompiled)
-    if (device) return compareSolvers<D, Cuda>(c, std::move(start), solvers, directory);
-  compareSolvers<D, Cpu>(c, std::move(start), solvers, directory);
-}
-
 }  // namespace
 
 void convergenceCommand(const ConvergenceOptions& options) {
   const std::optional<DeviceInfo> device = deviceFor(options.backend);
   if (options.threads > 0) omp_set_num_threads(options.threads);
-  const Case c = readCase(options.input.file, overridesOf(options));
-  c.dimensions == 2 ? compareFor<2>(c, options, device) : compareFor<3>(c, options, device);
+  Case c = readCase(options.input.file, overridesOf(options));
+  const std::vector<SolverSettings> solvers = comparedSolvers(options, c.method.kind);
+  std::vector<std::string> warnings;
+  AnyParticles made = createParticles(c, warnings);
+  for (std::string& warning : caseWarnings(c)) warnings.push_back(std::move(warning));
+  if (!device)
+    for (std::string& warning : cpuWarnings(c)) warnings.push_back(std::move(warning));
+  for (Case with = c; const SolverSettings& solver : solvers) {
+    with.solver = solver;
+    requireMemory(with, made.numbers(), device ? &*device : nullptr);
+  }
+  Case until = c;
+  StartState start = startOf(until, options, std::move(made));
+  if (until.time.end > 0) c.time.end = until.time.end;  // where steps vary, the last one meets it
+  const fs::path directory = directoryOf(options);
+  for (const std::string& warning : warnings) printWarning(warning);
+  fmt::print("{}\n",
+             device ? deviceText(*device) : fmt::format("{}, {} threads", processorName(), omp_get_max_threads()));
+  const BackendKind backend = device ? BackendKind::Cuda : BackendKind::Cpu;
+  compareSolvers(until, AnySimulation(c, std::move(start.particles), backend, start.step, start.time), solvers,
+                 directory);
 }
 
 }  // namespace treacle

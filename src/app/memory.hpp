@@ -1,17 +1,13 @@
 #pragma once
 
 #include "treacle/core/device.hpp"
+#include "treacle/model/any_particles.hpp"
 #include "treacle/model/case.hpp"
 
 #include <cstdint>
 #include <string>
 
 namespace treacle {
-
-/// Numbers of particles, as many as a run of the case has.
-struct ParticleNumbers {
-  std::uint64_t fluid = 0, wall = 0;
-};
 
 /// Memory of the host that a run of the case will need at its peak, from the bytes per particle that were
 /// measured [B]. `onDevice`: the run computes on a GPU.

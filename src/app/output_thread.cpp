@@ -6,12 +6,10 @@
 
 namespace treacle {
 
-template <int D>
-OutputThread<D>::OutputThread(std::function<void(const Snapshot<D>&)> write)
+OutputThread::OutputThread(std::function<void(const Snapshot&)> write)
     : write_(std::move(write)), thread_([this] { run(); }) {}
 
-template <int D>
-OutputThread<D>::~OutputThread() {
+OutputThread::~OutputThread() {
   {
     const std::lock_guard lock(mutex_);
     closed_ = true;
@@ -20,8 +18,7 @@ OutputThread<D>::~OutputThread() {
   thread_.join();
 }
 
-template <int D>
-Snapshot<D>& OutputThread<D>::next() {
+Snapshot& OutputThread::next() {
   std::unique_lock lock(mutex_);
   changed_.wait(lock, [&] { return handedOver_ - written_ < 2; });
   rethrow();
@@ -30,8 +27,7 @@ Snapshot<D>& OutputThread<D>::next() {
   return snapshots_[static_cast<std::size_t>(handedOver_ % 2)];
 }
 
-template <int D>
-void OutputThread<D>::handOver() {
+void OutputThread::handOver() {
   {
     const std::lock_guard lock(mutex_);
     ++handedOver_;
@@ -39,31 +35,27 @@ void OutputThread<D>::handOver() {
   changed_.notify_all();
 }
 
-template <int D>
-void OutputThread<D>::wait() {
+void OutputThread::wait() {
   std::unique_lock lock(mutex_);
   changed_.wait(lock, [&] { return handedOver_ == written_; });
   rethrow();
 }
 
-template <int D>
-double OutputThread<D>::busySeconds() const {
+double OutputThread::busySeconds() const {
   const std::lock_guard lock(mutex_);
   return seconds_;
 }
 
-template <int D>
-void OutputThread<D>::rethrow() {
+void OutputThread::rethrow() {
   if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
 }
 
-template <int D>
-void OutputThread<D>::run() {
+void OutputThread::run() {
   std::unique_lock lock(mutex_);
   while (true) {
     changed_.wait(lock, [&] { return closed_ || handedOver_ > written_; });
     if (handedOver_ == written_) return;
-    const Snapshot<D>& snapshot = snapshots_[static_cast<std::size_t>(written_ % 2)];
+    const Snapshot& snapshot = snapshots_[static_cast<std::size_t>(written_ % 2)];
     lock.unlock();
     Timer timer;
     std::exception_ptr failure;
@@ -80,8 +72,5 @@ void OutputThread<D>::run() {
     changed_.notify_all();
   }
 }
-
-template class OutputThread<2>;
-template class OutputThread<3>;
 
 }  // namespace treacle

@@ -15,11 +15,10 @@ namespace treacle {
 /// Writes snapshots in the order in which they are handed over, while the caller computes. There are two: one can
 /// be filled while the other is written. What goes wrong is thrown in the caller's thread, by next() or wait(),
 /// once; snapshots that were handed over meanwhile are written nevertheless.
-template <int D>
 class OutputThread {
  public:
   /// `write` is called by the thread, for one snapshot at a time.
-  explicit OutputThread(std::function<void(const Snapshot<D>&)> write);
+  explicit OutputThread(std::function<void(const Snapshot&)> write);
   OutputThread(const OutputThread&) = delete;
   OutputThread& operator=(const OutputThread&) = delete;
   /// Waits until all is written; errors are lost.
@@ -27,7 +26,7 @@ class OutputThread {
 
   /// The snapshot to fill and hand over next; its memory is that of an earlier one. Waits while both are being
   /// written. Errors: what `write` threw.
-  Snapshot<D>& next();
+  Snapshot& next();
   void handOver();
 
   /// Returns when all that was handed over is written. Errors: what `write` threw.
@@ -39,8 +38,8 @@ class OutputThread {
   void run();
   void rethrow();
 
-  std::function<void(const Snapshot<D>&)> write_;
-  std::array<Snapshot<D>, 2> snapshots_;
+  std::function<void(const Snapshot&)> write_;
+  std::array<Snapshot, 2> snapshots_;
   mutable std::mutex mutex_;  // of all below
   std::condition_variable changed_;
   std::int64_t handedOver_ = 0, written_ = 0;  // the k-th snapshot stands in place k % 2
@@ -49,8 +48,5 @@ class OutputThread {
   double seconds_ = 0;
   std::thread thread_;  // last: it uses the others
 };
-
-extern template class OutputThread<2>;
-extern template class OutputThread<3>;
 
 }  // namespace treacle

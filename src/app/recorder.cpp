@@ -12,14 +12,12 @@
 namespace treacle {
 namespace {
 
-template <int D>
-Frame fluidFrame(const Snapshot<D>& s) {
-  return makeFrame(s.particles, 0, s.particles.fluidCount, s.time);
+Frame fluidFrame(const Snapshot& s) {
+  return s.particles.visit([&](const auto& p) { return makeFrame(p, 0, p.fluidCount, s.time); });
 }
 
-template <int D>
-Frame wallsFrame(const Snapshot<D>& s) {
-  return makeFrame(s.particles, s.particles.fluidCount, s.particles.count, s.time);
+Frame wallsFrame(const Snapshot& s) {
+  return s.particles.visit([&](const auto& p) { return makeFrame(p, p.fluidCount, p.count, s.time); });
 }
 
 HistoryRow historyRow(const StepReport& r) {
@@ -38,9 +36,8 @@ HistoryRow historyRow(const StepReport& r) {
 
 }  // namespace
 
-template <int D>
-Recorder<D>::Recorder(const Case& c, RunDirectory& directory, RunLog& log, double start, bool timings,
-                      CopyState copyState)
+Recorder::Recorder(const Case& c, RunDirectory& directory, RunLog& log, double start, bool timings,
+                   CopyState copyState)
     : case_(c),
       directory_(directory),
       log_(log),
@@ -48,17 +45,13 @@ Recorder<D>::Recorder(const Case& c, RunDirectory& directory, RunLog& log, doubl
       history_(directory.history(), timings),
       frames_(c.output.interval, c.time, start),
       checkpoints_(c.output.checkpointInterval, c.time, start),
-      output_([this](const Snapshot<D>& snapshot) { write(snapshot); }) {
+      output_([this](const Snapshot& snapshot) { write(snapshot); }) {
   if (c.output.balance) balance_.emplace(directory.balance(), c);
 }
 
-template <int D>
-void Recorder<D>::begin() {
-  handOver(takeSnapshot(), true, false);
-}
+void Recorder::begin() { handOver(takeSnapshot(), true, false); }
 
-template <int D>
-void Recorder<D>::record(const StepReport& report) {
+void Recorder::record(const StepReport& report) {
   if (steps_++ == 0) firstIterations_ = report.iterations;
   lastIterations_ = report.iterations;
   iterations_ += report.iterations;
@@ -75,43 +68,38 @@ void Recorder<D>::record(const StepReport& report) {
   if (frame || checkpoint) handOver(takeSnapshot(), frame, checkpoint);
 }
 
-template <int D>
-void Recorder<D>::wait() {
+void Recorder::wait() {
   Timer timer;
   output_.wait();
   outputSeconds_ += timer.lap();
 }
 
-template <int D>
-void Recorder<D>::writeFrame() {
+void Recorder::writeFrame() {
   wait();
-  Snapshot<D>& snapshot = takeSnapshot();
+  Snapshot& snapshot = takeSnapshot();
   if (frameStep_ == snapshot.step) return;
   handOver(snapshot, true, false);
   wait();
 }
 
-template <int D>
-void Recorder<D>::writeCheckpoint() {
+void Recorder::writeCheckpoint() {
   wait();
-  Snapshot<D>& snapshot = takeSnapshot();
+  Snapshot& snapshot = takeSnapshot();
   if (checkpointStep_ == snapshot.step) return;
   handOver(snapshot, false, true);
   wait();
 }
 
-template <int D>
-void Recorder<D>::drawPicture() {
+void Recorder::drawPicture() {
   PictureOptions options;
   options.spacing = case_.spacing;
   options.gravity = case_.gravity;
   options.title = case_.title;
-  const Snapshot<D>& state = takeSnapshot();
+  const Snapshot& state = takeSnapshot();
   drawFrame(directory_.finalPicture(), fluidFrame(state), wallsFrame(state), options);
 }
 
-template <int D>
-void Recorder<D>::summarise(RunSummary& summary) const {
+void Recorder::summarise(RunSummary& summary) const {
   summary.meanIterations = steps_ > 0 ? static_cast<double>(iterations_) / static_cast<double>(steps_) : 0;
   summary.firstIterations = firstIterations_;
   summary.lastIterations = lastIterations_;
@@ -126,25 +114,22 @@ void Recorder<D>::summarise(RunSummary& summary) const {
   summary.outputThreadSeconds = output_.busySeconds();
 }
 
-template <int D>
-Snapshot<D>& Recorder<D>::takeSnapshot() {
+Snapshot& Recorder::takeSnapshot() {
   Timer timer;
-  Snapshot<D>& snapshot = output_.next();
+  Snapshot& snapshot = output_.next();
   copyState_(snapshot);
   outputSeconds_ += timer.lap();
   return snapshot;
 }
 
-template <int D>
-void Recorder<D>::handOver(Snapshot<D>& snapshot, bool frame, bool checkpoint) {
+void Recorder::handOver(Snapshot& snapshot, bool frame, bool checkpoint) {
   snapshot.iterations = lastIterations_;
   snapshot.frame = frame, snapshot.checkpoint = checkpoint;
   output_.handOver();
 }
 
 /// Called by the output thread.
-template <int D>
-void Recorder<D>::write(const Snapshot<D>& s) {
+void Recorder::write(const Snapshot& s) {
   const TraceRange range("output");
   if (s.frame) {
     const std::size_t number = directory_.frameCount();
@@ -153,12 +138,10 @@ void Recorder<D>::write(const Snapshot<D>& s) {
     log_.info(fmt::format("frame {}: step {}, t = {:.6g} s, {} iterations", number, s.step, s.time, s.iterations));
   }
   if (s.checkpoint) {
-    treacle::writeCheckpoint(directory_.checkpoint(), s.particles, s.step, s.time);
+    s.particles.visit(
+        [&](const auto& p) { treacle::writeCheckpoint(directory_.checkpoint(), p, s.step, s.time); });
     checkpointStep_ = s.step;
   }
 }
-
-template class Recorder<2>;
-template class Recorder<3>;
 
 }  // namespace treacle

@@ -20,11 +20,10 @@ namespace treacle {
 /// written by another thread, from a copy of the particles, while the simulation goes on; until wait() the run
 /// directory and the files in it are that thread's. Errors, of every member but summarise: RunError or
 /// std::bad_alloc, also for what was to be written since the call before.
-template <int D>
 class Recorder {
  public:
   /// Copies particles, step and time of the simulation into a snapshot.
-  using CopyState = std::function<void(Snapshot<D>&)>;
+  using CopyState = std::function<void(Snapshot&)>;
 
   /// `start`: simulation time at which the run starts [s]. `timings`: the history has the seconds of the phases.
   Recorder(const Case& c, RunDirectory& directory, RunLog& log, double start, bool timings, CopyState copyState);
@@ -49,9 +48,9 @@ class Recorder {
   void summarise(RunSummary& summary) const;
 
  private:
-  Snapshot<D>& takeSnapshot();
-  void handOver(Snapshot<D>& snapshot, bool frame, bool checkpoint);
-  void write(const Snapshot<D>& snapshot);
+  Snapshot& takeSnapshot();
+  void handOver(Snapshot& snapshot, bool frame, bool checkpoint);
+  void write(const Snapshot& snapshot);
 
   const Case& case_;
   RunDirectory& directory_;
@@ -67,10 +66,7 @@ class Recorder {
   double meanDensity_ = 0, densityError_ = 0, largestDensityError_ = 0;
   PhaseSeconds seconds_;
   double outputSeconds_ = 0;  // that the simulation had to wait
-  OutputThread<D> output_;    // last: it uses the others
+  OutputThread output_;       // last: it uses the others
 };
-
-extern template class Recorder<2>;
-extern template class Recorder<3>;
 
 }  // namespace treacle

@@ -1,11 +1,13 @@
 #include "resume.hpp"
 
 #include "treacle/core/error.hpp"
+#include "treacle/io/checkpoint.hpp"
 #include "treacle/model/names.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
+#include <utility>
 
 namespace treacle {
 namespace {
@@ -63,28 +65,24 @@ std::int64_t stepAt(double time, const TimeSettings& settings, const std::filesy
 
 }  // namespace
 
-template <int D>
-Checkpoint<D> fittingState(const Case& c, const std::filesystem::path& file, const Particles<D>& made) {
-  Checkpoint<D> state = readCheckpoint<D>(file);
-  requireFit(c, file, state.particles, made);
-  setBodies(c, file, made, state.particles);
-  if (!c.time.stepsVary()) state.step = stepAt(state.time, c.time, file);
-  return state;
+StartState fittingState(const Case& c, const std::filesystem::path& file, const AnyParticles& made) {
+  StartState start = made.visit([&]<int D>(const Particles<D>& created) -> StartState {
+    Checkpoint<D> state = readCheckpoint<D>(file);
+    requireFit(c, file, state.particles, created);
+    setBodies(c, file, created, state.particles);
+    return {std::move(state.particles), state.step, state.time};
+  });
+  if (!c.time.stepsVary()) start.step = stepAt(start.time, c.time, file);
+  return start;
 }
 
-template <int D>
-Checkpoint<D> resumedState(const Case& c, const std::filesystem::path& file, const Particles<D>& made) {
-  Checkpoint<D> state = fittingState<D>(c, file, made);
+StartState resumedState(const Case& c, const std::filesystem::path& file, const AnyParticles& made) {
+  StartState state = fittingState(c, file, made);
   if (c.atEnd(state.step, state.time))
     refuse(file, fmt::format("its time {:g} s is not before the end of the run, {:g} s; choose a later one with "
                              "--end-time",
                              state.time, c.time.end));
   return state;
 }
-
-template Checkpoint<2> fittingState<2>(const Case&, const std::filesystem::path&, const Particles<2>&);
-template Checkpoint<3> fittingState<3>(const Case&, const std::filesystem::path&, const Particles<3>&);
-template Checkpoint<2> resumedState<2>(const Case&, const std::filesystem::path&, const Particles<2>&);
-template Checkpoint<3> resumedState<3>(const Case&, const std::filesystem::path&, const Particles<3>&);
 
 }  // namespace treacle

@@ -1,71 +1,158 @@
 #include "run.hpp"
-#include "backend.hpp"
-#include "commands.hpp"
+
 #include "interrupt.hpp"
 #include "machine.hpp"
 #include "memory.hpp"
-#include "resume.hpp"
+#include "pinned_snapshot.hpp"
 #include "treacle/core/error.hpp"
+#include "treacle/core/version.hpp"
+#include "treacle/io/atomic_file.hpp"
 #include "treacle/io/case_reader.hpp"
-#include "treacle/model/checks.hpp"
-#include "treacle/model/create.hpp"
+#include "treacle/model/names.hpp"
+#include "treacle/step/solve_stages.hpp"
 
 #include <fmt/format.h>
 #include <omp.h>
 
-#include <optional>
+#include <filesystem>
+#include <new>
+#include <utility>
 
 namespace treacle {
-namespace {
 
-Case caseOf(const RunOptions& options) {
-  Case c = readCase(options.input.file, options.input.overrides);
-  if (options.precision) c.solver.precision = *options.precision;
-  if (options.endTime) {
-    c.time.end = *options.endTime;
-    if (!c.time.stepsVary() && c.steps() < 1)
-      throw InputError(
-          fmt::format("--end-time: expected at least one step of {:g} s, found {:g}", c.time.step, c.time.end));
+Run::Run(const Case& c, StartState start, BackendKind backend, RunDirectory directory, const RunOptions& options,
+         std::string device)
+    : case_(c),
+      backend_(backend),
+      device_(std::move(device)),
+      start_(std::move(start)),
+      directory_(std::move(directory)),
+      timings_(options.timings),
+      log_(directory_.log(), options.quiet),
+      progress_(c, start_.step, start_.time, options.quiet) {}
+
+void Run::execute(const std::vector<std::string>& warnings) {
+  describe();
+  for (const std::string& warning : warnings) log_.warning(warning);
+  attempt([&] {
+    writeFile(directory_.caseFile(), caseText(case_));
+    simulation_.emplace(case_, std::move(start_.particles), backend_, start_.step, start_.time);
+    recorder_.emplace(case_, directory_, log_, start_.time, timings_, [this](Snapshot& s) { copyState(s); });
+    recorder_->begin();
+    advanceToEnd();
+  });
+  finish();
+}
+
+void Run::describe() {
+  const BuildInfo build = buildInfo();
+  summary_.version = build.version, summary_.commit = build.commit;
+  summary_.backend = onDevice() ? "cuda" : "cpu", summary_.device = device_;
+  summary_.threads = omp_get_max_threads();
+  summary_.precision = nameOf(case_.solver.precision);
+  summary_.title = case_.title;
+  summary_.dimensions = case_.dimensions;
+  const ParticleNumbers particles = start_.particles.numbers();
+  summary_.fluidParticles = particles.fluid, summary_.wallParticles = particles.wall;
+  log_.info(fmt::format("treacle {} ({}), backend {}, {}, {} threads of the host", build.version, build.commit,
+                        summary_.backend, device_, summary_.threads));
+  say(fmt::format("{}: {} fluid and {} wall particles, {}, into {}", case_.title.empty() ? "case" : case_.title,
+                  particles.fluid, particles.wall, stepsText(), directory_.path().string()));
+  log_.info("solver: " + solverText(solveStages(case_).front()));
+  if (case_.method.kind == MethodKind::Isph) log_.info("viscous step: " + viscousText(case_));
+  if (start_.step > 0) say(fmt::format("continues after step {} (t = {:.6g} s)", start_.step, start_.time));
+}
+
+std::string Run::stepsText() const {
+  const TimeSettings& time = case_.time;
+  if (!time.stepsVary()) return fmt::format("{} steps of {:g} s", case_.steps(), time.step);
+  return fmt::format("steps of at most {:g} s and Courant number {:g} to {:g} s", time.step, time.courant,
+                     time.end);
+}
+
+void Run::advanceToEnd() {
+  while (!atEnd() && !interruptSignal()) {
+    const StepReport report = simulation_->advance();
+    recorder_->record(report);
+    if (report.fallbacks > 0) warnOfFallback(report);
+    progress_.update(report);
   }
-  return c;
+  if (!atEnd()) throw RunError(fmt::format("stopped by {}", interruptSignal()));
 }
 
-/// --force would remove the checkpoint before another one exists.
-void requireElsewhere(const std::filesystem::path& directory, const std::filesystem::path& checkpoint) {
-  using std::filesystem::weakly_canonical;
-  if (!checkpoint.empty() && weakly_canonical(checkpoint).parent_path() == weakly_canonical(directory))
-    throw InputError(fmt::format("--resume {}: lies in the run directory; choose another one with --output",
-                                 checkpoint.string()));
+void Run::warnOfFallback(const StepReport& report) {
+  if (std::exchange(fellBack_, true)) return;
+  progress_.endLine();
+  log_.warning(
+      fmt::format("step {}: the linear solver had to fall back after {}; further steps that do are counted in {}",
+                  report.step, report.failures, directory_.history().filename().string()));
 }
 
-template <int D>
-void runCase(const Case& c, const RunOptions& options, const std::optional<DeviceInfo>& device) {
-  std::vector<std::string> warnings;
-  Checkpoint<D> start{createParticles<D>(c, warnings)};
-  for (std::string& warning : caseWarnings(c)) warnings.push_back(std::move(warning));
-  requireMemory(c, {start.particles.fluidCount, start.particles.wallCount()}, device ? &*device : nullptr);
-  const auto directory = options.directory.empty() ? options.input.file.stem().concat("-run") : options.directory;
-  requireElsewhere(directory, options.resume);
-  if (!options.resume.empty()) start = resumedState<D>(c, options.resume, start.particles);
-  catchInterrupts();
-  RunDirectory files = RunDirectory::create(directory, options.force);
-  if constexpr (cudaCompiled)
-    if (device) {
-      Run<D, Cuda> run(c, std::move(start), std::move(files), options, deviceText(*device));
-      return run.execute(warnings);
-    }
-  for (std::string& warning : cpuWarnings(c)) warnings.push_back(std::move(warning));
-  Run<D, Cpu> run(c, std::move(start), std::move(files), options, processorName());
-  run.execute(warnings);
+void Run::copyState(Snapshot& snapshot) {
+  if (onDevice()) resizePinned(snapshot, case_.dimensions, simulation_->numbers());
+  simulation_->copyParticles(snapshot.particles);
+  snapshot.step = simulation_->step();
+  snapshot.time = simulation_->time();
 }
 
-}  // namespace
+void Run::attempt(const std::function<void()>& action) {
+  std::string diagnosis;
+  try {
+    action();
+    return;
+  } catch (const DeviceMemoryExhausted& e) {
+    diagnosis = fmt::format("device memory exhausted: {} in use at the peak, {} on the device",
+                            bytesText(e.peakBytes()), bytesText(e.totalBytes()));
+  } catch (const std::bad_alloc&) {
+    diagnosis = "memory exhausted";
+  } catch (const std::runtime_error& e) {
+    diagnosis = e.what();
+  }
+  if (simulation_)
+    diagnosis =
+        fmt::format("after step {} (t = {:.6g} s): {}", simulation_->step(), simulation_->time(), diagnosis);
+  log_.error(diagnosis);
+  if (failure_.empty()) failure_ = diagnosis;
+}
 
-void runCommand(const RunOptions& options) {
-  const std::optional<DeviceInfo> device = deviceFor(options.backend);
-  if (options.threads > 0) omp_set_num_threads(options.threads);
-  const Case c = caseOf(options);
-  c.dimensions == 2 ? runCase<2>(c, options, device) : runCase<3>(c, options, device);
+void Run::finish() {
+  if (simulation_ && recorder_) {
+    attempt([&] { recorder_->wait(); });
+    attempt([&] { recorder_->writeCheckpoint(); });
+    attempt([&] { recorder_->writeFrame(); });
+    attempt([&] { recorder_->drawPicture(); });
+    summary_.steps = simulation_->step(), summary_.time = simulation_->time();
+    recorder_->summarise(summary_);
+  }
+  if (simulation_) attempt([&] { summary_.peakDeviceMemory = simulation_->peakBytes(); });
+  summary_.wallSeconds = timer_.lap();
+  summary_.peakMemory = peakMemory();
+  summary_.done = failure_.empty();
+  summary_.message = failure_;
+  attempt([&] { writeSummary(directory_.summary(), summary_); });
+  if (!failure_.empty()) throw RunError(failure_ + lastStateText());
+  say(fmt::format("done: {} steps in {}, {:.1f} iterations per step, {} of memory{}", summary_.steps,
+                  durationText(summary_.wallSeconds), summary_.meanIterations, bytesText(summary_.peakMemory),
+                  onDevice() ? fmt::format(", {} of the device's", bytesText(summary_.peakDeviceMemory)) : ""));
+  progress_.message(fmt::format("picture: {}\nParaView: {}", directory_.finalPicture().string(),
+                                directory_.fluidIndex().string()));
+}
+
+std::string Run::lastStateText() const {
+  std::string text;
+  if (directory_.frameCount() > 0) {
+    const std::size_t last = directory_.frameCount() - 1;
+    text += fmt::format("\nThe last state written is frame {} (t = {:.6g} s) in {}", last,
+                        directory_.frameTime(last), directory_.path().string());
+  }
+  if (std::filesystem::exists(directory_.checkpoint()))
+    text += fmt::format("\nContinue from the last checkpoint with --resume {}", directory_.checkpoint().string());
+  return text;
+}
+
+void Run::say(const std::string& text) {
+  log_.info(text);
+  progress_.message(text);
 }
 
 }  // namespace treacle

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "treacle/model/particles.hpp"
+#include "treacle/model/any_particles.hpp"
 
 #include <cstdint>
 #include <memory>
@@ -8,9 +8,8 @@
 namespace treacle {
 
 /// A copy of the state after a step, and what is to be written of it.
-template <int D>
 struct Snapshot {
-  Particles<D> particles;
+  AnyParticles particles{2};
   std::shared_ptr<const void> pinned;  // what lets a device copy to them directly; gone before they are
   std::int64_t step = 0;
   double time = 0;     // [s]

@@ -1,8 +1,12 @@
+// What builds without CUDA know of devices: there is none.
+#include "treacle/core/cuda.hpp"
 #include "treacle/core/device.hpp"
 
 namespace treacle {
 
-// Builds without CUDA know of no devices; kernels/core/devices.cu takes this file's place in those with it.
 std::vector<DeviceInfo> cudaDevices() { return {}; }
+
+PinnedMemory::PinnedMemory(void*, std::size_t) {}
+PinnedMemory::~PinnedMemory() = default;
 
 }  // namespace treacle

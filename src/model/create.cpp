@@ -167,6 +167,12 @@ Particles<D> createParticles(const Case& c, std::vector<std::string>& notes,
   return particles;
 }
 
+AnyParticles createParticles(const Case& c, std::vector<std::string>& notes,
+                             std::vector<std::uint32_t>* bodyCounts) {
+  if (c.dimensions == 2) return createParticles<2>(c, notes, bodyCounts);
+  return createParticles<3>(c, notes, bodyCounts);
+}
+
 template Particles<2> createParticles<2>(const Case&, std::vector<std::string>&, std::vector<std::uint32_t>*);
 template Particles<3> createParticles<3>(const Case&, std::vector<std::string>&, std::vector<std::uint32_t>*);
 

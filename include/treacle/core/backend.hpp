@@ -10,6 +10,17 @@ namespace treacle {
 struct Cpu {};
 struct Cuda {};
 
+/// The same for choices at run time.
+enum class BackendKind { Cpu, Cuda };
+template <class Backend>
+inline constexpr BackendKind kindOf = std::is_same_v<Backend, Cuda> ? BackendKind::Cuda : BackendKind::Cpu;
+
+#ifdef TREACLE_HAS_CUDA
+inline constexpr bool cudaCompiled = true;
+#else
+inline constexpr bool cudaCompiled = false;
+#endif
+
 template <class Backend>
 class Context;
 

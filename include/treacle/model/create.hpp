@@ -1,5 +1,6 @@
 #pragma once
 
+#include "treacle/model/any_particles.hpp"
 #include "treacle/model/case.hpp"
 #include "treacle/model/particles.hpp"
 
@@ -20,6 +21,10 @@ namespace treacle {
 /// particles than 2^27, if an expression is not finite at a particle.
 template <int D>
 Particles<D> createParticles(const Case& c, std::vector<std::string>& notes,
+                             std::vector<std::uint32_t>* bodyCounts = nullptr);
+
+/// The same for the dimensions that the case has.
+AnyParticles createParticles(const Case& c, std::vector<std::string>& notes,
                              std::vector<std::uint32_t>* bodyCounts = nullptr);
 
 extern template Particles<2> createParticles<2>(const Case&, std::vector<std::string>&,

@@ -1,5 +1,6 @@
 #include "memory.hpp"
 
+#include "support/memory_cases.hpp"
 #include "treacle/core/error.hpp"
 
 #include <gmock/gmock.h>
@@ -123,6 +124,22 @@ TEST(DeviceMemory, ARunThatDoesNotFitIsRefused) {
     EXPECT_THAT(error.what(), HasSubstr("1500 particles need about "));
     EXPECT_THAT(error.what(), HasSubstr(" of device memory, "));
     EXPECT_THAT(error.what(), HasSubstr(" available on Some GPU"));
+  }
+}
+
+TEST(HostMemory, OfTheSimulationIsWhatASimulationHolds) {
+  for (const test::MemoryCase& memoryCase : test::memoryCases()) {
+    SCOPED_TRACE(memoryCase.name());
+    const Case c = memoryCase.read();
+    const AnySimulation simulation = test::advanced(c, BackendKind::Cpu);
+    // On a device the host holds neither state nor solver, but what CUDA takes of it.
+    constexpr double driver = 300 << 20;
+    const double estimate = static_cast<double>(estimatedMemory(c, simulation.numbers(), false)) -
+                            (static_cast<double>(estimatedMemory(c, simulation.numbers(), true)) - driver);
+    // Estimates are of peaks of runs, temporary memory included, and of walls that are wet all over.
+    const double held = static_cast<double>(simulation.bytes());
+    EXPECT_GE(estimate, 0.8 * held);
+    EXPECT_LE(estimate, 1.35 * held);
   }
 }
 

@@ -16,14 +16,14 @@ namespace {
 using namespace std::chrono_literals;
 using testing::ElementsAre;
 
-void handOver(OutputThread<2>& thread, std::int64_t step) {
+void handOver(OutputThread& thread, std::int64_t step) {
   thread.next().step = step;
   thread.handOver();
 }
 
 TEST(OutputThread, WritesInOrderWhatWasHandedOver) {
   std::vector<std::int64_t> steps;
-  OutputThread<2> thread([&](const Snapshot<2>& s) { steps.push_back(s.step); });
+  OutputThread thread([&](const Snapshot& s) { steps.push_back(s.step); });
   std::vector<std::int64_t> expected;
   for (std::int64_t k = 0; k < 1000; ++k) {
     handOver(thread, k);
@@ -37,7 +37,7 @@ TEST(OutputThread, ASecondSnapshotIsFilledWhileTheFirstIsWrittenAndAThirdWaits) 
   std::promise<void> gate;
   std::shared_future<void> open(gate.get_future());
   std::vector<const void*> written;
-  OutputThread<2> thread([&](const Snapshot<2>& s) {
+  OutputThread thread([&](const Snapshot& s) {
     open.wait();
     written.push_back(&s);
   });
@@ -55,7 +55,7 @@ TEST(OutputThread, ASecondSnapshotIsFilledWhileTheFirstIsWrittenAndAThirdWaits) 
 
 TEST(OutputThread, OneSnapshotIsEnoughWhereWritingIsFast) {
   std::vector<const void*> written;
-  OutputThread<2> thread([&](const Snapshot<2>& s) { written.push_back(&s); });
+  OutputThread thread([&](const Snapshot& s) { written.push_back(&s); });
   for (std::int64_t k = 0; k < 3; ++k) {
     handOver(thread, k);
     thread.wait();
@@ -67,7 +67,7 @@ TEST(OutputThread, ErrorsAreThrownOnceAndLaterSnapshotsAreWritten) {
   std::vector<std::int64_t> steps;
   std::promise<void> gate;
   std::shared_future<void> open(gate.get_future());
-  OutputThread<2> thread([&](const Snapshot<2>& s) {
+  OutputThread thread([&](const Snapshot& s) {
     open.wait();
     if (s.step < 2) throw std::runtime_error("disk full");
     steps.push_back(s.step);
@@ -87,7 +87,7 @@ TEST(OutputThread, ErrorsAreThrownOnceAndLaterSnapshotsAreWritten) {
 }
 
 TEST(OutputThread, KeepsTheTypeOfErrors) {
-  OutputThread<2> thread([](const Snapshot<2>&) { throw std::bad_alloc(); });
+  OutputThread thread([](const Snapshot&) { throw std::bad_alloc(); });
   handOver(thread, 1);
   EXPECT_THROW(thread.wait(), std::bad_alloc);
 }
@@ -95,7 +95,7 @@ TEST(OutputThread, KeepsTheTypeOfErrors) {
 TEST(OutputThread, EndsAfterTheLastSnapshot) {
   std::vector<std::int64_t> steps;
   {
-    OutputThread<2> thread([&](const Snapshot<2>& s) {
+    OutputThread thread([&](const Snapshot& s) {
       std::this_thread::sleep_for(20ms);
       steps.push_back(s.step);
       throw std::runtime_error("lost");
@@ -107,7 +107,7 @@ TEST(OutputThread, EndsAfterTheLastSnapshot) {
 }
 
 TEST(OutputThread, CountsTheTimeSpentWriting) {
-  OutputThread<2> thread([](const Snapshot<2>&) { std::this_thread::sleep_for(20ms); });
+  OutputThread thread([](const Snapshot&) { std::this_thread::sleep_for(20ms); });
   EXPECT_EQ(thread.busySeconds(), 0);
   handOver(thread, 1);
   handOver(thread, 2);

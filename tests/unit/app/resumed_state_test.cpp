@@ -3,6 +3,7 @@
 #include "support/temporary_directory.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/io/case_reader.hpp"
+#include "treacle/io/checkpoint.hpp"
 #include "treacle/model/create.hpp"
 
 #include <gmock/gmock.h>
@@ -21,21 +22,22 @@ using testing::HasSubstr;
 struct Resumed {
   Workshop shop;
   Case c;
-  Particles<2> made, saved;
+  AnyParticles made{2};
+  Particles<2> saved;
 
   Resumed() {
     shop.put("case.toml", smallCase);
     c = readCase(shop / "case.toml");
     std::vector<std::string> notes;
-    made = createParticles<2>(c, notes);
+    made = createParticles(c, notes);
     saved = createParticles<2>(c, notes);
     std::reverse(saved.id.begin(), saved.id.begin() + saved.fluidCount);
     std::reverse(saved.id.begin() + saved.fluidCount, saved.id.end());
   }
 
-  Checkpoint<2> state(std::int64_t step, double time) {
+  StartState state(std::int64_t step, double time) {
     writeCheckpoint<2>(shop / "c.h5", saved, step, time);
-    return resumedState<2>(c, shop / "c.h5", made);
+    return resumedState(c, shop / "c.h5", made);
   }
 
   std::string message(std::int64_t step, double time) {
@@ -48,7 +50,7 @@ TEST(resumedState, takesStepAndTimeFromTheFileWhereStepsVary) {
   EXPECT_EQ(r.state(77, 1e-3).step, 1);
   EXPECT_THAT(r.message(77, 1.234e-3), HasSubstr("is not a whole number of steps"));
   r.c.time.courant = 0.2;
-  const Checkpoint<2> state = r.state(77, 1.234e-3);
+  const StartState state = r.state(77, 1.234e-3);
   EXPECT_EQ(state.step, 77);
   EXPECT_EQ(state.time, 1.234e-3);
   EXPECT_THAT(r.message(1, 2e-3), HasSubstr("its time 0.002 s is not before the end of the run"));
@@ -57,10 +59,10 @@ TEST(resumedState, takesStepAndTimeFromTheFileWhereStepsVary) {
 TEST(resumedState, takesBodiesThatTheFileDoesNotKnowFromTheCase) {
   Resumed r;
   std::fill(r.saved.body.begin(), r.saved.body.end(), unknownBody);
-  const Checkpoint<2> state = r.state(1, 1e-3);
-  for (std::uint32_t i = 0; i < state.particles.count; ++i)
-    EXPECT_EQ(state.particles.body[i], i < state.particles.fluidCount ? 0 : 1);
-  EXPECT_EQ(state.particles.id[0], state.particles.fluidCount - 1);
+  const StartState state = r.state(1, 1e-3);
+  const Particles<2>& p = state.particles.of<2>();
+  for (std::uint32_t i = 0; i < p.count; ++i) EXPECT_EQ(p.body[i], i < p.fluidCount ? 0 : 1);
+  EXPECT_EQ(p.id[0], p.fluidCount - 1);
 }
 
 TEST(resumedState, refusesBodiesAndIdsThatTheCaseDoesNotHave) {

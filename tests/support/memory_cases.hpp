@@ -1,0 +1,50 @@
+#pragma once
+
+#include "treacle/io/case_reader.hpp"
+#include "treacle/model/create.hpp"
+#include "treacle/step/any_simulation.hpp"
+
+#include <string>
+#include <vector>
+
+namespace treacle::test {
+
+/// A dam break with what decides on the memory of its solver.
+struct MemoryCase {
+  const char* file;
+  std::vector<std::string> settings;
+
+  Case read() const { return readCase(std::string(TREACLE_CASES) + "/" + file, settings); }
+  std::string name() const {
+    std::string text = file;
+    for (const std::string& s : settings) text += " " + s;
+    return text;
+  }
+};
+
+inline std::vector<MemoryCase> memoryCases() {
+  std::vector<MemoryCase> all;
+  for (const char* file : {"dam-break-2d.toml", "dam-break-3d.toml"}) {
+    const std::string resolution = file == std::string("dam-break-2d.toml") ? "resolution=2" : "resolution=0.5";
+    all.push_back({file, {resolution}});
+    all.push_back({file, {resolution, "output.balance=true"}});
+    all.push_back({file, {resolution, "solver.operator=assembled"}});
+    all.push_back({file, {resolution, "solver.preconditioner=bucket-multigrid"}});
+    all.push_back({file,
+                   {resolution, "solver.preconditioner=bucket-multigrid",
+                    "solver.multigrid.particle_diagonal=extended-jacobi"}});
+  }
+  all.push_back({"isph-dam-break-2d.toml", {}});
+  all.push_back({"isph-dam-break.toml", {"width.factor=0.5"}});
+  return all;
+}
+
+/// The simulation after steps in which its buffers have found their sizes.
+inline AnySimulation advanced(const Case& c, BackendKind backend) {
+  std::vector<std::string> notes;
+  AnySimulation simulation(c, createParticles(c, notes), backend);
+  for (int k = 0; k < 3; ++k) simulation.advance();
+  return simulation;
+}
+
+}  // namespace treacle::test

@@ -1,0 +1,82 @@
+#include "treacle/step/any_simulation.hpp"
+
+#include "treacle/core/error.hpp"
+#include "treacle/model/case_error.hpp"
+#include "treacle/model/create.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace treacle::test {
+namespace {
+
+/// A block of syrup in free fall.
+Case fallingBlock(int dimensions) {
+  Case c;
+  c.dimensions = dimensions;
+  c.spacing = 1e-3;
+  c.domain = {{-0.02, -0.02, dimensions == 3 ? -0.02 : 0}, {0.03, 0.03, dimensions == 3 ? 0.03 : 0}, {}};
+  c.gravity = {1, -10, 0};
+  c.materials = {{"syrup", 1000, 10, 1e4, 1e6}};
+  c.time = {1e-3, 5e-3};
+  Body block;
+  block.name = "block";
+  block.shape.max = {0.01, 0.006, dimensions == 3 ? 0.005 : 0};
+  c.bodies = {block};
+  return c;
+}
+
+AnyParticles particlesOf(const Case& c) {
+  std::vector<std::string> notes;
+  return createParticles(c, notes);
+}
+
+template <int D>
+void expectSameSteps() {
+  const Case c = fallingBlock(D);
+  AnySimulation any(c, particlesOf(c));
+  std::vector<std::string> notes;
+  Simulation<D> simulation(c, createParticles<D>(c, notes));
+  EXPECT_EQ(any.backend(), BackendKind::Cpu);
+  EXPECT_EQ(any.numbers(), particlesOf(c).numbers());
+  for (int k = 0; k < 3; ++k) {
+    const StepReport a = any.advance(), b = simulation.advance();
+    EXPECT_EQ(a.iterations, b.iterations);
+    EXPECT_EQ(a.residual, b.residual);
+    EXPECT_EQ(a.diagnostics.kineticEnergy, b.diagnostics.kineticEnergy);
+  }
+  EXPECT_EQ(any.step(), simulation.step());
+  EXPECT_EQ(any.time(), simulation.time());
+  EXPECT_EQ(any.bytes(), simulation.bytes());
+  EXPECT_EQ(any.diagnostics().potentialEnergy, simulation.diagnostics().potentialEnergy);
+  AnyParticles copied(5 - D);  // of other dimensions
+  any.copyParticles(copied);
+  const Particles<D>& p = copied.of<D>();
+  EXPECT_TRUE(std::ranges::equal(p.position.span(), simulation.particles().position.span()));
+  EXPECT_TRUE(std::ranges::equal(p.velocity.span(), simulation.particles().velocity.span()));
+  // From where it is, as after an interruption.
+  AnySimulation resumed(c, std::move(copied), BackendKind::Cpu, any.step(), any.time());
+  EXPECT_EQ(resumed.advance().residual, simulation.advance().residual);
+  EXPECT_EQ(resumed.step(), 4);
+  EXPECT_EQ(resumed.time(), simulation.time());
+}
+
+TEST(AnySimulation, StepsLikeTheSimulationThatItChose) {
+  expectSameSteps<2>();
+  expectSameSteps<3>();
+}
+
+TEST(AnySimulation, RefusesWhatItCannotRun) {
+  const Case c = fallingBlock(2);
+  EXPECT_THROW(AnySimulation(c, AnyParticles(3)), InputError);
+  Case bad = c;
+  bad.time.step = 0;
+  EXPECT_THROW(AnySimulation(bad, particlesOf(c)), CaseError);
+  if (!cudaCompiled) {
+    EXPECT_THROW(AnySimulation(c, particlesOf(c), BackendKind::Cuda), InputError);
+  }
+}
+
+}  // namespace
+}  // namespace treacle::test
