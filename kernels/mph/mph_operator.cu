@@ -35,24 +35,6 @@ struct SelfSums {
   }
 };
 
-template <int D, class T, class S, bool OneSubstance>
-void firstPass(Context<Cuda>& context, const MphPairs<D>& pairs, const LocalPositions<D, T>& places,
-               const SelfTerms<D>& self, const Vec<D, T>* u, Vec<D, T>* y, T* q) {
-  const auto terms = pairs.terms.template inUnitsOf<T>(places.unit(pairs));
-  const ListTask<ViscosityAndDivergence<D, T, OneSubstance>> onFluid{pairs.fluidList, {terms, self, u, y, q}};
-  const ListTask<Divergence<D, T, true, true>> onWalls{pairs.wallList, {terms, u, q}};
-  launchClusterSums<D, T, S>(context, pairs, onFluid, onWalls, places);
-}
-
-template <int D, class T, class S>
-void firstPass(Context<Cuda>& context, const MphPairs<D>& pairs, const LocalPositions<D, T>& places,
-               const SelfTerms<D>& self, const Vec<D, T>* u, Vec<D, T>* y, T* q) {
-  if (pairs.isOneSubstance())
-    firstPass<D, T, S, true>(context, pairs, places, self, u, y, q);
-  else
-    firstPass<D, T, S, false>(context, pairs, places, self, u, y, q);
-}
-
 }  // namespace
 
 template <int D>
@@ -76,23 +58,22 @@ void MphOperator<D, Cuda>::multiply(Context<Cuda>& context, std::span<const Vec<
   const SelfTerms<D> self{selfBlock_, selfGradient_};
   const auto places = LocalPositions<D, double>::make(*pairs_);
   withSharing(*pairs_, [&](auto sharing) {
-    firstPass<D, double, decltype(sharing)>(context, *pairs_, places, self, u.data(), y.data(), q_.data());
+    const auto firstPass = [&](auto oneSubstance) {
+      using OnFluid = ViscosityAndDivergence<D, double, decltype(oneSubstance)::value>;
+      const MphTerms<D, double>& terms = pairs_->terms;
+      launchClusterSums<D, double, decltype(sharing)>(
+          context, *pairs_, ListTask<OnFluid>{pairs_->fluidList, {terms, self, u.data(), y.data(), q_.data()}},
+          ListTask<Divergence<D, double, true, true>>{pairs_->wallList, {terms, u.data(), q_.data()}}, places);
+    };
+    if (pairs_->isOneSubstance())
+      firstPass(std::true_type{});
+    else
+      firstPass(std::false_type{});
   });
   if (pairs_->fluidList.offset)
     near_.addPressureGradient(context, q_, y);
   else
     addPressureGradient<D>(context, *pairs_, q_, 1.0, y);
-}
-
-template <int D>
-void MphOperator<D, Cuda>::multiplySingle(Context<Cuda>& context, std::span<const Vec<D, float>> u,
-                                          std::span<float> q, std::span<Vec<D, float>> y) {
-  const SelfTerms<D> self{selfBlock_, selfGradient_};
-  const auto places = LocalPositions<D, float>::make(*pairs_, near_.fixedPosition().data());
-  withListSharing(*pairs_, [&](auto sharing) {
-    firstPass<D, float, decltype(sharing)>(context, *pairs_, places, self, u.data(), y.data(), q.data());
-  });
-  near_.addPressureGradient(context, q, y);
 }
 
 template class MphOperator<2, Cuda>;

@@ -81,28 +81,6 @@ void NearProducts<D>::addPressureGradient(Context<Cuda>& context, std::span<cons
                [y = y.data()] __device__(std::uint32_t i, const Vec<D>& gradient) { y[i] += gradient; });
 }
 
-template <int D>
-void NearProducts<D>::addPressureGradient(Context<Cuda>& context, std::span<const float> q,
-                                          std::span<Vec<D, float>> y) const {
-  nearGradient(context, NearView<D, float>::make(*pairs_, *this), PlainScalars<D, float>{q.data()},
-               [y = y.data()] __device__(std::uint32_t i, const Vec<D, float>& gradient) { y[i] += gradient; });
-}
-
-template <int D>
-void NearProducts<D>::pressureGradient(Context<Cuda>& context, std::span<const float> q,
-                                       std::span<Vec<D, float>> y) const {
-  nearGradient(context, NearView<D, float>::make(*pairs_, *this), PlainScalars<D, float>{q.data()},
-               [y = y.data()] __device__(std::uint32_t i, const Vec<D, float>& gradient) { y[i] = gradient; });
-}
-
-template <int D>
-void NearProducts<D>::divergence(Context<Cuda>& context, std::span<const Vec<D, float>> u,
-                                 std::span<float> div) const {
-  nearDivergence(context, NearView<D, float>::make(*pairs_, *this),
-                 PlainVectors<D, float, Vec<D, float>>{u.data()},
-                 [div = div.data()] __device__(std::uint32_t k, float divergence) { div[k] = divergence; });
-}
-
 template class NearProducts<2>;
 template class NearProducts<3>;
 

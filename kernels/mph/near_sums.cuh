@@ -89,11 +89,20 @@ __device__ inline Vec<D, T> fetch(const Vec<D, T>* from) {
   return *from;
 }
 
-/// Runs along the list of a particle, every Split-th entry from `part` on: add(load(entry)), the loads of four
+/// Threads that share a list: one, as the compiler knows, or as many as a launch says, a power of two.
+struct OneThread {
+  __host__ __device__ constexpr operator int() const { return 1; }
+};
+struct Threads {
+  int count;
+  __host__ __device__ operator int() const { return count; }
+};
+
+/// Runs along the list of a particle, every split-th entry from `part` on: add(load(entry)), the loads of four
 /// neighbours being on their way together.
-template <int Split = 1, class Load, class Add>
+template <class Load, class Add, class Split = OneThread>
 __device__ inline void alongList(const std::uint64_t* sliceStart, const ListEntry* entry, std::uint32_t i,
-                                 Load&& load, Add&& add, int part = 0) {
+                                 Load&& load, Add&& add, int part = 0, Split split = {}) {
   constexpr int batch = 4;
   constexpr unsigned slice = nearSlice;
   const std::uint64_t begin = sliceStart[i / slice];
@@ -101,20 +110,20 @@ __device__ inline void alongList(const std::uint64_t* sliceStart, const ListEntr
   const ListEntry* mine = entry + begin * slice + i % slice;
   const auto at = [&](int row) { return mine[static_cast<std::size_t>(row) * slice]; };
   int r = part;
-  for (; r + (batch - 1) * Split < rows; r += batch * Split) {
+  for (; r + (batch - 1) * split < rows; r += batch * split) {
     decltype(load(at(0))) loaded[batch];
 #pragma unroll
-    for (int k = 0; k < batch; ++k) loaded[k] = load(at(r + k * Split));
+    for (int k = 0; k < batch; ++k) loaded[k] = load(at(r + k * split));
 #pragma unroll
     for (int k = 0; k < batch; ++k) add(loaded[k]);
   }
-  for (; r < rows; r += Split) add(load(at(r)));
+  for (; r < rows; r += split) add(load(at(r)));
 }
 
-/// Sum over groups of Split consecutive lanes, in all of them.
-template <int Split, class T>
-__device__ inline T splitSum(T value) {
-  for (int offset = Split / 2; offset > 0; offset /= 2) value += __shfl_xor_sync(~0u, value, offset);
+/// Sum over groups of `split` consecutive lanes, in all of them.
+template <class T>
+__device__ inline T splitSum(T value, int split) {
+  for (int offset = split / 2; offset > 0; offset /= 2) value += __shfl_xor_sync(~0u, value, offset);
   return value;
 }
 
@@ -152,64 +161,66 @@ struct PlainVectors {
     return {view.other(e), j < view.fluidCount ? fetch(&u[j]) : Vec<D, T>{}};
   }
 };
-/// Split threads per fluid particle: store(i, (C q)_i); reads positions and q of the neighbours. No atomics.
-template <int Split, int D, class T, class Scalars, class Store>
-__global__ void __launch_bounds__(128) nearGradientKernel(const __grid_constant__ NearView<D, T> view,
-                                                          const Scalars q, const __grid_constant__ Store store) {
-  const std::uint32_t thread = blockIdx.x * blockDim.x + threadIdx.x, own = thread / Split;
-  if (Split == 1 && own >= view.fluidCount) return;
+/// `split` threads per fluid particle: store(i, (C q)_i); reads positions and q of the neighbours. No atomics.
+template <class Split, int D, class T, class Scalars, class Store>
+__global__ void __launch_bounds__(128)
+    nearGradientKernel(const Split split, const __grid_constant__ NearView<D, T> view, const Scalars q,
+                       const __grid_constant__ Store store) {
+  const std::uint32_t thread = blockIdx.x * blockDim.x + threadIdx.x, own = thread / split;
+  if (split == 1 && own >= view.fluidCount) return;
   const std::uint32_t i = min(own, view.fluidCount - 1);  // all lanes of a warp take part in the sum
   const auto mine = q.own(view, i);
   Vec<D, T> sum{};
-  alongList<Split>(
+  alongList(
       view.sliceStart, view.entry, i, [&](ListEntry e) { return q.other(view, e); },
       [&](const PlacedValue<D, T>& other) {
         const Vec<D, T> d = view.difference(other.x, mine.x);
         addScaled(&sum[0], gradientShape(view, d) * (mine.value + other.value), d);
       },
-      thread % Split);
-  for (int k = 0; k < D; ++k) sum[k] = splitSum<Split>(sum[k]);
-  if (thread % Split == 0 && own == i) store(i, view.mph.gradientFactor * sum);
+      thread % split, split);
+  for (int k = 0; k < D; ++k) sum[k] = splitSum(sum[k], split);
+  if (thread % split == 0 && own == i) store(i, view.mph.gradientFactor * sum);
 }
 
-/// Split threads per particle: store(k, (C^T u)_k), walls at rest; reads positions and u of the neighbours. No
+/// `split` threads per particle: store(k, (C^T u)_k), walls at rest; reads positions and u of the neighbours. No
 /// atomics.
-template <int Split, int D, class T, class Vectors, class Store>
-__global__ void __launch_bounds__(128) nearDivergenceKernel(const __grid_constant__ NearView<D, T> view,
-                                                            const Vectors u, const __grid_constant__ Store store) {
-  const std::uint32_t thread = blockIdx.x * blockDim.x + threadIdx.x, own = thread / Split;
-  if (Split == 1 && own >= view.activeCount) return;
+template <class Split, int D, class T, class Vectors, class Store>
+__global__ void __launch_bounds__(128)
+    nearDivergenceKernel(const Split split, const __grid_constant__ NearView<D, T> view, const Vectors u,
+                         const __grid_constant__ Store store) {
+  const std::uint32_t thread = blockIdx.x * blockDim.x + threadIdx.x, own = thread / split;
+  if (split == 1 && own >= view.activeCount) return;
   const std::uint32_t k = min(own, view.activeCount - 1);
   const auto mine = u.own(view, k);
   T sum = 0;
-  alongList<Split>(
+  alongList(
       view.sliceStart, view.entry, k, [&](ListEntry e) { return u.other(view, e); },
       [&](const PlacedVelocity<D, T>& other) {
         const Vec<D, T> d = view.difference(other.x, mine.x);
         sum = fma(gradientShape(view, d), differenceAlong(other.u, mine.u, d), sum);
       },
-      thread % Split);
-  sum = splitSum<Split>(sum);
-  if (thread % Split == 0 && own == k) store(k, -view.mph.gradientFactor * sum);
+      thread % split, split);
+  sum = splitSum(sum, split);
+  if (thread % split == 0 && own == k) store(k, -view.mph.gradientFactor * sum);
 }
 
-/// Calls f(Split): small systems leave lanes idle, and wait for the longest list.
+/// Calls f(split): small systems leave lanes idle, and wait for the longest list.
 template <int D, class F>
 void withSplit(std::uint32_t particles, F&& f) {
   constexpr std::uint32_t threads = 1u << 17;  // what a card runs at a time
   if (D == 3 && particles < threads / 4)
-    f(std::integral_constant<int, 8>{});
+    f(Threads{8});
   else if (particles < threads)
-    f(std::integral_constant<int, 4>{});
+    f(Threads{4});
   else
-    f(std::integral_constant<int, 1>{});
+    f(OneThread{});
 }
 
 template <int D, class T, class Scalars, class Store>
 void nearGradient(const Context<Cuda>& context, const NearView<D, T>& view, const Scalars& q, const Store& store) {
   withSplit<D>(view.fluidCount, [&](auto split) {
     launch(context, blocksFor(std::size_t{view.fluidCount} * split, 128), 128, 0,
-           nearGradientKernel<split, D, T, Scalars, Store>, view, q, store);
+           nearGradientKernel<decltype(split), D, T, Scalars, Store>, split, view, q, store);
   });
 }
 template <int D, class T, class Vectors, class Store>
@@ -217,7 +228,7 @@ void nearDivergence(const Context<Cuda>& context, const NearView<D, T>& view, co
                     const Store& store) {
   withSplit<D>(view.activeCount, [&](auto split) {
     launch(context, blocksFor(std::size_t{view.activeCount} * split, 128), 128, 0,
-           nearDivergenceKernel<split, D, T, Vectors, Store>, view, u, store);
+           nearDivergenceKernel<decltype(split), D, T, Vectors, Store>, split, view, u, store);
   });
 }
 

@@ -195,12 +195,11 @@ template <class Store>
 void ParticleProducts<D, T, Cuda>::schur(Context<Cuda>& context, const ProjectionTable<T>& table,
                                          ScalarField<T, Cuda> q, const Store& store) {
   const std::uint8_t* material = pairs_->material.data();
-  if (pairs_->activeCount <= onePassParticles<D>) {
-    withScalars(*pairs_, a_->near(), q, [&](const auto& view, const auto& scalars) {
-      nearSchur(context, view, scalars, table, material, store);
-    });
-    return;
-  }
+  if constexpr (std::is_same_v<T, float>)
+    if (pairs_->activeCount <= onePassParticles<D>) {
+      nearSchur(context, viewOf<D, T>(*pairs_, a_->near()), PlacedScalars<D>{q.at}, table, material, store);
+      return;
+    }
   withScalars(*pairs_, a_->near(), q, [&](const auto& view, const auto& scalars) {
     nearGradient(context, view, scalars, StoreWeighted<D, T, Cuda>{table, material, vectors()});
   });
@@ -213,17 +212,21 @@ void ParticleProducts<D, T, Cuda>::viscous(Context<Cuda>& context, const Gathere
                                            const Store& store) const {
   const auto places = placesOf<D, T>(*pairs_, a_->near());
   const auto terms = pairs_->terms.template inUnitsOf<T>(places.unit(*pairs_));
-  withListSharing(*pairs_, [&](auto sharing) {
-    const auto start = [&](auto oneSubstance) {
-      using Terms = Viscosity<D, T, decltype(oneSubstance)::value, Store>;
-      launchClusterSums<D, T, decltype(sharing)>(
-          context, *pairs_, ListTask<Terms>{pairs_->fluidList, {terms, selfBlock_.data(), u, store}}, places);
-    };
-    if (pairs_->isOneSubstance())
-      start(std::true_type{});
-    else
-      start(std::false_type{});
-  });
+  const auto start = [&](auto sharing, auto oneSubstance) {
+    using Terms = Viscosity<D, T, decltype(oneSubstance)::value, Store>;
+    launchClusterSums<D, T, decltype(sharing)>(
+        context, *pairs_, ListTask<Terms>{pairs_->fluidList, {terms, selfBlock_.data(), u, store}}, places);
+  };
+  // In double precision, which few runs take for preconditioners, one kernel does for all.
+  if constexpr (std::is_same_v<T, double>)
+    start(Sharing<2, 1>{}, std::false_type{});
+  else
+    withListSharing(*pairs_, [&](auto sharing) {
+      if (pairs_->isOneSubstance())
+        start(sharing, std::true_type{});
+      else
+        start(sharing, std::false_type{});
+    });
 }
 
 template <int D, class T>

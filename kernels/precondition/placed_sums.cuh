@@ -74,9 +74,9 @@ __global__ void __launch_bounds__(128)
   }
   // The last lane has the fewest neighbours.
   Vec<D, T> mine = lane == Lanes - 1 ? velocity(k) : Vec<D, T>{};
-  along = splitSum<Lanes>(along);
+  along = splitSum(along, Lanes);
   for (int c = 0; c < D; ++c) {
-    gradient[c] = splitSum<Lanes>(gradient[c]);
+    gradient[c] = splitSum(gradient[c], Lanes);
     mine[c] = __shfl_sync(~0u, mine[c], Lanes - 1, Lanes);
   }
   const T factor = view.mph.gradientFactor;

@@ -151,20 +151,20 @@ void ProjectedMultigrid<D, T, Backend>::apply(Context<Backend>& context, std::sp
                                               std::span<Vec<D>> z) {
   const std::uint8_t* material = pairs_->material.data();
   const ChebyshevStep<T> first = ChebyshevStep<T>::at(1);
-  const auto startPressure = [&]<bool Subtract>(std::bool_constant<Subtract>) {
+  const auto startPressure = [&](bool holdsPressure) {
     products_.divergence(context, products_.vectors(),
-                         StartPressure<T, Backend, Subtract>{table_, material, inversePressure_.data(),
-                                                             lambdaMax_.largest(), first, pressureVectors(0)});
+                         StartPressure<T, Backend>{table_, material, inversePressure_.data(), lambdaMax_.largest(),
+                                                   first, pressureVectors(0), holdsPressure});
   };
   products_.gatherWeighted(context, table_, r);
-  startPressure(std::false_type{});
+  startPressure(false);
   const ScalarField<T, Backend> p = pressureCycle(context);
   products_.gradient(context, p,
                      StartVelocity<D, T>{r.data(), inverseVelocity_.data(),
                                          first.gain / static_cast<T>(viscousLambdaMax), velocityVectors(0)});
   velocityCycle(context);
   products_.gather(context, y_.span());
-  startPressure(std::true_type{});
+  startPressure(true);
   const ScalarField<T, Backend> q = pressureCycle(context);
   products_.gradient(context, q, FinishVelocity<D, T>{table_, material, y_.data(), z.data()});
 }

@@ -52,9 +52,6 @@ class MphOperator<D, Cuda> {
  public:
   void prepare(Context<Cuda>&, const MphPairs<D>& pairs, const WallTerms<D>& terms);
   void multiply(Context<Cuda>&, std::span<const Vec<D>> u, std::span<Vec<D>> y);
-  /// The same product in single precision, for preconditioners; q: workspace of activeCount. Needs lists.
-  void multiplySingle(Context<Cuda>&, std::span<const Vec<D, float>> u, std::span<float> q,
-                      std::span<Vec<D, float>> y);
   const NearProducts<D>& near() const { return near_; }
   /// Diagonal block of rho/dt I + V, per fluid particle.
   std::span<const Block<D>> selfBlock() const { return selfBlock_; }

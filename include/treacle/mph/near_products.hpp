@@ -23,12 +23,6 @@ class NearProducts {
   /// y += C q per fluid particle; q per particle.
   void addPressureGradient(Context<Cuda>&, std::span<const double> q, std::span<Vec<D>> y) const;
 
-  /// In single precision, for preconditioners: y += C q, y = C q per fluid particle, and div = C^T u per particle
-  /// [1/s], walls at rest, u per fluid particle.
-  void addPressureGradient(Context<Cuda>&, std::span<const float> q, std::span<Vec<D, float>> y) const;
-  void pressureGradient(Context<Cuda>&, std::span<const float> q, std::span<Vec<D, float>> y) const;
-  void divergence(Context<Cuda>&, std::span<const Vec<D, float>> u, std::span<float> div) const;
-
   /// Positions in units of 2^-32 of the domain's length, 4 numbers per particle, the last unused: differences are
   /// exact, and those across periodic ends come out right by themselves.
   std::span<const std::int32_t> fixedPosition() const { return fixedPosition_; }

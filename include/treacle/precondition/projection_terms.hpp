@@ -98,8 +98,8 @@ struct SmootherVectors {
 template <class T, class Backend>
 using PressureVectors = SmootherVectors<T, ScalarField<T, Backend>>;
 
-/// b = C^T u, less Lambda^-1 p where the iterate holds p (Subtract); then the smoother's first step from zero.
-template <class T, class Backend, bool Subtract>
+/// b = C^T u, less Lambda^-1 p where the iterate holds p; then the smoother's first step from zero.
+template <class T, class Backend>
 struct StartPressure {
   ProjectionTable<T> table;
   const std::uint8_t* material;
@@ -107,11 +107,12 @@ struct StartPressure {
   const T* lambdaMax;
   ChebyshevStep<T> step;
   PressureVectors<T, Backend> v;
+  bool holdsPressure;
 
   TREACLE_HD void operator()(std::uint32_t k, T divergence) const { put(k, divergence, material[k]); }
   TREACLE_HD void put(std::size_t k, T divergence, std::uint8_t m) const {
     T b = divergence;
-    if constexpr (Subtract) b -= table.inverseLambda[m] * v.solution[k];
+    if (holdsPressure) b -= table.inverseLambda[m] * v.solution[k];
     v.residual[k] = b;
     v.solution[k] = v.correction[k] = step.gain / *lambdaMax * inverseDiagonal[k] * b;
   }
@@ -236,8 +237,7 @@ struct FinishVelocity {
   TREACLE_GRADIENT(D, T, StoreWeighted<D, T, Backend>)              \
   TREACLE_GRADIENT(D, T, StartVelocity<D, T>)                       \
   TREACLE_GRADIENT(D, T, FinishVelocity<D, T>)                      \
-  TREACLE_DIVERGENCE(D, T, StartPressure<T, Backend, false>)        \
-  TREACLE_DIVERGENCE(D, T, StartPressure<T, Backend, true>)         \
+  TREACLE_DIVERGENCE(D, T, StartPressure<T, Backend>)               \
   TREACLE_DIVERGENCE(D, T, StorePressure<T, Backend>)               \
   TREACLE_SCHUR(D, T, PressureStep<T, Backend, StepKind::Residual>) \
   TREACLE_SCHUR(D, T, PressureStep<T, Backend, StepKind::Next>)     \

@@ -132,30 +132,6 @@ struct SumsTwin {
     device.multiply(d.context, uDevice, again);
     EXPECT_EQ(difference<Vec<D>>(d.context, copyToHost(d.context, found).span(), again), 0) << "not the same bits";
   }
-
-  void checkSingle() {
-    const auto u = randomVectors<D>(n, 5);
-    std::vector<Vec<D>> expected(n);
-    MphOperator<D> host;
-    host.prepare(s.context, s.pairs(), s.terms());
-    host.multiply(s.context, u, expected);
-    std::vector<Vec<D, float>> single(n);
-    for (std::uint32_t i = 0; i < n; ++i)
-      for (int k = 0; k < D; ++k) single[i][k] = static_cast<float>(u[i][k]);
-    MphOperator<D, Cuda> device;
-    device.prepare(d.context, d.pairs, d.terms());
-    Buffer<float, Cuda> q(d.context, active);
-    Buffer<Vec<D, float>, Cuda> y(d.context, n);
-    device.multiplySingle(d.context, copyToDevice<Vec<D, float>>(d.context, single), q, y);
-    const auto found = copyToHost(d.context, y);
-    double error = 0, norm = 0;
-    for (std::uint32_t i = 0; i < n; ++i)
-      for (int k = 0; k < D; ++k) {
-        error += std::pow(found[i][k] - expected[i][k], 2);
-        norm += std::pow(expected[i][k], 2);
-      }
-    EXPECT_LE(std::sqrt(error / norm), singleTolerance);
-  }
 };
 
 template <int D>
@@ -170,7 +146,6 @@ void checkAll(bool lists) {
       twin.checkWallTerms();
       twin.checkBalance();
       twin.checkOperator();
-      if (lists) twin.checkSingle();
     }
 }
 

@@ -1,105 +1,40 @@
 #include "treacle/mph/near_products.hpp"
 #include "support/device_scene.hpp"
 #include "support/gpu.hpp"
+#include "support/matrices.hpp"
 #include "support/tolerances.hpp"
+#include "treacle/mph/mph_sums.hpp"
 
 #include <gtest/gtest.h>
 
-#include <limits>
+#include <random>
+#include <vector>
 
 namespace treacle::test {
 namespace {
 
-/// Random numbers that single precision holds exactly, so that it is the products alone that round.
-Eigen::VectorXd randomSingles(Eigen::Index n, unsigned seed) {
-  return randomVector(n, seed).cast<float>().cast<double>();
-}
-
-/// Numbers of type T as values of type V in device memory.
-template <class T, class V = T>
-Buffer<V, Cuda> upload(const Context<Cuda>& context, const Eigen::VectorXd& numbers) {
-  const Eigen::Matrix<T, Eigen::Dynamic, 1> converted = numbers.cast<T>();
-  return copyToDevice<V>(context,
-                         {reinterpret_cast<const V*>(converted.data()), numbers.size() * sizeof(T) / sizeof(V)});
-}
-
-/// The relative difference of two results, norm-wise.
-template <class T, class V = T>
-double difference(const Context<Cuda>& context, const Eigen::VectorXd& expected, const Buffer<V, Cuda>& found) {
-  const Buffer<V> onHost = copyToHost(context, found);
-  const Eigen::Map<const Eigen::Matrix<T, Eigen::Dynamic, 1>> f(reinterpret_cast<const T*>(onHost.data()),
-                                                                onHost.size() * sizeof(V) / sizeof(T));
-  EXPECT_EQ(f.size(), expected.size());
-  return (f.template cast<double>() - expected).norm() / expected.norm();
-}
-
-/// The products of lists per particle against the sums of the CPU.
+/// The product of lists per particle against the sums of the CPU.
 template <int D>
-struct ProductsTwin {
-  using Single = Vec<D, float>;
-
-  Scene<D> s;
-  DeviceScene<D> d;
-  NearProducts<D> products;
-  Eigen::Index n, active;
-  Eigen::VectorXd q, y, u;
-
-  explicit ProductsTwin(Scene<D> scene)
-      : s(std::move(scene)),
-        d(s),
-        n(s.unknowns()),
-        active(s.pairs().activeCount),
-        q(randomSingles(active, 1)),
-        y(randomSingles(n, 2) / s.c.spacing),  // as large as the gradient that is added
-        u(randomSingles(n, 3)) {
-    y = y.template cast<float>().template cast<double>();
-    products.prepare(d.context, d.pairs);
-  }
-
-  /// y + C q of the CPU.
-  Eigen::VectorXd gradientAddedTo(const Eigen::VectorXd& before) {
-    std::vector<Vec<D>> sum = unflat<D>(before);
-    addPressureGradient<D>(s.context, s.pairs(), {q.data(), std::size_t(active)}, 1, sum);
-    return flat<D>(sum);
-  }
-
-  void checkDouble() {
-    auto found = upload<double, Vec<D>>(d.context, y);
-    products.addPressureGradient(d.context, upload<double>(d.context, q), found.span());
-    EXPECT_LE((difference<double>(d.context, gradientAddedTo(y), found)), 10 * kernelTolerance);
-  }
-
-  void checkSingleGradient() {
-    const auto single = upload<float>(d.context, q);
-    auto found = upload<float, Single>(d.context, y);
-    products.addPressureGradient(d.context, single, found.span());
-    EXPECT_LE((difference<float>(d.context, gradientAddedTo(y), found)), singleTolerance);
-
-    const Eigen::VectorXd zero = Eigen::VectorXd::Zero(n);
-    found = upload<float, Single>(d.context, zero.array() + std::numeric_limits<double>::quiet_NaN());
-    products.pressureGradient(d.context, single, found.span());
-    EXPECT_LE((difference<float>(d.context, gradientAddedTo(zero), found)), singleTolerance);
-  }
-
-  void checkSingleDivergence() {
-    std::vector<Vec<D>> velocity = unflat<D>(u);
-    velocity.resize(active, Vec<D>{});  // walls at rest
-    Eigen::VectorXd expected(active);
-    divergence<D>(s.context, s.pairs(), velocity, {expected.data(), std::size_t(active)});
-    auto found =
-        upload<float>(d.context, Eigen::VectorXd::Constant(active, std::numeric_limits<double>::quiet_NaN()));
-    products.divergence(d.context, upload<float, Single>(d.context, u), found.span());
-    EXPECT_LE(difference<float>(d.context, expected, found), singleTolerance);
-  }
-};
-
-template <int D>
-void check(Scene<D> scene, const char* what) {
+void check(Scene<D> s, const char* what) {
   SCOPED_TRACE(testing::Message() << D << "D, " << what);
-  ProductsTwin<D> twin(std::move(scene));
-  twin.checkDouble();
-  twin.checkSingleGradient();
-  twin.checkSingleDivergence();
+  DeviceScene<D> d(s);
+  NearProducts<D> products;
+  products.prepare(d.context, d.pairs);
+
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal;
+  std::vector<double> q(s.pairs().activeCount);
+  for (double& value : q) value = normal(random);
+  std::vector<Vec<D>> y(s.n());
+  for (Vec<D>& value : y)
+    for (int k = 0; k < D; ++k) value[k] = normal(random) / s.c.spacing;  // as large as the gradient that is added
+
+  auto found = copyToDevice<Vec<D>>(d.context, y);
+  products.addPressureGradient(d.context, copyToDevice<double>(d.context, q), found.span());
+  addPressureGradient<D>(s.context, s.pairs(), q, 1, y);
+  const Buffer<Vec<D>> sum = copyToHost(d.context, found);
+  EXPECT_LE(relativeDifference<double>({sum.data()->v, D * sum.size()}, {y.data()->v, D * y.size()}),
+            10 * kernelTolerance);
 }
 
 template <int D>
