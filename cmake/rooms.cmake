@@ -1,7 +1,18 @@
-# treacle_room(NAME SOURCES a.cpp ... DEPENDS core ... PRIVATE lib ...): static library treacle_NAME, alias treacle::NAME.
+# Static libraries make each program complete by itself. Shared ones (TREACLE_SHARED) are for several programs that
+# travel together: kernels then lie in one place, and all share one CUDA runtime.
+if(TREACLE_SHARED)
+  set(TREACLE_LIBRARY_KIND SHARED)
+  set(TREACLE_CUDA_RUNTIME CUDA::cudart)
+  set(CMAKE_CUDA_RUNTIME_LIBRARY Shared)
+else()
+  set(TREACLE_LIBRARY_KIND STATIC)
+  set(TREACLE_CUDA_RUNTIME CUDA::cudart_static)
+endif()
+
+# treacle_room(NAME SOURCES a.cpp ... DEPENDS core ... PRIVATE lib ...): library treacle_NAME, alias treacle::NAME.
 function(treacle_room NAME)
   cmake_parse_arguments(ROOM "" "" "SOURCES;DEPENDS;PRIVATE" ${ARGN})
-  add_library(treacle_${NAME} STATIC ${ROOM_SOURCES})
+  add_library(treacle_${NAME} ${TREACLE_LIBRARY_KIND} ${ROOM_SOURCES})
   add_library(treacle::${NAME} ALIAS treacle_${NAME})
   set_target_properties(treacle_${NAME} PROPERTIES EXPORT_NAME ${NAME} POSITION_INDEPENDENT_CODE ON)
   target_include_directories(treacle_${NAME} PUBLIC
@@ -20,7 +31,7 @@ function(treacle_kernels NAME)
   cmake_parse_arguments(KERNELS "" "" "SOURCES;PRIVATE" ${ARGN})
   target_sources(treacle_${NAME} PRIVATE ${KERNELS_SOURCES})
   target_include_directories(treacle_${NAME} PRIVATE ${CMAKE_SOURCE_DIR}/kernels)
-  target_link_libraries(treacle_${NAME} PRIVATE CUDA::cudart_static ${KERNELS_PRIVATE})
+  target_link_libraries(treacle_${NAME} PRIVATE ${TREACLE_CUDA_RUNTIME} ${KERNELS_PRIVATE})
 endfunction()
 
 function(treacle_compile_options TARGET)

@@ -1,47 +1,9 @@
 #pragma once
 
 #include "core/launch.hpp"
-#include "treacle/search/cell_grid.hpp"
-#include "treacle/search/cell_sort.hpp"
+#include "treacle/precondition/bucket_cells.hpp"
 
 namespace treacle {
-
-template <int D>
-constexpr int power(int base) {
-  return D == 2 ? base * base : base * base * base;
-}
-
-/// Digits of `index` in base 3, minus one: index 0 … 3^D-1 counts the adjacent cells of a cell, itself in the
-/// middle.
-template <int D>
-__device__ Vec<D, int> adjacentOffset(int index) {
-  Vec<D, int> v{};
-  for (int k = 0; k < D; ++k, index /= 3) v[k] = index % 3 - 1;
-  return v;
-}
-
-/// An adjacent cell, across periodic ends.
-template <int D>
-struct AdjacentCell {
-  Vec<D, int> cell;    // inside the domain
-  Vec<D> shift{};      // of its particles, as seen from the cell that it is adjacent to [m]
-  bool inside = true;  // the domain
-  std::size_t linear = 0;
-
-  __device__ AdjacentCell(const CellGrid<D>& grid, const Vec<D, int>& own, const Vec<D, int>& offset)
-      : cell(own + offset) {
-    for (int k = 0; k < D; ++k) {
-      const int turn = cell[k] < 0 ? -1 : cell[k] >= grid.count[k] ? 1 : 0;
-      inside = inside && (turn == 0 || grid.periodic[k]);
-      cell[k] -= turn * grid.count[k];
-      shift[k] = turn * grid.length[k];
-    }
-    if (inside) linear = grid.linear(cell);
-  }
-  __device__ bool occupied(const CellRangesView& ranges) const {
-    return inside && ranges.fluidEnd[linear] > ranges.fluidBegin[linear];
-  }
-};
 
 /// Bit o: the adjacent cell o has fluid. For a whole warp; D = 3 takes 27 of its lanes.
 template <int D>
@@ -49,36 +11,6 @@ __device__ unsigned occupiedNeighbours(const CellGrid<D>& grid, const CellRanges
                                        const Vec<D, int>& cell) {
   const int o = threadIdx.x % 32;
   return __ballot_sync(~0u, o < power<D>(3) && AdjacentCell<D>(grid, cell, adjacentOffset<D>(o)).occupied(ranges));
-}
-
-/// Cell b as seen from cell a, across periodic ends.
-template <int D>
-__device__ Vec<D, int> cellOffset(const CellGrid<D>& grid, const Vec<D, int>& a, const Vec<D, int>& b) {
-  Vec<D, int> o = b - a;
-  for (int k = 0; k < D; ++k)
-    if (grid.periodic[k]) o[k] += o[k] > 1 ? -grid.count[k] : o[k] < -1 ? grid.count[k] : 0;
-  return o;
-}
-
-/// A column k of R C touches at most two cells per axis: the particle's own, and on each axis the neighbour on the
-/// side of the half that x_k stands in, because h_p is at most half an edge. Returns the lower of them, from its
-/// own.
-template <int D>
-__device__ Vec<D, int> lowerCell(const CellGrid<D>& grid, const Vec<D>& x, const Vec<D, int>& cell) {
-  Vec<D, int> lower{};
-  for (int k = 0; k < D; ++k) lower[k] = x[k] < fma(cell[k] + 0.5, grid.edge[k], grid.origin[k]) ? -1 : 0;
-  return lower;
-}
-
-/// Place of a cell (as an offset from the lower one) among the 2^D vectors of a column; -1: not one of them.
-template <int D>
-__device__ int columnSlot(const Vec<D, int>& fromLower) {
-  int slot = 0;
-  for (int k = D - 1; k >= 0; --k) {
-    if (fromLower[k] < 0 || fromLower[k] > 1) return -1;
-    slot = 2 * slot + fromLower[k];
-  }
-  return slot;
 }
 
 }  // namespace treacle

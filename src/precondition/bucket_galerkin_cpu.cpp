@@ -3,6 +3,7 @@
 #include "treacle/core/parallel.hpp"
 #include "treacle/mph/mph_lanes.hpp"
 #include "treacle/mph/mph_neighbours.hpp"
+#include "treacle/precondition/bucket_cells.hpp"
 
 #include <array>
 
@@ -10,49 +11,6 @@ namespace treacle {
 namespace {
 
 constexpr std::uint32_t noBucket = ~std::uint32_t{0};
-
-template <int D>
-constexpr int power(int base) {
-  return D == 2 ? base * base : base * base * base;
-}
-
-/// Digits of `index` in the given base as a cell offset: 0 … 3^D-1 in base 3, minus one, are the adjacent cells.
-template <int D>
-Vec<D, int> digits(int index, int base, int shift) {
-  Vec<D, int> v{};
-  for (int k = 0; k < D; ++k, index /= base) v[k] = index % base + shift;
-  return v;
-}
-
-/// Cell b as seen from cell a, across periodic ends.
-template <int D>
-Vec<D, int> cellOffset(const CellGrid<D>& grid, const Vec<D, int>& a, const Vec<D, int>& b) {
-  Vec<D, int> o = b - a;
-  for (int k = 0; k < D; ++k)
-    if (grid.periodic[k]) o[k] += o[k] > 1 ? -grid.count[k] : o[k] < -1 ? grid.count[k] : 0;
-  return o;
-}
-
-/// A column k of R C touches at most two cells per axis: the particle's own, and on each axis the neighbour on the
-/// side of the half that x_k stands in, because h_p is at most half an edge. Returns the lower of them, from its
-/// own.
-template <int D>
-Vec<D, int> lowerCell(const CellGrid<D>& grid, const Vec<D>& x, const Vec<D, int>& cell) {
-  Vec<D, int> lower{};
-  for (int k = 0; k < D; ++k) lower[k] = x[k] < grid.origin[k] + (cell[k] + 0.5) * grid.edge[k] ? -1 : 0;
-  return lower;
-}
-
-/// Place of a cell (as an offset from the lower one) among the 2^D vectors of a column; -1: not one of them.
-template <int D>
-int columnSlot(const Vec<D, int>& fromLower) {
-  int slot = 0;
-  for (int k = D - 1; k >= 0; --k) {
-    if (fromLower[k] < 0 || fromLower[k] > 1) return -1;
-    slot = 2 * slot + fromLower[k];
-  }
-  return slot;
-}
 
 /// (R C)_{I k}: the sum of C_ik over the fluid particles i of each cell I.
 template <int D>
@@ -85,37 +43,26 @@ struct BucketRow {
   const MphPairs<D>& pairs;
   const CellRanges<>& ranges;
   const BucketLevels<>& levels;
-  std::uint32_t begin = 0, end = 0;            // the bucket's particles
-  std::array<Vec<D, int>, neighbours> cell{};  // inside the domain
-  std::array<std::size_t, neighbours> linear{};
+  std::uint32_t begin = 0, end = 0;  // the bucket's particles
+  std::array<AdjacentCell<D>, neighbours> cell{};
   std::array<std::uint32_t, neighbours> bucket{};  // noBucket: outside the domain or empty
-  std::array<bool, neighbours> inside{};
-  std::array<Vec<D>, neighbours> shift{};  // periodic shift of the neighbour's particles [m]
   std::array<Block<D>, neighbours> block{};
 
   BucketRow(const MphPairs<D>& p, const CellRanges<>& r, const BucketLevels<>& l, std::uint32_t b)
       : pairs(p), ranges(r), levels(l), begin(l.begin[0][b]), end(l.begin[0][b + 1]) {
     const Vec<D, int> own = p.grid.cellOf(p.position[begin]);
     for (int o = 0; o < neighbours; ++o) {
-      Vec<D, int>& c = cell[o] = own + digits<D>(o, 3, -1);
-      inside[o] = true;
-      for (int k = 0; k < D; ++k) {
-        const int turn = c[k] < 0 ? -1 : c[k] >= p.grid.count[k] ? 1 : 0;
-        inside[o] = inside[o] && (turn == 0 || p.grid.periodic[k]);
-        c[k] -= turn * p.grid.count[k];
-        shift[o][k] = turn * p.grid.length[k];
-      }
-      linear[o] = inside[o] ? p.grid.linear(c) : 0;
-      const bool occupied = inside[o] && r.fluidEnd[linear[o]] > r.fluidBegin[linear[o]];
-      bucket[o] = occupied ? l.bucketOf[r.fluidBegin[linear[o]]] : noBucket;
+      cell[o] = {p.grid, own, adjacentOffset<D>(o)};
+      bucket[o] = cell[o].occupied(viewOf(r)) ? l.bucketOf[r.fluidBegin[cell[o].linear]] : noBucket;
     }
   }
 
   void addPressure(const Buffer<Vec<D>>& columns) {
     for (int o = 0; o < neighbours; ++o) {
-      if (!inside[o]) continue;
-      addColumns(o, ranges.fluidBegin[linear[o]], ranges.fluidEnd[linear[o]], columns);
-      addColumns(o, ranges.wallBegin[linear[o]], ranges.wallEnd[linear[o]], columns);
+      if (!cell[o].inside) continue;
+      const std::size_t at = cell[o].linear;
+      addColumns(o, ranges.fluidBegin[at], ranges.fluidEnd[at], columns);
+      addColumns(o, ranges.wallBegin[at], ranges.wallEnd[at], columns);
     }
   }
 
@@ -123,7 +70,8 @@ struct BucketRow {
   void addViscosity() {
     for (int o = 0; o < neighbours; ++o) {
       if (o == self || bucket[o] == noBucket) continue;
-      const Block<D> cross = crossViscosity(ranges.fluidBegin[linear[o]], ranges.fluidEnd[linear[o]], shift[o]);
+      const std::size_t at = cell[o].linear;
+      const Block<D> cross = crossViscosity(ranges.fluidBegin[at], ranges.fluidEnd[at], cell[o].shift);
       block[o] -= cross;
       block[self] += cross;
     }
@@ -132,20 +80,17 @@ struct BucketRow {
  private:
   void addColumns(int o, std::uint32_t first, std::uint32_t last, const Buffer<Vec<D>>& columns) {
     constexpr int slots = power<D>(2);
-    const Vec<D, int> offset = digits<D>(o, 3, -1);
+    const Vec<D, int> offset = adjacentOffset<D>(o);
     for (std::uint32_t k = first; k < last; ++k) {
       const Vec<D>& xk = pairs.position[k];
-      const Vec<D, int> lower = offset + lowerCell(pairs.grid, xk, cell[o]);
+      const Vec<D, int> lower = offset + lowerCell(pairs.grid, xk, cell[o].cell);
       const int mine = columnSlot<D>(-lower);
       if (mine < 0) continue;
       const Vec<D>* column = &columns[std::size_t{slots} * k];
       if (norm2(column[mine]) == 0) continue;  // k's neighbourhood does not reach into this bucket
       const double lambda = pairs.bulkViscosity(k);
       for (int s = 0; s < slots; ++s) {
-        const Vec<D, int> other = lower + digits<D>(s, 2, 0);
-        int index = 0;
-        for (int a = D - 1; a >= 0; --a) index = 3 * index + other[a] + 1;
-        block[index].addOuter(lambda, column[mine], column[s]);
+        block[adjacentIndex<D>(lower + digits<D>(s, 2))].addOuter(lambda, column[mine], column[s]);
       }
     }
   }
