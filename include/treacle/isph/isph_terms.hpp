@@ -9,8 +9,9 @@
 namespace treacle {
 
 /// The formulas of ISPH, the same on all backends: what each neighbour adds to a particle's sums, and what is made
-/// of them. fluid() and wall() take neighbour j of particle i at d = x_j - x_i, r = |d|; the rows of fluid hold i
-/// itself, at r = 0. add(n, x) adds x to sum n. Pointers are in the backend's memory.
+/// of them. fluid() and wall() add what neighbour j of particle i gives at d = x_j - x_i, r = |d|, to as many sums
+/// as `values`; the rows of fluid hold i itself, at r = 0. store() takes the sums. Pointers are in the backend's
+/// memory.
 
 /// Density and lack of neighbours, from which the free surface follows.
 template <int D>
