@@ -1,7 +1,7 @@
 #include "isph_matrix.hpp"
 
 #include "core/reduce.cuh"
-#include "core/scan.cuh"
+#include "core/scan.hpp"
 #include "treacle/core/error.hpp"
 
 #include <limits>

@@ -65,23 +65,6 @@ void writeSummation(const Context<Cuda>& context, const std::uint32_t* parent, s
   });
 }
 
-/// Every row of the weights B times, once per unknown.
-template <int B>
-void writeProlongation(const Context<Cuda>& context, BlockCsrView<1, double> weights, ScalarView p) {
-  forEach(context, std::size_t{B} * weights.rows + 1, [=] __device__(std::size_t e) {
-    const std::size_t row = e / B;
-    const int c = static_cast<int>(e % B);
-    const std::uint64_t begin = weights.rowStart[row];
-    const auto count = row == weights.rows ? 0 : static_cast<std::int32_t>(weights.rowStart[row + 1] - begin);
-    const std::int32_t start = static_cast<std::int32_t>(B * begin) + c * count;
-    p.start[e] = start;
-    for (std::int32_t k = 0; k < count; ++k) {
-      p.column[start + k] = static_cast<std::int32_t>(B * weights.column[begin + k] + c);
-      p.value[start + k] = weights.value[begin + k].a[0];
-    }
-  });
-}
-
 /// The scalar rows of a block row have the same pattern, since blocks are full.
 template <int B>
 void writeBlocks(const Context<Cuda>& context, std::uint32_t rows, ScalarView from, const std::uint64_t* rowStart,
@@ -137,13 +120,6 @@ struct GalerkinSpgemm<B>::Impl {
     writeSummation<B>(context, parent.data(), n, viewOf(p));
   }
 
-  void setProlongation(const Context<Cuda>& context, const Prolongation<Cuda>& weights) {
-    p.resize(context, std::int64_t{B} * weights.rows(), std::int64_t{B} * weights.coarseRows);
-    p.reserveEntries(context, countable(B * weights.value.size()));
-    writeProlongation<B>(context, treacle::viewOf(static_cast<const BlockCsr<1, double, Cuda>&>(weights)),
-                         viewOf(p));
-  }
-
   /// coarse = P^T A P with the P that is there.
   void compute(Context<Cuda>& context, const BlockCsr<B, double, Cuda>& fine, BlockCsr<B, double, Cuda>& coarse) {
     setMatrix(context, fine);
@@ -175,14 +151,6 @@ template <int B>
 GalerkinSpgemm<B>& GalerkinSpgemm<B>::operator=(GalerkinSpgemm&&) noexcept = default;
 template <int B>
 GalerkinSpgemm<B>::~GalerkinSpgemm() = default;
-
-template <int B>
-void GalerkinSpgemm<B>::compute(Context<Cuda>& context, const BlockCsr<B, double, Cuda>& fine,
-                                const Prolongation<Cuda>& prolongation, BlockCsr<B, double, Cuda>& coarse) {
-  if (fine.value.empty() || prolongation.value.empty()) return clear(context, prolongation.coarseRows, coarse);
-  impl_->setProlongation(context, prolongation);
-  impl_->compute(context, fine, coarse);
-}
 
 template <int B>
 void GalerkinSpgemm<B>::compute(Context<Cuda>& context, const BlockCsr<B, double, Cuda>& fine,

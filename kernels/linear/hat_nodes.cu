@@ -113,29 +113,6 @@ void coarserNodes(Context<Cuda>& context, const HatNodes<D, Cuda>& fine, HatNode
   numberNodes<D>(context, lattice, active, coarse);
 }
 
-template <int D>
-void hatProlongation(Context<Cuda>& context, const HatNodes<D, Cuda>& fine, const HatNodes<D, Cuda>& coarse,
-                     Prolongation<Cuda>& p) {
-  const HatNodesView<D> from = coarse.view(), to = fine.view();
-  p.coarseRows = from.count;
-  p.rowStart.resize(context, std::size_t{to.count} + 1);
-  forEach(context, to.count, [=, start = p.rowStart.data()] __device__(std::size_t i) {
-    start[i] = HatWeights<D>::at(to, from, static_cast<std::uint32_t>(i)).count;
-  });
-  const std::uint64_t entries = startRows(context, p.rowStart);
-  p.column.resize(context, entries);
-  p.value.resize(context, entries);
-  forEach(
-      context, to.count,
-      [=, start = p.rowStart.data(), column = p.column.data(), weight = p.value.data()] __device__(std::size_t i) {
-        const auto w = HatWeights<D>::at(to, from, static_cast<std::uint32_t>(i));
-        for (int k = 0; k < w.count; ++k) {
-          column[start[i] + k] = w.node[k];
-          weight[start[i] + k].a[0] = w.weight[k];
-        }
-      });
-}
-
 template <int D, int B>
 void hatPattern(Context<Cuda>& context, const HatNodes<D, Cuda>& nodes, BlockCsr<B, double, Cuda>& a, int reach) {
   const unsigned blocks = blocksFor(nodes.count(), warpsPerBlock), threads = 32 * warpsPerBlock;
@@ -161,12 +138,10 @@ void coarsenHats(Context<Cuda>& context, const HatNodes<D, Cuda>& fine, const Bl
          reach, places);
 }
 
-#define TREACLE_INSTANTIATE(D)                                                                         \
-  template void numberNodes<D>(Context<Cuda>&, const HatLattice<D>&, std::span<const std::uint8_t>,    \
-                               HatNodes<D, Cuda>&);                                                    \
-  template void coarserNodes<D>(Context<Cuda>&, const HatNodes<D, Cuda>&, HatNodes<D, Cuda>&);         \
-  template void hatProlongation<D>(Context<Cuda>&, const HatNodes<D, Cuda>&, const HatNodes<D, Cuda>&, \
-                                   Prolongation<Cuda>&);
+#define TREACLE_INSTANTIATE(D)                                                                      \
+  template void numberNodes<D>(Context<Cuda>&, const HatLattice<D>&, std::span<const std::uint8_t>, \
+                               HatNodes<D, Cuda>&);                                                 \
+  template void coarserNodes<D>(Context<Cuda>&, const HatNodes<D, Cuda>&, HatNodes<D, Cuda>&);
 #define TREACLE_INSTANTIATE_MATRICES(D, B)                                                                    \
   template void hatPattern<D, B>(Context<Cuda>&, const HatNodes<D, Cuda>&, BlockCsr<B, double, Cuda>&, int);  \
   template void coarsenHats<D, B>(Context<Cuda>&, const HatNodes<D, Cuda>&, const BlockCsr<B, double, Cuda>&, \

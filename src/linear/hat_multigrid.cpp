@@ -31,23 +31,9 @@ void HatMultigrid<D, T, Backend, B>::addCoarserLevels(Context<Backend>& context)
     coarserNodes<D>(context, fine, coarse.nodes);
     // Scattered drops have as many coarse nodes as fine ones, or more.
     if (B * coarse.nodes.count() > denseUnknowns_ && coarse.nodes.count() > 0.9 * fine.count()) break;
-    coarsen(context, count - 1);
+    coarsenHats<D>(context, fine, operatorOf(count - 1), coarse.nodes, coarse.galerkin, options_.reach);
   }
   levels_.resize(count);
-}
-
-/// The operator of level l + 1, whose nodes are there.
-template <int D, class T, class Backend, int B>
-void HatMultigrid<D, T, Backend, B>::coarsen(Context<Backend>& context, std::size_t l) {
-  Level& coarse = levels_[l + 1];
-  if constexpr (onDevice)
-    if (options_.route == GalerkinRoute::Spgemm) {
-      if (!products_) products_.emplace();
-      hatProlongation<D>(context, nodes(l), coarse.nodes, products_->prolongation);
-      products_->galerkin.compute(context, operatorOf(l), products_->prolongation, coarse.galerkin);
-      return;
-    }
-  coarsenHats<D>(context, nodes(l), operatorOf(l), coarse.nodes, coarse.galerkin, options_.reach);
 }
 
 template <int D, class T, class Backend, int B>
@@ -115,7 +101,7 @@ void HatMultigrid<D, T, Backend, B>::cycle(Context<Backend>& context, std::size_
 
 template <int D, class T, class Backend, int B>
 std::size_t HatMultigrid<D, T, Backend, B>::bytes() const {
-  std::size_t sum = inverse_.bytes() + (products_ ? products_->bytes() : 0);
+  std::size_t sum = inverse_.bytes();
   for (const Level& l : levels_) {
     sum += l.nodes.bytes() + l.galerkin.bytes() + l.value.bytes() + l.inverseDiagonal.bytes();
     sum += l.lambdaMax.bytes() + l.b.bytes() + l.res.bytes() + l.x.bytes() + l.z0.bytes() + l.z1.bytes();

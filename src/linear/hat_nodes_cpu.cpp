@@ -34,25 +34,6 @@ void coarserNodes(Context<Cpu>& context, const HatNodes<D>& fine, HatNodes<D>& c
   numberNodes<D>(context, lattice, active, coarse);
 }
 
-template <int D>
-void hatProlongation(Context<Cpu>&, const HatNodes<D>& fine, const HatNodes<D>& coarse, Prolongation<>& p) {
-  const HatNodesView<D> from = coarse.view(), to = fine.view();
-  p.coarseRows = from.count;
-  p.rowStart.resize(std::size_t{to.count} + 1);
-  p.rowStart[0] = 0;
-  for (std::uint32_t i = 0; i < to.count; ++i)
-    p.rowStart[i + 1] = p.rowStart[i] + HatWeights<D>::at(to, from, i).count;
-  p.column.resize(p.rowStart[to.count]);
-  p.value.resize(p.rowStart[to.count]);
-  parallelFor(to.count, parallelGrain, [&](std::size_t i) {
-    const auto w = HatWeights<D>::at(to, from, static_cast<std::uint32_t>(i));
-    for (int k = 0; k < w.count; ++k) {
-      p.column[p.rowStart[i] + k] = w.node[k];
-      p.value[p.rowStart[i] + k] = {{w.weight[k]}};
-    }
-  });
-}
-
 template <int D, int B>
 void hatPattern(Context<Cpu>&, const HatNodes<D>& nodes, BlockCsr<B>& a, int reach) {
   const HatNodesView<D> view = nodes.view();
@@ -127,8 +108,7 @@ void coarsenHats(Context<Cpu>& context, const HatNodes<D>& fine, const BlockCsr<
 
 #define TREACLE_INSTANTIATE(D)                                                                                    \
   template void numberNodes<D>(Context<Cpu>&, const HatLattice<D>&, std::span<const std::uint8_t>, HatNodes<D>&); \
-  template void coarserNodes<D>(Context<Cpu>&, const HatNodes<D>&, HatNodes<D>&);                                 \
-  template void hatProlongation<D>(Context<Cpu>&, const HatNodes<D>&, const HatNodes<D>&, Prolongation<>&);
+  template void coarserNodes<D>(Context<Cpu>&, const HatNodes<D>&, HatNodes<D>&);
 #define TREACLE_INSTANTIATE_MATRICES(D, B)                                                                   \
   template void hatPattern<D, B>(Context<Cpu>&, const HatNodes<D>&, BlockCsr<B>&, int);                      \
   template void coarsenHats<D, B>(Context<Cpu>&, const HatNodes<D>&, const BlockCsr<B>&, const HatNodes<D>&, \

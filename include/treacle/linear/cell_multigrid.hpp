@@ -33,22 +33,21 @@ class CellMultigrid {
   /// `a`: symmetric positive (semi-)definite; nothing refers to its empty rows. `cells`: per level the first
   /// member of each cell and the end, particles on the first level, else cells of the level before
   /// (BucketLevels::begin); they must outlive the last apply(). The first `m` levels are used; 0: all. n >= 1
-  /// sweeps. `route`: to the operators of all levels; sums take 27 adjacent cells at most.
+  /// sweeps.
   void setup(Context<Backend>& context, const BlockCsr<1, double, Backend>& a, std::span<const Members> cells,
-             int m, int n, GalerkinRoute route = GalerkinRoute::Spgemm) {
+             int m, int n) {
     inverseDiagonal_.resize(context, a.rows());
     hatValues<T, 1>(context, a, {}, inverseDiagonal_);
     const std::size_t count = m == 0 ? cells.size() : std::min(cells.size(), static_cast<std::size_t>(m));
     std::vector<std::span<const std::uint32_t>> members(cells.begin(), cells.begin() + count);
     const CycleSweeps sweeps{.finest = n, .middle = n, .coarsest = 2 * n};
     if constexpr (onDevice) {
-      if (route == GalerkinRoute::Spgemm) {
-        spgemm_.compute(context, a, members[0], finest_);
-        return cycle_.setup(context, finest_, std::move(members), sweeps, &spgemm_);
-      }
+      spgemm_.compute(context, a, members[0], finest_);
+      cycle_.setup(context, finest_, std::move(members), sweeps, &spgemm_);
+    } else {
+      coarsen<1, double>(context, a, members[0], finest_);
+      cycle_.setup(context, finest_, std::move(members), sweeps);
     }
-    coarsen<1, double>(context, a, members[0], finest_);
-    cycle_.setup(context, finest_, std::move(members), sweeps);
   }
 
   /// z = M r, per particle

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "treacle/linear/prolongation.hpp"
+#include "treacle/linear/block_csr.hpp"
 
 #include <cstdint>
 #include <memory>
@@ -8,13 +8,9 @@
 
 namespace treacle {
 
-/// How coarse operators are made on a device: by loops that know the grid, or as sparse matrix products of
-/// cuSPARSE. The CPU has the former only.
-enum class GalerkinRoute { Sums, Spgemm };
-
 /// Galerkin operators P^T A P of B unknowns per row as two sparse matrix products of cuSPARSE [O23 eq. (15)].
-/// Takes any assembled matrix and any prolongation; the price are scalar copies of A, P and P^T, which it keeps
-/// from call to call with all workspace.
+/// P^T is the summation over the members of each coarse row. Takes any assembled matrix; the price are scalar
+/// copies of A, P and P^T, which it keeps from call to call with all workspace.
 template <int B>
 class GalerkinSpgemm {
  public:
@@ -23,13 +19,10 @@ class GalerkinSpgemm {
   GalerkinSpgemm& operator=(GalerkinSpgemm&&) noexcept;
   ~GalerkinSpgemm();
 
-  /// The blocks of `coarse` are those that some product adds to, zero or not: the diagonal is among them wherever
-  /// a fine row with a diagonal has a weight. Errors: RunError when a matrix has more nonzeros than cuSPARSE can
-  /// count, or cuSPARSE finds no way to multiply it; std::bad_alloc.
-  void compute(Context<Cuda>&, const BlockCsr<B, double, Cuda>& fine, const Prolongation<Cuda>& prolongation,
-               BlockCsr<B, double, Cuda>& coarse);
-  /// The same with the summation over members as P^T. `members`: first fine row of each coarse one, and the end;
-  /// device memory.
+  /// `members`: first fine row of each coarse one, and the end; device memory. The blocks of `coarse` are those
+  /// that some product adds to, zero or not: the diagonal is among them wherever a fine row with a diagonal has a
+  /// weight. Errors: RunError when a matrix has more nonzeros than cuSPARSE can count, or cuSPARSE finds no way to
+  /// multiply it; std::bad_alloc.
   void compute(Context<Cuda>&, const BlockCsr<B, double, Cuda>& fine, std::span<const std::uint32_t> members,
                BlockCsr<B, double, Cuda>& coarse);
 

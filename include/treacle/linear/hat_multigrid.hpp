@@ -1,7 +1,6 @@
 #pragma once
 
 #include "treacle/linear/dense_inverse.hpp"
-#include "treacle/linear/galerkin_spgemm.hpp"
 #include "treacle/linear/hat_cycle.hpp"
 #include "treacle/linear/spectral_estimate.hpp"
 
@@ -19,18 +18,9 @@ namespace treacle {
 enum class HatSmoother { Diagonal, RowSums };
 
 struct HatOptions {
-  int degree = 1;                             // >= 1, of the Chebyshev smoothers
-  int reach = hatReach;                       // of the finest matrix
-  GalerkinRoute route = GalerkinRoute::Sums;  // to the coarser operators; any finest pattern will do for Spgemm
+  int degree = 1;        // >= 1, of the Chebyshev smoothers
+  int reach = hatReach;  // of the finest matrix
   HatSmoother smoother = HatSmoother::Diagonal;
-};
-
-/// What coarse operators by products of sparse matrices take; kept from setup to setup.
-template <int B>
-struct HatProducts {
-  GalerkinSpgemm<B> galerkin;
-  Prolongation<Cuda> prolongation;
-  std::size_t bytes() const { return galerkin.bytes() + prolongation.bytes(); }
 };
 
 /// Symmetric V-cycle on hat functions of edge h, 2h, 4h, ...: Galerkin operators, fourth-kind Chebyshev smoothing
@@ -60,7 +50,6 @@ class HatMultigrid {
 
   std::uint32_t denseUnknowns() const { return denseUnknowns_; }
   std::size_t levelCount() const { return levels_.size(); }
-  std::uint32_t levelSize(std::size_t level) const { return nodes(level).count(); }  // nodes
   std::size_t bytes() const;
 
  private:
@@ -87,15 +76,13 @@ class HatMultigrid {
   BlockCsrView<B, T> matrix(std::size_t l) const;
   HatVectors<T> vectors(std::size_t l);
   void addCoarserLevels(Context<Backend>& context);
-  void coarsen(Context<Backend>& context, std::size_t l);
   void prepareSmoother(Context<Backend>& context, std::size_t l);
   void cycle(Context<Backend>& context, std::size_t l);
 
   const HatNodes<D, Backend>* finestNodes_ = nullptr;
   const BlockCsr<B, double, Backend>* finestMatrix_ = nullptr;
   std::vector<Level> levels_;
-  std::optional<DeviceOnly<HatProducts<B>, Backend>> products_;  // once they are asked for
-  Buffer<T, Backend> inverse_;                                   // of the last level
+  Buffer<T, Backend> inverse_;  // of the last level
   std::uint32_t denseUnknowns_;
   HatOptions options_;
 };

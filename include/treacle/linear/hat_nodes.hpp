@@ -2,7 +2,6 @@
 
 #include "treacle/linear/block_csr.hpp"
 #include "treacle/linear/hat_lattice.hpp"
-#include "treacle/linear/prolongation.hpp"
 
 #include <cstdint>
 #include <span>
@@ -49,43 +48,6 @@ template <int D>
 void coarserNodes(Context<Cpu>&, const HatNodes<D>& fine, HatNodes<D>& coarse);
 template <int D>
 void coarserNodes(Context<Cuda>&, const HatNodes<D, Cuda>& fine, HatNodes<D, Cuda>& coarse);
-
-/// Weights of the coarser nodes' hats at a fine one, ascending by node; a node appears once, though on short
-/// periodic axes its hat may come from both sides.
-template <int D>
-struct HatWeights {
-  std::uint32_t node[1 << D];
-  double weight[1 << D];
-  int count = 0;
-
-  TREACLE_HD static HatWeights at(const HatNodesView<D>& fine, const HatNodesView<D>& coarse, std::uint32_t row) {
-    HatWeights w;
-    forEachCoarse(fine.lattice, fine.pointOf(row),
-                  [&](const Vec<D, int>& p, double weight) { w.add(coarse.at(p), weight); });
-    return w;
-  }
-  TREACLE_HD void add(std::uint32_t n, double w) {
-    int place = 0;
-    while (place < count && node[place] < n) ++place;
-    if (place < count && node[place] == n) {
-      weight[place] += w;
-      return;
-    }
-    for (int k = count++; k > place; --k) {
-      node[k] = node[k - 1];
-      weight[k] = weight[k - 1];
-    }
-    node[place] = n;
-    weight[place] = w;
-  }
-};
-
-/// P of coarsenHats, for products of sparse matrices.
-template <int D>
-void hatProlongation(Context<Cpu>&, const HatNodes<D>& fine, const HatNodes<D>& coarse, Prolongation<>& p);
-template <int D>
-void hatProlongation(Context<Cuda>&, const HatNodes<D, Cuda>& fine, const HatNodes<D, Cuda>& coarse,
-                     Prolongation<Cuda>& p);
 
 /// Pattern that couples each node to all within `reach` (1 … hatReach), in the order of forEachNear on both
 /// backends; the blocks, B numbers per node, are there, but not set.

@@ -77,7 +77,7 @@ struct Cycles {
   Context<Cpu> host;
   Context<Cuda>& context;
   HatMultigrid<D, T, Cpu, B> onCpu{50 * B};
-  HatMultigrid<D, T, Cuda, B> onGpu{50 * B}, byProducts{50 * B};
+  HatMultigrid<D, T, Cuda, B> onGpu{50 * B};
 
   explicit Cycles(Context<Cuda>& c) : context(c) {}
 
@@ -100,10 +100,6 @@ struct Cycles {
     const Buffer<T> x = cycle(onGpu), again = cycle(onGpu);
     EXPECT_LE((relativeDifference<T>(x.span(), onCpu.solution())), tolerance);
     EXPECT_TRUE(std::equal(x.begin(), x.end(), again.begin())) << "not the same bits";
-    if (degree != 2) return;
-    byProducts.setup(context, both.nodes, both.a, {degree, both.host.reach, GalerkinRoute::Spgemm});
-    setRhs(byProducts.rhs());
-    EXPECT_LE((relativeDifference<T>(cycle(byProducts).span(), onCpu.solution())), tolerance) << "by SpGEMM";
   }
 
   Buffer<T> cycle(HatMultigrid<D, T, Cuda, B>& multigrid) {

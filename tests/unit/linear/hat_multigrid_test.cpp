@@ -23,24 +23,6 @@ Eigen::MatrixXd interpolation(const HatNodes<D>& fine, const HatNodes<D>& coarse
   return p;
 }
 
-/// The same as a sparse matrix, of which rows are interpolations and hold no column twice.
-template <int D>
-void checkProlongation(const HatNodes<D>& fine, const HatNodes<D>& coarse) {
-  Context<Cpu> context;
-  Prolongation<> p;
-  hatProlongation<D>(context, fine, coarse, p);
-  ASSERT_EQ(p.rows(), fine.count());
-  EXPECT_EQ(p.coarseRows, coarse.count());
-  Eigen::MatrixXd sparse = Eigen::MatrixXd::Zero(p.rows(), p.coarseRows);
-  for (std::uint32_t i = 0; i < p.rows(); ++i)
-    for (std::uint64_t k = p.rowStart[i]; k < p.rowStart[i + 1]; ++k) {
-      EXPECT_TRUE(k == p.rowStart[i] || p.column[k - 1] < p.column[k]);
-      sparse(i, p.column[k]) = p.value[k].a[0];
-    }
-  EXPECT_EQ(sparse, (interpolation<D, 1>(fine, coarse)));
-  EXPECT_EQ(sparse.rowwise().sum(), Eigen::VectorXd::Ones(p.rows()));
-}
-
 template <int D, int B>
 void checkGalerkin() {
   Context<Cpu> context;
@@ -52,7 +34,6 @@ void checkGalerkin() {
     coarserNodes<D>(context, problem.nodes, coarse);
     coarsenHats<D>(context, problem.nodes, problem.a, coarse, coarseA, problem.reach);
     const Eigen::MatrixXd p = interpolation<D, B>(problem.nodes, coarse);
-    checkProlongation<D>(problem.nodes, coarse);
     for (Eigen::Index k = 0; k < p.cols(); ++k) EXPECT_GT(p.col(k).norm(), 0) << "a coarse node without use";
     const Eigen::MatrixXd expected = p.transpose() * dense(problem.a) * p;
     EXPECT_LE((dense(coarseA) - expected).norm(), operatorTolerance * expected.norm());
