@@ -11,6 +11,7 @@
 #include "treacle/mph/mph_operator.hpp"
 #include "treacle/precondition/bucket_galerkin.hpp"
 #include "treacle/precondition/particle_products.hpp"
+#include "treacle/precondition/projected_multigrid.hpp"
 
 namespace treacle {
 

@@ -93,7 +93,8 @@ void assemblePressure(Context<Cuda>& context, const IsphPairs<D>& pairs, const P
   if (entries > std::numeric_limits<std::int32_t>::max())
     throw RunError("the matrix has " + std::to_string(entries) +
                    " nonzeros, more than cuSPARSE's 32-bit rows count");
-  startRows(context, a.start);
+  clearBytes(context, a.start.data() + a.start.size() - 1, sizeof(std::int32_t));
+  sumBefore(context, std::span{reinterpret_cast<std::uint32_t*>(a.start.data()), a.start.size()});
   a.reserveEntries(context, static_cast<std::int64_t>(entries));
   launch(context, blocksFor(n, 128), 128, 0, fillKernel<D>, pairs, radius, row, start, a.column.data(),
          a.value.data(), inverse.data());
