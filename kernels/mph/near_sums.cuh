@@ -89,18 +89,14 @@ __device__ inline Vec<D, T> fetch(const Vec<D, T>* from) {
   return *from;
 }
 
-/// Threads that share a list: one, as the compiler knows, or as many as a launch says, a power of two.
-struct OneThread {
-  __host__ __device__ constexpr operator int() const { return 1; }
-};
-struct Threads {
-  int count;
-  __host__ __device__ operator int() const { return count; }
-};
+/// So many threads share a list, a power of two. (As a number that only the launch knows, it costs small systems
+/// up to a tenth of a solve.)
+template <int count>
+using Threads = std::integral_constant<int, count>;
 
 /// Runs along the list of a particle, every split-th entry from `part` on: add(load(entry)), the loads of four
 /// neighbours being on their way together.
-template <class Load, class Add, class Split = OneThread>
+template <class Load, class Add, class Split = Threads<1>>
 __device__ inline void alongList(const std::uint64_t* sliceStart, const ListEntry* entry, std::uint32_t i,
                                  Load&& load, Add&& add, int part = 0, Split split = {}) {
   constexpr int batch = 4;
@@ -209,11 +205,11 @@ template <int D, class F>
 void withSplit(std::uint32_t particles, F&& f) {
   constexpr std::uint32_t threads = 1u << 17;  // what a card runs at a time
   if (D == 3 && particles < threads / 4)
-    f(Threads{8});
+    f(Threads<8>{});
   else if (particles < threads)
-    f(Threads{4});
+    f(Threads<4>{});
   else
-    f(OneThread{});
+    f(Threads<1>{});
 }
 
 template <int D, class T, class Scalars, class Store>

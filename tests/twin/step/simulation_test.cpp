@@ -142,7 +142,6 @@ TEST(SimulationTwin, StepsLikeTheCpuWhereAClusterIsTorn) {
 TEST(SimulationTwin, DeflatesLikeTheCpu) {
   TREACLE_SKIP_WITHOUT_GPU();
   StretchedBody a, b;
-  a.c.solver.tolerance = b.c.solver.tolerance = tightTolerance;
   auto cpu = a.start(8);
   auto cuda = b.start<Cuda>(8);
   for (int step = 1; step <= 12; ++step) {
@@ -157,7 +156,9 @@ TEST(SimulationTwin, DeflatesLikeTheCpu) {
   Particles<2> found;
   cuda.copyParticles(found);
   EXPECT_EQ(found.modeCount(), cuda.particles().modeCount());
-  EXPECT_LE(farthest(cpu.particles(), found), agreement * a.c.spacing);
+  // Modes are found while residuals fall, and the two need not find the same: that bounds the solves' tolerance
+  // too.
+  EXPECT_LE(farthest(cpu.particles(), found), 1e-6 * a.c.spacing);
 }
 
 TEST(SimulationTwin, DeflatedStepsContinueFromACopyWithTheSameBits) {
