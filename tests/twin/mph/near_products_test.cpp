@@ -10,27 +10,27 @@
 namespace treacle::test {
 namespace {
 
-/// Random numbers that single precision holds exactly, so that it is the products alone that round.
-Eigen::VectorXd randomSingles(Eigen::Index n, unsigned seed) {
-  return randomVector(n, seed).cast<float>().cast<double>();
+Vector roundedToSingle(const Vector& numbers) {
+  return Vector(std::vector<float>(numbers.begin(), numbers.end()));
 }
+/// Random numbers that single precision holds exactly, so that it is the products alone that round.
+Vector randomSingles(Index n, unsigned seed) { return roundedToSingle(randomVector(n, seed)); }
 
 /// Numbers of type T as values of type V in device memory.
 template <class T, class V = T>
-Buffer<V, Cuda> upload(const Context<Cuda>& context, const Eigen::VectorXd& numbers) {
-  const Eigen::Matrix<T, Eigen::Dynamic, 1> converted = numbers.cast<T>();
+Buffer<V, Cuda> upload(const Context<Cuda>& context, const Vector& numbers) {
+  const std::vector<T> converted(numbers.begin(), numbers.end());
   return copyToDevice<V>(context,
                          {reinterpret_cast<const V*>(converted.data()), numbers.size() * sizeof(T) / sizeof(V)});
 }
 
 /// The relative difference of two results, norm-wise.
 template <class T, class V = T>
-double difference(const Context<Cuda>& context, const Eigen::VectorXd& expected, const Buffer<V, Cuda>& found) {
+double difference(const Context<Cuda>& context, const Vector& expected, const Buffer<V, Cuda>& found) {
   const Buffer<V> onHost = copyToHost(context, found);
-  const Eigen::Map<const Eigen::Matrix<T, Eigen::Dynamic, 1>> f(reinterpret_cast<const T*>(onHost.data()),
-                                                                onHost.size() * sizeof(V) / sizeof(T));
+  const Vector f(std::span(reinterpret_cast<const T*>(onHost.data()), onHost.size() * sizeof(V) / sizeof(T)));
   EXPECT_EQ(f.size(), expected.size());
-  return (f.template cast<double>() - expected).norm() / expected.norm();
+  return (f - expected).norm() / expected.norm();
 }
 
 /// The products of lists per particle against the sums of the CPU.
@@ -41,8 +41,8 @@ struct ProductsTwin {
   Scene<D> s;
   DeviceScene<D> d;
   NearProducts<D> products;
-  Eigen::Index n, active;
-  Eigen::VectorXd q, y, u;
+  Index n, active;
+  Vector q, y, u;
 
   explicit ProductsTwin(Scene<D> scene)
       : s(std::move(scene)),
@@ -50,14 +50,13 @@ struct ProductsTwin {
         n(s.unknowns()),
         active(s.pairs().activeCount),
         q(randomSingles(active, 1)),
-        y(randomSingles(n, 2) / s.c.spacing),  // as large as the gradient that is added
+        y(roundedToSingle(randomVector(n, 2) / s.c.spacing)),  // as large as the gradient that is added
         u(randomSingles(n, 3)) {
-    y = y.template cast<float>().template cast<double>();
     products.prepare(d.context, d.pairs);
   }
 
   /// y + C q of the CPU.
-  Eigen::VectorXd gradientAddedTo(const Eigen::VectorXd& before) {
+  Vector gradientAddedTo(const Vector& before) {
     std::vector<Vec<D>> sum = unflat<D>(before);
     addPressureGradient<D>(s.context, s.pairs(), {q.data(), std::size_t(active)}, 1, sum);
     return flat<D>(sum);
@@ -75,8 +74,8 @@ struct ProductsTwin {
     products.addPressureGradient(d.context, single, found.span());
     EXPECT_LE((difference<float>(d.context, gradientAddedTo(y), found)), singleTolerance);
 
-    const Eigen::VectorXd zero = Eigen::VectorXd::Zero(n);
-    found = upload<float, Single>(d.context, zero.array() + std::numeric_limits<double>::quiet_NaN());
+    const Vector zero = Vector::Zero(n);
+    found = upload<float, Single>(d.context, Vector::Constant(n, std::numeric_limits<double>::quiet_NaN()));
     products.pressureGradient(d.context, single, found.span());
     EXPECT_LE((difference<float>(d.context, gradientAddedTo(zero), found)), singleTolerance);
   }
@@ -84,10 +83,9 @@ struct ProductsTwin {
   void checkSingleDivergence() {
     std::vector<Vec<D>> velocity = unflat<D>(u);
     velocity.resize(active, Vec<D>{});  // walls at rest
-    Eigen::VectorXd expected(active);
+    Vector expected(active);
     divergence<D>(s.context, s.pairs(), velocity, {expected.data(), std::size_t(active)});
-    auto found =
-        upload<float>(d.context, Eigen::VectorXd::Constant(active, std::numeric_limits<double>::quiet_NaN()));
+    auto found = upload<float>(d.context, Vector::Constant(active, std::numeric_limits<double>::quiet_NaN()));
     products.divergence(d.context, upload<float, Single>(d.context, u), found.span());
     EXPECT_LE(difference<float>(d.context, expected, found), singleTolerance);
   }
