@@ -217,16 +217,12 @@ void ParticleProducts<D, T, Cuda>::viscous(Context<Cuda>& context, const Gathere
     launchClusterSums<D, T, decltype(sharing)>(
         context, *pairs_, ListTask<Terms>{pairs_->fluidList, {terms, selfBlock_.data(), u, store}}, places);
   };
-  // In double precision, which few runs take for preconditioners, one kernel does for all.
-  if constexpr (std::is_same_v<T, double>)
-    start(Sharing<2, 1>{}, std::false_type{});
-  else
-    withListSharing(*pairs_, [&](auto sharing) {
-      if (pairs_->isOneSubstance())
-        start(sharing, std::true_type{});
-      else
-        start(sharing, std::false_type{});
-    });
+  withListSharing(*pairs_, [&](auto sharing) {
+    // In double precision, which few preconditioners have, one kernel does for all.
+    if constexpr (std::is_same_v<T, float>)
+      if (pairs_->isOneSubstance()) return start(sharing, std::true_type{});
+    start(sharing, std::false_type{});
+  });
 }
 
 template <int D, class T>

@@ -21,49 +21,18 @@ struct IsphOracle {
   std::uint32_t count() const { return s.particles.count; }
   bool isWall(std::uint32_t i) const { return i >= s.n(); }
   const Material& material(std::uint32_t i) const { return s.c.materials[s.particles.material[i]]; }
-  double mu(std::uint32_t i, std::uint32_t j) const {
-    const double a = material(i).dynamicViscosity, b = material(j).dynamicViscosity;
-    return 2 * a * b / (a + b);
-  }
+  double mu(std::uint32_t i, std::uint32_t j) const;
 
   /// Cubic spline of Monaghan, or Wendland's C2, and dW/dr by its text-book derivative.
-  double kernel(double r) const {
-    const double q = r / h;
-    if (q >= 2) return 0;
-    if (s.c.method.isph.kernel == KernelKind::WendlandC2)
-      return (D == 2 ? 7 / (4 * M_PI * h * h) : 21 / (16 * M_PI * h * h * h)) * std::pow(1 - q / 2, 4) *
-             (1 + 2 * q);
-    const double sigma = D == 2 ? 10 / (7 * M_PI * h * h) : 1 / (M_PI * h * h * h);
-    return sigma * (q < 1 ? 1 - 1.5 * q * q + 0.75 * q * q * q : 0.25 * std::pow(2 - q, 3));
-  }
-  double kernelSlope(double r) const {
-    const double q = r / h;
-    if (q >= 2) return 0;
-    if (s.c.method.isph.kernel == KernelKind::WendlandC2)
-      return (D == 2 ? 7 / (4 * M_PI * h * h) : 21 / (16 * M_PI * h * h * h)) * -5 * q * std::pow(1 - q / 2, 3) /
-             h;
-    const double sigma = D == 2 ? 10 / (7 * M_PI * h * h) : 1 / (M_PI * h * h * h);
-    return sigma / h * (q < 1 ? -3 * q + 2.25 * q * q : -0.75 * std::pow(2 - q, 2));
-  }
+  double kernel(double r) const;
+  double kernelSlope(double r) const;
 
   /// r_ij = x_i - x_j, of the nearest periodic image.
-  Vec<D> apart(std::uint32_t i, std::uint32_t j) const {
-    Vec<D> d = s.particles.position[i] - s.particles.position[j];
-    for (int k = 0; k < D; ++k) {
-      const double length = s.c.domain.max[k] - s.c.domain.min[k];
-      if (s.c.domain.periodic[k]) d[k] -= length * std::round(d[k] / length);
-    }
-    return d;
-  }
+  Vec<D> apart(std::uint32_t i, std::uint32_t j) const;
   /// V grad_i W(r_ij)
-  Vec<D> gradient(std::uint32_t i, std::uint32_t j) const {
-    const Vec<D> r = apart(i, j);
-    return (volume * kernelSlope(norm(r)) / norm(r)) * r;
-  }
+  Vec<D> gradient(std::uint32_t i, std::uint32_t j) const;
   /// V r_ij . grad W / r_ij^2, negative: of eq. (6).
-  double laplacian(std::uint32_t i, std::uint32_t j) const {
-    return dot(apart(i, j), gradient(i, j)) / norm2(apart(i, j));
-  }
+  double laplacian(std::uint32_t i, std::uint32_t j) const;
 
   template <class F>
   void forEachOther(std::uint32_t i, F&& f) const {
@@ -72,131 +41,39 @@ struct IsphOracle {
   }
 
   /// Of a full lattice.
-  double latticeDensity() const {
-    double sum = 0;
-    for (const Vec<D>& x : latticeAt<D>(Vec<D>::filled(-3 * l), Vec<D, int>::filled(7), l))
-      sum += volume * kernel(norm(x));
-    return sum;
-  }
+  double latticeDensity() const;
   /// eq. (3), in units of the full lattice's.
-  double density(std::uint32_t i) const {
-    double sum = volume * kernel(0);
-    forEachOther(i, [&](std::uint32_t j) { sum += volume * kernel(norm(apart(i, j))); });
-    return sum / latticeDensity();
-  }
-  Vec<D> deficit(std::uint32_t i) const {
-    Vec<D> sum{};
-    forEachOther(i, [&](std::uint32_t j) { sum += gradient(i, j); });
-    return sum;
-  }
+  double density(std::uint32_t i) const;
+  Vec<D> deficit(std::uint32_t i) const;
 
   /// What particle i sees in j: its velocity, or that of a wall's image, 2 u_wall - v_i.
-  Vec<D> seen(const std::vector<Vec<D>>& v, std::uint32_t i, std::uint32_t j) const {
-    return isWall(j) ? 2.0 * v[j] - v[i] : v[j];
-  }
+  Vec<D> seen(const std::vector<Vec<D>>& v, std::uint32_t i, std::uint32_t j) const;
   /// eqs. (6) and (7); mu nu^-1 of a pair by their harmonic mean.
-  Vec<D> predicted(const std::vector<Vec<D>>& v, std::uint32_t i) const {
-    Vec<D> force = material(i).density * resized<D>(s.c.gravity);
-    forEachOther(i, [&](std::uint32_t j) {
-      if (isWall(j) && s.c.method.isph.walls == WallSlip::FreeSlip) return;
-      force += (2 * laplacian(i, j) * mu(i, j)) * (v[i] - seen(v, i, j));
-    });
-    return v[i] + (dt / material(i).density) * force;
-  }
+  Vec<D> predicted(const std::vector<Vec<D>>& v, std::uint32_t i) const;
   /// eq. (4), of a velocity.
-  double divergence(const std::vector<Vec<D>>& v, std::uint32_t i) const {
-    double sum = 0;
-    forEachOther(i, [&](std::uint32_t j) { sum += dot(seen(v, i, j) - v[i], gradient(i, j)); });
-    return sum;
-  }
+  double divergence(const std::vector<Vec<D>>& v, std::uint32_t i) const;
   /// eq. (10) with both signs turned, by rho.
-  double source(const std::vector<Vec<D>>& v, std::uint32_t i) const {
-    return -divergence(v, i) / dt - s.c.method.isph.alpha * (1 - density(i)) / (dt * dt);
-  }
+  double source(const std::vector<Vec<D>>& v, std::uint32_t i) const;
 
   /// p of fluid particle i carried on to wall j hydrostatically, in the frame of the wall; accelerations of walls
   /// by particle.
-  double inWall(double p, std::uint32_t i, std::uint32_t j, const std::vector<Vec<D>>& acceleration) const {
-    const Vec<D> pull = resized<D>(s.c.gravity) - acceleration[j];
-    const double carried = p - material(i).density * dot(pull, apart(i, j));
-    return s.c.method.isph.negativePressure ? carried : std::max(0.0, carried);
-  }
+  double inWall(double p, std::uint32_t i, std::uint32_t j, const std::vector<Vec<D>>& acceleration) const;
   /// eq. (8) with the gradient of eq. (5) for a mean density of the pair: rho_i grad p / rho = sum V (p_i + p_j)
   /// grad W.
   Vec<D> corrected(const std::vector<Vec<D>>& v, const std::vector<double>& p, std::uint32_t i,
-                   const std::vector<Vec<D>>& acceleration) const {
-    Vec<D> sum{};
-    forEachOther(i, [&](std::uint32_t j) {
-      sum += (p[i] + (isWall(j) ? inWall(p[i], i, j, acceleration) : p[j])) * gradient(i, j);
-    });
-    return v[i] - (dt / material(i).density) * sum;
-  }
+                   const std::vector<Vec<D>>& acceleration) const;
   /// What a particle keeps of v where it is nearer to a wall than a lattice point, or clearly nearer if it has
   /// pressure: not the part into the wall, whose mean velocity, by slope, is that of its particles in `v`.
-  Vec<D> stopped(const Vec<D>& moving, const std::vector<Vec<D>>& v, double p, std::uint32_t i) const {
-    double touching = 0, full = 0, share = 0, weights = 0;
-    for (const Vec<D>& x : latticeAt<D>(Vec<D>::filled(-3 * l), Vec<D, int>::filled(7), l)) {
-      full += volume * kernel(norm(x));
-      if (x[D - 1] < -0.5 * l) touching += volume * kernel(norm(x));
-    }
-    Vec<D> towards{}, mean{};
-    forEachOther(i, [&](std::uint32_t j) {
-      if (!isWall(j)) return;
-      share += volume * kernel(norm(apart(i, j))) / full;
-      towards += gradient(i, j);
-      mean += laplacian(i, j) * v[j];
-      weights += laplacian(i, j);
-    });
-    if (share <= (p > 0 ? 0.35 : 1.001 * touching / full)) return moving;
-    const Vec<D> normal = (1 / norm(towards)) * towards;
-    const double away = share > 0.6 ? 0.02 * l / dt : 0;
-    return moving - std::max(0.0, dot(moving - (1 / weights) * mean, normal) + away) * normal;
-  }
+  Vec<D> stopped(const Vec<D>& moving, const std::vector<Vec<D>>& v, double p, std::uint32_t i) const;
   /// Mean over the fluid that a wall has around it, by kernel.
   double wallPressure(const std::vector<double>& p, std::uint32_t wall,
-                      const std::vector<Vec<D>>& acceleration) const {
-    double sum = 0, weights = 0;
-    forEachOther(wall, [&](std::uint32_t i) {
-      if (isWall(i)) return;
-      sum += kernel(norm(apart(i, wall))) * inWall(p[i], i, wall, acceleration);
-      weights += kernel(norm(apart(i, wall)));
-    });
-    return weights > 0 ? sum / weights : 0;
-  }
+                      const std::vector<Vec<D>>& acceleration) const;
 
   /// Left-hand side of eq. (11) over -rho, of fluid where unknown(i); its other rows and columns are zero, but the
   /// diagonal counts known neighbours.
-  template <class Unknown>
-  Eigen::MatrixXd pressureMatrix(Unknown&& unknown) const {
-    Eigen::MatrixXd a = Eigen::MatrixXd::Zero(s.n(), s.n());
-    for (std::uint32_t i = 0; i < s.n(); ++i) {
-      if (!unknown(i)) continue;
-      forEachOther(i, [&](std::uint32_t j) {
-        if (isWall(j)) return;
-        const double c = -2 * laplacian(i, j) / (0.5 * (material(i).density + material(j).density));
-        a(i, i) += c;
-        if (unknown(j)) a(i, j) -= c;
-      });
-    }
-    return a;
-  }
+  Matrix pressureMatrix(const std::function<bool(std::uint32_t)>& unknown) const;
   /// rho/dt - mu lap for implicit steps of eq. (7).
-  Eigen::MatrixXd viscousMatrix() const {
-    Eigen::MatrixXd a = Eigen::MatrixXd::Zero(s.n(), s.n());
-    for (std::uint32_t i = 0; i < s.n(); ++i) {
-      a(i, i) = material(i).density / dt;
-      forEachOther(i, [&](std::uint32_t j) {
-        const double c = -2 * laplacian(i, j) * mu(i, j);
-        if (isWall(j)) {
-          if (s.c.method.isph.walls == WallSlip::NoSlip) a(i, i) += 2 * c;
-        } else {
-          a(i, i) += c;
-          a(i, j) -= c;
-        }
-      });
-    }
-    return a;
-  }
+  Matrix viscousMatrix() const;
 };
 
 }  // namespace treacle::test

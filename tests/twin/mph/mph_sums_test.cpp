@@ -11,23 +11,23 @@ namespace treacle::test {
 namespace {
 
 template <class T>
-Eigen::VectorXd asVector(std::span<const T> values) {
+Vector asVector(std::span<const T> values) {
   const auto* numbers = reinterpret_cast<const double*>(values.data());
-  return Eigen::Map<const Eigen::VectorXd>(numbers, values.size_bytes() / sizeof(double));
+  return Vector(std::span(numbers, values.size_bytes() / sizeof(double)));
 }
 
 /// The relative difference of two results, norm-wise.
 template <class T>
 double difference(const Context<Cuda>& context, std::span<const T> expected, const Buffer<T, Cuda>& found) {
   const Buffer<T> onHost = copyToHost(context, found);
-  const Eigen::VectorXd e = asVector<T>(expected), f = asVector<T>(onHost.span());
+  const Vector e = asVector<T>(expected), f = asVector<T>(onHost.span());
   EXPECT_EQ(e.size(), f.size());
   return (e - f).norm() / (1e-300 + e.norm());
 }
 
 template <int D>
 std::vector<Vec<D>> randomVectors(std::uint32_t n, unsigned seed) {
-  return unflat<D>(randomVector(Eigen::Index{D} * n, seed));
+  return unflat<D>(randomVector(Index{D} * n, seed));
 }
 
 /// The sums of a step on the device, with lists or from the cell ranges, against those of the CPU.
@@ -67,7 +67,7 @@ struct SumsTwin {
   }
 
   void checkVectors() {
-    const Eigen::VectorXd q = randomVector(active, 2);
+    const Vector q = randomVector(active, 2);
     const std::span<const double> qs(q.data(), active);
     std::vector<Vec<D>> expected = randomVectors<D>(n, 3);
     auto found = copyToDevice<Vec<D>>(d.context, expected);
@@ -91,7 +91,7 @@ struct SumsTwin {
 
   void checkBalance() {
     const auto u = randomVectors<D>(active, 6);
-    const Eigen::VectorXd q = randomVector(active, 7);
+    const Vector q = randomVector(active, 7);
     const std::span<const double> qs(q.data(), active);
     const auto uDevice = copyToDevice<Vec<D>>(d.context, u);
     Buffer<double> shear(n), divergence(active - n), density(active - n);

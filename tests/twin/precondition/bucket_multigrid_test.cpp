@@ -28,9 +28,10 @@ std::vector<Vec<D>> randomInverse(const BlockCsr<D>& a0, std::uint32_t n) {
   for (std::uint32_t i = 0; i < a0.rows(); ++i)
     for (std::uint64_t k = a0.rowStart[i]; k < a0.rowStart[i + 1]; ++k)
       for (int c = 0; a0.column[k] == i && c < D; ++c) trace += a0.value[k](c, c);
-  const Eigen::VectorXd random =
-      10 * D * a0.rows() / trace * (randomVector(Eigen::Index{D} * n, 6).array().abs() + 0.1);
-  return unflat<D>(random.cast<float>().cast<double>());
+  const Index count = Index{D} * n;
+  const Vector random =
+      10 * D * a0.rows() / trace * (randomVector(count, 6).cwiseAbs() + Vector::Constant(count, 0.1));
+  return unflat<D>(Vector(std::vector<float>(random.begin(), random.end())));
 }
 
 /// K of one scene on the device against K of the CPU, made from the same A^0.
@@ -108,7 +109,7 @@ struct CycleTwin {
 
   /// other . K r = r . K other
   void checkSymmetric(const Buffer<Vec<D>>& kOther, const Buffer<Vec<D>>& kR) {
-    const Eigen::VectorXd left = flat<D>(kR), right = flat<D>(kOther);
+    const Vector left = flat<D>(kR), right = flat<D>(kOther);
     const double size = left.norm() * flat<D>(other).norm();
     EXPECT_LE(std::abs(left.dot(flat<D>(other)) - right.dot(flat<D>(r))), operatorTolerance * size);
   }

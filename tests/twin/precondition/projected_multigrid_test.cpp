@@ -35,9 +35,9 @@ struct Twin {
   std::uint32_t active() const { return s.pairs().activeCount; }
 
   Buffer<T> randomScalars(std::size_t n, unsigned seed) {
-    const Eigen::VectorXd v = randomVector(static_cast<Eigen::Index>(n), seed);
+    const Vector v = randomVector(static_cast<Index>(n), seed);
     Buffer<T> b(n);
-    for (std::size_t i = 0; i < n; ++i) b[i] = static_cast<T>(v[static_cast<Eigen::Index>(i)]);
+    for (std::size_t i = 0; i < n; ++i) b[i] = static_cast<T>(v[static_cast<Index>(i)]);
     return b;
   }
   Buffer<Gathered<D, T>> randomVectors(unsigned seed) {

@@ -62,7 +62,7 @@ TEST(Summary, FailedRunWithoutParticlesAndWithAForeignFileName) {
   s.message = "cannot write /tmp/\xff.vtp";  // no UTF-8
   s.fluidParticles = 0;
   writeSummary(directory / "summary.json", s);
-  const auto json = nlohmann::json::parse(content(directory / "summary.json"));
+  const auto json = nlohmann::ordered_json::parse(content(directory / "summary.json"));
   EXPECT_EQ(json["status"], "failed");
   EXPECT_EQ(json["message"], "cannot write /tmp/\uFFFD.vtp");
   EXPECT_EQ(json["memory_bytes_per_fluid_particle"], 0.0);

@@ -1,7 +1,7 @@
 #include "treacle/linear/cell_multigrid.hpp"
 
+#include "support/dense.hpp"
 #include "support/pressure_column.hpp"
-#include "support/scene.hpp"
 #include "support/tolerances.hpp"
 #include "treacle/linear/krylov.hpp"
 
@@ -64,12 +64,11 @@ TEST(CellMultigrid, TakesAsManyIterationsAsTheStudy) {
 }
 
 /// L_l^-1 r of [O23 eq. (17)] by its sweeps, on dense matrices of the levels from l on.
-Eigen::VectorXd cycle(const std::vector<Eigen::MatrixXd>& a, const std::vector<Eigen::MatrixXd>& p, int n,
-                      const Eigen::VectorXd& r, std::size_t l = 0) {
-  const Eigen::VectorXd rowSum = a[l].cwiseAbs().rowwise().sum();
-  const Eigen::VectorXd weight = (rowSum.array() == 0).select(0, 2 / rowSum.array());
+Vector cycle(const std::vector<Matrix>& a, const std::vector<Matrix>& p, int n, const Vector& r,
+             std::size_t l = 0) {
+  const Vector weight = 2 * a[l].cwiseAbs().rowSums().cwiseInverseOrZero();
   const bool last = l + 1 == a.size();
-  Eigen::VectorXd x = Eigen::VectorXd::Zero(r.size());
+  Vector x = Vector::Zero(r.size());
   const auto sweep = [&] { x += weight.cwiseProduct(r - a[l] * x); };
   for (int s = 0; s < (last ? 2 * n : n); ++s) sweep();
   if (last) return x;
@@ -79,13 +78,14 @@ Eigen::VectorXd cycle(const std::vector<Eigen::MatrixXd>& a, const std::vector<E
 }
 
 /// M of [O23 eqs. (12)-(16)], zero where a row is empty.
-Eigen::MatrixXd paperMatrix(const PressureColumn& column, int m, int n) {
+Matrix paperMatrix(const PressureColumn& column, int m, int n) {
   const BucketLevels<> levels = column.levels();
-  Eigen::MatrixXd fine = dense(column.a), inverse = fine;
-  const Eigen::Index particles = fine.rows();
-  std::vector<Eigen::MatrixXd> a, p;
+  Matrix fine = dense(column.a);
+  const Matrix inverse = fine.diagonal().cwiseInverseOrZero().asDiagonal();
+  const Index particles = fine.rows();
+  std::vector<Matrix> a, p;
   for (std::size_t l = 0; l < levels.begin.size() && (m == 0 || l < static_cast<std::size_t>(m)); ++l) {
-    Eigen::MatrixXd prolong = Eigen::MatrixXd::Zero(fine.rows(), levels.count(l));
+    Matrix prolong = Matrix::Zero(fine.rows(), levels.count(l));
     for (std::uint32_t c = 0; c < levels.count(l); ++c)
       for (std::uint32_t i = levels.begin[l][c]; i < levels.begin[l][c + 1]; ++i)
         prolong(i, c) = l > 0 || column.unknown[i];
@@ -93,41 +93,35 @@ Eigen::MatrixXd paperMatrix(const PressureColumn& column, int m, int n) {
     a.push_back(fine);
     p.push_back(prolong);
   }
-  const Eigen::VectorXd diagonal = dense(column.a).diagonal();
-  inverse.setZero();
-  inverse.diagonal() = (diagonal.array() == 0).select(0, diagonal.cwiseInverse().array());
-  return inverse + denseOf(particles, [&](const Eigen::VectorXd& r) -> Eigen::VectorXd {
-           return p[0] * cycle(a, p, n, p[0].transpose() * r);
-         });
+  return inverse +
+         denseOf(particles, [&](const Vector& r) { return p[0] * cycle(a, p, n, p[0].transpose() * r); });
 }
 
 template <class T>
-Eigen::MatrixXd matrixOf(const PressureColumn& column, int m, int n) {
+Matrix matrixOf(const PressureColumn& column, int m, int n) {
   Context<Cpu> context;
   const BucketLevels<> levels = column.levels();
   CellMultigrid<T> multigrid;
   multigrid.setup(context, column.a, levels.begin, m, n);
-  return denseOf(column.count(), [&](const Eigen::VectorXd& r) {
-    Eigen::VectorXd z = Eigen::VectorXd::Constant(r.size(), NAN);
-    multigrid.apply(context, {r.data(), column.count()}, {z.data(), column.count()});
+  return denseOf(column.count(), [&](const Vector& r) {
+    Vector z = Vector::Constant(r.size(), NAN);
+    multigrid.apply(context, r, z);
     return z;
   });
 }
 
-void checkMatrix(const PressureColumn& column, const Eigen::MatrixXd& m, const Eigen::MatrixXd& expected,
-                 double tolerance) {
+void checkMatrix(const PressureColumn& column, const Matrix& m, const Matrix& expected, double tolerance) {
   EXPECT_LE((m - expected).norm(), tolerance * expected.norm());
   EXPECT_LE((m - m.transpose()).norm(), tolerance * m.norm());
   // Where p is known M is zero, elsewhere positive definite.
-  Eigen::MatrixXd filled = (m + m.transpose()) / 2;
+  Matrix filled = (m + m.transpose()) / 2;
   for (std::uint32_t i = 0; i < column.count(); ++i) {
     if (column.unknown[i]) continue;
     EXPECT_EQ(m.row(i).cwiseAbs().sum() + m.col(i).cwiseAbs().sum(), 0);
     filled(i, i) = 1;
   }
   if (m.rows() == 0) return;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(filled, Eigen::EigenvaluesOnly);
-  EXPECT_GT(eigen.eigenvalues()[0], 0);
+  EXPECT_GT(eigenvalues(filled)[0], 0);
 }
 
 TEST(CellMultigrid, IsThePapersRecursion) {
@@ -138,7 +132,7 @@ TEST(CellMultigrid, IsThePapersRecursion) {
         SCOPED_TRACE(testing::Message()
                      << size[0] << " x " << size[1] << " x " << size[2] << ", MGCG(" << m << ", " << n << ")");
         const PressureColumn column(size);
-        const Eigen::MatrixXd expected = paperMatrix(column, m, n);
+        const Matrix expected = paperMatrix(column, m, n);
         checkMatrix(column, matrixOf<double>(column, m, n), expected, operatorTolerance);
         checkMatrix(column, matrixOf<float>(column, m, n), expected, 10 * singleTolerance);
       }

@@ -1,8 +1,9 @@
 #include "treacle/linear/deflation.hpp"
 #include "treacle/linear/krylov.hpp"
 
+#include "support/dense.hpp"
+
 #include <gtest/gtest.h>
-#include <Eigen/Dense>
 
 #include <algorithm>
 #include <cmath>
@@ -153,8 +154,8 @@ TEST(Deflation, ModesThatAreNotFiniteAreNotUsed) {
 
 TEST(Deflation, InvertsTheSmallMatrix) {
   const int n = 7;
-  const Eigen::MatrixXd root = Eigen::MatrixXd::Random(n, n);
-  Eigen::MatrixXd e = root * root.transpose();
+  const Matrix root = Matrix::Random(n, n);
+  Matrix e = root * root.transpose();
   ModeMatrix given{}, inverse{};
   const auto invertIt = [&] {
     for (int i = 0; i < n; ++i)
@@ -162,12 +163,12 @@ TEST(Deflation, InvertsTheSmallMatrix) {
     return invert(given, n, inverse);
   };
   EXPECT_EQ(invertIt(), n);
-  const Eigen::MatrixXd exact = e.inverse();
+  const Matrix exact = treacle::test::inverse(e);
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j) EXPECT_NEAR(inverse(i, j), exact(i, j), 1e-12 * exact.norm());
 
   // Without the third row and column.
-  e.row(2) = e.row(0), e.col(2) = e.col(0), e(2, 2) = e(0, 0);
+  e.setRow(2, e.row(0)), e.setCol(2, e.col(0)), e(2, 2) = e(0, 0);
   EXPECT_EQ(invertIt(), n - 1);
   EXPECT_EQ(inverse(2, 2), 0);
   EXPECT_EQ(inverse(5, 2), 0);

@@ -1,7 +1,7 @@
 #include "treacle/linear/hat_multigrid.hpp"
 
+#include "support/dense.hpp"
 #include "support/hats.hpp"
-#include "support/scene.hpp"
 #include "support/tolerances.hpp"
 
 #include <gtest/gtest.h>
@@ -12,8 +12,8 @@ namespace treacle::test {
 namespace {
 
 template <int D, int B>
-Eigen::MatrixXd interpolation(const HatNodes<D>& fine, const HatNodes<D>& coarse) {
-  Eigen::MatrixXd p = Eigen::MatrixXd::Zero(B * fine.count(), B * coarse.count());
+Matrix interpolation(const HatNodes<D>& fine, const HatNodes<D>& coarse) {
+  Matrix p = Matrix::Zero(B * fine.count(), B * coarse.count());
   for (std::uint32_t i = 0; i < fine.count(); ++i)
     forEachCoarse(fine.lattice, fine.lattice.at(fine.point[i]), [&](const Vec<D, int>& c, double weight) {
       const std::uint32_t node = coarse.nodeAt[coarse.lattice.linear(c)];
@@ -33,9 +33,10 @@ void checkGalerkin() {
     BlockCsr<B> coarseA;
     coarserNodes<D>(context, problem.nodes, coarse);
     coarsenHats<D>(context, problem.nodes, problem.a, coarse, coarseA, problem.reach);
-    const Eigen::MatrixXd p = interpolation<D, B>(problem.nodes, coarse);
-    for (Eigen::Index k = 0; k < p.cols(); ++k) EXPECT_GT(p.col(k).norm(), 0) << "a coarse node without use";
-    const Eigen::MatrixXd expected = p.transpose() * dense(problem.a) * p;
+    const Matrix p = interpolation<D, B>(problem.nodes, coarse);
+    EXPECT_EQ(p.rowSums(), Vector::Ones(p.rows()));
+    for (Index k = 0; k < p.cols(); ++k) EXPECT_GT(p.col(k).norm(), 0) << "a coarse node without use";
+    const Matrix expected = p.transpose() * dense(problem.a) * p;
     EXPECT_LE((dense(coarseA) - expected).norm(), operatorTolerance * expected.norm());
     for (std::uint32_t i = 0; i < coarse.count(); ++i) {
       std::vector<std::uint32_t> row(coarseA.column.begin() + coarseA.rowStart[i],
@@ -66,12 +67,12 @@ TEST(HatNodes, AreNumberedInTheOrderOfTheLattice) {
 
 /// solution of one cycle for the right-hand side b.
 template <int D, class T, int B>
-Eigen::VectorXd solve(HatMultigrid<D, T, Cpu, B>& multigrid, const Eigen::VectorXd& b) {
+Vector solve(HatMultigrid<D, T, Cpu, B>& multigrid, const Vector& b) {
   Context<Cpu> context;
-  for (Eigen::Index i = 0; i < b.size(); ++i) multigrid.rhs()[i] = static_cast<T>(b[i]);
+  for (Index i = 0; i < b.size(); ++i) multigrid.rhs()[i] = static_cast<T>(b[i]);
   multigrid.cycle(context);
-  Eigen::VectorXd x(b.size());
-  for (Eigen::Index i = 0; i < b.size(); ++i) x[i] = multigrid.solution()[i];
+  Vector x(b.size());
+  for (Index i = 0; i < b.size(); ++i) x[i] = multigrid.solution()[i];
   return x;
 }
 
@@ -84,16 +85,14 @@ void checkSymmetric(double tolerance) {  // as the inverse of singular operators
       const HatProblem<D, B> problem(c);
       HatMultigrid<D, T, Cpu, B> multigrid(20 * B);
       multigrid.setup(context, problem.nodes, problem.a, {degree, problem.reach});
-      const Eigen::MatrixXd m =
-          denseOf(static_cast<Eigen::Index>(problem.unknowns()), [&](const Eigen::VectorXd& b) {
-            const Eigen::VectorXd x = solve(multigrid, b);
-            EXPECT_EQ(x, solve(multigrid, b)) << "a cycle depends on the one before";
-            return x;
-          });
+      const Matrix m = denseOf(static_cast<Index>(problem.unknowns()), [&](const Vector& b) {
+        const Vector x = solve(multigrid, b);
+        EXPECT_EQ(x, solve(multigrid, b)) << "a cycle depends on the one before";
+        return x;
+      });
       EXPECT_LE((m - m.transpose()).norm(), tolerance * m.norm());
       if (m.rows() == 0) continue;
-      const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen((m + m.transpose()) / 2, Eigen::EigenvaluesOnly);
-      EXPECT_GT(eigen.eigenvalues()[0], 0);
+      EXPECT_GT(eigenvalues((m + m.transpose()) / 2)[0], 0);
     }
 }
 
@@ -112,16 +111,16 @@ template <int D, class T, int B>
 double contraction(HatMultigrid<D, T, Cpu, B>& multigrid, const BlockCsr<B>& a) {
   Context<Cpu> context;
   const std::uint32_t n = B * a.rows();
-  const auto times = [&](const Eigen::VectorXd& x) {
-    Eigen::VectorXd y(n);
-    hatMultiply<double>(context, viewOf(a), {x.data(), n}, {y.data(), n});
+  const auto times = [&](const Vector& x) {
+    Vector y(n);
+    hatMultiply<double>(context, viewOf(a), x, y);
     return y;
   };
-  Eigen::VectorXd e = randomVector(n, 1);
+  Vector e = randomVector(n, 1);
   double energy = 0, factor = 0;
   for (int k = 0; k < 12; ++k) {
     e /= e.norm();
-    const Eigen::VectorXd ae = times(e);
+    const Vector ae = times(e);
     energy = std::sqrt(e.dot(ae));
     e -= solve(multigrid, ae);
     factor = std::sqrt(e.dot(times(e))) / energy;

@@ -12,18 +12,19 @@ using Flat = std::span<const double>;
 /// A real system of the method, its direct solution, and maps for the solvers.
 struct System {
   Context<Cpu> context;
-  Eigen::MatrixXd a;
-  Eigen::VectorXd b, exact;
+  Matrix a;
+  Vector b, exact;
 
   System() {
     Scene<2> s = makeScene<2>();
     a = Oracle<2>(s).matrix();
     b = randomVector(a.rows(), 1);
-    exact = a.ldlt().solve(b);
+    exact = treacle::test::solve(a, b);
   }
   auto multiply() const {
     return [this](Flat x, std::span<double> y) {
-      Eigen::Map<Eigen::VectorXd>(y.data(), a.rows()) = a * Eigen::Map<const Eigen::VectorXd>(x.data(), a.rows());
+      const Vector product = a * Vector(x);
+      std::copy(product.begin(), product.end(), y.begin());
     };
   }
   auto jacobi() const {
@@ -32,9 +33,9 @@ struct System {
     };
   }
   template <class Solve, class K>
-  SolveReport run(Solve&& solve, const K& k, Eigen::VectorXd& x, StoppingRule rule) {
+  SolveReport run(Solve&& solve, const K& k, Vector& x, StoppingRule rule) {
     KrylovWorkspace<> workspace;
-    return solve(multiply(), k, Flat(b.data(), b.size()), std::span<double>(x.data(), x.size()), rule, workspace);
+    return solve(multiply(), k, Flat(b), std::span<double>(x), rule, workspace);
   }
 };
 
@@ -51,7 +52,7 @@ TEST(Krylov, AgreesWithTheDirectSolution) {
   System s;
   const auto identity = [](Flat r, std::span<double> z) { std::copy(r.begin(), r.end(), z.begin()); };
   const auto check = [&](auto&& solve, auto&& k) {
-    Eigen::VectorXd x = s.exact.norm() * randomVector(s.b.size(), 2);
+    Vector x = s.exact.norm() * randomVector(s.b.size(), 2);
     const SolveReport report = s.run(solve, k, x, {1e-24, 5000});
     EXPECT_EQ(report.status, SolveStatus::Converged);
     EXPECT_GT(report.iterations, 10);
@@ -66,7 +67,7 @@ TEST(Krylov, AgreesWithTheDirectSolution) {
 
 TEST(Krylov, StopsAtOnceAtTheSolution) {
   System s;
-  Eigen::VectorXd x = s.exact;
+  Vector x = s.exact;
   EXPECT_EQ(s.run(cr, s.jacobi(), x, {1e-12, 100}).iterations, 0);
   EXPECT_EQ(x, s.exact);
 }
@@ -74,7 +75,7 @@ TEST(Krylov, StopsAtOnceAtTheSolution) {
 TEST(Krylov, HasTheResidualItReports) {
   System s;
   for (double tolerance : {1e-4, 1e-8, 1e-12}) {
-    Eigen::VectorXd x = Eigen::VectorXd::Zero(s.b.size());
+    Vector x = Vector::Zero(s.b.size());
     const SolveReport report = s.run(cr, s.jacobi(), x, {tolerance, 5000});
     const double actual = (s.b - s.a * x).squaredNorm() / s.b.squaredNorm();
     EXPECT_LE(report.residual, tolerance);
@@ -86,7 +87,7 @@ TEST(Krylov, LeavesTheHistoryOfItsResiduals) {
   System s;
   const auto check = [&](auto&& solve, double refresh) {
     std::vector<double> history(5002, -1.0);
-    Eigen::VectorXd x = randomVector(s.b.size(), 3);
+    Vector x = randomVector(s.b.size(), 3);
     const SolveReport whole = s.run(solve, s.jacobi(), x, {1e-12, 5000, refresh, history.data()});
     ASSERT_EQ(whole.status, SolveStatus::Converged);
     ASSERT_GT(whole.iterations, 10);
@@ -107,7 +108,7 @@ TEST(Krylov, LeavesTheHistoryOfItsResiduals) {
 
 TEST(Krylov, ReportsTheIterationLimit) {
   System s;
-  Eigen::VectorXd x = Eigen::VectorXd::Zero(s.b.size());
+  Vector x = Vector::Zero(s.b.size());
   const SolveReport report = s.run(cg, s.jacobi(), x, {1e-24, 3});
   EXPECT_EQ(report.status, SolveStatus::IterationLimit);
   EXPECT_EQ(report.iterations, 3);
@@ -116,7 +117,7 @@ TEST(Krylov, ReportsTheIterationLimit) {
 TEST(Krylov, ReportsAnIndefiniteOperator) {
   System s;
   s.a = -s.a;
-  Eigen::VectorXd x = Eigen::VectorXd::Zero(s.b.size());
+  Vector x = Vector::Zero(s.b.size());
   const auto identity = [](Flat r, std::span<double> z) { std::copy(r.begin(), r.end(), z.begin()); };
   EXPECT_EQ(s.run(cg, identity, x, {1e-12, 100}).status, SolveStatus::Breakdown);
   x.setZero();
@@ -126,7 +127,7 @@ TEST(Krylov, ReportsAnIndefiniteOperator) {
 TEST(Krylov, ReportsValuesThatAreNotFinite) {
   System s;
   s.b[3] = NAN;
-  Eigen::VectorXd x = Eigen::VectorXd::Zero(s.b.size());
+  Vector x = Vector::Zero(s.b.size());
   EXPECT_EQ(s.run(cg, s.jacobi(), x, {1e-12, 100}).status, SolveStatus::NotFinite);
   EXPECT_EQ(s.run(cr, s.jacobi(), x, {1e-12, 100}).status, SolveStatus::NotFinite);
 }
@@ -134,7 +135,7 @@ TEST(Krylov, ReportsValuesThatAreNotFinite) {
 TEST(Krylov, AZeroRightHandSideHasTheZeroSolution) {
   System s;
   s.b.setZero();
-  Eigen::VectorXd x = Eigen::VectorXd::Zero(s.b.size());
+  Vector x = Vector::Zero(s.b.size());
   const SolveReport report = s.run(cr, s.jacobi(), x, {1e-12, 100});
   EXPECT_EQ(report.status, SolveStatus::Converged);
   EXPECT_EQ(report.iterations, 0);

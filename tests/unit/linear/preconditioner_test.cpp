@@ -31,8 +31,8 @@ struct Preconditioners {
   }
 
   template <class Apply>
-  Eigen::MatrixXd dense(Apply&& apply) {
-    return denseOf(s.unknowns(), [&](const Eigen::VectorXd& x) {
+  Matrix dense(Apply&& apply) {
+    return denseOf(s.unknowns(), [&](const Vector& x) {
       const auto r = unflat<D>(x);
       std::vector<Vec<D>> z(r.size());
       apply(r, z);
@@ -41,28 +41,25 @@ struct Preconditioners {
   }
 };
 
-void expectPositiveDefinite(const Eigen::MatrixXd& m, double tolerance) {
+void expectPositiveDefinite(const Matrix& m, double tolerance) {
   EXPECT_LT((m - m.transpose()).norm(), tolerance * m.norm());
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen((m + m.transpose()) / 2, Eigen::EigenvaluesOnly);
-  EXPECT_GT(eigen.eigenvalues()[0], 0);
+  EXPECT_GT(eigenvalues((m + m.transpose()) / 2)[0], 0);
 }
 
 template <int D, class T>
 void checkAll(CycleSweeps sweeps, double tolerance) {
   Preconditioners<D, T> p(sweeps);
   Context<Cpu>& context = p.s.context;
-  const Eigen::MatrixXd a = Oracle<D>(p.s).matrix();
+  const Matrix a = Oracle<D>(p.s).matrix();
 
-  const Eigen::MatrixXd jacobi = p.dense([&](auto& r, auto& z) { applyDiagonal<D, T>(context, p.inverse, r, z); });
-  EXPECT_LT((jacobi.diagonal().cwiseProduct(a.diagonal()) - Eigen::VectorXd::Ones(a.rows())).norm(),
+  const Matrix jacobi = p.dense([&](auto& r, auto& z) { applyDiagonal<D, T>(context, p.inverse, r, z); });
+  EXPECT_LT((jacobi.diagonal().cwiseProduct(a.diagonal()) - Vector::Ones(a.rows())).norm(),
             tolerance * std::sqrt(a.rows()));
 
-  const Eigen::MatrixXd block =
-      p.dense([&](auto& r, auto& z) { applyBlockDiagonal<D, T>(context, p.blocks, r, z); });
+  const Matrix block = p.dense([&](auto& r, auto& z) { applyBlockDiagonal<D, T>(context, p.blocks, r, z); });
   expectPositiveDefinite(block, tolerance);
-  for (Eigen::Index i = 0; i < a.rows(); i += D)
-    EXPECT_LT((block.block<D, D>(i, i) * a.block<D, D>(i, i) - Eigen::Matrix<double, D, D>::Identity()).norm(),
-              10 * tolerance);
+  for (Index i = 0; i < a.rows(); i += D)
+    EXPECT_LT((block.block(i, i, D, D) * a.block(i, i, D, D) - Matrix::Identity(D, D)).norm(), 10 * tolerance);
 
   expectPositiveDefinite(p.dense([&](auto& r, auto& z) { p.multigrid.apply(context, p.inverse, r, z); }),
                          tolerance);
@@ -79,26 +76,25 @@ TEST(Preconditioner, IsSymmetricPositiveDefinite) {
 
 /// M of [K23 eqs. (43)-(45)] by the recursion of the paper on dense matrices.
 template <int D>
-Eigen::MatrixXd cycleMatrix(const Preconditioners<D, double>& p, std::size_t level, const CycleSweeps& sweeps) {
-  const Eigen::MatrixXd a = dense(p.multigrid.matrix(level));
-  const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(a.rows(), a.rows());
-  const Eigen::MatrixXd smoother =
-      (2 * a.cwiseAbs().rowwise().sum().cwiseInverse()).asDiagonal();  // D^-1, D_ii = sum |A_ij| / 2
+Matrix cycleMatrix(const Preconditioners<D, double>& p, std::size_t level, const CycleSweeps& sweeps) {
+  const Matrix a = dense(p.multigrid.matrix(level));
+  const Matrix identity = Matrix::Identity(a.rows(), a.rows());
+  const Matrix smoother = (2 * a.cwiseAbs().rowSums().cwiseInverse()).asDiagonal();  // D^-1, D_ii = sum |A_ij| / 2
   const auto power = [&](int n) {
-    Eigen::MatrixXd m = identity;
+    Matrix m = identity;
     for (int k = 0; k < n; ++k) m = m * (identity - smoother * a);
     return m;
   };
-  const Eigen::MatrixXd inverse = a.inverse();
+  const Matrix inverse = treacle::test::inverse(a);
   if (level + 1 == p.multigrid.levelCount()) return (identity - power(sweeps.coarsest)) * inverse;
 
   const int n = level == 0 ? sweeps.finest : sweeps.middle;
   const auto& begin = p.levels.begin[level + 1];
-  Eigen::MatrixXd prolong = Eigen::MatrixXd::Zero(a.rows(), D * (begin.size() - 1));
+  Matrix prolong = Matrix::Zero(a.rows(), D * (begin.size() - 1));
   for (std::size_t b = 0; b + 1 < begin.size(); ++b)
     for (std::uint32_t i = begin[b]; i < begin[b + 1]; ++i)
       for (int k = 0; k < D; ++k) prolong(D * i + k, D * b + k) = 1;
-  const Eigen::MatrixXd s = power(n);
+  const Matrix s = power(n);
   return (identity - s * s) * inverse +
          s * prolong * cycleMatrix<D>(p, level + 1, sweeps) * prolong.transpose() * s.transpose();
 }
@@ -107,12 +103,12 @@ template <int D>
 void checkCycle(const CycleSweeps& sweeps) {
   Preconditioners<D, double> p(sweeps);
   ASSERT_GE(p.multigrid.levelCount(), 2u);
-  const Eigen::MatrixXd k = p.dense([&](auto& r, auto& z) { p.multigrid.apply(p.s.context, p.inverse, r, z); });
-  Eigen::MatrixXd expected = Eigen::MatrixXd::Zero(k.rows(), k.cols());
-  for (Eigen::Index i = 0; i < k.rows(); ++i) expected(i, i) = p.inverse[i / D][i % D];
-  const Eigen::MatrixXd coarse = cycleMatrix<D>(p, 0, sweeps);
-  for (Eigen::Index i = 0; i < k.rows(); ++i)
-    for (Eigen::Index j = 0; j < k.cols(); ++j)
+  const Matrix k = p.dense([&](auto& r, auto& z) { p.multigrid.apply(p.s.context, p.inverse, r, z); });
+  Matrix expected = Matrix::Zero(k.rows(), k.cols());
+  for (Index i = 0; i < k.rows(); ++i) expected(i, i) = p.inverse[i / D][i % D];
+  const Matrix coarse = cycleMatrix<D>(p, 0, sweeps);
+  for (Index i = 0; i < k.rows(); ++i)
+    for (Index j = 0; j < k.cols(); ++j)
       expected(i, j) += coarse(D * p.levels.bucketOf[i / D] + i % D, D * p.levels.bucketOf[j / D] + j % D);
   EXPECT_LT((k - expected).norm(), operatorTolerance * expected.norm());
 }

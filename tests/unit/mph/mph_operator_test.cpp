@@ -22,11 +22,10 @@ BlockCsr<D> assembled(Scene<D>& s) {
 template <int D>
 void checkAgainstEquations(Walls walls) {
   Scene<D> s = makeScene<D>(walls);
-  const Eigen::MatrixXd expected = Oracle<D>(s).matrix();
+  const Matrix expected = Oracle<D>(s).matrix();
   MphOperator<D> a;
   a.prepare(s.context, s.pairs(), s.terms());
-  const Eigen::MatrixXd free =
-      denseOf(s.unknowns(), [&](const Eigen::VectorXd& x) { return applyOperator(s, a, x); });
+  const Matrix free = denseOf(s.unknowns(), [&](const Vector& x) { return applyOperator(s, a, x); });
   EXPECT_LT((free - expected).norm(), operatorTolerance * expected.norm());
   EXPECT_LT((dense(assembled(s)) - expected).norm(), operatorTolerance * expected.norm());
 
@@ -51,7 +50,7 @@ void checkMatrixFreeAgainstAssembled() {
     MphOperator<D> a;
     a.prepare(s.context, s.pairs(), s.terms());
     const BlockCsr<D> matrix = assembled(s);
-    const Eigen::VectorXd x = randomVector(s.unknowns(), seed);
+    const Vector x = randomVector(s.unknowns(), seed);
     const auto u = unflat<D>(x);
     std::vector<Vec<D>> y(u.size());
     multiply<D, double>(s.context, matrix, u, y);
@@ -71,13 +70,13 @@ void checkDissipationGradient() {
   const Oracle<D> oracle(s);
   MphOperator<D> a;
   a.prepare(s.context, s.pairs(), s.terms());
-  const Eigen::VectorXd x = randomVector(s.unknowns(), 5);
-  Eigen::VectorXd all = Eigen::VectorXd::Zero(D * oracle.count());
-  all.head(s.unknowns()) = x;
-  Eigen::VectorXd force = applyOperator(s, a, x);
-  for (Eigen::Index k = 0; k < s.unknowns(); ++k) force[k] -= oracle.material(k / D).density / oracle.dt * x[k];
-  for (Eigen::Index k = 0; k < s.unknowns(); k += 23) {
-    Eigen::VectorXd plus = all, minus = all;
+  const Vector x = randomVector(s.unknowns(), 5);
+  Vector all = Vector::Zero(D * oracle.count());
+  all.setHead(x);
+  Vector force = applyOperator(s, a, x);
+  for (Index k = 0; k < s.unknowns(); ++k) force[k] -= oracle.material(k / D).density / oracle.dt * x[k];
+  for (Index k = 0; k < s.unknowns(); k += 23) {
+    Vector plus = all, minus = all;
     plus[k] += 1;
     minus[k] -= 1;
     const double gradient = (oracle.dissipation(plus) - oracle.dissipation(minus)) / 2 / s.volume();
@@ -95,11 +94,9 @@ void checkPositiveDefinite() {
   Scene<D> s = makeScene<D>();
   MphOperator<D> a;
   a.prepare(s.context, s.pairs(), s.terms());
-  const Eigen::MatrixXd m =
-      denseOf(s.unknowns(), [&](const Eigen::VectorXd& x) { return applyOperator(s, a, x); });
+  const Matrix m = denseOf(s.unknowns(), [&](const Vector& x) { return applyOperator(s, a, x); });
   EXPECT_LT((m - m.transpose()).norm(), operatorTolerance * m.norm());
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(m, Eigen::EigenvaluesOnly);
-  EXPECT_GE(eigen.eigenvalues()[0], 1.1e3 / 1e-3 * (1 - 1e-9));  // rho/dt of the lighter material
+  EXPECT_GE(eigenvalues(m)[0], 1.1e3 / 1e-3 * (1 - 1e-9));  // rho/dt of the lighter material
 }
 
 TEST(Operator, IsSymmetricPositiveDefinite) {
@@ -114,9 +111,9 @@ void checkMomentum() {
   Scene<D> s = makeScene<D>(Walls::None);
   MphOperator<D> a;
   a.prepare(s.context, s.pairs(), s.terms());
-  const Eigen::VectorXd x = randomVector(s.unknowns(), 6);
-  Eigen::VectorXd force = applyOperator(s, a, x);
-  for (Eigen::Index k = 0; k < s.unknowns(); ++k)
+  const Vector x = randomVector(s.unknowns(), 6);
+  Vector force = applyOperator(s, a, x);
+  for (Index k = 0; k < s.unknowns(); ++k)
     force[k] -= s.c.materials[s.particles.material[k / D]].density / s.c.time.step * x[k];
   const auto f = unflat<D>(force);
   Vec<D> sum{};
@@ -142,7 +139,7 @@ Scene<2> largeScene() {
 }
 
 TEST(Operator, DoesNotDependOnTheNumberOfThreads) {
-  Eigen::VectorXd products[2];
+  Vector products[2];
   BlockCsr<2> matrices[2];
   for (int run = 0; run < 2; ++run) {
     omp_set_num_threads(run == 0 ? 1 : 4);
@@ -167,7 +164,7 @@ TEST(Operator, TreatsOneMaterialAsTwoEqualOnes) {
   MphOperator<3> a, b;
   a.prepare(two.context, two.pairs(), two.terms());
   b.prepare(one.context, one.pairs(), one.terms());
-  const Eigen::VectorXd x = randomVector(two.unknowns(), 9), y = applyOperator(two, a, x);
+  const Vector x = randomVector(two.unknowns(), 9), y = applyOperator(two, a, x);
   EXPECT_LT((y - applyOperator(one, b, x)).norm(), operatorTolerance * y.norm());
 }
 

@@ -17,7 +17,7 @@ void checkNumberDensity(Walls walls) {
     ASSERT_NEAR(n[i], oracle.numberDensity(i), kernelTolerance) << "particle " << i;
   }
   for (std::uint32_t i = s.n(); i < s.pairs().activeCount; ++i)
-    for (std::uint32_t j = 0; j < s.n() && n[i] == 0; ++j) ASSERT_GT(oracle.difference(i, j).norm(), oracle.hp);
+    for (std::uint32_t j = 0; j < s.n() && n[i] == 0; ++j) ASSERT_GT(norm(oracle.difference(i, j)), oracle.hp);
 }
 
 TEST(NumberDensity, EqualsTheSumOverAllParticles) {
@@ -30,26 +30,25 @@ template <int D>
 void checkGradientAndDivergence() {
   Scene<D> s = makeScene<D>();
   const Oracle<D> oracle(s);
-  const Eigen::MatrixXd c = oracle.gradientMatrix();
+  const Matrix c = oracle.gradientMatrix();
   const std::uint32_t active = s.pairs().activeCount;
 
-  Eigen::VectorXd q = Eigen::VectorXd::Zero(oracle.count());
-  q.head(active) = randomVector(active, 2);
+  Vector q = Vector::Zero(oracle.count());
+  q.setHead(randomVector(active, 2));
   // Walls out of the fluid's reach have no column, and their q does not matter.
   std::vector<double> qOf(q.data(), q.data() + active);
   std::vector<Vec<D>> y(s.n(), Vec<D>{});
   addPressureGradient<D>(s.context, s.pairs(), qOf, -1.0, y);
-  const Eigen::VectorXd expected = -(c * q);
+  const Vector expected = -(c * q);
   EXPECT_LT((flat<D>(y) - expected).norm(), operatorTolerance * expected.norm());
 
-  Eigen::VectorXd u = Eigen::VectorXd::Zero(D * active);
-  u.head(s.unknowns()) = randomVector(s.unknowns(), 3);
+  Vector u = Vector::Zero(D * active);
+  u.setHead(randomVector(s.unknowns(), 3));
   std::vector<double> div(active);
   const auto velocity = unflat<D>(u);
   divergence<D>(s.context, s.pairs(), velocity, div);
-  const Eigen::VectorXd expectedDiv = (c.transpose() * u.head(s.unknowns())).head(active);
-  EXPECT_LT((Eigen::Map<Eigen::VectorXd>(div.data(), active) - expectedDiv).norm(),
-            operatorTolerance * expectedDiv.norm());
+  const Vector expectedDiv = (c.transpose() * u.head(s.unknowns())).head(active);
+  EXPECT_LT((Vector(div) - expectedDiv).norm(), operatorTolerance * expectedDiv.norm());
 }
 
 TEST(PressureGradient, AndDivergenceAreEachOthersTranspose) {
@@ -71,14 +70,14 @@ TEST(WallDrag, IsTheDissipationGradientOfMovingWalls) {
   for (Material& m : s.c.materials) m.bulkViscosity = 0;
   prepare(s);
   const Oracle<2> oracle(s);
-  Eigen::VectorXd u = Eigen::VectorXd::Zero(2 * oracle.count());
-  u.tail(2 * (oracle.count() - s.n())) = randomVector(2 * (oracle.count() - s.n()), 8);
+  Vector u = Vector::Zero(2 * oracle.count());
+  u.setTail(randomVector(2 * (oracle.count() - s.n()), 8));
   std::vector<Vec<2>> y(s.n(), Vec<2>{});
   const auto velocity = unflat<2>(u);
   addWallDrag<2>(s.context, s.pairs(), std::span(velocity).first(s.pairs().activeCount), y);
   const double scale = flat<2>(y).cwiseAbs().maxCoeff();
-  for (Eigen::Index k = 0; k < s.unknowns(); k += 7) {
-    Eigen::VectorXd plus = u, minus = u;
+  for (Index k = 0; k < s.unknowns(); k += 7) {
+    Vector plus = u, minus = u;
     plus[k] += 1;  // D is quadratic: central differences are exact
     minus[k] -= 1;
     const double gradient = (oracle.dissipation(plus) - oracle.dissipation(minus)) / 2 / s.volume();

@@ -10,10 +10,10 @@ namespace {
 
 /// P of one level: fine block rows by coarse ones, ones where a member belongs to a bucket.
 template <int D>
-Eigen::MatrixXd prolongation(std::span<const std::uint32_t> begin) {
-  const Eigen::Index coarse = static_cast<Eigen::Index>(begin.size()) - 1;
-  Eigen::MatrixXd p = Eigen::MatrixXd::Zero(D * begin.back(), D * coarse);
-  for (Eigen::Index b = 0; b < coarse; ++b)
+Matrix prolongation(std::span<const std::uint32_t> begin) {
+  const Index coarse = static_cast<Index>(begin.size()) - 1;
+  Matrix p = Matrix::Zero(D * begin.back(), D * coarse);
+  for (Index b = 0; b < coarse; ++b)
     for (std::uint32_t i = begin[b]; i < begin[b + 1]; ++i)
       for (int k = 0; k < D; ++k) p(D * i + k, D * b + k) = 1;
   return p;
@@ -29,8 +29,8 @@ void checkGalerkin(Walls walls) {
   BlockCsr<D> a0;
   bucketGalerkin(s.context, s.pairs(), s.ranges(), levels, s.terms(), columns, a0);
 
-  Eigen::MatrixXd p = prolongation<D>(levels.begin[0].span());
-  Eigen::MatrixXd expected = p.transpose() * Oracle<D>(s).matrix() * p;
+  Matrix p = prolongation<D>(levels.begin[0].span());
+  Matrix expected = p.transpose() * Oracle<D>(s).matrix() * p;
   EXPECT_LT((dense(a0) - expected).norm(), operatorTolerance * expected.norm());
 
   BlockCsr<D> fine = std::move(a0);

@@ -86,11 +86,9 @@ TEST(Balance, ForcesOnWallsAreTheMomentumThatTheFluidLoses) {
 /// The balance of [K23 eqs. (3)-(10)] from the formulas over all pairs, for the velocities at the end of a step.
 template <int D>
 struct PlainBalance {
-  using Vector = Eigen::Matrix<double, D, 1>;
-
   const Scene<D>& s;
   const Oracle<D> oracle{s};
-  std::vector<Vector> u;  // as the scene's particles
+  std::vector<Vec<D>> u;  // as the scene's particles
 
   PlainBalance(const Scene<D>& scene, const Particles<D>& after) : s(scene), u(after.count) {
     for (std::uint32_t i = 0; i < after.count; ++i)
@@ -105,24 +103,25 @@ struct PlainBalance {
     double sum = 0;
     for (std::uint32_t j = 0; j < oracle.count(); ++j) {
       if (j == i || !counts(j)) continue;
-      const Vector d = oracle.difference(i, j);
-      sum += (u[j] - u[i]).dot(d.normalized()) * oracle.dw(d.norm(), oracle.hp);
+      const Vec<D> d = oracle.difference(i, j);
+      sum += dot(u[j] - u[i], d) / norm(d) * oracle.dw(norm(d), oracle.hp);
     }
     return sum;
   }
   double overDensity(std::uint32_t i, bool withFluid) const {
     double n = 0;
     for (std::uint32_t j = 0; j < oracle.count(); ++j)
-      if (j != i && (withFluid || !isFluid(j))) n += oracle.w(oracle.difference(i, j).norm(), oracle.hp);
+      if (j != i && (withFluid || !isFluid(j))) n += oracle.w(norm(oracle.difference(i, j)), oracle.hp);
     return std::max(0.0, n - oracle.restDensity());
   }
   double elasticPressure(std::uint32_t i) const { return oracle.material(i).bulkModulus * overDensity(i, true); }
 
   /// 2 (d+2) mu_ij (u_ij.e_ij) (-w'^v) / r_ij e_ij: on i, from j [N/m3].
-  Vector drag(std::uint32_t i, std::uint32_t j) const {
-    const Vector d = oracle.difference(i, j), e = d.normalized();
-    const double r = d.norm();
-    return -2 * (D + 2) * oracle.mu(i, j) * (u[j] - u[i]).dot(e) * oracle.dw(r, oracle.hv) / r * e;
+  Vec<D> drag(std::uint32_t i, std::uint32_t j) const {
+    const Vec<D> d = oracle.difference(i, j);
+    const double r = norm(d);
+    const Vec<D> e = 1 / r * d;
+    return -2 * (D + 2) * oracle.mu(i, j) * dot(u[j] - u[i], e) * oracle.dw(r, oracle.hv) / r * e;
   }
 
   /// Of floor and side, and the walls' power.
@@ -136,14 +135,14 @@ struct PlainBalance {
     b.walls.resize(2);
     for (std::uint32_t i = s.particles.fluidCount; i < oracle.count(); ++i)
       for (std::uint32_t j = 0; j < s.particles.fluidCount; ++j) {
-        const Vector d = oracle.difference(i, j), e = d.normalized();
-        const Vector push = (pressure[i] + pressure[j]) * oracle.dw(d.norm(), oracle.hp) * e + drag(i, j);
+        const Vec<D> d = oracle.difference(i, j);
+        const Vec<D> push = (pressure[i] + pressure[j]) * oracle.dw(norm(d), oracle.hp) / norm(d) * d + drag(i, j);
         Vec<3> force{};
         for (int k = 0; k < D; ++k) force[k] = volume * push[k];
         WallLoad& load = b.walls[s.particles.body[i] - 1];
         load.force += force;
         load.torque += cross(resized<3>(s.particles.position[i]), force);
-        b.wallPower -= volume * push.dot(u[i]);
+        b.wallPower -= volume * dot(push, u[i]);
       }
     return b;
   }
@@ -212,9 +211,7 @@ template <int D>
 void checkDissipations() {
   const LoadedWalls<D> start(WallsMove::Not);
   const auto twiceRayleigh = [](const Stepped<D>& step) {
-    Eigen::VectorXd u(D * step.plain.oracle.count());
-    for (std::uint32_t i = 0; i < step.plain.oracle.count(); ++i) u.template segment<D>(D * i) = step.plain.u[i];
-    return 2 * step.plain.oracle.dissipation(u);
+    return 2 * step.plain.oracle.dissipation(flat<D>(step.plain.u));
   };
   const Stepped<D> both(start);
   const double whole = twiceRayleigh(both);

@@ -133,9 +133,8 @@ void checkIsph() {
 }
 
 /// |r| / |b| of the conjugate residual method on dense matrices, without a preconditioner.
-std::vector<double> denseCurve(const Eigen::MatrixXd& a, const Eigen::VectorXd& b, const Eigen::VectorXd& start,
-                               int iterations) {
-  Eigen::VectorXd r = b - a * start, ar = a * r, p = r, q = ar;
+std::vector<double> denseCurve(const Matrix& a, const Vector& b, const Vector& start, int iterations) {
+  Vector r = b - a * start, ar = a * r, p = r, q = ar;
   std::vector<double> curve{r.norm() / b.norm()};
   for (int k = 0; k < iterations; ++k) {
     const double before = r.dot(ar), alpha = before / q.squaredNorm();
@@ -153,8 +152,8 @@ TEST(Convergence, CurvesAreThoseOfTheMethodOnTheMatrixOfTheFormulas) {
   Scene<2> s = makeScene<2>();
   s.c.gravity[1] = -10;
   const Oracle<2> oracle(s);
-  Eigen::VectorXd u(s.unknowns());
-  for (Eigen::Index k = 0; k < u.size(); ++k) u[k] = s.particles.velocity[k / 2][k % 2];
+  Vector u(s.unknowns());
+  for (Index k = 0; k < u.size(); ++k) u[k] = s.particles.velocity[k / 2][k % 2];
   const std::vector<double> expected = denseCurve(oracle.matrix(), oracle.rightHandSide(), u, 20);
   std::vector<SolverSettings> solvers;
   for (const OperatorKind kind : {OperatorKind::MatrixFree, OperatorKind::Assembled}) {

@@ -84,9 +84,9 @@ struct Column {
   }
 
   /// The matrix with ones where the pressure is known to be zero.
-  Eigen::MatrixXd denseMatrix() {
+  Matrix denseMatrix() {
     const IsphTestSystem<3, double> system(s, PressureRow<3>{s.surface.data()});
-    Eigen::MatrixXd a = dense(system.a);
+    Matrix a = dense(system.a);
     for (std::uint32_t i = 0; i < s.n(); ++i)
       if (s.surface[i]) a(i, i) = 1;
     return a;
@@ -95,8 +95,8 @@ struct Column {
 
 TEST(IsphSolver, ComesNearerToTheDirectSolutionWithEveryIteration) {
   Column column({9, 8, 7});
-  const Eigen::MatrixXd a = column.denseMatrix();
-  const Eigen::VectorXd exact = a.ldlt().solve(Eigen::Map<const Eigen::VectorXd>(column.b.data(), column.s.n()));
+  const Matrix a = column.denseMatrix();
+  const Vector exact = solve(a, Vector(column.b));
   const double scale = std::sqrt(exact.dot(a * exact));
   using enum PreconditionerKind;
   for (const PreconditionerKind kind : {None, Jacobi, CellMultigrid, HatMultigrid})
@@ -108,7 +108,7 @@ TEST(IsphSolver, ComesNearerToTheDirectSolutionWithEveryIteration) {
       double last = 1;
       for (const double tolerance : {1e-4, 1e-12, 1e-24}) {
         const Column::Solved solved = column.solve(kind, Precision::Double, tolerance);
-        const Eigen::VectorXd error = Eigen::Map<const Eigen::VectorXd>(solved.x.data(), column.s.n()) - exact;
+        const Vector error = Vector(solved.x) - exact;
         const double energy = std::sqrt(error.dot(a * error)) / scale;
         EXPECT_GT(solved.report.iterations, before);
         EXPECT_LT(energy, last);
@@ -148,7 +148,7 @@ TEST(IsphSolver, HasTheMatrixOfTheStudy) {
   const PressureColumn study(size);
   std::vector<std::uint32_t> placeOf(study.count());
   for (std::uint32_t i = 0; i < study.count(); ++i) placeOf[study.latticeOf[i]] = i;
-  const Eigen::MatrixXd expected = dense(study.a), found = dense(system.a);
+  const Matrix expected = dense(study.a), found = dense(system.a);
   for (std::uint32_t i = 0; i < column.s.n(); ++i)
     for (std::uint32_t j = 0; j < column.s.n(); ++j)
       ASSERT_NEAR(found(i, j), expected(placeOf[column.s.particles.id[i]], placeOf[column.s.particles.id[j]]),

@@ -18,10 +18,10 @@ struct DirectStep {
     std::vector<Vec<D>> v(s.particles.velocity.begin(), s.particles.velocity.end());
     std::vector<Vec<D>> predicted = v;
     for (std::uint32_t i = 0; i < s.n(); ++i) predicted[i] = oracle.predicted(v, i);
-    Eigen::MatrixXd a = oracle.pressureMatrix([&](std::uint32_t i) { return !s.surface[i]; });
-    Eigen::VectorXd b = Eigen::VectorXd::Zero(s.n());
+    Matrix a = oracle.pressureMatrix([&](std::uint32_t i) { return !s.surface[i]; });
+    Vector b = Vector::Zero(s.n());
     for (std::uint32_t i = 0; i < s.n(); ++i) s.surface[i] ? a(i, i) = 1 : b[i] = oracle.source(predicted, i);
-    const Eigen::VectorXd solution = a.ldlt().solve(b);
+    const Vector solution = solve(a, b);
     std::vector<double> p(solution.begin(), solution.end());
     for (double& x : p)
       if (!c.method.isph.negativePressure) x = std::max(0.0, x);

@@ -115,9 +115,9 @@ TEST(IsphViscosity, ImplicitStepIsTheDirectSolution) {
   layer.c.time.step = 1e-2;
   const IsphScene<2> s(layer.c, layer.particles());
   const IsphOracle<2> oracle(s);
-  Eigen::VectorXd b(s.n());
+  Vector b(s.n());
   for (std::uint32_t i = 0; i < s.n(); ++i) b[i] = 1000 / layer.c.time.step * s.particles.velocity[i][0];
-  const Eigen::VectorXd expected = oracle.viscousMatrix().ldlt().solve(b);
+  const Vector expected = solve(oracle.viscousMatrix(), b);
   const Simulation<2> simulation = layer.run(1);  // in a flow along the layers no pressure arises
   std::vector<double> found(s.n());
   for (std::uint32_t i = 0; i < s.n(); ++i)

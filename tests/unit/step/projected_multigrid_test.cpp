@@ -274,9 +274,9 @@ std::vector<Vec<2>> directVelocities(const Flow<2>& flow) {
   s.particles = flow.particles();
   prepare(s);
   const Oracle<2> oracle(s);
-  const Eigen::VectorXd solution = oracle.matrix().ldlt().solve(oracle.rightHandSide());
+  const Vector solution = solve(oracle.matrix(), oracle.rightHandSide());
   std::vector<Vec<2>> u(s.particles.count);
-  for (Eigen::Index k = 0; k < s.unknowns(); ++k) u[s.particles.id[k / 2]][k % 2] = solution[k];
+  for (Index k = 0; k < s.unknowns(); ++k) u[s.particles.id[k / 2]][k % 2] = solution[k];
   return u;
 }
 

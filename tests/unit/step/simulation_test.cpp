@@ -17,7 +17,7 @@ struct Start {
   Simulation<D> simulation() { return Simulation<D>(scene.c, std::move(scene.particles)); }
 };
 
-/// One step against Eigen's direct solution of [K23 eq. (16)] from the formulas.
+/// One step against the direct solution of [K23 eq. (16)] from the formulas.
 template <int D>
 void checkStep(OperatorKind operatorKind, PreconditionerKind preconditioner, KrylovKind krylov,
                Precision precision) {
@@ -29,9 +29,9 @@ void checkStep(OperatorKind operatorKind, PreconditionerKind preconditioner, Kry
   s.c.solver.precision = precision;
   s.c.solver.tolerance = 1e-20;
   const Oracle<D> oracle(s);
-  const Eigen::VectorXd elastic = oracle.elasticPressure();
-  const Eigen::VectorXd u = oracle.matrix().ldlt().solve(oracle.rightHandSide());
-  const Eigen::VectorXd divergence = oracle.gradientMatrix().transpose() * u;
+  const Vector elastic = oracle.elasticPressure();
+  const Vector u = solve(oracle.matrix(), oracle.rightHandSide());
+  const Vector divergence = oracle.gradientMatrix().transpose() * u;
   std::vector<Vec<D>> x(s.particles.position.begin(), s.particles.position.begin() + s.n());
   std::vector<std::uint32_t> id(s.particles.id.begin(), s.particles.id.end());
   std::vector<double> pressure(s.n());

@@ -64,7 +64,7 @@ struct System {
 
   /// |b - A u|^2 / |b|^2 with the matrix from the formulas of the paper.
   double residual() const {
-    const Eigen::VectorXd right = flat<D>(b);
+    const Vector right = flat<D>(b);
     return (right - Oracle<D>(s).matrix() * flat<D>(u)).squaredNorm() / right.squaredNorm();
   }
 };

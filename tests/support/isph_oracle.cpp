@@ -1,0 +1,192 @@
+#include "support/isph_oracle.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace treacle::test {
+
+template <int D>
+double IsphOracle<D>::mu(std::uint32_t i, std::uint32_t j) const {
+  const double a = material(i).dynamicViscosity, b = material(j).dynamicViscosity;
+  return 2 * a * b / (a + b);
+}
+
+template <int D>
+double IsphOracle<D>::kernel(double r) const {
+  const double q = r / h;
+  if (q >= 2) return 0;
+  if (s.c.method.isph.kernel == KernelKind::WendlandC2)
+    return (D == 2 ? 7 / (4 * M_PI * h * h) : 21 / (16 * M_PI * h * h * h)) * std::pow(1 - q / 2, 4) * (1 + 2 * q);
+  const double sigma = D == 2 ? 10 / (7 * M_PI * h * h) : 1 / (M_PI * h * h * h);
+  return sigma * (q < 1 ? 1 - 1.5 * q * q + 0.75 * q * q * q : 0.25 * std::pow(2 - q, 3));
+}
+
+template <int D>
+double IsphOracle<D>::kernelSlope(double r) const {
+  const double q = r / h;
+  if (q >= 2) return 0;
+  if (s.c.method.isph.kernel == KernelKind::WendlandC2)
+    return (D == 2 ? 7 / (4 * M_PI * h * h) : 21 / (16 * M_PI * h * h * h)) * -5 * q * std::pow(1 - q / 2, 3) / h;
+  const double sigma = D == 2 ? 10 / (7 * M_PI * h * h) : 1 / (M_PI * h * h * h);
+  return sigma / h * (q < 1 ? -3 * q + 2.25 * q * q : -0.75 * std::pow(2 - q, 2));
+}
+
+template <int D>
+Vec<D> IsphOracle<D>::apart(std::uint32_t i, std::uint32_t j) const {
+  Vec<D> d = s.particles.position[i] - s.particles.position[j];
+  for (int k = 0; k < D; ++k) {
+    const double length = s.c.domain.max[k] - s.c.domain.min[k];
+    if (s.c.domain.periodic[k]) d[k] -= length * std::round(d[k] / length);
+  }
+  return d;
+}
+
+template <int D>
+Vec<D> IsphOracle<D>::gradient(std::uint32_t i, std::uint32_t j) const {
+  const Vec<D> r = apart(i, j);
+  return (volume * kernelSlope(norm(r)) / norm(r)) * r;
+}
+
+template <int D>
+double IsphOracle<D>::laplacian(std::uint32_t i, std::uint32_t j) const {
+  return dot(apart(i, j), gradient(i, j)) / norm2(apart(i, j));
+}
+
+template <int D>
+double IsphOracle<D>::latticeDensity() const {
+  double sum = 0;
+  for (const Vec<D>& x : latticeAt<D>(Vec<D>::filled(-3 * l), Vec<D, int>::filled(7), l))
+    sum += volume * kernel(norm(x));
+  return sum;
+}
+
+template <int D>
+double IsphOracle<D>::density(std::uint32_t i) const {
+  double sum = volume * kernel(0);
+  forEachOther(i, [&](std::uint32_t j) { sum += volume * kernel(norm(apart(i, j))); });
+  return sum / latticeDensity();
+}
+
+template <int D>
+Vec<D> IsphOracle<D>::deficit(std::uint32_t i) const {
+  Vec<D> sum{};
+  forEachOther(i, [&](std::uint32_t j) { sum += gradient(i, j); });
+  return sum;
+}
+
+template <int D>
+Vec<D> IsphOracle<D>::seen(const std::vector<Vec<D>>& v, std::uint32_t i, std::uint32_t j) const {
+  return isWall(j) ? 2.0 * v[j] - v[i] : v[j];
+}
+
+template <int D>
+Vec<D> IsphOracle<D>::predicted(const std::vector<Vec<D>>& v, std::uint32_t i) const {
+  Vec<D> force = material(i).density * resized<D>(s.c.gravity);
+  forEachOther(i, [&](std::uint32_t j) {
+    if (isWall(j) && s.c.method.isph.walls == WallSlip::FreeSlip) return;
+    force += (2 * laplacian(i, j) * mu(i, j)) * (v[i] - seen(v, i, j));
+  });
+  return v[i] + (dt / material(i).density) * force;
+}
+
+template <int D>
+double IsphOracle<D>::divergence(const std::vector<Vec<D>>& v, std::uint32_t i) const {
+  double sum = 0;
+  forEachOther(i, [&](std::uint32_t j) { sum += dot(seen(v, i, j) - v[i], gradient(i, j)); });
+  return sum;
+}
+
+template <int D>
+double IsphOracle<D>::source(const std::vector<Vec<D>>& v, std::uint32_t i) const {
+  return -divergence(v, i) / dt - s.c.method.isph.alpha * (1 - density(i)) / (dt * dt);
+}
+
+template <int D>
+double IsphOracle<D>::inWall(double p, std::uint32_t i, std::uint32_t j,
+                             const std::vector<Vec<D>>& acceleration) const {
+  const Vec<D> pull = resized<D>(s.c.gravity) - acceleration[j];
+  const double carried = p - material(i).density * dot(pull, apart(i, j));
+  return s.c.method.isph.negativePressure ? carried : std::max(0.0, carried);
+}
+
+template <int D>
+Vec<D> IsphOracle<D>::corrected(const std::vector<Vec<D>>& v, const std::vector<double>& p, std::uint32_t i,
+                                const std::vector<Vec<D>>& acceleration) const {
+  Vec<D> sum{};
+  forEachOther(i, [&](std::uint32_t j) {
+    sum += (p[i] + (isWall(j) ? inWall(p[i], i, j, acceleration) : p[j])) * gradient(i, j);
+  });
+  return v[i] - (dt / material(i).density) * sum;
+}
+
+template <int D>
+Vec<D> IsphOracle<D>::stopped(const Vec<D>& moving, const std::vector<Vec<D>>& v, double p,
+                              std::uint32_t i) const {
+  double touching = 0, full = 0, share = 0, weights = 0;
+  for (const Vec<D>& x : latticeAt<D>(Vec<D>::filled(-3 * l), Vec<D, int>::filled(7), l)) {
+    full += volume * kernel(norm(x));
+    if (x[D - 1] < -0.5 * l) touching += volume * kernel(norm(x));
+  }
+  Vec<D> towards{}, mean{};
+  forEachOther(i, [&](std::uint32_t j) {
+    if (!isWall(j)) return;
+    share += volume * kernel(norm(apart(i, j))) / full;
+    towards += gradient(i, j);
+    mean += laplacian(i, j) * v[j];
+    weights += laplacian(i, j);
+  });
+  if (share <= (p > 0 ? 0.35 : 1.001 * touching / full)) return moving;
+  const Vec<D> normal = (1 / norm(towards)) * towards;
+  const double away = share > 0.6 ? 0.02 * l / dt : 0;
+  return moving - std::max(0.0, dot(moving - (1 / weights) * mean, normal) + away) * normal;
+}
+
+template <int D>
+double IsphOracle<D>::wallPressure(const std::vector<double>& p, std::uint32_t wall,
+                                   const std::vector<Vec<D>>& acceleration) const {
+  double sum = 0, weights = 0;
+  forEachOther(wall, [&](std::uint32_t i) {
+    if (isWall(i)) return;
+    sum += kernel(norm(apart(i, wall))) * inWall(p[i], i, wall, acceleration);
+    weights += kernel(norm(apart(i, wall)));
+  });
+  return weights > 0 ? sum / weights : 0;
+}
+
+template <int D>
+Matrix IsphOracle<D>::pressureMatrix(const std::function<bool(std::uint32_t)>& unknown) const {
+  Matrix a = Matrix::Zero(s.n(), s.n());
+  for (std::uint32_t i = 0; i < s.n(); ++i) {
+    if (!unknown(i)) continue;
+    forEachOther(i, [&](std::uint32_t j) {
+      if (isWall(j)) return;
+      const double c = -2 * laplacian(i, j) / (0.5 * (material(i).density + material(j).density));
+      a(i, i) += c;
+      if (unknown(j)) a(i, j) -= c;
+    });
+  }
+  return a;
+}
+
+template <int D>
+Matrix IsphOracle<D>::viscousMatrix() const {
+  Matrix a = Matrix::Zero(s.n(), s.n());
+  for (std::uint32_t i = 0; i < s.n(); ++i) {
+    a(i, i) = material(i).density / dt;
+    forEachOther(i, [&](std::uint32_t j) {
+      const double c = -2 * laplacian(i, j) * mu(i, j);
+      if (isWall(j)) {
+        if (s.c.method.isph.walls == WallSlip::NoSlip) a(i, i) += 2 * c;
+      } else {
+        a(i, i) += c;
+        a(i, j) -= c;
+      }
+    });
+  }
+  return a;
+}
+
+template struct IsphOracle<2>;
+template struct IsphOracle<3>;
+
+}  // namespace treacle::test

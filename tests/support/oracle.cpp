@@ -1,0 +1,151 @@
+#include "support/oracle.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace treacle::test {
+
+template <int D>
+double Oracle<D>::w(double r, double h) const {
+  const double integral = D == 2 ? M_PI / 6 : 2 * M_PI / 15;
+  return r > h ? 0 : std::pow(l, D) / (integral * std::pow(h, D)) * std::pow(1 - r / h, 2);
+}
+
+template <int D>
+double Oracle<D>::dw(double r, double h) const {
+  const double integral = D == 2 ? M_PI / 6 : 2 * M_PI / 15;
+  return r > h ? 0 : -2 * std::pow(l, D) / (integral * std::pow(h, D + 1)) * (1 - r / h);
+}
+
+template <int D>
+double Oracle<D>::mu(std::uint32_t i, std::uint32_t j) const {
+  const double a = material(i).dynamicViscosity, b = material(j).dynamicViscosity;
+  return 2 * a * b / (a + b);
+}
+
+template <int D>
+Vec<D> Oracle<D>::difference(std::uint32_t i, std::uint32_t j) const {
+  Vec<D> d;
+  for (int k = 0; k < D; ++k) {
+    d[k] = s.particles.position[j][k] - s.particles.position[i][k];
+    const double length = s.c.domain.max[k] - s.c.domain.min[k];
+    if (s.c.domain.periodic[k]) d[k] -= length * std::round(d[k] / length);
+  }
+  return d;
+}
+
+template <int D>
+double Oracle<D>::numberDensity(std::uint32_t i) const {
+  double n = 0;
+  for (std::uint32_t j = 0; j < count(); ++j)
+    if (j != i) n += w(norm(difference(i, j)), hp);
+  return n;
+}
+
+template <int D>
+double Oracle<D>::dissipation(const Vector& u) const {
+  double sum = 0;
+  for (std::uint32_t i = 0; i < count(); ++i) {
+    double divergence = 0;
+    for (std::uint32_t j = 0; j < count(); ++j) {
+      if (j == i) continue;
+      const Vec<D> d = difference(i, j);
+      const double r = norm(d);
+      if (r > std::max(hp, hv)) continue;
+      double along = 0;
+      for (int k = 0; k < D; ++k) along += (u[D * j + k] - u[D * i + k]) * d[k] / r;
+      divergence += along * dw(r, hp);
+      if (j > i) sum -= (D + 2) * mu(i, j) * along * along * dw(r, hv) / r;
+    }
+    sum += material(i).bulkViscosity / 2 * divergence * divergence;
+  }
+  return sum * std::pow(l, D);
+}
+
+template <int D>
+Matrix Oracle<D>::gradientMatrix() const {
+  const Index n = s.unknowns();
+  Matrix c = Matrix::Zero(n, count());
+  for (std::uint32_t i = 0; i < s.n(); ++i)
+    for (std::uint32_t j = 0; j < count(); ++j) {
+      if (j == i) continue;
+      const Vec<D> d = difference(i, j);
+      const Vec<D> g = -dw(norm(d), hp) / norm(d) * d;
+      for (int k = 0; k < D; ++k) c(D * i + k, j) += g[k], c(D * i + k, i) += g[k];
+    }
+  return c;
+}
+
+template <int D>
+Matrix Oracle<D>::viscosityMatrix() const {
+  Matrix v = Matrix::Zero(s.unknowns(), s.unknowns());
+  for (std::uint32_t i = 0; i < s.n(); ++i)
+    for (std::uint32_t j = 0; j < count(); ++j) {
+      if (j == i) continue;
+      const Vec<D> d = difference(i, j);
+      const double r = norm(d);
+      Block<D> block{};
+      block.addOuter(-2 * (D + 2) * mu(i, j) * dw(r, hv) / (r * r * r), d, d);
+      for (int k = 0; k < D; ++k)
+        for (int m = 0; m < D; ++m) {
+          v(D * i + k, D * i + m) += block(k, m);
+          if (j < s.n()) v(D * i + k, D * j + m) -= block(k, m);
+        }
+    }
+  return v;
+}
+
+template <int D>
+double Oracle<D>::restDensity() const {
+  const int reach = static_cast<int>(std::ceil(hp / l)), side = 2 * reach + 1;
+  double n = -w(0, hp);
+  for (int place = 0; place < std::pow(side, D); ++place) {
+    double square = 0;
+    for (int k = 0, rest = place; k < D; ++k, rest /= side) square += std::pow(rest % side - reach, 2);
+    n += w(l * std::sqrt(square), hp);
+  }
+  return n;
+}
+
+template <int D>
+Vector Oracle<D>::elasticPressure() const {
+  const double rest = restDensity();
+  Vector p(count());
+  for (std::uint32_t i = 0; i < count(); ++i)
+    p[i] = material(i).bulkModulus * std::max(0.0, numberDensity(i) - rest);
+  return p;
+}
+
+template <int D>
+Vector Oracle<D>::rightHandSide() const {
+  Vector b = -(gradientMatrix() * elasticPressure());
+  for (Index k = 0; k < b.size(); ++k)
+    b[k] += material(k / D).density * (s.particles.velocity[k / D][k % D] / dt + s.c.gravity[k % D]);
+  return b;
+}
+
+template <int D>
+Matrix Oracle<D>::matrix() const {
+  Vector inertia(s.unknowns()), lambda(count());
+  for (Index i = 0; i < s.unknowns(); ++i) inertia[i] = material(i / D).density / dt;
+  for (std::uint32_t i = 0; i < count(); ++i) lambda[i] = material(i).bulkViscosity;
+  const Matrix c = gradientMatrix();
+  Matrix a = viscosityMatrix() + c * lambda.asDiagonal() * c.transpose();
+  a.addToDiagonal(inertia);
+  return a;
+}
+
+template <int D>
+Vector applyOperator(Scene<D>& s, MphOperator<D>& a, const Vector& x) {
+  const std::vector<Vec<D>> u = unflat<D>(x);
+  std::vector<Vec<D>> y(u.size());
+  a.multiply(s.context, u, y);
+  return flat<D>(y);
+}
+
+template struct Oracle<2>;
+template Vector applyOperator(Scene<2>&, MphOperator<2>&, const Vector&);
+template struct Oracle<3>;
+template Vector applyOperator(Scene<3>&, MphOperator<3>&, const Vector&);
+
+}  // namespace treacle::test
