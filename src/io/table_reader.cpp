@@ -17,6 +17,8 @@ void TableReader::prepare(Case& c) {
 
 void TableReader::prepare(MethodSettings& method) {
   (*this)({"name"}, method.kind);
+  if (method.kind == MethodKind::MphI)
+    if (const auto scheme = lookUp<SchemeKind>("scheme")) method = defaultMethod(*scheme);
   nameMethod();
 }
 

@@ -44,6 +44,16 @@ std::string mismatch(const Key& key, const std::string& expected, const std::str
                      key.bound.reason);
 }
 
+MethodSettings defaultMethod(SchemeKind scheme) {
+  MethodSettings method;
+  method.scheme = scheme;
+  if (scheme == SchemeKind::Published) return method;
+  method.pressureWeight = PressureWeight::WendlandC2;
+  method.viscosityWeight = ViscosityWeight::Biquadratic;
+  method.pressureRadius = 3;
+  return method;
+}
+
 SolverSettings defaultSolver(MethodKind method) {
   SolverSettings solver;
   if (method == MethodKind::MphI) return solver;

@@ -127,37 +127,40 @@ void diagonalBlocks(Context<Cpu>&, const MphPairs<D>& pairs, const WallTerms<D>&
                     std::span<Block<D>> diagonal) {
   const double floor2 = distanceFloor2(pairs);
   const ClusterListView& list = pairs.fluidList;
-  forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const VecLanes<D>& x, std::uint32_t c) {
-    const ViscosityLanes<D> viscosity(pairs, range);
-    Lanes block[D][D] = {};
-    VecLanes<D> own = {};
-    const auto add = [&](ListEntry e, bool wall) {
-      const PairLanes<D> pair(pairs.positionOf(e), x, floor2);
-      const Lanes g = pairs.terms.gradient(pair.r);
-      Lanes f = pairs.bulkViscosity(e.index()) * g * g;  // lambda_j C_ij C_ij^T
-      if (!wall)                                         // the viscous part of walls stands in terms.block
-        f += pairs.terms.viscous(viscosity.with(e.index()), pair.r);
-      for (int r = 0; r < D; ++r) {
-        own[r] += g * pair.d[r];
-        for (int k = 0; k < D; ++k) block[r][k] += f * pair.d[r] * pair.d[k];
-      }
-    };
-    for (ListEntry e : list.segment(c, ListSegment::NearFluid)) add(e, false);
-    for (ListEntry e : list.segment(c, ListSegment::FarFluid)) add(e, false);
-    for (ListEntry e : list.segment(c, ListSegment::NearWall)) add(e, true);
+  const auto sumUp = [&](const auto& mph) {
+    forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const VecLanes<D>& x, std::uint32_t c) {
+      const ViscosityLanes<D> viscosity(pairs, range);
+      Lanes block[D][D] = {};
+      VecLanes<D> own = {};
+      const auto add = [&](ListEntry e, bool wall) {
+        const PairLanes<D> pair(pairs.positionOf(e), x, floor2);
+        const Lanes g = mph.gradient(pair.r);
+        Lanes f = pairs.bulkViscosity(e.index()) * g * g;  // lambda_j C_ij C_ij^T
+        if (!wall)                                         // the viscous part of walls stands in terms.block
+          f += mph.viscous(viscosity.with(e.index()), pair.r);
+        for (int r = 0; r < D; ++r) {
+          own[r] += g * pair.d[r];
+          for (int k = 0; k < D; ++k) block[r][k] += f * pair.d[r] * pair.d[k];
+        }
+      };
+      for (ListEntry e : list.segment(c, ListSegment::NearFluid)) add(e, false);
+      for (ListEntry e : list.segment(c, ListSegment::FarFluid)) add(e, false);
+      for (ListEntry e : list.segment(c, ListSegment::NearWall)) add(e, true);
 
-    for (std::uint32_t lane = 0; lane < range.count; ++lane) {
-      const std::uint32_t i = range.first + lane;
-      Block<D> sum = terms.block[i];
-      Vec<D> cii{};
-      for (int r = 0; r < D; ++r) {
-        cii[r] = own[r][lane];
-        for (int k = 0; k < D; ++k) sum(r, k) += block[r][k][lane];
+      for (std::uint32_t lane = 0; lane < range.count; ++lane) {
+        const std::uint32_t i = range.first + lane;
+        Block<D> sum = terms.block[i];
+        Vec<D> cii{};
+        for (int r = 0; r < D; ++r) {
+          cii[r] = own[r][lane];
+          for (int k = 0; k < D; ++k) sum(r, k) += block[r][k][lane];
+        }
+        sum.addOuter(pairs.bulkViscosity(i), cii, cii);
+        diagonal[i] = sum;
       }
-      sum.addOuter(pairs.bulkViscosity(i), cii, cii);
-      diagonal[i] = sum;
-    }
-  });
+    });
+  };
+  withWeights(pairs.terms, sumUp);
 }
 
 #define TREACLE_INSTANTIATE(D)                                                                              \

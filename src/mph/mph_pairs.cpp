@@ -14,8 +14,8 @@ MphPairs<D> makeMphPairs(const Case& c) {
   pairs.grid =
       CellGrid<D>::make(resized<D>(c.domain.min), resized<D>(c.domain.max), periodic, std::max(hv, 2 * hp));
   pairs.images = periodicImages(pairs.grid);
-  const auto pressureWeight = Weight<D>::make(hp, c.spacing);
-  pairs.terms = MphTerms<D>::make(pressureWeight, Weight<D>::make(hv, c.spacing));
+  const auto pressureWeight = Weight<D>::make(hp, c.spacing, c.method.pressureWeight);
+  pairs.terms = MphTerms<D>::make(pressureWeight, c.method.viscosityWeight, hv, c.spacing);
   pairs.restDensity = latticeNumberDensity(pressureWeight, c.spacing);
   pairs.materials = MaterialTable::make(c);
   return pairs;

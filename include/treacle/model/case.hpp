@@ -121,8 +121,19 @@ struct IsphSettings {
   bool operator==(const IsphSettings&) const = default;
 };
 
+/// Of MPH-I: weights and radii that go together; what a case does not say itself is its scheme's (defaultMethod).
+enum class SchemeKind { Published, Accurate };
+/// Weight of densities, divergences and pressure gradients, and weight of the viscosity, with q = r/h: those of
+/// [K23], (1-q)^2 and what its derivative makes of the viscosity, (1-q)/q^3; Wendland's functions C2,
+/// (1-q)^4 (1+4q), and C4, (1-q)^6 (3+18q+35q^2); (1-q^2)^2/q^2.
+enum class PressureWeight { Mps, WendlandC2, WendlandC4 };
+enum class ViscosityWeight { Mps, Biquadratic };
+
 struct MethodSettings {
   MethodKind kind = MethodKind::MphI;
+  SchemeKind scheme = SchemeKind::Published;
+  PressureWeight pressureWeight = PressureWeight::Mps;
+  ViscosityWeight viscosityWeight = ViscosityWeight::Mps;
   // Effective radii of MPH-I in particle spacings [K23 Table 1].
   double pressureRadius = 1.75;  // h_p / l
   double viscosityRadius = 3.5;  // h_v / l

@@ -53,6 +53,9 @@ std::vector<std::string_view> wordsThat(Fits&& fits) {
   return words;
 }
 
+/// The method of a case that says no more than its scheme.
+MethodSettings defaultMethod(SchemeKind scheme);
+
 /// The solver of a case that says no more than its method, or no more than that and the preconditioner.
 SolverSettings defaultSolver(MethodKind method);
 SolverSettings defaultSolver(MethodKind method, PreconditionerKind preconditioner);
@@ -208,6 +211,9 @@ void visit(auto& v, Like<IsphSettings> auto& i, const Case&) {
 void visit(auto& v, Like<MethodSettings> auto& m, const Case& c) {
   v({"name"}, m.kind);
   if (c.method.kind == MethodKind::Isph) return visit(v, m.isph, c);
+  v({"scheme"}, m.scheme);
+  v({"pressure_weight"}, m.pressureWeight);
+  v({"viscosity_weight"}, m.viscosityWeight);
   v({"pressure_radius", optional, "spacings", positive}, m.pressureRadius);
   v({"viscosity_radius", optional, "spacings", positive}, m.viscosityRadius);
 }

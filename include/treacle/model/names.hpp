@@ -27,6 +27,13 @@ inline constexpr Named<ShapeKind> shape[] = {
     {"box", ShapeKind::Box}, {"sphere", ShapeKind::Sphere}, {"cylinder", ShapeKind::Cylinder}};
 inline constexpr Named<BodyKind> body[] = {{"fluid", BodyKind::Fluid}, {"wall", BodyKind::Wall}};
 inline constexpr Named<MethodKind> method[] = {{"mph-i", MethodKind::MphI}, {"isph", MethodKind::Isph}};
+inline constexpr Named<SchemeKind> scheme[] = {{"published", SchemeKind::Published},
+                                               {"accurate", SchemeKind::Accurate}};
+inline constexpr Named<PressureWeight> pressureWeight[] = {{"mps", PressureWeight::Mps},
+                                                           {"wendland-c2", PressureWeight::WendlandC2},
+                                                           {"wendland-c4", PressureWeight::WendlandC4}};
+inline constexpr Named<ViscosityWeight> viscosityWeight[] = {{"mps", ViscosityWeight::Mps},
+                                                             {"biquadratic", ViscosityWeight::Biquadratic}};
 inline constexpr Named<KernelKind> kernel[] = {{"cubic-spline", KernelKind::CubicSpline},
                                                {"wendland-c2", KernelKind::WendlandC2}};
 inline constexpr Named<WallSlip> slip[] = {{"no-slip", WallSlip::NoSlip}, {"free-slip", WallSlip::FreeSlip}};
@@ -65,6 +72,12 @@ template <>
 inline constexpr std::span<const Named<BodyKind>> namesOf<BodyKind>{names::body};
 template <>
 inline constexpr std::span<const Named<MethodKind>> namesOf<MethodKind>{names::method};
+template <>
+inline constexpr std::span<const Named<SchemeKind>> namesOf<SchemeKind>{names::scheme};
+template <>
+inline constexpr std::span<const Named<PressureWeight>> namesOf<PressureWeight>{names::pressureWeight};
+template <>
+inline constexpr std::span<const Named<ViscosityWeight>> namesOf<ViscosityWeight>{names::viscosityWeight};
 template <>
 inline constexpr std::span<const Named<KernelKind>> namesOf<KernelKind>{names::kernel};
 template <>

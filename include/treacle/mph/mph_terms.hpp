@@ -29,53 +29,93 @@ struct ExactDistance {
 ///   number density   n_i = sum of density                                      [K23 eq. (7)]
 ///   pressures        -e w'^p = gradient d: the elements of C                   [K23 eqs. (4), (14)]
 ///   viscosity        2 (D+2) mu e e^T (-w'^v) / r = mu viscous d d^T: a block of V   [K23 eqs. (4), (16)]
-/// These formulas stand nowhere else; a loop calls them in its own arithmetic. A `...Shape` lacks the factor of
-/// the same name, for loops that multiply their sums by it in the end. All are zero from their radius on. T is the
-/// precision of the constants; lengths are in whatever unit they were made for.
+/// with the weights of the case in place of w^p and -w'^v. These formulas stand nowhere else; a loop calls them in
+/// its own arithmetic. A `...Shape` lacks the factor of the same name, for loops that multiply their sums by it in
+/// the end. All are zero from their radius on. T is the precision of the constants; lengths are in whatever unit
+/// they were made for.
 template <int D, class T = double>
 struct MphTerms {
   T pressureRadius, inversePressureRadius;    // h_p, 1/h_p
   T viscosityRadius, inverseViscosityRadius;  // h_v, 1/h_v
   T densityFactor, gradientFactor, viscousFactor;
+  PressureWeight pressureWeight;
+  ViscosityWeight viscosityWeight;
 
-  /// Weights of the radii h_p and h_v [m]; lengths in metres.
-  static MphTerms make(const Weight<D>& pressure, const Weight<D>& viscosity) {
-    return {static_cast<T>(pressure.radius),
-            static_cast<T>(1 / pressure.radius),
-            static_cast<T>(viscosity.radius),
-            static_cast<T>(1 / viscosity.radius),
+  /// For the radius h_v and the spacing l [m]; lengths in metres.
+  static MphTerms make(const Weight<D>& pressure, ViscosityWeight viscosity, double viscosityRadius,
+                       double spacing) {
+    const double hp = pressure.radius, hv = viscosityRadius;
+    return {static_cast<T>(hp),
+            static_cast<T>(1 / hp),
+            static_cast<T>(hv),
+            static_cast<T>(1 / hv),
             static_cast<T>(pressure.scale),
-            static_cast<T>(2 * pressure.scale / pressure.radius),
-            static_cast<T>(4 * (D + 2) * viscosity.scale / viscosity.radius)};
+            static_cast<T>(pressure.slopeFactor() * pressure.scale / hp),
+            static_cast<T>(viscosityFactor(viscosity) * 4 * (D + 2) * Weight<D>::make(hv, spacing).scale / hv),
+            pressure.kind,
+            viscosity};
   }
   /// The same for lengths in another unit [m]. Pair blocks d d^T and gradients d are still those per metre.
   template <class U>
   MphTerms<D, U> inUnitsOf(double unit) const {
-    return {static_cast<U>(pressureRadius / unit),  static_cast<U>(inversePressureRadius * unit),
-            static_cast<U>(viscosityRadius / unit), static_cast<U>(inverseViscosityRadius * unit),
-            static_cast<U>(densityFactor),          static_cast<U>(gradientFactor),
-            static_cast<U>(viscousFactor / unit)};
+    return {static_cast<U>(pressureRadius / unit),
+            static_cast<U>(inversePressureRadius * unit),
+            static_cast<U>(viscosityRadius / unit),
+            static_cast<U>(inverseViscosityRadius * unit),
+            static_cast<U>(densityFactor),
+            static_cast<U>(gradientFactor),
+            static_cast<U>(viscousFactor / unit),
+            pressureWeight,
+            viscosityWeight};
   }
 
-  /// w = factor (1 - r/h_p)^2
+  /// w
   template <class Factor, class Distance>
   TREACLE_HD auto density(Factor factor, const Distance& r) const {
     const auto part = positivePart(T(1) - T(1) / (r.inverse * pressureRadius));
-    return factor * part * part;
+    if (pressureWeight == PressureWeight::Mps) return factor * part * part;
+    const auto q = T(1) - part, square = part * part;
+    if (pressureWeight == PressureWeight::WendlandC2) return factor * square * square * (T(1) + T(4) * q);
+    return factor * square * square * square * (T(3) + q * (T(18) + T(35) * q));
   }
-  /// -w' / r = factor (1/r - 1/h_p)
+  /// -w' / r: factor times (1/r - 1/h_p), (1-q)^3/h_p or (1-q)^5 (1+5q)/h_p
   template <class Distance>
   TREACLE_HD auto gradientShape(const Distance& r) const {
-    return positivePart(r.inverse - inversePressureRadius);
+    if (pressureWeight == PressureWeight::Mps) return gradientShape<PressureWeight::Mps>(r);
+    if (pressureWeight == PressureWeight::WendlandC2) return gradientShape<PressureWeight::WendlandC2>(r);
+    return gradientShape<PressureWeight::WendlandC4>(r);
+  }
+  template <PressureWeight Weight, class Distance>
+  TREACLE_HD auto gradientShape(const Distance& r) const {
+    if constexpr (Weight == PressureWeight::Mps) {
+      return positivePart(r.inverse - inversePressureRadius);
+    } else {
+      const auto q = r.square * r.inverse * inversePressureRadius, s = positivePart(T(1) - q);
+      const auto cube = inversePressureRadius * s * s * s;
+      if constexpr (Weight == PressureWeight::WendlandC2)
+        return cube;
+      else
+        return cube * s * s * (T(1) + T(5) * q);
+    }
   }
   template <class Distance>
   TREACLE_HD auto gradient(const Distance& r) const {
     return gradientFactor * gradientShape(r);
   }
-  /// What a pair resists along e, viscous r^2 = factor (1/r - 1/h_v)
+  /// What a pair resists along e, viscous r^2: factor times (1/r - 1/h_v) or (1-q^2)^2/h_v
   template <class Distance>
   TREACLE_HD auto resistanceShape(const Distance& r) const {
-    return positivePart(r.inverse - inverseViscosityRadius);
+    if (viscosityWeight == ViscosityWeight::Mps) return resistanceShape<ViscosityWeight::Mps>(r);
+    return resistanceShape<ViscosityWeight::Biquadratic>(r);
+  }
+  template <ViscosityWeight Weight, class Distance>
+  TREACLE_HD auto resistanceShape(const Distance& r) const {
+    if constexpr (Weight == ViscosityWeight::Mps) {
+      return positivePart(r.inverse - inverseViscosityRadius);
+    } else {
+      const auto s = positivePart(T(1) - r.square * (inverseViscosityRadius * inverseViscosityRadius));
+      return inverseViscosityRadius * s * s;
+    }
   }
   /// The pair's coefficient of d d^T, with what is to be multiplied by it.
   template <class Factor, class Distance>
@@ -86,6 +126,38 @@ struct MphTerms {
   TREACLE_HD auto viscousShape(const Distance& r) const {
     return r.overSquare(resistanceShape(r));
   }
+
+ private:
+  /// So that sums over a full neighbourhood give the same viscosity as with the weight of [K23].
+  static double viscosityFactor(ViscosityWeight weight) {
+    if (weight == ViscosityWeight::Mps) return 1;
+    return D == 2 ? 2 : 63.0 / 32;
+  }
 };
+
+/// The terms with the weights of [K23], known to the compiler: in a loop whose roundings would otherwise depend on
+/// what else it could compute.
+template <int D>
+struct PublishedTerms {
+  const MphTerms<D>& terms;
+
+  template <class Distance>
+  auto gradient(const Distance& r) const {
+    return terms.gradientFactor * terms.template gradientShape<PressureWeight::Mps>(r);
+  }
+  template <class Factor, class Distance>
+  auto viscous(Factor factor, const Distance& r) const {
+    return r.overSquare(factor * terms.template resistanceShape<ViscosityWeight::Mps>(r));
+  }
+};
+
+/// f(terms), or f(PublishedTerms) where they are.
+template <int D, class F>
+void withWeights(const MphTerms<D>& terms, F&& f) {
+  if (terms.pressureWeight == PressureWeight::Mps && terms.viscosityWeight == ViscosityWeight::Mps)
+    f(PublishedTerms<D>{terms});
+  else
+    f(terms);
+}
 
 }  // namespace treacle

@@ -2,6 +2,7 @@
 
 #include "treacle/core/macros.hpp"
 #include "treacle/core/vec.hpp"
+#include "treacle/model/case.hpp"
 #include "treacle/model/lattice_sum.hpp"
 
 #include <cmath>
@@ -9,26 +10,43 @@
 
 namespace treacle {
 
-/// Weight function w(r) = l^d / (S h^d) (1 - r/h)^2 of [K23 eq. (3)], with the particle volume l^d inside, so that
-/// the sum over a full neighbourhood is about 1.
+/// Weight function w(r) = l^d / (S h^d) f(r/h) with the particle volume l^d inside, so that the sum over a full
+/// neighbourhood is about 1: f = (1-q)^2 of [K23 eq. (3)], or one of Wendland's (PressureWeight). S is the
+/// integral of f over all space in units of h.
 template <int D>
 struct Weight {
   double radius;  // h [m]
   double scale;   // l^d / (S h^d) [-]
+  PressureWeight kind = PressureWeight::Mps;
 
-  static Weight make(double radius, double spacing) {
-    const double integral = D == 2 ? std::numbers::pi / 6 : 2 * std::numbers::pi / 15;  // S
-    return {radius, std::pow(spacing / radius, D) / integral};
+  static Weight make(double radius, double spacing, PressureWeight kind = PressureWeight::Mps) {
+    return {radius, std::pow(spacing / radius, D) / integral(kind), kind};
   }
 
   TREACLE_HD double value(double r) const {
-    const double s = 1 - r / radius;
-    return s > 0 ? scale * s * s : 0;
+    const double q = r / radius, s = 1 - q;
+    if (s <= 0) return 0;
+    if (kind == PressureWeight::Mps) return scale * s * s;
+    if (kind == PressureWeight::WendlandC2) return scale * s * s * s * s * (1 + 4 * q);
+    return scale * s * s * s * s * s * s * (3 + q * (18 + 35 * q));
   }
-  /// dw/dr [1/m], <= 0 [K23 eq. (5)]
-  TREACLE_HD double derivative(double r) const {
-    const double s = 1 - r / radius;
-    return s > 0 ? -2 * scale / radius * s : 0;
+  /// k of -w'(r) = k scale/h g(q), g being 1-q, q (1-q)^3 or q (1-q)^5 (1+5q)   [K23 eq. (5)]
+  double slopeFactor() const {
+    return kind == PressureWeight::Mps ? 2 : kind == PressureWeight::WendlandC2 ? 20 : 56;
+  }
+
+ private:
+  static double integral(PressureWeight kind) {
+    constexpr double pi = std::numbers::pi;
+    switch (kind) {
+      case PressureWeight::Mps:
+        return D == 2 ? pi / 6 : 2 * pi / 15;
+      case PressureWeight::WendlandC2:
+        return D == 2 ? pi / 7 : 2 * pi / 21;
+      case PressureWeight::WendlandC4:
+        break;
+    }
+    return D == 2 ? pi / 3 : 32 * pi / 165;
   }
 };
 
