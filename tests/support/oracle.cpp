@@ -5,16 +5,56 @@
 
 namespace treacle::test {
 
+namespace {
+
+/// f(q) of a weight l^d / (S h^d) f(r/h) and its derivative, and S, as they stand in text-books.
+struct WeightFunction {
+  double (*value)(double q);
+  double (*slope)(double q);
+  double integral2D, integral3D;
+};
+
+WeightFunction functionOf(PressureWeight weight) {
+  switch (weight) {
+    case PressureWeight::Mps:
+      return {[](double q) { return std::pow(1 - q, 2); }, [](double q) { return -2 * (1 - q); }, M_PI / 6,
+              2 * M_PI / 15};
+    case PressureWeight::WendlandC2:
+      return {[](double q) { return std::pow(1 - q, 4) * (4 * q + 1); },
+              [](double q) { return -20 * q * std::pow(1 - q, 3); }, M_PI / 7, 2 * M_PI / 21};
+    case PressureWeight::WendlandC4:
+      break;
+  }
+  return {[](double q) { return std::pow(1 - q, 6) * (35 * q * q + 18 * q + 3); },
+          [](double q) { return -56 * q * (5 * q + 1) * std::pow(1 - q, 5); }, M_PI / 3, 32 * M_PI / 165};
+}
+
+}  // namespace
+
 template <int D>
 double Oracle<D>::w(double r, double h) const {
-  const double integral = D == 2 ? M_PI / 6 : 2 * M_PI / 15;
-  return r > h ? 0 : std::pow(l, D) / (integral * std::pow(h, D)) * std::pow(1 - r / h, 2);
+  const WeightFunction f = functionOf(s.c.method.pressureWeight);
+  return r > h ? 0 : std::pow(l / h, D) / (D == 2 ? f.integral2D : f.integral3D) * f.value(r / h);
 }
 
 template <int D>
 double Oracle<D>::dw(double r, double h) const {
-  const double integral = D == 2 ? M_PI / 6 : 2 * M_PI / 15;
-  return r > h ? 0 : -2 * std::pow(l, D) / (integral * std::pow(h, D + 1)) * (1 - r / h);
+  const WeightFunction f = functionOf(s.c.method.pressureWeight);
+  return r > h ? 0 : std::pow(l / h, D) / (D == 2 ? f.integral2D : f.integral3D) * f.slope(r / h) / h;
+}
+
+/// With the weight of [K23] what its eq. (4) makes of it. For c = A (1 - r^2/h^2)^2 / r^2 a full neighbourhood has
+/// the viscosity 1 where the integral of c r^4 is 2 D (D + 2) l^D.
+template <int D>
+double Oracle<D>::viscousBlock(double r) const {
+  if (r > hv) return 0;
+  if (s.c.method.viscosityWeight == ViscosityWeight::Mps) {
+    const double integral = D == 2 ? M_PI / 6 : 2 * M_PI / 15;
+    return 4 * (D + 2) * std::pow(l / hv, D) / (integral * hv) * (1 - r / hv) / std::pow(r, 3);
+  }
+  const double sphere = D == 2 ? 2 * M_PI : 4 * M_PI, moment = D == 2 ? 1.0 / 24 : 8.0 / 315;
+  return 2 * D * (D + 2) * std::pow(l, D) / (sphere * moment * std::pow(hv, D + 2)) *
+         std::pow(1 - r * r / (hv * hv), 2) / (r * r);
 }
 
 template <int D>
@@ -55,7 +95,7 @@ double Oracle<D>::dissipation(const Vector& u) const {
       double along = 0;
       for (int k = 0; k < D; ++k) along += (u[D * j + k] - u[D * i + k]) * d[k] / r;
       divergence += along * dw(r, hp);
-      if (j > i) sum -= (D + 2) * mu(i, j) * along * along * dw(r, hv) / r;
+      if (j > i) sum += mu(i, j) / 2 * viscousBlock(r) * r * r * along * along;
     }
     sum += material(i).bulkViscosity / 2 * divergence * divergence;
   }
@@ -85,7 +125,7 @@ Matrix Oracle<D>::viscosityMatrix() const {
       const Vec<D> d = difference(i, j);
       const double r = norm(d);
       Block<D> block{};
-      block.addOuter(-2 * (D + 2) * mu(i, j) * dw(r, hv) / (r * r * r), d, d);
+      block.addOuter(mu(i, j) * viscousBlock(r), d, d);
       for (int k = 0; k < D; ++k)
         for (int m = 0; m < D; ++m) {
           v(D * i + k, D * i + m) += block(k, m);

@@ -21,9 +21,11 @@ struct Oracle {
   std::uint32_t count() const { return s.particles.count; }
   const Material& material(std::uint32_t i) const { return s.c.materials[s.particles.material[i]]; }
 
-  /// w and dw/dr of eq. (3), with l^d.
+  /// w and dw/dr of the case's weight, as of eq. (3), with l^d.
   double w(double r, double h) const;
   double dw(double r, double h) const;
+  /// c of a viscous pair block mu c d d^T.
+  double viscousBlock(double r) const;
   double mu(std::uint32_t i, std::uint32_t j) const;
   /// Nearest periodic image of x_j - x_i.
   Vec<D> difference(std::uint32_t i, std::uint32_t j) const;

@@ -1,16 +1,19 @@
 #include "support/scene.hpp"
 
+#include "treacle/model/case_keys.hpp"
+
 #include <cmath>
 #include <random>
 
 namespace treacle::test {
 
-Case sceneCase(int dimensions, bool twoMaterials) {
+Case sceneCase(int dimensions, bool twoMaterials, SchemeKind scheme) {
   Case c;
   c.dimensions = dimensions;
   c.spacing = 1e-3;
   c.time = {1e-3, 1};
-  const double size = dimensions == 2 ? 20e-3 : 14e-3;
+  c.method = defaultMethod(scheme);
+  const double size = dimensions == 2 || scheme == SchemeKind::Accurate ? 20e-3 : 14e-3;  // three search cells
   for (int k = 0; k < dimensions; ++k) {
     c.domain.max[k] = size;
     c.domain.periodic[k] = true;
@@ -63,9 +66,9 @@ void prepare(Scene<D>& s) {
 }
 
 template <int D>
-Scene<D> makeScene(Walls walls, unsigned seed, double jitter, bool twoMaterials) {
+Scene<D> makeScene(Walls walls, unsigned seed, double jitter, bool twoMaterials, SchemeKind scheme) {
   Scene<D> s;
-  s.c = sceneCase(D, twoMaterials);
+  s.c = sceneCase(D, twoMaterials, scheme);
   // Off-centre, so that fluid and walls cross periodic ends and many cells are empty.
   const double l = s.c.spacing, height = D == 2 ? 8 * l : 5 * l, floor = 4 * l;
   const auto inWall = [&](const Vec<D>& x) { return walls == Walls::Floor && x[D - 1] < floor; };
@@ -80,9 +83,9 @@ Scene<D> makeScene(Walls walls, unsigned seed, double jitter, bool twoMaterials)
 
 template Particles<2> jitteredLattice(const Case&, double, unsigned, const Where<2>&, const Where<2>&);
 template void prepare(Scene<2>&);
-template Scene<2> makeScene(Walls, unsigned, double, bool);
+template Scene<2> makeScene(Walls, unsigned, double, bool, SchemeKind);
 template Particles<3> jitteredLattice(const Case&, double, unsigned, const Where<3>&, const Where<3>&);
 template void prepare(Scene<3>&);
-template Scene<3> makeScene(Walls, unsigned, double, bool);
+template Scene<3> makeScene(Walls, unsigned, double, bool, SchemeKind);
 
 }  // namespace treacle::test

@@ -34,7 +34,7 @@ struct Scene {
   Index unknowns() const { return Index{D} * n(); }
 };
 
-Case sceneCase(int dimensions, bool twoMaterials = true);
+Case sceneCase(int dimensions, bool twoMaterials = true, SchemeKind scheme = SchemeKind::Published);
 
 template <int D>
 using Where = std::function<bool(const Vec<D>&)>;
@@ -51,7 +51,8 @@ void prepare(Scene<D>& s);
 enum class Walls { Floor, None };
 
 template <int D>
-Scene<D> makeScene(Walls walls = Walls::Floor, unsigned seed = 1, double jitter = 0.2, bool twoMaterials = true);
+Scene<D> makeScene(Walls walls = Walls::Floor, unsigned seed = 1, double jitter = 0.2, bool twoMaterials = true,
+                   SchemeKind scheme = SchemeKind::Published);
 
 /// One vector per particle as a vector of numbers, and back.
 template <int D>

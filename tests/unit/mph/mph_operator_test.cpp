@@ -20,8 +20,8 @@ BlockCsr<D> assembled(Scene<D>& s) {
 }
 
 template <int D>
-void checkAgainstEquations(Walls walls) {
-  Scene<D> s = makeScene<D>(walls);
+void checkAgainstEquations(Walls walls, SchemeKind scheme) {
+  Scene<D> s = makeScene<D>(walls, 1, 0.2, true, scheme);
   const Matrix expected = Oracle<D>(s).matrix();
   MphOperator<D> a;
   a.prepare(s.context, s.pairs(), s.terms());
@@ -38,9 +38,11 @@ void checkAgainstEquations(Walls walls) {
 }
 
 TEST(Operator, EqualsTheEquationsMatrix) {
-  checkAgainstEquations<2>(Walls::Floor);
-  checkAgainstEquations<3>(Walls::Floor);
-  checkAgainstEquations<2>(Walls::None);
+  for (const SchemeKind scheme : {SchemeKind::Published, SchemeKind::Accurate}) {
+    checkAgainstEquations<2>(Walls::Floor, scheme);
+    checkAgainstEquations<3>(Walls::Floor, scheme);
+    checkAgainstEquations<2>(Walls::None, scheme);
+  }
 }
 
 template <int D>

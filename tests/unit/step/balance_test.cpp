@@ -121,7 +121,7 @@ struct PlainBalance {
     const Vec<D> d = oracle.difference(i, j);
     const double r = norm(d);
     const Vec<D> e = 1 / r * d;
-    return -2 * (D + 2) * oracle.mu(i, j) * dot(u[j] - u[i], e) * oracle.dw(r, oracle.hv) / r * e;
+    return oracle.mu(i, j) * oracle.viscousBlock(r) * r * r * dot(u[j] - u[i], e) * e;
   }
 
   /// Of floor and side, and the walls' power.
