@@ -20,8 +20,8 @@ Matrix prolongation(std::span<const std::uint32_t> begin) {
 }
 
 template <int D>
-void checkGalerkin(Walls walls) {
-  Scene<D> s = makeScene<D>(walls);
+void checkGalerkin(Walls walls, SchemeKind scheme) {
+  Scene<D> s = makeScene<D>(walls, 1, 0.2, true, scheme);
   BucketLevels<> levels;
   findBuckets(s.context, s.ranges().key, D * CellGrid<D>::subBits, D, levels);
   ASSERT_GT(levels.begin.size(), 1u);
@@ -46,9 +46,11 @@ void checkGalerkin(Walls walls) {
 }
 
 TEST(BucketGalerkin, EqualsRestrictedMatrixOnEveryLevel) {
-  checkGalerkin<2>(Walls::Floor);
-  checkGalerkin<3>(Walls::Floor);
-  checkGalerkin<2>(Walls::None);
+  for (const SchemeKind scheme : {SchemeKind::Published, SchemeKind::Accurate}) {
+    checkGalerkin<2>(Walls::Floor, scheme);
+    checkGalerkin<3>(Walls::Floor, scheme);
+    checkGalerkin<2>(Walls::None, scheme);
+  }
 }
 
 }  // namespace

@@ -8,6 +8,10 @@
 namespace treacle::test {
 namespace {
 
+constexpr std::pair<Walls, SchemeKind> scenes[] = {{Walls::Floor, SchemeKind::Published},
+                                                   {Walls::None, SchemeKind::Published},
+                                                   {Walls::Floor, SchemeKind::Accurate}};
+
 /// Fluid that fills part of a domain of `size` spacings, which is three to five search cells, and its floor.
 template <int D>
 Scene<D> bodyIn(double size, bool periodic, Walls walls) {
@@ -132,11 +136,11 @@ void checkProducts(Scene<D> scene, double tolerance) {
 }
 
 TEST(ParticleProducts, AreThoseOfTheFormulasAndInverseDiagonalsAreTheirs) {
-  for (const Walls walls : {Walls::Floor, Walls::None}) {
-    checkProducts<2, double>(makeScene<2>(walls), operatorTolerance);
-    checkProducts<3, double>(makeScene<3>(walls), operatorTolerance);
-    checkProducts<2, float>(makeScene<2>(walls), 3 * singleTolerance);
-    checkProducts<3, float>(makeScene<3>(walls), 3 * singleTolerance);
+  for (const auto& [walls, scheme] : scenes) {
+    checkProducts<2, double>(makeScene<2>(walls, 1, 0.2, true, scheme), operatorTolerance);
+    checkProducts<3, double>(makeScene<3>(walls, 1, 0.2, true, scheme), operatorTolerance);
+    checkProducts<2, float>(makeScene<2>(walls, 1, 0.2, true, scheme), 3 * singleTolerance);
+    checkProducts<3, float>(makeScene<3>(walls, 1, 0.2, true, scheme), 3 * singleTolerance);
   }
 }
 
@@ -165,9 +169,9 @@ void checkPressureGalerkin(Scene<D> scene) {
 }
 
 TEST(HatGrid, PressureGalerkinOperatorIsTheRestrictedMatrix) {
-  for (const Walls walls : {Walls::Floor, Walls::None}) {
-    checkPressureGalerkin<2>(makeScene<2>(walls));
-    checkPressureGalerkin<3>(makeScene<3>(walls));
+  for (const auto& [walls, scheme] : scenes) {
+    checkPressureGalerkin<2>(makeScene<2>(walls, 1, 0.2, true, scheme));
+    checkPressureGalerkin<3>(makeScene<3>(walls, 1, 0.2, true, scheme));
     for (const bool periodic : {true, false}) {
       checkPressureGalerkin<2>(bodyIn<2>(11, periodic, walls));
       checkPressureGalerkin<3>(bodyIn<3>(11, periodic, walls));
@@ -249,9 +253,9 @@ void checkPreconditioner(Scene<D> scene, const ProjectionDegrees& degrees, doubl
 
 template <class T>
 void checkPreconditioners(double tolerance) {
-  for (const Walls walls : {Walls::Floor, Walls::None}) {
-    checkPreconditioner<2, T>(makeScene<2>(walls), {9, 4, 2}, tolerance);
-    checkPreconditioner<3, T>(makeScene<3>(walls), {9, 4, 2}, tolerance);
+  for (const auto& [walls, scheme] : scenes) {
+    checkPreconditioner<2, T>(makeScene<2>(walls, 1, 0.2, true, scheme), {9, 4, 2}, tolerance);
+    checkPreconditioner<3, T>(makeScene<3>(walls, 1, 0.2, true, scheme), {9, 4, 2}, tolerance);
   }
   checkPreconditioner<2, T>(bodyIn<2>(11, true, Walls::Floor), {16, 3, 3}, tolerance);
   checkPreconditioner<2, T>(bodyIn<2>(16, false, Walls::None), {16, 3, 1}, tolerance);
