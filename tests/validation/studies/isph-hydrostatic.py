@@ -40,7 +40,7 @@ def measure(run):
 study = Study(
     name="isph-hydrostatic",
     title="ISPH: tank at rest",
-    levels=[Level(0.5), Level(1)],
+    levels=[Level(0.5), Level(1), Level(2)],
     bars={"mean pressure": 0.0055, "pressure at one time": 0.025, "pressure gradient": 0.007, "drift": 5e-4},
     measure=measure,
     x_label="y [m]",

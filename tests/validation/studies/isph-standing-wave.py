@@ -38,7 +38,7 @@ def measure(run):
 study = Study(
     name="isph-standing-wave",
     title="ISPH: standing wave",
-    levels=[Level(1), Level(2)],
+    levels=[Level(1), Level(2), Level(4)],
     bars={"frequency": 0.09, "decay": 0.3, "centre": 0.32},
     ranges={"published": {"frequency / exact": (1.05, 1.075)}},
     measure=measure,
