@@ -1,15 +1,8 @@
 import numpy as np
 from study import Level, Outcome, Study
-from studies._channels import profiles
+from studies._channels import H, couette, profiles
 
-H, U, nu, mu, length = 0.02, 0.2, 1e-3, 1.0, 0.02  # gap [m], plate [m/s], viscosity [m2/s], [Pa s], plates [m]
-
-
-def exact(y, t):
-    """Fourier series of the start-up: u(y, t) / U."""
-    n = np.arange(1, 200)[:, None]
-    decay = np.exp(-((n * np.pi / H) ** 2) * nu * t)
-    return y / H + (2 / np.pi * (-1.0) ** n / n * decay * np.sin(n * np.pi * y / H)).sum(axis=0)
+U, mu, length = 0.2, 1.0, 0.02  # plate [m/s], [Pa s], plates [m]
 
 
 def steady(run):
@@ -22,7 +15,7 @@ def steady(run):
 
 
 def measure(run):
-    errors, curves, solutions = profiles(run, (0.02, 0.08, 0.4), exact, H, U)
+    errors, curves, solutions = profiles(run, (0.02, 0.08, 0.4), couette, H, U)
     slope, stress = steady(run)
     errors["viscosity"] = abs(stress / slope - 1)
     spacing = np.sqrt(H * length / run.summary["fluid_particles"])
