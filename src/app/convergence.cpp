@@ -129,7 +129,7 @@ void convergenceCommand(const ConvergenceOptions& options) {
   }
   Case until = c;
   StartState start = startOf(until, options, std::move(made));
-  if (until.time.end > 0) c.time.end = until.time.end;  // where steps vary, the last one meets it
+  if (c.time.stepsVary() && until.time.end > 0) c.time.end = until.time.end;  // the last step is to meet it
   const fs::path directory = directoryOf(options);
   for (const std::string& warning : warnings) printWarning(warning);
   fmt::print("{}\n",

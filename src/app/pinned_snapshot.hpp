@@ -12,7 +12,7 @@ namespace treacle {
 /// where the numbers change, otherwise nothing. Errors: std::bad_alloc.
 inline void resizePinned(Snapshot& snapshot, int dimensions, ParticleNumbers numbers) {
   AnyParticles& particles = snapshot.particles;
-  if (snapshot.pinned && particles.dimensions() == dimensions && particles.numbers() == numbers) return;
+  if (snapshot.pinned && particles.numbers() == numbers) return;
   snapshot.pinned.reset();  // before the memory may be given up
   if (particles.dimensions() != dimensions) particles = AnyParticles(dimensions);
   particles.visit([&](auto& p) {

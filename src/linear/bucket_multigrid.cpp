@@ -139,16 +139,14 @@ std::size_t BucketMultigrid<D, T, Backend>::bytes() const {
   return sum;
 }
 
-#define TREACLE_INSTANTIATE(T, Backend)          \
-  template class BucketMultigrid<1, T, Backend>; \
-  template class BucketMultigrid<2, T, Backend>; \
-  template class BucketMultigrid<3, T, Backend>;
-TREACLE_INSTANTIATE(double, Cpu)
-TREACLE_INSTANTIATE(float, Cpu)
-#ifdef TREACLE_HAS_CUDA
-TREACLE_INSTANTIATE(double, Cuda)
-TREACLE_INSTANTIATE(float, Cuda)
-#endif
+#define TREACLE_INSTANTIATE(Backend)                  \
+  template class BucketMultigrid<1, double, Backend>; \
+  template class BucketMultigrid<2, double, Backend>; \
+  template class BucketMultigrid<3, double, Backend>; \
+  template class BucketMultigrid<1, float, Backend>;  \
+  template class BucketMultigrid<2, float, Backend>;  \
+  template class BucketMultigrid<3, float, Backend>;
+TREACLE_FOR_EACH_BACKEND(TREACLE_INSTANTIATE)
 #undef TREACLE_INSTANTIATE
 
 }  // namespace treacle

@@ -83,9 +83,8 @@ Deflated Deflation<Backend>::view() {
   return {modes_, {reinterpret_cast<const double*>(work_.data()), size}, modeCount(), scalars_.data()};
 }
 
-template class Deflation<Cpu>;
-#ifdef TREACLE_HAS_CUDA
-template class Deflation<Cuda>;
-#endif
+#define TREACLE_INSTANTIATE(Backend) template class Deflation<Backend>;
+TREACLE_FOR_EACH_BACKEND(TREACLE_INSTANTIATE)
+#undef TREACLE_INSTANTIATE
 
 }  // namespace treacle

@@ -109,17 +109,16 @@ std::size_t HatMultigrid<D, T, Backend, B>::bytes() const {
   return sum;
 }
 
-#define TREACLE_INSTANTIATE(T, Backend)          \
-  template class HatMultigrid<2, T, Backend, 1>; \
-  template class HatMultigrid<2, T, Backend, 2>; \
-  template class HatMultigrid<3, T, Backend, 1>; \
-  template class HatMultigrid<3, T, Backend, 3>;
-TREACLE_INSTANTIATE(double, Cpu)
-TREACLE_INSTANTIATE(float, Cpu)
-#ifdef TREACLE_HAS_CUDA
-TREACLE_INSTANTIATE(double, Cuda)
-TREACLE_INSTANTIATE(float, Cuda)
-#endif
+#define TREACLE_INSTANTIATE(Backend)                  \
+  template class HatMultigrid<2, double, Backend, 1>; \
+  template class HatMultigrid<2, double, Backend, 2>; \
+  template class HatMultigrid<3, double, Backend, 1>; \
+  template class HatMultigrid<3, double, Backend, 3>; \
+  template class HatMultigrid<2, float, Backend, 1>;  \
+  template class HatMultigrid<2, float, Backend, 2>;  \
+  template class HatMultigrid<3, float, Backend, 1>;  \
+  template class HatMultigrid<3, float, Backend, 3>;
+TREACLE_FOR_EACH_BACKEND(TREACLE_INSTANTIATE)
 #undef TREACLE_INSTANTIATE
 
 }  // namespace treacle

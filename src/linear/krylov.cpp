@@ -68,10 +68,7 @@ SolveReport conjugateResidual(Context<Backend>& context, const Product& a, const
   template SolveReport conjugateResidual(Context<Backend>&, const Product&, const Product&,               \
                                          std::span<const double>, std::span<double>, const StoppingRule&, \
                                          KrylovWorkspace<Backend>&);
-TREACLE_INSTANTIATE(Cpu)
-#ifdef TREACLE_HAS_CUDA
-TREACLE_INSTANTIATE(Cuda)
-#endif
+TREACLE_FOR_EACH_BACKEND(TREACLE_INSTANTIATE)
 #undef TREACLE_INSTANTIATE
 
 }  // namespace treacle

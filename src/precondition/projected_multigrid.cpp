@@ -185,10 +185,7 @@ std::size_t ProjectedMultigrid<D, T, Backend>::bytes() const {
   template class ProjectedMultigrid<3, double, Backend>; \
   template class ProjectedMultigrid<2, float, Backend>;  \
   template class ProjectedMultigrid<3, float, Backend>;
-TREACLE_INSTANTIATE(Cpu)
-#ifdef TREACLE_HAS_CUDA
-TREACLE_INSTANTIATE(Cuda)
-#endif
+TREACLE_FOR_EACH_BACKEND(TREACLE_INSTANTIATE)
 #undef TREACLE_INSTANTIATE
 
 }  // namespace treacle

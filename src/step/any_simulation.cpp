@@ -65,10 +65,7 @@ void AnySimulation::copyParticles(AnyParticles& host) const {
 }
 
 ParticleNumbers AnySimulation::numbers() const {
-  return held_->visit([](auto& s) {
-    const auto& p = s.particles();
-    return ParticleNumbers{p.fluidCount, p.wallCount(), p.modeCount()};
-  });
+  return held_->visit([](auto& s) { return numbersOf(s.particles()); });
 }
 
 double AnySimulation::time() const {
@@ -82,12 +79,6 @@ std::size_t AnySimulation::bytes() const {
 }
 std::size_t AnySimulation::peakBytes() const {
   return held_->visit([](auto& s) { return s.peakBytes(); });
-}
-Diagnostics AnySimulation::diagnostics() const {
-  return held_->visit([](auto& s) { return s.diagnostics(); });
-}
-BackendKind AnySimulation::backend() const {
-  return held_->visit([]<int D, class Backend>(Simulation<D, Backend>&) { return kindOf<Backend>; });
 }
 
 }  // namespace treacle

@@ -7,11 +7,10 @@ std::unique_ptr<StepMethod<D, Backend>> makeIsphStep(FlowState<D, Backend>& stat
   return std::make_unique<IsphStep<D, Backend>>(state);
 }
 
-template std::unique_ptr<StepMethod<2, Cpu>> makeIsphStep(FlowState<2, Cpu>&);
-template std::unique_ptr<StepMethod<3, Cpu>> makeIsphStep(FlowState<3, Cpu>&);
-#ifdef TREACLE_HAS_CUDA
-template std::unique_ptr<StepMethod<2, Cuda>> makeIsphStep(FlowState<2, Cuda>&);
-template std::unique_ptr<StepMethod<3, Cuda>> makeIsphStep(FlowState<3, Cuda>&);
-#endif
+#define TREACLE_INSTANTIATE(Backend)                                                     \
+  template std::unique_ptr<StepMethod<2, Backend>> makeIsphStep(FlowState<2, Backend>&); \
+  template std::unique_ptr<StepMethod<3, Backend>> makeIsphStep(FlowState<3, Backend>&);
+TREACLE_FOR_EACH_BACKEND(TREACLE_INSTANTIATE)
+#undef TREACLE_INSTANTIATE
 
 }  // namespace treacle

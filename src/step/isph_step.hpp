@@ -203,7 +203,7 @@ class IsphStep final : public StepMethod<D, Backend> {
     state_.phases.run(state_.context, phases::coarse, [&] { viscosity_.preparePreconditioner(state_.context); });
     StagedReport total;
     state_.phases.run(state_.context, phases::solve, [&] {
-      for (int k = 0; k < D; ++k) total = joined(std::move(total), solveComponent(k));
+      for (int k = 0; k < D; ++k) total.follow(solveComponent(k));
     });
     return total;
   }

@@ -61,10 +61,7 @@ void ModeKeeper<D, Backend>::finish(Context<Backend>& context, SolverModes<D, Ba
   template class ModeKeeper<1, Backend>; \
   template class ModeKeeper<2, Backend>; \
   template class ModeKeeper<3, Backend>;
-TREACLE_INSTANTIATE(Cpu)
-#ifdef TREACLE_HAS_CUDA
-TREACLE_INSTANTIATE(Cuda)
-#endif
+TREACLE_FOR_EACH_BACKEND(TREACLE_INSTANTIATE)
 #undef TREACLE_INSTANTIATE
 
 }  // namespace treacle

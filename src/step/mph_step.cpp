@@ -1,5 +1,5 @@
 #include "failure.hpp"
-#include "mph_system.hpp"
+#include "mph_solver.hpp"
 #include "step_balance.hpp"
 #include "step_method.hpp"
 #include "take_trial.hpp"
@@ -173,11 +173,10 @@ std::unique_ptr<StepMethod<D, Backend>> makeMphStep(FlowState<D, Backend>& state
   return std::make_unique<MphStep<D, Backend>>(state);
 }
 
-template std::unique_ptr<StepMethod<2, Cpu>> makeMphStep(FlowState<2, Cpu>&);
-template std::unique_ptr<StepMethod<3, Cpu>> makeMphStep(FlowState<3, Cpu>&);
-#ifdef TREACLE_HAS_CUDA
-template std::unique_ptr<StepMethod<2, Cuda>> makeMphStep(FlowState<2, Cuda>&);
-template std::unique_ptr<StepMethod<3, Cuda>> makeMphStep(FlowState<3, Cuda>&);
-#endif
+#define TREACLE_INSTANTIATE(Backend)                                                    \
+  template std::unique_ptr<StepMethod<2, Backend>> makeMphStep(FlowState<2, Backend>&); \
+  template std::unique_ptr<StepMethod<3, Backend>> makeMphStep(FlowState<3, Backend>&);
+TREACLE_FOR_EACH_BACKEND(TREACLE_INSTANTIATE)
+#undef TREACLE_INSTANTIATE
 
 }  // namespace treacle

@@ -165,7 +165,7 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     solved = method->predict();
     phases.run(context, treacle::phases::coefficients, [&] { method->prepareSystem(); });
     phases.run(context, treacle::phases::coarse, [&] { method->preparePreconditioner(); });
-    phases.run(context, treacle::phases::solve, [&] { solved = joined(std::move(solved), method->solve()); });
+    phases.run(context, treacle::phases::solve, [&] { solved.follow(method->solve()); });
     phases.run(context, treacle::phases::update, [&] {
       method->correctVelocities();
       move();
@@ -251,17 +251,12 @@ Diagnostics Simulation<D, Backend>::diagnostics() const {
   return state_->diagnostics();
 }
 
-template void toHost<2>(const Context<Cpu>&, const Particles<2>&, Particles<2>&);
-template void toHost<3>(const Context<Cpu>&, const Particles<3>&, Particles<3>&);
-#ifdef TREACLE_HAS_CUDA
-template void toHost<2>(const Context<Cuda>&, const Particles<2, Cuda>&, Particles<2>&);
-template void toHost<3>(const Context<Cuda>&, const Particles<3, Cuda>&, Particles<3>&);
-#endif
-template class Simulation<2, Cpu>;
-template class Simulation<3, Cpu>;
-#ifdef TREACLE_HAS_CUDA
-template class Simulation<2, Cuda>;
-template class Simulation<3, Cuda>;
-#endif
+#define TREACLE_INSTANTIATE(Backend)                                                             \
+  template void toHost<2>(const Context<Backend>&, const Particles<2, Backend>&, Particles<2>&); \
+  template void toHost<3>(const Context<Backend>&, const Particles<3, Backend>&, Particles<3>&); \
+  template class Simulation<2, Backend>;                                                         \
+  template class Simulation<3, Backend>;
+TREACLE_FOR_EACH_BACKEND(TREACLE_INSTANTIATE)
+#undef TREACLE_INSTANTIATE
 
 }  // namespace treacle

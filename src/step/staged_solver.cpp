@@ -41,13 +41,12 @@ StagedReport StagedSolver<D, Backend>::solve(Context<Backend>& context, std::spa
   StagedReport total;
   while (true) {
     const SolveReport report = solveStage(context, b, x, modes, history);
-    const int iterations = total.iterations + report.iterations;
-    static_cast<SolveReport&>(total) = report;
-    total.iterations = iterations;
+    total.follow(report);
     // No other way helps where the system itself or the guess is not finite.
     const bool hopeless = !std::isfinite(report.startResidual);
     if (report.status == SolveStatus::Converged || hopeless || isLastStage()) return total;
-    total.failures += (total.fallbacks++ > 0 ? "; " : "") + describeStage(stage(), report);
+    ++total.fallbacks;
+    total.addFailures(describeStage(stage(), report));
     keepBetter(context, report, x);
     ++stage_;
     system_.prepareOperator(context, stage());
@@ -87,10 +86,7 @@ SolveReport StagedSolver<D, Backend>::solveStage(Context<Backend>& context, std:
   template class StagedSolver<1, Backend>; \
   template class StagedSolver<2, Backend>; \
   template class StagedSolver<3, Backend>;
-TREACLE_INSTANTIATE(Cpu)
-#ifdef TREACLE_HAS_CUDA
-TREACLE_INSTANTIATE(Cuda)
-#endif
+TREACLE_FOR_EACH_BACKEND(TREACLE_INSTANTIATE)
 #undef TREACLE_INSTANTIATE
 
 }  // namespace treacle

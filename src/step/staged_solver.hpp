@@ -13,18 +13,23 @@ namespace treacle {
 struct StagedReport : SolveReport {
   int fallbacks = 0;     // stages that were tried before the last one
   std::string failures;  // which these were, and why they were given up
-};
 
-/// Of two solves of a step: the residual is that of the second.
-inline StagedReport joined(StagedReport first, const StagedReport& second) {
-  const int iterations = first.iterations + second.iterations;
-  static_cast<SolveReport&>(first) = second;
-  first.iterations = iterations;
-  first.fallbacks += second.fallbacks;
-  if (!first.failures.empty() && !second.failures.empty()) first.failures += "; ";
-  first.failures += second.failures;
-  return first;
-}
+  /// Of a solve that followed: all is its own but the iterations, which are those of both.
+  void follow(const SolveReport& next) {
+    const int before = iterations;
+    static_cast<SolveReport&>(*this) = next;
+    iterations += before;
+  }
+  void follow(const StagedReport& next) {
+    follow(static_cast<const SolveReport&>(next));
+    fallbacks += next.fallbacks;
+    addFailures(next.failures);
+  }
+  void addFailures(const std::string& text) {
+    if (!failures.empty() && !text.empty()) failures += "; ";
+    failures += text;
+  }
+};
 
 /// A linear system A x = b and its preconditioner K, in whatever form a stage wants them. What they are made of is
 /// the business of those who derive from this.

@@ -12,8 +12,6 @@ struct Cuda {};
 
 /// The same for choices at run time.
 enum class BackendKind { Cpu, Cuda };
-template <class Backend>
-inline constexpr BackendKind kindOf = std::is_same_v<Backend, Cuda> ? BackendKind::Cuda : BackendKind::Cpu;
 
 #ifdef TREACLE_HAS_CUDA
 inline constexpr bool cudaCompiled = true;

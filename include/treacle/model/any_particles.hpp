@@ -15,6 +15,11 @@ struct ParticleNumbers {
   bool operator==(const ParticleNumbers&) const = default;
 };
 
+template <int D, class Backend>
+ParticleNumbers numbersOf(const Particles<D, Backend>& p) {
+  return {p.fluidCount, p.wallCount(), p.modeCount()};
+}
+
 /// Particles on the host, in two or three dimensions as the case has it.
 class AnyParticles {
  public:
@@ -37,7 +42,7 @@ class AnyParticles {
   }
 
   ParticleNumbers numbers() const {
-    return visit([](const auto& p) { return ParticleNumbers{p.fluidCount, p.wallCount(), p.modeCount()}; });
+    return visit([](const auto& p) { return numbersOf(p); });
   }
 
   /// Errors: std::bad_variant_access for other dimensions.

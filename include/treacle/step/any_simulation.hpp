@@ -33,8 +33,6 @@ class AnySimulation {
   std::int64_t step() const;
   std::size_t bytes() const;      // [B]
   std::size_t peakBytes() const;  // [B]
-  Diagnostics diagnostics() const;
-  BackendKind backend() const;
 
  private:
   struct Held;

@@ -163,6 +163,10 @@ TEST(convergence, takesSolversTimeAndCheckpoint) {
   EXPECT_THAT(rows[1].solver, testing::EndsWith(" (1)"));
   EXPECT_THAT(rows[3].solver, testing::EndsWith(" (3)"));
 
+  // A time that is nearer to the start than to the first step.
+  const std::string plain = "small.toml --solver '' -o out/a";
+  EXPECT_EQ(rowsOf(shop, plain + " --at 4e-4", "out/a")[0].residual, rowsOf(shop, plain, "out/a")[0].residual);
+
   // The same system from a checkpoint, without --at and with it.
   ASSERT_EQ(shop.call("run small.toml --quiet --threads 1 --precision double --backend cpu").exitCode, 0);
   const std::string resumed = "small.toml --resume small-run/checkpoint.h5 --precision double" + solvers;

@@ -1,6 +1,6 @@
 #include "treacle/step/solve_stages.hpp"
 
-#include "mph_system.hpp"
+#include "mph_solver.hpp"
 #include "support/oracle.hpp"
 #include "treacle/step/simulation.hpp"
 

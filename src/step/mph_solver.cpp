@@ -1,4 +1,4 @@
-#include "mph_system.hpp"
+#include "mph_solver.hpp"
 
 #include "treacle/linear/diagonal.hpp"
 #include "treacle/precondition/bucket_galerkin.hpp"
@@ -157,11 +157,10 @@ std::size_t MphSystem<D, Backend>::bytes() const {
   return sum;
 }
 
-template class MphSystem<2, Cpu>;
-template class MphSystem<3, Cpu>;
-#ifdef TREACLE_HAS_CUDA
-template class MphSystem<2, Cuda>;
-template class MphSystem<3, Cuda>;
-#endif
+#define TREACLE_INSTANTIATE(Backend)    \
+  template class MphSystem<2, Backend>; \
+  template class MphSystem<3, Backend>;
+TREACLE_FOR_EACH_BACKEND(TREACLE_INSTANTIATE)
+#undef TREACLE_INSTANTIATE
 
 }  // namespace treacle
