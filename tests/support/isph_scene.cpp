@@ -71,7 +71,7 @@ Case waterCase(int dimensions, const Vec<3>& size) {
 
 template <int D>
 IsphScene<D> makeIsphScene(Walls walls, double jitter, unsigned seed) {
-  Scene<D> s = makeScene<D>(walls, seed, jitter);
+  Scene<D> s = makeScene<D>({.walls = walls, .seed = seed, .jitter = jitter});
   s.c.method.kind = MethodKind::Isph;
   s.c.gravity = D == 2 ? Vec<3>{1.5, -9} : Vec<3>{1.5, -0.5, -9};
   Particles<D>& p = s.particles;

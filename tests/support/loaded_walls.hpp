@@ -17,7 +17,8 @@ struct LoadedWalls {
   Case c;
   Particles<D> particles;
 
-  explicit LoadedWalls(WallsMove how, int finer = 1) : c(sceneCase(D)) {
+  explicit LoadedWalls(WallsMove how, int finer = 1, SchemeKind scheme = SchemeKind::Published)
+      : c(sceneCase(D, true, scheme)) {
     const double l = c.spacing;
     c.spacing /= finer;
     c.domain.periodic = {};

@@ -66,26 +66,26 @@ void prepare(Scene<D>& s) {
 }
 
 template <int D>
-Scene<D> makeScene(Walls walls, unsigned seed, double jitter, bool twoMaterials, SchemeKind scheme) {
+Scene<D> makeScene(const SceneOptions& options) {
   Scene<D> s;
-  s.c = sceneCase(D, twoMaterials, scheme);
+  s.c = sceneCase(D, options.twoMaterials, options.scheme);
   // Off-centre, so that fluid and walls cross periodic ends and many cells are empty.
   const double l = s.c.spacing, height = D == 2 ? 8 * l : 5 * l, floor = 4 * l;
-  const auto inWall = [&](const Vec<D>& x) { return walls == Walls::Floor && x[D - 1] < floor; };
+  const auto inWall = [&](const Vec<D>& x) { return options.walls == Walls::Floor && x[D - 1] < floor; };
   const auto inFluid = [&](const Vec<D>& x) {
     const bool across = x[0] < 5 * l || x[0] > s.c.domain.max[0] - 3 * l;
     return !inWall(x) && across && x[D - 1] >= floor && x[D - 1] < floor + height && (D == 2 || x[1] < 6 * l);
   };
-  s.particles = jitteredLattice<D>(s.c, jitter, seed, inFluid, inWall);
+  s.particles = jitteredLattice<D>(s.c, options.jitter, options.seed, inFluid, inWall);
   prepare(s);
   return s;
 }
 
 template Particles<2> jitteredLattice(const Case&, double, unsigned, const Where<2>&, const Where<2>&);
 template void prepare(Scene<2>&);
-template Scene<2> makeScene(Walls, unsigned, double, bool, SchemeKind);
+template Scene<2> makeScene(const SceneOptions&);
 template Particles<3> jitteredLattice(const Case&, double, unsigned, const Where<3>&, const Where<3>&);
 template void prepare(Scene<3>&);
-template Scene<3> makeScene(Walls, unsigned, double, bool, SchemeKind);
+template Scene<3> makeScene(const SceneOptions&);
 
 }  // namespace treacle::test

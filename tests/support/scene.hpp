@@ -50,9 +50,18 @@ void prepare(Scene<D>& s);
 
 enum class Walls { Floor, None };
 
+inline constexpr SchemeKind bothSchemes[] = {SchemeKind::Published, SchemeKind::Accurate};
+inline const char* nameOf(SchemeKind scheme) { return scheme == SchemeKind::Published ? "published" : "accurate"; }
+
+struct SceneOptions {
+  Walls walls = Walls::Floor;
+  unsigned seed = 1;
+  double jitter = 0.2;  // of the places [spacings]
+  bool twoMaterials = true;
+  SchemeKind scheme = SchemeKind::Published;
+};
 template <int D>
-Scene<D> makeScene(Walls walls = Walls::Floor, unsigned seed = 1, double jitter = 0.2, bool twoMaterials = true,
-                   SchemeKind scheme = SchemeKind::Published);
+Scene<D> makeScene(const SceneOptions& options = {});
 
 /// One vector per particle as a vector of numbers, and back.
 template <int D>

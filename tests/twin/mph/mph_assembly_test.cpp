@@ -43,12 +43,15 @@ void checkAssembly(Scene<D>& s) {
 
 template <int D>
 void checkScenes() {
-  for (const bool twoMaterials : {true, false})
-    for (const Walls walls : {Walls::Floor, Walls::None})
-      for (const unsigned seed : {1u, 2u}) {
-        Scene<D> s = makeScene<D>(walls, seed, 0.2, twoMaterials);
-        checkAssembly(s);
-      }
+  for (const SchemeKind scheme : bothSchemes)
+    for (const bool twoMaterials : {true, false})
+      for (const Walls walls : {Walls::Floor, Walls::None})
+        for (const unsigned seed : {1u, 2u}) {
+          SCOPED_TRACE(testing::Message() << D << "D, " << nameOf(scheme));
+          Scene<D> s =
+              makeScene<D>({.walls = walls, .seed = seed, .twoMaterials = twoMaterials, .scheme = scheme});
+          checkAssembly(s);
+        }
 }
 
 TEST(Assemble, GivesTheMatrixOfTheCpu) {
@@ -58,8 +61,8 @@ TEST(Assemble, GivesTheMatrixOfTheCpu) {
 }
 
 template <int D>
-void checkLargeDiagonal() {
-  Scene<D> s = makeLargeScene<D>();
+void checkLargeDiagonal(SchemeKind scheme) {
+  Scene<D> s = makeLargeScene<D>(scheme);
   DeviceScene<D> device(s);
   checkDiagonal(s, device, device.pairs);
   MphPairs<D> withoutLists = device.pairs;
@@ -69,8 +72,10 @@ void checkLargeDiagonal() {
 
 TEST(DiagonalBlocks, AreThoseOfTheCpuWithAndWithoutLists) {
   TREACLE_SKIP_WITHOUT_GPU();
-  checkLargeDiagonal<2>();
-  checkLargeDiagonal<3>();
+  for (const SchemeKind scheme : bothSchemes) {
+    checkLargeDiagonal<2>(scheme);
+    checkLargeDiagonal<3>(scheme);
+  }
 }
 
 }  // namespace

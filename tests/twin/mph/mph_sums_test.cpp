@@ -37,8 +37,8 @@ struct SumsTwin {
   DeviceScene<D> d;
   std::uint32_t n, active;
 
-  SumsTwin(Walls walls, bool lists, bool twoMaterials)
-      : s(makeScene<D>(walls, 3, 0.2, twoMaterials)),
+  SumsTwin(Walls walls, bool lists, bool twoMaterials, SchemeKind scheme)
+      : s(makeScene<D>({.walls = walls, .seed = 3, .twoMaterials = twoMaterials, .scheme = scheme})),
         d(s),
         n(s.pairs().fluidCount),
         active(s.pairs().activeCount) {
@@ -136,17 +136,19 @@ struct SumsTwin {
 
 template <int D>
 void checkAll(bool lists) {
-  for (const Walls walls : {Walls::Floor, Walls::None})
-    for (const bool twoMaterials : {true, false}) {
-      SCOPED_TRACE(testing::Message() << D << "D, " << (walls == Walls::Floor ? "floor" : "no walls") << ", "
-                                      << (twoMaterials ? 2 : 1) << " materials");
-      SumsTwin<D> twin(walls, lists, twoMaterials);
-      twin.checkScalars();
-      twin.checkVectors();
-      twin.checkWallTerms();
-      twin.checkBalance();
-      twin.checkOperator();
-    }
+  for (const SchemeKind scheme : bothSchemes)
+    for (const Walls walls : {Walls::Floor, Walls::None})
+      for (const bool twoMaterials : {true, false}) {
+        SCOPED_TRACE(testing::Message()
+                     << D << "D, " << nameOf(scheme) << ", " << (walls == Walls::Floor ? "floor" : "no walls")
+                     << ", " << (twoMaterials ? 2 : 1) << " materials");
+        SumsTwin<D> twin(walls, lists, twoMaterials, scheme);
+        twin.checkScalars();
+        twin.checkVectors();
+        twin.checkWallTerms();
+        twin.checkBalance();
+        twin.checkOperator();
+      }
 }
 
 TEST(PairSumsTwin, EqualTheCpu) {

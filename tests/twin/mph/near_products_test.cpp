@@ -16,7 +16,7 @@ namespace {
 /// The product of lists per particle against the sums of the CPU.
 template <int D>
 void check(Scene<D> s, const char* what) {
-  SCOPED_TRACE(testing::Message() << D << "D, " << what);
+  SCOPED_TRACE(testing::Message() << D << "D, " << nameOf(s.c.method.scheme) << ", " << what);
   DeviceScene<D> d(s);
   NearProducts<D> products;
   products.prepare(d.context, d.pairs);
@@ -39,9 +39,11 @@ void check(Scene<D> s, const char* what) {
 
 template <int D>
 void checkAll() {
-  check<D>(makeScene<D>(Walls::Floor, 3), "floor");
-  check<D>(makeScene<D>(Walls::None, 3), "no walls");
-  check<D>(makeLargeScene<D>(), "many particles");
+  for (const SchemeKind scheme : bothSchemes) {
+    check<D>(makeScene<D>({.seed = 3, .scheme = scheme}), "floor");
+    check<D>(makeScene<D>({.walls = Walls::None, .seed = 3, .scheme = scheme}), "no walls");
+    check<D>(makeLargeScene<D>(scheme), "many particles");
+  }
 }
 
 TEST(NearProductsTwin, EqualThePairSumsOfTheCpu) {

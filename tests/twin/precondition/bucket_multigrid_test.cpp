@@ -137,9 +137,10 @@ struct CycleTwin {
 /// magnifies the rounding errors of another order of summation some ten thousand times. In single precision that
 /// would be visible were the coarse operators not summed in double precision.
 template <int D>
-void checkSmall() {
+void checkSmall(SchemeKind scheme) {
+  SCOPED_TRACE(nameOf(scheme));
   for (const Walls walls : {Walls::Floor, Walls::None}) {
-    CycleTwin<D> twin(makeScene<D>(walls));
+    CycleTwin<D> twin(makeScene<D>({.walls = walls, .scheme = scheme}));
     ASSERT_LE(twin.unknownsOn(0), (BucketMultigrid<D, double, Cuda>().denseUnknowns()));
     if (walls == Walls::Floor)
       twin.checkAll("floor", operatorTolerance);
@@ -150,21 +151,26 @@ void checkSmall() {
 
 TEST(BucketMultigridTwin, EqualsTheCpuAsOneDenseMatrix) {
   TREACLE_SKIP_WITHOUT_GPU();
-  checkSmall<2>();
-  checkSmall<3>();
+  for (const SchemeKind scheme : bothSchemes) {
+    checkSmall<2>(scheme);
+    checkSmall<3>(scheme);
+  }
 }
 
 template <int D>
-void checkLarge(std::size_t levelsAboveDense) {
-  CycleTwin<D> twin(makeLargeScene<D>());
+void checkLarge(SchemeKind scheme, std::size_t levelsAboveDense) {
+  SCOPED_TRACE(nameOf(scheme));
+  CycleTwin<D> twin(makeLargeScene<D>(scheme));
   ASSERT_GT(twin.unknownsOn(levelsAboveDense - 1), (BucketMultigrid<D, double, Cuda>().denseUnknowns()));
   twin.checkAll("many particles", operatorTolerance);
 }
 
 TEST(BucketMultigridTwin, EqualsTheCpuWithLevelsAboveTheDenseOne) {
   TREACLE_SKIP_WITHOUT_GPU();
-  checkLarge<2>(2);
-  checkLarge<3>(1);
+  for (const SchemeKind scheme : bothSchemes) {
+    checkLarge<2>(scheme, 2);
+    checkLarge<3>(scheme, 1);
+  }
 }
 
 }  // namespace

@@ -26,10 +26,11 @@ BlockCsr<D> deviceGalerkin(DeviceScene<D>& device, const MphPairs<D>& pairs) {
 }
 
 template <int D>
-void checkScenes() {
+void checkScenes(SchemeKind scheme) {
+  SCOPED_TRACE(nameOf(scheme));
   for (const bool twoMaterials : {true, false})
     for (const Walls walls : {Walls::Floor, Walls::None}) {
-      Scene<D> s = makeScene<D>(walls, 1, 0.2, twoMaterials);
+      Scene<D> s = makeScene<D>({.walls = walls, .twoMaterials = twoMaterials, .scheme = scheme});
       DeviceScene<D> device(s);
       const BlockCsr<D> expected = cpuGalerkin(s, device.hostLevels);
       EXPECT_LE(matrixDifference(deviceGalerkin(device, device.pairs), expected), operatorTolerance);
@@ -46,13 +47,16 @@ void checkScenes() {
 
 TEST(BucketGalerkin, GivesTheMatrixOfTheCpuOnBothRoutes) {
   TREACLE_SKIP_WITHOUT_GPU();
-  checkScenes<2>();
-  checkScenes<3>();
+  for (const SchemeKind scheme : bothSchemes) {
+    checkScenes<2>(scheme);
+    checkScenes<3>(scheme);
+  }
 }
 
 template <int D>
-void checkLarge() {
-  Scene<D> s = makeLargeScene<D>();
+void checkLarge(SchemeKind scheme) {
+  SCOPED_TRACE(nameOf(scheme));
+  Scene<D> s = makeLargeScene<D>(scheme);
   DeviceScene<D> device(s);
   const BlockCsr<D> expected = cpuGalerkin(s, device.hostLevels);
   const BlockCsr<D> result = deviceGalerkin(device, device.pairs);
@@ -69,8 +73,10 @@ void checkLarge() {
 
 TEST(BucketGalerkin, GivesTheSameForManyParticlesAndWithoutLists) {
   TREACLE_SKIP_WITHOUT_GPU();
-  checkLarge<2>();
-  checkLarge<3>();
+  for (const SchemeKind scheme : bothSchemes) {
+    checkLarge<2>(scheme);
+    checkLarge<3>(scheme);
+  }
 }
 
 }  // namespace

@@ -241,27 +241,32 @@ struct Twin {
 };
 
 template <int D, class T>
-void checkScenes() {
+void checkScenes(SchemeKind scheme) {
+  SCOPED_TRACE(nameOf(scheme));
   for (const Walls walls : {Walls::Floor, Walls::None})
     for (const bool twoMaterials : {true, false}) {
       SCOPED_TRACE(testing::Message() << D << "D, " << sizeof(T) << " bytes, floor " << (walls == Walls::Floor)
                                       << ", two materials " << twoMaterials);
-      Twin<D, T>(makeScene<D>(walls, 1, 0.2, twoMaterials)).checkAll();
+      Twin<D, T>(makeScene<D>({.walls = walls, .twoMaterials = twoMaterials, .scheme = scheme})).checkAll();
     }
   SCOPED_TRACE(testing::Message() << D << "D, " << sizeof(T) << " bytes, many particles");
-  Twin<D, T>(makeLargeScene<D>()).checkAll();
+  Twin<D, T>(makeLargeScene<D>(scheme)).checkAll();
 }
 
 TEST(ProjectedMultigridTwin, EqualsTheCpuInDouble) {
   TREACLE_SKIP_WITHOUT_GPU();
-  checkScenes<2, double>();
-  checkScenes<3, double>();
+  for (const SchemeKind scheme : bothSchemes) {
+    checkScenes<2, double>(scheme);
+    checkScenes<3, double>(scheme);
+  }
 }
 
 TEST(ProjectedMultigridTwin, EqualsTheCpuInSingle) {
   TREACLE_SKIP_WITHOUT_GPU();
-  checkScenes<2, float>();
-  checkScenes<3, float>();
+  for (const SchemeKind scheme : bothSchemes) {
+    checkScenes<2, float>(scheme);
+    checkScenes<3, float>(scheme);
+  }
 }
 
 }  // namespace

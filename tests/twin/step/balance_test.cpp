@@ -39,8 +39,9 @@ bool sameBits(const Balance& a, const Balance& b) {
 
 /// `radii`: h_p and h_v in spacings.
 template <int D>
-void compare(WallsMove how, NeighbourKind neighbours, const std::array<double, 2>& radii) {
-  LoadedWalls<D> start(how);
+void compare(WallsMove how, NeighbourKind neighbours, const std::array<double, 2>& radii,
+             SchemeKind scheme = SchemeKind::Published) {
+  LoadedWalls<D> start(how, 1, scheme);
   start.c.solver.krylov = KrylovKind::Cr;
   start.c.solver.preconditioner = PreconditionerKind::BucketMultigrid;
   start.c.solver.precision = Precision::Double;
@@ -62,6 +63,7 @@ void compareAll(NeighbourKind neighbours) {
   compare<D>(WallsMove::Not, neighbours, {1.75, 3.5});
   compare<D>(WallsMove::Oscillating, neighbours, {1.75, 3.5});
   compare<D>(WallsMove::Apart, neighbours, {2.2, 1.9});
+  compare<D>(WallsMove::Apart, neighbours, {3, 3.5}, SchemeKind::Accurate);
 }
 
 TEST(BalanceTwin, EqualsTheCpu) {

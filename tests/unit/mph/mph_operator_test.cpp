@@ -21,7 +21,7 @@ BlockCsr<D> assembled(Scene<D>& s) {
 
 template <int D>
 void checkAgainstEquations(Walls walls, SchemeKind scheme) {
-  Scene<D> s = makeScene<D>(walls, 1, 0.2, true, scheme);
+  Scene<D> s = makeScene<D>({.walls = walls, .scheme = scheme});
   const Matrix expected = Oracle<D>(s).matrix();
   MphOperator<D> a;
   a.prepare(s.context, s.pairs(), s.terms());
@@ -48,7 +48,7 @@ TEST(Operator, EqualsTheEquationsMatrix) {
 template <int D>
 void checkMatrixFreeAgainstAssembled() {
   for (unsigned seed : {1u, 2u, 3u}) {
-    Scene<D> s = makeScene<D>(Walls::Floor, seed, 0.4);
+    Scene<D> s = makeScene<D>({.seed = seed, .jitter = 0.4});
     MphOperator<D> a;
     a.prepare(s.context, s.pairs(), s.terms());
     const BlockCsr<D> matrix = assembled(s);
@@ -110,7 +110,7 @@ TEST(Operator, IsSymmetricPositiveDefinite) {
 /// moment.
 template <int D>
 void checkMomentum() {
-  Scene<D> s = makeScene<D>(Walls::None);
+  Scene<D> s = makeScene<D>({.walls = Walls::None});
   MphOperator<D> a;
   a.prepare(s.context, s.pairs(), s.terms());
   const Vector x = randomVector(s.unknowns(), 6);
@@ -159,7 +159,7 @@ TEST(Operator, DoesNotDependOnTheNumberOfThreads) {
 
 TEST(Operator, TreatsOneMaterialAsTwoEqualOnes) {
   // Same constants under one name and under two: the sums must not care.
-  Scene<3> two = makeScene<3>(Walls::Floor, 1, 0.2, false), one = makeScene<3>(Walls::Floor, 1, 0.2, false);
+  Scene<3> two = makeScene<3>({.twoMaterials = false}), one = makeScene<3>({.twoMaterials = false});
   one.c.materials.pop_back();
   std::fill(one.particles.material.begin(), one.particles.material.end(), std::uint8_t{0});
   prepare(one);

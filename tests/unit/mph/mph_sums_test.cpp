@@ -8,7 +8,7 @@ namespace {
 
 template <int D>
 void checkNumberDensity(Walls walls) {
-  Scene<D> s = makeScene<D>(walls);
+  Scene<D> s = makeScene<D>({.walls = walls});
   const Oracle<D> oracle(s);
   std::vector<double> n(s.pairs().activeCount);
   numberDensity<D>(s.context, s.pairs(), n);

@@ -21,7 +21,7 @@ Matrix prolongation(std::span<const std::uint32_t> begin) {
 
 template <int D>
 void checkGalerkin(Walls walls, SchemeKind scheme) {
-  Scene<D> s = makeScene<D>(walls, 1, 0.2, true, scheme);
+  Scene<D> s = makeScene<D>({.walls = walls, .scheme = scheme});
   BucketLevels<> levels;
   findBuckets(s.context, s.ranges().key, D * CellGrid<D>::subBits, D, levels);
   ASSERT_GT(levels.begin.size(), 1u);

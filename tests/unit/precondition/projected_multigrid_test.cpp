@@ -137,10 +137,10 @@ void checkProducts(Scene<D> scene, double tolerance) {
 
 TEST(ParticleProducts, AreThoseOfTheFormulasAndInverseDiagonalsAreTheirs) {
   for (const auto& [walls, scheme] : scenes) {
-    checkProducts<2, double>(makeScene<2>(walls, 1, 0.2, true, scheme), operatorTolerance);
-    checkProducts<3, double>(makeScene<3>(walls, 1, 0.2, true, scheme), operatorTolerance);
-    checkProducts<2, float>(makeScene<2>(walls, 1, 0.2, true, scheme), 3 * singleTolerance);
-    checkProducts<3, float>(makeScene<3>(walls, 1, 0.2, true, scheme), 3 * singleTolerance);
+    checkProducts<2, double>(makeScene<2>({.walls = walls, .scheme = scheme}), operatorTolerance);
+    checkProducts<3, double>(makeScene<3>({.walls = walls, .scheme = scheme}), operatorTolerance);
+    checkProducts<2, float>(makeScene<2>({.walls = walls, .scheme = scheme}), 3 * singleTolerance);
+    checkProducts<3, float>(makeScene<3>({.walls = walls, .scheme = scheme}), 3 * singleTolerance);
   }
 }
 
@@ -170,8 +170,8 @@ void checkPressureGalerkin(Scene<D> scene) {
 
 TEST(HatGrid, PressureGalerkinOperatorIsTheRestrictedMatrix) {
   for (const auto& [walls, scheme] : scenes) {
-    checkPressureGalerkin<2>(makeScene<2>(walls, 1, 0.2, true, scheme));
-    checkPressureGalerkin<3>(makeScene<3>(walls, 1, 0.2, true, scheme));
+    checkPressureGalerkin<2>(makeScene<2>({.walls = walls, .scheme = scheme}));
+    checkPressureGalerkin<3>(makeScene<3>({.walls = walls, .scheme = scheme}));
     for (const bool periodic : {true, false}) {
       checkPressureGalerkin<2>(bodyIn<2>(11, periodic, walls));
       checkPressureGalerkin<3>(bodyIn<3>(11, periodic, walls));
@@ -254,8 +254,8 @@ void checkPreconditioner(Scene<D> scene, const ProjectionDegrees& degrees, doubl
 template <class T>
 void checkPreconditioners(double tolerance) {
   for (const auto& [walls, scheme] : scenes) {
-    checkPreconditioner<2, T>(makeScene<2>(walls, 1, 0.2, true, scheme), {9, 4, 2}, tolerance);
-    checkPreconditioner<3, T>(makeScene<3>(walls, 1, 0.2, true, scheme), {9, 4, 2}, tolerance);
+    checkPreconditioner<2, T>(makeScene<2>({.walls = walls, .scheme = scheme}), {9, 4, 2}, tolerance);
+    checkPreconditioner<3, T>(makeScene<3>({.walls = walls, .scheme = scheme}), {9, 4, 2}, tolerance);
   }
   checkPreconditioner<2, T>(bodyIn<2>(11, true, Walls::Floor), {16, 3, 3}, tolerance);
   checkPreconditioner<2, T>(bodyIn<2>(16, false, Walls::None), {16, 3, 1}, tolerance);

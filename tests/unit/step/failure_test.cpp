@@ -34,7 +34,7 @@ TEST(Failure, OfTheSolverKeepsTheLastGoodState) {
 }
 
 TEST(Failure, NamesAParticleThatLeavesAnOpenDomain) {
-  Scene<2> s = makeScene<2>(Walls::None);
+  Scene<2> s = makeScene<2>({.walls = Walls::None});
   s.c.gravity[1] = -10;
   s.c.domain.periodic[1] = false;
   s.c.time.step = 5e-3;

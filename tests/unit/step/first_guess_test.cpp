@@ -67,7 +67,7 @@ TEST(FirstGuess, FollowsAChangeOfTheTimeStep) {
 
 template <int D>
 Scene<D> fallingScene(FirstGuess order, double jitter = 0.2) {
-  Scene<D> s = makeScene<D>(Walls::Floor, 1, jitter);
+  Scene<D> s = makeScene<D>({.jitter = jitter});
   s.c.gravity[D - 1] = -10;
   s.c.solver.krylov = KrylovKind::Cr;
   s.c.solver.preconditioner = PreconditionerKind::BucketMultigrid;

@@ -11,7 +11,7 @@ namespace {
 template <int D>
 struct Start {
   Scene<D> scene;
-  explicit Start(Walls walls) : scene(makeScene<D>(walls)) {
+  explicit Start(Walls walls) : scene(makeScene<D>({.walls = walls})) {
     for (int k = 0; k < D; ++k) scene.c.gravity[k] = k == D - 1 ? -10 : 0;
   }
   Simulation<D> simulation() { return Simulation<D>(scene.c, std::move(scene.particles)); }
