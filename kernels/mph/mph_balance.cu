@@ -10,20 +10,24 @@ template <int D>
 struct ShearDissipation {
   static constexpr int values = 1;
   static constexpr bool uses(ListSegment) { return true; }
-  using Own = VelocityOf<D, double>;
-  using Other = VelocityOf<D, double>;
+  struct Own {
+    std::uint32_t i;
+    Vec<D> u;
+  };
+  using Other = Own;
 
   MphTerms<D, double> mph;
   const Vec<D>* u;
   double* dissipation;
 
-  __device__ Own loadOwn(const MphPairs<D>& pairs, std::uint32_t i) const { return {u[i], pairs.substance(i)}; }
-  __device__ Other loadOther(const MphPairs<D>& pairs, std::uint32_t j) const { return loadOwn(pairs, j); }
+  __device__ Own loadOwn(const MphPairs<D>&, std::uint32_t i) const { return {i, u[i]}; }
+  __device__ Other loadOther(const MphPairs<D>&, std::uint32_t j) const { return {j, u[j]}; }
 
   __device__ void add(const MphPairs<D>& pairs, double* sum, const Vec<D>& d, const PairDistance<double>& r,
                       const Own& own, const Other& other, ListSegment segment) const {
-    const double along = differenceAlong(other.u, own.u, d), share = isWall(segment) ? 1 : 0.5;
-    const double mu = pairs.viscosity(own.substance, other.substance);
+    const double along = differenceAlong(other.u, own.u, d);
+    const double share = isWall(segment) ? pairs.wallFactor(own.i, other.i, d) : 0.5;
+    const double mu = pairs.pairViscosity(own.i, other.i);
     sum[0] = fma(share * mu * mph.viscousShape(r), along * along, sum[0]);
   }
   __device__ void store(const MphPairs<D>&, std::uint32_t i, int, double sum) const {
@@ -37,9 +41,9 @@ struct FluidAtWall {
   static constexpr int values = D + 2;
   static constexpr bool uses(ListSegment s) { return isFluid(s); }
   struct Own {
+    std::uint32_t i;
     Vec<D> u;
     double pressure;
-    Substance substance;
   };
   using Other = Own;
 
@@ -49,15 +53,13 @@ struct FluidAtWall {
   Vec<D>* force;  // of the first wall particle, like those below
   double *divergence, *density;
 
-  __device__ Own loadOwn(const MphPairs<D>& pairs, std::uint32_t i) const {
-    return {u[i], pressure[i], pairs.substance(i)};
-  }
+  __device__ Own loadOwn(const MphPairs<D>&, std::uint32_t i) const { return {i, u[i], pressure[i]}; }
   __device__ Other loadOther(const MphPairs<D>& pairs, std::uint32_t j) const { return loadOwn(pairs, j); }
 
   __device__ void add(const MphPairs<D>& pairs, double* sum, const Vec<D>& d, const PairDistance<double>& r,
                       const Own& own, const Other& other, ListSegment) const {
     const double along = differenceAlong(other.u, own.u, d);
-    const double mu = pairs.viscosity(own.substance, other.substance);
+    const double mu = pairs.pairViscosity(own.i, other.i) * pairs.wallFactor(other.i, own.i, -1.0 * d);
     const double g = mph.gradient(r);
     const double viscous = mph.viscousFactor * mu * mph.viscousShape(r) * along;
     addScaled(sum, viscous - g * (own.pressure + other.pressure), d);

@@ -28,22 +28,34 @@ struct NumberDensity {
   }
 };
 
+/// Of a pair of fluid and wall.
+struct Side {
+  std::uint32_t index;
+  Substance substance;
+
+  template <int D>
+  __device__ static Side of(const MphPairs<D>& pairs, std::uint32_t i) {
+    return {i, pairs.substance(i)};
+  }
+};
+
 template <int D>
 struct WallSums {
   static constexpr int values = D * D + D;
   static constexpr bool uses(ListSegment s) { return isWall(s); }
-  using Own = Substance;
-  using Other = Substance;
+  using Own = Side;
+  using Other = Side;
 
   MphTerms<D, double> mph;
   WallTerms<D> terms;
 
-  __device__ Own loadOwn(const MphPairs<D>& pairs, std::uint32_t i) const { return pairs.substance(i); }
-  __device__ Other loadOther(const MphPairs<D>& pairs, std::uint32_t j) const { return pairs.substance(j); }
+  __device__ Own loadOwn(const MphPairs<D>& pairs, std::uint32_t i) const { return Side::of(pairs, i); }
+  __device__ Other loadOther(const MphPairs<D>& pairs, std::uint32_t j) const { return Side::of(pairs, j); }
 
-  __device__ void add(const MphPairs<D>& pairs, double* sum, const Vec<D>& d, const PairDistance<double>& r,
-                      Own own, Other other, ListSegment) const {
-    const double f = pairs.viscosity(own, other) * mph.viscousShape(r);
+  __device__ void add(const MphPairs<D>& pairs, double* sum, const Vec<D>& d, const PairDistance<double>& r, Own i,
+                      Other j, ListSegment) const {
+    const double f =
+        pairs.viscosity(i.substance, j.substance) * pairs.wallFactor(i.index, j.index, d) * mph.viscousShape(r);
     for (int r = 0; r < D; ++r) addScaled(sum + r * D, f * d[r], d);
     addScaled(sum + D * D, mph.gradientShape(r), d);
   }
@@ -61,23 +73,24 @@ template <int D>
 struct WallDrag {
   static constexpr int values = D;
   static constexpr bool uses(ListSegment s) { return isWall(s); }
-  using Own = VelocityOf<D, double>;
-  using Other = VelocityOf<D, double>;
+  using Own = Side;
+  struct Other {
+    Side side;
+    Vec<D> u;
+  };
 
   MphTerms<D, double> mph;
   const Vec<D>* u;
   Vec<D>* y;
 
-  __device__ Own loadOwn(const MphPairs<D>& pairs, std::uint32_t i) const {
-    return {Vec<D>{}, pairs.substance(i)};
-  }
+  __device__ Own loadOwn(const MphPairs<D>& pairs, std::uint32_t i) const { return Side::of(pairs, i); }
   __device__ Other loadOther(const MphPairs<D>& pairs, std::uint32_t j) const {
-    return {u[j], pairs.substance(j)};
+    return {Side::of(pairs, j), u[j]};
   }
 
-  __device__ void add(const MphPairs<D>& pairs, double* sum, const Vec<D>& d, const PairDistance<double>& r,
-                      const Own& own, const Other& other, ListSegment) const {
-    const double f = pairs.viscosity(own.substance, other.substance) * mph.viscousShape(r);
+  __device__ void add(const MphPairs<D>& pairs, double* sum, const Vec<D>& d, const PairDistance<double>& r, Own i,
+                      const Other& other, ListSegment) const {
+    const double f = pairs.pairViscosity(i, other.j) * pairs.wallFactor(i, other.j, d) * mph.viscousShape(r);
     addScaled(sum, f * dot(d, other.u), d);
   }
   __device__ void store(const MphPairs<D>&, std::uint32_t i, int n, double sum) const {

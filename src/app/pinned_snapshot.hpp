@@ -16,8 +16,7 @@ inline void resizePinned(Snapshot& snapshot, int dimensions, ParticleNumbers num
   snapshot.pinned.reset();  // before the memory may be given up
   if (particles.dimensions() != dimensions) particles = AnyParticles(dimensions);
   particles.visit([&](auto& p) {
-    p.resize(static_cast<std::uint32_t>(numbers.fluid), static_cast<std::uint32_t>(numbers.wall),
-             static_cast<std::uint32_t>(numbers.modes));
+    p.resize(numbers);
     auto pins = std::make_shared<std::vector<PinnedMemory>>();
     p.forEachField([&]<class T>(Buffer<T>& field) { pins->emplace_back(field.data(), field.size() * sizeof(T)); });
     snapshot.pinned = std::move(pins);

@@ -50,6 +50,7 @@ MethodSettings defaultMethod(SchemeKind scheme) {
   if (scheme == SchemeKind::Published) return method;
   method.pressureWeight = PressureWeight::WendlandC2;
   method.viscosityWeight = ViscosityWeight::Biquadratic;
+  method.wallVelocity = WallVelocity::Extrapolated;
   method.pressureRadius = 3;
   return method;
 }

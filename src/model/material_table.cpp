@@ -18,6 +18,7 @@ MaterialTable MaterialTable::make(const Case& c) {
     t.inertia[i] = m.density / c.time.step;
     t.bulkViscosity[i] = m.bulkViscosity;
     t.bulkModulus[i] = m.bulkModulus;
+    t.slipLength[i] = m.slipLength;
     for (int j = 0; j < t.count; ++j) {
       const double a = m.dynamicViscosity, b = c.materials[j].dynamicViscosity;
       t.pairViscosity[i][j] = a + b > 0 ? 2 * a * b / (a + b) : 0;

@@ -48,7 +48,10 @@ WallMotion<D> wallMotion(const Domain& domain, const Body& body, double t, doubl
   for (int k = 0; k < D; ++k)
     if (domain.periodic[static_cast<std::size_t>(k)]) m.period[k] = domain.max[k] - domain.min[k];
   const double speed = body.rotation->speed, half = sinc(speed * dt / 2);
-  m.spin = speed * body.rotation->direction();
+  m.axis = body.rotation->direction();
+  m.spin = speed * m.axis;
+  m.sine = std::sin(speed * t);
+  m.cosine = std::cos(speed * t);
   m.along = sinc(speed * dt);
   m.inwards = dt / 2 * half * half;
   return m;

@@ -12,19 +12,22 @@ void shearDissipation(Context<Cpu>&, const MphPairs<D>& pairs, std::span<const V
   forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const VecLanes<D>& x, std::uint32_t c) {
     const ViscosityLanes<D> viscosity(pairs, range);
     const VecLanes<D> ui = loadLanes<D>(range, u);
-    const auto sum = [&](ListSegment segment) {
+    const auto sum = [&](ListSegment segment, bool wall) {
       Lanes total = {};
       for (ListEntry e : list.segment(c, segment)) {
         const PairLanes<D> pair(pairs.positionOf(e), x, floor2);
         Lanes along = {};
         for (int k = 0; k < D; ++k) along += (u[e.index()][k] - ui[k]) * pair.d[k];
         along *= pair.r.inverse;
-        total += viscosity.with(e.index()) * pairs.terms.resistanceShape(pair.r) * along * along;
+        Lanes resistance = viscosity.with(e.index()) * pairs.terms.resistanceShape(pair.r);
+        if (wall) resistance *= wallFactors(pairs, range, e.index(), pair.d);
+        total += resistance * along * along;
       }
       return total;
     };
-    const Lanes ofFluid = sum(ListSegment::NearFluid) + sum(ListSegment::FarFluid);
-    storeLanes(range, 0.5 * ofFluid + sum(ListSegment::NearWall) + sum(ListSegment::FarWall), dissipation);
+    const Lanes ofFluid = sum(ListSegment::NearFluid, false) + sum(ListSegment::FarFluid, false);
+    storeLanes(range, 0.5 * ofFluid + sum(ListSegment::NearWall, true) + sum(ListSegment::FarWall, true),
+               dissipation);
   });
 }
 
@@ -43,8 +46,9 @@ void fluidAtWalls(Context<Cpu>&, const MphPairs<D>& pairs, const ClusterListView
       Lanes along = {};
       for (int k = 0; k < D; ++k) along += (u[e.index()][k] - ui[k]) * pair.d[k];
       const Lanes g = pairs.terms.gradient(pair.r);
-      const Lanes f =
-          pairs.terms.viscous(viscosity.with(e.index()), pair.r) * along - g * (qi + pressure[e.index()]);
+      const Lanes viscous =
+          pairs.terms.viscous(viscosity.with(e.index()), pair.r) * wallFactors(pairs, range, e.index(), pair.d);
+      const Lanes f = viscous * along - g * (qi + pressure[e.index()]);
       for (int k = 0; k < D; ++k) force[k] += f * pair.d[k];
       divergence -= g * along;
       density += pairs.terms.density(pairs.terms.densityFactor, pair.r);

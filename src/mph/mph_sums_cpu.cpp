@@ -77,7 +77,8 @@ void wallTerms(Context<Cpu>&, const MphPairs<D>& pairs, const WallTerms<D>& term
     for (ListSegment s : wallSegments)
       for (ListEntry e : list.segment(c, s)) {
         const PairLanes<D> pair(pairs.positionOf(e), x, floor2);
-        const Lanes f = pairs.terms.viscous(viscosity.with(e.index()), pair.r);
+        const Lanes f =
+            pairs.terms.viscous(viscosity.with(e.index()), pair.r) * wallFactors(pairs, range, e.index(), pair.d);
         const Lanes g = pairs.terms.gradient(pair.r);
         for (int r = 0; r < D; ++r) {
           gradient[r] += g * pair.d[r];
@@ -107,7 +108,8 @@ void addWallDrag(Context<Cpu>&, const MphPairs<D>& pairs, std::span<const Vec<D>
         const PairLanes<D> pair(pairs.positionOf(e), x, floor2);
         Lanes along = {};
         for (int k = 0; k < D; ++k) along += pair.d[k] * u[e.index()][k];
-        const Lanes f = pairs.terms.viscous(viscosity.with(e.index()), pair.r) * along;
+        const Lanes f = pairs.terms.viscous(viscosity.with(e.index()), pair.r) *
+                        wallFactors(pairs, range, e.index(), pair.d) * along;
         for (int k = 0; k < D; ++k) yi[k] += f * pair.d[k];
       }
     storeLanes<D>(range, yi, y);

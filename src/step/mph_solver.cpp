@@ -28,19 +28,19 @@ bool usesSpgemm(const SolverSettings& stage) {
          stage.multigrid.coarseOperators == CoarseKind::Spgemm;
 }
 
-template <class Backend>
-bool needsAssembled(const SolverSettings& stage) {
-  return stage.operatorKind == OperatorKind::Assembled || usesSpgemm<Backend>(stage) ||
-         (stage.preconditioner == PreconditionerKind::BucketMultigrid &&
-          stage.multigrid.particleDiagonal == SmootherDiagonal::ExtendedJacobi);
-}
-
 bool needsMatrixFree(const SolverSettings& stage) {
   return stage.operatorKind == OperatorKind::MatrixFree ||
          stage.preconditioner == PreconditionerKind::ProjectedMultigrid;
 }
 
 }  // namespace
+
+template <class Backend>
+bool needsAssembled(const SolverSettings& stage) {
+  return stage.operatorKind == OperatorKind::Assembled || usesSpgemm<Backend>(stage) ||
+         (stage.preconditioner == PreconditionerKind::BucketMultigrid &&
+          stage.multigrid.particleDiagonal == SmootherDiagonal::ExtendedJacobi);
+}
 
 template <int D, class Backend>
 void MphSystem<D, Backend>::setStep(const MphPairs<D>& pairs, const CellRanges<Backend>& ranges,
@@ -157,8 +157,9 @@ std::size_t MphSystem<D, Backend>::bytes() const {
   return sum;
 }
 
-#define TREACLE_INSTANTIATE(Backend)    \
-  template class MphSystem<2, Backend>; \
+#define TREACLE_INSTANTIATE(Backend)                            \
+  template bool needsAssembled<Backend>(const SolverSettings&); \
+  template class MphSystem<2, Backend>;                         \
   template class MphSystem<3, Backend>;
 TREACLE_FOR_EACH_BACKEND(TREACLE_INSTANTIATE)
 #undef TREACLE_INSTANTIATE

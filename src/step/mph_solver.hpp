@@ -12,6 +12,10 @@
 
 namespace treacle {
 
+/// Whether a stage of a solver takes A as a matrix: the pairs' lists must then hold whole rows.
+template <class Backend>
+bool needsAssembled(const SolverSettings& stage);
+
 /// The system of a step of MPH-I for the velocities, A = rho/dt I + V + C Lambda C^T, and its preconditioners.
 template <int D, class Backend = Cpu>
 class MphSystem final : public StagedSystem<Backend> {

@@ -7,6 +7,7 @@
 #include "treacle/mph/mph_particles.hpp"
 #include "treacle/step/first_guess.hpp"
 #include "treacle/step/solve_stages.hpp"
+#include "treacle/step/wall_motion.hpp"
 
 namespace treacle {
 namespace {
@@ -19,10 +20,11 @@ class MphStep final : public StepMethod<D, Backend> {
       : state_(state),
         neighbourhood_(state.theCase),
         pairs_(neighbourhood_.pairs()),
+        wholeRows_(needsAssembled<Backend>(state.theCase.solver)),
         solver_(solveStages(state.theCase)) {}
 
   void sortParticles() override { neighbourhood_.sort(state_.context, state_.particles); }
-  void findNeighbours() override { neighbourhood_.buildLists(state_.context, state_.particles); }
+  void findNeighbours() override { neighbourhood_.buildLists(state_.context, state_.particles, wholeRows_); }
 
   void computeDensities() override {
     const std::uint32_t active = pairs_.activeCount;
@@ -33,6 +35,7 @@ class MphStep final : public StepMethod<D, Backend> {
 
   void prepareSystem() override {
     neighbourhood_.setTimeStep(state_.timeStep);
+    placeWallSurfaces();
     computeDensities();
     wallBlock_.resize(state_.context, state_.particles.fluidCount);
     wallGradient_.resize(state_.context, state_.particles.fluidCount);
@@ -61,6 +64,10 @@ class MphStep final : public StepMethod<D, Backend> {
   /// With the modes of the state where the settings have it deflate, as the next step would.
   SolverTrial solveBy(const SolverSettings& settings) override {
     const SolverSettings stage = singleStage(state_.theCase, settings);
+    if (needsAssembled<Backend>(stage) && !wholeRows_) {
+      wholeRows_ = true;
+      findNeighbours();
+    }
     MphSolver<D, Backend> solver(stage);
     Buffer<Vec<D>, Backend> u;
     u.resize(state_.context, pairs_.fluidCount);
@@ -103,8 +110,8 @@ class MphStep final : public StepMethod<D, Backend> {
   const CellGrid<D>& grid() const override { return pairs_.grid; }
   const MaterialTable& materials() const override { return pairs_.materials; }
   std::size_t bytes() const override {
-    return neighbourhood_.bytes() + wallBlock_.bytes() + wallGradient_.bytes() + elastic_.bytes() +
-           divergence_.bytes() + rhs_.bytes() + solver_.bytes() + balance_.bytes();
+    return neighbourhood_.bytes() + wallSurface_.bytes() + wallBlock_.bytes() + wallGradient_.bytes() +
+           elastic_.bytes() + divergence_.bytes() + rhs_.bytes() + solver_.bytes() + balance_.bytes();
   }
 
  private:
@@ -114,6 +121,16 @@ class MphStep final : public StepMethod<D, Backend> {
                    state_.particles.velocity.span().first(u.size()), memory(), u);
   }
   WallTerms<D> wallTermsView() { return {wallBlock_.span(), wallGradient_.span()}; }
+
+  void placeWallSurfaces() {
+    Particles<D, Backend>& p = state_.particles;
+    if (p.wallSurface.empty()) return;
+    const std::uint32_t n = p.fluidCount, walls = pairs_.activeCount - n;
+    wallSurface_.resize(state_.context, walls);
+    placeSurfaces<D>(state_.context, {n, p.wallSurface.span(), state_.wallMotion.span()},
+                     p.id.span().subspan(n, walls), p.body.span().subspan(n, walls), wallSurface_.span());
+    neighbourhood_.setWallSurfaces(wallSurface_);
+  }
 
   /// b of [K23 eq. (16)], and the terms of prescribed wall velocities.
   void computeRightHandSide() {
@@ -156,6 +173,8 @@ class MphStep final : public StepMethod<D, Backend> {
   FlowState<D, Backend>& state_;
   MphNeighbourhood<D, Backend> neighbourhood_;
   const MphPairs<D>& pairs_;
+  bool wholeRows_;                               // of A in the lists
+  Buffer<WallSurface<D>, Backend> wallSurface_;  // per active wall particle
   Buffer<Block<D>, Backend> wallBlock_;
   Buffer<Vec<D>, Backend> wallGradient_;
   Buffer<double, Backend> elastic_;     // kappa [n - n_0]_+ per particle [Pa]

@@ -46,6 +46,7 @@ Scene<D> makeLargeScene(SchemeKind scheme) {
   const auto inWall = [&](const Vec<D>& x) { return x[D - 1] < 4 * l; };
   const auto inFluid = [&](const Vec<D>& x) { return x[D - 1] >= 4 * l && x[D - 1] < top; };
   s.particles = jitteredLattice<D>(s.c, 0.2, 3, inFluid, inWall);
+  knowSurface(s.c, 4 * l, s.particles);
   prepare(s);
   return s;
 }
@@ -60,6 +61,7 @@ struct DeviceScene {
   CellRanges<Cuda> ranges;
   BucketLevels<> hostLevels;
   BucketLevels<Cuda> levels;
+  Buffer<WallSurface<D>, Cuda> wallSurface;
   Buffer<Block<D>, Cuda> wallBlock;
   Buffer<Vec<D>, Cuda> wallGradient;
   MphPairs<D> pairs;  // looks at the members above
@@ -74,6 +76,10 @@ struct DeviceScene {
     levels = onDevice(context, hostLevels);
     copyToDevice<Block<D>>(context, s.wallBlock, wallBlock);
     copyToDevice<Vec<D>>(context, s.wallGradient, wallGradient);
+    if (!s.wallSurface.empty()) {
+      copyToDevice<WallSurface<D>>(context, s.wallSurface, wallSurface);
+      pairs.wallSurface = wallSurface.data();
+    }
     pairs.position = position;
     pairs.material = material;
     pairs.fluidList = fluidList.view();

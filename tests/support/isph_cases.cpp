@@ -59,7 +59,7 @@ Particles<D> created(const Case& c) {
 template <int D>
 Particles<D> copyOf(const Particles<D>& from) {
   Particles<D> p;
-  p.resize(from.fluidCount, from.wallCount());
+  p.resize(from.numbers());
   forEachFieldOf([](const auto& a, auto& b) { std::copy(a.begin(), a.end(), b.begin()); }, from, p);
   return p;
 }

@@ -38,6 +38,7 @@ struct LoadedWalls {
                  (D == 2 || (x[1] > 3 * l && x[1] < 8 * l));
         },
         [=](const Vec<D>& x) { return inside(x) && x[up] < height && (x[up] < 5 * l || x[0] < 5 * l); });
+    knowSurface(c, 5 * l, particles);
     c.bodies.resize(3);
     c.bodies[0].name = "block";
     c.bodies[1].name = "floor";
@@ -59,7 +60,7 @@ struct LoadedWalls {
 
   Particles<D> copy() const {
     Particles<D> p;
-    p.resize(particles.fluidCount, particles.wallCount());
+    p.resize(particles.numbers());
     forEachFieldOf([](const auto& from, auto& to) { std::copy(from.begin(), from.end(), to.begin()); }, particles,
                    p);
     return p;

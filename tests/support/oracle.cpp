@@ -64,6 +64,26 @@ double Oracle<D>::mu(std::uint32_t i, std::uint32_t j) const {
 }
 
 template <int D>
+double Oracle<D>::wallFactor(std::uint32_t i, std::uint32_t j) const {
+  if (j < s.n() || s.particles.wallSurface.empty()) return 1;
+  const WallSurface<D>& surface = s.particles.wallSurface[s.particles.id[j] - s.n()];
+  double crossing = 0, factor = 0;  // crossing: where the line from i meets the face, as a share of its length
+  for (const Vec<D, float>& face : surface.face) {
+    double depth = 0, distance = 0;
+    for (int k = 0; k < D; ++k) depth += std::pow(face[k], 2);
+    depth = std::sqrt(depth);
+    if (depth == 0) continue;
+    for (int k = 0; k < D; ++k) distance -= face[k] / depth * difference(i, j)[k];
+    distance -= depth;
+    const double share = distance / (distance + depth), held = std::max(distance, l / 4);
+    if (factor > 0 && (distance <= 0 || share <= crossing)) continue;
+    crossing = distance > 0 ? share : 0;
+    factor = (held + depth) / (held + material(i).slipLength);
+  }
+  return factor > 0 ? factor : 1;
+}
+
+template <int D>
 Vec<D> Oracle<D>::difference(std::uint32_t i, std::uint32_t j) const {
   Vec<D> d;
   for (int k = 0; k < D; ++k) {
@@ -95,7 +115,7 @@ double Oracle<D>::dissipation(const Vector& u) const {
       double along = 0;
       for (int k = 0; k < D; ++k) along += (u[D * j + k] - u[D * i + k]) * d[k] / r;
       divergence += along * dw(r, hp);
-      if (j > i) sum += mu(i, j) / 2 * viscousBlock(r) * r * r * along * along;
+      if (j > i) sum += mu(i, j) * wallFactor(i, j) / 2 * viscousBlock(r) * r * r * along * along;
     }
     sum += material(i).bulkViscosity / 2 * divergence * divergence;
   }
@@ -125,7 +145,7 @@ Matrix Oracle<D>::viscosityMatrix() const {
       const Vec<D> d = difference(i, j);
       const double r = norm(d);
       Block<D> block{};
-      block.addOuter(mu(i, j) * viscousBlock(r), d, d);
+      block.addOuter(mu(i, j) * wallFactor(i, j) * viscousBlock(r), d, d);
       for (int k = 0; k < D; ++k)
         for (int m = 0; m < D; ++m) {
           v(D * i + k, D * i + m) += block(k, m);

@@ -27,6 +27,8 @@ struct Oracle {
   /// c of a viscous pair block mu c d d^T.
   double viscousBlock(double r) const;
   double mu(std::uint32_t i, std::uint32_t j) const;
+  /// (d_i + d_j) / (d_i + b) where j is a wall particle that knows its surface, else 1.
+  double wallFactor(std::uint32_t i, std::uint32_t j) const;
   /// Nearest periodic image of x_j - x_i.
   Vec<D> difference(std::uint32_t i, std::uint32_t j) const;
 

@@ -1,6 +1,7 @@
 #include "support/scene.hpp"
 
 #include "treacle/model/case_keys.hpp"
+#include "treacle/mph/wall_surfaces.hpp"
 
 #include <cmath>
 #include <random>
@@ -19,7 +20,7 @@ Case sceneCase(int dimensions, bool twoMaterials, SchemeKind scheme) {
     c.domain.periodic[k] = true;
   }
   c.materials.push_back({"honey", 1.4e3, 10, 1e4, 1e6});
-  c.materials.push_back(twoMaterials ? Material{"resin", 1.1e3, 2.5, 4e3, 5e5} : c.materials[0]);
+  c.materials.push_back(twoMaterials ? Material{"resin", 1.1e3, 2.5, 4e3, 5e5, 4e-4} : c.materials[0]);
   return c;
 }
 
@@ -56,10 +57,28 @@ Particles<D> jitteredLattice(const Case& c, double jitter, unsigned seed, const 
 }
 
 template <int D>
+void knowSurface(const Case& c, double height, Particles<D>& p) {
+  if (c.method.wallVelocity == WallVelocity::Own) return;
+  p.wallSurface.resize(p.wallCount());
+  for (std::uint32_t k = 0; k < p.wallCount(); ++k) {
+    WallSurface<D>& surface = p.wallSurface[k] = {};
+    surface.face[0][D - 1] = static_cast<float>(height - p.position[p.fluidCount + k][D - 1]);
+    if (k % 3 == 0) surface.face[1][0] = static_cast<float>((k % 2 ? -0.7 : 0.7) * c.spacing);
+  }
+}
+
+template <int D>
 void prepare(Scene<D>& s) {
   s.neighbourhood = std::make_unique<MphNeighbourhood<D>>(s.c);
   s.neighbourhood->sort(s.context, s.particles);
   s.neighbourhood->buildLists(s.context, s.particles);
+  if (!s.particles.wallSurface.empty()) {
+    const std::uint32_t n = s.n(), walls = s.pairs().activeCount - n;
+    s.wallSurface.resize(walls);
+    placeSurfaces<D>(s.context, {n, s.particles.wallSurface.span(), {}}, s.particles.id.span().subspan(n, walls),
+                     s.particles.body.span().subspan(n, walls), s.wallSurface.span());
+    s.neighbourhood->setWallSurfaces(s.wallSurface);
+  }
   s.wallBlock.resize(s.n());
   s.wallGradient.resize(s.n());
   wallTerms<D>(s.context, s.pairs(), s.terms());
@@ -77,14 +96,17 @@ Scene<D> makeScene(const SceneOptions& options) {
     return !inWall(x) && across && x[D - 1] >= floor && x[D - 1] < floor + height && (D == 2 || x[1] < 6 * l);
   };
   s.particles = jitteredLattice<D>(s.c, options.jitter, options.seed, inFluid, inWall);
+  knowSurface(s.c, floor, s.particles);
   prepare(s);
   return s;
 }
 
 template Particles<2> jitteredLattice(const Case&, double, unsigned, const Where<2>&, const Where<2>&);
+template void knowSurface(const Case&, double, Particles<2>&);
 template void prepare(Scene<2>&);
 template Scene<2> makeScene(const SceneOptions&);
 template Particles<3> jitteredLattice(const Case&, double, unsigned, const Where<3>&, const Where<3>&);
+template void knowSurface(const Case&, double, Particles<3>&);
 template void prepare(Scene<3>&);
 template Scene<3> makeScene(const SceneOptions&);
 

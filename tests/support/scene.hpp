@@ -14,15 +14,17 @@
 
 namespace treacle::test {
 
-/// A small body of fluid on a floor in a periodic domain, jittered, with two materials: everything that a step
-/// prepares before its solve, and the same state for oracles that know only positions and constants. For D = 2 and
-/// 3, as all templates of this folder that are declared in a header and defined in a source.
+/// A small body of fluid on a floor in a periodic domain, jittered, with two materials, one of which slips:
+/// everything that a step prepares before its solve, and the same state for oracles that know only positions and
+/// constants. For D = 2 and 3, as all templates of this folder that are declared in a header and defined in a
+/// source.
 template <int D>
 struct Scene {
   Case c;
   Particles<D> particles;
   Context<Cpu> context;
   std::unique_ptr<MphNeighbourhood<D>> neighbourhood;
+  Buffer<WallSurface<D>> wallSurface;  // per active wall particle
   Buffer<Block<D>> wallBlock;
   Buffer<Vec<D>> wallGradient;
 
@@ -43,6 +45,11 @@ using Where = std::function<bool(const Vec<D>&)>;
 template <int D>
 Particles<D> jitteredLattice(const Case& c, double jitter, unsigned seed, const Where<D>& inFluid,
                              const Where<D>& inWall);
+
+/// Gives the wall particles a surface at this height [m], and every third one another face beside it, where the
+/// case's method looks at surfaces.
+template <int D>
+void knowSurface(const Case& c, double height, Particles<D>& p);
 
 /// Brings particles into the state of a step before its solve.
 template <int D>

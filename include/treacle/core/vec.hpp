@@ -85,6 +85,14 @@ TREACLE_HD T norm(const Vec<D, T>& a) {
   return std::sqrt(norm2(a));
 }
 
+/// The same with components of another type.
+template <class U, int D, class T>
+TREACLE_HD constexpr Vec<D, U> converted(const Vec<D, T>& a) {
+  Vec<D, U> r{};
+  for (int k = 0; k < D; ++k) r[k] = static_cast<U>(a[k]);
+  return r;
+}
+
 /// Conversion between dimensions: missing components become zero, surplus ones are dropped.
 template <int E, int D, class T>
 TREACLE_HD constexpr Vec<E, T> resized(const Vec<D, T>& a) {

@@ -8,18 +8,6 @@
 
 namespace treacle {
 
-/// How many particles of each kind, and modes of the solver, there are.
-struct ParticleNumbers {
-  std::uint64_t fluid = 0, wall = 0, modes = 0;
-
-  bool operator==(const ParticleNumbers&) const = default;
-};
-
-template <int D, class Backend>
-ParticleNumbers numbersOf(const Particles<D, Backend>& p) {
-  return {p.fluidCount, p.wallCount(), p.modeCount()};
-}
-
 /// Particles on the host, in two or three dimensions as the case has it.
 class AnyParticles {
  public:
@@ -42,7 +30,7 @@ class AnyParticles {
   }
 
   ParticleNumbers numbers() const {
-    return visit([](const auto& p) { return numbersOf(p); });
+    return visit([](const auto& p) { return p.numbers(); });
   }
 
   /// Errors: std::bad_variant_access for other dimensions.

@@ -23,6 +23,7 @@ struct Material {
   double dynamicViscosity = 0;  // mu [Pa s]
   double bulkViscosity = 0;     // lambda [Pa s]
   double bulkModulus = 0;       // kappa [Pa]
+  double slipLength = 0;        // how far behind a wall its velocity, extrapolated, is the wall's [m]; 0: no slip
 
   bool operator==(const Material&) const = default;
 };
@@ -128,12 +129,17 @@ enum class SchemeKind { Published, Accurate };
 /// (1-q)^4 (1+4q), and C4, (1-q)^6 (3+18q+35q^2); (1-q^2)^2/q^2.
 enum class PressureWeight { Mps, WendlandC2, WendlandC4 };
 enum class ViscosityWeight { Mps, Biquadratic };
+/// Which velocity the fluid meets in a wall: each wall particle's own, so that a wall ends somewhere between its
+/// first particles and the fluid, or the wall's velocity extrapolated through its surface, which is then where it
+/// ends.
+enum class WallVelocity { Own, Extrapolated };
 
 struct MethodSettings {
   MethodKind kind = MethodKind::MphI;
   SchemeKind scheme = SchemeKind::Published;
   PressureWeight pressureWeight = PressureWeight::Mps;
   ViscosityWeight viscosityWeight = ViscosityWeight::Mps;
+  WallVelocity wallVelocity = WallVelocity::Own;
   // Effective radii of MPH-I in particle spacings [K23 Table 1].
   double pressureRadius = 1.75;  // h_p / l
   double viscosityRadius = 3.5;  // h_v / l

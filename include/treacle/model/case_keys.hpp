@@ -134,6 +134,7 @@ void visit(auto& v, Like<Material> auto& m, const Case& c) {
   if (c.method.kind != MethodKind::MphI) return;
   v({"bulk_viscosity", required, "Pa s", notNegative}, m.bulkViscosity);
   v({"bulk_modulus", required, "Pa", notNegative}, m.bulkModulus);
+  v({"slip_length", optional, "m", notNegative}, m.slipLength);
 }
 
 void visit(auto& v, Like<Oscillation> auto& o, const Case&) {
@@ -214,6 +215,7 @@ void visit(auto& v, Like<MethodSettings> auto& m, const Case& c) {
   v({"scheme"}, m.scheme);
   v({"pressure_weight"}, m.pressureWeight);
   v({"viscosity_weight"}, m.viscosityWeight);
+  v({"wall_velocity"}, m.wallVelocity);
   v({"pressure_radius", optional, "spacings", positive}, m.pressureRadius);
   v({"viscosity_radius", optional, "spacings", positive}, m.viscosityRadius);
 }

@@ -11,6 +11,7 @@ struct MaterialTable {
   double inertia[maxMaterials];                      // rho / dt [kg/(m3 s)]
   double bulkViscosity[maxMaterials];                // lambda [Pa s]
   double bulkModulus[maxMaterials];                  // kappa [Pa]
+  double slipLength[maxMaterials];                   // [m]
   double pairViscosity[maxMaterials][maxMaterials];  // mu_ij = 2 mu_i mu_j / (mu_i + mu_j) [Pa s]
   double pairMobility[maxMaterials][maxMaterials];   // 4 / (rho_i + rho_j) [m3/kg], of ISPH's pressure equation
 

@@ -32,6 +32,8 @@ inline constexpr Named<SchemeKind> scheme[] = {{"published", SchemeKind::Publish
 inline constexpr Named<PressureWeight> pressureWeight[] = {{"mps", PressureWeight::Mps},
                                                            {"wendland-c2", PressureWeight::WendlandC2},
                                                            {"wendland-c4", PressureWeight::WendlandC4}};
+inline constexpr Named<WallVelocity> wallVelocity[] = {{"own", WallVelocity::Own},
+                                                       {"extrapolated", WallVelocity::Extrapolated}};
 inline constexpr Named<ViscosityWeight> viscosityWeight[] = {{"mps", ViscosityWeight::Mps},
                                                              {"biquadratic", ViscosityWeight::Biquadratic}};
 inline constexpr Named<KernelKind> kernel[] = {{"cubic-spline", KernelKind::CubicSpline},
@@ -76,6 +78,8 @@ template <>
 inline constexpr std::span<const Named<SchemeKind>> namesOf<SchemeKind>{names::scheme};
 template <>
 inline constexpr std::span<const Named<PressureWeight>> namesOf<PressureWeight>{names::pressureWeight};
+template <>
+inline constexpr std::span<const Named<WallVelocity>> namesOf<WallVelocity>{names::wallVelocity};
 template <>
 inline constexpr std::span<const Named<ViscosityWeight>> namesOf<ViscosityWeight>{names::viscosityWeight};
 template <>

@@ -3,6 +3,7 @@
 #include "treacle/core/buffer.hpp"
 #include "treacle/core/vec.hpp"
 #include "treacle/model/solver_modes.hpp"
+#include "treacle/model/wall_surface.hpp"
 
 #include <cstdint>
 #include <type_traits>
@@ -28,8 +29,15 @@ template <class F, class... Sets>
 void forEachFieldOf(F&& f, Sets&... sets) {
   forEachSharedFieldOf(f, sets...);
   forEachFluidFieldOf(f, sets...);
-  f(sets.modes.vectors...);
+  f(sets.modes.vectors...), f(sets.wallSurface...);
 }
+
+/// How many particles of each kind, modes of the solver and known surfaces of walls there are.
+struct ParticleNumbers {
+  std::uint64_t fluid = 0, wall = 0, modes = 0, surfaces = 0;
+
+  bool operator==(const ParticleNumbers&) const = default;
+};
 
 /// In place of a body: not known. Case files have fewer bodies than this.
 inline constexpr std::uint8_t unknownBody = 255;
@@ -58,18 +66,27 @@ struct Particles {
   // The memory of the solver, likewise.
   SolverModes<D, Backend> modes;
 
+  // Of the wall particle with id fluidCount + k; never sorted. Empty: walls have no surface, and the fluid meets
+  // their velocities where their particles are.
+  Buffer<WallSurface<D>, Backend> wallSurface;
+
   std::uint32_t wallCount() const { return count - fluidCount; }
   std::uint32_t modeCount() const {
     return fluidCount > 0 ? static_cast<std::uint32_t>(modes.vectors.size() / fluidCount) : 0;
   }
 
+  ParticleNumbers numbers() const { return {fluidCount, wallCount(), modeCount(), wallSurface.size()}; }
+
   /// The content is undefined afterwards. Errors: std::bad_alloc.
   void resize(std::uint32_t fluid, std::uint32_t wall,
               std::uint32_t modeNumber = 0) requires std::is_same_v<Backend, Cpu> {
-    resize(Context<Cpu>{}, fluid, wall, modeNumber);
+    resize(Context<Cpu>{}, {fluid, wall, modeNumber});
   }
-  void resize(const Context<Backend>& context, std::uint32_t fluid, std::uint32_t wall,
-              std::uint32_t modeNumber = 0) {
+  void resize(const ParticleNumbers& numbers) requires std::is_same_v<Backend, Cpu> {
+    resize(Context<Cpu>{}, numbers);
+  }
+  void resize(const Context<Backend>& context, const ParticleNumbers& numbers) {
+    const auto fluid = static_cast<std::uint32_t>(numbers.fluid), wall = static_cast<std::uint32_t>(numbers.wall);
     fluidCount = fluid;
     count = fluid + wall;
     const auto resizeTo = [&](std::uint32_t size) {
@@ -77,8 +94,9 @@ struct Particles {
     };
     forEachSharedFieldOf(resizeTo(count), *this);
     forEachFluidFieldOf(resizeTo(fluid), *this);
-    modes.vectors.resize(context, std::size_t{fluid} * modeNumber);
+    modes.vectors.resize(context, fluid * numbers.modes);
     modes.age = {};
+    wallSurface.resize(context, numbers.surfaces);
   }
 
   /// Calls f with every field.

@@ -8,7 +8,7 @@ namespace treacle {
 /// All fields and counts; they wait until the data are there. Errors: std::bad_alloc.
 template <int D>
 void copyToDevice(const Context<Cuda>& context, const Particles<D>& host, Particles<D, Cuda>& device) {
-  device.resize(context, host.fluidCount, host.wallCount(), host.modeCount());
+  device.resize(context, host.numbers());
   device.modes.age = host.modes.age;
   const auto copy = [&]<class T>(const Buffer<T>& from, Buffer<T, Cuda>& to) {
     copyBytesToDevice(context, from.data(), to.data(), from.size() * sizeof(T));
@@ -17,7 +17,7 @@ void copyToDevice(const Context<Cuda>& context, const Particles<D>& host, Partic
 }
 template <int D>
 void copyToHost(const Context<Cuda>& context, const Particles<D, Cuda>& device, Particles<D>& host) {
-  host.resize(device.fluidCount, device.wallCount(), device.modeCount());
+  host.resize(device.numbers());
   host.modes.age = device.modes.age;
   const auto copy = [&]<class T>(const Buffer<T, Cuda>& from, Buffer<T>& to) {
     copyBytesToHost(context, from.data(), to.data(), from.size() * sizeof(T));

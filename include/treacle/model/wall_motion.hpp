@@ -13,13 +13,15 @@ namespace treacle {
 /// divergence and no part towards the centre.
 template <int D>
 struct WallMotion {
-  Vec<D> velocity{};      // of the centre, mean over the step [m/s]
-  Vec<D> acceleration{};  // of the centre, at the end of the step [m/s2]
-  Vec<D> center{};        // at the start of the step [m]
-  Vec<D> period{};        // of the domain, 0 on open axes [m]
-  Vec<3> spin{};          // omega [rad/s]
-  double along = 1;       // sin(omega dt) / (omega dt)
-  double inwards = 0;     // (1 - cos(omega dt)) / (omega^2 dt) [s]
+  Vec<D> velocity{};            // of the centre, mean over the step [m/s]
+  Vec<D> acceleration{};        // of the centre, at the end of the step [m/s2]
+  Vec<D> center{};              // at the start of the step [m]
+  Vec<D> period{};              // of the domain, 0 on open axes [m]
+  Vec<3> spin{};                // omega [rad/s]
+  double along = 1;             // sin(omega dt) / (omega dt)
+  double inwards = 0;           // (1 - cos(omega dt)) / (omega^2 dt) [s]
+  Vec<3> axis{};                // of the rotation, of length 1
+  double sine = 0, cosine = 1;  // of the angle turned from t = 0 to the start of the step
 
   /// From the nearest image of the centre to x [m].
   TREACLE_HD Vec<D> arm(const Vec<D>& x) const {
@@ -42,6 +44,15 @@ struct WallMotion {
   TREACLE_HD Vec<D> chordAt(const Vec<D>& x) const {
     const Vec<D> u = swirl(arm(x));
     return velocity + along * u + inwards * swirl(u);
+  }
+  /// A vector of the wall as it was at t = 0, turned with the wall to the start of the step.
+  TREACLE_HD Vec<D> turned(const Vec<D>& v) const {
+    if constexpr (D == 2) {
+      const double s = axis[2] * sine;
+      return {cosine * v[0] - s * v[1], s * v[0] + cosine * v[1]};
+    } else {
+      return cosine * v + sine * cross(axis, v) + ((1 - cosine) * dot(axis, v)) * axis;
+    }
   }
   /// Of a particle at x [m/s2].
   TREACLE_HD Vec<D> accelerationAt(const Vec<D>& x) const { return acceleration + swirl(swirl(arm(x))); }

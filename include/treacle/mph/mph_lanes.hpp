@@ -42,6 +42,23 @@ inline void forEachCluster(const MphPairs<D>& pairs, const ClusterListView& list
   });
 }
 
+/// The wall factors of the fluid particles of a cluster with a wall particle, and of the wall particles of a
+/// cluster with a fluid particle; d: from the lanes' particles to it [m].
+template <int D>
+inline Lanes wallFactors(const MphPairs<D>& pairs, const ClusterRange& range, std::uint32_t j,
+                         const VecLanes<D>& d) {
+  if (!pairs.wallSurface) return broadcast(1.0);
+  Lanes factors = broadcast(1.0);
+  const bool wall = j >= pairs.fluidCount;
+  for (std::uint32_t lane = 0; lane < range.count; ++lane) {
+    Vec<D> toOther;
+    for (int k = 0; k < D; ++k) toOther[k] = d[k][lane];
+    const std::uint32_t i = range.particle(lane);
+    factors[lane] = wall ? pairs.wallFactor(i, j, toOther) : pairs.wallFactor(j, i, -1.0 * toOther);
+  }
+  return factors;
+}
+
 /// mu_ij times the viscous factor, for the lanes of a cluster and a neighbour.
 template <int D>
 class ViscosityLanes {

@@ -26,7 +26,9 @@ class MphNeighbourhood {
 
   /// Neighbour lists of the sorted particles; pairs() then looks at them until the next sort. On a device the case
   /// may do without lists: pair sums then walk the cell ranges, and the views have clusters but no entries.
-  void buildLists(Context<Backend>& context, const Particles<D, Backend>& particles) {
+  /// `wholeRows`: lists of fluid reach as far as A couples, which only assembling A needs, and not only as far as
+  /// pairs act on each other.
+  void buildLists(Context<Backend>& context, const Particles<D, Backend>& particles, bool wholeRows = true) {
     const std::uint32_t fluid = particles.fluidCount, active = ranges_.activeCount;
     pairs_.fluidCount = fluid;
     pairs_.activeCount = active;
@@ -38,11 +40,17 @@ class MphNeighbourhood {
       pairs_.wallList = {fluid, active};
       return;
     }
-    const double hp = pairs_.terms.pressureRadius, far = std::max(pairs_.terms.viscosityRadius, 2 * hp);
+    const double hp = pairs_.terms.pressureRadius;
+    const double far = std::max(pairs_.terms.viscosityRadius, wholeRows ? 2 * hp : hp);
     buildClusterList<D>(context, pairs_.grid, ranges_, pairs_.position, 0, fluid, {hp, far}, false, fluidList_);
     buildClusterList<D>(context, pairs_.grid, ranges_, pairs_.position, fluid, active, {hp, 0}, true, wallList_);
     pairs_.fluidList = fluidList_.view();
     pairs_.wallList = wallList_.view();
+  }
+
+  /// Of the active wall particles, as they are; must outlive the sums of the step. Empty: none is known.
+  void setWallSurfaces(std::span<const WallSurface<D>> surfaces) {
+    pairs_.wallSurface = surfaces.empty() ? nullptr : surfaces.data();
   }
 
   /// Of the step at hand [s].

@@ -2,6 +2,7 @@
 
 #include "treacle/model/case.hpp"
 #include "treacle/mph/mph_terms.hpp"
+#include "treacle/mph/wall_surfaces.hpp"
 #include "treacle/search/cluster_list.hpp"
 #include "treacle/search/material_particles.hpp"
 
@@ -12,13 +13,22 @@ namespace treacle {
 /// What every pair sum of a step reads.
 template <int D>
 struct MphPairs : MaterialParticles<D> {
-  ClusterListView fluidList;  // near h_p, far max(h_v, 2 h_p)
+  ClusterListView fluidList;  // near h_p, far h_v or, to assemble A, 2 h_p if that is more
   ClusterListView wallList;   // near h_p only
   PeriodicImages<D> images;
   MphTerms<D> terms{};     // lengths in metres
   double restDensity = 0;  // n_0 [-]
+  const WallSurface<D>* wallSurface =
+      nullptr;  // of the first wall particle; null: the fluid meets walls as they are
 
   TREACLE_HD Vec<D> positionOf(ListEntry e) const { return this->position[e.index()] + images.shift[e.image()]; }
+
+  /// By what the viscosity of fluid particle i with wall particle j is multiplied; d = x_j - x_i [m].
+  TREACLE_HD double wallFactor(std::uint32_t i, std::uint32_t j, const Vec<D>& d) const {
+    if (!wallSurface) return 1;
+    return treacle::wallFactor(wallSurface[j - this->fluidCount], d, this->spacing,
+                               this->materials.slipLength[this->material[i]]);
+  }
 };
 
 /// The constants of a case, without particles.

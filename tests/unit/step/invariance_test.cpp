@@ -33,7 +33,7 @@ Scene<D> start() {
 template <int D>
 Particles<D> reordered(const Particles<D>& from, const std::function<std::uint32_t(std::uint32_t)>& source) {
   Particles<D> p;
-  p.resize(from.fluidCount, from.wallCount());
+  p.resize(from.numbers());
   forEachFieldOf(
       [&](auto& field, const auto& values) {
         for (std::uint32_t i = 0; i < field.size(); ++i) field[i] = values[source(i)];
