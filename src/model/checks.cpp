@@ -1,6 +1,7 @@
 #include "treacle/model/checks.hpp"
 
 #include "body_points.hpp"
+#include "treacle/model/names.hpp"
 #include "treacle/model/shape.hpp"
 
 #include <fmt/format.h>
@@ -93,6 +94,26 @@ void warnThinWalls(const Case& c, std::vector<std::string>& warnings) {
   }
 }
 
+/// Sums over particles are to stand for integrals. With radii from these on, those of a Wendland function over a
+/// cubic lattice vary by less than 2.5 % with the place, of its slope times r by less than 6 %, and those of the
+/// biquadratic weight times r^2 by less than 4.5 %; at 2 spacings the former vary by up to 6 % (C2) and 25 % (C4),
+/// at 1.75 the latter by 7 %.
+void warnShortRadii(const Case& c, std::vector<std::string>& warnings) {
+  const MethodSettings& m = c.method;
+  if (m.kind != MethodKind::MphI) return;
+  const auto check = [&](std::string_view key, double radius, double least, std::string_view weight) {
+    if (radius >= least * (1 - rounding)) return;
+    warnings.push_back(fmt::format(
+        "method.{} = {:g} spacings is short for the weight '{}', expected at least {:g}: sums over so few "
+        "neighbours depend on where these stand",
+        key, radius, weight, least));
+  };
+  if (m.pressureWeight != PressureWeight::Mps)
+    check("pressure_radius", m.pressureRadius, 2.5, nameOf(m.pressureWeight));
+  if (m.viscosityWeight != ViscosityWeight::Mps)
+    check("viscosity_radius", m.viscosityRadius, 2, nameOf(m.viscosityWeight));
+}
+
 /// The forces of MPH-I are implicit but for gravity; ISPH moves on what it has at the start of a step.
 void warnCourant(const Case& c, std::vector<std::string>& warnings) {
   constexpr double largest = 0.5;
@@ -142,6 +163,7 @@ std::vector<std::string> caseWarnings(const Case& c) {
   warnCompression(c, warnings);
   warnCourant(c, warnings);
   warnThinWalls(c, warnings);
+  warnShortRadii(c, warnings);
   if (!c.time.stepsVary()) warnTimes(c, warnings);
   return warnings;
 }

@@ -29,7 +29,7 @@ std::vector<StabilityNumbers> stabilityNumbers(const Case& c);
 double courantNumber(const Case& c);
 
 /// What a user should know although the case can be run: unstable compression, long steps of ISPH, thin walls,
-/// times that are not whole numbers of steps.
+/// radii that are short for their weights, times that are not whole numbers of steps.
 std::vector<std::string> caseWarnings(const Case& c);
 
 }  // namespace treacle

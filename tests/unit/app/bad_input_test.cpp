@@ -493,6 +493,10 @@ constexpr Warning warnings[] = {
      "wall 'floor' is 2 mm thick along y, thinner than the viscosity radius h_v = 3.5 mm (3.5 spacings): fluid "
      "next "
      "to it misses neighbours"},
+    {"shortRadius", "[output]", "[method]\nscheme = \"accurate\"\npressure_radius = 2\n[output]",
+     "method.pressure_radius = 2 spacings is short for the weight 'wendland-c2', expected at least 2.5: sums over "
+     "so "
+     "few neighbours depend on where these stand"},
     {"unstableCompression", "bulk_modulus = 1e6", "bulk_modulus = 2e7",
      "material 'syrup': dt kappa / lambda = 2 is greater than 1, the step may be unstable; take bulk_modulus <= "
      "bulk_viscosity / step, or a shorter step"},

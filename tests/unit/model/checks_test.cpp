@@ -183,6 +183,31 @@ TEST(caseWarnings, wallsThinnerThanTheViscosityRadius) {  // h_v = 3.5
   }
 }
 
+TEST(caseWarnings, radiiThatAreShortForTheirWeights) {
+  Case c = damBreak();
+  c.method.pressureRadius = 1.75, c.method.viscosityRadius = 1.5;
+  EXPECT_THAT(caseWarnings(c), IsEmpty()) << "weights of the paper";
+  for (const PressureWeight weight : {PressureWeight::WendlandC2, PressureWeight::WendlandC4}) {
+    c.method.pressureWeight = weight;
+    c.method.pressureRadius = 2.5;
+    EXPECT_THAT(caseWarnings(c), IsEmpty());
+    c.method.pressureRadius = 2.4;
+    EXPECT_THAT(caseWarnings(c), ElementsAre(HasSubstr("method.pressure_radius = 2.4 spacings is short for")));
+  }
+  c.method.pressureRadius = 3;
+  c.method.viscosityWeight = ViscosityWeight::Biquadratic;
+  EXPECT_THAT(
+      caseWarnings(c),
+      ElementsAre("method.viscosity_radius = 1.5 spacings is short for the weight 'biquadratic', expected at "
+                  "least 2: sums over so few neighbours depend on where these stand"));
+  c.method.viscosityRadius = 2;
+  EXPECT_THAT(caseWarnings(c), IsEmpty());
+  c.method.viscosityRadius = 1.5;
+  c.method.kind = MethodKind::Isph;  // has no such weights
+  c.time.step = 1e-4;
+  EXPECT_THAT(caseWarnings(c), IsEmpty());
+}
+
 TEST(caseWarnings, timesThatAreNotWholeNumbersOfSteps) {
   Case c = damBreak();
   c.time.end = 0.2004;
