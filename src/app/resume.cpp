@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -55,6 +56,13 @@ void setBodies(const Case& c, const std::filesystem::path& file, const Particles
   }
 }
 
+/// Surfaces of walls follow from the case; a file does not have them.
+template <int D>
+void setWallSurfaces(const Particles<D>& made, Particles<D>& p) {
+  p.wallSurface.resize(made.wallSurface.size());
+  std::copy(made.wallSurface.begin(), made.wallSurface.end(), p.wallSurface.begin());
+}
+
 std::int64_t stepAt(double time, const TimeSettings& settings, const std::filesystem::path& file) {
   const double steps = time / settings.step, whole = std::round(steps);
   if (!(std::abs(steps - whole) < 1e-6))
@@ -70,6 +78,7 @@ StartState fittingState(const Case& c, const std::filesystem::path& file, const 
     Checkpoint<D> state = readCheckpoint<D>(file);
     requireFit(c, file, state.particles, created);
     setBodies(c, file, created, state.particles);
+    setWallSurfaces(created, state.particles);
     return {std::move(state.particles), state.step, state.time};
   });
   if (!c.time.stepsVary()) start.step = stepAt(start.time, c.time, file);

@@ -16,8 +16,7 @@ namespace treacle {
 namespace {
 
 constexpr std::string_view formatName = "treacle checkpoint";
-// 1: without acceleration and jerk; 2: without bodies and modes; 3: without the surfaces of walls
-constexpr std::int32_t formatVersion = 4;
+constexpr std::int32_t formatVersion = 3;  // 1: without acceleration and jerk; 2: without bodies and modes
 
 /// A field as the file holds it.
 struct FieldInfo {
@@ -27,19 +26,19 @@ struct FieldInfo {
   std::uint8_t older = 0;  // what whole numbers count as in older files; others are zero
 };
 
-/// Calls f(info, field) for every field. The binding names all members of Particles: it does not compile once one
-/// is added that is not written here.
+/// Calls f(info, field) for every field but the surfaces of the walls, which follow from the case. The binding
+/// names all members of Particles: it does not compile once one is added that is not written here.
 template <class P, class F>
 void forEachNamedField(P& particles, F&& f) {
   auto& [fluidCount, count, position, velocity, pressure, numberDensity, material, body, id, acceleration, jerk,
          modes, wallSurface] = particles;
+  static_cast<void>(wallSurface);
   f(FieldInfo{"position", count}, position), f(FieldInfo{"velocity", count}, velocity);
   f(FieldInfo{"pressure", count}, pressure), f(FieldInfo{"number_density", count}, numberDensity);
   f(FieldInfo{"material", count}, material), f(FieldInfo{"body", count, 3, unknownBody}, body);
   f(FieldInfo{"id", count}, id);
   f(FieldInfo{"acceleration", fluidCount, 2}, acceleration), f(FieldInfo{"jerk", fluidCount, 2}, jerk);
   f(FieldInfo{"modes", static_cast<std::uint32_t>(modes.vectors.size()), 3}, modes.vectors);
-  f(FieldInfo{"wall_surface", static_cast<std::uint32_t>(wallSurface.size()), 4}, wallSurface);
 }
 
 /// Type of a value in the file and in memory.
@@ -62,12 +61,6 @@ template <int D>
 Layout layoutOf(const Vec<D, float>*) {
   static_assert(sizeof(Vec<D, float>) == D * sizeof(float));
   return {H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, D};
-}
-
-template <int D>
-Layout layoutOf(const WallSurface<D>*) {
-  static_assert(sizeof(WallSurface<D>) == 2 * D * sizeof(float));
-  return {H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, 2 * D};
 }
 
 /// Vectors make a table of count rows and D columns.
@@ -141,7 +134,6 @@ void fill(hid_t file, const Particles<D>& particles, std::int64_t step, double t
   writeAttribute(file, "wall_count", particles.wallCount());
   const ModeAge& age = particles.modes.age;
   writeAttribute(file, "mode_count", particles.modeCount());
-  writeAttribute(file, "wall_surface_count", static_cast<std::uint32_t>(particles.wallSurface.size()));
   writeAttribute(file, "modes_due", age.due);
   writeAttribute(file, "modes_fewest_iterations", age.fewest);
   forEachNamedField(particles, [&](const FieldInfo& info, const auto& field) { writeField(file, info, field); });
@@ -220,7 +212,6 @@ Checkpoint<D> readCheckpoint(const std::filesystem::path& path) {
       particles.modes.age = {readAttribute<std::int32_t>(file, "modes_due"),
                              readAttribute<std::int32_t>(file, "modes_fewest_iterations")};
     }
-    if (version >= 4) particles.wallSurface.resize(readAttribute<std::uint32_t>(file, "wall_surface_count"));
     forEachNamedField(particles, [&]<class T>(const FieldInfo& info, Buffer<T>& field) {
       if (version >= info.since) return readField(file, info, field);
       field.resize(info.count);

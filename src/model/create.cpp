@@ -2,6 +2,7 @@
 
 #include "treacle/core/error.hpp"
 #include "treacle/model/shape.hpp"
+#include "treacle/model/wall_surface.hpp"
 
 #include "body_points.hpp"
 #include "lattice.hpp"
@@ -157,6 +158,13 @@ Particles<D> createParticles(const Case& c, std::vector<std::string>& notes,
   std::uint32_t next = 0;
   append(c, fluid, particles, next);
   append(c, walls, particles, next);
+  if (c.method.kind == MethodKind::MphI && c.method.wallVelocity == WallVelocity::Extrapolated) {
+    const std::uint32_t n = particles.fluidCount, count = particles.wallCount();
+    const auto surfaces = createWallSurfaces<D>(c, particles.position.span().subspan(n, count),
+                                                particles.body.span().subspan(n, count), notes);
+    particles.wallSurface.resize(count);
+    std::copy(surfaces.begin(), surfaces.end(), particles.wallSurface.begin());
+  }
   if (bodyCounts) {
     bodyCounts->assign(c.bodies.size(), 0);
     for (const auto* group : {&fluid, &walls})

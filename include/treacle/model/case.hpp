@@ -126,9 +126,9 @@ struct IsphSettings {
 enum class SchemeKind { Published, Accurate };
 /// Weight of densities, divergences and pressure gradients, and weight of the viscosity, with q = r/h: those of
 /// [K23], (1-q)^2 and what its derivative makes of the viscosity, (1-q)/q^3; Wendland's functions C2,
-/// (1-q)^4 (1+4q), and C4, (1-q)^6 (3+18q+35q^2); (1-q^2)^2/q^2.
+/// (1-q)^4 (1+4q), and C4, (1-q)^6 (3+18q+35q^2); (1-q^2)^2/q^2, and (1-q)^2/q.
 enum class PressureWeight { Mps, WendlandC2, WendlandC4 };
-enum class ViscosityWeight { Mps, Biquadratic };
+enum class ViscosityWeight { Mps, Biquadratic, Quadratic };
 /// Which velocity the fluid meets in a wall: each wall particle's own, so that a wall ends somewhere between its
 /// first particles and the fluid, or the wall's velocity extrapolated through its surface, which is then where it
 /// ends.

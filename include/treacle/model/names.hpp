@@ -35,7 +35,8 @@ inline constexpr Named<PressureWeight> pressureWeight[] = {{"mps", PressureWeigh
 inline constexpr Named<WallVelocity> wallVelocity[] = {{"own", WallVelocity::Own},
                                                        {"extrapolated", WallVelocity::Extrapolated}};
 inline constexpr Named<ViscosityWeight> viscosityWeight[] = {{"mps", ViscosityWeight::Mps},
-                                                             {"biquadratic", ViscosityWeight::Biquadratic}};
+                                                             {"biquadratic", ViscosityWeight::Biquadratic},
+                                                             {"quadratic", ViscosityWeight::Quadratic}};
 inline constexpr Named<KernelKind> kernel[] = {{"cubic-spline", KernelKind::CubicSpline},
                                                {"wendland-c2", KernelKind::WendlandC2}};
 inline constexpr Named<WallSlip> slip[] = {{"no-slip", WallSlip::NoSlip}, {"free-slip", WallSlip::FreeSlip}};

@@ -102,16 +102,20 @@ struct MphTerms {
   TREACLE_HD auto gradient(const Distance& r) const {
     return gradientFactor * gradientShape(r);
   }
-  /// What a pair resists along e, viscous r^2: factor times (1/r - 1/h_v) or (1-q^2)^2/h_v
+  /// What a pair resists along e, viscous r^2: factor times (1/r - 1/h_v), (1-q^2)^2/h_v or q (1-q)^2/h_v
   template <class Distance>
   TREACLE_HD auto resistanceShape(const Distance& r) const {
     if (viscosityWeight == ViscosityWeight::Mps) return resistanceShape<ViscosityWeight::Mps>(r);
+    if (viscosityWeight == ViscosityWeight::Quadratic) return resistanceShape<ViscosityWeight::Quadratic>(r);
     return resistanceShape<ViscosityWeight::Biquadratic>(r);
   }
   template <ViscosityWeight Weight, class Distance>
   TREACLE_HD auto resistanceShape(const Distance& r) const {
     if constexpr (Weight == ViscosityWeight::Mps) {
       return positivePart(r.inverse - inverseViscosityRadius);
+    } else if constexpr (Weight == ViscosityWeight::Quadratic) {
+      const auto q = r.square * r.inverse * inverseViscosityRadius, s = positivePart(T(1) - q);
+      return inverseViscosityRadius * q * s * s;
     } else {
       const auto s = positivePart(T(1) - r.square * (inverseViscosityRadius * inverseViscosityRadius));
       return inverseViscosityRadius * s * s;
@@ -131,6 +135,7 @@ struct MphTerms {
   /// So that sums over a full neighbourhood give the same viscosity as with the weight of [K23].
   static double viscosityFactor(ViscosityWeight weight) {
     if (weight == ViscosityWeight::Mps) return 1;
+    if (weight == ViscosityWeight::Quadratic) return D == 2 ? 35.0 / 4 : 42.0 / 5;
     return D == 2 ? 2 : 63.0 / 32;
   }
 };
