@@ -13,6 +13,7 @@ namespace {
 std::string columns(const Case& c) {
   std::string text =
       "step,time,shear_dissipation,bulk_dissipation,inertial_loss,elastic_power,elastic_energy,wall_power";
+  if (c.repulsionRadius() > 0) text += ",repulsion_power";
   for (const Body& body : c.bodies) {
     if (body.kind != BodyKind::Wall) continue;
     const auto add = [&](const std::string& quantity) { text += ',' + csvCell(body.name + quantity); };
@@ -28,11 +29,12 @@ std::string columns(const Case& c) {
 }  // namespace
 
 BalanceWriter::BalanceWriter(std::filesystem::path path, const Case& c)
-    : dimensions_(c.dimensions), file_(std::move(path), columns(c)) {}
+    : dimensions_(c.dimensions), repels_(c.repulsionRadius() > 0), file_(std::move(path), columns(c)) {}
 
 void BalanceWriter::append(std::int64_t step, double time, const Balance& b) {
   std::string row = fmt::format("{},{},{},{},{},{},{},{}", step, time, b.shearDissipation, b.bulkDissipation,
                                 b.inertialLoss, b.elasticPower, b.elasticEnergy, b.wallPower);
+  if (repels_) row += fmt::format(",{}", b.repulsionPower);
   for (const WallLoad& load : b.walls) {
     for (int k = 0; k < dimensions_; ++k) row += fmt::format(",{}", load.force[k]);
     for (int k = dimensions_ == 2 ? 2 : 0; k < 3; ++k) row += fmt::format(",{}", load.torque[k]);

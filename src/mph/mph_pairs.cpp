@@ -16,6 +16,7 @@ MphPairs<D> makeMphPairs(const Case& c) {
   pairs.images = periodicImages(pairs.grid);
   const auto pressureWeight = Weight<D>::make(hp, c.spacing, c.method.pressureWeight);
   pairs.terms = MphTerms<D>::make(pressureWeight, c.method.viscosityWeight, hv, c.spacing);
+  pairs.terms.repulsionRadius = c.repulsionRadius();
   pairs.restDensity = latticeNumberDensity(pressureWeight, c.spacing);
   pairs.materials = MaterialTable::make(c);
   return pairs;

@@ -5,9 +5,9 @@
 #include "take_trial.hpp"
 #include "treacle/mph/mph_neighbourhood.hpp"
 #include "treacle/mph/mph_particles.hpp"
+#include "treacle/mph/mph_repulsion.hpp"
 #include "treacle/step/first_guess.hpp"
 #include "treacle/step/solve_stages.hpp"
-#include "treacle/step/wall_motion.hpp"
 
 namespace treacle {
 namespace {
@@ -132,7 +132,7 @@ class MphStep final : public StepMethod<D, Backend> {
     neighbourhood_.setWallSurfaces(wallSurface_);
   }
 
-  /// b of [K23 eq. (16)], and the terms of prescribed wall velocities.
+  /// b of [K23 eq. (16)], and the terms of the repulsion and of prescribed wall velocities.
   void computeRightHandSide() {
     elastic_.resize(state_.context, pairs_.activeCount);
     elasticPressure<D>(state_.context, pairs_, state_.particles.numberDensity.span().first(pairs_.activeCount),
@@ -142,6 +142,7 @@ class MphStep final : public StepMethod<D, Backend> {
                          state_.particles.velocity.span().first(state_.particles.fluidCount),
                          resized<D>(state_.theCase.gravity), rhs_);
     addPressureGradient<D>(state_.context, pairs_, elastic_, -1.0, rhs_);
+    if (pairs_.terms.repulsionRadius > 0) addRepulsion<D>(state_.context, pairs_, 1 / state_.timeStep, rhs_);
     if (state_.wallsMove) addWallVelocities();
   }
 

@@ -5,6 +5,7 @@
 #include "treacle/model/wall_motion.hpp"
 #include "treacle/mph/mph_balance.hpp"
 #include "treacle/mph/mph_neighbourhood.hpp"
+#include "treacle/mph/mph_repulsion.hpp"
 #include "treacle/step/balance_sums.hpp"
 
 #include <algorithm>
@@ -29,7 +30,8 @@ class StepBalance {
   }
 
   std::size_t bytes() const {
-    return walls_.bytes() + shear_.bytes() + wallForce_.bytes() + wallDivergence_.bytes() + wallDensity_.bytes();
+    return walls_.bytes() + shear_.bytes() + wallForce_.bytes() + wallDivergence_.bytes() + wallDensity_.bytes() +
+           repulsion_.bytes();
   }
 
  private:
@@ -50,19 +52,27 @@ class StepBalance {
     shearDissipation<D>(state.context, pairs, state.velocity, shear_);
     fluidAtWalls<D>(state.context, pairs, walls, state.velocity, state.particles.pressure.span().first(active),
                     {wallForce_.span(), wallDivergence_.span(), wallDensity_.span()});
+    if (pairs.terms.repulsionRadius > 0) {
+      const double rate = 1 / state.timeStep;
+      repulsion_.resize(state.context, n);
+      repulsionPower<D>(state.context, pairs, rate, state.velocity, repulsion_);
+      addRepulsionOnWalls<D>(state.context, pairs, rate, wallForce_);
+    }
   }
 
   void setPowers(FlowState<D, Backend>& state, const MphPairs<D>& pairs, std::span<const double> divergence,
                  std::span<const double> elastic, Balance& balance) {
     using Terms = PowerTerms<D>;
-    const Terms terms{pairs.fluidCount, pairs.materials, pairs.material, state.particles.velocity, state.velocity,
-                      divergence,       elastic,         shear_,         wallDivergence_,          wallDensity_};
+    const Terms terms{pairs.fluidCount, pairs.materials, pairs.material, state.particles.velocity,
+                      state.velocity,   divergence,      elastic,        shear_,
+                      wallDivergence_,  wallDensity_,    repulsion_};
     const auto sums = sumPowers<D>(state.context, terms, pairs.activeCount);
     const double volume = std::pow(pairs.spacing, D);  // [K23 eq. (11)]
     balance.shearDissipation = volume * sums[Terms::Shear];
     balance.bulkDissipation = volume * sums[Terms::Bulk];
     balance.inertialLoss = volume * sums[Terms::Inertial];
     balance.elasticPower = volume * sums[Terms::Elastic];
+    balance.repulsionPower = volume * sums[Terms::Repulsion];
     balance.elasticEnergy = volume * sums[Terms::ElasticEnergy];
   }
 
@@ -87,6 +97,7 @@ class StepBalance {
   Buffer<Vec<D>, Backend> wallForce_;       // [N/m3]
   Buffer<double, Backend> wallDivergence_;  // [1/s]
   Buffer<double, Backend> wallDensity_;     // [-]
+  Buffer<double, Backend> repulsion_;       // [W/m3]; empty where the scheme has none
 };
 
 }  // namespace treacle

@@ -11,7 +11,8 @@ enum class WallsMove { Not, Apart, Oscillating };
 
 /// A jittered block of two fluids, in motion under oblique gravity, in the corner of a floor and a side wall, two
 /// bodies that touch; nothing is periodic. The ids are the places in `particles`. `finer`: so many particles along
-/// each millimetre.
+/// each millimetre. Those of the accurate scheme are
+/// jittered so far that some repel each other.
 template <int D>
 struct LoadedWalls {
   Case c;
@@ -32,7 +33,7 @@ struct LoadedWalls {
       return std::all_of(x.v, x.v + D, [=](double a) { return a > l && a < edge; });
     };
     particles = jitteredLattice<D>(
-        c, 0.2, 5,
+        c, scheme == SchemeKind::Accurate ? 0.4 : 0.2, 5,
         [=](const Vec<D>& x) {
           return x[0] > 5 * l && x[0] < (D == 2 ? 12 : 9) * l && x[up] > 5 * l && x[up] < (D == 2 ? 13 : 9) * l &&
                  (D == 2 || (x[1] > 3 * l && x[1] < 8 * l));

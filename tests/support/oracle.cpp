@@ -57,6 +57,15 @@ double Oracle<D>::viscousBlock(double r) const {
          std::pow(1 - r * r / (hv * hv), 2) / (r * r);
 }
 
+/// The viscous force of a pair that parts to 0.53 l in a step.
+template <int D>
+Vec<D> Oracle<D>::repulsion(std::uint32_t i, std::uint32_t j) const {
+  const Vec<D> d = difference(i, j);
+  const double r = norm(d), reach = s.c.method.scheme == SchemeKind::Accurate ? 0.53 * l : 0;
+  if (i == j || r >= reach) return {};
+  return -mu(i, j) * viscousBlock(r) * r * (reach - r) / dt * d;
+}
+
 template <int D>
 double Oracle<D>::mu(std::uint32_t i, std::uint32_t j) const {
   const double a = material(i).dynamicViscosity, b = material(j).dynamicViscosity;
@@ -181,6 +190,11 @@ Vector Oracle<D>::rightHandSide() const {
   Vector b = -(gradientMatrix() * elasticPressure());
   for (Index k = 0; k < b.size(); ++k)
     b[k] += material(k / D).density * (s.particles.velocity[k / D][k % D] / dt + s.c.gravity[k % D]);
+  for (std::uint32_t i = 0; i < s.n(); ++i)
+    for (std::uint32_t j = 0; j < count(); ++j) {
+      const Vec<D> force = repulsion(i, j);
+      for (int k = 0; k < D; ++k) b[D * i + k] += force[k];
+    }
   return b;
 }
 

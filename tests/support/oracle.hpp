@@ -26,6 +26,8 @@ struct Oracle {
   double dw(double r, double h) const;
   /// c of a viscous pair block mu c d d^T.
   double viscousBlock(double r) const;
+  /// Force on i from j where both are too close [N/m3].
+  Vec<D> repulsion(std::uint32_t i, std::uint32_t j) const;
   double mu(std::uint32_t i, std::uint32_t j) const;
   /// (d_i + d_j) / (d_i + b) where j is a wall particle that knows its surface, else 1.
   double wallFactor(std::uint32_t i, std::uint32_t j) const;
@@ -48,7 +50,7 @@ struct Oracle {
   /// kappa [n - n_0]_+ of all particles [Pa].
   Vector elasticPressure() const;
 
-  /// b of eq. (16) between walls at rest.
+  /// b of eq. (16) between walls at rest, and the repulsion.
   Vector rightHandSide() const;
 
   /// A of eq. (16).

@@ -21,6 +21,7 @@ class BalanceWriter {
 
  private:
   int dimensions_;
+  bool repels_;
   RowFile file_;
 };
 

@@ -6,15 +6,16 @@
 
 namespace treacle {
 
-/// What the fluid exerts on a wall body by pressure and viscosity; in 2D per metre of depth, the torque along z.
+/// What the fluid exerts on a wall body by pressure, viscosity and repulsion; in 2D per metre of depth, the torque
+/// along z.
 struct WallLoad {
   Vec<3> force{};   // [N]
   Vec<3> torque{};  // about the wall's centre of rotation, else the origin [N m]
 };
 
 /// Where the energy of the fluid goes in one step of MPH-I, with the velocities at its end and the places at its
-/// start; in 2D per metre of depth. Kinetic energy gains dt times the power of gravity, elastic pressures and
-/// walls less the two dissipations and the inertial loss.
+/// start; in 2D per metre of depth. Kinetic energy gains dt times the power of gravity, elastic pressures,
+/// repulsion and walls less the two dissipations and the inertial loss.
 struct Balance {
   double shearDissipation = 0;  // [W]
   double bulkDissipation = 0;   // [W]
@@ -23,6 +24,7 @@ struct Balance {
   double elasticEnergy = 0;     // [J]
   double wallPower = 0;         // what walls that move give to the fluid [W]
   std::vector<WallLoad> walls;  // of the wall bodies, in the order of the case
+  double repulsionPower = 0;    // what the repulsion of close particles gives to the motion [W]
 };
 
 }  // namespace treacle

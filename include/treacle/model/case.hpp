@@ -271,6 +271,8 @@ struct Case {
 
   double pressureRadius() const { return method.pressureRadius * spacing; }    // h_p [m]
   double viscosityRadius() const { return method.viscosityRadius * spacing; }  // h_v [m]
+  /// r_0: distance below which particles of the accurate scheme of MPH-I repel each other; 0: they do not [m].
+  double repulsionRadius() const { return method.scheme == SchemeKind::Accurate ? 0.53 * spacing : 0; }
   /// Smoothing length h of ISPH [m].
   double smoothingLength() const { return method.isph.smoothingRatio * spacing; }
   /// Farthest distance at which particles act on each other [m].

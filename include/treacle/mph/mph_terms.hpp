@@ -29,6 +29,7 @@ struct ExactDistance {
 ///   number density   n_i = sum of density                                      [K23 eq. (7)]
 ///   pressures        -e w'^p = gradient d: the elements of C                   [K23 eqs. (4), (14)]
 ///   viscosity        2 (D+2) mu e e^T (-w'^v) / r = mu viscous d d^T: a block of V   [K23 eqs. (4), (16)]
+///   repulsion        -mu viscous d d^T v, v = [r_0 - r]_+ e / dt: not of [K23], see docs/solver.md
 /// with the weights of the case in place of w^p and -w'^v. These formulas stand nowhere else; a loop calls them in
 /// its own arithmetic. A `...Shape` lacks the factor of the same name, for loops that multiply their sums by it in
 /// the end. All are zero from their radius on. T is the precision of the constants; lengths are in whatever unit
@@ -40,6 +41,7 @@ struct MphTerms {
   T densityFactor, gradientFactor, viscousFactor;
   PressureWeight pressureWeight;
   ViscosityWeight viscosityWeight;
+  T repulsionRadius = 0;  // r_0; 0: no repulsion
 
   /// For the radius h_v and the spacing l [m]; lengths in metres.
   static MphTerms make(const Weight<D>& pressure, ViscosityWeight viscosity, double viscosityRadius,
@@ -66,7 +68,8 @@ struct MphTerms {
             static_cast<U>(gradientFactor),
             static_cast<U>(viscousFactor / unit),
             pressureWeight,
-            viscosityWeight};
+            viscosityWeight,
+            static_cast<U>(repulsionRadius / unit)};
   }
 
   /// w
@@ -129,6 +132,12 @@ struct MphTerms {
   template <class Distance>
   TREACLE_HD auto viscousShape(const Distance& r) const {
     return r.overSquare(resistanceShape(r));
+  }
+  /// What keeps close particles apart: times viscousFactor, mu, d and a rate 1/t the viscous force of a pair that
+  /// parts to r_0 within t, (r_0 - r) / t being the velocity along e.
+  template <class Distance>
+  TREACLE_HD auto repulsionShape(const Distance& r) const {
+    return resistanceShape(r) * positivePart(repulsionRadius * r.inverse - T(1));
   }
 
  private:

@@ -16,7 +16,7 @@ namespace treacle {
 /// those of walls start with the first wall particle.
 template <int D>
 struct PowerTerms {
-  enum { Shear, Bulk, Inertial, Elastic, ElasticEnergy, count };
+  enum { Shear, Bulk, Inertial, Elastic, ElasticEnergy, Repulsion, count };
 
   std::uint32_t fluidCount;
   MaterialTable materials;
@@ -27,6 +27,7 @@ struct PowerTerms {
   std::span<const double> shear;           // of the fluid [W/m3]
   std::span<const double> wallDivergence;  // the fluid's parts of C^T u and n at walls
   std::span<const double> wallDensity;
+  std::span<const double> repulsion;  // what it gives to the fluid [W/m3], or empty
 
   /// Pairs of walls do no work on the fluid, and what they are compressed by without fluid it cannot get back.
   TREACLE_HD void add(std::size_t i, double* sums) const {
@@ -42,6 +43,7 @@ struct PowerTerms {
     }
     if (!fluid) return;
     sums[Shear] += shear[i];
+    if (!repulsion.empty()) sums[Repulsion] += repulsion[i];
     sums[Inertial] += 0.5 * materials.inertia[m] * norm2(after[i] - before[i]);
   }
 };

@@ -4,6 +4,7 @@
 #include "support/tolerances.hpp"
 #include "treacle/mph/mph_balance.hpp"
 #include "treacle/mph/mph_operator.hpp"
+#include "treacle/mph/mph_repulsion.hpp"
 
 #include <gtest/gtest.h>
 
@@ -149,6 +150,38 @@ void checkAll(bool lists) {
         twin.checkBalance();
         twin.checkOperator();
       }
+}
+
+/// Particles so close that they repel each other and the floor.
+template <int D>
+void checkRepulsion(bool lists) {
+  Scene<D> s = makeScene<D>(Walls::Floor, 3, 0.49, true, SchemeKind::Accurate);
+  DeviceScene<D> d(s);
+  if (!lists) d.pairs.fluidList.offset = d.pairs.wallList.offset = nullptr;
+  const std::uint32_t n = s.pairs().fluidCount, active = s.pairs().activeCount;
+  std::vector<Vec<D>> force(n), onWalls(active - n);
+  Buffer<double> power(n);
+  auto forceFound = copyToDevice<Vec<D>>(d.context, force), wallsFound = copyToDevice<Vec<D>>(d.context, onWalls);
+  Buffer<double, Cuda> powerFound(d.context, n);
+  const auto u = randomVectors<D>(active, 8);
+
+  addRepulsion<D>(s.context, s.pairs(), 1e3, force);
+  addRepulsion<D>(d.context, d.pairs, 1e3, forceFound.span());
+  EXPECT_LE(difference<Vec<D>>(d.context, force, forceFound), operatorTolerance);
+  addRepulsionOnWalls<D>(s.context, s.pairs(), 1e3, onWalls);
+  addRepulsionOnWalls<D>(d.context, d.pairs, 1e3, wallsFound.span());
+  EXPECT_LE(difference<Vec<D>>(d.context, onWalls, wallsFound), operatorTolerance);
+  repulsionPower<D>(s.context, s.pairs(), 1e3, u, power);
+  repulsionPower<D>(d.context, d.pairs, 1e3, copyToDevice<Vec<D>>(d.context, u), powerFound);
+  EXPECT_LE(difference<double>(d.context, power.span(), powerFound), operatorTolerance);
+}
+
+TEST(PairSumsTwin, RepulsionEqualsTheCpu) {
+  TREACLE_SKIP_WITHOUT_GPU();
+  for (const bool lists : {true, false}) {
+    checkRepulsion<2>(lists);
+    checkRepulsion<3>(lists);
+  }
 }
 
 TEST(PairSumsTwin, EqualTheCpu) {

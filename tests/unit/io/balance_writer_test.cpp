@@ -49,6 +49,18 @@ TEST(BalanceWriter, FormatIsFixed) {
   EXPECT_EQ(content(directory / "balance.csv"), columns + "\n4,0.5,0,0,0,0,0,0,1,2,3,4,5,6\n");
 }
 
+TEST(BalanceWriter, ThePowerOfTheRepulsionStandsWhereTheSchemeHasOne) {
+  TemporaryDirectory directory;
+  Case c = caseOf(2, {"floor"});
+  c.method.scheme = SchemeKind::Accurate;
+  c.spacing = 1e-3;
+  BalanceWriter writer(directory / "balance.csv", c);
+  writer.append(3, 0.003, {1, 2.5, 1e-3, -4, 1e-20, 0.1, {{{7, -8, 0}, {0, 0, 9}}}, 0.75});
+  EXPECT_EQ(content(directory / "balance.csv"), std::string(powers) +
+                                                    ",repulsion_power,floor_force_x,floor_force_y,floor_torque\n"
+                                                    "3,0.003,1,2.5,0.001,-4,1e-20,0.1,0.75,7,-8,9\n");
+}
+
 TEST(BalanceWriter, NumbersReadBackToTheSameBits) {
   TemporaryDirectory directory;
   const auto value = [](int k) { return std::exp(20 * std::sin(k)) / 3; };

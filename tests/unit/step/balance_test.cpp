@@ -27,14 +27,14 @@ struct Momenta {
 };
 
 template <int D>
-void checkEnergy(const Case&, Simulation<D>& s) {
+void checkEnergy(const Case& c, Simulation<D>& s) {
   const Diagnostics before = s.diagnostics();
   const StepReport report = s.advance();
   const Balance& b = *report.balance;
   const double dt = report.timeStep, gained = report.diagnostics.kineticEnergy - before.kineticEnergy;
   const double fallen = before.potentialEnergy - report.diagnostics.potentialEnergy;
   const double lost = dt * (b.inertialLoss + b.shearDissipation + b.bulkDissipation);
-  const double given = dt * (b.elasticPower + b.wallPower) + fallen;
+  const double given = dt * (b.elasticPower + b.wallPower + b.repulsionPower) + fallen;
   const double scale = std::abs(gained) + lost + std::abs(given);
   EXPECT_NEAR(gained + lost, given, 5e-12 * scale);  // measured: 4e-13
   // No term is so small that it could be missed.
@@ -42,6 +42,10 @@ void checkEnergy(const Case&, Simulation<D>& s) {
     EXPECT_GT(std::abs(dt * term), 1e-6 * scale);
   EXPECT_GT(std::abs(fallen), 1e-6 * scale);
   EXPECT_GT(b.elasticEnergy, 0);
+  if (c.method.scheme == SchemeKind::Accurate)
+    EXPECT_GT(std::abs(dt * b.repulsionPower), 1e-6 * scale);
+  else
+    EXPECT_EQ(b.repulsionPower, 0);
 }
 
 template <int D>
@@ -66,11 +70,12 @@ void checkMomenta(const Case& c, Simulation<D>& s) {
 /// Both, for walls that rest, slide past each other, and oscillate with steps of unequal length.
 template <int D, class Check>
 void checkMotions(Check&& check) {
-  for (const WallsMove how : {WallsMove::Apart, WallsMove::Oscillating}) {
-    LoadedWalls<D> start(how);
-    Simulation<D> s = start.template simulation<Cpu>();
-    for (int k = 0; k < 3; ++k) check(start.c, s);
-  }
+  for (const SchemeKind scheme : {SchemeKind::Published, SchemeKind::Accurate})
+    for (const WallsMove how : {WallsMove::Apart, WallsMove::Oscillating}) {
+      LoadedWalls<D> start(how, 1, scheme);
+      Simulation<D> s = start.template simulation<Cpu>();
+      for (int k = 0; k < 3; ++k) check(start.c, s);
+    }
 }
 
 TEST(Balance, EnergyIsConserved) {
@@ -136,7 +141,8 @@ struct PlainBalance {
     for (std::uint32_t i = s.particles.fluidCount; i < oracle.count(); ++i)
       for (std::uint32_t j = 0; j < s.particles.fluidCount; ++j) {
         const Vec<D> d = oracle.difference(i, j);
-        const Vec<D> push = (pressure[i] + pressure[j]) * oracle.dw(norm(d), oracle.hp) / norm(d) * d + drag(i, j);
+        const Vec<D> push = (pressure[i] + pressure[j]) * oracle.dw(norm(d), oracle.hp) / norm(d) * d +
+                            drag(i, j) + oracle.repulsion(i, j);
         Vec<3> force{};
         for (int k = 0; k < D; ++k) force[k] = volume * push[k];
         WallLoad& load = b.walls[s.particles.body[i] - 1];
@@ -170,8 +176,8 @@ struct Stepped {
 };
 
 template <int D>
-void checkLoads(WallsMove how) {
-  const Stepped<D> step{LoadedWalls<D>(how)};
+void checkLoads(WallsMove how, SchemeKind scheme) {
+  const Stepped<D> step{LoadedWalls<D>(how, 1, scheme)};
   const Balance expected = step.plain.walls();
   ASSERT_EQ(step.balance.walls.size(), 2u);
   ASSERT_EQ(expected.walls.size(), 2u);
@@ -186,10 +192,11 @@ void checkLoads(WallsMove how) {
 }
 
 TEST(Balance, LoadsAreTheSumsOverPairsOfWallAndFluid) {
-  for (const WallsMove how : {WallsMove::Not, WallsMove::Apart}) {
-    checkLoads<2>(how);
-    checkLoads<3>(how);
-  }
+  for (const SchemeKind scheme : {SchemeKind::Published, SchemeKind::Accurate})
+    for (const WallsMove how : {WallsMove::Not, WallsMove::Apart}) {
+      checkLoads<2>(how, scheme);
+      checkLoads<3>(how, scheme);
+    }
 }
 
 /// A wall that turns, however slowly, has its torque about its centre, wherever its velocity has carried that.
