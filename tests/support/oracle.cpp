@@ -74,8 +74,10 @@ double Oracle<D>::mu(std::uint32_t i, std::uint32_t j) const {
 
 template <int D>
 double Oracle<D>::wallFactor(std::uint32_t i, std::uint32_t j) const {
-  if (j < s.n() || s.particles.wallSurface.empty()) return 1;
-  const WallSurface<D>& surface = s.particles.wallSurface[s.particles.id[j] - s.n()];
+  const std::uint32_t fluid = s.particles.fluidCount;
+  if (i >= fluid && j < fluid) return wallFactor(j, i);
+  if (j < fluid || s.particles.wallSurface.empty()) return 1;
+  const WallSurface<D>& surface = s.particles.wallSurface[s.particles.id[j] - fluid];
   double crossing = 0, factor = 0;  // crossing: where the line from i meets the face, as a share of its length
   for (const Vec<D, float>& face : surface.face) {
     double depth = 0, distance = 0;

@@ -29,7 +29,7 @@ struct Oracle {
   /// Force on i from j where both are too close [N/m3].
   Vec<D> repulsion(std::uint32_t i, std::uint32_t j) const;
   double mu(std::uint32_t i, std::uint32_t j) const;
-  /// (d_i + d_j) / (d_i + b) where j is a wall particle that knows its surface, else 1.
+  /// (d_i + d_j) / (d_i + b) where one of them is a wall particle that knows its surface, else 1.
   double wallFactor(std::uint32_t i, std::uint32_t j) const;
   /// Nearest periodic image of x_j - x_i.
   Vec<D> difference(std::uint32_t i, std::uint32_t j) const;

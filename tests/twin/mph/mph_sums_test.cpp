@@ -155,7 +155,7 @@ void checkAll(bool lists) {
 /// Particles so close that they repel each other and the floor.
 template <int D>
 void checkRepulsion(bool lists) {
-  Scene<D> s = makeScene<D>(Walls::Floor, 3, 0.49, true, SchemeKind::Accurate);
+  Scene<D> s = makeScene<D>({.seed = 3, .jitter = 0.49, .scheme = SchemeKind::Accurate});
   DeviceScene<D> d(s);
   if (!lists) d.pairs.fluidList.offset = d.pairs.wallList.offset = nullptr;
   const std::uint32_t n = s.pairs().fluidCount, active = s.pairs().activeCount;

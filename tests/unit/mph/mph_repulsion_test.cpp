@@ -14,7 +14,7 @@ constexpr double rate = 1e3;  // 1 / dt of the scene
 /// Jittered so far that particles come close to each other and to the floor.
 template <int D>
 Scene<D> crowd(unsigned seed = 1) {
-  return makeScene<D>(Walls::Floor, seed, 0.49, true, SchemeKind::Accurate);
+  return makeScene<D>({.seed = seed, .jitter = 0.49, .scheme = SchemeKind::Accurate});
 }
 
 /// Forces per active particle.
@@ -84,8 +84,8 @@ TEST(Repulsion, WorksOnWhatMovesApartOnly) {
 }
 
 TEST(Repulsion, IsNotThereOnALatticeAndInThePublishedScheme) {
-  Scene<2> lattice = makeScene<2>(Walls::Floor, 1, 0, true, SchemeKind::Accurate);
-  Scene<2> published = makeScene<2>(Walls::Floor, 1, 0.4);
+  Scene<2> lattice = makeScene<2>({.jitter = 0, .scheme = SchemeKind::Accurate});
+  Scene<2> published = makeScene<2>({.jitter = 0.4});
   for (const Vec<2>& f : forces(lattice)) ASSERT_EQ(f, Vec<2>{});
   for (const Vec<2>& f : forces(published)) ASSERT_EQ(f, Vec<2>{});
 }

@@ -64,7 +64,8 @@ void checkShear(double slip) {
   s.particles.wallSurface.resize(s.particles.wallCount());
   for (std::uint32_t k = 0; k < s.particles.wallCount(); ++k) {
     s.particles.wallSurface[k] = {};
-    s.particles.wallSurface[k].face[0][D - 1] = static_cast<float>(floor - s.particles.position[s.n() + k][D - 1]);
+    s.particles.wallSurface[k].face[0][D - 1] =
+        static_cast<float>(floor - s.particles.position[s.particles.fluidCount + k][D - 1]);
   }
   prepare(s);
   MphOperator<D> a;

@@ -126,7 +126,7 @@ struct PlainBalance {
     const Vec<D> d = oracle.difference(i, j);
     const double r = norm(d);
     const Vec<D> e = 1 / r * d;
-    return oracle.mu(i, j) * oracle.viscousBlock(r) * r * r * dot(u[j] - u[i], e) * e;
+    return oracle.mu(i, j) * oracle.wallFactor(i, j) * oracle.viscousBlock(r) * r * r * dot(u[j] - u[i], e) * e;
   }
 
   /// Of floor and side, and the walls' power.
