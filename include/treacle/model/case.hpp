@@ -133,6 +133,9 @@ enum class ViscosityWeight { Mps, Biquadratic, Quadratic };
 /// first particles and the fluid, or the wall's velocity extrapolated through its surface, which is then where it
 /// ends.
 enum class WallVelocity { Own, Extrapolated };
+/// Which gradient the pressure has: the plain sum over neighbours, or one whose transpose, the divergence, is
+/// exact for velocities that are linear in space, at free surfaces, too.
+enum class PressureGradient { Plain, Renormalised };
 
 struct MethodSettings {
   MethodKind kind = MethodKind::MphI;
@@ -140,6 +143,7 @@ struct MethodSettings {
   PressureWeight pressureWeight = PressureWeight::Mps;
   ViscosityWeight viscosityWeight = ViscosityWeight::Mps;
   WallVelocity wallVelocity = WallVelocity::Own;
+  PressureGradient pressureGradient = PressureGradient::Plain;
   // Effective radii of MPH-I in particle spacings [K23 Table 1].
   double pressureRadius = 1.75;  // h_p / l
   double viscosityRadius = 3.5;  // h_v / l

@@ -216,6 +216,7 @@ void visit(auto& v, Like<MethodSettings> auto& m, const Case& c) {
   v({"pressure_weight"}, m.pressureWeight);
   v({"viscosity_weight"}, m.viscosityWeight);
   v({"wall_velocity"}, m.wallVelocity);
+  v({"pressure_gradient"}, m.pressureGradient);
   v({"pressure_radius", optional, "spacings", positive}, m.pressureRadius);
   v({"viscosity_radius", optional, "spacings", positive}, m.viscosityRadius);
 }

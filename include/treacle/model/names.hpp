@@ -34,6 +34,8 @@ inline constexpr Named<PressureWeight> pressureWeight[] = {{"mps", PressureWeigh
                                                            {"wendland-c4", PressureWeight::WendlandC4}};
 inline constexpr Named<WallVelocity> wallVelocity[] = {{"own", WallVelocity::Own},
                                                        {"extrapolated", WallVelocity::Extrapolated}};
+inline constexpr Named<PressureGradient> pressureGradient[] = {{"plain", PressureGradient::Plain},
+                                                               {"renormalised", PressureGradient::Renormalised}};
 inline constexpr Named<ViscosityWeight> viscosityWeight[] = {{"mps", ViscosityWeight::Mps},
                                                              {"biquadratic", ViscosityWeight::Biquadratic},
                                                              {"quadratic", ViscosityWeight::Quadratic}};
@@ -81,6 +83,8 @@ template <>
 inline constexpr std::span<const Named<PressureWeight>> namesOf<PressureWeight>{names::pressureWeight};
 template <>
 inline constexpr std::span<const Named<WallVelocity>> namesOf<WallVelocity>{names::wallVelocity};
+template <>
+inline constexpr std::span<const Named<PressureGradient>> namesOf<PressureGradient>{names::pressureGradient};
 template <>
 inline constexpr std::span<const Named<ViscosityWeight>> namesOf<ViscosityWeight>{names::viscosityWeight};
 template <>

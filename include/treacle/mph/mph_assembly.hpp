@@ -15,8 +15,8 @@ double couplingRadius2(const MphPairs<D>& pairs) {
   return r * r * (1 + 1e-12);
 }
 
-/// The rows of C: per particle its neighbours within h_p, with g = -e w'^p [1/m] seen from the row's particle.
-/// C_ij = g_ij, C_ii = sum_j g_ij, and C_ji = -g_ij.
+/// Per particle its neighbours within h_p, with g = -e w'^p [1/m] seen from the row's particle, without B of the
+/// pairs. With it they are the rows of C: C_ij = B_j g_ij, C_ii = B_i sum_j g_ij, and C_ji = -B_i g_ij.
 template <int D, class Backend = Cpu>
 using GradientRows = Csr<Vec<D>, Backend>;
 

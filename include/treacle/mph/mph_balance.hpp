@@ -20,7 +20,7 @@ void shearDissipation(Context<Cuda>&, const MphPairs<D>&, std::span<const Vec<D>
 /// What wall particles meet of the fluid, per active wall particle.
 template <int D>
 struct FluidAtWalls {
-  std::span<Vec<D>> force;       // pressure and viscosity on the wall [N/m3] [K23 eq. (4)]
+  std::span<Vec<D>> force;       // pressure and viscosity on the wall [N/m3] [K23 eq. (4)]; q_i B_i of the fluid
   std::span<double> divergence;  // its part of C^T u [1/s]
   std::span<double> density;     // its part of n [-]
 };

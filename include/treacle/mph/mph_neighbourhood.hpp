@@ -53,6 +53,11 @@ class MphNeighbourhood {
     pairs_.wallSurface = surfaces.empty() ? nullptr : surfaces.data();
   }
 
+  /// B per fluid particle; must outlive the sums of the step. Empty: B = I everywhere.
+  void setRenormalisation(std::span<const SymmetricBlock<D>> b) {
+    pairs_.renormalisation = b.empty() ? nullptr : b.data();
+  }
+
   /// Of the step at hand [s].
   void setTimeStep(double dt) { pairs_.materials.setTimeStep(dt); }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "treacle/core/symmetric_block.hpp"
 #include "treacle/model/case.hpp"
 #include "treacle/mph/mph_terms.hpp"
 #include "treacle/mph/wall_surfaces.hpp"
@@ -20,8 +21,15 @@ struct MphPairs : MaterialParticles<D> {
   double restDensity = 0;  // n_0 [-]
   const WallSurface<D>* wallSurface =
       nullptr;  // of the first wall particle; null: the fluid meets walls as they are
+  const SymmetricBlock<D>* renormalisation = nullptr;  // B per fluid particle (renormalisation.hpp); null: I
 
   TREACLE_HD Vec<D> positionOf(ListEntry e) const { return this->position[e.index()] + images.shift[e.image()]; }
+
+  /// B_k v: by B the k-th column of C and row of C^T are multiplied, G_k to B_k G_k, wherever they are needed. A
+  /// wall's is the unit matrix.
+  TREACLE_HD Vec<D> corrected(std::uint32_t k, const Vec<D>& v) const {
+    return renormalisation && k < this->fluidCount ? renormalisation[k] * v : v;
+  }
 
   /// By what the viscosity of fluid particle i with wall particle j is multiplied; d = x_j - x_i [m].
   TREACLE_HD double wallFactor(std::uint32_t i, std::uint32_t j, const Vec<D>& d) const {

@@ -16,7 +16,8 @@ void numberDensity(Context<Cpu>&, const MphPairs<D>&, std::span<double> n);
 template <int D>
 void numberDensity(Context<Cuda>&, const MphPairs<D>&, std::span<double> n);
 
-/// y_i += factor (C q)_i = -factor sum_j (q_i + q_j) e_ij w'_ij^p per fluid particle; q per particle.
+/// y_i += factor (C q)_i = -factor sum_j (q_i B_i + q_j B_j) e_ij w'_ij^p per fluid particle; q per particle. B:
+/// of the pairs (renormalisation.hpp), the unit matrix where they have none.
 template <int D>
 void addPressureGradient(Context<Cpu>&, const MphPairs<D>&, std::span<const double> q, double factor,
                          std::span<Vec<D>> y);
@@ -24,7 +25,7 @@ template <int D>
 void addPressureGradient(Context<Cuda>&, const MphPairs<D>&, std::span<const double> q, double factor,
                          std::span<Vec<D>> y);
 
-/// (C^T u)_i = sum_j (u_j - u_i).e_ij w'_ij^p per particle [K23 eq. (14)]; u per particle, walls included.
+/// (C^T u)_i = sum_j (u_j - u_i).B_i e_ij w'_ij^p per particle [K23 eq. (14)]; u per particle, walls included.
 template <int D>
 void divergence(Context<Cpu>&, const MphPairs<D>&, std::span<const Vec<D>> u, std::span<double> div);
 template <int D>
@@ -34,7 +35,7 @@ void divergence(Context<Cuda>&, const MphPairs<D>&, std::span<const Vec<D>> u, s
 template <int D>
 struct WallTerms {
   std::span<Block<D>> block;   // rho/dt I + sum over walls of the viscous pair blocks, per fluid particle
-  std::span<Vec<D>> gradient;  // sum over walls of -e w'^p [1/m], per fluid particle
+  std::span<Vec<D>> gradient;  // B times the sum over walls of -e w'^p [1/m], per fluid particle
 };
 template <int D>
 void wallTerms(Context<Cpu>&, const MphPairs<D>&, const WallTerms<D>&);

@@ -1,0 +1,41 @@
+#pragma once
+
+#include "treacle/core/vec.hpp"
+
+namespace treacle {
+
+/// Symmetric D x D matrix: its upper triangle, row by row. An aggregate; `SymmetricBlock<2>{}` is zero.
+template <int D, class T = double>
+struct SymmetricBlock {
+  static constexpr int size = D * (D + 1) / 2;
+
+  T a[size];
+
+  /// Where the element (r, c) stands.
+  TREACLE_HD static constexpr int place(int r, int c) {
+    return r <= c ? r * D - r * (r - 1) / 2 + c - r : place(c, r);
+  }
+  TREACLE_HD constexpr T& operator()(int r, int c) { return a[place(r, c)]; }
+  TREACLE_HD constexpr const T& operator()(int r, int c) const { return a[place(r, c)]; }
+
+  TREACLE_HD static constexpr SymmetricBlock identity() {
+    SymmetricBlock m{};
+    for (int k = 0; k < D; ++k) m(k, k) = 1;
+    return m;
+  }
+  /// this += factor v v^T
+  TREACLE_HD constexpr void addOuter(T factor, const Vec<D, T>& v) {
+    for (int r = 0; r < D; ++r)
+      for (int c = r; c < D; ++c) (*this)(r, c) += factor * v[r] * v[c];
+  }
+  TREACLE_HD friend constexpr Vec<D, T> operator*(const SymmetricBlock& m, const Vec<D, T>& x) {
+    Vec<D, T> y{};
+    for (int r = 0; r < D; ++r) {
+      y[r] = m(r, 0) * x[0];
+      for (int c = 1; c < D; ++c) y[r] += m(r, c) * x[c];
+    }
+    return y;
+  }
+};
+
+}  // namespace treacle
