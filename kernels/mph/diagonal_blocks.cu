@@ -12,6 +12,7 @@ struct DiagonalTerms {
   static constexpr int triangle = D * (D + 1) / 2, values = triangle + D;
   static constexpr bool uses(ListSegment s) { return s != ListSegment::FarWall; }
   struct Other {
+    std::uint32_t j;
     double lambda;
     Substance substance;
   };
@@ -22,17 +23,23 @@ struct DiagonalTerms {
 
   __device__ Own loadOwn(const MphPairs<D>& pairs, std::uint32_t i) const { return pairs.substance(i); }
   __device__ Other loadOther(const MphPairs<D>& pairs, std::uint32_t j) const {
-    return {pairs.bulkViscosity(j), pairs.substance(j)};
+    return {j, pairs.bulkViscosity(j), pairs.substance(j)};
   }
 
   __device__ void add(const MphPairs<D>& pairs, double* sum, const Vec<D>& d, const PairDistance<double>& r,
                       Own own, const Other& other, ListSegment segment) const {
-    const double g = mph.gradient(r);
-    double f = other.lambda * g * g;
-    if (isFluid(segment)) f += pairs.viscosity(own, other.substance) * mph.viscousFactor * mph.viscousShape(r);
+    const double g = mph.gradient(r), pressure = other.lambda * g * g;
+    const double viscous =
+        isFluid(segment) ? pairs.viscosity(own, other.substance) * mph.viscousFactor * mph.viscousShape(r) : 0.0;
     int n = 0;
-    for (int r = 0; r < D; ++r)
-      for (int c = r; c < D; ++c) sum[n++] += f * d[r] * d[c];
+    if (pairs.renormalisation) {
+      const Vec<D> column = pairs.corrected(other.j, d);
+      for (int r = 0; r < D; ++r)
+        for (int c = r; c < D; ++c) sum[n++] += viscous * d[r] * d[c] + pressure * column[r] * column[c];
+    } else {
+      for (int r = 0; r < D; ++r)
+        for (int c = r; c < D; ++c) sum[n++] += (pressure + viscous) * d[r] * d[c];
+    }
     for (int r = 0; r < D; ++r) sum[n++] += g * d[r];
   }
 
@@ -57,6 +64,7 @@ __global__ void finishKernel(const __grid_constant__ MphPairs<D> pairs, const do
     }
   Vec<D> own;
   for (int r = 0; r < D; ++r) own[r] = sum[r];
+  own = pairs.corrected(i, own);
   block.addOuter(pairs.bulkViscosity(i), own, own);
   diagonal[i] = block;
 }

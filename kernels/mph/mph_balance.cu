@@ -62,7 +62,8 @@ struct FluidAtWall {
     const double mu = pairs.pairViscosity(own.i, other.i) * pairs.wallFactor(other.i, own.i, -1.0 * d);
     const double g = mph.gradient(r);
     const double viscous = mph.viscousFactor * mu * mph.viscousShape(r) * along;
-    addScaled(sum, viscous - g * (own.pressure + other.pressure), d);
+    addScaled(sum, viscous - g * own.pressure, d);
+    addScaled(sum, -g * other.pressure, pairs.corrected(other.i, d));
     sum[D] = fma(-g, along, sum[D]);
     sum[D + 1] += mph.density(1.0, r);
   }

@@ -55,6 +55,7 @@ void MphOperator<D, Cuda>::prepare(Context<Cuda>& context, const MphPairs<D>& pa
 
 template <int D>
 void MphOperator<D, Cuda>::multiply(Context<Cuda>& context, std::span<const Vec<D>> u, std::span<Vec<D>> y) {
+  if (pairs_->renormalisation) return multiplyRenormalised(context, u, y);
   const SelfTerms<D> self{selfBlock_, selfGradient_};
   const auto places = LocalPositions<D, double>::make(*pairs_);
   withSharing(*pairs_, [&](auto sharing) {
@@ -74,6 +75,34 @@ void MphOperator<D, Cuda>::multiply(Context<Cuda>& context, std::span<const Vec<
     near_.addPressureGradient(context, q_, y);
   else
     addPressureGradient<D>(context, *pairs_, q_, 1.0, y);
+}
+
+/// B_i would have to stay in the registers of the first pass for all particles of a cluster: the divergence has a
+/// pass of its own, particle by particle.
+template <int D>
+void MphOperator<D, Cuda>::multiplyRenormalised(Context<Cuda>& context, std::span<const Vec<D>> u,
+                                                std::span<Vec<D>> y) {
+  const auto places = LocalPositions<D, double>::make(*pairs_);
+  const MphTerms<D, double>& terms = pairs_->terms;
+  const auto store = [y = y.data()] __device__(std::uint32_t i, const Vec<D>& product) { y[i] = product; };
+  withSharing(*pairs_, [&](auto sharing) {
+    using OnFluid = Viscosity<D, double, false, Vec<D>, decltype(store)>;
+    launchClusterSums<D, double, decltype(sharing)>(
+        context, *pairs_, ListTask<OnFluid>{pairs_->fluidList, {terms, selfBlock_.data(), u.data(), store}},
+        places);
+  });
+  if (pairs_->fluidList.offset) {
+    near_.bulkStress(context, u, q_);
+    near_.addPressureGradient(context, q_, y);
+    return;
+  }
+  using OnAll = Divergence<D, double, true, true>;
+  withSharing(*pairs_, [&](auto sharing) {
+    const OnAll sums{terms, u.data(), q_.data()};
+    launchClusterSums<D, double, decltype(sharing)>(context, *pairs_, ListTask<OnAll>{pairs_->fluidList, sums},
+                                                    ListTask<OnAll>{pairs_->wallList, sums}, places);
+  });
+  addPressureGradient<D>(context, *pairs_, q_, 1.0, y);
 }
 
 template class MphOperator<2, Cuda>;

@@ -120,6 +120,9 @@ void divergence(Context<Cuda>& context, const MphPairs<D>& pairs, std::span<cons
 template <int D>
 void wallTerms(Context<Cuda>& context, const MphPairs<D>& pairs, const WallTerms<D>& terms) {
   sumOnFluid(context, pairs, WallSums<D>{pairs.terms, terms});
+  if (pairs.renormalisation)
+    forEach(context, pairs.fluidCount,
+            [b = pairs.renormalisation, g = terms.gradient] __device__(std::size_t i) { g[i] = b[i] * g[i]; });
 }
 
 template <int D>

@@ -77,8 +77,30 @@ void NearProducts<D>::prepare(Context<Cuda>& context, const MphPairs<D>& pairs) 
 template <int D>
 void NearProducts<D>::addPressureGradient(Context<Cuda>& context, std::span<const double> q,
                                           std::span<Vec<D>> y) const {
-  nearGradient(context, NearView<D, double>::make(*pairs_, *this), PlainScalars<D, double>{q.data()},
-               [y = y.data()] __device__(std::uint32_t i, const Vec<D>& gradient) { y[i] += gradient; });
+  const auto view = NearView<D, double>::make(*pairs_, *this);
+  const auto add = [y = y.data()] __device__(std::uint32_t i, const Vec<D>& gradient) { y[i] += gradient; };
+  const PlainScalars<D, double> scalars{q.data()};
+  if (pairs_->renormalisation)
+    nearGradient(
+        context, view,
+        Tensors<D, double, PlainScalars<D, double>>{scalars, {pairs_->renormalisation, pairs_->fluidCount}}, add);
+  else
+    nearGradient(context, view, scalars, add);
+}
+
+template <int D>
+void NearProducts<D>::bulkStress(Context<Cuda>& context, std::span<const Vec<D>> u, std::span<double> q) const {
+  const auto view = NearView<D, double>::make(*pairs_, *this);
+  const PlainVectors<D, double, Vec<D>> vectors{u.data()};
+  const auto store = [q = q.data(), material = pairs_->material.data(), materials = pairs_->materials] __device__(
+                         std::uint32_t k, double divergence) {
+    q[k] = materials.bulkViscosity[material[k]] * divergence;
+  };
+  if (pairs_->renormalisation)
+    nearDivergence(context, view, vectors, Renormalised<D, double>{pairs_->renormalisation, pairs_->fluidCount},
+                   store);
+  else
+    nearDivergence(context, view, vectors, Plain<D, double>{}, store);
 }
 
 template class NearProducts<2>;

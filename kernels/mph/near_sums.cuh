@@ -71,24 +71,6 @@ __device__ inline T gradientShape(const NearView<D, T>& view, const Vec<D, T>& d
   return view.mph.gradientShape(PairDistance<T>{r2, inverseSqrt(r2)});
 }
 
-/// One fetch where the type allows it.
-template <int D, class T>
-__device__ inline Vec<D, T> fetch(const Gathered<D, T>* from) {
-  if constexpr (std::is_same_v<T, float> && D == 3) {
-    const float4 v = *reinterpret_cast<const float4*>(from);
-    return {v.x, v.y, v.z};
-  } else if constexpr (std::is_same_v<T, float> && D == 2) {
-    const float2 v = *reinterpret_cast<const float2*>(from);
-    return {v.x, v.y};
-  } else {
-    return *from;
-  }
-}
-template <int D, class T>
-__device__ inline Vec<D, T> fetch(const Vec<D, T>* from) {
-  return *from;
-}
-
 /// So many threads share a list, a power of two. (As a number that only the launch knows, it costs small systems
 /// up to a tenth of a solve.)
 template <int count>
@@ -140,6 +122,55 @@ struct PlainScalars {
     return {view.other(e), q[e.index()]};
   }
 };
+/// B of the pressure gradient in the products of a case (renormalisation.hpp), and what stands in its place where
+/// it has none: of(k) times d is what d is in particle k's column of C.
+template <int D, class T>
+struct Renormalised {
+  const SymmetricBlock<D, T>* b;
+  std::uint32_t fluidCount;
+  __device__ SymmetricBlock<D, T> of(std::uint32_t k) const {
+    return k < fluidCount ? b[k] : SymmetricBlock<D, T>::identity();
+  }
+};
+template <int D, class T>
+struct Plain {
+  struct Unit {
+    __device__ friend Vec<D, T> operator*(Unit, const Vec<D, T>& d) { return d; }
+  };
+  __device__ Unit of(std::uint32_t) const { return {}; }
+};
+
+/// A pressure times its B.
+template <int D, class T>
+struct PlacedTensor {
+  typename NearView<D, T>::Stored x;
+  SymmetricBlock<D, T> value;
+};
+template <int D, class T, class Scalars>
+struct Tensors {
+  Scalars q;
+  Renormalised<D, T> b;
+  __device__ PlacedTensor<D, T> own(const NearView<D, T>& view, std::uint32_t i) const {
+    const PlacedValue<D, T> scalar = q.own(view, i);
+    return {scalar.x, scalar.value * b.of(i)};
+  }
+  __device__ PlacedTensor<D, T> other(const NearView<D, T>& view, ListEntry e) const {
+    const PlacedValue<D, T> scalar = q.other(view, e);
+    return {scalar.x, scalar.value * b.of(e.index())};
+  }
+};
+
+/// sum += g (a + b) d of two pressures.
+template <int D, class T>
+__device__ inline void addPressures(Vec<D, T>& sum, T g, T a, T b, const Vec<D, T>& d) {
+  addScaled(&sum[0], g * (a + b), d);
+}
+template <int D, class T>
+__device__ inline void addPressures(Vec<D, T>& sum, T g, const SymmetricBlock<D, T>& a,
+                                    const SymmetricBlock<D, T>& b, const Vec<D, T>& d) {
+  addScaled(&sum[0], g, (a + b) * d);
+}
+
 template <int D, class T>
 struct PlacedVelocity {
   typename NearView<D, T>::Stored x;
@@ -169,9 +200,9 @@ __global__ void __launch_bounds__(128)
   Vec<D, T> sum{};
   alongList(
       view.sliceStart, view.entry, i, [&](ListEntry e) { return q.other(view, e); },
-      [&](const PlacedValue<D, T>& other) {
+      [&](const auto& other) {
         const Vec<D, T> d = view.difference(other.x, mine.x);
-        addScaled(&sum[0], gradientShape(view, d) * (mine.value + other.value), d);
+        addPressures(sum, gradientShape(view, d), mine.value, other.value, d);
       },
       thread % split, split);
   for (int k = 0; k < D; ++k) sum[k] = splitSum(sum[k], split);
@@ -180,20 +211,21 @@ __global__ void __launch_bounds__(128)
 
 /// `split` threads per particle: store(k, (C^T u)_k), walls at rest; reads positions and u of the neighbours. No
 /// atomics.
-template <class Split, int D, class T, class Vectors, class Store>
+template <class Split, int D, class T, class Vectors, class Columns, class Store>
 __global__ void __launch_bounds__(128)
     nearDivergenceKernel(const Split split, const __grid_constant__ NearView<D, T> view, const Vectors u,
-                         const __grid_constant__ Store store) {
+                         const Columns columns, const __grid_constant__ Store store) {
   const std::uint32_t thread = blockIdx.x * blockDim.x + threadIdx.x, own = thread / split;
   if (split == 1 && own >= view.activeCount) return;
   const std::uint32_t k = min(own, view.activeCount - 1);
   const auto mine = u.own(view, k);
+  const auto b = columns.of(k);
   T sum = 0;
   alongList(
       view.sliceStart, view.entry, k, [&](ListEntry e) { return u.other(view, e); },
       [&](const PlacedVelocity<D, T>& other) {
         const Vec<D, T> d = view.difference(other.x, mine.x);
-        sum = fma(gradientShape(view, d), differenceAlong(other.u, mine.u, d), sum);
+        sum = fma(gradientShape(view, d), differenceAlong(other.u, mine.u, b * d), sum);
       },
       thread % split, split);
   sum = splitSum(sum, split);
@@ -219,12 +251,12 @@ void nearGradient(const Context<Cuda>& context, const NearView<D, T>& view, cons
            nearGradientKernel<decltype(split), D, T, Scalars, Store>, split, view, q, store);
   });
 }
-template <int D, class T, class Vectors, class Store>
+template <int D, class T, class Vectors, class Columns, class Store>
 void nearDivergence(const Context<Cuda>& context, const NearView<D, T>& view, const Vectors& u,
-                    const Store& store) {
+                    const Columns& columns, const Store& store) {
   withSplit<D>(view.activeCount, [&](auto split) {
     launch(context, blocksFor(std::size_t{view.activeCount} * split, 128), 128, 0,
-           nearDivergenceKernel<decltype(split), D, T, Vectors, Store>, split, view, u, store);
+           nearDivergenceKernel<decltype(split), D, T, Vectors, Columns, Store>, split, view, u, columns, store);
   });
 }
 

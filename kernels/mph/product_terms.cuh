@@ -22,6 +22,24 @@ __device__ inline void addScaled(T* sum, T factor, const Vec<D, T>& d) {
   for (int k = 0; k < D; ++k) sum[k] = fma(factor, d[k], sum[k]);
 }
 
+/// One fetch where the type allows it.
+template <int D, class T>
+__device__ inline Vec<D, T> fetch(const Gathered<D, T>* from) {
+  if constexpr (std::is_same_v<T, float> && D == 3) {
+    const float4 v = *reinterpret_cast<const float4*>(from);
+    return {v.x, v.y, v.z};
+  } else if constexpr (std::is_same_v<T, float> && D == 2) {
+    const float2 v = *reinterpret_cast<const float2*>(from);
+    return {v.x, v.y};
+  } else {
+    return *from;
+  }
+}
+template <int D, class T>
+__device__ inline Vec<D, T> fetch(const Vec<D, T>* from) {
+  return *from;
+}
+
 template <int D, class T>
 struct VelocityOf {
   Vec<D, T> u;
@@ -81,6 +99,38 @@ struct ViscosityAndDivergence {
   }
 };
 
+/// store(i, ((rho/dt I + V) u)_i) per fluid particle; as ViscosityAndDivergence without the divergence.
+template <int D, class T, bool OneSubstance, class V, class Store>
+struct Viscosity {
+  using StoresVectors = void;
+  static constexpr int values = D;
+  static constexpr bool uses(ListSegment s) { return isFluid(s); }
+  using Own = Substance;
+  using Other = VelocityOf<D, T>;
+
+  MphTerms<D, T> mph;
+  const Block<D, T>* selfBlock;
+  const V* u;
+  Store result;
+
+  __device__ Own loadOwn(const MphPairs<D>& pairs, std::uint32_t i) const {
+    return OneSubstance ? Substance{0} : pairs.substance(i);
+  }
+  __device__ Other loadOther(const MphPairs<D>& pairs, std::uint32_t j) const {
+    return {fetch(&u[j]), loadOwn(pairs, j)};
+  }
+  __device__ void add(const MphPairs<D>& pairs, T* sum, const Vec<D, T>& d, const PairDistance<T>& r, Own own,
+                      const Other& other, ListSegment) const {
+    T f = mph.viscousShape(r) * dot(d, other.u);
+    if constexpr (!OneSubstance) f *= static_cast<T>(pairs.viscosity(own, other.substance));
+    addScaled(sum, f, d);
+  }
+  __device__ void store(const MphPairs<D>& pairs, std::uint32_t i, const Vec<D, T>& sum) const {
+    const T mu = OneSubstance ? static_cast<T>(pairs.onlyViscosity()) : T(1);
+    result(i, selfBlock[i] * fetch(&u[i]) - mph.viscousFactor * mu * sum);
+  }
+};
+
 /// div = C^T u per particle [1/s] [K23 eq. (14)], or, with Scaled, lambda C^T u. With WallsAtRest u has only fluid
 /// particles.
 template <int D, class T, bool WallsAtRest, bool Scaled>
@@ -89,7 +139,10 @@ struct Divergence {
   static constexpr bool uses(ListSegment s) {
     return s == ListSegment::NearFluid || (!WallsAtRest && s == ListSegment::NearWall);
   }
-  using Own = Vec<D, T>;
+  struct Own {
+    std::uint32_t i;
+    Vec<D, T> u;
+  };
   using Other = Vec<D, T>;
 
   MphTerms<D, T> mph;
@@ -97,13 +150,13 @@ struct Divergence {
   T* div;
 
   __device__ Own loadOwn(const MphPairs<D>& pairs, std::uint32_t i) const {
-    return WallsAtRest && i >= pairs.fluidCount ? Vec<D, T>{} : u[i];
+    return {i, WallsAtRest && i >= pairs.fluidCount ? Vec<D, T>{} : u[i]};
   }
   __device__ Other loadOther(const MphPairs<D>&, std::uint32_t j) const { return u[j]; }
 
-  __device__ void add(const MphPairs<D>&, T* sum, const Vec<D, T>& d, const PairDistance<T>& r, const Own& own,
-                      const Other& other, ListSegment) const {
-    sum[0] = fma(mph.gradientShape(r), differenceAlong(other, own, d), sum[0]);
+  __device__ void add(const MphPairs<D>& pairs, T* sum, const Vec<D, T>& d, const PairDistance<T>& r,
+                      const Own& own, const Other& other, ListSegment) const {
+    sum[0] = fma(mph.gradientShape(r), differenceAlong(other, own.u, pairs.corrected(own.i, d)), sum[0]);
   }
   __device__ void store(const MphPairs<D>& pairs, std::uint32_t i, int, T sum) const {
     const double lambda = Scaled ? pairs.bulkViscosity(i) : 1.0;
@@ -116,20 +169,25 @@ template <int D, class T, bool Add>
 struct PressureGradient {
   static constexpr int values = D;
   static constexpr bool uses(ListSegment s) { return isNear(s); }
-  using Own = T;
-  using Other = T;
+  struct Own {
+    std::uint32_t i;
+    T q;
+  };
+  using Other = Own;
 
   MphTerms<D, T> mph;
   const T* q;
   Vec<D, T>* y;
   T factor = 1;
 
-  __device__ Own loadOwn(const MphPairs<D>&, std::uint32_t i) const { return q[i]; }
-  __device__ Other loadOther(const MphPairs<D>&, std::uint32_t j) const { return q[j]; }
+  __device__ Own loadOwn(const MphPairs<D>&, std::uint32_t i) const { return {i, q[i]}; }
+  __device__ Other loadOther(const MphPairs<D>&, std::uint32_t j) const { return {j, q[j]}; }
 
-  __device__ void add(const MphPairs<D>&, T* sum, const Vec<D, T>& d, const PairDistance<T>& r, const Own& own,
-                      const Other& other, ListSegment) const {
-    addScaled(sum, mph.gradientShape(r) * (own + other), d);
+  __device__ void add(const MphPairs<D>& pairs, T* sum, const Vec<D, T>& d, const PairDistance<T>& r,
+                      const Own& own, const Other& other, ListSegment) const {
+    const T g = mph.gradientShape(r);
+    if (!pairs.renormalisation) return addScaled(sum, g * (own.q + other.q), d);
+    addScaled(sum, g, own.q * pairs.corrected(own.i, d) + other.q * pairs.corrected(other.i, d));
   }
   __device__ void store(const MphPairs<D>&, std::uint32_t i, int n, T sum) const {
     const T value = factor * mph.gradientFactor * sum;

@@ -82,7 +82,7 @@ class RowAssembler {
       const double lambda = pairs_.bulkViscosity(k);
       scratch_.k[lane_] = k;
       scratch_.d[lane_] = nearestImage(pairs_.grid, pairs_.position[k] - xi_);
-      scratch_.weighted[lane_] = lambda * (own ? a_.own[i_] : a_.g[place]);
+      scratch_.weighted[lane_] = lambda * pairs_.corrected(k, own ? a_.own[i_] : a_.g[place]);
     }
     __syncwarp();
   }
@@ -93,10 +93,12 @@ class RowAssembler {
     for (std::uint32_t t = 0; t < count; ++t) {
       const Vec<D> toPressure = scratch_.d[t] - d;
       const double r2 = norm2(toPressure);
-      if (scratch_.k[t] == j)
-        sum.addOuter(1, scratch_.weighted[t], a_.own[j]);
+      const std::uint32_t k = scratch_.k[t];
+      if (k == j)
+        sum.addOuter(1, scratch_.weighted[t], pairs_.corrected(k, a_.own[j]));
       else if (r2 < h2 && r2 > 0)
-        sum.addOuter(1, scratch_.weighted[t], pairs_.terms.gradient(ExactDistance(r2)) * toPressure);
+        sum.addOuter(1, scratch_.weighted[t],
+                     pairs_.terms.gradient(ExactDistance(r2)) * pairs_.corrected(k, toPressure));
     }
   }
 

@@ -5,38 +5,6 @@
 namespace treacle {
 namespace {
 
-/// store(i, ((rho/dt I + V) u)_i) per fluid particle; as ViscosityAndDivergence without the divergence.
-template <int D, class T, bool OneSubstance, class Store>
-struct Viscosity {
-  using StoresVectors = void;
-  static constexpr int values = D;
-  static constexpr bool uses(ListSegment s) { return isFluid(s); }
-  using Own = Substance;
-  using Other = VelocityOf<D, T>;
-
-  MphTerms<D, T> mph;
-  const Block<D, T>* selfBlock;
-  const Gathered<D, T>* u;
-  Store result;
-
-  __device__ Own loadOwn(const MphPairs<D>& pairs, std::uint32_t i) const {
-    return OneSubstance ? Substance{0} : pairs.substance(i);
-  }
-  __device__ Other loadOther(const MphPairs<D>& pairs, std::uint32_t j) const {
-    return {fetch(&u[j]), loadOwn(pairs, j)};
-  }
-  __device__ void add(const MphPairs<D>& pairs, T* sum, const Vec<D, T>& d, const PairDistance<T>& r, Own own,
-                      const Other& other, ListSegment) const {
-    T f = mph.viscousShape(r) * dot(d, other.u);
-    if constexpr (!OneSubstance) f *= static_cast<T>(pairs.viscosity(own, other.substance));
-    addScaled(sum, f, d);
-  }
-  __device__ void store(const MphPairs<D>& pairs, std::uint32_t i, const Vec<D, T>& sum) const {
-    const T mu = OneSubstance ? static_cast<T>(pairs.onlyViscosity()) : T(1);
-    result(i, selfBlock[i] * fetch(&u[i]) - mph.viscousFactor * mu * sum);
-  }
-};
-
 template <int D, class T>
 LocalPositions<D, T> placesOf(const MphPairs<D>& pairs, const NearProducts<D>& near) {
   if constexpr (std::is_same_v<T, double>)
@@ -79,13 +47,15 @@ NearView<D, T> viewOf(const MphPairs<D>& pairs, const NearProducts<D>& near) {
 }
 
 /// One thread per particle: the inverse diagonal of S', from the positions of the neighbours. No atomics.
-template <int D, class T>
+template <int D, class T, class Columns>
 __global__ void __launch_bounds__(128)
-    pressureDiagonalKernel(const __grid_constant__ NearView<D, T> view, const std::uint8_t* material,
-                           const __grid_constant__ ProjectionTable<T> table, T* inverseDiagonal) {
+    pressureDiagonalKernel(const __grid_constant__ NearView<D, T> view, const Columns columns,
+                           const std::uint8_t* material, const __grid_constant__ ProjectionTable<T> table,
+                           T* inverseDiagonal) {
   const std::uint32_t k = blockIdx.x * blockDim.x + threadIdx.x;
   if (k >= view.activeCount) return;
   const auto xk = view.own(k);
+  const auto b = columns.of(k);
   Vec<D, T> own{};
   T others = 0;
   struct Loaded {
@@ -97,7 +67,7 @@ __global__ void __launch_bounds__(128)
     return Loaded{view.other(e), j < view.fluidCount ? table.weight[material[j]] : T(0)};
   };
   alongList(view.sliceStart, view.entry, k, load, [&](const Loaded& other) {
-    const Vec<D, T> d = view.difference(other.x, xk), g = gradientShape(view, d) * d;
+    const Vec<D, T> d = view.difference(other.x, xk), g = gradientShape(view, d) * (b * d);
     own += g;
     others += other.weight * norm2(g);
   });
@@ -132,6 +102,12 @@ void ParticleProducts<D, T, Cuda>::prepare(Context<Cuda>& context, const MphPair
             for (int k = 0; k < 3; ++k) vectors[i].word[k + 1] = x[2] >> (16 + 6 * k) & PlacedVector<3>::low;
           }
         });
+  renormalisation_.resize(context, pairs.renormalisation ? pairs.fluidCount : 0);
+  if (pairs.renormalisation)
+    forEach(context, pairs.fluidCount,
+            [from = pairs.renormalisation, to = renormalisation_.data()] __device__(std::size_t i) {
+              for (int k = 0; k < SymmetricBlock<D>::size; ++k) to[i].a[k] = static_cast<T>(from[i].a[k]);
+            });
   selfBlock_.resize(context, pairs.fluidCount);
   const double* from = a.selfBlock()[0].a;
   T* to = selfBlock_.data()->a;
@@ -163,19 +139,35 @@ void ParticleProducts<D, T, Cuda>::gatherWeighted(Context<Cuda>& context, const 
 
 /// Calls f(view, what gathers q).
 template <int D, class T, class F>
-void withScalars(const MphPairs<D>& pairs, const NearProducts<D>& near, ScalarField<T, Cuda> q, F&& f) {
+void withScalars(const MphPairs<D>& pairs, const NearProducts<D>& near,
+                 const SymmetricBlock<D, T>* renormalisation, ScalarField<T, Cuda> q, F&& f) {
   const auto view = viewOf<D, T>(pairs, near);
-  if constexpr (std::is_same_v<T, float>)
-    f(view, PlacedScalars<D>{q.at});
+  const auto scalars = [&] {
+    if constexpr (std::is_same_v<T, float>)
+      return PlacedScalars<D>{q.at};
+    else
+      return PlainScalars<D, T>{q.at};
+  }();
+  if (renormalisation)
+    f(view, Tensors<D, T, decltype(scalars)>{scalars, {renormalisation, pairs.fluidCount}});
   else
-    f(view, PlainScalars<D, T>{q.at});
+    f(view, scalars);
+}
+
+/// Calls f(what stands in the columns of C).
+template <int D, class T, class F>
+void withColumns(const MphPairs<D>& pairs, const SymmetricBlock<D, T>* renormalisation, F&& f) {
+  if (renormalisation)
+    f(Renormalised<D, T>{renormalisation, pairs.fluidCount});
+  else
+    f(Plain<D, T>{});
 }
 
 template <int D, class T>
 template <class Store>
 void ParticleProducts<D, T, Cuda>::gradient(Context<Cuda>& context, ScalarField<T, Cuda> q,
                                             const Store& store) const {
-  withScalars(*pairs_, a_->near(), q,
+  withScalars(*pairs_, a_->near(), renormalisation(), q,
               [&](const auto& view, const auto& scalars) { nearGradient(context, view, scalars, store); });
 }
 
@@ -184,10 +176,12 @@ template <class Store>
 void ParticleProducts<D, T, Cuda>::divergence(Context<Cuda>& context, VectorField<D, T, Cuda> u,
                                               const Store& store) const {
   const auto view = viewOf<D, T>(*pairs_, a_->near());
-  if constexpr (std::is_same_v<T, float>)
-    nearDivergence(context, view, PlacedVectors<D>{u.at}, store);
-  else
-    nearDivergence(context, view, PlainVectors<D, T, Gathered<D, T>>{u.at}, store);
+  withColumns<D, T>(*pairs_, renormalisation(), [&](const auto& columns) {
+    if constexpr (std::is_same_v<T, float>)
+      nearDivergence(context, view, PlacedVectors<D>{u.at}, columns, store);
+    else
+      nearDivergence(context, view, PlainVectors<D, T, Gathered<D, T>>{u.at}, columns, store);
+  });
 }
 
 template <int D, class T>
@@ -196,11 +190,11 @@ void ParticleProducts<D, T, Cuda>::schur(Context<Cuda>& context, const Projectio
                                          ScalarField<T, Cuda> q, const Store& store) {
   const std::uint8_t* material = pairs_->material.data();
   if constexpr (std::is_same_v<T, float>)
-    if (pairs_->activeCount <= onePassParticles<D>) {
+    if (pairs_->activeCount <= onePassParticles<D> && !renormalisation()) {
       nearSchur(context, viewOf<D, T>(*pairs_, a_->near()), PlacedScalars<D>{q.at}, table, material, store);
       return;
     }
-  withScalars(*pairs_, a_->near(), q, [&](const auto& view, const auto& scalars) {
+  withScalars(*pairs_, a_->near(), renormalisation(), q, [&](const auto& view, const auto& scalars) {
     nearGradient(context, view, scalars, StoreWeighted<D, T, Cuda>{table, material, vectors()});
   });
   divergence(context, vectors(), store);
@@ -213,7 +207,7 @@ void ParticleProducts<D, T, Cuda>::viscous(Context<Cuda>& context, const Gathere
   const auto places = placesOf<D, T>(*pairs_, a_->near());
   const auto terms = pairs_->terms.template inUnitsOf<T>(places.unit(*pairs_));
   const auto start = [&](auto sharing, auto oneSubstance) {
-    using Terms = Viscosity<D, T, decltype(oneSubstance)::value, Store>;
+    using Terms = Viscosity<D, T, decltype(oneSubstance)::value, Gathered<D, T>, Store>;
     launchClusterSums<D, T, decltype(sharing)>(
         context, *pairs_, ListTask<Terms>{pairs_->fluidList, {terms, selfBlock_.data(), u, store}}, places);
   };
@@ -228,8 +222,11 @@ void ParticleProducts<D, T, Cuda>::viscous(Context<Cuda>& context, const Gathere
 template <int D, class T>
 void ParticleProducts<D, T, Cuda>::inverseDiagonals(Context<Cuda>& context, const ProjectionTable<T>& table,
                                                     std::span<T> pressure, std::span<Block<D, T>> velocity) const {
-  launch(context, blocksFor(pairs_->activeCount, 128), 128, 0, pressureDiagonalKernel<D, T>,
-         NearView<D, T>::make(*pairs_, a_->near()), pairs_->material.data(), table, pressure.data());
+  withColumns<D, T>(*pairs_, renormalisation(), [&](const auto& columns) {
+    launch(context, blocksFor(pairs_->activeCount, 128), 128, 0,
+           pressureDiagonalKernel<D, T, std::decay_t<decltype(columns)>>,
+           NearView<D, T>::make(*pairs_, a_->near()), columns, pairs_->material.data(), table, pressure.data());
+  });
   forEach(context, pairs_->fluidCount, [from = selfBlock_.data(), to = velocity.data()] __device__(std::size_t i) {
     to[i] = inverse(from[i]);
   });

@@ -25,7 +25,8 @@ struct PressureGalerkin {
   HatCells<D> cells;
   HatNodesView<D> nodes;
   NearView<D, T> near;
-  Vec<D, T> toCells;  // unit of length of `near` in cells
+  const SymmetricBlock<D>* renormalisation;  // per fluid particle; null: none
+  Vec<D, T> toCells;                         // unit of length of `near` in cells
   ProjectionTable<double> table;
   CellRangesView ranges;
   const Vec<D>* position;
@@ -50,15 +51,29 @@ __device__ inline Vec<D, T> pressureColumn(const PressureGalerkin<D, T>& g, std:
   };
   const T own = hat(s);
   const auto xi = g.near.own(i);
-  Vec<D, T> sum{};
+  Vec<D, T> sum{}, plain{};
+  const auto column = [&](std::uint32_t k, const Vec<D, T>& d) {
+    return converted<T>(g.renormalisation[k] * converted<double>(d));
+  };
+  struct Loaded {
+    typename NearView<D, T>::Stored x;
+    std::uint32_t j;
+  };
   alongList(
-      g.near.sliceStart, g.near.entry, i, [&](ListEntry e) { return g.near.other(e); },
-      [&](const typename NearView<D, T>::Stored& other) {
-        const Vec<D, T> d = g.near.difference(other, xi);
+      g.near.sliceStart, g.near.entry, i,
+      [&](ListEntry e) {
+        return Loaded{g.near.other(e), e.index()};
+      },
+      [&](const Loaded& other) {
+        const Vec<D, T> d = g.near.difference(other.x, xi);
         Vec<D, T> at;
         for (int k = 0; k < D; ++k) at[k] = fma(d[k], g.toCells[k], s[k]);
-        addScaled(&sum[0], gradientShape(g.near, d) * (own + hat(at)), d);
+        const T shape = gradientShape(g.near, d);
+        if (!g.renormalisation) return addScaled(&sum[0], shape * (own + hat(at)), d);
+        addScaled(&plain[0], shape * own, d);
+        addScaled(&sum[0], shape * hat(at), other.j < g.near.fluidCount ? column(other.j, d) : d);
       });
+  if (g.renormalisation) sum += column(i, plain);
   return g.near.mph.gradientFactor * sum;
 }
 
@@ -213,6 +228,7 @@ void pressureGalerkin(Context<Cuda>& context, const MphPairs<D>& pairs, const Ne
       .cells = {pairs.grid},
       .nodes = nodes.view(),
       .near = view,
+      .renormalisation = pairs.renormalisation,
       .toCells = toCells,
       .table = table,
       .ranges = pairs.cells,

@@ -59,6 +59,11 @@ void restrictedColumns(Context<Cuda>& context, const MphPairs<D>& pairs, Buffer<
   else
     launchClusterSums<D, double, Sharing<1, 1, true>>(context, pairs, fluid, walls,
                                                       LocalPositions<D, double>::make(pairs));
+  if (pairs.renormalisation)
+    forEach(context, std::size_t{Terms::slots} * pairs.fluidCount,
+            [b = pairs.renormalisation, c = columns.data()] __device__(std::size_t k) {
+              c[k] = b[k / Terms::slots] * c[k];
+            });
 }
 
 }  // namespace treacle

@@ -23,6 +23,17 @@ struct SymmetricBlock {
     for (int k = 0; k < D; ++k) m(k, k) = 1;
     return m;
   }
+  TREACLE_HD constexpr SymmetricBlock& operator+=(const SymmetricBlock& o) {
+    for (int k = 0; k < size; ++k) a[k] += o.a[k];
+    return *this;
+  }
+  TREACLE_HD friend constexpr SymmetricBlock operator+(SymmetricBlock m, const SymmetricBlock& o) {
+    return m += o;
+  }
+  TREACLE_HD friend constexpr SymmetricBlock operator*(T s, SymmetricBlock m) {
+    for (T& x : m.a) x *= s;
+    return m;
+  }
   /// this += factor v v^T
   TREACLE_HD constexpr void addOuter(T factor, const Vec<D, T>& v) {
     for (int r = 0; r < D; ++r)

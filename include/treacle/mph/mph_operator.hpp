@@ -58,6 +58,8 @@ class MphOperator<D, Cuda> {
   std::size_t bytes() const { return q_.bytes() + selfBlock_.bytes() + selfGradient_.bytes() + near_.bytes(); }
 
  private:
+  void multiplyRenormalised(Context<Cuda>&, std::span<const Vec<D>> u, std::span<Vec<D>> y);
+
   const MphPairs<D>* pairs_ = nullptr;
   Buffer<Block<D>, Cuda> selfBlock_;   // diagonal block of rho/dt I + V, per fluid particle
   Buffer<Vec<D>, Cuda> selfGradient_;  // C_ii

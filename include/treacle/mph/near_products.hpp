@@ -23,6 +23,9 @@ class NearProducts {
   /// y += C q per fluid particle; q per particle.
   void addPressureGradient(Context<Cuda>&, std::span<const double> q, std::span<Vec<D>> y) const;
 
+  /// q = lambda C^T u per particle, walls at rest; u per fluid particle.
+  void bulkStress(Context<Cuda>&, std::span<const Vec<D>> u, std::span<double> q) const;
+
   /// Positions in units of 2^-32 of the domain's length, 4 numbers per particle, the last unused: differences are
   /// exact, and those across periodic ends come out right by themselves.
   std::span<const std::int32_t> fixedPosition() const { return fixedPosition_; }
