@@ -90,7 +90,9 @@ struct WallDrag {
 
   __device__ void add(const MphPairs<D>& pairs, double* sum, const Vec<D>& d, const PairDistance<double>& r, Own i,
                       const Other& other, ListSegment) const {
-    const double f = pairs.pairViscosity(i, other.j) * pairs.wallFactor(i, other.j, d) * mph.viscousShape(r);
+    const Side& j = other.side;
+    const double f =
+        pairs.viscosity(i.substance, j.substance) * pairs.wallFactor(i.index, j.index, d) * mph.viscousShape(r);
     addScaled(sum, f * dot(d, other.u), d);
   }
   __device__ void store(const MphPairs<D>&, std::uint32_t i, int n, double sum) const {
