@@ -35,6 +35,12 @@ struct SelfSums {
   }
 };
 
+template <int D>
+struct StoreProduct {
+  Vec<D>* y;
+  __device__ void operator()(std::uint32_t i, const Vec<D>& product) const { y[i] = product; }
+};
+
 }  // namespace
 
 template <int D>
@@ -84,11 +90,10 @@ void MphOperator<D, Cuda>::multiplyRenormalised(Context<Cuda>& context, std::spa
                                                 std::span<Vec<D>> y) {
   const auto places = LocalPositions<D, double>::make(*pairs_);
   const MphTerms<D, double>& terms = pairs_->terms;
-  const auto store = [y = y.data()] __device__(std::uint32_t i, const Vec<D>& product) { y[i] = product; };
   withSharing(*pairs_, [&](auto sharing) {
-    using OnFluid = Viscosity<D, double, false, Vec<D>, decltype(store)>;
+    using OnFluid = Viscosity<D, double, false, Vec<D>, StoreProduct<D>>;
     launchClusterSums<D, double, decltype(sharing)>(
-        context, *pairs_, ListTask<OnFluid>{pairs_->fluidList, {terms, selfBlock_.data(), u.data(), store}},
+        context, *pairs_, ListTask<OnFluid>{pairs_->fluidList, {terms, selfBlock_.data(), u.data(), {y.data()}}},
         places);
   });
   if (pairs_->fluidList.offset) {

@@ -110,7 +110,7 @@ void numberDensity(Context<Cuda>& context, const MphPairs<D>& pairs, std::span<d
 template <int D>
 void addPressureGradient(Context<Cuda>& context, const MphPairs<D>& pairs, std::span<const double> q,
                          double factor, std::span<Vec<D>> y) {
-  sumOnFluid(context, pairs, PressureGradient<D, double, true>{pairs.terms, q.data(), y.data(), factor});
+  sumOnFluid(context, pairs, PressureForce<D, double, true>{pairs.terms, q.data(), y.data(), factor});
 }
 
 template <int D>
@@ -135,8 +135,8 @@ void addWallDrag(Context<Cuda>& context, const MphPairs<D>& pairs, std::span<con
 
 #define TREACLE_INSTANTIATE(D)                                                                                 \
   template void numberDensity<D>(Context<Cuda>&, const MphPairs<D>&, std::span<double>);                       \
-  template void addPressureGradient<D>(Context<Cuda>&, const MphPairs<D>&, std::span<const double>, double,    \
-                                       std::span<Vec<D>>);                                                     \
+  template void addPressureGradient<D>(Context<Cuda>&, const MphPairs<D>&, std::span<const double>, double,       \
+                                    std::span<Vec<D>>);                                                        \
   template void divergence<D>(Context<Cuda>&, const MphPairs<D>&, std::span<const Vec<D>>, std::span<double>); \
   template void wallTerms<D>(Context<Cuda>&, const MphPairs<D>&, const WallTerms<D>&);                         \
   template void addWallDrag<D>(Context<Cuda>&, const MphPairs<D>&, std::span<const Vec<D>>, std::span<Vec<D>>);

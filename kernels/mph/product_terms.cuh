@@ -166,7 +166,7 @@ struct Divergence {
 
 /// y = C q, or y += factor C q with Add, per fluid particle; q per particle.
 template <int D, class T, bool Add>
-struct PressureGradient {
+struct PressureForce {
   static constexpr int values = D;
   static constexpr bool uses(ListSegment s) { return isNear(s); }
   struct Own {
