@@ -51,6 +51,7 @@ MethodSettings defaultMethod(SchemeKind scheme) {
   method.pressureWeight = PressureWeight::WendlandC2;
   method.viscosityWeight = ViscosityWeight::Biquadratic;
   method.wallVelocity = WallVelocity::Extrapolated;
+  method.pressureGradient = PressureGradient::Renormalised;
   method.pressureRadius = 3;
   return method;
 }

@@ -67,15 +67,17 @@ class RowAssembler {
     addColumn(i, own, blocks);
   }
 
-  /// blocks += lambda_k c_ik c_jk^T over the fluid particles j of column k; c_jk = -g_kj, c_kk = sum_j g_kj.
-  void addColumn(std::uint32_t k, const Vec<D>& cik, std::span<Block<D>> blocks) {
+  /// blocks += lambda_k c_ik c_jk^T over the fluid particles j of column k; c_jk = -B_k g_kj, c_kk = B_k sum_j
+  /// g_kj. `gik`: B_k^-1 c_ik.
+  void addColumn(std::uint32_t k, const Vec<D>& gik, std::span<Block<D>> blocks) {
     const double lambda = pairs_.bulkViscosity(k);
+    const Vec<D> cik = pairs_.corrected(k, gik);
     Vec<D> own{};
     for (std::uint64_t m = rows_.rowStart[k]; m < rows_.rowStart[k + 1]; ++m) {
       own += rows_.value[m];
-      addBlock(rows_.column[m], -lambda, cik, rows_.value[m], blocks);
+      addBlock(rows_.column[m], -lambda, cik, pairs_.corrected(k, rows_.value[m]), blocks);
     }
-    addBlock(k, lambda, cik, own, blocks);
+    addBlock(k, lambda, cik, pairs_.corrected(k, own), blocks);
   }
 
   void addBlock(std::uint32_t j, double factor, const Vec<D>& a, const Vec<D>& b, std::span<Block<D>> blocks) {
@@ -127,7 +129,7 @@ void diagonalBlocks(Context<Cpu>&, const MphPairs<D>& pairs, const WallTerms<D>&
                     std::span<Block<D>> diagonal) {
   const double floor2 = distanceFloor2(pairs);
   const ClusterListView& list = pairs.fluidList;
-  const auto sumUp = [&](const auto& mph) {
+  const auto sumUp = [&]<bool Renormalised>(const auto& mph) {
     forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const VecLanes<D>& x, std::uint32_t c) {
       const ViscosityLanes<D> viscosity(pairs, range);
       Lanes block[D][D] = {};
@@ -136,7 +138,13 @@ void diagonalBlocks(Context<Cpu>&, const MphPairs<D>& pairs, const WallTerms<D>&
         const PairLanes<D> pair(pairs.positionOf(e), x, floor2);
         const Lanes g = mph.gradient(pair.r);
         Lanes f = pairs.bulkViscosity(e.index()) * g * g;  // lambda_j C_ij C_ij^T
-        if (!wall)                                         // the viscous part of walls stands in terms.block
+        if constexpr (Renormalised) {
+          const VecLanes<D> bd = corrected(pairs, e.index(), pair.d);
+          for (int r = 0; r < D; ++r)
+            for (int k = 0; k < D; ++k) block[r][k] += f * bd[r] * bd[k];
+          f = Lanes{};
+        }
+        if (!wall)  // the viscous part of walls stands in terms.block
           f += mph.viscous(viscosity.with(e.index()), pair.r);
         for (int r = 0; r < D; ++r) {
           own[r] += g * pair.d[r];
@@ -155,12 +163,15 @@ void diagonalBlocks(Context<Cpu>&, const MphPairs<D>& pairs, const WallTerms<D>&
           cii[r] = own[r][lane];
           for (int k = 0; k < D; ++k) sum(r, k) += block[r][k][lane];
         }
+        if constexpr (Renormalised) cii = pairs.corrected(i, cii);
         sum.addOuter(pairs.bulkViscosity(i), cii, cii);
         diagonal[i] = sum;
       }
     });
   };
-  withWeights(pairs.terms, sumUp);
+  withWeights(pairs.terms, [&](const auto& mph) {
+    withRenormalisation(pairs, [&]<bool Renormalised>() { sumUp.template operator()<Renormalised>(mph); });
+  });
 }
 
 #define TREACLE_INSTANTIATE(D)                                                                              \

@@ -48,8 +48,14 @@ void fluidAtWalls(Context<Cpu>&, const MphPairs<D>& pairs, const ClusterListView
       const Lanes g = pairs.terms.gradient(pair.r);
       const Lanes viscous =
           pairs.terms.viscous(viscosity.with(e.index()), pair.r) * wallFactors(pairs, range, e.index(), pair.d);
-      const Lanes f = viscous * along - g * (qi + pressure[e.index()]);
-      for (int k = 0; k < D; ++k) force[k] += f * pair.d[k];
+      if (pairs.renormalisation) {
+        const VecLanes<D> ofFluid = corrected(pairs, e.index(), pair.d);
+        const Lanes f = viscous * along - g * qi;
+        for (int k = 0; k < D; ++k) force[k] += f * pair.d[k] - g * pressure[e.index()] * ofFluid[k];
+      } else {
+        const Lanes f = viscous * along - g * (qi + pressure[e.index()]);
+        for (int k = 0; k < D; ++k) force[k] += f * pair.d[k];
+      }
       divergence -= g * along;
       density += pairs.terms.density(pairs.terms.densityFactor, pair.r);
     }

@@ -85,18 +85,23 @@ void MphOperator<D, Cpu>::prepare(Context<Cpu>&, const MphPairs<D>& pairs, const
 
 template <int D>
 void MphOperator<D, Cpu>::multiply(Context<Cpu>&, std::span<const Vec<D>> u, std::span<Vec<D>> y) {
-  viscosityAndDivergence(u, y);
-  wallDivergence(u);
-  addGradient(y);
+  withRenormalisation(*pairs_, [&]<bool Renormalised>() {
+    viscosityAndDivergence<Renormalised>(u, y);
+    wallDivergence(u);
+    addGradient<Renormalised>(y);
+  });
 }
 
 /// y = (rho/dt I + V) u, and q = lambda C^T u on the fluid.
 template <int D>
+template <bool Renormalised>
 void MphOperator<D, Cpu>::viscosityAndDivergence(std::span<const Vec<D>> u, std::span<Vec<D>> y) {
   const MphPairs<D>& pairs = *pairs_;
   const ClusterListView& list = pairs.fluidList;
   forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const VecLanes<D>& x, std::uint32_t c) {
     const VecLanes<D> ui = loadLanes<D>(range, u);
+    SymmetricBlock<D, Lanes> b;
+    if constexpr (Renormalised) b = loadRenormalisation(pairs, range);
     VecLanes<D> force = {};  // minus the viscous part of A u
     Lanes divergence = {};
     withImages(list.wraps[c], [&]<bool Wraps>() {
@@ -106,7 +111,16 @@ void MphOperator<D, Cpu>::viscosityAndDivergence(std::span<const Vec<D>> u, std:
         const Vec<D>& uj = u[indexOf<Wraps>(e)];
         Lanes along = (uj[0] - ui[0]) * d[0];
         for (int k = 1; k < D; ++k) along += (uj[k] - ui[k]) * d[k];
-        if (near) divergence -= loadCoefficient(pressure_, nextPressure++) * along;
+        if (near) {
+          const Lanes g = loadCoefficient(pressure_, nextPressure++);
+          if constexpr (Renormalised) {
+            Lanes alongB = (uj[0] - ui[0]) * b.row(0, d);
+            for (int k = 1; k < D; ++k) alongB += (uj[k] - ui[k]) * b.row(k, d);
+            divergence -= g * alongB;
+          } else {
+            divergence -= g * along;
+          }
+        }
         const Lanes f = loadCoefficient(viscous_, nextViscous++) * along;
         for (int k = 0; k < D; ++k) force[k] += f * d[k];
       };
@@ -118,7 +132,7 @@ void MphOperator<D, Cpu>::viscosityAndDivergence(std::span<const Vec<D>> u, std:
       Vec<D> yi = terms_.block[i] * u[i];
       for (int k = 0; k < D; ++k) yi[k] -= force[k][lane];
       y[i] = yi;
-      // Walls at rest: (0 - u_i).e w' summed over walls = u_i.(sum of -e w').
+      // Walls at rest: (0 - u_i).e w' B_i summed over walls = u_i.B_i (sum of -e w').
       q_[i] = pairs.bulkViscosity(i) * (divergence[lane] + dot(u[i], terms_.gradient[i]));
     }
   });
@@ -151,6 +165,7 @@ void MphOperator<D, Cpu>::wallDivergence(std::span<const Vec<D>> u) {
 
 /// y += C q
 template <int D>
+template <bool Renormalised>
 void MphOperator<D, Cpu>::addGradient(std::span<Vec<D>> y) {
   const MphPairs<D>& pairs = *pairs_;
   const ClusterListView& list = pairs.fluidList;
@@ -159,6 +174,25 @@ void MphOperator<D, Cpu>::addGradient(std::span<Vec<D>> y) {
     VecLanes<D> sum = {};
     withImages(list.wraps[c], [&]<bool Wraps>() {
       std::uint64_t next = pressureStart_[c];
+      if constexpr (Renormalised) {
+        VecLanes<D> own = {};  // of g d, which meets the particle's own q_i B_i
+        const auto add = [&](ListEntry e, bool wall) {
+          const std::uint32_t j = indexOf<Wraps>(e);
+          const Lanes g = loadCoefficient(pressure_, next++);
+          VecLanes<D> gd = difference<Wraps, D>(pairs, e, x), gqd;
+          for (int k = 0; k < D; ++k) {
+            gd[k] *= g;
+            own[k] += gd[k];
+            gqd[k] = q_[j] * gd[k];
+          }
+          for (int k = 0; k < D; ++k) sum[k] += wall ? gqd[k] : pairs.renormalisation[j].row(k, gqd);
+        };
+        for (ListEntry e : list.segment(c, ListSegment::NearFluid)) add(e, false);
+        for (ListEntry e : list.segment(c, ListSegment::NearWall)) add(e, true);
+        const SymmetricBlock<D, Lanes> b = loadRenormalisation(pairs, range);
+        for (int k = 0; k < D; ++k) sum[k] += qi * b.row(k, own);
+        return;
+      }
       for (ListSegment s : {ListSegment::NearFluid, ListSegment::NearWall})
         for (ListEntry e : list.segment(c, s)) {
           const Lanes f = loadCoefficient(pressure_, next++) * (qi + q_[indexOf<Wraps>(e)]);

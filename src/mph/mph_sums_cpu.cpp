@@ -8,6 +8,60 @@ namespace {
 constexpr ListSegment nearSegments[] = {ListSegment::NearFluid, ListSegment::NearWall};
 constexpr ListSegment wallSegments[] = {ListSegment::NearWall, ListSegment::FarWall};
 
+/// C q / gradientFactor of the particles of a cluster of fluid.
+template <bool Renormalised, int D>
+VecLanes<D> pressureGradient(const MphPairs<D>& pairs, const ClusterRange& range, const VecLanes<D>& x,
+                             std::uint32_t c, std::span<const double> q) {
+  const double floor2 = distanceFloor2(pairs);
+  const Lanes qi = loadLanes(range, q);
+  VecLanes<D> sum = {}, own = {};  // own: of g d, which meets q_i B_i
+  for (ListSegment s : nearSegments)
+    for (ListEntry e : pairs.fluidList.segment(c, s)) {
+      const PairLanes<D> pair(pairs.positionOf(e), x, floor2);
+      if constexpr (Renormalised) {
+        const Lanes g = pairs.terms.gradientShape(pair.r);
+        VecLanes<D> gd;
+        for (int k = 0; k < D; ++k) own[k] += gd[k] = g * pair.d[k];
+        const VecLanes<D> ofOther = corrected(pairs, e.index(), gd);
+        for (int k = 0; k < D; ++k) sum[k] += q[e.index()] * ofOther[k];
+      } else {
+        const Lanes f = pairs.terms.gradientShape(pair.r) * (qi + q[e.index()]);
+        for (int k = 0; k < D; ++k) sum[k] += f * pair.d[k];
+      }
+    }
+  if constexpr (Renormalised) {
+    const SymmetricBlock<D, Lanes> b = loadRenormalisation(pairs, range);
+    for (int k = 0; k < D; ++k) sum[k] += qi * b.row(k, own);
+  }
+  return sum;
+}
+
+/// C^T u of a list; walls have no B.
+template <bool Renormalised, int D>
+void divergenceOf(const MphPairs<D>& pairs, const ClusterListView& list, std::span<const Vec<D>> u,
+                  std::span<double> div) {
+  const double floor2 = distanceFloor2(pairs);
+  forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const VecLanes<D>& x, std::uint32_t c) {
+    const VecLanes<D> ui = loadLanes<D>(range, u);
+    SymmetricBlock<D, Lanes> b;
+    if constexpr (Renormalised) b = loadRenormalisation(pairs, range);
+    Lanes sum = {};
+    for (ListSegment s : nearSegments)
+      for (ListEntry e : list.segment(c, s)) {
+        const PairLanes<D> pair(pairs.positionOf(e), x, floor2);
+        Lanes along = {};
+        for (int k = 0; k < D; ++k) {
+          if constexpr (Renormalised)
+            along += (u[e.index()][k] - ui[k]) * b.row(k, pair.d);
+          else
+            along += (u[e.index()][k] - ui[k]) * pair.d[k];
+        }
+        sum -= pairs.terms.gradientShape(pair.r) * along;
+      }
+    storeLanes(range, pairs.terms.gradientFactor * sum, div);
+  });
+}
+
 }  // namespace
 
 template <int D>
@@ -31,17 +85,10 @@ void numberDensity(Context<Cpu>&, const MphPairs<D>& pairs, std::span<double> n)
 template <int D>
 void addPressureGradient(Context<Cpu>&, const MphPairs<D>& pairs, std::span<const double> q, double factor,
                          std::span<Vec<D>> y) {
-  const double floor2 = distanceFloor2(pairs);
   const ClusterListView& list = pairs.fluidList;
   forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const VecLanes<D>& x, std::uint32_t c) {
-    const Lanes qi = loadLanes(range, q);
-    VecLanes<D> sum = {};
-    for (ListSegment s : nearSegments)
-      for (ListEntry e : list.segment(c, s)) {
-        const PairLanes<D> pair(pairs.positionOf(e), x, floor2);
-        const Lanes f = pairs.terms.gradientShape(pair.r) * (qi + q[e.index()]);
-        for (int k = 0; k < D; ++k) sum[k] += f * pair.d[k];
-      }
+    const VecLanes<D> sum = pairs.renormalisation ? pressureGradient<true>(pairs, range, x, c, q)
+                                                  : pressureGradient<false>(pairs, range, x, c, q);
     VecLanes<D> yi = loadLanes<D>(range, std::span<const Vec<D>>(y));
     for (int k = 0; k < D; ++k) yi[k] += factor * pairs.terms.gradientFactor * sum[k];
     storeLanes<D>(range, yi, y);
@@ -50,20 +97,9 @@ void addPressureGradient(Context<Cpu>&, const MphPairs<D>& pairs, std::span<cons
 
 template <int D>
 void divergence(Context<Cpu>&, const MphPairs<D>& pairs, std::span<const Vec<D>> u, std::span<double> div) {
-  const double floor2 = distanceFloor2(pairs);
-  for (const ClusterListView& list : {pairs.fluidList, pairs.wallList})
-    forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const VecLanes<D>& x, std::uint32_t c) {
-      const VecLanes<D> ui = loadLanes<D>(range, u);
-      Lanes sum = {};
-      for (ListSegment s : nearSegments)
-        for (ListEntry e : list.segment(c, s)) {
-          const PairLanes<D> pair(pairs.positionOf(e), x, floor2);
-          Lanes along = {};
-          for (int k = 0; k < D; ++k) along += (u[e.index()][k] - ui[k]) * pair.d[k];
-          sum -= pairs.terms.gradientShape(pair.r) * along;
-        }
-      storeLanes(range, pairs.terms.gradientFactor * sum, div);
-    });
+  withRenormalisation(pairs,
+                      [&]<bool Renormalised>() { divergenceOf<Renormalised>(pairs, pairs.fluidList, u, div); });
+  divergenceOf<false>(pairs, pairs.wallList, u, div);
 }
 
 template <int D>
@@ -88,10 +124,12 @@ void wallTerms(Context<Cpu>&, const MphPairs<D>& pairs, const WallTerms<D>& term
     for (std::uint32_t lane = 0; lane < range.count; ++lane) {
       const std::uint32_t i = range.first + lane;
       terms.block[i] = Block<D>::diagonal(pairs.inertia(i));
+      Vec<D> own;
       for (int r = 0; r < D; ++r) {
-        terms.gradient[i][r] = gradient[r][lane];
+        own[r] = gradient[r][lane];
         for (int k = 0; k < D; ++k) terms.block[i](r, k) += block[r][k][lane];
       }
+      terms.gradient[i] = pairs.corrected(i, own);
     }
   });
 }

@@ -24,7 +24,8 @@ void restrictedColumns(const MphPairs<D>& pairs, Buffer<Vec<D>>& columns) {
     Vec<D>* column = &columns[std::size_t{slots} * k];
     std::fill_n(column, slots, Vec<D>{});
     Vec<D> own{};
-    forEachNear(pairs, k, [&](std::uint32_t j, const Vec<D>&, const Vec<D>& g) {
+    forEachNear(pairs, k, [&](std::uint32_t j, const Vec<D>&, const Vec<D>& plain) {
+      const Vec<D> g = pairs.corrected(k, plain);
       own += g;
       if (j >= pairs.fluidCount) return;
       const int slot = columnSlot<D>(cellOffset(pairs.grid, cell, pairs.grid.cellOf(pairs.position[j])) - lower);

@@ -76,6 +76,17 @@ struct VectorSums {
   }
 };
 
+/// B of a cluster's particles, lane by lane.
+template <int D, class T>
+inline SymmetricBlock<D, LanesOf<T>> loadBlocks(const ClusterRange& range, const Buffer<SymmetricBlock<D, T>>& b) {
+  SymmetricBlock<D, LanesOf<T>> lanes;
+  for (std::uint32_t lane = 0; lane < clusterSize; ++lane) {
+    const SymmetricBlock<D, T>& one = b[range.particle(lane)];
+    for (int at = 0; at < one.size; ++at) lanes.a[at][lane] = one.a[at];
+  }
+  return lanes;
+}
+
 /// The vectors of a cluster's particles, lane by lane.
 template <int D, class T>
 inline void loadVectors(const ClusterRange& range, const Gathered<D, T>* u, LanesOf<T> (&lanes)[D]) {
@@ -91,11 +102,13 @@ inline void loadVectors(const ClusterRange& range, const Gathered<D, T>* u, Lane
   for (int k = 0; k < D; ++k) lanes[k] = loadLanes(at[k]);
 }
 
-/// Sum of g d.(u_j - u_i) over near fluid; walls at rest have no `own` velocities. The differences are formed pair
-/// by pair, because that of a rigid motion must vanish to the last bit: the bulk viscosity would amplify the rest.
-template <bool Moving, int D, class T>
+/// Sum of g d.(u_j - u_i) over near fluid, or of g B d.(u_j - u_i) where the particles have B; walls at rest have
+/// no `own` velocities. The differences are formed pair by pair, because that of a rigid motion must vanish to the
+/// last bit: the bulk viscosity would amplify the rest.
+template <bool Moving, bool Renormalised, int D, class T>
 inline VectorSums<1, T> sumAlong(const ClusterWalk<D, T>& walk, const T* coefficient, const Gathered<D, T>* u,
-                                 const LanesOf<T>* own = nullptr) {
+                                 const LanesOf<T>* own = nullptr,
+                                 const SymmetricBlock<D, LanesOf<T>>* b = nullptr) {
   LanesOf<T> sum[2][1] = {};
   walk.forEach(ListSegment::NearFluid, coefficient,
                [&](int half, std::uint32_t j, const LanesOf<T>& g, const LanesOf<T>* d) {
@@ -105,8 +118,14 @@ inline VectorSums<1, T> sumAlong(const ClusterWalk<D, T>& walk, const T* coeffic
                    else
                      return u[j][k];
                  };
-                 LanesOf<T> along = relative(0) * d[0];
-                 for (int k = 1; k < D; ++k) along += relative(k) * d[k];
+                 const auto direction = [&](int k) {
+                   if constexpr (Renormalised)
+                     return b->row(k, d);
+                   else
+                     return d[k];
+                 };
+                 LanesOf<T> along = relative(0) * direction(0);
+                 for (int k = 1; k < D; ++k) along += relative(k) * direction(k);
                  sum[half][0] += g * along;
                });
   return VectorSums<1, T>(sum);
@@ -141,6 +160,10 @@ void ParticleProducts<D, T, Cpu>::prepare(Context<Cpu>&, const MphPairs<D>& pair
   pressure_.resize(pressureStart_[pairs.fluidList.clusterCount()] * clusterSize);
   wall_.resize(wallStart_[pairs.wallList.clusterCount()] * clusterSize);
   selfBlock_.resize(pairs.fluidCount);
+  renormalisation_.resize(pairs.renormalisation ? pairs.fluidCount : 0);
+  for (std::size_t i = 0; i < renormalisation_.size(); ++i)
+    for (int at = 0; at < SymmetricBlock<D>::size; ++at)
+      renormalisation_[i].a[at] = static_cast<T>(pairs.renormalisation[i].a[at]);
   for (Buffer<T>& field : scalars_) field.resize(pairs.activeCount);
   vectors_.resize(pairs.fluidCount);
   positionLanes(pairs, pairs.fluidList, position_, fluidLanes_);
@@ -176,7 +199,7 @@ void ParticleProducts<D, T, Cpu>::prepare(Context<Cpu>&, const MphPairs<D>& pair
 }
 
 /// Sums of g d over walls, which meet the particle's own velocity, and over all neighbours, which meet its own
-/// pressure: neither need be added per pair.
+/// pressure, both times its B: neither need be added per pair.
 template <int D, class T>
 void ParticleProducts<D, T, Cpu>::sumGradients() {
   const ClusterListView& list = pairs_->fluidList;
@@ -193,6 +216,15 @@ void ParticleProducts<D, T, Cpu>::sumGradients() {
     };
     walk.forEach(ListSegment::NearFluid, coefficient, addTo(fluid));
     walk.forEach(ListSegment::NearWall, coefficient, addTo(walls));
+    if (!renormalisation_.empty()) {
+      const auto b = loadBlocks<D, T>(walk.range, renormalisation_);
+      const auto multiply = [&](LanesOf<T>(&sum)[D]) {
+        LanesOf<T> product[D];
+        for (int k = 0; k < D; ++k) product[k] = b.row(k, sum);
+        std::copy_n(product, D, sum);
+      };
+      multiply(fluid), multiply(walls);
+    }
     for (int k = 0; k < D; ++k) {
       const LanesOf<T> all = fluid[k] + walls[k];
       const std::size_t at = (std::size_t{D} * c + k) * clusterSize;
@@ -205,6 +237,12 @@ void ParticleProducts<D, T, Cpu>::sumGradients() {
 template <int D, class T>
 template <class Store>
 void ParticleProducts<D, T, Cpu>::gradient(Context<Cpu>&, ScalarField<T, Cpu> q, const Store& store) const {
+  renormalisation_.empty() ? gradientOf<false>(q, store) : gradientOf<true>(q, store);
+}
+
+template <int D, class T>
+template <bool Renormalised, class Store>
+void ParticleProducts<D, T, Cpu>::gradientOf(ScalarField<T, Cpu> q, const Store& store) const {
   const ClusterListView& list = pairs_->fluidList;
   forEachClusterOf(list, [&](std::uint32_t c) {
     const ClusterWalk<D, T> walk(*pairs_, list, c, position_.data(), fluidLanes_.data());
@@ -214,7 +252,16 @@ void ParticleProducts<D, T, Cpu>::gradient(Context<Cpu>&, ScalarField<T, Cpu> q,
       const LanesOf<T> f = g * q[j];
       for (int k = 0; k < D; ++k) sum[half][k] += f * d[k];
     };
-    walk.forEach(ListSegment::NearFluid, coefficient, add);
+    if constexpr (Renormalised)
+      walk.forEach(ListSegment::NearFluid, coefficient,
+                   [&](int half, std::uint32_t j, const LanesOf<T>& g, const LanesOf<T>* d) {
+                     const LanesOf<T> f = g * q[j];
+                     LanesOf<T> fd[D];
+                     for (int k = 0; k < D; ++k) fd[k] = f * d[k];
+                     for (int k = 0; k < D; ++k) sum[half][k] += renormalisation_[j].row(k, fd);
+                   });
+    else
+      walk.forEach(ListSegment::NearFluid, coefficient, add);
     walk.forEach(ListSegment::NearWall, coefficient, add);
     const VectorSums<D, T> sums(sum);
     const T* own = &gradient_[std::size_t{D} * clusterSize * c];
@@ -228,15 +275,22 @@ void ParticleProducts<D, T, Cpu>::gradient(Context<Cpu>&, ScalarField<T, Cpu> q,
 
 template <int D, class T>
 template <class Store>
-void ParticleProducts<D, T, Cpu>::divergence(Context<Cpu>&, VectorField<D, T, Cpu> field,
-                                             const Store& store) const {
+void ParticleProducts<D, T, Cpu>::divergence(Context<Cpu>&, VectorField<D, T, Cpu> u, const Store& store) const {
+  renormalisation_.empty() ? divergenceOf<false>(u, store) : divergenceOf<true>(u, store);
+}
+
+template <int D, class T>
+template <bool Renormalised, class Store>
+void ParticleProducts<D, T, Cpu>::divergenceOf(VectorField<D, T, Cpu> field, const Store& store) const {
   const Gathered<D, T>* u = field.at;
   forEachClusterOf(pairs_->fluidList, [&](std::uint32_t c) {
     const ClusterWalk<D, T> walk(*pairs_, pairs_->fluidList, c, position_.data(), fluidLanes_.data());
     LanesOf<T> ui[D];
     loadVectors(walk.range, u, ui);
     const T* coefficient = pressure_.data() + pressureStart_[c] * clusterSize;
-    const VectorSums<1, T> sums = sumAlong<true>(walk, coefficient, u, ui);
+    SymmetricBlock<D, LanesOf<T>> b;
+    if constexpr (Renormalised) b = loadBlocks<D, T>(walk.range, renormalisation_);
+    const VectorSums<1, T> sums = sumAlong<true, Renormalised>(walk, coefficient, u, ui, &b);
     const T* walls = &wallGradient_[std::size_t{D} * clusterSize * c];
     storeSums(*pairs_, walk.range, store, [&](std::size_t i, std::size_t lane) {
       T total = -sums.at[0][lane];
@@ -249,7 +303,7 @@ void ParticleProducts<D, T, Cpu>::divergence(Context<Cpu>&, VectorField<D, T, Cp
     if (walls.segment(c, ListSegment::NearFluid).empty())
       return storeSums(*pairs_, ClusterRange(walls, c), store, [](std::size_t, std::size_t) { return T(0); });
     const ClusterWalk<D, T> walk(*pairs_, walls, c, position_.data(), wallLanes_.data());
-    const VectorSums<1, T> sums = sumAlong<false>(walk, wall_.data() + wallStart_[c] * clusterSize, u);
+    const VectorSums<1, T> sums = sumAlong<false, false>(walk, wall_.data() + wallStart_[c] * clusterSize, u);
     storeSums(*pairs_, walk.range, store, [&](std::size_t, std::size_t lane) { return -sums.at[0][lane]; });
   });
 }
@@ -292,7 +346,8 @@ void ParticleProducts<D, T, Cpu>::inverseDiagonals(Context<Cpu>&, const Projecti
     const auto k = static_cast<std::uint32_t>(index);
     T sum = table.shift[pairs_->material[k]];
     Vec<D> own{};
-    forEachNear(*pairs_, k, [&](std::uint32_t j, const Vec<D>&, const Vec<D>& g) {
+    forEachNear(*pairs_, k, [&](std::uint32_t j, const Vec<D>&, const Vec<D>& plain) {
+      const Vec<D> g = pairs_->corrected(k, plain);
       own += g;
       if (j < pairs_->fluidCount) sum += table.weight[pairs_->material[j]] * static_cast<T>(fixedDot(g, g));
     });
@@ -326,7 +381,8 @@ template <int D, class T>
 std::size_t ParticleProducts<D, T, Cpu>::bytes() const {
   return scalars_[0].bytes() + scalars_[1].bytes() + vectors_.bytes() + position_.bytes() + viscousStart_.bytes() +
          pressureStart_.bytes() + wallStart_.bytes() + viscous_.bytes() + pressure_.bytes() + wall_.bytes() +
-         selfBlock_.bytes() + fluidLanes_.bytes() + wallLanes_.bytes() + gradient_.bytes() + wallGradient_.bytes();
+         selfBlock_.bytes() + renormalisation_.bytes() + fluidLanes_.bytes() + wallLanes_.bytes() +
+         gradient_.bytes() + wallGradient_.bytes();
 }
 
 #define TREACLE_GRADIENT(D, T, ...)                                                                           \

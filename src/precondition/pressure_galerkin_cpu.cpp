@@ -43,9 +43,9 @@ void pressureColumns(const MphPairs<D>& pairs, const HatCells<D>& cells, Buffer<
         own += g;
         Vec<D> other;
         for (int k = 0; k < D; ++k) other[k] = s[k] + d[k] * pairs.grid.inverseEdge[k];
-        addHats(other, g, sum);
+        addHats(other, pairs.corrected(e.index(), g), sum);
       });
-    addHats(s, own, sum);
+    addHats(s, pairs.corrected(i, own), sum);
     for (int n = 0; n < slots<D>; ++n)
       for (int k = 0; k < D; ++k) columns[index * slots<D> + n][k] = static_cast<T>(sum[n][k]);
   });

@@ -6,6 +6,7 @@
 #include "treacle/mph/mph_neighbourhood.hpp"
 #include "treacle/mph/mph_particles.hpp"
 #include "treacle/mph/mph_repulsion.hpp"
+#include "treacle/mph/renormalisation.hpp"
 #include "treacle/step/first_guess.hpp"
 #include "treacle/step/solve_stages.hpp"
 
@@ -36,6 +37,7 @@ class MphStep final : public StepMethod<D, Backend> {
   void prepareSystem() override {
     neighbourhood_.setTimeStep(state_.timeStep);
     placeWallSurfaces();
+    renormalise();
     computeDensities();
     wallBlock_.resize(state_.context, state_.particles.fluidCount);
     wallGradient_.resize(state_.context, state_.particles.fluidCount);
@@ -110,8 +112,9 @@ class MphStep final : public StepMethod<D, Backend> {
   const CellGrid<D>& grid() const override { return pairs_.grid; }
   const MaterialTable& materials() const override { return pairs_.materials; }
   std::size_t bytes() const override {
-    return neighbourhood_.bytes() + wallSurface_.bytes() + wallBlock_.bytes() + wallGradient_.bytes() +
-           elastic_.bytes() + divergence_.bytes() + rhs_.bytes() + solver_.bytes() + balance_.bytes();
+    return neighbourhood_.bytes() + wallSurface_.bytes() + renormalisation_.bytes() + wallBlock_.bytes() +
+           wallGradient_.bytes() + elastic_.bytes() + divergence_.bytes() + rhs_.bytes() + solver_.bytes() +
+           balance_.bytes();
   }
 
  private:
@@ -130,6 +133,14 @@ class MphStep final : public StepMethod<D, Backend> {
     placeSurfaces<D>(state_.context, {n, p.wallSurface.span(), state_.wallMotion.span()},
                      p.id.span().subspan(n, walls), p.body.span().subspan(n, walls), wallSurface_.span());
     neighbourhood_.setWallSurfaces(wallSurface_);
+  }
+
+  /// B, which everything that contains C needs.
+  void renormalise() {
+    if (state_.theCase.method.pressureGradient == PressureGradient::Plain) return;
+    renormalisation_.resize(state_.context, state_.particles.fluidCount);
+    renormalisation<D>(state_.context, pairs_, renormalisation_.span());
+    neighbourhood_.setRenormalisation(renormalisation_);
   }
 
   /// b of [K23 eq. (16)], and the terms of the repulsion and of prescribed wall velocities.
@@ -176,6 +187,7 @@ class MphStep final : public StepMethod<D, Backend> {
   const MphPairs<D>& pairs_;
   bool wholeRows_;                               // of A in the lists
   Buffer<WallSurface<D>, Backend> wallSurface_;  // per active wall particle
+  Buffer<SymmetricBlock<D>, Backend> renormalisation_;
   Buffer<Block<D>, Backend> wallBlock_;
   Buffer<Vec<D>, Backend> wallGradient_;
   Buffer<double, Backend> elastic_;     // kappa [n - n_0]_+ per particle [Pa]

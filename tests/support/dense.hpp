@@ -147,6 +147,12 @@ Vector solve(const Matrix& a, const Vector& b);
 Matrix inverse(const Matrix& a);
 /// In ascending order.
 Vector eigenvalues(const Matrix& a);
+/// The same with their eigenvectors, which are the columns of `vectors`.
+struct EigenSystem {
+  Vector values;
+  Matrix vectors;
+};
+EigenSystem eigenSystem(const Matrix& a);
 /// lambda of A x = lambda B x, where A need not be positive definite, in ascending order.
 Vector generalisedEigenvalues(const Matrix& a, const Matrix& b);
 /// Of M A, which need not be symmetric itself, in ascending order.

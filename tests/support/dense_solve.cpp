@@ -9,6 +9,10 @@ Matrix inverse(const Matrix& a) {
 Vector eigenvalues(const Matrix& a) {
   return vector(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(eigen(a), Eigen::EigenvaluesOnly).eigenvalues());
 }
+EigenSystem eigenSystem(const Matrix& a) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(eigen(a));
+  return {vector(solver.eigenvalues()), matrix(solver.eigenvectors())};
+}
 Vector generalisedEigenvalues(const Matrix& a, const Matrix& b) {
   // L^-1 A L^-T with B = L L^T.
   const Eigen::LLT<Eigen::MatrixXd> factors(eigen(b));

@@ -62,6 +62,7 @@ struct DeviceScene {
   BucketLevels<> hostLevels;
   BucketLevels<Cuda> levels;
   Buffer<WallSurface<D>, Cuda> wallSurface;
+  Buffer<SymmetricBlock<D>, Cuda> renormalisation;
   Buffer<Block<D>, Cuda> wallBlock;
   Buffer<Vec<D>, Cuda> wallGradient;
   MphPairs<D> pairs;  // looks at the members above
@@ -79,6 +80,10 @@ struct DeviceScene {
     if (!s.wallSurface.empty()) {
       copyToDevice<WallSurface<D>>(context, s.wallSurface, wallSurface);
       pairs.wallSurface = wallSurface.data();
+    }
+    if (!s.renormalisation.empty()) {
+      copyToDevice<SymmetricBlock<D>>(context, s.renormalisation, renormalisation);
+      pairs.renormalisation = renormalisation.data();
     }
     pairs.position = position;
     pairs.material = material;

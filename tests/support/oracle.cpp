@@ -114,10 +114,41 @@ double Oracle<D>::numberDensity(std::uint32_t i) const {
 }
 
 template <int D>
+Matrix Oracle<D>::moment(std::uint32_t i) const {
+  Matrix m = Matrix::Zero(D, D);
+  for (std::uint32_t j = 0; j < count(); ++j) {
+    if (j == i) continue;
+    const Vec<D> d = difference(i, j);
+    for (int r = 0; r < D; ++r)
+      for (int k = 0; k < D; ++k) m(r, k) -= dw(norm(d), hp) / norm(d) * d[r] * d[k];
+  }
+  return m;
+}
+
+template <int D>
+Matrix Oracle<D>::renormalisation(std::uint32_t i) const {
+  if (s.c.method.pressureGradient == PressureGradient::Plain || i >= s.particles.fluidCount)
+    return Matrix::Identity(D, D);
+  return renormalisationOracle(moment(i));
+}
+
+Matrix renormalisationOracle(const Matrix& moment) {
+  const EigenSystem system = eigenSystem(moment);
+  const Index n = moment.rows();
+  Matrix b = Matrix::Zero(n, n);
+  for (Index k = 0; k < n; ++k)
+    for (Index r = 0; r < n; ++r)
+      for (Index c = 0; c < n; ++c)
+        b(r, c) += system.vectors(r, k) * system.vectors(c, k) / std::max(system.values[k], 0.3);
+  return std::min(1.0, std::max(system.values.minCoeff(), 0.3)) * b;
+}
+
+template <int D>
 double Oracle<D>::dissipation(const Vector& u) const {
   double sum = 0;
   for (std::uint32_t i = 0; i < count(); ++i) {
     double divergence = 0;
+    const Matrix b = renormalisation(i);
     for (std::uint32_t j = 0; j < count(); ++j) {
       if (j == i) continue;
       const Vec<D> d = difference(i, j);
@@ -125,7 +156,8 @@ double Oracle<D>::dissipation(const Vector& u) const {
       if (r > std::max(hp, hv)) continue;
       double along = 0;
       for (int k = 0; k < D; ++k) along += (u[D * j + k] - u[D * i + k]) * d[k] / r;
-      divergence += along * dw(r, hp);
+      for (int k = 0; k < D; ++k)
+        for (int m = 0; m < D; ++m) divergence += (u[D * j + k] - u[D * i + k]) * b(k, m) * d[m] / r * dw(r, hp);
       if (j > i) sum += mu(i, j) * wallFactor(i, j) / 2 * viscousBlock(r) * r * r * along * along;
     }
     sum += material(i).bulkViscosity / 2 * divergence * divergence;
@@ -137,12 +169,15 @@ template <int D>
 Matrix Oracle<D>::gradientMatrix() const {
   const Index n = s.unknowns();
   Matrix c = Matrix::Zero(n, count());
+  std::vector<Matrix> b;
+  for (std::uint32_t j = 0; j < count(); ++j) b.push_back(renormalisation(j));
   for (std::uint32_t i = 0; i < s.n(); ++i)
     for (std::uint32_t j = 0; j < count(); ++j) {
       if (j == i) continue;
       const Vec<D> d = difference(i, j);
       const Vec<D> g = -dw(norm(d), hp) / norm(d) * d;
-      for (int k = 0; k < D; ++k) c(D * i + k, j) += g[k], c(D * i + k, i) += g[k];
+      for (int k = 0; k < D; ++k)
+        for (int m = 0; m < D; ++m) c(D * i + k, j) += b[j](k, m) * g[m], c(D * i + k, i) += b[i](k, m) * g[m];
     }
   return c;
 }

@@ -4,6 +4,9 @@
 
 namespace treacle::test {
 
+/// B of a moment M, as renormalisation.hpp has it.
+Matrix renormalisationOracle(const Matrix& moment);
+
 /// [K23] sect. 2 from its formulas, in the plainest way: all pairs, dense matrices, none of the program's own
 /// formulas. Indices as in the scene: fluid first, then all walls.
 template <int D>
@@ -36,10 +39,15 @@ struct Oracle {
 
   double numberDensity(std::uint32_t i) const;
 
+  /// M = sum of -w' r e e^T over the neighbours of a particle.
+  Matrix moment(std::uint32_t i) const;
+  /// B of a fluid particle where the case has it, else I.
+  Matrix renormalisation(std::uint32_t i) const;
+
   /// Rayleigh's dissipation function of eq. (10) for the velocities of all particles [W].
   double dissipation(const Vector& u) const;
 
-  /// C of physics: fluid unknowns by all particles.
+  /// C: fluid unknowns by all particles.
   Matrix gradientMatrix() const;
 
   Matrix viscosityMatrix() const;

@@ -1,6 +1,7 @@
 #include "support/scene.hpp"
 
 #include "treacle/model/case_keys.hpp"
+#include "treacle/mph/renormalisation.hpp"
 #include "treacle/mph/wall_surfaces.hpp"
 
 #include <cmath>
@@ -78,6 +79,11 @@ void prepare(Scene<D>& s) {
     placeSurfaces<D>(s.context, {n, s.particles.wallSurface.span(), {}}, s.particles.id.span().subspan(n, walls),
                      s.particles.body.span().subspan(n, walls), s.wallSurface.span());
     s.neighbourhood->setWallSurfaces(s.wallSurface);
+  }
+  if (s.c.method.pressureGradient == PressureGradient::Renormalised) {
+    s.renormalisation.resize(s.n());
+    renormalisation<D>(s.context, s.pairs(), s.renormalisation.span());
+    s.neighbourhood->setRenormalisation(s.renormalisation);
   }
   s.wallBlock.resize(s.n());
   s.wallGradient.resize(s.n());

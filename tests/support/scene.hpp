@@ -24,7 +24,8 @@ struct Scene {
   Particles<D> particles;
   Context<Cpu> context;
   std::unique_ptr<MphNeighbourhood<D>> neighbourhood;
-  Buffer<WallSurface<D>> wallSurface;  // per active wall particle
+  Buffer<WallSurface<D>> wallSurface;         // per active wall particle
+  Buffer<SymmetricBlock<D>> renormalisation;  // per fluid particle where the case has it
   Buffer<Block<D>> wallBlock;
   Buffer<Vec<D>> wallGradient;
 

@@ -39,12 +39,16 @@ struct SymmetricBlock {
     for (int r = 0; r < D; ++r)
       for (int c = r; c < D; ++c) (*this)(r, c) += factor * v[r] * v[c];
   }
+  /// The r-th component of the product with anything that has D components.
+  template <class X>
+  TREACLE_HD constexpr auto row(int r, const X& x) const {
+    auto sum = (*this)(r, 0) * x[0];
+    for (int c = 1; c < D; ++c) sum += (*this)(r, c) * x[c];
+    return sum;
+  }
   TREACLE_HD friend constexpr Vec<D, T> operator*(const SymmetricBlock& m, const Vec<D, T>& x) {
     Vec<D, T> y{};
-    for (int r = 0; r < D; ++r) {
-      y[r] = m(r, 0) * x[0];
-      for (int c = 1; c < D; ++c) y[r] += m(r, c) * x[c];
-    }
+    for (int r = 0; r < D; ++r) y[r] = m.row(r, x);
     return y;
   }
 };

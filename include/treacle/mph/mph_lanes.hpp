@@ -59,6 +59,32 @@ inline Lanes wallFactors(const MphPairs<D>& pairs, const ClusterRange& range, st
   return factors;
 }
 
+/// B of the particles of a cluster, lane by lane; the pairs must have it, and the particles be fluid.
+template <int D>
+inline SymmetricBlock<D, Lanes> loadRenormalisation(const MphPairs<D>& pairs, const ClusterRange& range) {
+  SymmetricBlock<D, Lanes> b;
+  for (std::uint32_t lane = 0; lane < clusterSize; ++lane) {
+    const SymmetricBlock<D>& one = pairs.renormalisation[range.particle(lane)];
+    for (int at = 0; at < one.size; ++at) b.a[at][lane] = one.a[at];
+  }
+  return b;
+}
+
+/// MphPairs::corrected for eight vectors that meet the pressure of one particle.
+template <int D>
+inline VecLanes<D> corrected(const MphPairs<D>& pairs, std::uint32_t k, const VecLanes<D>& v) {
+  if (!pairs.renormalisation || k >= pairs.fluidCount) return v;
+  VecLanes<D> product;
+  for (int r = 0; r < D; ++r) product[r] = pairs.renormalisation[k].row(r, v);
+  return product;
+}
+
+/// f.operator()<Renormalised>(): without B there is nothing to be multiplied by it in the loops.
+template <int D, class F>
+inline void withRenormalisation(const MphPairs<D>& pairs, F&& f) {
+  pairs.renormalisation ? f.template operator()<true>() : f.template operator()<false>();
+}
+
 /// mu_ij times the viscous factor, for the lanes of a cluster and a neighbour.
 template <int D>
 class ViscosityLanes {

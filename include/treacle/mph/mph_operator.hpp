@@ -30,8 +30,10 @@ class MphOperator<D, Cpu> {
 
  private:
   void countEntries();
+  template <bool Renormalised>
   void viscosityAndDivergence(std::span<const Vec<D>> u, std::span<Vec<D>> y);
   void wallDivergence(std::span<const Vec<D>> u);
+  template <bool Renormalised>
   void addGradient(std::span<Vec<D>> y);
 
   const MphPairs<D>* pairs_ = nullptr;

@@ -50,13 +50,17 @@ class ParticleProducts<D, T, Cpu> {
 
  private:
   void sumGradients();
+  template <bool Renormalised, class Store>
+  void gradientOf(ScalarField<T, Cpu> q, const Store& store) const;
+  template <bool Renormalised, class Store>
+  void divergenceOf(VectorField<D, T, Cpu> u, const Store& store) const;
 
   const MphPairs<D>* pairs_ = nullptr;
   WallTerms<D> terms_{};
   Buffer<T> scalars_[2];
   Buffer<Gathered<D, T>> vectors_;
   Buffer<Vec<D, T>> position_;  // from the domain's corner [m]
-  // D times eight numbers per cluster: positions likewise, and sums of g d over all neighbours and over walls.
+  // D times eight numbers per cluster: positions likewise, and sums of B g d over all neighbours and over walls.
   Buffer<T> fluidLanes_, wallLanes_, gradient_, wallGradient_;
   // Eight numbers per list entry, one per lane; starts count entries.
   Buffer<std::uint64_t> viscousStart_, pressureStart_, wallStart_;
@@ -64,6 +68,7 @@ class ParticleProducts<D, T, Cpu> {
   Buffer<T> pressure_;             // near fluid, then near walls: g of -e w' = g d
   Buffer<T> wall_;                 // near fluid of wall clusters: likewise
   Buffer<Block<D, T>> selfBlock_;  // diagonal block of rho/dt I + V
+  Buffer<SymmetricBlock<D, T>> renormalisation_;  // B of the pairs, if they have it
 };
 
 /// As MphOperator<D, Cuda>, whose lists it uses.

@@ -4,6 +4,7 @@
 #include "support/tolerances.hpp"
 #include "treacle/mph/mph_balance.hpp"
 #include "treacle/mph/mph_operator.hpp"
+#include "treacle/mph/renormalisation.hpp"
 #include "treacle/mph/mph_repulsion.hpp"
 
 #include <gtest/gtest.h>
@@ -52,6 +53,13 @@ struct SumsTwin {
     }
     if (lists) return;
     d.pairs.fluidList.offset = d.pairs.wallList.offset = nullptr;
+  }
+
+  void checkRenormalisation() {
+    if (s.renormalisation.empty()) return;
+    Buffer<SymmetricBlock<D>, Cuda> found(d.context, n);
+    renormalisation<D>(d.context, d.pairs, found.span());
+    EXPECT_LE(difference<SymmetricBlock<D>>(d.context, s.renormalisation.span(), found), kernelTolerance);
   }
 
   void checkScalars() {
@@ -144,6 +152,7 @@ void checkAll(bool lists) {
                      << D << "D, " << nameOf(scheme) << ", " << (walls == Walls::Floor ? "floor" : "no walls")
                      << ", " << (twoMaterials ? 2 : 1) << " materials");
         SumsTwin<D> twin(walls, lists, twoMaterials, scheme);
+        twin.checkRenormalisation();
         twin.checkScalars();
         twin.checkVectors();
         twin.checkWallTerms();
