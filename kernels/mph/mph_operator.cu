@@ -101,7 +101,7 @@ void MphOperator<D, Cuda>::multiplyRenormalised(Context<Cuda>& context, std::spa
     near_.addPressureGradient(context, q_, y);
     return;
   }
-  using OnAll = Divergence<D, double, true, true>;
+  using OnAll = Divergence<D, double, true, true, true>;
   withSharing(*pairs_, [&](auto sharing) {
     const OnAll sums{terms, u.data(), q_.data()};
     launchClusterSums<D, double, decltype(sharing)>(context, *pairs_, ListTask<OnAll>{pairs_->fluidList, sums},

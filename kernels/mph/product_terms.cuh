@@ -132,12 +132,12 @@ struct Viscosity {
 };
 
 /// div = C^T u per particle [1/s] [K23 eq. (14)], or, with Scaled, lambda C^T u. With WallsAtRest u has only fluid
-/// particles.
-template <int D, class T, bool WallsAtRest, bool Scaled>
+/// particles, and unless WithWalls fluid meets no walls.
+template <int D, class T, bool WallsAtRest, bool Scaled, bool WithWalls = !WallsAtRest>
 struct Divergence {
   static constexpr int values = 1;
   static constexpr bool uses(ListSegment s) {
-    return s == ListSegment::NearFluid || (!WallsAtRest && s == ListSegment::NearWall);
+    return s == ListSegment::NearFluid || (WithWalls && s == ListSegment::NearWall);
   }
   struct Own {
     std::uint32_t i;
@@ -149,10 +149,13 @@ struct Divergence {
   const Vec<D, T>* u;
   T* div;
 
-  __device__ Own loadOwn(const MphPairs<D>& pairs, std::uint32_t i) const {
-    return {i, WallsAtRest && i >= pairs.fluidCount ? Vec<D, T>{} : u[i]};
+  __device__ Own loadOwn(const MphPairs<D>& pairs, std::uint32_t i) const { return {i, velocity(pairs, i)}; }
+  __device__ Other loadOther(const MphPairs<D>& pairs, std::uint32_t j) const {
+    return WithWalls ? velocity(pairs, j) : u[j];
   }
-  __device__ Other loadOther(const MphPairs<D>&, std::uint32_t j) const { return u[j]; }
+  __device__ Vec<D, T> velocity(const MphPairs<D>& pairs, std::uint32_t i) const {
+    return WallsAtRest && i >= pairs.fluidCount ? Vec<D, T>{} : u[i];
+  }
 
   __device__ void add(const MphPairs<D>& pairs, T* sum, const Vec<D, T>& d, const PairDistance<T>& r,
                       const Own& own, const Other& other, ListSegment) const {
