@@ -31,8 +31,8 @@ def table(study, rows):
             cells += [number(error), "" if p is None else f"{p:.2f}"]
         cells += [number(row["values"][name]) for name in values]
         lines.append("| " + " | ".join(cells) + " |")
-    bars = ", ".join(f"{name} {bar:g}" for name, bar in study.bars.items())
     scheme = rows[0].get("scheme", "published")  # records from before there was another one do not say
+    bars = ", ".join(f"{name} {bar:g}" for name, bar in study.bars_of(scheme).items())
     ranges = "; ".join(f"{name} from {low:g} to {high:g}" for name, (low, high) in (study.ranges_of(scheme) or {}).items())
     limits = f"Bars at the first level: {bars}. Scheme {scheme}" + (f": {ranges}" if ranges else "")
     machines = sorted({row["device"] for row in rows})

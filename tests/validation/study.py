@@ -22,20 +22,22 @@ class Outcome:
 
 @dataclass
 class Level:
-    """One run of a study: the resolution of the case file and further overrides."""
+    """One run of a study: the resolution of the case file, further overrides, and what tables call these."""
 
     resolution: float
     settings: tuple = ()
+    name: str = ""
 
     @property
     def label(self):
-        return f"x{self.resolution:g}" + "".join(" " + s for s in self.settings)
+        return f"x{self.resolution:g} " + self.name if self.name else " ".join([f"x{self.resolution:g}", *self.settings])
 
 
 @dataclass
 class Study:
     """levels: from coarse to fine; the first is what continuous integration runs. bars: largest error allowed there, by the
-    names of Outcome.errors; every bar must be met, whatever the scheme. ranges: by the scheme of the case, least and largest of
+    names of Outcome.errors; every bar must be met, whatever the scheme; accurate: those of them that are others for the scheme
+    of that name, which converges. ranges: by the scheme of the case, least and largest of
     Outcome.values there: where a scheme itself is off by more than a wrong constant would be, a bar alone would let that pass. They
     say what this scheme gives, not what is right, so better physics need a scheme of their own. measure: takes a Run
     (treacle_data) to an Outcome. size: what orders are counted in, a function of the level; particle spacing unless told."""
@@ -48,6 +50,7 @@ class Study:
     x_label: str
     y_label: str
     settings: tuple = ()
+    accurate: dict = field(default_factory=dict)
     ranges: dict = field(default_factory=dict)
     case: str = ""
     size: Callable = staticmethod(lambda level: 1 / level.resolution)
@@ -55,6 +58,9 @@ class Study:
     @property
     def case_file(self):
         return cases / (self.case or self.name + ".toml")
+
+    def bars_of(self, scheme):
+        return self.bars | self.accurate if scheme == "accurate" else self.bars
 
     def ranges_of(self, scheme):
         """None where the study has ranges, but says nothing of this scheme; where the bars are enough for it, it says {}."""

@@ -12,7 +12,7 @@ def level(rate, resolution=1):
     end = strain / rate
     steps = 20 * int(np.ceil(end / 20 / min(0.02 * 0.5 / rate, 0.05)))
     return Level(resolution, (f'body."upper plate".velocity=[{rate * H:g}, 0]', f"time.end={end:g}", f"time.step={end / steps:.10g}",
-                              f"output.interval={end / 20:.10g}"))
+                              f"output.interval={end / 20:.10g}"), f"{rate:g} /s")
 
 
 def rate_of(level):

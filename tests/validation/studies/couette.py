@@ -32,6 +32,7 @@ study = Study(
     title="Start-up of plane Couette flow",
     levels=[Level(1), Level(2), Level(4), Level(8)],
     bars={"t = 0.02 s": 0.07, "t = 0.08 s": 0.055, "t = 0.4 s": 0.03, "viscosity": 0.02},
+    accurate={"t = 0.02 s": 0.009, "t = 0.08 s": 0.006, "t = 0.4 s": 0.002, "viscosity": 0.018},
     measure=measure,
     x_label="y [m]",
     y_label="u / U",
