@@ -25,7 +25,7 @@ void rowPattern(const MphPairs<D>& pairs, std::uint32_t i, std::vector<std::uint
 }
 
 /// Writes the blocks of one row. `slot`: per fluid particle its place in the row, or none.
-template <int D>
+template <bool Renormalised, int D>
 class RowAssembler {
  public:
   static constexpr std::uint32_t none = ~std::uint32_t{0};
@@ -71,14 +71,17 @@ class RowAssembler {
   /// g_kj. `gik`: B_k^-1 c_ik.
   void addColumn(std::uint32_t k, const Vec<D>& gik, std::span<Block<D>> blocks) {
     const double lambda = pairs_.bulkViscosity(k);
-    const Vec<D> cik = pairs_.corrected(k, gik);
+    const Vec<D> cik = times(k, gik);
     Vec<D> own{};
     for (std::uint64_t m = rows_.rowStart[k]; m < rows_.rowStart[k + 1]; ++m) {
       own += rows_.value[m];
-      addBlock(rows_.column[m], -lambda, cik, pairs_.corrected(k, rows_.value[m]), blocks);
+      addBlock(rows_.column[m], -lambda, cik, times(k, rows_.value[m]), blocks);
     }
-    addBlock(k, lambda, cik, pairs_.corrected(k, own), blocks);
+    addBlock(k, lambda, cik, times(k, own), blocks);
   }
+
+  /// B_k v
+  Vec<D> times(std::uint32_t k, const Vec<D>& v) const { return Renormalised ? pairs_.corrected(k, v) : v; }
 
   void addBlock(std::uint32_t j, double factor, const Vec<D>& a, const Vec<D>& b, std::span<Block<D>> blocks) {
     // Walls have no column. A fluid particle without a slot is 2 h_p away to rounding, where the weights vanish.
@@ -89,6 +92,22 @@ class RowAssembler {
   const GradientRows<D>& rows_;
   std::vector<std::uint32_t> slot_;
 };
+
+template <bool Renormalised, int D>
+void writeRows(const MphPairs<D>& pairs, const WallTerms<D>& terms, const GradientRows<D>& rows, BlockCsr<D>& a) {
+  const std::uint32_t n = pairs.fluidCount;
+#pragma omp parallel if (n > parallelGrain)
+  {
+    std::vector<std::uint32_t> columns;
+    RowAssembler<Renormalised, D> assembler(pairs, rows);
+#pragma omp for schedule(static)
+    for (std::uint32_t i = 0; i < n; ++i) {
+      rowPattern(pairs, i, columns);
+      std::copy(columns.begin(), columns.end(), a.column.begin() + a.rowStart[i]);
+      assembler.write(i, columns, a.value.span().subspan(a.rowStart[i], columns.size()), terms.block[i]);
+    }
+  }
+}
 
 }  // namespace
 
@@ -111,17 +130,7 @@ void assemble(Context<Cpu>&, const MphPairs<D>& pairs, const WallTerms<D>& terms
   a.column.resize(a.rowStart[n]);
   a.value.resize(a.rowStart[n]);
 
-#pragma omp parallel if (n > parallelGrain)
-  {
-    std::vector<std::uint32_t> columns;
-    RowAssembler<D> assembler(pairs, rows);
-#pragma omp for schedule(static)
-    for (std::uint32_t i = 0; i < n; ++i) {
-      rowPattern(pairs, i, columns);
-      std::copy(columns.begin(), columns.end(), a.column.begin() + a.rowStart[i]);
-      assembler.write(i, columns, a.value.span().subspan(a.rowStart[i], columns.size()), terms.block[i]);
-    }
-  }
+  withRenormalisation(pairs, [&]<bool Renormalised>() { writeRows<Renormalised>(pairs, terms, rows, a); });
 }
 
 template <int D>

@@ -31,9 +31,11 @@ void shearDissipation(Context<Cpu>&, const MphPairs<D>& pairs, std::span<const V
   });
 }
 
-template <int D>
-void fluidAtWalls(Context<Cpu>&, const MphPairs<D>& pairs, const ClusterListView& walls, std::span<const Vec<D>> u,
-                  std::span<const double> pressure, const FluidAtWalls<D>& out) {
+namespace {
+
+template <bool Renormalised, int D>
+void sumFluidAtWalls(const MphPairs<D>& pairs, const ClusterListView& walls, std::span<const Vec<D>> u,
+                     std::span<const double> pressure, const FluidAtWalls<D>& out) {
   const double floor2 = distanceFloor2(pairs);
   forEachCluster<D>(pairs, walls, [&](const ClusterRange& range, const VecLanes<D>& x, std::uint32_t c) {
     const ViscosityLanes<D> viscosity(pairs, range);
@@ -48,7 +50,7 @@ void fluidAtWalls(Context<Cpu>&, const MphPairs<D>& pairs, const ClusterListView
       const Lanes g = pairs.terms.gradient(pair.r);
       const Lanes viscous =
           pairs.terms.viscous(viscosity.with(e.index()), pair.r) * wallFactors(pairs, range, e.index(), pair.d);
-      if (pairs.renormalisation) {
+      if constexpr (Renormalised) {
         const VecLanes<D> ofFluid = corrected(pairs, e.index(), pair.d);
         const Lanes f = viscous * along - g * qi;
         for (int k = 0; k < D; ++k) force[k] += f * pair.d[k] - g * pressure[e.index()] * ofFluid[k];
@@ -64,6 +66,15 @@ void fluidAtWalls(Context<Cpu>&, const MphPairs<D>& pairs, const ClusterListView
     storeLanes(wall, divergence, out.divergence);
     storeLanes(wall, density, out.density);
   });
+}
+
+}  // namespace
+
+template <int D>
+void fluidAtWalls(Context<Cpu>&, const MphPairs<D>& pairs, const ClusterListView& walls, std::span<const Vec<D>> u,
+                  std::span<const double> pressure, const FluidAtWalls<D>& out) {
+  withRenormalisation(pairs,
+                      [&]<bool Renormalised>() { sumFluidAtWalls<Renormalised>(pairs, walls, u, pressure, out); });
 }
 
 #define TREACLE_INSTANTIATE(D)                                                                  \

@@ -13,7 +13,7 @@ namespace {
 constexpr std::uint32_t noBucket = ~std::uint32_t{0};
 
 /// (R C)_{I k}: the sum of C_ik over the fluid particles i of each cell I.
-template <int D>
+template <bool Renormalised, int D>
 void restrictedColumns(const MphPairs<D>& pairs, Buffer<Vec<D>>& columns) {
   constexpr int slots = power<D>(2);
   columns.resize(std::size_t{slots} * pairs.activeCount);
@@ -25,7 +25,7 @@ void restrictedColumns(const MphPairs<D>& pairs, Buffer<Vec<D>>& columns) {
     std::fill_n(column, slots, Vec<D>{});
     Vec<D> own{};
     forEachNear(pairs, k, [&](std::uint32_t j, const Vec<D>&, const Vec<D>& plain) {
-      const Vec<D> g = pairs.corrected(k, plain);
+      const Vec<D> g = Renormalised ? pairs.corrected(k, plain) : plain;
       own += g;
       if (j >= pairs.fluidCount) return;
       const int slot = columnSlot<D>(cellOffset(pairs.grid, cell, pairs.grid.cellOf(pairs.position[j])) - lower);
@@ -127,7 +127,7 @@ void bucketGalerkin(Context<Cpu>&, const MphPairs<D>& pairs, const CellRanges<>&
                     const BucketLevels<>& levels, const WallTerms<D>& terms, Buffer<Vec<D>>& columns,
                     BlockCsr<D>& a0) {
   constexpr int neighbours = BucketRow<D>::neighbours;
-  restrictedColumns(pairs, columns);
+  withRenormalisation(pairs, [&]<bool Renormalised>() { restrictedColumns<Renormalised>(pairs, columns); });
 
   const std::uint32_t rows = levels.count(0);
   a0.rowStart.resize(rows + 1);

@@ -27,88 +27,11 @@ void positionLanes(const MphPairs<D>& pairs, const ClusterListView& list, const 
   });
 }
 
-template <class F>
-void forEachClusterOf(const ClusterListView& list, F&& f) {
-  parallelFor(list.clusterCount(), parallelGrain / clusterSize,
-              [&](std::size_t c) { f(static_cast<std::uint32_t>(c)); });
-}
-
-/// f(lane) for the particles of a cluster, which are independent of each other: a full cluster as one vector.
-template <class F>
-void forEachLane(const ClusterRange& range, F&& f) {
-  if (range.count == clusterSize) {
-#pragma GCC ivdep
-    for (std::size_t lane = 0; lane < clusterSize; ++lane) f(lane);
-  } else {
-    for (std::size_t lane = 0; lane < range.count; ++lane) f(lane);
-  }
-}
-
-/// Stores the sums sumOf(i, lane). A single material is known before the loop and needs no look-up per particle.
-/// `flatten`: the compiler vectorises only what it has inlined.
-template <int D, class Store, class F>
-[[gnu::flatten]] void storeSums(const MphPairs<D>& pairs, const ClusterRange& range, const Store& store,
-                                F&& sumOf) {
-  const std::size_t first = range.first;
-  if (pairs.isOneSubstance())
-    forEachLane(range, [&](std::size_t lane) { store.put(first + lane, sumOf(first + lane, lane), 0); });
-  else
-    forEachLane(range, [&](std::size_t lane) {
-      store.put(first + lane, sumOf(first + lane, lane), pairs.material[first + lane]);
-    });
-}
-
-/// The sum of both halves, lane by lane.
-template <int D, class T>
-struct VectorSums {
-  T at[D][clusterSize];
-
-  explicit VectorSums(const LanesOf<T> (&sum)[2][D]) {
-    for (int k = 0; k < D; ++k) {
-      const LanesOf<T> total = sum[0][k] + sum[1][k];
-      std::memcpy(at[k], &total, sizeof(total));
-    }
-  }
-  Vec<D, T> operator[](std::size_t lane) const {
-    Vec<D, T> v;
-    for (int k = 0; k < D; ++k) v[k] = at[k][lane];
-    return v;
-  }
-};
-
-/// B of a cluster's particles, lane by lane.
-template <int D, class T>
-inline SymmetricBlock<D, LanesOf<T>> loadBlocks(const ClusterRange& range, const Buffer<SymmetricBlock<D, T>>& b) {
-  SymmetricBlock<D, LanesOf<T>> lanes;
-  for (std::uint32_t lane = 0; lane < clusterSize; ++lane) {
-    const SymmetricBlock<D, T>& one = b[range.particle(lane)];
-    for (int at = 0; at < one.size; ++at) lanes.a[at][lane] = one.a[at];
-  }
-  return lanes;
-}
-
-/// The vectors of a cluster's particles, lane by lane.
-template <int D, class T>
-inline void loadVectors(const ClusterRange& range, const Gathered<D, T>* u, LanesOf<T> (&lanes)[D]) {
-  T at[D][clusterSize];
-  if (range.count == clusterSize) {
-    const Gathered<D, T>* first = u + range.first;
-    for (std::size_t lane = 0; lane < clusterSize; ++lane)
-      for (int k = 0; k < D; ++k) at[k][lane] = first[lane][k];
-  } else {
-    for (std::uint32_t lane = 0; lane < clusterSize; ++lane)
-      for (int k = 0; k < D; ++k) at[k][lane] = u[range.particle(lane)][k];
-  }
-  for (int k = 0; k < D; ++k) lanes[k] = loadLanes(at[k]);
-}
-
-/// Sum of g d.(u_j - u_i) over near fluid, or of g B d.(u_j - u_i) where the particles have B; walls at rest have
-/// no `own` velocities. The differences are formed pair by pair, because that of a rigid motion must vanish to the
-/// last bit: the bulk viscosity would amplify the rest.
-template <bool Moving, bool Renormalised, int D, class T>
+/// Sum of g d.(u_j - u_i) over near fluid; walls at rest have no `own` velocities. The differences are formed pair
+/// by pair, because that of a rigid motion must vanish to the last bit: the bulk viscosity would amplify the rest.
+template <bool Moving, int D, class T>
 inline VectorSums<1, T> sumAlong(const ClusterWalk<D, T>& walk, const T* coefficient, const Gathered<D, T>* u,
-                                 const LanesOf<T>* own = nullptr,
-                                 const SymmetricBlock<D, LanesOf<T>>* b = nullptr) {
+                                 const LanesOf<T>* own = nullptr) {
   LanesOf<T> sum[2][1] = {};
   walk.forEach(ListSegment::NearFluid, coefficient,
                [&](int half, std::uint32_t j, const LanesOf<T>& g, const LanesOf<T>* d) {
@@ -118,14 +41,8 @@ inline VectorSums<1, T> sumAlong(const ClusterWalk<D, T>& walk, const T* coeffic
                    else
                      return u[j][k];
                  };
-                 const auto direction = [&](int k) {
-                   if constexpr (Renormalised)
-                     return b->row(k, d);
-                   else
-                     return d[k];
-                 };
-                 LanesOf<T> along = relative(0) * direction(0);
-                 for (int k = 1; k < D; ++k) along += relative(k) * direction(k);
+                 LanesOf<T> along = relative(0) * d[0];
+                 for (int k = 1; k < D; ++k) along += relative(k) * d[k];
                  sum[half][0] += g * along;
                });
   return VectorSums<1, T>(sum);
@@ -160,10 +77,6 @@ void ParticleProducts<D, T, Cpu>::prepare(Context<Cpu>&, const MphPairs<D>& pair
   pressure_.resize(pressureStart_[pairs.fluidList.clusterCount()] * clusterSize);
   wall_.resize(wallStart_[pairs.wallList.clusterCount()] * clusterSize);
   selfBlock_.resize(pairs.fluidCount);
-  renormalisation_.resize(pairs.renormalisation ? pairs.fluidCount : 0);
-  for (std::size_t i = 0; i < renormalisation_.size(); ++i)
-    for (int at = 0; at < SymmetricBlock<D>::size; ++at)
-      renormalisation_[i].a[at] = static_cast<T>(pairs.renormalisation[i].a[at]);
   for (Buffer<T>& field : scalars_) field.resize(pairs.activeCount);
   vectors_.resize(pairs.fluidCount);
   positionLanes(pairs, pairs.fluidList, position_, fluidLanes_);
@@ -196,10 +109,11 @@ void ParticleProducts<D, T, Cpu>::prepare(Context<Cpu>&, const MphPairs<D>& pair
     }
   });
   sumGradients();
+  if (pairs.renormalisation) renormalise();
 }
 
 /// Sums of g d over walls, which meet the particle's own velocity, and over all neighbours, which meet its own
-/// pressure, both times its B: neither need be added per pair.
+/// pressure: neither need be added per pair.
 template <int D, class T>
 void ParticleProducts<D, T, Cpu>::sumGradients() {
   const ClusterListView& list = pairs_->fluidList;
@@ -216,15 +130,6 @@ void ParticleProducts<D, T, Cpu>::sumGradients() {
     };
     walk.forEach(ListSegment::NearFluid, coefficient, addTo(fluid));
     walk.forEach(ListSegment::NearWall, coefficient, addTo(walls));
-    if (!renormalisation_.empty()) {
-      const auto b = loadBlocks<D, T>(walk.range, renormalisation_);
-      const auto multiply = [&](LanesOf<T>(&sum)[D]) {
-        LanesOf<T> product[D];
-        for (int k = 0; k < D; ++k) product[k] = b.row(k, sum);
-        std::copy_n(product, D, sum);
-      };
-      multiply(fluid), multiply(walls);
-    }
     for (int k = 0; k < D; ++k) {
       const LanesOf<T> all = fluid[k] + walls[k];
       const std::size_t at = (std::size_t{D} * c + k) * clusterSize;
@@ -237,12 +142,7 @@ void ParticleProducts<D, T, Cpu>::sumGradients() {
 template <int D, class T>
 template <class Store>
 void ParticleProducts<D, T, Cpu>::gradient(Context<Cpu>&, ScalarField<T, Cpu> q, const Store& store) const {
-  renormalisation_.empty() ? gradientOf<false>(q, store) : gradientOf<true>(q, store);
-}
-
-template <int D, class T>
-template <bool Renormalised, class Store>
-void ParticleProducts<D, T, Cpu>::gradientOf(ScalarField<T, Cpu> q, const Store& store) const {
+  if (pairs_->renormalisation) return renormalisedGradient(q, store);
   const ClusterListView& list = pairs_->fluidList;
   forEachClusterOf(list, [&](std::uint32_t c) {
     const ClusterWalk<D, T> walk(*pairs_, list, c, position_.data(), fluidLanes_.data());
@@ -252,16 +152,7 @@ void ParticleProducts<D, T, Cpu>::gradientOf(ScalarField<T, Cpu> q, const Store&
       const LanesOf<T> f = g * q[j];
       for (int k = 0; k < D; ++k) sum[half][k] += f * d[k];
     };
-    if constexpr (Renormalised)
-      walk.forEach(ListSegment::NearFluid, coefficient,
-                   [&](int half, std::uint32_t j, const LanesOf<T>& g, const LanesOf<T>* d) {
-                     const LanesOf<T> f = g * q[j];
-                     LanesOf<T> fd[D];
-                     for (int k = 0; k < D; ++k) fd[k] = f * d[k];
-                     for (int k = 0; k < D; ++k) sum[half][k] += renormalisation_[j].row(k, fd);
-                   });
-    else
-      walk.forEach(ListSegment::NearFluid, coefficient, add);
+    walk.forEach(ListSegment::NearFluid, coefficient, add);
     walk.forEach(ListSegment::NearWall, coefficient, add);
     const VectorSums<D, T> sums(sum);
     const T* own = &gradient_[std::size_t{D} * clusterSize * c];
@@ -275,22 +166,16 @@ void ParticleProducts<D, T, Cpu>::gradientOf(ScalarField<T, Cpu> q, const Store&
 
 template <int D, class T>
 template <class Store>
-void ParticleProducts<D, T, Cpu>::divergence(Context<Cpu>&, VectorField<D, T, Cpu> u, const Store& store) const {
-  renormalisation_.empty() ? divergenceOf<false>(u, store) : divergenceOf<true>(u, store);
-}
-
-template <int D, class T>
-template <bool Renormalised, class Store>
-void ParticleProducts<D, T, Cpu>::divergenceOf(VectorField<D, T, Cpu> field, const Store& store) const {
+void ParticleProducts<D, T, Cpu>::divergence(Context<Cpu>&, VectorField<D, T, Cpu> field,
+                                             const Store& store) const {
+  if (pairs_->renormalisation) return renormalisedDivergence(field, store);
   const Gathered<D, T>* u = field.at;
   forEachClusterOf(pairs_->fluidList, [&](std::uint32_t c) {
     const ClusterWalk<D, T> walk(*pairs_, pairs_->fluidList, c, position_.data(), fluidLanes_.data());
     LanesOf<T> ui[D];
     loadVectors(walk.range, u, ui);
     const T* coefficient = pressure_.data() + pressureStart_[c] * clusterSize;
-    SymmetricBlock<D, LanesOf<T>> b;
-    if constexpr (Renormalised) b = loadBlocks<D, T>(walk.range, renormalisation_);
-    const VectorSums<1, T> sums = sumAlong<true, Renormalised>(walk, coefficient, u, ui, &b);
+    const VectorSums<1, T> sums = sumAlong<true>(walk, coefficient, u, ui);
     const T* walls = &wallGradient_[std::size_t{D} * clusterSize * c];
     storeSums(*pairs_, walk.range, store, [&](std::size_t i, std::size_t lane) {
       T total = -sums.at[0][lane];
@@ -303,7 +188,7 @@ void ParticleProducts<D, T, Cpu>::divergenceOf(VectorField<D, T, Cpu> field, con
     if (walls.segment(c, ListSegment::NearFluid).empty())
       return storeSums(*pairs_, ClusterRange(walls, c), store, [](std::size_t, std::size_t) { return T(0); });
     const ClusterWalk<D, T> walk(*pairs_, walls, c, position_.data(), wallLanes_.data());
-    const VectorSums<1, T> sums = sumAlong<false, false>(walk, wall_.data() + wallStart_[c] * clusterSize, u);
+    const VectorSums<1, T> sums = sumAlong<false>(walk, wall_.data() + wallStart_[c] * clusterSize, u);
     storeSums(*pairs_, walk.range, store, [&](std::size_t, std::size_t lane) { return -sums.at[0][lane]; });
   });
 }
@@ -342,12 +227,12 @@ void ParticleProducts<D, T, Cpu>::viscous(Context<Cpu>&, const Gathered<D, T>* u
 template <int D, class T>
 void ParticleProducts<D, T, Cpu>::inverseDiagonals(Context<Cpu>&, const ProjectionTable<T>& table,
                                                    std::span<T> pressure, std::span<Block<D, T>> velocity) const {
+  if (pairs_->renormalisation) return renormalisedInverseDiagonals(table, pressure, velocity);
   parallelFor(pairs_->activeCount, parallelGrain, [&](std::size_t index) {
     const auto k = static_cast<std::uint32_t>(index);
     T sum = table.shift[pairs_->material[k]];
     Vec<D> own{};
-    forEachNear(*pairs_, k, [&](std::uint32_t j, const Vec<D>&, const Vec<D>& plain) {
-      const Vec<D> g = pairs_->corrected(k, plain);
+    forEachNear(*pairs_, k, [&](std::uint32_t j, const Vec<D>&, const Vec<D>& g) {
       own += g;
       if (j < pairs_->fluidCount) sum += table.weight[pairs_->material[j]] * static_cast<T>(fixedDot(g, g));
     });

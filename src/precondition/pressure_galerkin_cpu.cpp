@@ -13,7 +13,7 @@ template <int D>
 constexpr int slots = D == 2 ? 9 : 27;  // nodes that the neighbours of a particle touch
 
 /// (C P)_in of each fluid particle i for the 3^D nodes n around it.
-template <int D, class T>
+template <bool Renormalised, int D, class T>
 void pressureColumns(const MphPairs<D>& pairs, const HatCells<D>& cells, Buffer<Vec<D, T>>& columns) {
   columns.resize(std::size_t{slots<D>} * pairs.fluidCount);
   const auto addHats = [&](const Vec<D>& s, const Vec<D>& g, std::array<Vec<D>, slots<D>>& sum) {
@@ -43,9 +43,9 @@ void pressureColumns(const MphPairs<D>& pairs, const HatCells<D>& cells, Buffer<
         own += g;
         Vec<D> other;
         for (int k = 0; k < D; ++k) other[k] = s[k] + d[k] * pairs.grid.inverseEdge[k];
-        addHats(other, pairs.corrected(e.index(), g), sum);
+        addHats(other, Renormalised ? pairs.corrected(e.index(), g) : g, sum);
       });
-    addHats(s, pairs.corrected(i, own), sum);
+    addHats(s, Renormalised ? pairs.corrected(i, own) : own, sum);
     for (int n = 0; n < slots<D>; ++n)
       for (int k = 0; k < D; ++k) columns[index * slots<D> + n][k] = static_cast<T>(sum[n][k]);
   });
@@ -113,7 +113,7 @@ template <int D, class T>
 void pressureGalerkin(Context<Cpu>& context, const MphPairs<D>& pairs, const ProjectionTable<double>& table,
                       const HatNodes<D>& nodes, Buffer<Vec<D, T>>& columns, BlockCsr<1>& s) {
   const HatCells<D> cells{pairs.grid};
-  pressureColumns(pairs, cells, columns);
+  withRenormalisation(pairs, [&]<bool Renormalised>() { pressureColumns<Renormalised>(pairs, cells, columns); });
   hatPattern(context, nodes, s);
   parallelFor(nodes.count(), parallelGrain / 16, [&](std::size_t row) {
     const Vec<D, int> node = nodes.lattice.at(nodes.point[row]);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "treacle/core/buffer.hpp"
 #include "treacle/mph/mph_lanes.hpp"
 
 #include <cstring>
@@ -89,5 +90,69 @@ class ClusterWalk {
   const Vec<D, T>* position_;
   LanesOf<T> x_[D];
 };
+
+template <class F>
+inline void forEachClusterOf(const ClusterListView& list, F&& f) {
+  parallelFor(list.clusterCount(), parallelGrain / clusterSize,
+              [&](std::size_t c) { f(static_cast<std::uint32_t>(c)); });
+}
+
+/// f(lane) for the particles of a cluster, which are independent of each other: a full cluster as one vector.
+template <class F>
+inline void forEachLane(const ClusterRange& range, F&& f) {
+  if (range.count == clusterSize) {
+#pragma GCC ivdep
+    for (std::size_t lane = 0; lane < clusterSize; ++lane) f(lane);
+  } else {
+    for (std::size_t lane = 0; lane < range.count; ++lane) f(lane);
+  }
+}
+
+/// Stores the sums sumOf(i, lane). A single material is known before the loop and needs no look-up per particle.
+/// `flatten`: the compiler vectorises only what it has inlined.
+template <int D, class Store, class F>
+[[gnu::flatten]] inline void storeSums(const MphPairs<D>& pairs, const ClusterRange& range, const Store& store,
+                                       F&& sumOf) {
+  const std::size_t first = range.first;
+  if (pairs.isOneSubstance())
+    forEachLane(range, [&](std::size_t lane) { store.put(first + lane, sumOf(first + lane, lane), 0); });
+  else
+    forEachLane(range, [&](std::size_t lane) {
+      store.put(first + lane, sumOf(first + lane, lane), pairs.material[first + lane]);
+    });
+}
+
+/// The sum of both halves, lane by lane.
+template <int D, class T>
+struct VectorSums {
+  T at[D][clusterSize];
+
+  explicit VectorSums(const LanesOf<T> (&sum)[2][D]) {
+    for (int k = 0; k < D; ++k) {
+      const LanesOf<T> total = sum[0][k] + sum[1][k];
+      std::memcpy(at[k], &total, sizeof(total));
+    }
+  }
+  Vec<D, T> operator[](std::size_t lane) const {
+    Vec<D, T> v;
+    for (int k = 0; k < D; ++k) v[k] = at[k][lane];
+    return v;
+  }
+};
+
+/// The vectors of a cluster's particles, lane by lane.
+template <int D, class T>
+inline void loadVectors(const ClusterRange& range, const Gathered<D, T>* u, LanesOf<T> (&lanes)[D]) {
+  T at[D][clusterSize];
+  if (range.count == clusterSize) {
+    const Gathered<D, T>* first = u + range.first;
+    for (std::size_t lane = 0; lane < clusterSize; ++lane)
+      for (int k = 0; k < D; ++k) at[k][lane] = first[lane][k];
+  } else {
+    for (std::uint32_t lane = 0; lane < clusterSize; ++lane)
+      for (int k = 0; k < D; ++k) at[k][lane] = u[range.particle(lane)][k];
+  }
+  for (int k = 0; k < D; ++k) lanes[k] = loadLanes(at[k]);
+}
 
 }  // namespace treacle

@@ -13,7 +13,8 @@ struct SymmetricBlock {
 
   /// Where the element (r, c) stands.
   TREACLE_HD static constexpr int place(int r, int c) {
-    return r <= c ? r * D - r * (r - 1) / 2 + c - r : place(c, r);
+    const int least = r < c ? r : c, most = r < c ? c : r;
+    return least * D - least * (least + 1) / 2 + most;
   }
   TREACLE_HD constexpr T& operator()(int r, int c) { return a[place(r, c)]; }
   TREACLE_HD constexpr const T& operator()(int r, int c) const { return a[place(r, c)]; }

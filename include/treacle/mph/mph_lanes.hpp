@@ -79,12 +79,6 @@ inline VecLanes<D> corrected(const MphPairs<D>& pairs, std::uint32_t k, const Ve
   return product;
 }
 
-/// f.operator()<Renormalised>(): without B there is nothing to be multiplied by it in the loops.
-template <int D, class F>
-inline void withRenormalisation(const MphPairs<D>& pairs, F&& f) {
-  pairs.renormalisation ? f.template operator()<true>() : f.template operator()<false>();
-}
-
 /// mu_ij times the viscous factor, for the lanes of a cluster and a neighbour.
 template <int D>
 class ViscosityLanes {

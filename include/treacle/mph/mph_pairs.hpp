@@ -39,6 +39,13 @@ struct MphPairs : MaterialParticles<D> {
   }
 };
 
+/// f.operator()<Renormalised>(), for loops that would have to ask for B pair by pair, and whose roundings depend
+/// on what else they could compute.
+template <int D, class F>
+void withRenormalisation(const MphPairs<D>& pairs, F&& f) {
+  pairs.renormalisation ? f.template operator()<true>() : f.template operator()<false>();
+}
+
 /// The constants of a case, without particles.
 template <int D>
 MphPairs<D> makeMphPairs(const Case& c);

@@ -50,10 +50,14 @@ class ParticleProducts<D, T, Cpu> {
 
  private:
   void sumGradients();
-  template <bool Renormalised, class Store>
-  void gradientOf(ScalarField<T, Cpu> q, const Store& store) const;
-  template <bool Renormalised, class Store>
-  void divergenceOf(VectorField<D, T, Cpu> u, const Store& store) const;
+  // Where the pairs have B.
+  void renormalise();
+  template <class Store>
+  void renormalisedGradient(ScalarField<T, Cpu> q, const Store& store) const;
+  template <class Store>
+  void renormalisedDivergence(VectorField<D, T, Cpu> u, const Store& store) const;
+  void renormalisedInverseDiagonals(const ProjectionTable<T>& table, std::span<T> pressure,
+                                    std::span<Block<D, T>> velocity) const;
 
   const MphPairs<D>* pairs_ = nullptr;
   WallTerms<D> terms_{};

@@ -165,7 +165,8 @@ constexpr BadCase badCases[] = {
      "bad.toml:40:8: name in [method]: expected a string, found 1"},
     {"keyOfIsph", "[output]", "[method]\nviscosity = \"explicit\"\n[output]",
      "bad.toml:40:1: unknown key 'viscosity' in [method]: it belongs to the method 'isph'; expected 'name', "
-     "'scheme', 'pressure_weight', 'viscosity_weight', 'pressure_radius' or 'viscosity_radius'"},
+     "'scheme', 'pressure_weight', 'viscosity_weight', 'wall_velocity', 'pressure_gradient', 'pressure_radius' or "
+     "'viscosity_radius'"},
     {"keyOfMph", bulk, "[method]\nname = \"isph\"\npressure_radius = 2\n",
      "bad.toml:18:1: unknown key 'pressure_radius' in [method] (isph): it belongs to the method 'mph-i'; expected "
      "'name', 'kernel', 'smoothing_ratio', 'alpha', 'walls', 'viscosity', 'shifting' or 'negative_pressure'"},
