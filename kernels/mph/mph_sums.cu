@@ -135,8 +135,8 @@ void addWallDrag(Context<Cuda>& context, const MphPairs<D>& pairs, std::span<con
 
 #define TREACLE_INSTANTIATE(D)                                                                                 \
   template void numberDensity<D>(Context<Cuda>&, const MphPairs<D>&, std::span<double>);                       \
-  template void addPressureGradient<D>(Context<Cuda>&, const MphPairs<D>&, std::span<const double>, double,       \
-                                    std::span<Vec<D>>);                                                        \
+  template void addPressureGradient<D>(Context<Cuda>&, const MphPairs<D>&, std::span<const double>, double,    \
+                                       std::span<Vec<D>>);                                                     \
   template void divergence<D>(Context<Cuda>&, const MphPairs<D>&, std::span<const Vec<D>>, std::span<double>); \
   template void wallTerms<D>(Context<Cuda>&, const MphPairs<D>&, const WallTerms<D>&);                         \
   template void addWallDrag<D>(Context<Cuda>&, const MphPairs<D>&, std::span<const Vec<D>>, std::span<Vec<D>>);

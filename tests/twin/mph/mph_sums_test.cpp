@@ -4,8 +4,8 @@
 #include "support/tolerances.hpp"
 #include "treacle/mph/mph_balance.hpp"
 #include "treacle/mph/mph_operator.hpp"
-#include "treacle/mph/renormalisation.hpp"
 #include "treacle/mph/mph_repulsion.hpp"
+#include "treacle/mph/renormalisation.hpp"
 
 #include <gtest/gtest.h>
 
