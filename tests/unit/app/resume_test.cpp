@@ -39,9 +39,9 @@ void expectRefused(const Workshop& shop, const std::string& arguments, const std
   EXPECT_FALSE(std::filesystem::exists(shop / "other"));
 }
 
-TEST(resume, givesTheSameBitsAsAnUnbrokenRun) {
+void checkBits(const std::string& more) {
   Workshop shop;
-  const std::string options = " --set output.precision=double --set time.step=7e-4 --threads 1";
+  const std::string options = " --set output.precision=double --set time.step=7e-4 --threads 1" + more;
   ASSERT_EQ(prepared(shop).call("run case.toml -o whole --end-time 7e-3" + options).exitCode, 0);
   ASSERT_EQ(shop.call("run case.toml -o half --end-time 3.5e-3" + options).exitCode, 0);
   const Outcome outcome =
@@ -67,6 +67,9 @@ TEST(resume, givesTheSameBitsAsAnUnbrokenRun) {
   for (std::size_t k = 1; k < 5; ++k) expectSameFrames(shop, 3 + k, k);
   EXPECT_EQ(second.frameTime(0), 5 * 7e-4);
 }
+
+TEST(resume, givesTheSameBitsAsAnUnbrokenRun) { checkBits(""); }
+TEST(resume, givesTheSameBitsWhereWallsHaveSurfaces) { checkBits(" --set method.scheme=accurate"); }
 
 TEST(resume, givesTheSameBitsWithStepsThatVary) {
   Workshop shop;
