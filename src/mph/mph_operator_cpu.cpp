@@ -101,7 +101,7 @@ void MphOperator<D, Cpu>::viscosityAndDivergence(std::span<const Vec<D>> u, std:
   forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const VecLanes<D>& x, std::uint32_t c) {
     const VecLanes<D> ui = loadLanes<D>(range, u);
     SymmetricBlock<D, Lanes> b;
-    if constexpr (Renormalised) b = loadRenormalisation(pairs, range);
+    if constexpr (Renormalised) b = loadBlocks<Lanes>(range, pairs.renormalisation);
     VecLanes<D> force = {};  // minus the viscous part of A u
     Lanes divergence = {};
     withImages(list.wraps[c], [&]<bool Wraps>() {
@@ -189,7 +189,7 @@ void MphOperator<D, Cpu>::addGradient(std::span<Vec<D>> y) {
         };
         for (ListEntry e : list.segment(c, ListSegment::NearFluid)) add(e, false);
         for (ListEntry e : list.segment(c, ListSegment::NearWall)) add(e, true);
-        const SymmetricBlock<D, Lanes> b = loadRenormalisation(pairs, range);
+        const SymmetricBlock<D, Lanes> b = loadBlocks<Lanes>(range, pairs.renormalisation);
         for (int k = 0; k < D; ++k) sum[k] += qi * b.row(k, own);
         return;
       }

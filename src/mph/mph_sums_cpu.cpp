@@ -30,7 +30,7 @@ VecLanes<D> pressureGradient(const MphPairs<D>& pairs, const ClusterRange& range
       }
     }
   if constexpr (Renormalised) {
-    const SymmetricBlock<D, Lanes> b = loadRenormalisation(pairs, range);
+    const SymmetricBlock<D, Lanes> b = loadBlocks<Lanes>(range, pairs.renormalisation);
     for (int k = 0; k < D; ++k) sum[k] += qi * b.row(k, own);
   }
   return sum;
@@ -44,7 +44,7 @@ void divergenceOf(const MphPairs<D>& pairs, const ClusterListView& list, std::sp
   forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const VecLanes<D>& x, std::uint32_t c) {
     const VecLanes<D> ui = loadLanes<D>(range, u);
     SymmetricBlock<D, Lanes> b;
-    if constexpr (Renormalised) b = loadRenormalisation(pairs, range);
+    if constexpr (Renormalised) b = loadBlocks<Lanes>(range, pairs.renormalisation);
     Lanes sum = {};
     for (ListSegment s : nearSegments)
       for (ListEntry e : list.segment(c, s)) {

@@ -227,12 +227,12 @@ void ParticleProducts<D, T, Cpu>::viscous(Context<Cpu>&, const Gathered<D, T>* u
 template <int D, class T>
 void ParticleProducts<D, T, Cpu>::inverseDiagonals(Context<Cpu>&, const ProjectionTable<T>& table,
                                                    std::span<T> pressure, std::span<Block<D, T>> velocity) const {
-  if (pairs_->renormalisation) return renormalisedInverseDiagonals(table, pressure, velocity);
   parallelFor(pairs_->activeCount, parallelGrain, [&](std::size_t index) {
     const auto k = static_cast<std::uint32_t>(index);
     T sum = table.shift[pairs_->material[k]];
     Vec<D> own{};
-    forEachNear(*pairs_, k, [&](std::uint32_t j, const Vec<D>&, const Vec<D>& g) {
+    forEachNear(*pairs_, k, [&](std::uint32_t j, const Vec<D>&, const Vec<D>& plain) {
+      const Vec<D> g = pairs_->corrected(k, plain);
       own += g;
       if (j < pairs_->fluidCount) sum += table.weight[pairs_->material[j]] * static_cast<T>(fixedDot(g, g));
     });

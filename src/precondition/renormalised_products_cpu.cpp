@@ -1,5 +1,4 @@
 #include "product_lanes.hpp"
-#include "treacle/mph/mph_neighbours.hpp"
 #include "treacle/precondition/particle_products.hpp"
 
 // The products with C and C^T where the pairs have B, in a source of their own: the roundings of those without
@@ -7,17 +6,6 @@
 
 namespace treacle {
 namespace {
-
-/// B of a cluster's particles, lane by lane.
-template <int D, class T>
-inline SymmetricBlock<D, LanesOf<T>> loadBlocks(const ClusterRange& range, const Buffer<SymmetricBlock<D, T>>& b) {
-  SymmetricBlock<D, LanesOf<T>> lanes;
-  for (std::uint32_t lane = 0; lane < clusterSize; ++lane) {
-    const SymmetricBlock<D, T>& one = b[range.particle(lane)];
-    for (int at = 0; at < one.size; ++at) lanes.a[at][lane] = one.a[at];
-  }
-  return lanes;
-}
 
 /// Sum of g B d.(u_j - u_i) over near fluid.
 template <int D, class T>
@@ -57,7 +45,7 @@ void ParticleProducts<D, T, Cpu>::renormalise() {
       renormalisation_[i].a[at] = static_cast<T>(pairs_->renormalisation[i].a[at]);
   const ClusterListView& list = pairs_->fluidList;
   forEachClusterOf(list, [&](std::uint32_t c) {
-    const SymmetricBlock<D, LanesOf<T>> b = loadBlocks<D, T>(ClusterRange(list, c), renormalisation_);
+    const SymmetricBlock<D, LanesOf<T>> b = loadBlocks<LanesOf<T>>(ClusterRange(list, c), renormalisation_.data());
     for (Buffer<T>* gradient : {&gradient_, &wallGradient_}) {
       T* at = &(*gradient)[std::size_t{D} * clusterSize * c];
       LanesOf<T> v[D];
@@ -109,7 +97,7 @@ void ParticleProducts<D, T, Cpu>::renormalisedDivergence(VectorField<D, T, Cpu> 
     LanesOf<T> ui[D];
     loadVectors(walk.range, u, ui);
     const T* coefficient = pressure_.data() + pressureStart_[c] * clusterSize;
-    const auto b = loadBlocks<D, T>(walk.range, renormalisation_);
+    const auto b = loadBlocks<LanesOf<T>>(walk.range, renormalisation_.data());
     const VectorSums<1, T> sums = sumAlong<D, T>(walk, coefficient, u, ui, b);
     const T* walls = &wallGradient_[std::size_t{D} * clusterSize * c];
     storeSums(*pairs_, walk.range, store, [&](std::size_t i, std::size_t lane) {
@@ -128,44 +116,21 @@ void ParticleProducts<D, T, Cpu>::renormalisedDivergence(VectorField<D, T, Cpu> 
   });
 }
 
-template <int D, class T>
-void ParticleProducts<D, T, Cpu>::renormalisedInverseDiagonals(const ProjectionTable<T>& table,
-                                                               std::span<T> pressure,
-                                                               std::span<Block<D, T>> velocity) const {
-  parallelFor(pairs_->activeCount, parallelGrain, [&](std::size_t index) {
-    const auto k = static_cast<std::uint32_t>(index);
-    T sum = table.shift[pairs_->material[k]];
-    Vec<D> own{};
-    forEachNear(*pairs_, k, [&](std::uint32_t j, const Vec<D>&, const Vec<D>& plain) {
-      const Vec<D> g = pairs_->corrected(k, plain);
-      own += g;
-      if (j < pairs_->fluidCount) sum += table.weight[pairs_->material[j]] * static_cast<T>(fixedDot(g, g));
-    });
-    if (k < pairs_->fluidCount) {
-      sum += table.weight[pairs_->material[k]] * static_cast<T>(fixedDot(own, own));
-      velocity[k] = inverse(selfBlock_[k]);
-    }
-    pressure[k] = 1 / sum;
-  });
-}
-
 // With the stores of gradient(), divergence() and schur().
 #define TREACLE_GRADIENT(D, T, ...) \
   template void ParticleProducts<D, T, Cpu>::renormalisedGradient(ScalarField<T, Cpu>, const __VA_ARGS__&) const;
 #define TREACLE_DIVERGENCE(D, T, ...)                                                                           \
   template void ParticleProducts<D, T, Cpu>::renormalisedDivergence(VectorField<D, T, Cpu>, const __VA_ARGS__&) \
       const;
-#define TREACLE_INSTANTIATE(D, T)                                             \
-  template void ParticleProducts<D, T, Cpu>::renormalise();                   \
-  template void ParticleProducts<D, T, Cpu>::renormalisedInverseDiagonals(    \
-      const ProjectionTable<T>&, std::span<T>, std::span<Block<D, T>>) const; \
-  TREACLE_GRADIENT(D, T, StoreWeighted<D, T, Cpu>)                            \
-  TREACLE_GRADIENT(D, T, StartVelocity<D, T>)                                 \
-  TREACLE_GRADIENT(D, T, FinishVelocity<D, T>)                                \
-  TREACLE_DIVERGENCE(D, T, StartPressure<T, Cpu>)                             \
-  TREACLE_DIVERGENCE(D, T, StorePressure<T, Cpu>)                             \
-  TREACLE_DIVERGENCE(D, T, PressureStep<T, Cpu, StepKind::Residual>)          \
-  TREACLE_DIVERGENCE(D, T, PressureStep<T, Cpu, StepKind::Next>)              \
+#define TREACLE_INSTANTIATE(D, T)                                    \
+  template void ParticleProducts<D, T, Cpu>::renormalise();          \
+  TREACLE_GRADIENT(D, T, StoreWeighted<D, T, Cpu>)                   \
+  TREACLE_GRADIENT(D, T, StartVelocity<D, T>)                        \
+  TREACLE_GRADIENT(D, T, FinishVelocity<D, T>)                       \
+  TREACLE_DIVERGENCE(D, T, StartPressure<T, Cpu>)                    \
+  TREACLE_DIVERGENCE(D, T, StorePressure<T, Cpu>)                    \
+  TREACLE_DIVERGENCE(D, T, PressureStep<T, Cpu, StepKind::Residual>) \
+  TREACLE_DIVERGENCE(D, T, PressureStep<T, Cpu, StepKind::Next>)     \
   TREACLE_DIVERGENCE(D, T, PressureStep<T, Cpu, StepKind::Last>)
 TREACLE_INSTANTIATE(2, double)
 TREACLE_INSTANTIATE(3, double)

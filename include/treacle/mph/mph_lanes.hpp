@@ -59,15 +59,15 @@ inline Lanes wallFactors(const MphPairs<D>& pairs, const ClusterRange& range, st
   return factors;
 }
 
-/// B of the particles of a cluster, lane by lane; the pairs must have it, and the particles be fluid.
-template <int D>
-inline SymmetricBlock<D, Lanes> loadRenormalisation(const MphPairs<D>& pairs, const ClusterRange& range) {
-  SymmetricBlock<D, Lanes> b;
+/// The blocks of a cluster's particles, lane by lane, LaneVector having a lane for each.
+template <class LaneVector, int D, class T>
+inline SymmetricBlock<D, LaneVector> loadBlocks(const ClusterRange& range, const SymmetricBlock<D, T>* blocks) {
+  SymmetricBlock<D, LaneVector> lanes;
   for (std::uint32_t lane = 0; lane < clusterSize; ++lane) {
-    const SymmetricBlock<D>& one = pairs.renormalisation[range.particle(lane)];
-    for (int at = 0; at < one.size; ++at) b.a[at][lane] = one.a[at];
+    const SymmetricBlock<D, T>& one = blocks[range.particle(lane)];
+    for (int at = 0; at < one.size; ++at) lanes.a[at][lane] = one.a[at];
   }
-  return b;
+  return lanes;
 }
 
 /// MphPairs::corrected for eight vectors that meet the pressure of one particle.

@@ -56,8 +56,6 @@ class ParticleProducts<D, T, Cpu> {
   void renormalisedGradient(ScalarField<T, Cpu> q, const Store& store) const;
   template <class Store>
   void renormalisedDivergence(VectorField<D, T, Cpu> u, const Store& store) const;
-  void renormalisedInverseDiagonals(const ProjectionTable<T>& table, std::span<T> pressure,
-                                    std::span<Block<D, T>> velocity) const;
 
   const MphPairs<D>* pairs_ = nullptr;
   WallTerms<D> terms_{};
