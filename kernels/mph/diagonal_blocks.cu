@@ -5,11 +5,14 @@
 namespace treacle {
 namespace {
 
+template <int D>
+inline constexpr int diagonalValues = D*(D + 1) / 2 + D;
+
 /// Sums of a diagonal block of A per fluid particle: the upper triangle of V_ii + sum_j lambda_j C_ij C_ij^T, then
 /// C_ii. The viscous part of walls stands in the wall terms.
-template <int D>
+template <int D, class Mph, bool Renormalised>
 struct DiagonalTerms {
-  static constexpr int triangle = D * (D + 1) / 2, values = triangle + D;
+  static constexpr int values = diagonalValues<D>;
   static constexpr bool uses(ListSegment s) { return s != ListSegment::FarWall; }
   struct Other {
     std::uint32_t j;
@@ -18,7 +21,7 @@ struct DiagonalTerms {
   };
   using Own = Substance;
 
-  MphTerms<D, double> mph;
+  Mph mph;
   double* sums;  // `values` per fluid particle
 
   __device__ Own loadOwn(const MphPairs<D>& pairs, std::uint32_t i) const { return pairs.substance(i); }
@@ -28,18 +31,19 @@ struct DiagonalTerms {
 
   __device__ void add(const MphPairs<D>& pairs, double* sum, const Vec<D>& d, const PairDistance<double>& r,
                       Own own, const Other& other, ListSegment segment) const {
-    const double g = mph.gradient(r), pressure = other.lambda * g * g;
-    const double viscous =
-        isFluid(segment) ? pairs.viscosity(own, other.substance) * mph.viscousFactor * mph.viscousShape(r) : 0.0;
-    int n = 0;
-    if (pairs.renormalisation) {
+    const double g = mph.gradient(r);
+    double f = other.lambda * g * g;
+    if constexpr (Renormalised) {
       const Vec<D> column = pairs.corrected(other.j, d);
+      int n = 0;
       for (int r = 0; r < D; ++r)
-        for (int c = r; c < D; ++c) sum[n++] += viscous * d[r] * d[c] + pressure * column[r] * column[c];
-    } else {
-      for (int r = 0; r < D; ++r)
-        for (int c = r; c < D; ++c) sum[n++] += (pressure + viscous) * d[r] * d[c];
+        for (int c = r; c < D; ++c) sum[n++] += f * column[r] * column[c];
+      f = 0;
     }
+    if (isFluid(segment)) f += pairs.viscosity(own, other.substance) * mph.viscousFactor * mph.viscousShape(r);
+    int n = 0;
+    for (int r = 0; r < D; ++r)
+      for (int c = r; c < D; ++c) sum[n++] += f * d[r] * d[c];
     for (int r = 0; r < D; ++r) sum[n++] += g * d[r];
   }
 
@@ -54,7 +58,7 @@ __global__ void finishKernel(const __grid_constant__ MphPairs<D> pairs, const do
                              Block<D>* diagonal) {
   const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
   if (i >= pairs.fluidCount) return;
-  const double* sum = sums + std::size_t{DiagonalTerms<D>::values} * i;
+  const double* sum = sums + std::size_t{diagonalValues<D>} * i;
   Block<D> block = wall[i];
   for (int r = 0; r < D; ++r)
     for (int c = r; c < D; ++c) {
@@ -74,16 +78,18 @@ __global__ void finishKernel(const __grid_constant__ MphPairs<D> pairs, const do
 template <int D>
 void diagonalBlocks(Context<Cuda>& context, const MphPairs<D>& pairs, const WallTerms<D>& terms,
                     std::span<Block<D>> diagonal) {
-  using Terms = DiagonalTerms<D>;
-  Buffer<double, Cuda> sums(context, std::size_t{Terms::values} * pairs.fluidCount);
-  const ListTask<Terms> task{pairs.fluidList, {pairs.terms, sums.data()}};
-  if (!pairs.fluidList.offset)
-    launchClusterSums<D, double, Sharing<2, 1, true>>(context, pairs, task,
-                                                      LocalPositions<D, double>::make(pairs));
-  else if (pairs.fluidList.clusterCount() < fewClusters)
-    launchClusterSums<D, double, Sharing<2, 4>>(context, pairs, task, LocalPositions<D, double>::make(pairs));
-  else
-    launchClusterSums<D, double, Sharing<2, 1>>(context, pairs, task, LocalPositions<D, double>::make(pairs));
+  Buffer<double, Cuda> sums(context, std::size_t{diagonalValues<D>} * pairs.fluidCount);
+  const auto places = LocalPositions<D, double>::make(pairs);
+  withKnownTerms<PublishedWeights, AccurateWeights>(pairs, [&](const auto& mph, auto renormalised) {
+    using Terms = DiagonalTerms<D, std::decay_t<decltype(mph)>, decltype(renormalised)::value>;
+    const ListTask<Terms> task{pairs.fluidList, {mph, sums.data()}};
+    if (!pairs.fluidList.offset)
+      launchClusterSums<D, double, Sharing<2, 1, true>>(context, pairs, task, places);
+    else if (pairs.fluidList.clusterCount() < fewClusters)
+      launchClusterSums<D, double, Sharing<2, 4>>(context, pairs, task, places);
+    else
+      launchClusterSums<D, double, Sharing<2, 1>>(context, pairs, task, places);
+  });
 
   launch(context, blocksFor(pairs.fluidCount, 256), 256, 0, finishKernel<D>, pairs, sums.data(),
          terms.block.data(), diagonal.data());

@@ -6,7 +6,7 @@ namespace treacle {
 namespace {
 
 /// 2 (d+2) mu (u_ij.e_ij)^2 (-w'^v) / r per fluid particle, half of a pair of fluid [K23 eq. (10)].
-template <int D>
+template <int D, class Mph, bool Corrected>
 struct ShearDissipation {
   static constexpr int values = 1;
   static constexpr bool uses(ListSegment) { return true; }
@@ -16,7 +16,7 @@ struct ShearDissipation {
   };
   using Other = Own;
 
-  MphTerms<D, double> mph;
+  Mph mph;
   const Vec<D>* u;
   double* dissipation;
 
@@ -26,7 +26,7 @@ struct ShearDissipation {
   __device__ void add(const MphPairs<D>& pairs, double* sum, const Vec<D>& d, const PairDistance<double>& r,
                       const Own& own, const Other& other, ListSegment segment) const {
     const double along = differenceAlong(other.u, own.u, d);
-    const double share = isWall(segment) ? pairs.wallFactor(own.i, other.i, d) : 0.5;
+    const double share = isWall(segment) ? viscosityFactor<Corrected>(pairs, own.i, other.i, d) : 0.5;
     const double mu = pairs.pairViscosity(own.i, other.i);
     sum[0] = fma(share * mu * mph.viscousShape(r), along * along, sum[0]);
   }
@@ -36,7 +36,7 @@ struct ShearDissipation {
 };
 
 /// Force on a wall particle [K23 eq. (4)], and the parts of its C^T u and n, from the fluid near it.
-template <int D>
+template <int D, class Mph, bool Corrected>
 struct FluidAtWall {
   static constexpr int values = D + 2;
   static constexpr bool uses(ListSegment s) { return isFluid(s); }
@@ -47,7 +47,7 @@ struct FluidAtWall {
   };
   using Other = Own;
 
-  MphTerms<D, double> mph;
+  Mph mph;
   const Vec<D>* u;
   const double* pressure;
   Vec<D>* force;  // of the first wall particle, like those below
@@ -59,11 +59,16 @@ struct FluidAtWall {
   __device__ void add(const MphPairs<D>& pairs, double* sum, const Vec<D>& d, const PairDistance<double>& r,
                       const Own& own, const Other& other, ListSegment) const {
     const double along = differenceAlong(other.u, own.u, d);
-    const double mu = pairs.pairViscosity(own.i, other.i) * pairs.wallFactor(other.i, own.i, -1.0 * d);
+    const double mu =
+        pairs.pairViscosity(own.i, other.i) * viscosityFactor<Corrected>(pairs, other.i, own.i, -1.0 * d);
     const double g = mph.gradient(r);
     const double viscous = mph.viscousFactor * mu * mph.viscousShape(r) * along;
-    addScaled(sum, viscous - g * own.pressure, d);
-    addScaled(sum, -g * other.pressure, pairs.corrected(other.i, d));
+    if constexpr (Corrected) {
+      addScaled(sum, viscous - g * own.pressure, d);
+      addScaled(sum, -g * other.pressure, pairs.corrected(other.i, d));
+    } else {
+      addScaled(sum, viscous - g * (own.pressure + other.pressure), d);
+    }
     sum[D] = fma(-g, along, sum[D]);
     sum[D + 1] += mph.density(1.0, r);
   }
@@ -83,15 +88,19 @@ struct FluidAtWall {
 template <int D>
 void shearDissipation(Context<Cuda>& context, const MphPairs<D>& pairs, std::span<const Vec<D>> u,
                       std::span<double> dissipation) {
-  sumOnFluid(context, pairs, ShearDissipation<D>{pairs.terms, u.data(), dissipation.data()});
+  withStepTerms(pairs, [&]<class Mph, class Corrected>(const Mph& mph, Corrected) {
+    sumOnFluid(context, pairs, ShearDissipation<D, Mph, Corrected::value>{mph, u.data(), dissipation.data()});
+  });
 }
 
 template <int D>
 void fluidAtWalls(Context<Cuda>& context, const MphPairs<D>& pairs, const ClusterListView& walls,
                   std::span<const Vec<D>> u, std::span<const double> pressure, const FluidAtWalls<D>& out) {
-  sumOnList(context, pairs, walls,
-            FluidAtWall<D>{pairs.terms, u.data(), pressure.data(), out.force.data(), out.divergence.data(),
-                           out.density.data()});
+  withStepTerms(pairs, [&]<class Mph, class Corrected>(const Mph& mph, Corrected) {
+    using Terms = FluidAtWall<D, Mph, Corrected::value>;
+    sumOnList(context, pairs, walls,
+              Terms{mph, u.data(), pressure.data(), out.force.data(), out.divergence.data(), out.density.data()});
+  });
 }
 
 #define TREACLE_INSTANTIATE(D)                                                                   \

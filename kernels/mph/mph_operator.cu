@@ -1,19 +1,19 @@
 #include "treacle/mph/mph_operator.hpp"
 
-#include "mph/product_terms.cuh"
+#include "mph/step_sums.cuh"
 
 namespace treacle {
 namespace {
 
 /// The self terms: those of the walls and the inertia, and the sums over the fluid.
-template <int D>
+template <int D, class Mph>
 struct SelfSums {
   static constexpr int values = D * D + D;
   static constexpr bool uses(ListSegment s) { return isFluid(s); }
   using Own = Substance;
   using Other = Substance;
 
-  MphTerms<D, double> mph;
+  Mph mph;
   WallTerms<D> wall;
   Block<D>* block;
   Vec<D>* gradient;
@@ -49,14 +49,11 @@ void MphOperator<D, Cuda>::prepare(Context<Cuda>& context, const MphPairs<D>& pa
   q_.resize(context, pairs.activeCount);
   selfBlock_.resize(context, pairs.fluidCount);
   selfGradient_.resize(context, pairs.fluidCount);
-  const ListTask<SelfSums<D>> sums{pairs.fluidList, {pairs.terms, terms, selfBlock_.data(), selfGradient_.data()}};
-  const auto places = LocalPositions<D, double>::make(pairs);
-  if (pairs.fluidList.offset) {
-    launchClusterSums<D, double, Sharing<2, 1>>(context, pairs, sums, places);
-    near_.prepare(context, pairs);
-  } else {
-    launchClusterSums<D, double, Sharing<2, 1, true>>(context, pairs, sums, places);
-  }
+  withKnownWeights<PublishedWeights, AccurateWeights>(pairs.terms, [&](const auto& mph) {
+    sumOnFluid(context, pairs,
+               SelfSums<D, std::decay_t<decltype(mph)>>{mph, terms, selfBlock_.data(), selfGradient_.data()});
+  });
+  if (pairs.fluidList.offset) near_.prepare(context, pairs);
 }
 
 template <int D>
@@ -64,18 +61,21 @@ void MphOperator<D, Cuda>::multiply(Context<Cuda>& context, std::span<const Vec<
   if (pairs_->renormalisation) return multiplyRenormalised(context, u, y);
   const SelfTerms<D> self{selfBlock_, selfGradient_};
   const auto places = LocalPositions<D, double>::make(*pairs_);
-  withSharing(*pairs_, [&](auto sharing) {
-    const auto firstPass = [&](auto oneSubstance) {
-      using OnFluid = ViscosityAndDivergence<D, double, decltype(oneSubstance)::value>;
-      const MphTerms<D, double>& terms = pairs_->terms;
-      launchClusterSums<D, double, decltype(sharing)>(
-          context, *pairs_, ListTask<OnFluid>{pairs_->fluidList, {terms, self, u.data(), y.data(), q_.data()}},
-          ListTask<Divergence<D, double, true, true>>{pairs_->wallList, {terms, u.data(), q_.data()}}, places);
-    };
-    if (pairs_->isOneSubstance())
-      firstPass(std::true_type{});
-    else
-      firstPass(std::false_type{});
+  const auto firstPass = [&](const auto& mph, auto sharing, auto oneSubstance) {
+    using Mph = std::decay_t<decltype(mph)>;
+    using OnFluid = ViscosityAndDivergence<D, double, decltype(oneSubstance)::value, Mph>;
+    using OnWalls = Divergence<D, double, Mph, false, true, true>;
+    launchClusterSums<D, double, decltype(sharing)>(
+        context, *pairs_, ListTask<OnFluid>{pairs_->fluidList, {mph, self, u.data(), y.data(), q_.data()}},
+        ListTask<OnWalls>{pairs_->wallList, {mph, u.data(), q_.data()}}, places);
+  };
+  withKnownWeights<PublishedWeights>(pairs_->terms, [&](const auto& mph) {
+    withSharing(*pairs_, [&](auto sharing) {
+      if (pairs_->isOneSubstance())
+        firstPass(mph, sharing, std::true_type{});
+      else
+        firstPass(mph, sharing, std::false_type{});
+    });
   });
   if (pairs_->fluidList.offset)
     near_.addPressureGradient(context, q_, y);
@@ -89,24 +89,23 @@ template <int D>
 void MphOperator<D, Cuda>::multiplyRenormalised(Context<Cuda>& context, std::span<const Vec<D>> u,
                                                 std::span<Vec<D>> y) {
   const auto places = LocalPositions<D, double>::make(*pairs_);
-  const MphTerms<D, double>& terms = pairs_->terms;
-  withSharing(*pairs_, [&](auto sharing) {
-    using OnFluid = Viscosity<D, double, false, Vec<D>, StoreProduct<D>>;
-    launchClusterSums<D, double, decltype(sharing)>(
-        context, *pairs_, ListTask<OnFluid>{pairs_->fluidList, {terms, selfBlock_.data(), u.data(), {y.data()}}},
-        places);
+  withKnownWeights<KnownViscosityWeight<AccurateWeights::viscosity>>(pairs_->terms, [&](const auto& mph) {
+    withSharing(*pairs_, [&](auto sharing) {
+      using OnFluid = Viscosity<D, double, false, std::decay_t<decltype(mph)>, Vec<D>, StoreProduct<D>>;
+      launchClusterSums<D, double, decltype(sharing)>(
+          context, *pairs_, ListTask<OnFluid>{pairs_->fluidList, {mph, selfBlock_.data(), u.data(), {y.data()}}},
+          places);
+    });
   });
   if (pairs_->fluidList.offset) {
     near_.bulkStress(context, u, q_);
     near_.addPressureGradient(context, q_, y);
     return;
   }
-  using OnAll = Divergence<D, double, true, true, true>;
-  withSharing(*pairs_, [&](auto sharing) {
-    const OnAll sums{terms, u.data(), q_.data()};
-    launchClusterSums<D, double, decltype(sharing)>(context, *pairs_, ListTask<OnAll>{pairs_->fluidList, sums},
+  using OnAll = Divergence<D, double, MphTerms<D>, true, true, true, true>;
+  const OnAll sums{pairs_->terms, u.data(), q_.data()};
+  launchClusterSums<D, double, Sharing<4, 1, true>>(context, *pairs_, ListTask<OnAll>{pairs_->fluidList, sums},
                                                     ListTask<OnAll>{pairs_->wallList, sums}, places);
-  });
   addPressureGradient<D>(context, *pairs_, q_, 1.0, y);
 }
 

@@ -6,14 +6,14 @@ namespace treacle {
 namespace {
 
 /// n_i = sum_j w_ij^p per particle [K23 eq. (7)].
-template <int D>
+template <int D, class Mph>
 struct NumberDensity {
   static constexpr int values = 1;
   static constexpr bool uses(ListSegment s) { return isNear(s); }
   using Own = std::uint32_t;  // the index: a particle is not its own neighbour
   using Other = std::uint32_t;
 
-  MphTerms<D> mph;
+  Mph mph;
   double* n;
 
   __device__ Own loadOwn(const MphPairs<D>&, std::uint32_t i) const { return i; }
@@ -39,14 +39,14 @@ struct Side {
   }
 };
 
-template <int D>
+template <int D, class Mph, bool Corrected>
 struct WallSums {
   static constexpr int values = D * D + D;
   static constexpr bool uses(ListSegment s) { return isWall(s); }
   using Own = Side;
   using Other = Side;
 
-  MphTerms<D, double> mph;
+  Mph mph;
   WallTerms<D> terms;
 
   __device__ Own loadOwn(const MphPairs<D>& pairs, std::uint32_t i) const { return Side::of(pairs, i); }
@@ -54,8 +54,8 @@ struct WallSums {
 
   __device__ void add(const MphPairs<D>& pairs, double* sum, const Vec<D>& d, const PairDistance<double>& r, Own i,
                       Other j, ListSegment) const {
-    const double f =
-        pairs.viscosity(i.substance, j.substance) * pairs.wallFactor(i.index, j.index, d) * mph.viscousShape(r);
+    const double f = pairs.viscosity(i.substance, j.substance) *
+                     viscosityFactor<Corrected>(pairs, i.index, j.index, d) * mph.viscousShape(r);
     for (int r = 0; r < D; ++r) addScaled(sum + r * D, f * d[r], d);
     addScaled(sum + D * D, mph.gradientShape(r), d);
   }
@@ -69,7 +69,7 @@ struct WallSums {
   }
 };
 
-template <int D>
+template <int D, class Mph, bool Corrected>
 struct WallDrag {
   static constexpr int values = D;
   static constexpr bool uses(ListSegment s) { return isWall(s); }
@@ -79,7 +79,7 @@ struct WallDrag {
     Vec<D> u;
   };
 
-  MphTerms<D, double> mph;
+  Mph mph;
   const Vec<D>* u;
   Vec<D>* y;
 
@@ -91,8 +91,8 @@ struct WallDrag {
   __device__ void add(const MphPairs<D>& pairs, double* sum, const Vec<D>& d, const PairDistance<double>& r, Own i,
                       const Other& other, ListSegment) const {
     const Side& j = other.side;
-    const double f =
-        pairs.viscosity(i.substance, j.substance) * pairs.wallFactor(i.index, j.index, d) * mph.viscousShape(r);
+    const double f = pairs.viscosity(i.substance, j.substance) *
+                     viscosityFactor<Corrected>(pairs, i.index, j.index, d) * mph.viscousShape(r);
     addScaled(sum, f * dot(d, other.u), d);
   }
   __device__ void store(const MphPairs<D>&, std::uint32_t i, int n, double sum) const {
@@ -104,24 +104,34 @@ struct WallDrag {
 
 template <int D>
 void numberDensity(Context<Cuda>& context, const MphPairs<D>& pairs, std::span<double> n) {
-  sumOnAll(context, pairs, NumberDensity<D>{pairs.terms, n.data()});
+  withKnownWeights<PublishedWeights>(pairs.terms, [&]<class Mph>(const Mph& mph) {
+    sumOnAll(context, pairs, NumberDensity<D, Mph>{mph, n.data()});
+  });
 }
 
 template <int D>
 void addPressureGradient(Context<Cuda>& context, const MphPairs<D>& pairs, std::span<const double> q,
                          double factor, std::span<Vec<D>> y) {
-  sumOnFluid(context, pairs, PressureForce<D, double, true>{pairs.terms, q.data(), y.data(), factor});
+  withStepTerms(pairs, [&]<class Mph, class Corrected>(const Mph& mph, Corrected) {
+    sumOnFluid(context, pairs,
+               PressureForce<D, double, Mph, Corrected::value, true>{mph, q.data(), y.data(), factor});
+  });
 }
 
 template <int D>
 void divergence(Context<Cuda>& context, const MphPairs<D>& pairs, std::span<const Vec<D>> u,
                 std::span<double> div) {
-  sumOnAll(context, pairs, Divergence<D, double, false, false>{pairs.terms, u.data(), div.data()});
+  withStepTerms(pairs, [&]<class Mph, class Corrected>(const Mph& mph, Corrected) {
+    sumOnAll(context, pairs,
+             Divergence<D, double, Mph, Corrected::value, false, false>{mph, u.data(), div.data()});
+  });
 }
 
 template <int D>
 void wallTerms(Context<Cuda>& context, const MphPairs<D>& pairs, const WallTerms<D>& terms) {
-  sumOnFluid(context, pairs, WallSums<D>{pairs.terms, terms});
+  withStepTerms(pairs, [&]<class Mph, class Corrected>(const Mph& mph, Corrected) {
+    sumOnFluid(context, pairs, WallSums<D, Mph, Corrected::value>{mph, terms});
+  });
   if (pairs.renormalisation)
     forEach(context, pairs.fluidCount,
             [b = pairs.renormalisation, g = terms.gradient] __device__(std::size_t i) { g[i] = b[i] * g[i]; });
@@ -130,7 +140,9 @@ void wallTerms(Context<Cuda>& context, const MphPairs<D>& pairs, const WallTerms
 template <int D>
 void addWallDrag(Context<Cuda>& context, const MphPairs<D>& pairs, std::span<const Vec<D>> u,
                  std::span<Vec<D>> y) {
-  sumOnFluid(context, pairs, WallDrag<D>{pairs.terms, u.data(), y.data()});
+  withStepTerms(pairs, [&]<class Mph, class Corrected>(const Mph& mph, Corrected) {
+    sumOnFluid(context, pairs, WallDrag<D, Mph, Corrected::value>{mph, u.data(), y.data()});
+  });
 }
 
 #define TREACLE_INSTANTIATE(D)                                                                                 \

@@ -77,30 +77,31 @@ void NearProducts<D>::prepare(Context<Cuda>& context, const MphPairs<D>& pairs) 
 template <int D>
 void NearProducts<D>::addPressureGradient(Context<Cuda>& context, std::span<const double> q,
                                           std::span<Vec<D>> y) const {
-  const auto view = NearView<D, double>::make(*pairs_, *this);
   const auto add = [y = y.data()] __device__(std::uint32_t i, const Vec<D>& gradient) { y[i] += gradient; };
-  const PlainScalars<D, double> scalars{q.data()};
-  if (pairs_->renormalisation)
-    nearGradient(
-        context, view,
-        Tensors<D, double, PlainScalars<D, double>>{scalars, {pairs_->renormalisation, pairs_->fluidCount}}, add);
-  else
-    nearGradient(context, view, scalars, add);
+  using Scalars = PlainScalars<D, double>;
+  const Scalars scalars{q.data()};
+  const Renormalised<D> b{pairs_->renormalisation, pairs_->fluidCount};
+  withPressureTerms(*pairs_, [&]<class Weights>(const MphTerms<D, double, Weights>& terms, auto renormalised) {
+    const auto view = NearView<D, double, Weights>::make(*pairs_, *this, terms);
+    if constexpr (renormalised)
+      nearGradient(context, view, Stresses<D, double, Scalars, Renormalised<D>>{scalars, b}, add);
+    else
+      nearGradient(context, view, scalars, add);
+  });
 }
 
 template <int D>
 void NearProducts<D>::bulkStress(Context<Cuda>& context, std::span<const Vec<D>> u, std::span<double> q) const {
-  const auto view = NearView<D, double>::make(*pairs_, *this);
   const PlainVectors<D, double, Vec<D>> vectors{u.data()};
+  const Renormalised<D> b{pairs_->renormalisation, pairs_->fluidCount};
   const auto store = [q = q.data(), material = pairs_->material.data(), materials = pairs_->materials] __device__(
                          std::uint32_t k, double divergence) {
     q[k] = materials.bulkViscosity[material[k]] * divergence;
   };
-  if (pairs_->renormalisation)
-    nearDivergence(context, view, vectors, Renormalised<D, double>{pairs_->renormalisation, pairs_->fluidCount},
-                   store);
-  else
-    nearDivergence(context, view, vectors, Plain<D, double>{}, store);
+  const auto start = [&]<class Weights>(const MphTerms<D, double, Weights>& terms) {
+    nearDivergence(context, NearView<D, double, Weights>::make(*pairs_, *this, terms), vectors, b, store);
+  };
+  withKnownWeights<KnownPressureWeight<AccurateWeights::pressure>>(pairs_->terms, start);
 }
 
 template class NearProducts<2>;

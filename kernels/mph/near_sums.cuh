@@ -11,23 +11,26 @@ namespace treacle {
 
 /// What the kernels read of the lists and positions in the arithmetic T.
 template <int D, class T>
-struct NearView;
+struct NearLists;
 
 template <int D>
-struct NearView<D, double> {
+struct NearLists<D, double> {
   using Stored = Vec<D>;
   const std::uint64_t* sliceStart;
   const ListEntry* entry;
   std::uint32_t fluidCount, activeCount;
-  MphTerms<D, double> mph;
   double floor;
   const Vec<D>* position;
   PeriodicImages<D> images;
 
-  static NearView make(const MphPairs<D>& pairs, const NearProducts<D>& near) {
-    return {near.sliceStart().data(), near.entries().data(), pairs.fluidCount,
-            pairs.activeCount,        pairs.terms,           LocalPositions<D, double>::make(pairs).floor,
-            pairs.position.data(),    pairs.images};
+  static NearLists make(const MphPairs<D>& pairs, const NearProducts<D>& near) {
+    return {near.sliceStart().data(),
+            near.entries().data(),
+            pairs.fluidCount,
+            pairs.activeCount,
+            LocalPositions<D, double>::make(pairs).floor,
+            pairs.position.data(),
+            pairs.images};
   }
   __device__ Stored own(std::uint32_t i) const { return position[i]; }
   __device__ Stored other(ListEntry e) const {
@@ -39,33 +42,40 @@ struct NearView<D, double> {
 };
 
 template <int D>
-struct NearView<D, float> {
+struct NearLists<D, float> {
   using Stored = int4;
   const std::uint64_t* sliceStart;
   const ListEntry* entry;
   std::uint32_t fluidCount, activeCount;
-  MphTerms<D, float> mph;
   float floor;
   LocalPositions<D, float> places;
 
-  static NearView make(const MphPairs<D>& pairs, const NearProducts<D>& near) {
+  static NearLists make(const MphPairs<D>& pairs, const NearProducts<D>& near) {
     const auto places = LocalPositions<D, float>::make(pairs, near.fixedPosition().data());
-    return {near.sliceStart().data(),
-            near.entries().data(),
-            pairs.fluidCount,
-            pairs.activeCount,
-            pairs.terms.template inUnitsOf<float>(places.unit(pairs)),
-            places.floor,
-            places};
+    return {near.sliceStart().data(), near.entries().data(), pairs.fluidCount,
+            pairs.activeCount,        places.floor,          places};
   }
   __device__ Stored own(std::uint32_t i) const { return places.fixed[i]; }
   __device__ Stored other(ListEntry e) const { return places.fixed[e.index()]; }
   __device__ Vec<D, float> difference(const Stored& a, const Stored& b) const { return places.local(a, b); }
 };
 
+/// The same with the terms of the pairs.
+template <int D, class T, class Weights>
+struct NearView : NearLists<D, T> {
+  MphTerms<D, T, Weights> mph;
+
+  /// `terms`: those of the pairs, with the weights that the kernel is to know.
+  static NearView make(const MphPairs<D>& pairs, const NearProducts<D>& near,
+                       const MphTerms<D, double, Weights>& terms) {
+    const double unit = LocalPositions<D, T>::unit(pairs);
+    return {NearLists<D, T>::make(pairs, near), terms.template inUnitsOf<T>(unit)};
+  }
+};
+
 /// Of a pair whose difference is d.
-template <int D, class T>
-__device__ inline T gradientShape(const NearView<D, T>& view, const Vec<D, T>& d) {
+template <int D, class T, class Weights>
+__device__ inline T gradientShape(const NearView<D, T, Weights>& view, const Vec<D, T>& d) {
   T r2 = view.floor;
   for (int k = 0; k < D; ++k) r2 = fma(d[k], d[k], r2);
   return view.mph.gradientShape(PairDistance<T>{r2, inverseSqrt(r2)});
@@ -109,27 +119,27 @@ __device__ inline T splitSum(T value, int split) {
 /// where they stand side by side.
 template <int D, class T>
 struct PlacedValue {
-  typename NearView<D, T>::Stored x;
+  typename NearLists<D, T>::Stored x;
   T value;
 };
 template <int D, class T>
 struct PlainScalars {
   const T* q;
-  __device__ PlacedValue<D, T> own(const NearView<D, T>& view, std::uint32_t i) const {
-    return {view.own(i), q[i]};
+  __device__ PlacedValue<D, T> own(const NearLists<D, T>& lists, std::uint32_t i) const {
+    return {lists.own(i), q[i]};
   }
-  __device__ PlacedValue<D, T> other(const NearView<D, T>& view, ListEntry e) const {
-    return {view.other(e), q[e.index()]};
+  __device__ PlacedValue<D, T> other(const NearLists<D, T>& lists, ListEntry e) const {
+    return {lists.other(e), q[e.index()]};
   }
 };
 /// B of the pressure gradient in the products of a case (renormalisation.hpp), and what stands in its place where
 /// it has none: of(k) times d is what d is in particle k's column of C.
-template <int D, class T>
+template <int D>
 struct Renormalised {
-  const SymmetricBlock<D, T>* b;
+  const SymmetricBlock<D>* b;
   std::uint32_t fluidCount;
-  __device__ SymmetricBlock<D, T> of(std::uint32_t k) const {
-    return k < fluidCount ? b[k] : SymmetricBlock<D, T>::identity();
+  __device__ SymmetricBlock<D> of(std::uint32_t k) const {
+    return k < fluidCount ? fetch(&b[k]) : SymmetricBlock<D>::identity();
   }
 };
 template <int D, class T>
@@ -142,20 +152,20 @@ struct Plain {
 
 /// A pressure times its B.
 template <int D, class T>
-struct PlacedTensor {
-  typename NearView<D, T>::Stored x;
+struct PlacedStress {
+  typename NearLists<D, T>::Stored x;
   SymmetricBlock<D, T> value;
 };
-template <int D, class T, class Scalars>
-struct Tensors {
+template <int D, class T, class Scalars, class Columns>
+struct Stresses {
   Scalars q;
-  Renormalised<D, T> b;
-  __device__ PlacedTensor<D, T> own(const NearView<D, T>& view, std::uint32_t i) const {
-    const PlacedValue<D, T> scalar = q.own(view, i);
+  Columns b;
+  __device__ PlacedStress<D, T> own(const NearLists<D, T>& lists, std::uint32_t i) const {
+    const PlacedValue<D, T> scalar = q.own(lists, i);
     return {scalar.x, scalar.value * b.of(i)};
   }
-  __device__ PlacedTensor<D, T> other(const NearView<D, T>& view, ListEntry e) const {
-    const PlacedValue<D, T> scalar = q.other(view, e);
+  __device__ PlacedStress<D, T> other(const NearLists<D, T>& lists, ListEntry e) const {
+    const PlacedValue<D, T> scalar = q.other(lists, e);
     return {scalar.x, scalar.value * b.of(e.index())};
   }
 };
@@ -173,25 +183,25 @@ __device__ inline void addPressures(Vec<D, T>& sum, T g, const SymmetricBlock<D,
 
 template <int D, class T>
 struct PlacedVelocity {
-  typename NearView<D, T>::Stored x;
+  typename NearLists<D, T>::Stored x;
   Vec<D, T> u;
 };
 /// Walls have none.
 template <int D, class T, class V>
 struct PlainVectors {
   const V* u;
-  __device__ PlacedVelocity<D, T> own(const NearView<D, T>& view, std::uint32_t k) const {
-    return {view.own(k), k < view.fluidCount ? fetch(&u[k]) : Vec<D, T>{}};
+  __device__ PlacedVelocity<D, T> own(const NearLists<D, T>& lists, std::uint32_t k) const {
+    return {lists.own(k), k < lists.fluidCount ? fetch(&u[k]) : Vec<D, T>{}};
   }
-  __device__ PlacedVelocity<D, T> other(const NearView<D, T>& view, ListEntry e) const {
+  __device__ PlacedVelocity<D, T> other(const NearLists<D, T>& lists, ListEntry e) const {
     const std::uint32_t j = e.index();
-    return {view.other(e), j < view.fluidCount ? fetch(&u[j]) : Vec<D, T>{}};
+    return {lists.other(e), j < lists.fluidCount ? fetch(&u[j]) : Vec<D, T>{}};
   }
 };
 /// `split` threads per fluid particle: store(i, (C q)_i); reads positions and q of the neighbours. No atomics.
-template <class Split, int D, class T, class Scalars, class Store>
+template <class Split, int D, class T, class Weights, class Scalars, class Store>
 __global__ void __launch_bounds__(128)
-    nearGradientKernel(const Split split, const __grid_constant__ NearView<D, T> view, const Scalars q,
+    nearGradientKernel(const Split split, const __grid_constant__ NearView<D, T, Weights> view, const Scalars q,
                        const __grid_constant__ Store store) {
   const std::uint32_t thread = blockIdx.x * blockDim.x + threadIdx.x, own = thread / split;
   if (split == 1 && own >= view.fluidCount) return;
@@ -211,9 +221,9 @@ __global__ void __launch_bounds__(128)
 
 /// `split` threads per particle: store(k, (C^T u)_k), walls at rest; reads positions and u of the neighbours. No
 /// atomics.
-template <class Split, int D, class T, class Vectors, class Columns, class Store>
+template <class Split, int D, class T, class Weights, class Vectors, class Columns, class Store>
 __global__ void __launch_bounds__(128)
-    nearDivergenceKernel(const Split split, const __grid_constant__ NearView<D, T> view, const Vectors u,
+    nearDivergenceKernel(const Split split, const __grid_constant__ NearView<D, T, Weights> view, const Vectors u,
                          const Columns columns, const __grid_constant__ Store store) {
   const std::uint32_t thread = blockIdx.x * blockDim.x + threadIdx.x, own = thread / split;
   if (split == 1 && own >= view.activeCount) return;
@@ -244,19 +254,21 @@ void withSplit(std::uint32_t particles, F&& f) {
     f(Threads<1>{});
 }
 
-template <int D, class T, class Scalars, class Store>
-void nearGradient(const Context<Cuda>& context, const NearView<D, T>& view, const Scalars& q, const Store& store) {
+template <int D, class T, class Weights, class Scalars, class Store>
+void nearGradient(const Context<Cuda>& context, const NearView<D, T, Weights>& view, const Scalars& q,
+                  const Store& store) {
   withSplit<D>(view.fluidCount, [&](auto split) {
     launch(context, blocksFor(std::size_t{view.fluidCount} * split, 128), 128, 0,
-           nearGradientKernel<decltype(split), D, T, Scalars, Store>, split, view, q, store);
+           nearGradientKernel<decltype(split), D, T, Weights, Scalars, Store>, split, view, q, store);
   });
 }
-template <int D, class T, class Vectors, class Columns, class Store>
-void nearDivergence(const Context<Cuda>& context, const NearView<D, T>& view, const Vectors& u,
+template <int D, class T, class Weights, class Vectors, class Columns, class Store>
+void nearDivergence(const Context<Cuda>& context, const NearView<D, T, Weights>& view, const Vectors& u,
                     const Columns& columns, const Store& store) {
   withSplit<D>(view.activeCount, [&](auto split) {
     launch(context, blocksFor(std::size_t{view.activeCount} * split, 128), 128, 0,
-           nearDivergenceKernel<decltype(split), D, T, Vectors, Columns, Store>, split, view, u, columns, store);
+           nearDivergenceKernel<decltype(split), D, T, Weights, Vectors, Columns, Store>, split, view, u, columns,
+           store);
   });
 }
 

@@ -40,6 +40,22 @@ __device__ inline Vec<D, T> fetch(const Vec<D, T>* from) {
   return *from;
 }
 
+/// 16 bytes at a time, which a buffer's start allows where the size does.
+template <int D>
+__device__ inline SymmetricBlock<D> fetch(const SymmetricBlock<D>* from) {
+  if constexpr (SymmetricBlock<D>::size % 2 != 0) {
+    return *from;
+  } else {
+    SymmetricBlock<D> block;
+    for (int k = 0; k < SymmetricBlock<D>::size; k += 2) {
+      const double2 v = reinterpret_cast<const double2*>(from)[k / 2];
+      block.a[k] = v.x;
+      block.a[k + 1] = v.y;
+    }
+    return block;
+  }
+}
+
 template <int D, class T>
 struct VelocityOf {
   Vec<D, T> u;
@@ -57,14 +73,14 @@ struct SelfTerms {
 /// product A u. The sums run over the neighbours' velocities alone, u_i meets the particle's self terms: three
 /// subtractions and three registers per pair less than with u_j - u_i. With OneSubstance none is looked up
 /// in the pairs.
-template <int D, class T, bool OneSubstance>
+template <int D, class T, bool OneSubstance, class Mph>
 struct ViscosityAndDivergence {
   static constexpr int values = D + 1;
   static constexpr bool uses(ListSegment s) { return isFluid(s); }
   using Own = Substance;
   using Other = VelocityOf<D, T>;
 
-  MphTerms<D, T> mph;
+  Mph mph;
   SelfTerms<D> self;
   const Vec<D, T>* u;
   Vec<D, T>* y;
@@ -100,7 +116,7 @@ struct ViscosityAndDivergence {
 };
 
 /// store(i, ((rho/dt I + V) u)_i) per fluid particle; as ViscosityAndDivergence without the divergence.
-template <int D, class T, bool OneSubstance, class V, class Store>
+template <int D, class T, bool OneSubstance, class Mph, class V, class Store>
 struct Viscosity {
   using StoresVectors = void;
   static constexpr int values = D;
@@ -108,7 +124,7 @@ struct Viscosity {
   using Own = Substance;
   using Other = VelocityOf<D, T>;
 
-  MphTerms<D, T> mph;
+  Mph mph;
   const Block<D, T>* selfBlock;
   const V* u;
   Store result;
@@ -132,8 +148,9 @@ struct Viscosity {
 };
 
 /// div = C^T u per particle [1/s] [K23 eq. (14)], or, with Scaled, lambda C^T u. With WallsAtRest u has only fluid
-/// particles, and unless WithWalls fluid meets no walls.
-template <int D, class T, bool WallsAtRest, bool Scaled, bool WithWalls = !WallsAtRest>
+/// particles, and unless WithWalls fluid meets no walls. Renormalised: whether the pairs may have B.
+template <int D, class T, class Mph, bool Renormalised, bool WallsAtRest, bool Scaled,
+          bool WithWalls = !WallsAtRest>
 struct Divergence {
   static constexpr int values = 1;
   static constexpr bool uses(ListSegment s) {
@@ -145,7 +162,7 @@ struct Divergence {
   };
   using Other = Vec<D, T>;
 
-  MphTerms<D, T> mph;
+  Mph mph;
   const Vec<D, T>* u;
   T* div;
 
@@ -159,7 +176,8 @@ struct Divergence {
 
   __device__ void add(const MphPairs<D>& pairs, T* sum, const Vec<D, T>& d, const PairDistance<T>& r,
                       const Own& own, const Other& other, ListSegment) const {
-    sum[0] = fma(mph.gradientShape(r), differenceAlong(other, own.u, pairs.corrected(own.i, d)), sum[0]);
+    const Vec<D, T> column = Renormalised ? pairs.corrected(own.i, d) : d;
+    sum[0] = fma(mph.gradientShape(r), differenceAlong(other, own.u, column), sum[0]);
   }
   __device__ void store(const MphPairs<D>& pairs, std::uint32_t i, int, T sum) const {
     const double lambda = Scaled ? pairs.bulkViscosity(i) : 1.0;
@@ -167,8 +185,9 @@ struct Divergence {
   }
 };
 
-/// y = C q, or y += factor C q with Add, per fluid particle; q per particle.
-template <int D, class T, bool Add>
+/// y = C q, or y += factor C q with Add, per fluid particle; q per particle. Renormalised: whether the pairs may
+/// have B.
+template <int D, class T, class Mph, bool Renormalised, bool Add>
 struct PressureForce {
   static constexpr int values = D;
   static constexpr bool uses(ListSegment s) { return isNear(s); }
@@ -178,7 +197,7 @@ struct PressureForce {
   };
   using Other = Own;
 
-  MphTerms<D, T> mph;
+  Mph mph;
   const T* q;
   Vec<D, T>* y;
   T factor = 1;
@@ -189,8 +208,10 @@ struct PressureForce {
   __device__ void add(const MphPairs<D>& pairs, T* sum, const Vec<D, T>& d, const PairDistance<T>& r,
                       const Own& own, const Other& other, ListSegment) const {
     const T g = mph.gradientShape(r);
-    if (!pairs.renormalisation) return addScaled(sum, g * (own.q + other.q), d);
-    addScaled(sum, g, own.q * pairs.corrected(own.i, d) + other.q * pairs.corrected(other.i, d));
+    if constexpr (Renormalised)
+      addScaled(sum, g, own.q * pairs.corrected(own.i, d) + other.q * pairs.corrected(other.i, d));
+    else
+      addScaled(sum, g * (own.q + other.q), d);
   }
   __device__ void store(const MphPairs<D>&, std::uint32_t i, int n, T sum) const {
     const T value = factor * mph.gradientFactor * sum;

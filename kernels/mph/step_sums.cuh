@@ -4,6 +4,23 @@
 
 namespace treacle {
 
+/// f(terms, whether the pairs may have surfaces of walls or B) for sums that the published scheme has without
+/// both.
+template <int D, class F>
+void withStepTerms(const MphPairs<D>& pairs, F&& f) {
+  if (PublishedWeights::are(pairs.terms.weights) && !pairs.wallSurface && !pairs.renormalisation)
+    f(pairs.terms.with(PublishedWeights{}), std::false_type{});
+  else
+    f(pairs.terms, std::true_type{});
+}
+
+/// The factor of a pair's viscosity, 1 where it is not Corrected.
+template <bool Corrected, int D>
+__device__ double viscosityFactor(const MphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d) {
+  if constexpr (Corrected) return pairs.wallFactor(i, j, d);
+  return 1;
+}
+
 /// For sums once per step: one form for all sizes.
 template <class F, int D>
 void withStepSharing(const MphPairs<D>& pairs, F&& f) {

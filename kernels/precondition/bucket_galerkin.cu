@@ -29,9 +29,10 @@ __global__ void __launch_bounds__(32 * warpsPerBlock)
 
 /// One warp per bucket and adjacent cell of the upper half; reads the particles around them; writes the block, and
 /// its transpose in the other bucket's row. No atomics.
-template <int D>
+template <int D, class Mph>
 __global__ void __launch_bounds__(32 * warpsPerBlock)
-    offDiagonalKernel(const __grid_constant__ MphPairs<D> pairs, const __grid_constant__ Galerkin<D> g) {
+    offDiagonalKernel(const __grid_constant__ MphPairs<D> pairs, const __grid_constant__ Mph mph,
+                      const __grid_constant__ Galerkin<D> g) {
   constexpr int self = Galerkin<D>::self;
   const std::uint64_t warp = blockIdx.x * std::uint64_t{warpsPerBlock} + threadIdx.x / 32;
   const auto b = static_cast<std::uint32_t>(warp / self);
@@ -43,7 +44,7 @@ __global__ void __launch_bounds__(32 * warpsPerBlock)
 
   const std::uint32_t firstJ = g.ranges.fluidBegin[adjacent.linear], lastJ = g.ranges.fluidEnd[adjacent.linear];
   const Block<D> viscous =
-      sumOfLanes(viscousPart(pairs, g.begin[b], g.begin[b + 1], firstJ, lastJ, adjacent.shift));
+      sumOfLanes(viscousPart(pairs, mph, g.begin[b], g.begin[b + 1], firstJ, lastJ, adjacent.shift));
   const Block<D> pressure = sumOfLanes(pressurePart(pairs, g, own, offset));
 
   const std::uint64_t here = g.place(b, occupiedNeighbours(pairs.grid, g.ranges, own), o);
@@ -116,8 +117,10 @@ void bucketGalerkin(Context<Cuda>& context, const MphPairs<D>& pairs, const Cell
   g.block = a0.value.data();
   g.cross = cross.data();
   launch(context, blocks, threads, 0, patternKernel<D, true>, pairs, g);
-  launch(context, blocksFor(std::size_t{rows} * Galerkin<D>::self, warpsPerBlock), threads, 0,
-         offDiagonalKernel<D>, pairs, g);
+  withViscosityTerms(pairs, [&]<class Mph>(const Mph& mph) {
+    launch(context, blocksFor(std::size_t{rows} * Galerkin<D>::self, warpsPerBlock), threads, 0,
+           offDiagonalKernel<D, Mph>, pairs, mph, g);
+  });
   launch(context, blocks, threads, 0, diagonalKernel<D>, pairs, g);
 }
 

@@ -69,11 +69,12 @@ __device__ Block<D> pressurePart(const MphPairs<D>& pairs, const Galerkin<D>& g,
 
 /// A lane's part of the viscous pair blocks between the particles of a bucket and those of an adjacent cell: eight
 /// lanes side by side take a neighbour each, the four groups of them the bucket's particles in turns.
-template <int D>
-__device__ Block<D> viscousPart(const MphPairs<D>& pairs, std::uint32_t firstI, std::uint32_t lastI,
-                                std::uint32_t firstJ, std::uint32_t lastJ, const Vec<D>& shift) {
+template <int D, class Mph>
+__device__ Block<D> viscousPart(const MphPairs<D>& pairs, const Mph& mph, std::uint32_t firstI,
+                                std::uint32_t lastI, std::uint32_t firstJ, std::uint32_t lastJ,
+                                const Vec<D>& shift) {
   const int lane = threadIdx.x % 32;
-  const double h2 = pairs.terms.viscosityRadius * pairs.terms.viscosityRadius;
+  const double h2 = mph.viscosityRadius * mph.viscosityRadius;
   Block<D> sum{};
   for (std::uint32_t j = firstJ + lane % 8; j < lastJ; j += 8) {
     const Vec<D> xj = pairs.position[j] + shift;
@@ -83,13 +84,13 @@ __device__ Block<D> viscousPart(const MphPairs<D>& pairs, std::uint32_t firstI, 
       const double r2 = norm2(d);
       if (r2 >= h2 || r2 == 0) continue;
       const PairDistance<double> distance{r2, inverseSqrt(r2)};
-      const double f = pairs.viscosity(pairs.substance(i), substance) * pairs.terms.viscousShape(distance);
+      const double f = pairs.viscosity(pairs.substance(i), substance) * mph.viscousShape(distance);
       for (int r = 0; r < D; ++r)
         for (int c = r; c < D; ++c) sum(r, c) = fma(f * d[r], d[c], sum(r, c));
     }
   }
   for (int r = 0; r < D; ++r)
-    for (int c = r; c < D; ++c) sum(c, r) = sum(r, c) *= pairs.terms.viscousFactor;
+    for (int c = r; c < D; ++c) sum(c, r) = sum(r, c) *= mph.viscousFactor;
   return sum;
 }
 

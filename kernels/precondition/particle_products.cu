@@ -36,9 +36,10 @@ CoarsePositions<D> coarsePositions(const MphPairs<D>& pairs) {
 }
 
 /// The lists with these positions.
-template <int D, class T>
-NearView<D, T> viewOf(const MphPairs<D>& pairs, const NearProducts<D>& near) {
-  NearView<D, T> view = NearView<D, T>::make(pairs, near);
+template <int D, class T, class Weights>
+NearView<D, T, Weights> viewOf(const MphPairs<D>& pairs, const NearProducts<D>& near,
+                               const MphTerms<D, double, Weights>& terms) {
+  auto view = NearView<D, T, Weights>::make(pairs, near, terms);
   if constexpr (std::is_same_v<T, float>) {
     const CoarsePositions<D> coarse = coarsePositions(pairs);
     for (int k = 0; k < D; ++k) view.places.scale[k] /= static_cast<float>(coarse.periods[k]);
@@ -47,9 +48,9 @@ NearView<D, T> viewOf(const MphPairs<D>& pairs, const NearProducts<D>& near) {
 }
 
 /// One thread per particle: the inverse diagonal of S', from the positions of the neighbours. No atomics.
-template <int D, class T, class Columns>
+template <int D, class T, class Weights, class Columns>
 __global__ void __launch_bounds__(128)
-    pressureDiagonalKernel(const __grid_constant__ NearView<D, T> view, const Columns columns,
+    pressureDiagonalKernel(const __grid_constant__ NearView<D, T, Weights> view, const Columns columns,
                            const std::uint8_t* material, const __grid_constant__ ProjectionTable<T> table,
                            T* inverseDiagonal) {
   const std::uint32_t k = blockIdx.x * blockDim.x + threadIdx.x;
@@ -59,7 +60,7 @@ __global__ void __launch_bounds__(128)
   Vec<D, T> own{};
   T others = 0;
   struct Loaded {
-    typename NearView<D, T>::Stored x;
+    typename NearLists<D, T>::Stored x;
     T weight;
   };
   const auto load = [&](ListEntry e) {
@@ -102,12 +103,13 @@ void ParticleProducts<D, T, Cuda>::prepare(Context<Cuda>& context, const MphPair
             for (int k = 0; k < 3; ++k) vectors[i].word[k + 1] = x[2] >> (16 + 6 * k) & PlacedVector<3>::low;
           }
         });
-  renormalisation_.resize(context, pairs.renormalisation ? pairs.fluidCount : 0);
-  if (pairs.renormalisation)
-    forEach(context, pairs.fluidCount,
-            [from = pairs.renormalisation, to = renormalisation_.data()] __device__(std::size_t i) {
-              for (int k = 0; k < SymmetricBlock<D>::size; ++k) to[i].a[k] = static_cast<T>(from[i].a[k]);
-            });
+  renormalisation_.resize(context, pairs.renormalisation ? pairs.activeCount : 0);
+  forEach(context, renormalisation_.size(),
+          [from = Renormalised<D>{pairs.renormalisation, pairs.fluidCount},
+           to = renormalisation_.data()] __device__(std::size_t i) {
+            const SymmetricBlock<D> b = from.of(static_cast<std::uint32_t>(i));
+            for (int k = 0; k < b.size; ++k) to[i].a[k] = static_cast<T>(b.a[k]);
+          });
   selfBlock_.resize(context, pairs.fluidCount);
   const double* from = a.selfBlock()[0].a;
   T* to = selfBlock_.data()->a;
@@ -137,50 +139,59 @@ void ParticleProducts<D, T, Cuda>::gatherWeighted(Context<Cuda>& context, const 
           });
 }
 
-/// Calls f(view, what gathers q).
-template <int D, class T, class F>
-void withScalars(const MphPairs<D>& pairs, const NearProducts<D>& near,
-                 const SymmetricBlock<D, T>* renormalisation, ScalarField<T, Cuda> q, F&& f) {
-  const auto view = viewOf<D, T>(pairs, near);
-  const auto scalars = [&] {
-    if constexpr (std::is_same_v<T, float>)
-      return PlacedScalars<D>{q.at};
-    else
-      return PlainScalars<D, T>{q.at};
-  }();
-  if (renormalisation)
-    f(view, Tensors<D, T, decltype(scalars)>{scalars, {renormalisation, pairs.fluidCount}});
+template <int D, class T>
+auto gathered(ScalarField<T, Cuda> q) {
+  if constexpr (std::is_same_v<T, float>)
+    return PlacedScalars<D>{q.at};
   else
-    f(view, scalars);
+    return PlainScalars<D, T>{q.at};
+}
+template <int D, class T>
+auto gathered(VectorField<D, T, Cuda> u) {
+  if constexpr (std::is_same_v<T, float>)
+    return PlacedVectors<D>{u.at};
+  else
+    return PlainVectors<D, T, Gathered<D, T>>{u.at};
 }
 
-/// Calls f(what stands in the columns of C).
+/// Calls f(view, what stands in the columns of C).
 template <int D, class T, class F>
-void withColumns(const MphPairs<D>& pairs, const SymmetricBlock<D, T>* renormalisation, F&& f) {
-  if (renormalisation)
-    f(Renormalised<D, T>{renormalisation, pairs.fluidCount});
+void withColumns(const MphPairs<D>& pairs, const NearProducts<D>& near, const PlacedTensor<D, T>* renormalisation,
+                 F&& f) {
+  withPressureTerms(pairs, [&](const auto& terms, auto renormalised) {
+    const auto view = viewOf<D, T>(pairs, near, terms);
+    if constexpr (renormalised)
+      f(view, PlacedTensors<D, T>{renormalisation});
+    else
+      f(view, Plain<D, T>{});
+  });
+}
+
+/// nearGradient with what these columns make of q.
+template <int D, class T, class View, class Columns, class Store>
+void gradientOf(const Context<Cuda>& context, const View& view, const Columns& columns, ScalarField<T, Cuda> q,
+                const Store& store) {
+  const auto scalars = gathered<D>(q);
+  if constexpr (std::is_same_v<Columns, Plain<D, T>>)
+    nearGradient(context, view, scalars, store);
   else
-    f(Plain<D, T>{});
+    nearGradient(context, view, Stresses<D, T, std::decay_t<decltype(scalars)>, Columns>{scalars, columns}, store);
 }
 
 template <int D, class T>
 template <class Store>
 void ParticleProducts<D, T, Cuda>::gradient(Context<Cuda>& context, ScalarField<T, Cuda> q,
                                             const Store& store) const {
-  withScalars(*pairs_, a_->near(), renormalisation(), q,
-              [&](const auto& view, const auto& scalars) { nearGradient(context, view, scalars, store); });
+  withColumns(*pairs_, a_->near(), renormalisation_.data(),
+              [&](const auto& view, const auto& columns) { gradientOf<D>(context, view, columns, q, store); });
 }
 
 template <int D, class T>
 template <class Store>
 void ParticleProducts<D, T, Cuda>::divergence(Context<Cuda>& context, VectorField<D, T, Cuda> u,
                                               const Store& store) const {
-  const auto view = viewOf<D, T>(*pairs_, a_->near());
-  withColumns<D, T>(*pairs_, renormalisation(), [&](const auto& columns) {
-    if constexpr (std::is_same_v<T, float>)
-      nearDivergence(context, view, PlacedVectors<D>{u.at}, columns, store);
-    else
-      nearDivergence(context, view, PlainVectors<D, T, Gathered<D, T>>{u.at}, columns, store);
+  withColumns(*pairs_, a_->near(), renormalisation_.data(), [&](const auto& view, const auto& columns) {
+    nearDivergence(context, view, gathered(u), columns, store);
   });
 }
 
@@ -189,15 +200,14 @@ template <class Store>
 void ParticleProducts<D, T, Cuda>::schur(Context<Cuda>& context, const ProjectionTable<T>& table,
                                          ScalarField<T, Cuda> q, const Store& store) {
   const std::uint8_t* material = pairs_->material.data();
-  if constexpr (std::is_same_v<T, float>)
-    if (pairs_->activeCount <= onePassParticles<D> && !renormalisation()) {
-      nearSchur(context, viewOf<D, T>(*pairs_, a_->near()), PlacedScalars<D>{q.at}, table, material, store);
-      return;
-    }
-  withScalars(*pairs_, a_->near(), renormalisation(), q, [&](const auto& view, const auto& scalars) {
-    nearGradient(context, view, scalars, StoreWeighted<D, T, Cuda>{table, material, vectors()});
-  });
-  divergence(context, vectors(), store);
+  const auto one = [&](const auto& view, const auto& columns) {
+    if constexpr (std::is_same_v<T, float> && std::is_same_v<decltype(columns), const Plain<D, T>&>)
+      if (pairs_->activeCount <= onePassParticles<D>)
+        return nearSchur(context, view, gathered<D>(q), table, material, store);
+    gradientOf<D>(context, view, columns, q, StoreWeighted<D, T, Cuda>{table, material, vectors()});
+    nearDivergence(context, view, gathered(vectors()), columns, store);
+  };
+  withColumns(*pairs_, a_->near(), renormalisation_.data(), one);
 }
 
 template <int D, class T>
@@ -205,27 +215,36 @@ template <class Store>
 void ParticleProducts<D, T, Cuda>::viscous(Context<Cuda>& context, const Gathered<D, T>* u,
                                            const Store& store) const {
   const auto places = placesOf<D, T>(*pairs_, a_->near());
-  const auto terms = pairs_->terms.template inUnitsOf<T>(places.unit(*pairs_));
-  const auto start = [&](auto sharing, auto oneSubstance) {
-    using Terms = Viscosity<D, T, decltype(oneSubstance)::value, Gathered<D, T>, Store>;
+  const auto start = [&]<class Mph>(const Mph& mph, auto sharing, auto oneSubstance) {
+    using Terms = Viscosity<D, T, decltype(oneSubstance)::value, Mph, Gathered<D, T>, Store>;
     launchClusterSums<D, T, decltype(sharing)>(
-        context, *pairs_, ListTask<Terms>{pairs_->fluidList, {terms, selfBlock_.data(), u, store}}, places);
+        context, *pairs_, ListTask<Terms>{pairs_->fluidList, {mph, selfBlock_.data(), u, store}}, places);
   };
-  withListSharing(*pairs_, [&](auto sharing) {
-    // In double precision, which few preconditioners have, one kernel does for all.
-    if constexpr (std::is_same_v<T, float>)
-      if (pairs_->isOneSubstance()) return start(sharing, std::true_type{});
-    start(sharing, std::false_type{});
+  withViscosityTerms(*pairs_, [&](const auto& terms) {
+    const auto mph = terms.template inUnitsOf<T>(places.unit(*pairs_));
+    withListSharing(*pairs_, [&](auto sharing) {
+      // In double precision, which few preconditioners have, one kernel does for all.
+      if constexpr (std::is_same_v<T, float>)
+        if (pairs_->isOneSubstance()) return start(mph, sharing, std::true_type{});
+      start(mph, sharing, std::false_type{});
+    });
   });
 }
 
 template <int D, class T>
 void ParticleProducts<D, T, Cuda>::inverseDiagonals(Context<Cuda>& context, const ProjectionTable<T>& table,
                                                     std::span<T> pressure, std::span<Block<D, T>> velocity) const {
-  withColumns<D, T>(*pairs_, renormalisation(), [&](const auto& columns) {
-    launch(context, blocksFor(pairs_->activeCount, 128), 128, 0,
-           pressureDiagonalKernel<D, T, std::decay_t<decltype(columns)>>,
-           NearView<D, T>::make(*pairs_, a_->near()), columns, pairs_->material.data(), table, pressure.data());
+  const auto start = [&]<class Weights, class Columns>(const MphTerms<D, double, Weights>& terms,
+                                                       const Columns& columns) {
+    launch(context, blocksFor(pairs_->activeCount, 128), 128, 0, pressureDiagonalKernel<D, T, Weights, Columns>,
+           NearView<D, T, Weights>::make(*pairs_, a_->near(), terms), columns, pairs_->material.data(), table,
+           pressure.data());
+  };
+  withPressureTerms(*pairs_, [&](const auto& terms, auto renormalised) {
+    if constexpr (renormalised)
+      start(terms, PlacedTensors<D, T>{renormalisation_.data()});
+    else
+      start(terms, Plain<D, T>{});
   });
   forEach(context, pairs_->fluidCount, [from = selfBlock_.data(), to = velocity.data()] __device__(std::size_t i) {
     to[i] = inverse(from[i]);

@@ -9,19 +9,19 @@ namespace treacle {
 template <int D>
 struct PlacedScalars {
   const PlacedScalar* at;
-  __device__ PlacedValue<D, float> own(const NearView<D, float>&, std::uint32_t i) const {
+  __device__ PlacedValue<D, float> own(const NearLists<D, float>&, std::uint32_t i) const {
     const int4 stored = *reinterpret_cast<const int4*>(at + i);
     return {stored, __int_as_float(stored.w)};
   }
-  __device__ PlacedValue<D, float> other(const NearView<D, float>& view, ListEntry e) const {
-    return own(view, e.index());
+  __device__ PlacedValue<D, float> other(const NearLists<D, float>& lists, ListEntry e) const {
+    return own(lists, e.index());
   }
 };
 
 template <int D>
 struct PlacedVectors {
   const PlacedVector<D>* at;
-  __device__ PlacedVelocity<D, float> own(const NearView<D, float>&, std::uint32_t k) const {
+  __device__ PlacedVelocity<D, float> own(const NearLists<D, float>&, std::uint32_t k) const {
     const int4 stored = *reinterpret_cast<const int4*>(at + k);
     if constexpr (D == 2) {
       return {stored, {__int_as_float(stored.z), __int_as_float(stored.w)}};
@@ -33,17 +33,28 @@ struct PlacedVectors {
               {__int_as_float(stored.y), __int_as_float(stored.z), __int_as_float(stored.w)}};
     }
   }
-  __device__ PlacedVelocity<D, float> other(const NearView<D, float>& view, ListEntry e) const {
-    return own(view, e.index());
+  __device__ PlacedVelocity<D, float> other(const NearLists<D, float>& lists, ListEntry e) const {
+    return own(lists, e.index());
+  }
+};
+
+template <int D, class T>
+struct PlacedTensors {
+  const PlacedTensor<D, T>* b;
+  __device__ SymmetricBlock<D, T> of(std::uint32_t k) const {
+    const PlacedTensor<D, T> placed = b[k];
+    SymmetricBlock<D, T> block;
+    for (int c = 0; c < block.size; ++c) block.a[c] = placed.a[c];
+    return block;
   }
 };
 
 /// Lanes threads per particle: store(k, (C^T W C q)_k) in one pass; each lane forms W C q of one neighbour after
 /// the other from that neighbour's list. Nine (2D) or 23 times (3D) the arithmetic of two passes, and half the
 /// launches: pays where those take the time. No atomics.
-template <int Lanes, int D, class T, class Scalars, class Store>
+template <int Lanes, int D, class T, class Weights, class Scalars, class Store>
 __global__ void __launch_bounds__(128)
-    nearSchurKernel(const __grid_constant__ NearView<D, T> view, const Scalars q,
+    nearSchurKernel(const __grid_constant__ NearView<D, T, Weights> view, const Scalars q,
                     const __grid_constant__ ProjectionTable<T> table, const std::uint8_t* material,
                     const __grid_constant__ Store store) {
   const std::uint32_t thread = blockIdx.x * blockDim.x + threadIdx.x, own = thread / Lanes;
@@ -87,11 +98,11 @@ __global__ void __launch_bounds__(128)
 template <int D>
 inline constexpr std::uint32_t onePassParticles = D == 2 ? 4000 : 3000;
 
-template <int D, class T, class Scalars, class Store>
-void nearSchur(const Context<Cuda>& context, const NearView<D, T>& view, const Scalars& q,
+template <int D, class T, class Weights, class Scalars, class Store>
+void nearSchur(const Context<Cuda>& context, const NearView<D, T, Weights>& view, const Scalars& q,
                const ProjectionTable<T>& table, const std::uint8_t* material, const Store& store) {
   constexpr int lanes = D == 2 ? 16 : 32;
   launch(context, blocksFor(std::size_t{view.activeCount} * lanes, 128), 128, 0,
-         nearSchurKernel<lanes, D, T, Scalars, Store>, view, q, table, material, store);
+         nearSchurKernel<lanes, D, T, Weights, Scalars, Store>, view, q, table, material, store);
 }
 }  // namespace treacle

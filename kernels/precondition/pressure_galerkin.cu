@@ -24,9 +24,8 @@ template <int D, class T>
 struct PressureGalerkin {
   HatCells<D> cells;
   HatNodesView<D> nodes;
-  NearView<D, T> near;
   const SymmetricBlock<D>* renormalisation;  // per fluid particle; null: none
-  Vec<D, T> toCells;                         // unit of length of `near` in cells
+  Vec<D, T> toCells;                         // unit of length of the lists' view in cells
   ProjectionTable<double> table;
   CellRangesView ranges;
   const Vec<D>* position;
@@ -38,9 +37,9 @@ struct PressureGalerkin {
 };
 
 /// (C P)_in of a fluid particle for one of the 3^D nodes around it, and w times it.
-template <int D, class T>
-__device__ inline Vec<D, T> pressureColumn(const PressureGalerkin<D, T>& g, std::uint32_t i, const Vec<D>& place,
-                                           int n) {
+template <bool Renormalised, int D, class T, class Weights>
+__device__ inline Vec<D, T> pressureColumn(const PressureGalerkin<D, T>& g, const NearView<D, T, Weights>& near,
+                                           std::uint32_t i, const Vec<D>& place, int n) {
   Vec<D, T> s;  // from the node, in cells
   for (int k = 0, digits = n; k < D; ++k, digits /= 3)
     s[k] = static_cast<T>(place[k]) + static_cast<T>((place[k] < 0.5 ? 1 : 0) - digits % 3);
@@ -50,39 +49,43 @@ __device__ inline Vec<D, T> pressureColumn(const PressureGalerkin<D, T>& g, std:
     return weight;
   };
   const T own = hat(s);
-  const auto xi = g.near.own(i);
+  const auto xi = near.own(i);
   Vec<D, T> sum{}, plain{};
   const auto column = [&](std::uint32_t k, const Vec<D, T>& d) {
     return converted<T>(g.renormalisation[k] * converted<double>(d));
   };
   struct Loaded {
-    typename NearView<D, T>::Stored x;
+    typename NearLists<D, T>::Stored x;
     std::uint32_t j;
   };
   alongList(
-      g.near.sliceStart, g.near.entry, i,
+      near.sliceStart, near.entry, i,
       [&](ListEntry e) {
-        return Loaded{g.near.other(e), e.index()};
+        return Loaded{near.other(e), e.index()};
       },
       [&](const Loaded& other) {
-        const Vec<D, T> d = g.near.difference(other.x, xi);
+        const Vec<D, T> d = near.difference(other.x, xi);
         Vec<D, T> at;
         for (int k = 0; k < D; ++k) at[k] = fma(d[k], g.toCells[k], s[k]);
-        const T shape = gradientShape(g.near, d);
-        if (!g.renormalisation) return addScaled(&sum[0], shape * (own + hat(at)), d);
-        addScaled(&plain[0], shape * own, d);
-        addScaled(&sum[0], shape * hat(at), other.j < g.near.fluidCount ? column(other.j, d) : d);
+        const T shape = gradientShape(near, d);
+        if constexpr (Renormalised) {
+          addScaled(&plain[0], shape * own, d);
+          addScaled(&sum[0], shape * hat(at), other.j < near.fluidCount ? column(other.j, d) : d);
+        } else {
+          addScaled(&sum[0], shape * (own + hat(at)), d);
+        }
       });
-  if (g.renormalisation) sum += column(i, plain);
-  return g.near.mph.gradientFactor * sum;
+  if constexpr (Renormalised) sum += column(i, plain);
+  return near.mph.gradientFactor * sum;
 }
 
 /// One block per cell: the columns of C P of its fluid particles, a few at a time in shared memory, and from them
 /// the matrices of its halves; then the corner hats of all its particles, and the mass matrix. Each thread owns
 /// its entries. No atomics.
-template <int D, class T>
+template <bool Renormalised, int D, class T, class Weights>
 __global__ void __launch_bounds__(D == 2 ? 96 : 256)
-    cellPartsKernel(const __grid_constant__ PressureGalerkin<D, T> g) {
+    cellPartsKernel(const __grid_constant__ PressureGalerkin<D, T> g,
+                    const __grid_constant__ NearView<D, T, Weights> near) {
   using Parts = CellParts<D, T>;
   constexpr int threads = D == 2 ? 96 : 256, batch = D == 2 ? 16 : 48, width = D * slots<D>;
   constexpr int mine = (Parts::gram + threads - 1) / threads;
@@ -103,7 +106,7 @@ __global__ void __launch_bounds__(D == 2 ? 96 : 256)
       const int p = t / slots<D>, n = t % slots<D>;
       const std::uint32_t i = first + p;
       const Vec<D> place = g.cells.fraction(g.position[i], cell);
-      const Vec<D, T> column = pressureColumn(g, i, place, n);
+      const Vec<D, T> column = pressureColumn<Renormalised>(g, near, i, place, n);
       for (int k = 0; k < D; ++k) columns[p][n * D + k] = column[k];
       if (n > 0) continue;
       weight[p] = static_cast<T>(g.table.weight[g.material[i]]);
@@ -217,9 +220,7 @@ void pressureGalerkin(Context<Cuda>& context, const MphPairs<D>& pairs, const Ne
                       const ProjectionTable<double>& table, const HatNodes<D, Cuda>& nodes, Buffer<T, Cuda>& parts,
                       BlockCsr<1, double, Cuda>& s) {
   using Parts = CellParts<D, T>;
-  const auto view = NearView<D, T>::make(pairs, near);
-  double unit = 1;
-  if constexpr (std::is_same_v<T, float>) unit = view.places.unit(pairs);
+  const double unit = LocalPositions<D, T>::unit(pairs);
   Vec<D, T> toCells;
   for (int k = 0; k < D; ++k) toCells[k] = static_cast<T>(unit * pairs.grid.inverseEdge[k]);
   parts.resize(context, Parts::numbers() * nodes.count());
@@ -227,7 +228,6 @@ void pressureGalerkin(Context<Cuda>& context, const MphPairs<D>& pairs, const Ne
   const PressureGalerkin<D, T> g{
       .cells = {pairs.grid},
       .nodes = nodes.view(),
-      .near = view,
       .renormalisation = pairs.renormalisation,
       .toCells = toCells,
       .table = table,
@@ -238,7 +238,11 @@ void pressureGalerkin(Context<Cuda>& context, const MphPairs<D>& pairs, const Ne
       .rowStart = s.rowStart.data(),
       .column = s.column.data(),
       .value = reinterpret_cast<double*>(s.value.data())};
-  launch(context, nodes.count(), D == 2 ? 96 : 256, 0, cellPartsKernel<D, T>, g);
+  withPressureTerms(pairs, [&]<class Weights>(const MphTerms<D, double, Weights>& terms, auto renormalised) {
+    launch(context, nodes.count(), D == 2 ? 96 : 256, 0,
+           cellPartsKernel<decltype(renormalised)::value, D, T, Weights>, g,
+           NearView<D, T, Weights>::make(pairs, near, terms));
+  });
   launch(context, D == 2 ? blocksFor(nodes.count(), 4) : nodes.count(), 128, 0, pressureGalerkinKernel<D, T>, g);
 }
 

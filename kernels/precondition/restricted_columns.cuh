@@ -8,7 +8,7 @@ namespace treacle {
 
 /// (R C)_{I k}, per particle k for the 2^D cells I around it: the sum of C_ik over the fluid particles i of the
 /// cell.
-template <int D>
+template <int D, class Mph>
 struct RestrictedColumns {
   static constexpr int slots = power<D>(2), values = D * slots;
   static constexpr bool uses(ListSegment s) { return isNear(s); }
@@ -18,7 +18,7 @@ struct RestrictedColumns {
   };
   using Other = Vec<D, int>;  // cell
 
-  MphTerms<D, double> mph;
+  Mph mph;
   double* columns;  // `values` per particle
 
   __device__ Own loadOwn(const MphPairs<D>& pairs, std::uint32_t k) const {
@@ -49,21 +49,23 @@ struct RestrictedColumns {
 
 template <int D>
 void restrictedColumns(Context<Cuda>& context, const MphPairs<D>& pairs, Buffer<Vec<D>, Cuda>& columns) {
-  using Terms = RestrictedColumns<D>;
-  columns.resize(context, std::size_t{Terms::slots} * pairs.activeCount);
-  const Terms terms{pairs.terms, reinterpret_cast<double*>(columns.data())};
-  const ListTask<Terms> fluid{pairs.fluidList, terms}, walls{pairs.wallList, terms};
-  if (pairs.fluidList.offset)
-    launchClusterSums<D, double, Sharing<1, 1>>(context, pairs, fluid, walls,
-                                                LocalPositions<D, double>::make(pairs));
-  else
-    launchClusterSums<D, double, Sharing<1, 1, true>>(context, pairs, fluid, walls,
-                                                      LocalPositions<D, double>::make(pairs));
+  constexpr int slots = power<D>(2);
+  columns.resize(context, std::size_t{slots} * pairs.activeCount);
+  const auto places = LocalPositions<D, double>::make(pairs);
+  using Published = KnownPressureWeight<PublishedWeights::pressure>;
+  withKnownWeights<Published>(pairs.terms, [&]<class Mph>(const Mph& mph) {
+    using Terms = RestrictedColumns<D, Mph>;
+    const Terms terms{mph, reinterpret_cast<double*>(columns.data())};
+    const ListTask<Terms> fluid{pairs.fluidList, terms}, walls{pairs.wallList, terms};
+    if (pairs.fluidList.offset)
+      launchClusterSums<D, double, Sharing<1, 1>>(context, pairs, fluid, walls, places);
+    else
+      launchClusterSums<D, double, Sharing<1, 1, true>>(context, pairs, fluid, walls, places);
+  });
   if (pairs.renormalisation)
-    forEach(context, std::size_t{Terms::slots} * pairs.fluidCount,
-            [b = pairs.renormalisation, c = columns.data()] __device__(std::size_t k) {
-              c[k] = b[k / Terms::slots] * c[k];
-            });
+    forEach(
+        context, std::size_t{slots} * pairs.fluidCount,
+        [b = pairs.renormalisation, c = columns.data()] __device__(std::size_t k) { c[k] = b[k / slots] * c[k]; });
 }
 
 }  // namespace treacle

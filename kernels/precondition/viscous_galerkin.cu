@@ -6,14 +6,14 @@ namespace treacle {
 namespace {
 
 /// Moments of the viscous pairs; as SelfSums in form.
-template <int D, class T>
+template <int D, class T, class Mph>
 struct MomentSums {
   static constexpr int values = momentCount<D>;
   static constexpr bool uses(ListSegment s) { return isFluid(s); }
   using Own = Substance;
   using Other = Substance;
 
-  MphTerms<D, double> mph;
+  Mph mph;
   ViscousMoments<D, T>* moments;
 
   __device__ Own loadOwn(const MphPairs<D>& pairs, std::uint32_t i) const { return pairs.substance(i); }
@@ -47,10 +47,12 @@ template <int D, class T>
 void viscousGalerkin(Context<Cuda>& context, const MphPairs<D>& pairs, const WallTerms<D>& terms,
                      const HatNodes<D, Cuda>& nodes, Buffer<ViscousMoments<D, T>, Cuda>& moments,
                      Buffer<T, Cuda>& parts, BlockCsr<D, double, Cuda>& a) {
-  using Terms = MomentSums<D, T>;
   moments.resize(context, pairs.fluidCount);
-  const ListTask<Terms> task{pairs.fluidList, {pairs.terms, moments.data()}};
-  launchClusterSums<D, double, Sharing<2, 1>>(context, pairs, task, LocalPositions<D, double>::make(pairs));
+  withViscosityTerms(pairs, [&]<class Mph>(const Mph& mph) {
+    using Terms = MomentSums<D, T, Mph>;
+    const ListTask<Terms> task{pairs.fluidList, {mph, moments.data()}};
+    launchClusterSums<D, double, Sharing<2, 1>>(context, pairs, task, LocalPositions<D, double>::make(pairs));
+  });
   cornerGalerkin<D, D, T>(context, pairs, nodes, ViscousCornerTerm<D, T>{moments.data(), terms.block.data()},
                           parts, a);
 }

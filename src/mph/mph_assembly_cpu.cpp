@@ -178,7 +178,7 @@ void diagonalBlocks(Context<Cpu>&, const MphPairs<D>& pairs, const WallTerms<D>&
       }
     });
   };
-  withWeights(pairs.terms, [&](const auto& mph) {
+  withKnownWeights<PublishedWeights>(pairs.terms, [&](const auto& mph) {
     withRenormalisation(pairs, [&]<bool Renormalised>() { sumUp.template operator()<Renormalised>(mph); });
   });
 }

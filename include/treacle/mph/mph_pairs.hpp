@@ -46,6 +46,28 @@ void withRenormalisation(const MphPairs<D>& pairs, F&& f) {
   pairs.renormalisation ? f.template operator()<true>() : f.template operator()<false>();
 }
 
+/// f(terms, whether they have B) for sums whose compiler knows both of a scheme: the published one's weights go
+/// without B, those of the accurate one with it. The terms of other cases have their weights at run time.
+template <class Published, class Accurate, int D, class F>
+void withKnownTerms(const MphPairs<D>& pairs, F&& f) {
+  if (pairs.renormalisation)
+    withKnownWeights<Accurate>(pairs.terms, [&](const auto& terms) { f(terms, std::true_type{}); });
+  else
+    withKnownWeights<Published>(pairs.terms, [&](const auto& terms) { f(terms, std::false_type{}); });
+}
+/// For sums that need the terms of pressures alone.
+template <int D, class F>
+void withPressureTerms(const MphPairs<D>& pairs, F&& f) {
+  withKnownTerms<KnownPressureWeight<PublishedWeights::pressure>, KnownPressureWeight<AccurateWeights::pressure>>(
+      pairs, f);
+}
+/// For sums that need the terms of the viscosity alone: f(terms).
+template <int D, class F>
+void withViscosityTerms(const MphPairs<D>& pairs, F&& f) {
+  withKnownWeights<KnownViscosityWeight<PublishedWeights::viscosity>,
+                   KnownViscosityWeight<AccurateWeights::viscosity>>(pairs.terms, f);
+}
+
 /// The constants of a case, without particles.
 template <int D>
 MphPairs<D> makeMphPairs(const Case& c);

@@ -25,6 +25,36 @@ struct ExactDistance {
   TREACLE_HD double overSquare(double x) const { return x / square; }
 };
 
+/// The weights of a case, chosen while the program runs.
+struct CaseWeights {
+  PressureWeight pressure;
+  ViscosityWeight viscosity;
+};
+
+/// Weights that the compiler knows, for loops that a choice pair by pair would slow down, and whose roundings
+/// depend on what else they could compute: both weights, or the one that a loop needs. `are`: those of the case.
+template <PressureWeight Weight>
+struct KnownPressureWeight {
+  static constexpr PressureWeight pressure = Weight;
+  static constexpr bool are(const CaseWeights& weights) { return weights.pressure == pressure; }
+};
+template <ViscosityWeight Weight>
+struct KnownViscosityWeight {
+  static constexpr ViscosityWeight viscosity = Weight;
+  static constexpr bool are(const CaseWeights& weights) { return weights.viscosity == viscosity; }
+};
+template <PressureWeight Pressure, ViscosityWeight Viscosity>
+struct KnownWeights {
+  static constexpr PressureWeight pressure = Pressure;
+  static constexpr ViscosityWeight viscosity = Viscosity;
+  static constexpr bool are(const CaseWeights& weights) {
+    return weights.pressure == pressure && weights.viscosity == viscosity;
+  }
+};
+/// Those of the schemes: of [K23], and what `scheme = "accurate"` takes unless told otherwise.
+using PublishedWeights = KnownWeights<PressureWeight::Mps, ViscosityWeight::Mps>;
+using AccurateWeights = KnownWeights<PressureWeight::WendlandC2, ViscosityWeight::Biquadratic>;
+
 /// What a pair of particles does in MPH-I, d = x_j - x_i and r = |d|, e = d/r:
 ///   number density   n_i = sum of density                                      [K23 eq. (7)]
 ///   pressures        -e w'^p = gradient d: the elements of C                   [K23 eqs. (4), (14)]
@@ -33,14 +63,13 @@ struct ExactDistance {
 /// with the weights of the case in place of w^p and -w'^v. These formulas stand nowhere else; a loop calls them in
 /// its own arithmetic. A `...Shape` lacks the factor of the same name, for loops that multiply their sums by it in
 /// the end. All are zero from their radius on. T is the precision of the constants; lengths are in whatever unit
-/// they were made for.
-template <int D, class T = double>
+/// they were made for. Weights: CaseWeights, or known ones, without those that are not needed.
+template <int D, class T = double, class Weights = CaseWeights>
 struct MphTerms {
   T pressureRadius, inversePressureRadius;    // h_p, 1/h_p
   T viscosityRadius, inverseViscosityRadius;  // h_v, 1/h_v
   T densityFactor, gradientFactor, viscousFactor;
-  PressureWeight pressureWeight;
-  ViscosityWeight viscosityWeight;
+  Weights weights;
   T repulsionRadius = 0;  // r_0; 0: no repulsion
 
   /// For the radius h_v and the spacing l [m]; lengths in metres.
@@ -54,52 +83,41 @@ struct MphTerms {
             static_cast<T>(pressure.scale),
             static_cast<T>(pressure.slopeFactor() * pressure.scale / hp),
             static_cast<T>(viscosityFactor(viscosity) * 4 * (D + 2) * Weight<D>::make(hv, spacing).scale / hv),
-            pressure.kind,
-            viscosity};
+            {pressure.kind, viscosity}};
   }
   /// The same for lengths in another unit [m]. Pair blocks d d^T and gradients d are still those per metre.
   template <class U>
-  MphTerms<D, U> inUnitsOf(double unit) const {
-    return {static_cast<U>(pressureRadius / unit),
-            static_cast<U>(inversePressureRadius * unit),
-            static_cast<U>(viscosityRadius / unit),
-            static_cast<U>(inverseViscosityRadius * unit),
-            static_cast<U>(densityFactor),
-            static_cast<U>(gradientFactor),
-            static_cast<U>(viscousFactor / unit),
-            pressureWeight,
-            viscosityWeight,
+  MphTerms<D, U, Weights> inUnitsOf(double unit) const {
+    return {static_cast<U>(pressureRadius / unit),  static_cast<U>(inversePressureRadius * unit),
+            static_cast<U>(viscosityRadius / unit), static_cast<U>(inverseViscosityRadius * unit),
+            static_cast<U>(densityFactor),          static_cast<U>(gradientFactor),
+            static_cast<U>(viscousFactor / unit),   weights,
             static_cast<U>(repulsionRadius / unit)};
+  }
+  /// The same with their weights known.
+  template <class Known>
+  MphTerms<D, T, Known> with(Known known) const {
+    return {pressureRadius, inversePressureRadius, viscosityRadius, inverseViscosityRadius, densityFactor,
+            gradientFactor, viscousFactor,         known,           repulsionRadius};
   }
 
   /// w
   template <class Factor, class Distance>
   TREACLE_HD auto density(Factor factor, const Distance& r) const {
     const auto part = positivePart(T(1) - T(1) / (r.inverse * pressureRadius));
-    if (pressureWeight == PressureWeight::Mps) return factor * part * part;
+    if (weights.pressure == PressureWeight::Mps) return factor * part * part;
     const auto q = T(1) - part, square = part * part;
-    if (pressureWeight == PressureWeight::WendlandC2) return factor * square * square * (T(1) + T(4) * q);
+    if (weights.pressure == PressureWeight::WendlandC2) return factor * square * square * (T(1) + T(4) * q);
     return factor * square * square * square * (T(3) + q * (T(18) + T(35) * q));
   }
   /// -w' / r: factor times (1/r - 1/h_p), (1-q)^3/h_p or (1-q)^5 (1+5q)/h_p
   template <class Distance>
   TREACLE_HD auto gradientShape(const Distance& r) const {
-    if (pressureWeight == PressureWeight::Mps) return gradientShape<PressureWeight::Mps>(r);
-    if (pressureWeight == PressureWeight::WendlandC2) return gradientShape<PressureWeight::WendlandC2>(r);
-    return gradientShape<PressureWeight::WendlandC4>(r);
-  }
-  template <PressureWeight Weight, class Distance>
-  TREACLE_HD auto gradientShape(const Distance& r) const {
-    if constexpr (Weight == PressureWeight::Mps) {
-      return positivePart(r.inverse - inversePressureRadius);
-    } else {
-      const auto q = r.square * r.inverse * inversePressureRadius, s = positivePart(T(1) - q);
-      const auto cube = inversePressureRadius * s * s * s;
-      if constexpr (Weight == PressureWeight::WendlandC2)
-        return cube;
-      else
-        return cube * s * s * (T(1) + T(5) * q);
-    }
+    if (weights.pressure == PressureWeight::Mps) return positivePart(r.inverse - inversePressureRadius);
+    const auto q = r.square * r.inverse * inversePressureRadius, s = positivePart(T(1) - q);
+    const auto cube = inversePressureRadius * s * s * s;
+    if (weights.pressure == PressureWeight::WendlandC2) return cube;
+    return cube * s * s * (T(1) + T(5) * q);
   }
   template <class Distance>
   TREACLE_HD auto gradient(const Distance& r) const {
@@ -108,21 +126,13 @@ struct MphTerms {
   /// What a pair resists along e, viscous r^2: factor times (1/r - 1/h_v), (1-q^2)^2/h_v or q (1-q)^2/h_v
   template <class Distance>
   TREACLE_HD auto resistanceShape(const Distance& r) const {
-    if (viscosityWeight == ViscosityWeight::Mps) return resistanceShape<ViscosityWeight::Mps>(r);
-    if (viscosityWeight == ViscosityWeight::Quadratic) return resistanceShape<ViscosityWeight::Quadratic>(r);
-    return resistanceShape<ViscosityWeight::Biquadratic>(r);
-  }
-  template <ViscosityWeight Weight, class Distance>
-  TREACLE_HD auto resistanceShape(const Distance& r) const {
-    if constexpr (Weight == ViscosityWeight::Mps) {
-      return positivePart(r.inverse - inverseViscosityRadius);
-    } else if constexpr (Weight == ViscosityWeight::Quadratic) {
+    if (weights.viscosity == ViscosityWeight::Mps) return positivePart(r.inverse - inverseViscosityRadius);
+    if (weights.viscosity == ViscosityWeight::Quadratic) {
       const auto q = r.square * r.inverse * inverseViscosityRadius, s = positivePart(T(1) - q);
       return inverseViscosityRadius * q * s * s;
-    } else {
-      const auto s = positivePart(T(1) - r.square * (inverseViscosityRadius * inverseViscosityRadius));
-      return inverseViscosityRadius * s * s;
     }
+    const auto s = positivePart(T(1) - r.square * (inverseViscosityRadius * inverseViscosityRadius));
+    return inverseViscosityRadius * s * s;
   }
   /// The pair's coefficient of d d^T, with what is to be multiplied by it.
   template <class Factor, class Distance>
@@ -149,29 +159,11 @@ struct MphTerms {
   }
 };
 
-/// The terms with the weights of [K23], known to the compiler: in a loop whose roundings would otherwise depend on
-/// what else it could compute.
-template <int D>
-struct PublishedTerms {
-  const MphTerms<D>& terms;
-
-  template <class Distance>
-  auto gradient(const Distance& r) const {
-    return terms.gradientFactor * terms.template gradientShape<PressureWeight::Mps>(r);
-  }
-  template <class Factor, class Distance>
-  auto viscous(Factor factor, const Distance& r) const {
-    return r.overSquare(factor * terms.template resistanceShape<ViscosityWeight::Mps>(r));
-  }
-};
-
-/// f(terms), or f(PublishedTerms) where they are.
-template <int D, class F>
-void withWeights(const MphTerms<D>& terms, F&& f) {
-  if (terms.pressureWeight == PressureWeight::Mps && terms.viscosityWeight == ViscosityWeight::Mps)
-    f(PublishedTerms<D>{terms});
-  else
-    f(terms);
+/// f(terms) with the first of `Known` that are the weights of the terms, or, if none are, with those of the case.
+template <class... Known, int D, class F>
+void withKnownWeights(const MphTerms<D>& terms, F&& f) {
+  const bool known = ((Known::are(terms.weights) && (f(terms.with(Known{})), true)) || ...);
+  if (!known) f(terms);
 }
 
 }  // namespace treacle

@@ -23,7 +23,8 @@ class NearProducts {
   /// y += C q per fluid particle; q per particle.
   void addPressureGradient(Context<Cuda>&, std::span<const double> q, std::span<Vec<D>> y) const;
 
-  /// q = lambda C^T u per particle, walls at rest; u per fluid particle.
+  /// q = lambda C^T u per particle, walls at rest; u per fluid particle. For pairs with B: without it
+  /// ViscosityAndDivergence has this sum.
   void bulkStress(Context<Cuda>&, std::span<const Vec<D>> u, std::span<double> q) const;
 
   /// Positions in units of 2^-32 of the domain's length, 4 numbers per particle, the last unused: differences are

@@ -97,10 +97,6 @@ class ParticleProducts<D, T, Cuda> {
     return selfBlock_.bytes() + scalars_[0].bytes() + scalars_[1].bytes() + vectors_.bytes() +
            renormalisation_.bytes();
   }
-  /// B per fluid particle in the precision of the products; null where there is none.
-  const SymmetricBlock<D, T>* renormalisation() const {
-    return renormalisation_.empty() ? nullptr : renormalisation_.data();
-  }
 
  private:
   const MphPairs<D>* pairs_ = nullptr;
@@ -108,7 +104,7 @@ class ParticleProducts<D, T, Cuda> {
   Buffer<typename ScalarField<T, Cuda>::Element, Cuda> scalars_[2];
   Buffer<typename VectorField<D, T, Cuda>::Element, Cuda> vectors_;  // those of walls are zero
   Buffer<Block<D, T>, Cuda> selfBlock_;                              // diagonal block of rho/dt I + V
-  Buffer<SymmetricBlock<D, T>, Cuda> renormalisation_;
+  Buffer<PlacedTensor<D, T>, Cuda> renormalisation_;                 // per particle, if the pairs have B
 };
 
 }  // namespace treacle
