@@ -99,6 +99,33 @@ TEST(MphTerms, AreThoseOfTheWeightsInEveryArithmetic) {
   checkViscosityTerms<3, float>(3.5e-3, 1e-5);
 }
 
+/// Loops whose compiler knows the weights, and the choice between them.
+template <class Known>
+void checkKnownWeights(PressureWeight pressure, ViscosityWeight viscosity) {
+  SCOPED_TRACE(testing::Message() << static_cast<int>(pressure) << ", " << static_cast<int>(viscosity));
+  const auto chosen = MphTerms<3>::make(Weight<3>::make(3e-3, 1e-3, pressure), viscosity, 3.5e-3, 1e-3);
+  int calls = 0;
+  withKnownWeights<Known>(chosen, [&]<class Weights>(const MphTerms<3, double, Weights>& terms) {
+    ++calls;
+    EXPECT_EQ((std::is_same_v<Weights, Known>), Known::are(chosen.weights));
+    EXPECT_EQ(terms.weights.pressure, pressure);
+    EXPECT_EQ(terms.weights.viscosity, viscosity);
+    const ExactDistance r(1.7e-3 * 1.7e-3);
+    EXPECT_DOUBLE_EQ(terms.density(terms.densityFactor, r), chosen.density(chosen.densityFactor, r));
+    EXPECT_DOUBLE_EQ(terms.gradient(r), chosen.gradient(r));
+    EXPECT_DOUBLE_EQ(terms.viscous(terms.viscousFactor, r), chosen.viscous(chosen.viscousFactor, r));
+  });
+  EXPECT_EQ(calls, 1);
+}
+
+TEST(MphTerms, AreTheSameWhereTheCompilerKnowsTheWeights) {
+  for (const PressureWeight pressure : pressureWeights)
+    for (const ViscosityWeight viscosity : viscosityWeights) {
+      checkKnownWeights<PublishedWeights>(pressure, viscosity);
+      checkKnownWeights<AccurateWeights>(pressure, viscosity);
+    }
+}
+
 TEST(Weight, LatticeNumberDensityIsTheSumOverNeighbours) {
   // 2D, h = 1.75 l: four neighbours at l and four at sqrt(2) l; 3D: 6, 12 and 8 at l, sqrt(2) l, sqrt(3) l.
   const auto w2 = Weight<2>::make(1.75, 1.0);
