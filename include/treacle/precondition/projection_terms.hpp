@@ -81,16 +81,17 @@ struct alignas(16) PlacedVector<3> {
     for (int k = 0; k < 3; ++k) word[k + 1] = (std::bit_cast<std::uint32_t>(v[k]) & ~low) | (word[k + 1] & low);
   }
 };
-/// B of a particle (renormalisation.hpp) as a device fetches it, 16 bytes at a time; that of walls is there, too.
-template <int D, class T>
-struct alignas(16) PlacedTensor {
-  T a[SymmetricBlock<D, T>::size];
-};
 template <int D>
 struct VectorField<D, float, Cuda> {
   using Element = PlacedVector<D>;
   Element* at;
   TREACLE_HD void set(std::size_t i, const Vec<D, float>& v) const { at[i].set(v); }
+};
+
+/// B of a particle (renormalisation.hpp) as a device fetches it, 16 bytes at a time; that of walls is there, too.
+template <int D, class T>
+struct alignas(16) PlacedTensor {
+  T a[SymmetricBlock<D, T>::size];
 };
 
 /// The three vectors of a Chebyshev smoother: residual, last correction z, iterate x.
