@@ -41,12 +41,14 @@ __global__ void __launch_bounds__(32 * warpsPerBlock)
 
 /// One warp per fluid particle; reads positions, its row of C and the pattern; writes its row's blocks. No
 /// atomics.
-template <int D>
+template <int D, class Mph, bool Renormalised>
 __global__ void __launch_bounds__(32 * warpsPerBlock)
-    blocksKernel(const __grid_constant__ MphPairs<D> pairs, const __grid_constant__ Assembly<D> a) {
-  __shared__ typename RowAssembler<D>::Scratch scratch[warpsPerBlock];
+    blocksKernel(const __grid_constant__ MphPairs<D> pairs, const __grid_constant__ Mph mph,
+                 const __grid_constant__ Assembly<D> a) {
+  using Assembler = RowAssembler<D, Mph, Renormalised>;
+  __shared__ typename Assembler::Scratch scratch[warpsPerBlock];
   const std::uint32_t i = blockIdx.x * warpsPerBlock + threadIdx.x / 32;
-  if (i < pairs.fluidCount) RowAssembler<D>(pairs, a, i, scratch[threadIdx.x / 32]).run();
+  if (i < pairs.fluidCount) Assembler(pairs, mph, a, i, scratch[threadIdx.x / 32]).run();
 }
 
 }  // namespace
@@ -74,7 +76,9 @@ void assemble(Context<Cuda>& context, const MphPairs<D>& pairs, const WallTerms<
           });
   const Assembly<D> assembly{rows.rowStart.data(), rows.column.data(), rows.value.data(), own.data(),
                              terms.block.data(),   a.rowStart.data(),  a.column.data(),   a.value.data()};
-  launch(context, blocks, threads, 0, blocksKernel<D>, pairs, assembly);
+  withKnownTerms<PublishedWeights, AccurateWeights>(pairs, [&]<class Mph>(const Mph& mph, auto renormalised) {
+    launch(context, blocks, threads, 0, blocksKernel<D, Mph, decltype(renormalised)::value>, pairs, mph, assembly);
+  });
 }
 
 #define TREACLE_INSTANTIATE(D)                                                       \

@@ -20,8 +20,8 @@ struct Assembly {
 };
 
 /// Assembles one row of A by one warp: the lanes take 32 blocks at a time, and for each of them all pressures that
-/// particle i feels.
-template <int D>
+/// particle i feels. Renormalised: whether the pairs have B.
+template <int D, class Mph, bool Renormalised>
 class RowAssembler {
  public:
   /// Shared memory of a warp.
@@ -33,8 +33,15 @@ class RowAssembler {
     std::uint32_t k[32];
   };
 
-  __device__ RowAssembler(const MphPairs<D>& pairs, const Assembly<D>& a, std::uint32_t i, Scratch& scratch)
-      : pairs_(pairs), a_(a), i_(i), lane_(threadIdx.x % 32), xi_(pairs.position[i]), scratch_(scratch) {}
+  __device__ RowAssembler(const MphPairs<D>& pairs, const Mph& mph, const Assembly<D>& a, std::uint32_t i,
+                          Scratch& scratch)
+      : pairs_(pairs),
+        mph_(mph),
+        a_(a),
+        i_(i),
+        lane_(threadIdx.x % 32),
+        xi_(pairs.position[i]),
+        scratch_(scratch) {}
 
   __device__ void run() {
     const std::uint64_t begin = a_.rowStart[i_], end = a_.rowStart[i_ + 1];
@@ -63,11 +70,11 @@ class RowAssembler {
 
  private:
   __device__ Block<D> viscosity(std::uint32_t j, const Vec<D>& d) const {
-    const double h2 = pairs_.terms.viscosityRadius * pairs_.terms.viscosityRadius, r2 = norm2(d);
+    const double h2 = mph_.viscosityRadius * mph_.viscosityRadius, r2 = norm2(d);
     Block<D> block{};
     if (r2 >= h2 || r2 == 0) return block;
     const double mu = pairs_.pairViscosity(i_, j);
-    block.addOuter(pairs_.terms.viscous(mu * pairs_.terms.viscousFactor, ExactDistance(r2)), d, d);
+    block.addOuter(mph_.viscous(mu * mph_.viscousFactor, ExactDistance(r2)), d, d);
     return block;
   }
 
@@ -82,23 +89,22 @@ class RowAssembler {
       const double lambda = pairs_.bulkViscosity(k);
       scratch_.k[lane_] = k;
       scratch_.d[lane_] = nearestImage(pairs_.grid, pairs_.position[k] - xi_);
-      scratch_.weighted[lane_] = lambda * pairs_.corrected(k, own ? a_.own[i_] : a_.g[place]);
+      scratch_.weighted[lane_] = lambda * corrected(k, own ? a_.own[i_] : a_.g[place]);
     }
     __syncwarp();
   }
 
   /// sum += lambda_k c_ik c_jk^T over the staged pressures; c_jk = g_jk follows from the distance.
   __device__ void addPressures(std::uint32_t j, const Vec<D>& d, std::uint32_t count, Block<D>& sum) const {
-    const double h2 = pairs_.terms.pressureRadius * pairs_.terms.pressureRadius;
+    const double h2 = mph_.pressureRadius * mph_.pressureRadius;
     for (std::uint32_t t = 0; t < count; ++t) {
       const Vec<D> toPressure = scratch_.d[t] - d;
       const double r2 = norm2(toPressure);
       const std::uint32_t k = scratch_.k[t];
       if (k == j)
-        sum.addOuter(1, scratch_.weighted[t], pairs_.corrected(k, a_.own[j]));
+        sum.addOuter(1, scratch_.weighted[t], corrected(k, a_.own[j]));
       else if (r2 < h2 && r2 > 0)
-        sum.addOuter(1, scratch_.weighted[t],
-                     pairs_.terms.gradient(ExactDistance(r2)) * pairs_.corrected(k, toPressure));
+        sum.addOuter(1, scratch_.weighted[t], mph_.gradient(ExactDistance(r2)) * corrected(k, toPressure));
     }
   }
 
@@ -120,7 +126,13 @@ class RowAssembler {
     }
   }
 
+  __device__ Vec<D> corrected(std::uint32_t k, const Vec<D>& v) const {
+    if constexpr (Renormalised) return pairs_.corrected(k, v);
+    return v;
+  }
+
   const MphPairs<D>& pairs_;
+  const Mph& mph_;
   const Assembly<D>& a_;
   std::uint32_t i_, lane_;
   Vec<D> xi_;
