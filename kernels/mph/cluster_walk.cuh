@@ -95,7 +95,7 @@ __device__ bool walkRanges(const MphPairs<D>& pairs, std::uint32_t first, std::u
   constexpr bool usesFluid = Terms::uses(ListSegment::NearFluid), usesWalls = Terms::uses(ListSegment::NearWall);
   const auto radius = [&](ListSegment far) {
     const double near = pairs.terms.pressureRadius;
-    return Terms::uses(far) ? fmax(near, pairs.terms.viscosityRadius) : near;
+    return Terms::uses(far) ? fmax(pairs.terms.densityRadius, pairs.terms.viscosityRadius) : near;
   };
   const bool fluid =
       usesFluid || first >= pairs.fluidCount ? pass(false, usesFluid, radius(ListSegment::FarFluid)) : true;

@@ -17,16 +17,16 @@ struct DiagonalTerms {
   struct Other {
     std::uint32_t j;
     double lambda;
-    Substance substance;
+    ViscousSide side;
   };
-  using Own = Substance;
+  using Own = ViscousSide;
 
   Mph mph;
   double* sums;  // `values` per fluid particle
 
-  __device__ Own loadOwn(const MphPairs<D>& pairs, std::uint32_t i) const { return pairs.substance(i); }
+  __device__ Own loadOwn(const MphPairs<D>& pairs, std::uint32_t i) const { return pairs.viscousSide(i); }
   __device__ Other loadOther(const MphPairs<D>& pairs, std::uint32_t j) const {
-    return {j, pairs.bulkViscosity(j), pairs.substance(j)};
+    return {j, pairs.bulkViscosity(j), pairs.viscousSide(j)};
   }
 
   __device__ void add(const MphPairs<D>& pairs, double* sum, const Vec<D>& d, const PairDistance<double>& r,
@@ -40,7 +40,7 @@ struct DiagonalTerms {
         for (int c = r; c < D; ++c) sum[n++] += f * column[r] * column[c];
       f = 0;
     }
-    if (isFluid(segment)) f += pairs.viscosity(own, other.substance) * mph.viscousFactor * mph.viscousShape(r);
+    if (isFluid(segment)) f += pairs.viscosityOf(own, other.side) * mph.viscousFactor * mph.viscousShape(r);
     int n = 0;
     for (int r = 0; r < D; ++r)
       for (int c = r; c < D; ++c) sum[n++] += f * d[r] * d[c];

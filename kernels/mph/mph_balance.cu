@@ -27,7 +27,7 @@ struct ShearDissipation {
                       const Own& own, const Other& other, ListSegment segment) const {
     const double along = differenceAlong(other.u, own.u, d);
     const double share = isWall(segment) ? viscosityFactor<Corrected>(pairs, own.i, other.i, d) : 0.5;
-    const double mu = pairs.pairViscosity(own.i, other.i);
+    const double mu = pairs.viscosityOf(own.i, other.i);
     sum[0] = fma(share * mu * mph.viscousShape(r), along * along, sum[0]);
   }
   __device__ void store(const MphPairs<D>&, std::uint32_t i, int, double sum) const {
@@ -60,7 +60,7 @@ struct FluidAtWall {
                       const Own& own, const Other& other, ListSegment) const {
     const double along = differenceAlong(other.u, own.u, d);
     const double mu =
-        pairs.pairViscosity(own.i, other.i) * viscosityFactor<Corrected>(pairs, other.i, own.i, -1.0 * d);
+        pairs.viscosityOf(own.i, other.i) * viscosityFactor<Corrected>(pairs, other.i, own.i, -1.0 * d);
     const double g = mph.gradient(r);
     const double viscous = mph.viscousFactor * mu * mph.viscousShape(r) * along;
     if constexpr (Corrected) {

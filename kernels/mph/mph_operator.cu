@@ -10,20 +10,20 @@ template <int D, class Mph>
 struct SelfSums {
   static constexpr int values = D * D + D;
   static constexpr bool uses(ListSegment s) { return isFluid(s); }
-  using Own = Substance;
-  using Other = Substance;
+  using Own = ViscousSide;
+  using Other = ViscousSide;
 
   Mph mph;
   WallTerms<D> wall;
   Block<D>* block;
   Vec<D>* gradient;
 
-  __device__ Own loadOwn(const MphPairs<D>& pairs, std::uint32_t i) const { return pairs.substance(i); }
-  __device__ Other loadOther(const MphPairs<D>& pairs, std::uint32_t j) const { return pairs.substance(j); }
+  __device__ Own loadOwn(const MphPairs<D>& pairs, std::uint32_t i) const { return pairs.viscousSide(i); }
+  __device__ Other loadOther(const MphPairs<D>& pairs, std::uint32_t j) const { return pairs.viscousSide(j); }
 
   __device__ void add(const MphPairs<D>& pairs, double* sum, const Vec<D>& d, const PairDistance<double>& r,
                       Own own, Other other, ListSegment) const {
-    const double f = pairs.viscosity(own, other) * mph.viscousShape(r);
+    const double f = pairs.viscosityOf(own, other) * mph.viscousShape(r);
     for (int r = 0; r < D; ++r) addScaled(sum + r * D, f * d[r], d);
     addScaled(sum + D * D, mph.gradientShape(r), d);
   }
@@ -61,9 +61,9 @@ void MphOperator<D, Cuda>::multiply(Context<Cuda>& context, std::span<const Vec<
   if (pairs_->renormalisation) return multiplyRenormalised(context, u, y);
   const SelfTerms<D> self{selfBlock_, selfGradient_};
   const auto places = LocalPositions<D, double>::make(*pairs_);
-  const auto firstPass = [&](const auto& mph, auto sharing, auto oneSubstance) {
+  const auto firstPass = [&](const auto& mph, auto sharing, auto oneViscosity) {
     using Mph = std::decay_t<decltype(mph)>;
-    using OnFluid = ViscosityAndDivergence<D, double, decltype(oneSubstance)::value, Mph>;
+    using OnFluid = ViscosityAndDivergence<D, double, decltype(oneViscosity)::value, Mph>;
     using OnWalls = Divergence<D, double, Mph, false, true, true>;
     launchClusterSums<D, double, decltype(sharing)>(
         context, *pairs_, ListTask<OnFluid>{pairs_->fluidList, {mph, self, u.data(), y.data(), q_.data()}},
@@ -71,7 +71,7 @@ void MphOperator<D, Cuda>::multiply(Context<Cuda>& context, std::span<const Vec<
   };
   withKnownWeights<PublishedWeights>(pairs_->terms, [&](const auto& mph) {
     withSharing(*pairs_, [&](auto sharing) {
-      if (pairs_->isOneSubstance())
+      if (pairs_->hasOneViscosity())
         firstPass(mph, sharing, std::true_type{});
       else
         firstPass(mph, sharing, std::false_type{});

@@ -10,19 +10,19 @@ template <int D, bool OnWalls>
 struct Repulsion {
   static constexpr int values = D;
   static constexpr bool uses(ListSegment s) { return OnWalls ? s == ListSegment::NearFluid : isNear(s); }
-  using Own = Substance;
-  using Other = Substance;
+  using Own = ViscousSide;
+  using Other = ViscousSide;
 
   MphTerms<D, double> mph;
   double rate;
   Vec<D>* y;  // of the first fluid or wall particle
 
-  __device__ Own loadOwn(const MphPairs<D>& pairs, std::uint32_t i) const { return pairs.substance(i); }
-  __device__ Other loadOther(const MphPairs<D>& pairs, std::uint32_t j) const { return pairs.substance(j); }
+  __device__ Own loadOwn(const MphPairs<D>& pairs, std::uint32_t i) const { return pairs.viscousSide(i); }
+  __device__ Other loadOther(const MphPairs<D>& pairs, std::uint32_t j) const { return pairs.viscousSide(j); }
 
   __device__ void add(const MphPairs<D>& pairs, double* sum, const Vec<D>& d, const PairDistance<double>& r,
                       Own own, Other other, ListSegment) const {
-    addScaled(sum, pairs.viscosity(own, other) * mph.repulsionShape(r), d);
+    addScaled(sum, pairs.viscosityOf(own, other) * mph.repulsionShape(r), d);
   }
   __device__ void store(const MphPairs<D>& pairs, std::uint32_t i, int n, double sum) const {
     y[OnWalls ? i - pairs.fluidCount : i][n] -= rate * mph.viscousFactor * sum;
@@ -42,13 +42,13 @@ struct RepulsionPower {
   const Vec<D>* u;
   double* power;
 
-  __device__ Own loadOwn(const MphPairs<D>& pairs, std::uint32_t i) const { return {u[i], pairs.substance(i)}; }
+  __device__ Own loadOwn(const MphPairs<D>& pairs, std::uint32_t i) const { return {u[i], pairs.viscousSide(i)}; }
   __device__ Other loadOther(const MphPairs<D>& pairs, std::uint32_t j) const { return loadOwn(pairs, j); }
 
   __device__ void add(const MphPairs<D>& pairs, double* sum, const Vec<D>& d, const PairDistance<double>& r,
                       const Own& own, const Other& other, ListSegment segment) const {
     const double along = differenceAlong(other.u, own.u, d), share = isWall(segment) ? 1 : 0.5;
-    const double mu = pairs.viscosity(own.substance, other.substance);
+    const double mu = pairs.viscosityOf(own.side, other.side);
     sum[0] = fma(share * mu * mph.repulsionShape(r), along, sum[0]);
   }
   __device__ void store(const MphPairs<D>&, std::uint32_t i, int, double sum) const {

@@ -6,10 +6,10 @@ namespace treacle {
 namespace {
 
 /// n_i = sum_j w_ij^p per particle [K23 eq. (7)].
-template <int D, class Mph>
+template <int D, class Mph, bool Far>
 struct NumberDensity {
   static constexpr int values = 1;
-  static constexpr bool uses(ListSegment s) { return isNear(s); }
+  static constexpr bool uses(ListSegment s) { return Far || isNear(s); }
   using Own = std::uint32_t;  // the index: a particle is not its own neighbour
   using Other = std::uint32_t;
 
@@ -31,11 +31,11 @@ struct NumberDensity {
 /// Of a pair of fluid and wall.
 struct Side {
   std::uint32_t index;
-  Substance substance;
+  ViscousSide viscous;
 
   template <int D>
   __device__ static Side of(const MphPairs<D>& pairs, std::uint32_t i) {
-    return {i, pairs.substance(i)};
+    return {i, pairs.viscousSide(i)};
   }
 };
 
@@ -54,7 +54,7 @@ struct WallSums {
 
   __device__ void add(const MphPairs<D>& pairs, double* sum, const Vec<D>& d, const PairDistance<double>& r, Own i,
                       Other j, ListSegment) const {
-    const double f = pairs.viscosity(i.substance, j.substance) *
+    const double f = pairs.viscosityOf(i.viscous, j.viscous) *
                      viscosityFactor<Corrected>(pairs, i.index, j.index, d) * mph.viscousShape(r);
     for (int r = 0; r < D; ++r) addScaled(sum + r * D, f * d[r], d);
     addScaled(sum + D * D, mph.gradientShape(r), d);
@@ -91,7 +91,7 @@ struct WallDrag {
   __device__ void add(const MphPairs<D>& pairs, double* sum, const Vec<D>& d, const PairDistance<double>& r, Own i,
                       const Other& other, ListSegment) const {
     const Side& j = other.side;
-    const double f = pairs.viscosity(i.substance, j.substance) *
+    const double f = pairs.viscosityOf(i.viscous, j.viscous) *
                      viscosityFactor<Corrected>(pairs, i.index, j.index, d) * mph.viscousShape(r);
     addScaled(sum, f * dot(d, other.u), d);
   }
@@ -104,8 +104,10 @@ struct WallDrag {
 
 template <int D>
 void numberDensity(Context<Cuda>& context, const MphPairs<D>& pairs, std::span<double> n) {
+  if (pairs.terms.densityRadius > pairs.terms.pressureRadius)
+    return sumOnAll(context, pairs, NumberDensity<D, MphTerms<D>, true>{pairs.terms, n.data()});
   withKnownWeights<PublishedWeights>(pairs.terms, [&]<class Mph>(const Mph& mph) {
-    sumOnAll(context, pairs, NumberDensity<D, Mph>{mph, n.data()});
+    sumOnAll(context, pairs, NumberDensity<D, Mph, false>{mph, n.data()});
   });
 }
 

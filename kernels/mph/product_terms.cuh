@@ -59,8 +59,14 @@ __device__ inline SymmetricBlock<D> fetch(const SymmetricBlock<D>* from) {
 template <int D, class T>
 struct VelocityOf {
   Vec<D, T> u;
-  Substance substance;
+  ViscousSide side;
 };
+
+/// What a loop asks a particle for, unless all pairs have one viscosity.
+template <bool OneViscosity, int D>
+__device__ inline ViscousSide viscousSide(const MphPairs<D>& pairs, std::uint32_t i) {
+  return OneViscosity ? ViscousSide{} : pairs.viscousSide(i);
+}
 
 /// What a fluid particle's own velocity meets in A: the diagonal block of rho/dt I + V, and C_ii; walls included.
 template <int D>
@@ -71,13 +77,13 @@ struct SelfTerms {
 
 /// y = (rho/dt I + V) u and q = lambda C^T u per fluid particle, walls at rest [K23 eq. (16)]: the first pass of a
 /// product A u. The sums run over the neighbours' velocities alone, u_i meets the particle's self terms: three
-/// subtractions and three registers per pair less than with u_j - u_i. With OneSubstance none is looked up
-/// in the pairs.
-template <int D, class T, bool OneSubstance, class Mph>
+/// subtractions and three registers per pair less than with u_j - u_i. With OneViscosity no
+/// particle is asked for its own.
+template <int D, class T, bool OneViscosity, class Mph>
 struct ViscosityAndDivergence {
   static constexpr int values = D + 1;
   static constexpr bool uses(ListSegment s) { return isFluid(s); }
-  using Own = Substance;
+  using Own = ViscousSide;
   using Other = VelocityOf<D, T>;
 
   Mph mph;
@@ -87,7 +93,7 @@ struct ViscosityAndDivergence {
   T* q;
 
   __device__ Own loadOwn(const MphPairs<D>& pairs, std::uint32_t i) const {
-    return OneSubstance ? Substance{0} : pairs.substance(i);
+    return viscousSide<OneViscosity>(pairs, i);
   }
   __device__ Other loadOther(const MphPairs<D>& pairs, std::uint32_t j) const { return {u[j], loadOwn(pairs, j)}; }
 
@@ -95,7 +101,7 @@ struct ViscosityAndDivergence {
                       const Other& other, ListSegment segment) const {
     const T along = dot(d, other.u);
     T f = mph.viscousShape(r) * along;
-    if constexpr (!OneSubstance) f *= static_cast<T>(pairs.viscosity(own, other.substance));
+    if constexpr (!OneViscosity) f *= pairs.template viscosityOf<T>(own, other.side);
     addScaled(sum, f, d);
     if (isNear(segment)) sum[D] = fma(mph.gradientShape(r), along, sum[D]);
   }
@@ -103,7 +109,7 @@ struct ViscosityAndDivergence {
   __device__ void store(const MphPairs<D>& pairs, std::uint32_t i, int n, T sum) const {
     const Vec<D, T> ui = u[i];
     if (n < D) {
-      const double mu = OneSubstance ? pairs.onlyViscosity() : 1.0;
+      const double mu = OneViscosity ? pairs.onlyViscosity() : 1.0;
       T own = 0;
       for (int c = 0; c < D; ++c) own += static_cast<T>(self.block[i](n, c)) * ui[c];
       y[i][n] = own - mph.viscousFactor * static_cast<T>(mu) * sum;
@@ -116,12 +122,12 @@ struct ViscosityAndDivergence {
 };
 
 /// store(i, ((rho/dt I + V) u)_i) per fluid particle; as ViscosityAndDivergence without the divergence.
-template <int D, class T, bool OneSubstance, class Mph, class V, class Store>
+template <int D, class T, bool OneViscosity, class Mph, class V, class Store>
 struct Viscosity {
   using StoresVectors = void;
   static constexpr int values = D;
   static constexpr bool uses(ListSegment s) { return isFluid(s); }
-  using Own = Substance;
+  using Own = ViscousSide;
   using Other = VelocityOf<D, T>;
 
   Mph mph;
@@ -130,7 +136,7 @@ struct Viscosity {
   Store result;
 
   __device__ Own loadOwn(const MphPairs<D>& pairs, std::uint32_t i) const {
-    return OneSubstance ? Substance{0} : pairs.substance(i);
+    return viscousSide<OneViscosity>(pairs, i);
   }
   __device__ Other loadOther(const MphPairs<D>& pairs, std::uint32_t j) const {
     return {fetch(&u[j]), loadOwn(pairs, j)};
@@ -138,11 +144,11 @@ struct Viscosity {
   __device__ void add(const MphPairs<D>& pairs, T* sum, const Vec<D, T>& d, const PairDistance<T>& r, Own own,
                       const Other& other, ListSegment) const {
     T f = mph.viscousShape(r) * dot(d, other.u);
-    if constexpr (!OneSubstance) f *= static_cast<T>(pairs.viscosity(own, other.substance));
+    if constexpr (!OneViscosity) f *= pairs.template viscosityOf<T>(own, other.side);
     addScaled(sum, f, d);
   }
   __device__ void store(const MphPairs<D>& pairs, std::uint32_t i, const Vec<D, T>& sum) const {
-    const T mu = OneSubstance ? static_cast<T>(pairs.onlyViscosity()) : T(1);
+    const T mu = OneViscosity ? static_cast<T>(pairs.onlyViscosity()) : T(1);
     result(i, selfBlock[i] * fetch(&u[i]) - mph.viscousFactor * mu * sum);
   }
 };

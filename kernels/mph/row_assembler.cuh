@@ -73,7 +73,7 @@ class RowAssembler {
     const double h2 = mph_.viscosityRadius * mph_.viscosityRadius, r2 = norm2(d);
     Block<D> block{};
     if (r2 >= h2 || r2 == 0) return block;
-    const double mu = pairs_.pairViscosity(i_, j);
+    const double mu = pairs_.viscosityOf(i_, j);
     block.addOuter(mph_.viscous(mu * mph_.viscousFactor, ExactDistance(r2)), d, d);
     return block;
   }

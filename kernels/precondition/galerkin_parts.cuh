@@ -78,13 +78,13 @@ __device__ Block<D> viscousPart(const MphPairs<D>& pairs, const Mph& mph, std::u
   Block<D> sum{};
   for (std::uint32_t j = firstJ + lane % 8; j < lastJ; j += 8) {
     const Vec<D> xj = pairs.position[j] + shift;
-    const Substance substance = pairs.substance(j);
+    const ViscousSide side = pairs.viscousSide(j);
     for (std::uint32_t i = firstI + lane / 8; i < lastI; i += 4) {
       const Vec<D> d = xj - pairs.position[i];
       const double r2 = norm2(d);
       if (r2 >= h2 || r2 == 0) continue;
       const PairDistance<double> distance{r2, inverseSqrt(r2)};
-      const double f = pairs.viscosity(pairs.substance(i), substance) * mph.viscousShape(distance);
+      const double f = pairs.viscosityOf(pairs.viscousSide(i), side) * mph.viscousShape(distance);
       for (int r = 0; r < D; ++r)
         for (int c = r; c < D; ++c) sum(r, c) = fma(f * d[r], d[c], sum(r, c));
     }

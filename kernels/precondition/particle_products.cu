@@ -215,8 +215,8 @@ template <class Store>
 void ParticleProducts<D, T, Cuda>::viscous(Context<Cuda>& context, const Gathered<D, T>* u,
                                            const Store& store) const {
   const auto places = placesOf<D, T>(*pairs_, a_->near());
-  const auto start = [&]<class Mph>(const Mph& mph, auto sharing, auto oneSubstance) {
-    using Terms = Viscosity<D, T, decltype(oneSubstance)::value, Mph, Gathered<D, T>, Store>;
+  const auto start = [&]<class Mph>(const Mph& mph, auto sharing, auto oneViscosity) {
+    using Terms = Viscosity<D, T, decltype(oneViscosity)::value, Mph, Gathered<D, T>, Store>;
     launchClusterSums<D, T, decltype(sharing)>(
         context, *pairs_, ListTask<Terms>{pairs_->fluidList, {mph, selfBlock_.data(), u, store}}, places);
   };
@@ -225,7 +225,7 @@ void ParticleProducts<D, T, Cuda>::viscous(Context<Cuda>& context, const Gathere
     withListSharing(*pairs_, [&](auto sharing) {
       // In double precision, which few preconditioners have, one kernel does for all.
       if constexpr (std::is_same_v<T, float>)
-        if (pairs_->isOneSubstance()) return start(mph, sharing, std::true_type{});
+        if (pairs_->hasOneViscosity()) return start(mph, sharing, std::true_type{});
       start(mph, sharing, std::false_type{});
     });
   });

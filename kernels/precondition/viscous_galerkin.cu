@@ -10,17 +10,17 @@ template <int D, class T, class Mph>
 struct MomentSums {
   static constexpr int values = momentCount<D>;
   static constexpr bool uses(ListSegment s) { return isFluid(s); }
-  using Own = Substance;
-  using Other = Substance;
+  using Own = ViscousSide;
+  using Other = ViscousSide;
 
   Mph mph;
   ViscousMoments<D, T>* moments;
 
-  __device__ Own loadOwn(const MphPairs<D>& pairs, std::uint32_t i) const { return pairs.substance(i); }
-  __device__ Other loadOther(const MphPairs<D>& pairs, std::uint32_t j) const { return pairs.substance(j); }
+  __device__ Own loadOwn(const MphPairs<D>& pairs, std::uint32_t i) const { return pairs.viscousSide(i); }
+  __device__ Other loadOther(const MphPairs<D>& pairs, std::uint32_t j) const { return pairs.viscousSide(j); }
   __device__ void add(const MphPairs<D>& pairs, double* sum, const Vec<D>& d, const PairDistance<double>& r,
                       Own own, Other other, ListSegment) const {
-    const double f = pairs.viscosity(own, other) * mph.viscousShape(r);
+    const double f = pairs.viscosityOf(own, other) * mph.viscousShape(r);
     forEachMoment<D>(d, [&](int m, double product) { sum[m] = fma(f, product, sum[m]); });
   }
   __device__ void store(const MphPairs<D>&, std::uint32_t i, int n, double sum) const {

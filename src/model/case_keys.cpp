@@ -52,7 +52,9 @@ MethodSettings defaultMethod(SchemeKind scheme) {
   method.viscosityWeight = ViscosityWeight::Biquadratic;
   method.wallVelocity = WallVelocity::Extrapolated;
   method.pressureGradient = PressureGradient::Renormalised;
-  method.pressureRadius = 3;
+  method.pressureRadius = 2.5;
+  method.densityRadius = 3;
+  method.viscosityCorrection = 0.5;
   return method;
 }
 

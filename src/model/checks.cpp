@@ -69,7 +69,8 @@ double largestSpeed(const Case& c, const Body& body) {
 /// What the interaction radius is called.
 std::string_view reachName(const Case& c) {
   if (c.method.kind == MethodKind::Isph) return "reach 2 h of the kernel";
-  return c.viscosityRadius() < c.pressureRadius() ? "pressure radius h_p" : "viscosity radius h_v";
+  if (c.viscosityRadius() >= c.densityRadius()) return "viscosity radius h_v";
+  return c.densityRadius() > c.pressureRadius() ? "density radius h_n" : "pressure radius h_p";
 }
 
 void warnCompression(const Case& c, std::vector<std::string>& warnings) {

@@ -50,7 +50,7 @@ class RowAssembler {
       forEachEntry(pairs_, i, s, [&](ListEntry e, const Vec<D>& d) {
         const double r2 = norm2(d);
         if (r2 >= h2 || r2 == 0) return;
-        const double mu = pairs_.pairViscosity(i, e.index());
+        const double mu = pairs_.viscosityOf(i, e.index());
         const double c = pairs_.terms.viscous(mu * pairs_.terms.viscousFactor, ExactDistance(r2));
         blocks[slot_[e.index()]].addOuter(-c, d, d);
         blocks[slot_[i]].addOuter(c, d, d);

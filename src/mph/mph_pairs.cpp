@@ -8,16 +8,18 @@ template <int D>
 MphPairs<D> makeMphPairs(const Case& c) {
   Vec<D, bool> periodic{};
   for (int k = 0; k < D; ++k) periodic[k] = c.domain.periodic[k];
-  const double hp = c.pressureRadius(), hv = c.viscosityRadius();
+  const double hp = c.pressureRadius(), hn = c.densityRadius(), hv = c.viscosityRadius();
   MphPairs<D> pairs;
   pairs.spacing = c.spacing;
   pairs.grid =
-      CellGrid<D>::make(resized<D>(c.domain.min), resized<D>(c.domain.max), periodic, std::max(hv, 2 * hp));
+      CellGrid<D>::make(resized<D>(c.domain.min), resized<D>(c.domain.max), periodic, c.searchEdge());
   pairs.images = periodicImages(pairs.grid);
   const auto pressureWeight = Weight<D>::make(hp, c.spacing, c.method.pressureWeight);
   pairs.terms = MphTerms<D>::make(pressureWeight, c.method.viscosityWeight, hv, c.spacing);
   pairs.terms.repulsionRadius = c.repulsionRadius();
-  pairs.restDensity = latticeNumberDensity(pressureWeight, c.spacing);
+  const auto densityWeight = Weight<D>::make(hn, c.spacing, c.method.pressureWeight);
+  pairs.terms.setDensityWeight(densityWeight);
+  pairs.restDensity = latticeNumberDensity(densityWeight, c.spacing);
   pairs.materials = MaterialTable::make(c);
   return pairs;
 }

@@ -6,6 +6,8 @@ namespace treacle {
 namespace {
 
 constexpr ListSegment nearSegments[] = {ListSegment::NearFluid, ListSegment::NearWall};
+constexpr ListSegment allSegments[] = {ListSegment::NearFluid, ListSegment::FarFluid, ListSegment::NearWall,
+                                       ListSegment::FarWall};
 constexpr ListSegment wallSegments[] = {ListSegment::NearWall, ListSegment::FarWall};
 
 /// C q / gradientFactor of the particles of a cluster of fluid.
@@ -67,10 +69,12 @@ void divergenceOf(const MphPairs<D>& pairs, const ClusterListView& list, std::sp
 template <int D>
 void numberDensity(Context<Cpu>&, const MphPairs<D>& pairs, std::span<double> n) {
   const double floor2 = distanceFloor2(pairs);
+  std::span<const ListSegment> segments = nearSegments;
+  if (pairs.terms.densityRadius > pairs.terms.pressureRadius) segments = allSegments;
   for (const ClusterListView& list : {pairs.fluidList, pairs.wallList})
     forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const VecLanes<D>& x, std::uint32_t c) {
       Lanes sum = {};
-      for (ListSegment s : nearSegments)
+      for (ListSegment s : segments)
         for (ListEntry e : list.segment(c, s)) {
           const PairLanes<D> pair(pairs.positionOf(e), x, floor2);
           Lanes w = pairs.terms.density(pairs.terms.densityFactor, pair.r);

@@ -7,6 +7,7 @@
 #include "treacle/mph/mph_particles.hpp"
 #include "treacle/mph/mph_repulsion.hpp"
 #include "treacle/mph/renormalisation.hpp"
+#include "treacle/mph/viscosity_scale.hpp"
 #include "treacle/step/first_guess.hpp"
 #include "treacle/step/solve_stages.hpp"
 
@@ -38,6 +39,7 @@ class MphStep final : public StepMethod<D, Backend> {
     neighbourhood_.setTimeStep(state_.timeStep);
     placeWallSurfaces();
     renormalise();
+    scaleViscosity();
     computeDensities();
     wallBlock_.resize(state_.context, state_.particles.fluidCount);
     wallGradient_.resize(state_.context, state_.particles.fluidCount);
@@ -112,8 +114,8 @@ class MphStep final : public StepMethod<D, Backend> {
   const CellGrid<D>& grid() const override { return pairs_.grid; }
   const MaterialTable& materials() const override { return pairs_.materials; }
   std::size_t bytes() const override {
-    return neighbourhood_.bytes() + wallSurface_.bytes() + renormalisation_.bytes() + wallBlock_.bytes() +
-           wallGradient_.bytes() + elastic_.bytes() + divergence_.bytes() + rhs_.bytes() + solver_.bytes() +
+    return neighbourhood_.bytes() + wallSurface_.bytes() + renormalisation_.bytes() +
+           viscosityScale_.bytes() + wallBlock_.bytes() + wallGradient_.bytes() + elastic_.bytes() + divergence_.bytes() + rhs_.bytes() + solver_.bytes() +
            balance_.bytes();
   }
 
@@ -141,6 +143,14 @@ class MphStep final : public StepMethod<D, Backend> {
     renormalisation_.resize(state_.context, state_.particles.fluidCount);
     renormalisation<D>(state_.context, pairs_, renormalisation_.span());
     neighbourhood_.setRenormalisation(renormalisation_);
+  }
+
+  void scaleViscosity() {
+    const double correction = state_.theCase.method.viscosityCorrection;
+    if (correction == 0) return;
+    viscosityScale_.resize(state_.context, state_.particles.fluidCount);
+    viscosityScale<D>(state_.context, pairs_, correction, viscosityScale_.span());
+    neighbourhood_.setViscosityScale(viscosityScale_);
   }
 
   /// b of [K23 eq. (16)], and the terms of the repulsion and of prescribed wall velocities.
@@ -188,6 +198,7 @@ class MphStep final : public StepMethod<D, Backend> {
   bool wholeRows_;                               // of A in the lists
   Buffer<WallSurface<D>, Backend> wallSurface_;  // per active wall particle
   Buffer<SymmetricBlock<D>, Backend> renormalisation_;
+  Buffer<double, Backend> viscosityScale_;
   Buffer<Block<D>, Backend> wallBlock_;
   Buffer<Vec<D>, Backend> wallGradient_;
   Buffer<double, Backend> elastic_;     // kappa [n - n_0]_+ per particle [Pa]

@@ -40,7 +40,7 @@ class StepBalance {
     const std::uint32_t n = pairs.fluidCount, active = pairs.activeCount;
     ClusterListView walls = pairs.wallList;
     if (walls.offset) {  // the lists of the step reach only as far as pressures
-      const double reach = std::max(pairs.terms.pressureRadius, pairs.terms.viscosityRadius);
+      const double reach = std::max(pairs.terms.densityRadius, pairs.terms.viscosityRadius);
       buildClusterList<D>(state.context, pairs.grid, neighbourhood.ranges(), pairs.position, n, active, {reach, 0},
                           true, walls_);
       walls = walls_.view();

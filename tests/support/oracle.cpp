@@ -63,13 +63,30 @@ Vec<D> Oracle<D>::repulsion(std::uint32_t i, std::uint32_t j) const {
   const Vec<D> d = difference(i, j);
   const double r = norm(d), reach = s.c.method.scheme == SchemeKind::Accurate ? 0.53 * l : 0;
   if (i == j || r >= reach) return {};
-  return -mu(i, j) * viscousBlock(r) * r * (reach - r) / dt * d;
+  return -mu(i, j) * pairScale(i, j) * viscousBlock(r) * r * (reach - r) / dt * d;
 }
 
 template <int D>
 double Oracle<D>::mu(std::uint32_t i, std::uint32_t j) const {
   const double a = material(i).dynamicViscosity, b = material(j).dynamicViscosity;
   return 2 * a * b / (a + b);
+}
+
+template <int D>
+double Oracle<D>::viscosityScale(std::uint32_t i) const {
+  double moment = 0;
+  for (std::uint32_t j = 0; j < count(); ++j)
+    if (j != i) moment += viscousBlock(norm(difference(i, j))) * std::pow(norm(difference(i, j)), 4);
+  const double share = s.c.method.viscosityCorrection;
+  return 1 - share + share * std::min(4.0, 2 * D * (D + 2) / moment);
+}
+
+template <int D>
+double Oracle<D>::pairScale(std::uint32_t i, std::uint32_t j) const {
+  if (s.c.method.viscosityCorrection == 0) return 1;
+  if (i >= s.particles.fluidCount) return viscosityScale(j);
+  if (j >= s.particles.fluidCount) return viscosityScale(i);
+  return (viscosityScale(i) + viscosityScale(j)) / 2;
 }
 
 template <int D>
@@ -109,7 +126,7 @@ template <int D>
 double Oracle<D>::numberDensity(std::uint32_t i) const {
   double n = 0;
   for (std::uint32_t j = 0; j < count(); ++j)
-    if (j != i) n += w(norm(difference(i, j)), hp);
+    if (j != i) n += w(norm(difference(i, j)), hn);
   return n;
 }
 
@@ -158,7 +175,7 @@ double Oracle<D>::dissipation(const Vector& u) const {
       for (int k = 0; k < D; ++k) along += (u[D * j + k] - u[D * i + k]) * d[k] / r;
       for (int k = 0; k < D; ++k)
         for (int m = 0; m < D; ++m) divergence += (u[D * j + k] - u[D * i + k]) * b(k, m) * d[m] / r * dw(r, hp);
-      if (j > i) sum += mu(i, j) * wallFactor(i, j) / 2 * viscousBlock(r) * r * r * along * along;
+      if (j > i) sum += mu(i, j) * pairScale(i, j) * wallFactor(i, j) / 2 * viscousBlock(r) * r * r * along * along;
     }
     sum += material(i).bulkViscosity / 2 * divergence * divergence;
   }
@@ -191,7 +208,7 @@ Matrix Oracle<D>::viscosityMatrix() const {
       const Vec<D> d = difference(i, j);
       const double r = norm(d);
       Block<D> block{};
-      block.addOuter(mu(i, j) * wallFactor(i, j) * viscousBlock(r), d, d);
+      block.addOuter(mu(i, j) * pairScale(i, j) * wallFactor(i, j) * viscousBlock(r), d, d);
       for (int k = 0; k < D; ++k)
         for (int m = 0; m < D; ++m) {
           v(D * i + k, D * i + m) += block(k, m);
@@ -203,12 +220,12 @@ Matrix Oracle<D>::viscosityMatrix() const {
 
 template <int D>
 double Oracle<D>::restDensity() const {
-  const int reach = static_cast<int>(std::ceil(hp / l)), side = 2 * reach + 1;
-  double n = -w(0, hp);
+  const int reach = static_cast<int>(std::ceil(hn / l)), side = 2 * reach + 1;
+  double n = -w(0, hn);
   for (int place = 0; place < std::pow(side, D); ++place) {
     double square = 0;
     for (int k = 0, rest = place; k < D; ++k, rest /= side) square += std::pow(rest % side - reach, 2);
-    n += w(l * std::sqrt(square), hp);
+    n += w(l * std::sqrt(square), hn);
   }
   return n;
 }

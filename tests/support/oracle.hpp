@@ -2,6 +2,8 @@
 
 #include "support/scene.hpp"
 
+#include <algorithm>
+
 namespace treacle::test {
 
 /// B of a moment M, as renormalisation.hpp has it.
@@ -12,12 +14,13 @@ Matrix renormalisationOracle(const Matrix& moment);
 template <int D>
 struct Oracle {
   const Scene<D>& s;
-  double l, hp, hv, dt;
+  double l, hp, hn, hv, dt;
 
   explicit Oracle(const Scene<D>& scene)
       : s(scene),
         l(s.c.spacing),
         hp(s.c.method.pressureRadius * l),
+        hn(std::max(s.c.method.densityRadius * l, hp)),
         hv(s.c.method.viscosityRadius * l),
         dt(s.c.time.step) {}
 
@@ -32,6 +35,10 @@ struct Oracle {
   /// Force on i from j where both are too close [N/m3].
   Vec<D> repulsion(std::uint32_t i, std::uint32_t j) const;
   double mu(std::uint32_t i, std::uint32_t j) const;
+  /// What a fluid particle's viscosity is multiplied by.
+  double viscosityScale(std::uint32_t i) const;
+  /// That of a pair: the mean of both, with a wall that of the fluid.
+  double pairScale(std::uint32_t i, std::uint32_t j) const;
   /// (d_i + d_j) / (d_i + b) where one of them is a wall particle that knows its surface, else 1.
   double wallFactor(std::uint32_t i, std::uint32_t j) const;
   /// Nearest periodic image of x_j - x_i.

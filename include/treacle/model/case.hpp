@@ -146,7 +146,10 @@ struct MethodSettings {
   PressureGradient pressureGradient = PressureGradient::Plain;
   // Effective radii of MPH-I in particle spacings [K23 Table 1].
   double pressureRadius = 1.75;  // h_p / l
+  double densityRadius = 0;      // h_n / l, at least that of the pressure
   double viscosityRadius = 3.5;  // h_v / l
+  // Which share of the viscosity that its missing neighbours would give it a particle gets from those it has.
+  double viscosityCorrection = 0;
   IsphSettings isph;
 
   bool operator==(const MethodSettings&) const = default;
@@ -274,6 +277,8 @@ struct Case {
   OutputSettings output;
 
   double pressureRadius() const { return method.pressureRadius * spacing; }    // h_p [m]
+  /// h_n [m]
+  double densityRadius() const { return std::max(method.densityRadius, method.pressureRadius) * spacing; }
   double viscosityRadius() const { return method.viscosityRadius * spacing; }  // h_v [m]
   /// r_0: distance below which particles of the accurate scheme of MPH-I repel each other; 0: they do not [m].
   double repulsionRadius() const { return method.scheme == SchemeKind::Accurate ? 0.53 * spacing : 0; }
@@ -281,12 +286,12 @@ struct Case {
   double smoothingLength() const { return method.isph.smoothingRatio * spacing; }
   /// Farthest distance at which particles act on each other [m].
   double interactionRadius() const {
-    return method.kind == MethodKind::Isph ? 2 * smoothingLength() : std::max(viscosityRadius(), pressureRadius());
+    return method.kind == MethodKind::Isph ? 2 * smoothingLength() : std::max(viscosityRadius(), densityRadius());
   }
   /// Smallest edge of the search cells [m].
   double searchEdge() const {
     return method.kind == MethodKind::Isph ? 2 * smoothingLength()
-                                           : std::max(viscosityRadius(), 2 * pressureRadius());
+                                           : std::max({viscosityRadius(), densityRadius(), 2 * pressureRadius()});
   }
   /// Steps to the end, where all have one length.
   std::int64_t steps() const { return std::llround(time.end / time.step); }

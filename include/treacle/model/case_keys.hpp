@@ -218,7 +218,9 @@ void visit(auto& v, Like<MethodSettings> auto& m, const Case& c) {
   v({"wall_velocity"}, m.wallVelocity);
   v({"pressure_gradient"}, m.pressureGradient);
   v({"pressure_radius", optional, "spacings", positive}, m.pressureRadius);
+  v({"density_radius", optional, "spacings", notNegative}, m.densityRadius);
   v({"viscosity_radius", optional, "spacings", positive}, m.viscosityRadius);
+  v({"viscosity_correction", optional, "", {0, 1}}, m.viscosityCorrection);
 }
 
 void visit(auto& v, Like<MultigridSettings> auto& m, const Case&) {

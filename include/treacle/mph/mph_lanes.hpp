@@ -79,12 +79,15 @@ inline VecLanes<D> corrected(const MphPairs<D>& pairs, std::uint32_t k, const Ve
   return product;
 }
 
-/// mu_ij times the viscous factor, for the lanes of a cluster and a neighbour.
+/// mu_ij times the viscous factor, for the lanes of a cluster and a neighbour, scaled as MphPairs::viscosityOf.
 template <int D>
 class ViscosityLanes {
  public:
   ViscosityLanes(const MphPairs<D>& pairs, const ClusterRange& range) : pairs_(pairs) {
     const double factor = pairs.terms.viscousFactor;
+    if (pairs.viscosityScale)
+      for (std::uint32_t lane = 0; lane < clusterSize; ++lane)
+        scale_[lane] = pairs.viscousSide(range.particle(lane)).scale;
     if (pairs.isOneSubstance()) {
       ofSubstance_[0] = broadcast(factor * pairs.onlyViscosity());
       return;
@@ -94,10 +97,17 @@ class ViscosityLanes {
         ofSubstance_[m][lane] =
             factor * pairs.viscosity(pairs.substance(range.particle(lane)), static_cast<Substance>(m));
   }
-  Lanes with(std::uint32_t j) const { return ofSubstance_[pairs_.substance(j)]; }
+  Lanes with(std::uint32_t j) const {
+    const Lanes& unscaled = ofSubstance_[pairs_.substance(j)];
+    if (!pairs_.viscosityScale) return unscaled;
+    const double scale = pairs_.viscousSide(j).scale;
+    const bool bothFluid = scale > 0 && scale_[0] > 0;  // a cluster is all fluid or all wall
+    return unscaled * ((bothFluid ? 0.5 : 1.0) * (scale_ + scale));
+  }
 
  private:
   const MphPairs<D>& pairs_;
+  Lanes scale_{};
   Lanes ofSubstance_[maxMaterials];
 };
 

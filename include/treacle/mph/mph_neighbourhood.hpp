@@ -40,10 +40,11 @@ class MphNeighbourhood {
       pairs_.wallList = {fluid, active};
       return;
     }
-    const double hp = pairs_.terms.pressureRadius;
-    const double far = std::max(pairs_.terms.viscosityRadius, wholeRows ? 2 * hp : hp);
+    const double hp = pairs_.terms.pressureRadius, hn = pairs_.terms.densityRadius;
+    const double far = std::max({pairs_.terms.viscosityRadius, hn, wholeRows ? 2 * hp : hp});
     buildClusterList<D>(context, pairs_.grid, ranges_, pairs_.position, 0, fluid, {hp, far}, false, fluidList_);
-    buildClusterList<D>(context, pairs_.grid, ranges_, pairs_.position, fluid, active, {hp, 0}, true, wallList_);
+    buildClusterList<D>(context, pairs_.grid, ranges_, pairs_.position, fluid, active, {hp, hn > hp ? hn : 0}, true,
+                        wallList_);
     pairs_.fluidList = fluidList_.view();
     pairs_.wallList = wallList_.view();
   }
@@ -56,6 +57,11 @@ class MphNeighbourhood {
   /// B per fluid particle; must outlive the sums of the step. Empty: B = I everywhere.
   void setRenormalisation(std::span<const SymmetricBlock<D>> b) {
     pairs_.renormalisation = b.empty() ? nullptr : b.data();
+  }
+
+  /// Per fluid particle; must outlive the sums of the step. Empty: 1 everywhere.
+  void setViscosityScale(std::span<const double> scale) {
+    pairs_.viscosityScale = scale.empty() ? nullptr : scale.data();
   }
 
   /// Of the step at hand [s].

@@ -11,17 +11,24 @@
 
 namespace treacle {
 
+/// What of a particle decides on the viscosity of a pair. Of walls the scale is 0: they have what the fluid has.
+struct ViscousSide {
+  Substance substance;
+  double scale;
+};
+
 /// What every pair sum of a step reads.
 template <int D>
 struct MphPairs : MaterialParticles<D> {
-  ClusterListView fluidList;  // near h_p, far h_v or, to assemble A, 2 h_p if that is more
-  ClusterListView wallList;   // near h_p only
+  ClusterListView fluidList;  // near h_p, far h_v, h_n or, to assemble A, 2 h_p, whichever is most
+  ClusterListView wallList;   // near h_p, far h_n if that is more
   PeriodicImages<D> images;
   MphTerms<D> terms{};     // lengths in metres
   double restDensity = 0;  // n_0 [-]
   const WallSurface<D>* wallSurface =
       nullptr;  // of the first wall particle; null: the fluid meets walls as they are
   const SymmetricBlock<D>* renormalisation = nullptr;  // B per fluid particle (renormalisation.hpp); null: I
+  const double* viscosityScale = nullptr;              // per fluid particle (viscosity_scale.hpp); null: 1
 
   TREACLE_HD Vec<D> positionOf(ListEntry e) const { return this->position[e.index()] + images.shift[e.image()]; }
 
@@ -30,6 +37,22 @@ struct MphPairs : MaterialParticles<D> {
   TREACLE_HD Vec<D> corrected(std::uint32_t k, const Vec<D>& v) const {
     return renormalisation && k < this->fluidCount ? renormalisation[k] * v : v;
   }
+
+  TREACLE_HD ViscousSide viscousSide(std::uint32_t i) const {
+    return {this->substance(i), !viscosityScale ? 1.0 : i < this->fluidCount ? viscosityScale[i] : 0.0};
+  }
+  /// mu_ij of a pair with the mean of both scales [Pa s].
+  template <class T = double>
+  TREACLE_HD T viscosityOf(const ViscousSide& a, const ViscousSide& b) const {
+    const T share = a.scale > 0 && b.scale > 0 ? T(0.5) : T(1);
+    return static_cast<T>(this->viscosity(a.substance, b.substance)) *
+           (share * (static_cast<T>(a.scale) + static_cast<T>(b.scale)));
+  }
+  TREACLE_HD double viscosityOf(std::uint32_t i, std::uint32_t j) const {
+    return viscosityOf(viscousSide(i), viscousSide(j));
+  }
+  /// Whether all pairs have the viscosity onlyViscosity().
+  TREACLE_HD bool hasOneViscosity() const { return this->isOneSubstance() && !viscosityScale; }
 
   /// By what the viscosity of fluid particle i with wall particle j is multiplied; d = x_j - x_i [m].
   TREACLE_HD double wallFactor(std::uint32_t i, std::uint32_t j, const Vec<D>& d) const {

@@ -56,7 +56,7 @@ using PublishedWeights = KnownWeights<PressureWeight::Mps, ViscosityWeight::Mps>
 using AccurateWeights = KnownWeights<PressureWeight::WendlandC2, ViscosityWeight::Biquadratic>;
 
 /// What a pair of particles does in MPH-I, d = x_j - x_i and r = |d|, e = d/r:
-///   number density   n_i = sum of density                                      [K23 eq. (7)]
+///   number density   n_i = sum of density, whose radius may be larger           [K23 eq. (7)]
 ///   pressures        -e w'^p = gradient d: the elements of C                   [K23 eqs. (4), (14)]
 ///   viscosity        2 (D+2) mu e e^T (-w'^v) / r = mu viscous d d^T: a block of V   [K23 eqs. (4), (16)]
 ///   repulsion        -mu viscous d d^T v, v = [r_0 - r]_+ e / dt: not of [K23], see docs/solver.md
@@ -68,11 +68,12 @@ template <int D, class T = double, class Weights = CaseWeights>
 struct MphTerms {
   T pressureRadius, inversePressureRadius;    // h_p, 1/h_p
   T viscosityRadius, inverseViscosityRadius;  // h_v, 1/h_v
+  T densityRadius;  // h_n
   T densityFactor, gradientFactor, viscousFactor;
   Weights weights;
   T repulsionRadius = 0;  // r_0; 0: no repulsion
 
-  /// For the radius h_v and the spacing l [m]; lengths in metres.
+  /// For the radius h_v and the spacing l [m]; lengths in metres. Densities have the radius of pressures.
   static MphTerms make(const Weight<D>& pressure, ViscosityWeight viscosity, double viscosityRadius,
                        double spacing) {
     const double hp = pressure.radius, hv = viscosityRadius;
@@ -80,6 +81,7 @@ struct MphTerms {
             static_cast<T>(1 / hp),
             static_cast<T>(hv),
             static_cast<T>(1 / hv),
+            static_cast<T>(hp),
             static_cast<T>(pressure.scale),
             static_cast<T>(pressure.slopeFactor() * pressure.scale / hp),
             static_cast<T>(viscosityFactor(viscosity) * 4 * (D + 2) * Weight<D>::make(hv, spacing).scale / hv),
@@ -90,21 +92,26 @@ struct MphTerms {
   MphTerms<D, U, Weights> inUnitsOf(double unit) const {
     return {static_cast<U>(pressureRadius / unit),  static_cast<U>(inversePressureRadius * unit),
             static_cast<U>(viscosityRadius / unit), static_cast<U>(inverseViscosityRadius * unit),
-            static_cast<U>(densityFactor),          static_cast<U>(gradientFactor),
-            static_cast<U>(viscousFactor / unit),   weights,
-            static_cast<U>(repulsionRadius / unit)};
+            static_cast<U>(densityRadius / unit),   static_cast<U>(densityFactor),
+            static_cast<U>(gradientFactor),         static_cast<U>(viscousFactor / unit),
+            weights,                                static_cast<U>(repulsionRadius / unit)};
   }
   /// The same with their weights known.
   template <class Known>
   MphTerms<D, T, Known> with(Known known) const {
-    return {pressureRadius, inversePressureRadius, viscosityRadius, inverseViscosityRadius, densityFactor,
-            gradientFactor, viscousFactor,         known,           repulsionRadius};
+    return {pressureRadius, inversePressureRadius, viscosityRadius, inverseViscosityRadius, densityRadius,
+            densityFactor,  gradientFactor,        viscousFactor,   known,                  repulsionRadius};
+  }
+  /// Another weight of densities, of the same kind as that of pressures; lengths in metres.
+  void setDensityWeight(const Weight<D>& density) {
+    densityRadius = static_cast<T>(density.radius);
+    densityFactor = static_cast<T>(density.scale);
   }
 
   /// w
   template <class Factor, class Distance>
   TREACLE_HD auto density(Factor factor, const Distance& r) const {
-    const auto part = positivePart(T(1) - T(1) / (r.inverse * pressureRadius));
+    const auto part = positivePart(T(1) - T(1) / (r.inverse * densityRadius));
     if (weights.pressure == PressureWeight::Mps) return factor * part * part;
     const auto q = T(1) - part, square = part * part;
     if (weights.pressure == PressureWeight::WendlandC2) return factor * square * square * (T(1) + T(4) * q);
