@@ -52,7 +52,9 @@ __global__ void __launch_bounds__(32 * warpsPerBlock, 6) buildKernel(const __gri
     wraps |= __any_sync(~0u, (near || far) && e.image() != 0);
   });
   if (Fill || lane != 0) return;
-  const bool empty = a.onlyNextToFluid && next[static_cast<int>(ListSegment::NearFluid)] == 0;
+  const bool fluid =
+      next[static_cast<int>(ListSegment::NearFluid)] + next[static_cast<int>(ListSegment::FarFluid)] > 0;
+  const bool empty = a.onlyNextToFluid && !fluid;
   for (int s = 0; s < listSegments; ++s) offset[s + 1] = empty ? 0 : next[s];
   a.wraps[cluster] = wraps;
   if (cluster == 0) a.offset[0] = 0;

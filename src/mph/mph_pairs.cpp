@@ -11,8 +11,7 @@ MphPairs<D> makeMphPairs(const Case& c) {
   const double hp = c.pressureRadius(), hn = c.densityRadius(), hv = c.viscosityRadius();
   MphPairs<D> pairs;
   pairs.spacing = c.spacing;
-  pairs.grid =
-      CellGrid<D>::make(resized<D>(c.domain.min), resized<D>(c.domain.max), periodic, c.searchEdge());
+  pairs.grid = CellGrid<D>::make(resized<D>(c.domain.min), resized<D>(c.domain.max), periodic, c.searchEdge());
   pairs.images = periodicImages(pairs.grid);
   const auto pressureWeight = Weight<D>::make(hp, c.spacing, c.method.pressureWeight);
   pairs.terms = MphTerms<D>::make(pressureWeight, c.method.viscosityWeight, hv, c.spacing);

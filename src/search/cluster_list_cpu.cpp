@@ -121,7 +121,9 @@ void buildClusterList(Context<Cpu>&, const CellGrid<D>& grid, const CellRanges<>
       wraps = wraps || e.image() != 0;
     });
     list.wraps[c] = wraps;
-    if (onlyNextToFluid && count[static_cast<int>(ListSegment::NearFluid)] == 0) count = {};
+    const bool fluid =
+        count[static_cast<int>(ListSegment::NearFluid)] + count[static_cast<int>(ListSegment::FarFluid)] > 0;
+    if (onlyNextToFluid && !fluid) count = {};
     for (int s = 0; s < listSegments; ++s) list.offset[std::size_t{listSegments} * c + s + 1] = count[s];
   });
   for (std::size_t k = 1; k < list.offset.size(); ++k) list.offset[k] += list.offset[k - 1];

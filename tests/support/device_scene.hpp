@@ -63,6 +63,7 @@ struct DeviceScene {
   BucketLevels<Cuda> levels;
   Buffer<WallSurface<D>, Cuda> wallSurface;
   Buffer<SymmetricBlock<D>, Cuda> renormalisation;
+  Buffer<double, Cuda> viscosityScale;
   Buffer<Block<D>, Cuda> wallBlock;
   Buffer<Vec<D>, Cuda> wallGradient;
   MphPairs<D> pairs;  // looks at the members above
@@ -84,6 +85,10 @@ struct DeviceScene {
     if (!s.renormalisation.empty()) {
       copyToDevice<SymmetricBlock<D>>(context, s.renormalisation, renormalisation);
       pairs.renormalisation = renormalisation.data();
+    }
+    if (!s.viscosityScale.empty()) {
+      copyToDevice<double>(context, s.viscosityScale, viscosityScale);
+      pairs.viscosityScale = viscosityScale.data();
     }
     pairs.position = position;
     pairs.material = material;

@@ -175,7 +175,8 @@ double Oracle<D>::dissipation(const Vector& u) const {
       for (int k = 0; k < D; ++k) along += (u[D * j + k] - u[D * i + k]) * d[k] / r;
       for (int k = 0; k < D; ++k)
         for (int m = 0; m < D; ++m) divergence += (u[D * j + k] - u[D * i + k]) * b(k, m) * d[m] / r * dw(r, hp);
-      if (j > i) sum += mu(i, j) * pairScale(i, j) * wallFactor(i, j) / 2 * viscousBlock(r) * r * r * along * along;
+      if (j > i)
+        sum += mu(i, j) * pairScale(i, j) * wallFactor(i, j) / 2 * viscousBlock(r) * r * r * along * along;
     }
     sum += material(i).bulkViscosity / 2 * divergence * divergence;
   }

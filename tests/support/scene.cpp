@@ -2,6 +2,7 @@
 
 #include "treacle/model/case_keys.hpp"
 #include "treacle/mph/renormalisation.hpp"
+#include "treacle/mph/viscosity_scale.hpp"
 #include "treacle/mph/wall_surfaces.hpp"
 
 #include <cmath>
@@ -84,6 +85,11 @@ void prepare(Scene<D>& s) {
     s.renormalisation.resize(s.n());
     renormalisation<D>(s.context, s.pairs(), s.renormalisation.span());
     s.neighbourhood->setRenormalisation(s.renormalisation);
+  }
+  if (const double correction = s.c.method.viscosityCorrection; correction > 0) {
+    s.viscosityScale.resize(s.n());
+    viscosityScale<D>(s.context, s.pairs(), correction, s.viscosityScale.span());
+    s.neighbourhood->setViscosityScale(s.viscosityScale);
   }
   s.wallBlock.resize(s.n());
   s.wallGradient.resize(s.n());

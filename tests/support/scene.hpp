@@ -26,6 +26,7 @@ struct Scene {
   std::unique_ptr<MphNeighbourhood<D>> neighbourhood;
   Buffer<WallSurface<D>> wallSurface;         // per active wall particle
   Buffer<SymmetricBlock<D>> renormalisation;  // per fluid particle where the case has it
+  Buffer<double> viscosityScale;              // likewise
   Buffer<Block<D>> wallBlock;
   Buffer<Vec<D>> wallGradient;
 

@@ -276,7 +276,7 @@ struct Case {
   SolverSettings solver;
   OutputSettings output;
 
-  double pressureRadius() const { return method.pressureRadius * spacing; }    // h_p [m]
+  double pressureRadius() const { return method.pressureRadius * spacing; }  // h_p [m]
   /// h_n [m]
   double densityRadius() const { return std::max(method.densityRadius, method.pressureRadius) * spacing; }
   double viscosityRadius() const { return method.viscosityRadius * spacing; }  // h_v [m]

@@ -68,7 +68,7 @@ template <int D, class T = double, class Weights = CaseWeights>
 struct MphTerms {
   T pressureRadius, inversePressureRadius;    // h_p, 1/h_p
   T viscosityRadius, inverseViscosityRadius;  // h_v, 1/h_v
-  T densityRadius;  // h_n
+  T densityRadius;                            // h_n
   T densityFactor, gradientFactor, viscousFactor;
   Weights weights;
   T repulsionRadius = 0;  // r_0; 0: no repulsion
@@ -90,17 +90,23 @@ struct MphTerms {
   /// The same for lengths in another unit [m]. Pair blocks d d^T and gradients d are still those per metre.
   template <class U>
   MphTerms<D, U, Weights> inUnitsOf(double unit) const {
-    return {static_cast<U>(pressureRadius / unit),  static_cast<U>(inversePressureRadius * unit),
-            static_cast<U>(viscosityRadius / unit), static_cast<U>(inverseViscosityRadius * unit),
-            static_cast<U>(densityRadius / unit),   static_cast<U>(densityFactor),
-            static_cast<U>(gradientFactor),         static_cast<U>(viscousFactor / unit),
-            weights,                                static_cast<U>(repulsionRadius / unit)};
+    return {static_cast<U>(pressureRadius / unit),
+            static_cast<U>(inversePressureRadius * unit),
+            static_cast<U>(viscosityRadius / unit),
+            static_cast<U>(inverseViscosityRadius * unit),
+            static_cast<U>(densityRadius / unit),
+            static_cast<U>(densityFactor),
+            static_cast<U>(gradientFactor),
+            static_cast<U>(viscousFactor / unit),
+            weights,
+            static_cast<U>(repulsionRadius / unit)};
   }
   /// The same with their weights known.
   template <class Known>
   MphTerms<D, T, Known> with(Known known) const {
-    return {pressureRadius, inversePressureRadius, viscosityRadius, inverseViscosityRadius, densityRadius,
-            densityFactor,  gradientFactor,        viscousFactor,   known,                  repulsionRadius};
+    return {pressureRadius, inversePressureRadius, viscosityRadius, inverseViscosityRadius,
+            densityRadius,  densityFactor,         gradientFactor,  viscousFactor,
+            known,          repulsionRadius};
   }
   /// Another weight of densities, of the same kind as that of pressures; lengths in metres.
   void setDensityWeight(const Weight<D>& density) {

@@ -81,8 +81,8 @@ struct ListRadii {
 template <int D>
 PeriodicImages<D> periodicImages(const CellGrid<D>& grid);
 
-/// Builds the lists of particles [first, last). With `onlyNextToFluid`, clusters that have no fluid within the
-/// near radius get empty lists (walls: only those matter).
+/// Builds the lists of particles [first, last). With `onlyNextToFluid`, clusters that have no fluid within
+/// reach get empty lists (walls: only those matter).
 template <int D>
 void buildClusterList(Context<Cpu>&, const CellGrid<D>& grid, const CellRanges<>& ranges,
                       std::span<const Vec<D>> position, std::uint32_t first, std::uint32_t last, ListRadii radii,

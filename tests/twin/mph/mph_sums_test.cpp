@@ -6,6 +6,7 @@
 #include "treacle/mph/mph_operator.hpp"
 #include "treacle/mph/mph_repulsion.hpp"
 #include "treacle/mph/renormalisation.hpp"
+#include "treacle/mph/viscosity_scale.hpp"
 
 #include <gtest/gtest.h>
 
@@ -60,6 +61,14 @@ struct SumsTwin {
     Buffer<SymmetricBlock<D>, Cuda> found(d.context, n);
     renormalisation<D>(d.context, d.pairs, found.span());
     EXPECT_LE(difference<SymmetricBlock<D>>(d.context, s.renormalisation.span(), found), kernelTolerance);
+  }
+
+  void checkViscosityScale() {
+    Buffer<double> expected(n);
+    Buffer<double, Cuda> found(d.context, n);
+    viscosityScale<D>(s.context, s.pairs(), 0.7, expected.span());
+    viscosityScale<D>(d.context, d.pairs, 0.7, found.span());
+    EXPECT_LE(difference<double>(d.context, expected.span(), found), kernelTolerance);
   }
 
   void checkScalars() {
@@ -153,6 +162,7 @@ void checkAll(bool lists) {
                      << ", " << (twoMaterials ? 2 : 1) << " materials");
         SumsTwin<D> twin(walls, lists, twoMaterials, scheme);
         twin.checkRenormalisation();
+        twin.checkViscosityScale();
         twin.checkScalars();
         twin.checkVectors();
         twin.checkWallTerms();

@@ -7,8 +7,8 @@ namespace treacle::test {
 namespace {
 
 template <int D>
-void checkNumberDensity(Walls walls) {
-  Scene<D> s = makeScene<D>({.walls = walls});
+void checkNumberDensity(Walls walls, SchemeKind scheme) {
+  Scene<D> s = makeScene<D>({.walls = walls, .scheme = scheme});
   const Oracle<D> oracle(s);
   std::vector<double> n(s.pairs().activeCount);
   numberDensity<D>(s.context, s.pairs(), n);
@@ -21,9 +21,11 @@ void checkNumberDensity(Walls walls) {
 }
 
 TEST(NumberDensity, EqualsTheSumOverAllParticles) {
-  checkNumberDensity<2>(Walls::Floor);
-  checkNumberDensity<3>(Walls::Floor);
-  checkNumberDensity<2>(Walls::None);
+  for (const SchemeKind scheme : bothSchemes) {
+    checkNumberDensity<2>(Walls::Floor, scheme);
+    checkNumberDensity<3>(Walls::Floor, scheme);
+    checkNumberDensity<2>(Walls::None, scheme);
+  }
 }
 
 template <int D>
