@@ -49,7 +49,7 @@ MethodSettings defaultMethod(SchemeKind scheme) {
   method.scheme = scheme;
   if (scheme == SchemeKind::Published) return method;
   method.pressureWeight = PressureWeight::WendlandC2;
-  method.viscosityWeight = ViscosityWeight::Biquadratic;
+  method.viscosityWeight = ViscosityWeight::Quadratic;
   method.wallVelocity = WallVelocity::Extrapolated;
   method.pressureGradient = PressureGradient::Renormalised;
   method.pressureRadius = 2.5;

@@ -43,18 +43,22 @@ double Oracle<D>::dw(double r, double h) const {
   return r > h ? 0 : std::pow(l / h, D) / (D == 2 ? f.integral2D : f.integral3D) * f.slope(r / h) / h;
 }
 
-/// With the weight of [K23] what its eq. (4) makes of it. For c = A (1 - r^2/h^2)^2 / r^2 a full neighbourhood has
-/// the viscosity 1 where the integral of c r^4 is 2 D (D + 2) l^D.
+/// With the weight of [K23] what its eq. (4) makes of it. For c = A f(r/h) / r^2 a full neighbourhood has the
+/// viscosity 1 where the integral of c r^4 is 2 D (D + 2) l^D; `moment` is the integral of f(q) q^(D+1) from 0
+/// to 1.
 template <int D>
 double Oracle<D>::viscousBlock(double r) const {
-  if (r > hv) return 0;
+  const double q = r / hv;
+  if (q > 1) return 0;
   if (s.c.method.viscosityWeight == ViscosityWeight::Mps) {
     const double integral = D == 2 ? M_PI / 6 : 2 * M_PI / 15;
-    return 4 * (D + 2) * std::pow(l / hv, D) / (integral * hv) * (1 - r / hv) / std::pow(r, 3);
+    return 4 * (D + 2) * std::pow(l / hv, D) / (integral * hv) * (1 - q) / std::pow(r, 3);
   }
-  const double sphere = D == 2 ? 2 * M_PI : 4 * M_PI, moment = D == 2 ? 1.0 / 24 : 8.0 / 315;
-  return 2 * D * (D + 2) * std::pow(l, D) / (sphere * moment * std::pow(hv, D + 2)) *
-         std::pow(1 - r * r / (hv * hv), 2) / (r * r);
+  const bool quadratic = s.c.method.viscosityWeight == ViscosityWeight::Quadratic;
+  const double sphere = D == 2 ? 2 * M_PI : 4 * M_PI;
+  const double moment = quadratic ? (D == 2 ? 1.0 / 105 : 1.0 / 168) : (D == 2 ? 1.0 / 24 : 8.0 / 315);
+  const double f = quadratic ? q * std::pow(1 - q, 2) : std::pow(1 - q * q, 2);
+  return 2 * D * (D + 2) * std::pow(l, D) / (sphere * moment * std::pow(hv, D + 2)) * f / (r * r);
 }
 
 /// The viscous force of a pair that parts to 0.53 l in a step.

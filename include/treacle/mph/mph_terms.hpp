@@ -53,7 +53,7 @@ struct KnownWeights {
 };
 /// Those of the schemes: of [K23], and what `scheme = "accurate"` takes unless told otherwise.
 using PublishedWeights = KnownWeights<PressureWeight::Mps, ViscosityWeight::Mps>;
-using AccurateWeights = KnownWeights<PressureWeight::WendlandC2, ViscosityWeight::Biquadratic>;
+using AccurateWeights = KnownWeights<PressureWeight::WendlandC2, ViscosityWeight::Quadratic>;
 
 /// What a pair of particles does in MPH-I, d = x_j - x_i and r = |d|, e = d/r:
 ///   number density   n_i = sum of density, whose radius may be larger           [K23 eq. (7)]

@@ -7,7 +7,8 @@ namespace {
 
 constexpr PressureWeight pressureWeights[] = {PressureWeight::Mps, PressureWeight::WendlandC2,
                                               PressureWeight::WendlandC4};
-constexpr ViscosityWeight viscosityWeights[] = {ViscosityWeight::Mps, ViscosityWeight::Biquadratic};
+constexpr ViscosityWeight viscosityWeights[] = {ViscosityWeight::Mps, ViscosityWeight::Biquadratic,
+                                                ViscosityWeight::Quadratic};
 
 /// Of f(r) over all space, by the midpoint rule; the volume element is 2 pi r dr or 4 pi r^2 dr.
 template <int D, class F>
