@@ -59,7 +59,8 @@ __device__ void walkLists(const ClusterListView& list, std::uint32_t cluster, in
 }
 
 /// The same from the cell ranges: candidates within reach are queued until a warp has enough of them. All of them
-/// count as near: terms vanish beyond their radius by themselves. Returns whether there was fluid.
+/// count as near: terms vanish beyond their radius by themselves. Returns whether sums over walls count: those of
+/// walls do if there is fluid where their lists would look for it.
 template <class Terms, class S, int D, class Visit>
 __device__ bool walkRanges(const MphPairs<D>& pairs, std::uint32_t first, std::uint32_t count, Visit&& visit) {
   __shared__ ListEntry queues[S::warpsPerBlock][64];
@@ -68,7 +69,10 @@ __device__ bool walkRanges(const MphPairs<D>& pairs, std::uint32_t first, std::u
   __shared__ typename ClusterCandidates<D>::Shared shared[S::warpsPerBlock];
   const ClusterCandidates<D> candidates(pairs.grid, pairs.cells, pairs.position.data(), first, count,
                                         shared[threadIdx.x / 32]);
-  const auto pass = [&](bool walls, bool counts, double radius) {
+  const bool ofFluid = first < pairs.fluidCount;
+  const double near =
+      ofFluid ? pairs.terms.pressureRadius : fmax(pairs.terms.pressureRadius, pairs.terms.densityRadius);
+  const auto pass = [&](bool walls, bool counts, double far) {
     int queued = 0;
     bool any = false;
     const auto work = [&](int entries) {
@@ -77,10 +81,11 @@ __device__ bool walkRanges(const MphPairs<D>& pairs, std::uint32_t first, std::u
         visit(queue[k], walls ? ListSegment::NearWall : ListSegment::NearFluid);
       __syncwarp();
     };
-    candidates.forEach({radius, 0}, !walls, walls, [&](ListEntry e, bool near, bool, bool) {
-      const unsigned hits = __ballot_sync(~0u, near);
-      if (near && counts) queue[queued + __popc(hits & ((1u << lane) - 1))] = e;
-      any |= hits != 0;
+    candidates.forEach({near, far}, !walls, walls, [&](ListEntry e, bool isNear, bool isFar, bool) {
+      const bool hit = isNear || isFar;
+      const unsigned hits = __ballot_sync(~0u, hit);
+      if (hit && counts) queue[queued + __popc(hits & ((1u << lane) - 1))] = e;
+      any |= __any_sync(~0u, isNear) != 0;
       if (!counts) return;
       queued += __popc(hits);
       if (queued < 32) return;
@@ -93,14 +98,12 @@ __device__ bool walkRanges(const MphPairs<D>& pairs, std::uint32_t first, std::u
     return any;
   };
   constexpr bool usesFluid = Terms::uses(ListSegment::NearFluid), usesWalls = Terms::uses(ListSegment::NearWall);
-  const auto radius = [&](ListSegment far) {
-    const double near = pairs.terms.pressureRadius;
-    return Terms::uses(far) ? fmax(pairs.terms.densityRadius, pairs.terms.viscosityRadius) : near;
+  const auto far = [&](ListSegment segment) {
+    return Terms::uses(segment) ? fmax(pairs.terms.densityRadius, pairs.terms.viscosityRadius) : 0.0;
   };
-  const bool fluid =
-      usesFluid || first >= pairs.fluidCount ? pass(false, usesFluid, radius(ListSegment::FarFluid)) : true;
-  if (usesWalls) pass(true, true, radius(ListSegment::FarWall));
-  return fluid;
+  const bool fluid = usesFluid || !ofFluid ? pass(false, usesFluid, far(ListSegment::FarFluid)) : true;
+  if (usesWalls) pass(true, true, far(ListSegment::FarWall));
+  return fluid || !usesWalls;
 }
 
 }  // namespace treacle
