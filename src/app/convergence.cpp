@@ -33,6 +33,8 @@ StartState startOf(Case& until, const ConvergenceOptions& options, AnyParticles 
   StartState start{std::move(made)};
   if (!options.resume.empty()) start = fittingState(until, options.resume, start.particles);
   until.time.end = options.at.value_or(start.time);
+  if (const double steps = until.time.end / until.time.step; steps > maxSteps)
+    throw InputError(fmt::format("--at: {:.3g} steps to it are too many", steps));
   if (until.time.stepsVary() ? until.time.end < start.time * (1 - 1e-9) : until.steps() < start.step)
     throw InputError(fmt::format("--at: expected at least the checkpoint's time, {:g} s, found {:g}", start.time,
                                  until.time.end));

@@ -96,6 +96,8 @@ template <class Vector>
 struct Gravity {
   Vector& acceleration;
 };
+template <class Vector>
+Gravity(Vector&) -> Gravity<Vector>;  // clang 14 does not find it by itself
 
 /// Whether a method can do with it.
 constexpr bool fits(PreconditionerKind preconditioner, MethodKind method) {
