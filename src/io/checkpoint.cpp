@@ -2,6 +2,7 @@
 
 #include "checksum.hpp"
 #include "hdf5.hpp"
+#include "posix.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/io/atomic_file.hpp"
 #include "treacle/model/create.hpp"
@@ -274,6 +275,30 @@ void requireReadable(const std::filesystem::path& path) {
     throw InputError(fmt::format("{}: not a treacle checkpoint: not an HDF5 file", path.string()));
 }
 
+/// Errors: Hdf5Error.
+template <int D>
+Checkpoint<D> readContent(const std::filesystem::path& path, bool sealed) {
+  const Hdf5Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  const std::int32_t version = requireFormat(file, D);
+  Checkpoint<D> checkpoint;
+  readNumbers(file, checkpoint);
+  if (version >= 4) checkpoint.method = readMethod(file);
+  if (version >= 4 && !sealed) throw Hdf5Error("its checksum is missing");
+  Particles<D>& particles = checkpoint.particles;
+  std::uint32_t modes = 0;
+  if (version >= 3) modes = readModeNumbers(file, particles.modes.age);
+  const auto read = [&]<class T>(const FieldInfo& info, Buffer<T>& field) {
+    if (version >= info.since) return readField(file, info, field);
+    field.resize(info.count);
+    T older{};
+    if constexpr (std::is_integral_v<T>) older = static_cast<T>(info.older);
+    std::fill(field.begin(), field.end(), older);
+  };
+  forEachNamedField(particles, std::uint64_t{particles.fluidCount} * modes, read);
+  requireSound(particles);
+  return checkpoint;
+}
+
 }  // namespace
 
 template <int D>
@@ -309,32 +334,18 @@ template <int D>
 Checkpoint<D> readCheckpoint(const std::filesystem::path& path) {
   const Hdf5Silence silence;
   requireReadable(path);
-  // Before HDF5 sees the file: it trusts what it reads, and a damaged one can end the program.
+  // HDF5 trusts what it reads, and a damaged file can end the program: what has a checksum is looked at before,
+  // what has none, as files of earlier versions, is tried in another process.
   const std::optional<bool> sealed = checksumHolds(path);
-  if (sealed && !*sealed)
-    throw InputError(fmt::format("{}: no usable checkpoint: damaged, its checksum is another one", path.string()));
+  const auto refuse = [&](std::string_view why) {
+    return InputError(fmt::format("{}: no usable checkpoint: {}", path.string(), why));
+  };
+  if (sealed && !*sealed) throw refuse("damaged, its checksum is another one");
+  if (!sealed && !survives([&] { readContent<D>(path, false); })) throw refuse("damaged");
   try {
-    const Hdf5Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
-    const std::int32_t version = requireFormat(file, D);
-    Checkpoint<D> checkpoint;
-    readNumbers(file, checkpoint);
-    if (version >= 4) checkpoint.method = readMethod(file);
-    if (version >= 4 && !sealed) throw Hdf5Error("its checksum is missing");
-    Particles<D>& particles = checkpoint.particles;
-    std::uint32_t modes = 0;
-    if (version >= 3) modes = readModeNumbers(file, particles.modes.age);
-    const auto read = [&]<class T>(const FieldInfo& info, Buffer<T>& field) {
-      if (version >= info.since) return readField(file, info, field);
-      field.resize(info.count);
-      T older{};
-      if constexpr (std::is_integral_v<T>) older = static_cast<T>(info.older);
-      std::fill(field.begin(), field.end(), older);
-    };
-    forEachNamedField(particles, std::uint64_t{particles.fluidCount} * modes, read);
-    requireSound(particles);
-    return checkpoint;
+    return readContent<D>(path, sealed.has_value());
   } catch (const Hdf5Error& e) {
-    throw InputError(fmt::format("{}: no usable checkpoint: {}", path.string(), e.what()));
+    throw refuse(e.what());
   }
 }
 

@@ -1,8 +1,8 @@
 // Checkpoints. The checksum is made anew, or none would be read; files of earlier versions have none.
 
+#include "treacle/io/checkpoint.hpp"
 #include "checksum.hpp"
 #include "input_file.hpp"
-#include "treacle/io/checkpoint.hpp"
 
 using namespace treacle;
 

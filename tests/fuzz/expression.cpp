@@ -1,7 +1,7 @@
 // Expressions of a case, such as those of `where`.
 
-#include "input_file.hpp"
 #include "treacle/model/expression.hpp"
+#include "input_file.hpp"
 
 #include <string>
 

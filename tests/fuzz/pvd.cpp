@@ -1,7 +1,7 @@
 // Indices of frames. Times must ascend.
 
-#include "input_file.hpp"
 #include "treacle/io/pvd.hpp"
+#include "input_file.hpp"
 
 using namespace treacle;
 

@@ -2,6 +2,7 @@
 
 #include "checksum.hpp"
 #include "limited_files.hpp"
+#include "posix.hpp"
 #include "support/temporary_directory.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/io/atomic_file.hpp"
@@ -12,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <csignal>
 #include <cstring>
 #include <numeric>
 #include <random>
@@ -334,6 +336,29 @@ TEST(Checkpoint, AChangedByteIsFoundWhereverItIs) {
   for (std::size_t k = 0; k < whole.size(); k += 7) {
     std::string changed = whole;
     changed[k] = static_cast<char>(changed[k] ^ 1 << k % 8);
+    put(path, changed);
+    refusal<2>(path);
+  }
+}
+
+TEST(Survives, TellsASignalFromAnException) {
+  EXPECT_TRUE(survives([] {}));
+  EXPECT_TRUE(survives([] { throw InputError("no"); }));
+  for (const int signal : {SIGSEGV, SIGABRT, SIGBUS}) EXPECT_FALSE(survives([signal] { ::raise(signal); }));
+}
+
+TEST(Checkpoint, DamageThatHdf5DoesNotSurviveIsFoundInFilesWithoutAChecksum) {
+  TemporaryDirectory directory;
+  const auto path = directory / "c.h5";
+  writeCheckpoint<2>(path, randomParticles<2>(5, 5), 1, 1, MethodKind::MphI);
+  changeAttribute(path, "version", 3);
+  std::string whole = content(path);
+  whole.resize(whole.size() - sizeof(ChecksumRecord));
+  // The attribute, as HDF5 keeps it: sizes of name, type and extents, 2 bytes each, before the name.
+  const std::size_t name = whole.find("fluid_count");
+  for (const char size : {'\x7f', '\xff', '\x10'}) {
+    std::string changed = whole;
+    changed[name - 1] = size;
     put(path, changed);
     refusal<2>(path);
   }
