@@ -4,6 +4,7 @@
 #include "memory.hpp"
 #include "print.hpp"
 #include "run_log.hpp"
+#include "threads.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/io/case_reader.hpp"
 #include "treacle/model/checks.hpp"
@@ -55,6 +56,7 @@ void printNumbers(const Case& c) {
 }  // namespace
 
 void checkCommand(const CaseOptions& options) {
+  startThreads(0);
   const Case c = readCase(options.file, options.overrides);
   std::vector<std::string> warnings;
   std::vector<std::uint32_t> ofBodies;

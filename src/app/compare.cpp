@@ -3,6 +3,7 @@
 #include "compare_files.hpp"
 #include "compare_tables.hpp"
 #include "print.hpp"
+#include "threads.hpp"
 #include "treacle/core/error.hpp"
 
 #include <fmt/format.h>
@@ -43,6 +44,7 @@ void printVerdict(const RunDifference& difference, const CompareOptions& options
 }  // namespace
 
 bool compareCommand(const CompareOptions& options) {
+  startThreads(0);
   if (isParticleFile(options.a) || isParticleFile(options.b)) return compareFiles(options);
   if (options.time)
     throw InputError("--time: two runs are compared at all times that they share; expected a CSV file as A or B");

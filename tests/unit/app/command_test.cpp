@@ -297,9 +297,11 @@ TEST(run, needsThreadsThatTheMachineStarts) {
   Outcome outcome = prepared(shop).call("run small.toml --threads 300", "ulimit -v 1000000;");
   EXPECT_EQ(outcome.exitCode, 2);
   EXPECT_THAT(outcome.err, ContainsRegex("--threads 300: this machine starts no more than [0-9]+ threads"));
-  outcome = shop.call("run small.toml", "export OMP_NUM_THREADS=100000;");
-  EXPECT_EQ(outcome.exitCode, 2);
-  EXPECT_THAT(outcome.err, HasSubstr("OMP_NUM_THREADS: expected at most 1024 threads, found 100000"));
+  for (const char* command : {"run small.toml", "check small.toml", "compare a b"}) {
+    outcome = shop.call(command, "export OMP_NUM_THREADS=100000;");
+    EXPECT_EQ(outcome.exitCode, 2) << command;
+    EXPECT_THAT(outcome.err, HasSubstr("OMP_NUM_THREADS: expected at most 1024 threads, found 100000"));
+  }
 }
 
 TEST(check, warnsWhereThisMachineHasNotTheMemory) {
