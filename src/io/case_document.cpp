@@ -50,16 +50,20 @@ std::size_t lineOfDeepKey(std::string_view text) {
   constexpr std::size_t deepest = 256;
   constexpr std::string_view within = " \t_-";
   std::size_t line = 1, parts = 0;
+  std::string unended;  // quotes of this line that nothing ends; then nothing ends later ones either
   for (std::size_t k = 0; k < text.size(); ++k) {
     const char c = text[k];
     if (c == '.' && ++parts > deepest) return line;
     if (c == '"' || c == '\'') {
-      k = endOfQuoted(text, k);
+      if (unended.find(c) != unended.npos) continue;
+      const std::size_t end = endOfQuoted(text, k);
+      if (end == k) unended += c;
+      k = end;
       continue;
     }
     const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
     if (c != '.' && !letter && within.find(c) == within.npos) parts = 0;
-    if (c == '\n') ++line;
+    if (c == '\n') ++line, unended.clear();
   }
   return 0;
 }

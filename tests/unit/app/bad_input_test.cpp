@@ -563,6 +563,15 @@ TEST(BadText, keysInKeysInKeysAreRefused) {
     EXPECT_THAT(outcome.err, StartsWith(std::string("treacle: error: ") + name + ".toml:41")) << name;
     EXPECT_LT(outcome.err.size(), 300u);
   }
+  // A text that ends in the middle of a line, and quotes that nothing ends: looked at once and not again and
+  // again.
+  shop.put("text.toml", smallCase + "a = {b = \"\"\"c\"d\"\"\", " + plain + " = 1}\n");
+  EXPECT_THAT(shop.call("check text.toml").err,
+              StartsWith("treacle: error: text.toml:41: not valid TOML for a case"));
+  std::string unended = "title = \"";
+  while (unended.size() < 3000000) unended += "\\\"";
+  shop.put("unended.toml", unended);
+  EXPECT_EQ(shop.call("check unended.toml", "timeout 20").exitCode, 2);
   const Outcome outcome = shop.call("check small.toml --set " + plain + "=1");
   EXPECT_EQ(outcome.exitCode, 2);
   EXPECT_THAT(outcome.err, HasSubstr("found a key of hundreds of parts"));
