@@ -2,7 +2,10 @@
 #include "commands.hpp"
 #include "machine.hpp"
 #include "memory.hpp"
+#include "print.hpp"
 #include "run_log.hpp"
+#include "threads.hpp"
+#include "treacle/core/error.hpp"
 #include "treacle/io/case_reader.hpp"
 #include "treacle/model/checks.hpp"
 #include "treacle/model/create.hpp"
@@ -17,34 +20,34 @@ namespace treacle {
 namespace {
 
 void printMemory(const Case& c, ParticleNumbers particles) {
-  fmt::print("# memory: about {} needed, {} available\n", bytesText(estimatedMemory(c, particles, false)),
-             bytesText(availableMemory()));
+  print("# memory: about {} needed, {} available\n", bytesText(estimatedMemory(c, particles, false)),
+        bytesText(availableMemory()));
   const auto device = deviceFor(BackendChoice::Auto);
-  fmt::print("# device memory: about {} needed", bytesText(estimatedDeviceMemory(c, particles)));
-  if (device) fmt::print(", {} available on {}", bytesText(device->freeMemory), device->name);
-  fmt::print("; beside it about {} of the host\n", bytesText(estimatedMemory(c, particles, true)));
+  print("# device memory: about {} needed", bytesText(estimatedDeviceMemory(c, particles)));
+  if (device) print(", {} available on {}", bytesText(device->freeMemory), device->name);
+  print("; beside it about {} of the host\n", bytesText(estimatedMemory(c, particles, true)));
 }
 
 void printParticles(const Case& c, ParticleNumbers particles, const std::vector<std::uint32_t>& ofBodies) {
-  fmt::print("# particles: {} fluid, {} wall\n", particles.fluid, particles.wall);
+  print("# particles: {} fluid, {} wall\n", particles.fluid, particles.wall);
   for (std::size_t b = 0; b < c.bodies.size(); ++b)
-    fmt::print("#   {} '{}': {}\n", nameOf(c.bodies[b].kind), c.bodies[b].name, ofBodies[b]);
+    print("#   {} '{}': {}\n", nameOf(c.bodies[b].kind), c.bodies[b].name, ofBodies[b]);
   printMemory(c, particles);
 }
 
 void printNumbers(const Case& c) {
   if (c.time.stepsVary())
-    fmt::print("# steps: {:.0f} or more\n", std::ceil(c.time.end / c.time.step * (1 - 1e-9)));
+    print("# steps: {:.0f} or more\n", std::ceil(c.time.end / c.time.step * (1 - 1e-9)));
   else
-    fmt::print("# steps: {}\n", c.steps());
-  fmt::print("# solver: {}\n", solverText(solveStages(c).front()));
-  if (c.method.kind == MethodKind::Isph) fmt::print("# viscous step: {}\n", viscousText(c));
-  fmt::print("# Courant number: {:.4g}\n", courantNumber(c));
+    print("# steps: {}\n", c.steps());
+  print("# solver: {}\n", solverText(solveStages(c).front()));
+  if (c.method.kind == MethodKind::Isph) print("# viscous step: {}\n", viscousText(c));
+  print("# Courant number: {:.4g}\n", courantNumber(c));
   for (const StabilityNumbers& n : stabilityNumbers(c))
     if (c.method.kind == MethodKind::Isph)
-      fmt::print("# material '{}': diffusion number d_mu = {:.4g}\n", n.material, n.shearDiffusion);
+      print("# material '{}': diffusion number d_mu = {:.4g}\n", n.material, n.shearDiffusion);
     else
-      fmt::print(
+      print(
           "# material '{}': dt kappa / lambda = {:.4g} (stable up to 1), diffusion numbers d_mu = {:.4g}, "
           "d_lambda = {:.4g}\n",
           n.material, n.compression, n.shearDiffusion, n.bulkDiffusion);
@@ -53,15 +56,21 @@ void printNumbers(const Case& c) {
 }  // namespace
 
 void checkCommand(const CaseOptions& options) {
+  startThreads(0);
   const Case c = readCase(options.file, options.overrides);
   std::vector<std::string> warnings;
   std::vector<std::uint32_t> ofBodies;
   const ParticleNumbers particles = createParticles(c, warnings, &ofBodies).numbers();
   for (std::string& warning : caseWarnings(c)) warnings.push_back(std::move(warning));
+  try {
+    requireMemory(c, particles, nullptr);
+  } catch (const RunError& error) {  // of this machine: the case may be meant for another one
+    warnings.push_back(error.what());
+  }
   printParticles(c, particles, ofBodies);
   printNumbers(c);
-  fmt::print("\n{}", caseText(c));
-  std::fflush(stdout);
+  print("\n{}", caseText(c));
+  flushPrinted();
   for (const std::string& warning : warnings) printWarning(warning);
 }
 

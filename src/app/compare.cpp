@@ -2,6 +2,8 @@
 #include "commands.hpp"
 #include "compare_files.hpp"
 #include "compare_tables.hpp"
+#include "print.hpp"
+#include "threads.hpp"
 #include "treacle/core/error.hpp"
 
 #include <fmt/format.h>
@@ -11,38 +13,38 @@ namespace {
 
 void printUnmatched(const std::filesystem::path& run, const std::vector<double>& times) {
   if (times.empty()) return;
-  fmt::print("frames of {} without a partner, t [s]:", run.string());
-  for (const double time : times) fmt::print(" {:.6g}", time);
-  fmt::print("\n");
+  print("frames of {} without a partner, t [s]:", run.string());
+  for (const double time : times) print(" {:.6g}", time);
+  print("\n");
 }
 
 void printHistory(const HistoryDifference& h) {
   if (h.rows == 0) {
-    fmt::print("histories: no time step in both\n");
+    print("histories: no time step in both\n");
     return;
   }
-  fmt::print("histories: {} time steps in both\n", h.rows);
-  fmt::print("  iterations, mean: {:.2f} and {:.2f}; largest difference in the first 10 steps: {}\n",
-             h.meanIterationsA, h.meanIterationsB, h.earlyIterations);
-  fmt::print("  relative differences at t = {:.6g} s: front_x {:.2e}, top {:.2e}, kinetic_energy {:.2e}\n", h.time,
-             h.frontX, h.top, h.kineticEnergy);
+  print("histories: {} time steps in both\n", h.rows);
+  print("  iterations, mean: {:.2f} and {:.2f}; largest difference in the first 10 steps: {}\n", h.meanIterationsA,
+        h.meanIterationsB, h.earlyIterations);
+  print("  relative differences at t = {:.6g} s: front_x {:.2e}, top {:.2e}, kinetic_energy {:.2e}\n", h.time,
+        h.frontX, h.top, h.kineticEnergy);
 }
 
 void printVerdict(const RunDifference& difference, const CompareOptions& options,
                   const std::optional<Excess>& excess) {
   if (excess) {
     const FrameDifference& frame = difference.frames[excess->index];
-    fmt::print("differ: {} by {:.2e} at t = {:.6g} s (frames {} and {}), bound {:g}\n", nameOf(excess->field),
-               frame[excess->field]->relative, frame.time, frame.frameA, frame.frameB, options.bound);
+    print("differ: {} by {:.2e} at t = {:.6g} s (frames {} and {}), bound {:g}\n", nameOf(excess->field),
+          frame[excess->field]->relative, frame.time, frame.frameA, frame.frameB, options.bound);
     return;
   }
-  fmt::print("agree within {:g} in {} frames: {}\n", options.bound, difference.frames.size(),
-             listOf(options.fields));
+  print("agree within {:g} in {} frames: {}\n", options.bound, difference.frames.size(), listOf(options.fields));
 }
 
 }  // namespace
 
 bool compareCommand(const CompareOptions& options) {
+  startThreads(0);
   if (isParticleFile(options.a) || isParticleFile(options.b)) return compareFiles(options);
   if (options.time)
     throw InputError("--time: two runs are compared at all times that they share; expected a CSV file as A or B");

@@ -1,6 +1,7 @@
 #include "compare_files.hpp"
 
 #include "compare_tables.hpp"
+#include "print.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/io/case_reader.hpp"
 #include "treacle/io/compare_sets.hpp"
@@ -113,9 +114,9 @@ void requireFields(const FrameDifference& frame, const Side& a, const Side& b,
 }
 
 void printTable(const Comparison& c, const Side& a, const Side& b, bool timed) {
-  fmt::print("A: {}, {} particles\nB: {}, {} particles\n", a.name, a.frame.position.size(), b.name,
-             b.frame.position.size());
-  if (timed) fmt::print("frame at t = {:.6g} s\n", c.difference.frames.front().time);
+  print("A: {}, {} particles\nB: {}, {} particles\n", a.name, a.frame.position.size(), b.name,
+        b.frame.position.size());
+  if (timed) print("frame at t = {:.6g} s\n", c.difference.frames.front().time);
   if (c.measures.empty())
     printFrames(c.difference.frames);
   else
@@ -132,10 +133,10 @@ void writeTable(const Comparison& c, const std::filesystem::path& path) {
 void printVerdict(const FrameDifference& frame, const CompareOptions& options,
                   const std::optional<Excess>& excess) {
   if (excess)
-    fmt::print("differ: {} by {:.2e}, bound {:g}\n", nameOf(excess->field), frame[excess->field]->relative,
-               options.bound);
+    print("differ: {} by {:.2e}, bound {:g}\n", nameOf(excess->field), frame[excess->field]->relative,
+          options.bound);
   else
-    fmt::print("agree within {:g}: {}\n", options.bound, listOf(options.fields));
+    print("agree within {:g}: {}\n", options.bound, listOf(options.fields));
 }
 
 }  // namespace

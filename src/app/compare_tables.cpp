@@ -1,4 +1,5 @@
 #include "compare_tables.hpp"
+#include "print.hpp"
 
 #include <fmt/format.h>
 
@@ -7,20 +8,20 @@
 namespace treacle {
 
 void printFrames(std::span<const FrameDifference> frames) {
-  fmt::print("{:>12}", "");
+  print("{:>12}", "");
   for (const char* field : {"position [m]", "velocity [m/s]", "pressure [Pa]", "number density"})
-    fmt::print("  {:>27}", field);
-  fmt::print("\n{:>12}", "t [s]");
-  for (std::size_t k = 0; k < comparedFieldCount; ++k) fmt::print("  {:>9}{:>9}{:>9}", "max", "rms", "relative");
-  fmt::print("\n");
+    print("  {:>27}", field);
+  print("\n{:>12}", "t [s]");
+  for (std::size_t k = 0; k < comparedFieldCount; ++k) print("  {:>9}{:>9}{:>9}", "max", "rms", "relative");
+  print("\n");
   for (const FrameDifference& frame : frames) {
-    fmt::print("{:12.6g}", frame.time);
+    print("{:12.6g}", frame.time);
     for (const auto& d : frame.fields)
       if (d)
-        fmt::print("  {:9.2e}{:9.2e}{:9.2e}", d->maximum, d->rms, d->relative);
+        print("  {:9.2e}{:9.2e}{:9.2e}", d->maximum, d->rms, d->relative);
       else
-        fmt::print("  {0:>9}{0:>9}{0:>9}", "-");
-    fmt::print("\n");
+        print("  {0:>9}{0:>9}{0:>9}", "-");
+    print("\n");
   }
 }
 
@@ -28,11 +29,11 @@ void printMeasures(std::span<const SetMeasure> measures) {
   const auto number = [](const std::optional<double>& x, const char* format) {
     return x ? fmt::format(fmt::runtime(format), *x) : std::string("-");
   };
-  fmt::print("{:24}{:>14}{:>14}{:>12}{:>12}\n", "", "A", "B", "difference", "relative");
+  print("{:24}{:>14}{:>14}{:>12}{:>12}\n", "", "A", "B", "difference", "relative");
   for (const SetMeasure& m : measures)
-    fmt::print("{:24}{:>14}{:>14}{:>12}{:>12}\n", m.unit.empty() ? m.name : fmt::format("{} [{}]", m.name, m.unit),
-               number(m.a, "{:.6g}"), number(m.b, "{:.6g}"), number(m.difference, "{:.2e}"),
-               number(m.relative, "{:.2e}"));
+    print("{:24}{:>14}{:>14}{:>12}{:>12}\n", m.unit.empty() ? m.name : fmt::format("{} [{}]", m.name, m.unit),
+          number(m.a, "{:.6g}"), number(m.b, "{:.6g}"), number(m.difference, "{:.2e}"),
+          number(m.relative, "{:.2e}"));
 }
 
 std::string listOf(std::span<const ComparedField> fields) {

@@ -4,9 +4,11 @@
 #include "compared_solvers.hpp"
 #include "machine.hpp"
 #include "memory.hpp"
+#include "print.hpp"
 #include "progress.hpp"
 #include "resume.hpp"
 #include "run_log.hpp"
+#include "threads.hpp"
 #include "treacle/core/cuda.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/io/case_reader.hpp"
@@ -31,6 +33,8 @@ StartState startOf(Case& until, const ConvergenceOptions& options, AnyParticles 
   StartState start{std::move(made)};
   if (!options.resume.empty()) start = fittingState(until, options.resume, start.particles);
   until.time.end = options.at.value_or(start.time);
+  if (const double steps = until.time.end / until.time.step; steps > maxSteps)
+    throw InputError(fmt::format("--at: {:.3g} steps to it are too many", steps));
   if (until.time.stepsVary() ? until.time.end < start.time * (1 - 1e-9) : until.steps() < start.step)
     throw InputError(fmt::format("--at: expected at least the checkpoint's time, {:g} s, found {:g}", start.time,
                                  until.time.end));
@@ -76,10 +80,10 @@ void numberEqualNames(std::vector<ConvergenceCurve>& curves) {
 void printTable(const std::vector<ConvergenceCurve>& curves) {
   std::size_t widest = 6;
   for (const ConvergenceCurve& curve : curves) widest = std::max(widest, curve.solver.size());
-  fmt::print("{:{}}  iterations  |r| / |b|  set-up [ms]  solve [ms]\n", "solver", widest);
+  print("{:{}}  iterations  |r| / |b|  set-up [ms]  solve [ms]\n", "solver", widest);
   for (const ConvergenceCurve& c : curves)
-    fmt::print("{:{}}  {:10}  {:9.2e}  {:11.3f}  {:10.3f}{}\n", c.solver, widest, c.iterations(), c.lastResidual(),
-               1e3 * c.setupSeconds, 1e3 * c.solveSeconds, c.outcome == "converged" ? "" : "  " + c.outcome);
+    print("{:{}}  {:10}  {:9.2e}  {:11.3f}  {:10.3f}{}\n", c.solver, widest, c.iterations(), c.lastResidual(),
+          1e3 * c.setupSeconds, 1e3 * c.solveSeconds, c.outcome == "converged" ? "" : "  " + c.outcome);
 }
 
 void compareSolvers(const Case& c, AnySimulation simulation, const std::vector<SolverSettings>& solvers,
@@ -91,13 +95,12 @@ void compareSolvers(const Case& c, AnySimulation simulation, const std::vector<S
     curves.push_back({std::move(trial.solver), outcomeText(trial.report.status), std::move(trial.residuals),
                       trial.setupSeconds, trial.solveSeconds});
   numberEqualNames(curves);
-  fmt::print("{}: {}, {} fluid particles\n", c.title.empty() ? "case" : c.title, where,
-             simulation.numbers().fluid);
+  print("{}: {}, {} fluid particles\n", c.title.empty() ? "case" : c.title, where, simulation.numbers().fluid);
   printTable(curves);
   writeConvergence(directory / "convergence.csv", curves);
   writeSolvers(directory / "solvers.csv", curves);
   drawConvergence(directory / "convergence.png", curves, c.title, where);
-  fmt::print("picture: {}\n", (directory / "convergence.png").string());
+  print("picture: {}\n", (directory / "convergence.png").string());
 }
 
 fs::path directoryOf(const ConvergenceOptions& options) {
@@ -115,7 +118,7 @@ fs::path directoryOf(const ConvergenceOptions& options) {
 
 void convergenceCommand(const ConvergenceOptions& options) {
   const std::optional<DeviceInfo> device = deviceFor(options.backend);
-  if (options.threads > 0) omp_set_num_threads(options.threads);
+  startThreads(options.threads);
   Case c = readCase(options.input.file, overridesOf(options));
   const std::vector<SolverSettings> solvers = comparedSolvers(options, c.method.kind);
   std::vector<std::string> warnings;
@@ -132,8 +135,8 @@ void convergenceCommand(const ConvergenceOptions& options) {
   if (c.time.stepsVary() && until.time.end > 0) c.time.end = until.time.end;  // the last step is to meet it
   const fs::path directory = directoryOf(options);
   for (const std::string& warning : warnings) printWarning(warning);
-  fmt::print("{}\n",
-             device ? deviceText(*device) : fmt::format("{}, {} threads", processorName(), omp_get_max_threads()));
+  print("{}\n",
+        device ? deviceText(*device) : fmt::format("{}, {} threads", processorName(), omp_get_max_threads()));
   const BackendKind backend = device ? BackendKind::Cuda : BackendKind::Cpu;
   compareSolvers(until, AnySimulation(c, std::move(start.particles), backend, start.step, start.time), solvers,
                  directory);

@@ -2,6 +2,7 @@
 #include "commands.hpp"
 #include "machine.hpp"
 #include "memory.hpp"
+#include "print.hpp"
 #include "treacle/core/version.hpp"
 
 #include <fmt/format.h>
@@ -14,16 +15,16 @@ namespace treacle {
 void infoCommand() {
   const BuildInfo build = buildInfo();
   const auto yesNo = [](std::string_view option) { return option == "ON" ? "yes" : "no"; };
-  fmt::print("treacle     {} ({})\n", build.version, build.commit);
-  fmt::print("build       {}, {}\n", build.buildType, build.compiler);
-  fmt::print("native      {}\n", yesNo(build.native));
-  fmt::print("processor   {}\n", processorName());
-  fmt::print("threads     {}\n", omp_get_max_threads());
-  fmt::print("memory      {} available\n", bytesText(availableMemory()));
-  fmt::print("CUDA        {}\n", build.cuda == std::string_view("ON") ? "compiled" : "not compiled");
+  print("treacle     {} ({})\n", build.version, build.commit);
+  print("build       {}, {}\n", build.buildType, build.compiler);
+  print("native      {}\n", yesNo(build.native));
+  print("processor   {}\n", processorName());
+  print("threads     {}\n", omp_get_max_threads());
+  print("memory      {} available\n", bytesText(availableMemory()));
+  print("CUDA        {}\n", build.cuda == std::string_view("ON") ? "compiled" : "not compiled");
   for (const DeviceInfo& device : cudaDevices())
-    fmt::print("device      {}, {} multiprocessors, {}, {} available\n", deviceText(device),
-               device.multiprocessors, bytesText(device.memory), bytesText(device.freeMemory));
+    print("device      {}, {} multiprocessors, {}, {} available\n", deviceText(device), device.multiprocessors,
+          bytesText(device.memory), bytesText(device.freeMemory));
 }
 
 }  // namespace treacle

@@ -2,7 +2,7 @@
 
 #include "treacle/model/case.hpp"
 
-#include <cstdint>
+#include <cmath>
 
 namespace treacle {
 
@@ -16,7 +16,7 @@ class Interval {
 
   /// To be asked after every step, with its time [s].
   bool due(double time) {
-    const std::int64_t now = multiples(time);
+    const double now = multiples(time);
     const bool isDue = now != passed_;
     passed_ = now;
     return isDue;
@@ -25,13 +25,11 @@ class Interval {
  private:
   static constexpr double rounding = 1e-9;  // of the time of a multiple, in intervals
 
-  std::int64_t multiples(double time) const {
-    return length_ > 0 ? static_cast<std::int64_t>((time + ahead_) / length_) : 0;
-  }
+  double multiples(double time) const { return length_ > 0 ? std::floor((time + ahead_) / length_) : 0; }
 
-  double length_;        // [s]
-  double ahead_;         // [s] half a step: nearest to the multiple, whatever the rounding of time
-  std::int64_t passed_;  // multiples of the interval
+  double length_;  // [s]
+  double ahead_;   // [s] half a step: nearest to the multiple, whatever the rounding of time
+  double passed_;  // multiples of the interval
 };
 
 }  // namespace treacle

@@ -1,5 +1,7 @@
 #include "commands.hpp"
 #include "interrupt.hpp"
+#include "print.hpp"
+#include "threads.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/core/version.hpp"
 #include "treacle/model/names.hpp"
@@ -73,6 +75,16 @@ CLI::Validator positive() {
   return CLI::Validator(check, "");
 }
 
+CLI::Validator threadNumber() {
+  const auto check = [](const std::string& text) {
+    double x = 0;
+    const bool good = isNumber(text, x) && x >= 1 && x <= mostThreads && x == std::floor(x);
+    return good ? std::string{}
+                : fmt::format("expected a whole number from 1 to {}, found '{}'", mostThreads, text);
+  };
+  return CLI::Validator(check, "");
+}
+
 CLI::Validator notNegative() {
   const auto check = [](const std::string& text) {
     double x = 0;
@@ -95,7 +107,7 @@ template <class Options>
 void addMachine(CLI::App& command, Options& options) {
   addChoice<BackendChoice>(command, "--backend", backendNames, options.backend,
                            "auto: a GPU where there is one, else the CPU");
-  command.add_option("--threads", options.threads, "Number of threads")->type_name("N")->check(positive());
+  command.add_option("--threads", options.threads, "Number of threads")->type_name("N")->check(threadNumber());
   addChoice<Precision>(command, "--precision", namesOf<Precision>, options.precision,
                        "mixed: preconditioner in single precision; default: solver.precision of the case");
   command.add_option("--resume", options.resume, "Checkpoint to continue from")->type_name("FILE");
@@ -166,13 +178,11 @@ void addCompare(CLI::App& app, CompareOptions& options, bool& agree) {
 }
 
 int report(const std::string& text, ExitCode code) {
-  fmt::print(stderr, "treacle: error: {}\n", text);
+  printError(fmt::format("treacle: error: {}\n", text));
   return static_cast<int>(code);
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int execute(int argc, char** argv) {
   CLI::App app("Particle solver for highly viscous, incompressible free-surface flow", "treacle");
   app.set_version_flag("--version", fmt::format("treacle {} ({})", buildInfo().version, buildInfo().commit));
   app.footer("Exit codes: 0 done, 1 compared runs differ, 2 bad input, 3 the run failed.");
@@ -191,7 +201,6 @@ int main(int argc, char** argv) {
   addCompare(app, compare, agree);
   addConvergence(app, convergence);
 
-  ignoreFileSizeSignal();
   try {
     app.parse(argc, argv);
     if (app.get_subcommands().empty())
@@ -208,4 +217,16 @@ int main(int argc, char** argv) {
     return report(e.what(), ExitCode::RunFailed);
   }
   return agree ? static_cast<int>(ExitCode::Done) : runsDiffer;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  openClosedStreams();
+  ignoreFileSizeSignal();
+  const int code = execute(argc, argv);
+  flushPrinted();
+  const std::string failure = printFailure();
+  if (failure.empty() || code > runsDiffer) return code;
+  return report(fmt::format("cannot write to stdout: {}", failure), ExitCode::RunFailed);
 }

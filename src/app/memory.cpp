@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace treacle {
 namespace {
@@ -73,6 +74,31 @@ std::uint64_t balanceBytes(const Case& c, ParticleNumbers n) {
   return n.fluid * fluid + n.wall * (c.dimensions == 2 ? wall2D : wall3D);
 }
 
+/// Search cells of the domain, whether or not there are particles in them.
+std::uint64_t cellCount(const Case& c) {
+  double cells = 1;
+  for (int k = 0; k < c.dimensions; ++k)
+    cells *= std::max(1.0, std::floor((c.domain.max[k] - c.domain.min[k]) / c.searchEdge()));
+  return static_cast<std::uint64_t>(cells);
+}
+
+/// Ranges of fluid and walls and marks, and what the multigrids on hat functions know of each cell; the same on
+/// host and device.
+std::uint64_t cellBytes(const Case& c) {
+  constexpr std::uint64_t search = 18, hats = 9;
+  const PreconditionerKind kind = c.solver.preconditioner;
+  const bool withHats = kind == PreconditionerKind::ProjectedMultigrid || kind == PreconditionerKind::HatMultigrid;
+  return cellCount(c) * (search + (withHats ? hats : 0));
+}
+
+/// What is to be stored, for messages.
+std::string contentText(const Case& c, ParticleNumbers n) {
+  const std::string particles = fmt::format("{} particles", n.fluid + n.wall);
+  const std::uint64_t cells = cellCount(c);
+  return cells > n.fluid + n.wall ? fmt::format("{} and {} search cells of the domain", particles, cells)
+                                  : particles;
+}
+
 /// `onDevice`: ranges and products of sparse matrices exist on devices only.
 Storage storageOf(const SolverSettings& solver, bool onDevice) {
   const bool multigrid = solver.preconditioner == PreconditionerKind::BucketMultigrid;
@@ -113,34 +139,35 @@ std::uint64_t estimatedMemory(const Case& c, ParticleNumbers n, bool onDevice) {
   else if (c.solver.preconditioner == PreconditionerKind::ProjectedMultigrid)
     solver += bytes.projected + (assembled ? bytes.beside : 0);
   return programBytes + snapshots + all * bytes.state +
-         n.fluid * (bytes.memory + solver + modes.kept + modes.used) + balanceBytes(c, n);
+         n.fluid * (bytes.memory + solver + modes.kept + modes.used) + balanceBytes(c, n) + cellBytes(c);
 }
 
 std::uint64_t estimatedDeviceMemory(const Case& c, ParticleNumbers n) {
   if (c.method.kind == MethodKind::Isph) {
     const IsphBytes& isph = isphBytes(c);
-    return isph.fixed + n.fluid * isph.fluid + n.wall * isph.wall;
+    return isph.fixed + n.fluid * isph.fluid + n.wall * isph.wall + cellBytes(c);
   }
   const DeviceBytes& bytes = c.dimensions == 2 ? deviceBytes2D : deviceBytes3D;
   const bool projected = c.solver.preconditioner == PreconditionerKind::ProjectedMultigrid;
   const ModeBytes modes = modeBytes(c);
   const std::uint64_t ofFluid = perFluidParticle(bytes, storageOf(c.solver, true)) +
                                 (projected ? bytes.projected : 0) + modes.kept + modes.used;
-  return bytes.fixed + n.fluid * ofFluid + n.wall * bytes.wall + balanceBytes(c, n);
+  return bytes.fixed + n.fluid * ofFluid + n.wall * bytes.wall + balanceBytes(c, n) + cellBytes(c);
 }
 
 void requireMemory(const Case& c, ParticleNumbers n, const DeviceInfo* device) {
   const std::uint64_t needed = estimatedMemory(c, n, device != nullptr), available = availableMemory();
   if (needed > available)
-    throw RunError(fmt::format("{} particles need about {} of memory, {} available; take a lower resolution",
-                               n.fluid + n.wall, bytesText(needed), bytesText(available)));
+    throw RunError(
+        fmt::format("{} need about {} of memory, {} available; take a lower resolution or a smaller domain",
+                    contentText(c, n), bytesText(needed), bytesText(available)));
   if (!device) return;
   const std::uint64_t onDevice = estimatedDeviceMemory(c, n);
   if (onDevice > device->freeMemory)
     throw RunError(
-        fmt::format("{} particles need about {} of device memory, {} available on {}; take a lower resolution or "
-                    "--backend cpu",
-                    n.fluid + n.wall, bytesText(onDevice), bytesText(device->freeMemory), device->name));
+        fmt::format("{} need about {} of device memory, {} available on {}; take a lower resolution, a smaller "
+                    "domain or --backend cpu",
+                    contentText(c, n), bytesText(onDevice), bytesText(device->freeMemory), device->name));
 }
 
 std::string bytesText(std::uint64_t bytes) {

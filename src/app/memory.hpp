@@ -9,8 +9,8 @@
 
 namespace treacle {
 
-/// Memory of the host that a run of the case will need at its peak, from the bytes per particle that were
-/// measured [B]. `onDevice`: the run computes on a GPU.
+/// Memory of the host that a run of the case will need at its peak, from the bytes per particle and search
+/// cell that were measured [B]. `onDevice`: the run computes on a GPU.
 std::uint64_t estimatedMemory(const Case& c, ParticleNumbers particles, bool onDevice);
 
 /// The same for the memory of the GPU.

@@ -1,4 +1,6 @@
 #include "commands.hpp"
+#include "print.hpp"
+#include "run_log.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/io/case_reader.hpp"
 #include "treacle/io/history.hpp"
@@ -43,9 +45,13 @@ void plotCommand(const PlotOptions& options) {
     picture.spacing = c.spacing;
     picture.gravity = c.gravity;
     picture.title = c.title;
-    drawFrame(output, readVtp(run.fluidFrame(frame)), readVtp(run.wallsFrame(frame)), picture);
+    const std::size_t missing =
+        drawFrame(output, readVtp(run.fluidFrame(frame)), readVtp(run.wallsFrame(frame)), picture);
+    if (missing > 0)
+      printWarning(fmt::format("frame {}: {} particle{} without a position that can be drawn", frame, missing,
+                               missing == 1 ? "" : "s"));
   }
-  fmt::print("{}\n", output.string());
+  print("{}\n", output.string());
 }
 
 }  // namespace treacle

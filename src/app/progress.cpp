@@ -1,4 +1,5 @@
 #include "progress.hpp"
+#include "print.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -34,30 +35,30 @@ void Progress::update(const StepReport& report) {
   const bool finished = case_.atEnd(report.step, report.time);
   if (terminal_) {
     if (!finished && now - last_ < terminalPause) return;
-    fmt::print("\r{}\033[K", line(report));
+    print("\r{}\033[K", line(report));
     lineOpen_ = !finished;
-    if (finished) fmt::print("\n");
+    if (finished) print("\n");
   } else {
     const int tenths = tenthsOf(done(report.step, report.time));
     if (tenths == tenths_ && now - last_ < plainPause) return;
     tenths_ = tenths;
-    fmt::print("{}\n", line(report));
+    print("{}\n", line(report));
   }
   last_ = now;
-  std::fflush(stdout);
+  flushPrinted();
 }
 
 void Progress::message(const std::string& text) {
   if (quiet_) return;
   endLine();
-  fmt::print("{}\n", text);
-  std::fflush(stdout);
+  print("{}\n", text);
+  flushPrinted();
 }
 
 void Progress::endLine() {
-  if (lineOpen_) fmt::print("\n");
+  if (lineOpen_) print("\n");
   lineOpen_ = false;
-  std::fflush(stdout);
+  flushPrinted();
 }
 
 std::string Progress::line(const StepReport& report) const {

@@ -138,8 +138,9 @@ void Recorder::write(const Snapshot& s) {
     log_.info(fmt::format("frame {}: step {}, t = {:.6g} s, {} iterations", number, s.step, s.time, s.iterations));
   }
   if (s.checkpoint) {
-    s.particles.visit(
-        [&](const auto& p) { treacle::writeCheckpoint(directory_.checkpoint(), p, s.step, s.time); });
+    s.particles.visit([&](const auto& p) {
+      treacle::writeCheckpoint(directory_.checkpoint(), p, s.step, s.time, case_.method.kind);
+    });
     checkpointStep_ = s.step;
   }
 }

@@ -2,12 +2,14 @@
 
 #include "treacle/core/error.hpp"
 #include "treacle/io/checkpoint.hpp"
+#include "treacle/model/checks.hpp"
 #include "treacle/model/names.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 namespace treacle {
@@ -24,6 +26,13 @@ bool isInside(const Domain& domain, const Vec<D>& x) {
   return true;
 }
 
+/// The methods take different things out of a state: pressures of one mean nothing to the other.
+void requireMethod(const Case& c, const std::filesystem::path& file, const std::optional<MethodKind>& method) {
+  if (method && *method != c.method.kind)
+    refuse(file, fmt::format("a state of the method '{}', but that of the case is '{}'", nameOf(*method),
+                             nameOf(c.method.kind)));
+}
+
 template <int D>
 void requireFit(const Case& c, const std::filesystem::path& file, const Particles<D>& p,
                 const Particles<D>& made) {
@@ -33,8 +42,6 @@ void requireFit(const Case& c, const std::filesystem::path& file, const Particle
                        "resolution that were run",
                        p.fluidCount, p.wallCount(), made.fluidCount, made.wallCount()));
   for (std::uint32_t i = 0; i < p.count; ++i) {
-    if (p.id[i] >= p.count)
-      refuse(file, fmt::format("a particle has id {}, expected less than {}", p.id[i], p.count));
     if (p.material[i] >= c.materials.size())
       refuse(file, fmt::format("particle {} has material {}, but the case has only {}", p.id[i], p.material[i],
                                c.materials.size()));
@@ -65,6 +72,8 @@ void setWallSurfaces(const Particles<D>& made, Particles<D>& p) {
 
 std::int64_t stepAt(double time, const TimeSettings& settings, const std::filesystem::path& file) {
   const double steps = time / settings.step, whole = std::round(steps);
+  if (steps > maxSteps)
+    refuse(file, fmt::format("its time {:g} s is more steps of {:g} s than can be counted", time, settings.step));
   if (!(std::abs(steps - whole) < 1e-6))
     refuse(file, fmt::format("its time {:g} s is not a whole number of steps of {:g} s (time.step)", time,
                              settings.step));
@@ -76,6 +85,7 @@ std::int64_t stepAt(double time, const TimeSettings& settings, const std::filesy
 StartState fittingState(const Case& c, const std::filesystem::path& file, const AnyParticles& made) {
   StartState start = made.visit([&]<int D>(const Particles<D>& created) -> StartState {
     Checkpoint<D> state = readCheckpoint<D>(file);
+    requireMethod(c, file, state.method);
     requireFit(c, file, state.particles, created);
     setBodies(c, file, created, state.particles);
     setWallSurfaces(created, state.particles);

@@ -16,6 +16,7 @@
 
 #include <filesystem>
 #include <new>
+#include <system_error>
 #include <utility>
 
 namespace treacle {
@@ -145,7 +146,7 @@ std::string Run::lastStateText() const {
     text += fmt::format("\nThe last state written is frame {} (t = {:.6g} s) in {}", last,
                         directory_.frameTime(last), directory_.path().string());
   }
-  if (std::filesystem::exists(directory_.checkpoint()))
+  if (std::error_code error; std::filesystem::exists(directory_.checkpoint(), error))
     text += fmt::format("\nContinue from the last checkpoint with --resume {}", directory_.checkpoint().string());
   return text;
 }

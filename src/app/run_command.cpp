@@ -5,15 +5,18 @@
 #include "memory.hpp"
 #include "resume.hpp"
 #include "run.hpp"
+#include "threads.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/io/case_reader.hpp"
+#include "treacle/model/case_error.hpp"
 #include "treacle/model/checks.hpp"
 #include "treacle/model/create.hpp"
 
 #include <fmt/format.h>
-#include <omp.h>
 
+#include <filesystem>
 #include <optional>
+#include <system_error>
 
 namespace treacle {
 namespace {
@@ -23,17 +26,20 @@ Case caseOf(const RunOptions& options) {
   if (options.precision) c.solver.precision = *options.precision;
   if (options.endTime) {
     c.time.end = *options.endTime;
-    if (!c.time.stepsVary() && c.steps() < 1)
-      throw InputError(
-          fmt::format("--end-time: expected at least one step of {:g} s, found {:g}", c.time.step, c.time.end));
+    try {
+      requireValid(c);
+    } catch (const CaseError& error) {  // all but the end was sound before
+      throw InputError(fmt::format("--end-time: {}", error.text()));
+    }
   }
   return c;
 }
 
 /// --force would remove the checkpoint before another one exists.
 void requireElsewhere(const std::filesystem::path& directory, const std::filesystem::path& checkpoint) {
-  using std::filesystem::weakly_canonical;
-  if (!checkpoint.empty() && weakly_canonical(checkpoint).parent_path() == weakly_canonical(directory))
+  std::error_code error;  // what is not found here is not found later
+  const auto canonical = [&](const auto& path) { return std::filesystem::weakly_canonical(path, error); };
+  if (!checkpoint.empty() && canonical(checkpoint).parent_path() == canonical(directory) && !error)
     throw InputError(fmt::format("--resume {}: lies in the run directory; choose another one with --output",
                                  checkpoint.string()));
 }
@@ -42,7 +48,7 @@ void requireElsewhere(const std::filesystem::path& directory, const std::filesys
 
 void runCommand(const RunOptions& options) {
   const std::optional<DeviceInfo> device = deviceFor(options.backend);
-  if (options.threads > 0) omp_set_num_threads(options.threads);
+  startThreads(options.threads);
   const Case c = caseOf(options);
   std::vector<std::string> warnings;
   StartState start{createParticles(c, warnings)};

@@ -1,5 +1,6 @@
 #include "run_log.hpp"
 
+#include "print.hpp"
 #include "treacle/core/error.hpp"
 
 #include <fmt/chrono.h>
@@ -26,7 +27,7 @@ std::string timeStamp() {
 
 }  // namespace
 
-void printWarning(const std::string& text) { fmt::print(stderr, "treacle: warning: {}\n", text); }
+void printWarning(const std::string& text) { printError(fmt::format("treacle: warning: {}\n", text)); }
 
 RunLog::RunLog(const std::filesystem::path& path, bool quiet) : file_(path), quiet_(quiet) {
   if (!file_) throw RunError(fmt::format("cannot write {}: {}", path.string(), std::strerror(errno)));

@@ -8,6 +8,7 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <system_error>
 #include <utility>
 
 namespace treacle {
@@ -18,8 +19,17 @@ constexpr std::size_t pendingLimit = 1 << 20;  // [B] what is collected before i
 
 }  // namespace
 
-AtomicFile::AtomicFile(std::filesystem::path path) : path_(std::move(path)), temporary_(temporaryName(path_)) {
-  descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+AtomicFile::AtomicFile(std::filesystem::path path) : path_(std::move(path)), target_(path_) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const fs::file_status status = fs::status(path_, error);
+  isFile_ = !fs::exists(status) || fs::is_regular_file(status) || fs::is_directory(status);
+  // Loops fail at the end of it, as a name that cannot be opened.
+  for (int links = 0; isFile_ && links < 40 && fs::is_symlink(target_, error); ++links)
+    target_ = target_.parent_path() / fs::read_symlink(target_, error);
+  temporary_ = temporaryName(target_);
+  descriptor_ = isFile_ ? ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)
+                        : ::open(path_.c_str(), O_WRONLY | O_CLOEXEC);
   if (descriptor_ < 0) throw RunError(writeFailure(path_, errno));
   pending_.reserve(pendingLimit);
 }
@@ -38,11 +48,12 @@ void AtomicFile::write(const void* data, std::size_t bytes) {
 
 void AtomicFile::commit() {
   flush();
-  if (::fsync(descriptor_) != 0) fail();
+  if (isFile_ && ::fsync(descriptor_) != 0) fail();
   // Network file systems report a full disk as late as here.
-  if (::close(std::exchange(descriptor_, -1)) != 0 || std::rename(temporary_.c_str(), path_.c_str()) != 0) {
+  if (::close(std::exchange(descriptor_, -1)) != 0 ||
+      (isFile_ && std::rename(temporary_.c_str(), target_.c_str()) != 0)) {
     const int error = errno;
-    ::unlink(temporary_.c_str());
+    removeTemporary();
     throw RunError(writeFailure(path_, error));
   }
 }
@@ -61,7 +72,11 @@ void AtomicFile::fail() {
 void AtomicFile::discard() {
   if (descriptor_ < 0) return;
   ::close(std::exchange(descriptor_, -1));
-  ::unlink(temporary_.c_str());
+  removeTemporary();
+}
+
+void AtomicFile::removeTemporary() {
+  if (isFile_) ::unlink(temporary_.c_str());
 }
 
 void writeFile(const std::filesystem::path& path, std::string_view content) {

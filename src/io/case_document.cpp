@@ -1,13 +1,13 @@
 #include "case_document.hpp"
 
+#include "posix.hpp"
 #include "suggestion.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/model/case_keys.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <fstream>
-#include <sstream>
+#include <optional>
 
 namespace treacle {
 namespace {
@@ -21,19 +21,56 @@ InputError errorAt(const toml::source_region& source, const std::string& text) {
   return InputError(placeOf(source) + text);
 }
 
+/// Pipes, too, `treacle check <(...)`; those that nobody writes to are empty and not waited for.
 std::string readText(const fs::path& path) {
   std::error_code ignored;
   if (fs::is_directory(path, ignored)) throw InputError(fmt::format("{}: is a directory", path.string()));
-  std::ifstream file(path, std::ios::binary);
-  if (!file)
+  constexpr std::size_t largest = 64 << 20;  // [B]
+  const std::optional<std::string> text = readAll(path, largest);
+  if (!text)
     throw InputError(
         fmt::format("{}: {}", path.string(), fs::exists(path, ignored) ? "cannot be read" : "no such case file"));
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
+  if (text->size() > largest) throw InputError(fmt::format("{}: too large for a case file", path.string()));
+  return *text;
+}
+
+/// Where a text in quotes ends that begins at `from`; `from` itself where it does not end on its line.
+std::size_t endOfQuoted(std::string_view text, std::size_t from) {
+  for (std::size_t k = from + 1; k < text.size() && text[k] != '\n'; ++k) {
+    if (text[k] == text[from]) return k;
+    if (text[k] == '\\' && text[from] == '"') ++k;
+  }
+  return from;
+}
+
+/// Line with the first key of more parts than any case has, `a.b.c...`; 0: none. The parser makes a table in a
+/// table for each part, and goes from one to the next by calls of its own: thousands of them would be more than
+/// the stack holds. Chains of words and points in comments count as well, but none that means anything is as long.
+std::size_t lineOfDeepKey(std::string_view text) {
+  constexpr std::size_t deepest = 256;
+  constexpr std::string_view within = " \t_-";
+  std::size_t line = 1, parts = 0;
+  std::string unended;  // quotes of this line that nothing ends; then nothing ends later ones either
+  for (std::size_t k = 0; k < text.size(); ++k) {
+    const char c = text[k];
+    if (c == '.' && ++parts > deepest) return line;
+    if (c == '"' || c == '\'') {
+      if (unended.find(c) != unended.npos) continue;
+      const std::size_t end = endOfQuoted(text, k);
+      if (end == k) unended += c;
+      k = end;
+      continue;
+    }
+    const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+    if (c != '.' && !letter && within.find(c) == within.npos) parts = 0;
+    if (c == '\n') ++line, unended.clear();
+  }
+  return 0;
 }
 
 toml::table parse(std::string_view text, const std::string& source) {
+  if (const std::size_t line = lineOfDeepKey(text); line > 0)
+    throw InputError(fmt::format("{}:{}: not valid TOML for a case: a key of hundreds of parts", source, line));
   try {
     return toml::parse(text, source);
   } catch (const toml::parse_error& e) {
@@ -89,18 +126,25 @@ void merge(toml::table& into, toml::table&& from) {
   }
 }
 
+/// The path without links and detours, where it has one: that of a pipe leads nowhere.
+fs::path resolved(const fs::path& path) {
+  std::error_code error;
+  const fs::path found = fs::weakly_canonical(path, error);
+  return error ? path : found;
+}
+
 /// `chain`: the files that led here, for the detection of cycles.
 toml::table readWithBase(const fs::path& path, std::vector<fs::path>& chain) {
   toml::table document = parse(readText(path), path.string());
   requireNames(document);
-  chain.push_back(fs::weakly_canonical(path));
+  chain.push_back(resolved(path));
   const toml::node* base = document.get("base");
   if (!base) return document;
 
   const auto* name = base->as_string();
   if (!name || name->get().empty()) throw errorAt(base->source(), "base: expected the name of a case file");
   const fs::path basePath = (path.parent_path() / name->get()).lexically_normal();
-  if (std::ranges::find(chain, fs::weakly_canonical(basePath)) != chain.end())
+  if (std::ranges::find(chain, resolved(basePath)) != chain.end())
     throw errorAt(base->source(), fmt::format("base: '{}' inherits from itself", name->get()));
   if (std::error_code ignored; !fs::is_regular_file(basePath, ignored))
     throw errorAt(base->source(), fmt::format("base: no such case file: {}", basePath.string()));
@@ -115,16 +159,22 @@ toml::table parseOverride(const std::string& text) {
   const std::string source = std::string(setPrefix) + text;
   const std::size_t equals = text.find('=');
   if (equals == 0 || equals == text.npos) throw InputError(source + ": expected key=value");
+  if (lineOfDeepKey(text) > 0) throw InputError("--set: expected key=value, found a key of hundreds of parts");
+  toml::table given;
   try {
-    return toml::parse(text, source);
+    given = toml::parse(text, source);
   } catch (const toml::parse_error&) {
     std::string quoted = text.substr(0, equals + 1) + '"';
     for (const char c : text.substr(equals + 1)) {
       if (c == '"' || c == '\\') quoted += '\\';
       quoted += c;
     }
-    return parse(quoted + '"', source);
+    given = parse(quoted + '"', source);
   }
+  // A text of several lines, or one that is a comment.
+  if (given.size() != 1)
+    throw InputError(fmt::format("{}: expected one key=value, found {}", source, given.size()));
+  return given;
 }
 
 std::vector<std::string_view> namesIn(toml::table& document, std::string_view listName) {

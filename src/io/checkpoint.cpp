@@ -1,35 +1,43 @@
 #include "treacle/io/checkpoint.hpp"
 
+#include "checksum.hpp"
 #include "hdf5.hpp"
+#include "posix.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/io/atomic_file.hpp"
+#include "treacle/model/create.hpp"
+#include "treacle/model/names.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <fstream>
 #include <string_view>
 #include <type_traits>
+#include <vector>
 
 namespace treacle {
 namespace {
 
 constexpr std::string_view formatName = "treacle checkpoint";
-constexpr std::int32_t formatVersion = 3;  // 1: without acceleration and jerk; 2: without bodies and modes
+constexpr std::int32_t formatVersion = 4;  // 1: without acceleration and jerk; 2: without bodies and modes; 3:
+                                           // without method and checksums
 
 /// A field as the file holds it.
 struct FieldInfo {
   const char* name;
-  std::uint32_t count;     // of its values
+  std::uint64_t count;     // of its values
   std::int32_t since = 1;  // first version of the format with it
   std::uint8_t older = 0;  // what whole numbers count as in older files; others are zero
 };
 
-/// Calls f(info, field) for every field but the surfaces of the walls, which follow from the case. The binding
-/// names all members of Particles: it does not compile once one is added that is not written here.
+/// Calls f(info, field) for every field but the surfaces of the walls, which follow from the case; `modeValues`:
+/// vectors that the modes have together. The binding names all members of Particles: it does not compile once one
+/// is added that is not written here.
 template <class P, class F>
-void forEachNamedField(P& particles, F&& f) {
+void forEachNamedField(P& particles, std::uint64_t modeValues, F&& f) {
   auto& [fluidCount, count, position, velocity, pressure, numberDensity, material, body, id, acceleration, jerk,
          modes, wallSurface] = particles;
   static_cast<void>(wallSurface);
@@ -38,7 +46,12 @@ void forEachNamedField(P& particles, F&& f) {
   f(FieldInfo{"material", count}, material), f(FieldInfo{"body", count, 3, unknownBody}, body);
   f(FieldInfo{"id", count}, id);
   f(FieldInfo{"acceleration", fluidCount, 2}, acceleration), f(FieldInfo{"jerk", fluidCount, 2}, jerk);
-  f(FieldInfo{"modes", static_cast<std::uint32_t>(modes.vectors.size()), 3}, modes.vectors);
+  f(FieldInfo{"modes", modeValues, 3}, modes.vectors);
+}
+
+template <class P, class F>
+void forEachNamedField(P& particles, F&& f) {
+  forEachNamedField(particles, particles.modes.vectors.size(), f);
 }
 
 /// Type of a value in the file and in memory.
@@ -68,11 +81,11 @@ struct Extents {
   int rank;
   std::array<hsize_t, 2> size;
 
-  Extents(std::uint32_t count, const Layout& layout)
+  Extents(std::uint64_t count, const Layout& layout)
       : rank(layout.components == 1 ? 1 : 2), size{count, layout.components} {}
 };
 
-Hdf5Handle formatType() { return {H5Tcreate(H5T_STRING, formatName.size() + 1), H5Tclose}; }
+Hdf5Handle textType(std::size_t bytes) { return {H5Tcreate(H5T_STRING, bytes), H5Tclose}; }
 
 void writeAttribute(hid_t file, const char* name, hid_t fileType, hid_t memoryType, const void* value) {
   const Hdf5Handle scalar(H5Screate(H5S_SCALAR), H5Sclose);
@@ -86,12 +99,50 @@ void writeAttribute(hid_t file, const char* name, const T& value) {
   writeAttribute(file, name, layout.file, layout.memory, &value);
 }
 
+void writeText(hid_t file, const char* name, std::string_view value) {
+  const std::string ended(value);
+  const Hdf5Handle type = textType(ended.size() + 1);
+  writeAttribute(file, name, type, type, ended.c_str());
+}
+
+/// An attribute, its type and size. H5Aread writes as many values as the file says that there are, so these are
+/// looked at before.
+struct Attribute {
+  Hdf5Handle handle, type, space;
+
+  Attribute(hid_t file, const char* name, H5T_class_t expected)
+      : handle(H5Aopen(file, name, H5P_DEFAULT), H5Aclose),
+        type(H5Aget_type(handle), H5Tclose),
+        space(H5Aget_space(handle), H5Sclose) {
+    if (const hssize_t values = hdf5Checked(H5Sget_simple_extent_npoints(space)); values != 1)
+      throw Hdf5Error(fmt::format("the attribute {} has {} values, expected one", name, values));
+    if (H5Tget_class(type) != expected)
+      throw Hdf5Error(fmt::format("the attribute {} has an unexpected type", name));
+  }
+};
+
+template <class T>
+constexpr H5T_class_t classOf = std::is_integral_v<T> ? H5T_INTEGER : H5T_FLOAT;
+
 template <class T>
 T readAttribute(hid_t file, const char* name) {
-  const Hdf5Handle attribute(H5Aopen(file, name, H5P_DEFAULT), H5Aclose);
+  const Attribute attribute(file, name, classOf<T>);
   T value{};
-  hdf5Checked(H5Aread(attribute, layoutOf(&value).memory, &value));
+  hdf5Checked(H5Aread(attribute.handle, layoutOf(&value).memory, &value));
   return value;
+}
+
+/// Empty where there is no such attribute.
+std::string readText(hid_t file, const char* name) {
+  if (hdf5Checked(H5Aexists(file, name)) == 0) return {};
+  const Attribute attribute(file, name, H5T_STRING);
+  constexpr std::size_t longest = 100;
+  const std::size_t bytes = H5Tget_size(attribute.type);
+  if (H5Tis_variable_str(attribute.type) != 0 || bytes == 0 || bytes > longest)
+    throw Hdf5Error(fmt::format("the attribute {} is no short text", name));
+  std::array<char, longest + 1> text{};
+  hdf5Checked(H5Aread(attribute.handle, attribute.type, text.data()));
+  return text.data();
 }
 
 template <class T>
@@ -107,26 +158,58 @@ void writeField(hid_t file, const FieldInfo& info, const Buffer<T>& field) {
   hdf5Checked(H5Dwrite(dataset, layout.memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, field.data()));
 }
 
+/// Nothing is allocated before the file is known to hold as much.
 template <class T>
 void readField(hid_t file, const FieldInfo& info, Buffer<T>& field) {
   const Layout layout = layoutOf(field.data());
   const Extents expected(info.count, layout);
   const Hdf5Handle dataset(H5Dopen2(file, info.name, H5P_DEFAULT), H5Dclose);
-  const Hdf5Handle space(H5Dget_space(dataset), H5Sclose);
+  const Hdf5Handle space(H5Dget_space(dataset), H5Sclose), type(H5Dget_type(dataset), H5Tclose);
   Extents found = expected;
   if (H5Sget_simple_extent_ndims(space) != expected.rank ||
       H5Sget_simple_extent_dims(space, found.size.data(), nullptr) < 0 ||
       !std::equal(found.size.begin(), found.size.begin() + expected.rank, expected.size.begin()))
     throw Hdf5Error(fmt::format("the field {} does not have {} values", info.name, info.count));
+  if (H5Tget_class(type) != H5Tget_class(layout.memory))
+    throw Hdf5Error(fmt::format("the field {} has an unexpected type", info.name));
+  if (H5Dget_storage_size(dataset) < info.count * layout.components * H5Tget_size(type))
+    throw Hdf5Error(fmt::format("the file ends before the {} values of the field {} do", info.count, info.name));
   field.resize(info.count);
   hdf5Checked(H5Dread(dataset, layout.memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, field.data()));
 }
 
+bool isFinite(double x) { return std::isfinite(x); }
+template <int D, class T>
+bool isFinite(const Vec<D, T>& x) {
+  return std::all_of(x.v, x.v + D, [](T component) { return std::isfinite(component); });
+}
+
+/// What no state of a simulation has, whatever its case. Errors: Hdf5Error.
 template <int D>
-void fill(hid_t file, const Particles<D>& particles, std::int64_t step, double time) {
-  const Hdf5Handle text = formatType();
-  writeAttribute(file, "format", text, text, formatName.data());
+void requireSound(const Particles<D>& particles) {
+  forEachNamedField(particles, [&]<class T>(const FieldInfo& info, const Buffer<T>& field) {
+    if constexpr (!std::is_integral_v<T>)
+      for (std::size_t k = 0; k < field.size(); ++k)
+        if (!isFinite(field[k]))
+          throw Hdf5Error(fmt::format("value {} of the field {} is not finite", k, info.name));
+  });
+  std::vector<bool> taken(particles.count);
+  for (std::uint32_t i = 0; i < particles.count; ++i) {
+    const std::uint32_t id = particles.id[i];
+    if (id >= particles.count)
+      throw Hdf5Error(fmt::format("a particle has id {}, expected less than {}", id, particles.count));
+    if ((id < particles.fluidCount) != (i < particles.fluidCount))
+      throw Hdf5Error(fmt::format("particle {} is among those of the other kind", id));
+    if (taken[id]) throw Hdf5Error(fmt::format("two particles have the id {}", id));
+    taken[id] = true;
+  }
+}
+
+template <int D>
+void fill(hid_t file, const Particles<D>& particles, std::int64_t step, double time, MethodKind method) {
+  writeText(file, "format", formatName);
   writeAttribute(file, "version", formatVersion);
+  writeText(file, "method", nameOf(method));
   writeAttribute(file, "dimensions", std::int32_t{D});
   writeAttribute(file, "step", step);
   writeAttribute(file, "time", time);
@@ -142,18 +225,45 @@ void fill(hid_t file, const Particles<D>& particles, std::int64_t step, double t
 /// Version of the file. Errors: Hdf5Error unless it says that it is a checkpoint of a known version and this
 /// dimension.
 std::int32_t requireFormat(hid_t file, int dimensions) {
-  std::string format(formatName.size() + 1, '\0');
-  if (hdf5Checked(H5Aexists(file, "format")) > 0) {
-    const Hdf5Handle attribute(H5Aopen(file, "format", H5P_DEFAULT), H5Aclose);
-    hdf5Checked(H5Aread(attribute, formatType(), format.data()));
-  }
-  if (format.c_str() != formatName) throw Hdf5Error("an HDF5 file of another program");
+  if (readText(file, "format") != formatName) throw Hdf5Error("an HDF5 file of another program");
   const auto version = readAttribute<std::int32_t>(file, "version");
   if (version < 1 || version > formatVersion)
     throw Hdf5Error(fmt::format("version {}, expected 1 to {}", version, formatVersion));
   if (const auto found = readAttribute<std::int32_t>(file, "dimensions"); found != dimensions)
     throw Hdf5Error(fmt::format("{} dimensions, expected {}", found, dimensions));
   return version;
+}
+
+std::optional<MethodKind> readMethod(hid_t file) {
+  const std::string word = readText(file, "method");
+  const auto method = valueNamed<MethodKind>(word);
+  if (!method) throw Hdf5Error(fmt::format("its method is '{}', which is none of this version", word));
+  return method;
+}
+
+/// Errors: Hdf5Error for numbers that no simulation has.
+template <int D>
+void readNumbers(hid_t file, Checkpoint<D>& checkpoint) {
+  checkpoint.step = readAttribute<std::int64_t>(file, "step");
+  checkpoint.time = readAttribute<double>(file, "time");
+  if (checkpoint.step < 0 || !(checkpoint.time >= 0) || !std::isfinite(checkpoint.time))
+    throw Hdf5Error(fmt::format("after step {} at t = {} s, expected numbers not less than 0", checkpoint.step,
+                                checkpoint.time));
+  const std::uint64_t fluid = readAttribute<std::uint32_t>(file, "fluid_count"),
+                      wall = readAttribute<std::uint32_t>(file, "wall_count");
+  if (fluid + wall > maxParticles)
+    throw Hdf5Error(fmt::format("{} particles, more than the limit of {}", fluid + wall, maxParticles));
+  checkpoint.particles.fluidCount = static_cast<std::uint32_t>(fluid);
+  checkpoint.particles.count = static_cast<std::uint32_t>(fluid + wall);
+}
+
+/// How many there are. Errors: Hdf5Error for more than a solver can have.
+std::uint32_t readModeNumbers(hid_t file, ModeAge& age) {
+  age = {readAttribute<std::int32_t>(file, "modes_due"),
+         readAttribute<std::int32_t>(file, "modes_fewest_iterations")};
+  const auto count = readAttribute<std::uint32_t>(file, "mode_count");
+  if (count > maxModes) throw Hdf5Error(fmt::format("{} modes, more than the limit of {}", count, maxModes));
+  return count;
 }
 
 void requireReadable(const std::filesystem::path& path) {
@@ -165,11 +275,35 @@ void requireReadable(const std::filesystem::path& path) {
     throw InputError(fmt::format("{}: not a treacle checkpoint: not an HDF5 file", path.string()));
 }
 
+/// Errors: Hdf5Error.
+template <int D>
+Checkpoint<D> readContent(const std::filesystem::path& path, bool sealed) {
+  const Hdf5Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  const std::int32_t version = requireFormat(file, D);
+  Checkpoint<D> checkpoint;
+  readNumbers(file, checkpoint);
+  if (version >= 4) checkpoint.method = readMethod(file);
+  if (version >= 4 && !sealed) throw Hdf5Error("its checksum is missing");
+  Particles<D>& particles = checkpoint.particles;
+  std::uint32_t modes = 0;
+  if (version >= 3) modes = readModeNumbers(file, particles.modes.age);
+  const auto read = [&]<class T>(const FieldInfo& info, Buffer<T>& field) {
+    if (version >= info.since) return readField(file, info, field);
+    field.resize(info.count);
+    T older{};
+    if constexpr (std::is_integral_v<T>) older = static_cast<T>(info.older);
+    std::fill(field.begin(), field.end(), older);
+  };
+  forEachNamedField(particles, std::uint64_t{particles.fluidCount} * modes, read);
+  requireSound(particles);
+  return checkpoint;
+}
+
 }  // namespace
 
 template <int D>
 void writeCheckpoint(const std::filesystem::path& path, const Particles<D>& particles, std::int64_t step,
-                     double time) {
+                     double time, MethodKind method) {
   const Hdf5Silence silence;
   try {
     // HDF5 makes the file in memory: it cannot close a file that a full disk keeps it from finishing.
@@ -180,13 +314,16 @@ void writeCheckpoint(const std::filesystem::path& path, const Particles<D>& part
     // It would read an existing file of this name first; below a file there is none.
     const auto name = path / "memory";
     const Hdf5Handle file(H5Fcreate(name.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose);
-    fill(file, particles, step, time);
+    fill(file, particles, step, time, method);
     hdf5Checked(H5Fflush(file, H5F_SCOPE_LOCAL));
     const ssize_t size = hdf5Checked(H5Fget_file_image(file, nullptr, 0));
     void* image = nullptr;  // takes the address of the driver's pointer to its memory: the bytes without a copy
     hdf5Checked(H5Fget_vfd_handle(file, access, &image));
+    const void* content = *static_cast<const void* const*>(image);
+    const ChecksumRecord record = ChecksumRecord::of(content, static_cast<std::size_t>(size));
     AtomicFile target(path);
-    target.write(*static_cast<const void* const*>(image), static_cast<std::size_t>(size));
+    target.write(content, static_cast<std::size_t>(size));
+    target.write(&record, sizeof record);
     target.commit();
   } catch (const Hdf5Error& e) {
     throw RunError(fmt::format("cannot write {}: {}", path.string(), e.what()));
@@ -197,36 +334,25 @@ template <int D>
 Checkpoint<D> readCheckpoint(const std::filesystem::path& path) {
   const Hdf5Silence silence;
   requireReadable(path);
+  // HDF5 trusts what it reads, and a damaged file can end the program: what has a checksum is looked at before,
+  // what has none, as files of earlier versions, is tried in another process.
+  const std::optional<bool> sealed = checksumHolds(path);
+  const auto refuse = [&](std::string_view why) {
+    return InputError(fmt::format("{}: no usable checkpoint: {}", path.string(), why));
+  };
+  if (sealed && !*sealed) throw refuse("damaged, its checksum is another one");
+  if (!sealed && !survives([&] { readContent<D>(path, false); })) throw refuse("damaged");
   try {
-    const Hdf5Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
-    const std::int32_t version = requireFormat(file, D);
-    Checkpoint<D> checkpoint;
-    checkpoint.step = readAttribute<std::int64_t>(file, "step");
-    checkpoint.time = readAttribute<double>(file, "time");
-    Particles<D>& particles = checkpoint.particles;
-    particles.fluidCount = readAttribute<std::uint32_t>(file, "fluid_count");
-    particles.count = particles.fluidCount + readAttribute<std::uint32_t>(file, "wall_count");
-    if (version >= 3) {
-      const auto modes = readAttribute<std::uint32_t>(file, "mode_count");
-      particles.modes.vectors.resize(std::size_t{particles.fluidCount} * modes);
-      particles.modes.age = {readAttribute<std::int32_t>(file, "modes_due"),
-                             readAttribute<std::int32_t>(file, "modes_fewest_iterations")};
-    }
-    forEachNamedField(particles, [&]<class T>(const FieldInfo& info, Buffer<T>& field) {
-      if (version >= info.since) return readField(file, info, field);
-      field.resize(info.count);
-      T older{};
-      if constexpr (std::is_integral_v<T>) older = static_cast<T>(info.older);
-      std::fill(field.begin(), field.end(), older);
-    });
-    return checkpoint;
+    return readContent<D>(path, sealed.has_value());
   } catch (const Hdf5Error& e) {
-    throw InputError(fmt::format("{}: no usable checkpoint: {}", path.string(), e.what()));
+    throw refuse(e.what());
   }
 }
 
-template void writeCheckpoint<2>(const std::filesystem::path&, const Particles<2>&, std::int64_t, double);
-template void writeCheckpoint<3>(const std::filesystem::path&, const Particles<3>&, std::int64_t, double);
+template void writeCheckpoint<2>(const std::filesystem::path&, const Particles<2>&, std::int64_t, double,
+                                 MethodKind);
+template void writeCheckpoint<3>(const std::filesystem::path&, const Particles<3>&, std::int64_t, double,
+                                 MethodKind);
 template Checkpoint<2> readCheckpoint<2>(const std::filesystem::path&);
 template Checkpoint<3> readCheckpoint<3>(const std::filesystem::path&);
 

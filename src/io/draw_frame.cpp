@@ -36,7 +36,7 @@ Range colorRange(const FieldValues& field, const PictureOptions& options) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   Range range{infinity, -infinity};
   for (const double value : field.values)
-    if (std::isfinite(value)) range = {std::min(range.low, value), std::max(range.high, value)};
+    if (isDrawable(value)) range = {std::min(range.low, value), std::max(range.high, value)};
   if (range.low > range.high) range = {0, 0};
   if (field.fromZero) range.low = 0;
   if (options.minimum) range.low = *options.minimum;
@@ -46,15 +46,19 @@ Range colorRange(const FieldValues& field, const PictureOptions& options) {
   return range;
 }
 
-bool isFinite(const Vec<3>& x) { return std::isfinite(x[0]) && std::isfinite(x[1]) && std::isfinite(x[2]); }
+/// Farther from the origin than this positions are no multiples of a spacing, and a picture shows nothing.
+bool isDrawable(const Vec<3>& x, double spacing) {
+  const double farthest = std::min(1e15 * spacing, 1e150);  // [m]
+  return std::all_of(x.v, x.v + 3, [&](double component) { return std::abs(component) <= farthest; });
+}
 
 /// Particles whose position can be drawn, with `color(i)`.
 template <class Color>
-std::vector<Particle> drawable(const Frame& frame, Color color) {
+std::vector<Particle> drawable(const Frame& frame, double spacing, Color color) {
   std::vector<Particle> particles;
   particles.reserve(frame.position.size());
   for (std::size_t i = 0; i < frame.position.size(); ++i)
-    if (isFinite(frame.position[i])) particles.push_back({frame.position[i], color(i)});
+    if (isDrawable(frame.position[i], spacing)) particles.push_back({frame.position[i], color(i)});
   return particles;
 }
 
@@ -121,17 +125,19 @@ void check(const Frame& fluid, const FieldValues& field, const PictureOptions& o
 
 }  // namespace
 
-void drawFrame(const std::filesystem::path& path, const Frame& fluid, const Frame& walls,
-               const PictureOptions& options) {
+std::size_t drawFrame(const std::filesystem::path& path, const Frame& fluid, const Frame& walls,
+                      const PictureOptions& options) {
   const FieldValues field = fieldValues(fluid, options.field);
   check(fluid, field, options);
   const Range range = colorRange(field, options);
   const auto byValue = [&](std::size_t i) {
     return viridis((field.values[i] - range.low) / (range.high - range.low));
   };
-  const std::vector<Particle> fluidParticles = drawable(fluid, byValue);
-  const std::vector<Particle> wallParticles = drawable(walls, [](std::size_t) { return Rgb{0.80, 0.80, 0.82}; });
-  if (fluidParticles.empty() && wallParticles.empty()) throw InputError("picture: the frame holds no particles");
+  const std::vector<Particle> fluidParticles = drawable(fluid, options.spacing, byValue);
+  const auto grey = [](std::size_t) { return Rgb{0.80, 0.80, 0.82}; };
+  const std::vector<Particle> wallParticles = drawable(walls, options.spacing, grey);
+  if (fluidParticles.empty() && wallParticles.empty())
+    throw InputError("picture: the frame holds no particles that can be drawn");
 
   const bool solid = fluid.dimensions == 3;
   const Box box =
@@ -158,6 +164,7 @@ void drawFrame(const std::filesystem::path& path, const Frame& fluid, const Fram
   drawColorBar(canvas, layout, range, field, theme);
   drawHeading(canvas, options.title, fmt::format("t = {:.4g} s", fluid.time), theme);
   canvas.writePng(path);
+  return fluid.position.size() + walls.position.size() - fluidParticles.size() - wallParticles.size();
 }
 
 }  // namespace treacle

@@ -56,7 +56,7 @@ void setRange(Area& area, const Panel& panel, const std::vector<HistoryRow>& row
   area.low = infinity, area.high = -infinity;
   for (const Curve& curve : panel.curves)
     for (const HistoryRow& row : rows)
-      if (const double v = curve.value(row); std::isfinite(v))
+      if (const double v = curve.value(row); isDrawable(v))
         area.low = std::min(area.low, v), area.high = std::max(area.high, v);
   if (area.low > area.high) area.low = area.high = 0;
   // Zero belongs to the picture where the values come near it.
@@ -72,19 +72,19 @@ void setRange(Area& area, const Panel& panel, const std::vector<HistoryRow>& row
 std::vector<Point> polyline(const Area& area, const Curve& curve, const std::vector<HistoryRow>& rows) {
   const std::size_t columns = static_cast<std::size_t>(2 * area.width);
   const std::size_t group = std::max<std::size_t>(1, rows.size() / columns);
-  const auto smaller = [&](const HistoryRow& a, const HistoryRow& b) { return curve.value(a) < curve.value(b); };
-  std::vector<Point> points;
-  const auto add = [&](const HistoryRow& row) {
-    if (std::isfinite(curve.value(row))) points.push_back(area.at(row.time, curve.value(row)));
-  };
-  for (std::size_t begin = 0; begin < rows.size(); begin += group) {
-    const auto first = rows.begin() + static_cast<std::ptrdiff_t>(begin);
-    const auto last = first + static_cast<std::ptrdiff_t>(std::min(group, rows.size() - begin));
+  std::vector<Point> values, points;
+  for (const HistoryRow& row : rows)
+    if (isDrawable(curve.value(row))) values.push_back({row.time, curve.value(row)});
+  const auto add = [&](const Point& value) { points.push_back(area.at(value.x, value.y)); };
+  const auto lower = [](const Point& a, const Point& b) { return a.y < b.y; };
+  for (std::size_t begin = 0; begin < values.size(); begin += group) {
+    const auto first = values.begin() + static_cast<std::ptrdiff_t>(begin);
+    const auto last = first + static_cast<std::ptrdiff_t>(std::min(group, values.size() - begin));
     if (group == 1) {
       add(*first);
       continue;
     }
-    auto [least, most] = std::minmax_element(first, last, smaller);
+    auto [least, most] = std::minmax_element(first, last, lower);
     if (most < least) std::swap(least, most);
     add(*least), add(*most);
   }
@@ -142,6 +142,9 @@ void drawCurves(Canvas& canvas, const Area& area, const Panel& panel, const std:
 void drawHistory(const std::filesystem::path& path, const std::vector<HistoryRow>& rows,
                  const std::string& title) {
   if (rows.empty()) throw InputError("picture: the history holds no steps");
+  for (const HistoryRow& row : rows)
+    if (!isDrawable(row.time))
+      throw InputError(fmt::format("picture: step {} is at t = {} s", row.step, row.time));
   const Theme theme{1.0};
   const std::vector<Panel> all = panels();
   constexpr double first = 105, pitch = 222, panelHeight = 165;  // [px]

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -73,6 +74,8 @@ HistoryRow parseRow(std::string_view line, const Layout& layout, const std::stri
   });
   if (!good || next != end)
     throw InputError(fmt::format("{}: expected {} numbers, found '{}'", where, expected, line));
+  if (!std::isfinite(row.time))
+    throw InputError(fmt::format("{}: expected a finite time, found '{}'", where, line));
   return row;
 }
 

@@ -1,10 +1,15 @@
 #include "posix.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <system_error>
+#include <utility>
 
 namespace treacle {
 
@@ -19,6 +24,46 @@ bool writeAll(int descriptor, const char* data, std::size_t bytes) {
     bytes -= static_cast<std::size_t>(written);
   }
   return true;
+}
+
+std::optional<std::string> readAll(const std::filesystem::path& path, std::size_t most) {
+  // Who opens a pipe otherwise waits until somebody writes to it.
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  if (descriptor < 0) return std::nullopt;
+  ::fcntl(descriptor, F_SETFL, ::fcntl(descriptor, F_GETFL) & ~O_NONBLOCK);
+  std::string text;
+  constexpr std::size_t piece = 1 << 16;
+  ssize_t got = 1;
+  while (got > 0 && text.size() <= most) {
+    const std::size_t before = text.size();
+    text.resize(before + piece);
+    do got = ::read(descriptor, text.data() + before, piece);
+    while (got < 0 && errno == EINTR);
+    text.resize(before + static_cast<std::size_t>(std::max<ssize_t>(got, 0)));
+  }
+  ::close(descriptor);
+  return got < 0 ? std::nullopt : std::optional(std::move(text));
+}
+
+bool survives(const std::function<void()>& f) {
+  const pid_t child = ::fork();
+  if (child < 0) return true;
+  if (child == 0) {
+    const rlimit none{0, 0};
+    ::setrlimit(RLIMIT_CORE, &none);
+    const int null = ::open("/dev/null", O_WRONLY);
+    if (null >= 0) ::dup2(null, STDERR_FILENO);
+    try {
+      f();
+    } catch (...) {
+      // It came back.
+    }
+    ::_exit(0);
+  }
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
 std::string writeFailure(const std::filesystem::path& path, int error) {

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 namespace treacle {
 
 void writePvd(const std::filesystem::path& path, const std::vector<PvdEntry>& entries) {
@@ -32,6 +34,9 @@ std::vector<PvdEntry> readPvd(const std::filesystem::path& path) {
     const auto time = parseNumber<double>(attribute(*tag, "timestep").value_or(""));
     const auto name = attribute(*tag, "file");
     if (!time || !name) throw foreign();
+    if (!std::isfinite(*time) || (!entries.empty() && *time <= entries.back().time))
+      throw InputError(
+          fmt::format("{}: time {} of {}: expected finite times that ascend", path.string(), *time, *name));
     entries.push_back({*time, std::string(*name)});
   }
   return entries;

@@ -5,6 +5,8 @@
 #include "treacle/io/atomic_file.hpp"
 
 #include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -26,6 +28,10 @@ RowFile::~RowFile() {
 
 void RowFile::append(std::string row) {
   row += '\n';
+  // The system would go on to take rows for a file that no longer has a name.
+  struct stat state {};
+  if (::fstat(descriptor_, &state) == 0 && state.st_nlink == 0)
+    throw RunError(fmt::format("cannot write {}: it was removed while the run went on", path_.string()));
   if (!writeAll(descriptor_, row.data(), row.size())) {
     std::string message = writeFailure(path_, errno);
     if (::ftruncate(descriptor_, size_) != 0) message += "; its last row is incomplete";

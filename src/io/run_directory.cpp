@@ -1,10 +1,13 @@
 #include "treacle/io/run_directory.hpp"
 
+#include "posix.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/io/atomic_file.hpp"
 #include "treacle/io/vtp.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -62,8 +65,9 @@ RunDirectory RunDirectory::create(const fs::path& path, bool force) {
                                     : "is not empty; choose another, or write into it with --force");
     if (!run.holdsRun() && fs::exists(run.caseFile(), error))
       unusable(path, "holds a case.toml but no run; the file would be overwritten, choose another directory");
-    run.removeRun();
   }
+  run.lock();
+  if (!empty) run.removeRun();
   makeDirectory(path / "frames");
   return run;
 }
@@ -75,7 +79,8 @@ RunDirectory RunDirectory::open(const fs::path& path) {
     throw InputError(
         fmt::format("{}: not the directory of a run; expected to find fluid.pvd in it", path.string()));
   run.fluidFrames_ = readPvd(run.fluidIndex());
-  run.wallsFrames_ = readPvd(run.wallsIndex());
+  // A run of an earlier version that was killed between the two left the fluid's alone.
+  if (fs::exists(run.wallsIndex(), error)) run.wallsFrames_ = readPvd(run.wallsIndex());
   return run;
 }
 
@@ -85,9 +90,19 @@ bool RunDirectory::holdsRun() const {
          fs::exists(log(), error);
 }
 
+/// The lock goes with the process, however that ends. The file stays: another one of its name would not be locked.
+void RunDirectory::lock() {
+  const int descriptor = ::open(log().c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
+  if (descriptor < 0) unusable(path_, writeFailure(log(), errno));
+  lock_ = std::shared_ptr<void>(nullptr, [descriptor](void*) { ::close(descriptor); });
+  // A file system without locks does without.
+  if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+    unusable(path_, "another run is writing into it; choose another, or end that run first");
+}
+
 void RunDirectory::removeRun() const {
-  std::vector<fs::path> files{caseFile(),   log(),        history(),    balance(),      summary(),
-                              checkpoint(), fluidIndex(), wallsIndex(), finalPicture(), historyPicture()};
+  std::vector<fs::path> files{caseFile(),   history(),    balance(),      summary(),       checkpoint(),
+                              fluidIndex(), wallsIndex(), finalPicture(), historyPicture()};
   for (std::size_t i = 0, named = files.size(); i < named; ++i)
     files.push_back(AtomicFile::temporaryName(files[i]));
   std::error_code error;
@@ -109,8 +124,9 @@ void RunDirectory::writeFrame(const Frame& fluid, const Frame& walls, const Outp
   writeVtp(wallsFrame(frame), walls, settings.fields, settings.precision);
   fluidFrames_.push_back({fluid.time, frameName("fluid", frame, "vtp")});
   wallsFrames_.push_back({walls.time, frameName("walls", frame, "vtp")});
-  writePvd(fluidIndex(), fluidFrames_);
+  // The index that makes a directory that of a run comes last.
   writePvd(wallsIndex(), wallsFrames_);
+  writePvd(fluidIndex(), fluidFrames_);
 }
 
 }  // namespace treacle

@@ -29,11 +29,18 @@ std::string superscript(int exponent) {
 
 }  // namespace
 
+bool isDrawable(double x) { return std::abs(x) <= 1e150; }
+
 std::string powerOfTen(int exponent) { return "10" + superscript(exponent); }
 
 std::vector<double> niceTicks(double low, double high, int wanted) {
   if (!(high > low)) return {low};
-  const double raw = (high - low) / std::max(wanted - 1, 1);
+  const double gaps = std::max(wanted - 1, 1);
+  const double raw = high / gaps - low / gaps;  // the difference itself may be more than a number can be
+  // No round numbers lie between two that numbers hardly tell apart, nor between those at the ends of what they
+  // hold.
+  const double largest = std::max(std::abs(low), std::abs(high));
+  if (!(raw > 1e-13 * largest) || raw < 1e-300 || raw > 1e300) return {low, high};
   const double power = std::pow(10.0, std::floor(std::log10(raw)));
   // The largest round step that is at most a little over the raw one: few ticks rather than crowded ones.
   double step = power;

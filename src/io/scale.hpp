@@ -5,8 +5,11 @@
 
 namespace treacle {
 
+/// Whether a number can be drawn: not where it is not finite, nor where arithmetic with it might not be.
+bool isDrawable(double x);
+
 /// Marks at round numbers (1, 2 or 5 times a power of ten) inside [low, high], about `wanted` of them, at least
-/// two where high > low.
+/// two where high > low: these themselves where rounding leaves no numbers between them.
 std::vector<double> niceTicks(double low, double high, int wanted);
 
 /// How numbers of a range are shown: value / factor with `decimals`, and the unit that makes up for the factor.

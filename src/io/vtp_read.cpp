@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <string>
 
@@ -17,17 +18,20 @@ constexpr std::size_t largestHeader = 1 << 16;  // [B] ours are about 2 KiB
 /// Reader of one file: the XML part is held as text, arrays are read from the stream one by one.
 class VtpReader {
  public:
-  explicit VtpReader(const std::filesystem::path& path) : path_(path), stream_(path, std::ios::binary) {
+  explicit VtpReader(const std::filesystem::path& path) : path_(path) {
     std::error_code error;
     fileSize_ = std::filesystem::file_size(path, error);
     if (error) fail(error.message());
+    stream_.open(path, std::ios::binary);  // not before: who opens a pipe waits for a writer
     if (!stream_) fail("cannot be opened");
     readHeader();
+    requireEnd();
   }
 
   Frame frame() {
     Frame frame;
     frame.time = fieldValue<double>("TimeValue");
+    if (!std::isfinite(frame.time)) foreign("'TimeValue' is not finite");
     frame.dimensions = fieldValue<int>("dimensions");
     if (frame.dimensions != 2 && frame.dimensions != 3) foreign("'dimensions' is neither 2 nor 3");
     readVectors("position", frame.position);
@@ -77,6 +81,16 @@ class VtpReader {
     count_ = *count;
     // Checked before anybody reserves memory for that many particles.
     if (count_ > (fileSize_ - dataBegin_) / sizeof(Vec<3, float>)) truncated();
+  }
+
+  /// The arrays at the end of the file are none that anybody reads here: without its last tag they may be cut.
+  void requireEnd() {
+    constexpr std::string_view end = "</VTKFile>\n";
+    std::string tail(end.size(), '\0');
+    if (fileSize_ < dataBegin_ + end.size()) truncated();
+    stream_.seekg(static_cast<std::streamoff>(fileSize_ - end.size()));
+    stream_.read(tail.data(), static_cast<std::streamsize>(tail.size()));
+    if (!stream_ || tail != end) truncated();
   }
 
   /// The tag of the array of that name; `from` is behind it afterwards.

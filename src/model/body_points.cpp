@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 #include <cmath>
+#include <optional>
 
 namespace treacle {
 namespace {
@@ -22,16 +23,30 @@ double valueAt(const Vec<D>& x, const Expression& expression, const Body& body, 
   return value;
 }
 
+/// Asked for each particle as it is made: a body that is too large by far ends there and not in all the memory.
+template <int D>
+void requireInside(const Domain& domain, const Body& body, const Vec<D>& x) {
+  for (int k = 0; k < D; ++k)
+    if (!(x[k] >= domain.min[k] && x[k] < domain.max[k]))
+      throw InputError(fmt::format("body '{}' reaches out of the domain: a particle at {}, the domain is {} to {}",
+                                   body.name, positionText(resized<3>(x), D), positionText(domain.min, D),
+                                   positionText(domain.max, D)));
+}
+
 }  // namespace
 
 template <int D>
 std::vector<Vec<D>> bodyPoints(const Case& c, const Body& body, std::vector<std::string>& notes) {
-  std::vector<Vec<D>> points = latticePoints<D>(body, c.spacing, notes);
-  if (body.where.empty()) return points;
-  const Expression where(body.where, D);
-  const std::size_t all = points.size();
-  std::erase_if(points, [&](const Vec<D>& x) { return valueAt(x, where, body, "where", body.where) == 0; });
-  if (points.empty())
+  std::optional<Expression> where;
+  if (!body.where.empty()) where.emplace(body.where, D);
+  std::size_t all = 0;
+  std::vector<Vec<D>> points = latticePoints<D>(body, c.spacing, notes, [&](const Vec<D>& x) {
+    ++all;
+    if (where && valueAt(x, *where, body, "where", body.where) == 0) return false;
+    requireInside(c.domain, body, x);
+    return true;
+  });
+  if (where && points.empty())
     notes.push_back(
         fmt::format("body '{}': where = \"{}\" holds at none of its {} particles", body.name, body.where, all));
   return points;

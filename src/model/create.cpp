@@ -37,16 +37,6 @@ std::size_t total(const std::vector<Filled<D>>& filled) {
   return count;
 }
 
-template <int D>
-void requireInside(const Domain& domain, const Filled<D>& f) {
-  for (const Vec<D>& x : f.points)
-    for (int k = 0; k < D; ++k)
-      if (!(x[k] >= domain.min[k] && x[k] < domain.max[k]))
-        throw InputError(fmt::format(
-            "body '{}' reaches out of the domain: a particle at {}, the domain is {} to {}", f.body->name,
-            positionText(resized<3>(x), D), positionText(domain.min, D), positionText(domain.max, D)));
-}
-
 /// The nearest image of its centre must stay the same one as a wall turns. Errors: InputError for a wall that
 /// would reach half a period from it.
 template <int D>
@@ -140,8 +130,7 @@ Particles<D> createParticles(const Case& c, std::vector<std::string>& notes,
   if (total(fluid) + total(walls) > maxParticles)
     throw InputError(fmt::format("the case would have {} particles, more than the limit of {}",
                                  total(fluid) + total(walls), maxParticles));
-  for (const auto& f : fluid) requireInside(c.domain, f);
-  for (const auto& f : walls) requireInside(c.domain, f), requireTurnable(c.domain, f);
+  for (const auto& f : walls) requireTurnable(c.domain, f);
 
   // Points exactly half a spacing apart, give or take rounding, do not count as overlapping.
   const double radius = 0.5 * c.spacing * (1 - 1e-6);

@@ -20,6 +20,12 @@ bool assigns(const std::string& text) {
   return false;
 }
 
+/// Of a text too long for a message.
+std::string beginningOf(const std::string& text) {
+  constexpr std::size_t longest = 200;
+  return text.size() <= longest ? text : text.substr(0, longest) + "...";
+}
+
 }  // namespace
 
 /// muParser reads numbers by a locale of its own, that of C.
@@ -27,18 +33,18 @@ struct Expression::Parser {
   mu::Parser parser;
   Vec<3> x{};
 
-  Parser(const std::string& text, int dimensions) {
+  explicit Parser(int dimensions) {
     constexpr const char* names[] = {"x", "y", "z"};
     parser.ClearConst();
     parser.DefineConst("pi", std::numbers::pi);
     for (int k = 0; k < dimensions; ++k) parser.DefineVar(names[k], &x[k]);
-    parser.SetExpr(text);
   }
 
-  /// What is wrong with the expression, or nothing.
-  std::string fault() {
-    if (assigns(parser.GetExpr())) return "a single = (== compares)";
+  /// Takes the text; what is wrong with it, or nothing.
+  std::string fault(const std::string& text) {
+    if (assigns(text)) return "a single = (== compares)";
     try {
+      parser.SetExpr(text);
       parser.Eval();
     } catch (const mu::Parser::exception_type& e) {
       return e.GetMsg();
@@ -47,11 +53,10 @@ struct Expression::Parser {
   }
 };
 
-Expression::Expression(const std::string& text, int dimensions)
-    : parser_(std::make_unique<Parser>(text, dimensions)) {
-  if (const std::string fault = parser_->fault(); !fault.empty())
+Expression::Expression(const std::string& text, int dimensions) : parser_(std::make_unique<Parser>(dimensions)) {
+  if (const std::string fault = parser_->fault(text); !fault.empty())
     throw InputError(fmt::format("expected an expression in {} [m] and the constant pi, found \"{}\": {}",
-                                 dimensions == 2 ? "x, y" : "x, y, z", text, fault));
+                                 dimensions == 2 ? "x, y" : "x, y, z", beginningOf(text), fault));
 }
 Expression::~Expression() = default;
 Expression::Expression(Expression&&) noexcept = default;

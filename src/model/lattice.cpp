@@ -1,6 +1,7 @@
 #include "lattice.hpp"
 
 #include "treacle/core/error.hpp"
+#include "treacle/model/create.hpp"
 #include "treacle/model/shape.hpp"
 
 #include <fmt/format.h>
@@ -63,7 +64,8 @@ Lattice<D> roundLattice(const Body& body, double spacing) {
 }  // namespace
 
 template <int D>
-std::vector<Vec<D>> latticePoints(const Body& body, double spacing, std::vector<std::string>& notes) {
+std::vector<Vec<D>> latticePoints(const Body& body, double spacing, std::vector<std::string>& notes,
+                                  const std::function<bool(const Vec<D>&)>& keep) {
   const bool box = body.shape.kind == ShapeKind::Box;
   const Lattice<D> lattice = box ? boxLattice<D>(body, spacing, notes) : roundLattice<D>(body, spacing);
 
@@ -81,7 +83,7 @@ std::vector<Vec<D>> latticePoints(const Body& body, double spacing, std::vector<
   Vec<D> k = lattice.low;
   for (int axis = 0; axis < D;) {
     const Vec<D> x = lattice.origin + k * spacing;
-    if (box || contains<D>(body.shape, x, rounding * spacing)) points.push_back(x);
+    if ((box || contains<D>(body.shape, x, rounding * spacing)) && keep(x)) points.push_back(x);
     if (points.size() > maxParticles) throw tooMany();
     for (axis = 0; axis < D; ++axis) {
       if (++k[axis] < lattice.high[axis]) break;
@@ -91,7 +93,9 @@ std::vector<Vec<D>> latticePoints(const Body& body, double spacing, std::vector<
   return points;
 }
 
-template std::vector<Vec<2>> latticePoints<2>(const Body&, double, std::vector<std::string>&);
-template std::vector<Vec<3>> latticePoints<3>(const Body&, double, std::vector<std::string>&);
+template std::vector<Vec<2>> latticePoints<2>(const Body&, double, std::vector<std::string>&,
+                                              const std::function<bool(const Vec<2>&)>&);
+template std::vector<Vec<3>> latticePoints<3>(const Body&, double, std::vector<std::string>&,
+                                              const std::function<bool(const Vec<3>&)>&);
 
 }  // namespace treacle

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
+#include <limits>
 #include <utility>
 
 namespace treacle {
@@ -165,7 +166,11 @@ void requireSound(const Checker& at, const TimeSettings& t) {
   const double steps = t.end / t.step;
   if (steps < 0.5 && !t.stepsVary())
     at.fail({"end"}, fmt::format("expected at least one step of {} s, found {}", t.step, t.end));
-  if (steps > 1e15) at.fail({"step"}, fmt::format("{:.3g} steps to the end are too many", steps));
+  if (steps > maxSteps) at.fail({"step"}, fmt::format("{:.3g} steps to the end are too many", steps));
+  constexpr double leastCourant = 1e-6, mostCourant = 100;
+  if (t.stepsVary() && !(t.courant >= leastCourant && t.courant <= mostCourant))
+    at.fail({"courant"},
+            fmt::format("expected 0 or a number from {} to {}, found {}", leastCourant, mostCourant, t.courant));
 }
 
 /// What works on neighbour lists cannot do without them.
@@ -207,10 +212,36 @@ void requirePeriodicLength(const Checker& at, const Case& c) {
   }
 }
 
+/// Positions need digits for parts of a spacing, and the keys that particles are sorted by have 63 bits, four for
+/// each axis of a cell. How many cells there may be in all is a question of memory.
+void requireDomainSize(const Checker& at, const Case& c) {
+  const double farthest = 1e-6 / std::numeric_limits<double>::epsilon() * c.spacing;
+  const double mostCells = c.dimensions == 2 ? 1 << 29 : 1 << 19;
+  for (int k = 0; k < c.dimensions; ++k) {
+    for (const auto& [key, x] : {std::pair("min", c.domain.min[k]), std::pair("max", c.domain.max[k])})
+      if (!(std::abs(x) <= farthest))
+        at.fail({"domain", key},
+                fmt::format("found {} m along {}, expected at most {:.3g} m from 0: farther away positions are "
+                            "rounded by more than a millionth of the spacing of {}",
+                            x, "xyz"[k], farthest, lengthText(c.spacing)));
+    if (const double cells = std::floor((c.domain.max[k] - c.domain.min[k]) / c.searchEdge()); cells > mostCells)
+      at.fail(
+          {"domain", "max"},
+          fmt::format("the domain has {:.3g} search cells of edge {} along {}, expected at most {:.3g}: take a "
+                      "smaller domain or a larger spacing",
+                      cells, lengthText(c.searchEdge()), "xyz"[k], mostCells));
+  }
+}
+
 void requireSound(const Checker& at, const Case& c) {
   if (std::ranges::none_of(c.bodies, [](const Body& b) { return b.kind == BodyKind::Fluid; }))
     at.fail({"body"}, "no fluid: expected at least one [[body]] with type = \"fluid\"");
+  requireDomainSize(at, c);
   requirePeriodicLength(at, c);
+  for (const auto& [key, interval] :
+       {std::pair("interval", c.output.interval), std::pair("checkpoint_interval", c.output.checkpointInterval)})
+    if (interval > 0 && c.time.end / interval > maxSteps)
+      at.fail({"output", key}, fmt::format("{:.3g} intervals to the end are too many", c.time.end / interval));
 }
 
 }  // namespace

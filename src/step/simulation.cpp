@@ -7,6 +7,8 @@
 #include "treacle/step/move_particles.hpp"
 #include "treacle/step/wall_motion.hpp"
 
+#include <fmt/format.h>
+
 namespace treacle {
 namespace {
 
@@ -81,6 +83,12 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     timeStep = theCase.time.step;
     if (lastSpeed * timeStep > theCase.time.courant * theCase.spacing)
       timeStep = theCase.time.courant * theCase.spacing / lastSpeed;
+    // Fractions of the time's own rounding would never reach the end.
+    if (time + 1e-3 * timeStep == time)
+      throw RunError(
+          fmt::format("particles at {:.4g} m/s allow steps of {:.3g} s only (time.courant): the time no "
+                      "longer advances",
+                      lastSpeed, timeStep));
     const double rest = theCase.time.end - time;
     if (rest > 0 && timeStep > rest * (1 - 1e-9)) timeStep = rest;
   }

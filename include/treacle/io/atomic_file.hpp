@@ -8,7 +8,8 @@
 namespace treacle {
 
 /// A file that appears under its name only once it is complete: written to `<path>.tmp`, synchronised to disk
-/// and renamed. Until commit() an older file of that name stays as it is.
+/// and renamed. Until commit() an older file of that name stays as it is. A symbolic link stays one: the file that
+/// it leads to is replaced. What is no file but a device or a pipe is written to as it is.
 /// Errors, of every member: RunError with path and reason; the temporary file is then removed.
 /// A process that limits its file sizes has to ignore SIGXFSZ, otherwise the system ends it before the error
 /// shows.
@@ -30,8 +31,10 @@ class AtomicFile {
   void flush();
   [[noreturn]] void fail();
   void discard();
+  void removeTemporary();
 
-  std::filesystem::path path_, temporary_;
+  std::filesystem::path path_, target_, temporary_;  // what the user calls it, and the file itself
+  bool isFile_ = true;
   std::vector<char> pending_;
   int descriptor_ = -1;
 };

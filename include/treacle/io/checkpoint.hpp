@@ -1,9 +1,11 @@
 #pragma once
 
+#include "treacle/model/case.hpp"
 #include "treacle/model/particles.hpp"
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 
 namespace treacle {
 
@@ -11,25 +13,29 @@ namespace treacle {
 /// interruption.
 template <int D>
 struct Checkpoint {
-  Particles<D> particles;  // in the order they had, which decides the rounding of later steps
-  std::int64_t step = 0;   // number of steps done
-  double time = 0;         // [s]
+  Particles<D> particles;            // in the order they had, which decides the rounding of later steps
+  std::int64_t step = 0;             // number of steps done
+  double time = 0;                   // [s]
+  std::optional<MethodKind> method;  // that it was computed by; not known of earlier versions
 };
 
 /// Writes an HDF5 file under a temporary name, then renames it: an older checkpoint stays until the new one is
 /// complete. Takes as much memory as the particles meanwhile. Errors: RunError with path and reason.
 template <int D>
 void writeCheckpoint(const std::filesystem::path& path, const Particles<D>& particles, std::int64_t step,
-                     double time);
+                     double time, MethodKind method);
 
 /// Reads a file of writeCheckpoint. Files of earlier versions lack fields: what is not known of the flow's memory
 /// is zero, bodies are unknownBody, the solver has no modes. Errors: InputError with path and reason for a file
-/// that is missing, foreign, truncated, damaged, or of another version or dimension.
+/// that is missing, foreign, truncated, damaged, or of another version or dimension, or whose values are none of a
+/// simulation: not finite, or with ids that are not those of the particles.
 template <int D>
 Checkpoint<D> readCheckpoint(const std::filesystem::path& path);
 
-extern template void writeCheckpoint<2>(const std::filesystem::path&, const Particles<2>&, std::int64_t, double);
-extern template void writeCheckpoint<3>(const std::filesystem::path&, const Particles<3>&, std::int64_t, double);
+extern template void writeCheckpoint<2>(const std::filesystem::path&, const Particles<2>&, std::int64_t, double,
+                                        MethodKind);
+extern template void writeCheckpoint<3>(const std::filesystem::path&, const Particles<3>&, std::int64_t, double,
+                                        MethodKind);
 extern template Checkpoint<2> readCheckpoint<2>(const std::filesystem::path&);
 extern template Checkpoint<3> readCheckpoint<3>(const std::filesystem::path&);
 

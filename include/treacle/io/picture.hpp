@@ -4,6 +4,7 @@
 #include "treacle/io/frame.hpp"
 #include "treacle/io/history.hpp"
 
+#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -26,14 +27,15 @@ struct PictureOptions {
 
 /// Draws one frame as PNG, without a display: fluid coloured by a field, walls grey, axes, colour bar, title,
 /// time. 2D: seen along z. 3D: parallel projection from an oblique direction; of the walls only the sides that
-/// face the viewer are drawn, and nothing that hides the fluid. Particles whose position is not finite are left
-/// out. Errors: InputError if the frame does not hold the field, holds no particle, or spacing or width are
-/// unusable; RunError if the file cannot be written.
-void drawFrame(const std::filesystem::path& path, const Frame& fluid, const Frame& walls,
-               const PictureOptions& options);
+/// face the viewer are drawn, and nothing that hides the fluid. Particles whose position is not finite, or
+/// absurdly far away, are left out; returns how many. Errors: InputError if the frame does not hold the field,
+/// holds no particle, or spacing or width are unusable; RunError if the file cannot be written.
+std::size_t drawFrame(const std::filesystem::path& path, const Frame& fluid, const Frame& walls,
+                      const PictureOptions& options);
 
 /// Draws iterations, energies, extents and largest speed over time as PNG.
-/// Errors: InputError if there are no rows; RunError if the file cannot be written.
+/// Values that are not finite are left out. Errors: InputError if there are no rows; RunError if the file cannot
+/// be written.
 void drawHistory(const std::filesystem::path& path, const std::vector<HistoryRow>& rows,
                  const std::string& title = {});
 

@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -15,9 +16,9 @@ namespace treacle {
 class RunDirectory {
  public:
   /// Makes the directory (and its parents). One that holds anything is taken only with `force`; the files of an
-  /// older run are then removed, and nothing else.
-  /// Errors: InputError if it is not empty (without force), not writable or no directory, or if it holds a
-  /// case.toml but no run (that file is the user's and would be overwritten).
+  /// older run are then removed, and nothing else. The log is locked while the object, or a copy of it, lives.
+  /// Errors: InputError if it is not empty (without force), not writable or no directory, if it holds a
+  /// case.toml but no run (that file is the user's and would be overwritten), or if another run writes into it.
   static RunDirectory create(const std::filesystem::path& path, bool force);
 
   /// Opens the directory of an existing run. Errors: InputError if there is none.
@@ -47,10 +48,12 @@ class RunDirectory {
  private:
   explicit RunDirectory(std::filesystem::path path) : path_(std::move(path)) {}
   bool holdsRun() const;
+  void lock();
   void removeRun() const;
 
   std::filesystem::path path_;
   std::vector<PvdEntry> fluidFrames_, wallsFrames_;
+  std::shared_ptr<void> lock_;
 };
 
 }  // namespace treacle

@@ -76,6 +76,9 @@ namespace keys {
 
 inline constexpr bool required = true, optional = false;
 inline constexpr Bound positive{.least = 0, .open = true}, notNegative{.least = 0};
+// Beyond these a step or a solve would take as good as for ever.
+inline constexpr Bound radius{.least = 0, .most = 20, .open = true}, iterations{1, 1e6}, sweeps{1, 1000},
+    degree{0, 1000};
 inline constexpr struct ExpressionTag {
 } expression;
 inline constexpr struct MaterialTag {
@@ -93,6 +96,8 @@ template <class Vector>
 struct Gravity {
   Vector& acceleration;
 };
+template <class Vector>
+Gravity(Vector&) -> Gravity<Vector>;  // clang 14 does not find it by itself
 
 /// Whether a method can do with it.
 constexpr bool fits(PreconditionerKind preconditioner, MethodKind method) {
@@ -217,35 +222,35 @@ void visit(auto& v, Like<MethodSettings> auto& m, const Case& c) {
   v({"viscosity_weight"}, m.viscosityWeight);
   v({"wall_velocity"}, m.wallVelocity);
   v({"pressure_gradient"}, m.pressureGradient);
-  v({"pressure_radius", optional, "spacings", positive}, m.pressureRadius);
-  v({"density_radius", optional, "spacings", notNegative}, m.densityRadius);
-  v({"viscosity_radius", optional, "spacings", positive}, m.viscosityRadius);
+  v({"pressure_radius", optional, "spacings", radius}, m.pressureRadius);
+  v({"density_radius", optional, "spacings", {0, radius.most}}, m.densityRadius);
+  v({"viscosity_radius", optional, "spacings", radius}, m.viscosityRadius);
   v({"viscosity_correction", optional, "", {0, 1}}, m.viscosityCorrection);
 }
 
 void visit(auto& v, Like<MultigridSettings> auto& m, const Case&) {
-  v({"finest_sweeps", optional, "", {1}}, m.finestSweeps);
-  v({"middle_sweeps", optional, "", {1}}, m.middleSweeps);
-  v({"coarsest_sweeps", optional, "", {1}}, m.coarsestSweeps);
+  v({"finest_sweeps", optional, "", sweeps}, m.finestSweeps);
+  v({"middle_sweeps", optional, "", sweeps}, m.middleSweeps);
+  v({"coarsest_sweeps", optional, "", sweeps}, m.coarsestSweeps);
   v({"particle_diagonal"}, m.particleDiagonal);
   v({"coarse_operators"}, m.coarseOperators);
 }
 
 void visit(auto& v, Like<ProjectedSettings> auto& p, const Case&) {
-  v({"pressure_degree", optional, "", {0}}, p.pressureDegree);
-  v({"grid_degree", optional, "", {0}}, p.gridDegree);
-  v({"velocity_degree", optional, "", {0}}, p.velocityDegree);
-  v({"iteration_bound", optional, "", {1}}, p.iterationBound);
+  v({"pressure_degree", optional, "", degree}, p.pressureDegree);
+  v({"grid_degree", optional, "", degree}, p.gridDegree);
+  v({"velocity_degree", optional, "", degree}, p.velocityDegree);
+  v({"iteration_bound", optional, "", iterations}, p.iterationBound);
 }
 
 void visit(auto& v, Like<CellSettings> auto& s, const Case&) {
-  v({"levels", optional, "", {0}}, s.levels);
-  v({"sweeps", optional, "", {1}}, s.sweeps);
+  v({"levels", optional, "", {0, 100}}, s.levels);
+  v({"sweeps", optional, "", sweeps}, s.sweeps);
 }
 
 void visit(auto& v, Like<HatSettings> auto& h, const Case&) {
-  v({"grid_degree", optional, "", {0}}, h.gridDegree);
-  v({"iteration_bound", optional, "", {1}}, h.iterationBound);
+  v({"grid_degree", optional, "", degree}, h.gridDegree);
+  v({"iteration_bound", optional, "", iterations}, h.iterationBound);
 }
 
 void visit(auto& v, Like<SolverSettings> auto& s, const Case& c) {
@@ -253,7 +258,7 @@ void visit(auto& v, Like<SolverSettings> auto& s, const Case& c) {
   v({"krylov"}, s.krylov);
   v({"preconditioner"}, s.preconditioner, fitsMethod);
   v({"tolerance", optional, "", {0, 1, true}}, s.tolerance);
-  v({"max_iterations", optional, "", {1}}, s.maxIterations);
+  v({"max_iterations", optional, "", iterations}, s.maxIterations);
   v({"precision"}, s.precision);
   v({"first_guess"}, s.firstGuess, fitsMethod);
   if (c.method.kind == MethodKind::Isph) {

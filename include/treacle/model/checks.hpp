@@ -8,6 +8,9 @@
 
 namespace treacle {
 
+/// Steps to the end of a run that can be counted, and frames or checkpoints, too.
+inline constexpr double maxSteps = 1e15;
+
 /// Whether a case can be run, as far as that can be said without its particles: each value by itself, as
 /// keys::visit bounds it, and what values must be together. Errors: CaseError, for the first that cannot be used.
 void requireValid(const Case& c);

@@ -4,11 +4,15 @@
 #include "treacle/model/case.hpp"
 #include "treacle/model/particles.hpp"
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
 
 namespace treacle {
+
+/// Largest number of particles of one case.
+inline constexpr std::size_t maxParticles = std::size_t{1} << 27;
 
 /// Fills the case's bodies with particles on lattices of the case's spacing, where their conditions hold. A box
 /// has its lattice cell-centred on its own corner `min`; a sphere has a lattice point at `center`, a cylinder half

@@ -4,6 +4,7 @@
 #include "treacle/core/vec.hpp"
 #include "treacle/search/hilbert.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
@@ -15,6 +16,8 @@ template <int D>
 struct CellGrid {
   /// Sort keys resolve a cell into 2^subBits parts per axis, so that consecutive particles are close together.
   static constexpr int subBits = 2;
+  /// Keys have 63 bits.
+  static constexpr int maxBits = 63 / D - subBits;
 
   Vec<D> origin{};       // lower corner of the domain [m]
   Vec<D> length{};       // of the domain [m]
@@ -31,9 +34,10 @@ struct CellGrid {
     g.length = max - min;
     g.periodic = periodic;
     for (int k = 0; k < D; ++k) {
-      // The guard keeps a domain of exactly n radii at n cells when the quotient rounds below n.
-      g.count[k] = static_cast<int>(std::floor(g.length[k] / radius * (1 + 1e-12)));
-      if (g.count[k] < 1) g.count[k] = 1;
+      // The guard keeps a domain of exactly n radii at n cells when the quotient rounds below n. Where there would
+      // be more cells than keys tell apart they are larger.
+      const double cells = std::floor(g.length[k] / radius * (1 + 1e-12));
+      g.count[k] = static_cast<int>(std::clamp(cells, 1.0, static_cast<double>(1 << maxBits)));
       g.edge[k] = g.length[k] / g.count[k];
       g.inverseEdge[k] = g.count[k] / g.length[k];
       while ((1 << g.bits) < g.count[k]) ++g.bits;

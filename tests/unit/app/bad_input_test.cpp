@@ -75,7 +75,7 @@ constexpr BadCase badCases[] = {
      "bad.toml:10:16: acceleration in [gravity]: expected an array of 2 finite numbers [m/s2], found an array of "
      "3"},
     {"fractionForInteger", "[output]", "[solver]\nmax_iterations = 1.5\n[output]",
-     "bad.toml:40:18: max_iterations in [solver]: expected a whole number of at least 1, found 1.5"},
+     "bad.toml:40:18: max_iterations in [solver]: expected a whole number from 1 to 1000000, found 1.5"},
     {"wrongPeriodic", "[gravity]", "periodic = [true, 1]\n[gravity]",
      "bad.toml:9:12: periodic in [domain]: expected true, false or an array of 2 of them, found an array of 2"},
     {"tableForList", "[[material]]", "[material]",
@@ -106,7 +106,7 @@ constexpr BadCase badCases[] = {
     {"infinity", "min = [0, 0]", "min = [0, -inf]",
      "bad.toml:24:7: min in [[body]] 'column' (box): expected an array of 2 finite numbers [m], found -inf"},
     {"zeroRadius", "[output]", "[method]\npressure_radius = 0\n[output]",
-     "bad.toml:40:19: pressure_radius in [method]: expected a positive number [spacings], found 0"},
+     "bad.toml:40:19: pressure_radius in [method]: expected a number between 0 and 20 [spacings], found 0"},
     {"unknownMaterial", "material = \"syrup\"", "material = \"sirup\"",
      "bad.toml:22:12: material in [[body]] 'column' (box): unknown material 'sirup'; did you mean 'syrup'?"},
     {"unknownChoice", "[output]", "[solver]\nkrylov = \"gmres\"\n[output]",
@@ -115,9 +115,9 @@ constexpr BadCase badCases[] = {
      "bad.toml:40:18: preconditioner in [solver]: expected 'projected-multigrid', 'bucket-multigrid', "
      "'block-jacobi', 'jacobi' or 'none', found 'ilu'"},
     {"negativeDegree", "[output]", "[solver.projected]\npressure_degree = -1\n[output]",
-     "bad.toml:40:19: pressure_degree in [solver.projected]: expected a whole number of at least 0, found -1"},
+     "bad.toml:40:19: pressure_degree in [solver.projected]: expected a whole number from 0 to 1000, found -1"},
     {"noIterations", "[output]", "[solver.projected]\niteration_bound = 0\n[output]",
-     "bad.toml:40:19: iteration_bound in [solver.projected]: expected a whole number of at least 1, found 0"},
+     "bad.toml:40:19: iteration_bound in [solver.projected]: expected a whole number from 1 to 1000000, found 0"},
     {"negativeDeflation", "[output]", "[solver]\ndeflation = -1\n[output]",
      "bad.toml:40:13: deflation in [solver]: expected a whole number from 0 to 16, found -1"},
     {"manyModes", "[output]", "[solver]\ndeflation = 17\n[output]",
@@ -221,13 +221,13 @@ constexpr BadCase badCases[] = {
     {"cellsForMph", "[output]", "[solver.cells]\nlevels = 2\n[output]",
      "bad.toml:39:9: unknown key 'cells' in [solver]: it belongs to the method 'isph'; expected 'krylov'"},
     {"noSweeps", bulk, "[method]\nname = \"isph\"\n[solver.cells]\nsweeps = 0\n",
-     "bad.toml:19:10: sweeps in [solver.cells]: expected a whole number of at least 1, found 0"},
+     "bad.toml:19:10: sweeps in [solver.cells]: expected a whole number from 1 to 1000, found 0"},
     {"negativeLevels", bulk, "[method]\nname = \"isph\"\n[solver.cells]\nlevels = -1\n",
-     "bad.toml:19:10: levels in [solver.cells]: expected a whole number of at least 0, found -1"},
+     "bad.toml:19:10: levels in [solver.cells]: expected a whole number from 0 to 100, found -1"},
     {"negativeHatDegree", bulk, "[method]\nname = \"isph\"\n[solver.hats]\ngrid_degree = -1\n",
-     "bad.toml:19:15: grid_degree in [solver.hats]: expected a whole number of at least 0, found -1"},
+     "bad.toml:19:15: grid_degree in [solver.hats]: expected a whole number from 0 to 1000, found -1"},
     {"noHatIterations", bulk, "[method]\nname = \"isph\"\n[solver.hats]\niteration_bound = 0\n",
-     "bad.toml:19:19: iteration_bound in [solver.hats]: expected a whole number of at least 1, found 0"},
+     "bad.toml:19:19: iteration_bound in [solver.hats]: expected a whole number from 1 to 1000000, found 0"},
     {"negativeCourantNumber", "end = 2e-3", "end = 2e-3\ncourant = -0.1",
      "bad.toml:38:11: courant in [time]: expected a number not less than 0, found -0.1"},
     {"oscillatingFluid", "max = [6e-3, 6e-3]",
@@ -317,6 +317,34 @@ constexpr BadCase badCases[] = {
      "body 'column' reaches out of the domain: a particle at (0.5, 12.5) mm, the domain is (-4, -4) mm to (12, "
      "12) "
      "mm"},
+    {"domainOfTooManyCells", "min = [-4e-3, -4e-3]\nmax = [12e-3, 12e-3]", "min = [-2e6, -2e6]\nmax = [2e6, 2e6]",
+     "bad.toml:7:7: max in [domain]: the domain has 1.14e+09 search cells of edge 3.5 mm along x, expected at "
+     "most "
+     "5.37e+08: take a smaller domain or a larger spacing"},
+    {"domainTooFarAway", "max = [12e-3, 12e-3]", "max = [1e13, 12e-3]",
+     "bad.toml:7:7: max in [domain]: found 10000000000000 m along x, expected at most 4.5e+06 m from 0: farther "
+     "away "
+     "positions "
+     "are rounded by more than a millionth of the spacing of 1 mm"},
+    {"domainWithoutAnEnd", "min = [-4e-3, -4e-3]", "min = [-1.7e308, -4e-3]",
+     "bad.toml:6:7: min in [domain]: found -1.7e+308 m along x"},
+    {"smallCourantNumber", "end = 2e-3", "end = 2e-3\ncourant = 1e-20",
+     "bad.toml:38:11: courant in [time]: expected 0 or a number from 1e-06 to 100, found 1e-20"},
+    {"largeCourantNumber", "end = 2e-3", "end = 2e-3\ncourant = 1e9",
+     "bad.toml:38:11: courant in [time]: expected 0 or a number from 1e-06 to 100, found 1000000000"},
+    {"tooManySteps", "end = 2e-3", "end = 1e300",
+     "bad.toml:36:8: step in [time]: 1e+303 steps to the end are too many"},
+    {"tooManyFrames", "interval = 1e-3", "interval = 1e-300",
+     "bad.toml:40:12: interval in [output]: 2e+297 intervals to the end are too many"},
+    {"largeRadius", "[output]", "[method]\nviscosity_radius = 1e9\n[output]",
+     "bad.toml:40:20: viscosity_radius in [method]: expected a number between 0 and 20 [spacings], found "
+     "1000000000"},
+    {"largeDegree", "[output]", "[solver.projected]\ngrid_degree = 2000000000\n[output]",
+     "bad.toml:40:15: grid_degree in [solver.projected]: expected a whole number from 0 to 1000, found "
+     "2000000000"},
+    {"manySweeps", "[output]", "[solver.multigrid]\ncoarsest_sweeps = 1000000000\n[output]",
+     "bad.toml:40:19: coarsest_sweeps in [solver.multigrid]: expected a whole number from 1 to 1000, found "
+     "1000000000"},
     {"tooManyParticles", "spacing = 1e-3", "spacing = 1e-9",
      "body 'column' would have more than 134217728 particles; take a larger spacing or a lower resolution"},
     {"baseMissing", "title", "base = \"none.toml\"\ntitle", "bad.toml:1:8: base: no such case file: none.toml"},
@@ -356,7 +384,13 @@ constexpr BadLine badLines[] = {
     {"directoryAsFile", "check .", "treacle: error: .: is a directory"},
     {"unknownBackend", "run small.toml --backend gpu", "--backend: expected auto|cpu|cuda, found 'gpu'"},
     {"unknownPrecision", "run small.toml --precision half", "--precision: expected mixed|double, found 'half'"},
-    {"noThreads", "run small.toml --threads 0", "--threads: expected a positive number, found '0'"},
+    {"noThreads", "run small.toml --threads 0", "--threads: expected a whole number from 1 to 1024, found '0'"},
+    {"manyThreads", "run small.toml --threads 100000",
+     "--threads: expected a whole number from 1 to 1024, found '100000'"},
+    {"endTimeWithoutEnd", "run small.toml --end-time 1e300", "--end-time: 1e+303 steps to the end are too many"},
+    {"setComment", "check small.toml --set '#=1'", "--set #=1: expected one key=value, found 0"},
+    {"setTwoKeys", "check small.toml --set \"$(printf 'spacing=1e-3\\ntitle=1')\"",
+     "expected one key=value, found 2"},
     {"factorWithoutWidth", "run small.toml --set width.factor=4",
      "--set width.factor=4: axis in [width]: missing; expected a string"},
     {"negativeEndTime", "run small.toml --end-time=-1", "--end-time: expected a positive number, found '-1'"},
@@ -512,6 +546,67 @@ constexpr Warning warnings[] = {
 
 INSTANTIATE_TEST_SUITE_P(Case, Warnings, testing::ValuesIn(warnings),
                          [](const auto& test) { return test.param.name; });
+
+TEST(BadText, keysInKeysInKeysAreRefused) {
+  Workshop shop;
+  shop.put("small.toml", smallCase);
+  std::string plain = "a", quoted = "\".=\"", arrays, tables;
+  for (int k = 0; k < 40000; ++k) plain += ".a", quoted += " . 'b=\"'", arrays += '[', tables += "{a=";
+  shop.put("key.toml", smallCase + plain + " = 1\n");
+  shop.put("quoted.toml", smallCase + quoted + " = 1\n");
+  shop.put("table.toml", smallCase + '[' + plain + "]\n");
+  shop.put("arrays.toml", smallCase + "a = " + arrays);
+  shop.put("tables.toml", smallCase + "a = " + tables);
+  for (const char* name : {"key", "quoted", "table", "arrays", "tables"}) {
+    const Outcome outcome = shop.call(std::string("check ") + name + ".toml");
+    EXPECT_EQ(outcome.exitCode, 2) << name;
+    EXPECT_THAT(outcome.err, StartsWith(std::string("treacle: error: ") + name + ".toml:41")) << name;
+    EXPECT_LT(outcome.err.size(), 300u);
+  }
+  // A text that ends in the middle of a line, and quotes that nothing ends: looked at once and not again and
+  // again.
+  shop.put("text.toml", smallCase + "a = {b = \"\"\"c\"d\"\"\", " + plain + " = 1}\n");
+  EXPECT_THAT(shop.call("check text.toml").err,
+              StartsWith("treacle: error: text.toml:41: not valid TOML for a case"));
+  std::string unended = "title = \"";
+  while (unended.size() < 3000000) unended += "\\\"";
+  shop.put("unended.toml", unended);
+  EXPECT_EQ(shop.call("check unended.toml", "timeout 20").exitCode, 2);
+  const Outcome outcome = shop.call("check small.toml --set " + plain + "=1");
+  EXPECT_EQ(outcome.exitCode, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("found a key of hundreds of parts"));
+}
+
+TEST(BadText, pipesAreReadAndNotWaitedFor) {
+  Workshop shop;
+  shop.put("small.toml", smallCase);
+  Outcome outcome = shop.call("check pipe", "mkfifo pipe; timeout 20");
+  EXPECT_EQ(outcome.exitCode, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("pipe:1:1: dimensions in the case file: missing"));
+  outcome = shop.call("check /dev/stdin", "cat small.toml |");
+  EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+  outcome = shop.call("check /dev/zero", "timeout 20");
+  EXPECT_EQ(outcome.exitCode, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("/dev/zero: too large for a case file"));
+}
+
+TEST(BadText, aBodyMuchTooLargeIsFoundBeforeItIsFilled) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the address sanitizer needs more address space than the limit of this test";
+#endif
+  Workshop shop;
+  shop.put("drop.toml", R"(dimensions = 3
+spacing = 5e-3
+domain = {min = [-0.1, -0.1, -0.1], max = [0.1, 0.1, 0.1]}
+material = [{name = "syrup", density = 1, dynamic_viscosity = 1, bulk_viscosity = 1, bulk_modulus = 0}]
+body = [{name = "drop", type = "fluid", material = "syrup", shape = "sphere", center = [0, 0, 0], radius = 1.5}]
+time = {step = 1e-3, end = 1}
+)");
+  // 113 million particles.
+  const Outcome outcome = shop.call("check drop.toml", "ulimit -v 500000; OMP_NUM_THREADS=1 timeout 60");
+  EXPECT_EQ(outcome.exitCode, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("body 'drop' reaches out of the domain: a particle at "));
+}
 
 }  // namespace
 }  // namespace treacle::test

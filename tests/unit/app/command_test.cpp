@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "command.hpp"
 #include "treacle/io/case_reader.hpp"
@@ -235,7 +236,7 @@ TEST(run, particleThatLeavesOpenDomainEndsTheRun) {
 }
 
 TEST(run, stopsOnSignalAfterTheStepWithLastFrameCheckpointAndSummary) {
-  for (const char* signal : {"INT", "TERM"}) {
+  for (const char* signal : {"INT", "TERM", "HUP"}) {
     Workshop shop;
     const std::string script = std::string(
                                    "run small.toml --threads 1 --quiet --end-time 3 & run=$!; "
@@ -253,6 +254,64 @@ TEST(run, stopsOnSignalAfterTheStepWithLastFrameCheckpointAndSummary) {
     EXPECT_EQ(run.frameTime(run.frameCount() - 1), rows.back().time);
     EXPECT_EQ(readCheckpoint<2>(run.checkpoint()).time, rows.back().time);
   }
+}
+
+TEST(run, goesOnWhereTheTerminalIsGoneAndHangUpsAreIgnored) {
+  Workshop shop;
+  const Outcome outcome = prepared(shop).call(
+      "run small.toml --threads 1 --quiet --end-time 1 & run=$!; "
+      "while [ ! -s small-run/history.csv ]; do sleep 0.05; done; kill -HUP $run; sleep 0.3; kill -TERM $run; "
+      "wait $run",
+      "trap '' HUP;");
+  EXPECT_EQ(outcome.exitCode, 3);
+  EXPECT_THAT(shop.content("small-run/summary.json"), HasSubstr("stopped by SIGTERM"));
+}
+
+TEST(run, whoseHistoryIsRemovedFailsAndKeepsTheLastGoodState) {
+  Workshop shop;
+  const Outcome outcome = prepared(shop).call(
+      "run small.toml --threads 1 --quiet --end-time 30 & run=$!; "
+      "while [ ! -s small-run/history.csv ]; do sleep 0.05; done; rm small-run/history.csv; wait $run");
+  EXPECT_EQ(outcome.exitCode, 3);
+  EXPECT_THAT(outcome.err, HasSubstr("cannot write small-run/history.csv: it was removed while the run went on"));
+  EXPECT_GT(readCheckpoint<2>(shop / "small-run/checkpoint.h5").step, 0);
+}
+
+TEST(run, leavesTheDirectoryOfAnotherOneAlone) {
+  Workshop shop;
+  const Outcome outcome = prepared(shop).call(
+      "run small.toml --threads 1 --quiet --end-time 30 & run=$!; "
+      "while [ ! -s small-run/history.csv ]; do sleep 0.05; done; "
+      "'" TREACLE_BINARY "' run small.toml --threads 1 --force; echo code $?; kill -TERM $run; wait $run");
+  EXPECT_THAT(outcome.out, HasSubstr("code 2\n"));
+  EXPECT_THAT(outcome.err, HasSubstr("output directory small-run: another run is writing into it"));
+  EXPECT_FALSE(readHistory(shop / "small-run/history.csv").empty());
+  EXPECT_EQ(shop.call("run small.toml --threads 1 --force").exitCode, 0) << "the lock goes with the run";
+}
+
+TEST(run, needsThreadsThatTheMachineStarts) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the address sanitizer needs more address space than the limit of this test";
+#endif
+  Workshop shop;
+  Outcome outcome = prepared(shop).call("run small.toml --threads 300", "ulimit -v 1000000;");
+  EXPECT_EQ(outcome.exitCode, 2);
+  EXPECT_THAT(outcome.err, ContainsRegex("--threads 300: this machine starts no more than [0-9]+ threads"));
+  for (const char* command : {"run small.toml", "check small.toml", "compare a b"}) {
+    outcome = shop.call(command, "export OMP_NUM_THREADS=100000;");
+    EXPECT_EQ(outcome.exitCode, 2) << command;
+    EXPECT_THAT(outcome.err, HasSubstr("OMP_NUM_THREADS: expected at most 1024 threads, found 100000"));
+  }
+}
+
+TEST(check, warnsWhereThisMachineHasNotTheMemory) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the address sanitizer needs more address space than the limit of this test";
+#endif
+  Workshop shop;
+  const Outcome outcome = prepared(shop).call("check small.toml --set domain.max=[20,20]", "ulimit -v 600000;");
+  EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, ContainsRegex("warning: 100 particles and 3.* search cells of the domain need about "));
 }
 
 TEST(run, caseThatDoesNotFitIntoMemoryIsRefused) {
@@ -278,6 +337,11 @@ TEST(plot, drawsFramesAndHistory) {
   EXPECT_THAT(shop.content("last.png"), StartsWith(std::string(pngSignature)));
   EXPECT_EQ(shop.call("plot small-run --history").exitCode, 0);
   EXPECT_THAT(shop.content("small-run/history.png"), StartsWith(std::string(pngSignature)));
+  Frame odd = readVtp(shop / "small-run/frames/fluid_000001.vtp");
+  odd.position[7][1] = std::nan("");
+  writeVtp(shop / "small-run/frames/fluid_000001.vtp", odd, {}, OutputPrecision::Single);
+  EXPECT_EQ(shop.call("plot small-run --frame 1").err,
+            "treacle: warning: frame 1: 1 particle without a position that can be drawn\n");
   const Outcome outcome = shop.call("plot small-run --frame 9");
   EXPECT_EQ(outcome.exitCode, 2);
   EXPECT_THAT(outcome.err, HasSubstr("--frame 9: expected 'last' or a number from 0 to 2"));

@@ -199,6 +199,7 @@ TEST(convergence, badSolversAreBadInput) {
   expectRefused("--solver first_guess=last", "first_guess: is the same for all solvers of a comparison");
   expectRefused("--solver neighbours=ranges", "change it in the case, --set solver.neighbours");
   expectRefused("--at=-1", "--at: expected a number not less than 0, found '-1'");
+  expectRefused("--at 1e300", "--at: 1e+303 steps to it are too many");
   expectRefused("--resume none.h5", "none.h5");
   expectRefused("--output small.toml", "output directory small.toml: cannot be created");
 }

@@ -160,5 +160,34 @@ TEST(Memory, OfIsphIsNearWhatRunsTook) {
   expectNear(estimatedMemory(c, {175'863, 188'190}, false), 317.3e6);
 }
 
+/// What runs of 250 particles took at 20 m by 20 m and at 1 m by 1 m by 1 m, on one CPU.
+TEST(HostMemory, OfCellsCountsWhereTheDomainIsLarge) {
+  Case c;
+  c.spacing = 1e-3;
+  constexpr ParticleNumbers few{100, 150};
+  const auto expectNear = [&](const Vec<3>& extents, double measured) {
+    c.domain.max = extents;
+    EXPECT_NEAR(static_cast<double>(estimatedMemory(c, few, false)), measured, 0.1 * measured);
+  };
+  expectNear({20, 20, 0}, 872.4e6);
+  c.method.scheme = SchemeKind::Accurate, c.method.pressureRadius = 3;
+  expectNear({20, 20, 0}, 324.3e6);
+  c.method = {};
+  c.solver.preconditioner = PreconditionerKind::BucketMultigrid;
+  expectNear({20, 20, 0}, 582.1e6);
+  c.solver.preconditioner = PreconditionerKind::HatMultigrid;
+  c.method.kind = MethodKind::Isph;
+  expectNear({20, 20, 0}, 1822.0e6);
+  c.dimensions = 3;
+  expectNear({1, 1, 1}, 1893.5e6);
+  c = {.dimensions = 3, .spacing = 1e-3};
+  expectNear({1, 1, 1}, 653.7e6);
+
+  const std::uint64_t device = estimatedDeviceMemory(c, few);
+  c.domain.max = {2, 1, 1};
+  EXPECT_GT(estimatedDeviceMemory(c, few), device + (500 << 20));
+  EXPECT_EQ(estimatedMemory(c, few, true), estimatedMemory({.dimensions = 3, .spacing = 1e-3}, few, true));
+}
+
 }  // namespace
 }  // namespace treacle

@@ -2,7 +2,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 #include "command.hpp"
 #include "treacle/io/checkpoint.hpp"
@@ -150,6 +152,14 @@ TEST(resume, refusesWhatDoesNotFit) {
                 "36 fluid and 64 wall particles, but the case has 144 and 256");
 }
 
+TEST(resume, refusesTheStateOfAnotherMethod) {
+  Workshop shop;
+  shop.put("case.toml", smallCase);
+  ASSERT_EQ(shop.call("run case.toml -o whole --threads 1 --end-time 1e-3").exitCode, 0);
+  shop.put("case.toml", smallIsphCase);
+  expectRefused(shop, "whole/checkpoint.h5", "a state of the method 'mph-i', but that of the case is 'isph'");
+}
+
 TEST(resume, refusesToReplaceItsOwnCheckpoint) {
   Workshop shop;
   ASSERT_EQ(prepared(shop).call("run case.toml --threads 1 --end-time 3e-3").exitCode, 0);
@@ -165,18 +175,19 @@ TEST(resume, refusesOtherDimensionsMaterialsAndDomains) {
   const auto put = [&](auto change) {
     Particles<2> p;
     p.resize(36, 64);
+    p.forEachField([](auto& field) { std::fill(field.begin(), field.end(), std::decay_t<decltype(field[0])>{}); });
     for (std::uint32_t i = 0; i < p.count; ++i)
-      p.position[i] = {{1e-3, 1e-3}}, p.material[i] = 0, p.id[i] = i, p.body[i] = i < 36 ? 0 : 1;
+      p.position[i] = {{1e-3, 1e-3}}, p.id[i] = i, p.body[i] = i < 36 ? 0 : 1;
     change(p);
-    writeCheckpoint<2>(shop / "c.h5", p, 1, 1e-3);
+    writeCheckpoint<2>(shop / "c.h5", p, 1, 1e-3, MethodKind::MphI);
   };
   put([](Particles<2>& p) { p.material[7] = 1; });
   expectRefused(shop, "c.h5", "particle 7 has material 1, but the case has only 1");
   put([](Particles<2>& p) { p.position[99][1] = 13e-3; });
   expectRefused(shop, "c.h5", "particle 99 lies outside the domain of the case");
   put([](Particles<2>& p) { p.position[3][0] = std::nan(""); });
-  expectRefused(shop, "c.h5", "particle 3 lies outside the domain of the case");
-  writeCheckpoint<3>(shop / "c.h5", Particles<3>{}, 1, 1e-3);
+  expectRefused(shop, "c.h5", "value 3 of the field position is not finite");
+  writeCheckpoint<3>(shop / "c.h5", Particles<3>{}, 1, 1e-3, MethodKind::MphI);
   expectRefused(shop, "c.h5", "3 dimensions, expected 2");
 }
 

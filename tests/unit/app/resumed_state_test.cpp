@@ -24,6 +24,7 @@ struct Resumed {
   Case c;
   AnyParticles made{2};
   Particles<2> saved;
+  MethodKind method = MethodKind::MphI;
 
   Resumed() {
     shop.put("case.toml", smallCase);
@@ -31,12 +32,13 @@ struct Resumed {
     std::vector<std::string> notes;
     made = createParticles(c, notes);
     saved = createParticles<2>(c, notes);
+    forEachFluidFieldOf([](auto& field) { std::fill(field.begin(), field.end(), Vec<2>{}); }, saved);
     std::reverse(saved.id.begin(), saved.id.begin() + saved.fluidCount);
     std::reverse(saved.id.begin() + saved.fluidCount, saved.id.end());
   }
 
   StartState state(std::int64_t step, double time) {
-    writeCheckpoint<2>(shop / "c.h5", saved, step, time);
+    writeCheckpoint<2>(shop / "c.h5", saved, step, time, method);
     return resumedState(c, shop / "c.h5", made);
   }
 
@@ -54,6 +56,20 @@ TEST(resumedState, takesStepAndTimeFromTheFileWhereStepsVary) {
   EXPECT_EQ(state.step, 77);
   EXPECT_EQ(state.time, 1.234e-3);
   EXPECT_THAT(r.message(1, 2e-3), HasSubstr("its time 0.002 s is not before the end of the run"));
+}
+
+TEST(resumedState, refusesTimesThatNoNumberOfStepsReaches) {
+  Resumed r;
+  EXPECT_THAT(r.message(1, 1e300), HasSubstr("its time 1e+300 s is more steps of 0.001 s than can be counted"));
+  r.c.time.courant = 0.2;
+  EXPECT_THAT(r.message(1, 1e300), HasSubstr("its time 1e+300 s is not before the end of the run"));
+}
+
+TEST(resumedState, refusesTheStateOfAnotherMethod) {
+  Resumed r;
+  r.method = MethodKind::Isph;
+  EXPECT_THAT(r.message(1, 1e-3),
+              HasSubstr("c.h5: a state of the method 'isph', but that of the case is 'mph-i'"));
 }
 
 TEST(resumedState, takesBodiesThatTheFileDoesNotKnowFromTheCase) {

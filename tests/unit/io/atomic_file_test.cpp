@@ -4,6 +4,12 @@
 #include "support/temporary_directory.hpp"
 #include "treacle/core/error.hpp"
 
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+
 using namespace treacle;
 using namespace treacle::test;
 namespace fs = std::filesystem;
@@ -84,4 +90,37 @@ TEST(AtomicFile, FailedRenameLeavesNothing) {
   fs::create_directories(directory / "a/b");
   EXPECT_THROW(writeFile(directory / "a", "text"), RunError);
   EXPECT_EQ(entries(directory.path()), 1u);
+}
+
+TEST(AtomicFile, LinksStayAndWhatTheyLeadToIsReplaced) {
+  TemporaryDirectory directory;
+  fs::create_directory(directory / "elsewhere");
+  writeFile(directory / "elsewhere/a", "old");
+  fs::create_symlink("elsewhere/a", directory / "link");
+  fs::create_symlink("elsewhere/b", directory / "ahead");  // of a file that is not there yet
+  for (const char* name : {"link", "ahead"}) {
+    writeFile(directory / name, "new");
+    EXPECT_TRUE(fs::is_symlink(directory / name));
+    EXPECT_EQ(content(directory / name), "new");
+  }
+  EXPECT_EQ(entries(directory / "elsewhere"), 2u);
+  EXPECT_EQ(entries(directory.path()), 3u);
+}
+
+TEST(AtomicFile, WhatIsNoFileIsWrittenToAndStays) {
+  TemporaryDirectory directory;
+  const fs::path pipe = directory / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0666), 0);
+  const int reader = ::open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
+  writeFile(pipe, "text");
+  std::array<char, 10> got{};
+  EXPECT_EQ(::read(reader, got.data(), got.size()), 4);
+  EXPECT_STREQ(got.data(), "text");
+  ::close(reader);
+  EXPECT_TRUE(fs::is_fifo(pipe));
+  fs::create_symlink("/dev/null", directory / "null");
+  writeFile(directory / "null", "text");
+  EXPECT_TRUE(fs::is_symlink(directory / "null"));
+  EXPECT_TRUE(fs::is_character_file(directory / "null"));
+  EXPECT_EQ(entries(directory.path()), 2u);
 }

@@ -1,6 +1,8 @@
 #include "treacle/io/checkpoint.hpp"
 
+#include "checksum.hpp"
 #include "limited_files.hpp"
+#include "posix.hpp"
 #include "support/temporary_directory.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/io/atomic_file.hpp"
@@ -9,8 +11,14 @@
 #include <gmock/gmock.h>
 #include <hdf5.h>
 
+#include <algorithm>
+#include <cmath>
+#include <csignal>
 #include <cstring>
+#include <numeric>
 #include <random>
+#include <type_traits>
+#include <vector>
 
 using namespace treacle;
 using namespace treacle::test;
@@ -21,18 +29,26 @@ namespace {
 
 constexpr double time3 = 3 * 0.1;  // [s]; not the decimal 0.3
 
-/// Every byte of every field is random.
+/// Every number of every field is random, the ids in a random order.
 template <int D>
 Particles<D> randomParticles(std::uint32_t fluid, std::uint32_t wall) {
   Particles<D> particles;
   particles.resize(fluid, wall, fluid % 4);
   particles.modes.age = {7, 13};
   std::mt19937_64 random(D);
-  particles.forEachField([&](auto& field) {
-    auto* bytes = reinterpret_cast<unsigned char*>(field.data());
-    for (std::size_t k = 0; k < field.size() * sizeof(field[0]); ++k)
-      bytes[k] = static_cast<unsigned char>(random());
+  std::uniform_real_distribution<double> real(-1, 1);
+  particles.forEachField([&]<class T>(Buffer<T>& field) {
+    for (T& value : field)
+      if constexpr (requires { value.v; })
+        std::generate(std::begin(value.v), std::end(value.v), [&] { return real(random); });
+      else if constexpr (std::is_floating_point_v<T>)
+        value = real(random);
+      else if constexpr (std::is_integral_v<T>)
+        value = static_cast<T>(random());
   });
+  std::iota(particles.id.begin(), particles.id.end(), 0u);
+  std::shuffle(particles.id.begin(), particles.id.begin() + fluid, random);
+  std::shuffle(particles.id.begin() + fluid, particles.id.end(), random);
   return particles;
 }
 
@@ -64,26 +80,59 @@ void checkRoundTrip(std::uint32_t fluid, std::uint32_t wall) {
   TemporaryDirectory directory;
   const Particles<D> particles = randomParticles<D>(fluid, wall);
   const std::int64_t step = std::int64_t{1} << 40;
-  writeCheckpoint<D>(directory / "c.h5", particles, step, time3);
+  writeCheckpoint<D>(directory / "c.h5", particles, step, time3, MethodKind::MphI);
   const Checkpoint<D> read = readCheckpoint<D>(directory / "c.h5");
   EXPECT_EQ(read.step, step);
   EXPECT_EQ(read.time, time3);
+  EXPECT_EQ(read.method, MethodKind::MphI);
   expectSame(read.particles, particles);
 }
 
-/// A checkpoint with one attribute replaced by another integer.
-void changeAttribute(const std::filesystem::path& path, const char* name, int value) {
+/// HDF5 cuts the checksum off the files that it changes.
+void close(hid_t file, const std::filesystem::path& path) {
+  H5Fclose(file);
+  const std::string changed = content(path);
+  const ChecksumRecord record = ChecksumRecord::of(changed.data(), changed.size());
+  put(path, changed + std::string(reinterpret_cast<const char*>(&record), sizeof record));
+}
+
+/// A checkpoint with one attribute replaced by another number.
+void changeAttribute(const std::filesystem::path& path, const char* name, double value) {
   const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
   const hid_t attribute = H5Aopen(file, name, H5P_DEFAULT);
-  ASSERT_GE(H5Awrite(attribute, H5T_NATIVE_INT, &value), 0);
+  ASSERT_GE(H5Awrite(attribute, H5T_NATIVE_DOUBLE, &value), 0);
   H5Aclose(attribute);
-  H5Fclose(file);
+  close(file, path);
+}
+
+/// The attribute becomes one of `count` values of a type.
+void replaceAttribute(const std::filesystem::path& path, const char* name, hid_t type, hsize_t count) {
+  const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  ASSERT_GE(H5Adelete(file, name), 0);
+  const hid_t space = H5Screate_simple(1, &count, nullptr);
+  const hid_t attribute = H5Acreate2(file, name, type, space, H5P_DEFAULT, H5P_DEFAULT);
+  ASSERT_GE(attribute, 0);
+  H5Aclose(attribute);
+  H5Sclose(space);
+  close(file, path);
+}
+
+/// A field becomes one of other extents that no value was ever written to.
+void replaceField(const std::filesystem::path& path, const char* name, hid_t type, std::vector<hsize_t> extents) {
+  const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  ASSERT_GE(H5Ldelete(file, name, H5P_DEFAULT), 0);
+  const hid_t space = H5Screate_simple(static_cast<int>(extents.size()), extents.data(), nullptr);
+  const hid_t field = H5Dcreate2(file, name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  ASSERT_GE(field, 0);
+  H5Dclose(field);
+  H5Sclose(space);
+  close(file, path);
 }
 
 void removeField(const std::filesystem::path& path, const char* name) {
   const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
   ASSERT_GE(H5Ldelete(file, name, H5P_DEFAULT), 0);
-  H5Fclose(file);
+  close(file, path);
 }
 
 template <int D>
@@ -105,9 +154,9 @@ TEST(Checkpoint, ReadsBackToTheSameBits) {
 TEST(Checkpoint, TheSameStateGivesTheSameFileAndLeavesNoTemporaryOne) {
   TemporaryDirectory directory;
   const auto particles = randomParticles<3>(100, 50);
-  writeCheckpoint<3>(directory / "a.h5", particles, 7, time3);
+  writeCheckpoint<3>(directory / "a.h5", particles, 7, time3, MethodKind::MphI);
   put(directory / "b.h5", "an older file");
-  writeCheckpoint<3>(directory / "b.h5", particles, 7, time3);
+  writeCheckpoint<3>(directory / "b.h5", particles, 7, time3, MethodKind::MphI);
   EXPECT_EQ(content(directory / "a.h5"), content(directory / "b.h5"));
   EXPECT_FALSE(std::filesystem::exists(AtomicFile::temporaryName(directory / "b.h5")));
 }
@@ -115,10 +164,11 @@ TEST(Checkpoint, TheSameStateGivesTheSameFileAndLeavesNoTemporaryOne) {
 TEST(Checkpoint, AFullDiskKeepsTheOlderOne) {
   TemporaryDirectory directory;
   const auto small = randomParticles<2>(4, 4);
-  writeCheckpoint<2>(directory / "c.h5", small, 1, time3);
+  writeCheckpoint<2>(directory / "c.h5", small, 1, time3, MethodKind::MphI);
   EXPECT_TRUE(withFileLimit(1 << 16, [&] {
-    const auto message = messageOf<RunError>(
-        [&] { writeCheckpoint<2>(directory / "c.h5", randomParticles<2>(4000, 0), 2, 2 * time3); });
+    const auto message = messageOf<RunError>([&] {
+      writeCheckpoint<2>(directory / "c.h5", randomParticles<2>(4000, 0), 2, 2 * time3, MethodKind::MphI);
+    });
     return message == "cannot write " + (directory / "c.h5").string() + ": File too large";
   }));
   EXPECT_EQ(readCheckpoint<2>(directory / "c.h5").step, 1);
@@ -128,8 +178,9 @@ TEST(Checkpoint, AFullDiskKeepsTheOlderOne) {
 TEST(Checkpoint, DirectoryThatDoesNotExist) {
   TemporaryDirectory directory;
   const auto path = directory / "none/c.h5";
-  EXPECT_EQ(messageOf<RunError>([&] { writeCheckpoint<2>(path, randomParticles<2>(1, 1), 1, 1); }),
-            "cannot write " + path.string() + ": No such file or directory");
+  EXPECT_EQ(
+      messageOf<RunError>([&] { writeCheckpoint<2>(path, randomParticles<2>(1, 1), 1, 1, MethodKind::MphI); }),
+      "cannot write " + path.string() + ": No such file or directory");
 }
 
 TEST(Checkpoint, MissingFilesAndDirectoriesAreRefused) {
@@ -151,11 +202,11 @@ TEST(Checkpoint, ForeignFilesAreRefused) {
 TEST(Checkpoint, OtherVersionsAndDimensionsAreRefused) {
   TemporaryDirectory directory;
   const auto path = directory / "c.h5";
-  writeCheckpoint<3>(path, randomParticles<3>(5, 5), 1, 1);
+  writeCheckpoint<3>(path, randomParticles<3>(5, 5), 1, 1, MethodKind::MphI);
   EXPECT_THAT(refusal<2>(path), HasSubstr("3 dimensions, expected 2"));
-  for (const int version : {0, 4}) {
+  for (const int version : {0, 5}) {
     changeAttribute(path, "version", version);
-    EXPECT_THAT(refusal<3>(path), HasSubstr(fmt::format("version {}, expected 1 to 3", version)));
+    EXPECT_THAT(refusal<3>(path), HasSubstr(fmt::format("version {}, expected 1 to 4", version)));
   }
 }
 
@@ -163,8 +214,11 @@ TEST(Checkpoint, EarlierVersionsAreReadWithoutBodiesAndMemoryOfTheFlow) {
   TemporaryDirectory directory;
   const auto path = directory / "c.h5";
   Particles<3> particles = randomParticles<3>(33, 31);
-  writeCheckpoint<3>(path, particles, 7, time3);
+  writeCheckpoint<3>(path, particles, 7, time3, MethodKind::MphI);
   ASSERT_EQ(particles.modeCount(), 1u);
+  changeAttribute(path, "version", 3);
+  EXPECT_FALSE(readCheckpoint<3>(path).method);
+  expectSame(readCheckpoint<3>(path).particles, particles);
   removeField(path, "modes");
   EXPECT_THAT(refusal<3>(path), HasSubstr("modes"));
   removeField(path, "body");
@@ -187,13 +241,125 @@ TEST(Checkpoint, EarlierVersionsAreReadWithoutBodiesAndMemoryOfTheFlow) {
 TEST(Checkpoint, DamagedFilesAreRefused) {
   TemporaryDirectory directory;
   const auto path = directory / "c.h5";
-  writeCheckpoint<2>(path, randomParticles<2>(100, 50), 1, 1);
+  writeCheckpoint<2>(path, randomParticles<2>(100, 50), 1, 1, MethodKind::MphI);
   const std::string whole = content(path);
   for (const std::size_t size : {whole.size() - 1, whole.size() / 2, std::size_t{600}, std::size_t{9}}) {
     put(path, whole.substr(0, size));
     refusal<2>(path);
   }
+  put(path, whole.substr(0, whole.size() - sizeof(ChecksumRecord)));
+  EXPECT_THAT(refusal<2>(path), HasSubstr("its checksum is missing"));
   put(path, whole);
   changeAttribute(path, "wall_count", 51);
   EXPECT_THAT(refusal<2>(path), HasSubstr("the field position does not have 151 values"));
+}
+
+TEST(Checkpoint, AttributesOfOtherSizesAndTypesAreRefused) {
+  TemporaryDirectory directory;
+  const auto path = directory / "c.h5";
+  const auto expectRefused = [&](const char* name, hid_t type, hsize_t count, const std::string& why) {
+    writeCheckpoint<2>(path, randomParticles<2>(5, 5), 1, 1, MethodKind::MphI);
+    replaceAttribute(path, name, type, count);
+    EXPECT_THAT(refusal<2>(path), HasSubstr(why)) << name;
+  };
+  const hid_t text = H5Tcreate(H5T_STRING, 1000);
+  for (const char* name : {"version", "dimensions", "step", "time", "fluid_count", "wall_count", "mode_count",
+                           "modes_due", "modes_fewest_iterations"}) {
+    expectRefused(name, H5T_NATIVE_DOUBLE, 1000, fmt::format("the attribute {} has 1000 values", name));
+    expectRefused(name, text, 1, fmt::format("the attribute {} has an unexpected type", name));
+  }
+  for (const char* name : {"format", "method"}) {
+    expectRefused(name, text, 1, fmt::format("the attribute {} is no short text", name));
+    expectRefused(name, text, 3, fmt::format("the attribute {} has 3 values", name));
+    expectRefused(name, H5T_NATIVE_INT, 1, fmt::format("the attribute {} has an unexpected type", name));
+  }
+  H5Tclose(text);
+}
+
+TEST(Checkpoint, NumbersThatNoSimulationHasAreRefused) {
+  TemporaryDirectory directory;
+  const auto path = directory / "c.h5";
+  const auto expectRefused = [&](const char* name, double value, const std::string& why) {
+    writeCheckpoint<2>(path, randomParticles<2>(5, 5), 1, 1, MethodKind::MphI);
+    changeAttribute(path, name, value);
+    EXPECT_THAT(refusal<2>(path), HasSubstr(why)) << name;
+  };
+  expectRefused("time", std::nan(""), "after step 1 at t = nan s");
+  expectRefused("time", -1, "after step 1 at t = -1 s");
+  expectRefused("time", INFINITY, "after step 1 at t = inf s");
+  expectRefused("step", -1, "after step -1 at t = 1 s");
+  expectRefused("fluid_count", 4e9, "particles, more than the limit of 134217728");
+  // 16 bytes for each of the particles and modes would be 51 GB.
+  expectRefused("mode_count", 4e9, "4000000000 modes, more than the limit of 16");
+}
+
+TEST(Checkpoint, FieldsWithoutTheirValuesAreRefusedBeforeMemoryIsTaken) {
+  TemporaryDirectory directory;
+  const auto path = directory / "c.h5";
+  writeCheckpoint<2>(path, randomParticles<2>(5, 5), 1, 1, MethodKind::MphI);
+  replaceField(path, "pressure", H5T_NATIVE_INT, {10});
+  EXPECT_THAT(refusal<2>(path), HasSubstr("the field pressure has an unexpected type"));
+  changeAttribute(path, "fluid_count", 1e8);
+  replaceField(path, "position", H5T_NATIVE_DOUBLE, {100000005, 2});
+  EXPECT_THAT(refusal<2>(path), HasSubstr("the file ends before the 100000005 values of the field position do"));
+}
+
+TEST(Checkpoint, ValuesThatNoSimulationHasAreRefused) {
+  TemporaryDirectory directory;
+  const auto path = directory / "c.h5";
+  const auto expectRefused = [&](auto change, const std::string& why) {
+    Particles<2> particles = randomParticles<2>(5, 5);
+    change(particles);
+    writeCheckpoint<2>(path, particles, 1, 1, MethodKind::MphI);
+    EXPECT_THAT(refusal<2>(path), HasSubstr(why));
+  };
+  const auto notFinite = [](const char* field) {
+    return fmt::format("value 3 of the field {} is not finite", field);
+  };
+  expectRefused([](auto& p) { p.position[3][1] = std::nan(""); }, notFinite("position"));
+  expectRefused([](auto& p) { p.velocity[3][0] = INFINITY; }, notFinite("velocity"));
+  expectRefused([](auto& p) { p.pressure[3] = std::nan(""); }, notFinite("pressure"));
+  expectRefused([](auto& p) { p.numberDensity[3] = std::nan(""); }, notFinite("number_density"));
+  expectRefused([](auto& p) { p.acceleration[3][0] = std::nan(""); }, notFinite("acceleration"));
+  expectRefused([](auto& p) { p.jerk[3][0] = std::nan(""); }, notFinite("jerk"));
+  expectRefused([](auto& p) { p.modes.vectors[3][0] = NAN; }, notFinite("modes"));
+  expectRefused([](auto& p) { p.id[3] = 10; }, "a particle has id 10, expected less than 10");
+  expectRefused([](auto& p) { p.id[3] = p.id[4]; }, "two particles have the id ");
+  expectRefused([](auto& p) { std::swap(p.id[3], p.id[7]); }, "is among those of the other kind");
+}
+
+TEST(Checkpoint, AChangedByteIsFoundWhereverItIs) {
+  TemporaryDirectory directory;
+  const auto path = directory / "c.h5";
+  writeCheckpoint<2>(path, randomParticles<2>(5, 5), 7, time3, MethodKind::MphI);
+  const std::string whole = content(path);
+  for (std::size_t k = 0; k < whole.size(); k += 7) {
+    std::string changed = whole;
+    changed[k] = static_cast<char>(changed[k] ^ 1 << k % 8);
+    put(path, changed);
+    refusal<2>(path);
+  }
+}
+
+TEST(Survives, TellsASignalFromAnException) {
+  EXPECT_TRUE(survives([] {}));
+  EXPECT_TRUE(survives([] { throw InputError("no"); }));
+  for (const int signal : {SIGSEGV, SIGABRT, SIGBUS}) EXPECT_FALSE(survives([signal] { ::raise(signal); }));
+}
+
+TEST(Checkpoint, DamageThatHdf5DoesNotSurviveIsFoundInFilesWithoutAChecksum) {
+  TemporaryDirectory directory;
+  const auto path = directory / "c.h5";
+  writeCheckpoint<2>(path, randomParticles<2>(5, 5), 1, 1, MethodKind::MphI);
+  changeAttribute(path, "version", 3);
+  std::string whole = content(path);
+  whole.resize(whole.size() - sizeof(ChecksumRecord));
+  // The attribute, as HDF5 keeps it: sizes of name, type and extents, 2 bytes each, before the name.
+  const std::size_t name = whole.find("fluid_count");
+  for (const char size : {'\x7f', '\xff', '\x10'}) {
+    std::string changed = whole;
+    changed[name - 1] = size;
+    put(path, changed);
+    refusal<2>(path);
+  }
 }

@@ -50,8 +50,11 @@ void writeRun(const std::filesystem::path& path, const std::vector<Frame>& frame
               const OutputFields& fields = {}) {
   RunDirectory run = RunDirectory::create(path, false);
   writeFile(run.caseFile(), caseText(referenceCase()));
-  for (const Frame& frame : frames)
-    run.writeFrame(frame, {}, {.fields = fields, .precision = OutputPrecision::Double});
+  Frame walls;
+  for (const Frame& frame : frames) {
+    walls.time = frame.time;
+    run.writeFrame(frame, walls, {.fields = fields, .precision = OutputPrecision::Double});
+  }
   HistoryWriter history(run.history());
   for (std::size_t k = 1; k < frames.size(); ++k)
     history.append({.step = static_cast<int>(k), .time = frames[k].time, .iterations = 7});

@@ -153,3 +153,23 @@ TEST(History, FullDiskLeavesWholeRows) {
   EXPECT_GT(text.size(), 800u);
   EXPECT_GE(readHistory(path).size(), 5u);
 }
+
+TEST(History, TimesThatAreNotFiniteAreNamed) {
+  TemporaryDirectory directory;
+  const auto path = directory / "history.csv";
+  for (const char* time : {"nan", "inf", "-inf"}) {
+    put(path, std::string(header) + "1," + time + ",3,4,5,6,7,8,9,10,11,12,13,0\n");
+    const std::string message = messageOf<InputError>([&] { readHistory(path); });
+    EXPECT_EQ(message.find(path.string() + ":2: expected a finite time"), 0u) << message;
+  }
+}
+
+TEST(History, RemovedWhileItGrowsIsAnError) {
+  TemporaryDirectory directory;
+  const auto path = directory / "history.csv";
+  HistoryWriter writer(path);
+  writer.append(row(1));
+  std::filesystem::remove(path);
+  EXPECT_EQ(messageOf<RunError>([&] { writer.append(row(2)); }),
+            "cannot write " + path.string() + ": it was removed while the run went on");
+}

@@ -175,7 +175,12 @@ TEST(Picture, OddFramesAreDrawn) {
   Frame broken = block(3, {0, 0, 0}, {0.01, 0.01, 0.01});
   broken.position[3][1] = std::numeric_limits<double>::quiet_NaN();
   broken.velocity[4][0] = std::numeric_limits<double>::infinity();
-  EXPECT_NO_THROW(drawFrame(directory / "broken.png", broken, {}, options()));
+  EXPECT_EQ(drawFrame(directory / "broken.png", broken, {}, options()), 1u);
+  broken.position[5][0] = 1e300;
+  broken.pressure[0] = -1e308, broken.pressure[1] = 1e308, broken.pressure[2] = 5e-324;
+  PictureOptions pressure = options();
+  pressure.field = PictureField::Pressure;
+  EXPECT_EQ(drawFrame(directory / "broken.png", broken, broken, pressure), 4u);
 
   Frame single = block(3, {0, 0, 0}, {0.001, 0.001, 0.001});
   EXPECT_NO_THROW(drawFrame(directory / "single.png", single, {}, options()));
@@ -247,4 +252,29 @@ TEST(Picture, HistoryCurvesAreThere) {
       EXPECT_GT(columns, 1000) << count;
     }
   }
+}
+
+TEST(Picture, HistoriesOfAllNumbersAreDrawn) {
+  TemporaryDirectory directory;
+  const double most = std::numeric_limits<double>::max(), least = std::numeric_limits<double>::denorm_min();
+  const double none = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
+  for (const double a : {most, -most, 1e308, 1e150, least, 1e-310, 1e16, infinity, none, 0.0})
+    for (const double b : {-most, 1e150, least, 3e-320, 1e16 + 4, infinity, -infinity, none, 0.0}) {
+      std::vector<HistoryRow> rows(3);
+      for (std::size_t k = 0; k < 3; ++k) {
+        rows[k].time = static_cast<double>(k);
+        rows[k].kineticEnergy = k % 2 == 0 ? a : b, rows[k].frontX = b, rows[k].top = a, rows[k].maxSpeed = a;
+      }
+      EXPECT_NO_THROW(drawHistory(directory / "a.png", rows));
+    }
+  for (const double end : {least, 1e-310, 1e16, 1e149}) {
+    std::vector<HistoryRow> rows(2);
+    rows[1].time = end;
+    EXPECT_NO_THROW(drawHistory(directory / "a.png", rows));
+    rows[0].time = std::nextafter(end, 0);
+    EXPECT_NO_THROW(drawHistory(directory / "a.png", rows));
+  }
+  std::vector<HistoryRow> rows(2);
+  rows[1].time = infinity;
+  EXPECT_THROW(drawHistory(directory / "a.png", rows), InputError);
 }

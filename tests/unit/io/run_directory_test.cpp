@@ -8,6 +8,7 @@
 
 #include <unistd.h>
 
+#include <optional>
 #include <set>
 
 using namespace treacle;
@@ -63,7 +64,8 @@ TEST(RunDirectory, FramesAndIndices) {
             "    <DataSet timestep=\"0\" part=\"0\" file=\"frames/fluid_000000.vtp\"/>\n"
             "    <DataSet timestep=\"0.1\" part=\"0\" file=\"frames/fluid_000001.vtp\"/>\n"
             "  </Collection>\n</VTKFile>\n");
-  const std::set<std::string> expected{"fluid.pvd",
+  const std::set<std::string> expected{"run.log",
+                                       "fluid.pvd",
                                        "walls.pvd",
                                        "frames/fluid_000000.vtp",
                                        "frames/fluid_000001.vtp",
@@ -92,7 +94,8 @@ TEST(RunDirectory, AnOldRunNeedsForce) {
 
 TEST(RunDirectory, ForceRemovesTheOldRunAndNothingElse) {
   TemporaryDirectory directory;
-  RunDirectory run = RunDirectory::create(directory.path(), false);
+  std::optional<RunDirectory> old = RunDirectory::create(directory.path(), false);
+  RunDirectory& run = *old;
   run.writeFrame(frameAt(0, 3), frameAt(0, 3), {});
   for (const fs::path& path :
        {run.caseFile(), run.log(), run.history(), run.summary(), run.finalPicture(), run.historyPicture(),
@@ -103,8 +106,11 @@ TEST(RunDirectory, ForceRemovesTheOldRunAndNothingElse) {
                                       "frames/my.png"};
   for (const std::string& name : foreign) put(directory / name, "mine");
 
+  old.reset();
   const RunDirectory again = RunDirectory::create(directory.path(), true);
-  EXPECT_EQ(filesIn(directory.path()), foreign);
+  std::set<std::string> left = filesIn(directory.path());
+  EXPECT_EQ(left.erase("run.log"), 1u);  // locked by this one
+  EXPECT_EQ(left, foreign);
   EXPECT_EQ(again.frameCount(), 0u);
 }
 
@@ -137,4 +143,46 @@ TEST(RunDirectory, OpenNeedsARun) {
   EXPECT_NE(message.find("fluid.pvd"), std::string::npos) << message;
   put(directory / "fluid.pvd", "<VTKFile type=\"PolyData\" >");
   EXPECT_THROW(RunDirectory::open(directory.path()), InputError);
+}
+
+TEST(RunDirectory, ForceDoesNotTakeADirectoryThatARunWritesInto) {
+  TemporaryDirectory directory;
+  {
+    RunDirectory run = RunDirectory::create(directory.path(), false);
+    run.writeFrame(frameAt(0, 3), frameAt(0, 3), {});
+    const RunDirectory copy = run;
+    expectRefused(directory.path(), true, "another run is writing into it");
+    EXPECT_TRUE(fs::exists(run.fluidFrame(0)));
+  }
+  const RunDirectory next = RunDirectory::create(directory.path(), true);
+  EXPECT_FALSE(fs::exists(next.fluidFrame(0)));
+}
+
+TEST(RunDirectory, OpensWhereARunWasKilledBetweenTheIndices) {
+  TemporaryDirectory directory;
+  RunDirectory run = RunDirectory::create(directory.path(), false);
+  run.writeFrame(frameAt(0, 3), frameAt(0, 3), {});
+  fs::remove(run.wallsIndex());
+  EXPECT_EQ(RunDirectory::open(directory.path()).frameCount(), 1u);
+}
+
+TEST(RunDirectory, TheIndexThatMakesItARunComesLast) {
+  TemporaryDirectory directory;
+  RunDirectory run = RunDirectory::create(directory.path(), false);
+  fs::create_directory(run.fluidIndex());  // in the way of that file
+  EXPECT_THROW(run.writeFrame(frameAt(0, 3), frameAt(0, 3), {}), RunError);
+  EXPECT_EQ(readPvd(run.wallsIndex()).size(), 1u);
+}
+
+TEST(Pvd, TimesThatAreNoneAreRefused) {
+  TemporaryDirectory directory;
+  writePvd(directory / "a.pvd", {{0, "a"}, {1, "b"}});
+  const std::string sound = content(directory / "a.pvd");
+  for (const char* time : {"nan", "inf", "-1", "0", "-nan"}) {
+    std::string changed = sound;
+    changed.replace(changed.find("timestep=\"1\""), 12, std::string("timestep=\"") + time + '"');
+    put(directory / "a.pvd", changed);
+    const std::string message = messageOf<InputError>([&] { readPvd(directory / "a.pvd"); });
+    EXPECT_NE(message.find(std::string(" of b: expected finite times that ascend")), std::string::npos) << message;
+  }
 }

@@ -6,6 +6,8 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
+#include <vector>
 
 using namespace treacle;
 
@@ -26,6 +28,21 @@ TEST(NiceTicks, AreRoundEvenAndInside) {
                     std::abs(lead - 5) < 1e-5)
             << lead;
       }
+}
+
+TEST(NiceTicks, EndWhereNumbersDo) {
+  const double most = std::numeric_limits<double>::max(), least = std::numeric_limits<double>::denorm_min();
+  const double infinity = std::numeric_limits<double>::infinity();
+  const std::vector<std::pair<double, double>> ranges{{0, least},        {least, 2 * least}, {-most, most},
+                                                      {0, infinity},     {0, most},          {1e14, 1e14 + 0.05},
+                                                      {1e17, 1e17 + 16}, {-infinity, 0},     {1, 1 + 1e-15}};
+  for (const auto& [low, high] : ranges)
+    for (const int wanted : {2, 9}) {
+      const auto ticks = niceTicks(low, high, wanted);
+      ASSERT_GE(ticks.size(), 2u);
+      EXPECT_LE(ticks.size(), 20u);
+      for (const double tick : ticks) EXPECT_TRUE(tick >= low && tick <= high) << tick;
+    }
 }
 
 TEST(NiceTicks, ARangeWithoutWidth) { EXPECT_EQ(niceTicks(2, 2, 5), std::vector<double>{2}); }

@@ -68,7 +68,7 @@ TEST(courantNumber, takesTheFastestPointOfARotatingWall) {
   c.bodies[1].velocity = {3, 4};
   EXPECT_NEAR(courantNumber(c), 5 + std::hypot(39.5, 9.5), 1e-9);
   c.dimensions = 3;
-  c.bodies[0].shape.max[2] = c.bodies[1].shape.max[2] = 2e-3;
+  c.bodies[0].shape.max[2] = c.bodies[1].shape.max[2] = c.domain.max[2] = 2e-3;
   c.bodies[1].rotation->axis = {-2, 0, 0};
   EXPECT_NEAR(courantNumber(c), 5 + std::hypot(9.5, 1.5), 1e-9);
 }

@@ -56,6 +56,10 @@ TEST(Expression, faultsAreNamed) {
   EXPECT_THAT(faultOf(""), HasSubstr("empty"));
   EXPECT_THAT(faultOf("sin(x, y)"), HasSubstr("Too many parameters"));
   EXPECT_THAT(faultOf("x, y"), HasSubstr("more than one value"));
+  std::string endless = "x";
+  while (endless.size() < 30000) endless += "+x";
+  EXPECT_THAT(faultOf(endless), HasSubstr("+...\": Expression too long"));
+  EXPECT_LT(faultOf(endless).size(), 500u);
   for (const char* assignment : {"x = 1", "y<x ? x=2 : 1", "x=y"})
     EXPECT_THAT(faultOf(assignment), HasSubstr("a single ="));
 }

@@ -58,5 +58,15 @@ TEST(Failure, NamesAValueThatIsNotFinite) {
   EXPECT_NE(message.find("particle " + std::to_string(id)), std::string::npos) << message;
 }
 
+TEST(Failure, EndsWhereTheTimeNoLongerAdvances) {
+  Scene<2> s = makeScene<2>();
+  s.particles.velocity[5][0] = 1e60;
+  s.c.time.courant = 0.1;
+  Simulation<2> simulation(s.c, std::move(s.particles), 1, 1.0);
+  const std::string message = failureOf(simulation);
+  EXPECT_NE(message.find("the time no longer advances"), std::string::npos) << message;
+  EXPECT_EQ(simulation.step(), 1);
+}
+
 }  // namespace
 }  // namespace treacle::test
