@@ -9,7 +9,8 @@ namespace treacle {
 
 void printFrames(std::span<const FrameDifference> frames) {
   print("{:>12}", "");
-  for (const char* field : {"position [m]", "velocity [m/s]", "pressure [Pa]", "number density"})
+  for (const char* field :
+       {"position [m]", "velocity [m/s]", "pressure [Pa]", "number density", "nearest distance"})
     print("  {:>27}", field);
   print("\n{:>12}", "t [s]");
   for (std::size_t k = 0; k < comparedFieldCount; ++k) print("  {:>9}{:>9}{:>9}", "max", "rms", "relative");

@@ -24,7 +24,8 @@ constexpr Named<BackendChoice> backendNames[] = {
     {"auto", BackendChoice::Auto}, {"cpu", BackendChoice::Cpu}, {"cuda", BackendChoice::Cuda}};
 constexpr Named<PictureField> fieldNames[] = {{"speed", PictureField::Speed},
                                               {"pressure", PictureField::Pressure},
-                                              {"number_density", PictureField::NumberDensity}};
+                                              {"number_density", PictureField::NumberDensity},
+                                              {"nearest_distance", PictureField::NearestDistance}};
 
 template <class E>
 std::string listOf(std::span<const Named<E>> words) {

@@ -6,8 +6,10 @@
 #include "treacle/io/picture.hpp"
 
 #include <fmt/format.h>
+#include <omp.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace treacle {
 namespace {
@@ -45,7 +47,12 @@ Recorder::Recorder(const Case& c, RunDirectory& directory, RunLog& log, double s
       history_(directory.history(), timings),
       frames_(c.output.interval, c.time, start),
       checkpoints_(c.output.checkpointInterval, c.time, start),
-      output_([this](const Snapshot& snapshot) { write(snapshot); }) {
+      watch_(c),
+      // OpenMP forgets in a new thread how many it was given.
+      output_([this, threads = omp_get_max_threads()](const Snapshot& snapshot) {
+        omp_set_num_threads(threads);
+        write(snapshot);
+      }) {
   if (c.output.balance) balance_.emplace(directory.balance(), c);
 }
 
@@ -99,6 +106,11 @@ void Recorder::drawPicture() {
   drawFrame(directory_.finalPicture(), fluidFrame(state), wallsFrame(state), options);
 }
 
+std::vector<std::string> Recorder::takeWarnings() {
+  const std::lock_guard lock(warningsMutex_);
+  return std::exchange(warnings_, {});
+}
+
 void Recorder::summarise(RunSummary& summary) const {
   summary.meanIterations = steps_ > 0 ? static_cast<double>(iterations_) / static_cast<double>(steps_) : 0;
   summary.firstIterations = firstIterations_;
@@ -107,6 +119,8 @@ void Recorder::summarise(RunSummary& summary) const {
   summary.meanDensity = meanDensity_;
   summary.densityError = densityError_;
   summary.largestDensityError = largestDensityError_;
+  summary.arrangement = lastArrangement_;
+  summary.smallestLeast = smallestLeast_, summary.smallestLow = smallestLow_;
   summary.phaseSeconds = {
       {"search", seconds_.search}, {"lists", seconds_.lists}, {"coefficients", seconds_.coefficients},
       {"coarse", seconds_.coarse}, {"solve", seconds_.solve}, {"update", seconds_.update},
@@ -133,9 +147,14 @@ void Recorder::write(const Snapshot& s) {
   const TraceRange range("output");
   if (s.frame) {
     const std::size_t number = directory_.frameCount();
-    directory_.writeFrame(fluidFrame(s), wallsFrame(s), case_.output);
+    Frame fluid = fluidFrame(s);
+    const Frame walls = wallsFrame(s);
+    const Arrangement arrangement = measureArrangement(fluid, walls, case_.domain, case_.spacing);
+    directory_.writeFrame(fluid, walls, case_.output);
     frameStep_ = s.step;
-    log_.info(fmt::format("frame {}: step {}, t = {:.6g} s, {} iterations", number, s.step, s.time, s.iterations));
+    log_.info(fmt::format("frame {}: step {}, t = {:.6g} s, {} iterations, {}", number, s.step, s.time,
+                          s.iterations, textOf(arrangement)));
+    note(arrangement, s.time);
   }
   if (s.checkpoint) {
     s.particles.visit([&](const auto& p) {
@@ -143,6 +162,16 @@ void Recorder::write(const Snapshot& s) {
     });
     checkpointStep_ = s.step;
   }
+}
+
+/// Called by the output thread.
+void Recorder::note(const Arrangement& arrangement, double time) {
+  lastArrangement_ = arrangement;
+  smallestLeast_ = std::min(smallestLeast_, arrangement.least);
+  smallestLow_ = std::min(smallestLow_, arrangement.low);
+  const std::vector<std::string> warnings = watch_.look(arrangement, time);
+  const std::lock_guard lock(warningsMutex_);
+  warnings_.insert(warnings_.end(), warnings.begin(), warnings.end());
 }
 
 }  // namespace treacle

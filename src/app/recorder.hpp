@@ -1,5 +1,6 @@
 #pragma once
 
+#include "arrangement_watch.hpp"
 #include "interval.hpp"
 #include "output_thread.hpp"
 #include "run_log.hpp"
@@ -12,7 +13,10 @@
 
 #include <cstdint>
 #include <functional>
+#include <mutex>
 #include <optional>
+#include <string>
+#include <vector>
 
 namespace treacle {
 
@@ -44,13 +48,17 @@ class Recorder {
 
   void drawPicture();
 
-  /// Fills in iterations, fallbacks, densities and seconds. To be called after wait().
+  /// What is to be said about frames written since the call before.
+  std::vector<std::string> takeWarnings();
+
+  /// Fills in iterations, fallbacks, densities, distances and seconds. To be called after wait().
   void summarise(RunSummary& summary) const;
 
  private:
   Snapshot& takeSnapshot();
   void handOver(Snapshot& snapshot, bool frame, bool checkpoint);
   void write(const Snapshot& snapshot);
+  void note(const Arrangement& arrangement, double time);
 
   const Case& case_;
   RunDirectory& directory_;
@@ -64,6 +72,11 @@ class Recorder {
   int firstIterations_ = 0, lastIterations_ = 0;
   std::int64_t fallbacks_ = 0;
   double meanDensity_ = 0, densityError_ = 0, largestDensityError_ = 0;
+  Arrangement lastArrangement_;  // written by the output thread, as are the next two
+  double smallestLeast_ = nearestReach, smallestLow_ = nearestReach;
+  ArrangementWatch watch_;
+  std::mutex warningsMutex_;
+  std::vector<std::string> warnings_;
   PhaseSeconds seconds_;
   double outputSeconds_ = 0;  // that the simulation had to wait
   OutputThread output_;       // last: it uses the others

@@ -76,6 +76,7 @@ void Run::advanceToEnd() {
     const StepReport report = simulation_->advance();
     recorder_->record(report);
     if (report.fallbacks > 0) warnOfFallback(report);
+    warnOfArrangement();
     progress_.update(report);
   }
   if (!atEnd()) throw RunError(fmt::format("stopped by {}", interruptSignal()));
@@ -87,6 +88,14 @@ void Run::warnOfFallback(const StepReport& report) {
   log_.warning(
       fmt::format("step {}: the linear solver had to fall back after {}; further steps that do are counted in {}",
                   report.step, report.failures, directory_.history().filename().string()));
+}
+
+/// Frames are looked at by the thread that writes them, but the progress line is this one's.
+void Run::warnOfArrangement() {
+  for (const std::string& warning : recorder_->takeWarnings()) {
+    progress_.endLine();
+    log_.warning(warning);
+  }
 }
 
 void Run::copyState(Snapshot& snapshot) {
@@ -121,6 +130,7 @@ void Run::finish() {
     attempt([&] { recorder_->wait(); });
     attempt([&] { recorder_->writeCheckpoint(); });
     attempt([&] { recorder_->writeFrame(); });
+    warnOfArrangement();
     attempt([&] { recorder_->drawPicture(); });
     summary_.steps = simulation_->step(), summary_.time = simulation_->time();
     recorder_->summarise(summary_);

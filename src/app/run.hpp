@@ -32,6 +32,7 @@ class Run {
   void describe();
   void advanceToEnd();
   void warnOfFallback(const StepReport& report);
+  void warnOfArrangement();
   void copyState(Snapshot& snapshot);
   /// Keeps the diagnosis of the first thing that goes wrong.
   void attempt(const std::function<void()>& action);

@@ -94,7 +94,7 @@ FrameDifference compareFrames(const Frame& a, const Frame& b, const Case& refere
   FrameDifference d;
   d.time = b.time;
   d.fields = {frames.position(reference), frames.velocity(), frames.scalar(&Frame::pressure),
-              frames.scalar(&Frame::numberDensity)};
+              frames.scalar(&Frame::numberDensity), frames.scalar(&Frame::nearestDistance)};
   return d;
 }
 

@@ -79,6 +79,7 @@ class SetComparison {
     d_.nearest.fields[1] = addField("velocity", "m/s", &Frame::velocity);
     d_.nearest.fields[2] = addField("pressure", "Pa", &Frame::pressure);
     d_.nearest.fields[3] = addField("number_density", "", &Frame::numberDensity);
+    d_.nearest.fields[4] = addField("nearest_distance", "", &Frame::nearestDistance);
     return std::move(d_);
   }
 

@@ -23,6 +23,8 @@ struct FieldValues {
 FieldValues fieldValues(const Frame& fluid, PictureField field) {
   if (field == PictureField::Pressure) return {"pressure", "Pa", "pressure", fluid.pressure};
   if (field == PictureField::NumberDensity) return {"number density", "", "number_density", fluid.numberDensity};
+  if (field == PictureField::NearestDistance)
+    return {"nearest distance / spacing", "", "nearest_distance", fluid.nearestDistance};
   FieldValues speed{"speed", "m/s", "velocity", {}, true};
   for (const Vec<3>& u : fluid.velocity) speed.values.push_back(norm(u));
   return speed;

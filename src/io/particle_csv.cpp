@@ -17,7 +17,19 @@
 namespace treacle {
 namespace {
 
-enum Column : std::size_t { X, Y, Z, VelocityX, VelocityY, VelocityZ, Pressure, NumberDensity, Id, columnCount };
+enum Column : std::size_t {
+  X,
+  Y,
+  Z,
+  VelocityX,
+  VelocityY,
+  VelocityZ,
+  Pressure,
+  NumberDensity,
+  NearestDistance,
+  Id,
+  columnCount
+};
 
 /// Lower case, with '_' for ':' and '.'; the first name is the one in messages.
 constexpr std::array<std::string_view, 5> spellings[columnCount] = {
@@ -29,6 +41,7 @@ constexpr std::array<std::string_view, 5> spellings[columnCount] = {
     {"vz", "w", "vel_z", "velocity_z", "velocity_2"},
     {"pressure"},
     {"number_density"},
+    {"nearest_distance"},
     {"id"}};
 
 /// columnCount: none of those that are known.
@@ -105,6 +118,7 @@ class ParticleCsv {
       frame_.velocity.push_back({{number(VelocityX), number(VelocityY), has(VelocityZ) ? number(VelocityZ) : 0}});
     if (has(Pressure)) frame_.pressure.push_back(number(Pressure));
     if (has(NumberDensity)) frame_.numberDensity.push_back(number(NumberDensity));
+    if (has(NearestDistance)) frame_.nearestDistance.push_back(number(NearestDistance));
     if (has(Id)) frame_.id.push_back(parsed<std::uint32_t>(Id, "a whole number from 0 to 4294967295"));
   }
 

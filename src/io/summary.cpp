@@ -29,6 +29,11 @@ void writeSummary(const std::filesystem::path& path, const RunSummary& s) {
   json["iterations"] = {{"mean", s.meanIterations}, {"first", s.firstIterations}, {"last", s.lastIterations}};
   json["fallbacks"] = s.fallbacks;
   json["density"] = {{"mean", s.meanDensity}, {"error", s.densityError}, {"largest_error", s.largestDensityError}};
+  json["density"]["inside"] = s.arrangement.density ? Json(*s.arrangement.density) : Json();
+  json["nearest_distance"] = {{"least", s.arrangement.least},
+                              {"low", s.arrangement.low},
+                              {"smallest_least", s.smallestLeast},
+                              {"smallest_low", s.smallestLow}};
   json["seconds_per_phase"] = phases;
   json["output_thread_seconds"] = s.outputThreadSeconds;
   json["wall_seconds"] = s.wallSeconds;

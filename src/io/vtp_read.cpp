@@ -39,6 +39,7 @@ class VtpReader {
     readVectors("velocity", frame.velocity);
     readScalars("pressure", frame.pressure);
     readScalars("number_density", frame.numberDensity);
+    readScalars("nearest_distance", frame.nearestDistance);
     readScalars("material", frame.material);
     readScalars("body", frame.body);
     readScalars("id", frame.id);

@@ -52,6 +52,8 @@ std::vector<DataArray> pointData(const Frame& frame, const OutputFields& fields)
   if (fields.pressure && !frame.pressure.empty()) arrays.push_back(scalarArray<Real>("pressure", frame.pressure));
   if (fields.numberDensity && !frame.numberDensity.empty())
     arrays.push_back(scalarArray<Real>("number_density", frame.numberDensity));
+  if (fields.nearestDistance && !frame.nearestDistance.empty())
+    arrays.push_back(scalarArray<Real>("nearest_distance", frame.nearestDistance));
   if (fields.material && !frame.material.empty())
     arrays.push_back(scalarArray<std::int32_t>("material", frame.material));
   if (fields.body && !frame.body.empty()) arrays.push_back(scalarArray<std::int32_t>("body", frame.body));

@@ -17,15 +17,16 @@ namespace treacle {
 
 /// Differences between two runs a and b, of which b is the reference: relative ones are relative to it.
 
-enum class ComparedField { Position, Velocity, Pressure, NumberDensity };
-inline constexpr std::size_t comparedFieldCount = 4;
+enum class ComparedField { Position, Velocity, Pressure, NumberDensity, NearestDistance };
+inline constexpr std::size_t comparedFieldCount = 5;
 
 namespace names {
 inline constexpr Named<ComparedField> comparedField[comparedFieldCount] = {
     {"position", ComparedField::Position},
     {"velocity", ComparedField::Velocity},
     {"pressure", ComparedField::Pressure},
-    {"number_density", ComparedField::NumberDensity}};
+    {"number_density", ComparedField::NumberDensity},
+    {"nearest_distance", ComparedField::NearestDistance}};
 }
 template <>
 inline constexpr std::span<const Named<ComparedField>> namesOf<ComparedField>{names::comparedField};

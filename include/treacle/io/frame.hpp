@@ -12,13 +12,14 @@ namespace treacle {
 /// Always three components; fields that a file does not hold are empty.
 struct Frame {
   int dimensions = 3;
-  double time = 0;                     // [s]
-  std::vector<Vec<3>> position;        // [m]
-  std::vector<Vec<3>> velocity;        // [m/s]
-  std::vector<double> pressure;        // [Pa]
-  std::vector<double> numberDensity;   // [-]
-  std::vector<std::int32_t> material;  // index into the case's materials
-  std::vector<std::int32_t> body;      // index into the case's bodies
+  double time = 0;                      // [s]
+  std::vector<Vec<3>> position;         // [m]
+  std::vector<Vec<3>> velocity;         // [m/s]
+  std::vector<double> pressure;         // [Pa]
+  std::vector<double> numberDensity;    // [-]
+  std::vector<double> nearestDistance;  // of fluid: to the nearest other particle over the spacing [-]
+  std::vector<std::int32_t> material;   // index into the case's materials
+  std::vector<std::int32_t> body;       // index into the case's bodies
   std::vector<std::uint32_t> id;
 };
 

@@ -13,7 +13,7 @@
 namespace treacle {
 
 /// The field that colours the fluid.
-enum class PictureField { Speed, Pressure, NumberDensity };
+enum class PictureField { Speed, Pressure, NumberDensity, NearestDistance };
 
 struct PictureOptions {
   PictureField field = PictureField::Speed;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "treacle/io/arrangement.hpp"
+
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -26,6 +28,9 @@ struct RunSummary {
   std::int64_t fallbacks = 0;                // of the linear solver, all steps together
   double meanDensity = 0, densityError = 0;  // of the last step, as in the history
   double largestDensityError = 0;            // of all steps
+
+  Arrangement arrangement;                                          // of the last frame
+  double smallestLeast = nearestReach, smallestLow = nearestReach;  // of all frames
 
   std::vector<std::pair<std::string, double>>
       phaseSeconds;                    // wall-clock time by phase, in the order of a step [s]

@@ -244,7 +244,8 @@ struct SolverSettings {
 };
 
 struct OutputFields {
-  bool velocity = true, pressure = true, numberDensity = true, material = true, body = true, id = true;
+  bool velocity = true, pressure = true, numberDensity = true, nearestDistance = true, material = true,
+       body = true, id = true;
 
   bool operator==(const OutputFields&) const = default;
 };

@@ -145,6 +145,7 @@ struct OutputFieldName {
 inline constexpr OutputFieldName outputFieldNames[] = {{"velocity", &OutputFields::velocity},
                                                        {"pressure", &OutputFields::pressure},
                                                        {"number_density", &OutputFields::numberDensity},
+                                                       {"nearest_distance", &OutputFields::nearestDistance},
                                                        {"material", &OutputFields::material},
                                                        {"body", &OutputFields::body},
                                                        {"id", &OutputFields::id}};

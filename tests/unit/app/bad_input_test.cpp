@@ -147,7 +147,8 @@ constexpr BadCase badCases[] = {
     {"unknownShape", "shape = \"box\"", "shape = \"cone\"",
      "bad.toml:23:9: shape in [[body]] 'column': expected 'box', 'sphere' or 'cylinder', found 'cone'"},
     {"unknownField", "interval = 1e-3", "interval = 1e-3\nfields = [\"speed\"]",
-     "bad.toml:41:10: fields in [output]: expected 'velocity', 'pressure', 'number_density', 'material', 'body' "
+     "bad.toml:41:10: fields in [output]: expected 'velocity', 'pressure', 'number_density', 'nearest_distance', "
+     "'material', 'body' "
      "or "
      "'id', found 'speed'"},
     {"minAboveMax", "max = [6e-3, 6e-3]", "max = [6e-3, -6e-3]",

@@ -43,9 +43,10 @@ TEST(compare, operatorsAgree) {
 TEST(compare, aRunAgreesWithItselfToTheBit) {
   Workshop shop;
   const Outcome outcome = prepared(shop).call(
-      "compare run-b run-b --quiet --bound 0 --field pressure --field position --field number_density");
+      "compare run-b run-b --quiet --bound 0 --field pressure --field position --field number_density "
+      "--field nearest_distance");
   EXPECT_EQ(outcome.exitCode, 0);
-  EXPECT_EQ(outcome.out, "agree within 0 in 3 frames: pressure, position, number_density\n");
+  EXPECT_EQ(outcome.out, "agree within 0 in 3 frames: pressure, position, number_density, nearest_distance\n");
 }
 
 TEST(compare, otherViscosityDiffersFromTheFirstStepOn) {
@@ -83,7 +84,7 @@ TEST(compare, whatCannotBeComparedIsBadInput) {
   expectRefused("run-b", "B is required");
   expectRefused("run-b run-b --bound=-1", "--bound: expected a number not less than 0, found '-1'");
   expectRefused("run-b run-b --field speed",
-                "--field: expected position|velocity|pressure|number_density, found 'speed'");
+                "--field: expected position|velocity|pressure|number_density|nearest_distance, found 'speed'");
   runAs(shop, "--force --set 'output.fields=[\"id\", \"pressure\"]'");
   expectRefused("run-a run-b", "'velocity' cannot be compared, frame 0 or 0 (t = 0 s) does not hold it");
   EXPECT_EQ(shop.call("compare run-a run-b --field pressure --quiet").exitCode, 0);

@@ -52,6 +52,7 @@ TEST(CompareSets, ASetInAnotherOrderDoesNotDiffer) {
     std::reverse(a.position.begin(), a.position.end()), std::reverse(a.velocity.begin(), a.velocity.end());
     std::reverse(a.pressure.begin(), a.pressure.end());
     std::reverse(a.numberDensity.begin(), a.numberDensity.end());
+    std::reverse(a.nearestDistance.begin(), a.nearestDistance.end());
     const SetDifference d = compareSets(a, b, referenceCase());
     for (const auto& field : d.nearest.fields) {
       ASSERT_TRUE(field);

@@ -100,7 +100,8 @@ TEST(CompareFrames, MeasuresEveryField) {
 TEST(CompareFrames, MatchesParticlesById) {
   const Frame b = sampleFrame(3, 1000);
   Frame a = b;
-  reverse(a.position), reverse(a.velocity), reverse(a.pressure), reverse(a.numberDensity), reverse(a.id);
+  reverse(a.position), reverse(a.velocity), reverse(a.pressure), reverse(a.numberDensity),
+      reverse(a.nearestDistance), reverse(a.id);
   for (const auto& d : compareFrames(a, b, referenceCase()).fields) EXPECT_EQ(d->maximum, 0);
   reverse(a.id);
   for (const auto& d : compareFrames(a, b, referenceCase()).fields) EXPECT_GT(d->maximum, 0);
@@ -246,5 +247,6 @@ TEST(WriteFrameDifferences, FormatIsFixed) {
   EXPECT_EQ(content(directory / "table.csv"),
             "time,frame_a,frame_b,position_max,position_rms,position_relative,velocity_max,velocity_rms,"
             "velocity_relative,pressure_max,pressure_rms,pressure_relative,number_density_max,number_density_rms,"
-            "number_density_relative\n0.25,2,3,0.5,0.125,1e-07,,,,1,2,inf,,,\n");
+            "number_density_relative,nearest_distance_max,nearest_distance_rms,nearest_distance_relative\n"
+            "0.25,2,3,0.5,0.125,1e-07,,,,1,2,inf,,,,,,\n");
 }

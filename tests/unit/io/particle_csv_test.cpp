@@ -35,13 +35,15 @@ using Positions = std::vector<Vec<3>>;
 }  // namespace
 
 TEST(ParticleCsv, AllColumnsInAnyOrder) {
-  const Frame f =
-      read("id,number_density,vz,z,pressure,vx,vy,y,x\n7,1.5,6,3,100,4,5,2,1\n4294967295,1,0,0,0,0,0,0,0\n");
+  const Frame f = read(
+      "id,number_density,vz,z,pressure,nearest_distance,vx,vy,y,x\n7,1.5,6,3,100,0.5,4,5,2,1\n"
+      "4294967295,1,0,0,0,1.5,0,0,0,0\n");
   EXPECT_EQ(f.dimensions, 3);
   EXPECT_EQ(f.position, (Positions{{{1, 2, 3}}, {}}));
   EXPECT_EQ(f.velocity, (Positions{{{4, 5, 6}}, {}}));
   EXPECT_EQ(f.pressure, (std::vector<double>{100, 0}));
   EXPECT_EQ(f.numberDensity, (std::vector<double>{1.5, 1}));
+  EXPECT_EQ(f.nearestDistance, (std::vector<double>{0.5, 1.5}));
   EXPECT_EQ(f.id, (std::vector<std::uint32_t>{7, 4294967295u}));
 }
 
@@ -76,7 +78,8 @@ TEST(ParticleCsv, SpellingsOfOtherPrograms) {
 
 TEST(ParticleCsv, FieldsThatTheFileDoesNotHoldAreEmpty) {
   const Frame f = read("x,y\n1,2\n");
-  EXPECT_TRUE(f.velocity.empty() && f.pressure.empty() && f.numberDensity.empty() && f.id.empty());
+  EXPECT_TRUE(f.velocity.empty() && f.pressure.empty() && f.numberDensity.empty() && f.nearestDistance.empty() &&
+              f.id.empty());
   EXPECT_TRUE(std::isnan(read("x y pressure\n1 2 nan\n").pressure[0]));  // shows in the comparison
 }
 

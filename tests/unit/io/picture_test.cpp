@@ -200,6 +200,8 @@ TEST(Picture, BadRequests) {
   PictureOptions o = options();
   o.field = PictureField::NumberDensity;
   EXPECT_NE(messageFor(o).find("number_density"), std::string::npos);
+  o.field = PictureField::NearestDistance;
+  EXPECT_NE(messageFor(o).find("nearest_distance"), std::string::npos);
   o = options();
   o.spacing = 0;
   EXPECT_NE(messageFor(o).find("spacing"), std::string::npos);

@@ -20,6 +20,7 @@ inline Frame sampleFrame(int dimensions, std::uint32_t count, unsigned seed = 1)
     frame.velocity.push_back(u);
     frame.pressure.push_back(1e4 * (unit(generator) - 0.5));
     frame.numberDensity.push_back(1 + 0.01 * unit(generator));
+    frame.nearestDistance.push_back(unit(generator));
     frame.material.push_back(static_cast<std::int32_t>(i % 3));
     frame.body.push_back(static_cast<std::int32_t>(i % 255));
     frame.id.push_back(4000000000u - i);

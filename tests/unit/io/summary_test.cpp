@@ -16,6 +16,7 @@ RunSummary summary() {
   s.fluidParticles = 400, s.wallParticles = 900, s.steps = 200, s.time = 0.2;
   s.meanIterations = 233.25, s.firstIterations = 338, s.lastIterations = 243, s.fallbacks = 7;
   s.meanDensity = 0.998, s.densityError = 0.0625, s.largestDensityError = 0.125;
+  s.arrangement = {0.5, 0.75, 1.25}, s.smallestLeast = 0.0625, s.smallestLow = 0.25;
   s.phaseSeconds = {{"search", 0.5}, {"solve", 1.5}};
   s.outputThreadSeconds = 0.125, s.wallSeconds = 2.25, s.peakMemory = 1000000, s.peakDeviceMemory = 3000000,
   s.done = true;
@@ -46,7 +47,9 @@ TEST(Summary, HoldsEverything) {
   EXPECT_EQ(json["iterations"]["first"], 338);
   EXPECT_EQ(json["iterations"]["last"], 243);
   EXPECT_EQ(json["fallbacks"], 7);
-  EXPECT_EQ(json["density"].dump(), R"({"mean":0.998,"error":0.0625,"largest_error":0.125})");
+  EXPECT_EQ(json["density"].dump(), R"({"mean":0.998,"error":0.0625,"largest_error":0.125,"inside":1.25})");
+  EXPECT_EQ(json["nearest_distance"].dump(),
+            R"({"least":0.5,"low":0.75,"smallest_least":0.0625,"smallest_low":0.25})");
   EXPECT_EQ(json["seconds_per_phase"].dump(), R"({"search":0.5,"solve":1.5})");
   EXPECT_EQ(json["output_thread_seconds"], 0.125);
   EXPECT_EQ(json["wall_seconds"], 2.25);
@@ -61,9 +64,11 @@ TEST(Summary, FailedRunWithoutParticlesAndWithAForeignFileName) {
   s.done = false;
   s.message = "cannot write /tmp/\xff.vtp";  // no UTF-8
   s.fluidParticles = 0;
+  s.arrangement.density.reset();
   writeSummary(directory / "summary.json", s);
   const auto json = nlohmann::ordered_json::parse(content(directory / "summary.json"));
   EXPECT_EQ(json["status"], "failed");
   EXPECT_EQ(json["message"], "cannot write /tmp/\uFFFD.vtp");
   EXPECT_EQ(json["memory_bytes_per_fluid_particle"], 0.0);
+  EXPECT_TRUE(json["density"]["inside"].is_null());
 }

@@ -60,19 +60,27 @@ void expectFile(const RawVtp& file, const Frame& frame, const std::string& realT
   EXPECT_NE(file.header.find("<Piece NumberOfPoints=\"" + std::to_string(n) + "\" NumberOfVerts=\"" +
                              std::to_string(n) + "\" "),
             std::string::npos);
-  const std::map<std::string, std::string> types{
-      {"velocity", realType}, {"pressure", realType},    {"number_density", realType},
-      {"material", "Int32"},  {"body", "Int32"},         {"id", "UInt32"},
-      {"position", realType}, {"connectivity", "Int32"}, {"offsets", "Int32"}};
+  const std::map<std::string, std::string> types{{"velocity", realType},
+                                                 {"pressure", realType},
+                                                 {"number_density", realType},
+                                                 {"nearest_distance", realType},
+                                                 {"material", "Int32"},
+                                                 {"body", "Int32"},
+                                                 {"id", "UInt32"},
+                                                 {"position", realType},
+                                                 {"connectivity", "Int32"},
+                                                 {"offsets", "Int32"}};
   EXPECT_EQ(file.type, types);
   const auto position = file.values<Real>("position"), velocity = file.values<Real>("velocity");
   const auto pressure = file.values<Real>("pressure"), density = file.values<Real>("number_density");
+  const auto nearest = file.values<Real>("nearest_distance");
   const auto connectivity = file.values<std::int32_t>("connectivity"),
              offsets = file.values<std::int32_t>("offsets");
   ASSERT_EQ(position.size(), 3 * n);
   ASSERT_EQ(velocity.size(), 3 * n);
   ASSERT_EQ(pressure.size(), n);
   ASSERT_EQ(density.size(), n);
+  ASSERT_EQ(nearest.size(), n);
   ASSERT_EQ(connectivity.size(), n);
   ASSERT_EQ(offsets.size(), n);
   for (std::size_t i = 0; i < n; ++i) {
@@ -82,6 +90,7 @@ void expectFile(const RawVtp& file, const Frame& frame, const std::string& realT
     }
     ASSERT_EQ(pressure[i], static_cast<Real>(frame.pressure[i]));
     ASSERT_EQ(density[i], static_cast<Real>(frame.numberDensity[i]));
+    ASSERT_EQ(nearest[i], static_cast<Real>(frame.nearestDistance[i]));
     ASSERT_EQ(connectivity[i], static_cast<std::int32_t>(i));
     ASSERT_EQ(offsets[i], static_cast<std::int32_t>(i + 1));
   }
@@ -124,6 +133,7 @@ TEST(Vtp, DoublePrecisionReadsBackToTheSameBits) {
     EXPECT_TRUE(read.velocity == frame.velocity);
     EXPECT_EQ(read.pressure, frame.pressure);
     EXPECT_EQ(read.numberDensity, frame.numberDensity);
+    EXPECT_EQ(read.nearestDistance, frame.nearestDistance);
     EXPECT_EQ(read.material, frame.material);
     EXPECT_EQ(read.body, frame.body);
     EXPECT_EQ(read.id, frame.id);
@@ -148,7 +158,7 @@ TEST(Vtp, HoldsOnlySelectedFields) {
   TemporaryDirectory directory;
   const Frame frame = sampleFrame(2, 50);
   OutputFields fields;
-  fields.pressure = fields.id = fields.material = fields.body = false;
+  fields.pressure = fields.nearestDistance = fields.id = fields.material = fields.body = false;
   writeVtp(directory / "a.vtp", frame, fields, OutputPrecision::Double);
   const RawVtp raw(directory / "a.vtp");
   EXPECT_EQ(raw.bytes.size(), 5u);  // velocity, number_density, position, connectivity, offsets
@@ -156,7 +166,8 @@ TEST(Vtp, HoldsOnlySelectedFields) {
   const Frame read = readVtp(directory / "a.vtp");
   EXPECT_TRUE(read.velocity == frame.velocity);
   EXPECT_EQ(read.numberDensity, frame.numberDensity);
-  EXPECT_TRUE(read.pressure.empty() && read.material.empty() && read.body.empty() && read.id.empty());
+  EXPECT_TRUE(read.pressure.empty() && read.nearestDistance.empty() && read.material.empty() &&
+              read.body.empty() && read.id.empty());
 }
 
 TEST(Vtp, TruncatedFilesAreRefusedWhereverTheyEnd) {

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "treacle/io/frame.hpp"
+#include "treacle/model/case.hpp"
+
+#include <optional>
+
+namespace treacle {
+
+/// How far particles look for the nearest other one, in spacings; one that finds none has this distance.
+inline constexpr double nearestReach = 1.5;
+
+/// How the fluid particles of a frame lie.
+struct Arrangement {
+  // Of the distances to the nearest other particle, over the spacing: the least and the 1 % quantile [-].
+  double least = nearestReach, low = nearestReach;
+  /// Particles per spacing^dimensions inside the fluid: its density over that of the material [-]. The mean over
+  /// places with nothing but fluid for at least 2.25 spacings around; empty where there is none.
+  std::optional<double> density{};
+
+  bool operator==(const Arrangement&) const = default;
+};
+
+/// Fills in fluid.nearestDistance, in which walls and periodic images count. Time and memory are proportional to
+/// the number of particles (their sort apart), wherever they lie. Periodic axes: at least 4.5 spacings long.
+Arrangement measureArrangement(Frame& fluid, const Frame& walls, const Domain& domain, double spacing);
+
+}  // namespace treacle

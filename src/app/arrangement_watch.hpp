@@ -1,0 +1,37 @@
+#pragma once
+
+#include "treacle/io/arrangement.hpp"
+#include "treacle/model/case.hpp"
+
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace treacle {
+
+/// Says when a run's particles come to lie so that its results are to be doubted; docs/output.md explains the
+/// bounds.
+class ArrangementWatch {
+ public:
+  static constexpr double leastBound = 0.25, lowBound = 0.4, densityBound = 0.02;
+
+  explicit ArrangementWatch(const Case& c) : case_(c) {}
+
+  /// Warnings about the frame at `time` [s]: of each kind one, and another only when it has become twice as bad.
+  std::vector<std::string> look(const Arrangement& arrangement, double time);
+
+ private:
+  std::string clumpText(const Arrangement& arrangement) const;
+  std::string densityText(double density) const;
+  bool published() const;  // the scheme
+
+  const Case& case_;
+  bool clumped_ = false;
+  double warnedLow_ = std::numeric_limits<double>::infinity();
+  double warnedError_ = 0;  // of the density
+};
+
+/// "nearest distances from 0.64, 1 % below 0.66, density inside 1.006".
+std::string textOf(const Arrangement& arrangement);
+
+}  // namespace treacle

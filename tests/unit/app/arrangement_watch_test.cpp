@@ -1,0 +1,101 @@
+#include "arrangement_watch.hpp"
+
+#include "command.hpp"
+#include "treacle/io/run_directory.hpp"
+#include "treacle/io/vtp.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+namespace treacle::test {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using testing::StartsWith;
+
+TEST(ArrangementWatch, warnsOnceAndAgainWhenItIsTwiceAsBad) {
+  const Case c;
+  ArrangementWatch watch(c);
+  EXPECT_THAT(watch.look({1, 1, 1.0}, 0), IsEmpty());
+  EXPECT_THAT(watch.look({0.25, 0.4, 1.0199}, 0), IsEmpty());
+  EXPECT_THAT(watch.look({0.3, 0.39, {}}, 0.125),
+              ElementsAre(AllOf(StartsWith("t = 0.125 s: fluid particles clump: "), HasSubstr(" at 0.3 spacings"),
+                                HasSubstr("within 0.39 "))));
+  EXPECT_THAT(watch.look({0.01, 0.2, 1}, 0), IsEmpty());
+  EXPECT_THAT(watch.look({0.01, 0.19, 1}, 0), ElementsAre(HasSubstr("within 0.19")));
+  EXPECT_THAT(watch.look({0.01, 0.39, 1}, 0), IsEmpty());
+
+  EXPECT_THAT(watch.look({1, 1, 0.97}, 0.5),
+              ElementsAre(AllOf(StartsWith("t = 0.5 s: the density inside the fluid is 0.970 "),
+                                HasSubstr("gained"), HasSubstr("accurate"))));
+  EXPECT_THAT(watch.look({1, 1, 1.0599}, 0), IsEmpty());
+  EXPECT_THAT(watch.look({1, 1, 1.07}, 0), ElementsAre(AllOf(HasSubstr("1.070"), HasSubstr("lost"))));
+}
+
+TEST(ArrangementWatch, aSinglePairIsToldOnceAndDoesNotHideWhatComes) {
+  const Case c;
+  ArrangementWatch watch(c);
+  EXPECT_THAT(watch.look({0.24, 0.8, 1}, 0), ElementsAre(HasSubstr("clump")));
+  EXPECT_THAT(watch.look({0.001, 0.8, 1}, 0), IsEmpty());
+  EXPECT_THAT(watch.look({0.001, 0.39, 1}, 0), ElementsAre(HasSubstr("clump")));
+}
+
+/// A drop of thin, soft fluid hits the floor in steps of half a spacing: its particles run into the wall's.
+std::string collision() {
+  std::string text = replaced(smallCase, "max = [6e-3, 6e-3]", "max = [6e-3, 6e-3]\nvelocity = [0, -2]");
+  text = replaced(text, "dynamic_viscosity = 10\n", "dynamic_viscosity = 1e-3\n");
+  text = replaced(text, "bulk_viscosity = 1e4\nbulk_modulus = 1e6\n", "bulk_viscosity = 1e-2\nbulk_modulus = 1\n");
+  return replaced(text, "step = 1e-3\nend = 2e-3", "step = 2.5e-4\nend = 1e-3");
+}
+
+std::size_t countOf(const std::string& part, const std::string& text) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(part); at != text.npos; at = text.find(part, at + 1)) ++count;
+  return count;
+}
+
+TEST(ArrangementWatch, aRunInWhichParticlesClumpSaysSoOnce) {
+  Workshop shop;
+  shop.put("clump.toml", collision());
+  const Outcome outcome = shop.call("run clump.toml --threads 1 --set output.interval=2.5e-4");
+  ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+  const std::string log = shop.content("clump-run/run.log");
+  EXPECT_EQ(countOf("warning: t = ", log), 1u) << log;
+  EXPECT_EQ(countOf("fluid particles clump", log), 1u) << log;
+  EXPECT_THAT(outcome.err, HasSubstr("fluid particles clump"));
+  EXPECT_THAT(outcome.err, Not(HasSubstr("density")));
+
+  const RunDirectory run = RunDirectory::open(shop / "clump-run");
+  const Frame last = readVtp(run.fluidFrame(run.frameCount() - 1));
+  ASSERT_EQ(last.nearestDistance.size(), last.position.size());
+  EXPECT_TRUE(readVtp(run.wallsFrame(0)).nearestDistance.empty());
+  const auto json = nlohmann::json::parse(shop.content("clump-run/summary.json"));
+  const auto& distance = json["nearest_distance"];
+  EXPECT_NEAR(distance["least"], *std::min_element(last.nearestDistance.begin(), last.nearestDistance.end()),
+              1e-7);
+  EXPECT_LE(distance["smallest_least"], distance["least"]);
+  EXPECT_LE(distance["smallest_low"], distance["low"]);
+  EXPECT_TRUE(json["density"]["inside"].is_null());
+  EXPECT_EQ(shop.call("plot clump-run --field nearest_distance").exitCode, 0);
+  EXPECT_EQ(shop.call("compare clump-run clump-run --quiet --bound 0 --field nearest_distance").exitCode, 0);
+}
+
+TEST(ArrangementWatch, theDamBreakIsWithinAllBounds) {
+  Workshop shop;
+  const Outcome outcome = shop.call("run " TREACLE_CASES "/dam-break-2d.toml -o dam --quiet");
+  ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+  const std::string log = shop.content("dam/run.log");
+  EXPECT_THAT(log, Not(HasSubstr("warning")));
+  EXPECT_EQ(countOf(", nearest distances from ", log), 21u);
+  const auto json = nlohmann::json::parse(shop.content("dam/summary.json"));
+  EXPECT_NEAR(json["nearest_distance"]["smallest_least"], 0.638, 0.02);
+  EXPECT_NEAR(json["density"]["inside"], 1.0057, 1e-3);
+}
+
+}  // namespace
+}  // namespace treacle::test
