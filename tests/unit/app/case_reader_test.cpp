@@ -1,6 +1,7 @@
 #include "treacle/io/case_reader.hpp"
 
 #include "treacle/core/error.hpp"
+#include "treacle/model/case_keys.hpp"
 
 #include <gtest/gtest.h>
 
@@ -44,21 +45,31 @@ TEST(caseFiles, allAreReadAndTheirResolvedTextGivesTheSameCase) {
 
 TEST(caseFiles, damBreakIsThatOfThePaper) {  // [K23 Table 1]
   const std::string overrides[] = {"resolution=4"};
-  const Case c = readCase(fs::path(TREACLE_CASES) / "dam-break-2d.toml", overrides);
+  const Case c = readCase(fs::path(TREACLE_CASES) / "published" / "dam-break-2d.toml", overrides);
   EXPECT_EQ(c.spacing, 0.25e-3);
   EXPECT_EQ(c.time, (TimeSettings{0.25e-3, 0.2}));
   EXPECT_EQ(c.steps(), 800);
   EXPECT_EQ(c.gravity, (Vec<3>{0, -10, 0}));
   EXPECT_EQ(c.materials, (std::vector<Material>{{"fluid", 1e3, 10, 1e4, 1e6}}));
   EXPECT_EQ(c.domain, (Domain{{-0.01, -0.01}, {0.04, 0.04}, {true, true, false}}));
+  EXPECT_EQ(c.method, defaultMethod(SchemeKind::Published));
   EXPECT_EQ(c.pressureRadius(), 1.75 * 0.25e-3);
   EXPECT_EQ(c.viscosityRadius(), 3.5 * 0.25e-3);
   ASSERT_EQ(c.bodies.size(), 3u);
   EXPECT_EQ(c.bodies[0].shape.max, (Vec<3>{0.02, 0.02, 0}));
 }
 
+TEST(caseFiles, publishedOnesDifferFromTheDefaultInTheSchemeAlone) {
+  for (const char* name : {"dam-break-2d.toml", "dam-break-3d.toml"}) {
+    Case c = readCase(fs::path(TREACLE_CASES) / name);
+    EXPECT_EQ(c.method, defaultMethod(SchemeKind::Accurate));
+    c.method = defaultMethod(SchemeKind::Published);
+    EXPECT_EQ(readCase(fs::path(TREACLE_CASES) / "published" / name), c);
+  }
+}
+
 TEST(caseFiles, smallCasesScaleGravityAndViscosities) {  // [K23 Table 3]
-  const Case base = readCase(fs::path(TREACLE_CASES) / "dam-break-2d.toml");
+  const Case base = readCase(fs::path(TREACLE_CASES) / "published" / "dam-break-2d.toml");
   for (const int factor : {2, 4, 8, 16, 32, 64}) {
     const std::string name = "dam-break-2d-d" + std::to_string(factor) + ".toml";
     const Case c = readCase(fs::path(TREACLE_CASES) / "small" / name);
