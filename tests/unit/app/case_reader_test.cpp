@@ -151,8 +151,15 @@ step = 1e-3
 end = 7
 courant = 0.3
 [method]
+scheme = "published"
+pressure_weight = "wendland-c4"
+viscosity_weight = "biquadratic"
+wall_velocity = "extrapolated"
+pressure_gradient = "renormalised"
 pressure_radius = 2
+density_radius = 2.25
 viscosity_radius = 3
+viscosity_correction = 0.25
 [solver]
 krylov = "cg"
 preconditioner = "block-jacobi"
@@ -203,7 +210,11 @@ TEST(readCase, takesEveryKey) {
   expected.bodies[1].rotation = Rotation{{1, 0.3, -2}, {0.1, -0.7, 3}, -2.5};
   expected.bodies[0].where = "x > 0 || y != 1e-3";
   expected.time = {1e-3 / 1.5, 7, 0.3};
-  expected.method.pressureRadius = 2, expected.method.viscosityRadius = 3;
+  expected.method.scheme = SchemeKind::Published;
+  expected.method.pressureWeight = PressureWeight::WendlandC4;
+  expected.method.viscosityWeight = ViscosityWeight::Biquadratic;
+  expected.method.pressureRadius = 2, expected.method.densityRadius = 2.25, expected.method.viscosityRadius = 3;
+  expected.method.viscosityCorrection = 0.25;
   expected.solver.krylov = KrylovKind::Cg;
   expected.solver.preconditioner = PreconditionerKind::BlockJacobi;
   expected.solver.operatorKind = OperatorKind::Assembled;
@@ -251,6 +262,20 @@ TEST(readCase, krylovMethodAndPrecisionFollowFromThePreconditionerUnlessGiven) {
   EXPECT_EQ(solverOf({"solver.preconditioner=jacobi"}), std::tuple(Jacobi, KrylovKind::Cr, Precision::Double));
   EXPECT_EQ(solverOf({"solver.preconditioner=bucket-multigrid", "solver.krylov=cg", "solver.precision=mixed"}),
             std::tuple(BucketMultigrid, KrylovKind::Cg, Precision::Mixed));
+}
+
+TEST(readCase, weightsAndRadiiFollowFromTheSchemeUnlessGiven) {
+  Workshop shop;
+  shop.put("case.toml", smallCase);
+  const auto methodOf = [&](const std::vector<std::string>& overrides) {
+    return readCase(shop / "case.toml", overrides).method;
+  };
+  EXPECT_EQ(methodOf({}), defaultMethod(SchemeKind::Accurate));
+  EXPECT_EQ(methodOf({"method.scheme=accurate"}), defaultMethod(SchemeKind::Accurate));
+  EXPECT_EQ(methodOf({"method.scheme=published"}), defaultMethod(SchemeKind::Published));
+  MethodSettings wide = defaultMethod(SchemeKind::Published);
+  wide.pressureRadius = 2.5;
+  EXPECT_EQ(methodOf({"method.pressure_radius=2.5", "method.scheme=published"}), wide);
 }
 
 TEST(readCase, mergesOntoItsBase) {
