@@ -170,7 +170,10 @@ int main(int argc, char** argv) {
   }
   SolveRecord record;
   const BuildInfo build = buildInfo();
-  record.json = {{"commit", build.commit}, {"compiler", build.compiler}, {"device", devices[0].name}, {"scheme", options.scheme}};
+  record.json = {{"commit", build.commit},
+                 {"compiler", build.compiler},
+                 {"device", devices[0].name},
+                 {"scheme", options.scheme}};
   try {
     run(options, record);
   } catch (const std::exception& error) {
