@@ -1,5 +1,6 @@
 // Times the parts of a step on the GPU over the papers' cases and writes one JSON record.
-//   gpu_benchmark [--out FILE.json] [--cases DIR] [--only TEXT] [--quick] [--largest RESOLUTION]
+//   gpu_benchmark [--out FILE.json] [--cases DIR] [--scheme accurate] [--only TEXT] [--quick] [--largest
+//   RESOLUTION]
 // Parts, by name: products/..., setup/..., solve/... Figures of one run belong together: compare them as ratios,
 // the machine may be shared.
 
@@ -21,6 +22,7 @@ int main(int argc, char** argv) {
   std::string out;
   app.add_option("--out", out, "JSON record");
   app.add_option("--cases", options.cases, "directory of the case files");
+  app.add_option("--scheme", options.scheme, "of the dam breaks, published unless told");
   app.add_option("--only", options.only, "only parts whose name contains this");
   app.add_option("--largest", options.largest, "only one step of the 3D dam break at this resolution");
   app.add_flag("--quick", options.quick, "few steps, small cases");
@@ -33,7 +35,10 @@ int main(int argc, char** argv) {
   }
   Record record;
   const BuildInfo build = buildInfo();
-  record.json = {{"commit", build.commit}, {"compiler", build.compiler}, {"device", devices[0].name}};
+  record.json = {{"commit", build.commit},
+                 {"compiler", build.compiler},
+                 {"device", devices[0].name},
+                 {"scheme", options.scheme}};
   record.copyBandwidth = copyBandwidth();
   record.json["copy_bandwidth_GB_per_s"] = record.copyBandwidth * 1e-9;
   fmt::print("{}, copy {:.2f} TB/s\n", devices[0].name, record.copyBandwidth * 1e-12);

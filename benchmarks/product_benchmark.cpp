@@ -1,4 +1,4 @@
-// One product with A, matrix-free and assembled, on the dam breaks of [K23]; one thread.
+// One product with A, matrix-free and assembled, on the dam breaks of [K23] by its scheme; one thread.
 //   product_benchmark --benchmark_out=FILE.json --benchmark_out_format=json
 // Counters: time per million particles; GB/s of what the operator keeps, read once per product.
 
@@ -10,6 +10,7 @@
 #include "treacle/mph/mph_operator.hpp"
 
 #include <benchmark/benchmark.h>
+#include <fmt/format.h>
 #include <omp.h>
 
 #include <cmath>
@@ -42,7 +43,7 @@ struct Start {
  private:
   static Case read(const std::string& resolution) {
     const std::vector<std::string> settings{"resolution=" + resolution};
-    return readCase(std::string(TREACLE_CASES) + (D == 2 ? "/dam-break-2d.toml" : "/dam-break-3d.toml"), settings);
+    return readCase(fmt::format("{}/published/dam-break-{}d.toml", TREACLE_CASES, D), settings);
   }
   static Particles<D> create(const Case& c) {
     std::vector<std::string> notes;

@@ -147,6 +147,7 @@ int main(int argc, char** argv) {
   std::string out;
   app.add_option("--out", out, "JSON record");
   app.add_option("--cases", options.cases, "directory of the case files");
+  app.add_option("--scheme", options.scheme, "of the dam breaks, published unless told");
   app.add_option("--states", options.states, "directory of files of study_state.py")
       ->check(CLI::ExistingDirectory);
   app.add_option("--checkpoint", options.checkpoint, "a late state of a run")->check(CLI::ExistingFile);
@@ -169,7 +170,10 @@ int main(int argc, char** argv) {
   }
   SolveRecord record;
   const BuildInfo build = buildInfo();
-  record.json = {{"commit", build.commit}, {"compiler", build.compiler}, {"device", devices[0].name}};
+  record.json = {{"commit", build.commit},
+                 {"compiler", build.compiler},
+                 {"device", devices[0].name},
+                 {"scheme", options.scheme}};
   try {
     run(options, record);
   } catch (const std::exception& error) {

@@ -36,7 +36,7 @@ def scaled(f):
     """Case x1/f of [K23 Table 2]. The 12,800 steps of x1/64 would take 20 minutes: it ends at 0.01 s."""
     end = 0.2 if f < 64 else 0.01
     return Case(
-        f"2d-{f}", size_label(f), "2d", f, "dam-break-2d.toml", (f"resolution={f}",), 400 * f * f, 1e-3 / f, end, 0.2
+        f"2d-{f}", size_label(f), "2d", f, "published/dam-break-2d.toml", (f"resolution={f}",), 400 * f * f, 1e-3 / f, end, 0.2
     )
 
 
@@ -50,7 +50,7 @@ def small(k):
 def cube(f):
     """Case x1/f of [K23 Table 4]; f = 0.5 is x2."""
     n = round(8000 * f**3)
-    return Case(f"3d-{f:g}", size_label(f), "3d", f, "dam-break-3d.toml", (f"resolution={f}",), n, 1e-3 / f, 0.2, 0.2)
+    return Case(f"3d-{f:g}", size_label(f), "3d", f, "published/dam-break-3d.toml", (f"resolution={f}",), n, 1e-3 / f, 0.2, 0.2)
 
 
 def isph(width):

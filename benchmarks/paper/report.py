@@ -20,7 +20,8 @@ CG, CR, MGCG, MGCR are the papers' solvers by this program: double precision, fi
 the authors' program. *Ours* is the program's default. States at 0.2 s are made by our default solver; from their checkpoints every solver
 takes a few steps: iterations are those of the first of them (of ours, the mean), times those of the others' median step. The figures of the
 papers have no readable points in the scans, so what is compared are their statements, and iterations that the authors' published program
-gave. Their machines: one NVIDIA A100 (80 GB), one Xeon Gold 6252. N is the number of fluid particles.
+gave. The cases of [K23] have its formulas, weights and radii (`scheme = "published"`, `cases/published` and `cases/small`). The authors'
+machines: one NVIDIA A100 (80 GB), one Xeon Gold 6252. N is the number of fluid particles.
 """
 
 

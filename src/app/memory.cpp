@@ -24,9 +24,10 @@ struct HostBytes {
   std::uint64_t projected;   // fluid: what projected-multigrid takes more than the others
   std::uint64_t beside;      // fluid: the coefficients that it needs beside an assembled matrix
   std::uint64_t memory;      // fluid: acceleration and jerk, in the state and in each copy of it
+  std::uint64_t accurate;    // fluid: what the accurate scheme takes more, most of it for its near neighbours
 };
-constexpr HostBytes hostBytes2D{210, 100, 1400, 2100, 620, 780, 32};
-constexpr HostBytes hostBytes3D{300, 140, 4200, 14300, 2150, 2750, 48};
+constexpr HostBytes hostBytes2D{210, 100, 1400, 2100, 620, 780, 32, 420};
+constexpr HostBytes hostBytes3D{300, 140, 4200, 14300, 2150, 2750, 48, 1400};
 constexpr std::uint64_t copiesToBeWritten = 3;    // two snapshots, and the file of a checkpoint
 constexpr std::uint64_t programBytes = 26 << 20;  // the program itself, its libraries and a picture
 constexpr std::uint64_t driverBytes = 300 << 20;  // what CUDA takes of the host
@@ -138,6 +139,7 @@ std::uint64_t estimatedMemory(const Case& c, ParticleNumbers n, bool onDevice) {
     solver = isphBytes(c).solver;
   else if (c.solver.preconditioner == PreconditionerKind::ProjectedMultigrid)
     solver += bytes.projected + (assembled ? bytes.beside : 0);
+  if (c.method.kind == MethodKind::MphI && c.method.scheme == SchemeKind::Accurate) solver += bytes.accurate;
   return programBytes + snapshots + all * bytes.state +
          n.fluid * (bytes.memory + solver + modes.kept + modes.used) + balanceBytes(c, n) + cellBytes(c);
 }

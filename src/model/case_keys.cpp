@@ -46,15 +46,16 @@ std::string mismatch(const Key& key, const std::string& expected, const std::str
 
 MethodSettings defaultMethod(SchemeKind scheme) {
   MethodSettings method;
-  method.scheme = scheme;
-  if (scheme == SchemeKind::Published) return method;
-  method.pressureWeight = PressureWeight::WendlandC2;
-  method.viscosityWeight = ViscosityWeight::Quadratic;
-  method.wallVelocity = WallVelocity::Extrapolated;
-  method.pressureGradient = PressureGradient::Renormalised;
-  method.pressureRadius = 2.5;
-  method.densityRadius = 3;
-  method.viscosityCorrection = 0.5;
+  if (scheme == SchemeKind::Accurate) return method;
+  method.scheme = scheme;  // [K23 Table 1] for the radii
+  method.pressureWeight = PressureWeight::Mps;
+  method.viscosityWeight = ViscosityWeight::Mps;
+  method.wallVelocity = WallVelocity::Own;
+  method.pressureGradient = PressureGradient::Plain;
+  method.pressureRadius = 1.75;
+  method.densityRadius = 0;
+  method.viscosityRadius = 3.5;
+  method.viscosityCorrection = 0;
   return method;
 }
 

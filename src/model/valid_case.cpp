@@ -200,7 +200,7 @@ void requireSound(const Checker& at, const OutputSettings& o) {
 void requirePeriodicLength(const Checker& at, const Case& c) {
   constexpr int cells = 3;
   const double edge = c.searchEdge();
-  const std::string_view edgeText = c.method.kind == MethodKind::Isph ? "2 h" : "max(h_v, 2 h_p)";
+  const std::string_view edgeText = c.method.kind == MethodKind::Isph ? "2 h" : "max(h_v, h_n, 2 h_p)";
   for (int k = 0; k < c.dimensions; ++k) {
     const double length = c.domain.max[k] - c.domain.min[k];
     if (!c.domain.periodic[static_cast<std::size_t>(k)] || std::floor(length / edge) >= cells) continue;

@@ -5,6 +5,7 @@
 #include "treacle/step/any_simulation.hpp"
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace treacle::test {
@@ -24,8 +25,10 @@ struct MemoryCase {
 
 inline std::vector<MemoryCase> memoryCases() {
   std::vector<MemoryCase> all;
-  for (const char* file : {"dam-break-2d.toml", "dam-break-3d.toml"}) {
-    const std::string resolution = file == std::string("dam-break-2d.toml") ? "resolution=2" : "resolution=0.5";
+  for (const char* file :
+       {"dam-break-2d.toml", "published/dam-break-2d.toml", "dam-break-3d.toml", "published/dam-break-3d.toml"}) {
+    const bool flat = std::string_view(file).ends_with("2d.toml");
+    const std::string resolution = flat ? "resolution=2" : "resolution=0.5";
     all.push_back({file, {resolution}});
     all.push_back({file, {resolution, "output.balance=true"}});
     all.push_back({file, {resolution, "solver.operator=assembled"}});

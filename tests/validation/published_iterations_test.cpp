@@ -51,7 +51,7 @@ void expectWithin(double value, double reference, double fraction, const char* w
 }
 
 TEST(PublishedDamBreak, TwoDimensionsX1) {
-  const Outcome o = run("dam-break-2d.toml", {}, 200);
+  const Outcome o = run("published/dam-break-2d.toml", {}, 200);
   EXPECT_NEAR(o.firstIterations, 338, 1);
   expectWithin(o.meanIterations, 233, 0.01, "mean iterations");
   expectWithin(o.lastIterations, 243, 0.02, "iterations at 0.2 s");
@@ -62,7 +62,7 @@ TEST(PublishedDamBreak, TwoDimensionsX1) {
 }
 
 TEST(PublishedDamBreak, TwoDimensionsX1Half) {
-  const Outcome o = run("dam-break-2d.toml", {"resolution=2"}, 400);
+  const Outcome o = run("published/dam-break-2d.toml", {"resolution=2"}, 400);
   EXPECT_NEAR(o.firstIterations, 377, 1);
   expectWithin(o.meanIterations, 258, 0.01, "mean iterations");
   expectWithin(o.lastIterations, 268, 0.02, "iterations at 0.2 s");
@@ -71,20 +71,20 @@ TEST(PublishedDamBreak, TwoDimensionsX1Half) {
 }
 
 TEST(PublishedDamBreak, UnpreconditionedX1) {
-  const Outcome o = run("dam-break-2d.toml", {"solver.preconditioner=none"}, 200);
+  const Outcome o = run("published/dam-break-2d.toml", {"solver.preconditioner=none"}, 200);
   expectWithin(o.lastIterations, 415, 0.02, "iterations of plain CR at 0.2 s");
 }
 
 TEST(PublishedDamBreak, AsPrintedNeedsTheIterationsOfAnIndependentProgram) {
   // [K23 sect. 3.2] to the letter: two sweeps everywhere, four at the top, extended Jacobi on the particles.
   const Outcome o =
-      run("dam-break-2d.toml",
+      run("published/dam-break-2d.toml",
           {"solver.multigrid.middle_sweeps=2", "solver.multigrid.particle_diagonal=extended-jacobi"}, 200);
   expectWithin(o.lastIterations, 251, 0.02, "iterations at 0.2 s");
 }
 
 TEST(PublishedDamBreak, ThreeDimensionsX2) {
-  const Outcome o = run("dam-break-3d.toml", {"resolution=0.5"}, 100);
+  const Outcome o = run("published/dam-break-3d.toml", {"resolution=0.5"}, 100);
   EXPECT_NEAR(o.firstIterations, 395, 1);
   expectWithin(o.meanIterations, 284, 0.01, "mean iterations");
   expectWithin(o.lastIterations, 273, 0.02, "iterations at 0.2 s");
@@ -95,7 +95,7 @@ TEST(PublishedDamBreak, ThreeDimensionsX2) {
 }
 
 TEST(PublishedDamBreak, ThreeDimensionsX1FirstStep) {
-  EXPECT_NEAR(run("dam-break-3d.toml", {}, 1).firstIterations, 450, 1);
+  EXPECT_NEAR(run("published/dam-break-3d.toml", {}, 1).firstIterations, 450, 1);
 }
 
 }  // namespace

@@ -31,7 +31,8 @@ def table(study, rows):
             cells += [number(error), "" if p is None else f"{p:.2f}"]
         cells += [number(row["values"][name]) for name in values]
         lines.append("| " + " | ".join(cells) + " |")
-    scheme = rows[0].get("scheme", "published")  # records from before there was another one do not say
+    # Records from before there was another scheme do not say which they are of.
+    scheme = "isph" if study.name.startswith("isph-") else rows[0].get("scheme", "published")
     bars = ", ".join(f"{name} {bar:g}" for name, bar in study.bars_of(scheme).items())
     ranges = "; ".join(f"{name} from {low:g} to {high:g}" for name, (low, high) in (study.ranges_of(scheme) or {}).items())
     limits = f"Bars at the first level: {bars}. Scheme {scheme}" + (f": {ranges}" if ranges else "")

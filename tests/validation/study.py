@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Callable
 
 cases = Path(__file__).parent / "cases"
+usual_order, small = 0.9, 0.01  # least observed order, and the error from which on none is asked for
 
 
 @dataclass
@@ -35,12 +36,14 @@ class Level:
 
 @dataclass
 class Study:
-    """levels: from coarse to fine; the first is what continuous integration runs. bars: largest error allowed there, by the
-    names of Outcome.errors; every bar must be met, whatever the scheme; accurate: those of them that are others for the scheme
-    of that name, which converges. ranges: by the scheme of the case, least and largest of
-    Outcome.values there: where a scheme itself is off by more than a wrong constant would be, a bar alone would let that pass. They
-    say what this scheme gives, not what is right, so better physics need a scheme of their own. measure: takes a Run
-    (treacle_data) to an Outcome. size: what orders are counted in, a function of the level; particle spacing unless told."""
+    """levels: from coarse to fine; the first, and the second where it takes little time, are what continuous integration runs. bars:
+    largest error allowed at the first, by the names of Outcome.errors; every bar must be met, whatever the scheme; published: those of
+    them that are others for the scheme of that name, which does not converge. orders: least observed order from the first level to the
+    second of the errors for which it is not usual_order; only the accurate scheme is judged by orders, and only until an error is
+    small. ranges: by the scheme of the case, least and largest of Outcome.values at the first level: where a scheme itself is off by
+    more than a wrong constant would be, a bar alone would let that pass. They say what this scheme gives, not what is right, so better
+    physics need a scheme of their own. measure: takes a Run (treacle_data) to an Outcome. size: what orders are counted in, a function
+    of the level; particle spacing unless told."""
 
     name: str
     title: str
@@ -50,7 +53,8 @@ class Study:
     x_label: str
     y_label: str
     settings: tuple = ()
-    accurate: dict = field(default_factory=dict)
+    published: dict = field(default_factory=dict)
+    orders: dict = field(default_factory=dict)
     ranges: dict = field(default_factory=dict)
     case: str = ""
     size: Callable = staticmethod(lambda level: 1 / level.resolution)
@@ -60,7 +64,10 @@ class Study:
         return cases / (self.case or self.name + ".toml")
 
     def bars_of(self, scheme):
-        return self.bars | self.accurate if scheme == "accurate" else self.bars
+        return self.bars | self.published if scheme == "published" else self.bars
+
+    def orders_of(self, scheme):
+        return {name: self.orders.get(name, usual_order) for name in self.bars} if scheme == "accurate" else {}
 
     def ranges_of(self, scheme):
         """None where the study has ranges, but says nothing of this scheme; where the bars are enough for it, it says {}."""
@@ -68,10 +75,10 @@ class Study:
 
 
 def scheme_in(text):
-    """[method] scheme in the text of a case; a case without one is by the published formulas."""
+    """[method] scheme in the text of a case; a case without one is by the accurate scheme, one of ISPH by "isph"."""
     method = text.partition("\n[method]\n")[2].partition("\n[")[0]
-    found = re.search(r'^scheme *= *"([^"]*)"', method, re.MULTILINE)
-    return found[1] if found else "published"
+    word = lambda key, default: (re.search(rf'^{key} *= *"([^"]*)"', method, re.MULTILINE) or (None, default))[1]
+    return "isph" if word("name", "mph-i") == "isph" else word("scheme", "accurate")
 
 
 def order(error_coarse, error_fine, size_coarse, size_fine):

@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 """Validation studies of treacle: runs cases with exact or published solutions and measures the errors.
 
-    validate.py --program build/release/bin/treacle couette            # the coarse level, against its bars (as ctest does)
-    validate.py --program ... --scheme accurate couette                # the same by another scheme
+    validate.py --program build/release/bin/treacle couette            # the coarse level, against its bars
+    validate.py --program ... --levels 2 couette                       # and the next one, against orders (as ctest does)
+    validate.py --program ... --scheme published couette               # by another scheme
     validate.py --program ... --all-levels --record record.json        # every study, every level
     validate.py --report record.json                                   # tables and pictures of docs/validation.md
 
-Exit codes: 0 all bars are met, 1 one is not, 2 bad input, 3 a run failed.
+Exit codes: 0 all bars and orders are met, 1 one is not, 2 bad input, 3 a run failed.
 """
 
 import argparse
@@ -20,7 +21,7 @@ here = Path(__file__).resolve().parent
 sys.path[:0] = [str(here), str(here.parents[1] / "scripts")]
 
 import treacle_data  # noqa: E402
-from study import order, scheme_in  # noqa: E402
+from study import order, scheme_in, small  # noqa: E402
 
 names = sorted(file.stem for file in (here / "studies").glob("*.py") if not file.stem.startswith("_"))
 
@@ -65,23 +66,30 @@ def run_level(study, level, options, directory):
     }
 
 
-def print_level(study, row, last, judged):
-    """One block of lines; returns whether all bars are met and all values in their ranges, if the level is judged by them."""
+def print_level(study, row, last, number):
+    """One block of lines; returns whether all is met that the level of this number is judged by: bars and ranges the first, orders the
+    second, nothing the others."""
     print(f"{study.name} {row['level']}: {row['particles']} particles, {row['steps']} steps, "
           f"{row['iterations']:.1f} iterations, {row['seconds']} s ({row['backend']}), scheme {row['scheme']}")
-    bars, ranges = (study.bars_of(row["scheme"]), study.ranges_of(row["scheme"])) if judged else ({}, {})
+    bars, ranges = (study.bars_of(row["scheme"]), study.ranges_of(row["scheme"])) if number == 0 else ({}, {})
+    orders = study.orders_of(row["scheme"]) if number == 1 else {}
     good = ranges is not None
     if not good:
         print(f"  ranges of the scheme {row['scheme']}: the study has none, NOT MET")
         ranges = {}
-    missing = sorted((set(bars) - set(row["errors"])) | (set(ranges) - set(row["values"])))
+    missing = sorted(((set(bars) | set(orders)) - set(row["errors"])) | (set(ranges) - set(row["values"])))
     for name in missing:
         print(f"  {name}: not measured, NOT MET")
     good = good and not missing
     for name, error in row["errors"].items():
         text = f"  error {name}: {error:.3e}"
-        if last and (p := order(last["errors"][name], error, last["size"], row["size"])) is not None:
+        p = order(last["errors"][name], error, last["size"], row["size"]) if last else None
+        if p is not None:
             text += f", order {p:.2f}"
+        if name in orders:
+            met = error < small or (p is not None and p >= orders[name])
+            good = good and met
+            text += f", at least {orders[name]:g} down to {small:g}: {'met' if met else 'NOT MET'}"
         if name in bars:
             met = error <= bars[name]  # false for what is not a number
             good = good and met
@@ -101,9 +109,9 @@ def print_level(study, row, last, judged):
 
 def run_study(study, options, scratch):
     rows, good = [], True
-    for number, level in enumerate(study.levels if options.all_levels else study.levels[:1]):
+    for number, level in enumerate(study.levels if options.all_levels else study.levels[: options.levels]):
         row = run_level(study, level, options, scratch / f"{study.name}-{number}")
-        good = print_level(study, row, rows[-1] if rows else None, number == 0) and good
+        good = print_level(study, row, rows[-1] if rows else None, number) and good
         rows.append(row)
     return rows, good
 
@@ -115,7 +123,8 @@ def main():
     parser.add_argument("--backend", default="auto", choices=["auto", "cpu", "cuda"])
     parser.add_argument("--threads", type=int, default=0)
     parser.add_argument("--scheme", choices=["published", "accurate"], help="of MPH-I, instead of that of the case")
-    parser.add_argument("--all-levels", action="store_true", help="not the coarse level alone")
+    parser.add_argument("--levels", type=int, default=1, metavar="N", help="how many, from the coarsest on (1)")
+    parser.add_argument("--all-levels", action="store_true")
     parser.add_argument("--record", type=Path, help="JSON file that the results of these studies are put into")
     parser.add_argument("--keep", type=Path, help="folder for the run directories, which are deleted otherwise")
     parser.add_argument("--report", type=Path, metavar="RECORD", help="writes tables and pictures from a record")

@@ -123,7 +123,8 @@ struct IsphSettings {
 };
 
 /// Of MPH-I: weights and radii that go together; what a case does not say itself is its scheme's (defaultMethod).
-enum class SchemeKind { Published, Accurate };
+/// Accurate converges under refinement; Published is that of [K23].
+enum class SchemeKind { Accurate, Published };
 /// Weight of densities, divergences and pressure gradients, and weight of the viscosity, with q = r/h: those of
 /// [K23], (1-q)^2 and what its derivative makes of the viscosity, (1-q)/q^3; Wendland's functions C2,
 /// (1-q)^4 (1+4q), and C4, (1-q)^6 (3+18q+35q^2); (1-q^2)^2/q^2, and (1-q)^2/q.
@@ -137,19 +138,20 @@ enum class WallVelocity { Own, Extrapolated };
 /// exact for velocities that are linear in space, at free surfaces, too.
 enum class PressureGradient { Plain, Renormalised };
 
+/// Of MPH-I, the accurate scheme's.
 struct MethodSettings {
   MethodKind kind = MethodKind::MphI;
-  SchemeKind scheme = SchemeKind::Published;
-  PressureWeight pressureWeight = PressureWeight::Mps;
-  ViscosityWeight viscosityWeight = ViscosityWeight::Mps;
-  WallVelocity wallVelocity = WallVelocity::Own;
-  PressureGradient pressureGradient = PressureGradient::Plain;
-  // Effective radii of MPH-I in particle spacings [K23 Table 1].
-  double pressureRadius = 1.75;  // h_p / l
-  double densityRadius = 0;      // h_n / l, at least that of the pressure
+  SchemeKind scheme = SchemeKind::Accurate;
+  PressureWeight pressureWeight = PressureWeight::WendlandC2;
+  ViscosityWeight viscosityWeight = ViscosityWeight::Quadratic;
+  WallVelocity wallVelocity = WallVelocity::Extrapolated;
+  PressureGradient pressureGradient = PressureGradient::Renormalised;
+  // Effective radii in particle spacings.
+  double pressureRadius = 2.5;   // h_p / l
+  double densityRadius = 3;      // h_n / l, at least that of the pressure
   double viscosityRadius = 3.5;  // h_v / l
   // Which share of the viscosity that its missing neighbours would give it a particle gets from those it has.
-  double viscosityCorrection = 0;
+  double viscosityCorrection = 0.5;
   IsphSettings isph;
 
   bool operator==(const MethodSettings&) const = default;

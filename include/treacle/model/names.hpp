@@ -27,18 +27,18 @@ inline constexpr Named<ShapeKind> shape[] = {
     {"box", ShapeKind::Box}, {"sphere", ShapeKind::Sphere}, {"cylinder", ShapeKind::Cylinder}};
 inline constexpr Named<BodyKind> body[] = {{"fluid", BodyKind::Fluid}, {"wall", BodyKind::Wall}};
 inline constexpr Named<MethodKind> method[] = {{"mph-i", MethodKind::MphI}, {"isph", MethodKind::Isph}};
-inline constexpr Named<SchemeKind> scheme[] = {{"published", SchemeKind::Published},
-                                               {"accurate", SchemeKind::Accurate}};
-inline constexpr Named<PressureWeight> pressureWeight[] = {{"mps", PressureWeight::Mps},
-                                                           {"wendland-c2", PressureWeight::WendlandC2},
-                                                           {"wendland-c4", PressureWeight::WendlandC4}};
-inline constexpr Named<WallVelocity> wallVelocity[] = {{"own", WallVelocity::Own},
-                                                       {"extrapolated", WallVelocity::Extrapolated}};
-inline constexpr Named<PressureGradient> pressureGradient[] = {{"plain", PressureGradient::Plain},
-                                                               {"renormalised", PressureGradient::Renormalised}};
-inline constexpr Named<ViscosityWeight> viscosityWeight[] = {{"mps", ViscosityWeight::Mps},
+inline constexpr Named<SchemeKind> scheme[] = {{"accurate", SchemeKind::Accurate},
+                                               {"published", SchemeKind::Published}};
+inline constexpr Named<PressureWeight> pressureWeight[] = {{"wendland-c2", PressureWeight::WendlandC2},
+                                                           {"wendland-c4", PressureWeight::WendlandC4},
+                                                           {"mps", PressureWeight::Mps}};
+inline constexpr Named<WallVelocity> wallVelocity[] = {{"extrapolated", WallVelocity::Extrapolated},
+                                                       {"own", WallVelocity::Own}};
+inline constexpr Named<PressureGradient> pressureGradient[] = {{"renormalised", PressureGradient::Renormalised},
+                                                               {"plain", PressureGradient::Plain}};
+inline constexpr Named<ViscosityWeight> viscosityWeight[] = {{"quadratic", ViscosityWeight::Quadratic},
                                                              {"biquadratic", ViscosityWeight::Biquadratic},
-                                                             {"quadratic", ViscosityWeight::Quadratic}};
+                                                             {"mps", ViscosityWeight::Mps}};
 inline constexpr Named<KernelKind> kernel[] = {{"cubic-spline", KernelKind::CubicSpline},
                                                {"wendland-c2", KernelKind::WendlandC2}};
 inline constexpr Named<WallSlip> slip[] = {{"no-slip", WallSlip::NoSlip}, {"free-slip", WallSlip::FreeSlip}};

@@ -158,16 +158,15 @@ constexpr BadCase badCases[] = {
      "bad.toml:7:7: max in [domain]: expected more than min on every axis, found -0.004 <= -0.004 along x"},
     {"shortPeriodicAxis", "max = [12e-3, 12e-3]", "max = [6e-3, 12e-3]\nperiodic = true",
      "bad.toml:8:12: periodic in [domain]: the domain is 10 mm long along x; a periodic axis must hold 3 search "
-     "cells "
-     "of edge max(h_v, 2 h_p) = 3.5 mm: expected at least 10.5 mm"},
+     "cells of edge max(h_v, h_n, 2 h_p) = 5 mm: expected at least 15 mm"},
     {"unknownMethod", "[output]", "[method]\nname = \"sph\"\nalpha = 2\n[output]",
      "bad.toml:40:8: name in [method]: expected 'mph-i' or 'isph', found 'sph'"},
     {"numberForMethod", "[output]", "[method]\nname = 1\n[output]",
      "bad.toml:40:8: name in [method]: expected a string, found 1"},
     {"keyOfIsph", "[output]", "[method]\nviscosity = \"explicit\"\n[output]",
      "bad.toml:40:1: unknown key 'viscosity' in [method]: it belongs to the method 'isph'; expected 'name', "
-     "'scheme', 'pressure_weight', 'viscosity_weight', 'wall_velocity', 'pressure_gradient', 'pressure_radius' or "
-     "'viscosity_radius'"},
+     "'scheme', 'pressure_weight', 'viscosity_weight', 'wall_velocity', 'pressure_gradient', 'pressure_radius', "
+     "'density_radius', 'viscosity_radius' or 'viscosity_correction'"},
     {"keyOfMph", bulk, "[method]\nname = \"isph\"\npressure_radius = 2\n",
      "bad.toml:18:1: unknown key 'pressure_radius' in [method] (isph): it belongs to the method 'mph-i'; expected "
      "'name', 'kernel', 'smoothing_ratio', 'alpha', 'walls', 'viscosity', 'shifting' or 'negative_pressure'"},

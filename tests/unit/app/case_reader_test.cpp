@@ -1,6 +1,7 @@
 #include "treacle/io/case_reader.hpp"
 
 #include "treacle/core/error.hpp"
+#include "treacle/model/case_keys.hpp"
 
 #include <gtest/gtest.h>
 
@@ -44,21 +45,31 @@ TEST(caseFiles, allAreReadAndTheirResolvedTextGivesTheSameCase) {
 
 TEST(caseFiles, damBreakIsThatOfThePaper) {  // [K23 Table 1]
   const std::string overrides[] = {"resolution=4"};
-  const Case c = readCase(fs::path(TREACLE_CASES) / "dam-break-2d.toml", overrides);
+  const Case c = readCase(fs::path(TREACLE_CASES) / "published" / "dam-break-2d.toml", overrides);
   EXPECT_EQ(c.spacing, 0.25e-3);
   EXPECT_EQ(c.time, (TimeSettings{0.25e-3, 0.2}));
   EXPECT_EQ(c.steps(), 800);
   EXPECT_EQ(c.gravity, (Vec<3>{0, -10, 0}));
   EXPECT_EQ(c.materials, (std::vector<Material>{{"fluid", 1e3, 10, 1e4, 1e6}}));
   EXPECT_EQ(c.domain, (Domain{{-0.01, -0.01}, {0.04, 0.04}, {true, true, false}}));
+  EXPECT_EQ(c.method, defaultMethod(SchemeKind::Published));
   EXPECT_EQ(c.pressureRadius(), 1.75 * 0.25e-3);
   EXPECT_EQ(c.viscosityRadius(), 3.5 * 0.25e-3);
   ASSERT_EQ(c.bodies.size(), 3u);
   EXPECT_EQ(c.bodies[0].shape.max, (Vec<3>{0.02, 0.02, 0}));
 }
 
+TEST(caseFiles, publishedOnesDifferFromTheDefaultInTheSchemeAlone) {
+  for (const char* name : {"dam-break-2d.toml", "dam-break-3d.toml"}) {
+    Case c = readCase(fs::path(TREACLE_CASES) / name);
+    EXPECT_EQ(c.method, defaultMethod(SchemeKind::Accurate));
+    c.method = defaultMethod(SchemeKind::Published);
+    EXPECT_EQ(readCase(fs::path(TREACLE_CASES) / "published" / name), c);
+  }
+}
+
 TEST(caseFiles, smallCasesScaleGravityAndViscosities) {  // [K23 Table 3]
-  const Case base = readCase(fs::path(TREACLE_CASES) / "dam-break-2d.toml");
+  const Case base = readCase(fs::path(TREACLE_CASES) / "published" / "dam-break-2d.toml");
   for (const int factor : {2, 4, 8, 16, 32, 64}) {
     const std::string name = "dam-break-2d-d" + std::to_string(factor) + ".toml";
     const Case c = readCase(fs::path(TREACLE_CASES) / "small" / name);
@@ -140,8 +151,15 @@ step = 1e-3
 end = 7
 courant = 0.3
 [method]
+scheme = "published"
+pressure_weight = "wendland-c4"
+viscosity_weight = "biquadratic"
+wall_velocity = "extrapolated"
+pressure_gradient = "renormalised"
 pressure_radius = 2
+density_radius = 2.25
 viscosity_radius = 3
+viscosity_correction = 0.25
 [solver]
 krylov = "cg"
 preconditioner = "block-jacobi"
@@ -192,7 +210,11 @@ TEST(readCase, takesEveryKey) {
   expected.bodies[1].rotation = Rotation{{1, 0.3, -2}, {0.1, -0.7, 3}, -2.5};
   expected.bodies[0].where = "x > 0 || y != 1e-3";
   expected.time = {1e-3 / 1.5, 7, 0.3};
-  expected.method.pressureRadius = 2, expected.method.viscosityRadius = 3;
+  expected.method.scheme = SchemeKind::Published;
+  expected.method.pressureWeight = PressureWeight::WendlandC4;
+  expected.method.viscosityWeight = ViscosityWeight::Biquadratic;
+  expected.method.pressureRadius = 2, expected.method.densityRadius = 2.25, expected.method.viscosityRadius = 3;
+  expected.method.viscosityCorrection = 0.25;
   expected.solver.krylov = KrylovKind::Cg;
   expected.solver.preconditioner = PreconditionerKind::BlockJacobi;
   expected.solver.operatorKind = OperatorKind::Assembled;
@@ -240,6 +262,20 @@ TEST(readCase, krylovMethodAndPrecisionFollowFromThePreconditionerUnlessGiven) {
   EXPECT_EQ(solverOf({"solver.preconditioner=jacobi"}), std::tuple(Jacobi, KrylovKind::Cr, Precision::Double));
   EXPECT_EQ(solverOf({"solver.preconditioner=bucket-multigrid", "solver.krylov=cg", "solver.precision=mixed"}),
             std::tuple(BucketMultigrid, KrylovKind::Cg, Precision::Mixed));
+}
+
+TEST(readCase, weightsAndRadiiFollowFromTheSchemeUnlessGiven) {
+  Workshop shop;
+  shop.put("case.toml", smallCase);
+  const auto methodOf = [&](const std::vector<std::string>& overrides) {
+    return readCase(shop / "case.toml", overrides).method;
+  };
+  EXPECT_EQ(methodOf({}), defaultMethod(SchemeKind::Accurate));
+  EXPECT_EQ(methodOf({"method.scheme=accurate"}), defaultMethod(SchemeKind::Accurate));
+  EXPECT_EQ(methodOf({"method.scheme=published"}), defaultMethod(SchemeKind::Published));
+  MethodSettings wide = defaultMethod(SchemeKind::Published);
+  wide.pressureRadius = 2.5;
+  EXPECT_EQ(methodOf({"method.pressure_radius=2.5", "method.scheme=published"}), wide);
 }
 
 TEST(readCase, mergesOntoItsBase) {

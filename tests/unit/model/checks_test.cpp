@@ -1,4 +1,5 @@
 #include "treacle/model/checks.hpp"
+#include "treacle/model/case_keys.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -128,10 +129,17 @@ TEST(caseWarnings, wallsThinnerThanTheReachOfTheKernel) {
 TEST(Case, radiiFollowFromTheMethod) {
   Case c = damBreak();
   EXPECT_DOUBLE_EQ(c.interactionRadius(), 3.5e-3);
-  EXPECT_DOUBLE_EQ(c.searchEdge(), 3.5e-3);
+  EXPECT_DOUBLE_EQ(c.searchEdge(), 5e-3);
   c.method.viscosityRadius = 2;
-  EXPECT_DOUBLE_EQ(c.interactionRadius(), 2e-3);
+  EXPECT_DOUBLE_EQ(c.interactionRadius(), 3e-3);
+  c.method.densityRadius = 5.5;
+  EXPECT_DOUBLE_EQ(c.interactionRadius(), 5.5e-3);
+  EXPECT_DOUBLE_EQ(c.searchEdge(), 5.5e-3);
+  c.method = defaultMethod(SchemeKind::Published);
+  EXPECT_DOUBLE_EQ(c.interactionRadius(), 3.5e-3);
   EXPECT_DOUBLE_EQ(c.searchEdge(), 3.5e-3);
+  c.method.viscosityRadius = 1;
+  EXPECT_DOUBLE_EQ(c.interactionRadius(), 1.75e-3);
   c.method.kind = MethodKind::Isph;
   EXPECT_DOUBLE_EQ(c.interactionRadius(), 2.4e-3);
   EXPECT_DOUBLE_EQ(c.searchEdge(), 2.4e-3);
@@ -185,7 +193,8 @@ TEST(caseWarnings, wallsThinnerThanTheViscosityRadius) {  // h_v = 3.5
 
 TEST(caseWarnings, radiiThatAreShortForTheirWeights) {
   Case c = damBreak();
-  c.method.pressureRadius = 1.75, c.method.viscosityRadius = 1.5;
+  c.method = defaultMethod(SchemeKind::Published);
+  c.method.viscosityRadius = 1.5;
   EXPECT_THAT(caseWarnings(c), IsEmpty()) << "weights of the paper";
   for (const PressureWeight weight : {PressureWeight::WendlandC2, PressureWeight::WendlandC4}) {
     c.method.pressureWeight = weight;

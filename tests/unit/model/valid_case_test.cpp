@@ -121,9 +121,8 @@ const Mistake mistakes[] = {
      {"domain.max=[6e-3, 12e-3]", "domain.periodic=[true, false]"},
      {"domain", "periodic"},
      "[domain]",
-     "the domain is 10 mm long along x; a periodic axis must hold 3 search cells of edge max(h_v, 2 h_p) = 3.5 "
-     "mm: "
-     "expected at least 10.5 mm"},
+     "the domain is 10 mm long along x; a periodic axis must hold 3 search cells of edge max(h_v, h_n, 2 h_p) "
+     "= 5 mm: expected at least 15 mm"},
     {"periodOfIsph",
      isph,
      [](Case& c) { c.method.isph.smoothingRatio = 2, c.domain.max[1] = 6e-3, c.domain.periodic[1] = true; },

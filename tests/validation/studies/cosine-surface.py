@@ -15,7 +15,7 @@ def measure(run):
     area = (np.diff(np.unique(first[:, 0].round(9))).min()) ** 2
     times = run.times
     a = np.array([2 / length * area * np.cos(k * f.position[:, 0]).sum() for f in run.frames()])
-    fitted = (times > 0.019) & (times < 0.401)  # the first step starts the flow
+    fitted = (times > 0.039) & (times < 0.401)  # before, differences span the start, from rest
     by_a, by_way = np.linalg.lstsq(np.column_stack([a, a[0] - a])[fitted], -np.gradient(a, times)[fitted], rcond=None)[0]
     memory = by_way / by_a
     once = int(np.argmin(abs(times - 1 / exact_rate)))
@@ -30,8 +30,10 @@ study = Study(
     name="cosine-surface",
     title="Levelling of a cosine surface",
     levels=[Level(1), Level(2), Level(4), Level(8)],
-    bars={"rate": 0.05, "memory": 0.65, "amplitude at 1 / rate": 0.45},
-    accurate={"rate": 0.045, "memory": 0.035, "amplitude at 1 / rate": 0.055},
+    bars={"rate": 0.043, "memory": 0.01, "amplitude at 1 / rate": 0.033},
+    published={"rate": 0.05, "memory": 0.65, "amplitude at 1 / rate": 0.45},
+    # Extrapolated, 0.4 % of the rate stay: the theory is linear, and (k a)^2 is 1 % at the start.
+    orders={"rate": 0.75},
     ranges={"published": {"memory (exact 0)": (0.45, 0.65)}, "accurate": {}},
     measure=measure,
     x_label="t [s]",

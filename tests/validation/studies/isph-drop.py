@@ -7,7 +7,7 @@ study = Study(
     levels=[Level(1), Level(2), Level(4)],
     bars={"long axis, t = 0.5 s": 0.003, "short axis, t = 0.5 s": 0.022, "long axis, t = 1 s": 0.012, "short axis, t = 1 s": 0.36,
           "velocity, t = 1 s": 0.3, "pressure, t = 0.5 s": 0.75},
-    ranges={"published": {"area / exact": (1.2, 1.34)}},
+    ranges={"isph": {"area / exact": (1.2, 1.34)}},
     measure=measure,
     x_label="t [s]",
     y_label="semi-axis [m]",
