@@ -15,6 +15,11 @@ MphPairs<D> makeMphPairs(const Case& c) {
   pairs.images = periodicImages(pairs.grid);
   const auto pressureWeight = Weight<D>::make(hp, c.spacing, c.method.pressureWeight);
   pairs.terms = MphTerms<D>::make(pressureWeight, c.method.viscosityWeight, hv, c.spacing);
+  // A lattice's sum is not quite the integral. Where B is to make the gradient exact, a full lattice needs none.
+  if (c.method.pressureGradient == PressureGradient::Renormalised)
+    pairs.terms.gradientFactor *= D / latticeSum<D>(hp, c.spacing, [&](double r) {
+                                    return pairs.terms.gradient(ExactDistance(r * r)) * r * r;
+                                  });
   pairs.terms.repulsionRadius = c.repulsionRadius();
   const auto densityWeight = Weight<D>::make(hn, c.spacing, c.method.pressureWeight);
   pairs.terms.setDensityWeight(densityWeight);

@@ -40,7 +40,7 @@ double Oracle<D>::w(double r, double h) const {
 template <int D>
 double Oracle<D>::dw(double r, double h) const {
   const WeightFunction f = functionOf(s.c.method.pressureWeight);
-  return r > h ? 0 : std::pow(l / h, D) / (D == 2 ? f.integral2D : f.integral3D) * f.slope(r / h) / h;
+  return r > h ? 0 : slopeScale * std::pow(l / h, D) / (D == 2 ? f.integral2D : f.integral3D) * f.slope(r / h) / h;
 }
 
 /// With the weight of [K23] what its eq. (4) makes of it. For c = A f(r/h) / r^2 a full neighbourhood has the
@@ -132,6 +132,18 @@ double Oracle<D>::numberDensity(std::uint32_t i) const {
   for (std::uint32_t j = 0; j < count(); ++j)
     if (j != i) n += w(norm(difference(i, j)), hn);
   return n;
+}
+
+template <int D>
+double Oracle<D>::latticeMoment() const {
+  const int reach = static_cast<int>(std::ceil(hp / l)), side = 2 * reach + 1;
+  double sum = 0;
+  for (int place = 0; place < std::pow(side, D); ++place) {
+    double square = 0;
+    for (int k = 0, rest = place; k < D; ++k, rest /= side) square += std::pow(rest % side - reach, 2);
+    if (square > 0) sum -= dw(l * std::sqrt(square), hp) * l * std::sqrt(square) / D;
+  }
+  return sum;
 }
 
 template <int D>

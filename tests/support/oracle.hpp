@@ -15,6 +15,7 @@ template <int D>
 struct Oracle {
   const Scene<D>& s;
   double l, hp, hn, hv, dt;
+  double slopeScale = 1;  // with the renormalised gradient: what makes the moment of a full lattice I
 
   explicit Oracle(const Scene<D>& scene)
       : s(scene),
@@ -22,7 +23,9 @@ struct Oracle {
         hp(s.c.method.pressureRadius * l),
         hn(std::max(s.c.method.densityRadius * l, hp)),
         hv(s.c.method.viscosityRadius * l),
-        dt(s.c.time.step) {}
+        dt(s.c.time.step) {
+    if (s.c.method.pressureGradient == PressureGradient::Renormalised) slopeScale = 1 / latticeMoment();
+  }
 
   std::uint32_t count() const { return s.particles.count; }
   const Material& material(std::uint32_t i) const { return s.c.materials[s.particles.material[i]]; }
@@ -45,6 +48,9 @@ struct Oracle {
   Vec<D> difference(std::uint32_t i, std::uint32_t j) const;
 
   double numberDensity(std::uint32_t i) const;
+
+  /// Sum of -w' r e_x^2 in a full lattice.
+  double latticeMoment() const;
 
   /// M = sum of -w' r e e^T over the neighbours of a particle.
   Matrix moment(std::uint32_t i) const;
