@@ -88,9 +88,11 @@ double Oracle<D>::viscosityScale(std::uint32_t i) const {
 template <int D>
 double Oracle<D>::pairScale(std::uint32_t i, std::uint32_t j) const {
   if (s.c.method.viscosityCorrection == 0) return 1;
-  if (i >= s.particles.fluidCount) return viscosityScale(j);
-  if (j >= s.particles.fluidCount) return viscosityScale(i);
-  return (viscosityScale(i) + viscosityScale(j)) / 2;
+  if (scales.empty())
+    for (std::uint32_t k = 0; k < s.particles.fluidCount; ++k) scales.push_back(viscosityScale(k));
+  if (i >= s.particles.fluidCount) return scales[j];
+  if (j >= s.particles.fluidCount) return scales[i];
+  return (scales[i] + scales[j]) / 2;
 }
 
 template <int D>

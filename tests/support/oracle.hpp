@@ -3,6 +3,7 @@
 #include "support/scene.hpp"
 
 #include <algorithm>
+#include <vector>
 
 namespace treacle::test {
 
@@ -15,6 +16,7 @@ template <int D>
 struct Oracle {
   const Scene<D>& s;
   double l, hp, hn, hv, dt;
+  mutable std::vector<double> scales;  // viscosityScale of all, since pairs ask for it again and again
 
   explicit Oracle(const Scene<D>& scene)
       : s(scene),

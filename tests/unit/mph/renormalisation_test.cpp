@@ -101,7 +101,7 @@ void checkFullLattice() {
   const Matrix moment = Oracle<D>(s).moment(0);
   // What the sum over a lattice makes of an integral that is 1.
   const double m = moment(0, 0);
-  EXPECT_NEAR(m, 1, 0.02);
+  EXPECT_NEAR(m, 1, 0.035);  // h_p = 2.5 l: 0.967 in the plane, 0.979 in space
   for (const SymmetricBlock<D>& b : s.renormalisation)
     ASSERT_LE((matrixOf(b) - std::min(1.0, 1 / m) * Matrix::Identity(D, D)).norm(), 1e-12);
 }
