@@ -123,7 +123,7 @@ struct PlainBalance {
   double overDensity(std::uint32_t i, bool withFluid) const {
     double n = 0;
     for (std::uint32_t j = 0; j < oracle.count(); ++j)
-      if (j != i && (withFluid || !isFluid(j))) n += oracle.w(norm(oracle.difference(i, j)), oracle.hp);
+      if (j != i && (withFluid || !isFluid(j))) n += oracle.w(norm(oracle.difference(i, j)), oracle.hn);
     return std::max(0.0, n - oracle.restDensity());
   }
   double elasticPressure(std::uint32_t i) const { return oracle.material(i).bulkModulus * overDensity(i, true); }
@@ -133,7 +133,8 @@ struct PlainBalance {
     const Vec<D> d = oracle.difference(i, j);
     const double r = norm(d);
     const Vec<D> e = 1 / r * d;
-    return oracle.mu(i, j) * oracle.wallFactor(i, j) * oracle.viscousBlock(r) * r * r * dot(u[j] - u[i], e) * e;
+    const double viscosity = oracle.mu(i, j) * oracle.pairScale(i, j) * oracle.wallFactor(i, j);
+    return viscosity * oracle.viscousBlock(r) * r * r * dot(u[j] - u[i], e) * e;
   }
 
   /// Of floor and side, and the walls' power.
