@@ -138,9 +138,9 @@ void diagonalBlocks(Context<Cpu>&, const MphPairs<D>& pairs, const WallTerms<D>&
                     std::span<Block<D>> diagonal) {
   const double floor2 = distanceFloor2(pairs);
   const ClusterListView& list = pairs.fluidList;
-  const auto sumUp = [&]<bool Renormalised>(const auto& mph) {
+  const auto sumUp = [&]<bool Renormalised, bool Scaled>(const auto& mph) {
     forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const VecLanes<D>& x, std::uint32_t c) {
-      const ViscosityLanes<D> viscosity(pairs, range);
+      const ViscosityLanes<D, Scaled> viscosity(pairs, range);
       Lanes block[D][D] = {};
       VecLanes<D> own = {};
       const auto add = [&](ListEntry e, bool wall) {
@@ -179,7 +179,10 @@ void diagonalBlocks(Context<Cpu>&, const MphPairs<D>& pairs, const WallTerms<D>&
     });
   };
   withKnownWeights<PublishedWeights>(pairs.terms, [&](const auto& mph) {
-    withRenormalisation(pairs, [&]<bool Renormalised>() { sumUp.template operator()<Renormalised>(mph); });
+    withRenormalisation(pairs, [&]<bool Renormalised>() {
+      pairs.viscosityScale ? sumUp.template operator()<Renormalised, true>(mph)
+                           : sumUp.template operator()<Renormalised, false>(mph);
+    });
   });
 }
 

@@ -80,7 +80,8 @@ inline VecLanes<D> corrected(const MphPairs<D>& pairs, std::uint32_t k, const Ve
 }
 
 /// mu_ij times the viscous factor, for the lanes of a cluster and a neighbour, scaled as MphPairs::viscosityOf.
-template <int D>
+/// MayBeScaled: false in loops for pairs without scales whose roundings depend on what else they could compute.
+template <int D, bool MayBeScaled = true>
 class ViscosityLanes {
  public:
   ViscosityLanes(const MphPairs<D>& pairs, const ClusterRange& range) : pairs_(pairs) {
@@ -99,7 +100,7 @@ class ViscosityLanes {
   }
   Lanes with(std::uint32_t j) const {
     const Lanes& unscaled = ofSubstance_[pairs_.substance(j)];
-    if (!pairs_.viscosityScale) return unscaled;
+    if (!MayBeScaled || !pairs_.viscosityScale) return unscaled;
     const double scale = pairs_.viscousSide(j).scale;
     const bool bothFluid = scale > 0 && scale_[0] > 0;  // a cluster is all fluid or all wall
     return unscaled * ((bothFluid ? 0.5 : 1.0) * (scale_ + scale));
