@@ -32,6 +32,7 @@ class Run {
   void describe();
   void advanceToEnd();
   void warnOfFallback(const StepReport& report);
+  void keepWatch(const StepReport& report);
   void copyState(Snapshot& snapshot);
   /// Keeps the diagnosis of the first thing that goes wrong.
   void attempt(const std::function<void()>& action);
@@ -57,6 +58,7 @@ class Run {
   RunSummary summary_;
   std::string failure_;
   bool fellBack_ = false;
+  Watched watched_;  // the largest of all steps
 };
 
 }  // namespace treacle
