@@ -13,13 +13,6 @@
 namespace treacle {
 namespace {
 
-/// Where potential energy is a function of the state: where nothing crosses a periodic end along gravity.
-bool gravityHasPotential(const Case& c) {
-  for (int k = 0; k < c.dimensions; ++k)
-    if (c.gravity[k] != 0 && c.domain.periodic[static_cast<std::size_t>(k)]) return false;
-  return true;
-}
-
 std::string exceeded(const std::string& text, const char* key, double most) {
   return fmt::format("{} (watch.{} = {:g} is exceeded)", text, key, most);
 }
@@ -47,12 +40,7 @@ const std::array<Watch::Bound, 4>& Watch::bounds() {
 }
 
 Watch::Watch(const Case& c, const Diagnostics& start, double mass, double particles, bool wallsMove)
-    : case_(c),
-      energyKnown_(!wallsMove && gravityHasPotential(c)),
-      particles_(particles),
-      startPotential_(start.potentialEnergy),
-      lowestPotential_(start.potentialEnergy),
-      lowestEnergy_(start.kineticEnergy + start.potentialEnergy) {
+    : case_(c), wallsMove_(wallsMove), particles_(particles), lowestEnergy_(start.kineticEnergy) {
   // Particles that find their places move by parts of a spacing, and slowly; where close ones repel each other, by
   // up to half the way of a pair in a step.
   const double speed = std::max(0.01 * c.spacing, 0.5 * c.repulsionRadius()) / c.time.step;
@@ -62,7 +50,7 @@ Watch::Watch(const Case& c, const Diagnostics& start, double mass, double partic
 
 Watched Watch::look(double dt, const Diagnostics& d, std::vector<std::string>& warnings) {
   Watched w;
-  w.energy = energyKnown_ ? energyRise(d) : 0;
+  w.energy = wallsMove_ ? 0 : energyRise(dt, d);
   w.courant = d.maxSpeed * dt / case_.spacing;
   w.insideWalls = particles_ > 0 ? d.insideWalls / particles_ : 0;
   w.density = std::max(d.excessDensity, d.meanDensityError);
@@ -87,12 +75,14 @@ void Watch::requireSlow(double dt, double speed) const {
 
 /// Of walls at rest the fluid gets nothing, and gravity gives what it has fallen: the sum of both energies can
 /// only fall, but for what is elastic. Measured against the lowest sum so far, so that what friction has taken
-/// does not hide a rise.
-double Watch::energyRise(const Diagnostics& d) {
-  const double energy = d.kineticEnergy + d.potentialEnergy;
+/// does not hide a rise. The potential is summed up from the power of gravity, since particles that cross a
+/// periodic end change that of the diagnostics.
+double Watch::energyRise(double dt, const Diagnostics& d) {
+  potential_ -= dt * d.gravityPower;
+  const double energy = d.kineticEnergy + potential_;
   lowestEnergy_ = std::min(lowestEnergy_, energy);
-  lowestPotential_ = std::min(lowestPotential_, d.potentialEnergy);
-  const double rise = energy - lowestEnergy_, given = given_ + startPotential_ - lowestPotential_;
+  lowestPotential_ = std::min(lowestPotential_, potential_);
+  const double rise = energy - lowestEnergy_, given = given_ - lowestPotential_;
   return given > 0 ? rise / given : 0;
 }
 
@@ -110,6 +100,7 @@ std::string Watch::describeCourant(double value, double dt) const {
       "the fastest particle goes at {:.3g} m/s, {:.3g} spacings in a step of {:.3g} s", speed, value, dt);
   if (const std::string cause = unstableMaterial(dt); !cause.empty())
     return fmt::format("{}: the step is unstable; {}", numbers, cause);
+  if (value > 1000) return fmt::format("{}: the step is unstable; {}", numbers, remedy(dt));  // nobody means that
   return fmt::format(
       "{}; take time.step <= {:.2g} or time.courant = {:g}. Speeds that the flow cannot have come from "
       "an unstable step: {}",
@@ -119,8 +110,7 @@ std::string Watch::describeCourant(double value, double dt) const {
 std::string Watch::describeInsideWalls(double value, double dt) const {
   return fmt::format(
       "{:.0f} of {:.0f} fluid particles are inside walls: the pressure does not hold them back; {}make walls as "
-      "thick "
-      "as particles act on each other, and {}",
+      "thick as particles act on each other, and {}",
       value * particles_, particles_,
       case_.method.kind == MethodKind::Isph ? "" : "raise bulk_viscosity and bulk_modulus where they are small, ",
       remedy(dt));

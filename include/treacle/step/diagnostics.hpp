@@ -54,6 +54,7 @@ struct DiagnosticsTerm {
     const Vec<D>&x = in.position[i], &u = in.velocity[i];
     const double speed2 = norm2(u), m = mass[in.material[i]];
     Diagnostics d{0.5 * m * speed2, -m * dot(gravity, x), x[0], dot(up, x), std::sqrt(speed2)};
+    d.gravityPower = m * dot(gravity, u);
     if (!in.wallDensity.empty()) d.insideWalls = in.wallDensity[i] > 0 && in.wallDensity[i] >= in.neighbourDensity;
     if (!in.numberDensity.empty()) {
       const double excess = in.numberDensity[i] - in.restDensity;
@@ -89,7 +90,8 @@ TREACLE_HD inline Diagnostics joined(const Diagnostics& a, const Diagnostics& b)
           a.interiorParticles + b.interiorParticles,
           a.excessDensity + b.excessDensity,
           a.elasticEnergy + b.elasticEnergy,
-          a.insideWalls + b.insideWalls};
+          a.insideWalls + b.insideWalls,
+          a.gravityPower + b.gravityPower};
 }
 
 /// Sums into means; `count` of particles.

@@ -31,6 +31,7 @@ struct Diagnostics {
   double excessDensity = 0;  // mean of [<rho> / rho - 1]_+, for MPH-I of [n / n_0 - 1]_+
   double elasticEnergy = 0;  // sum of l^d kappa [n - n_0]_+^2 / 2 of MPH-I [J; per metre of depth in 2D]
   double insideWalls = 0;    // particles whose neighbourhood is filled by walls alone
+  double gravityPower = 0;   // sum of m g.u [W; per metre of depth in 2D]
 };
 
 /// Wall-clock seconds of one step, or summed over steps.

@@ -37,7 +37,7 @@ class Watch {
   struct Bound;
   static const std::array<Bound, 4>& bounds();
 
-  double energyRise(const Diagnostics& d);
+  double energyRise(double dt, const Diagnostics& d);
   std::string describeEnergy(double value, double dt) const;
   std::string describeCourant(double value, double dt) const;
   std::string describeInsideWalls(double value, double dt) const;
@@ -46,12 +46,12 @@ class Watch {
   std::string unstableMaterial(double dt) const;
 
   Case case_;
-  bool energyKnown_;
+  bool wallsMove_;
   double particles_;
-  double startPotential_;                  // [J]
-  double given_;                           // at the start, and what is allowed for [J]
-  double lowestPotential_, lowestEnergy_;  // so far [J]
-  std::array<double, 4> warned_{};         // value of the last warning, by bound
+  double given_;                               // at the start, and what is allowed for [J]
+  double potential_ = 0;                       // since the start [J]
+  double lowestPotential_ = 0, lowestEnergy_;  // so far [J]
+  std::array<double, 4> warned_{};             // value of the last warning, by bound
 };
 
 }  // namespace treacle

@@ -30,13 +30,14 @@ Case fallingCase(MethodKind method = MethodKind::MphI) {
   return c;
 }
 
-Diagnostics energies(double kinetic, double potential) {
+constexpr double mass = 2, particles = 200, dt = 1e-3;  // kg, -, s; settling: 20 J by height, 100 J by speed
+
+/// After a step in which the fluid has fallen by so much.
+Diagnostics energies(double kinetic, double fallen) {
   Diagnostics d;
-  d.kineticEnergy = kinetic, d.potentialEnergy = potential;
+  d.kineticEnergy = kinetic, d.gravityPower = fallen / dt;
   return d;
 }
-
-constexpr double mass = 2, particles = 200, dt = 1e-3;  // kg, -, s; settling: 20 J by height, 100 J by speed
 
 template <class F>
 std::string failureOf(F&& f) {
@@ -49,20 +50,22 @@ std::string failureOf(F&& f) {
 }
 
 TEST(Watch, EnergyMayFallAndTurnIntoMotionButNotRise) {
-  Watch watch(fallingCase(), energies(0, 5000), mass, particles, false);
+  Watch watch(fallingCase(), {}, mass, particles, false);
   Warnings warnings;
-  EXPECT_EQ(watch.look(dt, energies(4000, 1000), warnings).energy, 0);
-  EXPECT_EQ(watch.look(dt, energies(0, 1000), warnings).energy, 0) << "friction has taken it";
-  EXPECT_NEAR(watch.look(dt, energies(41.2, 1000), warnings).energy, 0.01, 1e-12) << "of 4000 + 120 J";
+  EXPECT_EQ(watch.look(dt, energies(3900, 4000), warnings).energy, 0);
+  EXPECT_EQ(watch.look(dt, energies(0, 0), warnings).energy, 0) << "friction has taken it";
+  EXPECT_NEAR(watch.look(dt, energies(41.2, 0), warnings).energy, 0.01, 1e-12) << "of 4000 + 120 J";
+  EXPECT_NEAR(watch.look(dt, energies(0, -41.2), warnings).energy, 0.01, 1e-12) << "by rising";
+  EXPECT_EQ(watch.look(dt, energies(0, 41.2), warnings).energy, 0);
   EXPECT_THAT(warnings, IsEmpty());
-  watch.look(dt, energies(450, 1000), warnings);
+  watch.look(dt, energies(450, 0), warnings);
   EXPECT_THAT(warnings, ElementsAre(AllOf(HasSubstr("risen by 0.109 times"), HasSubstr("take time.step <= 0.0005"),
                                           HasSubstr("the run ends above watch.energy = 1"))));
-  watch.look(dt, energies(890, 1000), warnings);
+  watch.look(dt, energies(890, 0), warnings);
   EXPECT_EQ(warnings.size(), 1u) << "not yet twice as much";
-  watch.look(dt, energies(1000, 1000), warnings);
+  watch.look(dt, energies(1000, 0), warnings);
   EXPECT_EQ(warnings.size(), 2u);
-  EXPECT_THAT(failureOf([&] { watch.look(dt, energies(4200, 1000), warnings); }),
+  EXPECT_THAT(failureOf([&] { watch.look(dt, energies(4200, 0), warnings); }),
               AllOf(HasSubstr("risen by 1.02 times"), HasSubstr("watch.energy = 1 is exceeded")));
 }
 
@@ -76,14 +79,10 @@ TEST(Watch, WhatIsThereAtTheStartMayComeBack) {
   EXPECT_THAT(warnings, IsEmpty());
 }
 
-TEST(Watch, EnergyIsNotKnownWithMovingWallsNorAlongAPeriodicAxis) {
+TEST(Watch, EnergyIsNotKnownWithMovingWalls) {
   Warnings warnings;
-  Case c = fallingCase();
-  EXPECT_EQ(Watch(c, {}, mass, particles, true).look(dt, energies(1e9, 0), warnings).energy, 0);
-  c.domain.periodic[0] = true;
-  EXPECT_GT(Watch(c, {}, mass, particles, false).look(dt, energies(100, 0), warnings).energy, 0);
-  c.domain.periodic[1] = true;
-  EXPECT_EQ(Watch(c, {}, mass, particles, false).look(dt, energies(1e9, 0), warnings).energy, 0);
+  EXPECT_EQ(Watch(fallingCase(), {}, mass, particles, true).look(dt, energies(1e9, 0), warnings).energy, 0);
+  EXPECT_THAT(warnings, IsEmpty());
 }
 
 TEST(Watch, CourantNumberNamesTheStepThatWouldDo) {
