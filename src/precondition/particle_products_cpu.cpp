@@ -27,27 +27,6 @@ void positionLanes(const MphPairs<D>& pairs, const ClusterListView& list, const 
   });
 }
 
-/// Sum of g d.(u_j - u_i) over near fluid; walls at rest have no `own` velocities. The differences are formed pair
-/// by pair, because that of a rigid motion must vanish to the last bit: the bulk viscosity would amplify the rest.
-template <bool Moving, int D, class T>
-inline VectorSums<1, T> sumAlong(const ClusterWalk<D, T>& walk, const T* coefficient, const Gathered<D, T>* u,
-                                 const LanesOf<T>* own = nullptr) {
-  LanesOf<T> sum[2][1] = {};
-  walk.forEach(ListSegment::NearFluid, coefficient,
-               [&](int half, std::uint32_t j, const LanesOf<T>& g, const LanesOf<T>* d) {
-                 const auto relative = [&](int k) {
-                   if constexpr (Moving)
-                     return u[j][k] - own[k];
-                   else
-                     return u[j][k];
-                 };
-                 LanesOf<T> along = relative(0) * d[0];
-                 for (int k = 1; k < D; ++k) along += relative(k) * d[k];
-                 sum[half][0] += g * along;
-               });
-  return VectorSums<1, T>(sum);
-}
-
 /// Where the entries of each cluster's segments start, counted over clusters.
 void countEntries(const ClusterListView& list, std::initializer_list<ListSegment> segments,
                   Buffer<std::uint64_t>& start) {
@@ -183,14 +162,7 @@ void ParticleProducts<D, T, Cpu>::divergence(Context<Cpu>&, VectorField<D, T, Cp
       return total;
     });
   });
-  const ClusterListView& walls = pairs_->wallList;
-  forEachClusterOf(walls, [&](std::uint32_t c) {
-    if (walls.segment(c, ListSegment::NearFluid).empty())
-      return storeSums(*pairs_, ClusterRange(walls, c), store, [](std::size_t, std::size_t) { return T(0); });
-    const ClusterWalk<D, T> walk(*pairs_, walls, c, position_.data(), wallLanes_.data());
-    const VectorSums<1, T> sums = sumAlong<false>(walk, wall_.data() + wallStart_[c] * clusterSize, u);
-    storeSums(*pairs_, walk.range, store, [&](std::size_t, std::size_t lane) { return -sums.at[0][lane]; });
-  });
+  storeAtWalls<D, T>(*pairs_, position_.data(), wallLanes_.data(), wall_.data(), wallStart_.data(), u, store);
 }
 
 template <int D, class T>

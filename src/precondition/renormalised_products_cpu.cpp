@@ -21,19 +21,6 @@ VectorSums<1, T> sumAlong(const ClusterWalk<D, T>& walk, const T* coefficient, c
   return VectorSums<1, T>(sum);
 }
 
-/// Sum of g d.u_j over the fluid near a cluster of walls at rest, whose B is the unit matrix.
-template <int D, class T>
-VectorSums<1, T> sumAtWalls(const ClusterWalk<D, T>& walk, const T* coefficient, const Gathered<D, T>* u) {
-  LanesOf<T> sum[2][1] = {};
-  walk.forEach(ListSegment::NearFluid, coefficient,
-               [&](int half, std::uint32_t j, const LanesOf<T>& g, const LanesOf<T>* d) {
-                 LanesOf<T> along = u[j][0] * d[0];
-                 for (int k = 1; k < D; ++k) along += u[j][k] * d[k];
-                 sum[half][0] += g * along;
-               });
-  return VectorSums<1, T>(sum);
-}
-
 }  // namespace
 
 /// B in the precision of the products, and the sums of g d multiplied by it.
@@ -106,14 +93,7 @@ void ParticleProducts<D, T, Cpu>::renormalisedDivergence(VectorField<D, T, Cpu> 
       return total;
     });
   });
-  const ClusterListView& walls = pairs_->wallList;
-  forEachClusterOf(walls, [&](std::uint32_t c) {
-    if (walls.segment(c, ListSegment::NearFluid).empty())
-      return storeSums(*pairs_, ClusterRange(walls, c), store, [](std::size_t, std::size_t) { return T(0); });
-    const ClusterWalk<D, T> walk(*pairs_, walls, c, position_.data(), wallLanes_.data());
-    const VectorSums<1, T> sums = sumAtWalls(walk, wall_.data() + wallStart_[c] * clusterSize, u);
-    storeSums(*pairs_, walk.range, store, [&](std::size_t, std::size_t lane) { return -sums.at[0][lane]; });
-  });
+  storeAtWalls<D, T>(*pairs_, position_.data(), wallLanes_.data(), wall_.data(), wallStart_.data(), u, store);
 }
 
 // With the stores of gradient(), divergence() and schur().

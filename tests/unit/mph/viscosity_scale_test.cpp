@@ -45,11 +45,17 @@ void checkLattice() {
     }
     ASSERT_EQ(none[i], 1);
     ASSERT_NEAR(half[i], 1 + 0.5 * (full[i] - 1), 1e-14);
-    if (inside) ASSERT_NEAR(full[i], 1, 0.01);  // as the lattice's sum is not quite the integral
+    if (inside) {
+      ASSERT_NEAR(full[i], 1, 0.01);  // as the lattice's sum is not quite the integral
+    }
     // On a face nearly half of the neighbours are missing, at a corner nearly all but one in 2^D; not quite, since
     // those in the plane of the face are there.
-    if (faces == 1) ASSERT_GT(full[i], 1.3);
-    if (faces == D) ASSERT_GT(full[i], D == 2 ? 2.0 : 2.9);
+    if (faces == 1) {
+      ASSERT_GT(full[i], 1.3);
+    }
+    if (faces == D) {
+      ASSERT_GT(full[i], D == 2 ? 2.0 : 2.9);
+    }
     ASSERT_LE(full[i], mostViscosityScale);
   }
 }
