@@ -35,6 +35,7 @@ Particles<D> randomParticles(std::uint32_t fluid, std::uint32_t wall) {
   Particles<D> particles;
   particles.resize(fluid, wall, fluid % 4);
   particles.modes.age = {7, 13};
+  particles.modes.pressure = {3.75, 4, 6};
   std::mt19937_64 random(D);
   std::uniform_real_distribution<double> real(-1, 1);
   particles.forEachField([&]<class T>(Buffer<T>& field) {
@@ -73,6 +74,7 @@ void expectSame(const Particles<D>& a, const Particles<D>& b) {
   EXPECT_EQ(a.modeCount(), b.modeCount());
   EXPECT_TRUE(sameBits(a.modes.vectors, b.modes.vectors));
   EXPECT_EQ(a.modes.age, b.modes.age);
+  EXPECT_EQ(a.modes.pressure, b.modes.pressure);
 }
 
 template <int D>
