@@ -61,6 +61,7 @@ void KrylovLoop<Cuda>::record(Context<Cuda>& context, const std::function<void()
   } catch (...) {
     cudaGraph_t unfinished = nullptr;
     cudaStreamEndCapture(context.stream(), &unfinished);
+    cudaGetLastError();  // what is thrown says more, and the next call must not meet this
     throw;
   }
   cudaGraph_t captured = nullptr;
