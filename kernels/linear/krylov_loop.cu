@@ -65,6 +65,7 @@ void KrylovLoop<Cuda>::capture(Context<Cuda>& context, const std::function<void(
   } catch (...) {
     cudaGraph_t unfinished = nullptr;
     cudaStreamEndCapture(context.stream(), &unfinished);
+    cudaGetLastError();  // what is thrown says more, and the next call must not meet this
     throw;
   }
   cudaGraph_t captured = nullptr;

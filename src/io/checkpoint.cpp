@@ -321,6 +321,7 @@ void writeCheckpoint(const std::filesystem::path& path, const Particles<D>& part
                      double time, MethodKind method) {
   const Hdf5Silence silence;
   try {
+    requireSound(particles);  // what cannot be read back must not replace what can
     // HDF5 makes the file in memory: it cannot close a file that a full disk keeps it from finishing.
     std::size_t bytes = 1 << 16;
     forEachNamedField(particles, [&](const FieldInfo&, const auto& field) { bytes += field.bytes(); });
