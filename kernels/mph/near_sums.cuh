@@ -210,6 +210,7 @@ template <class Split, int D, class T, class Weights, class Scalars, class Store
 __global__ void __launch_bounds__(128)
     nearGradientKernel(const Split split, const __grid_constant__ NearView<D, T, Weights> view, const Scalars q,
                        const __grid_constant__ Store store) {
+  waitForEarlierKernels();
   const std::uint32_t thread = blockIdx.x * blockDim.x + threadIdx.x, own = thread / split;
   if (split == 1 && own >= view.fluidCount) return;
   const std::uint32_t i = min(own, view.fluidCount - 1);  // all lanes of a warp take part in the sum
@@ -236,6 +237,7 @@ template <class Split, int D, class T, class Weights, class Vectors, class Colum
 __global__ void __launch_bounds__(128)
     nearDivergenceKernel(const Split split, const __grid_constant__ NearView<D, T, Weights> view, const Vectors u,
                          const Columns columns, const __grid_constant__ Store store) {
+  waitForEarlierKernels();
   const std::uint32_t thread = blockIdx.x * blockDim.x + threadIdx.x, own = thread / split;
   if (split == 1 && own >= view.activeCount) return;
   const std::uint32_t k = min(own, view.activeCount - 1);
@@ -273,7 +275,7 @@ template <int D, class T, class Weights, class Scalars, class Store>
 void nearGradient(const Context<Cuda>& context, const NearView<D, T, Weights>& view, const Scalars& q,
                   const Store& store) {
   withSplit<D>(view.fluidCount, [&](auto split) {
-    launch(context, blocksFor(std::size_t{view.fluidCount} * split, 128), 128, 0,
+    launchEarly(context, blocksFor(std::size_t{view.fluidCount} * split, 128), 128, 0,
            nearGradientKernel<decltype(split), D, T, Weights, Scalars, Store>, split, view, q, store);
   });
 }
@@ -281,7 +283,7 @@ template <int D, class T, class Weights, class Vectors, class Columns, class Sto
 void nearDivergence(const Context<Cuda>& context, const NearView<D, T, Weights>& view, const Vectors& u,
                     const Columns& columns, const Store& store) {
   withSplit<D>(view.activeCount, [&](auto split) {
-    launch(context, blocksFor(std::size_t{view.activeCount} * split, 128), 128, 0,
+    launchEarly(context, blocksFor(std::size_t{view.activeCount} * split, 128), 128, 0,
            nearDivergenceKernel<decltype(split), D, T, Weights, Vectors, Columns, Store>, split, view, u, columns,
            store);
   });

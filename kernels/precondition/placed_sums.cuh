@@ -112,6 +112,7 @@ __global__ void __launch_bounds__(128)
     nearSchurKernel(const __grid_constant__ NearView<D, T, Weights> view, const Scalars q,
                     const __grid_constant__ ProjectionTable<T> table, const std::uint8_t* material,
                     const __grid_constant__ Store store) {
+  waitForEarlierKernels();
   const std::uint32_t thread = blockIdx.x * blockDim.x + threadIdx.x, own = thread / Lanes;
   const std::uint32_t k = min(own, view.activeCount - 1);  // all lanes of a warp take part in the sums
   const int lane = static_cast<int>(thread % Lanes);
@@ -158,7 +159,7 @@ template <int D, class T, class Weights, class Scalars, class Store>
 void nearSchur(const Context<Cuda>& context, const NearView<D, T, Weights>& view, const Scalars& q,
                const ProjectionTable<T>& table, const std::uint8_t* material, const Store& store) {
   constexpr int lanes = D == 2 ? 16 : 32;
-  launch(context, blocksFor(std::size_t{view.activeCount} * lanes, 128), 128, 0,
+  launchEarly(context, blocksFor(std::size_t{view.activeCount} * lanes, 128), 128, 0,
          nearSchurKernel<lanes, D, T, Weights, Scalars, Store>, view, q, table, material, store);
 }
 }  // namespace treacle

@@ -81,14 +81,13 @@ class MphStep final : public StepMethod<D, Backend> {
       findNeighbours();
     }
     MphSolver<D, Backend> solver(stage);
-    KeptEigenvalue pressure = state_.particles.modes.pressure;
     Buffer<Vec<D>, Backend> u;
     u.resize(state_.context, pairs_.fluidCount);
     return takeTrial(
         state_.context, stage,
         [&] {
           solver.prepareOperator(state_.context, pairs_, neighbourhood_.ranges(), wallTermsView());
-          solver.preparePreconditioner(state_.context, &pressure);
+          solver.preparePreconditioner(state_.context);
         },
         [&](double* history) {
           guess(u);
