@@ -45,7 +45,9 @@ void compareAll(const Case& c, const std::vector<SolverSettings>& solvers, const
     const std::vector<SolverTrial> expected = cpu.convergence(solvers), found = cuda.convergence(solvers);
     ASSERT_EQ(found.size(), solvers.size());
     for (std::size_t k = 0; k < solvers.size(); ++k)
-      expectSameCurve(found[k], expected[k], solvers[k].precision == Precision::Mixed ? 1e-2 : 1e-6);
+      // In single precision the device has other preconditioners, with B in a few bits and positions in three
+      // dimensions in 16.
+      expectSameCurve(found[k], expected[k], solvers[k].precision == Precision::Mixed ? 3e-2 : 1e-6);
     EXPECT_EQ(cuda.advance().iterations, found.back().report.iterations) << "the case's own solver";
     cpu.advance();
   }
