@@ -59,7 +59,7 @@ Watched Watch::look(double dt, const Diagnostics& d, std::vector<std::string>& w
     const double value = w.*bound.value, most = case_.watch.*bound.most;
     const bool isph = case_.method.kind == MethodKind::Isph;
     const double first = (isph ? bound.firstWarningOfIsph : bound.firstWarning) * most;
-    if (most == 0 || value <= std::max(first, 2 * warned_[k])) continue;
+    if (most == 0 || (value <= most && value <= std::max(first, 2 * warned_[k]))) continue;
     const std::string text = (this->*bound.describe)(value, dt);
     if (value > most) throw RunError(exceeded(text, bound.key, most));
     warnings.push_back(fmt::format("{} (the run ends above watch.{} = {:g})", text, bound.key, most));

@@ -135,6 +135,17 @@ TEST(Watch, ParticlesInsideWallsAndDensitiesThatAreOff) {
   EXPECT_THAT(failureOf([&] { watch.look(dt, d, warnings); }), HasSubstr("watch.density = 0.25 is exceeded"));
 }
 
+TEST(Watch, ABoundHoldsSoonAfterAWarning) {
+  Diagnostics d;
+  d.excessDensity = 0.24;
+  Warnings warnings;
+  Watch watch(fallingCase(), {}, mass, particles, true);
+  watch.look(dt, d, warnings);
+  EXPECT_EQ(warnings.size(), 1u);
+  d.excessDensity = 0.26;  // not twice as much
+  EXPECT_THAT(failureOf([&] { watch.look(dt, d, warnings); }), HasSubstr("watch.density = 0.25 is exceeded"));
+}
+
 TEST(Watch, ABoundOfZeroIsNone) {
   Case c = fallingCase();
   c.watch = {0, 0, 0, 0};
