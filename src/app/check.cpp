@@ -65,9 +65,9 @@ void printNumbers(const Case& c) {
       print("# material '{}': diffusion number d_mu = {:.4g}\n", n.material, n.shearDiffusion);
     else
       print(
-          "# material '{}': dt kappa / lambda = {:.4g} (stable up to 1), diffusion numbers d_mu = {:.4g}, "
+          "# material '{}': dt kappa / lambda = {:.4g} (stable up to {:g}), diffusion numbers d_mu = {:.4g}, "
           "d_lambda = {:.4g}\n",
-          n.material, n.compression, n.shearDiffusion, n.bulkDiffusion);
+          n.material, n.compression, mostCompression(c), n.shearDiffusion, n.bulkDiffusion);
 }
 
 }  // namespace

@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <string>
+#include <type_traits>
 
 namespace treacle {
 
@@ -159,7 +161,19 @@ class VtpReader {
 
   template <class T>
   void readScalars(std::string_view name, std::vector<T>& out) {
-    readArray(name, 1, out, [&](std::size_t k, auto value) { out[k] = static_cast<T>(value); });
+    readArray(name, 1, out, [&](std::size_t k, auto value) {
+      if constexpr (std::is_integral_v<T>) requireWhole<T>(name, static_cast<double>(value));
+      out[k] = static_cast<T>(value);
+    });
+  }
+
+  /// Another program may have written any numbers.
+  template <class T>
+  void requireWhole(std::string_view name, double value) const {
+    constexpr double least = std::numeric_limits<T>::min(), most = std::numeric_limits<T>::max();
+    if (!(value >= least && value <= most && value == std::trunc(value)))
+      foreign(fmt::format("array '{}' has the value {}, expected whole numbers from {:.0f} to {:.0f}", name, value,
+                          least, most));
   }
 
   std::filesystem::path path_;

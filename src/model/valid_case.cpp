@@ -262,7 +262,8 @@ void requireMaterials(const Checker& at, const Case& c) {
       at.fail(
           {"material", m.name, "bulk_viscosity"},
           "found 0, and bulk_modulus = 0: such a fluid has no pressure and falls through walls; expected one of "
-          "them positive, and bulk_modulus <= bulk_viscosity / step");
+          "them positive, and bulk_modulus <= " +
+              mostBulkModulusText(c));
     if (!lightest || m.density < lightest->density) lightest = &m;
     if (!heaviest || m.density > heaviest->density) heaviest = &m;
   }

@@ -30,13 +30,17 @@ ProjectionConstants projectionConstants(const MphPairs<D>& pairs) {
   ProjectionConstants c{};
   std::fill_n(c.weight, maxMaterials, 1.0);
   std::fill_n(c.lambda, maxMaterials, 1.0);
+  double largestWeight = 0, largestLambda = 0;
   for (int m = 0; m < pairs.materials.count; ++m) {
     const MaterialTable& t = pairs.materials;
     c.weight[m] = 1 / (t.inertia[m] + t.viscosity(m) * viscous);
     const double natural = 1 / (c.weight[m] * gradients);
     c.lambda[m] = std::max(t.bulkViscosity[m], 1e-4 * natural);
-    c.stiffness = std::max(c.stiffness, c.lambda[m] / natural);
+    largestWeight = std::max(largestWeight, c.weight[m]);
+    largestLambda = std::max(largestLambda, c.lambda[m]);
   }
+  // Where two materials meet, the pressure of the one moves the particles of the other.
+  c.stiffness = largestLambda * largestWeight * gradients;
   for (int k = 0; k < D; ++k) c.extent = std::max(c.extent, pairs.grid.length[k] / pairs.spacing);
   return c;
 }
@@ -48,7 +52,7 @@ ProjectionDegrees chooseDegrees(ProjectionDegrees chosen, const ProjectionConsta
   // large bodies that have flowed far, a higher degree costs no time and saves iterations (docs/solver.md).
   const double size = std::clamp(std::cbrt(constants.extent / 300), 1.0, 1.35);
   const double wanted = 8 * std::pow(constants.stiffness / 100, 0.3) * size;
-  if (chosen.pressure == 0) chosen.pressure = std::clamp(static_cast<int>(std::lround(wanted)), 4, 40);
+  if (chosen.pressure == 0) chosen.pressure = std::clamp(static_cast<int>(std::lround(wanted)), 4, 160);
   if (chosen.grid == 0) chosen.grid = 4;
   if (chosen.velocity == 0) chosen.velocity = 2;
   return chosen;

@@ -59,7 +59,7 @@ Watched Watch::look(double dt, const Diagnostics& d, std::vector<std::string>& w
     const double value = w.*bound.value, most = case_.watch.*bound.most;
     const bool isph = case_.method.kind == MethodKind::Isph;
     const double first = (isph ? bound.firstWarningOfIsph : bound.firstWarning) * most;
-    if (most == 0 || value <= std::max(first, 2 * warned_[k])) continue;
+    if (most == 0 || (value <= most && value <= std::max(first, 2 * warned_[k]))) continue;
     const std::string text = (this->*bound.describe)(value, dt);
     if (value > most) throw RunError(exceeded(text, bound.key, most));
     warnings.push_back(fmt::format("{} (the run ends above watch.{} = {:g})", text, bound.key, most));
@@ -118,7 +118,10 @@ std::string Watch::describeInsideWalls(double value, double dt) const {
 
 std::string Watch::describeDensity(double value, double dt) const {
   return fmt::format("the density of the fluid is off by {:.3g} % in the mean: {}{}", 100 * value,
-                     case_.method.kind == MethodKind::Isph ? "" : "raise bulk_viscosity where it is small, and ",
+                     case_.method.kind == MethodKind::Isph
+                         ? ""
+                         : "raise bulk_viscosity where it is small, dynamic_viscosity where a light "
+                           "fluid carries a heavy one, and ",
                      remedy(dt));
 }
 
@@ -129,16 +132,18 @@ std::string Watch::remedy(double dt) const {
       case_.method.kind == MethodKind::Isph ? ", and leave the fluid a free surface where it has none" : "");
 }
 
-/// kappa dt / lambda above 1 is the instability that MPH-I is known for.
+/// kappa dt / lambda above its bound is the instability that MPH-I is known for.
 std::string Watch::unstableMaterial(double dt) const {
   if (case_.method.kind != MethodKind::MphI) return {};
+  const double most = mostCompression(case_);
   for (const Material& m : case_.materials) {
-    if (m.bulkModulus * dt <= m.bulkViscosity * (1 + 1e-6)) continue;
+    if (m.bulkModulus * dt <= most * m.bulkViscosity * (1 + 1e-6)) continue;
     if (m.bulkViscosity == 0)
       return fmt::format("give '{}' a bulk_viscosity of at least bulk_modulus times the step = {:.3g}", m.name,
                          m.bulkModulus * dt);
-    return fmt::format("take bulk_modulus <= bulk_viscosity / step = {:.3g} for '{}', or time.step <= {:.3g}",
-                       m.bulkViscosity / dt, m.name, m.bulkViscosity / m.bulkModulus);
+    return fmt::format("take bulk_modulus <= {} = {:.3g} for '{}', or time.step <= {:.3g}",
+                       mostBulkModulusText(case_), most * m.bulkViscosity / dt, m.name,
+                       most * m.bulkViscosity / m.bulkModulus);
   }
   return {};
 }

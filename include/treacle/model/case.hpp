@@ -271,7 +271,7 @@ struct WatchSettings {
   double energy = 1;          // rise of the mechanical energy over what start and gravity have given
   double courant = 10;        // distance of the fastest particle in a step, in spacings
   double insideWalls = 0.05;  // share of fluid particles inside walls
-  double density = 0.5;       // mean excess of the density over that of the material
+  double density = 0.25;      // mean excess of the density over that of the material
 
   bool operator==(const WatchSettings&) const = default;
 };

@@ -20,19 +20,27 @@ void requireValid(const Width& width, const Case& c);
 /// Dimensionless numbers of one material at the case's time step and spacing.
 struct StabilityNumbers {
   std::string material;
-  double compression = 0;     // dt kappa / lambda, at most 1 for a stable step [K23 eq. (12)]; 0 for ISPH
+  double compression = 0;     // dt kappa / lambda, at most mostCompression() for a stable step; 0 for ISPH
   double shearDiffusion = 0;  // d_mu = mu dt / (rho l^2) [K23 Table 2]
   double bulkDiffusion = 0;   // d_lambda = lambda dt / (rho l^2); Table 2 prints a tenth of it
 };
 
 std::vector<StabilityNumbers> stabilityNumbers(const Case& c);
 
+/// Up to which dt kappa / lambda a step of MPH-I is stable: 1 [K23 eq. (12)], or 0.5 where the density, which the
+/// elastic pressure is made of, has more neighbours than the divergence, which the bulk viscosity resists
+/// (docs/accurate.md).
+double mostCompression(const Case& c);
+/// What bulk_modulus may be at most: "bulk_viscosity / step" or "0.5 bulk_viscosity / step".
+std::string mostBulkModulusText(const Case& c);
+
 /// dt U / l, where U is the largest of the initial speeds, the wall speeds and the speed of a free fall over the
 /// height of the fluid; at most time.courant where that limits the steps.
 double courantNumber(const Case& c);
 
-/// What a user should know although the case can be run: unstable compression, long steps of ISPH, thin walls,
-/// radii that are short for their weights, times that are not whole numbers of steps.
+/// What a user should know although the case can be run: unstable compression, fluids that cannot carry what lies
+/// on them, long steps, thin walls, radii that are short for their weights, times that are not whole numbers of
+/// steps.
 std::vector<std::string> caseWarnings(const Case& c);
 
 }  // namespace treacle

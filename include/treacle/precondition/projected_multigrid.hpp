@@ -22,8 +22,9 @@ struct ProjectionDegrees {
 struct ProjectionConstants {
   double weight[maxMaterials];  // w [m3 s/kg]: inverse diagonal of rho/dt I + V in a full lattice
   double lambda[maxMaterials];  // lambda [Pa s], at least so large that S' stays finite
-  double stiffness;  // largest lambda w (C^T C)_kk in a full lattice: how much stiffer the bulk viscosity is
-  double extent;     // of the domain, in spacings
+  // Largest lambda times largest w times (C^T C)_kk in a full lattice: how much stiffer the bulk viscosity is.
+  double stiffness;
+  double extent;  // of the domain, in spacings
 
   /// `shift` of S' in units of 1/lambda.
   template <class T>

@@ -58,7 +58,7 @@ TEST(check, printsCountsNumbersAndCaseThatCanBeRunAgain) {
               ContainsRegex("# solver: cg, projected-multigrid, mixed: pressure degree [0-9]+, grid degree "
                             "[0-9]+, velocity degree [0-9]+, deflation by up to 8 modes\n"));
   EXPECT_THAT(outcome.out, HasSubstr("# Courant number: 1\n"));
-  EXPECT_THAT(outcome.out, HasSubstr("dt kappa / lambda = 0.05 (stable up to 1), diffusion numbers d_mu = 20, "
+  EXPECT_THAT(outcome.out, HasSubstr("dt kappa / lambda = 0.05 (stable up to 0.5), diffusion numbers d_mu = 20, "
                                      "d_lambda = 2e+04\n"));
   EXPECT_THAT(outcome.out, HasSubstr("# memory: about "));
   EXPECT_THAT(outcome.out, HasSubstr("# device memory: about "));

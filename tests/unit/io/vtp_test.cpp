@@ -206,6 +206,8 @@ TEST(Vtp, ForeignFilesAreRefused) {
              "'TimeValue' is not finite");
   expectPart(messageAfter("type=\"UInt32\" Name=\"id\"", "type=\"String\" Name=\"id\""),
              "'id' has an unexpected type");
+  expectPart(messageAfter("type=\"UInt32\" Name=\"id\"", "type=\"Float32\" Name=\"id\""),
+             "expected whole numbers from 0 to 4294967295");
   expectPart(messageAfter("encoding=\"raw\"", "encoding=\"base64\""), "truncated");
 
   put(path, std::string(100000, 'x'));

@@ -108,7 +108,7 @@ TEST(caseWarnings, longStepsOfIsph) {
   EXPECT_THAT(caseWarnings(c), IsEmpty());
   c.time.courant = 0;
   c.method.kind = MethodKind::MphI;
-  c.materials[0].bulkViscosity = 1;
+  c.materials[0].bulkViscosity = 1e12;  // carries anything
   EXPECT_THAT(caseWarnings(c), IsEmpty());
   c.bodies[0].velocity = {10.1, 0};
   EXPECT_THAT(caseWarnings(c), ElementsAre(AllOf(HasSubstr("is 1.01, more than 1: particles may pass each other"),
@@ -167,6 +167,7 @@ TEST(caseWarnings, noneForTheDamBreak) { EXPECT_THAT(caseWarnings(damBreak()), I
 
 TEST(caseWarnings, unstableCompression) {
   Case c = damBreak();
+  c.method = defaultMethod(SchemeKind::Published);
   c.materials[0].bulkModulus = 1e4 / 1e-3;  // exactly lambda / dt
   EXPECT_THAT(caseWarnings(c), IsEmpty());
   c.materials[0].bulkModulus *= 1.1;
@@ -177,6 +178,77 @@ TEST(caseWarnings, unstableCompression) {
   c.materials[0].bulkViscosity = 0;
   EXPECT_THAT(caseWarnings(c), ElementsAre(AllOf(HasSubstr("dt kappa / lambda = inf"),
                                                  HasSubstr("give it a bulk_viscosity of at least"))));
+}
+
+TEST(caseWarnings, compressionWhereDensitiesReachFartherThanDivergences) {
+  Case c = damBreak();
+  c.materials[0].bulkModulus = 0.5 * 1e4 / 1e-3;
+  EXPECT_THAT(caseWarnings(c), IsEmpty());
+  c.materials[0].bulkModulus *= 1.6;
+  EXPECT_THAT(
+      caseWarnings(c),
+      ElementsAre(AllOf(HasSubstr("dt kappa / lambda = 0.8 is greater than 0.5"),
+                        HasSubstr("bulk_modulus <= 0.5 bulk_viscosity / step, or a step of at most 0.000625 s"))));
+  c.method.pressureRadius = 3;
+  EXPECT_THAT(caseWarnings(c), IsEmpty());
+}
+
+/// A fluid of 1 kg/m3 and 1e-3 Pa s that another one of 20 mm and 1000 kg/m3 lies on.
+Case heavyOnLight() {
+  Case c = damBreak();
+  c.materials.push_back({"gas", 1, 1e-3, 1e4, 1e6});
+  c.bodies[0].name = "above";
+  c.bodies[0].shape = box({0, 10e-3}, {20e-3, 30e-3});
+  c.bodies.push_back(makeBody("below", BodyKind::Fluid, box({0, 0}, {20e-3, 10e-3})));
+  c.bodies.back().material = 1;
+  return c;
+}
+
+TEST(caseWarnings, lightFluidsUnderHeavyOnes) {
+  Case c = heavyOnLight();
+  EXPECT_THAT(caseWarnings(c), ElementsAre(AllOf(HasSubstr("fluid 'below' is too light and too thin for"),
+                                                 HasSubstr("a pressure of 200 Pa can move its particles by 57.1"),
+                                                 HasSubstr("take steps of at most 5.3e-05 s"),
+                                                 HasSubstr("'gas' of at least 0.16 Pa s"))));
+  c.time = {5.2e-5, 5.2e-2};
+  EXPECT_THAT(caseWarnings(c), IsEmpty());
+  c = heavyOnLight();
+  c.materials[1].dynamicViscosity = 0.16;
+  EXPECT_THAT(caseWarnings(c), IsEmpty());
+  c = heavyOnLight();
+  c.materials[1].density = 400;
+  EXPECT_THAT(caseWarnings(c), IsEmpty());
+  c = heavyOnLight();
+  c.gravity = {0, 10};
+  EXPECT_THAT(caseWarnings(c), IsEmpty()) << "the light one is above";
+  c.gravity = {10, 0};
+  EXPECT_THAT(caseWarnings(c), IsEmpty()) << "it stands beside";
+  c.gravity = {};
+  EXPECT_THAT(caseWarnings(c), IsEmpty());
+  c = heavyOnLight();
+  c.bodies[0].shape = box({20e-3, 10e-3}, {30e-3, 30e-3});
+  EXPECT_THAT(caseWarnings(c), IsEmpty()) << "not over it";
+  c = heavyOnLight();
+  c.method.kind = MethodKind::Isph, c.time.step = 1e-4;
+  EXPECT_THAT(caseWarnings(c), IsEmpty());
+}
+
+TEST(caseWarnings, fluidsTooSoftForTheirWeight) {
+  Case c = damBreak();  // 200 Pa
+  c.materials[0].bulkModulus = 2e3;
+  EXPECT_THAT(caseWarnings(c), IsEmpty()) << "10 %";
+  c.materials[0].bulkModulus = 1e3;
+  EXPECT_THAT(caseWarnings(c), IsEmpty()) << "the bulk viscosity leaves it no time";
+  c.materials[0].bulkViscosity = 100;
+  EXPECT_THAT(
+      caseWarnings(c),
+      ElementsAre("fluid 'column' is too soft for the weight that it carries: 200 Pa may compress it by 20 "
+                  "%; take a bulk_modulus of 'syrup' of at least 2e+03 Pa, and a bulk_viscosity of at "
+                  "least 4 Pa s"));
+  c.materials[0].bulkModulus = 0;
+  EXPECT_THAT(caseWarnings(c), ElementsAre(HasSubstr("may compress it by 40 %")));
+  c.materials[0].bulkViscosity = 1e4;
+  EXPECT_THAT(caseWarnings(c), IsEmpty());
 }
 
 struct WallCase {

@@ -307,7 +307,7 @@ const Mistake mistakes[] = {
      {"material", "syrup", "bulk_viscosity"},
      "[[material]] 'syrup'",
      "found 0, and bulk_modulus = 0: such a fluid has no pressure and falls through walls; expected one of them "
-     "positive, and bulk_modulus <= bulk_viscosity / step"},
+     "positive, and bulk_modulus <= 0.5 bulk_viscosity / step"},
     {"watchedShare",
      mph,
      [](Case& c) { c.watch.insideWalls = 2; },

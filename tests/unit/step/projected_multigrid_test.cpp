@@ -196,6 +196,16 @@ TEST(ProjectedMultigrid, SolvesMaterialsOfVeryDifferentViscosity) {
   }
 }
 
+/// The pressures of the heavy one move the light one's particles where they meet.
+TEST(ProjectedMultigrid, SolvesAHeavyFluidBesideALightAndThinOne) {
+  for (const double bulkViscosity : {1.0, 1e4}) {
+    SCOPED_TRACE(testing::Message() << "bulk viscosity of the light fluid " << bulkViscosity);
+    Flow<2> flow = bodyOnFloor<2>();
+    flow.c.materials = {{"honey", 1e3, 10, 1e4, 1e6}, {"gas", 1, 1e-3, bulkViscosity, 100 * bulkViscosity}};
+    EXPECT_LE(iterationsOf(flow), 8);  // measured: 6; with degrees of each material by itself 55 and 26
+  }
+}
+
 TEST(ProjectedMultigrid, SolvesWhereOneMaterialHasNoBulkViscosity) {
   for (const auto& [first, second] : {std::pair(0.0, 1e4), std::pair(1e4, 0.0), std::pair(0.0, 0.0)}) {
     SCOPED_TRACE(testing::Message() << "bulk viscosities " << first << " and " << second);

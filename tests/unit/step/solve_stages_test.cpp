@@ -36,6 +36,12 @@ TEST(SolveStages, DegreesAreChosenByTheStiffnessOfTheCase) {
   };
   EXPECT_GT(pressureDegree(1e3), 0);
   EXPECT_GT(pressureDegree(1e6), pressureDegree(1e4));
+  const int single = pressureDegree(1e4);
+  c.materials.push_back(c.materials[0]);
+  EXPECT_EQ(pressureDegree(1e4), single);
+  Material& thin = c.materials[1];  // as incompressible as the first, for its viscosity
+  thin.density *= 1e-3, thin.dynamicViscosity *= 1e-4, thin.bulkViscosity *= 1e-4;
+  EXPECT_GT(pressureDegree(1e4), 4 * single);
 }
 
 TEST(SolveStages, OtherPreconditionersHaveNoFallback) {
