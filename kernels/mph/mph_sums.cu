@@ -28,6 +28,29 @@ struct NumberDensity {
   }
 };
 
+/// What wall particles add to n_i, per fluid particle.
+template <int D, class Mph>
+struct WallDensity {
+  static constexpr int values = 1;
+  static constexpr bool uses(ListSegment s) { return isWall(s); }
+  struct Own {};
+  using Other = Own;
+
+  Mph mph;
+  double* n;
+
+  __device__ Own loadOwn(const MphPairs<D>&, std::uint32_t) const { return {}; }
+  __device__ Other loadOther(const MphPairs<D>&, std::uint32_t) const { return {}; }
+
+  __device__ void add(const MphPairs<D>&, double* sum, const Vec<D>&, const PairDistance<double>& r, Own, Other,
+                      ListSegment) const {
+    sum[0] += mph.density(1.0, r);
+  }
+  __device__ void store(const MphPairs<D>&, std::uint32_t i, int, double sum) const {
+    n[i] = mph.densityFactor * sum;
+  }
+};
+
 /// Of a pair of fluid and wall.
 struct Side {
   std::uint32_t index;
@@ -112,6 +135,13 @@ void numberDensity(Context<Cuda>& context, const MphPairs<D>& pairs, std::span<d
 }
 
 template <int D>
+void wallDensity(Context<Cuda>& context, const MphPairs<D>& pairs, std::span<double> n) {
+  withKnownWeights<PublishedWeights>(pairs.terms, [&]<class Mph>(const Mph& mph) {
+    sumOnFluid(context, pairs, WallDensity<D, Mph>{mph, n.data()});
+  });
+}
+
+template <int D>
 void addPressureGradient(Context<Cuda>& context, const MphPairs<D>& pairs, std::span<const double> q,
                          double factor, std::span<Vec<D>> y) {
   withStepTerms(pairs, [&]<class Mph, class Corrected>(const Mph& mph, Corrected) {
@@ -149,6 +179,7 @@ void addWallDrag(Context<Cuda>& context, const MphPairs<D>& pairs, std::span<con
 
 #define TREACLE_INSTANTIATE(D)                                                                                 \
   template void numberDensity<D>(Context<Cuda>&, const MphPairs<D>&, std::span<double>);                       \
+  template void wallDensity<D>(Context<Cuda>&, const MphPairs<D>&, std::span<double>);                         \
   template void addPressureGradient<D>(Context<Cuda>&, const MphPairs<D>&, std::span<const double>, double,    \
                                        std::span<Vec<D>>);                                                     \
   template void divergence<D>(Context<Cuda>&, const MphPairs<D>&, std::span<const Vec<D>>, std::span<double>); \

@@ -3,6 +3,7 @@
 #include "machine.hpp"
 #include "memory.hpp"
 #include "print.hpp"
+#include "progress.hpp"
 #include "run_log.hpp"
 #include "threads.hpp"
 #include "treacle/core/error.hpp"
@@ -13,6 +14,7 @@
 #include "treacle/step/solve_stages.hpp"
 
 #include <fmt/format.h>
+#include <omp.h>
 
 #include <cmath>
 
@@ -33,6 +35,21 @@ void printParticles(const Case& c, ParticleNumbers particles, const std::vector<
   for (std::size_t b = 0; b < c.bodies.size(); ++b)
     print("#   {} '{}': {}\n", nameOf(c.bodies[b].kind), c.bodies[b].name, ofBodies[b]);
   printMemory(c, particles);
+}
+
+/// Seconds of a step per fluid particle on one thread, as measured on one machine for the shipped cases.
+double secondsPerParticle(const Case& c) {
+  const bool plane = c.dimensions == 2;
+  if (c.method.kind == MethodKind::Isph) return plane ? 3e-6 : 9e-6;
+  if (c.method.scheme == SchemeKind::Accurate) return plane ? 9e-6 : 4e-5;
+  return plane ? 6e-6 : 2e-5;
+}
+
+void printTime(const Case& c, ParticleNumbers particles) {
+  const double step = secondsPerParticle(c) * static_cast<double>(particles.fluid) / omp_get_max_threads();
+  print("# time per step: very roughly {:.2g} s on {} threads of a processor, {} for {} steps or more\n", step,
+        omp_get_max_threads(), durationText(step * c.time.end / c.time.step),
+        std::llround(c.time.end / c.time.step));
 }
 
 void printNumbers(const Case& c) {
@@ -68,6 +85,7 @@ void checkCommand(const CaseOptions& options) {
     warnings.push_back(error.what());
   }
   printParticles(c, particles, ofBodies);
+  printTime(c, particles);
   printNumbers(c);
   print("\n{}", caseText(c));
   flushPrinted();

@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 #include <omp.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <new>
 #include <system_error>
@@ -77,6 +78,7 @@ void Run::advanceToEnd() {
     recorder_->record(report);
     if (report.fallbacks > 0) warnOfFallback(report);
     warnOfArrangement();
+    keepWatch(report);
     progress_.update(report);
   }
   if (!atEnd()) throw RunError(fmt::format("stopped by {}", interruptSignal()));
@@ -96,6 +98,15 @@ void Run::warnOfArrangement() {
     progress_.endLine();
     log_.warning(warning);
   }
+}
+
+void Run::keepWatch(const StepReport& report) {
+  const Watched& w = report.watched;
+  watched_.energy = std::max(watched_.energy, w.energy), watched_.courant = std::max(watched_.courant, w.courant);
+  watched_.insideWalls = std::max(watched_.insideWalls, w.insideWalls);
+  watched_.density = std::max(watched_.density, w.density);
+  if (!report.warnings.empty()) progress_.endLine();
+  for (const std::string& text : report.warnings) log_.warning(fmt::format("step {}: {}", report.step, text));
 }
 
 void Run::copyState(Snapshot& snapshot) {
@@ -134,6 +145,10 @@ void Run::finish() {
     attempt([&] { recorder_->drawPicture(); });
     summary_.steps = simulation_->step(), summary_.time = simulation_->time();
     recorder_->summarise(summary_);
+    log_.info(
+        fmt::format("watch, largest of all steps: energy {:.3g}, courant {:.3g}, inside_walls {:.3g}, density "
+                    "{:.3g}",
+                    watched_.energy, watched_.courant, watched_.insideWalls, watched_.density));
   }
   if (simulation_) attempt([&] { summary_.peakDeviceMemory = simulation_->peakBytes(); });
   summary_.wallSeconds = timer_.lap();

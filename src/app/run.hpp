@@ -33,6 +33,7 @@ class Run {
   void advanceToEnd();
   void warnOfFallback(const StepReport& report);
   void warnOfArrangement();
+  void keepWatch(const StepReport& report);
   void copyState(Snapshot& snapshot);
   /// Keeps the diagnosis of the first thing that goes wrong.
   void attempt(const std::function<void()>& action);
@@ -58,6 +59,7 @@ class Run {
   RunSummary summary_;
   std::string failure_;
   bool fellBack_ = false;
+  Watched watched_;  // the largest of all steps
 };
 
 }  // namespace treacle

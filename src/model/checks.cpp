@@ -76,10 +76,13 @@ std::string_view reachName(const Case& c) {
 void warnCompression(const Case& c, std::vector<std::string>& warnings) {
   for (const StabilityNumbers& n : stabilityNumbers(c)) {
     if (n.compression <= 1 + rounding) continue;
+    std::string advice = "give it a bulk_viscosity of at least bulk_modulus times the step";
+    if (std::isfinite(n.compression))
+      advice = fmt::format("take bulk_modulus <= bulk_viscosity / step, or a step of at most {:.3g} s",
+                           c.time.step / n.compression);
     warnings.push_back(
-        fmt::format("material '{}': dt kappa / lambda = {:.4g} is greater than 1, the step may be unstable; "
-                    "take bulk_modulus <= bulk_viscosity / step, or a shorter step",
-                    n.material, n.compression));
+        fmt::format("material '{}': dt kappa / lambda = {:.4g} is greater than 1, the step may be unstable; {}",
+                    n.material, n.compression, advice));
   }
 }
 
@@ -109,21 +112,38 @@ void warnShortRadii(const Case& c, std::vector<std::string>& warnings) {
         "neighbours depend on where these stand",
         key, radius, weight, least));
   };
-  if (m.pressureWeight != PressureWeight::Mps)
-    check("pressure_radius", m.pressureRadius, 2.5, nameOf(m.pressureWeight));
-  if (m.viscosityWeight != ViscosityWeight::Mps)
-    check("viscosity_radius", m.viscosityRadius, 2, nameOf(m.viscosityWeight));
+  const bool mps = m.pressureWeight == PressureWeight::Mps;  // needs the neighbours along the diagonal
+  check("pressure_radius", m.pressureRadius, mps ? 1.5 : 2.5, nameOf(m.pressureWeight));
+  check("viscosity_radius", m.viscosityRadius, m.viscosityWeight == ViscosityWeight::Mps ? 1.5 : 2,
+        nameOf(m.viscosityWeight));
 }
 
-/// The forces of MPH-I are implicit but for gravity; ISPH moves on what it has at the start of a step.
+/// Largest of the initial speeds and those of the walls [m/s].
+double givenSpeed(const Case& c) {
+  double speed = 0;
+  for (const Body& body : c.bodies)
+    speed = std::max(speed, c.dimensions == 2 ? largestSpeed<2>(c, body) : largestSpeed<3>(c, body));
+  return speed;
+}
+
+/// Of the longest step that a run makes.
+double courantNumberAt(const Case& c, double speed) {
+  const double number = speed * c.time.step / c.spacing;
+  return c.time.stepsVary() ? std::min(number, c.time.courant) : number;
+}
+
+/// The forces of MPH-I are implicit but for gravity; ISPH moves on what it has at the start of a step. How fast a
+/// viscous fluid falls nobody knows before, so with MPH-I the speeds that the case gives count alone.
 void warnCourant(const Case& c, std::vector<std::string>& warnings) {
-  constexpr double largest = 0.5;
-  if (c.method.kind != MethodKind::Isph) return;
-  if (const double number = courantNumber(c); number > largest * (1 + rounding))
-    warnings.push_back(
-        fmt::format("the Courant number of steps of {:g} s is {:.3g}, more than {:g}: the step may be unstable; "
-                    "take a shorter one, or let time.courant limit it",
-                    c.time.step, number, largest));
+  const bool isph = c.method.kind == MethodKind::Isph;
+  const double largest = isph ? 0.5 : 1, number = isph ? courantNumber(c) : courantNumberAt(c, givenSpeed(c));
+  if (number <= largest * (1 + rounding)) return;
+  warnings.push_back(fmt::format(
+      "the Courant number of steps of {:g} s is {:.3g}, more than {:g}: {}; take steps of at most {:.2g} "
+      "s, or let time.courant limit them",
+      c.time.step, number, largest,
+      isph ? "the step may be unstable" : "particles may pass each other or enter walls in a step",
+      c.time.step * largest / number));
 }
 
 void warnTimes(const Case& c, std::vector<std::string>& warnings) {
@@ -152,11 +172,7 @@ std::vector<StabilityNumbers> stabilityNumbers(const Case& c) {
 }
 
 double courantNumber(const Case& c) {
-  double speed = std::sqrt(2 * norm(c.gravity) * fluidHeight(c));
-  for (const Body& body : c.bodies)
-    speed = std::max(speed, c.dimensions == 2 ? largestSpeed<2>(c, body) : largestSpeed<3>(c, body));
-  const double number = speed * c.time.step / c.spacing;
-  return c.time.stepsVary() ? std::min(number, c.time.courant) : number;
+  return courantNumberAt(c, std::max(givenSpeed(c), std::sqrt(2 * norm(c.gravity) * fluidHeight(c))));
 }
 
 std::vector<std::string> caseWarnings(const Case& c) {

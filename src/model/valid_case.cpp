@@ -10,6 +10,7 @@
 #include <cmath>
 #include <initializer_list>
 #include <limits>
+#include <set>
 #include <utility>
 
 namespace treacle {
@@ -233,9 +234,51 @@ void requireDomainSize(const Checker& at, const Case& c) {
   }
 }
 
+/// On a lattice the nearest neighbours are one spacing away.
+void requireSound(const Checker& at, const MethodSettings& m) {
+  if (m.kind != MethodKind::MphI) return;
+  for (const auto& [key, radius] :
+       {std::pair("pressure_radius", m.pressureRadius), std::pair("viscosity_radius", m.viscosityRadius)})
+    if (radius <= 1)
+      at.fail({key},
+              fmt::format("expected more than 1 spacing, found {}: particles would have no neighbours", radius));
+}
+
+/// Indices of the materials that some fluid is made of.
+std::set<int> fluidMaterials(const Case& c) {
+  std::set<int> found;
+  for (const Body& body : c.bodies)
+    if (body.kind == BodyKind::Fluid) found.insert(body.material);
+  return found;
+}
+
+/// What holds a fluid together in MPH-I, and what the pressure equation of ISPH can do.
+void requireMaterials(const Checker& at, const Case& c) {
+  const Material* lightest = nullptr;
+  const Material* heaviest = nullptr;
+  for (int index : fluidMaterials(c)) {
+    const Material& m = c.materials[static_cast<std::size_t>(index)];
+    if (c.method.kind == MethodKind::MphI && m.bulkViscosity == 0 && m.bulkModulus == 0)
+      at.fail(
+          {"material", m.name, "bulk_viscosity"},
+          "found 0, and bulk_modulus = 0: such a fluid has no pressure and falls through walls; expected one of "
+          "them positive, and bulk_modulus <= bulk_viscosity / step");
+    if (!lightest || m.density < lightest->density) lightest = &m;
+    if (!heaviest || m.density > heaviest->density) heaviest = &m;
+  }
+  constexpr double largestRatio = 10;  // 20 jumps, 30 explodes
+  if (c.method.kind == MethodKind::Isph && heaviest && heaviest->density > largestRatio * lightest->density)
+    at.fail({"material", heaviest->name, "density"},
+            fmt::format(
+                "found {:g} times that of '{}' = {:g} kg/m3: with ISPH the densities of fluids may differ by a "
+                "factor of {:g} at most, beyond which the step is unstable where they meet",
+                heaviest->density / lightest->density, lightest->name, lightest->density, largestRatio));
+}
+
 void requireSound(const Checker& at, const Case& c) {
   if (std::ranges::none_of(c.bodies, [](const Body& b) { return b.kind == BodyKind::Fluid; }))
     at.fail({"body"}, "no fluid: expected at least one [[body]] with type = \"fluid\"");
+  requireMaterials(at, c);
   requireDomainSize(at, c);
   requirePeriodicLength(at, c);
   for (const auto& [key, interval] :

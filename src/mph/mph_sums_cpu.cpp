@@ -87,6 +87,19 @@ void numberDensity(Context<Cpu>&, const MphPairs<D>& pairs, std::span<double> n)
 }
 
 template <int D>
+void wallDensity(Context<Cpu>&, const MphPairs<D>& pairs, std::span<double> n) {
+  const double floor2 = distanceFloor2(pairs);
+  const ClusterListView& list = pairs.fluidList;
+  forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const VecLanes<D>& x, std::uint32_t c) {
+    Lanes sum = {};
+    for (ListSegment s : wallSegments)
+      for (ListEntry e : list.segment(c, s))
+        sum += pairs.terms.density(pairs.terms.densityFactor, PairLanes<D>(pairs.positionOf(e), x, floor2).r);
+    storeLanes(range, sum, n);
+  });
+}
+
+template <int D>
 void addPressureGradient(Context<Cpu>&, const MphPairs<D>& pairs, std::span<const double> q, double factor,
                          std::span<Vec<D>> y) {
   const ClusterListView& list = pairs.fluidList;
@@ -160,6 +173,7 @@ void addWallDrag(Context<Cpu>&, const MphPairs<D>& pairs, std::span<const Vec<D>
 
 #define TREACLE_INSTANTIATE(D)                                                                                \
   template void numberDensity<D>(Context<Cpu>&, const MphPairs<D>&, std::span<double>);                       \
+  template void wallDensity<D>(Context<Cpu>&, const MphPairs<D>&, std::span<double>);                         \
   template void addPressureGradient<D>(Context<Cpu>&, const MphPairs<D>&, std::span<const double>, double,    \
                                        std::span<Vec<D>>);                                                    \
   template void divergence<D>(Context<Cpu>&, const MphPairs<D>&, std::span<const Vec<D>>, std::span<double>); \

@@ -103,8 +103,9 @@ class IsphStep final : public StepMethod<D, Backend> {
     if (closed_) takeLevel(state_.context, pairs_.negativePressure ? Level::Mean : Level::Least, solution_);
     settlePressure(state_.context, surface_, !pairs_.negativePressure, solution_);
     state_.velocity.resize(state_.context, pairs_.fluidCount);
+    wallShare_.resize(state_.context, pairs_.fluidCount);
     sumOnFluid(state_.context, pairs_,
-               CorrectorTerm<D>{solution_.data(), predicted_.data(), state_.velocity.data()});
+               CorrectorTerm<D>{solution_.data(), predicted_.data(), state_.velocity.data(), wallShare_.data()});
   }
 
   std::span<const Vec<D>> transportVelocities() override {
@@ -128,6 +129,9 @@ class IsphStep final : public StepMethod<D, Backend> {
     if (surface_.size() != state_.particles.fluidCount) return;
     in.density = state_.particles.numberDensity.span().first(state_.particles.fluidCount);
     in.surface = surface_;
+    if (wallShare_.size() != surface_.size()) return;
+    in.wallDensity = wallShare_;
+    in.neighbourDensity = 1 - pairs_.volume * pairs_.kernel.value(0) / pairs_.latticeDensity;
   }
 
   /// The linear system at hand, for those who solve it in other ways.
@@ -141,7 +145,8 @@ class IsphStep final : public StepMethod<D, Backend> {
   std::size_t bytes() const override {
     return ranges_.bytes() + workspace_.bytes() + fluidOfFluid_.bytes() + wallsOfFluid_.bytes() +
            fluidOfWalls_.bytes() + deficit_.bytes() + surface_.bytes() + predicted_.bytes() + source_.bytes() +
-           solution_.bytes() + transport_.bytes() + pressure_.bytes() + viscosity_.bytes() + componentBytes();
+           solution_.bytes() + transport_.bytes() + wallShare_.bytes() + pressure_.bytes() + viscosity_.bytes() +
+           componentBytes();
   }
 
   /// Pairs up to this share of the kernel's radius make the smoother's matrix: 1.9 l with the usual kernel.
@@ -245,6 +250,7 @@ class IsphStep final : public StepMethod<D, Backend> {
   Buffer<double, Backend> source_, solution_;  // of the pressure equation; before, a component of v*
   Buffer<double, Backend> component_[D];       // of the viscous step's right-hand side
   Buffer<Vec<D>, Backend> transport_;
+  Buffer<double, Backend> wallShare_;  // of the density in a full lattice
   IsphSolver<D, Backend, PressureRow<D>> pressure_;
   IsphSolver<D, Backend, ViscousRow<D>> viscosity_;
 };

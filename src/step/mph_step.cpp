@@ -44,6 +44,8 @@ class MphStep final : public StepMethod<D, Backend> {
     wallBlock_.resize(state_.context, state_.particles.fluidCount);
     wallGradient_.resize(state_.context, state_.particles.fluidCount);
     wallTerms<D>(state_.context, pairs_, wallTermsView());
+    wallDensity_.resize(state_.context, state_.particles.fluidCount);
+    wallDensity<D>(state_.context, pairs_, wallDensity_);
     computeRightHandSide();
     solver_.prepareOperator(state_.context, pairs_, neighbourhood_.ranges(), wallTermsView());
   }
@@ -109,13 +111,20 @@ class MphStep final : public StepMethod<D, Backend> {
                           state_.velocity.span().first(n), memory());
   }
 
+  void describe(DiagnosticsInput<D>& in) const override {
+    const std::uint32_t n = state_.particles.fluidCount;
+    in.numberDensity = state_.particles.numberDensity.span().first(n);
+    in.restDensity = in.neighbourDensity = pairs_.restDensity;
+    if (wallDensity_.size() == n) in.wallDensity = wallDensity_;
+  }
+
   std::optional<Balance> balance() const override { return lastBalance_; }
 
   const CellGrid<D>& grid() const override { return pairs_.grid; }
   const MaterialTable& materials() const override { return pairs_.materials; }
   std::size_t bytes() const override {
     return neighbourhood_.bytes() + wallSurface_.bytes() + renormalisation_.bytes() + viscosityScale_.bytes() +
-           wallBlock_.bytes() + wallGradient_.bytes() + elastic_.bytes() + divergence_.bytes() + rhs_.bytes() +
+           wallBlock_.bytes() + wallGradient_.bytes() + wallDensity_.bytes() + elastic_.bytes() + divergence_.bytes() + rhs_.bytes() +
            solver_.bytes() + balance_.bytes();
   }
 
@@ -201,8 +210,9 @@ class MphStep final : public StepMethod<D, Backend> {
   Buffer<double, Backend> viscosityScale_;
   Buffer<Block<D>, Backend> wallBlock_;
   Buffer<Vec<D>, Backend> wallGradient_;
-  Buffer<double, Backend> elastic_;     // kappa [n - n_0]_+ per particle [Pa]
-  Buffer<double, Backend> divergence_;  // C^T u per particle [1/s]
+  Buffer<double, Backend> wallDensity_;  // the walls' part of n per fluid particle
+  Buffer<double, Backend> elastic_;      // kappa [n - n_0]_+ per particle [Pa]
+  Buffer<double, Backend> divergence_;   // C^T u per particle [1/s]
   Buffer<Vec<D>, Backend> rhs_;
   MphSolver<D, Backend> solver_;
   StepBalance<D, Backend> balance_;

@@ -9,6 +9,9 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <optional>
+
 namespace treacle {
 namespace {
 
@@ -26,6 +29,14 @@ bool someWallOscillates(const Case& c) {
 }
 bool someWallRotates(const Case& c) {
   return std::ranges::any_of(c.bodies, [](const Body& b) { return b.rotation.has_value(); });
+}
+
+/// Of the fluid [kg; per metre of depth in 2D].
+template <int D>
+double fluidMass(const Case& c, const Particles<D>& particles) {
+  double density = 0;
+  for (std::uint32_t i = 0; i < particles.fluidCount; ++i) density += c.materials[particles.material[i]].density;
+  return density * std::pow(c.spacing, D);
 }
 
 template <int D>
@@ -59,12 +70,14 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
   Buffer<Vec<D>, Backend> wallChord;  // per wall particle, where some rotate [m/s]
   std::unique_ptr<StepMethod<D, Backend>> method;
   double lastSpeed = 0;  // of the fastest particle [m/s]
+  std::optional<Watch> watch;
 
   State(const Case& c, Particles<D> state, std::int64_t startStep, double startTime)
       : Flow(c, startStep, startTime),
         wallsRotate(someWallRotates(c)),
         wallVelocitiesChange(wallsRotate || someWallOscillates(c)) {
     wallsMove = wallVelocitiesChange || someWallMoves(state);
+    const double mass = fluidMass(theCase, state);
     toBackend(context, std::move(state), particles);
     if (step == 0) forEachFluidFieldOf([&](auto& field) { clearValues(context, field.span()); }, particles);
     method = theCase.method.kind == MethodKind::Isph ? makeIsphStep(static_cast<Flow&>(*this))
@@ -74,7 +87,9 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
       method->findNeighbours();
       method->computeDensities();
     }
-    if (theCase.time.courant > 0) lastSpeed = diagnostics().maxSpeed;
+    const Diagnostics start = diagnostics();
+    lastSpeed = start.maxSpeed;
+    watch.emplace(theCase, start, mass, particles.fluidCount, wallsMove);
   }
 
   /// With a Courant number, no particle goes farther than that many spacings, and the last step meets the end.
@@ -137,6 +152,7 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
       uOut = valueOnHost(context, &u[out]);
     else
       uOut = u[out];
+    watch->requireSlow(timeStep, norm(uOut));  // then it is not the domain that is too small
     throw RunError(describeLeaving<D>(host, begin + out, uOut, timeStep));
   }
 
@@ -149,11 +165,12 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     time = theCase.time.courant > 0 ? time + timeStep : static_cast<double>(step) * theCase.time.step;
   }
 
-  Diagnostics diagnostics() const {
+  Diagnostics diagnostics() const { return diagnosticsOf(particles.position, particles.velocity); }
+  Diagnostics diagnosticsOf(std::span<const Vec<D>> x, std::span<const Vec<D>> u) const {
     const std::uint32_t n = particles.fluidCount;
     DiagnosticsInput<D> in;
-    in.position = particles.position.span().first(n);
-    in.velocity = particles.velocity.span().first(n);
+    in.position = x.first(n);
+    in.velocity = u.first(n);
     in.material = particles.material.span().first(n);
     in.materials = method->materials();
     in.gravity = resized<D>(theCase.gravity);
@@ -177,8 +194,9 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     phases.run(context, treacle::phases::update, [&] {
       method->correctVelocities();
       move();
+      report.diagnostics = diagnosticsOf(position, velocity);
+      report.watched = watch->look(timeStep, report.diagnostics, report.warnings);
       accept();
-      report.diagnostics = diagnostics();
     });
     lastSpeed = report.diagnostics.maxSpeed;
     report.seconds = phases.seconds();

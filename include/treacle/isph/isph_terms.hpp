@@ -158,6 +158,7 @@ struct CorrectorTerm {
   const double* pressure;
   const Vec<D>* predicted;  // of fluid; walls: their velocity
   Vec<D>* velocity;
+  double* wallShare = nullptr;  // of the particle's density in a full lattice, what walls make up [-]; may be null
 
   TREACLE_HD void fluid(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d,
                         const Distance& r, double* sum) const {
@@ -185,6 +186,7 @@ struct CorrectorTerm {
     }
     const WallContact& contact = pairs.contact;
     const double share = sum[3 * D + 1] * pairs.volume / pairs.latticeDensity;
+    if (wallShare) wallShare[i] = share;
     if (share > (pressure[i] > 0 ? contact.pressed : contact.touching) && norm2(towards) > 0) {
       const double away = share > contact.inside ? 0.02 * pairs.spacing / pairs.timeStep : 0, g = norm(towards);
       const double into = dot(v - wallVelocity, towards) / g + away;

@@ -265,6 +265,17 @@ struct OutputSettings {
   bool operator==(const OutputSettings&) const = default;
 };
 
+/// Beyond which a run ends, because it no longer means anything; 0: is not looked at. step/watch.hpp says what is
+/// measured. Warnings come earlier.
+struct WatchSettings {
+  double energy = 1;          // rise of the mechanical energy over what start and gravity have given
+  double courant = 10;        // distance of the fastest particle in a step, in spacings
+  double insideWalls = 0.05;  // share of fluid particles inside walls
+  double density = 0.5;       // mean excess of the density over that of the material
+
+  bool operator==(const WatchSettings&) const = default;
+};
+
 struct Case {
   std::string title;
   int dimensions = 2;
@@ -278,6 +289,7 @@ struct Case {
   MethodSettings method;
   SolverSettings solver;
   OutputSettings output;
+  WatchSettings watch;
 
   double pressureRadius() const { return method.pressureRadius * spacing; }  // h_p [m]
   /// h_n [m]

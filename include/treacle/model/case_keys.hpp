@@ -283,6 +283,13 @@ void visit(auto& v, Like<OutputSettings> auto& o, const Case& c) {
   if (c.method.kind == MethodKind::MphI) v({"balance"}, o.balance);
 }
 
+void visit(auto& v, Like<WatchSettings> auto& w, const Case&) {
+  v({"energy", optional, "", notNegative}, w.energy);
+  v({"courant", optional, "", notNegative}, w.courant);
+  v({"inside_walls", optional, "", {0, 1}}, w.insideWalls);
+  v({"density", optional, "", notNegative}, w.density);
+}
+
 void visit(auto& v, Like<Case> auto& c, const Case&) {
   const Gravity gravity{c.gravity};
   v({"title"}, c.title);
@@ -297,6 +304,7 @@ void visit(auto& v, Like<Case> auto& c, const Case&) {
   v({"method"}, c.method);
   v({"solver"}, c.solver);
   v({"output"}, c.output);
+  v({"watch"}, c.watch);
 }
 
 /// The keys of a table: of which shape, by the shape of a body.

@@ -16,6 +16,12 @@ void numberDensity(Context<Cpu>&, const MphPairs<D>&, std::span<double> n);
 template <int D>
 void numberDensity(Context<Cuda>&, const MphPairs<D>&, std::span<double> n);
 
+/// The part of n_i that wall particles make up, per fluid particle.
+template <int D>
+void wallDensity(Context<Cpu>&, const MphPairs<D>&, std::span<double> n);
+template <int D>
+void wallDensity(Context<Cuda>&, const MphPairs<D>&, std::span<double> n);
+
 /// y_i += factor (C q)_i = -factor sum_j (q_i B_i + q_j B_j) e_ij w'_ij^p per fluid particle; q per particle. B:
 /// of the pairs (renormalisation.hpp), the unit matrix where they have none.
 template <int D>

@@ -24,18 +24,25 @@ struct DiagnosticsInput {
   // Of ISPH, else empty.
   std::span<const double> density{};        // <rho> / rho
   std::span<const std::uint8_t> surface{};  // 1: at the free surface
+  // Of MPH-I, else empty.
+  std::span<const double> numberDensity{};
+  double restDensity = 0;  // n_0 [-]
+  // What walls make up of the density, empty where it is not known, and what the neighbours in a full lattice do.
+  std::span<const double> wallDensity{};
+  double neighbourDensity = 0;
 };
 
 /// What a particle adds to the diagnostics.
 template <int D>
 struct DiagnosticsTerm {
   double mass[maxMaterials];  // of a particle, by material [kg; per metre of depth in 2D]
+  double volume;
   Vec<D> gravity, up;
 
   static DiagnosticsTerm make(const DiagnosticsInput<D>& in) {
     DiagnosticsTerm t{};
-    const double volume = std::pow(in.spacing, D);  // [K23 eq. (11)]
-    for (int m = 0; m < in.materials.count; ++m) t.mass[m] = in.materials.density[m] * volume;
+    t.volume = std::pow(in.spacing, D);  // [K23 eq. (11)]
+    for (int m = 0; m < in.materials.count; ++m) t.mass[m] = in.materials.density[m] * t.volume;
     t.gravity = in.gravity;
     t.up[D - 1] = 1;  // without gravity the last axis counts as height
     if (const double g = norm(in.gravity); g > 0) t.up = in.gravity * (-1 / g);
@@ -47,7 +54,17 @@ struct DiagnosticsTerm {
     const Vec<D>&x = in.position[i], &u = in.velocity[i];
     const double speed2 = norm2(u), m = mass[in.material[i]];
     Diagnostics d{0.5 * m * speed2, -m * dot(gravity, x), x[0], dot(up, x), std::sqrt(speed2)};
+    d.gravityPower = m * dot(gravity, u);
+    if (!in.wallDensity.empty()) d.insideWalls = in.wallDensity[i] > 0 && in.wallDensity[i] >= in.neighbourDensity;
+    if (!in.numberDensity.empty()) {
+      const double excess = in.numberDensity[i] - in.restDensity;
+      if (excess > 0) {
+        d.excessDensity = excess / in.restDensity;
+        d.elasticEnergy = 0.5 * volume * in.materials.bulkModulus[in.material[i]] * excess * excess;
+      }
+    }
     if (in.density.empty()) return d;
+    d.excessDensity = in.density[i] > 1 ? in.density[i] - 1 : 0;
     d.meanDensityRatio = in.density[i];
     d.interiorParticles = !in.surface[i];
     d.meanDensityError = in.surface[i] ? 0 : std::abs(in.density[i] - 1);
@@ -70,12 +87,19 @@ TREACLE_HD inline Diagnostics joined(const Diagnostics& a, const Diagnostics& b)
           a.maxSpeed < b.maxSpeed ? b.maxSpeed : a.maxSpeed,
           a.meanDensityRatio + b.meanDensityRatio,
           a.meanDensityError + b.meanDensityError,
-          a.interiorParticles + b.interiorParticles};
+          a.interiorParticles + b.interiorParticles,
+          a.excessDensity + b.excessDensity,
+          a.elasticEnergy + b.elasticEnergy,
+          a.insideWalls + b.insideWalls,
+          a.gravityPower + b.gravityPower};
 }
 
 /// Sums into means; `count` of particles.
 inline Diagnostics averaged(Diagnostics d, std::size_t count) {
-  if (count > 0) d.meanDensityRatio /= static_cast<double>(count);
+  if (count > 0) {
+    d.meanDensityRatio /= static_cast<double>(count);
+    d.excessDensity /= static_cast<double>(count);
+  }
   if (d.interiorParticles > 0) d.meanDensityError /= d.interiorParticles;
   return d;
 }

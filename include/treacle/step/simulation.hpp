@@ -4,6 +4,7 @@
 #include "treacle/model/case.hpp"
 #include "treacle/model/particles.hpp"
 #include "treacle/step/solver_trial.hpp"
+#include "treacle/step/watch.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -26,6 +27,11 @@ struct Diagnostics {
   double meanDensityRatio = 0;   // mean of <rho> / rho
   double meanDensityError = 0;   // mean of |<rho> / rho - 1| over the particles that are not at the free surface
   double interiorParticles = 0;  // number of these
+  // For the watch (step/watch.hpp).
+  double excessDensity = 0;  // mean of [<rho> / rho - 1]_+, for MPH-I of [n / n_0 - 1]_+
+  double elasticEnergy = 0;  // sum of l^d kappa [n - n_0]_+^2 / 2 of MPH-I [J; per metre of depth in 2D]
+  double insideWalls = 0;    // particles whose neighbourhood is filled by walls alone
+  double gravityPower = 0;   // sum of m g.u [W; per metre of depth in 2D]
 };
 
 /// Wall-clock seconds of one step, or summed over steps.
@@ -54,7 +60,9 @@ struct StepReport {
   int fallbacks = 0;      // ways that failed (solveStages)
   std::string failures;   // which, and why
   Diagnostics diagnostics;
-  std::optional<Balance> balance;  // with OutputSettings::balance
+  Watched watched;
+  std::vector<std::string> warnings;  // of the watch
+  std::optional<Balance> balance;     // with OutputSettings::balance
   PhaseSeconds seconds;
 };
 
@@ -71,7 +79,8 @@ class Simulation {
   Simulation(Simulation&&) noexcept;
 
   /// One time step. Errors: RunError with the diagnosis (no convergence, a value not finite, a particle outside
-  /// an open domain); particles() and time() then still hold the last good state, that before the step.
+  /// an open domain, a bound of the watch); particles() and time() then still hold the last good state, that
+  /// before the step.
   StepReport advance();
 
   /// Solves the linear system of the next step (ISPH: the pressure equation) by each of these solvers, from the

@@ -81,9 +81,13 @@ struct SumsTwin {
 
     std::vector<Vec<D>> corrected(n);
     Buffer<Vec<D>, Cuda> foundVelocity(d.context, n);
-    sumOnFluid(s.context, s.pairs, CorrectorTerm<D>{p.data(), v.data(), corrected.data()});
-    sumOnFluid(d.context, d.pairs, CorrectorTerm<D>{pOnDevice.data(), vOnDevice.data(), foundVelocity.data()});
+    std::vector<double> share(n);
+    Buffer<double, Cuda> foundShare(d.context, n);
+    sumOnFluid(s.context, s.pairs, CorrectorTerm<D>{p.data(), v.data(), corrected.data(), share.data()});
+    sumOnFluid(d.context, d.pairs,
+               CorrectorTerm<D>{pOnDevice.data(), vOnDevice.data(), foundVelocity.data(), foundShare.data()});
     expectClose(foundVelocity, corrected, "corrector");
+    expectClose(foundShare, share, "share of walls");
 
     std::vector<double> walls(active);
     Buffer<double, Cuda> foundWalls = copyToDevice<double>(d.context, walls);

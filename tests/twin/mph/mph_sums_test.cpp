@@ -78,6 +78,12 @@ struct SumsTwin {
     numberDensity<D>(d.context, d.pairs, found);
     EXPECT_LE(difference<double>(d.context, expected.span(), found), kernelTolerance);
 
+    Buffer<double> wallsExpected(n);
+    Buffer<double, Cuda> wallsFound(d.context, n);
+    wallDensity<D>(s.context, s.pairs(), wallsExpected);
+    wallDensity<D>(d.context, d.pairs, wallsFound);
+    EXPECT_LE(difference<double>(d.context, wallsExpected.span(), wallsFound), kernelTolerance);
+
     const auto u = randomVectors<D>(active, 1);
     divergence<D>(s.context, s.pairs(), u, expected);
     divergence<D>(d.context, d.pairs, copyToDevice<Vec<D>>(d.context, u), found);

@@ -74,6 +74,8 @@ TEST(IsphDiagnosticsTwin, DensitiesEqualTheCpu) {
     in.materials.density[0] = 1000;
     DiagnosticsInput<2> inOnDevice = in;
     in.density = density, in.surface = surface;
+    in.wallDensity = density, in.neighbourDensity = 1.02;
+    inOnDevice.wallDensity = densityOnDevice, inOnDevice.neighbourDensity = 1.02;
     inOnDevice.position = device.position, inOnDevice.velocity = device.velocity;
     inOnDevice.material = device.material;
     inOnDevice.density = densityOnDevice, inOnDevice.surface = surfaceOnDevice;
@@ -83,6 +85,17 @@ TEST(IsphDiagnosticsTwin, DensitiesEqualTheCpu) {
     EXPECT_NEAR(found.meanDensityRatio, expected.meanDensityRatio, operatorTolerance);
     EXPECT_NEAR(found.meanDensityError, expected.meanDensityError, operatorTolerance);
     EXPECT_EQ(found.interiorParticles, expected.interiorParticles);
+    EXPECT_NEAR(found.excessDensity, expected.excessDensity, operatorTolerance);
+    EXPECT_EQ(found.insideWalls, expected.insideWalls);
+
+    // The densities of MPH-I.
+    in.materials.bulkModulus[0] = inOnDevice.materials.bulkModulus[0] = 1e6;
+    in.density = inOnDevice.density = {};
+    in.numberDensity = density, in.restDensity = inOnDevice.restDensity = 1.01;
+    inOnDevice.numberDensity = densityOnDevice;
+    const Diagnostics e = computeDiagnostics<2>(cpu, in), f = computeDiagnostics<2>(context, inOnDevice);
+    EXPECT_NEAR(f.excessDensity, e.excessDensity, operatorTolerance);
+    EXPECT_NEAR(f.elasticEnergy, e.elasticEnergy, operatorTolerance * e.elasticEnergy);
   }
 }
 

@@ -469,7 +469,7 @@ TEST(FullDisk, endsTheRunWithDiagnosisAndLeavesNoPartOfAFile) {
     EXPECT_NO_THROW(readVtp(entry.path()));
   }
   EXPECT_THAT(shop.content("small-run/summary.json"), HasSubstr("\"status\": \"failed\""));
-  EXPECT_THAT(shop.content("small-run/case.toml"), EndsWith("balance = false\n"));
+  EXPECT_THAT(shop.content("small-run/case.toml"), EndsWith("\ndensity = 0.5\n"));
 }
 
 TEST(FullDisk, foundByTheOutputThreadEndsTheRunAndKeepsTheFrames) {
@@ -533,7 +533,7 @@ constexpr Warning warnings[] = {
      "few neighbours depend on where these stand"},
     {"unstableCompression", "bulk_modulus = 1e6", "bulk_modulus = 2e7",
      "material 'syrup': dt kappa / lambda = 2 is greater than 1, the step may be unstable; take bulk_modulus <= "
-     "bulk_viscosity / step, or a shorter step"},
+     "bulk_viscosity / step, or a step of at most 0.0005 s"},
     {"spacingThatDoesNotDivide", "max = [6e-3, 6e-3]", "max = [6e-3, 6.4e-3]",
      "body 'column': 6.4 mm along y is 6.4 spacings; filled with 6 particles from its min corner (6 mm)"},
     {"endBetweenSteps", "end = 2e-3", "end = 2.3e-3",

@@ -186,6 +186,11 @@ checkpoint_interval = 0.5
 fields = ["id", "pressure", "body"]
 precision = "double"
 balance = true
+[watch]
+energy = 3
+courant = 4
+inside_walls = 0.1
+density = 0
 )";
 
 TEST(readCase, takesEveryKey) {
@@ -226,6 +231,7 @@ TEST(readCase, takesEveryKey) {
   expected.solver.multigrid = {1, 5, 6, SmootherDiagonal::ExtendedJacobi, CoarseKind::Spgemm};
   expected.solver.projected = {7, 3, 1, 55};
   expected.output = {0.25, 0.5, {false, true, false, false, false, true, true}, OutputPrecision::Double, true};
+  expected.watch = {3, 4, 0.1, 0};
   EXPECT_EQ(c, expected);
 
   c.resolution = 1;

@@ -110,6 +110,15 @@ TEST(caseWarnings, longStepsOfIsph) {
   c.method.kind = MethodKind::MphI;
   c.materials[0].bulkViscosity = 1;
   EXPECT_THAT(caseWarnings(c), IsEmpty());
+  c.bodies[0].velocity = {10.1, 0};
+  EXPECT_THAT(caseWarnings(c), ElementsAre(AllOf(HasSubstr("is 1.01, more than 1: particles may pass each other"),
+                                                 HasSubstr("steps of at most 9.9e-05 s, or let time.courant"))));
+  c.bodies[0].velocity = {};
+  c.bodies[1].velocity = {0, 20};
+  EXPECT_THAT(caseWarnings(c), ElementsAre(HasSubstr("is 2, more than 1")));
+  c.bodies[1].velocity = {};
+  c.gravity[1] = -1e6;  // how fast a viscous fluid falls is not known
+  EXPECT_THAT(caseWarnings(c), IsEmpty());
 }
 
 TEST(caseWarnings, wallsThinnerThanTheReachOfTheKernel) {
@@ -162,9 +171,12 @@ TEST(caseWarnings, unstableCompression) {
   EXPECT_THAT(caseWarnings(c), IsEmpty());
   c.materials[0].bulkModulus *= 1.1;
   EXPECT_THAT(caseWarnings(c),
-              ElementsAre(AllOf(HasSubstr("material 'syrup': dt kappa / lambda = 1.1 is greater than 1"))));
+              ElementsAre(AllOf(
+                  HasSubstr("material 'syrup': dt kappa / lambda = 1.1 is greater than 1"),
+                  HasSubstr("take bulk_modulus <= bulk_viscosity / step, or a step of at most 0.000909 s"))));
   c.materials[0].bulkViscosity = 0;
-  EXPECT_THAT(caseWarnings(c), ElementsAre(HasSubstr("dt kappa / lambda = inf")));
+  EXPECT_THAT(caseWarnings(c), ElementsAre(AllOf(HasSubstr("dt kappa / lambda = inf"),
+                                                 HasSubstr("give it a bulk_viscosity of at least"))));
 }
 
 struct WallCase {
@@ -196,6 +208,11 @@ TEST(caseWarnings, radiiThatAreShortForTheirWeights) {
   c.method = defaultMethod(SchemeKind::Published);
   c.method.viscosityRadius = 1.5;
   EXPECT_THAT(caseWarnings(c), IsEmpty()) << "weights of the paper";
+  c.method.pressureRadius = c.method.viscosityRadius = 1.4;  // without the neighbours on the diagonals
+  EXPECT_THAT(caseWarnings(c),
+              ElementsAre(HasSubstr("pressure_radius = 1.4 spacings is short for the weight 'mps'"),
+                          HasSubstr("viscosity_radius = 1.4 spacings is short")));
+  c.method.pressureRadius = 1.75, c.method.viscosityRadius = 1.5;
   for (const PressureWeight weight : {PressureWeight::WendlandC2, PressureWeight::WendlandC4}) {
     c.method.pressureWeight = weight;
     c.method.pressureRadius = 2.5;

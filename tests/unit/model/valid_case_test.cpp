@@ -1,10 +1,12 @@
 #include "treacle/io/case_reader.hpp"
 #include "treacle/model/case_error.hpp"
+#include "treacle/model/case_keys.hpp"
 #include "treacle/model/checks.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 #include <limits>
 
@@ -291,6 +293,28 @@ const Mistake mistakes[] = {
      {"method", "pressure_radius"},
      "[method]",
      "expected a number between 0 and 20 [spacings], found 0"},
+    {"radiusWithoutNeighbours",
+     mph,
+     [](Case& c) { c.method.viscosityRadius = 1; },
+     {"method.viscosity_radius=1"},
+     {"method", "viscosity_radius"},
+     "[method]",
+     "expected more than 1 spacing, found 1: particles would have no neighbours"},
+    {"fluidWithoutPressure",
+     mph,
+     [](Case& c) { c.materials[0].bulkViscosity = c.materials[0].bulkModulus = 0; },
+     {"syrup.bulk_viscosity=0", "syrup.bulk_modulus=0"},
+     {"material", "syrup", "bulk_viscosity"},
+     "[[material]] 'syrup'",
+     "found 0, and bulk_modulus = 0: such a fluid has no pressure and falls through walls; expected one of them "
+     "positive, and bulk_modulus <= bulk_viscosity / step"},
+    {"watchedShare",
+     mph,
+     [](Case& c) { c.watch.insideWalls = 2; },
+     {"watch.inside_walls=2"},
+     {"watch", "inside_walls"},
+     "[watch]",
+     "expected a number from 0 to 1, found 2"},
     {"smoothingRatio",
      isph,
      [](Case& c) { c.method.isph.smoothingRatio = 3; },
@@ -428,6 +452,32 @@ TEST(applyWidth, refusesWhatIsNoStretch) {
             }),
             "width.axis: expected 'x' or 'y', found 'z'");
   EXPECT_EQ(c, before);
+}
+
+TEST(requireValid, IsphTakesFluidsWhoseDensitiesDifferByAFactorOfTen) {
+  Case c = goodCase(MethodKind::Isph);
+  const auto drop = std::ranges::find(c.bodies, "drop", &Body::name);
+  c.materials.push_back(c.materials[0]);
+  std::ranges::find(c.bodies, "left rod", &Body::name)->material = 1;
+  c.materials[1].name = "oil", c.materials[1].density = c.materials[0].density / 10;
+  drop->material = 1;
+  EXPECT_NO_THROW(requireValid(c));
+  c.materials[1].density *= 0.99;
+  try {
+    requireValid(c);
+    ADD_FAILURE() << "not refused";
+  } catch (const CaseError& error) {
+    EXPECT_EQ(error.path(), (CasePath{"material", "syrup", "density"}));
+    EXPECT_THAT(error.text(), testing::StartsWith("found 10.101 times that of 'oil'"));
+  }
+  c.method.kind = MethodKind::MphI;
+  c.materials[0].bulkViscosity = c.materials[1].bulkViscosity = 1;
+  c.solver = defaultSolver(MethodKind::MphI);
+  EXPECT_NO_THROW(requireValid(c)) << "MPH-I does";
+  c.method.kind = MethodKind::Isph;
+  c.solver = defaultSolver(MethodKind::Isph);
+  drop->material = 0;
+  EXPECT_NO_THROW(requireValid(c)) << "of walls it means nothing";
 }
 
 }  // namespace

@@ -70,6 +70,30 @@ TEST(Divergence, IsZeroWhenFluidAndWallsMoveTogether) {
   }
 }
 
+template <int D>
+void checkWallDensity(SchemeKind scheme) {
+  Scene<D> s = makeScene<D>({.scheme = scheme});
+  const Oracle<D> oracle(s);
+  std::vector<double> n(s.n());
+  wallDensity<D>(s.context, s.pairs(), n);
+  int touching = 0;
+  for (std::uint32_t i = 0; i < s.n(); ++i) {
+    double expected = 0;
+    for (std::uint32_t j = s.n(); j < oracle.count(); ++j)
+      expected += oracle.w(norm(oracle.difference(i, j)), oracle.hp);
+    ASSERT_NEAR(n[i], expected, kernelTolerance) << "particle " << i;
+    touching += expected > 0;
+  }
+  EXPECT_GT(touching, 0);
+}
+
+TEST(WallDensity, IsTheSumOverWallsAlone) {
+  for (const SchemeKind scheme : bothSchemes) {
+    checkWallDensity<2>(scheme);
+    checkWallDensity<3>(scheme);
+  }
+}
+
 /// -dD/du / dV of the moving walls' share: with the fluid at rest the drag is V's coupling to the walls.
 TEST(WallDrag, IsTheDissipationGradientOfMovingWalls) {
   Scene<2> s = makeScene<2>();

@@ -127,6 +127,7 @@ TEST(IsphViscosity, ImplicitStepIsTheDirectSolution) {
 
 TEST(IsphViscosity, ImplicitStepsAreStableWhereExplicitOnesAreNot) {
   Layer layer(8, 10);
+  layer.c.watch = {0, 0, 0, 0};
   const double limit = explicitViscousLimit(makeIsphPairs<2>(layer.c));
   const auto energyAfter = [&](ViscousStep step, double part, int steps) {
     layer.c.method.isph.viscosity = step;

@@ -1,0 +1,126 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "command.hpp"
+#include "treacle/io/checkpoint.hpp"
+
+namespace treacle::test {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+const std::string dam = "run " TREACLE_CASES "/dam-break-2d.toml --threads 1 --end-time 0.1 ";
+
+/// Ends with the reason, what helps, and the state before the step from which it was seen.
+void expectEnded(const std::string& arguments, const std::string& why, const std::string& advice) {
+  SCOPED_TRACE(arguments);
+  Workshop shop;
+  const Outcome outcome = shop.call(arguments + " -o run --force");
+  EXPECT_EQ(outcome.exitCode, 3);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("error: after step "), HasSubstr(why), HasSubstr(advice),
+                                 HasSubstr("Continue from the last checkpoint with --resume")));
+  EXPECT_THAT(shop.content("run/summary.json"), AllOf(HasSubstr("\"failed\""), HasSubstr(why)));
+  EXPECT_THAT(shop.content("run/run.log"), HasSubstr("watch, largest of all steps: energy "));
+  EXPECT_TRUE(std::filesystem::exists(shop / "run/checkpoint.h5"));
+}
+
+TEST(WatchedRun, EndsWhereBulkConstantsMakeTheStepUnstable) {
+  for (const std::string scheme : {"published", "accurate"}) {
+    const std::string run = dam + "--set method.scheme=" + scheme + " --set fluid.";
+    for (const char* modulus : {"1e9", "1e12"})
+      expectEnded(run + "bulk_modulus=" + modulus, "the step is unstable",
+                  "take bulk_modulus <= bulk_viscosity / step = 1e+07 for 'fluid', or time.step <= ");
+    expectEnded(run + "bulk_viscosity=0", "the step is unstable", "give 'fluid' a bulk_viscosity of at least");
+  }
+}
+
+TEST(WatchedRun, SeesTheSameByTheEnergyAlone) {
+  expectEnded(
+      dam + "--set fluid.bulk_modulus=1e9 --set watch.courant=0 --set watch.inside_walls=0 --set watch.density=0",
+      "energy of the fluid have risen by", "watch.energy = 1 is exceeded");
+}
+
+const std::string drop = R"(dimensions = 2
+spacing = 1e-3
+gravity = {acceleration = [0, -10]}
+domain = {periodic = [true, false], min = [-0.03, -0.01], max = [0.03, 0.05]}
+time = {step = 1e-3, end = 0.01}
+material = [{name = "m", density = 1400, dynamic_viscosity = 10, bulk_viscosity = 1e4, bulk_modulus = 1e6}]
+body = [
+  {name = "drop", type = "fluid", material = "m", shape = "sphere", center = [0, 0.02], radius = 0.01, velocity = [0, -100]},
+  {name = "floor", type = "wall", material = "m", shape = "box", min = [-0.03, -0.01], max = [0.03, 0]},
+]
+)";
+
+TEST(WatchedRun, EndsWhereADropIsTooFastForItsSteps) {
+  Workshop shop;
+  shop.put("drop.toml", drop);
+  Outcome outcome = shop.call("check drop.toml");
+  EXPECT_EQ(outcome.exitCode, 0);
+  EXPECT_THAT(outcome.err, HasSubstr("the Courant number of steps of 0.001 s is 100, more than 1"));
+  outcome = shop.call("run drop.toml");
+  EXPECT_EQ(outcome.exitCode, 3);
+  EXPECT_THAT(outcome.err,
+              HasSubstr("after step 0 (t = 0 s): the fastest particle goes at 100 m/s, 100 spacings in a "
+                        "step of 0.001 s; take time.step <= 5e-06 or time.courant = 0.5"));
+  // What is advised does it, although the impact compresses the drop.
+  outcome = shop.call("run drop.toml --force --end-time 2e-4 --set time.courant=0.5");
+  EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+}
+
+TEST(WatchedRun, WarnsBeforeItEnds) {
+  Workshop shop;
+  shop.put("drop.toml", drop);
+  const Outcome outcome =
+      shop.call("run drop.toml --set time.step=5e-5 --end-time 1e-4 --set watch.courant=15 --set watch.energy=0");
+  EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+  const std::string warning =
+      "warning: step 1: the fastest particle goes at 100 m/s, 5 spacings in a step of 5e-05 s; take time.step <= "
+      "5e-06";
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr(warning), HasSubstr("the run ends above watch.courant = 15"),
+                                 Not(HasSubstr("step 2"))));
+  EXPECT_THAT(shop.content("drop-run/run.log"), HasSubstr(warning));
+}
+
+TEST(WatchedRun, EndsWhereFluidHasFallenIntoAWall) {
+  Workshop shop;
+  shop.put("case.toml", smallCase);
+  // A fluid with next to no pressure.
+  const Outcome outcome = shop.call(
+      "run case.toml --end-time 0.3 --set syrup.bulk_modulus=0 --set syrup.bulk_viscosity=1e-3 --set "
+      "syrup.dynamic_viscosity=0.1 --set "
+      "watch.density=0 "
+      "--set 'domain.min=[-4e-3,-0.1]'");
+  EXPECT_EQ(outcome.exitCode, 3);
+  EXPECT_THAT(outcome.err,
+              AllOf(HasSubstr("fluid particles are inside walls: the pressure does not hold them back"),
+                    HasSubstr("watch.inside_walls = 0.05 is exceeded")));
+}
+
+TEST(WatchedRun, AFullTankOfIsphIsWithinAllBounds) {
+  Workshop shop;
+  shop.put("full.toml", R"(dimensions=2
+spacing=1e-3
+gravity={acceleration=[0,-10]}
+domain={min=[-0.006,-0.006],max=[0.026,0.026]}
+time={courant=0.2,step=1e-3,end=0.3}
+material=[{name="m",density=1000,dynamic_viscosity=1e-3}]
+method={name="isph"}
+body=[
+{name="a",type="fluid",material="m",shape="box",min=[0,0],max=[0.02,0.02]},
+{name="floor",type="wall",material="m",shape="box",min=[-0.004,-0.004],max=[0.024,0]},
+{name="l",type="wall",material="m",shape="box",min=[-0.004,0],max=[0,0.024]},
+{name="r",type="wall",material="m",shape="box",min=[0.02,0],max=[0.024,0.024]},
+{name="roof",type="wall",material="m",shape="box",min=[0,0.02],max=[0.02,0.024]},
+]
+)");
+  for (const char* domain : {"true", "false"}) {
+    const Outcome outcome = shop.call(std::string("run full.toml --force --set domain.periodic=") + domain);
+    EXPECT_EQ(outcome.exitCode, 0);
+    EXPECT_EQ(outcome.err, "");
+  }
+}
+
+}  // namespace
+}  // namespace treacle::test
