@@ -2,16 +2,14 @@
 
 #include <cuda_runtime.h>
 
-#include <stdexcept>
-#include <string>
-
 namespace treacle {
 
-/// Throws with the place and CUDA's own words unless the call succeeded.
+/// Throws DeviceMemoryExhausted or, with CUDA's own words and the place where they were heard, DeviceFailure.
+[[noreturn]] void throwCudaError(cudaError_t error, const char* file, int line);
+
+/// Throws unless the call succeeded.
 inline void cudaCheck(cudaError_t status, const char* file, int line) {
-  if (status != cudaSuccess)
-    throw std::runtime_error(std::string(file) + ":" + std::to_string(line) +
-                             ": CUDA: " + cudaGetErrorString(status));
+  if (status != cudaSuccess) throwCudaError(status, file, line);
 }
 
 }  // namespace treacle

@@ -31,7 +31,10 @@ cudaMemPool_t makePool() {
 
 }  // namespace
 
-Context<Cuda>::Context() : usesGraphs_(std::getenv("TREACLE_NO_GRAPHS") == nullptr) {
+Context<Cuda>::Context(bool usesGraphs) noexcept : usesGraphs_(usesGraphs) {}
+
+/// The other constructor has made a whole object: where something fails here, the destructor gives back the rest.
+Context<Cuda>::Context() : Context(std::getenv("TREACLE_NO_GRAPHS") == nullptr) {
   TREACLE_CUDA_CHECK(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking));
   pool_ = makePool();
   partialSums_ = static_cast<double*>(deviceAllocate(*this, maxPartialSums * sizeof(double)));
@@ -42,9 +45,9 @@ Context<Cuda>::Context() : usesGraphs_(std::getenv("TREACLE_NO_GRAPHS") == nullp
 Context<Cuda>::~Context() {
   for (void* memory : {static_cast<void*>(partialSums_), static_cast<void*>(ticket_), scratch_})
     if (memory) deviceRelease(*this, memory);
-  cudaStreamSynchronize(stream_);
-  cudaMemPoolDestroy(pool_);
-  cudaStreamDestroy(stream_);
+  if (stream_) cudaStreamSynchronize(stream_);
+  if (pool_) cudaMemPoolDestroy(pool_);
+  if (stream_) cudaStreamDestroy(stream_);
 }
 
 void Context<Cuda>::synchronize() const { TREACLE_CUDA_CHECK(cudaStreamSynchronize(stream_)); }
@@ -69,12 +72,23 @@ void* Context<Cuda>::scratch(std::size_t bytes) {
 void* deviceAllocate(const Context<Cuda>& context, std::size_t bytes) {
   if (bytes == 0) return nullptr;
   void* memory = nullptr;
-  const cudaError_t status = cudaMallocFromPoolAsync(&memory, bytes, context.pool(), context.stream());
+  const auto allocate = [&] {
+    const cudaError_t status = cudaMallocFromPoolAsync(&memory, bytes, context.pool(), context.stream());
+    if (status == cudaErrorMemoryAllocation)
+      cudaGetLastError();  // it is reported here and must not meet the next call
+    return status;
+  };
+  cudaError_t status = allocate();
   if (status == cudaErrorMemoryAllocation) {
-    cudaGetLastError();  // the error is reported here and must not meet the next call
-    std::size_t free = 0, total = 0;
-    TREACLE_CUDA_CHECK(cudaMemGetInfo(&free, &total));
-    throw DeviceMemoryExhausted(context.peakBytes(), total);
+    // What the pool has kept in pieces that are too small is given back, and may do as a whole.
+    context.synchronize();
+    TREACLE_CUDA_CHECK(cudaMemPoolTrimTo(context.pool(), 0));
+    status = allocate();
+  }
+  if (status == cudaErrorMemoryAllocation) {
+    DeviceMemoryNumbers numbers{bytes, 0, 0, context.peakBytes()};
+    TREACLE_CUDA_CHECK(cudaMemGetInfo(&numbers.free, &numbers.total));
+    throw DeviceMemoryExhausted(numbers);
   }
   TREACLE_CUDA_CHECK(status);
 #ifndef NDEBUG

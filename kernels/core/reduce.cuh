@@ -49,6 +49,7 @@ __device__ void finishReduction(double blockValue, double* partial, unsigned* ti
 template <class Body, class Finish>
 __global__ void __launch_bounds__(256)
     reduceKernel(std::size_t count, Body body, Finish finish, double* partial, unsigned* ticket) {
+  waitForEarlierKernels();
   double sum = 0;
   for (std::size_t i = blockIdx.x * 256ull + threadIdx.x; i < count; i += gridDim.x * 256ull) sum += body(i);
   finishReduction(blockSum(sum), partial, ticket, finish);
@@ -58,7 +59,7 @@ template <class Body, class Finish>
 void reduce(Context<Cuda>& context, std::size_t count, Body body, Finish finish) {
   constexpr unsigned maxBlocks = 132 * 8;
   const unsigned blocks = std::min(std::max(blocksFor(count, 512), 1u), maxBlocks);
-  launch(context, blocks, 256, 0, reduceKernel<Body, Finish>, count, body, finish, context.partialSums(),
+  launchEarly(context, blocks, 256, 0, reduceKernel<Body, Finish>, count, body, finish, context.partialSums(),
          context.ticket());
 }
 

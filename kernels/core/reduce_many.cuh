@@ -10,6 +10,7 @@ namespace treacle {
 template <int N, class Body, class Finish>
 __global__ void __launch_bounds__(256)
     reduceManyKernel(std::size_t count, Body body, Finish finish, double* partial, unsigned* ticket) {
+  waitForEarlierKernels();
   __shared__ double total[N];
   __shared__ bool last;
   double sums[N] = {};
@@ -42,7 +43,7 @@ template <int N, class Body, class Finish>
 void reduceMany(Context<Cuda>& context, std::size_t count, Body body, Finish finish) {
   constexpr unsigned maxBlocks = std::min<unsigned>(132 * 4, Context<Cuda>::maxPartialSums / N);
   const unsigned blocks = std::min(std::max(blocksFor(count, 512), 1u), maxBlocks);
-  launch(context, blocks, 256, 0, reduceManyKernel<N, Body, Finish>, count, body, finish, context.partialSums(),
+  launchEarly(context, blocks, 256, 0, reduceManyKernel<N, Body, Finish>, count, body, finish, context.partialSums(),
          context.ticket());
 }
 

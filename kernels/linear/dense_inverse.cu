@@ -2,10 +2,28 @@
 
 #include "linear/row_sums.cuh"
 
+#include <algorithm>
+#include <stdexcept>
+
 namespace treacle {
 namespace {
 
 constexpr int panel = 32;  // unknowns that are eliminated at a time
+
+template <class T>
+struct Tasks {
+  DenseTask<T> task[DenseInverses<T, Cuda>::most];
+};
+
+/// What the sweeps see of a matrix.
+struct Dense {
+  std::uint32_t panels, stride;
+  double *dense, *b, *w;
+
+  template <class T>
+  __device__ explicit Dense(const DenseTask<T>& t)
+      : panels(t.panels), stride(t.panels * panel), dense(t.dense), b(t.b), w(t.w) {}
+};
 
 /// One warp per block row: dense = A, lower triangle, in panels of 32. The dense matrix is zero before. No
 /// atomics.
@@ -40,109 +58,155 @@ __global__ void __launch_bounds__(1024) regulariseKernel(std::uint32_t rows, std
   }
 }
 
-/// Element (r, c) of minus the inverse of a symmetric positive definite 32 x 32 matrix, one thread each, `mine`
-/// its element: 32 sweeps. `line` keeps the pivot's row, which is also its column, by turns in two places.
-__device__ double sweepPanel(double mine, int r, int c, double (*line)[panel]) {
+constexpr int pivotWarps = 8, pivotRows = panel / pivotWarps;  // of pivotKernel's blocks
+
+/// A warp: minus the inverse of a symmetric positive definite 32 x 32 matrix in 32 sweeps, lane c having column c.
+/// The inverse of a pivot takes longest; so that of the next one is begun before the sweep. `line` keeps the
+/// pivot's row, which is also its column, by turns in two places.
+__device__ void sweepPanel(double (&mine)[panel], double (*line)[panel]) {
+  const int c = threadIdx.x % panel;
+  const auto inverseOf = [&](double pivot, int lane) {
+    return __shfl_sync(~0u, pivot > 0 ? 1 / pivot : 0, lane);  // of that lane
+  };
+  double inverse = inverseOf(mine[0], 0);
+#pragma unroll
   for (int p = 0; p < panel; ++p) {
     double* pivotRow = line[p % 2];
-    if (r == p) pivotRow[c] = mine;
-    __syncthreads();
-    const double pivot = pivotRow[p], inverse = pivot > 0 ? 1 / pivot : 0;
-    if (r == p && c == p)
-      mine = -inverse;
-    else if (r == p || c == p)
-      mine = pivotRow[r == p ? c : r] * inverse;
-    else
-      mine -= pivotRow[r] * pivotRow[c] * inverse;
+    pivotRow[c] = mine[p];
+    __syncwarp();
+    const double scaled = mine[p] * inverse;
+    const double next = p + 1 < panel ? inverseOf(fma(-scaled, mine[p], mine[(p + 1) % panel]), p + 1) : 0;
+    const double factor = c == p ? -inverse : scaled;
+#pragma unroll
+    for (int r = 0; r < panel; ++r)
+      if (r != p) mine[r] = fma(-pivotRow[r], factor, c == p ? 0.0 : mine[r]);
+    mine[p] = factor;
+    inverse = next;
   }
-  return mine;
 }
 
-/// One block of 32 x 32 threads per panel of rows i, B_i being its columns of the pivot panel k: copies B_i, and
-/// writes W_i = B_i (A_kk)^-1; every block inverts A_kk for itself. Block k leaves the swept A_kk, -(A_kk)^-1, as
-/// its W. Reads the lower triangle; writes B and W. No atomics.
-__global__ void __launch_bounds__(panel* panel)
-    pivotKernel(std::uint32_t k, std::uint32_t stride, const double* dense, double* b, double* w) {
-  __shared__ double inverse[panel][panel + 1], ofB[panel][panel + 1], line[2][panel];
-  const int r = threadIdx.x / panel, c = threadIdx.x % panel;
+/// One block per matrix and panel of rows i, B_i being its columns of the pivot panel k: copies B_i, and writes
+/// W_i = B_i (A_kk)^-1; every block inverts A_kk for itself. Block k leaves the swept A_kk, -(A_kk)^-1, as its W.
+/// Reads the lower triangle; writes B and W. No atomics.
+template <class T>
+__global__ void __launch_bounds__(pivotWarps* panel) pivotKernel(std::uint32_t k, const __grid_constant__ Tasks<T> tasks) {
+  const Dense m(tasks.task[blockIdx.y]);
+  if (k >= m.panels || blockIdx.x >= m.panels) return;
+  __shared__ double swept[panel][panel + 1], ofB[panel][panel + 1], line[2][panel];
+  const int warp = threadIdx.x / panel, c = threadIdx.x % panel;
   const std::uint32_t i = blockIdx.x;
   const auto element = [&](std::uint32_t rowPanel, std::uint32_t columnPanel, int row, int column) {
-    return dense[(std::size_t{rowPanel} * panel + row) * stride + columnPanel * panel + column];
+    return m.dense[(std::size_t{rowPanel} * panel + row) * m.stride + columnPanel * panel + column];
   };
-  const double pivotElement = r >= c ? element(k, k, r, c) : element(k, k, c, r);
-  if (i >= k)
-    ofB[r][c] = element(i, k, r, c);
-  else
-    ofB[c][r] = element(k, i, r, c);  // its transpose lies in the lower triangle; read along rows
-  const double swept = sweepPanel(pivotElement, r, c, line);
-  inverse[r][c] = -swept;
+  for (int r = warp; r < panel; r += pivotWarps) {
+    if (r >= c) swept[r][c] = swept[c][r] = element(k, k, r, c);
+    if (i >= k)
+      ofB[r][c] = element(i, k, r, c);
+    else
+      ofB[c][r] = element(k, i, r, c);  // its transpose lies in the lower triangle; read along rows
+  }
   __syncthreads();
-  double sum = 0;
-  for (int m = 0; m < panel; ++m) sum += ofB[r][m] * inverse[m][c];
-  const std::size_t place = (std::size_t{i} * panel + r) * panel + c;
-  b[place] = ofB[r][c];
-  w[place] = i == k ? swept : sum;
+  if (warp == 0) {
+    double mine[panel];
+#pragma unroll
+    for (int r = 0; r < panel; ++r) mine[r] = swept[r][c];
+    sweepPanel(mine, line);
+#pragma unroll
+    for (int r = 0; r < panel; ++r) swept[r][c] = mine[r];
+  }
+  __syncthreads();
+  double sum[pivotRows] = {};
+#pragma unroll 4
+  for (int l = 0; l < panel; ++l)
+    for (int s = 0; s < pivotRows; ++s) sum[s] -= ofB[warp * pivotRows + s][l] * swept[l][c];
+  for (int s = 0; s < pivotRows; ++s) {
+    const int r = warp * pivotRows + s;
+    const std::size_t place = (std::size_t{i} * panel + r) * panel + c;
+    m.b[place] = ofB[r][c];
+    m.w[place] = i == k ? swept[r][c] : sum[s];
+  }
 }
 
-/// One block of 32 x 32 threads per panel pair j <= i of the lower triangle: A_ij -= W_i B_j^T, in the pivot's row
-/// and column of panels W instead. Reads and writes the lower triangle (of diagonal panels all); reads B, W. No
-/// atomics.
-__global__ void __launch_bounds__(panel* panel)
-    eliminateKernel(std::uint32_t k, std::uint32_t stride, const double* b, const double* w, double* dense) {
+/// One block of 32 x 32 threads per matrix and panel pair j <= i of the lower triangle: A_ij -= W_i B_j^T, in the
+/// pivot's row and column of panels W instead. Reads and writes the lower triangle (of diagonal panels all); reads
+/// B, W. No atomics.
+template <class T>
+__global__ void __launch_bounds__(panel* panel) eliminateKernel(std::uint32_t k, const __grid_constant__ Tasks<T> tasks) {
   const std::uint32_t i = blockIdx.y, j = blockIdx.x;
-  if (j > i) return;
+  const Dense m(tasks.task[blockIdx.z]);
+  if (j > i || k >= m.panels || i >= m.panels) return;
   __shared__ double ofW[panel][panel + 1], ofB[panel][panel + 1];
   const int r = threadIdx.x / panel, c = threadIdx.x % panel;
   const auto load = [&](const double* from, std::uint32_t rowPanel) {
     return from[(std::size_t{rowPanel} * panel + r) * panel + c];
   };
-  double& mine = dense[(std::size_t{i} * panel + r) * stride + j * panel + c];
+  double& mine = m.dense[(std::size_t{i} * panel + r) * m.stride + j * panel + c];
   if (j == k) {
-    mine = load(w, i);
+    mine = load(m.w, i);
     return;
   }
-  ofW[r][c] = load(w, i == k ? j : i);
-  ofB[r][c] = load(b, j);
+  ofW[r][c] = load(m.w, i == k ? j : i);
+  ofB[r][c] = load(m.b, j);
   __syncthreads();
   if (i == k) {
     mine = ofW[c][r];
     return;
   }
   double sum = 0;
-  for (int m = 0; m < panel; ++m) sum += ofW[r][m] * ofB[c][m];
+  for (int l = 0; l < panel; ++l) sum += ofW[r][l] * ofB[c][l];
   mine -= sum;
 }
 
 }  // namespace
 
-template <class T, int B>
-void denseInverse(Context<Cuda>& context, const BlockCsr<B, double, Cuda>& a, std::span<T> inverse) {
+template <class T>
+template <int B>
+void DenseInverses<T, Cuda>::add(Context<Cuda>& context, const BlockCsr<B, double, Cuda>& a, std::span<T> inverse) {
   const std::uint32_t n = B * a.rows(), panels = blocksFor(n, panel), stride = panels * panel;
   if (n == 0) return;
-  Buffer<double, Cuda> dense(context, std::size_t{stride} * stride), b(context, std::size_t{stride} * panel),
-      w(context, std::size_t{stride} * panel);
-  clearBytes(context, dense.data(), std::size_t{stride} * stride * sizeof(double));
-  launch(context, blocksFor(a.rows(), 4), 128, 0, fillKernel<B>, viewOf(a), stride, dense.data());
-  launch(context, 1, 1024, 0, regulariseKernel<T>, n, stride, dense.data());
-  // Gauss-Jordan by symmetric sweeps: in the end dense = -A^-1.
-  for (std::uint32_t k = 0; k < panels; ++k) {
-    launch(context, panels, panel * panel, 0, pivotKernel, k, stride, dense.data(), b.data(), w.data());
-    launch(context, dim3(panels, panels), panel * panel, 0, eliminateKernel, k, stride, b.data(), w.data(),
-           dense.data());
-  }
-  forEach(context, std::size_t{n} * n,
-          [n, stride, from = dense.data(), to = inverse.data()] __device__(std::size_t e) {
-            const std::size_t i = e / n, j = e % n;
-            to[e] = static_cast<T>(-from[i >= j ? i * stride + j : j * stride + i]);
-          });
+  if (tasks_.size() == most) throw std::length_error("more dense inverses at a time than DenseInverses::most");
+  const auto room = [&](std::size_t size) { return memory_.emplace_back(context, size).data(); };
+  const DenseTask<T> task{n,
+                          panels,
+                          room(std::size_t{stride} * stride),
+                          room(std::size_t{stride} * panel),
+                          room(std::size_t{stride} * panel),
+                          inverse.data()};
+  clearBytes(context, task.dense, std::size_t{stride} * stride * sizeof(double));
+  launch(context, blocksFor(a.rows(), 4), 128, 0, fillKernel<B>, viewOf(a), stride, task.dense);
+  launch(context, 1, 1024, 0, regulariseKernel<T>, n, stride, task.dense);
+  tasks_.push_back(task);
 }
 
-#define TREACLE_INSTANTIATE(B)                                                                                \
-  template void denseInverse<double, B>(Context<Cuda>&, const BlockCsr<B, double, Cuda>&, std::span<double>); \
-  template void denseInverse<float, B>(Context<Cuda>&, const BlockCsr<B, double, Cuda>&, std::span<float>);
+/// Gauss-Jordan by symmetric sweeps: in the end dense = -A^-1.
+template <class T>
+void DenseInverses<T, Cuda>::finish(Context<Cuda>& context) {
+  Tasks<T> tasks{};
+  std::copy(tasks_.begin(), tasks_.end(), tasks.task);
+  const auto count = static_cast<unsigned>(tasks_.size());
+  std::uint32_t panels = 0;
+  for (const DenseTask<T>& t : tasks_) panels = std::max(panels, t.panels);
+  for (std::uint32_t k = 0; k < panels; ++k) {
+    launch(context, dim3(panels, count), pivotWarps * panel, 0, pivotKernel<T>, k, tasks);
+    launch(context, dim3(panels, panels, count), panel * panel, 0, eliminateKernel<T>, k, tasks);
+  }
+  for (const DenseTask<T>& t : tasks_)
+    forEach(context, std::size_t{t.unknowns} * t.unknowns, [t] __device__(std::size_t e) {
+      const std::size_t i = e / t.unknowns, j = e % t.unknowns, stride = std::size_t{t.panels} * panel;
+      t.inverse[e] = static_cast<T>(-t.dense[i >= j ? i * stride + j : j * stride + i]);
+    });
+  tasks_.clear();
+  memory_.clear();
+}
+
+#define TREACLE_INSTANTIATE(B)                                                                          \
+  template void DenseInverses<double, Cuda>::add(Context<Cuda>&, const BlockCsr<B, double, Cuda>&, std::span<double>); \
+  template void DenseInverses<float, Cuda>::add(Context<Cuda>&, const BlockCsr<B, double, Cuda>&, std::span<float>);
 TREACLE_INSTANTIATE(1)
 TREACLE_INSTANTIATE(2)
 TREACLE_INSTANTIATE(3)
 #undef TREACLE_INSTANTIATE
+template void DenseInverses<double, Cuda>::finish(Context<Cuda>&);
+template void DenseInverses<float, Cuda>::finish(Context<Cuda>&);
 
 }  // namespace treacle

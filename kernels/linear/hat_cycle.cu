@@ -96,6 +96,7 @@ __global__ void valuesKernel(BlockCsrView<B, double> a, Block<B, T>* value, T* i
 template <int D, int B, class T>
 __global__ void restrictKernel(const HatNodesView<D> fine, const HatNodesView<D> coarse, const T* res, T* b,
                                const FirstStep<T> first) {
+  waitForEarlierKernels();
   const std::uint32_t row = (blockIdx.x * blockDim.x + threadIdx.x) / 32;
   const int lane = static_cast<int>(threadIdx.x % 32);
   if (row >= coarse.count) return;
@@ -114,6 +115,7 @@ __global__ void restrictKernel(const HatNodesView<D> fine, const HatNodesView<D>
 /// One warp per row: x = M b. No atomics.
 template <class T>
 __global__ void denseKernel(int unknowns, const T* matrix, const T* b, T* x) {
+  waitForEarlierKernels();
   const int row = (blockIdx.x * blockDim.x + threadIdx.x) / 32;
   if (row >= unknowns) return;
   T sum = 0;
@@ -159,7 +161,7 @@ void hatResidual(Context<Cuda>& context, const BlockCsrView<B, T>& a, const HatV
 template <int D, int B, class T>
 void hatRestrict(Context<Cuda>& context, const HatNodes<D, Cuda>& fine, const HatNodes<D, Cuda>& coarse,
                  const T* res, const HatVectors<T>& v) {
-  launch(context, blocksFor(coarse.count(), 4), 128, 0, restrictKernel<D, B, T>, fine.view(), coarse.view(), res,
+  launchEarly(context, blocksFor(coarse.count(), 4), 128, 0, restrictKernel<D, B, T>, fine.view(), coarse.view(), res,
          v.b, FirstStep<T>(v));
 }
 
@@ -180,7 +182,7 @@ void hatProlong(Context<Cuda>& context, const HatNodes<D, Cuda>& fine, const Hat
 
 template <class T>
 void denseMultiply(Context<Cuda>& context, std::uint32_t rows, const T* matrix, const T* b, T* x) {
-  launch(context, blocksFor(rows, 4), 128, 0, denseKernel<T>, static_cast<int>(rows), matrix, b, x);
+  launchEarly(context, blocksFor(rows, 4), 128, 0, denseKernel<T>, static_cast<int>(rows), matrix, b, x);
 }
 
 #define TREACLE_INSTANTIATE(T)                                                      \

@@ -10,19 +10,11 @@ __global__ void setLoopCondition(cudaGraphConditionalHandle loop, const KrylovSc
   cudaGraphSetConditional(loop, scalars->status == SolveStatus::Running);
 }
 
-/// Owns a graph while it is being built.
-struct Graph {
-  cudaGraph_t graph = nullptr;
-  Graph() { TREACLE_CUDA_CHECK(cudaGraphCreate(&graph, 0)); }
-  Graph(const Graph&) = delete;
-  Graph& operator=(const Graph&) = delete;
-  ~Graph() { cudaGraphDestroy(graph); }
-};
-
 }  // namespace
 
 KrylovLoop<Cuda>::~KrylovLoop() {
   if (graph_) cudaGraphExecDestroy(graph_);
+  if (source_) cudaGraphDestroy(source_);
 }
 
 KrylovScalars* KrylovLoop<Cuda>::begin(Context<Cuda>& context, const StoppingRule& rule) {
@@ -37,21 +29,33 @@ SolveReport KrylovLoop<Cuda>::report(Context<Cuda>& context) const {
 }
 
 void KrylovLoop<Cuda>::record(Context<Cuda>& context, const std::function<void()>& body) {
-  if (graph_) TREACLE_CUDA_CHECK(cudaGraphExecDestroy(std::exchange(graph_, nullptr)));
   if (!context.usesGraphs()) {
     body_ = body;
     return;
   }
-  Graph whole;
+  cudaGraph_t whole = nullptr;
+  TREACLE_CUDA_CHECK(cudaGraphCreate(&whole, 0));
+  if (source_) cudaGraphDestroy(source_);
+  source_ = whole;
+  capture(context, body, whole);
+
+  cudaGraphExecUpdateResultInfo result{};
+  if (graph_ && cudaGraphExecUpdate(graph_, whole, &result) == cudaSuccess) return;
+  static_cast<void>(cudaGetLastError());  // another set of kernels: a graph of its own
+  if (graph_) TREACLE_CUDA_CHECK(cudaGraphExecDestroy(std::exchange(graph_, nullptr)));
+  TREACLE_CUDA_CHECK(cudaGraphInstantiate(&graph_, whole, 0));
+}
+
+void KrylovLoop<Cuda>::capture(Context<Cuda>& context, const std::function<void()>& body, CUgraph_st* whole) {
   cudaGraphConditionalHandle loop;
-  TREACLE_CUDA_CHECK(cudaGraphConditionalHandleCreate(&loop, whole.graph, 1, cudaGraphCondAssignDefault));
+  TREACLE_CUDA_CHECK(cudaGraphConditionalHandleCreate(&loop, whole, 1, cudaGraphCondAssignDefault));
   cudaGraphNodeParams node{};
   node.type = cudaGraphNodeTypeConditional;
   node.conditional.handle = loop;
   node.conditional.type = cudaGraphCondTypeWhile;
   node.conditional.size = 1;
   cudaGraphNode_t added;
-  TREACLE_CUDA_CHECK(cudaGraphAddNode(&added, whole.graph, nullptr, nullptr, 0, &node));
+  TREACLE_CUDA_CHECK(cudaGraphAddNode(&added, whole, nullptr, nullptr, 0, &node));
 
   TREACLE_CUDA_CHECK(cudaStreamBeginCaptureToGraph(context.stream(), node.conditional.phGraph_out[0], nullptr,
                                                    nullptr, 0, cudaStreamCaptureModeThreadLocal));
@@ -61,11 +65,11 @@ void KrylovLoop<Cuda>::record(Context<Cuda>& context, const std::function<void()
   } catch (...) {
     cudaGraph_t unfinished = nullptr;
     cudaStreamEndCapture(context.stream(), &unfinished);
+    cudaGetLastError();  // what is thrown says more, and the next call must not meet this
     throw;
   }
   cudaGraph_t captured = nullptr;
   TREACLE_CUDA_CHECK(cudaStreamEndCapture(context.stream(), &captured));
-  TREACLE_CUDA_CHECK(cudaGraphInstantiate(&graph_, whole.graph, 0));
 }
 
 SolveReport KrylovLoop<Cuda>::run(Context<Cuda>& context) {

@@ -65,6 +65,7 @@ __device__ inline F inColumn(const F& f, unsigned column) {
 /// what `store` writes. No atomics.
 template <int D, class T, int Blocks, Reading How, class Term, class Store>
 __global__ void __launch_bounds__(256) rowSumsKernel(BlockCsrView<D, T> a, const Term terms, const Store stores) {
+  waitForEarlierKernels();
   const Term term = inColumn(terms, blockIdx.y);
   const Store store = inColumn(stores, blockIdx.y);
   const RowLanes<D, Blocks> lanes;
@@ -84,7 +85,7 @@ void rowSums(const Context<Cuda>& context, const BlockCsrView<D, T>& a, Term ter
   constexpr int wide = 32 / (D * D), narrow = D == 1 ? 8 : D == 2 ? 4 : 1;
   const auto start = [&](auto atATime) {
     constexpr int Blocks = decltype(atATime)::value, rowsPerWarp = 32 / (Blocks * D * D);
-    launch(context, dim3(blocksFor(a.rows, 8 * rowsPerWarp), columns), 256, 0,
+    launchEarly(context, dim3(blocksFor(a.rows, 8 * rowsPerWarp), columns), 256, 0,
            rowSumsKernel<D, T, Blocks, How, Term, Store>, a, term, store);
   };
   if (2 * a.entries < 3 * wide * std::uint64_t{a.rows})

@@ -180,6 +180,7 @@ template <int D, class T, class S, class Terms>
 __global__ void __launch_bounds__(32 * S::warpsPerBlock, residentBlocks<T, S>)
     clusterSumKernel(const __grid_constant__ MphPairs<D> pairs, const __grid_constant__ ListTask<Terms> task,
                      const __grid_constant__ LocalPositions<D, T> places) {
+  waitForEarlierKernels();
   sumOverList<D, T, S>(pairs, task, blockIdx.x, places);
 }
 
@@ -188,6 +189,7 @@ template <int D, class T, class S, class A, class B>
 __global__ void __launch_bounds__(32 * S::warpsPerBlock, residentBlocks<T, S>)
     clusterSumsKernel(const __grid_constant__ MphPairs<D> pairs, const __grid_constant__ ListTask<A> a,
                       const __grid_constant__ ListTask<B> b, const __grid_constant__ LocalPositions<D, T> places) {
+  waitForEarlierKernels();
   const unsigned blocksOfA = a.template blocks<S>();
   if (blockIdx.x < blocksOfA)
     sumOverList<D, T, S>(pairs, a, blockIdx.x, places);
@@ -198,14 +200,14 @@ __global__ void __launch_bounds__(32 * S::warpsPerBlock, residentBlocks<T, S>)
 template <int D, class T, class S, class Terms>
 void launchClusterSums(Context<Cuda>& context, const MphPairs<D>& pairs, const ListTask<Terms>& task,
                        const LocalPositions<D, T>& places) {
-  launch(context, task.template blocks<S>(), 32 * S::warpsPerBlock, 0, clusterSumKernel<D, T, S, Terms>, pairs,
+  launchEarly(context, task.template blocks<S>(), 32 * S::warpsPerBlock, 0, clusterSumKernel<D, T, S, Terms>, pairs,
          task, places);
 }
 
 template <int D, class T, class S, class A, class B>
 void launchClusterSums(Context<Cuda>& context, const MphPairs<D>& pairs, const ListTask<A>& a,
                        const ListTask<B>& b, const LocalPositions<D, T>& places) {
-  launch(context, a.template blocks<S>() + b.template blocks<S>(), 32 * S::warpsPerBlock, 0,
+  launchEarly(context, a.template blocks<S>() + b.template blocks<S>(), 32 * S::warpsPerBlock, 0,
          clusterSumsKernel<D, T, S, A, B>, pairs, a, b, places);
 }
 

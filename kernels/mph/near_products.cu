@@ -24,17 +24,27 @@ __global__ void __launch_bounds__(128)
   const Vec<D> xi = positionInCluster(pairs, list.first + cluster * clusterSize, i);
   const double h2 = pairs.terms.pressureRadius * pairs.terms.pressureRadius;
   const std::uint64_t* offset = list.offset + std::size_t{listSegments} * cluster;
+  constexpr int batch = 4;  // so many neighbours are on their way together
   std::uint32_t count = 0;
   const std::uint64_t base = Fill ? sliceStart[s] * slice + index % slice : 0;
   for (const ListSegment segment : {ListSegment::NearFluid, ListSegment::NearWall}) {
     if (!valid || (wall && segment == ListSegment::NearWall)) continue;
     const std::uint64_t end = offset[static_cast<int>(segment) + 1];
-    for (std::uint64_t k = offset[static_cast<int>(segment)]; k < end; ++k) {
-      const ListEntry e = list.entry[k];
-      if (e.index() == i || norm2(pairs.positionOf(e) - xi) >= h2) continue;
-      if (Fill)
-        entry[base + std::uint64_t{slice} * count] = imageFrom(pairs, i, list.first + cluster * clusterSize, e);
-      ++count;
+    for (std::uint64_t k = offset[static_cast<int>(segment)]; k < end; k += batch) {
+      ListEntry e[batch];
+      Vec<D> x[batch];
+#pragma unroll
+      for (int b = 0; b < batch; ++b) e[b] = list.entry[min(k + b, end - 1)];
+#pragma unroll
+      for (int b = 0; b < batch; ++b) x[b] = pairs.positionOf(e[b]);
+#pragma unroll
+      for (int b = 0; b < batch; ++b) {
+        if (k + b >= end || e[b].index() == i || norm2(x[b] - xi) >= h2) continue;
+        if (Fill)
+          entry[base + std::uint64_t{slice} * count] =
+              imageFrom(pairs, i, list.first + cluster * clusterSize, e[b]);
+        ++count;
+      }
     }
   }
   if (Fill) {

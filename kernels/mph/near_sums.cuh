@@ -87,7 +87,8 @@ template <int count>
 using Threads = std::integral_constant<int, count>;
 
 /// Runs along the list of a particle, every split-th entry from `part` on: add(load(entry)), the loads of four
-/// neighbours being on their way together.
+/// neighbours being on their way together. Where lists are shared, threads are few and wait for memory; so the last
+/// rows are loaded together, too, the particle itself in place of those that are missing, which adds nothing.
 template <class Load, class Add, class Split = Threads<1>>
 __device__ inline void alongList(const std::uint64_t* sliceStart, const ListEntry* entry, std::uint32_t i,
                                  Load&& load, Add&& add, int part = 0, Split split = {}) {
@@ -97,15 +98,21 @@ __device__ inline void alongList(const std::uint64_t* sliceStart, const ListEntr
   const auto rows = static_cast<int>(sliceStart[i / slice + 1] - begin);
   const ListEntry* mine = entry + begin * slice + i % slice;
   const auto at = [&](int row) { return mine[static_cast<std::size_t>(row) * slice]; };
-  int r = part;
-  for (; r + (batch - 1) * split < rows; r += batch * split) {
+  const auto round = [&](int r, auto&& entryOf) {
     decltype(load(at(0))) loaded[batch];
 #pragma unroll
-    for (int k = 0; k < batch; ++k) loaded[k] = load(at(r + k * split));
+    for (int k = 0; k < batch; ++k) loaded[k] = load(entryOf(r + k * split));
 #pragma unroll
     for (int k = 0; k < batch; ++k) add(loaded[k]);
+  };
+  int r = part;
+  if constexpr (split == 1) {
+    for (; r + batch <= rows; r += batch) round(r, at);
+    for (; r < rows; ++r) add(load(at(r)));
+  } else {
+    for (; r - part < rows; r += batch * split)
+      round(r, [&](int row) { return row < rows ? at(row) : ListEntry::make(i, 0); });
   }
-  for (; r < rows; r += split) add(load(at(r)));
 }
 
 /// Sum over groups of `split` consecutive lanes, in all of them.
@@ -203,11 +210,14 @@ template <class Split, int D, class T, class Weights, class Scalars, class Store
 __global__ void __launch_bounds__(128)
     nearGradientKernel(const Split split, const __grid_constant__ NearView<D, T, Weights> view, const Scalars q,
                        const __grid_constant__ Store store) {
+  waitForEarlierKernels();
   const std::uint32_t thread = blockIdx.x * blockDim.x + threadIdx.x, own = thread / split;
   if (split == 1 && own >= view.fluidCount) return;
   const std::uint32_t i = min(own, view.fluidCount - 1);  // all lanes of a warp take part in the sum
   const auto mine = q.own(view, i);
   Vec<D, T> sum{};
+  decltype(ownOf(store, i)) owned{};  // where threads are few; many hide the wait, and want registers
+  if constexpr (Split::value > 1) owned = ownOf(store, i);
   alongList(
       view.sliceStart, view.entry, i, [&](ListEntry e) { return q.other(view, e); },
       [&](const auto& other) {
@@ -216,7 +226,9 @@ __global__ void __launch_bounds__(128)
       },
       thread % split, split);
   for (int k = 0; k < D; ++k) sum[k] = splitSum(sum[k], split);
-  if (thread % split == 0 && own == i) store(i, view.mph.gradientFactor * sum);
+  if (thread % split != 0 || own != i) return;
+  if constexpr (Split::value == 1) owned = ownOf(store, i);
+  put(store, i, view.mph.gradientFactor * sum, owned);
 }
 
 /// `split` threads per particle: store(k, (C^T u)_k), walls at rest; reads positions and u of the neighbours. No
@@ -225,11 +237,14 @@ template <class Split, int D, class T, class Weights, class Vectors, class Colum
 __global__ void __launch_bounds__(128)
     nearDivergenceKernel(const Split split, const __grid_constant__ NearView<D, T, Weights> view, const Vectors u,
                          const Columns columns, const __grid_constant__ Store store) {
+  waitForEarlierKernels();
   const std::uint32_t thread = blockIdx.x * blockDim.x + threadIdx.x, own = thread / split;
   if (split == 1 && own >= view.activeCount) return;
   const std::uint32_t k = min(own, view.activeCount - 1);
   const auto mine = u.own(view, k);
   const auto b = columns.of(k);
+  decltype(ownOf(store, k)) owned{};  // where threads are few; many hide the wait, and want registers
+  if constexpr (Split::value > 1) owned = ownOf(store, k);
   T sum = 0;
   alongList(
       view.sliceStart, view.entry, k, [&](ListEntry e) { return u.other(view, e); },
@@ -239,7 +254,9 @@ __global__ void __launch_bounds__(128)
       },
       thread % split, split);
   sum = splitSum(sum, split);
-  if (thread % split == 0 && own == k) store(k, -view.mph.gradientFactor * sum);
+  if (thread % split != 0 || own != k) return;
+  if constexpr (Split::value == 1) owned = ownOf(store, k);
+  put(store, k, -view.mph.gradientFactor * sum, owned);
 }
 
 /// Calls f(split): small systems leave lanes idle, and wait for the longest list.
@@ -258,7 +275,7 @@ template <int D, class T, class Weights, class Scalars, class Store>
 void nearGradient(const Context<Cuda>& context, const NearView<D, T, Weights>& view, const Scalars& q,
                   const Store& store) {
   withSplit<D>(view.fluidCount, [&](auto split) {
-    launch(context, blocksFor(std::size_t{view.fluidCount} * split, 128), 128, 0,
+    launchEarly(context, blocksFor(std::size_t{view.fluidCount} * split, 128), 128, 0,
            nearGradientKernel<decltype(split), D, T, Weights, Scalars, Store>, split, view, q, store);
   });
 }
@@ -266,7 +283,7 @@ template <int D, class T, class Weights, class Vectors, class Columns, class Sto
 void nearDivergence(const Context<Cuda>& context, const NearView<D, T, Weights>& view, const Vectors& u,
                     const Columns& columns, const Store& store) {
   withSplit<D>(view.activeCount, [&](auto split) {
-    launch(context, blocksFor(std::size_t{view.activeCount} * split, 128), 128, 0,
+    launchEarly(context, blocksFor(std::size_t{view.activeCount} * split, 128), 128, 0,
            nearDivergenceKernel<decltype(split), D, T, Weights, Vectors, Columns, Store>, split, view, u, columns,
            store);
   });

@@ -121,6 +121,22 @@ struct ViscosityAndDivergence {
   }
 };
 
+/// What store(i, sum) or store.put(i, sum, own) needs besides the sum, fetched before the sum is there.
+template <class Store>
+__device__ inline auto ownOf(const Store& store, std::uint32_t i) {
+  if constexpr (requires { store.own(i); })
+    return store.own(i);
+  else
+    return 0;
+}
+template <class Store, class Sum, class Own>
+__device__ inline void put(const Store& store, std::uint32_t i, const Sum& sum, const Own& own) {
+  if constexpr (requires { store.own(i); })
+    store.put(i, sum, own);
+  else
+    store(i, sum);
+}
+
 /// store(i, ((rho/dt I + V) u)_i) per fluid particle; as ViscosityAndDivergence without the divergence.
 template <int D, class T, bool OneViscosity, class Mph, class V, class Store>
 struct Viscosity {
@@ -149,7 +165,7 @@ struct Viscosity {
   }
   __device__ void store(const MphPairs<D>& pairs, std::uint32_t i, const Vec<D, T>& sum) const {
     const T mu = OneViscosity ? static_cast<T>(pairs.onlyViscosity()) : T(1);
-    result(i, selfBlock[i] * fetch(&u[i]) - mph.viscousFactor * mu * sum);
+    put(result, i, selfBlock[i] * fetch(&u[i]) - mph.viscousFactor * mu * sum, ownOf(result, i));
   }
 };
 

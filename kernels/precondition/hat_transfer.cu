@@ -24,6 +24,7 @@ template <int D, class T, int Numbers, class V>
 __global__ void __launch_bounds__(128)
     restrictKernel(const __grid_constant__ HatCells<D> cells, const HatNodesView<D> nodes,
                    const CellRangesView ranges, const Vec<D, T>* place, const V* r, T* b) {
+  waitForEarlierKernels();
   constexpr int groups = 1 << D, lanes = 32 / groups;
   const std::uint32_t n = blockIdx.x * (blockDim.x / 32) + threadIdx.x / 32;
   if (n >= nodes.count) return;
@@ -103,14 +104,14 @@ void HatTransfer<D, T, Cuda>::prepare(Context<Cuda>& context, const SortedPartic
 template <int D, class T>
 void HatTransfer<D, T, Cuda>::restrict(Context<Cuda>& context, const HatNodes<D, Cuda>& nodes,
                                        std::span<const T> r, std::span<T> b) const {
-  launch(context, blocksFor(nodes.count(), 4), 128, 0, restrictKernel<D, T, 1, T>, HatCells<D>{pairs_->grid},
+  launchEarly(context, blocksFor(nodes.count(), 4), 128, 0, restrictKernel<D, T, 1, T>, HatCells<D>{pairs_->grid},
          nodes.view(), pairs_->cells, place_.data(), r.data(), b.data());
 }
 
 template <int D, class T>
 void HatTransfer<D, T, Cuda>::restrict(Context<Cuda>& context, const HatNodes<D, Cuda>& nodes,
                                        std::span<const Gathered<D, T>> r, std::span<T> b) const {
-  launch(context, blocksFor(nodes.count(), 4), 128, 0, restrictKernel<D, T, D, Gathered<D, T>>,
+  launchEarly(context, blocksFor(nodes.count(), 4), 128, 0, restrictKernel<D, T, D, Gathered<D, T>>,
          HatCells<D>{pairs_->grid}, nodes.view(), pairs_->cells, place_.data(), r.data(), b.data());
 }
 

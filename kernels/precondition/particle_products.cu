@@ -35,6 +35,31 @@ CoarsePositions<D> coarsePositions(const MphPairs<D>& pairs) {
   return c;
 }
 
+/// Where the particles stand, and B, beside what is gathered of them.
+template <int D>
+void placeParticles(const Context<Cuda>& context, const MphPairs<D>& pairs, const NearProducts<D>& near,
+                    PlacedScalar* first, PlacedScalar* second, PlacedVector<D>* vectors) {
+  const Renormalised<D> tensors{pairs.renormalisation, pairs.fluidCount};
+  forEach(context, pairs.activeCount,
+          [coarse = coarsePositions(pairs), position = near.fixedPosition().data(), tensors, first, second,
+           vectors] __device__(std::size_t i) {
+            std::uint32_t x[3] = {};
+            for (int k = 0; k < D; ++k) x[k] = coarse.of(static_cast<std::uint32_t>(position[4 * i + k]), k);
+            const std::uint64_t b =
+                tensors.b ? PackedTensor<D>::pack(tensors.of(static_cast<std::uint32_t>(i))) : 0;
+            PlacedScalar scalar{{x[0], x[1], static_cast<std::uint32_t>(b)}, 0};
+            if constexpr (D == 2) {
+              for (int k = 0; k < D; ++k) vectors[i].position[k] = static_cast<std::int32_t>(x[k]);
+            } else {
+              scalar.word[0] = vectors[i].word[0] = x[0] >> 16 | x[1];
+              scalar.word[1] = x[2] >> 16 | static_cast<std::uint32_t>(b) << 16;
+              scalar.word[2] = static_cast<std::uint32_t>(b >> 16);
+              for (int k = 0; k < 3; ++k) vectors[i].word[k + 1] = x[2] >> (16 + 6 * k) & PlacedVector<3>::low;
+            }
+            first[i] = second[i] = scalar;
+          });
+}
+
 /// The lists with these positions.
 template <int D, class T, class Weights>
 NearView<D, T, Weights> viewOf(const MphPairs<D>& pairs, const NearProducts<D>& near,
@@ -88,28 +113,7 @@ void ParticleProducts<D, T, Cuda>::prepare(Context<Cuda>& context, const MphPair
   vectors_.resize(context, pairs.activeCount);
   clearBytes(context, vectors_.data(), vectors_.size() * sizeof(vectors_.data()[0]));
   if constexpr (std::is_same_v<T, float>)
-    forEach(
-        context, pairs.activeCount,
-        [coarse = coarsePositions(pairs), position = a.near().fixedPosition().data(), first = scalars_[0].data(),
-         second = scalars_[1].data(), vectors = vectors_.data()] __device__(std::size_t i) {
-          std::uint32_t x[3] = {};
-          for (int k = 0; k < D; ++k) x[k] = coarse.of(static_cast<std::uint32_t>(position[4 * i + k]), k);
-          for (int k = 0; k < 3; ++k)
-            first[i].position[k] = second[i].position[k] = static_cast<std::int32_t>(x[k]);
-          if constexpr (D == 2) {
-            for (int k = 0; k < D; ++k) vectors[i].position[k] = static_cast<std::int32_t>(x[k]);
-          } else {
-            vectors[i].word[0] = x[0] >> 16 | x[1];
-            for (int k = 0; k < 3; ++k) vectors[i].word[k + 1] = x[2] >> (16 + 6 * k) & PlacedVector<3>::low;
-          }
-        });
-  renormalisation_.resize(context, pairs.renormalisation ? pairs.activeCount : 0);
-  forEach(context, renormalisation_.size(),
-          [from = Renormalised<D>{pairs.renormalisation, pairs.fluidCount},
-           to = renormalisation_.data()] __device__(std::size_t i) {
-            const SymmetricBlock<D> b = from.of(static_cast<std::uint32_t>(i));
-            for (int k = 0; k < b.size; ++k) to[i].a[k] = static_cast<T>(b.a[k]);
-          });
+    placeParticles(context, pairs, a.near(), scalars_[0].data(), scalars_[1].data(), vectors_.data());
   selfBlock_.resize(context, pairs.fluidCount);
   const double* from = a.selfBlock()[0].a;
   T* to = selfBlock_.data()->a;
@@ -154,44 +158,46 @@ auto gathered(VectorField<D, T, Cuda> u) {
     return PlainVectors<D, T, Gathered<D, T>>{u.at};
 }
 
-/// Calls f(view, what stands in the columns of C).
-template <int D, class T, class F>
-void withColumns(const MphPairs<D>& pairs, const NearProducts<D>& near, const PlacedTensor<D, T>* renormalisation,
-                 F&& f) {
-  withPressureTerms(pairs, [&](const auto& terms, auto renormalised) {
-    const auto view = viewOf<D, T>(pairs, near, terms);
-    if constexpr (renormalised)
-      f(view, PlacedTensors<D, T>{renormalisation});
-    else
-      f(view, Plain<D, T>{});
-  });
-}
-
-/// nearGradient with what these columns make of q.
-template <int D, class T, class View, class Columns, class Store>
-void gradientOf(const Context<Cuda>& context, const View& view, const Columns& columns, ScalarField<T, Cuda> q,
-                const Store& store) {
-  const auto scalars = gathered<D>(q);
-  if constexpr (std::is_same_v<Columns, Plain<D, T>>)
-    nearGradient(context, view, scalars, store);
+/// B as the products read it; `scalars`: either field has it.
+template <int D, class T>
+auto tensors(const MphPairs<D>& pairs, const typename ScalarField<T, Cuda>::Element* scalars) {
+  if constexpr (std::is_same_v<T, float>)
+    return PlacedTensors<D>{scalars};
   else
-    nearGradient(context, view, Stresses<D, T, std::decay_t<decltype(scalars)>, Columns>{scalars, columns}, store);
+    return Renormalised<D>{pairs.renormalisation, pairs.fluidCount};
+}
+/// A pressure times its B.
+template <int D, class T>
+auto stresses(const MphPairs<D>& pairs, ScalarField<T, Cuda> q) {
+  if constexpr (std::is_same_v<T, float>)
+    return PlacedStresses<D>{q.at};
+  else
+    return Stresses<D, T, PlainScalars<D, T>, Renormalised<D>>{{q.at}, tensors<D, T>(pairs, q.at)};
 }
 
 template <int D, class T>
 template <class Store>
 void ParticleProducts<D, T, Cuda>::gradient(Context<Cuda>& context, ScalarField<T, Cuda> q,
                                             const Store& store) const {
-  withColumns(*pairs_, a_->near(), renormalisation_.data(),
-              [&](const auto& view, const auto& columns) { gradientOf<D>(context, view, columns, q, store); });
+  withPressureTerms(*pairs_, [&](const auto& terms, auto renormalised) {
+    const auto view = viewOf<D, T>(*pairs_, a_->near(), terms);
+    if constexpr (renormalised)
+      nearGradient(context, view, stresses<D, T>(*pairs_, q), store);
+    else
+      nearGradient(context, view, gathered<D>(q), store);
+  });
 }
 
 template <int D, class T>
 template <class Store>
 void ParticleProducts<D, T, Cuda>::divergence(Context<Cuda>& context, VectorField<D, T, Cuda> u,
                                               const Store& store) const {
-  withColumns(*pairs_, a_->near(), renormalisation_.data(), [&](const auto& view, const auto& columns) {
-    nearDivergence(context, view, gathered(u), columns, store);
+  withPressureTerms(*pairs_, [&](const auto& terms, auto renormalised) {
+    const auto view = viewOf<D, T>(*pairs_, a_->near(), terms);
+    if constexpr (renormalised)
+      nearDivergence(context, view, gathered(u), tensors<D, T>(*pairs_, scalars_[0].data()), store);
+    else
+      nearDivergence(context, view, gathered(u), Plain<D, T>{}, store);
   });
 }
 
@@ -200,14 +206,14 @@ template <class Store>
 void ParticleProducts<D, T, Cuda>::schur(Context<Cuda>& context, const ProjectionTable<T>& table,
                                          ScalarField<T, Cuda> q, const Store& store) {
   const std::uint8_t* material = pairs_->material.data();
-  const auto one = [&](const auto& view, const auto& columns) {
-    if constexpr (std::is_same_v<T, float> && std::is_same_v<decltype(columns), const Plain<D, T>&>)
-      if (pairs_->activeCount <= onePassParticles<D>)
-        return nearSchur(context, view, gathered<D>(q), table, material, store);
-    gradientOf<D>(context, view, columns, q, StoreWeighted<D, T, Cuda>{table, material, vectors()});
-    nearDivergence(context, view, gathered(vectors()), columns, store);
-  };
-  withColumns(*pairs_, a_->near(), renormalisation_.data(), one);
+  if constexpr (std::is_same_v<T, float>)
+    if (pairs_->activeCount <= onePassParticles<D> && !pairs_->renormalisation)
+      return withPressureTerms(*pairs_, [&](const auto& terms, auto renormalised) {
+        if constexpr (!renormalised)
+          nearSchur(context, viewOf<D, T>(*pairs_, a_->near(), terms), gathered<D>(q), table, material, store);
+      });
+  gradient(context, q, StoreWeighted<D, T, Cuda>{table, material, vectors()});
+  divergence(context, vectors(), store);
 }
 
 template <int D, class T>
@@ -242,7 +248,7 @@ void ParticleProducts<D, T, Cuda>::inverseDiagonals(Context<Cuda>& context, cons
   };
   withPressureTerms(*pairs_, [&](const auto& terms, auto renormalised) {
     if constexpr (renormalised)
-      start(terms, PlacedTensors<D, T>{renormalisation_.data()});
+      start(terms, tensors<D, T>(*pairs_, scalars_[0].data()));
     else
       start(terms, Plain<D, T>{});
   });

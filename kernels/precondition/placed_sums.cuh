@@ -1,9 +1,15 @@
 #pragma once
 
 #include "mph/near_sums.cuh"
+#include "treacle/precondition/packed_tensor.hpp"
 #include "treacle/precondition/projection_terms.hpp"
 
 namespace treacle {
+
+/// Position of 16 bits per axis.
+__device__ inline int4 position16(int xy, int z) {
+  return {xy << 16, xy & ~0xffff, z << 16, 0};
+}
 
 /// Fields that stand beside the position, one fetch for both.
 template <int D>
@@ -11,11 +17,63 @@ struct PlacedScalars {
   const PlacedScalar* at;
   __device__ PlacedValue<D, float> own(const NearLists<D, float>&, std::uint32_t i) const {
     const int4 stored = *reinterpret_cast<const int4*>(at + i);
-    return {stored, __int_as_float(stored.w)};
+    return {D == 2 ? stored : position16(stored.x, stored.y), __int_as_float(stored.w)};
   }
   __device__ PlacedValue<D, float> other(const NearLists<D, float>& lists, ListEntry e) const {
     return own(lists, e.index());
   }
+};
+
+/// B times PackedTensor::scale of a PlacedScalar. A number among the low bits of 2^23 is 2^23 and that number.
+template <int D>
+__device__ inline SymmetricBlock<D, float> unpack(const int4& stored) {
+  using Packed = PackedTensor<D>;
+  SymmetricBlock<D, float> b;
+  constexpr unsigned magic = 0x4b000000;
+  for (int e = 0; e < b.size; ++e) {
+    unsigned number;
+    if constexpr (D == 2)
+      number = (static_cast<unsigned>(stored.z) >> Packed::bits * e & ((1u << Packed::bits) - 1)) | magic;
+    else
+      number = __byte_perm(e < 2 ? stored.y : stored.z, magic, 0x7440 + (e < 2 ? e + 2 : e - 2));
+    b.a[e] = __uint_as_float(number) - (__uint_as_float(magic) + (Packed::onDiagonal(e) ? 0 : Packed::scale / 2));
+  }
+  return b;
+}
+
+/// A pressure times its B, as it is stored.
+template <int D>
+struct PackedStress {
+  int4 stored;
+};
+template <int D>
+__device__ inline void addPressures(Vec<D, float>& sum, float g, const SymmetricBlock<D, float>& own,
+                                    const PackedStress<D>& other, const Vec<D, float>& d) {
+  const float pressure = __int_as_float(other.stored.w) * (1.f / PackedTensor<D>::scale);
+  const SymmetricBlock<D, float> b = unpack<D>(other.stored);
+  SymmetricBlock<D, float> both;
+  for (int e = 0; e < b.size; ++e) both.a[e] = fmaf(pressure, b.a[e], own.a[e]);
+  addScaled(&sum[0], g, both * d);
+}
+
+template <int D>
+struct PlacedStresses {
+  struct Other {
+    typename NearLists<D, float>::Stored x;
+    PackedStress<D> value;
+  };
+  const PlacedScalar* at;
+
+  __device__ Other load(std::uint32_t i) const {
+    const int4 stored = *reinterpret_cast<const int4*>(at + i);
+    return {D == 2 ? stored : position16(stored.x, stored.y), {stored}};
+  }
+  __device__ PlacedStress<D, float> own(const NearLists<D, float>&, std::uint32_t i) const {
+    const Other o = load(i);
+    const float pressure = __int_as_float(o.value.stored.w) * (1.f / PackedTensor<D>::scale);
+    return {o.x, pressure * unpack<D>(o.value.stored)};
+  }
+  __device__ Other other(const NearLists<D, float>&, ListEntry e) const { return load(e.index()); }
 };
 
 template <int D>
@@ -38,14 +96,11 @@ struct PlacedVectors {
   }
 };
 
-template <int D, class T>
+template <int D>
 struct PlacedTensors {
-  const PlacedTensor<D, T>* b;
-  __device__ SymmetricBlock<D, T> of(std::uint32_t k) const {
-    const PlacedTensor<D, T> placed = b[k];
-    SymmetricBlock<D, T> block;
-    for (int c = 0; c < block.size; ++c) block.a[c] = placed.a[c];
-    return block;
+  const PlacedScalar* at;
+  __device__ SymmetricBlock<D, float> of(std::uint32_t k) const {
+    return (1.f / PackedTensor<D>::scale) * unpack<D>(*reinterpret_cast<const int4*>(at + k));
   }
 };
 
@@ -57,6 +112,7 @@ __global__ void __launch_bounds__(128)
     nearSchurKernel(const __grid_constant__ NearView<D, T, Weights> view, const Scalars q,
                     const __grid_constant__ ProjectionTable<T> table, const std::uint8_t* material,
                     const __grid_constant__ Store store) {
+  waitForEarlierKernels();
   const std::uint32_t thread = blockIdx.x * blockDim.x + threadIdx.x, own = thread / Lanes;
   const std::uint32_t k = min(own, view.activeCount - 1);  // all lanes of a warp take part in the sums
   const int lane = static_cast<int>(thread % Lanes);
@@ -73,6 +129,7 @@ __global__ void __launch_bounds__(128)
     return table.weight[material[i]] * sum;
   };
   const auto xk = q.own(view, k).x;
+  const auto owned = ownOf(store, k);
   Vec<D, T> gradient{};  // sum of g, which meets k's own velocity
   T along = 0;
   const std::uint64_t begin = view.sliceStart[k / nearSlice];
@@ -91,7 +148,7 @@ __global__ void __launch_bounds__(128)
     mine[c] = __shfl_sync(~0u, mine[c], Lanes - 1, Lanes);
   }
   const T factor = view.mph.gradientFactor;
-  if (lane == 0 && own == k) store(k, -factor * factor * (along - dot(gradient, mine)));
+  if (lane == 0 && own == k) put(store, k, -factor * factor * (along - dot(gradient, mine)), owned);
 }
 
 /// Up to so many particles one pass is faster than two.
@@ -102,7 +159,7 @@ template <int D, class T, class Weights, class Scalars, class Store>
 void nearSchur(const Context<Cuda>& context, const NearView<D, T, Weights>& view, const Scalars& q,
                const ProjectionTable<T>& table, const std::uint8_t* material, const Store& store) {
   constexpr int lanes = D == 2 ? 16 : 32;
-  launch(context, blocksFor(std::size_t{view.activeCount} * lanes, 128), 128, 0,
+  launchEarly(context, blocksFor(std::size_t{view.activeCount} * lanes, 128), 128, 0,
          nearSchurKernel<lanes, D, T, Weights, Scalars, Store>, view, q, table, material, store);
 }
 }  // namespace treacle

@@ -36,47 +36,42 @@ struct PressureGalerkin {
   double* value;
 };
 
-/// (C P)_in of a fluid particle for one of the 3^D nodes around it, and w times it.
+/// What the columns of C P need of a neighbour, the same for all nodes: where it is, in cells from the lowest of
+/// the 3^D nodes, g d, and with B of the neighbour in between.
+template <int D, class T>
+struct StagedNeighbour {
+  Vec<D, T> at, plain, column;
+};
+
+/// Where a particle at `place` in its cell is from the lowest of its 3^D nodes, in cells.
+template <int D>
+__device__ inline Vec<D> fromLowest(Vec<D> place) {
+  for (int k = 0; k < D; ++k)
+    if (place[k] < 0.5) place[k] += 1;
+  return place;
+}
+
 template <bool Renormalised, int D, class T, class Weights>
-__device__ inline Vec<D, T> pressureColumn(const PressureGalerkin<D, T>& g, const NearView<D, T, Weights>& near,
-                                           std::uint32_t i, const Vec<D>& place, int n) {
-  Vec<D, T> s;  // from the node, in cells
-  for (int k = 0, digits = n; k < D; ++k, digits /= 3)
-    s[k] = static_cast<T>(place[k]) + static_cast<T>((place[k] < 0.5 ? 1 : 0) - digits % 3);
-  const auto hat = [&](const Vec<D, T>& at) {
-    T weight = 1;
-    for (int k = 0; k < D; ++k) weight *= positivePart(1 - fabs(at[k]));
-    return weight;
-  };
-  const T own = hat(s);
-  const auto xi = near.own(i);
-  Vec<D, T> sum{}, plain{};
-  const auto column = [&](std::uint32_t k, const Vec<D, T>& d) {
-    return converted<T>(g.renormalisation[k] * converted<double>(d));
-  };
-  struct Loaded {
-    typename NearLists<D, T>::Stored x;
-    std::uint32_t j;
-  };
-  alongList(
-      near.sliceStart, near.entry, i,
-      [&](ListEntry e) {
-        return Loaded{near.other(e), e.index()};
-      },
-      [&](const Loaded& other) {
-        const Vec<D, T> d = near.difference(other.x, xi);
-        Vec<D, T> at;
-        for (int k = 0; k < D; ++k) at[k] = fma(d[k], g.toCells[k], s[k]);
-        const T shape = gradientShape(near, d);
-        if constexpr (Renormalised) {
-          addScaled(&plain[0], shape * own, d);
-          addScaled(&sum[0], shape * hat(at), other.j < near.fluidCount ? column(other.j, d) : d);
-        } else {
-          addScaled(&sum[0], shape * (own + hat(at)), d);
-        }
-      });
-  if constexpr (Renormalised) sum += column(i, plain);
-  return near.mph.gradientFactor * sum;
+__device__ inline StagedNeighbour<D, T> stagedNeighbour(const PressureGalerkin<D, T>& g,
+                                                        const NearView<D, T, Weights>& near, std::uint32_t i,
+                                                        const Vec<D>& from, ListEntry e) {
+  const Vec<D, T> d = near.difference(near.other(e), near.own(i));
+  StagedNeighbour<D, T> staged;
+  for (int k = 0; k < D; ++k) staged.at[k] = fma(d[k], g.toCells[k], static_cast<T>(from[k]));
+  staged.plain = gradientShape(near, d) * d;
+  staged.column = staged.plain;
+  if constexpr (Renormalised)
+    if (e.index() < near.fluidCount)
+      staged.column = converted<T>(g.renormalisation[e.index()] * converted<double>(staged.plain));
+  return staged;
+}
+
+/// The hat of node n.
+template <int D, class T>
+__device__ inline T nodeHat(const Vec<D, T>& at, int n) {
+  T weight = 1;
+  for (int k = 0; k < D; ++k, n /= 3) weight *= positivePart(1 - fabs(at[k] - static_cast<T>(n % 3)));
+  return weight;
 }
 
 /// One block per cell: the columns of C P of its fluid particles, a few at a time in shared memory, and from them
@@ -87,27 +82,59 @@ __global__ void __launch_bounds__(D == 2 ? 96 : 256)
     cellPartsKernel(const __grid_constant__ PressureGalerkin<D, T> g,
                     const __grid_constant__ NearView<D, T, Weights> near) {
   using Parts = CellParts<D, T>;
-  constexpr int threads = D == 2 ? 96 : 256, batch = D == 2 ? 16 : 48, width = D * slots<D>;
+  constexpr int threads = D == 2 ? 96 : 256, batch = D == 2 ? 20 : 36, width = D * slots<D>;
   constexpr int mine = (Parts::gram + threads - 1) / threads;
+  // So many particles at a time have their neighbours in shared memory, and so many rows of their lists.
+  constexpr int together = threads / slots<D>, rows = D == 2 ? 12 : 24;
   __shared__ T columns[batch][width];
   __shared__ T weight[batch];
   __shared__ int half[batch];
+  __shared__ StagedNeighbour<D, T> staged[rows][together];
   const Vec<D, int> cell = g.nodes.pointOf(blockIdx.x);
   for (int k = 0; k < D; ++k)
     if (cell[k] >= g.cells.grid.count[k]) return;  // the last nodes of an open axis are no lower corners
   const std::size_t c = g.cells.grid.linear(cell);
   const std::uint32_t begin = g.ranges.fluidBegin[c], end = g.ranges.fluidEnd[c];
   T* grams = g.parts.grams + blockIdx.x * std::size_t{Parts::halves} * Parts::gram;
+  const int own = threadIdx.x / slots<D>, n = threadIdx.x % slots<D>;
+  const auto rowsOf = [&](std::uint32_t i) {
+    return static_cast<int>(near.sliceStart[i / nearSlice + 1] - near.sliceStart[i / nearSlice]);
+  };
 
   for (std::uint32_t first = begin; first < end || first == begin; first += batch) {
     const int count = static_cast<int>(min(end - first, std::uint32_t{batch}));
-    __syncthreads();
-    for (int t = threadIdx.x; t < count * slots<D>; t += threads) {
-      const int p = t / slots<D>, n = t % slots<D>;
+    for (int group = 0; group < count; group += together) {
+      const int inGroup = min(together, count - group);
+      int longest = 0;
+      for (int p = 0; p < inGroup; ++p) longest = max(longest, rowsOf(first + group + p));
+      Vec<D, T> sum{}, plain{};
+      for (int row = 0; row < longest; row += rows) {
+        __syncthreads();
+        const int inChunk = min(rows, longest - row);
+        for (int t = threadIdx.x; t < inChunk * inGroup; t += threads) {
+          const int p = t % inGroup, r = row + t / inGroup;
+          const std::uint32_t i = first + group + p;
+          const Vec<D> from = fromLowest(g.cells.fraction(g.position[i], cell));
+          const std::size_t at = (near.sliceStart[i / nearSlice] + r) * nearSlice + i % nearSlice;
+          // The particle itself, where its list has ended, adds nothing.
+          const ListEntry e = r < rowsOf(i) ? near.entry[at] : ListEntry::make(i, 0);
+          staged[t / inGroup][p] = stagedNeighbour<Renormalised>(g, near, i, from, e);
+        }
+        __syncthreads();
+        if (own >= inGroup) continue;
+        for (int r = 0; r < inChunk; ++r) {
+          const StagedNeighbour<D, T>& other = staged[r][own];
+          addScaled(&sum[0], nodeHat(other.at, n), other.column);
+          plain += other.plain;
+        }
+      }
+      if (own >= inGroup) continue;
+      const int p = group + own;
       const std::uint32_t i = first + p;
       const Vec<D> place = g.cells.fraction(g.position[i], cell);
-      const Vec<D, T> column = pressureColumn<Renormalised>(g, near, i, place, n);
-      for (int k = 0; k < D; ++k) columns[p][n * D + k] = column[k];
+      if constexpr (Renormalised) plain = converted<T>(g.renormalisation[i] * converted<double>(plain));
+      addScaled(&sum[0], nodeHat(converted<T>(fromLowest(place)), n), plain);
+      for (int k = 0; k < D; ++k) columns[p][n * D + k] = near.mph.gradientFactor * sum[k];
       if (n > 0) continue;
       weight[p] = static_cast<T>(g.table.weight[g.material[i]]);
       int h = 0;

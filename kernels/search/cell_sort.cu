@@ -5,6 +5,7 @@
 #include <cub/device/device_radix_sort.cuh>
 
 #include <algorithm>
+#include <array>
 
 namespace treacle {
 namespace {
@@ -31,6 +32,14 @@ void sortGroup(Context<Cuda>& context, std::uint32_t begin, std::uint32_t end, i
   sort();  // asks for the size
   temporary = context.scratch(std::max<std::size_t>(bytes, 1));
   sort();
+}
+
+/// One thread per particle; reads its position; an atomic sum for each one that is not finite.
+template <int D>
+void countNotFinite(Context<Cuda>& context, const Particles<D, Cuda>& particles, std::uint32_t* count) {
+  forEach(context, particles.count, [count, position = particles.position.data()] __device__(std::size_t i) {
+    if (!isFinitePosition(position[i])) atomicAdd(count, 1u);
+  });
 }
 
 /// One thread per fluid particle; reads its position, writes its key and index; atomics no.
@@ -105,10 +114,17 @@ void markCellsNearFluid(Context<Cuda>& context, const CellGrid<D>& grid, const C
           });
 }
 
+/// Room for the largest field while it is permuted. Taken before the first one is: memory that gives out between
+/// two fields would leave particles with the values of others.
+template <int D>
+void makeRoom(Context<Cuda>& context, const Particles<D, Cuda>& particles, SortWorkspace<Cuda>& w) {
+  w.field.resize(
+      context, std::max(particles.count * sizeof(Vec<D>), particles.modes.vectors.size() * sizeof(Vec<D, float>)));
+}
+
 /// One thread per particle; reads a field where the sorted index points, writes it in order; atomics no.
 template <class T>
 void permute(Context<Cuda>& context, SortWorkspace<Cuda>& w, Buffer<T, Cuda>& field) {
-  w.field.resize(context, field.size() * sizeof(T));
   T* sorted = reinterpret_cast<T*>(w.field.data());
   forEach(context, field.size(),
           [sorted, from = field.data(), index = w.sortedIndex.data()] __device__(std::size_t i) {
@@ -122,7 +138,6 @@ template <int D>
 void permuteModes(Context<Cuda>& context, SortWorkspace<Cuda>& w, Particles<D, Cuda>& particles) {
   Buffer<Vec<D, float>, Cuda>& field = particles.modes.vectors;
   if (field.empty()) return;
-  w.field.resize(context, field.size() * sizeof(Vec<D, float>));
   auto* sorted = reinterpret_cast<Vec<D, float>*>(w.field.data());
   forEach(context, field.size(),
           [sorted, from = field.data(), index = w.sortedIndex.data(),
@@ -145,9 +160,11 @@ void sortByCell(Context<Cuda>& context, const CellGrid<D>& grid, Particles<D, Cu
   w.index.resize(context, count);
   w.sortedKey.resize(context, walls);
   w.sortedIndex.resize(context, count);
-  w.count.resize(context, 2);  // active fluid, which is all, and walls
-  clearBytes(context, w.count.data(), 2 * sizeof(std::uint32_t));
+  std::array<std::uint32_t, 3> counts{};
+  w.count.resize(context, counts.size());
+  clearBytes(context, w.count.data(), sizeof(counts));
 
+  countNotFinite(context, particles, w.count.data() + 2);
   findFluidKeys(context, grid, particles, w);
   ranges.key.resize(context, fluid);
   sortGroup(context, 0, fluid, bits, w, ranges.key.data());
@@ -160,11 +177,14 @@ void sortByCell(Context<Cuda>& context, const CellGrid<D>& grid, Particles<D, Cu
   fillRanges(context, grid, fluid, walls, w.sortedKey.data(), w.sortedIndex.data() + fluid, position,
              ranges.wallBegin, ranges.wallEnd, w.count.data() + 1);
 
+  makeRoom(context, particles, w);
+  permuteModes(context, w, particles);  // first: their kernel may have to be loaded, which takes memory
   const auto permuteField = [&](auto& field) { permute(context, w, field); };
   forEachSharedFieldOf(permuteField, particles);
   forEachFluidFieldOf(permuteField, particles);
-  permuteModes(context, w, particles);
-  ranges.activeCount = fluid + valueOnHost(context, w.count.data() + 1);
+  copyBytesToHost(context, w.count.data(), counts.data(), sizeof(counts));
+  if (counts[2] > 0) throwNotFinite(counts[2]);
+  ranges.activeCount = fluid + counts[1];
 }
 
 template void sortByCell<2>(Context<Cuda>&, const CellGrid<2>&, Particles<2, Cuda>&, CellRanges<Cuda>&,

@@ -1,7 +1,9 @@
 #include "commands.hpp"
 #include "interrupt.hpp"
+#include "memory.hpp"
 #include "print.hpp"
 #include "threads.hpp"
+#include "treacle/core/cuda.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/core/version.hpp"
 #include "treacle/model/names.hpp"
@@ -212,6 +214,8 @@ int execute(int argc, char** argv) {
     return report(fmt::format("{}; --help tells more", e.what()), ExitCode::BadInput);
   } catch (const InputError& e) {
     return report(e.what(), ExitCode::BadInput);
+  } catch (const DeviceMemoryExhausted& e) {
+    return report(exhaustedText(e.numbers()), ExitCode::RunFailed);
   } catch (const std::bad_alloc&) {
     return report("memory exhausted", ExitCode::RunFailed);
   } catch (const std::exception& e) {

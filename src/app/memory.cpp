@@ -177,12 +177,26 @@ void requireMemory(const Case& c, ParticleNumbers n, const DeviceInfo* device) {
         fmt::format("{} need about {} of memory, {} available; take a lower resolution or a smaller domain",
                     contentText(c, n), bytesText(needed), bytesText(available)));
   if (!device) return;
+  if (device->freeMemory == 0)
+    throw RunError(fmt::format(
+        "{} gives no device memory: other programs have taken all of it, or have it to themselves "
+        "(nvidia-smi shows them); wait for them, choose another device by CUDA_VISIBLE_DEVICES, or take "
+        "--backend cpu",
+        device->name));
   const std::uint64_t onDevice = estimatedDeviceMemory(c, n);
   if (onDevice > device->freeMemory)
     throw RunError(
         fmt::format("{} need about {} of device memory, {} available on {}; take a lower resolution, a smaller "
                     "domain or --backend cpu",
                     contentText(c, n), bytesText(onDevice), bytesText(device->freeMemory), device->name));
+}
+
+std::string exhaustedText(const DeviceMemoryNumbers& n) {
+  return fmt::format(
+      "device memory exhausted: {}{} of {} free{}; take a lower resolution or a smaller domain, or end what else "
+      "uses the device (nvidia-smi shows it)",
+      n.wanted > 0 ? bytesText(n.wanted) + " more needed, " : "", bytesText(n.free), bytesText(n.total),
+      n.peak > 0 ? ", the run itself had up to " + bytesText(n.peak) : "");
 }
 
 std::string bytesText(std::uint64_t bytes) {

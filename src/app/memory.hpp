@@ -1,5 +1,6 @@
 #pragma once
 
+#include "treacle/core/cuda.hpp"
 #include "treacle/core/device.hpp"
 #include "treacle/model/any_particles.hpp"
 #include "treacle/model/case.hpp"
@@ -19,6 +20,9 @@ std::uint64_t estimatedDeviceMemory(const Case& c, ParticleNumbers particles);
 /// `device`: what the run computes on, null for the CPU. Errors: RunError where the case clearly needs more memory
 /// than the host, or the device, has free.
 void requireMemory(const Case& c, ParticleNumbers particles, const DeviceInfo* device);
+
+/// What to tell where device memory gave out.
+std::string exhaustedText(const DeviceMemoryNumbers& numbers);
 
 /// "1.5 GiB", "12 MiB".
 std::string bytesText(std::uint64_t bytes);

@@ -30,9 +30,17 @@ Snapshot& OutputThread::next() {
 void OutputThread::handOver() {
   {
     const std::lock_guard lock(mutex_);
+    last_ = handedOver_ % 2;
     ++handedOver_;
   }
   changed_.notify_all();
+}
+
+Snapshot& OutputThread::last() {
+  wait();
+  const std::lock_guard lock(mutex_);
+  handedOver_ = written_ = last_;  // all is written: counting may begin anywhere
+  return snapshots_[static_cast<std::size_t>(last_)];
 }
 
 void OutputThread::wait() {

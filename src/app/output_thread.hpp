@@ -29,6 +29,10 @@ class OutputThread {
   Snapshot& next();
   void handOver();
 
+  /// The snapshot that was handed over last, as long as next() has not given it out again, to be handed over once
+  /// more. Waits until it is written. Errors: what `write` threw.
+  Snapshot& last();
+
   /// Returns when all that was handed over is written. Errors: what `write` threw.
   void wait();
 
@@ -43,6 +47,7 @@ class OutputThread {
   mutable std::mutex mutex_;  // of all below
   std::condition_variable changed_;
   std::int64_t handedOver_ = 0, written_ = 0;  // the k-th snapshot stands in place k % 2
+  std::int64_t last_ = 0;                      // place of the last one handed over
   bool closed_ = false;
   std::exception_ptr failure_;
   double seconds_ = 0;

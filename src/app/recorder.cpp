@@ -83,27 +83,28 @@ void Recorder::wait() {
 
 void Recorder::writeFrame() {
   wait();
-  Snapshot& snapshot = takeSnapshot();
-  if (frameStep_ == snapshot.step) return;
-  handOver(snapshot, true, false);
+  Snapshot* snapshot = finalSnapshot();
+  if (!snapshot || frameStep_ == snapshot->step) return;
+  handOver(*snapshot, true, false);
   wait();
 }
 
 void Recorder::writeCheckpoint() {
   wait();
-  Snapshot& snapshot = takeSnapshot();
-  if (checkpointStep_ == snapshot.step) return;
-  handOver(snapshot, false, true);
+  Snapshot* snapshot = finalSnapshot();
+  if (!snapshot || checkpointStep_ == snapshot->step) return;
+  handOver(*snapshot, false, true);
   wait();
 }
 
 void Recorder::drawPicture() {
+  const Snapshot* state = finalSnapshot();
+  if (!state) return;
   PictureOptions options;
   options.spacing = case_.spacing;
   options.gravity = case_.gravity;
   options.title = case_.title;
-  const Snapshot& state = takeSnapshot();
-  drawFrame(directory_.finalPicture(), fluidFrame(state), wallsFrame(state), options);
+  drawFrame(directory_.finalPicture(), fluidFrame(*state), wallsFrame(*state), options);
 }
 
 std::vector<std::string> Recorder::takeWarnings() {
@@ -131,9 +132,18 @@ void Recorder::summarise(RunSummary& summary) const {
 Snapshot& Recorder::takeSnapshot() {
   Timer timer;
   Snapshot& snapshot = output_.next();
+  snapshot.whole = false;
   copyState_(snapshot);
+  snapshot.whole = true;
   outputSeconds_ += timer.lap();
   return snapshot;
+}
+
+/// What the run ends with; null where it is lost.
+Snapshot* Recorder::finalSnapshot() {
+  if (!isLost_) return &takeSnapshot();
+  Snapshot& last = output_.last();
+  return last.whole ? &last : nullptr;
 }
 
 void Recorder::handOver(Snapshot& snapshot, bool frame, bool checkpoint) {

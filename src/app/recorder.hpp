@@ -48,6 +48,10 @@ class Recorder {
 
   void drawPicture();
 
+  /// The simulation's memory is lost, with a device: in place of the state as it is stands from now on the last
+  /// one that was copied, that of the last frame or checkpoint, where there is one.
+  void loseSimulation() { isLost_ = true; }
+
   /// What is to be said about frames written since the call before.
   std::vector<std::string> takeWarnings();
 
@@ -56,6 +60,7 @@ class Recorder {
 
  private:
   Snapshot& takeSnapshot();
+  Snapshot* finalSnapshot();
   void handOver(Snapshot& snapshot, bool frame, bool checkpoint);
   void write(const Snapshot& snapshot);
   void note(const Arrangement& arrangement, double time);
@@ -77,6 +82,7 @@ class Recorder {
   ArrangementWatch watch_;
   std::mutex warningsMutex_;
   std::vector<std::string> warnings_;
+  bool isLost_ = false;
   PhaseSeconds seconds_;
   double outputSeconds_ = 0;  // that the simulation had to wait
   OutputThread output_;       // last: it uses the others

@@ -122,10 +122,15 @@ void Run::attempt(const std::function<void()>& action) {
     action();
     return;
   } catch (const DeviceMemoryExhausted& e) {
-    diagnosis = fmt::format("device memory exhausted: {} in use at the peak, {} on the device",
-                            bytesText(e.peakBytes()), bytesText(e.totalBytes()));
+    diagnosis = exhaustedText(e.numbers());
   } catch (const std::bad_alloc&) {
     diagnosis = "memory exhausted";
+  } catch (const DeviceFailure& e) {
+    diagnosis = fmt::format(
+        "{}; nvidia-smi and the system's log (NVRM, Xid) tell whether the device or its driver is at fault",
+        e.what());
+    isDeviceLost_ = true;
+    if (recorder_) recorder_->loseSimulation();
   } catch (const std::runtime_error& e) {
     diagnosis = e.what();
   }
@@ -150,7 +155,7 @@ void Run::finish() {
                     "{:.3g}",
                     watched_.energy, watched_.courant, watched_.insideWalls, watched_.density));
   }
-  if (simulation_) attempt([&] { summary_.peakDeviceMemory = simulation_->peakBytes(); });
+  if (simulation_ && !isDeviceLost_) attempt([&] { summary_.peakDeviceMemory = simulation_->peakBytes(); });
   summary_.wallSeconds = timer_.lap();
   summary_.peakMemory = peakMemory();
   summary_.done = failure_.empty();

@@ -59,6 +59,7 @@ class Run {
   RunSummary summary_;
   std::string failure_;
   bool fellBack_ = false;
+  bool isDeviceLost_ = false;
   Watched watched_;  // the largest of all steps
 };
 

@@ -15,6 +15,7 @@ struct Snapshot {
   double time = 0;     // [s]
   int iterations = 0;  // of the step; 0 for the state at the start
   bool frame = false, checkpoint = false;
+  bool whole = false;  // not while it is being filled
 };
 
 }  // namespace treacle

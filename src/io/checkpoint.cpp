@@ -22,8 +22,8 @@ namespace treacle {
 namespace {
 
 constexpr std::string_view formatName = "treacle checkpoint";
-constexpr std::int32_t formatVersion = 4;  // 1: without acceleration and jerk; 2: without bodies and modes; 3:
-                                           // without method and checksums
+constexpr std::int32_t formatVersion = 5;  // 1: without acceleration and jerk; 2: without bodies and modes; 3:
+                                           // without method and checksums; 4: without kept eigenvalue
 
 /// A field as the file holds it.
 struct FieldInfo {
@@ -219,6 +219,10 @@ void fill(hid_t file, const Particles<D>& particles, std::int64_t step, double t
   writeAttribute(file, "mode_count", particles.modeCount());
   writeAttribute(file, "modes_due", age.due);
   writeAttribute(file, "modes_fewest_iterations", age.fewest);
+  const KeptEigenvalue& pressure = particles.modes.pressure;
+  writeAttribute(file, "pressure_eigenvalue", pressure.value);
+  writeAttribute(file, "pressure_eigenvalue_due", pressure.due);
+  writeAttribute(file, "pressure_eigenvalue_fewest_iterations", pressure.fewest);
   forEachNamedField(particles, [&](const FieldInfo& info, const auto& field) { writeField(file, info, field); });
 }
 
@@ -266,6 +270,16 @@ std::uint32_t readModeNumbers(hid_t file, ModeAge& age) {
   return count;
 }
 
+/// Errors: Hdf5Error for what no solver keeps.
+KeptEigenvalue readEigenvalue(hid_t file) {
+  const KeptEigenvalue kept{readAttribute<double>(file, "pressure_eigenvalue"),
+                            readAttribute<std::int32_t>(file, "pressure_eigenvalue_due"),
+                            readAttribute<std::int32_t>(file, "pressure_eigenvalue_fewest_iterations")};
+  if (!(kept.value >= 0) || !std::isfinite(kept.value) || kept.due > KeptEigenvalue::longest)
+    throw Hdf5Error(fmt::format("an eigenvalue of {} for {} more solves", kept.value, kept.due));
+  return kept;
+}
+
 void requireReadable(const std::filesystem::path& path) {
   std::error_code error;
   static_cast<void>(std::filesystem::file_size(path, error));
@@ -287,6 +301,7 @@ Checkpoint<D> readContent(const std::filesystem::path& path, bool sealed) {
   Particles<D>& particles = checkpoint.particles;
   std::uint32_t modes = 0;
   if (version >= 3) modes = readModeNumbers(file, particles.modes.age);
+  if (version >= 5) particles.modes.pressure = readEigenvalue(file);
   const auto read = [&]<class T>(const FieldInfo& info, Buffer<T>& field) {
     if (version >= info.since) return readField(file, info, field);
     field.resize(info.count);
@@ -306,6 +321,7 @@ void writeCheckpoint(const std::filesystem::path& path, const Particles<D>& part
                      double time, MethodKind method) {
   const Hdf5Silence silence;
   try {
+    requireSound(particles);  // what cannot be read back must not replace what can
     // HDF5 makes the file in memory: it cannot close a file that a full disk keeps it from finishing.
     std::size_t bytes = 1 << 16;
     forEachNamedField(particles, [&](const FieldInfo&, const auto& field) { bytes += field.bytes(); });

@@ -52,8 +52,9 @@ void invertTriangle(std::vector<double>& m, std::size_t n) {
 
 }  // namespace
 
-template <class T, int B>
-void denseInverse(Context<Cpu>&, const BlockCsr<B>& a, std::span<T> inverse) {
+template <class T>
+template <int B>
+void DenseInverses<T, Cpu>::add(Context<Cpu>&, const BlockCsr<B>& a, std::span<T> inverse) {
   const std::size_t n = std::size_t{B} * a.rows();
   std::vector<double> m = lowerTriangle<T>(a);
   factorise(m, n);
@@ -67,9 +68,9 @@ void denseInverse(Context<Cpu>&, const BlockCsr<B>& a, std::span<T> inverse) {
   });
 }
 
-#define TREACLE_INSTANTIATE(B)                                                                 \
-  template void denseInverse<double, B>(Context<Cpu>&, const BlockCsr<B>&, std::span<double>); \
-  template void denseInverse<float, B>(Context<Cpu>&, const BlockCsr<B>&, std::span<float>);
+#define TREACLE_INSTANTIATE(B)                                                                    \
+  template void DenseInverses<double, Cpu>::add(Context<Cpu>&, const BlockCsr<B>&, std::span<double>); \
+  template void DenseInverses<float, Cpu>::add(Context<Cpu>&, const BlockCsr<B>&, std::span<float>);
 TREACLE_INSTANTIATE(1)
 TREACLE_INSTANTIATE(2)
 TREACLE_INSTANTIATE(3)

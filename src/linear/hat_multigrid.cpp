@@ -4,7 +4,8 @@ namespace treacle {
 
 template <int D, class T, class Backend, int B>
 void HatMultigrid<D, T, Backend, B>::setup(Context<Backend>& context, const HatNodes<D, Backend>& finestNodes,
-                                           const BlockCsr<B, double, Backend>& finest, const HatOptions& options) {
+                                           const BlockCsr<B, double, Backend>& finest, const HatOptions& options,
+                                           DenseInverses<T, Backend>& inverses) {
   finestNodes_ = &finestNodes;
   finestMatrix_ = &finest;
   options_ = options;
@@ -16,7 +17,7 @@ void HatMultigrid<D, T, Backend, B>::setup(Context<Backend>& context, const HatN
   }
   const std::size_t last = levels_.size() - 1, n = isDense(last) ? unknowns(last) : 0;
   inverse_.resize(context, n * n);
-  if (n > 0) denseInverse<T>(context, operatorOf(last), inverse_);
+  if (n > 0) inverses.add(context, operatorOf(last), inverse_.span());
 }
 
 /// The memory of an earlier setup's levels is used again.

@@ -15,9 +15,7 @@ SolveReport conjugateGradient(Context<Backend>& context, const Product& a, const
   a(x, r.span());
   residual(context, b, r, scalars);
   if (deflation) deflation->guess(context, x, r.span(), scalars);
-  const SolveReport atStart = workspace.loop.report(context);
-  if (atStart.status != SolveStatus::Running) return atStart;
-
+  // Before the host waits: a device works while its graph is made.
   workspace.loop.record(context, [&] {
     k(r.span(), z.span());
     if (deflation)
@@ -28,6 +26,8 @@ SolveReport conjugateGradient(Context<Backend>& context, const Product& a, const
     stepDot(context, p, q, scalars);
     updateCg(context, {p, q, x, r}, scalars);
   });
+  const SolveReport atStart = workspace.loop.report(context);
+  if (atStart.status != SolveStatus::Running) return atStart;
   return workspace.loop.run(context);
 }
 

@@ -57,7 +57,7 @@ ProjectionDegrees chooseDegrees(ProjectionDegrees chosen, const ProjectionConsta
 template <int D, class T, class Backend>
 void ProjectedMultigrid<D, T, Backend>::setup(Context<Backend>& context, const MphPairs<D>& pairs,
                                               const WallTerms<D>& terms, const MphOperator<D, Backend>& a,
-                                              const ProjectionDegrees& degrees) {
+                                              const ProjectionDegrees& degrees, KeptEigenvalue* kept) {
   pairs_ = &pairs;
   degrees_ = degrees;
   const ProjectionConstants constants = projectionConstants(pairs);
@@ -67,12 +67,14 @@ void ProjectedMultigrid<D, T, Backend>::setup(Context<Backend>& context, const M
   products_.inverseDiagonals(context, table_, inversePressure_, inverseVelocity_);
   setupGrids(context, terms, a, constants.table<double>(gridPressureShift));
 
+  if (kept && kept->isKnown()) return lambdaMax_.assume(context, static_cast<T>(kept->value));
   const auto product = [&](std::span<const T> x, std::span<T> y) {
     products_.gather(context, x);
     products_.schur(context, table_, products_.scalars(),
                     StorePressure<T, Backend>{table_, pairs.material.data(), products_.scalars(), y.data()});
   };
   lambdaMax_.run(context, product, inversePressure_);
+  if (kept) kept->estimated(lambdaMax_.onHost(context));
 }
 
 template <int D, class T, class Backend>
@@ -85,14 +87,16 @@ void ProjectedMultigrid<D, T, Backend>::setupGrids(Context<Backend>& context, co
     pressureGalerkin(context, *pairs_, a.near(), table, pressureNodes_, galerkinWorkspace_, pressureMatrix_);
   else
     pressureGalerkin(context, *pairs_, table, pressureNodes_, galerkinWorkspace_, pressureMatrix_);
-  pressureGrids_.setup(context, pressureNodes_, pressureMatrix_, {degrees_.grid});
+  DenseInverses<T, Backend> inverses;
+  pressureGrids_.setup(context, pressureNodes_, pressureMatrix_, {degrees_.grid}, inverses);
 
   findHatNodes(context, *pairs_, HatsOn::Fluid, velocityNodes_);
   if constexpr (std::is_same_v<Backend, Cuda>)
     viscousGalerkin(context, *pairs_, terms, velocityNodes_, moments_, galerkinWorkspace_, velocityMatrix_);
   else
     viscousGalerkin(context, *pairs_, terms, velocityNodes_, moments_, velocityMatrix_);
-  velocityGrids_.setup(context, velocityNodes_, velocityMatrix_, {degrees_.velocity, 1});
+  velocityGrids_.setup(context, velocityNodes_, velocityMatrix_, {degrees_.velocity, 1}, inverses);
+  inverses.finish(context);
 }
 
 template <int D, class T, class Backend>

@@ -22,8 +22,11 @@ void sortGroup(Particles<D>& particles, std::uint32_t begin, std::uint32_t end, 
   };
   if (std::is_sorted(keyed.begin(), keyed.end(), before)) return;  // walls at rest, most of the time
   std::sort(keyed.begin(), keyed.end(), before);
+  // All room is taken before the first field: memory that gives out between two would leave particles with the
+  // values of others.
+  workspace.field.resize(keyed.size() * sizeof(Vec<D>));
   const auto permute = [&]<class T>(T* field) {  // one value per particle
-    workspace.field.resize(keyed.size() * sizeof(T));
+    static_assert(sizeof(T) <= sizeof(Vec<D>));
     T* sorted = reinterpret_cast<T*>(workspace.field.data());
     parallelFor(keyed.size(), parallelGrain, [&](std::size_t i) { sorted[i] = field[keyed[i].index]; });
     std::memcpy(field + begin, sorted, keyed.size() * sizeof(T));
@@ -68,6 +71,9 @@ template <int D>
 void sortByCell(Context<Cpu>&, const CellGrid<D>& grid, Particles<D>& particles, CellRanges<>& ranges,
                 SortWorkspace<>& workspace) {
   const std::uint32_t fluid = particles.fluidCount, count = particles.count;
+  if (const auto bad =
+          std::ranges::count_if(particles.position, [](const auto& x) { return !isFinitePosition(x); }))
+    throwNotFinite(static_cast<std::uint64_t>(bad));
   workspace.keyed.resize(count);
   KeyedIndex* keyed = workspace.keyed.data();
 

@@ -49,10 +49,11 @@ void ModeKeeper<D, Backend>::finish(Context<Backend>& context, SolverModes<D, Ba
   const RitzVectors ritz = deflation_.ritzVectors(context, report.iterations, most);
   if (solve_ == Kind::Looked && ritz.modes > 0) return modes.age.foundWorthTaking();
   modes.age.taken();
-  if (ritz.modes > 0) {
-    modes.vectors.resize(context, ritz.modes * particles_);
-    return deflation_.takeModes(context, ritz, flat(modes));
-  }
+  if (ritz.modes > 0) try {
+      modes.vectors.resize(context, ritz.modes * particles_);
+      return deflation_.takeModes(context, ritz, flat(modes));
+    } catch (const std::bad_alloc&) {  // then without modes, too
+    }
   modes.vectors = {};
   deflation_.release();
 }

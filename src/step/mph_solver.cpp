@@ -84,7 +84,8 @@ template <class T>
 void MphSystem<D, Backend>::prepare(Context<Backend>& context, Preconditioner<T>& k) {
   if (stage_.preconditioner == PreconditionerKind::None) return;
   if (stage_.preconditioner == PreconditionerKind::ProjectedMultigrid)
-    return k.projected.setup(context, *pairs_, terms_, matrixFree_, degreesOf(stage_.projected, *pairs_));
+    return k.projected.setup(context, *pairs_, terms_, matrixFree_, degreesOf(stage_.projected, *pairs_),
+                             pressure_);
   diagonal_.resize(context, pairs_->fluidCount);
   diagonalBlocks<D>(context, *pairs_, terms_, diagonal_);
   if (stage_.preconditioner == PreconditionerKind::BlockJacobi) {

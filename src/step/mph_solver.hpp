@@ -23,6 +23,9 @@ class MphSystem final : public StagedSystem<Backend> {
   /// What the system of a step is made of. All of it must outlive the solves.
   void setStep(const MphPairs<D>& pairs, const CellRanges<Backend>& ranges, const WallTerms<D>& terms);
 
+  /// What the next preconditioner may use of those before it; null: nothing.
+  void keepEigenvalue(KeptEigenvalue* pressure) { pressure_ = pressure; }
+
   void prepareOperator(Context<Backend>&, const SolverSettings& stage) override;
   void preparePreconditioner(Context<Backend>&, const SolverSettings& stage) override;
   void multiply(Context<Backend>&, std::span<const double> x, std::span<double> y) override;
@@ -48,6 +51,7 @@ class MphSystem final : public StagedSystem<Backend> {
   void prepareMultigrid(Context<Backend>&, Preconditioner<T>&);
 
   SolverSettings stage_;  // the one that is prepared
+  KeptEigenvalue* pressure_ = nullptr;
   const MphPairs<D>* pairs_ = nullptr;
   const CellRanges<Backend>* ranges_ = nullptr;
   WallTerms<D> terms_{};
@@ -80,8 +84,12 @@ class MphSolver {
     system_.setStep(pairs, ranges, terms);
     solver_.prepareOperator(context);
   }
-  /// Diagonals and coarse operators.
-  void preparePreconditioner(Context<Backend>& context) { solver_.preparePreconditioner(context); }
+  /// Diagonals and coarse operators. `pressure`: of the steps before, or none; the first stage uses and renews it.
+  void preparePreconditioner(Context<Backend>& context, KeptEigenvalue* pressure = nullptr) {
+    system_.keepEigenvalue(pressure);
+    solver_.preparePreconditioner(context);
+    system_.keepEigenvalue(nullptr);
+  }
 
   /// `u`: first guess and solution, per fluid particle; `modes`, in the order of the fluid, and `history`: those
   /// of StagedSolver.

@@ -50,7 +50,9 @@ class MphStep final : public StepMethod<D, Backend> {
     solver_.prepareOperator(state_.context, pairs_, neighbourhood_.ranges(), wallTermsView());
   }
 
-  void preparePreconditioner() override { solver_.preparePreconditioner(state_.context); }
+  void preparePreconditioner() override {
+    solver_.preparePreconditioner(state_.context, &state_.particles.modes.pressure);
+  }
 
   /// Leaves the walls' velocities in state.velocity, too.
   StagedReport solve() override {
@@ -59,8 +61,12 @@ class MphStep final : public StepMethod<D, Backend> {
     state_.velocity.resize(state_.context, active);
     copyValues(state_.context, last.subspan(n, active - n), state_.velocity.data() + n);
     guess(state_.velocity.span().first(n));
-    StagedReport report =
-        solver_.solve(state_.context, rhs_, state_.velocity.span().first(n), &state_.particles.modes);
+    SolverModes<D, Backend>& modes = state_.particles.modes;
+    StagedReport report = solver_.solve(state_.context, rhs_, state_.velocity.span().first(n), &modes);
+    if (report.fallbacks == 0 && report.status == SolveStatus::Converged)
+      modes.pressure.solved(report.iterations);
+    else
+      modes.pressure = {};
     if (report.status == SolveStatus::Converged) return report;
     std::string diagnosis = describeFailure(report, state_.theCase.solver.tolerance, report.failures);
     if (report.status == SolveStatus::NotFinite) diagnosis += "; " + notFiniteOnHost();

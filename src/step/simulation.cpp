@@ -52,6 +52,7 @@ template <int D>
 void toHost(const Context<Cpu>&, const Particles<D>& particles, Particles<D>& host) {
   host.resize(particles.numbers());
   host.modes.age = particles.modes.age;
+  host.modes.pressure = particles.modes.pressure;
   forEachFieldOf([](const auto& from, auto& to) { std::copy(from.begin(), from.end(), to.begin()); }, particles,
                  host);
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <new>
 #include <span>
+#include <stdexcept>
 #include <utility>
 
 struct CUstream_st;
@@ -13,7 +14,7 @@ struct CUmemPoolHandle_st;
 namespace treacle {
 
 /// The stream that everything on a device is ordered by, the pool that its memory comes from, and what the
-/// reductions on it need. Errors: std::runtime_error with the CUDA message.
+/// reductions on it need. Errors: DeviceMemoryExhausted, DeviceFailure.
 template <>
 class Context<Cuda> {
  public:
@@ -44,6 +45,8 @@ class Context<Cuda> {
   unsigned* ticket() const { return ticket_; }
 
  private:
+  explicit Context(bool usesGraphs) noexcept;
+
   CUstream_st* stream_ = nullptr;
   CUmemPoolHandle_st* pool_ = nullptr;
   double* partialSums_ = nullptr;
@@ -53,17 +56,30 @@ class Context<Cuda> {
   bool usesGraphs_ = true;
 };
 
-/// The device has not enough memory for what was asked of it.
+/// What is known where device memory does not suffice [B]; 0: not known.
+struct DeviceMemoryNumbers {
+  std::size_t wanted = 0;           // at once
+  std::size_t free = 0, total = 0;  // of the device
+  std::size_t peak = 0;             // largest amount that the context had in use at one time
+};
+
+/// The device has not enough memory for what was asked of it. Nothing else is wrong with it.
 class DeviceMemoryExhausted : public std::bad_alloc {
  public:
-  DeviceMemoryExhausted(std::size_t peak, std::size_t total) : peak_(peak), total_(total) {}
+  explicit DeviceMemoryExhausted(const DeviceMemoryNumbers& numbers) : numbers_(numbers) {}
 
-  std::size_t peakBytes() const { return peak_; }    // largest amount that was in use at one time [B]
-  std::size_t totalBytes() const { return total_; }  // of the device [B]
+  const DeviceMemoryNumbers& numbers() const { return numbers_; }
   const char* what() const noexcept override { return "device memory exhausted"; }
 
  private:
-  std::size_t peak_, total_;
+  DeviceMemoryNumbers numbers_;
+};
+
+/// CUDA reports anything else, a wrong access or a device that is gone: what is in the device's memory is lost,
+/// and in most cases the process cannot use the device any more.
+class DeviceFailure : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
 };
 
 /// Stream-ordered memory of the context's pool. Errors: DeviceMemoryExhausted.

@@ -20,7 +20,8 @@ struct Checkpoint {
 };
 
 /// Writes an HDF5 file under a temporary name, then renames it: an older checkpoint stays until the new one is
-/// complete. Takes as much memory as the particles meanwhile. Errors: RunError with path and reason.
+/// complete. Takes as much memory as the particles meanwhile. Errors: RunError with path and reason, also for
+/// values that no simulation has, as readCheckpoint would refuse.
 template <int D>
 void writeCheckpoint(const std::filesystem::path& path, const Particles<D>& particles, std::int64_t step,
                      double time, MethodKind method);

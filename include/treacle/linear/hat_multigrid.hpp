@@ -37,9 +37,16 @@ class HatMultigrid {
       : denseUnknowns_(denseUnknowns) {}
 
   /// `finest`: symmetric positive (semi-)definite, within the pattern of hatPattern(nodes, reach). Both must stay
-  /// where and what they are until the last cycle.
+  /// where and what they are until the last cycle. The inverse of the last level is left to `inverses`.
   void setup(Context<Backend>& context, const HatNodes<D, Backend>& nodes,
-             const BlockCsr<B, double, Backend>& finest, const HatOptions& options);
+             const BlockCsr<B, double, Backend>& finest, const HatOptions& options,
+             DenseInverses<T, Backend>& inverses);
+  void setup(Context<Backend>& context, const HatNodes<D, Backend>& nodes,
+             const BlockCsr<B, double, Backend>& finest, const HatOptions& options) {
+    DenseInverses<T, Backend> inverses;
+    setup(context, nodes, finest, options, inverses);
+    inverses.finish(context);
+  }
 
   /// B numbers per finest node, in the backend's memory; a cycle leaves the right-hand side as it is.
   std::span<T> rhs() { return levels_.front().b; }

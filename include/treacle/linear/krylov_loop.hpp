@@ -6,6 +6,7 @@
 
 #include <functional>
 
+struct CUgraph_st;
 struct CUgraphExec_st;
 
 namespace treacle {
@@ -37,7 +38,8 @@ class KrylovLoop<Cpu> {
 };
 
 /// On the device the loop is a graph with a conditional node: the host launches it once and looks at the scalars
-/// when it has ended.
+/// when it has ended. The graph of the last solve is kept, since to give its kernels new arguments takes a third of
+/// the time that a new graph takes.
 template <>
 class KrylovLoop<Cuda> {
  public:
@@ -53,7 +55,10 @@ class KrylovLoop<Cuda> {
   SolveReport run(Context<Cuda>&);
 
  private:
+  void capture(Context<Cuda>&, const std::function<void()>& body, CUgraph_st* graph);
+
   Buffer<KrylovScalars, Cuda> scalars_;
+  CUgraph_st* source_ = nullptr;  // what the graph was made of last: its condition is known to both
   CUgraphExec_st* graph_ = nullptr;
   std::function<void()> body_;  // where the context does without graphs
 };

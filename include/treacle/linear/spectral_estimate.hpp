@@ -87,6 +87,14 @@ class SpectralEstimate {
   /// The estimate, margin included; 1 where no unknown takes part. In the backend's memory.
   const T* largest() const { return largest_.data(); }
 
+  /// The same, waited for.
+  T onHost(Context<Backend>& context) const {
+    if constexpr (std::is_same_v<Backend, Cpu>)
+      return *largest();
+    else
+      return valueOnHost(context, largest());
+  }
+
   std::size_t bytes() const { return r_.bytes() + p_.bytes() + q_.bytes() + scalars_.bytes() + largest_.bytes(); }
 
  private:

@@ -96,6 +96,7 @@ struct Particles {
     forEachFluidFieldOf(resizeTo(fluid), *this);
     modes.vectors.resize(context, fluid * numbers.modes);
     modes.age = {};
+    modes.pressure = {};
     wallSurface.resize(context, numbers.surfaces);
   }
 

@@ -94,8 +94,7 @@ class ParticleProducts<D, T, Cuda> {
   void gather(Context<Cuda>&, std::span<const Gathered<D, T>> u);
   void gatherWeighted(Context<Cuda>&, const ProjectionTable<T>& table, std::span<const Vec<D>> u);
   std::size_t bytes() const {
-    return selfBlock_.bytes() + scalars_[0].bytes() + scalars_[1].bytes() + vectors_.bytes() +
-           renormalisation_.bytes();
+    return selfBlock_.bytes() + scalars_[0].bytes() + scalars_[1].bytes() + vectors_.bytes();
   }
 
  private:
@@ -104,7 +103,6 @@ class ParticleProducts<D, T, Cuda> {
   Buffer<typename ScalarField<T, Cuda>::Element, Cuda> scalars_[2];
   Buffer<typename VectorField<D, T, Cuda>::Element, Cuda> vectors_;  // those of walls are zero
   Buffer<Block<D, T>, Cuda> selfBlock_;                              // diagonal block of rho/dt I + V
-  Buffer<PlacedTensor<D, T>, Cuda> renormalisation_;                 // per particle, if the pairs have B
 };
 
 }  // namespace treacle

@@ -13,9 +13,9 @@
 namespace treacle {
 
 /// What the projected multigrid does with each sum over neighbours, the same on all backends. One call per
-/// particle, by store(k, sum), or store.put(k, sum, m) where the material m is at hand; nothing here reads another
-/// particle, so a sum may be taken from `correction` while it is overwritten elsewhere only where the text says
-/// so.
+/// particle, store.put(k, sum, m) with its material m, or store.put(k, sum, store.own(k)) with what else is needed of it;
+/// nothing here reads another particle, so a sum may be taken from `correction` while it is overwritten elsewhere
+/// only where the text says so.
 
 /// Per material, in the precision of the preconditioner.
 template <class T>
@@ -41,8 +41,10 @@ struct ScalarField {
   Element* at;
   TREACLE_HD T& operator[](std::size_t k) const { return at[k]; }
 };
+/// In two dimensions words 0 and 1 are the position and word 2 is B (PackedTensor); in three dimensions positions
+/// have 16 bits (ParticleProducts), words 0 and 1 hold them from the low bits of word 0 on, and then B.
 struct alignas(16) PlacedScalar {
-  std::int32_t position[3];
+  std::uint32_t word[3];
   float value;
 };
 template <>
@@ -88,12 +90,6 @@ struct VectorField<D, float, Cuda> {
   TREACLE_HD void set(std::size_t i, const Vec<D, float>& v) const { at[i].set(v); }
 };
 
-/// B of a particle (renormalisation.hpp) as a device fetches it, 16 bytes at a time; that of walls is there, too.
-template <int D, class T>
-struct alignas(16) PlacedTensor {
-  T a[SymmetricBlock<D, T>::size];
-};
-
 /// The three vectors of a Chebyshev smoother: residual, last correction z, iterate x.
 template <class V, class Correction = V*>
 struct SmootherVectors {
@@ -115,7 +111,7 @@ struct StartPressure {
   PressureVectors<T, Backend> v;
   bool holdsPressure;
 
-  TREACLE_HD void operator()(std::uint32_t k, T divergence) const { put(k, divergence, material[k]); }
+  TREACLE_HD std::uint8_t own(std::size_t k) const { return material[k]; }
   TREACLE_HD void put(std::size_t k, T divergence, std::uint8_t m) const {
     T b = divergence;
     if (holdsPressure) b -= table.inverseLambda[m] * v.solution[k];
@@ -139,13 +135,24 @@ struct PressureStep {
   PressureVectors<T, Backend> v;
   ScalarField<T, Backend> next;  // another one than the correction, which neighbours may still gather
 
-  TREACLE_HD void operator()(std::uint32_t k, T divergence) const { put(k, divergence, material[k]); }
-  TREACLE_HD void put(std::size_t k, T divergence, std::uint8_t m) const {
-    const T z = v.correction[k], r = v.residual[k] - (divergence + table.shift[m] * z);
+  /// What else the step needs of a particle: a device fetches it while the neighbours are on their way.
+  struct Own {
+    T residual, correction, solution, inverseDiagonal, lambdaMax;
+    std::uint8_t material;
+  };
+  TREACLE_HD Own own(std::size_t k, std::uint8_t m) const {
+    if constexpr (Kind == StepKind::Residual) return {v.residual[k], v.correction[k], 0, 0, 1, m};
+    return {v.residual[k], v.correction[k], v.solution[k], inverseDiagonal[k], *lambdaMax, m};
+  }
+  TREACLE_HD Own own(std::size_t k) const { return own(k, material[k]); }
+
+  TREACLE_HD void put(std::size_t k, T divergence, std::uint8_t m) const { put(k, divergence, own(k, m)); }
+  TREACLE_HD void put(std::size_t k, T divergence, const Own& o) const {
+    const T r = o.residual - (divergence + table.shift[o.material] * o.correction);
     v.residual[k] = r;
     if constexpr (Kind != StepKind::Residual) {
-      const T change = step.previous * z + step.gain / *lambdaMax * inverseDiagonal[k] * r;
-      const T x = v.solution[k] + change;
+      const T change = step.previous * o.correction + step.gain / o.lambdaMax * o.inverseDiagonal * r;
+      const T x = o.solution + change;
       next[k] = Kind == StepKind::Next ? change : x;
       v.solution[k] = x;
     }
@@ -160,7 +167,7 @@ struct StorePressure {
   ScalarField<T, Backend> x;
   T* y;
 
-  TREACLE_HD void operator()(std::uint32_t k, T divergence) const { put(k, divergence, material[k]); }
+  TREACLE_HD std::uint8_t own(std::size_t k) const { return material[k]; }
   TREACLE_HD void put(std::size_t k, T divergence, std::uint8_t m) const {
     y[k] = divergence + table.shift[m] * x[k];
   }
@@ -173,7 +180,7 @@ struct StoreWeighted {
   const std::uint8_t* material;
   VectorField<D, T, Backend> y;
 
-  TREACLE_HD void operator()(std::uint32_t i, const Vec<D, T>& gradient) const { put(i, gradient, material[i]); }
+  TREACLE_HD std::uint8_t own(std::size_t i) const { return material[i]; }
   TREACLE_HD void put(std::size_t i, const Vec<D, T>& gradient, std::uint8_t m) const {
     y.set(i, table.weight[m] * gradient);
   }
@@ -191,7 +198,7 @@ struct StartVelocity {
   T gain;  // of the first step, divided by viscousLambdaMax
   SmootherVectors<Gathered<D, T>> v;
 
-  TREACLE_HD void operator()(std::uint32_t i, const Vec<D, T>& gradient) const { put(i, gradient, 0); }
+  TREACLE_HD std::uint8_t own(std::size_t) const { return 0; }
   TREACLE_HD void put(std::size_t i, const Vec<D, T>& gradient, std::uint8_t) const {
     Vec<D, T> b;
     for (int k = 0; k < D; ++k) b[k] = static_cast<T>(r[i][k]) - gradient[k];
@@ -209,7 +216,7 @@ struct VelocityStep {
   SmootherVectors<Gathered<D, T>> v;
   Gathered<D, T>* next;
 
-  TREACLE_HD void operator()(std::uint32_t i, const Vec<D, T>& product) const { put(i, product, 0); }
+  TREACLE_HD std::uint8_t own(std::size_t) const { return 0; }
   TREACLE_HD void put(std::size_t i, const Vec<D, T>& product, std::uint8_t) const {
     const Vec<D, T> r = v.residual[i] - product;
     v.residual[i] = r;
@@ -229,7 +236,7 @@ struct FinishVelocity {
   const Gathered<D, T>* y;
   Vec<D>* z;
 
-  TREACLE_HD void operator()(std::uint32_t i, const Vec<D, T>& gradient) const { put(i, gradient, material[i]); }
+  TREACLE_HD std::uint8_t own(std::size_t i) const { return material[i]; }
   TREACLE_HD void put(std::size_t i, const Vec<D, T>& gradient, std::uint8_t m) const {
     const T w = table.weight[m];
     for (int k = 0; k < D; ++k) z[i][k] = y[i][k] - w * gradient[k];

@@ -3,11 +3,13 @@
 #include "treacle/core/backend.hpp"
 #include "treacle/core/buffer.hpp"
 #include "treacle/core/cuda.hpp"
+#include "treacle/core/error.hpp"
 #include "treacle/model/particles.hpp"
 #include "treacle/search/cell_grid.hpp"
 
 #include <cstdint>
 #include <span>
+#include <string>
 
 namespace treacle {
 
@@ -61,7 +63,7 @@ struct SortWorkspace<Cuda> {
   Buffer<std::uint32_t, Cuda> index, sortedIndex;
   Buffer<std::byte, Cuda> field;
   Buffer<std::uint8_t, Cuda> hasFluid;
-  Buffer<std::uint32_t, Cuda> count;  // of active walls
+  Buffer<std::uint32_t, Cuda> count;  // of active fluid, which is all, active walls, positions that are not finite
 
   std::size_t bytes() const {
     return key.bytes() + sortedKey.bytes() + index.bytes() + sortedIndex.bytes() + field.bytes() +
@@ -69,7 +71,20 @@ struct SortWorkspace<Cuda> {
   }
 };
 
+/// No step leads to a position that is not finite: where there is one, memory was overwritten or has failed.
+template <int D>
+TREACLE_HD bool isFinitePosition(const Vec<D>& x) {
+  const double sum = norm2(x);
+  return sum - sum == 0;
+}
+
+[[noreturn]] inline void throwNotFinite(std::uint64_t particles) {
+  throw RunError("the positions of " + std::to_string(particles) +
+                 " particles are not finite, where no step leads: their memory was overwritten or has failed");
+}
+
 /// Sorts all fields by CellGrid::key, fluid, active and inactive walls each by itself, stably; fills the ranges.
+/// Errors: RunError for positions that are not finite, before anything looks for neighbours around them.
 template <int D>
 void sortByCell(Context<Cpu>&, const CellGrid<D>& grid, Particles<D>& particles, CellRanges<>& ranges,
                 SortWorkspace<>& workspace);

@@ -1,3 +1,4 @@
+#include "treacle/precondition/packed_tensor.hpp"
 #include "treacle/precondition/projected_multigrid.hpp"
 #include "support/device_scene.hpp"
 #include "support/gpu.hpp"
@@ -25,11 +26,19 @@ struct Twin {
   ParticleProducts<D, T, Cuda> productsOnDevice;
   ProjectionConstants constants;
 
-  explicit Twin(Scene<D> scene) : s(std::move(scene)), d(s), constants(projectionConstants(s.pairs())) {
+  explicit Twin(Scene<D> scene) : s(rounded(std::move(scene))), d(s), constants(projectionConstants(s.pairs())) {
     a.prepare(s.context, s.pairs(), s.terms());
     aOnDevice.prepare(d.context, d.pairs, d.terms());
     products.prepare(s.context, s.pairs(), s.terms(), a);
     productsOnDevice.prepare(d.context, d.pairs, d.terms(), aOnDevice);
+  }
+
+  /// In single precision the device's products have B in few bits; with such a B they are those of the CPU.
+  static Scene<D> rounded(Scene<D> scene) {
+    using Packed = PackedTensor<D>;
+    if constexpr (std::is_same_v<T, float>)
+      for (SymmetricBlock<D>& b : scene.renormalisation) b = 1.0 / Packed::scale * Packed::unpack(Packed::pack(b));
+    return scene;
   }
 
   std::uint32_t active() const { return s.pairs().activeCount; }

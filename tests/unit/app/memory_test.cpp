@@ -128,6 +128,29 @@ TEST(DeviceMemory, ARunThatDoesNotFitIsRefused) {
   }
 }
 
+TEST(DeviceMemory, ADeviceThatGivesNoneIsNamed) {
+  DeviceInfo device;
+  device.name = "Some GPU";
+  device.memory = std::size_t{1} << 40;
+  device.freeMemory = 0;
+  try {
+    requireMemory(caseOf(2), some, &device);
+    FAIL() << "a run without device memory was let through";
+  } catch (const RunError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("Some GPU gives no device memory"));
+  }
+}
+
+TEST(DeviceMemory, WhatIsToldWhereItGivesOut) {
+  const std::size_t mebibyte = std::size_t{1} << 20;
+  EXPECT_THAT(
+      exhaustedText({64 * mebibyte, 3 * mebibyte, 2048 * mebibyte, 500 * mebibyte}),
+      HasSubstr("device memory exhausted: 64 MiB more needed, 3 MiB of 2 GiB free, the run itself had up to "
+                "500 MiB; take a lower resolution"));
+  EXPECT_THAT(exhaustedText({0, 3 * mebibyte, 2048 * mebibyte, 0}),
+              HasSubstr("device memory exhausted: 3 MiB of 2 GiB free; take a lower resolution"));
+}
+
 TEST(HostMemory, OfTheSimulationIsWhatASimulationHolds) {
   for (const test::MemoryCase& memoryCase : test::memoryCases()) {
     SCOPED_TRACE(memoryCase.name());

@@ -63,6 +63,22 @@ TEST(OutputThread, OneSnapshotIsEnoughWhereWritingIsFast) {
   EXPECT_THAT(written, ElementsAre(written[0], written[0], written[0]));
 }
 
+TEST(OutputThread, TheLastSnapshotCanBeHandedOverAgain) {
+  std::vector<std::int64_t> steps;
+  OutputThread thread([&](const Snapshot& s) { steps.push_back(s.step); });
+  std::vector<std::int64_t> expected;
+  for (std::int64_t k = 0; k < 100; ++k) {
+    handOver(thread, 2 * k);
+    handOver(thread, 2 * k + 1);
+    const Snapshot& last = thread.last();
+    EXPECT_EQ(last.step, 2 * k + 1);
+    thread.handOver();
+    for (const std::int64_t step : {2 * k, 2 * k + 1, 2 * k + 1}) expected.push_back(step);
+  }
+  thread.wait();
+  EXPECT_EQ(steps, expected);
+}
+
 TEST(OutputThread, ErrorsAreThrownOnceAndLaterSnapshotsAreWritten) {
   std::vector<std::int64_t> steps;
   std::promise<void> gate;

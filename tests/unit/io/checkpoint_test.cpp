@@ -35,6 +35,7 @@ Particles<D> randomParticles(std::uint32_t fluid, std::uint32_t wall) {
   Particles<D> particles;
   particles.resize(fluid, wall, fluid % 4);
   particles.modes.age = {7, 13};
+  particles.modes.pressure = {3.75, 4, 6};
   std::mt19937_64 random(D);
   std::uniform_real_distribution<double> real(-1, 1);
   particles.forEachField([&]<class T>(Buffer<T>& field) {
@@ -73,6 +74,7 @@ void expectSame(const Particles<D>& a, const Particles<D>& b) {
   EXPECT_EQ(a.modeCount(), b.modeCount());
   EXPECT_TRUE(sameBits(a.modes.vectors, b.modes.vectors));
   EXPECT_EQ(a.modes.age, b.modes.age);
+  EXPECT_EQ(a.modes.pressure, b.modes.pressure);
 }
 
 template <int D>
@@ -126,6 +128,19 @@ void replaceField(const std::filesystem::path& path, const char* name, hid_t typ
   ASSERT_GE(field, 0);
   H5Dclose(field);
   H5Sclose(space);
+  close(file, path);
+}
+
+/// Another number at this place of a field, counted over all components.
+void changeField(const std::filesystem::path& path, const char* name, std::size_t place, double value) {
+  const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  const hid_t field = H5Dopen2(file, name, H5P_DEFAULT), space = H5Dget_space(field);
+  std::vector<double> values(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)));
+  ASSERT_GE(H5Dread(field, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), 0);
+  values.at(place) = value;
+  ASSERT_GE(H5Dwrite(field, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), 0);
+  H5Sclose(space);
+  H5Dclose(field);
   close(file, path);
 }
 
@@ -304,28 +319,45 @@ TEST(Checkpoint, FieldsWithoutTheirValuesAreRefusedBeforeMemoryIsTaken) {
   EXPECT_THAT(refusal<2>(path), HasSubstr("the file ends before the 100000005 values of the field position do"));
 }
 
-TEST(Checkpoint, ValuesThatNoSimulationHasAreRefused) {
+TEST(Checkpoint, ValuesThatNoSimulationHasAreNotRead) {
   TemporaryDirectory directory;
   const auto path = directory / "c.h5";
+  const Particles<2> sound = randomParticles<2>(5, 5);
+  const auto expectRefused = [&](const char* field, std::vector<std::pair<std::size_t, double>> changes,
+                                 const std::string& why) {
+    writeCheckpoint<2>(path, sound, 1, 1, MethodKind::MphI);
+    for (const auto& [place, value] : changes) changeField(path, field, place, value);
+    EXPECT_THAT(refusal<2>(path), HasSubstr(why));
+  };
+  const auto expectNotFinite = [&](const char* field, std::size_t place, double value) {
+    expectRefused(field, {{place, value}}, fmt::format("value 3 of the field {} is not finite", field));
+  };
+  expectNotFinite("position", 7, std::nan(""));
+  expectNotFinite("velocity", 6, INFINITY);
+  expectNotFinite("pressure", 3, std::nan(""));
+  expectNotFinite("number_density", 3, std::nan(""));
+  expectNotFinite("acceleration", 6, std::nan(""));
+  expectNotFinite("jerk", 6, std::nan(""));
+  expectNotFinite("modes", 6, std::nan(""));
+  expectRefused("id", {{3, 10}}, "a particle has id 10, expected less than 10");
+  expectRefused("id", {{3, sound.id[4]}}, "two particles have the id ");
+  expectRefused("id", {{3, sound.id[7]}, {7, sound.id[3]}}, "is among those of the other kind");
+}
+
+TEST(Checkpoint, AStateThatCannotBeReadDoesNotReplaceAnother) {
+  TemporaryDirectory directory;
+  const auto path = directory / "c.h5";
+  writeCheckpoint<2>(path, randomParticles<2>(5, 5), 7, time3, MethodKind::MphI);
   const auto expectRefused = [&](auto change, const std::string& why) {
     Particles<2> particles = randomParticles<2>(5, 5);
     change(particles);
-    writeCheckpoint<2>(path, particles, 1, 1, MethodKind::MphI);
-    EXPECT_THAT(refusal<2>(path), HasSubstr(why));
+    EXPECT_THAT(messageOf<RunError>([&] { writeCheckpoint<2>(path, particles, 8, 1, MethodKind::MphI); }),
+                HasSubstr(why));
+    EXPECT_EQ(readCheckpoint<2>(path).step, 7);
   };
-  const auto notFinite = [](const char* field) {
-    return fmt::format("value 3 of the field {} is not finite", field);
-  };
-  expectRefused([](auto& p) { p.position[3][1] = std::nan(""); }, notFinite("position"));
-  expectRefused([](auto& p) { p.velocity[3][0] = INFINITY; }, notFinite("velocity"));
-  expectRefused([](auto& p) { p.pressure[3] = std::nan(""); }, notFinite("pressure"));
-  expectRefused([](auto& p) { p.numberDensity[3] = std::nan(""); }, notFinite("number_density"));
-  expectRefused([](auto& p) { p.acceleration[3][0] = std::nan(""); }, notFinite("acceleration"));
-  expectRefused([](auto& p) { p.jerk[3][0] = std::nan(""); }, notFinite("jerk"));
-  expectRefused([](auto& p) { p.modes.vectors[3][0] = NAN; }, notFinite("modes"));
-  expectRefused([](auto& p) { p.id[3] = 10; }, "a particle has id 10, expected less than 10");
+  expectRefused([](auto& p) { p.velocity[3][0] = std::nan(""); }, "value 3 of the field velocity is not finite");
+  expectRefused([](auto& p) { p.modes.vectors[3][0] = NAN; }, "value 3 of the field modes is not finite");
   expectRefused([](auto& p) { p.id[3] = p.id[4]; }, "two particles have the id ");
-  expectRefused([](auto& p) { std::swap(p.id[3], p.id[7]); }, "is among those of the other kind");
 }
 
 TEST(Checkpoint, AChangedByteIsFoundWhereverItIs) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 namespace treacle::test {
@@ -59,6 +60,15 @@ TEST(CellSort, IsStable) {
   for (auto& x : r.particles.position) x = {0.5, 0.5};
   sortByCell(r.context, r.grid, r.particles, r.ranges, r.workspace);
   EXPECT_TRUE(std::is_sorted(r.particles.id.begin(), r.particles.id.end()));
+}
+
+TEST(CellSort, RefusesPositionsThatAreNotFinite) {
+  for (const double value : {std::nan(""), HUGE_VAL})
+    for (const std::uint32_t i : {0u, 99u, 100u, 149u}) {  // fluid and walls
+      RandomParticles<3> r(100, 50, 3);
+      r.particles.position[i][1] = value;
+      EXPECT_THROW(sortByCell(r.context, r.grid, r.particles, r.ranges, r.workspace), RunError);
+    }
 }
 
 TEST(CellGrid, TilesTheDomainByFloorOfExtentOverRadius) {

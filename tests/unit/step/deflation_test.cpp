@@ -29,6 +29,7 @@ void expectSameBits(const Particles<2>& a, const Particles<2>& b) {
       },
       a, b);
   EXPECT_EQ(a.modes.age, b.modes.age);
+  EXPECT_EQ(a.modes.pressure, b.modes.pressure);
 }
 
 TEST(DeflatedSteps, TakeFewerIterationsToTheSameVelocities) {
@@ -88,6 +89,44 @@ TEST(DeflatedSteps, AFailedStageDropsTheModes) {
   EXPECT_GT(after.advance().fallbacks, 0);
   EXPECT_EQ(after.particles().modeCount(), 0u);
   EXPECT_EQ(after.particles().modes.age, ModeAge{});
+}
+
+TEST(KeptEigenvalue, IsKnownForSomeSolvesAndUntilOneTakesLonger) {
+  KeptEigenvalue kept;
+  EXPECT_FALSE(kept.isKnown());
+  kept.solved(5);
+  EXPECT_FALSE(kept.isKnown());
+  const auto solvesUntilDue = [&](const auto& iterations) {
+    kept.estimated(3.5);
+    int k = 0;
+    for (; kept.isKnown(); ++k) kept.solved(iterations(k));
+    return k;
+  };
+  EXPECT_EQ(solvesUntilDue([](int) { return 9; }), KeptEigenvalue::longest);
+  EXPECT_EQ(solvesUntilDue([](int k) { return 5 + k % 2; }), KeptEigenvalue::longest) << "one more is none";
+  EXPECT_EQ(solvesUntilDue([](int k) { return k < 2 ? 9 : 11; }), 3);
+  EXPECT_EQ(kept.value, 3.5);
+}
+
+TEST(KeptEigenvalue, IsOfTheFirstStepAndNewAfterTen) {
+  StretchedBody flow;
+  Simulation<2> simulation = flow.start(0);
+  advance(simulation, 1);
+  const KeptEigenvalue first = simulation.particles().modes.pressure;
+  EXPECT_TRUE(first.isKnown());
+  EXPECT_EQ(first.due, KeptEigenvalue::longest - 1);
+  advance(simulation, 1);
+  EXPECT_EQ(simulation.particles().modes.pressure.value, first.value);
+  int renewed = 0;
+  double value = first.value;
+  for (int step = 3; step <= 25; ++step) {
+    advance(simulation, 1);
+    const KeptEigenvalue& kept = simulation.particles().modes.pressure;
+    renewed += kept.value != value;
+    EXPECT_NEAR(kept.value, value, 0.05 * value) << "what is estimated with leaves a tenth";
+    value = kept.value;
+  }
+  EXPECT_GE(renewed, 2);
 }
 
 TEST(ModeAge, IsDueAtTheSecondSolveAfterManyAndWhenSolvesGrowLonger) {
