@@ -1,14 +1,50 @@
 #include "treacle/isph/isph_particles.hpp"
 
 #include "core/launch.hpp"
+#include "core/reduce.cuh"
+
+#include <cub/device/device_reduce.cuh>
 
 namespace treacle {
+namespace {
 
-/// In this file one thread per fluid particle; no atomics.
+/// Where a result of a reduction stands until the next one: behind the partial sums of blocks.
+double* resultOf(Context<Cuda>& context) { return context.partialSums() + Context<Cuda>::maxPartialSums - 1; }
+
+template <class Body>
+void sumTo(Context<Cuda>& context, std::size_t count, double* result, Body body) {
+  reduce(context, count, body, [result] __device__(double sum) { *result = sum; });
+}
+
+}  // namespace
+
+/// In this file one thread per fluid particle; no atomics but those of sums (reduce.cuh).
 
 void settlePressure(Context<Cuda>& context, std::span<const std::uint8_t> surface, bool cut, std::span<double> p) {
   forEach(context, p.size(),
           [surface, cut, p] __device__(std::size_t i) { p[i] = settledPressure(surface[i], cut, p[i]); });
+}
+
+bool isClosed(Context<Cuda>& context, std::span<const std::uint8_t> surface) {
+  double* result = resultOf(context);
+  sumTo(context, surface.size(), result, [surface] __device__(std::size_t i) { return double(surface[i]); });
+  return valueOnHost(context, result) == 0;
+}
+
+void takeLevel(Context<Cuda>& context, Level level, std::span<double> x) {
+  if (x.empty()) return;
+  double* result = resultOf(context);
+  double count = 1;
+  if (level == Level::Mean) {
+    count = static_cast<double>(x.size());
+    sumTo(context, x.size(), result, [x] __device__(std::size_t i) { return x[i]; });
+  } else {
+    std::size_t bytes = 0;
+    TREACLE_CUDA_CHECK(cub::DeviceReduce::Min(nullptr, bytes, x.data(), result, x.size(), context.stream()));
+    TREACLE_CUDA_CHECK(
+        cub::DeviceReduce::Min(context.scratch(bytes), bytes, x.data(), result, x.size(), context.stream()));
+  }
+  forEach(context, x.size(), [x, result, count] __device__(std::size_t i) { x[i] -= *result / count; });
 }
 
 template <int D>

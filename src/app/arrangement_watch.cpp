@@ -11,21 +11,41 @@ std::vector<std::string> ArrangementWatch::look(const Arrangement& a, double tim
   const auto warn = [&](const std::string& text) {
     warnings.push_back(fmt::format("t = {:.6g} s: {}", time, text));
   };
-  // The least distance is that of one pair, which comes and goes: it is told once.
-  const bool many = a.low < lowBound && a.low < warnedLow_ / 2, one = a.least < leastBound && !clumped_;
-  if (many || one) warn(clumpText(a)), clumped_ = true;
-  if (many) warnedLow_ = a.low;
+  if (clumps(a)) warn(clumpText(a));
   const double error = a.density ? std::abs(*a.density - 1) : 0;
   if (error > densityBound && error > 2 * warnedError_) warn(densityText(*a.density)), warnedError_ = error;
   return warnings;
 }
 
+bool ArrangementWatch::clumps(const Arrangement& a) {
+  if (isIsph()) {
+    const bool many = a.close > closeBound && a.close > 2 * warnedClose_;
+    if (many) warnedClose_ = a.close;
+    return many;
+  }
+  // The least distance is that of one pair, which comes and goes: it is told once.
+  const bool many = a.low < lowBound && a.low < warnedLow_ / 2, one = a.least < leastBound && !clumped_;
+  if (many) warnedLow_ = a.low;
+  if (many || one) clumped_ = true;
+  return many || one;
+}
+
 std::string ArrangementWatch::clumpText(const Arrangement& a) const {
+  const std::string found =
+      isIsph()
+          ? fmt::format("{:.3g} % have their nearest neighbour within {:g} spacings (warned of beyond {:g} %)",
+                        100 * a.close, closeDistance, 100 * closeBound)
+          : fmt::format(
+                "one has its nearest neighbour at {:.3g} spacings, and 1 % have it within {:.3g} "
+                "(warned of below {:g} and {:g})",
+                a.least, a.low, leastBound, lowBound);
+  const char* cure = "";
+  if (published()) cure = "method.scheme = \"accurate\" or ";
+  if (isIsph() && case_.method.isph.negativePressure) cure = "method.negative_pressure = false or ";
   return fmt::format(
-      "fluid particles clump: one has its nearest neighbour at {:.3g} spacings, and 1 % have it within {:.3g} "
-      "(warned of below {:g} and {:g}). Such pairs count for one particle, so that the fluid around them is "
+      "fluid particles clump: {}. Such pairs count for one particle, so that the fluid around them is "
       "resolved more coarsely than the spacing says; {}a shorter time step may help",
-      a.least, a.low, leastBound, lowBound, published() ? "method.scheme = \"accurate\" or " : "");
+      found, cure);
 }
 
 std::string ArrangementWatch::densityText(double density) const {

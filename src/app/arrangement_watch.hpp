@@ -13,7 +13,9 @@ namespace treacle {
 /// bounds.
 class ArrangementWatch {
  public:
-  static constexpr double leastBound = 0.25, lowBound = 0.4, densityBound = 0.02;
+  static constexpr double leastBound = closeDistance, lowBound = 0.4, densityBound = 0.02;
+  /// Of ISPH, in whose splashes some particles always lie together: the share that does.
+  static constexpr double closeBound = 0.05;
 
   explicit ArrangementWatch(const Case& c) : case_(c) {}
 
@@ -21,12 +23,15 @@ class ArrangementWatch {
   std::vector<std::string> look(const Arrangement& arrangement, double time);
 
  private:
+  bool clumps(const Arrangement& arrangement);  // to be told
   std::string clumpText(const Arrangement& arrangement) const;
   std::string densityText(double density) const;
   bool published() const;  // the scheme
+  bool isIsph() const { return case_.method.kind == MethodKind::Isph; }
 
   const Case& case_;
   bool clumped_ = false;
+  double warnedClose_ = 0;
   double warnedLow_ = std::numeric_limits<double>::infinity();
   double warnedError_ = 0;  // of the density
 };

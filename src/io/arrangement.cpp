@@ -94,6 +94,8 @@ Arrangement measureArrangement(Frame& fluid, const Frame& walls, const Domain& d
   std::vector<double> sorted = fluid.nearestDistance;
   const auto low = sorted.begin() + static_cast<std::ptrdiff_t>((sorted.size() - 1) / 100);
   std::nth_element(sorted.begin(), low, sorted.end());
+  const auto close = std::count_if(sorted.begin(), sorted.end(), [](double d) { return d < closeDistance; });
+  result.close = static_cast<double>(close) / static_cast<double>(sorted.size());
   result.low = *low, result.least = *std::min_element(sorted.begin(), low + 1);
   return result;
 }

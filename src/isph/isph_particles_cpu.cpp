@@ -2,10 +2,25 @@
 
 #include "treacle/core/parallel.hpp"
 
+#include <algorithm>
+#include <numeric>
+
 namespace treacle {
 
 void settlePressure(Context<Cpu>&, std::span<const std::uint8_t> surface, bool cut, std::span<double> p) {
   parallelFor(p.size(), parallelGrain, [&](std::size_t i) { p[i] = settledPressure(surface[i], cut, p[i]); });
+}
+
+bool isClosed(Context<Cpu>&, std::span<const std::uint8_t> surface) {
+  return std::find(surface.begin(), surface.end(), 1) == surface.end();
+}
+
+void takeLevel(Context<Cpu>&, Level level, std::span<double> x) {
+  if (x.empty()) return;
+  const double zero = level == Level::Least
+                          ? *std::min_element(x.begin(), x.end())
+                          : std::accumulate(x.begin(), x.end(), 0.0) / static_cast<double>(x.size());
+  parallelFor(x.size(), parallelGrain, [&](std::size_t i) { x[i] -= zero; });
 }
 
 template <int D>

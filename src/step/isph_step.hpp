@@ -68,6 +68,8 @@ class IsphStep final : public StepMethod<D, Backend> {
     sumOnFluid(state_.context, pairs_,
                PressureSourceTerm<D>{predicted_.data(), state_.particles.numberDensity.data(), surface_.data(),
                                      source_.data()});
+    closed_ = isClosed(state_.context, surface_);
+    if (closed_) takeLevel(state_.context, Level::Mean, source_);
     pressure_.prepareMatrix(state_.context, pairs_, ranges_, row());
   }
 
@@ -98,6 +100,7 @@ class IsphStep final : public StepMethod<D, Backend> {
   }
 
   void correctVelocities() override {
+    if (closed_) takeLevel(state_.context, pairs_.negativePressure ? Level::Mean : Level::Least, solution_);
     settlePressure(state_.context, surface_, !pairs_.negativePressure, solution_);
     state_.velocity.resize(state_.context, pairs_.fluidCount);
     wallShare_.resize(state_.context, pairs_.fluidCount);
@@ -240,6 +243,7 @@ class IsphStep final : public StepMethod<D, Backend> {
   CellRanges<Backend> ranges_;
   SortWorkspace<Backend> workspace_;
   NeighbourRows<Backend> fluidOfFluid_, wallsOfFluid_, fluidOfWalls_;
+  bool closed_ = false;  // no particle is at the free surface
   Buffer<Vec<D>, Backend> deficit_;
   Buffer<std::uint8_t, Backend> surface_;
   Buffer<Vec<D>, Backend> predicted_;          // v*; walls: their velocities

@@ -1,4 +1,5 @@
-"""Writes what validate.py measured into docs/validation.md: a table between the marks of each study, and its picture."""
+"""Writes what validate.py measured into docs/validation.md and docs/validation-isph.md: a table between the marks of each study, all
+schemes side by side, and its picture. Needs Matplotlib for the pictures alone."""
 
 import re
 import sys
@@ -8,41 +9,84 @@ from study import order
 from treacle_figure import figure
 
 root = Path(__file__).resolve().parents[2]
-page = root / "docs" / "validation.md"
+pages = [root / "docs" / "validation.md", root / "docs" / "validation-isph.md"]
+schemes = ("accurate", "published", "isph")  # in this order
 
 
-def number(value):
-    return f"{value:.3g}" if abs(value) < 1e4 else f"{value:.0f}"
+def page_of(name):
+    return pages[name.startswith("isph-")]
 
 
-def table(study, rows):
-    """Markdown: a line per level, errors with their observed orders, then measured values."""
-    errors, values = list(rows[0]["errors"]), list(rows[0]["values"])
-    head = ["level", "particles", "steps", "iterations"]
-    for name in errors:
-        head += [f"{name} error", "order"]
-    lines = ["| " + " | ".join(head + values) + " |", "|" + "---|" * (len(head) + len(values))]
-    for k, row in enumerate(rows):
-        cells = [row["level"], str(row["particles"]), str(row["steps"]), f"{row['iterations']:.1f}"]
-        for name in errors:
-            error = row["errors"][name]
-            before = rows[k - 1] if k else None
-            p = order(before["errors"][name], error, before["size"], row["size"]) if before else None
-            cells += [number(error), "" if p is None else f"{p:.2f}"]
-        cells += [number(row["values"][name]) for name in values]
-        lines.append("| " + " | ".join(cells) + " |")
-    # Records from before there was another scheme do not say which they are of.
-    scheme = "isph" if study.name.startswith("isph-") else rows[0].get("scheme", "published")
-    bars = ", ".join(f"{name} {bar:g}" for name, bar in study.bars_of(scheme).items())
-    ranges = "; ".join(f"{name} from {low:g} to {high:g}" for name, (low, high) in (study.ranges_of(scheme) or {}).items())
-    limits = f"Bars at the first level: {bars}. Scheme {scheme}" + (f": {ranges}" if ranges else "")
-    machines = sorted({row["device"] for row in rows})
-    lines += ["", f"{limits}. Run on {', '.join(machines)}; commit {rows[0]['commit']}."]
-    return "\n".join(lines)
+def number(value, digits=3):
+    return f"{value:.{digits}g}" if abs(value) < 1e4 else f"{value:.0f}"
 
 
-def draw(study, rows, path):
-    """The exact curves, and those of the coarsest, a middle and the finest level."""
+def merged(records):
+    """Study to scheme to levels, from several records; the later one wins."""
+    result = {}
+    for record in records:
+        for name, rows in record.items():
+            # Records from before there was another scheme do not say which they are of.
+            scheme = "isph" if name.startswith("isph-") else rows[0].get("scheme", "published")
+            result.setdefault(name, {})[scheme] = rows
+    return {name: {s: of[s] for s in schemes if s in of} for name, of in result.items()}
+
+
+def cells_of(study, rows, kind, name, labels):
+    """What a scheme has in the columns of the levels: values, and errors with their observed orders."""
+    by_label, cells = {row["level"]: k for k, row in enumerate(rows)}, []
+    for label in labels:
+        k = by_label.get(label)
+        value = None if k is None else rows[k][kind].get(name)
+        if value is None:
+            cells.append("")
+            continue
+        cell = number(value, 3 if kind == "errors" else 4)
+        if kind == "errors" and study.refined and k > 0:
+            p = order(rows[k - 1]["errors"][name], value, rows[k - 1]["size"], rows[k]["size"])
+            cell += "" if p is None else f" ({p:.2f})"
+        cells.append(cell)
+    return cells
+
+
+def table(study, of):
+    """Markdown: columns are levels; a line for each error and each measured value of each scheme. of: scheme to levels."""
+    first = next(iter(of.values()))
+    labels, schemes_too = [row["level"] for row in max(of.values(), key=len)], len(of) > 1
+    lines = []
+
+    def add(name, scheme, cells, bound=""):
+        lines.append("| " + " | ".join([name] + [scheme] * schemes_too + cells + [bound]) + " |")
+
+    add("", "scheme", labels, f"bound at {labels[0]}")
+    lines.append("|" + "---|" * (2 + schemes_too + len(labels)))
+    add("particles", "", [str(row["particles"]) for row in max(of.values(), key=len)])
+    for kind in "errors", "values":
+        names = dict.fromkeys(name for rows in of.values() for name in rows[0][kind])
+        for name in names:
+            title = f"error: {name}" if kind == "errors" else name
+            for scheme, rows in of.items():
+                if name not in rows[0][kind]:
+                    continue
+                bar, (low, high) = study.bars_of(scheme).get(name), (study.ranges_of(scheme) or {}).get(name, (None, None))
+                bound = (f"{bar:g}" if kind == "errors" and bar is not None else
+                         f"{low:g} to {high:g}" if kind == "values" and low is not None else "")
+                add(title, scheme, cells_of(study, rows, kind, name, labels), bound)
+                title = ""
+    for scheme, rows in of.items():
+        add("" if scheme != next(iter(of)) else "iterations", scheme,
+            cells_of(study, [row | {"values": {"iterations": row["iterations"]}} for row in rows], "values", "iterations", labels))
+    notes = [f"{scheme}: {', '.join(sorted({row['device'] for row in rows}))}, commit {rows[0]['commit']}" for scheme, rows in of.items()]
+    text = ""
+    if "accurate" in of and study.refined and study.orders:
+        least = ", ".join(f"{name} {p:g}" for name, p in study.orders.items())
+        text = f"Least order from {labels[0]} to {labels[1]}, where it is not 0.9: {least}. "
+    return "\n".join(lines + ["", text + "; ".join(notes) + "."])
+
+
+def draw(study, of, path):
+    """The exact curves, those of the coarsest, a middle and the finest level of the first scheme, and the finest of the others."""
+    (_, rows), *others = of.items()
     shown = rows if len(rows) <= 3 else [rows[0], rows[len(rows) // 2], rows[-1]]
     with figure(path, study.title, study.x_label, study.y_label) as axes:
         for name, (x, y) in rows[-1]["exact"].items():
@@ -51,21 +95,46 @@ def draw(study, rows, path):
             for k, (name, (x, y)) in enumerate(row["curves"].items()):
                 axes.plot(x, y, mark, markersize=3, markerfacecolor="none", color=f"C{k}", alpha=0.8,
                           label=f"{name}, {row['level']}")
+        for scheme, found in others:
+            for name, (x, y) in found[-1]["curves"].items():
+                axes.plot(x, y, "x", markersize=2, color="0.6", zorder=0, label=f"{scheme}: {name}, {found[-1]['level']}")
 
 
-def write(record, studies):
-    text = page.read_text()
-    for study in studies:
-        if study.name not in record:
-            continue
-        rows = record[study.name]
-        begin, end = f"<!-- {study.name} -->", f"<!-- end of {study.name} -->"
-        if begin not in text or end not in text:
-            print(f"report: {page} has no marks {begin} ... {end}", file=sys.stderr)
+def blocks(records, studies):
+    """Name of a study to what stands between its marks, these included."""
+    of = merged(records)
+    return {study.name: f"<!-- {study.name} -->\n{table(study, of[study.name])}\n\n"
+                        f"![{study.title}](images/validation-{study.name}.png)\n<!-- end of {study.name} -->"
+            for study in studies if study.name in of}
+
+
+def with_blocks(text, found):
+    """The text of a page with them; it has marks for each."""
+    for name, block in found.items():
+        text = re.sub(f"<!-- {name} -->.*?<!-- end of {name} -->", lambda _: block, text, flags=re.S)
+    return text
+
+
+def of_page(page, found):
+    return {name: block for name, block in found.items() if page_of(name) == page}
+
+
+def write(records, studies):
+    found, of = blocks(records, studies), merged(records)
+    for name in found:
+        if not re.search(f"<!-- {name} -->.*<!-- end of {name} -->", page_of(name).read_text(), flags=re.S):
+            print(f"report: {page_of(name)} has no marks <!-- {name} --> ... <!-- end of {name} -->", file=sys.stderr)
             return 2
-        picture = root / "docs" / "images" / f"validation-{study.name}.png"
-        draw(study, rows, picture)
-        block = f"{begin}\n{table(study, rows)}\n\n![{study.title}](images/{picture.name})\n{end}"
-        text = re.sub(re.escape(begin) + ".*?" + re.escape(end), lambda _: block, text, flags=re.S)
-    page.write_text(text)
+    for study in (study for study in studies if study.name in found):
+        draw(study, of[study.name], root / "docs" / "images" / f"validation-{study.name}.png")
+    for page in pages:
+        page.write_text(with_blocks(page.read_text(), of_page(page, found)))
     return 0
+
+
+def check(records, studies):
+    """Whether the pages hold the tables of the records."""
+    stale = [name for name, block in blocks(records, studies).items() if block not in page_of(name).read_text()]
+    for name in stale:
+        print(f"report: {page_of(name)}: the table of {name} is not that of the records (validate.py --report)", file=sys.stderr)
+    return 1 if stale else 0

@@ -43,7 +43,7 @@ class Study:
     small. ranges: by the scheme of the case, least and largest of Outcome.values at the first level: where a scheme itself is off by
     more than a wrong constant would be, a bar alone would let that pass. They say what this scheme gives, not what is right, so better
     physics need a scheme of their own. measure: takes a Run (treacle_data) to an Outcome. size: what orders are counted in, a function
-    of the level; particle spacing unless told."""
+    of the level; particle spacing unless told. refined: false where levels are other flows, so that there are no orders."""
 
     name: str
     title: str
@@ -58,6 +58,7 @@ class Study:
     ranges: dict = field(default_factory=dict)
     case: str = ""
     size: Callable = staticmethod(lambda level: 1 / level.resolution)
+    refined: bool = True
 
     @property
     def case_file(self):
@@ -67,7 +68,9 @@ class Study:
         return self.bars | self.published if scheme == "published" else self.bars
 
     def orders_of(self, scheme):
-        return {name: self.orders.get(name, usual_order) for name in self.bars} if scheme == "accurate" else {}
+        if scheme != "accurate" or not self.refined:
+            return {}
+        return {name: self.orders.get(name, usual_order) for name in self.bars}
 
     def ranges_of(self, scheme):
         """None where the study has ranges, but says nothing of this scheme; where the bars are enough for it, it says {}."""

@@ -5,7 +5,8 @@
     validate.py --program ... --levels 2 couette                       # and the next one, against orders (as ctest does)
     validate.py --program ... --scheme published couette               # by another scheme
     validate.py --program ... --all-levels --record record.json        # every study, every level
-    validate.py --report record.json                                   # tables and pictures of docs/validation.md
+    validate.py --report RECORD...                                     # tables and pictures of docs/validation*.md
+    validate.py --check RECORD...                                      # whether these pages hold the tables of these
 
 Exit codes: 0 all bars and orders are met, 1 one is not, 2 bad input, 3 a run failed.
 """
@@ -83,7 +84,7 @@ def print_level(study, row, last, number):
     good = good and not missing
     for name, error in row["errors"].items():
         text = f"  error {name}: {error:.3e}"
-        p = order(last["errors"][name], error, last["size"], row["size"]) if last else None
+        p = order(last["errors"][name], error, last["size"], row["size"]) if last and study.refined else None
         if p is not None:
             text += f", order {p:.2f}"
         if name in orders:
@@ -127,13 +128,15 @@ def main():
     parser.add_argument("--all-levels", action="store_true")
     parser.add_argument("--record", type=Path, help="JSON file that the results of these studies are put into")
     parser.add_argument("--keep", type=Path, help="folder for the run directories, which are deleted otherwise")
-    parser.add_argument("--report", type=Path, metavar="RECORD", help="writes tables and pictures from a record")
+    parser.add_argument("--report", type=Path, nargs="+", metavar="RECORD", help="writes tables and pictures from records")
+    parser.add_argument("--check", type=Path, nargs="+", metavar="RECORD", help="compares the page's tables with records")
     options = parser.parse_args()
     if unknown := set(options.studies) - set(names):
         parser.error(f"unknown study {', '.join(sorted(unknown))}; expected {', '.join(names)}")
-    if options.report:
+    if files := options.report or options.check:
         import report
-        return report.write(json.loads(options.report.read_text()), [load(name) for name in names])
+        act = report.write if options.report else report.check
+        return act([json.loads(file.read_text()) for file in files], [load(name) for name in names])
     if not options.program:
         parser.error("--program is required")
 

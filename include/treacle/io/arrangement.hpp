@@ -10,6 +10,9 @@ namespace treacle {
 /// How far particles look for the nearest other one, in spacings; one that finds none has this distance.
 inline constexpr double nearestReach = 1.5;
 
+/// Particles whose nearest other one is within this distance [spacings] act with it as one.
+inline constexpr double closeDistance = 0.25;
+
 /// How the fluid particles of a frame lie.
 struct Arrangement {
   // Of the distances to the nearest other particle, over the spacing: the least and the 1 % quantile [-].
@@ -17,6 +20,7 @@ struct Arrangement {
   /// Particles per spacing^dimensions inside the fluid: its density over that of the material [-]. The mean over
   /// places with nothing but fluid for at least 2.25 spacings around; empty where there is none.
   std::optional<double> density{};
+  double close = 0;  // share of the particles with another one within closeDistance [-]
 
   bool operator==(const Arrangement&) const = default;
 };

@@ -14,6 +14,16 @@ namespace treacle {
 void settlePressure(Context<Cpu>&, std::span<const std::uint8_t> surface, bool cut, std::span<double> p);
 void settlePressure(Context<Cuda>&, std::span<const std::uint8_t> surface, bool cut, std::span<double> p);
 
+/// Whether no particle is at the free surface. Then the pressure equation has no Dirichlet value: its matrix is
+/// singular, and pressures are known up to a constant, their level.
+bool isClosed(Context<Cpu>&, std::span<const std::uint8_t> surface);
+bool isClosed(Context<Cuda>&, std::span<const std::uint8_t> surface);
+
+/// x less its mean, or less its least value. The order of the sum is fixed.
+enum class Level { Mean, Least };
+void takeLevel(Context<Cpu>&, Level level, std::span<double> x);
+void takeLevel(Context<Cuda>&, Level level, std::span<double> x);
+
 /// Shifting towards where neighbours lack: displacement -coefficient l^2 sum V grad W, at most a tenth of l, not
 /// at the free surface.
 struct Shifting {

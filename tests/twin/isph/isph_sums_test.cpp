@@ -148,6 +148,15 @@ void checkParticles() {
       settlePressure(context, surfaceOnDevice, cut, found);
       EXPECT_EQ(differ<double>(context, found, expected), 0);
     }
+    EXPECT_EQ(isClosed(context, surfaceOnDevice), isClosed(host, surface));
+    EXPECT_TRUE(isClosed(context, copyToDevice<std::uint8_t>(context, std::vector<std::uint8_t>(n))));
+    for (const Level level : {Level::Mean, Level::Least}) {
+      std::vector<double> expected = p;
+      auto found = copyToDevice<double>(context, p);
+      takeLevel(host, level, expected);
+      takeLevel(context, level, found);
+      EXPECT_LE(differ<double>(context, found, expected), kernelTolerance);
+    }
     const auto deficit = randomVelocities<D>(n, 2), v = randomVelocities<D>(n, 3);
     const auto vOnDevice = copyToDevice<Vec<D>>(context, v);
     std::vector<Vec<D>> expected(n);

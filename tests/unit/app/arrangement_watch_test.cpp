@@ -47,6 +47,21 @@ TEST(ArrangementWatch, aSinglePairIsToldOnceAndDoesNotHideWhatComes) {
   EXPECT_THAT(watch.look({0.001, 0.39, 1}, 0), ElementsAre(HasSubstr("clump")));
 }
 
+TEST(ArrangementWatch, ofIsphTellsOfTheShareThatClumps) {
+  Case c;
+  c.method.kind = MethodKind::Isph;
+  ArrangementWatch watch(c);
+  EXPECT_THAT(watch.look({0.0005, 0.03, 1, 0.049}, 0), IsEmpty());
+  EXPECT_THAT(watch.look({0.0005, 0.03, 1, 0.0625}, 0.5),
+              ElementsAre(AllOf(StartsWith("t = 0.5 s: fluid particles clump: 6.25 % "),
+                                HasSubstr("within 0.25 spacings (warned of beyond 5 %)"),
+                                Not(HasSubstr("negative_pressure")))));
+  EXPECT_THAT(watch.look({0.0005, 0.03, 1, 0.12}, 0), IsEmpty());
+  EXPECT_THAT(watch.look({0.0005, 0.02, 1.03, 0.13}, 0), ElementsAre(HasSubstr("13 %"), HasSubstr("lost")));
+  c.method.isph.negativePressure = true;
+  EXPECT_THAT(ArrangementWatch(c).look({0, 0, 1, 0.3}, 0), ElementsAre(HasSubstr("negative_pressure = false or")));
+}
+
 /// A drop of thin, soft fluid hits the floor in steps of half a spacing: its particles run into the wall's. Nobody
 /// watches whether the run still means anything.
 std::string collision() {
@@ -87,6 +102,18 @@ TEST(ArrangementWatch, aRunInWhichParticlesClumpSaysSoOnce) {
   EXPECT_TRUE(json["density"]["inside"].is_null());
   EXPECT_EQ(shop.call("plot clump-run --field nearest_distance").exitCode, 0);
   EXPECT_EQ(shop.call("compare clump-run clump-run --quiet --bound 0 --field nearest_distance").exitCode, 0);
+}
+
+/// A splash of water has single pairs that are closer than MPH-I may have any.
+TEST(ArrangementWatch, theDamBreakOfWaterIsWithinTheBoundOfIsph) {
+  Workshop shop;
+  const Outcome outcome = shop.call("run " TREACLE_CASES
+                                    "/isph-dam-break-2d.toml -o dam --quiet --end-time 0.12 --set resolution=0.5");
+  ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+  EXPECT_THAT(shop.content("dam/run.log"), Not(HasSubstr("warning")));
+  const auto json = nlohmann::json::parse(shop.content("dam/summary.json"));
+  EXPECT_LT(json["nearest_distance"]["smallest_least"], 0.2);
+  EXPECT_LT(json["nearest_distance"]["smallest_low"], 0.35);
 }
 
 TEST(ArrangementWatch, theDamBreakIsWithinAllBounds) {

@@ -71,6 +71,7 @@ TEST(Arrangement, LatticeHasDistancesAndADensityOfOne) {
     for (const double distance : fluid.nearestDistance) ASSERT_NEAR(distance, 1, 1e-12);
     EXPECT_NEAR(a.least, 1, 1e-12);
     EXPECT_NEAR(a.low, 1, 1e-12);
+    EXPECT_EQ(a.close, 0);
     ASSERT_TRUE(a.density);
     EXPECT_NEAR(*a.density, 1, 1e-4);
   }
@@ -154,6 +155,9 @@ TEST(Arrangement, OfRandomParticlesIsWhatAllPairsSay) {
       std::sort(expected.begin(), expected.end());
       EXPECT_NEAR(a.least, expected[0], 1e-12);
       EXPECT_NEAR(a.low, expected[14], 1e-12);
+      const auto notClose = std::lower_bound(expected.begin(), expected.end(), closeDistance);
+      EXPECT_NEAR(a.close, (notClose - expected.begin()) / 1500.0, 1e-12);
+      EXPECT_GT(a.close, 0.05);
     }
   }
 }

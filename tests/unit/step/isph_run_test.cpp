@@ -125,6 +125,70 @@ TEST(IsphRun, AContinuedRunGivesTheSameBits) {
   EXPECT_TRUE(sameBits(whole.particles(), second.particles()));
 }
 
+/// A tank that is full to its roof: nothing says how high the pressure is but that it is not negative.
+template <int D>
+void checkFullTank(double width, double depth, int steps) {
+  Case c = tankCase(D, width, depth);
+  Body roof = c.bodies[0];  // a fluid that fills the tank
+  roof.name = "roof", roof.kind = BodyKind::Wall;
+  roof.shape.min[D - 1] = roof.shape.max[D - 1];
+  roof.shape.max[D - 1] += tankWall * c.spacing;
+  c.bodies.push_back(roof);
+  Simulation<D> simulation(c, created<D>(c));
+  for (int k = 0; k < steps; ++k) {
+    const StepReport report = simulation.advance();
+    EXPECT_EQ(report.fallbacks, 0) << report.failures;
+    EXPECT_LE(report.iterations, 12);
+    EXPECT_LE(report.diagnostics.maxSpeed, 0.1 * std::sqrt(2 * 9.81 * depth * c.spacing));
+  }
+  const Particles<D>& p = simulation.particles();
+  EXPECT_EQ(*std::min_element(p.pressure.begin(), p.pressure.begin() + p.fluidCount), 0);
+  // In units of that of a layer; the least one stands half a layer below the roof.
+  const auto level = [&](std::uint32_t i) {
+    return p.pressure[i] / (1000 * 9.81 * c.spacing) + p.position[i][D - 1] / c.spacing;
+  };
+  const double mean = fluidMean(p, level);
+  EXPECT_NEAR(mean, tankCorner + depth - 0.5, 1);
+  EXPECT_LE(fluidMean(p, [&](std::uint32_t i) { return std::abs(level(i) - mean); }), 0.05 * depth);
+}
+
+TEST(IsphRun, AFullTankHasThePressureOfItsDepth) {
+  checkFullTank<2>(12, 10, 100);
+  checkFullTank<3>(7, 6, 30);
+}
+
+/// Vortices that fill a periodic square, where only differences of pressures have a meaning.
+TEST(IsphRun, PressuresHaveAMeanOfZeroWhereNothingSaysHowHighTheyAre) {
+  Case c = waterCase(2, Vec<3>::filled(20));
+  c.domain.periodic = {true, true, false};
+  c.gravity = {};
+  c.method.isph.negativePressure = true;
+  Body& vortices = c.bodies.emplace_back();
+  vortices.name = "vortices", vortices.kind = BodyKind::Fluid;
+  vortices.shape.max = Vec<3>::filled(20 * c.spacing);
+  Particles<2> start = created<2>(c);
+  const double k = 2 * M_PI / (20 * c.spacing), speed = 0.1;
+  for (std::uint32_t i = 0; i < start.fluidCount; ++i) {
+    const double x = k * start.position[i][0], y = k * start.position[i][1];
+    start.velocity[i] = {speed * std::sin(x) * std::cos(y), -speed * std::cos(x) * std::sin(y)};
+  }
+  Simulation<2> simulation(c, std::move(start));
+  for (int step = 0; step < 10; ++step) {
+    const StepReport report = simulation.advance();
+    EXPECT_EQ(report.fallbacks, 0) << report.failures;
+    EXPECT_LE(report.iterations, 12);
+  }
+  const Particles<2>& p = simulation.particles();
+  const double unit = c.materials[0].density * speed * speed / 4;
+  EXPECT_LE(std::abs(fluidMean(p, [&](std::uint32_t i) { return p.pressure[i]; })), 1e-12 * unit);
+  // p = rho U^2 / 4 (cos 2kx + cos 2ky)
+  const double error = fluidMean(p, [&](std::uint32_t i) {
+    const Vec<2> x = p.position[i];
+    return std::abs(p.pressure[i] / unit - std::cos(2 * k * x[0]) - std::cos(2 * k * x[1]));
+  });
+  EXPECT_LE(error, 0.2);
+}
+
 TEST(IsphRun, DiagnosticsHoldTheDensities) {
   const Case c = tankCase(2, 16, 12);
   Simulation<2> simulation(c, created<2>(c));
