@@ -81,13 +81,16 @@ class MphStep final : public StepMethod<D, Backend> {
       findNeighbours();
     }
     MphSolver<D, Backend> solver(stage);
+    // As the next step would, where its solver is tried; that of another precision has another eigenvalue.
+    KeptEigenvalue pressure;
+    if (stage.precision == state_.theCase.solver.precision) pressure = state_.particles.modes.pressure;
     Buffer<Vec<D>, Backend> u;
     u.resize(state_.context, pairs_.fluidCount);
     return takeTrial(
         state_.context, stage,
         [&] {
           solver.prepareOperator(state_.context, pairs_, neighbourhood_.ranges(), wallTermsView());
-          solver.preparePreconditioner(state_.context);
+          solver.preparePreconditioner(state_.context, &pressure);
         },
         [&](double* history) {
           guess(u);
