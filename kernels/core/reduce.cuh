@@ -60,7 +60,7 @@ void reduce(Context<Cuda>& context, std::size_t count, Body body, Finish finish)
   constexpr unsigned maxBlocks = 132 * 8;
   const unsigned blocks = std::min(std::max(blocksFor(count, 512), 1u), maxBlocks);
   launchEarly(context, blocks, 256, 0, reduceKernel<Body, Finish>, count, body, finish, context.partialSums(),
-         context.ticket());
+              context.ticket());
 }
 
 }  // namespace treacle

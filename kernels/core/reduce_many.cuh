@@ -43,8 +43,8 @@ template <int N, class Body, class Finish>
 void reduceMany(Context<Cuda>& context, std::size_t count, Body body, Finish finish) {
   constexpr unsigned maxBlocks = std::min<unsigned>(132 * 4, Context<Cuda>::maxPartialSums / N);
   const unsigned blocks = std::min(std::max(blocksFor(count, 512), 1u), maxBlocks);
-  launchEarly(context, blocks, 256, 0, reduceManyKernel<N, Body, Finish>, count, body, finish, context.partialSums(),
-         context.ticket());
+  launchEarly(context, blocks, 256, 0, reduceManyKernel<N, Body, Finish>, count, body, finish,
+              context.partialSums(), context.ticket());
 }
 
 }  // namespace treacle

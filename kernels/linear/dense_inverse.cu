@@ -89,7 +89,8 @@ __device__ void sweepPanel(double (&mine)[panel], double (*line)[panel]) {
 /// W_i = B_i (A_kk)^-1; every block inverts A_kk for itself. Block k leaves the swept A_kk, -(A_kk)^-1, as its W.
 /// Reads the lower triangle; writes B and W. No atomics.
 template <class T>
-__global__ void __launch_bounds__(pivotWarps* panel) pivotKernel(std::uint32_t k, const __grid_constant__ Tasks<T> tasks) {
+__global__ void __launch_bounds__(pivotWarps* panel)
+    pivotKernel(std::uint32_t k, const __grid_constant__ Tasks<T> tasks) {
   const Dense m(tasks.task[blockIdx.y]);
   if (k >= m.panels || blockIdx.x >= m.panels) return;
   __shared__ double swept[panel][panel + 1], ofB[panel][panel + 1], line[2][panel];
@@ -131,7 +132,8 @@ __global__ void __launch_bounds__(pivotWarps* panel) pivotKernel(std::uint32_t k
 /// pivot's row and column of panels W instead. Reads and writes the lower triangle (of diagonal panels all); reads
 /// B, W. No atomics.
 template <class T>
-__global__ void __launch_bounds__(panel* panel) eliminateKernel(std::uint32_t k, const __grid_constant__ Tasks<T> tasks) {
+__global__ void __launch_bounds__(panel* panel)
+    eliminateKernel(std::uint32_t k, const __grid_constant__ Tasks<T> tasks) {
   const std::uint32_t i = blockIdx.y, j = blockIdx.x;
   const Dense m(tasks.task[blockIdx.z]);
   if (j > i || k >= m.panels || i >= m.panels) return;
@@ -161,7 +163,8 @@ __global__ void __launch_bounds__(panel* panel) eliminateKernel(std::uint32_t k,
 
 template <class T>
 template <int B>
-void DenseInverses<T, Cuda>::add(Context<Cuda>& context, const BlockCsr<B, double, Cuda>& a, std::span<T> inverse) {
+void DenseInverses<T, Cuda>::add(Context<Cuda>& context, const BlockCsr<B, double, Cuda>& a,
+                                 std::span<T> inverse) {
   const std::uint32_t n = B * a.rows(), panels = blocksFor(n, panel), stride = panels * panel;
   if (n == 0) return;
   if (tasks_.size() == most) throw std::length_error("more dense inverses at a time than DenseInverses::most");
@@ -199,9 +202,11 @@ void DenseInverses<T, Cuda>::finish(Context<Cuda>& context) {
   memory_.clear();
 }
 
-#define TREACLE_INSTANTIATE(B)                                                                          \
-  template void DenseInverses<double, Cuda>::add(Context<Cuda>&, const BlockCsr<B, double, Cuda>&, std::span<double>); \
-  template void DenseInverses<float, Cuda>::add(Context<Cuda>&, const BlockCsr<B, double, Cuda>&, std::span<float>);
+#define TREACLE_INSTANTIATE(B)                                                                     \
+  template void DenseInverses<double, Cuda>::add(Context<Cuda>&, const BlockCsr<B, double, Cuda>&, \
+                                                 std::span<double>);                               \
+  template void DenseInverses<float, Cuda>::add(Context<Cuda>&, const BlockCsr<B, double, Cuda>&,  \
+                                                std::span<float>);
 TREACLE_INSTANTIATE(1)
 TREACLE_INSTANTIATE(2)
 TREACLE_INSTANTIATE(3)

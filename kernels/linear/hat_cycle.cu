@@ -161,8 +161,8 @@ void hatResidual(Context<Cuda>& context, const BlockCsrView<B, T>& a, const HatV
 template <int D, int B, class T>
 void hatRestrict(Context<Cuda>& context, const HatNodes<D, Cuda>& fine, const HatNodes<D, Cuda>& coarse,
                  const T* res, const HatVectors<T>& v) {
-  launchEarly(context, blocksFor(coarse.count(), 4), 128, 0, restrictKernel<D, B, T>, fine.view(), coarse.view(), res,
-         v.b, FirstStep<T>(v));
+  launchEarly(context, blocksFor(coarse.count(), 4), 128, 0, restrictKernel<D, B, T>, fine.view(), coarse.view(),
+              res, v.b, FirstStep<T>(v));
 }
 
 template <int D, int B, class T>

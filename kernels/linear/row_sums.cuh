@@ -86,7 +86,7 @@ void rowSums(const Context<Cuda>& context, const BlockCsrView<D, T>& a, Term ter
   const auto start = [&](auto atATime) {
     constexpr int Blocks = decltype(atATime)::value, rowsPerWarp = 32 / (Blocks * D * D);
     launchEarly(context, dim3(blocksFor(a.rows, 8 * rowsPerWarp), columns), 256, 0,
-           rowSumsKernel<D, T, Blocks, How, Term, Store>, a, term, store);
+                rowSumsKernel<D, T, Blocks, How, Term, Store>, a, term, store);
   };
   if (2 * a.entries < 3 * wide * std::uint64_t{a.rows})
     start(std::integral_constant<int, narrow>{});

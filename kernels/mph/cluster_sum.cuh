@@ -200,15 +200,15 @@ __global__ void __launch_bounds__(32 * S::warpsPerBlock, residentBlocks<T, S>)
 template <int D, class T, class S, class Terms>
 void launchClusterSums(Context<Cuda>& context, const MphPairs<D>& pairs, const ListTask<Terms>& task,
                        const LocalPositions<D, T>& places) {
-  launchEarly(context, task.template blocks<S>(), 32 * S::warpsPerBlock, 0, clusterSumKernel<D, T, S, Terms>, pairs,
-         task, places);
+  launchEarly(context, task.template blocks<S>(), 32 * S::warpsPerBlock, 0, clusterSumKernel<D, T, S, Terms>,
+              pairs, task, places);
 }
 
 template <int D, class T, class S, class A, class B>
 void launchClusterSums(Context<Cuda>& context, const MphPairs<D>& pairs, const ListTask<A>& a,
                        const ListTask<B>& b, const LocalPositions<D, T>& places) {
   launchEarly(context, a.template blocks<S>() + b.template blocks<S>(), 32 * S::warpsPerBlock, 0,
-         clusterSumsKernel<D, T, S, A, B>, pairs, a, b, places);
+              clusterSumsKernel<D, T, S, A, B>, pairs, a, b, places);
 }
 
 /// Systems with fewer clusters share each of them among four warps.

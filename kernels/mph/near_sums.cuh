@@ -87,8 +87,8 @@ template <int count>
 using Threads = std::integral_constant<int, count>;
 
 /// Runs along the list of a particle, every split-th entry from `part` on: add(load(entry)), the loads of four
-/// neighbours being on their way together. Where lists are shared, threads are few and wait for memory; so the last
-/// rows are loaded together, too, the particle itself in place of those that are missing, which adds nothing.
+/// neighbours being on their way together. Where lists are shared, threads are few and wait for memory; so the
+/// last rows are loaded together, too, the particle itself in place of those that are missing, which adds nothing.
 template <class Load, class Add, class Split = Threads<1>>
 __device__ inline void alongList(const std::uint64_t* sliceStart, const ListEntry* entry, std::uint32_t i,
                                  Load&& load, Add&& add, int part = 0, Split split = {}) {
@@ -276,7 +276,7 @@ void nearGradient(const Context<Cuda>& context, const NearView<D, T, Weights>& v
                   const Store& store) {
   withSplit<D>(view.fluidCount, [&](auto split) {
     launchEarly(context, blocksFor(std::size_t{view.fluidCount} * split, 128), 128, 0,
-           nearGradientKernel<decltype(split), D, T, Weights, Scalars, Store>, split, view, q, store);
+                nearGradientKernel<decltype(split), D, T, Weights, Scalars, Store>, split, view, q, store);
   });
 }
 template <int D, class T, class Weights, class Vectors, class Columns, class Store>
@@ -284,8 +284,8 @@ void nearDivergence(const Context<Cuda>& context, const NearView<D, T, Weights>&
                     const Columns& columns, const Store& store) {
   withSplit<D>(view.activeCount, [&](auto split) {
     launchEarly(context, blocksFor(std::size_t{view.activeCount} * split, 128), 128, 0,
-           nearDivergenceKernel<decltype(split), D, T, Weights, Vectors, Columns, Store>, split, view, u, columns,
-           store);
+                nearDivergenceKernel<decltype(split), D, T, Weights, Vectors, Columns, Store>, split, view, u,
+                columns, store);
   });
 }
 

@@ -105,14 +105,14 @@ template <int D, class T>
 void HatTransfer<D, T, Cuda>::restrict(Context<Cuda>& context, const HatNodes<D, Cuda>& nodes,
                                        std::span<const T> r, std::span<T> b) const {
   launchEarly(context, blocksFor(nodes.count(), 4), 128, 0, restrictKernel<D, T, 1, T>, HatCells<D>{pairs_->grid},
-         nodes.view(), pairs_->cells, place_.data(), r.data(), b.data());
+              nodes.view(), pairs_->cells, place_.data(), r.data(), b.data());
 }
 
 template <int D, class T>
 void HatTransfer<D, T, Cuda>::restrict(Context<Cuda>& context, const HatNodes<D, Cuda>& nodes,
                                        std::span<const Gathered<D, T>> r, std::span<T> b) const {
   launchEarly(context, blocksFor(nodes.count(), 4), 128, 0, restrictKernel<D, T, D, Gathered<D, T>>,
-         HatCells<D>{pairs_->grid}, nodes.view(), pairs_->cells, place_.data(), r.data(), b.data());
+              HatCells<D>{pairs_->grid}, nodes.view(), pairs_->cells, place_.data(), r.data(), b.data());
 }
 
 /// One thread per particle.

@@ -7,9 +7,7 @@
 namespace treacle {
 
 /// Position of 16 bits per axis.
-__device__ inline int4 position16(int xy, int z) {
-  return {xy << 16, xy & ~0xffff, z << 16, 0};
-}
+__device__ inline int4 position16(int xy, int z) { return {xy << 16, xy & ~0xffff, z << 16, 0}; }
 
 /// Fields that stand beside the position, one fetch for both.
 template <int D>
@@ -160,6 +158,6 @@ void nearSchur(const Context<Cuda>& context, const NearView<D, T, Weights>& view
                const ProjectionTable<T>& table, const std::uint8_t* material, const Store& store) {
   constexpr int lanes = D == 2 ? 16 : 32;
   launchEarly(context, blocksFor(std::size_t{view.activeCount} * lanes, 128), 128, 0,
-         nearSchurKernel<lanes, D, T, Weights, Scalars, Store>, view, q, table, material, store);
+              nearSchurKernel<lanes, D, T, Weights, Scalars, Store>, view, q, table, material, store);
 }
 }  // namespace treacle

@@ -68,7 +68,7 @@ void DenseInverses<T, Cpu>::add(Context<Cpu>&, const BlockCsr<B>& a, std::span<T
   });
 }
 
-#define TREACLE_INSTANTIATE(B)                                                                    \
+#define TREACLE_INSTANTIATE(B)                                                                         \
   template void DenseInverses<double, Cpu>::add(Context<Cpu>&, const BlockCsr<B>&, std::span<double>); \
   template void DenseInverses<float, Cpu>::add(Context<Cpu>&, const BlockCsr<B>&, std::span<float>);
 TREACLE_INSTANTIATE(1)

@@ -87,11 +87,12 @@ double Oracle<D>::viscosityScale(std::uint32_t i) const {
 
 template <int D>
 double Oracle<D>::pairScale(std::uint32_t i, std::uint32_t j) const {
-  if (s.c.method.viscosityCorrection == 0) return 1;
+  const std::uint32_t fluid = s.particles.fluidCount;
+  if (s.c.method.viscosityCorrection == 0 || (i >= fluid && j >= fluid)) return 1;
   if (scales.empty())
-    for (std::uint32_t k = 0; k < s.particles.fluidCount; ++k) scales.push_back(viscosityScale(k));
-  if (i >= s.particles.fluidCount) return scales[j];
-  if (j >= s.particles.fluidCount) return scales[i];
+    for (std::uint32_t k = 0; k < fluid; ++k) scales.push_back(viscosityScale(k));
+  if (i >= fluid) return scales[j];
+  if (j >= fluid) return scales[i];
   return (scales[i] + scales[j]) / 2;
 }
 

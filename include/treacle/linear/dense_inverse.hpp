@@ -19,10 +19,10 @@ struct DenseTask {
 };
 
 /// Inverses of small symmetric positive definite matrices of n = B a.rows() unknowns, block after block: n x n
-/// numbers, row-major, exactly symmetric. The lower triangles are read. Computed in double precision with an addition
-/// to the diagonal (regularisation), which makes semidefinite matrices invertible; unknowns where a pivot still is
-/// not positive get zeros. A device, which waits for one pivot after the other, inverts two matrices in the time of
-/// one.
+/// numbers, row-major, exactly symmetric. The lower triangles are read. Computed in double precision with an
+/// addition to the diagonal (regularisation), which makes semidefinite matrices invertible; unknowns where a pivot
+/// still is not positive get zeros. A device, which waits for one pivot after the other, inverts two matrices in
+/// the time of one.
 template <class T, class Backend = Cpu>
 class DenseInverses;
 

@@ -38,8 +38,8 @@ class KrylovLoop<Cpu> {
 };
 
 /// On the device the loop is a graph with a conditional node: the host launches it once and looks at the scalars
-/// when it has ended. The graph of the last solve is kept, since to give its kernels new arguments takes a third of
-/// the time that a new graph takes.
+/// when it has ended. The graph of the last solve is kept, since to give its kernels new arguments takes a third
+/// of the time that a new graph takes.
 template <>
 class KrylovLoop<Cuda> {
  public:

@@ -32,8 +32,9 @@ struct ModeAge {
   bool operator==(const ModeAge&) const = default;
 };
 
-/// The largest eigenvalue that the pressure smoother is scaled by. Over ten steps it grew by 5 % at most in the dam
-/// breaks, and what it is estimated with leaves 10 %; an estimate takes as long as a third of an iteration's products.
+/// The largest eigenvalue that the pressure smoother is scaled by. Over ten steps it grew by 5 % at most in the
+/// dam breaks, and what it is estimated with leaves 10 %; an estimate takes as long as a third of an iteration's
+/// products.
 struct KeptEigenvalue {
   static constexpr std::int32_t longest = 10;  // solves with the same value
 

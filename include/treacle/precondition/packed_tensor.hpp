@@ -9,8 +9,9 @@ namespace treacle {
 
 /// B of a particle (renormalisation.hpp) in few bits, so that it stands beside the position and a number in 16
 /// bytes. Its eigenvalues are above 0 and at most 1; so elements on the diagonal are stored as 0 to `scale`, the
-/// others, at most a half, with scale/2 added. The unit matrix is exact. A preconditioner in which all products have
-/// these B is symmetric as before; ten (2D) and eight bits (3D) change iterations by 1 % (docs/performance.md).
+/// others, at most a half, with scale/2 added. The unit matrix is exact. A preconditioner in which all products
+/// have these B is symmetric as before; ten (2D) and eight bits (3D) change iterations by 1 %
+/// (docs/performance.md).
 template <int D>
 struct PackedTensor {
   static constexpr int bits = D == 2 ? 10 : 8, scale = D == 2 ? 1022 : 254;

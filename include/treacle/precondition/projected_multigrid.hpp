@@ -44,8 +44,8 @@ ProjectionDegrees chooseDegrees(ProjectionDegrees chosen, const ProjectionConsta
 template <int D, class T, class Backend = Cpu>
 class ProjectedMultigrid {
  public:
-  /// `pairs`, `terms` and `a` (prepared) must outlive the last apply(). `kept`: the largest eigenvalue of the scaled
-  /// S', if it is known from earlier steps; else it is put there.
+  /// `pairs`, `terms` and `a` (prepared) must outlive the last apply(). `kept`: the largest eigenvalue of the
+  /// scaled S', if it is known from earlier steps; else it is put there.
   void setup(Context<Backend>&, const MphPairs<D>& pairs, const WallTerms<D>& terms,
              const MphOperator<D, Backend>& a, const ProjectionDegrees& degrees, KeptEigenvalue* kept = nullptr);
   void apply(Context<Backend>&, std::span<const Vec<D>> r, std::span<Vec<D>> z);

@@ -13,9 +13,9 @@
 namespace treacle {
 
 /// What the projected multigrid does with each sum over neighbours, the same on all backends. One call per
-/// particle, store.put(k, sum, m) with its material m, or store.put(k, sum, store.own(k)) with what else is needed of it;
-/// nothing here reads another particle, so a sum may be taken from `correction` while it is overwritten elsewhere
-/// only where the text says so.
+/// particle, store.put(k, sum, m) with its material m, or store.put(k, sum, store.own(k)) with what else is needed
+/// of it; nothing here reads another particle, so a sum may be taken from `correction` while it is overwritten
+/// elsewhere only where the text says so.
 
 /// Per material, in the precision of the preconditioner.
 template <class T>

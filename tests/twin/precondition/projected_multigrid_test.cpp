@@ -1,8 +1,8 @@
-#include "treacle/precondition/packed_tensor.hpp"
 #include "treacle/precondition/projected_multigrid.hpp"
 #include "support/device_scene.hpp"
 #include "support/gpu.hpp"
 #include "support/tolerances.hpp"
+#include "treacle/precondition/packed_tensor.hpp"
 
 #include <gtest/gtest.h>
 

@@ -45,7 +45,8 @@ void compareAll(const Case& c, const std::vector<SolverSettings>& solvers, const
     const std::vector<SolverTrial> expected = cpu.convergence(solvers), found = cuda.convergence(solvers);
     ASSERT_EQ(found.size(), solvers.size());
     for (std::size_t k = 0; k < solvers.size(); ++k)
-      // In single precision the device has another preconditioner: B in a few bits, in three dimensions positions in
+      // In single precision the device has another preconditioner: B in a few bits, in three dimensions positions
+      // in
       // 16. In double precision the inverses of nearly singular coarse operators have errors of 1e-6.
       expectSameCurve(found[k], expected[k], solvers[k].precision == Precision::Mixed ? 5e-2 : 1e-5);
     EXPECT_EQ(cuda.advance().iterations, found.back().report.iterations) << "the case's own solver";
