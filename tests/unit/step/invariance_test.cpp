@@ -44,7 +44,10 @@ Particles<D> reordered(const Particles<D>& from, const std::function<std::uint32
 
 template <int D>
 Particles<D> copyOf(const Particles<D>& p) {
-  return reordered<D>(p, [](std::uint32_t i) { return i; });
+  Particles<D> copy = reordered<D>(p, [](std::uint32_t i) { return i; });
+  copy.modes.age = p.modes.age;
+  copy.modes.pressure = p.modes.pressure;
+  return copy;
 }
 
 constexpr int steps = 5;
