@@ -51,8 +51,7 @@ bool someWallMoves(const Particles<D>& particles) {
 template <int D>
 void toHost(const Context<Cpu>&, const Particles<D>& particles, Particles<D>& host) {
   host.resize(particles.numbers());
-  host.modes.age = particles.modes.age;
-  host.modes.pressure = particles.modes.pressure;
+  host.modes.copyNumbers(particles.modes);
   forEachFieldOf([](const auto& from, auto& to) { std::copy(from.begin(), from.end(), to.begin()); }, particles,
                  host);
 }

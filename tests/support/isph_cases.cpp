@@ -61,8 +61,7 @@ Particles<D> copyOf(const Particles<D>& from) {
   Particles<D> p;
   p.resize(from.numbers());
   forEachFieldOf([](const auto& a, auto& b) { std::copy(a.begin(), a.end(), b.begin()); }, from, p);
-  p.modes.age = from.modes.age;
-  p.modes.pressure = from.modes.pressure;
+  p.modes.copyNumbers(from.modes);
   return p;
 }
 

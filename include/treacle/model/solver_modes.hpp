@@ -8,6 +8,13 @@
 
 namespace treacle {
 
+/// Whether a solve takes a quarter more iterations than the best one so far, which `fewest` keeps; 0: none yet.
+inline bool takesLonger(std::int32_t iterations, std::int32_t& fewest) {
+  const std::int32_t before = fewest == 0 ? iterations : fewest;
+  fewest = std::min(before, iterations);
+  return iterations >= before + std::max(2, before / 4);
+}
+
 /// When the modes of a solver are to be taken anew: after so many solves, or when one takes a quarter more
 /// iterations than the best since the last time. The first solve of a run, from rest and without a guess, is not
 /// like the others.
@@ -24,9 +31,7 @@ struct ModeAge {
   /// After a solve with the present modes, or without any.
   void solved(std::int32_t iterations) {
     --due;
-    const std::int32_t before = fewest == 0 ? iterations : fewest;
-    fewest = std::min(before, iterations);
-    if (iterations >= before + std::max(2, before / 4) && due <= longest - shortest) due = 0;
+    if (takesLonger(iterations, fewest) && due <= longest - shortest) due = 0;
   }
 
   bool operator==(const ModeAge&) const = default;
@@ -47,9 +52,7 @@ struct KeptEigenvalue {
   /// After a solve: one that takes more iterations than others may have outgrown the value.
   void solved(std::int32_t iterations) {
     --due;
-    const std::int32_t before = fewest == 0 ? iterations : fewest;
-    fewest = std::min(before, iterations);
-    if (iterations >= before + std::max(2, before / 4)) due = 0;
+    if (takesLonger(iterations, fewest)) due = 0;
   }
 
   bool operator==(const KeptEigenvalue&) const = default;
@@ -63,6 +66,12 @@ struct SolverModes {
   ModeAge age;
   KeptEigenvalue pressure;
 
+  /// All but the vectors, which are a field of the particles.
+  template <class Other>
+  void copyNumbers(const SolverModes<D, Other>& from) {
+    age = from.age;
+    pressure = from.pressure;
+  }
   /// Without any, as at the start of a run.
   void drop() {
     vectors = {};
