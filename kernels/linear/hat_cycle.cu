@@ -35,32 +35,31 @@ struct StoreResidual {
   __device__ void operator()(std::size_t k, T sum) const { res[k] = from[k] - sum; }
 };
 
-/// res = from - A z, next z = previous z + gain / lambdaMax D^-1 res, x += next z
+/// res = from - A z, next z = previous z + gain / hatLambdaMax D^-1 res, x += next z
 template <class T>
 struct StoreStep {
   ChebyshevStep<T> step;
-  const T *inverseDiagonal, *lambdaMax, *from, *z;
+  const T *inverseDiagonal, *from, *z;
   T *res, *next, *x;
 
   __device__ void operator()(std::size_t k, T sum) const {
     const T rest = from[k] - sum;
-    const T change = step.previous * z[k] + step.gain / *lambdaMax * inverseDiagonal[k] * rest;
+    const T change = step.previous * z[k] + step.gain / hatLambdaMax * inverseDiagonal[k] * rest;
     res[k] = rest;
     next[k] = change;
     x[k] += change;
   }
 };
 
-/// z = x = gain / lambdaMax D^-1 b of the first step
+/// z = x = gain / hatLambdaMax D^-1 b of the first step
 template <class T>
 struct FirstStep {
-  const T *inverseDiagonal, *lambdaMax;
+  const T* inverseDiagonal;
   T *z, *x;
 
-  explicit FirstStep(const HatVectors<T>& v)
-      : inverseDiagonal(v.inverseDiagonal), lambdaMax(v.lambdaMax), z(v.z[0]), x(v.x) {}
+  explicit FirstStep(const HatVectors<T>& v) : inverseDiagonal(v.inverseDiagonal), z(v.z[0]), x(v.x) {}
   __device__ void operator()(std::size_t k, T b) const {
-    const T change = ChebyshevStep<T>::at(1).gain / *lambdaMax * inverseDiagonal[k] * b;
+    const T change = ChebyshevStep<T>::at(1).gain / hatLambdaMax * inverseDiagonal[k] * b;
     z[k] = change;
     x[k] = change;
   }
@@ -108,7 +107,7 @@ __global__ void restrictKernel(const HatNodesView<D> fine, const HatNodesView<D>
     const T sum = warpSum(i == noNode ? T(0) : static_cast<T>(weight) * res[std::size_t{i} * B + c]);
     if (lane != c) continue;
     b[std::size_t{row} * B + c] = sum;
-    if (first.lambdaMax) first(std::size_t{row} * B + c, sum);
+    if (first.inverseDiagonal) first(std::size_t{row} * B + c, sum);
   }
 }
 
@@ -149,7 +148,7 @@ template <class T, int B>
 void hatStep(Context<Cuda>& context, const BlockCsrView<B, T>& a, ChebyshevStep<T> step, const HatVectors<T>& v,
              const T* from, int last) {
   const T* z = v.z[last];
-  products(context, a, z, StoreStep<T>{step, v.inverseDiagonal, v.lambdaMax, from, z, v.res, v.z[1 - last], v.x});
+  products(context, a, z, StoreStep<T>{step, v.inverseDiagonal, from, z, v.res, v.z[1 - last], v.x});
 }
 
 template <class T, int B>

@@ -44,7 +44,7 @@ void hatMultiply(Context<Cpu>&, const BlockCsrView<B, T>& a, std::span<const T> 
 
 template <class T>
 void hatFirstStep(Context<Cpu>&, std::size_t unknowns, const HatVectors<T>& v) {
-  const T gain = ChebyshevStep<T>::at(1).gain / *v.lambdaMax;
+  const T gain = ChebyshevStep<T>::at(1).gain / hatLambdaMax;
   parallelFor(unknowns, parallelGrain,
               [&](std::size_t i) { v.x[i] = v.z[0][i] = gain * v.inverseDiagonal[i] * v.b[i]; });
 }
@@ -54,7 +54,7 @@ void hatStep(Context<Cpu>&, const BlockCsrView<B, T>& a, ChebyshevStep<T> step, 
              const T* from, int last) {
   const T* z = v.z[last];
   T* next = v.z[1 - last];
-  const T gain = step.gain / *v.lambdaMax;
+  const T gain = step.gain / hatLambdaMax;
   rowSums(a, z, [&](std::size_t k, T sum) {
     v.res[k] = from[k] - sum;
     next[k] = step.previous * z[k] + gain * v.inverseDiagonal[k] * v.res[k];
@@ -71,7 +71,7 @@ template <int D, int B, class T>
 void hatRestrict(Context<Cpu>&, const HatNodes<D>& fine, const HatNodes<D>& coarse, const T* res,
                  const HatVectors<T>& v) {
   const HatNodesView<D> from = fine.view(), to = coarse.view();
-  const T gain = v.lambdaMax ? ChebyshevStep<T>::at(1).gain / *v.lambdaMax : T(0);
+  const T gain = ChebyshevStep<T>::at(1).gain / hatLambdaMax;
   parallelFor(to.count, parallelGrain, [&](std::size_t row) {
     Vec<B, T> sum{};
     forEachFine(from.lattice, to.pointOf(row), [&](const Vec<D, int>& p, double weight) {
@@ -81,7 +81,7 @@ void hatRestrict(Context<Cpu>&, const HatNodes<D>& fine, const HatNodes<D>& coar
     for (int c = 0; c < B; ++c) {
       const std::size_t k = row * B + c;
       v.b[k] = sum[c];
-      if (v.lambdaMax) v.x[k] = v.z[0][k] = gain * v.inverseDiagonal[k] * sum[c];
+      if (v.inverseDiagonal) v.x[k] = v.z[0][k] = gain * v.inverseDiagonal[k] * sum[c];
     }
   });
 }

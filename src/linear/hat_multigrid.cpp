@@ -42,17 +42,12 @@ void HatMultigrid<D, T, Backend, B>::prepareSmoother(Context<Backend>& context, 
   Level& level = levels_[l];
   for (Buffer<T, Backend>* v : {&level.inverseDiagonal, &level.res, &level.z0, &level.z1})
     v->resize(context, unknowns(l));
-  if (!std::is_same_v<T, double>) level.value.resize(context, operatorOf(l).value.size());
-  hatValues<T, B>(context, operatorOf(l), level.value, level.inverseDiagonal);
-  if (options_.smoother == HatSmoother::RowSums) {
-    const auto inverse = reinterpret_cast<Vec<B, T>*>(level.inverseDiagonal.data());
-    extendedJacobiInverse<B>(context, operatorOf(l), std::span<Vec<B, T>>{inverse, operatorOf(l).rows()});
-    level.lambdaMax.assume(context, T(2));  // halves of the sums
-    return;
+  if constexpr (!std::is_same_v<T, double>) {
+    level.value.resize(context, operatorOf(l).value.size());
+    hatValues<T, B>(context, operatorOf(l), level.value, level.inverseDiagonal);
   }
-  level.lambdaMax.run(
-      context, [&, a = matrix(l)](std::span<const T> x, std::span<T> y) { hatMultiply<T>(context, a, x, y); },
-      level.inverseDiagonal);
+  const auto inverse = reinterpret_cast<Vec<B, T>*>(level.inverseDiagonal.data());
+  extendedJacobiInverse<B>(context, operatorOf(l), std::span<Vec<B, T>>{inverse, operatorOf(l).rows()});
 }
 
 template <int D, class T, class Backend, int B>
@@ -66,8 +61,11 @@ BlockCsrView<B, T> HatMultigrid<D, T, Backend, B>::matrix(std::size_t l) const {
 template <int D, class T, class Backend, int B>
 HatVectors<T> HatMultigrid<D, T, Backend, B>::vectors(std::size_t l) {
   Level& v = levels_[l];
-  const T* lambdaMax = isDense(l) ? nullptr : v.lambdaMax.largest();
-  return {v.inverseDiagonal.data(), lambdaMax, v.b.data(), v.res.data(), v.x.data(), {v.z0.data(), v.z1.data()}};
+  return {isDense(l) ? nullptr : v.inverseDiagonal.data(),
+          v.b.data(),
+          v.res.data(),
+          v.x.data(),
+          {v.z0.data(), v.z1.data()}};
 }
 
 template <int D, class T, class Backend, int B>
@@ -105,7 +103,7 @@ std::size_t HatMultigrid<D, T, Backend, B>::bytes() const {
   std::size_t sum = inverse_.bytes();
   for (const Level& l : levels_) {
     sum += l.nodes.bytes() + l.galerkin.bytes() + l.value.bytes() + l.inverseDiagonal.bytes();
-    sum += l.lambdaMax.bytes() + l.b.bytes() + l.res.bytes() + l.x.bytes() + l.z0.bytes() + l.z1.bytes();
+    sum += l.b.bytes() + l.res.bytes() + l.x.bytes() + l.z0.bytes() + l.z1.bytes();
   }
   return sum;
 }

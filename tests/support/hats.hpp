@@ -1,6 +1,7 @@
 #pragma once
 
 #include "treacle/linear/hat_multigrid.hpp"
+#include "treacle/linear/lanczos_scalars.hpp"
 
 #include <algorithm>
 #include <cmath>

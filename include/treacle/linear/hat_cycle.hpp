@@ -12,11 +12,13 @@ namespace treacle {
 /// is read by neighbours while the next one is made, so there are two.
 template <class T>
 struct HatVectors {
-  const T* inverseDiagonal;  // zero: the unknown stays zero
-  const T* lambdaMax;        // one number, at least the largest eigenvalue of D^-1 A
+  const T* inverseDiagonal;  // D^-1; zero: the unknown stays zero; null: the level has no smoother
   T *b, *res, *x;            // right-hand side, residual, iterate
   T* z[2];                   // last change of x
 };
+
+/// No eigenvalue of D^-1 A is larger, D being half the sums of the absolute values of A's rows.
+inline constexpr int hatLambdaMax = 2;
 
 // The operations that a V-cycle consists of; one kernel each. B numbers per node.
 
@@ -34,14 +36,14 @@ void hatMultiply(Context<Cpu>&, const BlockCsrView<B, T>& a, std::span<const T> 
 template <class T, int B>
 void hatMultiply(Context<Cuda>&, const BlockCsrView<B, T>& a, std::span<const T> x, std::span<T> y);
 
-/// First smoothing step from zero: z[0] = x = gain / lambdaMax D^-1 b
+/// First smoothing step from zero: z[0] = x = gain / hatLambdaMax D^-1 b
 template <class T>
 void hatFirstStep(Context<Cpu>&, std::size_t unknowns, const HatVectors<T>& v);
 template <class T>
 void hatFirstStep(Context<Cuda>&, std::size_t unknowns, const HatVectors<T>& v);
 
 /// res = from - A z[last] (`from` is b or res), then
-/// z[1 - last] = previous z[last] + gain / lambdaMax D^-1 res and x += z[1 - last].
+/// z[1 - last] = previous z[last] + gain / hatLambdaMax D^-1 res and x += z[1 - last].
 template <class T, int B>
 void hatStep(Context<Cpu>&, const BlockCsrView<B, T>& a, ChebyshevStep<T> step, const HatVectors<T>& v,
              const T* from, int last);
@@ -55,7 +57,7 @@ void hatResidual(Context<Cpu>&, const BlockCsrView<B, T>& a, const HatVectors<T>
 template <class T, int B>
 void hatResidual(Context<Cuda>&, const BlockCsrView<B, T>& a, const HatVectors<T>& v, const T* from, int last);
 
-/// coarse.b = P^T res, and there the first smoothing step unless the level has no smoother (lambdaMax is null).
+/// coarse.b = P^T res, and there the first smoothing step unless the level has no smoother.
 template <int D, int B, class T>
 void hatRestrict(Context<Cpu>&, const HatNodes<D>& fine, const HatNodes<D>& coarse, const T* res,
                  const HatVectors<T>& coarseV);

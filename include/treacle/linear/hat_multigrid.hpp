@@ -2,7 +2,6 @@
 
 #include "treacle/linear/dense_inverse.hpp"
 #include "treacle/linear/hat_cycle.hpp"
-#include "treacle/linear/spectral_estimate.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -12,21 +11,17 @@
 
 namespace treacle {
 
-/// What smoothers divide by: the diagonal, with the largest eigenvalue that belongs to it, which Lanczos' method
-/// estimates; or the sums of absolute values of the rows, which bound it. The second needs no estimate and does
-/// not suffer from single nodes, at the edge of a splash, that a particle hardly reaches.
-enum class HatSmoother { Diagonal, RowSums };
-
 struct HatOptions {
   int degree = 1;        // >= 1, of the Chebyshev smoothers
   int reach = hatReach;  // of the finest matrix
-  HatSmoother smoother = HatSmoother::Diagonal;
 };
 
 /// Symmetric V-cycle on hat functions of edge h, 2h, 4h, ...: Galerkin operators, fourth-kind Chebyshev smoothing
-/// on the diagonal before and after each coarse correction, the inverse on the last level. B unknowns per node
-/// share its hat; vectors are flat, node after node. T is the precision of the cycle; operators are formed in
-/// double. Per cycle of degree k each level but the last reads its matrix 2 k times.
+/// before and after each coarse correction, the inverse on the last level. Smoothers divide by the sums of
+/// absolute values of the rows, which bound the eigenvalues: that needs no estimate and does not suffer from
+/// single nodes, at the edge of a splash, that a particle hardly reaches. B unknowns per node share its hat;
+/// vectors are flat, node after node. T is the precision of the cycle; operators are formed in double. Per cycle
+/// of degree k each level but the last reads its matrix 2 k times.
 ///
 /// On a device a cycle is a fixed series of kernels on fixed memory: it can be captured into a graph.
 template <int D, class T, class Backend = Cpu, int B = 1>
@@ -66,7 +61,6 @@ class HatMultigrid {
     BlockCsr<B, double, Backend> galerkin;  // they are the caller's
     Buffer<Block<B, T>, Backend> value;     // of the matrix; empty in double precision
     Buffer<T, Backend> inverseDiagonal;
-    SpectralEstimate<T, Backend> lambdaMax;
     Buffer<T, Backend> b, res, x, z0, z1;
   };
 

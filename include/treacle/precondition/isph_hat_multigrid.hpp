@@ -46,7 +46,7 @@ class IsphHatMultigrid {
     transfer_.prepare(context, fluid_);
     findHatNodes(context, fluid_, HatsOn::Fluid, nodes_);
     isphGalerkin(context, fluid_, moments, nodes_, parts_, matrix_);
-    grids_.setup(context, nodes_, matrix_, {.degree = gridDegree, .reach = 1, .smoother = HatSmoother::RowSums});
+    grids_.setup(context, nodes_, matrix_, {.degree = gridDegree, .reach = 1});
   }
 
   /// z = K r; z is zero where rows are.
