@@ -1,6 +1,7 @@
 #include "treacle/precondition/particle_products.hpp"
 
-#include "precondition/placed_sums.cuh"
+#include "precondition/coarse_positions.cuh"
+#include "precondition/staged_sums.cuh"
 
 namespace treacle {
 namespace {
@@ -13,38 +14,16 @@ LocalPositions<D, T> placesOf(const MphPairs<D>& pairs, const NearProducts<D>& n
     return LocalPositions<D, T>::make(pairs, near.fixedPosition().data());
 }
 
-/// Positions of the single-precision products. In three dimensions 16 bits have to do, of which the multiples of a
-/// length above twice h_p are left out: differences stay exact, and particles are displaced by 3e-5 spacings, in
-/// all products alike.
-template <int D>
-struct CoarsePositions {
-  std::uint32_t periods[D];
-
-  __device__ std::uint32_t of(std::uint32_t fixed, int k) const {
-    return D == 2 ? fixed : (fixed * periods[k] + 0x8000u) & 0xffff0000u;
-  }
-};
-template <int D>
-CoarsePositions<D> coarsePositions(const MphPairs<D>& pairs) {
-  CoarsePositions<D> c;
-  for (int k = 0; k < D; ++k)
-    c.periods[k] =
-        D == 2
-            ? 1u
-            : static_cast<std::uint32_t>(std::max(pairs.grid.length[k] / (2.2 * pairs.terms.pressureRadius), 1.0));
-  return c;
-}
-
 /// Where the particles stand, and B, beside what is gathered of them.
 template <int D>
 void placeParticles(const Context<Cuda>& context, const MphPairs<D>& pairs, const NearProducts<D>& near,
                     PlacedScalar* first, PlacedScalar* second, PlacedVector<D>* vectors) {
   const Renormalised<D> tensors{pairs.renormalisation, pairs.fluidCount};
   forEach(context, pairs.activeCount,
-          [coarse = coarsePositions(pairs), position = near.fixedPosition().data(), tensors, first, second,
-           vectors] __device__(std::size_t i) {
+          [coarse = CoarsePositions<D>::make(pairs), position = near.fixedPosition().data(), tensors, first,
+           second, vectors] __device__(std::size_t i) {
             std::uint32_t x[3] = {};
-            for (int k = 0; k < D; ++k) x[k] = coarse.of(static_cast<std::uint32_t>(position[4 * i + k]), k);
+            for (int k = 0; k < D; ++k) x[k] = coarse.of(position[4 * i + k], k);
             const std::uint64_t b =
                 tensors.b ? PackedTensor<D>::pack(tensors.of(static_cast<std::uint32_t>(i))) : 0;
             PlacedScalar scalar{{x[0], x[1], static_cast<std::uint32_t>(b)}, 0};
@@ -65,10 +44,8 @@ template <int D, class T, class Weights>
 NearView<D, T, Weights> viewOf(const MphPairs<D>& pairs, const NearProducts<D>& near,
                                const MphTerms<D, double, Weights>& terms) {
   auto view = NearView<D, T, Weights>::make(pairs, near, terms);
-  if constexpr (std::is_same_v<T, float>) {
-    const CoarsePositions<D> coarse = coarsePositions(pairs);
-    for (int k = 0; k < D; ++k) view.places.scale[k] /= static_cast<float>(coarse.periods[k]);
-  }
+  if constexpr (std::is_same_v<T, float>)
+    static_cast<NearLists<D, float>&>(view) = CoarsePositions<D>::listsOf(pairs, near);
   return view;
 }
 
@@ -112,8 +89,11 @@ void ParticleProducts<D, T, Cuda>::prepare(Context<Cuda>& context, const MphPair
   for (auto& field : scalars_) field.resize(context, pairs.activeCount);
   vectors_.resize(context, pairs.activeCount);
   clearBytes(context, vectors_.data(), vectors_.size() * sizeof(vectors_.data()[0]));
-  if constexpr (std::is_same_v<T, float>)
+  if constexpr (std::is_same_v<T, float>) {
     placeParticles(context, pairs, a.near(), scalars_[0].data(), scalars_[1].data(), vectors_.data());
+    if (pairs.renormalisation)
+      staged_.prepare(context, pairs, a.near(), scalars_[0].data(), productReach<T>(pairs));
+  }
   selfBlock_.resize(context, pairs.fluidCount);
   const double* from = a.selfBlock()[0].a;
   T* to = selfBlock_.data()->a;
@@ -166,25 +146,21 @@ auto tensors(const MphPairs<D>& pairs, const typename ScalarField<T, Cuda>::Elem
   else
     return Renormalised<D>{pairs.renormalisation, pairs.fluidCount};
 }
-/// A pressure times its B.
-template <int D, class T>
-auto stresses(const MphPairs<D>& pairs, ScalarField<T, Cuda> q) {
-  if constexpr (std::is_same_v<T, float>)
-    return PlacedStresses<D>{q.at};
-  else
-    return Stresses<D, T, PlainScalars<D, T>, Renormalised<D>>{{q.at}, tensors<D, T>(pairs, q.at)};
-}
 
 template <int D, class T>
 template <class Store>
 void ParticleProducts<D, T, Cuda>::gradient(Context<Cuda>& context, ScalarField<T, Cuda> q,
                                             const Store& store) const {
-  withPressureTerms(*pairs_, [&](const auto& terms, auto renormalised) {
+  withPressureTerms(*pairs_, [&]<class Weights>(const MphTerms<D, double, Weights>& terms, auto renormalised) {
     const auto view = viewOf<D, T>(*pairs_, a_->near(), terms);
-    if constexpr (renormalised)
-      nearGradient(context, view, stresses<D, T>(*pairs_, q), store);
-    else
+    if constexpr (!renormalised)
       nearGradient(context, view, gathered<D>(q), store);
+    else if constexpr (std::is_same_v<T, float>)
+      stagedGradient(context, staged_, StagedSums<D, Weights>{view, staged_.view(a_->near()), q.at}, q.at, store);
+    else
+      nearGradient(context, view,
+                   Stresses<D, T, PlainScalars<D, T>, Renormalised<D>>{{q.at}, tensors<D, T>(*pairs_, q.at)},
+                   store);
   });
 }
 
@@ -192,12 +168,16 @@ template <int D, class T>
 template <class Store>
 void ParticleProducts<D, T, Cuda>::divergence(Context<Cuda>& context, VectorField<D, T, Cuda> u,
                                               const Store& store) const {
-  withPressureTerms(*pairs_, [&](const auto& terms, auto renormalised) {
+  withPressureTerms(*pairs_, [&]<class Weights>(const MphTerms<D, double, Weights>& terms, auto renormalised) {
     const auto view = viewOf<D, T>(*pairs_, a_->near(), terms);
-    if constexpr (renormalised)
-      nearDivergence(context, view, gathered(u), tensors<D, T>(*pairs_, scalars_[0].data()), store);
-    else
+    const auto* places = scalars_[0].data();
+    if constexpr (!renormalised)
       nearDivergence(context, view, gathered(u), Plain<D, T>{}, store);
+    else if constexpr (std::is_same_v<T, float>)
+      stagedDivergence(context, staged_, StagedSums<D, Weights>{view, staged_.view(a_->near()), places}, u.at,
+                       tensors<D, T>(*pairs_, places), store);
+    else
+      nearDivergence(context, view, gathered(u), tensors<D, T>(*pairs_, places), store);
   });
 }
 

@@ -13,9 +13,10 @@ __device__ inline int4 position16(int xy, int z) { return {xy << 16, xy & ~0xfff
 template <int D>
 struct PlacedScalars {
   const PlacedScalar* at;
+  __device__ static int4 place(const int4& stored) { return D == 2 ? stored : position16(stored.x, stored.y); }
   __device__ PlacedValue<D, float> own(const NearLists<D, float>&, std::uint32_t i) const {
     const int4 stored = *reinterpret_cast<const int4*>(at + i);
-    return {D == 2 ? stored : position16(stored.x, stored.y), __int_as_float(stored.w)};
+    return {place(stored), __int_as_float(stored.w)};
   }
   __device__ PlacedValue<D, float> other(const NearLists<D, float>& lists, ListEntry e) const {
     return own(lists, e.index());
@@ -39,55 +40,30 @@ __device__ inline SymmetricBlock<D, float> unpack(const int4& stored) {
   return b;
 }
 
-/// A pressure times its B, as it is stored.
-template <int D>
-struct PackedStress {
-  int4 stored;
-};
-template <int D>
-__device__ inline void addPressures(Vec<D, float>& sum, float g, const SymmetricBlock<D, float>& own,
-                                    const PackedStress<D>& other, const Vec<D, float>& d) {
-  const float pressure = __int_as_float(other.stored.w) * (1.f / PackedTensor<D>::scale);
-  const SymmetricBlock<D, float> b = unpack<D>(other.stored);
-  SymmetricBlock<D, float> both;
-  for (int e = 0; e < b.size; ++e) both.a[e] = fmaf(pressure, b.a[e], own.a[e]);
-  addScaled(&sum[0], g, both * d);
-}
-
-template <int D>
-struct PlacedStresses {
-  struct Other {
-    typename NearLists<D, float>::Stored x;
-    PackedStress<D> value;
-  };
-  const PlacedScalar* at;
-
-  __device__ Other load(std::uint32_t i) const {
-    const int4 stored = *reinterpret_cast<const int4*>(at + i);
-    return {D == 2 ? stored : position16(stored.x, stored.y), {stored}};
-  }
-  __device__ PlacedStress<D, float> own(const NearLists<D, float>&, std::uint32_t i) const {
-    const Other o = load(i);
-    const float pressure = __int_as_float(o.value.stored.w) * (1.f / PackedTensor<D>::scale);
-    return {o.x, pressure * unpack<D>(o.value.stored)};
-  }
-  __device__ Other other(const NearLists<D, float>&, ListEntry e) const { return load(e.index()); }
-};
-
 template <int D>
 struct PlacedVectors {
   const PlacedVector<D>* at;
-  __device__ PlacedVelocity<D, float> own(const NearLists<D, float>&, std::uint32_t k) const {
-    const int4 stored = *reinterpret_cast<const int4*>(at + k);
+
+  __device__ static int4 place(const int4& stored) {
     if constexpr (D == 2) {
-      return {stored, {__int_as_float(stored.z), __int_as_float(stored.w)}};
+      return stored;
     } else {
-      // Third position in the numbers' low bits, which are left there: an error of 2^-18.
+      // Third position in the numbers' low bits.
       constexpr int low = PlacedVector<3>::low;
       const int z = (stored.y & low) << 16 | (stored.z & low) << 22 | stored.w << 28;
-      return {{stored.x << 16, stored.x & ~0xffff, z, 0},
-              {__int_as_float(stored.y), __int_as_float(stored.z), __int_as_float(stored.w)}};
+      return {stored.x << 16, stored.x & ~0xffff, z, 0};
     }
+  }
+  /// In three dimensions with the position's bits among the low ones, which are left there: an error of 2^-18.
+  __device__ static Vec<D, float> value(const int4& stored) {
+    if constexpr (D == 2)
+      return {__int_as_float(stored.z), __int_as_float(stored.w)};
+    else
+      return {__int_as_float(stored.y), __int_as_float(stored.z), __int_as_float(stored.w)};
+  }
+  __device__ PlacedVelocity<D, float> own(const NearLists<D, float>&, std::uint32_t k) const {
+    const int4 stored = *reinterpret_cast<const int4*>(at + k);
+    return {place(stored), value(stored)};
   }
   __device__ PlacedVelocity<D, float> other(const NearLists<D, float>& lists, ListEntry e) const {
     return own(lists, e.index());

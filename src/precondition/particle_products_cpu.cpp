@@ -60,7 +60,10 @@ void ParticleProducts<D, T, Cpu>::prepare(Context<Cpu>&, const MphPairs<D>& pair
   vectors_.resize(pairs.fluidCount);
   positionLanes(pairs, pairs.fluidList, position_, fluidLanes_);
   positionLanes(pairs, pairs.wallList, position_, wallLanes_);
-  const double floor2 = distanceFloor2(pairs);
+  const double floor2 = distanceFloor2(pairs), reach = productReach<T>(pairs) * pairs.terms.pressureRadius;
+  const auto gradient = [&pairs, reach2 = reach * reach](const PairDistance<Lanes>& r) {
+    return r.square < reach2 ? pairs.terms.gradient(r) : Lanes{};
+  };
 
   forEachCluster<D>(pairs, pairs.fluidList, [&](const ClusterRange& range, const VecLanes<D>& x, std::uint32_t c) {
     const ViscosityLanes<D> viscosity(pairs, range);
@@ -69,7 +72,7 @@ void ParticleProducts<D, T, Cpu>::prepare(Context<Cpu>&, const MphPairs<D>& pair
     for (ListSegment s : {NearFluid, FarFluid, NearWall})
       for (ListEntry e : pairs.fluidList.segment(c, s)) {
         const PairLanes<D> pair(pairs.positionOf(e), x, floor2);
-        if (s != FarFluid) storeCoefficient(pressure_, nextPressure++, pairs.terms.gradient(pair.r));
+        if (s != FarFluid) storeCoefficient(pressure_, nextPressure++, gradient(pair.r));
         if (s == NearWall) continue;
         const Lanes f = pairs.terms.viscous(viscosity.with(e.index()), pair.r);
         storeCoefficient(viscous_, nextViscous++, f);
@@ -84,7 +87,7 @@ void ParticleProducts<D, T, Cpu>::prepare(Context<Cpu>&, const MphPairs<D>& pair
     std::uint64_t next = wallStart_[c];
     for (ListEntry e : pairs.wallList.segment(c, NearFluid)) {
       const PairLanes<D> pair(pairs.positionOf(e), x, floor2);
-      storeCoefficient(wall_, next++, pairs.terms.gradient(pair.r));
+      storeCoefficient(wall_, next++, gradient(pair.r));
     }
   });
   sumGradients();

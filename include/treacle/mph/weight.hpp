@@ -50,6 +50,11 @@ struct Weight {
   }
 };
 
+/// From this part of the radius on, slopes are less than half a percent of the largest; 1 where they end abruptly.
+inline double slopeReach(PressureWeight kind) {
+  return kind == PressureWeight::Mps ? 1 : kind == PressureWeight::WendlandC2 ? 0.92 : 0.85;
+}
+
 /// n_0 of [K23 eq. (7)]: the number density in a full cubic lattice of the given spacing.
 template <int D>
 double latticeNumberDensity(const Weight<D>& weight, double spacing) {

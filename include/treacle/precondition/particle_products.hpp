@@ -4,6 +4,7 @@
 #include "treacle/mph/mph_operator.hpp"
 #include "treacle/mph/mph_sums.hpp"
 #include "treacle/precondition/projection_terms.hpp"
+#include "treacle/precondition/staged_lists.hpp"
 
 #include <span>
 
@@ -13,6 +14,14 @@ namespace treacle {
 /// particle with the sum; which ones there are: projection_terms.hpp.
 template <int D, class T, class Backend = Cpu>
 class ParticleProducts;
+
+/// How far C and C^T of a preconditioner reach, in h_p. In single precision a corrected gradient leaves out the
+/// pairs whose terms are next to nothing, a fifth of them in three dimensions, in all products alike
+/// (docs/solver.md).
+template <class T, int D>
+double productReach(const MphPairs<D>& pairs) {
+  return std::is_same_v<T, float> && pairs.renormalisation ? slopeReach(pairs.terms.weights.pressure) : 1;
+}
 
 /// As MphOperator<D, Cpu>: one number per pair and term is kept.
 template <int D, class T>
@@ -94,12 +103,13 @@ class ParticleProducts<D, T, Cuda> {
   void gather(Context<Cuda>&, std::span<const Gathered<D, T>> u);
   void gatherWeighted(Context<Cuda>&, const ProjectionTable<T>& table, std::span<const Vec<D>> u);
   std::size_t bytes() const {
-    return selfBlock_.bytes() + scalars_[0].bytes() + scalars_[1].bytes() + vectors_.bytes();
+    return selfBlock_.bytes() + scalars_[0].bytes() + scalars_[1].bytes() + vectors_.bytes() + staged_.bytes();
   }
 
  private:
   const MphPairs<D>* pairs_ = nullptr;
   const MphOperator<D, Cuda>* a_ = nullptr;
+  StagedLists<D> staged_;  // in single precision
   Buffer<typename ScalarField<T, Cuda>::Element, Cuda> scalars_[2];
   Buffer<typename VectorField<D, T, Cuda>::Element, Cuda> vectors_;  // those of walls are zero
   Buffer<Block<D, T>, Cuda> selfBlock_;                              // diagonal block of rho/dt I + V
