@@ -47,7 +47,10 @@ class IsphSystem final : public StagedSystem<Backend> {
     });
   }
 
-  bool likesSingle() const override { return stage_.precision == Precision::Mixed; }
+  /// Over hundreds of iterations rounded directions lose sight of each other; here there are few.
+  bool likesSingle() const override {
+    return stage_.precision == Precision::Mixed && stage_.preconditioner == PreconditionerKind::HatMultigrid;
+  }
   void multiplySingle(Context<Backend>& context, std::span<const double> x, std::span<double> y) override {
     withPrecision([&](auto& data) { treacle::multiplySingle(context, data.matrix, x, y); });
   }
