@@ -25,7 +25,7 @@ struct PressureSizes {
 struct IterationBytes {
   const PressureSizes& sizes;
   double number;  // of the preconditioner and the coefficients [B]
-  bool packed;    // IsphMatrix: 4 bytes per near entry of a smoother's product, 6 per entry of A p
+  bool packed;    // IsphMatrix: 4 bytes per entry
   int gridDegree = 1;
 
   double ofSolver(PreconditionerKind kind) const {
@@ -45,7 +45,7 @@ struct IterationBytes {
  private:
   /// r.z 16; p 24; A p 40 and the entries; p.q 16; x and r 48 [B per row].
   double ofCg() const {
-    const double entry = packed ? 6 : 4 + number;
+    const double entry = packed ? 4 : 4 + number;
     return 144.0 * static_cast<double>(sizes.rows) + entry * static_cast<double>(sizes.entries.all);
   }
 

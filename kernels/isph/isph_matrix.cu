@@ -2,14 +2,16 @@
 
 #include "core/launch.hpp"
 #include "core/scan.hpp"
+#include "isph/packed_sums.cuh"
 
 namespace treacle {
 namespace {
 
 /// Lanes that share a row: it has some 25 near neighbours and 57 in all in three dimensions, 9 and 20 in two.
-constexpr int allLanes = 8, nearLanes = 4;
+/// Packed entries are four to a load.
+constexpr int allLanes = 8, nearLanes = 4, packedAllLanes = 4, packedNearLanes = 2;
 
-/// Entries as products read them: load(k) at once, then column and coefficient of what was loaded.
+/// Entries of a matrix that is not packed: load(k) at once, then what was loaded.
 template <class T>
 struct PlainEntries {
   IsphMatrix<T> a;
@@ -22,123 +24,97 @@ struct PlainEntries {
 
   explicit PlainEntries(const IsphMatrix<T>& matrix) : a(matrix), inverseUnit(static_cast<T>(1 / matrix.unit)) {}
   __device__ Entry load(std::uint64_t k) const { return {__ldcs(a.column + k), __ldcs(a.coefficient + k)}; }
-  __device__ Entry loadNear(std::uint64_t k) const { return load(k); }
-  __device__ std::uint32_t column(const Entry& e, std::uint32_t) const { return e.column; }
-  __device__ double exact(const Entry& e) const { return e.coefficient; }
   __device__ T rounded(const Entry& e) const {
     return static_cast<T>(static_cast<int>(e.coefficient * inverseUnit + T(0.5)));
   }
-  __host__ __device__ double exactUnit() const { return 1; }
-};
-template <class T>
-struct PackedEntries {
-  IsphMatrix<T> a;
-
-  struct Entry {
-    std::uint32_t word = 0;
-    std::uint16_t low = 32768;
-  };
-
-  __device__ Entry load(std::uint64_t k) const { return {__ldcs(a.word + k), __ldcs(a.low + k)}; }
-  __device__ Entry loadNear(std::uint64_t k) const { return {__ldcs(a.word + k), 0}; }
-  __device__ std::uint32_t column(const Entry& e, std::uint32_t row) const {
-    return PackedEntry::column(e.word, row);
-  }
-  __device__ double exact(const Entry& e) const {
-    // A float holds the 24 bits.
-    return static_cast<float>(static_cast<int>((e.word & 255) << 16) + static_cast<int>(e.low) - 32768);
-  }
-  __device__ T rounded(const Entry& e) const { return static_cast<T>(e.word & 255); }
-  __host__ __device__ double exactUnit() const { return a.unit * (1.0 / 65536); }
 };
 
 /// sum of entries times x over one section of a row, by every `Lanes`-th entry, `Chunk` of them on their way at a
 /// time.
-template <int Lanes, int Chunk, bool Near, class X, class Entries>
-__device__ inline X sectionSum(const Entries& e, std::uint64_t section, std::uint32_t row, const X* x) {
+template <int Lanes, int Chunk, bool Near, class X, class T>
+__device__ inline X sectionSum(const PlainEntries<T>& e, std::uint64_t section, const X* x) {
   const std::uint64_t begin = e.a.start[section];
   const auto count = static_cast<std::uint32_t>(e.a.start[section + 1] - begin);
   X sum = 0;
   for (std::uint32_t first = threadIdx.x % Lanes; first < count; first += Lanes * Chunk) {
-    typename Entries::Entry entry[Chunk];
+    typename PlainEntries<T>::Entry entry[Chunk];
     X value[Chunk];
 #pragma unroll
     for (int c = 0; c < Chunk; ++c)
-      if (first + c * Lanes < count)
-        entry[c] = Near ? e.loadNear(begin + first + c * Lanes) : e.load(begin + first + c * Lanes);
+      if (first + c * Lanes < count) entry[c] = e.load(begin + first + c * Lanes);
 #pragma unroll
-    for (int c = 0; c < Chunk; ++c) value[c] = first + c * Lanes < count ? x[e.column(entry[c], row)] : X(0);
+    for (int c = 0; c < Chunk; ++c) value[c] = first + c * Lanes < count ? x[entry[c].column] : X(0);
 #pragma unroll
     for (int c = 0; c < Chunk; ++c) {
       if constexpr (Near)
         sum += e.rounded(entry[c]) * value[c];
       else
-        sum += e.exact(entry[c]) * value[c];
+        sum += static_cast<double>(entry[c].coefficient) * value[c];
     }
   }
   return sum;
 }
 
-template <int Lanes, class X>
-__device__ inline X sumOfLanes(X sum) {
-  for (int s = Lanes / 2; s > 0; s /= 2) sum += __shfl_xor_sync(~0u, sum, s);
-  return sum;
-}
-
 /// Eight lanes per row; store(row, sum of c x over all entries), once. Reads the matrix and gathers x. No atomics.
-template <class Entries, class Store>
-__global__ void __launch_bounds__(256) allSumsKernel(Entries e, const double* x, Store store) {
+template <class T, class Store>
+__global__ void __launch_bounds__(256) allSumsKernel(PlainEntries<T> e, const double* x, Store store) {
   const std::uint32_t row = (blockIdx.x * blockDim.x + threadIdx.x) / allLanes;
   double sum = 0;
   if (row < e.a.rows)
     for (const std::uint64_t section : {std::uint64_t{row}, std::uint64_t{e.a.rows} + row})
-      sum += sectionSum<allLanes, 4, false>(e, section, row, x);
+      sum += sectionSum<allLanes, 4, false>(e, section, x);
   sum = sumOfLanes<allLanes>(sum);
-  if (row < e.a.rows && threadIdx.x % allLanes == 0) store(row, e.exactUnit() * sum);
+  if (row < e.a.rows && threadIdx.x % allLanes == 0) store(row, sum);
 }
 
 /// Four lanes per row; the same over near entries, rounded.
-template <class T, class Entries, class Store>
-__global__ void __launch_bounds__(256) nearSumsKernel(Entries e, const T* x, Store store) {
+template <class T, class Store>
+__global__ void __launch_bounds__(256) nearSumsKernel(PlainEntries<T> e, const T* x, Store store) {
   const std::uint32_t row = (blockIdx.x * blockDim.x + threadIdx.x) / nearLanes;
   T sum = 0;
-  if (row < e.a.rows) sum = sectionSum<nearLanes, 8, true>(e, row, row, x);
+  if (row < e.a.rows) sum = sectionSum<nearLanes, 8, true>(e, row, x);
   sum = sumOfLanes<nearLanes>(sum);
   if (row < e.a.rows && threadIdx.x % nearLanes == 0) store(row, static_cast<T>(e.a.unit) * sum);
 }
 
-template <class T, class F>
-void withEntries(const IsphMatrix<T>& a, F&& f) {
-  if (a.word)
-    f(PackedEntries<T>{a});
-  else
-    f(PlainEntries<T>(a));
-}
-
 template <class T, class Store>
 void nearSums(const Context<Cuda>& context, const IsphMatrix<T>& a, const T* x, Store store) {
-  withEntries(a, [&](auto entries) {
-    launch(context, blocksFor(std::size_t{a.rows} * nearLanes, 256), 256, 0,
-           nearSumsKernel<T, decltype(entries), Store>, entries, x, store);
-  });
+  if constexpr (std::is_same_v<T, float>)
+    if (a.packed.word) return packedSums<packedNearLanes, true, T>(context, a, x, store);
+  launch(context, blocksFor(std::size_t{a.rows} * nearLanes, 256), 256, 0, nearSumsKernel<T, Store>,
+         PlainEntries<T>(a), x, store);
 }
 
-template <class T, class Store>
+/// `Staged`: what x is brought together as.
+template <class Staged, class T, class Store>
 void allSums(const Context<Cuda>& context, const IsphMatrix<T>& a, const double* x, Store store) {
-  withEntries(a, [&](auto entries) {
-    launch(context, blocksFor(std::size_t{a.rows} * allLanes, 256), 256, 0,
-           allSumsKernel<decltype(entries), Store>, entries, x, store);
-  });
+  if constexpr (std::is_same_v<T, float>)
+    if (a.packed.word) return packedSums<packedAllLanes, false, Staged>(context, a, x, store);
+  launch(context, blocksFor(std::size_t{a.rows} * allLanes, 256), 256, 0, allSumsKernel<T, Store>,
+         PlainEntries<T>(a), x, store);
 }
+
+}  // namespace
+
+namespace {
+
+struct StoreProduct {
+  const double *diagonal, *x;
+  double* y;
+  __device__ void operator()(std::uint32_t i, double sum) const { y[i] = diagonal[i] * x[i] - sum; }
+};
 
 }  // namespace
 
 template <class T>
 void multiply(Context<Cuda>& context, const IsphMatrix<T>& a, std::span<const double> x, std::span<double> y) {
-  allSums(context, a, x.data(),
-          [diagonal = a.diagonal, x = x.data(), y = y.data()] __device__(std::uint32_t i, double sum) {
-            y[i] = diagonal[i] * x[i] - sum;
-          });
+  allSums<double>(context, a, x.data(), StoreProduct{a.diagonal, x.data(), y.data()});
+}
+
+template <class T>
+void multiplySingle(Context<Cuda>& context, const IsphMatrix<T>& a, std::span<const double> x,
+                    std::span<double> y) {
+  allSums<float>(context, a, x.data(), StoreProduct{a.diagonal, x.data(), y.data()});
 }
 
 template <class T>
@@ -184,7 +160,7 @@ void compressed(Context<Cuda>& context, const IsphMatrix<T>& a, BlockCsr<1, doub
     f(static_cast<std::uint32_t>(i), a.diagonal[i]);
     for (const std::size_t section : {i, a.rows + i})
       for (std::uint64_t k = a.start[section]; k < a.start[section + 1]; ++k)
-        if (const double c = a.coefficientAt(k); c > 0) f(a.column[k], -c);
+        if (const double c = a.coefficientAt(section, k); c > 0) f(a.column[k], -c);
   };
   result.rowStart.resize(context, std::size_t{a.rows} + 1);
   forEach(context, a.rows, [forEachEntry, start = result.rowStart.data()] __device__(std::size_t i) {
@@ -208,6 +184,8 @@ void compressed(Context<Cuda>& context, const IsphMatrix<T>& a, BlockCsr<1, doub
 
 #define TREACLE_INSTANTIATE(T)                                                                                  \
   template void multiply<T>(Context<Cuda>&, const IsphMatrix<T>&, std::span<const double>, std::span<double>);  \
+  template void multiplySingle<T>(Context<Cuda>&, const IsphMatrix<T>&, std::span<const double>,                \
+                                  std::span<double>);                                                           \
   template void firstSweep<T>(Context<Cuda>&, const IsphMatrix<T>&, std::span<const double>, std::span<T>);     \
   template void nearResidual<T>(Context<Cuda>&, const IsphMatrix<T>&, std::span<const double>,                  \
                                 std::span<const T>, std::span<T>);                                              \

@@ -1,6 +1,9 @@
 #include "treacle/isph/isph_sums.hpp"
 
 #include "core/launch.hpp"
+#include "core/scan.hpp"
+
+#include <type_traits>
 
 namespace treacle {
 namespace {
@@ -41,10 +44,10 @@ __device__ inline void visitRow(const IsphPairs<D>& pairs, const NeighbourRowsVi
   }
 }
 
-/// Eight lanes per fluid particle; reads its neighbours and what the term reads; writes what the term stores. No
-/// atomics.
+/// Eight lanes per fluid particle; reads its neighbours and what the term reads; writes what the term stores. The
+/// bound leaves 72 registers: with more too few threads wait for memory at a time. No atomics.
 template <int D, class Term>
-__global__ void __launch_bounds__(128) fluidSumsKernel(const __grid_constant__ IsphPairs<D> pairs, Term term) {
+__global__ void __launch_bounds__(128, 7) fluidSumsKernel(const __grid_constant__ IsphPairs<D> pairs, Term term) {
   const std::uint32_t i = (blockIdx.x * blockDim.x + threadIdx.x) / rowLanes;
   const bool used = i < pairs.fluidCount;
   double sum[Term::values] = {};
@@ -72,18 +75,51 @@ __global__ void __launch_bounds__(128) wallSumsKernel(const __grid_constant__ Is
   if (used && threadIdx.x % rowLanes == 0) term.store(pairs, i, sum);
 }
 
+/// Place of a column in a block with runs.
+__device__ inline std::uint32_t placeOf(const ColumnBlocksView::Run* run, std::uint32_t runs,
+                                        std::uint32_t column) {
+  std::uint32_t found = 0;
+  for (std::uint32_t step = ColumnBlocksView::runs / 2; step > 0; step /= 2)
+    if (found + step < runs && run[found + step].begin <= column) found += step;
+  return run[found].place + (column - run[found].begin);
+}
+
 /// Eight lanes per fluid particle and row of the matrix, which they write. No atomics.
-template <int D, class T, class Row>
+template <bool Packed, int D, class T, class Row>
 __global__ void __launch_bounds__(128)
     isphMatrixKernel(const __grid_constant__ IsphPairs<D> pairs, Row row, IsphMatrixParts<D, T> parts) {
+  using Blocks = ColumnBlocksView;
+  constexpr std::uint32_t rowsOfThreads = 128 / rowLanes;
+  static_assert(Blocks::rows % rowsOfThreads == 0, "all rows of a thread block are in one block of rows");
+  __shared__ Blocks::Run run[Packed ? Blocks::runs : 1];
+  std::uint32_t runs = 0;
+  if constexpr (Packed) {
+    const std::size_t block = blockIdx.x / (Blocks::rows / rowsOfThreads);
+    runs = parts.packed.blocks.size[block].runs;
+    if (threadIdx.x < runs) run[threadIdx.x] = parts.packed.blocks.run[block * Blocks::runs + threadIdx.x];
+    __syncthreads();
+  }
   const std::uint32_t i = (blockIdx.x * blockDim.x + threadIdx.x) / rowLanes, lane = threadIdx.x % rowLanes;
   const bool used = i < pairs.fluidCount;
   const IsphMatrixRow<D, T, Row> filler{pairs, row, parts};
   double sum[filler.values] = {};
   if (used) {
     const Vec<D> x = pairs.position[i];
-    pairs.fluidOfFluid.forEachPlace(
-        i, [&](std::uint64_t k) { filler.entry(i, x, k, sum); }, lane, rowLanes);
+    const NeighbourRowsView& rows = pairs.fluidOfFluid;
+    for (const std::uint64_t section : {std::uint64_t{i}, std::uint64_t{rows.count} + i}) {
+      const std::uint64_t begin = rows.start[section], end = rows.start[section + 1];
+      const std::uint64_t shift = Packed ? parts.packed.begin(section) - begin : 0;
+      for (std::uint64_t k = begin + lane; k < end; k += rowLanes)
+        filler.entry(i, x, k, section == i, sum, [&](std::uint32_t j, double c) {
+          if constexpr (Packed)
+            return parts.putPacked(k + shift, runs > 0 ? placeOf(run, runs, j) : 0, c);
+          else
+            return parts.put(k, c);
+        });
+      if constexpr (Packed)
+        for (std::uint64_t k = end + shift + lane; k < parts.packed.begin(section + 1); k += rowLanes)
+          parts.packed.word[k] = 0;
+    }
     pairs.wallsOfFluid.forEachPlace(
         i, [&](std::uint64_t k) { filler.wall(i, x, k, sum); }, lane, rowLanes);
   }
@@ -105,11 +141,27 @@ void sumOnWalls(Context<Cuda>& context, const IsphPairs<D>& pairs, const Term& t
          wallSumsKernel<D, Term>, pairs, term);
 }
 
+/// Two threads per row count the fours of its sections.
+template <int D>
+void preparePacked(Context<Cuda>& context, const IsphPairs<D>& pairs, PackedRows<Cuda>& packed) {
+  findColumnBlocks<D>(context, pairs.grid, pairs.cells, pairs.position.first(pairs.fluidCount), packed.blocks);
+  const std::size_t sections = 2 * std::size_t{pairs.fluidCount};
+  packed.four.resize(context, sections + 1);
+  forEach(context, sections,
+          [start = pairs.fluidOfFluid.start, four = packed.four.data()] __device__(std::size_t k) {
+            four[k] = static_cast<std::uint32_t>((start[k + 1] - start[k] + 3) / 4);
+          });
+  packed.word.resize(context, std::size_t{4} * startRows(context, packed.four));
+}
+
 template <int D, class T, class Row>
 void fillIsphMatrix(Context<Cuda>& context, const IsphPairs<D>& pairs, const Row& row,
                     const IsphMatrixParts<D, T>& parts) {
-  launch(context, blocksFor(std::size_t{pairs.fluidCount} * rowLanes, 128), 128, 0, isphMatrixKernel<D, T, Row>,
-         pairs, row, parts);
+  const unsigned blocks = blocksFor(std::size_t{pairs.fluidCount} * rowLanes, 128);
+  if constexpr (std::is_same_v<T, float>)
+    if (parts.packed.word)
+      return launch(context, blocks, 128, 0, isphMatrixKernel<true, D, T, Row>, pairs, row, parts);
+  launch(context, blocks, 128, 0, isphMatrixKernel<false, D, T, Row>, pairs, row, parts);
 }
 
 #define TREACLE_INSTANTIATE(D)                                                                 \
@@ -121,6 +173,7 @@ void fillIsphMatrix(Context<Cuda>& context, const IsphPairs<D>& pairs, const Row
   template void sumOnFluid(Context<Cuda>&, const IsphPairs<D>&, const PressureSourceTerm<D>&); \
   template void sumOnFluid(Context<Cuda>&, const IsphPairs<D>&, const CorrectorTerm<D>&);      \
   template void sumOnWalls(Context<Cuda>&, const IsphPairs<D>&, const WallPressureTerm<D>&);   \
+  template void preparePacked(Context<Cuda>&, const IsphPairs<D>&, PackedRows<Cuda>&);         \
   template void fillIsphMatrix(Context<Cuda>&, const IsphPairs<D>&, const PressureRow<D>&,     \
                                const IsphMatrixParts<D, double>&);                             \
   template void fillIsphMatrix(Context<Cuda>&, const IsphPairs<D>&, const PressureRow<D>&,     \

@@ -40,11 +40,12 @@ void stepDot(Context<Cuda>& context, std::span<const double> x, std::span<const 
 }
 
 void direction(Context<Cuda>& context, std::span<const double> z, std::span<double> p,
-               const KrylovScalars* scalars) {
+               const KrylovScalars* scalars, bool single) {
   const double* pz = z.data();
   double* pp = p.data();
   forEach(context, z.size(), [=] __device__(std::size_t i) {
-    pp[i] = scalars->iteration == 0 ? pz[i] : pz[i] + scalars->beta * pp[i];
+    const double next = scalars->iteration == 0 ? pz[i] : pz[i] + scalars->beta * pp[i];
+    pp[i] = single ? static_cast<double>(static_cast<float>(next)) : next;
   });
 }
 

@@ -32,6 +32,7 @@ struct CornerHat {
   T value;
   Vec<D, T> gradient;  // [1/m]
 
+  CornerHat() = default;
   __device__ CornerHat(const CellGrid<D>& grid, const Vec<D, T>& place, int corner_)
       : corner(corner_), value(cornerWeight(place, corner_)) {
     for (int k = 0; k < D; ++k) {
@@ -42,49 +43,79 @@ struct CornerHat {
   }
 };
 
-/// One thread per cell and pair of its corners; reads what the term reads of the cell's fluid. No atomics.
+/// One thread per cell and pair of its corners; reads what the term reads of the cell's fluid. The threads of a
+/// cell make the hats of as many particles at a time as it has corners, one each. No atomics.
 template <int D, int B, class T, class Term>
 __global__ void __launch_bounds__(128) cornerPartsKernel(const __grid_constant__ CornerGalerkin<D, B, T, Term> g) {
   constexpr int corners = 1 << D, pairs = corners * corners;
+  __shared__ CornerHat<D, T> hats[128];  // per particle and corner
   const std::uint32_t thread = blockIdx.x * blockDim.x + threadIdx.x, c = thread / pairs;
-  if (c >= g.nodes.count) return;
-  const int a = static_cast<int>(thread) % pairs / corners, b = static_cast<int>(thread) % corners;
-  const Vec<D, int> cell = g.nodes.pointOf(c);
-  for (int k = 0; k < D; ++k)
-    if (cell[k] >= g.cells.grid.count[k]) return;  // the last nodes of an open axis are no lower corners
-  Block<B> sum{};
-  const std::size_t linear = g.cells.grid.linear(cell);
-  for (std::uint32_t i = g.ranges.fluidBegin[linear]; i < g.ranges.fluidEnd[linear]; ++i) {
-    const Vec<D> f = g.cells.fraction(g.position[i], cell);
-    Vec<D, T> place;
-    for (int k = 0; k < D; ++k) place[k] = static_cast<T>(f[k]);
-    const Block<B, T> part =
-        g.term(i, CornerHat<D, T>(g.cells.grid, place, a), CornerHat<D, T>(g.cells.grid, place, b));
-    for (int k = 0; k < B * B; ++k) sum.a[k] += part.a[k];
+  const int own = static_cast<int>(threadIdx.x) % pairs, a = own / corners, b = own % corners;
+  CornerHat<D, T>* const ofCell = hats + threadIdx.x - own;
+  std::uint32_t begin = 0, end = 0;
+  Vec<D, int> cell{};
+  if (c < g.nodes.count) {
+    cell = g.nodes.pointOf(c);
+    bool inside = true;  // the last nodes of an open axis are no lower corners
+    for (int k = 0; k < D; ++k) inside = inside && cell[k] < g.cells.grid.count[k];
+    if (inside) {
+      const std::size_t linear = g.cells.grid.linear(cell);
+      begin = g.ranges.fluidBegin[linear], end = g.ranges.fluidEnd[linear];
+    }
   }
-  for (int k = 0; k < B * B; ++k) g.parts[thread].a[k] = static_cast<T>(sum.a[k]);
+  Block<B> sum{};
+  for (; __syncthreads_or(begin < end); begin += corners) {
+    if (begin + a < end) {
+      const Vec<D> f = g.cells.fraction(g.position[begin + a], cell);
+      Vec<D, T> place;
+      for (int k = 0; k < D; ++k) place[k] = static_cast<T>(f[k]);
+      hats[threadIdx.x] = CornerHat<D, T>(g.cells.grid, place, b);
+    }
+    __syncthreads();
+    for (std::uint32_t i = begin; i < min(begin + corners, end); ++i) {
+      const CornerHat<D, T>* hat = ofCell + (i - begin) * corners;
+      const Block<B, T> part = g.term(i, hat[a], hat[b]);
+      for (int k = 0; k < B * B; ++k) sum.a[k] += part.a[k];
+    }
+  }
+  if (c < g.nodes.count)
+    for (int k = 0; k < B * B; ++k) g.parts[thread].a[k] = static_cast<T>(sum.a[k]);
 }
 
-/// One thread per row and adjacent node, 32 to a row; adds up the parts of the cells that both are corners of. No
-/// atomics.
+/// A warp per row, one lane per adjacent node; adds up the parts of the cells that both are corners of. The cells
+/// around the row's node are found once, one by each of the first lanes. No atomics.
 template <int D, int B, class T, class Term>
 __global__ void __launch_bounds__(128)
     cornerGalerkinKernel(const __grid_constant__ CornerGalerkin<D, B, T, Term> g) {
   constexpr int corners = 1 << D, pairs = corners * corners;
   const std::uint32_t row = blockIdx.x * (blockDim.x / 32) + threadIdx.x / 32;
   if (row >= g.nodes.count) return;
-  const std::uint64_t entry = g.rowStart[row] + threadIdx.x % 32;
-  if (entry >= g.rowStart[row + 1]) return;
-  const Vec<D, int> node = g.nodes.pointOf(row), other = g.nodes.pointOf(g.column[entry]);
+  const int lane = static_cast<int>(threadIdx.x) % 32;
+  const std::uint64_t entry = g.rowStart[row] + lane;
+  const bool used = entry < g.rowStart[row + 1];
+  const Vec<D, int> node = g.nodes.pointOf(row), other = used ? g.nodes.pointOf(g.column[entry]) : node;
+  Vec<D, int> cell = node;  // in the order of HatCells::forEachCellAround
+  bool inside = lane < corners;
+  for (int k = 0; k < D; ++k) {
+    const int step = lane >> k & 1, n = g.cells.grid.count[k];
+    cell[k] += step - 1;
+    if (g.cells.grid.periodic[k] && cell[k] < 0) cell[k] += n;
+    if (g.cells.grid.periodic[k] && n == 1 && step == 1) inside = false;  // the same one again
+    inside = inside && cell[k] >= 0 && cell[k] < n;
+  }
+  const std::uint32_t number = inside ? g.nodes.at(cell) : noNode;
+  const int ownCorner = inside ? cornerOf(g.cells, node, cell) : 0;
   Block<B> sum{};
-  g.cells.forEachCellAround(node, 1, [&](const Vec<D, int>& cell) {
-    const std::uint32_t c = g.nodes.at(cell);
-    if (c == noNode || !g.cells.isCorner(other, cell)) return;
-    const int pair = cornerOf(g.cells, node, cell) * corners + cornerOf(g.cells, other, cell);
-    const Block<B, T> part = g.parts[c * std::size_t{pairs} + pair];
+  for (int o = 0; o < corners; ++o) {
+    const std::uint32_t c = __shfl_sync(~0u, number, o);
+    const int corner = __shfl_sync(~0u, ownCorner, o);
+    Vec<D, int> beside;
+    for (int k = 0; k < D; ++k) beside[k] = __shfl_sync(~0u, cell[k], o);
+    if (c == noNode || !used || !g.cells.isCorner(other, beside)) continue;
+    const Block<B, T> part = g.parts[c * std::size_t{pairs} + corner * corners + cornerOf(g.cells, other, beside)];
     for (int k = 0; k < B * B; ++k) sum.a[k] += part.a[k];
-  });
-  g.block[entry] = sum;
+  }
+  if (used) g.block[entry] = sum;
 }
 
 /// `parts`: workspace, B^2 4^D numbers per node.

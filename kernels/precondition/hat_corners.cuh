@@ -20,4 +20,16 @@ __device__ inline int cornerOf(const HatCells<D>& cells, const Vec<D, int>& node
   return corner;
 }
 
+/// The cell below a node with bit k of `corner` set, else above it; false where there is none.
+template <int D>
+__device__ inline bool cellBeside(const HatCells<D>& cells, Vec<D, int>& cell, int corner) {
+  bool inside = true;
+  for (int k = 0; k < D; ++k) {
+    cell[k] -= corner >> k & 1;
+    if (cells.grid.periodic[k] && cell[k] < 0) cell[k] += cells.grid.count[k];
+    inside = inside && cell[k] >= 0 && cell[k] < cells.grid.count[k];
+  }
+  return inside;
+}
+
 }  // namespace treacle

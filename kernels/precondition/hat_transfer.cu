@@ -1,22 +1,11 @@
 #include "core/reduce.cuh"
+#include "precondition/cell_sums.cuh"
 #include "precondition/hat_corners.cuh"
 #include "precondition/placed_sums.cuh"
 #include "treacle/precondition/hat_grid.hpp"
 
 namespace treacle {
 namespace {
-
-/// The cell below a node with bit k of `corner` set, else above it; false where there is none.
-template <int D>
-__device__ inline bool cellBeside(const HatCells<D>& cells, Vec<D, int>& cell, int corner) {
-  bool inside = true;
-  for (int k = 0; k < D; ++k) {
-    cell[k] -= corner >> k & 1;
-    if (cells.grid.periodic[k] && cell[k] < 0) cell[k] += cells.grid.count[k];
-    inside = inside && cell[k] >= 0 && cell[k] < cells.grid.count[k];
-  }
-  return inside;
-}
 
 /// A warp per node, its lanes in groups, one group per cell around it: b = P^T r, for scalars per particle
 /// (Numbers = 1) or vectors per fluid particle. No atomics.
@@ -99,6 +88,17 @@ void HatTransfer<D, T, Cuda>::prepare(Context<Cuda>& context, const SortedPartic
             const Vec<D> f = cells.fraction(x[i], cells.grid.cellOf(x[i]));
             for (int k = 0; k < D; ++k) place[i][k] = static_cast<T>(f[k]);
           });
+}
+
+template <int D, class T>
+void HatTransfer<D, T, Cuda>::restrictFluid(Context<Cuda>& context, const HatNodes<D, Cuda>& nodes,
+                                            std::span<const T> r, Buffer<T, Cuda>& parts, std::span<T> b) const {
+  constexpr unsigned corners = 1 << D;
+  const HatCells<D> cells{pairs_->grid};
+  launchEarly(context, blocksFor(nodes.count(), 128 / 16), 128, 0, cellSumsKernel<D, T>, cells, nodes.view(),
+              pairs_->cells, place_.data(), r.data(), parts.data());
+  launchEarly(context, blocksFor(nodes.count(), 128 / corners), 128, 0, nodeSumsKernel<D, T>, cells, nodes.view(),
+              parts.data(), b.data());
 }
 
 template <int D, class T>

@@ -2,94 +2,10 @@
 
 #include "core/launch.hpp"
 #include "core/scan.hpp"
-
-#include <algorithm>
+#include "search/rough_search.cuh"
 
 namespace treacle {
 namespace {
-
-/// LocalPositions in single precision, from the lower corner of the domain: enough to tell who is clearly inside
-/// or outside of the radii. Whoever is not is looked at again in double precision, so the rows are those of the
-/// CPU.
-template <int D>
-struct RoughSearch {
-  CellGrid<D> grid;
-  CellRangesView cells;
-  const Vec<D>* exact;
-  const float4* rough;
-  double near2, far2;  // squares of the radii [m2]
-  // The squares less and plus a bound on the error of rough ones.
-  float nearIn = 0, nearOut = 0, farIn = 0, farOut = 0;
-  Vec<D, float> length;
-  bool walls;
-  const std::uint8_t* used = nullptr;  // per cell: whether its particles may have neighbours; null: all
-
-  /// hit(j, near) for the neighbours of particle i, in the order of forEachNeighbour.
-  template <class Hit>
-  __device__ void forEach(std::uint32_t i, Hit&& hit) const {
-    const Vec<D> x = exact[i];
-    const float4 own = rough[i];
-    const Vec<D, int> centre = grid.cellOf(x);
-    if (used && !used[grid.linear(centre)]) return;
-    const auto wrapped = [&](int c, int axis) {
-      return !grid.periodic[axis]    ? c
-             : c < 0                 ? c + grid.count[axis]
-             : c >= grid.count[axis] ? c - grid.count[axis]
-                                     : c;
-    };
-    for (int z = D == 3 ? -1 : 0; z <= (D == 3 ? 1 : 0); ++z) {
-      const int cz = D == 3 ? wrapped(centre[D - 1] + z, D - 1) : 0;
-      if (D == 3 && (cz < 0 || cz >= grid.count[D - 1])) continue;
-      for (int y = -1; y <= 1; ++y) {
-        const int cy = wrapped(centre[1] + y, 1);
-        if (cy < 0 || cy >= grid.count[1]) continue;
-        const std::size_t row = (std::size_t(cz) * grid.count[1] + cy) * grid.count[0];
-        for (int dx = -1; dx <= 1; ++dx) {
-          const int cx = wrapped(centre[0] + dx, 0);
-          if (cx >= 0 && cx < grid.count[0]) inCell(row + cx, x, own, hit);
-        }
-      }
-    }
-  }
-
-  /// Four candidates at a time: their loads are on their way together, and most of them are out of reach.
-  template <class Hit>
-  __device__ void inCell(std::size_t cell, const Vec<D>& x, const float4& own, Hit&& hit) const {
-    constexpr int chunk = 4;
-    const std::uint32_t end = walls ? cells.wallEnd[cell] : cells.fluidEnd[cell];
-    for (std::uint32_t j = walls ? cells.wallBegin[cell] : cells.fluidBegin[cell]; j < end; j += chunk) {
-      float r2[chunk];
-      bool any = false;
-#pragma unroll
-      for (int c = 0; c < chunk; ++c) {
-        r2[c] = j + c < end ? squaredDistance(own, rough[j + c]) : INFINITY;
-        any = any || r2[c] <= farOut;
-      }
-      if (!any) continue;
-#pragma unroll
-      for (int c = 0; c < chunk; ++c) {
-        if (r2[c] > farOut) continue;
-        if (r2[c] < nearIn || (r2[c] > nearOut && r2[c] < farIn)) {
-          hit(j + c, r2[c] < nearIn);
-          continue;
-        }
-        const double exact2 = norm2(grid.difference(x, exact[j + c]));
-        if (exact2 < far2) hit(j + c, exact2 < near2);
-      }
-    }
-  }
-
-  __device__ float squaredDistance(const float4& a, const float4& b) const {
-    const float d[3] = {b.x - a.x, b.y - a.y, b.z - a.z};
-    float sum = 0;
-    for (int k = 0; k < D; ++k) {
-      float away = fabsf(d[k]);
-      if (grid.periodic[k]) away = fminf(away, length[k] - away);
-      sum = fmaf(away, away, sum);
-    }
-    return sum;
-  }
-};
 
 /// One thread per cell: whether it holds fluid and has walls in itself or beside it, as few cells do.
 template <int D>
@@ -106,71 +22,129 @@ void markFluidNearWalls(const Context<Cuda>& context, const CellGrid<D>& grid, c
   });
 }
 
+/// Places behind the last particle that are read, and mean nothing.
+constexpr std::uint32_t placesBehind = 3;
+
 /// One thread per particle.
 template <int D>
 void findRoughPlaces(const Context<Cuda>& context, const CellGrid<D>& grid, std::span<const Vec<D>> x,
                      float4* rough) {
-  forEach(context, x.size(), [grid, x, rough] __device__(std::size_t i) {
-    const Vec<D> p = x[i] - grid.origin;
+  forEach(context, x.size() + placesBehind, [grid, x, rough] __device__(std::size_t i) {
+    const Vec<D> p = i < x.size() ? x[i] - grid.origin : Vec<D>::filled(INFINITY);
     rough[i] = {static_cast<float>(p[0]), static_cast<float>(p[1]), D == 3 ? static_cast<float>(p[D - 1]) : 0.0f,
                 0};
   });
 }
 
+/// One thread per row: counts its neighbours and keeps a bit for each, per slot and row. Reads the positions in
+/// the cells around. No atomics.
+template <int D, bool Periodic>
+__global__ void __launch_bounds__(128)
+    countNeighboursKernel(const __grid_constant__ RoughSearch<D, Periodic> around, std::uint32_t first,
+                          std::uint32_t count, std::uint32_t* found, std::uint64_t* start) {
+  const std::uint32_t row = blockIdx.x * blockDim.x + threadIdx.x;
+  if (row >= count) return;
+  const Vec<D> x = around.exact[first + row];
+  const float4 own = around.rough[first + row];
+  std::uint32_t near = 0, far = 0;
+  std::uint32_t* bits = found + row;
+  around.template forEachCell<false>(
+      x, [](int) {},
+      [&](int, std::size_t cell) {
+        *bits = cell == around.noCell ? 0 : around.inCell(cell, x, own, near, far);
+        bits += count;
+      });
+  start[row] = near;
+  start[std::size_t{count} + row] = far;
+}
+
+/// Rows of a block, and how many neighbours it can bring together before it writes them.
+constexpr std::uint32_t rowsOfBlock = 128;
+template <int D>
+constexpr std::uint32_t neighboursOfBlock = rowsOfBlock*(D == 3 ? 72 : 32);
+
+/// One thread per row: writes the neighbours that were counted. Those of a block follow each other, the near and
+/// the far ones, and are brought together first, where they fit. No atomics.
+template <int D, bool Periodic>
+__global__ void __launch_bounds__(rowsOfBlock)
+    writeNeighboursKernel(const __grid_constant__ RoughSearch<D, Periodic> around, std::uint32_t first,
+                          std::uint32_t count, const std::uint32_t* found, const std::uint64_t* start,
+                          std::uint32_t* column) {
+  __shared__ std::uint32_t staged[neighboursOfBlock<D>];
+  const std::uint32_t begin = blockIdx.x * rowsOfBlock, end = min(begin + rowsOfBlock, count);
+  const std::uint64_t nearBegin = start[begin], farBegin = start[std::size_t{count} + begin];
+  const auto near = static_cast<std::uint32_t>(start[end] - nearBegin);
+  const auto far = static_cast<std::uint32_t>(start[std::size_t{count} + end] - farBegin);
+  const bool fits = near + far <= neighboursOfBlock<D>;
+  const std::uint32_t row = begin + threadIdx.x;
+  if (row < end &&
+      start[row] + start[count + std::size_t{row}] < start[row + 1] + start[count + std::size_t{row} + 1]) {
+    const Vec<D> x = around.exact[first + row];
+    const float4 own = around.rough[first + row];
+    std::uint32_t* nearPlace = fits ? staged + (start[row] - nearBegin) : column + start[row];
+    std::uint32_t* farPlace = fits ? staged + near + (start[count + std::size_t{row}] - farBegin)
+                                   : column + start[count + std::size_t{row}];
+    std::uint32_t bits[around.planeSlots];
+    // A plane's bits are on their way together.
+    around.template forEachCell<true>(
+        x,
+        [&](int slot) {
+#pragma unroll
+          for (int n = 0; n < around.planeSlots; ++n) bits[n] = found[(slot + n) * std::size_t{count} + row];
+        },
+        [&](int n, std::size_t cell) {
+          if (bits[n] != 0)
+            around.fromBits(cell, bits[n], x, own,
+                            [&](std::uint32_t j, bool isNear) { *(isNear ? nearPlace++ : farPlace++) = j; });
+        });
+  }
+  __syncthreads();
+  if (!fits) return;
+  for (std::uint32_t k = threadIdx.x; k < near; k += rowsOfBlock) column[nearBegin + k] = staged[k];
+  for (std::uint32_t k = threadIdx.x; k < far; k += rowsOfBlock) column[farBegin + k] = staged[near + k];
+}
+
+template <int D, bool Periodic>
+void findRoughly(Context<Cuda>& context, const RoughSearch<D, Periodic>& around, NeighbourRows<Cuda>& rows) {
+  Buffer<std::uint32_t, Cuda> found(context, around.slots * std::size_t{rows.count});
+  launch(context, blocksFor(rows.count, 128), 128, 0, countNeighboursKernel<D, Periodic>, around, rows.first,
+         rows.count, found.data(), rows.start.data());
+  rows.column.resize(context, startRows(context, rows.start));
+  launch(context, blocksFor(rows.count, rowsOfBlock), rowsOfBlock, 0, writeNeighboursKernel<D, Periodic>, around,
+         rows.first, rows.count, found.data(), rows.start.data(), rows.column.data());
+}
+
 }  // namespace
 
-/// Twice one thread per row: it counts its neighbours, then writes them. Reads the positions in the cells around
-/// its particle. No atomics.
+/// Candidates are looked at once: what is written after the counting are the bits of those that were found.
 template <int D>
 void findNeighbours(Context<Cuda>& context, const CellGrid<D>& grid, const CellRangesView& cells,
                     std::span<const Vec<D>> position, std::uint32_t fluidCount, std::uint32_t activeCount,
                     RowRadii radii, RowKind kind, NeighbourRows<Cuda>& rows) {
   const RowSearch search = RowSearch::make(kind, fluidCount, activeCount);
-  Buffer<float4, Cuda> rough(context, activeCount);
+  Buffer<float4, Cuda> rough(context, std::size_t{activeCount} + placesBehind);
   findRoughPlaces(context, grid, position.first(activeCount), rough.data());
-  RoughSearch<D> around{.grid = grid,
-                        .cells = cells,
-                        .exact = position.data(),
-                        .rough = rough.data(),
-                        .near2 = radii.near * radii.near,
-                        .far2 = radii.far * radii.far,
-                        .length = {},
-                        .walls = search.walls};
   Buffer<std::uint8_t, Cuda> nearWalls;
   if (search.walls) {
     nearWalls.resize(context, grid.cellCount());
     markFluidNearWalls(context, grid, cells, nearWalls.data());
-    around.used = nearWalls.data();
   }
-  double longest = 0;
-  for (int k = 0; k < D; ++k) {
-    around.length[k] = static_cast<float>(grid.length[k]);
-    longest = std::max(longest, grid.length[k]);
-  }
-  // Two roundings of 2^-24 of the longest side per axis, twice the distance in the square, and a factor 4.
-  const double error = 4 * 2 * D * 1.2e-7 * longest * radii.far;
-  around.nearIn = static_cast<float>(around.near2 - error);
-  around.nearOut = static_cast<float>(around.near2 + error);
-  around.farIn = static_cast<float>(around.far2 - error);
-  around.farOut = static_cast<float>(around.far2 + error);
-  const std::size_t count = search.count;
   rows.first = search.first;
   rows.count = search.count;
-  rows.start.resize(context, 2 * count + 1);
-  std::uint64_t* start = rows.start.data();
-  forEach(context, count, [=] __device__(std::size_t row) {
-    std::uint32_t nearCount = 0, farCount = 0;
-    around.forEach(search.first + static_cast<std::uint32_t>(row),
-                   [&](std::uint32_t, bool isNear) { isNear ? ++nearCount : ++farCount; });
-    start[row] = nearCount;
-    start[count + row] = farCount;
-  });
-  rows.column.resize(context, startRows(context, rows.start));
-  forEach(context, count, [=, column = rows.column.data()] __device__(std::size_t row) {
-    std::uint64_t nearPlace = start[row], farPlace = start[count + row];
-    around.forEach(search.first + static_cast<std::uint32_t>(row),
-                   [&](std::uint32_t j, bool isNear) { column[isNear ? nearPlace++ : farPlace++] = j; });
-  });
+  rows.start.resize(context, 2 * std::size_t{search.count} + 1);
+  const auto find = [&](auto around) {
+    around.grid = grid;
+    around.cells = cells;
+    around.exact = position.data();
+    around.rough = rough.data();
+    around.walls = search.walls;
+    around.used = nearWalls.data();
+    around.setRadii(radii);
+    findRoughly(context, around, rows);
+  };
+  bool periodic = false;
+  for (int k = 0; k < D; ++k) periodic = periodic || grid.periodic[k];
+  periodic ? find(RoughSearch<D, true>{}) : find(RoughSearch<D, false>{});
 }
 
 template void findNeighbours<2>(Context<Cuda>&, const CellGrid<2>&, const CellRangesView&, std::span<const Vec<2>>,

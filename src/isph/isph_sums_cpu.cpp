@@ -41,10 +41,14 @@ void sumOnWalls(Context<Cpu>&, const IsphPairs<D>& pairs, const Term& term) {
 template <int D, class T, class Row>
 void fillIsphMatrix(Context<Cpu>&, const IsphPairs<D>& pairs, const Row& row, const IsphMatrixParts<D, T>& parts) {
   const IsphMatrixRow<D, T, Row> filler{pairs, row, parts};
+  const std::uint64_t farBegin = pairs.fluidOfFluid.start[pairs.fluidOfFluid.count];
   parallelFor(pairs.fluidCount, parallelGrain, [&](std::size_t index) {
     const auto i = static_cast<std::uint32_t>(index);
     double sum[filler.values] = {};
-    pairs.fluidOfFluid.forEachPlace(i, [&](std::uint64_t k) { filler.entry(i, pairs.position[i], k, sum); });
+    pairs.fluidOfFluid.forEachPlace(i, [&](std::uint64_t k) {
+      filler.entry(i, pairs.position[i], k, k < farBegin, sum,
+                   [&](std::uint32_t, double c) { return parts.put(k, c); });
+    });
     pairs.wallsOfFluid.forEachPlace(i, [&](std::uint64_t k) { filler.wall(i, pairs.position[i], k, sum); });
     filler.finish(i, sum);
   });

@@ -5,7 +5,8 @@ namespace treacle {
 template <class Backend>
 SolveReport conjugateGradient(Context<Backend>& context, const Product& a, const Product& k,
                               std::span<const double> b, std::span<double> x, const StoppingRule& rule,
-                              KrylovWorkspace<Backend>& workspace, Deflation<Backend>* deflation) {
+                              KrylovWorkspace<Backend>& workspace, Deflation<Backend>* deflation,
+                              const Product* single) {
   workspace.resize(context, b.size());
   auto& [r, z, p, q, spare] = workspace.vectors;
   // z = K r is new in every iteration: nothing to refresh.
@@ -21,8 +22,8 @@ SolveReport conjugateGradient(Context<Backend>& context, const Product& a, const
     if (deflation)
       deflation->direction(context, r, z, p.span(), scalars);
     else
-      plainDirection(context, r, z, p.span(), scalars);
-    a(p.span(), q.span());
+      plainDirection(context, r, z, p.span(), scalars, single != nullptr);
+    (single ? *single : a)(p.span(), q.span());
     stepDot(context, p, q, scalars);
     updateCg(context, {p, q, x, r}, scalars);
   });
@@ -64,7 +65,7 @@ SolveReport conjugateResidual(Context<Backend>& context, const Product& a, const
 #define TREACLE_INSTANTIATE(Backend)                                                                      \
   template SolveReport conjugateGradient(Context<Backend>&, const Product&, const Product&,               \
                                          std::span<const double>, std::span<double>, const StoppingRule&, \
-                                         KrylovWorkspace<Backend>&, Deflation<Backend>*);                 \
+                                         KrylovWorkspace<Backend>&, Deflation<Backend>*, const Product*); \
   template SolveReport conjugateResidual(Context<Backend>&, const Product&, const Product&,               \
                                          std::span<const double>, std::span<double>, const StoppingRule&, \
                                          KrylovWorkspace<Backend>&);

@@ -46,6 +46,11 @@ void directionChunk(const double* z, double beta, double* p, std::size_t n) {
   for (std::size_t i = 0; i < n; ++i) p[i] = z[i] + beta * p[i];
 }
 
+void roundChunk(double* p, std::size_t n) {
+#pragma omp simd
+  for (std::size_t i = 0; i < n; ++i) p[i] = static_cast<float>(p[i]);
+}
+
 double dot(Context<Cpu>& context, std::span<const double> x, std::span<const double> y) {
   return sumChunks(context, x.size(),
                    [&](std::size_t k, std::size_t n) { return dotChunk(x.data() + k, y.data() + k, n); });
@@ -73,11 +78,17 @@ void stepDot(Context<Cpu>& context, std::span<const double> x, std::span<const d
   scalars->setStep(dot(context, x, y));
 }
 
-void direction(Context<Cpu>& context, std::span<const double> z, std::span<double> p,
-               const KrylovScalars* scalars) {
-  if (scalars->iteration == 0) return copy(context, z, p);
+void direction(Context<Cpu>& context, std::span<const double> z, std::span<double> p, const KrylovScalars* scalars,
+               bool single) {
+  const bool first = scalars->iteration == 0;
+  if (first && !single) return copy(context, z, p);
   sumChunks(context, z.size(), [&](std::size_t k, std::size_t n) {
-    return directionChunk(z.data() + k, scalars->beta, p.data() + k, n), 0.0;
+    if (first)
+      std::copy_n(z.data() + k, n, p.data() + k);
+    else
+      directionChunk(z.data() + k, scalars->beta, p.data() + k, n);
+    if (single) roundChunk(p.data() + k, n);
+    return 0.0;
   });
 }
 

@@ -47,11 +47,19 @@ class IsphSystem final : public StagedSystem<Backend> {
     });
   }
 
+  /// Over hundreds of iterations rounded directions lose sight of each other; here there are few.
+  bool likesSingle() const override {
+    return stage_.precision == Precision::Mixed && stage_.preconditioner == PreconditionerKind::HatMultigrid;
+  }
+  void multiplySingle(Context<Backend>& context, std::span<const double> x, std::span<double> y) override {
+    withPrecision([&](auto& data) { treacle::multiplySingle(context, data.matrix, x, y); });
+  }
+
   std::size_t bytes() const {
     std::size_t sum = diagonal_.bytes() + moments_.bytes() + compressed_.bytes() + levels_.bytes();
     const auto add = [&](const auto& data) {
-      sum += data.coefficient.bytes() + data.word.bytes() + data.low.bytes() + data.inverseNear.bytes() +
-             data.hats.bytes() + data.cells.bytes();
+      sum += data.coefficient.bytes() + data.packed.bytes() + data.inverseNear.bytes() + data.hats.bytes() +
+             data.cells.bytes();
     };
     add(double_), add(single_);
     return sum;
@@ -64,8 +72,7 @@ class IsphSystem final : public StagedSystem<Backend> {
   template <class T>
   struct Data {
     Buffer<T, Backend> coefficient, inverseNear;
-    Buffer<std::uint32_t, Backend> word;
-    Buffer<std::uint16_t, Backend> low;
+    PackedRows<Backend> packed;
     IsphMatrix<T> matrix;
     IsphHatMultigrid<D, T, Backend> hats;
     CellMultigrid<T, Backend> cells;
@@ -82,24 +89,24 @@ class IsphSystem final : public StagedSystem<Backend> {
   template <class T>
   void fill(Context<Backend>& context, Data<T>& data) {
     const NeighbourRowsView& rows = pairs_->fluidOfFluid;
-    const std::size_t entries = pairs_->fluidEntries;
-    const bool packed = onDevice && std::is_same_v<T, float> && rows.count <= PackedEntry::maxRows;
-    data.coefficient.resize(context, packed ? 0 : entries);
-    data.word.resize(context, packed ? entries : 0);
-    data.low.resize(context, packed ? entries : 0);
+    PackedRowsView packed;
+    if constexpr (onDevice && std::is_same_v<T, float>)
+      if (rows.count >= PackedRows<Backend>::fewest) {
+        preparePacked(context, *pairs_, data.packed);
+        packed = data.packed.view();
+      }
+    data.coefficient.resize(context, packed.word ? 0 : pairs_->fluidEntries);
     data.inverseNear.resize(context, rows.count);
     diagonal_.resize(context, rows.count);
     moments_.resize(context, rows.count);
     const double unit = row_.largest(*pairs_) / 255;
-    fillIsphMatrix(
-        context, *pairs_, row_,
-        IsphMatrixParts<D, T>{data.coefficient, data.word, data.low, unit, diagonal_, data.inverseNear, moments_});
+    fillIsphMatrix(context, *pairs_, row_,
+                   IsphMatrixParts<D, T>{data.coefficient, packed, unit, diagonal_, data.inverseNear, moments_});
     data.matrix = {.rows = rows.count,
                    .start = rows.start,
                    .column = rows.column,
                    .coefficient = data.coefficient.data(),
-                   .word = packed ? data.word.data() : nullptr,
-                   .low = data.low.data(),
+                   .packed = packed,
                    .unit = unit,
                    .diagonal = diagonal_.data(),
                    .inverseNear = data.inverseNear.data()};

@@ -45,6 +45,13 @@ class StagedSystem {
   /// y = A x and z = K r of the stage that was prepared last.
   virtual void multiply(Context<Backend>&, std::span<const double> x, std::span<double> y) = 0;
   virtual void precondition(Context<Backend>&, std::span<const double> r, std::span<double> z) = 0;
+
+  /// Whether products with numbers in single precision cost less than others; then directions of conjugate
+  /// gradients are such ones, and their products come from here.
+  virtual bool likesSingle() const { return false; }
+  virtual void multiplySingle(Context<Backend>& context, std::span<const double> x, std::span<double> y) {
+    multiply(context, x, y);
+  }
 };
 
 /// Solves a system with the settings of its stages: a stage that fails is followed by the next one, from the best

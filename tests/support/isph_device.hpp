@@ -50,8 +50,7 @@ struct DeviceIsph {
 template <int D, class T>
 struct DeviceIsphTestSystem {
   Buffer<T, Cuda> coefficient, inverseNear;
-  Buffer<std::uint32_t, Cuda> word;
-  Buffer<std::uint16_t, Cuda> low;
+  PackedRows<Cuda> entries;
   Buffer<double, Cuda> diagonal;
   Buffer<IsphMoments<D>, Cuda> moments;
   IsphMatrix<T> a;
@@ -60,15 +59,13 @@ struct DeviceIsphTestSystem {
   DeviceIsphTestSystem(DeviceIsph<D>& d, const Row& row, bool packed) {
     const std::uint32_t n = d.pairs.fluidCount;
     coefficient.resize(d.context, packed ? 0 : d.pairs.fluidEntries);
-    word.resize(d.context, packed ? d.pairs.fluidEntries : 0);
-    low.resize(d.context, packed ? d.pairs.fluidEntries : 0);
+    if (packed) preparePacked(d.context, d.pairs, entries);
     inverseNear.resize(d.context, n);
     diagonal.resize(d.context, n);
     moments.resize(d.context, n);
     IsphMatrixParts<D, T> parts{};
     parts.coefficient = coefficient;
-    parts.word = word;
-    parts.low = low;
+    if (packed) parts.packed = entries.view();
     parts.unit = row.largest(d.pairs) / 255;
     parts.diagonal = diagonal;
     parts.inverseNear = inverseNear;
@@ -78,8 +75,7 @@ struct DeviceIsphTestSystem {
     a.start = d.pairs.fluidOfFluid.start;
     a.column = d.pairs.fluidOfFluid.column;
     a.coefficient = coefficient.data();
-    a.word = packed ? word.data() : nullptr;
-    a.low = low.data();
+    a.packed = parts.packed;
     a.unit = parts.unit;
     a.diagonal = diagonal.data();
     a.inverseNear = inverseNear.data();

@@ -5,37 +5,52 @@
 #include "treacle/core/cuda.hpp"
 #include "treacle/core/macros.hpp"
 #include "treacle/linear/block_csr.hpp"
+#include "treacle/search/column_blocks.hpp"
 
 #include <cstdint>
 #include <span>
 
 namespace treacle {
 
-/// How an entry is packed.
+/// How an entry is packed: the place of its column in the row's block (ColumnBlocksView) in the low bits, above it
+/// the coefficient in parts of a unit.
 struct PackedEntry {
-  static constexpr std::uint32_t columnBits = 24, maxRows = 1u << 23;
+  static constexpr std::uint32_t placeBits = ColumnBlocksView::columnBits, wholeBits = 8;
+  static constexpr std::uint32_t parts = 1u << (32 - placeBits - wholeBits);  // of a unit
 
-  /// Whole units of a coefficient.
-  TREACLE_HD static std::uint32_t whole(double c, double unit) {
-    return static_cast<std::uint32_t>(c / unit + 0.5);
+  TREACLE_HD static std::uint32_t word(std::uint32_t place, double c, double unit) {
+    return static_cast<std::uint32_t>(c / unit * parts + 0.5) << placeBits | place;
   }
-  TREACLE_HD static std::uint32_t word(std::uint32_t column, double c, double unit) {
-    return column << 8 | whole(c, unit);
+  TREACLE_HD static std::uint32_t place(std::uint32_t word) { return word & (ColumnBlocksView::columns - 1); }
+  /// The coefficient in parts.
+  TREACLE_HD static std::uint32_t value(std::uint32_t word) { return word >> placeBits; }
+  /// The coefficient in units, rounded to whole ones.
+  TREACLE_HD static std::uint32_t whole(std::uint32_t word) {
+    return (word + (1u << (31 - wholeBits))) >> (32 - wholeBits);
   }
-  /// The rest lies between -1/2 and 1/2 units.
-  TREACLE_HD static std::uint16_t low(double c, double unit) {
-    const double rest = (c / unit - whole(c, unit)) * 65536 + 32768.5;
-    return static_cast<std::uint16_t>(rest < 65535 ? rest : 65535);
-  }
-  /// The coefficient in units.
-  TREACLE_HD static double value(std::uint32_t word, std::uint16_t low) {
-    const int fixed = static_cast<int>((word & 255) << 16) + static_cast<int>(low) - 32768;
-    return fixed * (1.0 / 65536);
-  }
-  TREACLE_HD static std::uint32_t column(std::uint32_t word, std::uint32_t row) {
-    const auto away = static_cast<std::int32_t>(((word >> 8) - row) << 8) >> 8;
-    return row + static_cast<std::uint32_t>(away);
-  }
+};
+
+/// Entries of a packed matrix. They stand in fours, which are fetched at once: each section of a row begins with a
+/// new one, and ends with zeros.
+struct PackedRowsView {
+  std::uint32_t* word = nullptr;        // null: not packed
+  const std::uint32_t* four = nullptr;  // 2 rows + 1: the first one of each section
+  ColumnBlocksView blocks;
+
+  /// Place of the first entry of a section.
+  TREACLE_HD std::uint64_t begin(std::uint64_t section) const { return std::uint64_t{4} * four[section]; }
+};
+
+template <class Backend>
+struct PackedRows {
+  /// Smaller matrices stay in the cache: what their products take is the time until they begin.
+  static constexpr std::uint32_t fewest = 30'000;  // rows
+
+  Buffer<std::uint32_t, Backend> word, four;
+  ColumnBlocks<Backend> blocks;
+
+  PackedRowsView view() { return {word.data(), four.data(), blocks.view()}; }
+  std::size_t bytes() const { return word.bytes() + four.bytes() + blocks.bytes(); }
 };
 
 /// Symmetric matrix of pair coefficients 0 <= c <= 255 unit on rows that belong to someone else, (A x)_i =
@@ -46,32 +61,41 @@ struct PackedEntry {
 /// Smoothers take the matrix cut to near neighbours, with coefficients rounded to whole units, and the diagonal
 /// that belongs to them: it smooths as well as the whole one with a fraction of its bytes.
 ///
-/// On a device in single precision the entries are packed: `word` has the low 24 bits of the column and the whole
-/// units of c, `low` the rest of c, 24 bits in all. That is enough where no two neighbours are 2^23 rows apart;
-/// larger matrices have `coefficient`.
+/// On a device large matrices in single precision are packed: 21 bits of a coefficient and the place of its column
+/// in four bytes, PackedEntry. Where a block of rows has no places, products take the column from `column`.
 template <class T>
 struct IsphMatrix {
   std::uint32_t rows = 0;
   const std::uint64_t* start = nullptr;   // 2 rows + 1
   const std::uint32_t* column = nullptr;  // of every entry
   const T* coefficient = nullptr;         // likewise; null where packed
-  const std::uint32_t* word = nullptr;
-  const std::uint16_t* low = nullptr;
+  PackedRowsView packed;
   double unit = 1;
   const double* diagonal = nullptr;
   const T* inverseNear = nullptr;  // 1 / diagonal of the smoothers' matrix, or 0
 
-  TREACLE_HD double coefficientAt(std::uint64_t k) const {
-    return word ? unit * PackedEntry::value(word[k], low[k]) : static_cast<double>(coefficient[k]);
+  /// Of entry k, which belongs to a section.
+  TREACLE_HD double coefficientAt(std::uint64_t section, std::uint64_t k) const {
+    if (!packed.word) return static_cast<double>(coefficient[k]);
+    return unit / PackedEntry::parts * PackedEntry::value(packed.word[packed.begin(section) + k - start[section]]);
   }
 };
 
-/// y = A x; it reads 4 + sizeof(T) bytes per entry, 6 where packed, and 40 per row; the two that follow 4 +
-/// sizeof(T) bytes, 4 where packed, per near entry.
+/// y = A x; it reads 4 + sizeof(T) bytes per entry, 4 where packed, and 40 per row; the two that follow the same
+/// per near entry.
 template <class T>
 void multiply(Context<Cpu>&, const IsphMatrix<T>& a, std::span<const double> x, std::span<double> y);
 template <class T>
 void multiply(Context<Cuda>&, const IsphMatrix<T>& a, std::span<const double> x, std::span<double> y);
+
+/// The same for x whose numbers are single precision, which a device then brings together as such.
+template <class T>
+void multiplySingle(Context<Cpu>& context, const IsphMatrix<T>& a, std::span<const double> x,
+                    std::span<double> y) {
+  multiply(context, a, x, y);
+}
+template <class T>
+void multiplySingle(Context<Cuda>&, const IsphMatrix<T>& a, std::span<const double> x, std::span<double> y);
 
 /// x = inverseNear r: one Jacobi sweep from zero.
 template <class T>

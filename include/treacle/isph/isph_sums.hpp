@@ -38,25 +38,36 @@ struct IsphMoments {
   }
 };
 
+/// A coefficient as it is stored, and rounded to whole units.
+struct StoredCoefficient {
+  double value;
+  int whole;
+};
+
 /// What a matrix of pairs consists of, on the rows of `pairs`; packed or not (IsphMatrix).
 template <int D, class T>
 struct IsphMatrixParts {
   std::span<T> coefficient;  // per entry of the fluid rows; empty where packed
-  std::span<std::uint32_t> word;
-  std::span<std::uint16_t> low;
+  PackedRowsView packed;
   double unit;
   std::span<double> diagonal;
   std::span<T> inverseNear;
   std::span<IsphMoments<D>> moments;
 
-  /// Stores entry k, which stands for column j; returns it as it is stored.
-  TREACLE_HD double put(std::uint64_t k, std::uint32_t j, double c) const {
-    if (word.empty()) return coefficient[k] = static_cast<T>(c);
-    word[k] = PackedEntry::word(j, c, unit);
-    low[k] = PackedEntry::low(c, unit);
-    return unit * PackedEntry::value(word[k], low[k]);
+  TREACLE_HD StoredCoefficient put(std::uint64_t k, double c) const {
+    const T stored = coefficient[k] = static_cast<T>(c);
+    return {static_cast<double>(stored), static_cast<int>(stored * static_cast<T>(1 / unit) + T(0.5))};
+  }
+  /// The same of a packed matrix; `place` of the column in the row's block.
+  TREACLE_HD StoredCoefficient putPacked(std::uint64_t k, std::uint32_t place, double c) const {
+    const std::uint32_t word = packed.word[k] = PackedEntry::word(place, c, unit);
+    return {unit / PackedEntry::parts * PackedEntry::value(word), static_cast<int>(PackedEntry::whole(word))};
   }
 };
+
+/// The column blocks of the fluid, and room for the entries of a matrix on its rows.
+template <int D>
+void preparePacked(Context<Cuda>&, const IsphPairs<D>& pairs, PackedRows<Cuda>& packed);
 
 /// Fills the parts of a matrix whose rows are PressureRow or ViscousRow. Diagonals are made of the coefficients as
 /// they are stored: a matrix in single precision is another one, but no less symmetric and semidefinite.
@@ -75,10 +86,11 @@ struct IsphMatrixRow {
   const Row& row;
   const IsphMatrixParts<D, T>& parts;
 
-  /// Entry k of row i, at x.
-  TREACLE_HD void entry(std::uint32_t i, const Vec<D>& x, std::uint64_t k, double* sum) const {
-    const NeighbourRowsView& rows = pairs.fluidOfFluid;
-    const std::uint32_t j = rows.column[k];
+  /// Entry k of row i, at x, `near` or far; put(j, c) stores it.
+  template <class Put>
+  TREACLE_HD void entry(std::uint32_t i, const Vec<D>& x, std::uint64_t k, bool near, double* sum,
+                        Put&& put) const {
+    const std::uint32_t j = pairs.fluidOfFluid.column[k];
     double c = 0;
     Vec<D> d{};
     if (row.isUnknown(i) && j != i) {
@@ -89,12 +101,11 @@ struct IsphMatrixRow {
         c = 0;
       }
     }
-    const double stored = parts.put(k, j, c);
-    sum[All] += stored;
-    if (k < rows.start[rows.count])
-      sum[Near] += parts.unit * static_cast<int>(static_cast<T>(stored) * static_cast<T>(1 / parts.unit) + T(0.5));
+    const StoredCoefficient stored = put(j, c);
+    sum[All] += stored.value;
+    if (near) sum[Near] += parts.unit * stored.whole;
     for (int a = 0, n = Moments; a < D; ++a)
-      for (int b = a; b < D; ++b, ++n) sum[n] += 0.5 * stored * d[a] * d[b];
+      for (int b = a; b < D; ++b, ++n) sum[n] += 0.5 * stored.value * d[a] * d[b];
   }
   /// A wall next to it.
   TREACLE_HD void wall(std::uint32_t i, const Vec<D>& x, std::uint64_t k, double* sum) const {

@@ -54,12 +54,12 @@ void recordedDirection(Context<Cuda>&, std::span<const double> r, std::span<cons
 void combine(Context<Cpu>&, std::span<const float> basis, const RitzVectors& ritz, std::span<float> w);
 void combine(Context<Cuda>&, std::span<const float> basis, const RitzVectors& ritz, std::span<float> w);
 
-/// scalars.setDirection(r.z), then p = z + beta p
+/// scalars.setDirection(r.z), then p = z + beta p, rounded to numbers in single precision where `single`.
 template <class Backend>
 void plainDirection(Context<Backend>& context, std::span<const double> r, std::span<const double> z,
-                    std::span<double> p, KrylovScalars* scalars) {
+                    std::span<double> p, KrylovScalars* scalars, bool single = false) {
   directionDot(context, r, z, scalars);
-  direction(context, z, p, scalars);
+  direction(context, z, p, scalars, single);
 }
 
 /// Conjugate gradients whose directions are A-orthogonal to a few given vectors W, the modes: the eigenvalues of

@@ -29,9 +29,12 @@ void directionDot(Context<Cuda>&, std::span<const double> x, std::span<const dou
 void stepDot(Context<Cpu>&, std::span<const double> x, std::span<const double> y, KrylovScalars* scalars);
 void stepDot(Context<Cuda>&, std::span<const double> x, std::span<const double> y, KrylovScalars* scalars);
 
-/// p = z + beta p, in the first iteration p = z; 3 vectors of traffic
-void direction(Context<Cpu>&, std::span<const double> z, std::span<double> p, const KrylovScalars* scalars);
-void direction(Context<Cuda>&, std::span<const double> z, std::span<double> p, const KrylovScalars* scalars);
+/// p = z + beta p, in the first iteration p = z; where `single`, rounded to numbers in single precision; 3 vectors
+/// of traffic
+void direction(Context<Cpu>&, std::span<const double> z, std::span<double> p, const KrylovScalars* scalars,
+               bool single = false);
+void direction(Context<Cuda>&, std::span<const double> z, std::span<double> p, const KrylovScalars* scalars,
+               bool single = false);
 
 /// p = s + beta p, q = y + beta q, likewise; 6 vectors of traffic
 struct CrDirections {

@@ -78,6 +78,12 @@ TEST(VectorTwin, EqualsTheCpu) {
     directionsCr(cuda, {s.device, r.device, p.device, q.device}, k.device.data());
     direction(cpu, x.host, u.host, &k.host);
     direction(cuda, x.device, u.device, k.device.data());
+    Both rounded(cuda, n, 8);
+    direction(cpu, x.host, rounded.host, &k.host, true);
+    direction(cuda, x.device, rounded.device, k.device.data(), true);
+    const Buffer<double> found = copyToHost(cuda, rounded.device);
+    for (const double v : found) ASSERT_EQ(v, static_cast<float>(v));
+    EXPECT_LE(distance(rounded.host, found), singleTolerance);
     directionDot(cpu, p.host, p.host, &k.host);
     directionDot(cuda, p.device, p.device, k.device.data());
     stepDot(cpu, u.host, u.host, &k.host);

@@ -24,19 +24,25 @@ struct MatrixTwin {
   std::uint32_t n = s.n();
   std::vector<double> x = randomNumbers(n, 1), r = randomNumbers(n, 2);
   Buffer<double, Cuda> xOnDevice, rOnDevice;
+  // Coefficients on the border of two whole units may fall to either; packed ones, which are rounded twice, do
+  // more often (measured: 2.5e-4).
+  double wholeTolerance;
 
   template <class HostRow, class DeviceRow>
   MatrixTwin(IsphScene<D>& scene, DeviceIsph<D>& twin, const HostRow& row, const DeviceRow& deviceRow,
              Storage storage)
-      : s(scene), d(twin), host(s, row), device(d, deviceRow, storage == Storage::Packed) {
+      : s(scene),
+        d(twin),
+        host(s, row),
+        device(d, deviceRow, storage == Storage::Packed),
+        wholeTolerance(storage == Storage::Packed ? 3e-4 : 1e-4) {
     copyToDevice<double>(d.context, x, xOnDevice);
     copyToDevice<double>(d.context, r, rOnDevice);
   }
 
   void checkParts() {
     EXPECT_LE(differ<double>(d.context, device.diagonal, host.diagonal.span()), toleranceOf<T>);
-    // Coefficients on the border of two whole units may fall to either.
-    EXPECT_LE(differ<T>(d.context, device.inverseNear, host.inverseNear.span()), 1e-4);
+    EXPECT_LE(differ<T>(d.context, device.inverseNear, host.inverseNear.span()), wholeTolerance);
     const Buffer<IsphMoments<D>> moments = copyToHost(d.context, device.moments);
     std::vector<float> a, b;
     for (std::uint32_t i = 0; i < n; ++i) {
@@ -55,14 +61,20 @@ struct MatrixTwin {
     multiply<T>(d.context, device.a, xOnDevice, again);
     EXPECT_LE(differ<double>(d.context, found, y), toleranceOf<T>) << "product";
     EXPECT_EQ(differ<double>(d.context, again, copyToHost(d.context, found).span()), 0) << "not the same bits";
+    std::vector<double> single(n);
+    for (std::uint32_t i = 0; i < n; ++i) single[i] = static_cast<float>(x[i]);
+    const auto singleOnDevice = copyToDevice<double>(d.context, single);
+    multiply<T>(d.context, device.a, singleOnDevice, again);
+    multiplySingle<T>(d.context, device.a, singleOnDevice, found);
+    EXPECT_EQ(differ<double>(d.context, again, copyToHost(d.context, found).span()), 0)
+        << "product of single numbers";
     jacobi<T>(s.context, host.a, r, y);
     jacobi<T>(d.context, device.a, rOnDevice, found);
     EXPECT_LE(differ<double>(d.context, found, y), toleranceOf<T>) << "jacobi";
 
     std::vector<T> iterate(n), z(n);
     Buffer<T, Cuda> foundZ(d.context, n);
-    // Coefficients on the border of two whole units may fall to either.
-    const double rounded = std::max(toleranceOf<T>, 1e-4 * (sizeof(T) == 4));
+    const double rounded = std::max(toleranceOf<T>, wholeTolerance * (sizeof(T) == 4));
     firstSweep<T>(s.context, host.a, r, z);
     firstSweep<T>(d.context, device.a, rOnDevice, foundZ);
     EXPECT_LE(differ<T>(d.context, foundZ, z), rounded) << "first sweep";
@@ -131,7 +143,11 @@ struct MatrixTwin {
     std::vector<T> b(nodes.count()), z = fine;
     Buffer<T, Cuda> bFound(d.context, nodes.count()), zFound = copyToDevice<T>(d.context, fine);
     transfer.restrict(s.context, nodes, fine, std::span<T>(b));
-    transferOnDevice.restrict(d.context, nodesOnDevice, copyToDevice<T>(d.context, fine).span(), bFound.span());
+    const auto fineOnDevice = copyToDevice<T>(d.context, fine);
+    transferOnDevice.restrict(d.context, nodesOnDevice, fineOnDevice.span(), bFound.span());
+    EXPECT_LE(differ<T>(d.context, bFound, b), toleranceOf<T>) << "restriction of particles";
+    Buffer<T, Cuda> sums(d.context, (std::size_t{1} << D) * nodes.count());
+    transferOnDevice.restrictFluid(d.context, nodesOnDevice, fineOnDevice.span(), sums, bFound.span());
     EXPECT_LE(differ<T>(d.context, bFound, b), toleranceOf<T>) << "restriction";
     transfer.addProlonged(s.context, nodes, std::span<const T>(b), std::span<T>(z));
     transferOnDevice.addProlonged(d.context, nodesOnDevice, copyToDevice<T>(d.context, b).span(), zFound.span());
@@ -172,6 +188,28 @@ void checkScenes() {
     size[0] = count;
     checkScene<D>({c, particlesAt<D>(latticeAt<D>(Vec<D>::filled(0.1), size, c.spacing))});
   }
+}
+
+/// Wide kernels reach more columns than a block of rows can bring together.
+void checkWithoutPlaces() {
+  IsphScene<3> large = makeLargeIsphScene<3>();
+  large.c.method.isph.smoothingRatio = 2;
+  IsphScene<3> s(large.c, std::move(large.particles));
+  DeviceIsph<3> d(s);
+  MatrixTwin<3, float> twin(s, d, PressureRow<3>{s.surface.data()}, PressureRow<3>{d.surface.data()},
+                            Storage::Packed);
+  std::size_t without = 0;
+  for (const ColumnBlocksView::Size& size : copyToHost(d.context, twin.device.entries.blocks.size))
+    without += size.runs == 0;
+  EXPECT_GT(without, 0u);
+  twin.checkParts();
+  twin.checkProducts();
+  twin.checkCompressed();
+}
+
+TEST(IsphMatrixTwin, ProductsWithoutPlacesEqualTheCpu) {
+  TREACLE_SKIP_WITHOUT_GPU();
+  checkWithoutPlaces();
 }
 
 TEST(IsphMatrixTwin, MatrixAndPreconditionerEqualTheCpu) {
