@@ -64,7 +64,7 @@ void checkDamBreak(const std::string& resolution, const std::string& exactStep, 
 }
 
 TEST(AutomaticSteps, FrontOfTheDamBreak) { checkDamBreak("1", "0.125e-3", 1e-3); }
-TEST(AutomaticSteps, FrontOfTheDamBreakHalfTheSpacing) { checkDamBreak("2", "0.25e-3", 0.5e-3); }
+TEST(AutomaticSteps, FrontOfTheDamBreakHalfTheSpacing) { checkDamBreak("2", "0.5e-3", 0.5e-3); }
 
 /// With a softer fluid nothing but the tolerance bounds the steps.
 TEST(AutomaticSteps, ErrorOfTheDamBreakIsInProportionToTheTolerance) {
