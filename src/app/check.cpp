@@ -52,7 +52,19 @@ void printTime(const Case& c, ParticleNumbers particles) {
         std::llround(c.time.end / c.time.step));
 }
 
+void printAutomaticSteps(const Case& c) {
+  const StableStep stable = longestStableStep(c);
+  print(
+      "# time step: chosen in each step for an error of {:g}, from {:g} to {:g} s, Courant number at most {:g}; ",
+      c.time.tolerance, c.time.least, c.time.step, c.time.mostCourant());
+  if (std::isfinite(stable.length))
+    print("stable up to {:.4g} s ({})\n", stable.length, stable.reason);
+  else
+    print("stable at any length\n");
+}
+
 void printNumbers(const Case& c) {
+  if (c.time.automatic) printAutomaticSteps(c);
   if (c.time.stepsVary())
     print("# steps: {:.0f} or more\n", std::ceil(c.time.end / c.time.step * (1 - 1e-9)));
   else

@@ -63,6 +63,10 @@ void Recorder::record(const StepReport& report) {
   lastIterations_ = report.iterations;
   iterations_ += report.iterations;
   fallbacks_ += report.fallbacks;
+  rejected_ += report.rejected;
+  leastStep_ = steps_ == 1 ? report.timeStep : std::min(leastStep_, report.timeStep);
+  longestStep_ = std::max(longestStep_, report.timeStep);
+  stepTime_ += report.timeStep;
   seconds_ += report.seconds;
   meanDensity_ = report.diagnostics.meanDensityRatio;
   densityError_ = report.diagnostics.meanDensityError;
@@ -117,6 +121,9 @@ void Recorder::summarise(RunSummary& summary) const {
   summary.firstIterations = firstIterations_;
   summary.lastIterations = lastIterations_;
   summary.fallbacks = fallbacks_;
+  summary.rejectedSteps = rejected_;
+  summary.leastStep = leastStep_, summary.longestStep = longestStep_;
+  summary.meanStep = steps_ > 0 ? stepTime_ / static_cast<double>(steps_) : 0;
   summary.meanDensity = meanDensity_;
   summary.densityError = densityError_;
   summary.largestDensityError = largestDensityError_;

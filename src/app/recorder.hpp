@@ -75,7 +75,8 @@ class Recorder {
   std::int64_t frameStep_ = -1, checkpointStep_ = -1;  // of the last ones on disk; written by the output thread
   std::int64_t steps_ = 0, iterations_ = 0;
   int firstIterations_ = 0, lastIterations_ = 0;
-  std::int64_t fallbacks_ = 0;
+  std::int64_t fallbacks_ = 0, rejected_ = 0;
+  double leastStep_ = 0, longestStep_ = 0, stepTime_ = 0;
   double meanDensity_ = 0, densityError_ = 0, largestDensityError_ = 0;
   Arrangement lastArrangement_;  // written by the output thread, as are the next two
   double smallestLeast_ = nearestReach, smallestLow_ = nearestReach;

@@ -68,6 +68,9 @@ void Run::describe() {
 std::string Run::stepsText() const {
   const TimeSettings& time = case_.time;
   if (!time.stepsVary()) return fmt::format("{} steps of {:g} s", case_.steps(), time.step);
+  if (time.automatic)
+    return fmt::format("steps of {:g} to {:g} s, for errors of {:g}, to {:g} s", time.least, time.step,
+                       time.tolerance, time.end);
   return fmt::format("steps of at most {:g} s and Courant number {:g} to {:g} s", time.step, time.courant,
                      time.end);
 }
@@ -162,7 +165,8 @@ void Run::finish() {
   summary_.message = failure_;
   attempt([&] { writeSummary(directory_.summary(), summary_); });
   if (!failure_.empty()) throw RunError(failure_ + lastStateText());
-  say(fmt::format("done: {} steps in {}, {:.1f} iterations per step, {} of memory{}", summary_.steps,
+  say(fmt::format("done: {} steps{} in {}, {:.1f} iterations per step, {} of memory{}", summary_.steps,
+                  case_.time.automatic ? fmt::format(" ({} rejected)", summary_.rejectedSteps) : "",
                   durationText(summary_.wallSeconds), summary_.meanIterations, bytesText(summary_.peakMemory),
                   onDevice() ? fmt::format(", {} of the device's", bytesText(summary_.peakDeviceMemory)) : ""));
   progress_.message(fmt::format("picture: {}\nParaView: {}", directory_.finalPicture().string(),

@@ -28,9 +28,10 @@ Case readCase(const std::filesystem::path& path, std::span<const std::string> ov
   std::optional<Width> width;
   top({"width"}, width);
   c.spacing /= c.resolution;
-  c.time.step /= c.resolution;
+  if (!c.time.automatic) c.time.step /= c.resolution;
   try {
     if (width) applyWidth(c, *width);
+    setStepBounds(c);
     requireValid(c);
   } catch (const CaseError& error) {
     throw placed(error, sections);

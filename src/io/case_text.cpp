@@ -56,6 +56,9 @@ class TableText {
   void operator()(const Key& key, int index, keys::MaterialTag) {
     put(key, tomlString(case_.materials[static_cast<std::size_t>(index)].name));
   }
+  void operator()(const Key& key, double x, bool isAuto, keys::OrAutoTag) {
+    put(key, isAuto ? "\"auto\"" : fmt::format("{}", x));
+  }
   void operator()(const Key& key, const OutputFields& fields) {
     std::vector<std::string> names;
     for (const OutputFieldName& f : outputFieldNames)

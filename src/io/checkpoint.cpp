@@ -22,8 +22,9 @@ namespace treacle {
 namespace {
 
 constexpr std::string_view formatName = "treacle checkpoint";
-constexpr std::int32_t formatVersion = 5;  // 1: without acceleration and jerk; 2: without bodies and modes; 3:
-                                           // without method and checksums; 4: without kept eigenvalue
+constexpr std::int32_t formatVersion = 6;  // 1: without acceleration and jerk; 2: without bodies and modes; 3:
+                                           // without method and checksums; 4: without kept eigenvalue; 5: without
+                                           // memory of the time steps
 
 /// A field as the file holds it.
 struct FieldInfo {
@@ -39,7 +40,8 @@ struct FieldInfo {
 template <class P, class F>
 void forEachNamedField(P& particles, std::uint64_t modeValues, F&& f) {
   auto& [fluidCount, count, position, velocity, pressure, numberDensity, material, body, id, acceleration, jerk,
-         modes, wallSurface] = particles;
+         modes, steps, wallSurface] = particles;
+  static_cast<void>(steps);  // numbers
   static_cast<void>(wallSurface);
   f(FieldInfo{"position", count}, position), f(FieldInfo{"velocity", count}, velocity);
   f(FieldInfo{"pressure", count}, pressure), f(FieldInfo{"number_density", count}, numberDensity);
@@ -223,6 +225,9 @@ void fill(hid_t file, const Particles<D>& particles, std::int64_t step, double t
   writeAttribute(file, "pressure_eigenvalue", pressure.value);
   writeAttribute(file, "pressure_eigenvalue_due", pressure.due);
   writeAttribute(file, "pressure_eigenvalue_fewest_iterations", pressure.fewest);
+  writeAttribute(file, "time_step", particles.steps.last);
+  writeAttribute(file, "planned_time_step", particles.steps.planned);
+  writeAttribute(file, "time_step_error_rate", particles.steps.rate);
   forEachNamedField(particles, [&](const FieldInfo& info, const auto& field) { writeField(file, info, field); });
 }
 
@@ -280,6 +285,18 @@ KeptEigenvalue readEigenvalue(hid_t file) {
   return kept;
 }
 
+/// Errors: Hdf5Error for what no run remembers.
+StepMemory readSteps(hid_t file) {
+  const StepMemory steps{readAttribute<double>(file, "time_step"),
+                         readAttribute<double>(file, "planned_time_step"),
+                         readAttribute<double>(file, "time_step_error_rate")};
+  for (const double x : {steps.last, steps.planned, steps.rate})
+    if (!(x >= 0) || !std::isfinite(x))
+      throw Hdf5Error(fmt::format("time steps of {} and {} s with an error rate of {} 1/s", steps.last,
+                                  steps.planned, steps.rate));
+  return steps;
+}
+
 void requireReadable(const std::filesystem::path& path) {
   std::error_code error;
   static_cast<void>(std::filesystem::file_size(path, error));
@@ -302,6 +319,7 @@ Checkpoint<D> readContent(const std::filesystem::path& path, bool sealed) {
   std::uint32_t modes = 0;
   if (version >= 3) modes = readModeNumbers(file, particles.modes.age);
   if (version >= 5) particles.modes.pressure = readEigenvalue(file);
+  if (version >= 6) particles.steps = readSteps(file);
   const auto read = [&]<class T>(const FieldInfo& info, Buffer<T>& field) {
     if (version >= info.since) return readField(file, info, field);
     field.resize(info.count);

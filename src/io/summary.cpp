@@ -26,6 +26,8 @@ void writeSummary(const std::filesystem::path& path, const RunSummary& s) {
   json["wall_particles"] = s.wallParticles;
   json["steps"] = s.steps;
   json["time"] = s.time;
+  json["time_step"] = {{"least", s.leastStep}, {"mean", s.meanStep}, {"longest", s.longestStep}};
+  json["rejected_steps"] = s.rejectedSteps;
   json["iterations"] = {{"mean", s.meanIterations}, {"first", s.firstIterations}, {"last", s.lastIterations}};
   json["fallbacks"] = s.fallbacks;
   json["density"] = {{"mean", s.meanDensity}, {"error", s.densityError}, {"largest_error", s.largestDensityError}};

@@ -35,9 +35,19 @@ void TableReader::prepare(SolverSettings& solver) {
   nameMethod();
 }
 
+void TableReader::prepare(TimeSettings& time) {
+  time.automatic = section_.table()["step"].value<std::string_view>() == "auto";
+}
+
 /// In the title, for tables whose keys are others with ISPH.
 void TableReader::nameMethod() {
   if (case_.method.kind == MethodKind::Isph) section_ = Section(section_.table(), section_.title() + " (isph)");
+}
+
+void TableReader::requireKnownKeys(const TimeSettings& time) const {
+  TimeSettings automatic;
+  automatic.automatic = true;
+  section_.requireKnown(knownKeys(time), keys::namesIn(automatic, case_), "step = \"auto\"");
 }
 
 std::vector<std::string_view> TableReader::knownKeys(const Case&) const { return topLevelKeys(); }
@@ -188,6 +198,13 @@ void TableReader::operator()(const Key& key, int& index, keys::MaterialTag) cons
     throw section_.error(key.name, fmt::format("unknown material '{}'{}", *name, suggestion(*name, names)));
   }
   index = static_cast<int>(found - case_.materials.begin());
+}
+
+void TableReader::operator()(const Key& key, double& x, bool& isAuto, keys::OrAutoTag) const {
+  const std::string expected = expectedNumber(key, true);
+  const toml::node* node = section_.value(key, expected);
+  isAuto = node && node->value<std::string_view>() == "auto";
+  if (node && !isAuto) x = number(key, *node, expected);
 }
 
 void TableReader::operator()(const Key& key, OutputFields& fields) const {

@@ -39,6 +39,7 @@ class TableReader {
   void operator()(const Key& key, std::string& text) const;
   void operator()(const Key& key, std::string& text, keys::ExpressionTag) const;
   void operator()(const Key& key, int& index, keys::MaterialTag) const;
+  void operator()(const Key& key, double& x, bool& isAuto, keys::OrAutoTag) const;
   void operator()(const Key& key, OutputFields& fields) const;
 
   template <class E, class Fits = keys::AllFit>
@@ -79,6 +80,7 @@ class TableReader {
   void prepare(MethodSettings& method);
   void prepare(Body& body);
   void prepare(SolverSettings& solver);
+  void prepare(TimeSettings& time);
   void nameMethod();
 
   template <class Table>
@@ -89,6 +91,7 @@ class TableReader {
     section_.requireKnown(knownKeys(member), keys::namesIn(member, other),
                           fmt::format("the method '{}'", nameOf(other.method.kind)));
   }
+  void requireKnownKeys(const TimeSettings& time) const;
   template <class Table>
   std::vector<std::string_view> knownKeys(const Table& member) const {
     return keys::namesIn(member, case_);

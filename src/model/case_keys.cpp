@@ -23,7 +23,9 @@ bool Bound::holds(double x) const {
   return std::isfinite(x) && (open ? least < x && x < most : least <= x && x <= most);
 }
 
-std::string expectedNumber(const Key& key) { return withUnit(numberText(key.bound), key); }
+std::string expectedNumber(const Key& key, bool orAuto) {
+  return withUnit(numberText(key.bound), key) + (orAuto ? " or \"auto\"" : "");
+}
 
 std::string expectedInteger(const Key& key) {
   const Bound& b = key.bound;

@@ -125,26 +125,34 @@ double weightOn(const Case& c, const Body& below, bool heavier) {
   return pressure;
 }
 
+// Spacings, and l^2/mu times the mean diagonal of V in a lattice: 2.2 to 2.6.
+constexpr double mostPushed = 0.5, latticeViscosity = 2.5;
+
+/// The longest step of a fluid that carries the pressure p [Pa] of heavier ones [s].
+double longestCarryingStep(const Case& c, const Material& m, double p) {
+  const double inertia = m.density * c.spacing * c.spacing;
+  const double half = 0.5 * mostPushed * latticeViscosity * m.dynamicViscosity / p;
+  return half + std::sqrt(half * half + mostPushed * inertia / p);
+}
+
 /// A particle that the pressure on one side of it does not meet on the other goes so many spacings in a step.
 /// Light and thin fluids cannot keep their particles in order under a heavy one: those give way, the density
 /// rises, and the heavy fluid sinks in. Measured for a fluid of 1 to 1000 kg/m3 and 1e-4 to 1 Pa s under one of
 /// 1000 kg/m3 and 10 Pa s: it carries with 0.5, and by the accurate scheme with 1; with 3 it does not.
 void warnLightFluids(const Case& c, std::vector<std::string>& warnings) {
-  constexpr double most = 0.5, viscous = 2.5;  // l^2/mu times the mean diagonal of V in a lattice: 2.2 to 2.6
   for (const Body& body : c.bodies) {
     const double p = body.kind == BodyKind::Fluid ? weightOn(c, body, true) : 0;
     if (p == 0) continue;
     const Material& m = materialOf(c, body);
     const double dt = c.time.step, inertia = m.density * c.spacing * c.spacing;  // times 1/dt like a viscosity
-    const double way = p * dt / (inertia / dt + viscous * m.dynamicViscosity);
-    if (way <= most * (1 + rounding)) continue;
-    const double half = 0.5 * most * viscous * m.dynamicViscosity / p;
+    const double way = p * dt / (inertia / dt + latticeViscosity * m.dynamicViscosity);
+    if (way <= mostPushed * (1 + rounding)) continue;
     warnings.push_back(fmt::format(
         "fluid '{}' is too light and too thin for the heavier fluid on it: a pressure of {:.3g} Pa can move its "
         "particles by {:.3g} spacings in a step, more than {:g}, so that the heavier fluid may sink into it; take "
         "steps of at most {:.2g} s, or a dynamic_viscosity of '{}' of at least {:.2g} Pa s",
-        body.name, p, way, most, half + std::sqrt(half * half + most * inertia / p), m.name,
-        (p * dt / most - inertia / dt) / viscous));
+        body.name, p, way, mostPushed, longestCarryingStep(c, m, p), m.name,
+        (p * dt / mostPushed - inertia / dt) / latticeViscosity));
   }
 }
 
@@ -209,7 +217,8 @@ double givenSpeed(const Case& c) {
 /// Of the longest step that a run makes.
 double courantNumberAt(const Case& c, double speed) {
   const double number = speed * c.time.step / c.spacing;
-  return c.time.stepsVary() ? std::min(number, c.time.courant) : number;
+  const double most = c.time.mostCourant();
+  return most > 0 ? std::min(number, most) : number;
 }
 
 /// The forces of MPH-I are implicit but for gravity; ISPH moves on what it has at the start of a step. How fast a
@@ -255,6 +264,30 @@ double mostCompression(const Case& c) { return c.densityRadius() > c.pressureRad
 
 std::string mostBulkModulusText(const Case& c) {
   return mostCompression(c) == 1 ? "bulk_viscosity / step" : "0.5 bulk_viscosity / step";
+}
+
+StableStep longestStableStep(const Case& c) {
+  StableStep stable{std::numeric_limits<double>::infinity(), "nothing"};
+  const auto bound = [&](double length, std::string reason) {
+    if (length < stable.length) stable = {length, std::move(reason)};
+  };
+  for (const Material& m : c.materials)
+    if (m.bulkModulus > 0 && m.bulkViscosity > 0)  // without the latter no step is
+      bound(mostCompression(c) * m.bulkViscosity / m.bulkModulus,
+            fmt::format("dt kappa / lambda of '{}'", m.name));
+  for (const Body& body : c.bodies) {
+    if (body.kind != BodyKind::Fluid || norm(c.gravity) == 0) continue;
+    if (const double p = weightOn(c, body, true); p > 0)
+      bound(longestCarryingStep(c, materialOf(c, body), p), fmt::format("the heavier fluid on '{}'", body.name));
+  }
+  return stable;
+}
+
+void setStepBounds(Case& c) {
+  TimeSettings& t = c.time;
+  if (!t.automatic) return;
+  if (t.step == 0) t.step = std::min(longestStableStep(c).length, t.end);
+  if (t.least == 0) t.least = t.step / 1e4;
 }
 
 double courantNumber(const Case& c) {

@@ -67,6 +67,9 @@ class Checker {
     if (index < 0 || static_cast<std::size_t>(index) >= count)
       fail({key.name}, fmt::format("expected the index of one of {} materials, found {}", count, index));
   }
+  void operator()(const Key& key, double x, bool isAuto, keys::OrAutoTag) const {
+    if (!isAuto) require(key.bound.holds(x), key, expectedNumber(key, true), x);
+  }
   template <class E, class Fits = keys::AllFit>
   requires std::is_enum_v<E>
   void operator()(const Key& key, E value, Fits fits = {}) const {
@@ -163,13 +166,26 @@ void requireSound(const Checker& at, const Width& w) {
   if (!(w.from < w.to)) at.fail({"to"}, fmt::format("expected more than from = {}, found {}", w.from, w.to));
 }
 
+/// ISPH moves on pressures that come and go at the free surface: its errors do not fall with the step alone.
+void requireAutomaticSteps(const Checker& at, const TimeSettings& t) {
+  if (at.wholeCase().method.kind != MethodKind::MphI)
+    at.fail({"step"},
+            fmt::format("\"auto\" is for the method '{}', found '{}'; expected the longest step [s], and "
+                        "courant to shorten it where the flow is fast",
+                        nameOf(MethodKind::MphI), nameOf(at.wholeCase().method.kind)));
+  if (t.least > t.step)
+    at.fail({"min_step"}, fmt::format("expected at most max_step = {} s, found {}", t.step, t.least));
+}
+
 void requireSound(const Checker& at, const TimeSettings& t) {
-  const double steps = t.end / t.step;
+  if (t.automatic) requireAutomaticSteps(at, t);
+  const double steps = t.end / (t.automatic ? t.least : t.step);
   if (steps < 0.5 && !t.stepsVary())
     at.fail({"end"}, fmt::format("expected at least one step of {} s, found {}", t.step, t.end));
-  if (steps > maxSteps) at.fail({"step"}, fmt::format("{:.3g} steps to the end are too many", steps));
+  if (steps > maxSteps)
+    at.fail({t.automatic ? "min_step" : "step"}, fmt::format("{:.3g} steps to the end are too many", steps));
   constexpr double leastCourant = 1e-6, mostCourant = 100;
-  if (t.stepsVary() && !(t.courant >= leastCourant && t.courant <= mostCourant))
+  if (t.courant != 0 && !(t.courant >= leastCourant && t.courant <= mostCourant))
     at.fail({"courant"},
             fmt::format("expected 0 or a number from {} to {}, found {}", leastCourant, mostCourant, t.courant));
 }

@@ -30,6 +30,9 @@ struct FlowState {
 
   FlowState(const Case& c, std::int64_t startStep, double startTime)
       : theCase(c), step(startStep), time(startTime), timeStep(c.time.step) {}
+
+  /// The step before that at hand; as long as this one where that is not known [s].
+  double lastStep() const { return particles.steps.last > 0 ? particles.steps.last : timeStep; }
 };
 
 }  // namespace treacle

@@ -11,6 +11,8 @@
 #include "treacle/step/first_guess.hpp"
 #include "treacle/step/solve_stages.hpp"
 
+#include <cmath>
+
 namespace treacle {
 namespace {
 
@@ -50,7 +52,10 @@ class MphStep final : public StepMethod<D, Backend> {
     solver_.prepareOperator(state_.context, pairs_, neighbourhood_.ranges(), wallTermsView());
   }
 
+  /// What is kept of another step's system is that of one of about the same length.
   void preparePreconditioner() override {
+    if (std::abs(state_.timeStep - state_.lastStep()) > 0.1 * state_.lastStep())
+      state_.particles.modes.pressure = {};
     solver_.preparePreconditioner(state_.context, &state_.particles.modes.pressure);
   }
 
@@ -116,8 +121,8 @@ class MphStep final : public StepMethod<D, Backend> {
     if (state_.theCase.output.balance) lastBalance_ = balance_.make(state_, neighbourhood_, divergence_, elastic_);
     // The velocities of the start are given, no solution: nothing follows from the way to the first one.
     if (state_.step > 0)
-      updateFlowMemory<D>(state_.context, state_.timeStep, state_.particles.velocity.span().first(n),
-                          state_.velocity.span().first(n), memory());
+      updateFlowMemory<D>(state_.context, state_.timeStep, state_.lastStep(),
+                          state_.particles.velocity.span().first(n), state_.velocity.span().first(n), memory());
   }
 
   void describe(DiagnosticsInput<D>& in) const override {
@@ -140,7 +145,8 @@ class MphStep final : public StepMethod<D, Backend> {
  private:
   FlowMemory<D> memory() { return {state_.particles.acceleration.span(), state_.particles.jerk.span()}; }
   void guess(std::span<Vec<D>> u) {
-    extrapolate<D>(state_.context, Extrapolation<D>::make(state_.theCase.solver.firstGuess, state_.timeStep),
+    extrapolate<D>(state_.context,
+                   Extrapolation<D>::make(state_.theCase.solver.firstGuess, state_.timeStep, state_.lastStep()),
                    state_.particles.velocity.span().first(u.size()), memory(), u);
   }
   WallTerms<D> wallTermsView() { return {wallBlock_.span(), wallGradient_.span()}; }

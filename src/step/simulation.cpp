@@ -5,12 +5,14 @@
 #include "treacle/model/particles_copy.hpp"
 #include "treacle/step/diagnostics.hpp"
 #include "treacle/step/move_particles.hpp"
+#include "treacle/step/step_control.hpp"
 #include "treacle/step/wall_motion.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <optional>
+#include <utility>
 
 namespace treacle {
 namespace {
@@ -51,7 +53,7 @@ bool someWallMoves(const Particles<D>& particles) {
 template <int D>
 void toHost(const Context<Cpu>&, const Particles<D>& particles, Particles<D>& host) {
   host.resize(particles.numbers());
-  host.modes.copyNumbers(particles.modes);
+  host.copyNumbers(particles);
   forEachFieldOf([](const auto& from, auto& to) { std::copy(from.begin(), from.end(), to.begin()); }, particles,
                  host);
 }
@@ -71,11 +73,15 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
   std::unique_ptr<StepMethod<D, Backend>> method;
   double lastSpeed = 0;  // of the fastest particle [m/s]
   std::optional<Watch> watch;
+  std::optional<StepControl> control;  // of automatic steps
+  double endOfStep = 0;                // time at the end of the step at hand [s]
+  bool tooCoarse = false;              // an automatic step was, and it was said
 
   State(const Case& c, Particles<D> state, std::int64_t startStep, double startTime)
       : Flow(c, startStep, startTime),
         wallsRotate(someWallRotates(c)),
         wallVelocitiesChange(wallsRotate || someWallOscillates(c)) {
+    if (theCase.time.automatic) control.emplace(theCase);
     wallsMove = wallVelocitiesChange || someWallMoves(state);
     const double mass = fluidMass(theCase, state);
     toBackend(context, std::move(state), particles);
@@ -92,20 +98,31 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     watch.emplace(theCase, start, mass, particles.fluidCount, wallsMove);
   }
 
-  /// With a Courant number, no particle goes farther than that many spacings, and the last step meets the end.
   void chooseTimeStep() {
-    if (theCase.time.courant == 0) return;
-    timeStep = theCase.time.step;
-    if (lastSpeed * timeStep > theCase.time.courant * theCase.spacing)
-      timeStep = theCase.time.courant * theCase.spacing / lastSpeed;
+    if (control) {
+      const StepControl::Step next = control->next(particles.steps, time, lastSpeed);
+      timeStep = next.length, endOfStep = next.end;
+    } else if (theCase.time.courant > 0) {
+      timeStep = courantStep();
+      endOfStep = time + timeStep;
+    } else {
+      endOfStep = static_cast<double>(step + 1) * timeStep;
+    }
+  }
+
+  /// No particle goes farther than so many spacings, and the last step meets the end.
+  double courantStep() const {
+    const TimeSettings& t = theCase.time;
+    double length = t.step;
+    if (lastSpeed * length > t.courant * theCase.spacing) length = t.courant * theCase.spacing / lastSpeed;
     // Fractions of the time's own rounding would never reach the end.
-    if (time + 1e-3 * timeStep == time)
+    if (time + 1e-3 * length == time)
       throw RunError(
           fmt::format("particles at {:.4g} m/s allow steps of {:.3g} s only (time.courant): the time no "
                       "longer advances",
-                      lastSpeed, timeStep));
-    const double rest = theCase.time.end - time;
-    if (rest > 0 && timeStep > rest * (1 - 1e-9)) timeStep = rest;
+                      lastSpeed, length));
+    const double rest = t.end - time;
+    return rest > 0 && length > rest * (1 - 1e-9) ? rest : length;
   }
 
   MovingWalls<D> walls() const {
@@ -162,7 +179,8 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     copyValues(context, std::span<const Vec<D>>(velocity).first(particles.fluidCount), particles.velocity.data());
     copyValues(context, std::span<const Vec<D>>(position).first(moved), particles.position.data());
     ++step;
-    time = theCase.time.courant > 0 ? time + timeStep : static_cast<double>(step) * theCase.time.step;
+    time = endOfStep;
+    particles.steps.last = timeStep;
   }
 
   Diagnostics diagnostics() const { return diagnosticsOf(particles.position, particles.velocity); }
@@ -179,18 +197,63 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     return computeDiagnostics<D>(context, in);
   }
 
+  /// Leaves the velocities at the end of a step of timeStep in `velocity`.
+  StagedReport solve() {
+    StagedReport solved = method->predict();
+    phases.run(context, treacle::phases::coefficients, [&] { method->prepareSystem(); });
+    phases.run(context, treacle::phases::coarse, [&] { method->preparePreconditioner(); });
+    phases.run(context, treacle::phases::solve, [&] { solved.follow(method->solve()); });
+    return solved;
+  }
+
+  /// The same for a step that is as short as the tolerance of automatic steps wants it. What is not accepted has
+  /// changed nothing but the memories of solver and steps.
+  StagedReport solveExactly(StepReport& report) {
+    StagedReport solved;
+    while (!(trySolve(solved) && isExact(report))) {
+      ++report.rejected;
+      particles.modes.pressure = {};  // of steps of that length
+      chooseTimeStep();
+      moveBodies();
+    }
+    return solved;
+  }
+
+  /// What cannot be solved may be so with a shorter step.
+  bool trySolve(StagedReport& solved) {
+    try {
+      solved.follow(solve());
+    } catch (const RunError&) {
+      if (!control->shorten(timeStep, particles.steps)) throw;
+      return false;
+    }
+    return true;
+  }
+
+  bool isExact(StepReport& report) {
+    phases.run(context, treacle::phases::update, [&] {
+      const std::uint32_t n = particles.fluidCount;
+      const auto change = stepChange<D>(context, {particles.velocity.span().first(n), velocity.span().first(n)});
+      report.error = control->error(change, timeStep, particles.steps);
+    });
+    if (!control->accept(timeStep, report.error, particles.steps)) return false;
+    const double most = theCase.time.tolerance;
+    if (report.error > most && !std::exchange(tooCoarse, true))
+      report.warnings.push_back(fmt::format(
+          "the error of a step of {:.3g} s is {:.2g}, more than time.tolerance = {:g}, but the step cannot be "
+          "shorter (time.min_step); further ones are not reported",
+          timeStep, report.error, most));
+    return true;
+  }
+
   StepReport advance() {
     StepReport report;
-    StagedReport solved;
     chooseTimeStep();
     moveBodies();
     phases.start(context);
     phases.run(context, treacle::phases::search, [&] { method->sortParticles(); });
     phases.run(context, treacle::phases::lists, [&] { method->findNeighbours(); });
-    solved = method->predict();
-    phases.run(context, treacle::phases::coefficients, [&] { method->prepareSystem(); });
-    phases.run(context, treacle::phases::coarse, [&] { method->preparePreconditioner(); });
-    phases.run(context, treacle::phases::solve, [&] { solved.follow(method->solve()); });
+    StagedReport solved = control ? solveExactly(report) : solve();
     phases.run(context, treacle::phases::update, [&] {
       method->correctVelocities();
       move();

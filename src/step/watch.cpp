@@ -102,9 +102,9 @@ std::string Watch::describeCourant(double value, double dt) const {
     return fmt::format("{}: the step is unstable; {}", numbers, cause);
   if (value > 1000) return fmt::format("{}: the step is unstable; {}", numbers, remedy(dt));  // nobody means that
   return fmt::format(
-      "{}; take time.step <= {:.2g} or time.courant = {:g}. Speeds that the flow cannot have come from "
+      "{}; take {} <= {:.2g} or time.courant = {:g}. Speeds that the flow cannot have come from "
       "an unstable step: {}",
-      numbers, wanted * case_.spacing / speed, wanted, remedy(dt));
+      numbers, case_.time.stepKey(), wanted * case_.spacing / speed, wanted, remedy(dt));
 }
 
 std::string Watch::describeInsideWalls(double value, double dt) const {
@@ -128,7 +128,7 @@ std::string Watch::describeDensity(double value, double dt) const {
 std::string Watch::remedy(double dt) const {
   if (const std::string cause = unstableMaterial(dt); !cause.empty()) return cause;
   return fmt::format(
-      "take time.step <= {:.3g}{}", dt / 2,
+      "take {} <= {:.3g}{}", case_.time.stepKey(), dt / 2,
       case_.method.kind == MethodKind::Isph ? ", and leave the fluid a free surface where it has none" : "");
 }
 
@@ -141,8 +141,8 @@ std::string Watch::unstableMaterial(double dt) const {
     if (m.bulkViscosity == 0)
       return fmt::format("give '{}' a bulk_viscosity of at least bulk_modulus times the step = {:.3g}", m.name,
                          m.bulkModulus * dt);
-    return fmt::format("take bulk_modulus <= {} = {:.3g} for '{}', or time.step <= {:.3g}",
-                       mostBulkModulusText(case_), most * m.bulkViscosity / dt, m.name,
+    return fmt::format("take bulk_modulus <= {} = {:.3g} for '{}', or {} <= {:.3g}", mostBulkModulusText(case_),
+                       most * m.bulkViscosity / dt, m.name, case_.time.stepKey(),
                        most * m.bulkViscosity / m.bulkModulus);
   }
   return {};

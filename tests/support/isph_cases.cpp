@@ -61,7 +61,7 @@ Particles<D> copyOf(const Particles<D>& from) {
   Particles<D> p;
   p.resize(from.numbers());
   forEachFieldOf([](const auto& a, auto& b) { std::copy(a.begin(), a.end(), b.begin()); }, from, p);
-  p.modes.copyNumbers(from.modes);
+  p.copyNumbers(from);
   return p;
 }
 

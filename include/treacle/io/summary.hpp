@@ -22,7 +22,9 @@ struct RunSummary {
   std::uint64_t fluidParticles = 0, wallParticles = 0;
 
   std::int64_t steps = 0;
-  double time = 0;  // simulation time reached [s]
+  double time = 0;                                      // simulation time reached [s]
+  double leastStep = 0, meanStep = 0, longestStep = 0;  // [s]
+  std::int64_t rejectedSteps = 0;                       // automatic ones that were repeated with shorter ones
   double meanIterations = 0;
   int firstIterations = 0, lastIterations = 0;
   std::int64_t fallbacks = 0;                // of the linear solver, all steps together

@@ -95,11 +95,19 @@ struct Domain {
 };
 
 struct TimeSettings {
-  double step = 0;     // [s]; with a Courant number the largest one
+  double step = 0;     // [s]; where steps vary the longest one
   double end = 0;      // [s]
-  double courant = 0;  // distance of the fastest particle in a step, in spacings; 0: all steps have one length
+  double courant = 0;  // distance of the fastest particle in a step, in spacings; 0: no bound by the case
+  // Steps of MPH-I that are chosen by their errors (docs/time-step.md).
+  bool automatic = false;
+  double tolerance = 0.02;  // of the error of a step
+  double least = 0;         // shortest step [s]
 
-  bool stepsVary() const { return courant > 0; }
+  bool stepsVary() const { return courant > 0 || automatic; }
+  /// The key that bounds the steps.
+  const char* stepKey() const { return automatic ? "time.max_step" : "time.step"; }
+  /// The bound on that distance that holds; 0: none.
+  double mostCourant() const { return courant > 0 || !automatic ? courant : 1; }
 
   bool operator==(const TimeSettings&) const = default;
 };

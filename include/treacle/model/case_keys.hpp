@@ -36,7 +36,7 @@ struct Key {
 
 /// What is expected of a key, e.g. "a positive number [s]", "a whole number of at least 1", "an array of 2 finite
 /// numbers [m]".
-std::string expectedNumber(const Key& key);
+std::string expectedNumber(const Key& key, bool orAuto = false);
 std::string expectedInteger(const Key& key);
 std::string expectedVector(const Key& key, int dimensions, bool orExpressions = false);
 std::string expectedEntries(const Key& key);
@@ -67,22 +67,25 @@ SolverSettings defaultSolver(MethodKind method, PreconditionerKind preconditione
 /// - v(key, text, keys::expression) for the text of an expression,
 /// - v(key, vector, texts) for a vector that may have expressions in place of numbers,
 /// - v(key, index, keys::material) for a material, which a file calls by its name,
+/// - v(key, number, flag, keys::orAuto) for a number that may be "auto", which the flag says,
 /// - v(key, struct) for a table in the table,
 /// - v(key, optional) for one that may be missing, as may an Oscillation, which then is Oscillation{},
 /// - v(key, vector of structs) for tables with names; the bound is that of their number.
-/// Which keys there are follows from dimensions and method of the case and from the shape of a body. Vectors have
-/// as many components as the case has dimensions.
+/// Which keys there are follows from dimensions and method of the case, from the shape of a body, and from whether
+/// time steps are automatic. Vectors have as many components as the case has dimensions.
 namespace keys {
 
 inline constexpr bool required = true, optional = false;
 inline constexpr Bound positive{.least = 0, .open = true}, notNegative{.least = 0};
 // Beyond these a step or a solve would take as good as for ever.
 inline constexpr Bound radius{.least = 0, .most = 20, .open = true}, iterations{1, 1e6}, sweeps{1, 1000},
-    degree{0, 1000};
+    degree{0, 1000}, stepTolerance{1e-6, 0.5};
 inline constexpr struct ExpressionTag {
 } expression;
 inline constexpr struct MaterialTag {
 } material;
+inline constexpr struct OrAutoTag {
+} orAuto;
 struct AllFit {
   constexpr bool operator()(auto) const { return true; }
 };
@@ -193,9 +196,13 @@ void visit(auto& v, Like<Width> auto& w, const Case& c) {
 }
 
 void visit(auto& v, Like<TimeSettings> auto& t, const Case&) {
-  v({"step", required, "s", positive}, t.step);
+  v({"step", required, "s", positive}, t.step, t.automatic, orAuto);
   v({"end", required, "s", positive}, t.end);
   v({"courant", optional, "", notNegative}, t.courant);
+  if (!t.automatic) return;
+  v({"tolerance", optional, "", stepTolerance}, t.tolerance);
+  v({"min_step", optional, "s", positive}, t.least);
+  v({"max_step", optional, "s", positive}, t.step);
 }
 
 void visit(auto& v, Like<IsphSettings> auto& i, const Case&) {

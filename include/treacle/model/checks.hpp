@@ -34,6 +34,18 @@ double mostCompression(const Case& c);
 /// What bulk_modulus may be at most: "bulk_viscosity / step" or "0.5 bulk_viscosity / step".
 std::string mostBulkModulusText(const Case& c);
 
+/// The longest step for which a case of MPH-I is known to be stable, by its elastic pressures and by light fluids
+/// under heavy ones.
+struct StableStep {
+  double length;       // [s]; infinite: any
+  std::string reason;  // what bounds it
+};
+StableStep longestStableStep(const Case& c);
+
+/// Gives automatic steps the bounds that the case leaves open, where they are 0: the longest is that which is
+/// known to be stable, at most the whole run, the shortest a 10,000th of it.
+void setStepBounds(Case& c);
+
 /// dt U / l, where U is the largest of the initial speeds, the wall speeds and the speed of a free fall over the
 /// height of the fluid; at most time.courant where that limits the steps.
 double courantNumber(const Case& c);

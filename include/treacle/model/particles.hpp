@@ -3,6 +3,7 @@
 #include "treacle/core/buffer.hpp"
 #include "treacle/core/vec.hpp"
 #include "treacle/model/solver_modes.hpp"
+#include "treacle/model/step_memory.hpp"
 #include "treacle/model/wall_surface.hpp"
 
 #include <cstdint>
@@ -66,9 +67,19 @@ struct Particles {
   // The memory of the solver, likewise.
   SolverModes<D, Backend> modes;
 
+  // That of the time steps, likewise.
+  StepMemory steps;
+
   // Of the wall particle with id fluidCount + k; never sorted. Empty: walls have no surface, and the fluid meets
   // their velocities where their particles are.
   Buffer<WallSurface<D>, Backend> wallSurface;
+
+  /// All that is not a field.
+  template <class Other>
+  void copyNumbers(const Particles<D, Other>& from) {
+    modes.copyNumbers(from.modes);
+    steps = from.steps;
+  }
 
   std::uint32_t wallCount() const { return count - fluidCount; }
   std::uint32_t modeCount() const {
@@ -97,6 +108,7 @@ struct Particles {
     modes.vectors.resize(context, fluid * numbers.modes);
     modes.age = {};
     modes.pressure = {};
+    steps = {};
     wallSurface.resize(context, numbers.surfaces);
   }
 

@@ -9,7 +9,7 @@ namespace treacle {
 template <int D>
 void copyToDevice(const Context<Cuda>& context, const Particles<D>& host, Particles<D, Cuda>& device) {
   device.resize(context, host.numbers());
-  device.modes.copyNumbers(host.modes);
+  device.copyNumbers(host);
   const auto copy = [&]<class T>(const Buffer<T>& from, Buffer<T, Cuda>& to) {
     copyBytesToDevice(context, from.data(), to.data(), from.size() * sizeof(T));
   };
@@ -18,7 +18,7 @@ void copyToDevice(const Context<Cuda>& context, const Particles<D>& host, Partic
 template <int D>
 void copyToHost(const Context<Cuda>& context, const Particles<D, Cuda>& device, Particles<D>& host) {
   host.resize(device.numbers());
-  host.modes.copyNumbers(device.modes);
+  host.copyNumbers(device);
   const auto copy = [&]<class T>(const Buffer<T, Cuda>& from, Buffer<T>& to) {
     copyBytesToHost(context, from.data(), to.data(), from.size() * sizeof(T));
   };

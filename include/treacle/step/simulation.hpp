@@ -55,7 +55,10 @@ struct StepReport {
   std::int64_t step = 0;  // number of steps done
   double time = 0;        // [s], after the step
   double timeStep = 0;    // [s]
-  int iterations = 0;     // of all linear solves, ISPH's implicit viscosity included, and of all ways to try them
+  double error = 0;       // by which automatic steps are chosen (StepControl)
+  int rejected = 0;       // longer steps that were tried before, with larger errors or without a solution
+  int iterations = 0;     // of all linear solves, those of ISPH's implicit viscosity and of rejected steps
+                          // included, and of all ways to try them
   double residual = 0;    // |r|^2 / |b|^2 at the end of the last solve
   int fallbacks = 0;      // ways that failed (solveStages)
   std::string failures;   // which, and why

@@ -52,12 +52,12 @@ void checkSizes() {
     Pair<D> pair(fluid);
     Particles<D>& p = pair.host.particles;
     const std::span<const Vec<D>> u = p.velocity.span().first(fluid), v = pair.device.velocity.span().first(fluid);
-    updateFlowMemory<D>(pair.host.context, 0.1, u, pair.after, memoryOf(p));
-    updateFlowMemory<D>(pair.context, 0.1, v, pair.deviceAfter, memoryOf(pair.device));
+    updateFlowMemory<D>(pair.host.context, 0.1, 0.07, u, pair.after, memoryOf(p));
+    updateFlowMemory<D>(pair.context, 0.1, 0.07, v, pair.deviceAfter, memoryOf(pair.device));
     expectClose<D>(pair.context, p.acceleration, pair.device.acceleration);
     expectClose<D>(pair.context, p.jerk, pair.device.jerk);
     for (const FirstGuess order : {FirstGuess::Last, FirstGuess::Linear, FirstGuess::Quadratic}) {
-      const auto next = Extrapolation<D>::make(order, 0.1);
+      const auto next = Extrapolation<D>::make(order, 0.13, 0.1);
       extrapolate<D>(pair.host.context, next, u, memoryOf(p), pair.guess);
       extrapolate<D>(pair.context, next, v, memoryOf(pair.device), pair.deviceGuess);
       expectClose<D>(pair.context, pair.guess, pair.deviceGuess);

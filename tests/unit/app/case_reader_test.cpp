@@ -43,6 +43,23 @@ TEST(caseFiles, allAreReadAndTheirResolvedTextGivesTheSameCase) {
     }
 }
 
+TEST(caseFiles, stepsMayBeAutomatic) {
+  const fs::path file = fs::path(TREACLE_CASES) / "dam-break-2d.toml";
+  const std::string open[] = {"time.step=auto", "resolution=4"};
+  const Case c = readCase(file, open);
+  EXPECT_TRUE(c.time.automatic && c.time.stepsVary());
+  EXPECT_EQ(c.time.step, 5e-3) << "not that of the resolution";
+  EXPECT_EQ(c.time.least, 5e-7);
+  EXPECT_EQ(c.time.tolerance, 0.02);
+  const std::string given[] = {"time.step=auto", "time.tolerance=0.1", "time.min_step=1e-5", "time.max_step=2e-3",
+                               "time.courant=0.5"};
+  Case other = readCase(file, given);
+  TimeSettings expected{2e-3, 0.2, 0.5};
+  expected.automatic = true, expected.tolerance = 0.1, expected.least = 1e-5;
+  EXPECT_EQ(other.time, expected);
+  EXPECT_EQ(readBack(other), other);
+}
+
 TEST(caseFiles, damBreakIsThatOfThePaper) {  // [K23 Table 1]
   const std::string overrides[] = {"resolution=4"};
   const Case c = readCase(fs::path(TREACLE_CASES) / "published" / "dam-break-2d.toml", overrides);

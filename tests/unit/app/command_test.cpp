@@ -1,5 +1,7 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -76,6 +78,48 @@ TEST(check, countsTheLeastStepsWhereTheyVary) {
   EXPECT_THAT(outcome.err, IsEmpty());
   EXPECT_THAT(outcome.out, HasSubstr("# steps: 2 or more\n"));
   EXPECT_THAT(outcome.out, HasSubstr("# Courant number: 0.1\n"));
+}
+
+TEST(check, saysWhatAutomaticStepsMayBe) {
+  Workshop shop;
+  const Outcome outcome = prepared(shop).call("check small.toml --set time.step=auto");
+  EXPECT_EQ(outcome.exitCode, 0);
+  EXPECT_THAT(outcome.err, IsEmpty());
+  EXPECT_THAT(
+      outcome.out,
+      HasSubstr("# time step: chosen in each step for an error of 0.02, from 2e-07 to 0.002 s, Courant number "
+                "at most 1; stable up to 0.005 s (dt kappa / lambda of 'syrup')\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("# steps: 1 or more\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("\nstep = \"auto\"\n"));
+}
+
+TEST(run, automaticStepsMeetFramesAndEnd) {
+  Workshop shop;
+  const Outcome outcome = prepared(shop).call(
+      "run small.toml --threads 1 --set time.step=auto --set output.interval=3e-3 --end-time 1e-2");
+  ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, IsEmpty());
+  EXPECT_THAT(outcome.out,
+              HasSubstr("64 wall particles, steps of 2e-07 to 0.002 s, for errors of 0.02, to 0.01 s"));
+  const RunDirectory run = RunDirectory::open(shop / "small-run");
+  ASSERT_EQ(run.frameCount(), 5u);
+  for (std::size_t k = 0; k < 4; ++k) EXPECT_EQ(run.frameTime(k), 3e-3 * static_cast<double>(k));
+  EXPECT_EQ(run.frameTime(4), 1e-2);
+  const auto rows = readHistory(run.history());
+  double least = 1, longest = 0, time = 0;
+  for (const HistoryRow& row : rows) {
+    EXPECT_NEAR(row.time, time + row.timeStep, 1e-15);
+    time = row.time;
+    least = std::min(least, row.timeStep), longest = std::max(longest, row.timeStep);
+  }
+  EXPECT_LT(2 * rows[0].timeStep, longest) << "from rest";
+  const auto summary = nlohmann::json::parse(shop.content("small-run/summary.json"));
+  EXPECT_EQ(summary["time_step"]["least"], least);
+  EXPECT_EQ(summary["time_step"]["longest"], longest);
+  EXPECT_NEAR(summary["time_step"]["mean"], 1e-2 / static_cast<double>(rows.size()), 1e-12);
+  const int rejected = summary["rejected_steps"];
+  EXPECT_GT(rejected, 0);
+  EXPECT_THAT(outcome.out, HasSubstr(fmt::format("done: {} steps ({} rejected) in ", rows.size(), rejected)));
 }
 
 TEST(run, leavesAllFiles) {

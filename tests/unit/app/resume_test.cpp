@@ -93,6 +93,40 @@ TEST(resume, givesTheSameBitsWithStepsThatVary) {
   EXPECT_TRUE(shop.content("whole/checkpoint.h5") == shop.content("resumed/checkpoint.h5"));
 }
 
+TEST(resume, givesTheSameBitsWithAutomaticSteps) {
+  Workshop shop;
+  const std::string options = " --set output.precision=double --set time.step=auto --threads 1";
+  ASSERT_EQ(prepared(shop).call("run case.toml -o whole" + options).exitCode, 0);
+  // Ended where the whole run has a frame, which its steps meet, too.
+  ASSERT_EQ(shop.call("run case.toml -o half --end-time 3e-3" + options).exitCode, 0);
+  const Outcome outcome = shop.call("run case.toml -o resumed --resume half/checkpoint.h5" + options);
+  ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+  const auto whole = readHistory(shop / "whole/history.csv"), resumed = readHistory(shop / "resumed/history.csv");
+  ASSERT_LT(resumed.size(), whole.size());
+  const std::size_t done = whole.size() - resumed.size();
+  EXPECT_EQ(whole[done - 1].time, 3e-3);
+  for (std::size_t k = 0; k < resumed.size(); ++k) {
+    EXPECT_EQ(resumed[k].step, whole[done + k].step);
+    EXPECT_EQ(resumed[k].time, whole[done + k].time);
+    EXPECT_EQ(resumed[k].timeStep, whole[done + k].timeStep);
+    EXPECT_EQ(resumed[k].kineticEnergy, whole[done + k].kineticEnergy);
+  }
+  EXPECT_TRUE(shop.content("whole/checkpoint.h5") == shop.content("resumed/checkpoint.h5"));
+}
+
+TEST(resume, takesUpAutomaticStepsWhereEqualOnesEnded) {
+  Workshop shop;
+  ASSERT_EQ(prepared(shop).call("run case.toml -o equal --threads 1 --end-time 4e-3").exitCode, 0);
+  ASSERT_EQ(shop.call("run case.toml -o other --threads 1 --set time.step=auto --set time.tolerance=0.5 "
+                      "--set output.interval=0 --resume equal/checkpoint.h5")
+                .exitCode,
+            0);
+  const auto rows = readHistory(shop / "other/history.csv");
+  EXPECT_EQ(rows.front().step, 5);
+  EXPECT_NEAR(rows.front().timeStep, 1e-3, 1e-9);
+  EXPECT_EQ(rows.back().time, 8e-3);
+}
+
 TEST(resume, startsWithTheFrameThatTheRunEndedWith) {
   Workshop shop;
   ASSERT_EQ(prepared(shop).call("run case.toml -o whole --threads 1 --end-time 4e-3").exitCode, 0);

@@ -36,6 +36,7 @@ Particles<D> randomParticles(std::uint32_t fluid, std::uint32_t wall) {
   particles.resize(fluid, wall, fluid % 4);
   particles.modes.age = {7, 13};
   particles.modes.pressure = {3.75, 4, 6};
+  particles.steps = {0.01, 0.02, 0.3};
   std::mt19937_64 random(D);
   std::uniform_real_distribution<double> real(-1, 1);
   particles.forEachField([&]<class T>(Buffer<T>& field) {
@@ -75,6 +76,7 @@ void expectSame(const Particles<D>& a, const Particles<D>& b) {
   EXPECT_TRUE(sameBits(a.modes.vectors, b.modes.vectors));
   EXPECT_EQ(a.modes.age, b.modes.age);
   EXPECT_EQ(a.modes.pressure, b.modes.pressure);
+  EXPECT_EQ(a.steps, b.steps);
 }
 
 template <int D>
@@ -219,9 +221,9 @@ TEST(Checkpoint, OtherVersionsAndDimensionsAreRefused) {
   const auto path = directory / "c.h5";
   writeCheckpoint<3>(path, randomParticles<3>(5, 5), 1, 1, MethodKind::MphI);
   EXPECT_THAT(refusal<2>(path), HasSubstr("3 dimensions, expected 2"));
-  for (const int version : {0, 6}) {
+  for (const int version : {0, 7}) {
     changeAttribute(path, "version", version);
-    EXPECT_THAT(refusal<3>(path), HasSubstr(fmt::format("version {}, expected 1 to 5", version)));
+    EXPECT_THAT(refusal<3>(path), HasSubstr(fmt::format("version {}, expected 1 to 6", version)));
   }
 }
 
@@ -231,6 +233,9 @@ TEST(Checkpoint, EarlierVersionsAreReadWithoutBodiesAndMemoryOfTheFlow) {
   Particles<3> particles = randomParticles<3>(33, 31);
   writeCheckpoint<3>(path, particles, 7, time3, MethodKind::MphI);
   ASSERT_EQ(particles.modeCount(), 1u);
+  changeAttribute(path, "version", 5);
+  particles.steps = {};
+  expectSame(readCheckpoint<3>(path).particles, particles);
   changeAttribute(path, "version", 4);
   particles.modes.pressure = {};
   expectSame(readCheckpoint<3>(path).particles, particles);
@@ -307,6 +312,9 @@ TEST(Checkpoint, NumbersThatNoSimulationHasAreRefused) {
   expectRefused("time", INFINITY, "after step 1 at t = inf s");
   expectRefused("step", -1, "after step -1 at t = 1 s");
   expectRefused("fluid_count", 4e9, "particles, more than the limit of 134217728");
+  expectRefused("time_step", -1, "time steps of -1 and 0.02 s with an error rate of 0.3 1/s");
+  expectRefused("planned_time_step", INFINITY, "time steps of 0.01 and inf s");
+  expectRefused("time_step_error_rate", std::nan(""), "an error rate of nan 1/s");
   // 16 bytes for each of the particles and modes would be 51 GB.
   expectRefused("mode_count", 4e9, "4000000000 modes, more than the limit of 16");
 }

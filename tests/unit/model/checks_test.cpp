@@ -6,6 +6,7 @@
 
 #include "sample_case.hpp"
 
+#include <cmath>
 #include <numbers>
 
 namespace treacle::test {
@@ -231,6 +232,60 @@ TEST(caseWarnings, lightFluidsUnderHeavyOnes) {
   c = heavyOnLight();
   c.method.kind = MethodKind::Isph, c.time.step = 1e-4;
   EXPECT_THAT(caseWarnings(c), IsEmpty());
+}
+
+TEST(longestStableStep, isThatOfElasticPressuresAndOfLightFluids) {
+  Case c = damBreak();
+  EXPECT_DOUBLE_EQ(longestStableStep(c).length, 5e-3);
+  EXPECT_EQ(longestStableStep(c).reason, "dt kappa / lambda of 'syrup'");
+  c.method = defaultMethod(SchemeKind::Published);
+  EXPECT_DOUBLE_EQ(longestStableStep(c).length, 1e-2);
+  c.materials[0].bulkModulus = 0;
+  EXPECT_TRUE(std::isinf(longestStableStep(c).length));
+  c = heavyOnLight();
+  EXPECT_EQ(longestStableStep(c).reason, "the heavier fluid on 'below'");
+  const double length = longestStableStep(c).length;
+  EXPECT_NEAR(length, 5.3e-5, 1e-6);
+  c.time = {length, 1000 * length};
+  EXPECT_THAT(caseWarnings(c), IsEmpty());
+  c.time = {1.01 * length, 1010 * length};
+  EXPECT_THAT(caseWarnings(c), ElementsAre(HasSubstr("is too light and too thin")));
+}
+
+TEST(setStepBounds, fillsInWhatTheCaseLeavesOpen) {
+  Case c = damBreak();
+  const TimeSettings fixed = c.time;
+  setStepBounds(c);
+  EXPECT_EQ(c.time, fixed) << "not automatic";
+  c.time = {0, 0.2};
+  c.time.automatic = true;
+  Case open = c, shorter = c, given = c, stiff = c;
+  setStepBounds(open);
+  EXPECT_DOUBLE_EQ(open.time.step, 5e-3);
+  EXPECT_DOUBLE_EQ(open.time.least, 5e-7);
+  EXPECT_THAT(caseWarnings(open), IsEmpty());
+  shorter.time.end = 1e-3;
+  setStepBounds(shorter);
+  EXPECT_EQ(shorter.time.step, 1e-3);
+  given.time.step = 1e-2, given.time.least = 1e-3;
+  setStepBounds(given);
+  EXPECT_EQ(given.time.step, 1e-2);
+  EXPECT_EQ(given.time.least, 1e-3);
+  EXPECT_THAT(caseWarnings(given), ElementsAre(HasSubstr("dt kappa / lambda = 1 is greater than 0.5")));
+  stiff.materials[0].bulkViscosity = 0;  // no step is stable: that is said in another place
+  setStepBounds(stiff);
+  EXPECT_EQ(stiff.time.step, 0.2);
+  EXPECT_THAT(caseWarnings(stiff), ElementsAre(HasSubstr("give it a bulk_viscosity")));
+}
+
+TEST(courantNumber, isOneAtMostWithAutomaticSteps) {
+  Case c = damBreak();
+  c.time.automatic = true;
+  c.bodies[0].velocity = {100, 0};
+  EXPECT_EQ(courantNumber(c), 1);
+  EXPECT_THAT(caseWarnings(c), IsEmpty());
+  c.time.courant = 0.3;
+  EXPECT_EQ(courantNumber(c), 0.3);
 }
 
 TEST(caseWarnings, fluidsTooSoftForTheirWeight) {

@@ -25,13 +25,14 @@ struct Path {
       u.push_back(Vec<2>{0.1 * k, 0.2} + t * Vec<2>{3 * k, -4} + t * t * square * Vec<2>{k, 1});
     return u;
   }
-  void step(int k, double length = dt) {
-    updateFlowMemory<2>(context, length, at((k - 1) * length), at(k * length), memory());
+  void step(int k) { stepTo(k * dt, dt, dt); }
+  void stepTo(double t, double length, double lastStep) {
+    updateFlowMemory<2>(context, length, lastStep, at(t - length), at(t), memory());
   }
   /// Largest error of the guess for the step to `t` from the velocities at t - length.
-  double error(FirstGuess order, double t, double length = dt) {
+  double error(FirstGuess order, double t, double length = dt, double lastStep = dt) {
     std::vector<Vec<2>> guess(3);
-    extrapolate<2>(context, Extrapolation<2>::make(order, length), at(t - length), memory(), guess);
+    extrapolate<2>(context, Extrapolation<2>::make(order, length, lastStep), at(t - length), memory(), guess);
     const std::vector<Vec<2>> exact = at(t);
     double largest = 0;
     for (std::size_t i = 0; i < 3; ++i) largest = std::max(largest, norm(guess[i] - exact[i]));
@@ -63,6 +64,21 @@ TEST(FirstGuess, FollowsAChangeOfTheTimeStep) {
   Path path(0);
   for (int k = 1; k <= 3; ++k) path.step(k);
   EXPECT_LT(path.error(FirstGuess::Quadratic, 3 * dt + dt / 4, dt / 4), 1e-14);
+}
+
+TEST(FirstGuess, ContinuesCurvesOverStepsOfAnyLength) {
+  Path path(1e3);
+  double t = 0, last = dt;
+  for (const double length : {dt, 2 * dt, dt / 3, 1.5 * dt, dt / 5}) {
+    t += length;
+    if (t > 4 * dt) {
+      EXPECT_LT(path.error(FirstGuess::Quadratic, t, length, last), 1e-14) << length;
+    }
+    path.stepTo(t, length, last);
+    last = length;
+  }
+  // That the coefficients of equal steps are no use is what makes this a test.
+  EXPECT_GT(path.error(FirstGuess::Quadratic, t + dt, dt, dt), 1e-5);
 }
 
 template <int D>

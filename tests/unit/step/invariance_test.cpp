@@ -45,7 +45,7 @@ Particles<D> reordered(const Particles<D>& from, const std::function<std::uint32
 template <int D>
 Particles<D> copyOf(const Particles<D>& p) {
   Particles<D> copy = reordered<D>(p, [](std::uint32_t i) { return i; });
-  copy.modes.copyNumbers(p.modes);
+  copy.copyNumbers(p);
   return copy;
 }
 

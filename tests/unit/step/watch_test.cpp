@@ -49,6 +49,17 @@ std::string failureOf(F&& f) {
   return "no failure";
 }
 
+TEST(Watch, NamesTheKeyThatBoundsTheSteps) {
+  for (const bool automatic : {false, true}) {
+    Case c = fallingCase();
+    c.time.automatic = automatic;
+    c.watch.courant = 1;
+    const Watch watch(c, {}, mass, particles, false);
+    EXPECT_THAT(failureOf([&] { watch.requireSlow(dt, 5e3); }),
+                HasSubstr(automatic ? "take time.max_step <= 0.0001 or" : "take time.step <= 0.0001 or"));
+  }
+}
+
 TEST(Watch, EnergyMayFallAndTurnIntoMotionButNotRise) {
   Watch watch(fallingCase(), {}, mass, particles, false);
   Warnings warnings;
