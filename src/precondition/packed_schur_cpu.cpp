@@ -1,6 +1,6 @@
 #include "packed_lanes.hpp"
 #include "product_lanes.hpp"
-#include "treacle/precondition/particle_products.hpp"
+#include "treacle/precondition/projected_multigrid.hpp"
 
 // The products with S' in single precision: C and C^T with their elements, B included, in few bits.
 
@@ -39,6 +39,12 @@ double largestElement(const MphPairs<D>& pairs) {
   return 1.01 * largest;  // between the samples
 }
 
+/// Stiffer systems (ProjectionConstants) have their S' by single-precision coefficients: pressures that C hardly
+/// sees would drown in what the elements are rounded by. With 1.6e4 in three dimensions 64 iterations instead
+/// of 21.
+template <int D>
+constexpr double mostStiffness = D == 2 ? 1e5 : 500;
+
 /// Products of C^T with u: the divergence of eight particles.
 template <int D>
 void divergenceOf(const PackedRows& rows, std::uint32_t c, const Gathered<D, float>* u, float unit, float* at) {
@@ -57,6 +63,8 @@ void ParticleProducts<D, T, Cpu>::pack() {
   using enum ListSegment;
   using Element = PackedElement<D>;
   const MphPairs<D>& pairs = *pairs_;
+  unit_ = 0;
+  if (projectionConstants(pairs).stiffness > mostStiffness<D>) return;
   const double floor2 = distanceFloor2(pairs), unit = largestElement(pairs) / Element::largest;
   unit_ = static_cast<T>(unit / Element::unitOfUnpacked);
   allocate(gradientRows_, pairs.fluidList, {NearFluid, NearWall});

@@ -170,7 +170,8 @@ template <int D, class T>
 template <class Store>
 void ParticleProducts<D, T, Cpu>::schur(Context<Cpu>& context, const ProjectionTable<T>& table,
                                         ScalarField<T, Cpu> q, const Store& store) {
-  if constexpr (packed) return packedSchur(table, q, store);
+  if constexpr (packed)
+    if (unit_ > 0) return packedSchur(table, q, store);
   gradient(context, q, StoreWeighted<D, T, Cpu>{table, pairs_->material.data(), vectors()});
   divergence(context, vectors(), store);
 }
