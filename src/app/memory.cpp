@@ -26,8 +26,8 @@ struct HostBytes {
   std::uint64_t memory;      // fluid: acceleration and jerk, in the state and in each copy of it
   std::uint64_t accurate;    // fluid: what the accurate scheme takes more, most of it for its near neighbours
 };
-constexpr HostBytes hostBytes2D{210, 100, 1400, 2100, 620, 780, 32, 400};
-constexpr HostBytes hostBytes3D{300, 140, 4200, 14300, 2150, 2750, 48, 1400};
+constexpr HostBytes hostBytes2D{210, 100, 1400, 2100, 740, 780, 32, 500};
+constexpr HostBytes hostBytes3D{300, 140, 4200, 14300, 2830, 2750, 48, 2180};
 constexpr std::uint64_t copiesToBeWritten = 3;    // two snapshots, and the file of a checkpoint
 constexpr std::uint64_t programBytes = 26 << 20;  // the program itself, its libraries and a picture
 constexpr std::uint64_t driverBytes = 300 << 20;  // what CUDA takes of the host

@@ -45,7 +45,7 @@ void hatPattern(Context<Cpu>&, const HatNodes<D>& nodes, BlockCsr<B>& a, int rea
   };
   a.rowStart.resize(std::size_t{view.count} + 1);
   a.rowStart[0] = 0;
-  parallelFor(view.count, parallelGrain, [&](std::size_t i) {
+  parallelFor(view.count, parallelGrain / 8, [&](std::size_t i) {
     std::uint64_t count = 0;
     forEachColumn(i, [&](std::uint32_t) { ++count; });
     a.rowStart[i + 1] = count;
@@ -53,7 +53,7 @@ void hatPattern(Context<Cpu>&, const HatNodes<D>& nodes, BlockCsr<B>& a, int rea
   for (std::uint32_t i = 0; i < view.count; ++i) a.rowStart[i + 1] += a.rowStart[i];
   a.column.resize(a.rowStart[view.count]);
   a.value.resize(a.rowStart[view.count]);
-  parallelFor(view.count, parallelGrain, [&](std::size_t i) {
+  parallelFor(view.count, parallelGrain / 8, [&](std::size_t i) {
     std::uint64_t k = a.rowStart[i];
     forEachColumn(i, [&](std::uint32_t j) { a.column[k++] = j; });
   });

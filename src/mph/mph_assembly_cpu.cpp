@@ -93,20 +93,27 @@ class RowAssembler {
   std::vector<std::uint32_t> slot_;
 };
 
+/// body(begin, end) for shares of the rows that are worth memory of their own.
+template <class F>
+void forRowsInShares(std::uint32_t rows, F&& body) {
+  constexpr std::uint32_t share = 256;
+  parallelFor((rows + share - 1) / share, 2, [&](std::size_t s) {
+    const auto begin = static_cast<std::uint32_t>(s) * share;
+    body(begin, std::min(rows, begin + share));
+  });
+}
+
 template <bool Renormalised, int D>
 void writeRows(const MphPairs<D>& pairs, const WallTerms<D>& terms, const GradientRows<D>& rows, BlockCsr<D>& a) {
-  const std::uint32_t n = pairs.fluidCount;
-#pragma omp parallel if (n > parallelGrain)
-  {
+  forRowsInShares(pairs.fluidCount, [&](std::uint32_t begin, std::uint32_t end) {
     std::vector<std::uint32_t> columns;
     RowAssembler<Renormalised, D> assembler(pairs, rows);
-#pragma omp for schedule(static)
-    for (std::uint32_t i = 0; i < n; ++i) {
+    for (std::uint32_t i = begin; i < end; ++i) {
       rowPattern(pairs, i, columns);
       std::copy(columns.begin(), columns.end(), a.column.begin() + a.rowStart[i]);
       assembler.write(i, columns, a.value.span().subspan(a.rowStart[i], columns.size()), terms.block[i]);
     }
-  }
+  });
 }
 
 }  // namespace
@@ -117,15 +124,13 @@ void assemble(Context<Cpu>&, const MphPairs<D>& pairs, const WallTerms<D>& terms
   const std::uint32_t n = pairs.fluidCount;
   a.rowStart.resize(n + 1);
   a.rowStart[0] = 0;
-#pragma omp parallel if (n > parallelGrain)
-  {
+  forRowsInShares(n, [&](std::uint32_t begin, std::uint32_t end) {
     std::vector<std::uint32_t> columns;
-#pragma omp for schedule(static)
-    for (std::uint32_t i = 0; i < n; ++i) {
+    for (std::uint32_t i = begin; i < end; ++i) {
       rowPattern(pairs, i, columns);
       a.rowStart[i + 1] = columns.size();
     }
-  }
+  });
   for (std::uint32_t i = 0; i < n; ++i) a.rowStart[i + 1] += a.rowStart[i];
   a.column.resize(a.rowStart[n]);
   a.value.resize(a.rowStart[n]);

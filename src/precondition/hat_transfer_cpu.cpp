@@ -49,7 +49,7 @@ template <int D, class T, class F, class Add>
 void gatherAtNodes(const SortedParticles<D>& pairs, const HatNodes<D>& nodes, const Buffer<Vec<D, T>>& place,
                    F&& forEachIn, Add&& add) {
   const HatCells<D> cells{pairs.grid};
-  parallelFor(nodes.count(), parallelGrain, [&](std::size_t n) {
+  parallelFor(nodes.count(), parallelGrain / 8, [&](std::size_t n) {
     const Vec<D, int> node = nodes.lattice.at(nodes.point[n]);
     cells.forEachCellAround(node, 1, [&](const Vec<D, int>& cell) {
       bool upper[D];

@@ -92,6 +92,7 @@ void ParticleProducts<D, T, Cpu>::prepare(Context<Cpu>&, const MphPairs<D>& pair
   });
   sumGradients();
   if (pairs.renormalisation) renormalise();
+  if constexpr (packed) pack();
 }
 
 /// Sums of g d over walls, which meet the particle's own velocity, and over all neighbours, which meet its own
@@ -172,6 +173,8 @@ template <int D, class T>
 template <class Store>
 void ParticleProducts<D, T, Cpu>::schur(Context<Cpu>& context, const ProjectionTable<T>& table,
                                         ScalarField<T, Cpu> q, const Store& store) {
+  if constexpr (packed)
+    if (unit_ > 0) return packedSchur(table, q, store);
   gradient(context, q, StoreWeighted<D, T, Cpu>{table, pairs_->material.data(), vectors()});
   divergence(context, vectors(), store);
 }
@@ -202,20 +205,47 @@ void ParticleProducts<D, T, Cpu>::viscous(Context<Cpu>&, const Gathered<D, T>* u
 template <int D, class T>
 void ParticleProducts<D, T, Cpu>::inverseDiagonals(Context<Cpu>&, const ProjectionTable<T>& table,
                                                    std::span<T> pressure, std::span<Block<D, T>> velocity) const {
-  parallelFor(pairs_->activeCount, parallelGrain, [&](std::size_t index) {
-    const auto k = static_cast<std::uint32_t>(index);
-    T sum = table.shift[pairs_->material[k]];
-    Vec<D> own{};
-    forEachNear(*pairs_, k, [&](std::uint32_t j, const Vec<D>&, const Vec<D>& plain) {
-      const Vec<D> g = pairs_->corrected(k, plain);
-      own += g;
-      if (j < pairs_->fluidCount) sum += table.weight[pairs_->material[j]] * static_cast<T>(fixedDot(g, g));
-    });
-    if (k < pairs_->fluidCount) {
-      sum += table.weight[pairs_->material[k]] * static_cast<T>(fixedDot(own, own));
-      velocity[k] = inverse(selfBlock_[k]);
+  const std::uint8_t* material = pairs_->material.data();
+  const auto sumSquares = [&](const ClusterWalk<D, T>& walk, const T* coefficient, auto&& product) {
+    LanesOf<T> sum = {};
+    walk.forEach(ListSegment::NearFluid, coefficient,
+                 [&](int, std::uint32_t j, const LanesOf<T>& g, const LanesOf<T>* d) {
+                   LanesOf<T> square = {};
+                   for (int k = 0; k < D; ++k) {
+                     const LanesOf<T> c = g * product(k, d);
+                     square += c * c;
+                   }
+                   sum += table.weight[material[j]] * square;
+                 });
+    return sum;
+  };
+  forEachClusterOf(pairs_->fluidList, [&](std::uint32_t c) {
+    const ClusterWalk<D, T> walk(*pairs_, pairs_->fluidList, c, position_.data(), fluidLanes_.data());
+    const T *coefficient = pressure_.data() + pressureStart_[c] * clusterSize,
+            *own = &gradient_[std::size_t{D} * clusterSize * c];
+    LanesOf<T> sum;
+    if (pairs_->renormalisation) {
+      const auto b = loadBlocks<LanesOf<T>>(walk.range, renormalisation_.data());
+      sum = sumSquares(walk, coefficient, [&](int k, const LanesOf<T>* d) { return b.row(k, d); });
+    } else {
+      sum = sumSquares(walk, coefficient, [](int k, const LanesOf<T>* d) { return d[k]; });
     }
-    pressure[k] = 1 / sum;
+    for (std::uint32_t lane = 0; lane < walk.range.count; ++lane) {
+      const std::uint32_t i = walk.range.first + lane;
+      T square = 0;
+      for (int k = 0; k < D; ++k) square += own[k * clusterSize + lane] * own[k * clusterSize + lane];
+      pressure[i] = 1 / (table.shift[material[i]] + sum[lane] + table.weight[material[i]] * square);
+      velocity[i] = inverse(selfBlock_[i]);
+    }
+  });
+  forEachClusterOf(pairs_->wallList, [&](std::uint32_t c) {
+    const ClusterWalk<D, T> walk(*pairs_, pairs_->wallList, c, position_.data(), wallLanes_.data());
+    const LanesOf<T> sum = sumSquares(walk, wall_.data() + wallStart_[c] * clusterSize,
+                                      [](int k, const LanesOf<T>* d) { return d[k]; });
+    for (std::uint32_t lane = 0; lane < walk.range.count; ++lane) {
+      const std::uint32_t k = walk.range.first + lane;
+      pressure[k] = 1 / (table.shift[material[k]] + sum[lane]);
+    }
   });
 }
 
@@ -242,7 +272,8 @@ std::size_t ParticleProducts<D, T, Cpu>::bytes() const {
   return scalars_[0].bytes() + scalars_[1].bytes() + vectors_.bytes() + position_.bytes() + viscousStart_.bytes() +
          pressureStart_.bytes() + wallStart_.bytes() + viscous_.bytes() + pressure_.bytes() + wall_.bytes() +
          selfBlock_.bytes() + renormalisation_.bytes() + fluidLanes_.bytes() + wallLanes_.bytes() +
-         gradient_.bytes() + wallGradient_.bytes();
+         gradient_.bytes() + wallGradient_.bytes() + gradientRows_.bytes() + divergenceRows_.bytes() +
+         wallRows_.bytes();
 }
 
 #define TREACLE_GRADIENT(D, T, ...)                                                                           \

@@ -1,6 +1,6 @@
 #include "hat_loops.hpp"
 #include "treacle/core/parallel.hpp"
-#include "treacle/mph/mph_neighbours.hpp"
+#include "treacle/mph/mph_lanes.hpp"
 #include "treacle/precondition/hat_grid.hpp"
 
 #include <algorithm>
@@ -12,42 +12,60 @@ namespace {
 template <int D>
 constexpr int slots = D == 2 ? 9 : 27;  // nodes that the neighbours of a particle touch
 
+/// sum += what the 3^D hats are at s, counted from the lowest node, times v; eight particles at once.
+template <int D>
+void addHats(const VecLanes<D>& s, const VecLanes<D>& v, VecLanes<D> (&sum)[slots<D>]) {
+  Lanes hat[D][3];
+  for (int k = 0; k < D; ++k)
+    for (int n = 0; n < 3; ++n) {
+      const Lanes away = s[k] - static_cast<double>(n);
+      hat[k][n] = positivePart(1 - max(away, -away));
+    }
+  VecLanes<D> row[3];  // the last axis and v, for all nodes of it
+  for (int n = 0; n < 3; ++n)
+    for (int k = 0; k < D; ++k) row[n][k] = hat[D - 1][n] * v[k];
+  for (int n = 0; n < slots<D>; ++n) {
+    Lanes weight = hat[0][n % 3];
+    if constexpr (D == 3) weight *= hat[1][n / 3 % 3];
+    for (int k = 0; k < D; ++k) sum[n][k] += weight * row[n / (slots<D> / 3)][k];
+  }
+}
+
 /// (C P)_in of each fluid particle i for the 3^D nodes n around it.
 template <bool Renormalised, int D, class T>
 void pressureColumns(const MphPairs<D>& pairs, const HatCells<D>& cells, Buffer<Vec<D, T>>& columns) {
   columns.resize(std::size_t{slots<D>} * pairs.fluidCount);
-  const auto addHats = [&](const Vec<D>& s, const Vec<D>& g, std::array<Vec<D>, slots<D>>& sum) {
-    double hat[D][3];
-    for (int k = 0; k < D; ++k)
-      for (int n = 0; n < 3; ++n) hat[k][n] = std::max(0.0, 1 - std::abs(s[k] - n));
-    for (int n = 0; n < slots<D>; ++n) {
-      double weight = 1;
-      for (int k = 0, digits = n; k < D; ++k, digits /= 3) weight *= hat[k][digits % 3];
-      sum[n] += weight * g;
+  const double floor2 = distanceFloor2(pairs);
+  forEachCluster<D>(pairs, pairs.fluidList, [&](const ClusterRange& range, const VecLanes<D>& x, std::uint32_t c) {
+    VecLanes<D> s, own = {}, sum[slots<D>] = {};
+    for (std::uint32_t lane = 0; lane < clusterSize; ++lane) {
+      const Vec<D>& xi = pairs.position[range.particle(lane)];
+      const Vec<D, int> cell = cells.grid.cellOf(xi);
+      const Vec<D> place = cells.fraction(xi, cell);
+      const Vec<D, int> lowest = cells.lowestNode(cell, place);
+      for (int k = 0; k < D; ++k) s[k][lane] = place[k] + cell[k] - lowest[k];
     }
-  };
-  parallelFor(pairs.fluidCount, parallelGrain, [&](std::size_t index) {
-    const auto i = static_cast<std::uint32_t>(index);
-    const Vec<D> x = pairs.position[i];
-    const Vec<D, int> cell = cells.grid.cellOf(x);
-    const Vec<D> place = cells.fraction(x, cell);
-    const Vec<D, int> lowest = cells.lowestNode(cell, place);
-    Vec<D> s, own{};
-    for (int k = 0; k < D; ++k) s[k] = place[k] + cell[k] - lowest[k];
-    std::array<Vec<D>, slots<D>> sum{};
     for (ListSegment segment : {ListSegment::NearFluid, ListSegment::NearWall})
-      forEachEntry(pairs, i, segment, [&](ListEntry e, const Vec<D>& d) {
-        const double r2 = fixedDot(d, d), h = pairs.terms.pressureRadius;
-        if (e.index() == i || r2 >= h * h || r2 == 0) return;
-        const Vec<D> g = pairs.terms.gradient(ExactDistance(r2)) * d;
-        own += g;
-        Vec<D> other;
-        for (int k = 0; k < D; ++k) other[k] = s[k] + d[k] * pairs.grid.inverseEdge[k];
-        addHats(other, Renormalised ? pairs.corrected(e.index(), g) : g, sum);
-      });
-    addHats(s, Renormalised ? pairs.corrected(i, own) : own, sum);
-    for (int n = 0; n < slots<D>; ++n)
-      for (int k = 0; k < D; ++k) columns[index * slots<D> + n][k] = static_cast<T>(sum[n][k]);
+      for (ListEntry e : pairs.fluidList.segment(c, segment)) {
+        const PairLanes<D> pair(pairs.positionOf(e), x, floor2);
+        const Lanes g = pairs.terms.gradient(pair.r);
+        VecLanes<D> gd, other;
+        for (int k = 0; k < D; ++k) {
+          own[k] += gd[k] = g * pair.d[k];
+          other[k] = s[k] + pair.d[k] * pairs.grid.inverseEdge[k];
+        }
+        addHats<D>(other, Renormalised ? corrected(pairs, e.index(), gd) : gd, sum);
+      }
+    if constexpr (Renormalised) {
+      const SymmetricBlock<D, Lanes> b = loadBlocks<Lanes>(range, pairs.renormalisation);
+      const VecLanes<D> plain = own;
+      for (int k = 0; k < D; ++k) own[k] = b.row(k, plain);
+    }
+    addHats<D>(s, own, sum);
+    for (std::uint32_t lane = 0; lane < range.count; ++lane)
+      for (int n = 0; n < slots<D>; ++n)
+        for (int k = 0; k < D; ++k)
+          columns[(range.first + lane) * std::size_t{slots<D>} + n][k] = static_cast<T>(sum[n][k][lane]);
   });
 }
 

@@ -37,6 +37,9 @@ inline LanesOf<T> loadLanes(const T* values) {
   return lanes;
 }
 
+/// Entries ahead whose coefficients are asked for: the memory takes longer than the arithmetic in between.
+constexpr std::uint64_t prefetchDistance = 64;
+
 /// Walks the lists of one cluster: coefficients, and positions relative to the neighbours, in the precision of the
 /// products.
 template <int D, class T>
@@ -72,6 +75,7 @@ class ClusterWalk {
         if constexpr (Wraps) xj += static_cast<T>(pairs_.images.shift[e.image()][k]);
         d[k] = xj - x_[k];
       }
+      __builtin_prefetch(next + prefetchDistance * clusterSize);
       f(half, j, loadLanes(next), d);
       next += clusterSize;
     };

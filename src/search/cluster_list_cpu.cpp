@@ -14,16 +14,18 @@ namespace {
 template <int D>
 struct Reach {
   Vec<D, int> first, last;
+  Vec<D> lo, hi;  // of the cluster [m]
+  double reach2;  // [m2], a little more than it is, for what the ends of cells are rounded by
 
-  Reach(const CellGrid<D>& grid, const VecLanes<D>& x, double radius) {
+  Reach(const CellGrid<D>& grid, const VecLanes<D>& x, double radius) : reach2(radius * radius * (1 + 1e-6)) {
     for (int k = 0; k < D; ++k) {
-      double lo = x[k][0], hi = x[k][0];
+      lo[k] = hi[k] = x[k][0];
       for (int lane = 1; lane < laneCount; ++lane) {
-        lo = std::min(lo, x[k][lane]);
-        hi = std::max(hi, x[k][lane]);
+        lo[k] = std::min(lo[k], x[k][lane]);
+        hi[k] = std::max(hi[k], x[k][lane]);
       }
-      first[k] = static_cast<int>(std::floor((lo - radius - grid.origin[k]) * grid.inverseEdge[k]));
-      last[k] = static_cast<int>(std::floor((hi + radius - grid.origin[k]) * grid.inverseEdge[k]));
+      first[k] = static_cast<int>(std::floor((lo[k] - radius - grid.origin[k]) * grid.inverseEdge[k]));
+      last[k] = static_cast<int>(std::floor((hi[k] + radius - grid.origin[k]) * grid.inverseEdge[k]));
       if (!grid.periodic[k]) {
         first[k] = std::clamp(first[k], 0, grid.count[k] - 1);
         last[k] = std::clamp(last[k], 0, grid.count[k] - 1);
@@ -32,18 +34,32 @@ struct Reach {
   }
 };
 
+/// Whether a cell, counted on through periodic ends, may have particles within reach.
+template <int D>
+bool touches(const CellGrid<D>& grid, const Reach<D>& reach, const Vec<D, int>& cell) {
+  double distance2 = 0;
+  for (int k = 0; k < D; ++k) {
+    const double begin = grid.origin[k] + cell[k] * grid.edge[k], end = begin + grid.edge[k];
+    const double away = std::max({0.0, begin - reach.hi[k], reach.lo[k] - end});
+    distance2 += away * away;
+  }
+  return distance2 <= reach.reach2;
+}
+
 template <int D, class F>
 void forEachCell(const CellGrid<D>& grid, const Reach<D>& reach, F&& f) {
   Vec<D, int> c = reach.first;
   while (true) {
-    Vec<D, int> cell{};
-    std::uint32_t image = 0;
-    for (int k = D - 1; k >= 0; --k) {
-      const int turn = c[k] < 0 ? -1 : c[k] >= grid.count[k] ? 1 : 0;
-      cell[k] = c[k] - turn * grid.count[k];
-      image = 3 * image + (turn < 0 ? 2 : turn);
+    if (touches(grid, reach, c)) {
+      Vec<D, int> cell{};
+      std::uint32_t image = 0;
+      for (int k = D - 1; k >= 0; --k) {
+        const int turn = c[k] < 0 ? -1 : c[k] >= grid.count[k] ? 1 : 0;
+        cell[k] = c[k] - turn * grid.count[k];
+        image = 3 * image + (turn < 0 ? 2 : turn);
+      }
+      f(grid.linear(cell), image);
     }
-    f(grid.linear(cell), image);
     int k = 0;
     while (k < D && ++c[k] > reach.last[k]) {
       c[k] = reach.first[k];
@@ -113,7 +129,7 @@ void buildClusterList(Context<Cpu>&, const CellGrid<D>& grid, const CellRanges<>
   };
 
   list.offset[0] = 0;
-  parallelForDynamic(clusters, parallelGrain / clusterSize, 32, [&](std::size_t c) {
+  parallelForDynamic(clusters, parallelGrain / clusterSize, 8, [&](std::size_t c) {
     std::array<std::uint64_t, listSegments> count{};
     bool wraps = false;
     builder.visit(positionsOf(c), [&](int segment, ListEntry e) {
@@ -129,7 +145,7 @@ void buildClusterList(Context<Cpu>&, const CellGrid<D>& grid, const CellRanges<>
   for (std::size_t k = 1; k < list.offset.size(); ++k) list.offset[k] += list.offset[k - 1];
 
   list.entry.resize(list.offset[list.offset.size() - 1]);
-  parallelForDynamic(clusters, parallelGrain / clusterSize, 32, [&](std::size_t c) {
+  parallelForDynamic(clusters, parallelGrain / clusterSize, 8, [&](std::size_t c) {
     const std::uint64_t* offset = &list.offset[std::size_t{listSegments} * c];
     if (offset[0] == offset[listSegments]) return;
     std::array<std::uint64_t, listSegments> next{};

@@ -2,6 +2,7 @@
 
 #include "failure.hpp"
 #include "step_method.hpp"
+#include "treacle/core/team.hpp"
 #include "treacle/model/particles_copy.hpp"
 #include "treacle/step/diagnostics.hpp"
 #include "treacle/step/move_particles.hpp"
@@ -46,6 +47,15 @@ bool someWallMoves(const Particles<D>& particles) {
   for (std::uint32_t i = particles.fluidCount; i < particles.count; ++i)
     if (norm2(particles.velocity[i]) > 0) return true;
   return false;
+}
+
+/// Loops of the host have a team.
+template <class Backend, class F>
+void withTeam(F&& body) {
+  if constexpr (std::is_same_v<Backend, Cpu>)
+    Team::lead(body);
+  else
+    body();
 }
 
 }  // namespace
@@ -304,11 +314,15 @@ Simulation<D, Backend>::Simulation(Simulation&&) noexcept = default;
 
 template <int D, class Backend>
 StepReport Simulation<D, Backend>::advance() {
-  return state_->advance();
+  StepReport report;
+  withTeam<Backend>([&] { report = state_->advance(); });
+  return report;
 }
 template <int D, class Backend>
 std::vector<SolverTrial> Simulation<D, Backend>::convergence(std::span<const SolverSettings> solvers) {
-  return state_->convergence(solvers);
+  std::vector<SolverTrial> trials;
+  withTeam<Backend>([&] { trials = state_->convergence(solvers); });
+  return trials;
 }
 template <int D, class Backend>
 const Particles<D, Backend>& Simulation<D, Backend>::particles() const {

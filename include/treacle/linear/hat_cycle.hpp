@@ -73,7 +73,7 @@ template <int D, int B, class T>
 void hatProlong(Context<Cuda>&, const HatNodes<D, Cuda>& fine, const HatNodes<D, Cuda>& coarse, const T* e,
                 const HatVectors<T>& v);
 
-/// x = M b for a dense matrix, row-major.
+/// x = M b for a dense, exactly symmetric matrix.
 template <class T>
 void denseMultiply(Context<Cpu>&, std::uint32_t rows, const T* matrix, const T* b, T* x);
 template <class T>

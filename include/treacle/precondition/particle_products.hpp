@@ -3,6 +3,7 @@
 #include "treacle/core/buffer.hpp"
 #include "treacle/mph/mph_operator.hpp"
 #include "treacle/mph/mph_sums.hpp"
+#include "treacle/precondition/packed_rows.hpp"
 #include "treacle/precondition/projection_terms.hpp"
 #include "treacle/precondition/staged_lists.hpp"
 
@@ -23,7 +24,8 @@ double productReach(const MphPairs<D>& pairs) {
   return std::is_same_v<T, float> && pairs.renormalisation ? slopeReach(pairs.terms.weights.pressure) : 1;
 }
 
-/// As MphOperator<D, Cpu>: one number per pair and term is kept.
+/// As MphOperator<D, Cpu>: one number per pair and term is kept. In single precision schur() has elements of C in
+/// few bits, with which S' is still symmetric (PackedRows): fewer operations, and no position and no B is read.
 template <int D, class T>
 class ParticleProducts<D, T, Cpu> {
  public:
@@ -59,6 +61,11 @@ class ParticleProducts<D, T, Cpu> {
 
  private:
   void sumGradients();
+  // For schur() in single precision.
+  static constexpr bool packed = std::is_same_v<T, float>;
+  void pack();
+  template <class Store>
+  void packedSchur(const ProjectionTable<T>& table, ScalarField<T, Cpu> q, const Store& store);
   // Where the pairs have B.
   void renormalise();
   template <class Store>
@@ -80,6 +87,9 @@ class ParticleProducts<D, T, Cpu> {
   Buffer<T> wall_;                 // near fluid of wall clusters: likewise
   Buffer<Block<D, T>> selfBlock_;  // diagonal block of rho/dt I + V
   Buffer<SymmetricBlock<D, T>> renormalisation_;  // B of the pairs, if they have it
+  PackedRows gradientRows_, divergenceRows_;      // of C, and of C^T for fluid pressures; without the diagonal
+  PackedRows wallRows_;                           // of C^T for those of walls
+  T unit_ = 0;                                    // of unpacked elements [1/m]
 };
 
 /// As MphOperator<D, Cuda>, whose lists it uses.

@@ -15,6 +15,11 @@ namespace {
 template <class T>
 constexpr double toleranceOf = std::is_same_v<T, double> ? operatorTolerance : 200 * singleTolerance;
 
+/// Of products with S', whose elements of C have few bits on the CPU in single precision (PackedRows): 1.2e-3 of
+/// a dense S' in three dimensions, 2.7e-5 in two.
+template <int D, class T>
+constexpr double schurToleranceOf = D == 3 && std::is_same_v<T, float> ? 3e-3 : toleranceOf<T>;
+
 /// One scene with its products and preconditioner on both backends.
 template <int D, class T>
 struct Twin {
@@ -110,7 +115,7 @@ struct Twin {
     productsOnDevice.schur(
         d.context, table, productsOnDevice.scalars(),
         StorePressure<T, Cuda>{table, d.pairs.material.data(), productsOnDevice.scalars(), divOnDevice.data()});
-    EXPECT_LE(differ(copyToHost(d.context, divOnDevice), div), toleranceOf<T>) << "S'";
+    EXPECT_LE(differ(copyToHost(d.context, divOnDevice), div), (schurToleranceOf<D, T>)) << "S'";
 
     Buffer<T> pressure(active());
     Buffer<Block<D, T>> velocity(s.n());

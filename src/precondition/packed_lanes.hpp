@@ -1,0 +1,114 @@
+#pragma once
+
+#include "treacle/core/lanes.hpp"
+#include "treacle/precondition/packed_rows.hpp"
+#include "treacle/search/cluster_lanes.hpp"
+
+#include <cstdint>
+#include <cstring>
+#include <initializer_list>
+
+namespace treacle {
+
+/// An element g B d of C, a vector, in 32 bits: whole numbers of a unit, 16 bits each in two dimensions; in three
+/// 11, 11 and, of twice the unit, 10. Opposite vectors have opposite numbers, so that C and C^T are each other's
+/// transpose whatever is rounded.
+template <int D>
+struct PackedElement {
+  using Words = std::uint32_t __attribute__((vector_size(clusterSize * sizeof(std::uint32_t))));
+  using WordPair = std::uint32_t __attribute__((vector_size(2 * clusterSize * sizeof(std::uint32_t))));
+  using IntPair = std::int32_t __attribute__((vector_size(2 * clusterSize * sizeof(std::int32_t))));
+  using FloatPair = float __attribute__((vector_size(2 * clusterSize * sizeof(float))));
+  static constexpr int bits = D == 2 ? 16 : 11, lastBits = D == 2 ? 16 : 10;
+  static constexpr double largest = D == 2 ? 32766 : 1022;  // magnitude in units
+
+  /// Eight elements `factor` v, which are at most `largest`.
+  static Words pack(const VecLanes<D>& v, const Lanes& factor) {
+    using Ints = std::int32_t __attribute__((vector_size(clusterSize * sizeof(std::int32_t))));
+    constexpr double rounder = 6755399441055744.0;  // 1.5 2^52: adding it leaves whole numbers
+    Words packed = {};
+    for (int k = 0; k < D; ++k) {
+      const bool last = k == D - 1;
+      const int own = last ? lastBits : bits;
+      const Lanes rounded = (v[k] * factor * (last && D == 3 ? 0.5 : 1.0) + rounder) - rounder;
+      packed |= (Words) __builtin_convertvector(rounded, Ints) << (32 - own) >> (last ? 32 - own : k * bits);
+    }
+    return packed;
+  }
+
+  /// The D components of sixteen elements, times unitOfUnpacked.
+  [[gnu::always_inline]] static void unpack(const WordPair& words, FloatPair (&v)[D]) {
+    constexpr std::uint32_t mask = ~std::uint32_t{0} << (32 - bits);
+    for (int k = 0; k < D; ++k) {
+      const WordPair field = k == D - 1 ? words << (32 - lastBits) : words << (k * bits) & mask;
+      v[k] = __builtin_convertvector((IntPair)field, FloatPair);
+    }
+  }
+  static constexpr double unitOfUnpacked = 1u << (32 - bits);
+};
+
+/// Pairs of columns ahead that are asked for: a pair is computed in less time than memory takes, even the shared
+/// cache.
+constexpr int packedPrefetch = 48;
+
+/// Room for the entries of some segments.
+inline void allocate(PackedRows& rows, const ClusterListView& list, std::initializer_list<ListSegment> segments) {
+  const std::uint32_t clusters = list.clusterCount();
+  rows.start.resize(std::size_t{clusters} + 1);
+  rows.pairs.resize(clusters);
+  rows.start[0] = 0;
+  for (std::uint32_t c = 0; c < clusters; ++c) {
+    std::uint64_t entries = 0;
+    for (ListSegment s : segments) entries += list.segment(c, s).size();
+    rows.start[c + 1] = rows.start[c] + (entries + 1) / 2;
+  }
+  rows.column.resize(2 * rows.start[clusters]);
+  rows.word.resize(2 * clusterSize * rows.start[clusters]);
+}
+
+/// Writes the rows of one cluster, column by column; columns without an element are left out.
+template <int D>
+class PackedWriter {
+ public:
+  using Words = typename PackedElement<D>::Words;
+
+  PackedWriter(PackedRows& rows, std::uint32_t cluster)
+      : rows_(rows), cluster_(cluster), next_(2 * rows.start[cluster]) {}
+  PackedWriter(const PackedWriter&) = delete;
+  ~PackedWriter() {
+    if (next_ % 2 == 1) write(rows_.column[next_ - 1], Words{});
+    rows_.pairs[cluster_] = static_cast<std::uint32_t>(next_ / 2 - rows_.start[cluster_]);
+  }
+  void add(std::uint32_t column, const Words& words) {
+    std::uint32_t any = 0;
+    for (std::uint32_t lane = 0; lane < clusterSize; ++lane) any |= words[lane];
+    if (any) write(column, words);
+  }
+
+ private:
+  void write(std::uint32_t column, const Words& words) {
+    rows_.column[next_] = column;
+    std::memcpy(&rows_.word[next_++ * clusterSize], &words, sizeof(words));
+  }
+  PackedRows& rows_;
+  std::uint32_t cluster_;
+  std::uint64_t next_;
+};
+
+/// Calls f(one column, the other, their elements) for the pairs of columns of a cluster.
+template <int D, class F>
+[[gnu::always_inline]] inline void forEachPair(const PackedRows& rows, std::uint32_t cluster, F&& f) {
+  using Element = PackedElement<D>;
+  const std::uint64_t first = rows.start[cluster];
+  const std::uint32_t *at = &rows.column[2 * first], *words = &rows.word[2 * clusterSize * first];
+  for (std::uint32_t p = 0, n = rows.pairs[cluster]; p < n; ++p, at += 2, words += 2 * clusterSize) {
+    __builtin_prefetch(words + packedPrefetch * 2 * clusterSize);
+    typename Element::WordPair both;
+    std::memcpy(&both, words, sizeof(both));
+    typename Element::FloatPair element[D];
+    Element::unpack(both, element);
+    f(at[0], at[1], element);
+  }
+}
+
+}  // namespace treacle
