@@ -88,7 +88,7 @@ __device__ inline X sumOfLanes(X sum) {
 /// Eight lanes per row; store(row, sum of c x over all entries), once. Reads the matrix and gathers x. No atomics.
 template <class Entries, class Store>
 __global__ void __launch_bounds__(256) allSumsKernel(Entries e, const double* x, Store store) {
-  const std::uint32_t row = (blockIdx.x * blockDim.x + threadIdx.x) / allLanes;
+  const std::uint32_t row = blockIdx.x * (blockDim.x / allLanes) + threadIdx.x / allLanes;
   double sum = 0;
   if (row < e.a.rows)
     for (const std::uint64_t section : {std::uint64_t{row}, std::uint64_t{e.a.rows} + row})
@@ -100,7 +100,7 @@ __global__ void __launch_bounds__(256) allSumsKernel(Entries e, const double* x,
 /// Four lanes per row; the same over near entries, rounded.
 template <class T, class Entries, class Store>
 __global__ void __launch_bounds__(256) nearSumsKernel(Entries e, const T* x, Store store) {
-  const std::uint32_t row = (blockIdx.x * blockDim.x + threadIdx.x) / nearLanes;
+  const std::uint32_t row = blockIdx.x * (blockDim.x / nearLanes) + threadIdx.x / nearLanes;
   T sum = 0;
   if (row < e.a.rows) sum = sectionSum<nearLanes, 8, true>(e, row, row, x);
   sum = sumOfLanes<nearLanes>(sum);

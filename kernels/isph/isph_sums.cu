@@ -45,7 +45,7 @@ __device__ inline void visitRow(const IsphPairs<D>& pairs, const NeighbourRowsVi
 /// atomics.
 template <int D, class Term>
 __global__ void __launch_bounds__(128) fluidSumsKernel(const __grid_constant__ IsphPairs<D> pairs, Term term) {
-  const std::uint32_t i = (blockIdx.x * blockDim.x + threadIdx.x) / rowLanes;
+  const std::uint32_t i = blockIdx.x * (blockDim.x / rowLanes) + threadIdx.x / rowLanes;
   const bool used = i < pairs.fluidCount;
   double sum[Term::values] = {};
   if (used) {
@@ -62,7 +62,8 @@ __global__ void __launch_bounds__(128) fluidSumsKernel(const __grid_constant__ I
 /// The same per active wall particle and its fluid neighbours.
 template <int D, class Term>
 __global__ void __launch_bounds__(128) wallSumsKernel(const __grid_constant__ IsphPairs<D> pairs, Term term) {
-  const std::uint32_t row = (blockIdx.x * blockDim.x + threadIdx.x) / rowLanes, i = pairs.fluidOfWalls.first + row;
+  const std::uint32_t row = blockIdx.x * (blockDim.x / rowLanes) + threadIdx.x / rowLanes,
+                      i = pairs.fluidOfWalls.first + row;
   const bool used = row < pairs.fluidOfWalls.count;
   double sum[Term::values] = {};
   if (used)
@@ -76,7 +77,8 @@ __global__ void __launch_bounds__(128) wallSumsKernel(const __grid_constant__ Is
 template <int D, class T, class Row>
 __global__ void __launch_bounds__(128)
     isphMatrixKernel(const __grid_constant__ IsphPairs<D> pairs, Row row, IsphMatrixParts<D, T> parts) {
-  const std::uint32_t i = (blockIdx.x * blockDim.x + threadIdx.x) / rowLanes, lane = threadIdx.x % rowLanes;
+  const std::uint32_t i = blockIdx.x * (blockDim.x / rowLanes) + threadIdx.x / rowLanes,
+                      lane = threadIdx.x % rowLanes;
   const bool used = i < pairs.fluidCount;
   const IsphMatrixRow<D, T, Row> filler{pairs, row, parts};
   double sum[filler.values] = {};

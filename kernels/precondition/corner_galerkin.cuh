@@ -46,9 +46,9 @@ struct CornerHat {
 template <int D, int B, class T, class Term>
 __global__ void __launch_bounds__(128) cornerPartsKernel(const __grid_constant__ CornerGalerkin<D, B, T, Term> g) {
   constexpr int corners = 1 << D, pairs = corners * corners;
-  const std::uint32_t thread = blockIdx.x * blockDim.x + threadIdx.x, c = thread / pairs;
+  const int pair = static_cast<int>(threadIdx.x) % pairs, a = pair / corners, b = pair % corners;
+  const std::uint32_t c = blockIdx.x * (blockDim.x / pairs) + threadIdx.x / pairs;
   if (c >= g.nodes.count) return;
-  const int a = static_cast<int>(thread) % pairs / corners, b = static_cast<int>(thread) % corners;
   const Vec<D, int> cell = g.nodes.pointOf(c);
   for (int k = 0; k < D; ++k)
     if (cell[k] >= g.cells.grid.count[k]) return;  // the last nodes of an open axis are no lower corners
@@ -62,7 +62,7 @@ __global__ void __launch_bounds__(128) cornerPartsKernel(const __grid_constant__
         g.term(i, CornerHat<D, T>(g.cells.grid, place, a), CornerHat<D, T>(g.cells.grid, place, b));
     for (int k = 0; k < B * B; ++k) sum.a[k] += part.a[k];
   }
-  for (int k = 0; k < B * B; ++k) g.parts[thread].a[k] = static_cast<T>(sum.a[k]);
+  for (int k = 0; k < B * B; ++k) g.parts[c * std::size_t{pairs} + pair].a[k] = static_cast<T>(sum.a[k]);
 }
 
 /// One thread per row and adjacent node, 32 to a row; adds up the parts of the cells that both are corners of. No

@@ -36,14 +36,14 @@ void pressureColumns(const MphPairs<D>& pairs, const HatCells<D>& cells, Buffer<
     for (int k = 0; k < D; ++k) s[k] = place[k] + cell[k] - lowest[k];
     std::array<Vec<D>, slots<D>> sum{};
     for (ListSegment segment : {ListSegment::NearFluid, ListSegment::NearWall})
-      forEachEntry(pairs, i, segment, [&](ListEntry e, const Vec<D>& d) {
+      forEachEntry(pairs, i, segment, [&](std::uint32_t j, const Vec<D>& d) {
         const double r2 = fixedDot(d, d), h = pairs.terms.pressureRadius;
-        if (e.index() == i || r2 >= h * h || r2 == 0) return;
+        if (j == i || r2 >= h * h || r2 == 0) return;
         const Vec<D> g = pairs.terms.gradient(ExactDistance(r2)) * d;
         own += g;
         Vec<D> other;
         for (int k = 0; k < D; ++k) other[k] = s[k] + d[k] * pairs.grid.inverseEdge[k];
-        addHats(other, Renormalised ? pairs.corrected(e.index(), g) : g, sum);
+        addHats(other, Renormalised ? pairs.corrected(j, g) : g, sum);
       });
     addHats(s, Renormalised ? pairs.corrected(i, own) : own, sum);
     for (int n = 0; n < slots<D>; ++n)

@@ -62,16 +62,12 @@ class ClusterWalk {
  private:
   template <bool Wraps, class F>
   [[gnu::always_inline]] void walk(ListSegment segment, const T*& coefficient, F&& f) const {
-    const std::span<const ListEntry> entries = list_.segment(cluster_, segment);
+    const std::span<const std::uint32_t> entries = list_.segment(cluster_, segment);
     const T* next = coefficient;
-    const auto visit = [&](int half, ListEntry e) {
-      const std::uint32_t j = Wraps ? e.index() : e.bits;
+    const auto visit = [&](int half, std::uint32_t j) {
       LanesOf<T> d[D];
-      for (int k = 0; k < D; ++k) {
-        T xj = position_[j][k];
-        if constexpr (Wraps) xj += static_cast<T>(pairs_.images.shift[e.image()][k]);
-        d[k] = xj - x_[k];
-      }
+      for (int k = 0; k < D; ++k) d[k] = position_[j][k] - x_[k];
+      if constexpr (Wraps) moveToNearest(pairs_.grid, d);
       f(half, j, loadLanes(next), d);
       next += clusterSize;
     };
