@@ -109,6 +109,7 @@ class IsphSystem final : public StagedSystem<Backend> {
   void prepare(Context<Backend>& context, Data<T>& data) {
     if (stage_.preconditioner == PreconditionerKind::HatMultigrid)
       data.hats.setup(context, *pairs_, data.matrix, moments_, stage_.hats.gridDegree);
+    giveUp(moments_);
     if (stage_.preconditioner != PreconditionerKind::CellMultigrid) return;
     findBuckets(context, ranges_->key, D * CellGrid<D>::subBits, D, levels_);
     compressed(context, data.matrix, compressed_);
