@@ -15,6 +15,9 @@ namespace treacle {
 /// warp or a block.
 inline constexpr std::size_t maxParticles = (std::size_t{1} << 32) - 1024;
 
+/// Lattice points of the boxes that no condition leaves any out of: createParticles needs room for at least these.
+double boxPoints(const Case& c);
+
 /// Fills the case's bodies with particles on lattices of the case's spacing, where their conditions hold. A box
 /// has its lattice cell-centred on its own corner `min`; a sphere has a lattice point at `center`, a cylinder half
 /// a spacing from `start` along the axis. Fluid first, then walls, both in file order. Where bodies of the same
