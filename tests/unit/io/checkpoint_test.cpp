@@ -306,7 +306,8 @@ TEST(Checkpoint, NumbersThatNoSimulationHasAreRefused) {
   expectRefused("time", -1, "after step 1 at t = -1 s");
   expectRefused("time", INFINITY, "after step 1 at t = inf s");
   expectRefused("step", -1, "after step -1 at t = 1 s");
-  expectRefused("fluid_count", 4e9, "particles, more than the limit of 134217728");
+  expectRefused("fluid_count", 4294967295.0, "particles, more than the limit of 4294966272");
+  expectRefused("fluid_count", 4e9, " does not have 4000000005 values");  // before there is memory for them
   // 16 bytes for each of the particles and modes would be 51 GB.
   expectRefused("mode_count", 4e9, "4000000000 modes, more than the limit of 16");
 }
