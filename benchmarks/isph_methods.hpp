@@ -42,7 +42,7 @@ class IsphComparison {
       const bool mixed = stage.precision == Precision::Mixed;
       const IterationBytes bytes{.sizes = sizes_,
                                  .number = mixed ? 4.0 : 8.0,
-                                 .packed = mixed && sizes_.rows >= PackedRows<Cuda>::fewest,
+                                 .packed = mixed && sizes_.rows >= PackedEntries<Cuda>::fewest,
                                  .gridDegree = stage.hats.gridDegree};
       result.bytesPerIteration = bytes.ofSolver(stage.preconditioner);
     });

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <cstdlib>
+#include <utility>
 
 namespace treacle {
 namespace {
@@ -67,6 +68,12 @@ void* Context<Cuda>::scratch(std::size_t bytes) {
     scratchBytes_ = bytes;
   }
   return scratch_;
+}
+
+void Context<Cuda>::giveUpScratch() {
+  if (scratchBytes_ <= keptBytes) return;
+  deviceRelease(*this, std::exchange(scratch_, nullptr));
+  scratchBytes_ = 0;
 }
 
 void* deviceAllocate(const Context<Cuda>& context, std::size_t bytes) {

@@ -58,7 +58,7 @@ __device__ inline X sectionSum(const PlainEntries<T>& e, std::uint64_t section, 
 /// Eight lanes per row; store(row, sum of c x over all entries), once. Reads the matrix and gathers x. No atomics.
 template <class T, class Store>
 __global__ void __launch_bounds__(256) allSumsKernel(PlainEntries<T> e, const double* x, Store store) {
-  const std::uint32_t row = (blockIdx.x * blockDim.x + threadIdx.x) / allLanes;
+  const std::uint32_t row = blockIdx.x * (blockDim.x / allLanes) + threadIdx.x / allLanes;
   double sum = 0;
   if (row < e.a.rows)
     for (const std::uint64_t section : {std::uint64_t{row}, std::uint64_t{e.a.rows} + row})
@@ -70,7 +70,7 @@ __global__ void __launch_bounds__(256) allSumsKernel(PlainEntries<T> e, const do
 /// Four lanes per row; the same over near entries, rounded.
 template <class T, class Store>
 __global__ void __launch_bounds__(256) nearSumsKernel(PlainEntries<T> e, const T* x, Store store) {
-  const std::uint32_t row = (blockIdx.x * blockDim.x + threadIdx.x) / nearLanes;
+  const std::uint32_t row = blockIdx.x * (blockDim.x / nearLanes) + threadIdx.x / nearLanes;
   T sum = 0;
   if (row < e.a.rows) sum = sectionSum<nearLanes, 8, true>(e, row, x);
   sum = sumOfLanes<nearLanes>(sum);

@@ -48,7 +48,7 @@ __device__ inline void visitRow(const IsphPairs<D>& pairs, const NeighbourRowsVi
 /// bound leaves 72 registers: with more too few threads wait for memory at a time. No atomics.
 template <int D, class Term>
 __global__ void __launch_bounds__(128, 7) fluidSumsKernel(const __grid_constant__ IsphPairs<D> pairs, Term term) {
-  const std::uint32_t i = (blockIdx.x * blockDim.x + threadIdx.x) / rowLanes;
+  const std::uint32_t i = blockIdx.x * (blockDim.x / rowLanes) + threadIdx.x / rowLanes;
   const bool used = i < pairs.fluidCount;
   double sum[Term::values] = {};
   if (used) {
@@ -65,7 +65,8 @@ __global__ void __launch_bounds__(128, 7) fluidSumsKernel(const __grid_constant_
 /// The same per active wall particle and its fluid neighbours.
 template <int D, class Term>
 __global__ void __launch_bounds__(128) wallSumsKernel(const __grid_constant__ IsphPairs<D> pairs, Term term) {
-  const std::uint32_t row = (blockIdx.x * blockDim.x + threadIdx.x) / rowLanes, i = pairs.fluidOfWalls.first + row;
+  const std::uint32_t row = blockIdx.x * (blockDim.x / rowLanes) + threadIdx.x / rowLanes,
+                      i = pairs.fluidOfWalls.first + row;
   const bool used = row < pairs.fluidOfWalls.count;
   double sum[Term::values] = {};
   if (used)
@@ -99,7 +100,8 @@ __global__ void __launch_bounds__(128)
     if (threadIdx.x < runs) run[threadIdx.x] = parts.packed.blocks.run[block * Blocks::runs + threadIdx.x];
     __syncthreads();
   }
-  const std::uint32_t i = (blockIdx.x * blockDim.x + threadIdx.x) / rowLanes, lane = threadIdx.x % rowLanes;
+  const std::uint32_t i = blockIdx.x * (blockDim.x / rowLanes) + threadIdx.x / rowLanes,
+                      lane = threadIdx.x % rowLanes;
   const bool used = i < pairs.fluidCount;
   const IsphMatrixRow<D, T, Row> filler{pairs, row, parts};
   double sum[filler.values] = {};
@@ -143,7 +145,7 @@ void sumOnWalls(Context<Cuda>& context, const IsphPairs<D>& pairs, const Term& t
 
 /// Two threads per row count the fours of its sections.
 template <int D>
-void preparePacked(Context<Cuda>& context, const IsphPairs<D>& pairs, PackedRows<Cuda>& packed) {
+void preparePacked(Context<Cuda>& context, const IsphPairs<D>& pairs, PackedEntries<Cuda>& packed) {
   findColumnBlocks<D>(context, pairs.grid, pairs.cells, pairs.position.first(pairs.fluidCount), packed.blocks);
   const std::size_t sections = 2 * std::size_t{pairs.fluidCount};
   packed.four.resize(context, sections + 1);
@@ -173,7 +175,7 @@ void fillIsphMatrix(Context<Cuda>& context, const IsphPairs<D>& pairs, const Row
   template void sumOnFluid(Context<Cuda>&, const IsphPairs<D>&, const PressureSourceTerm<D>&); \
   template void sumOnFluid(Context<Cuda>&, const IsphPairs<D>&, const CorrectorTerm<D>&);      \
   template void sumOnWalls(Context<Cuda>&, const IsphPairs<D>&, const WallPressureTerm<D>&);   \
-  template void preparePacked(Context<Cuda>&, const IsphPairs<D>&, PackedRows<Cuda>&);         \
+  template void preparePacked(Context<Cuda>&, const IsphPairs<D>&, PackedEntries<Cuda>&);      \
   template void fillIsphMatrix(Context<Cuda>&, const IsphPairs<D>&, const PressureRow<D>&,     \
                                const IsphMatrixParts<D, double>&);                             \
   template void fillIsphMatrix(Context<Cuda>&, const IsphPairs<D>&, const PressureRow<D>&,     \

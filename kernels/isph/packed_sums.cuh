@@ -30,7 +30,7 @@ struct PackedShare {
   std::uint32_t nearBegin = 0, near = 0, farBegin = 0, all = 0;
   uint4 first[Fours] = {};
 
-  __device__ PackedShare(const PackedRowsView& packed, std::uint32_t rows, std::uint32_t row)
+  __device__ PackedShare(const PackedEntriesView& packed, std::uint32_t rows, std::uint32_t row)
       : fours(reinterpret_cast<const uint4*>(packed.word)) {
     if (row >= rows) return;
     nearBegin = packed.four[row];

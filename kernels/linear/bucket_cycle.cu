@@ -10,7 +10,7 @@ namespace {
 template <int D, class T>
 __global__ void restrictKernel(const BucketLevel<D, T> level, const Vec<D, T>* inverse, const Vec<D>* r,
                                const BucketVectors<D, T> v) {
-  const std::uint32_t bucket = (blockIdx.x * blockDim.x + threadIdx.x) / 32;
+  const std::uint32_t bucket = blockIdx.x * (blockDim.x / 32) + threadIdx.x / 32;
   if (bucket >= level.a.rows) return;
   Vec<D> sum{};
   for (std::uint32_t i = level.members[bucket] + threadIdx.x % 32; i < level.members[bucket + 1]; i += 32)

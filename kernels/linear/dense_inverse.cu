@@ -29,7 +29,7 @@ struct Dense {
 /// atomics.
 template <int B>
 __global__ void fillKernel(BlockCsrView<B, double> a, std::uint32_t stride, double* dense) {
-  const std::uint32_t row = (blockIdx.x * blockDim.x + threadIdx.x) / 32;
+  const std::uint32_t row = blockIdx.x * (blockDim.x / 32) + threadIdx.x / 32;
   if (row >= a.rows) return;
   constexpr unsigned elements = B * B;
   const std::uint64_t begin = a.rowStart[row];

@@ -68,7 +68,7 @@ struct FirstStep {
 /// One warp per block row; reads A; writes the values and the inverses of the diagonal elements. No atomics.
 template <class T, int B>
 __global__ void valuesKernel(BlockCsrView<B, double> a, Block<B, T>* value, T* inverseDiagonal) {
-  const std::uint32_t row = (blockIdx.x * blockDim.x + threadIdx.x) / 32;
+  const std::uint32_t row = blockIdx.x * (blockDim.x / 32) + threadIdx.x / 32;
   if (row >= a.rows) return;
   constexpr unsigned elements = B * B;
   const std::uint64_t begin = a.rowStart[row];
@@ -96,7 +96,7 @@ template <int D, int B, class T>
 __global__ void restrictKernel(const HatNodesView<D> fine, const HatNodesView<D> coarse, const T* res, T* b,
                                const FirstStep<T> first) {
   waitForEarlierKernels();
-  const std::uint32_t row = (blockIdx.x * blockDim.x + threadIdx.x) / 32;
+  const std::uint32_t row = blockIdx.x * (blockDim.x / 32) + threadIdx.x / 32;
   const int lane = static_cast<int>(threadIdx.x % 32);
   if (row >= coarse.count) return;
   Vec<D, int> p{};
@@ -115,7 +115,7 @@ __global__ void restrictKernel(const HatNodesView<D> fine, const HatNodesView<D>
 template <class T>
 __global__ void denseKernel(int unknowns, const T* matrix, const T* b, T* x) {
   waitForEarlierKernels();
-  const int row = (blockIdx.x * blockDim.x + threadIdx.x) / 32;
+  const int row = blockIdx.x * (blockDim.x / 32) + threadIdx.x / 32;
   if (row >= unknowns) return;
   T sum = 0;
   const T* mine = matrix + static_cast<std::size_t>(row) * unknowns;

@@ -45,7 +45,7 @@ __global__ void __launch_bounds__(32 * warpsPerBlock)
                   BlockCsrView<B, double> coarsePattern, double* coarseValue, int reach, unsigned places) {
   constexpr unsigned elements = B * B;
   extern __shared__ double ofWarp[];
-  const std::uint32_t row = (blockIdx.x * blockDim.x + threadIdx.x) / 32;
+  const std::uint32_t row = blockIdx.x * (blockDim.x / 32) + threadIdx.x / 32;
   if (row >= coarse.count) return;
   const unsigned lane = threadIdx.x % 32;
   double* sums = ofWarp + threadIdx.x / 32 * places * elements;

@@ -53,12 +53,9 @@ class ClusterSum {
   /// `part`: which of the cluster's warps this is; `exchange`: room for the sums of the block's lanes.
   __device__ void run(const Terms& terms, const LocalPositions<D, T>& places, int part, T (*exchange)[32]) const {
     const int lane = threadIdx.x % 32, group = lane / S::slots, slot = lane % S::slots;
-    const bool wraps = S::ranges || list_.wraps[cluster_];
-    const auto origin = places.own(pairs_, first_, first_, wraps);
-    const std::uint32_t laneOwn = particle(lane % clusterSize);
-    Vec<D, T> mine = places.local(places.own(pairs_, laneOwn, first_, wraps), origin);
-    const bool torn = LocalPositions<D, T>::imagesCount && __any_sync(~0u, places.imagesMayDiffer(mine));
-    if (torn) mine = places.beside(pairs_, laneOwn, first_);
+    const auto origin = places.of(pairs_, first_);
+    const Vec<D, T> mine = places.local(places.of(pairs_, particle(lane % clusterSize)), origin);
+    const bool apart = __any_sync(~0u, places.imagesMayDiffer(mine, S::ranges || list_.wraps[cluster_]));
     Vec<D, T> x[S::own];
     typename Terms::Own own[S::own];
     T sum[paddedSums] = {};
@@ -71,18 +68,14 @@ class ClusterSum {
       typename LocalPositions<D, T>::Stored x;
       typename Terms::Other other;
     };
-    const auto walk = [&](auto apart) {
-      const auto load = [&](ListEntry e) {
-        return Loaded{apart ? places.withEntry(e) : places.neighbour(pairs_, e, wraps),
-                      terms.loadOther(pairs_, e.index())};
-      };
+    const auto walk = [&](auto nearest) {
+      const auto load = [&](std::uint32_t j) { return Loaded{places.of(pairs_, j), terms.loadOther(pairs_, j)}; };
       const auto add = [&](const Loaded& loaded, ListSegment segment) {
         const Vec<D, T> local = places.local(loaded.x, origin);
-        const Vec<D, T> listed = apart ? places.atImage(loaded.x, origin) : Vec<D, T>{};
 #pragma unroll
         for (int t = 0; t < S::own; ++t) {
           Vec<D, T> d = local - x[t];
-          if (apart) places.moveToListedImage(d, listed - x[t], loaded.x, particle(group * S::own + t));
+          if (nearest) d = places.nearest(pairs_, d);
           T r2 = places.floor;
           for (int k = 0; k < D; ++k) r2 = fma(d[k], d[k], r2);
           terms.add(pairs_, &sum[t * values], d, PairDistance<T>{r2, inverseSqrt(r2)}, own[t], loaded.other,
@@ -91,7 +84,7 @@ class ClusterSum {
       };
       if constexpr (S::ranges) {
         const bool fluid =
-            walkRanges<Terms, S>(pairs_, first_, count_, [&](ListEntry e, ListSegment s) { add(load(e), s); });
+            walkRanges<Terms, S>(pairs_, first_, count_, [&](std::uint32_t j, ListSegment s) { add(load(j), s); });
         if (first_ >= pairs_.fluidCount && !fluid)  // lists leave such walls out
           for (T& value : sum) value = 0;
       } else {
@@ -99,7 +92,7 @@ class ClusterSum {
       }
     };
     // A loop of its own: the other one has its registers for itself.
-    if (torn)
+    if (apart)
       walk(std::true_type{});
     else
       walk(std::false_type{});

@@ -20,15 +20,15 @@ struct Sharing {
   static constexpr int clustersPerBlock = warpsPerBlock / warps;
 };
 
-/// Runs along a part of a list, every `stride`-th entry from k on: load(entry) starts the loads of a neighbour,
+/// Runs along a part of a list, every `stride`-th entry from k on: load(index) starts the loads of a neighbour,
 /// add(what was loaded, k) uses them one round later, while those of the next are on their way.
 template <int Stride, class Load, class Add>
-__device__ inline void pipeline(const ListEntry* entry, std::uint32_t k, std::uint32_t count, Load&& load,
+__device__ inline void pipeline(const std::uint32_t* entry, std::uint32_t k, std::uint32_t count, Load&& load,
                                 Add&& add) {
   if (k >= count) return;
   auto loaded = load(entry[k]);
   std::uint32_t next = k + Stride;
-  ListEntry nextEntry = next < count ? entry[next] : ListEntry{0};
+  std::uint32_t nextEntry = next < count ? entry[next] : 0;
   while (next < count) {
     const auto nextLoaded = load(nextEntry);
     if (next + Stride < count) nextEntry = entry[next + Stride];
@@ -63,8 +63,8 @@ __device__ void walkLists(const ClusterListView& list, std::uint32_t cluster, in
 /// walls do if there is fluid where their lists would look for it.
 template <class Terms, class S, int D, class Visit>
 __device__ bool walkRanges(const MphPairs<D>& pairs, std::uint32_t first, std::uint32_t count, Visit&& visit) {
-  __shared__ ListEntry queues[S::warpsPerBlock][64];
-  ListEntry* queue = queues[threadIdx.x / 32];
+  __shared__ std::uint32_t queues[S::warpsPerBlock][64];
+  std::uint32_t* queue = queues[threadIdx.x / 32];
   const int lane = threadIdx.x % 32, slot = lane % S::slots;
   __shared__ typename ClusterCandidates<D>::Shared shared[S::warpsPerBlock];
   const ClusterCandidates<D> candidates(pairs.grid, pairs.cells, pairs.position.data(), first, count,
@@ -81,10 +81,10 @@ __device__ bool walkRanges(const MphPairs<D>& pairs, std::uint32_t first, std::u
         visit(queue[k], walls ? ListSegment::NearWall : ListSegment::NearFluid);
       __syncwarp();
     };
-    candidates.forEach({near, far}, !walls, walls, [&](ListEntry e, bool isNear, bool isFar, bool) {
+    candidates.forEach({near, far}, !walls, walls, [&](std::uint32_t j, bool isNear, bool isFar, bool) {
       const bool hit = isNear || isFar;
       const unsigned hits = __ballot_sync(~0u, hit);
-      if (hit && counts) queue[queued + __popc(hits & ((1u << lane) - 1))] = e;
+      if (hit && counts) queue[queued + __popc(hits & ((1u << lane) - 1))] = j;
       any |= __any_sync(~0u, isNear) != 0;
       if (!counts) return;
       queued += __popc(hits);

@@ -1,7 +1,7 @@
 #include "core/launch.hpp"
 #include "core/scan.hpp"
-#include "mph/mph_neighbours.cuh"
 #include "treacle/mph/mph_assembly.hpp"
+#include "treacle/mph/mph_neighbours.hpp"
 
 namespace treacle {
 namespace {

@@ -20,7 +20,6 @@ __global__ void __launch_bounds__(32 * warpsPerBlock)
   const unsigned lane = threadIdx.x % 32;
   const ClusterListView& list = pairs.fluidList;
   const std::uint32_t cluster = (i - list.first) / clusterSize;
-  const Vec<D> xi = positionInCluster(pairs, list.first + cluster * clusterSize, i);
   const std::uint64_t* offset = list.offset + std::size_t{listSegments} * cluster;
   const std::uint64_t end = offset[static_cast<int>(ListSegment::FarFluid) + 1];
   std::uint64_t next = Fill ? rowStart[i] : 0;
@@ -28,9 +27,8 @@ __global__ void __launch_bounds__(32 * warpsPerBlock)
     bool couples = false;
     std::uint32_t j = 0;
     if (first + lane < end) {
-      const ListEntry e = list.entry[first + lane];
-      j = e.index();
-      couples = norm2(pairs.positionOf(e) - xi) <= radius2;
+      j = list.entry[first + lane];
+      couples = norm2(pairs.difference(i, j)) <= radius2;
     }
     const unsigned hits = __ballot_sync(~0u, couples);
     if (Fill && couples) column[next + __popc(hits & ((1u << lane) - 1))] = j;

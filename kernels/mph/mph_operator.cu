@@ -16,7 +16,7 @@ struct SelfSums {
   Mph mph;
   WallTerms<D> wall;
   Block<D>* block;
-  Vec<D>* gradient;
+  Vec<D>* gradient;  // null: not wanted
 
   __device__ Own loadOwn(const MphPairs<D>& pairs, std::uint32_t i) const { return pairs.viscousSide(i); }
   __device__ Other loadOther(const MphPairs<D>& pairs, std::uint32_t j) const { return pairs.viscousSide(j); }
@@ -30,7 +30,7 @@ struct SelfSums {
   __device__ void store(const MphPairs<D>&, std::uint32_t i, int n, double sum) const {
     if (n < D * D)
       block[i].a[n] = wall.block[i].a[n] + mph.viscousFactor * sum;
-    else
+    else if (gradient)
       gradient[i][n - D * D] = wall.gradient[i][n - D * D] + mph.gradientFactor * sum;
   }
 };
@@ -48,7 +48,7 @@ void MphOperator<D, Cuda>::prepare(Context<Cuda>& context, const MphPairs<D>& pa
   pairs_ = &pairs;
   q_.resize(context, pairs.activeCount);
   selfBlock_.resize(context, pairs.fluidCount);
-  selfGradient_.resize(context, pairs.fluidCount);
+  if (!pairs.renormalisation) selfGradient_.resize(context, pairs.fluidCount);
   withKnownWeights<PublishedWeights, AccurateWeights>(pairs.terms, [&](const auto& mph) {
     sumOnFluid(context, pairs,
                SelfSums<D, std::decay_t<decltype(mph)>>{mph, terms, selfBlock_.data(), selfGradient_.data()});

@@ -84,7 +84,7 @@ struct WallSums {
   }
   __device__ void store(const MphPairs<D>& pairs, std::uint32_t i, int n, double sum) const {
     if (n >= D * D) {
-      terms.gradient[i][n - D * D] = mph.gradientFactor * sum;
+      if (!terms.gradient.empty()) terms.gradient[i][n - D * D] = mph.gradientFactor * sum;
     } else {
       const bool diagonal = n % (D + 1) == 0;
       terms.block[i].a[n] = mph.viscousFactor * sum + (diagonal ? pairs.inertia(i) : 0.0);
@@ -165,7 +165,7 @@ void wallTerms(Context<Cuda>& context, const MphPairs<D>& pairs, const WallTerms
     sumOnFluid(context, pairs, WallSums<D, Mph, Corrected::value>{mph, terms});
   });
   if (pairs.renormalisation)
-    forEach(context, pairs.fluidCount,
+    forEach(context, terms.gradient.size(),
             [b = pairs.renormalisation, g = terms.gradient] __device__(std::size_t i) { g[i] = b[i] * g[i]; });
 }
 

@@ -2,7 +2,6 @@
 
 #include "core/launch.hpp"
 #include "core/scan.hpp"
-#include "mph/mph_neighbours.cuh"
 #include "mph/near_sums.cuh"
 
 namespace treacle {
@@ -14,14 +13,14 @@ constexpr unsigned slice = nearSlice;
 /// its slice, with Fill its entries. Walls list fluid alone. No atomics.
 template <int D, bool Fill>
 __global__ void __launch_bounds__(128)
-    listKernel(const __grid_constant__ MphPairs<D> pairs, std::uint64_t* sliceStart, ListEntry* entry) {
+    listKernel(const __grid_constant__ MphPairs<D> pairs, std::uint64_t* sliceStart, std::uint32_t* entry) {
   const std::uint32_t index = blockIdx.x * blockDim.x + threadIdx.x, s = index / slice;
   if (s * slice >= pairs.activeCount) return;
   const std::uint32_t i = min(index, pairs.activeCount - 1);
   const bool valid = index < pairs.activeCount, wall = i >= pairs.fluidCount;
   const ClusterListView& list = wall ? pairs.wallList : pairs.fluidList;
   const std::uint32_t cluster = (i - list.first) / clusterSize;
-  const Vec<D> xi = positionInCluster(pairs, list.first + cluster * clusterSize, i);
+  const Vec<D> xi = pairs.position[i];
   const double h2 = pairs.terms.pressureRadius * pairs.terms.pressureRadius;
   const std::uint64_t* offset = list.offset + std::size_t{listSegments} * cluster;
   constexpr int batch = 4;  // so many neighbours are on their way together
@@ -31,25 +30,23 @@ __global__ void __launch_bounds__(128)
     if (!valid || (wall && segment == ListSegment::NearWall)) continue;
     const std::uint64_t end = offset[static_cast<int>(segment) + 1];
     for (std::uint64_t k = offset[static_cast<int>(segment)]; k < end; k += batch) {
-      ListEntry e[batch];
+      std::uint32_t j[batch];
       Vec<D> x[batch];
 #pragma unroll
-      for (int b = 0; b < batch; ++b) e[b] = list.entry[min(k + b, end - 1)];
+      for (int b = 0; b < batch; ++b) j[b] = list.entry[min(k + b, end - 1)];
 #pragma unroll
-      for (int b = 0; b < batch; ++b) x[b] = pairs.positionOf(e[b]);
+      for (int b = 0; b < batch; ++b) x[b] = pairs.position[j[b]];
 #pragma unroll
       for (int b = 0; b < batch; ++b) {
-        if (k + b >= end || e[b].index() == i || norm2(x[b] - xi) >= h2) continue;
-        if (Fill)
-          entry[base + std::uint64_t{slice} * count] =
-              imageFrom(pairs, i, list.first + cluster * clusterSize, e[b]);
+        if (k + b >= end || j[b] == i || norm2(pairs.grid.difference(xi, x[b])) >= h2) continue;
+        if (Fill) entry[base + std::uint64_t{slice} * count] = j[b];
         ++count;
       }
     }
   }
   if (Fill) {
     const auto rows = static_cast<std::uint32_t>(sliceStart[s + 1] - sliceStart[s]);
-    for (; count < rows; ++count) entry[base + std::uint64_t{slice} * count] = ListEntry::make(i, 0);
+    for (; count < rows; ++count) entry[base + std::uint64_t{slice} * count] = i;
   } else {
     const unsigned rows = __reduce_max_sync(~0u, count);
     if (index % slice == 0) sliceStart[s] = rows;

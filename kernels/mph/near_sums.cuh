@@ -15,13 +15,17 @@ struct NearLists;
 
 template <int D>
 struct NearLists<D, double> {
-  using Stored = Vec<D>;
+  struct Stored {
+    Vec<D> x;
+    bool wraps;  // of a list's own particle: neighbours may be nearer across a periodic end
+  };
   const std::uint64_t* sliceStart;
-  const ListEntry* entry;
+  const std::uint32_t* entry;
   std::uint32_t fluidCount, activeCount;
   double floor;
   const Vec<D>* position;
-  PeriodicImages<D> images;
+  CellGrid<D> grid;
+  double reach;  // h_p
 
   static NearLists make(const MphPairs<D>& pairs, const NearProducts<D>& near) {
     return {near.sliceStart().data(),
@@ -30,22 +34,31 @@ struct NearLists<D, double> {
             pairs.activeCount,
             LocalPositions<D, double>::make(pairs).floor,
             pairs.position.data(),
-            pairs.images};
+            pairs.grid,
+            pairs.terms.pressureRadius};
   }
-  __device__ Stored own(std::uint32_t i) const { return position[i]; }
-  __device__ Stored other(ListEntry e) const {
-    Vec<D> x = position[e.index()];
-    if (e.image() != 0) x += images.shift[e.image()];
-    return x;
+  __device__ Stored own(std::uint32_t i) const {
+    const Vec<D> x = position[i];
+    bool wraps = false;
+    for (int k = 0; k < D; ++k) {
+      const double above = x[k] - grid.origin[k];
+      wraps = wraps || (grid.periodic[k] && (above <= reach || grid.length[k] - above <= reach));
+    }
+    return {x, wraps};
   }
-  __device__ Vec<D> difference(const Stored& a, const Stored& b) const { return a - b; }
+  __device__ Stored other(std::uint32_t j) const { return {position[j], false}; }
+  /// From the list's own particle to another.
+  __device__ Vec<D> difference(const Stored& other, const Stored& own) const {
+    const Vec<D> d = other.x - own.x;
+    return own.wraps ? grid.nearest(d) : d;
+  }
 };
 
 template <int D>
 struct NearLists<D, float> {
   using Stored = int4;
   const std::uint64_t* sliceStart;
-  const ListEntry* entry;
+  const std::uint32_t* entry;
   std::uint32_t fluidCount, activeCount;
   float floor;
   LocalPositions<D, float> places;
@@ -56,8 +69,10 @@ struct NearLists<D, float> {
             pairs.activeCount,        places.floor,          places};
   }
   __device__ Stored own(std::uint32_t i) const { return places.fixed[i]; }
-  __device__ Stored other(ListEntry e) const { return places.fixed[e.index()]; }
-  __device__ Vec<D, float> difference(const Stored& a, const Stored& b) const { return places.local(a, b); }
+  __device__ Stored other(std::uint32_t j) const { return places.fixed[j]; }
+  __device__ Vec<D, float> difference(const Stored& other, const Stored& own) const {
+    return places.local(other, own);
+  }
 };
 
 /// The same with the terms of the pairs.
@@ -90,13 +105,13 @@ using Threads = std::integral_constant<int, count>;
 /// neighbours being on their way together. Where lists are shared, threads are few and wait for memory; so the
 /// last rows are loaded together, too, the particle itself in place of those that are missing, which adds nothing.
 template <class Load, class Add, class Split = Threads<1>>
-__device__ inline void alongList(const std::uint64_t* sliceStart, const ListEntry* entry, std::uint32_t i,
+__device__ inline void alongList(const std::uint64_t* sliceStart, const std::uint32_t* entry, std::uint32_t i,
                                  Load&& load, Add&& add, int part = 0, Split split = {}) {
   constexpr int batch = 4;
   constexpr unsigned slice = nearSlice;
   const std::uint64_t begin = sliceStart[i / slice];
   const auto rows = static_cast<int>(sliceStart[i / slice + 1] - begin);
-  const ListEntry* mine = entry + begin * slice + i % slice;
+  const std::uint32_t* mine = entry + begin * slice + i % slice;
   const auto at = [&](int row) { return mine[static_cast<std::size_t>(row) * slice]; };
   const auto round = [&](int r, auto&& entryOf) {
     decltype(load(at(0))) loaded[batch];
@@ -110,8 +125,7 @@ __device__ inline void alongList(const std::uint64_t* sliceStart, const ListEntr
     for (; r + batch <= rows; r += batch) round(r, at);
     for (; r < rows; ++r) add(load(at(r)));
   } else {
-    for (; r - part < rows; r += batch * split)
-      round(r, [&](int row) { return row < rows ? at(row) : ListEntry::make(i, 0); });
+    for (; r - part < rows; r += batch * split) round(r, [&](int row) { return row < rows ? at(row) : i; });
   }
 }
 
@@ -135,8 +149,8 @@ struct PlainScalars {
   __device__ PlacedValue<D, T> own(const NearLists<D, T>& lists, std::uint32_t i) const {
     return {lists.own(i), q[i]};
   }
-  __device__ PlacedValue<D, T> other(const NearLists<D, T>& lists, ListEntry e) const {
-    return {lists.other(e), q[e.index()]};
+  __device__ PlacedValue<D, T> other(const NearLists<D, T>& lists, std::uint32_t j) const {
+    return {lists.other(j), q[j]};
   }
 };
 /// B of the pressure gradient in the products of a case (renormalisation.hpp), and what stands in its place where
@@ -171,9 +185,9 @@ struct Stresses {
     const PlacedValue<D, T> scalar = q.own(lists, i);
     return {scalar.x, scalar.value * b.of(i)};
   }
-  __device__ PlacedStress<D, T> other(const NearLists<D, T>& lists, ListEntry e) const {
-    const PlacedValue<D, T> scalar = q.other(lists, e);
-    return {scalar.x, scalar.value * b.of(e.index())};
+  __device__ PlacedStress<D, T> other(const NearLists<D, T>& lists, std::uint32_t j) const {
+    const PlacedValue<D, T> scalar = q.other(lists, j);
+    return {scalar.x, scalar.value * b.of(j)};
   }
 };
 
@@ -200,9 +214,8 @@ struct PlainVectors {
   __device__ PlacedVelocity<D, T> own(const NearLists<D, T>& lists, std::uint32_t k) const {
     return {lists.own(k), k < lists.fluidCount ? fetch(&u[k]) : Vec<D, T>{}};
   }
-  __device__ PlacedVelocity<D, T> other(const NearLists<D, T>& lists, ListEntry e) const {
-    const std::uint32_t j = e.index();
-    return {lists.other(e), j < lists.fluidCount ? fetch(&u[j]) : Vec<D, T>{}};
+  __device__ PlacedVelocity<D, T> other(const NearLists<D, T>& lists, std::uint32_t j) const {
+    return {lists.other(j), j < lists.fluidCount ? fetch(&u[j]) : Vec<D, T>{}};
   }
 };
 /// `split` threads per fluid particle: store(i, (C q)_i); reads positions and q of the neighbours. No atomics.
@@ -219,7 +232,7 @@ __global__ void __launch_bounds__(128)
   decltype(ownOf(store, i)) owned{};  // where threads are few; many hide the wait, and want registers
   if constexpr (Split::value > 1) owned = ownOf(store, i);
   alongList(
-      view.sliceStart, view.entry, i, [&](ListEntry e) { return q.other(view, e); },
+      view.sliceStart, view.entry, i, [&](std::uint32_t j) { return q.other(view, j); },
       [&](const auto& other) {
         const Vec<D, T> d = view.difference(other.x, mine.x);
         addPressures(sum, gradientShape(view, d), mine.value, other.value, d);
@@ -247,7 +260,7 @@ __global__ void __launch_bounds__(128)
   if constexpr (Split::value > 1) owned = ownOf(store, k);
   T sum = 0;
   alongList(
-      view.sliceStart, view.entry, k, [&](ListEntry e) { return u.other(view, e); },
+      view.sliceStart, view.entry, k, [&](std::uint32_t j) { return u.other(view, j); },
       [&](const PlacedVelocity<D, T>& other) {
         const Vec<D, T> d = view.difference(other.x, mine.x);
         sum = fma(gradientShape(view, d), differenceAlong(other.u, mine.u, b * d), sum);

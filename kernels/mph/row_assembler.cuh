@@ -1,8 +1,8 @@
 #pragma once
 
 #include "core/reduce.cuh"
-#include "mph/mph_neighbours.cuh"
 #include "treacle/core/block.hpp"
+#include "treacle/mph/mph_pairs.hpp"
 
 namespace treacle {
 
@@ -51,7 +51,7 @@ class RowAssembler {
     for (std::uint64_t first = begin; first < end; first += 32) {
       const auto count = static_cast<std::uint32_t>(min(end - first, std::uint64_t{32}));
       const std::uint32_t j = a_.column[first + min(lane_, count - 1)];
-      const Vec<D> d = nearestImage(pairs_.grid, pairs_.position[j] - xi_);
+      const Vec<D> d = pairs_.grid.difference(xi_, pairs_.position[j]);
       const unsigned own = __ballot_sync(~0u, lane_ < count && j == i_);
       if (own) ownPlace = first + (__ffs(own) - 1);
 
@@ -88,7 +88,7 @@ class RowAssembler {
       const std::uint32_t k = own ? i_ : a_.pressure[place];
       const double lambda = pairs_.bulkViscosity(k);
       scratch_.k[lane_] = k;
-      scratch_.d[lane_] = nearestImage(pairs_.grid, pairs_.position[k] - xi_);
+      scratch_.d[lane_] = pairs_.grid.difference(xi_, pairs_.position[k]);
       scratch_.weighted[lane_] = lambda * corrected(k, own ? a_.own[i_] : a_.g[place]);
     }
     __syncwarp();

@@ -49,7 +49,7 @@ template <int D, int B, class T, class Term>
 __global__ void __launch_bounds__(128) cornerPartsKernel(const __grid_constant__ CornerGalerkin<D, B, T, Term> g) {
   constexpr int corners = 1 << D, pairs = corners * corners;
   __shared__ CornerHat<D, T> hats[128];  // per particle and corner
-  const std::uint32_t thread = blockIdx.x * blockDim.x + threadIdx.x, c = thread / pairs;
+  const std::uint32_t c = blockIdx.x * (blockDim.x / pairs) + threadIdx.x / pairs;
   const int own = static_cast<int>(threadIdx.x) % pairs, a = own / corners, b = own % corners;
   CornerHat<D, T>* const ofCell = hats + threadIdx.x - own;
   std::uint32_t begin = 0, end = 0;
@@ -79,7 +79,7 @@ __global__ void __launch_bounds__(128) cornerPartsKernel(const __grid_constant__
     }
   }
   if (c < g.nodes.count)
-    for (int k = 0; k < B * B; ++k) g.parts[thread].a[k] = static_cast<T>(sum.a[k]);
+    for (int k = 0; k < B * B; ++k) g.parts[c * std::size_t{pairs} + own].a[k] = static_cast<T>(sum.a[k]);
 }
 
 /// A warp per row, one lane per adjacent node; adds up the parts of the cells that both are corners of. The cells

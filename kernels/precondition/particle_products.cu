@@ -65,9 +65,8 @@ __global__ void __launch_bounds__(128)
     typename NearLists<D, T>::Stored x;
     T weight;
   };
-  const auto load = [&](ListEntry e) {
-    const std::uint32_t j = e.index();
-    return Loaded{view.other(e), j < view.fluidCount ? table.weight[material[j]] : T(0)};
+  const auto load = [&](std::uint32_t j) {
+    return Loaded{view.other(j), j < view.fluidCount ? table.weight[material[j]] : T(0)};
   };
   alongList(view.sliceStart, view.entry, k, load, [&](const Loaded& other) {
     const Vec<D, T> d = view.difference(other.x, xk), g = gradientShape(view, d) * (b * d);

@@ -18,8 +18,8 @@ struct PlacedScalars {
     const int4 stored = *reinterpret_cast<const int4*>(at + i);
     return {place(stored), __int_as_float(stored.w)};
   }
-  __device__ PlacedValue<D, float> other(const NearLists<D, float>& lists, ListEntry e) const {
-    return own(lists, e.index());
+  __device__ PlacedValue<D, float> other(const NearLists<D, float>& lists, std::uint32_t j) const {
+    return own(lists, j);
   }
 };
 
@@ -65,8 +65,8 @@ struct PlacedVectors {
     const int4 stored = *reinterpret_cast<const int4*>(at + k);
     return {place(stored), value(stored)};
   }
-  __device__ PlacedVelocity<D, float> other(const NearLists<D, float>& lists, ListEntry e) const {
-    return own(lists, e.index());
+  __device__ PlacedVelocity<D, float> other(const NearLists<D, float>& lists, std::uint32_t j) const {
+    return own(lists, j);
   }
 };
 
@@ -95,7 +95,7 @@ __global__ void __launch_bounds__(128)
     if (i >= view.fluidCount) return sum;  // walls are at rest
     const auto mine = q.own(view, i);
     alongList(
-        view.sliceStart, view.entry, i, [&](ListEntry e) { return q.other(view, e); },
+        view.sliceStart, view.entry, i, [&](std::uint32_t j) { return q.other(view, j); },
         [&](const PlacedValue<D, T>& other) {
           const Vec<D, T> d = view.difference(other.x, mine.x);
           addScaled(&sum[0], gradientShape(view, d) * (mine.value + other.value), d);
@@ -109,10 +109,10 @@ __global__ void __launch_bounds__(128)
   const std::uint64_t begin = view.sliceStart[k / nearSlice];
   const auto rows = static_cast<int>(view.sliceStart[k / nearSlice + 1] - begin);
   for (int r = lane; r < rows; r += Lanes) {
-    const ListEntry e = view.entry[(begin + r) * nearSlice + k % nearSlice];
-    const Vec<D, T> d = view.difference(q.other(view, e).x, xk), g = gradientShape(view, d) * d;
+    const std::uint32_t j = view.entry[(begin + r) * nearSlice + k % nearSlice];
+    const Vec<D, T> d = view.difference(q.other(view, j).x, xk), g = gradientShape(view, d) * d;
     gradient += g;
-    if (e.index() != k) along += dot(g, velocity(e.index()));
+    if (j != k) along += dot(g, velocity(j));
   }
   // The last lane has the fewest neighbours.
   Vec<D, T> mine = lane == Lanes - 1 ? velocity(k) : Vec<D, T>{};

@@ -54,15 +54,14 @@ __device__ inline Vec<D> fromLowest(Vec<D> place) {
 template <bool Renormalised, int D, class T, class Weights>
 __device__ inline StagedNeighbour<D, T> stagedNeighbour(const PressureGalerkin<D, T>& g,
                                                         const NearView<D, T, Weights>& near, std::uint32_t i,
-                                                        const Vec<D>& from, ListEntry e) {
-  const Vec<D, T> d = near.difference(near.other(e), near.own(i));
+                                                        const Vec<D>& from, std::uint32_t j) {
+  const Vec<D, T> d = near.difference(near.other(j), near.own(i));
   StagedNeighbour<D, T> staged;
   for (int k = 0; k < D; ++k) staged.at[k] = fma(d[k], g.toCells[k], static_cast<T>(from[k]));
   staged.plain = gradientShape(near, d) * d;
   staged.column = staged.plain;
   if constexpr (Renormalised)
-    if (e.index() < near.fluidCount)
-      staged.column = converted<T>(g.renormalisation[e.index()] * converted<double>(staged.plain));
+    if (j < near.fluidCount) staged.column = converted<T>(g.renormalisation[j] * converted<double>(staged.plain));
   return staged;
 }
 
@@ -117,8 +116,8 @@ __global__ void __launch_bounds__(D == 2 ? 96 : 256)
           const Vec<D> from = fromLowest(g.cells.fraction(g.position[i], cell));
           const std::size_t at = (near.sliceStart[i / nearSlice] + r) * nearSlice + i % nearSlice;
           // The particle itself, where its list has ended, adds nothing.
-          const ListEntry e = r < rowsOf(i) ? near.entry[at] : ListEntry::make(i, 0);
-          staged[t / inGroup][p] = stagedNeighbour<Renormalised>(g, near, i, from, e);
+          const std::uint32_t j = r < rowsOf(i) ? near.entry[at] : i;
+          staged[t / inGroup][p] = stagedNeighbour<Renormalised>(g, near, i, from, j);
         }
         __syncthreads();
         if (own >= inGroup) continue;

@@ -32,12 +32,12 @@ __device__ inline void forEachNeighbour(const NearRows<D>& near, std::uint32_t i
   constexpr int batch = 4;  // so many neighbours are on their way together
   const std::uint64_t begin = near.lists.sliceStart[i / slice];
   const auto rows = static_cast<int>(near.lists.sliceStart[i / slice + 1] - begin);
-  const ListEntry* mine = near.lists.entry + begin * slice + i % slice;
+  const std::uint32_t* mine = near.lists.entry + begin * slice + i % slice;
   for (int r = 0; r < rows; r += batch) {
     std::uint32_t j[batch];
     int4 there[batch];
 #pragma unroll
-    for (int b = 0; b < batch; ++b) j[b] = r + b < rows ? mine[std::size_t{slice} * (r + b)].index() : i;
+    for (int b = 0; b < batch; ++b) j[b] = r + b < rows ? mine[std::size_t{slice} * (r + b)] : i;
 #pragma unroll
     for (int b = 0; b < batch; ++b) there[b] = near.place(j[b]);
 #pragma unroll
@@ -153,13 +153,6 @@ __global__ void __launch_bounds__(StagedLists<D>::threads)
 }
 
 }  // namespace
-
-template <int D>
-unsigned StagedLists<D>::sharing(std::uint32_t particles) {
-  constexpr std::uint32_t atATime = 1u << 17;  // threads that a card runs at a time
-  if (D == 3 && particles < atATime / 4) return 8;
-  return particles < atATime ? 4 : 1;
-}
 
 template <int D>
 void StagedLists<D>::prepare(Context<Cuda>& context, const MphPairs<D>& pairs, const NearProducts<D>& near,

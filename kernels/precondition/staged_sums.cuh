@@ -179,7 +179,7 @@ __global__ void __launch_bounds__(256)
     const auto at = PlacedScalars<D>::place(mine);
     alongList(
         sums.near.sliceStart, sums.near.entry, i,
-        [&](ListEntry e) { return reinterpret_cast<const int4*>(q)[e.index()]; },
+        [&](std::uint32_t j) { return reinterpret_cast<const int4*>(q)[j]; },
         [&](const int4& other) {
           const Vec<D, float> d = sums.near.difference(PlacedScalars<D>::place(other), at);
           add(shapeWithinReach(sums, d), other, d);
@@ -228,7 +228,7 @@ __global__ void __launch_bounds__(256)
     const auto at = PlacedVectors<D>::place(mine);
     alongList(
         sums.near.sliceStart, sums.near.entry, k,
-        [&](ListEntry e) { return reinterpret_cast<const int4*>(u)[e.index()]; },
+        [&](std::uint32_t j) { return reinterpret_cast<const int4*>(u)[j]; },
         [&](const int4& other) {
           const Vec<D, float> d = sums.near.difference(PlacedVectors<D>::place(other), at);
           add(shapeWithinReach(sums, d), other, d);

@@ -182,6 +182,8 @@ void sortByCell(Context<Cuda>& context, const CellGrid<D>& grid, Particles<D, Cu
   const auto permuteField = [&](auto& field) { permute(context, w, field); };
   forEachSharedFieldOf(permuteField, particles);
   forEachFluidFieldOf(permuteField, particles);
+  giveUp(w.key, w.sortedKey, w.index, w.sortedIndex, w.field);
+  context.giveUpScratch();
   copyBytesToHost(context, w.count.data(), counts.data(), sizeof(counts));
   if (counts[2] > 0) throwNotFinite(counts[2]);
   ranges.activeCount = fluid + counts[1];

@@ -13,7 +13,8 @@ class ClusterCandidates {
   /// A warp's working memory.
   struct Shared {
     Vec<D> x[clusterSize];
-    ListEntry entry[64];  // candidates near the cluster's bounding box, not yet tested
+    Vec<D> beside[clusterSize];  // the images nearest to the first one
+    std::uint32_t entry[64];     // candidates near the cluster's bounding box, not yet tested
     bool wall[64];
   };
 
@@ -22,7 +23,8 @@ class ClusterCandidates {
                                std::uint32_t first, std::uint32_t count, Shared& shared)
       : grid_(grid), cells_(cells), position_(position), shared_(shared) {
     const std::uint32_t own = threadIdx.x % clusterSize;
-    const Vec<D> x = grid.beside(position[first], position[first + (own < count ? own : count - 1)]);
+    const Vec<D> there = position[first + (own < count ? own : count - 1)],
+                 x = grid.beside(position[first], there);
     for (int k = 0; k < D; ++k) {
       low_[k] = high_[k] = x[k];
       for (int offset = 1; offset < static_cast<int>(clusterSize); offset *= 2) {
@@ -31,80 +33,90 @@ class ClusterCandidates {
       }
     }
     __syncwarp();
-    if (threadIdx.x % 32 < clusterSize) shared.x[own] = x;
+    if (threadIdx.x % 32 < clusterSize) shared.x[own] = there, shared.beside[own] = x;
     __syncwarp();
   }
 
-  /// Calls visit(entry, near, far, wall) with all lanes of the warp, a candidate each: `near` where some particle
-  /// of the cluster lies within radii.near, `far` where not, but within radii.far.
+  /// Calls visit(index, near, far, wall) with all lanes of the warp, a candidate each: `near` where some particle
+  /// of the cluster lies within radii.near, `far` where not, but within radii.far. Returns whether the reach
+  /// crosses a periodic end.
   template <class Visit>
-  __device__ void forEach(const ListRadii& radii, bool fluid, bool walls, Visit&& visit) const {
-    const double reach = fmax(radii.near, radii.far);
-    Vec<D, int> first{}, size{};
-    int cells = 1;
-    for (int k = 0; k < D; ++k) {
-      int a = static_cast<int>(floor((low_[k] - reach - grid_.origin[k]) * grid_.inverseEdge[k]));
-      int b = static_cast<int>(floor((high_[k] + reach - grid_.origin[k]) * grid_.inverseEdge[k]));
-      if (!grid_.periodic[k]) {
-        a = min(max(a, 0), grid_.count[k] - 1);
-        b = min(max(b, 0), grid_.count[k] - 1);
-      }
-      first[k] = a;
-      size[k] = b - a + 1;
-      cells *= size[k];
-    }
+  __device__ bool forEach(const ListRadii& radii, bool fluid, bool walls, Visit&& visit) const {
+    const Reach reach(*this, fmax(radii.near, radii.far));
     // Each lane looks one cell up; then all lanes go through the ranges found.
     int queued = 0;
-    for (int base = 0; base < cells; base += 32) {
-      const Cell mine = lookUp(first, size, base + threadIdx.x % 32, cells, reach);
+    for (int base = 0; base < reach.cells; base += 32) {
+      const Cell mine = lookUp(reach, base + threadIdx.x % 32);
       for (unsigned left = __ballot_sync(~0u, mine.occupied); left != 0; left &= left - 1) {
         const int from = __ffs(left) - 1;
         const auto shared = [&](std::uint32_t v) { return __shfl_sync(~0u, v, from); };
-        const std::uint32_t image = shared(mine.image);
+        Vec<D> shift{};
+        if (reach.wraps)
+          for (int k = 0; k < D; ++k) shift[k] = __shfl_sync(~0u, mine.shift[k], from);
         const std::uint32_t fluidBegin = shared(mine.fluidBegin), fluidEnd = shared(mine.fluidEnd);
         const std::uint32_t wallBegin = shared(mine.wallBegin), wallEnd = shared(mine.wallEnd);
-        if (fluid) collect(fluidBegin, fluidEnd, image, false, radii, queued, visit);
-        if (walls) collect(wallBegin, wallEnd, image, true, radii, queued, visit);
+        if (fluid) collect(fluidBegin, fluidEnd, shift, false, reach, radii, queued, visit);
+        if (walls) collect(wallBegin, wallEnd, shift, true, reach, radii, queued, visit);
       }
     }
-    test(queued, radii, visit);
+    test(queued, reach.wraps, radii, visit);
+    return reach.wraps;
   }
 
  private:
+  /// The cells that the cluster's reach touches, counted on through periodic ends, each once.
+  struct Reach {
+    Vec<D, int> first{}, size{};
+    Vec<D, bool> around{};  // all cells of a periodic axis, each at an image that need not be the nearest
+    int cells = 1;
+    bool wraps = false;  // crosses a periodic end
+    double radius;
+
+    __device__ Reach(const ClusterCandidates& cluster, double radius) : radius(radius) {
+      const CellGrid<D>& grid = cluster.grid_;
+      for (int k = 0; k < D; ++k) {
+        int a = static_cast<int>(floor((cluster.low_[k] - radius - grid.origin[k]) * grid.inverseEdge[k]));
+        int b = static_cast<int>(floor((cluster.high_[k] + radius - grid.origin[k]) * grid.inverseEdge[k]));
+        if (!grid.periodic[k]) {
+          a = min(max(a, 0), grid.count[k] - 1);
+          b = min(max(b, 0), grid.count[k] - 1);
+        }
+        wraps = wraps || a < 0 || b >= grid.count[k];
+        around[k] = grid.periodic[k] && b - a + 1 >= grid.count[k];
+        first[k] = a;
+        size[k] = min(b - a + 1, grid.count[k]);
+        cells *= size[k];
+      }
+    }
+  };
   struct Cell {
     bool occupied = false;
-    std::uint32_t image = 0, fluidBegin = 0, fluidEnd = 0, wallBegin = 0, wallEnd = 0;
+    Vec<D> shift{};  // of its particles, where they are counted on through a periodic end [m]
+    std::uint32_t fluidBegin = 0, fluidEnd = 0, wallBegin = 0, wallEnd = 0;
   };
 
-  __device__ double shiftOf(std::uint32_t image, int k) const {
-    for (int a = 0; a < k; ++a) image /= 3;
-    const std::uint32_t digit = image % 3;
-    return digit == 0 ? 0.0 : digit == 1 ? grid_.length[k] : -grid_.length[k];
-  }
-
-  __device__ Cell lookUp(const Vec<D, int>& first, const Vec<D, int>& size, int index, int cells,
-                         double reach) const {
+  __device__ Cell lookUp(const Reach& reach, int index) const {
     Cell result;
-    if (index >= cells) return result;
+    if (index >= reach.cells) return result;
     Vec<D, int> cell{};
     double distance2 = 0;  // of the cell from the cluster's bounding box
-    for (int k = 0, rest = index; k < D; rest /= size[k], ++k) {
-      const int c = first[k] + rest % size[k];
+    for (int k = 0, rest = index; k < D; rest /= reach.size[k], ++k) {
+      const int c = reach.first[k] + rest % reach.size[k];
       const double lower = grid_.origin[k] + c * grid_.edge[k];
       const double gap = fmax(fmax(lower - high_[k], low_[k] - lower - grid_.edge[k]), 0.0);
-      distance2 += gap * gap;
+      if (!reach.around[k]) distance2 += gap * gap;
       cell[k] = c;
     }
     const Vec<D, int> unwrapped = cell;
-    for (int k = D - 1; k >= 0; --k) {
+    for (int k = 0; k < D; ++k) {
       const int turn = cell[k] < 0 ? -1 : cell[k] >= grid_.count[k] ? 1 : 0;
       cell[k] -= turn * grid_.count[k];
-      result.image = 3 * result.image + (turn < 0 ? 2 : turn);
+      result.shift[k] = turn * grid_.length[k];
     }
     // The margin is for the rounding of the cell's corner. A cluster that a jump of the curve tears apart has a
     // large box with little in reach.
-    const double reach2 = reach * reach * (1 + 1e-9);
-    if (distance2 > reach2 || distanceToCell(unwrapped) > reach2) return result;
+    const double reach2 = reach.radius * reach.radius * (1 + 1e-9);
+    if (distance2 > reach2 || distanceToCell(unwrapped, reach.around) > reach2) return result;
     const std::size_t linear = grid_.linear(cell);
     result.fluidBegin = cells_.fluidBegin[linear], result.fluidEnd = cells_.fluidEnd[linear];
     result.wallBegin = cells_.wallBegin[linear], result.wallEnd = cells_.wallEnd[linear];
@@ -113,12 +125,13 @@ class ClusterCandidates {
   }
 
   /// Square of the distance of a cell from the nearest particle of the cluster [m2].
-  __device__ double distanceToCell(const Vec<D, int>& cell) const {
+  __device__ double distanceToCell(const Vec<D, int>& cell, const Vec<D, bool>& around) const {
     double nearest2 = 1e300;
     for (int t = 0; t < static_cast<int>(clusterSize); ++t) {
       double distance2 = 0;
       for (int k = 0; k < D; ++k) {
-        const double lower = grid_.origin[k] + cell[k] * grid_.edge[k], x = shared_.x[t][k];
+        if (around[k]) continue;
+        const double lower = grid_.origin[k] + cell[k] * grid_.edge[k], x = shared_.beside[t][k];
         const double gap = fmax(fmax(lower - x, x - lower - grid_.edge[k]), 0.0);
         distance2 += gap * gap;
       }
@@ -129,12 +142,11 @@ class ClusterCandidates {
 
   /// Queues the particles of a range that are within reach of the bounding box.
   template <class Visit>
-  __device__ void collect(std::uint32_t begin, std::uint32_t end, std::uint32_t image, bool wall,
-                          const ListRadii& radii, int& queued, Visit&& visit) const {
-    const double reach2 = fmax(radii.near * radii.near, radii.far * radii.far);
+  __device__ void collect(std::uint32_t begin, std::uint32_t end, const Vec<D>& shift, bool wall,
+                          const Reach& reach, const ListRadii& radii, int& queued, Visit&& visit) const {
+    // The margin is for the rounding of the shift.
+    const double reach2 = reach.radius * reach.radius * (1 + 1e-9);
     const int lane = threadIdx.x % 32;
-    Vec<D> shift{};
-    for (int k = 0; k < D; ++k) shift[k] = shiftOf(image, k);
     for (std::uint32_t chunk = begin; chunk < end; chunk += 32) {
       const std::uint32_t j = chunk + lane;
       bool inside = j < end;
@@ -143,19 +155,19 @@ class ClusterCandidates {
         double box2 = 0;
         for (int k = 0; k < D; ++k) {
           const double gap = fmax(fmax(xj[k] - high_[k], low_[k] - xj[k]), 0.0);
-          box2 += gap * gap;
+          if (!reach.around[k]) box2 += gap * gap;
         }
         inside = box2 <= reach2;
       }
       const unsigned lanes = __ballot_sync(~0u, inside);
       if (inside) {
         const int place = queued + __popc(lanes & ((1u << lane) - 1));
-        shared_.entry[place] = ListEntry::make(j, image);
+        shared_.entry[place] = j;
         shared_.wall[place] = wall;
       }
       queued += __popc(lanes);
       if (queued < 32) continue;
-      test(32, radii, visit);
+      test(32, reach.wraps, radii, visit);
       queued -= 32;
       if (lane < queued) {
         shared_.entry[lane] = shared_.entry[lane + 32];
@@ -167,23 +179,24 @@ class ClusterCandidates {
 
   /// Measures the first `count` of the queue against all particles of the cluster.
   template <class Visit>
-  __device__ void test(int count, const ListRadii& radii, Visit&& visit) const {
+  __device__ void test(int count, bool wraps, const ListRadii& radii, Visit&& visit) const {
     __syncwarp();
     const int lane = threadIdx.x % 32;
     double r2 = 1e300;
-    ListEntry e{0};
+    std::uint32_t j = 0;
     bool wall = false;
     if (lane < count) {
-      e = shared_.entry[lane];
+      j = shared_.entry[lane];
       wall = shared_.wall[lane];
-      Vec<D> xj = position_[e.index()];
-      if (e.image() != 0)
-        for (int k = 0; k < D; ++k) xj[k] += shiftOf(e.image(), k);
+      const Vec<D> xj = position_[j];
 #pragma unroll
-      for (int t = 0; t < static_cast<int>(clusterSize); ++t) r2 = fmin(r2, norm2(xj - shared_.x[t]));
+      for (int t = 0; t < static_cast<int>(clusterSize); ++t) {
+        const Vec<D> d = xj - shared_.x[t];
+        r2 = fmin(r2, norm2(wraps ? grid_.nearest(d) : d));
+      }
     }
     const bool near = r2 <= radii.near * radii.near;
-    visit(e, near, !near && r2 <= radii.far * radii.far, wall);
+    visit(j, near, !near && r2 <= radii.far * radii.far, wall);
     __syncwarp();
   }
 

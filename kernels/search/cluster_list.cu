@@ -14,7 +14,7 @@ struct BuildArguments {
   bool onlyNextToFluid;
   std::uint32_t first, last, clusters;
   std::uint64_t* offset;
-  ListEntry* entry;
+  std::uint32_t* entry;
   std::uint8_t* wraps;
 };
 
@@ -34,22 +34,20 @@ __global__ void __launch_bounds__(32 * warpsPerBlock, 6) buildKernel(const __gri
   std::uint64_t next[listSegments] = {};
   if (Fill)
     for (int s = 0; s < listSegments; ++s) next[s] = offset[s];
-  bool wraps = false;
   __shared__ typename ClusterCandidates<D>::Shared shared[warpsPerBlock];
   const ClusterCandidates<D> candidates(a.grid, a.cells, a.position, first, min(clusterSize, a.last - first),
                                         shared[threadIdx.x / 32]);
-  candidates.forEach(a.radii, true, true, [&](ListEntry e, bool near, bool far, bool wall) {
+  const bool wraps = candidates.forEach(a.radii, true, true, [&](std::uint32_t j, bool near, bool far, bool wall) {
     const auto append = [&](ListSegment segment, bool mine) {
       const unsigned lanes = __ballot_sync(~0u, mine);
       std::uint64_t& end = next[static_cast<int>(segment)];
-      if (Fill && mine) a.entry[end + __popc(lanes & before)] = e;
+      if (Fill && mine) a.entry[end + __popc(lanes & before)] = j;
       end += __popc(lanes);
     };
     append(ListSegment::NearFluid, near && !wall);
     append(ListSegment::FarFluid, far && !wall);
     append(ListSegment::NearWall, near && wall);
     append(ListSegment::FarWall, far && wall);
-    wraps |= __any_sync(~0u, (near || far) && e.image() != 0);
   });
   if (Fill || lane != 0) return;
   const bool fluid =

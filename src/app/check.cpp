@@ -21,17 +21,21 @@
 namespace treacle {
 namespace {
 
-void printMemory(const Case& c, ParticleNumbers particles) {
-  print("# memory: about {} needed, {} available\n", bytesText(estimatedMemory(c, particles, false)),
-        bytesText(availableMemory()));
+void printMemory(const Case& c, AnyParticles& particles) {
+  if (leastMemory(c) > availableMemory())
+    return print("# memory: more than {} needed, {} available\n", bytesText(leastMemory(c)),
+                 bytesText(availableMemory()));
+  print("# memory: about {} needed, {} available\n",
+        bytesText(estimatedMemory(c, countsFor(c, particles, false), false)), bytesText(availableMemory()));
   const auto device = deviceFor(BackendChoice::Auto);
-  print("# device memory: about {} needed", bytesText(estimatedDeviceMemory(c, particles)));
+  const MemoryCounts counts = countsFor(c, particles, true);
+  print("# device memory: about {} needed", bytesText(estimatedDeviceMemory(c, counts)));
   if (device) print(", {} available on {}", bytesText(device->freeMemory), device->name);
-  print("; beside it about {} of the host\n", bytesText(estimatedMemory(c, particles, true)));
+  print("; beside it about {} of the host\n", bytesText(estimatedMemory(c, counts, true)));
 }
 
-void printParticles(const Case& c, ParticleNumbers particles, const std::vector<std::uint32_t>& ofBodies) {
-  print("# particles: {} fluid, {} wall\n", particles.fluid, particles.wall);
+void printParticles(const Case& c, AnyParticles& particles, const std::vector<std::uint32_t>& ofBodies) {
+  print("# particles: {} fluid, {} wall\n", particles.numbers().fluid, particles.numbers().wall);
   for (std::size_t b = 0; b < c.bodies.size(); ++b)
     print("#   {} '{}': {}\n", nameOf(c.bodies[b].kind), c.bodies[b].name, ofBodies[b]);
   printMemory(c, particles);
@@ -89,7 +93,8 @@ void checkCommand(const CaseOptions& options) {
   const Case c = readCase(options.file, options.overrides);
   std::vector<std::string> warnings;
   std::vector<std::uint32_t> ofBodies;
-  const ParticleNumbers particles = createParticles(c, warnings, &ofBodies).numbers();
+  requireRoomForParticles(c);
+  AnyParticles particles = createParticles(c, warnings, &ofBodies);
   for (std::string& warning : caseWarnings(c)) warnings.push_back(std::move(warning));
   try {
     requireMemory(c, particles, nullptr);
@@ -97,7 +102,7 @@ void checkCommand(const CaseOptions& options) {
     warnings.push_back(error.what());
   }
   printParticles(c, particles, ofBodies);
-  printTime(c, particles);
+  printTime(c, particles.numbers());
   printNumbers(c);
   print("\n{}", caseText(c));
   flushPrinted();

@@ -122,16 +122,17 @@ void convergenceCommand(const ConvergenceOptions& options) {
   Case c = readCase(options.input.file, overridesOf(options));
   const std::vector<SolverSettings> solvers = comparedSolvers(options, c.method.kind);
   std::vector<std::string> warnings;
+  requireRoomForParticles(c);
   AnyParticles made = createParticles(c, warnings);
   for (std::string& warning : caseWarnings(c)) warnings.push_back(std::move(warning));
   if (!device)
     for (std::string& warning : cpuWarnings(c)) warnings.push_back(std::move(warning));
-  for (Case with = c; const SolverSettings& solver : solvers) {
-    with.solver = solver;
-    requireMemory(with, made.numbers(), device ? &*device : nullptr);
-  }
   Case until = c;
   StartState start = startOf(until, options, std::move(made));
+  for (Case with = c; const SolverSettings& solver : solvers) {
+    with.solver = solver;
+    requireMemory(with, start.particles, device ? &*device : nullptr);
+  }
   if (c.time.stepsVary() && until.time.end > 0) c.time.end = until.time.end;  // the last step is to meet it
   const fs::path directory = directoryOf(options);
   for (const std::string& warning : warnings) printWarning(warning);

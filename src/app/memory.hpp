@@ -2,24 +2,34 @@
 
 #include "treacle/core/cuda.hpp"
 #include "treacle/core/device.hpp"
-#include "treacle/model/any_particles.hpp"
-#include "treacle/model/case.hpp"
+#include "treacle/step/memory_plan.hpp"
 
 #include <cstdint>
 #include <string>
 
 namespace treacle {
 
-/// Memory of the host that a run of the case will need at its peak, from the bytes per particle and search
-/// cell that were measured [B]. `onDevice`: the run computes on a GPU.
-std::uint64_t estimatedMemory(const Case& c, ParticleNumbers particles, bool onDevice);
+/// Before the particles of a case are made, which takes memory itself. Errors: RunError where there is not even
+/// enough for their places.
+void requireRoomForParticles(const Case& c);
+
+/// What a run needs at least, before anything is counted, which takes memory for the cells itself [B].
+std::uint64_t leastMemory(const Case& c);
+
+/// What decides on the memory of a run with these particles, which are sorted on the way. `onDevice`: the run
+/// computes on a GPU.
+MemoryCounts countsFor(const Case& c, AnyParticles& particles, bool onDevice);
+
+/// Memory of the host that a run of the case will need at its peak [B]: the arrays of the simulation, the copies
+/// of its state that are written, and the program.
+std::uint64_t estimatedMemory(const Case& c, const MemoryCounts& counts, bool onDevice);
 
 /// The same for the memory of the GPU.
-std::uint64_t estimatedDeviceMemory(const Case& c, ParticleNumbers particles);
+std::uint64_t estimatedDeviceMemory(const Case& c, const MemoryCounts& counts);
 
-/// `device`: what the run computes on, null for the CPU. Errors: RunError where the case clearly needs more memory
-/// than the host, or the device, has free.
-void requireMemory(const Case& c, ParticleNumbers particles, const DeviceInfo* device);
+/// `device`: what the run computes on, null for the CPU; sorts the particles. Errors: RunError where the case
+/// clearly needs more memory than the host, or the device, has free.
+void requireMemory(const Case& c, AnyParticles& particles, const DeviceInfo* device);
 
 /// What to tell where device memory gave out.
 std::string exhaustedText(const DeviceMemoryNumbers& numbers);

@@ -51,12 +51,13 @@ void runCommand(const RunOptions& options) {
   startThreads(options.threads);
   const Case c = caseOf(options);
   std::vector<std::string> warnings;
+  requireRoomForParticles(c);
   StartState start{createParticles(c, warnings)};
   for (std::string& warning : caseWarnings(c)) warnings.push_back(std::move(warning));
-  requireMemory(c, start.particles.numbers(), device ? &*device : nullptr);
   const auto directory = options.directory.empty() ? options.input.file.stem().concat("-run") : options.directory;
   requireElsewhere(directory, options.resume);
   if (!options.resume.empty()) start = resumedState(c, options.resume, start.particles);
+  requireMemory(c, start.particles, device ? &*device : nullptr);
   catchInterrupts();
   RunDirectory files = RunDirectory::create(directory, options.force);
   if (!device)

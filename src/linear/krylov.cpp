@@ -7,12 +7,12 @@ SolveReport conjugateGradient(Context<Backend>& context, const Product& a, const
                               std::span<const double> b, std::span<double> x, const StoppingRule& rule,
                               KrylovWorkspace<Backend>& workspace, Deflation<Backend>* deflation,
                               const Product* single) {
-  workspace.resize(context, b.size());
-  auto& [r, z, p, q, spare] = workspace.vectors;
+  workspace.resize(context, b.size(), 4);
+  auto& [r, z, p, q, none] = workspace.vectors;
   // z = K r is new in every iteration: nothing to refresh.
   KrylovScalars* scalars = workspace.loop.begin(context, {rule.tolerance, rule.maxIterations, 0, rule.history});
 
-  if (deflation) deflation->prepare(context, a, spare.span());
+  if (deflation) deflation->prepare(context, a, z.span());
   a(x, r.span());
   residual(context, b, r, scalars);
   if (deflation) deflation->guess(context, x, r.span(), scalars);
@@ -27,16 +27,17 @@ SolveReport conjugateGradient(Context<Backend>& context, const Product& a, const
     stepDot(context, p, q, scalars);
     updateCg(context, {p, q, x, r}, scalars);
   });
-  const SolveReport atStart = workspace.loop.report(context);
-  if (atStart.status != SolveStatus::Running) return atStart;
-  return workspace.loop.run(context);
+  SolveReport report = workspace.loop.report(context);
+  if (report.status == SolveStatus::Running) report = workspace.loop.run(context);
+  workspace.giveUp();
+  return report;
 }
 
 template <class Backend>
 SolveReport conjugateResidual(Context<Backend>& context, const Product& a, const Product& k,
                               std::span<const double> b, std::span<double> x, const StoppingRule& rule,
                               KrylovWorkspace<Backend>& workspace) {
-  workspace.resize(context, b.size());
+  workspace.resize(context, b.size(), 5);
   // u = K q and y = A s are never alive together: one vector serves both.
   auto& [r, s, p, q, y] = workspace.vectors;
   auto& u = y;
@@ -59,6 +60,7 @@ SolveReport conjugateResidual(Context<Backend>& context, const Product& a, const
     k(r.span(), s.span());
     report = workspace.loop.run(context);
   } while (report.status == SolveStatus::Refresh);
+  workspace.giveUp();
   return report;
 }
 

@@ -63,6 +63,16 @@ Lattice<D> roundLattice(const Body& body, double spacing) {
 
 }  // namespace
 
+double boxPoints(const Case& c) {
+  std::vector<std::string> notes;
+  double points = 0;
+  for (const Body& body : c.bodies)
+    if (body.shape.kind == ShapeKind::Box && body.where.empty())
+      points += c.dimensions == 2 ? boxLattice<2>(body, c.spacing, notes).points()
+                                  : boxLattice<3>(body, c.spacing, notes).points();
+  return points;
+}
+
 template <int D>
 std::vector<Vec<D>> latticePoints(const Body& body, double spacing, std::vector<std::string>& notes,
                                   const std::function<bool(const Vec<D>&)>& keep) {

@@ -18,8 +18,8 @@ void rowPattern(const MphPairs<D>& pairs, std::uint32_t i, std::vector<std::uint
   const double radius2 = couplingRadius2(pairs);
   columns.clear();
   for (ListSegment s : fluidSegments)
-    forEachEntry(pairs, i, s, [&](ListEntry e, const Vec<D>& d) {
-      if (norm2(d) <= radius2) columns.push_back(e.index());
+    forEachEntry(pairs, i, s, [&](std::uint32_t j, const Vec<D>& d) {
+      if (norm2(d) <= radius2) columns.push_back(j);
     });
   std::sort(columns.begin(), columns.end());
 }
@@ -47,12 +47,12 @@ class RowAssembler {
   void addViscosity(std::uint32_t i, std::span<Block<D>> blocks) {
     const double h2 = pairs_.terms.viscosityRadius * pairs_.terms.viscosityRadius;
     for (ListSegment s : fluidSegments)
-      forEachEntry(pairs_, i, s, [&](ListEntry e, const Vec<D>& d) {
+      forEachEntry(pairs_, i, s, [&](std::uint32_t j, const Vec<D>& d) {
         const double r2 = norm2(d);
         if (r2 >= h2 || r2 == 0) return;
-        const double mu = pairs_.viscosityOf(i, e.index());
+        const double mu = pairs_.viscosityOf(i, j);
         const double c = pairs_.terms.viscous(mu * pairs_.terms.viscousFactor, ExactDistance(r2));
-        blocks[slot_[e.index()]].addOuter(-c, d, d);
+        blocks[slot_[j]].addOuter(-c, d, d);
         blocks[slot_[i]].addOuter(c, d, d);
       });
   }
@@ -144,30 +144,30 @@ void diagonalBlocks(Context<Cpu>&, const MphPairs<D>& pairs, const WallTerms<D>&
   const double floor2 = distanceFloor2(pairs);
   const ClusterListView& list = pairs.fluidList;
   const auto sumUp = [&]<bool Renormalised, bool Scaled>(const auto& mph) {
-    forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const VecLanes<D>& x, std::uint32_t c) {
+    forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const ClusterPlaces<D>& x, std::uint32_t c) {
       const ViscosityLanes<D, Scaled> viscosity(pairs, range);
       Lanes block[D][D] = {};
       VecLanes<D> own = {};
-      const auto add = [&](ListEntry e, bool wall) {
-        const PairLanes<D> pair(pairs.positionOf(e), x, floor2);
+      const auto add = [&](std::uint32_t j, bool wall) {
+        const PairLanes<D> pair(pairs, j, x, floor2);
         const Lanes g = mph.gradient(pair.r);
-        Lanes f = pairs.bulkViscosity(e.index()) * g * g;  // lambda_j C_ij C_ij^T
+        Lanes f = pairs.bulkViscosity(j) * g * g;  // lambda_j C_ij C_ij^T
         if constexpr (Renormalised) {
-          const VecLanes<D> bd = corrected(pairs, e.index(), pair.d);
+          const VecLanes<D> bd = corrected(pairs, j, pair.d);
           for (int r = 0; r < D; ++r)
             for (int k = 0; k < D; ++k) block[r][k] += f * bd[r] * bd[k];
           f = Lanes{};
         }
         if (!wall)  // the viscous part of walls stands in terms.block
-          f += mph.viscous(viscosity.with(e.index()), pair.r);
+          f += mph.viscous(viscosity.with(j), pair.r);
         for (int r = 0; r < D; ++r) {
           own[r] += g * pair.d[r];
           for (int k = 0; k < D; ++k) block[r][k] += f * pair.d[r] * pair.d[k];
         }
       };
-      for (ListEntry e : list.segment(c, ListSegment::NearFluid)) add(e, false);
-      for (ListEntry e : list.segment(c, ListSegment::FarFluid)) add(e, false);
-      for (ListEntry e : list.segment(c, ListSegment::NearWall)) add(e, true);
+      for (std::uint32_t j : list.segment(c, ListSegment::NearFluid)) add(j, false);
+      for (std::uint32_t j : list.segment(c, ListSegment::FarFluid)) add(j, false);
+      for (std::uint32_t j : list.segment(c, ListSegment::NearWall)) add(j, true);
 
       for (std::uint32_t lane = 0; lane < range.count; ++lane) {
         const std::uint32_t i = range.first + lane;

@@ -9,18 +9,18 @@ void shearDissipation(Context<Cpu>&, const MphPairs<D>& pairs, std::span<const V
                       std::span<double> dissipation) {
   const double floor2 = distanceFloor2(pairs);
   const ClusterListView& list = pairs.fluidList;
-  forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const VecLanes<D>& x, std::uint32_t c) {
+  forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const ClusterPlaces<D>& x, std::uint32_t c) {
     const ViscosityLanes<D> viscosity(pairs, range);
     const VecLanes<D> ui = loadLanes<D>(range, u);
     const auto sum = [&](ListSegment segment, bool wall) {
       Lanes total = {};
-      for (ListEntry e : list.segment(c, segment)) {
-        const PairLanes<D> pair(pairs.positionOf(e), x, floor2);
+      for (std::uint32_t j : list.segment(c, segment)) {
+        const PairLanes<D> pair(pairs, j, x, floor2);
         Lanes along = {};
-        for (int k = 0; k < D; ++k) along += (u[e.index()][k] - ui[k]) * pair.d[k];
+        for (int k = 0; k < D; ++k) along += (u[j][k] - ui[k]) * pair.d[k];
         along *= pair.r.inverse;
-        Lanes resistance = viscosity.with(e.index()) * pairs.terms.resistanceShape(pair.r);
-        if (wall) resistance *= wallFactors(pairs, range, e.index(), pair.d);
+        Lanes resistance = viscosity.with(j) * pairs.terms.resistanceShape(pair.r);
+        if (wall) resistance *= wallFactors(pairs, range, j, pair.d);
         total += resistance * along * along;
       }
       return total;
@@ -37,25 +37,24 @@ template <bool Renormalised, int D>
 void sumFluidAtWalls(const MphPairs<D>& pairs, const ClusterListView& walls, std::span<const Vec<D>> u,
                      std::span<const double> pressure, const FluidAtWalls<D>& out) {
   const double floor2 = distanceFloor2(pairs);
-  forEachCluster<D>(pairs, walls, [&](const ClusterRange& range, const VecLanes<D>& x, std::uint32_t c) {
+  forEachCluster<D>(pairs, walls, [&](const ClusterRange& range, const ClusterPlaces<D>& x, std::uint32_t c) {
     const ViscosityLanes<D> viscosity(pairs, range);
     const VecLanes<D> ui = loadLanes<D>(range, u);
     const Lanes qi = loadLanes(range, pressure);
     VecLanes<D> force = {};
     Lanes divergence = {}, density = {};
-    for (ListEntry e : walls.segment(c, ListSegment::NearFluid)) {
-      const PairLanes<D> pair(pairs.positionOf(e), x, floor2);
+    for (std::uint32_t j : walls.segment(c, ListSegment::NearFluid)) {
+      const PairLanes<D> pair(pairs, j, x, floor2);
       Lanes along = {};
-      for (int k = 0; k < D; ++k) along += (u[e.index()][k] - ui[k]) * pair.d[k];
+      for (int k = 0; k < D; ++k) along += (u[j][k] - ui[k]) * pair.d[k];
       const Lanes g = pairs.terms.gradient(pair.r);
-      const Lanes viscous =
-          pairs.terms.viscous(viscosity.with(e.index()), pair.r) * wallFactors(pairs, range, e.index(), pair.d);
+      const Lanes viscous = pairs.terms.viscous(viscosity.with(j), pair.r) * wallFactors(pairs, range, j, pair.d);
       if constexpr (Renormalised) {
-        const VecLanes<D> ofFluid = corrected(pairs, e.index(), pair.d);
+        const VecLanes<D> ofFluid = corrected(pairs, j, pair.d);
         const Lanes f = viscous * along - g * qi;
-        for (int k = 0; k < D; ++k) force[k] += f * pair.d[k] - g * pressure[e.index()] * ofFluid[k];
+        for (int k = 0; k < D; ++k) force[k] += f * pair.d[k] - g * pressure[j] * ofFluid[k];
       } else {
-        const Lanes f = viscous * along - g * (qi + pressure[e.index()]);
+        const Lanes f = viscous * along - g * (qi + pressure[j]);
         for (int k = 0; k < D; ++k) force[k] += f * pair.d[k];
       }
       divergence -= g * along;

@@ -19,28 +19,19 @@ void storeCoefficient(Buffer<double>& values, std::uint64_t entry, Lanes lanes) 
   std::memcpy(values.data() + entry * clusterSize, &lanes, sizeof(lanes));
 }
 
-/// Calls body.operator()<Wraps>(): a list that means no periodic image needs neither codes nor shifts.
+/// Calls body.operator()<Wraps>(): within the domain no pair has to look for its nearest images.
 template <class F>
 void withImages(bool wraps, F&& body) {
   wraps ? body.template operator()<true>() : body.template operator()<false>();
 }
 
-template <bool Wraps>
-std::uint32_t indexOf(ListEntry e) {
-  return Wraps ? e.index() : e.bits;
-}
-
 /// x_j - x_i for the lanes of a cluster.
 template <bool Wraps, int D>
-VecLanes<D> difference(const MphPairs<D>& pairs, ListEntry e, const VecLanes<D>& x) {
+VecLanes<D> difference(const MphPairs<D>& pairs, std::uint32_t j, const VecLanes<D>& x) {
   VecLanes<D> d;
-  if constexpr (Wraps) {
-    const Vec<D> xj = pairs.positionOf(e);
-    for (int k = 0; k < D; ++k) d[k] = xj[k] - x[k];
-  } else {
-    const Vec<D>& xj = pairs.position[e.bits];  // broadcast from memory
-    for (int k = 0; k < D; ++k) d[k] = xj[k] - x[k];
-  }
+  const Vec<D>& xj = pairs.position[j];  // broadcast from memory
+  for (int k = 0; k < D; ++k) d[k] = xj[k] - x[k];
+  if constexpr (Wraps) moveToNearest(pairs.grid, d.c);
   return d;
 }
 
@@ -70,14 +61,14 @@ void MphOperator<D, Cpu>::prepare(Context<Cpu>&, const MphPairs<D>& pairs, const
   countEntries();
   const double floor2 = distanceFloor2(pairs);
   const ClusterListView& list = pairs.fluidList;
-  forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const VecLanes<D>& x, std::uint32_t c) {
+  forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const ClusterPlaces<D>& x, std::uint32_t c) {
     const ViscosityLanes<D> viscosity(pairs, range);
     std::uint64_t nextViscous = viscousStart_[c], nextPressure = pressureStart_[c];
     for (ListSegment s : {ListSegment::NearFluid, ListSegment::FarFluid, ListSegment::NearWall})
-      for (ListEntry e : list.segment(c, s)) {
-        const PairLanes<D> pair(pairs.positionOf(e), x, floor2);
+      for (std::uint32_t j : list.segment(c, s)) {
+        const PairLanes<D> pair(pairs, j, x, floor2);
         if (s != ListSegment::NearWall)
-          storeCoefficient(viscous_, nextViscous++, pairs.terms.viscous(viscosity.with(e.index()), pair.r));
+          storeCoefficient(viscous_, nextViscous++, pairs.terms.viscous(viscosity.with(j), pair.r));
         if (s != ListSegment::FarFluid) storeCoefficient(pressure_, nextPressure++, pairs.terms.gradient(pair.r));
       }
   });
@@ -98,7 +89,7 @@ template <bool Renormalised>
 void MphOperator<D, Cpu>::viscosityAndDivergence(std::span<const Vec<D>> u, std::span<Vec<D>> y) {
   const MphPairs<D>& pairs = *pairs_;
   const ClusterListView& list = pairs.fluidList;
-  forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const VecLanes<D>& x, std::uint32_t c) {
+  forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const ClusterPlaces<D>& x, std::uint32_t c) {
     const VecLanes<D> ui = loadLanes<D>(range, u);
     SymmetricBlock<D, Lanes> b;
     if constexpr (Renormalised) b = loadBlocks<Lanes>(range, pairs.renormalisation);
@@ -106,9 +97,9 @@ void MphOperator<D, Cpu>::viscosityAndDivergence(std::span<const Vec<D>> u, std:
     Lanes divergence = {};
     withImages(list.wraps[c], [&]<bool Wraps>() {
       std::uint64_t nextViscous = viscousStart_[c], nextPressure = pressureStart_[c];
-      const auto add = [&](ListEntry e, bool near) {
-        const VecLanes<D> d = difference<Wraps, D>(pairs, e, x);
-        const Vec<D>& uj = u[indexOf<Wraps>(e)];
+      const auto add = [&](std::uint32_t j, bool near) {
+        const VecLanes<D> d = difference<Wraps, D>(pairs, j, x.x);
+        const Vec<D>& uj = u[j];
         Lanes along = (uj[0] - ui[0]) * d[0];
         for (int k = 1; k < D; ++k) along += (uj[k] - ui[k]) * d[k];
         if (near) {
@@ -124,8 +115,8 @@ void MphOperator<D, Cpu>::viscosityAndDivergence(std::span<const Vec<D>> u, std:
         const Lanes f = loadCoefficient(viscous_, nextViscous++) * along;
         for (int k = 0; k < D; ++k) force[k] += f * d[k];
       };
-      for (ListEntry e : list.segment(c, ListSegment::NearFluid)) add(e, true);
-      for (ListEntry e : list.segment(c, ListSegment::FarFluid)) add(e, false);
+      for (std::uint32_t j : list.segment(c, ListSegment::NearFluid)) add(j, true);
+      for (std::uint32_t j : list.segment(c, ListSegment::FarFluid)) add(j, false);
     });
     for (std::uint32_t lane = 0; lane < range.count; ++lane) {
       const std::uint32_t i = range.first + lane;
@@ -149,11 +140,11 @@ void MphOperator<D, Cpu>::wallDivergence(std::span<const Vec<D>> u) {
     const auto entries = list.segment(static_cast<std::uint32_t>(c), ListSegment::NearFluid);
     Lanes sum = {};
     if (!entries.empty()) {
-      const VecLanes<D> x = loadPositions<D>(range, pairs.position, pairs.grid);
-      for (ListEntry e : entries) {
-        const PairLanes<D> pair(pairs.positionOf(e), x, floor2);
+      const ClusterPlaces<D> x{loadLanes<D>(range, pairs.position), list.wraps[c] != 0};
+      for (std::uint32_t j : entries) {
+        const PairLanes<D> pair(pairs, j, x, floor2);
         Lanes along = {};
-        for (int k = 0; k < D; ++k) along += u[e.index()][k] * pair.d[k];
+        for (int k = 0; k < D; ++k) along += u[j][k] * pair.d[k];
         sum -= pairs.terms.gradient(pair.r) * along;
       }
       for (std::uint32_t lane = 0; lane < range.count; ++lane)
@@ -169,17 +160,16 @@ template <bool Renormalised>
 void MphOperator<D, Cpu>::addGradient(std::span<Vec<D>> y) {
   const MphPairs<D>& pairs = *pairs_;
   const ClusterListView& list = pairs.fluidList;
-  forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const VecLanes<D>& x, std::uint32_t c) {
+  forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const ClusterPlaces<D>& x, std::uint32_t c) {
     const Lanes qi = loadLanes(range, q_.span());
     VecLanes<D> sum = {};
     withImages(list.wraps[c], [&]<bool Wraps>() {
       std::uint64_t next = pressureStart_[c];
       if constexpr (Renormalised) {
         VecLanes<D> own = {};  // of g d, which meets the particle's own q_i B_i
-        const auto add = [&](ListEntry e, bool wall) {
-          const std::uint32_t j = indexOf<Wraps>(e);
+        const auto add = [&](std::uint32_t j, bool wall) {
           const Lanes g = loadCoefficient(pressure_, next++);
-          VecLanes<D> gd = difference<Wraps, D>(pairs, e, x), gqd;
+          VecLanes<D> gd = difference<Wraps, D>(pairs, j, x.x), gqd;
           for (int k = 0; k < D; ++k) {
             gd[k] *= g;
             own[k] += gd[k];
@@ -187,16 +177,16 @@ void MphOperator<D, Cpu>::addGradient(std::span<Vec<D>> y) {
           }
           for (int k = 0; k < D; ++k) sum[k] += wall ? gqd[k] : pairs.renormalisation[j].row(k, gqd);
         };
-        for (ListEntry e : list.segment(c, ListSegment::NearFluid)) add(e, false);
-        for (ListEntry e : list.segment(c, ListSegment::NearWall)) add(e, true);
+        for (std::uint32_t j : list.segment(c, ListSegment::NearFluid)) add(j, false);
+        for (std::uint32_t j : list.segment(c, ListSegment::NearWall)) add(j, true);
         const SymmetricBlock<D, Lanes> b = loadBlocks<Lanes>(range, pairs.renormalisation);
         for (int k = 0; k < D; ++k) sum[k] += qi * b.row(k, own);
         return;
       }
       for (ListSegment s : {ListSegment::NearFluid, ListSegment::NearWall})
-        for (ListEntry e : list.segment(c, s)) {
-          const Lanes f = loadCoefficient(pressure_, next++) * (qi + q_[indexOf<Wraps>(e)]);
-          const VecLanes<D> d = difference<Wraps, D>(pairs, e, x);
+        for (std::uint32_t j : list.segment(c, s)) {
+          const Lanes f = loadCoefficient(pressure_, next++) * (qi + q_[j]);
+          const VecLanes<D> d = difference<Wraps, D>(pairs, j, x.x);
           for (int k = 0; k < D; ++k) sum[k] += f * d[k];
         }
     });

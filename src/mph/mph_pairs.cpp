@@ -12,7 +12,6 @@ MphPairs<D> makeMphPairs(const Case& c) {
   MphPairs<D> pairs;
   pairs.spacing = c.spacing;
   pairs.grid = CellGrid<D>::make(resized<D>(c.domain.min), resized<D>(c.domain.max), periodic, c.searchEdge());
-  pairs.images = periodicImages(pairs.grid);
   const auto pressureWeight = Weight<D>::make(hp, c.spacing, c.method.pressureWeight);
   pairs.terms = MphTerms<D>::make(pressureWeight, c.method.viscosityWeight, hv, c.spacing);
   // A lattice's sum is not quite the integral. Where B is to make the gradient exact, a full lattice needs none.

@@ -10,13 +10,13 @@ template <int D>
 void addForce(const MphPairs<D>& pairs, const ClusterListView& list, std::span<const ListSegment> segments,
               double rate, std::span<Vec<D>> y) {
   const double floor2 = distanceFloor2(pairs);
-  forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const VecLanes<D>& x, std::uint32_t c) {
+  forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const ClusterPlaces<D>& x, std::uint32_t c) {
     const ViscosityLanes<D> viscosity(pairs, range);
     VecLanes<D> sum = {};
     for (ListSegment s : segments)
-      for (ListEntry e : list.segment(c, s)) {
-        const PairLanes<D> pair(pairs.positionOf(e), x, floor2);
-        const Lanes f = viscosity.with(e.index()) * pairs.terms.repulsionShape(pair.r);
+      for (std::uint32_t j : list.segment(c, s)) {
+        const PairLanes<D> pair(pairs, j, x, floor2);
+        const Lanes f = viscosity.with(j) * pairs.terms.repulsionShape(pair.r);
         for (int k = 0; k < D; ++k) sum[k] += f * pair.d[k];
       }
     const ClusterRange place(range.first - list.first, range.first - list.first + range.count);
@@ -45,16 +45,16 @@ void repulsionPower(Context<Cpu>&, const MphPairs<D>& pairs, double rate, std::s
                     std::span<double> power) {
   const double floor2 = distanceFloor2(pairs);
   const ClusterListView& list = pairs.fluidList;
-  forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const VecLanes<D>& x, std::uint32_t c) {
+  forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const ClusterPlaces<D>& x, std::uint32_t c) {
     const ViscosityLanes<D> viscosity(pairs, range);
     const VecLanes<D> ui = loadLanes<D>(range, u);
     const auto sum = [&](ListSegment segment) {
       Lanes total = {};
-      for (ListEntry e : list.segment(c, segment)) {
-        const PairLanes<D> pair(pairs.positionOf(e), x, floor2);
+      for (std::uint32_t j : list.segment(c, segment)) {
+        const PairLanes<D> pair(pairs, j, x, floor2);
         Lanes along = {};
-        for (int k = 0; k < D; ++k) along += (u[e.index()][k] - ui[k]) * pair.d[k];
-        total += viscosity.with(e.index()) * pairs.terms.repulsionShape(pair.r) * along;
+        for (int k = 0; k < D; ++k) along += (u[j][k] - ui[k]) * pair.d[k];
+        total += viscosity.with(j) * pairs.terms.repulsionShape(pair.r) * along;
       }
       return total;
     };

@@ -12,22 +12,22 @@ constexpr ListSegment wallSegments[] = {ListSegment::NearWall, ListSegment::FarW
 
 /// C q / gradientFactor of the particles of a cluster of fluid.
 template <bool Renormalised, int D>
-VecLanes<D> pressureGradient(const MphPairs<D>& pairs, const ClusterRange& range, const VecLanes<D>& x,
+VecLanes<D> pressureGradient(const MphPairs<D>& pairs, const ClusterRange& range, const ClusterPlaces<D>& x,
                              std::uint32_t c, std::span<const double> q) {
   const double floor2 = distanceFloor2(pairs);
   const Lanes qi = loadLanes(range, q);
   VecLanes<D> sum = {}, own = {};  // own: of g d, which meets q_i B_i
   for (ListSegment s : nearSegments)
-    for (ListEntry e : pairs.fluidList.segment(c, s)) {
-      const PairLanes<D> pair(pairs.positionOf(e), x, floor2);
+    for (std::uint32_t j : pairs.fluidList.segment(c, s)) {
+      const PairLanes<D> pair(pairs, j, x, floor2);
       if constexpr (Renormalised) {
         const Lanes g = pairs.terms.gradientShape(pair.r);
         VecLanes<D> gd;
         for (int k = 0; k < D; ++k) own[k] += gd[k] = g * pair.d[k];
-        const VecLanes<D> ofOther = corrected(pairs, e.index(), gd);
-        for (int k = 0; k < D; ++k) sum[k] += q[e.index()] * ofOther[k];
+        const VecLanes<D> ofOther = corrected(pairs, j, gd);
+        for (int k = 0; k < D; ++k) sum[k] += q[j] * ofOther[k];
       } else {
-        const Lanes f = pairs.terms.gradientShape(pair.r) * (qi + q[e.index()]);
+        const Lanes f = pairs.terms.gradientShape(pair.r) * (qi + q[j]);
         for (int k = 0; k < D; ++k) sum[k] += f * pair.d[k];
       }
     }
@@ -43,20 +43,20 @@ template <bool Renormalised, int D>
 void divergenceOf(const MphPairs<D>& pairs, const ClusterListView& list, std::span<const Vec<D>> u,
                   std::span<double> div) {
   const double floor2 = distanceFloor2(pairs);
-  forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const VecLanes<D>& x, std::uint32_t c) {
+  forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const ClusterPlaces<D>& x, std::uint32_t c) {
     const VecLanes<D> ui = loadLanes<D>(range, u);
     SymmetricBlock<D, Lanes> b;
     if constexpr (Renormalised) b = loadBlocks<Lanes>(range, pairs.renormalisation);
     Lanes sum = {};
     for (ListSegment s : nearSegments)
-      for (ListEntry e : list.segment(c, s)) {
-        const PairLanes<D> pair(pairs.positionOf(e), x, floor2);
+      for (std::uint32_t j : list.segment(c, s)) {
+        const PairLanes<D> pair(pairs, j, x, floor2);
         Lanes along = {};
         for (int k = 0; k < D; ++k) {
           if constexpr (Renormalised)
-            along += (u[e.index()][k] - ui[k]) * b.row(k, pair.d);
+            along += (u[j][k] - ui[k]) * b.row(k, pair.d);
           else
-            along += (u[e.index()][k] - ui[k]) * pair.d[k];
+            along += (u[j][k] - ui[k]) * pair.d[k];
         }
         sum -= pairs.terms.gradientShape(pair.r) * along;
       }
@@ -72,13 +72,13 @@ void numberDensity(Context<Cpu>&, const MphPairs<D>& pairs, std::span<double> n)
   std::span<const ListSegment> segments = nearSegments;
   if (pairs.terms.densityRadius > pairs.terms.pressureRadius) segments = allSegments;
   for (const ClusterListView& list : {pairs.fluidList, pairs.wallList})
-    forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const VecLanes<D>& x, std::uint32_t c) {
+    forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const ClusterPlaces<D>& x, std::uint32_t c) {
       Lanes sum = {};
       for (ListSegment s : segments)
-        for (ListEntry e : list.segment(c, s)) {
-          const PairLanes<D> pair(pairs.positionOf(e), x, floor2);
+        for (std::uint32_t j : list.segment(c, s)) {
+          const PairLanes<D> pair(pairs, j, x, floor2);
           Lanes w = pairs.terms.density(pairs.terms.densityFactor, pair.r);
-          const std::uint32_t self = e.index() - range.first;
+          const std::uint32_t self = j - range.first;
           if (self < clusterSize) w[self] = 0;  // a particle is not its own neighbour
           sum += w;
         }
@@ -90,11 +90,11 @@ template <int D>
 void wallDensity(Context<Cpu>&, const MphPairs<D>& pairs, std::span<double> n) {
   const double floor2 = distanceFloor2(pairs);
   const ClusterListView& list = pairs.fluidList;
-  forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const VecLanes<D>& x, std::uint32_t c) {
+  forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const ClusterPlaces<D>& x, std::uint32_t c) {
     Lanes sum = {};
     for (ListSegment s : wallSegments)
-      for (ListEntry e : list.segment(c, s))
-        sum += pairs.terms.density(pairs.terms.densityFactor, PairLanes<D>(pairs.positionOf(e), x, floor2).r);
+      for (std::uint32_t j : list.segment(c, s))
+        sum += pairs.terms.density(pairs.terms.densityFactor, PairLanes<D>(pairs, j, x, floor2).r);
     storeLanes(range, sum, n);
   });
 }
@@ -103,7 +103,7 @@ template <int D>
 void addPressureGradient(Context<Cpu>&, const MphPairs<D>& pairs, std::span<const double> q, double factor,
                          std::span<Vec<D>> y) {
   const ClusterListView& list = pairs.fluidList;
-  forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const VecLanes<D>& x, std::uint32_t c) {
+  forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const ClusterPlaces<D>& x, std::uint32_t c) {
     const VecLanes<D> sum = pairs.renormalisation ? pressureGradient<true>(pairs, range, x, c, q)
                                                   : pressureGradient<false>(pairs, range, x, c, q);
     VecLanes<D> yi = loadLanes<D>(range, std::span<const Vec<D>>(y));
@@ -123,15 +123,14 @@ template <int D>
 void wallTerms(Context<Cpu>&, const MphPairs<D>& pairs, const WallTerms<D>& terms) {
   const double floor2 = distanceFloor2(pairs);
   const ClusterListView& list = pairs.fluidList;
-  forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const VecLanes<D>& x, std::uint32_t c) {
+  forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const ClusterPlaces<D>& x, std::uint32_t c) {
     const ViscosityLanes<D> viscosity(pairs, range);
     Lanes block[D][D] = {};
     VecLanes<D> gradient = {};
     for (ListSegment s : wallSegments)
-      for (ListEntry e : list.segment(c, s)) {
-        const PairLanes<D> pair(pairs.positionOf(e), x, floor2);
-        const Lanes f =
-            pairs.terms.viscous(viscosity.with(e.index()), pair.r) * wallFactors(pairs, range, e.index(), pair.d);
+      for (std::uint32_t j : list.segment(c, s)) {
+        const PairLanes<D> pair(pairs, j, x, floor2);
+        const Lanes f = pairs.terms.viscous(viscosity.with(j), pair.r) * wallFactors(pairs, range, j, pair.d);
         const Lanes g = pairs.terms.gradient(pair.r);
         for (int r = 0; r < D; ++r) {
           gradient[r] += g * pair.d[r];
@@ -155,16 +154,16 @@ template <int D>
 void addWallDrag(Context<Cpu>&, const MphPairs<D>& pairs, std::span<const Vec<D>> u, std::span<Vec<D>> y) {
   const double floor2 = distanceFloor2(pairs);
   const ClusterListView& list = pairs.fluidList;
-  forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const VecLanes<D>& x, std::uint32_t c) {
+  forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const ClusterPlaces<D>& x, std::uint32_t c) {
     const ViscosityLanes<D> viscosity(pairs, range);
     VecLanes<D> yi = loadLanes<D>(range, std::span<const Vec<D>>(y));
     for (ListSegment s : wallSegments)
-      for (ListEntry e : list.segment(c, s)) {
-        const PairLanes<D> pair(pairs.positionOf(e), x, floor2);
+      for (std::uint32_t j : list.segment(c, s)) {
+        const PairLanes<D> pair(pairs, j, x, floor2);
         Lanes along = {};
-        for (int k = 0; k < D; ++k) along += pair.d[k] * u[e.index()][k];
-        const Lanes f = pairs.terms.viscous(viscosity.with(e.index()), pair.r) *
-                        wallFactors(pairs, range, e.index(), pair.d) * along;
+        for (int k = 0; k < D; ++k) along += pair.d[k] * u[j][k];
+        const Lanes f =
+            pairs.terms.viscous(viscosity.with(j), pair.r) * wallFactors(pairs, range, j, pair.d) * along;
         for (int k = 0; k < D; ++k) yi[k] += f * pair.d[k];
       }
     storeLanes<D>(range, yi, y);

@@ -7,11 +7,11 @@ template <int D>
 void renormalisation(Context<Cpu>&, const MphPairs<D>& pairs, std::span<SymmetricBlock<D>> b) {
   const double floor2 = distanceFloor2(pairs);
   const ClusterListView& list = pairs.fluidList;
-  forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const VecLanes<D>& x, std::uint32_t c) {
+  forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const ClusterPlaces<D>& x, std::uint32_t c) {
     Lanes moment[SymmetricBlock<D>::size] = {};
     for (ListSegment s : {ListSegment::NearFluid, ListSegment::NearWall})
-      for (ListEntry e : list.segment(c, s)) {
-        const PairLanes<D> pair(pairs.positionOf(e), x, floor2);
+      for (std::uint32_t j : list.segment(c, s)) {
+        const PairLanes<D> pair(pairs, j, x, floor2);
         const Lanes g = pairs.terms.gradient(pair.r);
         for (int r = 0, at = 0; r < D; ++r)
           for (int k = r; k < D; ++k) moment[at++] += g * pair.d[r] * pair.d[k];

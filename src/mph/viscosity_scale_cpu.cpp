@@ -7,12 +7,12 @@ template <int D>
 void viscosityScale(Context<Cpu>&, const MphPairs<D>& pairs, double correction, std::span<double> scale) {
   const double floor2 = distanceFloor2(pairs);
   const ClusterListView& list = pairs.fluidList;
-  forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const VecLanes<D>& x, std::uint32_t c) {
+  forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const ClusterPlaces<D>& x, std::uint32_t c) {
     Lanes sum = {};
     for (ListSegment s :
          {ListSegment::NearFluid, ListSegment::FarFluid, ListSegment::NearWall, ListSegment::FarWall})
-      for (ListEntry e : list.segment(c, s)) {
-        const PairLanes<D> pair(pairs.positionOf(e), x, floor2);
+      for (std::uint32_t j : list.segment(c, s)) {
+        const PairLanes<D> pair(pairs, j, x, floor2);
         Lanes r2 = {};
         for (int k = 0; k < D; ++k) r2 += pair.d[k] * pair.d[k];
         sum += pairs.terms.resistanceShape(pair.r) * r2;

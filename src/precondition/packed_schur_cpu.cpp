@@ -66,31 +66,33 @@ void ParticleProducts<D, T, Cpu>::pack() {
   unit_ = 0;
   if (projectionConstants(pairs).stiffness > mostStiffness<D>) return;
   const double floor2 = distanceFloor2(pairs), unit = largestElement(pairs) / Element::largest;
+  const auto gradient = gradientWithin(pairs, productReach<T>(pairs));
   unit_ = static_cast<T>(unit / Element::unitOfUnpacked);
   allocate(gradientRows_, pairs.fluidList, {NearFluid, NearWall});
   allocate(divergenceRows_, pairs.fluidList, {NearFluid});
   allocate(wallRows_, pairs.wallList, {NearFluid});
-  forEachCluster<D>(pairs, pairs.fluidList, [&](const ClusterRange& range, const VecLanes<D>& x, std::uint32_t c) {
-    PackedWriter<D> gradient(gradientRows_, c), divergence(divergenceRows_, c);
-    SymmetricBlock<D, Lanes> b = {};
-    if (pairs.renormalisation) b = loadBlocks<Lanes>(range, pairs.renormalisation);
-    for (ListSegment s : {NearFluid, NearWall})
-      for (ListEntry e : pairs.fluidList.segment(c, s)) {
-        const PairLanes<D> pair(pairs.positionOf(e), x, floor2);
-        const Lanes g = pairs.terms.gradient(pair.r) / unit;
-        gradient.add(e.index(), Element::pack(corrected(pairs, e.index(), pair.d), g));
-        if (s == NearWall) continue;
-        VecLanes<D> bd = pair.d;
-        if (pairs.renormalisation)
-          for (int k = 0; k < D; ++k) bd[k] = b.row(k, pair.d);
-        divergence.add(e.index(), Element::pack(bd, -g));
-      }
-  });
-  forEachCluster<D>(pairs, pairs.wallList, [&](const ClusterRange&, const VecLanes<D>& x, std::uint32_t c) {
+  forEachCluster<D>(pairs, pairs.fluidList,
+                    [&](const ClusterRange& range, const ClusterPlaces<D>& x, std::uint32_t c) {
+                      PackedWriter<D> columns(gradientRows_, c), divergence(divergenceRows_, c);
+                      SymmetricBlock<D, Lanes> b = {};
+                      if (pairs.renormalisation) b = loadBlocks<Lanes>(range, pairs.renormalisation);
+                      for (ListSegment s : {NearFluid, NearWall})
+                        for (std::uint32_t j : pairs.fluidList.segment(c, s)) {
+                          const PairLanes<D> pair(pairs, j, x, floor2);
+                          const Lanes g = gradient(pair.r) / unit;
+                          columns.add(j, Element::pack(corrected(pairs, j, pair.d), g));
+                          if (s == NearWall) continue;
+                          VecLanes<D> bd = pair.d;
+                          if (pairs.renormalisation)
+                            for (int k = 0; k < D; ++k) bd[k] = b.row(k, pair.d);
+                          divergence.add(j, Element::pack(bd, -g));
+                        }
+                    });
+  forEachCluster<D>(pairs, pairs.wallList, [&](const ClusterRange&, const ClusterPlaces<D>& x, std::uint32_t c) {
     PackedWriter<D> divergence(wallRows_, c);
-    for (ListEntry e : pairs.wallList.segment(c, NearFluid)) {
-      const PairLanes<D> pair(pairs.positionOf(e), x, floor2);
-      divergence.add(e.index(), Element::pack(pair.d, -pairs.terms.gradient(pair.r) / unit));
+    for (std::uint32_t j : pairs.wallList.segment(c, NearFluid)) {
+      const PairLanes<D> pair(pairs, j, x, floor2);
+      divergence.add(j, Element::pack(pair.d, -gradient(pair.r) / unit));
     }
   });
 }

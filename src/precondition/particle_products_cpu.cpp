@@ -6,24 +6,14 @@
 namespace treacle {
 namespace {
 
-/// Positions of the clusters of a list, beside the cluster's first particle as the list sees them: which image
-/// that is, is decided in double precision.
+/// Positions of the clusters of a list.
 template <int D, class T>
-void positionLanes(const MphPairs<D>& pairs, const ClusterListView& list, const Buffer<Vec<D, T>>& position,
-                   Buffer<T>& lanes) {
+void positionLanes(const ClusterListView& list, const Buffer<Vec<D, T>>& position, Buffer<T>& lanes) {
   lanes.resize(std::size_t{D} * clusterSize * list.clusterCount());
   parallelFor(list.clusterCount(), parallelGrain / clusterSize, [&](std::size_t c) {
     const ClusterRange range(list, static_cast<std::uint32_t>(c));
-    for (std::uint32_t lane = 0; lane < clusterSize; ++lane) {
-      const std::uint32_t i = range.particle(lane);
-      const Vec<D>& there = pairs.position[i];
-      const Vec<D> here = pairs.grid.beside(pairs.position[range.first], there);
-      for (int k = 0; k < D; ++k) {
-        const T length = static_cast<T>(pairs.grid.length[k]);
-        const T shift = here[k] < there[k] ? -length : here[k] > there[k] ? length : 0;
-        lanes[(c * D + k) * clusterSize + lane] = position[i][k] + shift;
-      }
-    }
+    for (std::uint32_t lane = 0; lane < clusterSize; ++lane)
+      for (int k = 0; k < D; ++k) lanes[(c * D + k) * clusterSize + lane] = position[range.particle(lane)][k];
   });
 }
 
@@ -58,35 +48,35 @@ void ParticleProducts<D, T, Cpu>::prepare(Context<Cpu>&, const MphPairs<D>& pair
   selfBlock_.resize(pairs.fluidCount);
   for (Buffer<T>& field : scalars_) field.resize(pairs.activeCount);
   vectors_.resize(pairs.fluidCount);
-  positionLanes(pairs, pairs.fluidList, position_, fluidLanes_);
-  positionLanes(pairs, pairs.wallList, position_, wallLanes_);
-  const double floor2 = distanceFloor2(pairs), reach = productReach<T>(pairs) * pairs.terms.pressureRadius;
-  const auto gradient = [&pairs, reach2 = reach * reach](const PairDistance<Lanes>& r) {
-    return r.square < reach2 ? pairs.terms.gradient(r) : Lanes{};
-  };
+  positionLanes(pairs.fluidList, position_, fluidLanes_);
+  positionLanes(pairs.wallList, position_, wallLanes_);
+  const double floor2 = distanceFloor2(pairs);
+  const auto gradient = gradientWithin(pairs, productReach<T>(pairs));
 
-  forEachCluster<D>(pairs, pairs.fluidList, [&](const ClusterRange& range, const VecLanes<D>& x, std::uint32_t c) {
-    const ViscosityLanes<D> viscosity(pairs, range);
-    std::uint64_t nextViscous = viscousStart_[c], nextPressure = pressureStart_[c];
-    Lanes self[D * D] = {};
-    for (ListSegment s : {NearFluid, FarFluid, NearWall})
-      for (ListEntry e : pairs.fluidList.segment(c, s)) {
-        const PairLanes<D> pair(pairs.positionOf(e), x, floor2);
-        if (s != FarFluid) storeCoefficient(pressure_, nextPressure++, gradient(pair.r));
-        if (s == NearWall) continue;
-        const Lanes f = pairs.terms.viscous(viscosity.with(e.index()), pair.r);
-        storeCoefficient(viscous_, nextViscous++, f);
-        for (int r = 0; r < D; ++r)
-          for (int k = 0; k < D; ++k) self[r * D + k] += f * pair.d[r] * pair.d[k];
-      }
-    for (std::uint32_t lane = 0; lane < range.count; ++lane)
-      for (int e = 0; e < D * D; ++e)
-        selfBlock_[range.first + lane].a[e] = static_cast<T>(terms.block[range.first + lane].a[e] + self[e][lane]);
-  });
-  forEachCluster<D>(pairs, pairs.wallList, [&](const ClusterRange&, const VecLanes<D>& x, std::uint32_t c) {
+  forEachCluster<D>(pairs, pairs.fluidList,
+                    [&](const ClusterRange& range, const ClusterPlaces<D>& x, std::uint32_t c) {
+                      const ViscosityLanes<D> viscosity(pairs, range);
+                      std::uint64_t nextViscous = viscousStart_[c], nextPressure = pressureStart_[c];
+                      Lanes self[D * D] = {};
+                      for (ListSegment s : {NearFluid, FarFluid, NearWall})
+                        for (std::uint32_t j : pairs.fluidList.segment(c, s)) {
+                          const PairLanes<D> pair(pairs, j, x, floor2);
+                          if (s != FarFluid) storeCoefficient(pressure_, nextPressure++, gradient(pair.r));
+                          if (s == NearWall) continue;
+                          const Lanes f = pairs.terms.viscous(viscosity.with(j), pair.r);
+                          storeCoefficient(viscous_, nextViscous++, f);
+                          for (int r = 0; r < D; ++r)
+                            for (int k = 0; k < D; ++k) self[r * D + k] += f * pair.d[r] * pair.d[k];
+                        }
+                      for (std::uint32_t lane = 0; lane < range.count; ++lane)
+                        for (int e = 0; e < D * D; ++e)
+                          selfBlock_[range.first + lane].a[e] =
+                              static_cast<T>(terms.block[range.first + lane].a[e] + self[e][lane]);
+                    });
+  forEachCluster<D>(pairs, pairs.wallList, [&](const ClusterRange&, const ClusterPlaces<D>& x, std::uint32_t c) {
     std::uint64_t next = wallStart_[c];
-    for (ListEntry e : pairs.wallList.segment(c, NearFluid)) {
-      const PairLanes<D> pair(pairs.positionOf(e), x, floor2);
+    for (std::uint32_t j : pairs.wallList.segment(c, NearFluid)) {
+      const PairLanes<D> pair(pairs, j, x, floor2);
       storeCoefficient(wall_, next++, gradient(pair.r));
     }
   });

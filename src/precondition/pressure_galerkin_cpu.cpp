@@ -36,37 +36,38 @@ template <bool Renormalised, int D, class T>
 void pressureColumns(const MphPairs<D>& pairs, const HatCells<D>& cells, Buffer<Vec<D, T>>& columns) {
   columns.resize(std::size_t{slots<D>} * pairs.fluidCount);
   const double floor2 = distanceFloor2(pairs);
-  forEachCluster<D>(pairs, pairs.fluidList, [&](const ClusterRange& range, const VecLanes<D>& x, std::uint32_t c) {
-    VecLanes<D> s, own = {}, sum[slots<D>] = {};
-    for (std::uint32_t lane = 0; lane < clusterSize; ++lane) {
-      const Vec<D>& xi = pairs.position[range.particle(lane)];
-      const Vec<D, int> cell = cells.grid.cellOf(xi);
-      const Vec<D> place = cells.fraction(xi, cell);
-      const Vec<D, int> lowest = cells.lowestNode(cell, place);
-      for (int k = 0; k < D; ++k) s[k][lane] = place[k] + cell[k] - lowest[k];
-    }
-    for (ListSegment segment : {ListSegment::NearFluid, ListSegment::NearWall})
-      for (ListEntry e : pairs.fluidList.segment(c, segment)) {
-        const PairLanes<D> pair(pairs.positionOf(e), x, floor2);
-        const Lanes g = pairs.terms.gradient(pair.r);
-        VecLanes<D> gd, other;
-        for (int k = 0; k < D; ++k) {
-          own[k] += gd[k] = g * pair.d[k];
-          other[k] = s[k] + pair.d[k] * pairs.grid.inverseEdge[k];
+  forEachCluster<D>(
+      pairs, pairs.fluidList, [&](const ClusterRange& range, const ClusterPlaces<D>& x, std::uint32_t c) {
+        VecLanes<D> s, own = {}, sum[slots<D>] = {};
+        for (std::uint32_t lane = 0; lane < clusterSize; ++lane) {
+          const Vec<D>& xi = pairs.position[range.particle(lane)];
+          const Vec<D, int> cell = cells.grid.cellOf(xi);
+          const Vec<D> place = cells.fraction(xi, cell);
+          const Vec<D, int> lowest = cells.lowestNode(cell, place);
+          for (int k = 0; k < D; ++k) s[k][lane] = place[k] + cell[k] - lowest[k];
         }
-        addHats<D>(other, Renormalised ? corrected(pairs, e.index(), gd) : gd, sum);
-      }
-    if constexpr (Renormalised) {
-      const SymmetricBlock<D, Lanes> b = loadBlocks<Lanes>(range, pairs.renormalisation);
-      const VecLanes<D> plain = own;
-      for (int k = 0; k < D; ++k) own[k] = b.row(k, plain);
-    }
-    addHats<D>(s, own, sum);
-    for (std::uint32_t lane = 0; lane < range.count; ++lane)
-      for (int n = 0; n < slots<D>; ++n)
-        for (int k = 0; k < D; ++k)
-          columns[(range.first + lane) * std::size_t{slots<D>} + n][k] = static_cast<T>(sum[n][k][lane]);
-  });
+        for (ListSegment segment : {ListSegment::NearFluid, ListSegment::NearWall})
+          for (std::uint32_t j : pairs.fluidList.segment(c, segment)) {
+            const PairLanes<D> pair(pairs, j, x, floor2);
+            const Lanes g = pairs.terms.gradient(pair.r);
+            VecLanes<D> gd, other;
+            for (int k = 0; k < D; ++k) {
+              own[k] += gd[k] = g * pair.d[k];
+              other[k] = s[k] + pair.d[k] * pairs.grid.inverseEdge[k];
+            }
+            addHats<D>(other, Renormalised ? corrected(pairs, j, gd) : gd, sum);
+          }
+        if constexpr (Renormalised) {
+          const SymmetricBlock<D, Lanes> b = loadBlocks<Lanes>(range, pairs.renormalisation);
+          const VecLanes<D> plain = own;
+          for (int k = 0; k < D; ++k) own[k] = b.row(k, plain);
+        }
+        addHats<D>(s, own, sum);
+        for (std::uint32_t lane = 0; lane < range.count; ++lane)
+          for (int n = 0; n < slots<D>; ++n)
+            for (int k = 0; k < D; ++k)
+              columns[(range.first + lane) * std::size_t{slots<D>} + n][k] = static_cast<T>(sum[n][k][lane]);
+      });
 }
 
 /// Where in a row of the matrix the nodes stand that are up to two steps away per axis; on short periodic axes

@@ -30,6 +30,15 @@ inline void storeCoefficient(Buffer<T>& values, std::uint64_t entry, const Lanes
     values[entry * clusterSize + k] = lanes[k] < std::numeric_limits<T>::max() ? static_cast<T>(lanes[k]) : T(0);
 }
 
+/// -w'/r of eight pairs, zero from `reach` h_p on.
+template <int D>
+inline auto gradientWithin(const MphPairs<D>& pairs, double reach) {
+  const double length = reach * pairs.terms.pressureRadius;
+  return [&pairs, square = length * length](const PairDistance<Lanes>& r) {
+    return r.square < square ? pairs.terms.gradient(r) : Lanes{};
+  };
+}
+
 template <class T>
 inline LanesOf<T> loadLanes(const T* values) {
   LanesOf<T> lanes;
@@ -65,16 +74,12 @@ class ClusterWalk {
  private:
   template <bool Wraps, class F>
   [[gnu::always_inline]] void walk(ListSegment segment, const T*& coefficient, F&& f) const {
-    const std::span<const ListEntry> entries = list_.segment(cluster_, segment);
+    const std::span<const std::uint32_t> entries = list_.segment(cluster_, segment);
     const T* next = coefficient;
-    const auto visit = [&](int half, ListEntry e) {
-      const std::uint32_t j = Wraps ? e.index() : e.bits;
+    const auto visit = [&](int half, std::uint32_t j) {
       LanesOf<T> d[D];
-      for (int k = 0; k < D; ++k) {
-        T xj = position_[j][k];
-        if constexpr (Wraps) xj += static_cast<T>(pairs_.images.shift[e.image()][k]);
-        d[k] = xj - x_[k];
-      }
+      for (int k = 0; k < D; ++k) d[k] = position_[j][k] - x_[k];
+      if constexpr (Wraps) moveToNearest(pairs_.grid, d);
       __builtin_prefetch(next + prefetchDistance * clusterSize);
       f(half, j, loadLanes(next), d);
       next += clusterSize;

@@ -91,6 +91,7 @@ void ProjectedMultigrid<D, T, Backend>::setupGrids(Context<Backend>& context, co
     pressureGalerkin(context, *pairs_, a.near(), table, pressureNodes_, galerkinWorkspace_, pressureMatrix_);
   else
     pressureGalerkin(context, *pairs_, table, pressureNodes_, galerkinWorkspace_, pressureMatrix_);
+  giveUp(galerkinWorkspace_);
   DenseInverses<T, Backend> inverses;
   pressureGrids_.setup(context, pressureNodes_, pressureMatrix_, {degrees_.grid}, inverses);
 
@@ -99,6 +100,7 @@ void ProjectedMultigrid<D, T, Backend>::setupGrids(Context<Backend>& context, co
     viscousGalerkin(context, *pairs_, terms, velocityNodes_, moments_, galerkinWorkspace_, velocityMatrix_);
   else
     viscousGalerkin(context, *pairs_, terms, velocityNodes_, moments_, velocityMatrix_);
+  giveUp(moments_, galerkinWorkspace_);
   velocityGrids_.setup(context, velocityNodes_, velocityMatrix_, {degrees_.velocity, 1}, inverses);
   inverses.finish(context);
 }

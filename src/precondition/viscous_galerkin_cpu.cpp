@@ -16,18 +16,19 @@ template <int D, class T>
 void viscousMoments(const MphPairs<D>& pairs, Buffer<ViscousMoments<D, T>>& moments) {
   moments.resize(pairs.fluidCount);
   const double floor2 = distanceFloor2(pairs);
-  forEachCluster<D>(pairs, pairs.fluidList, [&](const ClusterRange& range, const VecLanes<D>& x, std::uint32_t c) {
-    const ViscosityLanes<D> viscosity(pairs, range);
-    Lanes sum[momentCount<D>] = {};
-    for (ListSegment segment : {ListSegment::NearFluid, ListSegment::FarFluid})
-      for (ListEntry e : pairs.fluidList.segment(c, segment)) {
-        const PairLanes<D> pair(pairs.positionOf(e), x, floor2);
-        const Lanes f = pairs.terms.viscous(0.5 * viscousGalerkinFactor * viscosity.with(e.index()), pair.r);
-        forEachMoment<D>(pair.d, [&](int m, const Lanes& product) { sum[m] += f * product; });
-      }
-    for (std::uint32_t lane = 0; lane < range.count; ++lane)
-      for (int m = 0; m < momentCount<D>; ++m) moments[range.first + lane].m[m] = static_cast<T>(sum[m][lane]);
-  });
+  forEachCluster<D>(
+      pairs, pairs.fluidList, [&](const ClusterRange& range, const ClusterPlaces<D>& x, std::uint32_t c) {
+        const ViscosityLanes<D> viscosity(pairs, range);
+        Lanes sum[momentCount<D>] = {};
+        for (ListSegment segment : {ListSegment::NearFluid, ListSegment::FarFluid})
+          for (std::uint32_t j : pairs.fluidList.segment(c, segment)) {
+            const PairLanes<D> pair(pairs, j, x, floor2);
+            const Lanes f = pairs.terms.viscous(0.5 * viscousGalerkinFactor * viscosity.with(j), pair.r);
+            forEachMoment<D>(pair.d, [&](int m, const Lanes& product) { sum[m] += f * product; });
+          }
+        for (std::uint32_t lane = 0; lane < range.count; ++lane)
+          for (int m = 0; m < momentCount<D>; ++m) moments[range.first + lane].m[m] = static_cast<T>(sum[m][lane]);
+      });
 }
 
 }  // namespace

@@ -97,6 +97,7 @@ void sortByCell(Context<Cpu>&, const CellGrid<D>& grid, Particles<D>& particles,
       std::partition_point(keyed + fluid, keyed + count, [](const KeyedIndex& k) { return k.key < inactive; }) -
       keyed);
   fillRanges<D>(grid, particles.position, fluid, ranges.activeCount, ranges.wallBegin, ranges.wallEnd);
+  giveUp(workspace.keyed, workspace.field);
 }
 
 template void sortByCell<2>(Context<Cpu>&, const CellGrid<2>&, Particles<2>&, CellRanges<>&, SortWorkspace<>&);

@@ -10,12 +10,13 @@
 namespace treacle {
 namespace {
 
-/// The cells that a cluster's reach touches, counted on through periodic ends, and the images they belong to.
+/// The cells that a cluster's reach touches, counted on through periodic ends, each once.
 template <int D>
 struct Reach {
   Vec<D, int> first, last;
-  Vec<D> lo, hi;  // of the cluster [m]
-  double reach2;  // [m2], a little more than it is, for what the ends of cells are rounded by
+  Vec<D> lo, hi;       // of the cluster [m]
+  double reach2;       // [m2], a little more than it is, for what the ends of cells are rounded by
+  bool wraps = false;  // crosses a periodic end
 
   Reach(const CellGrid<D>& grid, const VecLanes<D>& x, double radius) : reach2(radius * radius * (1 + 1e-6)) {
     for (int k = 0; k < D; ++k) {
@@ -30,6 +31,8 @@ struct Reach {
         first[k] = std::clamp(first[k], 0, grid.count[k] - 1);
         last[k] = std::clamp(last[k], 0, grid.count[k] - 1);
       }
+      wraps = wraps || first[k] < 0 || last[k] >= grid.count[k];
+      last[k] = std::min(last[k], first[k] + grid.count[k] - 1);
     }
   }
 };
@@ -51,14 +54,9 @@ void forEachCell(const CellGrid<D>& grid, const Reach<D>& reach, F&& f) {
   Vec<D, int> c = reach.first;
   while (true) {
     if (touches(grid, reach, c)) {
-      Vec<D, int> cell{};
-      std::uint32_t image = 0;
-      for (int k = D - 1; k >= 0; --k) {
-        const int turn = c[k] < 0 ? -1 : c[k] >= grid.count[k] ? 1 : 0;
-        cell[k] = c[k] - turn * grid.count[k];
-        image = 3 * image + (turn < 0 ? 2 : turn);
-      }
-      f(grid.linear(cell), image);
+      Vec<D, int> cell = c;
+      for (int k = 0; k < D; ++k) cell[k] += c[k] < 0 ? grid.count[k] : c[k] >= grid.count[k] ? -grid.count[k] : 0;
+      f(grid.linear(cell));
     }
     int k = 0;
     while (k < D && ++c[k] > reach.last[k]) {
@@ -75,44 +73,37 @@ struct ListBuilder {
   const CellGrid<D>& grid;
   const CellRanges<>& ranges;
   std::span<const Vec<D>> position;
-  PeriodicImages<D> images;
   ListRadii radii;
 
-  /// Calls sink(segment, entry) for every neighbour of the cluster.
+  /// Calls sink(segment, index) for every neighbour of the cluster; returns whether its reach crosses a periodic
+  /// end.
   template <class Sink>
-  void visit(const VecLanes<D>& x, Sink&& sink) const {
+  bool visit(const ClusterRange& cluster, Sink&& sink) const {
     const double near2 = radii.near * radii.near, far2 = radii.far * radii.far;
-    const auto visitRange = [&](std::uint32_t begin, std::uint32_t end, std::uint32_t image, int firstSegment) {
+    const Reach<D> reach(grid, loadPositions<D>(cluster, position, grid), std::max(radii.near, radii.far));
+    const VecLanes<D> x = loadLanes<D>(cluster, position);
+    const auto visitRange = [&](std::uint32_t begin, std::uint32_t end, int firstSegment) {
       for (std::uint32_t j = begin; j < end; ++j) {
-        const Vec<D> xj = position[j] + images.shift[image];
+        VecLanes<D> d;
+        for (int k = 0; k < D; ++k) d[k] = position[j][k] - x[k];
+        if (reach.wraps) moveToNearest(grid, d.c);
         Lanes r2 = {};
-        for (int k = 0; k < D; ++k) r2 += (xj[k] - x[k]) * (xj[k] - x[k]);
+        for (int k = 0; k < D; ++k) r2 += d[k] * d[k];
         if (anyAtMost(r2, near2))
-          sink(firstSegment, ListEntry::make(j, image));
+          sink(firstSegment, j);
         else if (anyAtMost(r2, far2))
-          sink(firstSegment + 1, ListEntry::make(j, image));
+          sink(firstSegment + 1, j);
       }
     };
-    forEachCell(
-        grid, Reach<D>(grid, x, std::max(radii.near, radii.far)), [&](std::size_t cell, std::uint32_t image) {
-          visitRange(ranges.fluidBegin[cell], ranges.fluidEnd[cell], image,
-                     static_cast<int>(ListSegment::NearFluid));
-          visitRange(ranges.wallBegin[cell], ranges.wallEnd[cell], image, static_cast<int>(ListSegment::NearWall));
-        });
+    forEachCell(grid, reach, [&](std::size_t cell) {
+      visitRange(ranges.fluidBegin[cell], ranges.fluidEnd[cell], static_cast<int>(ListSegment::NearFluid));
+      visitRange(ranges.wallBegin[cell], ranges.wallEnd[cell], static_cast<int>(ListSegment::NearWall));
+    });
+    return reach.wraps;
   }
 };
 
 }  // namespace
-
-template <int D>
-PeriodicImages<D> periodicImages(const CellGrid<D>& grid) {
-  PeriodicImages<D> images;
-  for (int code = 0; code < images.count; ++code) {
-    for (int k = 0, digits = code; k < D; ++k, digits /= 3)
-      images.shift[code][k] = grid.length[k] * (digits % 3 == 2 ? -1 : digits % 3);
-  }
-  return images;
-}
 
 template <int D>
 void buildClusterList(Context<Cpu>&, const CellGrid<D>& grid, const CellRanges<>& ranges,
@@ -123,20 +114,13 @@ void buildClusterList(Context<Cpu>&, const CellGrid<D>& grid, const CellRanges<>
   const std::uint32_t clusters = list.clusterCount();
   list.offset.resize(std::size_t{listSegments} * clusters + 1);
   list.wraps.resize(clusters);
-  const ListBuilder<D> builder{grid, ranges, position, periodicImages(grid), radii};
-  const auto positionsOf = [&](std::size_t c) {
-    return loadPositions<D>(ClusterRange(list, static_cast<std::uint32_t>(c)), position, grid);
-  };
+  const ListBuilder<D> builder{grid, ranges, position, radii};
+  const auto rangeOf = [&](std::size_t c) { return ClusterRange(list, static_cast<std::uint32_t>(c)); };
 
   list.offset[0] = 0;
   parallelForDynamic(clusters, parallelGrain / clusterSize, 8, [&](std::size_t c) {
     std::array<std::uint64_t, listSegments> count{};
-    bool wraps = false;
-    builder.visit(positionsOf(c), [&](int segment, ListEntry e) {
-      ++count[segment];
-      wraps = wraps || e.image() != 0;
-    });
-    list.wraps[c] = wraps;
+    list.wraps[c] = builder.visit(rangeOf(c), [&](int segment, std::uint32_t) { ++count[segment]; });
     const bool fluid =
         count[static_cast<int>(ListSegment::NearFluid)] + count[static_cast<int>(ListSegment::FarFluid)] > 0;
     if (onlyNextToFluid && !fluid) count = {};
@@ -150,12 +134,10 @@ void buildClusterList(Context<Cpu>&, const CellGrid<D>& grid, const CellRanges<>
     if (offset[0] == offset[listSegments]) return;
     std::array<std::uint64_t, listSegments> next{};
     for (int s = 0; s < listSegments; ++s) next[s] = offset[s];
-    builder.visit(positionsOf(c), [&](int segment, ListEntry e) { list.entry[next[segment]++] = e; });
+    builder.visit(rangeOf(c), [&](int segment, std::uint32_t j) { list.entry[next[segment]++] = j; });
   });
 }
 
-template PeriodicImages<2> periodicImages<2>(const CellGrid<2>&);
-template PeriodicImages<3> periodicImages<3>(const CellGrid<3>&);
 template void buildClusterList<2>(Context<Cpu>&, const CellGrid<2>&, const CellRanges<>&, std::span<const Vec<2>>,
                                   std::uint32_t, std::uint32_t, ListRadii, bool, ClusterList<>&);
 template void buildClusterList<3>(Context<Cpu>&, const CellGrid<3>&, const CellRanges<>&, std::span<const Vec<3>>,

@@ -72,7 +72,7 @@ class IsphSystem final : public StagedSystem<Backend> {
   template <class T>
   struct Data {
     Buffer<T, Backend> coefficient, inverseNear;
-    PackedRows<Backend> packed;
+    PackedEntries<Backend> packed;
     IsphMatrix<T> matrix;
     IsphHatMultigrid<D, T, Backend> hats;
     CellMultigrid<T, Backend> cells;
@@ -89,9 +89,9 @@ class IsphSystem final : public StagedSystem<Backend> {
   template <class T>
   void fill(Context<Backend>& context, Data<T>& data) {
     const NeighbourRowsView& rows = pairs_->fluidOfFluid;
-    PackedRowsView packed;
+    PackedEntriesView packed;
     if constexpr (onDevice && std::is_same_v<T, float>)
-      if (rows.count >= PackedRows<Backend>::fewest) {
+      if (rows.count >= PackedEntries<Backend>::fewest) {
         preparePacked(context, *pairs_, data.packed);
         packed = data.packed.view();
       }
@@ -116,6 +116,7 @@ class IsphSystem final : public StagedSystem<Backend> {
   void prepare(Context<Backend>& context, Data<T>& data) {
     if (stage_.preconditioner == PreconditionerKind::HatMultigrid)
       data.hats.setup(context, *pairs_, data.matrix, moments_, stage_.hats.gridDegree);
+    giveUp(moments_);
     if (stage_.preconditioner != PreconditionerKind::CellMultigrid) return;
     findBuckets(context, ranges_->key, D * CellGrid<D>::subBits, D, levels_);
     compressed(context, data.matrix, compressed_);

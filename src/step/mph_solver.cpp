@@ -61,6 +61,7 @@ void MphSystem<D, Backend>::prepareOperator(Context<Backend>& context, const Sol
   if (needsAssembled<Backend>(stage) && !hasAssembled_) {
     gradientRows(context, *pairs_, rows_);
     assemble(context, *pairs_, terms_, rows_, assembled_);
+    giveUp(rows_.rowStart, rows_.column, rows_.value);
     hasAssembled_ = true;
   }
 }
@@ -115,6 +116,7 @@ void MphSystem<D, Backend>::prepareMultigrid(Context<Backend>& context, Precondi
     }
   }
   bucketGalerkin(context, *pairs_, *ranges_, levels_, terms_, columns_, bucketMatrix_);
+  giveUp(columns_);
   k.multigrid.setup(context, bucketMatrix_, std::move(members), sweeps);
 }
 

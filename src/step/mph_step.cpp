@@ -44,7 +44,8 @@ class MphStep final : public StepMethod<D, Backend> {
     scaleViscosity();
     computeDensities();
     wallBlock_.resize(state_.context, state_.particles.fluidCount);
-    wallGradient_.resize(state_.context, state_.particles.fluidCount);
+    const bool productsTakeGradient = std::is_same_v<Backend, Cpu> || !pairs_.renormalisation;
+    wallGradient_.resize(state_.context, productsTakeGradient ? state_.particles.fluidCount : 0);
     wallTerms<D>(state_.context, pairs_, wallTermsView());
     wallDensity_.resize(state_.context, state_.particles.fluidCount);
     wallDensity<D>(state_.context, pairs_, wallDensity_);

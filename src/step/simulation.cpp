@@ -160,7 +160,7 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
 
   /// x^{k+1} of [K23 eq. (15)] into `position`; walls by their prescribed motion.
   void move() {
-    position.resize(context, particles.count);
+    position.resize(context, wallsMove ? particles.count : particles.fluidCount);
     moveRange(0, particles.fluidCount, method->transportVelocities());
     if (wallsMove) moveRange(particles.fluidCount, particles.count, wallTransport());
   }

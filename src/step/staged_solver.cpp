@@ -44,7 +44,10 @@ StagedReport StagedSolver<D, Backend>::solve(Context<Backend>& context, std::spa
     total.follow(report);
     // No other way helps where the system itself or the guess is not finite.
     const bool hopeless = !std::isfinite(report.startResidual);
-    if (report.status == SolveStatus::Converged || hopeless || isLastStage()) return total;
+    if (report.status == SolveStatus::Converged || hopeless || isLastStage()) {
+      giveUp(guess_);
+      return total;
+    }
     ++total.fallbacks;
     total.addFailures(describeStage(stage(), report));
     keepBetter(context, report, x);

@@ -13,7 +13,7 @@ inline ClusterList<Cuda> onDevice(const Context<Cuda>& context, const ClusterLis
   copy.first = list.first;
   copy.last = list.last;
   copyToDevice<std::uint64_t>(context, {list.offset, offsets}, copy.offset);
-  copyToDevice<ListEntry>(context, {list.entry, list.offset[offsets - 1]}, copy.entry);
+  copyToDevice<std::uint32_t>(context, {list.entry, list.offset[offsets - 1]}, copy.entry);
   copyToDevice<std::uint8_t>(context, {list.wraps, list.clusterCount()}, copy.wraps);
   return copy;
 }

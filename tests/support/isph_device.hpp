@@ -50,7 +50,7 @@ struct DeviceIsph {
 template <int D, class T>
 struct DeviceIsphTestSystem {
   Buffer<T, Cuda> coefficient, inverseNear;
-  PackedRows<Cuda> entries;
+  PackedEntries<Cuda> entries;
   Buffer<double, Cuda> diagonal;
   Buffer<IsphMoments<D>, Cuda> moments;
   IsphMatrix<T> a;

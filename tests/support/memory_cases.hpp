@@ -10,7 +10,7 @@
 
 namespace treacle::test {
 
-/// A dam break with what decides on the memory of its solver.
+/// A case with what decides on the memory of its solver.
 struct MemoryCase {
   const char* file;
   std::vector<std::string> settings;
@@ -29,25 +29,20 @@ inline std::vector<MemoryCase> memoryCases() {
        {"dam-break-2d.toml", "published/dam-break-2d.toml", "dam-break-3d.toml", "published/dam-break-3d.toml"}) {
     const bool flat = std::string_view(file).ends_with("2d.toml");
     const std::string resolution = flat ? "resolution=2" : "resolution=0.5";
-    all.push_back({file, {resolution}});
-    all.push_back({file, {resolution, "output.balance=true"}});
-    all.push_back({file, {resolution, "solver.operator=assembled"}});
+    // Modes, which plans have room for, are taken in some runs and not before the third step.
+    all.push_back({file, {resolution, "solver.deflation=0"}});
+    all.push_back({file, {resolution, "solver.deflation=0", "output.balance=true", "solver.precision=double"}});
+    all.push_back({file, {resolution, "solver.deflation=0", "solver.operator=assembled"}});
     all.push_back({file, {resolution, "solver.preconditioner=bucket-multigrid"}});
     all.push_back({file,
                    {resolution, "solver.preconditioner=bucket-multigrid",
                     "solver.multigrid.particle_diagonal=extended-jacobi"}});
   }
   all.push_back({"isph-dam-break-2d.toml", {}});
+  all.push_back({"isph-dam-break-2d.toml", {"solver.preconditioner=cell-multigrid"}});
+  all.push_back({"isph-dam-break-2d.toml", {"method.viscosity=implicit", "water.dynamic_viscosity=1"}});
   all.push_back({"isph-dam-break.toml", {"width.factor=0.5"}});
   return all;
-}
-
-/// The simulation after steps in which its buffers have found their sizes.
-inline AnySimulation advanced(const Case& c, BackendKind backend) {
-  std::vector<std::string> notes;
-  AnySimulation simulation(c, createParticles(c, notes), backend);
-  for (int k = 0; k < 3; ++k) simulation.advance();
-  return simulation;
 }
 
 }  // namespace treacle::test

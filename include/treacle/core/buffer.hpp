@@ -4,6 +4,7 @@
 
 #include <sys/mman.h>
 #include <algorithm>
+#include <atomic>
 
 #include <cstddef>
 #include <cstdlib>
@@ -14,6 +15,30 @@
 #include <utility>
 
 namespace treacle {
+
+/// What all Buffers in host memory of the process have at a time [B]: an account, on which nothing depends.
+class HostAccount {
+ public:
+  static void add(std::size_t bytes) {
+    const std::size_t now = live_ += bytes;
+    std::size_t peak = peak_;
+    while (now > peak && !peak_.compare_exchange_weak(peak, now)) {
+    }
+  }
+  static void subtract(std::size_t bytes) { live_ -= bytes; }
+  static std::size_t live() { return live_; }
+  /// Since the last call of startPeak().
+  static std::size_t peak() { return peak_; }
+  static void startPeak() { peak_ = live_.load(); }
+
+ private:
+  static inline std::atomic<std::size_t> live_ = 0, peak_ = 0;
+};
+
+/// Room for `size` values of a buffer that had `before`: what creeps up does not allocate in every step.
+constexpr std::size_t grownCapacity(std::size_t before, std::size_t size) {
+  return before == 0 ? size : size + size / 32;
+}
 
 /// Host memory aligned to a cache line; large blocks to 2 MiB, with the wish for huge pages: an operator that
 /// streams through hundreds of megabytes in every iteration otherwise waits for address translation. Errors:
@@ -59,10 +84,9 @@ class Buffer<T, Cpu> {
   Buffer& operator=(const Buffer&) = delete;
   ~Buffer() { release(); }
 
-  /// Changes the size; the content is undefined afterwards. Memory is kept while it suffices, and grows by
-  /// an eighth more than asked, so that sizes which creep up do not allocate in every step.
+  /// Changes the size; the content is undefined afterwards. Memory is kept while it suffices.
   void resize(std::size_t size) {
-    if (size > capacity_) reallocate(size_ == 0 ? size : size + size / 8);
+    if (size > capacity_) reallocate(grownCapacity(capacity_, size));
     size_ = size;
   }
 
@@ -92,6 +116,7 @@ class Buffer<T, Cpu> {
       // Rounded up to whole alignment units: vector loads of a partly filled last register stay inside.
       const std::size_t bytes = (size * sizeof(T) + alignment - 1) / alignment * alignment;
       data_ = static_cast<T*>(hostAllocate(bytes));
+      HostAccount::add(size * sizeof(T));
 #ifndef NDEBUG
       if constexpr (std::is_floating_point_v<T>) std::fill_n(data_, size, std::numeric_limits<T>::quiet_NaN());
 #endif
@@ -99,7 +124,10 @@ class Buffer<T, Cpu> {
     size_ = capacity_ = size;
   }
   void release() {
-    if (data_) std::free(data_);
+    if (data_) {
+      std::free(data_);
+      HostAccount::subtract(bytes());
+    }
     data_ = nullptr;
     size_ = capacity_ = 0;
   }
@@ -108,5 +136,18 @@ class Buffer<T, Cpu> {
   std::size_t size_ = 0;
   std::size_t capacity_ = 0;
 };
+
+/// Up to so many bytes a buffer keeps where it is not needed until the next step: to allocate them anew would take
+/// longer than they are worth.
+inline constexpr std::size_t keptBytes = std::size_t{32} << 20;
+
+/// Of buffers whose content is no longer needed: gives up what is large, and other arrays take its place.
+template <class... Buffers>
+void giveUp(Buffers&... buffers) {
+  const auto one = [](auto& buffer) {
+    if (buffer.bytes() > keptBytes) buffer = {};
+  };
+  (one(buffers), ...);
+}
 
 }  // namespace treacle

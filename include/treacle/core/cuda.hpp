@@ -37,6 +37,8 @@ class Context<Cuda> {
 
   /// Temporary memory of at least so many bytes; the next call may hand out the same. Errors: std::bad_alloc.
   void* scratch(std::size_t bytes);
+  /// As treacle::giveUp.
+  void giveUpScratch();
 
   /// Room for the partial sums of one reduction, and the counter by which its last block knows itself (zero
   /// between reductions).
@@ -114,11 +116,11 @@ class Buffer<T, Cuda> {
   }
   ~Buffer() { release(); }
 
-  /// Changes the size; the content is undefined afterwards. Memory is kept while it suffices, and grows by an
-  /// eighth more than asked. Errors: std::bad_alloc.
+  /// Changes the size; the content is undefined afterwards. Memory is kept while it suffices. Errors:
+  /// std::bad_alloc.
   void resize(const Context<Cuda>& context, std::size_t size) {
     if (size > capacity_) {
-      const std::size_t capacity = size_ == 0 ? size : size + size / 8;
+      const std::size_t capacity = grownCapacity(capacity_, size);
       release();
       context_ = &context;
       data_ = static_cast<T*>(deviceAllocate(context, capacity * sizeof(T)));

@@ -32,7 +32,7 @@ struct PackedEntry {
 
 /// Entries of a packed matrix. They stand in fours, which are fetched at once: each section of a row begins with a
 /// new one, and ends with zeros.
-struct PackedRowsView {
+struct PackedEntriesView {
   std::uint32_t* word = nullptr;        // null: not packed
   const std::uint32_t* four = nullptr;  // 2 rows + 1: the first one of each section
   ColumnBlocksView blocks;
@@ -42,14 +42,14 @@ struct PackedRowsView {
 };
 
 template <class Backend>
-struct PackedRows {
+struct PackedEntries {
   /// Smaller matrices stay in the cache: what their products take is the time until they begin.
   static constexpr std::uint32_t fewest = 30'000;  // rows
 
   Buffer<std::uint32_t, Backend> word, four;
   ColumnBlocks<Backend> blocks;
 
-  PackedRowsView view() { return {word.data(), four.data(), blocks.view()}; }
+  PackedEntriesView view() { return {word.data(), four.data(), blocks.view()}; }
   std::size_t bytes() const { return word.bytes() + four.bytes() + blocks.bytes(); }
 };
 
@@ -69,7 +69,7 @@ struct IsphMatrix {
   const std::uint64_t* start = nullptr;   // 2 rows + 1
   const std::uint32_t* column = nullptr;  // of every entry
   const T* coefficient = nullptr;         // likewise; null where packed
-  PackedRowsView packed;
+  PackedEntriesView packed;
   double unit = 1;
   const double* diagonal = nullptr;
   const T* inverseNear = nullptr;  // 1 / diagonal of the smoothers' matrix, or 0

@@ -48,7 +48,7 @@ struct StoredCoefficient {
 template <int D, class T>
 struct IsphMatrixParts {
   std::span<T> coefficient;  // per entry of the fluid rows; empty where packed
-  PackedRowsView packed;
+  PackedEntriesView packed;
   double unit;
   std::span<double> diagonal;
   std::span<T> inverseNear;
@@ -67,7 +67,7 @@ struct IsphMatrixParts {
 
 /// The column blocks of the fluid, and room for the entries of a matrix on its rows.
 template <int D>
-void preparePacked(Context<Cuda>&, const IsphPairs<D>& pairs, PackedRows<Cuda>& packed);
+void preparePacked(Context<Cuda>&, const IsphPairs<D>& pairs, PackedEntries<Cuda>& packed);
 
 /// Fills the parts of a matrix whose rows are PressureRow or ViscousRow. Diagonals are made of the coefficients as
 /// they are stored: a matrix in single precision is another one, but no less symmetric and semidefinite.

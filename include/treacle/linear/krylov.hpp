@@ -15,8 +15,12 @@ struct KrylovWorkspace {
   std::array<Buffer<double, Backend>, 5> vectors;
   KrylovLoop<Backend> loop;
 
-  void resize(const Context<Backend>& context, std::size_t n) {
-    for (auto& v : vectors) v.resize(context, n);
+  /// The first `count` vectors, of n numbers.
+  void resize(const Context<Backend>& context, std::size_t n, std::size_t count) {
+    for (std::size_t k = 0; k < count; ++k) vectors[k].resize(context, n);
+  }
+  void giveUp() {
+    for (auto& v : vectors) treacle::giveUp(v);
   }
   std::size_t bytes() const {
     std::size_t sum = 0;

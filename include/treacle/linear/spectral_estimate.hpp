@@ -74,6 +74,7 @@ class SpectralEstimate {
       lanczosStep<T>(context, v);
     }
     lanczosFinish<T>(context, scalars_.data(), margin, largest_.data());
+    giveUp(r_, p_, q_);
   }
 
   /// A bound that is known.

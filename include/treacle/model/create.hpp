@@ -11,8 +11,12 @@
 
 namespace treacle {
 
-/// Largest number of particles of one case.
-inline constexpr std::size_t maxParticles = std::size_t{1} << 27;
+/// Largest number of particles of one case: an index has 32 bits, and room to count on to the end of a cluster, a
+/// warp or a block.
+inline constexpr std::size_t maxParticles = (std::size_t{1} << 32) - 1024;
+
+/// Lattice points of the boxes that no condition leaves any out of: createParticles needs room for at least these.
+double boxPoints(const Case& c);
 
 /// Fills the case's bodies with particles on lattices of the case's spacing, where their conditions hold. A box
 /// has its lattice cell-centred on its own corner `min`; a sphere has a lattice point at `center`, a cylinder half
@@ -22,7 +26,7 @@ inline constexpr std::size_t maxParticles = std::size_t{1} << 27;
 /// that the spacing does not divide, particles left out, a condition that never holds); `bodyCounts` takes the
 /// number of particles of every body in file order. Errors: InputError if there is no fluid, if fluid and wall
 /// overlap, if a particle lies outside the domain, if a wall cannot rotate in a periodic one, if there are more
-/// particles than 2^27, if an expression is not finite at a particle.
+/// particles than maxParticles, if an expression is not finite at a particle.
 template <int D>
 Particles<D> createParticles(const Case& c, std::vector<std::string>& notes,
                              std::vector<std::uint32_t>* bodyCounts = nullptr);

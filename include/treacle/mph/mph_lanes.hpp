@@ -10,6 +10,13 @@ namespace treacle {
 /// cluster's list, and two may coincide; their differences are then zero and so is every term, whatever 1/r.
 inline constexpr double tinyDistance2 = 1e-24;
 
+/// Where the particles of a cluster stand [m], and whether neighbours may be nearer across a periodic end.
+template <int D>
+struct ClusterPlaces {
+  VecLanes<D> x;
+  bool wraps;
+};
+
 /// One neighbour as the lanes of a cluster see it.
 template <int D>
 struct PairLanes {
@@ -17,11 +24,21 @@ struct PairLanes {
   PairDistance<Lanes> r;  // [m2, 1/m]
 
   PairLanes(const Vec<D>& xj, const VecLanes<D>& x, double floor2) {
+    for (int k = 0; k < D; ++k) d[k] = xj[k] - x[k];
+    measure(floor2);
+  }
+  /// At the nearest images.
+  PairLanes(const MphPairs<D>& pairs, std::uint32_t j, const ClusterPlaces<D>& own, double floor2) {
+    const Vec<D>& xj = pairs.position[j];
+    for (int k = 0; k < D; ++k) d[k] = xj[k] - own.x[k];
+    if (own.wraps) moveToNearest(pairs.grid, d.c);
+    measure(floor2);
+  }
+
+ private:
+  void measure(double floor2) {
     Lanes r2 = {};
-    for (int k = 0; k < D; ++k) {
-      d[k] = xj[k] - x[k];
-      r2 += d[k] * d[k];
-    }
+    for (int k = 0; k < D; ++k) r2 += d[k] * d[k];
     r.square = max(r2, broadcast(floor2));
     r.inverse = inverseSqrt(r.square);
   }
@@ -32,13 +49,13 @@ inline double distanceFloor2(const MphPairs<D>& pairs) {
   return tinyDistance2 * pairs.terms.pressureRadius * pairs.terms.pressureRadius;
 }
 
-/// Runs body(range, lane positions, cluster) for every cluster of the list.
+/// Runs body(range, places, cluster) for every cluster of the list.
 template <int D, class F>
 inline void forEachCluster(const MphPairs<D>& pairs, const ClusterListView& list, F&& body) {
   parallelFor(list.clusterCount(), parallelGrain / clusterSize, [&](std::size_t index) {
     const auto c = static_cast<std::uint32_t>(index);
     const ClusterRange range(list, c);
-    body(range, loadPositions<D>(range, pairs.position, pairs.grid), c);
+    body(range, ClusterPlaces<D>{loadLanes<D>(range, pairs.position), list.wraps[c] != 0}, c);
   });
 }
 

@@ -64,7 +64,7 @@ class MphOperator<D, Cuda> {
 
   const MphPairs<D>* pairs_ = nullptr;
   Buffer<Block<D>, Cuda> selfBlock_;   // diagonal block of rho/dt I + V, per fluid particle
-  Buffer<Vec<D>, Cuda> selfGradient_;  // C_ii; not used where the pairs have B
+  Buffer<Vec<D>, Cuda> selfGradient_;  // C_ii; empty where the pairs have B
   Buffer<double, Cuda> q_;             // lambda C^T u, per particle
   NearProducts<D> near_;
 };

@@ -22,15 +22,17 @@ template <int D>
 struct MphPairs : MaterialParticles<D> {
   ClusterListView fluidList;  // near h_p, far h_v, h_n or, to assemble A, 2 h_p, whichever is most
   ClusterListView wallList;   // near h_p, far h_n if that is more
-  PeriodicImages<D> images;
-  MphTerms<D> terms{};     // lengths in metres
-  double restDensity = 0;  // n_0 [-]
+  MphTerms<D> terms{};        // lengths in metres
+  double restDensity = 0;     // n_0 [-]
   const WallSurface<D>* wallSurface =
       nullptr;  // of the first wall particle; null: the fluid meets walls as they are
   const SymmetricBlock<D>* renormalisation = nullptr;  // B per fluid particle (renormalisation.hpp); null: I
   const double* viscosityScale = nullptr;              // per fluid particle (viscosity_scale.hpp); null: 1
 
-  TREACLE_HD Vec<D> positionOf(ListEntry e) const { return this->position[e.index()] + images.shift[e.image()]; }
+  /// x_j - x_i at the nearest images [m].
+  TREACLE_HD Vec<D> difference(std::uint32_t i, std::uint32_t j) const {
+    return this->grid.difference(this->position[i], this->position[j]);
+  }
 
   /// B_k v: by B the k-th column of C and row of C^T are multiplied, G_k to B_k G_k, wherever they are needed. A
   /// wall's is the unit matrix.

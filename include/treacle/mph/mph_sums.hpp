@@ -40,8 +40,10 @@ void divergence(Context<Cuda>&, const MphPairs<D>&, std::span<const Vec<D>> u, s
 /// What the walls and the inertia put on a fluid particle's own velocity.
 template <int D>
 struct WallTerms {
-  std::span<Block<D>> block;   // rho/dt I + sum over walls of the viscous pair blocks, per fluid particle
-  std::span<Vec<D>> gradient;  // B times the sum over walls of -e w'^p [1/m], per fluid particle
+  std::span<Block<D>> block;  // rho/dt I + sum over walls of the viscous pair blocks, per fluid particle
+  // B times the sum over walls of -e w'^p [1/m], per fluid particle; may be empty on a device, where products take
+  // it only for pairs without B.
+  std::span<Vec<D>> gradient;
 };
 template <int D>
 void wallTerms(Context<Cpu>&, const MphPairs<D>&, const WallTerms<D>&);

@@ -32,7 +32,7 @@ class NearProducts {
   std::span<const std::int32_t> fixedPosition() const { return fixedPosition_; }
 
   std::span<const std::uint64_t> sliceStart() const { return sliceStart_; }
-  std::span<const ListEntry> entries() const { return entry_; }
+  std::span<const std::uint32_t> entries() const { return entry_; }
 
   std::size_t bytes() const { return sliceStart_.bytes() + entry_.bytes() + fixedPosition_.bytes(); }
 
@@ -41,7 +41,7 @@ class NearProducts {
   // Slices of nearSlice particles, each with as many rows of that many entries as its longest list; shorter ones
   // are filled up with the particle itself, with which every term is zero.
   Buffer<std::uint64_t, Cuda> sliceStart_;  // in rows
-  Buffer<ListEntry, Cuda> entry_;
+  Buffer<std::uint32_t, Cuda> entry_;
   Buffer<std::int32_t, Cuda> fixedPosition_;
 };
 

@@ -46,6 +46,7 @@ class IsphHatMultigrid {
     transfer_.prepare(context, fluid_);
     findHatNodes(context, fluid_, HatsOn::Fluid, nodes_);
     isphGalerkin(context, fluid_, moments, nodes_, parts_, matrix_);
+    giveUp(parts_);
     grids_.setup(context, nodes_, matrix_, {.degree = gridDegree, .reach = 1});
   }
 

@@ -37,7 +37,11 @@ class StagedLists {
   /// Threads of a block. So many share the row of a particle: small systems leave lanes idle, and wait for the
   /// longest row.
   static constexpr unsigned threads = 256;
-  static unsigned sharing(std::uint32_t particles);
+  static constexpr unsigned sharing(std::uint64_t particles) {
+    constexpr std::uint64_t atATime = 1u << 17;  // threads that a card runs at a time
+    if (D == 3 && particles < atATime / 4) return 8;
+    return particles < atATime ? 4 : 1;
+  }
   /// Neighbours of a block, and the shared memory that they take.
   static constexpr std::uint32_t capacity(unsigned sharing) {
     if (D == 2) return sharing == 1 ? 768 : 384;

@@ -74,9 +74,8 @@ struct CellGrid {
     return c;
   }
 
-  /// From x to the nearest periodic image of y [m], for both inside the domain.
-  TREACLE_HD Vec<D> difference(const Vec<D>& x, const Vec<D>& y) const {
-    Vec<D> d = y - x;
+  /// A difference of two places in the domain, with the second one at its nearest periodic image [m].
+  TREACLE_HD Vec<D> nearest(Vec<D> d) const {
     for (int k = 0; k < D; ++k) {
       if (!periodic[k]) continue;
       if (d[k] > 0.5 * length[k]) d[k] -= length[k];
@@ -84,10 +83,10 @@ struct CellGrid {
     }
     return d;
   }
+  /// From x to the nearest periodic image of y [m], for both inside the domain.
+  TREACLE_HD Vec<D> difference(const Vec<D>& x, const Vec<D>& y) const { return nearest(y - x); }
 
   /// The periodic image of y that is nearest to x [m], for both inside the domain; where y is halfway, y itself.
-  /// Whatever uses the lists of a cluster must put its particles beside the first one in this way: in a lattice
-  /// halfway is a common place, and rounding the other way would mean another image than the lists do.
   TREACLE_HD Vec<D> beside(const Vec<D>& x, Vec<D> y) const {
     for (int k = 0; k < D; ++k) {
       if (!periodic[k]) continue;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <type_traits>
 
 namespace treacle {
 
@@ -74,7 +75,18 @@ inline void storeLanes(const ClusterRange& range, Lanes lanes, std::span<double>
   for (std::uint32_t lane = 0; lane < range.count; ++lane) values[range.first + lane] = lanes[lane];
 }
 
-/// Positions of a cluster that periodic images may divide: all lanes at the image nearest to the first one.
+/// CellGrid::nearest for the differences of eight pairs; Lane: eight numbers.
+template <int D, class Lane>
+inline void moveToNearest(const CellGrid<D>& grid, Lane (&d)[D]) {
+  using T = std::remove_reference_t<decltype(d[0][0])>;
+  for (int k = 0; k < D; ++k) {
+    if (!grid.periodic[k]) continue;
+    const T length = static_cast<T>(grid.length[k]), half = static_cast<T>(0.5 * grid.length[k]);
+    d[k] = d[k] > half ? d[k] - length : d[k] < -half ? d[k] + length : d[k];
+  }
+}
+
+/// Positions of a cluster that a periodic end may divide: all lanes at the image nearest to the first one.
 template <int D>
 inline VecLanes<D> loadPositions(const ClusterRange& range, std::span<const Vec<D>> position,
                                  const CellGrid<D>& grid) {

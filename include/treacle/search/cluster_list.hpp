@@ -14,28 +14,9 @@ namespace treacle {
 /// Eight particles that are consecutive in the sort, hence close together, form a cluster and share one list of
 /// neighbours: all particles within reach of at least one of them. The lanes of a vector register are the
 /// cluster's particles, a neighbour is broadcast to them, and no index is gathered; who is out of reach of a
-/// single lane gets the weight zero there.
+/// single lane gets the weight zero there. Of each pair the nearest periodic images are meant (CellGrid::nearest):
+/// a domain is longer than twice any reach, so there are no others.
 inline constexpr std::uint32_t clusterSize = 8;
-
-/// A list entry: particle index, and above it the code of the periodic image that is meant (0: the particle
-/// itself).
-struct ListEntry {
-  static constexpr int indexBits = 27;
-  std::uint32_t bits;
-
-  TREACLE_HD std::uint32_t index() const { return bits & ((1u << indexBits) - 1); }
-  TREACLE_HD std::uint32_t image() const { return bits >> indexBits; }
-  TREACLE_HD static ListEntry make(std::uint32_t index, std::uint32_t image) {
-    return {image << indexBits | index};
-  }
-};
-
-/// Shifts that belong to the image codes [m]: base-3 digits per axis, 0: none, 1: +length, 2: -length.
-template <int D>
-struct PeriodicImages {
-  static constexpr int count = D == 2 ? 9 : 27;
-  Vec<D> shift[count];
-};
 
 /// The parts of a cluster's list, in this order.
 enum class ListSegment { NearFluid, FarFluid, NearWall, FarWall };
@@ -45,11 +26,11 @@ inline constexpr int listSegments = 4;
 struct ClusterListView {
   std::uint32_t first = 0, last = 0;  // particles [first, last); cluster c holds particles first + 8 c …
   const std::uint64_t* offset = nullptr;
-  const ListEntry* entry = nullptr;
+  const std::uint32_t* entry = nullptr;
   const std::uint8_t* wraps = nullptr;
 
   TREACLE_HD std::uint32_t clusterCount() const { return (last - first + clusterSize - 1) / clusterSize; }
-  std::span<const ListEntry> segment(std::uint32_t cluster, ListSegment s) const {
+  std::span<const std::uint32_t> segment(std::uint32_t cluster, ListSegment s) const {
     const std::size_t k = std::size_t{listSegments} * cluster + static_cast<int>(s);
     return {entry + offset[k], offset[k + 1] - offset[k]};
   }
@@ -61,13 +42,13 @@ template <class Backend = Cpu>
 struct ClusterList {
   std::uint32_t first = 0, last = 0;
   Buffer<std::uint64_t, Backend> offset;  // 4 clusterCount() + 1: start of every segment
-  Buffer<ListEntry, Backend> entry;
-  Buffer<std::uint8_t, Backend> wraps;  // per cluster: some entry means a periodic image other than 0
+  Buffer<std::uint32_t, Backend> entry;   // indices of particles
+  Buffer<std::uint8_t, Backend> wraps;    // per cluster: its reach crosses a periodic end
 
   ClusterListView view() const { return {first, last, offset.data(), entry.data(), wraps.data()}; }
   operator ClusterListView() const { return view(); }
   std::uint32_t clusterCount() const { return view().clusterCount(); }
-  std::span<const ListEntry> segment(std::uint32_t cluster, ListSegment s) const {
+  std::span<const std::uint32_t> segment(std::uint32_t cluster, ListSegment s) const {
     return view().segment(cluster, s);
   }
   std::size_t bytes() const { return offset.bytes() + entry.bytes() + wraps.bytes(); }
@@ -77,9 +58,6 @@ struct ListRadii {
   double near = 0;  // [m]
   double far = 0;   // [m], >= near; 0: no far parts
 };
-
-template <int D>
-PeriodicImages<D> periodicImages(const CellGrid<D>& grid);
 
 /// Builds the lists of particles [first, last). With `onlyNextToFluid`, clusters that have no fluid within
 /// reach get empty lists (walls: only those matter).

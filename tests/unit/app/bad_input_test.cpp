@@ -362,7 +362,7 @@ constexpr BadCase badCases[] = {
      "bad.toml:40:19: coarsest_sweeps in [solver.multigrid]: expected a whole number from 1 to 1000, found "
      "1000000000"},
     {"tooManyParticles", "spacing = 1e-3", "spacing = 1e-9",
-     "body 'column' would have more than 134217728 particles; take a larger spacing or a lower resolution"},
+     "body 'column' would have more than 4294966272 particles; take a larger spacing or a lower resolution"},
     {"baseMissing", "title", "base = \"none.toml\"\ntitle", "bad.toml:1:8: base: no such case file: none.toml"},
     {"baseIsItself", "title", "base = \"bad.toml\"\ntitle", "bad.toml:1:8: base: 'bad.toml' inherits from itself"},
 };

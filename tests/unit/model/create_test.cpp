@@ -278,7 +278,7 @@ TEST(createParticles, rejectsMoreParticlesThanTheLimitBeforeFillingThem) {
   Case c = emptyCase(3);
   for (const Shape& shape : {box({0, 0, 0}, {1e6, 1e6, 1e6}), sphere({0, 0, 0}, 1e6)}) {
     c.bodies = {makeBody("ocean", BodyKind::Fluid, shape)};
-    EXPECT_THAT(messageOfCreation<3>(c), HasSubstr("body 'ocean' would have more than 134217728 particles"));
+    EXPECT_THAT(messageOfCreation<3>(c), HasSubstr("body 'ocean' would have more than 4294966272 particles"));
   }
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <omp.h>
+#include <sys/mman.h>
 
 #include <map>
 #include <vector>
@@ -10,8 +11,8 @@
 namespace treacle::test {
 namespace {
 
-/// Every pair within the radii is in its cluster's list exactly once, in the right segment, at the right image;
-/// and every entry is within reach of some lane.
+/// Every pair within the radii is in its cluster's list exactly once, in the right segment; every entry is within
+/// reach of some lane; and clusters that do not wrap have no pairs across a periodic end.
 template <int D>
 void checkLists(std::uint32_t fluid, std::uint32_t wall) {
   RandomParticles<D> r(fluid, wall, fluid + 1);
@@ -20,24 +21,23 @@ void checkLists(std::uint32_t fluid, std::uint32_t wall) {
   const ListRadii radii{0.5 * r.radius, r.radius};
   ClusterList<> list;
   buildClusterList<D>(r.context, r.grid, r.ranges, x, 0, fluid, radii, false, list);
-  const auto images = periodicImages(r.grid);
 
   for (std::uint32_t c = 0; c < list.clusterCount(); ++c) {
     const std::uint32_t first = c * clusterSize, last = std::min(first + clusterSize, fluid);
     std::vector<double> nearest(list.offset[4 * (c + 1)] - list.offset[4 * c], 1e9);
     for (std::uint32_t i = first; i < last; ++i) {
-      Vec<D> xi = x[i];  // the cluster itself may straddle a periodic end
-      for (int k = 0; k < D; ++k)
-        if (r.grid.periodic[k]) xi[k] += r.grid.length[k] * std::round((x[first][k] - xi[k]) / r.grid.length[k]);
       std::map<std::uint32_t, int> withinReach, segmentOf;
       std::size_t entry = 0;
       for (int s = 0; s < listSegments; ++s)
-        for (ListEntry e : list.segment(c, ListSegment(s))) {
-          ASSERT_EQ(e.index() >= fluid, s >= int(ListSegment::NearWall));
-          const double distance = norm(x[e.index()] + images.shift[e.image()] - xi);
+        for (std::uint32_t j : list.segment(c, ListSegment(s))) {
+          ASSERT_EQ(j >= fluid, s >= int(ListSegment::NearWall));
+          const double distance = r.distance(x[i], x[j]);
           nearest[entry] = std::min(nearest[entry], distance);
           ++entry;
-          if (distance <= radii.far) ++withinReach[e.index()], segmentOf[e.index()] = s % 2;
+          if (distance <= radii.far) {
+            ++withinReach[j], segmentOf[j] = s % 2;
+            ASSERT_TRUE(list.wraps[c] || norm(x[j] - x[i]) == distance) << i << " and " << j;
+          }
         }
       for (std::uint32_t j = 0; j < r.ranges.activeCount; ++j) {
         const double distance = r.distance(x[i], x[j]);
@@ -72,7 +72,31 @@ TEST(ClusterList, DoesNotDependOnTheNumberOfThreads) {
   build(1, one);
   build(3, many);
   ASSERT_EQ(one.entry.size(), many.entry.size());
-  for (std::size_t k = 0; k < one.entry.size(); ++k) ASSERT_EQ(one.entry[k].bits, many.entry[k].bits);
+  for (std::size_t k = 0; k < one.entry.size(); ++k) ASSERT_EQ(one.entry[k], many.entry[k]);
+}
+
+/// Of more particles than 27 bits count. Only the last of them exist: the others' memory is never touched.
+TEST(ClusterList, HasIndicesOf32Bits) {
+  constexpr std::uint32_t few = 64, first = (1u << 28) - few, last = first + few;
+  const std::size_t bytes = std::size_t{last} * sizeof(Vec<2>);
+  void* memory = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  ASSERT_NE(memory, MAP_FAILED);
+  const std::span<Vec<2>> x(static_cast<Vec<2>*>(memory), last);
+  for (std::uint32_t i = first; i < last; ++i) x[i] = {0.5 + 1e-3 * (i - first), 0.5};
+  const auto grid = CellGrid<2>::make({0, 0}, {1, 1}, {false, false}, 1);
+  CellRanges<> ranges;
+  for (Buffer<std::uint32_t>* range : {&ranges.fluidBegin, &ranges.fluidEnd, &ranges.wallBegin, &ranges.wallEnd}) {
+    range->resize(1);
+    (*range)[0] = 0;
+  }
+  ranges.fluidBegin[0] = first, ranges.fluidEnd[0] = last;
+  Context<Cpu> context;
+  ClusterList<> list;
+  buildClusterList<2>(context, grid, ranges, x, first, last, {1, 1}, false, list);
+  ASSERT_EQ(list.entry.size(), few / clusterSize * few);
+  for (std::uint32_t c = 0; c < list.clusterCount(); ++c)
+    for (std::uint32_t k = 0; k < few; ++k) EXPECT_EQ(list.segment(c, ListSegment::NearFluid)[k], first + k);
+  munmap(memory, bytes);
 }
 
 TEST(ClusterList, OfWallsIsEmptyAwayFromFluid) {

@@ -1,0 +1,52 @@
+#pragma once
+
+#include "treacle/model/any_particles.hpp"
+#include "treacle/model/case.hpp"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace treacle {
+
+/// The numbers that the arrays of a simulation have their sizes from, as they are for given particles.
+struct MemoryCounts {
+  /// Lists of clusters of the fluid, of active walls, or of these for the balance; segments as in ListSegment.
+  struct Lists {
+    std::uint64_t clusters = 0;
+    std::array<std::uint64_t, 4> entries{};
+  };
+  /// A level of background grids: nodes, points of its lattice, and entries of a matrix on it.
+  struct Grid {
+    std::uint64_t nodes = 0, points = 0, entries = 0;
+  };
+
+  ParticleNumbers particles;
+  std::uint64_t active = 0;  // fluid and walls next to it
+  std::uint64_t cells = 0;   // of the search
+  bool wallsMove = false;
+
+  // MPH-I.
+  Lists fluidLists, wallLists, balanceLists;
+  std::uint64_t nearEntries = 0;       // each particle's own neighbours within h_p, in slices
+  std::uint64_t gradientEntries = 0;   // of C
+  std::uint64_t rowEntries = 0;        // blocks of A, where lists have whole rows of it
+  std::vector<Grid> pressureGrids;     // finest first
+  std::vector<std::uint64_t> buckets;  // per level
+  std::uint64_t bucketEntries = 0;     // blocks of A^0
+  // ISPH.
+  std::uint64_t fluidOfFluid = 0, wallsOfFluid = 0, fluidOfWalls = 0;  // entries of rows
+
+  std::vector<Grid> fluidGrids;  // of velocities, and of ISPH's pressures; finest first
+};
+
+/// Search cells of the domain, whether or not there are particles in them.
+std::uint64_t searchCells(const Case& c);
+
+/// Counts what the first step of the case will have; sorts the particles as that step will. Neighbours are counted
+/// around a few thousand of the particles, spread evenly, or around all where there are no more. `wholeRows`:
+/// lists of fluid reach as far as A couples. Takes memory for the sort, and for the search cells some 30 bytes
+/// each. Errors: std::bad_alloc.
+MemoryCounts countForMemory(const Case& c, AnyParticles& particles, bool wholeRows);
+
+}  // namespace treacle

@@ -1,0 +1,129 @@
+#pragma once
+
+#include "treacle/core/buffer.hpp"
+#include "treacle/linear/block_csr.hpp"
+#include "treacle/linear/deflation_scalars.hpp"
+#include "treacle/model/case.hpp"
+#include "treacle/model/particles.hpp"
+#include "treacle/search/cell_sort.hpp"
+#include "treacle/step/memory_plan.hpp"
+#include "treacle/step/solve_stages.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+
+namespace treacle {
+
+/// Where in a step arrays are needed that nothing else of the step needs: they take each other's places.
+enum class StepPart { Sort, Matrix, Pressures, Velocities, Estimate, Solve };
+
+/// Adds up what arrays take: those that stay, and those that are given up (giveUp) once their part is done.
+class MemorySum {
+ public:
+  /// `count` values of T.
+  template <class T>
+  void keep(std::uint64_t count) {
+    held_ += count * sizeof(T);
+  }
+  template <class T>
+  void use(StepPart part, std::uint64_t count) {
+    const std::uint64_t bytes = count * sizeof(T);
+    (bytes > keptBytes ? of_[static_cast<std::size_t>(part)] : held_) += bytes;
+  }
+  /// Of a buffer that is no member of anything.
+  template <class T>
+  void borrow(StepPart part, std::uint64_t count) {
+    of_[static_cast<std::size_t>(part)] += count * sizeof(T);
+  }
+  template <class V>
+  void keepRows(std::uint64_t rows, std::uint64_t entries) {
+    keep<std::uint64_t>(rows + 1);
+    keep<std::uint32_t>(entries);
+    keep<V>(entries);
+  }
+  MemoryPlan plan() const { return {held_, held_ + *std::max_element(of_.begin(), of_.end())}; }
+
+ private:
+  std::uint64_t held_ = 0;
+  std::array<std::uint64_t, 6> of_{};
+};
+
+/// Of all fields of Particles<D>.
+template <int D>
+std::uint64_t fieldBytes(const ParticleNumbers& n) {
+  std::uint64_t sum = 0;
+  const auto add = [&](std::uint64_t count) {
+    return [&sum, count]<class T>(const Buffer<T>&) { sum += count * sizeof(T); };
+  };
+  const Particles<D> none;
+  forEachSharedFieldOf(add(n.fluid + n.wall), none);
+  forEachFluidFieldOf(add(n.fluid), none);
+  add(n.fluid * n.modes)(none.modes.vectors);
+  add(n.surfaces)(none.wallSurface);
+  return sum;
+}
+
+/// Modes that a solver may keep: in three dimensions it seldom finds any worth taking, and where there is no
+/// memory for them it does without.
+inline std::uint64_t modesOf(const Case& c) {
+  const bool some = c.dimensions == 2 && c.method.kind == MethodKind::MphI && c.solver.deflates();
+  return some ? static_cast<std::uint64_t>(c.solver.deflation) : 0;
+}
+
+/// The state, what a step makes of it, and its sort.
+template <int D>
+void planState(const Case& c, const MemoryCounts& n, BackendKind backend, MemorySum& sum) {
+  const std::uint64_t fluid = n.particles.fluid, wall = n.particles.wall, all = fluid + wall;
+  ParticleNumbers numbers = n.particles;
+  numbers.modes = std::max(numbers.modes, modesOf(c));
+  sum.keep<std::byte>(fieldBytes<D>(numbers));
+  sum.keep<Vec<D>>(n.wallsMove ? all : fluid);                             // positions of the end
+  sum.keep<Vec<D>>(c.method.kind == MethodKind::MphI ? n.active : fluid);  // velocities
+  if (std::ranges::any_of(c.bodies, [](const Body& b) { return b.rotation.has_value(); })) sum.keep<Vec<D>>(wall);
+  sum.keep<std::uint32_t>(4 * n.cells);  // ranges
+  sum.keep<std::uint8_t>(n.cells);
+  sum.keep<std::uint64_t>(fluid);
+  if (backend == BackendKind::Cpu) {
+    sum.use<SortWorkspace<>::KeyedIndex>(StepPart::Sort, all);
+    sum.use<Vec<D>>(StepPart::Sort, fluid);
+    return;
+  }
+  sum.use<std::uint64_t>(StepPart::Sort, all);
+  sum.use<std::uint64_t>(StepPart::Sort, wall);
+  sum.use<std::uint32_t>(StepPart::Sort, all);
+  sum.use<std::uint32_t>(StepPart::Sort, all);
+  sum.use<std::byte>(StepPart::Sort,
+                     std::max(all * sizeof(Vec<D>), fluid * numbers.modes * sizeof(Vec<D, float>)));
+  sum.use<std::byte>(StepPart::Sort, 12 * std::max(fluid, wall));  // keys and indices once more, in the radix sort
+}
+
+/// Vectors of the Krylov method, of `numbers` per fluid particle, and the guess for a fallback.
+inline void planSolve(const Case& c, std::uint64_t unknowns, MemorySum& sum) {
+  const int vectors = c.solver.krylov == KrylovKind::Cg ? 4 : 5;
+  for (int k = 0; k < vectors; ++k) sum.use<double>(StepPart::Solve, unknowns);
+  if (solveStages(c).size() > 1) sum.use<double>(StepPart::Solve, unknowns);
+}
+
+/// HatMultigrid with B unknowns per node on these grids, the finest matrix and nodes included.
+template <class T, int B>
+void planGrids(const std::vector<MemoryCounts::Grid>& grids, BackendKind backend, MemorySum& sum) {
+  const std::uint64_t most = backend == BackendKind::Cpu ? 200 : 1100;  // that are inverted
+  for (const MemoryCounts::Grid& g : grids) {
+    const std::uint64_t unknowns = B * g.nodes;
+    sum.keep<std::uint32_t>(g.points + g.nodes);
+    sum.keepRows<Block<B>>(g.nodes, g.entries);
+    sum.keep<T>(2 * unknowns);
+    if (unknowns <= most) {
+      sum.keep<T>(unknowns * unknowns);
+      // A device inverts in panels of 32, with one row and one column of them beside the matrix.
+      const std::uint64_t stride = (unknowns + 31) / 32 * 32;
+      if (backend == BackendKind::Cuda) sum.borrow<double>(StepPart::Estimate, stride * (stride + 64));
+      return;
+    }
+    if (sizeof(T) < sizeof(double)) sum.keep<Block<B, T>>(g.entries);
+    sum.keep<T>(4 * unknowns);
+  }
+}
+
+}  // namespace treacle
