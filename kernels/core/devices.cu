@@ -13,6 +13,19 @@ std::size_t freeMemory(int device) {
   return 0;
 }
 
+/// Stands for all kernels, which are compiled for the same architectures.
+__global__ void anyKernel() {}
+
+/// Of the current device.
+bool hasCode() {
+  cudaFuncAttributes attributes;
+  const cudaError_t status = cudaFuncGetAttributes(&attributes, anyKernel);
+  if (status == cudaSuccess) return true;
+  cudaGetLastError();
+  return status != cudaErrorNoKernelImageForDevice && status != cudaErrorInvalidDeviceFunction &&
+         status != cudaErrorUnsupportedPtxVersion;
+}
+
 }  // namespace
 
 std::vector<DeviceInfo> cudaDevices() {
@@ -23,7 +36,8 @@ std::vector<DeviceInfo> cudaDevices() {
   for (int d = 0; d < count; ++d) {
     cudaDeviceProp p;
     TREACLE_CUDA_CHECK(cudaGetDeviceProperties(&p, d));
-    devices.push_back({p.name, p.major, p.minor, p.multiProcessorCount, p.totalGlobalMem, freeMemory(d)});
+    const std::size_t free = freeMemory(d);  // makes the device the current one
+    devices.push_back({p.name, p.major, p.minor, p.multiProcessorCount, p.totalGlobalMem, free, hasCode()});
   }
   if (cudaSetDevice(current) != cudaSuccess) cudaGetLastError();  // those who compute will be told
   return devices;

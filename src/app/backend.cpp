@@ -1,6 +1,9 @@
 #include "backend.hpp"
 
+#include "machine.hpp"
+#include "print.hpp"
 #include "treacle/core/error.hpp"
+#include "treacle/core/version.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +12,13 @@ namespace treacle {
 std::optional<DeviceInfo> deviceFor(BackendChoice choice) {
   if (choice == BackendChoice::Cpu) return {};
   const std::vector<DeviceInfo> devices = cudaDevices();
-  if (!devices.empty()) return devices.front();
+  if (!devices.empty() && devices.front().hasCode) return devices.front();
+  if (!devices.empty()) {
+    const std::string reason = noCodeText(devices.front(), buildInfo().architectures);
+    if (choice == BackendChoice::Cuda) throw InputError("--backend cuda: " + reason);
+    printError("treacle: warning: " + reason + "; the CPU computes instead\n");
+    return {};
+  }
   if (choice == BackendChoice::Auto) return {};
   if (!cudaCompiled)
     throw InputError("--backend cuda: this program was built without CUDA; expected 'auto' or 'cpu'");

@@ -11,7 +11,8 @@
 namespace treacle {
 
 /// The device that a run computes on, the first one that CUDA names; empty: the CPU. Errors: InputError where CUDA
-/// is asked for and the build or the machine does not have it.
+/// is asked for and the build or the machine does not have it, or not for this device; where it is not asked for,
+/// the last is a warning on stderr.
 std::optional<DeviceInfo> deviceFor(BackendChoice choice);
 
 /// "NVIDIA H200 (sm_90)"

@@ -57,4 +57,12 @@ std::string processorName() {
   return "unknown processor";
 }
 
+std::string noCodeText(const DeviceInfo& device, const std::string& architectures) {
+  return fmt::format(
+      "{} needs code for sm_{}{}, and this program was built for {}; configure with "
+      "-DCMAKE_CUDA_ARCHITECTURES={}{}, or 'native' where the device is",
+      device.name, device.computeMajor, device.computeMinor, architectures, device.computeMajor,
+      device.computeMinor);
+}
+
 }  // namespace treacle

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "treacle/core/device.hpp"
+
 #include <cstdint>
 #include <string>
 
@@ -14,5 +16,8 @@ std::uint64_t peakMemory();
 
 /// Model name of the processor, "unknown processor" where the system does not tell.
 std::string processorName();
+
+/// Why a device cannot run a program that was built for these `architectures`, and what to do.
+std::string noCodeText(const DeviceInfo& device, const std::string& architectures);
 
 }  // namespace treacle

@@ -38,10 +38,10 @@ inline BucketLevels<Cuda> onDevice(const Context<Cuda>& context, const BucketLev
 
 /// More than enough fluid for every way in which kernels share work: above 24000 particles, on a floor.
 template <int D>
-Scene<D> makeLargeScene(SchemeKind scheme) {
+Scene<D> makeLargeScene(SchemeKind scheme, int across = D == 2 ? 170 : 32) {
   Scene<D> s;
   s.c = sceneCase(D, true, scheme);
-  const double l = s.c.spacing, size = (D == 2 ? 170 : 32) * l, top = size - 2 * l;
+  const double l = s.c.spacing, size = across * l, top = size - 2 * l;
   for (int k = 0; k < D; ++k) s.c.domain.max[k] = size;
   const auto inWall = [&](const Vec<D>& x) { return x[D - 1] < 4 * l; };
   const auto inFluid = [&](const Vec<D>& x) { return x[D - 1] >= 4 * l && x[D - 1] < top; };

@@ -12,6 +12,7 @@ struct DeviceInfo {
   int multiprocessors = 0;
   std::size_t memory = 0;      // [B]
   std::size_t freeMemory = 0;  // [B]; 0 where the device cannot be used
+  bool hasCode = true;         // whether this program has kernels for its compute capability
 };
 
 /// The CUDA devices of this machine; empty in builds without CUDA and where there is no driver or no device.

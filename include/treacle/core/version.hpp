@@ -7,8 +7,9 @@ struct BuildInfo {
   const char* commit;
   const char* buildType;
   const char* compiler;
-  const char* native;  // "ON": optimised for the processor of the building machine
-  const char* cuda;    // "ON": the CUDA backend was compiled
+  const char* native;         // "ON": optimised for the processor of the building machine
+  const char* cuda;           // "ON": the CUDA backend was compiled
+  const char* architectures;  // for which, as CMAKE_CUDA_ARCHITECTURES names them
 };
 
 BuildInfo buildInfo();

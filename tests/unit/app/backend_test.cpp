@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "command.hpp"
+#include "machine.hpp"
 #include "support/gpu.hpp"
 
 namespace treacle::test {
@@ -35,6 +36,12 @@ TEST(backend, cudaIsRefusedWhereItIsNotWithWhatIsMissing) {
                 "; expected 'auto' or 'cpu'\n");
   EXPECT_THAT(outcome.out, IsEmpty());
   EXPECT_FALSE(std::filesystem::exists(shop / "small-run"));
+}
+
+TEST(backend, aDeviceWithoutCodeIsNamedWithWhatToBuild) {
+  EXPECT_EQ(noCodeText({.name = "NVIDIA A40", .computeMajor = 8, .computeMinor = 6, .hasCode = false}, "90 100"),
+            "NVIDIA A40 needs code for sm_86, and this program was built for 90 100; configure with "
+            "-DCMAKE_CUDA_ARCHITECTURES=86, or 'native' where the device is");
 }
 
 TEST(backend, cpuIsTakenWhereItIsAskedForOrAllThereIs) {

@@ -39,6 +39,20 @@ TEST(Weight, IntegratesToTheParticleVolume) {
   checkIntegral<3>();
 }
 
+TEST(Weight, SlopesBeyondTheirReachAreNextToNothing) {
+  for (const PressureWeight kind : pressureWeights) {
+    const auto terms = MphTerms<3>::make(Weight<3>::make(1, 0.3, kind), ViscosityWeight::Mps, 1, 0.3);
+    const auto slope = [&](double r) { return r * terms.gradient(ExactDistance(r * r)); };
+    double largest = 0, beyond = 0;
+    for (double r = 0.001; r < 1; r += 0.001) {
+      largest = std::max(largest, slope(r));
+      if (r >= slopeReach(kind)) beyond = std::max(beyond, slope(r));
+    }
+    EXPECT_LT(beyond, 0.005 * largest) << static_cast<int>(kind);
+    EXPECT_GT(largest, 0);
+  }
+}
+
 /// The terms of a pair in the arithmetic and the unit of length of a loop: densities and gradients against the
 /// weight and its numerical derivative.
 template <int D, class Real>
