@@ -54,7 +54,7 @@ template <int D, class T, class Weights, class Columns>
 __global__ void __launch_bounds__(128)
     pressureDiagonalKernel(const __grid_constant__ NearView<D, T, Weights> view, const Columns columns,
                            const std::uint8_t* material, const __grid_constant__ ProjectionTable<T> table,
-                           T* inverseDiagonal) {
+                           T reach2, T* inverseDiagonal) {
   const std::uint32_t k = blockIdx.x * blockDim.x + threadIdx.x;
   if (k >= view.activeCount) return;
   const auto xk = view.own(k);
@@ -69,7 +69,8 @@ __global__ void __launch_bounds__(128)
     return Loaded{view.other(j), j < view.fluidCount ? table.weight[material[j]] : T(0)};
   };
   alongList(view.sliceStart, view.entry, k, load, [&](const Loaded& other) {
-    const Vec<D, T> d = view.difference(other.x, xk), g = gradientShape(view, d) * (b * d);
+    const Vec<D, T> d = view.difference(other.x, xk);
+    const Vec<D, T> g = norm2(d) < reach2 ? gradientShape(view, d) * (b * d) : Vec<D, T>{};
     own += g;
     others += other.weight * norm2(g);
   });
@@ -219,11 +220,13 @@ void ParticleProducts<D, T, Cuda>::viscous(Context<Cuda>& context, const Gathere
 template <int D, class T>
 void ParticleProducts<D, T, Cuda>::inverseDiagonals(Context<Cuda>& context, const ProjectionTable<T>& table,
                                                     std::span<T> pressure, std::span<Block<D, T>> velocity) const {
+  const double reach =
+      productReach<T>(*pairs_) * pairs_->terms.pressureRadius / LocalPositions<D, T>::unit(*pairs_);
   const auto start = [&]<class Weights, class Columns>(const MphTerms<D, double, Weights>& terms,
                                                        const Columns& columns) {
     launch(context, blocksFor(pairs_->activeCount, 128), 128, 0, pressureDiagonalKernel<D, T, Weights, Columns>,
            NearView<D, T, Weights>::make(*pairs_, a_->near(), terms), columns, pairs_->material.data(), table,
-           pressure.data());
+           static_cast<T>(reach * reach), pressure.data());
   };
   withPressureTerms(*pairs_, [&](const auto& terms, auto renormalised) {
     if constexpr (renormalised)

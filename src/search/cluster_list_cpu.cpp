@@ -37,11 +37,13 @@ struct Reach {
   }
 };
 
-/// Whether a cell, counted on through periodic ends, may have particles within reach.
+/// Whether a cell, counted on through periodic ends, may have particles within reach. Where the reach takes in a
+/// whole periodic axis, another image of the cell may be nearer.
 template <int D>
 bool touches(const CellGrid<D>& grid, const Reach<D>& reach, const Vec<D, int>& cell) {
   double distance2 = 0;
   for (int k = 0; k < D; ++k) {
+    if (grid.periodic[k] && reach.last[k] - reach.first[k] + 1 == grid.count[k]) continue;
     const double begin = grid.origin[k] + cell[k] * grid.edge[k], end = begin + grid.edge[k];
     const double away = std::max({0.0, begin - reach.hi[k], reach.lo[k] - end});
     distance2 += away * away;

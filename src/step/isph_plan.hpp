@@ -64,7 +64,9 @@ void planIsph(const Case& c, const MemoryCounts& n, BackendKind backend, MemoryS
   const double limit = explicitViscousLimit(makeIsphPairs<D>(c));
   if (!isViscousStepImplicit(c.method.isph.viscosity, limit, c.time.step)) return;
   sum.keep<double>(D * fluid);
-  planIsphSystem<D, T>(c, n, backend, sum);
+  MemorySum viscous;
+  planIsphSystem<D, T>(c, n, backend, viscous);
+  sum.addLater(viscous);
 }
 
 }  // namespace treacle

@@ -42,6 +42,11 @@ class MemorySum {
     keep<std::uint32_t>(entries);
     keep<V>(entries);
   }
+  /// Arrays of another system, which is prepared and solved after this one.
+  void addLater(const MemorySum& other) {
+    held_ += other.held_;
+    for (std::size_t k = 0; k < of_.size(); ++k) of_[k] = std::max(of_[k], other.of_[k]);
+  }
   MemoryPlan plan() const { return {held_, held_ + *std::max_element(of_.begin(), of_.end())}; }
 
  private:

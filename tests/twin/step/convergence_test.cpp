@@ -45,10 +45,10 @@ void compareAll(const Case& c, const std::vector<SolverSettings>& solvers, const
     const std::vector<SolverTrial> expected = cpu.convergence(solvers), found = cuda.convergence(solvers);
     ASSERT_EQ(found.size(), solvers.size());
     for (std::size_t k = 0; k < solvers.size(); ++k)
-      // In single precision the device has another preconditioner: B in a few bits, in three dimensions positions
-      // in
-      // 16. In double precision the inverses of nearly singular coarse operators have errors of 1e-6.
-      expectSameCurve(found[k], expected[k], solvers[k].precision == Precision::Mixed ? 5e-2 : 1e-5);
+      // In single precision the two have other preconditioners: B and positions in fewer bits on the device,
+      // elements of C on the CPU. In double precision the inverses of nearly singular coarse operators, by sweeps
+      // in another order on either side, differ by 3e-5.
+      expectSameCurve(found[k], expected[k], solvers[k].precision == Precision::Mixed ? 5e-2 : 1e-4);
     EXPECT_EQ(cuda.advance().iterations, found.back().report.iterations) << "the case's own solver";
     cpu.advance();
   }
