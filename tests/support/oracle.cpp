@@ -203,7 +203,7 @@ double Oracle<D>::dissipation(const Vector& u) const {
 }
 
 template <int D>
-Matrix Oracle<D>::gradientMatrix() const {
+Matrix Oracle<D>::gradientMatrix(double reach) const {
   const Index n = s.unknowns();
   Matrix c = Matrix::Zero(n, count());
   std::vector<Matrix> b;
@@ -212,6 +212,7 @@ Matrix Oracle<D>::gradientMatrix() const {
     for (std::uint32_t j = 0; j < count(); ++j) {
       if (j == i) continue;
       const Vec<D> d = difference(i, j);
+      if (norm(d) >= reach * hp) continue;
       const Vec<D> g = -dw(norm(d), hp) / norm(d) * d;
       for (int k = 0; k < D; ++k)
         for (int m = 0; m < D; ++m) c(D * i + k, j) += b[j](k, m) * g[m], c(D * i + k, i) += b[i](k, m) * g[m];

@@ -62,8 +62,8 @@ struct Oracle {
   /// Rayleigh's dissipation function of eq. (10) for the velocities of all particles [W].
   double dissipation(const Vector& u) const;
 
-  /// C: fluid unknowns by all particles.
-  Matrix gradientMatrix() const;
+  /// C: fluid unknowns by all particles. `reach`: in h_p, from which on pairs are left out.
+  Matrix gradientMatrix(double reach = 1) const;
 
   Matrix viscosityMatrix() const;
 

@@ -105,12 +105,12 @@ struct Parts {
   }
 };
 
-/// S' and K0 from the formulas of the paper and the weights of the preconditioner.
+/// S' and K0 from the formulas of the paper and the weights of the preconditioner; `reach` of C in h_p.
 template <int D>
-Matrix pressureOracle(const Scene<D>& s, const ProjectionConstants& constants) {
+Matrix pressureOracle(const Scene<D>& s, const ProjectionConstants& constants, double reach = 1) {
   const Oracle<D> oracle(s);
   const Index active = s.pairs().activeCount;
-  const Matrix c = oracle.gradientMatrix();
+  const Matrix c = oracle.gradientMatrix(reach);
   EXPECT_EQ(c.rightCols(c.cols() - active).norm(), 0) << "a wall that matters is not active";
   Vector w(s.unknowns()), shift(active);
   for (Index k = 0; k < w.size(); ++k) w[k] = constants.weight[s.particles.material[k / D]];
@@ -138,7 +138,9 @@ void checkProducts(Scene<D> scene, double tolerance) {
   Parts<D, T> parts(std::move(scene));
   Scene<D>& s = parts.s;
   const Matrix pressure = parts.pressureMatrix(), velocity = parts.velocityMatrix();
-  const Matrix expected = pressureOracle(s, parts.constants);
+  // With B, products in single precision leave out what is next to nothing of the weight of the accurate scheme.
+  const bool all = std::is_same_v<T, double> || s.c.method.pressureGradient == PressureGradient::Plain;
+  const Matrix expected = pressureOracle(s, parts.constants, all ? 1 : 0.92);
   EXPECT_LT((pressure - expected).norm(), tolerance * expected.norm());
   EXPECT_LT((velocity - velocityOracle(s)).norm(), tolerance * velocity.norm());
   const Matrix schur = parts.schurMatrix();
