@@ -1,6 +1,7 @@
 #include "memory.hpp"
 
 #include "machine.hpp"
+#include "treacle/core/backend.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/model/create.hpp"
 
@@ -9,8 +10,9 @@
 namespace treacle {
 namespace {
 
-constexpr std::uint64_t copiesToBeWritten = 3;    // two snapshots, and the file of a checkpoint
-constexpr std::uint64_t programBytes = 29 << 20;  // the program itself, its libraries and a picture
+constexpr std::uint64_t copiesToBeWritten = 3;  // two snapshots, and the file of a checkpoint
+// The program itself, its libraries and a picture; with CUDA the device code that it carries.
+constexpr std::uint64_t programBytes = (cudaCompiled ? 61 : 29) << 20;
 constexpr std::uint64_t driverBytes = 300 << 20;  // what CUDA takes of the host
 constexpr std::uint64_t cellBytes = 26;           // at least, of a search cell: ranges, marks, a grid's point
 
