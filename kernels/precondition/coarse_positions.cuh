@@ -9,9 +9,9 @@
 namespace treacle {
 
 /// Positions of the single-precision products, of fewer bits, the same in all of them. In two dimensions units are
-/// so large that 16 h_p have 2^23 of them: differences of lengths from a block's middle are exact. In three
-/// dimensions 16 bits have to do, of which the multiples of a length above eleven times h_p are left out:
-/// particles are displaced by up to 3e-4 spacings.
+/// so large that 16 h_p have 2^23 of them: what lies that far from a block's middle is a whole number of them in
+/// single precision. In three dimensions 16 bits have to do, of which the multiples of a length above eleven times
+/// h_p are left out: particles are displaced by up to 3e-4 spacings.
 template <int D>
 struct CoarsePositions {
   std::uint32_t periods[D], unit[D];

@@ -8,9 +8,9 @@ namespace treacle {
 
 /// C q and C^T u with B, in single precision, from neighbours that a block brings to shared memory (StagedLists).
 
-/// Where a block's neighbours are, from its first particle, in what takes the place of their positions: in two
-/// dimensions as lengths, in three as 16 bits, half of their range added, which become numbers among the low bits
-/// of 2^23. Differences of `Place` times scale() are lengths.
+/// Where a block's neighbours are, from the particle in its middle, in what takes the place of their positions: in
+/// two dimensions as lengths, in three as 16 bits, half of their range added, which become numbers among the low
+/// bits of 2^23. difference() gives lengths.
 template <int D>
 struct BlockPlaces;
 
