@@ -2,8 +2,8 @@
 
 #include <omp.h>
 
+#include <atomic>
 #include <exception>
-#include <thread>
 
 #ifdef __x86_64__
 #include <immintrin.h>
@@ -12,23 +12,23 @@
 namespace treacle {
 namespace {
 
-/// How often a thread looks before it offers its core to others, some microseconds in all. Where there are more
-/// threads than cores, the one that is waited for may be waiting for this core. Nobody sleeps: a step is short,
-/// and to be woken takes longer than most loops.
-constexpr int looks = 200;
+/// How often a thread looks before it goes to sleep, about half a millisecond in all. To be woken takes longer
+/// than most loops; but where there are more threads than cores, the one that is waited for may be waiting for
+/// this core, and a system gives those who slept a core sooner than those who did not.
+constexpr int looks = 20000;
 
+/// Until the condition holds for the number.
 template <class Condition>
-void waitUntil(Condition&& condition) {
-  for (int look = 0; !condition(); ++look) {
-    if (look >= looks)
-      std::this_thread::yield();
-    else
+void waitUntil(const std::atomic<unsigned>& number, Condition&& condition) {
+  for (int look = 0; look < looks; ++look) {
+    if (condition(number.load(std::memory_order_acquire))) return;
 #ifdef __x86_64__
-      _mm_pause();
-#else
-      ;
+    _mm_pause();
 #endif
   }
+  for (unsigned now = number.load(std::memory_order_acquire); !condition(now);
+       now = number.load(std::memory_order_acquire))
+    number.wait(now, std::memory_order_acquire);
 }
 
 }  // namespace
@@ -63,20 +63,22 @@ void Team::start(Call call, void* job) {
   call_ = call;
   job_ = job;
   started_.store(started_.load(std::memory_order_relaxed) + 1, std::memory_order_release);
+  started_.notify_all();
 }
 
 void Team::finish() {
   const unsigned all = started_.load(std::memory_order_relaxed) * static_cast<unsigned>(size_ - 1);
-  waitUntil([&] { return done_.load(std::memory_order_acquire) == all; });
+  waitUntil(done_, [all](unsigned done) { return done == all; });
   led_ = this;
 }
 
 void Team::serve(int thread) {
   for (unsigned next = 1;; ++next) {
-    waitUntil([&] { return started_.load(std::memory_order_acquire) == next; });
+    waitUntil(started_, [next](unsigned started) { return started == next; });
     if (!call_) return;
     call_(job_, thread);
     done_.fetch_add(1, std::memory_order_release);
+    done_.notify_one();
   }
 }
 
