@@ -21,24 +21,29 @@
 namespace treacle {
 namespace {
 
-void printMemory(const Case& c, AnyParticles& particles) {
+/// A case that does not fit may be meant for another machine: that is a warning.
+void printMemory(const Case& c, AnyParticles& particles, std::vector<std::string>& warnings) try {
   if (leastMemory(c) > availableMemory())
-    return print("# memory: more than {} needed, {} available\n", bytesText(leastMemory(c)),
-                 bytesText(availableMemory()));
-  print("# memory: about {} needed, {} available\n",
-        bytesText(estimatedMemory(c, countsFor(c, particles, false), false)), bytesText(availableMemory()));
+    print("# memory: more than {} needed, {} available\n", bytesText(leastMemory(c)),
+          bytesText(availableMemory()));
+  const MemoryCounts onCpu = countsFor(c, particles, false);
+  const bool same = storesMatrix(c, BackendKind::Cpu) == storesMatrix(c, BackendKind::Cuda);
+  const MemoryCounts onDevice = same ? onCpu : countsFor(c, particles, true);
+  print("# memory: about {} needed, {} available\n", bytesText(estimatedMemory(c, onCpu, false)),
+        bytesText(availableMemory()));
   const auto device = deviceFor(BackendChoice::Auto);
-  const MemoryCounts counts = countsFor(c, particles, true);
-  print("# device memory: about {} needed", bytesText(estimatedDeviceMemory(c, counts)));
+  print("# device memory: about {} needed", bytesText(estimatedDeviceMemory(c, onDevice)));
   if (device) print(", {} available on {}", bytesText(device->freeMemory), device->name);
-  print("; beside it about {} of the host\n", bytesText(estimatedMemory(c, counts, true)));
+  print("; beside it about {} of the host\n", bytesText(estimatedMemory(c, onDevice, true)));
+  requireMemory(c, device ? onDevice : onCpu, device ? &*device : nullptr);
+} catch (const RunError& error) {
+  warnings.push_back(error.what());
 }
 
-void printParticles(const Case& c, AnyParticles& particles, const std::vector<std::uint32_t>& ofBodies) {
-  print("# particles: {} fluid, {} wall\n", particles.numbers().fluid, particles.numbers().wall);
+void printParticles(const Case& c, ParticleNumbers particles, const std::vector<std::uint32_t>& ofBodies) {
+  print("# particles: {} fluid, {} wall\n", particles.fluid, particles.wall);
   for (std::size_t b = 0; b < c.bodies.size(); ++b)
     print("#   {} '{}': {}\n", nameOf(c.bodies[b].kind), c.bodies[b].name, ofBodies[b]);
-  printMemory(c, particles);
 }
 
 /// Seconds of a step per fluid particle on one thread, as measured on one machine for the shipped cases.
@@ -96,12 +101,8 @@ void checkCommand(const CaseOptions& options) {
   requireRoomForParticles(c);
   AnyParticles particles = createParticles(c, warnings, &ofBodies);
   for (std::string& warning : caseWarnings(c)) warnings.push_back(std::move(warning));
-  try {
-    requireMemory(c, particles, nullptr);
-  } catch (const RunError& error) {  // of this machine: the case may be meant for another one
-    warnings.push_back(error.what());
-  }
-  printParticles(c, particles, ofBodies);
+  printParticles(c, particles.numbers(), ofBodies);
+  printMemory(c, particles, warnings);
   printTime(c, particles.numbers());
   printNumbers(c);
   print("\n{}", caseText(c));

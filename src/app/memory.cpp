@@ -42,6 +42,10 @@ void requireRoomForParticles(const Case& c) {
 std::uint64_t leastMemory(const Case& c) { return programBytes + cellBytes * searchCells(c); }
 
 MemoryCounts countsFor(const Case& c, AnyParticles& particles, bool onDevice) {
+  MemoryCounts known;
+  known.particles = particles.numbers();
+  known.cells = searchCells(c);
+  require(contentText(known), leastMemory(c));
   return countForMemory(c, particles, storesMatrix(c, onDevice ? BackendKind::Cuda : BackendKind::Cpu));
 }
 
@@ -56,11 +60,10 @@ std::uint64_t estimatedDeviceMemory(const Case& c, const MemoryCounts& n) {
 }
 
 void requireMemory(const Case& c, AnyParticles& particles, const DeviceInfo* device) {
-  MemoryCounts known;
-  known.particles = particles.numbers();
-  known.cells = searchCells(c);
-  require(contentText(known), leastMemory(c));
-  const MemoryCounts n = countsFor(c, particles, device != nullptr);
+  requireMemory(c, countsFor(c, particles, device != nullptr), device);
+}
+
+void requireMemory(const Case& c, const MemoryCounts& n, const DeviceInfo* device) {
   require(contentText(n), estimatedMemory(c, n, device != nullptr));
   if (!device) return;
   if (device->freeMemory == 0)

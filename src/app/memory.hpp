@@ -17,7 +17,7 @@ void requireRoomForParticles(const Case& c);
 std::uint64_t leastMemory(const Case& c);
 
 /// What decides on the memory of a run with these particles, which are sorted on the way. `onDevice`: the run
-/// computes on a GPU.
+/// computes on a GPU. Errors: RunError where there is less than leastMemory().
 MemoryCounts countsFor(const Case& c, AnyParticles& particles, bool onDevice);
 
 /// Memory of the host that a run of the case will need at its peak [B]: the arrays of the simulation, the copies
@@ -30,6 +30,8 @@ std::uint64_t estimatedDeviceMemory(const Case& c, const MemoryCounts& counts);
 /// `device`: what the run computes on, null for the CPU; sorts the particles. Errors: RunError where the case
 /// clearly needs more memory than the host, or the device, has free.
 void requireMemory(const Case& c, AnyParticles& particles, const DeviceInfo* device);
+/// The same where they are counted.
+void requireMemory(const Case& c, const MemoryCounts& counts, const DeviceInfo* device);
 
 /// What to tell where device memory gave out.
 std::string exhaustedText(const DeviceMemoryNumbers& numbers);

@@ -39,12 +39,6 @@ double largestElement(const MphPairs<D>& pairs) {
   return 1.01 * largest;  // between the samples
 }
 
-/// Stiffer systems (ProjectionConstants) have their S' by single-precision coefficients: pressures that C hardly
-/// sees would drown in what the elements are rounded by. With 1.6e4 in three dimensions 64 iterations instead
-/// of 21, with 500 residuals twice as large.
-template <int D>
-constexpr double mostStiffness = D == 2 ? 1e5 : 250;
-
 /// Products of C^T with u: the divergence of eight particles.
 template <int D>
 void divergenceOf(const PackedRows& rows, std::uint32_t c, const Gathered<D, float>* u, float unit, float* at) {
@@ -64,7 +58,7 @@ void ParticleProducts<D, T, Cpu>::pack() {
   using Element = PackedElement<D>;
   const MphPairs<D>& pairs = *pairs_;
   unit_ = 0;
-  if (projectionConstants(pairs).stiffness > mostStiffness<D>) return;
+  if (projectionConstants(pairs).stiffness > mostPackedStiffness<D>) return;
   const double floor2 = distanceFloor2(pairs), unit = largestElement(pairs) / Element::largest;
   const auto gradient = gradientWithin(pairs, productReach<T>(pairs));
   unit_ = static_cast<T>(unit / Element::unitOfUnpacked);

@@ -75,7 +75,7 @@ inline void planPacked(std::uint64_t clusters, std::uint64_t entries, MemorySum&
 
 /// ParticleProducts of the projected multigrid.
 template <int D, class T>
-void planProducts(const MemoryCounts& n, BackendKind backend, bool renormalised, MemorySum& sum) {
+void planProducts(const Case& c, const MemoryCounts& n, BackendKind backend, bool renormalised, MemorySum& sum) {
   using enum ListSegment;
   const std::uint64_t fluid = n.particles.fluid;
   sum.keep<Block<D, T>>(fluid);
@@ -94,7 +94,8 @@ void planProducts(const MemoryCounts& n, BackendKind backend, bool renormalised,
               (entriesIn(n.fluidLists, {NearFluid, FarFluid}) + entriesIn(n.fluidLists, {NearFluid, NearWall}) +
                entriesIn(n.wallLists, {NearFluid})));
   if (renormalised) sum.keep<SymmetricBlock<D, T>>(fluid);
-  if (!std::is_same_v<T, float>) return;
+  if (!std::is_same_v<T, float> || projectionConstants(makeMphPairs<D>(c)).stiffness > mostPackedStiffness<D>)
+    return;
   planPacked(clusters, entriesIn(n.fluidLists, {NearFluid, NearWall}), sum);
   planPacked(clusters, entriesIn(n.fluidLists, {NearFluid}), sum);
   planPacked(n.wallLists.clusters, entriesIn(n.wallLists, {NearFluid}), sum);
@@ -102,9 +103,9 @@ void planProducts(const MemoryCounts& n, BackendKind backend, bool renormalised,
 
 /// ProjectedMultigrid.
 template <int D, class T>
-void planProjected(const MemoryCounts& n, BackendKind backend, bool renormalised, MemorySum& sum) {
+void planProjected(const Case& c, const MemoryCounts& n, BackendKind backend, bool renormalised, MemorySum& sum) {
   const std::uint64_t fluid = n.particles.fluid, nodes = n.pressureGrids.front().nodes;
-  planProducts<D, T>(n, backend, renormalised, sum);
+  planProducts<D, T>(c, n, backend, renormalised, sum);
   sum.keep<T>(3 * n.active);
   sum.keep<Block<D, T>>(fluid);
   sum.keep<Gathered<D, T>>(4 * fluid);
@@ -162,7 +163,7 @@ void planPreconditioner(const Case& c, const MemoryCounts& n, BackendKind backen
   const bool renormalised = c.method.pressureGradient != PressureGradient::Plain;
   const PreconditionerKind kind = c.solver.preconditioner;
   if (kind == PreconditionerKind::None) return;
-  if (kind == PreconditionerKind::ProjectedMultigrid) return planProjected<D, T>(n, backend, renormalised, sum);
+  if (kind == PreconditionerKind::ProjectedMultigrid) return planProjected<D, T>(c, n, backend, renormalised, sum);
   sum.keep<Block<D>>(fluid);
   if (backend == BackendKind::Cuda) sum.borrow<double>(StepPart::Matrix, fluid * (D * (D + 1) / 2 + D));
   if (kind == PreconditionerKind::BlockJacobi) return sum.keep<Block<D, T>>(fluid);
