@@ -22,6 +22,17 @@ inline constexpr bool cudaCompiled = false;
 template <class Backend>
 class Context;
 
+class Communicator;
+class Halo;
+
+/// Who shares a simulation: carried by its context, so that whatever sums over its particles, or needs those of
+/// other processes, knows of them (processes.hpp, halo.hpp). Null in a simulation that is alone, as all on devices
+/// are.
+struct Processes {
+  const Communicator* communicator = nullptr;
+  Halo* halo = nullptr;  // of the particles as they were sorted last
+};
+
 /// T on a device; on the CPU an object that holds nothing.
 struct Absent {
   std::size_t bytes() const { return 0; }
@@ -31,7 +42,7 @@ using DeviceOnly = std::conditional_t<std::is_same_v<Backend, Cuda>, T, Absent>;
 
 /// The CPU needs no stream; parallel loops take their threads from OpenMP.
 template <>
-class Context<Cpu> {
+class Context<Cpu> : public Processes {
  public:
   /// Room for the chunks' sums of a reduction; kept, so that nothing is allocated inside an iteration.
   std::vector<double> partialSums;

@@ -16,7 +16,7 @@ namespace treacle {
 /// The stream that everything on a device is ordered by, the pool that its memory comes from, and what the
 /// reductions on it need. Errors: DeviceMemoryExhausted, DeviceFailure.
 template <>
-class Context<Cuda> {
+class Context<Cuda> : public Processes {
  public:
   /// The current device.
   Context();

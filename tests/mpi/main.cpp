@@ -1,0 +1,28 @@
+#include "job.hpp"
+
+#include <gtest/gtest.h>
+
+#include <optional>
+
+namespace treacle::test {
+namespace {
+
+std::optional<Communicator> theJob;
+
+}  // namespace
+
+const Communicator& job() { return *theJob; }
+
+}  // namespace treacle::test
+
+/// Fails at all processes where it fails at one. Only the first one says what it runs.
+int main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  treacle::test::theJob.emplace(treacle::Communicator::ofJob());
+  const treacle::Communicator& job = treacle::test::job();
+  if (job.rank() > 0) testing::GTEST_FLAG(brief) = true;
+  int failed = RUN_ALL_TESTS();
+  for (int other : job.all(failed)) failed |= other;
+  treacle::test::theJob.reset();
+  return failed;
+}
