@@ -39,8 +39,8 @@ struct FieldInfo {
 /// is added that is not written here.
 template <class P, class F>
 void forEachNamedField(P& particles, std::uint64_t modeValues, F&& f) {
-  auto& [fluidCount, count, position, velocity, pressure, numberDensity, material, body, id, acceleration, jerk,
-         modes, steps, wallSurface] = particles;
+  auto& [fluidCount, ghostCount, count, position, velocity, pressure, numberDensity, material, body, id,
+         acceleration, jerk, modes, steps, wallSurface] = particles;
   static_cast<void>(steps);  // numbers
   static_cast<void>(wallSurface);
   f(FieldInfo{"position", count}, position), f(FieldInfo{"velocity", count}, velocity);

@@ -36,6 +36,7 @@ void forEachFieldOf(F&& f, Sets&... sets) {
 /// How many particles of each kind, modes of the solver and known surfaces of walls there are.
 struct ParticleNumbers {
   std::uint64_t fluid = 0, wall = 0, modes = 0, surfaces = 0;
+  std::uint64_t ghosts = 0;  // fluid of other processes
 
   bool operator==(const ParticleNumbers&) const = default;
 };
@@ -44,11 +45,14 @@ struct ParticleNumbers {
 inline constexpr std::uint8_t unknownBody = 255;
 
 /// The only owner of per-particle fields. Fluid particles come first, [0, fluidCount), then wall particles,
-/// [fluidCount, count); inside both groups the search keeps them sorted by cell. `id` names a particle for
-/// good: 0 … count-1 in the order of creation.
+/// [wallBegin(), count); inside both groups the search keeps them sorted by cell. `id` names a particle for
+/// good: 0 … count-1 in the order of creation. Where processes share a simulation, fluidCount is the number of the
+/// fluid particles that this one owns, and behind them stand the ghosts: those of other processes that it needs,
+/// with position and material alone.
 template <int D, class Backend = Cpu>
 struct Particles {
   std::uint32_t fluidCount = 0;
+  std::uint32_t ghostCount = 0;
   std::uint32_t count = 0;
 
   Buffer<Vec<D>, Backend> position;        // x [m]
@@ -70,8 +74,8 @@ struct Particles {
   // That of the time steps, likewise.
   StepMemory steps;
 
-  // Of the wall particle with id fluidCount + k; never sorted. Empty: walls have no surface, and the fluid meets
-  // their velocities where their particles are.
+  // Of the wall particle with id k + the number of fluid particles of all processes; never sorted. Empty: walls
+  // have no surface, and the fluid meets their velocities where their particles are.
   Buffer<WallSurface<D>, Backend> wallSurface;
 
   /// All that is not a field.
@@ -81,12 +85,15 @@ struct Particles {
     steps = from.steps;
   }
 
-  std::uint32_t wallCount() const { return count - fluidCount; }
+  std::uint32_t wallBegin() const { return fluidCount + ghostCount; }
+  std::uint32_t wallCount() const { return count - wallBegin(); }
   std::uint32_t modeCount() const {
     return fluidCount > 0 ? static_cast<std::uint32_t>(modes.vectors.size() / fluidCount) : 0;
   }
 
-  ParticleNumbers numbers() const { return {fluidCount, wallCount(), modeCount(), wallSurface.size()}; }
+  ParticleNumbers numbers() const {
+    return {fluidCount, wallCount(), modeCount(), wallSurface.size(), ghostCount};
+  }
 
   /// The content is undefined afterwards. Errors: std::bad_alloc.
   void resize(std::uint32_t fluid, std::uint32_t wall,
@@ -99,7 +106,8 @@ struct Particles {
   void resize(const Context<Backend>& context, const ParticleNumbers& numbers) {
     const auto fluid = static_cast<std::uint32_t>(numbers.fluid), wall = static_cast<std::uint32_t>(numbers.wall);
     fluidCount = fluid;
-    count = fluid + wall;
+    ghostCount = static_cast<std::uint32_t>(numbers.ghosts);
+    count = fluid + ghostCount + wall;
     const auto resizeTo = [&](std::uint32_t size) {
       return [&, size](auto& field) { field.resize(context, size); };
     };

@@ -16,8 +16,8 @@ template <int D>
 struct CellGrid {
   /// Sort keys resolve a cell into 2^subBits parts per axis, so that consecutive particles are close together.
   static constexpr int subBits = 2;
-  /// Keys have 63 bits.
-  static constexpr int maxBits = 63 / D - subBits;
+  /// Keys have 62 bits; the others tell groups of particles apart (cell_sort.hpp).
+  static constexpr int maxBits = 62 / D - subBits;
 
   Vec<D> origin{};       // lower corner of the domain [m]
   Vec<D> length{};       // of the domain [m]

@@ -19,6 +19,7 @@ struct CellRanges {
   /// Fluid and those walls that have fluid in their own or an adjacent cell come first, [0, activeCount): the
   /// others are too far away to take part in any sum.
   std::uint32_t activeCount = 0;
+  std::uint32_t ghostWalls = 0;                         // the last active ones, which other processes own
   Buffer<std::uint32_t, Backend> fluidBegin, fluidEnd;  // per cell (CellGrid::linear): range of fluid particles
   Buffer<std::uint32_t, Backend> wallBegin, wallEnd;    // per cell: range of active wall particles
   Buffer<std::uint64_t, Backend> key;                   // per fluid particle, ascending: CellGrid::key

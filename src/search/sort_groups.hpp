@@ -1,0 +1,65 @@
+#pragma once
+
+#include "treacle/core/parallel.hpp"
+#include "treacle/search/cell_sort.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+namespace treacle {
+
+// What the sort of a process's particles consists of, whether it is alone (cell_sort_cpu.cpp) or not
+// (decomposition.cpp).
+
+using KeyedIndex = SortWorkspace<>::KeyedIndex;
+
+/// Keys of inactive walls sort behind those of all active ones.
+constexpr std::uint64_t inactiveKey = std::uint64_t{1} << 63;
+
+/// Errors: RunError.
+template <int D>
+void requireFinite(std::span<const Vec<D>> position) {
+  if (const auto bad = std::ranges::count_if(position, [](const auto& x) { return !isFinitePosition(x); }))
+    throwNotFinite(static_cast<std::uint64_t>(bad));
+}
+
+/// Brings the fields of particles [begin, end) into the order of keyed[begin, end), which holds their keys and
+/// indices. `before`: what sorts first.
+template <int D, class Before>
+void sortGroup(Particles<D>& particles, std::uint32_t begin, std::uint32_t end, SortWorkspace<>& workspace,
+               const Before& before) {
+  const std::span<KeyedIndex> keyed = workspace.keyed.span().subspan(begin, end - begin);
+  if (std::is_sorted(keyed.begin(), keyed.end(), before)) return;  // walls at rest, most of the time
+  std::sort(keyed.begin(), keyed.end(), before);
+  // All room is taken before the first field: memory that gives out between two would leave particles with the
+  // values of others.
+  workspace.field.resize(keyed.size() * sizeof(Vec<D>));
+  const auto permute = [&]<class T>(T* field) {  // one value per particle
+    static_assert(sizeof(T) <= sizeof(Vec<D>));
+    T* sorted = reinterpret_cast<T*>(workspace.field.data());
+    parallelFor(keyed.size(), parallelGrain, [&](std::size_t i) { sorted[i] = field[keyed[i].index]; });
+    std::memcpy(field + begin, sorted, keyed.size() * sizeof(T));
+  };
+  const auto permuteField = [&](auto& field) { permute(field.data()); };
+  forEachSharedFieldOf(permuteField, particles);
+  if (begin > 0 || end > particles.fluidCount) return;
+  forEachFluidFieldOf(permuteField, particles);
+  for (std::uint32_t m = 0; m < particles.modeCount(); ++m)
+    permute(particles.modes.vectors.data() + std::size_t{m} * particles.fluidCount);
+}
+
+template <int D>
+void fillRanges(const CellGrid<D>& grid, std::span<const Vec<D>> position, std::uint32_t begin, std::uint32_t end,
+                Buffer<std::uint32_t>& rangeBegin, Buffer<std::uint32_t>& rangeEnd) {
+  rangeBegin.resize(grid.cellCount());
+  rangeEnd.resize(grid.cellCount());
+  std::fill(rangeBegin.begin(), rangeBegin.end(), 0);
+  std::fill(rangeEnd.begin(), rangeEnd.end(), 0);
+  for (std::uint32_t i = begin; i < end; ++i) {
+    const std::size_t cell = grid.linear(grid.cellOf(position[i]));
+    if (rangeEnd[cell] == 0) rangeBegin[cell] = i;
+    rangeEnd[cell] = i + 1;
+  }
+}
+
+}  // namespace treacle
