@@ -1,6 +1,7 @@
 #include "treacle/linear/deflation.hpp"
 
 #include "sum_chunks.hpp"
+#include "treacle/core/processes.hpp"
 #include "treacle/linear/vector.hpp"
 
 #include <algorithm>
@@ -59,6 +60,7 @@ void products(Context<Cpu>& context, const T* columns, int count, std::span<cons
   std::fill_n(sums, count, 0.0);
   for (std::size_t c = 0; c < chunks; ++c)
     for (int j = 0; j < count; ++j) sums[j] += partial[c * count + j];
+  sumOverProcesses(context, std::span(sums, count));
 }
 
 template <class T>
@@ -85,14 +87,15 @@ void deflateGuess(Context<Cpu>& context, const Deflated& d, std::span<double> x,
                   KrylovScalars* krylov) {
   setWeights(context, d, d.w.data(), r);
   const std::size_t n = x.size();
-  krylov->start(krylov->bb, sumChunks(context, n, [&](std::size_t k, std::size_t length) {
-                  for (int j = 0; j < d.modes; ++j) {
-                    const double c = d.scalars->weight[j];
-                    addChunk(c, d.w.data() + j * n + k, x.data() + k, length);
-                    addChunk(-c, d.aw.data() + j * n + k, r.data() + k, length);
-                  }
-                  return dotChunk(r.data() + k, r.data() + k, length);
-                }));
+  const double rr = sumChunks(context, n, [&](std::size_t k, std::size_t length) {
+    for (int j = 0; j < d.modes; ++j) {
+      const double c = d.scalars->weight[j];
+      addChunk(c, d.w.data() + j * n + k, x.data() + k, length);
+      addChunk(-c, d.aw.data() + j * n + k, r.data() + k, length);
+    }
+    return dotChunk(r.data() + k, r.data() + k, length);
+  });
+  krylov->start(krylov->bb, sumOverProcesses(context, rr));
 }
 
 void deflatedDirection(Context<Cpu>& context, const Deflated& d, std::span<const double> r,

@@ -1,6 +1,8 @@
 #include "treacle/linear/spectral_estimate.hpp"
 
 #include "sum_chunks.hpp"
+#include "treacle/core/halo.hpp"
+#include "treacle/core/processes.hpp"
 
 #include <cmath>
 #include <limits>
@@ -13,35 +15,40 @@ void lanczosStart(Context<Cpu>& context, const LanczosVectors<T>& v) {
     double sum = 0;
     for (std::size_t i = begin; i < begin + n; ++i) {
       const T inverse = v.inverseDiagonal[i];
-      v.r[i] = inverse > 0 ? pseudoRandom(static_cast<std::uint32_t>(i)) * std::sqrt(1 / inverse) : T(0);
+      const auto index = static_cast<std::uint32_t>(i);
+      const auto seed = context.halo ? static_cast<std::uint32_t>(context.halo->indexOfAll(index)) : index;
+      v.r[i] = inverse > 0 ? pseudoRandom(seed) * std::sqrt(1 / inverse) : T(0);
       v.p[i] = inverse * v.r[i];
       sum += double(v.r[i]) * double(v.p[i]);
     }
     return sum;
   });
-  v.scalars->start(rho, std::numeric_limits<T>::epsilon());
+  if (context.halo) std::fill(v.q.begin(), v.q.end(), T(0));  // products do not set that of ghosts
+  v.scalars->start(sumOverProcesses(context, rho), std::numeric_limits<T>::epsilon());
 }
 
 template <class T>
 void lanczosStep(Context<Cpu>& context, const LanczosVectors<T>& v) {
-  v.scalars->setStep(sumChunks(context, v.p.size(), [&](std::size_t begin, std::size_t n) {
+  const double sigma = sumChunks(context, v.p.size(), [&](std::size_t begin, std::size_t n) {
     double sum = 0;
     for (std::size_t i = begin; i < begin + n; ++i) sum += double(v.p[i]) * double(v.q[i]);
     return sum;
-  }));
+  });
+  v.scalars->setStep(sumOverProcesses(context, sigma));
 }
 
 template <class T>
 void lanczosDirection(Context<Cpu>& context, const LanczosVectors<T>& v) {
   const T alpha = static_cast<T>(v.scalars->alpha);
-  v.scalars->setDirection(sumChunks(context, v.r.size(), [&](std::size_t begin, std::size_t n) {
+  const double rho = sumChunks(context, v.r.size(), [&](std::size_t begin, std::size_t n) {
     double sum = 0;
     for (std::size_t i = begin; i < begin + n; ++i) {
       v.r[i] -= alpha * v.q[i];
       sum += double(v.r[i]) * double(v.r[i]) * double(v.inverseDiagonal[i]);
     }
     return sum;
-  }));
+  });
+  v.scalars->setDirection(sumOverProcesses(context, rho));
   const T beta = static_cast<T>(v.scalars->beta);
   parallelFor(v.p.size(), parallelGrain,
               [&](std::size_t i) { v.p[i] = v.inverseDiagonal[i] * v.r[i] + beta * v.p[i]; });

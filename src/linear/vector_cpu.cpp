@@ -1,6 +1,7 @@
 #include "treacle/linear/vector.hpp"
 
 #include "sum_chunks.hpp"
+#include "treacle/core/processes.hpp"
 
 #include <algorithm>
 
@@ -51,9 +52,13 @@ void roundChunk(double* p, std::size_t n) {
   for (std::size_t i = 0; i < n; ++i) p[i] = static_cast<float>(p[i]);
 }
 
-double dot(Context<Cpu>& context, std::span<const double> x, std::span<const double> y) {
+double ownDot(Context<Cpu>& context, std::span<const double> x, std::span<const double> y) {
   return sumChunks(context, x.size(),
                    [&](std::size_t k, std::size_t n) { return dotChunk(x.data() + k, y.data() + k, n); });
+}
+
+double dot(Context<Cpu>& context, std::span<const double> x, std::span<const double> y) {
+  return sumOverProcesses(context, ownDot(context, x, y));
 }
 
 }  // namespace
@@ -66,7 +71,9 @@ void residual(Context<Cpu>& context, std::span<const double> b, std::span<double
   const double rr = sumChunks(context, b.size(), [&](std::size_t k, std::size_t n) {
     return subtractFromChunk(b.data() + k, r.data() + k, n);
   });
-  scalars->start(dot(context, b, b), rr);
+  double sums[] = {ownDot(context, b, b), rr};
+  sumOverProcesses(context, std::span<double>(sums));
+  scalars->start(sums[0], sums[1]);
 }
 
 void directionDot(Context<Cpu>& context, std::span<const double> x, std::span<const double> y,
@@ -106,19 +113,21 @@ void directionsCr(Context<Cpu>& context, const CrDirections& v, const KrylovScal
 
 void updateCg(Context<Cpu>& context, const CgVectors& v, KrylovScalars* scalars) {
   const double alpha = scalars->alpha;
-  scalars->endIteration(sumChunks(context, v.x.size(), [&](std::size_t k, std::size_t n) {
+  const double rr = sumChunks(context, v.x.size(), [&](std::size_t k, std::size_t n) {
     addChunk(alpha, v.p.data() + k, v.x.data() + k, n);
     return subtractChunk(alpha, v.q.data() + k, v.r.data() + k, n);
-  }));
+  });
+  scalars->endIteration(sumOverProcesses(context, rr));
 }
 
 void updateCr(Context<Cpu>& context, const CrVectors& v, KrylovScalars* scalars) {
   const double alpha = scalars->alpha;
-  scalars->endIteration(sumChunks(context, v.x.size(), [&](std::size_t k, std::size_t n) {
+  const double rr = sumChunks(context, v.x.size(), [&](std::size_t k, std::size_t n) {
     addChunk(alpha, v.p.data() + k, v.x.data() + k, n);
     addChunk(-alpha, v.u.data() + k, v.s.data() + k, n);
     return subtractChunk(alpha, v.q.data() + k, v.r.data() + k, n);
-  }));
+  });
+  scalars->endIteration(sumOverProcesses(context, rr));
 }
 
 }  // namespace treacle

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "treacle/core/parallel.hpp"
+#include "treacle/core/processes.hpp"
 #include "treacle/linear/hat_nodes.hpp"
 #include "treacle/precondition/hat_cells.hpp"
 #include "treacle/search/sorted_particles.hpp"
@@ -48,19 +49,19 @@ void cornerGalerkin(Context<Cpu>& context, const SortedParticles<D>& particles, 
       Block<B> sum{};
       cells.forEachCellAround(node, 1, [&](const Vec<D, int>& cell) {
         if (!cells.isCorner(other, cell)) return;
-        const std::size_t c = particles.grid.linear(cell);
-        for (std::uint32_t i = particles.cells.fluidBegin[c]; i < particles.cells.fluidEnd[c]; ++i) {
+        particles.forEachOwnFluid(particles.grid.linear(cell), [&](std::uint32_t i) {
           const Vec<D> place = cells.fraction(particles.position[i], cell);
           CornerHat<D> p{static_cast<std::uint32_t>(row), 0, {}}, q{a.column[e], 0, {}};
           cells.cornerHat(node, cell, place, p.value, p.gradient);
           cells.cornerHat(other, cell, place, q.value, q.gradient);
           sum += term(i, p, q);
-        }
+        });
       });
       a.value[e] = sum;
     }
   });
   mirrorUpper(a);
+  sumOverProcesses(context, a.value.span());
 }
 
 }  // namespace treacle

@@ -5,12 +5,12 @@
 
 namespace treacle {
 
-/// Calls f(k) for the active particles of a cell, fluid and walls.
+/// Calls f(k) for the own active particles of a cell, fluid and walls.
 template <int D, class F>
 inline void forEachParticle(const SortedParticles<D>& pairs, const Vec<D, int>& cell, F&& f) {
   const std::size_t c = pairs.grid.linear(cell);
-  for (std::uint32_t k = pairs.cells.fluidBegin[c]; k < pairs.cells.fluidEnd[c]; ++k) f(k);
-  for (std::uint32_t k = pairs.cells.wallBegin[c]; k < pairs.cells.wallEnd[c]; ++k) f(k);
+  pairs.forEachOwnFluid(c, f);
+  pairs.forEachOwnWall(c, f);
 }
 
 /// Calls f(corner, weight) for the corners of a cell at a place in it; bit k of `corner`: the upper one of axis k.

@@ -1,5 +1,6 @@
 #include "hat_loops.hpp"
 #include "treacle/core/parallel.hpp"
+#include "treacle/core/processes.hpp"
 #include "treacle/precondition/hat_grid.hpp"
 
 #include <algorithm>
@@ -20,6 +21,7 @@ void findHatNodes(Context<Cpu>& context, const SortedParticles<D>& pairs, HatsOn
       active[p] |= pairs.cells.fluidEnd[c] > pairs.cells.fluidBegin[c] ||
                    (what == HatsOn::Active && pairs.cells.wallEnd[c] > pairs.cells.wallBegin[c]);
     });
+  if (context.communicator) context.communicator->anyOf(active);
   numberNodes(context, lattice, active, nodes);
 }
 
@@ -64,25 +66,26 @@ void gatherAtNodes(const SortedParticles<D>& pairs, const HatNodes<D>& nodes, co
 }
 
 template <int D, class T>
-void HatTransfer<D, T, Cpu>::restrict(Context<Cpu>&, const HatNodes<D>& nodes, std::span<const T> r,
+void HatTransfer<D, T, Cpu>::restrict(Context<Cpu>& context, const HatNodes<D>& nodes, std::span<const T> r,
                                       std::span<T> b) const {
   std::fill(b.begin(), b.end(), T(0));
   gatherAtNodes(
       *pairs_, nodes, place_, [&](const Vec<D, int>& cell, auto&& f) { forEachParticle(*pairs_, cell, f); },
       [&](std::size_t n, std::uint32_t i, T weight) { b[n] += weight * r[i]; });
+  sumOverProcesses(context, b);
 }
 
 template <int D, class T>
-void HatTransfer<D, T, Cpu>::restrict(Context<Cpu>&, const HatNodes<D>& nodes, std::span<const Gathered<D, T>> r,
-                                      std::span<T> b) const {
+void HatTransfer<D, T, Cpu>::restrict(Context<Cpu>& context, const HatNodes<D>& nodes,
+                                      std::span<const Gathered<D, T>> r, std::span<T> b) const {
   std::fill(b.begin(), b.end(), T(0));
   const auto forEachFluid = [&](const Vec<D, int>& cell, auto&& f) {
-    const std::size_t c = pairs_->grid.linear(cell);
-    for (std::uint32_t i = pairs_->cells.fluidBegin[c]; i < pairs_->cells.fluidEnd[c]; ++i) f(i);
+    pairs_->forEachOwnFluid(pairs_->grid.linear(cell), f);
   };
   gatherAtNodes(*pairs_, nodes, place_, forEachFluid, [&](std::size_t n, std::uint32_t i, T weight) {
     for (int k = 0; k < D; ++k) b[n * D + k] += weight * r[i][k];
   });
+  sumOverProcesses(context, b);
 }
 
 template <int D, class T>

@@ -1,5 +1,6 @@
 #include "packed_lanes.hpp"
 #include "product_lanes.hpp"
+#include "treacle/core/halo.hpp"
 #include "treacle/precondition/projected_multigrid.hpp"
 
 // The products with S' in single precision: C and C^T with their elements, B included, in few bits.
@@ -93,9 +94,10 @@ void ParticleProducts<D, T, Cpu>::pack() {
 
 template <int D, class T>
 template <class Store>
-void ParticleProducts<D, T, Cpu>::packedSchur(const ProjectionTable<T>& table, ScalarField<T, Cpu> q,
-                                              const Store& store) {
+void ParticleProducts<D, T, Cpu>::packedSchur(const Context<Cpu>& context, const ProjectionTable<T>& table,
+                                              ScalarField<T, Cpu> q, const Store& store) {
   const MphPairs<D>& pairs = *pairs_;
+  fillGhosts(context, Held::Active, q.at);
   const StoreWeighted<D, T, Cpu> weighted{table, pairs.material.data(), vectors()};
   forEachClusterOf(pairs.fluidList, [&](std::uint32_t c) {
     FloatPair<D> sum[D] = {};
@@ -112,6 +114,7 @@ void ParticleProducts<D, T, Cpu>::packedSchur(const ProjectionTable<T>& table, S
       return total;
     });
   });
+  fillGhosts(context, Held::Fluid, vectors_.data());
   const Gathered<D, T>* u = vectors_.data();
   const auto ofFluid = [&](std::uint32_t c) {
     float at[clusterSize];
@@ -140,8 +143,8 @@ void ParticleProducts<D, T, Cpu>::packedSchur(const ProjectionTable<T>& table, S
   });
 }
 
-#define TREACLE_SCHUR(D, ...)                                                               \
-  template void ParticleProducts<D, float, Cpu>::packedSchur(const ProjectionTable<float>&, \
+#define TREACLE_SCHUR(D, ...)                                                                                    \
+  template void ParticleProducts<D, float, Cpu>::packedSchur(const Context<Cpu>&, const ProjectionTable<float>&, \
                                                              ScalarField<float, Cpu>, const __VA_ARGS__&);
 #define TREACLE_INSTANTIATE(D)                                   \
   template void ParticleProducts<D, float, Cpu>::pack();         \

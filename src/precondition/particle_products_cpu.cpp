@@ -1,6 +1,7 @@
 #include "treacle/precondition/particle_products.hpp"
 
 #include "product_lanes.hpp"
+#include "treacle/core/halo.hpp"
 #include "treacle/mph/mph_neighbours.hpp"
 
 namespace treacle {
@@ -114,7 +115,9 @@ void ParticleProducts<D, T, Cpu>::sumGradients() {
 
 template <int D, class T>
 template <class Store>
-void ParticleProducts<D, T, Cpu>::gradient(Context<Cpu>&, ScalarField<T, Cpu> q, const Store& store) const {
+void ParticleProducts<D, T, Cpu>::gradient(Context<Cpu>& context, ScalarField<T, Cpu> q,
+                                           const Store& store) const {
+  fillGhosts(context, Held::Active, q.at);
   if (pairs_->renormalisation) return renormalisedGradient(q, store);
   const ClusterListView& list = pairs_->fluidList;
   forEachClusterOf(list, [&](std::uint32_t c) {
@@ -139,8 +142,9 @@ void ParticleProducts<D, T, Cpu>::gradient(Context<Cpu>&, ScalarField<T, Cpu> q,
 
 template <int D, class T>
 template <class Store>
-void ParticleProducts<D, T, Cpu>::divergence(Context<Cpu>&, VectorField<D, T, Cpu> field,
+void ParticleProducts<D, T, Cpu>::divergence(Context<Cpu>& context, VectorField<D, T, Cpu> field,
                                              const Store& store) const {
+  fillGhosts(context, Held::Fluid, field.at);
   if (pairs_->renormalisation) return renormalisedDivergence(field, store);
   const Gathered<D, T>* u = field.at;
   forEachClusterOf(pairs_->fluidList, [&](std::uint32_t c) {
@@ -164,14 +168,15 @@ template <class Store>
 void ParticleProducts<D, T, Cpu>::schur(Context<Cpu>& context, const ProjectionTable<T>& table,
                                         ScalarField<T, Cpu> q, const Store& store) {
   if constexpr (packed)
-    if (unit_ > 0) return packedSchur(table, q, store);
+    if (unit_ > 0) return packedSchur(context, table, q, store);
   gradient(context, q, StoreWeighted<D, T, Cpu>{table, pairs_->material.data(), vectors()});
   divergence(context, vectors(), store);
 }
 
 template <int D, class T>
 template <class Store>
-void ParticleProducts<D, T, Cpu>::viscous(Context<Cpu>&, const Gathered<D, T>* u, const Store& store) const {
+void ParticleProducts<D, T, Cpu>::viscous(Context<Cpu>& context, Gathered<D, T>* u, const Store& store) const {
+  fillGhosts(context, Held::Fluid, u);
   const ClusterListView& list = pairs_->fluidList;
   forEachClusterOf(list, [&](std::uint32_t c) {
     const ClusterWalk<D, T> walk(*pairs_, list, c, position_.data(), fluidLanes_.data());
@@ -196,6 +201,8 @@ template <int D, class T>
 void ParticleProducts<D, T, Cpu>::inverseDiagonals(Context<Cpu>&, const ProjectionTable<T>& table,
                                                    std::span<T> pressure, std::span<Block<D, T>> velocity) const {
   const std::uint8_t* material = pairs_->material.data();
+  std::fill(pressure.begin() + pairs_->ownFluid(), pressure.begin() + pairs_->fluidCount, T(0));
+  std::fill(pressure.begin() + pairs_->ownEnd(), pressure.end(), T(0));
   const auto sumSquares = [&](const ClusterWalk<D, T>& walk, const T* coefficient, auto&& product) {
     LanesOf<T> sum = {};
     walk.forEach(ListSegment::NearFluid, coefficient,
@@ -275,9 +282,8 @@ std::size_t ParticleProducts<D, T, Cpu>::bytes() const {
 #define TREACLE_SCHUR(D, T, ...)                                                                                  \
   template void ParticleProducts<D, T, Cpu>::schur(Context<Cpu>&, const ProjectionTable<T>&, ScalarField<T, Cpu>, \
                                                    const __VA_ARGS__&);
-#define TREACLE_VISCOUS(D, T, ...)                                                                             \
-  template void ParticleProducts<D, T, Cpu>::viscous(Context<Cpu>&, const Gathered<D, T>*, const __VA_ARGS__&) \
-      const;
+#define TREACLE_VISCOUS(D, T, ...) \
+  template void ParticleProducts<D, T, Cpu>::viscous(Context<Cpu>&, Gathered<D, T>*, const __VA_ARGS__&) const;
 #define TREACLE_INSTANTIATE(D, T)             \
   template class ParticleProducts<D, T, Cpu>; \
   TREACLE_FOR_EACH_STORE(D, T, Cpu)

@@ -1,5 +1,6 @@
 #include "hat_loops.hpp"
 #include "treacle/core/parallel.hpp"
+#include "treacle/core/processes.hpp"
 #include "treacle/mph/mph_lanes.hpp"
 #include "treacle/precondition/hat_grid.hpp"
 
@@ -139,17 +140,16 @@ void pressureGalerkin(Context<Cpu>& context, const MphPairs<D>& pairs, const Pro
     const RowEntries<D> entryAt(nodes, s, row, node);
     std::array<double, RowEntries<D>::offsets> sum{};
     cells.forEachCellAround(node, 2, [&](const Vec<D, int>& cell) {
-      const std::size_t c = pairs.grid.linear(cell);
-      for (std::uint32_t i = pairs.cells.fluidBegin[c]; i < pairs.cells.fluidEnd[c]; ++i) {
+      pairs.forEachOwnFluid(pairs.grid.linear(cell), [&](std::uint32_t i) {
         const Vec<D, int> lowest = cells.lowestNode(cell, cells.fraction(pairs.position[i], cell));
         const int own = cells.slot(node, lowest);
-        if (own < 0) continue;
+        if (own < 0) return;
         const Vec<D, T>* column = &columns[std::size_t{slots<D>} * i];
         const Vec<D> weighted = table.weight[pairs.material[i]] * toDouble(column[own]);
         const int from = RowEntries<D>::between(own, 0);
         for (int other = 0; other < slots<D>; ++other)
           sum[from + offsetOfSlot<D>[other]] += fixedDot(weighted, toDouble(column[other]));
-      }
+      });
     });
     cells.forEachCellAround(node, 1, [&](const Vec<D, int>& cell) {
       forEachParticle(pairs, cell, [&](std::uint32_t k) {
@@ -166,6 +166,7 @@ void pressureGalerkin(Context<Cpu>& context, const MphPairs<D>& pairs, const Pro
     for (int o = 0; o < RowEntries<D>::offsets; ++o)
       if (entryAt[o] != RowEntries<D>::none) s.value[entryAt[o]].a[0] += sum[o];
   });
+  sumOverProcesses(context, s.value.span());
 }
 
 #define TREACLE_INSTANTIATE(D, T)                                                                         \

@@ -1,13 +1,18 @@
 #include "treacle/step/diagnostics.hpp"
 
+#include "treacle/core/processes.hpp"
+
+#include <functional>
+
 namespace treacle {
 
 template <int D>
-Diagnostics computeDiagnostics(Context<Cpu>&, const DiagnosticsInput<D>& in) {
+Diagnostics computeDiagnostics(Context<Cpu>& context, const DiagnosticsInput<D>& in) {
   const auto term = DiagnosticsTerm<D>::make(in);
   Diagnostics d = noDiagnostics();
   for (std::size_t i = 0; i < in.position.size(); ++i) d = joined(d, term(in, i));
-  return averaged(d, in.position.size());
+  d = joinedOverProcesses(context, d, [](const Diagnostics& a, const Diagnostics& b) { return joined(a, b); });
+  return averaged(d, joinedOverProcesses(context, in.position.size(), std::plus<>()));
 }
 
 template Diagnostics computeDiagnostics<2>(Context<Cpu>&, const DiagnosticsInput<2>&);

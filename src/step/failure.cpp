@@ -1,5 +1,6 @@
 #include "failure.hpp"
 
+#include "treacle/core/processes.hpp"
 #include "treacle/step/solve_stages.hpp"
 
 #include <fmt/format.h>
@@ -49,12 +50,14 @@ std::string describeFailure(const SolveReport& report, double tolerance, const s
 }
 
 template <int D>
-std::string describeNotFinite(const Particles<D>& particles, std::span<const Vec<D>> b) {
-  for (std::uint32_t i = 0; i < particles.fluidCount; ++i)
+std::string describeNotFinite(const Processes& processes, const Particles<D>& particles,
+                              std::span<const Vec<D>> b) {
+  std::string found;
+  for (std::uint32_t i = 0; i < particles.fluidCount && found.empty(); ++i)
     if (!isFinite(b[i]) || !isFinite(particles.position[i]))
-      return fmt::format("the right-hand side of particle {} at {} m is not finite", particles.id[i],
-                         describe(particles.position[i]));
-  return "the right-hand side is finite";
+      found = fmt::format("the right-hand side of particle {} at {} m is not finite", particles.id[i],
+                          describe(particles.position[i]));
+  return firstText(processes, found, "the right-hand side is finite");
 }
 
 template <int D>
@@ -65,8 +68,8 @@ std::string describeLeaving(const Particles<D>& particles, std::uint32_t i, cons
                      describe(x + dt * u), describe(u));
 }
 
-template std::string describeNotFinite<2>(const Particles<2>&, std::span<const Vec<2>>);
-template std::string describeNotFinite<3>(const Particles<3>&, std::span<const Vec<3>>);
+template std::string describeNotFinite<2>(const Processes&, const Particles<2>&, std::span<const Vec<2>>);
+template std::string describeNotFinite<3>(const Processes&, const Particles<3>&, std::span<const Vec<3>>);
 template std::string describeLeaving<2>(const Particles<2>&, std::uint32_t, const Vec<2>&, double);
 template std::string describeLeaving<3>(const Particles<3>&, std::uint32_t, const Vec<3>&, double);
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "treacle/core/backend.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/linear/krylov_scalars.hpp"
 #include "treacle/model/case.hpp"
@@ -17,9 +18,10 @@ std::string describeStage(const SolverSettings& stage, const SolveReport& report
 /// The diagnosis of a solve that did not converge; `failures`: of the stages before the last one.
 std::string describeFailure(const SolveReport& report, double tolerance, const std::string& failures);
 
-/// Where the right-hand side b (per fluid particle) is not finite.
+/// Where the right-hand side b (per own fluid particle) is not finite, at some process.
 template <int D>
-std::string describeNotFinite(const Particles<D>& particles, std::span<const Vec<D>> b);
+std::string describeNotFinite(const Processes& processes, const Particles<D>& particles,
+                              std::span<const Vec<D>> b);
 
 /// Particle i has left the domain in a step of dt [s] at velocity u [m/s].
 template <int D>

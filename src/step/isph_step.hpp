@@ -232,7 +232,7 @@ class IsphStep final : public StepMethod<D, Backend> {
     if (report.status == SolveStatus::NotFinite) {
       Particles<D> host;
       toHost(state_.context, state_.particles, host);
-      diagnosis += "; " + describeNotFinite<D>(host, host.velocity);
+      diagnosis += "; " + describeNotFinite<D>(state_.context, host, host.velocity);
     }
     throw RunError(diagnosis);
   }

@@ -87,14 +87,14 @@ void MphSystem<D, Backend>::prepare(Context<Backend>& context, Preconditioner<T>
   if (stage_.preconditioner == PreconditionerKind::ProjectedMultigrid)
     return k.projected.setup(context, *pairs_, terms_, matrixFree_, degreesOf(stage_.projected, *pairs_),
                              pressure_);
-  diagonal_.resize(context, pairs_->fluidCount);
+  diagonal_.resize(context, pairs_->ownFluid());
   diagonalBlocks<D>(context, *pairs_, terms_, diagonal_);
   if (stage_.preconditioner == PreconditionerKind::BlockJacobi) {
-    k.blockInverse.resize(context, pairs_->fluidCount);
+    k.blockInverse.resize(context, pairs_->ownFluid());
     blockInverse<D, T>(context, diagonal_, k.blockInverse);
     return;
   }
-  k.inverse.resize(context, pairs_->fluidCount);
+  k.inverse.resize(context, pairs_->ownFluid());
   jacobiInverse<D, T>(context, diagonal_, k.inverse);
   if (stage_.preconditioner == PreconditionerKind::BucketMultigrid) prepareMultigrid(context, k);
 }

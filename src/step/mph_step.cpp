@@ -3,6 +3,7 @@
 #include "step_balance.hpp"
 #include "step_method.hpp"
 #include "take_trial.hpp"
+#include "treacle/core/halo.hpp"
 #include "treacle/mph/mph_neighbourhood.hpp"
 #include "treacle/mph/mph_particles.hpp"
 #include "treacle/mph/mph_repulsion.hpp"
@@ -35,6 +36,7 @@ class MphStep final : public StepMethod<D, Backend> {
     clearValues(state_.context, state_.particles.numberDensity.span().subspan(active));
     clearValues(state_.context, state_.particles.pressure.span().subspan(active));
     numberDensity<D>(state_.context, pairs_, state_.particles.numberDensity.span().first(active));
+    fillGhosts(state_.context, Held::Active, state_.particles.numberDensity.data());
   }
 
   void prepareSystem() override {
@@ -62,13 +64,16 @@ class MphStep final : public StepMethod<D, Backend> {
 
   /// Leaves the walls' velocities in state.velocity, too.
   StagedReport solve() override {
-    const std::uint32_t n = pairs_.fluidCount, active = pairs_.activeCount;
+    const std::uint32_t n = pairs_.ownFluid(), walls = pairs_.fluidCount, active = pairs_.activeCount;
     const std::span<const Vec<D>> last = state_.particles.velocity;
     state_.velocity.resize(state_.context, active);
-    copyValues(state_.context, last.subspan(n, active - n), state_.velocity.data() + n);
+    copyValues(state_.context, last.subspan(walls, active - walls), state_.velocity.data() + walls);
     guess(state_.velocity.span().first(n));
     SolverModes<D, Backend>& modes = state_.particles.modes;
-    StagedReport report = solver_.solve(state_.context, rhs_, state_.velocity.span().first(n), &modes);
+    const bool noModes = state_.context.halo && state_.context.halo->someHaveNone;
+    StagedReport report =
+        solver_.solve(state_.context, rhs_, state_.velocity.span().first(n), noModes ? nullptr : &modes);
+    fillGhosts(state_.context, Held::Fluid, state_.velocity.data());
     if (report.fallbacks == 0 && report.status == SolveStatus::Converged)
       modes.pressure.solved(report.iterations);
     else
@@ -91,7 +96,7 @@ class MphStep final : public StepMethod<D, Backend> {
     KeptEigenvalue pressure;
     if (stage.precision == state_.theCase.solver.precision) pressure = state_.particles.modes.pressure;
     Buffer<Vec<D>, Backend> u;
-    u.resize(state_.context, pairs_.fluidCount);
+    u.resize(state_.context, pairs_.ownFluid());
     return takeTrial(
         state_.context, stage,
         [&] {
@@ -110,14 +115,15 @@ class MphStep final : public StepMethod<D, Backend> {
   }
 
   std::span<const Vec<D>> transportVelocities() override {
-    return state_.velocity.span().first(pairs_.fluidCount);
+    return state_.velocity.span().first(pairs_.ownFluid());
   }
 
   /// Psi of [K23 eq. (14)] with the new velocities.
   void accept() override {
-    const std::uint32_t active = pairs_.activeCount, n = pairs_.fluidCount;
+    const std::uint32_t active = pairs_.activeCount, n = pairs_.ownFluid();
     divergence_.resize(state_.context, active);
     divergence<D>(state_.context, pairs_, state_.velocity.span().first(active), divergence_);
+    fillGhosts(state_.context, Held::Active, divergence_.data());
     bulkPressure<D>(state_.context, pairs_, divergence_, elastic_, state_.particles.pressure.span().first(active));
     if (state_.theCase.output.balance) lastBalance_ = balance_.make(state_, neighbourhood_, divergence_, elastic_);
     // The velocities of the start are given, no solution: nothing follows from the way to the first one.
@@ -155,9 +161,9 @@ class MphStep final : public StepMethod<D, Backend> {
   void placeWallSurfaces() {
     Particles<D, Backend>& p = state_.particles;
     if (p.wallSurface.empty()) return;
-    const std::uint32_t n = p.fluidCount, walls = pairs_.activeCount - n;
+    const std::uint32_t n = pairs_.fluidCount, walls = pairs_.activeCount - n;
     wallSurface_.resize(state_.context, walls);
-    placeSurfaces<D>(state_.context, {n, p.wallSurface.span(), state_.wallMotion.span()},
+    placeSurfaces<D>(state_.context, {state_.fluidOfAll, p.wallSurface.span(), state_.wallMotion.span()},
                      p.id.span().subspan(n, walls), p.body.span().subspan(n, walls), wallSurface_.span());
     neighbourhood_.setWallSurfaces(wallSurface_);
   }
@@ -165,16 +171,18 @@ class MphStep final : public StepMethod<D, Backend> {
   /// B, which everything that contains C needs.
   void renormalise() {
     if (state_.theCase.method.pressureGradient == PressureGradient::Plain) return;
-    renormalisation_.resize(state_.context, state_.particles.fluidCount);
+    renormalisation_.resize(state_.context, pairs_.fluidCount);
     renormalisation<D>(state_.context, pairs_, renormalisation_.span());
+    fillGhosts(state_.context, Held::Fluid, renormalisation_.data());
     neighbourhood_.setRenormalisation(renormalisation_);
   }
 
   void scaleViscosity() {
     const double correction = state_.theCase.method.viscosityCorrection;
     if (correction == 0) return;
-    viscosityScale_.resize(state_.context, state_.particles.fluidCount);
+    viscosityScale_.resize(state_.context, pairs_.fluidCount);
     viscosityScale<D>(state_.context, pairs_, correction, viscosityScale_.span());
+    fillGhosts(state_.context, Held::Fluid, viscosityScale_.data());
     neighbourhood_.setViscosityScale(viscosityScale_);
   }
 
@@ -194,7 +202,7 @@ class MphStep final : public StepMethod<D, Backend> {
 
   /// b -= A_full (0 on the fluid, u on the walls)
   void addWallVelocities() {
-    const std::uint32_t n = state_.particles.fluidCount, active = pairs_.activeCount;
+    const std::uint32_t n = pairs_.fluidCount, active = pairs_.activeCount;
     const std::span<const Vec<D>> u = state_.particles.velocity;
     state_.velocity.resize(state_.context, active);
     clearValues(state_.context, state_.velocity.span().first(n));
@@ -202,6 +210,7 @@ class MphStep final : public StepMethod<D, Backend> {
     addWallDrag<D>(state_.context, pairs_, state_.velocity, rhs_);
     divergence_.resize(state_.context, active);
     divergence<D>(state_.context, pairs_, state_.velocity, divergence_);
+    fillGhosts(state_.context, Held::Active, divergence_.data());
     bulkPressure<D>(state_.context, pairs_, divergence_, {}, divergence_);
     addPressureGradient<D>(state_.context, pairs_, divergence_, -1.0, rhs_);
   }
@@ -214,7 +223,7 @@ class MphStep final : public StepMethod<D, Backend> {
       copyToHost(state_.context, std::span<const Vec<D>>(rhs_), b);
     else
       copyValues(state_.context, std::span<const Vec<D>>(rhs_), b.data());
-    return describeNotFinite<D>(host, b);
+    return describeNotFinite<D>(state_.context, host, b);
   }
 
   FlowState<D, Backend>& state_;

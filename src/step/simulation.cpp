@@ -1,7 +1,9 @@
 #include "treacle/step/simulation.hpp"
 
 #include "failure.hpp"
+#include "gather_particles.hpp"
 #include "step_method.hpp"
+#include "treacle/core/processes.hpp"
 #include "treacle/core/team.hpp"
 #include "treacle/model/particles_copy.hpp"
 #include "treacle/step/diagnostics.hpp"
@@ -87,11 +89,13 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
   double endOfStep = 0;                // time at the end of the step at hand [s]
   bool tooCoarse = false;              // an automatic step was, and it was said
 
-  State(const Case& c, Particles<D> state, std::int64_t startStep, double startTime)
+  State(const Case& c, Particles<D> state, std::int64_t startStep, double startTime, const Communicator* processes)
       : Flow(c, startStep, startTime),
         wallsRotate(someWallRotates(c)),
         wallVelocitiesChange(wallsRotate || someWallOscillates(c)) {
     if (theCase.time.automatic) control.emplace(theCase);
+    if (processes && processes->size() > 1) context.communicator = processes;
+    this->fluidOfAll = state.fluidCount;
     wallsMove = wallVelocitiesChange || someWallMoves(state);
     const double mass = fluidMass(theCase, state);
     toBackend(context, std::move(state), particles);
@@ -105,7 +109,7 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     }
     const Diagnostics start = diagnostics();
     lastSpeed = start.maxSpeed;
-    watch.emplace(theCase, start, mass, particles.fluidCount, wallsMove);
+    watch.emplace(theCase, start, mass, this->fluidOfAll, wallsMove);
   }
 
   void chooseTimeStep() {
@@ -136,7 +140,7 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
   }
 
   MovingWalls<D> walls() const {
-    const std::uint32_t n = particles.fluidCount;
+    const std::uint32_t n = particles.wallBegin();
     return {this->wallMotion, particles.body.span().subspan(n), particles.position.span().subspan(n)};
   }
 
@@ -147,12 +151,12 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     for (const Body& body : theCase.bodies)
       motion.push_back(treacle::wallMotion<D>(theCase.domain, body, time, timeStep));
     fromHost(context, std::span<const WallMotion<D>>(motion), this->wallMotion);
-    setWallVelocities<D>(context, walls(), particles.velocity.span().subspan(particles.fluidCount));
+    setWallVelocities<D>(context, walls(), particles.velocity.span().subspan(particles.wallBegin()));
   }
 
   /// What the walls move with.
   std::span<const Vec<D>> wallTransport() {
-    if (!wallsRotate) return particles.velocity.span().subspan(particles.fluidCount);
+    if (!wallsRotate) return particles.velocity.span().subspan(particles.wallBegin());
     wallChord.resize(context, particles.wallCount());
     setWallChords<D>(context, walls(), wallChord);
     return wallChord.span();
@@ -161,8 +165,10 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
   /// x^{k+1} of [K23 eq. (15)] into `position`; walls by their prescribed motion.
   void move() {
     position.resize(context, wallsMove ? particles.count : particles.fluidCount);
-    moveRange(0, particles.fluidCount, method->transportVelocities());
-    if (wallsMove) moveRange(particles.fluidCount, particles.count, wallTransport());
+    agreed(context, [&] {
+      moveRange(0, particles.fluidCount, method->transportVelocities());
+      if (wallsMove) moveRange(particles.wallBegin(), particles.count, wallTransport());
+    });
   }
 
   /// `u`: of the particles from `begin` on.
@@ -184,10 +190,12 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
   }
 
   void accept() {
-    const std::uint32_t moved = wallsMove ? particles.count : particles.fluidCount;
+    const std::uint32_t walls = particles.wallBegin();
+    const std::span<const Vec<D>> moved = position;
     method->accept();
     copyValues(context, std::span<const Vec<D>>(velocity).first(particles.fluidCount), particles.velocity.data());
-    copyValues(context, std::span<const Vec<D>>(position).first(moved), particles.position.data());
+    copyValues(context, moved.first(particles.fluidCount), particles.position.data());
+    if (wallsMove) copyValues(context, moved.subspan(walls), particles.position.data() + walls);
     ++step;
     time = endOfStep;
     particles.steps.last = timeStep;
@@ -305,8 +313,9 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
 };
 
 template <int D, class Backend>
-Simulation<D, Backend>::Simulation(const Case& c, Particles<D> particles, std::int64_t step, double time)
-    : state_(std::make_unique<State>(c, std::move(particles), step, time)) {}
+Simulation<D, Backend>::Simulation(const Case& c, Particles<D> particles, std::int64_t step, double time,
+                                   const Communicator* processes)
+    : state_(std::make_unique<State>(c, std::move(particles), step, time, processes)) {}
 template <int D, class Backend>
 Simulation<D, Backend>::~Simulation() = default;
 template <int D, class Backend>
@@ -330,6 +339,9 @@ const Particles<D, Backend>& Simulation<D, Backend>::particles() const {
 }
 template <int D, class Backend>
 void Simulation<D, Backend>::copyParticles(Particles<D>& host) const {
+  if constexpr (std::is_same_v<Backend, Cpu>)
+    if (state_->context.communicator)
+      return gatherParticles(*state_->context.communicator, *state_->context.halo, state_->particles, host);
   toHost(state_->context, state_->particles, host);
 }
 template <int D, class Backend>

@@ -37,12 +37,12 @@ class StepBalance {
  private:
   void sumPairs(FlowState<D, Backend>& state, const MphNeighbourhood<D, Backend>& neighbourhood) {
     const MphPairs<D>& pairs = neighbourhood.pairs();
-    const std::uint32_t n = pairs.fluidCount, active = pairs.activeCount;
+    const std::uint32_t n = pairs.fluidCount, active = pairs.activeCount;  // of ghosts nothing is summed
     ClusterListView walls = pairs.wallList;
     if (walls.offset) {  // the lists of the step reach only as far as pressures
       const double reach = std::max(pairs.terms.densityRadius, pairs.terms.viscosityRadius);
-      buildClusterList<D>(state.context, pairs.grid, neighbourhood.ranges(), pairs.position, n, active, {reach, 0},
-                          true, walls_);
+      buildClusterList<D>(state.context, pairs.grid, neighbourhood.ranges(), pairs.position, n, pairs.ownEnd(),
+                          {reach, 0}, true, walls_);
       walls = walls_.view();
     }
     shear_.resize(state.context, n);
@@ -63,10 +63,11 @@ class StepBalance {
   void setPowers(FlowState<D, Backend>& state, const MphPairs<D>& pairs, std::span<const double> divergence,
                  std::span<const double> elastic, Balance& balance) {
     using Terms = PowerTerms<D>;
-    const Terms terms{pairs.fluidCount, pairs.materials, pairs.material, state.particles.velocity,
-                      state.velocity,   divergence,      elastic,        shear_,
-                      wallDivergence_,  wallDensity_,    repulsion_};
-    const auto sums = sumPowers<D>(state.context, terms, pairs.activeCount);
+    const Terms terms{
+        pairs.fluidCount, pairs.ownFluid(), pairs.materials, pairs.material, state.particles.velocity,
+        state.velocity,   divergence,       elastic,         shear_,         wallDivergence_,
+        wallDensity_,     repulsion_};
+    const auto sums = sumPowers<D>(state.context, terms, pairs.ownEnd());
     const double volume = std::pow(pairs.spacing, D);  // [K23 eq. (11)]
     balance.shearDissipation = volume * sums[Terms::Shear];
     balance.bulkDissipation = volume * sums[Terms::Bulk];
@@ -77,7 +78,7 @@ class StepBalance {
   }
 
   void setLoads(FlowState<D, Backend>& state, const MphPairs<D>& pairs, Balance& balance) {
-    const std::uint32_t n = pairs.fluidCount, walls = pairs.activeCount - n;
+    const std::uint32_t n = pairs.fluidCount, walls = pairs.ownEnd() - n;
     const LoadTerms<D> terms{state.particles.body.span().subspan(n, walls), pairs.position.subspan(n, walls),
                              state.velocity.span().subspan(n, walls), wallForce_};
     const std::vector<LoadSums> loads = sumLoads<D>(state.context, terms, state.theCase.bodies.size());

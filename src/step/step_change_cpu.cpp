@@ -1,12 +1,17 @@
 #include "treacle/step/step_change.hpp"
 
+#include "treacle/core/processes.hpp"
+
+#include <functional>
+
 namespace treacle {
 
 template <int D>
-StepChange stepChange(Context<Cpu>&, const StepChangeTerms<D>& terms) {
+StepChange stepChange(Context<Cpu>& context, const StepChangeTerms<D>& terms) {
   std::array<double, StepChangeTerms<D>::count> sums{};
   for (std::size_t i = 0; i < terms.after.size(); ++i) terms.add(i, sums.data());
-  return StepChange::mean(sums, terms.after.size());
+  sumOverProcesses(context, std::span<double>(sums));
+  return StepChange::mean(sums, joinedOverProcesses(context, terms.after.size(), std::plus<>()));
 }
 
 template StepChange stepChange<2>(Context<Cpu>&, const StepChangeTerms<2>&);

@@ -4,6 +4,7 @@
 #include "treacle/model/particles.hpp"
 #include "treacle/mph/mph_pairs.hpp"
 #include "treacle/search/cell_sort.hpp"
+#include "treacle/search/decomposition.hpp"
 
 #include <algorithm>
 #include <type_traits>
@@ -19,8 +20,10 @@ class MphNeighbourhood {
         useLists_(std::is_same_v<Backend, Cpu> || c.solver.neighbours == NeighbourKind::Lists) {}
   MphNeighbourhood(const MphNeighbourhood&) = delete;
 
-  /// Sorts the particles into cells.
+  /// Sorts the particles into cells; of several processes each its own ones, and ghosts of others.
   void sort(Context<Backend>& context, Particles<D, Backend>& particles) {
+    if constexpr (std::is_same_v<Backend, Cpu>)
+      if (context.communicator) return decomposition_.sort(context, pairs_.grid, particles, ranges_, workspace_);
     sortByCell(context, pairs_.grid, particles, ranges_, workspace_);
   }
 
@@ -29,21 +32,24 @@ class MphNeighbourhood {
   /// `wholeRows`: lists of fluid reach as far as A couples, which only assembling A needs, and not only as far as
   /// pairs act on each other.
   void buildLists(Context<Backend>& context, const Particles<D, Backend>& particles, bool wholeRows = true) {
-    const std::uint32_t fluid = particles.fluidCount, active = ranges_.activeCount;
+    const std::uint32_t fluid = particles.wallBegin();
     pairs_.fluidCount = fluid;
-    pairs_.activeCount = active;
+    pairs_.activeCount = ranges_.activeCount;
+    pairs_.ghostFluid = particles.ghostCount;
+    pairs_.ghostWalls = ranges_.ghostWalls;
+    const std::uint32_t ownFluid = pairs_.ownFluid(), ownEnd = pairs_.ownEnd();
     pairs_.position = particles.position;
     pairs_.material = particles.material;
     pairs_.cells = viewOf(ranges_);
     if (!useLists_) {
-      pairs_.fluidList = {0, fluid};
-      pairs_.wallList = {fluid, active};
+      pairs_.fluidList = {0, ownFluid};
+      pairs_.wallList = {fluid, ownEnd};
       return;
     }
     const double hp = pairs_.terms.pressureRadius, hn = pairs_.terms.densityRadius;
     const double far = std::max({pairs_.terms.viscosityRadius, hn, wholeRows ? 2 * hp : hp});
-    buildClusterList<D>(context, pairs_.grid, ranges_, pairs_.position, 0, fluid, {hp, far}, false, fluidList_);
-    buildClusterList<D>(context, pairs_.grid, ranges_, pairs_.position, fluid, active, {hp, hn > hp ? hn : 0},
+    buildClusterList<D>(context, pairs_.grid, ranges_, pairs_.position, 0, ownFluid, {hp, far}, false, fluidList_);
+    buildClusterList<D>(context, pairs_.grid, ranges_, pairs_.position, fluid, ownEnd, {hp, hn > hp ? hn : 0},
                         true, wallList_);
     pairs_.fluidList = fluidList_.view();
     pairs_.wallList = wallList_.view();
@@ -71,7 +77,7 @@ class MphNeighbourhood {
   const CellGrid<D>& grid() const { return pairs_.grid; }
   const CellRanges<Backend>& ranges() const { return ranges_; }
   std::size_t bytes() const {
-    return ranges_.bytes() + workspace_.bytes() + fluidList_.bytes() + wallList_.bytes();
+    return ranges_.bytes() + workspace_.bytes() + decomposition_.bytes() + fluidList_.bytes() + wallList_.bytes();
   }
 
  private:
@@ -79,6 +85,7 @@ class MphNeighbourhood {
   bool useLists_;
   CellRanges<Backend> ranges_;
   SortWorkspace<Backend> workspace_;
+  std::conditional_t<std::is_same_v<Backend, Cpu>, Decomposition<D>, Absent> decomposition_;
   ClusterList<Backend> fluidList_, wallList_;
 };
 

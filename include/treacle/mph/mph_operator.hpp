@@ -21,11 +21,12 @@ class MphOperator<D, Cpu> {
   /// Computes the pair coefficients. `pairs` and the terms' spans must outlive the products.
   void prepare(Context<Cpu>&, const MphPairs<D>& pairs, const WallTerms<D>& terms);
 
-  /// y = A u, per fluid particle.
+  /// y = A u, per own fluid particle.
   void multiply(Context<Cpu>&, std::span<const Vec<D>> u, std::span<Vec<D>> y);
 
   std::size_t bytes() const {
-    return viscousStart_.bytes() + pressureStart_.bytes() + viscous_.bytes() + pressure_.bytes() + q_.bytes();
+    return viscousStart_.bytes() + pressureStart_.bytes() + viscous_.bytes() + pressure_.bytes() + q_.bytes() +
+           withGhosts_.bytes();
   }
 
  private:
@@ -33,6 +34,7 @@ class MphOperator<D, Cpu> {
   template <bool Renormalised>
   void viscosityAndDivergence(std::span<const Vec<D>> u, std::span<Vec<D>> y);
   void wallDivergence(std::span<const Vec<D>> u);
+  std::span<const Vec<D>> withGhosts(const Context<Cpu>&, std::span<const Vec<D>> u);
   template <bool Renormalised>
   void addGradient(std::span<Vec<D>> y);
 
@@ -45,6 +47,7 @@ class MphOperator<D, Cpu> {
   Buffer<double> viscous_;   // near and far fluid: c of the viscous block c d d^T
   Buffer<double> pressure_;  // near fluid, then near walls: g of -e w' = g d
   Buffer<double> q_;         // lambda C^T u, per particle
+  Buffer<Vec<D>> withGhosts_;
 };
 
 /// The same on a device, where arithmetic costs less than memory: pair terms are computed from the positions in

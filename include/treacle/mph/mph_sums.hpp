@@ -8,7 +8,8 @@
 namespace treacle {
 
 /// Sums over neighbours that make up one step. Spans "per particle" have activeCount, "per fluid particle"
-/// fluidCount elements; results are overwritten unless the name says add.
+/// fluidCount elements; results are overwritten unless the name says add, and set for own particles alone. What is
+/// read of neighbours must be there for ghosts, too (fillGhosts).
 
 /// n_i = sum_j w_ij^p, per particle [K23 eq. (7)].
 template <int D>

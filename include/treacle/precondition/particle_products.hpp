@@ -12,7 +12,8 @@
 namespace treacle {
 
 /// The sums over neighbours that a preconditioner is made of, in its own precision T. `store` is called once per
-/// particle with the sum; which ones there are: projection_terms.hpp.
+/// own particle with the sum; which ones there are: projection_terms.hpp. Of what is gathered, own particles'
+/// values are enough: a product brings those of ghosts.
 template <int D, class T, class Backend = Cpu>
 class ParticleProducts;
 
@@ -43,9 +44,10 @@ class ParticleProducts<D, T, Cpu> {
   void schur(Context<Cpu>&, const ProjectionTable<T>& table, ScalarField<T, Cpu> q, const Store& store);
   /// store(i, ((rho/dt I + V) u)_i) per fluid particle.
   template <class Store>
-  void viscous(Context<Cpu>&, const Gathered<D, T>* u, const Store& store) const;
+  void viscous(Context<Cpu>&, Gathered<D, T>* u, const Store& store) const;
 
-  /// Inverse diagonal of S' per particle [Pa s], and inverse diagonal blocks of rho/dt I + V per fluid particle.
+  /// Inverse diagonal of S' per particle [Pa s], zero for ghosts, and inverse diagonal blocks of rho/dt I + V per
+  /// fluid particle.
   void inverseDiagonals(Context<Cpu>&, const ProjectionTable<T>& table, std::span<T> pressure,
                         std::span<Block<D, T>> velocity) const;
 
@@ -65,7 +67,8 @@ class ParticleProducts<D, T, Cpu> {
   static constexpr bool packed = std::is_same_v<T, float>;
   void pack();
   template <class Store>
-  void packedSchur(const ProjectionTable<T>& table, ScalarField<T, Cpu> q, const Store& store);
+  void packedSchur(const Context<Cpu>&, const ProjectionTable<T>& table, ScalarField<T, Cpu> q,
+                   const Store& store);
   // Where the pairs have B.
   void renormalise();
   template <class Store>

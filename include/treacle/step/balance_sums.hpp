@@ -18,7 +18,7 @@ template <int D>
 struct PowerTerms {
   enum { Shear, Bulk, Inertial, Elastic, ElasticEnergy, Repulsion, count };
 
-  std::uint32_t fluidCount;
+  std::uint32_t fluidCount, ownFluid;  // fluid from ownFluid on is other processes'
   MaterialTable materials;
   std::span<const std::uint8_t> material;
   std::span<const Vec<D>> before, after;   // u^k of the fluid, u^{k+1} of all [m/s]
@@ -48,7 +48,7 @@ struct PowerTerms {
   }
 };
 
-/// Sums over active particles, in an order that depends on their number alone.
+/// Sums over active particles [0, active), in an order that depends on their number alone; of all processes.
 template <int D>
 std::array<double, PowerTerms<D>::count> sumPowers(Context<Cpu>&, const PowerTerms<D>&, std::size_t active);
 template <int D>

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "treacle/core/communicator.hpp"
 #include "treacle/model/balance.hpp"
 #include "treacle/model/case.hpp"
 #include "treacle/model/particles.hpp"
@@ -76,8 +77,12 @@ struct StepReport {
 template <int D, class Backend = Cpu>
 class Simulation {
  public:
-  /// `particles`: the state at `time` after `step` steps. Errors: std::bad_alloc.
-  Simulation(const Case& c, Particles<D> particles, std::int64_t step = 0, double time = 0);
+  /// `particles`: the state at `time` after `step` steps. `processes`: those that share the simulation, all of
+  /// which make it with the same arguments, and call the same members in the same order; null or one: it is alone.
+  /// On the CPU alone, and for MPH-I with preconditioners that isDistributed() knows. Errors: InputError where
+  /// there are more processes than parts of the fluid; std::bad_alloc.
+  Simulation(const Case& c, Particles<D> particles, std::int64_t step = 0, double time = 0,
+             const Communicator* processes = nullptr);
   ~Simulation();
   Simulation(Simulation&&) noexcept;
 
@@ -92,9 +97,10 @@ class Simulation {
   /// set up; a solve that fails is a result.
   std::vector<SolverTrial> convergence(std::span<const SolverSettings> solvers);
 
-  /// Particles in the backend's memory.
+  /// Particles in the backend's memory; of several processes, those that this one holds.
   const Particles<D, Backend>& particles() const;
-  /// All fields; waits until the data are there.
+  /// All fields of all particles; waits until the data are there. Of several processes the first gets them, with
+  /// walls in the order of their ids; the others' `host` is not touched.
   void copyParticles(Particles<D>& host) const;
   double time() const;  // [s]
   std::int64_t step() const;

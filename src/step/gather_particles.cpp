@@ -1,0 +1,79 @@
+#include "gather_particles.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <vector>
+
+namespace treacle {
+namespace {
+
+/// What its owner alone knows of an active wall particle.
+struct WallState {
+  std::uint32_t id;
+  double pressure, numberDensity;
+};
+
+template <int D>
+std::vector<WallState> ownWallStates(const Halo& halo, const Particles<D>& p) {
+  std::vector<WallState> states(halo.ownWalls);
+  for (std::uint32_t k = 0; k < halo.ownWalls; ++k) {
+    const std::uint32_t i = halo.fluid + k;
+    states[k] = {p.id[i], p.pressure[i], p.numberDensity[i]};
+  }
+  return states;
+}
+
+/// Walls as the process knows them, sorted by id, and their states by those who own them.
+template <int D>
+void putWalls(const Particles<D>& own, const std::vector<WallState>& states, Particles<D>& whole) {
+  std::vector<std::uint32_t> order(own.wallCount());
+  std::iota(order.begin(), order.end(), own.wallBegin());
+  std::ranges::sort(order, {}, [&](std::uint32_t i) { return own.id[i]; });
+  forEachSharedFieldOf(
+      [&](const auto& from, auto& to) {
+        for (std::size_t k = 0; k < order.size(); ++k) to[whole.fluidCount + k] = from[order[k]];
+      },
+      own, whole);
+  std::fill(whole.pressure.begin() + whole.fluidCount, whole.pressure.end(), 0.0);
+  std::fill(whole.numberDensity.begin() + whole.fluidCount, whole.numberDensity.end(), 0.0);
+  const auto ids = whole.id.span().subspan(whole.fluidCount);
+  for (const WallState& s : states) {
+    const std::size_t i = whole.fluidCount + (std::ranges::lower_bound(ids, s.id) - ids.begin());
+    whole.pressure[i] = s.pressure;
+    whole.numberDensity[i] = s.numberDensity;
+  }
+}
+
+}  // namespace
+
+template <int D>
+void gatherParticles(const Communicator& processes, const Halo& halo, const Particles<D>& own,
+                     Particles<D>& whole) {
+  const bool first = processes.rank() == 0;
+  // No process without fluid has a part where there are modes.
+  const std::uint32_t modes = halo.someHaveNone ? 0 : own.modeCount();
+  if (first) {
+    whole.resize({halo.fluidOfAll, own.wallCount(), modes, own.wallSurface.size()});
+    whole.copyNumbers(own);
+    std::copy(own.wallSurface.begin(), own.wallSurface.end(), whole.wallSurface.begin());
+  }
+  const auto gather = [&]<class T>(std::span<const T> part, T* to) {
+    const std::vector<T> all = processes.collect(part);
+    std::copy(all.begin(), all.end(), to);
+  };
+  const auto gatherField = [&]<class T>(const Buffer<T>& from, Buffer<T>& to) {
+    gather(from.span().first(own.fluidCount), to.data());
+  };
+  forEachSharedFieldOf(gatherField, own, whole);
+  forEachFluidFieldOf(gatherField, own, whole);
+  for (std::size_t m = 0; m < modes; ++m)
+    gather(own.modes.vectors.span().subspan(m * own.fluidCount, own.fluidCount),
+           whole.modes.vectors.data() + (first ? m * whole.fluidCount : 0));
+  const std::vector<WallState> states = processes.collect(std::span<const WallState>(ownWallStates(halo, own)));
+  if (first) putWalls(own, states, whole);
+}
+
+template void gatherParticles(const Communicator&, const Halo&, const Particles<2>&, Particles<2>&);
+template void gatherParticles(const Communicator&, const Halo&, const Particles<3>&, Particles<3>&);
+
+}  // namespace treacle
