@@ -1,5 +1,6 @@
 #pragma once
 
+#include "treacle/core/communicator.hpp"
 #include "treacle/io/compare.hpp"
 #include "treacle/io/picture.hpp"
 #include "treacle/model/case.hpp"
@@ -65,7 +66,8 @@ inline constexpr int runsDiffer = 1;
 
 /// The commands of the program. They print to stdout, warnings to stderr.
 /// Errors: InputError, RunError, std::bad_alloc.
-void runCommand(const RunOptions& options);
+/// `processes`: those that run it together, all of which call this.
+void runCommand(const RunOptions& options, const Communicator& processes);
 void checkCommand(const CaseOptions& options);
 void infoCommand();
 void plotCommand(const PlotOptions& options);

@@ -116,7 +116,7 @@ void addMachine(CLI::App& command, Options& options) {
   command.add_option("--resume", options.resume, "Checkpoint to continue from")->type_name("FILE");
 }
 
-void addRun(CLI::App& app, RunOptions& options) {
+void addRun(CLI::App& app, RunOptions& options, const Communicator& job) {
   CLI::App* run = app.add_subcommand("run", "Run a case");
   addCase(*run, options.input);
   run->add_option("-o,--output", options.directory, "Run directory; default: the case's name with -run")
@@ -128,7 +128,7 @@ void addRun(CLI::App& app, RunOptions& options) {
   run->add_flag("--timings", options.timings, "Seconds of each phase of a step in history.csv");
   run->add_flag("--force", options.force, "Replace the run that the directory holds");
   run->add_flag("-q,--quiet", options.quiet, "Print nothing but errors");
-  run->callback([&options] { runCommand(options); });
+  run->callback([&options, &job] { runCommand(options, job); });
 }
 
 void addConvergence(CLI::App& app, ConvergenceOptions& options) {
@@ -185,7 +185,28 @@ int report(const std::string& text, ExitCode code) {
   return static_cast<int>(code);
 }
 
-int execute(int argc, char** argv) {
+/// At a process that is not the first: it has taken part in a run. What it has met the first one has met as well,
+/// and reports it; else the others would wait for it.
+int follow(int argc, char** argv, const Communicator& job) {
+  RunOptions run;
+  CLI::App app;
+  addRun(app, run, job);
+  app.allow_extras();
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return e.get_exit_code() == 0 ? 0 : static_cast<int>(ExitCode::BadInput);
+  } catch (const InputError&) {
+    return static_cast<int>(ExitCode::BadInput);
+  } catch (const RunError&) {
+    return static_cast<int>(ExitCode::RunFailed);
+  } catch (const std::exception& e) {
+    job.abort(e.what(), static_cast<int>(ExitCode::RunFailed));
+  }
+  return 0;
+}
+
+int execute(int argc, char** argv, const Communicator& job) {
   CLI::App app("Particle solver for highly viscous, incompressible free-surface flow", "treacle");
   app.set_version_flag("--version", fmt::format("treacle {} ({})", buildInfo().version, buildInfo().commit));
   app.footer("Exit codes: 0 done, 1 compared runs differ, 2 bad input, 3 the run failed.");
@@ -195,7 +216,7 @@ int execute(int argc, char** argv) {
   CompareOptions compare;
   ConvergenceOptions convergence;
   bool agree = true;
-  addRun(app, run);
+  addRun(app, run, job);
   CLI::App* checkApp = app.add_subcommand("check", "Check a case; prints it with all keys, counts and stability");
   addCase(*checkApp, check);
   checkApp->callback([&check] { checkCommand(check); });
@@ -229,7 +250,9 @@ int execute(int argc, char** argv) {
 int main(int argc, char** argv) {
   openClosedStreams();
   ignoreFileSizeSignal();
-  const int code = execute(argc, argv);
+  const Communicator job = Communicator::ofJob();
+  if (job.rank() > 0) return follow(argc, argv, job);
+  const int code = execute(argc, argv, job);
   flushPrinted();
   const std::string failure = printFailure();
   if (failure.empty() || code > runsDiffer) return code;

@@ -23,10 +23,11 @@
 namespace treacle {
 
 Run::Run(const Case& c, StartState start, BackendKind backend, RunDirectory directory, const RunOptions& options,
-         std::string device)
+         std::string device, const Communicator& processes)
     : case_(c),
       backend_(backend),
       device_(std::move(device)),
+      processes_(processes),
       start_(std::move(start)),
       directory_(std::move(directory)),
       timings_(options.timings),
@@ -38,7 +39,7 @@ void Run::execute(const std::vector<std::string>& warnings) {
   for (const std::string& warning : warnings) log_.warning(warning);
   attempt([&] {
     writeFile(directory_.caseFile(), caseText(case_));
-    simulation_.emplace(case_, std::move(start_.particles), backend_, start_.step, start_.time);
+    simulation_.emplace(case_, std::move(start_.particles), backend_, start_.step, start_.time, &processes_);
     recorder_.emplace(case_, directory_, log_, start_.time, timings_, [this](Snapshot& s) { copyState(s); });
     recorder_->begin();
     advanceToEnd();
@@ -51,16 +52,19 @@ void Run::describe() {
   summary_.version = build.version, summary_.commit = build.commit;
   summary_.backend = onDevice() ? "cuda" : "cpu", summary_.device = device_;
   summary_.threads = omp_get_max_threads();
+  summary_.processes = processes_.size();
   summary_.precision = nameOf(case_.solver.precision);
   summary_.title = case_.title;
   summary_.dimensions = case_.dimensions;
   const ParticleNumbers particles = start_.particles.numbers();
   summary_.fluidParticles = particles.fluid, summary_.wallParticles = particles.wall;
-  log_.info(fmt::format("treacle {} ({}), backend {}, {}, {} threads of the host", build.version, build.commit,
-                        summary_.backend, device_, summary_.threads));
+  log_.info(fmt::format("treacle {} ({}), backend {}, {}, {} threads of the host{}", build.version, build.commit,
+                        summary_.backend, device_, summary_.threads,
+                        processes_.size() > 1 ? fmt::format(" in each of {} processes", processes_.size()) : ""));
   say(fmt::format("{}: {} fluid and {} wall particles, {}, into {}", case_.title.empty() ? "case" : case_.title,
                   particles.fluid, particles.wall, stepsText(), directory_.path().string()));
   log_.info("solver: " + solverText(solveStages(case_).front()));
+  if (processes_.size() > 1) say(fmt::format("shared by {} processes", processes_.size()));
   if (case_.method.kind == MethodKind::Isph) log_.info("viscous step: " + viscousText(case_));
   if (start_.step > 0) say(fmt::format("continues after step {} (t = {:.6g} s)", start_.step, start_.time));
 }

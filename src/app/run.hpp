@@ -21,9 +21,9 @@ namespace treacle {
 /// and frame), the picture and the summary are still written as far as that is possible.
 class Run {
  public:
-  /// `device`: its name for the user.
+  /// `device`: its name for the user. `processes`: those that share the run, of which this is the first.
   Run(const Case& c, StartState start, BackendKind backend, RunDirectory directory, const RunOptions& options,
-      std::string device);
+      std::string device, const Communicator& processes);
 
   /// Errors: RunError with the diagnosis, after everything is written.
   void execute(const std::vector<std::string>& warnings);
@@ -49,6 +49,7 @@ class Run {
   const Case& case_;
   BackendKind backend_;
   std::string device_;
+  const Communicator& processes_;
   StartState start_;
   RunDirectory directory_;
   bool timings_;

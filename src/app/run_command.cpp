@@ -6,11 +6,13 @@
 #include "resume.hpp"
 #include "run.hpp"
 #include "threads.hpp"
+#include "together.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/io/case_reader.hpp"
 #include "treacle/model/case_error.hpp"
 #include "treacle/model/checks.hpp"
 #include "treacle/model/create.hpp"
+#include "treacle/step/shareable.hpp"
 
 #include <fmt/format.h>
 
@@ -46,24 +48,40 @@ void requireElsewhere(const std::filesystem::path& directory, const std::filesys
 
 }  // namespace
 
-void runCommand(const RunOptions& options) {
-  const std::optional<DeviceInfo> device = deviceFor(options.backend);
-  startThreads(options.threads);
-  const Case c = caseOf(options);
+void runCommand(const RunOptions& options, const Communicator& processes) {
+  const bool shared = processes.size() > 1;
+  std::optional<DeviceInfo> device;
+  Case c;
   std::vector<std::string> warnings;
-  requireRoomForParticles(c);
-  StartState start{createParticles(c, warnings)};
-  for (std::string& warning : caseWarnings(c)) warnings.push_back(std::move(warning));
-  const auto directory = options.directory.empty() ? options.input.file.stem().concat("-run") : options.directory;
-  requireElsewhere(directory, options.resume);
-  if (!options.resume.empty()) start = resumedState(c, options.resume, start.particles);
-  requireMemory(c, start.particles, device ? &*device : nullptr);
+  StartState start{AnyParticles(2)};
+  together(processes, [&] {
+    if (!shared || options.backend != BackendChoice::Auto) device = deviceFor(options.backend);
+    startThreads(options.threads);
+    c = caseOf(options);
+    if (shared) requireShareable(c, device ? BackendKind::Cuda : BackendKind::Cpu);
+    requireRoomForParticles(c);
+    start = {createParticles(c, warnings)};
+    for (std::string& warning : caseWarnings(c)) warnings.push_back(std::move(warning));
+    if (!options.resume.empty()) start = resumedState(c, options.resume, start.particles);
+    if (!shared) requireMemory(c, start.particles, device ? &*device : nullptr);
+  });
+  requireSame(processes, fmt::format("{}\n{} {}", caseText(c), start.step, start.time));
   catchInterrupts();
-  RunDirectory files = RunDirectory::create(directory, options.force);
+  std::optional<RunDirectory> files;
+  together(processes, [&] {
+    if (processes.rank() > 0) return;
+    const auto directory =
+        options.directory.empty() ? options.input.file.stem().concat("-run") : options.directory;
+    requireElsewhere(directory, options.resume);
+    files.emplace(RunDirectory::create(directory, options.force));
+  });
+  if (processes.rank() > 0)
+    return serveSimulation(c, std::move(start.particles), start.step, start.time, processes);
+  const Followers followers(processes);
   if (!device)
     for (std::string& warning : cpuWarnings(c)) warnings.push_back(std::move(warning));
-  Run run(c, std::move(start), device ? BackendKind::Cuda : BackendKind::Cpu, std::move(files), options,
-          device ? deviceText(*device) : processorName());
+  Run run(c, std::move(start), device ? BackendKind::Cuda : BackendKind::Cpu, std::move(*files), options,
+          device ? deviceText(*device) : processorName(), processes);
   run.execute(warnings);
 }
 

@@ -20,6 +20,7 @@ void writeSummary(const std::filesystem::path& path, const RunSummary& s) {
   json["backend"] = s.backend;
   json["device"] = s.device;
   json["threads"] = s.threads;
+  json["processes"] = s.processes;
   json["precision"] = s.precision;
   json["dimensions"] = s.dimensions;
   json["fluid_particles"] = s.fluidParticles;

@@ -3,9 +3,13 @@
 #include "treacle/core/cuda.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/model/checks.hpp"
+#include "treacle/step/shareable.hpp"
 
 #include <fmt/format.h>
 
+#include <exception>
+#include <new>
+#include <optional>
 #include <utility>
 #include <variant>
 
@@ -25,32 +29,67 @@ struct AnySimulation::Held {
 
   /// The one place where a case becomes a simulation of some dimensions on some backend.
   static Held of(const Case& c, AnyParticles& particles, [[maybe_unused]] BackendKind backend, std::int64_t step,
-                 double time) {
+                 double time, const Communicator* processes) {
     return particles.visit([&]<int D>(Particles<D>& p) -> Held {
 #ifdef TREACLE_HAS_CUDA
-      if (backend == BackendKind::Cuda) return {Simulation<D, Cuda>(c, std::move(p), step, time)};
+      if (backend == BackendKind::Cuda) return {Simulation<D, Cuda>(c, std::move(p), step, time, processes)};
 #endif
-      return {Simulation<D, Cpu>(c, std::move(p), step, time)};
+      return {Simulation<D, Cpu>(c, std::move(p), step, time, processes)};
     });
   }
 };
 
+namespace {
+
+/// What the first process asks of the others.
+enum class Order : int { Make, Advance, Copy, End };
+
+void give(const Communicator* processes, Order order) {
+  if (processes && processes->rank() == 0) processes->broadcast(order);
+}
+
+/// Does a part of what several processes do. A RunError or InputError is one that all of them have met; anything
+/// else this one alone, and the others would wait for it.
+template <class F>
+decltype(auto) part(const Communicator* processes, F&& f) {
+  try {
+    return f();
+  } catch (const RunError&) {
+    throw;
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    if (!processes) throw;
+    processes->abort("memory exhausted", static_cast<int>(ExitCode::RunFailed));
+  } catch (const std::exception& e) {
+    if (!processes) throw;
+    processes->abort(e.what(), static_cast<int>(ExitCode::RunFailed));
+  }
+}
+
+}  // namespace
+
 AnySimulation::AnySimulation(const Case& c, AnyParticles particles, BackendKind backend, std::int64_t step,
-                             double time) {
+                             double time, const Communicator* processes)
+    : processes_(processes && processes->size() > 1 ? processes : nullptr) {
   requireValid(c);
   if (particles.dimensions() != c.dimensions)
     throw InputError(
         fmt::format("the case has {} dimensions, its particles {}", c.dimensions, particles.dimensions()));
   if (backend == BackendKind::Cuda && !cudaCompiled)
     throw InputError("this program was built without CUDA; expected the CPU as backend");
-  held_ = std::make_unique<Held>(Held::of(c, particles, backend, step, time));
+  if (processes_) requireShareable(c, backend);
+  give(processes_, Order::Make);
+  held_ = part(processes_,
+               [&] { return std::make_unique<Held>(Held::of(c, particles, backend, step, time, processes_)); });
 }
 
 AnySimulation::~AnySimulation() = default;
 AnySimulation::AnySimulation(AnySimulation&&) noexcept = default;
 
 StepReport AnySimulation::advance() {
-  return held_->visit([](auto& s) { return s.advance(); });
+  give(processes_, Order::Advance);
+  return part(processes_, [&] { return held_->visit([](auto& s) { return s.advance(); }); });
 }
 
 std::vector<SolverTrial> AnySimulation::convergence(std::span<const SolverSettings> solvers) {
@@ -58,9 +97,12 @@ std::vector<SolverTrial> AnySimulation::convergence(std::span<const SolverSettin
 }
 
 void AnySimulation::copyParticles(AnyParticles& host) const {
-  held_->visit([&]<int D, class Backend>(Simulation<D, Backend>& s) {
-    if (host.dimensions() != D) host = AnyParticles(D);
-    s.copyParticles(host.of<D>());
+  give(processes_, Order::Copy);
+  part(processes_, [&] {
+    held_->visit([&]<int D, class Backend>(Simulation<D, Backend>& s) {
+      if (host.dimensions() != D) host = AnyParticles(D);
+      s.copyParticles(host.of<D>());
+    });
   });
 }
 
@@ -79,6 +121,36 @@ std::size_t AnySimulation::bytes() const {
 }
 std::size_t AnySimulation::peakBytes() const {
   return held_->visit([](auto& s) { return s.peakBytes(); });
+}
+
+Followers::~Followers() {
+  if (processes_.size() > 1) give(&processes_, Order::End);
+}
+
+void serveSimulation(const Case& c, AnyParticles particles, std::int64_t step, double time,
+                     const Communicator& processes) {
+  std::optional<AnySimulation> simulation;
+  AnyParticles none(particles.dimensions());
+  for (Order order = Order::End;;) {
+    processes.broadcast(order);
+    try {
+      switch (order) {
+        case Order::Make:
+          simulation.emplace(c, std::move(particles), BackendKind::Cpu, step, time, &processes);
+          break;
+        case Order::Advance:
+          simulation->advance();
+          break;
+        case Order::Copy:
+          simulation->copyParticles(none);
+          break;
+        case Order::End:
+          return;
+      }
+    } catch (const RunError&) {  // the first process has met it, too, and says so
+    } catch (const InputError&) {
+    }
+  }
 }
 
 }  // namespace treacle

@@ -26,7 +26,7 @@ class MphStep final : public StepMethod<D, Backend> {
         neighbourhood_(state.theCase),
         pairs_(neighbourhood_.pairs()),
         wholeRows_(needsAssembled<Backend>(state.theCase.solver)),
-        solver_(solveStages(state.theCase)) {}
+        solver_(solveStages(state.theCase, state.context.communicator != nullptr)) {}
 
   void sortParticles() override { neighbourhood_.sort(state_.context, state_.particles); }
   void findNeighbours() override { neighbourhood_.buildLists(state_.context, state_.particles, wholeRows_); }

@@ -8,6 +8,7 @@
 #include "treacle/model/particles_copy.hpp"
 #include "treacle/step/diagnostics.hpp"
 #include "treacle/step/move_particles.hpp"
+#include "treacle/step/shareable.hpp"
 #include "treacle/step/step_control.hpp"
 #include "treacle/step/wall_motion.hpp"
 
@@ -94,7 +95,10 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
         wallsRotate(someWallRotates(c)),
         wallVelocitiesChange(wallsRotate || someWallOscillates(c)) {
     if (theCase.time.automatic) control.emplace(theCase);
-    if (processes && processes->size() > 1) context.communicator = processes;
+    if (processes && processes->size() > 1) {
+      requireShareable(theCase, std::is_same_v<Backend, Cpu> ? BackendKind::Cpu : BackendKind::Cuda);
+      context.communicator = processes;
+    }
     this->fluidOfAll = state.fluidCount;
     wallsMove = wallVelocitiesChange || someWallMoves(state);
     const double mass = fluidMass(theCase, state);

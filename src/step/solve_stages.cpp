@@ -38,7 +38,7 @@ std::vector<SolverSettings> isphStages(const Case& c) {
 
 }  // namespace
 
-std::vector<SolverSettings> solveStages(const Case& c) {
+std::vector<SolverSettings> solveStages(const Case& c, bool shared) {
   if (c.method.kind == MethodKind::Isph) return isphStages(c);
   if (c.solver.preconditioner != PreconditionerKind::ProjectedMultigrid) return {c.solver};
   const ProjectionDegrees degrees = degreesOf(c);
@@ -57,7 +57,7 @@ std::vector<SolverSettings> solveStages(const Case& c) {
   SolverSettings papers = c.solver;
   papers.krylov = KrylovKind::Cr;
   papers.deflation = 0;
-  papers.preconditioner = PreconditionerKind::BucketMultigrid;
+  papers.preconditioner = shared ? PreconditionerKind::BlockJacobi : PreconditionerKind::BucketMultigrid;
   papers.precision = Precision::Double;
   papers.multigrid = {};
   return {first, stronger, papers};

@@ -15,7 +15,8 @@ struct RunSummary {
   std::string version, commit;
   std::string backend;    // "cpu" or "cuda"
   std::string device;     // name of the processor or accelerator
-  int threads = 0;        // of the host
+  int threads = 0;        // of the host, of each process
+  int processes = 1;      // that shared the run
   std::string precision;  // "double" or "mixed"
   std::string title;      // of the case
   int dimensions = 0;

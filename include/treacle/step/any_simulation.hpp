@@ -14,12 +14,17 @@ namespace treacle {
 /// A simulation whose dimensions, backend and precision are chosen as it is made: by the case and its particles,
 /// by the caller, and by the case's solver. Who runs cases goes through here; who looks into a step takes
 /// Simulation. Members mean the same as those of Simulation.
+///
+/// Several processes may share a simulation. The first of them has the object, and uses it as if it were alone,
+/// while Followers wait at it; the others are in serveSimulation(), and do their part of whatever is asked of it.
+/// A process that cannot do its part ends the job, and says so.
 class AnySimulation {
  public:
-  /// Errors: CaseError for a case that cannot be run, InputError for particles of other dimensions or a backend
-  /// that this build does not have, std::bad_alloc.
+  /// `processes`: those that share it; null or one: it is alone. Errors: CaseError for a case that cannot be run,
+  /// InputError for particles of other dimensions, a backend that this build does not have, or a case that
+  /// processes cannot share, std::bad_alloc.
   AnySimulation(const Case& c, AnyParticles particles, BackendKind backend = BackendKind::Cpu,
-                std::int64_t step = 0, double time = 0);
+                std::int64_t step = 0, double time = 0, const Communicator* processes = nullptr);
   ~AnySimulation();
   AnySimulation(AnySimulation&&) noexcept;
 
@@ -37,6 +42,23 @@ class AnySimulation {
  private:
   struct Held;
   std::unique_ptr<Held> held_;
+  const Communicator* processes_ = nullptr;
 };
+
+/// At the first process: that the others are waiting for what its simulation asks of them, until this is gone.
+class Followers {
+ public:
+  explicit Followers(const Communicator& processes) : processes_(processes) {}
+  Followers(const Followers&) = delete;
+  ~Followers();
+
+ private:
+  const Communicator& processes_;
+};
+
+/// At every other process: takes part in the simulation that the first one makes with the same arguments. Returns
+/// when its Followers are gone.
+void serveSimulation(const Case& c, AnyParticles particles, std::int64_t step, double time,
+                     const Communicator& processes);
 
 }  // namespace treacle

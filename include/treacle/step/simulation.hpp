@@ -79,8 +79,8 @@ class Simulation {
  public:
   /// `particles`: the state at `time` after `step` steps. `processes`: those that share the simulation, all of
   /// which make it with the same arguments, and call the same members in the same order; null or one: it is alone.
-  /// On the CPU alone, and for MPH-I with preconditioners that isDistributed() knows. Errors: InputError where
-  /// there are more processes than parts of the fluid; std::bad_alloc.
+  /// Errors: InputError for a case that cannot be shared (requireShareable), and where there are more processes
+  /// than parts of the fluid; std::bad_alloc.
   Simulation(const Case& c, Particles<D> particles, std::int64_t step = 0, double time = 0,
              const Communicator* processes = nullptr);
   ~Simulation();

@@ -11,7 +11,8 @@ namespace {
 
 RunSummary summary() {
   RunSummary s;
-  s.version = "1.2.3", s.commit = "abcdef", s.backend = "cpu", s.device = "some processor", s.threads = 2;
+  s.version = "1.2.3", s.commit = "abcdef", s.backend = "cpu", s.device = "some processor", s.processes = 3,
+  s.threads = 2;
   s.precision = "double", s.title = "Dam \"break\" µ", s.dimensions = 2;
   s.fluidParticles = 400, s.wallParticles = 900, s.steps = 200, s.time = 0.2;
   s.meanIterations = 233.25, s.firstIterations = 338, s.lastIterations = 243, s.fallbacks = 7;
@@ -37,6 +38,7 @@ TEST(Summary, HoldsEverything) {
   EXPECT_EQ(json["backend"], "cpu");
   EXPECT_EQ(json["device"], "some processor");
   EXPECT_EQ(json["threads"], 2);
+  EXPECT_EQ(json["processes"], 3);
   EXPECT_EQ(json["precision"], "double");
   EXPECT_EQ(json["dimensions"], 2);
   EXPECT_EQ(json["fluid_particles"], 400);
