@@ -52,7 +52,6 @@ void Run::describe() {
   summary_.version = build.version, summary_.commit = build.commit;
   summary_.backend = onDevice() ? "cuda" : "cpu", summary_.device = device_;
   summary_.threads = omp_get_max_threads();
-  summary_.processes = processes_.size();
   summary_.precision = nameOf(case_.solver.precision);
   summary_.title = case_.title;
   summary_.dimensions = case_.dimensions;
@@ -157,6 +156,9 @@ void Run::finish() {
     attempt([&] { recorder_->drawPicture(); });
     summary_.steps = simulation_->step(), summary_.time = simulation_->time();
     recorder_->summarise(summary_);
+    if (processes_.size() > 1)
+      for (const AnySimulation::Share& s : simulation_->shares())
+        summary_.processes.push_back({s.fluidParticles, s.traffic.bytes, s.traffic.calls, s.traffic.seconds});
     log_.info(
         fmt::format("watch, largest of all steps: energy {:.3g}, courant {:.3g}, inside_walls {:.3g}, density "
                     "{:.3g}",

@@ -1,5 +1,7 @@
 #include "treacle/core/communicator.hpp"
 
+#include "treacle/core/timer.hpp"
+
 #include <mpi.h>
 #include <unistd.h>
 
@@ -55,17 +57,21 @@ void Communicator::allGather(const void* own, void* all, std::size_t bytes) cons
     return;
   }
   const int count = static_cast<int>(bytes);
+  Timer timer;
   MPI_Allgather(own, count, MPI_BYTE, all, count, MPI_BYTE, MPI_COMM_WORLD);
-  bytesSent_ += bytes * (size_ - 1);
+  traffic_.seconds += timer.lap();
+  ++traffic_.calls;
+  traffic_.bytes += bytes * (size_ - 1);
 }
 
 void Communicator::broadcastBytes(void* data, std::size_t bytes, int root) const {
   if (size_ == 1) return;
   MPI_Bcast(data, static_cast<int>(bytes), MPI_BYTE, root, MPI_COMM_WORLD);
-  if (rank_ == root) bytesSent_ += bytes * (size_ - 1);
+  if (rank_ == root) traffic_.bytes += bytes * (size_ - 1);
 }
 
 void Communicator::exchange(std::span<const Message> sent, std::span<const Message> received) const {
+  Timer timer;
   std::vector<MPI_Request> requests;
   const auto next = [&] { return &requests.emplace_back(MPI_REQUEST_NULL); };
   constexpr int tag = 0;
@@ -75,9 +81,11 @@ void Communicator::exchange(std::span<const Message> sent, std::span<const Messa
   });
   forEachPiece(sent, [&](void* data, int bytes, int rank) {
     MPI_Isend(data, bytes, MPI_BYTE, rank, tag, MPI_COMM_WORLD, next());
-    bytesSent_ += static_cast<std::size_t>(bytes);
+    traffic_.bytes += static_cast<std::size_t>(bytes);
   });
   MPI_Waitall(static_cast<int>(requests.size()), requests.data(), MPI_STATUSES_IGNORE);
+  traffic_.seconds += timer.lap();
+  ++traffic_.calls;
 }
 
 Communicator::RankText Communicator::first(const std::string& own) const {

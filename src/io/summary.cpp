@@ -4,10 +4,36 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+
 namespace treacle {
 
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Least, mean and most of a number of each process.
+template <class T>
+Json spread(const std::vector<ProcessShare>& processes, T ProcessShare::*number) {
+  T least = processes.front().*number, most = least;
+  double sum = 0;
+  for (const ProcessShare& p : processes) {
+    least = std::min(least, p.*number), most = std::max(most, p.*number);
+    sum += static_cast<double>(p.*number);
+  }
+  return {{"least", least}, {"mean", sum / static_cast<double>(processes.size())}, {"most", most}};
+}
+
+Json sharesOf(const std::vector<ProcessShare>& processes) {
+  return {{"fluid_particles", spread(processes, &ProcessShare::fluidParticles)},
+          {"bytes_sent", spread(processes, &ProcessShare::bytesSent)},
+          {"exchanges", spread(processes, &ProcessShare::exchanges)},
+          {"exchange_seconds", spread(processes, &ProcessShare::exchangeSeconds)}};
+}
+
+}  // namespace
+
 void writeSummary(const std::filesystem::path& path, const RunSummary& s) {
-  using Json = nlohmann::ordered_json;
   Json phases = Json::object();
   for (const auto& [phase, seconds] : s.phaseSeconds) phases[phase] = seconds;
 
@@ -20,7 +46,7 @@ void writeSummary(const std::filesystem::path& path, const RunSummary& s) {
   json["backend"] = s.backend;
   json["device"] = s.device;
   json["threads"] = s.threads;
-  json["processes"] = s.processes;
+  json["processes"] = std::max<std::size_t>(s.processes.size(), 1);
   json["precision"] = s.precision;
   json["dimensions"] = s.dimensions;
   json["fluid_particles"] = s.fluidParticles;
@@ -38,6 +64,7 @@ void writeSummary(const std::filesystem::path& path, const RunSummary& s) {
                               {"smallest_least", s.smallestLeast},
                               {"smallest_low", s.smallestLow}};
   json["seconds_per_phase"] = phases;
+  if (!s.processes.empty()) json["shares"] = sharesOf(s.processes);
   json["output_thread_seconds"] = s.outputThreadSeconds;
   json["wall_seconds"] = s.wallSeconds;
   json["peak_memory_bytes"] = s.peakMemory;

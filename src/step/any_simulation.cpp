@@ -42,7 +42,7 @@ struct AnySimulation::Held {
 namespace {
 
 /// What the first process asks of the others.
-enum class Order : int { Make, Advance, Copy, End };
+enum class Order : int { Make, Advance, Copy, Share, End };
 
 void give(const Communicator* processes, Order order) {
   if (processes && processes->rank() == 0) processes->broadcast(order);
@@ -123,6 +123,12 @@ std::size_t AnySimulation::peakBytes() const {
   return held_->visit([](auto& s) { return s.peakBytes(); });
 }
 
+std::vector<AnySimulation::Share> AnySimulation::shares() const {
+  give(processes_, Order::Share);
+  const Share own{numbers().fluid, processes_ ? processes_->traffic() : Communicator::Traffic{}};
+  return processes_ ? processes_->all(own) : std::vector{own};
+}
+
 Followers::~Followers() {
   if (processes_.size() > 1) give(&processes_, Order::End);
 }
@@ -143,6 +149,9 @@ void serveSimulation(const Case& c, AnyParticles particles, std::int64_t step, d
           break;
         case Order::Copy:
           simulation->copyParticles(none);
+          break;
+        case Order::Share:
+          simulation->shares();
           break;
         case Order::End:
           return;

@@ -85,8 +85,12 @@ class Communicator {
   /// which one, and why.
   [[noreturn]] void abort(const std::string& why, int exitCode) const;
 
-  /// That this process has sent so far, those of reductions included.
-  std::size_t bytesSent() const { return bytesSent_; }
+  /// What this process has told the others so far, reductions included.
+  struct Traffic {
+    std::uint64_t bytes = 0, calls = 0;
+    double seconds = 0;  // in exchanges and reductions, waiting included; not in broadcasts, where it may be idle
+  };
+  const Traffic& traffic() const { return traffic_; }
 
  private:
   /// Arrays up to so many bytes are gathered whole; of longer ones each process combines a part for all.
@@ -100,7 +104,7 @@ class Communicator {
 
   int rank_ = 0, size_ = 1;
   bool ownsMpi_ = false;  // ends it
-  mutable std::size_t bytesSent_ = 0;
+  mutable Traffic traffic_;
 };
 
 template <class T, class Add>

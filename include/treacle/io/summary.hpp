@@ -10,15 +10,22 @@
 
 namespace treacle {
 
+/// What one of several processes had to do.
+struct ProcessShare {
+  std::uint64_t fluidParticles = 0;  // at the end
+  std::uint64_t bytesSent = 0, exchanges = 0;
+  double exchangeSeconds = 0;  // in which it exchanged, or waited for others to [s]
+};
+
 /// What a run was and what it took: `summary.json`.
 struct RunSummary {
   std::string version, commit;
-  std::string backend;    // "cpu" or "cuda"
-  std::string device;     // name of the processor or accelerator
-  int threads = 0;        // of the host, of each process
-  int processes = 1;      // that shared the run
-  std::string precision;  // "double" or "mixed"
-  std::string title;      // of the case
+  std::string backend;                  // "cpu" or "cuda"
+  std::string device;                   // name of the processor or accelerator
+  int threads = 0;                      // of the host, of each process
+  std::vector<ProcessShare> processes;  // that shared the run, if there were several
+  std::string precision;                // "double" or "mixed"
+  std::string title;                    // of the case
   int dimensions = 0;
   std::uint64_t fluidParticles = 0, wallParticles = 0;
 

@@ -39,6 +39,14 @@ class AnySimulation {
   std::size_t bytes() const;      // [B]
   std::size_t peakBytes() const;  // [B]
 
+  /// What each of the processes has to do, and what it has told the others, in the order of ranks; one if it is
+  /// alone.
+  struct Share {
+    std::uint64_t fluidParticles = 0;
+    Communicator::Traffic traffic;
+  };
+  std::vector<Share> shares() const;
+
  private:
   struct Held;
   std::unique_ptr<Held> held_;

@@ -11,8 +11,8 @@ namespace {
 
 RunSummary summary() {
   RunSummary s;
-  s.version = "1.2.3", s.commit = "abcdef", s.backend = "cpu", s.device = "some processor", s.processes = 3,
-  s.threads = 2;
+  s.version = "1.2.3", s.commit = "abcdef", s.backend = "cpu", s.device = "some processor", s.threads = 2;
+  s.processes = {{100, 1000, 10, 0.5}, {300, 3000, 12, 0.25}};
   s.precision = "double", s.title = "Dam \"break\" µ", s.dimensions = 2;
   s.fluidParticles = 400, s.wallParticles = 900, s.steps = 200, s.time = 0.2;
   s.meanIterations = 233.25, s.firstIterations = 338, s.lastIterations = 243, s.fallbacks = 7;
@@ -38,7 +38,11 @@ TEST(Summary, HoldsEverything) {
   EXPECT_EQ(json["backend"], "cpu");
   EXPECT_EQ(json["device"], "some processor");
   EXPECT_EQ(json["threads"], 2);
-  EXPECT_EQ(json["processes"], 3);
+  EXPECT_EQ(json["processes"], 2);
+  EXPECT_EQ(json["shares"]["fluid_particles"].dump(), R"({"least":100,"mean":200.0,"most":300})");
+  EXPECT_EQ(json["shares"]["bytes_sent"]["most"], 3000);
+  EXPECT_EQ(json["shares"]["exchanges"]["least"], 10);
+  EXPECT_EQ(json["shares"]["exchange_seconds"].dump(), R"({"least":0.25,"mean":0.375,"most":0.5})");
   EXPECT_EQ(json["precision"], "double");
   EXPECT_EQ(json["dimensions"], 2);
   EXPECT_EQ(json["fluid_particles"], 400);
