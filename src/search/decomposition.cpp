@@ -10,24 +10,9 @@
 namespace treacle {
 namespace {
 
-/// Ghosts among the walls sort behind own walls, and before inactive ones.
-constexpr std::uint64_t ghostKey = std::uint64_t{1} << 62;
-
 /// Work of a fluid particle and of an active wall particle. The products of a solve take the neighbours of both,
 /// those of a wall particle the fluid among them and one of two products.
 constexpr std::uint32_t fluidWork = 4, wallWork = 1;
-
-/// By id where keys are the same: an order that does not depend on who had the particles before.
-auto byKeyAndId(const Buffer<std::uint32_t>& id) {
-  return [&id](const KeyedIndex& a, const KeyedIndex& b) {
-    return a.key != b.key ? a.key < b.key : id[a.index] < id[b.index];
-  };
-}
-
-template <int D>
-std::size_t cellAt(const CellGrid<D>& grid, const Vec<D>& x) {
-  return grid.linear(grid.cellOf(x));
-}
 
 template <int D>
 void addWork(const CellGrid<D>& grid, std::span<const Vec<D>> position, std::uint32_t each,
@@ -142,111 +127,11 @@ void Decomposition<D>::migrate(const Communicator& job, const CellGrid<D>& grid,
   }
 }
 
-template <int D>
-void Decomposition<D>::sortFluid(const CellGrid<D>& grid, Particles<D>& p, CellRanges<>& ranges,
-                                 SortWorkspace<>& workspace) {
-  workspace.keyed.resize(p.fluidCount);
-  KeyedIndex* keyed = workspace.keyed.data();
-  parallelFor(p.fluidCount, parallelGrain, [&](std::size_t i) {
-    keyed[i] = {grid.key(p.position[i]), static_cast<std::uint32_t>(i)};
-  });
-  sortGroup(p, 0, p.fluidCount, workspace, byKeyAndId(p.id));
-  ranges.key.resize(p.fluidCount);
-  for (std::uint32_t i = 0; i < p.fluidCount; ++i) ranges.key[i] = keyed[i].key;
-}
-
-/// Whether walls of a cell are active is for its owner to see as for all who have them as ghosts.
-template <int D>
-void Decomposition<D>::findActiveCells(const Communicator& job, const CellGrid<D>& grid,
-                                       std::span<const Vec<D>> fluid, SortWorkspace<>& workspace) {
-  fluidCells_.resize(grid.cellCount());
-  std::fill(fluidCells_.begin(), fluidCells_.end(), std::uint8_t{0});
-  for (const Vec<D>& x : fluid) fluidCells_[cellAt(grid, x)] = 1;
-  job.anyOf(fluidCells_);
-  workspace.hasFluid.resize(grid.cellCount());
-  std::fill(workspace.hasFluid.begin(), workspace.hasFluid.end(), std::uint8_t{0});
-  for (std::size_t cell = 0; cell < fluidCells_.size(); ++cell)
-    if (fluidCells_[cell])
-      forEachAdjacentCell(grid, grid.cellAt(cell),
-                          [&](const Vec<D, int>& c) { workspace.hasFluid[grid.linear(c)] = 1; });
-}
-
-template <int D>
-void Decomposition<D>::sortWalls(const CellGrid<D>& grid, Particles<D>& p, CellRanges<>& ranges,
-                                 SortWorkspace<>& workspace) {
-  const std::uint32_t begin = p.wallBegin(), count = p.count;
-  workspace.keyed.resize(count);
-  KeyedIndex* keyed = workspace.keyed.data();
-  parallelFor(count - begin, parallelGrain, [&](std::size_t wall) {
-    const auto i = static_cast<std::uint32_t>(begin + wall);
-    const std::size_t cell = cellAt(grid, p.position[i]);
-    const std::uint64_t group = !workspace.hasFluid[cell]   ? inactiveKey
-                                : owners_.isOwn(cell)       ? 0
-                                : owners_.isBesideOwn(cell) ? ghostKey
-                                                            : inactiveKey;
-    keyed[i] = {grid.key(p.position[i]) | group, i};
-  });
-  sortGroup(p, begin, count, workspace, byKeyAndId(p.id));
-  const auto endOf = [&](std::uint64_t key) {
-    return static_cast<std::uint32_t>(
-        std::partition_point(keyed + begin, keyed + count, [=](const KeyedIndex& k) { return k.key < key; }) -
-        keyed);
-  };
-  const std::uint32_t ownEnd = endOf(ghostKey);
-  ranges.activeCount = endOf(inactiveKey);
-  ranges.ghostWalls = ranges.activeCount - ownEnd;
-  halo_.ownWalls = ownEnd - begin;
-  listSent(grid, p.position, begin, ownEnd, &Halo::Neighbour::sentWalls);
-  for (std::uint32_t i = ownEnd; i < ranges.activeCount; ++i)
-    ++halo_.neighbours[owners_.owner(cellAt(grid, p.position[i]))].walls;
-}
-
-template <int D>
-void Decomposition<D>::listSent(const CellGrid<D>& grid, std::span<const Vec<D>> position, std::uint32_t begin,
-                                std::uint32_t end, std::vector<std::uint32_t> Halo::Neighbour::*list) {
-  std::vector<int> to;  // of the cell at hand
-  for (std::uint32_t i = begin; i < end; ++i) {
-    const Vec<D, int> cell = grid.cellOf(position[i]);
-    if (i == begin || grid.linear(cell) != cellAt(grid, position[i - 1])) {
-      to.clear();
-      const int own = owners_.owner(grid.linear(cell));
-      forEachAdjacentCell(grid, cell, [&](const Vec<D, int>& c) {
-        const int other = owners_.owner(grid.linear(c));
-        if (other != own && std::ranges::find(to, other) == to.end()) to.push_back(other);
-      });
-    }
-    for (int r : to) (halo_.neighbours[r].*list).push_back(i);
-  }
-}
-
-template <int D>
-void Decomposition<D>::countGhostFluid(const Communicator& job) {
-  const std::size_t size = job.size();
-  std::vector<std::uint32_t> counts(size * size);  // [from][to]
-  for (std::size_t r = 0; r < size; ++r)
-    counts[job.rank() * size + r] = static_cast<std::uint32_t>(halo_.neighbours[r].sentFluid.size());
-  job.sum(std::span(counts));
-  for (std::size_t r = 0; r < size; ++r) halo_.fluid += halo_.neighbours[r].fluid = counts[r * size + job.rank()];
-}
-
-/// Processes that have nothing for each other are no neighbours.
-template <int D>
-void Decomposition<D>::countAll(const Communicator& job) {
-  struct Owned {
-    std::uint64_t fluid, walls;
-  };
-  const std::vector<Owned> all = job.all(Owned{halo_.ownFluid, halo_.ownWalls});
-  for (int r = 0; r < job.size(); ++r) {
-    if (r < job.rank()) halo_.fluidBefore += all[r].fluid, halo_.wallsBefore += all[r].walls;
-    halo_.fluidOfAll += all[r].fluid;
-    halo_.someHaveNone = halo_.someHaveNone || all[r].fluid == 0;
-  }
-  std::erase_if(halo_.neighbours, [](const Halo::Neighbour& n) {
-    return n.sentFluid.empty() && n.sentWalls.empty() && n.fluid == 0 && n.walls == 0;
-  });
-}
-
-template class Decomposition<2>;
-template class Decomposition<3>;
+#define TREACLE_INSTANTIATE(D)                                                                          \
+  template void Decomposition<D>::sort(Context<Cpu>&, const CellGrid<D>&, Particles<D>&, CellRanges<>&, \
+                                       SortWorkspace<>&);
+TREACLE_INSTANTIATE(2)
+TREACLE_INSTANTIATE(3)
+#undef TREACLE_INSTANTIATE
 
 }  // namespace treacle

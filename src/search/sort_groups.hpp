@@ -16,6 +16,11 @@ using KeyedIndex = SortWorkspace<>::KeyedIndex;
 /// Keys of inactive walls sort behind those of all active ones.
 constexpr std::uint64_t inactiveKey = std::uint64_t{1} << 63;
 
+template <int D>
+std::size_t cellAt(const CellGrid<D>& grid, const Vec<D>& x) {
+  return grid.linear(grid.cellOf(x));
+}
+
 /// Errors: RunError.
 template <int D>
 void requireFinite(std::span<const Vec<D>> position) {

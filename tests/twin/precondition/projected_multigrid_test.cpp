@@ -98,7 +98,7 @@ struct Twin {
         FinishVelocity<D, T>{table, d.pairs.material.data(), zOnDevice.data(), gradientOnDevice.data()});
     EXPECT_LE(differ(copyToHost(d.context, gradientOnDevice), gradient), (toleranceOf<D, T>)) << "gradient";
 
-    const Buffer<Gathered<D, T>> u = randomVectors(2);
+    Buffer<Gathered<D, T>> u = randomVectors(2);
     const auto uOnDevice = copyToDevice<Gathered<D, T>>(d.context, u);
     products.gather(s.context, u.span());
     productsOnDevice.gather(d.context, uOnDevice.span());
@@ -130,7 +130,7 @@ struct Twin {
     checkViscous(u, uOnDevice, velocity, velocityOnDevice);
   }
 
-  void checkViscous(const Buffer<Gathered<D, T>>& u, const Buffer<Gathered<D, T>, Cuda>& uOnDevice,
+  void checkViscous(Buffer<Gathered<D, T>>& u, const Buffer<Gathered<D, T>, Cuda>& uOnDevice,
                     const Buffer<Block<D, T>>& inverse, const Buffer<Block<D, T>, Cuda>& inverseOnDevice) {
     Buffer<Gathered<D, T>> residual = randomVectors(3), x = randomVectors(4), next(s.n()), z = randomVectors(2);
     auto residualOnDevice = copyToDevice<Gathered<D, T>>(d.context, residual);
