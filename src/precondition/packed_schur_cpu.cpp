@@ -136,6 +136,7 @@ void ParticleProducts<D, T, Cpu>::packedSchur(const Context<Cpu>& context, const
   };
   // One loop instead of two: each cluster of fluid takes its share of those of walls along.
   const std::size_t fluid = pairs.fluidList.clusterCount(), walls = pairs.wallList.clusterCount();
+  if (fluid == 0) forEachClusterOf(pairs.wallList, ofWalls);  // of a process that owns walls alone
   forEachClusterOf(pairs.fluidList, [&](std::uint32_t c) {
     ofFluid(c);
     for (std::size_t w = walls * c / fluid, end = walls * (c + std::size_t{1}) / fluid; w < end; ++w)

@@ -68,7 +68,8 @@ class SpectralEstimate {
     const LanczosVectors<T> v{inverseDiagonal, r_, p_, q_, scalars_.data()};
     lanczosStart<T>(context, v);
     steps = std::min(steps, LanczosScalars::maxSteps);
-    for (int j = 0; n > 0 && j < steps; ++j) {
+    const bool any = n > 0 || context.communicator;  // of several processes all go on
+    for (int j = 0; any && j < steps; ++j) {
       if (j > 0) lanczosDirection<T>(context, v);
       a(std::span<const T>(p_.span()), q_.span());
       lanczosStep<T>(context, v);
