@@ -55,24 +55,26 @@ class Counter {
     const double hp = pairs.terms.pressureRadius, hn = pairs.terms.densityRadius, hv = pairs.terms.viscosityRadius;
     const double far = std::max({hv, hn, wholeRows ? 2 * hp : hp});
     const std::uint32_t fluid = pairs.fluidCount, active = pairs.activeCount;
-    std::uint64_t nearOfFluid = 0, nearOfWalls = 0, gradients = 0, gradientsOfWalls = 0, rows = 0;
+    Sliced slicedFluid, slicedWalls;
+    std::uint64_t gradients = 0, gradientsOfWalls = 0, rows = 0;
     const double ofFluid =
         countLists(pairs, 0, fluid, {hp, far}, counts_.fluidLists, [&](const ClusterList<>& list) {
           pairs.fluidList = list.view();
-          nearOfFluid += slicedEntries(pairs, list.first, list.last);
+          slicedFluid.add(pairs, list.first, list.last);
           if (wholeRows) gradients += nearEntries(pairs, list.first, list.last);
           if (wholeRows) rows += coupledEntries(pairs, list.first, list.last);
         });
     const double ofWalls = countLists(pairs, fluid, active, {hp, hn > hp ? hn : 0}, counts_.wallLists,
                                       [&](const ClusterList<>& list) {
                                         pairs.wallList = list.view();
-                                        nearOfWalls += slicedEntries(pairs, list.first, list.last);
+                                        slicedWalls.add(pairs, list.first, list.last);
                                         if (wholeRows)
                                           gradientsOfWalls += nearEntries(pairs, list.first, list.last);
                                       });
     if (c.output.balance)
       countLists(pairs, fluid, active, {std::max(hn, hv), 0}, counts_.balanceLists, [](const ClusterList<>&) {});
-    counts_.nearEntries = scaled(nearOfFluid, ofFluid) + scaled(nearOfWalls, ofWalls);
+    counts_.nearEntries = scaled(slicedFluid.near, ofFluid) + scaled(slicedWalls.near, ofWalls);
+    counts_.stagedEntries = scaled(slicedFluid.staged, ofFluid) + scaled(slicedWalls.staged, ofWalls);
     counts_.gradientEntries = scaled(gradients, ofFluid) + scaled(gradientsOfWalls, ofWalls);
     counts_.rowEntries = scaled(rows, ofFluid);
     counts_.pressureGrids = grids(pairs, HatsOn::Active, hatReach, 1);
@@ -132,22 +134,29 @@ class Counter {
     return by;
   }
 
-  /// Entries of NearProducts: slices are as long as the longest list in them; walls list fluid alone.
-  static std::uint64_t slicedEntries(const MphPairs<D>& pairs, std::uint32_t first, std::uint32_t last) {
-    std::uint64_t entries = 0;
-    for (std::uint32_t slice = first; slice < last; slice += nearSlice) {
-      std::uint64_t longest = 0;
-      for (std::uint32_t i = slice; i < std::min(last, slice + nearSlice); ++i) {
-        std::uint64_t own = 0;
-        forEachNear(pairs, i, [&](std::uint32_t j, const Vec<D>&, const Vec<D>&) {
-          own += i < pairs.fluidCount || j < pairs.fluidCount;
-        });
-        longest = std::max(longest, own);
+  /// Of NearProducts and StagedLists: slices are as long as the longest list in them; walls list fluid alone.
+  struct Sliced {
+    std::uint64_t near = 0, staged = 0;
+
+    void add(const MphPairs<D>& pairs, std::uint32_t first, std::uint32_t last) {
+      const double reach = slopeReach(pairs.terms.weights.pressure) * pairs.terms.pressureRadius;
+      for (std::uint32_t slice = first; slice < last; slice += nearSlice) {
+        Sliced longest;
+        for (std::uint32_t i = slice; i < std::min(last, slice + nearSlice); ++i) {
+          Sliced own;
+          forEachNear(pairs, i, [&](std::uint32_t j, const Vec<D>& d, const Vec<D>&) {
+            if (i >= pairs.fluidCount && j >= pairs.fluidCount) return;
+            ++own.near;
+            own.staged += norm2(d) < reach * reach;
+          });
+          longest.near = std::max(longest.near, own.near);
+          longest.staged = std::max(longest.staged, own.staged);
+        }
+        near += nearSlice * longest.near;
+        staged += nearSlice * ((longest.staged + 3) / 4 * 4);  // in fours
       }
-      entries += nearSlice * longest;
     }
-    return entries;
-  }
+  };
   static std::uint64_t nearEntries(const MphPairs<D>& pairs, std::uint32_t first, std::uint32_t last) {
     std::uint64_t entries = 0;
     for (std::uint32_t i = first; i < last; ++i)

@@ -29,6 +29,7 @@ struct MemoryCounts {
   // MPH-I.
   Lists fluidLists, wallLists, balanceLists;
   std::uint64_t nearEntries = 0;       // each particle's own neighbours within h_p, in slices
+  std::uint64_t stagedEntries = 0;     // of these what single-precision products with B have
   std::uint64_t gradientEntries = 0;   // of C
   std::uint64_t rowEntries = 0;        // blocks of A, where lists have whole rows of it
   std::vector<Grid> pressureGrids;     // finest first
