@@ -65,7 +65,7 @@ void AnySimulation::copyParticles(AnyParticles& host) const {
 }
 
 ParticleNumbers AnySimulation::numbers() const {
-  return held_->visit([](auto& s) { return s.particles().numbers(); });
+  return held_->visit([](auto& s) { return s.numbers(); });
 }
 
 double AnySimulation::time() const {

@@ -7,6 +7,7 @@
 #include "treacle/precondition/hat_grid.hpp"
 #include "treacle/search/buckets.hpp"
 #include "treacle/search/neighbour_rows.hpp"
+#include "treacle/step/near_blocks.hpp"
 
 #include <algorithm>
 
@@ -38,13 +39,15 @@ std::uint64_t scaled(std::uint64_t count, double by) {
 template <int D>
 class Counter {
  public:
-  Counter(const Case& c, const CellGrid<D>& grid, Particles<D>& particles) : particles_(particles) {
-    sortByCell(context_, grid, particles, ranges_, workspace_);
+  Counter(const Case& c, const CellGrid<D>& grid, const Particles<D>& particles)
+      : particles_(startingParticles(c, grid, particles)) {
+    sortByCell(context_, grid, particles_, ranges_, workspace_);
     counts_.particles = particles.numbers();
+    counts_.nearWalls = particles_.wallCount();
     counts_.active = ranges_.activeCount;
     counts_.cells = grid.cellCount();
-    for (std::uint32_t i = particles.fluidCount; i < particles.count && !counts_.wallsMove; ++i)
-      counts_.wallsMove = norm2(particles.velocity[i]) > 0;
+    for (std::uint32_t i = particles_.fluidCount; i < particles_.count && !counts_.wallsMove; ++i)
+      counts_.wallsMove = norm2(particles_.velocity[i]) > 0;
     for (const Body& body : c.bodies)
       counts_.wallsMove = counts_.wallsMove || body.oscillation.period > 0 || body.rotation.has_value();
   }
@@ -106,6 +109,12 @@ class Counter {
   }
 
  private:
+  static Particles<D> startingParticles(const Case& c, const CellGrid<D>& grid, const Particles<D>& all) {
+    NearBlocks<D> near(c, grid);
+    near.add(all);
+    return nearParticles(near, all);
+  }
+
   template <class Pairs>
   void describe(Pairs& pairs) {
     pairs.fluidCount = particles_.fluidCount;
@@ -207,14 +216,14 @@ class Counter {
   }
 
   Context<Cpu> context_;
-  Particles<D>& particles_;
+  Particles<D> particles_;
   CellRanges<> ranges_;
   SortWorkspace<> workspace_;
   MemoryCounts counts_;
 };
 
 template <int D>
-MemoryCounts countParticles(const Case& c, Particles<D>& particles, bool wholeRows) {
+MemoryCounts countParticles(const Case& c, const Particles<D>& particles, bool wholeRows) {
   if (c.method.kind == MethodKind::Isph) return Counter<D>(c, makeIsphPairs<D>(c).grid, particles).isph(c);
   return Counter<D>(c, makeMphPairs<D>(c).grid, particles).mph(c, wholeRows);
 }
@@ -229,8 +238,8 @@ std::uint64_t searchCells(const Case& c) {
   return c.dimensions == 2 ? cells(std::integral_constant<int, 2>{}) : cells(std::integral_constant<int, 3>{});
 }
 
-MemoryCounts countForMemory(const Case& c, AnyParticles& particles, bool wholeRows) {
-  return particles.visit([&](auto& p) { return countParticles(c, p, wholeRows); });
+MemoryCounts countForMemory(const Case& c, const AnyParticles& particles, bool wholeRows) {
+  return particles.visit([&](const auto& p) { return countParticles(c, p, wholeRows); });
 }
 
 }  // namespace treacle

@@ -5,6 +5,7 @@
 #include "treacle/core/team.hpp"
 #include "treacle/model/particles_copy.hpp"
 #include "treacle/step/diagnostics.hpp"
+#include "treacle/step/distant_walls.hpp"
 #include "treacle/step/move_particles.hpp"
 #include "treacle/step/step_control.hpp"
 #include "treacle/step/wall_motion.hpp"
@@ -61,11 +62,8 @@ void withTeam(F&& body) {
 }  // namespace
 
 template <int D>
-void toHost(const Context<Cpu>&, const Particles<D>& particles, Particles<D>& host) {
-  host.resize(particles.numbers());
-  host.copyNumbers(particles);
-  forEachFieldOf([](const auto& from, auto& to) { std::copy(from.begin(), from.end(), to.begin()); }, particles,
-                 host);
+void toHost(const Context<Cpu>& context, const Particles<D>& particles, Particles<D>& host) {
+  copyToHost(context, particles, host);
 }
 template <int D>
 void toHost(const Context<Cuda>& context, const Particles<D, Cuda>& particles, Particles<D>& host) {
@@ -81,7 +79,8 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
   bool wallsRotate, wallVelocitiesChange;
   Buffer<Vec<D>, Backend> wallChord;  // per wall particle, where some rotate [m/s]
   std::unique_ptr<StepMethod<D, Backend>> method;
-  double lastSpeed = 0;  // of the fastest particle [m/s]
+  std::optional<DistantWalls<D>> distant;  // which `particles` has not
+  double lastSpeed = 0;                    // of the fastest particle [m/s]
   std::optional<Watch> watch;
   std::optional<StepControl> control;  // of automatic steps
   double endOfStep = 0;                // time at the end of the step at hand [s]
@@ -94,10 +93,11 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     if (theCase.time.automatic) control.emplace(theCase);
     wallsMove = wallVelocitiesChange || someWallMoves(state);
     const double mass = fluidMass(theCase, state);
-    toBackend(context, std::move(state), particles);
-    if (step == 0) forEachFluidFieldOf([&](auto& field) { clearValues(context, field.span()); }, particles);
     method = theCase.method.kind == MethodKind::Isph ? makeIsphStep(static_cast<Flow&>(*this))
                                                      : makeMphStep(static_cast<Flow&>(*this));
+    distant.emplace(theCase, method->grid(), state, time);
+    toBackend(context, std::move(state), particles);
+    if (step == 0) forEachFluidFieldOf([&](auto& field) { clearValues(context, field.span()); }, particles);
     method->sortParticles();
     if (step == 0) {  // else the state has the densities of its last step
       method->findNeighbours();
@@ -106,6 +106,30 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     const Diagnostics start = diagnostics();
     lastSpeed = start.maxSpeed;
     watch.emplace(theCase, start, mass, particles.fluidCount, wallsMove);
+  }
+
+  /// Of the walls those that are near something that moves, where that may be others than before.
+  void chooseWalls() {
+    if (!distant->isDue()) return;
+    Particles<D> walls;
+    copyWallsToHost(context, particles, walls);
+    NearBlocks<D> near(theCase, method->grid());
+    near.addMovingWalls(walls);
+    addFluidTo(near);
+    if (distant->differs(near)) replaceWalls(context, distant->held(near, walls), particles);
+    distant->accept(std::move(near));
+  }
+
+  /// Piece by piece: the host need not have room for all places.
+  void addFluidTo(NearBlocks<D>& near) {
+    constexpr std::size_t piece = std::size_t{1} << 20;
+    const std::span<const Vec<D>> x = particles.position.span().first(particles.fluidCount);
+    Buffer<Vec<D>> some;
+    for (std::size_t first = 0; first < x.size(); first += piece) {
+      some.resize(std::min(piece, x.size() - first));
+      copyToHost(context, x.subspan(first, some.size()), some.data());
+      near.addFluid(some);
+    }
   }
 
   void chooseTimeStep() {
@@ -188,6 +212,7 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     method->accept();
     copyValues(context, std::span<const Vec<D>>(velocity).first(particles.fluidCount), particles.velocity.data());
     copyValues(context, std::span<const Vec<D>>(position).first(moved), particles.position.data());
+    distant->addStep(timeStep, method->longestWay(lastSpeed));
     ++step;
     time = endOfStep;
     particles.steps.last = timeStep;
@@ -261,7 +286,10 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     chooseTimeStep();
     moveBodies();
     phases.start(context);
-    phases.run(context, treacle::phases::search, [&] { method->sortParticles(); });
+    phases.run(context, treacle::phases::search, [&] {
+      chooseWalls();
+      method->sortParticles();
+    });
     phases.run(context, treacle::phases::lists, [&] { method->findNeighbours(); });
     StagedReport solved = control ? solveExactly(report) : solve();
     phases.run(context, treacle::phases::update, [&] {
@@ -269,9 +297,9 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
       move();
       report.diagnostics = diagnosticsOf(position, velocity);
       report.watched = watch->look(timeStep, report.diagnostics, report.warnings);
+      lastSpeed = report.diagnostics.maxSpeed;
       accept();
     });
-    lastSpeed = report.diagnostics.maxSpeed;
     report.seconds = phases.seconds();
     report.step = step;
     report.time = time;
@@ -288,6 +316,7 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     chooseTimeStep();
     moveBodies();
     phases.start(context);
+    chooseWalls();
     method->sortParticles();
     method->findNeighbours();
     method->predict();
@@ -300,7 +329,20 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
   std::size_t bytes() const {
     std::size_t sum = velocity.bytes() + position.bytes() + wallChord.bytes() + method->bytes();
     particles.forEachField([&](const auto& field) { sum += field.bytes(); });
-    return sum;
+    return std::is_same_v<Backend, Cpu> ? sum + distant->bytes() : sum;
+  }
+
+  ParticleNumbers numbers() const {
+    ParticleNumbers all = particles.numbers();
+    all.wall += distant->count();
+    all.surfaces += distant->surfaceCount();
+    return all;
+  }
+
+  void copyParticles(Particles<D>& host) const {
+    host.resize(numbers());
+    copyFieldsToHost(context, particles, host);
+    distant->copyTo(host);
   }
 };
 
@@ -330,7 +372,11 @@ const Particles<D, Backend>& Simulation<D, Backend>::particles() const {
 }
 template <int D, class Backend>
 void Simulation<D, Backend>::copyParticles(Particles<D>& host) const {
-  toHost(state_->context, state_->particles, host);
+  state_->copyParticles(host);
+}
+template <int D, class Backend>
+ParticleNumbers Simulation<D, Backend>::numbers() const {
+  return state_->numbers();
 }
 template <int D, class Backend>
 double Simulation<D, Backend>::time() const {

@@ -22,8 +22,9 @@ struct MemoryCounts {
   };
 
   ParticleNumbers particles;
-  std::uint64_t active = 0;  // fluid and walls next to it
-  std::uint64_t cells = 0;   // of the search
+  std::uint64_t nearWalls = 0;  // that a simulation starts with; the others are DistantWalls
+  std::uint64_t active = 0;     // fluid and walls next to it
+  std::uint64_t cells = 0;      // of the search
   bool wallsMove = false;
 
   // MPH-I.
@@ -44,10 +45,10 @@ struct MemoryCounts {
 /// Search cells of the domain, whether or not there are particles in them.
 std::uint64_t searchCells(const Case& c);
 
-/// Counts what the first step of the case will have; sorts the particles as that step will. Neighbours are counted
-/// around a few thousand of the particles, spread evenly, or around all where there are no more. `wholeRows`:
-/// lists of fluid reach as far as A couples. Takes memory for the sort, and for the search cells some 30 bytes
-/// each. Errors: std::bad_alloc.
-MemoryCounts countForMemory(const Case& c, AnyParticles& particles, bool wholeRows);
+/// Counts what the first step of the case will have. Neighbours are counted around a few thousand of the
+/// particles, spread evenly, or around all where there are no more. `wholeRows`: lists of fluid reach as far as A
+/// couples. Takes memory for a copy of the particles that the step will have and for their sort, and for the
+/// search cells some 30 bytes each. Errors: std::bad_alloc.
+MemoryCounts countForMemory(const Case& c, const AnyParticles& particles, bool wholeRows);
 
 }  // namespace treacle

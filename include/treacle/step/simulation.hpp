@@ -92,11 +92,13 @@ class Simulation {
   /// set up; a solve that fails is a result.
   std::vector<SolverTrial> convergence(std::span<const SolverSettings> solvers);
 
-  /// Particles in the backend's memory.
+  /// Particles in the backend's memory: walls at rest that are far from all that moves (DistantWalls) are not
+  /// there.
   const Particles<D, Backend>& particles() const;
-  /// All fields; waits until the data are there.
+  /// All fields of all particles; waits until the data are there.
   void copyParticles(Particles<D>& host) const;
-  double time() const;  // [s]
+  ParticleNumbers numbers() const;  // of these
+  double time() const;              // [s]
   std::int64_t step() const;
   std::size_t bytes() const;      // memory held [B]
   std::size_t peakBytes() const;  // largest amount of device memory in use at one time [B]; 0 on the CPU
