@@ -62,18 +62,15 @@ struct PackedShare {
   }
 };
 
-/// Brings x at the columns of a block together, eight lanes per run. All runs are looked at, the empty ones too:
-/// whoever asked for their number first would wait once more for memory. Says whether there are any columns.
+/// Brings x at the columns of a block together, sixteen lanes per run.
 template <class Staged, class X>
-__device__ inline bool stageColumns(const ColumnBlocksView& blocks, std::uint32_t block, const X* x,
-                                    Staged* staged) {
-  constexpr std::uint32_t lanes = 8, chunk = 8, runs = ColumnBlocksView::runs;
-  const ColumnBlocksView::Run* run = blocks.run + std::size_t{block} * runs;
-  const std::uint32_t columns = blocks.size[block].columns;
-#pragma unroll
-  for (std::uint32_t r = threadIdx.x / lanes; r < runs; r += 256 / lanes) {
+__device__ inline void stageColumns(const ColumnBlocksView& blocks, std::uint32_t block,
+                                    const ColumnBlocksView::Size& size, const X* x, Staged* staged) {
+  constexpr std::uint32_t lanes = 16, chunk = 4;
+  const ColumnBlocksView::Run* run = blocks.run + std::size_t{block} * ColumnBlocksView::runs;
+  for (std::uint32_t r = threadIdx.x / lanes; r < size.runs; r += blockDim.x / lanes) {
     const std::uint32_t begin = run[r].begin, place = run[r].place;
-    const std::uint32_t length = (r + 1 < runs ? run[r + 1].place : columns) - place;
+    const std::uint32_t length = (r + 1 < size.runs ? run[r + 1].place : size.columns) - place;
     for (std::uint32_t k = threadIdx.x % lanes; k < length; k += lanes * chunk) {
       Staged value[chunk];
 #pragma unroll
@@ -84,7 +81,6 @@ __device__ inline bool stageColumns(const ColumnBlocksView& blocks, std::uint32_
         if (k + c * lanes < length) staged[place + k + c * lanes] = value[c];
     }
   }
-  return columns > 0;
 }
 
 /// The same where the block has no places.
@@ -112,12 +108,13 @@ __global__ void __launch_bounds__(256, Near ? 6 : 5) packedSumsKernel(IsphMatrix
   constexpr std::uint32_t rowsAtOnce = 256 / Lanes;
   std::uint32_t row = blockIdx.x * Blocks::rows + threadIdx.x / Lanes;
   Share share(a.packed, a.rows, row);  // while columns are brought together
-  const bool hasPlaces = stageColumns(a.packed.blocks, blockIdx.x, x, staged);
+  const Blocks::Size size = a.packed.blocks.size[blockIdx.x];
+  stageColumns(a.packed.blocks, blockIdx.x, size, x, staged);
   __syncthreads();
   const X unit = static_cast<X>(Near ? a.unit : a.unit / PackedEntry::parts);
   for (std::uint32_t r = 0;; row += rowsAtOnce) {
     X sum = 0;
-    if (row < a.rows) sum = hasPlaces ? share.template sum<X>(staged) : scatteredSum<Lanes, Near>(a, row, x);
+    if (row < a.rows) sum = size.runs > 0 ? share.template sum<X>(staged) : scatteredSum<Lanes, Near>(a, row, x);
     sum = sumOfLanes<Lanes>(sum);
     if (row < a.rows && threadIdx.x % Lanes == 0) store(row, unit * sum);
     if ((r += rowsAtOnce) >= Blocks::rows) return;

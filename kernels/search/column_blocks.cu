@@ -32,7 +32,7 @@ __device__ inline void sortCells(CellRun* cells, std::uint32_t count) {
   __syncthreads();
 }
 
-/// Joins sorted cells to runs, which empty ones follow; by one warp.
+/// Joins sorted cells to runs; by one warp.
 __device__ inline Blocks::Size joinCells(const CellRun* cells, std::uint32_t count, Blocks::Run* run) {
   const std::uint32_t lane = threadIdx.x % 32, before = (1u << lane) - 1;
   Blocks::Size size{0, 0};
@@ -53,10 +53,7 @@ __device__ inline Blocks::Size joinCells(const CellRun* cells, std::uint32_t cou
     size.runs += __popc(starting);
     size.columns += __shfl_sync(~0u, upTo, 31);
   }
-  if (size.runs > Blocks::runs || size.columns > Blocks::columns) size = {0, 0};
-  __syncwarp();
-  for (std::uint32_t r = size.runs + lane; r < Blocks::runs; r += 32) run[r] = {0, size.columns};
-  return size;
+  return size.runs <= Blocks::runs && size.columns <= Blocks::columns ? size : Blocks::Size{0, 0};
 }
 
 /// Puts a cell into the table, once; counts those that are in it.
@@ -110,7 +107,6 @@ __global__ void __launch_bounds__(Blocks::rows)
   }
   __syncthreads();
   if (count > mostCells) {
-    if (threadIdx.x < Blocks::runs) run[std::size_t{blockIdx.x} * Blocks::runs + threadIdx.x] = {0, 0};
     if (threadIdx.x == 0) size[blockIdx.x] = {0, 0};
     return;
   }
