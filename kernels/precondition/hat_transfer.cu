@@ -102,13 +102,13 @@ void HatTransfer<D, T, Cuda>::prepare(Context<Cuda>& context, const SortedPartic
 
 template <int D, class T>
 void HatTransfer<D, T, Cuda>::restrictFluid(Context<Cuda>& context, const HatNodes<D, Cuda>& nodes,
-                                            std::span<const T> r, std::span<T> sums, std::span<T> b) const {
+                                            std::span<const T> r, Buffer<T, Cuda>& parts, std::span<T> b) const {
   constexpr unsigned corners = 1 << D;
   const HatCells<D> cells{pairs_->grid};
   launchEarly(context, blocksFor(nodes.count(), 128 / 16), 128, 0, cellSumsKernel<D, T>, cells, nodes.view(),
-              pairs_->cells, place_.data(), r.data(), sums.data());
+              pairs_->cells, place_.data(), r.data(), parts.data());
   launchEarly(context, blocksFor(nodes.count(), 128 / corners), 128, 0, nodeSumsKernel<D, T>, cells, nodes.view(),
-              sums.data(), b.data());
+              parts.data(), b.data());
 }
 
 template <int D, class T>

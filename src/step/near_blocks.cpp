@@ -4,6 +4,7 @@
 #include "treacle/search/cell_sort.hpp"
 
 #include <atomic>
+#include <utility>
 
 namespace treacle {
 
@@ -23,10 +24,8 @@ void NearBlocks<D>::addFluid(std::span<const Vec<D>> position) {
     for (const Vec<D>& x : position.subspan(p * piece, std::min(piece, position.size() - p * piece))) {
       if (!isFinitePosition(x)) continue;  // the sort says so
       const Vec<D, int> at = blockAt(x);
-      if (const std::size_t block = blocks_.linear(at); block != last)
-        last = block;
-      else
-        continue;
+      const std::size_t block = blocks_.linear(at);
+      if (std::exchange(last, block) == block) continue;
       forEachAdjacentCell(blocks_, at, [&](const Vec<D, int>& touching) {
         std::atomic_ref(near_[blocks_.linear(touching)]).store(1, std::memory_order_relaxed);
       });

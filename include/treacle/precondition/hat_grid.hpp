@@ -66,7 +66,7 @@ class HatTransfer<D, T, Cpu> {
   /// b = P^T r; r per particle.
   void restrict(Context<Cpu>&, const HatNodes<D>& nodes, std::span<const T> r, std::span<T> b) const;
   /// The same for particles that are all fluid. `sums`: workspace, sumsPerNode numbers per node.
-  void restrictFluid(Context<Cpu>& context, const HatNodes<D>& nodes, std::span<const T> r, std::span<T>,
+  void restrictFluid(Context<Cpu>& context, const HatNodes<D>& nodes, std::span<const T> r, Buffer<T>&,
                      std::span<T> b) const {
     restrict(context, nodes, r, b);
   }
@@ -94,7 +94,7 @@ class HatTransfer<D, T, Cuda> {
  public:
   void prepare(Context<Cuda>&, const SortedParticles<D>& pairs);
   void restrict(Context<Cuda>&, const HatNodes<D, Cuda>& nodes, std::span<const T> r, std::span<T> b) const;
-  void restrictFluid(Context<Cuda>&, const HatNodes<D, Cuda>& nodes, std::span<const T> r, std::span<T> sums,
+  void restrictFluid(Context<Cuda>&, const HatNodes<D, Cuda>& nodes, std::span<const T> r, Buffer<T, Cuda>& sums,
                      std::span<T> b) const;
   static constexpr std::size_t sumsPerNode = 1 << D;
   void restrict(Context<Cuda>&, const HatNodes<D, Cuda>& nodes, std::span<const Gathered<D, T>> r,

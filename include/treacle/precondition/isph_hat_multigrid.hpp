@@ -55,7 +55,7 @@ class IsphHatMultigrid {
   void apply(Context<Backend>& context, std::span<const double> r, std::span<double> z) {
     firstSweep(context, a_, r, x_.span());
     nearResidual(context, a_, r, std::span<const T>(x_), residual_.span());
-    transfer_.restrictFluid(context, nodes_, std::span<const T>(residual_), sums_.span(), grids_.rhs());
+    transfer_.restrictFluid(context, nodes_, std::span<const T>(residual_), sums_, grids_.rhs());
     grids_.cycle(context);
     transfer_.addProlonged(context, nodes_, grids_.solution(), x_.span());
     lastSweep(context, a_, r, std::span<const T>(x_), z);

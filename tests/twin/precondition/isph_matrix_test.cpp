@@ -147,7 +147,7 @@ struct MatrixTwin {
     transferOnDevice.restrict(d.context, nodesOnDevice, fineOnDevice.span(), bFound.span());
     EXPECT_LE(differ<T>(d.context, bFound, b), toleranceOf<T>) << "restriction of particles";
     Buffer<T, Cuda> sums(d.context, HatTransfer<D, T, Cuda>::sumsPerNode * nodes.count());
-    transferOnDevice.restrictFluid(d.context, nodesOnDevice, fineOnDevice.span(), sums.span(), bFound.span());
+    transferOnDevice.restrictFluid(d.context, nodesOnDevice, fineOnDevice.span(), sums, bFound.span());
     EXPECT_LE(differ<T>(d.context, bFound, b), toleranceOf<T>) << "restriction";
     transfer.addProlonged(s.context, nodes, std::span<const T>(b), std::span<T>(z));
     transferOnDevice.addProlonged(d.context, nodesOnDevice, copyToDevice<T>(d.context, b).span(), zFound.span());
