@@ -60,30 +60,28 @@ __global__ void __launch_bounds__(1024) regulariseKernel(std::uint32_t rows, std
 
 constexpr int pivotWarps = 8, pivotRows = panel / pivotWarps;  // of pivotKernel's blocks
 
-/// A warp: minus the inverse of a symmetric positive definite 32 x 32 matrix in 32 sweeps, lane c having column c.
-/// The inverse of a pivot takes longest; so that of the next one is begun before the sweep. `line` keeps the
-/// pivot's row, which is also its column, by turns in two places.
-__device__ void sweepPanel(double (&mine)[panel], double (*line)[panel]) {
-  const int c = threadIdx.x % panel;
-  const auto inverseOf = [&](double pivot, int lane) {
-    return __shfl_sync(~0u, pivot > 0 ? 1 / pivot : 0, lane);  // of that lane
-  };
-  double inverse = inverseOf(mine[0], 0);
+/// A block: minus the inverse of a symmetric positive definite 32 x 32 matrix in 32 sweeps, thread (w, c) having
+/// pivotRows rows of column c. `line` is the pivot's row, which is also its column, by turns in two places.
+__device__ inline void sweepPanel(double (&mine)[pivotRows], double (&line)[2][panel]) {
+  const int warp = threadIdx.x / panel, c = threadIdx.x % panel;
+#pragma unroll 1
+  for (int ofWarp = 0; ofWarp < pivotWarps; ++ofWarp)
 #pragma unroll
-  for (int p = 0; p < panel; ++p) {
-    double* pivotRow = line[p % 2];
-    pivotRow[c] = mine[p];
-    __syncwarp();
-    const double scaled = mine[p] * inverse;
-    const double next = p + 1 < panel ? inverseOf(fma(-scaled, mine[p], mine[(p + 1) % panel]), p + 1) : 0;
-    const double factor = c == p ? -inverse : scaled;
+    for (int s = 0; s < pivotRows; ++s) {
+      const int p = ofWarp * pivotRows + s;
+      double(&pivotRow)[panel] = line[s % 2];
+      if (warp == ofWarp) pivotRow[c] = mine[s];
+      __syncthreads();
+      const double inverse = pivotRow[p] > 0 ? 1 / pivotRow[p] : 0;
+      const double factor = c == p ? -inverse : pivotRow[c] * inverse;
 #pragma unroll
-    for (int r = 0; r < panel; ++r)
-      if (r != p) mine[r] = fma(-pivotRow[r], factor, c == p ? 0.0 : mine[r]);
-    mine[p] = factor;
-    inverse = next;
-  }
+      for (int t = 0; t < pivotRows; ++t) {
+        const int r = warp * pivotRows + t;
+        mine[t] = r == p ? factor : fma(-pivotRow[r], factor, c == p ? 0.0 : mine[t]);
+      }
+    }
 }
+static_assert(pivotRows % 2 == 0);
 
 /// One block per matrix and panel of rows i, B_i being its columns of the pivot panel k: copies B_i, and writes
 /// W_i = B_i (A_kk)^-1; every block inverts A_kk for itself. Block k leaves the swept A_kk, -(A_kk)^-1, as its W.
@@ -107,14 +105,10 @@ __global__ void __launch_bounds__(pivotWarps* panel)
       ofB[c][r] = element(k, i, r, c);  // its transpose lies in the lower triangle; read along rows
   }
   __syncthreads();
-  if (warp == 0) {
-    double mine[panel];
-#pragma unroll
-    for (int r = 0; r < panel; ++r) mine[r] = swept[r][c];
-    sweepPanel(mine, line);
-#pragma unroll
-    for (int r = 0; r < panel; ++r) swept[r][c] = mine[r];
-  }
+  double mine[pivotRows];
+  for (int s = 0; s < pivotRows; ++s) mine[s] = swept[warp * pivotRows + s][c];
+  sweepPanel(mine, line);
+  for (int s = 0; s < pivotRows; ++s) swept[warp * pivotRows + s][c] = mine[s];
   __syncthreads();
   double sum[pivotRows] = {};
 #pragma unroll 4

@@ -26,7 +26,9 @@ __device__ inline T transposedSum(const T* v) {
 }
 
 /// Sums of pair terms over the neighbours of one cluster. `Terms` gives
-///   Own loadOwn(pairs, i), Other loadOther(pairs, j)   what they read of a particle
+///   Own loadOwn(pairs, i), Other loadOther(pairs, j)   what they read of a particle; or loadOther(pairs, j,
+///   stored),
+///                                                      with what LocalPositions has stored of it
 ///   values                                             how many sums a particle has
 ///   uses(segment)                                      which parts of the lists count
 ///   add(pairs, sums, d, distance, own, other, segment)
@@ -35,6 +37,12 @@ __device__ inline T transposedSum(const T* v) {
 template <class Terms>
 inline constexpr bool storesVectors = requires {
   typename Terms::StoresVectors;
+};
+
+template <class Terms, int D, class Stored>
+concept ReadsStored = requires(const Terms& terms, const MphPairs<D>& pairs, std::uint32_t j,
+                               const Stored& stored) {
+  terms.loadOther(pairs, j, stored);
 };
 
 template <int D, class T, class S, class Terms>
@@ -69,7 +77,10 @@ class ClusterSum {
       typename Terms::Other other;
     };
     const auto walk = [&](auto nearest) {
-      const auto load = [&](std::uint32_t j) { return Loaded{places.of(pairs_, j), terms.loadOther(pairs_, j)}; };
+      const auto load = [&](std::uint32_t j) {
+        const auto stored = places.of(pairs_, j);
+        return Loaded{stored, otherOf(terms, j, stored)};
+      };
       const auto add = [&](const Loaded& loaded, ListSegment segment) {
         const Vec<D, T> local = places.local(loaded.x, origin);
 #pragma unroll
@@ -104,6 +115,13 @@ class ClusterSum {
   static constexpr int rounds = (sums + S::slots - 1) / S::slots;
   static constexpr int paddedSums = rounds * S::slots;
 
+  template <class Stored>
+  __device__ typename Terms::Other otherOf(const Terms& terms, std::uint32_t j, const Stored& stored) const {
+    if constexpr (ReadsStored<Terms, D, Stored>)
+      return terms.loadOther(pairs_, j, stored);
+    else
+      return terms.loadOther(pairs_, j);
+  }
   __device__ std::uint32_t particle(int own) const {
     return first_ + min(static_cast<std::uint32_t>(own), count_ - 1);
   }

@@ -36,7 +36,7 @@ struct LocalPositions<D, double> {
 
 /// In single precision: differences of positions in units of 2^-32 of the domain's length are exact, and those
 /// across periodic ends come out right by themselves; local positions count from the cluster's first particle, in
-/// h_v.
+/// h_v. Beside a position stands the scale of the particle's viscosity.
 template <int D>
 struct LocalPositions<D, float> {
   using Stored = int4;
@@ -59,6 +59,7 @@ struct LocalPositions<D, float> {
   TREACLE_HD static double unit(const MphPairs<D>& pairs) { return pairs.terms.viscosityRadius; }
 
   __device__ Stored of(const MphPairs<D>&, std::uint32_t i) const { return fixed[i]; }
+  __device__ static float viscosityScale(const Stored& x) { return __int_as_float(x.w); }
   __device__ Vec<D, float> local(const Stored& x, const Stored& origin) const {
     // Rounded here: fused into a later subtraction, a particle would not be at distance zero from itself.
     const auto axis = [this](int a, int b, int k) {

@@ -61,9 +61,9 @@ void MphOperator<D, Cuda>::multiply(Context<Cuda>& context, std::span<const Vec<
   if (pairs_->renormalisation) return multiplyRenormalised(context, u, y);
   const SelfTerms<D> self{selfBlock_, selfGradient_};
   const auto places = LocalPositions<D, double>::make(*pairs_);
-  const auto firstPass = [&](const auto& mph, auto sharing, auto oneViscosity) {
+  const auto firstPass = [&](const auto& mph, auto sharing, auto viscosity) {
     using Mph = std::decay_t<decltype(mph)>;
-    using OnFluid = ViscosityAndDivergence<D, double, decltype(oneViscosity)::value, Mph>;
+    using OnFluid = ViscosityAndDivergence<D, double, viscosity, Mph>;
     using OnWalls = Divergence<D, double, Mph, false, true, true>;
     launchClusterSums<D, double, decltype(sharing)>(
         context, *pairs_, ListTask<OnFluid>{pairs_->fluidList, {mph, self, u.data(), y.data(), q_.data()}},
@@ -71,10 +71,7 @@ void MphOperator<D, Cuda>::multiply(Context<Cuda>& context, std::span<const Vec<
   };
   withKnownWeights<PublishedWeights>(pairs_->terms, [&](const auto& mph) {
     withSharing(*pairs_, [&](auto sharing) {
-      if (pairs_->hasOneViscosity())
-        firstPass(mph, sharing, std::true_type{});
-      else
-        firstPass(mph, sharing, std::false_type{});
+      withPairViscosity(*pairs_, [&](auto viscosity) { firstPass(mph, sharing, viscosity); });
     });
   });
   if (pairs_->fluidList.offset)
@@ -91,10 +88,12 @@ void MphOperator<D, Cuda>::multiplyRenormalised(Context<Cuda>& context, std::spa
   const auto places = LocalPositions<D, double>::make(*pairs_);
   withKnownWeights<KnownViscosityWeight<AccurateWeights::viscosity>>(pairs_->terms, [&](const auto& mph) {
     withSharing(*pairs_, [&](auto sharing) {
-      using OnFluid = Viscosity<D, double, false, std::decay_t<decltype(mph)>, Vec<D>, StoreProduct<D>>;
-      launchClusterSums<D, double, decltype(sharing)>(
-          context, *pairs_, ListTask<OnFluid>{pairs_->fluidList, {mph, selfBlock_.data(), u.data(), {y.data()}}},
-          places);
+      withPairViscosity(*pairs_, [&](auto viscosity) {
+        using OnFluid = Viscosity<D, double, viscosity, std::decay_t<decltype(mph)>, Vec<D>, StoreProduct<D>>;
+        launchClusterSums<D, double, decltype(sharing)>(
+            context, *pairs_, ListTask<OnFluid>{pairs_->fluidList, {mph, selfBlock_.data(), u.data(), {y.data()}}},
+            places);
+      });
     });
   });
   if (pairs_->fluidList.offset) {

@@ -34,21 +34,23 @@ template <int D>
 struct RepulsionPower {
   static constexpr int values = 1;
   static constexpr bool uses(ListSegment s) { return isNear(s); }
-  using Own = VelocityOf<D, double>;
-  using Other = VelocityOf<D, double>;
+  using Own = VelocityOf<D, double, PairViscosity::Any>;
+  using Other = Own;
 
   MphTerms<D, double> mph;
   double rate;
   const Vec<D>* u;
   double* power;
 
-  __device__ Own loadOwn(const MphPairs<D>& pairs, std::uint32_t i) const { return {u[i], pairs.viscousSide(i)}; }
+  __device__ Own loadOwn(const MphPairs<D>& pairs, std::uint32_t i) const {
+    return {u[i], {pairs.viscousSide(i)}};
+  }
   __device__ Other loadOther(const MphPairs<D>& pairs, std::uint32_t j) const { return loadOwn(pairs, j); }
 
   __device__ void add(const MphPairs<D>& pairs, double* sum, const Vec<D>& d, const PairDistance<double>& r,
                       const Own& own, const Other& other, ListSegment segment) const {
     const double along = differenceAlong(other.u, own.u, d), share = isWall(segment) ? 1 : 0.5;
-    const double mu = pairs.viscosityOf(own.side, other.side);
+    const double mu = pairs.viscosityOf(own.viscosity.side, other.viscosity.side);
     sum[0] = fma(share * mu * mph.repulsionShape(r), along, sum[0]);
   }
   __device__ void store(const MphPairs<D>&, std::uint32_t i, int, double sum) const {

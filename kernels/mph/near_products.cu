@@ -9,15 +9,17 @@ namespace {
 
 constexpr unsigned slice = nearSlice;
 
-/// One thread per particle, a warp per slice; reads cluster lists and positions. Without Fill writes the rows of
-/// its slice, with Fill its entries. Walls list fluid alone. No atomics.
-template <int D, bool Fill>
-__global__ void __launch_bounds__(128)
-    listKernel(const __grid_constant__ MphPairs<D> pairs, std::uint64_t* sliceStart, std::uint32_t* entry) {
-  const std::uint32_t index = blockIdx.x * blockDim.x + threadIdx.x, s = index / slice;
+/// `split` threads per particle; reads cluster lists and positions. Without Fill leaves the rows of the slices,
+/// zero before, with Fill writes their entries. Walls list fluid alone. Atomics for the largest of whole numbers.
+template <bool Fill, class Split, int D>
+__global__ void __launch_bounds__(128) listKernel(const Split split, const __grid_constant__ MphPairs<D> pairs,
+                                                  std::uint64_t* sliceStart, std::uint32_t* entry) {
+  const std::uint32_t index = (blockIdx.x * blockDim.x + threadIdx.x) / split, s = index / slice;
   if (s * slice >= pairs.activeCount) return;
   const std::uint32_t i = min(index, pairs.activeCount - 1);
   const bool valid = index < pairs.activeCount, wall = i >= pairs.fluidCount;
+  const int part = static_cast<int>(threadIdx.x % split);
+  const unsigned team = static_cast<unsigned>((std::uint64_t{1} << split) - 1) << (threadIdx.x % 32 - part);
   const ClusterListView& list = wall ? pairs.wallList : pairs.fluidList;
   const std::uint32_t cluster = (i - list.first) / clusterSize;
   const Vec<D> xi = pairs.position[i];
@@ -27,29 +29,32 @@ __global__ void __launch_bounds__(128)
   std::uint32_t count = 0;
   const std::uint64_t base = Fill ? sliceStart[s] * slice + index % slice : 0;
   for (const ListSegment segment : {ListSegment::NearFluid, ListSegment::NearWall}) {
-    if (!valid || (wall && segment == ListSegment::NearWall)) continue;
-    const std::uint64_t end = offset[static_cast<int>(segment) + 1];
-    for (std::uint64_t k = offset[static_cast<int>(segment)]; k < end; k += batch) {
+    const std::uint64_t begin = offset[static_cast<int>(segment)],
+                        end = wall && segment == ListSegment::NearWall ? begin
+                                                                       : offset[static_cast<int>(segment) + 1];
+    for (std::uint64_t k = begin + part; __any_sync(~0u, k < end); k += batch * split) {
       std::uint32_t j[batch];
       Vec<D> x[batch];
 #pragma unroll
-      for (int b = 0; b < batch; ++b) j[b] = list.entry[min(k + b, end - 1)];
+      for (int b = 0; b < batch; ++b) j[b] = k + b * split < end ? list.entry[k + b * split] : i;
 #pragma unroll
       for (int b = 0; b < batch; ++b) x[b] = pairs.position[j[b]];
 #pragma unroll
       for (int b = 0; b < batch; ++b) {
-        if (k + b >= end || j[b] == i || norm2(pairs.grid.difference(xi, x[b])) >= h2) continue;
-        if (Fill) entry[base + std::uint64_t{slice} * count] = j[b];
-        ++count;
+        const bool near = j[b] != i && norm2(pairs.grid.difference(xi, x[b])) < h2;
+        const unsigned all = __ballot_sync(~0u, near) & team;
+        if (Fill && near && valid)
+          entry[base + std::uint64_t{slice} * (count + __popc(all & ((1u << threadIdx.x % 32) - 1)))] = j[b];
+        count += __popc(all);
       }
     }
   }
   if (Fill) {
     const auto rows = static_cast<std::uint32_t>(sliceStart[s + 1] - sliceStart[s]);
-    for (; count < rows; ++count) entry[base + std::uint64_t{slice} * count] = i;
+    for (count += part; valid && count < rows; count += split) entry[base + std::uint64_t{slice} * count] = i;
   } else {
     const unsigned rows = __reduce_max_sync(~0u, count);
-    if (index % slice == 0) sliceStart[s] = rows;
+    if (threadIdx.x % 32 == 0) atomicMax(reinterpret_cast<unsigned long long*>(&sliceStart[s]), rows);
   }
 }
 
@@ -65,19 +70,23 @@ template <int D>
 void NearProducts<D>::prepare(Context<Cuda>& context, const MphPairs<D>& pairs) {
   pairs_ = &pairs;
   const std::uint32_t slices = blocksFor(pairs.activeCount, slice);
-  const unsigned blocks = blocksFor(std::size_t{slices} * slice, 128);
   sliceStart_.resize(context, std::size_t{slices} + 1);
-  launch(context, blocks, 128, 0, listKernel<D, false>, pairs, sliceStart_.data(), nullptr);
-  entry_.resize(context, startRows(context, sliceStart_) * slice);
-  launch(context, blocks, 128, 0, listKernel<D, true>, pairs, sliceStart_.data(), entry_.data());
+  clearBytes(context, sliceStart_.data(), sliceStart_.bytes());
+  withSplit<D>(pairs.fluidCount, [&](auto split) {
+    using Split = decltype(split);
+    const unsigned blocks = blocksFor(std::size_t{slices} * slice * split, 128);
+    launch(context, blocks, 128, 0, listKernel<false, Split, D>, split, pairs, sliceStart_.data(), nullptr);
+    entry_.resize(context, startRows(context, sliceStart_) * slice);
+    launch(context, blocks, 128, 0, listKernel<true, Split, D>, split, pairs, sliceStart_.data(), entry_.data());
+  });
 
   fixedPosition_.resize(context, std::size_t{4} * pairs.activeCount);
   auto* target = reinterpret_cast<int4*>(fixedPosition_.data());
-  const Vec<D>* position = pairs.position.data();
-  const CellGrid<D> grid = pairs.grid;
   forEach(context, pairs.activeCount, [=] __device__(std::size_t i) {
-    const Vec<D> x = position[i];
-    target[i] = {fixed(grid, x[0], 0), fixed(grid, x[1], 1), D == 3 ? fixed(grid, x[D - 1], D - 1) : 0, 0};
+    const Vec<D> x = pairs.position[i];
+    const auto scale = static_cast<float>(pairs.viscousSide(static_cast<std::uint32_t>(i)).scale);
+    target[i] = {fixed(pairs.grid, x[0], 0), fixed(pairs.grid, x[1], 1),
+                 D == 3 ? fixed(pairs.grid, x[D - 1], D - 1) : 0, __float_as_int(scale)};
   });
 }
 

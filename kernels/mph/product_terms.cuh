@@ -56,17 +56,75 @@ __device__ inline SymmetricBlock<D> fetch(const SymmetricBlock<D>* from) {
   }
 }
 
-template <int D, class T>
-struct VelocityOf {
-  Vec<D, T> u;
+/// What a loop over fluid is to know of the viscosities of its pairs: all have one; one substance, of which each
+/// particle has a scale; whatever MphPairs::viscosityOf says.
+enum class PairViscosity { One, Scaled, Any };
+
+/// f(kind), as a type, with what is true of the pairs.
+template <int D, class F>
+void withPairViscosity(const MphPairs<D>& pairs, F&& f) {
+  if (pairs.hasOneViscosity())
+    f(std::integral_constant<PairViscosity, PairViscosity::One>{});
+  else if (pairs.isOneSubstance())
+    f(std::integral_constant<PairViscosity, PairViscosity::Scaled>{});
+  else
+    f(std::integral_constant<PairViscosity, PairViscosity::Any>{});
+}
+
+/// What such a loop reads of a particle, and the factor of a pair's terms; ofAll() is that of their sums.
+template <class T, PairViscosity Kind>
+struct ViscosityOf;
+template <class T>
+struct ViscosityOf<T, PairViscosity::One> {
+  template <int D>
+  __device__ static ViscosityOf of(const MphPairs<D>&, std::uint32_t) {
+    return {};
+  }
+  template <int D>
+  __device__ static T ofAll(const MphPairs<D>& pairs) {
+    return static_cast<T>(pairs.onlyViscosity());
+  }
+};
+template <class T>
+struct ViscosityOf<T, PairViscosity::Scaled> {
+  T scale;
+
+  template <int D>
+  __device__ static ViscosityOf of(const MphPairs<D>& pairs, std::uint32_t i) {
+    return {static_cast<T>(pairs.viscosityScale[i])};
+  }
+  template <int D>
+  __device__ static T ofPair(const MphPairs<D>& pairs, ViscosityOf a, ViscosityOf b) {
+    return pairs.meanScale(a.scale, b.scale);
+  }
+  template <int D>
+  __device__ static T ofAll(const MphPairs<D>& pairs) {
+    return static_cast<T>(pairs.onlyViscosity());
+  }
+};
+template <class T>
+struct ViscosityOf<T, PairViscosity::Any> {
   ViscousSide side;
+
+  template <int D>
+  __device__ static ViscosityOf of(const MphPairs<D>& pairs, std::uint32_t i) {
+    return {pairs.viscousSide(i)};
+  }
+  template <int D>
+  __device__ static T ofPair(const MphPairs<D>& pairs, ViscosityOf a, ViscosityOf b) {
+    return pairs.template viscosityOf<T>(a.side, b.side);
+  }
+  template <int D>
+  __device__ static T ofAll(const MphPairs<D>&) {
+    return 1;
+  }
 };
 
-/// What a loop asks a particle for, unless all pairs have one viscosity.
-template <bool OneViscosity, int D>
-__device__ inline ViscousSide viscousSide(const MphPairs<D>& pairs, std::uint32_t i) {
-  return OneViscosity ? ViscousSide{} : pairs.viscousSide(i);
-}
+template <int D, class T, PairViscosity Kind>
+struct VelocityOf {
+  Vec<D, T> u;
+  ViscosityOf<T, Kind> viscosity;
+};
 
 /// What a fluid particle's own velocity meets in A: the diagonal block of rho/dt I + V, and C_ii; walls included.
 template <int D>
@@ -77,14 +135,13 @@ struct SelfTerms {
 
 /// y = (rho/dt I + V) u and q = lambda C^T u per fluid particle, walls at rest [K23 eq. (16)]: the first pass of a
 /// product A u. The sums run over the neighbours' velocities alone, u_i meets the particle's self terms: three
-/// subtractions and three registers per pair less than with u_j - u_i. With OneViscosity no
-/// particle is asked for its own.
-template <int D, class T, bool OneViscosity, class Mph>
+/// subtractions and three registers per pair less than with u_j - u_i.
+template <int D, class T, PairViscosity Kind, class Mph>
 struct ViscosityAndDivergence {
   static constexpr int values = D + 1;
   static constexpr bool uses(ListSegment s) { return isFluid(s); }
-  using Own = ViscousSide;
-  using Other = VelocityOf<D, T>;
+  using Own = ViscosityOf<T, Kind>;
+  using Other = VelocityOf<D, T, Kind>;
 
   Mph mph;
   SelfTerms<D> self;
@@ -92,16 +149,14 @@ struct ViscosityAndDivergence {
   Vec<D, T>* y;
   T* q;
 
-  __device__ Own loadOwn(const MphPairs<D>& pairs, std::uint32_t i) const {
-    return viscousSide<OneViscosity>(pairs, i);
-  }
-  __device__ Other loadOther(const MphPairs<D>& pairs, std::uint32_t j) const { return {u[j], loadOwn(pairs, j)}; }
+  __device__ Own loadOwn(const MphPairs<D>& pairs, std::uint32_t i) const { return Own::of(pairs, i); }
+  __device__ Other loadOther(const MphPairs<D>& pairs, std::uint32_t j) const { return {u[j], Own::of(pairs, j)}; }
 
   __device__ void add(const MphPairs<D>& pairs, T* sum, const Vec<D, T>& d, const PairDistance<T>& r, Own own,
                       const Other& other, ListSegment segment) const {
     const T along = dot(d, other.u);
     T f = mph.viscousShape(r) * along;
-    if constexpr (!OneViscosity) f *= pairs.template viscosityOf<T>(own, other.side);
+    if constexpr (Kind != PairViscosity::One) f *= Own::ofPair(pairs, own, other.viscosity);
     addScaled(sum, f, d);
     if (isNear(segment)) sum[D] = fma(mph.gradientShape(r), along, sum[D]);
   }
@@ -109,10 +164,9 @@ struct ViscosityAndDivergence {
   __device__ void store(const MphPairs<D>& pairs, std::uint32_t i, int n, T sum) const {
     const Vec<D, T> ui = u[i];
     if (n < D) {
-      const double mu = OneViscosity ? pairs.onlyViscosity() : 1.0;
       T own = 0;
       for (int c = 0; c < D; ++c) own += static_cast<T>(self.block[i](n, c)) * ui[c];
-      y[i][n] = own - mph.viscousFactor * static_cast<T>(mu) * sum;
+      y[i][n] = own - mph.viscousFactor * Own::ofAll(pairs) * sum;
     } else {
       T div = -mph.gradientFactor * sum;
       for (int c = 0; c < D; ++c) div += ui[c] * static_cast<T>(self.gradient[i][c]);
@@ -138,34 +192,35 @@ __device__ inline void put(const Store& store, std::uint32_t i, const Sum& sum, 
 }
 
 /// store(i, ((rho/dt I + V) u)_i) per fluid particle; as ViscosityAndDivergence without the divergence.
-template <int D, class T, bool OneViscosity, class Mph, class V, class Store>
+template <int D, class T, PairViscosity Kind, class Mph, class V, class Store>
 struct Viscosity {
   using StoresVectors = void;
   static constexpr int values = D;
   static constexpr bool uses(ListSegment s) { return isFluid(s); }
-  using Own = ViscousSide;
-  using Other = VelocityOf<D, T>;
+  using Own = ViscosityOf<T, Kind>;
+  using Other = VelocityOf<D, T, Kind>;
 
   Mph mph;
   const Block<D, T>* selfBlock;
   const V* u;
   Store result;
 
-  __device__ Own loadOwn(const MphPairs<D>& pairs, std::uint32_t i) const {
-    return viscousSide<OneViscosity>(pairs, i);
-  }
-  __device__ Other loadOther(const MphPairs<D>& pairs, std::uint32_t j) const {
-    return {fetch(&u[j]), loadOwn(pairs, j)};
+  __device__ Own loadOwn(const MphPairs<D>& pairs, std::uint32_t i) const { return Own::of(pairs, i); }
+  template <class Stored>
+  __device__ Other loadOther(const MphPairs<D>& pairs, std::uint32_t j, const Stored& stored) const {
+    if constexpr (Kind == PairViscosity::Scaled && std::is_same_v<T, float>)
+      return {fetch(&u[j]), {LocalPositions<D, T>::viscosityScale(stored)}};
+    else
+      return {fetch(&u[j]), Own::of(pairs, j)};
   }
   __device__ void add(const MphPairs<D>& pairs, T* sum, const Vec<D, T>& d, const PairDistance<T>& r, Own own,
                       const Other& other, ListSegment) const {
     T f = mph.viscousShape(r) * dot(d, other.u);
-    if constexpr (!OneViscosity) f *= pairs.template viscosityOf<T>(own, other.side);
+    if constexpr (Kind != PairViscosity::One) f *= Own::ofPair(pairs, own, other.viscosity);
     addScaled(sum, f, d);
   }
   __device__ void store(const MphPairs<D>& pairs, std::uint32_t i, const Vec<D, T>& sum) const {
-    const T mu = OneViscosity ? static_cast<T>(pairs.onlyViscosity()) : T(1);
-    put(result, i, selfBlock[i] * fetch(&u[i]) - mph.viscousFactor * mu * sum, ownOf(result, i));
+    put(result, i, selfBlock[i] * fetch(&u[i]) - mph.viscousFactor * Own::ofAll(pairs) * sum, ownOf(result, i));
   }
 };
 

@@ -21,10 +21,12 @@ __device__ double viscosityFactor(const MphPairs<D>& pairs, std::uint32_t i, std
   return 1;
 }
 
-/// For sums once per step: one form for all sizes.
+/// For sums once per step.
 template <class F, int D>
 void withStepSharing(const MphPairs<D>& pairs, F&& f) {
-  if (pairs.fluidList.offset)
+  if (pairs.fluidList.offset && pairs.fluidList.clusterCount() < fewClusters)
+    f(Sharing<2, 4>{});
+  else if (pairs.fluidList.offset)
     f(Sharing<2, 1>{});
   else
     f(Sharing<2, 1, true>{});

@@ -13,29 +13,39 @@ template <int D, class T, int Numbers, class V>
 __global__ void __launch_bounds__(128)
     restrictKernel(const __grid_constant__ HatCells<D> cells, const HatNodesView<D> nodes,
                    const CellRangesView ranges, const Vec<D, T>* place, const V* r, T* b) {
-  waitForEarlierKernels();
-  constexpr int groups = 1 << D, lanes = 32 / groups;
+  constexpr int groups = 1 << D, lanes = 32 / groups, batch = 4;  // so many particles are on their way together
   const std::uint32_t n = blockIdx.x * (blockDim.x / 32) + threadIdx.x / 32;
   if (n >= nodes.count) return;
   const int corner = static_cast<int>(threadIdx.x % 32) / lanes, lane = static_cast<int>(threadIdx.x % lanes);
   Vec<D, int> cell = nodes.pointOf(n);
   T sum[Numbers] = {};
   const auto add = [&](std::uint32_t begin, std::uint32_t end) {
-    for (std::uint32_t i = begin + lane; i < end; i += lanes) {
-      const T weight = cornerWeight(place[i], corner);
-      if constexpr (Numbers == 1) {
-        sum[0] = fma(weight, r[i], sum[0]);
-      } else {
-        const Vec<D, T> v = fetch(&r[i]);
-        for (int k = 0; k < D; ++k) sum[k] = fma(weight, v[k], sum[k]);
+    for (std::uint32_t first = begin + lane; first < end; first += batch * lanes) {
+      T weight[batch];
+      Vec<Numbers, T> v[batch];
+#pragma unroll
+      for (int b = 0; b < batch; ++b) {
+        const std::uint32_t i = min(first + b * lanes, end - 1);
+        weight[b] = first + b * lanes < end ? cornerWeight(place[i], corner) : T(0);
+        if constexpr (Numbers == 1)
+          v[b][0] = r[i];
+        else
+          v[b] = fetch(&r[i]);
       }
+#pragma unroll
+      for (int b = 0; b < batch; ++b)
+        for (int k = 0; k < Numbers; ++k) sum[k] = fma(weight[b], v[b][k], sum[k]);
     }
   };
+  std::uint32_t fluid[2] = {}, walls[2] = {};
   if (cellBeside(cells, cell, corner)) {
     const std::size_t c = cells.grid.linear(cell);
-    add(ranges.fluidBegin[c], ranges.fluidEnd[c]);
-    if constexpr (Numbers == 1) add(ranges.wallBegin[c], ranges.wallEnd[c]);
+    fluid[0] = ranges.fluidBegin[c], fluid[1] = ranges.fluidEnd[c];
+    if constexpr (Numbers == 1) walls[0] = ranges.wallBegin[c], walls[1] = ranges.wallEnd[c];
   }
+  waitForEarlierKernels();  // none of them has made the cells
+  add(fluid[0], fluid[1]);
+  add(walls[0], walls[1]);
   for (int k = 0; k < Numbers; ++k) {
     const T total = warpSum(sum[k]);
     if (threadIdx.x % 32 == k) b[std::size_t{Numbers} * n + k] = total;

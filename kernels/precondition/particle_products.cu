@@ -1,7 +1,9 @@
 #include "treacle/precondition/particle_products.hpp"
 
 #include "precondition/coarse_positions.cuh"
+#include "precondition/placed_sums.cuh"
 #include "precondition/staged_sums.cuh"
+#include "treacle/precondition/projected_multigrid.hpp"
 
 namespace treacle {
 namespace {
@@ -14,25 +16,21 @@ LocalPositions<D, T> placesOf(const MphPairs<D>& pairs, const NearProducts<D>& n
     return LocalPositions<D, T>::make(pairs, near.fixedPosition().data());
 }
 
-/// Where the particles stand, and B, beside what is gathered of them.
+/// Where the particles stand, beside what is gathered of them.
 template <int D>
 void placeParticles(const Context<Cuda>& context, const MphPairs<D>& pairs, const NearProducts<D>& near,
                     PlacedScalar* first, PlacedScalar* second, PlacedVector<D>* vectors) {
-  const Renormalised<D> tensors{pairs.renormalisation, pairs.fluidCount};
   forEach(context, pairs.activeCount,
-          [coarse = CoarsePositions<D>::make(pairs), position = near.fixedPosition().data(), tensors, first,
-           second, vectors] __device__(std::size_t i) {
+          [coarse = CoarsePositions<D>::make(pairs), position = near.fixedPosition().data(), first, second,
+           vectors] __device__(std::size_t i) {
             std::uint32_t x[3] = {};
             for (int k = 0; k < D; ++k) x[k] = coarse.of(position[4 * i + k], k);
-            const std::uint64_t b =
-                tensors.b ? PackedTensor<D>::pack(tensors.of(static_cast<std::uint32_t>(i))) : 0;
-            PlacedScalar scalar{{x[0], x[1], static_cast<std::uint32_t>(b)}, 0};
+            PlacedScalar scalar{{x[0], x[1], 0}, 0};
             if constexpr (D == 2) {
               for (int k = 0; k < D; ++k) vectors[i].position[k] = static_cast<std::int32_t>(x[k]);
             } else {
               scalar.word[0] = vectors[i].word[0] = x[0] >> 16 | x[1];
-              scalar.word[1] = x[2] >> 16 | static_cast<std::uint32_t>(b) << 16;
-              scalar.word[2] = static_cast<std::uint32_t>(b >> 16);
+              scalar.word[1] = x[2] >> 16;
               for (int k = 0; k < 3; ++k) vectors[i].word[k + 1] = x[2] >> (16 + 6 * k) & PlacedVector<3>::low;
             }
             first[i] = second[i] = scalar;
@@ -48,6 +46,19 @@ NearView<D, T, Weights> viewOf(const MphPairs<D>& pairs, const NearProducts<D>& 
     static_cast<NearLists<D, float>&>(view) = CoarsePositions<D>::listsOf(pairs, near);
   return view;
 }
+
+/// B of the pairs.
+template <int D>
+Renormalised<D> tensors(const MphPairs<D>& pairs) {
+  return {pairs.renormalisation, pairs.fluidCount};
+}
+
+/// The same in the precision of the products.
+template <int D, class T>
+struct RoundedTensors {
+  Renormalised<D> exact;
+  __device__ SymmetricBlock<D, T> of(std::uint32_t k) const { return converted<T>(exact.of(k)); }
+};
 
 /// One thread per particle: the inverse diagonal of S', from the positions of the neighbours. No atomics.
 template <int D, class T, class Weights, class Columns>
@@ -86,13 +97,20 @@ void ParticleProducts<D, T, Cuda>::prepare(Context<Cuda>& context, const MphPair
                                            const MphOperator<D, Cuda>& a) {
   pairs_ = &pairs;
   a_ = &a;
-  for (auto& field : scalars_) field.resize(context, pairs.activeCount);
-  vectors_.resize(context, pairs.activeCount);
-  clearBytes(context, vectors_.data(), vectors_.size() * sizeof(vectors_.data()[0]));
-  if constexpr (std::is_same_v<T, float>) {
-    placeParticles(context, pairs, a.near(), scalars_[0].data(), scalars_[1].data(), vectors_.data());
-    if (pairs.renormalisation)
-      staged_.prepare(context, pairs, a.near(), scalars_[0].data(), productReach<T>(pairs));
+  const auto resize = [&](auto& scalars, auto& vectors) {
+    for (auto& field : scalars) field.resize(context, pairs.activeCount);
+    vectors.resize(context, pairs.activeCount);
+    clearBytes(context, vectors.data(), vectors.size() * sizeof(vectors.data()[0]));
+  };
+  if (isPlaced()) {
+    resize(placedScalars_, placedVectors_);
+    placeParticles(context, pairs, a.near(), placedScalars_[0].data(), placedScalars_[1].data(),
+                   placedVectors_.data());
+  } else {
+    resize(scalars_, vectors_);
+    if (std::is_same_v<T, float>)
+      staged_.prepare(context, pairs, a.near(), productReach<T>(pairs),
+                      projectionConstants(pairs).stiffness > mostPackedStiffness<D>);
   }
   selfBlock_.resize(context, pairs.fluidCount);
   const double* from = a.selfBlock()[0].a;
@@ -124,43 +142,53 @@ void ParticleProducts<D, T, Cuda>::gatherWeighted(Context<Cuda>& context, const 
 }
 
 template <int D, class T>
+ScalarField<T, Cuda> ParticleProducts<D, T, Cuda>::scalars(int which) {
+  if constexpr (std::is_same_v<T, float>)
+    return isPlaced()
+               ? ScalarField<T, Cuda>{&placedScalars_[which].data()->value, sizeof(PlacedScalar) / sizeof(T)}
+               : ScalarField<T, Cuda>{scalars_[which].data(), 1};
+  else
+    return {scalars_[which].data()};
+}
+template <int D, class T>
+VectorField<D, T, Cuda> ParticleProducts<D, T, Cuda>::vectors() {
+  if constexpr (std::is_same_v<T, float>)
+    return isPlaced() ? VectorField<D, T, Cuda>{nullptr, placedVectors_.data()}
+                      : VectorField<D, T, Cuda>{vectors_.data(), nullptr};
+  else
+    return {vectors_.data()};
+}
+
+/// As products without staged neighbours gather them.
+template <int D, class T>
 auto gathered(ScalarField<T, Cuda> q) {
   if constexpr (std::is_same_v<T, float>)
-    return PlacedScalars<D>{q.at};
+    return PlacedScalars<D>{reinterpret_cast<const PlacedScalar*>(reinterpret_cast<const char*>(q.at) -
+                                                                  offsetof(PlacedScalar, value))};
   else
     return PlainScalars<D, T>{q.at};
 }
 template <int D, class T>
 auto gathered(VectorField<D, T, Cuda> u) {
   if constexpr (std::is_same_v<T, float>)
-    return PlacedVectors<D>{u.at};
+    return PlacedVectors<D>{u.placed};
   else
     return PlainVectors<D, T, Gathered<D, T>>{u.at};
-}
-
-/// B as the products read it; `scalars`: either field has it.
-template <int D, class T>
-auto tensors(const MphPairs<D>& pairs, const typename ScalarField<T, Cuda>::Element* scalars) {
-  if constexpr (std::is_same_v<T, float>)
-    return PlacedTensors<D>{scalars};
-  else
-    return Renormalised<D>{pairs.renormalisation, pairs.fluidCount};
 }
 
 template <int D, class T>
 template <class Store>
 void ParticleProducts<D, T, Cuda>::gradient(Context<Cuda>& context, ScalarField<T, Cuda> q,
                                             const Store& store) const {
-  withPressureTerms(*pairs_, [&]<class Weights>(const MphTerms<D, double, Weights>& terms, auto renormalised) {
-    const auto view = viewOf<D, T>(*pairs_, a_->near(), terms);
+  if constexpr (std::is_same_v<T, float>)
+    if (pairs_->renormalisation) return stagedGradient(context, staged_, *pairs_, a_->near(), q, store);
+  withPressureTerms(*pairs_, [&](const auto& terms, auto renormalised) {
+    const auto scalars = gathered<D>(q);
     if constexpr (!renormalised)
-      nearGradient(context, view, gathered<D>(q), store);
-    else if constexpr (std::is_same_v<T, float>)
-      stagedGradient(context, staged_, StagedSums<D, Weights>{view, staged_.view(a_->near()), q.at}, q.at, store);
-    else
-      nearGradient(context, view,
-                   Stresses<D, T, PlainScalars<D, T>, Renormalised<D>>{{q.at}, tensors<D, T>(*pairs_, q.at)},
-                   store);
+      nearGradient(context, viewOf<D, T>(*pairs_, a_->near(), terms), scalars, store);
+    else if constexpr (std::is_same_v<T, double>)
+      nearGradient(context, viewOf<D, T>(*pairs_, a_->near(), terms),
+                   Stresses<D, T, PlainScalars<D, T>, Renormalised<D>>{scalars, tensors(*pairs_)}, store);
   });
 }
 
@@ -168,16 +196,13 @@ template <int D, class T>
 template <class Store>
 void ParticleProducts<D, T, Cuda>::divergence(Context<Cuda>& context, VectorField<D, T, Cuda> u,
                                               const Store& store) const {
-  withPressureTerms(*pairs_, [&]<class Weights>(const MphTerms<D, double, Weights>& terms, auto renormalised) {
-    const auto view = viewOf<D, T>(*pairs_, a_->near(), terms);
-    const auto* places = scalars_[0].data();
+  if constexpr (std::is_same_v<T, float>)
+    if (pairs_->renormalisation) return stagedDivergence(context, staged_, *pairs_, a_->near(), u, store);
+  withPressureTerms(*pairs_, [&](const auto& terms, auto renormalised) {
     if constexpr (!renormalised)
-      nearDivergence(context, view, gathered(u), Plain<D, T>{}, store);
-    else if constexpr (std::is_same_v<T, float>)
-      stagedDivergence(context, staged_, StagedSums<D, Weights>{view, staged_.view(a_->near()), places}, u.at,
-                       tensors<D, T>(*pairs_, places), store);
-    else
-      nearDivergence(context, view, gathered(u), tensors<D, T>(*pairs_, places), store);
+      nearDivergence(context, viewOf<D, T>(*pairs_, a_->near(), terms), gathered(u), Plain<D, T>{}, store);
+    else if constexpr (std::is_same_v<T, double>)
+      nearDivergence(context, viewOf<D, T>(*pairs_, a_->near(), terms), gathered(u), tensors(*pairs_), store);
   });
 }
 
@@ -197,22 +222,29 @@ void ParticleProducts<D, T, Cuda>::schur(Context<Cuda>& context, const Projectio
 }
 
 template <int D, class T>
+std::size_t ParticleProducts<D, T, Cuda>::bytes() const {
+  std::size_t sum = staged_.bytes() + vectors_.bytes() + placedVectors_.bytes() + selfBlock_.bytes();
+  for (int k = 0; k < 2; ++k) sum += scalars_[k].bytes() + placedScalars_[k].bytes();
+  return sum;
+}
+
+template <int D, class T>
 template <class Store>
 void ParticleProducts<D, T, Cuda>::viscous(Context<Cuda>& context, const Gathered<D, T>* u,
                                            const Store& store) const {
   const auto places = placesOf<D, T>(*pairs_, a_->near());
-  const auto start = [&]<class Mph>(const Mph& mph, auto sharing, auto oneViscosity) {
-    using Terms = Viscosity<D, T, decltype(oneViscosity)::value, Mph, Gathered<D, T>, Store>;
+  const auto start = [&]<class Mph>(const Mph& mph, auto sharing, auto viscosity) {
+    using Terms = Viscosity<D, T, viscosity, Mph, Gathered<D, T>, Store>;
     launchClusterSums<D, T, decltype(sharing)>(
         context, *pairs_, ListTask<Terms>{pairs_->fluidList, {mph, selfBlock_.data(), u, store}}, places);
   };
   withViscosityTerms(*pairs_, [&](const auto& terms) {
     const auto mph = terms.template inUnitsOf<T>(places.unit(*pairs_));
     withListSharing(*pairs_, [&](auto sharing) {
-      // In double precision, which few preconditioners have, one kernel does for all.
       if constexpr (std::is_same_v<T, float>)
-        if (pairs_->hasOneViscosity()) return start(mph, sharing, std::true_type{});
-      start(mph, sharing, std::false_type{});
+        withPairViscosity(*pairs_, [&](auto viscosity) { start(mph, sharing, viscosity); });
+      else  // few preconditioners have it: one kernel does for all
+        start(mph, sharing, std::integral_constant<PairViscosity, PairViscosity::Any>{});
     });
   });
 }
@@ -230,7 +262,7 @@ void ParticleProducts<D, T, Cuda>::inverseDiagonals(Context<Cuda>& context, cons
   };
   withPressureTerms(*pairs_, [&](const auto& terms, auto renormalised) {
     if constexpr (renormalised)
-      start(terms, tensors<D, T>(*pairs_, scalars_[0].data()));
+      start(terms, RoundedTensors<D, T>{tensors(*pairs_)});
     else
       start(terms, Plain<D, T>{});
   });

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "mph/near_sums.cuh"
-#include "treacle/precondition/packed_tensor.hpp"
 #include "treacle/precondition/projection_terms.hpp"
 
 namespace treacle {
@@ -22,23 +21,6 @@ struct PlacedScalars {
     return own(lists, j);
   }
 };
-
-/// B times PackedTensor::scale of a PlacedScalar. A number among the low bits of 2^23 is 2^23 and that number.
-template <int D>
-__device__ inline SymmetricBlock<D, float> unpack(const int4& stored) {
-  using Packed = PackedTensor<D>;
-  SymmetricBlock<D, float> b;
-  constexpr unsigned magic = 0x4b000000;
-  for (int e = 0; e < b.size; ++e) {
-    unsigned number;
-    if constexpr (D == 2)
-      number = (static_cast<unsigned>(stored.z) >> Packed::bits * e & ((1u << Packed::bits) - 1)) | magic;
-    else
-      number = __byte_perm(e < 2 ? stored.y : stored.z, magic, 0x7440 + (e < 2 ? e + 2 : e - 2));
-    b.a[e] = __uint_as_float(number) - (__uint_as_float(magic) + (Packed::onDiagonal(e) ? 0 : Packed::scale / 2));
-  }
-  return b;
-}
 
 template <int D>
 struct PlacedVectors {
@@ -67,14 +49,6 @@ struct PlacedVectors {
   }
   __device__ PlacedVelocity<D, float> other(const NearLists<D, float>& lists, std::uint32_t j) const {
     return own(lists, j);
-  }
-};
-
-template <int D>
-struct PlacedTensors {
-  const PlacedScalar* at;
-  __device__ SymmetricBlock<D, float> of(std::uint32_t k) const {
-    return (1.f / PackedTensor<D>::scale) * unpack<D>(*reinterpret_cast<const int4*>(at + k));
   }
 };
 

@@ -40,7 +40,7 @@ struct PressureGalerkin {
 /// the 3^D nodes, g d, and with B of the neighbour in between.
 template <int D, class T>
 struct StagedNeighbour {
-  Vec<D, T> at, plain, column;
+  Gathered<D, T> at, plain, column;  // shared memory gives each in one piece
 };
 
 /// Where a particle at `place` in its cell is from the lowest of its 3^D nodes, in cells.
@@ -58,10 +58,10 @@ __device__ inline StagedNeighbour<D, T> stagedNeighbour(const PressureGalerkin<D
   const Vec<D, T> d = near.difference(near.other(j), near.own(i));
   StagedNeighbour<D, T> staged;
   for (int k = 0; k < D; ++k) staged.at[k] = fma(d[k], g.toCells[k], static_cast<T>(from[k]));
-  staged.plain = gradientShape(near, d) * d;
-  staged.column = staged.plain;
+  const Vec<D, T> plain = gradientShape(near, d) * d;
+  staged.plain = staged.column = plain;
   if constexpr (Renormalised)
-    if (j < near.fluidCount) staged.column = converted<T>(g.renormalisation[j] * converted<double>(staged.plain));
+    if (j < near.fluidCount) staged.column = converted<T>(g.renormalisation[j] * converted<double>(plain));
   return staged;
 }
 
@@ -123,8 +123,8 @@ __global__ void __launch_bounds__(D == 2 ? 96 : 256)
         if (own >= inGroup) continue;
         for (int r = 0; r < inChunk; ++r) {
           const StagedNeighbour<D, T>& other = staged[r][own];
-          addScaled(&sum[0], nodeHat(other.at, n), other.column);
-          plain += other.plain;
+          addScaled(&sum[0], nodeHat(fetch<D, T>(&other.at), n), fetch<D, T>(&other.column));
+          plain += fetch<D, T>(&other.plain);
         }
       }
       if (own >= inGroup) continue;

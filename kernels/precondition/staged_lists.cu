@@ -1,8 +1,8 @@
 #include "treacle/precondition/staged_lists.hpp"
 
 #include "core/launch.hpp"
-#include "precondition/coarse_positions.cuh"
-#include "precondition/placed_sums.cuh"
+#include "core/scan.hpp"
+#include "precondition/staged_sums.cuh"
 
 namespace treacle {
 namespace {
@@ -10,39 +10,43 @@ namespace {
 constexpr unsigned slice = nearSlice;
 constexpr std::uint32_t nobody = 0xffffffff;
 
-/// What of NearProducts and positions is read.
-template <int D>
-struct NearRows {
-  NearLists<D, float> lists;
-  const PlacedScalar* places;
-  float reach2;  // in the lists' unit
+/// What the rows are made of, and where they are written.
+template <int D, class Word, class Weights>
+struct StagedRows {
+  NearView<D, float, Weights> near;
+  Renormalised<D> tensors;
+  float reach2;    // in the unit of near
+  float perShape;  // units of the elements in what gradientShape and a difference make
+  std::uint32_t *member, *memberCount;
+  std::uint64_t *start, *place;
+  Word *column, *row;
+  Gathered<D, float>* own;
 
-  __device__ int4 place(std::uint32_t i) const {
-    return PlacedScalars<D>::place(reinterpret_cast<const int4*>(places)[i]);
+  __device__ bool within(std::uint32_t i, std::uint32_t j, const Vec<D, float>& d) const {
+    return j != i && norm2(d) < reach2;
   }
 };
-struct StagedRows {
-  std::uint32_t *member, *memberCount, *quads;
-  std::uint64_t* entry;
-};
 
-/// f(j, its place) for the neighbours of particle i within reach, in the order of its row.
-template <int D, class F>
-__device__ inline void forEachNeighbour(const NearRows<D>& near, std::uint32_t i, const int4& own, F&& f) {
+/// f(is there one, j, x_j - x_i) for the entries of the row of particle i in NearProducts, which `Split` threads
+/// side by side take in turns; all of them call f together.
+template <class Split, int D, class F>
+__device__ inline void forEachEntry(const NearLists<D, float>& near, std::uint32_t i, F&& f) {
   constexpr int batch = 4;  // so many neighbours are on their way together
-  const std::uint64_t begin = near.lists.sliceStart[i / slice];
-  const auto rows = static_cast<int>(near.lists.sliceStart[i / slice + 1] - begin);
-  const std::uint32_t* mine = near.lists.entry + begin * slice + i % slice;
-  for (int r = 0; r < rows; r += batch) {
+  const std::uint64_t begin = near.sliceStart[i / slice];
+  const auto rows = static_cast<int>(near.sliceStart[i / slice + 1] - begin);
+  const std::uint32_t* mine = near.entry + begin * slice + i % slice;
+  const int4 here = near.own(i);
+  const int part = static_cast<int>(threadIdx.x % Split::value);
+  for (int first = 0; first < rows; first += batch * Split::value) {
+    const auto rowOf = [&](int b) { return first + b * Split::value + part; };
     std::uint32_t j[batch];
     int4 there[batch];
 #pragma unroll
-    for (int b = 0; b < batch; ++b) j[b] = r + b < rows ? mine[std::size_t{slice} * (r + b)] : i;
+    for (int b = 0; b < batch; ++b) j[b] = rowOf(b) < rows ? mine[std::size_t{slice} * rowOf(b)] : i;
 #pragma unroll
-    for (int b = 0; b < batch; ++b) there[b] = near.place(j[b]);
+    for (int b = 0; b < batch; ++b) there[b] = near.other(j[b]);
 #pragma unroll
-    for (int b = 0; b < batch; ++b)
-      if (j[b] != i && norm2(near.lists.difference(there[b], own)) < near.reach2) f(j[b], there[b]);
+    for (int b = 0; b < batch; ++b) f(rowOf(b) < rows, j[b], near.difference(there[b], here));
   }
 }
 
@@ -67,7 +71,7 @@ struct MemberTable {
       std::uint32_t there = read(key[s % slots]);  // most are there already
       if (there == nobody) {
         there = atomicCAS(&key[s % slots], nobody, k);
-        if (there == nobody && atomicAdd(&count, 1) >= Capacity) torn = 1;
+        if (there == nobody && atomicAdd(&count, 1) >= Capacity) atomicExch(&torn, 1);
       }
       if (there == nobody || there == k) return;
     }
@@ -84,97 +88,142 @@ struct MemberTable {
         __syncthreads();
       }
   }
-  /// Among the sorted.
-  __device__ std::uint32_t placeOf(std::uint32_t k) const {
-    std::uint32_t place = 0;
-    for (std::uint32_t step = slots / 2; step > 0; step /= 2)
-      if (key[place + step] <= k) place += step;
-    return place;
-  }
 };
 
-/// Whether the difference of two places is the difference of what they are from a block's origin, which 32 bits
-/// must hold on all axes: else the block reaches around the multiples of a length that places leave out.
-template <int D>
-__device__ inline bool seenAlike(const int4& origin, const int4& i, const int4& j) {
-  const auto overflows = [](int o, int a, int b) {
-    const unsigned fromI = static_cast<unsigned>(a) - static_cast<unsigned>(o),
-                   fromJ = static_cast<unsigned>(b) - static_cast<unsigned>(o);
-    return (fromI ^ fromJ) & (fromJ ^ (fromJ - fromI));
-  };
-  const unsigned any = overflows(origin.x, i.x, j.x) | overflows(origin.y, i.y, j.y) |
-                       (D == 3 ? overflows(origin.z, i.z, j.z) : 0u);
-  return any >> 31 == 0;
+/// Where k stands among `count` ascending numbers, of which it is one.
+__device__ inline std::uint32_t placeAmong(const std::uint32_t* sorted, std::uint32_t count, std::uint32_t k) {
+  std::uint32_t first = 0;
+  while (count > 1) {
+    const std::uint32_t half = count / 2;
+    if (sorted[first + half] <= k) first += half;
+    count -= half;
+  }
+  return first;
 }
 
-/// A block of threads per block of Particles, one thread for each of them; reads the rows of NearProducts and
-/// positions, writes the block's members and the rows of its slices. Atomics in shared memory, on which the result
+/// A block per block of particles, `split` threads for each of them; reads the rows of NearProducts and positions,
+/// writes the block's members and the lengths of its slices' rows. Atomics in shared memory, on which the result
 /// does not depend.
-template <int D, unsigned Particles, std::uint32_t Capacity>
+template <class Split, int D, class Word, class Weights>
 __global__ void __launch_bounds__(StagedLists<D>::threads)
-    stageKernel(const __grid_constant__ NearRows<D> near, const StagedRows out) {
-  __shared__ MemberTable<Capacity> table;
+    membersKernel(const Split split, const __grid_constant__ StagedRows<D, Word, Weights> out) {
+  constexpr std::uint32_t particles = StagedLists<D>::threads / Split::value,
+                          capacity = StagedLists<D>::capacity(Split::value);
+  __shared__ MemberTable<capacity> table;
+  __shared__ std::uint32_t longest[particles / slice];
+  if (threadIdx.x < particles / slice) longest[threadIdx.x] = 0;
   table.clear();
-  const std::uint32_t active = near.lists.activeCount, index = blockIdx.x * Particles + threadIdx.x,
-                      i = min(index, active - 1);
-  const bool taken = threadIdx.x < Particles;
-  const int4 origin = near.place(StagedView::origin(blockIdx.x, Particles, active)), own = near.place(i);
-  std::uint32_t count = 0;
-  if (taken) {
-    table.insert(i);
-    forEachNeighbour(near, i, own, [&](std::uint32_t j, const int4& there) {
-      table.insert(j);
-      if (!seenAlike<D>(origin, own, there)) table.torn = 1;
-      ++count;
-    });
-  }
+  const auto& near = out.near;
+  const std::uint32_t index = blockIdx.x * particles + threadIdx.x / split, i = min(index, near.activeCount - 1);
+  if (threadIdx.x % split == 0) table.insert(i);
+  int count = 0;
+  forEachEntry<Split>(near, i, [&](bool exists, std::uint32_t j, const Vec<D, float>& d) {
+    if (exists && out.within(i, j, d)) table.insert(j), ++count;
+  });
+  atomicMax(&longest[threadIdx.x / split / slice], static_cast<std::uint32_t>(splitSum(count, split)));
   __syncthreads();
-  if (threadIdx.x == 0) out.memberCount[blockIdx.x] = table.torn ? StagedView::torn : table.count;
-  if (table.torn) return;
-  table.sort();
-  for (unsigned k = threadIdx.x; k < table.count; k += blockDim.x)
-    out.member[std::size_t{Capacity} * blockIdx.x + k] = table.key[k];
+  const bool torn = table.torn;
+  if (threadIdx.x == 0) out.memberCount[blockIdx.x] = torn ? StagedView<D, Word>::torn : table.count;
+  if (threadIdx.x < particles / slice) {
+    const std::uint32_t s = blockIdx.x * (particles / slice) + threadIdx.x;
+    if (s * slice < near.activeCount)
+      out.start[s] = torn ? (near.sliceStart[s + 1] - near.sliceStart[s] + 3) / 4 : (longest[threadIdx.x] + 3) / 4;
+  }
+  std::uint32_t* member = out.member + std::size_t{capacity} * blockIdx.x;
+  if (!torn) table.sort();
+  for (unsigned k = threadIdx.x; k < capacity; k += blockDim.x)
+    member[k] = !torn && k < table.count ? table.key[k] : i;  // there is always somebody to be fetched
+}
 
-  const std::uint32_t quads = __reduce_max_sync(~0u, (count + 3) / 4), s = index / slice;
-  if (!taken || s * slice >= active) return;
-  if (index % slice == 0) out.quads[s] = quads;
-  std::uint64_t* row = out.entry + StagedView::start(near.lists.sliceStart[s], s) * slice + index % slice;
-  std::uint64_t four = 0;
-  std::uint32_t n = 0;
-  const auto add = [&](std::uint32_t place) {
-    four |= std::uint64_t{16} * place << 16 * (n % 4);
-    if (++n % 4 != 0) return;
-    row[std::size_t{slice} * (n / 4 - 1)] = four;
-    four = 0;
+/// The same; reads positions, B and members, writes the rows. No atomics.
+template <class Split, int D, class Word, class Weights>
+__global__ void __launch_bounds__(StagedLists<D>::threads)
+    rowsKernel(const Split split, const __grid_constant__ StagedRows<D, Word, Weights> out) {
+  constexpr std::uint32_t particles = StagedLists<D>::threads / Split::value,
+                          capacity = StagedLists<D>::capacity(Split::value);
+  __shared__ std::uint32_t member[capacity];
+  const auto& near = out.near;
+  const std::uint32_t members = out.memberCount[blockIdx.x];
+  const bool torn = members == StagedView<D, Word>::torn;
+  for (unsigned k = threadIdx.x; !torn && k < members; k += blockDim.x)
+    member[k] = out.member[std::size_t{capacity} * blockIdx.x + k];
+  __syncthreads();
+  const std::uint32_t index = blockIdx.x * particles + threadIdx.x / split, i = min(index, near.activeCount - 1);
+  const bool writes = index == i;
+  const int part = static_cast<int>(threadIdx.x % split);
+  const unsigned team = static_cast<unsigned>((std::uint64_t{1} << split) - 1) << (threadIdx.x % 32 - part);
+  const std::uint64_t start = out.start[i / slice];
+  const auto length = static_cast<std::uint32_t>(4 * (out.start[i / slice + 1] - start));
+  const auto write = [&](std::uint32_t n, std::uint32_t place, Word column, Word row) {
+    const std::uint64_t at = 4 * ((start + n / 4) * slice + i % slice) + n % 4;
+    if (!writes) return;
+    reinterpret_cast<std::uint16_t*>(out.place)[at] = static_cast<std::uint16_t>(place);
+    out.column[at] = column;
+    out.row[at] = row;
   };
-  forEachNeighbour(near, i, own, [&](std::uint32_t j, const int4&) { add(table.placeOf(j)); });
-  const std::uint32_t self = table.placeOf(i);
-  while (n < 4 * quads) add(self);
+  const SymmetricBlock<D, float> b = converted<float>(out.tensors.of(i));
+  Vec<D, float> own{};
+  std::uint32_t n = 0;
+  forEachEntry<Split>(near, i, [&](bool exists, std::uint32_t j, const Vec<D, float>& d) {
+    const bool counts = exists && out.within(i, j, d), written = torn ? exists : counts;
+    const unsigned all = __ballot_sync(~0u, written) & team;
+    if (written) {
+      const Vec<D, float> g = counts ? out.perShape * gradientShape(near, d) * d : Vec<D, float>{};
+      const Word row = packElement<D, Word>(b * g);
+      own += inUnits<D, Word>(unpackElement<D>(row));
+      write(n + __popc(all & ((1u << threadIdx.x % 32) - 1)), torn ? 0 : placeAmong(member, members, j),
+            packElement<D, Word>(converted<float>(out.tensors.of(j)) * g), row);
+    }
+    n += __popc(all);
+  });
+  for (int k = 0; k < D; ++k) own[k] = splitSum(own[k], split);
+  if (part == 0 && writes && i < near.fluidCount) out.own[i] = own;
+  const Word zero = packElement<D, Word>(Vec<D, float>{});
+  for (n += part; n < length; n += split) write(n, 0, zero, zero);
 }
 
 }  // namespace
 
 template <int D>
-void StagedLists<D>::prepare(Context<Cuda>& context, const MphPairs<D>& pairs, const NearProducts<D>& near,
-                             const PlacedScalar* places, double reach) {
-  sharing_ = sharing(pairs.fluidCount);
-  const double length = reach * pairs.terms.pressureRadius, inUnits = length / pairs.terms.viscosityRadius;
-  reach2_ = static_cast<float>(inUnits * inUnits);
+template <class Word>
+void StagedLists<D>::makeRows(Context<Cuda>& context, const MphPairs<D>& pairs, const NearProducts<D>& near,
+                              double reach) {
   const std::uint32_t slices = blocksFor(pairs.activeCount, slice);
   const unsigned blocks = blocksFor(pairs.activeCount, threads / sharing_);
   member_.resize(context, std::size_t{capacity(sharing_)} * blocks);
   memberCount_.resize(context, blocks);
-  quads_.resize(context, slices);
-  entry_.resize(context, (StagedView::start(near.entries().size() / slice, slices) + 1) * slice);
-  const NearRows<D> rows{CoarsePositions<D>::listsOf(pairs, near), places, reach2_};
-  const StagedRows out{member_.data(), memberCount_.data(), quads_.data(), entry_.data()};
-  const auto start = [&](auto kernel) { launch(context, blocks, threads, 0, kernel, rows, out); };
-  if (sharing_ == 1)
-    start(stageKernel<D, threads, capacity(1)>);
-  else if (sharing_ == 4)
-    start(stageKernel<D, threads / 4, capacity(4)>);
-  else
-    start(stageKernel<D, threads / 8, capacity(8)>);
+  start_.resize(context, std::size_t{slices} + 1);
+  own_.resize(context, pairs.fluidCount);
+  unit_ = largestElement(pairs) / ElementBits<D, Word>::largest;
+  const auto start = [&]<class Weights>(const MphTerms<D, double, Weights>& terms) {
+    StagedRows<D, Word, Weights> rows{};
+    rows.near = NearView<D, float, Weights>::make(pairs, near, terms);
+    const float length = static_cast<float>(reach) * rows.near.mph.pressureRadius;
+    rows.reach2 = length * length;
+    rows.perShape = static_cast<float>(pairs.terms.gradientFactor / unit_);
+    rows.tensors = {pairs.renormalisation, pairs.fluidCount};
+    rows.member = member_.data(), rows.memberCount = memberCount_.data(), rows.start = start_.data();
+    withSharing(*this, [&](auto split) {
+      using Split = decltype(split);
+      launch(context, blocks, threads, 0, membersKernel<Split, D, Word, Weights>, split, rows);
+      const std::uint64_t room = startRows(context, start_) * slice;
+      place_.resize(context, room);
+      for (auto* elements : {&column_, &row_}) elements->resize(context, sizeof(Word) * room);
+      rows.place = place_.data(), rows.own = own_.data();
+      rows.column = reinterpret_cast<Word*>(column_.data()), rows.row = reinterpret_cast<Word*>(row_.data());
+      launch(context, blocks, threads, 0, rowsKernel<Split, D, Word, Weights>, split, rows);
+    });
+  };
+  withKnownWeights<KnownPressureWeight<AccurateWeights::pressure>>(pairs.terms, start);
+}
+
+template <int D>
+void StagedLists<D>::prepare(Context<Cuda>& context, const MphPairs<D>& pairs, const NearProducts<D>& near,
+                             double reach, bool wide) {
+  sharing_ = sharing(pairs.fluidCount);
+  wide_ = wide;
+  wide ? makeRows<std::uint64_t>(context, pairs, near, reach)
+       : makeRows<std::uint32_t>(context, pairs, near, reach);
 }
 
 template class StagedLists<2>;

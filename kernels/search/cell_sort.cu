@@ -122,13 +122,15 @@ void makeRoom(Context<Cuda>& context, const Particles<D, Cuda>& particles, SortW
       context, std::max(particles.count * sizeof(Vec<D>), particles.modes.vectors.size() * sizeof(Vec<D, float>)));
 }
 
-/// One thread per particle; reads a field where the sorted index points, writes it in order; atomics no.
+/// One thread per particle from `first` on, with which the field starts; reads it where the sorted index points,
+/// writes it in order; atomics no.
 template <class T>
-void permute(Context<Cuda>& context, SortWorkspace<Cuda>& w, Buffer<T, Cuda>& field) {
+void permute(Context<Cuda>& context, SortWorkspace<Cuda>& w, Buffer<T, Cuda>& field, std::uint32_t first = 0) {
+  if (field.empty()) return;
   T* sorted = reinterpret_cast<T*>(w.field.data());
   forEach(context, field.size(),
-          [sorted, from = field.data(), index = w.sortedIndex.data()] __device__(std::size_t i) {
-            sorted[i] = from[index[i]];
+          [sorted, from = field.data(), index = w.sortedIndex.data() + first, first] __device__(std::size_t i) {
+            sorted[i] = from[index[i] - first];
           });
   copyBytesOnDevice(context, sorted, field.data(), field.size() * sizeof(T));
 }
@@ -182,6 +184,7 @@ void sortByCell(Context<Cuda>& context, const CellGrid<D>& grid, Particles<D, Cu
   const auto permuteField = [&](auto& field) { permute(context, w, field); };
   forEachSharedFieldOf(permuteField, particles);
   forEachFluidFieldOf(permuteField, particles);
+  forEachWallFieldOf([&](auto& field) { permute(context, w, field, fluid); }, particles);
   giveUp(w.key, w.sortedKey, w.index, w.sortedIndex, w.field);
   context.giveUpScratch();
   copyBytesToHost(context, w.count.data(), counts.data(), sizeof(counts));

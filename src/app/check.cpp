@@ -22,7 +22,7 @@ namespace treacle {
 namespace {
 
 /// A case that does not fit may be meant for another machine: that is a warning.
-void printMemory(const Case& c, AnyParticles& particles, std::vector<std::string>& warnings) try {
+void printMemory(const Case& c, const AnyParticles& particles, std::vector<std::string>& warnings) try {
   if (leastMemory(c) > availableMemory())
     print("# memory: more than {} needed, {} available\n", bytesText(leastMemory(c)),
           bytesText(availableMemory()));

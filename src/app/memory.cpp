@@ -41,7 +41,7 @@ void requireRoomForParticles(const Case& c) {
 
 std::uint64_t leastMemory(const Case& c) { return programBytes + cellBytes * searchCells(c); }
 
-MemoryCounts countsFor(const Case& c, AnyParticles& particles, bool onDevice) {
+MemoryCounts countsFor(const Case& c, const AnyParticles& particles, bool onDevice) {
   MemoryCounts known;
   known.particles = particles.numbers();
   known.cells = searchCells(c);
@@ -51,7 +51,7 @@ MemoryCounts countsFor(const Case& c, AnyParticles& particles, bool onDevice) {
 
 std::uint64_t estimatedMemory(const Case& c, const MemoryCounts& n, bool onDevice) {
   const std::uint64_t output = copiesToBeWritten * stateBytes(c, n.particles);
-  if (onDevice) return programBytes + driverBytes + output;
+  if (onDevice) return programBytes + driverBytes + output + distantWallBytes(c, n);
   return programBytes + output + planMemory(c, n, BackendKind::Cpu).peak;
 }
 
@@ -59,7 +59,7 @@ std::uint64_t estimatedDeviceMemory(const Case& c, const MemoryCounts& n) {
   return planMemory(c, n, BackendKind::Cuda).peak;
 }
 
-void requireMemory(const Case& c, AnyParticles& particles, const DeviceInfo* device) {
+void requireMemory(const Case& c, const AnyParticles& particles, const DeviceInfo* device) {
   requireMemory(c, countsFor(c, particles, device != nullptr), device);
 }
 

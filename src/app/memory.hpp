@@ -16,9 +16,9 @@ void requireRoomForParticles(const Case& c);
 /// What a run needs at least, before anything is counted, which takes memory for the cells itself [B].
 std::uint64_t leastMemory(const Case& c);
 
-/// What decides on the memory of a run with these particles, which are sorted on the way. `onDevice`: the run
-/// computes on a GPU. Errors: RunError where there is less than leastMemory().
-MemoryCounts countsFor(const Case& c, AnyParticles& particles, bool onDevice);
+/// What decides on the memory of a run with these particles. `onDevice`: the run computes on a GPU. Errors:
+/// RunError where there is less than leastMemory().
+MemoryCounts countsFor(const Case& c, const AnyParticles& particles, bool onDevice);
 
 /// Memory of the host that a run of the case will need at its peak [B]: the arrays of the simulation, the copies
 /// of its state that are written, and the program.
@@ -27,9 +27,9 @@ std::uint64_t estimatedMemory(const Case& c, const MemoryCounts& counts, bool on
 /// The same for the memory of the GPU.
 std::uint64_t estimatedDeviceMemory(const Case& c, const MemoryCounts& counts);
 
-/// `device`: what the run computes on, null for the CPU; sorts the particles. Errors: RunError where the case
-/// clearly needs more memory than the host, or the device, has free.
-void requireMemory(const Case& c, AnyParticles& particles, const DeviceInfo* device);
+/// `device`: what the run computes on, null for the CPU. Errors: RunError where the case clearly needs more memory
+/// than the host, or the device, has free.
+void requireMemory(const Case& c, const AnyParticles& particles, const DeviceInfo* device);
 /// The same where they are counted.
 void requireMemory(const Case& c, const MemoryCounts& counts, const DeviceInfo* device);
 

@@ -63,11 +63,13 @@ void setBodies(const Case& c, const std::filesystem::path& file, const Particles
   }
 }
 
-/// Surfaces of walls follow from the case; a file does not have them.
+/// Surfaces of walls follow from the case; a file does not have them. The ids of what the case makes are its
+/// places.
 template <int D>
 void setWallSurfaces(const Particles<D>& made, Particles<D>& p) {
   p.wallSurface.resize(made.wallSurface.size());
-  std::copy(made.wallSurface.begin(), made.wallSurface.end(), p.wallSurface.begin());
+  const std::uint32_t n = p.fluidCount;
+  for (std::size_t k = 0; k < p.wallSurface.size(); ++k) p.wallSurface[k] = made.wallSurface[p.id[n + k] - n];
 }
 
 std::int64_t stepAt(double time, const TimeSettings& settings, const std::filesystem::path& file) {

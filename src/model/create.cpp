@@ -1,11 +1,13 @@
 #include "treacle/model/create.hpp"
 
 #include "treacle/core/error.hpp"
+#include "treacle/core/parallel.hpp"
 #include "treacle/model/shape.hpp"
 #include "treacle/model/wall_surface.hpp"
 
 #include "body_points.hpp"
 #include "lattice.hpp"
+#include "point_boxes.hpp"
 #include "point_grid.hpp"
 
 #include <fmt/format.h>
@@ -60,14 +62,34 @@ void requireTurnable(const Domain& domain, const Filled<D>& f) {
   }
 }
 
-/// Union in file order: drops points closer than half a spacing to an earlier one and puts the rest on the grid.
+/// A grid for those points of the bodies that may be too near others.
 template <int D>
-void unite(std::vector<Filled<D>>& filled, PointGrid<D>& grid, std::vector<std::string>& notes) {
+PointGrid<D> gridFor(const Domain& domain, double radius, const std::vector<Filled<D>>& filled,
+                     const PointBoxes<D>& boxes) {
+  std::size_t count = 0;
+  for (const Filled<D>& f : filled)
+    if (const auto near = boxes.near(f.body); !near.empty())
+      count += static_cast<std::size_t>(
+          std::ranges::count_if(f.points, [&](const Vec<D>& x) { return near.contain(x); }));
+  return PointGrid<D>(domain, radius, count);
+}
+
+/// Union in file order: drops points closer than half a spacing to an earlier one and puts those of the rest on
+/// the grid that may be so near to others.
+template <int D>
+void unite(std::vector<Filled<D>>& filled, const PointBoxes<D>& boxes, PointGrid<D>& grid,
+           std::vector<std::string>& notes) {
   for (std::uint32_t b = 0; b < filled.size(); ++b) {
     auto& points = filled[b].points;
+    const auto near = boxes.near(filled[b].body);
+    if (near.empty()) continue;
     std::size_t kept = 0;
     std::uint32_t other = PointGrid<D>::none;
     for (const Vec<D>& x : points) {
+      if (!near.contain(x)) {
+        points[kept++] = x;
+        continue;
+      }
       if (const std::uint32_t tag = grid.find(x); tag != PointGrid<D>::none) {
         other = tag;
         continue;
@@ -86,11 +108,15 @@ void unite(std::vector<Filled<D>>& filled, PointGrid<D>& grid, std::vector<std::
 /// Errors: InputError for the first wall that shares places with the fluid.
 template <int D>
 void requireApart(const std::vector<Filled<D>>& fluid, const PointGrid<D>& grid,
-                  const std::vector<Filled<D>>& walls) {
+                  const std::vector<Filled<D>>& walls, const PointBoxes<D>& boxes) {
   for (const Filled<D>& wall : walls) {
+    const auto near = boxes.near(wall.body);
+    if (near.empty()) continue;
     std::vector<std::pair<std::uint32_t, Vec<D>>> hits;
-    for (const Vec<D>& x : wall.points)
+    for (const Vec<D>& x : wall.points) {
+      if (!near.contain(x)) continue;
       if (const std::uint32_t tag = grid.find(x); tag != PointGrid<D>::none) hits.push_back({tag, x});
+    }
     if (!hits.empty())
       throw InputError(
           fmt::format("fluid body '{}' and wall body '{}' overlap: {} wall particle{} closer than half a spacing "
@@ -106,16 +132,24 @@ void append(const Case& c, const std::vector<Filled<D>>& filled, Particles<D>& p
   for (const Filled<D>& f : filled) {
     const auto body = static_cast<std::uint8_t>(f.body - c.bodies.data());
     const InitialVelocity<D> velocity(c, *f.body);
-    for (const Vec<D>& x : f.points) {
-      particles.position[next] = x;
-      particles.velocity[next] = velocity.at(x);
-      particles.pressure[next] = 0;
-      particles.numberDensity[next] = 0;
-      particles.material[next] = static_cast<std::uint8_t>(f.body->material);
-      particles.body[next] = body;
-      particles.id[next] = next;
-      ++next;
-    }
+    const auto place = [&](std::size_t k) {
+      const Vec<D>& x = f.points[k];
+      const std::size_t i = next + k;
+      particles.position[i] = x;
+      particles.velocity[i] = velocity.at(x);
+      particles.pressure[i] = 0;
+      particles.numberDensity[i] = 0;
+      particles.material[i] = static_cast<std::uint8_t>(f.body->material);
+      particles.body[i] = body;
+      particles.id[i] = static_cast<std::uint32_t>(i);
+    };
+    // Expressions throw, and are not for several threads at once.
+    const bool expressions = f.body->velocityExpression != decltype(f.body->velocityExpression){};
+    if (expressions)
+      for (std::size_t k = 0; k < f.points.size(); ++k) place(k);
+    else
+      parallelFor(f.points.size(), parallelGrain, place);
+    next += static_cast<std::uint32_t>(f.points.size());
   }
 }
 
@@ -134,13 +168,16 @@ Particles<D> createParticles(const Case& c, std::vector<std::string>& notes,
 
   // Points exactly half a spacing apart, give or take rounding, do not count as overlapping.
   const double radius = 0.5 * c.spacing * (1 - 1e-6);
-  PointGrid<D> fluidGrid(c.domain, radius, total(fluid));
-  unite(fluid, fluidGrid, notes);
+  PointBoxes<D> boxes(c.domain, radius);
+  for (const auto* group : {&fluid, &walls})
+    for (const Filled<D>& f : *group) boxes.add(f.body, f.points);
+  PointGrid<D> fluidGrid = gridFor(c.domain, radius, fluid, boxes);
+  unite(fluid, boxes, fluidGrid, notes);
   {
-    PointGrid<D> wallGrid(c.domain, radius, total(walls));
-    unite(walls, wallGrid, notes);
+    PointGrid<D> wallGrid = gridFor(c.domain, radius, walls, boxes);
+    unite(walls, boxes, wallGrid, notes);
   }
-  requireApart(fluid, fluidGrid, walls);
+  requireApart(fluid, fluidGrid, walls, boxes);
 
   Particles<D> particles;
   particles.resize(static_cast<std::uint32_t>(total(fluid)), static_cast<std::uint32_t>(total(walls)));

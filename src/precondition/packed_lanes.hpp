@@ -1,6 +1,7 @@
 #pragma once
 
 #include "treacle/core/lanes.hpp"
+#include "treacle/precondition/element_bits.hpp"
 #include "treacle/precondition/packed_rows.hpp"
 #include "treacle/search/cluster_lanes.hpp"
 
@@ -10,17 +11,15 @@
 
 namespace treacle {
 
-/// An element g B d of C, a vector, in 32 bits: whole numbers of a unit, 16 bits each in two dimensions; in three
-/// 11, 11 and, of twice the unit, 10. Opposite vectors have opposite numbers, so that C and C^T are each other's
-/// transpose whatever is rounded.
+/// Elements of C in 32 bits, eight or sixteen at a time.
 template <int D>
-struct PackedElement {
+struct PackedElement : ElementBits<D, std::uint32_t> {
+  using Bits = ElementBits<D, std::uint32_t>;
+  using Bits::bits, Bits::lastBits, Bits::largest;
   using Words = std::uint32_t __attribute__((vector_size(clusterSize * sizeof(std::uint32_t))));
   using WordPair = std::uint32_t __attribute__((vector_size(2 * clusterSize * sizeof(std::uint32_t))));
   using IntPair = std::int32_t __attribute__((vector_size(2 * clusterSize * sizeof(std::int32_t))));
   using FloatPair = float __attribute__((vector_size(2 * clusterSize * sizeof(float))));
-  static constexpr int bits = D == 2 ? 16 : 11, lastBits = D == 2 ? 16 : 10;
-  static constexpr double largest = D == 2 ? 32766 : 1022;  // magnitude in units
 
   /// Eight elements `factor` v, which are at most `largest`.
   static Words pack(const VecLanes<D>& v, const Lanes& factor) {
@@ -30,7 +29,7 @@ struct PackedElement {
     for (int k = 0; k < D; ++k) {
       const bool last = k == D - 1;
       const int own = last ? lastBits : bits;
-      const Lanes rounded = (v[k] * factor * (last && D == 3 ? 0.5 : 1.0) + rounder) - rounder;
+      const Lanes rounded = (v[k] * factor * (1 / Bits::unitOf(k)) + rounder) - rounder;
       packed |= (Words) __builtin_convertvector(rounded, Ints) << (32 - own) >> (last ? 32 - own : k * bits);
     }
     return packed;

@@ -28,18 +28,6 @@ void storeHalves(const FloatPair<D>& sum, float factor, float* at) {
   std::memcpy(at, &total, sizeof(total));
 }
 
-/// No element of C is larger: B has no eigenvalue above 1 [1/m].
-template <int D>
-double largestElement(const MphPairs<D>& pairs) {
-  constexpr int samples = 1000;
-  double largest = 0;
-  for (int k = 0; k < samples; ++k) {
-    const double r = pairs.terms.pressureRadius * (k + 0.5) / samples;
-    largest = std::max(largest, pairs.terms.gradient(ExactDistance(r * r)) * r);
-  }
-  return 1.01 * largest;  // between the samples
-}
-
 /// Products of C^T with u: the divergence of eight particles.
 template <int D>
 void divergenceOf(const PackedRows& rows, std::uint32_t c, const Gathered<D, float>* u, float unit, float* at) {

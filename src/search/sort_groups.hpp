@@ -39,15 +39,20 @@ void sortGroup(Particles<D>& particles, std::uint32_t begin, std::uint32_t end, 
   // All room is taken before the first field: memory that gives out between two would leave particles with the
   // values of others.
   workspace.field.resize(keyed.size() * sizeof(Vec<D>));
-  const auto permute = [&]<class T>(T* field) {  // one value per particle
+  const auto permute = [&]<class T>(T* field, std::uint32_t first = 0) {  // one value per particle from `first` on
     static_assert(sizeof(T) <= sizeof(Vec<D>));
     T* sorted = reinterpret_cast<T*>(workspace.field.data());
-    parallelFor(keyed.size(), parallelGrain, [&](std::size_t i) { sorted[i] = field[keyed[i].index]; });
-    std::memcpy(field + begin, sorted, keyed.size() * sizeof(T));
+    parallelFor(keyed.size(), parallelGrain, [&](std::size_t i) { sorted[i] = field[keyed[i].index - first]; });
+    std::memcpy(field + (begin - first), sorted, keyed.size() * sizeof(T));
   };
   const auto permuteField = [&](auto& field) { permute(field.data()); };
   forEachSharedFieldOf(permuteField, particles);
-  if (begin > 0 || end > particles.fluidCount) return;
+  if (begin > 0 || end > particles.fluidCount)
+    return forEachWallFieldOf(
+        [&](auto& field) {
+          if (!field.empty()) permute(field.data(), particles.wallBegin());
+        },
+        particles);
   forEachFluidFieldOf(permuteField, particles);
   for (std::uint32_t m = 0; m < particles.modeCount(); ++m)
     permute(particles.modes.vectors.data() + std::size_t{m} * particles.fluidCount);

@@ -107,7 +107,7 @@ void AnySimulation::copyParticles(AnyParticles& host) const {
 }
 
 ParticleNumbers AnySimulation::numbers() const {
-  return held_->visit([](auto& s) { return s.particles().numbers(); });
+  return held_->visit([](auto& s) { return s.numbers(); });
 }
 
 double AnySimulation::time() const {
@@ -125,7 +125,8 @@ std::size_t AnySimulation::peakBytes() const {
 
 std::vector<AnySimulation::Share> AnySimulation::shares() const {
   give(processes_, Order::Share);
-  const Share own{numbers().fluid, processes_ ? processes_->traffic() : Communicator::Traffic{}};
+  const std::uint32_t fluid = held_->visit([](auto& s) { return s.particles().fluidCount; });
+  const Share own{fluid, processes_ ? processes_->traffic() : Communicator::Traffic{}};
   return processes_ ? processes_->all(own) : std::vector{own};
 }
 

@@ -34,9 +34,15 @@ void putWalls(const Particles<D>& own, const std::vector<WallState>& states, Par
         for (std::size_t k = 0; k < order.size(); ++k) to[whole.fluidCount + k] = from[order[k]];
       },
       own, whole);
+  forEachWallFieldOf(
+      [&](const auto& from, auto& to) {
+        if (!from.empty())
+          for (std::size_t k = 0; k < order.size(); ++k) to[k] = from[order[k] - own.wallBegin()];
+      },
+      own, whole);
   std::fill(whole.pressure.begin() + whole.fluidCount, whole.pressure.end(), 0.0);
   std::fill(whole.numberDensity.begin() + whole.fluidCount, whole.numberDensity.end(), 0.0);
-  const auto ids = whole.id.span().subspan(whole.fluidCount);
+  const auto ids = whole.id.span().subspan(whole.fluidCount, order.size());
   for (const WallState& s : states) {
     const std::size_t i = whole.fluidCount + (std::ranges::lower_bound(ids, s.id) - ids.begin());
     whole.pressure[i] = s.pressure;
@@ -48,18 +54,18 @@ void putWalls(const Particles<D>& own, const std::vector<WallState>& states, Par
 
 template <int D>
 void gatherParticles(const Communicator& processes, const Halo& halo, const Particles<D>& own,
-                     Particles<D>& whole) {
+                     ParticleNumbers all, Particles<D>& whole) {
   const bool first = processes.rank() == 0;
   // No process without fluid has a part where there are modes.
   const std::uint32_t modes = halo.someHaveNone ? 0 : own.modeCount();
   if (first) {
-    whole.resize({halo.fluidOfAll, own.wallCount(), modes, own.wallSurface.size()});
+    all.modes = modes;
+    whole.resize(all);
     whole.copyNumbers(own);
-    std::copy(own.wallSurface.begin(), own.wallSurface.end(), whole.wallSurface.begin());
   }
   const auto gather = [&]<class T>(std::span<const T> part, T* to) {
-    const std::vector<T> all = processes.collect(part);
-    std::copy(all.begin(), all.end(), to);
+    const std::vector<T> parts = processes.collect(part);
+    std::copy(parts.begin(), parts.end(), to);
   };
   const auto gatherField = [&]<class T>(const Buffer<T>& from, Buffer<T>& to) {
     gather(from.span().first(own.fluidCount), to.data());
@@ -73,7 +79,9 @@ void gatherParticles(const Communicator& processes, const Halo& halo, const Part
   if (first) putWalls(own, states, whole);
 }
 
-template void gatherParticles(const Communicator&, const Halo&, const Particles<2>&, Particles<2>&);
-template void gatherParticles(const Communicator&, const Halo&, const Particles<3>&, Particles<3>&);
+template void gatherParticles(const Communicator&, const Halo&, const Particles<2>&, ParticleNumbers,
+                              Particles<2>&);
+template void gatherParticles(const Communicator&, const Halo&, const Particles<3>&, ParticleNumbers,
+                              Particles<3>&);
 
 }  // namespace treacle

@@ -7,9 +7,10 @@
 namespace treacle {
 
 /// All particles of all processes at the first of them, as a simulation that is alone would have them: fluid
-/// sorted by cell, walls in the order of their ids. Collective. Errors: std::bad_alloc.
+/// sorted by cell, walls in the order of their ids. There is room for as many as `all` says; walls that no process
+/// holds are to follow. Collective. Errors: std::bad_alloc.
 template <int D>
 void gatherParticles(const Communicator& processes, const Halo& halo, const Particles<D>& own,
-                     Particles<D>& whole);
+                     ParticleNumbers all, Particles<D>& whole);
 
 }  // namespace treacle

@@ -33,8 +33,10 @@ void planIsphSystem(const Case& c, const MemoryCounts& n, BackendKind backend, M
     sum.keep<T>(2 * fluid);
     sum.keep<Vec<D, T>>(fluid);  // places in their cells, and on a CPU the corners of these
     if (backend == BackendKind::Cpu) sum.keep<std::uint32_t>(corners * fluid);
-    if (backend == BackendKind::Cuda)
+    if (backend == BackendKind::Cuda) {
       sum.use<T>(StepPart::Pressures, corners * corners * n.fluidGrids.front().nodes);
+      sum.keep<T>(HatTransfer<D, T, Cuda>::sumsPerNode * n.fluidGrids.front().nodes);
+    }
     planGrids<T, 1>(n.fluidGrids, backend, sum);
   } else if (c.solver.preconditioner == PreconditionerKind::CellMultigrid) {
     planBucketLevels(n, sum);

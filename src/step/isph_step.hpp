@@ -117,6 +117,11 @@ class IsphStep final : public StepMethod<D, Backend> {
     return transport_.span();
   }
 
+  double longestWay(double speed) const override {
+    const double shift = state_.theCase.method.isph.shifting == 0 ? 0 : longestShift * state_.theCase.spacing;
+    return speed * state_.timeStep + shift;
+  }
+
   void accept() override {
     const std::uint32_t n = pairs_.fluidCount;
     std::span<double> pressure = state_.particles.pressure;

@@ -7,6 +7,7 @@
 #include "treacle/precondition/hat_grid.hpp"
 #include "treacle/search/buckets.hpp"
 #include "treacle/search/neighbour_rows.hpp"
+#include "treacle/step/near_blocks.hpp"
 
 #include <algorithm>
 
@@ -38,13 +39,15 @@ std::uint64_t scaled(std::uint64_t count, double by) {
 template <int D>
 class Counter {
  public:
-  Counter(const Case& c, const CellGrid<D>& grid, Particles<D>& particles) : particles_(particles) {
-    sortByCell(context_, grid, particles, ranges_, workspace_);
+  Counter(const Case& c, const CellGrid<D>& grid, const Particles<D>& particles)
+      : particles_(startingParticles(c, grid, particles)) {
+    sortByCell(context_, grid, particles_, ranges_, workspace_);
     counts_.particles = particles.numbers();
+    counts_.nearWalls = particles_.wallCount();
     counts_.active = ranges_.activeCount;
     counts_.cells = grid.cellCount();
-    for (std::uint32_t i = particles.fluidCount; i < particles.count && !counts_.wallsMove; ++i)
-      counts_.wallsMove = norm2(particles.velocity[i]) > 0;
+    for (std::uint32_t i = particles_.fluidCount; i < particles_.count && !counts_.wallsMove; ++i)
+      counts_.wallsMove = norm2(particles_.velocity[i]) > 0;
     for (const Body& body : c.bodies)
       counts_.wallsMove = counts_.wallsMove || body.oscillation.period > 0 || body.rotation.has_value();
   }
@@ -55,24 +58,26 @@ class Counter {
     const double hp = pairs.terms.pressureRadius, hn = pairs.terms.densityRadius, hv = pairs.terms.viscosityRadius;
     const double far = std::max({hv, hn, wholeRows ? 2 * hp : hp});
     const std::uint32_t fluid = pairs.fluidCount, active = pairs.activeCount;
-    std::uint64_t nearOfFluid = 0, nearOfWalls = 0, gradients = 0, gradientsOfWalls = 0, rows = 0;
+    Sliced slicedFluid, slicedWalls;
+    std::uint64_t gradients = 0, gradientsOfWalls = 0, rows = 0;
     const double ofFluid =
         countLists(pairs, 0, fluid, {hp, far}, counts_.fluidLists, [&](const ClusterList<>& list) {
           pairs.fluidList = list.view();
-          nearOfFluid += slicedEntries(pairs, list.first, list.last);
+          slicedFluid.add(pairs, list.first, list.last);
           if (wholeRows) gradients += nearEntries(pairs, list.first, list.last);
           if (wholeRows) rows += coupledEntries(pairs, list.first, list.last);
         });
     const double ofWalls = countLists(pairs, fluid, active, {hp, hn > hp ? hn : 0}, counts_.wallLists,
                                       [&](const ClusterList<>& list) {
                                         pairs.wallList = list.view();
-                                        nearOfWalls += slicedEntries(pairs, list.first, list.last);
+                                        slicedWalls.add(pairs, list.first, list.last);
                                         if (wholeRows)
                                           gradientsOfWalls += nearEntries(pairs, list.first, list.last);
                                       });
     if (c.output.balance)
       countLists(pairs, fluid, active, {std::max(hn, hv), 0}, counts_.balanceLists, [](const ClusterList<>&) {});
-    counts_.nearEntries = scaled(nearOfFluid, ofFluid) + scaled(nearOfWalls, ofWalls);
+    counts_.nearEntries = scaled(slicedFluid.near, ofFluid) + scaled(slicedWalls.near, ofWalls);
+    counts_.stagedEntries = scaled(slicedFluid.staged, ofFluid) + scaled(slicedWalls.staged, ofWalls);
     counts_.gradientEntries = scaled(gradients, ofFluid) + scaled(gradientsOfWalls, ofWalls);
     counts_.rowEntries = scaled(rows, ofFluid);
     counts_.pressureGrids = grids(pairs, HatsOn::Active, hatReach, 1);
@@ -104,6 +109,12 @@ class Counter {
   }
 
  private:
+  static Particles<D> startingParticles(const Case& c, const CellGrid<D>& grid, const Particles<D>& all) {
+    NearBlocks<D> near(c, grid);
+    near.add(all);
+    return nearParticles(near, all);
+  }
+
   template <class Pairs>
   void describe(Pairs& pairs) {
     pairs.fluidCount = particles_.fluidCount;
@@ -132,22 +143,29 @@ class Counter {
     return by;
   }
 
-  /// Entries of NearProducts: slices are as long as the longest list in them; walls list fluid alone.
-  static std::uint64_t slicedEntries(const MphPairs<D>& pairs, std::uint32_t first, std::uint32_t last) {
-    std::uint64_t entries = 0;
-    for (std::uint32_t slice = first; slice < last; slice += nearSlice) {
-      std::uint64_t longest = 0;
-      for (std::uint32_t i = slice; i < std::min(last, slice + nearSlice); ++i) {
-        std::uint64_t own = 0;
-        forEachNear(pairs, i, [&](std::uint32_t j, const Vec<D>&, const Vec<D>&) {
-          own += i < pairs.fluidCount || j < pairs.fluidCount;
-        });
-        longest = std::max(longest, own);
+  /// Of NearProducts and StagedLists: slices are as long as the longest list in them; walls list fluid alone.
+  struct Sliced {
+    std::uint64_t near = 0, staged = 0;
+
+    void add(const MphPairs<D>& pairs, std::uint32_t first, std::uint32_t last) {
+      const double reach = slopeReach(pairs.terms.weights.pressure) * pairs.terms.pressureRadius;
+      for (std::uint32_t slice = first; slice < last; slice += nearSlice) {
+        Sliced longest;
+        for (std::uint32_t i = slice; i < std::min(last, slice + nearSlice); ++i) {
+          Sliced own;
+          forEachNear(pairs, i, [&](std::uint32_t j, const Vec<D>& d, const Vec<D>&) {
+            if (i >= pairs.fluidCount && j >= pairs.fluidCount) return;
+            ++own.near;
+            own.staged += norm2(d) < reach * reach;
+          });
+          longest.near = std::max(longest.near, own.near);
+          longest.staged = std::max(longest.staged, own.staged);
+        }
+        near += nearSlice * longest.near;
+        staged += nearSlice * ((longest.staged + 3) / 4 * 4);  // in fours
       }
-      entries += nearSlice * longest;
     }
-    return entries;
-  }
+  };
   static std::uint64_t nearEntries(const MphPairs<D>& pairs, std::uint32_t first, std::uint32_t last) {
     std::uint64_t entries = 0;
     for (std::uint32_t i = first; i < last; ++i)
@@ -198,14 +216,14 @@ class Counter {
   }
 
   Context<Cpu> context_;
-  Particles<D>& particles_;
+  Particles<D> particles_;
   CellRanges<> ranges_;
   SortWorkspace<> workspace_;
   MemoryCounts counts_;
 };
 
 template <int D>
-MemoryCounts countParticles(const Case& c, Particles<D>& particles, bool wholeRows) {
+MemoryCounts countParticles(const Case& c, const Particles<D>& particles, bool wholeRows) {
   if (c.method.kind == MethodKind::Isph) return Counter<D>(c, makeIsphPairs<D>(c).grid, particles).isph(c);
   return Counter<D>(c, makeMphPairs<D>(c).grid, particles).mph(c, wholeRows);
 }
@@ -220,8 +238,8 @@ std::uint64_t searchCells(const Case& c) {
   return c.dimensions == 2 ? cells(std::integral_constant<int, 2>{}) : cells(std::integral_constant<int, 3>{});
 }
 
-MemoryCounts countForMemory(const Case& c, AnyParticles& particles, bool wholeRows) {
-  return particles.visit([&](auto& p) { return countParticles(c, p, wholeRows); });
+MemoryCounts countForMemory(const Case& c, const AnyParticles& particles, bool wholeRows) {
+  return particles.visit([&](const auto& p) { return countParticles(c, p, wholeRows); });
 }
 
 }  // namespace treacle

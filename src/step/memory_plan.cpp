@@ -28,6 +28,10 @@ MemoryPlan planMemory(const Case& c, const MemoryCounts& n, BackendKind backend)
   return c.dimensions == 2 ? plan(std::integral_constant<int, 2>{}) : plan(std::integral_constant<int, 3>{});
 }
 
+std::uint64_t distantWallBytes(const Case& c, const MemoryCounts& n) {
+  return c.dimensions == 2 ? distantBytes<2>(n) : distantBytes<3>(n);
+}
+
 std::uint64_t stateBytes(const Case& c, ParticleNumbers n) {
   n.modes = std::max(n.modes, modesOf(c));
   return c.dimensions == 2 ? fieldBytes<2>(n) : fieldBytes<3>(n);

@@ -76,11 +76,20 @@ inline std::uint64_t modesOf(const Case& c) {
   return some ? static_cast<std::uint64_t>(c.solver.deflation) : 0;
 }
 
+/// DistantWalls, in the host's memory.
+template <int D>
+std::uint64_t distantBytes(const MemoryCounts& n) {
+  constexpr std::uint64_t each = sizeof(Vec<D>) + 2 * sizeof(std::uint8_t) + sizeof(std::uint32_t);
+  return (n.particles.wall - n.nearWalls) * (each + (n.particles.surfaces > 0 ? sizeof(WallSurface<D>) : 0));
+}
+
 /// The state, what a step makes of it, and its sort.
 template <int D>
 void planState(const Case& c, const MemoryCounts& n, BackendKind backend, MemorySum& sum) {
-  const std::uint64_t fluid = n.particles.fluid, wall = n.particles.wall, all = fluid + wall;
+  const std::uint64_t fluid = n.particles.fluid, wall = n.nearWalls, all = fluid + wall;
   ParticleNumbers numbers = n.particles;
+  numbers.wall = wall;
+  if (numbers.surfaces > 0) numbers.surfaces = wall;
   numbers.modes = std::max(numbers.modes, modesOf(c));
   sum.keep<std::byte>(fieldBytes<D>(numbers));
   sum.keep<Vec<D>>(n.wallsMove ? all : fluid);                             // positions of the end
@@ -90,6 +99,7 @@ void planState(const Case& c, const MemoryCounts& n, BackendKind backend, Memory
   sum.keep<std::uint8_t>(n.cells);
   sum.keep<std::uint64_t>(fluid);
   if (backend == BackendKind::Cpu) {
+    sum.keep<std::byte>(distantBytes<D>(n));
     sum.use<SortWorkspace<>::KeyedIndex>(StepPart::Sort, all);
     sum.use<Vec<D>>(StepPart::Sort, fluid);
     return;

@@ -56,14 +56,16 @@ void planOperator(const MemoryCounts& n, BackendKind backend, bool lists, bool r
   sum.keep<std::int32_t>(4 * n.active);
 }
 
-/// StagedLists.
+/// StagedLists, with elements of so many bytes.
 template <int D>
-void planStaged(const MemoryCounts& n, MemorySum& sum) {
+void planStaged(const MemoryCounts& n, std::uint64_t elementBytes, MemorySum& sum) {
   using Lists = StagedLists<D>;
   const unsigned sharing = Lists::sharing(n.particles.fluid);
-  const std::uint64_t blocks = n.active * sharing / Lists::threads + 1, slices = n.active / nearSlice + 1;
-  sum.keep<std::uint32_t>((Lists::capacity(sharing) + 1) * blocks + slices);
-  sum.keep<std::uint64_t>((StagedView::start(n.nearEntries / nearSlice, slices) + 1) * nearSlice);
+  const std::uint64_t blocks = n.active * sharing / Lists::threads + 1;
+  sum.keep<std::uint32_t>((Lists::capacity(sharing) + 1) * blocks);
+  sum.keep<std::uint64_t>(n.active / nearSlice + 2 + n.stagedEntries / 4);
+  sum.keep<std::uint8_t>(2 * elementBytes * n.stagedEntries);
+  sum.keep<Gathered<D, float>>(n.particles.fluid);
 }
 
 /// Elements of C in few bits, of as many entries in lists of so many clusters.
@@ -78,11 +80,17 @@ template <int D, class T>
 void planProducts(const Case& c, const MemoryCounts& n, BackendKind backend, bool renormalised, MemorySum& sum) {
   using enum ListSegment;
   const std::uint64_t fluid = n.particles.fluid;
+  const bool stiff = projectionConstants(makeMphPairs<D>(c)).stiffness > mostPackedStiffness<D>;
   sum.keep<Block<D, T>>(fluid);
   if (backend == BackendKind::Cuda) {
-    sum.keep<typename ScalarField<T, Cuda>::Element>(2 * n.active);
-    sum.keep<typename VectorField<D, T, Cuda>::Element>(n.active);
-    if (renormalised && std::is_same_v<T, float>) planStaged<D>(n, sum);
+    if (std::is_same_v<T, float> && !renormalised) {
+      sum.keep<PlacedScalar>(2 * n.active);
+      sum.keep<PlacedVector<D>>(n.active);
+      return;
+    }
+    sum.keep<T>(2 * n.active);
+    sum.keep<Gathered<D, T>>(n.active);
+    if (std::is_same_v<T, float>) planStaged<D>(n, stiff ? 8 : 4, sum);
     return;
   }
   const std::uint64_t clusters = n.fluidLists.clusters;
@@ -94,8 +102,7 @@ void planProducts(const Case& c, const MemoryCounts& n, BackendKind backend, boo
               (entriesIn(n.fluidLists, {NearFluid, FarFluid}) + entriesIn(n.fluidLists, {NearFluid, NearWall}) +
                entriesIn(n.wallLists, {NearFluid})));
   if (renormalised) sum.keep<SymmetricBlock<D, T>>(fluid);
-  if (!std::is_same_v<T, float> || projectionConstants(makeMphPairs<D>(c)).stiffness > mostPackedStiffness<D>)
-    return;
+  if (!std::is_same_v<T, float> || stiff) return;
   planPacked(clusters, entriesIn(n.fluidLists, {NearFluid, NearWall}), sum);
   planPacked(clusters, entriesIn(n.fluidLists, {NearFluid}), sum);
   planPacked(n.wallLists.clusters, entriesIn(n.wallLists, {NearFluid}), sum);

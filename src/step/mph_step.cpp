@@ -118,6 +118,8 @@ class MphStep final : public StepMethod<D, Backend> {
     return state_.velocity.span().first(pairs_.ownFluid());
   }
 
+  double longestWay(double speed) const override { return speed * state_.timeStep; }
+
   /// Psi of [K23 eq. (14)] with the new velocities.
   void accept() override {
     const std::uint32_t active = pairs_.activeCount, n = pairs_.ownFluid();
@@ -163,8 +165,8 @@ class MphStep final : public StepMethod<D, Backend> {
     if (p.wallSurface.empty()) return;
     const std::uint32_t n = pairs_.fluidCount, walls = pairs_.activeCount - n;
     wallSurface_.resize(state_.context, walls);
-    placeSurfaces<D>(state_.context, {state_.fluidOfAll, p.wallSurface.span(), state_.wallMotion.span()},
-                     p.id.span().subspan(n, walls), p.body.span().subspan(n, walls), wallSurface_.span());
+    placeSurfaces<D>(state_.context, {p.wallSurface.span(), state_.wallMotion.span()},
+                     p.body.span().subspan(n, walls), wallSurface_.span());
     neighbourhood_.setWallSurfaces(wallSurface_);
   }
 

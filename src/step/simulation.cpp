@@ -7,6 +7,7 @@
 #include "treacle/core/team.hpp"
 #include "treacle/model/particles_copy.hpp"
 #include "treacle/step/diagnostics.hpp"
+#include "treacle/step/distant_walls.hpp"
 #include "treacle/step/move_particles.hpp"
 #include "treacle/step/shareable.hpp"
 #include "treacle/step/step_control.hpp"
@@ -64,11 +65,8 @@ void withTeam(F&& body) {
 }  // namespace
 
 template <int D>
-void toHost(const Context<Cpu>&, const Particles<D>& particles, Particles<D>& host) {
-  host.resize(particles.numbers());
-  host.copyNumbers(particles);
-  forEachFieldOf([](const auto& from, auto& to) { std::copy(from.begin(), from.end(), to.begin()); }, particles,
-                 host);
+void toHost(const Context<Cpu>& context, const Particles<D>& particles, Particles<D>& host) {
+  copyToHost(context, particles, host);
 }
 template <int D>
 void toHost(const Context<Cuda>& context, const Particles<D, Cuda>& particles, Particles<D>& host) {
@@ -84,7 +82,8 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
   bool wallsRotate, wallVelocitiesChange;
   Buffer<Vec<D>, Backend> wallChord;  // per wall particle, where some rotate [m/s]
   std::unique_ptr<StepMethod<D, Backend>> method;
-  double lastSpeed = 0;  // of the fastest particle [m/s]
+  std::optional<DistantWalls<D>> distant;  // which `particles` has not
+  double lastSpeed = 0;                    // of the fastest particle [m/s]
   std::optional<Watch> watch;
   std::optional<StepControl> control;  // of automatic steps
   double endOfStep = 0;                // time at the end of the step at hand [s]
@@ -102,10 +101,11 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     this->fluidOfAll = state.fluidCount;
     wallsMove = wallVelocitiesChange || someWallMoves(state);
     const double mass = fluidMass(theCase, state);
-    toBackend(context, std::move(state), particles);
-    if (step == 0) forEachFluidFieldOf([&](auto& field) { clearValues(context, field.span()); }, particles);
     method = theCase.method.kind == MethodKind::Isph ? makeIsphStep(static_cast<Flow&>(*this))
                                                      : makeMphStep(static_cast<Flow&>(*this));
+    distant.emplace(theCase, method->grid(), state, time);
+    toBackend(context, std::move(state), particles);
+    if (step == 0) forEachFluidFieldOf([&](auto& field) { clearValues(context, field.span()); }, particles);
     method->sortParticles();
     if (step == 0) {  // else the state has the densities of its last step
       method->findNeighbours();
@@ -114,6 +114,31 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     const Diagnostics start = diagnostics();
     lastSpeed = start.maxSpeed;
     watch.emplace(theCase, start, mass, this->fluidOfAll, wallsMove);
+  }
+
+  /// Of the walls those that are near something that moves, where that may be others than before.
+  void chooseWalls() {
+    if (!distant->isDue()) return;
+    Particles<D> walls;
+    copyWallsToHost(context, particles, walls);
+    NearBlocks<D> near(theCase, method->grid());
+    near.addMovingWalls(walls);
+    addFluidTo(near);
+    if (context.communicator) near.unite(*context.communicator);
+    if (distant->differs(near)) replaceWalls(context, distant->held(near, walls), particles);
+    distant->accept(std::move(near));
+  }
+
+  /// Piece by piece: the host need not have room for all places.
+  void addFluidTo(NearBlocks<D>& near) {
+    constexpr std::size_t piece = std::size_t{1} << 20;
+    const std::span<const Vec<D>> x = particles.position.span().first(particles.fluidCount);
+    Buffer<Vec<D>> some;
+    for (std::size_t first = 0; first < x.size(); first += piece) {
+      some.resize(std::min(piece, x.size() - first));
+      copyToHost(context, x.subspan(first, some.size()), some.data());
+      near.addFluid(some);
+    }
   }
 
   void chooseTimeStep() {
@@ -200,6 +225,7 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     copyValues(context, std::span<const Vec<D>>(velocity).first(particles.fluidCount), particles.velocity.data());
     copyValues(context, moved.first(particles.fluidCount), particles.position.data());
     if (wallsMove) copyValues(context, moved.subspan(walls), particles.position.data() + walls);
+    distant->addStep(timeStep, method->longestWay(lastSpeed));
     ++step;
     time = endOfStep;
     particles.steps.last = timeStep;
@@ -273,7 +299,10 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     chooseTimeStep();
     moveBodies();
     phases.start(context);
-    phases.run(context, treacle::phases::search, [&] { method->sortParticles(); });
+    phases.run(context, treacle::phases::search, [&] {
+      chooseWalls();
+      method->sortParticles();
+    });
     phases.run(context, treacle::phases::lists, [&] { method->findNeighbours(); });
     StagedReport solved = control ? solveExactly(report) : solve();
     phases.run(context, treacle::phases::update, [&] {
@@ -281,9 +310,9 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
       move();
       report.diagnostics = diagnosticsOf(position, velocity);
       report.watched = watch->look(timeStep, report.diagnostics, report.warnings);
+      lastSpeed = report.diagnostics.maxSpeed;
       accept();
     });
-    lastSpeed = report.diagnostics.maxSpeed;
     report.seconds = phases.seconds();
     report.step = step;
     report.time = time;
@@ -300,6 +329,7 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     chooseTimeStep();
     moveBodies();
     phases.start(context);
+    chooseWalls();
     method->sortParticles();
     method->findNeighbours();
     method->predict();
@@ -312,7 +342,27 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
   std::size_t bytes() const {
     std::size_t sum = velocity.bytes() + position.bytes() + wallChord.bytes() + method->bytes();
     particles.forEachField([&](const auto& field) { sum += field.bytes(); });
-    return sum;
+    return std::is_same_v<Backend, Cpu> ? sum + distant->bytes() : sum;
+  }
+
+  ParticleNumbers numbers() const {
+    ParticleNumbers all = particles.numbers();
+    all.fluid = this->fluidOfAll, all.ghosts = 0;
+    all.wall += distant->count();
+    all.surfaces += distant->surfaceCount();
+    return all;
+  }
+
+  void copyParticles(Particles<D>& host) const {
+    if constexpr (std::is_same_v<Backend, Cpu>)
+      if (context.communicator) {
+        gatherParticles(*context.communicator, *context.halo, particles, numbers(), host);
+        if (context.communicator->rank() == 0) distant->copyTo(host);
+        return;
+      }
+    host.resize(numbers());
+    copyFieldsToHost(context, particles, host);
+    distant->copyTo(host);
   }
 };
 
@@ -343,10 +393,11 @@ const Particles<D, Backend>& Simulation<D, Backend>::particles() const {
 }
 template <int D, class Backend>
 void Simulation<D, Backend>::copyParticles(Particles<D>& host) const {
-  if constexpr (std::is_same_v<Backend, Cpu>)
-    if (state_->context.communicator)
-      return gatherParticles(*state_->context.communicator, *state_->context.halo, state_->particles, host);
-  toHost(state_->context, state_->particles, host);
+  state_->copyParticles(host);
+}
+template <int D, class Backend>
+ParticleNumbers Simulation<D, Backend>::numbers() const {
+  return state_->numbers();
 }
 template <int D, class Backend>
 double Simulation<D, Backend>::time() const {

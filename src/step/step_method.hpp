@@ -36,6 +36,8 @@ class StepMethod {
   virtual void correctVelocities() {}
   /// What the fluid moves with, once they are there.
   virtual std::span<const Vec<D>> transportVelocities() = 0;
+  /// How far a particle can have gone in the step if none is faster than `speed` [m/s] at its end [m].
+  virtual double longestWay(double speed) const = 0;
   /// Writes what the particles shall hold but for position and velocity, which are still those before the step.
   virtual void accept() = 0;
   /// Of the step that was accepted last, where the case wants it.

@@ -101,7 +101,7 @@ double Oracle<D>::wallFactor(std::uint32_t i, std::uint32_t j) const {
   const std::uint32_t fluid = s.particles.fluidCount;
   if (i >= fluid && j < fluid) return wallFactor(j, i);
   if (j < fluid || s.particles.wallSurface.empty()) return 1;
-  const WallSurface<D>& surface = s.particles.wallSurface[s.particles.id[j] - fluid];
+  const WallSurface<D>& surface = s.particles.wallSurface[j - fluid];
   double crossing = 0, factor = 0;  // crossing: where the line from i meets the face, as a share of its length
   for (const Vec<D, float>& face : surface.face) {
     double depth = 0, distance = 0;

@@ -23,7 +23,7 @@ struct RandomParticles {
     Vec<D, bool> periodic{};
     for (int k = 0; k + 1 < D; ++k) periodic[k] = true;
     grid = CellGrid<D>::make(Vec<D>{}, Vec<D>::filled(1), periodic, radius);
-    particles.resize(fluid, wall, seed % 3);
+    particles.resize({fluid, wall, seed % 3, seed % 2 * wall});
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> unit(0, 1);
     for (std::uint32_t i = 0; i < particles.count; ++i) {
@@ -39,6 +39,8 @@ struct RandomParticles {
           particles.modes.vectors[std::size_t{m} * fluid + i] =
               Vec<D, float>::filled(static_cast<float>(i + 0.25 * m));
       }
+      if (i >= fluid && !particles.wallSurface.empty())
+        particles.wallSurface[i - fluid] = {converted<float>(particles.position[i]), {}};
       particles.pressure[i] = particles.numberDensity[i] = 0;
       particles.material[i] = 0;
       particles.body[i] = static_cast<std::uint8_t>(i % 7);

@@ -77,8 +77,8 @@ void prepare(Scene<D>& s) {
   if (!s.particles.wallSurface.empty()) {
     const std::uint32_t n = s.n(), walls = s.pairs().activeCount - n;
     s.wallSurface.resize(walls);
-    placeSurfaces<D>(s.context, {n, s.particles.wallSurface.span(), {}}, s.particles.id.span().subspan(n, walls),
-                     s.particles.body.span().subspan(n, walls), s.wallSurface.span());
+    placeSurfaces<D>(s.context, {s.particles.wallSurface.span(), {}}, s.particles.body.span().subspan(n, walls),
+                     s.wallSurface.span());
     s.neighbourhood->setWallSurfaces(s.wallSurface);
   }
   if (s.c.method.pressureGradient == PressureGradient::Renormalised) {

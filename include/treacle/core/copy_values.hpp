@@ -25,7 +25,23 @@ template <class T>
 void clearValues(Context<Cuda>& context, std::span<T> values) {
   if (!values.empty()) clearBytes(context, values.data(), values.size_bytes());
 }
-/// From the host's memory.
+/// From the host's memory, and to it.
+template <class T>
+void copyFromHost(const Context<Cpu>&, std::span<const T> host, T* to) {
+  std::copy(host.begin(), host.end(), to);
+}
+template <class T>
+void copyFromHost(const Context<Cuda>& context, std::span<const T> host, T* to) {
+  if (!host.empty()) copyBytesToDevice(context, host.data(), to, host.size_bytes());
+}
+template <class T>
+void copyToHost(const Context<Cpu>&, std::span<const T> from, T* host) {
+  std::copy(from.begin(), from.end(), host);
+}
+template <class T>
+void copyToHost(const Context<Cuda>& context, std::span<const T> from, T* host) {
+  if (!from.empty()) copyBytesToHost(context, from.data(), host, from.size_bytes());
+}
 template <class T>
 void fromHost(Context<Cpu>& context, std::span<const T> host, Buffer<T>& to) {
   to.resize(context, host.size());

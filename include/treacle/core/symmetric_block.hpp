@@ -54,4 +54,11 @@ struct SymmetricBlock {
   }
 };
 
+template <class U, int D, class T>
+TREACLE_HD constexpr SymmetricBlock<D, U> converted(const SymmetricBlock<D, T>& m) {
+  SymmetricBlock<D, U> c{};
+  for (int k = 0; k < m.size; ++k) c.a[k] = static_cast<U>(m.a[k]);
+  return c;
+}
+
 }  // namespace treacle

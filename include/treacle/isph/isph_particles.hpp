@@ -42,6 +42,9 @@ void shiftedVelocity(Context<Cuda>&, const Shifting& shifting, std::span<const V
                      std::span<const std::uint8_t> surface, std::span<const Vec<D>> velocity,
                      std::span<Vec<D>> transport);
 
+/// No particle is shifted farther in a step [spacings].
+inline constexpr double longestShift = 0.1;
+
 /// The two formulas, for one particle.
 TREACLE_HD inline double settledPressure(bool surface, bool cut, double p) {
   return surface || (cut && p < 0) ? 0 : p;
@@ -50,7 +53,7 @@ template <int D>
 TREACLE_HD Vec<D> shiftedVelocity(const Shifting& s, const Vec<D>& deficit, bool surface, const Vec<D>& velocity) {
   if (surface) return velocity;
   Vec<D> displacement = (-s.coefficient * s.spacing * s.spacing) * deficit;
-  const double length = norm(displacement), most = 0.1 * s.spacing;
+  const double length = norm(displacement), most = longestShift * s.spacing;
   if (length > most) displacement *= most / length;
   return velocity + (1 / s.timeStep) * displacement;
 }

@@ -24,13 +24,20 @@ void forEachSharedFieldOf(F&& f, Sets&... sets) {
       f(sets.body...), f(sets.id...);
 }
 
+/// The fields that walls alone have; empty where nothing is known.
+template <class F, class... Sets>
+void forEachWallFieldOf(F&& f, Sets&... sets) {
+  f(sets.wallSurface...);
+}
+
 /// Calls f with every field of the sets of particles, f(a.position, b.position, ...) and so on: what permutes,
 /// saves, copies or compares particles cannot forget one.
 template <class F, class... Sets>
 void forEachFieldOf(F&& f, Sets&... sets) {
   forEachSharedFieldOf(f, sets...);
   forEachFluidFieldOf(f, sets...);
-  f(sets.modes.vectors...), f(sets.wallSurface...);
+  forEachWallFieldOf(f, sets...);
+  f(sets.modes.vectors...);
 }
 
 /// How many particles of each kind, modes of the solver and known surfaces of walls there are.
@@ -74,8 +81,8 @@ struct Particles {
   // That of the time steps, likewise.
   StepMemory steps;
 
-  // Of the wall particle with id k + the number of fluid particles of all processes; never sorted. Empty: walls
-  // have no surface, and the fluid meets their velocities where their particles are.
+  // Of wall particle wallBegin() + k. Empty: walls have no surface, and the fluid meets their velocities where their
+  // particles are.
   Buffer<WallSurface<D>, Backend> wallSurface;
 
   /// All that is not a field.

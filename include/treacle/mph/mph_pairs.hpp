@@ -43,12 +43,17 @@ struct MphPairs : MaterialParticles<D> {
   TREACLE_HD ViscousSide viscousSide(std::uint32_t i) const {
     return {this->substance(i), !viscosityScale ? 1.0 : i < this->fluidCount ? viscosityScale[i] : 0.0};
   }
+  /// The mean of two scales, of a wall and a fluid particle the latter's.
+  template <class T>
+  TREACLE_HD static T meanScale(T a, T b) {
+    const T share = a > 0 && b > 0 ? T(0.5) : T(1);
+    return share * (a + b);
+  }
   /// mu_ij of a pair with the mean of both scales [Pa s].
   template <class T = double>
   TREACLE_HD T viscosityOf(const ViscousSide& a, const ViscousSide& b) const {
-    const T share = a.scale > 0 && b.scale > 0 ? T(0.5) : T(1);
     return static_cast<T>(this->viscosity(a.substance, b.substance)) *
-           (share * (static_cast<T>(a.scale) + static_cast<T>(b.scale)));
+           meanScale(static_cast<T>(a.scale), static_cast<T>(b.scale));
   }
   TREACLE_HD double viscosityOf(std::uint32_t i, std::uint32_t j) const {
     return viscosityOf(viscousSide(i), viscousSide(j));

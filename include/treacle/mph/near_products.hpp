@@ -27,8 +27,9 @@ class NearProducts {
   /// ViscosityAndDivergence has this sum.
   void bulkStress(Context<Cuda>&, std::span<const Vec<D>> u, std::span<double> q) const;
 
-  /// Positions in units of 2^-32 of the domain's length, 4 numbers per particle, the last unused: differences are
-  /// exact, and those across periodic ends come out right by themselves.
+  /// Positions in units of 2^-32 of the domain's length: differences are exact, and those across periodic ends
+  /// come out right by themselves. 4 numbers per particle; the last one has the bits of the scale of its viscosity
+  /// in single precision.
   std::span<const std::int32_t> fixedPosition() const { return fixedPosition_; }
 
   std::span<const std::uint64_t> sliceStart() const { return sliceStart_; }

@@ -11,27 +11,26 @@
 
 namespace treacle {
 
-/// What is known of walls' surfaces: per wall particle by id, as they were at t = 0, and the motions of bodies
-/// that may have turned since, none if no wall turns. Spans in the backend's memory.
+/// What is known of walls' surfaces: per wall particle, as they were at t = 0, and the motions of bodies that may
+/// have turned since, none if no wall turns. Spans in the backend's memory.
 template <int D>
 struct KnownSurfaces {
-  std::uint32_t fluidCount;
   std::span<const WallSurface<D>> surface;
   std::span<const WallMotion<D>> motion;
 };
 
-/// Those of the wall particles with the given ids and bodies as they are now.
+/// Those of the first wall particles, which belong to these bodies, as they are now.
 template <int D>
-void placeSurfaces(Context<Cpu>&, const KnownSurfaces<D>&, std::span<const std::uint32_t> id,
-                   std::span<const std::uint8_t> body, std::span<WallSurface<D>> placed);
+void placeSurfaces(Context<Cpu>&, const KnownSurfaces<D>&, std::span<const std::uint8_t> body,
+                   std::span<WallSurface<D>> placed);
 template <int D>
-void placeSurfaces(Context<Cuda>&, const KnownSurfaces<D>&, std::span<const std::uint32_t> id,
-                   std::span<const std::uint8_t> body, std::span<WallSurface<D>> placed);
+void placeSurfaces(Context<Cuda>&, const KnownSurfaces<D>&, std::span<const std::uint8_t> body,
+                   std::span<WallSurface<D>> placed);
 
-/// The formula, for a wall particle.
+/// The formula, for wall particle k.
 template <int D>
-TREACLE_HD WallSurface<D> placedSurface(const KnownSurfaces<D>& known, std::uint32_t id, std::uint8_t body) {
-  WallSurface<D> s = known.surface[id - known.fluidCount];
+TREACLE_HD WallSurface<D> placedSurface(const KnownSurfaces<D>& known, std::size_t k, std::uint8_t body) {
+  WallSurface<D> s = known.surface[k];
   if (known.motion.empty()) return s;
   for (Vec<D, float>& face : s.face) face = converted<float>(known.motion[body].turned(converted<double>(face)));
   return s;

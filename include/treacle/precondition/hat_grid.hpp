@@ -65,11 +65,12 @@ class HatTransfer<D, T, Cpu> {
   void prepare(Context<Cpu>&, const SortedParticles<D>& particles);
   /// b = P^T r; r per particle.
   void restrict(Context<Cpu>&, const HatNodes<D>& nodes, std::span<const T> r, std::span<T> b) const;
-  /// The same for particles that are all fluid. `parts`: workspace, 2^D numbers per node.
+  /// The same for particles that are all fluid. `sums`: workspace, sumsPerNode numbers per node.
   void restrictFluid(Context<Cpu>& context, const HatNodes<D>& nodes, std::span<const T> r, Buffer<T>&,
                      std::span<T> b) const {
     restrict(context, nodes, r, b);
   }
+  static constexpr std::size_t sumsPerNode = 0;
   /// The same for velocities; r per fluid particle.
   void restrict(Context<Cpu>&, const HatNodes<D>& nodes, std::span<const Gathered<D, T>> r, std::span<T> b) const;
   /// z = P e and x += z.
@@ -93,8 +94,9 @@ class HatTransfer<D, T, Cuda> {
  public:
   void prepare(Context<Cuda>&, const SortedParticles<D>& pairs);
   void restrict(Context<Cuda>&, const HatNodes<D, Cuda>& nodes, std::span<const T> r, std::span<T> b) const;
-  void restrictFluid(Context<Cuda>&, const HatNodes<D, Cuda>& nodes, std::span<const T> r, Buffer<T, Cuda>& parts,
+  void restrictFluid(Context<Cuda>&, const HatNodes<D, Cuda>& nodes, std::span<const T> r, Buffer<T, Cuda>& sums,
                      std::span<T> b) const;
+  static constexpr std::size_t sumsPerNode = 1 << D;
   void restrict(Context<Cuda>&, const HatNodes<D, Cuda>& nodes, std::span<const Gathered<D, T>> r,
                 std::span<T> b) const;
   void prolong(Context<Cuda>&, const HatNodes<D, Cuda>& nodes, std::span<const T> e, ScalarField<T, Cuda> z,

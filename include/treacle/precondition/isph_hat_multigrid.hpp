@@ -47,6 +47,7 @@ class IsphHatMultigrid {
     findHatNodes(context, fluid_, HatsOn::Fluid, nodes_);
     isphGalerkin(context, fluid_, moments, nodes_, parts_, matrix_);
     giveUp(parts_);
+    sums_.resize(context, HatTransfer<D, T, Backend>::sumsPerNode * nodes_.count());
     grids_.setup(context, nodes_, matrix_, {.degree = gridDegree, .reach = 1});
   }
 
@@ -54,7 +55,7 @@ class IsphHatMultigrid {
   void apply(Context<Backend>& context, std::span<const double> r, std::span<double> z) {
     firstSweep(context, a_, r, x_.span());
     nearResidual(context, a_, r, std::span<const T>(x_), residual_.span());
-    transfer_.restrictFluid(context, nodes_, std::span<const T>(residual_), parts_, grids_.rhs());
+    transfer_.restrictFluid(context, nodes_, std::span<const T>(residual_), sums_, grids_.rhs());
     grids_.cycle(context);
     transfer_.addProlonged(context, nodes_, grids_.solution(), x_.span());
     lastSweep(context, a_, r, std::span<const T>(x_), z);
@@ -62,8 +63,8 @@ class IsphHatMultigrid {
 
   std::size_t gridLevels() const { return grids_.levelCount(); }
   std::size_t bytes() const {
-    return x_.bytes() + residual_.bytes() + transfer_.bytes() + nodes_.bytes() + parts_.bytes() + matrix_.bytes() +
-           grids_.bytes();
+    return x_.bytes() + residual_.bytes() + transfer_.bytes() + nodes_.bytes() + parts_.bytes() + sums_.bytes() +
+           matrix_.bytes() + grids_.bytes();
   }
 
  private:
@@ -72,7 +73,8 @@ class IsphHatMultigrid {
   Buffer<T, Backend> x_, residual_;
   HatTransfer<D, T, Backend> transfer_;
   HatNodes<D, Backend> nodes_;
-  Buffer<T, Backend> parts_;
+  Buffer<T, Backend> parts_;  // of setup()
+  Buffer<T, Backend> sums_;   // of apply()
   BlockCsr<1, double, Backend> matrix_;
   HatMultigrid<D, T, Backend> grids_;
 };

@@ -18,10 +18,4 @@ struct PackedRows {
   std::size_t bytes() const { return start.bytes() + pairs.bytes() + column.bytes() + word.bytes(); }
 };
 
-/// Stiffer systems (ProjectionConstants) have their S' by single-precision coefficients: pressures that C hardly
-/// sees would drown in what the elements are rounded by. With 1.6e4 in three dimensions 64 iterations instead
-/// of 21, with 500 residuals twice as large.
-template <int D>
-inline constexpr double mostPackedStiffness = D == 2 ? 1e5 : 250;
-
 }  // namespace treacle

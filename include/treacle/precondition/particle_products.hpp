@@ -110,22 +110,26 @@ class ParticleProducts<D, T, Cuda> {
   void viscous(Context<Cuda>&, const Gathered<D, T>* u, const Store& store) const;
   void inverseDiagonals(Context<Cuda>&, const ProjectionTable<T>& table, std::span<T> pressure,
                         std::span<Block<D, T>> velocity) const;
-  ScalarField<T, Cuda> scalars(int which = 0) { return {scalars_[which].data()}; }
-  VectorField<D, T, Cuda> vectors() { return {vectors_.data()}; }
+  ScalarField<T, Cuda> scalars(int which = 0);
+  VectorField<D, T, Cuda> vectors();
   void gather(Context<Cuda>&, std::span<const T> x);
   void gather(Context<Cuda>&, std::span<const Gathered<D, T>> u);
   void gatherWeighted(Context<Cuda>&, const ProjectionTable<T>& table, std::span<const Vec<D>> u);
-  std::size_t bytes() const {
-    return selfBlock_.bytes() + scalars_[0].bytes() + scalars_[1].bytes() + vectors_.bytes() + staged_.bytes();
-  }
+  std::size_t bytes() const;
 
  private:
+  /// Whether what is gathered stands beside the position: elsewhere no position is read (StagedLists), or all of
+  /// its digits are.
+  bool isPlaced() const { return std::is_same_v<T, float> && !pairs_->renormalisation; }
+
   const MphPairs<D>* pairs_ = nullptr;
   const MphOperator<D, Cuda>* a_ = nullptr;
-  StagedLists<D> staged_;  // in single precision
-  Buffer<typename ScalarField<T, Cuda>::Element, Cuda> scalars_[2];
-  Buffer<typename VectorField<D, T, Cuda>::Element, Cuda> vectors_;  // those of walls are zero
-  Buffer<Block<D, T>, Cuda> selfBlock_;                              // diagonal block of rho/dt I + V
+  StagedLists<D> staged_;  // in single precision with B
+  Buffer<T, Cuda> scalars_[2];
+  Buffer<Gathered<D, T>, Cuda> vectors_;  // those of walls are zero
+  Buffer<PlacedScalar, Cuda> placedScalars_[2];
+  Buffer<PlacedVector<D>, Cuda> placedVectors_;  // likewise
+  Buffer<Block<D, T>, Cuda> selfBlock_;          // diagonal block of rho/dt I + V
 };
 
 }  // namespace treacle

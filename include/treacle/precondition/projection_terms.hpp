@@ -33,31 +33,29 @@ inline constexpr double pressureShift = 0.18;
 /// iterations grow with the size; anything from 0.0025 to 0.02 does.
 inline constexpr double gridPressureShift = 0.01;
 
-/// Quantities that neighbours gather in every product. On a device in single precision they stand beside the
-/// position (NearProducts::fixedPosition) where both fit into what is fetched at once.
+/// Quantities that neighbours gather in every product. On a device in single precision, where C has no B, they
+/// stand beside the position (NearProducts::fixedPosition): what is fetched at once holds both.
 template <class T, class Backend>
 struct ScalarField {
-  using Element = T;
-  Element* at;
+  T* at;
   TREACLE_HD T& operator[](std::size_t k) const { return at[k]; }
 };
-/// In two dimensions words 0 and 1 are the position and word 2 is B (PackedTensor); in three dimensions positions
-/// have 16 bits (ParticleProducts), words 0 and 1 hold them from the low bits of word 0 on, and then B.
+/// In two dimensions words 0 and 1 are the position; in three positions have 16 bits (ParticleProducts), word 0
+/// and the upper half of word 1 hold them.
 struct alignas(16) PlacedScalar {
   std::uint32_t word[3];
   float value;
 };
 template <>
 struct ScalarField<float, Cuda> {
-  using Element = PlacedScalar;
-  Element* at;
-  TREACLE_HD float& operator[](std::size_t k) const { return at[k].value; }
+  float* at;
+  std::uint32_t stride;  // 1, or 4 for the values of PlacedScalars
+  TREACLE_HD float& operator[](std::size_t k) const { return at[stride * k]; }
 };
 
 template <int D, class T, class Backend>
 struct VectorField {
-  using Element = Gathered<D, T>;
-  Element* at;
+  Gathered<D, T>* at;
   TREACLE_HD void set(std::size_t i, const Vec<D, T>& v) const { at[i] = v; }
 };
 template <int D>
@@ -85,9 +83,14 @@ struct alignas(16) PlacedVector<3> {
 };
 template <int D>
 struct VectorField<D, float, Cuda> {
-  using Element = PlacedVector<D>;
-  Element* at;
-  TREACLE_HD void set(std::size_t i, const Vec<D, float>& v) const { at[i].set(v); }
+  Gathered<D, float>* at;
+  PlacedVector<D>* placed;  // either
+  TREACLE_HD void set(std::size_t i, const Vec<D, float>& v) const {
+    if (placed)
+      placed[i].set(v);
+    else
+      at[i] = v;
+  }
 };
 
 /// The three vectors of a Chebyshev smoother: residual, last correction z, iterate x.

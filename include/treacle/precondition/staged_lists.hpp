@@ -2,35 +2,33 @@
 
 #include "treacle/core/cuda.hpp"
 #include "treacle/mph/near_products.hpp"
-#include "treacle/precondition/projection_terms.hpp"
+#include "treacle/precondition/element_bits.hpp"
 
 #include <cstdint>
 
 namespace treacle {
 
-/// What a block of threads of a device's single-precision products reads: it brings what is gathered of all its
-/// particles' neighbours, each once, to shared memory, and finds them there by rows of 16 bits.
+/// What a block of threads of a device's single-precision products with C and C^T reads: it brings what is
+/// gathered of all its particles' neighbours, each once, to shared memory, finds them there by rows of 16 bits,
+/// and has the elements beside these. Rows are of slices of nearSlice particles, in fours, filled up with elements
+/// that are zero.
+template <int D, class Word>
 struct StagedView {
   static constexpr std::uint32_t torn = 0xffffffff;
 
   const std::uint32_t* member;       // `capacity` per block: who is brought
-  const std::uint32_t* memberCount;  // per block; torn: too many or too far apart, the rows of NearProducts serve
-  const std::uint32_t* quads;        // per slice: length of its rows in fours
-  const std::uint64_t* entry;        // four places in shared memory, in bytes, per particle of a slice
-  const std::uint64_t* sliceStart;   // of NearProducts, which says where there is room for a slice's rows
-  float reach2;                      // squared length of the rows, for the rows of NearProducts
-
-  /// The particle from which a block's places are counted.
-  TREACLE_HD static std::uint32_t origin(std::uint32_t block, std::uint32_t particles, std::uint32_t active) {
-    const std::uint32_t middle = block * particles + particles / 2;
-    return middle < active ? middle : active - 1;
-  }
-  TREACLE_HD static std::uint64_t start(std::uint64_t rowsBefore, std::uint64_t slice) {
-    return (rowsBefore + 3 * slice) / 4;
-  }
+  const std::uint32_t* memberCount;  // per block; torn: too many, its rows are those of NearProducts
+  const std::uint64_t* start;        // per slice, of its rows, in fours
+  const std::uint64_t* place;        // four places in shared memory, per particle of a slice
+  const Word *column, *row;       // four elements likewise, g B_j d of C and g B_i d, that of C^T but for its sign
+  const Gathered<D, float>* own;  // per fluid particle: sum of its g B_i d, in units
+  float unit;                     // of the elements [1/m]
+  const std::uint64_t* sliceStart;  // of NearProducts, for torn blocks
+  const std::uint32_t* entry;       // likewise
+  std::uint32_t fluidCount, activeCount;
 };
 
-/// These lists for the particles of a step, made from the rows of NearProducts.
+/// These lists for the particles of a step whose pairs have B, made from the rows of NearProducts.
 template <int D>
 class StagedLists {
  public:
@@ -42,29 +40,52 @@ class StagedLists {
     if (D == 3 && particles < atATime / 4) return 8;
     return particles < atATime ? 4 : 1;
   }
-  /// Neighbours of a block, and the shared memory that they take.
+  /// Neighbours of a block.
   static constexpr std::uint32_t capacity(unsigned sharing) {
     if (D == 2) return sharing == 1 ? 768 : 384;
     return sharing == 1 ? 1536 : sharing == 4 ? 768 : 512;
   }
-  static constexpr std::size_t sharedBytes(unsigned sharing) { return std::size_t{16} * capacity(sharing); }
 
-  /// `near`: prepared; `places`: coarse positions per particle, in whatever is beside them. `reach`: in h_p, up to
-  /// which neighbours are taken.
-  void prepare(Context<Cuda>&, const MphPairs<D>& pairs, const NearProducts<D>& near, const PlacedScalar* places,
-               double reach);
+  /// `near`: prepared; `reach`: in h_p, up to which neighbours are taken; `wide`: elements have 64 bits.
+  void prepare(Context<Cuda>&, const MphPairs<D>& pairs, const NearProducts<D>& near, double reach, bool wide);
 
-  StagedView view(const NearProducts<D>& near) const {
-    return {member_.data(), memberCount_.data(), quads_.data(), entry_.data(), near.sliceStart().data(), reach2_};
+  /// f(view), of words as wide as was asked for.
+  template <class F>
+  void withView(const MphPairs<D>& pairs, const NearProducts<D>& near, F&& f) const {
+    wide_ ? f(view<std::uint64_t>(pairs, near)) : f(view<std::uint32_t>(pairs, near));
   }
   unsigned sharing() const { return sharing_; }
-  std::size_t bytes() const { return member_.bytes() + memberCount_.bytes() + quads_.bytes() + entry_.bytes(); }
+  std::size_t bytes() const {
+    return member_.bytes() + memberCount_.bytes() + start_.bytes() + place_.bytes() + column_.bytes() +
+           row_.bytes() + own_.bytes();
+  }
 
  private:
+  template <class Word>
+  StagedView<D, Word> view(const MphPairs<D>& pairs, const NearProducts<D>& near) const {
+    return {member_.data(),
+            memberCount_.data(),
+            start_.data(),
+            place_.data(),
+            reinterpret_cast<const Word*>(column_.data()),
+            reinterpret_cast<const Word*>(row_.data()),
+            own_.data(),
+            static_cast<float>(unit_),
+            near.sliceStart().data(),
+            near.entries().data(),
+            pairs.fluidCount,
+            pairs.activeCount};
+  }
+  template <class Word>
+  void makeRows(Context<Cuda>&, const MphPairs<D>& pairs, const NearProducts<D>& near, double reach);
+
   unsigned sharing_ = 1;
-  float reach2_ = 0;  // [h_v^2]
-  Buffer<std::uint32_t, Cuda> member_, memberCount_, quads_;
-  Buffer<std::uint64_t, Cuda> entry_;
+  bool wide_ = false;
+  double unit_ = 0;
+  Buffer<std::uint32_t, Cuda> member_, memberCount_;
+  Buffer<std::uint64_t, Cuda> start_, place_;
+  Buffer<std::uint32_t, Cuda> column_, row_;  // words, or halves of wide ones
+  Buffer<Gathered<D, float>, Cuda> own_;
 };
 
 }  // namespace treacle

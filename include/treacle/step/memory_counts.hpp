@@ -22,13 +22,15 @@ struct MemoryCounts {
   };
 
   ParticleNumbers particles;
-  std::uint64_t active = 0;  // fluid and walls next to it
-  std::uint64_t cells = 0;   // of the search
+  std::uint64_t nearWalls = 0;  // that a simulation starts with; the others are DistantWalls
+  std::uint64_t active = 0;     // fluid and walls next to it
+  std::uint64_t cells = 0;      // of the search
   bool wallsMove = false;
 
   // MPH-I.
   Lists fluidLists, wallLists, balanceLists;
   std::uint64_t nearEntries = 0;       // each particle's own neighbours within h_p, in slices
+  std::uint64_t stagedEntries = 0;     // of these what single-precision products with B have
   std::uint64_t gradientEntries = 0;   // of C
   std::uint64_t rowEntries = 0;        // blocks of A, where lists have whole rows of it
   std::vector<Grid> pressureGrids;     // finest first
@@ -43,10 +45,10 @@ struct MemoryCounts {
 /// Search cells of the domain, whether or not there are particles in them.
 std::uint64_t searchCells(const Case& c);
 
-/// Counts what the first step of the case will have; sorts the particles as that step will. Neighbours are counted
-/// around a few thousand of the particles, spread evenly, or around all where there are no more. `wholeRows`:
-/// lists of fluid reach as far as A couples. Takes memory for the sort, and for the search cells some 30 bytes
-/// each. Errors: std::bad_alloc.
-MemoryCounts countForMemory(const Case& c, AnyParticles& particles, bool wholeRows);
+/// Counts what the first step of the case will have. Neighbours are counted around a few thousand of the
+/// particles, spread evenly, or around all where there are no more. `wholeRows`: lists of fluid reach as far as A
+/// couples. Takes memory for a copy of the particles that the step will have and for their sort, and for the
+/// search cells some 30 bytes each. Errors: std::bad_alloc.
+MemoryCounts countForMemory(const Case& c, const AnyParticles& particles, bool wholeRows);
 
 }  // namespace treacle

@@ -20,6 +20,9 @@ bool storesMatrix(const Case& c, BackendKind backend);
 /// arrays come on top where a solve fails.
 MemoryPlan planMemory(const Case& c, const MemoryCounts& counts, BackendKind backend);
 
+/// What the walls that are not among its particles take of the host's memory; on a CPU it is part of the plan [B].
+std::uint64_t distantWallBytes(const Case& c, const MemoryCounts& counts);
+
 /// Of the fields of particles on the host, with room for the modes that the solver may keep.
 std::uint64_t stateBytes(const Case& c, ParticleNumbers n);
 

@@ -97,12 +97,14 @@ class Simulation {
   /// set up; a solve that fails is a result.
   std::vector<SolverTrial> convergence(std::span<const SolverSettings> solvers);
 
-  /// Particles in the backend's memory; of several processes, those that this one holds.
+  /// Particles in the backend's memory: walls at rest that are far from all that moves (DistantWalls) are not
+  /// there, nor, of several processes, the fluid that others own.
   const Particles<D, Backend>& particles() const;
-  /// All fields of all particles; waits until the data are there. Of several processes the first gets them, with
-  /// walls in the order of their ids; the others' `host` is not touched.
+  /// All fields of all particles; waits until the data are there. Of several processes the first gets them; the
+  /// others' `host` is not touched.
   void copyParticles(Particles<D>& host) const;
-  double time() const;  // [s]
+  ParticleNumbers numbers() const;  // of these
+  double time() const;              // [s]
   std::int64_t step() const;
   std::size_t bytes() const;      // memory held [B]
   std::size_t peakBytes() const;  // largest amount of device memory in use at one time [B]; 0 on the CPU

@@ -19,17 +19,15 @@ void check() {
   for (WallMotion<D>& m : motion) m.sine = 0.6, m.cosine = -0.8;
   for (std::uint32_t k = 0; k < s.particles.wallCount(); ++k)
     s.particles.body[n + k] = static_cast<std::uint8_t>(k % 3);
-  const auto id = s.particles.id.span().subspan(n, walls);
   const auto body = s.particles.body.span().subspan(n, walls);
   Buffer<WallSurface<D>> expected(walls);
-  placeSurfaces<D>(s.context, {n, s.particles.wallSurface.span(), motion}, id, body, expected);
+  placeSurfaces<D>(s.context, {s.particles.wallSurface.span(), motion}, body, expected);
 
   Context<Cuda> context;
   const auto known = copyToDevice<WallSurface<D>>(context, s.particles.wallSurface);
   const auto motions = copyToDevice<WallMotion<D>>(context, motion);
   Buffer<WallSurface<D>, Cuda> found(context, walls);
-  placeSurfaces<D>(context, {n, known.span(), motions.span()}, copyToDevice<std::uint32_t>(context, id),
-                   copyToDevice<std::uint8_t>(context, body), found);
+  placeSurfaces<D>(context, {known.span(), motions.span()}, copyToDevice<std::uint8_t>(context, body), found);
   const Buffer<WallSurface<D>> back = copyToHost(context, found);
   for (std::uint32_t k = 0; k < walls; ++k)
     for (int f = 0; f < 2; ++f)

@@ -146,7 +146,7 @@ struct MatrixTwin {
     const auto fineOnDevice = copyToDevice<T>(d.context, fine);
     transferOnDevice.restrict(d.context, nodesOnDevice, fineOnDevice.span(), bFound.span());
     EXPECT_LE(differ<T>(d.context, bFound, b), toleranceOf<T>) << "restriction of particles";
-    Buffer<T, Cuda> sums(d.context, (std::size_t{1} << D) * nodes.count());
+    Buffer<T, Cuda> sums(d.context, HatTransfer<D, T, Cuda>::sumsPerNode * nodes.count());
     transferOnDevice.restrictFluid(d.context, nodesOnDevice, fineOnDevice.span(), sums, bFound.span());
     EXPECT_LE(differ<T>(d.context, bFound, b), toleranceOf<T>) << "restriction";
     transfer.addProlonged(s.context, nodes, std::span<const T>(b), std::span<T>(z));

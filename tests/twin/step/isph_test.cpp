@@ -1,6 +1,7 @@
 #include "support/device_particles.hpp"
 #include "support/gpu.hpp"
 #include "support/isph_cases.hpp"
+#include "support/state_of.hpp"
 #include "support/tolerances.hpp"
 #include "support/wall_motions.hpp"
 #include "treacle/core/error.hpp"
@@ -149,10 +150,11 @@ void compareSteps(const Case& c, const char* what) {
   }
   Particles<D> found;
   cuda.copyParticles(found);
-  EXPECT_LE(farthest(cpu.particles(), found), (mixed ? 1e-5 : 1e-9) * c.spacing);
+  EXPECT_LE(farthest(stateOf(cpu), found), (mixed ? 1e-5 : 1e-9) * c.spacing);
   double most = 0, apart = 0;
   std::vector<double> pressure(found.count);
-  for (std::uint32_t i = 0; i < found.count; ++i) pressure[cpu.particles().id[i]] = cpu.particles().pressure[i];
+  const Particles<D> onCpu = stateOf(cpu);
+  for (std::uint32_t i = 0; i < found.count; ++i) pressure[onCpu.id[i]] = onCpu.pressure[i];
   for (std::uint32_t i = 0; i < found.count; ++i) {
     most = std::max(most, found.pressure[i]);
     apart = std::max(apart, std::abs(found.pressure[i] - pressure[found.id[i]]));

@@ -28,5 +28,24 @@ TEST(DeviceMemoryTwin, ThePlanIsWhatASimulationTakes) {
   }
 }
 
+/// Of so many particles arrays give their memory up within a step, and others take their place (giveUp).
+TEST(DeviceMemoryTwin, StepsOfMillionsOfParticlesSolve) {
+  TREACLE_SKIP_WITHOUT_GPU();
+  for (const MemoryCase& large : {MemoryCase{"isph-dam-break.toml", {"width.factor=64"}},
+                                  MemoryCase{"dam-break-3d.toml", {"resolution=5"}}}) {
+    SCOPED_TRACE(large.name());
+    const Case c = large.read();
+    std::vector<std::string> notes;
+    AnySimulation simulation(c, createParticles(c, notes), BackendKind::Cuda);
+    ASSERT_GT(simulation.bytes(), 16 * keptBytes);
+    for (int k = 0; k < 3; ++k) {
+      const StepReport report = simulation.advance();
+      EXPECT_EQ(report.fallbacks, 0);
+      EXPECT_GT(report.iterations, 1);
+      EXPECT_LT(report.iterations, 40);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace treacle::test

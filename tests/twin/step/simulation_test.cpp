@@ -1,6 +1,7 @@
 #include "treacle/step/simulation.hpp"
 #include "support/gpu.hpp"
 #include "support/scene.hpp"
+#include "support/state_of.hpp"
 #include "support/stretched_body.hpp"
 #include "support/torn_cluster.hpp"
 #include "treacle/core/error.hpp"
@@ -78,9 +79,9 @@ constexpr double agreement = 1e-8, tightTolerance = 1e-22;
 template <int D>
 void compareSteps(const SolverSettings& settings, SchemeKind scheme) {
   // Residuals of CG go up and down; in single precision the CPU's own variants (matrix-free, assembled) differ by
-  // 9 %.
+  // 9 %. CR in double precision, this near to the limit of rounding, took 149 for 154.
   const bool rough = settings.krylov == KrylovKind::Cg || settings.precision == Precision::Mixed;
-  const double spread = rough ? 0.15 : 0.03;
+  const double spread = rough ? 0.15 : 0.05;
   Case c = stepCase(D, settings, scheme);
   c.solver.tolerance = tightTolerance;
   Simulation<D> cpu(c, bodyOnFloor<D>(c, 0.02));
@@ -94,7 +95,7 @@ void compareSteps(const SolverSettings& settings, SchemeKind scheme) {
   }
   Particles<D> found;
   cuda.copyParticles(found);
-  EXPECT_LE(farthest(cpu.particles(), found), agreement * c.spacing);
+  EXPECT_LE(farthest(stateOf(cpu), found), agreement * c.spacing);
 }
 
 TEST(SimulationTwin, StepsLikeTheCpuWithEverySolver) {
@@ -129,7 +130,7 @@ TEST(SimulationTwin, StepsLikeTheCpuWhereAClusterIsTorn) {
     }
     Particles<2> found;
     cuda.copyParticles(found);
-    EXPECT_LE(farthest(cpu.particles(), found), agreement * c.spacing);
+    EXPECT_LE(farthest(stateOf(cpu), found), agreement * c.spacing);
   };
   SolverSettings s;
   checkSteps(s);
@@ -161,7 +162,7 @@ TEST(SimulationTwin, DeflatesLikeTheCpu) {
   EXPECT_EQ(found.modeCount(), cuda.particles().modeCount());
   // Modes are found while residuals fall, and the two need not find the same: that bounds the solves' tolerance
   // too.
-  EXPECT_LE(farthest(cpu.particles(), found), 1e-6 * a.c.spacing);
+  EXPECT_LE(farthest(stateOf(cpu), found), 1e-6 * a.c.spacing);
 }
 
 TEST(SimulationTwin, DeflatedStepsContinueFromACopyWithTheSameBits) {
@@ -206,7 +207,7 @@ TEST(SimulationTwin, ChoosesTheStepsOfTheCpu) {
   EXPECT_GT(rejected, 0);
   Particles<2> found;
   cuda.copyParticles(found);
-  EXPECT_LE(farthest(cpu.particles(), found), agreement * c.spacing);
+  EXPECT_LE(farthest(stateOf(cpu), found), agreement * c.spacing);
   EXPECT_EQ(found.steps.planned, cpu.particles().steps.planned);
 }
 

@@ -32,7 +32,7 @@ MemoryCounts countsOf(int dimensions, std::uint64_t thousands = 1) {
   const std::uint64_t n = thousands, near = dimensions == 2 ? 20 : 80;
   MemoryCounts counts;
   counts.particles = {1000 * n, 500 * n, 0, 500 * n};
-  counts.active = 1200 * n, counts.cells = 100 * n;
+  counts.nearWalls = 400 * n, counts.active = 1200 * n, counts.cells = 100 * n;
   counts.fluidLists = {125 * n, {10000 * n, 20000 * n, 1000 * n, 2000 * n}};
   counts.wallLists = counts.balanceLists = {25 * n, {1000 * n, 0, 1000 * n, 0}};
   counts.nearEntries = counts.gradientEntries = 1000 * near * n;
@@ -78,10 +78,13 @@ TEST(DeviceMemory, SettingsOfAMultigridThatIsNotUsedDoNotCount) {
 TEST(DeviceMemory, GrowsInProportionToTheNumbersAndLessForWalls) {
   const Case c = caseOf(3);
   MemoryCounts counts = countsOf(3);
-  const std::uint64_t before = estimatedDeviceMemory(c, counts);
+  const std::uint64_t before = estimatedDeviceMemory(c, counts), onHost = estimatedMemory(c, counts, true);
   counts.particles.wall += 1000;
+  EXPECT_EQ(estimatedDeviceMemory(c, counts), before) << "distant walls are the host's";
+  EXPECT_GT(estimatedMemory(c, counts, true), onHost);
+  counts.nearWalls += 1000;
   const std::uint64_t walls = estimatedDeviceMemory(c, counts) - before;
-  counts.particles.wall -= 1000, counts.particles.fluid += 1000;
+  counts.particles.wall -= 1000, counts.nearWalls -= 1000, counts.particles.fluid += 1000;
   const std::uint64_t fluid = estimatedDeviceMemory(c, counts) - before;
   EXPECT_GT(walls, 0u);
   EXPECT_LT(walls, fluid);

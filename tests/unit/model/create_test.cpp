@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "sample_case.hpp"
 #include "treacle/core/error.hpp"
@@ -13,6 +14,7 @@ namespace treacle::test {
 namespace {
 
 using testing::ElementsAre;
+using testing::ElementsAreArray;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
@@ -242,6 +244,54 @@ TEST(createParticles, overlapCountsAcrossPeriodicBoundaries) {
   EXPECT_EQ(createParticles<2>(c, notes).count, 8u + 4);
   c.domain.periodic[0] = false;
   EXPECT_EQ(createParticles<2>(c, notes).count, 8u + 8);
+}
+
+/// Boxes and balls at random places of a periodic domain, of which many overlap.
+template <int D>
+void checkUnion(unsigned seed) {
+  constexpr double size = 14;
+  std::mt19937 random(seed);
+  Case c = emptyCase(D);
+  c.domain = {};
+  for (int k = 0; k < D; ++k) c.domain.max[k] = size, c.domain.periodic[static_cast<std::size_t>(k)] = k != 1;
+  for (int b = 0; b < 9; ++b) {
+    std::uniform_real_distribution<double> place(3, size - 3), extent(0.6, 2.9);
+    Vec<3> center{}, half{};
+    for (int k = 0; k < D; ++k) center[k] = place(random), half[k] = extent(random);
+    // Two meet across a periodic end.
+    if (b == 0) center[0] = half[0] - 0.3;
+    if (b == 6) center[0] = size - half[0];
+    c.bodies.push_back(makeBody("body", BodyKind::Fluid,
+                                b % 4 == 3 ? sphere(center, half[1]) : box(center - half, center + half)));
+  }
+  const auto nearest = [&](const Vec<D>& a, const Vec<D>& b) {
+    Vec<D> d = b - a;
+    for (int k = 0; k < D; ++k)
+      if (k != 1) d[k] -= size * std::round(d[k] / size);
+    return norm(d);
+  };
+  std::vector<std::string> notes;
+  std::vector<Vec<D>> expected;
+  std::size_t all = 0;
+  for (const Body& body : c.bodies) {
+    Case single = c;
+    single.bodies = {body};
+    const Particles<D> own = createParticles<D>(single, notes);
+    all += own.count;
+    for (const Vec<D>& x : own.position)
+      if (std::ranges::none_of(expected, [&](const Vec<D>& y) { return nearest(x, y) < 0.5 * (1 - 1e-6); }))
+        expected.push_back(x);
+  }
+  const Particles<D> p = createParticles<D>(c, notes);
+  EXPECT_LT(p.count, all);
+  EXPECT_THAT(p.position.span(), ElementsAreArray(expected));
+}
+
+TEST(createParticles, leavesOutWhatAComparisonOfAllPointsLeavesOut) {
+  for (unsigned seed = 0; seed < 10; ++seed) {
+    checkUnion<2>(seed);
+    checkUnion<3>(seed);
+  }
 }
 
 TEST(createParticles, rejectsFluidInsideWall) {

@@ -112,17 +112,16 @@ void checkTurning() {
   const WallMotion<D> motion = wallMotion<D>({}, body, steps * dt, dt);
   EXPECT_LT(norm(motion.turned(face) - (end - particle)), 1e-12 * l);
 
-  const std::vector<WallSurface<D>> known{{}, {{converted<float>(face), {}}}};
+  const std::vector<WallSurface<D>> known{{{converted<float>(face), {}}}};
   const std::vector<WallMotion<D>> motions{WallMotion<D>{}, motion};
-  const std::vector<std::uint32_t> id{8};  // the second wall particle after seven of fluid
   const std::vector<std::uint8_t> bodies{1};
   std::vector<WallSurface<D>> placed(1);
   Context<Cpu> context;
-  placeSurfaces<D>(context, {7, known, motions}, id, bodies, placed);
+  placeSurfaces<D>(context, {known, motions}, bodies, placed);
   EXPECT_LT(norm(converted<double>(placed[0].face[0]) - (end - particle)), 1e-6 * l);
   EXPECT_EQ(norm(placed[0].face[1]), 0);
-  placeSurfaces<D>(context, {7, known, {}}, id, bodies, placed);
-  EXPECT_EQ(placed[0], known[1]) << "walls that do not turn";
+  placeSurfaces<D>(context, {known, {}}, bodies, placed);
+  EXPECT_EQ(placed[0], known[0]) << "walls that do not turn";
 }
 
 TEST(WallSurfaces, TurnWithTheirWalls) {

@@ -26,6 +26,8 @@ void checkSort(std::uint32_t fluid, std::uint32_t wall) {
     for (std::uint32_t i = 0; i < fluid; ++i)
       ASSERT_EQ(p.modes.vectors[std::size_t{m} * fluid + i][0], static_cast<float>(p.id[i] + 0.25 * m))
           << "fields went apart";
+  for (std::uint32_t k = 0; k < p.wallSurface.size(); ++k)
+    ASSERT_EQ(p.wallSurface[k].face[0], converted<float>(p.position[fluid + k])) << "fields went apart";
   for (std::uint32_t i = 0; i < fluid; ++i) ASSERT_EQ(r.ranges.key[i], r.grid.key(p.position[i]));
   EXPECT_TRUE(std::is_sorted(r.ranges.key.begin(), r.ranges.key.end()));
 

@@ -1,4 +1,5 @@
 #include "treacle/step/any_simulation.hpp"
+#include "support/state_of.hpp"
 
 #include "treacle/core/error.hpp"
 #include "treacle/model/case_error.hpp"
@@ -51,8 +52,8 @@ void expectSameSteps() {
   AnyParticles copied(5 - D);  // of other dimensions
   any.copyParticles(copied);
   const Particles<D>& p = copied.of<D>();
-  EXPECT_TRUE(std::ranges::equal(p.position.span(), simulation.particles().position.span()));
-  EXPECT_TRUE(std::ranges::equal(p.velocity.span(), simulation.particles().velocity.span()));
+  EXPECT_TRUE(std::ranges::equal(p.position.span(), stateOf(simulation).position.span()));
+  EXPECT_TRUE(std::ranges::equal(p.velocity.span(), stateOf(simulation).velocity.span()));
   // From where it is, as after an interruption.
   AnySimulation resumed(c, std::move(copied), BackendKind::Cpu, any.step(), any.time());
   EXPECT_EQ(resumed.advance().residual, simulation.advance().residual);

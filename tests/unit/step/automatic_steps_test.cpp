@@ -1,4 +1,5 @@
 #include "support/scene.hpp"
+#include "support/state_of.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/step/simulation.hpp"
 
@@ -49,7 +50,7 @@ Motion runToEnd(Simulation<2>& simulation, const Case& c) {
     run.times.push_back(report.time);
     run.rejected += report.rejected;
   }
-  run.positions = positions(simulation.particles());
+  run.positions = positions(stateOf(simulation));
   return run;
 }
 
@@ -103,7 +104,7 @@ TEST(AutomaticSteps, AreThoseOfTheirLengthWhateverWasTriedBefore) {
   fixed.c.time = {report.timeStep, 1};
   Simulation<2> same(fixed.c, std::move(fixed.particles));
   EXPECT_EQ(same.advance().rejected, 0);
-  const auto a = positions(simulation.particles()), b = positions(same.particles());
+  const auto a = positions(stateOf(simulation)), b = positions(stateOf(same));
   for (std::size_t i = 0; i < a.size(); ++i) ASSERT_LT(norm(a[i] - b[i]), 1e-12);
 }
 

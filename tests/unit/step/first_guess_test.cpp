@@ -94,7 +94,7 @@ Scene<D> fallingScene(FirstGuess order, double jitter = 0.2) {
 
 template <int D>
 std::vector<Vec<D>> byId(const Particles<D>& p, const Buffer<Vec<D>>& field) {
-  std::vector<Vec<D>> sorted(p.count);
+  std::vector<Vec<D>> sorted(1 + *std::ranges::max_element(p.id));
   for (std::uint32_t i = 0; i < field.size(); ++i) sorted[p.id[i]] = field[i];
   return sorted;
 }

@@ -1,5 +1,6 @@
 #include "support/isph_cases.hpp"
 #include "support/isph_oracle.hpp"
+#include "support/state_of.hpp"
 
 #include <gtest/gtest.h>
 #include <omp.h>
@@ -76,9 +77,9 @@ TEST(IsphRun, RunsWithUnlikeRoundingStayTogether) {
       for (int k = 0; k < 2; ++k) start.position[i][k] += 0.05 * c.spacing * pseudoRandom(2 * i + k);
     Simulation<2> simulation(c, std::move(start));
     for (int k = 0; k < 20; ++k) simulation.advance();
-    std::vector<Vec<2>> x(simulation.particles().count);
-    for (std::uint32_t i = 0; i < x.size(); ++i)
-      x[simulation.particles().id[i]] = simulation.particles().position[i];
+    const Particles<2> end = stateOf(simulation);
+    std::vector<Vec<2>> x(end.count);
+    for (std::uint32_t i = 0; i < end.count; ++i) x[end.id[i]] = end.position[i];
     return x;
   };
   using enum PreconditionerKind;
@@ -103,7 +104,7 @@ TEST(IsphRun, ResultsDoNotDependOnTheNumberOfThreads) {
       Simulation<2> simulation(c, stirred(c));
       for (int k = 0; k < 4; ++k) simulation.advance();
       omp_set_num_threads(1);
-      return copyOf(simulation.particles());
+      return stateOf(simulation);
     };
     EXPECT_TRUE(sameBits(after(1), after(3)));
   }
@@ -118,11 +119,11 @@ TEST(IsphRun, AContinuedRunGivesTheSameBits) {
   for (int k = 0; k < 8; ++k) whole.advance();
   Simulation<2> first(c, stirred(c));
   for (int k = 0; k < 5; ++k) first.advance();
-  Simulation<2> second(c, copyOf(first.particles()), first.step(), first.time());
+  Simulation<2> second(c, stateOf(first), first.step(), first.time());
   for (int k = 0; k < 3; ++k) second.advance();
   EXPECT_EQ(second.step(), 8);
   EXPECT_EQ(second.time(), whole.time());
-  EXPECT_TRUE(sameBits(whole.particles(), second.particles()));
+  EXPECT_TRUE(sameBits(stateOf(whole), stateOf(second)));
 }
 
 /// A tank that is full to its roof: nothing says how high the pressure is but that it is not negative.

@@ -1,5 +1,6 @@
 #include "support/isph_cases.hpp"
 #include "support/isph_oracle.hpp"
+#include "support/state_of.hpp"
 #include "treacle/step/solve_stages.hpp"
 
 #include <gtest/gtest.h>
@@ -75,15 +76,16 @@ TEST(IsphViscosity, FreeSlipFloorsDoNotHoldTheFluid) {
 
 /// Farthest apart of the velocities of two runs, over the largest change of velocity.
 double difference(const Simulation<2>& a, const Simulation<2>& b, const Particles<2>& start) {
+  const Particles<2> endOfA = stateOf(a), endOfB = stateOf(b);
   std::vector<Vec<2>> va(start.count), v0(start.count);
   for (std::uint32_t i = 0; i < start.count; ++i) {
-    va[a.particles().id[i]] = a.particles().velocity[i];
+    va[endOfA.id[i]] = endOfA.velocity[i];
     v0[start.id[i]] = start.velocity[i];
   }
   double most = 0, change = 0;
   for (std::uint32_t i = 0; i < start.fluidCount; ++i) {
-    const std::uint32_t id = b.particles().id[i];
-    most = std::max(most, norm(b.particles().velocity[i] - va[id]));
+    const std::uint32_t id = endOfB.id[i];
+    most = std::max(most, norm(endOfB.velocity[i] - va[id]));
     change = std::max(change, norm(va[id] - v0[id]));
   }
   return most / change;
@@ -152,7 +154,7 @@ TEST(IsphViscosity, AutoTakesTheExplicitStepUpToTheLimit) {
   const auto run = [&](ViscousStep step, double part) {
     layer.c.method.isph.viscosity = step;
     layer.c.time.step = part * limit;
-    return copyOf(layer.run(2).particles());
+    return stateOf(layer.run(2));
   };
   using enum ViscousStep;
   EXPECT_TRUE(sameBits(run(Auto, 0.99), run(Explicit, 0.99)));

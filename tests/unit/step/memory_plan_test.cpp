@@ -64,7 +64,8 @@ TEST(MemoryPlan, OfADeviceGrowsInProportion) {
   constexpr std::uint64_t factor = 64000;
   MemoryCounts many = some;
   many.particles.fluid *= factor, many.particles.wall *= factor, many.particles.surfaces *= factor;
-  many.active *= factor, many.cells *= factor, many.nearEntries *= factor;
+  many.nearWalls *= factor, many.active *= factor, many.cells *= factor;
+  many.nearEntries *= factor, many.stagedEntries *= factor;
   for (MemoryCounts::Lists* lists : {&many.fluidLists, &many.wallLists}) {
     lists->clusters *= factor;
     for (std::uint64_t& entries : lists->entries) entries *= factor;

@@ -1,4 +1,5 @@
 #include "support/isph_cases.hpp"
+#include "support/state_of.hpp"
 #include "treacle/model/wall_motion.hpp"
 
 #include <gtest/gtest.h>
@@ -203,7 +204,7 @@ TEST(WallRotation, ResultsDependNeitherOnThreadsNorOnInterruptions) {
       Simulation<2> second(c, std::move(state), first.step(), first.time());
       for (int k = interruption; k < 6; ++k) second.advance();
       omp_set_num_threads(1);
-      return copyOf(second.particles());
+      return stateOf(second);
     };
     const Particles<2> expected = after(1, 6);
     EXPECT_TRUE(sameBits(expected, after(1, 4)));
