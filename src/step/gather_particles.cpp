@@ -53,8 +53,8 @@ void putWalls(const Particles<D>& own, const std::vector<WallState>& states, Par
 }  // namespace
 
 template <int D>
-void gatherParticles(const Communicator& processes, const Halo& halo, const Particles<D>& own,
-                     ParticleNumbers all, Particles<D>& whole) {
+void gatherParticles(const Communicator& processes, const Halo& halo, const Particles<D>& own, ParticleNumbers all,
+                     Particles<D>& whole) {
   const bool first = processes.rank() == 0;
   // No process without fluid has a part where there are modes.
   const std::uint32_t modes = halo.someHaveNone ? 0 : own.modeCount();

@@ -81,8 +81,8 @@ struct Particles {
   // That of the time steps, likewise.
   StepMemory steps;
 
-  // Of wall particle wallBegin() + k. Empty: walls have no surface, and the fluid meets their velocities where their
-  // particles are.
+  // Of wall particle wallBegin() + k. Empty: walls have no surface, and the fluid meets their velocities where
+  // their particles are.
   Buffer<WallSurface<D>, Backend> wallSurface;
 
   /// All that is not a field.
