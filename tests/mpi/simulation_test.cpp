@@ -1,6 +1,7 @@
 #include "treacle/step/simulation.hpp"
 
 #include "mpi/job.hpp"
+#include "support/passing_body.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/io/case_reader.hpp"
 #include "treacle/model/create.hpp"
@@ -148,6 +149,28 @@ TEST(SharedSimulation, TurningWalls) {
 
 TEST(SharedSimulation, AutomaticSteps) {
   compare<2>({"dam-break-2d.toml", 20, {"time.step=auto", "solver.tolerance=1e-18"}});
+}
+
+/// Walls that are far from the fluid of all processes are held by none, and all take in the same ones.
+TEST(SharedSimulation, WallsComeAndGo) {
+  Case c = passingBody(2, MethodKind::MphI);
+  c.solver.tolerance = 1e-22;
+  c.solver.deflation = 0;
+  Simulation<2> shared(c, made<2>(c), 0, 0, &job()), alone(c, made<2>(c));
+  const std::uint32_t start = shared.particles().wallCount();
+  bool changed = false;
+  for (int k = 0; k < 20; ++k) {
+    const StepReport a = shared.advance(), b = alone.advance();
+    expectSame(c, a, b, job().size() == 1);
+    ASSERT_EQ(shared.particles().wallCount(), alone.particles().wallCount()) << "step " << k;
+    changed = changed || shared.particles().wallCount() != start;
+  }
+  EXPECT_TRUE(changed);
+  EXPECT_LT(start, shared.numbers().wall);
+  Particles<2> whole, expected;
+  shared.copyParticles(whole);
+  alone.copyParticles(expected);
+  if (job().rank() == 0) expectSameFields(c, whole, expected);
 }
 
 TEST(SharedSimulation, SameBitsFromRunToRun) {
