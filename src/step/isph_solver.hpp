@@ -149,6 +149,7 @@ class IsphSolver {
     system_.setStep(pairs, ranges, row);
     solver_.prepareOperator(context);
   }
+  /// Once for each matrix that is prepared.
   void preparePreconditioner(Context<Backend>& context) { solver_.preparePreconditioner(context); }
 
   /// `x`: first guess and solution; what a row of zeros has there stays as it is. The rest: StagedSolver.
