@@ -66,4 +66,17 @@ if(TREACLE_MPI STREQUAL "AUTO")
 elseif(TREACLE_MPI)
   find_package(MPI REQUIRED COMPONENTS CXX)
 endif()
-message(STATUS "treacle: CUDA backend ${TREACLE_CUDA}, MPI ${TREACLE_MPI}, ${CMAKE_BUILD_TYPE} build")
+# Between the GPUs of several processes; the PyPI package nvidia-nccl-cu13 has it where the toolkit does not.
+set(TREACLE_NCCL OFF)
+if(TREACLE_CUDA AND TREACLE_MPI)
+  find_path(NCCL_INCLUDE_DIR nccl.h HINTS ${CUDAToolkit_INCLUDE_DIRS} ENV NCCL_HOME PATH_SUFFIXES include)
+  find_library(NCCL_LIBRARY NAMES nccl libnccl.so.2 HINTS ${CUDAToolkit_LIBRARY_DIR} ${CUDAToolkit_LIBRARY_ROOT}/lib ENV NCCL_HOME
+    PATH_SUFFIXES lib)
+  if(NCCL_INCLUDE_DIR AND NCCL_LIBRARY)
+    set(TREACLE_NCCL ON)
+    add_library(NCCL::nccl UNKNOWN IMPORTED)
+    set_target_properties(NCCL::nccl PROPERTIES IMPORTED_LOCATION ${NCCL_LIBRARY}
+      INTERFACE_INCLUDE_DIRECTORIES ${NCCL_INCLUDE_DIR})
+  endif()
+endif()
+message(STATUS "treacle: CUDA backend ${TREACLE_CUDA}, MPI ${TREACLE_MPI}, NCCL ${TREACLE_NCCL}, ${CMAKE_BUILD_TYPE} build")

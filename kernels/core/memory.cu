@@ -38,7 +38,7 @@ Context<Cuda>::Context(bool usesGraphs) noexcept : usesGraphs_(usesGraphs) {}
 Context<Cuda>::Context() : Context(std::getenv("TREACLE_NO_GRAPHS") == nullptr) {
   TREACLE_CUDA_CHECK(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking));
   pool_ = makePool();
-  partialSums_ = static_cast<double*>(deviceAllocate(*this, maxPartialSums * sizeof(double)));
+  partialSums_ = static_cast<double*>(deviceAllocate(*this, (maxPartialSums + maxJointSums) * sizeof(double)));
   ticket_ = static_cast<unsigned*>(deviceAllocate(*this, sizeof(unsigned)));
   clearBytes(*this, ticket_, sizeof(unsigned));
 }

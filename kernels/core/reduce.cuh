@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/launch.hpp"
+#include "treacle/core/device_link.hpp"
 
 namespace treacle {
 
@@ -56,11 +57,21 @@ __global__ void __launch_bounds__(256)
 }
 
 template <class Body, class Finish>
-void reduce(Context<Cuda>& context, std::size_t count, Body body, Finish finish) {
+void reduceOwn(Context<Cuda>& context, std::size_t count, Body body, Finish finish) {
   constexpr unsigned maxBlocks = 132 * 8;
   const unsigned blocks = std::min(std::max(blocksFor(count, 512), 1u), maxBlocks);
   launchEarly(context, blocks, 256, 0, reduceKernel<Body, Finish>, count, body, finish, context.partialSums(),
               context.ticket());
+}
+
+/// The sum is that over all processes that share the simulation.
+template <class Body, class Finish>
+void reduce(Context<Cuda>& context, std::size_t count, Body body, Finish finish) {
+  if (!context.link) return reduceOwn(context, count, body, finish);
+  double* joint = context.jointSums();
+  reduceOwn(context, count, body, [joint] __device__(double sum) { *joint = sum; });
+  context.link->sum(joint, 1);
+  forEach(context, 1, [joint, finish] __device__(std::size_t) { finish(*joint); });
 }
 
 }  // namespace treacle

@@ -40,11 +40,24 @@ __global__ void __launch_bounds__(256)
 }
 
 template <int N, class Body, class Finish>
-void reduceMany(Context<Cuda>& context, std::size_t count, Body body, Finish finish) {
+void reduceManyOwn(Context<Cuda>& context, std::size_t count, Body body, Finish finish) {
   constexpr unsigned maxBlocks = std::min<unsigned>(132 * 4, Context<Cuda>::maxPartialSums / N);
   const unsigned blocks = std::min(std::max(blocksFor(count, 512), 1u), maxBlocks);
   launchEarly(context, blocks, 256, 0, reduceManyKernel<N, Body, Finish>, count, body, finish,
               context.partialSums(), context.ticket());
+}
+
+/// The sums are those over all processes that share the simulation.
+template <int N, class Body, class Finish>
+void reduceMany(Context<Cuda>& context, std::size_t count, Body body, Finish finish) {
+  static_assert(N <= Context<Cuda>::maxJointSums);
+  if (!context.link) return reduceManyOwn<N>(context, count, body, finish);
+  double* joint = context.jointSums();
+  reduceManyOwn<N>(context, count, body, [joint] __device__(const double* sums, int lane) {
+    for (int j = lane; j < N; j += 32) joint[j] = sums[j];
+  });
+  context.link->sum(joint, N);
+  forEach(context, 32, [joint, finish] __device__(std::size_t lane) { finish(joint, static_cast<int>(lane)); });
 }
 
 }  // namespace treacle

@@ -3,6 +3,9 @@
 #include "treacle/core/timer.hpp"
 
 #include <mpi.h>
+#if __has_include(<mpi-ext.h>)
+#include <mpi-ext.h>
+#endif
 #include <unistd.h>
 
 #include <algorithm>
@@ -41,11 +44,22 @@ Communicator Communicator::ofJob() {
   job.ownsMpi_ = true;
   MPI_Comm_rank(MPI_COMM_WORLD, &job.rank_);
   MPI_Comm_size(MPI_COMM_WORLD, &job.size_);
+  MPI_Comm host;
+  MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &host);
+  MPI_Comm_rank(host, &job.localRank_);
+  MPI_Comm_free(&host);
+#ifdef MPIX_CUDA_AWARE_SUPPORT
+  job.takesDeviceMemory_ = MPIX_Query_cuda_support() == 1;
+#endif
   return job;
 }
 
 Communicator::Communicator(Communicator&& other) noexcept
-    : rank_(other.rank_), size_(other.size_), ownsMpi_(std::exchange(other.ownsMpi_, false)) {}
+    : rank_(other.rank_),
+      size_(other.size_),
+      localRank_(other.localRank_),
+      takesDeviceMemory_(other.takesDeviceMemory_),
+      ownsMpi_(std::exchange(other.ownsMpi_, false)) {}
 
 Communicator::~Communicator() {
   if (ownsMpi_) MPI_Finalize();

@@ -7,8 +7,7 @@ namespace {
 
 /// Copies of `size` bytes each, which a compiler makes moves of where it knows how many.
 template <std::size_t... Known>
-std::byte* pack(const std::byte* values, const std::vector<std::uint32_t>& indices, std::size_t size,
-                std::byte* to) {
+void pack(const std::byte* values, std::span<const std::uint32_t> indices, std::size_t size, std::byte* to) {
   const auto copy = [&](auto bytes) {
     for (std::uint32_t i : indices) {
       std::memcpy(to, values + i * std::size_t{bytes}, bytes);
@@ -16,34 +15,46 @@ std::byte* pack(const std::byte* values, const std::vector<std::uint32_t>& indic
     }
   };
   if (!((size == Known && (copy(std::integral_constant<std::size_t, Known>{}), true)) || ...)) copy(size);
-  return to;
 }
 
 }  // namespace
 
-void Halo::fill(const Communicator& communicator, Held held, void* field, std::size_t size) {
+/// The packed fluid of all neighbours stands before the packed walls of all.
+template <class Backend>
+typename Halo<Backend>::Messages Halo<Backend>::messages(Held held, void* field, std::size_t size) {
+  Messages m;
   auto* const values = static_cast<std::byte*>(field);
-  const bool walls = held == Held::Active;
-  std::size_t count = 0;
-  for (const Neighbour& n : neighbours) count += n.sentFluid.size() + (walls ? n.sentWalls.size() : 0);
-  packed_.resize(count * size);
-  std::vector<Communicator::Message> sent, received;
-  std::byte* next = packed_.data();
-  const auto send = [&](const std::vector<std::uint32_t>& indices, int rank) {
-    sent.push_back({rank, next, indices.size() * size});
-    next = pack<4, 8, 12, 16, 24>(values, indices, size, next);
+  std::byte *fluidFrom = packed_.data(), *wallsFrom = fluidFrom + sentFluid.size() * size;
+  std::byte *fluidTo = values + ownFluid * size, *wallsTo = values + (std::size_t{fluid} + ownWalls) * size;
+  const auto add = [&](std::vector<Communicator::Message>& to, int rank, std::byte*& at, std::uint32_t count) {
+    to.push_back({rank, at, count * size});
+    at += count * size;
   };
-  std::size_t fluidAt = ownFluid, wallAt = std::size_t{fluid} + ownWalls;
   for (const Neighbour& n : neighbours) {
-    send(n.sentFluid, n.rank);
-    received.push_back({n.rank, values + fluidAt * size, n.fluid * size});
-    fluidAt += n.fluid;
-    if (!walls) continue;
-    send(n.sentWalls, n.rank);
-    received.push_back({n.rank, values + wallAt * size, n.walls * size});
-    wallAt += n.walls;
+    add(m.sent, n.rank, fluidFrom, n.sentFluid);
+    add(m.received, n.rank, fluidTo, n.fluid);
+    if (held == Held::Fluid) continue;
+    add(m.sent, n.rank, wallsFrom, n.sentWalls);
+    add(m.received, n.rank, wallsTo, n.walls);
   }
-  communicator.exchange(sent, received);
+  return m;
 }
+
+template <>
+void Halo<Cpu>::fill(const Context<Cpu>& context, Held held, void* field, std::size_t size) {
+  packed_.resize(sentCount(held) * size);
+  const auto packAll = [&](std::span<const std::uint32_t> indices, std::byte* to) {
+    pack<4, 8, 12, 16, 24>(static_cast<const std::byte*>(field), indices, size, to);
+  };
+  packAll(sentFluid, packed_.data());
+  if (held == Held::Active) packAll(sentWalls, packed_.data() + sentFluid.size() * size);
+  const Messages m = messages(held, field, size);
+  context.communicator->exchange(m.sent, m.received);
+}
+
+template class Halo<Cpu>;
+#ifdef TREACLE_HAS_CUDA
+template Halo<Cuda>::Messages Halo<Cuda>::messages(Held, void*, std::size_t);
+#endif
 
 }  // namespace treacle

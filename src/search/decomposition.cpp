@@ -45,7 +45,7 @@ void Decomposition<D>::sort(Context<Cpu>& context, const CellGrid<D>& grid, Part
   halo_.ownFluid = halo_.fluid = own;
   halo_.neighbours.resize(job.size());
   for (int r = 0; r < job.size(); ++r) halo_.neighbours[r].rank = r;
-  listSent(grid, p.position, 0, own, &Halo::Neighbour::sentFluid);
+  listSent(grid, p.position, 0, own, halo_.sentFluid, &Halo<Cpu>::Neighbour::sentFluid);
   countGhostFluid(job);
   resizeFluid(p, own, halo_.fluid - own);
   sortWalls(grid, p, ranges, workspace);

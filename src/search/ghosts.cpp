@@ -75,14 +75,16 @@ void Decomposition<D>::sortWalls(const CellGrid<D>& grid, Particles<D>& p, CellR
   ranges.activeCount = endOf(inactiveKey);
   ranges.ghostWalls = ranges.activeCount - ownEnd;
   halo_.ownWalls = ownEnd - begin;
-  listSent(grid, p.position, begin, ownEnd, &Halo::Neighbour::sentWalls);
+  listSent(grid, p.position, begin, ownEnd, halo_.sentWalls, &Halo<Cpu>::Neighbour::sentWalls);
   for (std::uint32_t i = ownEnd; i < ranges.activeCount; ++i)
     ++halo_.neighbours[owners_.owner(cellAt(grid, p.position[i]))].walls;
 }
 
 template <int D>
 void Decomposition<D>::listSent(const CellGrid<D>& grid, std::span<const Vec<D>> position, std::uint32_t begin,
-                                std::uint32_t end, std::vector<std::uint32_t> Halo::Neighbour::*list) {
+                                std::uint32_t end, Buffer<std::uint32_t>& sent,
+                                std::uint32_t Halo<Cpu>::Neighbour::*count) {
+  std::vector<std::vector<std::uint32_t>> lists(halo_.neighbours.size());
   std::vector<int> to;  // of the cell at hand
   for (std::uint32_t i = begin; i < end; ++i) {
     const Vec<D, int> cell = grid.cellOf(position[i]);
@@ -94,16 +96,22 @@ void Decomposition<D>::listSent(const CellGrid<D>& grid, std::span<const Vec<D>>
         if (other != own && std::ranges::find(to, other) == to.end()) to.push_back(other);
       });
     }
-    for (int r : to) (halo_.neighbours[r].*list).push_back(i);
+    for (int r : to) lists[r].push_back(i);
   }
+  std::vector<std::uint32_t> all;
+  for (std::size_t r = 0; r < lists.size(); ++r) {
+    halo_.neighbours[r].*count = static_cast<std::uint32_t>(lists[r].size());
+    all.insert(all.end(), lists[r].begin(), lists[r].end());
+  }
+  sent.resize(all.size());
+  std::ranges::copy(all, sent.begin());
 }
 
 template <int D>
 void Decomposition<D>::countGhostFluid(const Communicator& job) {
   const std::size_t size = job.size();
   std::vector<std::uint32_t> counts(size * size);  // [from][to]
-  for (std::size_t r = 0; r < size; ++r)
-    counts[job.rank() * size + r] = static_cast<std::uint32_t>(halo_.neighbours[r].sentFluid.size());
+  for (std::size_t r = 0; r < size; ++r) counts[job.rank() * size + r] = halo_.neighbours[r].sentFluid;
   job.sum(std::span(counts));
   for (std::size_t r = 0; r < size; ++r) halo_.fluid += halo_.neighbours[r].fluid = counts[r * size + job.rank()];
 }
@@ -120,8 +128,8 @@ void Decomposition<D>::countAll(const Communicator& job) {
     halo_.fluidOfAll += all[r].fluid;
     halo_.someHaveNone = halo_.someHaveNone || all[r].fluid == 0;
   }
-  std::erase_if(halo_.neighbours, [](const Halo::Neighbour& n) {
-    return n.sentFluid.empty() && n.sentWalls.empty() && n.fluid == 0 && n.walls == 0;
+  std::erase_if(halo_.neighbours, [](const Halo<Cpu>::Neighbour& n) {
+    return n.sentFluid == 0 && n.sentWalls == 0 && n.fluid == 0 && n.walls == 0;
   });
 }
 
@@ -131,7 +139,8 @@ void Decomposition<D>::countAll(const Communicator& job) {
                                                   std::span<const Vec<D>>, SortWorkspace<>&);                    \
   template void Decomposition<D>::sortWalls(const CellGrid<D>&, Particles<D>&, CellRanges<>&, SortWorkspace<>&); \
   template void Decomposition<D>::listSent(const CellGrid<D>&, std::span<const Vec<D>>, std::uint32_t,           \
-                                           std::uint32_t, std::vector<std::uint32_t> Halo::Neighbour::*);        \
+                                           std::uint32_t, Buffer<std::uint32_t>&,                                \
+                                           std::uint32_t Halo<Cpu>::Neighbour::*);                               \
   template void Decomposition<D>::countGhostFluid(const Communicator&);                                          \
   template void Decomposition<D>::countAll(const Communicator&);
 TREACLE_INSTANTIATE(2)

@@ -14,7 +14,7 @@ struct WallState {
 };
 
 template <int D>
-std::vector<WallState> ownWallStates(const Halo& halo, const Particles<D>& p) {
+std::vector<WallState> ownWallStates(const HaloCounts& halo, const Particles<D>& p) {
   std::vector<WallState> states(halo.ownWalls);
   for (std::uint32_t k = 0; k < halo.ownWalls; ++k) {
     const std::uint32_t i = halo.fluid + k;
@@ -53,8 +53,8 @@ void putWalls(const Particles<D>& own, const std::vector<WallState>& states, Par
 }  // namespace
 
 template <int D>
-void gatherParticles(const Communicator& processes, const Halo& halo, const Particles<D>& own, ParticleNumbers all,
-                     Particles<D>& whole) {
+void gatherParticles(const Communicator& processes, const HaloCounts& halo, const Particles<D>& own,
+                     ParticleNumbers all, Particles<D>& whole) {
   const bool first = processes.rank() == 0;
   // No process without fluid has a part where there are modes.
   const std::uint32_t modes = halo.someHaveNone ? 0 : own.modeCount();
@@ -79,9 +79,9 @@ void gatherParticles(const Communicator& processes, const Halo& halo, const Part
   if (first) putWalls(own, states, whole);
 }
 
-template void gatherParticles(const Communicator&, const Halo&, const Particles<2>&, ParticleNumbers,
+template void gatherParticles(const Communicator&, const HaloCounts&, const Particles<2>&, ParticleNumbers,
                               Particles<2>&);
-template void gatherParticles(const Communicator&, const Halo&, const Particles<3>&, ParticleNumbers,
+template void gatherParticles(const Communicator&, const HaloCounts&, const Particles<3>&, ParticleNumbers,
                               Particles<3>&);
 
 }  // namespace treacle

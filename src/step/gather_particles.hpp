@@ -10,7 +10,7 @@ namespace treacle {
 /// sorted by cell, walls in the order of their ids. There is room for as many as `all` says; walls that no process
 /// holds are to follow. Collective. Errors: std::bad_alloc.
 template <int D>
-void gatherParticles(const Communicator& processes, const Halo& halo, const Particles<D>& own, ParticleNumbers all,
-                     Particles<D>& whole);
+void gatherParticles(const Communicator& processes, const HaloCounts& halo, const Particles<D>& own,
+                     ParticleNumbers all, Particles<D>& whole);
 
 }  // namespace treacle

@@ -23,14 +23,13 @@ template <class Backend>
 class Context;
 
 class Communicator;
+template <class Backend>
 class Halo;
 
 /// Who shares a simulation: carried by its context, so that whatever sums over its particles, or needs those of
-/// other processes, knows of them (processes.hpp, halo.hpp). Null in a simulation that is alone, as all on devices
-/// are.
+/// other processes, knows of them (processes.hpp, halo.hpp). Null in a simulation that is alone.
 struct Processes {
   const Communicator* communicator = nullptr;
-  Halo* halo = nullptr;  // of the particles as they were sorted last
 };
 
 /// T on a device; on the CPU an object that holds nothing.
@@ -44,6 +43,8 @@ using DeviceOnly = std::conditional_t<std::is_same_v<Backend, Cuda>, T, Absent>;
 template <>
 class Context<Cpu> : public Processes {
  public:
+  Halo<Cpu>* halo = nullptr;  // of the particles as they were sorted last; null in a simulation that is alone
+
   /// Room for the chunks' sums of a reduction; kept, so that nothing is allocated inside an iteration.
   std::vector<double> partialSums;
 };

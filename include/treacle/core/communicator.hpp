@@ -13,10 +13,10 @@
 namespace treacle {
 
 /// The processes of a job, each known by its rank 0 ... size() - 1, and what they tell each other. All members but
-/// rank() and size() are collective: every process calls the same ones in the same order, from the thread that
-/// made the communicator. Sums are formed in the order of ranks, so every process gets the same bits, and gets
-/// them again in another run with as many processes. A communicator of one process, all that a build without MPI
-/// has, does nothing but copy.
+/// those that return numbers of processes are collective: every process calls the same ones in the same order,
+/// from the thread that made the communicator. Sums are formed in the order of ranks, so every process gets the
+/// same bits, and gets them again in another run with as many processes. A communicator of one process, all that a
+/// build without MPI has, does nothing but copy.
 class Communicator {
  public:
   /// One process.
@@ -30,6 +30,10 @@ class Communicator {
 
   int rank() const { return rank_; }
   int size() const { return size_; }
+  /// Rank among the processes on the same host.
+  int localRank() const { return localRank_; }
+  /// Whether messages may be in the memory of a CUDA device.
+  bool takesDeviceMemory() const { return takesDeviceMemory_; }
 
   /// Every process's value, in the order of ranks.
   template <class T>
@@ -91,6 +95,8 @@ class Communicator {
     double seconds = 0;  // in exchanges and reductions, waiting included; not in broadcasts, where it may be idle
   };
   const Traffic& traffic() const { return traffic_; }
+  /// Counts a message that went another way (DeviceLink).
+  void note(std::size_t bytes) const { traffic_.bytes += bytes, ++traffic_.calls; }
 
  private:
   /// Arrays up to so many bytes are gathered whole; of longer ones each process combines a part for all.
@@ -102,7 +108,8 @@ class Communicator {
   template <class T, class Add>
   void combine(std::span<T> values, Add&& add) const;
 
-  int rank_ = 0, size_ = 1;
+  int rank_ = 0, size_ = 1, localRank_ = 0;
+  bool takesDeviceMemory_ = false;
   bool ownsMpi_ = false;  // ends it
   mutable Traffic traffic_;
 };

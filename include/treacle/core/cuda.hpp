@@ -13,6 +13,8 @@ struct CUmemPoolHandle_st;
 
 namespace treacle {
 
+class DeviceLink;
+
 /// The stream that everything on a device is ordered by, the pool that its memory comes from, and what the
 /// reductions on it need. Errors: DeviceMemoryExhausted, DeviceFailure.
 template <>
@@ -27,6 +29,9 @@ class Context<Cuda> : public Processes {
   CUstream_st* stream() const { return stream_; }
   CUmemPoolHandle_st* pool() const { return pool_; }
   void synchronize() const;
+
+  Halo<Cuda>* halo = nullptr;  // as that of Context<Cpu>
+  DeviceLink* link = nullptr;  // to the devices of the other processes, where the simulation has any
 
   /// Whether iterations run as graphs. The environment variable TREACLE_NO_GRAPHS makes the host launch each
   /// kernel: slower, but debuggers and sanitizers see every launch.
@@ -44,6 +49,9 @@ class Context<Cuda> : public Processes {
   /// between reductions).
   static constexpr std::size_t maxPartialSums = 8192;
   double* partialSums() const { return partialSums_; }
+  /// Room for the sums of one reduction while they are added up over processes.
+  static constexpr std::size_t maxJointSums = 64;
+  double* jointSums() const { return partialSums_ + maxPartialSums; }
   unsigned* ticket() const { return ticket_; }
 
  private:

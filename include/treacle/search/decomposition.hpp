@@ -45,12 +45,12 @@ class Decomposition {
   void sortWalls(const CellGrid<D>&, Particles<D>&, CellRanges<>&, SortWorkspace<>&);
   /// Lists of the particles [begin, end) whose cells touch those of others.
   void listSent(const CellGrid<D>&, std::span<const Vec<D>> position, std::uint32_t begin, std::uint32_t end,
-                std::vector<std::uint32_t> Halo::Neighbour::*list);
+                Buffer<std::uint32_t>& sent, std::uint32_t Halo<Cpu>::Neighbour::*count);
   void countGhostFluid(const Communicator&);
   void countAll(const Communicator&);
 
   CellOwners<D> owners_;
-  Halo halo_;
+  Halo<Cpu> halo_;
   Buffer<std::uint8_t> fluidCells_;  // per cell: some process has fluid in it
 };
 

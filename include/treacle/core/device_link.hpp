@@ -1,0 +1,45 @@
+#pragma once
+
+#include "treacle/core/communicator.hpp"
+#include "treacle/core/cuda.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+
+namespace treacle {
+
+/// What the processes of a job tell each other from device to device. All members are collective, and in the order
+/// of the context's stream: what was launched before is done before, and the host need not wait. Addresses are
+/// those of device memory. Errors: DeviceFailure.
+class DeviceLink {
+ public:
+  /// By NCCL, where the build has it and every process has a device of its own; otherwise by way of the host's
+  /// memory and MPI, for which the host waits. Collective. The communicator and the context must outlive it. The
+  /// environment variable TREACLE_NO_NCCL does without NCCL.
+  static std::unique_ptr<DeviceLink> make(const Communicator& job, const Context<Cuda>& context);
+  virtual ~DeviceLink() = default;
+
+  /// Sends and receives at once; between two processes messages keep their order.
+  virtual void exchange(std::span<const Communicator::Message> sent,
+                        std::span<const Communicator::Message> received) = 0;
+
+  /// values[k] = sum of what all processes have there, the same bits everywhere; equally many everywhere.
+  virtual void sum(double* values, std::size_t count) = 0;
+  virtual void sum(float* values, std::size_t count) = 0;
+  virtual void sum(std::uint32_t* values, std::size_t count) = 0;
+  /// flags[k]: the largest.
+  virtual void max(std::uint8_t* flags, std::size_t count) = 0;
+
+  /// "NCCL 2.28.9" or "MPI"
+  virtual std::string name() const = 0;
+};
+
+/// values[k] = sum over the processes that share the simulation; nothing where it is alone.
+template <class T>
+void sumOverDevices(const Context<Cuda>& context, std::span<T> values) {
+  if (context.link && !values.empty()) context.link->sum(values.data(), values.size());
+}
+
+}  // namespace treacle

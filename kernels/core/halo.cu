@@ -1,0 +1,43 @@
+#include "treacle/core/halo.hpp"
+
+#include "core/launch.hpp"
+#include "treacle/core/device_link.hpp"
+
+namespace treacle {
+namespace {
+
+/// One thread per word of a packed value; reads an index and the word, writes it; atomics no. `words`: of a value.
+template <class Word>
+void pack(const Context<Cuda>& context, const void* field, std::span<const std::uint32_t> indices,
+          std::size_t words, std::byte* to) {
+  forEach(context, indices.size() * words,
+          [from = static_cast<const Word*>(field), index = indices.data(), words,
+           to = reinterpret_cast<Word*>(to)] __device__(std::size_t k) {
+            to[k] = from[index[k / words] * words + k % words];
+          });
+}
+
+void packBytes(const Context<Cuda>& context, const void* field, std::span<const std::uint32_t> indices,
+               std::size_t size, std::byte* to) {
+  const auto isAligned = [&](std::size_t bytes) {
+    return size % bytes == 0 && reinterpret_cast<std::uintptr_t>(to) % bytes == 0 &&
+           reinterpret_cast<std::uintptr_t>(field) % bytes == 0;
+  };
+  if (isAligned(16)) return pack<uint4>(context, field, indices, size / 16, to);
+  if (isAligned(8)) return pack<uint2>(context, field, indices, size / 8, to);
+  if (isAligned(4)) return pack<unsigned>(context, field, indices, size / 4, to);
+  pack<std::uint8_t>(context, field, indices, size, to);
+}
+
+}  // namespace
+
+template <>
+void Halo<Cuda>::fill(const Context<Cuda>& context, Held held, void* field, std::size_t size) {
+  packed_.resize(context, sentCount(held) * size);
+  packBytes(context, field, sentFluid, size, packed_.data());
+  if (held == Held::Active) packBytes(context, field, sentWalls, size, packed_.data() + sentFluid.size() * size);
+  const Messages m = messages(held, field, size);
+  context.link->exchange(m.sent, m.received);
+}
+
+}  // namespace treacle
