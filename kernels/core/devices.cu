@@ -43,4 +43,6 @@ std::vector<DeviceInfo> cudaDevices() {
   return devices;
 }
 
+void useDevice(std::size_t number) { TREACLE_CUDA_CHECK(cudaSetDevice(static_cast<int>(number))); }
+
 }  // namespace treacle

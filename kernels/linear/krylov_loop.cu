@@ -29,7 +29,7 @@ SolveReport KrylovLoop<Cuda>::report(Context<Cuda>& context) const {
 }
 
 void KrylovLoop<Cuda>::record(Context<Cuda>& context, const std::function<void()>& body) {
-  if (!context.usesGraphs()) {
+  if (!context.usesGraphs() || context.link) {
     body_ = body;
     return;
   }

@@ -1,7 +1,7 @@
 #include "treacle/linear/spectral_estimate.hpp"
 
 #include "core/reduce.cuh"
-#include "treacle/core/cuda.hpp"
+#include "treacle/core/halo.hpp"
 
 #include <limits>
 
@@ -34,11 +34,15 @@ template <class T>
 void lanczosStart(Context<Cuda>& context, const LanczosVectors<T>& v) {
   const T* inverseDiagonal = v.inverseDiagonal.data();
   T *r = v.r.data(), *p = v.p.data();
+  // Alone, all particles are the own ones.
+  const HaloCounts counts =
+      context.halo ? *context.halo : HaloCounts{.fluid = static_cast<std::uint32_t>(v.r.size())};
   reduce(
       context, v.r.size(),
       [=] __device__(std::size_t i) {
         const T inverse = inverseDiagonal[i];
-        const T ri = inverse > 0 ? pseudoRandom(static_cast<std::uint32_t>(i)) * std::sqrt(1 / inverse) : T(0);
+        const auto seed = static_cast<std::uint32_t>(counts.indexOfAll(static_cast<std::uint32_t>(i)));
+        const T ri = inverse > 0 ? pseudoRandom(seed) * std::sqrt(1 / inverse) : T(0);
         r[i] = ri;
         const T pi = inverse * ri;
         p[i] = pi;

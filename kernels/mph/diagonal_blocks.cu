@@ -52,12 +52,12 @@ struct DiagonalTerms {
   }
 };
 
-/// One thread per fluid particle; reads its sums and its wall block; writes its diagonal block. No atomics.
+/// One thread per own fluid particle; reads its sums and its wall block; writes its diagonal block. No atomics.
 template <int D>
 __global__ void finishKernel(const __grid_constant__ MphPairs<D> pairs, const double* sums, const Block<D>* wall,
                              Block<D>* diagonal) {
   const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
-  if (i >= pairs.fluidCount) return;
+  if (i >= pairs.ownFluid()) return;
   const double* sum = sums + std::size_t{diagonalValues<D>} * i;
   Block<D> block = wall[i];
   for (int r = 0; r < D; ++r)
@@ -91,7 +91,7 @@ void diagonalBlocks(Context<Cuda>& context, const MphPairs<D>& pairs, const Wall
       launchClusterSums<D, double, Sharing<2, 1>>(context, pairs, task, places);
   });
 
-  launch(context, blocksFor(pairs.fluidCount, 256), 256, 0, finishKernel<D>, pairs, sums.data(),
+  launch(context, blocksFor(pairs.ownFluid(), 256), 256, 0, finishKernel<D>, pairs, sums.data(),
          terms.block.data(), diagonal.data());
 }
 

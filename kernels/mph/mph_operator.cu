@@ -1,6 +1,7 @@
 #include "treacle/mph/mph_operator.hpp"
 
 #include "mph/step_sums.cuh"
+#include "treacle/core/halo.hpp"
 
 namespace treacle {
 namespace {
@@ -57,7 +58,8 @@ void MphOperator<D, Cuda>::prepare(Context<Cuda>& context, const MphPairs<D>& pa
 }
 
 template <int D>
-void MphOperator<D, Cuda>::multiply(Context<Cuda>& context, std::span<const Vec<D>> u, std::span<Vec<D>> y) {
+void MphOperator<D, Cuda>::multiply(Context<Cuda>& context, std::span<const Vec<D>> own, std::span<Vec<D>> y) {
+  const std::span<const Vec<D>> u = withGhosts(context, own, withGhosts_);
   if (pairs_->renormalisation) return multiplyRenormalised(context, u, y);
   const SelfTerms<D> self{selfBlock_, selfGradient_};
   const auto places = LocalPositions<D, double>::make(*pairs_);
@@ -74,6 +76,7 @@ void MphOperator<D, Cuda>::multiply(Context<Cuda>& context, std::span<const Vec<
       withPairViscosity(*pairs_, [&](auto viscosity) { firstPass(mph, sharing, viscosity); });
     });
   });
+  fillGhosts(context, Held::Active, q_.data());
   if (pairs_->fluidList.offset)
     near_.addPressureGradient(context, q_, y);
   else
@@ -98,6 +101,7 @@ void MphOperator<D, Cuda>::multiplyRenormalised(Context<Cuda>& context, std::spa
   });
   if (pairs_->fluidList.offset) {
     near_.bulkStress(context, u, q_);
+    fillGhosts(context, Held::Active, q_.data());
     near_.addPressureGradient(context, q_, y);
     return;
   }
@@ -105,6 +109,7 @@ void MphOperator<D, Cuda>::multiplyRenormalised(Context<Cuda>& context, std::spa
   const OnAll sums{pairs_->terms, u.data(), q_.data()};
   launchClusterSums<D, double, Sharing<4, 1, true>>(context, *pairs_, ListTask<OnAll>{pairs_->fluidList, sums},
                                                     ListTask<OnAll>{pairs_->wallList, sums}, places);
+  fillGhosts(context, Held::Active, q_.data());
   addPressureGradient<D>(context, *pairs_, q_, 1.0, y);
 }
 

@@ -10,7 +10,8 @@ namespace {
 constexpr unsigned slice = nearSlice;
 
 /// `split` threads per particle; reads cluster lists and positions. Without Fill leaves the rows of the slices,
-/// zero before, with Fill writes their entries. Walls list fluid alone. Atomics for the largest of whole numbers.
+/// zero before, with Fill writes their entries. Walls list fluid alone, and ghosts nothing. Atomics for the
+/// largest of whole numbers.
 template <bool Fill, class Split, int D>
 __global__ void __launch_bounds__(128) listKernel(const Split split, const __grid_constant__ MphPairs<D> pairs,
                                                   std::uint64_t* sliceStart, std::uint32_t* entry) {
@@ -21,7 +22,8 @@ __global__ void __launch_bounds__(128) listKernel(const Split split, const __gri
   const int part = static_cast<int>(threadIdx.x % split);
   const unsigned team = static_cast<unsigned>((std::uint64_t{1} << split) - 1) << (threadIdx.x % 32 - part);
   const ClusterListView& list = wall ? pairs.wallList : pairs.fluidList;
-  const std::uint32_t cluster = (i - list.first) / clusterSize;
+  const bool own = pairs.isOwn(i);
+  const std::uint32_t cluster = own ? (i - list.first) / clusterSize : 0;
   const Vec<D> xi = pairs.position[i];
   const double h2 = pairs.terms.pressureRadius * pairs.terms.pressureRadius;
   const std::uint64_t* offset = list.offset + std::size_t{listSegments} * cluster;
@@ -30,8 +32,9 @@ __global__ void __launch_bounds__(128) listKernel(const Split split, const __gri
   const std::uint64_t base = Fill ? sliceStart[s] * slice + index % slice : 0;
   for (const ListSegment segment : {ListSegment::NearFluid, ListSegment::NearWall}) {
     const std::uint64_t begin = offset[static_cast<int>(segment)],
-                        end = wall && segment == ListSegment::NearWall ? begin
-                                                                       : offset[static_cast<int>(segment) + 1];
+                        end = !own || (wall && segment == ListSegment::NearWall)
+                                  ? begin
+                                  : offset[static_cast<int>(segment) + 1];
     for (std::uint64_t k = begin + part; __any_sync(~0u, k < end); k += batch * split) {
       std::uint32_t j[batch];
       Vec<D> x[batch];

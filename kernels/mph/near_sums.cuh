@@ -7,7 +7,7 @@
 namespace treacle {
 
 /// Sums over each particle's own neighbours within h_p (NearProducts has the lists): C q and C^T u, handed to a
-/// `store` particle by particle.
+/// `store` particle by particle. Ghosts have no neighbours, and their C^T u, which nobody reads, is zero.
 
 /// What the kernels read of the lists and positions in the arithmetic T.
 template <int D, class T>
@@ -21,20 +21,17 @@ struct NearLists<D, double> {
   };
   const std::uint64_t* sliceStart;
   const std::uint32_t* entry;
-  std::uint32_t fluidCount, activeCount;
+  std::uint32_t ownFluid, fluidCount, activeCount;
   double floor;
   const Vec<D>* position;
   CellGrid<D> grid;
   double reach;  // h_p
 
   static NearLists make(const MphPairs<D>& pairs, const NearProducts<D>& near) {
-    return {near.sliceStart().data(),
-            near.entries().data(),
-            pairs.fluidCount,
-            pairs.activeCount,
-            LocalPositions<D, double>::make(pairs).floor,
-            pairs.position.data(),
-            pairs.grid,
+    return {near.sliceStart().data(),  near.entries().data(),
+            pairs.ownFluid(),          pairs.fluidCount,
+            pairs.activeCount,         LocalPositions<D, double>::make(pairs).floor,
+            pairs.position.data(),     pairs.grid,
             pairs.terms.pressureRadius};
   }
   __device__ Stored own(std::uint32_t i) const {
@@ -59,14 +56,19 @@ struct NearLists<D, float> {
   using Stored = int4;
   const std::uint64_t* sliceStart;
   const std::uint32_t* entry;
-  std::uint32_t fluidCount, activeCount;
+  std::uint32_t ownFluid, fluidCount, activeCount;
   float floor;
   LocalPositions<D, float> places;
 
   static NearLists make(const MphPairs<D>& pairs, const NearProducts<D>& near) {
     const auto places = LocalPositions<D, float>::make(pairs, near.fixedPosition().data());
-    return {near.sliceStart().data(), near.entries().data(), pairs.fluidCount,
-            pairs.activeCount,        places.floor,          places};
+    return {near.sliceStart().data(),
+            near.entries().data(),
+            pairs.ownFluid(),
+            pairs.fluidCount,
+            pairs.activeCount,
+            places.floor,
+            places};
   }
   __device__ Stored own(std::uint32_t i) const { return places.fixed[i]; }
   __device__ Stored other(std::uint32_t j) const { return places.fixed[j]; }
@@ -218,15 +220,15 @@ struct PlainVectors {
     return {lists.other(j), j < lists.fluidCount ? fetch(&u[j]) : Vec<D, T>{}};
   }
 };
-/// `split` threads per fluid particle: store(i, (C q)_i); reads positions and q of the neighbours. No atomics.
+/// `split` threads per own fluid particle: store(i, (C q)_i); reads positions and q of the neighbours. No atomics.
 template <class Split, int D, class T, class Weights, class Scalars, class Store>
 __global__ void __launch_bounds__(128)
     nearGradientKernel(const Split split, const __grid_constant__ NearView<D, T, Weights> view, const Scalars q,
                        const __grid_constant__ Store store) {
   waitForEarlierKernels();
   const std::uint32_t thread = blockIdx.x * blockDim.x + threadIdx.x, own = thread / split;
-  if (split == 1 && own >= view.fluidCount) return;
-  const std::uint32_t i = min(own, view.fluidCount - 1);  // all lanes of a warp take part in the sum
+  if (split == 1 && own >= view.ownFluid) return;
+  const std::uint32_t i = min(own, view.ownFluid - 1);  // all lanes of a warp take part in the sum
   const auto mine = q.own(view, i);
   Vec<D, T> sum{};
   decltype(ownOf(store, i)) owned{};  // where threads are few; many hide the wait, and want registers
@@ -288,7 +290,7 @@ template <int D, class T, class Weights, class Scalars, class Store>
 void nearGradient(const Context<Cuda>& context, const NearView<D, T, Weights>& view, const Scalars& q,
                   const Store& store) {
   withSplit<D>(view.fluidCount, [&](auto split) {
-    launchEarly(context, blocksFor(std::size_t{view.fluidCount} * split, 128), 128, 0,
+    launchEarly(context, blocksFor(std::size_t{view.ownFluid} * split, 128), 128, 0,
                 nearGradientKernel<decltype(split), D, T, Weights, Scalars, Store>, split, view, q, store);
   });
 }

@@ -3,7 +3,7 @@
 #include "core/launch.hpp"
 #include "precondition/hat_corners.cuh"
 #include "treacle/linear/hat_nodes.hpp"
-#include "treacle/search/cell_sort.hpp"
+#include "treacle/search/sorted_particles.hpp"
 
 namespace treacle {
 
@@ -11,8 +11,8 @@ namespace treacle {
 /// each particle read once. No atomics.
 template <int D, class T>
 __global__ void __launch_bounds__(128)
-    cellSumsKernel(const __grid_constant__ HatCells<D> cells, const HatNodesView<D> nodes,
-                   const CellRangesView ranges, const Vec<D, T>* place, const T* r, T* parts) {
+    cellSumsKernel(const __grid_constant__ HatCells<D> cells, const HatNodesView<D> nodes, const OwnRanges ranges,
+                   const Vec<D, T>* place, const T* r, T* parts) {
   waitForEarlierKernels();
   constexpr int corners = 1 << D, lanes = 16;
   const std::uint32_t c = (blockIdx.x * blockDim.x + threadIdx.x) / lanes, lane = threadIdx.x % lanes;
@@ -22,9 +22,8 @@ __global__ void __launch_bounds__(128)
     const Vec<D, int> cell = nodes.pointOf(c);
     bool inside = true;  // the last nodes of an open axis are no lower corners
     for (int k = 0; k < D; ++k) inside = inside && cell[k] < cells.grid.count[k];
-    const std::size_t linear = inside ? cells.grid.linear(cell) : 0;
-    const std::uint32_t end = inside ? ranges.fluidEnd[linear] : 0;
-    for (std::uint32_t i = (inside ? ranges.fluidBegin[linear] : 0) + lane; i < end; i += lanes) {
+    const IndexRange own = inside ? ranges.fluid(cells.grid.linear(cell)) : IndexRange{};
+    for (std::uint32_t i = own.begin + lane; i < own.end; i += lanes) {
       const Vec<D, T> at = place[i];
       const T value = r[i];
       for (int o = 0; o < corners; ++o) sum[o] = fma(cornerWeight(at, o), value, sum[o]);

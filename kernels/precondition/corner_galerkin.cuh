@@ -2,6 +2,7 @@
 
 #include "core/launch.hpp"
 #include "precondition/hat_corners.cuh"
+#include "treacle/core/device_link.hpp"
 #include "treacle/linear/block_csr.hpp"
 #include "treacle/linear/hat_nodes.hpp"
 #include "treacle/search/sorted_particles.hpp"
@@ -16,7 +17,7 @@ struct CornerGalerkin {
   static constexpr int corners = 1 << D, pairs = corners * corners;
   HatCells<D> cells;
   HatNodesView<D> nodes;
-  CellRangesView ranges;
+  OwnRanges ranges;
   const Vec<D>* position;
   Term term;
   Block<B, T>* parts;  // per cell: one block per pair of corners
@@ -52,19 +53,17 @@ __global__ void __launch_bounds__(128) cornerPartsKernel(const __grid_constant__
   const std::uint32_t c = blockIdx.x * (blockDim.x / pairs) + threadIdx.x / pairs;
   const int own = static_cast<int>(threadIdx.x) % pairs, a = own / corners, b = own % corners;
   CornerHat<D, T>* const ofCell = hats + threadIdx.x - own;
-  std::uint32_t begin = 0, end = 0;
+  IndexRange fluid;
   Vec<D, int> cell{};
   if (c < g.nodes.count) {
     cell = g.nodes.pointOf(c);
     bool inside = true;  // the last nodes of an open axis are no lower corners
     for (int k = 0; k < D; ++k) inside = inside && cell[k] < g.cells.grid.count[k];
-    if (inside) {
-      const std::size_t linear = g.cells.grid.linear(cell);
-      begin = g.ranges.fluidBegin[linear], end = g.ranges.fluidEnd[linear];
-    }
+    if (inside) fluid = g.ranges.fluid(g.cells.grid.linear(cell));
   }
   Block<B> sum{};
-  for (; __syncthreads_or(begin < end); begin += corners) {
+  const std::uint32_t end = fluid.end;
+  for (std::uint32_t begin = fluid.begin; __syncthreads_or(begin < end); begin += corners) {
     if (begin + a < end) {
       const Vec<D> f = g.cells.fraction(g.position[begin + a], cell);
       Vec<D, T> place;
@@ -127,7 +126,7 @@ void cornerGalerkin(Context<Cuda>& context, const SortedParticles<D>& particles,
   hatPattern(context, nodes, a, 1);
   const CornerGalerkin<D, B, T, Term> g{.cells = {particles.grid},
                                         .nodes = nodes.view(),
-                                        .ranges = particles.cells,
+                                        .ranges = particles.ownRanges(),
                                         .position = particles.position.data(),
                                         .term = term,
                                         .parts = reinterpret_cast<Block<B, T>*>(parts.data()),
@@ -136,6 +135,7 @@ void cornerGalerkin(Context<Cuda>& context, const SortedParticles<D>& particles,
                                         .block = a.value.data()};
   launch(context, blocksFor(std::size_t{nodes.count()} * pairs, 128), 128, 0, cornerPartsKernel<D, B, T, Term>, g);
   launch(context, blocksFor(nodes.count(), 4), 128, 0, cornerGalerkinKernel<D, B, T, Term>, g);
+  sumOverDevices(context, a.value.span());
 }
 
 }  // namespace treacle

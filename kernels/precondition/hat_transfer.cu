@@ -2,6 +2,7 @@
 #include "precondition/cell_sums.cuh"
 #include "precondition/hat_corners.cuh"
 #include "precondition/placed_sums.cuh"
+#include "treacle/core/device_link.hpp"
 #include "treacle/precondition/hat_grid.hpp"
 
 namespace treacle {
@@ -11,8 +12,8 @@ namespace {
 /// (Numbers = 1) or vectors per fluid particle. No atomics.
 template <int D, class T, int Numbers, class V>
 __global__ void __launch_bounds__(128)
-    restrictKernel(const __grid_constant__ HatCells<D> cells, const HatNodesView<D> nodes,
-                   const CellRangesView ranges, const Vec<D, T>* place, const V* r, T* b) {
+    restrictKernel(const __grid_constant__ HatCells<D> cells, const HatNodesView<D> nodes, const OwnRanges ranges,
+                   const Vec<D, T>* place, const V* r, T* b) {
   constexpr int groups = 1 << D, lanes = 32 / groups, batch = 4;  // so many particles are on their way together
   const std::uint32_t n = blockIdx.x * (blockDim.x / 32) + threadIdx.x / 32;
   if (n >= nodes.count) return;
@@ -37,15 +38,15 @@ __global__ void __launch_bounds__(128)
         for (int k = 0; k < Numbers; ++k) sum[k] = fma(weight[b], v[b][k], sum[k]);
     }
   };
-  std::uint32_t fluid[2] = {}, walls[2] = {};
+  IndexRange fluid, walls;
   if (cellBeside(cells, cell, corner)) {
     const std::size_t c = cells.grid.linear(cell);
-    fluid[0] = ranges.fluidBegin[c], fluid[1] = ranges.fluidEnd[c];
-    if constexpr (Numbers == 1) walls[0] = ranges.wallBegin[c], walls[1] = ranges.wallEnd[c];
+    fluid = ranges.fluid(c);
+    if constexpr (Numbers == 1) walls = ranges.walls(c);
   }
   waitForEarlierKernels();  // none of them has made the cells
-  add(fluid[0], fluid[1]);
-  add(walls[0], walls[1]);
+  add(fluid.begin, fluid.end);
+  add(walls.begin, walls.end);
   for (int k = 0; k < Numbers; ++k) {
     const T total = warpSum(sum[k]);
     if (threadIdx.x % 32 == k) b[std::size_t{Numbers} * n + k] = total;
@@ -85,6 +86,7 @@ void findHatNodes(Context<Cuda>& context, const SortedParticles<D>& pairs, HatsO
             });
             active[p] = any;
           });
+  if (context.link) context.link->max(active.data(), active.size());
   numberNodes(context, lattice, active, nodes);
 }
 
@@ -106,23 +108,26 @@ void HatTransfer<D, T, Cuda>::restrictFluid(Context<Cuda>& context, const HatNod
   constexpr unsigned corners = 1 << D;
   const HatCells<D> cells{pairs_->grid};
   launchEarly(context, blocksFor(nodes.count(), 128 / 16), 128, 0, cellSumsKernel<D, T>, cells, nodes.view(),
-              pairs_->cells, place_.data(), r.data(), parts.data());
+              pairs_->ownRanges(), place_.data(), r.data(), parts.data());
   launchEarly(context, blocksFor(nodes.count(), 128 / corners), 128, 0, nodeSumsKernel<D, T>, cells, nodes.view(),
               parts.data(), b.data());
+  sumOverDevices(context, b);
 }
 
 template <int D, class T>
 void HatTransfer<D, T, Cuda>::restrict(Context<Cuda>& context, const HatNodes<D, Cuda>& nodes,
                                        std::span<const T> r, std::span<T> b) const {
   launchEarly(context, blocksFor(nodes.count(), 4), 128, 0, restrictKernel<D, T, 1, T>, HatCells<D>{pairs_->grid},
-              nodes.view(), pairs_->cells, place_.data(), r.data(), b.data());
+              nodes.view(), pairs_->ownRanges(), place_.data(), r.data(), b.data());
+  sumOverDevices(context, b);
 }
 
 template <int D, class T>
 void HatTransfer<D, T, Cuda>::restrict(Context<Cuda>& context, const HatNodes<D, Cuda>& nodes,
                                        std::span<const Gathered<D, T>> r, std::span<T> b) const {
   launchEarly(context, blocksFor(nodes.count(), 4), 128, 0, restrictKernel<D, T, D, Gathered<D, T>>,
-              HatCells<D>{pairs_->grid}, nodes.view(), pairs_->cells, place_.data(), r.data(), b.data());
+              HatCells<D>{pairs_->grid}, nodes.view(), pairs_->ownRanges(), place_.data(), r.data(), b.data());
+  sumOverDevices(context, b);
 }
 
 /// One thread per particle.

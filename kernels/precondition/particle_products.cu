@@ -3,6 +3,8 @@
 #include "precondition/coarse_positions.cuh"
 #include "precondition/placed_sums.cuh"
 #include "precondition/staged_sums.cuh"
+#include "treacle/core/copy_values.hpp"
+#include "treacle/core/halo.hpp"
 #include "treacle/precondition/projected_multigrid.hpp"
 
 namespace treacle {
@@ -176,10 +178,28 @@ auto gathered(VectorField<D, T, Cuda> u) {
     return PlainVectors<D, T, Gathered<D, T>>{u.at};
 }
 
+/// Brings what is gathered of ghosts; a position beside it is the same everywhere.
+template <class T>
+void fillGhosts(const Context<Cuda>& context, ScalarField<T, Cuda> q) {
+  if constexpr (std::is_same_v<T, float>)
+    if (q.stride > 1)
+      return fillGhosts(
+          context, Held::Active,
+          reinterpret_cast<PlacedScalar*>(reinterpret_cast<char*>(q.at) - offsetof(PlacedScalar, value)));
+  fillGhosts(context, Held::Active, q.at);
+}
+template <int D, class T>
+void fillGhosts(const Context<Cuda>& context, VectorField<D, T, Cuda> u) {
+  if constexpr (std::is_same_v<T, float>)
+    if (u.placed) return fillGhosts(context, Held::Fluid, u.placed);
+  fillGhosts(context, Held::Fluid, u.at);
+}
+
 template <int D, class T>
 template <class Store>
 void ParticleProducts<D, T, Cuda>::gradient(Context<Cuda>& context, ScalarField<T, Cuda> q,
                                             const Store& store) const {
+  fillGhosts(context, q);
   if constexpr (std::is_same_v<T, float>)
     if (pairs_->renormalisation) return stagedGradient(context, staged_, *pairs_, a_->near(), q, store);
   withPressureTerms(*pairs_, [&](const auto& terms, auto renormalised) {
@@ -196,6 +216,7 @@ template <int D, class T>
 template <class Store>
 void ParticleProducts<D, T, Cuda>::divergence(Context<Cuda>& context, VectorField<D, T, Cuda> u,
                                               const Store& store) const {
+  fillGhosts(context, u);
   if constexpr (std::is_same_v<T, float>)
     if (pairs_->renormalisation) return stagedDivergence(context, staged_, *pairs_, a_->near(), u, store);
   withPressureTerms(*pairs_, [&](const auto& terms, auto renormalised) {
@@ -212,7 +233,7 @@ void ParticleProducts<D, T, Cuda>::schur(Context<Cuda>& context, const Projectio
                                          ScalarField<T, Cuda> q, const Store& store) {
   const std::uint8_t* material = pairs_->material.data();
   if constexpr (std::is_same_v<T, float>)
-    if (pairs_->activeCount <= onePassParticles<D> && !pairs_->renormalisation)
+    if (pairs_->activeCount <= onePassParticles<D> && !pairs_->renormalisation && !context.halo)
       return withPressureTerms(*pairs_, [&](const auto& terms, auto renormalised) {
         if constexpr (!renormalised)
           nearSchur(context, viewOf<D, T>(*pairs_, a_->near(), terms), gathered<D>(q), table, material, store);
@@ -230,8 +251,8 @@ std::size_t ParticleProducts<D, T, Cuda>::bytes() const {
 
 template <int D, class T>
 template <class Store>
-void ParticleProducts<D, T, Cuda>::viscous(Context<Cuda>& context, const Gathered<D, T>* u,
-                                           const Store& store) const {
+void ParticleProducts<D, T, Cuda>::viscous(Context<Cuda>& context, Gathered<D, T>* u, const Store& store) const {
+  fillGhosts(context, Held::Fluid, u);
   const auto places = placesOf<D, T>(*pairs_, a_->near());
   const auto start = [&]<class Mph>(const Mph& mph, auto sharing, auto viscosity) {
     using Terms = Viscosity<D, T, viscosity, Mph, Gathered<D, T>, Store>;
@@ -266,7 +287,9 @@ void ParticleProducts<D, T, Cuda>::inverseDiagonals(Context<Cuda>& context, cons
     else
       start(terms, Plain<D, T>{});
   });
-  forEach(context, pairs_->fluidCount, [from = selfBlock_.data(), to = velocity.data()] __device__(std::size_t i) {
+  clearValues(context, pressure.subspan(pairs_->ownFluid(), pairs_->ghostFluid));
+  clearValues(context, pressure.subspan(pairs_->ownEnd(), pairs_->ghostWalls));
+  forEach(context, pairs_->ownFluid(), [from = selfBlock_.data(), to = velocity.data()] __device__(std::size_t i) {
     to[i] = inverse(from[i]);
   });
 }
@@ -280,9 +303,8 @@ void ParticleProducts<D, T, Cuda>::inverseDiagonals(Context<Cuda>& context, cons
 #define TREACLE_SCHUR(D, T, ...)                                                               \
   template void ParticleProducts<D, T, Cuda>::schur(Context<Cuda>&, const ProjectionTable<T>&, \
                                                     ScalarField<T, Cuda>, const __VA_ARGS__&);
-#define TREACLE_VISCOUS(D, T, ...)                                                                               \
-  template void ParticleProducts<D, T, Cuda>::viscous(Context<Cuda>&, const Gathered<D, T>*, const __VA_ARGS__&) \
-      const;
+#define TREACLE_VISCOUS(D, T, ...) \
+  template void ParticleProducts<D, T, Cuda>::viscous(Context<Cuda>&, Gathered<D, T>*, const __VA_ARGS__&) const;
 #define TREACLE_INSTANTIATE(D, T)              \
   template class ParticleProducts<D, T, Cuda>; \
   TREACLE_FOR_EACH_STORE(D, T, Cuda)

@@ -1,5 +1,6 @@
 #include "precondition/hat_corners.cuh"
 #include "precondition/placed_sums.cuh"
+#include "treacle/core/device_link.hpp"
 #include "treacle/precondition/hat_grid.hpp"
 
 namespace treacle {
@@ -27,7 +28,7 @@ struct PressureGalerkin {
   const SymmetricBlock<D>* renormalisation;  // per fluid particle; null: none
   Vec<D, T> toCells;                         // unit of length of the lists' view in cells
   ProjectionTable<double> table;
-  CellRangesView ranges;
+  OwnRanges ranges;
   const Vec<D>* position;
   const std::uint8_t* material;
   CellParts<D, T> parts;
@@ -93,7 +94,7 @@ __global__ void __launch_bounds__(D == 2 ? 96 : 256)
   for (int k = 0; k < D; ++k)
     if (cell[k] >= g.cells.grid.count[k]) return;  // the last nodes of an open axis are no lower corners
   const std::size_t c = g.cells.grid.linear(cell);
-  const std::uint32_t begin = g.ranges.fluidBegin[c], end = g.ranges.fluidEnd[c];
+  const auto [begin, end] = g.ranges.fluid(c);
   T* grams = g.parts.grams + blockIdx.x * std::size_t{Parts::halves} * Parts::gram;
   const int own = threadIdx.x / slots<D>, n = threadIdx.x % slots<D>;
   const auto rowsOf = [&](std::uint32_t i) {
@@ -174,8 +175,9 @@ __global__ void __launch_bounds__(D == 2 ? 96 : 256)
       sum += g.table.shift[g.material[i]] * cornerWeight(place, a) * cornerWeight(place, b);
     }
   };
+  const IndexRange walls = g.ranges.walls(c);
   add(begin, end);
-  add(g.ranges.wallBegin[c], g.ranges.wallEnd[c]);
+  add(walls.begin, walls.end);
   g.parts.masses[blockIdx.x * std::size_t{Parts::mass} + threadIdx.x] = static_cast<T>(sum);
 }
 
@@ -257,7 +259,7 @@ void pressureGalerkin(Context<Cuda>& context, const MphPairs<D>& pairs, const Ne
       .renormalisation = pairs.renormalisation,
       .toCells = toCells,
       .table = table,
-      .ranges = pairs.cells,
+      .ranges = pairs.ownRanges(),
       .position = pairs.position.data(),
       .material = pairs.material.data(),
       .parts = {parts.data(), parts.data() + std::size_t{Parts::halves} * Parts::gram * nodes.count()},
@@ -270,6 +272,7 @@ void pressureGalerkin(Context<Cuda>& context, const MphPairs<D>& pairs, const Ne
            NearView<D, T, Weights>::make(pairs, near, terms));
   });
   launch(context, D == 2 ? blocksFor(nodes.count(), 4) : nodes.count(), 128, 0, pressureGalerkinKernel<D, T>, g);
+  sumOverDevices(context, s.value.span());
 }
 
 #define TREACLE_INSTANTIATE(D, T)                                                                  \

@@ -124,13 +124,13 @@ class StagedBlock {
   StagedFour<Word> four_[ahead];
 };
 
-/// `split` threads per fluid particle: store(i, (C q)_i); reads elements and q of the neighbours. No atomics.
+/// `split` threads per own fluid particle: store(i, (C q)_i); reads elements and q of the neighbours. No atomics.
 template <class Split, int D, class Word, class Store>
 __global__ void __launch_bounds__(256)
     stagedGradientKernel(const Split split, const __grid_constant__ StagedView<D, Word> lists,
                          const ScalarField<float, Cuda> q, const __grid_constant__ Store store) {
   __shared__ float staged[StagedBlock<Split, D, Word>::capacity];
-  StagedBlock<Split, D, Word> block(lists, lists.column, lists.fluidCount);
+  StagedBlock<Split, D, Word> block(lists, lists.column, lists.ownFluid);
   const std::uint32_t i = block.particle();
   const Vec<D, float> own = fetch(&lists.own[i]);
   waitForEarlierKernels();
@@ -194,7 +194,7 @@ void stagedGradient(const Context<Cuda>& context, const StagedLists<D>& lists, c
   withSharing(lists, [&](auto split) {
     lists.withView(pairs, near, [&]<class Word>(const StagedView<D, Word>& view) {
       constexpr unsigned threads = StagedLists<D>::threads;
-      launchEarly(context, blocksFor(std::size_t{view.fluidCount} * split, threads), threads, 0,
+      launchEarly(context, blocksFor(std::size_t{view.ownFluid} * split, threads), threads, 0,
                   stagedGradientKernel<decltype(split), D, Word, Store>, split, view, q, store);
     });
   });

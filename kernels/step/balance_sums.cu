@@ -28,7 +28,10 @@ std::array<double, PowerTerms<D>::count> sumPowers(Context<Cuda>& context, const
   using Sums = std::array<double, count>;
   auto* result = static_cast<double*>(context.scratch(sizeof(Sums)));
   reduceMany<count>(
-      context, active, [terms] __device__(std::size_t i, double* sums) { terms.add(i, sums); },
+      context, active,
+      [terms] __device__(std::size_t i, double* sums) {
+        if (i < terms.ownFluid || i >= terms.fluidCount) terms.add(i, sums);
+      },
       [result] __device__(const double* sums, int lane) {
         if (lane < count) result[lane] = sums[lane];
       });
@@ -41,6 +44,7 @@ std::vector<LoadSums> sumLoads(Context<Cuda>& context, const LoadTerms<D>& terms
   const std::size_t bytes = bodies * sizeof(LoadSums);
   auto* result = static_cast<double*>(context.scratch(bytes));
   launch(context, static_cast<unsigned>(bodies), 256, 0, sumLoadsKernel<D>, terms, result);
+  sumOverDevices(context, std::span(result, bodies * LoadTerms<D>::count));
   copyBytesToHost(context, result, loads.data(), bytes);
   return loads;
 }

@@ -1,10 +1,12 @@
 #include "treacle/step/diagnostics.hpp"
 
 #include "core/launch.hpp"
+#include "treacle/core/processes.hpp"
 
 #include <cub/block/block_reduce.cuh>
 
 #include <algorithm>
+#include <functional>
 
 namespace treacle {
 namespace {
@@ -66,7 +68,10 @@ Diagnostics computeDiagnostics(Context<Cuda>& context, const DiagnosticsInput<D>
   const unsigned blocks = std::min(std::max(blocksFor(in.position.size(), 2 * blockSize), 1u), maxBlocks);
   launch(context, blocks, blockSize, 0, diagnosticsKernel<D>, in, DiagnosticsTerm<D>::make(in), partial,
          context.ticket());
-  return averaged(valueOnHost(context, partial + blocks), in.position.size());
+  const Diagnostics all =
+      joinedOverProcesses(context, valueOnHost(context, partial + blocks),
+                          [](const Diagnostics& a, const Diagnostics& b) { return joined(a, b); });
+  return averaged(all, joinedOverProcesses(context, in.position.size(), std::plus<>()));
 }
 
 template Diagnostics computeDiagnostics<2>(Context<Cuda>&, const DiagnosticsInput<2>&);

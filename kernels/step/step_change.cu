@@ -1,6 +1,9 @@
 #include "treacle/step/step_change.hpp"
 
 #include "core/reduce_many.cuh"
+#include "treacle/core/processes.hpp"
+
+#include <functional>
 
 namespace treacle {
 
@@ -15,7 +18,8 @@ StepChange stepChange(Context<Cuda>& context, const StepChangeTerms<D>& terms) {
       [result] __device__(const double* sums, int lane) {
         if (lane < count) result[lane] = sums[lane];
       });
-  return StepChange::mean(valueOnHost(context, reinterpret_cast<const Sums*>(result)), terms.after.size());
+  return StepChange::mean(valueOnHost(context, reinterpret_cast<const Sums*>(result)),
+                          joinedOverProcesses(context, terms.after.size(), std::plus<>()));
 }
 
 template StepChange stepChange<2>(Context<Cuda>&, const StepChangeTerms<2>&);

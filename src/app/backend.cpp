@@ -9,12 +9,17 @@
 
 namespace treacle {
 
-std::optional<DeviceInfo> deviceFor(BackendChoice choice) {
+std::optional<DeviceInfo> deviceFor(BackendChoice choice, int localRank) {
   if (choice == BackendChoice::Cpu) return {};
   const std::vector<DeviceInfo> devices = cudaDevices();
-  if (!devices.empty() && devices.front().hasCode) return devices.front();
+  const std::size_t rank = localRank, own = devices.empty() ? 0 : rank % devices.size();
+  if (!devices.empty() && own != rank && choice == BackendChoice::Auto) return {};
+  if (!devices.empty() && devices[own].hasCode) {
+    useDevice(own);
+    return devices[own];
+  }
   if (!devices.empty()) {
-    const std::string reason = noCodeText(devices.front(), buildInfo().architectures);
+    const std::string reason = noCodeText(devices[own], buildInfo().architectures);
     if (choice == BackendChoice::Cuda) throw InputError("--backend cuda: " + reason);
     printError("treacle: warning: " + reason + "; the CPU computes instead\n");
     return {};

@@ -16,6 +16,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <system_error>
@@ -46,19 +48,26 @@ void requireElsewhere(const std::filesystem::path& directory, const std::filesys
                                  checkpoint.string()));
 }
 
+bool allHaveOne(const Communicator& processes, bool has) {
+  const std::vector<std::uint8_t> all = processes.all(std::uint8_t{has});
+  return std::ranges::find(all, 0) == all.end();
+}
+
 }  // namespace
 
 void runCommand(const RunOptions& options, const Communicator& processes) {
   const bool shared = processes.size() > 1;
   std::optional<DeviceInfo> device;
+  together(processes, [&] { device = deviceFor(options.backend, processes.localRank()); });
+  if (!allHaveOne(processes, device.has_value())) device.reset();
+  const BackendKind backend = device ? BackendKind::Cuda : BackendKind::Cpu;
   Case c;
   std::vector<std::string> warnings;
   StartState start{AnyParticles(2)};
   together(processes, [&] {
-    if (!shared || options.backend != BackendChoice::Auto) device = deviceFor(options.backend);
     startThreads(options.threads);
     c = caseOf(options);
-    if (shared) requireShareable(c, device ? BackendKind::Cuda : BackendKind::Cpu);
+    if (shared) requireShareable(c, backend);
     requireRoomForParticles(c);
     start = {createParticles(c, warnings)};
     for (std::string& warning : caseWarnings(c)) warnings.push_back(std::move(warning));
@@ -76,12 +85,12 @@ void runCommand(const RunOptions& options, const Communicator& processes) {
     files.emplace(RunDirectory::create(directory, options.force));
   });
   if (processes.rank() > 0)
-    return serveSimulation(c, std::move(start.particles), start.step, start.time, processes);
+    return serveSimulation(c, std::move(start.particles), backend, start.step, start.time, processes);
   const Followers followers(processes);
   if (!device)
     for (std::string& warning : cpuWarnings(c)) warnings.push_back(std::move(warning));
-  Run run(c, std::move(start), device ? BackendKind::Cuda : BackendKind::Cpu, std::move(*files), options,
-          device ? deviceText(*device) : processorName(), processes);
+  Run run(c, std::move(start), backend, std::move(*files), options, device ? deviceText(*device) : processorName(),
+          processes);
   run.execute(warnings);
 }
 

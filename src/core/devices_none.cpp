@@ -5,6 +5,7 @@
 namespace treacle {
 
 std::vector<DeviceInfo> cudaDevices() { return {}; }
+void useDevice(std::size_t) {}
 
 PinnedMemory::PinnedMemory(void*, std::size_t) {}
 PinnedMemory::~PinnedMemory() = default;

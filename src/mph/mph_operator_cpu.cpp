@@ -75,19 +75,9 @@ void MphOperator<D, Cpu>::prepare(Context<Cpu>&, const MphPairs<D>& pairs, const
   });
 }
 
-/// u of own fluid and of ghosts.
-template <int D>
-std::span<const Vec<D>> MphOperator<D, Cpu>::withGhosts(const Context<Cpu>& context, std::span<const Vec<D>> u) {
-  if (!context.halo) return u;
-  withGhosts_.resize(pairs_->fluidCount);
-  std::copy(u.begin(), u.end(), withGhosts_.begin());
-  fillGhosts(context, Held::Fluid, withGhosts_.data());
-  return withGhosts_.span();
-}
-
 template <int D>
 void MphOperator<D, Cpu>::multiply(Context<Cpu>& context, std::span<const Vec<D>> own, std::span<Vec<D>> y) {
-  const std::span<const Vec<D>> u = withGhosts(context, own);
+  const std::span<const Vec<D>> u = withGhosts(context, own, withGhosts_);
   withRenormalisation(*pairs_, [&]<bool Renormalised>() {
     viscosityAndDivergence<Renormalised>(u, y);
     wallDivergence(u);

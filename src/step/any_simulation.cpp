@@ -134,7 +134,7 @@ Followers::~Followers() {
   if (processes_.size() > 1) give(&processes_, Order::End);
 }
 
-void serveSimulation(const Case& c, AnyParticles particles, std::int64_t step, double time,
+void serveSimulation(const Case& c, AnyParticles particles, BackendKind backend, std::int64_t step, double time,
                      const Communicator& processes) {
   std::optional<AnySimulation> simulation;
   AnyParticles none(particles.dimensions());
@@ -143,7 +143,7 @@ void serveSimulation(const Case& c, AnyParticles particles, std::int64_t step, d
     try {
       switch (order) {
         case Order::Make:
-          simulation.emplace(c, std::move(particles), BackendKind::Cpu, step, time, &processes);
+          simulation.emplace(c, std::move(particles), backend, step, time, &processes);
           break;
         case Order::Advance:
           simulation->advance();

@@ -2,12 +2,14 @@
 
 #include "step_phases.hpp"
 #include "treacle/core/copy_values.hpp"
+#include "treacle/core/device_link.hpp"
 #include "treacle/model/case.hpp"
 #include "treacle/model/particles.hpp"
 #include "treacle/model/wall_motion.hpp"
 
 #include <algorithm>
 #include <cstdint>
+#include <memory>
 #include <span>
 
 namespace treacle {
@@ -23,6 +25,7 @@ struct FlowState {
   std::uint32_t fluidOfAll = 0;  // number of fluid particles, those of all processes
 
   mutable Context<Backend> context;
+  std::unique_ptr<DeviceLink> link;  // of the context, where processes share devices
   Particles<D, Backend> particles;
   Buffer<WallMotion<D>, Backend> wallMotion;   // per body, of the step; empty: all walls keep their velocities
   Buffer<Vec<D>, Backend> velocity, position;  // the step's results before they are accepted
@@ -31,6 +34,15 @@ struct FlowState {
 
   FlowState(const Case& c, std::int64_t startStep, double startTime)
       : theCase(c), step(startStep), time(startTime), timeStep(c.time.step) {}
+
+  /// With the others of these processes.
+  void share(const Communicator& processes) {
+    context.communicator = &processes;
+    if constexpr (std::is_same_v<Backend, Cuda>) {
+      link = DeviceLink::make(processes, context);
+      context.link = link.get();
+    }
+  }
 
   /// The step before that at hand; as long as this one where that is not known [s].
   double lastStep() const { return particles.steps.last > 0 ? particles.steps.last : timeStep; }

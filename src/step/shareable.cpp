@@ -12,9 +12,11 @@ void requireShareable(const Case& c, BackendKind backend) {
     throw InputError(
         fmt::format("several processes cannot share {}; expected {}, or one process", what, expected));
   };
-  if (backend != BackendKind::Cpu) refuse("a run on GPUs", "--backend cpu");
   if (c.method.kind != MethodKind::MphI)
     refuse(fmt::format("method.name = {}", nameOf(c.method.kind)), std::string(nameOf(MethodKind::MphI)));
+  if (backend == BackendKind::Cuda && c.solver.neighbours != NeighbourKind::Lists)
+    refuse(fmt::format("solver.neighbours = {}", nameOf(c.solver.neighbours)),
+           std::string(nameOf(NeighbourKind::Lists)));
   if (c.solver.operatorKind == OperatorKind::Assembled)
     refuse("solver.operator = assembled", std::string(nameOf(OperatorKind::MatrixFree)));
   if (c.solver.preconditioner == PreconditionerKind::BucketMultigrid)

@@ -96,7 +96,7 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     if (theCase.time.automatic) control.emplace(theCase);
     if (processes && processes->size() > 1) {
       requireShareable(theCase, std::is_same_v<Backend, Cpu> ? BackendKind::Cpu : BackendKind::Cuda);
-      context.communicator = processes;
+      this->share(*processes);
     }
     this->fluidOfAll = state.fluidCount;
     wallsMove = wallVelocitiesChange || someWallMoves(state);
@@ -354,15 +354,25 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
   }
 
   void copyParticles(Particles<D>& host) const {
-    if constexpr (std::is_same_v<Backend, Cpu>)
-      if (context.communicator) {
-        gatherParticles(*context.communicator, *context.halo, particles, numbers(), host);
-        if (context.communicator->rank() == 0) distant->copyTo(host);
-        return;
-      }
+    if (context.communicator) return gather(host);
     host.resize(numbers());
     copyFieldsToHost(context, particles, host);
     distant->copyTo(host);
+  }
+
+  /// Of all processes, to the first one.
+  void gather(Particles<D>& host) const {
+    const auto from = [&](const Particles<D>& own) {
+      gatherParticles(*context.communicator, *context.halo, own, numbers(), host);
+    };
+    if constexpr (std::is_same_v<Backend, Cpu>) {
+      from(particles);
+    } else {
+      Particles<D> own;
+      copyToHost(context, particles, own);
+      from(own);
+    }
+    if (context.communicator->rank() == 0) distant->copyTo(host);
   }
 };
 

@@ -18,4 +18,7 @@ struct DeviceInfo {
 /// The CUDA devices of this machine; empty in builds without CUDA and where there is no driver or no device.
 std::vector<DeviceInfo> cudaDevices();
 
+/// Makes one of them the current one of this thread: that of contexts made from now on. Errors: DeviceFailure.
+void useDevice(std::size_t number);
+
 }  // namespace treacle

@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
+#include <type_traits>
 
 namespace treacle {
 
@@ -36,10 +38,14 @@ class DeviceLink {
   virtual std::string name() const = 0;
 };
 
-/// values[k] = sum over the processes that share the simulation; nothing where it is alone.
-template <class T>
-void sumOverDevices(const Context<Cuda>& context, std::span<T> values) {
-  if (context.link && !values.empty()) context.link->sum(values.data(), values.size());
+/// values[k] = sum over the processes that share the simulation, number by number; nothing where it is alone. `V`:
+/// a number, or a matrix of doubles.
+template <class V>
+void sumOverDevices(const Context<Cuda>& context, std::span<V> values) {
+  using T = std::conditional_t<std::is_arithmetic_v<V>, V, double>;
+  static_assert(std::is_trivially_copyable_v<V> && sizeof(V) % sizeof(T) == 0);
+  if (context.link && !values.empty())
+    context.link->sum(reinterpret_cast<T*>(values.data()), values.size_bytes() / sizeof(T));
 }
 
 }  // namespace treacle

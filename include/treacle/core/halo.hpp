@@ -2,6 +2,7 @@
 
 #include "treacle/core/buffer.hpp"
 #include "treacle/core/communicator.hpp"
+#include "treacle/core/copy_values.hpp"
 #include "treacle/core/cuda.hpp"
 #include "treacle/core/macros.hpp"
 
@@ -68,6 +69,16 @@ template <class T, class Backend>
 void fillGhosts(const Context<Backend>& context, Held held, T* field) {
   static_assert(std::is_trivially_copyable_v<T>);
   if (context.halo) context.halo->fill(context, held, field, sizeof(T));
+}
+
+/// A field of the own fluid with its ghosts behind, in `room`; the field itself where nobody has any.
+template <class T, class Backend>
+std::span<const T> withGhosts(Context<Backend>& context, std::span<const T> own, Buffer<T, Backend>& room) {
+  if (!context.halo) return own;
+  room.resize(context, context.halo->fluid);
+  copyValues(context, own, room.data());
+  fillGhosts(context, Held::Fluid, room.data());
+  return room.span();
 }
 
 }  // namespace treacle

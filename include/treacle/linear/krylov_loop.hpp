@@ -39,7 +39,8 @@ class KrylovLoop<Cpu> {
 
 /// On the device the loop is a graph with a conditional node: the host launches it once and looks at the scalars
 /// when it has ended. The graph of the last solve is kept, since to give its kernels new arguments takes a third
-/// of the time that a new graph takes.
+/// of the time that a new graph takes. Where devices share the simulation the host starts each iteration: what a
+/// link tells another device cannot be a part of a conditional node.
 template <>
 class KrylovLoop<Cuda> {
  public:
@@ -60,7 +61,7 @@ class KrylovLoop<Cuda> {
   Buffer<KrylovScalars, Cuda> scalars_;
   CUgraph_st* source_ = nullptr;  // what the graph was made of last: its condition is known to both
   CUgraphExec_st* graph_ = nullptr;
-  std::function<void()> body_;  // where the context does without graphs
+  std::function<void()> body_;  // where it does without a graph
 };
 
 }  // namespace treacle

@@ -34,7 +34,6 @@ class MphOperator<D, Cpu> {
   template <bool Renormalised>
   void viscosityAndDivergence(std::span<const Vec<D>> u, std::span<Vec<D>> y);
   void wallDivergence(std::span<const Vec<D>> u);
-  std::span<const Vec<D>> withGhosts(const Context<Cpu>&, std::span<const Vec<D>> u);
   template <bool Renormalised>
   void addGradient(std::span<Vec<D>> y);
 
@@ -44,10 +43,10 @@ class MphOperator<D, Cpu> {
   // would give both terms of a near pair does not pay: the arithmetic takes longer than the second number's way to
   // the core.
   Buffer<std::uint64_t> viscousStart_, pressureStart_;
-  Buffer<double> viscous_;   // near and far fluid: c of the viscous block c d d^T
-  Buffer<double> pressure_;  // near fluid, then near walls: g of -e w' = g d
-  Buffer<double> q_;         // lambda C^T u, per particle
-  Buffer<Vec<D>> withGhosts_;
+  Buffer<double> viscous_;     // near and far fluid: c of the viscous block c d d^T
+  Buffer<double> pressure_;    // near fluid, then near walls: g of -e w' = g d
+  Buffer<double> q_;           // lambda C^T u, per particle
+  Buffer<Vec<D>> withGhosts_;  // u
 };
 
 /// The same on a device, where arithmetic costs less than memory: pair terms are computed from the positions in
@@ -60,7 +59,9 @@ class MphOperator<D, Cuda> {
   const NearProducts<D>& near() const { return near_; }
   /// Diagonal block of rho/dt I + V, per fluid particle.
   std::span<const Block<D>> selfBlock() const { return selfBlock_; }
-  std::size_t bytes() const { return q_.bytes() + selfBlock_.bytes() + selfGradient_.bytes() + near_.bytes(); }
+  std::size_t bytes() const {
+    return q_.bytes() + selfBlock_.bytes() + selfGradient_.bytes() + withGhosts_.bytes() + near_.bytes();
+  }
 
  private:
   void multiplyRenormalised(Context<Cuda>&, std::span<const Vec<D>> u, std::span<Vec<D>> y);
@@ -69,6 +70,7 @@ class MphOperator<D, Cuda> {
   Buffer<Block<D>, Cuda> selfBlock_;   // diagonal block of rho/dt I + V, per fluid particle
   Buffer<Vec<D>, Cuda> selfGradient_;  // C_ii; empty where the pairs have B
   Buffer<double, Cuda> q_;             // lambda C^T u, per particle
+  Buffer<Vec<D>, Cuda> withGhosts_;    // u
   NearProducts<D> near_;
 };
 

@@ -107,7 +107,7 @@ class ParticleProducts<D, T, Cuda> {
   template <class Store>
   void schur(Context<Cuda>&, const ProjectionTable<T>& table, ScalarField<T, Cuda> q, const Store& store);
   template <class Store>
-  void viscous(Context<Cuda>&, const Gathered<D, T>* u, const Store& store) const;
+  void viscous(Context<Cuda>&, Gathered<D, T>* u, const Store& store) const;
   void inverseDiagonals(Context<Cuda>&, const ProjectionTable<T>& table, std::span<T> pressure,
                         std::span<Block<D, T>> velocity) const;
   ScalarField<T, Cuda> scalars(int which = 0);

@@ -21,11 +21,11 @@ struct StagedView {
   const std::uint64_t* start;        // per slice, of its rows, in fours
   const std::uint64_t* place;        // four places in shared memory, per particle of a slice
   const Word *column, *row;       // four elements likewise, g B_j d of C and g B_i d, that of C^T but for its sign
-  const Gathered<D, float>* own;  // per fluid particle: sum of its g B_i d, in units
+  const Gathered<D, float>* own;  // per own fluid particle: sum of its g B_i d, in units
   float unit;                     // of the elements [1/m]
   const std::uint64_t* sliceStart;  // of NearProducts, for torn blocks
   const std::uint32_t* entry;       // likewise
-  std::uint32_t fluidCount, activeCount;
+  std::uint32_t ownFluid, fluidCount, activeCount;
 };
 
 /// These lists for the particles of a step whose pairs have B, made from the rows of NearProducts.
@@ -73,6 +73,7 @@ class StagedLists {
             static_cast<float>(unit_),
             near.sliceStart().data(),
             near.entries().data(),
+            pairs.ownFluid(),
             pairs.fluidCount,
             pairs.activeCount};
   }

@@ -9,6 +9,28 @@
 
 namespace treacle {
 
+struct IndexRange {
+  std::uint32_t begin = 0, end = 0;
+};
+
+/// The own particles of each cell, all of whose particles are own or ghosts; [0, 0) where they are ghosts.
+struct OwnRanges {
+  CellRangesView cells;
+  std::uint32_t ownFluid = 0, ownEnd = 0;  // SortedParticles
+
+  TREACLE_HD IndexRange fluid(std::size_t cell) const {
+    return below(ownFluid, cells.fluidBegin[cell], cells.fluidEnd[cell]);
+  }
+  TREACLE_HD IndexRange walls(std::size_t cell) const {
+    return below(ownEnd, cells.wallBegin[cell], cells.wallEnd[cell]);
+  }
+
+ private:
+  TREACLE_HD static IndexRange below(std::uint32_t own, std::uint32_t begin, std::uint32_t end) {
+    return begin < own ? IndexRange{begin, end} : IndexRange{};
+  }
+};
+
 /// Particles after the sort, in host or device memory. Particles [0, fluidCount) are fluid, [fluidCount,
 /// activeCount) the walls near it; "per particle" means activeCount, "per fluid particle" fluidCount. Spans and
 /// pointers belong to the step's owner.
@@ -26,17 +48,21 @@ struct SortedParticles {
   /// computed for them, and sums over all particles are sums over them.
   TREACLE_HD std::uint32_t ownFluid() const { return fluidCount - ghostFluid; }
   TREACLE_HD std::uint32_t ownEnd() const { return activeCount - ghostWalls; }
+  TREACLE_HD bool isOwn(std::uint32_t i) const { return i < fluidCount ? i < ownFluid() : i < ownEnd(); }
 
-  /// f(i) for the own fluid particles of a cell, whose particles are all own or all ghosts; then for own walls.
+  /// The cells' ranges of own particles.
+  TREACLE_HD OwnRanges ownRanges() const { return {cells, ownFluid(), ownEnd()}; }
+
+  /// f(i) for the own fluid particles of a cell; then for own walls.
   template <class F>
   TREACLE_HD void forEachOwnFluid(std::size_t cell, F&& f) const {
-    if (cells.fluidBegin[cell] >= ownFluid()) return;
-    for (std::uint32_t i = cells.fluidBegin[cell]; i < cells.fluidEnd[cell]; ++i) f(i);
+    const IndexRange own = ownRanges().fluid(cell);
+    for (std::uint32_t i = own.begin; i < own.end; ++i) f(i);
   }
   template <class F>
   TREACLE_HD void forEachOwnWall(std::size_t cell, F&& f) const {
-    if (cells.wallBegin[cell] >= ownEnd()) return;
-    for (std::uint32_t i = cells.wallBegin[cell]; i < cells.wallEnd[cell]; ++i) f(i);
+    const IndexRange own = ownRanges().walls(cell);
+    for (std::uint32_t i = own.begin; i < own.end; ++i) f(i);
   }
 };
 

@@ -66,7 +66,7 @@ class Followers {
 
 /// At every other process: takes part in the simulation that the first one makes with the same arguments. Returns
 /// when its Followers are gone.
-void serveSimulation(const Case& c, AnyParticles particles, std::int64_t step, double time,
+void serveSimulation(const Case& c, AnyParticles particles, BackendKind backend, std::int64_t step, double time,
                      const Communicator& processes);
 
 }  // namespace treacle
