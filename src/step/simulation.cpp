@@ -64,15 +64,6 @@ void withTeam(F&& body) {
 
 }  // namespace
 
-template <int D>
-void toHost(const Context<Cpu>& context, const Particles<D>& particles, Particles<D>& host) {
-  copyToHost(context, particles, host);
-}
-template <int D>
-void toHost(const Context<Cuda>& context, const Particles<D, Cuda>& particles, Particles<D>& host) {
-  copyToHost(context, particles, host);
-}
-
 template <int D, class Backend>
 struct Simulation<D, Backend>::State : FlowState<D, Backend> {
   using Flow = FlowState<D, Backend>;
@@ -208,12 +199,9 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
                                                u.first(size), position.span().subspan(begin, size));
     if (out == noParticle) return;
     Particles<D> host;
-    toHost(context, particles, host);
+    copyToHost(context, particles, host);
     Vec<D> uOut{};
-    if constexpr (std::is_same_v<Backend, Cuda>)
-      uOut = valueOnHost(context, &u[out]);
-    else
-      uOut = u[out];
+    copyToHost(context, u.subspan(out, 1), &uOut);
     watch->requireSlow(timeStep, norm(uOut));  // then it is not the domain that is too small
     throw RunError(describeLeaving<D>(host, begin + out, uOut, timeStep));
   }
@@ -421,10 +409,8 @@ Diagnostics Simulation<D, Backend>::diagnostics() const {
   return state_->diagnostics();
 }
 
-#define TREACLE_INSTANTIATE(Backend)                                                             \
-  template void toHost<2>(const Context<Backend>&, const Particles<2, Backend>&, Particles<2>&); \
-  template void toHost<3>(const Context<Backend>&, const Particles<3, Backend>&, Particles<3>&); \
-  template class Simulation<2, Backend>;                                                         \
+#define TREACLE_INSTANTIATE(Backend)     \
+  template class Simulation<2, Backend>; \
   template class Simulation<3, Backend>;
 TREACLE_FOR_EACH_BACKEND(TREACLE_INSTANTIATE)
 #undef TREACLE_INSTANTIATE
