@@ -128,7 +128,7 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     for (std::size_t first = 0; first < x.size(); first += piece) {
       some.resize(std::min(piece, x.size() - first));
       copyToHost(context, x.subspan(first, some.size()), some.data());
-      near.addFluid(some);
+      near.addMoving(some);
     }
   }
 
