@@ -1,17 +1,17 @@
 #include "treacle/step/simulation.hpp"
 
+#include "all_particles.hpp"
 #include "failure.hpp"
-#include "gather_particles.hpp"
+#include "held_walls.hpp"
+#include "moving_bodies.hpp"
 #include "step_method.hpp"
 #include "treacle/core/processes.hpp"
 #include "treacle/core/team.hpp"
 #include "treacle/model/particles_copy.hpp"
 #include "treacle/step/diagnostics.hpp"
-#include "treacle/step/distant_walls.hpp"
 #include "treacle/step/move_particles.hpp"
 #include "treacle/step/shareable.hpp"
 #include "treacle/step/step_control.hpp"
-#include "treacle/step/wall_motion.hpp"
 
 #include <fmt/format.h>
 
@@ -31,26 +31,12 @@ void toBackend(Context<Cuda>& context, const Particles<D>& host, Particles<D, Cu
   copyToDevice(context, host, particles);
 }
 
-bool someWallOscillates(const Case& c) {
-  return std::ranges::any_of(c.bodies, [](const Body& b) { return b.oscillation.period > 0; });
-}
-bool someWallRotates(const Case& c) {
-  return std::ranges::any_of(c.bodies, [](const Body& b) { return b.rotation.has_value(); });
-}
-
 /// Of the fluid [kg; per metre of depth in 2D].
 template <int D>
 double fluidMass(const Case& c, const Particles<D>& particles) {
   double density = 0;
   for (std::uint32_t i = 0; i < particles.fluidCount; ++i) density += c.materials[particles.material[i]].density;
   return density * std::pow(c.spacing, D);
-}
-
-template <int D>
-bool someWallMoves(const Particles<D>& particles) {
-  for (std::uint32_t i = particles.fluidCount; i < particles.count; ++i)
-    if (norm2(particles.velocity[i]) > 0) return true;
-  return false;
 }
 
 /// Loops of the host have a team.
@@ -70,8 +56,7 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
   using Flow::theCase, Flow::context, Flow::particles, Flow::step, Flow::time, Flow::timeStep, Flow::velocity,
       Flow::position, Flow::wallsMove, Flow::phases;
 
-  bool wallsRotate, wallVelocitiesChange;
-  Buffer<Vec<D>, Backend> wallChord;  // per wall particle, where some rotate [m/s]
+  MovingBodies<D, Backend> bodies;
   std::unique_ptr<StepMethod<D, Backend>> method;
   std::optional<DistantWalls<D>> distant;  // which `particles` has not
   double lastSpeed = 0;                    // of the fastest particle [m/s]
@@ -81,16 +66,14 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
   bool tooCoarse = false;              // an automatic step was, and it was said
 
   State(const Case& c, Particles<D> state, std::int64_t startStep, double startTime, const Communicator* processes)
-      : Flow(c, startStep, startTime),
-        wallsRotate(someWallRotates(c)),
-        wallVelocitiesChange(wallsRotate || someWallOscillates(c)) {
+      : Flow(c, startStep, startTime), bodies(*this) {
     if (theCase.time.automatic) control.emplace(theCase);
     if (processes && processes->size() > 1) {
       requireShareable(theCase, std::is_same_v<Backend, Cpu> ? BackendKind::Cpu : BackendKind::Cuda);
       context.communicator = processes;
     }
     this->fluidOfAll = state.fluidCount;
-    wallsMove = wallVelocitiesChange || someWallMoves(state);
+    wallsMove = someWallMoves(theCase, state);
     const double mass = fluidMass(theCase, state);
     method = theCase.method.kind == MethodKind::Isph ? makeIsphStep(static_cast<Flow&>(*this))
                                                      : makeMphStep(static_cast<Flow&>(*this));
@@ -105,31 +88,6 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     const Diagnostics start = diagnostics();
     lastSpeed = start.maxSpeed;
     watch.emplace(theCase, start, mass, this->fluidOfAll, wallsMove);
-  }
-
-  /// Of the walls those that are near something that moves, where that may be others than before.
-  void chooseWalls() {
-    if (!distant->isDue()) return;
-    Particles<D> walls;
-    copyWallsToHost(context, particles, walls);
-    NearBlocks<D> near(theCase, method->grid());
-    near.addMovingWalls(walls);
-    addFluidTo(near);
-    if (context.communicator) near.unite(*context.communicator);
-    if (distant->differs(near)) replaceWalls(context, distant->held(near, walls), particles);
-    distant->accept(std::move(near));
-  }
-
-  /// Piece by piece: the host need not have room for all places.
-  void addFluidTo(NearBlocks<D>& near) {
-    constexpr std::size_t piece = std::size_t{1} << 20;
-    const std::span<const Vec<D>> x = particles.position.span().first(particles.fluidCount);
-    Buffer<Vec<D>> some;
-    for (std::size_t first = 0; first < x.size(); first += piece) {
-      some.resize(std::min(piece, x.size() - first));
-      copyToHost(context, x.subspan(first, some.size()), some.data());
-      near.addMoving(some);
-    }
   }
 
   void chooseTimeStep() {
@@ -159,35 +117,12 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     return rest > 0 && length > rest * (1 - 1e-9) ? rest : length;
   }
 
-  MovingWalls<D> walls() const {
-    const std::uint32_t n = particles.wallBegin();
-    return {this->wallMotion, particles.body.span().subspan(n), particles.position.span().subspan(n)};
-  }
-
-  /// Motions and velocities of walls that oscillate or rotate, for the step at hand.
-  void moveBodies() {
-    if (!wallVelocitiesChange) return;
-    std::vector<WallMotion<D>> motion;
-    for (const Body& body : theCase.bodies)
-      motion.push_back(treacle::wallMotion<D>(theCase.domain, body, time, timeStep));
-    fromHost(context, std::span<const WallMotion<D>>(motion), this->wallMotion);
-    setWallVelocities<D>(context, walls(), particles.velocity.span().subspan(particles.wallBegin()));
-  }
-
-  /// What the walls move with.
-  std::span<const Vec<D>> wallTransport() {
-    if (!wallsRotate) return particles.velocity.span().subspan(particles.wallBegin());
-    wallChord.resize(context, particles.wallCount());
-    setWallChords<D>(context, walls(), wallChord);
-    return wallChord.span();
-  }
-
   /// x^{k+1} of [K23 eq. (15)] into `position`; walls by their prescribed motion.
   void move() {
     position.resize(context, wallsMove ? particles.count : particles.fluidCount);
     agreed(context, [&] {
       moveRange(0, particles.fluidCount, method->transportVelocities());
-      if (wallsMove) moveRange(particles.wallBegin(), particles.count, wallTransport());
+      if (wallsMove) moveRange(particles.wallBegin(), particles.count, bodies.transportVelocities());
     });
   }
 
@@ -250,7 +185,7 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
       ++report.rejected;
       particles.modes.pressure = {};  // of steps of that length
       chooseTimeStep();
-      moveBodies();
+      bodies.prepare();
     }
     return solved;
   }
@@ -285,10 +220,10 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
   StepReport advance() {
     StepReport report;
     chooseTimeStep();
-    moveBodies();
+    bodies.prepare();
     phases.start(context);
     phases.run(context, treacle::phases::search, [&] {
-      chooseWalls();
+      holdNearWalls(*this, method->grid(), *distant);
       method->sortParticles();
     });
     phases.run(context, treacle::phases::lists, [&] { method->findNeighbours(); });
@@ -315,9 +250,9 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
 
   std::vector<SolverTrial> convergence(std::span<const SolverSettings> solvers) {
     chooseTimeStep();
-    moveBodies();
+    bodies.prepare();
     phases.start(context);
-    chooseWalls();
+    holdNearWalls(*this, method->grid(), *distant);
     method->sortParticles();
     method->findNeighbours();
     method->predict();
@@ -328,29 +263,9 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
   }
 
   std::size_t bytes() const {
-    std::size_t sum = velocity.bytes() + position.bytes() + wallChord.bytes() + method->bytes();
+    std::size_t sum = velocity.bytes() + position.bytes() + bodies.bytes() + method->bytes();
     particles.forEachField([&](const auto& field) { sum += field.bytes(); });
     return std::is_same_v<Backend, Cpu> ? sum + distant->bytes() : sum;
-  }
-
-  ParticleNumbers numbers() const {
-    ParticleNumbers all = particles.numbers();
-    all.fluid = this->fluidOfAll, all.ghosts = 0;
-    all.wall += distant->count();
-    all.surfaces += distant->surfaceCount();
-    return all;
-  }
-
-  void copyParticles(Particles<D>& host) const {
-    if constexpr (std::is_same_v<Backend, Cpu>)
-      if (context.communicator) {
-        gatherParticles(*context.communicator, *context.halo, particles, numbers(), host);
-        if (context.communicator->rank() == 0) distant->copyTo(host);
-        return;
-      }
-    host.resize(numbers());
-    copyFieldsToHost(context, particles, host);
-    distant->copyTo(host);
   }
 };
 
@@ -381,11 +296,11 @@ const Particles<D, Backend>& Simulation<D, Backend>::particles() const {
 }
 template <int D, class Backend>
 void Simulation<D, Backend>::copyParticles(Particles<D>& host) const {
-  state_->copyParticles(host);
+  copyAllParticles(*state_, *state_->distant, host);
 }
 template <int D, class Backend>
 ParticleNumbers Simulation<D, Backend>::numbers() const {
-  return state_->numbers();
+  return numbersOfAll(*state_, *state_->distant);
 }
 template <int D, class Backend>
 double Simulation<D, Backend>::time() const {
