@@ -2,6 +2,7 @@
 
 #include "all_particles.hpp"
 #include "failure.hpp"
+#include "given_step.hpp"
 #include "held_walls.hpp"
 #include "moving_bodies.hpp"
 #include "step_method.hpp"
@@ -91,30 +92,9 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
   }
 
   void chooseTimeStep() {
-    if (control) {
-      const StepControl::Step next = control->next(particles.steps, time, lastSpeed);
-      timeStep = next.length, endOfStep = next.end;
-    } else if (theCase.time.courant > 0) {
-      timeStep = courantStep();
-      endOfStep = time + timeStep;
-    } else {
-      endOfStep = static_cast<double>(step + 1) * timeStep;
-    }
-  }
-
-  /// No particle goes farther than so many spacings, and the last step meets the end.
-  double courantStep() const {
-    const TimeSettings& t = theCase.time;
-    double length = t.step;
-    if (lastSpeed * length > t.courant * theCase.spacing) length = t.courant * theCase.spacing / lastSpeed;
-    // Fractions of the time's own rounding would never reach the end.
-    if (time + 1e-3 * length == time)
-      throw RunError(
-          fmt::format("particles at {:.4g} m/s allow steps of {:.3g} s only (time.courant): the time no "
-                      "longer advances",
-                      lastSpeed, length));
-    const double rest = t.end - time;
-    return rest > 0 && length > rest * (1 - 1e-9) ? rest : length;
+    const StepControl::Step next =
+        control ? control->next(particles.steps, time, lastSpeed) : givenStep(theCase, step, time, lastSpeed);
+    timeStep = next.length, endOfStep = next.end;
   }
 
   /// x^{k+1} of [K23 eq. (15)] into `position`; walls by their prescribed motion.
