@@ -66,7 +66,7 @@ std::uint64_t fieldBytes(const ParticleNumbers& n) {
   forEachSharedFieldOf(add(n.fluid + n.wall), none);
   forEachFluidFieldOf(add(n.fluid), none);
   add(n.fluid * n.modes)(none.modes.vectors);
-  add(n.surfaces)(none.wallSurface);
+  forEachWallFieldOf(add(n.surfaces), none);
   return sum;
 }
 
