@@ -26,14 +26,13 @@ __device__ inline T transposedSum(const T* v) {
 }
 
 /// Sums of pair terms over the neighbours of one cluster. `Terms` gives
-///   Own loadOwn(pairs, i), Other loadOther(pairs, j)   what they read of a particle; or loadOther(pairs, j,
-///   stored),
-///                                                      with what LocalPositions has stored of it
+///   Own loadOwn(pairs, i), Other loadOther(pairs, j)   what they read of a particle
 ///   values                                             how many sums a particle has
 ///   uses(segment)                                      which parts of the lists count
 ///   add(pairs, sums, d, distance, own, other, segment)
 ///   store(pairs, i, n, sum)                            called once per particle and sum
-/// or, with a type StoresVectors, store(pairs, i, sums) once per particle.
+/// or, with a type StoresVectors, store(pairs, i, sums) once per particle; and, where they want what
+/// LocalPositions has stored of a particle, loadOther(pairs, j, stored).
 template <class Terms>
 inline constexpr bool storesVectors = requires {
   typename Terms::StoresVectors;

@@ -20,7 +20,7 @@ __global__ void __launch_bounds__(128) listKernel(const Split split, const __gri
   const std::uint32_t i = min(index, pairs.activeCount - 1);
   const bool valid = index < pairs.activeCount, wall = i >= pairs.fluidCount;
   const int part = static_cast<int>(threadIdx.x % split);
-  const unsigned team = static_cast<unsigned>((std::uint64_t{1} << split) - 1) << (threadIdx.x % 32 - part);
+  const unsigned team = splitLanes(split);
   const ClusterListView& list = wall ? pairs.wallList : pairs.fluidList;
   const bool own = pairs.isOwn(i);
   const std::uint32_t cluster = own ? (i - list.first) / clusterSize : 0;

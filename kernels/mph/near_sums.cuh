@@ -138,6 +138,12 @@ __device__ inline T splitSum(T value, int split) {
   return value;
 }
 
+/// The lanes of the group that this thread is in, a bit each.
+__device__ inline unsigned splitLanes(int split) {
+  const unsigned lane = threadIdx.x % 32, part = threadIdx.x % split;
+  return static_cast<unsigned>((std::uint64_t{1} << split) - 1) << (lane - part);
+}
+
 /// What a product reads of a particle: where it stands and the gathered quantity. `Fields` fetch both at once
 /// where they stand side by side.
 template <int D, class T>

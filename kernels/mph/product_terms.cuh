@@ -71,7 +71,7 @@ void withPairViscosity(const MphPairs<D>& pairs, F&& f) {
     f(std::integral_constant<PairViscosity, PairViscosity::Any>{});
 }
 
-/// What such a loop reads of a particle, and the factor of a pair's terms; ofAll() is that of their sums.
+/// What such a loop reads of a particle, and the factor of a pair's terms.
 template <class T, PairViscosity Kind>
 struct ViscosityOf;
 template <class T>
@@ -79,10 +79,6 @@ struct ViscosityOf<T, PairViscosity::One> {
   template <int D>
   __device__ static ViscosityOf of(const MphPairs<D>&, std::uint32_t) {
     return {};
-  }
-  template <int D>
-  __device__ static T ofAll(const MphPairs<D>& pairs) {
-    return static_cast<T>(pairs.onlyViscosity());
   }
 };
 template <class T>
@@ -97,10 +93,6 @@ struct ViscosityOf<T, PairViscosity::Scaled> {
   __device__ static T ofPair(const MphPairs<D>& pairs, ViscosityOf a, ViscosityOf b) {
     return pairs.meanScale(a.scale, b.scale);
   }
-  template <int D>
-  __device__ static T ofAll(const MphPairs<D>& pairs) {
-    return static_cast<T>(pairs.onlyViscosity());
-  }
 };
 template <class T>
 struct ViscosityOf<T, PairViscosity::Any> {
@@ -114,11 +106,16 @@ struct ViscosityOf<T, PairViscosity::Any> {
   __device__ static T ofPair(const MphPairs<D>& pairs, ViscosityOf a, ViscosityOf b) {
     return pairs.template viscosityOf<T>(a.side, b.side);
   }
-  template <int D>
-  __device__ static T ofAll(const MphPairs<D>&) {
-    return 1;
-  }
 };
+
+/// The factor of the sums of such terms.
+template <PairViscosity Kind, class T, int D>
+__device__ inline T viscosityOfSums(const MphPairs<D>& pairs) {
+  if constexpr (Kind == PairViscosity::Any)
+    return 1;
+  else
+    return static_cast<T>(pairs.onlyViscosity());
+}
 
 template <int D, class T, PairViscosity Kind>
 struct VelocityOf {
@@ -166,7 +163,7 @@ struct ViscosityAndDivergence {
     if (n < D) {
       T own = 0;
       for (int c = 0; c < D; ++c) own += static_cast<T>(self.block[i](n, c)) * ui[c];
-      y[i][n] = own - mph.viscousFactor * Own::ofAll(pairs) * sum;
+      y[i][n] = own - mph.viscousFactor * viscosityOfSums<Kind, T>(pairs) * sum;
     } else {
       T div = -mph.gradientFactor * sum;
       for (int c = 0; c < D; ++c) div += ui[c] * static_cast<T>(self.gradient[i][c]);
@@ -220,7 +217,8 @@ struct Viscosity {
     addScaled(sum, f, d);
   }
   __device__ void store(const MphPairs<D>& pairs, std::uint32_t i, const Vec<D, T>& sum) const {
-    put(result, i, selfBlock[i] * fetch(&u[i]) - mph.viscousFactor * Own::ofAll(pairs) * sum, ownOf(result, i));
+    put(result, i, selfBlock[i] * fetch(&u[i]) - mph.viscousFactor * viscosityOfSums<Kind, T>(pairs) * sum,
+        ownOf(result, i));
   }
 };
 

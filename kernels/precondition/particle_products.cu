@@ -111,8 +111,7 @@ void ParticleProducts<D, T, Cuda>::prepare(Context<Cuda>& context, const MphPair
   } else {
     resize(scalars_, vectors_);
     if (std::is_same_v<T, float>)
-      staged_.prepare(context, pairs, a.near(), productReach<T>(pairs),
-                      projectionConstants(pairs).stiffness > mostPackedStiffness<D>);
+      staged_.prepare(context, pairs, a.near(), productReach<T>(pairs), isTooStiffToPack(pairs));
   }
   selfBlock_.resize(context, pairs.fluidCount);
   const double* from = a.selfBlock()[0].a;

@@ -151,7 +151,7 @@ __global__ void __launch_bounds__(StagedLists<D>::threads)
   const std::uint32_t index = blockIdx.x * particles + threadIdx.x / split, i = min(index, near.activeCount - 1);
   const bool writes = index == i;
   const int part = static_cast<int>(threadIdx.x % split);
-  const unsigned team = static_cast<unsigned>((std::uint64_t{1} << split) - 1) << (threadIdx.x % 32 - part);
+  const unsigned team = splitLanes(split);
   const std::uint64_t start = out.start[i / slice];
   const auto length = static_cast<std::uint32_t>(4 * (out.start[i / slice + 1] - start));
   const auto write = [&](std::uint32_t n, std::uint32_t place, Word column, Word row) {

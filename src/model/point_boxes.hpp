@@ -24,6 +24,17 @@ class PointBoxes {
     addImages({body, false, min - Vec<D>::filled(margin_), max + Vec<D>::filled(margin_)}, 0);
   }
 
+  class Near;
+  /// The boxes that matter to one body.
+  Near near(const Body* body) const {
+    Near near;
+    for (const Box& own : boxes_)
+      if (own.body == body && !own.image)
+        for (const Box& other : boxes_)
+          if ((other.body != body || other.image) && other.touches(own)) near.boxes_.push_back(other);
+    return near;
+  }
+
  private:
   struct Box {
     const Body* body;
@@ -38,30 +49,6 @@ class PointBoxes {
     }
   };
 
- public:
-  /// The boxes that matter to one body.
-  class Near {
-   public:
-    bool empty() const { return boxes_.empty(); }
-    bool contain(const Vec<D>& x) const {
-      return std::ranges::any_of(boxes_, [&](const Box& box) { return box.contains(x); });
-    }
-
-   private:
-    friend PointBoxes;
-    std::vector<Box> boxes_;
-  };
-
-  Near near(const Body* body) const {
-    Near near;
-    for (const Box& own : boxes_)
-      if (own.body == body && !own.image)
-        for (const Box& other : boxes_)
-          if ((other.body != body || other.image) && other.touches(own)) near.boxes_.push_back(other);
-    return near;
-  }
-
- private:
   void addImages(const Box& box, int axis) {
     if (axis == D) return boxes_.push_back(box);
     addImages(box, axis + 1);
@@ -76,6 +63,20 @@ class PointBoxes {
 
   Domain domain_;
   double margin_;  // [m]
+  std::vector<Box> boxes_;
+};
+
+template <int D>
+class PointBoxes<D>::Near {
+ public:
+  bool empty() const { return boxes_.empty(); }
+  /// Whether one of them contains x [m].
+  bool contain(const Vec<D>& x) const {
+    return std::ranges::any_of(boxes_, [&](const Box& box) { return box.contains(x); });
+  }
+
+ private:
+  friend PointBoxes;
   std::vector<Box> boxes_;
 };
 

@@ -1,5 +1,6 @@
 #include "treacle/model/wall_motion.hpp"
 
+#include <algorithm>
 #include <numbers>
 
 namespace treacle {
@@ -17,6 +18,13 @@ Vec<3> displacement(const Body& body, double t) {
 }
 
 }  // namespace
+
+bool someWallOscillates(const Case& c) {
+  return std::ranges::any_of(c.bodies, [](const Body& b) { return b.oscillation.period > 0; });
+}
+bool someWallRotates(const Case& c) {
+  return std::ranges::any_of(c.bodies, [](const Body& b) { return b.rotation.has_value(); });
+}
 
 /// Products in place of differences: no digits are lost in short steps.
 Vec<3> wallVelocity(const Body& body, double t, double dt) {

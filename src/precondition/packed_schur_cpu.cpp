@@ -47,7 +47,7 @@ void ParticleProducts<D, T, Cpu>::pack() {
   using Element = PackedElement<D>;
   const MphPairs<D>& pairs = *pairs_;
   unit_ = 0;
-  if (projectionConstants(pairs).stiffness > mostPackedStiffness<D>) return;
+  if (isTooStiffToPack(pairs)) return;
   const double floor2 = distanceFloor2(pairs), unit = largestElement(pairs) / Element::largest;
   const auto gradient = gradientWithin(pairs, productReach<T>(pairs));
   unit_ = static_cast<T>(unit / Element::unitOfUnpacked);

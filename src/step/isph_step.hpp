@@ -5,6 +5,7 @@
 #include "step_method.hpp"
 #include "take_trial.hpp"
 #include "treacle/isph/isph_particles.hpp"
+#include "treacle/model/particles_copy.hpp"
 #include "treacle/step/solve_stages.hpp"
 
 #include <fmt/format.h>
@@ -236,7 +237,7 @@ class IsphStep final : public StepMethod<D, Backend> {
         fmt::format("{}: {}", what, describeFailure(report, state_.theCase.solver.tolerance, report.failures));
     if (report.status == SolveStatus::NotFinite) {
       Particles<D> host;
-      toHost(state_.context, state_.particles, host);
+      copyToHost(state_.context, state_.particles, host);
       diagnosis += "; " + describeNotFinite<D>(state_.context, host, host.velocity);
     }
     throw RunError(diagnosis);

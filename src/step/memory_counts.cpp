@@ -1,5 +1,6 @@
 #include "treacle/step/memory_counts.hpp"
 
+#include "moving_bodies.hpp"
 #include "treacle/isph/isph_pairs.hpp"
 #include "treacle/mph/mph_assembly.hpp"
 #include "treacle/mph/mph_neighbours.hpp"
@@ -46,10 +47,7 @@ class Counter {
     counts_.nearWalls = particles_.wallCount();
     counts_.active = ranges_.activeCount;
     counts_.cells = grid.cellCount();
-    for (std::uint32_t i = particles_.fluidCount; i < particles_.count && !counts_.wallsMove; ++i)
-      counts_.wallsMove = norm2(particles_.velocity[i]) > 0;
-    for (const Body& body : c.bodies)
-      counts_.wallsMove = counts_.wallsMove || body.oscillation.period > 0 || body.rotation.has_value();
+    counts_.wallsMove = someWallMoves(c, particles_);
   }
 
   MemoryCounts mph(const Case& c, bool wholeRows) {

@@ -5,6 +5,7 @@
 #include "treacle/linear/deflation_scalars.hpp"
 #include "treacle/model/case.hpp"
 #include "treacle/model/particles.hpp"
+#include "treacle/model/wall_motion.hpp"
 #include "treacle/search/cell_sort.hpp"
 #include "treacle/step/memory_plan.hpp"
 #include "treacle/step/solve_stages.hpp"
@@ -65,7 +66,7 @@ std::uint64_t fieldBytes(const ParticleNumbers& n) {
   forEachSharedFieldOf(add(n.fluid + n.wall), none);
   forEachFluidFieldOf(add(n.fluid), none);
   add(n.fluid * n.modes)(none.modes.vectors);
-  add(n.surfaces)(none.wallSurface);
+  forEachWallFieldOf(add(n.surfaces), none);
   return sum;
 }
 
@@ -94,7 +95,7 @@ void planState(const Case& c, const MemoryCounts& n, BackendKind backend, Memory
   sum.keep<std::byte>(fieldBytes<D>(numbers));
   sum.keep<Vec<D>>(n.wallsMove ? all : fluid);                             // positions of the end
   sum.keep<Vec<D>>(c.method.kind == MethodKind::MphI ? n.active : fluid);  // velocities
-  if (std::ranges::any_of(c.bodies, [](const Body& b) { return b.rotation.has_value(); })) sum.keep<Vec<D>>(wall);
+  if (someWallRotates(c)) sum.keep<Vec<D>>(wall);
   sum.keep<std::uint32_t>(4 * n.cells);  // ranges
   sum.keep<std::uint8_t>(n.cells);
   sum.keep<std::uint64_t>(fluid);

@@ -80,7 +80,7 @@ template <int D, class T>
 void planProducts(const Case& c, const MemoryCounts& n, BackendKind backend, bool renormalised, MemorySum& sum) {
   using enum ListSegment;
   const std::uint64_t fluid = n.particles.fluid;
-  const bool stiff = projectionConstants(makeMphPairs<D>(c)).stiffness > mostPackedStiffness<D>;
+  const bool stiff = isTooStiffToPack(makeMphPairs<D>(c));
   sum.keep<Block<D, T>>(fluid);
   if (backend == BackendKind::Cuda) {
     if (std::is_same_v<T, float> && !renormalised) {

@@ -4,6 +4,7 @@
 #include "step_method.hpp"
 #include "take_trial.hpp"
 #include "treacle/core/halo.hpp"
+#include "treacle/model/particles_copy.hpp"
 #include "treacle/mph/mph_neighbourhood.hpp"
 #include "treacle/mph/mph_particles.hpp"
 #include "treacle/mph/mph_repulsion.hpp"
@@ -219,12 +220,9 @@ class MphStep final : public StepMethod<D, Backend> {
 
   std::string notFiniteOnHost() {
     Particles<D> host;
-    toHost(state_.context, state_.particles, host);
+    copyToHost(state_.context, state_.particles, host);
     Buffer<Vec<D>> b(rhs_.size());
-    if constexpr (std::is_same_v<Backend, Cuda>)
-      copyToHost(state_.context, std::span<const Vec<D>>(rhs_), b);
-    else
-      copyValues(state_.context, std::span<const Vec<D>>(rhs_), b.data());
+    copyToHost(state_.context, std::span<const Vec<D>>(rhs_), b.data());
     return describeNotFinite<D>(state_.context, host, b);
   }
 

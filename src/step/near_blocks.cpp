@@ -17,7 +17,7 @@ NearBlocks<D>::NearBlocks(const Case& c, const CellGrid<D>& cells) : cells_(cell
 }
 
 template <int D>
-void NearBlocks<D>::addFluid(std::span<const Vec<D>> position) {
+void NearBlocks<D>::addMoving(std::span<const Vec<D>> position) {
   constexpr std::size_t piece = 4096;
   parallelFor((position.size() + piece - 1) / piece, 2, [&](std::size_t p) {
     std::size_t last = near_.size();  // particles that follow each other are in the same block, most of them
@@ -35,12 +35,12 @@ void NearBlocks<D>::addFluid(std::span<const Vec<D>> position) {
 
 template <int D>
 void NearBlocks<D>::addMovingWalls(const Particles<D>& particles) {
-  for (const std::uint32_t i : movingWalls(particles)) addFluid({&particles.position[i], 1});
+  for (const std::uint32_t i : movingWalls(particles)) addMoving({&particles.position[i], 1});
 }
 
 template <int D>
 void NearBlocks<D>::add(const Particles<D>& particles) {
-  addFluid(particles.position.span().first(particles.fluidCount));
+  addMoving(particles.position.span().first(particles.fluidCount));
   addMovingWalls(particles);
 }
 

@@ -1,17 +1,18 @@
 #include "treacle/step/simulation.hpp"
 
+#include "all_particles.hpp"
 #include "failure.hpp"
-#include "gather_particles.hpp"
+#include "given_step.hpp"
+#include "held_walls.hpp"
+#include "moving_bodies.hpp"
 #include "step_method.hpp"
 #include "treacle/core/processes.hpp"
 #include "treacle/core/team.hpp"
 #include "treacle/model/particles_copy.hpp"
 #include "treacle/step/diagnostics.hpp"
-#include "treacle/step/distant_walls.hpp"
 #include "treacle/step/move_particles.hpp"
 #include "treacle/step/shareable.hpp"
 #include "treacle/step/step_control.hpp"
-#include "treacle/step/wall_motion.hpp"
 
 #include <fmt/format.h>
 
@@ -31,26 +32,12 @@ void toBackend(Context<Cuda>& context, const Particles<D>& host, Particles<D, Cu
   copyToDevice(context, host, particles);
 }
 
-bool someWallOscillates(const Case& c) {
-  return std::ranges::any_of(c.bodies, [](const Body& b) { return b.oscillation.period > 0; });
-}
-bool someWallRotates(const Case& c) {
-  return std::ranges::any_of(c.bodies, [](const Body& b) { return b.rotation.has_value(); });
-}
-
 /// Of the fluid [kg; per metre of depth in 2D].
 template <int D>
 double fluidMass(const Case& c, const Particles<D>& particles) {
   double density = 0;
   for (std::uint32_t i = 0; i < particles.fluidCount; ++i) density += c.materials[particles.material[i]].density;
   return density * std::pow(c.spacing, D);
-}
-
-template <int D>
-bool someWallMoves(const Particles<D>& particles) {
-  for (std::uint32_t i = particles.fluidCount; i < particles.count; ++i)
-    if (norm2(particles.velocity[i]) > 0) return true;
-  return false;
 }
 
 /// Loops of the host have a team.
@@ -64,23 +51,13 @@ void withTeam(F&& body) {
 
 }  // namespace
 
-template <int D>
-void toHost(const Context<Cpu>& context, const Particles<D>& particles, Particles<D>& host) {
-  copyToHost(context, particles, host);
-}
-template <int D>
-void toHost(const Context<Cuda>& context, const Particles<D, Cuda>& particles, Particles<D>& host) {
-  copyToHost(context, particles, host);
-}
-
 template <int D, class Backend>
 struct Simulation<D, Backend>::State : FlowState<D, Backend> {
   using Flow = FlowState<D, Backend>;
   using Flow::theCase, Flow::context, Flow::particles, Flow::step, Flow::time, Flow::timeStep, Flow::velocity,
       Flow::position, Flow::wallsMove, Flow::phases;
 
-  bool wallsRotate, wallVelocitiesChange;
-  Buffer<Vec<D>, Backend> wallChord;  // per wall particle, where some rotate [m/s]
+  MovingBodies<D, Backend> bodies;
   std::unique_ptr<StepMethod<D, Backend>> method;
   std::optional<DistantWalls<D>> distant;  // which `particles` has not
   double lastSpeed = 0;                    // of the fastest particle [m/s]
@@ -90,16 +67,14 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
   bool tooCoarse = false;              // an automatic step was, and it was said
 
   State(const Case& c, Particles<D> state, std::int64_t startStep, double startTime, const Communicator* processes)
-      : Flow(c, startStep, startTime),
-        wallsRotate(someWallRotates(c)),
-        wallVelocitiesChange(wallsRotate || someWallOscillates(c)) {
+      : Flow(c, startStep, startTime), bodies(*this) {
     if (theCase.time.automatic) control.emplace(theCase);
     if (processes && processes->size() > 1) {
       requireShareable(theCase, std::is_same_v<Backend, Cpu> ? BackendKind::Cpu : BackendKind::Cuda);
       this->share(*processes);
     }
     this->fluidOfAll = state.fluidCount;
-    wallsMove = wallVelocitiesChange || someWallMoves(state);
+    wallsMove = someWallMoves(theCase, state);
     const double mass = fluidMass(theCase, state);
     method = theCase.method.kind == MethodKind::Isph ? makeIsphStep(static_cast<Flow&>(*this))
                                                      : makeMphStep(static_cast<Flow&>(*this));
@@ -116,79 +91,10 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     watch.emplace(theCase, start, mass, this->fluidOfAll, wallsMove);
   }
 
-  /// Of the walls those that are near something that moves, where that may be others than before.
-  void chooseWalls() {
-    if (!distant->isDue()) return;
-    Particles<D> walls;
-    copyWallsToHost(context, particles, walls);
-    NearBlocks<D> near(theCase, method->grid());
-    near.addMovingWalls(walls);
-    addFluidTo(near);
-    if (context.communicator) near.unite(*context.communicator);
-    if (distant->differs(near)) replaceWalls(context, distant->held(near, walls), particles);
-    distant->accept(std::move(near));
-  }
-
-  /// Piece by piece: the host need not have room for all places.
-  void addFluidTo(NearBlocks<D>& near) {
-    constexpr std::size_t piece = std::size_t{1} << 20;
-    const std::span<const Vec<D>> x = particles.position.span().first(particles.fluidCount);
-    Buffer<Vec<D>> some;
-    for (std::size_t first = 0; first < x.size(); first += piece) {
-      some.resize(std::min(piece, x.size() - first));
-      copyToHost(context, x.subspan(first, some.size()), some.data());
-      near.addFluid(some);
-    }
-  }
-
   void chooseTimeStep() {
-    if (control) {
-      const StepControl::Step next = control->next(particles.steps, time, lastSpeed);
-      timeStep = next.length, endOfStep = next.end;
-    } else if (theCase.time.courant > 0) {
-      timeStep = courantStep();
-      endOfStep = time + timeStep;
-    } else {
-      endOfStep = static_cast<double>(step + 1) * timeStep;
-    }
-  }
-
-  /// No particle goes farther than so many spacings, and the last step meets the end.
-  double courantStep() const {
-    const TimeSettings& t = theCase.time;
-    double length = t.step;
-    if (lastSpeed * length > t.courant * theCase.spacing) length = t.courant * theCase.spacing / lastSpeed;
-    // Fractions of the time's own rounding would never reach the end.
-    if (time + 1e-3 * length == time)
-      throw RunError(
-          fmt::format("particles at {:.4g} m/s allow steps of {:.3g} s only (time.courant): the time no "
-                      "longer advances",
-                      lastSpeed, length));
-    const double rest = t.end - time;
-    return rest > 0 && length > rest * (1 - 1e-9) ? rest : length;
-  }
-
-  MovingWalls<D> walls() const {
-    const std::uint32_t n = particles.wallBegin();
-    return {this->wallMotion, particles.body.span().subspan(n), particles.position.span().subspan(n)};
-  }
-
-  /// Motions and velocities of walls that oscillate or rotate, for the step at hand.
-  void moveBodies() {
-    if (!wallVelocitiesChange) return;
-    std::vector<WallMotion<D>> motion;
-    for (const Body& body : theCase.bodies)
-      motion.push_back(treacle::wallMotion<D>(theCase.domain, body, time, timeStep));
-    fromHost(context, std::span<const WallMotion<D>>(motion), this->wallMotion);
-    setWallVelocities<D>(context, walls(), particles.velocity.span().subspan(particles.wallBegin()));
-  }
-
-  /// What the walls move with.
-  std::span<const Vec<D>> wallTransport() {
-    if (!wallsRotate) return particles.velocity.span().subspan(particles.wallBegin());
-    wallChord.resize(context, particles.wallCount());
-    setWallChords<D>(context, walls(), wallChord);
-    return wallChord.span();
+    const StepControl::Step next =
+        control ? control->next(particles.steps, time, lastSpeed) : givenStep(theCase, step, time, lastSpeed);
+    timeStep = next.length, endOfStep = next.end;
   }
 
   /// x^{k+1} of [K23 eq. (15)] into `position`; walls by their prescribed motion.
@@ -196,7 +102,7 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     position.resize(context, wallsMove ? particles.count : particles.fluidCount);
     agreed(context, [&] {
       moveRange(0, particles.fluidCount, method->transportVelocities());
-      if (wallsMove) moveRange(particles.wallBegin(), particles.count, wallTransport());
+      if (wallsMove) moveRange(particles.wallBegin(), particles.count, bodies.transportVelocities());
     });
   }
 
@@ -208,12 +114,9 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
                                                u.first(size), position.span().subspan(begin, size));
     if (out == noParticle) return;
     Particles<D> host;
-    toHost(context, particles, host);
+    copyToHost(context, particles, host);
     Vec<D> uOut{};
-    if constexpr (std::is_same_v<Backend, Cuda>)
-      uOut = valueOnHost(context, &u[out]);
-    else
-      uOut = u[out];
+    copyToHost(context, u.subspan(out, 1), &uOut);
     watch->requireSlow(timeStep, norm(uOut));  // then it is not the domain that is too small
     throw RunError(describeLeaving<D>(host, begin + out, uOut, timeStep));
   }
@@ -262,7 +165,7 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
       ++report.rejected;
       particles.modes.pressure = {};  // of steps of that length
       chooseTimeStep();
-      moveBodies();
+      bodies.prepare();
     }
     return solved;
   }
@@ -297,10 +200,10 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
   StepReport advance() {
     StepReport report;
     chooseTimeStep();
-    moveBodies();
+    bodies.prepare();
     phases.start(context);
     phases.run(context, treacle::phases::search, [&] {
-      chooseWalls();
+      holdNearWalls(*this, method->grid(), *distant);
       method->sortParticles();
     });
     phases.run(context, treacle::phases::lists, [&] { method->findNeighbours(); });
@@ -327,9 +230,9 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
 
   std::vector<SolverTrial> convergence(std::span<const SolverSettings> solvers) {
     chooseTimeStep();
-    moveBodies();
+    bodies.prepare();
     phases.start(context);
-    chooseWalls();
+    holdNearWalls(*this, method->grid(), *distant);
     method->sortParticles();
     method->findNeighbours();
     method->predict();
@@ -340,39 +243,9 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
   }
 
   std::size_t bytes() const {
-    std::size_t sum = velocity.bytes() + position.bytes() + wallChord.bytes() + method->bytes();
+    std::size_t sum = velocity.bytes() + position.bytes() + bodies.bytes() + method->bytes();
     particles.forEachField([&](const auto& field) { sum += field.bytes(); });
     return std::is_same_v<Backend, Cpu> ? sum + distant->bytes() : sum;
-  }
-
-  ParticleNumbers numbers() const {
-    ParticleNumbers all = particles.numbers();
-    all.fluid = this->fluidOfAll, all.ghosts = 0;
-    all.wall += distant->count();
-    all.surfaces += distant->surfaceCount();
-    return all;
-  }
-
-  void copyParticles(Particles<D>& host) const {
-    if (context.communicator) return gather(host);
-    host.resize(numbers());
-    copyFieldsToHost(context, particles, host);
-    distant->copyTo(host);
-  }
-
-  /// Of all processes, to the first one.
-  void gather(Particles<D>& host) const {
-    const auto from = [&](const Particles<D>& own) {
-      gatherParticles(*context.communicator, *context.halo, own, numbers(), host);
-    };
-    if constexpr (std::is_same_v<Backend, Cpu>) {
-      from(particles);
-    } else {
-      Particles<D> own;
-      copyToHost(context, particles, own);
-      from(own);
-    }
-    if (context.communicator->rank() == 0) distant->copyTo(host);
   }
 };
 
@@ -403,11 +276,11 @@ const Particles<D, Backend>& Simulation<D, Backend>::particles() const {
 }
 template <int D, class Backend>
 void Simulation<D, Backend>::copyParticles(Particles<D>& host) const {
-  state_->copyParticles(host);
+  copyAllParticles(*state_, *state_->distant, host);
 }
 template <int D, class Backend>
 ParticleNumbers Simulation<D, Backend>::numbers() const {
-  return state_->numbers();
+  return numbersOfAll(*state_, *state_->distant);
 }
 template <int D, class Backend>
 double Simulation<D, Backend>::time() const {
@@ -431,10 +304,8 @@ Diagnostics Simulation<D, Backend>::diagnostics() const {
   return state_->diagnostics();
 }
 
-#define TREACLE_INSTANTIATE(Backend)                                                             \
-  template void toHost<2>(const Context<Backend>&, const Particles<2, Backend>&, Particles<2>&); \
-  template void toHost<3>(const Context<Backend>&, const Particles<3, Backend>&, Particles<3>&); \
-  template class Simulation<2, Backend>;                                                         \
+#define TREACLE_INSTANTIATE(Backend)     \
+  template class Simulation<2, Backend>; \
   template class Simulation<3, Backend>;
 TREACLE_FOR_EACH_BACKEND(TREACLE_INSTANTIATE)
 #undef TREACLE_INSTANTIATE

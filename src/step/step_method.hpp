@@ -55,10 +55,4 @@ std::unique_ptr<StepMethod<D, Backend>> makeMphStep(FlowState<D, Backend>& state
 template <int D, class Backend>
 std::unique_ptr<StepMethod<D, Backend>> makeIsphStep(FlowState<D, Backend>& state);
 
-/// All fields on the host, to describe what went wrong.
-template <int D>
-void toHost(const Context<Cpu>&, const Particles<D>& particles, Particles<D>& host);
-template <int D>
-void toHost(const Context<Cuda>&, const Particles<D, Cuda>& particles, Particles<D>& host);
-
 }  // namespace treacle

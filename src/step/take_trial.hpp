@@ -1,6 +1,7 @@
 #pragma once
 
 #include "flow_state.hpp"
+#include "treacle/core/copy_values.hpp"
 #include "treacle/core/phase_clock.hpp"
 #include "treacle/step/solve_stages.hpp"
 #include "treacle/step/solver_trial.hpp"
@@ -40,11 +41,7 @@ SolverTrial takeTrial(Context<Backend>& context, const SolverSettings& settings,
   trial.setupSeconds = clock.seconds()[0], trial.solveSeconds = clock.seconds()[1];
 
   Buffer<double> squares(static_cast<std::size_t>(trial.report.iterations) + 1);
-  const auto written = std::span<const double>(history).first(squares.size());
-  if constexpr (std::is_same_v<Backend, Cuda>)
-    copyToHost(context, written, squares);
-  else
-    copyValues(context, written, squares.data());
+  copyToHost(context, std::span<const double>(history).first(squares.size()), squares.data());
   for (const double square : squares) trial.residuals.push_back(std::sqrt(square));
   return trial;
 }

@@ -42,14 +42,11 @@ template <class T>
 void copyToHost(const Context<Cuda>& context, std::span<const T> from, T* host) {
   if (!from.empty()) copyBytesToHost(context, from.data(), host, from.size_bytes());
 }
-template <class T>
-void fromHost(Context<Cpu>& context, std::span<const T> host, Buffer<T>& to) {
+/// All that is there, to a buffer that gets its size. Errors: std::bad_alloc.
+template <class T, class Backend>
+void fromHost(const Context<Backend>& context, std::span<const T> host, Buffer<T, Backend>& to) {
   to.resize(context, host.size());
-  std::copy(host.begin(), host.end(), to.begin());
-}
-template <class T>
-void fromHost(Context<Cuda>& context, std::span<const T> host, Buffer<T, Cuda>& to) {
-  copyToDevice(context, host, to);
+  copyFromHost(context, host, to.data());
 }
 
 }  // namespace treacle

@@ -66,6 +66,10 @@ Vec<3> wallCenter(const Body& body, double t);
 /// The acceleration of a wall, or of its centre, at time t [m/s2].
 Vec<3> wallAcceleration(const Body& body, double t);
 
+/// Whether some wall of the case does so.
+bool someWallOscillates(const Case& c);
+bool someWallRotates(const Case& c);
+
 /// All of a wall's motion in that step.
 template <int D>
 WallMotion<D> wallMotion(const Domain& domain, const Body& body, double t, double dt);

@@ -2,6 +2,7 @@
 
 #include "treacle/linear/hat_multigrid.hpp"
 #include "treacle/linear/spectral_estimate.hpp"
+#include "treacle/precondition/element_bits.hpp"
 #include "treacle/precondition/hat_grid.hpp"
 #include "treacle/precondition/particle_products.hpp"
 
@@ -32,6 +33,12 @@ struct ProjectionConstants {
 };
 template <int D>
 ProjectionConstants projectionConstants(const MphPairs<D>& pairs);
+
+/// Whether 32 bits are too few for the elements of C (element_bits.hpp).
+template <int D>
+bool isTooStiffToPack(const MphPairs<D>& pairs) {
+  return projectionConstants(pairs).stiffness > mostPackedStiffness<D>;
+}
 
 /// The degrees that pay: those that `chosen` leaves at zero.
 ProjectionDegrees chooseDegrees(ProjectionDegrees chosen, const ProjectionConstants& constants);

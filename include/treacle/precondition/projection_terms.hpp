@@ -41,7 +41,7 @@ struct ScalarField {
   TREACLE_HD T& operator[](std::size_t k) const { return at[k]; }
 };
 /// In two dimensions words 0 and 1 are the position; in three positions have 16 bits (ParticleProducts), word 0
-/// and the upper half of word 1 hold them.
+/// and the lower half of word 1 hold them.
 struct alignas(16) PlacedScalar {
   std::uint32_t word[3];
   float value;

@@ -82,7 +82,7 @@ class StagedLists {
 
   unsigned sharing_ = 1;
   bool wide_ = false;
-  double unit_ = 0;
+  double unit_ = 0;  // of the elements [1/m]
   Buffer<std::uint32_t, Cuda> member_, memberCount_;
   Buffer<std::uint64_t, Cuda> start_, place_;
   Buffer<std::uint32_t, Cuda> column_, row_;  // words, or halves of wide ones

@@ -24,13 +24,13 @@ class NearBlocks {
   /// No block is near. `cells`: those of the case's search.
   NearBlocks(const Case& c, const CellGrid<D>& cells);
 
-  /// There are fluid particles at these places [m].
-  void addFluid(std::span<const Vec<D>> position);
+  /// At these places there is something that moves [m].
+  void addMoving(std::span<const Vec<D>> position);
   /// Those wall particles that move are where they are.
   void addMovingWalls(const Particles<D>& particles);
   /// And what is so to any of these processes, at all of them. Collective.
   void unite(const Communicator& processes) { processes.anyOf(near_); }
-  /// Both of all particles.
+  /// All fluid, and those wall particles that move.
   void add(const Particles<D>& particles);
 
   /// Whether particle i never moves: neither it nor the wall that it belongs to, nor does the domain, which brings
