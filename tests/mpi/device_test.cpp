@@ -1,0 +1,85 @@
+#include "mpi/compare_simulations.hpp"
+#include "support/gpu.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+// The same as on the CPU, where each process has a device, or processes share one.
+
+namespace treacle::test {
+namespace {
+
+/// Each process computes on the device that has its number, or shares one.
+class SharedOnDevices : public testing::Test {
+ protected:
+  void SetUp() override {
+    TREACLE_SKIP_WITHOUT_GPU();
+    useDevice(job().localRank() % cudaDevices().size());
+  }
+};
+
+TEST_F(SharedOnDevices, BlockJacobi) {
+  compare<2, Cuda>({"dam-break-2d.toml", 4, {"solver.preconditioner=block-jacobi", "solver.tolerance=1e-18"}});
+}
+
+TEST_F(SharedOnDevices, DoublePrecision) {
+  const std::vector<std::string> keys = {"solver.precision=double", "solver.deflation=0",
+                                         "solver.tolerance=1e-16"};
+  compare<2, Cuda>({"dam-break-2d.toml", 20, keys});
+  compare<2, Cuda>({"published/dam-break-2d.toml", 20, keys});
+}
+
+TEST_F(SharedOnDevices, ProjectedMultigrid) {
+  compare<2, Cuda>({"dam-break-2d.toml", 20, {"solver.tolerance=1e-16"}});
+  compare<2, Cuda>({"published/dam-break-2d.toml", 20, {"solver.tolerance=1e-16"}});
+  compare<2, Cuda>({"dam-break-2d.toml", 10, {"resolution=2", "output.balance=true", "solver.tolerance=1e-16"}});
+}
+
+TEST_F(SharedOnDevices, ThreeDimensions) {
+  compare<3, Cuda>({"dam-break-3d.toml", 5, {"solver.tolerance=1e-16"}});
+  compare<3, Cuda>({"published/dam-break-3d.toml", 5, {"solver.tolerance=1e-16"}});
+}
+
+/// Fluid that goes around periodic ends, and a plate that moves; walls that turn.
+TEST_F(SharedOnDevices, MovingWalls) {
+  const std::vector<std::string> keys = {"solver.tolerance=1e-20", "solver.deflation=0"};
+  compare<2, Cuda>({"../tests/validation/cases/couette.toml", 20, keys});
+  compare<2, Cuda>({"../tests/validation/cases/taylor-couette.toml", 10, keys});
+}
+
+TEST_F(SharedOnDevices, SameBitsFromRunToRun) {
+  const Case c = Settings{"dam-break-2d.toml", 0, {}}.read();
+  Simulation<2, Cuda> one(c, made<2>(c), 0, 0, &job()), other(c, made<2>(c), 0, 0, &job());
+  for (int k = 0; k < 10; ++k) {
+    const StepReport a = one.advance(), b = other.advance();
+    EXPECT_EQ(a.iterations, b.iterations);
+    EXPECT_EQ(a.residual, b.residual);
+    EXPECT_EQ(a.diagnostics.kineticEnergy, b.diagnostics.kineticEnergy);
+  }
+}
+
+/// The device's way against the CPU's, each shared by all processes.
+TEST_F(SharedOnDevices, AsOnTheCpu) {
+  const Case c = Settings{"dam-break-2d.toml", 0, {"solver.tolerance=1e-16"}}.read();
+  Simulation<2, Cuda> device(c, made<2>(c), 0, 0, &job());
+  Simulation<2> host(c, made<2>(c), 0, 0, &job());
+  for (int k = 0; k < 10; ++k) expectSame(c, device.advance(), host.advance(), false);
+}
+
+/// A particle that leaves an open domain is one process's: all end with its words.
+TEST_F(SharedOnDevices, AgreeOnAParticleThatLeaves) {
+  Case c = Settings{"dam-break-2d.toml", 0, {"domain.periodic=false", "watch.courant=0"}}.read();
+  c.gravity = {1e5, 0, 0};
+  Simulation<2, Cuda> shared(c, made<2>(c), 0, 0, &job());
+  std::string error;
+  try {
+    for (int k = 0; k < 50; ++k) shared.advance();
+  } catch (const RunError& e) {
+    error = e.what();
+  }
+  EXPECT_NE(error.find("left the domain"), std::string::npos) << error;
+}
+
+}  // namespace
+}  // namespace treacle::test
