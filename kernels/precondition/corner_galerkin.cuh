@@ -2,6 +2,7 @@
 
 #include "core/launch.hpp"
 #include "precondition/hat_corners.cuh"
+#include "precondition/own_cells.cuh"
 #include "treacle/core/device_link.hpp"
 #include "treacle/linear/block_csr.hpp"
 #include "treacle/linear/hat_nodes.hpp"
@@ -10,13 +11,13 @@
 namespace treacle {
 
 /// Galerkin operators that couple the corners of a cell by what each fluid particle in it adds: what the kernels
-/// read and write. `term(i, a, b)` is the block between two corners, which stand for themselves (CornerHat). Cells
-/// are numbered by the node at their lower corner.
+/// read and write. `term(i, a, b)` is the block between two corners, which stand for themselves (CornerHat).
 template <int D, int B, class T, class Term>
 struct CornerGalerkin {
   static constexpr int corners = 1 << D, pairs = corners * corners;
   HatCells<D> cells;
   HatNodesView<D> nodes;
+  OwnCellsView own;
   OwnRanges ranges;
   const Vec<D>* position;
   Term term;
@@ -53,6 +54,7 @@ __global__ void __launch_bounds__(128) cornerPartsKernel(const __grid_constant__
   const std::uint32_t c = blockIdx.x * (blockDim.x / pairs) + threadIdx.x / pairs;
   const int own = static_cast<int>(threadIdx.x) % pairs, a = own / corners, b = own % corners;
   CornerHat<D, T>* const ofCell = hats + threadIdx.x - own;
+  const std::uint32_t number = c < g.nodes.count ? g.own.at(c) : noNode;
   IndexRange fluid;
   Vec<D, int> cell{};
   if (c < g.nodes.count) {
@@ -77,8 +79,8 @@ __global__ void __launch_bounds__(128) cornerPartsKernel(const __grid_constant__
       for (int k = 0; k < B * B; ++k) sum.a[k] += part.a[k];
     }
   }
-  if (c < g.nodes.count)
-    for (int k = 0; k < B * B; ++k) g.parts[c * std::size_t{pairs} + own].a[k] = static_cast<T>(sum.a[k]);
+  if (number != noNode)
+    for (int k = 0; k < B * B; ++k) g.parts[number * std::size_t{pairs} + own].a[k] = static_cast<T>(sum.a[k]);
 }
 
 /// A warp per row, one lane per adjacent node; adds up the parts of the cells that both are corners of. The cells
@@ -102,7 +104,7 @@ __global__ void __launch_bounds__(128)
     if (g.cells.grid.periodic[k] && n == 1 && step == 1) inside = false;  // the same one again
     inside = inside && cell[k] >= 0 && cell[k] < n;
   }
-  const std::uint32_t number = inside ? g.nodes.at(cell) : noNode;
+  const std::uint32_t number = inside ? g.own.at(g.nodes.at(cell)) : noNode;
   const int ownCorner = inside ? cornerOf(g.cells, node, cell) : 0;
   Block<B> sum{};
   for (int o = 0; o < corners; ++o) {
@@ -122,10 +124,12 @@ template <int D, int B, class T, class Term>
 void cornerGalerkin(Context<Cuda>& context, const SortedParticles<D>& particles, const HatNodes<D, Cuda>& nodes,
                     const Term& term, Buffer<T, Cuda>& parts, BlockCsr<B, double, Cuda>& a) {
   constexpr int pairs = CornerGalerkin<D, B, T, Term>::pairs;
-  parts.resize(context, std::size_t{B * B * pairs} * nodes.count());
+  const OwnCells<D> own(context, particles, nodes);
+  parts.resize(context, std::size_t{B * B * pairs} * own.count());
   hatPattern(context, nodes, a, 1);
   const CornerGalerkin<D, B, T, Term> g{.cells = {particles.grid},
                                         .nodes = nodes.view(),
+                                        .own = own.view(),
                                         .ranges = particles.ownRanges(),
                                         .position = particles.position.data(),
                                         .term = term,

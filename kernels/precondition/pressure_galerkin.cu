@@ -1,4 +1,5 @@
 #include "precondition/hat_corners.cuh"
+#include "precondition/own_cells.cuh"
 #include "precondition/placed_sums.cuh"
 #include "treacle/core/device_link.hpp"
 #include "treacle/precondition/hat_grid.hpp"
@@ -10,7 +11,7 @@ template <int D>
 constexpr int slots = D == 2 ? 9 : 27;  // nodes that the neighbours of a particle touch
 
 /// Products of the columns of C P are the same small matrix for all particles of a half cell: they touch the same
-/// 3^D nodes. Cells are numbered by the node at their lower corner.
+/// 3^D nodes.
 template <int D, class T>
 struct CellParts {
   static constexpr int halves = 1 << D, gram = slots<D> * slots<D>, corners = 1 << D, mass = corners * corners;
@@ -25,6 +26,7 @@ template <int D, class T>
 struct PressureGalerkin {
   HatCells<D> cells;
   HatNodesView<D> nodes;
+  OwnCellsView own;
   const SymmetricBlock<D>* renormalisation;  // per fluid particle; null: none
   Vec<D, T> toCells;                         // unit of length of the lists' view in cells
   ProjectionTable<double> table;
@@ -93,9 +95,11 @@ __global__ void __launch_bounds__(D == 2 ? 96 : 256)
   const Vec<D, int> cell = g.nodes.pointOf(blockIdx.x);
   for (int k = 0; k < D; ++k)
     if (cell[k] >= g.cells.grid.count[k]) return;  // the last nodes of an open axis are no lower corners
+  const std::uint32_t number = g.own.at(blockIdx.x);
+  if (number == noNode) return;
   const std::size_t c = g.cells.grid.linear(cell);
   const auto [begin, end] = g.ranges.fluid(c);
-  T* grams = g.parts.grams + blockIdx.x * std::size_t{Parts::halves} * Parts::gram;
+  T* grams = g.parts.grams + number * std::size_t{Parts::halves} * Parts::gram;
   const int own = threadIdx.x / slots<D>, n = threadIdx.x % slots<D>;
   const auto rowsOf = [&](std::uint32_t i) {
     return static_cast<int>(near.sliceStart[i / nearSlice + 1] - near.sliceStart[i / nearSlice]);
@@ -178,7 +182,7 @@ __global__ void __launch_bounds__(D == 2 ? 96 : 256)
   const IndexRange walls = g.ranges.walls(c);
   add(begin, end);
   add(walls.begin, walls.end);
-  g.parts.masses[blockIdx.x * std::size_t{Parts::mass} + threadIdx.x] = static_cast<T>(sum);
+  g.parts.masses[number * std::size_t{Parts::mass} + threadIdx.x] = static_cast<T>(sum);
 }
 
 /// Of the six half cells along an axis that touch a node: the cell, the node's place among the half's three nodes,
@@ -223,7 +227,7 @@ __global__ void __launch_bounds__(128) pressureGalerkinKernel(const __grid_const
         Vec<D, int> cell;
         cell[0] = x.cell, cell[1] = y.cell;
         if constexpr (D == 3) cell[2] = z.cell;
-        const std::uint32_t c = g.nodes.at(cell);
+        const std::uint32_t c = g.own.at(g.nodes.at(cell));
         if (c == noNode) continue;
         // Every second half cell from the first one on is an upper half.
         const int half = (~tx & 1) | (~ty & 1) << 1 | (D == 3 ? (~tz & 1) << 2 : 0);
@@ -233,7 +237,7 @@ __global__ void __launch_bounds__(128) pressureGalerkinKernel(const __grid_const
     }
   }
   g.cells.forEachCellAround(node, 1, [&](const Vec<D, int>& cell) {
-    const std::uint32_t c = g.nodes.at(cell);
+    const std::uint32_t c = g.own.at(g.nodes.at(cell));
     if (c == noNode || !g.cells.isCorner(other, cell)) return;
     sum += g.parts.masses[c * std::size_t{Parts::mass} + cornerOf(g.cells, node, cell) * Parts::corners +
                           cornerOf(g.cells, other, cell)];
@@ -251,18 +255,20 @@ void pressureGalerkin(Context<Cuda>& context, const MphPairs<D>& pairs, const Ne
   const double unit = LocalPositions<D, T>::unit(pairs);
   Vec<D, T> toCells;
   for (int k = 0; k < D; ++k) toCells[k] = static_cast<T>(unit * pairs.grid.inverseEdge[k]);
-  parts.resize(context, Parts::numbers() * nodes.count());
+  const OwnCells<D> own(context, pairs, nodes);
+  parts.resize(context, Parts::numbers() * own.count());
   hatPattern(context, nodes, s);
   const PressureGalerkin<D, T> g{
       .cells = {pairs.grid},
       .nodes = nodes.view(),
+      .own = own.view(),
       .renormalisation = pairs.renormalisation,
       .toCells = toCells,
       .table = table,
       .ranges = pairs.ownRanges(),
       .position = pairs.position.data(),
       .material = pairs.material.data(),
-      .parts = {parts.data(), parts.data() + std::size_t{Parts::halves} * Parts::gram * nodes.count()},
+      .parts = {parts.data(), parts.data() + std::size_t{Parts::halves} * Parts::gram * own.count()},
       .rowStart = s.rowStart.data(),
       .column = s.column.data(),
       .value = reinterpret_cast<double*>(s.value.data())};

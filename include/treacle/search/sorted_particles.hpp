@@ -11,6 +11,7 @@ namespace treacle {
 
 struct IndexRange {
   std::uint32_t begin = 0, end = 0;
+  TREACLE_HD std::uint32_t size() const { return end - begin; }
 };
 
 /// The own particles of each cell, all of whose particles are own or ghosts; [0, 0) where they are ghosts.
