@@ -56,7 +56,6 @@ class HostLink final : public DeviceLink {
     copyBytesToDevice(context_, host.data(), values, count * sizeof(T));
   }
 
-  static std::size_t padded(std::size_t bytes) { return (bytes + 15) / 16 * 16; }
   /// One piece of memory for all messages, registered with the device once it has the size that is needed.
   std::byte* makeRoom(std::span<const Communicator::Message> sent,
                       std::span<const Communicator::Message> received) {
@@ -92,11 +91,14 @@ bool haveOneEach(const Communicator& job) {
 }  // namespace
 
 std::unique_ptr<DeviceLink> DeviceLink::make(const Communicator& job, const Context<Cuda>& context) {
-  const bool unwanted = std::getenv("TREACLE_NO_NCCL") != nullptr;
-  const std::vector<std::uint8_t> unwantedAnywhere = job.all(std::uint8_t{unwanted});
-  const bool wanted = std::count(unwantedAnywhere.begin(), unwantedAnywhere.end(), 1) == 0;
-  if (haveOneEach(job) && wanted)
+  const char* const asked = std::getenv("TREACLE_LINK");
+  std::string wanted = asked ? asked : "";
+  wanted = job.first(wanted).text;  // the same for all
+  if (haveOneEach(job) && wanted != "mpi") {
+    if (wanted != "nccl")
+      if (auto link = makePeerLink(job, context)) return link;
     if (auto link = makeNcclLink(job, context)) return link;
+  }
   return std::make_unique<HostLink>(job, context);
 }
 

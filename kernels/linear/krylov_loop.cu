@@ -1,6 +1,7 @@
 #include "treacle/linear/krylov_loop.hpp"
 
 #include "core/launch.hpp"
+#include "treacle/core/device_link.hpp"
 
 namespace treacle {
 namespace {
@@ -29,7 +30,7 @@ SolveReport KrylovLoop<Cuda>::report(Context<Cuda>& context) const {
 }
 
 void KrylovLoop<Cuda>::record(Context<Cuda>& context, const std::function<void()>& body) {
-  if (!context.usesGraphs() || context.link) {
+  if (!context.usesGraphs() || (context.link && !context.link->canBeRecorded())) {
     body_ = body;
     return;
   }

@@ -21,6 +21,20 @@ struct OwnCellsView {
   }
 };
 
+/// One thread per node: whether its cell has own particles. No atomics.
+template <int D>
+void markOwnCells(const Context<Cuda>& context, const SortedParticles<D>& particles, const HatNodesView<D>& nodes,
+                  std::uint32_t* marks) {
+  forEach(context, nodes.count,
+          [grid = particles.grid, nodes, own = particles.ownRanges(), marks] __device__(std::size_t n) {
+            const Vec<D, int> cell = nodes.pointOf(static_cast<std::uint32_t>(n));
+            bool inside = true;  // the last nodes of an open axis are no lower corners
+            for (int k = 0; k < D; ++k) inside = inside && cell[k] < grid.count[k];
+            const std::size_t c = inside ? grid.linear(cell) : 0;
+            marks[n] = inside && (own.fluid(c).size() > 0 || own.walls(c).size() > 0);
+          });
+}
+
 /// Where the simulation is alone nothing is counted, and all nodes are given room.
 template <int D>
 class OwnCells {
@@ -29,15 +43,7 @@ class OwnCells {
       : count_(nodes.count()) {
     if (!context.halo) return;
     start_.resize(context, std::size_t{nodes.count()} + 1);
-    forEach(context, nodes.count(),
-            [grid = particles.grid, nodes = nodes.view(), own = particles.ownRanges(),
-             start = start_.data()] __device__(std::size_t n) {
-              const Vec<D, int> cell = nodes.pointOf(static_cast<std::uint32_t>(n));
-              bool inside = true;  // the last nodes of an open axis are no lower corners
-              for (int k = 0; k < D; ++k) inside = inside && cell[k] < grid.count[k];
-              const std::size_t c = inside ? grid.linear(cell) : 0;
-              start[n] = inside && (own.fluid(c).size() > 0 || own.walls(c).size() > 0);
-            });
+    markOwnCells(context, particles, nodes.view(), start_.data());
     count_ = startRows(context, start_);
   }
 

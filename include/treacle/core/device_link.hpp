@@ -17,9 +17,10 @@ namespace treacle {
 /// those of device memory. Errors: DeviceFailure.
 class DeviceLink {
  public:
-  /// By NCCL, where the build has it and every process has a device of its own; otherwise by way of the host's
-  /// memory and MPI, for which the host waits. Collective. The communicator and the context must outlive it. The
-  /// environment variable TREACLE_NO_NCCL does without NCCL.
+  /// The quickest there is. Where every process has a device of its own: the memory of the others, if all are on
+  /// one host and their devices reach each other; else NCCL, if the build has it. Otherwise MPI by way of the
+  /// host's memory, for which the host waits. The environment variable TREACLE_LINK, "nccl" or "mpi", leaves out
+  /// what is quicker. Collective. The communicator and the context must outlive it.
   static std::unique_ptr<DeviceLink> make(const Communicator& job, const Context<Cuda>& context);
   virtual ~DeviceLink() = default;
 
@@ -34,7 +35,9 @@ class DeviceLink {
   /// flags[k]: the largest.
   virtual void max(std::uint8_t* flags, std::size_t count) = 0;
 
-  /// "NCCL 2.28.9" or "MPI"
+  /// Whether graphs may have what it does, in the bodies of loops, too.
+  virtual bool canBeRecorded() const { return false; }
+  /// "peer memory", "NCCL 2.28.9" or "MPI"
   virtual std::string name() const = 0;
 };
 

@@ -39,8 +39,8 @@ class KrylovLoop<Cpu> {
 
 /// On the device the loop is a graph with a conditional node: the host launches it once and looks at the scalars
 /// when it has ended. The graph of the last solve is kept, since to give its kernels new arguments takes a third
-/// of the time that a new graph takes. Where devices share the simulation the host starts each iteration: what a
-/// link tells another device cannot be a part of a conditional node.
+/// of the time that a new graph takes. The host starts each iteration where a link to other devices cannot be a
+/// part of that (DeviceLink::canBeRecorded).
 template <>
 class KrylovLoop<Cuda> {
  public:

@@ -1,0 +1,306 @@
+#include "core/device_link.hpp"
+
+#include "core/launch.hpp"
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <utility>
+#include <vector>
+
+// Between the devices of one host, which can write to each other's memory: a kernel puts what it sends into the
+// mailbox of its peer, says so by a flag there, waits for the flag of what it gets, and takes that out of its own
+// mailbox. Nothing but kernels is launched, so a graph may have all of it, in the body of a loop, too.
+
+namespace treacle {
+namespace {
+
+/// Every message is moved by so many blocks at most, each a slice of its own with a flag of its own.
+constexpr unsigned mostBlocks = 32, threads = 512;
+constexpr int mostPeers = 15;
+/// Room for a message; longer ones go in pieces.
+constexpr std::size_t capacity = std::size_t{16} << 20;
+/// Flags of different blocks are in lines of their own.
+constexpr std::size_t flagBytes = 64;
+/// What a process has in its mailbox for each other one: flags, and two places for messages that take turns. When
+/// the second next message is written, the peer has said that it began the next exchange, so it has taken out the
+/// one before.
+constexpr std::size_t slotBytes = mostBlocks * flagBytes + 2 * capacity;
+
+struct Peer {
+  std::byte *there, *here;  // slots: of this process in the peer's mailbox, of the peer in this one's
+  unsigned* epoch;          // per block: number of the last exchange with the peer, the same for all of them
+
+  __device__ static unsigned* flag(std::byte* slot, unsigned block) {
+    return reinterpret_cast<unsigned*>(slot + block * flagBytes);
+  }
+  __device__ static std::byte* message(std::byte* slot, unsigned epoch) {
+    return slot + mostBlocks * flagBytes + (epoch & 1) * capacity;
+  }
+  /// Everything that the block wrote before the last barrier can be seen by the peer, which waits for it.
+  __device__ void signal(unsigned block, unsigned number) const {
+    __threadfence_system();
+    asm volatile("st.release.sys.global.u32 [%0], %1;" ::"l"(flag(there, block)), "r"(number) : "memory");
+  }
+  __device__ void await(unsigned block, unsigned number) const {
+    unsigned seen;
+    do {
+      asm volatile("ld.acquire.sys.global.u32 %0, [%1];" : "=r"(seen) : "l"(flag(here, block)) : "memory");
+    } while (static_cast<int>(seen - number) < 0);
+  }
+};
+
+/// A round of an exchange with one peer: up to two pieces of memory each way, one behind the other in the mailbox.
+struct Round {
+  struct Piece {
+    std::byte* data = nullptr;
+    std::size_t bytes = 0;
+  };
+  std::array<Piece, 2> sent, received;
+};
+struct Exchange {
+  Peer peer[mostPeers];
+  Round round[mostPeers];
+};
+
+/// Words [begin, end) of bytes; what another device may have written is read past the first-level cache.
+template <class Word>
+__device__ inline void copyWords(const std::byte* from, std::byte* to, std::size_t bytes) {
+  for (std::size_t k = threadIdx.x; k < bytes / sizeof(Word); k += blockDim.x)
+    reinterpret_cast<Word*>(to)[k] = __ldcg(reinterpret_cast<const Word*>(from) + k);
+}
+/// This block's slice of a message: the same bytes for who sends and who receives it.
+__device__ inline void copySlice(const std::byte* from, std::byte* to, std::size_t bytes) {
+  const std::size_t length = padded((bytes + gridDim.x - 1) / gridDim.x), begin = blockIdx.x * length;
+  if (begin >= bytes) return;
+  bytes = length < bytes - begin ? length : bytes - begin;
+  from += begin, to += begin;
+  const std::size_t all = reinterpret_cast<std::size_t>(from) | reinterpret_cast<std::size_t>(to) | bytes;
+  if (all % 16 == 0) return copyWords<uint4>(from, to, bytes);
+  if (all % 4 == 0) return copyWords<unsigned>(from, to, bytes);
+  copyWords<unsigned char>(from, to, bytes);
+}
+
+/// A row of mostBlocks blocks per peer.
+__global__ void __launch_bounds__(threads) exchangeKernel(const __grid_constant__ Exchange e) {
+  waitForEarlierKernels();
+  const Peer& peer = e.peer[blockIdx.y];
+  const Round& round = e.round[blockIdx.y];
+  const unsigned block = blockIdx.x, number = peer.epoch[block] + 1;
+  std::byte* const there = Peer::message(peer.there, number);
+  copySlice(round.sent[0].data, there, round.sent[0].bytes);
+  copySlice(round.sent[1].data, there + padded(round.sent[0].bytes), round.sent[1].bytes);
+  __syncthreads();
+  if (threadIdx.x == 0) {
+    peer.signal(block, number);
+    peer.await(block, number);
+    peer.epoch[block] = number;
+  }
+  __syncthreads();
+  const std::byte* const here = Peer::message(peer.here, number);
+  copySlice(here, round.received[0].data, round.received[0].bytes);
+  copySlice(here + padded(round.received[0].bytes), round.received[1].data, round.received[1].bytes);
+}
+
+struct Peers {
+  Peer peer[mostPeers];
+  int count, rank;
+};
+
+struct Add {
+  template <class T>
+  __device__ T operator()(T a, T b) const {
+    return a + b;
+  }
+};
+struct Larger {
+  template <class T>
+  __device__ T operator()(T a, T b) const {
+    return a > b ? a : b;
+  }
+};
+
+/// One thread per number and peer, then one per number: everybody's values joined in the order of ranks.
+template <class T, class Join>
+__global__ void __launch_bounds__(threads)
+    joinKernel(const __grid_constant__ Peers peers, T* values, std::size_t count, Join join) {
+  waitForEarlierKernels();
+  const unsigned block = blockIdx.x;
+  const std::size_t first = block * std::size_t{blockDim.x} + threadIdx.x,
+                    stride = std::size_t{gridDim.x} * blockDim.x;
+  for (int p = 0; p < peers.count; ++p) {
+    const Peer& peer = peers.peer[p];
+    T* there = reinterpret_cast<T*>(Peer::message(peer.there, peer.epoch[block] + 1));
+    for (std::size_t k = first; k < count; k += stride) there[k] = values[k];
+  }
+  __syncthreads();
+  if (threadIdx.x < static_cast<unsigned>(peers.count)) {
+    const Peer& peer = peers.peer[threadIdx.x];
+    const unsigned number = peer.epoch[block] + 1;
+    peer.signal(block, number);
+    peer.await(block, number);
+    peer.epoch[block] = number;
+    // Those that have nothing to do this time: which of the two places is next must be the same for all.
+    for (unsigned idle = gridDim.x + block; idle < mostBlocks; idle += gridDim.x) peer.epoch[idle] = number;
+  }
+  __syncthreads();
+  for (std::size_t k = first; k < count; k += stride) {
+    T joint{};
+    for (int p = 0; p <= peers.count; ++p) {  // the peers in the order of ranks, this process between them
+      if (p == peers.rank) joint = p == 0 ? values[k] : join(joint, values[k]);
+      if (p == peers.count) break;
+      const Peer& peer = peers.peer[p];
+      const T theirs = __ldcg(reinterpret_cast<const T*>(Peer::message(peer.here, peer.epoch[block])) + k);
+      joint = p == 0 && peers.rank != 0 ? theirs : join(joint, theirs);
+    }
+    values[k] = joint;
+  }
+}
+
+/// Memory that other processes can open.
+class Mailbox {
+ public:
+  explicit Mailbox(std::size_t bytes) {
+    TREACLE_CUDA_CHECK(cudaMalloc(&memory_, bytes));
+    TREACLE_CUDA_CHECK(cudaMemset(memory_, 0, bytes));
+    TREACLE_CUDA_CHECK(cudaDeviceSynchronize());
+  }
+  Mailbox(const Mailbox&) = delete;
+  ~Mailbox() {
+    for (void* other : opened_) cudaIpcCloseMemHandle(other);
+    cudaFree(memory_);
+  }
+
+  std::byte* data() const { return static_cast<std::byte*>(memory_); }
+  cudaIpcMemHandle_t handle() const {
+    cudaIpcMemHandle_t handle{};
+    if (cudaIpcGetMemHandle(&handle, memory_) != cudaSuccess) cudaGetLastError();  // opening it will fail
+    return handle;
+  }
+  /// Another process's; null where its device cannot be reached from this one.
+  std::byte* open(const cudaIpcMemHandle_t& handle) {
+    void* other = nullptr;
+    if (cudaIpcOpenMemHandle(&other, handle, cudaIpcMemLazyEnablePeerAccess) == cudaSuccess)
+      opened_.push_back(other);
+    else
+      cudaGetLastError();  // it must not meet the next call
+    return static_cast<std::byte*>(other);
+  }
+
+ private:
+  void* memory_ = nullptr;
+  std::vector<void*> opened_;
+};
+
+class PeerLink final : public DeviceLink {
+ public:
+  /// Collective.
+  PeerLink(const Communicator& job, const Context<Cuda>& context)
+      : job_(job), context_(context), box_(slotBytes * job.size()), epochs_(context, mostBlocks * job.size()) {
+    clearBytes(context, epochs_.data(), epochs_.size() * sizeof(unsigned));
+    const std::vector<cudaIpcMemHandle_t> handles = job.all(box_.handle());
+    peers_.rank = job.rank();
+    for (int r = 0; r < job.size(); ++r) {
+      if (r == job.rank()) continue;
+      std::byte* const box = box_.open(handles[r]);
+      canReachAll_ = canReachAll_ && box != nullptr;
+      peers_.peer[peers_.count++] = {box + slotBytes * job.rank(), box_.data() + slotBytes * r,
+                                     epochs_.data() + mostBlocks * r};
+    }
+    context.synchronize();
+  }
+  /// The mailbox stays until nobody writes to it any more; where an error ends the process nobody waits.
+  ~PeerLink() override {
+    if (std::uncaught_exceptions() == 0) job_.all(char{});
+  }
+
+  bool canReachAll() const { return canReachAll_; }
+
+  void exchange(std::span<const Communicator::Message> sent,
+                std::span<const Communicator::Message> received) override {
+    std::vector<std::vector<Round::Piece>> to(job_.size()), from(job_.size());
+    for (const Communicator::Message& m : sent) to[m.rank].push_back({static_cast<std::byte*>(m.data), m.bytes});
+    for (const Communicator::Message& m : received)
+      from[m.rank].push_back({static_cast<std::byte*>(m.data), m.bytes});
+    for (auto* all : {&to, &from})
+      for (auto& pieces : *all) pieces = inRounds(pieces);
+    // A pair of processes has as many rounds on both sides.
+    for (std::size_t round = 0;; ++round) {
+      Exchange e{};
+      unsigned count = 0;
+      for (int p = 0; p < peers_.count; ++p) {
+        const int r = rankOf(p);
+        if (2 * round >= std::max(to[r].size(), from[r].size())) continue;
+        e.peer[count] = peers_.peer[p];
+        take(to[r], round, e.round[count].sent);
+        take(from[r], round, e.round[count].received);
+        job_.note(e.round[count].sent[0].bytes + e.round[count].sent[1].bytes);
+        ++count;
+      }
+      if (count == 0) break;
+      launchEarly(context_, dim3(mostBlocks, count), threads, 0, exchangeKernel, e);
+    }
+  }
+
+  void sum(double* values, std::size_t count) override { join(values, count, Add{}); }
+  void sum(float* values, std::size_t count) override { join(values, count, Add{}); }
+  void sum(std::uint32_t* values, std::size_t count) override { join(values, count, Add{}); }
+  void max(std::uint8_t* flags, std::size_t count) override { join(flags, count, Larger{}); }
+
+  bool canBeRecorded() const override { return true; }
+  std::string name() const override { return "peer memory"; }
+
+ private:
+  /// Two for each round. What is too long for one goes piece by piece.
+  static std::vector<Round::Piece> inRounds(const std::vector<Round::Piece>& pieces) {
+    std::size_t bytes = 0;
+    for (const Round::Piece& p : pieces) bytes += padded(p.bytes);
+    if (pieces.size() <= 2 && bytes <= capacity) return pieces;
+    std::vector<Round::Piece> rounds;
+    for (const Round::Piece& p : pieces)
+      for (std::size_t begin = 0; begin < p.bytes; begin += capacity) {
+        rounds.push_back({p.data + begin, std::min(capacity, p.bytes - begin)});
+        rounds.push_back({});
+      }
+    return rounds;
+  }
+  static void take(const std::vector<Round::Piece>& rounds, std::size_t round,
+                   std::array<Round::Piece, 2>& pieces) {
+    for (std::size_t k = 0; k < 2; ++k)
+      if (2 * round + k < rounds.size()) pieces[k] = rounds[2 * round + k];
+  }
+
+  int rankOf(int peer) const { return peer < job_.rank() ? peer : peer + 1; }
+
+  template <class T, class Join>
+  void join(T* values, std::size_t count, Join how) {
+    constexpr std::size_t most = capacity / sizeof(T);
+    for (std::size_t first = 0; first < count; first += most) {
+      const std::size_t n = std::min(most, count - first);
+      launchEarly(context_, std::min(blocksFor(n, threads), mostBlocks), threads, 0, joinKernel<T, Join>, peers_,
+                  values + first, n, how);
+      job_.note(n * sizeof(T) * peers_.count);
+    }
+  }
+
+  const Communicator& job_;
+  const Context<Cuda>& context_;
+  Mailbox box_;
+  Buffer<unsigned, Cuda> epochs_;
+  Peers peers_{};
+  bool canReachAll_ = true;
+};
+
+}  // namespace
+
+std::unique_ptr<DeviceLink> makePeerLink(const Communicator& job, const Context<Cuda>& context) {
+  const std::vector<int> local = job.all(job.localRank());
+  const int hosts = static_cast<int>(std::count(local.begin(), local.end(), 0));
+  if (hosts > 1 || job.size() - 1 > mostPeers) return nullptr;
+  auto link = std::make_unique<PeerLink>(job, context);
+  const std::vector<std::uint8_t> all = job.all(std::uint8_t{link->canReachAll()});
+  if (std::count(all.begin(), all.end(), 0) > 0) return nullptr;
+  return link;
+}
+
+}  // namespace treacle
