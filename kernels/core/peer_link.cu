@@ -27,6 +27,37 @@ constexpr std::size_t flagBytes = 64;
 /// one before.
 constexpr std::size_t slotBytes = mostBlocks * flagBytes + 2 * capacity;
 
+/// As DeviceLink::Spent, by what the device counts; times in [ns].
+struct Counters {
+  unsigned long long bytes, calls, inside, waiting;
+};
+__device__ inline unsigned long long nanoseconds() {
+  unsigned long long now;
+  asm volatile("mov.u64 %0, %globaltimer;" : "=l"(now));
+  return now;
+}
+/// Of one thread of one block, which stands for all of a kernel.
+class Stopwatch {
+ public:
+  __device__ explicit Stopwatch(Counters* spent)
+      : spent_(blockIdx.x + blockIdx.y + threadIdx.x == 0 ? spent : nullptr), start_(spent_ ? nanoseconds() : 0) {}
+  __device__ void waits() { waits_ = spent_ ? nanoseconds() : 0; }
+  __device__ void goesOn() const {
+    if (spent_) spent_->waiting += nanoseconds() - waits_;
+  }
+  /// `bytes`: sent by all blocks of the kernel.
+  __device__ void ends(std::size_t bytes) const {
+    if (!spent_) return;
+    spent_->inside += nanoseconds() - start_;
+    spent_->bytes += bytes;
+    ++spent_->calls;
+  }
+
+ private:
+  Counters* spent_;
+  unsigned long long start_, waits_ = 0;
+};
+
 struct Peer {
   std::byte *there, *here;  // slots: of this process in the peer's mailbox, of the peer in this one's
   unsigned* epoch;          // per block: number of the last exchange with the peer, the same for all of them
@@ -61,6 +92,8 @@ struct Round {
 struct Exchange {
   Peer peer[mostPeers];
   Round round[mostPeers];
+  std::size_t bytes;  // sent
+  Counters* spent;
 };
 
 /// Words [begin, end) of bytes; what another device may have written is read past the first-level cache.
@@ -84,6 +117,7 @@ __device__ inline void copySlice(const std::byte* from, std::byte* to, std::size
 /// A row of mostBlocks blocks per peer.
 __global__ void __launch_bounds__(threads) exchangeKernel(const __grid_constant__ Exchange e) {
   waitForEarlierKernels();
+  Stopwatch watch(e.spent);
   const Peer& peer = e.peer[blockIdx.y];
   const Round& round = e.round[blockIdx.y];
   const unsigned block = blockIdx.x, number = peer.epoch[block] + 1;
@@ -93,18 +127,22 @@ __global__ void __launch_bounds__(threads) exchangeKernel(const __grid_constant_
   __syncthreads();
   if (threadIdx.x == 0) {
     peer.signal(block, number);
+    watch.waits();
     peer.await(block, number);
+    watch.goesOn();
     peer.epoch[block] = number;
   }
   __syncthreads();
   const std::byte* const here = Peer::message(peer.here, number);
   copySlice(here, round.received[0].data, round.received[0].bytes);
   copySlice(here + padded(round.received[0].bytes), round.received[1].data, round.received[1].bytes);
+  watch.ends(e.bytes);
 }
 
 struct Peers {
   Peer peer[mostPeers];
   int count, rank;
+  Counters* spent;
 };
 
 struct Add {
@@ -125,6 +163,7 @@ template <class T, class Join>
 __global__ void __launch_bounds__(threads)
     joinKernel(const __grid_constant__ Peers peers, T* values, std::size_t count, Join join) {
   waitForEarlierKernels();
+  Stopwatch watch(peers.spent);
   const unsigned block = blockIdx.x;
   const std::size_t first = block * std::size_t{blockDim.x} + threadIdx.x,
                     stride = std::size_t{gridDim.x} * blockDim.x;
@@ -138,7 +177,9 @@ __global__ void __launch_bounds__(threads)
     const Peer& peer = peers.peer[threadIdx.x];
     const unsigned number = peer.epoch[block] + 1;
     peer.signal(block, number);
+    watch.waits();
     peer.await(block, number);
+    watch.goesOn();
     peer.epoch[block] = number;
     // Those that have nothing to do this time: which of the two places is next must be the same for all.
     for (unsigned idle = gridDim.x + block; idle < mostBlocks; idle += gridDim.x) peer.epoch[idle] = number;
@@ -155,6 +196,7 @@ __global__ void __launch_bounds__(threads)
     }
     values[k] = joint;
   }
+  watch.ends(count * sizeof(T) * peers.count);
 }
 
 /// Memory that other processes can open.
@@ -196,8 +238,14 @@ class PeerLink final : public DeviceLink {
  public:
   /// Collective.
   PeerLink(const Communicator& job, const Context<Cuda>& context)
-      : job_(job), context_(context), box_(slotBytes * job.size()), epochs_(context, mostBlocks * job.size()) {
+      : job_(job),
+        context_(context),
+        box_(slotBytes * job.size()),
+        epochs_(context, mostBlocks * job.size()),
+        spent_(context, 1) {
     clearBytes(context, epochs_.data(), epochs_.size() * sizeof(unsigned));
+    clearBytes(context, spent_.data(), sizeof(Counters));
+    peers_.spent = spent_.data();
     const std::vector<cudaIpcMemHandle_t> handles = job.all(box_.handle());
     peers_.rank = job.rank();
     for (int r = 0; r < job.size(); ++r) {
@@ -226,7 +274,7 @@ class PeerLink final : public DeviceLink {
       for (auto& pieces : *all) pieces = inRounds(pieces);
     // A pair of processes has as many rounds on both sides.
     for (std::size_t round = 0;; ++round) {
-      Exchange e{};
+      Exchange e{.peer = {}, .round = {}, .bytes = 0, .spent = spent_.data()};
       unsigned count = 0;
       for (int p = 0; p < peers_.count; ++p) {
         const int r = rankOf(p);
@@ -234,7 +282,7 @@ class PeerLink final : public DeviceLink {
         e.peer[count] = peers_.peer[p];
         take(to[r], round, e.round[count].sent);
         take(from[r], round, e.round[count].received);
-        job_.note(e.round[count].sent[0].bytes + e.round[count].sent[1].bytes);
+        e.bytes += e.round[count].sent[0].bytes + e.round[count].sent[1].bytes;
         ++count;
       }
       if (count == 0) break;
@@ -249,6 +297,10 @@ class PeerLink final : public DeviceLink {
 
   bool canBeRecorded() const override { return true; }
   std::string name() const override { return "peer memory"; }
+  Spent spent() const override {
+    const auto now = valueOnHost(context_, spent_.data());
+    return {now.bytes, now.calls, 1e-9 * static_cast<double>(now.inside), 1e-9 * static_cast<double>(now.waiting)};
+  }
 
  private:
   /// Two for each round. What is too long for one goes piece by piece.
@@ -279,7 +331,6 @@ class PeerLink final : public DeviceLink {
       const std::size_t n = std::min(most, count - first);
       launchEarly(context_, std::min(blocksFor(n, threads), mostBlocks), threads, 0, joinKernel<T, Join>, peers_,
                   values + first, n, how);
-      job_.note(n * sizeof(T) * peers_.count);
     }
   }
 
@@ -287,6 +338,7 @@ class PeerLink final : public DeviceLink {
   const Context<Cuda>& context_;
   Mailbox box_;
   Buffer<unsigned, Cuda> epochs_;
+  Buffer<Counters, Cuda> spent_;
   Peers peers_{};
   bool canReachAll_ = true;
 };

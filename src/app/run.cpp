@@ -158,7 +158,8 @@ void Run::finish() {
     recorder_->summarise(summary_);
     if (processes_.size() > 1)
       for (const AnySimulation::Share& s : simulation_->shares())
-        summary_.processes.push_back({s.fluidParticles, s.traffic.bytes, s.traffic.calls, s.traffic.seconds});
+        summary_.processes.push_back(
+            {s.fluidParticles, s.traffic.bytes, s.traffic.calls, s.traffic.seconds, s.waiting, s.peakBytes});
     log_.info(
         fmt::format("watch, largest of all steps: energy {:.3g}, courant {:.3g}, inside_walls {:.3g}, density "
                     "{:.3g}",

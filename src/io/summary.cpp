@@ -28,7 +28,9 @@ Json sharesOf(const std::vector<ProcessShare>& processes) {
   return {{"fluid_particles", spread(processes, &ProcessShare::fluidParticles)},
           {"bytes_sent", spread(processes, &ProcessShare::bytesSent)},
           {"exchanges", spread(processes, &ProcessShare::exchanges)},
-          {"exchange_seconds", spread(processes, &ProcessShare::exchangeSeconds)}};
+          {"exchange_seconds", spread(processes, &ProcessShare::exchangeSeconds)},
+          {"waiting_seconds", spread(processes, &ProcessShare::waitingSeconds)},
+          {"peak_device_memory", spread(processes, &ProcessShare::peakDeviceMemory)}};
 }
 
 }  // namespace

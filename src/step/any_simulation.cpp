@@ -125,9 +125,15 @@ std::size_t AnySimulation::peakBytes() const {
 
 std::vector<AnySimulation::Share> AnySimulation::shares() const {
   give(processes_, Order::Share);
-  const std::uint32_t fluid = held_->visit([](auto& s) { return s.particles().fluidCount; });
-  const Share own{fluid, processes_ ? processes_->traffic() : Communicator::Traffic{}};
-  return processes_ ? processes_->all(own) : std::vector{own};
+  Share own{};
+  own.fluidParticles = held_->visit([](auto& s) { return s.particles().fluidCount; });
+  if (!processes_) return {own};
+  const DeviceLink::Spent link = held_->visit([](auto& s) { return s.linkSpent(); });
+  own.traffic = processes_->traffic();
+  own.traffic.bytes += link.bytes, own.traffic.calls += link.calls, own.traffic.seconds += link.seconds;
+  own.waiting = link.waiting;
+  own.peakBytes = peakBytes();
+  return processes_->all(own);
 }
 
 Followers::~Followers() {

@@ -300,6 +300,10 @@ std::size_t Simulation<D, Backend>::peakBytes() const {
   return 0;
 }
 template <int D, class Backend>
+DeviceLink::Spent Simulation<D, Backend>::linkSpent() const {
+  return state_->link ? state_->link->spent() : DeviceLink::Spent{};
+}
+template <int D, class Backend>
 Diagnostics Simulation<D, Backend>::diagnostics() const {
   return state_->diagnostics();
 }

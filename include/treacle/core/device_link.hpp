@@ -37,6 +37,13 @@ class DeviceLink {
 
   /// Whether graphs may have what it does, in the bodies of loops, too.
   virtual bool canBeRecorded() const { return false; }
+  /// What it has sent and what it has taken of the device's time so far; zero for what the communicator counts.
+  struct Spent {
+    std::uint64_t bytes = 0, calls = 0;
+    double seconds = 0;  // in exchanges and sums [s]
+    double waiting = 0;  // of that, for others [s]
+  };
+  virtual Spent spent() const { return {}; }
   /// "peer memory", "NCCL 2.28.9" or "MPI"
   virtual std::string name() const = 0;
 };

@@ -47,6 +47,10 @@ class Halo : public HaloCounts {
 
   /// Brings the ghosts' values, `size` bytes each, from their owners.
   void fill(const Context<Backend>& context, Held held, void* field, std::size_t size);
+  /// Makes room for values of up to so many bytes: filling them will not allocate.
+  void reserve(const Context<Backend>& context, std::size_t size) {
+    packed_.resize(context, (sentFluid.size() + sentWalls.size()) * size);
+  }
 
   std::size_t bytes() const { return sentFluid.bytes() + sentWalls.bytes() + packed_.bytes(); }
 

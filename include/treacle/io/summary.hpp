@@ -14,7 +14,9 @@ namespace treacle {
 struct ProcessShare {
   std::uint64_t fluidParticles = 0;  // at the end
   std::uint64_t bytesSent = 0, exchanges = 0;
-  double exchangeSeconds = 0;  // in which it exchanged, or waited for others to [s]
+  double exchangeSeconds = 0;          // in which it exchanged, or waited for others to [s]
+  double waitingSeconds = 0;           // of these, where devices know [s]
+  std::uint64_t peakDeviceMemory = 0;  // [B]
 };
 
 /// What a run was and what it took: `summary.json`.

@@ -44,6 +44,8 @@ class AnySimulation {
   struct Share {
     std::uint64_t fluidParticles = 0;
     Communicator::Traffic traffic;
+    double waiting = 0;         // of the time in exchanges, for others [s]; on devices, where that is known
+    std::size_t peakBytes = 0;  // of device memory [B]
   };
   std::vector<Share> shares() const;
 

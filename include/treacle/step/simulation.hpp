@@ -1,6 +1,7 @@
 #pragma once
 
 #include "treacle/core/communicator.hpp"
+#include "treacle/core/device_link.hpp"
 #include "treacle/model/balance.hpp"
 #include "treacle/model/case.hpp"
 #include "treacle/model/particles.hpp"
@@ -106,8 +107,9 @@ class Simulation {
   ParticleNumbers numbers() const;  // of these
   double time() const;              // [s]
   std::int64_t step() const;
-  std::size_t bytes() const;      // memory held [B]
-  std::size_t peakBytes() const;  // largest amount of device memory in use at one time [B]; 0 on the CPU
+  std::size_t bytes() const;            // memory held [B]
+  std::size_t peakBytes() const;        // largest amount of device memory in use at one time [B]; 0 on the CPU
+  DeviceLink::Spent linkSpent() const;  // what the device has told others; nothing on the CPU
   Diagnostics diagnostics() const;
 
  private:
