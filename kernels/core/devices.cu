@@ -1,6 +1,8 @@
 #include "treacle/core/device.hpp"
 
 #include "core/cuda_check.hpp"
+#include "treacle/core/communicator.hpp"
+#include "treacle/core/error.hpp"
 
 namespace treacle {
 namespace {
@@ -41,6 +43,15 @@ std::vector<DeviceInfo> cudaDevices() {
   }
   if (cudaSetDevice(current) != cudaSuccess) cudaGetLastError();  // those who compute will be told
   return devices;
+}
+
+int useDeviceOf(const Communicator& processes) {
+  int count = 0;
+  if (cudaGetDeviceCount(&count) != cudaSuccess || count == 0)
+    throw InputError("rank " + std::to_string(processes.rank()) + ": no CUDA device on its machine");
+  const int device = processes.localRank() % count;
+  TREACLE_CUDA_CHECK(cudaSetDevice(device));
+  return device;
 }
 
 }  // namespace treacle

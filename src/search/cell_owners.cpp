@@ -41,12 +41,28 @@ void CellOwners<D>::assign(const CellGrid<D>& grid, std::span<const std::uint32_
     before += work[cell];
   }
   imbalance_ = total > 0 ? *std::max_element(workOf.begin(), workOf.end()) * size / total : 1;
-  std::fill(place_.begin(), place_.end(), std::uint8_t{Far});
+  std::fill(place_.begin(), place_.end(), CellPlace::Far);
   for (std::size_t cell = 0; cell < cells; ++cell)
     if (owner_[cell] == rank)
-      forEachAdjacentCell(grid, grid.cellAt(cell), [&](const Vec<D, int>& c) { place_[grid.linear(c)] = Beside; });
+      forEachAdjacentCell(grid, grid.cellAt(cell),
+                          [&](const Vec<D, int>& c) { place_[grid.linear(c)] = CellPlace::Beside; });
   for (std::size_t cell = 0; cell < cells; ++cell)
-    if (owner_[cell] == rank) place_[cell] = Own;
+    if (owner_[cell] == rank) place_[cell] = CellPlace::Own;
+}
+
+template <int D>
+std::vector<std::vector<std::uint32_t>> CellOwners<D>::borders(const CellGrid<D>& grid, int size) const {
+  std::vector<std::vector<std::uint32_t>> cells(size);
+  for (std::uint32_t cell : order_) {
+    if (!isOwn(cell)) continue;
+    forEachAdjacentCell(grid, grid.cellAt(cell), [&](const Vec<D, int>& c) {
+      const std::size_t beside = grid.linear(c);
+      if (isOwn(beside)) return;
+      std::vector<std::uint32_t>& border = cells[owner_[beside]];
+      if (border.empty() || border.back() != cell) border.push_back(cell);
+    });
+  }
+  return cells;
 }
 
 template class CellOwners<2>;

@@ -22,8 +22,8 @@ auto byKeyAndId(const Buffer<std::uint32_t>& id) {
 }  // namespace
 
 template <int D>
-void Decomposition<D>::sortFluid(const CellGrid<D>& grid, Particles<D>& p, CellRanges<>& ranges,
-                                 SortWorkspace<>& workspace) {
+void Decomposition<D, Cpu>::sortFluid(const CellGrid<D>& grid, Particles<D>& p, CellRanges<>& ranges,
+                                      SortWorkspace<>& workspace) {
   workspace.keyed.resize(p.fluidCount);
   KeyedIndex* keyed = workspace.keyed.data();
   parallelFor(p.fluidCount, parallelGrain, [&](std::size_t i) {
@@ -36,8 +36,8 @@ void Decomposition<D>::sortFluid(const CellGrid<D>& grid, Particles<D>& p, CellR
 
 /// Whether walls of a cell are active is for its owner to see as for all who have them as ghosts.
 template <int D>
-void Decomposition<D>::findActiveCells(const Communicator& job, const CellGrid<D>& grid,
-                                       std::span<const Vec<D>> fluid, SortWorkspace<>& workspace) {
+void Decomposition<D, Cpu>::findActiveCells(const Communicator& job, const CellGrid<D>& grid,
+                                            std::span<const Vec<D>> fluid, SortWorkspace<>& workspace) {
   fluidCells_.resize(grid.cellCount());
   std::fill(fluidCells_.begin(), fluidCells_.end(), std::uint8_t{0});
   for (const Vec<D>& x : fluid) fluidCells_[cellAt(grid, x)] = 1;
@@ -51,8 +51,8 @@ void Decomposition<D>::findActiveCells(const Communicator& job, const CellGrid<D
 }
 
 template <int D>
-void Decomposition<D>::sortWalls(const CellGrid<D>& grid, Particles<D>& p, CellRanges<>& ranges,
-                                 SortWorkspace<>& workspace) {
+void Decomposition<D, Cpu>::sortWalls(const CellGrid<D>& grid, Particles<D>& p, CellRanges<>& ranges,
+                                      SortWorkspace<>& workspace) {
   const std::uint32_t begin = p.wallBegin(), count = p.count;
   workspace.keyed.resize(count);
   KeyedIndex* keyed = workspace.keyed.data();
@@ -81,9 +81,9 @@ void Decomposition<D>::sortWalls(const CellGrid<D>& grid, Particles<D>& p, CellR
 }
 
 template <int D>
-void Decomposition<D>::listSent(const CellGrid<D>& grid, std::span<const Vec<D>> position, std::uint32_t begin,
-                                std::uint32_t end, Buffer<std::uint32_t>& sent,
-                                std::uint32_t Halo<Cpu>::Neighbour::*count) {
+void Decomposition<D, Cpu>::listSent(const CellGrid<D>& grid, std::span<const Vec<D>> position,
+                                     std::uint32_t begin, std::uint32_t end, Buffer<std::uint32_t>& sent,
+                                     std::uint32_t Halo<Cpu>::Neighbour::*count) {
   std::vector<std::vector<std::uint32_t>> lists(halo_.neighbours.size());
   std::vector<int> to;  // of the cell at hand
   for (std::uint32_t i = begin; i < end; ++i) {
@@ -107,42 +107,16 @@ void Decomposition<D>::listSent(const CellGrid<D>& grid, std::span<const Vec<D>>
   std::ranges::copy(all, sent.begin());
 }
 
-template <int D>
-void Decomposition<D>::countGhostFluid(const Communicator& job) {
-  const std::size_t size = job.size();
-  std::vector<std::uint32_t> counts(size * size);  // [from][to]
-  for (std::size_t r = 0; r < size; ++r) counts[job.rank() * size + r] = halo_.neighbours[r].sentFluid;
-  job.sum(std::span(counts));
-  for (std::size_t r = 0; r < size; ++r) halo_.fluid += halo_.neighbours[r].fluid = counts[r * size + job.rank()];
-}
-
-/// Processes that have nothing for each other are no neighbours.
-template <int D>
-void Decomposition<D>::countAll(const Communicator& job) {
-  struct Owned {
-    std::uint64_t fluid, walls;
-  };
-  const std::vector<Owned> all = job.all(Owned{halo_.ownFluid, halo_.ownWalls});
-  for (int r = 0; r < job.size(); ++r) {
-    if (r < job.rank()) halo_.fluidBefore += all[r].fluid, halo_.wallsBefore += all[r].walls;
-    halo_.fluidOfAll += all[r].fluid;
-    halo_.someHaveNone = halo_.someHaveNone || all[r].fluid == 0;
-  }
-  std::erase_if(halo_.neighbours, [](const Halo<Cpu>::Neighbour& n) {
-    return n.sentFluid == 0 && n.sentWalls == 0 && n.fluid == 0 && n.walls == 0;
-  });
-}
-
-#define TREACLE_INSTANTIATE(D)                                                                                   \
-  template void Decomposition<D>::sortFluid(const CellGrid<D>&, Particles<D>&, CellRanges<>&, SortWorkspace<>&); \
-  template void Decomposition<D>::findActiveCells(const Communicator&, const CellGrid<D>&,                       \
-                                                  std::span<const Vec<D>>, SortWorkspace<>&);                    \
-  template void Decomposition<D>::sortWalls(const CellGrid<D>&, Particles<D>&, CellRanges<>&, SortWorkspace<>&); \
-  template void Decomposition<D>::listSent(const CellGrid<D>&, std::span<const Vec<D>>, std::uint32_t,           \
-                                           std::uint32_t, Buffer<std::uint32_t>&,                                \
-                                           std::uint32_t Halo<Cpu>::Neighbour::*);                               \
-  template void Decomposition<D>::countGhostFluid(const Communicator&);                                          \
-  template void Decomposition<D>::countAll(const Communicator&);
+#define TREACLE_INSTANTIATE(D)                                                                              \
+  template void Decomposition<D, Cpu>::sortFluid(const CellGrid<D>&, Particles<D>&, CellRanges<>&,          \
+                                                 SortWorkspace<>&);                                         \
+  template void Decomposition<D, Cpu>::findActiveCells(const Communicator&, const CellGrid<D>&,             \
+                                                       std::span<const Vec<D>>, SortWorkspace<>&);          \
+  template void Decomposition<D, Cpu>::sortWalls(const CellGrid<D>&, Particles<D>&, CellRanges<>&,          \
+                                                 SortWorkspace<>&);                                         \
+  template void Decomposition<D, Cpu>::listSent(const CellGrid<D>&, std::span<const Vec<D>>, std::uint32_t, \
+                                                std::uint32_t, Buffer<std::uint32_t>&,                      \
+                                                std::uint32_t Halo<Cpu>::Neighbour::*);
 TREACLE_INSTANTIATE(2)
 TREACLE_INSTANTIATE(3)
 #undef TREACLE_INSTANTIATE

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "treacle/model/particles.hpp"
+#include "treacle/search/fluid_fields.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -12,15 +12,6 @@
 namespace treacle {
 
 // Particles that come and go, and the room for them.
-
-/// Calls f(one value per own fluid particle) for every field that fluid has, each mode being one.
-template <int D, class F>
-void forEachFieldOfFluid(Particles<D>& p, F&& f) {
-  const auto whole = [&](auto& field) { f(field.data()); };
-  forEachSharedFieldOf(whole, p);
-  forEachFluidFieldOf(whole, p);
-  for (std::uint32_t m = 0; m < p.modeCount(); ++m) f(p.modes.vectors.data() + std::size_t{m} * p.fluidCount);
-}
 
 /// Room for so many own fluid particles and ghosts; the first own ones and all walls stay.
 template <int D>
@@ -80,13 +71,14 @@ std::size_t packedBytes(Particles<D>& p) {
   return sum;
 }
 
-/// Keeps these own fluid particles alone, in ascending order.
+/// Keeps these own fluid particles alone, in ascending order, with room for so many others behind them. Both at
+/// once: particles without fluid would not know how many modes they had.
 template <int D>
-void keepFluid(Particles<D>& p, std::span<const std::uint32_t> kept) {
+void keepFluid(Particles<D>& p, std::span<const std::uint32_t> kept, std::uint32_t others) {
   forEachFieldOfFluid(p, [&]<class T>(T* field) {
     for (std::size_t k = 0; k < kept.size(); ++k) field[k] = field[kept[k]];
   });
-  resizeFluid(p, static_cast<std::uint32_t>(kept.size()), 0);
+  resizeFluid(p, static_cast<std::uint32_t>(kept.size()) + others, 0);
 }
 
 }  // namespace treacle

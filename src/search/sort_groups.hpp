@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cstring>
+#include <span>
+#include <vector>
 
 namespace treacle {
 
@@ -19,6 +21,13 @@ constexpr std::uint64_t inactiveKey = std::uint64_t{1} << 63;
 template <int D>
 std::size_t cellAt(const CellGrid<D>& grid, const Vec<D>& x) {
   return grid.linear(grid.cellOf(x));
+}
+
+/// `each`: of a particle.
+template <int D>
+void addWork(const CellGrid<D>& grid, std::span<const Vec<D>> position, std::uint32_t each,
+             std::vector<std::uint32_t>& work) {
+  for (const Vec<D>& x : position) work[cellAt(grid, x)] += each;
 }
 
 /// Errors: RunError.

@@ -18,4 +18,10 @@ struct DeviceInfo {
 /// The CUDA devices of this machine; empty in builds without CUDA and where there is no driver or no device.
 std::vector<DeviceInfo> cudaDevices();
 
+class Communicator;
+
+/// Makes a device the current one: the processes on a machine take its devices in turn. Returns its place in
+/// cudaDevices(). Errors: InputError where there is none, DeviceFailure.
+int useDeviceOf(const Communicator& processes);
+
 }  // namespace treacle

@@ -22,8 +22,7 @@ class MphNeighbourhood {
 
   /// Sorts the particles into cells; of several processes each its own ones, and ghosts of others.
   void sort(Context<Backend>& context, Particles<D, Backend>& particles) {
-    if constexpr (std::is_same_v<Backend, Cpu>)
-      if (context.communicator) return decomposition_.sort(context, pairs_.grid, particles, ranges_, workspace_);
+    if (context.communicator) return decomposition_.sort(context, pairs_.grid, particles, ranges_, workspace_);
     sortByCell(context, pairs_.grid, particles, ranges_, workspace_);
   }
 
@@ -85,7 +84,7 @@ class MphNeighbourhood {
   bool useLists_;
   CellRanges<Backend> ranges_;
   SortWorkspace<Backend> workspace_;
-  std::conditional_t<std::is_same_v<Backend, Cpu>, Decomposition<D>, Absent> decomposition_;
+  Decomposition<D, Backend> decomposition_;
   ClusterList<Backend> fluidList_, wallList_;
 };
 

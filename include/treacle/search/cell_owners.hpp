@@ -6,8 +6,21 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 namespace treacle {
+
+/// What a cell is to a process: one of its own, one that touches one of its own, or none of both.
+enum class CellPlace : std::uint8_t { Far, Beside, Own };
+
+/// Owners and places per cell (CellGrid::linear) as loops read them; host or device memory.
+struct CellOwnersView {
+  const std::int32_t* owner = nullptr;
+  const CellPlace* place = nullptr;
+
+  TREACLE_HD bool isOwn(std::size_t cell) const { return place[cell] == CellPlace::Own; }
+  TREACLE_HD bool isBesideOwn(std::size_t cell) const { return place[cell] == CellPlace::Beside; }
+};
 
 /// Which process owns which cells: contiguous parts of the Hilbert curve through all cells, of about equal work.
 /// Every process knows all owners.
@@ -20,21 +33,23 @@ class CellOwners {
   bool areKnown() const { return !owner_.empty(); }
   int owner(std::size_t cell) const { return owner_[cell]; }
   /// Whether a cell is this process's, or touches one of its cells.
-  bool isOwn(std::size_t cell) const { return place_[cell] == Own; }
-  bool isBesideOwn(std::size_t cell) const { return place_[cell] == Beside; }
+  bool isOwn(std::size_t cell) const { return view().isOwn(cell); }
+  bool isBesideOwn(std::size_t cell) const { return view().isBesideOwn(cell); }
+  CellOwnersView view() const { return {owner_.data(), place_.data()}; }
+  std::size_t cellCount() const { return owner_.size(); }
+  /// Per rank of `size`: own cells that touch those of that rank, in the order of the curve.
+  std::vector<std::vector<std::uint32_t>> borders(const CellGrid<D>& grid, int size) const;
   /// Largest work of a process over the mean, as it was when the curve was cut.
   double imbalance() const { return imbalance_; }
 
   std::size_t bytes() const { return order_.bytes() + owner_.bytes() + place_.bytes(); }
 
  private:
-  enum Place : std::uint8_t { Far, Beside, Own };
-
   void orderCells(const CellGrid<D>& grid);
 
   Buffer<std::uint32_t> order_;  // cells along the curve
   Buffer<std::int32_t> owner_;
-  Buffer<std::uint8_t> place_;
+  Buffer<CellPlace> place_;
   double imbalance_ = 1;
 };
 

@@ -1,10 +1,9 @@
 #pragma once
 
-#include "treacle/core/halo.hpp"
-#include "treacle/core/processes.hpp"
+#include "treacle/core/backend.hpp"
 #include "treacle/model/particles.hpp"
-#include "treacle/search/cell_owners.hpp"
 #include "treacle/search/cell_sort.hpp"
+#include "treacle/search/process_parts.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -17,27 +16,28 @@ namespace treacle {
 /// (CellOwners). Beside them it holds ghosts, copies of the active particles in the cells of others that touch its
 /// own: a cell is as long as any sum reaches, so sums over the neighbours of own particles find everything. Walls
 /// are known to all processes; those that are neither own nor ghosts count as inactive.
-template <int D>
-class Decomposition {
- public:
-  /// The work of a process may be so much more than the mean before cells change hands.
-  static constexpr double mostImbalance = 1.1;
+///
+/// sort() sorts by cell as sortByCell does, of each group the own particles first, and by id where keys are the
+/// same. Fluid that has left the own cells goes to the process that owns it now, with all its fields, and cells
+/// change hands where one process has too much to do. Ghosts have positions and materials; their other fields are
+/// not defined. The first time every process comes with all particles, and keeps its own ones. Collective. Errors:
+/// InputError the first time, if there are more processes than cells with fluid; RunError for positions that are
+/// not finite. Both at all processes.
+template <int D, class Backend = Cpu>
+class Decomposition;
 
-  /// Sorts by cell as sortByCell does, of each group the own particles first. Fluid that has left the own cells
-  /// goes to the process that owns it now, with all its fields, and cells change hands where one process has too
-  /// much to do. Ghosts have positions and materials; their other fields are not defined. The first time every
-  /// process comes with all particles, and keeps its own ones. Collective. Errors: InputError the first time, if
-  /// there are more processes than cells with fluid; RunError for positions that are not finite. Both at all
-  /// processes.
+template <int D>
+class Decomposition<D, Cpu> : public ProcessParts<D, Cpu> {
+ public:
   void sort(Context<Cpu>&, const CellGrid<D>& grid, Particles<D>& particles, CellRanges<>& ranges,
             SortWorkspace<>& workspace);
 
-  const CellOwners<D>& owners() const { return owners_; }
-  std::size_t bytes() const { return owners_.bytes() + fluidCells_.bytes(); }
+  std::size_t bytes() const { return owners_.bytes() + halo_.bytes() + fluidCells_.bytes(); }
 
  private:
-  void assignFirst(const Communicator&, const CellGrid<D>&, const Particles<D>&);
-  void balance(const Communicator&, const CellGrid<D>&, const Particles<D>&, const CellRanges<>&);
+  using ProcessParts<D, Cpu>::owners_, ProcessParts<D, Cpu>::halo_;
+
+  void balance(const Communicator&, const CellGrid<D>&, const Particles<D>&);
   void migrate(const Communicator&, const CellGrid<D>&, Particles<D>&);
   void keepOwn(const CellGrid<D>&, Particles<D>&);
   void findActiveCells(const Communicator&, const CellGrid<D>&, std::span<const Vec<D>> fluid, SortWorkspace<>&);
@@ -46,12 +46,53 @@ class Decomposition {
   /// Lists of the particles [begin, end) whose cells touch those of others.
   void listSent(const CellGrid<D>&, std::span<const Vec<D>> position, std::uint32_t begin, std::uint32_t end,
                 Buffer<std::uint32_t>& sent, std::uint32_t Halo<Cpu>::Neighbour::*count);
-  void countGhostFluid(const Communicator&);
-  void countAll(const Communicator&);
 
-  CellOwners<D> owners_;
-  Halo<Cpu> halo_;
   Buffer<std::uint8_t> fluidCells_;  // per cell: some process has fluid in it
+};
+
+/// Needs the context's link. The host waits four times in a sort, and once more for each exchange of a link by way
+/// of its memory. Where memory gives out, particles may be left with the values of others: there is no room for
+/// all of their fields twice.
+template <int D>
+class Decomposition<D, Cuda> : public ProcessParts<D, Cuda> {
+ public:
+  void sort(Context<Cuda>&, const CellGrid<D>& grid, Particles<D, Cuda>& particles, CellRanges<Cuda>& ranges,
+            SortWorkspace<Cuda>& workspace);
+
+  std::size_t bytes() const {
+    return owners_.bytes() + halo_.bytes() + owner_.bytes() + place_.bytes() + borderCell_.bytes() +
+           borderBegin_.bytes() + borderStart_.bytes() + fluidCells_.bytes();
+  }
+
+ private:
+  using ProcessParts<D, Cuda>::owners_, ProcessParts<D, Cuda>::halo_;
+  using Neighbour = typename Halo<Cuda>::Neighbour;
+
+  void divide(Context<Cuda>&, const CellGrid<D>&, const Particles<D, Cuda>&);
+  void adoptOwners(Context<Cuda>&, const CellGrid<D>&);
+  /// Returns whether this process has other fluid now.
+  bool migrate(Context<Cuda>&, const CellGrid<D>&, Particles<D, Cuda>&, SortWorkspace<Cuda>&, bool isFirst);
+  void findActiveCells(Context<Cuda>&, const CellGrid<D>&, const CellRanges<Cuda>&, SortWorkspace<Cuda>&);
+  void listSentFluid(Context<Cuda>&, const CellRanges<Cuda>&, SortWorkspace<Cuda>&);
+  void sortWalls(Context<Cuda>&, const CellGrid<D>&, const Particles<D, Cuda>&, CellRanges<Cuda>&,
+                 SortWorkspace<Cuda>&);
+  /// How many particles of the ranges are for whom: `starts`, per rank and the end, in device memory.
+  void countSent(Context<Cuda>&, const Buffer<std::uint32_t, Cuda>& rangeBegin,
+                 const Buffer<std::uint32_t, Cuda>& rangeEnd, std::uint32_t* starts);
+  /// The particles that were counted; `starts`: in host memory.
+  void listSent(Context<Cuda>&, const Buffer<std::uint32_t, Cuda>& rangeBegin,
+                const Buffer<std::uint32_t, Cuda>& rangeEnd, std::span<const std::uint32_t> starts,
+                Buffer<std::uint32_t, Cuda>& sent, std::uint32_t Neighbour::*count);
+
+  CellOwnersView view() const { return {owner_.data(), place_.data()}; }
+
+  // Of owners_, for kernels.
+  Buffer<std::int32_t, Cuda> owner_;
+  Buffer<CellPlace, Cuda> place_;
+  Buffer<std::uint32_t, Cuda> borderCell_;   // CellOwners::borders, one rank after the other
+  Buffer<std::uint32_t, Cuda> borderBegin_;  // where those of each rank begin, and the end
+  Buffer<std::uint32_t, Cuda> borderStart_;  // of each border's particles among all that are sent, and the end
+  Buffer<std::uint8_t, Cuda> fluidCells_;    // per cell: some process has fluid in it
 };
 
 }  // namespace treacle

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "treacle/core/cuda.hpp"
+#include "treacle/model/particles.hpp"
+#include "treacle/search/cell_sort.hpp"
+
+#include <cstdint>
+#include <span>
+
+namespace treacle {
+
+// Particles on a device that come and go, and the room for them.
+
+/// Fluid goes to its new owners with all its fields, and comes from its old ones. In the order of
+/// workspace.sortedIndex the particles [begins[r], begins[r + 1]) belong to rank r; `arriving`: how many come from
+/// each rank. Kept ones stay in that order, before those that come, in the order of ranks. Walls stay; ghosts are
+/// gone. Where `isSent` is false, nothing is sent: the others have it. Collective.
+template <int D>
+void exchangeFluid(Context<Cuda>& context, Particles<D, Cuda>& particles, SortWorkspace<Cuda>& workspace,
+                   std::span<const std::uint32_t> begins, std::span<const std::uint32_t> arriving, bool isSent);
+
+/// Brings own fluid and walls into the order of workspace.sortedIndex, which has those of the fluid first, with
+/// room for so many ghosts between them.
+template <int D>
+void arrange(Context<Cuda>& context, Particles<D, Cuda>& particles, SortWorkspace<Cuda>& workspace,
+             std::uint32_t ghosts);
+
+}  // namespace treacle
