@@ -137,6 +137,9 @@ void Run::attempt(const std::function<void()>& action) {
         e.what());
     isDeviceLost_ = true;
     if (recorder_) recorder_->loseSimulation();
+  } catch (const InputError& e) {
+    diagnosis = e.what();
+    isBadInput_ = failure_.empty() && (!simulation_ || simulation_->step() == start_.step);
   } catch (const std::runtime_error& e) {
     diagnosis = e.what();
   }
@@ -170,6 +173,7 @@ void Run::finish() {
   summary_.done = failure_.empty();
   summary_.message = failure_;
   attempt([&] { writeSummary(directory_.summary(), summary_); });
+  if (isBadInput_) throw InputError(failure_);
   if (!failure_.empty()) throw RunError(failure_ + lastStateText());
   say(fmt::format("done: {} steps{} in {}, {:.1f} iterations per step, {} of memory{}", summary_.steps,
                   case_.time.automatic ? fmt::format(" ({} rejected)", summary_.rejectedSteps) : "",

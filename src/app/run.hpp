@@ -25,7 +25,7 @@ class Run {
   Run(const Case& c, StartState start, BackendKind backend, RunDirectory directory, const RunOptions& options,
       std::string device, const Communicator& processes);
 
-  /// Errors: RunError with the diagnosis, after everything is written.
+  /// Errors: RunError with the diagnosis, after everything is written; InputError where it could not begin.
   void execute(const std::vector<std::string>& warnings);
 
  private:
@@ -61,7 +61,8 @@ class Run {
   std::string failure_;
   bool fellBack_ = false;
   bool isDeviceLost_ = false;
-  Watched watched_;  // the largest of all steps
+  bool isBadInput_ = false;  // what failed first is what the user gave
+  Watched watched_;          // the largest of all steps
 };
 
 }  // namespace treacle
