@@ -20,19 +20,26 @@ findPrograms() {
   fail "no treacle in $*; build it (cmake --preset gpu && cmake --build --preset gpu) or set TREACLE_BIN"
 }
 
-# cuSPARSE is too large to travel with the programs: the one of the machine's toolkit, driver or Python packages.
+# cuSPARSE and NCCL are too large to travel with the programs: those of the machine's toolkit, driver, system or Python
+# packages.
 findLibraries() {
+  local name missing
+  missing=$(ldd "$programs/treacle" 2>&1)
+  for name in libcusparse.so.12 libnccl.so.2; do
+    if grep -q "$name.*not found" <<<"$missing"; then findLibrary "$name"; fi
+  done
+}
+findLibrary() {
   local library site
-  grep -q "libcusparse.*not found" <<<"$(ldd "$programs/treacle" 2>&1)" || return 0
   site=$(python3 -c 'import sysconfig; print(sysconfig.get_paths()["purelib"])' 2>/dev/null || true)
-  for library in /usr/local/cuda*/{lib64,targets/*/lib}/libcusparse.so.12 /usr/local/nvidia/lib*/libcusparse.so.12 \
-    ${site:+"$site"/nvidia/*/lib/libcusparse.so.12}; do
+  for library in /usr/local/cuda*/{lib,lib64,targets/*/lib}/"$1" /usr/local/nvidia/lib*/"$1" \
+    ${site:+"$site"/nvidia/*/lib/"$1"}; do
     if [ -e "$library" ]; then
       export LD_LIBRARY_PATH=${library%/*}${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}
       return
     fi
   done
-  fail "libcusparse.so.12 is not on this machine; install the CUDA toolkit, or pack with gpu-pack --with-cusparse"
+  fail "$1 is not on this machine; install the CUDA toolkit or NCCL, or pack with gpu-pack --with-cusparse"
 }
 
 requireGpu() {

@@ -2,9 +2,14 @@
 
 #include "treacle/core/communicator.hpp"
 
+#include <string>
+
 namespace treacle::test {
 
 /// The processes that run the tests together.
 const Communicator& job();
+
+/// The directory of the cases; the environment variable TREACLE_CASES says where it is on another machine.
+std::string casesDirectory();
 
 }  // namespace treacle::test

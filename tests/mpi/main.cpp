@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <optional>
 
 namespace treacle::test {
@@ -12,6 +13,11 @@ std::optional<Communicator> theJob;
 }  // namespace
 
 const Communicator& job() { return *theJob; }
+
+std::string casesDirectory() {
+  const char* elsewhere = std::getenv("TREACLE_CASES");
+  return elsewhere ? elsewhere : TREACLE_CASES;
+}
 
 }  // namespace treacle::test
 

@@ -21,7 +21,7 @@ struct Settings {
   int steps;
   std::vector<std::string> keys;
 
-  Case read() const { return readCase(std::string(TREACLE_CASES) + "/" + file, keys); }
+  Case read() const { return readCase(casesDirectory() + "/" + file, keys); }
 };
 
 template <int D>
