@@ -209,7 +209,7 @@ class Mailbox {
   }
   Mailbox(const Mailbox&) = delete;
   ~Mailbox() {
-    for (void* other : opened_) cudaIpcCloseMemHandle(other);
+    close();
     cudaFree(memory_);
   }
 
@@ -227,6 +227,10 @@ class Mailbox {
     else
       cudaGetLastError();  // it must not meet the next call
     return static_cast<std::byte*>(other);
+  }
+  /// The other ones, which must be before their owners free them.
+  void close() {
+    for (void* other : std::exchange(opened_, {})) cudaIpcCloseMemHandle(other);
   }
 
  private:
@@ -257,9 +261,14 @@ class PeerLink final : public DeviceLink {
     }
     context.synchronize();
   }
-  /// The mailbox stays until nobody writes to it any more; where an error ends the process nobody waits.
+  /// Mailboxes stay until nobody writes to them any more, and nobody has them open. Where an error ends the
+  /// process nobody waits.
   ~PeerLink() override {
-    if (std::uncaught_exceptions() == 0) job_.all(char{});
+    if (std::uncaught_exceptions() > 0) return;
+    cudaStreamSynchronize(context_.stream());
+    job_.all(char{});
+    box_.close();
+    job_.all(char{});
   }
 
   bool canReachAll() const { return canReachAll_; }

@@ -85,7 +85,10 @@ void Decomposition<D, Cuda>::sort(Context<Cuda>& context, const CellGrid<D>& gri
   const bool isFirst = !owners_.areKnown();
   if (isFirst || this->isUneven(job, p.fluidCount)) divide(context, grid, p);
   sortFluid(context, grid, p, ranges, w);
-  if (migrate(context, grid, p, w, isFirst)) sortFluid(context, grid, p, ranges, w);
+  if (migrate(context, grid, p, w, isFirst)) {
+    if (isFirst) ranges.key = {};  // has had room for the fluid of all processes
+    sortFluid(context, grid, p, ranges, w);
+  }
 
   const std::uint32_t own = p.fluidCount;
   fillRanges(context, grid, 0, own, ranges.key.data(), w.sortedIndex.data(), keyBits(grid), p.position.data(),

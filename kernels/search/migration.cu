@@ -84,6 +84,7 @@ void exchangeFluid(Context<Cuda>& context, Particles<D, Cuda>& p, SortWorkspace<
     from += padded(come * sizeof(T));
   };
   const auto replace = [&]<class T>(Buffer<T, Cuda>& field, std::size_t count) {
+    if (!isSent) field = {};  // has had room for the fluid of all processes
     field.resize(context, count);
     copyBytesOnDevice(context, room, field.data(), count * sizeof(T));
   };
