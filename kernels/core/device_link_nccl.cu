@@ -4,6 +4,7 @@
 #include <nccl.h>
 
 #include <string>
+#include <utility>
 
 namespace treacle {
 namespace {
@@ -21,12 +22,12 @@ class NcclLink final : public DeviceLink {
     job.broadcast(id);
     check(ncclCommInitRank(&nccl_, job.size(), id, job.rank()), nullptr);
   }
-  /// Not destroyed but given up where a process ends early: the others may not be there any more.
   ~NcclLink() override {
-    if (std::uncaught_exceptions() > 0)
-      ncclCommAbort(nccl_);
-    else
-      ncclCommDestroy(nccl_);
+    if (nccl_) ncclCommAbort(nccl_);
+  }
+  void close() override {
+    context_.synchronize();
+    check(ncclCommDestroy(std::exchange(nccl_, nullptr)), nullptr);
   }
 
   void exchange(std::span<const Communicator::Message> sent,

@@ -209,8 +209,7 @@ class Mailbox {
   }
   Mailbox(const Mailbox&) = delete;
   ~Mailbox() {
-    close();
-    cudaFree(memory_);
+    if (opened_.empty()) cudaFree(memory_);  // else others may have it open, too: it goes with the process
   }
 
   std::byte* data() const { return static_cast<std::byte*>(memory_); }
@@ -261,11 +260,9 @@ class PeerLink final : public DeviceLink {
     }
     context.synchronize();
   }
-  /// Mailboxes stay until nobody writes to them any more, and nobody has them open. Where an error ends the
-  /// process nobody waits.
-  ~PeerLink() override {
-    if (std::uncaught_exceptions() > 0) return;
-    cudaStreamSynchronize(context_.stream());
+  /// Mailboxes stay until nobody writes to them any more, and nobody has them open.
+  void close() override {
+    context_.synchronize();
     job_.all(char{});
     box_.close();
     job_.all(char{});

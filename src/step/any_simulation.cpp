@@ -42,7 +42,7 @@ struct AnySimulation::Held {
 namespace {
 
 /// What the first process asks of the others.
-enum class Order : int { Make, Advance, Copy, Share, End };
+enum class Order : int { Make, Advance, Copy, Share, Drop, End };
 
 void give(const Communicator* processes, Order order) {
   if (processes && processes->rank() == 0) processes->broadcast(order);
@@ -84,7 +84,9 @@ AnySimulation::AnySimulation(const Case& c, AnyParticles particles, BackendKind 
                [&] { return std::make_unique<Held>(Held::of(c, particles, backend, step, time, processes_)); });
 }
 
-AnySimulation::~AnySimulation() = default;
+AnySimulation::~AnySimulation() {
+  if (held_) give(processes_, Order::Drop);
+}
 AnySimulation::AnySimulation(AnySimulation&&) noexcept = default;
 
 StepReport AnySimulation::advance() {
@@ -159,6 +161,9 @@ void serveSimulation(const Case& c, AnyParticles particles, BackendKind backend,
           break;
         case Order::Share:
           simulation->shares();
+          break;
+        case Order::Drop:
+          simulation.reset();
           break;
         case Order::End:
           return;

@@ -254,7 +254,13 @@ Simulation<D, Backend>::Simulation(const Case& c, Particles<D> particles, std::i
                                    const Communicator* processes)
     : state_(std::make_unique<State>(c, std::move(particles), step, time, processes)) {}
 template <int D, class Backend>
-Simulation<D, Backend>::~Simulation() = default;
+Simulation<D, Backend>::~Simulation() {
+  if (!state_ || !state_->link) return;
+  try {
+    state_->link->close();
+  } catch (const std::exception&) {  // a device that is lost, which whoever used it last has been told
+  }
+}
 template <int D, class Backend>
 Simulation<D, Backend>::Simulation(Simulation&&) noexcept = default;
 

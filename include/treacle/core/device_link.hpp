@@ -23,6 +23,9 @@ class DeviceLink {
   /// what is quicker. Collective. The communicator and the context must outlive it.
   static std::unique_ptr<DeviceLink> make(const Communicator& job, const Context<Cuda>& context);
   virtual ~DeviceLink() = default;
+  /// The last thing that all processes do with it. Without it, where one of them has met an error that the others
+  /// have not, nobody waits for them.
+  virtual void close() {}
 
   /// Sends and receives at once; between two processes messages keep their order.
   virtual void exchange(std::span<const Communicator::Message> sent,
