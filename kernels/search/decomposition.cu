@@ -7,6 +7,7 @@
 #include "treacle/core/symmetric_block.hpp"
 
 #include <algorithm>
+#include <string>
 #include <vector>
 
 namespace treacle {
@@ -31,8 +32,22 @@ void addWork(Context<Cuda>& context, const CellGrid<D>& grid, std::span<const Ve
   });
 }
 
-/// One thread per rank and one for the end; reads positions in sorted order, in which owners ascend with the
-/// curve, writes where the fluid in that rank's cells begins; atomics no.
+/// One thread per fluid particle; reads its position, writes its key, behind those of what lower ranks own, and
+/// its index; atomics no.
+template <int D>
+void findKeysBehindOwners(Context<Cuda>& context, const CellGrid<D>& grid, const Particles<D, Cuda>& p,
+                          const std::int32_t* owner, SortWorkspace<Cuda>& w) {
+  forEach(context, p.fluidCount,
+          [grid, owner, bits = keyBits(grid), position = p.position.data(), key = w.key.data(),
+           index = w.index.data()] __device__(std::size_t i) {
+            const Vec<D> x = position[i];
+            key[i] = grid.key(x) | static_cast<std::uint64_t>(owner[grid.linear(grid.cellOf(x))]) << bits;
+            index[i] = static_cast<std::uint32_t>(i);
+          });
+}
+
+/// One thread per rank and one for the end; reads positions in sorted order, in which owners ascend, writes where
+/// the fluid in that rank's cells begins; atomics no.
 template <int D>
 void findFluidOfRanks(Context<Cuda>& context, const CellGrid<D>& grid, const Particles<D, Cuda>& p,
                       const std::uint32_t* index, const std::int32_t* owner, int ranks, std::uint32_t* begins) {
@@ -64,14 +79,17 @@ void addGhostRanges(Context<Cuda>& context, const CellGrid<D>& grid, const Parti
 
 template <int D>
 void sortFluid(Context<Cuda>& context, const CellGrid<D>& grid, const Particles<D, Cuda>& p,
-               CellRanges<Cuda>& ranges, SortWorkspace<Cuda>& w) {
+               const std::int32_t* owner, CellRanges<Cuda>& ranges, SortWorkspace<Cuda>& w) {
   const std::size_t sorted = std::size_t{p.fluidCount} + p.wallCount();
   w.key.resize(context, sorted);
   w.index.resize(context, sorted);
   w.sortedIndex.resize(context, sorted);
-  findFluidKeys(context, grid, p, w);
+  findKeysBehindOwners(context, grid, p, owner, w);
   ranges.key.resize(context, p.fluidCount);
-  sortGroup(context, 0, p.fluidCount, keyBits(grid), w, ranges.key.data());
+  const int bits = keyBits(grid);
+  sortGroup(context, 0, p.fluidCount, bits + rankBits(*context.communicator), w, ranges.key.data());
+  forEach(context, p.fluidCount,
+          [bits, key = ranges.key.data()] __device__(std::size_t k) { key[k] &= (std::uint64_t{1} << bits) - 1; });
   orderById(context, p.fluidCount, ranges.key.data(), p.id.data(), w.sortedIndex.data());
 }
 
@@ -81,14 +99,17 @@ template <int D>
 void Decomposition<D, Cuda>::sort(Context<Cuda>& context, const CellGrid<D>& grid, Particles<D, Cuda>& p,
                                   CellRanges<Cuda>& ranges, SortWorkspace<Cuda>& w) {
   const Communicator& job = *context.communicator;
+  if (keyBits(grid) + rankBits(job) > 63)
+    throw InputError("the domain has too many search cells to be shared by " + std::to_string(job.size()) +
+                     " processes");
   w.count.resize(context, 2 * job.size() + 3);  // for all numbers of the sort
   agreed(context, [&] { requireFinite(context, p, w); });
   const bool isFirst = !owners_.areKnown();
   if (isFirst || this->isUneven(job, p.fluidCount)) divide(context, grid, p);
-  sortFluid(context, grid, p, ranges, w);
+  sortFluid(context, grid, p, owner_.data(), ranges, w);
   if (migrate(context, grid, p, w, isFirst)) {
     if (isFirst) ranges.key = {};  // has had room for the fluid of all processes
-    sortFluid(context, grid, p, ranges, w);
+    sortFluid(context, grid, p, owner_.data(), ranges, w);
   }
 
   const std::uint32_t own = p.fluidCount;

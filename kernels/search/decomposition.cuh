@@ -1,14 +1,20 @@
 #pragma once
 
 #include "core/launch.hpp"
+#include "treacle/core/communicator.hpp"
 #include "treacle/core/cuda.hpp"
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 
 namespace treacle {
 
 // What the parts of a decomposition on a device share (decomposition.cu, ghosts.cu).
+
+/// Keys of particles that go behind each other by rank have so many bits above their own: for the ranks and one
+/// more.
+inline int rankBits(const Communicator& job) { return std::bit_width(static_cast<unsigned>(job.size())); }
 
 /// One thread per particle of a sorted group; the first one of those with the same key brings their indices into
 /// the order of their ids, which does not depend on who had the particles before; atomics no.

@@ -22,43 +22,36 @@ void markCellsWithFluid(Context<Cuda>& context, const Buffer<std::uint32_t, Cuda
 }
 
 /// One thread per wall particle; reads its position and what its cell is, writes its key, behind those of the
-/// fluid, and its index; atomics no. Keys of ghosts have the first bit above their own, those of inactive walls
-/// the second.
+/// fluid, and its index; atomics no. Keys of ghosts have 1 + their rank above their own bits, those of inactive
+/// walls a bit above these.
 template <int D>
 void findWallKeys(Context<Cuda>& context, const CellGrid<D>& grid, const Particles<D, Cuda>& p,
                   const CellOwnersView& owners, SortWorkspace<Cuda>& w) {
   const int bits = keyBits(grid);
+  const std::uint64_t inactive = std::uint64_t{1} << rankBits(*context.communicator);
   forEach(context, p.wallCount(),
-          [grid, bits, owners, begin = p.wallBegin(), position = p.position.data(), hasFluid = w.hasFluid.data(),
-           key = w.key.data() + p.fluidCount, index = w.index.data() + p.fluidCount] __device__(std::size_t wall) {
+          [grid, bits, inactive, owners, begin = p.wallBegin(), position = p.position.data(),
+           hasFluid = w.hasFluid.data(), key = w.key.data() + p.fluidCount,
+           index = w.index.data() + p.fluidCount] __device__(std::size_t wall) {
             const std::size_t i = begin + wall;
             const Vec<D> x = position[i];
             const std::size_t cell = grid.linear(grid.cellOf(x));
-            const std::uint64_t group = !hasFluid[cell]            ? 2
-                                        : owners.isOwn(cell)       ? 0
-                                        : owners.isBesideOwn(cell) ? 1
-                                                                   : 2;
+            std::uint64_t group = inactive;
+            if (hasFluid[cell] && owners.isOwn(cell)) group = 0;
+            if (hasFluid[cell] && owners.isBesideOwn(cell))
+              group = 1 + static_cast<std::uint64_t>(owners.owner[cell]);
             key[wall] = grid.key(x) | group << bits;
             index[wall] = static_cast<std::uint32_t>(i);
           });
 }
 
-/// One thread per rank and one for the end; reads sorted keys and positions, writes where the ghosts among the
-/// walls that are that rank's begin: own walls end with those of the first rank; atomics no.
-template <int D>
-void findWallsOfRanks(Context<Cuda>& context, const CellGrid<D>& grid, const Particles<D, Cuda>& p,
-                      const std::uint64_t* key, const std::uint32_t* index, const std::int32_t* owner, int ranks,
+/// One thread per rank and one for the end; reads sorted keys, writes where the ghosts among the walls that are
+/// that rank's begin: own walls end with those of the first rank; atomics no.
+void findWallsOfRanks(Context<Cuda>& context, const std::uint64_t* key, std::uint32_t walls, int bits, int ranks,
                       std::uint32_t* begins) {
-  const int bits = keyBits(grid);
-  forEach(context, ranks + 1,
-          [grid, bits, key, index, owner, begins, walls = p.wallCount(),
-           position = p.position.data()] __device__(std::size_t rank) {
-            begins[rank] = countFirst(walls, [&](std::uint32_t k) {
-              const std::uint64_t group = key[k] >> bits;
-              return group == 0 ||
-                     (group == 1 && owner[grid.linear(grid.cellOf(position[index[k]]))] < static_cast<int>(rank));
-            });
-          });
+  forEach(context, ranks + 1, [=] __device__(std::size_t rank) {
+    begins[rank] = countFirst(walls, [&](std::uint32_t k) { return key[k] >> bits < 1 + rank; });
+  });
 }
 
 /// One thread per border; reads the range of its cell, writes how many particles it has; atomics no.
@@ -124,19 +117,20 @@ void Decomposition<D, Cuda>::sortWalls(Context<Cuda>& context, const CellGrid<D>
                                        const Particles<D, Cuda>& p, CellRanges<Cuda>& ranges,
                                        SortWorkspace<Cuda>& w) {
   const std::uint32_t own = p.fluidCount, walls = p.wallCount(), begin = halo_.fluid;
-  const int bits = keyBits(grid), ranks = static_cast<int>(halo_.neighbours.size());
+  const int bits = keyBits(grid), groupBits = rankBits(*context.communicator);
+  const int ranks = static_cast<int>(halo_.neighbours.size());
   std::uint32_t* const index = w.sortedIndex.data() + own;
   w.sortedKey.resize(context, walls);
   findWallKeys(context, grid, p, view(), w);
-  sortGroup(context, own, own + walls, bits + 2, w, w.sortedKey.data());
+  sortGroup(context, own, own + walls, bits + groupBits + 1, w, w.sortedKey.data());
   orderById(context, walls, w.sortedKey.data(), p.id.data(), index);
 
   std::vector<std::uint32_t> counts(2 * ranks + 2);  // where what is for each rank starts, where its walls begin
   std::uint32_t* const onDevice = w.count.data();
-  fillRanges(context, grid, begin, walls, w.sortedKey.data(), index, bits + 1, p.position.data(), ranges.wallBegin,
-             ranges.wallEnd, onDevice + counts.size());
+  fillRanges(context, grid, begin, walls, w.sortedKey.data(), index, bits + groupBits, p.position.data(),
+             ranges.wallBegin, ranges.wallEnd, onDevice + counts.size());
   countSent(context, ranges.wallBegin, ranges.wallEnd, onDevice);
-  findWallsOfRanks(context, grid, p, w.sortedKey.data(), index, owner_.data(), ranks, onDevice + ranks + 1);
+  findWallsOfRanks(context, w.sortedKey.data(), walls, bits, ranks, onDevice + ranks + 1);
   copyBytesToHost(context, onDevice, counts.data(), counts.size() * sizeof(std::uint32_t));
 
   const std::span<const std::uint32_t> all = counts, starts = all.first(ranks + 1),

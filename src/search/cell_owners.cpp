@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 namespace treacle {
@@ -24,22 +25,62 @@ void CellOwners<D>::orderCells(const CellGrid<D>& grid) {
   std::sort(order_.begin(), order_.end(), [&](std::uint32_t a, std::uint32_t b) { return key[a] < key[b]; });
 }
 
-/// A cell goes to the process in whose share of the work the middle of its own lies.
+/// Gives the cells to the processes [first, last). Both parts of a cut are in the order of their places along the
+/// axis, so a plane that lies in both has a step. A cell goes to the part in whose share of the work the middle of
+/// its own lies.
+template <int D>
+void CellOwners<D>::cut(const CellGrid<D>& grid, std::span<const std::uint32_t> work,
+                        std::span<std::uint32_t> cells, int first, int last) {
+  if (last - first == 1) {
+    for (std::uint32_t cell : cells) owner_[cell] = first;
+    return;
+  }
+  Vec<D, int> low = grid.count, high{};
+  double total = 0;
+  for (std::uint32_t cell : cells) {
+    if (work[cell] == 0) continue;
+    total += work[cell];
+    const Vec<D, int> at = grid.cellAt(cell);
+    for (int k = 0; k < D; ++k) low[k] = std::min(low[k], at[k]), high[k] = std::max(high[k], at[k] + 1);
+  }
+  int axis = 0;
+  for (int k = 1; k < D; ++k)
+    if ((high[k] - low[k]) * grid.edge[k] > (high[axis] - low[axis]) * grid.edge[axis]) axis = k;
+  const auto place = [&](std::uint32_t cell) {
+    const Vec<D, int> at = grid.cellAt(cell);
+    std::uint64_t key = 0;
+    for (int k = 0; k < D; ++k) key = key * grid.count[(axis + k) % D] + at[(axis + k) % D];
+    return key;
+  };
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> placed;
+  placed.reserve(cells.size());
+  for (std::uint32_t cell : cells) placed.emplace_back(place(cell), cell);
+  std::sort(placed.begin(), placed.end());
+
+  const int middle = (first + last) / 2;
+  const double share = total * (middle - first) / (last - first);
+  double before = 0;
+  std::size_t ofFirst = 0;
+  for (std::size_t k = 0; k < placed.size(); ++k) {
+    cells[k] = placed[k].second;
+    if (before + 0.5 * work[cells[k]] < share) ofFirst = k + 1;
+    before += work[cells[k]];
+  }
+  cut(grid, work, cells.first(ofFirst), first, middle);
+  cut(grid, work, cells.subspan(ofFirst), middle, last);
+}
+
 template <int D>
 void CellOwners<D>::assign(const CellGrid<D>& grid, std::span<const std::uint32_t> work, int rank, int size) {
   orderCells(grid);
   const std::size_t cells = grid.cellCount();
   owner_.resize(cells);
   place_.resize(cells);
-  const double total = std::accumulate(work.begin(), work.end(), 0.0);
+  std::vector<std::uint32_t> all(order_.begin(), order_.end());
+  cut(grid, work, all, 0, size);
   std::vector<double> workOf(size);
-  double before = 0;
-  for (std::uint32_t cell : order_) {
-    const double middle = total > 0 ? (before + 0.5 * work[cell]) / total : 0;
-    owner_[cell] = std::min(size - 1, static_cast<int>(middle * size));
-    workOf[owner_[cell]] += work[cell];
-    before += work[cell];
-  }
+  for (std::size_t cell = 0; cell < cells; ++cell) workOf[owner_[cell]] += work[cell];
+  const double total = std::accumulate(workOf.begin(), workOf.end(), 0.0);
   imbalance_ = total > 0 ? *std::max_element(workOf.begin(), workOf.end()) * size / total : 1;
   std::fill(place_.begin(), place_.end(), CellPlace::Far);
   for (std::size_t cell = 0; cell < cells; ++cell)

@@ -65,7 +65,13 @@ void Decomposition<D, Cpu>::sortWalls(const CellGrid<D>& grid, Particles<D>& p, 
                                                             : inactiveKey;
     keyed[i] = {grid.key(p.position[i]) | group, i};
   });
-  sortGroup(p, begin, count, workspace, byKeyAndId(p.id));
+  // Ghosts in the order of the ranks that own them.
+  const auto owner = [&](const KeyedIndex& k) { return owners_.owner(cellAt(grid, p.position[k.index])); };
+  const auto isGhost = [](const KeyedIndex& k) { return k.key >= ghostKey && k.key < inactiveKey; };
+  sortGroup(p, begin, count, workspace, [&](const KeyedIndex& a, const KeyedIndex& b) {
+    if (isGhost(a) && isGhost(b) && owner(a) != owner(b)) return owner(a) < owner(b);
+    return byKeyAndId(p.id)(a, b);
+  });
   const auto endOf = [&](std::uint64_t key) {
     return static_cast<std::uint32_t>(
         std::partition_point(keyed + begin, keyed + count, [=](const KeyedIndex& k) { return k.key < key; }) -

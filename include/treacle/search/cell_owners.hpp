@@ -22,12 +22,14 @@ struct CellOwnersView {
   TREACLE_HD bool isBesideOwn(std::size_t cell) const { return place[cell] == CellPlace::Beside; }
 };
 
-/// Which process owns which cells: contiguous parts of the Hilbert curve through all cells, of about equal work.
-/// Every process knows all owners.
+/// Which process owns which cells: blocks of about equal work, made by cutting the cells in two again and again,
+/// each time across the longest side of those that have work. What processes share is then half to a fifth of what
+/// it is between parts of the Hilbert curve, whose borders are rough (docs/clusters.md). Every process knows all
+/// owners.
 template <int D>
 class CellOwners {
  public:
-  /// Cuts the curve. `work`: per cell (CellGrid::linear), the same at all processes.
+  /// `work`: per cell (CellGrid::linear), the same at all processes.
   void assign(const CellGrid<D>& grid, std::span<const std::uint32_t> work, int rank, int size);
 
   bool areKnown() const { return !owner_.empty(); }
@@ -39,15 +41,17 @@ class CellOwners {
   std::size_t cellCount() const { return owner_.size(); }
   /// Per rank of `size`: own cells that touch those of that rank, in the order of the curve.
   std::vector<std::vector<std::uint32_t>> borders(const CellGrid<D>& grid, int size) const;
-  /// Largest work of a process over the mean, as it was when the curve was cut.
+  /// Largest work of a process over the mean, as it was then.
   double imbalance() const { return imbalance_; }
 
   std::size_t bytes() const { return order_.bytes() + owner_.bytes() + place_.bytes(); }
 
  private:
   void orderCells(const CellGrid<D>& grid);
+  void cut(const CellGrid<D>& grid, std::span<const std::uint32_t> work, std::span<std::uint32_t> cells, int first,
+           int last);
 
-  Buffer<std::uint32_t> order_;  // cells along the curve
+  Buffer<std::uint32_t> order_;  // cells along the Hilbert curve
   Buffer<std::int32_t> owner_;
   Buffer<CellPlace> place_;
   double imbalance_ = 1;
