@@ -2,8 +2,13 @@
 
 #include "core/launch.hpp"
 #include "core/reduce.cuh"
+#include "treacle/core/processes.hpp"
 
 #include <cub/device/device_reduce.cuh>
+
+#include <algorithm>
+#include <functional>
+#include <limits>
 
 namespace treacle {
 namespace {
@@ -11,9 +16,30 @@ namespace {
 /// Where a result of a reduction stands until the next one: behind the partial sums of blocks.
 double* resultOf(Context<Cuda>& context) { return context.partialSums() + Context<Cuda>::maxPartialSums - 1; }
 
+/// The sum over all processes, for which the host waits.
 template <class Body>
-void sumTo(Context<Cuda>& context, std::size_t count, double* result, Body body) {
+double sumOf(Context<Cuda>& context, std::size_t count, Body body) {
+  double* result = resultOf(context);
   reduce(context, count, body, [result] __device__(double sum) { *result = sum; });
+  return valueOnHost(context, result);
+}
+
+double meanOf(Context<Cuda>& context, std::span<const double> x) {
+  const double sum = sumOf(context, x.size(), [x] __device__(std::size_t i) { return x[i]; });
+  return sum / static_cast<double>(joinedOverProcesses(context, x.size(), std::plus<>()));
+}
+
+double leastOf(Context<Cuda>& context, std::span<const double> x) {
+  double least = std::numeric_limits<double>::infinity();
+  if (!x.empty()) {
+    double* result = resultOf(context);
+    std::size_t bytes = 0;
+    TREACLE_CUDA_CHECK(cub::DeviceReduce::Min(nullptr, bytes, x.data(), result, x.size(), context.stream()));
+    TREACLE_CUDA_CHECK(
+        cub::DeviceReduce::Min(context.scratch(bytes), bytes, x.data(), result, x.size(), context.stream()));
+    least = valueOnHost(context, result);
+  }
+  return joinedOverProcesses(context, least, [](double a, double b) { return std::min(a, b); });
 }
 
 }  // namespace
@@ -26,25 +52,12 @@ void settlePressure(Context<Cuda>& context, std::span<const std::uint8_t> surfac
 }
 
 bool isClosed(Context<Cuda>& context, std::span<const std::uint8_t> surface) {
-  double* result = resultOf(context);
-  sumTo(context, surface.size(), result, [surface] __device__(std::size_t i) { return double(surface[i]); });
-  return valueOnHost(context, result) == 0;
+  return sumOf(context, surface.size(), [surface] __device__(std::size_t i) { return double(surface[i]); }) == 0;
 }
 
 void takeLevel(Context<Cuda>& context, Level level, std::span<double> x) {
-  if (x.empty()) return;
-  double* result = resultOf(context);
-  double count = 1;
-  if (level == Level::Mean) {
-    count = static_cast<double>(x.size());
-    sumTo(context, x.size(), result, [x] __device__(std::size_t i) { return x[i]; });
-  } else {
-    std::size_t bytes = 0;
-    TREACLE_CUDA_CHECK(cub::DeviceReduce::Min(nullptr, bytes, x.data(), result, x.size(), context.stream()));
-    TREACLE_CUDA_CHECK(
-        cub::DeviceReduce::Min(context.scratch(bytes), bytes, x.data(), result, x.size(), context.stream()));
-  }
-  forEach(context, x.size(), [x, result, count] __device__(std::size_t i) { x[i] -= *result / count; });
+  const double zero = level == Level::Least ? leastOf(context, x) : meanOf(context, x);
+  forEach(context, x.size(), [x, zero] __device__(std::size_t i) { x[i] -= zero; });
 }
 
 template <int D>

@@ -49,7 +49,7 @@ __device__ inline void visitRow(const IsphPairs<D>& pairs, const NeighbourRowsVi
 template <int D, class Term>
 __global__ void __launch_bounds__(128, 7) fluidSumsKernel(const __grid_constant__ IsphPairs<D> pairs, Term term) {
   const std::uint32_t i = blockIdx.x * (blockDim.x / rowLanes) + threadIdx.x / rowLanes;
-  const bool used = i < pairs.fluidCount;
+  const bool used = i < pairs.ownFluid();
   double sum[Term::values] = {};
   if (used) {
     const Vec<D> x = pairs.position[i];
@@ -102,7 +102,7 @@ __global__ void __launch_bounds__(128)
   }
   const std::uint32_t i = blockIdx.x * (blockDim.x / rowLanes) + threadIdx.x / rowLanes,
                       lane = threadIdx.x % rowLanes;
-  const bool used = i < pairs.fluidCount;
+  const bool used = i < pairs.ownFluid();
   const IsphMatrixRow<D, T, Row> filler{pairs, row, parts};
   double sum[filler.values] = {};
   if (used) {
@@ -133,7 +133,7 @@ __global__ void __launch_bounds__(128)
 
 template <int D, class Term>
 void sumOnFluid(Context<Cuda>& context, const IsphPairs<D>& pairs, const Term& term) {
-  launch(context, blocksFor(std::size_t{pairs.fluidCount} * rowLanes, 128), 128, 0, fluidSumsKernel<D, Term>,
+  launch(context, blocksFor(std::size_t{pairs.ownFluid()} * rowLanes, 128), 128, 0, fluidSumsKernel<D, Term>,
          pairs, term);
 }
 
@@ -146,8 +146,8 @@ void sumOnWalls(Context<Cuda>& context, const IsphPairs<D>& pairs, const Term& t
 /// Two threads per row count the fours of its sections.
 template <int D>
 void preparePacked(Context<Cuda>& context, const IsphPairs<D>& pairs, PackedEntries<Cuda>& packed) {
-  findColumnBlocks<D>(context, pairs.grid, pairs.cells, pairs.position.first(pairs.fluidCount), packed.blocks);
-  const std::size_t sections = 2 * std::size_t{pairs.fluidCount};
+  findColumnBlocks<D>(context, pairs.grid, pairs.cells, pairs.position.first(pairs.ownFluid()), packed.blocks);
+  const std::size_t sections = 2 * std::size_t{pairs.ownFluid()};
   packed.four.resize(context, sections + 1);
   forEach(context, sections,
           [start = pairs.fluidOfFluid.start, four = packed.four.data()] __device__(std::size_t k) {
@@ -159,7 +159,7 @@ void preparePacked(Context<Cuda>& context, const IsphPairs<D>& pairs, PackedEntr
 template <int D, class T, class Row>
 void fillIsphMatrix(Context<Cuda>& context, const IsphPairs<D>& pairs, const Row& row,
                     const IsphMatrixParts<D, T>& parts) {
-  const unsigned blocks = blocksFor(std::size_t{pairs.fluidCount} * rowLanes, 128);
+  const unsigned blocks = blocksFor(std::size_t{pairs.ownFluid()} * rowLanes, 128);
   if constexpr (std::is_same_v<T, float>)
     if (parts.packed.word)
       return launch(context, blocks, 128, 0, isphMatrixKernel<true, D, T, Row>, pairs, row, parts);

@@ -118,24 +118,24 @@ void findRoughly(Context<Cuda>& context, const RoughSearch<D, Periodic>& around,
 
 /// Candidates are looked at once: what is written after the counting are the bits of those that were found.
 template <int D>
-void findNeighbours(Context<Cuda>& context, const CellGrid<D>& grid, const CellRangesView& cells,
-                    std::span<const Vec<D>> position, std::uint32_t fluidCount, std::uint32_t activeCount,
-                    RowRadii radii, RowKind kind, NeighbourRows<Cuda>& rows) {
-  const RowSearch search = RowSearch::make(kind, fluidCount, activeCount);
-  Buffer<float4, Cuda> rough(context, std::size_t{activeCount} + placesBehind);
-  findRoughPlaces(context, grid, position.first(activeCount), rough.data());
+void findNeighbours(Context<Cuda>& context, const SortedParticles<D>& particles, RowRadii radii, RowKind kind,
+                    NeighbourRows<Cuda>& rows) {
+  const RowSearch search = RowSearch::make(kind, particles);
+  const CellGrid<D>& grid = particles.grid;
+  Buffer<float4, Cuda> rough(context, std::size_t{particles.activeCount} + placesBehind);
+  findRoughPlaces(context, grid, particles.position.first(particles.activeCount), rough.data());
   Buffer<std::uint8_t, Cuda> nearWalls;
   if (search.walls) {
     nearWalls.resize(context, grid.cellCount());
-    markFluidNearWalls(context, grid, cells, nearWalls.data());
+    markFluidNearWalls(context, grid, particles.cells, nearWalls.data());
   }
   rows.first = search.first;
   rows.count = search.count;
   rows.start.resize(context, 2 * std::size_t{search.count} + 1);
   const auto find = [&](auto around) {
     around.grid = grid;
-    around.cells = cells;
-    around.exact = position.data();
+    around.cells = particles.cells;
+    around.exact = particles.position.data();
     around.rough = rough.data();
     around.walls = search.walls;
     around.used = nearWalls.data();
@@ -147,9 +147,9 @@ void findNeighbours(Context<Cuda>& context, const CellGrid<D>& grid, const CellR
   periodic ? find(RoughSearch<D, true>{}) : find(RoughSearch<D, false>{});
 }
 
-template void findNeighbours<2>(Context<Cuda>&, const CellGrid<2>&, const CellRangesView&, std::span<const Vec<2>>,
-                                std::uint32_t, std::uint32_t, RowRadii, RowKind, NeighbourRows<Cuda>&);
-template void findNeighbours<3>(Context<Cuda>&, const CellGrid<3>&, const CellRangesView&, std::span<const Vec<3>>,
-                                std::uint32_t, std::uint32_t, RowRadii, RowKind, NeighbourRows<Cuda>&);
+template void findNeighbours<2>(Context<Cuda>&, const SortedParticles<2>&, RowRadii, RowKind,
+                                NeighbourRows<Cuda>&);
+template void findNeighbours<3>(Context<Cuda>&, const SortedParticles<3>&, RowRadii, RowKind,
+                                NeighbourRows<Cuda>&);
 
 }  // namespace treacle

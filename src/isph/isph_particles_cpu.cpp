@@ -1,8 +1,11 @@
 #include "treacle/isph/isph_particles.hpp"
 
 #include "treacle/core/parallel.hpp"
+#include "treacle/core/processes.hpp"
 
 #include <algorithm>
+#include <functional>
+#include <limits>
 #include <numeric>
 
 namespace treacle {
@@ -11,15 +14,20 @@ void settlePressure(Context<Cpu>&, std::span<const std::uint8_t> surface, bool c
   parallelFor(p.size(), parallelGrain, [&](std::size_t i) { p[i] = settledPressure(surface[i], cut, p[i]); });
 }
 
-bool isClosed(Context<Cpu>&, std::span<const std::uint8_t> surface) {
-  return std::find(surface.begin(), surface.end(), 1) == surface.end();
+bool isClosed(Context<Cpu>& context, std::span<const std::uint8_t> surface) {
+  return joinedOverProcesses(context, std::count(surface.begin(), surface.end(), 1), std::plus<>()) == 0;
 }
 
-void takeLevel(Context<Cpu>&, Level level, std::span<double> x) {
-  if (x.empty()) return;
-  const double zero = level == Level::Least
-                          ? *std::min_element(x.begin(), x.end())
-                          : std::accumulate(x.begin(), x.end(), 0.0) / static_cast<double>(x.size());
+void takeLevel(Context<Cpu>& context, Level level, std::span<double> x) {
+  double zero;
+  if (level == Level::Least) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const double value : x) least = std::min(least, value);
+    zero = joinedOverProcesses(context, least, [](double a, double b) { return std::min(a, b); });
+  } else {
+    const double sum = sumOverProcesses(context, std::accumulate(x.begin(), x.end(), 0.0));
+    zero = sum / static_cast<double>(joinedOverProcesses(context, x.size(), std::plus<>()));
+  }
   parallelFor(x.size(), parallelGrain, [&](std::size_t i) { x[i] -= zero; });
 }
 

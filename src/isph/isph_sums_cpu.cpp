@@ -6,7 +6,7 @@ namespace treacle {
 
 template <int D, class Term>
 void sumOnFluid(Context<Cpu>&, const IsphPairs<D>& pairs, const Term& term) {
-  parallelFor(pairs.fluidCount, parallelGrain, [&](std::size_t row) {
+  parallelFor(pairs.ownFluid(), parallelGrain, [&](std::size_t row) {
     const auto i = static_cast<std::uint32_t>(row);
     const Vec<D> x = pairs.position[i];
     double sum[Term::values] = {};
@@ -42,7 +42,7 @@ template <int D, class T, class Row>
 void fillIsphMatrix(Context<Cpu>&, const IsphPairs<D>& pairs, const Row& row, const IsphMatrixParts<D, T>& parts) {
   const IsphMatrixRow<D, T, Row> filler{pairs, row, parts};
   const std::uint64_t farBegin = pairs.fluidOfFluid.start[pairs.fluidOfFluid.count];
-  parallelFor(pairs.fluidCount, parallelGrain, [&](std::size_t index) {
+  parallelFor(pairs.ownFluid(), parallelGrain, [&](std::size_t index) {
     const auto i = static_cast<std::uint32_t>(index);
     double sum[filler.values] = {};
     pairs.fluidOfFluid.forEachPlace(i, [&](std::uint64_t k) {

@@ -5,13 +5,11 @@
 namespace treacle {
 
 template <int D>
-void findNeighbours(Context<Cpu>&, const CellGrid<D>& grid, const CellRangesView& cells,
-                    std::span<const Vec<D>> position, std::uint32_t fluidCount, std::uint32_t activeCount,
-                    RowRadii radii, RowKind kind, NeighbourRows<>& rows) {
-  const RowSearch search = RowSearch::make(kind, fluidCount, activeCount);
+void findNeighbours(Context<Cpu>&, const SortedParticles<D>& particles, RowRadii radii, RowKind kind,
+                    NeighbourRows<>& rows) {
+  const RowSearch search = RowSearch::make(kind, particles);
   const auto forEach = [&](std::size_t row, auto&& f) {
-    forEachNeighbour(grid, cells, position.data(), search.first + static_cast<std::uint32_t>(row), radii,
-                     search.walls, f);
+    forEachNeighbour(particles, search.first + static_cast<std::uint32_t>(row), radii, search.walls, f);
   };
   const std::size_t count = search.count;
   rows.first = search.first;
@@ -32,9 +30,7 @@ void findNeighbours(Context<Cpu>&, const CellGrid<D>& grid, const CellRangesView
   });
 }
 
-template void findNeighbours<2>(Context<Cpu>&, const CellGrid<2>&, const CellRangesView&, std::span<const Vec<2>>,
-                                std::uint32_t, std::uint32_t, RowRadii, RowKind, NeighbourRows<>&);
-template void findNeighbours<3>(Context<Cpu>&, const CellGrid<3>&, const CellRangesView&, std::span<const Vec<3>>,
-                                std::uint32_t, std::uint32_t, RowRadii, RowKind, NeighbourRows<>&);
+template void findNeighbours<2>(Context<Cpu>&, const SortedParticles<2>&, RowRadii, RowKind, NeighbourRows<>&);
+template void findNeighbours<3>(Context<Cpu>&, const SortedParticles<3>&, RowRadii, RowKind, NeighbourRows<>&);
 
 }  // namespace treacle

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "staged_solver.hpp"
+#include "treacle/core/halo.hpp"
 #include "treacle/linear/cell_multigrid.hpp"
 #include "treacle/precondition/isph_hat_multigrid.hpp"
 #include "treacle/search/buckets.hpp"
@@ -29,7 +30,8 @@ class IsphSystem final : public StagedSystem<Backend> {
   void preparePreconditioner(Context<Backend>& context, const SolverSettings&) override {
     withPrecision([&](auto& data) { prepare(context, data); });
   }
-  void multiply(Context<Backend>& context, std::span<const double> x, std::span<double> y) override {
+  void multiply(Context<Backend>& context, std::span<const double> own, std::span<double> y) override {
+    const std::span<const double> x = withGhosts(context, own, withGhosts_);
     withPrecision([&](auto& data) { treacle::multiply(context, data.matrix, x, y); });
   }
   void precondition(Context<Backend>& context, std::span<const double> r, std::span<double> z) override {
@@ -51,12 +53,14 @@ class IsphSystem final : public StagedSystem<Backend> {
   bool likesSingle() const override {
     return stage_.precision == Precision::Mixed && stage_.preconditioner == PreconditionerKind::HatMultigrid;
   }
-  void multiplySingle(Context<Backend>& context, std::span<const double> x, std::span<double> y) override {
+  void multiplySingle(Context<Backend>& context, std::span<const double> own, std::span<double> y) override {
+    const std::span<const double> x = withGhosts(context, own, withGhosts_);
     withPrecision([&](auto& data) { treacle::multiplySingle(context, data.matrix, x, y); });
   }
 
   std::size_t bytes() const {
-    std::size_t sum = diagonal_.bytes() + moments_.bytes() + compressed_.bytes() + levels_.bytes();
+    std::size_t sum =
+        diagonal_.bytes() + moments_.bytes() + withGhosts_.bytes() + compressed_.bytes() + levels_.bytes();
     const auto add = [&](const auto& data) {
       sum += data.coefficient.bytes() + data.packed.bytes() + data.inverseNear.bytes() + data.hats.bytes() +
              data.cells.bytes();
@@ -86,12 +90,17 @@ class IsphSystem final : public StagedSystem<Backend> {
       f(double_);
   }
 
+  /// Of the processes, which pack all or none: a coefficient stands in rows of two, and must be the same in both.
+  static std::uint64_t meanRows(const Context<Backend>& context, std::uint32_t own) {
+    return context.halo ? context.halo->fluidOfAll / context.communicator->size() : own;
+  }
+
   template <class T>
   void fill(Context<Backend>& context, Data<T>& data) {
     const NeighbourRowsView& rows = pairs_->fluidOfFluid;
     PackedEntriesView packed;
     if constexpr (onDevice && std::is_same_v<T, float>)
-      if (rows.count >= PackedEntries<Backend>::fewest) {
+      if (meanRows(context, rows.count) >= PackedEntries<Backend>::fewest) {
         preparePacked(context, *pairs_, data.packed);
         packed = data.packed.view();
       }
@@ -129,6 +138,7 @@ class IsphSystem final : public StagedSystem<Backend> {
   Row row_{};
   Buffer<double, Backend> diagonal_;
   Buffer<IsphMoments<D>, Backend> moments_;
+  Buffer<double, Backend> withGhosts_;  // what is multiplied
   BlockCsr<1, double, Backend> compressed_;
   BucketLevels<Backend> levels_;
   Data<double> double_;

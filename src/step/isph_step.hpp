@@ -4,8 +4,10 @@
 #include "isph_solver.hpp"
 #include "step_method.hpp"
 #include "take_trial.hpp"
+#include "treacle/core/halo.hpp"
 #include "treacle/isph/isph_particles.hpp"
 #include "treacle/model/particles_copy.hpp"
+#include "treacle/search/particle_sort.hpp"
 #include "treacle/step/solve_stages.hpp"
 
 #include <fmt/format.h>
@@ -25,15 +27,11 @@ class IsphStep final : public StepMethod<D, Backend> {
         pressure_(solveStages(state.theCase)),
         viscosity_(solveStages(state.theCase)) {}
 
-  void sortParticles() override { sortByCell(state_.context, pairs_.grid, state_.particles, ranges_, workspace_); }
+  void sortParticles() override { sort_.sort(state_.context, pairs_.grid, state_.particles); }
 
   void findNeighbours() override {
     const Particles<D, Backend>& p = state_.particles;
-    pairs_.fluidCount = p.fluidCount;
-    pairs_.activeCount = ranges_.activeCount;
-    pairs_.position = p.position;
-    pairs_.material = p.material;
-    pairs_.cells = viewOf(ranges_);
+    sort_.place(p, pairs_);
     pairs_.body = p.body.data();
     pairs_.wallMotion = state_.wallMotion.empty() ? nullptr : state_.wallMotion.data();
     find(RowKind::FluidOfFluid, fluidOfFluid_);
@@ -57,28 +55,31 @@ class IsphStep final : public StepMethod<D, Backend> {
     if (isImplicit()) return solveViscosity();
     state_.phases.run(state_.context, phases::coefficients, [&] {
       preparePrediction();
-      const PredictorTerm<D> predictor{state_.particles.velocity.data(), predicted_.data(),
-                                       std::isfinite(viscousLimit_)};
+      const bool viscous = std::isfinite(viscousLimit_);
+      if (viscous) fillGhosts(state_.context, Held::Fluid, state_.particles.velocity.data());
+      const PredictorTerm<D> predictor{state_.particles.velocity.data(), predicted_.data(), viscous};
       sumOnFluid(state_.context, pairs_, BothTerms<DensityTerm<D>, PredictorTerm<D>>{densityTerm(), predictor});
     });
     return {};
   }
 
   void prepareSystem() override {
-    source_.resize(state_.context, pairs_.fluidCount);
+    fillGhosts(state_.context, Held::Fluid, predicted_.data());
+    fillGhosts(state_.context, Held::Fluid, surface_.data());
+    source_.resize(state_.context, pairs_.ownFluid());
     sumOnFluid(state_.context, pairs_,
                PressureSourceTerm<D>{predicted_.data(), state_.particles.numberDensity.data(), surface_.data(),
                                      source_.data()});
-    closed_ = isClosed(state_.context, surface_);
+    closed_ = isClosed(state_.context, ownSurface());
     if (closed_) takeLevel(state_.context, Level::Mean, source_);
-    pressure_.prepareMatrix(state_.context, pairs_, ranges_, row());
+    pressure_.prepareMatrix(state_.context, pairs_, ranges(), row());
   }
 
   void preparePreconditioner() override { pressure_.preparePreconditioner(state_.context); }
 
   StagedReport solve() override {
-    guess(solution_);
-    const StagedReport report = pressure_.solve(state_.context, source_, solution_);
+    guess(solution());
+    const StagedReport report = pressure_.solve(state_.context, source_, solution());
     if (report.status != SolveStatus::Converged) fail("pressure", report);
     return report;
   }
@@ -88,10 +89,11 @@ class IsphStep final : public StepMethod<D, Backend> {
     const SolverSettings stage = singleStage(state_.theCase, settings);
     IsphSolver<D, Backend, PressureRow<D>> solver({stage});
     Buffer<double, Backend> x;
+    x.resize(state_.context, pairs_.ownFluid());
     return takeTrial(
         state_.context, stage,
         [&] {
-          solver.prepareMatrix(state_.context, pairs_, ranges_, row());
+          solver.prepareMatrix(state_.context, pairs_, ranges(), row());
           solver.preparePreconditioner(state_.context);
         },
         [&](double* history) {
@@ -101,10 +103,11 @@ class IsphStep final : public StepMethod<D, Backend> {
   }
 
   void correctVelocities() override {
-    if (closed_) takeLevel(state_.context, pairs_.negativePressure ? Level::Mean : Level::Least, solution_);
-    settlePressure(state_.context, surface_, !pairs_.negativePressure, solution_);
-    state_.velocity.resize(state_.context, pairs_.fluidCount);
-    wallShare_.resize(state_.context, pairs_.fluidCount);
+    if (closed_) takeLevel(state_.context, pairs_.negativePressure ? Level::Mean : Level::Least, solution());
+    settlePressure(state_.context, ownSurface(), !pairs_.negativePressure, solution());
+    fillGhosts(state_.context, Held::Fluid, solution_.data());
+    state_.velocity.resize(state_.context, pairs_.ownFluid());
+    wallShare_.resize(state_.context, pairs_.ownFluid());
     sumOnFluid(state_.context, pairs_,
                CorrectorTerm<D>{solution_.data(), predicted_.data(), state_.velocity.data(), wallShare_.data()});
   }
@@ -112,9 +115,9 @@ class IsphStep final : public StepMethod<D, Backend> {
   std::span<const Vec<D>> transportVelocities() override {
     const double coefficient = state_.theCase.method.isph.shifting;
     if (coefficient == 0) return state_.velocity.span();
-    transport_.resize(state_.context, pairs_.fluidCount);
-    shiftedVelocity<D>(state_.context, {coefficient, state_.theCase.spacing, state_.timeStep}, deficit_, surface_,
-                       state_.velocity, transport_);
+    transport_.resize(state_.context, pairs_.ownFluid());
+    shiftedVelocity<D>(state_.context, {coefficient, state_.theCase.spacing, state_.timeStep}, deficit_,
+                       ownSurface(), state_.velocity, transport_);
     return transport_.span();
   }
 
@@ -124,35 +127,34 @@ class IsphStep final : public StepMethod<D, Backend> {
   }
 
   void accept() override {
-    const std::uint32_t n = pairs_.fluidCount;
     std::span<double> pressure = state_.particles.pressure;
     copyValues(state_.context, std::span<const double>(solution_), pressure.data());
-    clearValues(state_.context, pressure.subspan(n));
+    clearValues(state_.context, pressure.subspan(pairs_.fluidCount));
     sumOnWalls(state_.context, pairs_, WallPressureTerm<D>{solution_.data(), pressure.data()});
   }
 
   void describe(DiagnosticsInput<D>& in) const override {
-    if (surface_.size() != state_.particles.fluidCount) return;
-    in.density = state_.particles.numberDensity.span().first(state_.particles.fluidCount);
-    in.surface = surface_;
-    if (wallShare_.size() != surface_.size()) return;
+    const std::uint32_t n = state_.particles.fluidCount;
+    if (surface_.size() != state_.particles.wallBegin()) return;
+    in.density = state_.particles.numberDensity.span().first(n);
+    in.surface = surface_.span().first(n);
+    if (wallShare_.size() != n) return;
     in.wallDensity = wallShare_;
     in.neighbourDensity = 1 - pairs_.volume * pairs_.kernel.value(0) / pairs_.latticeDensity;
   }
 
   /// The linear system at hand, for those who solve it in other ways.
   const IsphPairs<D>& pairs() const { return pairs_; }
-  const CellRanges<Backend>& ranges() const { return ranges_; }
+  const CellRanges<Backend>& ranges() const { return sort_.ranges(); }
   PressureRow<D> row() const { return {surface_.data()}; }
   std::span<const double> source() const { return source_; }
 
   const CellGrid<D>& grid() const override { return pairs_.grid; }
   const MaterialTable& materials() const override { return pairs_.materials; }
   std::size_t bytes() const override {
-    return ranges_.bytes() + workspace_.bytes() + fluidOfFluid_.bytes() + wallsOfFluid_.bytes() +
-           fluidOfWalls_.bytes() + deficit_.bytes() + surface_.bytes() + predicted_.bytes() + source_.bytes() +
-           solution_.bytes() + transport_.bytes() + wallShare_.bytes() + pressure_.bytes() + viscosity_.bytes() +
-           componentBytes();
+    return sort_.bytes() + fluidOfFluid_.bytes() + wallsOfFluid_.bytes() + fluidOfWalls_.bytes() +
+           deficit_.bytes() + surface_.bytes() + predicted_.bytes() + source_.bytes() + solution_.bytes() +
+           transport_.bytes() + wallShare_.bytes() + pressure_.bytes() + viscosity_.bytes() + componentBytes();
   }
 
   /// Pairs up to this share of the kernel's radius make the smoother's matrix: 1.9 l with the usual kernel.
@@ -167,20 +169,20 @@ class IsphStep final : public StepMethod<D, Backend> {
 
   void find(RowKind kind, NeighbourRows<Backend>& rows) {
     const double radius = pairs_.kernel.radius();
-    treacle::findNeighbours<D>(state_.context, pairs_.grid, pairs_.cells, pairs_.position, pairs_.fluidCount,
-                               pairs_.activeCount, {nearShare * radius, radius}, kind, rows);
+    treacle::findNeighbours<D>(state_.context, pairs_, {nearShare * radius, radius}, kind, rows);
   }
 
+  std::span<double> solution() { return solution_.span().first(pairs_.ownFluid()); }
+  std::span<const std::uint8_t> ownSurface() const { return surface_.span().first(pairs_.ownFluid()); }
+
   /// The pressures of the last step.
-  void guess(Buffer<double, Backend>& x) const {
-    x.resize(state_.context, pairs_.fluidCount);
-    copyValues(state_.context, std::span<const double>(state_.particles.pressure).first(pairs_.fluidCount),
-               x.data());
+  void guess(std::span<double> x) const {
+    copyValues(state_.context, std::span<const double>(state_.particles.pressure).first(x.size()), x.data());
   }
 
   void prepareDensities() {
     const std::uint32_t n = pairs_.fluidCount;
-    deficit_.resize(state_.context, n);
+    deficit_.resize(state_.context, pairs_.ownFluid());
     surface_.resize(state_.context, n);
     clearValues(state_.context, state_.particles.numberDensity.span().subspan(n));
   }
@@ -192,11 +194,12 @@ class IsphStep final : public StepMethod<D, Backend> {
     return isViscousStepImplicit(state_.theCase.method.isph.viscosity, viscousLimit_, state_.timeStep);
   }
 
-  /// Room for v*, and the velocities of the walls in it.
+  /// Room for v* and the pressures, and the velocities of the walls in v*.
   void preparePrediction() {
     const std::uint32_t n = pairs_.fluidCount, active = pairs_.activeCount;
     prepareDensities();
     predicted_.resize(state_.context, active);
+    solution_.resize(state_.context, n);
     copyValues(state_.context, std::span<const Vec<D>>(state_.particles.velocity).subspan(n, active - n),
                predicted_.data() + n);
   }
@@ -206,10 +209,10 @@ class IsphStep final : public StepMethod<D, Backend> {
     state_.phases.run(state_.context, phases::coefficients, [&] {
       preparePrediction();
       sumOnFluid(state_.context, pairs_, densityTerm());
-      viscosity_.prepareMatrix(state_.context, pairs_, ranges_, ViscousRow<D>{});
+      viscosity_.prepareMatrix(state_.context, pairs_, ranges(), ViscousRow<D>{});
       ViscousSourceTerm<D> term{state_.particles.velocity.data(), {}};
       for (int k = 0; k < D; ++k) {
-        component_[k].resize(state_.context, pairs_.fluidCount);
+        component_[k].resize(state_.context, pairs_.ownFluid());
         term.source[k] = component_[k].data();
       }
       sumOnFluid(state_.context, pairs_, term);
@@ -223,12 +226,11 @@ class IsphStep final : public StepMethod<D, Backend> {
   }
 
   StagedReport solveComponent(int k) {
-    const std::uint32_t n = pairs_.fluidCount;
-    solution_.resize(state_.context, n);
-    takeComponent<D>(state_.context, std::span<const Vec<D>>(state_.particles.velocity).first(n), k, solution_);
-    StagedReport report = viscosity_.solve(state_.context, component_[k], solution_);
+    const std::uint32_t n = pairs_.ownFluid();
+    takeComponent<D>(state_.context, std::span<const Vec<D>>(state_.particles.velocity).first(n), k, solution());
+    StagedReport report = viscosity_.solve(state_.context, component_[k], solution());
     if (report.status != SolveStatus::Converged) fail("viscosity", report);
-    putComponent<D>(state_.context, solution_, k, predicted_.span().first(n));
+    putComponent<D>(state_.context, solution(), k, predicted_.span().first(n));
     return report;
   }
 
@@ -246,15 +248,15 @@ class IsphStep final : public StepMethod<D, Backend> {
   FlowState<D, Backend>& state_;
   IsphPairs<D> pairs_;
   double viscousLimit_;  // [s]
-  CellRanges<Backend> ranges_;
-  SortWorkspace<Backend> workspace_;
+  ParticleSort<D, Backend> sort_;
   NeighbourRows<Backend> fluidOfFluid_, wallsOfFluid_, fluidOfWalls_;
   bool closed_ = false;  // no particle is at the free surface
   Buffer<Vec<D>, Backend> deficit_;
-  Buffer<std::uint8_t, Backend> surface_;
-  Buffer<Vec<D>, Backend> predicted_;          // v*; walls: their velocities
-  Buffer<double, Backend> source_, solution_;  // of the pressure equation; before, a component of v*
-  Buffer<double, Backend> component_[D];       // of the viscous step's right-hand side
+  Buffer<std::uint8_t, Backend> surface_;  // with ghosts, which all that neighbours read has
+  Buffer<Vec<D>, Backend> predicted_;      // v*, with ghosts; walls: their velocities
+  Buffer<double, Backend> source_;         // of the pressure equation
+  Buffer<double, Backend> solution_;       // with ghosts: of the pressure equation; before, a component of v*
+  Buffer<double, Backend> component_[D];   // of the viscous step's right-hand side
   Buffer<Vec<D>, Backend> transport_;
   Buffer<double, Backend> wallShare_;  // of the density in a full lattice
   IsphSolver<D, Backend, PressureRow<D>> pressure_;

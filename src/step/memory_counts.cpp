@@ -89,12 +89,11 @@ class Counter {
     describe(pairs);
     const RowRadii radii{pairs.kernel.radius(), pairs.kernel.radius()};
     const auto count = [&](RowKind kind) {
-      const RowSearch search = RowSearch::make(kind, pairs.fluidCount, pairs.activeCount);
+      const RowSearch search = RowSearch::make<D>(kind, pairs);
       std::uint64_t entries = 0;
       const double by = forEachWindow(search.first, search.first + search.count, [&](auto first, auto last) {
         for (std::uint32_t i = first; i < last; ++i)
-          forEachNeighbour(pairs.grid, pairs.cells, pairs.position.data(), i, radii, search.walls,
-                           [&](std::uint32_t, bool) { ++entries; });
+          forEachNeighbour<D>(pairs, i, radii, search.walls, [&](std::uint32_t, bool) { ++entries; });
       });
       return scaled(entries, by);
     };

@@ -12,8 +12,11 @@ void requireShareable(const Case& c, BackendKind backend) {
     throw InputError(
         fmt::format("several processes cannot share {}; expected {}, or one process", what, expected));
   };
-  if (c.method.kind != MethodKind::MphI)
-    refuse(fmt::format("method.name = {}", nameOf(c.method.kind)), std::string(nameOf(MethodKind::MphI)));
+  if (c.solver.preconditioner == PreconditionerKind::CellMultigrid)
+    refuse("solver.preconditioner = cell-multigrid",
+           fmt::format("{}, {} or {}", nameOf(PreconditionerKind::HatMultigrid),
+                       nameOf(PreconditionerKind::Jacobi), nameOf(PreconditionerKind::None)));
+  if (c.method.kind == MethodKind::Isph) return;  // its matrix and its rows are the same whatever else is set
   if (backend == BackendKind::Cuda && c.solver.neighbours != NeighbourKind::Lists)
     refuse(fmt::format("solver.neighbours = {}", nameOf(c.solver.neighbours)),
            std::string(nameOf(NeighbourKind::Lists)));

@@ -53,6 +53,9 @@ inline void expectSame(const Case& c, const StepReport& a, const StepReport& b, 
   expectNear(p.top, q.top, extent, "top", b.step);
   expectNear(p.maxSpeed, q.maxSpeed, q.maxSpeed, "speed", b.step);
   EXPECT_EQ(p.insideWalls, q.insideWalls);
+  EXPECT_EQ(p.interiorParticles, q.interiorParticles);
+  expectNear(p.meanDensityRatio, q.meanDensityRatio, 1, "density", b.step);
+  expectNear(p.meanDensityError, q.meanDensityError, 1, "density error", b.step);
   ASSERT_EQ(a.balance.has_value(), b.balance.has_value());
   if (!a.balance) return;
   const double power = std::abs(q.gravityPower) + b.balance->shearDissipation;

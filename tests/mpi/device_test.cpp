@@ -48,6 +48,25 @@ TEST_F(SharedOnDevices, MovingWalls) {
   compare<2, Cuda>({"../tests/validation/cases/taylor-couette.toml", 10, keys});
 }
 
+TEST_F(SharedOnDevices, Isph) {
+  compare<2, Cuda>({"isph-dam-break-2d.toml", 20, {"solver.tolerance=1e-16"}});
+  compare<2, Cuda>({"isph-dam-break-2d.toml", 10, {"solver.precision=double", "solver.tolerance=1e-16"}});
+  compare<2, Cuda>({"isph-dam-break-2d.toml", 3, {"solver.preconditioner=jacobi", "solver.tolerance=1e-18"}});
+  compare<3, Cuda>({"isph-dam-break.toml", 4, {"resolution=0.4", "solver.tolerance=1e-16"}});
+  compare<2, Cuda>({"isph-sloshing.toml", 10, {"solver.tolerance=1e-16"}});
+}
+
+/// Enough particles for four processes to pack the matrix, as one does.
+TEST_F(SharedOnDevices, IsphPacked) {
+  compare<3, Cuda>({"isph-dam-break.toml", 3, {"width.factor=4", "solver.tolerance=1e-16"}});
+}
+
+/// Implicit viscosity and a plate that moves; shifting around periodic ends.
+TEST_F(SharedOnDevices, IsphWithoutSurface) {
+  compare<2, Cuda>({"../tests/validation/cases/isph-couette.toml", 10, {"solver.tolerance=1e-18"}});
+  compare<2, Cuda>({"../tests/validation/cases/isph-taylor-green.toml", 10, {"solver.tolerance=1e-18"}});
+}
+
 TEST_F(SharedOnDevices, SameBitsFromRunToRun) {
   const Case c = Settings{"dam-break-2d.toml", 0, {}}.read();
   Simulation<2, Cuda> one(c, made<2>(c), 0, 0, &job()), other(c, made<2>(c), 0, 0, &job());

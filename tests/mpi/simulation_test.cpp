@@ -147,8 +147,6 @@ TEST(SharedSimulation, RefusesWhatCannotBeShared) {
     const Case c = Settings{"dam-break-2d.toml", 0, {key}}.read();
     EXPECT_THROW(Simulation<2>(c, made<2>(c), 0, 0, &job()), InputError) << key;
   }
-  const Case c = Settings{"isph-dam-break-2d.toml", 0, {}}.read();
-  EXPECT_THROW(Simulation<2>(c, made<2>(c), 0, 0, &job()), InputError);
 }
 
 }  // namespace

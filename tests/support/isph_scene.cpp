@@ -1,6 +1,7 @@
 #include "support/isph_scene.hpp"
 
 #include "treacle/linear/lanczos_scalars.hpp"
+#include "treacle/search/particle_sort.hpp"
 
 namespace treacle::test {
 
@@ -8,12 +9,8 @@ template <int D>
 IsphScene<D>::IsphScene(const Case& theCase, Particles<D> state)
     : c(theCase), particles(std::move(state)), pairs(makeIsphPairs<D>(c)) {
   sortByCell(context, pairs.grid, particles, ranges, workspace);
-  pairs.fluidCount = particles.fluidCount;
-  pairs.activeCount = ranges.activeCount;
-  pairs.position = particles.position;
-  pairs.material = particles.material;
+  placeSorted(particles, ranges, pairs);
   pairs.body = particles.body.data();
-  pairs.cells = viewOf(ranges);
   pairs.fluidOfFluid = find(RowKind::FluidOfFluid, fluidOfFluid);
   pairs.wallsOfFluid = find(RowKind::WallsOfFluid, wallsOfFluid);
   pairs.fluidOfWalls = find(RowKind::FluidOfWalls, fluidOfWalls);
@@ -27,8 +24,7 @@ IsphScene<D>::IsphScene(const Case& theCase, Particles<D> state)
 template <int D>
 NeighbourRowsView IsphScene<D>::find(RowKind kind, NeighbourRows<>& rows) {
   const double radius = pairs.kernel.radius();
-  findNeighbours<D>(context, pairs.grid, pairs.cells, pairs.position, pairs.fluidCount, pairs.activeCount,
-                    {0.79 * radius, radius}, kind, rows);
+  findNeighbours<D>(context, pairs, {0.79 * radius, radius}, kind, rows);
   return rows.view();
 }
 

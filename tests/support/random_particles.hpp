@@ -2,6 +2,7 @@
 
 #include "treacle/search/cell_sort.hpp"
 #include "treacle/search/cluster_list.hpp"
+#include "treacle/search/particle_sort.hpp"
 
 #include <random>
 
@@ -46,6 +47,15 @@ struct RandomParticles {
       particles.body[i] = static_cast<std::uint8_t>(i % 7);
       particles.id[i] = i;
     }
+  }
+
+  /// Of these particles, here or on a device, once they are sorted.
+  template <class Backend>
+  SortedParticles<D> sorted(const Particles<D, Backend>& p, const CellRanges<Backend>& r) const {
+    SortedParticles<D> s;
+    s.grid = grid;
+    placeSorted(p, r, s);
+    return s;
   }
 
   double distance(const Vec<D>& a, const Vec<D>& b) const {

@@ -54,9 +54,10 @@ struct PackedEntries {
 };
 
 /// Symmetric matrix of pair coefficients 0 <= c <= 255 unit on rows that belong to someone else, (A x)_i =
-/// diagonal_i x_i - sum_k c_k x_column(k). The entries of all rows' near neighbours come first, then those of the
-/// far ones, as in NeighbourRows. A row may hold its own column, with the coefficient zero; a row of zeros is an
-/// unknown that stays zero. In the backend's memory.
+/// diagonal_i x_i - sum_k c_k x_column(k); of several processes each has the rows of its own particles. The
+/// entries of all rows' near neighbours come first, then those of the far ones, as in NeighbourRows. A row may
+/// hold its own column, with the coefficient zero; a row of zeros is an unknown that stays zero. In the backend's
+/// memory.
 ///
 /// Smoothers take the matrix cut to near neighbours, with coefficients rounded to whole units, and the diagonal
 /// that belongs to them: it smooths as well as the whole one with a fraction of its bytes.
@@ -80,6 +81,9 @@ struct IsphMatrix {
     return unit / PackedEntry::parts * PackedEntry::value(packed.word[packed.begin(section) + k - start[section]]);
   }
 };
+
+/// In all products x has a value for every column, those of ghosts included (fillGhosts), and other vectors one
+/// for every row.
 
 /// y = A x; it reads 4 + sizeof(T) bytes per entry, 4 where packed, and 40 per row; the two that follow the same
 /// per near entry.

@@ -8,18 +8,19 @@
 
 namespace treacle {
 
-/// What an ISPH step does fluid particle by fluid particle, without neighbours; spans in the backend's memory.
+/// What an ISPH step does fluid particle by fluid particle, without neighbours; spans of own fluid in the
+/// backend's memory.
 
 /// p = 0 at the free surface and, where `cut`, where it is negative.
 void settlePressure(Context<Cpu>&, std::span<const std::uint8_t> surface, bool cut, std::span<double> p);
 void settlePressure(Context<Cuda>&, std::span<const std::uint8_t> surface, bool cut, std::span<double> p);
 
-/// Whether no particle is at the free surface. Then the pressure equation has no Dirichlet value: its matrix is
-/// singular, and pressures are known up to a constant, their level.
+/// Whether no particle, of all processes, is at the free surface. Then the pressure equation has no Dirichlet
+/// value: its matrix is singular, and pressures are known up to a constant, their level.
 bool isClosed(Context<Cpu>&, std::span<const std::uint8_t> surface);
 bool isClosed(Context<Cuda>&, std::span<const std::uint8_t> surface);
 
-/// x less its mean, or less its least value. The order of the sum is fixed.
+/// x less its mean, or less its least value, over all processes. The order of the sum is fixed.
 enum class Level { Mean, Least };
 void takeLevel(Context<Cpu>&, Level level, std::span<double> x);
 void takeLevel(Context<Cuda>&, Level level, std::span<double> x);

@@ -7,16 +7,16 @@
 
 namespace treacle {
 
-/// Sums of ISPH over neighbours (isph_terms.hpp). Spans "per fluid particle" have fluidCount elements, "per
-/// particle" activeCount; all in the backend's memory.
+/// Sums of ISPH over neighbours (isph_terms.hpp), made for own particles. What a term reads of neighbours must be
+/// there for ghosts, too (fillGhosts). All in the backend's memory.
 
-/// Calls `term` for every neighbour of every fluid particle, walls included.
+/// Calls `term` for every neighbour of every own fluid particle, walls included.
 template <int D, class Term>
 void sumOnFluid(Context<Cpu>&, const IsphPairs<D>& pairs, const Term& term);
 template <int D, class Term>
 void sumOnFluid(Context<Cuda>&, const IsphPairs<D>& pairs, const Term& term);
 
-/// The same for the fluid neighbours of every active wall particle.
+/// The same for the fluid neighbours of every own active wall particle.
 template <int D, class Term>
 void sumOnWalls(Context<Cpu>&, const IsphPairs<D>& pairs, const Term& term);
 template <int D, class Term>
@@ -65,7 +65,7 @@ struct IsphMatrixParts {
   }
 };
 
-/// The column blocks of the fluid, and room for the entries of a matrix on its rows.
+/// The column blocks of own fluid, and room for the entries of a matrix on its rows.
 template <int D>
 void preparePacked(Context<Cuda>&, const IsphPairs<D>& pairs, PackedEntries<Cuda>& packed);
 

@@ -3,8 +3,7 @@
 #include "treacle/model/case.hpp"
 #include "treacle/model/particles.hpp"
 #include "treacle/mph/mph_pairs.hpp"
-#include "treacle/search/cell_sort.hpp"
-#include "treacle/search/decomposition.hpp"
+#include "treacle/search/particle_sort.hpp"
 
 #include <algorithm>
 #include <type_traits>
@@ -22,8 +21,7 @@ class MphNeighbourhood {
 
   /// Sorts the particles into cells; of several processes each its own ones, and ghosts of others.
   void sort(Context<Backend>& context, Particles<D, Backend>& particles) {
-    if (context.communicator) return decomposition_.sort(context, pairs_.grid, particles, ranges_, workspace_);
-    sortByCell(context, pairs_.grid, particles, ranges_, workspace_);
+    sort_.sort(context, pairs_.grid, particles);
   }
 
   /// Neighbour lists of the sorted particles; pairs() then looks at them until the next sort. On a device the case
@@ -31,15 +29,8 @@ class MphNeighbourhood {
   /// `wholeRows`: lists of fluid reach as far as A couples, which only assembling A needs, and not only as far as
   /// pairs act on each other.
   void buildLists(Context<Backend>& context, const Particles<D, Backend>& particles, bool wholeRows = true) {
-    const std::uint32_t fluid = particles.wallBegin();
-    pairs_.fluidCount = fluid;
-    pairs_.activeCount = ranges_.activeCount;
-    pairs_.ghostFluid = particles.ghostCount;
-    pairs_.ghostWalls = ranges_.ghostWalls;
-    const std::uint32_t ownFluid = pairs_.ownFluid(), ownEnd = pairs_.ownEnd();
-    pairs_.position = particles.position;
-    pairs_.material = particles.material;
-    pairs_.cells = viewOf(ranges_);
+    sort_.place(particles, pairs_);
+    const std::uint32_t fluid = pairs_.fluidCount, ownFluid = pairs_.ownFluid(), ownEnd = pairs_.ownEnd();
     if (!useLists_) {
       pairs_.fluidList = {0, ownFluid};
       pairs_.wallList = {fluid, ownEnd};
@@ -47,8 +38,9 @@ class MphNeighbourhood {
     }
     const double hp = pairs_.terms.pressureRadius, hn = pairs_.terms.densityRadius;
     const double far = std::max({pairs_.terms.viscosityRadius, hn, wholeRows ? 2 * hp : hp});
-    buildClusterList<D>(context, pairs_.grid, ranges_, pairs_.position, 0, ownFluid, {hp, far}, false, fluidList_);
-    buildClusterList<D>(context, pairs_.grid, ranges_, pairs_.position, fluid, ownEnd, {hp, hn > hp ? hn : 0},
+    buildClusterList<D>(context, pairs_.grid, ranges(), pairs_.position, 0, ownFluid, {hp, far}, false,
+                        fluidList_);
+    buildClusterList<D>(context, pairs_.grid, ranges(), pairs_.position, fluid, ownEnd, {hp, hn > hp ? hn : 0},
                         true, wallList_);
     pairs_.fluidList = fluidList_.view();
     pairs_.wallList = wallList_.view();
@@ -74,17 +66,13 @@ class MphNeighbourhood {
 
   const MphPairs<D>& pairs() const { return pairs_; }
   const CellGrid<D>& grid() const { return pairs_.grid; }
-  const CellRanges<Backend>& ranges() const { return ranges_; }
-  std::size_t bytes() const {
-    return ranges_.bytes() + workspace_.bytes() + decomposition_.bytes() + fluidList_.bytes() + wallList_.bytes();
-  }
+  const CellRanges<Backend>& ranges() const { return sort_.ranges(); }
+  std::size_t bytes() const { return sort_.bytes() + fluidList_.bytes() + wallList_.bytes(); }
 
  private:
   MphPairs<D> pairs_;
   bool useLists_;
-  CellRanges<Backend> ranges_;
-  SortWorkspace<Backend> workspace_;
-  Decomposition<D, Backend> decomposition_;
+  ParticleSort<D, Backend> sort_;
   ClusterList<Backend> fluidList_, wallList_;
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "treacle/core/halo.hpp"
 #include "treacle/isph/isph_matrix.hpp"
 #include "treacle/isph/isph_sums.hpp"
 #include "treacle/linear/hat_multigrid.hpp"
@@ -40,8 +41,9 @@ class IsphHatMultigrid {
     fluid_ = particles;
     // Walls have no unknowns here.
     fluid_.activeCount = particles.fluidCount;
+    fluid_.ghostWalls = 0;
     fluid_.cells.wallEnd = fluid_.cells.wallBegin;
-    x_.resize(context, a.rows);
+    x_.resize(context, particles.fluidCount);
     residual_.resize(context, a.rows);
     transfer_.prepare(context, fluid_);
     findHatNodes(context, fluid_, HatsOn::Fluid, nodes_);
@@ -51,9 +53,11 @@ class IsphHatMultigrid {
     grids_.setup(context, nodes_, matrix_, {.degree = gridDegree, .reach = 1});
   }
 
-  /// z = K r; z is zero where rows are.
+  /// z = K r; z is zero where rows are. Ghosts are brought once: what is prolonged to them is what their owners
+  /// make of the same grid.
   void apply(Context<Backend>& context, std::span<const double> r, std::span<double> z) {
     firstSweep(context, a_, r, x_.span());
+    fillGhosts(context, Held::Fluid, x_.data());
     nearResidual(context, a_, r, std::span<const T>(x_), residual_.span());
     transfer_.restrictFluid(context, nodes_, std::span<const T>(residual_), sums_, grids_.rhs());
     grids_.cycle(context);
@@ -70,7 +74,8 @@ class IsphHatMultigrid {
  private:
   IsphMatrix<T> a_;
   SortedParticles<D> fluid_;
-  Buffer<T, Backend> x_, residual_;
+  Buffer<T, Backend> x_;         // per fluid particle, ghosts included
+  Buffer<T, Backend> residual_;  // of own ones
   HatTransfer<D, T, Backend> transfer_;
   HatNodes<D, Backend> nodes_;
   Buffer<T, Backend> parts_;  // of setup()

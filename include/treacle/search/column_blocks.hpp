@@ -10,7 +10,7 @@
 
 namespace treacle {
 
-/// Blocks of rows, one per fluid particle, and the columns that each can reach: the fluid in the cells of its
+/// Blocks of rows, one per own fluid particle, and the columns that each can reach: the fluid in the cells of its
 /// particles and in those around them. They are runs of particles that follow each other, since cells do on the
 /// curve that particles are sorted along. A device brings a block's columns together in shared memory, where an
 /// entry finds its own by a few bits.
@@ -39,7 +39,7 @@ struct ColumnBlocks {
   std::size_t bytes() const { return run.bytes() + size.bytes(); }
 };
 
-/// `fluid`: sorted positions of all fluid particles.
+/// `fluid`: sorted positions of all own fluid particles; the ranges have ghosts, too.
 template <int D>
 void findColumnBlocks(Context<Cuda>&, const CellGrid<D>& grid, const CellRangesView& cells,
                       std::span<const Vec<D>> fluid, ColumnBlocks<Cuda>& blocks);

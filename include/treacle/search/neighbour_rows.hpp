@@ -4,18 +4,17 @@
 #include "treacle/core/buffer.hpp"
 #include "treacle/core/cuda.hpp"
 #include "treacle/search/cell_grid.hpp"
-#include "treacle/search/cell_sort.hpp"
+#include "treacle/search/sorted_particles.hpp"
 
 #include <cstdint>
-#include <span>
 
 namespace treacle {
 
 /// Whose rows, and who stands in them.
 enum class RowKind {
-  FluidOfFluid,  // the fluid around each fluid particle, itself included: also the pattern of a matrix
-  WallsOfFluid,  // the walls around each fluid particle
-  FluidOfWalls   // the fluid around each active wall particle
+  FluidOfFluid,  // the fluid around each own fluid particle, itself included: also the pattern of a matrix
+  WallsOfFluid,  // the walls around each own fluid particle
+  FluidOfWalls   // the fluid around each own active wall particle
 };
 
 /// Neighbours of every particle in compressed rows, in two sections: first the near neighbours of all rows, then
@@ -48,32 +47,35 @@ struct RowRadii {
   double near, far;  // [m]
 };
 
-/// Fills the rows with all particles of the kind within the far radius, in the order of the cells around a
-/// particle. `fluidCount`, `activeCount`: fluid particles come first, then the active walls.
+/// Fills the rows with all particles of the kind within the far radius, ghosts included, in the order of the cells
+/// around a particle.
 template <int D>
-void findNeighbours(Context<Cpu>&, const CellGrid<D>& grid, const CellRangesView& cells,
-                    std::span<const Vec<D>> position, std::uint32_t fluidCount, std::uint32_t activeCount,
-                    RowRadii radii, RowKind kind, NeighbourRows<>& rows);
+void findNeighbours(Context<Cpu>&, const SortedParticles<D>& particles, RowRadii radii, RowKind kind,
+                    NeighbourRows<>& rows);
 template <int D>
-void findNeighbours(Context<Cuda>&, const CellGrid<D>& grid, const CellRangesView& cells,
-                    std::span<const Vec<D>> position, std::uint32_t fluidCount, std::uint32_t activeCount,
-                    RowRadii radii, RowKind kind, NeighbourRows<Cuda>& rows);
+void findNeighbours(Context<Cuda>&, const SortedParticles<D>& particles, RowRadii radii, RowKind kind,
+                    NeighbourRows<Cuda>& rows);
 
 /// The rows of a kind: whose they are, and who is looked for.
 struct RowSearch {
   std::uint32_t first, count;
   bool walls;
 
-  static RowSearch make(RowKind kind, std::uint32_t fluidCount, std::uint32_t activeCount) {
-    if (kind == RowKind::FluidOfWalls) return {fluidCount, activeCount - fluidCount, false};
-    return {0, fluidCount, kind == RowKind::WallsOfFluid};
+  template <int D>
+  static RowSearch make(RowKind kind, const SortedParticles<D>& particles) {
+    const std::uint32_t walls = particles.fluidCount;
+    if (kind == RowKind::FluidOfWalls) return {walls, particles.ownEnd() - walls, false};
+    return {0, particles.ownFluid(), kind == RowKind::WallsOfFluid};
   }
 };
 
 /// Calls f(j, near) for the neighbours of particle i.
 template <int D, class F>
-TREACLE_HD void forEachNeighbour(const CellGrid<D>& grid, const CellRangesView& cells, const Vec<D>* position,
-                                 std::uint32_t i, const RowRadii& radii, bool walls, F&& f) {
+TREACLE_HD void forEachNeighbour(const SortedParticles<D>& particles, std::uint32_t i, const RowRadii& radii,
+                                 bool walls, F&& f) {
+  const CellGrid<D>& grid = particles.grid;
+  const CellRangesView& cells = particles.cells;
+  const Vec<D>* position = particles.position.data();
   const Vec<D> x = position[i];
   const double near2 = radii.near * radii.near, far2 = radii.far * radii.far;
   forEachAdjacentCell(grid, grid.cellOf(x), [&](const Vec<D, int>& cell) {

@@ -31,8 +31,8 @@ std::size_t checkBlocks(RandomParticles<D>& r, std::uint32_t fluid) {
   sortByCell(context, r.grid, device, ranges, workspace);
   sortByCell(r.context, r.grid, r.particles, r.ranges, r.workspace);
   NeighbourRows<> rows;
-  findNeighbours<D>(r.context, r.grid, viewOf(r.ranges), r.particles.position, fluid, r.ranges.activeCount,
-                    {0.6 * r.radius, r.radius}, RowKind::FluidOfFluid, rows);
+  findNeighbours(r.context, r.sorted(r.particles, r.ranges), {0.6 * r.radius, r.radius}, RowKind::FluidOfFluid,
+                 rows);
   ColumnBlocks<Cuda> found;
   findColumnBlocks<D>(context, r.grid, viewOf(ranges),
                       std::span<const Vec<D>>(device.position.span()).first(fluid), found);

@@ -15,20 +15,22 @@ void checkRows(Context<Cuda>& context, RandomParticles<D>& r, NeighbourRows<Cuda
   SortWorkspace<Cuda> workspace;
   sortByCell(context, r.grid, device, ranges, workspace);
   sortByCell(r.context, r.grid, r.particles, r.ranges, r.workspace);
-  for (const RowKind kind : {RowKind::FluidOfFluid, RowKind::WallsOfFluid, RowKind::FluidOfWalls}) {
-    SCOPED_TRACE(testing::Message() << D << "D, " << fluid << " fluid, " << r.particles.count - fluid
-                                    << " walls, kind " << static_cast<int>(kind));
-    const RowRadii radii{0.6 * r.radius, r.radius};
-    NeighbourRows<> expected;
-    findNeighbours<D>(r.context, r.grid, viewOf(r.ranges), r.particles.position, fluid, r.ranges.activeCount,
-                      radii, kind, expected);
-    findNeighbours<D>(context, r.grid, viewOf(ranges), device.position, fluid, ranges.activeCount, radii, kind,
-                      found);
-    EXPECT_EQ(found.first, expected.first);
-    EXPECT_EQ(found.count, expected.count);
-    expectSameBits(context, expected.start, found.start);
-    expectSameBits(context, expected.column, found.column);
-  }
+  SortedParticles<D> here = r.sorted(r.particles, r.ranges), there = r.sorted(device, ranges);
+  for (const std::uint32_t parts : {0u, 3u})  // a third of all are ghosts
+    for (const RowKind kind : {RowKind::FluidOfFluid, RowKind::WallsOfFluid, RowKind::FluidOfWalls}) {
+      SCOPED_TRACE(testing::Message() << D << "D, " << fluid << " fluid, " << r.particles.count - fluid
+                                      << " walls, kind " << static_cast<int>(kind) << ", parts " << parts);
+      here.ghostFluid = there.ghostFluid = parts == 0 ? 0 : fluid / parts;
+      here.ghostWalls = there.ghostWalls = parts == 0 ? 0 : (here.activeCount - fluid) / parts;
+      const RowRadii radii{0.6 * r.radius, r.radius};
+      NeighbourRows<> expected;
+      findNeighbours(r.context, here, radii, kind, expected);
+      findNeighbours(context, there, radii, kind, found);
+      EXPECT_EQ(found.first, expected.first);
+      EXPECT_EQ(found.count, expected.count);
+      expectSameBits(context, expected.start, found.start);
+      expectSameBits(context, expected.column, found.column);
+    }
 }
 
 template <int D>

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <set>
+#include <vector>
 
 namespace treacle::test {
 namespace {
@@ -22,8 +23,7 @@ struct Found {
 
   Found(RandomParticles<D>& sorted, RowKind theKind)
       : r(sorted), kind(theKind), radii{0.6 * sorted.radius, sorted.radius} {
-    findNeighbours<D>(r.context, r.grid, viewOf(r.ranges), r.particles.position, r.particles.fluidCount,
-                      r.ranges.activeCount, radii, kind, rows);
+    findNeighbours(r.context, r.sorted(r.particles, r.ranges), radii, kind, rows);
   }
 
   /// All within `radius` of row `row`'s particle, by all pairs.
@@ -114,6 +114,30 @@ TEST(NeighbourRows, DoNotReachAcrossOpenEnds) {
   EXPECT_EQ(Found<2>(r, RowKind::FluidOfFluid).rows.column.size(), 2u) << "more than each particle itself";
 }
 
+/// Rows are those of own particles, the first of either group; who stands in them may be a ghost.
+TEST(NeighbourRows, OfOwnParticlesHaveGhosts) {
+  RandomParticles<2> r(300, 100, 3);
+  sortByCell(r.context, r.grid, r.particles, r.ranges, r.workspace);
+  SortedParticles<2> part = r.sorted(r.particles, r.ranges);
+  part.ghostFluid = 100, part.ghostWalls = 20;
+  bool someGhost = false;
+  for (const RowKind kind : {RowKind::FluidOfFluid, RowKind::WallsOfFluid, RowKind::FluidOfWalls}) {
+    const Found<2> all(r, kind);
+    NeighbourRows<> own;
+    findNeighbours(r.context, part, all.radii, kind, own);
+    EXPECT_EQ(own.first, all.rows.first);
+    EXPECT_EQ(own.count, all.rows.count - (kind == RowKind::FluidOfWalls ? 20 : 100));
+    for (std::uint32_t row = 0; row < own.count; ++row) {
+      std::vector<std::uint32_t> expected, found;
+      all.rows.view().forEachPlace(row, [&](std::uint64_t k) { expected.push_back(all.rows.column[k]); });
+      own.view().forEachPlace(row, [&](std::uint64_t k) { found.push_back(own.column[k]); });
+      ASSERT_EQ(found, expected) << row;
+      for (const std::uint32_t j : found) someGhost = someGhost || !part.isOwn(j);
+    }
+  }
+  EXPECT_TRUE(someGhost);
+}
+
 TEST(NeighbourRows, MayBeUsedAgainForFewerParticles) {
   RandomParticles<2> many(1000, 300, 1), few(20, 5, 2);
   sortByCell(many.context, many.grid, many.particles, many.ranges, many.workspace);
@@ -121,8 +145,7 @@ TEST(NeighbourRows, MayBeUsedAgainForFewerParticles) {
   Found<2> found(many, RowKind::WallsOfFluid);
   Found<2> again(few, RowKind::WallsOfFluid);
   std::swap(found.rows, again.rows);
-  findNeighbours<2>(few.context, few.grid, viewOf(few.ranges), few.particles.position, few.particles.fluidCount,
-                    few.ranges.activeCount, again.radii, again.kind, again.rows);
+  findNeighbours(few.context, few.sorted(few.particles, few.ranges), again.radii, again.kind, again.rows);
   again.check(1);
 }
 

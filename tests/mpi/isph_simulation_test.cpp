@@ -1,0 +1,105 @@
+#include "mpi/compare_simulations.hpp"
+#include "support/passing_body.hpp"
+#include "treacle/isph/isph_pairs.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+namespace treacle::test {
+namespace {
+
+/// In a solve dot products and what is on grids are rounded otherwise than in one process; what its tolerance
+/// leaves open hardly changes while the iterations are as many. Where they are not sure to be, the tolerance is
+/// smaller.
+TEST(SharedIsph, DamBreak) {
+  compare<2>({"isph-dam-break-2d.toml", 20, {}});
+  compare<2>({"isph-dam-break-2d.toml", 10, {"solver.precision=double"}});
+  compare<2>({"isph-dam-break-2d.toml", 3, {"solver.preconditioner=jacobi", "solver.tolerance=1e-18"}});
+  compare<2>({"isph-dam-break-2d.toml", 3, {"solver.preconditioner=none", "solver.tolerance=1e-18"}});
+}
+
+TEST(SharedIsph, ThreeDimensions) { compare<3>({"isph-dam-break.toml", 4, {"resolution=0.4"}}); }
+
+TEST(SharedIsph, MovingWalls) { compare<2>({"isph-sloshing.toml", 10, {}}); }
+
+/// A channel that is full, between a plate at rest and one that moves, with implicit viscosity: the level of the
+/// pressure is that of all processes.
+TEST(SharedIsph, ImplicitViscosityWithoutSurface) {
+  compare<2>({"../tests/validation/cases/isph-couette.toml", 10, {"solver.tolerance=1e-18"}});
+}
+
+/// Shifted particles that go around periodic ends; pressures of either sign.
+TEST(SharedIsph, ShiftingWithoutSurface) {
+  compare<2>({"../tests/validation/cases/isph-taylor-green.toml", 10, {"solver.tolerance=1e-18"}});
+}
+
+TEST(SharedIsph, WallsComeAndGo) {
+  Case c = passingBody(2, MethodKind::Isph);
+  c.solver.tolerance = 1e-18;
+  Simulation<2> shared(c, made<2>(c), 0, 0, &job()), alone(c, made<2>(c));
+  const std::uint32_t start = shared.particles().wallCount();
+  bool changed = false;
+  for (int k = 0; k < 20; ++k) {
+    const StepReport a = shared.advance(), b = alone.advance();
+    expectSame(c, a, b, job().size() == 1);
+    ASSERT_EQ(shared.particles().wallCount(), alone.particles().wallCount()) << "step " << k;
+    changed = changed || shared.particles().wallCount() != start;
+  }
+  EXPECT_TRUE(changed);
+}
+
+TEST(SharedIsph, SameBitsFromRunToRun) {
+  const Case c = Settings{"isph-dam-break-2d.toml", 0, {}}.read();
+  Simulation<2> one(c, made<2>(c), 0, 0, &job()), other(c, made<2>(c), 0, 0, &job());
+  for (int k = 0; k < 10; ++k) {
+    const StepReport a = one.advance(), b = other.advance();
+    EXPECT_EQ(a.iterations, b.iterations);
+    EXPECT_EQ(a.residual, b.residual);
+    EXPECT_EQ(a.diagnostics.kineticEnergy, b.diagnostics.kineticEnergy);
+  }
+  const Particles<2>&p = one.particles(), &q = other.particles();
+  ASSERT_EQ(p.numbers(), q.numbers());
+  for (std::uint32_t i = 0; i < p.fluidCount; ++i) EXPECT_EQ(p.velocity[i], q.velocity[i]);
+}
+
+TEST(SharedIsph, FallsBack) {
+  const Case c = Settings{"isph-dam-break-2d.toml", 0, {"solver.hats.iteration_bound=2"}}.read();
+  Simulation<2> shared(c, made<2>(c), 0, 0, &job());
+  const StepReport report = shared.advance();
+  EXPECT_EQ(report.fallbacks, 2);
+  EXPECT_LE(report.residual, c.solver.tolerance);
+}
+
+/// A drop, in the corners of four cells at first, falls through cells that have room for all of it: then there is
+/// nothing left to do for other processes.
+TEST(SharedIsph, ProcessesWithoutFluid) {
+  const std::vector<std::string> keys = {"method.viscosity=implicit", "water.dynamic_viscosity=1",
+                                         "solver.tolerance=1e-18"};
+  Case c = Settings{"isph-dam-break-2d.toml", 0, keys}.read();
+  c.bodies.resize(1);
+  const CellGrid<2> grid = makeIsphPairs<2>(c).grid;
+  Shape& drop = c.bodies[0].shape;
+  drop.kind = ShapeKind::Sphere;
+  drop.radius = 1.5 * c.spacing;
+  drop.center = {grid.origin[0] + 50 * grid.edge[0], grid.origin[1] + 80 * grid.edge[1], 0};
+  c.gravity = {-200, -200, 0};
+  Simulation<2> shared(c, made<2>(c), 0, 0, &job()), alone(c, made<2>(c));
+  bool someHadNone = false;
+  for (int k = 0; k < 40; ++k) {
+    const StepReport a = shared.advance(), b = alone.advance();
+    expectSame(c, a, b, job().size() == 1);
+    for (std::uint32_t own : job().all(shared.particles().fluidCount)) someHadNone = someHadNone || own == 0;
+  }
+  EXPECT_EQ(someHadNone, job().size() > 1);
+}
+
+TEST(SharedIsph, RefusesCellMultigrid) {
+  if (job().size() == 1) return;
+  const Case c = Settings{"isph-dam-break-2d.toml", 0, {"solver.preconditioner=cell-multigrid"}}.read();
+  EXPECT_THROW(Simulation<2>(c, made<2>(c), 0, 0, &job()), InputError);
+}
+
+}  // namespace
+}  // namespace treacle::test
