@@ -31,8 +31,24 @@ void packBytes(const Context<Cuda>& context, const void* field, std::span<const 
 
 }  // namespace
 
+/// Whether the link takes values from where they stand.
+template <>
+bool Halo<Cuda>::exchangeGathered(const Context<Cuda>& context, Held held, void* field, std::size_t size) {
+  std::vector<DeviceLink::Gathered> sent;
+  const std::uint32_t *fluid = sentFluid.data(), *walls = sentWalls.data();
+  for (const Neighbour& n : neighbours) {
+    sent.push_back({n.rank, fluid, n.sentFluid});
+    fluid += n.sentFluid;
+    if (held == Held::Fluid) continue;
+    sent.push_back({n.rank, walls, n.sentWalls});
+    walls += n.sentWalls;
+  }
+  return context.link->exchangeGathered(field, size, sent, messages(held, field, size).received);
+}
+
 template <>
 void Halo<Cuda>::fill(const Context<Cuda>& context, Held held, void* field, std::size_t size) {
+  if (exchangeGathered(context, held, field, size)) return;
   packed_.resize(context, sentCount(held) * size);
   packBytes(context, field, sentFluid, size, packed_.data());
   if (held == Held::Active) packBytes(context, field, sentWalls, size, packed_.data() + sentFluid.size() * size);

@@ -86,6 +86,9 @@ struct Round {
   struct Piece {
     std::byte* data = nullptr;
     std::size_t bytes = 0;
+    const std::uint32_t* index =
+        nullptr;  // of values of `size` bytes in data that are sent; null: it is sent as it is
+    std::size_t size = 0;
   };
   std::array<Piece, 2> sent, received;
 };
@@ -103,15 +106,45 @@ __device__ inline void copyWords(const std::byte* from, std::byte* to, std::size
     reinterpret_cast<Word*>(to)[k] = __ldcg(reinterpret_cast<const Word*>(from) + k);
 }
 /// This block's slice of a message: the same bytes for who sends and who receives it.
-__device__ inline void copySlice(const std::byte* from, std::byte* to, std::size_t bytes) {
-  const std::size_t length = padded((bytes + gridDim.x - 1) / gridDim.x), begin = blockIdx.x * length;
-  if (begin >= bytes) return;
-  bytes = length < bytes - begin ? length : bytes - begin;
-  from += begin, to += begin;
+struct Slice {
+  std::size_t begin, bytes;
+
+  __device__ explicit Slice(std::size_t whole) {
+    const std::size_t length = padded((whole + gridDim.x - 1) / gridDim.x);
+    begin = min(blockIdx.x * length, whole);
+    bytes = min(length, whole - begin);
+  }
+};
+__device__ inline void copySlice(const std::byte* from, std::byte* to, std::size_t whole) {
+  const Slice slice(whole);
+  const std::size_t bytes = slice.bytes;
+  from += slice.begin, to += slice.begin;
   const std::size_t all = reinterpret_cast<std::size_t>(from) | reinterpret_cast<std::size_t>(to) | bytes;
   if (all % 16 == 0) return copyWords<uint4>(from, to, bytes);
   if (all % 4 == 0) return copyWords<unsigned>(from, to, bytes);
   copyWords<unsigned char>(from, to, bytes);
+}
+
+/// Words of a slice of values that are gathered, each of so many words.
+template <class Word>
+__device__ inline void gatherWords(const Round::Piece& piece, std::byte* to) {
+  const Slice slice(piece.bytes);
+  const auto* const from = reinterpret_cast<const Word*>(piece.data);
+  const auto words = static_cast<std::uint32_t>(piece.size / sizeof(Word));
+  const auto first = static_cast<std::uint32_t>(slice.begin / sizeof(Word)),
+             last = first + static_cast<std::uint32_t>(slice.bytes / sizeof(Word));
+  for (std::uint32_t k = first + threadIdx.x; k < last; k += blockDim.x) {
+    const std::uint32_t value = words == 1 ? k : k / words;
+    reinterpret_cast<Word*>(to)[k] = from[std::size_t{piece.index[value]} * words + (k - value * words)];
+  }
+}
+__device__ inline void sendSlice(const Round::Piece& piece, std::byte* to) {
+  if (!piece.index) return copySlice(piece.data, to, piece.bytes);
+  const std::size_t all = reinterpret_cast<std::size_t>(piece.data) | piece.size;
+  if (all % 16 == 0) return gatherWords<uint4>(piece, to);
+  if (all % 8 == 0) return gatherWords<uint2>(piece, to);
+  if (all % 4 == 0) return gatherWords<unsigned>(piece, to);
+  gatherWords<unsigned char>(piece, to);
 }
 
 /// A row of mostBlocks blocks per peer.
@@ -122,8 +155,8 @@ __global__ void __launch_bounds__(threads) exchangeKernel(const __grid_constant_
   const Round& round = e.round[blockIdx.y];
   const unsigned block = blockIdx.x, number = peer.epoch[block] + 1;
   std::byte* const there = Peer::message(peer.there, number);
-  copySlice(round.sent[0].data, there, round.sent[0].bytes);
-  copySlice(round.sent[1].data, there + padded(round.sent[0].bytes), round.sent[1].bytes);
+  sendSlice(round.sent[0], there);
+  sendSlice(round.sent[1], there + padded(round.sent[0].bytes));
   __syncthreads();
   if (threadIdx.x == 0) {
     peer.signal(block, number);
@@ -272,28 +305,28 @@ class PeerLink final : public DeviceLink {
 
   void exchange(std::span<const Communicator::Message> sent,
                 std::span<const Communicator::Message> received) override {
-    std::vector<std::vector<Round::Piece>> to(job_.size()), from(job_.size());
+    PiecesOfRanks to(job_.size()), from(job_.size());
     for (const Communicator::Message& m : sent) to[m.rank].push_back({static_cast<std::byte*>(m.data), m.bytes});
     for (const Communicator::Message& m : received)
       from[m.rank].push_back({static_cast<std::byte*>(m.data), m.bytes});
     for (auto* all : {&to, &from})
       for (auto& pieces : *all) pieces = inRounds(pieces);
-    // A pair of processes has as many rounds on both sides.
-    for (std::size_t round = 0;; ++round) {
-      Exchange e{.peer = {}, .round = {}, .bytes = 0, .spent = spent_.data()};
-      unsigned count = 0;
-      for (int p = 0; p < peers_.count; ++p) {
-        const int r = rankOf(p);
-        if (2 * round >= std::max(to[r].size(), from[r].size())) continue;
-        e.peer[count] = peers_.peer[p];
-        take(to[r], round, e.round[count].sent);
-        take(from[r], round, e.round[count].received);
-        e.bytes += e.round[count].sent[0].bytes + e.round[count].sent[1].bytes;
-        ++count;
-      }
-      if (count == 0) break;
-      launchEarly(context_, dim3(mostBlocks, count), threads, 0, exchangeKernel, e);
-    }
+    run(to, from);
+  }
+
+  bool exchangeGathered(const void* field, std::size_t size, std::span<const Gathered> sent,
+                        std::span<const Communicator::Message> received) override {
+    PiecesOfRanks to(job_.size()), from(job_.size());
+    auto* const data = static_cast<std::byte*>(const_cast<void*>(field));
+    for (const Gathered& g : sent) to[g.rank].push_back({data, g.count * size, g.index, size});
+    for (const Communicator::Message& m : received)
+      from[m.rank].push_back({static_cast<std::byte*>(m.data), m.bytes});
+    // A peer for which all fits in one round does not see whether the values were packed before.
+    for (auto* all : {&to, &from})
+      for (const auto& pieces : *all)
+        if (pieces.size() > 2 || bytesOf(pieces) > capacity) return false;
+    run(to, from);
+    return true;
   }
 
   void sum(double* values, std::size_t count) override { join(values, count, Add{}); }
@@ -309,11 +342,16 @@ class PeerLink final : public DeviceLink {
   }
 
  private:
-  /// Two for each round. What is too long for one goes piece by piece.
-  static std::vector<Round::Piece> inRounds(const std::vector<Round::Piece>& pieces) {
+  using PiecesOfRanks = std::vector<std::vector<Round::Piece>>;
+
+  static std::size_t bytesOf(const std::vector<Round::Piece>& pieces) {
     std::size_t bytes = 0;
     for (const Round::Piece& p : pieces) bytes += padded(p.bytes);
-    if (pieces.size() <= 2 && bytes <= capacity) return pieces;
+    return bytes;
+  }
+  /// Two for each round. What is too long for one goes piece by piece.
+  static std::vector<Round::Piece> inRounds(const std::vector<Round::Piece>& pieces) {
+    if (pieces.size() <= 2 && bytesOf(pieces) <= capacity) return pieces;
     std::vector<Round::Piece> rounds;
     for (const Round::Piece& p : pieces)
       for (std::size_t begin = 0; begin < p.bytes; begin += capacity) {
@@ -326,6 +364,25 @@ class PeerLink final : public DeviceLink {
                    std::array<Round::Piece, 2>& pieces) {
     for (std::size_t k = 0; k < 2; ++k)
       if (2 * round + k < rounds.size()) pieces[k] = rounds[2 * round + k];
+  }
+
+  /// A pair of processes has as many rounds on both sides.
+  void run(const PiecesOfRanks& to, const PiecesOfRanks& from) {
+    for (std::size_t round = 0;; ++round) {
+      Exchange e{.peer = {}, .round = {}, .bytes = 0, .spent = spent_.data()};
+      unsigned count = 0;
+      for (int p = 0; p < peers_.count; ++p) {
+        const int r = rankOf(p);
+        if (2 * round >= std::max(to[r].size(), from[r].size())) continue;
+        e.peer[count] = peers_.peer[p];
+        take(to[r], round, e.round[count].sent);
+        take(from[r], round, e.round[count].received);
+        e.bytes += e.round[count].sent[0].bytes + e.round[count].sent[1].bytes;
+        ++count;
+      }
+      if (count == 0) break;
+      launchEarly(context_, dim3(mostBlocks, count), threads, 0, exchangeKernel, e);
+    }
   }
 
   int rankOf(int peer) const { return peer < job_.rank() ? peer : peer + 1; }

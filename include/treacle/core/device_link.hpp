@@ -31,6 +31,19 @@ class DeviceLink {
   virtual void exchange(std::span<const Communicator::Message> sent,
                         std::span<const Communicator::Message> received) = 0;
 
+  /// So many values of a field are for another process: those with these indices.
+  struct Gathered {
+    int rank;
+    const std::uint32_t* index;
+    std::size_t count;
+  };
+  /// As exchange(), where values of `size` bytes are sent from where they stand. Returns false, and has done
+  /// nothing, where the link does not do that.
+  virtual bool exchangeGathered(const void* /*field*/, std::size_t /*size*/, std::span<const Gathered> /*sent*/,
+                                std::span<const Communicator::Message> /*received*/) {
+    return false;
+  }
+
   /// values[k] = sum of what all processes have there, the same bits everywhere; equally many everywhere.
   virtual void sum(double* values, std::size_t count) = 0;
   virtual void sum(float* values, std::size_t count) = 0;

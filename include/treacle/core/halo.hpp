@@ -60,6 +60,7 @@ class Halo : public HaloCounts {
     std::vector<Communicator::Message> sent, received;
   };
   Messages messages(Held held, void* field, std::size_t size);
+  bool exchangeGathered(const Context<Backend>& context, Held held, void* field, std::size_t size);
   std::size_t sentCount(Held held) const {
     return sentFluid.size() + (held == Held::Active ? sentWalls.size() : 0);
   }
