@@ -82,12 +82,12 @@ struct Peer {
 };
 
 /// A round of an exchange with one peer: up to two pieces of memory each way, one behind the other in the mailbox.
+/// What is sent is all of `data`, or, with `index`, its values of `size` bytes with these indices.
 struct Round {
   struct Piece {
     std::byte* data = nullptr;
     std::size_t bytes = 0;
-    const std::uint32_t* index =
-        nullptr;  // of values of `size` bytes in data that are sent; null: it is sent as it is
+    const std::uint32_t* index = nullptr;
     std::size_t size = 0;
   };
   std::array<Piece, 2> sent, received;
@@ -99,7 +99,7 @@ struct Exchange {
   Counters* spent;
 };
 
-/// Words [begin, end) of bytes; what another device may have written is read past the first-level cache.
+/// What another device may have written is read past the first-level cache.
 template <class Word>
 __device__ inline void copyWords(const std::byte* from, std::byte* to, std::size_t bytes) {
   for (std::size_t k = threadIdx.x; k < bytes / sizeof(Word); k += blockDim.x)
@@ -414,8 +414,9 @@ std::unique_ptr<DeviceLink> makePeerLink(const Communicator& job, const Context<
   if (hosts > 1 || job.size() - 1 > mostPeers) return nullptr;
   auto link = std::make_unique<PeerLink>(job, context);
   const std::vector<std::uint8_t> all = job.all(std::uint8_t{link->canReachAll()});
-  if (std::count(all.begin(), all.end(), 0) > 0) return nullptr;
-  return link;
+  if (std::count(all.begin(), all.end(), 0) == 0) return link;
+  link->close();
+  return nullptr;
 }
 
 }  // namespace treacle
