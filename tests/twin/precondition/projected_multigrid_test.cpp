@@ -95,7 +95,7 @@ struct Twin {
     EXPECT_LE(differ(copyToHost(d.context, gradientOnDevice), gradient), productTolerance()) << "gradient";
 
     Buffer<Gathered<D, T>> u = randomVectors(2);
-    const auto uOnDevice = copyToDevice<Gathered<D, T>>(d.context, u);
+    auto uOnDevice = copyToDevice<Gathered<D, T>>(d.context, u);
     products.gather(s.context, u.span());
     productsOnDevice.gather(d.context, uOnDevice.span());
     Buffer<T> div(active());
@@ -126,7 +126,7 @@ struct Twin {
     checkViscous(u, uOnDevice, velocity, velocityOnDevice);
   }
 
-  void checkViscous(Buffer<Gathered<D, T>>& u, const Buffer<Gathered<D, T>, Cuda>& uOnDevice,
+  void checkViscous(Buffer<Gathered<D, T>>& u, Buffer<Gathered<D, T>, Cuda>& uOnDevice,
                     const Buffer<Block<D, T>>& inverse, const Buffer<Block<D, T>, Cuda>& inverseOnDevice) {
     Buffer<Gathered<D, T>> residual = randomVectors(3), x = randomVectors(4), next(s.n()), z = randomVectors(2);
     auto residualOnDevice = copyToDevice<Gathered<D, T>>(d.context, residual);
