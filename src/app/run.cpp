@@ -40,6 +40,8 @@ void Run::execute(const std::vector<std::string>& warnings) {
   attempt([&] {
     writeFile(directory_.caseFile(), caseText(case_));
     simulation_.emplace(case_, std::move(start_.particles), backend_, start_.step, start_.time, &processes_);
+    if (const std::string link = simulation_->linkName(); !link.empty())
+      log_.info("the devices of the processes exchange by " + link);
     recorder_.emplace(case_, directory_, log_, start_.time, timings_, [this](Snapshot& s) { copyState(s); });
     recorder_->begin();
     advanceToEnd();

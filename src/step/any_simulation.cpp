@@ -125,6 +125,10 @@ std::size_t AnySimulation::peakBytes() const {
   return held_->visit([](auto& s) { return s.peakBytes(); });
 }
 
+std::string AnySimulation::linkName() const {
+  return held_->visit([](auto& s) { return s.linkName(); });
+}
+
 std::vector<AnySimulation::Share> AnySimulation::shares() const {
   give(processes_, Order::Share);
   Share own{};

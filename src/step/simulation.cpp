@@ -310,6 +310,10 @@ DeviceLink::Spent Simulation<D, Backend>::linkSpent() const {
   return state_->link ? state_->link->spent() : DeviceLink::Spent{};
 }
 template <int D, class Backend>
+std::string Simulation<D, Backend>::linkName() const {
+  return state_->link ? state_->link->name() : "";
+}
+template <int D, class Backend>
 Diagnostics Simulation<D, Backend>::diagnostics() const {
   return state_->diagnostics();
 }

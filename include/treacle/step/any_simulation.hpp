@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace treacle {
@@ -38,6 +39,7 @@ class AnySimulation {
   std::int64_t step() const;
   std::size_t bytes() const;      // [B]
   std::size_t peakBytes() const;  // [B]
+  std::string linkName() const;
 
   /// What each of the processes has to do, and what it has told the others, in the order of ranks; one if it is
   /// alone.

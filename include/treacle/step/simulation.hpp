@@ -107,9 +107,11 @@ class Simulation {
   ParticleNumbers numbers() const;  // of these
   double time() const;              // [s]
   std::int64_t step() const;
-  std::size_t bytes() const;            // memory held [B]
-  std::size_t peakBytes() const;        // largest amount of device memory in use at one time [B]; 0 on the CPU
-  DeviceLink::Spent linkSpent() const;  // what the device has told others; nothing on the CPU
+  std::size_t bytes() const;      // memory held [B]
+  std::size_t peakBytes() const;  // largest amount of device memory in use at one time [B]; 0 on the CPU
+  /// What the device has told those of other processes, and by what (DeviceLink::name); nothing where it is alone.
+  DeviceLink::Spent linkSpent() const;
+  std::string linkName() const;
   Diagnostics diagnostics() const;
 
  private:
