@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace treacle {
 namespace {
 
@@ -59,12 +61,23 @@ std::uint64_t estimatedDeviceMemory(const Case& c, const MemoryCounts& n) {
   return planMemory(c, n, BackendKind::Cuda).peak;
 }
 
-void requireMemory(const Case& c, const AnyParticles& particles, const DeviceInfo* device) {
-  requireMemory(c, countsFor(c, particles, device != nullptr), device);
+std::uint64_t leastSharedMemory(const Case& c, const MemoryCounts& n, bool onDevice, const Sharing& sharing) {
+  const std::uint64_t part = onDevice ? driverBytes : planMemory(c, n, BackendKind::Cpu).peak / sharing.processes;
+  const std::uint64_t output = copiesToBeWritten * stateBytes(c, n.particles);
+  return sharing.onHost * (programBytes + std::max(part, stateBytes(c, n.particles))) + output;
 }
 
-void requireMemory(const Case& c, const MemoryCounts& n, const DeviceInfo* device) {
-  require(contentText(n), estimatedMemory(c, n, device != nullptr));
+void requireMemory(const Case& c, const AnyParticles& particles, const DeviceInfo* device,
+                   const Sharing& sharing) {
+  requireMemory(c, countsFor(c, particles, device != nullptr), device, sharing);
+}
+
+void requireMemory(const Case& c, const MemoryCounts& n, const DeviceInfo* device, const Sharing& sharing) {
+  const bool shared = sharing.processes > 1;
+  const std::string content =
+      contentText(n) + (shared ? fmt::format(", shared by {} processes,", sharing.processes) : "");
+  require(content,
+          shared ? leastSharedMemory(c, n, device != nullptr, sharing) : estimatedMemory(c, n, device != nullptr));
   if (!device) return;
   if (device->freeMemory == 0)
     throw RunError(fmt::format(
@@ -72,12 +85,12 @@ void requireMemory(const Case& c, const MemoryCounts& n, const DeviceInfo* devic
         "(nvidia-smi shows them); wait for them, choose another device by CUDA_VISIBLE_DEVICES, or take "
         "--backend cpu",
         device->name));
-  const std::uint64_t onDevice = estimatedDeviceMemory(c, n);
+  const std::uint64_t onDevice = estimatedDeviceMemory(c, n) / sharing.processes;
   if (onDevice > device->freeMemory)
     throw RunError(
         fmt::format("{} need about {} of device memory, {} available on {}; take a lower resolution, a smaller "
                     "domain or --backend cpu",
-                    contentText(n), bytesText(onDevice), bytesText(device->freeMemory), device->name));
+                    content, bytesText(onDevice), bytesText(device->freeMemory), device->name));
 }
 
 std::string exhaustedText(const DeviceMemoryNumbers& n) {

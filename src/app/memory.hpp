@@ -27,11 +27,21 @@ std::uint64_t estimatedMemory(const Case& c, const MemoryCounts& counts, bool on
 /// The same for the memory of the GPU.
 std::uint64_t estimatedDeviceMemory(const Case& c, const MemoryCounts& counts);
 
+/// How many processes share a run, and how many of them this host has.
+struct Sharing {
+  std::uint64_t processes = 1, onHost = 1;
+};
+/// What the host needs at least where they do: each process makes all particles before it keeps its part, the
+/// first one writes. What processes hold twice is not counted [B].
+std::uint64_t leastSharedMemory(const Case& c, const MemoryCounts& counts, bool onDevice, const Sharing& sharing);
+
 /// `device`: what the run computes on, null for the CPU. Errors: RunError where the case clearly needs more memory
 /// than the host, or the device, has free.
-void requireMemory(const Case& c, const AnyParticles& particles, const DeviceInfo* device);
+void requireMemory(const Case& c, const AnyParticles& particles, const DeviceInfo* device,
+                   const Sharing& sharing = {});
 /// The same where they are counted.
-void requireMemory(const Case& c, const MemoryCounts& counts, const DeviceInfo* device);
+void requireMemory(const Case& c, const MemoryCounts& counts, const DeviceInfo* device,
+                   const Sharing& sharing = {});
 
 /// What to tell where device memory gave out.
 std::string exhaustedText(const DeviceMemoryNumbers& numbers);

@@ -48,6 +48,13 @@ void requireElsewhere(const std::filesystem::path& directory, const std::filesys
                                  checkpoint.string()));
 }
 
+/// Every host has about as many processes.
+Sharing sharingOf(const Communicator& processes) {
+  const std::vector<int> local = processes.all(processes.localRank());
+  const std::uint64_t size = local.size(), hosts = std::ranges::count(local, 0);
+  return {size, (size + hosts - 1) / hosts};
+}
+
 bool allHaveOne(const Communicator& processes, bool has) {
   const std::vector<std::uint8_t> all = processes.all(std::uint8_t{has});
   return std::ranges::find(all, 0) == all.end();
@@ -61,6 +68,7 @@ void runCommand(const RunOptions& options, const Communicator& processes) {
   together(processes, [&] { device = deviceFor(options.backend, processes.localRank()); });
   if (!allHaveOne(processes, device.has_value())) device.reset();
   const BackendKind backend = device ? BackendKind::Cuda : BackendKind::Cpu;
+  const Sharing sharing = sharingOf(processes);
   Case c;
   std::vector<std::string> warnings;
   StartState start{AnyParticles(2)};
@@ -72,7 +80,7 @@ void runCommand(const RunOptions& options, const Communicator& processes) {
     start = {createParticles(c, warnings)};
     for (std::string& warning : caseWarnings(c)) warnings.push_back(std::move(warning));
     if (!options.resume.empty()) start = resumedState(c, options.resume, start.particles);
-    if (!shared) requireMemory(c, start.particles, device ? &*device : nullptr);
+    requireMemory(c, start.particles, device ? &*device : nullptr, sharing);
   });
   requireSame(processes, fmt::format("{}\n{} {}", caseText(c), start.step, start.time));
   catchInterrupts();

@@ -168,6 +168,31 @@ TEST(DeviceMemory, ARunThatDoesNotFitIsRefused) {
   EXPECT_THAT(refusal(), HasSubstr("Some GPU gives no device memory"));
 }
 
+/// Each of several processes needs its part of the device's memory, and all particles on the host at the start.
+TEST(DeviceMemory, OfSeveralProcessesIsDivided) {
+  const Case c = test::MemoryCase{"dam-break-2d.toml", {}}.read();
+  std::vector<std::string> notes;
+  AnyParticles particles = createParticles(c, notes);
+  const MemoryCounts counts = countsFor(c, particles, true);
+  DeviceInfo device;
+  device.name = "Some GPU";
+  device.freeMemory = estimatedDeviceMemory(c, counts) / 4;
+  EXPECT_NO_THROW(requireMemory(c, counts, &device, {4, 2}));
+  try {
+    requireMemory(c, counts, &device, {3, 3});
+    FAIL() << "a run that does not fit was let through";
+  } catch (const RunError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("1300 particles, shared by 3 processes, need about "));
+  }
+  const MemoryCounts many = countsOf(2, 1000);
+  for (const bool onDevice : {false, true}) {
+    const auto least = [&](Sharing sharing) { return leastSharedMemory(c, many, onDevice, sharing); };
+    EXPECT_LT(least({4, 1}), least({4, 4}));
+    EXPECT_LE(least({4, 1}), estimatedMemory(c, many, onDevice));
+  }
+  EXPECT_LT(leastSharedMemory(c, many, false, {4, 1}), leastSharedMemory(c, many, false, {2, 1}));
+}
+
 TEST(DeviceMemory, WhatIsToldWhereItGivesOut) {
   const std::size_t mebibyte = std::size_t{1} << 20;
   EXPECT_THAT(
