@@ -25,13 +25,16 @@ TEST(SharedSimulation, ProjectedMultigrid) {
 }
 
 TEST(SharedSimulation, ThreeDimensions) {
-  compare<3>({"dam-break-3d.toml", 3, {"resolution=0.7"}});
-  compare<3>({"published/dam-break-3d.toml", 3, {"resolution=0.7"}});
+  compare<3>({"dam-break-3d.toml", 3, {"resolution=0.7", "solver.tolerance=1e-16"}});
+  compare<3>({"published/dam-break-3d.toml", 3, {"resolution=0.7", "solver.tolerance=1e-16"}});
 }
 
-/// Fluid that goes around periodic ends, and a plate that moves.
+/// Fluid that goes around periodic ends, and a plate that moves. (By a preconditioner in single precision a step
+/// takes 9 to 11 iterations to this tolerance, as its roundings fall.)
 TEST(SharedSimulation, PeriodicFlowAndMovingWalls) {
-  compare<2>({"../tests/validation/cases/couette.toml", 20, {"solver.tolerance=1e-16", "solver.deflation=0"}});
+  compare<2>({"../tests/validation/cases/couette.toml",
+              20,
+              {"solver.tolerance=1e-16", "solver.deflation=0", "solver.precision=double"}});
 }
 
 TEST(SharedSimulation, TurningWalls) {

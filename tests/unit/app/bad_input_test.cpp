@@ -619,7 +619,7 @@ body = [{name = "drop", type = "fluid", material = "syrup", shape = "sphere", ce
 time = {step = 1e-3, end = 1}
 )");
   // 113 million particles.
-  const Outcome outcome = shop.call("check drop.toml", "ulimit -v 500000; OMP_NUM_THREADS=1 timeout 60");
+  const Outcome outcome = shop.call("check drop.toml", "ulimit -v 1000000; OMP_NUM_THREADS=1 timeout 60");
   EXPECT_EQ(outcome.exitCode, 2);
   EXPECT_THAT(outcome.err, HasSubstr("body 'drop' reaches out of the domain: a particle at "));
 }
