@@ -26,7 +26,7 @@ def case_file(name):
 
 
 def run(options, spec, directory):
-    """The record of one run; None where it failed."""
+    """The record of one run, and its summary; None where it failed."""
     case, resolution, width, end, processes, *link = spec.split(":")
     out = Path(directory) / "run"
     launch = options.launch.format(n=processes).split() if int(processes) > 1 else []

@@ -1,11 +1,14 @@
 #include "core/device_link.hpp"
 
 #include "core/cuda_check.hpp"
+#include "treacle/core/error.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace treacle {
@@ -94,6 +97,8 @@ std::unique_ptr<DeviceLink> DeviceLink::make(const Communicator& job, const Cont
   const char* const asked = std::getenv("TREACLE_LINK");
   std::string wanted = asked ? asked : "";
   wanted = job.first(wanted).text;  // the same for all
+  if (!wanted.empty() && wanted != "peer" && wanted != "nccl" && wanted != "mpi")
+    throw InputError("TREACLE_LINK = '" + wanted + "': expected 'peer', 'nccl' or 'mpi'");
   if (haveOneEach(job) && wanted != "mpi") {
     if (wanted != "nccl")
       if (auto link = makePeerLink(job, context)) return link;

@@ -8,6 +8,18 @@
 namespace treacle {
 namespace {
 
+/// One thread per fluid particle; reads its position, writes its key and index; atomics no.
+template <int D>
+void findFluidKeys(Context<Cuda>& context, const CellGrid<D>& grid, const Particles<D, Cuda>& particles,
+                   SortWorkspace<Cuda>& w) {
+  forEach(context, particles.fluidCount,
+          [grid, position = particles.position.data(), key = w.key.data(),
+           index = w.index.data()] __device__(std::size_t i) {
+            key[i] = grid.key(position[i]);
+            index[i] = static_cast<std::uint32_t>(i);
+          });
+}
+
 /// One thread per wall particle; reads its position and whether its cell is near fluid, writes its key and index;
 /// atomics no.
 template <int D>

@@ -30,18 +30,6 @@ void countNotFinite(Context<Cuda>& context, std::span<const Vec<D>> position, st
   });
 }
 
-/// One thread per fluid particle; reads its position, writes its key and index; atomics no.
-template <int D>
-void findFluidKeys(Context<Cuda>& context, const CellGrid<D>& grid, const Particles<D, Cuda>& particles,
-                   SortWorkspace<Cuda>& w) {
-  forEach(context, particles.fluidCount,
-          [grid, position = particles.position.data(), key = w.key.data(),
-           index = w.index.data()] __device__(std::size_t i) {
-            key[i] = grid.key(position[i]);
-            index[i] = static_cast<std::uint32_t>(i);
-          });
-}
-
 /// One thread per particle of a sorted group; reads its key and its neighbours' in the sort, the position of those
 /// at an end of a run, writes begin and end of the run's cell and the number of particles that are not inactive;
 /// atomics no. `key`, `index`: of the group, which will start with particle `first`; `bits`: keys of inactive

@@ -1,8 +1,8 @@
 #include "search/migration.cuh"
 
+#include "core/device_link.hpp"
 #include "search/cell_sort.cuh"
 #include "treacle/core/communicator.hpp"
-#include "treacle/core/device_link.hpp"
 #include "treacle/search/fluid_fields.hpp"
 
 #include <algorithm>
@@ -13,9 +13,6 @@ namespace treacle {
 namespace {
 
 using Message = Communicator::Message;
-
-/// Every field begins where values of any type may.
-std::size_t padded(std::size_t bytes) { return (bytes + 15) / 16 * 16; }
 
 /// Of all fields of so many fluid particles, one after the other.
 template <int D>

@@ -55,6 +55,7 @@ Sharing sharingOf(const Communicator& processes) {
   return {size, (size + hosts - 1) / hosts};
 }
 
+/// Whether every process has a device: all compute on devices, or none.
 bool allHaveOne(const Communicator& processes, bool has) {
   const std::vector<std::uint8_t> all = processes.all(std::uint8_t{has});
   return std::ranges::find(all, 0) == all.end();

@@ -121,4 +121,61 @@ void compare(const Settings& settings) {
   if (job().rank() == 0) expectSameFields(c, whole, expected);
 }
 
+/// Walls that are far from the fluid of all processes are held by none, and all take in the same ones.
+inline void compareWallsThatComeAndGo(const Case& c) {
+  Simulation<2> shared(c, made<2>(c), 0, 0, &job()), alone(c, made<2>(c));
+  const std::uint32_t start = shared.particles().wallCount();
+  bool changed = false;
+  for (int k = 0; k < 20; ++k) {
+    const StepReport a = shared.advance(), b = alone.advance();
+    expectSame(c, a, b, job().size() == 1);
+    ASSERT_EQ(shared.particles().wallCount(), alone.particles().wallCount()) << "step " << k;
+    changed = changed || shared.particles().wallCount() != start;
+  }
+  EXPECT_TRUE(changed);
+  EXPECT_LT(start, shared.numbers().wall);
+  Particles<2> whole, expected;
+  shared.copyParticles(whole);
+  alone.copyParticles(expected);
+  if (job().rank() == 0) expectSameFields(c, whole, expected);
+}
+
+/// Ten steps, and again.
+template <class Backend = Cpu>
+void expectSameBitsAgain(const char* file) {
+  const Case c = Settings{file, 0, {}}.read();
+  Simulation<2, Backend> one(c, made<2>(c), 0, 0, &job()), other(c, made<2>(c), 0, 0, &job());
+  for (int k = 0; k < 10; ++k) {
+    const StepReport a = one.advance(), b = other.advance();
+    EXPECT_EQ(a.iterations, b.iterations);
+    EXPECT_EQ(a.residual, b.residual);
+    EXPECT_EQ(a.diagnostics.kineticEnergy, b.diagnostics.kineticEnergy);
+  }
+  Particles<2> p, q;
+  one.copyParticles(p);
+  other.copyParticles(q);
+  ASSERT_EQ(p.numbers(), q.numbers());
+  for (std::uint32_t i = 0; i < p.fluidCount; ++i) EXPECT_EQ(p.velocity[i], q.velocity[i]);
+}
+
+/// A particle that leaves an open domain is one process's: all end with its words, and keep the state before.
+template <class Backend = Cpu>
+void expectAgreementOnAParticleThatLeaves() {
+  Case c = Settings{"dam-break-2d.toml", 0, {"domain.periodic=false", "watch.courant=0"}}.read();
+  c.gravity = {1e5, 0, 0};
+  Simulation<2, Backend> shared(c, made<2>(c), 0, 0, &job());
+  std::string error;
+  try {
+    for (int k = 0; k < 50; ++k) shared.advance();
+  } catch (const RunError& e) {
+    error = e.what();
+  }
+  EXPECT_NE(error.find("left the domain"), std::string::npos) << error;
+  EXPECT_EQ(error.rfind("rank ", 0) == 0, job().size() > 1) << error;
+  Particles<2> whole;
+  shared.copyParticles(whole);
+  if (job().rank() > 0) return;
+  for (std::uint32_t i = 0; i < whole.fluidCount; ++i) EXPECT_LE(whole.position[i][0], c.domain.max[0]);
+}
+
 }  // namespace treacle::test

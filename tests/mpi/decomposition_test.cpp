@@ -259,7 +259,7 @@ class DecompositionTest : public testing::Test {
   void SetUp() override {
     if (std::is_same_v<Backend, Cpu>) return;
     TREACLE_SKIP_WITHOUT_GPU();
-    useDevice(job().localRank() % cudaDevices().size());
+    useOwnDevice();
   }
 };
 
@@ -404,7 +404,7 @@ void expectSame(const Flow<D, Cpu>& cpu, const Flow<D, Cuda>& device) {
 template <int D>
 void compareBackends(bool periodic) {
   TREACLE_SKIP_WITHOUT_GPU();
-  useDevice(job().localRank() % cudaDevices().size());
+  useOwnDevice();
   Flow<D, Cpu> cpu(periodic, 12000, 5000, 0.5);
   Flow<D, Cuda> device(periodic, 12000, 5000, 0.5);
   for (int step = 0; step < 8; ++step) {

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <string>
+#include <vector>
 
 // The same as on the CPU, where each process has a device, or processes share one.
 
@@ -15,7 +17,7 @@ class SharedOnDevices : public testing::Test {
  protected:
   void SetUp() override {
     TREACLE_SKIP_WITHOUT_GPU();
-    useDevice(job().localRank() % cudaDevices().size());
+    useOwnDevice();
   }
 };
 
@@ -68,14 +70,8 @@ TEST_F(SharedOnDevices, IsphWithoutSurface) {
 }
 
 TEST_F(SharedOnDevices, SameBitsFromRunToRun) {
-  const Case c = Settings{"dam-break-2d.toml", 0, {}}.read();
-  Simulation<2, Cuda> one(c, made<2>(c), 0, 0, &job()), other(c, made<2>(c), 0, 0, &job());
-  for (int k = 0; k < 10; ++k) {
-    const StepReport a = one.advance(), b = other.advance();
-    EXPECT_EQ(a.iterations, b.iterations);
-    EXPECT_EQ(a.residual, b.residual);
-    EXPECT_EQ(a.diagnostics.kineticEnergy, b.diagnostics.kineticEnergy);
-  }
+  expectSameBitsAgain<Cuda>("dam-break-2d.toml");
+  expectSameBitsAgain<Cuda>("isph-dam-break-2d.toml");
 }
 
 /// The device's way against the CPU's, each shared by all processes.
@@ -86,18 +82,17 @@ TEST_F(SharedOnDevices, AsOnTheCpu) {
   for (int k = 0; k < 10; ++k) expectSame(c, device.advance(), host.advance(), false);
 }
 
-/// A particle that leaves an open domain is one process's: all end with its words.
-TEST_F(SharedOnDevices, AgreeOnAParticleThatLeaves) {
-  Case c = Settings{"dam-break-2d.toml", 0, {"domain.periodic=false", "watch.courant=0"}}.read();
-  c.gravity = {1e5, 0, 0};
-  Simulation<2, Cuda> shared(c, made<2>(c), 0, 0, &job());
-  std::string error;
-  try {
-    for (int k = 0; k < 50; ++k) shared.advance();
-  } catch (const RunError& e) {
-    error = e.what();
-  }
-  EXPECT_NE(error.find("left the domain"), std::string::npos) << error;
+TEST_F(SharedOnDevices, AgreeOnAParticleThatLeaves) { expectAgreementOnAParticleThatLeaves<Cuda>(); }
+
+/// What a link cannot be called is bad input at all processes.
+TEST_F(SharedOnDevices, RefuseAnUnknownLink) {
+  if (job().size() == 1) return;
+  const char* const before = std::getenv("TREACLE_LINK");
+  const std::string kept = before ? before : "";
+  setenv("TREACLE_LINK", "carrier pigeon", 1);
+  const Case c = Settings{"dam-break-2d.toml", 0, {}}.read();
+  EXPECT_THROW((Simulation<2, Cuda>(c, made<2>(c), 0, 0, &job())), InputError);
+  before ? setenv("TREACLE_LINK", kept.c_str(), 1) : unsetenv("TREACLE_LINK");
 }
 
 }  // namespace

@@ -38,31 +38,10 @@ TEST(SharedIsph, ShiftingWithoutSurface) {
 TEST(SharedIsph, WallsComeAndGo) {
   Case c = passingBody(2, MethodKind::Isph);
   c.solver.tolerance = 1e-18;
-  Simulation<2> shared(c, made<2>(c), 0, 0, &job()), alone(c, made<2>(c));
-  const std::uint32_t start = shared.particles().wallCount();
-  bool changed = false;
-  for (int k = 0; k < 20; ++k) {
-    const StepReport a = shared.advance(), b = alone.advance();
-    expectSame(c, a, b, job().size() == 1);
-    ASSERT_EQ(shared.particles().wallCount(), alone.particles().wallCount()) << "step " << k;
-    changed = changed || shared.particles().wallCount() != start;
-  }
-  EXPECT_TRUE(changed);
+  compareWallsThatComeAndGo(c);
 }
 
-TEST(SharedIsph, SameBitsFromRunToRun) {
-  const Case c = Settings{"isph-dam-break-2d.toml", 0, {}}.read();
-  Simulation<2> one(c, made<2>(c), 0, 0, &job()), other(c, made<2>(c), 0, 0, &job());
-  for (int k = 0; k < 10; ++k) {
-    const StepReport a = one.advance(), b = other.advance();
-    EXPECT_EQ(a.iterations, b.iterations);
-    EXPECT_EQ(a.residual, b.residual);
-    EXPECT_EQ(a.diagnostics.kineticEnergy, b.diagnostics.kineticEnergy);
-  }
-  const Particles<2>&p = one.particles(), &q = other.particles();
-  ASSERT_EQ(p.numbers(), q.numbers());
-  for (std::uint32_t i = 0; i < p.fluidCount; ++i) EXPECT_EQ(p.velocity[i], q.velocity[i]);
-}
+TEST(SharedIsph, SameBitsFromRunToRun) { expectSameBitsAgain("isph-dam-break-2d.toml"); }
 
 TEST(SharedIsph, FallsBack) {
   const Case c = Settings{"isph-dam-break-2d.toml", 0, {"solver.hats.iteration_bound=2"}}.read();

@@ -1,5 +1,7 @@
 #include "job.hpp"
 
+#include "treacle/core/device.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -13,6 +15,8 @@ std::optional<Communicator> theJob;
 }  // namespace
 
 const Communicator& job() { return *theJob; }
+
+void useOwnDevice() { useDevice(job().localRank() % cudaDevices().size()); }
 
 std::string casesDirectory() {
   const char* elsewhere = std::getenv("TREACLE_CASES");

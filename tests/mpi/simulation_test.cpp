@@ -46,41 +46,14 @@ TEST(SharedSimulation, AutomaticSteps) {
   compare<2>({"dam-break-2d.toml", 20, {"time.step=auto", "solver.tolerance=1e-18"}});
 }
 
-/// Walls that are far from the fluid of all processes are held by none, and all take in the same ones.
 TEST(SharedSimulation, WallsComeAndGo) {
   Case c = passingBody(2, MethodKind::MphI);
   c.solver.tolerance = 1e-22;
   c.solver.deflation = 0;
-  Simulation<2> shared(c, made<2>(c), 0, 0, &job()), alone(c, made<2>(c));
-  const std::uint32_t start = shared.particles().wallCount();
-  bool changed = false;
-  for (int k = 0; k < 20; ++k) {
-    const StepReport a = shared.advance(), b = alone.advance();
-    expectSame(c, a, b, job().size() == 1);
-    ASSERT_EQ(shared.particles().wallCount(), alone.particles().wallCount()) << "step " << k;
-    changed = changed || shared.particles().wallCount() != start;
-  }
-  EXPECT_TRUE(changed);
-  EXPECT_LT(start, shared.numbers().wall);
-  Particles<2> whole, expected;
-  shared.copyParticles(whole);
-  alone.copyParticles(expected);
-  if (job().rank() == 0) expectSameFields(c, whole, expected);
+  compareWallsThatComeAndGo(c);
 }
 
-TEST(SharedSimulation, SameBitsFromRunToRun) {
-  const Case c = Settings{"dam-break-2d.toml", 0, {}}.read();
-  Simulation<2> one(c, made<2>(c), 0, 0, &job()), other(c, made<2>(c), 0, 0, &job());
-  for (int k = 0; k < 10; ++k) {
-    const StepReport a = one.advance(), b = other.advance();
-    EXPECT_EQ(a.iterations, b.iterations);
-    EXPECT_EQ(a.residual, b.residual);
-    EXPECT_EQ(a.diagnostics.kineticEnergy, b.diagnostics.kineticEnergy);
-  }
-  const Particles<2>&p = one.particles(), &q = other.particles();
-  ASSERT_EQ(p.numbers(), q.numbers());
-  for (std::uint32_t i = 0; i < p.fluidCount; ++i) EXPECT_EQ(p.velocity[i], q.velocity[i]);
-}
+TEST(SharedSimulation, SameBitsFromRunToRun) { expectSameBitsAgain("dam-break-2d.toml"); }
 
 /// A way to solve that gives up is followed by the next one at all processes, to the last resort.
 TEST(SharedSimulation, FallsBack) {
@@ -125,24 +98,7 @@ void followDrop(const Vec<3>& gravity, int up, bool walls) {
 TEST(SharedSimulation, ProcessesWithoutFluid) { followDrop({-20, -20, 0}, 4, false); }
 TEST(SharedSimulation, ProcessesWithWallsAlone) { followDrop({0, -20, 0}, 3, true); }
 
-/// A particle that leaves an open domain is one process's: all end with its words, and keep the state before.
-TEST(SharedSimulation, AgreesOnAParticleThatLeaves) {
-  Case c = Settings{"dam-break-2d.toml", 0, {"domain.periodic=false", "watch.courant=0"}}.read();
-  c.gravity = {1e5, 0, 0};
-  Simulation<2> shared(c, made<2>(c), 0, 0, &job());
-  std::string error;
-  try {
-    for (int k = 0; k < 50; ++k) shared.advance();
-  } catch (const RunError& e) {
-    error = e.what();
-  }
-  EXPECT_NE(error.find("left the domain"), std::string::npos) << error;
-  EXPECT_EQ(error.rfind("rank ", 0) == 0, job().size() > 1) << error;
-  Particles<2> whole;
-  shared.copyParticles(whole);
-  if (job().rank() > 0) return;
-  for (std::uint32_t i = 0; i < whole.fluidCount; ++i) EXPECT_LE(whole.position[i][0], c.domain.max[0]);
-}
+TEST(SharedSimulation, AgreesOnAParticleThatLeaves) { expectAgreementOnAParticleThatLeaves(); }
 
 TEST(SharedSimulation, RefusesWhatCannotBeShared) {
   if (job().size() == 1) return;

@@ -19,8 +19,9 @@ class DeviceLink {
  public:
   /// The quickest there is. Where every process has a device of its own: the memory of the others, if all are on
   /// one host and their devices reach each other; else NCCL, if the build has it. Otherwise MPI by way of the
-  /// host's memory, for which the host waits. The environment variable TREACLE_LINK, "nccl" or "mpi", leaves out
-  /// what is quicker. Collective. The communicator and the context must outlive it.
+  /// host's memory, for which the host waits. The environment variable TREACLE_LINK, "peer", "nccl" or "mpi",
+  /// leaves out what is quicker than that. Collective. The communicator and the context must outlive it. Errors:
+  /// InputError for another value of it, DeviceFailure.
   static std::unique_ptr<DeviceLink> make(const Communicator& job, const Context<Cuda>& context);
   virtual ~DeviceLink() = default;
   /// The last thing that all processes do with it. Without it, where one of them has met an error that the others

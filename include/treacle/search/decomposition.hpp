@@ -70,7 +70,7 @@ class Decomposition<D, Cuda> : public ProcessParts<D, Cuda> {
 
   void divide(Context<Cuda>&, const CellGrid<D>&, const Particles<D, Cuda>&);
   void adoptOwners(Context<Cuda>&, const CellGrid<D>&);
-  /// Returns whether this process has other fluid now.
+  /// Returns whether any process has other fluid now.
   bool migrate(Context<Cuda>&, const CellGrid<D>&, Particles<D, Cuda>&, SortWorkspace<Cuda>&, bool isFirst);
   void findActiveCells(Context<Cuda>&, const CellGrid<D>&, const CellRanges<Cuda>&, SortWorkspace<Cuda>&);
   void listSentFluid(Context<Cuda>&, const CellRanges<Cuda>&, SortWorkspace<Cuda>&);
