@@ -35,6 +35,19 @@ __device__ inline void waitForEarlierKernels() {
 #endif
 }
 
+/// In a kernel that is started by launchEarly() and has waited: lets the next kernel that is started likewise
+/// begin. What was made before this kernel can then be read there without waiting (readBeforeEarlierKernelEnds());
+/// what this one makes cannot.
+__device__ inline void letNextKernelBegin() {
+#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 900
+  __threadfence();
+  cudaTriggerProgrammaticLaunchCompletion();
+#endif
+}
+/// In place of waitForEarlierKernels() in blocks that read nothing of the kernel before, if that one has let them
+/// begin. Some block of each kernel has to wait, so that its end is the end of those before.
+__device__ inline void readBeforeEarlierKernelEnds() { __threadfence(); }
+
 /// Whether the device starts a kernel while the one before it ends (compute capability 9.0).
 inline bool startsKernelsEarly() {
   static const bool yes = [] {

@@ -13,8 +13,10 @@
 
 namespace treacle::peer {
 
-/// Every message is moved by so many blocks at most, each a slice of its own with a flag of its own.
-inline constexpr unsigned mostBlocks = 32, threads = 512;
+/// Every message is moved by several blocks, each a slice of its own with a flag of its own: so many suffice for
+/// the latency, and more for the bandwidth of a long one.
+inline constexpr unsigned fewBlocks = 32, mostBlocks = 128, threads = 512;
+inline constexpr std::size_t shortMessage = std::size_t{512} << 10;
 inline constexpr int mostPeers = 15;
 /// Room for a message; longer ones go in pieces.
 inline constexpr std::size_t capacity = std::size_t{16} << 20;
@@ -89,6 +91,11 @@ struct Round {
     std::size_t size = 0;
   };
   std::array<Piece, 2> sent, received;
+
+  /// The same for who sends and who receives the pieces.
+  TREACLE_HD static unsigned blocksOf(const std::array<Piece, 2>& pieces) {
+    return pieces[0].bytes + pieces[1].bytes > shortMessage ? mostBlocks : fewBlocks;
+  }
 };
 struct Exchange {
   Peer peer[mostPeers];
@@ -103,18 +110,18 @@ __device__ inline void copyWords(const std::byte* from, std::byte* to, std::size
   for (std::size_t k = threadIdx.x; k < bytes / sizeof(Word); k += blockDim.x)
     reinterpret_cast<Word*>(to)[k] = __ldcg(reinterpret_cast<const Word*>(from) + k);
 }
-/// This block's slice of a message: the same bytes for who sends and who receives it.
+/// This block's slice of what `blocks` of them move: the same bytes for who sends and who receives it.
 struct Slice {
   std::size_t begin, bytes;
 
-  __device__ explicit Slice(std::size_t whole) {
-    const std::size_t length = padded((whole + gridDim.x - 1) / gridDim.x);
+  __device__ Slice(std::size_t whole, unsigned blocks) {
+    const std::size_t length = padded((whole + blocks - 1) / blocks);
     begin = min(blockIdx.x * length, whole);
     bytes = min(length, whole - begin);
   }
 };
-__device__ inline void copySlice(const std::byte* from, std::byte* to, std::size_t whole) {
-  const Slice slice(whole);
+__device__ inline void copySlice(const std::byte* from, std::byte* to, std::size_t whole, unsigned blocks) {
+  const Slice slice(whole, blocks);
   const std::size_t bytes = slice.bytes;
   from += slice.begin, to += slice.begin;
   const std::size_t all = reinterpret_cast<std::size_t>(from) | reinterpret_cast<std::size_t>(to) | bytes;
@@ -125,8 +132,8 @@ __device__ inline void copySlice(const std::byte* from, std::byte* to, std::size
 
 /// Words of a slice of values that are gathered, each of so many words.
 template <class Word>
-__device__ inline void gatherWords(const Round::Piece& piece, std::byte* to) {
-  const Slice slice(piece.bytes);
+__device__ inline void gatherWords(const Round::Piece& piece, std::byte* to, unsigned blocks) {
+  const Slice slice(piece.bytes, blocks);
   const auto* const from = reinterpret_cast<const Word*>(piece.data);
   const auto words = static_cast<std::uint32_t>(piece.size / sizeof(Word));
   const auto first = static_cast<std::uint32_t>(slice.begin / sizeof(Word)),
@@ -136,37 +143,50 @@ __device__ inline void gatherWords(const Round::Piece& piece, std::byte* to) {
     reinterpret_cast<Word*>(to)[k] = from[std::size_t{piece.index[value]} * words + (k - value * words)];
   }
 }
-__device__ inline void sendSlice(const Round::Piece& piece, std::byte* to) {
-  if (!piece.index) return copySlice(piece.data, to, piece.bytes);
+__device__ inline void sendSlice(const Round::Piece& piece, std::byte* to, unsigned blocks) {
+  if (!piece.index) return copySlice(piece.data, to, piece.bytes, blocks);
   const std::size_t all = reinterpret_cast<std::size_t>(piece.data) | piece.size;
-  if (all % 16 == 0) return gatherWords<uint4>(piece, to);
-  if (all % 8 == 0) return gatherWords<uint2>(piece, to);
-  if (all % 4 == 0) return gatherWords<unsigned>(piece, to);
-  gatherWords<unsigned char>(piece, to);
+  if (all % 16 == 0) return gatherWords<uint4>(piece, to, blocks);
+  if (all % 8 == 0) return gatherWords<uint2>(piece, to, blocks);
+  if (all % 4 == 0) return gatherWords<unsigned>(piece, to, blocks);
+  gatherWords<unsigned char>(piece, to, blocks);
 }
 
-/// A row of mostBlocks blocks per peer.
+/// Blocks that had nothing to do this time count it, too: which of the two places is next must be the same for
+/// all.
+__device__ inline void countForIdleBlocks(const Peer& peer, unsigned number) {
+  for (unsigned idle = gridDim.x + blockIdx.x; idle < mostBlocks; idle += gridDim.x) peer.epoch[idle] = number;
+}
+
+/// A row of blocks per peer, as many as the longest message has. What comes after may begin meanwhile.
 static __global__ void __launch_bounds__(threads) exchangeKernel(const __grid_constant__ Exchange e) {
   waitForEarlierKernels();
+  letNextKernelBegin();
   Stopwatch watch(e.spent);
   const Peer& peer = e.peer[blockIdx.y];
   const Round& round = e.round[blockIdx.y];
   const unsigned block = blockIdx.x, number = peer.epoch[block] + 1;
-  std::byte* const there = Peer::message(peer.there, number);
-  sendSlice(round.sent[0], there);
-  sendSlice(round.sent[1], there + padded(round.sent[0].bytes));
-  __syncthreads();
-  if (threadIdx.x == 0) {
-    peer.signal(block, number);
-    watch.waits();
-    peer.await(block, number);
-    watch.goesOn();
-    peer.epoch[block] = number;
+  const unsigned senders = Round::blocksOf(round.sent), receivers = Round::blocksOf(round.received);
+  if (block < senders) {
+    std::byte* const there = Peer::message(peer.there, number);
+    sendSlice(round.sent[0], there, senders);
+    sendSlice(round.sent[1], there + padded(round.sent[0].bytes), senders);
   }
   __syncthreads();
-  const std::byte* const here = Peer::message(peer.here, number);
-  copySlice(here, round.received[0].data, round.received[0].bytes);
-  copySlice(here + padded(round.received[0].bytes), round.received[1].data, round.received[1].bytes);
+  if (threadIdx.x == 0) {
+    if (block < senders) peer.signal(block, number);
+    watch.waits();
+    if (block < receivers) peer.await(block, number);
+    watch.goesOn();
+    peer.epoch[block] = number;
+    countForIdleBlocks(peer, number);
+  }
+  __syncthreads();
+  if (block < receivers) {
+    const std::byte* const here = Peer::message(peer.here, number);
+    copySlice(here, round.received[0].data, round.received[0].bytes, receivers);
+    copySlice(here + padded(round.received[0].bytes), round.received[1].data, round.received[1].bytes, receivers);
+  }
   watch.ends(e.bytes);
 }
 
@@ -193,27 +213,30 @@ struct Larger {
 template <class T, class Join>
 __global__ void __launch_bounds__(threads)
     joinKernel(const __grid_constant__ Peers peers, T* values, std::size_t count, Join join) {
+  __shared__ unsigned numbers[mostPeers];  // of this exchange with each peer
   waitForEarlierKernels();
   Stopwatch watch(peers.spent);
   const unsigned block = blockIdx.x;
+  if (threadIdx.x < static_cast<unsigned>(peers.count))
+    numbers[threadIdx.x] = peers.peer[threadIdx.x].epoch[block] + 1;
+  __syncthreads();
   const std::size_t first = block * std::size_t{blockDim.x} + threadIdx.x,
                     stride = std::size_t{gridDim.x} * blockDim.x;
   for (int p = 0; p < peers.count; ++p) {
     const Peer& peer = peers.peer[p];
-    T* there = reinterpret_cast<T*>(Peer::message(peer.there, peer.epoch[block] + 1));
+    T* there = reinterpret_cast<T*>(Peer::message(peer.there, numbers[p]));
     for (std::size_t k = first; k < count; k += stride) there[k] = values[k];
   }
   __syncthreads();
   if (threadIdx.x < static_cast<unsigned>(peers.count)) {
     const Peer& peer = peers.peer[threadIdx.x];
-    const unsigned number = peer.epoch[block] + 1;
+    const unsigned number = numbers[threadIdx.x];
     peer.signal(block, number);
     watch.waits();
     peer.await(block, number);
     watch.goesOn();
     peer.epoch[block] = number;
-    // Those that have nothing to do this time: which of the two places is next must be the same for all.
-    for (unsigned idle = gridDim.x + block; idle < mostBlocks; idle += gridDim.x) peer.epoch[idle] = number;
+    countForIdleBlocks(peer, number);
   }
   __syncthreads();
   for (std::size_t k = first; k < count; k += stride) {
@@ -222,7 +245,7 @@ __global__ void __launch_bounds__(threads)
       if (p == peers.rank) joint = p == 0 ? values[k] : join(joint, values[k]);
       if (p == peers.count) break;
       const Peer& peer = peers.peer[p];
-      const T theirs = __ldcg(reinterpret_cast<const T*>(Peer::message(peer.here, peer.epoch[block])) + k);
+      const T theirs = __ldcg(reinterpret_cast<const T*>(Peer::message(peer.here, numbers[p])) + k);
       joint = p == 0 && peers.rank != 0 ? theirs : join(joint, theirs);
     }
     values[k] = joint;

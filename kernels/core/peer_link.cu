@@ -148,7 +148,7 @@ class PeerLink final : public DeviceLink {
   void run(const PiecesOfRanks& to, const PiecesOfRanks& from) {
     for (std::size_t round = 0;; ++round) {
       Exchange e{.peer = {}, .round = {}, .bytes = 0, .spent = spent_.data()};
-      unsigned count = 0;
+      unsigned count = 0, blocks = 0;
       for (int p = 0; p < peers_.count; ++p) {
         const int r = rankOf(p);
         if (2 * round >= std::max(to[r].size(), from[r].size())) continue;
@@ -156,10 +156,12 @@ class PeerLink final : public DeviceLink {
         take(to[r], round, e.round[count].sent);
         take(from[r], round, e.round[count].received);
         e.bytes += e.round[count].sent[0].bytes + e.round[count].sent[1].bytes;
+        blocks =
+            std::max({blocks, Round::blocksOf(e.round[count].sent), Round::blocksOf(e.round[count].received)});
         ++count;
       }
       if (count == 0) break;
-      launchEarly(context_, dim3(mostBlocks, count), threads, 0, exchangeKernel, e);
+      launchEarly(context_, dim3(blocks, count), threads, 0, exchangeKernel, e);
     }
   }
 

@@ -3,6 +3,7 @@
 #include "core/launch.hpp"
 #include "core/scan.hpp"
 #include "precondition/staged_sums.cuh"
+#include "treacle/core/halo.hpp"
 
 namespace treacle {
 namespace {
@@ -14,6 +15,8 @@ constexpr std::uint32_t nobody = 0xffffffff;
 template <int D, class Word, class Weights>
 struct StagedRows {
   NearView<D, float, Weights> near;
+  bool hasInner;         // some blocks have no ghosts, and that counts
+  std::uint32_t ownEnd;  // of the walls
   Renormalised<D> tensors;
   float reach2;    // in the unit of near
   float perShape;  // units of the elements in what gradientShape and a difference make
@@ -25,6 +28,7 @@ struct StagedRows {
   __device__ bool within(std::uint32_t i, std::uint32_t j, const Vec<D, float>& d) const {
     return j != i && norm2(d) < reach2;
   }
+  __device__ bool isGhost(std::uint32_t k) const { return k < near.fluidCount ? k >= near.ownFluid : k >= ownEnd; }
 };
 
 /// f(is there one, j, x_j - x_i) for the entries of the row of particle i in NearProducts, which `Split` threads
@@ -123,7 +127,13 @@ __global__ void __launch_bounds__(StagedLists<D>::threads)
   atomicMax(&longest[threadIdx.x / split / slice], static_cast<std::uint32_t>(splitSum(count, split)));
   __syncthreads();
   const bool torn = table.torn;
-  if (threadIdx.x == 0) out.memberCount[blockIdx.x] = torn ? StagedView<D, Word>::torn : table.count;
+  bool ghosts = !out.hasInner;
+  for (unsigned s = threadIdx.x; s < table.slots && !ghosts; s += blockDim.x)
+    ghosts = table.key[s] != nobody && out.isGhost(table.key[s]);
+  const bool inner = !__syncthreads_or(ghosts);
+  if (threadIdx.x == 0)
+    out.memberCount[blockIdx.x] =
+        torn ? StagedView<D, Word>::torn : table.count | (inner ? StagedView<D, Word>::inner : 0);
   if (threadIdx.x < particles / slice) {
     const std::uint32_t s = blockIdx.x * (particles / slice) + threadIdx.x;
     if (s * slice < near.activeCount)
@@ -143,8 +153,8 @@ __global__ void __launch_bounds__(StagedLists<D>::threads)
                           capacity = StagedLists<D>::capacity(Split::value);
   __shared__ std::uint32_t member[capacity];
   const auto& near = out.near;
-  const std::uint32_t members = out.memberCount[blockIdx.x];
-  const bool torn = members == StagedView<D, Word>::torn;
+  const std::uint32_t marked = out.memberCount[blockIdx.x], members = marked & ~StagedView<D, Word>::inner;
+  const bool torn = marked == StagedView<D, Word>::torn;
   for (unsigned k = threadIdx.x; !torn && k < members; k += blockDim.x)
     member[k] = out.member[std::size_t{capacity} * blockIdx.x + k];
   __syncthreads();
@@ -202,6 +212,8 @@ void StagedLists<D>::makeRows(Context<Cuda>& context, const MphPairs<D>& pairs, 
     rows.reach2 = length * length;
     rows.perShape = static_cast<float>(pairs.terms.gradientFactor / unit_);
     rows.tensors = {pairs.renormalisation, pairs.fluidCount};
+    rows.hasInner = context.halo && !context.halo->sentFluid.empty();
+    rows.ownEnd = pairs.ownEnd();
     rows.member = member_.data(), rows.memberCount = memberCount_.data(), rows.start = start_.data();
     withSharing(*this, [&](auto split) {
       using Split = decltype(split);

@@ -37,7 +37,8 @@ class StagedBlock {
         elements_(elements),
         index_(blockIdx.x * particles + threadIdx.x / Split::value),
         i_(min(index_, count - 1)),
-        members_(lists.memberCount[blockIdx.x]) {
+        marked_(lists.memberCount[blockIdx.x]),
+        members_(marked_ & ~StagedView<D, Word>::inner) {
 #pragma unroll
     for (unsigned k = 0; k < early; ++k) member_[k] = member(k);
     const std::uint64_t start = lists.start[i_ / nearSlice];
@@ -45,6 +46,15 @@ class StagedBlock {
     quads_ = static_cast<int>(lists.start[i_ / nearSlice + 1] - start);
 #pragma unroll
     for (int k = 0; k < ahead; ++k) load(four_[k], part() + k * Split::value);
+  }
+
+  /// Until what the block reads is there. Ghosts may be on their way: blocks that have none go ahead, but for the
+  /// last one.
+  __device__ void waitForNeighbours() const {
+    if (isTorn() || marked_ == members_ || blockIdx.x + 1 == gridDim.x)
+      waitForEarlierKernels();
+    else
+      readBeforeEarlierKernelEnds();
   }
 
   __device__ std::uint32_t particle() const { return i_; }
@@ -106,7 +116,7 @@ class StagedBlock {
                             early = rounds < batch ? rounds : batch;
   static constexpr int ahead = Split::value > 1 ? 2 : 1;
 
-  __device__ bool isTorn() const { return members_ == StagedView<D, Word>::torn; }
+  __device__ bool isTorn() const { return marked_ == StagedView<D, Word>::torn; }
   __device__ static int part() { return static_cast<int>(threadIdx.x % Split::value); }
   __device__ std::uint32_t member(unsigned round) const {
     const unsigned place = round * threads + threadIdx.x;
@@ -118,7 +128,7 @@ class StagedBlock {
 
   const StagedView<D, Word>& lists_;
   const Word* elements_;
-  std::uint32_t index_, i_, members_, member_[early];
+  std::uint32_t index_, i_, marked_, members_, member_[early];
   std::size_t first_;
   int quads_;
   StagedFour<Word> four_[ahead];
@@ -133,7 +143,7 @@ __global__ void __launch_bounds__(256)
   StagedBlock<Split, D, Word> block(lists, lists.column, lists.ownFluid);
   const std::uint32_t i = block.particle();
   const Vec<D, float> own = fetch(&lists.own[i]);
-  waitForEarlierKernels();
+  block.waitForNeighbours();
   decltype(ownOf(store, i)) owned{};  // where threads are few; many hide the wait, and want registers
   if constexpr (Split::value > 1) owned = ownOf(store, i);
   const float mine = q[i];
@@ -160,7 +170,7 @@ __global__ void __launch_bounds__(256)
   StagedBlock<Split, D, Word> block(lists, lists.row, lists.activeCount);
   const std::uint32_t k = block.particle();
   const Vec<D, float> own = k < lists.fluidCount ? fetch(&lists.own[k]) : Vec<D, float>{};
-  waitForEarlierKernels();
+  block.waitForNeighbours();
   decltype(ownOf(store, k)) owned{};
   if constexpr (Split::value > 1) owned = ownOf(store, k);
   const Vec<D, float> mine = fetch(&u.at[k]);

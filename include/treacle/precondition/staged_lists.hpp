@@ -14,12 +14,14 @@ namespace treacle {
 /// that are zero.
 template <int D, class Word>
 struct StagedView {
-  static constexpr std::uint32_t torn = 0xffffffff;
+  static constexpr std::uint32_t torn = 0xffffffff, inner = 0x80000000;
 
-  const std::uint32_t* member;       // `capacity` per block: who is brought
-  const std::uint32_t* memberCount;  // per block; torn: too many, its rows are those of NearProducts
-  const std::uint64_t* start;        // per slice, of its rows, in fours
-  const std::uint64_t* place;        // four places in shared memory, per particle of a slice
+  const std::uint32_t* member;  // `capacity` per block: who is brought
+  // Per block; torn: too many, its rows are those of NearProducts; with `inner` on top where none is a ghost, and
+  // the block need not wait until those are brought.
+  const std::uint32_t* memberCount;
+  const std::uint64_t* start;     // per slice, of its rows, in fours
+  const std::uint64_t* place;     // four places in shared memory, per particle of a slice
   const Word *column, *row;       // four elements likewise, g B_j d of C and g B_i d, that of C^T but for its sign
   const Gathered<D, float>* own;  // per own fluid particle: sum of its g B_i d, in units
   float unit;                     // of the elements [1/m]
