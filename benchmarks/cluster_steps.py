@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""benchmarks/cluster_steps.py --program FILE [--launch "mpirun -n {n} ..."] [--timeout S] [--run CASE:RESOLUTION:WIDTH:END:PROCESSES[:LINK] ...] OUT.json
+"""benchmarks/cluster_steps.py --program FILE [--launch "mpirun -n {n} ..."] [--timeout S] [--set KEY=VALUE ...] [--run CASE:RESOLUTION:WIDTH:END:PROCESSES[:LINK] ...] OUT.json
 
 The first steps of runs by one process and by several, without frames but the first and last. CASE: thin-dam-break-3d (beside this
 file) or a case with [width]; WIDTH: its width.factor; LINK: peer, nccl or mpi, what processes on GPUs talk by at best
-(TREACLE_LINK). Written for each run: milliseconds per step of each phase, at the process that conducts, iterations, memory, and
+(TREACLE_LINK). --set goes to all runs. Written for each run: milliseconds per step of each phase, at the process that conducts, iterations, memory, and
 what each process had to do."""
 
 import argparse
@@ -32,6 +32,8 @@ def run(options, spec, directory):
     launch = options.launch.format(n=processes).split() if int(processes) > 1 else []
     command = launch + [options.program, "run", str(case_file(case)), "-o", str(out), "--force", "--quiet", "--end-time", end,
                         "--set", f"resolution={resolution}", "--set", f"width.factor={width}", "--set", "output.interval=0"]
+    for setting in options.set:
+        command += ["--set", setting]
     environment = dict(os.environ, **({"TREACLE_LINK": link[0]} if link and link[0] != "peer" else {}))
     try:
         subprocess.run(command, check=True, timeout=options.timeout, env=environment)
@@ -42,6 +44,7 @@ def run(options, spec, directory):
     phases = {p: 1e3 * s / summary["steps"] for p, s in summary["seconds_per_phase"].items() if p != "output"}
     kept = ["processes", "fluid_particles", "wall_particles", "steps", "time", "iterations", "fallbacks", "wall_seconds"]
     return {"case": case, "resolution": float(resolution), "width": float(width), "link": (link or ["peer"])[0] if launch else None,
+            "settings": options.set,
             **{k: summary[k] for k in kept}, "milliseconds_per_step": phases, "milliseconds_per_step_of_all": sum(phases.values()),
             "peak_device_memory_bytes": summary.get("peak_device_memory_bytes"), "shares": summary.get("shares")}, summary
 
@@ -51,6 +54,7 @@ def main():
     parser.add_argument("--program", required=True)
     parser.add_argument("--launch", default="mpirun -n {n}")
     parser.add_argument("--timeout", type=float, default=600)
+    parser.add_argument("--set", action="append", default=[])
     parser.add_argument("--run", nargs="*", default=defaults)
     parser.add_argument("out")
     options = parser.parse_args()
