@@ -56,4 +56,31 @@ void Halo<Cuda>::fill(const Context<Cuda>& context, Held held, void* field, std:
   context.link->exchange(m.sent, m.received);
 }
 
+template <>
+void Halo<Cuda>::returnGhosts(const Context<Cuda>& context, const void* ghosts, std::size_t size, void* arrived) {
+  Messages m;
+  messagesBack(ghosts, size, arrived, m);
+  context.link->exchange(m.sent, m.received);
+}
+
+/// One neighbour after the other, because several may have a ghost of the same value. One thread per number; no
+/// atomics.
+template <>
+template <class T>
+void Halo<Cuda>::addGhosts(const Context<Cuda>& context, T* field, std::size_t numbers) {
+  packed_.resize(context, sentFluid.size() * numbers * sizeof(T));
+  returnGhosts(context, field + ownFluid * numbers, numbers * sizeof(T), packed_.data());
+  const std::uint32_t* index = sentFluid.data();
+  const T* value = reinterpret_cast<const T*>(packed_.data());
+  for (const Neighbour& n : neighbours) {
+    forEach(context, n.sentFluid * numbers, [field, index, value, numbers] __device__(std::size_t k) {
+      field[index[k / numbers] * numbers + k % numbers] += value[k];
+    });
+    index += n.sentFluid;
+    value += n.sentFluid * numbers;
+  }
+}
+template void Halo<Cuda>::addGhosts(const Context<Cuda>&, double*, std::size_t);
+template void Halo<Cuda>::addGhosts(const Context<Cuda>&, float*, std::size_t);
+
 }  // namespace treacle

@@ -104,7 +104,7 @@ __global__ void restrictKernel(const HatNodesView<D> fine, const HatNodesView<D>
   const bool exists = lane < fineSteps<D> && finePoint(fine.lattice, coarse.pointOf(row), lane, p, weight);
   const std::uint32_t i = exists ? fine.at(p) : noNode;
   for (int c = 0; c < B; ++c) {
-    const T sum = warpSum(i == noNode ? T(0) : static_cast<T>(weight) * res[std::size_t{i} * B + c]);
+    const T sum = warpSum(i >= fine.own ? T(0) : static_cast<T>(weight) * res[std::size_t{i} * B + c]);
     if (lane != c) continue;
     b[std::size_t{row} * B + c] = sum;
     if (first.inverseDiagonal) first(std::size_t{row} * B + c, sum);

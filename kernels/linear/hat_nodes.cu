@@ -4,6 +4,7 @@
 #include "treacle/linear/hat_nodes.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace treacle {
 namespace {
@@ -56,7 +57,7 @@ __global__ void __launch_bounds__(32 * warpsPerBlock)
   const HatBox<D> box = HatBox<D>::around(fine.lattice, point * 2, reach + 1);
   forEachFine(fine.lattice, point, [&](const Vec<D, int>& p, double weight) {
     const std::uint32_t i = fine.at(p);  // the same in all lanes
-    if (i == noNode) return;
+    if (i >= fine.own) return;           // other processes have the rows of ghosts, and noNode is no row
     const std::uint64_t begin = a.rowStart[i];
     const double* value = a.value[begin].a;
     const auto numbers = static_cast<std::uint32_t>(a.rowStart[i + 1] - begin) * elements;
@@ -80,16 +81,30 @@ __global__ void __launch_bounds__(32 * warpsPerBlock)
   }
 }
 
+/// number[p] = so many flags before p are not zero. Returns how many are; the host waits for it.
+std::uint32_t numbersOf(Context<Cuda>& context, std::span<const std::uint8_t> flags,
+                        Buffer<std::uint32_t, Cuda>& number) {
+  number.resize(context, flags.size() + 1);
+  forEach(context, flags.size(),
+          [a = flags.data(), n = number.data()] __device__(std::size_t p) { n[p] = a[p] != 0; });
+  return startRows(context, number);
+}
+
 }  // namespace
+
+std::uint32_t countNodes(Context<Cuda>& context, std::span<const std::uint8_t> active) {
+  Buffer<std::uint32_t, Cuda> number;
+  return numbersOf(context, active, number);
+}
 
 template <int D>
 void numberNodes(Context<Cuda>& context, const HatLattice<D>& lattice, std::span<const std::uint8_t> active,
                  HatNodes<D, Cuda>& nodes) {
   const std::size_t points = active.size();
-  Buffer<std::uint32_t, Cuda> number(context, points + 1);
-  forEach(context, points, [a = active.data(), n = number.data()] __device__(std::size_t p) { n[p] = a[p] != 0; });
-  const std::uint32_t count = startRows(context, number);
+  Buffer<std::uint32_t, Cuda> number;
+  const std::uint32_t count = numbersOf(context, active, number);
   nodes.lattice = lattice;
+  nodes.division.reset();
   nodes.nodeAt.resize(context, points);
   nodes.point.resize(context, count);
   forEach(context, points,
@@ -101,16 +116,29 @@ void numberNodes(Context<Cuda>& context, const HatLattice<D>& lattice, std::span
 }
 
 template <int D>
-void coarserNodes(Context<Cuda>& context, const HatNodes<D, Cuda>& fine, HatNodes<D, Cuda>& coarse) {
+void coarserNodes(Context<Cuda>& context, const HatNodes<D, Cuda>& fine, HatNodes<D, Cuda>& coarse,
+                  std::uint64_t mostWhole) {
   const HatLattice<D> lattice = fine.lattice.coarser();
-  Buffer<std::uint8_t, Cuda> active(context, lattice.points());
-  forEach(context, lattice.points(), [lattice, view = fine.view(), a = active.data()] __device__(std::size_t p) {
-    bool any = false;
-    forEachFine(view.lattice, lattice.at(p),
-                [&](const Vec<D, int>& q, double) { any = any || view.at(q) != noNode; });
-    a[p] = any;
-  });
-  numberNodes<D>(context, lattice, active, coarse);
+  const std::size_t points = lattice.points(), divided = fine.division ? points : 0;
+  Buffer<std::uint8_t, Cuda> active(context, points), carried(context, divided);
+  Buffer<std::int32_t, Cuda> owner(context, divided);
+  forEach(context, points,
+          [lattice, view = fine.view(), a = active.data(), carried = carried.data(), owner = owner.data(),
+           fineOwner = fine.division ? fine.division->owner.data() : nullptr] __device__(std::size_t p) {
+            const Vec<D, int> point = lattice.at(p);
+            bool any = false, mine = false;
+            forEachFine(view.lattice, point, [&](const Vec<D, int>& q, double) {
+              any = any || view.isNode(q);
+              mine = mine || view.at(q) != noNode;
+            });
+            a[p] = any;
+            if (!fineOwner) return;
+            carried[p] = mine;
+            owner[p] = fineOwner[pointBelow(view.lattice, point)];
+          });
+  if (!fine.division || countNodes(context, active) <= mostWhole)
+    return numberNodes<D>(context, lattice, active, coarse);
+  divideNodes<D>(context, lattice, std::move(owner), std::move(active), carried, coarse);
 }
 
 template <int D, int B>
@@ -136,12 +164,13 @@ void coarsenHats(Context<Cuda>& context, const HatNodes<D, Cuda>& fine, const Bl
   launch(context, blocksFor(coarse.count(), warps), 32 * warps, warps * bytesPerWarp, coarsenKernel<D, B>,
          fine.view(), viewOf(a), coarse.view(), viewOf(coarseA), reinterpret_cast<double*>(coarseA.value.data()),
          reach, places);
+  if (fine.division) sumRows<D>(context, coarse, reach, coarseA);
 }
 
 #define TREACLE_INSTANTIATE(D)                                                                      \
   template void numberNodes<D>(Context<Cuda>&, const HatLattice<D>&, std::span<const std::uint8_t>, \
                                HatNodes<D, Cuda>&);                                                 \
-  template void coarserNodes<D>(Context<Cuda>&, const HatNodes<D, Cuda>&, HatNodes<D, Cuda>&);
+  template void coarserNodes<D>(Context<Cuda>&, const HatNodes<D, Cuda>&, HatNodes<D, Cuda>&, std::uint64_t);
 #define TREACLE_INSTANTIATE_MATRICES(D, B)                                                                    \
   template void hatPattern<D, B>(Context<Cuda>&, const HatNodes<D, Cuda>&, BlockCsr<B, double, Cuda>&, int);  \
   template void coarsenHats<D, B>(Context<Cuda>&, const HatNodes<D, Cuda>&, const BlockCsr<B, double, Cuda>&, \

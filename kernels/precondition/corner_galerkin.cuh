@@ -3,7 +3,6 @@
 #include "core/launch.hpp"
 #include "precondition/hat_corners.cuh"
 #include "precondition/own_cells.cuh"
-#include "treacle/core/device_link.hpp"
 #include "treacle/linear/block_csr.hpp"
 #include "treacle/linear/hat_nodes.hpp"
 #include "treacle/search/sorted_particles.hpp"
@@ -139,7 +138,7 @@ void cornerGalerkin(Context<Cuda>& context, const SortedParticles<D>& particles,
                                         .block = a.value.data()};
   launch(context, blocksFor(std::size_t{nodes.count()} * pairs, 128), 128, 0, cornerPartsKernel<D, B, T, Term>, g);
   launch(context, blocksFor(nodes.count(), 4), 128, 0, cornerGalerkinKernel<D, B, T, Term>, g);
-  sumOverDevices(context, a.value.span());
+  sumRows<D>(context, nodes, 1, a);
 }
 
 }  // namespace treacle

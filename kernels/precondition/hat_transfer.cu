@@ -5,6 +5,8 @@
 #include "treacle/core/device_link.hpp"
 #include "treacle/precondition/hat_grid.hpp"
 
+#include <utility>
+
 namespace treacle {
 namespace {
 
@@ -69,7 +71,8 @@ __device__ inline void forEachCorner(const HatCells<D>& cells, const HatNodesVie
 }  // namespace
 
 template <int D>
-void findHatNodes(Context<Cuda>& context, const SortedParticles<D>& pairs, HatsOn what, HatNodes<D, Cuda>& nodes) {
+void findHatNodes(Context<Cuda>& context, const SortedParticles<D>& pairs, HatsOn what, HatNodes<D, Cuda>& nodes,
+                  std::uint64_t mostWhole) {
   const HatCells<D> cells{pairs.grid};
   HatLattice<D> lattice;
   for (int k = 0; k < D; ++k) lattice.count[k] = cells.nodesOn(k);
@@ -87,7 +90,14 @@ void findHatNodes(Context<Cuda>& context, const SortedParticles<D>& pairs, HatsO
             active[p] = any;
           });
   if (context.link) context.link->max(active.data(), active.size());
-  numberNodes(context, lattice, active, nodes);
+  if (!context.link || countNodes(context, active) <= mostWhole)
+    return numberNodes<D>(context, lattice, active, nodes);
+  Buffer<std::int32_t, Cuda> owner(context, lattice.points());
+  forEach(context, owner.size(),
+          [cells, lattice, ofCell = pairs.owner, owner = owner.data()] __device__(std::size_t p) {
+            owner[p] = ofCell[cells.cellOfNode(lattice.at(p))];
+          });
+  divideNodes<D>(context, lattice, std::move(owner), std::move(active), {}, nodes);
 }
 
 template <int D, class T>
@@ -111,7 +121,7 @@ void HatTransfer<D, T, Cuda>::restrictFluid(Context<Cuda>& context, const HatNod
               pairs_->ownRanges(), place_.data(), r.data(), parts.data());
   launchEarly(context, blocksFor(nodes.count(), 128 / corners), 128, 0, nodeSumsKernel<D, T>, cells, nodes.view(),
               parts.data(), b.data());
-  sumOverDevices(context, b);
+  sumAtNodes<1>(context, nodes, b);
 }
 
 template <int D, class T>
@@ -119,7 +129,7 @@ void HatTransfer<D, T, Cuda>::restrict(Context<Cuda>& context, const HatNodes<D,
                                        std::span<const T> r, std::span<T> b) const {
   launchEarly(context, blocksFor(nodes.count(), 4), 128, 0, restrictKernel<D, T, 1, T>, HatCells<D>{pairs_->grid},
               nodes.view(), pairs_->ownRanges(), place_.data(), r.data(), b.data());
-  sumOverDevices(context, b);
+  sumAtNodes<1>(context, nodes, b);
 }
 
 template <int D, class T>
@@ -127,7 +137,7 @@ void HatTransfer<D, T, Cuda>::restrict(Context<Cuda>& context, const HatNodes<D,
                                        std::span<const Gathered<D, T>> r, std::span<T> b) const {
   launchEarly(context, blocksFor(nodes.count(), 4), 128, 0, restrictKernel<D, T, D, Gathered<D, T>>,
               HatCells<D>{pairs_->grid}, nodes.view(), pairs_->ownRanges(), place_.data(), r.data(), b.data());
-  sumOverDevices(context, b);
+  sumAtNodes<D>(context, nodes, b);
 }
 
 /// One thread per particle.
@@ -174,8 +184,10 @@ void HatTransfer<D, T, Cuda>::prolong(Context<Cuda>& context, const HatNodes<D, 
           });
 }
 
-template void findHatNodes<2>(Context<Cuda>&, const SortedParticles<2>&, HatsOn, HatNodes<2, Cuda>&);
-template void findHatNodes<3>(Context<Cuda>&, const SortedParticles<3>&, HatsOn, HatNodes<3, Cuda>&);
+template void findHatNodes<2>(Context<Cuda>&, const SortedParticles<2>&, HatsOn, HatNodes<2, Cuda>&,
+                              std::uint64_t);
+template void findHatNodes<3>(Context<Cuda>&, const SortedParticles<3>&, HatsOn, HatNodes<3, Cuda>&,
+                              std::uint64_t);
 template class HatTransfer<2, double, Cuda>;
 template class HatTransfer<3, double, Cuda>;
 template class HatTransfer<2, float, Cuda>;

@@ -278,7 +278,7 @@ void pressureGalerkin(Context<Cuda>& context, const MphPairs<D>& pairs, const Ne
            NearView<D, T, Weights>::make(pairs, near, terms));
   });
   launch(context, D == 2 ? blocksFor(nodes.count(), 4) : nodes.count(), 128, 0, pressureGalerkinKernel<D, T>, g);
-  sumOverDevices(context, s.value.span());
+  sumRows<D>(context, nodes, hatReach, s);
 }
 
 #define TREACLE_INSTANTIATE(D, T)                                                                  \

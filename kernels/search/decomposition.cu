@@ -182,7 +182,7 @@ bool Decomposition<D, Cuda>::migrate(Context<Cuda>& context, const CellGrid<D>& 
   copyBytesToHost(context, w.count.data(), begins.data(), begins.size() * sizeof(std::uint32_t));
   for (std::size_t r = 0; r < size; ++r)
     if (r != rank && !isFirst) leaving[r] = begins[r + 1] - begins[r];
-  const std::vector<std::uint32_t> all = this->countsOfAll(job, leaving);
+  const std::vector<std::uint32_t> all = job.table(leaving);
   if (!isFirst && std::ranges::count(all, 0u) == std::ssize(all)) return false;
   for (std::size_t r = 0; r < size; ++r) arriving[r] = all[r * size + rank];
   exchangeFluid(context, p, w, begins, arriving, !isFirst);

@@ -52,9 +52,40 @@ void Halo<Cpu>::fill(const Context<Cpu>& context, Held held, void* field, std::s
   context.communicator->exchange(m.sent, m.received);
 }
 
+template <class Backend>
+void Halo<Backend>::messagesBack(const void* ghosts, std::size_t size, void* arrived, Messages& m) const {
+  auto* from = static_cast<std::byte*>(const_cast<void*>(ghosts));
+  auto* to = static_cast<std::byte*>(arrived);
+  for (const Neighbour& n : neighbours) {
+    m.sent.push_back({n.rank, from, n.fluid * size});
+    m.received.push_back({n.rank, to, n.sentFluid * size});
+    from += n.fluid * size, to += n.sentFluid * size;
+  }
+}
+
+template <>
+void Halo<Cpu>::returnGhosts(const Context<Cpu>& context, const void* ghosts, std::size_t size, void* arrived) {
+  Messages m;
+  messagesBack(ghosts, size, arrived, m);
+  context.communicator->exchange(m.sent, m.received);
+}
+
+template <>
+template <class T>
+void Halo<Cpu>::addGhosts(const Context<Cpu>& context, T* field, std::size_t numbers) {
+  packed_.resize(sentFluid.size() * numbers * sizeof(T));
+  returnGhosts(context, field + ownFluid * numbers, numbers * sizeof(T), packed_.data());
+  const T* value = reinterpret_cast<const T*>(packed_.data());
+  for (std::uint32_t i : sentFluid)
+    for (std::size_t c = 0; c < numbers; ++c) field[i * numbers + c] += *value++;
+}
+template void Halo<Cpu>::addGhosts(const Context<Cpu>&, double*, std::size_t);
+template void Halo<Cpu>::addGhosts(const Context<Cpu>&, float*, std::size_t);
+
 template class Halo<Cpu>;
 #ifdef TREACLE_HAS_CUDA
 template Halo<Cuda>::Messages Halo<Cuda>::messages(Held, void*, std::size_t);
+template void Halo<Cuda>::messagesBack(const void*, std::size_t, void*, Messages&) const;
 #endif
 
 }  // namespace treacle

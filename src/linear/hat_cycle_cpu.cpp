@@ -78,7 +78,7 @@ void hatRestrict(Context<Cpu>&, const HatNodes<D>& fine, const HatNodes<D>& coar
     Vec<B, T> sum{};
     forEachFine(from.lattice, to.pointOf(row), [&](const Vec<D, int>& p, double weight) {
       const std::uint32_t i = from.at(p);
-      if (i != noNode) addScaled(sum, weight, res, i);
+      if (i < from.own) addScaled(sum, weight, res, i);
     });
     for (int c = 0; c < B; ++c) {
       const std::size_t k = row * B + c;

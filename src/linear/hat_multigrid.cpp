@@ -25,13 +25,15 @@ template <int D, class T, class Backend, int B>
 void HatMultigrid<D, T, Backend, B>::addCoarserLevels(Context<Backend>& context) {
   std::size_t count = 1;
   if (levels_.empty()) levels_.resize(1);
-  for (; unknowns(count - 1) > denseUnknowns_; ++count) {
+  const std::uint64_t most = mostWhole(options_.mostWhole);
+  for (; unknownsOfAll(count - 1) > denseUnknowns_; ++count) {
     if (levels_.size() == count) levels_.emplace_back();
     Level& coarse = levels_[count];
     const HatNodes<D, Backend>& fine = nodes(count - 1);
-    coarserNodes<D>(context, fine, coarse.nodes);
+    coarserNodes<D>(context, fine, coarse.nodes, most);
     // Scattered drops have as many coarse nodes as fine ones, or more.
-    if (B * coarse.nodes.count() > denseUnknowns_ && coarse.nodes.count() > 0.9 * fine.count()) break;
+    const auto coarseOfAll = static_cast<double>(coarse.nodes.ofAll()), ofAll = static_cast<double>(fine.ofAll());
+    if (B * coarseOfAll > denseUnknowns_ && coarseOfAll > 0.9 * ofAll) break;
     coarsenHats<D>(context, fine, operatorOf(count - 1), coarse.nodes, coarse.galerkin, options_.reach);
   }
   levels_.resize(count);
@@ -53,7 +55,8 @@ void HatMultigrid<D, T, Backend, B>::prepareSmoother(Context<Backend>& context, 
 template <int D, class T, class Backend, int B>
 BlockCsrView<B, T> HatMultigrid<D, T, Backend, B>::matrix(std::size_t l) const {
   const BlockCsr<B, double, Backend>& a = operatorOf(l);
-  BlockCsrView<B, T> view{a.rows(), a.value.size(), a.rowStart.data(), a.column.data(), levels_[l].value.data()};
+  BlockCsrView<B, T> view{nodes(l).own(), a.value.size(), a.rowStart.data(), a.column.data(),
+                          levels_[l].value.data()};
   if constexpr (std::is_same_v<T, double>) view.value = a.value.data();
   return view;
 }
@@ -70,11 +73,22 @@ HatVectors<T> HatMultigrid<D, T, Backend, B>::vectors(std::size_t l) {
 
 template <int D, class T, class Backend, int B>
 void HatMultigrid<D, T, Backend, B>::cycle(Context<Backend>& context) {
-  if (!isDense(0)) hatFirstStep<T>(context, unknowns(0), vectors(0));
+  if (!isDense(0)) hatFirstStep<T>(context, ownUnknowns(0), vectors(0));
   cycle(context, 0);
 }
 
-/// b, and the first smoothing step of it, are there; what comes out is x.
+/// b of level l + 1 = P^T res of level l, and the first smoothing step there.
+template <int D, class T, class Backend, int B>
+void HatMultigrid<D, T, Backend, B>::restrictResidual(Context<Backend>& context, std::size_t l) {
+  HatVectors<T> coarse = vectors(l + 1);
+  if (!nodes(l).division) return hatRestrict<D, B, T>(context, nodes(l), nodes(l + 1), vectors(l).res, coarse);
+  coarse.inverseDiagonal = nullptr;  // first the parts of all processes have to be summed
+  hatRestrict<D, B, T>(context, nodes(l), nodes(l + 1), vectors(l).res, coarse);
+  sumAtNodes<B>(context, nodes(l + 1), levels_[l + 1].b.span());
+  if (!isDense(l + 1)) hatFirstStep<T>(context, ownUnknowns(l + 1), vectors(l + 1));
+}
+
+/// b, and the first smoothing step of it, are there; what comes out is x, that of ghosts, too.
 template <int D, class T, class Backend, int B>
 void HatMultigrid<D, T, Backend, B>::cycle(Context<Backend>& context, std::size_t l) {
   const HatVectors<T> v = vectors(l);
@@ -84,18 +98,23 @@ void HatMultigrid<D, T, Backend, B>::cycle(Context<Backend>& context, std::size_
   const BlockCsrView<B, T> a = matrix(l);
   const T* from = v.b;
   int last = 0;  // which z is the latest; the same at the start of each cycle
-  for (int i = 2; i <= degreeOf(l); ++i, last = 1 - last, from = v.res)
+  for (int i = 2; i <= degreeOf(l); ++i, last = 1 - last, from = v.res) {
+    fillNodes<B>(context, nodes(l), v.z[last]);
     hatStep<T>(context, a, ChebyshevStep<T>::at(i), v, from, last);
-  if (isLast(l)) return;
+  }
+  if (isLast(l)) return fillNodes<B>(context, nodes(l), v.x);
 
+  fillNodes<B>(context, nodes(l), v.z[last]);
   hatResidual<T>(context, a, v, from, last);
-  const HatVectors<T> coarse = vectors(l + 1);
-  hatRestrict<D, B, T>(context, nodes(l), nodes(l + 1), v.res, coarse);
+  restrictResidual(context, l);
   cycle(context, l + 1);
-  hatProlong<D, B, T>(context, nodes(l), nodes(l + 1), coarse.x, v);
+  hatProlong<D, B, T>(context, nodes(l), nodes(l + 1), vectors(l + 1).x, v);  // for ghosts, too
   last = 0;
-  for (int i = 1; i <= options_.degree; ++i, last = 1 - last)
+  for (int i = 1; i <= options_.degree; ++i, last = 1 - last) {
+    if (i > 1) fillNodes<B>(context, nodes(l), v.z[last]);
     hatStep<T>(context, a, ChebyshevStep<T>::at(i), v, v.res, last);
+  }
+  fillNodes<B>(context, nodes(l), v.x);
 }
 
 template <int D, class T, class Backend, int B>

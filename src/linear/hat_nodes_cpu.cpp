@@ -3,16 +3,21 @@
 #include "treacle/core/parallel.hpp"
 
 #include <algorithm>
-#include <vector>
+#include <utility>
 
 namespace treacle {
 
+std::uint32_t countNodes(Context<Cpu>&, std::span<const std::uint8_t> active) {
+  return static_cast<std::uint32_t>(active.size() - std::count(active.begin(), active.end(), std::uint8_t{0}));
+}
+
 template <int D>
-void numberNodes(Context<Cpu>&, const HatLattice<D>& lattice, std::span<const std::uint8_t> active,
+void numberNodes(Context<Cpu>& context, const HatLattice<D>& lattice, std::span<const std::uint8_t> active,
                  HatNodes<D>& nodes) {
   nodes.lattice = lattice;
+  nodes.division.reset();
   nodes.nodeAt.resize(active.size());
-  nodes.point.resize(active.size() - std::count(active.begin(), active.end(), std::uint8_t{0}));
+  nodes.point.resize(countNodes(context, active));
   std::uint32_t count = 0;
   for (std::size_t p = 0; p < active.size(); ++p) {
     nodes.nodeAt[p] = active[p] ? count : noNode;
@@ -21,17 +26,26 @@ void numberNodes(Context<Cpu>&, const HatLattice<D>& lattice, std::span<const st
 }
 
 template <int D>
-void coarserNodes(Context<Cpu>& context, const HatNodes<D>& fine, HatNodes<D>& coarse) {
+void coarserNodes(Context<Cpu>& context, const HatNodes<D>& fine, HatNodes<D>& coarse, std::uint64_t mostWhole) {
   const HatLattice<D> lattice = fine.lattice.coarser();
-  std::vector<std::uint8_t> active(lattice.points());
   const HatNodesView<D> view = fine.view();
+  Buffer<std::uint8_t> active(lattice.points()), carried(fine.division ? lattice.points() : 0);
+  Buffer<std::int32_t> owner(carried.size());
   parallelFor(active.size(), parallelGrain, [&](std::size_t p) {
-    bool any = false;
-    forEachFine(view.lattice, lattice.at(p),
-                [&](const Vec<D, int>& q, double) { any = any || view.at(q) != noNode; });
+    const Vec<D, int> point = lattice.at(p);
+    bool any = false, mine = false;
+    forEachFine(view.lattice, point, [&](const Vec<D, int>& q, double) {
+      any = any || view.isNode(q);
+      mine = mine || view.at(q) != noNode;
+    });
     active[p] = any;
+    if (!fine.division) return;
+    carried[p] = mine;
+    owner[p] = fine.division->owner[pointBelow(fine.lattice, point)];
   });
-  numberNodes<D>(context, lattice, active, coarse);
+  if (!fine.division || countNodes(context, active) <= mostWhole)
+    return numberNodes<D>(context, lattice, active, coarse);
+  divideNodes<D>(context, lattice, std::move(owner), std::move(active), carried, coarse);
 }
 
 template <int D, int B>
@@ -78,7 +92,7 @@ void coarseRow(const HatNodesView<D>& fine, const BlockCsr<B>& a, const HatNodes
   std::fill_n(sums, box.size(), Block<B>{});
   forEachFine(fine.lattice, point, [&](const Vec<D, int>& p, double weight) {
     const std::uint32_t i = fine.at(p);
-    if (i == noNode) return;
+    if (i >= fine.own) return;  // other processes have the rows of ghosts, and noNode is no row
     for (std::uint64_t k = a.rowStart[i]; k < a.rowStart[i + 1]; ++k) {
       const int place = box.placeOf(fine.pointOf(a.column[k]));
       if (place >= 0) addScaled(sums[place], weight, a.value[k]);
@@ -104,11 +118,12 @@ void coarsenHats(Context<Cpu>& context, const HatNodes<D>& fine, const BlockCsr<
   parallelFor(coarse.count(), 16, [&](std::size_t row) {
     coarseRow<D>(fineView, a, coarseView, static_cast<std::uint32_t>(row), reach, coarseA);
   });
+  if (fine.division) sumRows<D>(context, coarse, reach, coarseA);
 }
 
 #define TREACLE_INSTANTIATE(D)                                                                                    \
   template void numberNodes<D>(Context<Cpu>&, const HatLattice<D>&, std::span<const std::uint8_t>, HatNodes<D>&); \
-  template void coarserNodes<D>(Context<Cpu>&, const HatNodes<D>&, HatNodes<D>&);
+  template void coarserNodes<D>(Context<Cpu>&, const HatNodes<D>&, HatNodes<D>&, std::uint64_t);
 #define TREACLE_INSTANTIATE_MATRICES(D, B)                                                                   \
   template void hatPattern<D, B>(Context<Cpu>&, const HatNodes<D>&, BlockCsr<B>&, int);                      \
   template void coarsenHats<D, B>(Context<Cpu>&, const HatNodes<D>&, const BlockCsr<B>&, const HatNodes<D>&, \

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "treacle/core/parallel.hpp"
-#include "treacle/core/processes.hpp"
 #include "treacle/linear/hat_nodes.hpp"
 #include "treacle/precondition/hat_cells.hpp"
 #include "treacle/search/sorted_particles.hpp"
@@ -61,7 +60,7 @@ void cornerGalerkin(Context<Cpu>& context, const SortedParticles<D>& particles, 
     }
   });
   mirrorUpper(a);
-  sumOverProcesses(context, a.value.span());
+  sumRows<D>(context, nodes, 1, a);
 }
 
 }  // namespace treacle

@@ -1,6 +1,5 @@
 #include "hat_loops.hpp"
 #include "treacle/core/parallel.hpp"
-#include "treacle/core/processes.hpp"
 #include "treacle/mph/mph_lanes.hpp"
 #include "treacle/precondition/hat_grid.hpp"
 
@@ -166,7 +165,7 @@ void pressureGalerkin(Context<Cpu>& context, const MphPairs<D>& pairs, const Pro
     for (int o = 0; o < RowEntries<D>::offsets; ++o)
       if (entryAt[o] != RowEntries<D>::none) s.value[entryAt[o]].a[0] += sum[o];
   });
-  sumOverProcesses(context, s.value.span());
+  sumRows<D>(context, nodes, hatReach, s);
 }
 
 #define TREACLE_INSTANTIATE(D, T)                                                                         \

@@ -61,7 +61,8 @@ ProjectionDegrees chooseDegrees(ProjectionDegrees chosen, const ProjectionConsta
 template <int D, class T, class Backend>
 void ProjectedMultigrid<D, T, Backend>::setup(Context<Backend>& context, const MphPairs<D>& pairs,
                                               const WallTerms<D>& terms, const MphOperator<D, Backend>& a,
-                                              const ProjectionDegrees& degrees, KeptEigenvalue* kept) {
+                                              const ProjectionDegrees& degrees, KeptEigenvalue* kept,
+                                              std::uint64_t mostWhole) {
   pairs_ = &pairs;
   degrees_ = degrees;
   const ProjectionConstants constants = projectionConstants(pairs);
@@ -69,7 +70,7 @@ void ProjectedMultigrid<D, T, Backend>::setup(Context<Backend>& context, const M
   allocate(context, pairs.fluidCount, pairs.activeCount);
   products_.prepare(context, pairs, terms, a);
   products_.inverseDiagonals(context, table_, inversePressure_, inverseVelocity_);
-  setupGrids(context, terms, a, constants.table<double>(gridPressureShift));
+  setupGrids(context, terms, a, constants.table<double>(gridPressureShift), mostWhole);
 
   if (kept && kept->isKnown()) return lambdaMax_.assume(context, static_cast<T>(kept->value));
   const auto product = [&](std::span<const T> x, std::span<T> y) {
@@ -84,24 +85,26 @@ void ProjectedMultigrid<D, T, Backend>::setup(Context<Backend>& context, const M
 template <int D, class T, class Backend>
 void ProjectedMultigrid<D, T, Backend>::setupGrids(Context<Backend>& context, const WallTerms<D>& terms,
                                                    const MphOperator<D, Backend>& a,
-                                                   const ProjectionTable<double>& table) {
+                                                   const ProjectionTable<double>& table, std::uint64_t mostWhole) {
   transfer_.prepare(context, *pairs_);
-  findHatNodes(context, *pairs_, HatsOn::Active, pressureNodes_);
+  findHatNodes(context, *pairs_, HatsOn::Active, pressureNodes_, pressureGrids_.mostWhole(mostWhole));
   if constexpr (std::is_same_v<Backend, Cuda>)
     pressureGalerkin(context, *pairs_, a.near(), table, pressureNodes_, galerkinWorkspace_, pressureMatrix_);
   else
     pressureGalerkin(context, *pairs_, table, pressureNodes_, galerkinWorkspace_, pressureMatrix_);
   giveUp(galerkinWorkspace_);
   DenseInverses<T, Backend> inverses;
-  pressureGrids_.setup(context, pressureNodes_, pressureMatrix_, {degrees_.grid}, inverses);
+  pressureGrids_.setup(context, pressureNodes_, pressureMatrix_, {.degree = degrees_.grid, .mostWhole = mostWhole},
+                       inverses);
 
-  findHatNodes(context, *pairs_, HatsOn::Fluid, velocityNodes_);
+  findHatNodes(context, *pairs_, HatsOn::Fluid, velocityNodes_, velocityGrids_.mostWhole(mostWhole));
   if constexpr (std::is_same_v<Backend, Cuda>)
     viscousGalerkin(context, *pairs_, terms, velocityNodes_, moments_, galerkinWorkspace_, velocityMatrix_);
   else
     viscousGalerkin(context, *pairs_, terms, velocityNodes_, moments_, velocityMatrix_);
   giveUp(moments_, galerkinWorkspace_);
-  velocityGrids_.setup(context, velocityNodes_, velocityMatrix_, {degrees_.velocity, 1}, inverses);
+  velocityGrids_.setup(context, velocityNodes_, velocityMatrix_,
+                       {.degree = degrees_.velocity, .reach = 1, .mostWhole = mostWhole}, inverses);
   inverses.finish(context);
 }
 

@@ -38,15 +38,6 @@ bool ProcessParts<D, Backend>::isUneven(const Communicator& job, std::uint32_t f
 }
 
 template <int D, class Backend>
-std::vector<std::uint32_t> ProcessParts<D, Backend>::countsOfAll(const Communicator& job,
-                                                                 std::span<const std::uint32_t> to) {
-  std::vector<std::uint32_t> counts(to.size() * to.size());
-  std::ranges::copy(to, counts.begin() + static_cast<std::ptrdiff_t>(job.rank() * to.size()));
-  job.sum(std::span(counts));
-  return counts;
-}
-
-template <int D, class Backend>
 void ProcessParts<D, Backend>::startHalo(const Communicator& job, std::uint32_t ownFluid) {
   static_cast<HaloCounts&>(halo_) = {};
   halo_.ownFluid = halo_.fluid = ownFluid;
@@ -59,7 +50,7 @@ void ProcessParts<D, Backend>::countGhostFluid(const Communicator& job) {
   const std::size_t size = job.size();
   std::vector<std::uint32_t> to(size);
   for (std::size_t r = 0; r < size; ++r) to[r] = halo_.neighbours[r].sentFluid;
-  const std::vector<std::uint32_t> counts = countsOfAll(job, to);
+  const std::vector<std::uint32_t> counts = job.table(to);
   for (std::size_t r = 0; r < size; ++r) halo_.fluid += halo_.neighbours[r].fluid = counts[r * size + job.rank()];
 }
 

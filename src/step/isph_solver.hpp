@@ -5,6 +5,7 @@
 #include "treacle/linear/cell_multigrid.hpp"
 #include "treacle/precondition/isph_hat_multigrid.hpp"
 #include "treacle/search/buckets.hpp"
+#include "treacle/step/solve_stages.hpp"
 
 #include <utility>
 #include <vector>
@@ -124,7 +125,8 @@ class IsphSystem final : public StagedSystem<Backend> {
   template <class T>
   void prepare(Context<Backend>& context, Data<T>& data) {
     if (stage_.preconditioner == PreconditionerKind::HatMultigrid)
-      data.hats.setup(context, *pairs_, data.matrix, moments_, stage_.hats.gridDegree);
+      data.hats.setup(context, *pairs_, data.matrix, moments_, stage_.hats.gridDegree,
+                      mostWholeNodes(stage_, context));
     giveUp(moments_);
     if (stage_.preconditioner != PreconditionerKind::CellMultigrid) return;
     findBuckets(context, ranges_->key, D * CellGrid<D>::subBits, D, levels_);

@@ -2,6 +2,7 @@
 
 #include "treacle/linear/diagonal.hpp"
 #include "treacle/precondition/bucket_galerkin.hpp"
+#include "treacle/step/solve_stages.hpp"
 
 namespace treacle {
 namespace {
@@ -86,7 +87,7 @@ void MphSystem<D, Backend>::prepare(Context<Backend>& context, Preconditioner<T>
   if (stage_.preconditioner == PreconditionerKind::None) return;
   if (stage_.preconditioner == PreconditionerKind::ProjectedMultigrid)
     return k.projected.setup(context, *pairs_, terms_, matrixFree_, degreesOf(stage_.projected, *pairs_),
-                             pressure_);
+                             pressure_, mostWholeNodes(stage_, context));
   diagonal_.resize(context, pairs_->ownFluid());
   diagonalBlocks<D>(context, *pairs_, terms_, diagonal_);
   if (stage_.preconditioner == PreconditionerKind::BlockJacobi) {

@@ -43,6 +43,18 @@ TEST_F(SharedOnDevices, ThreeDimensions) {
   compare<3, Cuda>({"published/dam-break-3d.toml", 5, {"solver.tolerance=1e-16"}});
 }
 
+/// Grids whose nodes the processes divide: in two dimensions the two finest.
+TEST_F(SharedOnDevices, DividedGrids) {
+  if (job().size() == 1) return;  // there is nothing to divide
+  const std::string divided = "solver.divided_nodes=0", exact = "solver.tolerance=1e-16",
+                    plain = "solver.deflation=0";
+  compare<2, Cuda>({"dam-break-2d.toml", 3, {"resolution=12", divided, exact, plain}});
+  compare<2, Cuda>({"dam-break-2d.toml", 3, {"resolution=8", divided, exact, plain, "solver.precision=double"}});
+  compare<3, Cuda>({"dam-break-3d.toml", 3, {"resolution=2", divided, exact, plain}});
+  compare<2, Cuda>({"../tests/validation/cases/couette.toml", 5, {"resolution=8", divided, exact, plain}});
+  compare<3, Cuda>({"isph-dam-break.toml", 3, {divided, exact, "solver.precision=double"}});
+}
+
 /// Fluid that goes around periodic ends, and a plate that moves; walls that turn.
 TEST_F(SharedOnDevices, MovingWalls) {
   const std::vector<std::string> keys = {"solver.tolerance=1e-20", "solver.deflation=0"};

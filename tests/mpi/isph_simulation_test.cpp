@@ -35,6 +35,16 @@ TEST(SharedIsph, ShiftingWithoutSurface) {
   compare<2>({"../tests/validation/cases/isph-taylor-green.toml", 10, {"solver.tolerance=1e-18"}});
 }
 
+TEST(SharedIsph, DividedGrids) {
+  if (job().size() == 1) return;
+  compare<2>({"isph-dam-break-2d.toml",
+              5,
+              {"resolution=2", "solver.divided_nodes=0", "solver.tolerance=1e-16", "solver.precision=double"}});
+  compare<3>({"isph-dam-break.toml",
+              2,
+              {"resolution=0.4", "solver.divided_nodes=0", "solver.tolerance=1e-16", "solver.precision=double"}});
+}
+
 TEST(SharedIsph, WallsComeAndGo) {
   Case c = passingBody(2, MethodKind::Isph);
   c.solver.tolerance = 1e-18;

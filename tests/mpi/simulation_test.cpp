@@ -29,6 +29,17 @@ TEST(SharedSimulation, ThreeDimensions) {
   compare<3>({"published/dam-break-3d.toml", 3, {"resolution=0.7", "solver.tolerance=1e-16"}});
 }
 
+/// Grids whose nodes the processes divide: the two finest of the first case; those below stand whole at every
+/// process.
+TEST(SharedSimulation, DividedGrids) {
+  if (job().size() == 1) return;  // there is nothing to divide
+  const std::string divided = "solver.divided_nodes=0", exact = "solver.tolerance=1e-16",
+                    plain = "solver.deflation=0";
+  compare<2>({"dam-break-2d.toml", 2, {"resolution=4", divided, exact, plain}});
+  compare<3>({"dam-break-3d.toml", 2, {"resolution=0.6", divided, exact, plain}});
+  compare<2>({"../tests/validation/cases/couette.toml", 10, {divided, exact, plain, "solver.precision=double"}});
+}
+
 /// Fluid that goes around periodic ends, and a plate that moves. (By a preconditioner in single precision a step
 /// takes 9 to 11 iterations to this tolerance, as its roundings fall.)
 TEST(SharedSimulation, PeriodicFlowAndMovingWalls) {

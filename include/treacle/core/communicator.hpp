@@ -62,6 +62,14 @@ class Communicator {
   template <class T>
   std::vector<std::vector<T>> swap(const std::vector<std::vector<T>>& to) const;
 
+  /// [from][to], of a number that every process has for each one.
+  std::vector<std::uint32_t> table(std::span<const std::uint32_t> to) const {
+    std::vector<std::uint32_t> counts(to.size() * to.size());
+    std::copy(to.begin(), to.end(), counts.begin() + static_cast<std::ptrdiff_t>(rank_ * to.size()));
+    sum(std::span(counts));
+    return counts;
+  }
+
   /// The first text in the order of ranks that is not empty, with its rank; "" where all are.
   struct RankText {
     int rank = 0;

@@ -33,7 +33,8 @@ struct HaloCounts {
   bool isGhost(std::uint32_t i) const { return i < fluid ? i >= ownFluid : i >= fluid + ownWalls; }
 };
 
-/// With those particles of its own that others need.
+/// With those particles of its own that others need. The nodes of a grid that is divided between processes have
+/// one, too (linear/hat_division.hpp): there they are what is called fluid here.
 template <class Backend>
 class Halo : public HaloCounts {
  public:
@@ -47,7 +48,14 @@ class Halo : public HaloCounts {
 
   /// Brings the ghosts' values, `size` bytes each, from their owners.
   void fill(const Context<Backend>& context, Held held, void* field, std::size_t size);
-  /// Makes room for values of up to so many bytes: filling them will not allocate.
+  /// The way back: every owner's value of the fluid is added to by those that its ghosts have, in the order of
+  /// ranks; `numbers` of a value. The ghosts keep theirs.
+  template <class T>
+  void addGhosts(const Context<Backend>& context, T* field, std::size_t numbers);
+  /// Brings the ghost fluid's values, which stand in `ghosts` in their order, to their owners: into `arrived`, in
+  /// the order of sentFluid.
+  void returnGhosts(const Context<Backend>& context, const void* ghosts, std::size_t size, void* arrived);
+  /// Makes room for values of up to so many bytes: neither filling them nor adding them will allocate.
   void reserve(const Context<Backend>& context, std::size_t size) {
     packed_.resize(context, (sentFluid.size() + sentWalls.size()) * size);
   }
@@ -60,6 +68,7 @@ class Halo : public HaloCounts {
     std::vector<Communicator::Message> sent, received;
   };
   Messages messages(Held held, void* field, std::size_t size);
+  void messagesBack(const void* ghosts, std::size_t size, void* arrived, Messages& messages) const;
   bool exchangeGathered(const Context<Backend>& context, Held held, void* field, std::size_t size);
   std::size_t sentCount(Held held) const {
     return sentFluid.size() + (held == Held::Active ? sentWalls.size() : 0);

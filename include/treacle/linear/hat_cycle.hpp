@@ -57,7 +57,7 @@ void hatResidual(Context<Cpu>&, const BlockCsrView<B, T>& a, const HatVectors<T>
 template <class T, int B>
 void hatResidual(Context<Cuda>&, const BlockCsrView<B, T>& a, const HatVectors<T>& v, const T* from, int last);
 
-/// coarse.b = P^T res, and there the first smoothing step unless the level has no smoother.
+/// coarse.b = P^T res of own nodes, and there the first smoothing step unless the level has no smoother.
 template <int D, int B, class T>
 void hatRestrict(Context<Cpu>&, const HatNodes<D>& fine, const HatNodes<D>& coarse, const T* res,
                  const HatVectors<T>& coarseV);

@@ -3,6 +3,7 @@
 #include "treacle/linear/dense_inverse.hpp"
 #include "treacle/linear/hat_cycle.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -14,6 +15,8 @@ namespace treacle {
 struct HatOptions {
   int degree = 1;        // >= 1, of the Chebyshev smoothers
   int reach = hatReach;  // of the finest matrix
+  std::uint64_t mostWhole =
+      anyNumber;  // nodes of a grid that every process has as a whole; larger ones are divided
 };
 
 /// Symmetric V-cycle on hat functions of edge h, 2h, 4h, ...: Galerkin operators, fourth-kind Chebyshev smoothing
@@ -23,6 +26,10 @@ struct HatOptions {
 /// vectors are flat, node after node. T is the precision of the cycle; operators are formed in double. Per cycle
 /// of degree k each level but the last reads its matrix 2 k times.
 ///
+/// Where the finest nodes are divided between processes (HatDivision) so are those of the grids below that have
+/// more than `mostWhole`; each process then works on its own nodes, with what it reads of others brought before
+/// each product. Smaller grids stand whole at every process, and all do the same on them.
+///
 /// On a device a cycle is a fixed series of kernels on fixed memory: it can be captured into a graph.
 template <int D, class T, class Backend = Cpu, int B = 1>
 class HatMultigrid {
@@ -31,8 +38,9 @@ class HatMultigrid {
   explicit HatMultigrid(std::uint32_t denseUnknowns = std::is_same_v<Backend, Cpu> ? 200 : 1100)
       : denseUnknowns_(denseUnknowns) {}
 
-  /// `finest`: symmetric positive (semi-)definite, within the pattern of hatPattern(nodes, reach). Both must stay
-  /// where and what they are until the last cycle. The inverse of the last level is left to `inverses`.
+  /// `finest`: of own nodes the rows; symmetric positive (semi-)definite, within the pattern of hatPattern(nodes,
+  /// reach). Both must stay where and what they are until the last cycle. The inverse of the last level is left to
+  /// `inverses`.
   void setup(Context<Backend>& context, const HatNodes<D, Backend>& nodes,
              const BlockCsr<B, double, Backend>& finest, const HatOptions& options,
              DenseInverses<T, Backend>& inverses);
@@ -44,6 +52,7 @@ class HatMultigrid {
   }
 
   /// B numbers per finest node, in the backend's memory; a cycle leaves the right-hand side as it is.
+  /// Of divided nodes those of own ones count; the solution has ghosts, too.
   std::span<T> rhs() { return levels_.front().b; }
   std::span<const T> solution() const { return levels_.front().x; }
 
@@ -51,6 +60,8 @@ class HatMultigrid {
   void cycle(Context<Backend>& context);
 
   std::uint32_t denseUnknowns() const { return denseUnknowns_; }
+  /// What is to be inverted in the end is never divided.
+  std::uint64_t mostWhole(std::uint64_t asked) const { return std::max<std::uint64_t>(asked, denseUnknowns_ / B); }
   std::size_t levelCount() const { return levels_.size(); }
   std::size_t bytes() const;
 
@@ -69,8 +80,10 @@ class HatMultigrid {
     return l == 0 ? *finestMatrix_ : levels_[l].galerkin;
   }
   bool isLast(std::size_t l) const { return l + 1 == levels_.size(); }
-  std::size_t unknowns(std::size_t l) const { return std::size_t{B} * nodes(l).count(); }
-  bool isDense(std::size_t l) const { return isLast(l) && unknowns(l) <= denseUnknowns_; }
+  std::size_t unknowns(std::size_t l) const { return std::size_t{B} * nodes(l).count(); }  // ghosts included
+  std::size_t ownUnknowns(std::size_t l) const { return std::size_t{B} * nodes(l).own(); }
+  std::uint64_t unknownsOfAll(std::size_t l) const { return B * nodes(l).ofAll(); }
+  bool isDense(std::size_t l) const { return isLast(l) && unknownsOfAll(l) <= denseUnknowns_; }
   /// A last level too large to invert has nothing below that would help.
   int degreeOf(std::size_t l) const { return isLast(l) ? 4 * options_.degree : options_.degree; }
 
@@ -79,6 +92,7 @@ class HatMultigrid {
   void addCoarserLevels(Context<Backend>& context);
   void prepareSmoother(Context<Backend>& context, std::size_t l);
   void cycle(Context<Backend>& context, std::size_t l);
+  void restrictResidual(Context<Backend>& context, std::size_t l);
 
   const HatNodes<D, Backend>* finestNodes_ = nullptr;
   const BlockCsr<B, double, Backend>* finestMatrix_ = nullptr;

@@ -240,6 +240,10 @@ struct SolverSettings {
   FirstGuess firstGuess = FirstGuess::Quadratic;
   /// Largest number of modes that conjugate gradients with the projected multigrid are deflated by; 0: none.
   int deflation = 8;
+  /// Where processes share the case: grids of the preconditioner with more nodes than that are divided between
+  /// them like the particles, smaller ones stand whole at every process. A product with a grid of so many takes
+  /// about as long as the exchange that comes before it where it is divided.
+  int dividedNodes = 100000;
   MultigridSettings multigrid;
   ProjectedSettings projected;
   CellSettings cells;

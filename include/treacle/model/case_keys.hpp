@@ -268,6 +268,7 @@ void visit(auto& v, Like<SolverSettings> auto& s, const Case& c) {
   v({"max_iterations", optional, "", iterations}, s.maxIterations);
   v({"precision"}, s.precision);
   v({"first_guess"}, s.firstGuess, fitsMethod);
+  v({"divided_nodes", optional, "", {0, 1e9}}, s.dividedNodes);
   if (c.method.kind == MethodKind::Isph) {
     v({"cells"}, s.cells);
     v({"hats"}, s.hats);

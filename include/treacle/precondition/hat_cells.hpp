@@ -13,6 +13,14 @@ struct HatCells {
 
   TREACLE_HD int nodesOn(int axis) const { return grid.count[axis] + (grid.periodic[axis] ? 0 : 1); }
 
+  /// The cell (CellGrid::linear) that a node is at the lower corner of; of nodes at an open end the cell below.
+  TREACLE_HD std::size_t cellOfNode(const Vec<D, int>& node) const {
+    Vec<D, int> cell = node;
+    for (int k = 0; k < D; ++k)
+      if (cell[k] == grid.count[k]) --cell[k];
+    return grid.linear(cell);
+  }
+
   /// Place of x in its cell, 0 … 1 per axis.
   TREACLE_HD Vec<D> fraction(const Vec<D>& x, const Vec<D, int>& cell) const {
     Vec<D> f;

@@ -22,11 +22,15 @@ class NearProducts;
 
 enum class HatsOn { Active, Fluid };
 
-/// The corners of the cells that hold active particles, or fluid.
+/// The corners of the cells that hold active particles, or fluid. Where processes share the simulation and there
+/// are more than `mostWhole`, each has those at the lower corners of its cells and ghosts of others, which all
+/// that its particles, ghosts included, touch are among.
 template <int D>
-void findHatNodes(Context<Cpu>&, const SortedParticles<D>& pairs, HatsOn what, HatNodes<D>& nodes);
+void findHatNodes(Context<Cpu>&, const SortedParticles<D>& pairs, HatsOn what, HatNodes<D>& nodes,
+                  std::uint64_t mostWhole = anyNumber);
 template <int D>
-void findHatNodes(Context<Cuda>&, const SortedParticles<D>& pairs, HatsOn what, HatNodes<D, Cuda>& nodes);
+void findHatNodes(Context<Cuda>&, const SortedParticles<D>& pairs, HatsOn what, HatNodes<D, Cuda>& nodes,
+                  std::uint64_t mostWhole = anyNumber);
 
 /// Galerkin operator P^T S' P of the pressures, from pair sums; S' itself is not needed. Workspace in the
 /// precision T: `columns`, the 3^D vectors of C P per fluid particle; on a device, where `near` has the lists of
@@ -54,7 +58,7 @@ void viscousGalerkin(Context<Cuda>&, const MphPairs<D>& pairs, const WallTerms<D
                      const HatNodes<D, Cuda>& nodes, Buffer<ViscousMoments<D, T>, Cuda>& moments,
                      Buffer<T, Cuda>& parts, BlockCsr<D, double, Cuda>& a);
 
-/// The transfers themselves, in the precision of a preconditioner.
+/// The transfers themselves, in the precision of a preconditioner. What is restricted is summed over processes.
 template <int D, class T, class Backend = Cpu>
 class HatTransfer;
 

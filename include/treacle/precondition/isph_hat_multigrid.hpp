@@ -34,9 +34,10 @@ class IsphHatMultigrid {
   /// Grids of so many unknowns at most are solved by their inverse.
   explicit IsphHatMultigrid(std::uint32_t denseUnknowns) : grids_(denseUnknowns) {}
 
-  /// Arguments must outlive the last apply(). `gridDegree` of the smoother on the grids.
+  /// Arguments must outlive the last apply(). `gridDegree` of the smoother on the grids; `mostWhole`: as
+  /// HatOptions.
   void setup(Context<Backend>& context, const SortedParticles<D>& particles, const IsphMatrix<T>& a,
-             std::span<const IsphMoments<D>> moments, int gridDegree) {
+             std::span<const IsphMoments<D>> moments, int gridDegree, std::uint64_t mostWhole = anyNumber) {
     a_ = a;
     fluid_ = particles;
     // Walls have no unknowns here.
@@ -46,11 +47,11 @@ class IsphHatMultigrid {
     x_.resize(context, particles.fluidCount);
     residual_.resize(context, a.rows);
     transfer_.prepare(context, fluid_);
-    findHatNodes(context, fluid_, HatsOn::Fluid, nodes_);
+    findHatNodes(context, fluid_, HatsOn::Fluid, nodes_, grids_.mostWhole(mostWhole));
     isphGalerkin(context, fluid_, moments, nodes_, parts_, matrix_);
     giveUp(parts_);
     sums_.resize(context, HatTransfer<D, T, Backend>::sumsPerNode * nodes_.count());
-    grids_.setup(context, nodes_, matrix_, {.degree = gridDegree, .reach = 1});
+    grids_.setup(context, nodes_, matrix_, {.degree = gridDegree, .reach = 1, .mostWhole = mostWhole});
   }
 
   /// z = K r; z is zero where rows are. Ghosts are brought once: what is prolonged to them is what their owners

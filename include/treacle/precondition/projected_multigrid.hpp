@@ -52,9 +52,10 @@ template <int D, class T, class Backend = Cpu>
 class ProjectedMultigrid {
  public:
   /// `pairs`, `terms` and `a` (prepared) must outlive the last apply(). `kept`: the largest eigenvalue of the
-  /// scaled S', if it is known from earlier steps; else it is put there.
+  /// scaled S', if it is known from earlier steps; else it is put there. `mostWhole`: as HatOptions.
   void setup(Context<Backend>&, const MphPairs<D>& pairs, const WallTerms<D>& terms,
-             const MphOperator<D, Backend>& a, const ProjectionDegrees& degrees, KeptEigenvalue* kept = nullptr);
+             const MphOperator<D, Backend>& a, const ProjectionDegrees& degrees, KeptEigenvalue* kept = nullptr,
+             std::uint64_t mostWhole = anyNumber);
   void apply(Context<Backend>&, std::span<const Vec<D>> r, std::span<Vec<D>> z);
 
   std::size_t gridLevels() const { return pressureGrids_.levelCount(); }
@@ -63,7 +64,7 @@ class ProjectedMultigrid {
  private:
   void allocate(Context<Backend>&, std::size_t fluid, std::size_t active);
   void setupGrids(Context<Backend>&, const WallTerms<D>&, const MphOperator<D, Backend>&,
-                  const ProjectionTable<double>&);
+                  const ProjectionTable<double>&, std::uint64_t mostWhole);
   PressureVectors<T, Backend> pressureVectors(int correction) {
     return {pressureResidual_.data(), products_.scalars(correction), p_.data()};
   }

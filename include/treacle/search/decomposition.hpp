@@ -32,6 +32,8 @@ class Decomposition<D, Cpu> : public ProcessParts<D, Cpu> {
   void sort(Context<Cpu>&, const CellGrid<D>& grid, Particles<D>& particles, CellRanges<>& ranges,
             SortWorkspace<>& workspace);
 
+  /// Per cell, in the backend's memory; null before the first sort.
+  const std::int32_t* cellOwners() const { return owners_.view().owner; }
   std::size_t bytes() const { return owners_.bytes() + halo_.bytes() + fluidCells_.bytes(); }
 
  private:
@@ -59,6 +61,7 @@ class Decomposition<D, Cuda> : public ProcessParts<D, Cuda> {
   void sort(Context<Cuda>&, const CellGrid<D>& grid, Particles<D, Cuda>& particles, CellRanges<Cuda>& ranges,
             SortWorkspace<Cuda>& workspace);
 
+  const std::int32_t* cellOwners() const { return owner_.data(); }
   std::size_t bytes() const {
     return owners_.bytes() + halo_.bytes() + owner_.bytes() + place_.bytes() + borderCell_.bytes() +
            borderBegin_.bytes() + borderStart_.bytes() + fluidCells_.bytes();

@@ -36,6 +36,7 @@ class ParticleSort {
   /// Makes `sorted` look at the particles of the last sort, until the next one.
   void place(const Particles<D, Backend>& particles, SortedParticles<D>& sorted) const {
     placeSorted(particles, ranges_, sorted);
+    sorted.owner = decomposition_.cellOwners();
   }
 
   const CellRanges<Backend>& ranges() const { return ranges_; }

@@ -32,8 +32,6 @@ class ProcessParts {
   /// Whether cells are to change hands, now that this process has so many fluid particles. Once they are as evenly
   /// given out as they can be, it is not tried again until that has become worse. Collective.
   bool isUneven(const Communicator&, std::uint32_t fluid) const;
-  /// [from][to], of what each process has for each other one. Collective.
-  static std::vector<std::uint32_t> countsOfAll(const Communicator&, std::span<const std::uint32_t> to);
 
   /// The halo's numbers: of own fluid; then, from what is sent to whom, of ghost fluid; then, once all else is
   /// known, of what all processes have.

@@ -42,6 +42,7 @@ struct SortedParticles {
   std::span<const Vec<D>> position;              // [m]
   std::span<const std::uint8_t> material;
   CellRangesView cells;
+  const std::int32_t* owner = nullptr;  // per cell: the process whose it is; null in a simulation that is alone
   CellGrid<D> grid;
   double spacing = 0;  // l [m]
 

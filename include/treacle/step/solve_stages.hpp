@@ -1,7 +1,10 @@
 #pragma once
 
+#include "treacle/core/processes.hpp"
+#include "treacle/linear/hat_nodes.hpp"
 #include "treacle/model/case.hpp"
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -12,6 +15,12 @@ namespace treacle {
 /// what this preconditioner is chosen for, and another way is cheaper. `shared`: by several processes, whose last
 /// resort is block-Jacobi.
 std::vector<SolverSettings> solveStages(const Case& c, bool shared = false);
+
+/// How many nodes a grid of the preconditioner may have that the processes of a simulation do not divide.
+inline std::uint64_t mostWholeNodes(const SolverSettings& settings, const Processes& processes) {
+  const bool shared = processes.communicator && processes.communicator->size() > 1;
+  return shared ? static_cast<std::uint64_t>(settings.dividedNodes) : anyNumber;
+}
 
 /// "cg, projected-multigrid, mixed: pressure degree 9, grid degree 4, velocity degree 2"
 std::string solverText(const SolverSettings& settings);
