@@ -32,7 +32,9 @@ Run::Run(const Case& c, StartState start, BackendKind backend, RunDirectory dire
       directory_(std::move(directory)),
       timings_(options.timings),
       log_(directory_.log(), options.quiet),
-      progress_(c, start_.step, start_.time, options.quiet) {}
+      progress_(c, start_.step, start_.time, options.quiet) {
+  if (writesPieces(c, start_.particles.numbers(), processes)) pieces_.emplace(c, directory_, processes);
+}
 
 void Run::execute(const std::vector<std::string>& warnings) {
   describe();
@@ -42,7 +44,11 @@ void Run::execute(const std::vector<std::string>& warnings) {
     simulation_.emplace(case_, std::move(start_.particles), backend_, start_.step, start_.time, &processes_);
     if (const std::string link = simulation_->linkName(); !link.empty())
       log_.info("the devices of the processes exchange by " + link);
-    recorder_.emplace(case_, directory_, log_, start_.time, timings_, [this](Snapshot& s) { copyState(s); });
+    Recorder::OrderPieces ofPieces;
+    if (pieces_) ofPieces = [this](PieceOrder order, std::size_t frame) { return orderPieces(order, frame); };
+    recorder_.emplace(
+        case_, directory_, log_, start_.time, timings_, [this](Snapshot& s) { copyState(s); },
+        std::move(ofPieces));
     recorder_->begin();
     advanceToEnd();
   });
@@ -122,6 +128,14 @@ void Run::copyState(Snapshot& snapshot) {
   simulation_->copyParticles(snapshot.particles);
   snapshot.step = simulation_->step();
   snapshot.time = simulation_->time();
+}
+
+std::vector<PiecedFrame> Run::orderPieces(PieceOrder order, std::size_t frame) {
+  std::vector<PiecedFrame> whole;
+  if (order == PieceOrder::Collect && !pieces_->hasNews()) return whole;
+  simulation_->everywhere(static_cast<int>(order), static_cast<std::int64_t>(frame),
+                          [&](AnySimulation& s, int, std::int64_t) { whole = pieces_->answer(s, order, frame); });
+  return whole;
 }
 
 void Run::attempt(const std::function<void()>& action) {

@@ -35,6 +35,7 @@ class Run {
   void warnOfArrangement();
   void keepWatch(const StepReport& report);
   void copyState(Snapshot& snapshot);
+  std::vector<PiecedFrame> orderPieces(PieceOrder order, std::size_t frame);
   /// Keeps the diagnosis of the first thing that goes wrong.
   void attempt(const std::function<void()>& action);
   void finish();
@@ -55,6 +56,7 @@ class Run {
   bool timings_;
   RunLog log_;
   Progress progress_;
+  std::optional<PieceWriter> pieces_;  // where frames are written in pieces
   std::optional<AnySimulation> simulation_;
   std::optional<Recorder> recorder_;
   RunSummary summary_;

@@ -3,6 +3,7 @@
 #include "interrupt.hpp"
 #include "machine.hpp"
 #include "memory.hpp"
+#include "piece_writer.hpp"
 #include "resume.hpp"
 #include "run.hpp"
 #include "threads.hpp"
@@ -60,6 +61,18 @@ bool allHaveOne(const Communicator& processes, bool has) {
   return std::ranges::find(all, 0) == all.end();
 }
 
+/// A run at a process that is not the first.
+void follow(const Case& c, StartState start, BackendKind backend, const std::filesystem::path& directory,
+            const Communicator& processes) {
+  std::optional<PieceWriter> pieces;
+  if (writesPieces(c, start.particles.numbers(), processes))
+    pieces.emplace(c, RunDirectory::joined(directory), processes);
+  serveSimulation(c, std::move(start.particles), backend, start.step, start.time, processes,
+                  [&](AnySimulation& s, int order, std::int64_t frame) {
+                    pieces->answer(s, static_cast<PieceOrder>(order), static_cast<std::size_t>(frame));
+                  });
+}
+
 }  // namespace
 
 void runCommand(const RunOptions& options, const Communicator& processes) {
@@ -85,15 +98,13 @@ void runCommand(const RunOptions& options, const Communicator& processes) {
   requireSame(processes, fmt::format("{}\n{} {}", caseText(c), start.step, start.time));
   catchInterrupts();
   std::optional<RunDirectory> files;
+  const auto directory = options.directory.empty() ? options.input.file.stem().concat("-run") : options.directory;
   together(processes, [&] {
     if (processes.rank() > 0) return;
-    const auto directory =
-        options.directory.empty() ? options.input.file.stem().concat("-run") : options.directory;
     requireElsewhere(directory, options.resume);
     files.emplace(RunDirectory::create(directory, options.force));
   });
-  if (processes.rank() > 0)
-    return serveSimulation(c, std::move(start.particles), backend, start.step, start.time, processes);
+  if (processes.rank() > 0) return follow(c, std::move(start), backend, directory, processes);
   const Followers followers(processes);
   if (!device)
     for (std::string& warning : cpuWarnings(c)) warnings.push_back(std::move(warning));

@@ -104,6 +104,20 @@ Buffer<std::uint32_t> DistantWalls<D>::missing() const {
 }
 
 template <int D>
+Particles<D> DistantWalls<D>::inOwnCells(const CellGrid<D>& cells, const CellOwners<D>& owners) const {
+  const Buffer<std::uint32_t> far = missing();
+  const Buffer<std::uint32_t> own = selected(0, static_cast<std::uint32_t>(far.size()), [&](std::uint32_t k) {
+    return owners.isOwn(cells.linear(cells.cellOf(position_[far[k]])));
+  });
+  Buffer<std::uint32_t> which(own.size());
+  gather(far.span(), own, which.data());
+  Particles<D> walls;
+  walls.resize({0, which.size(), 0, surface_.empty() ? 0 : which.size()});
+  copyTo(walls, 0, which);
+  return walls;
+}
+
+template <int D>
 void DistantWalls<D>::copyTo(Particles<D>& all) const {
   const Buffer<std::uint32_t> which = missing();
   copyTo(all, all.count - static_cast<std::uint32_t>(which.size()), which);

@@ -5,6 +5,7 @@
 #include "given_step.hpp"
 #include "held_walls.hpp"
 #include "moving_bodies.hpp"
+#include "own_particles.hpp"
 #include "step_method.hpp"
 #include "treacle/core/processes.hpp"
 #include "treacle/core/team.hpp"
@@ -283,6 +284,11 @@ const Particles<D, Backend>& Simulation<D, Backend>::particles() const {
 template <int D, class Backend>
 void Simulation<D, Backend>::copyParticles(Particles<D>& host) const {
   copyAllParticles(*state_, *state_->distant, host);
+}
+template <int D, class Backend>
+std::uint32_t Simulation<D, Backend>::copyOwnParticles(Particles<D>& host) const {
+  const StepMethod<D, Backend>& method = *state_->method;
+  return treacle::copyOwnParticles<D, Backend>(*state_, method.grid(), method.owners(), *state_->distant, host);
 }
 template <int D, class Backend>
 ParticleNumbers Simulation<D, Backend>::numbers() const {

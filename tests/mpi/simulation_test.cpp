@@ -66,6 +66,7 @@ TEST(SharedSimulation, WallsComeAndGo) {
   shared.copyParticles(whole);
   alone.copyParticles(expected);
   if (job().rank() == 0) expectSameFields(c, whole, expected);
+  expectOwnParticles(c, shared, whole);
 }
 
 TEST(SharedSimulation, SameBitsFromRunToRun) {
@@ -115,6 +116,7 @@ void followDrop(const Vec<3>& gravity, int up, bool walls) {
   Particles<2> whole, expected;
   shared.copyParticles(whole);
   alone.copyParticles(expected);
+  expectOwnParticles(c, shared, whole);
   if (job().rank() > 0) return;
   ASSERT_EQ(whole.fluidCount, expected.fluidCount);
   const std::vector<std::uint32_t> here = placeOfId(whole), there = placeOfId(expected);

@@ -3,6 +3,7 @@
 #include "treacle/core/buffer.hpp"
 #include "treacle/model/case.hpp"
 #include "treacle/model/particles.hpp"
+#include "treacle/search/cell_owners.hpp"
 #include "treacle/step/near_blocks.hpp"
 
 #include <cstddef>
@@ -41,6 +42,8 @@ class DistantWalls {
 
   /// Makes them the last wall particles of `all`.
   void copyTo(Particles<D>& all) const;
+  /// Those in a process's own cells. Errors: std::bad_alloc.
+  Particles<D> inOwnCells(const CellGrid<D>& cells, const CellOwners<D>& owners) const;
 
   std::size_t bytes() const {
     return position_.bytes() + material_.bytes() + body_.bytes() + id_.bytes() + surface_.bytes();

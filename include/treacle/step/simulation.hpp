@@ -105,7 +105,11 @@ class Simulation {
   /// others' `host` is not touched.
   void copyParticles(Particles<D>& host) const;
   ParticleNumbers numbers() const;  // of these
-  double time() const;              // [s]
+  /// Of several processes each gets what it is to show: its own fluid, ghosts with their positions, and walls, of
+  /// which so many as are returned, the first ones, are its own, and the others those in reach. Every particle is
+  /// one process's. Fields that walls do not have are undefined. Collective.
+  std::uint32_t copyOwnParticles(Particles<D>& host) const;
+  double time() const;  // [s]
   std::int64_t step() const;
   std::size_t bytes() const;      // memory held [B]
   std::size_t peakBytes() const;  // largest amount of device memory in use at one time [B]; 0 on the CPU
