@@ -21,9 +21,10 @@ namespace treacle {
 /// and frame), the picture and the summary are still written as far as that is possible.
 class Run {
  public:
-  /// `device`: its name for the user. `processes`: those that share the run, of which this is the first.
-  Run(const Case& c, StartState start, BackendKind backend, RunDirectory directory, const RunOptions& options,
-      std::string device, const Communicator& processes);
+  /// `particles`: those of all processes. `device`: its name for the user. `processes`: those that share the run,
+  /// of which this is the first.
+  Run(const Case& c, StartState start, const ParticleNumbers& particles, BackendKind backend,
+      RunDirectory directory, const RunOptions& options, std::string device, const Communicator& processes);
 
   /// Errors: RunError with the diagnosis, after everything is written; InputError where it could not begin.
   void execute(const std::vector<std::string>& warnings);
@@ -52,6 +53,7 @@ class Run {
   std::string device_;
   const Communicator& processes_;
   StartState start_;
+  ParticleNumbers particles_;  // of all processes
   RunDirectory directory_;
   bool timings_;
   RunLog log_;

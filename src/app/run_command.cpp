@@ -12,7 +12,6 @@
 #include "treacle/io/case_reader.hpp"
 #include "treacle/model/case_error.hpp"
 #include "treacle/model/checks.hpp"
-#include "treacle/model/create.hpp"
 #include "treacle/step/shareable.hpp"
 
 #include <fmt/format.h>
@@ -20,6 +19,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
+#include <numeric>
 #include <optional>
 #include <system_error>
 
@@ -56,17 +56,27 @@ Sharing sharingOf(const Communicator& processes) {
   return {size, (size + hosts - 1) / hosts};
 }
 
+FluidPart partOf(const Communicator& processes) {
+  return {static_cast<std::uint32_t>(processes.rank()), static_cast<std::uint32_t>(processes.size())};
+}
+
+/// Each has a part of the fluid.
+ParticleNumbers numbersOfAll(const Communicator& processes, ParticleNumbers own) {
+  const std::vector<std::uint64_t> fluid = processes.all(own.fluid);
+  own.fluid = std::accumulate(fluid.begin(), fluid.end(), std::uint64_t{0});
+  return own;
+}
+
 bool allHaveOne(const Communicator& processes, bool has) {
   const std::vector<std::uint8_t> all = processes.all(std::uint8_t{has});
   return std::ranges::find(all, 0) == all.end();
 }
 
-/// A run at a process that is not the first.
-void follow(const Case& c, StartState start, BackendKind backend, const std::filesystem::path& directory,
-            const Communicator& processes) {
+/// A run at a process that is not the first. `particles`: of all.
+void follow(const Case& c, StartState start, const ParticleNumbers& particles, BackendKind backend,
+            const std::filesystem::path& directory, const Communicator& processes) {
   std::optional<PieceWriter> pieces;
-  if (writesPieces(c, start.particles.numbers(), processes))
-    pieces.emplace(c, RunDirectory::joined(directory), processes);
+  if (writesPieces(c, particles, processes)) pieces.emplace(c, RunDirectory::joined(directory), processes);
   serveSimulation(c, std::move(start.particles), backend, start.step, start.time, processes,
                   [&](AnySimulation& s, int order, std::int64_t frame) {
                     pieces->answer(s, static_cast<PieceOrder>(order), static_cast<std::size_t>(frame));
@@ -81,20 +91,25 @@ void runCommand(const RunOptions& options, const Communicator& processes) {
   together(processes, [&] { device = deviceFor(options.backend, processes.localRank()); });
   if (!allHaveOne(processes, device.has_value())) device.reset();
   const BackendKind backend = device ? BackendKind::Cuda : BackendKind::Cpu;
-  const Sharing sharing = sharingOf(processes);
+  Sharing sharing = sharingOf(processes);
   Case c;
   std::vector<std::string> warnings;
-  StartState start{AnyParticles(2)};
+  MadeParticles made;
   together(processes, [&] {
     startThreads(options.threads);
     c = caseOf(options);
     if (shared) requireShareable(c, backend);
     requireRoomForParticles(c);
-    start = {createParticles(c, warnings)};
+    made = MadeParticles::of(c, warnings, partOf(processes));
     for (std::string& warning : caseWarnings(c)) warnings.push_back(std::move(warning));
-    if (!options.resume.empty()) start = resumedState(c, options.resume, start.particles);
+  });
+  sharing.all = numbersOfAll(processes, made.particles.numbers());
+  StartState start{AnyParticles(2)};
+  together(processes, [&] {
+    start = options.resume.empty() ? StartState{std::move(made.particles)} : resumedState(c, options.resume, made);
     requireMemory(c, start.particles, device ? &*device : nullptr, sharing);
   });
+  made = {};
   requireSame(processes, fmt::format("{}\n{} {}", caseText(c), start.step, start.time));
   catchInterrupts();
   std::optional<RunDirectory> files;
@@ -104,12 +119,12 @@ void runCommand(const RunOptions& options, const Communicator& processes) {
     requireElsewhere(directory, options.resume);
     files.emplace(RunDirectory::create(directory, options.force));
   });
-  if (processes.rank() > 0) return follow(c, std::move(start), backend, directory, processes);
+  if (processes.rank() > 0) return follow(c, std::move(start), sharing.all, backend, directory, processes);
   const Followers followers(processes);
   if (!device)
     for (std::string& warning : cpuWarnings(c)) warnings.push_back(std::move(warning));
-  Run run(c, std::move(start), backend, std::move(*files), options, device ? deviceText(*device) : processorName(),
-          processes);
+  Run run(c, std::move(start), sharing.all, backend, std::move(*files), options,
+          device ? deviceText(*device) : processorName(), processes);
   run.execute(warnings);
 }
 

@@ -14,6 +14,7 @@
 #include <array>
 #include <cmath>
 #include <fstream>
+#include <span>
 #include <string_view>
 #include <type_traits>
 #include <vector>
@@ -26,9 +27,13 @@ constexpr std::int32_t formatVersion = 6;  // 1: without acceleration and jerk; 
                                            // without method and checksums; 4: without kept eigenvalue; 5: without
                                            // memory of the time steps
 
+/// What a field has values for: all particles; the fluid; the fluid once for each mode.
+enum class Of { All, Fluid, Modes };
+
 /// A field as the file holds it.
 struct FieldInfo {
   const char* name;
+  Of of;
   std::uint64_t count;     // of its values
   std::int32_t since = 1;  // first version of the format with it
   std::uint8_t older = 0;  // what whole numbers count as in older files; others are zero
@@ -43,12 +48,14 @@ void forEachNamedField(P& particles, std::uint64_t modeValues, F&& f) {
          acceleration, jerk, modes, steps, wallSurface] = particles;
   static_cast<void>(steps);  // numbers
   static_cast<void>(wallSurface);
-  f(FieldInfo{"position", count}, position), f(FieldInfo{"velocity", count}, velocity);
-  f(FieldInfo{"pressure", count}, pressure), f(FieldInfo{"number_density", count}, numberDensity);
-  f(FieldInfo{"material", count}, material), f(FieldInfo{"body", count, 3, unknownBody}, body);
-  f(FieldInfo{"id", count}, id);
-  f(FieldInfo{"acceleration", fluidCount, 2}, acceleration), f(FieldInfo{"jerk", fluidCount, 2}, jerk);
-  f(FieldInfo{"modes", modeValues, 3}, modes.vectors);
+  f(FieldInfo{"position", Of::All, count}, position), f(FieldInfo{"velocity", Of::All, count}, velocity);
+  f(FieldInfo{"pressure", Of::All, count}, pressure);
+  f(FieldInfo{"number_density", Of::All, count}, numberDensity);
+  f(FieldInfo{"material", Of::All, count}, material), f(FieldInfo{"body", Of::All, count, 3, unknownBody}, body);
+  f(FieldInfo{"id", Of::All, count}, id);
+  f(FieldInfo{"acceleration", Of::Fluid, fluidCount, 2}, acceleration);
+  f(FieldInfo{"jerk", Of::Fluid, fluidCount, 2}, jerk);
+  f(FieldInfo{"modes", Of::Modes, modeValues, 3}, modes.vectors);
 }
 
 template <class P, class F>
@@ -160,9 +167,31 @@ void writeField(hid_t file, const FieldInfo& info, const Buffer<T>& field) {
   hdf5Checked(H5Dwrite(dataset, layout.memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, field.data()));
 }
 
-/// Nothing is allocated before the file is known to hold as much.
+/// Rows that follow each other in the file.
+struct Rows {
+  std::uint64_t begin, count;
+};
+
+/// The rows of a field that a part of the fluid has, with those of all walls; `fluid`: particles in the file.
+std::vector<Rows> rowsOf(const FieldInfo& info, std::uint32_t fluid, FluidPart part) {
+  const std::uint64_t begin = part.begin(fluid), size = part.size(fluid);
+  std::vector<Rows> rows;
+  if (info.of != Of::Modes) rows.push_back({begin, size});
+  if (info.of == Of::All) rows.push_back({fluid, info.count - fluid});
+  if (info.of == Of::Modes)
+    for (std::uint64_t row = 0; row < info.count; row += fluid) rows.push_back({row + begin, size});
+  return rows;
+}
+
+std::uint64_t total(const std::vector<Rows>& rows) {
+  std::uint64_t sum = 0;
+  for (const Rows& r : rows) sum += r.count;
+  return sum;
+}
+
+/// These rows of a field, one after the other. Nothing is allocated before the file is known to hold as much.
 template <class T>
-void readField(hid_t file, const FieldInfo& info, Buffer<T>& field) {
+void readField(hid_t file, const FieldInfo& info, const std::vector<Rows>& rows, Buffer<T>& field) {
   const Layout layout = layoutOf(field.data());
   const Extents expected(info.count, layout);
   const Hdf5Handle dataset(H5Dopen2(file, info.name, H5P_DEFAULT), H5Dclose);
@@ -176,8 +205,17 @@ void readField(hid_t file, const FieldInfo& info, Buffer<T>& field) {
     throw Hdf5Error(fmt::format("the field {} has an unexpected type", info.name));
   if (H5Dget_storage_size(dataset) < info.count * layout.components * H5Tget_size(type))
     throw Hdf5Error(fmt::format("the file ends before the {} values of the field {} do", info.count, info.name));
-  field.resize(info.count);
-  hdf5Checked(H5Dread(dataset, layout.memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, field.data()));
+  field.resize(total(rows));
+  T* to = field.data();
+  for (const Rows& r : rows) {
+    if (r.count == 0) continue;
+    const Extents some(r.count, layout);
+    const std::array<hsize_t, 2> start{r.begin, 0};
+    const Hdf5Handle memory(H5Screate_simple(some.rank, some.size.data(), nullptr), H5Sclose);
+    hdf5Checked(H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, some.size.data(), nullptr));
+    hdf5Checked(H5Dread(dataset, layout.memory, memory, space, H5P_DEFAULT, to));
+    to += r.count;
+  }
 }
 
 bool isFinite(double x) { return std::isfinite(x); }
@@ -186,21 +224,25 @@ bool isFinite(const Vec<D, T>& x) {
   return std::all_of(x.v, x.v + D, [](T component) { return std::isfinite(component); });
 }
 
-/// What no state of a simulation has, whatever its case. Errors: Hdf5Error.
+/// Errors: Hdf5Error.
 template <int D>
-void requireSound(const Particles<D>& particles) {
+void requireFinite(const Particles<D>& particles) {
   forEachNamedField(particles, [&]<class T>(const FieldInfo& info, const Buffer<T>& field) {
     if constexpr (!std::is_integral_v<T>)
       for (std::size_t k = 0; k < field.size(); ++k)
         if (!isFinite(field[k]))
           throw Hdf5Error(fmt::format("value {} of the field {} is not finite", k, info.name));
   });
-  std::vector<bool> taken(particles.count);
-  for (std::uint32_t i = 0; i < particles.count; ++i) {
-    const std::uint32_t id = particles.id[i];
-    if (id >= particles.count)
-      throw Hdf5Error(fmt::format("a particle has id {}, expected less than {}", id, particles.count));
-    if ((id < particles.fluidCount) != (i < particles.fluidCount))
+}
+
+/// `ids`: of all particles, `fluid` of which come first. Errors: Hdf5Error.
+void requireEachOnce(std::span<const std::uint32_t> ids, std::uint32_t fluid) {
+  std::vector<bool> taken(ids.size());
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    const std::uint32_t id = ids[i];
+    if (id >= ids.size())
+      throw Hdf5Error(fmt::format("a particle has id {}, expected less than {}", id, ids.size()));
+    if ((id < fluid) != (i < fluid))
       throw Hdf5Error(fmt::format("particle {} is among those of the other kind", id));
     if (taken[id]) throw Hdf5Error(fmt::format("two particles have the id {}", id));
     taken[id] = true;
@@ -308,7 +350,7 @@ void requireReadable(const std::filesystem::path& path) {
 
 /// Errors: Hdf5Error.
 template <int D>
-Checkpoint<D> readContent(const std::filesystem::path& path, bool sealed) {
+Checkpoint<D> readContent(const std::filesystem::path& path, bool sealed, FluidPart part) {
   const Hdf5Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   const std::int32_t version = requireFormat(file, D);
   Checkpoint<D> checkpoint;
@@ -320,15 +362,23 @@ Checkpoint<D> readContent(const std::filesystem::path& path, bool sealed) {
   if (version >= 3) modes = readModeNumbers(file, particles.modes.age);
   if (version >= 5) particles.modes.pressure = readEigenvalue(file);
   if (version >= 6) particles.steps = readSteps(file);
+  const std::uint32_t fluid = checkpoint.fluidOfAll = particles.fluidCount, walls = particles.wallCount();
   const auto read = [&]<class T>(const FieldInfo& info, Buffer<T>& field) {
-    if (version >= info.since) return readField(file, info, field);
-    field.resize(info.count);
+    const std::vector<Rows> rows = rowsOf(info, fluid, part);
+    if (version >= info.since) return readField(file, info, rows, field);
+    field.resize(total(rows));
     T older{};
     if constexpr (std::is_integral_v<T>) older = static_cast<T>(info.older);
     std::fill(field.begin(), field.end(), older);
   };
-  forEachNamedField(particles, std::uint64_t{particles.fluidCount} * modes, read);
-  requireSound(particles);
+  forEachNamedField(particles, std::uint64_t{fluid} * modes, read);
+  requireFinite(particles);
+  Buffer<std::uint32_t> ids;  // parts do not see whether others have the same
+  const FieldInfo idField{"id", Of::All, std::uint64_t{fluid} + walls};
+  readField(file, idField, rowsOf(idField, fluid, {}), ids);
+  requireEachOnce(ids, fluid);
+  particles.fluidCount = part.size(fluid);
+  particles.count = particles.fluidCount + walls;
   return checkpoint;
 }
 
@@ -339,7 +389,8 @@ void writeCheckpoint(const std::filesystem::path& path, const Particles<D>& part
                      double time, MethodKind method) {
   const Hdf5Silence silence;
   try {
-    requireSound(particles);  // what cannot be read back must not replace what can
+    requireFinite(particles);  // what cannot be read back must not replace what can
+    requireEachOnce(particles.id, particles.fluidCount);
     // HDF5 makes the file in memory: it cannot close a file that a full disk keeps it from finishing.
     std::size_t bytes = 1 << 16;
     forEachNamedField(particles, [&](const FieldInfo&, const auto& field) { bytes += field.bytes(); });
@@ -365,7 +416,7 @@ void writeCheckpoint(const std::filesystem::path& path, const Particles<D>& part
 }
 
 template <int D>
-Checkpoint<D> readCheckpoint(const std::filesystem::path& path) {
+Checkpoint<D> readCheckpoint(const std::filesystem::path& path, FluidPart part) {
   const Hdf5Silence silence;
   requireReadable(path);
   // HDF5 trusts what it reads, and a damaged file can end the program: what has a checksum is looked at before,
@@ -375,9 +426,9 @@ Checkpoint<D> readCheckpoint(const std::filesystem::path& path) {
     return InputError(fmt::format("{}: no usable checkpoint: {}", path.string(), why));
   };
   if (sealed && !*sealed) throw refuse("damaged, its checksum is another one");
-  if (!sealed && !survives([&] { readContent<D>(path, false); })) throw refuse("damaged");
+  if (!sealed && !survives([&] { readContent<D>(path, false, part); })) throw refuse("damaged");
   try {
-    return readContent<D>(path, sealed.has_value());
+    return readContent<D>(path, sealed.has_value(), part);
   } catch (const Hdf5Error& e) {
     throw refuse(e.what());
   }
@@ -387,7 +438,7 @@ template void writeCheckpoint<2>(const std::filesystem::path&, const Particles<2
                                  MethodKind);
 template void writeCheckpoint<3>(const std::filesystem::path&, const Particles<3>&, std::int64_t, double,
                                  MethodKind);
-template Checkpoint<2> readCheckpoint<2>(const std::filesystem::path&);
-template Checkpoint<3> readCheckpoint<3>(const std::filesystem::path&);
+template Checkpoint<2> readCheckpoint<2>(const std::filesystem::path&, FluidPart);
+template Checkpoint<3> readCheckpoint<3>(const std::filesystem::path&, FluidPart);
 
 }  // namespace treacle

@@ -31,9 +31,11 @@ double largestSpeed(const Case& c, const Particles<D>& p, std::span<const std::u
 }  // namespace
 
 template <int D>
-DistantWalls<D>::DistantWalls(const Case& c, const CellGrid<D>& cells, Particles<D>& particles, double time)
+DistantWalls<D>::DistantWalls(const Case& c, const CellGrid<D>& cells, Particles<D>& particles, double time,
+                              const Communicator* processes)
     : near_(c, cells), stored_(near_.count()) {
   near_.add(particles);
+  if (processes) near_.unite(*processes);
   wallSpeed_ = largestSpeed<D>(c, particles, near_.movingWalls(particles), time);
   const Buffer<std::uint32_t> far =
       selected(particles.fluidCount, particles.count, [&](std::uint32_t i) { return near_.isFar(particles, i); });

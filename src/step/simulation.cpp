@@ -74,12 +74,12 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
       requireShareable(theCase, std::is_same_v<Backend, Cpu> ? BackendKind::Cpu : BackendKind::Cuda);
       this->share(*processes);
     }
-    this->fluidOfAll = state.fluidCount;
+    this->fluidOfAll = static_cast<std::uint32_t>(sumOverProcesses(context, state.fluidCount));
     wallsMove = someWallMoves(theCase, state);
-    const double mass = fluidMass(theCase, state);
+    const double mass = sumOverProcesses(context, fluidMass(theCase, state));
     method = theCase.method.kind == MethodKind::Isph ? makeIsphStep(static_cast<Flow&>(*this))
                                                      : makeMphStep(static_cast<Flow&>(*this));
-    distant.emplace(theCase, method->grid(), state, time);
+    distant.emplace(theCase, method->grid(), state, time, context.communicator);
     toBackend(context, std::move(state), particles);
     if (step == 0) forEachFluidFieldOf([&](auto& field) { clearValues(context, field.span()); }, particles);
     method->sortParticles();

@@ -32,6 +32,14 @@ Particles<D> made(const Case& c) {
   return createParticles<D>(c, notes);
 }
 
+/// What this process begins with.
+template <int D>
+Particles<D> partOf(const Case& c) {
+  std::vector<std::string> notes;
+  return createParticles<D>(c, notes, nullptr,
+                            {static_cast<std::uint32_t>(job().rank()), static_cast<std::uint32_t>(job().size())});
+}
+
 /// Of two sums or coordinates that may be zero; `scale`: what they are made of.
 inline void expectNear(double a, double b, double scale, const char* what, std::int64_t step) {
   if (a == b) return;  // infinities, too
@@ -160,7 +168,7 @@ template <int D, class Backend = Cpu>
 void compare(const Settings& settings) {
   SCOPED_TRACE(settings.file);
   const Case c = settings.read();
-  Simulation<D, Backend> shared(c, made<D>(c), 0, 0, &job());
+  Simulation<D, Backend> shared(c, partOf<D>(c), 0, 0, &job());
   Simulation<D, Backend> alone(c, made<D>(c));
   for (int k = 0; k < settings.steps; ++k) {
     const StepReport a = shared.advance(), b = alone.advance();

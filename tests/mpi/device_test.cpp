@@ -69,7 +69,7 @@ TEST_F(SharedOnDevices, IsphWithoutSurface) {
 
 TEST_F(SharedOnDevices, SameBitsFromRunToRun) {
   const Case c = Settings{"dam-break-2d.toml", 0, {}}.read();
-  Simulation<2, Cuda> one(c, made<2>(c), 0, 0, &job()), other(c, made<2>(c), 0, 0, &job());
+  Simulation<2, Cuda> one(c, partOf<2>(c), 0, 0, &job()), other(c, partOf<2>(c), 0, 0, &job());
   for (int k = 0; k < 10; ++k) {
     const StepReport a = one.advance(), b = other.advance();
     EXPECT_EQ(a.iterations, b.iterations);
@@ -81,8 +81,8 @@ TEST_F(SharedOnDevices, SameBitsFromRunToRun) {
 /// The device's way against the CPU's, each shared by all processes.
 TEST_F(SharedOnDevices, AsOnTheCpu) {
   const Case c = Settings{"dam-break-2d.toml", 0, {"solver.tolerance=1e-16"}}.read();
-  Simulation<2, Cuda> device(c, made<2>(c), 0, 0, &job());
-  Simulation<2> host(c, made<2>(c), 0, 0, &job());
+  Simulation<2, Cuda> device(c, partOf<2>(c), 0, 0, &job());
+  Simulation<2> host(c, partOf<2>(c), 0, 0, &job());
   for (int k = 0; k < 10; ++k) expectSame(c, device.advance(), host.advance(), false);
 }
 
@@ -90,7 +90,7 @@ TEST_F(SharedOnDevices, AsOnTheCpu) {
 TEST_F(SharedOnDevices, AgreeOnAParticleThatLeaves) {
   Case c = Settings{"dam-break-2d.toml", 0, {"domain.periodic=false", "watch.courant=0"}}.read();
   c.gravity = {1e5, 0, 0};
-  Simulation<2, Cuda> shared(c, made<2>(c), 0, 0, &job());
+  Simulation<2, Cuda> shared(c, partOf<2>(c), 0, 0, &job());
   std::string error;
   try {
     for (int k = 0; k < 50; ++k) shared.advance();

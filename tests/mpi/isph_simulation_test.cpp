@@ -38,7 +38,7 @@ TEST(SharedIsph, ShiftingWithoutSurface) {
 TEST(SharedIsph, WallsComeAndGo) {
   Case c = passingBody(2, MethodKind::Isph);
   c.solver.tolerance = 1e-18;
-  Simulation<2> shared(c, made<2>(c), 0, 0, &job()), alone(c, made<2>(c));
+  Simulation<2> shared(c, partOf<2>(c), 0, 0, &job()), alone(c, made<2>(c));
   const std::uint32_t start = shared.particles().wallCount();
   bool changed = false;
   for (int k = 0; k < 20; ++k) {
@@ -52,7 +52,7 @@ TEST(SharedIsph, WallsComeAndGo) {
 
 TEST(SharedIsph, SameBitsFromRunToRun) {
   const Case c = Settings{"isph-dam-break-2d.toml", 0, {}}.read();
-  Simulation<2> one(c, made<2>(c), 0, 0, &job()), other(c, made<2>(c), 0, 0, &job());
+  Simulation<2> one(c, partOf<2>(c), 0, 0, &job()), other(c, partOf<2>(c), 0, 0, &job());
   for (int k = 0; k < 10; ++k) {
     const StepReport a = one.advance(), b = other.advance();
     EXPECT_EQ(a.iterations, b.iterations);
@@ -66,7 +66,7 @@ TEST(SharedIsph, SameBitsFromRunToRun) {
 
 TEST(SharedIsph, FallsBack) {
   const Case c = Settings{"isph-dam-break-2d.toml", 0, {"solver.hats.iteration_bound=2"}}.read();
-  Simulation<2> shared(c, made<2>(c), 0, 0, &job());
+  Simulation<2> shared(c, partOf<2>(c), 0, 0, &job());
   const StepReport report = shared.advance();
   EXPECT_EQ(report.fallbacks, 2);
   EXPECT_LE(report.residual, c.solver.tolerance);
@@ -85,7 +85,7 @@ TEST(SharedIsph, ProcessesWithoutFluid) {
   drop.radius = 1.5 * c.spacing;
   drop.center = {grid.origin[0] + 50 * grid.edge[0], grid.origin[1] + 80 * grid.edge[1], 0};
   c.gravity = {-200, -200, 0};
-  Simulation<2> shared(c, made<2>(c), 0, 0, &job()), alone(c, made<2>(c));
+  Simulation<2> shared(c, partOf<2>(c), 0, 0, &job()), alone(c, made<2>(c));
   bool someHadNone = false;
   for (int k = 0; k < 40; ++k) {
     const StepReport a = shared.advance(), b = alone.advance();
@@ -98,7 +98,7 @@ TEST(SharedIsph, ProcessesWithoutFluid) {
 TEST(SharedIsph, RefusesCellMultigrid) {
   if (job().size() == 1) return;
   const Case c = Settings{"isph-dam-break-2d.toml", 0, {"solver.preconditioner=cell-multigrid"}}.read();
-  EXPECT_THROW(Simulation<2>(c, made<2>(c), 0, 0, &job()), InputError);
+  EXPECT_THROW(Simulation<2>(c, partOf<2>(c), 0, 0, &job()), InputError);
 }
 
 }  // namespace

@@ -51,7 +51,7 @@ TEST(SharedSimulation, WallsComeAndGo) {
   Case c = passingBody(2, MethodKind::MphI);
   c.solver.tolerance = 1e-22;
   c.solver.deflation = 0;
-  Simulation<2> shared(c, made<2>(c), 0, 0, &job()), alone(c, made<2>(c));
+  Simulation<2> shared(c, partOf<2>(c), 0, 0, &job()), alone(c, made<2>(c));
   const std::uint32_t start = shared.particles().wallCount();
   bool changed = false;
   for (int k = 0; k < 20; ++k) {
@@ -71,7 +71,7 @@ TEST(SharedSimulation, WallsComeAndGo) {
 
 TEST(SharedSimulation, SameBitsFromRunToRun) {
   const Case c = Settings{"dam-break-2d.toml", 0, {}}.read();
-  Simulation<2> one(c, made<2>(c), 0, 0, &job()), other(c, made<2>(c), 0, 0, &job());
+  Simulation<2> one(c, partOf<2>(c), 0, 0, &job()), other(c, partOf<2>(c), 0, 0, &job());
   for (int k = 0; k < 10; ++k) {
     const StepReport a = one.advance(), b = other.advance();
     EXPECT_EQ(a.iterations, b.iterations);
@@ -86,7 +86,7 @@ TEST(SharedSimulation, SameBitsFromRunToRun) {
 /// A way to solve that gives up is followed by the next one at all processes, to the last resort.
 TEST(SharedSimulation, FallsBack) {
   const Case c = Settings{"dam-break-2d.toml", 0, {"solver.projected.iteration_bound=2"}}.read();
-  Simulation<2> shared(c, made<2>(c), 0, 0, &job());
+  Simulation<2> shared(c, partOf<2>(c), 0, 0, &job());
   const StepReport report = shared.advance();
   EXPECT_EQ(report.fallbacks, 2);
   EXPECT_LE(report.residual, c.solver.tolerance);
@@ -103,7 +103,7 @@ void followDrop(const Vec<3>& gravity, int up, bool walls) {
   drop.radius = 2.2 * c.spacing;
   drop.center = {grid.origin[0] + 4 * grid.edge[0], grid.origin[1] + up * grid.edge[1], 0};
   c.gravity = gravity;
-  Simulation<2> shared(c, made<2>(c), 0, 0, &job()), alone(c, made<2>(c));
+  Simulation<2> shared(c, partOf<2>(c), 0, 0, &job()), alone(c, made<2>(c));
   bool someHadNone = false;
   for (int k = 0; k < 25; ++k) {
     const StepReport a = shared.advance(), b = alone.advance();
@@ -131,7 +131,7 @@ TEST(SharedSimulation, ProcessesWithWallsAlone) { followDrop({0, -20, 0}, 3, tru
 TEST(SharedSimulation, AgreesOnAParticleThatLeaves) {
   Case c = Settings{"dam-break-2d.toml", 0, {"domain.periodic=false", "watch.courant=0"}}.read();
   c.gravity = {1e5, 0, 0};
-  Simulation<2> shared(c, made<2>(c), 0, 0, &job());
+  Simulation<2> shared(c, partOf<2>(c), 0, 0, &job());
   std::string error;
   try {
     for (int k = 0; k < 50; ++k) shared.advance();
@@ -150,7 +150,7 @@ TEST(SharedSimulation, RefusesWhatCannotBeShared) {
   if (job().size() == 1) return;
   for (const char* key : {"solver.preconditioner=bucket-multigrid", "solver.operator=assembled"}) {
     const Case c = Settings{"dam-break-2d.toml", 0, {key}}.read();
-    EXPECT_THROW(Simulation<2>(c, made<2>(c), 0, 0, &job()), InputError) << key;
+    EXPECT_THROW(Simulation<2>(c, partOf<2>(c), 0, 0, &job()), InputError) << key;
   }
 }
 

@@ -78,8 +78,8 @@ class Followers {
   const Communicator& processes_;
 };
 
-/// At every other process: takes part in the simulation that the first one makes with the same arguments. Returns
-/// when its Followers are gone.
+/// At every other process: takes part in the simulation that the first one makes with the same arguments and
+/// another part of the fluid. Returns when its Followers are gone.
 void serveSimulation(const Case& c, AnyParticles particles, BackendKind backend, std::int64_t step, double time,
                      const Communicator& processes, const AnySimulation::Duty& duty = {});
 

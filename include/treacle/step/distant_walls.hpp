@@ -21,8 +21,10 @@ namespace treacle {
 template <int D>
 class DistantWalls {
  public:
-  /// Takes them out of the particles, of a state at `time` [s]. Errors: std::bad_alloc.
-  DistantWalls(const Case& c, const CellGrid<D>& cells, Particles<D>& particles, double time);
+  /// Takes them out of the particles, of a state at `time` [s]. `processes`: those that have parts of the fluid,
+  /// null where all of it is here; then collective. Errors: std::bad_alloc.
+  DistantWalls(const Case& c, const CellGrid<D>& cells, Particles<D>& particles, double time,
+               const Communicator* processes = nullptr);
 
   /// How many the simulation does without at present.
   std::uint32_t count() const { return count_; }
