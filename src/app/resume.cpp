@@ -49,11 +49,11 @@ Kinds kindsOf(const Case& c, const MadeParticles& made) {
 template <int D>
 void requireFit(const Case& c, const std::filesystem::path& file, const Checkpoint<D>& state, const Kinds& made) {
   const Particles<D>& p = state.particles;
-  if (state.fluidOfAll != made.fluid || p.wallCount() != made.walls)
+  if (state.fluidOfAll != made.fluid || state.wallsOfAll != made.walls)
     refuse(file,
            fmt::format("{} fluid and {} wall particles, but the case has {} and {}; expected the case and the "
                        "resolution that were run",
-                       state.fluidOfAll, p.wallCount(), made.fluid, made.walls));
+                       state.fluidOfAll, state.wallsOfAll, made.fluid, made.walls));
   for (std::uint32_t i = 0; i < p.count; ++i) {
     if (p.material[i] >= c.materials.size())
       refuse(file, fmt::format("particle {} has material {}, but the case has only {}", p.id[i], p.material[i],
@@ -90,12 +90,12 @@ void setBodies(const Case& c, const std::filesystem::path& file, const MadeParti
 }
 
 /// Surfaces of walls follow from the case; a file does not have them. The ids of what the case makes are its
-/// places. `fluid`: particles of the case.
+/// places. `first`: the id of the first wall that was made.
 template <int D>
-void setWallSurfaces(const Particles<D>& made, std::uint32_t fluid, Particles<D>& p) {
+void setWallSurfaces(const Particles<D>& made, std::uint32_t first, Particles<D>& p) {
   p.wallSurface.resize(made.wallSurface.size());
   for (std::size_t k = 0; k < p.wallSurface.size(); ++k)
-    p.wallSurface[k] = made.wallSurface[p.id[p.fluidCount + k] - fluid];
+    p.wallSurface[k] = made.wallSurface[p.id[p.fluidCount + k] - first];
 }
 
 std::int64_t stepAt(double time, const TimeSettings& settings, const std::filesystem::path& file) {
@@ -110,7 +110,7 @@ std::int64_t stepAt(double time, const TimeSettings& settings, const std::filesy
 
 }  // namespace
 
-MadeParticles MadeParticles::of(const Case& c, std::vector<std::string>& notes, FluidPart part) {
+MadeParticles MadeParticles::of(const Case& c, std::vector<std::string>& notes, ParticlePart part) {
   MadeParticles made;
   made.part = part;
   made.particles = createParticles(c, notes, &made.ofBodies, part);
@@ -124,7 +124,7 @@ StartState fittingState(const Case& c, const std::filesystem::path& file, const 
     requireMethod(c, file, state.method);
     requireFit(c, file, state, kinds);
     setBodies(c, file, made, state.particles);
-    setWallSurfaces(created, kinds.fluid, state.particles);
+    setWallSurfaces(created, kinds.fluid + made.part.begin(kinds.walls), state.particles);
     return {std::move(state.particles), state.step, state.time};
   });
   if (!c.time.stepsVary()) start.step = stepAt(start.time, c.time, file);

@@ -17,10 +17,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <filesystem>
-#include <numeric>
 #include <optional>
+#include <span>
 #include <system_error>
 
 namespace treacle {
@@ -56,15 +57,15 @@ Sharing sharingOf(const Communicator& processes) {
   return {size, (size + hosts - 1) / hosts};
 }
 
-FluidPart partOf(const Communicator& processes) {
+ParticlePart partOf(const Communicator& processes) {
   return {static_cast<std::uint32_t>(processes.rank()), static_cast<std::uint32_t>(processes.size())};
 }
 
-/// Each has a part of the fluid.
-ParticleNumbers numbersOfAll(const Communicator& processes, ParticleNumbers own) {
-  const std::vector<std::uint64_t> fluid = processes.all(own.fluid);
-  own.fluid = std::accumulate(fluid.begin(), fluid.end(), std::uint64_t{0});
-  return own;
+/// Each has a part of them.
+ParticleNumbers numbersOfAll(const Communicator& processes, const ParticleNumbers& own) {
+  std::array numbers{own.fluid, own.wall};
+  processes.sum(std::span<std::uint64_t>(numbers));
+  return {numbers[0], numbers[1]};
 }
 
 bool allHaveOne(const Communicator& processes, bool has) {

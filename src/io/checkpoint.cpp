@@ -17,6 +17,7 @@
 #include <span>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace treacle {
@@ -172,50 +173,74 @@ struct Rows {
   std::uint64_t begin, count;
 };
 
-/// The rows of a field that a part of the fluid has, with those of all walls; `fluid`: particles in the file.
-std::vector<Rows> rowsOf(const FieldInfo& info, std::uint32_t fluid, FluidPart part) {
-  const std::uint64_t begin = part.begin(fluid), size = part.size(fluid);
-  std::vector<Rows> rows;
-  if (info.of != Of::Modes) rows.push_back({begin, size});
-  if (info.of == Of::All) rows.push_back({fluid, info.count - fluid});
-  if (info.of == Of::Modes)
+/// What is read of a file.
+struct Selection {
+  ParticlePart part;
+  std::uint32_t fluid = 0, walls = 0;      // particles in the file
+  std::vector<std::uint32_t> chosenWalls;  // of a part, from the first wall on, in the order of their ids
+
+  /// The rows of the fluid that a field has.
+  std::vector<Rows> fluidRows(const FieldInfo& info) const {
+    const std::uint64_t begin = part.begin(fluid), size = part.size(fluid);
+    if (info.of != Of::Modes) return {{begin, size}};
+    std::vector<Rows> rows;
     for (std::uint64_t row = 0; row < info.count; row += fluid) rows.push_back({row + begin, size});
-  return rows;
-}
-
-std::uint64_t total(const std::vector<Rows>& rows) {
-  std::uint64_t sum = 0;
-  for (const Rows& r : rows) sum += r.count;
-  return sum;
-}
-
-/// These rows of a field, one after the other. Nothing is allocated before the file is known to hold as much.
-template <class T>
-void readField(hid_t file, const FieldInfo& info, const std::vector<Rows>& rows, Buffer<T>& field) {
-  const Layout layout = layoutOf(field.data());
-  const Extents expected(info.count, layout);
-  const Hdf5Handle dataset(H5Dopen2(file, info.name, H5P_DEFAULT), H5Dclose);
-  const Hdf5Handle space(H5Dget_space(dataset), H5Sclose), type(H5Dget_type(dataset), H5Tclose);
-  Extents found = expected;
-  if (H5Sget_simple_extent_ndims(space) != expected.rank ||
-      H5Sget_simple_extent_dims(space, found.size.data(), nullptr) < 0 ||
-      !std::equal(found.size.begin(), found.size.begin() + expected.rank, expected.size.begin()))
-    throw Hdf5Error(fmt::format("the field {} does not have {} values", info.name, info.count));
-  if (H5Tget_class(type) != H5Tget_class(layout.memory))
-    throw Hdf5Error(fmt::format("the field {} has an unexpected type", info.name));
-  if (H5Dget_storage_size(dataset) < info.count * layout.components * H5Tget_size(type))
-    throw Hdf5Error(fmt::format("the file ends before the {} values of the field {} do", info.count, info.name));
-  field.resize(total(rows));
-  T* to = field.data();
-  for (const Rows& r : rows) {
-    if (r.count == 0) continue;
-    const Extents some(r.count, layout);
-    const std::array<hsize_t, 2> start{r.begin, 0};
-    const Hdf5Handle memory(H5Screate_simple(some.rank, some.size.data(), nullptr), H5Sclose);
-    hdf5Checked(H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, some.size.data(), nullptr));
-    hdf5Checked(H5Dread(dataset, layout.memory, memory, space, H5P_DEFAULT, to));
-    to += r.count;
+    return rows;
   }
+  std::uint64_t count(const FieldInfo& info) const {
+    const std::uint64_t times = info.of == Of::Modes && fluid > 0 ? info.count / fluid : 1;
+    return times * part.size(fluid) + (info.of == Of::All ? part.size(walls) : 0);
+  }
+};
+
+/// A field of the file, which is known to hold its values. Errors: Hdf5Error.
+template <class T>
+class FieldReader {
+ public:
+  FieldReader(hid_t file, const FieldInfo& info)
+      : layout_(layoutOf(static_cast<const T*>(nullptr))),
+        dataset_(H5Dopen2(file, info.name, H5P_DEFAULT), H5Dclose),
+        space_(H5Dget_space(dataset_), H5Sclose) {
+    const Extents expected(info.count, layout_);
+    const Hdf5Handle type(H5Dget_type(dataset_), H5Tclose);
+    Extents found = expected;
+    if (H5Sget_simple_extent_ndims(space_) != expected.rank ||
+        H5Sget_simple_extent_dims(space_, found.size.data(), nullptr) < 0 ||
+        !std::equal(found.size.begin(), found.size.begin() + expected.rank, expected.size.begin()))
+      throw Hdf5Error(fmt::format("the field {} does not have {} values", info.name, info.count));
+    if (H5Tget_class(type) != H5Tget_class(layout_.memory))
+      throw Hdf5Error(fmt::format("the field {} has an unexpected type", info.name));
+    if (H5Dget_storage_size(dataset_) < info.count * layout_.components * H5Tget_size(type))
+      throw Hdf5Error(fmt::format("the file ends before the {} values of the field {} do", info.count, info.name));
+  }
+
+  void read(const Rows& rows, T* to) const {
+    if (rows.count == 0) return;
+    const Extents some(rows.count, layout_);
+    const std::array<hsize_t, 2> start{rows.begin, 0};
+    const Hdf5Handle memory(H5Screate_simple(some.rank, some.size.data(), nullptr), H5Sclose);
+    hdf5Checked(H5Sselect_hyperslab(space_, H5S_SELECT_SET, start.data(), nullptr, some.size.data(), nullptr));
+    hdf5Checked(H5Dread(dataset_, layout_.memory, memory, space_, H5P_DEFAULT, to));
+  }
+
+ private:
+  Layout layout_;
+  Hdf5Handle dataset_, space_;
+};
+
+/// What is selected of a field. Nothing is allocated before the file is known to hold as much.
+template <class T>
+void readField(hid_t file, const FieldInfo& info, const Selection& selection, Buffer<T>& field) {
+  const FieldReader<T> reader(file, info);
+  field.resize(selection.count(info));
+  T* to = field.data();
+  for (const Rows& rows : selection.fluidRows(info)) reader.read(rows, std::exchange(to, to + rows.count));
+  if (info.of != Of::All) return;
+  const Rows walls{selection.fluid, selection.walls};
+  if (selection.part.isAll()) return reader.read(walls, to);
+  Buffer<T> all(selection.walls);  // of one field they may stand anywhere
+  reader.read(walls, all.data());
+  for (const std::uint32_t k : selection.chosenWalls) *to++ = all[k];
 }
 
 bool isFinite(double x) { return std::isfinite(x); }
@@ -348,9 +373,25 @@ void requireReadable(const std::filesystem::path& path) {
     throw InputError(fmt::format("{}: not a treacle checkpoint: not an HDF5 file", path.string()));
 }
 
+/// The walls of a part; it also looks at all ids, since a part does not see whether others have the same. Errors:
+/// Hdf5Error.
+void chooseWalls(hid_t file, Selection& selection) {
+  const std::uint32_t fluid = selection.fluid, walls = selection.walls;
+  const FieldInfo info{"id", Of::All, std::uint64_t{fluid} + walls};
+  const FieldReader<std::uint32_t> reader(file, info);
+  Buffer<std::uint32_t> ids(info.count);
+  reader.read({0, info.count}, ids.data());
+  requireEachOnce(ids, fluid);
+  const std::uint32_t first = fluid + selection.part.begin(walls);
+  selection.chosenWalls.resize(selection.part.size(walls));
+  for (std::uint32_t k = 0; k < walls; ++k)
+    if (const std::uint32_t place = ids[fluid + k] - first; place < selection.chosenWalls.size())
+      selection.chosenWalls[place] = k;
+}
+
 /// Errors: Hdf5Error.
 template <int D>
-Checkpoint<D> readContent(const std::filesystem::path& path, bool sealed, FluidPart part) {
+Checkpoint<D> readContent(const std::filesystem::path& path, bool sealed, ParticlePart part) {
   const Hdf5Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   const std::int32_t version = requireFormat(file, D);
   Checkpoint<D> checkpoint;
@@ -362,23 +403,21 @@ Checkpoint<D> readContent(const std::filesystem::path& path, bool sealed, FluidP
   if (version >= 3) modes = readModeNumbers(file, particles.modes.age);
   if (version >= 5) particles.modes.pressure = readEigenvalue(file);
   if (version >= 6) particles.steps = readSteps(file);
-  const std::uint32_t fluid = checkpoint.fluidOfAll = particles.fluidCount, walls = particles.wallCount();
-  const auto read = [&]<class T>(const FieldInfo& info, Buffer<T>& field) {
-    const std::vector<Rows> rows = rowsOf(info, fluid, part);
-    if (version >= info.since) return readField(file, info, rows, field);
-    field.resize(total(rows));
-    T older{};
-    if constexpr (std::is_integral_v<T>) older = static_cast<T>(info.older);
-    std::fill(field.begin(), field.end(), older);
-  };
-  forEachNamedField(particles, std::uint64_t{fluid} * modes, read);
+  Selection selection{part, particles.fluidCount, particles.wallCount(), {}};
+  checkpoint.fluidOfAll = selection.fluid, checkpoint.wallsOfAll = selection.walls;
+  if (!part.isAll()) chooseWalls(file, selection);
+  forEachNamedField(particles, std::uint64_t{selection.fluid} * modes,
+                    [&]<class T>(const FieldInfo& info, Buffer<T>& field) {
+                      if (version >= info.since) return readField(file, info, selection, field);
+                      field.resize(selection.count(info));
+                      T older{};
+                      if constexpr (std::is_integral_v<T>) older = static_cast<T>(info.older);
+                      std::fill(field.begin(), field.end(), older);
+                    });
   requireFinite(particles);
-  Buffer<std::uint32_t> ids;  // parts do not see whether others have the same
-  const FieldInfo idField{"id", Of::All, std::uint64_t{fluid} + walls};
-  readField(file, idField, rowsOf(idField, fluid, {}), ids);
-  requireEachOnce(ids, fluid);
-  particles.fluidCount = part.size(fluid);
-  particles.count = particles.fluidCount + walls;
+  if (part.isAll()) requireEachOnce(particles.id, particles.fluidCount);
+  particles.fluidCount = part.size(selection.fluid);
+  particles.count = particles.fluidCount + part.size(selection.walls);
   return checkpoint;
 }
 
@@ -416,7 +455,7 @@ void writeCheckpoint(const std::filesystem::path& path, const Particles<D>& part
 }
 
 template <int D>
-Checkpoint<D> readCheckpoint(const std::filesystem::path& path, FluidPart part) {
+Checkpoint<D> readCheckpoint(const std::filesystem::path& path, ParticlePart part) {
   const Hdf5Silence silence;
   requireReadable(path);
   // HDF5 trusts what it reads, and a damaged file can end the program: what has a checksum is looked at before,
@@ -438,7 +477,7 @@ template void writeCheckpoint<2>(const std::filesystem::path&, const Particles<2
                                  MethodKind);
 template void writeCheckpoint<3>(const std::filesystem::path&, const Particles<3>&, std::int64_t, double,
                                  MethodKind);
-template Checkpoint<2> readCheckpoint<2>(const std::filesystem::path&, FluidPart);
-template Checkpoint<3> readCheckpoint<3>(const std::filesystem::path&, FluidPart);
+template Checkpoint<2> readCheckpoint<2>(const std::filesystem::path&, ParticlePart);
+template Checkpoint<3> readCheckpoint<3>(const std::filesystem::path&, ParticlePart);
 
 }  // namespace treacle

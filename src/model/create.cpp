@@ -164,7 +164,7 @@ void append(const Case& c, const std::vector<Filled<D>>& filled, std::uint32_t f
 
 template <int D>
 Particles<D> createParticles(const Case& c, std::vector<std::string>& notes,
-                             std::vector<std::uint32_t>* bodyCounts, FluidPart part) {
+                             std::vector<std::uint32_t>* bodyCounts, ParticlePart part) {
   auto fluid = fillBodies<D>(c, BodyKind::Fluid, notes);
   auto walls = fillBodies<D>(c, BodyKind::Wall, notes);
   if (total(fluid) == 0) throw InputError("the case has no fluid: no body of type \"fluid\" holds a particle");
@@ -188,15 +188,17 @@ Particles<D> createParticles(const Case& c, std::vector<std::string>& notes,
 
   const auto fluidCount = static_cast<std::uint32_t>(total(fluid)),
              wallCount = static_cast<std::uint32_t>(total(walls));
+  const std::uint32_t n = part.size(fluidCount), count = part.size(wallCount);
   Particles<D> particles;
-  particles.resize(part.size(fluidCount), wallCount);
+  particles.resize(n, count);
   std::uint32_t id = 0, at = 0;
   append(c, fluid, part.begin(fluidCount), part.end(fluidCount), particles, id, at);
-  append(c, walls, fluidCount, fluidCount + wallCount, particles, id, at);
+  append(c, walls, fluidCount + part.begin(wallCount), fluidCount + part.end(wallCount), particles, id, at);
   if (c.method.kind == MethodKind::MphI && c.method.wallVelocity == WallVelocity::Extrapolated) {
-    const std::uint32_t n = particles.fluidCount, count = particles.wallCount();
-    const auto surfaces = createWallSurfaces<D>(c, particles.position.span().subspan(n, count),
-                                                particles.body.span().subspan(n, count), notes);
+    std::vector<std::string> ofPart;
+    const auto surfaces =
+        createWallSurfaces<D>(c, particles.position.span().subspan(n, count),
+                              particles.body.span().subspan(n, count), part.isAll() ? notes : ofPart);
     particles.wallSurface.resize(count);
     std::copy(surfaces.begin(), surfaces.end(), particles.wallSurface.begin());
   }
@@ -211,14 +213,14 @@ Particles<D> createParticles(const Case& c, std::vector<std::string>& notes,
 }
 
 AnyParticles createParticles(const Case& c, std::vector<std::string>& notes,
-                             std::vector<std::uint32_t>* bodyCounts, FluidPart part) {
+                             std::vector<std::uint32_t>* bodyCounts, ParticlePart part) {
   if (c.dimensions == 2) return createParticles<2>(c, notes, bodyCounts, part);
   return createParticles<3>(c, notes, bodyCounts, part);
 }
 
 template Particles<2> createParticles<2>(const Case&, std::vector<std::string>&, std::vector<std::uint32_t>*,
-                                         FluidPart);
+                                         ParticlePart);
 template Particles<3> createParticles<3>(const Case&, std::vector<std::string>&, std::vector<std::uint32_t>*,
-                                         FluidPart);
+                                         ParticlePart);
 
 }  // namespace treacle

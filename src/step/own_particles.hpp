@@ -29,8 +29,8 @@ Particles<D> heldWalls(const FlowState<D, Backend>& state) {
 }
 
 /// What one of several processes shows of the state they share: its own fluid; as ghosts, with positions alone,
-/// the fluid of others next to it; and the walls in its own cells and then those in the cells beside them. Where a
-/// wall particle is now decides whose it is, and each is one process's. Returns the number of walls in own cells.
+/// the fluid of others next to it; its walls, and then other walls in reach. Its walls are those in its own cells,
+/// where they are now, and the distant ones of its part, so that each is one process's. Returns their number.
 /// Collective. Errors: std::bad_alloc.
 template <int D, class Backend>
 std::uint32_t copyOwnParticles(FlowState<D, Backend>& state, const CellGrid<D>& cells, const CellOwners<D>& owners,
@@ -39,7 +39,7 @@ std::uint32_t copyOwnParticles(FlowState<D, Backend>& state, const CellGrid<D>& 
   fillGhosts(state.context, Held::Fluid, p.position.data());
   fillGhosts(state.context, Held::Active, p.pressure.data());
   fillGhosts(state.context, Held::Active, p.numberDensity.data());
-  const Particles<D> walls = heldWalls(state), far = distant.inOwnCells(cells, owners);
+  const Particles<D> walls = heldWalls(state), far = distant.ofPart();
   const auto cellOf = [&](std::uint32_t i) { return cells.linear(cells.cellOf(walls.position[i])); };
   const auto own = selected(0, walls.count, [&](std::uint32_t i) { return owners.isOwn(cellOf(i)); });
   const auto beside = selected(0, walls.count, [&](std::uint32_t i) { return owners.isBesideOwn(cellOf(i)); });

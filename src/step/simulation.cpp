@@ -75,7 +75,7 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
       this->share(*processes);
     }
     this->fluidOfAll = static_cast<std::uint32_t>(sumOverProcesses(context, state.fluidCount));
-    wallsMove = someWallMoves(theCase, state);
+    wallsMove = sumOverProcesses(context, someWallMoves(theCase, state)) > 0;
     const double mass = sumOverProcesses(context, fluidMass(theCase, state));
     method = theCase.method.kind == MethodKind::Isph ? makeIsphStep(static_cast<Flow&>(*this))
                                                      : makeMphStep(static_cast<Flow&>(*this));

@@ -3,7 +3,7 @@
 #include "mpi/job.hpp"
 #include "support/gpu.hpp"
 #include "treacle/core/device_link.hpp"
-#include "treacle/model/fluid_part.hpp"
+#include "treacle/model/particle_part.hpp"
 #include "treacle/model/particles_copy.hpp"
 
 #include <gtest/gtest.h>
@@ -61,7 +61,7 @@ struct Flow {
       for (int k = 0; k < D; ++k) x[k] = uniform(random) * hi[k];
       (i < fluid ? position : wallPosition).push_back(x);
     }
-    const FluidPart part{static_cast<std::uint32_t>(job().rank()), static_cast<std::uint32_t>(job().size())};
+    const ParticlePart part{static_cast<std::uint32_t>(job().rank()), static_cast<std::uint32_t>(job().size())};
     const std::uint32_t begin = part.begin(fluid), size = part.size(fluid);
     particles.resize({size, walls, modes, walls});
     for (std::uint32_t k = 0; k < particles.count; ++k) {

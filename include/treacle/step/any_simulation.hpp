@@ -79,7 +79,7 @@ class Followers {
 };
 
 /// At every other process: takes part in the simulation that the first one makes with the same arguments and
-/// another part of the fluid. Returns when its Followers are gone.
+/// another part of the particles. Returns when its Followers are gone.
 void serveSimulation(const Case& c, AnyParticles particles, BackendKind backend, std::int64_t step, double time,
                      const Communicator& processes, const AnySimulation::Duty& duty = {});
 

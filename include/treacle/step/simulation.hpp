@@ -80,7 +80,7 @@ class Simulation {
  public:
   /// `particles`: the state at `time` after `step` steps. `processes`: those that share the simulation; null or
   /// one: it is alone. All of them make it with the same arguments, but for the particles, of which each brings
-  /// some of the fluid, whichever (FluidPart), and all walls; and they call the same members in the same order.
+  /// some, whichever (ParticlePart); and they call the same members in the same order.
   /// Errors: InputError for a case that cannot be shared (requireShareable), and where there are more processes
   /// than parts of the fluid; std::bad_alloc.
   Simulation(const Case& c, Particles<D> particles, std::int64_t step = 0, double time = 0,

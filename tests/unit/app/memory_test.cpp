@@ -176,7 +176,7 @@ TEST(DeviceMemory, OfSeveralProcessesIsThatOfAPart) {
   const MemoryCounts whole = countsFor(c, createParticles(c, notes), true);
   const MemoryCounts part = countsFor(c, createParticles(c, notes, nullptr, {1, 4}), true);
   EXPECT_EQ(part.particles.fluid, all.fluid / 4);
-  EXPECT_EQ(part.particles.wall, all.wall);
+  EXPECT_EQ(part.particles.wall, all.wall / 4);
   EXPECT_LT(estimatedDeviceMemory(c, part), estimatedDeviceMemory(c, whole));
   DeviceInfo device;
   device.name = "Some GPU";

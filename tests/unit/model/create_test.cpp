@@ -158,31 +158,38 @@ TEST(createParticles, partsMakeTheWhole) {
               makeBody("third", BodyKind::Fluid, box({0, 5}, {1, 6}))};
   c.bodies[1].velocityExpression[0] = "x + 3*y";
   c.bodies[2].velocity = {0, -1};
+  c.method.wallVelocity = WallVelocity::Extrapolated;
   std::vector<std::string> notes;
   std::vector<std::uint32_t> counts;
   const Particles<2> whole = createParticles<2>(c, notes, &counts);
   ASSERT_EQ(whole.fluidCount, 25u);
+  ASSERT_EQ(whole.wallSurface.size(), 21u);
   for (const std::uint32_t parts : {1u, 2u, 3u, 7u, 25u, 40u}) {
-    std::uint32_t next = 0;
+    std::uint32_t fluid = 0, walls = whole.fluidCount;
     for (std::uint32_t k = 0; k < parts; ++k) {
       std::vector<std::string> ownNotes;
       std::vector<std::uint32_t> ownCounts;
       const Particles<2> p = createParticles<2>(c, ownNotes, &ownCounts, {k, parts});
       EXPECT_EQ(ownNotes, notes);
       EXPECT_EQ(ownCounts, counts);
-      EXPECT_EQ(p.wallCount(), whole.wallCount());
-      EXPECT_EQ(p.wallSurface.size(), whole.wallSurface.size());
+      EXPECT_EQ(p.wallSurface.size(), p.wallCount());
       EXPECT_NEAR(p.fluidCount, 25.0 / parts, 1);
+      EXPECT_NEAR(p.wallCount(), 21.0 / parts, 1);
       for (std::uint32_t i = 0; i < p.count; ++i) {
-        const std::uint32_t j = i < p.fluidCount ? next++ : whole.fluidCount + (i - p.fluidCount);
+        const bool isFluid = i < p.fluidCount;
+        const std::uint32_t j = isFluid ? fluid++ : walls++;
         EXPECT_EQ(p.id[i], whole.id[j]);
         EXPECT_EQ(p.position[i], whole.position[j]);
         EXPECT_EQ(p.velocity[i], whole.velocity[j]);
         EXPECT_EQ(p.body[i], whole.body[j]);
         EXPECT_EQ(p.material[i], whole.material[j]);
+        if (!isFluid) {
+          EXPECT_EQ(p.wallSurface[i - p.fluidCount], whole.wallSurface[j - whole.fluidCount]);
+        }
       }
     }
-    EXPECT_EQ(next, whole.fluidCount);
+    EXPECT_EQ(fluid, whole.fluidCount);
+    EXPECT_EQ(walls, whole.count);
   }
 }
 
