@@ -104,13 +104,9 @@ void Decomposition<D, Cuda>::sort(Context<Cuda>& context, const CellGrid<D>& gri
                      " processes");
   w.count.resize(context, 2 * job.size() + 3);  // for all numbers of the sort
   agreed(context, [&] { requireFinite(context, p, w); });
-  const bool isFirst = !owners_.areKnown();
-  if (isFirst || this->isUneven(job, p.fluidCount)) divide(context, grid, p);
+  if (!owners_.areKnown() || this->isUneven(job, p.fluidCount)) divide(context, grid, p);
   sortFluid(context, grid, p, owner_.data(), ranges, w);
-  if (migrate(context, grid, p, w, isFirst)) {
-    if (isFirst) ranges.key = {};  // has had room for the fluid of all processes
-    sortFluid(context, grid, p, owner_.data(), ranges, w);
-  }
+  if (migrate(context, grid, p, w)) sortFluid(context, grid, p, owner_.data(), ranges, w);
 
   const std::uint32_t own = p.fluidCount;
   fillRanges(context, grid, 0, own, ranges.key.data(), w.sortedIndex.data(), keyBits(grid), p.position.data(),
@@ -174,18 +170,18 @@ void Decomposition<D, Cuda>::adoptOwners(Context<Cuda>& context, const CellGrid<
 
 template <int D>
 bool Decomposition<D, Cuda>::migrate(Context<Cuda>& context, const CellGrid<D>& grid, Particles<D, Cuda>& p,
-                                     SortWorkspace<Cuda>& w, bool isFirst) {
+                                     SortWorkspace<Cuda>& w) {
   const Communicator& job = *context.communicator;
   const std::size_t size = job.size(), rank = job.rank();
   findFluidOfRanks(context, grid, p, w.sortedIndex.data(), owner_.data(), job.size(), w.count.data());
   std::vector<std::uint32_t> begins(size + 1), leaving(size), arriving(size);
   copyBytesToHost(context, w.count.data(), begins.data(), begins.size() * sizeof(std::uint32_t));
   for (std::size_t r = 0; r < size; ++r)
-    if (r != rank && !isFirst) leaving[r] = begins[r + 1] - begins[r];
+    if (r != rank) leaving[r] = begins[r + 1] - begins[r];
   const std::vector<std::uint32_t> all = job.table(leaving);
-  if (!isFirst && std::ranges::count(all, 0u) == std::ssize(all)) return false;
+  if (std::ranges::count(all, 0u) == std::ssize(all)) return false;
   for (std::size_t r = 0; r < size; ++r) arriving[r] = all[r * size + rank];
-  exchangeFluid(context, p, w, begins, arriving, !isFirst);
+  exchangeFluid(context, p, w, begins, arriving);
   return true;
 }
 

@@ -42,14 +42,14 @@ std::byte* fieldRoom(Context<Cuda>& context, SortWorkspace<Cuda>& w, std::size_t
 
 template <int D>
 void exchangeFluid(Context<Cuda>& context, Particles<D, Cuda>& p, SortWorkspace<Cuda>& w,
-                   std::span<const std::uint32_t> begins, std::span<const std::uint32_t> arriving, bool isSent) {
+                   std::span<const std::uint32_t> begins, std::span<const std::uint32_t> arriving) {
   const std::size_t size = arriving.size(), rank = context.communicator->rank();
   const std::uint32_t* index = w.sortedIndex.data();
   const std::uint32_t keptBegin = begins[rank], keptEnd = begins[rank + 1], kept = keptEnd - keptBegin;
   const std::uint32_t after = begins[size] - keptEnd;  // of ranks behind this one
   std::vector<std::uint32_t> leaving(size);
   for (std::size_t r = 0; r < size; ++r)
-    if (r != rank && isSent) leaving[r] = begins[r + 1] - begins[r];
+    if (r != rank) leaving[r] = begins[r + 1] - begins[r];
   const auto sumOf = [](std::span<const std::uint32_t> counts) {
     return std::accumulate(counts.begin(), counts.end(), std::uint32_t{0});
   };
@@ -81,7 +81,6 @@ void exchangeFluid(Context<Cuda>& context, Particles<D, Cuda>& p, SortWorkspace<
     from += padded(come * sizeof(T));
   };
   const auto replace = [&]<class T>(Buffer<T, Cuda>& field, std::size_t count) {
-    if (!isSent) field = {};  // has had room for the fluid of all processes
     field.resize(context, count);
     copyBytesOnDevice(context, room, field.data(), count * sizeof(T));
   };
@@ -131,9 +130,9 @@ void arrange(Context<Cuda>& context, Particles<D, Cuda>& p, SortWorkspace<Cuda>&
   p.count = static_cast<std::uint32_t>(count);
 }
 
-#define TREACLE_INSTANTIATE(D)                                                                       \
-  template void exchangeFluid(Context<Cuda>&, Particles<D, Cuda>&, SortWorkspace<Cuda>&,             \
-                              std::span<const std::uint32_t>, std::span<const std::uint32_t>, bool); \
+#define TREACLE_INSTANTIATE(D)                                                                 \
+  template void exchangeFluid(Context<Cuda>&, Particles<D, Cuda>&, SortWorkspace<Cuda>&,       \
+                              std::span<const std::uint32_t>, std::span<const std::uint32_t>); \
   template void arrange(Context<Cuda>&, Particles<D, Cuda>&, SortWorkspace<Cuda>&, std::uint32_t);
 TREACLE_INSTANTIATE(2)
 TREACLE_INSTANTIATE(3)

@@ -14,10 +14,10 @@ namespace treacle {
 /// Fluid goes to its new owners with all its fields, and comes from its old ones. In the order of
 /// workspace.sortedIndex the particles [begins[r], begins[r + 1]) belong to rank r; `arriving`: how many come from
 /// each rank. Kept ones stay in that order, before those that come, in the order of ranks. Walls stay; ghosts are
-/// gone. Where `isSent` is false, nothing is sent: the others have it. Collective.
+/// gone. Collective.
 template <int D>
 void exchangeFluid(Context<Cuda>& context, Particles<D, Cuda>& particles, SortWorkspace<Cuda>& workspace,
-                   std::span<const std::uint32_t> begins, std::span<const std::uint32_t> arriving, bool isSent);
+                   std::span<const std::uint32_t> begins, std::span<const std::uint32_t> arriving);
 
 /// Brings own fluid and walls into the order of workspace.sortedIndex, which has those of the fluid first, with
 /// room for so many ghosts between them.

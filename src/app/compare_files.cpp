@@ -6,8 +6,8 @@
 #include "treacle/io/case_reader.hpp"
 #include "treacle/io/compare_sets.hpp"
 #include "treacle/io/particle_csv.hpp"
+#include "treacle/io/pvtp.hpp"
 #include "treacle/io/run_directory.hpp"
-#include "treacle/io/vtp.hpp"
 
 #include <fmt/format.h>
 
@@ -71,7 +71,7 @@ ComparedRun readRun(const std::filesystem::path& path, const std::optional<doubl
   Case reference = readCase(run.caseFile());
   const std::size_t number = chosenFrame(run, time, reference.output.interval);
   const auto file = run.fluidFrame(number);
-  return {std::move(reference), run.frameTime(number), {file.string(), readVtp(file), number}};
+  return {std::move(reference), run.frameTime(number), {file.string(), readFrame(file), number}};
 }
 
 Side readFile(const std::filesystem::path& path, const std::optional<ComparedRun>& run) {

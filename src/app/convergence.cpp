@@ -29,9 +29,9 @@ namespace {
 namespace fs = std::filesystem;
 
 /// The state that the way to the system begins at; `until` then ends where the system is to be.
-StartState startOf(Case& until, const ConvergenceOptions& options, AnyParticles made) {
-  StartState start{std::move(made)};
-  if (!options.resume.empty()) start = fittingState(until, options.resume, start.particles);
+StartState startOf(Case& until, const ConvergenceOptions& options, MadeParticles made) {
+  StartState start =
+      options.resume.empty() ? StartState{std::move(made.particles)} : fittingState(until, options.resume, made);
   until.time.end = options.at.value_or(start.time);
   if (const double steps = until.time.end / until.time.step; steps > maxSteps)
     throw InputError(fmt::format("--at: {:.3g} steps to it are too many", steps));
@@ -123,7 +123,7 @@ void convergenceCommand(const ConvergenceOptions& options) {
   const std::vector<SolverSettings> solvers = comparedSolvers(options, c.method.kind);
   std::vector<std::string> warnings;
   requireRoomForParticles(c);
-  AnyParticles made = createParticles(c, warnings);
+  MadeParticles made = MadeParticles::of(c, warnings);
   for (std::string& warning : caseWarnings(c)) warnings.push_back(std::move(warning));
   if (!device)
     for (std::string& warning : cpuWarnings(c)) warnings.push_back(std::move(warning));

@@ -19,11 +19,14 @@ constexpr std::uint64_t driverBytes = 300 << 20;  // what CUDA takes of the host
 constexpr std::uint64_t cellBytes = 26;           // at least, of a search cell: ranges, marks, a grid's point
 
 /// What is to be stored, for messages.
-std::string contentText(const MemoryCounts& n) {
-  const std::uint64_t all = n.particles.fluid + n.particles.wall;
-  const std::string particles = fmt::format("{} particles", all);
-  return n.cells > all ? fmt::format("{} and {} search cells of the domain", particles, n.cells) : particles;
+std::string contentText(const ParticleNumbers& particles, std::uint64_t cells) {
+  const std::uint64_t all = particles.fluid + particles.wall;
+  const std::string text = fmt::format("{} particles", all);
+  return cells > all ? fmt::format("{} and {} search cells of the domain", text, cells) : text;
 }
+
+/// Of a particle's place.
+std::uint64_t placeBytes(const Case& c) { return static_cast<std::uint64_t>(c.dimensions) * sizeof(double); }
 
 void require(const std::string& content, std::uint64_t needed) {
   if (const std::uint64_t available = availableMemory(); needed > available)
@@ -38,7 +41,7 @@ void requireRoomForParticles(const Case& c) {
   const double points = boxPoints(c);
   if (points > static_cast<double>(maxParticles)) return;  // createParticles says so
   const auto count = static_cast<std::uint64_t>(points);
-  require(fmt::format("{} particles", count), count * static_cast<std::uint64_t>(c.dimensions) * sizeof(double));
+  require(fmt::format("{} particles", count), count * placeBytes(c));
 }
 
 std::uint64_t leastMemory(const Case& c) { return programBytes + cellBytes * searchCells(c); }
@@ -47,7 +50,7 @@ MemoryCounts countsFor(const Case& c, const AnyParticles& particles, bool onDevi
   MemoryCounts known;
   known.particles = particles.numbers();
   known.cells = searchCells(c);
-  require(contentText(known), leastMemory(c));
+  require(contentText(known.particles, known.cells), leastMemory(c));
   return countForMemory(c, particles, storesMatrix(c, onDevice ? BackendKind::Cuda : BackendKind::Cpu));
 }
 
@@ -62,9 +65,10 @@ std::uint64_t estimatedDeviceMemory(const Case& c, const MemoryCounts& n) {
 }
 
 std::uint64_t leastSharedMemory(const Case& c, const MemoryCounts& n, bool onDevice, const Sharing& sharing) {
-  const std::uint64_t part = onDevice ? driverBytes : planMemory(c, n, BackendKind::Cpu).peak / sharing.processes;
-  const std::uint64_t output = copiesToBeWritten * stateBytes(c, n.particles);
-  return sharing.onHost * (programBytes + std::max(part, stateBytes(c, n.particles))) + output;
+  const std::uint64_t part = onDevice ? driverBytes : planMemory(c, n, BackendKind::Cpu).peak;
+  const std::uint64_t places = (sharing.all.fluid + sharing.all.wall) * placeBytes(c);
+  const std::uint64_t output = copiesToBeWritten * stateBytes(c, sharing.all);
+  return sharing.onHost * (programBytes + std::max(part, places + stateBytes(c, n.particles))) + output;
 }
 
 void requireMemory(const Case& c, const AnyParticles& particles, const DeviceInfo* device,
@@ -74,8 +78,8 @@ void requireMemory(const Case& c, const AnyParticles& particles, const DeviceInf
 
 void requireMemory(const Case& c, const MemoryCounts& n, const DeviceInfo* device, const Sharing& sharing) {
   const bool shared = sharing.processes > 1;
-  const std::string content =
-      contentText(n) + (shared ? fmt::format(", shared by {} processes,", sharing.processes) : "");
+  const std::string content = contentText(shared ? sharing.all : n.particles, n.cells) +
+                              (shared ? fmt::format(", shared by {} processes,", sharing.processes) : "");
   require(content,
           shared ? leastSharedMemory(c, n, device != nullptr, sharing) : estimatedMemory(c, n, device != nullptr));
   if (!device) return;
@@ -85,7 +89,7 @@ void requireMemory(const Case& c, const MemoryCounts& n, const DeviceInfo* devic
         "(nvidia-smi shows them); wait for them, choose another device by CUDA_VISIBLE_DEVICES, or take "
         "--backend cpu",
         device->name));
-  const std::uint64_t onDevice = estimatedDeviceMemory(c, n) / sharing.processes;
+  const std::uint64_t onDevice = estimatedDeviceMemory(c, n);
   if (onDevice > device->freeMemory)
     throw RunError(
         fmt::format("{} need about {} of device memory, {} available on {}; take a lower resolution, a smaller "

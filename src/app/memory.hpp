@@ -27,12 +27,14 @@ std::uint64_t estimatedMemory(const Case& c, const MemoryCounts& counts, bool on
 /// The same for the memory of the GPU.
 std::uint64_t estimatedDeviceMemory(const Case& c, const MemoryCounts& counts);
 
-/// How many processes share a run, and how many of them this host has.
+/// How many processes share a run, how many of them this host has, and the particles of all of them.
 struct Sharing {
   std::uint64_t processes = 1, onHost = 1;
+  ParticleNumbers all = {};
 };
-/// What the host needs at least where they do: each process makes all particles before it keeps its part, the
-/// first one writes. What processes hold twice is not counted [B].
+/// What the host needs at least where they do: each process makes its part of the particles, to which it looks at
+/// the places of all; the first one writes checkpoints. `counts`: of one part. What processes hold of others'
+/// parts is not counted [B].
 std::uint64_t leastSharedMemory(const Case& c, const MemoryCounts& counts, bool onDevice, const Sharing& sharing);
 
 /// `device`: what the run computes on, null for the CPU. Errors: RunError where the case clearly needs more memory

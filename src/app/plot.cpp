@@ -5,8 +5,8 @@
 #include "treacle/io/case_reader.hpp"
 #include "treacle/io/history.hpp"
 #include "treacle/io/picture.hpp"
+#include "treacle/io/pvtp.hpp"
 #include "treacle/io/run_directory.hpp"
-#include "treacle/io/vtp.hpp"
 
 #include <fmt/format.h>
 
@@ -46,7 +46,7 @@ void plotCommand(const PlotOptions& options) {
     picture.gravity = c.gravity;
     picture.title = c.title;
     const std::size_t missing =
-        drawFrame(output, readVtp(run.fluidFrame(frame)), readVtp(run.wallsFrame(frame)), picture);
+        drawFrame(output, readFrame(run.fluidFrame(frame)), readFrame(run.wallsFrame(frame)), picture);
     if (missing > 0)
       printWarning(fmt::format("frame {}: {} particle{} without a position that can be drawn", frame, missing,
                                missing == 1 ? "" : "s"));

@@ -39,11 +39,12 @@ HistoryRow historyRow(const StepReport& r) {
 }  // namespace
 
 Recorder::Recorder(const Case& c, RunDirectory& directory, RunLog& log, double start, bool timings,
-                   CopyState copyState)
+                   CopyState copyState, OrderPieces orderPieces)
     : case_(c),
       directory_(directory),
       log_(log),
       copyState_(std::move(copyState)),
+      orderPieces_(std::move(orderPieces)),
       history_(directory.history(), timings),
       frames_(c.output.interval, c.time, start),
       checkpoints_(c.output.checkpointInterval, c.time, start),
@@ -56,11 +57,11 @@ Recorder::Recorder(const Case& c, RunDirectory& directory, RunLog& log, double s
   if (c.output.balance) balance_.emplace(directory.balance(), c);
 }
 
-void Recorder::begin() { handOver(takeSnapshot(), true, false); }
+void Recorder::begin() { save(true, false); }
 
 void Recorder::record(const StepReport& report) {
   if (steps_++ == 0) firstIterations_ = report.iterations;
-  lastIterations_ = report.iterations;
+  lastIterations_ = report.iterations, lastStep_ = report.step;
   iterations_ += report.iterations;
   fallbacks_ += report.fallbacks;
   rejected_ += report.rejected;
@@ -76,17 +77,55 @@ void Recorder::record(const StepReport& report) {
   if (report.balance) balance_->append(report.step, report.time, *report.balance);
   outputSeconds_ += timer.lap();
   const bool frame = frames_.due(report.time), checkpoint = checkpoints_.due(report.time);
+  save(frame, checkpoint);
+  joinPieces(PieceOrder::Collect);
+}
+
+void Recorder::save(bool frame, bool checkpoint) {
+  if (frame && inPieces()) takePieces();
+  frame = frame && !inPieces();
   if (frame || checkpoint) handOver(takeSnapshot(), frame, checkpoint);
+}
+
+void Recorder::takePieces() {
+  Timer timer;
+  orderPieces_(PieceOrder::Take, directory_.frameCount() + openFrames_.size());
+  openFrames_.push_back(lastIterations_);
+  outputSeconds_ += timer.lap();
+}
+
+/// Of those that are there.
+void Recorder::joinPieces(PieceOrder order) {
+  if (openFrames_.empty()) return;
+  Timer timer;
+  try {
+    for (const PiecedFrame& f : orderPieces_(order, 0)) {
+      directory_.joinPieces(f.pieces);
+      frameStep_ = f.step;
+      note(f.step, f.pieces.time, openFrames_.front(), f.arrangement);
+      openFrames_.pop_front();
+    }
+  } catch (...) {
+    openFrames_.clear();  // their numbers are given anew
+    throw;
+  }
+  outputSeconds_ += timer.lap();
 }
 
 void Recorder::wait() {
   Timer timer;
   output_.wait();
   outputSeconds_ += timer.lap();
+  joinPieces(PieceOrder::Finish);
 }
 
 void Recorder::writeFrame() {
   wait();
+  if (inPieces()) {
+    if (frameStep_ >= 0 && (steps_ == 0 || frameStep_ == lastStep_)) return;
+    takePieces();
+    return joinPieces(PieceOrder::Finish);
+  }
   Snapshot* snapshot = finalSnapshot();
   if (!snapshot || frameStep_ == snapshot->step) return;
   handOver(*snapshot, true, false);
@@ -163,15 +202,12 @@ void Recorder::handOver(Snapshot& snapshot, bool frame, bool checkpoint) {
 void Recorder::write(const Snapshot& s) {
   const TraceRange range("output");
   if (s.frame) {
-    const std::size_t number = directory_.frameCount();
     Frame fluid = fluidFrame(s);
     const Frame walls = wallsFrame(s);
     const Arrangement arrangement = measureArrangement(fluid, walls, case_.domain, case_.spacing);
     directory_.writeFrame(fluid, walls, case_.output);
     frameStep_ = s.step;
-    log_.info(fmt::format("frame {}: step {}, t = {:.6g} s, {} iterations, {}", number, s.step, s.time,
-                          s.iterations, textOf(arrangement)));
-    note(arrangement, s.time);
+    note(s.step, s.time, s.iterations, arrangement);
   }
   if (s.checkpoint) {
     s.particles.visit([&](const auto& p) {
@@ -181,8 +217,10 @@ void Recorder::write(const Snapshot& s) {
   }
 }
 
-/// Called by the output thread.
-void Recorder::note(const Arrangement& arrangement, double time) {
+/// Of a frame that is on disk. Called by the output thread, where frames are in pieces by the run's own.
+void Recorder::note(std::int64_t step, double time, int iterations, const Arrangement& arrangement) {
+  log_.info(fmt::format("frame {}: step {}, t = {:.6g} s, {} iterations, {}", directory_.frameCount() - 1, step,
+                        time, iterations, textOf(arrangement)));
   lastArrangement_ = arrangement;
   smallestLeast_ = std::min(smallestLeast_, arrangement.least);
   smallestLow_ = std::min(smallestLow_, arrangement.low);

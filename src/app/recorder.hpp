@@ -3,6 +3,7 @@
 #include "arrangement_watch.hpp"
 #include "interval.hpp"
 #include "output_thread.hpp"
+#include "piece_writer.hpp"
 #include "run_log.hpp"
 #include "treacle/io/balance_writer.hpp"
 #include "treacle/io/history.hpp"
@@ -12,6 +13,7 @@
 #include "treacle/step/simulation.hpp"
 
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <mutex>
 #include <optional>
@@ -22,15 +24,21 @@ namespace treacle {
 
 /// Writes what a run leaves behind: frames, history, checkpoints, picture, summary. Frames and checkpoints are
 /// written by another thread, from a copy of the particles, while the simulation goes on; until wait() the run
-/// directory and the files in it are that thread's. Errors, of every member but summarise: RunError or
-/// std::bad_alloc, also for what was to be written since the call before.
+/// directory and the files in it are that thread's. Where processes share the run frames may be written in pieces
+/// (PieceWriter); what makes frames of them is written here, soon after the last piece. Errors, of every member
+/// but summarise: RunError or std::bad_alloc, also for what was to be written since the call before.
 class Recorder {
  public:
   /// Copies particles, step and time of the simulation into a snapshot.
   using CopyState = std::function<void(Snapshot&)>;
 
+  /// Has the PieceWriters of all processes do something.
+  using OrderPieces = std::function<std::vector<PiecedFrame>(PieceOrder order, std::size_t frame)>;
+
   /// `start`: simulation time at which the run starts [s]. `timings`: the history has the seconds of the phases.
-  Recorder(const Case& c, RunDirectory& directory, RunLog& log, double start, bool timings, CopyState copyState);
+  /// `orderPieces`: frames are written in pieces; empty: they are not.
+  Recorder(const Case& c, RunDirectory& directory, RunLog& log, double start, bool timings, CopyState copyState,
+           OrderPieces orderPieces = {});
 
   /// The frame of the state at the start.
   void begin();
@@ -61,24 +69,32 @@ class Recorder {
  private:
   Snapshot& takeSnapshot();
   Snapshot* finalSnapshot();
+  void save(bool frame, bool checkpoint);
   void handOver(Snapshot& snapshot, bool frame, bool checkpoint);
   void write(const Snapshot& snapshot);
-  void note(const Arrangement& arrangement, double time);
+  void note(std::int64_t step, double time, int iterations, const Arrangement& arrangement);
+
+  bool inPieces() const { return static_cast<bool>(orderPieces_); }
+  void takePieces();
+  void joinPieces(PieceOrder order);
 
   const Case& case_;
   RunDirectory& directory_;
   RunLog& log_;
   CopyState copyState_;
+  OrderPieces orderPieces_;
+  std::deque<int> openFrames_;  // in pieces that may not all be on disk: iterations of their steps
   HistoryWriter history_;
   std::optional<BalanceWriter> balance_;
   Interval frames_, checkpoints_;
   std::int64_t frameStep_ = -1, checkpointStep_ = -1;  // of the last ones on disk; written by the output thread
+  std::int64_t lastStep_ = -1;                         // of the last report
   std::int64_t steps_ = 0, iterations_ = 0;
   int firstIterations_ = 0, lastIterations_ = 0;
   std::int64_t fallbacks_ = 0, rejected_ = 0;
   double leastStep_ = 0, longestStep_ = 0, stepTime_ = 0;
   double meanDensity_ = 0, densityError_ = 0, largestDensityError_ = 0;
-  Arrangement lastArrangement_;  // written by the output thread, as are the next two
+  Arrangement lastArrangement_;  // written by the output thread, as are the next two, or where pieces are joined
   double smallestLeast_ = nearestReach, smallestLow_ = nearestReach;
   ArrangementWatch watch_;
   std::mutex warningsMutex_;

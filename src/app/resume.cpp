@@ -3,6 +3,7 @@
 #include "treacle/core/error.hpp"
 #include "treacle/io/checkpoint.hpp"
 #include "treacle/model/checks.hpp"
+#include "treacle/model/create.hpp"
 #include "treacle/model/names.hpp"
 
 #include <fmt/format.h>
@@ -33,14 +34,26 @@ void requireMethod(const Case& c, const std::filesystem::path& file, const std::
                              nameOf(c.method.kind)));
 }
 
+/// Numbers of particles of the kinds.
+struct Kinds {
+  std::uint32_t fluid = 0, walls = 0;
+};
+
+Kinds kindsOf(const Case& c, const MadeParticles& made) {
+  Kinds kinds;
+  for (std::size_t b = 0; b < c.bodies.size(); ++b)
+    (c.bodies[b].kind == BodyKind::Fluid ? kinds.fluid : kinds.walls) += made.ofBodies[b];
+  return kinds;
+}
+
 template <int D>
-void requireFit(const Case& c, const std::filesystem::path& file, const Particles<D>& p,
-                const Particles<D>& made) {
-  if (p.fluidCount != made.fluidCount || p.count != made.count)
+void requireFit(const Case& c, const std::filesystem::path& file, const Checkpoint<D>& state, const Kinds& made) {
+  const Particles<D>& p = state.particles;
+  if (state.fluidOfAll != made.fluid || state.wallsOfAll != made.walls)
     refuse(file,
            fmt::format("{} fluid and {} wall particles, but the case has {} and {}; expected the case and the "
                        "resolution that were run",
-                       p.fluidCount, p.wallCount(), made.fluidCount, made.wallCount()));
+                       state.fluidOfAll, state.wallsOfAll, made.fluid, made.walls));
   for (std::uint32_t i = 0; i < p.count; ++i) {
     if (p.material[i] >= c.materials.size())
       refuse(file, fmt::format("particle {} has material {}, but the case has only {}", p.id[i], p.material[i],
@@ -50,12 +63,25 @@ void requireFit(const Case& c, const std::filesystem::path& file, const Particle
   }
 }
 
+/// The body that the case makes each particle of, by id: fluid first, each kind in the order of the file.
+std::vector<std::uint8_t> bodiesById(const Case& c, const MadeParticles& made) {
+  std::vector<std::uint8_t> bodies;
+  for (const BodyKind kind : {BodyKind::Fluid, BodyKind::Wall})
+    for (std::size_t b = 0; b < c.bodies.size(); ++b)
+      if (c.bodies[b].kind == kind) bodies.insert(bodies.end(), made.ofBodies[b], static_cast<std::uint8_t>(b));
+  return bodies;
+}
+
 /// Bodies that an older file does not name are those that the case makes the particles of. Errors: InputError for
 /// a body that the case does not have, or that is of the other kind.
 template <int D>
-void setBodies(const Case& c, const std::filesystem::path& file, const Particles<D>& made, Particles<D>& p) {
+void setBodies(const Case& c, const std::filesystem::path& file, const MadeParticles& made, Particles<D>& p) {
+  std::vector<std::uint8_t> byId;
   for (std::uint32_t i = 0; i < p.count; ++i) {
-    if (p.body[i] == unknownBody) p.body[i] = made.body[p.id[i]];
+    if (p.body[i] == unknownBody) {
+      if (byId.empty()) byId = bodiesById(c, made);
+      p.body[i] = byId[p.id[i]];
+    }
     const BodyKind kind = i < p.fluidCount ? BodyKind::Fluid : BodyKind::Wall;
     if (p.body[i] >= c.bodies.size() || c.bodies[p.body[i]].kind != kind)
       refuse(file, fmt::format("particle {} belongs to body {}, which is no {} body of the case", p.id[i],
@@ -64,12 +90,12 @@ void setBodies(const Case& c, const std::filesystem::path& file, const Particles
 }
 
 /// Surfaces of walls follow from the case; a file does not have them. The ids of what the case makes are its
-/// places.
+/// places. `first`: the id of the first wall that was made.
 template <int D>
-void setWallSurfaces(const Particles<D>& made, Particles<D>& p) {
+void setWallSurfaces(const Particles<D>& made, std::uint32_t first, Particles<D>& p) {
   p.wallSurface.resize(made.wallSurface.size());
-  const std::uint32_t n = p.fluidCount;
-  for (std::size_t k = 0; k < p.wallSurface.size(); ++k) p.wallSurface[k] = made.wallSurface[p.id[n + k] - n];
+  for (std::size_t k = 0; k < p.wallSurface.size(); ++k)
+    p.wallSurface[k] = made.wallSurface[p.id[p.fluidCount + k] - first];
 }
 
 std::int64_t stepAt(double time, const TimeSettings& settings, const std::filesystem::path& file) {
@@ -84,20 +110,28 @@ std::int64_t stepAt(double time, const TimeSettings& settings, const std::filesy
 
 }  // namespace
 
-StartState fittingState(const Case& c, const std::filesystem::path& file, const AnyParticles& made) {
-  StartState start = made.visit([&]<int D>(const Particles<D>& created) -> StartState {
-    Checkpoint<D> state = readCheckpoint<D>(file);
+MadeParticles MadeParticles::of(const Case& c, std::vector<std::string>& notes, ParticlePart part) {
+  MadeParticles made;
+  made.part = part;
+  made.particles = createParticles(c, notes, &made.ofBodies, part);
+  return made;
+}
+
+StartState fittingState(const Case& c, const std::filesystem::path& file, const MadeParticles& made) {
+  StartState start = made.particles.visit([&]<int D>(const Particles<D>& created) -> StartState {
+    Checkpoint<D> state = readCheckpoint<D>(file, made.part);
+    const Kinds kinds = kindsOf(c, made);
     requireMethod(c, file, state.method);
-    requireFit(c, file, state.particles, created);
-    setBodies(c, file, created, state.particles);
-    setWallSurfaces(created, state.particles);
+    requireFit(c, file, state, kinds);
+    setBodies(c, file, made, state.particles);
+    setWallSurfaces(created, kinds.fluid + made.part.begin(kinds.walls), state.particles);
     return {std::move(state.particles), state.step, state.time};
   });
   if (!c.time.stepsVary()) start.step = stepAt(start.time, c.time, file);
   return start;
 }
 
-StartState resumedState(const Case& c, const std::filesystem::path& file, const AnyParticles& made) {
+StartState resumedState(const Case& c, const std::filesystem::path& file, const MadeParticles& made) {
   StartState state = fittingState(c, file, made);
   if (c.atEnd(state.step, state.time))
     refuse(file, fmt::format("its time {:g} s is not before the end of the run, {:g} s; choose a later one with "

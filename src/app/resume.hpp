@@ -2,13 +2,26 @@
 
 #include "treacle/model/any_particles.hpp"
 #include "treacle/model/case.hpp"
+#include "treacle/model/particle_part.hpp"
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
+#include <vector>
 
 namespace treacle {
 
-/// What a simulation starts from.
+/// The particles that a case starts with, or the part of them that one of several processes makes.
+struct MadeParticles {
+  AnyParticles particles{2};
+  std::vector<std::uint32_t> ofBodies;  // particles of each body, those of other processes as well
+  ParticlePart part;
+
+  /// Appends to `notes` as createParticles does. Errors: those of createParticles.
+  static MadeParticles of(const Case& c, std::vector<std::string>& notes, ParticlePart part = {});
+};
+
+/// What a simulation starts from; of several processes each has a part of them.
 struct StartState {
   AnyParticles particles;
   std::int64_t step = 0;  // number of steps done
@@ -17,11 +30,12 @@ struct StartState {
 
 /// The state in a checkpoint file, for the case; its step counts in time steps of the case, which need
 /// not be those of the interrupted run, or where these vary in length it is that of the file. `made`: the
-/// particles that the case starts with. Errors: InputError if the file cannot be used, if it does not fit the case
-/// (numbers of particles, materials, bodies, domain, time step).
-StartState fittingState(const Case& c, const std::filesystem::path& file, const AnyParticles& made);
+/// particles that the case starts with; the state is a part where they are. Errors: InputError if
+/// the file cannot be used, if it does not fit the case (numbers of particles, materials, bodies, domain, time
+/// step).
+StartState fittingState(const Case& c, const std::filesystem::path& file, const MadeParticles& made);
 
 /// The same for a run of the case. Errors: InputError also if its time is not before the end.
-StartState resumedState(const Case& c, const std::filesystem::path& file, const AnyParticles& made);
+StartState resumedState(const Case& c, const std::filesystem::path& file, const MadeParticles& made);
 
 }  // namespace treacle

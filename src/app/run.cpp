@@ -22,17 +22,20 @@
 
 namespace treacle {
 
-Run::Run(const Case& c, StartState start, BackendKind backend, RunDirectory directory, const RunOptions& options,
-         std::string device, const Communicator& processes)
+Run::Run(const Case& c, StartState start, const ParticleNumbers& particles, BackendKind backend,
+         RunDirectory directory, const RunOptions& options, std::string device, const Communicator& processes)
     : case_(c),
       backend_(backend),
       device_(std::move(device)),
       processes_(processes),
       start_(std::move(start)),
+      particles_(particles),
       directory_(std::move(directory)),
       timings_(options.timings),
       log_(directory_.log(), options.quiet),
-      progress_(c, start_.step, start_.time, options.quiet) {}
+      progress_(c, start_.step, start_.time, options.quiet) {
+  if (writesPieces(c, particles, processes)) pieces_.emplace(c, directory_, processes);
+}
 
 void Run::execute(const std::vector<std::string>& warnings) {
   describe();
@@ -42,7 +45,11 @@ void Run::execute(const std::vector<std::string>& warnings) {
     simulation_.emplace(case_, std::move(start_.particles), backend_, start_.step, start_.time, &processes_);
     if (const std::string link = simulation_->linkName(); !link.empty())
       log_.info("the devices of the processes exchange by " + link);
-    recorder_.emplace(case_, directory_, log_, start_.time, timings_, [this](Snapshot& s) { copyState(s); });
+    Recorder::OrderPieces ofPieces;
+    if (pieces_) ofPieces = [this](PieceOrder order, std::size_t frame) { return orderPieces(order, frame); };
+    recorder_.emplace(
+        case_, directory_, log_, start_.time, timings_, [this](Snapshot& s) { copyState(s); },
+        std::move(ofPieces));
     recorder_->begin();
     advanceToEnd();
   });
@@ -57,13 +64,12 @@ void Run::describe() {
   summary_.precision = nameOf(case_.solver.precision);
   summary_.title = case_.title;
   summary_.dimensions = case_.dimensions;
-  const ParticleNumbers particles = start_.particles.numbers();
-  summary_.fluidParticles = particles.fluid, summary_.wallParticles = particles.wall;
+  summary_.fluidParticles = particles_.fluid, summary_.wallParticles = particles_.wall;
   log_.info(fmt::format("treacle {} ({}), backend {}, {}, {} threads of the host{}", build.version, build.commit,
                         summary_.backend, device_, summary_.threads,
                         processes_.size() > 1 ? fmt::format(" in each of {} processes", processes_.size()) : ""));
   say(fmt::format("{}: {} fluid and {} wall particles, {}, into {}", case_.title.empty() ? "case" : case_.title,
-                  particles.fluid, particles.wall, stepsText(), directory_.path().string()));
+                  particles_.fluid, particles_.wall, stepsText(), directory_.path().string()));
   log_.info("solver: " + solverText(solveStages(case_).front()));
   if (processes_.size() > 1) say(fmt::format("shared by {} processes", processes_.size()));
   if (case_.method.kind == MethodKind::Isph) log_.info("viscous step: " + viscousText(case_));
@@ -122,6 +128,14 @@ void Run::copyState(Snapshot& snapshot) {
   simulation_->copyParticles(snapshot.particles);
   snapshot.step = simulation_->step();
   snapshot.time = simulation_->time();
+}
+
+std::vector<PiecedFrame> Run::orderPieces(PieceOrder order, std::size_t frame) {
+  std::vector<PiecedFrame> whole;
+  if (order == PieceOrder::Collect && !pieces_->hasNews()) return whole;
+  simulation_->everywhere(static_cast<int>(order), static_cast<std::int64_t>(frame),
+                          [&](AnySimulation& s, int, std::int64_t) { whole = pieces_->answer(s, order, frame); });
+  return whole;
 }
 
 void Run::attempt(const std::function<void()>& action) {

@@ -21,9 +21,10 @@ namespace treacle {
 /// and frame), the picture and the summary are still written as far as that is possible.
 class Run {
  public:
-  /// `device`: its name for the user. `processes`: those that share the run, of which this is the first.
-  Run(const Case& c, StartState start, BackendKind backend, RunDirectory directory, const RunOptions& options,
-      std::string device, const Communicator& processes);
+  /// `particles`: those of all processes. `device`: its name for the user. `processes`: those that share the run,
+  /// of which this is the first.
+  Run(const Case& c, StartState start, const ParticleNumbers& particles, BackendKind backend,
+      RunDirectory directory, const RunOptions& options, std::string device, const Communicator& processes);
 
   /// Errors: RunError with the diagnosis, after everything is written; InputError where it could not begin.
   void execute(const std::vector<std::string>& warnings);
@@ -35,6 +36,7 @@ class Run {
   void warnOfArrangement();
   void keepWatch(const StepReport& report);
   void copyState(Snapshot& snapshot);
+  std::vector<PiecedFrame> orderPieces(PieceOrder order, std::size_t frame);
   /// Keeps the diagnosis of the first thing that goes wrong.
   void attempt(const std::function<void()>& action);
   void finish();
@@ -51,10 +53,12 @@ class Run {
   std::string device_;
   const Communicator& processes_;
   StartState start_;
+  ParticleNumbers particles_;  // of all processes
   RunDirectory directory_;
   bool timings_;
   RunLog log_;
   Progress progress_;
+  std::optional<PieceWriter> pieces_;  // where frames are written in pieces
   std::optional<AnySimulation> simulation_;
   std::optional<Recorder> recorder_;
   RunSummary summary_;

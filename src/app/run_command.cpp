@@ -3,6 +3,7 @@
 #include "interrupt.hpp"
 #include "machine.hpp"
 #include "memory.hpp"
+#include "piece_writer.hpp"
 #include "resume.hpp"
 #include "run.hpp"
 #include "threads.hpp"
@@ -11,15 +12,16 @@
 #include "treacle/io/case_reader.hpp"
 #include "treacle/model/case_error.hpp"
 #include "treacle/model/checks.hpp"
-#include "treacle/model/create.hpp"
 #include "treacle/step/shareable.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <system_error>
 
 namespace treacle {
@@ -55,10 +57,32 @@ Sharing sharingOf(const Communicator& processes) {
   return {size, (size + hosts - 1) / hosts};
 }
 
+ParticlePart partOf(const Communicator& processes) {
+  return {static_cast<std::uint32_t>(processes.rank()), static_cast<std::uint32_t>(processes.size())};
+}
+
+/// Each has a part of them.
+ParticleNumbers numbersOfAll(const Communicator& processes, const ParticleNumbers& own) {
+  std::array numbers{own.fluid, own.wall};
+  processes.sum(std::span<std::uint64_t>(numbers));
+  return {numbers[0], numbers[1]};
+}
+
 /// Whether every process has a device: all compute on devices, or none.
 bool allHaveOne(const Communicator& processes, bool has) {
   const std::vector<std::uint8_t> all = processes.all(std::uint8_t{has});
   return std::ranges::find(all, 0) == all.end();
+}
+
+/// A run at a process that is not the first. `particles`: of all.
+void follow(const Case& c, StartState start, const ParticleNumbers& particles, BackendKind backend,
+            const std::filesystem::path& directory, const Communicator& processes) {
+  std::optional<PieceWriter> pieces;
+  if (writesPieces(c, particles, processes)) pieces.emplace(c, RunDirectory::joined(directory), processes);
+  serveSimulation(c, std::move(start.particles), backend, start.step, start.time, processes,
+                  [&](AnySimulation& s, int order, std::int64_t frame) {
+                    pieces->answer(s, static_cast<PieceOrder>(order), static_cast<std::size_t>(frame));
+                  });
 }
 
 }  // namespace
@@ -69,37 +93,40 @@ void runCommand(const RunOptions& options, const Communicator& processes) {
   together(processes, [&] { device = deviceFor(options.backend, processes.localRank()); });
   if (!allHaveOne(processes, device.has_value())) device.reset();
   const BackendKind backend = device ? BackendKind::Cuda : BackendKind::Cpu;
-  const Sharing sharing = sharingOf(processes);
+  Sharing sharing = sharingOf(processes);
   Case c;
   std::vector<std::string> warnings;
-  StartState start{AnyParticles(2)};
+  MadeParticles made;
   together(processes, [&] {
     startThreads(options.threads);
     c = caseOf(options);
     if (shared) requireShareable(c, backend);
     requireRoomForParticles(c);
-    start = {createParticles(c, warnings)};
+    made = MadeParticles::of(c, warnings, partOf(processes));
     for (std::string& warning : caseWarnings(c)) warnings.push_back(std::move(warning));
-    if (!options.resume.empty()) start = resumedState(c, options.resume, start.particles);
+  });
+  sharing.all = numbersOfAll(processes, made.particles.numbers());
+  StartState start{AnyParticles(2)};
+  together(processes, [&] {
+    start = options.resume.empty() ? StartState{std::move(made.particles)} : resumedState(c, options.resume, made);
     requireMemory(c, start.particles, device ? &*device : nullptr, sharing);
   });
+  made = {};
   requireSame(processes, fmt::format("{}\n{} {}", caseText(c), start.step, start.time));
   catchInterrupts();
   std::optional<RunDirectory> files;
+  const auto directory = options.directory.empty() ? options.input.file.stem().concat("-run") : options.directory;
   together(processes, [&] {
     if (processes.rank() > 0) return;
-    const auto directory =
-        options.directory.empty() ? options.input.file.stem().concat("-run") : options.directory;
     requireElsewhere(directory, options.resume);
     files.emplace(RunDirectory::create(directory, options.force));
   });
-  if (processes.rank() > 0)
-    return serveSimulation(c, std::move(start.particles), backend, start.step, start.time, processes);
+  if (processes.rank() > 0) return follow(c, std::move(start), sharing.all, backend, directory, processes);
   const Followers followers(processes);
   if (!device)
     for (std::string& warning : cpuWarnings(c)) warnings.push_back(std::move(warning));
-  Run run(c, std::move(start), backend, std::move(*files), options, device ? deviceText(*device) : processorName(),
-          processes);
+  Run run(c, std::move(start), sharing.all, backend, std::move(*files), options,
+          device ? deviceText(*device) : processorName(), processes);
   run.execute(warnings);
 }
 

@@ -2,6 +2,7 @@
 
 #include "treacle/model/any_particles.hpp"
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 
@@ -16,6 +17,10 @@ struct Snapshot {
   int iterations = 0;  // of the step; 0 for the state at the start
   bool frame = false, checkpoint = false;
   bool whole = false;  // not while it is being filled
+
+  // Where it is of a process's own particles, to be a piece of a frame.
+  std::uint32_t ownWalls = 0;  // the first of its walls; the others are those near it
+  std::size_t number = 0;      // of the frame
 };
 
 }  // namespace treacle

@@ -3,10 +3,12 @@
 #include "particle_cells.hpp"
 #include "treacle/core/parallel.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 
 namespace treacle {
 namespace {
@@ -69,18 +71,37 @@ struct PlaceDensity {
 };
 
 /// At places and not at particles: the mean over particles that clump would be too large.
-template <int D>
-std::optional<double> densityInside(const ParticleCells& cells, double spacing) {
-  const auto density = PlaceDensity<D>::make(cells, spacing);
-  const std::size_t stride = cells.size() / mostPlaces + 1;
-  std::vector<double> found((cells.size() + stride - 1) / stride);
-  parallelFor(found.size(), parallelGrain, [&](std::size_t k) { found[k] = density(k * stride); });
+struct DensitySum {
   double sum = 0;
-  std::size_t places = 0;
-  for (const double d : found) sum += d, places += d > 0;
-  if (places == 0) return std::nullopt;
-  return sum / static_cast<double>(places);
+  std::size_t places = 0, stride = 1;  // one of so many places was looked at
+
+  std::optional<double> mean() const {
+    if (places == 0) return std::nullopt;
+    return sum / static_cast<double>(places);
+  }
+};
+
+template <int D>
+DensitySum densityInside(const ParticleCells& cells, double spacing) {
+  const auto density = PlaceDensity<D>::make(cells, spacing);
+  DensitySum result;
+  result.stride = cells.size() / mostPlaces + 1;
+  std::vector<double> found((cells.size() + result.stride - 1) / result.stride);
+  parallelFor(found.size(), parallelGrain, [&](std::size_t k) { found[k] = density(k * result.stride); });
+  for (const double d : found) result.sum += d, result.places += d > 0;
+  return result;
 }
+
+DensitySum densityInside(const ParticleCells& cells, int dimensions, double spacing) {
+  return dimensions == 2 ? densityInside<2>(cells, spacing) : densityInside<3>(cells, spacing);
+}
+
+std::uint64_t closeOnes(std::span<const double> distances) {
+  return static_cast<std::uint64_t>(std::ranges::count_if(distances, [](double d) { return d < closeDistance; }));
+}
+
+/// Of so many sorted ones the 1 % quantile.
+std::size_t lowPlace(std::size_t count) { return (count - 1) / 100; }
 
 }  // namespace
 
@@ -88,15 +109,46 @@ Arrangement measureArrangement(Frame& fluid, const Frame& walls, const Domain& d
   Arrangement result;
   fluid.nearestDistance.clear();
   if (fluid.position.empty()) return result;
-  const ParticleCells cells(fluid, walls, domain, nearestReach * spacing);
+  const ParticleCells cells(fluid, walls, {}, domain, nearestReach * spacing);
   fluid.nearestDistance = nearestDistances(cells, fluid.position.size(), spacing);
-  result.density = fluid.dimensions == 2 ? densityInside<2>(cells, spacing) : densityInside<3>(cells, spacing);
+  result.density = densityInside(cells, fluid.dimensions, spacing).mean();
   std::vector<double> sorted = fluid.nearestDistance;
-  const auto low = sorted.begin() + static_cast<std::ptrdiff_t>((sorted.size() - 1) / 100);
+  const auto low = sorted.begin() + static_cast<std::ptrdiff_t>(lowPlace(sorted.size()));
   std::nth_element(sorted.begin(), low, sorted.end());
-  const auto close = std::count_if(sorted.begin(), sorted.end(), [](double d) { return d < closeDistance; });
-  result.close = static_cast<double>(close) / static_cast<double>(sorted.size());
+  result.close = static_cast<double>(closeOnes(sorted)) / static_cast<double>(sorted.size());
   result.low = *low, result.least = *std::min_element(sorted.begin(), low + 1);
+  return result;
+}
+
+ArrangementPart measureArrangementPart(Frame& fluid, std::span<const Vec<3>> others, const Domain& domain,
+                                       double spacing) {
+  ArrangementPart part;
+  part.distances.resize(static_cast<std::size_t>(std::lround(nearestReach / ArrangementPart::bin)) + 1);
+  fluid.nearestDistance.clear();
+  if (fluid.position.empty()) return part;
+  const ParticleCells cells(fluid, {}, others, domain, nearestReach * spacing);
+  fluid.nearestDistance = nearestDistances(cells, fluid.position.size(), spacing);
+  const DensitySum density = densityInside(cells, fluid.dimensions, spacing);
+  part.density = density.sum * static_cast<double>(density.stride);
+  part.places = density.places * density.stride;
+  part.close = closeOnes(fluid.nearestDistance);
+  for (const double d : fluid.nearestDistance) {
+    part.least = std::min(part.least, d);
+    ++part.distances[std::min(static_cast<std::size_t>(d / ArrangementPart::bin), part.distances.size() - 1)];
+  }
+  return part;
+}
+
+Arrangement arrangementOf(const ArrangementPart& all) {
+  Arrangement result;
+  const std::uint64_t count = std::accumulate(all.distances.begin(), all.distances.end(), std::uint64_t{0});
+  if (count == 0) return result;
+  std::size_t bin = 0;
+  for (std::uint64_t upTo = all.distances[0]; upTo <= lowPlace(count); upTo += all.distances[bin]) ++bin;
+  result.least = all.least;
+  result.low = std::clamp((static_cast<double>(bin) + 0.5) * ArrangementPart::bin, all.least, nearestReach);
+  result.close = static_cast<double>(all.close) / static_cast<double>(count);
+  if (all.places > 0) result.density = all.density / static_cast<double>(all.places);
   return result;
 }
 

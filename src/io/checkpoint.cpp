@@ -14,8 +14,10 @@
 #include <array>
 #include <cmath>
 #include <fstream>
+#include <span>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace treacle {
@@ -26,9 +28,13 @@ constexpr std::int32_t formatVersion = 6;  // 1: without acceleration and jerk; 
                                            // without method and checksums; 4: without kept eigenvalue; 5: without
                                            // memory of the time steps
 
+/// What a field has values for: all particles; the fluid; the fluid once for each mode.
+enum class Of { All, Fluid, Modes };
+
 /// A field as the file holds it.
 struct FieldInfo {
   const char* name;
+  Of of;
   std::uint64_t count;     // of its values
   std::int32_t since = 1;  // first version of the format with it
   std::uint8_t older = 0;  // what whole numbers count as in older files; others are zero
@@ -43,12 +49,14 @@ void forEachNamedField(P& particles, std::uint64_t modeValues, F&& f) {
          acceleration, jerk, modes, steps, wallSurface] = particles;
   static_cast<void>(steps);  // numbers
   static_cast<void>(wallSurface);
-  f(FieldInfo{"position", count}, position), f(FieldInfo{"velocity", count}, velocity);
-  f(FieldInfo{"pressure", count}, pressure), f(FieldInfo{"number_density", count}, numberDensity);
-  f(FieldInfo{"material", count}, material), f(FieldInfo{"body", count, 3, unknownBody}, body);
-  f(FieldInfo{"id", count}, id);
-  f(FieldInfo{"acceleration", fluidCount, 2}, acceleration), f(FieldInfo{"jerk", fluidCount, 2}, jerk);
-  f(FieldInfo{"modes", modeValues, 3}, modes.vectors);
+  f(FieldInfo{"position", Of::All, count}, position), f(FieldInfo{"velocity", Of::All, count}, velocity);
+  f(FieldInfo{"pressure", Of::All, count}, pressure);
+  f(FieldInfo{"number_density", Of::All, count}, numberDensity);
+  f(FieldInfo{"material", Of::All, count}, material), f(FieldInfo{"body", Of::All, count, 3, unknownBody}, body);
+  f(FieldInfo{"id", Of::All, count}, id);
+  f(FieldInfo{"acceleration", Of::Fluid, fluidCount, 2}, acceleration);
+  f(FieldInfo{"jerk", Of::Fluid, fluidCount, 2}, jerk);
+  f(FieldInfo{"modes", Of::Modes, modeValues, 3}, modes.vectors);
 }
 
 template <class P, class F>
@@ -160,24 +168,79 @@ void writeField(hid_t file, const FieldInfo& info, const Buffer<T>& field) {
   hdf5Checked(H5Dwrite(dataset, layout.memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, field.data()));
 }
 
-/// Nothing is allocated before the file is known to hold as much.
+/// Rows that follow each other in the file.
+struct Rows {
+  std::uint64_t begin, count;
+};
+
+/// What is read of a file.
+struct Selection {
+  ParticlePart part;
+  std::uint32_t fluid = 0, walls = 0;      // particles in the file
+  std::vector<std::uint32_t> chosenWalls;  // of a part, from the first wall on, in the order of their ids
+
+  /// The rows of the fluid that a field has.
+  std::vector<Rows> fluidRows(const FieldInfo& info) const {
+    const std::uint64_t begin = part.begin(fluid), size = part.size(fluid);
+    if (info.of != Of::Modes) return {{begin, size}};
+    std::vector<Rows> rows;
+    for (std::uint64_t row = 0; row < info.count; row += fluid) rows.push_back({row + begin, size});
+    return rows;
+  }
+  std::uint64_t count(const FieldInfo& info) const {
+    const std::uint64_t times = info.of == Of::Modes && fluid > 0 ? info.count / fluid : 1;
+    return times * part.size(fluid) + (info.of == Of::All ? part.size(walls) : 0);
+  }
+};
+
+/// A field of the file, which is known to hold its values. Errors: Hdf5Error.
 template <class T>
-void readField(hid_t file, const FieldInfo& info, Buffer<T>& field) {
-  const Layout layout = layoutOf(field.data());
-  const Extents expected(info.count, layout);
-  const Hdf5Handle dataset(H5Dopen2(file, info.name, H5P_DEFAULT), H5Dclose);
-  const Hdf5Handle space(H5Dget_space(dataset), H5Sclose), type(H5Dget_type(dataset), H5Tclose);
-  Extents found = expected;
-  if (H5Sget_simple_extent_ndims(space) != expected.rank ||
-      H5Sget_simple_extent_dims(space, found.size.data(), nullptr) < 0 ||
-      !std::equal(found.size.begin(), found.size.begin() + expected.rank, expected.size.begin()))
-    throw Hdf5Error(fmt::format("the field {} does not have {} values", info.name, info.count));
-  if (H5Tget_class(type) != H5Tget_class(layout.memory))
-    throw Hdf5Error(fmt::format("the field {} has an unexpected type", info.name));
-  if (H5Dget_storage_size(dataset) < info.count * layout.components * H5Tget_size(type))
-    throw Hdf5Error(fmt::format("the file ends before the {} values of the field {} do", info.count, info.name));
-  field.resize(info.count);
-  hdf5Checked(H5Dread(dataset, layout.memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, field.data()));
+class FieldReader {
+ public:
+  FieldReader(hid_t file, const FieldInfo& info)
+      : layout_(layoutOf(static_cast<const T*>(nullptr))),
+        dataset_(H5Dopen2(file, info.name, H5P_DEFAULT), H5Dclose),
+        space_(H5Dget_space(dataset_), H5Sclose) {
+    const Extents expected(info.count, layout_);
+    const Hdf5Handle type(H5Dget_type(dataset_), H5Tclose);
+    Extents found = expected;
+    if (H5Sget_simple_extent_ndims(space_) != expected.rank ||
+        H5Sget_simple_extent_dims(space_, found.size.data(), nullptr) < 0 ||
+        !std::equal(found.size.begin(), found.size.begin() + expected.rank, expected.size.begin()))
+      throw Hdf5Error(fmt::format("the field {} does not have {} values", info.name, info.count));
+    if (H5Tget_class(type) != H5Tget_class(layout_.memory))
+      throw Hdf5Error(fmt::format("the field {} has an unexpected type", info.name));
+    if (H5Dget_storage_size(dataset_) < info.count * layout_.components * H5Tget_size(type))
+      throw Hdf5Error(fmt::format("the file ends before the {} values of the field {} do", info.count, info.name));
+  }
+
+  void read(const Rows& rows, T* to) const {
+    if (rows.count == 0) return;
+    const Extents some(rows.count, layout_);
+    const std::array<hsize_t, 2> start{rows.begin, 0};
+    const Hdf5Handle memory(H5Screate_simple(some.rank, some.size.data(), nullptr), H5Sclose);
+    hdf5Checked(H5Sselect_hyperslab(space_, H5S_SELECT_SET, start.data(), nullptr, some.size.data(), nullptr));
+    hdf5Checked(H5Dread(dataset_, layout_.memory, memory, space_, H5P_DEFAULT, to));
+  }
+
+ private:
+  Layout layout_;
+  Hdf5Handle dataset_, space_;
+};
+
+/// What is selected of a field. Nothing is allocated before the file is known to hold as much.
+template <class T>
+void readField(hid_t file, const FieldInfo& info, const Selection& selection, Buffer<T>& field) {
+  const FieldReader<T> reader(file, info);
+  field.resize(selection.count(info));
+  T* to = field.data();
+  for (const Rows& rows : selection.fluidRows(info)) reader.read(rows, std::exchange(to, to + rows.count));
+  if (info.of != Of::All) return;
+  const Rows walls{selection.fluid, selection.walls};
+  if (selection.part.isAll()) return reader.read(walls, to);
+  Buffer<T> all(selection.walls);  // of one field they may stand anywhere
+  reader.read(walls, all.data());
+  for (const std::uint32_t k : selection.chosenWalls) *to++ = all[k];
 }
 
 bool isFinite(double x) { return std::isfinite(x); }
@@ -186,21 +249,25 @@ bool isFinite(const Vec<D, T>& x) {
   return std::all_of(x.v, x.v + D, [](T component) { return std::isfinite(component); });
 }
 
-/// What no state of a simulation has, whatever its case. Errors: Hdf5Error.
+/// Errors: Hdf5Error.
 template <int D>
-void requireSound(const Particles<D>& particles) {
+void requireFinite(const Particles<D>& particles) {
   forEachNamedField(particles, [&]<class T>(const FieldInfo& info, const Buffer<T>& field) {
     if constexpr (!std::is_integral_v<T>)
       for (std::size_t k = 0; k < field.size(); ++k)
         if (!isFinite(field[k]))
           throw Hdf5Error(fmt::format("value {} of the field {} is not finite", k, info.name));
   });
-  std::vector<bool> taken(particles.count);
-  for (std::uint32_t i = 0; i < particles.count; ++i) {
-    const std::uint32_t id = particles.id[i];
-    if (id >= particles.count)
-      throw Hdf5Error(fmt::format("a particle has id {}, expected less than {}", id, particles.count));
-    if ((id < particles.fluidCount) != (i < particles.fluidCount))
+}
+
+/// `ids`: of all particles, `fluid` of which come first. Errors: Hdf5Error.
+void requireEachOnce(std::span<const std::uint32_t> ids, std::uint32_t fluid) {
+  std::vector<bool> taken(ids.size());
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    const std::uint32_t id = ids[i];
+    if (id >= ids.size())
+      throw Hdf5Error(fmt::format("a particle has id {}, expected less than {}", id, ids.size()));
+    if ((id < fluid) != (i < fluid))
       throw Hdf5Error(fmt::format("particle {} is among those of the other kind", id));
     if (taken[id]) throw Hdf5Error(fmt::format("two particles have the id {}", id));
     taken[id] = true;
@@ -306,9 +373,25 @@ void requireReadable(const std::filesystem::path& path) {
     throw InputError(fmt::format("{}: not a treacle checkpoint: not an HDF5 file", path.string()));
 }
 
+/// The walls of a part; it also looks at all ids, since a part does not see whether others have the same. Errors:
+/// Hdf5Error.
+void chooseWalls(hid_t file, Selection& selection) {
+  const std::uint32_t fluid = selection.fluid, walls = selection.walls;
+  const FieldInfo info{"id", Of::All, std::uint64_t{fluid} + walls};
+  const FieldReader<std::uint32_t> reader(file, info);
+  Buffer<std::uint32_t> ids(info.count);
+  reader.read({0, info.count}, ids.data());
+  requireEachOnce(ids, fluid);
+  const std::uint32_t first = fluid + selection.part.begin(walls);
+  selection.chosenWalls.resize(selection.part.size(walls));
+  for (std::uint32_t k = 0; k < walls; ++k)
+    if (const std::uint32_t place = ids[fluid + k] - first; place < selection.chosenWalls.size())
+      selection.chosenWalls[place] = k;
+}
+
 /// Errors: Hdf5Error.
 template <int D>
-Checkpoint<D> readContent(const std::filesystem::path& path, bool sealed) {
+Checkpoint<D> readContent(const std::filesystem::path& path, bool sealed, ParticlePart part) {
   const Hdf5Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   const std::int32_t version = requireFormat(file, D);
   Checkpoint<D> checkpoint;
@@ -320,15 +403,21 @@ Checkpoint<D> readContent(const std::filesystem::path& path, bool sealed) {
   if (version >= 3) modes = readModeNumbers(file, particles.modes.age);
   if (version >= 5) particles.modes.pressure = readEigenvalue(file);
   if (version >= 6) particles.steps = readSteps(file);
-  const auto read = [&]<class T>(const FieldInfo& info, Buffer<T>& field) {
-    if (version >= info.since) return readField(file, info, field);
-    field.resize(info.count);
-    T older{};
-    if constexpr (std::is_integral_v<T>) older = static_cast<T>(info.older);
-    std::fill(field.begin(), field.end(), older);
-  };
-  forEachNamedField(particles, std::uint64_t{particles.fluidCount} * modes, read);
-  requireSound(particles);
+  Selection selection{part, particles.fluidCount, particles.wallCount(), {}};
+  checkpoint.fluidOfAll = selection.fluid, checkpoint.wallsOfAll = selection.walls;
+  if (!part.isAll()) chooseWalls(file, selection);
+  forEachNamedField(particles, std::uint64_t{selection.fluid} * modes,
+                    [&]<class T>(const FieldInfo& info, Buffer<T>& field) {
+                      if (version >= info.since) return readField(file, info, selection, field);
+                      field.resize(selection.count(info));
+                      T older{};
+                      if constexpr (std::is_integral_v<T>) older = static_cast<T>(info.older);
+                      std::fill(field.begin(), field.end(), older);
+                    });
+  requireFinite(particles);
+  if (part.isAll()) requireEachOnce(particles.id, particles.fluidCount);
+  particles.fluidCount = part.size(selection.fluid);
+  particles.count = particles.fluidCount + part.size(selection.walls);
   return checkpoint;
 }
 
@@ -339,7 +428,8 @@ void writeCheckpoint(const std::filesystem::path& path, const Particles<D>& part
                      double time, MethodKind method) {
   const Hdf5Silence silence;
   try {
-    requireSound(particles);  // what cannot be read back must not replace what can
+    requireFinite(particles);  // what cannot be read back must not replace what can
+    requireEachOnce(particles.id, particles.fluidCount);
     // HDF5 makes the file in memory: it cannot close a file that a full disk keeps it from finishing.
     std::size_t bytes = 1 << 16;
     forEachNamedField(particles, [&](const FieldInfo&, const auto& field) { bytes += field.bytes(); });
@@ -365,7 +455,7 @@ void writeCheckpoint(const std::filesystem::path& path, const Particles<D>& part
 }
 
 template <int D>
-Checkpoint<D> readCheckpoint(const std::filesystem::path& path) {
+Checkpoint<D> readCheckpoint(const std::filesystem::path& path, ParticlePart part) {
   const Hdf5Silence silence;
   requireReadable(path);
   // HDF5 trusts what it reads, and a damaged file can end the program: what has a checksum is looked at before,
@@ -375,9 +465,9 @@ Checkpoint<D> readCheckpoint(const std::filesystem::path& path) {
     return InputError(fmt::format("{}: no usable checkpoint: {}", path.string(), why));
   };
   if (sealed && !*sealed) throw refuse("damaged, its checksum is another one");
-  if (!sealed && !survives([&] { readContent<D>(path, false); })) throw refuse("damaged");
+  if (!sealed && !survives([&] { readContent<D>(path, false, part); })) throw refuse("damaged");
   try {
-    return readContent<D>(path, sealed.has_value());
+    return readContent<D>(path, sealed.has_value(), part);
   } catch (const Hdf5Error& e) {
     throw refuse(e.what());
   }
@@ -387,7 +477,7 @@ template void writeCheckpoint<2>(const std::filesystem::path&, const Particles<2
                                  MethodKind);
 template void writeCheckpoint<3>(const std::filesystem::path&, const Particles<3>&, std::int64_t, double,
                                  MethodKind);
-template Checkpoint<2> readCheckpoint<2>(const std::filesystem::path&);
-template Checkpoint<3> readCheckpoint<3>(const std::filesystem::path&);
+template Checkpoint<2> readCheckpoint<2>(const std::filesystem::path&, ParticlePart);
+template Checkpoint<3> readCheckpoint<3>(const std::filesystem::path&, ParticlePart);
 
 }  // namespace treacle

@@ -4,7 +4,7 @@
 #include "treacle/core/error.hpp"
 #include "treacle/io/atomic_file.hpp"
 #include "treacle/io/case_reader.hpp"
-#include "treacle/io/vtp.hpp"
+#include "treacle/io/pvtp.hpp"
 
 #include <fmt/format.h>
 
@@ -58,7 +58,7 @@ std::vector<double> rowTimes(std::span<const HistoryRow> rows) {
 FrameDifference compareFrameFiles(const RunDirectory& a, const RunDirectory& b, std::size_t frameA,
                                   std::size_t frameB, const Case& reference) {
   const auto pathA = a.fluidFrame(frameA), pathB = b.fluidFrame(frameB);
-  const Frame first = readVtp(pathA), second = readVtp(pathB);
+  const Frame first = readFrame(pathA), second = readFrame(pathB);
   try {
     FrameDifference d = compareFrames(first, second, reference);
     d.time = b.frameTime(frameB);

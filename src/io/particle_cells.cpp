@@ -6,7 +6,8 @@
 
 namespace treacle {
 
-ParticleCells::ParticleCells(const Frame& fluid, const Frame& walls, const Domain& domain, double edge)
+ParticleCells::ParticleCells(const Frame& fluid, const Frame& walls, std::span<const Vec<3>> others,
+                             const Domain& domain, double edge)
     : dimensions_(fluid.dimensions), edge_(edge) {
   // Two cells around each particle's own one, wherever in it the particle lies.
   const Box box = boundsOf(fluid.position, 3 * edge);
@@ -15,6 +16,8 @@ ParticleCells::ParticleCells(const Frame& fluid, const Frame& walls, const Domai
   for (std::size_t i = 0; i < fluid.position.size(); ++i) add(fluid.position[i], static_cast<std::uint32_t>(i));
   for (const Vec<3>& x : walls.position) add(x, wall);
   addImages(domain);
+  // The fluid's own box need not reach the end of the domain beyond which these are.
+  for (const Vec<3>& x : others) addWithImages(x, domain);
   std::sort(points_.begin(), points_.end(), [](const Point& a, const Point& b) { return a.key < b.key; });
   for (std::size_t i = 0; i < points_.size(); ++i)
     if (keys_.empty() || points_[i].key != keys_.back())
@@ -41,6 +44,17 @@ void ParticleCells::addImages(const Domain& domain) {
       if (at < domain.min[k] + margin) x[k] = at + period, add(x, index);
       if (at > domain.max[k] - margin) x[k] = at - period, add(x, index);
     }
+  }
+}
+
+void ParticleCells::addWithImages(Vec<3> x, const Domain& domain, int axis) {
+  if (axis == dimensions_) return add(x, wall);
+  addWithImages(x, domain, axis + 1);
+  if (!domain.periodic[static_cast<std::size_t>(axis)]) return;
+  const double at = x[axis], period = domain.max[axis] - domain.min[axis];
+  for (const double shift : {-period, period}) {
+    x[axis] = at + shift;
+    addWithImages(x, domain, axis + 1);
   }
 }
 

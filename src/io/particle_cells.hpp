@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace treacle {
@@ -23,8 +24,10 @@ class ParticleCells {
     bool isParticle() const { return index < wall; }
   };
 
-  /// `edge` of a cell [m]. Periodic axes: at least three edges long.
-  ParticleCells(const Frame& fluid, const Frame& walls, const Domain& domain, double edge);
+  /// `edge` of a cell [m]. Periodic axes: at least three edges long. `others`: what else is near, be it on
+  /// the other side of periodic ends; it counts as walls do.
+  ParticleCells(const Frame& fluid, const Frame& walls, std::span<const Vec<3>> others, const Domain& domain,
+                double edge);
 
   std::size_t size() const { return keys_.size(); }
   std::size_t begin(std::size_t cell) const { return begin_[cell]; }  // its points are [begin(c), begin(c + 1))
@@ -52,6 +55,8 @@ class ParticleCells {
 
   void add(const Vec<3>& position, std::uint32_t index);
   void addImages(const Domain& domain);
+  /// The position and all its images.
+  void addWithImages(Vec<3> position, const Domain& domain, int axis = 0);
   std::int64_t keyOf(const Vec<3>& x) const;
 
   int dimensions_;

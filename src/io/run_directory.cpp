@@ -3,6 +3,7 @@
 #include "posix.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/io/atomic_file.hpp"
+#include "treacle/io/pvtp.hpp"
 #include "treacle/io/vtp.hpp"
 
 #include <fcntl.h>
@@ -12,6 +13,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <optional>
 #include <string>
 #include <system_error>
 
@@ -25,16 +27,24 @@ std::string frameName(std::string_view group, std::size_t frame, std::string_vie
   return fmt::format("frames/{}_{:06}.{}", group, frame, extension);
 }
 
+/// The extension of a process's part of a frame.
+std::string pieceExtension(int rank) { return fmt::format("p{}.vtp", rank); }
+
+/// Without its first digits, of which there must be `least` or more; nothing where there are fewer.
+std::optional<std::string_view> withoutNumber(std::string_view text, std::size_t least) {
+  const std::size_t end = std::min(text.find_first_not_of("0123456789"), text.size());
+  return end < least ? std::nullopt : std::optional(text.substr(end));
+}
+
 /// Whether the name is one that frameName gives, or its temporary form.
 bool isFrameName(std::string_view name) {
-  for (const std::string_view group : {"fluid_", "walls_"})
-    for (const std::string_view extension : {".vtp", ".vtp.tmp", ".png", ".png.tmp"}) {
-      if (!name.starts_with(group) || !name.ends_with(extension)) continue;
-      if (name.size() < group.size() + 6 + extension.size()) continue;
-      const auto number = name.substr(group.size(), name.size() - group.size() - extension.size());
-      if (std::all_of(number.begin(), number.end(), [](char c) { return c >= '0' && c <= '9'; })) return true;
-    }
-  return false;
+  if (!name.starts_with("fluid_") && !name.starts_with("walls_")) return false;
+  auto rest = withoutNumber(name.substr(6), 6);
+  if (rest && rest->ends_with(".tmp")) rest->remove_suffix(4);
+  if (rest && rest->starts_with(".p"))
+    if (const auto extension = withoutNumber(rest->substr(2), 1))
+      rest = extension == ".vtp" ? extension : std::nullopt;
+  return rest == ".vtp" || rest == ".pvtp" || rest == ".png";
 }
 
 [[noreturn]] void unusable(const fs::path& path, std::string_view why) {
@@ -114,16 +124,63 @@ void RunDirectory::removeRun() const {
   }
 }
 
-fs::path RunDirectory::fluidFrame(std::size_t frame) const { return path_ / frameName("fluid", frame, "vtp"); }
-fs::path RunDirectory::wallsFrame(std::size_t frame) const { return path_ / frameName("walls", frame, "vtp"); }
+fs::path RunDirectory::fluidFrame(std::size_t frame) const { return framePath("fluid", frame, fluidFrames_); }
+fs::path RunDirectory::wallsFrame(std::size_t frame) const { return framePath("walls", frame, wallsFrames_); }
+fs::path RunDirectory::fluidPiece(std::size_t frame, int rank) const {
+  return path_ / frameName("fluid", frame, pieceExtension(rank));
+}
+fs::path RunDirectory::wallsPiece(std::size_t frame, int rank) const {
+  return path_ / frameName("walls", frame, pieceExtension(rank));
+}
 fs::path RunDirectory::framePicture(std::size_t frame) const { return path_ / frameName("fluid", frame, "png"); }
+
+/// The index says which frames are in pieces.
+fs::path RunDirectory::framePath(std::string_view group, std::size_t frame,
+                                 const std::vector<PvdEntry>& written) const {
+  const bool inPieces = frame < written.size() && written[frame].file.ends_with(".pvtp");
+  return path_ / frameName(group, frame, inPieces ? "pvtp" : "vtp");
+}
 
 void RunDirectory::writeFrame(const Frame& fluid, const Frame& walls, const OutputSettings& settings) {
   const std::size_t frame = frameCount();
   writeVtp(fluidFrame(frame), fluid, settings.fields, settings.precision);
   writeVtp(wallsFrame(frame), walls, settings.fields, settings.precision);
-  fluidFrames_.push_back({fluid.time, frameName("fluid", frame, "vtp")});
-  wallsFrames_.push_back({walls.time, frameName("walls", frame, "vtp")});
+  addFrame(fluid.time, "vtp", "vtp");
+}
+
+void RunDirectory::joinPieces(const FramePieces& pieces) {
+  const auto fluid = joinGroup("fluid", pieces, pieces.fluid), walls = joinGroup("walls", pieces, pieces.walls);
+  addFrame(pieces.time, fluid, walls);
+}
+
+/// Returns the extension of what makes the group one.
+std::string_view RunDirectory::joinGroup(std::string_view group, const FramePieces& pieces,
+                                         const std::vector<int>& ranks) const {
+  const std::size_t frame = frameCount();
+  if (ranks.empty()) {
+    Frame none;
+    none.time = pieces.time, none.dimensions = pieces.dimensions;
+    writeVtp(path_ / frameName(group, frame, "vtp"), none, {}, OutputPrecision::Single);
+    return "vtp";
+  }
+  std::vector<std::string> names;
+  for (const int rank : ranks) {
+    const fs::path piece = path_ / frameName(group, frame, pieceExtension(rank));
+    if (std::error_code error; !fs::exists(piece, error))
+      throw RunError(fmt::format(
+          "{} is not there, but rank {} has written it; expected a run directory on a file system that "
+          "all processes have",
+          piece.string(), rank));
+    names.push_back(piece.filename().string());
+  }
+  writePvtp(path_ / frameName(group, frame, "pvtp"), names);
+  return "pvtp";
+}
+
+void RunDirectory::addFrame(double time, std::string_view fluidExtension, std::string_view wallsExtension) {
+  const std::size_t frame = frameCount();
+  fluidFrames_.push_back({time, frameName("fluid", frame, fluidExtension)});
+  wallsFrames_.push_back({time, frameName("walls", frame, wallsExtension)});
   // The index that makes a directory that of a run comes last.
   writePvd(wallsIndex(), wallsFrames_);
   writePvd(fluidIndex(), fluidFrames_);

@@ -1,6 +1,7 @@
 #include "treacle/core/error.hpp"
 #include "treacle/io/vtp.hpp"
 #include "vtk_xml.hpp"
+#include "vtp_contents.hpp"
 
 #include <fmt/format.h>
 
@@ -32,10 +33,7 @@ class VtpReader {
 
   Frame frame() {
     Frame frame;
-    frame.time = fieldValue<double>("TimeValue");
-    if (!std::isfinite(frame.time)) foreign("'TimeValue' is not finite");
-    frame.dimensions = fieldValue<int>("dimensions");
-    if (frame.dimensions != 2 && frame.dimensions != 3) foreign("'dimensions' is neither 2 nor 3");
+    frame.time = time(), frame.dimensions = dimensions();
     readVectors("position", frame.position);
     if (frame.position.size() != count_) foreign("no particle positions");
     readVectors("velocity", frame.velocity);
@@ -48,7 +46,35 @@ class VtpReader {
     return frame;
   }
 
+  VtpContents contents() const {
+    VtpContents contents{count_, time(), dimensions(), {}, {}};
+    const std::size_t begin = header_.find("<PointData>"), end = header_.find("</PointData>");
+    std::size_t from = std::min(begin, header_.size());
+    while (const auto tag = nextTag(header_, "DataArray", from)) {
+      if (from > end) break;
+      const auto type = attribute(*tag, "type"), name = attribute(*tag, "Name");
+      const auto components = parseNumber<int>(attribute(*tag, "NumberOfComponents").value_or(""));
+      if (!type || !name || !components) foreign("an array without type, name or number of components");
+      contents.pointData.push_back({std::string(*type), std::string(*name), *components});
+    }
+    std::size_t points = 0;
+    const auto tag = findArray("position", points);
+    contents.positionType = tag ? attribute(*tag, "type").value_or("") : "";
+    return contents;
+  }
+
  private:
+  double time() const {
+    const auto time = fieldValue<double>("TimeValue");
+    if (!std::isfinite(time)) foreign("'TimeValue' is not finite");
+    return time;
+  }
+  int dimensions() const {
+    const int dimensions = fieldValue<int>("dimensions");
+    if (dimensions != 2 && dimensions != 3) foreign("'dimensions' is neither 2 nor 3");
+    return dimensions;
+  }
+
   [[noreturn]] void fail(std::string_view what) const {
     throw InputError(fmt::format("{}: {}", path_.string(), what));
   }
@@ -187,5 +213,7 @@ class VtpReader {
 }  // namespace
 
 Frame readVtp(const std::filesystem::path& path) { return VtpReader(path).frame(); }
+
+VtpContents readVtpContents(const std::filesystem::path& path) { return VtpReader(path).contents(); }
 
 }  // namespace treacle

@@ -127,29 +127,36 @@ void requireApart(const std::vector<Filled<D>>& fluid, const PointGrid<D>& grid,
   }
 }
 
+/// Makes particles of those points whose ids are in [first, end); `id`: of the next point, `at`: where the next
+/// particle is to stand.
 template <int D>
-void append(const Case& c, const std::vector<Filled<D>>& filled, Particles<D>& particles, std::uint32_t& next) {
+void append(const Case& c, const std::vector<Filled<D>>& filled, std::uint32_t first, std::uint32_t end,
+            Particles<D>& particles, std::uint32_t& id, std::uint32_t& at) {
   for (const Filled<D>& f : filled) {
     const auto body = static_cast<std::uint8_t>(f.body - c.bodies.data());
+    const auto count = static_cast<std::uint32_t>(f.points.size());
+    const std::uint32_t begin = std::clamp(first, id, id + count) - id,
+                        made = std::clamp(end, id, id + count) - id;
     const InitialVelocity<D> velocity(c, *f.body);
     const auto place = [&](std::size_t k) {
-      const Vec<D>& x = f.points[k];
-      const std::size_t i = next + k;
+      const Vec<D>& x = f.points[begin + k];
+      const std::size_t i = at + k;
       particles.position[i] = x;
       particles.velocity[i] = velocity.at(x);
       particles.pressure[i] = 0;
       particles.numberDensity[i] = 0;
       particles.material[i] = static_cast<std::uint8_t>(f.body->material);
       particles.body[i] = body;
-      particles.id[i] = static_cast<std::uint32_t>(i);
+      particles.id[i] = static_cast<std::uint32_t>(id + begin + k);
     };
+    const std::uint32_t size = made - begin;
     // Expressions throw, and are not for several threads at once.
     const bool expressions = f.body->velocityExpression != decltype(f.body->velocityExpression){};
     if (expressions)
-      for (std::size_t k = 0; k < f.points.size(); ++k) place(k);
+      for (std::size_t k = 0; k < size; ++k) place(k);
     else
-      parallelFor(f.points.size(), parallelGrain, place);
-    next += static_cast<std::uint32_t>(f.points.size());
+      parallelFor(size, parallelGrain, place);
+    id += count, at += size;
   }
 }
 
@@ -157,7 +164,7 @@ void append(const Case& c, const std::vector<Filled<D>>& filled, Particles<D>& p
 
 template <int D>
 Particles<D> createParticles(const Case& c, std::vector<std::string>& notes,
-                             std::vector<std::uint32_t>* bodyCounts) {
+                             std::vector<std::uint32_t>* bodyCounts, ParticlePart part) {
   auto fluid = fillBodies<D>(c, BodyKind::Fluid, notes);
   auto walls = fillBodies<D>(c, BodyKind::Wall, notes);
   if (total(fluid) == 0) throw InputError("the case has no fluid: no body of type \"fluid\" holds a particle");
@@ -179,15 +186,19 @@ Particles<D> createParticles(const Case& c, std::vector<std::string>& notes,
   }
   requireApart(fluid, fluidGrid, walls, boxes);
 
+  const auto fluidCount = static_cast<std::uint32_t>(total(fluid)),
+             wallCount = static_cast<std::uint32_t>(total(walls));
+  const std::uint32_t n = part.size(fluidCount), count = part.size(wallCount);
   Particles<D> particles;
-  particles.resize(static_cast<std::uint32_t>(total(fluid)), static_cast<std::uint32_t>(total(walls)));
-  std::uint32_t next = 0;
-  append(c, fluid, particles, next);
-  append(c, walls, particles, next);
+  particles.resize(n, count);
+  std::uint32_t id = 0, at = 0;
+  append(c, fluid, part.begin(fluidCount), part.end(fluidCount), particles, id, at);
+  append(c, walls, fluidCount + part.begin(wallCount), fluidCount + part.end(wallCount), particles, id, at);
   if (c.method.kind == MethodKind::MphI && c.method.wallVelocity == WallVelocity::Extrapolated) {
-    const std::uint32_t n = particles.fluidCount, count = particles.wallCount();
-    const auto surfaces = createWallSurfaces<D>(c, particles.position.span().subspan(n, count),
-                                                particles.body.span().subspan(n, count), notes);
+    std::vector<std::string> ofPart;
+    const auto surfaces =
+        createWallSurfaces<D>(c, particles.position.span().subspan(n, count),
+                              particles.body.span().subspan(n, count), part.isAll() ? notes : ofPart);
     particles.wallSurface.resize(count);
     std::copy(surfaces.begin(), surfaces.end(), particles.wallSurface.begin());
   }
@@ -202,12 +213,14 @@ Particles<D> createParticles(const Case& c, std::vector<std::string>& notes,
 }
 
 AnyParticles createParticles(const Case& c, std::vector<std::string>& notes,
-                             std::vector<std::uint32_t>* bodyCounts) {
-  if (c.dimensions == 2) return createParticles<2>(c, notes, bodyCounts);
-  return createParticles<3>(c, notes, bodyCounts);
+                             std::vector<std::uint32_t>* bodyCounts, ParticlePart part) {
+  if (c.dimensions == 2) return createParticles<2>(c, notes, bodyCounts, part);
+  return createParticles<3>(c, notes, bodyCounts, part);
 }
 
-template Particles<2> createParticles<2>(const Case&, std::vector<std::string>&, std::vector<std::uint32_t>*);
-template Particles<3> createParticles<3>(const Case&, std::vector<std::string>&, std::vector<std::uint32_t>*);
+template Particles<2> createParticles<2>(const Case&, std::vector<std::string>&, std::vector<std::uint32_t>*,
+                                         ParticlePart);
+template Particles<3> createParticles<3>(const Case&, std::vector<std::string>&, std::vector<std::uint32_t>*,
+                                         ParticlePart);
 
 }  // namespace treacle

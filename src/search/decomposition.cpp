@@ -15,13 +15,11 @@ void Decomposition<D, Cpu>::sort(Context<Cpu>& context, const CellGrid<D>& grid,
     requireFinite<D>(p.position.span().first(p.fluidCount));
     requireFinite<D>(p.position.span().subspan(p.wallBegin()));
   });
-  if (!owners_.areKnown()) {
+  if (!owners_.areKnown())
     this->assignFirst(job, grid, p.position.span().first(p.fluidCount), p.position.span().subspan(p.wallBegin()));
-    keepOwn(grid, p);
-  } else {
+  else
     balance(job, grid, p);
-    migrate(job, grid, p);
-  }
+  migrate(job, grid, p);
   sortFluid(grid, p, ranges, workspace);
   const std::uint32_t own = p.fluidCount;
   findActiveCells(job, grid, p.position.span().first(own), workspace);
@@ -39,14 +37,6 @@ void Decomposition<D, Cpu>::sort(Context<Cpu>& context, const CellGrid<D>& grid,
   fillRanges<D>(grid, p.position, 0, halo_.fluid, ranges.fluidBegin, ranges.fluidEnd);
   fillRanges<D>(grid, p.position, halo_.fluid, ranges.activeCount, ranges.wallBegin, ranges.wallEnd);
   giveUp(workspace.keyed, workspace.field);
-}
-
-template <int D>
-void Decomposition<D, Cpu>::keepOwn(const CellGrid<D>& grid, Particles<D>& p) {
-  std::vector<std::uint32_t> kept;
-  for (std::uint32_t i = 0; i < p.fluidCount; ++i)
-    if (owners_.isOwn(cellAt(grid, p.position[i]))) kept.push_back(i);
-  keepFluid<D>(p, kept, 0);
 }
 
 template <int D>

@@ -13,6 +13,7 @@ void ProcessParts<D, Backend>::assignFirst(const Communicator& job, const CellGr
                                            std::span<const Vec<D>> fluid, std::span<const Vec<D>> walls) {
   std::vector<std::uint32_t> work(grid.cellCount());
   addWork<D>(grid, fluid, fluidWork, work);
+  job.sum(std::span(work));
   const auto filled = std::ranges::count_if(work, [](std::uint32_t w) { return w > 0; });
   if (job.size() > filled)
     throw InputError(std::to_string(job.size()) + " processes, but the fluid fills only " +

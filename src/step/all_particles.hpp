@@ -40,7 +40,7 @@ void copyAllParticles(const FlowState<D, Backend>& state, const DistantWalls<D>&
     copyToHost(state.context, state.particles, own);
     gather(own);
   }
-  if (processes->rank() == 0) distant.copyTo(host);
+  distant.copyTo(host);
 }
 
 }  // namespace treacle

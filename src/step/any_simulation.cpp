@@ -42,7 +42,12 @@ struct AnySimulation::Held {
 namespace {
 
 /// What the first process asks of the others.
-enum class Order : int { Make, Advance, Copy, Share, Drop, End };
+enum class Order : int { Make, Advance, Copy, Share, Duty, Drop, End };
+
+struct DutyCall {
+  int order;
+  std::int64_t number;
+};
 
 void give(const Communicator* processes, Order order) {
   if (processes && processes->rank() == 0) processes->broadcast(order);
@@ -142,12 +147,26 @@ std::vector<AnySimulation::Share> AnySimulation::shares() const {
   return processes_->all(own);
 }
 
+void AnySimulation::everywhere(int order, std::int64_t number, const Duty& duty) {
+  give(processes_, Order::Duty);
+  DutyCall call{order, number};
+  if (processes_ && processes_->rank() == 0) processes_->broadcast(call);
+  part(processes_, [&] { duty(*this, order, number); });
+}
+
+std::uint32_t AnySimulation::copyOwnParticles(AnyParticles& host) const {
+  return held_->visit([&]<int D, class Backend>(Simulation<D, Backend>& s) {
+    if (host.dimensions() != D) host = AnyParticles(D);
+    return s.copyOwnParticles(host.of<D>());
+  });
+}
+
 Followers::~Followers() {
   if (processes_.size() > 1) give(&processes_, Order::End);
 }
 
 void serveSimulation(const Case& c, AnyParticles particles, BackendKind backend, std::int64_t step, double time,
-                     const Communicator& processes) {
+                     const Communicator& processes, const AnySimulation::Duty& duty) {
   std::optional<AnySimulation> simulation;
   AnyParticles none(particles.dimensions());
   for (Order order = Order::End;;) {
@@ -166,6 +185,12 @@ void serveSimulation(const Case& c, AnyParticles particles, BackendKind backend,
         case Order::Share:
           simulation->shares();
           break;
+        case Order::Duty: {
+          DutyCall call{};
+          processes.broadcast(call);
+          simulation->everywhere(call.order, call.number, duty);
+          break;
+        }
         case Order::Drop:
           simulation.reset();
           break;

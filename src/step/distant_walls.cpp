@@ -1,8 +1,12 @@
 #include "treacle/step/distant_walls.hpp"
 
 #include "selected.hpp"
+#include "treacle/model/particles_copy.hpp"
 #include "treacle/model/wall_motion.hpp"
+#include "walls_of_all.hpp"
 
+#include <algorithm>
+#include <cstddef>
 #include <numbers>
 
 namespace treacle {
@@ -31,20 +35,28 @@ double largestSpeed(const Case& c, const Particles<D>& p, std::span<const std::u
 }  // namespace
 
 template <int D>
-DistantWalls<D>::DistantWalls(const Case& c, const CellGrid<D>& cells, Particles<D>& particles, double time)
-    : near_(c, cells), stored_(near_.count()) {
+DistantWalls<D>::DistantWalls(const Case& c, const CellGrid<D>& cells, Particles<D>& particles, double time,
+                              const Communicator* processes)
+    : processes_(processes),
+      near_(c, cells),
+      stored_(near_.count()),
+      hasSurfaces_(!particles.wallSurface.empty()) {
   near_.add(particles);
-  wallSpeed_ = largestSpeed<D>(c, particles, near_.movingWalls(particles), time);
+  if (processes_) near_.unite(*processes_);
   const Buffer<std::uint32_t> far =
       selected(particles.fluidCount, particles.count, [&](std::uint32_t i) { return near_.isFar(particles, i); });
-  if (far.empty()) return;
-  store(particles, far);
-  particles = nearParticles(near_, particles);
+  if (!far.empty()) {
+    store(particles, far);
+    particles = nearParticles(near_, particles);
+  }
+  if (processes_) holdThoseOfAll(particles);
+  wallSpeed_ = largestSpeed<D>(c, particles, near_.movingWalls(particles), time);
+  storedSome_ = std::ranges::find(stored_, 1) != stored_.end();
+  countMissing();
 }
 
 template <int D>
 void DistantWalls<D>::store(const Particles<D>& particles, std::span<const std::uint32_t> which) {
-  count_ = static_cast<std::uint32_t>(which.size());
   const auto take = [&](const auto& from, auto& to, std::uint32_t first) {
     if (from.empty()) return;
     to.resize(which.size());
@@ -56,6 +68,19 @@ void DistantWalls<D>::store(const Particles<D>& particles, std::span<const std::
   take(particles.id, id_, 0);
   take(particles.wallSurface, surface_, particles.fluidCount);
   for (const Vec<D>& x : position_) stored_[near_.blockOf(x)] = 1;
+}
+
+/// Of walls each process comes with a part of those that are near.
+template <int D>
+void DistantWalls<D>::holdThoseOfAll(Particles<D>& particles) {
+  processes_->anyOf(stored_);
+  std::uint8_t surfaces = hasSurfaces_;
+  processes_->anyOf({&surfaces, 1});
+  hasSurfaces_ = surfaces != 0;
+  Context<Cpu> host;
+  Particles<D> own;
+  copyWallsToHost(host, particles, own);
+  replaceWalls(host, wallsOfAll(*processes_, own, hasSurfaces_), particles);
 }
 
 template <int D>
@@ -75,17 +100,20 @@ Particles<D> DistantWalls<D>::held(const NearBlocks<D>& near, const Particles<D>
   const Buffer<std::uint32_t> kept = selected(0, walls.count, [&](std::uint32_t i) {
     return !(near.isFar(walls, i) && stored_[near.blockOf(walls.position[i])]);
   });
-  const Buffer<std::uint32_t> added =
-      selected(0, static_cast<std::uint32_t>(position_.size()), [&](std::uint32_t k) {
-        const std::size_t block = near.blockOf(position_[k]);
-        return near.isNear(block) && !near_.isNear(block);
-      });
-  const std::uint64_t size = kept.size() + added.size();
+  Particles<D> added = chosen(selected(0, static_cast<std::uint32_t>(position_.size()), [&](std::uint32_t k) {
+    const std::size_t block = near.blockOf(position_[k]);
+    return near.isNear(block) && !near_.isNear(block);
+  }));
+  if (processes_) added = wallsOfAll(*processes_, added, hasSurfaces_);
+  const std::uint64_t size = kept.size() + added.count;
   Particles<D> held;
-  held.resize({0, size, 0, surface_.empty() ? 0 : size});
-  forEachSharedFieldOf([&](const auto& from, auto& to) { gather(from.span(), kept, to.data()); }, walls, held);
-  if (!surface_.empty()) gather(walls.wallSurface.span(), kept, held.wallSurface.data());
-  copyTo(held, static_cast<std::uint32_t>(kept.size()), added);
+  held.resize({0, size, 0, hasSurfaces_ ? size : 0});
+  const auto join = [&](const auto& from, const auto& more, auto& to) {
+    gather(from.span(), kept, to.data());
+    std::copy(more.begin(), more.end(), to.data() + kept.size());
+  };
+  forEachSharedFieldOf(join, walls, added, held);
+  if (hasSurfaces_) forEachWallFieldOf(join, walls, added, held);
   return held;
 }
 
@@ -93,7 +121,14 @@ template <int D>
 void DistantWalls<D>::accept(NearBlocks<D> near) {
   near_ = std::move(near);
   way_ = 0;
-  count_ = static_cast<std::uint32_t>(missing().size());
+  countMissing();
+}
+
+template <int D>
+void DistantWalls<D>::countMissing() {
+  std::uint64_t count = missing().size();
+  if (processes_) processes_->sum(std::span<std::uint64_t>(&count, 1));
+  countOfAll_ = static_cast<std::uint32_t>(count);
 }
 
 /// Those of the store that are not held.
@@ -104,7 +139,13 @@ Buffer<std::uint32_t> DistantWalls<D>::missing() const {
 }
 
 template <int D>
+Particles<D> DistantWalls<D>::ofPart() const {
+  return chosen(missing());
+}
+
+template <int D>
 void DistantWalls<D>::copyTo(Particles<D>& all) const {
+  if (processes_) return appendWallsOfAll(*processes_, ofPart(), hasSurfaces_, all);
   const Buffer<std::uint32_t> which = missing();
   copyTo(all, all.count - static_cast<std::uint32_t>(which.size()), which);
 }
@@ -122,6 +163,15 @@ void DistantWalls<D>::copyTo(Particles<D>& particles, std::uint32_t first,
     particles.velocity[first + k] = {};
     particles.pressure[first + k] = particles.numberDensity[first + k] = 0;
   });
+}
+
+/// These of the store as particles.
+template <int D>
+Particles<D> DistantWalls<D>::chosen(std::span<const std::uint32_t> which) const {
+  Particles<D> walls;
+  walls.resize({0, which.size(), 0, surface_.empty() ? 0 : which.size()});
+  copyTo(walls, 0, which);
+  return walls;
 }
 
 template class DistantWalls<2>;

@@ -150,6 +150,7 @@ class IsphStep final : public StepMethod<D, Backend> {
   std::span<const double> source() const { return source_; }
 
   const CellGrid<D>& grid() const override { return pairs_.grid; }
+  const CellOwners<D>& owners() const override { return sort_.owners(); }
   const MaterialTable& materials() const override { return pairs_.materials; }
   std::size_t bytes() const override {
     return sort_.bytes() + fluidOfFluid_.bytes() + wallsOfFluid_.bytes() + fluidOfWalls_.bytes() +

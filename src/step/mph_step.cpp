@@ -145,6 +145,7 @@ class MphStep final : public StepMethod<D, Backend> {
   std::optional<Balance> balance() const override { return lastBalance_; }
 
   const CellGrid<D>& grid() const override { return pairs_.grid; }
+  const CellOwners<D>& owners() const override { return neighbourhood_.owners(); }
   const MaterialTable& materials() const override { return pairs_.materials; }
   std::size_t bytes() const override {
     return neighbourhood_.bytes() + wallSurface_.bytes() + renormalisation_.bytes() + viscosityScale_.bytes() +

@@ -5,6 +5,7 @@
 #include "given_step.hpp"
 #include "held_walls.hpp"
 #include "moving_bodies.hpp"
+#include "own_particles.hpp"
 #include "step_method.hpp"
 #include "treacle/core/processes.hpp"
 #include "treacle/core/team.hpp"
@@ -73,12 +74,12 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
       requireShareable(theCase, std::is_same_v<Backend, Cpu> ? BackendKind::Cpu : BackendKind::Cuda);
       this->share(*processes);
     }
-    this->fluidOfAll = state.fluidCount;
-    wallsMove = someWallMoves(theCase, state);
-    const double mass = fluidMass(theCase, state);
+    this->fluidOfAll = static_cast<std::uint32_t>(sumOverProcesses(context, state.fluidCount));
+    wallsMove = sumOverProcesses(context, someWallMoves(theCase, state)) > 0;
+    const double mass = sumOverProcesses(context, fluidMass(theCase, state));
     method = theCase.method.kind == MethodKind::Isph ? makeIsphStep(static_cast<Flow&>(*this))
                                                      : makeMphStep(static_cast<Flow&>(*this));
-    distant.emplace(theCase, method->grid(), state, time);
+    distant.emplace(theCase, method->grid(), state, time, context.communicator);
     toBackend(context, std::move(state), particles);
     if (step == 0) forEachFluidFieldOf([&](auto& field) { clearValues(context, field.span()); }, particles);
     method->sortParticles();
@@ -283,6 +284,11 @@ const Particles<D, Backend>& Simulation<D, Backend>::particles() const {
 template <int D, class Backend>
 void Simulation<D, Backend>::copyParticles(Particles<D>& host) const {
   copyAllParticles(*state_, *state_->distant, host);
+}
+template <int D, class Backend>
+std::uint32_t Simulation<D, Backend>::copyOwnParticles(Particles<D>& host) const {
+  const StepMethod<D, Backend>& method = *state_->method;
+  return treacle::copyOwnParticles<D, Backend>(*state_, method.grid(), method.owners(), *state_->distant, host);
 }
 template <int D, class Backend>
 ParticleNumbers Simulation<D, Backend>::numbers() const {

@@ -3,6 +3,7 @@
 #include "flow_state.hpp"
 #include "staged_solver.hpp"
 #include "treacle/model/balance.hpp"
+#include "treacle/search/cell_owners.hpp"
 #include "treacle/step/diagnostics.hpp"
 #include "treacle/step/solver_trial.hpp"
 
@@ -46,6 +47,8 @@ class StepMethod {
   virtual void describe(DiagnosticsInput<D>&) const {}
 
   virtual const CellGrid<D>& grid() const = 0;
+  /// Of the last sort, where processes share the state.
+  virtual const CellOwners<D>& owners() const = 0;
   virtual const MaterialTable& materials() const = 0;
   virtual std::size_t bytes() const = 0;
 };

@@ -2,7 +2,9 @@
 
 #include "mpi/job.hpp"
 #include "treacle/core/error.hpp"
+#include "treacle/io/arrangement.hpp"
 #include "treacle/io/case_reader.hpp"
+#include "treacle/io/frame.hpp"
 #include "treacle/model/create.hpp"
 #include "treacle/step/simulation.hpp"
 
@@ -10,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -27,6 +30,14 @@ template <int D>
 Particles<D> made(const Case& c) {
   std::vector<std::string> notes;
   return createParticles<D>(c, notes);
+}
+
+/// What this process begins with.
+template <int D>
+Particles<D> partOf(const Case& c) {
+  std::vector<std::string> notes;
+  return createParticles<D>(c, notes, nullptr,
+                            {static_cast<std::uint32_t>(job().rank()), static_cast<std::uint32_t>(job().size())});
 }
 
 /// Of two sums or coordinates that may be zero; `scale`: what they are made of.
@@ -103,13 +114,61 @@ void expectSameFields(const Case& c, const Particles<D>& a, const Particles<D>& 
   }
 }
 
+/// What the processes show of a simulation, each its own part, against all particles, which the first process has:
+/// every particle is one process's, with the same fields, and has found the same nearest one.
+template <int D, class Backend>
+void expectOwnParticles(const Case& c, const Simulation<D, Backend>& shared, const Particles<D>& whole) {
+  if (job().size() == 1) return;
+  Particles<D> own;
+  const std::uint32_t ownWalls = shared.copyOwnParticles(own), walls = own.wallBegin();
+  EXPECT_LE(ownWalls, own.wallCount());
+  std::vector<Vec<3>> others;
+  for (std::uint32_t i = own.fluidCount; i < own.count; ++i) others.push_back(resized<3>(own.position[i]));
+  Frame fluid = makeFrame(own, 0, own.fluidCount, 0);
+  measureArrangementPart(fluid, others, c.domain, c.spacing);
+  const bool first = job().rank() == 0;
+  const auto at = [&]<class T>(std::span<const T> values, const std::vector<std::uint32_t>& ids) {
+    std::vector<T> byId(whole.count);
+    for (std::size_t k = 0; k < ids.size(); ++k) byId[ids[k]] = values[k];
+    return byId;
+  };
+  const auto compareGroup = [&](std::uint32_t begin, std::uint32_t count, std::uint32_t wholeBegin,
+                                std::uint32_t wholeCount) {
+    const auto ids = job().collect(std::span<const std::uint32_t>(own.id.span().subspan(begin, count)));
+    std::vector<std::uint32_t> found = ids,
+                               expected(whole.id.begin() + wholeBegin, whole.id.begin() + wholeBegin + wholeCount);
+    std::ranges::sort(found), std::ranges::sort(expected);
+    const bool complete = !first || found == expected;
+    EXPECT_TRUE(complete);  // who ends here would leave the others waiting
+    forEachSharedFieldOf(
+        [&]<class T>(const Buffer<T>& mine, const Buffer<T>& all) {
+          const std::vector<T> parts = job().collect(std::span<const T>(mine.span().subspan(begin, count)));
+          if (!first || !complete) return;
+          const std::vector<T> byId = at(std::span<const T>(parts), ids);
+          for (std::uint32_t i = wholeBegin; i < wholeBegin + wholeCount; ++i)
+            ASSERT_EQ(byId[whole.id[i]], all[i]) << whole.id[i];
+        },
+        own, whole);
+  };
+  compareGroup(0, own.fluidCount, 0, whole.fluidCount);
+  compareGroup(walls, ownWalls, whole.wallBegin(), whole.wallCount());
+  const std::vector<double> distances = job().collect(std::span<const double>(fluid.nearestDistance));
+  const std::vector<std::uint32_t> ids = job().collect(std::span<const std::uint32_t>(fluid.id));
+  if (!first) return;
+  Frame allFluid = makeFrame(whole, 0, whole.fluidCount, 0);
+  measureArrangement(allFluid, makeFrame(whole, whole.wallBegin(), whole.count, 0), c.domain, c.spacing);
+  const std::vector<double> byId = at(std::span<const double>(distances), ids);
+  for (std::size_t k = 0; k < allFluid.id.size(); ++k)
+    ASSERT_EQ(byId[allFluid.id[k]], allFluid.nearestDistance[k]) << allFluid.id[k];
+}
+
 /// A simulation that the processes share against one that each of them makes for itself: iterations, energies and
 /// extents of every step; all fields at the end.
 template <int D, class Backend = Cpu>
 void compare(const Settings& settings) {
   SCOPED_TRACE(settings.file);
   const Case c = settings.read();
-  Simulation<D, Backend> shared(c, made<D>(c), 0, 0, &job());
+  Simulation<D, Backend> shared(c, partOf<D>(c), 0, 0, &job());
   Simulation<D, Backend> alone(c, made<D>(c));
   for (int k = 0; k < settings.steps; ++k) {
     const StepReport a = shared.advance(), b = alone.advance();
@@ -119,11 +178,12 @@ void compare(const Settings& settings) {
   shared.copyParticles(whole);
   alone.copyParticles(expected);
   if (job().rank() == 0) expectSameFields(c, whole, expected);
+  expectOwnParticles(c, shared, whole);
 }
 
 /// Walls that are far from the fluid of all processes are held by none, and all take in the same ones.
 inline void compareWallsThatComeAndGo(const Case& c) {
-  Simulation<2> shared(c, made<2>(c), 0, 0, &job()), alone(c, made<2>(c));
+  Simulation<2> shared(c, partOf<2>(c), 0, 0, &job()), alone(c, made<2>(c));
   const std::uint32_t start = shared.particles().wallCount();
   bool changed = false;
   for (int k = 0; k < 20; ++k) {
@@ -138,13 +198,14 @@ inline void compareWallsThatComeAndGo(const Case& c) {
   shared.copyParticles(whole);
   alone.copyParticles(expected);
   if (job().rank() == 0) expectSameFields(c, whole, expected);
+  expectOwnParticles(c, shared, whole);
 }
 
 /// Ten steps, and again.
 template <class Backend = Cpu>
 void expectSameBitsAgain(const char* file) {
   const Case c = Settings{file, 0, {}}.read();
-  Simulation<2, Backend> one(c, made<2>(c), 0, 0, &job()), other(c, made<2>(c), 0, 0, &job());
+  Simulation<2, Backend> one(c, partOf<2>(c), 0, 0, &job()), other(c, partOf<2>(c), 0, 0, &job());
   for (int k = 0; k < 10; ++k) {
     const StepReport a = one.advance(), b = other.advance();
     EXPECT_EQ(a.iterations, b.iterations);
@@ -163,7 +224,7 @@ template <class Backend = Cpu>
 void expectAgreementOnAParticleThatLeaves() {
   Case c = Settings{"dam-break-2d.toml", 0, {"domain.periodic=false", "watch.courant=0"}}.read();
   c.gravity = {1e5, 0, 0};
-  Simulation<2, Backend> shared(c, made<2>(c), 0, 0, &job());
+  Simulation<2, Backend> shared(c, partOf<2>(c), 0, 0, &job());
   std::string error;
   try {
     for (int k = 0; k < 50; ++k) shared.advance();

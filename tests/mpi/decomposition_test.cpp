@@ -3,6 +3,7 @@
 #include "mpi/job.hpp"
 #include "support/gpu.hpp"
 #include "treacle/core/device_link.hpp"
+#include "treacle/model/particle_part.hpp"
 #include "treacle/model/particles_copy.hpp"
 
 #include <gtest/gtest.h>
@@ -24,8 +25,9 @@ constexpr std::uint32_t modes = 2;
 /// What the fields of a particle hold that it takes along, by which it is known again.
 double mark(std::uint32_t id, int field) { return 1000.0 * field + std::sqrt(1.0 + id); }
 
-/// Particles that move, the same at all processes, and the part of them that is this one's. Tests change and look
-/// at those in the host's memory, wherever they are sorted.
+/// Particles that move, the same at all processes, and the part of them that is this one's: at first so many of
+/// the fluid, whichever their places. Tests change and look at those in the host's memory, wherever they are
+/// sorted.
 template <int D, class Backend>
 struct Flow {
   static constexpr bool isOnHost = std::is_same_v<Backend, Cpu>;
@@ -54,23 +56,30 @@ struct Flow {
     }
     std::mt19937 random(7);
     std::uniform_real_distribution<double> uniform(0, 1);
-    particles.resize({fluid, walls, modes, walls});
-    for (std::uint32_t i = 0; i < particles.count; ++i) {
-      for (int k = 0; k < D; ++k) particles.position[i][k] = uniform(random) * hi[k];
-      (i < fluid ? position : wallPosition).push_back(particles.position[i]);
-      if (i >= fluid) particles.wallSurface[i - fluid] = {{{static_cast<float>(mark(i, 8))}, {}}};
-      particles.id[i] = i;
-      particles.material[i] = static_cast<std::uint8_t>(i % 3);
-      particles.body[i] = static_cast<std::uint8_t>(i % 5);
-      particles.pressure[i] = mark(i, 1);
-      particles.numberDensity[i] = mark(i, 2);
-      particles.velocity[i] = {mark(i, 3)};
+    for (std::uint32_t i = 0; i < fluid + walls; ++i) {
+      Vec<D> x;
+      for (int k = 0; k < D; ++k) x[k] = uniform(random) * hi[k];
+      (i < fluid ? position : wallPosition).push_back(x);
     }
-    for (std::uint32_t i = 0; i < fluid; ++i) {
-      particles.acceleration[i] = {mark(i, 4)};
-      particles.jerk[i] = {mark(i, 5)};
+    const ParticlePart part{static_cast<std::uint32_t>(job().rank()), static_cast<std::uint32_t>(job().size())};
+    const std::uint32_t begin = part.begin(fluid), size = part.size(fluid);
+    particles.resize({size, walls, modes, walls});
+    for (std::uint32_t k = 0; k < particles.count; ++k) {
+      const std::uint32_t i = k < size ? begin + k : fluid + (k - size);
+      particles.position[k] = i < fluid ? position[i] : wallPosition[i - fluid];
+      if (i >= fluid) particles.wallSurface[i - fluid] = {{{static_cast<float>(mark(i, 8))}, {}}};
+      particles.id[k] = i;
+      particles.material[k] = static_cast<std::uint8_t>(i % 3);
+      particles.body[k] = static_cast<std::uint8_t>(i % 5);
+      particles.pressure[k] = mark(i, 1);
+      particles.numberDensity[k] = mark(i, 2);
+      particles.velocity[k] = {mark(i, 3)};
+    }
+    for (std::uint32_t k = 0; k < size; ++k) {
+      particles.acceleration[k] = {mark(begin + k, 4)};
+      particles.jerk[k] = {mark(begin + k, 5)};
       for (std::uint32_t m = 0; m < modes; ++m)
-        particles.modes.vectors[m * fluid + i] = {static_cast<float>(mark(i, 6 + m))};
+        particles.modes.vectors[m * size + k] = {static_cast<float>(mark(begin + k, 6 + m))};
     }
   }
 
@@ -325,7 +334,7 @@ TYPED_TEST(DecompositionTest, ProcessesWithoutFluid) {
 
 TYPED_TEST(DecompositionTest, MoreProcessesThanCells) {
   Flow<2, TypeParam> flow(false, 10, 10);
-  for (std::uint32_t i = 0; i < 10; ++i) flow.particles.position[i] = {0.5, 0.5 + 0.01 * i};
+  for (std::uint32_t i = 0; i < flow.particles.fluidCount; ++i) flow.particles.position[i] = {0.5, 0.5 + 0.01 * i};
   if (job().size() > 1) {
     EXPECT_THROW(flow.sort(), InputError);
   } else {

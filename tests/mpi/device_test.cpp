@@ -89,8 +89,8 @@ TEST_F(SharedOnDevices, SameBitsFromRunToRun) {
 /// The device's way against the CPU's, each shared by all processes.
 TEST_F(SharedOnDevices, AsOnTheCpu) {
   const Case c = Settings{"dam-break-2d.toml", 0, {"solver.tolerance=1e-16"}}.read();
-  Simulation<2, Cuda> device(c, made<2>(c), 0, 0, &job());
-  Simulation<2> host(c, made<2>(c), 0, 0, &job());
+  Simulation<2, Cuda> device(c, partOf<2>(c), 0, 0, &job());
+  Simulation<2> host(c, partOf<2>(c), 0, 0, &job());
   for (int k = 0; k < 10; ++k) expectSame(c, device.advance(), host.advance(), false);
 }
 
@@ -103,7 +103,7 @@ TEST_F(SharedOnDevices, RefuseAnUnknownLink) {
   const std::string kept = before ? before : "";
   setenv("TREACLE_LINK", "carrier pigeon", 1);
   const Case c = Settings{"dam-break-2d.toml", 0, {}}.read();
-  EXPECT_THROW((Simulation<2, Cuda>(c, made<2>(c), 0, 0, &job())), InputError);
+  EXPECT_THROW((Simulation<2, Cuda>(c, partOf<2>(c), 0, 0, &job())), InputError);
   before ? setenv("TREACLE_LINK", kept.c_str(), 1) : unsetenv("TREACLE_LINK");
 }
 

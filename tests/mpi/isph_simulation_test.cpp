@@ -55,7 +55,7 @@ TEST(SharedIsph, SameBitsFromRunToRun) { expectSameBitsAgain("isph-dam-break-2d.
 
 TEST(SharedIsph, FallsBack) {
   const Case c = Settings{"isph-dam-break-2d.toml", 0, {"solver.hats.iteration_bound=2"}}.read();
-  Simulation<2> shared(c, made<2>(c), 0, 0, &job());
+  Simulation<2> shared(c, partOf<2>(c), 0, 0, &job());
   const StepReport report = shared.advance();
   EXPECT_EQ(report.fallbacks, 2);
   EXPECT_LE(report.residual, c.solver.tolerance);
@@ -74,7 +74,7 @@ TEST(SharedIsph, ProcessesWithoutFluid) {
   drop.radius = 1.5 * c.spacing;
   drop.center = {grid.origin[0] + 50 * grid.edge[0], grid.origin[1] + 80 * grid.edge[1], 0};
   c.gravity = {-200, -200, 0};
-  Simulation<2> shared(c, made<2>(c), 0, 0, &job()), alone(c, made<2>(c));
+  Simulation<2> shared(c, partOf<2>(c), 0, 0, &job()), alone(c, made<2>(c));
   bool someHadNone = false;
   for (int k = 0; k < 40; ++k) {
     const StepReport a = shared.advance(), b = alone.advance();
@@ -87,7 +87,7 @@ TEST(SharedIsph, ProcessesWithoutFluid) {
 TEST(SharedIsph, RefusesCellMultigrid) {
   if (job().size() == 1) return;
   const Case c = Settings{"isph-dam-break-2d.toml", 0, {"solver.preconditioner=cell-multigrid"}}.read();
-  EXPECT_THROW(Simulation<2>(c, made<2>(c), 0, 0, &job()), InputError);
+  EXPECT_THROW(Simulation<2>(c, partOf<2>(c), 0, 0, &job()), InputError);
 }
 
 }  // namespace

@@ -69,7 +69,7 @@ TEST(SharedSimulation, SameBitsFromRunToRun) { expectSameBitsAgain("dam-break-2d
 /// A way to solve that gives up is followed by the next one at all processes, to the last resort.
 TEST(SharedSimulation, FallsBack) {
   const Case c = Settings{"dam-break-2d.toml", 0, {"solver.projected.iteration_bound=2"}}.read();
-  Simulation<2> shared(c, made<2>(c), 0, 0, &job());
+  Simulation<2> shared(c, partOf<2>(c), 0, 0, &job());
   const StepReport report = shared.advance();
   EXPECT_EQ(report.fallbacks, 2);
   EXPECT_LE(report.residual, c.solver.tolerance);
@@ -86,7 +86,7 @@ void followDrop(const Vec<3>& gravity, int up, bool walls) {
   drop.radius = 2.2 * c.spacing;
   drop.center = {grid.origin[0] + 4 * grid.edge[0], grid.origin[1] + up * grid.edge[1], 0};
   c.gravity = gravity;
-  Simulation<2> shared(c, made<2>(c), 0, 0, &job()), alone(c, made<2>(c));
+  Simulation<2> shared(c, partOf<2>(c), 0, 0, &job()), alone(c, made<2>(c));
   bool someHadNone = false;
   for (int k = 0; k < 25; ++k) {
     const StepReport a = shared.advance(), b = alone.advance();
@@ -99,6 +99,7 @@ void followDrop(const Vec<3>& gravity, int up, bool walls) {
   Particles<2> whole, expected;
   shared.copyParticles(whole);
   alone.copyParticles(expected);
+  expectOwnParticles(c, shared, whole);
   if (job().rank() > 0) return;
   ASSERT_EQ(whole.fluidCount, expected.fluidCount);
   const std::vector<std::uint32_t> here = placeOfId(whole), there = placeOfId(expected);
@@ -115,7 +116,7 @@ TEST(SharedSimulation, RefusesWhatCannotBeShared) {
   if (job().size() == 1) return;
   for (const char* key : {"solver.preconditioner=bucket-multigrid", "solver.operator=assembled"}) {
     const Case c = Settings{"dam-break-2d.toml", 0, {key}}.read();
-    EXPECT_THROW(Simulation<2>(c, made<2>(c), 0, 0, &job()), InputError) << key;
+    EXPECT_THROW(Simulation<2>(c, partOf<2>(c), 0, 0, &job()), InputError) << key;
   }
 }
 

@@ -3,7 +3,10 @@
 #include "treacle/io/frame.hpp"
 #include "treacle/model/case.hpp"
 
+#include <cstdint>
 #include <optional>
+#include <span>
+#include <vector>
 
 namespace treacle {
 
@@ -28,5 +31,26 @@ struct Arrangement {
 /// Fills in fluid.nearestDistance, in which walls and periodic images count. Time and memory are proportional to
 /// the number of particles (their sort apart), wherever they lie. Periodic axes: at least 4.5 spacings long.
 Arrangement measureArrangement(Frame& fluid, const Frame& walls, const Domain& domain, double spacing);
+
+/// What a process that has a part of the fluid can say: with what the others say it makes the arrangement of all.
+struct ArrangementPart {
+  static constexpr double bin = 1e-4;  // of distances [spacings]
+
+  double least = nearestReach;
+  double density = 0;                    // sum over `places`
+  std::uint64_t close = 0, places = 0;   // particles, weight of the places
+  std::vector<std::uint64_t> distances;  // particles per bin, up to nearestReach
+
+  bool operator==(const ArrangementPart&) const = default;
+};
+
+/// The same of a part: `others` are the walls and the fluid of other processes within nearestReach of it, on
+/// whichever side of periodic ends [m]. Densities are counted at places that have nothing but this part around
+/// them.
+ArrangementPart measureArrangementPart(Frame& fluid, std::span<const Vec<3>> others, const Domain& domain,
+                                       double spacing);
+
+/// Of parts that were added up, the least distance among theirs. The 1 % quantile is known to half a bin.
+Arrangement arrangementOf(const ArrangementPart& all);
 
 }  // namespace treacle

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "treacle/model/case.hpp"
+#include "treacle/model/particle_part.hpp"
 #include "treacle/model/particles.hpp"
 
 #include <cstdint>
@@ -17,6 +18,7 @@ struct Checkpoint {
   std::int64_t step = 0;             // number of steps done
   double time = 0;                   // [s]
   std::optional<MethodKind> method;  // that it was computed by; not known of earlier versions
+  std::uint32_t fluidOfAll = 0, wallsOfAll = 0;  // in the file, of which `particles` may have a part
 };
 
 /// Writes an HDF5 file under a temporary name, then renames it: an older checkpoint stays until the new one is
@@ -29,15 +31,16 @@ void writeCheckpoint(const std::filesystem::path& path, const Particles<D>& part
 /// Reads a file of writeCheckpoint. Files of earlier versions lack fields: what is not known of the flow's memory
 /// is zero, bodies are unknownBody, the solver has no modes. Errors: InputError with path and reason for a file
 /// that is missing, foreign, truncated, damaged, or of another version or dimension, or whose values are none of a
-/// simulation: not finite, or with ids that are not those of the particles.
+/// simulation: not finite, or with ids that are not those of the particles. `part`: of the fluid in the
+/// order of the file, of the walls by their ids; of values only its own are looked at.
 template <int D>
-Checkpoint<D> readCheckpoint(const std::filesystem::path& path);
+Checkpoint<D> readCheckpoint(const std::filesystem::path& path, ParticlePart part = {});
 
 extern template void writeCheckpoint<2>(const std::filesystem::path&, const Particles<2>&, std::int64_t, double,
                                         MethodKind);
 extern template void writeCheckpoint<3>(const std::filesystem::path&, const Particles<3>&, std::int64_t, double,
                                         MethodKind);
-extern template Checkpoint<2> readCheckpoint<2>(const std::filesystem::path&);
-extern template Checkpoint<3> readCheckpoint<3>(const std::filesystem::path&);
+extern template Checkpoint<2> readCheckpoint<2>(const std::filesystem::path&, ParticlePart);
+extern template Checkpoint<3> readCheckpoint<3>(const std::filesystem::path&, ParticlePart);
 
 }  // namespace treacle

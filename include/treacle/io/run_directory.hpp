@@ -7,10 +7,19 @@
 #include <cstddef>
 #include <filesystem>
 #include <memory>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 namespace treacle {
+
+/// The files that make a frame: the ranks of the processes that have written pieces of each group, those that have
+/// no particles of it apart.
+struct FramePieces {
+  double time = 0;  // [s]
+  int dimensions = 3;
+  std::vector<int> fluid, walls;
+};
 
 /// The directory that holds all files of one run; the only place that knows their names.
 class RunDirectory {
@@ -21,11 +30,17 @@ class RunDirectory {
   /// case.toml but no run (that file is the user's and would be overwritten), or if another run writes into it.
   static RunDirectory create(const std::filesystem::path& path, bool force);
 
+  /// The directory of a run that another process has created, for those that share the run with it.
+  static RunDirectory joined(std::filesystem::path path) { return RunDirectory(std::move(path)); }
+
   /// Opens the directory of an existing run. Errors: InputError if there is none.
   static RunDirectory open(const std::filesystem::path& path);
 
   /// Writes fluid and walls as the next frame and brings both indices up to date. Errors: RunError.
   void writeFrame(const Frame& fluid, const Frame& walls, const OutputSettings& settings);
+  /// Makes these pieces, which stand under the names below, the next frame. A group that nobody has particles of
+  /// has one file, as in writeFrame. Errors: RunError, also if a piece is not there.
+  void joinPieces(const FramePieces& pieces);
   std::size_t frameCount() const { return fluidFrames_.size(); }
   double frameTime(std::size_t frame) const { return fluidFrames_.at(frame).time; }  // [s]
 
@@ -40,6 +55,9 @@ class RunDirectory {
   std::filesystem::path wallsIndex() const { return path_ / "walls.pvd"; }
   std::filesystem::path fluidFrame(std::size_t frame) const;
   std::filesystem::path wallsFrame(std::size_t frame) const;
+  /// The part of a frame that the process of this rank writes.
+  std::filesystem::path fluidPiece(std::size_t frame, int rank) const;
+  std::filesystem::path wallsPiece(std::size_t frame, int rank) const;
 
   std::filesystem::path finalPicture() const { return path_ / "final.png"; }
   std::filesystem::path historyPicture() const { return path_ / "history.png"; }
@@ -50,6 +68,12 @@ class RunDirectory {
   bool holdsRun() const;
   void lock();
   void removeRun() const;
+  std::filesystem::path framePath(std::string_view group, std::size_t frame,
+                                  const std::vector<PvdEntry>& written) const;
+  /// Brings both indices up to date.
+  void addFrame(double time, std::string_view fluidExtension, std::string_view wallsExtension);
+  std::string_view joinGroup(std::string_view group, const FramePieces& pieces,
+                             const std::vector<int>& ranks) const;
 
   std::filesystem::path path_;
   std::vector<PvdEntry> fluidFrames_, wallsFrames_;

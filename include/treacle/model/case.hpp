@@ -266,12 +266,15 @@ struct OutputFields {
 
 enum class OutputFormat { Vtp };  // the only one
 enum class OutputPrecision { Single, Double };
+/// Who writes frames where processes share a run: the first one all particles, or each its own.
+enum class OutputPieces { Auto, One, Each };
 
 struct OutputSettings {
   double interval = 0;            // between frames [s]; 0: first and last frame only
   double checkpointInterval = 0;  // between checkpoints [s]; 0: at the end of the run only
   OutputFields fields;
   OutputPrecision precision = OutputPrecision::Single;
+  OutputPieces pieces = OutputPieces::Auto;
   bool balance = false;  // energy balance and loads on walls of each step; MPH-I only
 
   bool operator==(const OutputSettings&) const = default;

@@ -2,6 +2,7 @@
 
 #include "treacle/model/any_particles.hpp"
 #include "treacle/model/case.hpp"
+#include "treacle/model/particle_part.hpp"
 #include "treacle/model/particles.hpp"
 
 #include <cstddef>
@@ -24,20 +25,22 @@ double boxPoints(const Case& c);
 /// kind overlap, the earlier one keeps the place (a particle closer than half a spacing to an earlier one is left
 /// out). Pressure and number density are 0; ids count from 0. Appends to `notes` what a user should know (a box
 /// that the spacing does not divide, particles left out, a condition that never holds); `bodyCounts` takes the
-/// number of particles of every body in file order. Errors: InputError if there is no fluid, if fluid and wall
-/// overlap, if a particle lies outside the domain, if a wall cannot rotate in a periodic one, if there are more
-/// particles than maxParticles, if an expression is not finite at a particle.
+/// number of particles of every body in file order. `part`: only these are made, with the ids that they have in
+/// the whole; all places are looked at nevertheless, and numbers are those of the whole case, as are notes, but
+/// for those about surfaces of walls, which a part does not know. Errors: InputError if there is no fluid, if
+/// fluid and wall overlap, if a particle lies outside the domain, if a wall cannot rotate in a periodic one, if
+/// there are more particles than maxParticles, if an expression is not finite at a particle.
 template <int D>
 Particles<D> createParticles(const Case& c, std::vector<std::string>& notes,
-                             std::vector<std::uint32_t>* bodyCounts = nullptr);
+                             std::vector<std::uint32_t>* bodyCounts = nullptr, ParticlePart part = {});
 
 /// The same for the dimensions that the case has.
 AnyParticles createParticles(const Case& c, std::vector<std::string>& notes,
-                             std::vector<std::uint32_t>* bodyCounts = nullptr);
+                             std::vector<std::uint32_t>* bodyCounts = nullptr, ParticlePart part = {});
 
 extern template Particles<2> createParticles<2>(const Case&, std::vector<std::string>&,
-                                                std::vector<std::uint32_t>*);
+                                                std::vector<std::uint32_t>*, ParticlePart);
 extern template Particles<3> createParticles<3>(const Case&, std::vector<std::string>&,
-                                                std::vector<std::uint32_t>*);
+                                                std::vector<std::uint32_t>*, ParticlePart);
 
 }  // namespace treacle

@@ -69,6 +69,8 @@ inline constexpr Named<Coordinate> coordinate[] = {
 inline constexpr Named<OutputFormat> format[] = {{"vtp", OutputFormat::Vtp}};
 inline constexpr Named<OutputPrecision> output[] = {{"single", OutputPrecision::Single},
                                                     {"double", OutputPrecision::Double}};
+inline constexpr Named<OutputPieces> pieces[] = {
+    {"auto", OutputPieces::Auto}, {"one", OutputPieces::One}, {"each", OutputPieces::Each}};
 }  // namespace names
 
 template <>
@@ -115,6 +117,8 @@ template <>
 inline constexpr std::span<const Named<OutputFormat>> namesOf<OutputFormat>{names::format};
 template <>
 inline constexpr std::span<const Named<OutputPrecision>> namesOf<OutputPrecision>{names::output};
+template <>
+inline constexpr std::span<const Named<OutputPieces>> namesOf<OutputPieces>{names::pieces};
 
 /// The word for a value, e.g. "bucket-multigrid".
 template <class E>

@@ -67,6 +67,7 @@ class MphNeighbourhood {
   const MphPairs<D>& pairs() const { return pairs_; }
   const CellGrid<D>& grid() const { return pairs_.grid; }
   const CellRanges<Backend>& ranges() const { return sort_.ranges(); }
+  const CellOwners<D>& owners() const { return sort_.owners(); }
   std::size_t bytes() const { return sort_.bytes() + fluidList_.bytes() + wallList_.bytes(); }
 
  private:

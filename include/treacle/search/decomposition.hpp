@@ -20,9 +20,9 @@ namespace treacle {
 /// sort() sorts by cell as sortByCell does, of each group the own particles first, and by id where keys are the
 /// same. Fluid that has left the own cells goes to the process that owns it now, with all its fields, and cells
 /// change hands where one process has too much to do. Ghosts have positions and materials; their other fields are
-/// not defined. The first time every process comes with all particles, and keeps its own ones. Collective. Errors:
-/// InputError the first time, if there are more processes than cells with fluid; RunError for positions that are
-/// not finite. Both at all processes.
+/// not defined. The first time every process comes with some of the fluid, whichever, and all walls. Collective.
+/// Errors: InputError the first time, if there are more processes than cells with fluid; RunError for positions
+/// that are not finite. Both at all processes.
 template <int D, class Backend = Cpu>
 class Decomposition;
 
@@ -41,7 +41,6 @@ class Decomposition<D, Cpu> : public ProcessParts<D, Cpu> {
 
   void balance(const Communicator&, const CellGrid<D>&, const Particles<D>&);
   void migrate(const Communicator&, const CellGrid<D>&, Particles<D>&);
-  void keepOwn(const CellGrid<D>&, Particles<D>&);
   void findActiveCells(const Communicator&, const CellGrid<D>&, std::span<const Vec<D>> fluid, SortWorkspace<>&);
   void sortFluid(const CellGrid<D>&, Particles<D>&, CellRanges<>&, SortWorkspace<>&);
   void sortWalls(const CellGrid<D>&, Particles<D>&, CellRanges<>&, SortWorkspace<>&);
@@ -74,7 +73,7 @@ class Decomposition<D, Cuda> : public ProcessParts<D, Cuda> {
   void divide(Context<Cuda>&, const CellGrid<D>&, const Particles<D, Cuda>&);
   void adoptOwners(Context<Cuda>&, const CellGrid<D>&);
   /// Returns whether any process has other fluid now.
-  bool migrate(Context<Cuda>&, const CellGrid<D>&, Particles<D, Cuda>&, SortWorkspace<Cuda>&, bool isFirst);
+  bool migrate(Context<Cuda>&, const CellGrid<D>&, Particles<D, Cuda>&, SortWorkspace<Cuda>&);
   void findActiveCells(Context<Cuda>&, const CellGrid<D>&, const CellRanges<Cuda>&, SortWorkspace<Cuda>&);
   void listSentFluid(Context<Cuda>&, const CellRanges<Cuda>&, SortWorkspace<Cuda>&);
   void sortWalls(Context<Cuda>&, const CellGrid<D>&, const Particles<D, Cuda>&, CellRanges<Cuda>&,

@@ -40,6 +40,8 @@ class ParticleSort {
   }
 
   const CellRanges<Backend>& ranges() const { return ranges_; }
+  /// Where processes share the particles.
+  const CellOwners<D>& owners() const { return decomposition_.owners(); }
   std::size_t bytes() const { return ranges_.bytes() + workspace_.bytes() + decomposition_.bytes(); }
 
  private:

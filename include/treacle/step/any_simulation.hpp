@@ -5,6 +5,7 @@
 #include "treacle/step/simulation.hpp"
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -51,6 +52,15 @@ class AnySimulation {
   };
   std::vector<Share> shares() const;
 
+  /// What a process does with the simulation beside its part of the steps: `order` and `number` mean what the
+  /// first process and the duty of the others have agreed on.
+  using Duty = std::function<void(AnySimulation& simulation, int order, std::int64_t number)>;
+  /// At the first process: does this one's duty while the others do theirs (serveSimulation). A duty is collective
+  /// as the members are: a RunError must be one of all processes.
+  void everywhere(int order, std::int64_t number, const Duty& duty);
+  /// In a duty alone; returns how many walls, the first ones, are this process's own.
+  std::uint32_t copyOwnParticles(AnyParticles& host) const;
+
  private:
   struct Held;
   std::unique_ptr<Held> held_;
@@ -68,9 +78,9 @@ class Followers {
   const Communicator& processes_;
 };
 
-/// At every other process: takes part in the simulation that the first one makes with the same arguments. Returns
-/// when its Followers are gone.
+/// At every other process: takes part in the simulation that the first one makes with the same arguments and
+/// another part of the particles. Returns when its Followers are gone.
 void serveSimulation(const Case& c, AnyParticles particles, BackendKind backend, std::int64_t step, double time,
-                     const Communicator& processes);
+                     const Communicator& processes, const AnySimulation::Duty& duty = {});
 
 }  // namespace treacle

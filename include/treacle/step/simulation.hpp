@@ -78,8 +78,9 @@ struct StepReport {
 template <int D, class Backend = Cpu>
 class Simulation {
  public:
-  /// `particles`: the state at `time` after `step` steps. `processes`: those that share the simulation, all of
-  /// which make it with the same arguments, and call the same members in the same order; null or one: it is alone.
+  /// `particles`: the state at `time` after `step` steps. `processes`: those that share the simulation; null or
+  /// one: it is alone. All of them make it with the same arguments, but for the particles, of which each brings
+  /// some, whichever (ParticlePart); and they call the same members in the same order.
   /// Errors: InputError for a case that cannot be shared (requireShareable), and where there are more processes
   /// than parts of the fluid; std::bad_alloc.
   Simulation(const Case& c, Particles<D> particles, std::int64_t step = 0, double time = 0,
@@ -105,7 +106,11 @@ class Simulation {
   /// others' `host` is not touched.
   void copyParticles(Particles<D>& host) const;
   ParticleNumbers numbers() const;  // of these
-  double time() const;              // [s]
+  /// Of several processes each gets what it is to show: its own fluid, ghosts with their positions, and walls, of
+  /// which so many as are returned, the first ones, are its own, and the others those in reach. Every particle is
+  /// one process's. Fields that walls do not have are undefined. Collective.
+  std::uint32_t copyOwnParticles(Particles<D>& host) const;
+  double time() const;  // [s]
   std::int64_t step() const;
   std::size_t bytes() const;      // memory held [B]
   std::size_t peakBytes() const;  // largest amount of device memory in use at one time [B]; 0 on the CPU

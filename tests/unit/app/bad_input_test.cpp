@@ -53,7 +53,9 @@ constexpr BadCase badCases[] = {
      "bad.toml:15:1: unknown key 'viscosity' in [[material]] 'syrup'; did you mean 'dynamic_viscosity' [Pa s]?"},
     {"unknownKeyNearNone", "interval", "zzz",
      "bad.toml:40:1: unknown key 'zzz' in [output]; expected 'interval', 'checkpoint_interval', 'fields', "
-     "'format', 'precision' or 'balance'"},
+     "'format', 'precision', 'pieces' or 'balance'"},
+    {"unknownPieces", "interval = 1e-3", "interval = 1e-3\npieces = \"two\"",
+     "bad.toml:41:10: pieces in [output]: expected 'auto', 'one' or 'each', found 'two'"},
     {"unknownTable", "[gravity]", "[gravty]",
      "bad.toml:9:2: unknown key 'gravty' in the case file; did you mean 'gravity'?"},
     {"keyOfAnotherShape", "max = [6e-3, 6e-3]", "max = [6e-3, 6e-3]\nradius = 1",

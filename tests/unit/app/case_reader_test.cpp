@@ -202,6 +202,7 @@ interval = 0.25
 checkpoint_interval = 0.5
 fields = ["id", "pressure", "body"]
 precision = "double"
+pieces = "each"
 balance = true
 [watch]
 energy = 3
@@ -247,7 +248,9 @@ TEST(readCase, takesEveryKey) {
   expected.solver.maxIterations = 77;
   expected.solver.multigrid = {1, 5, 6, SmootherDiagonal::ExtendedJacobi, CoarseKind::Spgemm};
   expected.solver.projected = {7, 3, 1, 55};
-  expected.output = {0.25, 0.5, {false, true, false, false, false, true, true}, OutputPrecision::Double, true};
+  expected.output = {
+      0.25, 0.5, {false, true, false, false, false, true, true}, OutputPrecision::Double, OutputPieces::Each,
+      true};
   expected.watch = {3, 4, 0.1, 0};
   EXPECT_EQ(c, expected);
 

@@ -168,29 +168,37 @@ TEST(DeviceMemory, ARunThatDoesNotFitIsRefused) {
   EXPECT_THAT(refusal(), HasSubstr("Some GPU gives no device memory"));
 }
 
-/// Each of several processes needs its part of the device's memory, and all particles on the host at the start.
-TEST(DeviceMemory, OfSeveralProcessesIsDivided) {
+/// Each of several processes needs memory for its part, and for the places of all particles at the start.
+TEST(DeviceMemory, OfSeveralProcessesIsThatOfAPart) {
   const Case c = test::MemoryCase{"dam-break-2d.toml", {}}.read();
   std::vector<std::string> notes;
-  AnyParticles particles = createParticles(c, notes);
-  const MemoryCounts counts = countsFor(c, particles, true);
+  const ParticleNumbers all = createParticles(c, notes).numbers();
+  const MemoryCounts whole = countsFor(c, createParticles(c, notes), true);
+  const MemoryCounts part = countsFor(c, createParticles(c, notes, nullptr, {1, 4}), true);
+  EXPECT_EQ(part.particles.fluid, all.fluid / 4);
+  EXPECT_EQ(part.particles.wall, all.wall / 4);
+  EXPECT_LT(estimatedDeviceMemory(c, part), estimatedDeviceMemory(c, whole));
   DeviceInfo device;
   device.name = "Some GPU";
-  device.freeMemory = estimatedDeviceMemory(c, counts) / 4;
-  EXPECT_NO_THROW(requireMemory(c, counts, &device, {4, 2}));
+  device.freeMemory = estimatedDeviceMemory(c, part);
+  EXPECT_NO_THROW(requireMemory(c, part, &device, {4, 2, all}));
+  device.freeMemory -= 1;
   try {
-    requireMemory(c, counts, &device, {3, 3});
+    requireMemory(c, part, &device, {4, 2, all});
     FAIL() << "a run that does not fit was let through";
   } catch (const RunError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("1300 particles, shared by 3 processes, need about "));
+    EXPECT_THAT(error.what(), HasSubstr("1300 particles, shared by 4 processes, need about "));
   }
   const MemoryCounts many = countsOf(2, 1000);
+  ParticleNumbers fourTimes = many.particles;
+  fourTimes.fluid *= 4;
   for (const bool onDevice : {false, true}) {
-    const auto least = [&](Sharing sharing) { return leastSharedMemory(c, many, onDevice, sharing); };
-    EXPECT_LT(least({4, 1}), least({4, 4}));
-    EXPECT_LE(least({4, 1}), estimatedMemory(c, many, onDevice));
+    const auto least = [&](std::uint64_t onHost) {
+      return leastSharedMemory(c, many, onDevice, {4, onHost, fourTimes});
+    };
+    EXPECT_LT(least(1), least(4));
+    EXPECT_LT(least(4), 4 * least(1)) << "only the first process writes";
   }
-  EXPECT_LT(leastSharedMemory(c, many, false, {4, 1}), leastSharedMemory(c, many, false, {2, 1}));
 }
 
 TEST(DeviceMemory, WhatIsToldWhereItGivesOut) {

@@ -3,12 +3,15 @@
 #include "treacle/core/error.hpp"
 #include "treacle/io/case_reader.hpp"
 #include "treacle/io/checkpoint.hpp"
+#include "treacle/io/pvtp.hpp"
+#include "treacle/io/vtp.hpp"
 #include "treacle/model/create.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 #include "command.hpp"
 
@@ -80,6 +83,89 @@ TEST(Recorder, KeepsTheCheckpointThatIsAsNewAsTheLastCopy) {
   EXPECT_EQ(std::filesystem::last_write_time(r.directory.checkpoint()), written);
   EXPECT_EQ(readCheckpoint<2>(r.directory.checkpoint()).step, 2);
   EXPECT_EQ(r.directory.frameCount(), 2u);  // of the same state
+}
+
+/// A recorder of frames in pieces, whose only process writes them at once but says so late, or fails to.
+struct RecordedPieces {
+  Workshop shop;
+  Case c;
+  std::int64_t step = 0;
+  bool late = false, fails = false;
+  std::vector<std::size_t> taken;
+  std::vector<PiecedFrame> open;
+  RunDirectory directory;
+  RunLog log;
+  Recorder recorder;
+
+  RecordedPieces()
+      : c((shop.put("case.toml", smallCase), readCase(shop / "case.toml"))),
+        directory(RunDirectory::create(shop / "run", false)),
+        log(directory.log(), true),
+        recorder(
+            c, directory, log, 0, false, [](Snapshot&) { FAIL() << "all particles were asked for"; },
+            [this](PieceOrder order, std::size_t frame) { return answer(order, frame); }) {}
+
+  std::vector<PiecedFrame> answer(PieceOrder order, std::size_t frame) {
+    if (order == PieceOrder::Take) {
+      Frame piece;
+      piece.time = 1e-3 * static_cast<double>(step);
+      piece.position.resize(3);
+      writeVtp(RunDirectory::joined(directory.path()).fluidPiece(frame, 0), piece, {}, OutputPrecision::Single);
+      taken.push_back(frame);
+      open.push_back({step, {piece.time, 3, {0}, {}}, {}});
+      return {};
+    }
+    if (std::exchange(fails, false)) {
+      open.clear();
+      throw RunError("rank 1: no room");
+    }
+    return order == PieceOrder::Collect && late ? std::vector<PiecedFrame>{} : std::exchange(open, {});
+  }
+
+  void advance() {
+    StepReport report;
+    report.step = ++step, report.time = 1e-3 * static_cast<double>(step);
+    recorder.record(report);
+  }
+};
+
+TEST(Recorder, PiecesBecomeFramesWhenAllAreThere) {
+  RecordedPieces r;
+  r.late = true;
+  r.recorder.begin();
+  r.advance(), r.advance();
+  EXPECT_EQ(r.directory.frameCount(), 0u);
+  EXPECT_EQ(r.taken, (std::vector<std::size_t>{0, 1, 2}));
+  r.late = false;
+  r.advance();
+  EXPECT_EQ(r.directory.frameCount(), 4u);
+  r.recorder.writeFrame();
+  EXPECT_EQ(r.taken.size(), 4u) << "the state is in the last frame";
+  EXPECT_EQ(readFrame(r.directory.fluidFrame(2)).time, 2e-3);
+  EXPECT_EQ(readPvd(r.directory.fluidIndex()).at(3).file, "frames/fluid_000003.pvtp");
+}
+
+TEST(Recorder, TheStateAtTheStartIsAFrameOnce) {
+  RecordedPieces r;
+  r.late = true;
+  r.recorder.begin();
+  r.recorder.writeFrame();
+  EXPECT_EQ(r.taken.size(), 1u);
+  EXPECT_EQ(r.directory.frameCount(), 1u);
+}
+
+TEST(Recorder, NumbersOfPiecesThatFailedAreGivenAnew) {
+  RecordedPieces r;
+  r.recorder.begin();
+  r.advance();
+  r.late = true;
+  r.advance();
+  r.fails = true;
+  EXPECT_THROW(r.advance(), RunError);
+  EXPECT_EQ(r.directory.frameCount(), 2u);  // that were there before
+  r.recorder.writeFrame();
+  EXPECT_EQ(r.taken, (std::vector<std::size_t>{0, 1, 2, 3, 2}));
+  EXPECT_EQ(r.directory.frameTime(2), 3e-3);
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ using testing::HasSubstr;
 struct Resumed {
   Workshop shop;
   Case c;
-  AnyParticles made{2};
+  MadeParticles made;
   Particles<2> saved;
   MethodKind method = MethodKind::MphI;
 
@@ -30,7 +30,7 @@ struct Resumed {
     shop.put("case.toml", smallCase);
     c = readCase(shop / "case.toml");
     std::vector<std::string> notes;
-    made = createParticles(c, notes);
+    made = MadeParticles::of(c, notes);
     saved = createParticles<2>(c, notes);
     forEachFluidFieldOf([](auto& field) { std::fill(field.begin(), field.end(), Vec<2>{}); }, saved);
     std::reverse(saved.id.begin(), saved.id.begin() + saved.fluidCount);
@@ -79,6 +79,35 @@ TEST(resumedState, takesBodiesThatTheFileDoesNotKnowFromTheCase) {
   const Particles<2>& p = state.particles.of<2>();
   for (std::uint32_t i = 0; i < p.count; ++i) EXPECT_EQ(p.body[i], i < p.fluidCount ? 0 : 1);
   EXPECT_EQ(p.id[0], p.fluidCount - 1);
+}
+
+/// Of several processes each takes a part, with the surfaces of its walls.
+TEST(resumedState, takesAPart) {
+  Resumed r;
+  std::fill(r.saved.body.begin(), r.saved.body.end(), unknownBody);
+  const StartState all = r.state(1, 1e-3);
+  const Particles<2>& whole = all.particles.of<2>();
+  std::vector<std::uint32_t> place(whole.count);
+  for (std::uint32_t i = 0; i < whole.count; ++i) place[whole.id[i]] = i;
+  std::vector<int> taken(whole.count);
+  for (std::uint32_t k = 0; k < 3; ++k) {
+    std::vector<std::string> notes;
+    r.made = MadeParticles::of(r.c, notes, {k, 3});
+    const StartState state = r.state(1, 1e-3);
+    const Particles<2>& p = state.particles.of<2>();
+    EXPECT_EQ(p.wallSurface.size(), whole.wallSurface.empty() ? 0 : p.wallCount());
+    for (std::uint32_t i = 0; i < p.count; ++i) {
+      const std::uint32_t j = place[p.id[i]];
+      ++taken[j];
+      EXPECT_EQ(i < p.fluidCount, j < whole.fluidCount);
+      EXPECT_EQ(p.position[i], whole.position[j]);
+      EXPECT_EQ(p.body[i], whole.body[j]);
+      if (i >= p.fluidCount && !p.wallSurface.empty()) {
+        EXPECT_EQ(p.wallSurface[i - p.fluidCount], whole.wallSurface[j - whole.fluidCount]);
+      }
+    }
+  }
+  EXPECT_THAT(taken, testing::Each(1));
 }
 
 TEST(resumedState, refusesBodiesThatTheCaseDoesNotHave) {

@@ -162,6 +162,91 @@ TEST(Arrangement, OfRandomParticlesIsWhatAllPairsSay) {
   }
 }
 
+/// The fluid cut across x into parts, each of which knows what is within `reach` [spacings] of it, from whichever
+/// side of periodic ends.
+struct Parts {
+  std::vector<Frame> fluid;
+  std::vector<std::vector<std::size_t>> index;  // of the part's particles in the whole
+  std::vector<std::vector<Vec<3>>> others;
+
+  Parts(const Frame& whole, const Frame& walls, const Domain& domain, double side, std::size_t count, double reach)
+      : fluid(count), index(count), others(count) {
+    const auto partOf = [&](const Vec<3>& x) {
+      return std::min(static_cast<std::size_t>(x[0] / side * static_cast<double>(count)), count - 1);
+    };
+    const auto isNear = [&](const Vec<3>& x, std::size_t part) {
+      const double middle = (static_cast<double>(part) + 0.5) * side / static_cast<double>(count);
+      const double d = domain.periodic[0] ? std::remainder(x[0] - middle, side) : x[0] - middle;
+      return std::abs(d) < side / static_cast<double>(2 * count) + reach * spacing;
+    };
+    for (std::size_t part = 0; part < count; ++part) {
+      fluid[part].dimensions = whole.dimensions;
+      for (std::size_t i = 0; i < whole.position.size(); ++i) {
+        if (partOf(whole.position[i]) == part)
+          fluid[part].position.push_back(whole.position[i]), index[part].push_back(i);
+        else if (isNear(whole.position[i], part))
+          others[part].push_back(whole.position[i]);
+      }
+      for (const Vec<3>& x : walls.position)
+        if (isNear(x, part)) others[part].push_back(x);
+    }
+  }
+
+  ArrangementPart sum(const Domain& domain) {
+    ArrangementPart all = measureArrangementPart(fluid[0], others[0], domain, spacing);
+    for (std::size_t k = 1; k < fluid.size(); ++k) {
+      const ArrangementPart part = measureArrangementPart(fluid[k], others[k], domain, spacing);
+      all.least = std::min(all.least, part.least);
+      all.density += part.density, all.places += part.places, all.close += part.close;
+      for (std::size_t b = 0; b < all.distances.size(); ++b) all.distances[b] += part.distances[b];
+    }
+    return all;
+  }
+};
+
+TEST(Arrangement, PartsMakeThatOfTheWhole) {
+  for (const int dimensions : {2, 3}) {
+    const double side = dimensions == 2 ? 40 * spacing : 12 * spacing;
+    for (const bool periodic : {false, true}) {
+      const Domain domain = periodicBox(side, {periodic, periodic, periodic && dimensions == 3});
+      Frame fluid = frameOf(dimensions, randomPoints(dimensions, 1500, side, 1));
+      const Frame walls = frameOf(dimensions, randomPoints(dimensions, 200, side, 2));
+      const Arrangement expected = measureArrangement(fluid, walls, domain, spacing);
+      Parts parts(fluid, walls, domain, side, 3, nearestReach);
+      const Arrangement found = arrangementOf(parts.sum(domain));
+      for (std::size_t k = 0; k < 3; ++k)
+        for (std::size_t i = 0; i < parts.index[k].size(); ++i)
+          ASSERT_EQ(parts.fluid[k].nearestDistance[i], fluid.nearestDistance[parts.index[k][i]]);
+      EXPECT_EQ(found.least, expected.least);
+      EXPECT_NEAR(found.low, expected.low, ArrangementPart::bin / 2);
+      EXPECT_EQ(found.close, expected.close);
+    }
+  }
+}
+
+TEST(Arrangement, DensityOfPartsIsThatOfTheWhole) {
+  for (const int dimensions : {2, 3})
+    for (const double stretch : {0.97, 1.0, 1.03}) {
+      const Frame whole = frameOf(dimensions, lattice(dimensions, 26, {0.3e-3, 0.7e-3, 0}, stretch));
+      const double side = 26 * stretch * spacing;
+      // What one search cell brings is less than a place looks at.
+      Parts parts(whole, frameOf(dimensions, {}), {}, side, 2, 2.1);
+      const ArrangementPart sum = parts.sum({});
+      const Arrangement found = arrangementOf(sum);
+      ASSERT_TRUE(found.density);
+      EXPECT_NEAR(*found.density * std::pow(stretch, dimensions), 1, 1e-3) << dimensions << ' ' << stretch;
+      EXPECT_NEAR(found.least, stretch, 1e-12);
+      EXPECT_NEAR(found.low, stretch, ArrangementPart::bin);
+    }
+}
+
+TEST(Arrangement, OfAPartWithoutParticles) {
+  Frame none = frameOf(2, {});
+  const ArrangementPart part = measureArrangementPart(none, lattice(2, 3), {}, spacing);
+  EXPECT_EQ(arrangementOf(part), Arrangement{});
+  EXPECT_FALSE(part.distances.empty()) << "all processes add up equally many";
+}
+
 /// Also particles that lie nowhere: what is written of a run that failed must not end the program.
 TEST(Arrangement, OfNoParticlesAndOfPositionsThatAreNotFinite) {
   Frame none = frameOf(2, {});

@@ -168,6 +168,49 @@ TEST(Checkpoint, ReadsBackToTheSameBits) {
   checkRoundTrip<3>(20000, 5000);  // larger than what HDF5 and the file collect before they write
 }
 
+/// As many walls as the modes of the fluid have values: fields must not be taken for each other.
+TEST(Checkpoint, PartsOfTheFluidAreRead) {
+  TemporaryDirectory directory;
+  for (const std::uint32_t wall : {0u, 31u, 62u}) {
+    const std::uint32_t fluid = 31;
+    const Particles<3> whole = randomParticles<3>(fluid, wall);
+    ASSERT_EQ(whole.modeCount(), 3u);
+    writeCheckpoint<3>(directory / "c.h5", whole, 7, 0.5, MethodKind::MphI);
+    for (const std::uint32_t parts : {1u, 2u, 5u, 31u})
+      for (std::uint32_t k = 0; k < parts; ++k) {
+        const ParticlePart part{k, parts};
+        const Checkpoint<3> read = readCheckpoint<3>(directory / "c.h5", part);
+        const std::uint32_t begin = part.begin(fluid), size = part.size(fluid);
+        EXPECT_EQ(read.fluidOfAll, fluid);
+        EXPECT_EQ(read.wallsOfAll, wall);
+        // Walls stand in the file in whatever order; a part has those with its ids.
+        std::vector<std::uint32_t> walls(wall);
+        std::iota(walls.begin(), walls.end(), fluid);
+        if (parts > 1) {
+          std::ranges::sort(walls, {}, [&](std::uint32_t i) { return whole.id[i]; });
+          walls.erase(walls.begin() + part.end(wall), walls.end());
+          walls.erase(walls.begin(), walls.begin() + part.begin(wall));
+        }
+        Particles<3> expected;
+        expected.resize(size, static_cast<std::uint32_t>(walls.size()), 3);
+        expected.copyNumbers(whole);
+        forEachSharedFieldOf(
+            [&](const auto& from, auto& to) {
+              std::copy_n(from.begin() + begin, size, to.begin());
+              for (std::size_t w = 0; w < walls.size(); ++w) to[size + w] = from[walls[w]];
+            },
+            whole, expected);
+        forEachFluidFieldOf(
+            [&](const auto& from, auto& to) { std::copy_n(from.begin() + begin, size, to.begin()); }, whole,
+            expected);
+        for (std::uint32_t m = 0; m < 3; ++m)
+          std::copy_n(whole.modes.vectors.begin() + m * fluid + begin, size,
+                      expected.modes.vectors.begin() + m * size);
+        expectSame(read.particles, expected);
+      }
+  }
+}
+
 TEST(Checkpoint, TheSameStateGivesTheSameFileAndLeavesNoTemporaryOne) {
   TemporaryDirectory directory;
   const auto particles = randomParticles<3>(100, 50);

@@ -4,6 +4,7 @@
 #include "support/temporary_directory.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/io/history.hpp"
+#include "treacle/io/pvtp.hpp"
 #include "treacle/io/vtp.hpp"
 
 #include <unistd.h>
@@ -83,6 +84,65 @@ TEST(RunDirectory, FramesAndIndices) {
   EXPECT_EQ(readPvd(run.wallsIndex()).at(0).time, 0);
 }
 
+TEST(RunDirectory, PiecesBecomeFrames) {
+  TemporaryDirectory directory;
+  RunDirectory run = RunDirectory::create(directory / "run", false);
+  run.writeFrame(frameAt(0, 30), frameAt(0, 20), {});
+  const RunDirectory other = RunDirectory::joined(directory / "run");
+  const auto writePieces = [&](const RunDirectory& of, int rank, std::uint32_t fluid, std::uint32_t walls) {
+    writeVtp(of.fluidPiece(1, rank), frameAt(0.1, fluid), {}, OutputPrecision::Single);
+    writeVtp(of.wallsPiece(1, rank), frameAt(0.1, walls), {}, OutputPrecision::Single);
+  };
+  writePieces(run, 0, 11, 2);
+  const std::string message = messageOf<RunError>([&] { run.joinPieces({0.1, 2, {0, 1}, {0, 1}}); });
+  EXPECT_NE(message.find("fluid_000001.p1.vtp is not there, but rank 1 has written it"), std::string::npos)
+      << message;
+  EXPECT_EQ(run.frameCount(), 1u);
+  writePieces(other, 1, 19, 18);
+  run.joinPieces({0.1, 2, {0, 1}, {0, 1}});
+  run.writeFrame(frameAt(0.2, 30), frameAt(0.2, 20), {});
+  const std::set<std::string> expected{
+      "run.log",
+      "fluid.pvd",
+      "walls.pvd",
+      "frames/fluid_000000.vtp",
+      "frames/walls_000000.vtp",
+      "frames/fluid_000001.pvtp",
+      "frames/fluid_000001.p0.vtp",
+      "frames/fluid_000001.p1.vtp",
+      "frames/walls_000001.pvtp",
+      "frames/walls_000001.p0.vtp",
+      "frames/walls_000001.p1.vtp",
+      "frames/fluid_000002.vtp",
+      "frames/walls_000002.vtp",
+  };
+  EXPECT_EQ(filesIn(directory / "run"), expected);
+
+  const RunDirectory opened = RunDirectory::open(directory / "run");
+  ASSERT_EQ(opened.frameCount(), 3u);
+  EXPECT_EQ(opened.frameTime(1), 0.1);
+  EXPECT_EQ(opened.fluidFrame(1), directory / "run/frames/fluid_000001.pvtp");
+  EXPECT_EQ(opened.wallsFrame(1), directory / "run/frames/walls_000001.pvtp");
+  EXPECT_EQ(opened.fluidFrame(2), directory / "run/frames/fluid_000002.vtp");
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_EQ(readFrame(opened.fluidFrame(k)).position.size(), 30u);
+    EXPECT_EQ(readFrame(opened.wallsFrame(k)).position.size(), 20u);
+  }
+}
+
+TEST(RunDirectory, NobodyNeedsToHaveWalls) {
+  TemporaryDirectory directory;
+  RunDirectory run = RunDirectory::create(directory / "run", false);
+  writeVtp(run.fluidPiece(0, 3), frameAt(0.1, 5), {}, OutputPrecision::Single);
+  run.joinPieces({0.1, 2, {3}, {}});
+  const RunDirectory opened = RunDirectory::open(directory / "run");
+  EXPECT_EQ(readFrame(opened.fluidFrame(0)).position.size(), 5u);
+  const Frame walls = readFrame(opened.wallsFrame(0));
+  EXPECT_TRUE(walls.position.empty());
+  EXPECT_EQ(walls.time, 0.1);
+  EXPECT_EQ(walls.dimensions, 2);
+}
+
 TEST(RunDirectory, AnOldRunNeedsForce) {
   TemporaryDirectory directory;
   RunDirectory run = RunDirectory::create(directory.path(), false);
@@ -100,10 +160,21 @@ TEST(RunDirectory, ForceRemovesTheOldRunAndNothingElse) {
   for (const fs::path& path :
        {run.caseFile(), run.log(), run.history(), run.summary(), run.finalPicture(), run.historyPicture(),
         run.framePicture(0), run.checkpoint(), run.fluidFrame(1000000), directory / "history.csv.tmp",
-        directory / "frames/walls_000007.vtp.tmp"})
+        directory / "frames/walls_000007.vtp.tmp", directory / "frames/fluid_000003.pvtp",
+        directory / "frames/walls_000003.pvtp.tmp", directory / "frames/walls_1000003.p12.vtp",
+        directory / "frames/fluid_000003.p0.vtp.tmp"})
     put(path, "old");
-  const std::set<std::string> foreign{"notes.txt", "frames/fluid_1.vtp", "frames/fluid_00000a.vtp",
-                                      "frames/my.png"};
+  const std::set<std::string> foreign{"notes.txt",
+                                      "frames/fluid_1.vtp",
+                                      "frames/fluid_00000a.vtp",
+                                      "frames/my.png",
+                                      "frames/fluid_000003.p.vtp",
+                                      "frames/fluid_000003.p1.png",
+                                      "frames/fluid_000003.p1.pvtp",
+                                      "frames/fluid_000003.p1",
+                                      "frames/gas_000003.p1.vtp",
+                                      "frames/fluid_000003.q1.vtp",
+                                      "frames/fluid_000003.vtp.p1.vtp"};
   for (const std::string& name : foreign) put(directory / name, "mine");
 
   old.reset();

@@ -149,6 +149,50 @@ TEST(createParticles, earlierBodyKeepsThePlace) {
   for (std::uint32_t i = 0; i < p.count; ++i) EXPECT_EQ(p.body[i], i < 16 ? 0 : 1);
 }
 
+/// Of several processes each makes a part; together they have what one makes, with notes and numbers of the whole.
+TEST(createParticles, partsMakeTheWhole) {
+  Case c = emptyCase(2);
+  c.bodies = {makeBody("floor", BodyKind::Wall, box({0, -3}, {7, 0})),
+              makeBody("first", BodyKind::Fluid, box({0, 0}, {4, 4})),
+              makeBody("second", BodyKind::Fluid, box({2.2, 0}, {6.2, 4})),
+              makeBody("third", BodyKind::Fluid, box({0, 5}, {1, 6}))};
+  c.bodies[1].velocityExpression[0] = "x + 3*y";
+  c.bodies[2].velocity = {0, -1};
+  c.method.wallVelocity = WallVelocity::Extrapolated;
+  std::vector<std::string> notes;
+  std::vector<std::uint32_t> counts;
+  const Particles<2> whole = createParticles<2>(c, notes, &counts);
+  ASSERT_EQ(whole.fluidCount, 25u);
+  ASSERT_EQ(whole.wallSurface.size(), 21u);
+  for (const std::uint32_t parts : {1u, 2u, 3u, 7u, 25u, 40u}) {
+    std::uint32_t fluid = 0, walls = whole.fluidCount;
+    for (std::uint32_t k = 0; k < parts; ++k) {
+      std::vector<std::string> ownNotes;
+      std::vector<std::uint32_t> ownCounts;
+      const Particles<2> p = createParticles<2>(c, ownNotes, &ownCounts, {k, parts});
+      EXPECT_EQ(ownNotes, notes);
+      EXPECT_EQ(ownCounts, counts);
+      EXPECT_EQ(p.wallSurface.size(), p.wallCount());
+      EXPECT_NEAR(p.fluidCount, 25.0 / parts, 1);
+      EXPECT_NEAR(p.wallCount(), 21.0 / parts, 1);
+      for (std::uint32_t i = 0; i < p.count; ++i) {
+        const bool isFluid = i < p.fluidCount;
+        const std::uint32_t j = isFluid ? fluid++ : walls++;
+        EXPECT_EQ(p.id[i], whole.id[j]);
+        EXPECT_EQ(p.position[i], whole.position[j]);
+        EXPECT_EQ(p.velocity[i], whole.velocity[j]);
+        EXPECT_EQ(p.body[i], whole.body[j]);
+        EXPECT_EQ(p.material[i], whole.material[j]);
+        if (!isFluid) {
+          EXPECT_EQ(p.wallSurface[i - p.fluidCount], whole.wallSurface[j - whole.fluidCount]);
+        }
+      }
+    }
+    EXPECT_EQ(fluid, whole.fluidCount);
+    EXPECT_EQ(walls, whole.count);
+  }
+}
+
 TEST(createParticles, conditionsCutBodies) {
   Case c = emptyCase(2);
   c.bodies = {makeBody("sea", BodyKind::Fluid, box({0, 0}, {20, 10})),
