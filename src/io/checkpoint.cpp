@@ -22,9 +22,9 @@ namespace treacle {
 namespace {
 
 constexpr std::string_view formatName = "treacle checkpoint";
-constexpr std::int32_t formatVersion = 6;  // 1: without acceleration and jerk; 2: without bodies and modes; 3:
+constexpr std::int32_t formatVersion = 7;  // 1: without acceleration and jerk; 2: without bodies and modes; 3:
                                            // without method and checksums; 4: without kept eigenvalue; 5: without
-                                           // memory of the time steps
+                                           // memory of the time steps; 6: without shear rates
 
 /// A field as the file holds it.
 struct FieldInfo {
@@ -40,7 +40,7 @@ struct FieldInfo {
 template <class P, class F>
 void forEachNamedField(P& particles, std::uint64_t modeValues, F&& f) {
   auto& [fluidCount, ghostCount, count, position, velocity, pressure, numberDensity, material, body, id,
-         acceleration, jerk, modes, steps, wallSurface] = particles;
+         acceleration, jerk, shearRate, hasShearRates, modes, steps, wallSurface] = particles;
   static_cast<void>(steps);  // numbers
   static_cast<void>(wallSurface);
   f(FieldInfo{"position", count}, position), f(FieldInfo{"velocity", count}, velocity);
@@ -48,6 +48,7 @@ void forEachNamedField(P& particles, std::uint64_t modeValues, F&& f) {
   f(FieldInfo{"material", count}, material), f(FieldInfo{"body", count, 3, unknownBody}, body);
   f(FieldInfo{"id", count}, id);
   f(FieldInfo{"acceleration", fluidCount, 2}, acceleration), f(FieldInfo{"jerk", fluidCount, 2}, jerk);
+  f(FieldInfo{"shear_rate", hasShearRates ? fluidCount : 0, 7}, shearRate);
   f(FieldInfo{"modes", modeValues, 3}, modes.vectors);
 }
 
@@ -195,6 +196,8 @@ void requireSound(const Particles<D>& particles) {
         if (!isFinite(field[k]))
           throw Hdf5Error(fmt::format("value {} of the field {} is not finite", k, info.name));
   });
+  for (const double rate : particles.shearRate)
+    if (rate < 0) throw Hdf5Error(fmt::format("a shear rate of {} 1/s, expected at least 0", rate));
   std::vector<bool> taken(particles.count);
   for (std::uint32_t i = 0; i < particles.count; ++i) {
     const std::uint32_t id = particles.id[i];
@@ -217,6 +220,7 @@ void fill(hid_t file, const Particles<D>& particles, std::int64_t step, double t
   writeAttribute(file, "time", time);
   writeAttribute(file, "fluid_count", particles.fluidCount);
   writeAttribute(file, "wall_count", particles.wallCount());
+  writeAttribute(file, "has_shear_rates", std::uint8_t{particles.hasShearRates});
   const ModeAge& age = particles.modes.age;
   writeAttribute(file, "mode_count", particles.modeCount());
   writeAttribute(file, "modes_due", age.due);
@@ -320,6 +324,7 @@ Checkpoint<D> readContent(const std::filesystem::path& path, bool sealed) {
   if (version >= 3) modes = readModeNumbers(file, particles.modes.age);
   if (version >= 5) particles.modes.pressure = readEigenvalue(file);
   if (version >= 6) particles.steps = readSteps(file);
+  if (version >= 7) particles.hasShearRates = readAttribute<std::uint8_t>(file, "has_shear_rates") != 0;
   const auto read = [&]<class T>(const FieldInfo& info, Buffer<T>& field) {
     if (version >= info.since) return readField(file, info, field);
     field.resize(info.count);

@@ -54,7 +54,7 @@ struct Flow {
     }
     std::mt19937 random(7);
     std::uniform_real_distribution<double> uniform(0, 1);
-    particles.resize({fluid, walls, modes, walls});
+    particles.resize({fluid, walls, modes, walls, 0, true});
     for (std::uint32_t i = 0; i < particles.count; ++i) {
       for (int k = 0; k < D; ++k) particles.position[i][k] = uniform(random) * hi[k];
       (i < fluid ? position : wallPosition).push_back(particles.position[i]);
@@ -69,6 +69,7 @@ struct Flow {
     for (std::uint32_t i = 0; i < fluid; ++i) {
       particles.acceleration[i] = {mark(i, 4)};
       particles.jerk[i] = {mark(i, 5)};
+      particles.shearRate[i] = mark(i, 9);
       for (std::uint32_t m = 0; m < modes; ++m)
         particles.modes.vectors[m * fluid + i] = {static_cast<float>(mark(i, 6 + m))};
     }
@@ -142,6 +143,7 @@ struct Flow {
       EXPECT_EQ(p.velocity[i][0], mark(id, 3));
       EXPECT_EQ(p.acceleration[i][0], mark(id, 4));
       EXPECT_EQ(p.jerk[i][0], mark(id, 5));
+      EXPECT_EQ(p.shearRate[i], mark(id, 9));
       EXPECT_EQ(p.material[i], id % 3);
       EXPECT_EQ(p.body[i], id % 5);
       for (std::uint32_t m = 0; m < p.modeCount(); ++m)
