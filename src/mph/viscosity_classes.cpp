@@ -5,6 +5,10 @@
 namespace treacle {
 namespace {
 
+/// For the constants of the preconditioner that are numbers per material: its degree was found to suit the fluid
+/// where it is thin, not where it is thick.
+double flowingViscosity(const Rheology& r) { return std::min(r.viscosity(0.1), r.viscosity(10)); }
+
 struct Range {
   double least, most;  // [Pa s]
 };
@@ -26,7 +30,7 @@ ViscosityClasses ViscosityClasses::make(const Case& c) {
   int shared = 0;  // by how many materials the other classes are
   for (const Material& m : c.materials) {
     classes.material[classes.count] = static_cast<std::uint8_t>(classes.count);
-    classes.viscosity[classes.count++] = m.typicalViscosity();
+    classes.viscosity[classes.count++] = m.rheology ? flowingViscosity(*m.rheology) : m.dynamicViscosity;
     shared += m.rheology.has_value();
   }
   const int each = shared > 0 ? (most - classes.count) / shared : 0;

@@ -69,7 +69,10 @@ class MphStep final : public StepMethod<D, Backend> {
     copyValues(state_.context, last.subspan(walls, active - walls), state_.velocity.data() + walls);
     guess(state_.velocity.span().first(n));
     StagedReport report = solveOnce();
-    while (rheology_ && rheology_->follow(state_, neighbourhood_)) {
+    while (rheology_) {
+      const bool again = rheology_->follow(state_, neighbourhood_);
+      if (rheology_->isAnother()) state_.particles.modes.pressure = {};
+      if (!again) break;
       prepareAgain();
       report.follow(solveOnce());
     }

@@ -45,13 +45,17 @@ class StepRheology {
     const MphPairs<D>& pairs = neighbourhood.pairs();
     const std::uint32_t own = pairs.ownFluid();
     shearRate<D>(state.context, pairs, state.velocity, share_, found_);
-    const double change = nextRates(
-        state.context, RateTerms{table_, pairs.material, rate_.span().first(own), found_.span().first(own),
-                                 viscosity_.span().first(own), rate_.span().first(own)});
-    if (++solves_ >= settings_.iterations || change <= settings_.tolerance) return false;
+    change_ = nextRates(state.context,
+                        RateTerms{table_, pairs.material, rate_.span().first(own), found_.span().first(own),
+                                  viscosity_.span().first(own), rate_.span().first(own)});
+    if (++solves_ >= settings_.iterations || change_ <= settings_.tolerance) return false;
     apply(state, neighbourhood);
     return true;
   }
+
+  /// Whether viscosities have changed so much that what is known of the spectrum of the last system says little of
+  /// the next one's: a smoother that takes an eigenvalue for too small lets residuals grow.
+  bool isAnother() const { return change_ > 0.1; }
 
   /// The particles take the rates that the last solve has led to.
   void accept(FlowState<D, Backend>& state) {
@@ -79,6 +83,7 @@ class StepRheology {
   RheologySettings settings_;
   double correction_;
   int solves_ = 0;                                      // of the step at hand
+  double change_ = 0;                                   // of the viscosity by the last solve
   Buffer<double, Backend> share_, viscosity_, scaled_;  // per fluid particle: 1/m_i [-], mu_i and s_i mu_i [Pa s]
   Buffer<double, Backend> rate_, found_;  // per own one: gamma of these viscosities, and of the last solve [1/s]
   Buffer<std::uint8_t, Backend> class_;   // per active particle

@@ -146,7 +146,7 @@ TEST(RheologySteps, SettleWithinAStep) {
   }
 }
 
-/// Viscosities from 1 to 6000 Pa s within a few spacings, measured: at most 29 iterations.
+/// Viscosities from 1 to 6000 Pa s within a few spacings, measured: at most 18 iterations.
 TEST(RheologySteps, OfALargeRangeOfViscositiesTakeFewIterations) {
   Case c = damBreak({.model = RheologyModel::HerschelBulkley,
                      .consistency = 0.5,
@@ -157,8 +157,8 @@ TEST(RheologySteps, OfALargeRangeOfViscositiesTakeFewIterations) {
   int iterations = 0;
   const Particles<2> state = stateAfter(c, 60, &iterations);
   const auto [least, most] = std::minmax_element(state.shearRate.begin(), state.shearRate.end());
-  EXPECT_GT(c.materials[0].rheology->viscosity(*least) / c.materials[0].rheology->viscosity(*most), 100);
-  EXPECT_LE(iterations, 60);
+  EXPECT_GT(c.materials[0].rheology->viscosity(*least) / c.materials[0].rheology->viscosity(*most), 1000);
+  EXPECT_LE(iterations, 30);
 }
 
 }  // namespace
