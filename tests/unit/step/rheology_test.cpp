@@ -146,6 +146,27 @@ TEST(RheologySteps, SettleWithinAStep) {
   }
 }
 
+/// A square whose weight does not reach the yield stress creeps as fast as the regularisation says: its stress is
+/// below the yield stress, its rate of the order of 1/m.
+TEST(RheologySteps, HoldAPile) {
+  for (const double m : {100.0, 1000.0}) {
+    Case c = damBreak(
+        {.model = RheologyModel::Bingham, .yieldStress = 80, .plasticViscosity = 0.5, .regularisation = m});
+    c.time.step = 2e-3;
+    c.materials[0].bulkModulus = 1e5;
+    const Particles<2> state = stateAfter(c, 250);
+    const Rheology& rheology = *c.materials[0].rheology;
+    double speed = 0, rate = 0;
+    for (std::uint32_t i = 0; i < state.fluidCount; ++i) {
+      speed = std::max(speed, norm(state.velocity[i]));
+      rate = std::max(rate, state.shearRate[i]);
+    }
+    EXPECT_LT(rheology.viscosity(rate) * rate, 80) << m;  // measured: 79
+    EXPECT_LT(rate * m, 5) << m;                          // measured: 4
+    EXPECT_LT(speed * m, 0.75 * 20e-3) << m;              // measured: 0.45 and 0.73 of the height
+  }
+}
+
 /// Viscosities from 1 to 6000 Pa s within a few spacings, measured: at most 18 iterations.
 TEST(RheologySteps, OfALargeRangeOfViscositiesTakeFewIterations) {
   Case c = damBreak({.model = RheologyModel::HerschelBulkley,
