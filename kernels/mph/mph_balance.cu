@@ -35,6 +35,36 @@ struct ShearDissipation {
   }
 };
 
+/// gamma per fluid particle.
+template <int D, class Mph, bool Corrected>
+struct ShearRate {
+  static constexpr int values = 1;
+  static constexpr bool uses(ListSegment) { return true; }
+  struct Own {
+    std::uint32_t i;
+    Vec<D> u;
+  };
+  using Other = Own;
+
+  Mph mph;
+  const Vec<D>* u;
+  const double* share;
+  double* rate;
+
+  __device__ Own loadOwn(const MphPairs<D>&, std::uint32_t i) const { return {i, u[i]}; }
+  __device__ Other loadOther(const MphPairs<D>&, std::uint32_t j) const { return {j, u[j]}; }
+
+  __device__ void add(const MphPairs<D>& pairs, double* sum, const Vec<D>& d, const PairDistance<double>& r,
+                      const Own& own, const Other& other, ListSegment segment) const {
+    const double along = differenceAlong(other.u, own.u, d);
+    const double part = isWall(segment) ? viscosityFactor<Corrected>(pairs, own.i, other.i, d) : 0.5;
+    sum[0] = fma(part * mph.viscousShape(r), along * along, sum[0]);
+  }
+  __device__ void store(const MphPairs<D>&, std::uint32_t i, int, double sum) const {
+    rate[i] = sqrt(mph.viscousFactor * sum * share[i]);
+  }
+};
+
 /// Force on a wall particle [K23 eq. (4)], and the parts of its C^T u and n, from the fluid near it.
 template <int D, class Mph, bool Corrected>
 struct FluidAtWall {
@@ -94,6 +124,14 @@ void shearDissipation(Context<Cuda>& context, const MphPairs<D>& pairs, std::spa
 }
 
 template <int D>
+void shearRate(Context<Cuda>& context, const MphPairs<D>& pairs, std::span<const Vec<D>> u,
+               std::span<const double> share, std::span<double> rate) {
+  withStepTerms(pairs, [&]<class Mph, class Corrected>(const Mph& mph, Corrected) {
+    sumOnFluid(context, pairs, ShearRate<D, Mph, Corrected::value>{mph, u.data(), share.data(), rate.data()});
+  });
+}
+
+template <int D>
 void fluidAtWalls(Context<Cuda>& context, const MphPairs<D>& pairs, const ClusterListView& walls,
                   std::span<const Vec<D>> u, std::span<const double> pressure, const FluidAtWalls<D>& out) {
   withStepTerms(pairs, [&]<class Mph, class Corrected>(const Mph& mph, Corrected) {
@@ -106,6 +144,8 @@ void fluidAtWalls(Context<Cuda>& context, const MphPairs<D>& pairs, const Cluste
 #define TREACLE_INSTANTIATE(D)                                                                   \
   template void shearDissipation<D>(Context<Cuda>&, const MphPairs<D>&, std::span<const Vec<D>>, \
                                     std::span<double>);                                          \
+  template void shearRate<D>(Context<Cuda>&, const MphPairs<D>&, std::span<const Vec<D>>,        \
+                             std::span<const double>, std::span<double>);                        \
   template void fluidAtWalls<D>(Context<Cuda>&, const MphPairs<D>&, const ClusterListView&,      \
                                 std::span<const Vec<D>>, std::span<const double>, const FluidAtWalls<D>&);
 TREACLE_INSTANTIATE(2)

@@ -135,7 +135,7 @@ template <int D, class T>
 void ParticleProducts<D, T, Cuda>::gatherWeighted(Context<Cuda>& context, const ProjectionTable<T>& table,
                                                   std::span<const Vec<D>> u) {
   forEach(context, u.size(),
-          [table, material = pairs_->material.data(), from = u.data(), to = vectors()] __device__(std::size_t i) {
+          [table, material = pairs_->classOf(), from = u.data(), to = vectors()] __device__(std::size_t i) {
             Vec<D, T> v;
             for (int k = 0; k < D; ++k) v[k] = table.weight[material[i]] * static_cast<T>(from[i][k]);
             to.set(i, v);
@@ -230,7 +230,7 @@ template <int D, class T>
 template <class Store>
 void ParticleProducts<D, T, Cuda>::schur(Context<Cuda>& context, const ProjectionTable<T>& table,
                                          ScalarField<T, Cuda> q, const Store& store) {
-  const std::uint8_t* material = pairs_->material.data();
+  const std::uint8_t* material = pairs_->classOf();
   if constexpr (std::is_same_v<T, float>)
     if (pairs_->activeCount <= onePassParticles<D> && !pairs_->renormalisation && !context.halo)
       return withPressureTerms(*pairs_, [&](const auto& terms, auto renormalised) {
@@ -277,7 +277,7 @@ void ParticleProducts<D, T, Cuda>::inverseDiagonals(Context<Cuda>& context, cons
   const auto start = [&]<class Weights, class Columns>(const MphTerms<D, double, Weights>& terms,
                                                        const Columns& columns) {
     launch(context, blocksFor(pairs_->activeCount, 128), 128, 0, pressureDiagonalKernel<D, T, Weights, Columns>,
-           NearView<D, T, Weights>::make(*pairs_, a_->near(), terms), columns, pairs_->material.data(), table,
+           NearView<D, T, Weights>::make(*pairs_, a_->near(), terms), columns, pairs_->classOf(), table,
            static_cast<T>(reach * reach), pressure.data());
   };
   withPressureTerms(*pairs_, [&](const auto& terms, auto renormalised) {

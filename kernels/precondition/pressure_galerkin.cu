@@ -267,7 +267,7 @@ void pressureGalerkin(Context<Cuda>& context, const MphPairs<D>& pairs, const Ne
       .table = table,
       .ranges = pairs.ownRanges(),
       .position = pairs.position.data(),
-      .material = pairs.material.data(),
+      .material = pairs.classOf(),
       .parts = {parts.data(), parts.data() + std::size_t{Parts::halves} * Parts::gram * own.count()},
       .rowStart = s.rowStart.data(),
       .column = s.column.data(),

@@ -120,6 +120,7 @@ void PieceWriter::write(const Snapshot& s) {
       const std::uint32_t begin = p.wallBegin();
       piece.fluid = p.fluidCount;
       Frame fluid = makeFrame(p, 0, p.fluidCount, s.time);
+      addViscosities(case_.materials, fluid);
       piece.arrangement = measureArrangementPart(fluid, positionsOfOthers(p), case_.domain, case_.spacing);
       writePiece(directory_.fluidPiece(s.number, processes_.rank()), fluid);
       writePiece(directory_.wallsPiece(s.number, processes_.rank()),

@@ -14,8 +14,10 @@
 namespace treacle {
 namespace {
 
-Frame fluidFrame(const Snapshot& s) {
-  return s.particles.visit([&](const auto& p) { return makeFrame(p, 0, p.fluidCount, s.time); });
+Frame fluidFrame(const Case& c, const Snapshot& s) {
+  Frame frame = s.particles.visit([&](const auto& p) { return makeFrame(p, 0, p.fluidCount, s.time); });
+  addViscosities(c.materials, frame);
+  return frame;
 }
 
 Frame wallsFrame(const Snapshot& s) {
@@ -147,7 +149,7 @@ void Recorder::drawPicture() {
   options.spacing = case_.spacing;
   options.gravity = case_.gravity;
   options.title = case_.title;
-  drawFrame(directory_.finalPicture(), fluidFrame(*state), wallsFrame(*state), options);
+  drawFrame(directory_.finalPicture(), fluidFrame(case_, *state), wallsFrame(*state), options);
 }
 
 std::vector<std::string> Recorder::takeWarnings() {
@@ -202,7 +204,7 @@ void Recorder::handOver(Snapshot& snapshot, bool frame, bool checkpoint) {
 void Recorder::write(const Snapshot& s) {
   const TraceRange range("output");
   if (s.frame) {
-    Frame fluid = fluidFrame(s);
+    Frame fluid = fluidFrame(case_, s);
     const Frame walls = wallsFrame(s);
     const Arrangement arrangement = measureArrangement(fluid, walls, case_.domain, case_.spacing);
     directory_.writeFrame(fluid, walls, case_.output);

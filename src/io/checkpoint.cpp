@@ -24,9 +24,9 @@ namespace treacle {
 namespace {
 
 constexpr std::string_view formatName = "treacle checkpoint";
-constexpr std::int32_t formatVersion = 6;  // 1: without acceleration and jerk; 2: without bodies and modes; 3:
+constexpr std::int32_t formatVersion = 7;  // 1: without acceleration and jerk; 2: without bodies and modes; 3:
                                            // without method and checksums; 4: without kept eigenvalue; 5: without
-                                           // memory of the time steps
+                                           // memory of the time steps; 6: without shear rates
 
 /// What a field has values for: all particles; the fluid; the fluid once for each mode.
 enum class Of { All, Fluid, Modes };
@@ -46,7 +46,7 @@ struct FieldInfo {
 template <class P, class F>
 void forEachNamedField(P& particles, std::uint64_t modeValues, F&& f) {
   auto& [fluidCount, ghostCount, count, position, velocity, pressure, numberDensity, material, body, id,
-         acceleration, jerk, modes, steps, wallSurface] = particles;
+         acceleration, jerk, shearRate, hasShearRates, modes, steps, wallSurface] = particles;
   static_cast<void>(steps);  // numbers
   static_cast<void>(wallSurface);
   f(FieldInfo{"position", Of::All, count}, position), f(FieldInfo{"velocity", Of::All, count}, velocity);
@@ -56,6 +56,7 @@ void forEachNamedField(P& particles, std::uint64_t modeValues, F&& f) {
   f(FieldInfo{"id", Of::All, count}, id);
   f(FieldInfo{"acceleration", Of::Fluid, fluidCount, 2}, acceleration);
   f(FieldInfo{"jerk", Of::Fluid, fluidCount, 2}, jerk);
+  f(FieldInfo{"shear_rate", Of::Fluid, hasShearRates ? fluidCount : 0, 7}, shearRate);
   f(FieldInfo{"modes", Of::Modes, modeValues, 3}, modes.vectors);
 }
 
@@ -179,8 +180,9 @@ struct Selection {
   std::uint32_t fluid = 0, walls = 0;      // particles in the file
   std::vector<std::uint32_t> chosenWalls;  // of a part, from the first wall on, in the order of their ids
 
-  /// The rows of the fluid that a field has.
+  /// The rows of the fluid that a field has; none of a field that is empty.
   std::vector<Rows> fluidRows(const FieldInfo& info) const {
+    if (info.count == 0) return {};
     const std::uint64_t begin = part.begin(fluid), size = part.size(fluid);
     if (info.of != Of::Modes) return {{begin, size}};
     std::vector<Rows> rows;
@@ -188,6 +190,7 @@ struct Selection {
     return rows;
   }
   std::uint64_t count(const FieldInfo& info) const {
+    if (info.count == 0) return 0;
     const std::uint64_t times = info.of == Of::Modes && fluid > 0 ? info.count / fluid : 1;
     return times * part.size(fluid) + (info.of == Of::All ? part.size(walls) : 0);
   }
@@ -251,13 +254,15 @@ bool isFinite(const Vec<D, T>& x) {
 
 /// Errors: Hdf5Error.
 template <int D>
-void requireFinite(const Particles<D>& particles) {
+void requireSound(const Particles<D>& particles) {
   forEachNamedField(particles, [&]<class T>(const FieldInfo& info, const Buffer<T>& field) {
     if constexpr (!std::is_integral_v<T>)
       for (std::size_t k = 0; k < field.size(); ++k)
         if (!isFinite(field[k]))
           throw Hdf5Error(fmt::format("value {} of the field {} is not finite", k, info.name));
   });
+  for (const double rate : particles.shearRate)
+    if (rate < 0) throw Hdf5Error(fmt::format("a shear rate of {} 1/s, expected at least 0", rate));
 }
 
 /// `ids`: of all particles, `fluid` of which come first. Errors: Hdf5Error.
@@ -284,6 +289,7 @@ void fill(hid_t file, const Particles<D>& particles, std::int64_t step, double t
   writeAttribute(file, "time", time);
   writeAttribute(file, "fluid_count", particles.fluidCount);
   writeAttribute(file, "wall_count", particles.wallCount());
+  writeAttribute(file, "has_shear_rates", std::uint8_t{particles.hasShearRates});
   const ModeAge& age = particles.modes.age;
   writeAttribute(file, "mode_count", particles.modeCount());
   writeAttribute(file, "modes_due", age.due);
@@ -403,6 +409,7 @@ Checkpoint<D> readContent(const std::filesystem::path& path, bool sealed, Partic
   if (version >= 3) modes = readModeNumbers(file, particles.modes.age);
   if (version >= 5) particles.modes.pressure = readEigenvalue(file);
   if (version >= 6) particles.steps = readSteps(file);
+  if (version >= 7) particles.hasShearRates = readAttribute<std::uint8_t>(file, "has_shear_rates") != 0;
   Selection selection{part, particles.fluidCount, particles.wallCount(), {}};
   checkpoint.fluidOfAll = selection.fluid, checkpoint.wallsOfAll = selection.walls;
   if (!part.isAll()) chooseWalls(file, selection);
@@ -414,7 +421,7 @@ Checkpoint<D> readContent(const std::filesystem::path& path, bool sealed, Partic
                       if constexpr (std::is_integral_v<T>) older = static_cast<T>(info.older);
                       std::fill(field.begin(), field.end(), older);
                     });
-  requireFinite(particles);
+  requireSound(particles);
   if (part.isAll()) requireEachOnce(particles.id, particles.fluidCount);
   particles.fluidCount = part.size(selection.fluid);
   particles.count = particles.fluidCount + part.size(selection.walls);
@@ -428,7 +435,7 @@ void writeCheckpoint(const std::filesystem::path& path, const Particles<D>& part
                      double time, MethodKind method) {
   const Hdf5Silence silence;
   try {
-    requireFinite(particles);  // what cannot be read back must not replace what can
+    requireSound(particles);  // what cannot be read back must not replace what can
     requireEachOnce(particles.id, particles.fluidCount);
     // HDF5 makes the file in memory: it cannot close a file that a full disk keeps it from finishing.
     std::size_t bytes = 1 << 16;

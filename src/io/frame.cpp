@@ -34,7 +34,17 @@ Frame makeFrame(const Particles<D>& particles, std::uint32_t begin, std::uint32_
   frame.material = gathered<std::int32_t>(particles.material, order, same);
   frame.body = gathered<std::int32_t>(particles.body, order, same);
   frame.id = gathered<std::uint32_t>(particles.id, order, same);
+  if (particles.hasShearRates && end <= particles.fluidCount)
+    frame.shearRate = gathered<double>(particles.shearRate, order, same);
   return frame;
+}
+
+void addViscosities(const std::vector<Material>& materials, Frame& frame) {
+  frame.dynamicViscosity.resize(frame.shearRate.size());
+  for (std::size_t i = 0; i < frame.shearRate.size(); ++i) {
+    const Material& m = materials[static_cast<std::size_t>(frame.material[i])];
+    frame.dynamicViscosity[i] = m.rheology ? m.rheology->viscosity(frame.shearRate[i]) : m.dynamicViscosity;
+  }
 }
 
 template Frame makeFrame<2>(const Particles<2>&, std::uint32_t, std::uint32_t, double);

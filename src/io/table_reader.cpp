@@ -22,6 +22,19 @@ void TableReader::prepare(MethodSettings& method) {
   nameMethod();
 }
 
+/// A viscosity beside a rheology would be one that nobody uses.
+void TableReader::prepare(Material&) {
+  if (section_.table().contains("rheology") && section_.table().contains("dynamic_viscosity"))
+    throw section_.error("dynamic_viscosity", viscosityBesideRheology);
+}
+
+void TableReader::prepare(Rheology& rheology) {
+  const auto model = lookUp<RheologyModel>("model");
+  if (!model) return;
+  rheology.model = *model;
+  section_ = Section(section_.table(), fmt::format("{} ({})", section_.title(), nameOf(*model)));
+}
+
 void TableReader::prepare(Body& body) {
   const auto shape = lookUp<ShapeKind>("shape");
   if (!shape) return;
@@ -52,17 +65,25 @@ void TableReader::requireKnownKeys(const TimeSettings& time) const {
 
 std::vector<std::string_view> TableReader::knownKeys(const Case&) const { return topLevelKeys(); }
 
-/// Only the keys of the shape at hand, so that a radius given to a box is an error; all while it is unclear.
-std::vector<std::string_view> TableReader::knownKeys(const Body& body) const {
-  if (lookUp<ShapeKind>("shape")) return keys::namesIn(body, case_);
+/// Only the keys of the kind at hand, which the word at `key` says, so that a radius given to a box is an error;
+/// all while it is unclear. set(table, kind) makes a table of a kind.
+template <class E, class Table, class Set>
+std::vector<std::string_view> TableReader::keysOfKind(std::string_view key, const Table& member, Set set) const {
+  if (lookUp<E>(key)) return keys::namesIn(member, case_);
   std::vector<std::string_view> known;
-  for (const Named<ShapeKind>& shape : namesOf<ShapeKind>) {
-    Body other;
-    other.shape.kind = shape.value;
-    for (std::string_view key : keys::namesIn(other, case_))
-      if (std::ranges::find(known, key) == known.end()) known.push_back(key);
+  for (const Named<E>& kind : namesOf<E>) {
+    Table other;
+    set(other, kind.value);
+    for (std::string_view name : keys::namesIn(other, case_))
+      if (std::ranges::find(known, name) == known.end()) known.push_back(name);
   }
   return known;
+}
+std::vector<std::string_view> TableReader::knownKeys(const Body& body) const {
+  return keysOfKind<ShapeKind>("shape", body, [](Body& b, ShapeKind kind) { b.shape.kind = kind; });
+}
+std::vector<std::string_view> TableReader::knownKeys(const Rheology& rheology) const {
+  return keysOfKind<RheologyModel>("model", rheology, [](Rheology& r, RheologyModel model) { r.model = model; });
 }
 
 std::string TableReader::titleOf(std::string_view key) const {

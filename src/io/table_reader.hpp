@@ -78,6 +78,8 @@ class TableReader {
   void prepare(Table&) {}
   void prepare(Case& c);
   void prepare(MethodSettings& method);
+  void prepare(Material& material);
+  void prepare(Rheology& rheology);
   void prepare(Body& body);
   void prepare(SolverSettings& solver);
   void prepare(TimeSettings& time);
@@ -98,6 +100,9 @@ class TableReader {
   }
   std::vector<std::string_view> knownKeys(const Case&) const;
   std::vector<std::string_view> knownKeys(const Body& body) const;
+  std::vector<std::string_view> knownKeys(const Rheology& rheology) const;
+  template <class E, class Table, class Set>
+  std::vector<std::string_view> keysOfKind(std::string_view key, const Table& member, Set set) const;
 
   const std::string* word(const Key& key) const;
   const toml::table* table(const Key& key) const;

@@ -39,6 +39,8 @@ class VtpReader {
     readVectors("velocity", frame.velocity);
     readScalars("pressure", frame.pressure);
     readScalars("number_density", frame.numberDensity);
+    readScalars("dynamic_viscosity", frame.dynamicViscosity);
+    readScalars("shear_rate", frame.shearRate);
     readScalars("nearest_distance", frame.nearestDistance);
     readScalars("material", frame.material);
     readScalars("body", frame.body);

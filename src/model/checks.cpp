@@ -131,7 +131,7 @@ constexpr double mostPushed = 0.5, latticeViscosity = 2.5;
 /// The longest step of a fluid that carries the pressure p [Pa] of heavier ones [s].
 double longestCarryingStep(const Case& c, const Material& m, double p) {
   const double inertia = m.density * c.spacing * c.spacing;
-  const double half = 0.5 * mostPushed * latticeViscosity * m.dynamicViscosity / p;
+  const double half = 0.5 * mostPushed * latticeViscosity * m.typicalViscosity() / p;
   return half + std::sqrt(half * half + mostPushed * inertia / p);
 }
 
@@ -145,7 +145,7 @@ void warnLightFluids(const Case& c, std::vector<std::string>& warnings) {
     if (p == 0) continue;
     const Material& m = materialOf(c, body);
     const double dt = c.time.step, inertia = m.density * c.spacing * c.spacing;  // times 1/dt like a viscosity
-    const double way = p * dt / (inertia / dt + latticeViscosity * m.dynamicViscosity);
+    const double way = p * dt / (inertia / dt + latticeViscosity * m.typicalViscosity());
     if (way <= mostPushed * (1 + rounding)) continue;
     warnings.push_back(fmt::format(
         "fluid '{}' is too light and too thin for the heavier fluid on it: a pressure of {:.3g} Pa can move its "
@@ -255,7 +255,7 @@ std::vector<StabilityNumbers> stabilityNumbers(const Case& c) {
     const double diffusion = c.time.step / (m.density * c.spacing * c.spacing);
     const bool elastic = c.method.kind == MethodKind::MphI && m.bulkModulus > 0;
     const double compression = elastic ? c.time.step * m.bulkModulus / m.bulkViscosity : 0;
-    numbers.push_back({m.name, compression, m.dynamicViscosity * diffusion, m.bulkViscosity * diffusion});
+    numbers.push_back({m.name, compression, m.typicalViscosity() * diffusion, m.bulkViscosity * diffusion});
   }
   return numbers;
 }

@@ -20,7 +20,7 @@ MaterialTable MaterialTable::make(const Case& c) {
     t.bulkModulus[i] = m.bulkModulus;
     t.slipLength[i] = m.slipLength;
     for (int j = 0; j < t.count; ++j) {
-      const double a = m.dynamicViscosity, b = c.materials[j].dynamicViscosity;
+      const double a = m.typicalViscosity(), b = c.materials[j].typicalViscosity();
       t.pairViscosity[i][j] = a + b > 0 ? 2 * a * b / (a + b) : 0;
       t.pairMobility[i][j] = 4 / (m.density + c.materials[j].density);
     }

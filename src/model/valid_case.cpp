@@ -139,6 +139,40 @@ void requireSound(const Checker& at, const Rotation& r) {
     at.fail({"axis"}, fmt::format("expected a direction, found a vector of length {}", length));
 }
 
+/// The viscosity of every shear rate must be finite, and that of a fluid at rest positive: without any it would
+/// fall apart.
+void requireSound(const Checker& at, const Rheology& r) {
+  using enum RheologyModel;
+  if (r.mostViscosity > 0 && r.mostViscosity <= r.leastViscosity)
+    at.fail({"max_viscosity"},
+            fmt::format("expected more than min_viscosity = {}, found {}", r.leastViscosity, r.mostViscosity));
+  const bool plateaus = r.model == Cross || r.model == CarreauYasuda;
+  if (plateaus && r.infiniteViscosity > r.zeroViscosity)
+    at.fail({"infinite_viscosity"},
+            fmt::format("expected at most zero_viscosity = {}, found {}", r.zeroViscosity, r.infiniteViscosity));
+  if (plateaus && r.flowIndex > 1)
+    at.fail({"flow_index"}, fmt::format("expected at most 1 between two plateaus, found {}", r.flowIndex));
+  const bool power = r.model == PowerLaw || r.model == HerschelBulkley;
+  if (power && r.flowIndex < 1 && r.mostViscosity == 0)
+    at.fail({"max_viscosity"},
+            fmt::format("expected a positive number [Pa s]: with flow_index = {} < 1 a fluid at rest would be "
+                        "infinitely viscous",
+                        r.flowIndex));
+  if (r.model == PowerLaw && r.flowIndex > 1 && r.leastViscosity == 0)
+    at.fail(
+        {"min_viscosity"},
+        fmt::format("expected a positive number [Pa s]: with flow_index = {} > 1 a fluid at rest would have no "
+                    "viscosity",
+                    r.flowIndex));
+}
+
+void requireSound(const Checker& at, const Material& m) {
+  if (m.rheology && at.wholeCase().method.kind != MethodKind::MphI)
+    at.fail({"rheology"}, fmt::format("only the method '{}' has fluids that are not Newtonian, found '{}'",
+                                      nameOf(MethodKind::MphI), nameOf(at.wholeCase().method.kind)));
+  if (m.rheology && m.dynamicViscosity != 0) at.fail({"dynamic_viscosity"}, viscosityBesideRheology);
+}
+
 void requireSound(const Checker& at, const Shape& s) {
   if (s.kind == ShapeKind::Box) return requireOrder(at, s.min, s.max);
   if (s.kind == ShapeKind::Cylinder && s.start == s.end) at.fail({"end"}, "expected a point other than start");

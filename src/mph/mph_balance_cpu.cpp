@@ -2,6 +2,8 @@
 
 #include "treacle/mph/mph_lanes.hpp"
 
+#include <cmath>
+
 namespace treacle {
 
 template <int D>
@@ -28,6 +30,35 @@ void shearDissipation(Context<Cpu>&, const MphPairs<D>& pairs, std::span<const V
     const Lanes ofFluid = sum(ListSegment::NearFluid, false) + sum(ListSegment::FarFluid, false);
     storeLanes(range, 0.5 * ofFluid + sum(ListSegment::NearWall, true) + sum(ListSegment::FarWall, true),
                dissipation);
+  });
+}
+
+template <int D>
+void shearRate(Context<Cpu>&, const MphPairs<D>& pairs, std::span<const Vec<D>> u, std::span<const double> share,
+               std::span<double> rate) {
+  const double floor2 = distanceFloor2(pairs);
+  const ClusterListView& list = pairs.fluidList;
+  forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const ClusterPlaces<D>& x, std::uint32_t c) {
+    const VecLanes<D> ui = loadLanes<D>(range, u);
+    const auto sum = [&](ListSegment segment, bool wall) {
+      Lanes total = {};
+      for (std::uint32_t j : list.segment(c, segment)) {
+        const PairLanes<D> pair(pairs, j, x, floor2);
+        Lanes along = {};
+        for (int k = 0; k < D; ++k) along += (u[j][k] - ui[k]) * pair.d[k];
+        along *= pair.r.inverse;
+        Lanes shape = pairs.terms.resistanceShape(pair.r);
+        if (wall) shape *= wallFactors(pairs, range, j, pair.d);
+        total += shape * along * along;
+      }
+      return total;
+    };
+    const Lanes ofFluid = sum(ListSegment::NearFluid, false) + sum(ListSegment::FarFluid, false);
+    const Lanes all = 0.5 * ofFluid + sum(ListSegment::NearWall, true) + sum(ListSegment::FarWall, true);
+    for (std::uint32_t lane = 0; lane < range.count; ++lane) {
+      const std::size_t i = range.first + lane;
+      rate[i] = std::sqrt(pairs.terms.viscousFactor * all[lane] * share[i]);
+    }
   });
 }
 
@@ -76,10 +107,12 @@ void fluidAtWalls(Context<Cpu>&, const MphPairs<D>& pairs, const ClusterListView
                       [&]<bool Renormalised>() { sumFluidAtWalls<Renormalised>(pairs, walls, u, pressure, out); });
 }
 
-#define TREACLE_INSTANTIATE(D)                                                                  \
-  template void shearDissipation<D>(Context<Cpu>&, const MphPairs<D>&, std::span<const Vec<D>>, \
-                                    std::span<double>);                                         \
-  template void fluidAtWalls<D>(Context<Cpu>&, const MphPairs<D>&, const ClusterListView&,      \
+#define TREACLE_INSTANTIATE(D)                                                                                    \
+  template void shearDissipation<D>(Context<Cpu>&, const MphPairs<D>&, std::span<const Vec<D>>,                   \
+                                    std::span<double>);                                                           \
+  template void shearRate<D>(Context<Cpu>&, const MphPairs<D>&, std::span<const Vec<D>>, std::span<const double>, \
+                             std::span<double>);                                                                  \
+  template void fluidAtWalls<D>(Context<Cpu>&, const MphPairs<D>&, const ClusterListView&,                        \
                                 std::span<const Vec<D>>, std::span<const double>, const FluidAtWalls<D>&);
 TREACLE_INSTANTIATE(2)
 TREACLE_INSTANTIATE(3)

@@ -24,6 +24,11 @@ MphPairs<D> makeMphPairs(const Case& c) {
   pairs.terms.setDensityWeight(densityWeight);
   pairs.restDensity = latticeNumberDensity(densityWeight, c.spacing);
   pairs.materials = MaterialTable::make(c);
+  pairs.classes = ViscosityClasses::make(c);
+  if (c.hasRheology()) {
+    pairs.ownViscosities = true;
+    for (auto& row : pairs.materials.pairViscosity) std::fill(std::begin(row), std::end(row), 1.0);
+  }
   return pairs;
 }
 

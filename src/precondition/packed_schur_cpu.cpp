@@ -86,7 +86,7 @@ void ParticleProducts<D, T, Cpu>::packedSchur(const Context<Cpu>& context, const
                                               ScalarField<T, Cpu> q, const Store& store) {
   const MphPairs<D>& pairs = *pairs_;
   fillGhosts(context, Held::Active, q.at);
-  const StoreWeighted<D, T, Cpu> weighted{table, pairs.material.data(), vectors()};
+  const StoreWeighted<D, T, Cpu> weighted{table, pairs.classOf(), vectors()};
   forEachClusterOf(pairs.fluidList, [&](std::uint32_t c) {
     FloatPair<D> sum[D] = {};
     forEachPair<D>(gradientRows_, c, [&](std::uint32_t i, std::uint32_t j, const FloatPair<D>(&element)[D]) {

@@ -169,7 +169,7 @@ void ParticleProducts<D, T, Cpu>::schur(Context<Cpu>& context, const ProjectionT
                                         ScalarField<T, Cpu> q, const Store& store) {
   if constexpr (packed)
     if (unit_ > 0) return packedSchur(context, table, q, store);
-  gradient(context, q, StoreWeighted<D, T, Cpu>{table, pairs_->material.data(), vectors()});
+  gradient(context, q, StoreWeighted<D, T, Cpu>{table, pairs_->classOf(), vectors()});
   divergence(context, vectors(), store);
 }
 
@@ -200,7 +200,7 @@ void ParticleProducts<D, T, Cpu>::viscous(Context<Cpu>& context, Gathered<D, T>*
 template <int D, class T>
 void ParticleProducts<D, T, Cpu>::inverseDiagonals(Context<Cpu>&, const ProjectionTable<T>& table,
                                                    std::span<T> pressure, std::span<Block<D, T>> velocity) const {
-  const std::uint8_t* material = pairs_->material.data();
+  const std::uint8_t* material = pairs_->classOf();
   std::fill(pressure.begin() + pairs_->ownFluid(), pressure.begin() + pairs_->fluidCount, T(0));
   std::fill(pressure.begin() + pairs_->ownEnd(), pressure.end(), T(0));
   const auto sumSquares = [&](const ClusterWalk<D, T>& walk, const T* coefficient, auto&& product) {
@@ -260,7 +260,7 @@ template <int D, class T>
 void ParticleProducts<D, T, Cpu>::gatherWeighted(Context<Cpu>&, const ProjectionTable<T>& table,
                                                  std::span<const Vec<D>> u) {
   parallelFor(u.size(), parallelGrain, [&](std::size_t i) {
-    for (int k = 0; k < D; ++k) vectors_[i][k] = table.weight[pairs_->material[i]] * static_cast<T>(u[i][k]);
+    for (int k = 0; k < D; ++k) vectors_[i][k] = table.weight[pairs_->classOf()[i]] * static_cast<T>(u[i][k]);
   });
 }
 

@@ -117,17 +117,17 @@ inline void forEachLane(const ClusterRange& range, F&& f) {
   }
 }
 
-/// Stores the sums sumOf(i, lane). A single material is known before the loop and needs no look-up per particle.
+/// Stores the sums sumOf(i, lane). A single class is known before the loop and needs no look-up per particle.
 /// `flatten`: the compiler vectorises only what it has inlined.
 template <int D, class Store, class F>
 [[gnu::flatten]] inline void storeSums(const MphPairs<D>& pairs, const ClusterRange& range, const Store& store,
                                        F&& sumOf) {
   const std::size_t first = range.first;
-  if (pairs.isOneSubstance())
+  if (pairs.isOneClass())
     forEachLane(range, [&](std::size_t lane) { store.put(first + lane, sumOf(first + lane, lane), 0); });
   else
     forEachLane(range, [&](std::size_t lane) {
-      store.put(first + lane, sumOf(first + lane, lane), pairs.material[first + lane]);
+      store.put(first + lane, sumOf(first + lane, lane), pairs.classOf()[first + lane]);
     });
 }
 

@@ -8,7 +8,7 @@ namespace treacle {
 template <class T>
 ProjectionTable<T> ProjectionConstants::table(double shift) const {
   ProjectionTable<T> t{};
-  for (std::size_t m = 0; m < maxMaterials; ++m) {
+  for (int m = 0; m < ViscosityClasses::most; ++m) {
     t.weight[m] = static_cast<T>(weight[m]);
     t.inverseLambda[m] = static_cast<T>(1 / lambda[m]);
     t.shift[m] = static_cast<T>(shift / lambda[m]);
@@ -28,14 +28,16 @@ ProjectionConstants projectionConstants(const MphPairs<D>& pairs) {
     return std::pow(terms.gradient(PairDistance<double>{r * r, 1 / r}) * r, 2);
   });
   ProjectionConstants c{};
-  std::fill_n(c.weight, maxMaterials, 1.0);
-  std::fill_n(c.lambda, maxMaterials, 1.0);
+  std::fill_n(c.weight, ViscosityClasses::most, 1.0);
+  std::fill_n(c.lambda, ViscosityClasses::most, 1.0);
   double largestWeight = 0, largestLambda = 0;
-  for (int m = 0; m < pairs.materials.count; ++m) {
+  for (int m = 0; m < pairs.classes.count; ++m) {
     const MaterialTable& t = pairs.materials;
-    c.weight[m] = 1 / (t.inertia[m] + t.viscosity(m) * viscous);
+    const int material = pairs.classes.material[m];
+    c.weight[m] = 1 / (t.inertia[material] + pairs.classes.viscosity[m] * viscous);
     const double natural = 1 / (c.weight[m] * gradients);
-    c.lambda[m] = std::max(t.bulkViscosity[m], 1e-4 * natural);
+    c.lambda[m] = std::max(t.bulkViscosity[material], 1e-4 * natural);
+    if (m >= t.count) continue;
     largestWeight = std::max(largestWeight, c.weight[m]);
     largestLambda = std::max(largestLambda, c.lambda[m]);
   }
@@ -76,7 +78,7 @@ void ProjectedMultigrid<D, T, Backend>::setup(Context<Backend>& context, const M
   const auto product = [&](std::span<const T> x, std::span<T> y) {
     products_.gather(context, x);
     products_.schur(context, table_, products_.scalars(),
-                    StorePressure<T, Backend>{table_, pairs.material.data(), products_.scalars(), y.data()});
+                    StorePressure<T, Backend>{table_, pairs.classOf(), products_.scalars(), y.data()});
   };
   lambdaMax_.run(context, product, inversePressure_);
   if (kept) kept->estimated(lambdaMax_.onHost(context));
@@ -123,7 +125,7 @@ ScalarField<T, Backend> ProjectedMultigrid<D, T, Backend>::pressureCycle(Context
   int last = 0;  // which of the two fields has the latest correction; the same at the start of each cycle
   const auto step = [&]<StepKind Kind>(int i, std::integral_constant<StepKind, Kind>) {
     products_.schur(context, table_, products_.scalars(last),
-                    PressureStep<T, Backend, Kind>{table_, pairs_->material.data(), inversePressure_.data(),
+                    PressureStep<T, Backend, Kind>{table_, pairs_->classOf(), inversePressure_.data(),
                                                    lambdaMax_.largest(), ChebyshevStep<T>::at(i),
                                                    pressureVectors(last), products_.scalars(1 - last)});
     if (Kind != StepKind::Residual) last = 1 - last;
@@ -162,7 +164,7 @@ void ProjectedMultigrid<D, T, Backend>::velocityCycle(Context<Backend>& context)
 template <int D, class T, class Backend>
 void ProjectedMultigrid<D, T, Backend>::apply(Context<Backend>& context, std::span<const Vec<D>> r,
                                               std::span<Vec<D>> z) {
-  const std::uint8_t* material = pairs_->material.data();
+  const std::uint8_t* material = pairs_->classOf();
   const ChebyshevStep<T> first = ChebyshevStep<T>::at(1);
   const auto startPressure = [&](bool holdsPressure) {
     products_.divergence(context, products_.vectors(),

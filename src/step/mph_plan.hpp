@@ -25,7 +25,13 @@ void planFields(const Case& c, const MemoryCounts& n, bool withGradient, MemoryS
   const std::uint64_t fluid = n.particles.fluid, walls = n.active - fluid;
   if (n.particles.surfaces > 0) sum.keep<WallSurface<D>>(walls);
   if (c.method.pressureGradient != PressureGradient::Plain) sum.keep<SymmetricBlock<D>>(fluid);
-  if (c.method.viscosityCorrection != 0) sum.keep<double>(fluid);
+  if (c.hasRheology()) {
+    sum.keep<double>(5 * fluid);
+    sum.keep<std::uint8_t>(n.active);
+    sum.keep<Vec<D>>(n.active);
+  } else if (c.method.viscosityCorrection != 0) {
+    sum.keep<double>(fluid);
+  }
   sum.keep<Block<D>>(fluid);
   if (withGradient) sum.keep<Vec<D>>(fluid);
   sum.keep<double>(fluid + 2 * n.active);

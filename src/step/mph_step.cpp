@@ -2,6 +2,7 @@
 #include "mph_solver.hpp"
 #include "step_balance.hpp"
 #include "step_method.hpp"
+#include "step_rheology.hpp"
 #include "take_trial.hpp"
 #include "treacle/core/halo.hpp"
 #include "treacle/model/particles_copy.hpp"
@@ -27,7 +28,9 @@ class MphStep final : public StepMethod<D, Backend> {
         neighbourhood_(state.theCase),
         pairs_(neighbourhood_.pairs()),
         wholeRows_(needsAssembled<Backend>(state.theCase.solver)),
-        solver_(solveStages(state.theCase, state.context.communicator != nullptr)) {}
+        solver_(solveStages(state.theCase, state.context.communicator != nullptr)) {
+    if (state.theCase.hasRheology()) rheology_.emplace(state.theCase);
+  }
 
   void sortParticles() override { neighbourhood_.sort(state_.context, state_.particles); }
   void findNeighbours() override { neighbourhood_.buildLists(state_.context, state_.particles, wholeRows_); }
@@ -46,14 +49,9 @@ class MphStep final : public StepMethod<D, Backend> {
     renormalise();
     scaleViscosity();
     computeDensities();
-    wallBlock_.resize(state_.context, state_.particles.fluidCount);
-    const bool productsTakeGradient = std::is_same_v<Backend, Cpu> || !pairs_.renormalisation;
-    wallGradient_.resize(state_.context, productsTakeGradient ? state_.particles.fluidCount : 0);
-    wallTerms<D>(state_.context, pairs_, wallTermsView());
     wallDensity_.resize(state_.context, state_.particles.fluidCount);
     wallDensity<D>(state_.context, pairs_, wallDensity_);
-    computeRightHandSide();
-    solver_.prepareOperator(state_.context, pairs_, neighbourhood_.ranges(), wallTermsView());
+    prepareViscous();
   }
 
   /// What is kept of another step's system is that of one of about the same length.
@@ -70,19 +68,15 @@ class MphStep final : public StepMethod<D, Backend> {
     state_.velocity.resize(state_.context, active);
     copyValues(state_.context, last.subspan(walls, active - walls), state_.velocity.data() + walls);
     guess(state_.velocity.span().first(n));
-    SolverModes<D, Backend>& modes = state_.particles.modes;
-    const bool noModes = state_.context.halo && state_.context.halo->someHaveNone;
-    StagedReport report =
-        solver_.solve(state_.context, rhs_, state_.velocity.span().first(n), noModes ? nullptr : &modes);
-    fillGhosts(state_.context, Held::Fluid, state_.velocity.data());
-    if (report.fallbacks == 0 && report.status == SolveStatus::Converged)
-      modes.pressure.solved(report.iterations);
-    else
-      modes.pressure = {};
-    if (report.status == SolveStatus::Converged) return report;
-    std::string diagnosis = describeFailure(report, state_.theCase.solver.tolerance, report.failures);
-    if (report.status == SolveStatus::NotFinite) diagnosis += "; " + notFiniteOnHost();
-    throw RunError(diagnosis);
+    StagedReport report = solveOnce();
+    while (rheology_) {
+      const bool again = rheology_->follow(state_, neighbourhood_);
+      if (rheology_->isAnother()) state_.particles.modes.pressure = {};
+      if (!again) break;
+      prepareAgain();
+      report.follow(solveOnce());
+    }
+    return report;
   }
 
   /// With the modes of the state where the settings have it deflate, as the next step would.
@@ -128,6 +122,7 @@ class MphStep final : public StepMethod<D, Backend> {
     divergence<D>(state_.context, pairs_, state_.velocity.span().first(active), divergence_);
     fillGhosts(state_.context, Held::Active, divergence_.data());
     bulkPressure<D>(state_.context, pairs_, divergence_, elastic_, state_.particles.pressure.span().first(active));
+    if (rheology_) rheology_->accept(state_);
     if (state_.theCase.output.balance) lastBalance_ = balance_.make(state_, neighbourhood_, divergence_, elastic_);
     // The velocities of the start are given, no solution: nothing follows from the way to the first one.
     if (state_.step > 0)
@@ -149,11 +144,48 @@ class MphStep final : public StepMethod<D, Backend> {
   const MaterialTable& materials() const override { return pairs_.materials; }
   std::size_t bytes() const override {
     return neighbourhood_.bytes() + wallSurface_.bytes() + renormalisation_.bytes() + viscosityScale_.bytes() +
-           wallBlock_.bytes() + wallGradient_.bytes() + wallDensity_.bytes() + elastic_.bytes() +
-           divergence_.bytes() + rhs_.bytes() + solver_.bytes() + balance_.bytes();
+           (rheology_ ? rheology_->bytes() : 0) + wallBlock_.bytes() + wallGradient_.bytes() +
+           wallDensity_.bytes() + elastic_.bytes() + divergence_.bytes() + rhs_.bytes() + found_.bytes() +
+           solver_.bytes() + balance_.bytes();
   }
 
  private:
+  /// All that the viscosity is in, on neighbours, densities and velocities that stay.
+  void prepareViscous() {
+    wallBlock_.resize(state_.context, state_.particles.fluidCount);
+    const bool productsTakeGradient = std::is_same_v<Backend, Cpu> || !pairs_.renormalisation;
+    wallGradient_.resize(state_.context, productsTakeGradient ? state_.particles.fluidCount : 0);
+    wallTerms<D>(state_.context, pairs_, wallTermsView());
+    computeRightHandSide();
+    solver_.prepareOperator(state_.context, pairs_, neighbourhood_.ranges(), wallTermsView());
+  }
+
+  /// Once more with other viscosities, from the velocities that there are.
+  void prepareAgain() {
+    found_.resize(state_.context, state_.velocity.size());
+    copyValues(state_.context, std::span<const Vec<D>>(state_.velocity), found_.data());
+    prepareViscous();
+    preparePreconditioner();
+    copyValues(state_.context, std::span<const Vec<D>>(found_), state_.velocity.data());
+  }
+
+  /// From the guess in state.velocity, and to there, ghosts included. Errors: RunError.
+  StagedReport solveOnce() {
+    SolverModes<D, Backend>& modes = state_.particles.modes;
+    const bool noModes = state_.context.halo && state_.context.halo->someHaveNone;
+    StagedReport report = solver_.solve(state_.context, rhs_, state_.velocity.span().first(pairs_.ownFluid()),
+                                        noModes ? nullptr : &modes);
+    fillGhosts(state_.context, Held::Fluid, state_.velocity.data());
+    if (report.fallbacks == 0 && report.status == SolveStatus::Converged)
+      modes.pressure.solved(report.iterations);
+    else
+      modes.pressure = {};
+    if (report.status == SolveStatus::Converged) return report;
+    std::string diagnosis = describeFailure(report, state_.theCase.solver.tolerance, report.failures);
+    if (report.status == SolveStatus::NotFinite) diagnosis += "; " + notFiniteOnHost();
+    throw RunError(diagnosis);
+  }
+
   FlowMemory<D> memory() { return {state_.particles.acceleration.span(), state_.particles.jerk.span()}; }
   void guess(std::span<Vec<D>> u) {
     extrapolate<D>(state_.context,
@@ -182,6 +214,7 @@ class MphStep final : public StepMethod<D, Backend> {
   }
 
   void scaleViscosity() {
+    if (rheology_) return rheology_->start(state_, neighbourhood_);
     const double correction = state_.theCase.method.viscosityCorrection;
     if (correction == 0) return;
     viscosityScale_.resize(state_.context, pairs_.fluidCount);
@@ -241,6 +274,8 @@ class MphStep final : public StepMethod<D, Backend> {
   Buffer<double, Backend> divergence_;   // C^T u per particle [1/s]
   Buffer<Vec<D>, Backend> rhs_;
   MphSolver<D, Backend> solver_;
+  std::optional<StepRheology<D, Backend>> rheology_;  // where some material has one
+  Buffer<Vec<D>, Backend> found_;                     // velocities of the last solve, while the next is prepared
   StepBalance<D, Backend> balance_;
   std::optional<Balance> lastBalance_;
 };

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <span>
 
 namespace treacle {
 
@@ -45,6 +46,7 @@ std::uint32_t copyOwnParticles(FlowState<D, Backend>& state, const CellGrid<D>& 
   const auto beside = selected(0, walls.count, [&](std::uint32_t i) { return owners.isBesideOwn(cellOf(i)); });
   ParticleNumbers numbers{p.fluidCount, own.size() + far.count + beside.size()};
   numbers.ghosts = p.ghostCount;
+  numbers.shearRates = p.hasShearRates;
   host.resize(numbers);
   const std::uint32_t begin = p.wallBegin();
   forEachSharedFieldOf(
@@ -55,6 +57,7 @@ std::uint32_t copyOwnParticles(FlowState<D, Backend>& state, const CellGrid<D>& 
         gather(held.span(), beside, to.data() + begin + own.size() + far.count);
       },
       p, walls, far, host);
+  if (p.hasShearRates) copyToHost(state.context, std::span<const double>(p.shearRate).first(p.fluidCount), host.shearRate.data());
   return static_cast<std::uint32_t>(own.size()) + far.count;
 }
 

@@ -33,6 +33,15 @@ void toBackend(Context<Cuda>& context, const Particles<D>& host, Particles<D, Cu
   copyToDevice(context, host, particles);
 }
 
+/// Whether there is room for them; what they are is not known where there was none.
+template <int D>
+void setShearRates(bool wanted, Particles<D>& particles) {
+  if (particles.hasShearRates == wanted) return;
+  particles.hasShearRates = wanted;
+  particles.shearRate.resize(wanted ? particles.fluidCount : 0);
+  std::fill(particles.shearRate.begin(), particles.shearRate.end(), 0.0);
+}
+
 /// Of the fluid [kg; per metre of depth in 2D].
 template <int D>
 double fluidMass(const Case& c, const Particles<D>& particles) {
@@ -80,6 +89,8 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     method = theCase.method.kind == MethodKind::Isph ? makeIsphStep(static_cast<Flow&>(*this))
                                                      : makeMphStep(static_cast<Flow&>(*this));
     distant.emplace(theCase, method->grid(), state, time, context.communicator);
+    this->shearRatesKnown = step > 0 && state.hasShearRates;
+    setShearRates(theCase.hasRheology(), state);
     toBackend(context, std::move(state), particles);
     if (step == 0) forEachFluidFieldOf([&](auto& field) { clearValues(context, field.span()); }, particles);
     method->sortParticles();

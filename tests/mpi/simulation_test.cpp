@@ -53,6 +53,10 @@ TEST(SharedSimulation, TurningWalls) {
       {"../tests/validation/cases/taylor-couette.toml", 10, {"solver.tolerance=1e-20", "solver.deflation=0"}});
 }
 
+TEST(SharedSimulation, FluidWithARheology) {
+  compare<2>({"grease-dam-break-2d.toml", 20, {"solver.tolerance=1e-18", "solver.deflation=0", "time.step=5e-4"}});
+}
+
 TEST(SharedSimulation, AutomaticSteps) {
   compare<2>({"dam-break-2d.toml", 20, {"time.step=auto", "solver.tolerance=1e-18"}});
 }

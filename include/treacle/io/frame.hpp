@@ -1,6 +1,7 @@
 #pragma once
 
 #include "treacle/core/vec.hpp"
+#include "treacle/model/case.hpp"
 #include "treacle/model/particles.hpp"
 
 #include <cstdint>
@@ -12,20 +13,27 @@ namespace treacle {
 /// Always three components; fields that a file does not hold are empty.
 struct Frame {
   int dimensions = 3;
-  double time = 0;                      // [s]
-  std::vector<Vec<3>> position;         // [m]
-  std::vector<Vec<3>> velocity;         // [m/s]
-  std::vector<double> pressure;         // [Pa]
-  std::vector<double> numberDensity;    // [-]
-  std::vector<double> nearestDistance;  // of fluid: to the nearest other particle over the spacing [-]
-  std::vector<std::int32_t> material;   // index into the case's materials
-  std::vector<std::int32_t> body;       // index into the case's bodies
+  double time = 0;                       // [s]
+  std::vector<Vec<3>> position;          // [m]
+  std::vector<Vec<3>> velocity;          // [m/s]
+  std::vector<double> pressure;          // [Pa]
+  std::vector<double> numberDensity;     // [-]
+  std::vector<double> nearestDistance;   // of fluid: to the nearest other particle over the spacing [-]
+  std::vector<double> dynamicViscosity;  // of fluid in cases where a material has a rheology [Pa s]
+  std::vector<double> shearRate;         // likewise [1/s]
+  std::vector<std::int32_t> material;    // index into the case's materials
+  std::vector<std::int32_t> body;        // index into the case's bodies
   std::vector<std::uint32_t> id;
 };
 
-/// Copies particles [begin, end), sorted by id: files do not depend on how the search sorts.
+/// Copies particles [begin, end), sorted by id: files do not depend on how the search sorts. Shear rates are those
+/// of fluid where it has some.
 template <int D>
 Frame makeFrame(const Particles<D>& particles, std::uint32_t begin, std::uint32_t end, double time);
+
+/// Completes a frame of fluid with the viscosities of its shear rates, if it has some, in the materials of the
+/// case.
+void addViscosities(const std::vector<Material>& materials, Frame& frame);
 
 extern template Frame makeFrame<2>(const Particles<2>&, std::uint32_t, std::uint32_t, double);
 extern template Frame makeFrame<3>(const Particles<3>&, std::uint32_t, std::uint32_t, double);

@@ -8,9 +8,10 @@
 namespace treacle {
 
 /// Writes a frame as VTK XML PolyData (.vtp), raw appended binary with UInt64 headers: one vertex per particle,
-/// point data `velocity` (3 components), `pressure`, `number_density`, `material` (Int32), `id` (UInt32), as far
-/// as selected and present in the frame, and `TimeValue`. The precision is that of the positions and of all real
-/// fields. Errors: RunError if the file cannot be written; no part of it is then left.
+/// point data `velocity` (3 components), `pressure`, `number_density`, `dynamic_viscosity`, `shear_rate`,
+/// `material` (Int32), `id` (UInt32), as far as selected and present in the frame, and `TimeValue`. The precision
+/// is that of the positions and of all real fields. Errors: RunError if the file cannot be written; no part of it
+/// is then left.
 void writeVtp(const std::filesystem::path& path, const Frame& frame, const OutputFields& fields,
               OutputPrecision precision);
 

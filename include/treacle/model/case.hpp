@@ -1,6 +1,7 @@
 #pragma once
 
 #include "treacle/core/vec.hpp"
+#include "treacle/model/rheology.hpp"
 
 #include <algorithm>
 #include <array>
@@ -20,10 +21,14 @@ namespace treacle {
 struct Material {
   std::string name;
   double density = 0;           // rho [kg/m3]
-  double dynamicViscosity = 0;  // mu [Pa s]
+  double dynamicViscosity = 0;  // mu, without a rheology [Pa s]
   double bulkViscosity = 0;     // lambda [Pa s]
   double bulkModulus = 0;       // kappa [Pa]
   double slipLength = 0;        // how far behind a wall its velocity, extrapolated, is the wall's [m]; 0: no slip
+  std::optional<Rheology> rheology{};  // of a fluid that is not Newtonian; MPH-I only
+
+  /// mu, or that of the rheology at a shear rate of 1/s: for what needs one number that stands for all [Pa s].
+  double typicalViscosity() const { return rheology ? rheology->viscosity(1) : dynamicViscosity; }
 
   bool operator==(const Material&) const = default;
 };
@@ -165,6 +170,14 @@ struct MethodSettings {
   bool operator==(const MethodSettings&) const = default;
 };
 
+/// How the viscosity of fluids with a rheology and the flow of a step are brought together.
+struct RheologySettings {
+  int iterations = 10;      // largest number of solves in a step
+  double tolerance = 0.01;  // change of the viscosity, in mean over the dissipation, that no further solve follows
+
+  bool operator==(const RheologySettings&) const = default;
+};
+
 enum class KrylovKind { Cg, Cr };
 /// For MPH-I all but the last two; for ISPH none, Jacobi and the last two.
 enum class PreconditionerKind {
@@ -260,6 +273,7 @@ struct SolverSettings {
 struct OutputFields {
   bool velocity = true, pressure = true, numberDensity = true, nearestDistance = true, material = true,
        body = true, id = true;
+  bool dynamicViscosity = true, shearRate = true;  // in cases where a material has a rheology
 
   bool operator==(const OutputFields&) const = default;
 };
@@ -302,6 +316,7 @@ struct Case {
   std::vector<Body> bodies;
   TimeSettings time;
   MethodSettings method;
+  RheologySettings rheology;
   SolverSettings solver;
   OutputSettings output;
   WatchSettings watch;
@@ -322,6 +337,10 @@ struct Case {
   double searchEdge() const {
     return method.kind == MethodKind::Isph ? 2 * smoothingLength()
                                            : std::max({viscosityRadius(), densityRadius(), 2 * pressureRadius()});
+  }
+  /// Whether some material is a generalised Newtonian fluid: particles then have shear rates.
+  bool hasRheology() const {
+    return std::ranges::any_of(materials, [](const Material& m) { return m.rheology.has_value(); });
   }
   /// Steps to the end, where all have one length.
   std::int64_t steps() const { return std::llround(time.end / time.step); }

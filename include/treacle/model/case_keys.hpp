@@ -53,6 +53,10 @@ std::vector<std::string_view> wordsThat(Fits&& fits) {
   return words;
 }
 
+/// What is said of a material with both.
+inline constexpr const char* viscosityBesideRheology =
+    "the viscosity is that of the rheology; expected one of them";
+
 /// The method of a case that says no more than its scheme.
 MethodSettings defaultMethod(SchemeKind scheme);
 
@@ -71,15 +75,18 @@ SolverSettings defaultSolver(MethodKind method, PreconditionerKind preconditione
 /// - v(key, struct) for a table in the table,
 /// - v(key, optional) for one that may be missing, as may an Oscillation, which then is Oscillation{},
 /// - v(key, vector of structs) for tables with names; the bound is that of their number.
-/// Which keys there are follows from dimensions and method of the case, from the shape of a body, and from whether
-/// time steps are automatic. Vectors have as many components as the case has dimensions.
+/// Which keys there are follows from dimensions and method of the case, from the shape of a body, from the model
+/// of a rheology, and from whether time steps are automatic. Vectors have as many components as the case has
+/// dimensions.
 namespace keys {
 
 inline constexpr bool required = true, optional = false;
 inline constexpr Bound positive{.least = 0, .open = true}, notNegative{.least = 0};
 // Beyond these a step or a solve would take as good as for ever.
 inline constexpr Bound radius{.least = 0, .most = 20, .open = true}, iterations{1, 1e6}, sweeps{1, 1000},
-    degree{0, 1000}, stepTolerance{1e-6, 0.5};
+    degree{0, 1000}, stepTolerance{1e-6, 0.5}, flowIndex{.least = 0, .most = 5, .open = true};
+inline constexpr Bound regularisation{
+    .least = 0, .open = true, .reason = "a yield stress without it would make a fluid at rest infinitely viscous"};
 inline constexpr struct ExpressionTag {
 } expression;
 inline constexpr struct MaterialTag {
@@ -135,10 +142,33 @@ void visit(auto& v, const Gravity<Vector>& g, const Case&) {
   v({"acceleration", optional, "m/s2"}, g.acceleration);
 }
 
+void visit(auto& v, Like<Rheology> auto& r, const Case&) {
+  using enum RheologyModel;
+  v({"model", required}, r.model);
+  if (r.yields()) {
+    v({"yield_stress", required, "Pa", positive}, r.yieldStress);
+    v({"regularisation", required, "s", regularisation}, r.regularisation);
+  }
+  if (r.model == Bingham || r.model == Casson)
+    v({"plastic_viscosity", required, "Pa s", positive}, r.plasticViscosity);
+  if (r.model == PowerLaw || r.model == HerschelBulkley)
+    v({"consistency", required, "Pa s^n", positive}, r.consistency);
+  if (r.model == Cross || r.model == CarreauYasuda) {
+    v({"zero_viscosity", required, "Pa s", positive}, r.zeroViscosity);
+    v({"infinite_viscosity", optional, "Pa s", notNegative}, r.infiniteViscosity);
+    v({"time_constant", required, "s", positive}, r.timeConstant);
+  }
+  if (r.hasIndex()) v({"flow_index", required, "", flowIndex}, r.flowIndex);
+  if (r.model == CarreauYasuda) v({"transition", optional, "", positive}, r.transition);
+  v({"min_viscosity", optional, "Pa s", notNegative}, r.leastViscosity);
+  v({"max_viscosity", optional, "Pa s", notNegative}, r.mostViscosity);
+}
+
 void visit(auto& v, Like<Material> auto& m, const Case& c) {
   v({"name", required}, m.name);
   v({"density", required, "kg/m3", positive}, m.density);
-  v({"dynamic_viscosity", required, "Pa s", notNegative}, m.dynamicViscosity);
+  if (c.method.kind == MethodKind::MphI) v({"rheology"}, m.rheology);
+  if (!m.rheology) v({"dynamic_viscosity", required, "Pa s", notNegative}, m.dynamicViscosity);
   if (c.method.kind != MethodKind::MphI) return;
   v({"bulk_viscosity", required, "Pa s", notNegative}, m.bulkViscosity);
   v({"bulk_modulus", required, "Pa", notNegative}, m.bulkModulus);
@@ -235,6 +265,11 @@ void visit(auto& v, Like<MethodSettings> auto& m, const Case& c) {
   v({"viscosity_correction", optional, "", {0, 1}}, m.viscosityCorrection);
 }
 
+void visit(auto& v, Like<RheologySettings> auto& r, const Case&) {
+  v({"iterations", optional, "", {1, 100}}, r.iterations);
+  v({"tolerance", optional, "", {0, 1}}, r.tolerance);
+}
+
 void visit(auto& v, Like<MultigridSettings> auto& m, const Case&) {
   v({"finest_sweeps", optional, "", sweeps}, m.finestSweeps);
   v({"middle_sweeps", optional, "", sweeps}, m.middleSweeps);
@@ -311,6 +346,7 @@ void visit(auto& v, Like<Case> auto& c, const Case&) {
   v({"body", required, "", {1, maxBodies}}, c.bodies);
   v({"time", required}, c.time);
   v({"method"}, c.method);
+  if (c.method.kind == MethodKind::MphI) v({"rheology"}, c.rheology);
   v({"solver"}, c.solver);
   v({"output"}, c.output);
   v({"watch"}, c.watch);

@@ -44,6 +44,12 @@ inline constexpr Named<KernelKind> kernel[] = {{"cubic-spline", KernelKind::Cubi
 inline constexpr Named<WallSlip> slip[] = {{"no-slip", WallSlip::NoSlip}, {"free-slip", WallSlip::FreeSlip}};
 inline constexpr Named<ViscousStep> viscous[] = {
     {"auto", ViscousStep::Auto}, {"explicit", ViscousStep::Explicit}, {"implicit", ViscousStep::Implicit}};
+inline constexpr Named<RheologyModel> rheology[] = {{"power-law", RheologyModel::PowerLaw},
+                                                    {"cross", RheologyModel::Cross},
+                                                    {"carreau-yasuda", RheologyModel::CarreauYasuda},
+                                                    {"bingham", RheologyModel::Bingham},
+                                                    {"herschel-bulkley", RheologyModel::HerschelBulkley},
+                                                    {"casson", RheologyModel::Casson}};
 inline constexpr Named<KrylovKind> krylov[] = {{"cg", KrylovKind::Cg}, {"cr", KrylovKind::Cr}};
 inline constexpr Named<PreconditionerKind> preconditioner[] = {
     {"projected-multigrid", PreconditionerKind::ProjectedMultigrid},
@@ -95,6 +101,8 @@ template <>
 inline constexpr std::span<const Named<WallSlip>> namesOf<WallSlip>{names::slip};
 template <>
 inline constexpr std::span<const Named<ViscousStep>> namesOf<ViscousStep>{names::viscous};
+template <>
+inline constexpr std::span<const Named<RheologyModel>> namesOf<RheologyModel>{names::rheology};
 template <>
 inline constexpr std::span<const Named<KrylovKind>> namesOf<KrylovKind>{names::krylov};
 template <>
@@ -152,6 +160,8 @@ inline constexpr OutputFieldName outputFieldNames[] = {{"velocity", &OutputField
                                                        {"nearest_distance", &OutputFields::nearestDistance},
                                                        {"material", &OutputFields::material},
                                                        {"body", &OutputFields::body},
-                                                       {"id", &OutputFields::id}};
+                                                       {"id", &OutputFields::id},
+                                                       {"dynamic_viscosity", &OutputFields::dynamicViscosity},
+                                                       {"shear_rate", &OutputFields::shearRate}};
 
 }  // namespace treacle

@@ -11,10 +11,11 @@
 
 namespace treacle {
 
-/// The fields that walls do not have.
+/// The fields that walls do not have. Sets without shear rates have no field of them.
 template <class F, class... Sets>
 void forEachFluidFieldOf(F&& f, Sets&... sets) {
   f(sets.acceleration...), f(sets.jerk...);
+  if ((sets.hasShearRates && ...)) f(sets.shearRate...);
 }
 
 /// The fields that fluid and walls have.
@@ -44,6 +45,7 @@ void forEachFieldOf(F&& f, Sets&... sets) {
 struct ParticleNumbers {
   std::uint64_t fluid = 0, wall = 0, modes = 0, surfaces = 0;
   std::uint64_t ghosts = 0;  // fluid of other processes
+  bool shearRates = false;   // of the fluid
 
   bool operator==(const ParticleNumbers&) const = default;
 };
@@ -75,6 +77,11 @@ struct Particles {
   Buffer<Vec<D>, Backend> acceleration;  // (u^k - u^{k-1}) / dt of the fluid [m/s2]; zero: not known
   Buffer<Vec<D>, Backend> jerk;          // that of the acceleration, of the fluid [m/s3]; zero: not known
 
+  // sqrt(2 E:E) that the next solve takes the viscosity of a fluid with a rheology from, of the fluid [1/s]; empty
+  // unless hasShearRates, which it is to be where some material has a rheology.
+  Buffer<double, Backend> shearRate;
+  bool hasShearRates = false;
+
   // The memory of the solver, likewise.
   SolverModes<D, Backend> modes;
 
@@ -99,7 +106,7 @@ struct Particles {
   }
 
   ParticleNumbers numbers() const {
-    return {fluidCount, wallCount(), modeCount(), wallSurface.size(), ghostCount};
+    return {fluidCount, wallCount(), modeCount(), wallSurface.size(), ghostCount, hasShearRates};
   }
 
   /// The content is undefined afterwards. Errors: std::bad_alloc.
@@ -118,6 +125,8 @@ struct Particles {
     const auto resizeTo = [&](std::uint32_t size) {
       return [&, size](auto& field) { field.resize(context, size); };
     };
+    hasShearRates = numbers.shearRates;
+    if (!hasShearRates) shearRate.resize(context, 0);
     forEachSharedFieldOf(resizeTo(count), *this);
     forEachFluidFieldOf(resizeTo(fluid), *this);
     modes.vectors.resize(context, fluid * numbers.modes);

@@ -17,6 +17,17 @@ template <int D>
 void shearDissipation(Context<Cuda>&, const MphPairs<D>&, std::span<const Vec<D>> u,
                       std::span<double> dissipation);
 
+/// The shear rate gamma_i per own fluid particle, from its part of the dissipation above [1/s]: that part is
+/// mu gamma_i^2 m_i where all pairs have the viscosity mu, m_i being what the particle has of the sum of c_ij r^4
+/// in a full neighbourhood (viscosity_scale.hpp). Inside the fluid it is sqrt(2 E:E) of velocities that are linear
+/// in space. `share`: 1/m_i.
+template <int D>
+void shearRate(Context<Cpu>&, const MphPairs<D>&, std::span<const Vec<D>> u, std::span<const double> share,
+               std::span<double> rate);
+template <int D>
+void shearRate(Context<Cuda>&, const MphPairs<D>&, std::span<const Vec<D>> u, std::span<const double> share,
+               std::span<double> rate);
+
 /// What wall particles meet of the fluid, per active wall particle.
 template <int D>
 struct FluidAtWalls {

@@ -110,22 +110,33 @@ class ViscosityLanes {
       ofSubstance_[0] = broadcast(factor * pairs.onlyViscosity());
       return;
     }
+    for (std::uint32_t lane = 0; lane < clusterSize; ++lane)
+      substance_[lane] = pairs.substance(range.particle(lane));
     for (int m = 0; m < pairs.materials.count; ++m)
       for (std::uint32_t lane = 0; lane < clusterSize; ++lane)
-        ofSubstance_[m][lane] =
-            factor * pairs.viscosity(pairs.substance(range.particle(lane)), static_cast<Substance>(m));
+        ofSubstance_[m][lane] = factor * pairs.viscosity(substance_[lane], static_cast<Substance>(m));
   }
   Lanes with(std::uint32_t j) const {
     const Lanes& unscaled = ofSubstance_[pairs_.substance(j)];
     if (!MayBeScaled || !pairs_.viscosityScale) return unscaled;
     const double scale = pairs_.viscousSide(j).scale;
     const bool bothFluid = scale > 0 && scale_[0] > 0;  // a cluster is all fluid or all wall
+    if (bothFluid && pairs_.ownViscosities && !pairs_.isOneSubstance()) return ofMaterials(j);
     return unscaled * ((bothFluid ? 0.5 : 1.0) * (scale_ + scale));
   }
 
  private:
+  Lanes ofMaterials(std::uint32_t j) const {
+    const ViscousSide other = pairs_.viscousSide(j);
+    Lanes mu;
+    for (std::uint32_t lane = 0; lane < clusterSize; ++lane)
+      mu[lane] = pairs_.terms.viscousFactor * pairs_.viscosityOf({substance_[lane], scale_[lane]}, other);
+    return mu;
+  }
+
   const MphPairs<D>& pairs_;
   Lanes scale_{};
+  Substance substance_[clusterSize];  // of several materials
   Lanes ofSubstance_[maxMaterials];
 };
 

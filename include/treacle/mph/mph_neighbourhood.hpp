@@ -61,6 +61,13 @@ class MphNeighbourhood {
     pairs_.viscosityScale = scale.empty() ? nullptr : scale.data();
   }
 
+  /// Viscosities of the particles' own: s_i mu_i per fluid particle, and its class per active particle; must
+  /// outlive the sums of the step.
+  void setViscosities(std::span<const double> scaled, std::span<const std::uint8_t> classes) {
+    setViscosityScale(scaled);
+    pairs_.viscosityClass = classes.data();
+  }
+
   /// Of the step at hand [s].
   void setTimeStep(double dt) { pairs_.materials.setTimeStep(dt); }
 

@@ -3,6 +3,7 @@
 #include "treacle/core/symmetric_block.hpp"
 #include "treacle/model/case.hpp"
 #include "treacle/mph/mph_terms.hpp"
+#include "treacle/mph/viscosity_classes.hpp"
 #include "treacle/mph/wall_surfaces.hpp"
 #include "treacle/search/cluster_list.hpp"
 #include "treacle/search/material_particles.hpp"
@@ -28,6 +29,11 @@ struct MphPairs : MaterialParticles<D> {
       nullptr;  // of the first wall particle; null: the fluid meets walls as they are
   const SymmetricBlock<D>* renormalisation = nullptr;  // B per fluid particle (renormalisation.hpp); null: I
   const double* viscosityScale = nullptr;              // per fluid particle (viscosity_scale.hpp); null: 1
+  // Whether particles have viscosities of their own (particle_viscosity.hpp): the scale is then times mu [Pa s],
+  // and the viscosities of the materials are all 1.
+  bool ownViscosities = false;
+  ViscosityClasses classes;
+  const std::uint8_t* viscosityClass = nullptr;  // per particle; null: the materials
 
   /// x_j - x_i at the nearest images [m].
   TREACLE_HD Vec<D> difference(std::uint32_t i, std::uint32_t j) const {
@@ -49,9 +55,12 @@ struct MphPairs : MaterialParticles<D> {
     const T share = a > 0 && b > 0 ? T(0.5) : T(1);
     return share * (a + b);
   }
-  /// mu_ij of a pair with the mean of both scales [Pa s].
+  /// mu_ij of a pair with the mean of both scales [Pa s]. Particles with viscosities of their own meet as two
+  /// layers do where their materials are others, and with the mean inside of one (docs/rheology.md).
   template <class T = double>
   TREACLE_HD T viscosityOf(const ViscousSide& a, const ViscousSide& b) const {
+    if (ownViscosities && a.substance != b.substance && a.scale > 0 && b.scale > 0)
+      return static_cast<T>(2 * a.scale * b.scale / (a.scale + b.scale));
     return static_cast<T>(this->viscosity(a.substance, b.substance)) *
            meanScale(static_cast<T>(a.scale), static_cast<T>(b.scale));
   }
@@ -60,6 +69,13 @@ struct MphPairs : MaterialParticles<D> {
   }
   /// Whether all pairs have the viscosity onlyViscosity().
   TREACLE_HD bool hasOneViscosity() const { return this->isOneSubstance() && !viscosityScale; }
+
+  /// Of the preconditioner's constants, per particle: viscosityClass, or the index of the material.
+  TREACLE_HD const std::uint8_t* classOf() const {
+    return viscosityClass ? viscosityClass : this->material.data();
+  }
+  /// Whether all particles have those of class 0.
+  TREACLE_HD bool isOneClass() const { return this->isOneSubstance() && !viscosityClass; }
 
   /// By what the viscosity of fluid particle i with wall particle j is multiplied; d = x_j - x_i [m].
   TREACLE_HD double wallFactor(std::uint32_t i, std::uint32_t j, const Vec<D>& d) const {

@@ -19,11 +19,12 @@ struct ProjectionDegrees {
   bool operator==(const ProjectionDegrees&) const = default;
 };
 
-/// What the projected multigrid takes from the materials and the lattice alone.
+/// What the projected multigrid takes from the materials and the lattice alone, by class (viscosity_classes.hpp).
 struct ProjectionConstants {
-  double weight[maxMaterials];  // w [m3 s/kg]: inverse diagonal of rho/dt I + V in a full lattice
-  double lambda[maxMaterials];  // lambda [Pa s], at least so large that S' stays finite
-  // Largest lambda times largest w times (C^T C)_kk in a full lattice: how much stiffer the bulk viscosity is.
+  double weight[ViscosityClasses::most];  // w [m3 s/kg]: inverse diagonal of rho/dt I + V in a full lattice
+  double lambda[ViscosityClasses::most];  // lambda [Pa s], at least so large that S' stays finite
+  // Largest lambda times largest w times (C^T C)_kk in a full lattice, of the classes that are materials: how much
+  // stiffer the bulk viscosity is.
   double stiffness;
   double extent;  // of the domain, in spacings
 

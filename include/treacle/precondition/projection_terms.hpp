@@ -13,16 +13,17 @@
 namespace treacle {
 
 /// What the projected multigrid does with each sum over neighbours, the same on all backends. One call per
-/// particle, store.put(k, sum, m) with its material m, or store.put(k, sum, store.own(k)) with what else is needed
+/// particle, store.put(k, sum, m) with its class m, or store.put(k, sum, store.own(k)) with what else is needed
 /// of it; nothing here reads another particle, so a sum may be taken from `correction` while it is overwritten
 /// elsewhere only where the text says so.
 
-/// Per material, in the precision of the preconditioner.
+/// Per class (MphPairs::classOf), which is the material where fluids are Newtonian, in the precision of the
+/// preconditioner.
 template <class T>
 struct ProjectionTable {
-  T weight[maxMaterials];         // w: about the inverse of the diagonal of rho/dt I + V [m3 s/kg]
-  T inverseLambda[maxMaterials];  // 1/lambda [1/(Pa s)]
-  T shift[maxMaterials];          // pressureShift / lambda
+  T weight[ViscosityClasses::most];         // w: about the inverse of the diagonal of rho/dt I + V [m3 s/kg]
+  T inverseLambda[ViscosityClasses::most];  // 1/lambda [1/(Pa s)]
+  T shift[ViscosityClasses::most];          // pressureShift / lambda
 };
 
 /// S' = pressureShift Lambda^-1 + C^T W C stands for the Schur complement Lambda^-1 + C^T (rho/dt I + V)^-1 C.

@@ -20,7 +20,7 @@ struct MaterialParticles : SortedParticles<D> {
   TREACLE_HD double bulkModulus(std::uint32_t i) const { return materials.bulkModulus[this->material[i]]; }
 
   TREACLE_HD Substance substance(std::uint32_t i) const { return this->material[i]; }
-  /// mu_ij of a pair [Pa s]
+  /// mu_ij of a pair whose particles have the viscosities of their materials [Pa s]
   TREACLE_HD double viscosity(Substance a, Substance b) const { return materials.pairViscosity[a][b]; }
   TREACLE_HD double pairViscosity(std::uint32_t i, std::uint32_t j) const {
     return viscosity(substance(i), substance(j));

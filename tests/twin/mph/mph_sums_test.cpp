@@ -71,6 +71,17 @@ struct SumsTwin {
     EXPECT_LE(difference<double>(d.context, expected.span(), found), kernelTolerance);
   }
 
+  void checkShearRate() {
+    Buffer<double> share(n), expected(n);
+    Buffer<double, Cuda> found(d.context, n);
+    viscosityScale<D>(s.context, s.pairs(), 1, share.span());
+    const auto u = randomVectors<D>(active, 8);
+    shearRate<D>(s.context, s.pairs(), u, share, expected.span());
+    shearRate<D>(d.context, d.pairs, copyToDevice<Vec<D>>(d.context, u), copyToDevice<double>(d.context, share),
+                 found.span());
+    EXPECT_LE(difference<double>(d.context, expected.span(), found), kernelTolerance);
+  }
+
   void checkScalars() {
     Buffer<double> expected(active);
     Buffer<double, Cuda> found(d.context, active);
@@ -169,6 +180,7 @@ void checkAll(bool lists) {
         SumsTwin<D> twin(walls, lists, twoMaterials, scheme);
         twin.checkRenormalisation();
         twin.checkViscosityScale();
+        twin.checkShearRate();
         twin.checkScalars();
         twin.checkVectors();
         twin.checkWallTerms();

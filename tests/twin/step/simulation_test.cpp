@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 
 namespace treacle::test {
@@ -113,6 +114,49 @@ TEST(SimulationTwin, StepsLikeTheCpuWithEverySolver) {
       compareSteps<3>(s, scheme);
     }
   }
+}
+
+/// A Bingham fluid alone, and one beside another fluid.
+template <int D>
+void compareRheology(int materials, Precision precision) {
+  SolverSettings settings;
+  settings.precision = precision;
+  Case c = stepCase(D, settings, SchemeKind::Accurate);
+  c.solver.tolerance = tightTolerance;
+  c.rheology = {3, 0};  // always as many solves
+  c.materials[0].dynamicViscosity = 0;
+  c.materials[0].rheology =
+      Rheology{.model = RheologyModel::Bingham, .yieldStress = 5, .plasticViscosity = 5, .regularisation = 10};
+  c.materials.resize(static_cast<std::size_t>(materials));
+  const auto start = [&] {
+    Particles<D> p = bodyOnFloor<D>(c, 0.02);
+    for (auto& m : p.material) m = std::min<std::uint8_t>(m, static_cast<std::uint8_t>(materials - 1));
+    return p;
+  };
+  Simulation<D> cpu(c, start());
+  Simulation<D, Cuda> cuda(c, start());
+  for (int step = 0; step < 5; ++step) {
+    const StepReport a = cpu.advance(), b = cuda.advance();
+    EXPECT_NEAR(b.diagnostics.kineticEnergy, a.diagnostics.kineticEnergy, agreement * a.diagnostics.kineticEnergy);
+  }
+  Particles<D> expected = stateOf(cpu), found;
+  cuda.copyParticles(found);
+  EXPECT_LE(farthest(expected, found), agreement * c.spacing);
+  std::vector<double> rate(expected.fluidCount);
+  for (std::uint32_t i = 0; i < expected.fluidCount; ++i) rate[expected.id[i]] = expected.shearRate[i];
+  const double most = *std::max_element(rate.begin(), rate.end());
+  ASSERT_TRUE(found.hasShearRates);
+  for (std::uint32_t i = 0; i < found.fluidCount; ++i)
+    ASSERT_NEAR(found.shearRate[i], rate[found.id[i]], 1e-6 * most);
+}
+
+TEST(SimulationTwin, StepsLikeTheCpuWithARheology) {
+  TREACLE_SKIP_WITHOUT_GPU();
+  for (const int materials : {1, 2})
+    for (const Precision precision : {Precision::Mixed, Precision::Double}) {
+      compareRheology<2>(materials, precision);
+      compareRheology<3>(materials, precision);
+    }
 }
 
 TEST(SimulationTwin, StepsLikeTheCpuWhereAClusterIsTorn) {

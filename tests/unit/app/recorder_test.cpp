@@ -37,8 +37,9 @@ struct Recorded {
   void copyState(Snapshot& snapshot) {
     std::vector<std::string> notes;
     snapshot.particles = createParticles(c, notes);
-    forEachFluidFieldOf([](auto& field) { std::fill(field.begin(), field.end(), Vec<2>{}); },
-                        snapshot.particles.of<2>());
+    forEachFluidFieldOf(
+        [](auto& field) { std::fill(field.begin(), field.end(), std::decay_t<decltype(field[0])>{}); },
+        snapshot.particles.of<2>());
     if (gone) throw std::runtime_error("the simulation is gone");
     snapshot.step = step;
     snapshot.time = 1e-3 * static_cast<double>(step);

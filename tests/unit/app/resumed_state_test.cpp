@@ -32,7 +32,8 @@ struct Resumed {
     std::vector<std::string> notes;
     made = MadeParticles::of(c, notes);
     saved = createParticles<2>(c, notes);
-    forEachFluidFieldOf([](auto& field) { std::fill(field.begin(), field.end(), Vec<2>{}); }, saved);
+    forEachFluidFieldOf(
+        [](auto& field) { std::fill(field.begin(), field.end(), std::decay_t<decltype(field[0])>{}); }, saved);
     std::reverse(saved.id.begin(), saved.id.begin() + saved.fluidCount);
     std::reverse(saved.id.begin() + saved.fluidCount, saved.id.end());
   }

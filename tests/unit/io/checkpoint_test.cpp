@@ -33,7 +33,7 @@ constexpr double time3 = 3 * 0.1;  // [s]; not the decimal 0.3
 template <int D>
 Particles<D> randomParticles(std::uint32_t fluid, std::uint32_t wall) {
   Particles<D> particles;
-  particles.resize(fluid, wall, fluid % 4);
+  particles.resize({fluid, wall, fluid % 4, 0, 0, fluid % 2 == 0});
   particles.modes.age = {7, 13};
   particles.modes.pressure = {3.75, 4, 6};
   particles.steps = {0.01, 0.02, 0.3};
@@ -44,7 +44,7 @@ Particles<D> randomParticles(std::uint32_t fluid, std::uint32_t wall) {
       if constexpr (requires { value.v; })
         std::generate(std::begin(value.v), std::end(value.v), [&] { return real(random); });
       else if constexpr (std::is_floating_point_v<T>)
-        value = real(random);
+        value = std::abs(real(random));
       else if constexpr (std::is_integral_v<T>)
         value = static_cast<T>(random());
   });
@@ -72,6 +72,8 @@ void expectSame(const Particles<D>& a, const Particles<D>& b) {
   EXPECT_TRUE(sameBits(a.id, b.id));
   EXPECT_TRUE(sameBits(a.acceleration, b.acceleration));
   EXPECT_TRUE(sameBits(a.jerk, b.jerk));
+  EXPECT_EQ(a.hasShearRates, b.hasShearRates);
+  EXPECT_TRUE(sameBits(a.shearRate, b.shearRate));
   EXPECT_EQ(a.modeCount(), b.modeCount());
   EXPECT_TRUE(sameBits(a.modes.vectors, b.modes.vectors));
   EXPECT_EQ(a.modes.age, b.modes.age);
@@ -264,9 +266,9 @@ TEST(Checkpoint, OtherVersionsAndDimensionsAreRefused) {
   const auto path = directory / "c.h5";
   writeCheckpoint<3>(path, randomParticles<3>(5, 5), 1, 1, MethodKind::MphI);
   EXPECT_THAT(refusal<2>(path), HasSubstr("3 dimensions, expected 2"));
-  for (const int version : {0, 7}) {
+  for (const int version : {0, 8}) {
     changeAttribute(path, "version", version);
-    EXPECT_THAT(refusal<3>(path), HasSubstr(fmt::format("version {}, expected 1 to 6", version)));
+    EXPECT_THAT(refusal<3>(path), HasSubstr(fmt::format("version {}, expected 1 to 7", version)));
   }
 }
 
@@ -276,6 +278,8 @@ TEST(Checkpoint, EarlierVersionsAreReadWithoutBodiesAndMemoryOfTheFlow) {
   Particles<3> particles = randomParticles<3>(33, 31);
   writeCheckpoint<3>(path, particles, 7, time3, MethodKind::MphI);
   ASSERT_EQ(particles.modeCount(), 1u);
+  changeAttribute(path, "version", 6);
+  expectSame(readCheckpoint<3>(path).particles, particles);
   changeAttribute(path, "version", 5);
   particles.steps = {};
   expectSame(readCheckpoint<3>(path).particles, particles);
@@ -302,6 +306,20 @@ TEST(Checkpoint, EarlierVersionsAreReadWithoutBodiesAndMemoryOfTheFlow) {
   EXPECT_EQ(read.step, 7);
   for (auto* field : {&particles.acceleration, &particles.jerk}) std::fill(field->begin(), field->end(), Vec<3>{});
   expectSame(read.particles, particles);
+}
+
+TEST(Checkpoint, ShearRatesAreThereOrNot) {
+  TemporaryDirectory directory;
+  const auto path = directory / "c.h5";
+  Particles<2> particles = randomParticles<2>(6, 5);
+  ASSERT_TRUE(particles.hasShearRates);
+  writeCheckpoint<2>(path, particles, 7, time3, MethodKind::MphI);
+  expectSame(readCheckpoint<2>(path).particles, particles);
+  changeAttribute(path, "version", 6);
+  EXPECT_FALSE(readCheckpoint<2>(path).particles.hasShearRates);
+  particles.shearRate[3] = -1;
+  EXPECT_THAT(messageOf<RunError>([&] { writeCheckpoint<2>(path, particles, 7, time3, MethodKind::MphI); }),
+              HasSubstr("a shear rate of -1 1/s, expected at least 0"));
 }
 
 TEST(Checkpoint, DamagedFilesAreRefused) {

@@ -1,0 +1,86 @@
+#pragma once
+
+#include "treacle/core/cuda.hpp"
+#include "treacle/model/case.hpp"
+#include "treacle/mph/viscosity_classes.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace treacle {
+
+/// The viscosities of particles from their shear rates, particle by particle; the shear rates are those of
+/// mph_balance.hpp. Spans are in the backend's memory.
+
+/// By material.
+struct RheologyTable {
+  Rheology of[maxMaterials];
+
+  static RheologyTable make(const Case& c);
+};
+
+/// Sets mu_i, and s_i mu_i, what MphPairs take as scale.
+struct ViscosityTerms {
+  RheologyTable table;
+  double correction;  // [0, 1]: method.viscosity_correction
+  std::span<const std::uint8_t> material;
+  std::span<const double> rate;         // gamma [1/s]
+  std::span<const double> share;        // the viscosity scale with a correction of 1 [-]
+  std::span<double> viscosity, scaled;  // [Pa s]
+
+  TREACLE_HD void set(std::size_t i) const {
+    // None at all would look like a wall.
+    viscosity[i] = std::fmax(table.of[material[i]].viscosity(rate[i]), 1e-30);
+    scaled[i] = viscosity[i] * (1 + correction * (share[i] - 1));
+  }
+};
+
+/// Of the first particles, as many as there are rates.
+void setViscosities(Context<Cpu>&, const ViscosityTerms&);
+void setViscosities(Context<Cuda>&, const ViscosityTerms&);
+
+/// Sets the class of a particle: fluid has a viscosity, walls are of their materials' class.
+struct ClassTerms {
+  ViscosityClasses classes;
+  std::span<const std::uint8_t> material;
+  std::span<const double> viscosity;  // of the fluid, ghosts included [Pa s]
+  std::span<std::uint8_t> kind;
+
+  TREACLE_HD void set(std::size_t i) const {
+    kind[i] = i < viscosity.size() ? classes.of(material[i], viscosity[i]) : material[i];
+  }
+};
+void setClasses(Context<Cpu>&, const ClassTerms&);
+void setClasses(Context<Cuda>&, const ClassTerms&);
+
+/// What a particle's shear rate after a solve says: the rate that the next one is to take, and what it adds to the
+/// sums of |change of mu| gamma^2 and mu gamma^2.
+struct RateTerms {
+  static constexpr int count = 2;
+
+  RheologyTable table;
+  std::span<const std::uint8_t> material;
+  std::span<const double> last, found;  // rate that the solve took the viscosity of, and that of its result [1/s]
+  std::span<const double> viscosity;    // of the solve [Pa s]
+  std::span<double> next;               // may be `last`
+
+  TREACLE_HD void add(std::size_t i, double* sums) const {
+    const Rheology& rheology = table.of[material[i]];
+    next[i] = rheology.nextRate(last[i], found[i]);
+    const double mu = rheology.viscosity(next[i]), square = found[i] * found[i];
+    sums[0] += std::fabs(mu - viscosity[i]) * square;
+    sums[1] += mu * square;
+  }
+  /// The mean relative change of the viscosity, weighted with the dissipation.
+  static double change(const std::array<double, count>& sums) { return sums[1] > 0 ? sums[0] / sums[1] : 0; }
+};
+
+/// Sets all rates; the change of the viscosity over all processes. The order of the sums depends on the number of
+/// particles alone.
+double nextRates(Context<Cpu>&, const RateTerms&);
+double nextRates(Context<Cuda>&, const RateTerms&);
+
+}  // namespace treacle

@@ -1,0 +1,40 @@
+#pragma once
+
+#include "treacle/core/macros.hpp"
+#include "treacle/model/material_table.hpp"
+
+#include <cmath>
+#include <cstdint>
+
+namespace treacle {
+
+/// What stands for the viscosity of a particle in the preconditioner, whose constants are numbers per class. The
+/// first classes are the materials, as their walls and Newtonian fluids have them; materials with a rheology share
+/// the others, each in equal steps of the logarithm of what their viscosity may be.
+struct ViscosityClasses {
+  static constexpr int most = 2 * static_cast<int>(maxMaterials);
+
+  int count = 0;
+  std::uint8_t material[most];
+  double viscosity[most];  // [Pa s]
+
+  static ViscosityClasses make(const Case& c);
+
+  /// The class of a fluid particle of material m with the viscosity mu.
+  TREACLE_HD std::uint8_t of(std::uint8_t m, double mu) const {
+    const Steps& s = steps_[m];
+    if (s.count == 0) return m;
+    const double step = std::floor(std::log(mu / s.least) * s.perLog);
+    const int bounded = step > 0 ? step < s.count ? static_cast<int>(step) : s.count - 1 : 0;
+    return static_cast<std::uint8_t>(s.first + bounded);
+  }
+
+ private:
+  struct Steps {
+    int first = 0, count = 0;
+    double least = 1, perLog = 0;  // of the lowest one [Pa s], and their number in a factor of e
+  };
+  Steps steps_[maxMaterials];
+};
+
+}  // namespace treacle
