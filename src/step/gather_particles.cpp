@@ -63,6 +63,10 @@ void gatherParticles(const Communicator& processes, const HaloCounts& halo, cons
     whole.resize(all);
     whole.copyNumbers(own);
   }
+  // What the others' fields are gathered into: none, but all take part in the same ones.
+  Particles<D> nothing;
+  nothing.hasShearRates = own.hasShearRates;
+  Particles<D>& target = first ? whole : nothing;
   const auto gather = [&]<class T>(std::span<const T> part, T* to) {
     const std::vector<T> parts = processes.collect(part);
     std::copy(parts.begin(), parts.end(), to);
@@ -70,11 +74,11 @@ void gatherParticles(const Communicator& processes, const HaloCounts& halo, cons
   const auto gatherField = [&]<class T>(const Buffer<T>& from, Buffer<T>& to) {
     gather(from.span().first(own.fluidCount), to.data());
   };
-  forEachSharedFieldOf(gatherField, own, whole);
-  forEachFluidFieldOf(gatherField, own, whole);
+  forEachSharedFieldOf(gatherField, own, target);
+  forEachFluidFieldOf(gatherField, own, target);
   for (std::size_t m = 0; m < modes; ++m)
     gather(own.modes.vectors.span().subspan(m * own.fluidCount, own.fluidCount),
-           whole.modes.vectors.data() + (first ? m * whole.fluidCount : 0));
+           target.modes.vectors.data() + (first ? m * target.fluidCount : 0));
   const std::vector<WallState> states = processes.collect(std::span<const WallState>(ownWallStates(halo, own)));
   if (first) putWalls(own, states, whole);
 }

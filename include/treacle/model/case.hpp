@@ -173,7 +173,7 @@ struct MethodSettings {
 /// How the viscosity of fluids with a rheology and the flow of a step are brought together.
 struct RheologySettings {
   int iterations = 10;      // largest number of solves in a step
-  double tolerance = 0.01;  // change of the viscosity, in mean over the dissipation, that no further solve follows
+  double tolerance = 0.03;  // change of the viscosity, in mean over the dissipation, that no further solve follows
 
   bool operator==(const RheologySettings&) const = default;
 };
