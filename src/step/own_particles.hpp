@@ -57,7 +57,8 @@ std::uint32_t copyOwnParticles(FlowState<D, Backend>& state, const CellGrid<D>& 
         gather(held.span(), beside, to.data() + begin + own.size() + far.count);
       },
       p, walls, far, host);
-  if (p.hasShearRates) copyToHost(state.context, std::span<const double>(p.shearRate).first(p.fluidCount), host.shearRate.data());
+  if (p.hasShearRates)
+    copyToHost(state.context, std::span<const double>(p.shearRate).first(p.fluidCount), host.shearRate.data());
   return static_cast<std::uint32_t>(own.size()) + far.count;
 }
 

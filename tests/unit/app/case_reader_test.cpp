@@ -248,9 +248,12 @@ TEST(readCase, takesEveryKey) {
   expected.solver.maxIterations = 77;
   expected.solver.multigrid = {1, 5, 6, SmootherDiagonal::ExtendedJacobi, CoarseKind::Spgemm};
   expected.solver.projected = {7, 3, 1, 55};
-  expected.output = {
-      0.25, 0.5, {false, true, false, false, false, true, true, false, false}, OutputPrecision::Double, OutputPieces::Each,
-      true};
+  expected.output = {0.25,
+                     0.5,
+                     {false, true, false, false, false, true, true, false, false},
+                     OutputPrecision::Double,
+                     OutputPieces::Each,
+                     true};
   expected.watch = {3, 4, 0.1, 0};
   EXPECT_EQ(c, expected);
 
