@@ -211,7 +211,8 @@ constexpr BadCase badCases[] = {
     {"operatorForIsph", bulk, "[method]\nname = \"isph\"\n[solver]\noperator = \"assembled\"\n",
      "bad.toml:19:1: unknown key 'operator' in [solver] (isph): it belongs to the method 'mph-i'; expected "
      "'krylov', "
-     "'preconditioner', 'tolerance', 'max_iterations', 'precision', 'first_guess', 'cells' or 'hats'"},
+     "'preconditioner', 'tolerance', 'max_iterations', 'precision', 'first_guess', 'divided_nodes', 'cells' or "
+     "'hats'"},
     {"neighboursForIsph", bulk, "[method]\nname = \"isph\"\n[solver]\nneighbours = \"lists\"\n",
      "bad.toml:19:1: unknown key 'neighbours' in [solver] (isph): it belongs to the method 'mph-i'"},
     {"projectedForIsph", bulk, "[method]\nname = \"isph\"\n[solver.projected]\ngrid_degree = 2\n",

@@ -183,6 +183,7 @@ preconditioner = "block-jacobi"
 operator = "assembled"
 precision = "mixed"
 first_guess = "linear"
+divided_nodes = 77
 deflation = 11
 tolerance = 1e-10
 max_iterations = 77
@@ -246,6 +247,7 @@ TEST(readCase, takesEveryKey) {
   expected.solver.deflation = 11;
   expected.solver.tolerance = 1e-10;
   expected.solver.maxIterations = 77;
+  expected.solver.dividedNodes = 77;
   expected.solver.multigrid = {1, 5, 6, SmootherDiagonal::ExtendedJacobi, CoarseKind::Spgemm};
   expected.solver.projected = {7, 3, 1, 55};
   expected.output = {0.25,
