@@ -79,7 +79,7 @@ Ghosts listGhosts(Context<Cuda>& context, const Buffer<std::uint32_t, Cuda>& sta
 void listSent(Context<Cuda>& context, const Ghosts& ghosts, const std::uint32_t* nodeAt, Halo<Cuda>& halo) {
   const Communicator& job = *context.communicator;
   const std::vector<std::uint32_t> counts = job.table(ghosts.of);
-  std::size_t sent = 0, of = 0;
+  std::size_t sent = 0;
   for (int r = 0; r < job.size(); ++r) {
     const std::uint32_t asked = counts[r * job.size() + job.rank()];
     sent += asked;
@@ -93,7 +93,7 @@ void listSent(Context<Cuda>& context, const Ghosts& ghosts, const std::uint32_t*
   for (const auto& n : halo.neighbours) {
     out.push_back({n.rank, from, n.fluid * sizeof(std::uint32_t)});
     in.push_back({n.rank, to, n.sentFluid * sizeof(std::uint32_t)});
-    from += n.fluid, to += n.sentFluid, of += n.fluid;
+    from += n.fluid, to += n.sentFluid;
   }
   context.link->exchange(out, in);
   forEach(context, sent, [nodeAt, point = asked.data(), node = halo.sentFluid.data()] __device__(std::size_t k) {
