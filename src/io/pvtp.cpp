@@ -22,15 +22,6 @@ namespace {
 
 constexpr std::string_view fileEnd = "</VTKFile>\n";
 
-/// f(name, field of a, field of b).
-template <class F>
-void forEachField(const Frame& a, Frame& b, F&& f) {
-  f("position", a.position, b.position), f("velocity", a.velocity, b.velocity);
-  f("pressure", a.pressure, b.pressure), f("number_density", a.numberDensity, b.numberDensity);
-  f("nearest_distance", a.nearestDistance, b.nearestDistance), f("material", a.material, b.material);
-  f("body", a.body, b.body), f("id", a.id, b.id);
-}
-
 /// "FILE: time 1 s in place of 2 s ...", empty where the two are of one frame.
 template <class A, class B>
 std::string strangeness(const fs::path& piece, const A& one, const B& first) {
@@ -86,7 +77,9 @@ void append(const fs::path& path, const Frame& piece, Frame& whole) {
   if (const std::string strange = strangeness(path, piece, whole); !strange.empty()) throw InputError(strange);
   if (piece.position.empty()) return;
   const bool first = whole.position.empty();
-  forEachField(piece, whole, [&](std::string_view name, const auto& from, auto& to) {
+  forEachFrameField([&](std::string_view name, auto member) {
+    const auto& from = piece.*member;
+    auto& to = whole.*member;
     if (!first && from.empty() != to.empty())
       throw InputError(fmt::format("{}: '{}' is not in all pieces of the frame", path.string(), name));
     to.insert(to.end(), from.begin(), from.end());

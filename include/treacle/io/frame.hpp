@@ -26,6 +26,18 @@ struct Frame {
   std::vector<std::uint32_t> id;
 };
 
+/// Calls f(name in files, pointer to member) for every field. The binding names all members of Frame: it does not
+/// compile once one is added that is not written here.
+template <class F>
+void forEachFrameField(F&& f) {
+  [[maybe_unused]] const auto& [dimensions, time, position, velocity, pressure, numberDensity, nearestDistance,
+                                dynamicViscosity, shearRate, material, body, id] = Frame{};
+  f("position", &Frame::position), f("velocity", &Frame::velocity), f("pressure", &Frame::pressure);
+  f("number_density", &Frame::numberDensity), f("nearest_distance", &Frame::nearestDistance);
+  f("dynamic_viscosity", &Frame::dynamicViscosity), f("shear_rate", &Frame::shearRate);
+  f("material", &Frame::material), f("body", &Frame::body), f("id", &Frame::id);
+}
+
 /// Copies particles [begin, end), sorted by id: files do not depend on how the search sorts. Shear rates are those
 /// of fluid where it has some.
 template <int D>

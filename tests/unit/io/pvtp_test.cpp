@@ -25,17 +25,22 @@ struct Pieces {
   Frame whole = sampleFrame(2, 30);
   fs::path index = directory / "a.pvtp";
 
-  Pieces() {
+  explicit Pieces(bool rheology = false) {
     whole.time = 0.125;
+    for (int k = 0; rheology && k < 30; ++k) {
+      whole.shearRate.push_back(k);
+      whole.dynamicViscosity.push_back(2.0 / (1 + k));
+    }
     write(0, part(0, 10)), write(1, part(10, 11)), write(2, part(11, 30));
     writePvtp(index, names);
   }
 
   Frame part(std::ptrdiff_t begin, std::ptrdiff_t end) const {
     Frame piece = whole;
-    const auto keep = [&](auto& field) { field = {field.begin() + begin, field.begin() + end}; };
-    keep(piece.position), keep(piece.velocity), keep(piece.pressure), keep(piece.numberDensity);
-    keep(piece.nearestDistance), keep(piece.material), keep(piece.body), keep(piece.id);
+    forEachFrameField([&](const char*, auto member) {
+      auto& field = piece.*member;
+      if (!field.empty()) field = {field.begin() + begin, field.begin() + end};
+    });
     return piece;
   }
 
@@ -88,6 +93,13 @@ TEST(Pvtp, IsWhatVtkPrescribes) {
   </PPolyData>
 </VTKFile>
 )");
+}
+
+TEST(Pvtp, HasTheFieldsOfARheology) {
+  const Pieces pieces(true);
+  const Frame read = readFrame(pieces.index);
+  EXPECT_EQ(read.shearRate, pieces.whole.shearRate);
+  EXPECT_EQ(read.dynamicViscosity, pieces.whole.dynamicViscosity);
 }
 
 TEST(Pvtp, PiecesMakeTheFrame) {
