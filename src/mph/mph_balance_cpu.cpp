@@ -6,13 +6,16 @@
 
 namespace treacle {
 
-template <int D>
-void shearDissipation(Context<Cpu>&, const MphPairs<D>& pairs, std::span<const Vec<D>> u,
-                      std::span<double> dissipation) {
+namespace {
+
+/// store(cluster's range, sum of c_ij (u_ij.e_ij)^2 over its particles' pairs, those of fluid by halves), with the
+/// coefficient coefficientOf(range)(j, what the terms have for the pair).
+template <int D, class CoefficientOf, class Store>
+void sumShear(const MphPairs<D>& pairs, std::span<const Vec<D>> u, CoefficientOf&& coefficientOf, Store&& store) {
   const double floor2 = distanceFloor2(pairs);
   const ClusterListView& list = pairs.fluidList;
   forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const ClusterPlaces<D>& x, std::uint32_t c) {
-    const ViscosityLanes<D> viscosity(pairs, range);
+    const auto coefficient = coefficientOf(range);
     const VecLanes<D> ui = loadLanes<D>(range, u);
     const auto sum = [&](ListSegment segment, bool wall) {
       Lanes total = {};
@@ -21,45 +24,44 @@ void shearDissipation(Context<Cpu>&, const MphPairs<D>& pairs, std::span<const V
         Lanes along = {};
         for (int k = 0; k < D; ++k) along += (u[j][k] - ui[k]) * pair.d[k];
         along *= pair.r.inverse;
-        Lanes resistance = viscosity.with(j) * pairs.terms.resistanceShape(pair.r);
+        Lanes resistance = coefficient(j, pairs.terms.resistanceShape(pair.r));
         if (wall) resistance *= wallFactors(pairs, range, j, pair.d);
         total += resistance * along * along;
       }
       return total;
     };
     const Lanes ofFluid = sum(ListSegment::NearFluid, false) + sum(ListSegment::FarFluid, false);
-    storeLanes(range, 0.5 * ofFluid + sum(ListSegment::NearWall, true) + sum(ListSegment::FarWall, true),
-               dissipation);
+    store(range, 0.5 * ofFluid + sum(ListSegment::NearWall, true) + sum(ListSegment::FarWall, true));
   });
+}
+
+}  // namespace
+
+template <int D>
+void shearDissipation(Context<Cpu>&, const MphPairs<D>& pairs, std::span<const Vec<D>> u,
+                      std::span<double> dissipation) {
+  sumShear<D>(
+      pairs, u,
+      [&](const ClusterRange& range) {
+        return [viscosity = ViscosityLanes<D>(pairs, range)](std::uint32_t j, const Lanes& shape) -> Lanes {
+          return viscosity.with(j) * shape;
+        };
+      },
+      [&](const ClusterRange& range, const Lanes& sum) { storeLanes(range, sum, dissipation); });
 }
 
 template <int D>
 void shearRate(Context<Cpu>&, const MphPairs<D>& pairs, std::span<const Vec<D>> u, std::span<const double> share,
                std::span<double> rate) {
-  const double floor2 = distanceFloor2(pairs);
-  const ClusterListView& list = pairs.fluidList;
-  forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const ClusterPlaces<D>& x, std::uint32_t c) {
-    const VecLanes<D> ui = loadLanes<D>(range, u);
-    const auto sum = [&](ListSegment segment, bool wall) {
-      Lanes total = {};
-      for (std::uint32_t j : list.segment(c, segment)) {
-        const PairLanes<D> pair(pairs, j, x, floor2);
-        Lanes along = {};
-        for (int k = 0; k < D; ++k) along += (u[j][k] - ui[k]) * pair.d[k];
-        along *= pair.r.inverse;
-        Lanes shape = pairs.terms.resistanceShape(pair.r);
-        if (wall) shape *= wallFactors(pairs, range, j, pair.d);
-        total += shape * along * along;
-      }
-      return total;
-    };
-    const Lanes ofFluid = sum(ListSegment::NearFluid, false) + sum(ListSegment::FarFluid, false);
-    const Lanes all = 0.5 * ofFluid + sum(ListSegment::NearWall, true) + sum(ListSegment::FarWall, true);
-    for (std::uint32_t lane = 0; lane < range.count; ++lane) {
-      const std::size_t i = range.first + lane;
-      rate[i] = std::sqrt(pairs.terms.viscousFactor * all[lane] * share[i]);
-    }
-  });
+  sumShear<D>(
+      pairs, u,
+      [](const ClusterRange&) { return [](std::uint32_t, const Lanes& shape) -> Lanes { return shape; }; },
+      [&](const ClusterRange& range, const Lanes& sum) {
+        for (std::uint32_t lane = 0; lane < range.count; ++lane) {
+          const std::size_t i = range.first + lane;
+          rate[i] = std::sqrt(pairs.terms.viscousFactor * sum[lane] * share[i]);
+        }
+      });
 }
 
 namespace {

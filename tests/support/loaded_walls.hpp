@@ -4,6 +4,7 @@
 #include "treacle/step/simulation.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace treacle::test {
 
@@ -71,6 +72,22 @@ struct LoadedWalls {
   Simulation<D, Backend> simulation() const {
     return Simulation<D, Backend>(c, copy());
   }
+};
+
+/// Where the energy of a step has come from and gone to [J].
+struct StepEnergy {
+  double gained, fallen;  // kinetic energy, and what was potential energy
+  double lost, given;     // by dissipation; by walls, compression and height
+
+  StepEnergy(const Diagnostics& before, const StepReport& report)
+      : gained(report.diagnostics.kineticEnergy - before.kineticEnergy),
+        fallen(before.potentialEnergy - report.diagnostics.potentialEnergy) {
+    const Balance& b = *report.balance;
+    const double dt = report.timeStep;
+    lost = dt * (b.inertialLoss + b.shearDissipation + b.bulkDissipation);
+    given = dt * (b.elasticPower + b.wallPower + b.repulsionPower) + fallen;
+  }
+  double scale() const { return std::abs(gained) + lost + std::abs(given); }
 };
 
 }  // namespace treacle::test

@@ -31,16 +31,13 @@ void checkEnergy(const Case& c, Simulation<D>& s) {
   const Diagnostics before = s.diagnostics();
   const StepReport report = s.advance();
   const Balance& b = *report.balance;
-  const double dt = report.timeStep, gained = report.diagnostics.kineticEnergy - before.kineticEnergy;
-  const double fallen = before.potentialEnergy - report.diagnostics.potentialEnergy;
-  const double lost = dt * (b.inertialLoss + b.shearDissipation + b.bulkDissipation);
-  const double given = dt * (b.elasticPower + b.wallPower + b.repulsionPower) + fallen;
-  const double scale = std::abs(gained) + lost + std::abs(given);
-  EXPECT_NEAR(gained + lost, given, 5e-12 * scale);  // measured: 4e-13
+  const StepEnergy energy(before, report);
+  const double dt = report.timeStep, scale = energy.scale();
+  EXPECT_NEAR(energy.gained + energy.lost, energy.given, 5e-12 * scale);  // measured: 4e-13
   // No term is so small that it could be missed.
   for (const double term : {b.inertialLoss, b.shearDissipation, b.bulkDissipation, b.elasticPower, b.wallPower})
     EXPECT_GT(std::abs(dt * term), 1e-6 * scale);
-  EXPECT_GT(std::abs(fallen), 1e-6 * scale);
+  EXPECT_GT(std::abs(energy.fallen), 1e-6 * scale);
   EXPECT_GT(b.elasticEnergy, 0);
   if (c.method.scheme == SchemeKind::Accurate)
     EXPECT_GT(std::abs(dt * b.repulsionPower), 1e-6 * scale);

@@ -1,5 +1,7 @@
 #include "support/isph_cases.hpp"
 #include "support/oracle.hpp"
+#include "support/same_bits.hpp"
+#include "support/state_of.hpp"
 #include "support/stretched_body.hpp"
 #include "treacle/core/timer.hpp"
 
@@ -45,25 +47,6 @@ struct Seconds {
   }
 };
 
-template <int D>
-Particles<D> stateOf(const Simulation<D>& simulation) {
-  Particles<D> state;
-  simulation.copyParticles(state);
-  return state;
-}
-
-template <int D>
-void expectSameState(const Particles<D>& a, const Particles<D>& b) {
-  forEachFieldOf(
-      [](const auto& x, const auto& y) {
-        ASSERT_EQ(x.size(), y.size());
-        const auto p = std::as_bytes(x.span()), q = std::as_bytes(y.span());
-        EXPECT_TRUE(std::equal(p.begin(), p.end(), q.begin()));
-      },
-      a, b);
-  EXPECT_EQ(a.modes.age, b.modes.age);
-}
-
 /// The case's own solver does what it does in the next step, and the others leave no trace in it.
 template <int D>
 void checkTrials(Simulation<D>& compared, Simulation<D>& plain, const std::vector<SolverSettings>& solvers,
@@ -86,7 +69,7 @@ void checkTrials(Simulation<D>& compared, Simulation<D>& plain, const std::vecto
     EXPECT_EQ(trials.back().report.iterations, expected.iterations) << "step " << step;
     EXPECT_EQ(trials.back().report.residual, expected.residual);
     EXPECT_EQ(report.residual, expected.residual);
-    expectSameState(stateOf(compared), stateOf(plain));
+    expectSameBits(stateOf(compared), stateOf(plain));
   }
   seconds.check();
 }
