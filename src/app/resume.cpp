@@ -46,6 +46,12 @@ Kinds kindsOf(const Case& c, const MadeParticles& made) {
   return kinds;
 }
 
+/// What a fluid of unknown temperature would start with nobody can say.
+template <int D>
+void requireTemperatures(const Case& c, const std::filesystem::path& file, const Particles<D>& p) {
+  if (c.heat && !p.hasTemperatures) refuse(file, "a state without temperatures, but the case has heat");
+}
+
 template <int D>
 void requireFit(const Case& c, const std::filesystem::path& file, const Checkpoint<D>& state, const Kinds& made) {
   const Particles<D>& p = state.particles;
@@ -123,6 +129,7 @@ StartState fittingState(const Case& c, const std::filesystem::path& file, const 
     const Kinds kinds = kindsOf(c, made);
     requireMethod(c, file, state.method);
     requireFit(c, file, state, kinds);
+    requireTemperatures(c, file, state.particles);
     setBodies(c, file, made, state.particles);
     setWallSurfaces(created, kinds.fluid + made.part.begin(kinds.walls), state.particles);
     return {std::move(state.particles), state.step, state.time};

@@ -49,6 +49,12 @@ class TableText {
           return texts[k].empty() ? fmt::format("{}", numbers[static_cast<int>(k)]) : tomlString(texts[k]);
         }));
   }
+  void operator()(const Key& key, double x, const std::string& text) {
+    put(key, text.empty() ? fmt::format("{}", x) : tomlString(text));
+  }
+  void operator()(const Key& key, const std::vector<double>& numbers) {
+    put(key, fmt::format("[{}]", fmt::join(numbers, ", ")));
+  }
   void operator()(const Key& key, const std::string& text) { put(key, tomlString(text)); }
   void operator()(const Key& key, const std::string& text, keys::ExpressionTag) {
     if (!text.empty()) put(key, tomlString(text));

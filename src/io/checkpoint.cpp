@@ -24,9 +24,10 @@ namespace treacle {
 namespace {
 
 constexpr std::string_view formatName = "treacle checkpoint";
-constexpr std::int32_t formatVersion = 7;  // 1: without acceleration and jerk; 2: without bodies and modes; 3:
+constexpr std::int32_t formatVersion = 8;  // 1: without acceleration and jerk; 2: without bodies and modes; 3:
                                            // without method and checksums; 4: without kept eigenvalue; 5: without
-                                           // memory of the time steps; 6: without shear rates
+                                           // memory of the time steps; 6: without shear rates; 7: without
+                                           // temperatures
 
 bool isFinite(double x) { return std::isfinite(x); }
 template <int D, class T>
@@ -45,6 +46,8 @@ void requireSound(const Particles<D>& particles) {
   });
   for (const double rate : particles.shearRate)
     if (rate < 0) throw Hdf5Error(fmt::format("a shear rate of {} 1/s, expected at least 0", rate));
+  for (const double T : particles.temperature)
+    if (!(T > 0)) throw Hdf5Error(fmt::format("a temperature of {} K, expected more than 0", T));
 }
 
 /// `ids`: of all particles, `fluid` of which come first. Errors: Hdf5Error.
@@ -72,6 +75,7 @@ void fill(hid_t file, const Particles<D>& particles, std::int64_t step, double t
   writeAttribute(file, "fluid_count", particles.fluidCount);
   writeAttribute(file, "wall_count", particles.wallCount());
   writeAttribute(file, "has_shear_rates", std::uint8_t{particles.hasShearRates});
+  writeAttribute(file, "has_temperatures", std::uint8_t{particles.hasTemperatures});
   const ModeAge& age = particles.modes.age;
   writeAttribute(file, "mode_count", particles.modeCount());
   writeAttribute(file, "modes_due", age.due);
@@ -192,6 +196,7 @@ Checkpoint<D> readContent(const std::filesystem::path& path, bool sealed, Partic
   if (version >= 5) particles.modes.pressure = readEigenvalue(file);
   if (version >= 6) particles.steps = readSteps(file);
   if (version >= 7) particles.hasShearRates = readAttribute<std::uint8_t>(file, "has_shear_rates") != 0;
+  if (version >= 8) particles.hasTemperatures = readAttribute<std::uint8_t>(file, "has_temperatures") != 0;
   Selection selection{part, particles.fluidCount, particles.wallCount(), {}};
   checkpoint.fluidOfAll = selection.fluid, checkpoint.wallsOfAll = selection.walls;
   if (!part.isAll()) chooseWalls(file, selection);

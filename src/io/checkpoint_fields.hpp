@@ -36,7 +36,7 @@ struct FieldInfo {
 template <class P, class F>
 void forEachNamedField(P& particles, std::uint64_t modeValues, F&& f) {
   auto& [fluidCount, ghostCount, count, position, velocity, pressure, numberDensity, material, body, id,
-         acceleration, jerk, shearRate, hasShearRates, modes, steps, wallSurface] = particles;
+         acceleration, jerk, shearRate, hasShearRates, temperature, hasTemperatures, modes, steps, wallSurface] = particles;
   static_cast<void>(steps);  // numbers
   static_cast<void>(wallSurface);
   f(FieldInfo{"position", Of::All, count}, position), f(FieldInfo{"velocity", Of::All, count}, velocity);
@@ -47,6 +47,7 @@ void forEachNamedField(P& particles, std::uint64_t modeValues, F&& f) {
   f(FieldInfo{"acceleration", Of::Fluid, fluidCount, 2}, acceleration);
   f(FieldInfo{"jerk", Of::Fluid, fluidCount, 2}, jerk);
   f(FieldInfo{"shear_rate", Of::Fluid, hasShearRates ? fluidCount : 0, 7}, shearRate);
+  f(FieldInfo{"temperature", Of::Fluid, hasTemperatures ? fluidCount : 0, 8}, temperature);
   f(FieldInfo{"modes", Of::Modes, modeValues, 3}, modes.vectors);
 }
 

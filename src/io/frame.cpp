@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 
 namespace treacle {
 
@@ -36,14 +37,20 @@ Frame makeFrame(const Particles<D>& particles, std::uint32_t begin, std::uint32_
   frame.id = gathered<std::uint32_t>(particles.id, order, same);
   if (particles.hasShearRates && end <= particles.fluidCount)
     frame.shearRate = gathered<double>(particles.shearRate, order, same);
+  if (particles.hasTemperatures && end <= particles.fluidCount)
+    frame.temperature = gathered<double>(particles.temperature, order, same);
   return frame;
 }
 
 void addViscosities(const std::vector<Material>& materials, Frame& frame) {
+  std::vector<std::optional<ShiftFactor>> shifts(materials.size());
+  for (std::size_t m = 0; m < materials.size(); ++m)
+    if (materials[m].viscosityShift) shifts[m] = ShiftFactor::make(*materials[m].viscosityShift);
   frame.dynamicViscosity.resize(frame.shearRate.size());
   for (std::size_t i = 0; i < frame.shearRate.size(); ++i) {
-    const Material& m = materials[static_cast<std::size_t>(frame.material[i])];
-    frame.dynamicViscosity[i] = m.rheology ? m.rheology->viscosity(frame.shearRate[i]) : m.dynamicViscosity;
+    const auto m = static_cast<std::size_t>(frame.material[i]);
+    const double shift = shifts[m] && !frame.temperature.empty() ? (*shifts[m])(frame.temperature[i]) : 1;
+    frame.dynamicViscosity[i] = materials[m].viscosity(frame.shearRate[i], shift);
   }
 }
 

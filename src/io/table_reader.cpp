@@ -9,9 +9,10 @@
 
 namespace treacle {
 
-/// The method, on which the keys of other tables depend, is read before them.
+/// The method, on which the keys of other tables depend, is read before them; whether there is heat, likewise.
 void TableReader::prepare(Case& c) {
   (*this)({"method"}, c.method);
+  if (c.method.kind == MethodKind::MphI && section_.table().contains("heat")) c.heat.emplace();
   c.solver = defaultSolver(c.method.kind);
 }
 
@@ -34,8 +35,15 @@ void TableReader::prepare(Rheology& rheology) {
   rheology.model = *model;
   section_ = Section(section_.table(), fmt::format("{} ({})", section_.title(), nameOf(*model)));
 }
+void TableReader::prepare(ViscosityShift& shift) {
+  const auto model = lookUp<ShiftModel>("model");
+  if (!model) return;
+  shift.model = *model;
+  section_ = Section(section_.table(), fmt::format("{} ({})", section_.title(), nameOf(*model)));
+}
 
 void TableReader::prepare(Body& body) {
+  if (const auto kind = lookUp<BodyKind>("type")) body.kind = *kind;
   const auto shape = lookUp<ShapeKind>("shape");
   if (!shape) return;
   body.shape.kind = *shape;
@@ -84,6 +92,10 @@ std::vector<std::string_view> TableReader::knownKeys(const Body& body) const {
 }
 std::vector<std::string_view> TableReader::knownKeys(const Rheology& rheology) const {
   return keysOfKind<RheologyModel>("model", rheology, [](Rheology& r, RheologyModel model) { r.model = model; });
+}
+
+std::vector<std::string_view> TableReader::knownKeys(const ViscosityShift& shift) const {
+  return keysOfKind<ShiftModel>("model", shift, [](ViscosityShift& s, ShiftModel model) { s.model = model; });
 }
 
 std::string TableReader::titleOf(std::string_view key) const {
@@ -199,6 +211,24 @@ void TableReader::operator()(const Key& key, Vec<3>& numbers, std::array<std::st
       texts[k] = expression(key, node);
     else
       numbers[static_cast<int>(k)] = number(key, node, expected);
+}
+
+void TableReader::operator()(const Key& key, double& x, std::string& text) const {
+  const std::string expected = expectedNumber(key, false, true);
+  const toml::node* node = section_.value(key, expected);
+  if (node && node->is_string())
+    text = expression(key, *node);
+  else if (node)
+    x = number(key, *node, expected);
+}
+
+void TableReader::operator()(const Key& key, std::vector<double>& numbers) const {
+  const std::string expected = expectedNumbers(key);
+  const toml::node* node = section_.value(key, expected);
+  if (!node) return;
+  if (!node->is_array()) throw section_.unexpected(key, expected, *node);
+  numbers.clear();
+  for (const toml::node& entry : *node->as_array()) numbers.push_back(number(key, entry, expected));
 }
 
 void TableReader::operator()(const Key& key, std::string& text) const {

@@ -36,6 +36,8 @@ class TableReader {
   void operator()(const Key& key, std::array<bool, 3>& flags) const;  // one for all, or one per axis
   void operator()(const Key& key, Vec<3>& x) const;
   void operator()(const Key& key, Vec<3>& numbers, std::array<std::string, 3>& texts) const;
+  void operator()(const Key& key, double& x, std::string& text) const;
+  void operator()(const Key& key, std::vector<double>& numbers) const;
   void operator()(const Key& key, std::string& text) const;
   void operator()(const Key& key, std::string& text, keys::ExpressionTag) const;
   void operator()(const Key& key, int& index, keys::MaterialTag) const;
@@ -80,6 +82,7 @@ class TableReader {
   void prepare(MethodSettings& method);
   void prepare(Material& material);
   void prepare(Rheology& rheology);
+  void prepare(ViscosityShift& shift);
   void prepare(Body& body);
   void prepare(SolverSettings& solver);
   void prepare(TimeSettings& time);
@@ -87,6 +90,12 @@ class TableReader {
 
   template <class Table>
   void requireKnownKeys(const Table& member) const {
+    constexpr bool mayHaveHeat = std::is_same_v<Table, Material> || std::is_same_v<Table, Body>;
+    if (mayHaveHeat && case_.method.kind == MethodKind::MphI && !case_.heat) {
+      Case warm = case_;
+      warm.heat.emplace();
+      return section_.requireKnown(knownKeys(member), keys::namesIn(member, warm), "cases with [heat]");
+    }
     Case other;
     other.dimensions = case_.dimensions;
     other.method.kind = case_.method.kind == MethodKind::Isph ? MethodKind::MphI : MethodKind::Isph;
@@ -101,6 +110,7 @@ class TableReader {
   std::vector<std::string_view> knownKeys(const Case&) const;
   std::vector<std::string_view> knownKeys(const Body& body) const;
   std::vector<std::string_view> knownKeys(const Rheology& rheology) const;
+  std::vector<std::string_view> knownKeys(const ViscosityShift& shift) const;
   template <class E, class Table, class Set>
   std::vector<std::string_view> keysOfKind(std::string_view key, const Table& member, Set set) const;
 

@@ -41,6 +41,7 @@ class VtpReader {
     readScalars("number_density", frame.numberDensity);
     readScalars("dynamic_viscosity", frame.dynamicViscosity);
     readScalars("shear_rate", frame.shearRate);
+    readScalars("temperature", frame.temperature);
     readScalars("nearest_distance", frame.nearestDistance);
     readScalars("material", frame.material);
     readScalars("body", frame.body);

@@ -53,14 +53,15 @@ std::vector<Vec<D>> bodyPoints(const Case& c, const Body& body, std::vector<std:
 }
 
 template <int D>
-InitialVelocity<D>::InitialVelocity(const Case& c, const Body& body)
+InitialState<D>::InitialState(const Case& c, const Body& body)
     : body_(body), wall_(wallMotion<D>(c.domain, body, 0, 0)), expressions_(D) {
   for (std::size_t k = 0; k < D; ++k)
     if (const std::string& text = body.velocityExpression[k]; !text.empty()) expressions_[k].emplace(text, D);
+  if (!body.temperatureExpression.empty()) temperature_.emplace(body.temperatureExpression, D);
 }
 
 template <int D>
-Vec<D> InitialVelocity<D>::at(const Vec<D>& x) const {
+Vec<D> InitialState<D>::velocityAt(const Vec<D>& x) const {
   if (body_.kind == BodyKind::Wall) return wall_.velocityAt(x);
   Vec<D> u = resized<D>(body_.velocity);
   for (std::size_t k = 0; k < D; ++k)
@@ -69,9 +70,19 @@ Vec<D> InitialVelocity<D>::at(const Vec<D>& x) const {
   return u;
 }
 
+template <int D>
+double InitialState<D>::temperatureAt(const Vec<D>& x) const {
+  if (!temperature_) return body_.temperature;
+  const double T = valueAt(x, *temperature_, body_, "temperature", body_.temperatureExpression);
+  if (!(T > 0))
+    throw InputError(fmt::format("temperature of body '{}': \"{}\" is {} K for the particle at {}; expected more than 0",
+                                 body_.name, body_.temperatureExpression, T, positionText(resized<3>(x), D)));
+  return T;
+}
+
 template std::vector<Vec<2>> bodyPoints<2>(const Case&, const Body&, std::vector<std::string>&);
 template std::vector<Vec<3>> bodyPoints<3>(const Case&, const Body&, std::vector<std::string>&);
-template class InitialVelocity<2>;
-template class InitialVelocity<3>;
+template class InitialState<2>;
+template class InitialState<3>;
 
 }  // namespace treacle

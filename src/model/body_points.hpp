@@ -18,17 +18,20 @@ std::vector<Vec<D>> bodyPoints(const Case& c, const Body& body, std::vector<std:
 
 /// What the particles of a body start with.
 template <int D>
-class InitialVelocity {
+class InitialState {
  public:
-  InitialVelocity(const Case& c, const Body& body);
+  InitialState(const Case& c, const Body& body);
 
   /// At x [m/s]. Errors: InputError where it is not finite.
-  Vec<D> at(const Vec<D>& x) const;
+  Vec<D> velocityAt(const Vec<D>& x) const;
+  /// At x, of a fluid in a case with heat [K]. Errors: InputError where it is not a positive number.
+  double temperatureAt(const Vec<D>& x) const;
 
  private:
   const Body& body_;
   WallMotion<D> wall_;
   std::vector<std::optional<Expression>> expressions_;  // of the components
+  std::optional<Expression> temperature_;
 };
 
 }  // namespace treacle

@@ -23,8 +23,13 @@ bool Bound::holds(double x) const {
   return std::isfinite(x) && (open ? least < x && x < most : least <= x && x <= most);
 }
 
-std::string expectedNumber(const Key& key, bool orAuto) {
-  return withUnit(numberText(key.bound), key) + (orAuto ? " or \"auto\"" : "");
+std::string expectedNumber(const Key& key, bool orAuto, bool orExpression) {
+  return withUnit(numberText(key.bound), key) + (orAuto ? " or \"auto\"" : "") +
+         (orExpression ? " or an expression" : "");
+}
+
+std::string expectedNumbers(const Key& key) {
+  return withUnit(key.bound.open ? "an array of positive numbers" : "an array of finite numbers", key);
 }
 
 std::string expectedInteger(const Key& key) {

@@ -72,12 +72,12 @@ double largestSpeed(const Case& c, const Body& body) {
       norm(body.velocity) + (o.period > 0 ? 2 * std::numbers::pi * norm(o.amplitude) / o.period : 0);
   const bool expressions = body.velocityExpression != decltype(body.velocityExpression){};
   if (!expressions && !body.rotation) return carried;
-  const InitialVelocity<D> velocity(c, body);
+  const InitialState<D> initial(c, body);
   const WallMotion<D> wall = wallMotion<D>(c.domain, body, 0, 0);
   std::vector<std::string> notes;
   double speed = 0;
   for (const Vec<D>& x : bodyPoints<D>(c, body, notes))
-    speed = std::max(speed, norm(body.rotation ? wall.swirl(wall.arm(x)) : velocity.at(x)));
+    speed = std::max(speed, norm(body.rotation ? wall.swirl(wall.arm(x)) : initial.velocityAt(x)));
   return body.rotation ? carried + speed : speed;
 }
 
@@ -131,7 +131,7 @@ constexpr double mostPushed = 0.5, latticeViscosity = 2.5;
 /// The longest step of a fluid that carries the pressure p [Pa] of heavier ones [s].
 double longestCarryingStep(const Case& c, const Material& m, double p) {
   const double inertia = m.density * c.spacing * c.spacing;
-  const double half = 0.5 * mostPushed * latticeViscosity * m.typicalViscosity() / p;
+  const double half = 0.5 * mostPushed * latticeViscosity * c.typicalViscosity(m) / p;
   return half + std::sqrt(half * half + mostPushed * inertia / p);
 }
 
@@ -145,7 +145,7 @@ void warnLightFluids(const Case& c, std::vector<std::string>& warnings) {
     if (p == 0) continue;
     const Material& m = materialOf(c, body);
     const double dt = c.time.step, inertia = m.density * c.spacing * c.spacing;  // times 1/dt like a viscosity
-    const double way = p * dt / (inertia / dt + latticeViscosity * m.typicalViscosity());
+    const double way = p * dt / (inertia / dt + latticeViscosity * c.typicalViscosity(m));
     if (way <= mostPushed * (1 + rounding)) continue;
     warnings.push_back(fmt::format(
         "fluid '{}' is too light and too thin for the heavier fluid on it: a pressure of {:.3g} Pa can move its "
@@ -255,7 +255,7 @@ std::vector<StabilityNumbers> stabilityNumbers(const Case& c) {
     const double diffusion = c.time.step / (m.density * c.spacing * c.spacing);
     const bool elastic = c.method.kind == MethodKind::MphI && m.bulkModulus > 0;
     const double compression = elastic ? c.time.step * m.bulkModulus / m.bulkViscosity : 0;
-    numbers.push_back({m.name, compression, m.typicalViscosity() * diffusion, m.bulkViscosity * diffusion});
+    numbers.push_back({m.name, compression, c.typicalViscosity(m) * diffusion, m.bulkViscosity * diffusion});
   }
   return numbers;
 }

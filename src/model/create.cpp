@@ -137,12 +137,14 @@ void append(const Case& c, const std::vector<Filled<D>>& filled, std::uint32_t f
     const auto count = static_cast<std::uint32_t>(f.points.size());
     const std::uint32_t begin = std::clamp(first, id, id + count) - id,
                         made = std::clamp(end, id, id + count) - id;
-    const InitialVelocity<D> velocity(c, *f.body);
+    const InitialState<D> initial(c, *f.body);
+    const bool warm = c.heat && f.body->kind == BodyKind::Fluid;
     const auto place = [&](std::size_t k) {
       const Vec<D>& x = f.points[begin + k];
       const std::size_t i = at + k;
       particles.position[i] = x;
-      particles.velocity[i] = velocity.at(x);
+      particles.velocity[i] = initial.velocityAt(x);
+      if (warm) particles.temperature[i] = initial.temperatureAt(x);
       particles.pressure[i] = 0;
       particles.numberDensity[i] = 0;
       particles.material[i] = static_cast<std::uint8_t>(f.body->material);
@@ -151,7 +153,8 @@ void append(const Case& c, const std::vector<Filled<D>>& filled, std::uint32_t f
     };
     const std::uint32_t size = made - begin;
     // Expressions throw, and are not for several threads at once.
-    const bool expressions = f.body->velocityExpression != decltype(f.body->velocityExpression){};
+    const bool expressions = f.body->velocityExpression != decltype(f.body->velocityExpression){} ||
+                             !f.body->temperatureExpression.empty();
     if (expressions)
       for (std::size_t k = 0; k < size; ++k) place(k);
     else
@@ -190,7 +193,9 @@ Particles<D> createParticles(const Case& c, std::vector<std::string>& notes,
              wallCount = static_cast<std::uint32_t>(total(walls));
   const std::uint32_t n = part.size(fluidCount), count = part.size(wallCount);
   Particles<D> particles;
-  particles.resize(n, count);
+  ParticleNumbers numbers{n, count};
+  numbers.temperatures = c.heat.has_value();
+  particles.resize(numbers);
   std::uint32_t id = 0, at = 0;
   append(c, fluid, part.begin(fluidCount), part.end(fluidCount), particles, id, at);
   append(c, walls, fluidCount + part.begin(wallCount), fluidCount + part.end(wallCount), particles, id, at);

@@ -20,7 +20,7 @@ MaterialTable MaterialTable::make(const Case& c) {
     t.bulkModulus[i] = m.bulkModulus;
     t.slipLength[i] = m.slipLength;
     for (int j = 0; j < t.count; ++j) {
-      const double a = m.typicalViscosity(), b = c.materials[j].typicalViscosity();
+      const double a = c.typicalViscosity(m), b = c.typicalViscosity(c.materials[static_cast<std::size_t>(j)]);
       t.pairViscosity[i][j] = a + b > 0 ? 2 * a * b / (a + b) : 0;
       t.pairMobility[i][j] = 4 / (m.density + c.materials[j].density);
     }

@@ -54,6 +54,13 @@ class Checker {
       fail({key.name}, e.what());
     }
   }
+  void operator()(const Key& key, double x, const std::string& text) const {
+    (*this)(key, text, keys::expression);
+    if (text.empty()) require(key.bound.holds(x), key, expectedNumber(key, false, true), x);
+  }
+  void operator()(const Key& key, const std::vector<double>& numbers) const {
+    for (const double x : numbers) require(key.bound.holds(x), key, expectedNumbers(key), x);
+  }
   void operator()(const Key& key, Vec<3> x, const std::array<std::string, 3>& texts) const {
     for (int k = 0; k < case_.dimensions; ++k) {
       const std::string& text = texts[static_cast<std::size_t>(k)];
@@ -166,10 +173,28 @@ void requireSound(const Checker& at, const Rheology& r) {
                     r.flowIndex));
 }
 
+/// Shift factors that are defined at all temperatures, and tables that are functions.
+void requireSound(const Checker& at, const ViscosityShift& s) {
+  if (s.least >= s.most) at.fail({"max_factor"}, fmt::format("expected more than min_factor = {}, found {}", s.least, s.most));
+  if (s.model == ShiftModel::Vft && s.divergence >= s.reference)
+    at.fail({"t0"}, fmt::format("expected less than reference_temperature = {} K, found {}", s.reference, s.divergence));
+  if (s.model != ShiftModel::Table) return;
+  const std::size_t rows = s.temperatures.size();
+  if (rows < 2 || rows > ViscosityShift::mostRows)
+    at.fail({"temperatures"}, fmt::format("expected 2 to {} numbers, found {}", ViscosityShift::mostRows, rows));
+  if (s.factors.size() != rows)
+    at.fail({"factors"}, fmt::format("expected as many numbers as temperatures, {}, found {}", rows, s.factors.size()));
+  for (std::size_t k = 1; k < rows; ++k)
+    if (!(s.temperatures[k - 1] < s.temperatures[k]))
+      at.fail({"temperatures"}, fmt::format("expected rising numbers, found {} after {}", s.temperatures[k], s.temperatures[k - 1]));
+}
+
 void requireSound(const Checker& at, const Material& m) {
   if (m.rheology && at.wholeCase().method.kind != MethodKind::MphI)
     at.fail({"rheology"}, fmt::format("only the method '{}' has fluids that are not Newtonian, found '{}'",
                                       nameOf(MethodKind::MphI), nameOf(at.wholeCase().method.kind)));
+  if (m.viscosityShift && !at.wholeCase().heat)
+    at.fail({"viscosity_shift"}, "there are no temperatures in a case without [heat]");
   if (m.rheology && m.dynamicViscosity != 0) at.fail({"dynamic_viscosity"}, viscosityBesideRheology);
 }
 
@@ -189,6 +214,10 @@ void requireSound(const Checker& at, const Body& b) {
     if (b.rotation) at.fail({"rotation"}, text);
     return;
   }
+  if (!b.temperatureExpression.empty())
+    at.fail({"temperature"}, fmt::format("only a body of type \"fluid\" can have an expression, found \"{}\"", b.temperatureExpression));
+  if (b.wallConductance > 0 && b.temperature == 0)
+    at.fail({"temperature"}, "missing; expected that of what is behind a wall with wall_conductance: a positive number [K]");
   for (const std::string& text : b.velocityExpression)
     if (!text.empty())
       at.fail({"velocity"}, fmt::format("only a body of type \"fluid\" can have expressions; expected an array of "
@@ -327,6 +356,8 @@ void requireMaterials(const Checker& at, const Case& c) {
 }
 
 void requireSound(const Checker& at, const Case& c) {
+  if (c.heat && c.method.kind != MethodKind::MphI)
+    at.fail({"heat"}, fmt::format("only the method '{}' has temperatures, found '{}'", nameOf(MethodKind::MphI), nameOf(c.method.kind)));
   if (std::ranges::none_of(c.bodies, [](const Body& b) { return b.kind == BodyKind::Fluid; }))
     at.fail({"body"}, "no fluid: expected at least one [[body]] with type = \"fluid\"");
   requireMaterials(at, c);

@@ -25,7 +25,7 @@ MphPairs<D> makeMphPairs(const Case& c) {
   pairs.restDensity = latticeNumberDensity(densityWeight, c.spacing);
   pairs.materials = MaterialTable::make(c);
   pairs.classes = ViscosityClasses::make(c);
-  if (c.hasRheology()) {
+  if (c.hasOwnViscosities()) {
     pairs.ownViscosities = true;
     for (auto& row : pairs.materials.pairViscosity) std::fill(std::begin(row), std::end(row), 1.0);
   }

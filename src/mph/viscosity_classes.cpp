@@ -7,18 +7,41 @@ namespace {
 
 /// For the constants of the preconditioner that are numbers per material: its degree was found to suit the fluid
 /// where it is thin, not where it is thick.
-double flowingViscosity(const Rheology& r) { return std::min(r.viscosity(0.1), r.viscosity(10)); }
+double flowingViscosity(const Material& m, double shift) {
+  return std::min(m.viscosity(0.1, shift), m.viscosity(10, shift));
+}
 
 struct Range {
   double least, most;  // [Pa s]
 };
 
+/// a_T between the lowest and the highest temperature that a case gives, and a little beyond; where formulas give
+/// them at all temperatures.
+Range shifts(const Case& c, const Material& m) {
+  if (!c.heat || !m.viscosityShift) return {1, 1};
+  const ShiftFactor factor = ShiftFactor::make(*m.viscosityShift);
+  double least = c.heat->ambient, most = least;
+  for (const Body& body : c.bodies) {
+    if (!body.temperatureExpression.empty()) return {m.viscosityShift->least, m.viscosityShift->most};
+    if (body.temperature == 0) continue;
+    least = std::min(least, body.temperature), most = std::max(most, body.temperature);
+  }
+  const double beyond = 5 + 0.1 * (most - least);  // [K]
+  Range range{factor(most), factor(most)};
+  for (int k = -32; k <= 32; ++k) {
+    const double a = factor(0.5 * (least + most) + k / 32.0 * (0.5 * (most - least) + beyond));
+    range.least = std::min(range.least, a), range.most = std::max(range.most, a);
+  }
+  return range;
+}
+
 /// Of shear rates from rest to a million per second, beyond which nothing flows that is computed here.
-Range viscosities(const Rheology& r) {
-  Range range{r.viscosity(0), r.viscosity(0)};
+Range viscosities(const Case& c, const Material& m) {
+  const Range shift = shifts(c, m);
+  Range range{m.viscosity(0, shift.least), m.viscosity(0, shift.most)};
   for (double rate = 1e-6; rate < 2e6; rate *= 10) {
-    range.least = std::min(range.least, r.viscosity(rate));
-    range.most = std::max(range.most, r.viscosity(rate));
+    range.least = std::min(range.least, m.viscosity(rate, shift.least));
+    range.most = std::max(range.most, m.viscosity(rate, shift.most));
   }
   return range;
 }
@@ -30,13 +53,13 @@ ViscosityClasses ViscosityClasses::make(const Case& c) {
   int shared = 0;  // by how many materials the other classes are
   for (const Material& m : c.materials) {
     classes.material[classes.count] = static_cast<std::uint8_t>(classes.count);
-    classes.viscosity[classes.count++] = m.rheology ? flowingViscosity(*m.rheology) : m.dynamicViscosity;
-    shared += m.rheology.has_value();
+    classes.viscosity[classes.count++] = flowingViscosity(m, c.typicalShift(m));
+    shared += m.hasOwnViscosities();
   }
   const int each = shared > 0 ? (most - classes.count) / shared : 0;
   for (std::size_t m = 0; m < c.materials.size(); ++m) {
-    if (!c.materials[m].rheology) continue;
-    const Range range = viscosities(*c.materials[m].rheology);
+    if (!c.materials[m].hasOwnViscosities()) continue;
+    const Range range = viscosities(c, c.materials[m]);
     const double width = std::max(std::log(range.most / range.least) / each, 0.1);
     classes.steps_[m] = {classes.count, each, range.least, 1 / width};
     for (int k = 0; k < each; ++k) {

@@ -18,6 +18,9 @@ std::string describeStage(const SolverSettings& stage, const SolveReport& report
 /// The diagnosis of a solve that did not converge; `failures`: of the stages before the last one.
 std::string describeFailure(const SolveReport& report, double tolerance, const std::string& failures);
 
+/// The same of a solve for temperatures.
+std::string describeHeatFailure(const SolveReport& report, const HeatSettings& settings);
+
 /// Where the right-hand side b (per own fluid particle) is not finite, at some process.
 template <int D>
 std::string describeNotFinite(const Processes& processes, const Particles<D>& particles,

@@ -66,6 +66,7 @@ void gatherParticles(const Communicator& processes, const HaloCounts& halo, cons
   // What the others' fields are gathered into: none, but all take part in the same ones.
   Particles<D> nothing;
   nothing.hasShearRates = own.hasShearRates;
+  nothing.hasTemperatures = own.hasTemperatures;
   Particles<D>& target = first ? whole : nothing;
   const auto gather = [&]<class T>(std::span<const T> part, T* to) {
     const std::vector<T> parts = processes.collect(part);

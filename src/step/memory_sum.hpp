@@ -66,6 +66,7 @@ std::uint64_t fieldBytes(const ParticleNumbers& n) {
   forEachSharedFieldOf(add(n.fluid + n.wall), none);
   forEachFluidFieldOf(add(n.fluid), none);
   add(n.shearRates ? n.fluid : 0)(none.shearRate);
+  add(n.temperatures ? n.fluid : 0)(none.temperature);
   add(n.fluid * n.modes)(none.modes.vectors);
   forEachWallFieldOf(add(n.surfaces), none);
   return sum;
@@ -93,7 +94,8 @@ void planState(const Case& c, const MemoryCounts& n, BackendKind backend, Memory
   numbers.wall = wall;
   if (numbers.surfaces > 0) numbers.surfaces = wall;
   numbers.modes = std::max(numbers.modes, modesOf(c));
-  numbers.shearRates = c.hasRheology();
+  numbers.shearRates = c.hasOwnViscosities();
+  numbers.temperatures = c.heat.has_value();
   sum.keep<std::byte>(fieldBytes<D>(numbers));
   sum.keep<Vec<D>>(n.wallsMove ? all : fluid);                             // positions of the end
   sum.keep<Vec<D>>(c.method.kind == MethodKind::MphI ? n.active : fluid);  // velocities

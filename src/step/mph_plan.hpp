@@ -2,6 +2,7 @@
 
 #include "memory_sum.hpp"
 #include "mph_solver.hpp"
+#include "treacle/mph/conduction.hpp"
 #include "treacle/mph/wall_surfaces.hpp"
 #include "treacle/precondition/bucket_cells.hpp"
 
@@ -19,13 +20,25 @@ inline std::uint64_t entriesIn(const MemoryCounts::Lists& lists, std::initialize
   return entries;
 }
 
+/// StepHeat.
+inline void planHeat(const Case& c, std::uint64_t fluid, MemorySum& sum) {
+  sum.keep<double>((c.heat->viscousHeating ? 11 : 10) * fluid);
+  sum.keep<HeatExchange>(fluid);
+  for (int k = 0; k < 4; ++k) sum.use<double>(StepPart::Solve, fluid);  // conjugate gradients
+  const bool surface = c.heat->transfer > 0 ||
+                       std::ranges::any_of(c.materials, [](const Material& m) { return m.emissivity > 0; });
+  if (!surface) return;
+  sum.keep<double>(fluid);
+  sum.keep<HeatExchange>(fluid);
+}
+
 /// What MphStep has besides lists and solver.
 template <int D>
 void planFields(const Case& c, const MemoryCounts& n, bool withGradient, MemorySum& sum) {
   const std::uint64_t fluid = n.particles.fluid, walls = n.active - fluid;
   if (n.particles.surfaces > 0) sum.keep<WallSurface<D>>(walls);
   if (c.method.pressureGradient != PressureGradient::Plain) sum.keep<SymmetricBlock<D>>(fluid);
-  if (c.hasRheology()) {
+  if (c.hasOwnViscosities()) {
     sum.keep<double>(5 * fluid);
     sum.keep<std::uint8_t>(n.active);
     sum.keep<Vec<D>>(n.active);
@@ -36,6 +49,7 @@ void planFields(const Case& c, const MemoryCounts& n, bool withGradient, MemoryS
   if (withGradient) sum.keep<Vec<D>>(fluid);
   sum.keep<double>(fluid + 2 * n.active);
   sum.keep<Vec<D>>(fluid);
+  if (c.heat) planHeat(c, fluid, sum);
   if (!c.output.balance) return;
   planLists(n.balanceLists, sum);
   sum.keep<double>(fluid * (c.repulsionRadius() > 0 ? 2 : 1) + 2 * walls);

@@ -1,6 +1,7 @@
 #include "failure.hpp"
 #include "mph_solver.hpp"
 #include "step_balance.hpp"
+#include "step_heat.hpp"
 #include "step_method.hpp"
 #include "step_rheology.hpp"
 #include "take_trial.hpp"
@@ -29,7 +30,8 @@ class MphStep final : public StepMethod<D, Backend> {
         pairs_(neighbourhood_.pairs()),
         wholeRows_(needsAssembled<Backend>(state.theCase.solver)),
         solver_(solveStages(state.theCase, state.context.communicator != nullptr)) {
-    if (state.theCase.hasRheology()) rheology_.emplace(state.theCase);
+    if (state.theCase.hasOwnViscosities()) rheology_.emplace(state.theCase);
+    if (state.theCase.heat) heat_.emplace(state.theCase, pairs_);
   }
 
   void sortParticles() override { neighbourhood_.sort(state_.context, state_.particles); }
@@ -109,6 +111,11 @@ class MphStep final : public StepMethod<D, Backend> {
         });
   }
 
+  /// Temperatures, which may fail before anything is accepted.
+  void correctVelocities() override {
+    if (heat_) heat_->solve(state_, pairs_);
+  }
+
   std::span<const Vec<D>> transportVelocities() override {
     return state_.velocity.span().first(pairs_.ownFluid());
   }
@@ -124,6 +131,7 @@ class MphStep final : public StepMethod<D, Backend> {
     bulkPressure<D>(state_.context, pairs_, divergence_, elastic_, state_.particles.pressure.span().first(active));
     if (rheology_) rheology_->accept(state_);
     if (state_.theCase.output.balance) lastBalance_ = balance_.make(state_, neighbourhood_, divergence_, elastic_);
+    if (heat_) acceptHeat();
     // The velocities of the start are given, no solution: nothing follows from the way to the first one.
     if (state_.step > 0)
       updateFlowMemory<D>(state_.context, state_.timeStep, state_.lastStep(),
@@ -144,12 +152,17 @@ class MphStep final : public StepMethod<D, Backend> {
   const MaterialTable& materials() const override { return pairs_.materials; }
   std::size_t bytes() const override {
     return neighbourhood_.bytes() + wallSurface_.bytes() + renormalisation_.bytes() + viscosityScale_.bytes() +
-           (rheology_ ? rheology_->bytes() : 0) + wallBlock_.bytes() + wallGradient_.bytes() +
+           (rheology_ ? rheology_->bytes() : 0) + (heat_ ? heat_->bytes() : 0) + wallBlock_.bytes() + wallGradient_.bytes() +
            wallDensity_.bytes() + elastic_.bytes() + divergence_.bytes() + rhs_.bytes() + found_.bytes() +
            solver_.bytes() + balance_.bytes();
   }
 
  private:
+  void acceptHeat() {
+    heat_->accept(state_);
+    if (lastBalance_) lastBalance_->heat = heat_->balance(std::pow(pairs_.spacing, D));
+  }
+
   /// All that the viscosity is in, on neighbours, densities and velocities that stay.
   void prepareViscous() {
     wallBlock_.resize(state_.context, state_.particles.fluidCount);
@@ -274,8 +287,9 @@ class MphStep final : public StepMethod<D, Backend> {
   Buffer<double, Backend> divergence_;   // C^T u per particle [1/s]
   Buffer<Vec<D>, Backend> rhs_;
   MphSolver<D, Backend> solver_;
-  std::optional<StepRheology<D, Backend>> rheology_;  // where some material has one
+  std::optional<StepRheology<D, Backend>> rheology_;  // where particles have their own viscosities
   Buffer<Vec<D>, Backend> found_;                     // velocities of the last solve, while the next is prepared
+  std::optional<StepHeat<D, Backend>> heat_;          // where the case has heat
   StepBalance<D, Backend> balance_;
   std::optional<Balance> lastBalance_;
 };

@@ -69,8 +69,10 @@ Particles<D> nearParticles(const NearBlocks<D>& near, const Particles<D>& all) {
   const std::uint32_t n = all.fluidCount;
   const Buffer<std::uint32_t> walls = selected(n, all.count, [&](std::uint32_t i) { return !near.isFar(all, i); });
   Particles<D> some;
-  some.resize(
-      {n, walls.size(), all.modeCount(), all.wallSurface.empty() ? 0 : walls.size(), 0, all.hasShearRates});
+  ParticleNumbers numbers = all.numbers();
+  numbers.wall = walls.size(), numbers.ghosts = 0;
+  if (numbers.surfaces > 0) numbers.surfaces = walls.size();
+  some.resize(numbers);
   some.copyNumbers(all);
   const auto copy = [](const auto& from, auto& to) { std::copy(from.begin(), from.end(), to.begin()); };
   forEachFluidFieldOf(copy, all, some);

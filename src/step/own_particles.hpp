@@ -47,6 +47,7 @@ std::uint32_t copyOwnParticles(FlowState<D, Backend>& state, const CellGrid<D>& 
   ParticleNumbers numbers{p.fluidCount, own.size() + far.count + beside.size()};
   numbers.ghosts = p.ghostCount;
   numbers.shearRates = p.hasShearRates;
+  numbers.temperatures = p.hasTemperatures;
   host.resize(numbers);
   const std::uint32_t begin = p.wallBegin();
   forEachSharedFieldOf(
@@ -59,6 +60,8 @@ std::uint32_t copyOwnParticles(FlowState<D, Backend>& state, const CellGrid<D>& 
       p, walls, far, host);
   if (p.hasShearRates)
     copyToHost(state.context, std::span<const double>(p.shearRate).first(p.fluidCount), host.shearRate.data());
+  if (p.hasTemperatures)
+    copyToHost(state.context, std::span<const double>(p.temperature).first(p.fluidCount), host.temperature.data());
   return static_cast<std::uint32_t>(own.size()) + far.count;
 }
 

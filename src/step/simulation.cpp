@@ -42,6 +42,15 @@ void setShearRates(bool wanted, Particles<D>& particles) {
   std::fill(particles.shearRate.begin(), particles.shearRate.end(), 0.0);
 }
 
+/// Temperatures are part of the state, not of its memory. Errors: InputError where they are missing.
+template <int D>
+void requireTemperatures(const Case& c, Particles<D>& particles) {
+  if (c.heat && !particles.hasTemperatures) throw InputError("the case has heat, but its state has no temperatures");
+  if (c.heat || !particles.hasTemperatures) return;
+  particles.hasTemperatures = false;
+  particles.temperature.resize(0);
+}
+
 /// Of the fluid [kg; per metre of depth in 2D].
 template <int D>
 double fluidMass(const Case& c, const Particles<D>& particles) {
@@ -89,10 +98,11 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     method = theCase.method.kind == MethodKind::Isph ? makeIsphStep(static_cast<Flow&>(*this))
                                                      : makeMphStep(static_cast<Flow&>(*this));
     distant.emplace(theCase, method->grid(), state, time, context.communicator);
+    requireTemperatures(theCase, state);
     this->shearRatesKnown = step > 0 && state.hasShearRates;
-    setShearRates(theCase.hasRheology(), state);
+    setShearRates(theCase.hasOwnViscosities(), state);
     toBackend(context, std::move(state), particles);
-    if (step == 0) forEachFluidFieldOf([&](auto& field) { clearValues(context, field.span()); }, particles);
+    if (step == 0) forEachFlowMemoryOf([&](auto& field) { clearValues(context, field.span()); }, particles);
     method->sortParticles();
     if (step == 0) {  // else the state has the densities of its last step
       method->findNeighbours();

@@ -2,6 +2,7 @@
 
 #include "treacle/core/vec.hpp"
 
+#include <optional>
 #include <vector>
 
 namespace treacle {
@@ -11,6 +12,14 @@ namespace treacle {
 struct WallLoad {
   Vec<3> force{};   // [N]
   Vec<3> torque{};  // about the wall's centre of rotation, else the origin [N m]
+};
+
+/// The heat of the fluid in one step: the energy gains dt times the other three.
+struct HeatBalance {
+  double energy = 0;   // sum of m c_p T, counted from 0 K, at the end of the step [J]
+  double heating = 0;  // by the viscosity [W]
+  double walls = 0;    // from walls [W]
+  double surface = 0;  // from the surroundings through free surfaces [W]
 };
 
 /// Where the energy of the fluid goes in one step of MPH-I, with the velocities at its end and the places at its
@@ -25,6 +34,7 @@ struct Balance {
   double wallPower = 0;         // what walls that move give to the fluid [W]
   std::vector<WallLoad> walls;  // of the wall bodies, in the order of the case
   double repulsionPower = 0;    // what the repulsion of close particles gives to the motion [W]
+  std::optional<HeatBalance> heat{};  // in cases with heat
 };
 
 }  // namespace treacle

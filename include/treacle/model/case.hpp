@@ -2,6 +2,7 @@
 
 #include "treacle/core/vec.hpp"
 #include "treacle/model/rheology.hpp"
+#include "treacle/model/viscosity_shift.hpp"
 
 #include <algorithm>
 #include <array>
@@ -26,9 +27,18 @@ struct Material {
   double bulkModulus = 0;       // kappa [Pa]
   double slipLength = 0;        // how far behind a wall its velocity, extrapolated, is the wall's [m]; 0: no slip
   std::optional<Rheology> rheology{};  // of a fluid that is not Newtonian; MPH-I only
+  // In cases with heat.
+  double specificHeat = 0;                           // c_p [J/(kg K)]
+  double conductivity = 0;                           // k [W/(m K)]
+  double emissivity = 0;                             // of the free surface [-]
+  std::optional<ViscosityShift> viscosityShift{};    // missing: the viscosity does not follow the temperature
 
-  /// mu, or that of the rheology at a shear rate of 1/s: for what needs one number that stands for all [Pa s].
-  double typicalViscosity() const { return rheology ? rheology->viscosity(1) : dynamicViscosity; }
+  /// mu at a shear rate [1/s], where a_T is `shift` [Pa s].
+  double viscosity(double rate, double shift) const {
+    return rheology ? rheology->viscosity(rate, shift) : shift * dynamicViscosity;
+  }
+  /// Whether its viscosity is not one number.
+  bool hasOwnViscosities() const { return rheology.has_value() || viscosityShift.has_value(); }
 
   bool operator==(const Material&) const = default;
 };
@@ -88,6 +98,11 @@ struct Body {
   std::optional<Rotation> rotation{};               // of a wall, on top of both
   std::array<std::string, 3> velocityExpression{};  // of a fluid, in place of a component of its velocity [m/s]
   std::string where{};                              // there are particles only where it is not zero
+  // In cases with heat. Of a fluid that at the start; of a wall that of its surface or, where it has a conductance,
+  // of what is behind it; 0: the wall is adiabatic [K].
+  double temperature = 0;
+  std::string temperatureExpression{};  // of a fluid, in place of its temperature [K]
+  double wallConductance = 0;           // of a wall, its conductivity over its thickness [W/(m2 K)]; 0: infinite
 
   bool operator==(const Body&) const = default;
 };
@@ -176,6 +191,17 @@ struct RheologySettings {
   double tolerance = 0.03;  // change of the viscosity, in mean over the dissipation, that no further solve follows
 
   bool operator==(const RheologySettings&) const = default;
+};
+
+/// Temperatures of the fluid (docs/heat.md).
+struct HeatSettings {
+  double ambient = 293.15;      // temperature around the fluid [K]
+  double transfer = 0;          // from free surfaces to there [W/(m2 K)]
+  bool viscousHeating = true;   // what the viscosity takes from the motion is heat
+  double tolerance = 1e-12;     // of the solve of a step: bound on |r|^2 / |b|^2
+  int maxIterations = 1000;
+
+  bool operator==(const HeatSettings&) const = default;
 };
 
 enum class KrylovKind { Cg, Cr };
@@ -274,6 +300,7 @@ struct OutputFields {
   bool velocity = true, pressure = true, numberDensity = true, nearestDistance = true, material = true,
        body = true, id = true;
   bool dynamicViscosity = true, shearRate = true;  // in cases where a material has a rheology
+  bool temperature = true;                         // in cases with heat
 
   bool operator==(const OutputFields&) const = default;
 };
@@ -317,6 +344,7 @@ struct Case {
   TimeSettings time;
   MethodSettings method;
   RheologySettings rheology;
+  std::optional<HeatSettings> heat{};  // missing: there are no temperatures; MPH-I only
   SolverSettings solver;
   OutputSettings output;
   WatchSettings watch;
@@ -338,10 +366,17 @@ struct Case {
     return method.kind == MethodKind::Isph ? 2 * smoothingLength()
                                            : std::max({viscosityRadius(), densityRadius(), 2 * pressureRadius()});
   }
-  /// Whether some material is a generalised Newtonian fluid: particles then have shear rates.
-  bool hasRheology() const {
-    return std::ranges::any_of(materials, [](const Material& m) { return m.rheology.has_value(); });
+  /// Whether particles have viscosities of their own, by their shear rates or temperatures: they then have the
+  /// former, too.
+  bool hasOwnViscosities() const {
+    return std::ranges::any_of(materials, [](const Material& m) { return m.hasOwnViscosities(); });
   }
+  /// The temperature that the first fluid of a material of the case starts with; where a formula says that, one that
+  /// the material has its constants at [K]. And a_T there.
+  double typicalTemperature(const Material& m) const;
+  double typicalShift(const Material& m) const;
+  /// mu there, of a rheology that at a shear rate of 1/s: for what needs one number that stands for all [Pa s].
+  double typicalViscosity(const Material& m) const { return m.viscosity(1, typicalShift(m)); }
   /// Steps to the end, where all have one length.
   std::int64_t steps() const { return std::llround(time.end / time.step); }
   /// Whether a run that has made so many steps, and is at time `now` [s], is at its end.

@@ -36,7 +36,8 @@ struct Key {
 
 /// What is expected of a key, e.g. "a positive number [s]", "a whole number of at least 1", "an array of 2 finite
 /// numbers [m]".
-std::string expectedNumber(const Key& key, bool orAuto = false);
+std::string expectedNumber(const Key& key, bool orAuto = false, bool orExpression = false);
+std::string expectedNumbers(const Key& key);
 std::string expectedInteger(const Key& key);
 std::string expectedVector(const Key& key, int dimensions, bool orExpressions = false);
 std::string expectedEntries(const Key& key);
@@ -69,15 +70,15 @@ SolverSettings defaultSolver(MethodKind method, PreconditionerKind preconditione
 /// - v(key, member) for numbers, words, flags, vectors, texts and the list of fields,
 /// - v(key, member, fits) for a word where not all fit,
 /// - v(key, text, keys::expression) for the text of an expression,
-/// - v(key, vector, texts) for a vector that may have expressions in place of numbers,
+/// - v(key, vector, texts) for a vector that may have expressions in place of numbers, v(key, number, text) likewise,
 /// - v(key, index, keys::material) for a material, which a file calls by its name,
 /// - v(key, number, flag, keys::orAuto) for a number that may be "auto", which the flag says,
 /// - v(key, struct) for a table in the table,
 /// - v(key, optional) for one that may be missing, as may an Oscillation, which then is Oscillation{},
 /// - v(key, vector of structs) for tables with names; the bound is that of their number.
-/// Which keys there are follows from dimensions and method of the case, from the shape of a body, from the model
-/// of a rheology, and from whether time steps are automatic. Vectors have as many components as the case has
-/// dimensions.
+/// Which keys there are follows from dimensions and method of the case, from whether it has heat, from type and
+/// shape of a body, from the model of a rheology or shift, and from whether time steps are automatic. Vectors have
+/// as many components as the case has dimensions.
 namespace keys {
 
 inline constexpr bool required = true, optional = false;
@@ -164,6 +165,27 @@ void visit(auto& v, Like<Rheology> auto& r, const Case&) {
   v({"max_viscosity", optional, "Pa s", notNegative}, r.mostViscosity);
 }
 
+void visit(auto& v, Like<ViscosityShift> auto& s, const Case&) {
+  v({"model", required}, s.model);
+  if (s.model == ShiftModel::Table) {
+    v({"temperatures", required, "K", positive}, s.temperatures);
+    v({"factors", required, "", positive}, s.factors);
+    return;
+  }
+  v({"reference_temperature", required, "K", positive}, s.reference);
+  if (s.model == ShiftModel::Arrhenius) v({"activation_energy", required, "J/mol", positive}, s.activationEnergy);
+  if (s.model == ShiftModel::Vft) {
+    v({"b", required, "K", positive}, s.slope);
+    v({"t0", required, "K", notNegative}, s.divergence);
+  }
+  if (s.model == ShiftModel::Wlf) {
+    v({"c1", required, "", positive}, s.c1);
+    v({"c2", required, "K", positive}, s.c2);
+  }
+  v({"min_factor", optional, "", positive}, s.least);
+  v({"max_factor", optional, "", positive}, s.most);
+}
+
 void visit(auto& v, Like<Material> auto& m, const Case& c) {
   v({"name", required}, m.name);
   v({"density", required, "kg/m3", positive}, m.density);
@@ -173,6 +195,11 @@ void visit(auto& v, Like<Material> auto& m, const Case& c) {
   v({"bulk_viscosity", required, "Pa s", notNegative}, m.bulkViscosity);
   v({"bulk_modulus", required, "Pa", notNegative}, m.bulkModulus);
   v({"slip_length", optional, "m", notNegative}, m.slipLength);
+  if (!c.heat) return;
+  v({"specific_heat", required, "J/(kg K)", positive}, m.specificHeat);
+  v({"conductivity", required, "W/(m K)", notNegative}, m.conductivity);
+  v({"emissivity", optional, "", {0, 1}}, m.emissivity);
+  v({"viscosity_shift"}, m.viscosityShift);
 }
 
 void visit(auto& v, Like<Oscillation> auto& o, const Case&) {
@@ -215,6 +242,11 @@ void visit(auto& v, Like<Body> auto& b, const Case& c) {
   v({"velocity", optional, "m/s"}, b.velocity, b.velocityExpression);
   v({"oscillation"}, b.oscillation);
   v({"rotation"}, b.rotation);
+  if (c.heat) {
+    const bool fluid = b.kind == BodyKind::Fluid;
+    v({"temperature", fluid, "K", fluid ? positive : notNegative}, b.temperature, b.temperatureExpression);
+    if (!fluid) v({"wall_conductance", optional, "W/(m2 K)", notNegative}, b.wallConductance);
+  }
   visit(v, b.shape, c);
 }
 
@@ -268,6 +300,14 @@ void visit(auto& v, Like<MethodSettings> auto& m, const Case& c) {
 void visit(auto& v, Like<RheologySettings> auto& r, const Case&) {
   v({"iterations", optional, "", {1, 100}}, r.iterations);
   v({"tolerance", optional, "", {0, 1}}, r.tolerance);
+}
+
+void visit(auto& v, Like<HeatSettings> auto& h, const Case&) {
+  v({"ambient_temperature", optional, "K", positive}, h.ambient);
+  v({"heat_transfer", optional, "W/(m2 K)", notNegative}, h.transfer);
+  v({"viscous_heating"}, h.viscousHeating);
+  v({"tolerance", optional, "", {0, 1, true}}, h.tolerance);
+  v({"max_iterations", optional, "", iterations}, h.maxIterations);
 }
 
 void visit(auto& v, Like<MultigridSettings> auto& m, const Case&) {
@@ -346,7 +386,10 @@ void visit(auto& v, Like<Case> auto& c, const Case&) {
   v({"body", required, "", {1, maxBodies}}, c.bodies);
   v({"time", required}, c.time);
   v({"method"}, c.method);
-  if (c.method.kind == MethodKind::MphI) v({"rheology"}, c.rheology);
+  if (c.method.kind == MethodKind::MphI) {
+    v({"rheology"}, c.rheology);
+    v({"heat"}, c.heat);
+  }
   v({"solver"}, c.solver);
   v({"output"}, c.output);
   v({"watch"}, c.watch);

@@ -50,6 +50,10 @@ inline constexpr Named<RheologyModel> rheology[] = {{"power-law", RheologyModel:
                                                     {"bingham", RheologyModel::Bingham},
                                                     {"herschel-bulkley", RheologyModel::HerschelBulkley},
                                                     {"casson", RheologyModel::Casson}};
+inline constexpr Named<ShiftModel> shift[] = {{"arrhenius", ShiftModel::Arrhenius},
+                                             {"vft", ShiftModel::Vft},
+                                             {"wlf", ShiftModel::Wlf},
+                                             {"table", ShiftModel::Table}};
 inline constexpr Named<KrylovKind> krylov[] = {{"cg", KrylovKind::Cg}, {"cr", KrylovKind::Cr}};
 inline constexpr Named<PreconditionerKind> preconditioner[] = {
     {"projected-multigrid", PreconditionerKind::ProjectedMultigrid},
@@ -103,6 +107,8 @@ template <>
 inline constexpr std::span<const Named<ViscousStep>> namesOf<ViscousStep>{names::viscous};
 template <>
 inline constexpr std::span<const Named<RheologyModel>> namesOf<RheologyModel>{names::rheology};
+template <>
+inline constexpr std::span<const Named<ShiftModel>> namesOf<ShiftModel>{names::shift};
 template <>
 inline constexpr std::span<const Named<KrylovKind>> namesOf<KrylovKind>{names::krylov};
 template <>
@@ -162,6 +168,7 @@ inline constexpr OutputFieldName outputFieldNames[] = {{"velocity", &OutputField
                                                        {"body", &OutputFields::body},
                                                        {"id", &OutputFields::id},
                                                        {"dynamic_viscosity", &OutputFields::dynamicViscosity},
-                                                       {"shear_rate", &OutputFields::shearRate}};
+                                                       {"shear_rate", &OutputFields::shearRate},
+                                                       {"temperature", &OutputFields::temperature}};
 
 }  // namespace treacle

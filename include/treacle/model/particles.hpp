@@ -11,11 +11,19 @@
 
 namespace treacle {
 
-/// The fields that walls do not have. Sets without shear rates have no field of them.
+/// What the fluid remembers of earlier steps; nothing before the first one. Sets without shear rates have no field
+/// of them.
 template <class F, class... Sets>
-void forEachFluidFieldOf(F&& f, Sets&... sets) {
+void forEachFlowMemoryOf(F&& f, Sets&... sets) {
   f(sets.acceleration...), f(sets.jerk...);
   if ((sets.hasShearRates && ...)) f(sets.shearRate...);
+}
+
+/// The fields that walls do not have. Likewise of temperatures.
+template <class F, class... Sets>
+void forEachFluidFieldOf(F&& f, Sets&... sets) {
+  forEachFlowMemoryOf(f, sets...);
+  if ((sets.hasTemperatures && ...)) f(sets.temperature...);
 }
 
 /// The fields that fluid and walls have.
@@ -45,7 +53,7 @@ void forEachFieldOf(F&& f, Sets&... sets) {
 struct ParticleNumbers {
   std::uint64_t fluid = 0, wall = 0, modes = 0, surfaces = 0;
   std::uint64_t ghosts = 0;  // fluid of other processes
-  bool shearRates = false;   // of the fluid
+  bool shearRates = false, temperatures = false;  // whether the fluid has some
 
   bool operator==(const ParticleNumbers&) const = default;
 };
@@ -82,6 +90,10 @@ struct Particles {
   Buffer<double, Backend> shearRate;
   bool hasShearRates = false;
 
+  // T of the fluid [K]; empty unless hasTemperatures, which it is to be where the case has heat.
+  Buffer<double, Backend> temperature;
+  bool hasTemperatures = false;
+
   // The memory of the solver, likewise.
   SolverModes<D, Backend> modes;
 
@@ -106,7 +118,7 @@ struct Particles {
   }
 
   ParticleNumbers numbers() const {
-    return {fluidCount, wallCount(), modeCount(), wallSurface.size(), ghostCount, hasShearRates};
+    return {fluidCount, wallCount(), modeCount(), wallSurface.size(), ghostCount, hasShearRates, hasTemperatures};
   }
 
   /// The content is undefined afterwards. Errors: std::bad_alloc.
@@ -127,6 +139,8 @@ struct Particles {
     };
     hasShearRates = numbers.shearRates;
     if (!hasShearRates) shearRate.resize(context, 0);
+    hasTemperatures = numbers.temperatures;
+    if (!hasTemperatures) temperature.resize(context, 0);
     forEachSharedFieldOf(resizeTo(count), *this);
     forEachFluidFieldOf(resizeTo(fluid), *this);
     modes.vectors.resize(context, fluid * numbers.modes);

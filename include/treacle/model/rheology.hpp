@@ -40,9 +40,10 @@ struct Rheology {
 
   /// mu(gamma) [Pa s], at a shear rate of at least 0 [1/s]. Yield stresses are regularised (T. C. Papanastasiou,
   /// J. Rheol. 31, 1987): tau_y / gamma is multiplied by 1 - exp(-m gamma), so that the fluid at rest has the
-  /// viscosity tau_y m besides that of its flow.
-  TREACLE_HD double viscosity(double rate) const {
-    const double mu = unbounded(rate);
+  /// viscosity tau_y m besides that of its flow. `shift`: a_T of the temperature (viscosity_shift.hpp); the bounds
+  /// hold at all temperatures.
+  TREACLE_HD double viscosity(double rate, double shift = 1) const {
+    const double mu = shift * unbounded(shift * rate);
     const double below = mostViscosity > 0 && !(mu < mostViscosity) ? mostViscosity : mu;
     return below > leastViscosity ? below : leastViscosity;
   }

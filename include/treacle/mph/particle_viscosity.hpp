@@ -12,14 +12,21 @@
 
 namespace treacle {
 
-/// The viscosities of particles from their shear rates, particle by particle; the shear rates are those of
-/// mph_balance.hpp. Spans are in the backend's memory.
+/// The viscosities of particles from their shear rates and temperatures, particle by particle; the shear rates are
+/// those of mph_balance.hpp. Spans are in the backend's memory.
 
 /// By material.
 struct RheologyTable {
   Rheology of[maxMaterials];
+  ShiftFactor shift[maxMaterials];
+  std::span<const double> temperature{};  // per particle [K]; empty: no viscosity follows it
 
   static RheologyTable make(const Case& c);
+
+  /// Of a particle i of material m at a shear rate of gamma [1/s], [Pa s].
+  TREACLE_HD double viscosity(std::size_t i, int m, double rate) const {
+    return of[m].viscosity(rate, temperature.empty() ? 1 : shift[m](temperature[i]));
+  }
 };
 
 /// Sets mu_i, and s_i mu_i, what MphPairs take as scale.
@@ -33,7 +40,7 @@ struct ViscosityTerms {
 
   TREACLE_HD void set(std::size_t i) const {
     // None at all would look like a wall.
-    viscosity[i] = std::fmax(table.of[material[i]].viscosity(rate[i]), 1e-30);
+    viscosity[i] = std::fmax(table.viscosity(i, material[i], rate[i]), 1e-30);
     scaled[i] = viscosity[i] * (1 + correction * (share[i] - 1));
   }
 };
@@ -68,9 +75,8 @@ struct RateTerms {
   std::span<double> next;               // may be `last`
 
   TREACLE_HD void add(std::size_t i, double* sums) const {
-    const Rheology& rheology = table.of[material[i]];
-    next[i] = rheology.nextRate(last[i], found[i]);
-    const double mu = rheology.viscosity(next[i]), square = found[i] * found[i];
+    next[i] = table.of[material[i]].nextRate(last[i], found[i]);
+    const double mu = table.viscosity(i, material[i], next[i]), square = found[i] * found[i];
     sums[0] += std::fabs(mu - viscosity[i]) * square;
     sums[1] += mu * square;
   }
