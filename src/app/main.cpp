@@ -27,7 +27,10 @@ constexpr Named<BackendChoice> backendNames[] = {
 constexpr Named<PictureField> fieldNames[] = {{"speed", PictureField::Speed},
                                               {"pressure", PictureField::Pressure},
                                               {"number_density", PictureField::NumberDensity},
-                                              {"nearest_distance", PictureField::NearestDistance}};
+                                              {"nearest_distance", PictureField::NearestDistance},
+                                              {"temperature", PictureField::Temperature},
+                                              {"dynamic_viscosity", PictureField::DynamicViscosity},
+                                              {"shear_rate", PictureField::ShearRate}};
 
 template <class E>
 std::string listOf(std::span<const Named<E>> words) {

@@ -25,6 +25,13 @@ FieldValues fieldValues(const Frame& fluid, PictureField field) {
   if (field == PictureField::NumberDensity) return {"number density", "", "number_density", fluid.numberDensity};
   if (field == PictureField::NearestDistance)
     return {"nearest distance / spacing", "", "nearest_distance", fluid.nearestDistance};
+  if (field == PictureField::Temperature) return {"temperature", "K", "temperature", fluid.temperature};
+  if (field == PictureField::ShearRate) return {"shear rate", "1/s", "shear_rate", fluid.shearRate, true};
+  if (field == PictureField::DynamicViscosity) {
+    FieldValues viscosity{"log10 of viscosity / Pa s", "", "dynamic_viscosity", {}};
+    for (const double mu : fluid.dynamicViscosity) viscosity.values.push_back(std::log10(mu));
+    return viscosity;
+  }
   FieldValues speed{"speed", "m/s", "velocity", {}, true};
   for (const Vec<3>& u : fluid.velocity) speed.values.push_back(norm(u));
   return speed;

@@ -12,7 +12,10 @@ namespace treacle {
 /// The method, on which the keys of other tables depend, is read before them; whether there is heat, likewise.
 void TableReader::prepare(Case& c) {
   (*this)({"method"}, c.method);
-  if (c.method.kind == MethodKind::MphI && section_.table().contains("heat")) c.heat.emplace();
+  if (section_.table().contains("heat")) {
+    if (c.method.kind != MethodKind::MphI) throw section_.error("heat", heatOfMphI);
+    c.heat.emplace();
+  }
   c.solver = defaultSolver(c.method.kind);
 }
 

@@ -357,7 +357,7 @@ void requireMaterials(const Checker& at, const Case& c) {
 
 void requireSound(const Checker& at, const Case& c) {
   if (c.heat && c.method.kind != MethodKind::MphI)
-    at.fail({"heat"}, fmt::format("only the method '{}' has temperatures, found '{}'", nameOf(MethodKind::MphI), nameOf(c.method.kind)));
+    at.fail({"heat"}, heatOfMphI);
   if (std::ranges::none_of(c.bodies, [](const Body& b) { return b.kind == BodyKind::Fluid; }))
     at.fail({"body"}, "no fluid: expected at least one [[body]] with type = \"fluid\"");
   requireMaterials(at, c);

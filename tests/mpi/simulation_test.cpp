@@ -57,6 +57,14 @@ TEST(SharedSimulation, FluidWithARheology) {
   compare<2>({"grease-dam-break-2d.toml", 5, {"resolution=0.5", "solver.tolerance=1e-18", "solver.deflation=0"}});
 }
 
+/// Temperatures from plates, from what the viscosity takes, and of a gob that a wall and its surroundings cool.
+TEST(SharedSimulation, FluidWithHeat) {
+  compare<2>({"../tests/validation/cases/heated-couette.toml",
+              10,
+              {"solver.tolerance=1e-18", "solver.deflation=0", "heat.tolerance=1e-20"}});
+  compare<2>({"glass-gob-2d.toml", 5, {"solver.tolerance=1e-18", "solver.deflation=0", "heat.tolerance=1e-20"}});
+}
+
 TEST(SharedSimulation, AutomaticSteps) {
   compare<2>({"dam-break-2d.toml", 20, {"time.step=auto", "solver.tolerance=1e-18"}});
 }

@@ -13,7 +13,8 @@
 namespace treacle {
 
 /// The field that colours the fluid.
-enum class PictureField { Speed, Pressure, NumberDensity, NearestDistance };
+/// The viscosity is shown by its decimal logarithm.
+enum class PictureField { Speed, Pressure, NumberDensity, NearestDistance, Temperature, DynamicViscosity, ShearRate };
 
 struct PictureOptions {
   PictureField field = PictureField::Speed;

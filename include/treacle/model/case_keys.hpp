@@ -58,6 +58,9 @@ std::vector<std::string_view> wordsThat(Fits&& fits) {
 inline constexpr const char* viscosityBesideRheology =
     "the viscosity is that of the rheology; expected one of them";
 
+/// What is said of a case of another method with heat.
+inline constexpr const char* heatOfMphI = "only the method 'mph-i' has temperatures, found 'isph'";
+
 /// The method of a case that says no more than its scheme.
 MethodSettings defaultMethod(SchemeKind scheme);
 

@@ -30,7 +30,7 @@ struct ViscosityShift {
   double c1 = 0;                // [-]
   double c2 = 0;                // [K]
   double least = 1e-6, most = 1e6;
-  std::vector<double> temperatures, factors;  // [K], rising, and [-]
+  std::vector<double> temperatures{}, factors{};  // [K], rising, and [-]
 
   bool operator==(const ViscosityShift&) const = default;
 };

@@ -12,7 +12,7 @@
 namespace treacle::test {
 namespace {
 
-/// Two materials with rheologies and a Newtonian one.
+/// Two materials with rheologies, one of which follows the temperature, and a Newtonian one that does.
 Case threeFluids() {
   Case c = sceneCase(2);
   c.materials.push_back({"water", 1000, 1e-3, 1, 1});
@@ -20,13 +20,18 @@ Case threeFluids() {
       Rheology{.model = RheologyModel::PowerLaw, .consistency = 3, .flowIndex = 2, .leastViscosity = 1e-2};
   c.materials[1].rheology =
       Rheology{.model = RheologyModel::Casson, .yieldStress = 5, .plasticViscosity = 0.1, .regularisation = 100};
+  c.heat.emplace();
+  c.materials[0].viscosityShift =
+      ViscosityShift{.model = ShiftModel::Wlf, .reference = 350, .c1 = 10, .c2 = 60};
+  c.materials[2].viscosityShift =
+      ViscosityShift{.model = ShiftModel::Table, .temperatures = {300, 320, 390}, .factors = {10, 1, 0.1}};
   return c;
 }
 
 /// What the loops read and write; the first particles are fluid.
 struct Fields {
   std::vector<std::uint8_t> material, kind;
-  std::vector<double> rate, found, share, viscosity, scaled;
+  std::vector<double> rate, found, share, viscosity, scaled, temperature;
 
   Fields(std::size_t fluid, std::size_t walls) : kind(fluid + walls), viscosity(fluid), scaled(fluid) {
     std::mt19937 random(static_cast<unsigned>(fluid));
@@ -36,6 +41,7 @@ struct Fields {
       rate.push_back(i % 7 == 0 ? 0 : std::pow(10, 8 * unit(random) - 4));
       found.push_back(std::pow(10, 8 * unit(random) - 4));
       share.push_back(1 + unit(random));
+      temperature.push_back(280 + 120 * unit(random));
     }
   }
 };
@@ -50,7 +56,6 @@ void expectClose(const std::vector<double>& expected, Context<Cuda>& context, co
 TEST(ParticleViscosityTwin, EqualsTheCpu) {
   TREACLE_SKIP_WITHOUT_GPU();
   const Case c = threeFluids();
-  const RheologyTable table = RheologyTable::make(c);
   const auto classes = ViscosityClasses::make(c);
   for (const std::size_t fluid : {0u, 1u, 31u, 33u, 20011u}) {
     SCOPED_TRACE(fluid);
@@ -60,12 +65,15 @@ TEST(ParticleViscosityTwin, EqualsTheCpu) {
     const auto material = copyToDevice<std::uint8_t>(cuda, f.material);
     auto rate = copyToDevice<double>(cuda, f.rate);
     const auto found = copyToDevice<double>(cuda, f.found), share = copyToDevice<double>(cuda, f.share);
+    const auto temperature = copyToDevice<double>(cuda, f.temperature);
+    RheologyTable table = RheologyTable::make(c), onDevice = table;
+    table.temperature = f.temperature, onDevice.temperature = temperature.span();
     Buffer<double, Cuda> viscosity(cuda, fluid), scaled(cuda, fluid);
     Buffer<std::uint8_t, Cuda> kind(cuda, f.kind.size());
 
     setViscosities(cpu, {table, 0.5, f.material, f.rate, f.share, f.viscosity, f.scaled});
     setViscosities(cuda,
-                   {table, 0.5, material.span(), rate.span(), share.span(), viscosity.span(), scaled.span()});
+                   {onDevice, 0.5, material.span(), rate.span(), share.span(), viscosity.span(), scaled.span()});
     expectClose(f.viscosity, cuda, viscosity);
     expectClose(f.scaled, cuda, scaled);
 
@@ -79,7 +87,7 @@ TEST(ParticleViscosityTwin, EqualsTheCpu) {
 
     const double expected = nextRates(cpu, {table, f.material, f.rate, f.found, f.viscosity, f.rate});
     const double change =
-        nextRates(cuda, {table, material.span(), rate.span(), found.span(), viscosity.span(), rate.span()});
+        nextRates(cuda, {onDevice, material.span(), rate.span(), found.span(), viscosity.span(), rate.span()});
     EXPECT_NEAR(change, expected, operatorTolerance * expected);
     expectClose(f.rate, cuda, rate);
   }

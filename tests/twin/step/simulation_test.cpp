@@ -159,6 +159,55 @@ TEST(SimulationTwin, StepsLikeTheCpuWithARheology) {
     }
 }
 
+/// Two fluids with heat, one's viscosity following it, on a floor that they cool at, in warm surroundings.
+template <int D>
+void compareHeat(Precision precision) {
+  SolverSettings settings;
+  settings.precision = precision;
+  Case c = stepCase(D, settings, SchemeKind::Accurate);
+  c.solver.tolerance = tightTolerance;
+  c.output.balance = true;
+  c.heat = HeatSettings{.ambient = 500, .transfer = 30, .tolerance = 1e-24};
+  for (Material& m : c.materials) m.specificHeat = 2, m.conductivity = 0.7, m.emissivity = 0.9;
+  c.materials[0].viscosityShift =
+      ViscosityShift{.model = ShiftModel::Arrhenius, .reference = 400, .activationEnergy = 3e4};
+  c.bodies.resize(1);
+  c.bodies[0].kind = BodyKind::Wall;
+  c.bodies[0].temperature = 400;
+  const auto start = [&] {
+    Particles<D> p = bodyOnFloor<D>(c, 0.02);
+    p.hasTemperatures = true;
+    p.temperature.resize(p.fluidCount);
+    for (std::uint32_t i = 0; i < p.fluidCount; ++i) p.temperature[i] = 400 + 5e3 * p.position[i][0];
+    return p;
+  };
+  Simulation<D> cpu(c, start());
+  Simulation<D, Cuda> cuda(c, start());
+  for (int step = 0; step < 5; ++step) {
+    const StepReport a = cpu.advance(), b = cuda.advance();
+    EXPECT_NEAR(b.diagnostics.kineticEnergy, a.diagnostics.kineticEnergy, agreement * a.diagnostics.kineticEnergy);
+    const HeatBalance &x = *a.balance->heat, &y = *b.balance->heat;
+    EXPECT_NEAR(y.energy, x.energy, 1e-10 * x.energy);
+    EXPECT_NEAR(y.heating, x.heating, 1e-7 * x.heating);
+    EXPECT_NEAR(y.surface, x.surface, 1e-7 * std::abs(x.surface));
+  }
+  Particles<D> expected = stateOf(cpu), found;
+  cuda.copyParticles(found);
+  EXPECT_LE(farthest(expected, found), agreement * c.spacing);
+  std::vector<double> T(expected.fluidCount);
+  for (std::uint32_t i = 0; i < expected.fluidCount; ++i) T[expected.id[i]] = expected.temperature[i];
+  ASSERT_TRUE(found.hasTemperatures);
+  for (std::uint32_t i = 0; i < found.fluidCount; ++i) ASSERT_NEAR(found.temperature[i], T[found.id[i]], 1e-7);
+}
+
+TEST(SimulationTwin, StepsLikeTheCpuWithHeat) {
+  TREACLE_SKIP_WITHOUT_GPU();
+  for (const Precision precision : {Precision::Mixed, Precision::Double}) {
+    compareHeat<2>(precision);
+    compareHeat<3>(precision);
+  }
+}
+
 TEST(SimulationTwin, StepsLikeTheCpuWhereAClusterIsTorn) {
   TREACLE_SKIP_WITHOUT_GPU();
   const auto checkSteps = [](const SolverSettings& settings) {

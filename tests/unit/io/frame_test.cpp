@@ -14,7 +14,7 @@ namespace {
 template <int D>
 Particles<D> shuffledParticles(std::uint32_t fluid, std::uint32_t walls) {
   Particles<D> particles;
-  particles.resize({fluid, walls, 0, 0, 0, true});
+  particles.resize({fluid, walls, 0, 0, 0, true, true});
   std::iota(particles.id.begin(), particles.id.end(), 0u);
   std::mt19937 generator(7);
   std::shuffle(particles.id.begin(), particles.id.begin() + fluid, generator);
@@ -23,7 +23,7 @@ Particles<D> shuffledParticles(std::uint32_t fluid, std::uint32_t walls) {
     const double id = particles.id[i];
     for (int k = 0; k < D; ++k) particles.position[i][k] = id + 0.1 * k, particles.velocity[i][k] = -id - 0.1 * k;
     particles.pressure[i] = 2 * id;
-    if (i < fluid) particles.shearRate[i] = 4 * id;
+    if (i < fluid) particles.shearRate[i] = 4 * id, particles.temperature[i] = 300 + id;
     particles.numberDensity[i] = 3 * id;
     particles.material[i] = static_cast<std::uint8_t>(particles.id[i] % 200);
     particles.body[i] = static_cast<std::uint8_t>(particles.id[i] % 255);
@@ -48,6 +48,7 @@ void expectSortedCopy(std::uint32_t begin, std::uint32_t end) {
     EXPECT_EQ(frame.numberDensity[i], 3 * id);
     if (end <= 1000) {
       EXPECT_EQ(frame.shearRate[i], 4 * id);
+      EXPECT_EQ(frame.temperature[i], 300 + id);
     }
     EXPECT_EQ(frame.material[i], static_cast<std::int32_t>((begin + i) % 200));
     EXPECT_EQ(frame.body[i], static_cast<std::int32_t>((begin + i) % 255));
@@ -62,6 +63,10 @@ TEST(Frame, HasViscositiesOfShearRates) {
       Rheology{.model = RheologyModel::Bingham, .yieldStress = 8, .plasticViscosity = 3, .regularisation = 1e3};
   addViscosities(materials, frame);
   EXPECT_EQ(frame.dynamicViscosity, (std::vector<double>{7, 7, 3 + 8 / 8.0, 7, 7}));
+  materials[3].viscosityShift =
+      ViscosityShift{.model = ShiftModel::Table, .temperatures = {302, 304}, .factors = {4, 1}};
+  addViscosities(materials, frame);
+  EXPECT_NEAR(frame.dynamicViscosity[3], 7 * 2, 1e-12);  // at 303 K
   Frame newtonian;
   newtonian.material = {0};
   addViscosities(materials, newtonian);

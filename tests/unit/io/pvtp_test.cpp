@@ -29,6 +29,7 @@ struct Pieces {
     whole.time = 0.125;
     for (int k = 0; rheology && k < 30; ++k) {
       whole.shearRate.push_back(k);
+      whole.temperature.push_back(300 + k);
       whole.dynamicViscosity.push_back(2.0 / (1 + k));
     }
     write(0, part(0, 10)), write(1, part(10, 11)), write(2, part(11, 30));
@@ -95,10 +96,11 @@ TEST(Pvtp, IsWhatVtkPrescribes) {
 )");
 }
 
-TEST(Pvtp, HasTheFieldsOfARheology) {
+TEST(Pvtp, HasTheFieldsOfARheologyAndOfHeat) {
   const Pieces pieces(true);
   const Frame read = readFrame(pieces.index);
   EXPECT_EQ(read.shearRate, pieces.whole.shearRate);
+  EXPECT_EQ(read.temperature, pieces.whole.temperature);
   EXPECT_EQ(read.dynamicViscosity, pieces.whole.dynamicViscosity);
 }
 

@@ -1,0 +1,134 @@
+#include "treacle/core/error.hpp"
+#include "treacle/io/case_reader.hpp"
+#include "treacle/model/case_error.hpp"
+#include "treacle/model/checks.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "unit/app/command.hpp"
+
+namespace treacle::test {
+namespace {
+
+using testing::EndsWith;
+using testing::HasSubstr;
+
+/// The small case with heat.
+const std::string warmCase = "heat = { heat_transfer = 5 }\n" +
+                             replaced(replaced(replaced(smallCase, "bulk_modulus = 1e6",
+                                                        "bulk_modulus = 1e6\nspecific_heat = 2000\nconductivity = 0.3"),
+                                               "max = [6e-3, 6e-3]", "max = [6e-3, 6e-3]\ntemperature = 310"),
+                                      "max = [12e-3, 0]", "max = [12e-3, 0]\ntemperature = 350\nwall_conductance = 100");
+
+Case caseWith(const std::vector<std::string>& overrides) {
+  Workshop shop;
+  shop.put("case.toml", warmCase);
+  return readCase(shop / "case.toml", overrides);
+}
+
+TEST(HeatCase, IsReadAndWritten) {
+  Workshop shop;
+  const std::string shift = "syrup.viscosity_shift=";
+  for (const std::vector<std::string>& overrides : std::vector<std::vector<std::string>>{
+           {},
+           {"heat.ambient_temperature=280", "heat.viscous_heating=false", "heat.tolerance=1e-9"},
+           {"column.temperature='300+1e3*x'", "syrup.emissivity=0.9", "floor.temperature=0",
+            "floor.wall_conductance=0"},
+           {shift + "{model='arrhenius', reference_temperature=300, activation_energy=5e4}"},
+           {shift + "{model='vft', reference_temperature=300, b=500, t0=100, max_factor=1e3}"},
+           {shift + "{model='wlf', reference_temperature=300, c1=17, c2=50}"},
+           {shift + "{model='table', temperatures=[300, 310, 350], factors=[2, 1, 0.1]}"}}) {
+    const Case c = caseWith(overrides);
+    shop.put("written.toml", caseText(c));
+    EXPECT_EQ(readCase(shop / "written.toml"), c) << caseText(c);
+  }
+  const Case c = caseWith({});
+  EXPECT_EQ(c.heat->transfer, 5);
+  EXPECT_EQ(c.heat->ambient, 293.15);
+  EXPECT_EQ(c.bodies[0].temperature, 310);
+  EXPECT_EQ(c.bodies[1].wallConductance, 100);
+  EXPECT_EQ(c.materials[0].specificHeat, 2000);
+}
+
+struct Bad {
+  const char* override;
+  const char* message;
+};
+const Bad mistakes[] = {
+    {"syrup.specific_heat=0", "specific_heat in [[material]] 'syrup': expected a positive number [J/(kg K)], found 0"},
+    {"syrup.emissivity=2", "emissivity in [[material]] 'syrup': expected a number from 0 to 1, found 2"},
+    {"column.temperature=-3",
+     "temperature in [[body]] 'column' (box): expected a positive number [K] or an expression, found -3"},
+    {"column.wall_conductance=3", "unknown key 'wall_conductance' in [[body]] 'column' (box)"},
+    {"floor.temperature='x'",
+     "temperature in [[body]] 'floor' (box): only a body of type \"fluid\" can have an expression, found \"x\""},
+    {"floor.temperature=0",
+     "temperature in [[body]] 'floor' (box): missing; expected that of what is behind a wall with wall_conductance: a "
+     "positive number [K]"},
+    {"heat.max_iterations=0", "max_iterations in [heat]: expected a whole number from 1 to 1000000, found 0"},
+    {"syrup.viscosity_shift={model='ideal'}",
+     "model in the viscosity_shift of [[material]] 'syrup': expected 'arrhenius', 'vft', 'wlf' or 'table', found "
+     "'ideal'"},
+    {"syrup.viscosity_shift={model='wlf', reference_temperature=300, c1=17}",
+     "c2 in the viscosity_shift of [[material]] 'syrup' (wlf): missing; expected a positive number [K]"},
+    {"syrup.viscosity_shift={model='vft', reference_temperature=300, b=500, t0=400}",
+     "t0 in the viscosity_shift of [[material]] 'syrup' (vft): expected less than reference_temperature = 300 K, found "
+     "400"},
+    {"syrup.viscosity_shift={model='table', temperatures=[300, 290], factors=[2, 1]}",
+     "temperatures in the viscosity_shift of [[material]] 'syrup' (table): expected rising numbers, found 290 after 300"},
+    {"syrup.viscosity_shift={model='table', temperatures=[300, 310], factors=[2]}",
+     "factors in the viscosity_shift of [[material]] 'syrup' (table): expected as many numbers as temperatures, 2, found 1"},
+    {"syrup.viscosity_shift={model='table', temperatures=[300], factors=[2]}",
+     "temperatures in the viscosity_shift of [[material]] 'syrup' (table): expected 2 to 16 numbers, found 1"},
+    {"syrup.viscosity_shift={model='table', temperatures=300, factors=[2]}",
+     "temperatures in the viscosity_shift of [[material]] 'syrup' (table): expected an array of positive numbers "
+     "[K], found 300"},
+};
+
+TEST(HeatCase, MistakesSayWhereAndWhatIsExpected) {
+  for (const Bad& bad : mistakes) {
+    const std::string message = messageOf<InputError>([&] { caseWith({bad.override}); });
+    EXPECT_THAT(message, HasSubstr(bad.message)) << bad.override;
+  }
+}
+
+TEST(HeatCase, KeysOfHeatBelongToCasesWithIt) {
+  Workshop shop;
+  shop.put("case.toml", replaced(warmCase, "heat = { heat_transfer = 5 }\n", ""));
+  EXPECT_THAT(messageOf<InputError>([&] { readCase(shop / "case.toml"); }),
+              HasSubstr("in [[material]] 'syrup': it belongs to cases with [heat]"));
+  shop.put("missing.toml", replaced(warmCase, "temperature = 310", ""));
+  EXPECT_THAT(messageOf<InputError>([&] { readCase(shop / "missing.toml"); }),
+              EndsWith("temperature in [[body]] 'column' (box): missing; expected a positive number [K] or an "
+                       "expression"));
+  shop.put("isph.toml", "heat = {}\n" + smallIsphCase);
+  EXPECT_THAT(messageOf<InputError>([&] { readCase(shop / "isph.toml"); }), HasSubstr("only the method 'mph-i' has temperatures, found 'isph'"));
+  Case c = caseWith({});
+  c.method.kind = MethodKind::Isph;
+  EXPECT_THROW(requireValid(c), CaseError);
+}
+
+TEST(HeatCase, RunsShowTemperaturesAndContinue) {
+  Workshop shop;
+  shop.put("warm.toml", warmCase);
+  shop.put("cold.toml", smallCase);
+  const std::string balance = " --set output.balance=true --quiet";
+  EXPECT_EQ(shop.call("run warm.toml" + balance).exitCode, 0);
+  EXPECT_EQ(shop.call("run cold.toml" + balance).exitCode, 0);
+  EXPECT_NE(shop.content("warm-run/frames/fluid_000001.vtp").find("Name=\"temperature\""), std::string::npos);
+  EXPECT_EQ(shop.content("cold-run/frames/fluid_000001.vtp").find("Name=\"temperature\""), std::string::npos);
+  EXPECT_NE(shop.content("warm-run/balance.csv").find(",heat_energy,viscous_heating,heat_from_walls"),
+            std::string::npos);
+  EXPECT_EQ(shop.content("cold-run/balance.csv").find("heat"), std::string::npos);
+  EXPECT_EQ(shop.call("plot warm-run --field temperature").exitCode, 0);
+  EXPECT_EQ(shop.call("plot cold-run --field temperature").exitCode, 2);
+  EXPECT_EQ(shop.call("run warm.toml --quiet --force --end-time 3e-3 --resume warm-run/checkpoint.h5 -o on").exitCode,
+            0);
+  const auto refused = shop.call("run warm.toml --quiet --end-time 3e-3 --resume cold-run/checkpoint.h5 -o off");
+  EXPECT_EQ(refused.exitCode, 2);
+  EXPECT_THAT(refused.err, HasSubstr("a state without temperatures, but the case has heat"));
+}
+
+}  // namespace
+}  // namespace treacle::test

@@ -1,0 +1,228 @@
+#include "treacle/mph/conduction.hpp"
+
+#include "support/oracle.hpp"
+#include "support/tolerances.hpp"
+#include "treacle/mph/free_surface.hpp"
+#include "treacle/mph/viscosity_scale.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+#include <random>
+
+namespace treacle::test {
+namespace {
+
+/// The body on a floor, of two materials, and what conducts: fluid and floor.
+template <int D>
+struct WarmScene {
+  Scene<D> s;
+  std::vector<WallHeat> walls;
+  std::vector<double> scale;
+  Conduction terms;
+
+  explicit WarmScene(SchemeKind scheme, const WallHeat& wall = {400, 2e-4})
+      : s(makeScene<D>({.scheme = scheme})), walls{wall}, scale(s.n()) {
+    s.c.materials[0].conductivity = 2, s.c.materials[1].conductivity = 0.5;
+    terms = {HeatTable::make(s.c), walls.data(), s.particles.body.data(), nullptr};
+    conductionScale<D>(s.context, s.pairs(), terms, scale);
+    terms.scale = scale.data();
+  }
+
+  std::vector<double> conducted(std::span<const double> T, double extra = 0) {
+    std::vector<double> y(s.n()), e(s.n(), extra);
+    conduct<D>(s.context, s.pairs(), terms, e, T, y);
+    return y;
+  }
+  std::vector<double> random(unsigned seed) const {
+    std::mt19937 generator(seed);
+    std::uniform_real_distribution<double> unit(0, 1);
+    std::vector<double> values(s.n());
+    for (double& x : values) x = unit(generator);
+    return values;
+  }
+};
+
+/// From all pairs, with the viscous block of the oracle: kappa = k s c r^2 / (D + 2).
+template <int D>
+void checkAgainstAllPairs(SchemeKind scheme) {
+  WarmScene<D> w(scheme);
+  const Oracle<D> oracle(w.s);
+  const std::uint32_t n = w.s.n();
+  const auto radius = [&](std::uint32_t i, std::uint32_t j) { return norm(oracle.difference(i, j)); };
+  const auto block = [&](double r) { return r < oracle.hv ? oracle.viscousBlock(r) : 0; };
+  std::vector<double> scale(n);
+  for (std::uint32_t i = 0; i < n; ++i) {
+    double moment = 0;
+    for (std::uint32_t j = 0; j < oracle.count(); ++j)
+      if (j != i) moment += block(radius(i, j)) * std::pow(radius(i, j), 4);
+    scale[i] = std::min(2.0 * D * (D + 2) / moment, 4.0);
+    ASSERT_NEAR(w.scale[i], scale[i], 1e-12 * scale[i]);
+  }
+  const std::vector<double> T = w.random(3);
+  const std::vector<double> found = w.conducted(T, 7);
+  std::vector<double> ofFluid(n);
+  std::vector<HeatExchange> ofWalls(n);
+  conductionDiagonal<D>(w.s.context, w.s.pairs(), w.terms, ofFluid, ofWalls);
+  double size = 0;
+  for (const double x : ofFluid) size = std::max(size, x);
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const double k = oracle.material(i).conductivity;
+    double sum = 0, product = 7 * T[i], coefficient = 0;
+    for (std::uint32_t j = 0; j < oracle.count(); ++j) {
+      if (j == i) continue;
+      const double r = radius(i, j), c = block(r) * r * r / (D + 2);
+      if (j < n) {
+        const double other = oracle.material(j).conductivity;
+        const double kappa = 2 * k * other / (k + other) * 0.5 * (scale[i] + scale[j]) * c;
+        sum += kappa;
+        product += kappa * (T[i] - T[j]);
+      } else if (w.s.wallSurface.empty()) {
+        coefficient += k * scale[i] * c * r / (r + k * 2e-4);
+      }
+    }
+    ASSERT_NEAR(ofFluid[i], sum, 1e-12 * size);
+    ASSERT_NEAR(found[i], product, 1e-12 * size);
+    if (!w.s.wallSurface.empty()) continue;
+    ASSERT_NEAR(ofWalls[i].coefficient, coefficient, 1e-12 * size);
+    ASSERT_NEAR(ofWalls[i].gain, 400 * coefficient, 400e-12 * size);
+  }
+}
+
+TEST(Conduction, IsTheSumOverAllPairs) {
+  for (const SchemeKind scheme : bothSchemes) {
+    checkAgainstAllPairs<2>(scheme);
+    checkAgainstAllPairs<3>(scheme);
+  }
+}
+
+template <int D>
+void checkConservation(SchemeKind scheme) {
+  WarmScene<D> w(scheme);
+  const std::vector<double> a = w.random(5), b = w.random(6), ya = w.conducted(a), yb = w.conducted(b);
+  const auto dot = [](const std::vector<double>& x, const std::vector<double>& y) {
+    return std::inner_product(x.begin(), x.end(), y.begin(), 0.0);
+  };
+  const double size = std::accumulate(ya.begin(), ya.end(), 0.0, [](double s, double x) { return s + std::abs(x); });
+  EXPECT_NEAR(std::accumulate(ya.begin(), ya.end(), 0.0), 0, 1e-13 * size);
+  EXPECT_NEAR(dot(a, yb), dot(b, ya), 1e-12 * size);
+  EXPECT_GT(dot(a, ya), 0);
+  for (const double y : w.conducted(std::vector<double>(w.s.n(), 321.5))) EXPECT_EQ(y, 0);
+}
+
+TEST(Conduction, ConservesHeat) {
+  for (const SchemeKind scheme : bothSchemes) {
+    checkConservation<2>(scheme);
+    checkConservation<3>(scheme);
+  }
+}
+
+/// A wall at rest that touches the fluid conducts, an adiabatic one does not, and a bad conductor less.
+template <int D>
+void checkWalls(SchemeKind scheme) {
+  const auto sumOf = [&](const WallHeat& wall) {
+    WarmScene<D> w(scheme, wall);
+    std::vector<double> ofFluid(w.s.n());
+    std::vector<HeatExchange> ofWalls(w.s.n());
+    conductionDiagonal<D>(w.s.context, w.s.pairs(), w.terms, ofFluid, ofWalls);
+    double sum = 0;
+    for (const HeatExchange& e : ofWalls) {
+      EXPECT_GE(e.coefficient, 0);
+      EXPECT_NEAR(e.gain, wall.temperature * e.coefficient, 1e-12 * e.gain);
+      sum += e.coefficient;
+    }
+    return sum;
+  };
+  EXPECT_EQ(sumOf({0, 0}), 0);
+  const double touching = sumOf({300, 0}), behind = sumOf({300, 1e-3}), far = sumOf({300, 1e-1});
+  EXPECT_GT(touching, 1.2 * behind);
+  EXPECT_GT(behind, 20 * far);
+  EXPECT_GT(far, 0);
+}
+
+TEST(Conduction, MeetsWallsThroughTheirResistance) {
+  for (const SchemeKind scheme : bothSchemes) {
+    checkWalls<2>(scheme);
+    checkWalls<3>(scheme);
+  }
+}
+
+/// A lattice that fills a part of the periodic domain.
+template <int D>
+Scene<D> lattice(SchemeKind scheme, const Where<D>& where) {
+  Scene<D> s;
+  s.c = sceneCase(D, false, scheme);
+  s.particles = jitteredLattice<D>(s.c, 0, 1, where, [](const Vec<D>&) { return false; });
+  for (auto& m : s.particles.material) m = 0;
+  prepare(s);
+  return s;
+}
+
+/// In a full lattice the sum is a Laplacian: of a cosine that goes around the domain k^2 times itself, but for an
+/// error of second order in the radius (measured: at most 3 % where the domain is 20 spacings long, 6 % where 14).
+template <int D>
+void checkLaplacian(SchemeKind scheme) {
+  WarmScene<D> w(scheme);
+  w.s = lattice<D>(scheme, [](const Vec<D>&) { return true; });
+  w.s.c.materials[0].conductivity = 2;
+  w.scale.assign(w.s.n(), 0);
+  w.terms = {HeatTable::make(w.s.c), w.walls.data(), w.s.particles.body.data(), nullptr};
+  conductionScale<D>(w.s.context, w.s.pairs(), w.terms, w.scale);
+  w.terms.scale = w.scale.data();
+  const double k = 2 * M_PI / w.s.c.domain.max[0];
+  std::vector<double> T;
+  for (std::uint32_t i = 0; i < w.s.n(); ++i) T.push_back(std::cos(k * w.s.pairs().position[i][0]));
+  const std::vector<double> found = w.conducted(T);
+  for (std::uint32_t i = 0; i < w.s.n(); ++i) EXPECT_NEAR(found[i], 2 * k * k * T[i], 0.07 * 2 * k * k);
+}
+
+TEST(Conduction, IsALaplacianInALattice) {
+  for (const SchemeKind scheme : bothSchemes) {
+    checkLaplacian<2>(scheme);
+    checkLaplacian<3>(scheme);
+  }
+}
+
+/// A slab in a periodic domain has two flat surfaces, each as large as the domain is wide, and none inside.
+template <int D>
+void checkFlatSurface(SchemeKind scheme) {
+  const double l = 1e-3;
+  Scene<D> s = lattice<D>(scheme, [l](const Vec<D>& x) { return x[D - 1] < 10 * l; });
+  std::vector<double> area(s.n());
+  surfaceArea<D>(s.context, s.pairs(), SurfaceLack::make(s.pairs()), area);
+  double sum = 0;
+  for (std::uint32_t i = 0; i < s.n(); ++i) {
+    sum += area[i] * s.volume();
+    const double height = s.pairs().position[i][D - 1];
+    if (height > 1.5 * l && height < 8.5 * l) {
+      EXPECT_EQ(area[i], 0);
+    }
+  }
+  EXPECT_NEAR(sum / (2 * std::pow(s.c.domain.max[0], D - 1)), 1, 1e-9);
+}
+
+TEST(FreeSurface, OfALatticeIsItsPlane) {
+  for (const SchemeKind scheme : bothSchemes) {
+    checkFlatSurface<2>(scheme);
+    checkFlatSurface<3>(scheme);
+  }
+}
+
+/// A disc and a ball, whose surfaces the lattice knows only in steps.
+template <int D>
+void checkBall(SchemeKind scheme, double bound) {
+  const double l = 1e-3, radius = D == 2 ? 8 * l : 6 * l, middle = sceneCase(D, false, scheme).domain.max[0] / 2;
+  Scene<D> s = lattice<D>(scheme, [=](const Vec<D>& x) { return norm(x - Vec<D>::filled(middle)) < radius; });
+  std::vector<double> area(s.n());
+  surfaceArea<D>(s.context, s.pairs(), SurfaceLack::make(s.pairs()), area);
+  const double sum = s.volume() * std::accumulate(area.begin(), area.end(), 0.0);
+  EXPECT_NEAR(sum / (D == 2 ? 2 * M_PI * radius : 4 * M_PI * radius * radius), 1, bound);
+}
+
+TEST(FreeSurface, OfABallIsItsSphere) {
+  checkBall<2>(SchemeKind::Accurate, 0.12);
+  checkBall<3>(SchemeKind::Accurate, 0.12);
+}
+
+}  // namespace
+}  // namespace treacle::test

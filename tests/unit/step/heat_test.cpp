@@ -1,0 +1,162 @@
+#include "support/loaded_walls.hpp"
+#include "support/same_bits.hpp"
+#include "support/state_of.hpp"
+#include "treacle/core/error.hpp"
+#include "treacle/io/case_reader.hpp"
+#include "treacle/model/create.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace treacle::test {
+namespace {
+
+Case gob(const std::vector<std::string>& overrides = {}) {
+  return readCase(std::string(TREACLE_CASES) + "/glass-gob-2d.toml", overrides);
+}
+
+Particles<2> particlesOf(const Case& c) {
+  std::vector<std::string> notes;
+  return createParticles<2>(c, notes);
+}
+
+/// The two fluids between walls, of which one body is warm; heat goes nowhere.
+template <int D>
+LoadedWalls<D> closed(SchemeKind scheme) {
+  LoadedWalls<D> start(WallsMove::Apart, 1, scheme);
+  start.c.heat.emplace();
+  for (Material& m : start.c.materials) m.specificHeat = 3, m.conductivity = 0.5;
+  start.c.materials[1].conductivity = 4;
+  start.c.materials[1].viscosityShift =
+      ViscosityShift{.model = ShiftModel::Arrhenius, .reference = 320, .activationEnergy = 4e4};
+  start.c.bodies[0].temperature = 300;
+  start.particles.hasTemperatures = true;
+  start.particles.temperature.resize(start.particles.fluidCount);
+  for (std::uint32_t i = 0; i < start.particles.fluidCount; ++i)
+    start.particles.temperature[i] = 300 + 2e4 * start.particles.position[i][0];
+  return start;
+}
+
+/// What the motion loses to the viscosity is what the fluid has gained, to rounding, whatever the tolerance.
+template <int D>
+void checkConservation(SchemeKind scheme) {
+  LoadedWalls<D> start = closed<D>(scheme);
+  start.c.heat->tolerance = 1e-4;
+  Simulation<D> s = start.template simulation<Cpu>();
+  const auto heatOf = [&](const Particles<D>& p) {
+    double sum = 0;
+    for (std::uint32_t i = 0; i < p.fluidCount; ++i) {
+      const Material& m = start.c.materials[p.material[i]];
+      sum += m.density * m.specificHeat * p.temperature[i];
+    }
+    return sum * std::pow(start.c.spacing, D);
+  };
+  double before = heatOf(s.particles());
+  for (int k = 0; k < 4; ++k) {
+    const Diagnostics diagnostics = s.diagnostics();
+    const StepReport report = s.advance();
+    const HeatBalance& heat = *report.balance->heat;
+    EXPECT_EQ(heat.heating, report.balance->shearDissipation);
+    EXPECT_EQ(heat.walls, 0);
+    EXPECT_EQ(heat.surface, 0);
+    const double after = heatOf(s.particles());
+    EXPECT_NEAR(heat.energy, after, 1e-13 * after);
+    EXPECT_NEAR(after - before, report.timeStep * heat.heating, 2e-13 * after);
+    before = after;
+    const StepEnergy energy(diagnostics, report);
+    EXPECT_NEAR(energy.gained + energy.lost, energy.given, 5e-12 * energy.scale());
+  }
+}
+
+TEST(HeatSteps, ConserveHeat) {
+  for (const SchemeKind scheme : bothSchemes) {
+    checkConservation<2>(scheme);
+    checkConservation<3>(scheme);
+  }
+}
+
+/// Heat flows from warm to cold: temperatures stay between their extremes, and those come together.
+TEST(HeatSteps, HaveNoNewExtremes) {
+  LoadedWalls<2> start = closed<2>(SchemeKind::Accurate);
+  start.c.heat->viscousHeating = false;
+  Simulation<2> s = start.simulation<Cpu>();
+  const auto range = [&] {
+    const auto& T = s.particles().temperature;
+    return std::pair{*std::min_element(T.begin(), T.end()), *std::max_element(T.begin(), T.end())};
+  };
+  const auto first = range();
+  for (int k = 0; k < 5; ++k) {
+    const auto before = range();
+    s.advance();
+    const auto after = range();
+    EXPECT_GE(after.first, before.first - 1e-6);
+    EXPECT_LE(after.second, before.second + 1e-6);
+  }
+  EXPECT_LT(range().second - range().first, 0.8 * (first.second - first.first));
+}
+
+/// Nothing changes where everything has one temperature, the surroundings that it radiates to, too.
+TEST(HeatSteps, KeepOneTemperature) {
+  Case c = gob({"heat.ambient_temperature=700", "gob.temperature=700", "plate.temperature=700",
+                "heat.viscous_heating=false"});
+  Simulation<2> s(c, particlesOf(c));
+  for (int k = 0; k < 3; ++k) s.advance();
+  for (const double T : s.particles().temperature) EXPECT_NEAR(T, 700, 1e-9);
+}
+
+/// A thin rod of copper that radiates cools as a whole: dT/dt = -epsilon sigma A (T^4 - T_a^4) / (rho c V).
+TEST(HeatSteps, RadiateByTheFourthPower) {
+  Case c = gob({"gravity.acceleration=[0,0]", "glass.conductivity=4e4", "heat.heat_transfer=0",
+                "plate.temperature=0", "plate.wall_conductance=0", "gob.center=[0,0.02]", "time.step=0.05"});
+  Simulation<2> s(c, particlesOf(c));
+  for (int k = 0; k < 100; ++k) s.advance();
+  double T = 1375;
+  for (int k = 0; k < 5000; ++k)
+    T -= 1e-3 * 0.85 * 5.670374419e-8 * (std::pow(T, 4) - std::pow(300, 4)) * 2 / (0.012 * 2400 * 1350);
+  const auto& found = s.particles().temperature;
+  EXPECT_LT(T, 1350);
+  for (const double t : found) EXPECT_NEAR((t - 1375) / (T - 1375), 1, 0.1);  // as its area is known
+}
+
+TEST(HeatSteps, ContinueFromACopyWithTheSameBits) {
+  const Case c = gob();
+  Simulation<2> whole(c, particlesOf(c));
+  for (int k = 0; k < 5; ++k) whole.advance();
+  Particles<2> state = stateOf(whole);
+  ASSERT_TRUE(state.hasTemperatures);
+  Simulation<2> resumed(c, std::move(state), whole.step(), whole.time());
+  for (int k = 0; k < 5; ++k) whole.advance(), resumed.advance();
+  expectSameBits(stateOf(whole), stateOf(resumed));
+}
+
+TEST(HeatSteps, NeedTemperatures) {
+  const Case c = gob();
+  Particles<2> p = particlesOf(c);
+  p.hasTemperatures = false;
+  p.temperature.resize(0);
+  EXPECT_THROW(Simulation<2>(c, std::move(p)), InputError);
+  Case cold = gob();
+  cold.heat.reset();
+  cold.materials[0].viscosityShift.reset();
+  Simulation<2> without(cold, particlesOf(c));
+  without.advance();
+  EXPECT_FALSE(without.particles().hasTemperatures);
+}
+
+TEST(HeatSteps, SayWhatFailed) {
+  const Case c = gob({"heat.max_iterations=1", "heat.tolerance=1e-20"});
+  Simulation<2> s(c, particlesOf(c));
+  try {
+    s.advance();
+    FAIL() << "one iteration was enough";
+  } catch (const RunError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("the temperatures did not converge"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("heat.max_iterations"));
+  }
+  for (const double T : s.particles().temperature) EXPECT_EQ(T, 1375);  // nothing was accepted
+}
+
+}  // namespace
+}  // namespace treacle::test
