@@ -75,8 +75,9 @@ double InitialState<D>::temperatureAt(const Vec<D>& x) const {
   if (!temperature_) return body_.temperature;
   const double T = valueAt(x, *temperature_, body_, "temperature", body_.temperatureExpression);
   if (!(T > 0))
-    throw InputError(fmt::format("temperature of body '{}': \"{}\" is {} K for the particle at {}; expected more than 0",
-                                 body_.name, body_.temperatureExpression, T, positionText(resized<3>(x), D)));
+    throw InputError(
+        fmt::format("temperature of body '{}': \"{}\" is {} K for the particle at {}; expected more than 0",
+                    body_.name, body_.temperatureExpression, T, positionText(resized<3>(x), D)));
   return T;
 }
 

@@ -175,18 +175,22 @@ void requireSound(const Checker& at, const Rheology& r) {
 
 /// Shift factors that are defined at all temperatures, and tables that are functions.
 void requireSound(const Checker& at, const ViscosityShift& s) {
-  if (s.least >= s.most) at.fail({"max_factor"}, fmt::format("expected more than min_factor = {}, found {}", s.least, s.most));
+  if (s.least >= s.most)
+    at.fail({"max_factor"}, fmt::format("expected more than min_factor = {}, found {}", s.least, s.most));
   if (s.model == ShiftModel::Vft && s.divergence >= s.reference)
-    at.fail({"t0"}, fmt::format("expected less than reference_temperature = {} K, found {}", s.reference, s.divergence));
+    at.fail({"t0"},
+            fmt::format("expected less than reference_temperature = {} K, found {}", s.reference, s.divergence));
   if (s.model != ShiftModel::Table) return;
   const std::size_t rows = s.temperatures.size();
   if (rows < 2 || rows > ViscosityShift::mostRows)
     at.fail({"temperatures"}, fmt::format("expected 2 to {} numbers, found {}", ViscosityShift::mostRows, rows));
   if (s.factors.size() != rows)
-    at.fail({"factors"}, fmt::format("expected as many numbers as temperatures, {}, found {}", rows, s.factors.size()));
+    at.fail({"factors"},
+            fmt::format("expected as many numbers as temperatures, {}, found {}", rows, s.factors.size()));
   for (std::size_t k = 1; k < rows; ++k)
     if (!(s.temperatures[k - 1] < s.temperatures[k]))
-      at.fail({"temperatures"}, fmt::format("expected rising numbers, found {} after {}", s.temperatures[k], s.temperatures[k - 1]));
+      at.fail({"temperatures"},
+              fmt::format("expected rising numbers, found {} after {}", s.temperatures[k], s.temperatures[k - 1]));
 }
 
 void requireSound(const Checker& at, const Material& m) {
@@ -215,9 +219,11 @@ void requireSound(const Checker& at, const Body& b) {
     return;
   }
   if (!b.temperatureExpression.empty())
-    at.fail({"temperature"}, fmt::format("only a body of type \"fluid\" can have an expression, found \"{}\"", b.temperatureExpression));
+    at.fail({"temperature"}, fmt::format("only a body of type \"fluid\" can have an expression, found \"{}\"",
+                                         b.temperatureExpression));
   if (b.wallConductance > 0 && b.temperature == 0)
-    at.fail({"temperature"}, "missing; expected that of what is behind a wall with wall_conductance: a positive number [K]");
+    at.fail({"temperature"},
+            "missing; expected that of what is behind a wall with wall_conductance: a positive number [K]");
   for (const std::string& text : b.velocityExpression)
     if (!text.empty())
       at.fail({"velocity"}, fmt::format("only a body of type \"fluid\" can have expressions; expected an array of "
@@ -356,8 +362,7 @@ void requireMaterials(const Checker& at, const Case& c) {
 }
 
 void requireSound(const Checker& at, const Case& c) {
-  if (c.heat && c.method.kind != MethodKind::MphI)
-    at.fail({"heat"}, heatOfMphI);
+  if (c.heat && c.method.kind != MethodKind::MphI) at.fail({"heat"}, heatOfMphI);
   if (std::ranges::none_of(c.bodies, [](const Body& b) { return b.kind == BodyKind::Fluid; }))
     at.fail({"body"}, "no fluid: expected at least one [[body]] with type = \"fluid\"");
   requireMaterials(at, c);

@@ -142,11 +142,11 @@ void conduct(Context<Cpu>&, const MphPairs<D>& pairs, const Conduction& terms, s
   });
 }
 
-#define TREACLE_INSTANTIATE(D)                                                                                  \
-  template void conductionScale<D>(Context<Cpu>&, const MphPairs<D>&, const Conduction&, std::span<double>);    \
-  template void conductionDiagonal<D>(Context<Cpu>&, const MphPairs<D>&, const Conduction&, std::span<double>,  \
-                                      std::span<HeatExchange>);                                                 \
-  template void conduct<D>(Context<Cpu>&, const MphPairs<D>&, const Conduction&, std::span<const double>,       \
+#define TREACLE_INSTANTIATE(D)                                                                                 \
+  template void conductionScale<D>(Context<Cpu>&, const MphPairs<D>&, const Conduction&, std::span<double>);   \
+  template void conductionDiagonal<D>(Context<Cpu>&, const MphPairs<D>&, const Conduction&, std::span<double>, \
+                                      std::span<HeatExchange>);                                                \
+  template void conduct<D>(Context<Cpu>&, const MphPairs<D>&, const Conduction&, std::span<const double>,      \
                            std::span<const double>, std::span<double>);
 TREACLE_INSTANTIATE(2)
 TREACLE_INSTANTIATE(3)

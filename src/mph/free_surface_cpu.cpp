@@ -39,8 +39,8 @@ void surfaceArea(Context<Cpu>&, const MphPairs<D>& pairs, const SurfaceLack& sur
   });
 }
 
-#define TREACLE_INSTANTIATE(D)                                                                             \
-  template SurfaceLack SurfaceLack::make<D>(const MphPairs<D>&);                                           \
+#define TREACLE_INSTANTIATE(D)                                   \
+  template SurfaceLack SurfaceLack::make<D>(const MphPairs<D>&); \
   template void surfaceArea<D>(Context<Cpu>&, const MphPairs<D>&, const SurfaceLack&, std::span<double>);
 TREACLE_INSTANTIATE(2)
 TREACLE_INSTANTIATE(3)

@@ -51,12 +51,14 @@ std::string describeFailure(const SolveReport& report, double tolerance, const s
 
 std::string describeHeatFailure(const SolveReport& report, const HeatSettings& settings) {
   if (report.status == SolveStatus::IterationLimit)
-    return fmt::format("the temperatures did not converge: |r|^2/|b|^2 = {:.3g} after {} iterations (tolerance {:.3g}); "
-                       "raise heat.max_iterations, or reduce the time step",
-                       report.residual, report.iterations, settings.tolerance);
-  return fmt::format("the solver for temperatures met a value that is not finite after {} iterations; look at "
-                     "viscosities and velocities of the last frame",
-                     report.iterations);
+    return fmt::format(
+        "the temperatures did not converge: |r|^2/|b|^2 = {:.3g} after {} iterations (tolerance {:.3g}); "
+        "raise heat.max_iterations, or reduce the time step",
+        report.residual, report.iterations, settings.tolerance);
+  return fmt::format(
+      "the solver for temperatures met a value that is not finite after {} iterations; look at "
+      "viscosities and velocities of the last frame",
+      report.iterations);
 }
 
 template <int D>

@@ -25,8 +25,8 @@ inline void planHeat(const Case& c, std::uint64_t fluid, MemorySum& sum) {
   sum.keep<double>((c.heat->viscousHeating ? 11 : 10) * fluid);
   sum.keep<HeatExchange>(fluid);
   for (int k = 0; k < 4; ++k) sum.use<double>(StepPart::Solve, fluid);  // conjugate gradients
-  const bool surface = c.heat->transfer > 0 ||
-                       std::ranges::any_of(c.materials, [](const Material& m) { return m.emissivity > 0; });
+  const bool surface =
+      c.heat->transfer > 0 || std::ranges::any_of(c.materials, [](const Material& m) { return m.emissivity > 0; });
   if (!surface) return;
   sum.keep<double>(fluid);
   sum.keep<HeatExchange>(fluid);

@@ -152,9 +152,9 @@ class MphStep final : public StepMethod<D, Backend> {
   const MaterialTable& materials() const override { return pairs_.materials; }
   std::size_t bytes() const override {
     return neighbourhood_.bytes() + wallSurface_.bytes() + renormalisation_.bytes() + viscosityScale_.bytes() +
-           (rheology_ ? rheology_->bytes() : 0) + (heat_ ? heat_->bytes() : 0) + wallBlock_.bytes() + wallGradient_.bytes() +
-           wallDensity_.bytes() + elastic_.bytes() + divergence_.bytes() + rhs_.bytes() + found_.bytes() +
-           solver_.bytes() + balance_.bytes();
+           (rheology_ ? rheology_->bytes() : 0) + (heat_ ? heat_->bytes() : 0) + wallBlock_.bytes() +
+           wallGradient_.bytes() + wallDensity_.bytes() + elastic_.bytes() + divergence_.bytes() + rhs_.bytes() +
+           found_.bytes() + solver_.bytes() + balance_.bytes();
   }
 
  private:

@@ -45,7 +45,8 @@ void setShearRates(bool wanted, Particles<D>& particles) {
 /// Temperatures are part of the state, not of its memory. Errors: InputError where they are missing.
 template <int D>
 void requireTemperatures(const Case& c, Particles<D>& particles) {
-  if (c.heat && !particles.hasTemperatures) throw InputError("the case has heat, but its state has no temperatures");
+  if (c.heat && !particles.hasTemperatures)
+    throw InputError("the case has heat, but its state has no temperatures");
   if (c.heat || !particles.hasTemperatures) return;
   particles.hasTemperatures = false;
   particles.temperature.resize(0);

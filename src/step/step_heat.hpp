@@ -25,8 +25,8 @@ class StepHeat {
  public:
   StepHeat(const Case& c, const MphPairs<D>& pairs)
       : settings_(*c.heat), table_(HeatTable::make(c)), walls_(wallHeat(c)), lack_(SurfaceLack::make(pairs)) {
-    surfaceCounts_ = settings_.transfer > 0 ||
-                     std::any_of(c.materials.begin(), c.materials.end(), [](const Material& m) { return m.emissivity > 0; });
+    surfaceCounts_ = settings_.transfer > 0 || std::any_of(c.materials.begin(), c.materials.end(),
+                                                           [](const Material& m) { return m.emissivity > 0; });
   }
 
   /// With state.velocity of the end of the step, ghosts included. Errors: RunError.
@@ -45,8 +45,9 @@ class StepHeat {
     const HeatConstants constants{table_, state.timeStep, settings_.ambient, settings_.transfer};
     const std::span<const double> T = state.particles.temperature.span().first(own);
     const std::span<const std::uint8_t> material = pairs.material.first(own);
-    setEach(context, HeatSystemTerms{constants, material, T, ofFluid_, ofWalls_, area_, heating_, ofSurface_,
-                                     boundary_, source_, extra_, inverse_},
+    setEach(context,
+            HeatSystemTerms{constants, material, T, ofFluid_, ofWalls_, area_, heating_, ofSurface_, boundary_,
+                            source_, extra_, inverse_},
             own);
     const auto conductExtra = [&](std::span<const double> extra) {
       return [&, extra](std::span<const double> x, std::span<double> y) {
@@ -60,8 +61,8 @@ class StepHeat {
     const Product k = [&](std::span<const double> r, std::span<double> z) {
       setEach(context, Scaled{inverse_.span(), r, z}, own);
     };
-    requireSolved(conjugateGradient(context, a, k, rhs_, change_, {settings_.tolerance, settings_.maxIterations},
-                                    krylov_));
+    requireSolved(
+        conjugateGradient(context, a, k, rhs_, change_, {settings_.tolerance, settings_.maxIterations}, krylov_));
     a(change_, product_);
     setEach(context, HeatResult{constants, material, T, change_, rhs_, product_, next_}, own);
     if (state.theCase.output.balance)
@@ -80,8 +81,8 @@ class StepHeat {
 
   std::size_t bytes() const {
     std::size_t sum = ofWalls_.bytes() + ofSurface_.bytes() + wallBuffer_.bytes() + krylov_.bytes();
-    for (const auto* field : {&scale_, &ofFluid_, &area_, &heating_, &boundary_, &source_, &extra_, &inverse_, &rhs_,
-                              &change_, &product_, &next_, &withGhosts_})
+    for (const auto* field : {&scale_, &ofFluid_, &area_, &heating_, &boundary_, &source_, &extra_, &inverse_,
+                              &rhs_, &change_, &product_, &next_, &withGhosts_})
       sum += field->bytes();
     return sum;
   }

@@ -9,9 +9,9 @@
 
 namespace treacle {
 
-/// The viscosities of a step of MPH-I where particles have their own: from the temperatures and shear rates that the
-/// particles carry, and from the shear rates of each solve in the step. What is not accepted has not changed the
-/// particles.
+/// The viscosities of a step of MPH-I where particles have their own: from the temperatures and shear rates that
+/// the particles carry, and from the shear rates of each solve in the step. What is not accepted has not changed
+/// the particles.
 template <int D, class Backend>
 class StepRheology {
  public:

@@ -14,7 +14,15 @@ namespace treacle {
 
 /// The field that colours the fluid.
 /// The viscosity is shown by its decimal logarithm.
-enum class PictureField { Speed, Pressure, NumberDensity, NearestDistance, Temperature, DynamicViscosity, ShearRate };
+enum class PictureField {
+  Speed,
+  Pressure,
+  NumberDensity,
+  NearestDistance,
+  Temperature,
+  DynamicViscosity,
+  ShearRate
+};
 
 struct PictureOptions {
   PictureField field = PictureField::Speed;

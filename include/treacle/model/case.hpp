@@ -28,10 +28,10 @@ struct Material {
   double slipLength = 0;        // how far behind a wall its velocity, extrapolated, is the wall's [m]; 0: no slip
   std::optional<Rheology> rheology{};  // of a fluid that is not Newtonian; MPH-I only
   // In cases with heat.
-  double specificHeat = 0;                           // c_p [J/(kg K)]
-  double conductivity = 0;                           // k [W/(m K)]
-  double emissivity = 0;                             // of the free surface [-]
-  std::optional<ViscosityShift> viscosityShift{};    // missing: the viscosity does not follow the temperature
+  double specificHeat = 0;                         // c_p [J/(kg K)]
+  double conductivity = 0;                         // k [W/(m K)]
+  double emissivity = 0;                           // of the free surface [-]
+  std::optional<ViscosityShift> viscosityShift{};  // missing: the viscosity does not follow the temperature
 
   /// mu at a shear rate [1/s], where a_T is `shift` [Pa s].
   double viscosity(double rate, double shift) const {
@@ -98,8 +98,8 @@ struct Body {
   std::optional<Rotation> rotation{};               // of a wall, on top of both
   std::array<std::string, 3> velocityExpression{};  // of a fluid, in place of a component of its velocity [m/s]
   std::string where{};                              // there are particles only where it is not zero
-  // In cases with heat. Of a fluid that at the start; of a wall that of its surface or, where it has a conductance,
-  // of what is behind it; 0: the wall is adiabatic [K].
+  // In cases with heat. Of a fluid that at the start; of a wall that of its surface or, where it has a
+  // conductance, of what is behind it; 0: the wall is adiabatic [K].
   double temperature = 0;
   std::string temperatureExpression{};  // of a fluid, in place of its temperature [K]
   double wallConductance = 0;           // of a wall, its conductivity over its thickness [W/(m2 K)]; 0: infinite
@@ -195,10 +195,10 @@ struct RheologySettings {
 
 /// Temperatures of the fluid (docs/heat.md).
 struct HeatSettings {
-  double ambient = 293.15;      // temperature around the fluid [K]
-  double transfer = 0;          // from free surfaces to there [W/(m2 K)]
-  bool viscousHeating = true;   // what the viscosity takes from the motion is heat
-  double tolerance = 1e-12;     // of the solve of a step: bound on |r|^2 / |b|^2
+  double ambient = 293.15;     // temperature around the fluid [K]
+  double transfer = 0;         // from free surfaces to there [W/(m2 K)]
+  bool viscousHeating = true;  // what the viscosity takes from the motion is heat
+  double tolerance = 1e-12;    // of the solve of a step: bound on |r|^2 / |b|^2
   int maxIterations = 1000;
 
   bool operator==(const HeatSettings&) const = default;
@@ -371,8 +371,8 @@ struct Case {
   bool hasOwnViscosities() const {
     return std::ranges::any_of(materials, [](const Material& m) { return m.hasOwnViscosities(); });
   }
-  /// The temperature that the first fluid of a material of the case starts with; where a formula says that, one that
-  /// the material has its constants at [K]. And a_T there.
+  /// The temperature that the first fluid of a material of the case starts with; where a formula says that, one
+  /// that the material has its constants at [K]. And a_T there.
   double typicalTemperature(const Material& m) const;
   double typicalShift(const Material& m) const;
   /// mu there, of a rheology that at a shear rate of 1/s: for what needs one number that stands for all [Pa s].

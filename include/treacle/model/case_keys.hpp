@@ -73,7 +73,8 @@ SolverSettings defaultSolver(MethodKind method, PreconditionerKind preconditione
 /// - v(key, member) for numbers, words, flags, vectors, texts and the list of fields,
 /// - v(key, member, fits) for a word where not all fit,
 /// - v(key, text, keys::expression) for the text of an expression,
-/// - v(key, vector, texts) for a vector that may have expressions in place of numbers, v(key, number, text) likewise,
+/// - v(key, vector, texts) for a vector that may have expressions in place of numbers, v(key, number, text)
+/// likewise,
 /// - v(key, index, keys::material) for a material, which a file calls by its name,
 /// - v(key, number, flag, keys::orAuto) for a number that may be "auto", which the flag says,
 /// - v(key, struct) for a table in the table,

@@ -51,9 +51,9 @@ inline constexpr Named<RheologyModel> rheology[] = {{"power-law", RheologyModel:
                                                     {"herschel-bulkley", RheologyModel::HerschelBulkley},
                                                     {"casson", RheologyModel::Casson}};
 inline constexpr Named<ShiftModel> shift[] = {{"arrhenius", ShiftModel::Arrhenius},
-                                             {"vft", ShiftModel::Vft},
-                                             {"wlf", ShiftModel::Wlf},
-                                             {"table", ShiftModel::Table}};
+                                              {"vft", ShiftModel::Vft},
+                                              {"wlf", ShiftModel::Wlf},
+                                              {"table", ShiftModel::Table}};
 inline constexpr Named<KrylovKind> krylov[] = {{"cg", KrylovKind::Cg}, {"cr", KrylovKind::Cr}};
 inline constexpr Named<PreconditionerKind> preconditioner[] = {
     {"projected-multigrid", PreconditionerKind::ProjectedMultigrid},

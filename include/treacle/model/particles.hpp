@@ -52,7 +52,7 @@ void forEachFieldOf(F&& f, Sets&... sets) {
 /// How many particles of each kind, modes of the solver and known surfaces of walls there are.
 struct ParticleNumbers {
   std::uint64_t fluid = 0, wall = 0, modes = 0, surfaces = 0;
-  std::uint64_t ghosts = 0;  // fluid of other processes
+  std::uint64_t ghosts = 0;                       // fluid of other processes
   bool shearRates = false, temperatures = false;  // whether the fluid has some
 
   bool operator==(const ParticleNumbers&) const = default;

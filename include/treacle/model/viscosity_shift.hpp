@@ -11,8 +11,8 @@ namespace treacle {
 enum class ShiftModel { Arrhenius, Vft, Wlf, Table };
 
 /// The shift factor a_T: the fluid at temperature T has the stress that it would have at the reference temperature
-/// if it were sheared a_T times as fast (thermorheologically simple fluids; J. D. Ferry, Viscoelastic Properties of
-/// Polymers, 3rd ed., 1980, ch. 11). The viscosity of a Newtonian fluid is multiplied by it.
+/// if it were sheared a_T times as fast (thermorheologically simple fluids; J. D. Ferry, Viscoelastic Properties
+/// of Polymers, 3rd ed., 1980, ch. 11). The viscosity of a Newtonian fluid is multiplied by it.
 ///   arrhenius  ln a = E/R (1/T - 1/T_r)
 ///   vft        log10 a = B (1/(T - T_0) - 1/(T_r - T_0))      (Vogel, Fulcher, Tammann)
 ///   wlf        log10 a = -C1 (T - T_r) / (C2 + T - T_r)       (Williams, Landel, Ferry)
@@ -40,7 +40,7 @@ struct ShiftFactor {
   static constexpr double gasConstant = 8.31446261815324;  // [J/(mol K)], exact since 2019
 
   ShiftModel model = ShiftModel::Arrhenius;
-  int rows = 0;                                                    // of a table
+  int rows = 0;                                                        // of a table
   double reference = 1, numerator = 0, pole = 0, least = 1, most = 1;  // of ln a
   double temperature[ViscosityShift::mostRows];
   double logarithm[ViscosityShift::mostRows];

@@ -10,13 +10,14 @@
 
 namespace treacle {
 
-/// Conduction of heat, by the pairs and the weight of the viscosity. In a full neighbourhood the pairs' coefficients
-/// c_ij of d d^T have the sum 2 D (D + 2) of c_ij r^4, and so (c_ij r^2) / (D + 2) has that of a Laplacian,
+/// Conduction of heat, by the pairs and the weight of the viscosity. In a full neighbourhood the pairs'
+/// coefficients c_ij of d d^T have the sum 2 D (D + 2) of c_ij r^4, and so (c_ij r^2) / (D + 2) has that of a
+/// Laplacian,
 ///   div(k grad T)_i = sum_j kappa_ij (T_j - T_i),   kappa_ij = k_ij (s_i + s_j)/2 c_ij r^2 / (D + 2),
 /// symmetric, so that heat is conserved to rounding. k_ij is the harmonic mean, as of two layers; s_i makes up for
-/// neighbours that are missing or do not conduct (viscosity_scale.hpp). A wall has its temperature where its surface
-/// is, or that far behind it through which its conductance would let the fluid's conductivity conduct; the pair's
-/// coefficient is multiplied by wallFactor(), as its viscosity is.
+/// neighbours that are missing or do not conduct (viscosity_scale.hpp). A wall has its temperature where its
+/// surface is, or that far behind it through which its conductance would let the fluid's conductivity conduct; the
+/// pair's coefficient is multiplied by wallFactor(), as its viscosity is.
 
 /// What the heat of the fluid meets in a wall body.
 struct WallHeat {
@@ -56,9 +57,9 @@ struct Conduction {
     if (!conducts(wall)) return 0;
     const double k = table.conductivity[pairs.material[fluid]], behind = k * walls[body[wall]].resistance;
     // Walls without surfaces end where their particles are.
-    const double factor =
-        pairs.wallSurface ? treacle::wallFactor(pairs.wallSurface[wall - pairs.fluidCount], d, pairs.spacing, behind)
-                          : norm(d) / (norm(d) + behind);
+    const double factor = pairs.wallSurface ? treacle::wallFactor(pairs.wallSurface[wall - pairs.fluidCount], d,
+                                                                  pairs.spacing, behind)
+                                            : norm(d) / (norm(d) + behind);
     return scale[fluid] * k * factor;
   }
 };

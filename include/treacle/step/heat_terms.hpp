@@ -13,7 +13,8 @@ namespace treacle {
 
 /// What a step of heat does fluid particle by fluid particle, per volume. It is solved for the change of the
 /// temperatures,
-///   (rho c_p / dt + boundary_i) dT_i + sum_j kappa_ij (dT_i - dT_j) = source_i - boundary_i T_i - sum_j kappa_ij (T_i - T_j),
+///   (rho c_p / dt + boundary_i) dT_i + sum_j kappa_ij (dT_i - dT_j) = source_i - boundary_i T_i - sum_j kappa_ij
+///   (T_i - T_j),
 /// so that the tolerance is one of the change, and then what is left of the equation is added,
 ///   T^{k+1} = T^k + dT + dt / (rho c_p) r,
 /// so that heat is conserved to rounding whatever the tolerance. Spans of own fluid in the backend's memory.
@@ -41,14 +42,14 @@ struct HeatConstants {
 struct HeatSystemTerms {
   HeatConstants constants;
   std::span<const std::uint8_t> material;
-  std::span<const double> T;            // T^k [K]
-  std::span<const double> ofFluid;      // sum of kappa [W/(m3 K)]
+  std::span<const double> T;        // T^k [K]
+  std::span<const double> ofFluid;  // sum of kappa [W/(m3 K)]
   std::span<const HeatExchange> walls;
-  std::span<const double> area;         // of the free surface [1/m], or empty
-  std::span<const double> heating;      // by the viscosity [W/m3], or empty
-  std::span<HeatExchange> surface;      // of the free surface; empty where area is
-  std::span<double> boundary, source;   // [W/(m3 K)], [W/m3]
-  std::span<double> extra, inverse;     // rho c_p / dt + boundary [W/(m3 K)]; 1 / diagonal
+  std::span<const double> area;        // of the free surface [1/m], or empty
+  std::span<const double> heating;     // by the viscosity [W/m3], or empty
+  std::span<HeatExchange> surface;     // of the free surface; empty where area is
+  std::span<double> boundary, source;  // [W/(m3 K)], [W/m3]
+  std::span<double> extra, inverse;    // rho c_p / dt + boundary [W/(m3 K)]; 1 / diagonal
 
   TREACLE_HD void set(std::size_t i) const {
     HeatExchange sum = walls[i];

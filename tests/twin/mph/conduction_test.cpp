@@ -57,8 +57,8 @@ void compareConduction(bool lists, SchemeKind scheme) {
   std::vector<double> T(n), extra(n);
   for (std::uint32_t i = 0; i < n; ++i) T[i] = unit(random), extra[i] = 1e5 * unit(random);
   conduct<D>(s.context, s.pairs(), host, extra, T, y);
-  conduct<D>(d.context, d.pairs, device, copyToDevice<double>(d.context, extra), copyToDevice<double>(d.context, T),
-             yFound);
+  conduct<D>(d.context, d.pairs, device, copyToDevice<double>(d.context, extra),
+             copyToDevice<double>(d.context, T), yFound);
   EXPECT_LE(difference(d.context, y, yFound), kernelTolerance);
 
   const SurfaceLack lack = SurfaceLack::make(s.pairs());

@@ -21,8 +21,7 @@ Case threeFluids() {
   c.materials[1].rheology =
       Rheology{.model = RheologyModel::Casson, .yieldStress = 5, .plasticViscosity = 0.1, .regularisation = 100};
   c.heat.emplace();
-  c.materials[0].viscosityShift =
-      ViscosityShift{.model = ShiftModel::Wlf, .reference = 350, .c1 = 10, .c2 = 60};
+  c.materials[0].viscosityShift = ViscosityShift{.model = ShiftModel::Wlf, .reference = 350, .c1 = 10, .c2 = 60};
   c.materials[2].viscosityShift =
       ViscosityShift{.model = ShiftModel::Table, .temperatures = {300, 320, 390}, .factors = {10, 1, 0.1}};
   return c;

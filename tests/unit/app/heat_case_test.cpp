@@ -15,11 +15,12 @@ using testing::EndsWith;
 using testing::HasSubstr;
 
 /// The small case with heat.
-const std::string warmCase = "heat = { heat_transfer = 5 }\n" +
-                             replaced(replaced(replaced(smallCase, "bulk_modulus = 1e6",
-                                                        "bulk_modulus = 1e6\nspecific_heat = 2000\nconductivity = 0.3"),
-                                               "max = [6e-3, 6e-3]", "max = [6e-3, 6e-3]\ntemperature = 310"),
-                                      "max = [12e-3, 0]", "max = [12e-3, 0]\ntemperature = 350\nwall_conductance = 100");
+const std::string warmCase =
+    "heat = { heat_transfer = 5 }\n" +
+    replaced(replaced(replaced(smallCase, "bulk_modulus = 1e6",
+                               "bulk_modulus = 1e6\nspecific_heat = 2000\nconductivity = 0.3"),
+                      "max = [6e-3, 6e-3]", "max = [6e-3, 6e-3]\ntemperature = 310"),
+             "max = [12e-3, 0]", "max = [12e-3, 0]\ntemperature = 350\nwall_conductance = 100");
 
 Case caseWith(const std::vector<std::string>& overrides) {
   Workshop shop;
@@ -56,7 +57,8 @@ struct Bad {
   const char* message;
 };
 const Bad mistakes[] = {
-    {"syrup.specific_heat=0", "specific_heat in [[material]] 'syrup': expected a positive number [J/(kg K)], found 0"},
+    {"syrup.specific_heat=0",
+     "specific_heat in [[material]] 'syrup': expected a positive number [J/(kg K)], found 0"},
     {"syrup.emissivity=2", "emissivity in [[material]] 'syrup': expected a number from 0 to 1, found 2"},
     {"column.temperature=-3",
      "temperature in [[body]] 'column' (box): expected a positive number [K] or an expression, found -3"},
@@ -64,7 +66,8 @@ const Bad mistakes[] = {
     {"floor.temperature='x'",
      "temperature in [[body]] 'floor' (box): only a body of type \"fluid\" can have an expression, found \"x\""},
     {"floor.temperature=0",
-     "temperature in [[body]] 'floor' (box): missing; expected that of what is behind a wall with wall_conductance: a "
+     "temperature in [[body]] 'floor' (box): missing; expected that of what is behind a wall with "
+     "wall_conductance: a "
      "positive number [K]"},
     {"heat.max_iterations=0", "max_iterations in [heat]: expected a whole number from 1 to 1000000, found 0"},
     {"syrup.viscosity_shift={model='ideal'}",
@@ -73,12 +76,15 @@ const Bad mistakes[] = {
     {"syrup.viscosity_shift={model='wlf', reference_temperature=300, c1=17}",
      "c2 in the viscosity_shift of [[material]] 'syrup' (wlf): missing; expected a positive number [K]"},
     {"syrup.viscosity_shift={model='vft', reference_temperature=300, b=500, t0=400}",
-     "t0 in the viscosity_shift of [[material]] 'syrup' (vft): expected less than reference_temperature = 300 K, found "
+     "t0 in the viscosity_shift of [[material]] 'syrup' (vft): expected less than reference_temperature = 300 K, "
+     "found "
      "400"},
     {"syrup.viscosity_shift={model='table', temperatures=[300, 290], factors=[2, 1]}",
-     "temperatures in the viscosity_shift of [[material]] 'syrup' (table): expected rising numbers, found 290 after 300"},
+     "temperatures in the viscosity_shift of [[material]] 'syrup' (table): expected rising numbers, found 290 "
+     "after 300"},
     {"syrup.viscosity_shift={model='table', temperatures=[300, 310], factors=[2]}",
-     "factors in the viscosity_shift of [[material]] 'syrup' (table): expected as many numbers as temperatures, 2, found 1"},
+     "factors in the viscosity_shift of [[material]] 'syrup' (table): expected as many numbers as temperatures, "
+     "2, found 1"},
     {"syrup.viscosity_shift={model='table', temperatures=[300], factors=[2]}",
      "temperatures in the viscosity_shift of [[material]] 'syrup' (table): expected 2 to 16 numbers, found 1"},
     {"syrup.viscosity_shift={model='table', temperatures=300, factors=[2]}",
@@ -103,7 +109,8 @@ TEST(HeatCase, KeysOfHeatBelongToCasesWithIt) {
               EndsWith("temperature in [[body]] 'column' (box): missing; expected a positive number [K] or an "
                        "expression"));
   shop.put("isph.toml", "heat = {}\n" + smallIsphCase);
-  EXPECT_THAT(messageOf<InputError>([&] { readCase(shop / "isph.toml"); }), HasSubstr("only the method 'mph-i' has temperatures, found 'isph'"));
+  EXPECT_THAT(messageOf<InputError>([&] { readCase(shop / "isph.toml"); }),
+              HasSubstr("only the method 'mph-i' has temperatures, found 'isph'"));
   Case c = caseWith({});
   c.method.kind = MethodKind::Isph;
   EXPECT_THROW(requireValid(c), CaseError);
@@ -123,8 +130,9 @@ TEST(HeatCase, RunsShowTemperaturesAndContinue) {
   EXPECT_EQ(shop.content("cold-run/balance.csv").find("heat"), std::string::npos);
   EXPECT_EQ(shop.call("plot warm-run --field temperature").exitCode, 0);
   EXPECT_EQ(shop.call("plot cold-run --field temperature").exitCode, 2);
-  EXPECT_EQ(shop.call("run warm.toml --quiet --force --end-time 3e-3 --resume warm-run/checkpoint.h5 -o on").exitCode,
-            0);
+  EXPECT_EQ(
+      shop.call("run warm.toml --quiet --force --end-time 3e-3 --resume warm-run/checkpoint.h5 -o on").exitCode,
+      0);
   const auto refused = shop.call("run warm.toml --quiet --end-time 3e-3 --resume cold-run/checkpoint.h5 -o off");
   EXPECT_EQ(refused.exitCode, 2);
   EXPECT_THAT(refused.err, HasSubstr("a state without temperatures, but the case has heat"));

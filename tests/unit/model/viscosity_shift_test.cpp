@@ -9,8 +9,7 @@ namespace {
 const ViscosityShift arrhenius{.model = ShiftModel::Arrhenius, .reference = 300, .activationEnergy = 5e4};
 const ViscosityShift vft{.model = ShiftModel::Vft, .reference = 1375, .slope = 4215, .divergence = 536};
 const ViscosityShift wlf{.model = ShiftModel::Wlf, .reference = 373.15, .c1 = 17.44, .c2 = 51.6};
-const ViscosityShift table{
-    .model = ShiftModel::Table, .temperatures = {300, 320, 360}, .factors = {10, 1, 0.01}};
+const ViscosityShift table{.model = ShiftModel::Table, .temperatures = {300, 320, 360}, .factors = {10, 1, 0.01}};
 
 double at(const ViscosityShift& shift, double T) { return ShiftFactor::make(shift)(T); }
 

@@ -103,7 +103,8 @@ void checkConservation(SchemeKind scheme) {
   const auto dot = [](const std::vector<double>& x, const std::vector<double>& y) {
     return std::inner_product(x.begin(), x.end(), y.begin(), 0.0);
   };
-  const double size = std::accumulate(ya.begin(), ya.end(), 0.0, [](double s, double x) { return s + std::abs(x); });
+  const double size =
+      std::accumulate(ya.begin(), ya.end(), 0.0, [](double s, double x) { return s + std::abs(x); });
   EXPECT_NEAR(std::accumulate(ya.begin(), ya.end(), 0.0), 0, 1e-13 * size);
   EXPECT_NEAR(dot(a, yb), dot(b, ya), 1e-12 * size);
   EXPECT_GT(dot(a, ya), 0);
