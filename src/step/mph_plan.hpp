@@ -21,7 +21,8 @@ inline std::uint64_t entriesIn(const MemoryCounts::Lists& lists, std::initialize
 }
 
 /// StepHeat.
-inline void planHeat(const Case& c, std::uint64_t fluid, MemorySum& sum) {
+template <int D>
+void planHeat(const Case& c, std::uint64_t fluid, MemorySum& sum) {
   sum.keep<double>((c.heat->viscousHeating ? 11 : 10) * fluid);
   sum.keep<HeatExchange>(fluid);
   for (int k = 0; k < 4; ++k) sum.use<double>(StepPart::Solve, fluid);  // conjugate gradients
@@ -29,6 +30,7 @@ inline void planHeat(const Case& c, std::uint64_t fluid, MemorySum& sum) {
       c.heat->transfer > 0 || std::ranges::any_of(c.materials, [](const Material& m) { return m.emissivity > 0; });
   if (!surface) return;
   sum.keep<double>(fluid);
+  sum.keep<Vec<D>>(fluid);
   sum.keep<HeatExchange>(fluid);
 }
 
@@ -49,7 +51,7 @@ void planFields(const Case& c, const MemoryCounts& n, bool withGradient, MemoryS
   if (withGradient) sum.keep<Vec<D>>(fluid);
   sum.keep<double>(fluid + 2 * n.active);
   sum.keep<Vec<D>>(fluid);
-  if (c.heat) planHeat(c, fluid, sum);
+  if (c.heat) planHeat<D>(c, fluid, sum);
   if (!c.output.balance) return;
   planLists(n.balanceLists, sum);
   sum.keep<double>(fluid * (c.repulsionRadius() > 0 ? 2 : 1) + 2 * walls);

@@ -24,7 +24,7 @@ template <int D, class Backend>
 class StepHeat {
  public:
   StepHeat(const Case& c, const MphPairs<D>& pairs)
-      : settings_(*c.heat), table_(HeatTable::make(c)), walls_(wallHeat(c)), lack_(SurfaceLack::make(pairs)) {
+      : settings_(*c.heat), table_(HeatTable::make(c)), walls_(wallHeat(c)), surface_(SurfaceLack::make(pairs)) {
     surfaceCounts_ = settings_.transfer > 0 || std::any_of(c.materials.begin(), c.materials.end(),
                                                            [](const Material& m) { return m.emissivity > 0; });
   }
@@ -39,7 +39,7 @@ class StepHeat {
     fillGhosts(context, Held::Fluid, scale_.data());
     terms.scale = scale_.data();
     conductionDiagonal<D>(context, pairs, terms, ofFluid_, ofWalls_);
-    if (surfaceCounts_) surfaceArea<D>(context, pairs, lack_, area_);
+    if (surfaceCounts_) surfaceArea<D>(context, pairs, surface_, lack_, area_);
     if (settings_.viscousHeating) shearDissipation<D>(context, pairs, state.velocity, heating_);
 
     const HeatConstants constants{table_, state.timeStep, settings_.ambient, settings_.transfer};
@@ -80,7 +80,8 @@ class StepHeat {
   }
 
   std::size_t bytes() const {
-    std::size_t sum = ofWalls_.bytes() + ofSurface_.bytes() + wallBuffer_.bytes() + krylov_.bytes();
+    std::size_t sum =
+        ofWalls_.bytes() + ofSurface_.bytes() + lack_.bytes() + wallBuffer_.bytes() + krylov_.bytes();
     for (const auto* field : {&scale_, &ofFluid_, &area_, &heating_, &boundary_, &source_, &extra_, &inverse_,
                               &rhs_, &change_, &product_, &next_, &withGhosts_})
       sum += field->bytes();
@@ -97,6 +98,7 @@ class StepHeat {
     if (settings_.viscousHeating) heating_.resize(context, own);
     if (!surfaceCounts_) return;
     area_.resize(context, own);
+    lack_.resize(context, own);
     ofSurface_.resize(context, own);
   }
 
@@ -113,13 +115,14 @@ class StepHeat {
   HeatSettings settings_;
   HeatTable table_;
   std::vector<WallHeat> walls_;
-  SurfaceLack lack_;
+  SurfaceLack surface_;
   bool surfaceCounts_ = false;  // whether anything is exchanged there
   Buffer<WallHeat, Backend> wallBuffer_;
   // Per own fluid particle; scale_ per fluid particle, ghosts included.
   Buffer<double, Backend> scale_, ofFluid_, area_, heating_, boundary_, source_, extra_, inverse_, rhs_, change_,
       product_, next_, withGhosts_;
   Buffer<HeatExchange, Backend> ofWalls_, ofSurface_;
+  Buffer<Vec<D>, Backend> lack_;
   KrylovWorkspace<Backend> krylov_;
   std::array<double, HeatSums::count> sums_{};
 };

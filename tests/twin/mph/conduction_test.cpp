@@ -61,9 +61,12 @@ void compareConduction(bool lists, SchemeKind scheme) {
              copyToDevice<double>(d.context, T), yFound);
   EXPECT_LE(difference(d.context, y, yFound), kernelTolerance);
 
-  const SurfaceLack lack = SurfaceLack::make(s.pairs());
-  surfaceArea<D>(s.context, s.pairs(), lack, area);
-  surfaceArea<D>(d.context, d.pairs, lack, areaFound);
+  const SurfaceLack surface = SurfaceLack::make(s.pairs());
+  Buffer<Vec<D>> lack(n);
+  Buffer<Vec<D>, Cuda> lackFound(d.context, n);
+  surfaceArea<D>(s.context, s.pairs(), surface, lack, area);
+  surfaceArea<D>(d.context, d.pairs, surface, lackFound.span(), areaFound);
+  EXPECT_LE(difference(d.context, lack, lackFound), kernelTolerance);
   EXPECT_LE(difference(d.context, area, areaFound), kernelTolerance);
 }
 

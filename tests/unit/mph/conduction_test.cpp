@@ -189,8 +189,9 @@ template <int D>
 void checkFlatSurface(SchemeKind scheme) {
   const double l = 1e-3;
   Scene<D> s = lattice<D>(scheme, [l](const Vec<D>& x) { return x[D - 1] < 10 * l; });
+  std::vector<Vec<D>> lack(s.n());
   std::vector<double> area(s.n());
-  surfaceArea<D>(s.context, s.pairs(), SurfaceLack::make(s.pairs()), area);
+  surfaceArea<D>(s.context, s.pairs(), SurfaceLack::make(s.pairs()), lack, area);
   double sum = 0;
   for (std::uint32_t i = 0; i < s.n(); ++i) {
     sum += area[i] * s.volume();
@@ -209,20 +210,47 @@ TEST(FreeSurface, OfALatticeIsItsPlane) {
   }
 }
 
-/// A disc and a ball, whose surfaces the lattice knows only in steps.
+/// A disc and a ball, whose surfaces the lattice knows only in steps. Measured: 0.96 and 0.88.
 template <int D>
 void checkBall(SchemeKind scheme, double bound) {
   const double l = 1e-3, radius = D == 2 ? 8 * l : 6 * l, middle = sceneCase(D, false, scheme).domain.max[0] / 2;
   Scene<D> s = lattice<D>(scheme, [=](const Vec<D>& x) { return norm(x - Vec<D>::filled(middle)) < radius; });
+  std::vector<Vec<D>> lack(s.n());
   std::vector<double> area(s.n());
-  surfaceArea<D>(s.context, s.pairs(), SurfaceLack::make(s.pairs()), area);
+  surfaceArea<D>(s.context, s.pairs(), SurfaceLack::make(s.pairs()), lack, area);
   const double sum = s.volume() * std::accumulate(area.begin(), area.end(), 0.0);
   EXPECT_NEAR(sum / (D == 2 ? 2 * M_PI * radius : 4 * M_PI * radius * radius), 1, bound);
 }
 
+/// Inside a fluid there is none where rows have come apart, by 1.8 spacings in place of one, nor at a
+/// wall.
+TEST(FreeSurface, IsNotInside) {
+  const double l = 1e-3;
+  Scene<2> s;
+  s.c = sceneCase(2, false, SchemeKind::Accurate);
+  s.particles = jitteredLattice<2>(
+      s.c, 0, 1, [l](const Vec<2>& x) { return x[1] > 5 * l && x[1] < 15 * l; },
+      [l](const Vec<2>& x) { return x[1] < 5 * l || x[1] > 15 * l; });
+  for (std::uint32_t i = 0; i < s.particles.fluidCount; ++i) {
+    s.particles.material[i] = 0;
+    Vec<2>& x = s.particles.position[i];
+    x[1] += x[1] > 10 * l ? 0.4 * l : -0.4 * l;
+  }
+  prepare(s);
+  std::vector<Vec<2>> lack(s.n());
+  std::vector<double> area(s.n());
+  surfaceArea<2>(s.context, s.pairs(), SurfaceLack::make(s.pairs()), lack, area);
+  double most = 0;
+  for (std::uint32_t i = 0; i < s.n(); ++i) {
+    EXPECT_EQ(area[i], 0) << s.pairs().position[i][1] / l;
+    most = std::max(most, norm(lack[i]));
+  }
+  EXPECT_GT(most, 0.3 * SurfaceLack::make(s.pairs()).flat);  // else there was nothing to see
+}
+
 TEST(FreeSurface, OfABallIsItsSphere) {
-  checkBall<2>(SchemeKind::Accurate, 0.12);
-  checkBall<3>(SchemeKind::Accurate, 0.12);
+  checkBall<2>(SchemeKind::Accurate, 0.06);
+  checkBall<3>(SchemeKind::Accurate, 0.14);
 }
 
 }  // namespace
