@@ -150,7 +150,7 @@ constexpr BadCase badCases[] = {
      "bad.toml:23:9: shape in [[body]] 'column': expected 'box', 'sphere' or 'cylinder', found 'cone'"},
     {"unknownField", "interval = 1e-3", "interval = 1e-3\nfields = [\"speed\"]",
      "bad.toml:41:10: fields in [output]: expected 'velocity', 'pressure', 'number_density', 'nearest_distance', "
-     "'material', 'body', 'id', 'dynamic_viscosity' or 'shear_rate', found 'speed'"},
+     "'material', 'body', 'id', 'dynamic_viscosity', 'shear_rate' or 'temperature', found 'speed'"},
     {"minAboveMax", "max = [6e-3, 6e-3]", "max = [6e-3, -6e-3]",
      "bad.toml:25:7: max in [[body]] 'column' (box): expected more than min on every axis, found -0.006 <= 0 "
      "along y"},
