@@ -36,16 +36,20 @@ void surfaceArea(Context<Cpu>&, const MphPairs<D>& pairs, const SurfaceLack& sur
     });
     storeLanes<D>(range, sum, lack);
     double size[clusterSize];
-    bool covered[clusterSize] = {};
-    for (std::uint32_t lane = 0; lane < range.count; ++lane) size[lane] = norm(lack[range.first + lane]);
-    forEachNeighbour([&](const PairLanes<D>& pair) {
-      Lanes along = {};
-      for (int k = 0; k < D; ++k) along += pair.d[k] * sum[k];
-      for (std::uint32_t lane = 0; lane < range.count; ++lane) {
-        const double r = pair.r.square[lane] * pair.r.inverse[lane];
-        covered[lane] |= r < pairs.terms.pressureRadius && SurfaceLack::covers(along[lane], size[lane], r);
-      }
-    });
+    bool covered[clusterSize] = {}, lacksSome = false;
+    for (std::uint32_t lane = 0; lane < range.count; ++lane) {
+      size[lane] = norm(lack[range.first + lane]);
+      lacksSome |= surface.area(size[lane]) > 0;
+    }
+    if (lacksSome)
+      forEachNeighbour([&](const PairLanes<D>& pair) {
+        Lanes along = {};
+        for (int k = 0; k < D; ++k) along += pair.d[k] * sum[k];
+        for (std::uint32_t lane = 0; lane < range.count; ++lane) {
+          const double r = pair.r.square[lane] * pair.r.inverse[lane];
+          covered[lane] |= r < pairs.terms.pressureRadius && SurfaceLack::covers(along[lane], size[lane], r);
+        }
+      });
     for (std::uint32_t lane = 0; lane < range.count; ++lane)
       area[range.first + lane] = covered[lane] ? 0 : surface.area(size[lane]);
   });
