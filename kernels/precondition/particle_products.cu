@@ -120,6 +120,18 @@ void ParticleProducts<D, T, Cuda>::prepare(Context<Cuda>& context, const MphPair
           [=] __device__(std::size_t k) { to[k] = static_cast<T>(from[k]); });
 }
 
+/// One thread per own fluid particle; reads its diagonal block and material, writes its viscosity. No atomics.
+template <int D, class T>
+void ParticleProducts<D, T, Cuda>::resistingViscosity(Context<Cuda>& context, double resistance,
+                                                      std::span<double> viscosity) const {
+  forEach(context, pairs_->ownFluid(),
+          [block = selfBlock_.data(), material = pairs_->material.data(), materials = pairs_->materials,
+           resistance, to = viscosity.data()] __device__(std::size_t i) {
+            to[i] = treacle::resistingViscosity(block[i], materials.inertia[material[i]], resistance);
+          });
+  fillGhosts(context, Held::Fluid, viscosity.data());
+}
+
 template <int D, class T>
 void ParticleProducts<D, T, Cuda>::gather(Context<Cuda>& context, std::span<const T> x) {
   forEach(context, x.size(), [from = x.data(), to = scalars(0)] __device__(std::size_t k) { to[k] = from[k]; });

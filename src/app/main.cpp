@@ -28,6 +28,8 @@ constexpr Named<PictureField> fieldNames[] = {{"speed", PictureField::Speed},
                                               {"pressure", PictureField::Pressure},
                                               {"number_density", PictureField::NumberDensity},
                                               {"nearest_distance", PictureField::NearestDistance},
+                                              {"material", PictureField::Material},
+
                                               {"temperature", PictureField::Temperature},
                                               {"dynamic_viscosity", PictureField::DynamicViscosity},
                                               {"shear_rate", PictureField::ShearRate}};

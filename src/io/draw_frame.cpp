@@ -25,6 +25,8 @@ FieldValues fieldValues(const Frame& fluid, PictureField field) {
   if (field == PictureField::NumberDensity) return {"number density", "", "number_density", fluid.numberDensity};
   if (field == PictureField::NearestDistance)
     return {"nearest distance / spacing", "", "nearest_distance", fluid.nearestDistance};
+  if (field == PictureField::Material)
+    return {"material", "", "material", {fluid.material.begin(), fluid.material.end()}};
   if (field == PictureField::Temperature) return {"temperature", "K", "temperature", fluid.temperature};
   if (field == PictureField::ShearRate) return {"shear rate", "1/s", "shear_rate", fluid.shearRate, true};
   if (field == PictureField::DynamicViscosity) {

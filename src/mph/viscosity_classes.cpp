@@ -46,20 +46,34 @@ Range viscosities(const Case& c, const Material& m) {
   return range;
 }
 
+bool hasSteps(const ViscosityClasses& classes, const Material& m) {
+  return m.hasOwnViscosities() || (classes.ofNeighbours && m.dynamicViscosity > 0);
+}
+
+/// Among particles of another fluid, or at a surface, a particle may be resisted by a fraction of its viscosity,
+/// and at a wall by a multiple.
+Range rangeOf(const ViscosityClasses& classes, const Case& c, const Material& m) {
+  const Range own = viscosities(c, m);
+  return classes.ofNeighbours ? Range{own.least / 16, 8 * own.most} : own;
+}
+
 }  // namespace
 
 ViscosityClasses ViscosityClasses::make(const Case& c) {
   ViscosityClasses classes;
+  classes.ofNeighbours = c.hasSeveralFluids();
   int shared = 0;  // by how many materials the other classes are
   for (const Material& m : c.materials) {
     classes.material[classes.count] = static_cast<std::uint8_t>(classes.count);
     classes.viscosity[classes.count++] = flowingViscosity(m, c.typicalShift(m));
-    shared += m.hasOwnViscosities();
+    shared += hasSteps(classes, m);
   }
   const int each = shared > 0 ? (most - classes.count) / shared : 0;
+  // A few wide steps would say less of a particle than its material does.
+  if (classes.ofNeighbours && each < 3) return classes;
   for (std::size_t m = 0; m < c.materials.size(); ++m) {
-    if (!c.materials[m].hasOwnViscosities()) continue;
-    const Range range = viscosities(c, c.materials[m]);
+    if (!hasSteps(classes, c.materials[m])) continue;
+    const Range range = rangeOf(classes, c, c.materials[m]);
     const double width = std::max(std::log(range.most / range.least) / each, 0.1);
     classes.steps_[m] = {classes.count, each, range.least, 1 / width};
     for (int k = 0; k < each; ++k) {

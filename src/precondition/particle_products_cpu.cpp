@@ -247,6 +247,16 @@ void ParticleProducts<D, T, Cpu>::inverseDiagonals(Context<Cpu>&, const Projecti
 }
 
 template <int D, class T>
+void ParticleProducts<D, T, Cpu>::resistingViscosity(Context<Cpu>& context, double resistance,
+                                                     std::span<double> viscosity) const {
+  parallelFor(pairs_->ownFluid(), parallelGrain, [&](std::size_t i) {
+    viscosity[i] =
+        treacle::resistingViscosity(selfBlock_[i], pairs_->inertia(static_cast<std::uint32_t>(i)), resistance);
+  });
+  fillGhosts(context, Held::Fluid, viscosity.data());
+}
+
+template <int D, class T>
 void ParticleProducts<D, T, Cpu>::gather(Context<Cpu>&, std::span<const T> x) {
   std::copy(x.begin(), x.end(), scalars_[0].begin());
 }

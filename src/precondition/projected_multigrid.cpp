@@ -1,5 +1,7 @@
 #include "treacle/precondition/projected_multigrid.hpp"
 
+#include "treacle/mph/particle_viscosity.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -43,6 +45,8 @@ ProjectionConstants projectionConstants(const MphPairs<D>& pairs) {
   }
   // Where two materials meet, the pressure of the one moves the particles of the other.
   c.stiffness = largestLambda * largestWeight * gradients;
+  c.resistance = viscous;
+  c.severalFluids = pairs.classes.ofNeighbours;
   for (int k = 0; k < D; ++k) c.extent = std::max(c.extent, pairs.grid.length[k] / pairs.spacing);
   return c;
 }
@@ -53,7 +57,9 @@ ProjectionDegrees chooseDegrees(ProjectionDegrees chosen, const ProjectionConsta
   // Pressures of short wavelength that C hardly sees have eigenvalues of S' down to 1/stiffness of the largest. In
   // large bodies that have flowed far, a higher degree costs no time and saves iterations (docs/solver.md).
   const double size = std::clamp(std::cbrt(constants.extent / 300), 1.0, 1.35);
-  const double wanted = 8 * std::pow(constants.stiffness / 100, 0.3) * size;
+  // Between fluids there are more such pressures, those that only the heavier one resists.
+  const double exponent = constants.severalFluids ? 0.35 : 0.3;
+  const double wanted = 8 * std::pow(constants.stiffness / 100, exponent) * size;
   if (chosen.pressure == 0) chosen.pressure = std::clamp(static_cast<int>(std::lround(wanted)), 4, 160);
   if (chosen.grid == 0) chosen.grid = 4;
   if (chosen.velocity == 0) chosen.velocity = 2;
@@ -65,12 +71,13 @@ void ProjectedMultigrid<D, T, Backend>::setup(Context<Backend>& context, const M
                                               const WallTerms<D>& terms, const MphOperator<D, Backend>& a,
                                               const ProjectionDegrees& degrees, KeptEigenvalue* kept,
                                               std::uint64_t mostWhole) {
-  pairs_ = &pairs;
+  pairs_ = pairs;
   degrees_ = degrees;
   const ProjectionConstants constants = projectionConstants(pairs);
   table_ = constants.table<T>();
   allocate(context, pairs.fluidCount, pairs.activeCount);
-  products_.prepare(context, pairs, terms, a);
+  products_.prepare(context, pairs_, terms, a);
+  if (pairs.classes.ofNeighbours) findClasses(context, constants);
   products_.inverseDiagonals(context, table_, inversePressure_, inverseVelocity_);
   setupGrids(context, terms, a, constants.table<double>(gridPressureShift), mostWhole);
 
@@ -84,26 +91,37 @@ void ProjectedMultigrid<D, T, Backend>::setup(Context<Backend>& context, const M
   if (kept) kept->estimated(lambdaMax_.onHost(context));
 }
 
+/// Where fluids meet, a particle's neighbours are another resistance than its material says.
+template <int D, class T, class Backend>
+void ProjectedMultigrid<D, T, Backend>::findClasses(Context<Backend>& context,
+                                                    const ProjectionConstants& constants) {
+  resisting_.resize(context, pairs_.fluidCount);
+  class_.resize(context, pairs_.activeCount);
+  products_.resistingViscosity(context, constants.resistance, resisting_.span());
+  setClasses(context, ClassTerms{pairs_.classes, pairs_.material, resisting_.span(), class_.span()});
+  pairs_.viscosityClass = class_.data();
+}
+
 template <int D, class T, class Backend>
 void ProjectedMultigrid<D, T, Backend>::setupGrids(Context<Backend>& context, const WallTerms<D>& terms,
                                                    const MphOperator<D, Backend>& a,
                                                    const ProjectionTable<double>& table, std::uint64_t mostWhole) {
-  transfer_.prepare(context, *pairs_);
-  findHatNodes(context, *pairs_, HatsOn::Active, pressureNodes_, pressureGrids_.mostWhole(mostWhole));
+  transfer_.prepare(context, pairs_);
+  findHatNodes(context, pairs_, HatsOn::Active, pressureNodes_, pressureGrids_.mostWhole(mostWhole));
   if constexpr (std::is_same_v<Backend, Cuda>)
-    pressureGalerkin(context, *pairs_, a.near(), table, pressureNodes_, galerkinWorkspace_, pressureMatrix_);
+    pressureGalerkin(context, pairs_, a.near(), table, pressureNodes_, galerkinWorkspace_, pressureMatrix_);
   else
-    pressureGalerkin(context, *pairs_, table, pressureNodes_, galerkinWorkspace_, pressureMatrix_);
+    pressureGalerkin(context, pairs_, table, pressureNodes_, galerkinWorkspace_, pressureMatrix_);
   giveUp(galerkinWorkspace_);
   DenseInverses<T, Backend> inverses;
   pressureGrids_.setup(context, pressureNodes_, pressureMatrix_, {.degree = degrees_.grid, .mostWhole = mostWhole},
                        inverses);
 
-  findHatNodes(context, *pairs_, HatsOn::Fluid, velocityNodes_, velocityGrids_.mostWhole(mostWhole));
+  findHatNodes(context, pairs_, HatsOn::Fluid, velocityNodes_, velocityGrids_.mostWhole(mostWhole));
   if constexpr (std::is_same_v<Backend, Cuda>)
-    viscousGalerkin(context, *pairs_, terms, velocityNodes_, moments_, galerkinWorkspace_, velocityMatrix_);
+    viscousGalerkin(context, pairs_, terms, velocityNodes_, moments_, galerkinWorkspace_, velocityMatrix_);
   else
-    viscousGalerkin(context, *pairs_, terms, velocityNodes_, moments_, velocityMatrix_);
+    viscousGalerkin(context, pairs_, terms, velocityNodes_, moments_, velocityMatrix_);
   giveUp(moments_, galerkinWorkspace_);
   velocityGrids_.setup(context, velocityNodes_, velocityMatrix_,
                        {.degree = degrees_.velocity, .reach = 1, .mostWhole = mostWhole}, inverses);
@@ -125,7 +143,7 @@ ScalarField<T, Backend> ProjectedMultigrid<D, T, Backend>::pressureCycle(Context
   int last = 0;  // which of the two fields has the latest correction; the same at the start of each cycle
   const auto step = [&]<StepKind Kind>(int i, std::integral_constant<StepKind, Kind>) {
     products_.schur(context, table_, products_.scalars(last),
-                    PressureStep<T, Backend, Kind>{table_, pairs_->classOf(), inversePressure_.data(),
+                    PressureStep<T, Backend, Kind>{table_, pairs_.classOf(), inversePressure_.data(),
                                                    lambdaMax_.largest(), ChebyshevStep<T>::at(i),
                                                    pressureVectors(last), products_.scalars(1 - last)});
     if (Kind != StepKind::Residual) last = 1 - last;
@@ -164,7 +182,7 @@ void ProjectedMultigrid<D, T, Backend>::velocityCycle(Context<Backend>& context)
 template <int D, class T, class Backend>
 void ProjectedMultigrid<D, T, Backend>::apply(Context<Backend>& context, std::span<const Vec<D>> r,
                                               std::span<Vec<D>> z) {
-  const std::uint8_t* material = pairs_->classOf();
+  const std::uint8_t* material = pairs_.classOf();
   const ChebyshevStep<T> first = ChebyshevStep<T>::at(1);
   const auto startPressure = [&](bool holdsPressure) {
     products_.divergence(context, products_.vectors(),
@@ -189,8 +207,8 @@ std::size_t ProjectedMultigrid<D, T, Backend>::bytes() const {
   std::size_t sum = products_.bytes() + transfer_.bytes() + pressureNodes_.bytes() + velocityNodes_.bytes() +
                     galerkinWorkspace_.bytes() + moments_.bytes() + pressureMatrix_.bytes() +
                     velocityMatrix_.bytes() + pressureGrids_.bytes() + velocityGrids_.bytes() +
-                    lambdaMax_.bytes() + inversePressure_.bytes() + inverseVelocity_.bytes() +
-                    pressureResidual_.bytes() + p_.bytes();
+                    resisting_.bytes() + class_.bytes() + lambdaMax_.bytes() + inversePressure_.bytes() +
+                    inverseVelocity_.bytes() + pressureResidual_.bytes() + p_.bytes();
   for (const auto* v : {&velocityResidual_, &y_, &correction_[0], &correction_[1]}) sum += v->bytes();
   return sum;
 }

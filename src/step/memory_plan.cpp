@@ -3,6 +3,7 @@
 #include "isph_plan.hpp"
 #include "mph_plan.hpp"
 #include "mph_solver.hpp"
+#include "treacle/step/solve_stages.hpp"
 
 namespace treacle {
 
@@ -15,7 +16,7 @@ bool storesMatrix(const Case& c, BackendKind backend) {
 }
 
 MemoryPlan planMemory(const Case& c, const MemoryCounts& n, BackendKind backend) {
-  const bool mixed = c.solver.precision == Precision::Mixed;
+  const bool mixed = solveStages(c).front().precision == Precision::Mixed;
   const auto plan = [&]<int D>(std::integral_constant<int, D>) {
     MemorySum sum;
     planState<D>(c, n, backend, sum);

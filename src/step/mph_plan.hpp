@@ -135,6 +135,10 @@ template <int D, class T>
 void planProjected(const Case& c, const MemoryCounts& n, BackendKind backend, bool renormalised, MemorySum& sum) {
   const std::uint64_t fluid = n.particles.fluid, nodes = n.pressureGrids.front().nodes;
   planProducts<D, T>(c, n, backend, renormalised, sum);
+  if (c.hasSeveralFluids()) {
+    sum.keep<double>(fluid);
+    sum.keep<std::uint8_t>(n.active);
+  }
   sum.keep<T>(3 * n.active);
   sum.keep<Block<D, T>>(fluid);
   sum.keep<Gathered<D, T>>(4 * fluid);

@@ -12,11 +12,8 @@
 namespace treacle {
 namespace {
 
-ProjectionDegrees degreesOf(const Case& c) {
-  const ProjectedSettings& s = c.solver.projected;
-  const ProjectionConstants constants =
-      c.dimensions == 2 ? projectionConstants(makeMphPairs<2>(c)) : projectionConstants(makeMphPairs<3>(c));
-  return chooseDegrees({s.pressureDegree, s.gridDegree, s.velocityDegree}, constants);
+ProjectionConstants constantsOf(const Case& c) {
+  return c.dimensions == 2 ? projectionConstants(makeMphPairs<2>(c)) : projectionConstants(makeMphPairs<3>(c));
 }
 
 /// The hat multigrid gives up early and is tried again in double precision; the last resort takes no
@@ -41,12 +38,16 @@ std::vector<SolverSettings> isphStages(const Case& c) {
 std::vector<SolverSettings> solveStages(const Case& c, bool shared) {
   if (c.method.kind == MethodKind::Isph) return isphStages(c);
   if (c.solver.preconditioner != PreconditionerKind::ProjectedMultigrid) return {c.solver};
-  const ProjectionDegrees degrees = degreesOf(c);
-  const int bound = c.solver.projected.iterationBound;
+  const ProjectionConstants constants = constantsOf(c);
+  const ProjectedSettings& chosen = c.solver.projected;
+  const ProjectionDegrees degrees =
+      chooseDegrees({chosen.pressureDegree, chosen.gridDegree, chosen.velocityDegree}, constants);
+  const int bound = chosen.iterationBound;
 
   SolverSettings first = c.solver;
   first.projected = {degrees.pressure, degrees.grid, degrees.velocity, bound};
   first.maxIterations = std::min(bound, c.solver.maxIterations);
+  if (constants.stiffness > mostSingleStiffness) first.precision = Precision::Double;
 
   SolverSettings stronger = first;
   stronger.deflation = 0;

@@ -65,6 +65,12 @@ TEST(SharedSimulation, FluidWithHeat) {
   compare<2>({"glass-gob-2d.toml", 5, {"solver.tolerance=1e-18", "solver.deflation=0", "heat.tolerance=1e-20"}});
 }
 
+TEST(SharedSimulation, SeveralFluids) {
+  compare<2>({"honey-and-syrup-2d.toml", 10, {"solver.tolerance=1e-18", "solver.deflation=0"}});
+  compare<2>(
+      {"../tests/validation/cases/two-layer-couette.toml", 3, {"solver.tolerance=1e-18", "solver.deflation=0"}});
+}
+
 TEST(SharedSimulation, AutomaticSteps) {
   compare<2>({"dam-break-2d.toml", 20, {"time.step=auto", "solver.tolerance=1e-18"}});
 }

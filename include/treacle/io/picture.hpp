@@ -19,6 +19,7 @@ enum class PictureField {
   Pressure,
   NumberDensity,
   NearestDistance,
+  Material,
   Temperature,
   DynamicViscosity,
   ShearRate

@@ -377,6 +377,14 @@ struct Case {
   double typicalShift(const Material& m) const;
   /// mu there, of a rheology that at a shear rate of 1/s: for what needs one number that stands for all [Pa s].
   double typicalViscosity(const Material& m) const { return m.viscosity(1, typicalShift(m)); }
+  /// Whether materials differ among the fluids: those of fluid bodies, or all where no body says which.
+  bool hasSeveralFluids() const {
+    const auto isFluid = [](const Body& body) { return body.kind == BodyKind::Fluid; };
+    const auto first = std::ranges::find_if(bodies, isFluid);
+    if (first == bodies.end()) return materials.size() > 1;
+    return std::ranges::any_of(
+        bodies, [&](const Body& body) { return isFluid(body) && body.material != first->material; });
+  }
   /// Steps to the end, where all have one length.
   std::int64_t steps() const { return std::llround(time.end / time.step); }
   /// Whether a run that has made so many steps, and is at time `now` [s], is at its end.

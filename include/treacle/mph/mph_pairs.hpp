@@ -77,11 +77,16 @@ struct MphPairs : MaterialParticles<D> {
   /// Whether all particles have those of class 0.
   TREACLE_HD bool isOneClass() const { return this->isOneSubstance() && !viscosityClass; }
 
-  /// By what the viscosity of fluid particle i with wall particle j is multiplied; d = x_j - x_i [m].
+  /// By what the viscosity of fluid particle i with wall particle j is multiplied; d = x_j - x_i [m]. Where
+  /// several fluids may touch a wall of one material, its surface holds each by its own viscosity.
   TREACLE_HD double wallFactor(std::uint32_t i, std::uint32_t j, const Vec<D>& d) const {
     if (!wallSurface) return 1;
-    return treacle::wallFactor(wallSurface[j - this->fluidCount], d, this->spacing,
-                               this->materials.slipLength[this->material[i]]);
+    const double factor = treacle::wallFactor(wallSurface[j - this->fluidCount], d, this->spacing,
+                                              this->materials.slipLength[this->material[i]]);
+    const Substance fluid = this->substance(i), wall = this->substance(j);
+    if (!classes.ofNeighbours || ownViscosities || fluid == wall) return factor;
+    const double mean = this->viscosity(fluid, wall);
+    return mean > 0 ? factor * this->viscosity(fluid, fluid) / mean : factor;
   }
 };
 

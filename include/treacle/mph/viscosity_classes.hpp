@@ -9,14 +9,16 @@
 namespace treacle {
 
 /// What stands for the viscosity of a particle in the preconditioner, whose constants are numbers per class. The
-/// first classes are the materials, as their walls and Newtonian fluids have them; materials with a rheology share
-/// the others, each in equal steps of the logarithm of what their viscosity may be.
+/// first classes are the materials, as their walls and a single Newtonian fluid have them. Materials with a
+/// rheology share the others, each in equal steps of the logarithm of what their viscosity may be; in a case of
+/// several fluids all of them do, because what resists a particle is then also its neighbours' viscosity.
 struct ViscosityClasses {
   static constexpr int most = 2 * static_cast<int>(maxMaterials);
 
   int count = 0;
   std::uint8_t material[most];
-  double viscosity[most];  // [Pa s]
+  double viscosity[most];     // [Pa s]
+  bool ofNeighbours = false;  // several fluids: by what a particle's pairs resist it, not by its own viscosity
 
   static ViscosityClasses make(const Case& c);
 

@@ -51,6 +51,10 @@ class ParticleProducts<D, T, Cpu> {
   void inverseDiagonals(Context<Cpu>&, const ProjectionTable<T>& table, std::span<T> pressure,
                         std::span<Block<D, T>> velocity) const;
 
+  /// Per fluid particle, ghosts included: the viscosity of a full lattice in which the pairs' mean resistance
+  /// would be what it is, `resistance` being that of the lattice over its viscosity [1/m2].
+  void resistingViscosity(Context<Cpu>&, double resistance, std::span<double> viscosity) const;
+
   /// What `gradient` and `divergence` gather: two fields of scalars and one of vectors, valid until prepare() is
   /// called again.
   ScalarField<T, Cpu> scalars(int which = 0) { return {scalars_[which].data()}; }
@@ -110,6 +114,7 @@ class ParticleProducts<D, T, Cuda> {
   void viscous(Context<Cuda>&, Gathered<D, T>* u, const Store& store) const;
   void inverseDiagonals(Context<Cuda>&, const ProjectionTable<T>& table, std::span<T> pressure,
                         std::span<Block<D, T>> velocity) const;
+  void resistingViscosity(Context<Cuda>&, double resistance, std::span<double> viscosity) const;
   ScalarField<T, Cuda> scalars(int which = 0);
   VectorField<D, T, Cuda> vectors();
   void gather(Context<Cuda>&, std::span<const T> x);

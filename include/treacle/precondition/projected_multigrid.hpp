@@ -26,7 +26,9 @@ struct ProjectionConstants {
   // Largest lambda times largest w times (C^T C)_kk in a full lattice, of the classes that are materials: how much
   // stiffer the bulk viscosity is.
   double stiffness;
-  double extent;  // of the domain, in spacings
+  double resistance;  // V's mean diagonal in a full lattice, over the viscosity [1/m2]
+  double extent;      // of the domain, in spacings
+  bool severalFluids;
 
   /// `shift` of S' in units of 1/lambda.
   template <class T>
@@ -41,6 +43,10 @@ bool isTooStiffToPack(const MphPairs<D>& pairs) {
   return projectionConstants(pairs).stiffness > mostPackedStiffness<D>;
 }
 
+/// In stiffer systems what single precision rounds in S' is as large as its least eigenvalues, and the
+/// preconditioner is no longer positive definite.
+inline constexpr double mostSingleStiffness = 1e5;
+
 /// The degrees that pay: those that `chosen` leaves at zero.
 ProjectionDegrees chooseDegrees(ProjectionDegrees chosen, const ProjectionConstants& constants);
 
@@ -52,8 +58,12 @@ ProjectionDegrees chooseDegrees(ProjectionDegrees chosen, const ProjectionConsta
 template <int D, class T, class Backend = Cpu>
 class ProjectedMultigrid {
  public:
-  /// `pairs`, `terms` and `a` (prepared) must outlive the last apply(). `kept`: the largest eigenvalue of the
-  /// scaled S', if it is known from earlier steps; else it is put there. `mostWhole`: as HatOptions.
+  ProjectedMultigrid() = default;
+  ProjectedMultigrid(const ProjectedMultigrid&) = delete;  // its products point to its pairs
+
+  /// What `pairs` points to, `terms` and `a` (prepared) must outlive the last apply(). `kept`: the largest
+  /// eigenvalue of the scaled S', if it is known from earlier steps; else it is put there. `mostWhole`: as
+  /// HatOptions.
   void setup(Context<Backend>&, const MphPairs<D>& pairs, const WallTerms<D>& terms,
              const MphOperator<D, Backend>& a, const ProjectionDegrees& degrees, KeptEigenvalue* kept = nullptr,
              std::uint64_t mostWhole = anyNumber);
@@ -75,7 +85,11 @@ class ProjectedMultigrid {
   ScalarField<T, Backend> pressureCycle(Context<Backend>&);
   void velocityCycle(Context<Backend>&);
 
-  const MphPairs<D>* pairs_ = nullptr;
+  void findClasses(Context<Backend>&, const ProjectionConstants&);
+
+  MphPairs<D> pairs_;                    // with classes of its own where several fluids meet
+  Buffer<double, Backend> resisting_;    // per fluid particle, there: the viscosity that resists it [Pa s]
+  Buffer<std::uint8_t, Backend> class_;  // per active particle, there
   ProjectionTable<T> table_;
   ProjectionDegrees degrees_;
   ParticleProducts<D, T, Backend> products_;

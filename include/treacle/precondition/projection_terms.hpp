@@ -34,6 +34,15 @@ inline constexpr double pressureShift = 0.18;
 /// iterations grow with the size; anything from 0.0025 to 0.02 does.
 inline constexpr double gridPressureShift = 0.01;
 
+/// The viscosity of a full lattice whose V has the mean diagonal that a diagonal block of rho/dt I + V leaves for
+/// it, `resistance` being that of the lattice for 1 Pa s [1/m2]; positive, for classes go by its logarithm [Pa s].
+template <int D, class T>
+TREACLE_HD double resistingViscosity(const Block<D, T>& block, double inertia, double resistance) {
+  double trace = 0;
+  for (int k = 0; k < D; ++k) trace += static_cast<double>(block(k, k));
+  return fmax((trace / D - inertia) / resistance, 1e-30);
+}
+
 /// Quantities that neighbours gather in every product. On a device in single precision, where C has no B, they
 /// stand beside the position (NearProducts::fixedPosition): what is fetched at once holds both.
 template <class T, class Backend>

@@ -123,6 +123,12 @@ struct Twin {
     products.inverseDiagonals(s.context, table, pressure, velocity);
     productsOnDevice.inverseDiagonals(d.context, table, pressureOnDevice, velocityOnDevice);
     EXPECT_LE(differ(copyToHost(d.context, pressureOnDevice), pressure), toleranceOf<T>) << "diagonal of S'";
+    Buffer<double> resisting(s.n());
+    Buffer<double, Cuda> resistingOnDevice(d.context, s.n());
+    products.resistingViscosity(s.context, constants.resistance, resisting.span());
+    productsOnDevice.resistingViscosity(d.context, constants.resistance, resistingOnDevice.span());
+    EXPECT_LE(differ(copyToHost(d.context, resistingOnDevice), resisting), toleranceOf<T>)
+        << "resisting viscosity";
     checkViscous(u, uOnDevice, velocity, velocityOnDevice);
   }
 

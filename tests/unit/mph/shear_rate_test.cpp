@@ -136,6 +136,7 @@ TEST(ParticleViscosity, OfOtherMaterialsMeetsAsLayersDo) {
 
 TEST(ViscosityClasses, CoverWhatAViscosityCanBe) {
   Case c = sceneCase(2);
+  c.bodies.push_back({.name = "fluid", .material = 1});
   c.materials[1].rheology =
       Rheology{.model = RheologyModel::PowerLaw, .consistency = 3, .flowIndex = 0.5, .mostViscosity = 3e4};
   const auto classes = ViscosityClasses::make(c);
@@ -149,6 +150,32 @@ TEST(ViscosityClasses, CoverWhatAViscosityCanBe) {
   }
   EXPECT_EQ(classes.of(1, 1e9), classes.of(1, 3e4));
   EXPECT_EQ(classes.of(1, 1e-9), classes.of(1, 3e-3));
+}
+
+/// Where fluids meet, each has classes of what its neighbours may make of it.
+TEST(ViscosityClasses, OfSeveralFluidsAreByWhatResistsThem) {
+  Case c = sceneCase(2);
+  const auto add = [&](BodyKind kind, int material) {
+    c.bodies.push_back({.name = std::to_string(c.bodies.size()), .kind = kind, .material = material});
+  };
+  add(BodyKind::Fluid, 0), add(BodyKind::Wall, 1);
+  EXPECT_FALSE(ViscosityClasses::make(c).ofNeighbours) << "a wall is no fluid";
+  add(BodyKind::Fluid, 1);
+  const auto classes = ViscosityClasses::make(c);
+  EXPECT_TRUE(classes.ofNeighbours);
+  EXPECT_LE(classes.count, ViscosityClasses::most);
+  for (const std::uint8_t m : {0, 1}) {
+    const double own = c.materials[m].dynamicViscosity;
+    EXPECT_EQ(classes.viscosity[m], own);
+    for (double mu = own / 16; mu < 8 * own; mu *= 1.1) {
+      const int k = classes.of(m, mu);
+      ASSERT_LT(k, classes.count);
+      ASSERT_EQ(classes.material[k], m);
+      ASSERT_LT(std::abs(std::log(classes.viscosity[k] / mu)), 0.17) << mu;
+    }
+  }
+  c.materials[1].dynamicViscosity = 0;
+  EXPECT_EQ(ViscosityClasses::make(c).of(1, 1), 1) << "no range of viscosities";
 }
 
 }  // namespace

@@ -159,6 +159,15 @@ void checkProducts(Scene<D> scene, double tolerance) {
     const Matrix block = velocity.block(D * i, D * i, D, D);
     ASSERT_LT((inverse * block - Matrix::Identity(D, D)).norm(), 100 * tolerance) << i;
   }
+
+  Buffer<double> resisting(s.n());
+  parts.products.resistingViscosity(s.context, parts.constants.resistance, resisting.span());
+  for (std::uint32_t i = 0; i < s.n(); ++i) {
+    double mean = 0;  // of what the particle's own velocity meets in V
+    for (int k = 0; k < D; ++k) mean += velocity(D * i + k, D * i + k) / D;
+    const double inertia = Oracle<D>(s).material(i).density / s.c.time.step;
+    ASSERT_NEAR(resisting[i] * parts.constants.resistance, mean - inertia, 100 * tolerance * mean) << i;
+  }
 }
 
 TEST(ParticleProducts, AreThoseOfTheFormulasAndInverseDiagonalsAreTheirs) {

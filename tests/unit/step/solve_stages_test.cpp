@@ -44,6 +44,13 @@ TEST(SolveStages, DegreesAreChosenByTheStiffnessOfTheCase) {
   EXPECT_GT(pressureDegree(1e4), 4 * single);
 }
 
+TEST(SolveStages, SystemsTooStiffForSinglePrecisionBeginInDouble) {
+  Case c = sceneCase(2, false);
+  EXPECT_EQ(solveStages(c).front().precision, Precision::Mixed);
+  for (Material& m : c.materials) m.bulkViscosity = 1e8;
+  EXPECT_EQ(solveStages(c).front().precision, Precision::Double);
+}
+
 TEST(SolveStages, OtherPreconditionersHaveNoFallback) {
   Case c = sceneCase(2);
   for (const auto k :
