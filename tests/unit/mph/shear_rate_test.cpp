@@ -136,7 +136,8 @@ TEST(ParticleViscosity, OfOtherMaterialsMeetsAsLayersDo) {
 
 TEST(ViscosityClasses, CoverWhatAViscosityCanBe) {
   Case c = sceneCase(2);
-  c.bodies.push_back({.name = "fluid", .material = 1});
+  Body& body = c.bodies.emplace_back();
+  body.name = "fluid", body.material = 1;
   c.materials[1].rheology =
       Rheology{.model = RheologyModel::PowerLaw, .consistency = 3, .flowIndex = 0.5, .mostViscosity = 3e4};
   const auto classes = ViscosityClasses::make(c);
@@ -156,7 +157,8 @@ TEST(ViscosityClasses, CoverWhatAViscosityCanBe) {
 TEST(ViscosityClasses, OfSeveralFluidsAreByWhatResistsThem) {
   Case c = sceneCase(2);
   const auto add = [&](BodyKind kind, int material) {
-    c.bodies.push_back({.name = std::to_string(c.bodies.size()), .kind = kind, .material = material});
+    Body& body = c.bodies.emplace_back();
+    body.name = std::to_string(c.bodies.size()), body.kind = kind, body.material = material;
   };
   add(BodyKind::Fluid, 0), add(BodyKind::Wall, 1);
   EXPECT_FALSE(ViscosityClasses::make(c).ofNeighbours) << "a wall is no fluid";
