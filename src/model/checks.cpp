@@ -235,6 +235,21 @@ void warnCourant(const Case& c, std::vector<std::string>& warnings) {
       c.time.step * largest / number));
 }
 
+/// Surface tension acts as it is at the start of a step: a step is not to be much longer than what viscosity and
+/// inertia take to move a particle by its spacing (docs/surface-tension.md).
+void warnTension(const Case& c, std::vector<std::string>& warnings) {
+  for (const Material& m : c.materials) {
+    if (m.surfaceTension == 0) continue;
+    const double most = std::max(2 * c.typicalViscosity(m) * c.spacing / m.surfaceTension,
+                                 std::sqrt(m.density * std::pow(c.spacing, 3) / m.surfaceTension));
+    if (c.time.step <= most * (1 + rounding)) continue;
+    warnings.push_back(fmt::format(
+        "material '{}': steps of {:g} s are long for its surface tension, particles of the surface may leave it; "
+        "take {} <= {:.2g}",
+        m.name, c.time.step, c.time.stepKey(), most));
+  }
+}
+
 void warnTimes(const Case& c, std::vector<std::string>& warnings) {
   if (!wholeNumber(c.time.end / c.time.step))
     warnings.push_back(fmt::format(
@@ -302,6 +317,7 @@ std::vector<std::string> caseWarnings(const Case& c) {
     warnSoftFluids(c, warnings);
   }
   warnCourant(c, warnings);
+  warnTension(c, warnings);
   warnThinWalls(c, warnings);
   warnShortRadii(c, warnings);
   if (!c.time.stepsVary()) warnTimes(c, warnings);

@@ -199,6 +199,9 @@ void requireSound(const Checker& at, const Material& m) {
                                       nameOf(MethodKind::MphI), nameOf(at.wholeCase().method.kind)));
   if (m.viscosityShift && !at.wholeCase().heat)
     at.fail({"viscosity_shift"}, "there are no temperatures in a case without [heat]");
+  if (m.surfaceTension != 0 && at.wholeCase().method.kind != MethodKind::MphI)
+    at.fail({"surface_tension"}, fmt::format("only the method '{}' has surface tension, found '{}'",
+                                             nameOf(MethodKind::MphI), nameOf(at.wholeCase().method.kind)));
   if (m.rheology && m.dynamicViscosity != 0) at.fail({"dynamic_viscosity"}, viscosityBesideRheology);
 }
 

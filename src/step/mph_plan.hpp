@@ -47,6 +47,7 @@ void planFields(const Case& c, const MemoryCounts& n, bool withGradient, MemoryS
   } else if (c.method.viscosityCorrection != 0) {
     sum.keep<double>(fluid);
   }
+  if (c.hasSurfaceTension()) sum.keep<Vec<D>>(fluid);
   sum.keep<Block<D>>(fluid);
   if (withGradient) sum.keep<Vec<D>>(fluid);
   sum.keep<double>(fluid + 2 * n.active);
@@ -56,6 +57,7 @@ void planFields(const Case& c, const MemoryCounts& n, bool withGradient, MemoryS
   planLists(n.balanceLists, sum);
   sum.keep<double>(fluid * (c.repulsionRadius() > 0 ? 2 : 1) + 2 * walls);
   sum.keep<Vec<D>>(walls);
+  if (c.hasSurfaceTension()) sum.keep<Vec<D>>(fluid);
 }
 
 /// MphOperator, matrix-free.

@@ -4,6 +4,7 @@
 #include "step_heat.hpp"
 #include "step_method.hpp"
 #include "step_rheology.hpp"
+#include "step_surface.hpp"
 #include "take_trial.hpp"
 #include "treacle/core/halo.hpp"
 #include "treacle/model/particles_copy.hpp"
@@ -32,6 +33,7 @@ class MphStep final : public StepMethod<D, Backend> {
         solver_(solveStages(state.theCase, state.context.communicator != nullptr)) {
     if (state.theCase.hasOwnViscosities()) rheology_.emplace(state.theCase);
     if (state.theCase.heat) heat_.emplace(state.theCase, pairs_);
+    if (state.theCase.hasSurfaceTension()) surface_.emplace(state.theCase);
   }
 
   void sortParticles() override { neighbourhood_.sort(state_.context, state_.particles); }
@@ -49,6 +51,7 @@ class MphStep final : public StepMethod<D, Backend> {
     neighbourhood_.setTimeStep(state_.timeStep);
     placeWallSurfaces();
     renormalise();
+    if (surface_) surface_->prepare(state_, pairs_);
     scaleViscosity();
     computeDensities();
     wallDensity_.resize(state_.context, state_.particles.fluidCount);
@@ -130,7 +133,8 @@ class MphStep final : public StepMethod<D, Backend> {
     fillGhosts(state_.context, Held::Active, divergence_.data());
     bulkPressure<D>(state_.context, pairs_, divergence_, elastic_, state_.particles.pressure.span().first(active));
     if (rheology_) rheology_->accept(state_);
-    if (state_.theCase.output.balance) lastBalance_ = balance_.make(state_, neighbourhood_, divergence_, elastic_);
+    if (state_.theCase.output.balance)
+      lastBalance_ = balance_.make(state_, neighbourhood_, divergence_, elastic_, surface_ ? &*surface_ : nullptr);
     if (heat_) acceptHeat();
     // The velocities of the start are given, no solution: nothing follows from the way to the first one.
     if (state_.step > 0)
@@ -152,9 +156,10 @@ class MphStep final : public StepMethod<D, Backend> {
   const MaterialTable& materials() const override { return pairs_.materials; }
   std::size_t bytes() const override {
     return neighbourhood_.bytes() + wallSurface_.bytes() + renormalisation_.bytes() + viscosityScale_.bytes() +
-           (rheology_ ? rheology_->bytes() : 0) + (heat_ ? heat_->bytes() : 0) + wallBlock_.bytes() +
-           wallGradient_.bytes() + wallDensity_.bytes() + elastic_.bytes() + divergence_.bytes() + rhs_.bytes() +
-           found_.bytes() + solver_.bytes() + balance_.bytes();
+           (rheology_ ? rheology_->bytes() : 0) + (heat_ ? heat_->bytes() : 0) +
+           (surface_ ? surface_->bytes() : 0) + wallBlock_.bytes() + wallGradient_.bytes() + wallDensity_.bytes() +
+           elastic_.bytes() + divergence_.bytes() + rhs_.bytes() + found_.bytes() + solver_.bytes() +
+           balance_.bytes();
   }
 
  private:
@@ -247,6 +252,7 @@ class MphStep final : public StepMethod<D, Backend> {
                          resized<D>(state_.theCase.gravity), rhs_);
     addPressureGradient<D>(state_.context, pairs_, elastic_, -1.0, rhs_);
     if (pairs_.terms.repulsionRadius > 0) addRepulsion<D>(state_.context, pairs_, 1 / state_.timeStep, rhs_);
+    if (surface_) surface_->addForces(state_, pairs_, rhs_);
     if (state_.wallsMove) addWallVelocities();
   }
 
@@ -290,6 +296,7 @@ class MphStep final : public StepMethod<D, Backend> {
   std::optional<StepRheology<D, Backend>> rheology_;  // where particles have their own viscosities
   Buffer<Vec<D>, Backend> found_;                     // velocities of the last solve, while the next is prepared
   std::optional<StepHeat<D, Backend>> heat_;          // where the case has heat
+  std::optional<StepSurface<D, Backend>> surface_;    // where some fluid has a surface tension
   StepBalance<D, Backend> balance_;
   std::optional<Balance> lastBalance_;
 };

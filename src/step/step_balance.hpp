@@ -1,6 +1,7 @@
 #pragma once
 
 #include "flow_state.hpp"
+#include "step_surface.hpp"
 #include "treacle/model/balance.hpp"
 #include "treacle/model/wall_motion.hpp"
 #include "treacle/mph/mph_balance.hpp"
@@ -18,20 +19,27 @@ template <int D, class Backend>
 class StepBalance {
  public:
   /// Once state.velocity and the pressures are those of the end of the step; positions and particles' velocities
-  /// are still those of its start. `divergence`: C^T u^{k+1}, `elastic`: kappa [n - n_0]_+, per active particle.
+  /// are still those of its start. `divergence`: C^T u^{k+1}, `elastic`: kappa [n - n_0]_+, per active particle;
+  /// `surface`: null where no fluid has a surface tension.
   Balance make(FlowState<D, Backend>& state, const MphNeighbourhood<D, Backend>& neighbourhood,
-               std::span<const double> divergence, std::span<const double> elastic) {
+               std::span<const double> divergence, std::span<const double> elastic,
+               const StepSurface<D, Backend>* surface) {
     const MphPairs<D>& pairs = neighbourhood.pairs();
     sumPairs(state, neighbourhood);
     Balance balance;
-    setPowers(state, pairs, divergence, elastic, balance);
+    if (surface) {
+      surfaceForce_.resize(state.context, pairs.fluidCount);
+      clearValues(state.context, surfaceForce_.span());
+      surface->addForces(state, pairs, surfaceForce_.span());
+    }
+    setPowers(state, pairs, divergence, elastic, surface, balance);
     setLoads(state, pairs, balance);
     return balance;
   }
 
   std::size_t bytes() const {
     return walls_.bytes() + shear_.bytes() + wallForce_.bytes() + wallDivergence_.bytes() + wallDensity_.bytes() +
-           repulsion_.bytes();
+           repulsion_.bytes() + surfaceForce_.bytes();
   }
 
  private:
@@ -61,12 +69,22 @@ class StepBalance {
   }
 
   void setPowers(FlowState<D, Backend>& state, const MphPairs<D>& pairs, std::span<const double> divergence,
-                 std::span<const double> elastic, Balance& balance) {
+                 std::span<const double> elastic, const StepSurface<D, Backend>* surface, Balance& balance) {
     using Terms = PowerTerms<D>;
-    const Terms terms{
-        pairs.fluidCount, pairs.ownFluid(), pairs.materials, pairs.material, state.particles.velocity,
-        state.velocity,   divergence,       elastic,         shear_,         wallDivergence_,
-        wallDensity_,     repulsion_};
+    const Terms terms{pairs.fluidCount,
+                      pairs.ownFluid(),
+                      pairs.materials,
+                      pairs.material,
+                      state.particles.velocity,
+                      state.velocity,
+                      divergence,
+                      elastic,
+                      shear_,
+                      wallDivergence_,
+                      wallDensity_,
+                      repulsion_,
+                      surfaceForce_,
+                      surface ? surface->slope() : std::span<const Vec<D>>{}};
     const auto sums = sumPowers<D>(state.context, terms, pairs.ownEnd());
     const double volume = std::pow(pairs.spacing, D);  // [K23 eq. (11)]
     balance.shearDissipation = volume * sums[Terms::Shear];
@@ -74,6 +92,8 @@ class StepBalance {
     balance.inertialLoss = volume * sums[Terms::Inertial];
     balance.elasticPower = volume * sums[Terms::Elastic];
     balance.repulsionPower = volume * sums[Terms::Repulsion];
+    balance.surfacePower = volume * sums[Terms::Surface];
+    balance.surfaceEnergy = volume * sums[Terms::SurfaceEnergy];
     balance.elasticEnergy = volume * sums[Terms::ElasticEnergy];
   }
 
@@ -99,6 +119,7 @@ class StepBalance {
   Buffer<double, Backend> wallDivergence_;  // [1/s]
   Buffer<double, Backend> wallDensity_;     // [-]
   Buffer<double, Backend> repulsion_;       // [W/m3]; empty where the scheme has none
+  Buffer<Vec<D>, Backend> surfaceForce_;    // per fluid particle [N/m3]; empty where there is no surface tension
 };
 
 }  // namespace treacle

@@ -17,6 +17,14 @@ std::string exceeded(const std::string& text, const char* key, double most) {
   return fmt::format("{} (watch.{} = {:g} is exceeded)", text, key, most);
 }
 
+/// What surface tension can give to so much fluid, up to the surface of a cube or square of it [J].
+double surfaceEnergy(const Case& c, double particles) {
+  double tension = 0;
+  for (const Material& m : c.materials) tension = std::max(tension, m.surfaceTension);
+  const double d = c.dimensions;
+  return tension * 2 * d * std::pow(c.spacing * std::pow(particles, 1 / d), d - 1);
+}
+
 }  // namespace
 
 /// One number that is watched, what it may come to, from which share of that on it gives warnings, and what it
@@ -45,7 +53,7 @@ Watch::Watch(const Case& c, const Diagnostics& start, double mass, double partic
   // up to half the way of a pair in a step.
   const double speed = std::max(0.01 * c.spacing, 0.5 * c.repulsionRadius()) / c.time.step;
   const double settling = mass * (norm(c.gravity) * c.spacing + 0.5 * speed * speed);
-  given_ = start.kineticEnergy + start.elasticEnergy + settling;
+  given_ = start.kineticEnergy + start.elasticEnergy + settling + surfaceEnergy(c, particles);
 }
 
 Watched Watch::look(double dt, const Diagnostics& d, std::vector<std::string>& warnings) {

@@ -75,6 +75,9 @@ inline void expectSame(const Case& c, const StepReport& a, const StepReport& b, 
   expectNear(a.balance->bulkDissipation, b.balance->bulkDissipation, power, "bulk", b.step);
   expectNear(a.balance->elasticPower, b.balance->elasticPower, power, "elastic power", b.step);
   expectNear(a.balance->repulsionPower, b.balance->repulsionPower, power, "repulsion", b.step);
+  expectNear(a.balance->surfacePower, b.balance->surfacePower, power, "surface power", b.step);
+  expectNear(a.balance->surfaceEnergy, b.balance->surfaceEnergy, b.balance->surfaceEnergy, "surface energy",
+             b.step);
 }
 
 /// Particles by identifier.

@@ -71,6 +71,14 @@ TEST(SharedSimulation, SeveralFluids) {
       {"../tests/validation/cases/two-layer-couette.toml", 3, {"solver.tolerance=1e-18", "solver.deflation=0"}});
 }
 
+TEST(SharedSimulation, FluidWithASurfaceTension) {
+  compare<2>(
+      {"dam-break-2d.toml", 5, {"fluid.surface_tension=1", "solver.tolerance=1e-18", "solver.deflation=0"}});
+  compare<3>({"dam-break-3d.toml",
+              3,
+              {"fluid.surface_tension=1", "resolution=0.5", "solver.tolerance=1e-18", "solver.deflation=0"}});
+}
+
 TEST(SharedSimulation, AutomaticSteps) {
   compare<2>({"dam-break-2d.toml", 20, {"time.step=auto", "solver.tolerance=1e-18"}});
 }

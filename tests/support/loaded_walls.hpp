@@ -85,7 +85,7 @@ struct StepEnergy {
     const Balance& b = *report.balance;
     const double dt = report.timeStep;
     lost = dt * (b.inertialLoss + b.shearDissipation + b.bulkDissipation);
-    given = dt * (b.elasticPower + b.wallPower + b.repulsionPower) + fallen;
+    given = dt * (b.elasticPower + b.wallPower + b.repulsionPower + b.surfacePower) + fallen;
   }
   double scale() const { return std::abs(gained) + lost + std::abs(given); }
 };

@@ -42,6 +42,7 @@ inline std::vector<MemoryCase> memoryCases() {
   all.push_back({"dam-break-3d.toml", {"resolution=0.5", "fluid.bulk_viscosity=1e5"}});
   all.push_back({"glass-gob-2d.toml", {"resolution=2", "solver.deflation=0"}});
   all.push_back({"honey-and-syrup-2d.toml", {"solver.deflation=0"}});
+  all.push_back({"merging-drops-2d.toml", {"solver.deflation=0"}});
   all.push_back({"isph-dam-break-2d.toml", {}});
   all.push_back({"isph-dam-break-2d.toml", {"solver.preconditioner=cell-multigrid"}});
   all.push_back({"isph-dam-break-2d.toml", {"method.viscosity=implicit", "water.dynamic_viscosity=1"}});

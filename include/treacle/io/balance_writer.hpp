@@ -22,6 +22,7 @@ class BalanceWriter {
  private:
   int dimensions_;
   bool repels_;
+  bool hasSurface_;
   RowFile file_;
 };
 

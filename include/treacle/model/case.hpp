@@ -26,6 +26,7 @@ struct Material {
   double bulkViscosity = 0;     // lambda [Pa s]
   double bulkModulus = 0;       // kappa [Pa]
   double slipLength = 0;        // how far behind a wall its velocity, extrapolated, is the wall's [m]; 0: no slip
+  double surfaceTension = 0;    // gamma of its free surface [N/m]; MPH-I only
   std::optional<Rheology> rheology{};  // of a fluid that is not Newtonian; MPH-I only
   // In cases with heat.
   double specificHeat = 0;                         // c_p [J/(kg K)]
@@ -384,6 +385,9 @@ struct Case {
     if (first == bodies.end()) return materials.size() > 1;
     return std::ranges::any_of(
         bodies, [&](const Body& body) { return isFluid(body) && body.material != first->material; });
+  }
+  bool hasSurfaceTension() const {
+    return std::ranges::any_of(materials, [](const Material& m) { return m.surfaceTension > 0; });
   }
   /// Steps to the end, where all have one length.
   std::int64_t steps() const { return std::llround(time.end / time.step); }

@@ -3,6 +3,7 @@
 #include "treacle/core/cuda.hpp"
 #include "treacle/core/macros.hpp"
 #include "treacle/mph/mph_pairs.hpp"
+#include "treacle/mph/surface_tension.hpp"
 
 #include <array>
 #include <cstddef>
@@ -16,7 +17,7 @@ namespace treacle {
 /// those of walls start with the first wall particle.
 template <int D>
 struct PowerTerms {
-  enum { Shear, Bulk, Inertial, Elastic, ElasticEnergy, Repulsion, count };
+  enum { Shear, Bulk, Inertial, Elastic, ElasticEnergy, Repulsion, Surface, SurfaceEnergy, count };
 
   std::uint32_t fluidCount, ownFluid;  // fluid from ownFluid on is other processes'
   MaterialTable materials;
@@ -27,7 +28,9 @@ struct PowerTerms {
   std::span<const double> shear;           // of the fluid [W/m3]
   std::span<const double> wallDivergence;  // the fluid's parts of C^T u and n at walls
   std::span<const double> wallDensity;
-  std::span<const double> repulsion;  // what it gives to the fluid [W/m3], or empty
+  std::span<const double> repulsion;     // what it gives to the fluid [W/m3], or empty
+  std::span<const Vec<D>> surfaceForce;  // of surface tension on the fluid [N/m3], or empty
+  std::span<const Vec<D>> surfaceSlope;  // m of it (surface_tension.hpp), or empty
 
   /// Pairs of walls do no work on the fluid, and what they are compressed by without fluid it cannot get back.
   TREACLE_HD void add(std::size_t i, double* sums) const {
@@ -44,6 +47,10 @@ struct PowerTerms {
     if (!fluid) return;
     sums[Shear] += shear[i];
     if (!repulsion.empty()) sums[Repulsion] += repulsion[i];
+    if (!surfaceForce.empty()) {
+      sums[Surface] += dot(surfaceForce[i], after[i]);
+      sums[SurfaceEnergy] += surfaceEnergyShare * norm2(surfaceSlope[i]);
+    }
     sums[Inertial] += 0.5 * materials.inertia[m] * norm2(after[i] - before[i]);
   }
 };

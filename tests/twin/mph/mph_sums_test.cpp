@@ -6,6 +6,7 @@
 #include "treacle/mph/mph_operator.hpp"
 #include "treacle/mph/mph_repulsion.hpp"
 #include "treacle/mph/renormalisation.hpp"
+#include "treacle/mph/surface_tension.hpp"
 #include "treacle/mph/viscosity_scale.hpp"
 
 #include <gtest/gtest.h>
@@ -218,6 +219,34 @@ TEST(PairSumsTwin, RepulsionEqualsTheCpu) {
   for (const bool lists : {true, false}) {
     checkRepulsion<2>(lists);
     checkRepulsion<3>(lists);
+  }
+}
+
+template <int D>
+void checkSurfaceTension(bool lists) {
+  Scene<D> s = makeScene<D>({.seed = 3, .jitter = 0.3, .scheme = SchemeKind::Accurate});
+  DeviceScene<D> d(s);
+  if (!lists) d.pairs.fluidList.offset = d.pairs.wallList.offset = nullptr;
+  const std::uint32_t n = s.pairs().fluidCount;
+  s.c.materials[0].surfaceTension = 0.07;
+  const SurfaceTerms<D> terms = SurfaceTerms<D>::make(s.c);
+  std::vector<Vec<D>> slope(n), force(n);
+  Buffer<Vec<D>, Cuda> slopeFound(d.context, n);
+  auto forceFound = copyToDevice<Vec<D>>(d.context, force);
+
+  surfaceSlope<D>(s.context, s.pairs(), terms, slope);
+  surfaceSlope<D>(d.context, d.pairs, terms, slopeFound.span());
+  EXPECT_LE(difference<Vec<D>>(d.context, slope, slopeFound), operatorTolerance);
+  addSurfaceTension<D>(s.context, s.pairs(), terms, slope, force);
+  addSurfaceTension<D>(d.context, d.pairs, terms, copyToDevice<Vec<D>>(d.context, slope), forceFound.span());
+  EXPECT_LE(difference<Vec<D>>(d.context, force, forceFound), operatorTolerance);
+}
+
+TEST(PairSumsTwin, SurfaceTensionEqualsTheCpu) {
+  TREACLE_SKIP_WITHOUT_GPU();
+  for (const bool lists : {true, false}) {
+    checkSurfaceTension<2>(lists);
+    checkSurfaceTension<3>(lists);
   }
 }
 

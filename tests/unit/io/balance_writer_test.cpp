@@ -61,6 +61,18 @@ TEST(BalanceWriter, ThePowerOfTheRepulsionStandsWhereTheSchemeHasOne) {
                                                     "3,0.003,1,2.5,0.001,-4,1e-20,0.1,0.75,7,-8,9\n");
 }
 
+TEST(BalanceWriter, SurfacesStandWhereSomeFluidHasATension) {
+  TemporaryDirectory directory;
+  Case c = caseOf(2, {});
+  c.materials.emplace_back().surfaceTension = 0.07;
+  Balance balance{1, 2.5, 1e-3, -4, 1e-20, 0.1, {}};
+  balance.surfacePower = -0.25, balance.surfaceEnergy = 8;
+  BalanceWriter writer(directory / "balance.csv", c);
+  writer.append(3, 0.003, balance);
+  EXPECT_EQ(content(directory / "balance.csv"),
+            std::string(powers) + ",surface_power,surface_energy\n3,0.003,1,2.5,0.001,-4,1e-20,0.1,-0.25,8\n");
+}
+
 TEST(BalanceWriter, NumbersReadBackToTheSameBits) {
   TemporaryDirectory directory;
   const auto value = [](int k) { return std::exp(20 * std::sin(k)) / 3; };

@@ -1,6 +1,7 @@
 #include "treacle/model/checks.hpp"
 #include "treacle/model/case_keys.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -191,6 +192,19 @@ TEST(caseWarnings, compressionWhereDensitiesReachFartherThanDivergences) {
       ElementsAre(AllOf(HasSubstr("dt kappa / lambda = 0.8 is greater than 0.5"),
                         HasSubstr("bulk_modulus <= 0.5 bulk_viscosity / step, or a step of at most 0.000625 s"))));
   c.method.pressureRadius = 3;
+  EXPECT_THAT(caseWarnings(c), IsEmpty());
+}
+
+TEST(caseWarnings, stepsThatAreLongForASurfaceTension) {
+  Case c = damBreak();
+  Material& fluid = c.materials[0];
+  fluid.surfaceTension = 2 * fluid.dynamicViscosity * c.spacing / c.time.step;
+  EXPECT_THAT(caseWarnings(c), IsEmpty());
+  fluid.surfaceTension *= 1.25;
+  const std::string most = fmt::format("take time.step <= {:.2g}", 0.8 * c.time.step);
+  EXPECT_THAT(caseWarnings(c), ElementsAre(AllOf(HasSubstr("long for its surface tension"), HasSubstr(most))));
+  fluid.dynamicViscosity = 0;
+  fluid.surfaceTension = fluid.density * std::pow(c.spacing, 3) / (c.time.step * c.time.step);
   EXPECT_THAT(caseWarnings(c), IsEmpty());
 }
 

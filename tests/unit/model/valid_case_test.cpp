@@ -344,6 +344,13 @@ const Mistake mistakes[] = {
      "[[material]] 'syrup'",
      "found 0, and bulk_modulus = 0: such a fluid has no pressure and falls through walls; expected one of them "
      "positive, and bulk_modulus <= 0.5 bulk_viscosity / step"},
+    {"surfaceTension",
+     mph,
+     [](Case& c) { c.materials[0].surfaceTension = -1; },
+     {"syrup.surface_tension=-1"},
+     {"material", "syrup", "surface_tension"},
+     "[[material]] 'syrup'",
+     "expected a number not less than 0 [N/m], found -1"},
     {"watchedShare",
      mph,
      [](Case& c) { c.watch.insideWalls = 2; },
@@ -459,6 +466,9 @@ TEST(requireValid, refusesWhatOnlyCodeCanSay) {
             "solver.krylov: expected 'cg' or 'cr', found ''");
   EXPECT_EQ(messageFor(isph, [](Case& c) { c.output.balance = true; }),
             "output.balance: only the method 'mph-i' has one, found 'isph'");
+  // A file's reader has no such key with ISPH.
+  EXPECT_EQ(messageFor(isph, [](Case& c) { c.materials[0].surfaceTension = 0.07; }),
+            "material.syrup.surface_tension: only the method 'mph-i' has surface tension, found 'isph'");
 }
 
 TEST(requireValid, knowsDirectionsOfLengthZeroInSpace) {

@@ -81,6 +81,20 @@ TEST(Balance, EnergyIsConserved) {
   checkMotions<3>(checkEnergy<3>);
 }
 
+TEST(Balance, SurfaceTensionGivesWhatItsSurfaceHad) {
+  LoadedWalls<2> start(WallsMove::Apart, 1, SchemeKind::Accurate);
+  for (Material& m : start.c.materials) m.surfaceTension = 1;
+  Simulation<2> s = start.simulation<Cpu>();
+  for (int k = 0; k < 3; ++k) {
+    const Diagnostics before = s.diagnostics();
+    const StepReport report = s.advance();
+    const StepEnergy energy(before, report);
+    EXPECT_NEAR(energy.gained + energy.lost, energy.given, 5e-12 * energy.scale());
+    EXPECT_GT(std::abs(report.timeStep * report.balance->surfacePower), 1e-6 * energy.scale());
+    EXPECT_GT(report.balance->surfaceEnergy, 0);
+  }
+}
+
 TEST(Balance, ForcesOnWallsAreTheMomentumThatTheFluidLoses) {
   checkMotions<2>(checkMomenta<2>);
   checkMotions<3>(checkMomenta<3>);

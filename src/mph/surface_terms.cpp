@@ -1,0 +1,26 @@
+#include "treacle/model/lattice_sum.hpp"
+#include "treacle/mph/surface_tension.hpp"
+
+#include <cmath>
+
+namespace treacle {
+
+template <int D>
+SurfaceTerms<D> SurfaceTerms<D>::make(const Case& c) {
+  const double h = c.interactionRadius();
+  SurfaceTerms terms{};
+  terms.inverseSquare = 1 / (h * h);
+  const double lattice =
+      1 + latticeSum<D>(h, c.spacing, [&](double r) { return std::pow(positivePart(1 - r * r / (h * h)), 4); });
+  terms.gradientFactor = 8 / (h * h * lattice);
+  terms.coreRadius = 0.95 * c.spacing;
+  terms.coreFactor = 0.5 / (terms.coreRadius * terms.coreRadius);
+  terms.noise2 = 0.01 / (h * h);
+  for (std::size_t m = 0; m < c.materials.size(); ++m) terms.tension[m] = c.materials[m].surfaceTension;
+  return terms;
+}
+
+template struct SurfaceTerms<2>;
+template struct SurfaceTerms<3>;
+
+}  // namespace treacle
