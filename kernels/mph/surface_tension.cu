@@ -5,41 +5,61 @@
 namespace treacle {
 namespace {
 
-/// m per fluid particle, from G: all neighbours, walls included.
+/// What fluid and walls are around each fluid particle.
 template <int D>
-struct SurfaceSlope {
-  static constexpr int values = D;
+struct SumSurface {
+  static constexpr int values = 2 * D + 3;
   static constexpr bool uses(ListSegment) { return true; }
-  using StoresVectors = void;
   struct Own {};
-  using Other = Own;
+  struct Other {
+    double pull;
+  };
 
   SurfaceTerms<D> terms;
-  Vec<D>* m;
+  SurfaceSums<D>* sums;
 
   __device__ Own loadOwn(const MphPairs<D>&, std::uint32_t) const { return {}; }
-  __device__ Other loadOther(const MphPairs<D>&, std::uint32_t) const { return {}; }
-
-  __device__ void add(const MphPairs<D>&, double* sum, const Vec<D>& d, const PairDistance<double>& r, Own, Other,
-                      ListSegment) const {
-    addScaled(sum, terms.gradient(r.square), d);
+  __device__ Other loadOther(const MphPairs<D>& pairs, std::uint32_t j) const {
+    return {terms.pull[pairs.material[j]]};
   }
-  __device__ void store(const MphPairs<D>& pairs, std::uint32_t i, const Vec<D>& g) const {
-    m[i] = terms.slope(pairs.material[i], g);
+
+  __device__ void add(const MphPairs<D>&, double* sum, const Vec<D>& d, const PairDistance<double>& r, Own,
+                      const Other& other, ListSegment segment) const {
+    const double g = terms.gradient(r.square), share = terms.share(g, r.square);
+    if (isFluid(segment)) {
+      addScaled(sum, g, d);
+      sum[2 * D] += share;
+      return;
+    }
+    addScaled(sum + D, g, d);
+    sum[2 * D + 1] += share;
+    sum[2 * D + 2] = fma(share, other.pull, sum[2 * D + 2]);
+  }
+  __device__ void store(const MphPairs<D>&, std::uint32_t i, int n, double sum) const {
+    SurfaceSums<D>& s = sums[i];
+    double& value = n < D            ? s.fluid[n]
+                    : n < 2 * D      ? s.wall[n - D]
+                    : n == 2 * D     ? s.filled
+                    : n == 2 * D + 1 ? s.walls
+                                     : s.pull;
+    value = sum;
   }
 };
 
-/// y += force of the surface per fluid particle, from the fluid around it.
+/// y += force of the surface per fluid particle, from the fluid and the walls around it.
 template <int D>
 struct SurfaceForce {
   static constexpr int values = D;
   static constexpr bool uses(ListSegment s) { return isFluid(s); }
+  using StoresVectors = void;
   using Own = Vec<D>;
   using Other = Vec<D>;
 
   SurfaceTerms<D> terms;
+  const SurfaceSums<D>* sums;
   const Vec<D>* m;
   Vec<D>* y;
+  Vec<D>* ofWalls;  // or null
 
   __device__ Own loadOwn(const MphPairs<D>&, std::uint32_t i) const { return m[i]; }
   __device__ Other loadOther(const MphPairs<D>&, std::uint32_t j) const { return m[j]; }
@@ -51,27 +71,76 @@ struct SurfaceForce {
     addScaled(sum, -g * dot(own, d), own);
     addScaled(sum, -g * dot(other, d), other);
   }
-  __device__ void store(const MphPairs<D>&, std::uint32_t i, int n, double sum) const { y[i][n] += sum; }
+  __device__ void store(const MphPairs<D>&, std::uint32_t i, const Vec<D>& ofFluid) const {
+    const SurfaceSums<D> s = sums[i];
+    const Vec<D> wall = terms.ofWalls(s, m[i], ofFluid);
+    y[i] += ofFluid + wall;
+    if (ofWalls) ofWalls[i] = s.walls > 0 ? wall * (1 / s.walls) : Vec<D>{};
+  }
+};
+
+/// The reaction per wall particle of the list.
+template <int D>
+struct SurfaceReaction {
+  static constexpr int values = D;
+  static constexpr bool uses(ListSegment s) { return isFluid(s); }
+  struct Own {};
+  using Other = Vec<D>;
+
+  SurfaceTerms<D> terms;
+  const Vec<D>* ofWalls;
+  Vec<D>*y, *load;
+  std::uint32_t first;
+
+  __device__ Own loadOwn(const MphPairs<D>&, std::uint32_t) const { return {}; }
+  __device__ Other loadOther(const MphPairs<D>&, std::uint32_t i) const { return ofWalls[i]; }
+
+  __device__ void add(const MphPairs<D>&, double* sum, const Vec<D>&, const PairDistance<double>& r, Own,
+                      const Other& other, ListSegment) const {
+    addScaled(sum, -terms.share(terms.gradient(r.square), r.square), other);
+  }
+  __device__ void store(const MphPairs<D>&, std::uint32_t j, int n, double sum) const {
+    y[j - first][n] = sum;
+    load[j - first][n] += sum;
+  }
 };
 
 }  // namespace
 
 template <int D>
 void surfaceSlope(Context<Cuda>& context, const MphPairs<D>& pairs, const SurfaceTerms<D>& terms,
-                  std::span<Vec<D>> m) {
-  sumOnFluid(context, pairs, SurfaceSlope<D>{terms, m.data()});
+                  std::span<SurfaceSums<D>> sums, std::span<Vec<D>> m) {
+  sumOnFluid(context, pairs, SumSurface<D>{terms, sums.data()});
+  forEach(context, pairs.ownFluid(),
+          [terms, material = pairs.material.data(), from = sums.data(), to = m.data()] __device__(std::size_t i) {
+            to[i] = terms.slope(material[i], from[i]);
+          });
 }
 
 template <int D>
 void addSurfaceTension(Context<Cuda>& context, const MphPairs<D>& pairs, const SurfaceTerms<D>& terms,
-                       std::span<const Vec<D>> m, std::span<Vec<D>> y) {
-  sumOnFluid(context, pairs, SurfaceForce<D>{terms, m.data(), y.data()});
+                       std::span<const SurfaceSums<D>> sums, std::span<const Vec<D>> m, std::span<Vec<D>> y,
+                       std::span<Vec<D>> ofWalls) {
+  sumOnFluid(context, pairs, SurfaceForce<D>{terms, sums.data(), m.data(), y.data(), ofWalls.data()});
 }
 
-#define TREACLE_INSTANTIATE(D)                                                                                  \
-  template void surfaceSlope<D>(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&, std::span<Vec<D>>); \
-  template void addSurfaceTension<D>(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&,                \
-                                     std::span<const Vec<D>>, std::span<Vec<D>>);
+template <int D>
+void surfaceOnWalls(Context<Cuda>& context, const MphPairs<D>& pairs, const SurfaceTerms<D>& terms,
+                    const ClusterListView& walls, std::span<const Vec<D>> ofWalls, std::span<Vec<D>> y,
+                    std::span<Vec<D>> load) {
+  sumOnList(context, pairs, walls,
+            SurfaceReaction<D>{terms, ofWalls.data(), y.data(), load.data(), pairs.fluidCount});
+}
+
+#define TREACLE_INSTANTIATE(D)                                                                                    \
+  template void surfaceSlope<D>(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&,                       \
+                                std::span<SurfaceSums<D>>, std::span<Vec<D>>);                                    \
+  template void addSurfaceTension<D>(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&,                  \
+                                     std::span<const SurfaceSums<D>>, std::span<const Vec<D>>, std::span<Vec<D>>, \
+                                     std::span<Vec<D>>);                                                          \
+  template void surfaceOnWalls<D>(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&,                     \
+                                  const ClusterListView&, std::span<const Vec<D>>, std::span<Vec<D>>,             \
+                                  std::span<Vec<D>>);
 TREACLE_INSTANTIATE(2)
 TREACLE_INSTANTIATE(3)
 #undef TREACLE_INSTANTIATE

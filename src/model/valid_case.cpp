@@ -199,9 +199,11 @@ void requireSound(const Checker& at, const Material& m) {
                                       nameOf(MethodKind::MphI), nameOf(at.wholeCase().method.kind)));
   if (m.viscosityShift && !at.wholeCase().heat)
     at.fail({"viscosity_shift"}, "there are no temperatures in a case without [heat]");
-  if (m.surfaceTension != 0 && at.wholeCase().method.kind != MethodKind::MphI)
-    at.fail({"surface_tension"}, fmt::format("only the method '{}' has surface tension, found '{}'",
-                                             nameOf(MethodKind::MphI), nameOf(at.wholeCase().method.kind)));
+  if (at.wholeCase().method.kind != MethodKind::MphI &&
+      (m.surfaceTension != 0 || m.contactAngle != Material{}.contactAngle))
+    at.fail({m.surfaceTension != 0 ? "surface_tension" : "contact_angle"},
+            fmt::format("only the method '{}' has surface tension, found '{}'", nameOf(MethodKind::MphI),
+                        nameOf(at.wholeCase().method.kind)));
   if (m.rheology && m.dynamicViscosity != 0) at.fail({"dynamic_viscosity"}, viscosityBesideRheology);
 }
 

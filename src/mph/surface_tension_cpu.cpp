@@ -5,30 +5,42 @@
 namespace treacle {
 
 template <int D>
-void surfaceSlope(Context<Cpu>&, const MphPairs<D>& pairs, const SurfaceTerms<D>& terms, std::span<Vec<D>> m) {
+void surfaceSlope(Context<Cpu>&, const MphPairs<D>& pairs, const SurfaceTerms<D>& terms,
+                  std::span<SurfaceSums<D>> sums, std::span<Vec<D>> m) {
   const double floor2 = distanceFloor2(pairs);
   const ClusterListView& list = pairs.fluidList;
   forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const ClusterPlaces<D>& x, std::uint32_t c) {
-    VecLanes<D> sum = {};
-    for (ListSegment s :
-         {ListSegment::NearFluid, ListSegment::FarFluid, ListSegment::NearWall, ListSegment::FarWall})
+    VecLanes<D> fluid = {}, wall = {};
+    Lanes filled = {}, walls = {}, pull = {};
+    for (ListSegment s : {ListSegment::NearFluid, ListSegment::FarFluid})
       for (std::uint32_t j : list.segment(c, s)) {
         const PairLanes<D> pair(pairs, j, x, floor2);
         const Lanes g = terms.gradient(pair.r.square);
-        for (int k = 0; k < D; ++k) sum[k] += g * pair.d[k];
+        filled += terms.share(g, pair.r.square);
+        for (int k = 0; k < D; ++k) fluid[k] += g * pair.d[k];
+      }
+    for (ListSegment s : {ListSegment::NearWall, ListSegment::FarWall})
+      for (std::uint32_t j : list.segment(c, s)) {
+        const PairLanes<D> pair(pairs, j, x, floor2);
+        const Lanes g = terms.gradient(pair.r.square), share = terms.share(g, pair.r.square);
+        walls += share;
+        pull += terms.pull[pairs.material[j]] * share;
+        for (int k = 0; k < D; ++k) wall[k] += g * pair.d[k];
       }
     for (std::uint32_t lane = 0; lane < range.count; ++lane) {
       const std::uint32_t i = range.first + lane;
-      Vec<D> g;
-      for (int k = 0; k < D; ++k) g[k] = sum[k][lane];
-      m[i] = terms.slope(pairs.material[i], g);
+      SurfaceSums<D>& sum = sums[i];
+      for (int k = 0; k < D; ++k) sum.fluid[k] = fluid[k][lane], sum.wall[k] = wall[k][lane];
+      sum.filled = filled[lane], sum.walls = walls[lane], sum.pull = pull[lane];
+      m[i] = terms.slope(pairs.material[i], sum);
     }
   });
 }
 
 template <int D>
 void addSurfaceTension(Context<Cpu>&, const MphPairs<D>& pairs, const SurfaceTerms<D>& terms,
-                       std::span<const Vec<D>> m, std::span<Vec<D>> y) {
+                       std::span<const SurfaceSums<D>> sums, std::span<const Vec<D>> m, std::span<Vec<D>> y,
+                       std::span<Vec<D>> ofWalls) {
   const double floor2 = distanceFloor2(pairs);
   const ClusterListView& list = pairs.fluidList;
   forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const ClusterPlaces<D>& x, std::uint32_t c) {
@@ -49,16 +61,47 @@ void addSurfaceTension(Context<Cpu>&, const MphPairs<D>& pairs, const SurfaceTer
         const Lanes both = mi2 + norm2(mj), along = (g - terms.core(pair.r.inverse)) * both;
         for (int k = 0; k < D; ++k) sum[k] += along * pair.d[k] - g * (alongI * mi[k] + alongJ * mj[k]);
       }
-    VecLanes<D> yi = loadLanes<D>(range, std::span<const Vec<D>>(y));
-    for (int k = 0; k < D; ++k) yi[k] += sum[k];
-    storeLanes<D>(range, yi, y);
+    for (std::uint32_t lane = 0; lane < range.count; ++lane) {
+      const std::uint32_t i = range.first + lane;
+      Vec<D> ofFluid;
+      for (int k = 0; k < D; ++k) ofFluid[k] = sum[k][lane];
+      const Vec<D> wall = terms.ofWalls(sums[i], m[i], ofFluid);
+      y[i] += ofFluid + wall;
+      if (!ofWalls.empty()) ofWalls[i] = sums[i].walls > 0 ? wall * (1 / sums[i].walls) : Vec<D>{};
+    }
   });
 }
 
-#define TREACLE_INSTANTIATE(D)                                                                                 \
-  template void surfaceSlope<D>(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&, std::span<Vec<D>>); \
-  template void addSurfaceTension<D>(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&,                \
-                                     std::span<const Vec<D>>, std::span<Vec<D>>);
+template <int D>
+void surfaceOnWalls(Context<Cpu>&, const MphPairs<D>& pairs, const SurfaceTerms<D>& terms,
+                    const ClusterListView& walls, std::span<const Vec<D>> ofWalls, std::span<Vec<D>> y,
+                    std::span<Vec<D>> load) {
+  const double floor2 = distanceFloor2(pairs);
+  forEachCluster<D>(pairs, walls, [&](const ClusterRange& range, const ClusterPlaces<D>& x, std::uint32_t c) {
+    VecLanes<D> sum = {};
+    for (ListSegment s : {ListSegment::NearFluid, ListSegment::FarFluid})
+      for (std::uint32_t i : walls.segment(c, s)) {
+        const PairLanes<D> pair(pairs, i, x, floor2);
+        const Lanes share = terms.share(terms.gradient(pair.r.square), pair.r.square);
+        for (int k = 0; k < D; ++k) sum[k] -= share * ofWalls[i][k];
+      }
+    const ClusterRange place(range.first - walls.first, range.first - walls.first + range.count);
+    VecLanes<D> all = loadLanes<D>(place, std::span<const Vec<D>>(load));
+    for (int k = 0; k < D; ++k) all[k] += sum[k];
+    storeLanes<D>(place, sum, y);
+    storeLanes<D>(place, all, load);
+  });
+}
+
+#define TREACLE_INSTANTIATE(D)                                                                                    \
+  template void surfaceSlope<D>(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&,                        \
+                                std::span<SurfaceSums<D>>, std::span<Vec<D>>);                                    \
+  template void addSurfaceTension<D>(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&,                   \
+                                     std::span<const SurfaceSums<D>>, std::span<const Vec<D>>, std::span<Vec<D>>, \
+                                     std::span<Vec<D>>);                                                          \
+  template void surfaceOnWalls<D>(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&,                      \
+                                  const ClusterListView&, std::span<const Vec<D>>, std::span<Vec<D>>,             \
+                                  std::span<Vec<D>>);
 TREACLE_INSTANTIATE(2)
 TREACLE_INSTANTIATE(3)
 #undef TREACLE_INSTANTIATE

@@ -2,6 +2,7 @@
 #include "treacle/mph/surface_tension.hpp"
 
 #include <cmath>
+#include <numbers>
 
 namespace treacle {
 
@@ -13,10 +14,16 @@ SurfaceTerms<D> SurfaceTerms<D>::make(const Case& c) {
   const double lattice =
       1 + latticeSum<D>(h, c.spacing, [&](double r) { return std::pow(positivePart(1 - r * r / (h * h)), 4); });
   terms.gradientFactor = 8 / (h * h * lattice);
+  terms.shareFactor = 1 / latticeSum<D>(h, c.spacing, [&](double r) { return terms.gradient(r * r) * r * r; });
   terms.coreRadius = 0.95 * c.spacing;
   terms.coreFactor = 0.5 / (terms.coreRadius * terms.coreRadius);
   terms.noise2 = 0.01 / (h * h);
-  for (std::size_t m = 0; m < c.materials.size(); ++m) terms.tension[m] = c.materials[m].surfaceTension;
+  for (std::size_t m = 0; m < c.materials.size(); ++m) {
+    terms.tension[m] = c.materials[m].surfaceTension;
+    const double cosine = std::cos(c.materials[m].contactAngle * std::numbers::pi / 180);
+    // 1 times the cosine would do where stress and surface were sharp; found by drops on walls.
+    terms.pull[m] = (1.25 + 0.14 * cosine) * cosine;
+  }
   return terms;
 }
 

@@ -3,6 +3,7 @@
 #include "memory_sum.hpp"
 #include "mph_solver.hpp"
 #include "treacle/mph/conduction.hpp"
+#include "treacle/mph/surface_tension.hpp"
 #include "treacle/mph/wall_surfaces.hpp"
 #include "treacle/precondition/bucket_cells.hpp"
 
@@ -47,7 +48,7 @@ void planFields(const Case& c, const MemoryCounts& n, bool withGradient, MemoryS
   } else if (c.method.viscosityCorrection != 0) {
     sum.keep<double>(fluid);
   }
-  if (c.hasSurfaceTension()) sum.keep<Vec<D>>(fluid);
+  if (c.hasSurfaceTension()) sum.keep<SurfaceSums<D>>(fluid), sum.keep<Vec<D>>(fluid);
   sum.keep<Block<D>>(fluid);
   if (withGradient) sum.keep<Vec<D>>(fluid);
   sum.keep<double>(fluid + 2 * n.active);
@@ -57,7 +58,7 @@ void planFields(const Case& c, const MemoryCounts& n, bool withGradient, MemoryS
   planLists(n.balanceLists, sum);
   sum.keep<double>(fluid * (c.repulsionRadius() > 0 ? 2 : 1) + 2 * walls);
   sum.keep<Vec<D>>(walls);
-  if (c.hasSurfaceTension()) sum.keep<Vec<D>>(fluid);
+  if (c.hasSurfaceTension()) sum.keep<Vec<D>>(n.active + fluid);
 }
 
 /// MphOperator, matrix-free.

@@ -25,13 +25,8 @@ class StepBalance {
                std::span<const double> divergence, std::span<const double> elastic,
                const StepSurface<D, Backend>* surface) {
     const MphPairs<D>& pairs = neighbourhood.pairs();
-    sumPairs(state, neighbourhood);
+    sumPairs(state, neighbourhood, surface);
     Balance balance;
-    if (surface) {
-      surfaceForce_.resize(state.context, pairs.fluidCount);
-      clearValues(state.context, surfaceForce_.span());
-      surface->addForces(state, pairs, surfaceForce_.span());
-    }
     setPowers(state, pairs, divergence, elastic, surface, balance);
     setLoads(state, pairs, balance);
     return balance;
@@ -39,11 +34,12 @@ class StepBalance {
 
   std::size_t bytes() const {
     return walls_.bytes() + shear_.bytes() + wallForce_.bytes() + wallDivergence_.bytes() + wallDensity_.bytes() +
-           repulsion_.bytes() + surfaceForce_.bytes();
+           repulsion_.bytes() + surfaceForce_.bytes() + surfaceOfWalls_.bytes();
   }
 
  private:
-  void sumPairs(FlowState<D, Backend>& state, const MphNeighbourhood<D, Backend>& neighbourhood) {
+  void sumPairs(FlowState<D, Backend>& state, const MphNeighbourhood<D, Backend>& neighbourhood,
+                const StepSurface<D, Backend>* surface) {
     const MphPairs<D>& pairs = neighbourhood.pairs();
     const std::uint32_t n = pairs.fluidCount, active = pairs.activeCount;  // of ghosts nothing is summed
     ClusterListView walls = pairs.wallList;
@@ -66,6 +62,10 @@ class StepBalance {
       repulsionPower<D>(state.context, pairs, rate, state.velocity, repulsion_);
       addRepulsionOnWalls<D>(state.context, pairs, rate, wallForce_);
     }
+    if (!surface) return;
+    surfaceForce_.resize(state.context, active);
+    surfaceOfWalls_.resize(state.context, n);
+    surface->allForces(state, pairs, walls, surfaceOfWalls_.span(), surfaceForce_.span(), wallForce_.span());
   }
 
   void setPowers(FlowState<D, Backend>& state, const MphPairs<D>& pairs, std::span<const double> divergence,
@@ -119,7 +119,9 @@ class StepBalance {
   Buffer<double, Backend> wallDivergence_;  // [1/s]
   Buffer<double, Backend> wallDensity_;     // [-]
   Buffer<double, Backend> repulsion_;       // [W/m3]; empty where the scheme has none
-  Buffer<Vec<D>, Backend> surfaceForce_;    // per fluid particle [N/m3]; empty where there is no surface tension
+  // Of surface tension, empty where there is none: per active particle, and per fluid particle that of walls
+  // [N/m3].
+  Buffer<Vec<D>, Backend> surfaceForce_, surfaceOfWalls_;
 };
 
 }  // namespace treacle

@@ -73,7 +73,9 @@ TEST(SharedSimulation, SeveralFluids) {
 
 TEST(SharedSimulation, FluidWithASurfaceTension) {
   compare<2>(
-      {"dam-break-2d.toml", 5, {"fluid.surface_tension=1", "solver.tolerance=1e-18", "solver.deflation=0"}});
+      {"dam-break-2d.toml",
+       5,
+       {"fluid.surface_tension=1", "fluid.contact_angle=60", "solver.tolerance=1e-18", "solver.deflation=0"}});
   compare<3>({"dam-break-3d.toml",
               3,
               {"fluid.surface_tension=1", "resolution=0.5", "solver.tolerance=1e-18", "solver.deflation=0"}});

@@ -27,6 +27,7 @@ struct Material {
   double bulkModulus = 0;       // kappa [Pa]
   double slipLength = 0;        // how far behind a wall its velocity, extrapolated, is the wall's [m]; 0: no slip
   double surfaceTension = 0;    // gamma of its free surface [N/m]; MPH-I only
+  double contactAngle = 90;     // of a wall, with free surfaces of all fluids [deg]
   std::optional<Rheology> rheology{};  // of a fluid that is not Newtonian; MPH-I only
   // In cases with heat.
   double specificHeat = 0;                         // c_p [J/(kg K)]

@@ -200,6 +200,7 @@ void visit(auto& v, Like<Material> auto& m, const Case& c) {
   v({"bulk_modulus", required, "Pa", notNegative}, m.bulkModulus);
   v({"slip_length", optional, "m", notNegative}, m.slipLength);
   v({"surface_tension", optional, "N/m", notNegative}, m.surfaceTension);
+  v({"contact_angle", optional, "deg", {0, 180}}, m.contactAngle);
   if (!c.heat) return;
   v({"specific_heat", required, "J/(kg K)", positive}, m.specificHeat);
   v({"conductivity", required, "W/(m K)", notNegative}, m.conductivity);

@@ -17,14 +17,29 @@ namespace treacle {
 /// integral of 8/3 gamma c dc, the colour c, of which G is the gradient, rising from 1/2 at the surface to 1: that
 /// is gamma. A tension lets particles gather; the second term, with k = 0.5 and r_0 = 0.95 l, keeps those of the
 /// surface apart.
+///
+/// At walls the surface ends in a contact line. There G is continued as if the surface went on behind the wall,
+/// and the wall holds what the stress pulls off it and pulls along itself as the contact angle says.
+
+/// What a fluid particle has of fluid and of walls around it; sums of r^2 gradient are shares of a full lattice's.
+template <int D>
+struct SurfaceSums {
+  Vec<D> fluid, wall;  // parts of G [1/m]
+  double filled;       // with the share of the fluid
+  double walls;        // of walls
+  double pull;         // of walls, each with what it pulls along itself over gamma
+};
+
 template <int D>
 struct SurfaceTerms {
   double inverseSquare = 0;      // 1/h^2 [1/m2]
   double gradientFactor = 0;     // 8 A / h^2, where A makes the sum over a full lattice 1 [1/m2]
+  double shareFactor = 0;        // 1 over the sum of r^2 gradient over a full lattice
   double noise2 = 0;             // square of a |G| that particles in disorder have inside of the fluid [1/m2]
   double coreRadius = 0;         // r_0 [m]
   double coreFactor = 0;         // k / r_0^2 [1/m2]
   double tension[maxMaterials];  // gamma [N/m]
+  double pull[maxMaterials];     // of a wall of the material along itself, over gamma
 
   static SurfaceTerms make(const Case& c);
 
@@ -34,33 +49,67 @@ struct SurfaceTerms {
     const Real part = positivePart(1.0 - inverseSquare * r2);
     return gradientFactor * (part * part * part);
   }
+  /// The share that a neighbour fills, from its gradient.
+  template <class Real>
+  TREACLE_HD Real share(const Real& gradient, const Real& r2) const {
+    return shareFactor * gradient * r2;
+  }
   /// What is to be multiplied by -(|m_i|^2 + |m_j|^2) d.
   template <class Real>
   TREACLE_HD Real core(const Real& inverseDistance) const {
     return coreFactor * positivePart(coreRadius * inverseDistance - 1.0);
   }
-  /// m of a particle with the sum G, 8/3 gamma |G| being |m|^2 where |G| is more than noise.
-  TREACLE_HD Vec<D> slope(int material, const Vec<D>& g) const {
-    const double steepness = std::sqrt(norm2(g) + noise2);
-    return g * std::sqrt(8.0 / 3.0 * tension[material] / steepness);
+  /// m of a particle, 8/3 gamma |G| being |m|^2 where |G| is more than noise. Of what lies along a wall the wall
+  /// hides its share.
+  TREACLE_HD Vec<D> slope(int material, const SurfaceSums<D>& s) const {
+    Vec<D> g = s.fluid + s.wall;
+    const double size2 = norm2(s.wall);
+    if (size2 > 0) g += (g - s.wall * (dot(g, s.wall) / size2)) * (s.walls / (1 - s.walls));
+    return g * sqrt(8.0 / 3.0 * tension[material] / sqrt(norm2(g) + noise2));
+  }
+  /// The force of the walls on a particle that the fluid's stress gives `ofFluid` [N/m3].
+  TREACLE_HD Vec<D> ofWalls(const SurfaceSums<D>& s, const Vec<D>& m, const Vec<D>& ofFluid) const {
+    const double size = norm(s.wall), m2 = norm2(m);
+    if (!(size > 0 && m2 > 0)) return {};
+    const Vec<D> inward = s.wall * (1 / size), along = m - inward * dot(m, inward);
+    const double sine = norm(along) / sqrt(m2);  // of the angle between surface and wall
+    if (!(sine > 0)) return {};
+    const double line = 2 * m2 * size * fmin(1.0, s.filled / (1 - s.walls));
+    const double away = -dot(ofFluid, inward), most = line * sine * sine;
+    const double held = away < 0 ? 0 : away < most ? away : most;
+    return inward * held - along * (line * s.pull / (s.walls * sqrt(m2)));
   }
 };
 
 /// |m_i|^2 per volume is 4/3 of the energy of the surface, gamma per area.
 inline constexpr double surfaceEnergyShare = 0.75;
 
-/// m_i per own fluid particle [Pa^1/2].
+/// The sums and m_i per own fluid particle [Pa^1/2].
 template <int D>
-void surfaceSlope(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&, std::span<Vec<D>> m);
+void surfaceSlope(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&, std::span<SurfaceSums<D>> sums,
+                  std::span<Vec<D>> m);
 template <int D>
-void surfaceSlope(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&, std::span<Vec<D>> m);
+void surfaceSlope(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&, std::span<SurfaceSums<D>> sums,
+                  std::span<Vec<D>> m);
 
-/// y_i += f_i per own fluid particle [N/m3]; m of all fluid, ghosts included.
+/// y_i += f_i and the force of the walls per own fluid particle [N/m3]; m of all fluid, ghosts included.
+/// `ofWalls`, unless it is empty: the latter alone, over what walls fill of the particle's surroundings.
 template <int D>
-void addSurfaceTension(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&, std::span<const Vec<D>> m,
-                       std::span<Vec<D>> y);
+void addSurfaceTension(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&,
+                       std::span<const SurfaceSums<D>> sums, std::span<const Vec<D>> m, std::span<Vec<D>> y,
+                       std::span<Vec<D>> ofWalls = {});
 template <int D>
-void addSurfaceTension(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&, std::span<const Vec<D>> m,
-                       std::span<Vec<D>> y);
+void addSurfaceTension(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&,
+                       std::span<const SurfaceSums<D>> sums, std::span<const Vec<D>> m, std::span<Vec<D>> y,
+                       std::span<Vec<D>> ofWalls = {});
+
+/// Sets y per wall particle of the list to the reaction, as `ofWalls` has it of all fluid, ghosts included, and
+/// adds it to `load` [N/m3].
+template <int D>
+void surfaceOnWalls(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&, const ClusterListView& walls,
+                    std::span<const Vec<D>> ofWalls, std::span<Vec<D>> y, std::span<Vec<D>> load);
+template <int D>
+void surfaceOnWalls(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&, const ClusterListView& walls,
+                    std::span<const Vec<D>> ofWalls, std::span<Vec<D>> y, std::span<Vec<D>> load);
 
 }  // namespace treacle

@@ -29,7 +29,7 @@ struct PowerTerms {
   std::span<const double> wallDivergence;  // the fluid's parts of C^T u and n at walls
   std::span<const double> wallDensity;
   std::span<const double> repulsion;     // what it gives to the fluid [W/m3], or empty
-  std::span<const Vec<D>> surfaceForce;  // of surface tension on the fluid [N/m3], or empty
+  std::span<const Vec<D>> surfaceForce;  // of surface tension, on walls, too [N/m3], or empty
   std::span<const Vec<D>> surfaceSlope;  // m of it (surface_tension.hpp), or empty
 
   /// Pairs of walls do no work on the fluid, and what they are compressed by without fluid it cannot get back.
@@ -44,13 +44,11 @@ struct PowerTerms {
       sums[Elastic] -= elastic[i] * worked;
       sums[ElasticEnergy] += 0.5 * kappa * (strain * strain - (without > 0 ? without * without : 0));
     }
+    if (!surfaceForce.empty()) sums[Surface] += dot(surfaceForce[i], after[i]);
     if (!fluid) return;
     sums[Shear] += shear[i];
     if (!repulsion.empty()) sums[Repulsion] += repulsion[i];
-    if (!surfaceForce.empty()) {
-      sums[Surface] += dot(surfaceForce[i], after[i]);
-      sums[SurfaceEnergy] += surfaceEnergyShare * norm2(surfaceSlope[i]);
-    }
+    if (!surfaceSlope.empty()) sums[SurfaceEnergy] += surfaceEnergyShare * norm2(surfaceSlope[i]);
     sums[Inertial] += 0.5 * materials.inertia[m] * norm2(after[i] - before[i]);
   }
 };

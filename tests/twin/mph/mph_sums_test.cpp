@@ -227,19 +227,30 @@ void checkSurfaceTension(bool lists) {
   Scene<D> s = makeScene<D>({.seed = 3, .jitter = 0.3, .scheme = SchemeKind::Accurate});
   DeviceScene<D> d(s);
   if (!lists) d.pairs.fluidList.offset = d.pairs.wallList.offset = nullptr;
-  const std::uint32_t n = s.pairs().fluidCount;
+  const std::uint32_t n = s.pairs().fluidCount, walls = s.pairs().activeCount - n;
   s.c.materials[0].surfaceTension = 0.07;
+  for (Material& m : s.c.materials) m.contactAngle = 50;
   const SurfaceTerms<D> terms = SurfaceTerms<D>::make(s.c);
-  std::vector<Vec<D>> slope(n), force(n);
-  Buffer<Vec<D>, Cuda> slopeFound(d.context, n);
+  std::vector<SurfaceSums<D>> sums(n);
+  std::vector<Vec<D>> slope(n), force(n), ofWalls(n), reaction(walls), load(walls, Vec<D>::filled(1));
+  Buffer<SurfaceSums<D>, Cuda> sumsFound(d.context, n);
+  Buffer<Vec<D>, Cuda> slopeFound(d.context, n), ofWallsFound(d.context, n), reactionFound(d.context, walls);
   auto forceFound = copyToDevice<Vec<D>>(d.context, force);
+  auto loadFound = copyToDevice<Vec<D>>(d.context, load);
 
-  surfaceSlope<D>(s.context, s.pairs(), terms, slope);
-  surfaceSlope<D>(d.context, d.pairs, terms, slopeFound.span());
+  surfaceSlope<D>(s.context, s.pairs(), terms, sums, slope);
+  surfaceSlope<D>(d.context, d.pairs, terms, sumsFound.span(), slopeFound.span());
   EXPECT_LE(difference<Vec<D>>(d.context, slope, slopeFound), operatorTolerance);
-  addSurfaceTension<D>(s.context, s.pairs(), terms, slope, force);
-  addSurfaceTension<D>(d.context, d.pairs, terms, copyToDevice<Vec<D>>(d.context, slope), forceFound.span());
+  addSurfaceTension<D>(s.context, s.pairs(), terms, sums, slope, force, ofWalls);
+  addSurfaceTension<D>(d.context, d.pairs, terms, copyToDevice<SurfaceSums<D>>(d.context, sums),
+                       copyToDevice<Vec<D>>(d.context, slope), forceFound.span(), ofWallsFound.span());
   EXPECT_LE(difference<Vec<D>>(d.context, force, forceFound), operatorTolerance);
+  EXPECT_LE(difference<Vec<D>>(d.context, ofWalls, ofWallsFound), operatorTolerance);
+  surfaceOnWalls<D>(s.context, s.pairs(), terms, s.pairs().wallList, ofWalls, reaction, load);
+  surfaceOnWalls<D>(d.context, d.pairs, terms, d.pairs.wallList, copyToDevice<Vec<D>>(d.context, ofWalls),
+                    reactionFound.span(), loadFound.span());
+  EXPECT_LE(difference<Vec<D>>(d.context, reaction, reactionFound), operatorTolerance);
+  EXPECT_LE(difference<Vec<D>>(d.context, load, loadFound), operatorTolerance);
 }
 
 TEST(PairSumsTwin, SurfaceTensionEqualsTheCpu) {

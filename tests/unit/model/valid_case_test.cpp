@@ -351,6 +351,13 @@ const Mistake mistakes[] = {
      {"material", "syrup", "surface_tension"},
      "[[material]] 'syrup'",
      "expected a number not less than 0 [N/m], found -1"},
+    {"contactAngle",
+     mph,
+     [](Case& c) { c.materials[0].contactAngle = 190; },
+     {"syrup.contact_angle=190"},
+     {"material", "syrup", "contact_angle"},
+     "[[material]] 'syrup'",
+     "expected a number from 0 to 180 [deg], found 190"},
     {"watchedShare",
      mph,
      [](Case& c) { c.watch.insideWalls = 2; },
@@ -469,6 +476,8 @@ TEST(requireValid, refusesWhatOnlyCodeCanSay) {
   // A file's reader has no such key with ISPH.
   EXPECT_EQ(messageFor(isph, [](Case& c) { c.materials[0].surfaceTension = 0.07; }),
             "material.syrup.surface_tension: only the method 'mph-i' has surface tension, found 'isph'");
+  EXPECT_EQ(messageFor(isph, [](Case& c) { c.materials[0].contactAngle = 60; }),
+            "material.syrup.contact_angle: only the method 'mph-i' has surface tension, found 'isph'");
 }
 
 TEST(requireValid, knowsDirectionsOfLengthZeroInSpace) {
