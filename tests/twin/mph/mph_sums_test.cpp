@@ -246,9 +246,13 @@ void checkSurfaceTension(bool lists) {
                        copyToDevice<Vec<D>>(d.context, slope), forceFound.span(), ofWallsFound.span());
   EXPECT_LE(difference<Vec<D>>(d.context, force, forceFound), operatorTolerance);
   EXPECT_LE(difference<Vec<D>>(d.context, ofWalls, ofWallsFound), operatorTolerance);
-  surfaceOnWalls<D>(s.context, s.pairs(), terms, s.pairs().wallList, ofWalls, reaction, load);
-  surfaceOnWalls<D>(d.context, d.pairs, terms, d.pairs.wallList, copyToDevice<Vec<D>>(d.context, ofWalls),
-                    reactionFound.span(), loadFound.span());
+  ClusterList<Cpu> wallList;  // those of a step do not reach as far
+  buildClusterList<D>(s.context, s.pairs().grid, s.ranges(), s.pairs().position, n, n + walls,
+                      {s.c.interactionRadius(), 0}, true, wallList);
+  const ClusterList<Cuda> wallsDevice = onDevice(d.context, wallList.view());
+  surfaceOnWalls<D>(s.context, s.pairs(), terms, wallList.view(), ofWalls, reaction, load);
+  surfaceOnWalls<D>(d.context, d.pairs, terms, lists ? wallsDevice.view() : d.pairs.wallList,
+                    copyToDevice<Vec<D>>(d.context, ofWalls), reactionFound.span(), loadFound.span());
   EXPECT_LE(difference<Vec<D>>(d.context, reaction, reactionFound), operatorTolerance);
   EXPECT_LE(difference<Vec<D>>(d.context, load, loadFound), operatorTolerance);
 }
