@@ -104,7 +104,7 @@ struct EdgeOnFloor {
   MphNeighbourhood<D> neighbourhood;
   std::vector<SurfaceSums<D>> sums;
   std::vector<Vec<D>> slope, force, ofWalls, reaction, load;
-  double line = 1;  // length of the contact line, per particle's depth [m]
+  double line = 1;  // length of the contact line [m]; in 2D per metre of depth
 
   explicit EdgeOnFloor(double angle, double jitter)
       : particles(edge(withAngle(c, angle), jitter)), neighbourhood(c) {
