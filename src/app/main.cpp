@@ -29,7 +29,6 @@ constexpr Named<PictureField> fieldNames[] = {{"speed", PictureField::Speed},
                                               {"number_density", PictureField::NumberDensity},
                                               {"nearest_distance", PictureField::NearestDistance},
                                               {"material", PictureField::Material},
-
                                               {"temperature", PictureField::Temperature},
                                               {"dynamic_viscosity", PictureField::DynamicViscosity},
                                               {"shear_rate", PictureField::ShearRate}};

@@ -2,6 +2,7 @@
 
 #include "memory_sum.hpp"
 #include "mph_solver.hpp"
+#include "surface_heat.hpp"
 #include "treacle/mph/conduction.hpp"
 #include "treacle/mph/surface_tension.hpp"
 #include "treacle/mph/wall_surfaces.hpp"
@@ -27,9 +28,7 @@ void planHeat(const Case& c, std::uint64_t fluid, MemorySum& sum) {
   sum.keep<double>((c.heat->viscousHeating ? 11 : 10) * fluid);
   sum.keep<HeatExchange>(fluid);
   for (int k = 0; k < 4; ++k) sum.use<double>(StepPart::Solve, fluid);  // conjugate gradients
-  const bool surface =
-      c.heat->transfer > 0 || std::ranges::any_of(c.materials, [](const Material& m) { return m.emissivity > 0; });
-  if (!surface) return;
+  if (!hasSurfaceHeat(c)) return;
   sum.keep<double>(fluid);
   sum.keep<Vec<D>>(fluid);
   sum.keep<HeatExchange>(fluid);

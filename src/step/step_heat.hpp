@@ -2,6 +2,7 @@
 
 #include "failure.hpp"
 #include "flow_state.hpp"
+#include "surface_heat.hpp"
 #include "treacle/core/halo.hpp"
 #include "treacle/linear/krylov.hpp"
 #include "treacle/model/balance.hpp"
@@ -11,9 +12,8 @@
 #include "treacle/mph/mph_neighbourhood.hpp"
 #include "treacle/step/heat_terms.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <type_traits>
+#include <array>
+#include <vector>
 
 namespace treacle {
 
@@ -24,10 +24,11 @@ template <int D, class Backend>
 class StepHeat {
  public:
   StepHeat(const Case& c, const MphPairs<D>& pairs)
-      : settings_(*c.heat), table_(HeatTable::make(c)), walls_(wallHeat(c)), surface_(SurfaceLack::make(pairs)) {
-    surfaceCounts_ = settings_.transfer > 0 || std::any_of(c.materials.begin(), c.materials.end(),
-                                                           [](const Material& m) { return m.emissivity > 0; });
-  }
+      : settings_(*c.heat),
+        table_(HeatTable::make(c)),
+        walls_(wallHeat(c)),
+        surface_(SurfaceLack::make(pairs)),
+        surfaceCounts_(hasSurfaceHeat(c)) {}
 
   /// With state.velocity of the end of the step, ghosts included. Errors: RunError.
   void solve(FlowState<D, Backend>& state, const MphPairs<D>& pairs) {
@@ -116,7 +117,7 @@ class StepHeat {
   HeatTable table_;
   std::vector<WallHeat> walls_;
   SurfaceLack surface_;
-  bool surfaceCounts_ = false;  // whether anything is exchanged there
+  bool surfaceCounts_;  // whether anything is exchanged there
   Buffer<WallHeat, Backend> wallBuffer_;
   // Per own fluid particle; scale_ per fluid particle, ghosts included.
   Buffer<double, Backend> scale_, ofFluid_, area_, heating_, boundary_, source_, extra_, inverse_, rhs_, change_,

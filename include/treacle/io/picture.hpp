@@ -12,8 +12,7 @@
 
 namespace treacle {
 
-/// The field that colours the fluid.
-/// The viscosity is shown by its decimal logarithm.
+/// The field that colours the fluid; the viscosity is shown by its decimal logarithm.
 enum class PictureField {
   Speed,
   Pressure,
