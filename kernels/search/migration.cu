@@ -33,12 +33,50 @@ void addMessages(std::vector<Message>& messages, std::byte* data, std::span<cons
 
 /// Room for the largest field, with so many particles and modes for so much fluid.
 template <int D>
-std::byte* fieldRoom(Context<Cuda>& context, SortWorkspace<Cuda>& w, std::size_t count, std::size_t modeValues) {
-  w.field.resize(context, std::max(count * sizeof(Vec<D>), modeValues * sizeof(Vec<D, float>)));
-  return w.field.data();
+std::byte* fieldRoom(Context<Cuda>& context, Buffer<std::byte, Cuda>& room, std::size_t count,
+                     std::size_t modeValues) {
+  room.resize(context, std::max(count * sizeof(Vec<D>), modeValues * sizeof(Vec<D, float>)));
+  return room.data();
 }
 
 }  // namespace
+
+template <int D>
+void joinFluid(Context<Cuda>& context, Particles<D, Cuda>& p, const std::uint32_t* index, std::uint32_t kept,
+               const std::byte* arrived, std::uint32_t come, Buffer<std::byte, Cuda>& room) {
+  const std::uint32_t before = p.fluidCount, fluid = kept + come, walls = p.wallCount(), wallBegin = p.wallBegin();
+  const std::uint32_t modes = p.modeCount();
+  std::byte* one = fieldRoom<D>(context, room, std::size_t{fluid} + walls, std::size_t{modes} * fluid);
+  const auto join = [&]<class T>(const T* field, T* joint) {
+    gather(context, field, index, kept, joint);
+    copyBytesOnDevice(context, arrived, joint + kept, come * sizeof(T));
+    arrived += padded(come * sizeof(T));
+  };
+  const auto replace = [&]<class T>(Buffer<T, Cuda>& field, std::size_t count) {
+    field.resize(context, count);
+    copyBytesOnDevice(context, one, field.data(), count * sizeof(T));
+  };
+  forEachSharedFieldOf(
+      [&]<class T>(Buffer<T, Cuda>& field) {
+        T* joint = reinterpret_cast<T*>(one);
+        join(field.data(), joint);
+        copyBytesOnDevice(context, field.data() + wallBegin, joint + fluid, walls * sizeof(T));
+        replace(field, std::size_t{fluid} + walls);
+      },
+      p);
+  forEachFluidFieldOf(
+      [&]<class T>(Buffer<T, Cuda>& field) {
+        join(field.data(), reinterpret_cast<T*>(one));
+        replace(field, fluid);
+      },
+      p);
+  auto* mode = reinterpret_cast<Vec<D, float>*>(one);
+  for (std::size_t m = 0; m < modes; ++m) join(p.modes.vectors.data() + m * before, mode + m * fluid);
+  replace(p.modes.vectors, std::size_t{modes} * fluid);
+  p.fluidCount = fluid;
+  p.ghostCount = 0;
+  p.count = fluid + walls;
+}
 
 template <int D>
 void exchangeFluid(Context<Cuda>& context, Particles<D, Cuda>& p, SortWorkspace<Cuda>& w,
@@ -71,39 +109,7 @@ void exchangeFluid(Context<Cuda>& context, Particles<D, Cuda>& p, SortWorkspace<
   });
   context.link->exchange(sent, received);
 
-  const std::uint32_t before = p.fluidCount, fluid = kept + come, walls = p.wallCount(), wallBegin = p.wallBegin();
-  const std::uint32_t modes = p.modeCount();
-  std::byte* room = fieldRoom<D>(context, w, std::size_t{fluid} + walls, std::size_t{modes} * fluid);
-  from = in.data();
-  const auto join = [&]<class T>(const T* field, T* joint) {
-    gather(context, field, index + keptBegin, kept, joint);
-    copyBytesOnDevice(context, from, joint + kept, come * sizeof(T));
-    from += padded(come * sizeof(T));
-  };
-  const auto replace = [&]<class T>(Buffer<T, Cuda>& field, std::size_t count) {
-    field.resize(context, count);
-    copyBytesOnDevice(context, room, field.data(), count * sizeof(T));
-  };
-  forEachSharedFieldOf(
-      [&]<class T>(Buffer<T, Cuda>& field) {
-        T* joint = reinterpret_cast<T*>(room);
-        join(field.data(), joint);
-        copyBytesOnDevice(context, field.data() + wallBegin, joint + fluid, walls * sizeof(T));
-        replace(field, std::size_t{fluid} + walls);
-      },
-      p);
-  forEachFluidFieldOf(
-      [&]<class T>(Buffer<T, Cuda>& field) {
-        join(field.data(), reinterpret_cast<T*>(room));
-        replace(field, fluid);
-      },
-      p);
-  auto* mode = reinterpret_cast<Vec<D, float>*>(room);
-  for (std::size_t m = 0; m < modes; ++m) join(p.modes.vectors.data() + m * before, mode + m * fluid);
-  replace(p.modes.vectors, std::size_t{modes} * fluid);
-  p.fluidCount = fluid;
-  p.ghostCount = 0;
-  p.count = fluid + walls;
+  joinFluid(context, p, index + keptBegin, kept, in.data(), come, w.field);
 }
 
 template <int D>
@@ -111,7 +117,7 @@ void arrange(Context<Cuda>& context, Particles<D, Cuda>& p, SortWorkspace<Cuda>&
   const std::uint32_t fluid = p.fluidCount, walls = p.wallCount(), wallBegin = fluid + ghosts;
   const std::uint32_t* index = w.sortedIndex.data();
   const std::size_t count = std::size_t{wallBegin} + walls;
-  std::byte* room = fieldRoom<D>(context, w, count, p.modes.vectors.size());
+  std::byte* room = fieldRoom<D>(context, w.field, count, p.modes.vectors.size());
   permuteModes(context, w, p);
   forEachSharedFieldOf(
       [&]<class T>(Buffer<T, Cuda>& field) {
@@ -130,9 +136,11 @@ void arrange(Context<Cuda>& context, Particles<D, Cuda>& p, SortWorkspace<Cuda>&
   p.count = static_cast<std::uint32_t>(count);
 }
 
-#define TREACLE_INSTANTIATE(D)                                                                 \
-  template void exchangeFluid(Context<Cuda>&, Particles<D, Cuda>&, SortWorkspace<Cuda>&,       \
-                              std::span<const std::uint32_t>, std::span<const std::uint32_t>); \
+#define TREACLE_INSTANTIATE(D)                                                                      \
+  template void exchangeFluid(Context<Cuda>&, Particles<D, Cuda>&, SortWorkspace<Cuda>&,            \
+                              std::span<const std::uint32_t>, std::span<const std::uint32_t>);      \
+  template void joinFluid(Context<Cuda>&, Particles<D, Cuda>&, const std::uint32_t*, std::uint32_t, \
+                          const std::byte*, std::uint32_t, Buffer<std::byte, Cuda>&);               \
   template void arrange(Context<Cuda>&, Particles<D, Cuda>&, SortWorkspace<Cuda>&, std::uint32_t);
 TREACLE_INSTANTIATE(2)
 TREACLE_INSTANTIATE(3)

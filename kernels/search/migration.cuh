@@ -4,6 +4,7 @@
 #include "treacle/model/particles.hpp"
 #include "treacle/search/cell_sort.hpp"
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -18,6 +19,13 @@ namespace treacle {
 template <int D>
 void exchangeFluid(Context<Cuda>& context, Particles<D, Cuda>& particles, SortWorkspace<Cuda>& workspace,
                    std::span<const std::uint32_t> begins, std::span<const std::uint32_t> arriving);
+
+/// Makes the own fluid those particles `index`[0, kept), device memory, in this order, and behind them `come`
+/// others: `arrived` has their fields, one after the other as forEachFieldOfFluid goes over them, each padded().
+/// Walls stay; ghosts are gone. `room`: takes one field at a time.
+template <int D>
+void joinFluid(Context<Cuda>& context, Particles<D, Cuda>& particles, const std::uint32_t* index,
+               std::uint32_t kept, const std::byte* arrived, std::uint32_t come, Buffer<std::byte, Cuda>& room);
 
 /// Brings own fluid and walls into the order of workspace.sortedIndex, which has those of the fluid first, with
 /// room for so many ghosts between them.

@@ -40,10 +40,10 @@ void printMemory(const Case& c, const AnyParticles& particles, std::vector<std::
   warnings.push_back(error.what());
 }
 
-void printParticles(const Case& c, ParticleNumbers particles, const std::vector<std::uint32_t>& ofBodies) {
+void printParticles(const Case& c, ParticleNumbers particles, const std::vector<BodyCount>& ofBodies) {
   print("# particles: {} fluid, {} wall\n", particles.fluid, particles.wall);
   for (std::size_t b = 0; b < c.bodies.size(); ++b)
-    print("#   {} '{}': {}\n", nameOf(c.bodies[b].kind), c.bodies[b].name, ofBodies[b]);
+    print("#   {} '{}': {}\n", nameOf(c.bodies[b].kind), c.bodies[b].name, ofBodies[b].all());
 }
 
 /// Seconds of a step per fluid particle on one thread, as measured on one machine for the shipped cases.
@@ -97,7 +97,7 @@ void checkCommand(const CaseOptions& options) {
   startThreads(0);
   const Case c = readCase(options.file, options.overrides);
   std::vector<std::string> warnings;
-  std::vector<std::uint32_t> ofBodies;
+  std::vector<BodyCount> ofBodies;
   requireRoomForParticles(c);
   AnyParticles particles = createParticles(c, warnings, &ofBodies);
   for (std::string& warning : caseWarnings(c)) warnings.push_back(std::move(warning));

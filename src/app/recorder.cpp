@@ -9,6 +9,7 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace treacle {
@@ -24,7 +25,7 @@ Frame wallsFrame(const Snapshot& s) {
   return s.particles.visit([&](const auto& p) { return makeFrame(p, p.fluidCount, p.count, s.time); });
 }
 
-HistoryRow historyRow(const StepReport& r) {
+HistoryRow historyRow(const Case& c, const StepReport& r) {
   const Diagnostics& d = r.diagnostics;
   const PhaseSeconds& s = r.seconds;
   HistoryRow row;
@@ -34,6 +35,13 @@ HistoryRow historyRow(const StepReport& r) {
   row.frontX = d.frontX, row.top = d.top, row.maxSpeed = d.maxSpeed;
   row.meanDensity = d.meanDensityRatio, row.densityError = d.meanDensityError;
   row.seconds = s.total();
+  if (r.flow) {
+    const auto flow = [&](const FlowCount& count) {
+      return HistoryFlow{count.particles, static_cast<double>(count.particles) * std::pow(c.spacing, c.dimensions),
+                         count.mass};
+    };
+    row.particles = r.flow->particles, row.inflow = flow(r.flow->in), row.outflow = flow(r.flow->out);
+  }
   row.timings = {s.search, s.lists, s.coefficients, s.coarse, s.solve, s.update};
   return row;
 }
@@ -47,7 +55,7 @@ Recorder::Recorder(const Case& c, RunDirectory& directory, RunLog& log, double s
       log_(log),
       copyState_(std::move(copyState)),
       orderPieces_(std::move(orderPieces)),
-      history_(directory.history(), timings),
+      history_(directory.history(), {.flow = c.isOpen(), .timings = timings}),
       frames_(c.output.interval, c.time, start),
       checkpoints_(c.output.checkpointInterval, c.time, start),
       watch_(c),
@@ -75,7 +83,8 @@ void Recorder::record(const StepReport& report) {
   densityError_ = report.diagnostics.meanDensityError;
   largestDensityError_ = std::max(largestDensityError_, densityError_);
   Timer timer;
-  history_.append(historyRow(report));
+  history_.append(historyRow(case_, report));
+  if (report.flow) flow_ = *report.flow;
   if (report.balance) balance_->append(report.step, report.time, *report.balance);
   outputSeconds_ += timer.lap();
   const bool frame = frames_.due(report.time), checkpoint = checkpoints_.due(report.time);
@@ -170,6 +179,7 @@ void Recorder::summarise(RunSummary& summary) const {
   summary.largestDensityError = largestDensityError_;
   summary.arrangement = lastArrangement_;
   summary.smallestLeast = smallestLeast_, summary.smallestLow = smallestLow_;
+  if (flow_) summary.flow = {flow_->particles, flow_->in.particles, flow_->out.particles};
   summary.phaseSeconds = {
       {"search", seconds_.search}, {"lists", seconds_.lists}, {"coefficients", seconds_.coefficients},
       {"coarse", seconds_.coarse}, {"solve", seconds_.solve}, {"update", seconds_.update},

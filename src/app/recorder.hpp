@@ -100,6 +100,7 @@ class Recorder {
   std::mutex warningsMutex_;
   std::vector<std::string> warnings_;
   bool isLost_ = false;
+  std::optional<FlowReport> flow_;  // of the last step, where the case is open
   PhaseSeconds seconds_;
   double outputSeconds_ = 0;  // that the simulation had to wait
   OutputThread output_;       // last: it uses the others

@@ -39,10 +39,9 @@ struct Kinds {
   std::uint32_t fluid = 0, walls = 0;
 };
 
-Kinds kindsOf(const Case& c, const MadeParticles& made) {
+Kinds kindsOf(const MadeParticles& made) {
   Kinds kinds;
-  for (std::size_t b = 0; b < c.bodies.size(); ++b)
-    (c.bodies[b].kind == BodyKind::Fluid ? kinds.fluid : kinds.walls) += made.ofBodies[b];
+  for (const BodyCount& body : made.ofBodies) kinds.fluid += body.fluid, kinds.walls += body.wall;
   return kinds;
 }
 
@@ -55,7 +54,7 @@ void requireTemperatures(const Case& c, const std::filesystem::path& file, const
 template <int D>
 void requireFit(const Case& c, const std::filesystem::path& file, const Checkpoint<D>& state, const Kinds& made) {
   const Particles<D>& p = state.particles;
-  if (state.fluidOfAll != made.fluid || state.wallsOfAll != made.walls)
+  if ((state.fluidOfAll != made.fluid && !c.isOpen()) || state.wallsOfAll != made.walls)
     refuse(file,
            fmt::format("{} fluid and {} wall particles, but the case has {} and {}; expected the case and the "
                        "resolution that were run",
@@ -69,12 +68,20 @@ void requireFit(const Case& c, const std::filesystem::path& file, const Checkpoi
   }
 }
 
+/// What a file of a case without inflows and outflows does not have begins with the run.
+void requireFlow(const Case& c, const std::filesystem::path& file, const OpenFlow& flow) {
+  if (flow.nextId == 0) return;
+  if (flow.inflows.size() != c.bodies.size() || flow.outflows.size() != c.outflows.size())
+    refuse(file, fmt::format("a state of {} bodies and {} outflows, but the case has {} and {}",
+                             flow.inflows.size(), flow.outflows.size(), c.bodies.size(), c.outflows.size()));
+}
+
 /// The body that the case makes each particle of, by id: fluid first, each kind in the order of the file.
-std::vector<std::uint8_t> bodiesById(const Case& c, const MadeParticles& made) {
+std::vector<std::uint8_t> bodiesById(const MadeParticles& made) {
   std::vector<std::uint8_t> bodies;
-  for (const BodyKind kind : {BodyKind::Fluid, BodyKind::Wall})
-    for (std::size_t b = 0; b < c.bodies.size(); ++b)
-      if (c.bodies[b].kind == kind) bodies.insert(bodies.end(), made.ofBodies[b], static_cast<std::uint8_t>(b));
+  for (const auto ofKind : {&BodyCount::fluid, &BodyCount::wall})
+    for (std::size_t b = 0; b < made.ofBodies.size(); ++b)
+      bodies.insert(bodies.end(), made.ofBodies[b].*ofKind, static_cast<std::uint8_t>(b));
   return bodies;
 }
 
@@ -85,11 +92,12 @@ void setBodies(const Case& c, const std::filesystem::path& file, const MadeParti
   std::vector<std::uint8_t> byId;
   for (std::uint32_t i = 0; i < p.count; ++i) {
     if (p.body[i] == unknownBody) {
-      if (byId.empty()) byId = bodiesById(c, made);
+      if (byId.empty()) byId = bodiesById(made);
       p.body[i] = byId[p.id[i]];
     }
     const BodyKind kind = i < p.fluidCount ? BodyKind::Fluid : BodyKind::Wall;
-    if (p.body[i] >= c.bodies.size() || c.bodies[p.body[i]].kind != kind)
+    const auto fits = [&](const Body& body) { return body.kind == kind || body.kind == BodyKind::Inflow; };
+    if (p.body[i] >= c.bodies.size() || !fits(c.bodies[p.body[i]]))
       refuse(file, fmt::format("particle {} belongs to body {}, which is no {} body of the case", p.id[i],
                                p.body[i], nameOf(kind)));
   }
@@ -126,10 +134,11 @@ MadeParticles MadeParticles::of(const Case& c, std::vector<std::string>& notes, 
 StartState fittingState(const Case& c, const std::filesystem::path& file, const MadeParticles& made) {
   StartState start = made.particles.visit([&]<int D>(const Particles<D>& created) -> StartState {
     Checkpoint<D> state = readCheckpoint<D>(file, made.part);
-    const Kinds kinds = kindsOf(c, made);
+    const Kinds kinds = kindsOf(made);
     requireMethod(c, file, state.method);
     requireFit(c, file, state, kinds);
     requireTemperatures(c, file, state.particles);
+    requireFlow(c, file, state.particles.flow);
     setBodies(c, file, made, state.particles);
     setWallSurfaces(created, kinds.fluid + made.part.begin(kinds.walls), state.particles);
     return {std::move(state.particles), state.step, state.time};

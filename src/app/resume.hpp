@@ -2,6 +2,7 @@
 
 #include "treacle/model/any_particles.hpp"
 #include "treacle/model/case.hpp"
+#include "treacle/model/create.hpp"
 #include "treacle/model/particle_part.hpp"
 
 #include <cstdint>
@@ -14,7 +15,7 @@ namespace treacle {
 /// The particles that a case starts with, or the part of them that one of several processes makes.
 struct MadeParticles {
   AnyParticles particles{2};
-  std::vector<std::uint32_t> ofBodies;  // particles of each body, those of other processes as well
+  std::vector<BodyCount> ofBodies;  // particles of each body, those of other processes as well
   ParticlePart part;
 
   /// Appends to `notes` as createParticles does. Errors: those of createParticles.

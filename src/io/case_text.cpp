@@ -84,6 +84,15 @@ class TableText {
   void operator()(const Key& key, const Oscillation& o) {
     if (o != Oscillation{}) put(key, TableText(case_, {}, o).onOneLine());
   }
+  void operator()(const Key& key, const Nozzle& n) { put(key, TableText(case_, {}, n).onOneLine()); }
+  void operator()(const Key& key, const std::optional<TimeFunction>& f) {
+    if (!f) return;
+    if (f->isTable())
+      put(key,
+          fmt::format("{{ times = [{}], values = [{}] }}", fmt::join(f->times, ", "), fmt::join(f->values, ", ")));
+    else
+      (*this)(key, f->value, f->expression);
+  }
   template <class Table>
   void operator()(const Key& key, const std::optional<Table>& table) {
     if (table) put(key, TableText(case_, {}, *table).onOneLine());

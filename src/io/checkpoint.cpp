@@ -5,6 +5,7 @@
 #include "posix.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/io/atomic_file.hpp"
+#include "treacle/model/case.hpp"
 #include "treacle/model/create.hpp"
 #include "treacle/model/names.hpp"
 
@@ -15,6 +16,7 @@
 #include <cmath>
 #include <fstream>
 #include <span>
+#include <string>
 #include <string_view>
 #include <type_traits>
 #include <utility>
@@ -24,10 +26,10 @@ namespace treacle {
 namespace {
 
 constexpr std::string_view formatName = "treacle checkpoint";
-constexpr std::int32_t formatVersion = 8;  // 1: without acceleration and jerk; 2: without bodies and modes; 3:
+constexpr std::int32_t formatVersion = 9;  // 1: without acceleration and jerk; 2: without bodies and modes; 3:
                                            // without method and checksums; 4: without kept eigenvalue; 5: without
                                            // memory of the time steps; 6: without shear rates; 7: without
-                                           // temperatures
+                                           // temperatures; 8: without fluid that comes and goes
 
 bool isFinite(double x) { return std::isfinite(x); }
 template <int D, class T>
@@ -50,18 +52,70 @@ void requireSound(const Particles<D>& particles) {
     if (!(T > 0)) throw Hdf5Error(fmt::format("a temperature of {} K, expected more than 0", T));
 }
 
-/// `ids`: of all particles, `fluid` of which come first. Errors: Hdf5Error.
-void requireEachOnce(std::span<const std::uint32_t> ids, std::uint32_t fluid) {
-  std::vector<bool> taken(ids.size());
+/// Looks at the ids of all particles, `fluid` of which come first: those of walls follow each other, after those
+/// that the fluid had at the start. Returns that of the first wall. Errors: Hdf5Error.
+std::uint32_t requireIds(std::span<const std::uint32_t> ids, std::uint32_t fluid, const OpenFlow& flow) {
+  const bool open = flow.nextId > 0;
+  const std::uint64_t end = open ? flow.nextId : ids.size();
+  const std::uint32_t walls = static_cast<std::uint32_t>(ids.size()) - fluid;
+  const std::uint32_t first = open && walls > 0 ? *std::ranges::min_element(ids.subspan(fluid)) : fluid;
+  std::vector<bool> taken(end);
   for (std::size_t i = 0; i < ids.size(); ++i) {
     const std::uint32_t id = ids[i];
-    if (id >= ids.size())
-      throw Hdf5Error(fmt::format("a particle has id {}, expected less than {}", id, ids.size()));
-    if ((id < fluid) != (i < fluid))
+    if (id >= end) throw Hdf5Error(fmt::format("a particle has id {}, expected less than {}", id, end));
+    if ((id - first < walls) == (i < fluid))
       throw Hdf5Error(fmt::format("particle {} is among those of the other kind", id));
     if (taken[id]) throw Hdf5Error(fmt::format("two particles have the id {}", id));
     taken[id] = true;
   }
+  return first;
+}
+
+void writeCount(hid_t file, const std::string& name, const FlowCount& count) {
+  writeAttribute(file, (name + "_particles").c_str(), static_cast<std::int64_t>(count.particles));
+  writeAttribute(file, (name + "_mass").c_str(), count.mass);
+}
+FlowCount readCount(hid_t file, const std::string& name) {
+  const auto particles = readAttribute<std::int64_t>(file, (name + "_particles").c_str());
+  const auto mass = readAttribute<double>(file, (name + "_mass").c_str());
+  if (particles < 0 || !(mass >= 0) || !std::isfinite(mass))
+    throw Hdf5Error(
+        fmt::format("{} particles of {} kg came or went, expected numbers not less than 0", particles, mass));
+  return {static_cast<std::uint64_t>(particles), mass};
+}
+
+void writeFlow(hid_t file, const OpenFlow& flow) {
+  writeAttribute(file, "next_id", flow.nextId);
+  writeAttribute(file, "flow_body_count", static_cast<std::uint32_t>(flow.inflows.size()));
+  writeAttribute(file, "outflow_count", static_cast<std::uint32_t>(flow.outflows.size()));
+  for (std::size_t k = 0; k < flow.inflows.size(); ++k) {
+    const std::string name = fmt::format("inflow_{}", k);
+    writeCount(file, name, flow.inflows[k]);
+    writeAttribute(file, (name + "_way").c_str(), flow.inflows[k].way);
+  }
+  for (std::size_t k = 0; k < flow.outflows.size(); ++k)
+    writeCount(file, fmt::format("outflow_{}", k), flow.outflows[k]);
+}
+
+/// Errors: Hdf5Error for what no run remembers.
+OpenFlow readFlow(hid_t file) {
+  OpenFlow flow;
+  flow.nextId = readAttribute<std::uint32_t>(file, "next_id");
+  const auto bodies = readAttribute<std::uint32_t>(file, "flow_body_count"),
+             outflows = readAttribute<std::uint32_t>(file, "outflow_count");
+  if (bodies > maxBodies || outflows > maxOutflows)
+    throw Hdf5Error(fmt::format("{} bodies and {} outflows, more than the limits of {} and {}", bodies, outflows,
+                                maxBodies, maxOutflows));
+  for (std::uint32_t k = 0; k < bodies; ++k) {
+    const std::string name = fmt::format("inflow_{}", k);
+    OpenFlow::Inflow inflow{readCount(file, name), readAttribute<double>(file, (name + "_way").c_str())};
+    if (!(inflow.way >= 0) || !std::isfinite(inflow.way))
+      throw Hdf5Error(fmt::format("the layers of an inflow have gone {} m, expected at least 0", inflow.way));
+    flow.inflows.push_back(inflow);
+  }
+  for (std::uint32_t k = 0; k < outflows; ++k)
+    flow.outflows.push_back(readCount(file, fmt::format("outflow_{}", k)));
+  return flow;
 }
 
 template <int D>
@@ -87,6 +141,7 @@ void fill(hid_t file, const Particles<D>& particles, std::int64_t step, double t
   writeAttribute(file, "time_step", particles.steps.last);
   writeAttribute(file, "planned_time_step", particles.steps.planned);
   writeAttribute(file, "time_step_error_rate", particles.steps.rate);
+  writeFlow(file, particles.flow);
   forEachNamedField(particles, [&](const FieldInfo& info, const auto& field) { writeField(file, info, field); });
 }
 
@@ -167,14 +222,13 @@ void requireReadable(const std::filesystem::path& path) {
 
 /// The walls of a part; it also looks at all ids, since a part does not see whether others have the same. Errors:
 /// Hdf5Error.
-void chooseWalls(hid_t file, Selection& selection) {
+void chooseWalls(hid_t file, const OpenFlow& flow, Selection& selection) {
   const std::uint32_t fluid = selection.fluid, walls = selection.walls;
   const FieldInfo info{"id", Of::All, std::uint64_t{fluid} + walls};
   const FieldReader<std::uint32_t> reader(file, info);
   Buffer<std::uint32_t> ids(info.count);
   reader.read({0, info.count}, ids.data());
-  requireEachOnce(ids, fluid);
-  const std::uint32_t first = fluid + selection.part.begin(walls);
+  const std::uint32_t first = requireIds(ids, fluid, flow) + selection.part.begin(walls);
   selection.chosenWalls.resize(selection.part.size(walls));
   for (std::uint32_t k = 0; k < walls; ++k)
     if (const std::uint32_t place = ids[fluid + k] - first; place < selection.chosenWalls.size())
@@ -197,9 +251,10 @@ Checkpoint<D> readContent(const std::filesystem::path& path, bool sealed, Partic
   if (version >= 6) particles.steps = readSteps(file);
   if (version >= 7) particles.hasShearRates = readAttribute<std::uint8_t>(file, "has_shear_rates") != 0;
   if (version >= 8) particles.hasTemperatures = readAttribute<std::uint8_t>(file, "has_temperatures") != 0;
+  if (version >= 9) particles.flow = readFlow(file);
   Selection selection{part, particles.fluidCount, particles.wallCount(), {}};
   checkpoint.fluidOfAll = selection.fluid, checkpoint.wallsOfAll = selection.walls;
-  if (!part.isAll()) chooseWalls(file, selection);
+  if (!part.isAll()) chooseWalls(file, particles.flow, selection);
   forEachNamedField(particles, std::uint64_t{selection.fluid} * modes,
                     [&]<class T>(const FieldInfo& info, Buffer<T>& field) {
                       if (version >= info.since) return readField(file, info, selection, field);
@@ -209,7 +264,7 @@ Checkpoint<D> readContent(const std::filesystem::path& path, bool sealed, Partic
                       std::fill(field.begin(), field.end(), older);
                     });
   requireSound(particles);
-  if (part.isAll()) requireEachOnce(particles.id, particles.fluidCount);
+  if (part.isAll()) requireIds(particles.id, particles.fluidCount, particles.flow);
   particles.fluidCount = part.size(selection.fluid);
   particles.count = particles.fluidCount + part.size(selection.walls);
   return checkpoint;
@@ -223,7 +278,7 @@ void writeCheckpoint(const std::filesystem::path& path, const Particles<D>& part
   const Hdf5Silence silence;
   try {
     requireSound(particles);  // what cannot be read back must not replace what can
-    requireEachOnce(particles.id, particles.fluidCount);
+    requireIds(particles.id, particles.fluidCount, particles.flow);
     // HDF5 makes the file in memory: it cannot close a file that a full disk keeps it from finishing.
     std::size_t bytes = 1 << 16;
     forEachNamedField(particles, [&](const FieldInfo&, const auto& field) { bytes += field.bytes(); });

@@ -27,17 +27,24 @@ struct Panel {
   std::vector<Curve> curves;
 };
 
-std::vector<Panel> panels() {
+std::vector<Panel> panelsOf(const std::vector<HistoryRow>& rows) {
   constexpr Rgb blue{0.13, 0.36, 0.60}, orange{0.85, 0.42, 0.08}, green{0.10, 0.50, 0.35},
       purple{0.42, 0.20, 0.52};
-  return {{"iterations", "", {{"", [](const HistoryRow& r) { return double(r.iterations); }, blue}}},
-          {"kinetic energy", "J", {{"", [](const HistoryRow& r) { return r.kineticEnergy; }, orange}}},
-          {"potential energy", "J", {{"", [](const HistoryRow& r) { return r.potentialEnergy; }, green}}},
-          {"extent",
-           "m",
-           {{"front x", [](const HistoryRow& r) { return r.frontX; }, blue},
-            {"top", [](const HistoryRow& r) { return r.top; }, orange}}},
-          {"largest speed", "m/s", {{"", [](const HistoryRow& r) { return r.maxSpeed; }, purple}}}};
+  std::vector<Panel> panels = {
+      {"iterations", "", {{"", [](const HistoryRow& r) { return double(r.iterations); }, blue}}},
+      {"kinetic energy", "J", {{"", [](const HistoryRow& r) { return r.kineticEnergy; }, orange}}},
+      {"potential energy", "J", {{"", [](const HistoryRow& r) { return r.potentialEnergy; }, green}}},
+      {"extent",
+       "m",
+       {{"front x", [](const HistoryRow& r) { return r.frontX; }, blue},
+        {"top", [](const HistoryRow& r) { return r.top; }, orange}}},
+      {"largest speed", "m/s", {{"", [](const HistoryRow& r) { return r.maxSpeed; }, purple}}}};
+  if (std::ranges::any_of(rows, [](const HistoryRow& r) { return r.particles > 0; }))
+    panels.push_back({"mass in and out",
+                      "kg",
+                      {{"in", [](const HistoryRow& r) { return r.inflow.mass; }, blue},
+                       {"out", [](const HistoryRow& r) { return r.outflow.mass; }, orange}}});
+  return panels;
 }
 
 /// A plot area and what it shows: [left, left + width] x [top, top + height] in pixels.
@@ -146,7 +153,7 @@ void drawHistory(const std::filesystem::path& path, const std::vector<HistoryRow
     if (!isDrawable(row.time))
       throw InputError(fmt::format("picture: step {} is at t = {} s", row.step, row.time));
   const Theme theme{1.0};
-  const std::vector<Panel> all = panels();
+  const std::vector<Panel> all = panelsOf(rows);
   constexpr double first = 105, pitch = 222, panelHeight = 165;  // [px]
   const int width = 1200, height = static_cast<int>(first + pitch * double(all.size()) + 20);
   Canvas canvas(width, height);

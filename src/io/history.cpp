@@ -18,19 +18,22 @@ constexpr std::string_view solveColumns =
     ",iterations,residual,kinetic_energy,potential_energy,front_x,top,max_speed";
 constexpr std::string_view timingColumns = ",search_s,lists_s,coefficients_s,coarse_s,solve_s,update_s";
 
+constexpr std::string_view flowColumns =
+    ",particles,inflow_particles,inflow_volume,inflow_mass,outflow_particles,outflow_volume,outflow_mass";
+
 /// Which columns a file has beside those that all have.
-struct Layout {
+struct Layout : HistoryColumns {
   int version = newest;  // of the columns: 2 has fallbacks, 3 the time step and densities
-  bool timings = false;
 
   static constexpr int newest = 3;
 };
 
 /// The header without the end of its line.
 std::string columns(const Layout& layout) {
-  return fmt::format("step,time{}{}{},seconds{}{}", layout.version >= 3 ? ",time_step" : "", solveColumns,
+  return fmt::format("step,time{}{}{},seconds{}{}{}", layout.version >= 3 ? ",time_step" : "", solveColumns,
                      layout.version >= 3 ? ",mean_density,density_error" : "",
-                     layout.version >= 2 ? ",fallbacks" : "", layout.timings ? timingColumns : "");
+                     layout.version >= 2 ? ",fallbacks" : "", layout.flow ? flowColumns : "",
+                     layout.timings ? timingColumns : "");
 }
 
 std::string header(const Layout& layout) { return columns(layout) + '\n'; }
@@ -45,6 +48,10 @@ void forEachColumn(Row& row, const Layout& layout, F&& f) {
   if (layout.version >= 3) f(row.meanDensity), f(row.densityError);
   f(row.seconds);
   if (layout.version >= 2) f(row.fallbacks);
+  if (layout.flow) {
+    f(row.particles);
+    for (auto* flow : {&row.inflow, &row.outflow}) f(flow->particles), f(flow->volume), f(flow->mass);
+  }
   if (!layout.timings) return;
   auto& t = row.timings;
   f(t.search), f(t.lists), f(t.coefficients), f(t.coarse), f(t.solve), f(t.update);
@@ -52,8 +59,11 @@ void forEachColumn(Row& row, const Layout& layout, F&& f) {
 
 Layout layoutOf(std::string_view text, const std::filesystem::path& path) {
   for (int version = Layout::newest; version > 0; --version)
-    for (const bool timings : {true, false})
-      if (text.starts_with(header({version, timings}))) return {version, timings};
+    for (const bool flow : {true, false})
+      for (const bool timings : {true, false}) {
+        const Layout layout{{flow, timings}, version};
+        if (text.starts_with(header(layout))) return layout;
+      }
   throw InputError(
       fmt::format("{}:1: not a history written by treacle; expected the header {}", path.string(), columns({})));
 }
@@ -81,12 +91,12 @@ HistoryRow parseRow(std::string_view line, const Layout& layout, const std::stri
 
 }  // namespace
 
-HistoryWriter::HistoryWriter(std::filesystem::path path, bool timings)
-    : timings_(timings), file_(std::move(path), columns({.timings = timings})) {}
+HistoryWriter::HistoryWriter(std::filesystem::path path, HistoryColumns some)
+    : columns_(some), file_(std::move(path), columns({some})) {}
 
 void HistoryWriter::append(const HistoryRow& row) {
   std::string line;
-  forEachColumn(row, {.timings = timings_}, [&](auto value) { line += fmt::format("{},", value); });
+  forEachColumn(row, {columns_}, [&](auto value) { line += fmt::format("{},", value); });
   line.pop_back();
   file_.append(line);
 }

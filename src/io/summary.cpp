@@ -53,6 +53,10 @@ void writeSummary(const std::filesystem::path& path, const RunSummary& s) {
   json["dimensions"] = s.dimensions;
   json["fluid_particles"] = s.fluidParticles;
   json["wall_particles"] = s.wallParticles;
+  if (s.flow)
+    json["flow"] = {{"fluid_particles", s.flow->particles},
+                    {"inflow_particles", s.flow->in},
+                    {"outflow_particles", s.flow->out}};
   json["steps"] = s.steps;
   json["time"] = s.time;
   json["time_step"] = {{"least", s.leastStep}, {"mean", s.meanStep}, {"longest", s.longestStep}};

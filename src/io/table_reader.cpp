@@ -47,10 +47,28 @@ void TableReader::prepare(ViscosityShift& shift) {
 
 void TableReader::prepare(Body& body) {
   if (const auto kind = lookUp<BodyKind>("type")) body.kind = *kind;
+  if (body.kind == BodyKind::Inflow) {
+    section_ = Section(section_.table(), section_.title() + " (inflow)");
+    return;
+  }
   const auto shape = lookUp<ShapeKind>("shape");
   if (!shape) return;
   body.shape.kind = *shape;
   section_ = Section(section_.table(), fmt::format("{} ({})", section_.title(), nameOf(*shape)));
+}
+
+void TableReader::prepare(Nozzle& nozzle) {
+  const auto kind = lookUp<NozzleKind>("shape");
+  if (!kind) return;
+  nozzle.kind = *kind;
+  section_ = Section(section_.table(), fmt::format("{} ({})", section_.title(), nameOf(*kind)));
+}
+
+void TableReader::prepare(Outflow& outflow) {
+  const auto kind = lookUp<OutflowKind>("shape");
+  if (!kind) return;
+  outflow.kind = *kind;
+  section_ = Section(section_.table(), fmt::format("{} ({})", section_.title(), nameOf(*kind)));
 }
 
 void TableReader::prepare(SolverSettings& solver) {
@@ -91,7 +109,14 @@ std::vector<std::string_view> TableReader::keysOfKind(std::string_view key, cons
   return known;
 }
 std::vector<std::string_view> TableReader::knownKeys(const Body& body) const {
+  if (body.kind == BodyKind::Inflow) return keys::namesIn(body, case_);
   return keysOfKind<ShapeKind>("shape", body, [](Body& b, ShapeKind kind) { b.shape.kind = kind; });
+}
+std::vector<std::string_view> TableReader::knownKeys(const Nozzle& nozzle) const {
+  return keysOfKind<NozzleKind>("shape", nozzle, [](Nozzle& n, NozzleKind kind) { n.kind = kind; });
+}
+std::vector<std::string_view> TableReader::knownKeys(const Outflow& outflow) const {
+  return keysOfKind<OutflowKind>("shape", outflow, [](Outflow& o, OutflowKind kind) { o.kind = kind; });
 }
 std::vector<std::string_view> TableReader::knownKeys(const Rheology& rheology) const {
   return keysOfKind<RheologyModel>("model", rheology, [](Rheology& r, RheologyModel model) { r.model = model; });
@@ -259,6 +284,30 @@ void TableReader::operator()(const Key& key, double& x, bool& isAuto, keys::OrAu
   const toml::node* node = section_.value(key, expected);
   isAuto = node && node->value<std::string_view>() == "auto";
   if (node && !isAuto) x = number(key, *node, expected);
+}
+
+void TableReader::operator()(const Key& key, std::optional<TimeFunction>& function) const {
+  const std::string expected = expectedFunction(key);
+  const toml::node* node = section_.value(key, expected);
+  if (!node) return;
+  TimeFunction f;
+  if (node->is_string()) {
+    f.expression = node->as_string()->get();
+    try {
+      Expression::ofTime(f.expression);
+    } catch (const InputError& e) {
+      throw section_.error(key.name, e.what());
+    }
+  } else if (const toml::table* table = node->as_table()) {
+    const Section section(*table, titleOf(key.name));
+    section.requireKnown({"times", "values"}, {}, "");
+    const TableReader reader(case_, sections_, section, path_);
+    reader({"times", true, "s"}, f.times);
+    reader({"values", true, key.unit, key.bound}, f.values);
+  } else {
+    f.value = number(key, *node, expected);
+  }
+  function = std::move(f);
 }
 
 void TableReader::operator()(const Key& key, OutputFields& fields) const {

@@ -43,6 +43,7 @@ class TableReader {
   void operator()(const Key& key, int& index, keys::MaterialTag) const;
   void operator()(const Key& key, double& x, bool& isAuto, keys::OrAutoTag) const;
   void operator()(const Key& key, OutputFields& fields) const;
+  void operator()(const Key& key, std::optional<TimeFunction>& function) const;
 
   template <class E, class Fits = keys::AllFit>
   requires std::is_enum_v<E>
@@ -84,6 +85,8 @@ class TableReader {
   void prepare(Rheology& rheology);
   void prepare(ViscosityShift& shift);
   void prepare(Body& body);
+  void prepare(Nozzle& nozzle);
+  void prepare(Outflow& outflow);
   void prepare(SolverSettings& solver);
   void prepare(TimeSettings& time);
   void nameMethod();
@@ -109,6 +112,8 @@ class TableReader {
   }
   std::vector<std::string_view> knownKeys(const Case&) const;
   std::vector<std::string_view> knownKeys(const Body& body) const;
+  std::vector<std::string_view> knownKeys(const Nozzle& nozzle) const;
+  std::vector<std::string_view> knownKeys(const Outflow& outflow) const;
   std::vector<std::string_view> knownKeys(const Rheology& rheology) const;
   std::vector<std::string_view> knownKeys(const ViscosityShift& shift) const;
   template <class E, class Table, class Set>

@@ -2,6 +2,7 @@
 
 #include "lattice.hpp"
 #include "treacle/core/error.hpp"
+#include "treacle/model/nozzle.hpp"
 #include "treacle/model/shape.hpp"
 
 #include <fmt/format.h>
@@ -53,8 +54,31 @@ std::vector<Vec<D>> bodyPoints(const Case& c, const Body& body, std::vector<std:
 }
 
 template <int D>
+std::vector<Vec<D>> nozzlePoints(const Case& c, const Body& body, BodyKind kind, std::vector<std::string>& notes) {
+  const NozzleLayers<D> layers(c, body);
+  std::vector<Vec<D>> points;
+  const auto add = [&](double way) {
+    for (const Vec<D>& x : layers.layer(way, 0)) {
+      requireInside(c.domain, body, x);
+      points.push_back(x);
+    }
+  };
+  if (kind == BodyKind::Fluid) {
+    if (layers.speed(0, 0) > 0) add(c.spacing / 2);
+    return points;
+  }
+  describeNozzle(body, layers, notes);
+  for (int k = 0; k < layers.depth(); ++k) add(-(k + 0.5) * c.spacing);
+  return points;
+}
+
+template <int D>
 InitialState<D>::InitialState(const Case& c, const Body& body)
     : body_(body), wall_(wallMotion<D>(c.domain, body, 0, 0)), expressions_(D) {
+  if (body.kind == BodyKind::Inflow) {
+    const NozzleLayers<D> layers(c, body);
+    wall_.velocity = wall_.velocity + layers.speed(0, 0) * layers.direction();
+  }
   for (std::size_t k = 0; k < D; ++k)
     if (const std::string& text = body.velocityExpression[k]; !text.empty()) expressions_[k].emplace(text, D);
   if (!body.temperatureExpression.empty()) temperature_.emplace(body.temperatureExpression, D);
@@ -62,7 +86,7 @@ InitialState<D>::InitialState(const Case& c, const Body& body)
 
 template <int D>
 Vec<D> InitialState<D>::velocityAt(const Vec<D>& x) const {
-  if (body_.kind == BodyKind::Wall) return wall_.velocityAt(x);
+  if (body_.kind != BodyKind::Fluid) return wall_.velocityAt(x);
   Vec<D> u = resized<D>(body_.velocity);
   for (std::size_t k = 0; k < D; ++k)
     if (expressions_[k])
@@ -83,6 +107,8 @@ double InitialState<D>::temperatureAt(const Vec<D>& x) const {
 
 template std::vector<Vec<2>> bodyPoints<2>(const Case&, const Body&, std::vector<std::string>&);
 template std::vector<Vec<3>> bodyPoints<3>(const Case&, const Body&, std::vector<std::string>&);
+template std::vector<Vec<2>> nozzlePoints<2>(const Case&, const Body&, BodyKind, std::vector<std::string>&);
+template std::vector<Vec<3>> nozzlePoints<3>(const Case&, const Body&, BodyKind, std::vector<std::string>&);
 template class InitialState<2>;
 template class InitialState<3>;
 

@@ -16,6 +16,12 @@ namespace treacle {
 template <int D>
 std::vector<Vec<D>> bodyPoints(const Case& c, const Body& body, std::vector<std::string>& notes);
 
+/// Of an inflow, as it starts: the layers behind its opening, which count as wall, and the layer in front of it,
+/// fluid, if it flows from the start. Errors: InputError for a nozzle without particles, for the first one outside
+/// the domain.
+template <int D>
+std::vector<Vec<D>> nozzlePoints(const Case& c, const Body& body, BodyKind kind, std::vector<std::string>& notes);
+
 /// What the particles of a body start with.
 template <int D>
 class InitialState {

@@ -4,7 +4,7 @@ namespace treacle {
 
 double Case::typicalTemperature(const Material& m) const {
   for (const Body& body : bodies)
-    if (body.kind == BodyKind::Fluid && &materials[static_cast<std::size_t>(body.material)] == &m &&
+    if (body.holdsFluid() && &materials[static_cast<std::size_t>(body.material)] == &m &&
         body.temperatureExpression.empty())
       return body.temperature;
   if (!m.viscosityShift) return heat->ambient;

@@ -32,6 +32,10 @@ std::string expectedNumbers(const Key& key) {
   return withUnit(key.bound.open ? "an array of positive numbers" : "an array of finite numbers", key);
 }
 
+std::string expectedFunction(const Key& key) {
+  return withUnit(numberText(key.bound), key) + ", an expression in t [s] or {times = [...], values = [...]}";
+}
+
 std::string expectedInteger(const Key& key) {
   const Bound& b = key.bound;
   if (!std::isfinite(b.most)) return fmt::format("a whole number of at least {}", b.least);

@@ -2,6 +2,7 @@
 
 #include "treacle/core/error.hpp"
 #include "treacle/core/parallel.hpp"
+#include "treacle/model/names.hpp"
 #include "treacle/model/shape.hpp"
 #include "treacle/model/wall_surface.hpp"
 
@@ -28,7 +29,10 @@ template <int D>
 std::vector<Filled<D>> fillBodies(const Case& c, BodyKind kind, std::vector<std::string>& notes) {
   std::vector<Filled<D>> filled;
   for (const Body& body : c.bodies)
-    if (body.kind == kind) filled.push_back({&body, bodyPoints<D>(c, body, notes)});
+    if (body.kind == BodyKind::Inflow)
+      filled.push_back({&body, nozzlePoints<D>(c, body, kind, notes)});
+    else if (body.kind == kind)
+      filled.push_back({&body, bodyPoints<D>(c, body, notes)});
   return filled;
 }
 
@@ -74,10 +78,22 @@ PointGrid<D> gridFor(const Domain& domain, double radius, const std::vector<Fill
   return PointGrid<D>(domain, radius, count);
 }
 
+/// What drives an inflow needs all its room. Errors: InputError for walls of which one is that of an inflow.
+template <int D>
+void requireNoNozzle(const Body& a, const Body& b, const Vec<D>& x) {
+  if (a.kind != BodyKind::Inflow && b.kind != BodyKind::Inflow) return;
+  const bool first = a.kind == BodyKind::Inflow;
+  throw InputError(fmt::format(
+      "inflow '{}' and {} '{}' overlap at {}: an inflow needs the room of its nozzle, and as much behind it as "
+      "particles act on each other",
+      first ? a.name : b.name, nameOf((first ? b : a).kind), first ? b.name : a.name,
+      positionText(resized<3>(x), D)));
+}
+
 /// Union in file order: drops points closer than half a spacing to an earlier one and puts those of the rest on
 /// the grid that may be so near to others.
 template <int D>
-void unite(std::vector<Filled<D>>& filled, const PointBoxes<D>& boxes, PointGrid<D>& grid,
+void unite(BodyKind kind, std::vector<Filled<D>>& filled, const PointBoxes<D>& boxes, PointGrid<D>& grid,
            std::vector<std::string>& notes) {
   for (std::uint32_t b = 0; b < filled.size(); ++b) {
     auto& points = filled[b].points;
@@ -92,6 +108,7 @@ void unite(std::vector<Filled<D>>& filled, const PointBoxes<D>& boxes, PointGrid
       }
       if (const std::uint32_t tag = grid.find(x); tag != PointGrid<D>::none) {
         other = tag;
+        if (kind == BodyKind::Wall) requireNoNozzle(*filled[b].body, *filled[other].body, x);
         continue;
       }
       grid.add(x, b);
@@ -130,15 +147,15 @@ void requireApart(const std::vector<Filled<D>>& fluid, const PointGrid<D>& grid,
 /// Makes particles of those points whose ids are in [first, end); `id`: of the next point, `at`: where the next
 /// particle is to stand.
 template <int D>
-void append(const Case& c, const std::vector<Filled<D>>& filled, std::uint32_t first, std::uint32_t end,
-            Particles<D>& particles, std::uint32_t& id, std::uint32_t& at) {
+void append(const Case& c, BodyKind kind, const std::vector<Filled<D>>& filled, std::uint32_t first,
+            std::uint32_t end, Particles<D>& particles, std::uint32_t& id, std::uint32_t& at) {
   for (const Filled<D>& f : filled) {
     const auto body = static_cast<std::uint8_t>(f.body - c.bodies.data());
     const auto count = static_cast<std::uint32_t>(f.points.size());
     const std::uint32_t begin = std::clamp(first, id, id + count) - id,
                         made = std::clamp(end, id, id + count) - id;
     const InitialState<D> initial(c, *f.body);
-    const bool warm = c.heat && f.body->kind == BodyKind::Fluid;
+    const bool warm = c.heat && kind == BodyKind::Fluid;
     const auto place = [&](std::size_t k) {
       const Vec<D>& x = f.points[begin + k];
       const std::size_t i = at + k;
@@ -166,11 +183,13 @@ void append(const Case& c, const std::vector<Filled<D>>& filled, std::uint32_t f
 }  // namespace
 
 template <int D>
-Particles<D> createParticles(const Case& c, std::vector<std::string>& notes,
-                             std::vector<std::uint32_t>* bodyCounts, ParticlePart part) {
+Particles<D> createParticles(const Case& c, std::vector<std::string>& notes, std::vector<BodyCount>* bodyCounts,
+                             ParticlePart part) {
   auto fluid = fillBodies<D>(c, BodyKind::Fluid, notes);
   auto walls = fillBodies<D>(c, BodyKind::Wall, notes);
-  if (total(fluid) == 0) throw InputError("the case has no fluid: no body of type \"fluid\" holds a particle");
+  if (total(fluid) == 0)
+    throw InputError(fmt::format("the case has no fluid: no body of type \"fluid\" holds a particle{}",
+                                 c.hasInflow() ? ", and no inflow flows at the start" : ""));
   if (total(fluid) + total(walls) > maxParticles)
     throw InputError(fmt::format("the case would have {} particles, more than the limit of {}",
                                  total(fluid) + total(walls), maxParticles));
@@ -182,10 +201,10 @@ Particles<D> createParticles(const Case& c, std::vector<std::string>& notes,
   for (const auto* group : {&fluid, &walls})
     for (const Filled<D>& f : *group) boxes.add(f.body, f.points);
   PointGrid<D> fluidGrid = gridFor(c.domain, radius, fluid, boxes);
-  unite(fluid, boxes, fluidGrid, notes);
+  unite(BodyKind::Fluid, fluid, boxes, fluidGrid, notes);
   {
     PointGrid<D> wallGrid = gridFor(c.domain, radius, walls, boxes);
-    unite(walls, boxes, wallGrid, notes);
+    unite(BodyKind::Wall, walls, boxes, wallGrid, notes);
   }
   requireApart(fluid, fluidGrid, walls, boxes);
 
@@ -197,8 +216,9 @@ Particles<D> createParticles(const Case& c, std::vector<std::string>& notes,
   numbers.temperatures = c.heat.has_value();
   particles.resize(numbers);
   std::uint32_t id = 0, at = 0;
-  append(c, fluid, part.begin(fluidCount), part.end(fluidCount), particles, id, at);
-  append(c, walls, fluidCount + part.begin(wallCount), fluidCount + part.end(wallCount), particles, id, at);
+  append(c, BodyKind::Fluid, fluid, part.begin(fluidCount), part.end(fluidCount), particles, id, at);
+  append(c, BodyKind::Wall, walls, fluidCount + part.begin(wallCount), fluidCount + part.end(wallCount), particles,
+         id, at);
   if (c.method.kind == MethodKind::MphI && c.method.wallVelocity == WallVelocity::Extrapolated) {
     std::vector<std::string> ofPart;
     const auto surfaces =
@@ -208,24 +228,27 @@ Particles<D> createParticles(const Case& c, std::vector<std::string>& notes,
     std::copy(surfaces.begin(), surfaces.end(), particles.wallSurface.begin());
   }
   if (bodyCounts) {
-    bodyCounts->assign(c.bodies.size(), 0);
-    for (const auto* group : {&fluid, &walls})
-      for (const Filled<D>& f : *group)
-        (*bodyCounts)[static_cast<std::size_t>(f.body - c.bodies.data())] =
+    bodyCounts->assign(c.bodies.size(), {});
+    const auto countOf = [&](const std::vector<Filled<D>>& group, std::uint32_t BodyCount::*ofKind) {
+      for (const Filled<D>& f : group)
+        (*bodyCounts)[static_cast<std::size_t>(f.body - c.bodies.data())].*ofKind =
             static_cast<std::uint32_t>(f.points.size());
+    };
+    countOf(fluid, &BodyCount::fluid);
+    countOf(walls, &BodyCount::wall);
   }
   return particles;
 }
 
-AnyParticles createParticles(const Case& c, std::vector<std::string>& notes,
-                             std::vector<std::uint32_t>* bodyCounts, ParticlePart part) {
+AnyParticles createParticles(const Case& c, std::vector<std::string>& notes, std::vector<BodyCount>* bodyCounts,
+                             ParticlePart part) {
   if (c.dimensions == 2) return createParticles<2>(c, notes, bodyCounts, part);
   return createParticles<3>(c, notes, bodyCounts, part);
 }
 
-template Particles<2> createParticles<2>(const Case&, std::vector<std::string>&, std::vector<std::uint32_t>*,
+template Particles<2> createParticles<2>(const Case&, std::vector<std::string>&, std::vector<BodyCount>*,
                                          ParticlePart);
-template Particles<3> createParticles<3>(const Case&, std::vector<std::string>&, std::vector<std::uint32_t>*,
+template Particles<3> createParticles<3>(const Case&, std::vector<std::string>&, std::vector<BodyCount>*,
                                          ParticlePart);
 
 }  // namespace treacle

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 #include <muParser.h>
+#include <cstddef>
 #include <numbers>
 
 namespace treacle {
@@ -20,6 +21,9 @@ bool assigns(const std::string& text) {
   return false;
 }
 
+constexpr const char* coordinates[] = {"x", "y", "z"};
+constexpr const char* timeAlone[] = {"t"};
+
 /// Of a text too long for a message.
 std::string beginningOf(const std::string& text) {
   constexpr std::size_t longest = 200;
@@ -33,11 +37,10 @@ struct Expression::Parser {
   mu::Parser parser;
   Vec<3> x{};
 
-  explicit Parser(int dimensions) {
-    constexpr const char* names[] = {"x", "y", "z"};
+  explicit Parser(std::span<const char* const> variables) {
     parser.ClearConst();
     parser.DefineConst("pi", std::numbers::pi);
-    for (int k = 0; k < dimensions; ++k) parser.DefineVar(names[k], &x[k]);
+    for (std::size_t k = 0; k < variables.size(); ++k) parser.DefineVar(variables[k], &x[static_cast<int>(k)]);
   }
 
   /// Takes the text; what is wrong with it, or nothing.
@@ -53,11 +56,16 @@ struct Expression::Parser {
   }
 };
 
-Expression::Expression(const std::string& text, int dimensions) : parser_(std::make_unique<Parser>(dimensions)) {
+Expression::Expression(const std::string& text, std::span<const char* const> variables, const char* expected)
+    : parser_(std::make_unique<Parser>(variables)) {
   if (const std::string fault = parser_->fault(text); !fault.empty())
-    throw InputError(fmt::format("expected an expression in {} [m] and the constant pi, found \"{}\": {}",
-                                 dimensions == 2 ? "x, y" : "x, y, z", beginningOf(text), fault));
+    throw InputError(fmt::format("expected an expression in {} and the constant pi, found \"{}\": {}", expected,
+                                 beginningOf(text), fault));
 }
+Expression::Expression(const std::string& text, int dimensions)
+    : Expression(text, std::span(coordinates).first(static_cast<std::size_t>(dimensions)),
+                 dimensions == 2 ? "x, y [m]" : "x, y, z [m]") {}
+Expression Expression::ofTime(const std::string& text) { return {text, timeAlone, "t [s]"}; }
 Expression::~Expression() = default;
 Expression::Expression(Expression&&) noexcept = default;
 

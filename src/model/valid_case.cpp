@@ -90,13 +90,24 @@ class Checker {
   void operator()(const Key& key, const Oscillation& oscillation) const {
     if (oscillation != Oscillation{}) Checker(case_, below({key.name})).check(oscillation);
   }
+  void operator()(const Key& key, const std::optional<TimeFunction>& f) const {
+    if (!f) return;
+    if (f->isTable()) return requireTable(key, *f);
+    if (f->expression.empty()) return require(key.bound.holds(f->value), key, expectedFunction(key), f->value);
+    try {
+      Expression::ofTime(f->expression);
+    } catch (const InputError& e) {
+      fail({key.name}, e.what());
+    }
+  }
   template <class Table>
   void operator()(const Key& key, const std::optional<Table>& table) const {
     if (table) (*this)(key, *table);
   }
   template <class Table>
   void operator()(const Key& key, const std::vector<Table>& tables) const {
-    if (tables.empty()) fail({key.name}, fmt::format("missing; expected {}", expectedEntries(key)));
+    if (tables.empty() && key.required)
+      fail({key.name}, fmt::format("missing; expected {}", expectedEntries(key)));
     if (tables.size() > key.bound.most)
       fail({key.name}, fmt::format("expected at most {}, found {}", key.bound.most, tables.size()));
     for (std::size_t k = 0; k < tables.size(); ++k) {
@@ -111,6 +122,18 @@ class Checker {
   template <class T>
   void require(bool sound, const Key& key, const std::string& expected, T found) const {
     if (!sound) fail({key.name}, mismatch(key, expected, fmt::format("{}", found)));
+  }
+
+  void requireTable(const Key& key, const TimeFunction& f) const {
+    if (f.values.size() != f.times.size())
+      fail({key.name},
+           fmt::format("expected as many values as times, {}, found {}", f.times.size(), f.values.size()));
+    for (std::size_t k = 0; k < f.times.size(); ++k) {
+      require(key.bound.holds(f.values[k]), key, expectedNumber(key), f.values[k]);
+      if (!std::isfinite(f.times[k])) fail({key.name}, fmt::format("expected finite times, found {}", f.times[k]));
+      if (k > 0 && !(f.times[k - 1] < f.times[k]))
+        fail({key.name}, fmt::format("expected rising times, found {} after {}", f.times[k], f.times[k - 1]));
+    }
   }
 
   void requireVector(const Key& key, const Vec<3>& x, const std::string& expected) const {
@@ -214,8 +237,35 @@ void requireSound(const Checker& at, const Shape& s) {
     at.fail({"inner_radius"}, fmt::format("expected less than radius = {}, found {}", s.radius, s.innerRadius));
 }
 
-/// Only fluids start with velocities of their own for each particle, only walls are moved.
+void requireDirection(const Checker& at, const char* key, const Vec<3>& v) {
+  if (norm(v) == 0) at.fail({key}, "expected a vector that is not zero");
+}
+
+void requireSound(const Checker& at, const Nozzle& n) {
+  requireDirection(at, "direction", n.direction);
+  if (n.kind == NozzleKind::Disc && n.innerRadius >= n.radius)
+    at.fail({"inner_radius"}, fmt::format("expected less than radius = {}, found {}", n.radius, n.innerRadius));
+  if (norm(cross(n.up, n.direction)) <= 1e-6 * norm(n.up) * norm(n.direction) && norm(n.up) > 0)
+    at.fail({"up"}, "expected a vector that is not along the direction");
+}
+
+void requireSound(const Checker& at, const Inflow& i) {
+  if (i.speed.has_value() == i.flowRate.has_value())
+    at.fail({i.speed ? "flow_rate" : "speed"},
+            i.speed ? "expected one of speed and flow_rate, found both" : "missing; expected speed or flow_rate");
+  if (i.end > 0 && i.end <= i.start)
+    at.fail({"end"},
+            fmt::format("expected 0, which is never, or more than start = {} s, found {}", i.start, i.end));
+}
+
+void requireSound(const Checker& at, const Outflow& o) {
+  if (o.kind == OutflowKind::Box) return requireOrder(at, o.min, o.max);
+  requireDirection(at, "normal", o.normal);
+}
+
+/// Only fluids start with velocities of their own for each particle, only walls and nozzles are moved.
 void requireSound(const Checker& at, const Body& b) {
+  if (b.kind == BodyKind::Inflow) return requireSound(at, b.inflow);
   requireSound(at, b.shape);
   if (b.kind == BodyKind::Fluid) {
     constexpr const char* text = "only a body of type \"wall\" can have one";
@@ -338,7 +388,7 @@ void requireSound(const Checker& at, const MethodSettings& m) {
 std::set<int> fluidMaterials(const Case& c) {
   std::set<int> found;
   for (const Body& body : c.bodies)
-    if (body.kind == BodyKind::Fluid) found.insert(body.material);
+    if (body.holdsFluid()) found.insert(body.material);
   return found;
 }
 
@@ -368,8 +418,8 @@ void requireMaterials(const Checker& at, const Case& c) {
 
 void requireSound(const Checker& at, const Case& c) {
   if (c.heat && c.method.kind != MethodKind::MphI) at.fail({"heat"}, heatOfMphI);
-  if (std::ranges::none_of(c.bodies, [](const Body& b) { return b.kind == BodyKind::Fluid; }))
-    at.fail({"body"}, "no fluid: expected at least one [[body]] with type = \"fluid\"");
+  if (std::ranges::none_of(c.bodies, &Body::holdsFluid))
+    at.fail({"body"}, "no fluid: expected at least one [[body]] with type = \"fluid\" or \"inflow\"");
   requireMaterials(at, c);
   requireDomainSize(at, c);
   requirePeriodicLength(at, c);

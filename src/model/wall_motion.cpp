@@ -10,14 +10,13 @@ double sinc(double x) { return x == 0 ? 1 : std::sin(x) / x; }
 
 double angularFrequency(const Oscillation& o) { return 2 * std::numbers::pi / o.period; }
 
-/// From where it starts to where it is at time t [m].
-Vec<3> displacement(const Body& body, double t) {
+}  // namespace
+
+Vec<3> wallDisplacement(const Body& body, double t) {
   const Oscillation& o = body.oscillation;
   if (o.period == 0) return t * body.velocity;
   return t * body.velocity + (std::sin(angularFrequency(o) * t + o.phase) - std::sin(o.phase)) * o.amplitude;
 }
-
-}  // namespace
 
 bool someWallOscillates(const Case& c) {
   return std::ranges::any_of(c.bodies, [](const Body& b) { return b.oscillation.period > 0; });
@@ -36,7 +35,7 @@ Vec<3> wallVelocity(const Body& body, double t, double dt) {
 }
 
 Vec<3> wallCenter(const Body& body, double t) {
-  return body.rotation ? body.rotation->center + displacement(body, t) : Vec<3>{};
+  return body.rotation ? body.rotation->center + wallDisplacement(body, t) : Vec<3>{};
 }
 
 Vec<3> wallAcceleration(const Body& body, double t) {

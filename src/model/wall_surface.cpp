@@ -214,7 +214,7 @@ std::vector<WallSurface<D>> createWallSurfaces(const Case& c, std::span<const Ve
     if (surfaces[k] != WallSurface<D>{}) ++seeing[body[k]];
   }
   for (std::size_t b = 0; b < c.bodies.size(); ++b)
-    if (particles[b] > 0 && seeing[b] == 0)
+    if (c.bodies[b].kind == BodyKind::Wall && particles[b] > 0 && seeing[b] == 0)
       notes.push_back(fmt::format(
           "wall '{}': none of its {} particles has a surface of the walls within the viscosity radius h_v = {}; "
           "no fluid can be next to it",

@@ -8,7 +8,7 @@ namespace treacle {
 std::vector<WallHeat> wallHeat(const Case& c) {
   std::vector<WallHeat> walls;
   for (const Body& body : c.bodies)
-    walls.push_back({body.kind == BodyKind::Wall ? body.temperature : 0,
+    walls.push_back({body.kind == BodyKind::Fluid ? 0 : body.temperature,
                      body.wallConductance > 0 ? 1 / body.wallConductance : 0});
   return walls;
 }

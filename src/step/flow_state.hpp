@@ -4,13 +4,16 @@
 #include "treacle/core/copy_values.hpp"
 #include "treacle/core/device_link.hpp"
 #include "treacle/model/case.hpp"
+#include "treacle/model/nozzle.hpp"
 #include "treacle/model/particles.hpp"
 #include "treacle/model/wall_motion.hpp"
 
 #include <algorithm>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
+#include <vector>
 
 namespace treacle {
 
@@ -28,13 +31,19 @@ struct FlowState {
   mutable Context<Backend> context;
   std::unique_ptr<DeviceLink> link;  // of the context, where processes share devices
   Particles<D, Backend> particles;
+  std::vector<std::optional<NozzleLayers<D>>> nozzles;  // per body, of those that are inflows
   Buffer<WallMotion<D>, Backend> wallMotion;   // per body, of the step; empty: all walls keep their velocities
   Buffer<Vec<D>, Backend> velocity, position;  // the step's results before they are accepted
 
   StepPhases<Backend> phases;  // of the step at hand
 
   FlowState(const Case& c, std::int64_t startStep, double startTime)
-      : theCase(c), step(startStep), time(startTime), timeStep(c.time.step) {}
+      : theCase(c), step(startStep), time(startTime), timeStep(c.time.step) {
+    for (const Body& body : theCase.bodies) {
+      nozzles.emplace_back();
+      if (body.kind == BodyKind::Inflow) nozzles.back().emplace(theCase, body);
+    }
+  }
 
   /// With the others of these processes.
   void share(const Communicator& processes) {

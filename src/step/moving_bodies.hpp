@@ -14,21 +14,21 @@ namespace treacle {
 /// Whether some wall moves, at the time of these particles or at any other.
 template <int D>
 bool someWallMoves(const Case& c, const Particles<D>& particles) {
-  if (someWallOscillates(c) || someWallRotates(c)) return true;
+  if (someWallOscillates(c) || someWallRotates(c) || c.hasInflow()) return true;
   for (std::uint32_t i = particles.wallBegin(); i < particles.count; ++i)
     if (norm2(particles.velocity[i]) > 0) return true;
   return false;
 }
 
 /// What the walls of a state that it refers to move with: those that oscillate or rotate by the motions of their
-/// bodies, the others by the velocities that they have.
+/// bodies, inflows with the speeds of their fluid, the others by the velocities that they have.
 template <int D, class Backend>
 class MovingBodies {
  public:
   explicit MovingBodies(FlowState<D, Backend>& state)
       : state_(state),
         rotate_(someWallRotates(state.theCase)),
-        velocitiesChange_(rotate_ || someWallOscillates(state.theCase)) {}
+        velocitiesChange_(rotate_ || someWallOscillates(state.theCase) || state.theCase.hasInflow()) {}
 
   /// Motions and velocities for state.timeStep from state.time on.
   void prepare() {
@@ -36,6 +36,10 @@ class MovingBodies {
     std::vector<WallMotion<D>> motion;
     for (const Body& body : state_.theCase.bodies)
       motion.push_back(wallMotion<D>(state_.theCase.domain, body, state_.time, state_.timeStep));
+    for (std::size_t b = 0; b < motion.size(); ++b)
+      if (const auto& nozzle = state_.nozzles[b])
+        motion[b].velocity =
+            motion[b].velocity + nozzle->speed(state_.time, state_.timeStep) * nozzle->direction();
     fromHost(state_.context, std::span<const WallMotion<D>>(motion), state_.wallMotion);
     setWallVelocities<D>(state_.context, walls(), velocities());
   }

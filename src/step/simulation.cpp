@@ -5,6 +5,7 @@
 #include "given_step.hpp"
 #include "held_walls.hpp"
 #include "moving_bodies.hpp"
+#include "open_boundaries.hpp"
 #include "own_particles.hpp"
 #include "step_method.hpp"
 #include "treacle/core/processes.hpp"
@@ -78,6 +79,7 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
       Flow::position, Flow::wallsMove, Flow::phases;
 
   MovingBodies<D, Backend> bodies;
+  OpenBoundaries<D, Backend> boundaries;
   std::unique_ptr<StepMethod<D, Backend>> method;
   std::optional<DistantWalls<D>> distant;  // which `particles` has not
   double lastSpeed = 0;                    // of the fastest particle [m/s]
@@ -87,7 +89,7 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
   bool tooCoarse = false;              // an automatic step was, and it was said
 
   State(const Case& c, Particles<D> state, std::int64_t startStep, double startTime, const Communicator* processes)
-      : Flow(c, startStep, startTime), bodies(*this) {
+      : Flow(c, startStep, startTime), bodies(*this), boundaries(*this) {
     if (theCase.time.automatic) control.emplace(theCase);
     if (processes && processes->size() > 1) {
       requireShareable(theCase, std::is_same_v<Backend, Cpu> ? BackendKind::Cpu : BackendKind::Cuda);
@@ -96,6 +98,7 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     this->fluidOfAll = static_cast<std::uint32_t>(sumOverProcesses(context, state.fluidCount));
     wallsMove = sumOverProcesses(context, someWallMoves(theCase, state)) > 0;
     const double mass = sumOverProcesses(context, fluidMass(theCase, state));
+    boundaries.begin(state);
     method = theCase.method.kind == MethodKind::Isph ? makeIsphStep(static_cast<Flow&>(*this))
                                                      : makeMphStep(static_cast<Flow&>(*this));
     distant.emplace(theCase, method->grid(), state, time, context.communicator);
@@ -111,7 +114,7 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     }
     const Diagnostics start = diagnostics();
     lastSpeed = start.maxSpeed;
-    watch.emplace(theCase, start, mass, this->fluidOfAll, wallsMove);
+    watch.emplace(theCase, start, mass, this->fluidOfAll, wallsMove || theCase.isOpen());
   }
 
   void chooseTimeStep() {
@@ -237,7 +240,9 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
       report.diagnostics = diagnosticsOf(position, velocity);
       report.watched = watch->look(timeStep, report.diagnostics, report.warnings);
       lastSpeed = report.diagnostics.maxSpeed;
+      const double start = time;
       accept();
+      if (theCase.isOpen()) report.flow = followFlow(start);
     });
     report.seconds = phases.seconds();
     report.step = step;
@@ -249,6 +254,16 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     report.failures = std::move(solved.failures);
     report.balance = method->balance();
     return report;
+  }
+
+  FlowReport followFlow(double start) {
+    DiagnosticsInput<D> in;
+    method->describe(in);
+    if (boundaries.follow(method->grid(), start, in.restDensity > 0 ? in.restDensity : 1)) {
+      method->sortParticles();
+      watch->setParticles(this->fluidOfAll);
+    }
+    return {this->fluidOfAll, particles.flow.in(), particles.flow.out()};
   }
 
   std::vector<SolverTrial> convergence(std::span<const SolverSettings> solvers) {
@@ -266,7 +281,7 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
   }
 
   std::size_t bytes() const {
-    std::size_t sum = velocity.bytes() + position.bytes() + bodies.bytes() + method->bytes();
+    std::size_t sum = velocity.bytes() + position.bytes() + bodies.bytes() + boundaries.bytes() + method->bytes();
     particles.forEachField([&](const auto& field) { sum += field.bytes(); });
     return std::is_same_v<Backend, Cpu> ? sum + distant->bytes() : sum;
   }

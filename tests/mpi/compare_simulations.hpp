@@ -68,6 +68,12 @@ inline void expectSame(const Case& c, const StepReport& a, const StepReport& b, 
   EXPECT_EQ(p.interiorParticles, q.interiorParticles);
   expectNear(p.meanDensityRatio, q.meanDensityRatio, 1, "density", b.step);
   expectNear(p.meanDensityError, q.meanDensityError, 1, "density error", b.step);
+  ASSERT_EQ(a.flow.has_value(), b.flow.has_value());
+  if (a.flow) {
+    EXPECT_EQ(a.flow->particles, b.flow->particles);
+    EXPECT_EQ(a.flow->in, b.flow->in);
+    EXPECT_EQ(a.flow->out, b.flow->out);
+  }
   ASSERT_EQ(a.balance.has_value(), b.balance.has_value());
   if (!a.balance) return;
   const double power = std::abs(q.gravityPower) + b.balance->shearDissipation;
@@ -83,7 +89,8 @@ inline void expectSame(const Case& c, const StepReport& a, const StepReport& b, 
 /// Particles by identifier.
 template <int D>
 std::vector<std::uint32_t> placeOfId(const Particles<D>& p) {
-  std::vector<std::uint32_t> place(p.count);
+  const std::uint32_t last = p.count > 0 ? *std::max_element(p.id.begin(), p.id.end()) : 0;
+  std::vector<std::uint32_t> place(std::size_t{last} + 1);
   for (std::uint32_t i = 0; i < p.count; ++i) place[p.id[i]] = i;
   return place;
 }
@@ -94,12 +101,15 @@ void expectSameFields(const Case& c, const Particles<D>& a, const Particles<D>& 
   ASSERT_EQ(a.numbers(), b.numbers());
   EXPECT_EQ(a.steps.last, b.steps.last);
   EXPECT_EQ(a.modes.age.due, b.modes.age.due);
-  const std::vector<std::uint32_t> inA = placeOfId(a), inB = placeOfId(b);
+  const std::vector<std::uint32_t> inA = placeOfId(a);
   double speed = 0, stress = 0;
   for (std::uint32_t i = 0; i < b.count; ++i)
     speed = std::max(speed, norm(b.velocity[i])), stress = std::max(stress, std::abs(b.pressure[i]));
-  for (std::uint32_t id = 0; id < b.count; ++id) {
-    const std::uint32_t i = inA[id], j = inB[id];
+  for (std::uint32_t j = 0; j < b.count; ++j) {
+    const std::uint32_t id = b.id[j];
+    ASSERT_LT(id, inA.size());
+    const std::uint32_t i = inA[id];
+    ASSERT_EQ(a.id[i], id);
     ASSERT_EQ(i < a.fluidCount, j < b.fluidCount);
     EXPECT_EQ(a.material[i], b.material[j]);
     EXPECT_EQ(a.body[i], b.body[j]);
@@ -137,7 +147,7 @@ void expectOwnParticles(const Case& c, const Simulation<D, Backend>& shared, con
   measureArrangementPart(fluid, others, c.domain, c.spacing);
   const bool first = job().rank() == 0;
   const auto at = [&]<class T>(std::span<const T> values, const std::vector<std::uint32_t>& ids) {
-    std::vector<T> byId(whole.count);
+    std::vector<T> byId(std::size_t{*std::max_element(whole.id.begin(), whole.id.end())} + 1);
     for (std::size_t k = 0; k < ids.size(); ++k) byId[ids[k]] = values[k];
     return byId;
   };

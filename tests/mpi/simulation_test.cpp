@@ -65,6 +65,14 @@ TEST(SharedSimulation, FluidWithHeat) {
   compare<2>({"glass-gob-2d.toml", 5, {"solver.tolerance=1e-18", "solver.deflation=0", "heat.tolerance=1e-20"}});
 }
 
+/// A nozzle pours into a mould, which overflows into a drain.
+TEST(SharedSimulation, FluidThatComesAndGoes) {
+  const std::string exact = "solver.tolerance=1e-20", plain = "solver.deflation=0";
+  compare<2>({"filling-2d.toml", 40, {exact, plain, "resolution=4"}});
+  compare<2>(
+      {"filling-2d.toml", 60, {exact, plain, "resolution=4", "drain.min=[-0.02,0]", "drain.max=[0.065,0.0595]"}});
+}
+
 TEST(SharedSimulation, SeveralFluids) {
   compare<2>({"honey-and-syrup-2d.toml", 10, {"solver.tolerance=1e-18", "solver.deflation=0"}});
   compare<2>(

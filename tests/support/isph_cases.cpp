@@ -4,6 +4,7 @@
 #include "treacle/model/particles_copy.hpp"
 
 #include <gtest/gtest.h>
+#include <unordered_map>
 
 #include <algorithm>
 #include <string>
@@ -78,10 +79,12 @@ Vec<D> centreOfMass(const Particles<D>& p) {
 template <int D>
 bool sameBits(const Particles<D>& a, const Particles<D>& b) {
   if (a.count != b.count || a.fluidCount != b.fluidCount) return false;
-  std::vector<std::uint32_t> placeOf(a.count);
+  std::unordered_map<std::uint32_t, std::uint32_t> placeOf;
   for (std::uint32_t i = 0; i < a.count; ++i) placeOf[a.id[i]] = i;
   for (std::uint32_t i = 0; i < b.count; ++i) {
-    const std::uint32_t j = placeOf[b.id[i]];
+    const auto place = placeOf.find(b.id[i]);
+    if (place == placeOf.end()) return false;
+    const std::uint32_t j = place->second;
     if (!(a.position[j] == b.position[i] && a.velocity[j] == b.velocity[i] && a.pressure[j] == b.pressure[i] &&
           a.numberDensity[j] == b.numberDensity[i]))
       return false;

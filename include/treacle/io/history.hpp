@@ -13,6 +13,12 @@ struct HistoryTimings {
   double search = 0, lists = 0, coefficients = 0, coarse = 0, solve = 0, update = 0;  // [s]
 };
 
+/// Fluid that has come in or gone out since the start of a case.
+struct HistoryFlow {
+  std::uint64_t particles = 0;
+  double volume = 0, mass = 0;  // [m3; m2 in 2D], [kg; per metre of depth in 2D]
+};
+
 /// One time step in `history.csv`.
 struct HistoryRow {
   std::int64_t step = 0;
@@ -29,19 +35,27 @@ struct HistoryRow {
   double densityError = 0;     // mean of |rho / rho_0 - 1| away from free surfaces
   double seconds = 0;          // wall-clock time of the step [s]
   int fallbacks = 0;           // of the linear solver; zero if the file, of an earlier version, does not hold them
-  HistoryTimings timings{};    // zero if the file does not hold them
+  std::uint64_t particles = 0;  // of the fluid; zero, like the next two, if the file does not hold them
+  HistoryFlow inflow{}, outflow{};
+  HistoryTimings timings{};  // zero if the file does not hold them
+};
+
+/// Columns that only some histories have.
+struct HistoryColumns {
+  bool flow = false;     // fluid that comes and goes
+  bool timings = false;  // of the phases
 };
 
 /// Appends rows to a new file; numbers read back to the same bits. Errors: those of RowFile.
 class HistoryWriter {
  public:
-  /// Replaces an older file. `timings`: with columns for the phases.
-  explicit HistoryWriter(std::filesystem::path path, bool timings = false);
+  /// Replaces an older file.
+  explicit HistoryWriter(std::filesystem::path path, HistoryColumns columns = {});
 
   void append(const HistoryRow& row);
 
  private:
-  bool timings_;
+  HistoryColumns columns_;
   RowFile file_;
 };
 

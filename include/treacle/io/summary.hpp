@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -29,7 +30,11 @@ struct RunSummary {
   std::string precision;                // "double" or "mixed"
   std::string title;                    // of the case
   int dimensions = 0;
-  std::uint64_t fluidParticles = 0, wallParticles = 0;
+  std::uint64_t fluidParticles = 0, wallParticles = 0;  // at the start of the run
+  struct Flow {
+    std::uint64_t particles = 0, in = 0, out = 0;  // at the end; since the start of the case
+  };
+  std::optional<Flow> flow{};  // of a case where fluid comes or goes
 
   std::int64_t steps = 0;
   double time = 0;                                      // simulation time reached [s]

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "treacle/core/vec.hpp"
+#include "treacle/model/inflow.hpp"
 
 #include <array>
 #include <cstddef>
@@ -26,7 +27,8 @@ struct Shape {
   bool operator==(const Shape&) const = default;
 };
 
-enum class BodyKind { Fluid, Wall };
+/// An inflow is both: the fluid that comes out of it, and what drives that (Inflow), which counts as wall.
+enum class BodyKind { Fluid, Wall, Inflow };
 
 /// Displacement of a wall from where it starts: amplitude (sin(2 pi t / period + phase) - sin(phase)).
 struct Oscillation {
@@ -49,8 +51,8 @@ struct Rotation {
   bool operator==(const Rotation&) const = default;
 };
 
-/// Particles of one kind and material that fill a shape. Expressions are those of model/expression.hpp; an empty
-/// one is none.
+/// Particles of one kind and material that fill a shape, or come out of a nozzle. Expressions are those of
+/// model/expression.hpp; an empty one is none.
 struct Body {
   std::string name;
   BodyKind kind = BodyKind::Fluid;
@@ -66,6 +68,9 @@ struct Body {
   double temperature = 0;
   std::string temperatureExpression{};  // of a fluid, in place of its temperature [K]
   double wallConductance = 0;           // of a wall, its conductivity over its thickness [W/(m2 K)]; 0: infinite
+  Inflow inflow{};                      // of an inflow, in place of a shape
+
+  bool holdsFluid() const { return kind != BodyKind::Wall; }
 
   bool operator==(const Body&) const = default;
 };

@@ -36,10 +36,52 @@ void visit(auto& v, Like<Shape> auto& s, const Case&) {
   v({"inner_radius", optional, "m", notNegative}, s.innerRadius);
 }
 
+void visit(auto& v, Like<Nozzle> auto& n, const Case& c) {
+  v({"shape", required}, n.kind);
+  v({"center", required, "m"}, n.center);
+  v({"direction", required, "any unit"}, n.direction);
+  if (n.kind == NozzleKind::Disc) {
+    v({"radius", required, "m", positive}, n.radius);
+    v({"inner_radius", optional, "m", notNegative}, n.innerRadius);
+    return;
+  }
+  v({"width", required, "m", positive}, n.width);
+  if (c.dimensions == 2) return;
+  v({"height", required, "m", positive}, n.height);
+  v({"up", optional, "any unit"}, n.up);
+}
+
+/// What an inflow has in place of a shape, among the keys of its body.
+void visit(auto& v, Like<Inflow> auto& i, const Case& c) {
+  v({"nozzle", required}, i.nozzle);
+  v({"speed", optional, "m/s", notNegative}, i.speed);
+  v({"flow_rate", optional, c.dimensions == 2 ? "m2/s" : "m3/s", notNegative}, i.flowRate);
+  v({"start", optional, "s", notNegative}, i.start);
+  v({"end", optional, "s", notNegative}, i.end);
+}
+
+void visit(auto& v, Like<Outflow> auto& o, const Case&) {
+  v({"name", required}, o.name);
+  v({"shape", required}, o.kind);
+  if (o.kind == OutflowKind::Box) {
+    v({"min", required, "m"}, o.min);
+    v({"max", required, "m"}, o.max);
+    return;
+  }
+  v({"point", required, "m"}, o.point);
+  v({"normal", required, "any unit"}, o.normal);
+}
+
 void visit(auto& v, Like<Body> auto& b, const Case& c) {
   v({"name", required}, b.name);
   v({"type", required}, b.kind);
   v({"material", required}, b.material, material);
+  if (b.kind == BodyKind::Inflow) {
+    v({"velocity", optional, "m/s"}, b.velocity);
+    v({"oscillation"}, b.oscillation);
+    if (c.heat) v({"temperature", required, "K", positive}, b.temperature);
+    return visit(v, b.inflow, c);
+  }
   v({"shape", required}, b.shape.kind);
   v({"where"}, b.where, expression);
   v({"velocity", optional, "m/s"}, b.velocity, b.velocityExpression);

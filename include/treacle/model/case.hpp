@@ -55,6 +55,7 @@ struct Case {
   Vec<3> gravity{};  // [m/s2]
   std::vector<Material> materials;
   std::vector<Body> bodies;
+  std::vector<Outflow> outflows{};
   TimeSettings time;
   MethodSettings method;
   RheologySettings rheology;
@@ -93,12 +94,17 @@ struct Case {
   double typicalViscosity(const Material& m) const { return m.viscosity(1, typicalShift(m)); }
   /// Whether materials differ among the fluids: those of fluid bodies, or all where no body says which.
   bool hasSeveralFluids() const {
-    const auto isFluid = [](const Body& body) { return body.kind == BodyKind::Fluid; };
+    const auto isFluid = [](const Body& body) { return body.holdsFluid(); };
     const auto first = std::ranges::find_if(bodies, isFluid);
     if (first == bodies.end()) return materials.size() > 1;
     return std::ranges::any_of(
         bodies, [&](const Body& body) { return isFluid(body) && body.material != first->material; });
   }
+  bool hasInflow() const {
+    return std::ranges::any_of(bodies, [](const Body& b) { return b.kind == BodyKind::Inflow; });
+  }
+  /// Whether the number of fluid particles changes.
+  bool isOpen() const { return hasInflow() || !outflows.empty(); }
   bool hasSurfaceTension() const {
     return std::ranges::any_of(materials, [](const Material& m) { return m.surfaceTension > 0; });
   }

@@ -35,6 +35,7 @@ SolverSettings defaultSolver(MethodKind method, PreconditionerKind preconditione
 /// likewise,
 /// - v(key, index, keys::material) for a material, which a file calls by its name,
 /// - v(key, number, flag, keys::orAuto) for a number that may be "auto", which the flag says,
+/// - v(key, function) for a TimeFunction, which is a number, an expression or a table, and may be missing,
 /// - v(key, struct) for a table in the table,
 /// - v(key, optional) for one that may be missing, as may an Oscillation, which then is Oscillation{},
 /// - v(key, vector of structs) for tables with names; the bound is that of their number.
@@ -89,6 +90,7 @@ void visit(auto& v, Like<Case> auto& c, const Case&) {
   v({"gravity"}, gravity);
   v({"material", required, "", {1, maxMaterials}}, c.materials);
   v({"body", required, "", {1, maxBodies}}, c.bodies);
+  v({"outflow", optional, "", {0, maxOutflows}}, c.outflows);
   v({"time", required}, c.time);
   v({"method"}, c.method);
   if (c.method.kind == MethodKind::MphI) {

@@ -16,6 +16,15 @@ namespace treacle {
 /// warp or a block.
 inline constexpr std::size_t maxParticles = (std::size_t{1} << 32) - 1024;
 
+/// Particles of one body; inflows have both.
+struct BodyCount {
+  std::uint32_t fluid = 0, wall = 0;
+
+  std::uint32_t all() const { return fluid + wall; }
+
+  bool operator==(const BodyCount&) const = default;
+};
+
 /// Lattice points of the boxes that no condition leaves any out of: createParticles needs room for at least these.
 double boxPoints(const Case& c);
 
@@ -32,15 +41,15 @@ double boxPoints(const Case& c);
 /// there are more particles than maxParticles, if an expression is not finite at a particle.
 template <int D>
 Particles<D> createParticles(const Case& c, std::vector<std::string>& notes,
-                             std::vector<std::uint32_t>* bodyCounts = nullptr, ParticlePart part = {});
+                             std::vector<BodyCount>* bodyCounts = nullptr, ParticlePart part = {});
 
 /// The same for the dimensions that the case has.
 AnyParticles createParticles(const Case& c, std::vector<std::string>& notes,
-                             std::vector<std::uint32_t>* bodyCounts = nullptr, ParticlePart part = {});
+                             std::vector<BodyCount>* bodyCounts = nullptr, ParticlePart part = {});
 
-extern template Particles<2> createParticles<2>(const Case&, std::vector<std::string>&,
-                                                std::vector<std::uint32_t>*, ParticlePart);
-extern template Particles<3> createParticles<3>(const Case&, std::vector<std::string>&,
-                                                std::vector<std::uint32_t>*, ParticlePart);
+extern template Particles<2> createParticles<2>(const Case&, std::vector<std::string>&, std::vector<BodyCount>*,
+                                                ParticlePart);
+extern template Particles<3> createParticles<3>(const Case&, std::vector<std::string>&, std::vector<BodyCount>*,
+                                                ParticlePart);
 
 }  // namespace treacle

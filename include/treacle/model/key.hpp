@@ -34,6 +34,7 @@ struct Key {
 /// numbers [m]".
 std::string expectedNumber(const Key& key, bool orAuto = false, bool orExpression = false);
 std::string expectedNumbers(const Key& key);
+std::string expectedFunction(const Key& key);
 std::string expectedInteger(const Key& key);
 std::string expectedVector(const Key& key, int dimensions, bool orExpressions = false);
 std::string expectedEntries(const Key& key);

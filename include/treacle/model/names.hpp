@@ -25,7 +25,10 @@ inline constexpr std::span<const Named<E>> namesOf{};
 namespace names {
 inline constexpr Named<ShapeKind> shape[] = {
     {"box", ShapeKind::Box}, {"sphere", ShapeKind::Sphere}, {"cylinder", ShapeKind::Cylinder}};
-inline constexpr Named<BodyKind> body[] = {{"fluid", BodyKind::Fluid}, {"wall", BodyKind::Wall}};
+inline constexpr Named<BodyKind> body[] = {
+    {"fluid", BodyKind::Fluid}, {"wall", BodyKind::Wall}, {"inflow", BodyKind::Inflow}};
+inline constexpr Named<NozzleKind> nozzle[] = {{"disc", NozzleKind::Disc}, {"rectangle", NozzleKind::Rectangle}};
+inline constexpr Named<OutflowKind> outflow[] = {{"box", OutflowKind::Box}, {"plane", OutflowKind::Plane}};
 inline constexpr Named<MethodKind> method[] = {{"mph-i", MethodKind::MphI}, {"isph", MethodKind::Isph}};
 inline constexpr Named<SchemeKind> scheme[] = {{"accurate", SchemeKind::Accurate},
                                                {"published", SchemeKind::Published}};
@@ -87,6 +90,10 @@ template <>
 inline constexpr std::span<const Named<ShapeKind>> namesOf<ShapeKind>{names::shape};
 template <>
 inline constexpr std::span<const Named<BodyKind>> namesOf<BodyKind>{names::body};
+template <>
+inline constexpr std::span<const Named<NozzleKind>> namesOf<NozzleKind>{names::nozzle};
+template <>
+inline constexpr std::span<const Named<OutflowKind>> namesOf<OutflowKind>{names::outflow};
 template <>
 inline constexpr std::span<const Named<MethodKind>> namesOf<MethodKind>{names::method};
 template <>

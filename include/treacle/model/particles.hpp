@@ -2,6 +2,7 @@
 
 #include "treacle/core/buffer.hpp"
 #include "treacle/core/vec.hpp"
+#include "treacle/model/open_flow.hpp"
 #include "treacle/model/solver_modes.hpp"
 #include "treacle/model/step_memory.hpp"
 #include "treacle/model/wall_surface.hpp"
@@ -63,9 +64,9 @@ inline constexpr std::uint8_t unknownBody = 255;
 
 /// The only owner of per-particle fields. Fluid particles come first, [0, fluidCount), then wall particles,
 /// [wallBegin(), count); inside both groups the search keeps them sorted by cell. `id` names a particle for
-/// good: 0 … count-1 in the order of creation. Where processes share a simulation, fluidCount is the number of the
-/// fluid particles that this one owns, and behind them stand the ghosts: those of other processes that it needs,
-/// with position and material alone.
+/// good: 0 … count-1 in the order of creation, and then in the order in which fluid comes in. Where processes
+/// share a simulation, fluidCount is the number of the fluid particles that this one owns, and behind them stand
+/// the ghosts: those of other processes that it needs, with position and material alone.
 template <int D, class Backend = Cpu>
 struct Particles {
   std::uint32_t fluidCount = 0;
@@ -100,6 +101,9 @@ struct Particles {
   // That of the time steps, likewise.
   StepMemory steps;
 
+  // Of the fluid that comes and goes, which is part of the state.
+  OpenFlow flow;
+
   // Of wall particle wallBegin() + k. Empty: walls have no surface, and the fluid meets their velocities where
   // their particles are.
   Buffer<WallSurface<D>, Backend> wallSurface;
@@ -109,6 +113,7 @@ struct Particles {
   void copyNumbers(const Particles<D, Other>& from) {
     modes.copyNumbers(from.modes);
     steps = from.steps;
+    flow = from.flow;
   }
 
   std::uint32_t wallBegin() const { return fluidCount + ghostCount; }
@@ -147,6 +152,7 @@ struct Particles {
     modes.age = {};
     modes.pressure = {};
     steps = {};
+    flow = {};
     wallSurface.resize(context, numbers.surfaces);
   }
 

@@ -53,6 +53,13 @@ struct PhaseSeconds {
   }
 };
 
+/// Of a case with inflows or outflows, after the step: fluid particles, and what has come and gone since its
+/// start.
+struct FlowReport {
+  std::uint64_t particles = 0;
+  FlowCount in, out;
+};
+
 struct StepReport {
   std::int64_t step = 0;  // number of steps done
   double time = 0;        // [s], after the step
@@ -68,6 +75,7 @@ struct StepReport {
   Watched watched;
   std::vector<std::string> warnings;  // of the watch
   std::optional<Balance> balance;     // with OutputSettings::balance
+  std::optional<FlowReport> flow;     // where the case is open
   PhaseSeconds seconds;
 };
 

@@ -2,6 +2,7 @@
 
 #include "treacle/core/cuda.hpp"
 #include "treacle/model/wall_motion.hpp"
+#include "treacle/search/cell_grid.hpp"
 
 #include <cstdint>
 #include <span>
@@ -27,5 +28,13 @@ template <int D>
 void setWallChords(Context<Cpu>&, const MovingWalls<D>& walls, std::span<Vec<D>> chord);
 template <int D>
 void setWallChords(Context<Cuda>&, const MovingWalls<D>& walls, std::span<Vec<D>> chord);
+
+/// Moves the wall particles of one body by a vector [m]. `position`: per wall particle.
+template <int D>
+void shiftBody(Context<Cpu>&, const CellGrid<D>& grid, std::span<const std::uint8_t> body, std::uint8_t which,
+               const Vec<D>& by, std::span<Vec<D>> position);
+template <int D>
+void shiftBody(Context<Cuda>&, const CellGrid<D>& grid, std::span<const std::uint8_t> body, std::uint8_t which,
+               const Vec<D>& by, std::span<Vec<D>> position);
 
 }  // namespace treacle

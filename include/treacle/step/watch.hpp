@@ -23,12 +23,16 @@ struct Watched {
 class Watch {
  public:
   /// `start`: the state that the run begins with; `mass`: of the fluid [kg; per metre of depth in 2D], `particles`
-  /// their number. `wallsMove`: whether any wall does; the work that walls do on the fluid is not known.
+  /// their number. `wallsMove`: whether any wall does, or fluid comes and goes; the work that walls do on the
+  /// fluid is not known.
   Watch(const Case& c, const Diagnostics& start, double mass, double particles, bool wallsMove);
 
   /// A step of `dt` [s] that leads to the state `d`. Appends to `warnings` what is noticed for the first time, or
   /// has doubled since. Errors: RunError beyond a bound, with what would help.
   Watched look(double dt, const Diagnostics& d, std::vector<std::string>& warnings);
+
+  /// There is more or less fluid now.
+  void setParticles(double particles) { particles_ = particles; }
 
   /// The same for one particle that is found too fast before the step has led anywhere.
   void requireSlow(double dt, double speed) const;

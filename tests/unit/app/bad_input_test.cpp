@@ -309,7 +309,8 @@ constexpr BadCase badCases[] = {
     {"noName", "name = \"column\"\n", "", "bad.toml:19:1: every [[body]] needs a name: name = \"...\""},
     {"nameTwice", "name = \"floor\"", "name = \"column\"", "bad.toml:27:1: two [[body]] are named 'column'"},
     {"noFluid", "type = \"fluid\"", "type = \"wall\"",
-     "bad.toml:19:1: body in the case file: no fluid: expected at least one [[body]] with type = \"fluid\""},
+     "bad.toml:19:1: body in the case file: no fluid: expected at least one [[body]] with type = \"fluid\" or "
+     "\"inflow\""},
     {"overlap", "max = [12e-3, 0]", "max = [12e-3, 1e-3]",
      "fluid body 'column' and wall body 'floor' overlap: 6 wall particles closer than half a spacing to the "
      "fluid, "

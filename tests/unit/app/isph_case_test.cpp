@@ -27,11 +27,13 @@ Case shippedCase(const char* name, std::vector<std::string> overrides = {}) {
 /// Counts of the bodies, without a word of warning.
 std::vector<std::uint32_t> countsOf(const Case& c) {
   std::vector<std::string> notes;
-  std::vector<std::uint32_t> counts;
+  std::vector<BodyCount> counts;
   c.dimensions == 2 ? void(createParticles<2>(c, notes, &counts)) : void(createParticles<3>(c, notes, &counts));
   EXPECT_THAT(notes, IsEmpty());
   EXPECT_THAT(caseWarnings(c), IsEmpty());
-  return counts;
+  std::vector<std::uint32_t> all;
+  for (const BodyCount& body : counts) all.push_back(body.all());
+  return all;
 }
 
 Case readText(const std::string& text, const std::vector<std::string>& overrides = {}) {

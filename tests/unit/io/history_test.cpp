@@ -69,7 +69,7 @@ TEST(History, TimingsAreColumnsOfTheirOwn) {
   const auto path = directory / "history.csv";
   HistoryRow timed = row(4);
   timed.timings = {1, 2, 3, 4, 5.5, 6};
-  HistoryWriter(path, true).append(timed);
+  HistoryWriter(path, {.timings = true}).append(timed);
   const std::string text = content(path);
   EXPECT_TRUE(text.starts_with(extended(header))) << text;
   EXPECT_TRUE(text.ends_with(",1e-300,1,1,2,3,4,5.5,6\n")) << text;

@@ -46,10 +46,10 @@ TEST(createParticles, fillsBoxesWithCellCentredLattices) {
   c.bodies[1].velocity = {5, 0};
   c.bodies[1].material = 1;
   std::vector<std::string> notes;
-  std::vector<std::uint32_t> counts;
+  std::vector<BodyCount> counts;
   const Particles<2> p = createParticles<2>(c, notes, &counts);
   EXPECT_THAT(notes, IsEmpty());
-  EXPECT_THAT(counts, ElementsAre(20, 6));
+  EXPECT_THAT(counts, ElementsAre(BodyCount{0, 20}, BodyCount{6, 0}));
   ASSERT_EQ(p.fluidCount, 6u);
   ASSERT_EQ(p.wallCount(), 20u);
   // Fluid first although its body comes second in the file, x fastest.
@@ -139,9 +139,9 @@ TEST(createParticles, earlierBodyKeepsThePlace) {
   c.bodies = {makeBody("first", BodyKind::Fluid, box({0, 0}, {4, 4})),
               makeBody("second", BodyKind::Fluid, box({2.2, 0}, {6.2, 4}))};
   std::vector<std::string> notes;
-  std::vector<std::uint32_t> counts;
+  std::vector<BodyCount> counts;
   const Particles<2> p = createParticles<2>(c, notes, &counts);
-  EXPECT_THAT(counts, ElementsAre(16, 8));
+  EXPECT_THAT(counts, ElementsAre(BodyCount{16, 0}, BodyCount{8, 0}));
   EXPECT_THAT(notes,
               ElementsAre("body 'second': 8 of 16 particles left out, their place is taken by body 'first'"));
   EXPECT_GE(leastDistance(p), 0.5);
@@ -160,7 +160,7 @@ TEST(createParticles, partsMakeTheWhole) {
   c.bodies[2].velocity = {0, -1};
   c.method.wallVelocity = WallVelocity::Extrapolated;
   std::vector<std::string> notes;
-  std::vector<std::uint32_t> counts;
+  std::vector<BodyCount> counts;
   const Particles<2> whole = createParticles<2>(c, notes, &counts);
   ASSERT_EQ(whole.fluidCount, 25u);
   ASSERT_EQ(whole.wallSurface.size(), 21u);
@@ -168,7 +168,7 @@ TEST(createParticles, partsMakeTheWhole) {
     std::uint32_t fluid = 0, walls = whole.fluidCount;
     for (std::uint32_t k = 0; k < parts; ++k) {
       std::vector<std::string> ownNotes;
-      std::vector<std::uint32_t> ownCounts;
+      std::vector<BodyCount> ownCounts;
       const Particles<2> p = createParticles<2>(c, ownNotes, &ownCounts, {k, parts});
       EXPECT_EQ(ownNotes, notes);
       EXPECT_EQ(ownCounts, counts);
@@ -201,11 +201,11 @@ TEST(createParticles, conditionsCutBodies) {
   c.bodies[0].where = "y > 4.2 + 2*sin(2*pi*x/20)";
   c.bodies[1].where = "y <= 4.2 + 2*sin(2*pi*x/20)";
   std::vector<std::string> notes;
-  std::vector<std::uint32_t> counts;
+  std::vector<BodyCount> counts;
   const Particles<2> p = createParticles<2>(c, notes, &counts);
   EXPECT_THAT(notes, IsEmpty());
   EXPECT_EQ(p.count, 200u);
-  EXPECT_EQ(counts[0] + counts[1], 200u);
+  EXPECT_EQ(counts[0].all() + counts[1].all(), 200u);
   for (std::uint32_t i = 0; i < p.count; ++i)
     EXPECT_EQ(p.position[i][1] > 4.2 + 2 * std::sin(M_PI * p.position[i][0] / 10), i < p.fluidCount);
 }

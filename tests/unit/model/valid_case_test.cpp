@@ -257,7 +257,7 @@ const Mistake mistakes[] = {
      {"drop.type=wall", "column.type=wall"},
      {"body"},
      "the case file",
-     "no fluid: expected at least one [[body]] with type = \"fluid\""},
+     "no fluid: expected at least one [[body]] with type = \"fluid\" or \"inflow\""},
     {"step",
      mph,
      [](Case& c) { c.time.step = -1; },

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace treacle {
+
+/// Particles that have come or gone since the start of a case, and what they weigh [kg; per metre of depth in 2D].
+struct FlowCount {
+  std::uint64_t particles = 0;
+  double mass = 0;
+
+  FlowCount& operator+=(const FlowCount& o) {
+    particles += o.particles, mass += o.mass;
+    return *this;
+  }
+  bool operator==(const FlowCount&) const = default;
+};
+
+/// What a run remembers of the fluid that comes and goes; nothing, zero and empty, where none does.
+struct OpenFlow {
+  struct Inflow : FlowCount {
+    double way = 0;  // of its layers since one of them left the nozzle [m]
+
+    bool operator==(const Inflow&) const = default;
+  };
+
+  std::uint32_t nextId = 0;           // of the next particle that comes
+  std::vector<Inflow> inflows{};      // per body of the case, zero for those that are none
+  std::vector<FlowCount> outflows{};  // per outflow of the case
+
+  FlowCount in() const {
+    FlowCount sum;
+    for (const Inflow& i : inflows) sum += i;
+    return sum;
+  }
+  FlowCount out() const {
+    FlowCount sum;
+    for (const FlowCount& o : outflows) sum += o;
+    return sum;
+  }
+
+  bool operator==(const OpenFlow&) const = default;
+};
+
+}  // namespace treacle

@@ -1,0 +1,162 @@
+#include "treacle/model/nozzle.hpp"
+
+#include "treacle/core/error.hpp"
+#include "treacle/model/create.hpp"
+#include "treacle/model/wall_motion.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace treacle {
+namespace {
+
+/// Unit vectors across a direction: along the width and, in space, along the height.
+template <int D>
+std::array<Vec<D>, D - 1> axesAcross(const Nozzle& nozzle, const Vec<D>& direction) {
+  if constexpr (D == 2) {
+    return {Vec<2>{direction[1], -direction[0]}};
+  } else {
+    Vec<3> up = nozzle.up;
+    if (norm(up) == 0) {  // the axis that is the farthest from the direction
+      int axis = 0;
+      for (int k = 1; k < 3; ++k)
+        if (std::abs(direction[k]) < std::abs(direction[axis]) - 1e-9) axis = k;
+      up[axis] = 1;
+    }
+    up = up - dot(up, direction) * direction;
+    up = up * (1 / norm(up));
+    return {cross(direction, up), up};
+  }
+}
+
+/// Of the places i + shift along each axis those in [-most, most] that are kept, in spacings.
+template <int N, class Keep>
+std::vector<Vec<N>> latticeOf(const Vec<N>& most, const Vec<N>& shift, Keep&& keep) {
+  std::vector<Vec<N>> places;
+  Vec<N> x;
+  const auto along = [&](auto&& self, int k) -> void {
+    if (k < 0) {
+      if (keep(x)) places.push_back(x);
+      return;
+    }
+    for (x[k] = std::ceil(-most[k] - shift[k]) + shift[k]; x[k] <= most[k]; ++x[k]) self(self, k - 1);
+  };
+  along(along, N - 1);
+  return places;
+}
+
+/// A whole number of particles along each side, at least one, about the middle.
+template <int N>
+std::vector<Vec<N>> rectangleOf(const Vec<N>& sides) {
+  Vec<N> most, shift;
+  for (int k = 0; k < N; ++k) {
+    const double count = std::max(1.0, std::round(sides[k]));
+    most[k] = (count - 1) / 2 + 1e-6;
+    shift[k] = std::fmod(count, 2) == 0 ? 0.5 : 0;
+  }
+  return latticeOf<N>(most, shift, [](const Vec<N>&) { return true; });
+}
+
+/// The lattice with or without a particle in the middle, whichever has the number nearer to `wanted`.
+template <int N>
+std::vector<Vec<N>> discOf(double radius, double inner, double wanted) {
+  std::vector<Vec<N>> best;
+  for (const double shift : {0.0, 0.5}) {
+    auto places = latticeOf<N>(Vec<N>::filled(radius), Vec<N>::filled(shift), [&](const Vec<N>& x) {
+      const double r = norm(x);
+      return r <= radius * (1 + 1e-9) && (inner == 0 || r > inner * (1 + 1e-9));
+    });
+    const auto off = [&](const std::vector<Vec<N>>& p) {
+      return std::abs(static_cast<double>(p.size()) - wanted);
+    };
+    if (best.empty() || off(places) < off(best)) best = std::move(places);
+  }
+  return best;
+}
+
+template <int N>
+double areaOf(const Nozzle& n) {
+  const double pi = std::numbers::pi;
+  if (n.kind == NozzleKind::Rectangle) return N == 1 ? n.width : n.width * n.height;
+  const auto disc = [&](double r) { return N == 1 ? 2 * r : pi * r * r; };
+  return disc(n.radius) - disc(n.innerRadius);
+}
+
+template <int N>
+std::vector<Vec<N>> placesAcross(const Nozzle& n, double spacing) {
+  if (n.kind == NozzleKind::Disc)
+    return discOf<N>(n.radius / spacing, n.innerRadius / spacing, areaOf<N>(n) / std::pow(spacing, N));
+  Vec<N> sides;
+  sides[0] = n.width / spacing;
+  if constexpr (N > 1) sides[1] = n.height / spacing;
+  return rectangleOf<N>(sides);
+}
+
+}  // namespace
+
+template <int D>
+NozzleLayers<D>::NozzleLayers(const Case& c, const Body& body)
+    : body_(body), spacing_(c.spacing), openingArea_(areaOf<D - 1>(body.inflow.nozzle)) {
+  const Nozzle& nozzle = body.inflow.nozzle;
+  if (openingArea_ / std::pow(spacing_, D - 1) > static_cast<double>(maxParticles))
+    throw InputError(
+        fmt::format("inflow '{}' would have more than {} particles in a layer", body.name, maxParticles));
+  depth_ = static_cast<int>(std::ceil(c.interactionRadius() / spacing_ * (1 - 1e-9)));
+  direction_ = resized<D>(nozzle.direction);
+  direction_ = direction_ * (1 / norm(direction_));
+  const auto axes = axesAcross<D>(nozzle, direction_);
+  for (const Vec<D - 1>& place : placesAcross<D - 1>(nozzle, spacing_)) {
+    Vec<D> x{};
+    for (int k = 0; k < D - 1; ++k) x = x + (spacing_ * place[k]) * axes[static_cast<std::size_t>(k)];
+    across_.push_back(x);
+  }
+  if (across_.empty())
+    throw InputError(fmt::format(
+        "inflow '{}': no particle has room in its nozzle; it must be as wide as one spacing", body.name));
+  area_ = static_cast<double>(across_.size()) * std::pow(spacing_, D - 1);
+}
+
+template <int D>
+std::vector<Vec<D>> NozzleLayers<D>::layer(double way, double t) const {
+  const Vec<D> middle = resized<D>(body_.inflow.nozzle.center + wallDisplacement(body_, t)) + way * direction_;
+  std::vector<Vec<D>> places;
+  places.reserve(across_.size());
+  for (const Vec<D>& x : across_) places.push_back(middle + x);
+  return places;
+}
+
+template <int D>
+double NozzleLayers<D>::speed(double t, double dt) const {
+  const Inflow& inflow = body_.inflow;
+  const double end = inflow.end > 0 ? inflow.end : t + dt + 1;
+  const TimeFunction& rate = inflow.speed ? *inflow.speed : *inflow.flowRate;
+  const double over = inflow.speed ? 1 : area_;
+  if (dt == 0) return t >= inflow.start && t < end ? std::max(0.0, rate.at(t)) / over : 0;
+  const double from = std::max(t, inflow.start), to = std::min(t + dt, end);
+  if (!(from < to)) return 0;
+  return std::max(0.0, rate.isConstant() && to - from == dt ? rate.value : rate.integral(from, to) / dt) / over;
+}
+
+template <int D>
+void describeNozzle(const Body& body, const NozzleLayers<D>& layers, std::vector<std::string>& notes) {
+  const double off = layers.area() / layers.openingArea() - 1;
+  if (std::abs(off) <= 0.01) return;
+  const char* unit = D == 2 ? "m" : "m2";
+  notes.push_back(
+      fmt::format("inflow '{}': its {} particles have a cross-section of {:.4g} {}, {:.2g} % {} than the {:.4g} "
+                  "{} of its nozzle{}",
+                  body.name, layers.size(), layers.area(), unit, 100 * std::abs(off), off > 0 ? "more" : "less",
+                  layers.openingArea(), unit,
+                  body.inflow.flowRate ? "; its speed follows from the flow rate and theirs" : ""));
+}
+
+template class NozzleLayers<2>;
+template class NozzleLayers<3>;
+template void describeNozzle(const Body&, const NozzleLayers<2>&, std::vector<std::string>&);
+template void describeNozzle(const Body&, const NozzleLayers<3>&, std::vector<std::string>&);
+
+}  // namespace treacle

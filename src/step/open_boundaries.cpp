@@ -1,0 +1,162 @@
+#include "open_boundaries.hpp"
+
+#include "treacle/core/error.hpp"
+#include "treacle/core/processes.hpp"
+#include "treacle/model/create.hpp"
+#include "treacle/search/fluid_change.hpp"
+#include "treacle/step/wall_motion.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace treacle {
+namespace {
+
+/// Appends one at rest in its own fields; those of the flow's memory are zero.
+template <int D>
+void appendParticles(Particles<D>& p, const std::vector<Vec<D>>& places) {
+  const std::uint32_t before = p.fluidCount;
+  Particles<D> more;
+  ParticleNumbers numbers = p.numbers();
+  numbers.fluid += places.size();
+  more.resize(numbers);
+  const auto copy = [&]<class T>(const Buffer<T>& from, Buffer<T>& to) {
+    std::copy(from.begin(), from.end(), to.begin());
+    std::fill(to.begin() + before, to.end(), T{});
+  };
+  forEachSharedFieldOf(copy, p, more);
+  forEachFluidFieldOf(copy, p, more);
+  std::copy(places.begin(), places.end(), more.position.begin() + before);
+  p = std::move(more);
+}
+
+}  // namespace
+
+template <int D, class Backend>
+OpenBoundaries<D, Backend>::OpenBoundaries(FlowState<D, Backend>& state)
+    : state_(state), volume_(std::pow(state.theCase.spacing, D)) {
+  for (const Outflow& o : state.theCase.outflows) regions_.push_back(OutflowRegion<D>::of(o));
+}
+
+template <int D, class Backend>
+void OpenBoundaries<D, Backend>::begin(Particles<D>& particles) const {
+  const Case& c = state_.theCase;
+  if (!c.isOpen()) {
+    particles.flow = {};
+    return;
+  }
+  const auto count = static_cast<std::uint32_t>(sumOverProcesses(state_.context, particles.count));
+  if (particles.flow.nextId != 0) return;
+  particles.flow.nextId = count;
+  particles.flow.inflows.resize(c.bodies.size());
+  particles.flow.outflows.resize(c.outflows.size());
+}
+
+template <int D, class Backend>
+bool OpenBoundaries<D, Backend>::follow(const CellGrid<D>& grid, double start, double density) {
+  if (!state_.theCase.isOpen()) return false;
+  Particles<D, Backend>& p = state_.particles;
+  const std::uint64_t left = letOut();
+  Particles<D> added;
+  ParticleNumbers none;
+  none.shearRates = p.hasShearRates, none.temperatures = p.hasTemperatures;
+  added.resize(none);
+  letIn(grid, start, added);
+  const std::uint64_t came = added.fluidCount;
+  if (left + came == 0) return false;
+  if (left == state_.fluidOfAll + came) throw RunError("no fluid is left: all of it has gone out by the outflows");
+  if (state_.fluidOfAll + came - left > maxParticles)
+    throw RunError(fmt::format("inflows have filled the case with {} fluid particles, more than the limit of {}",
+                               state_.fluidOfAll + came - left, maxParticles));
+  std::fill(added.numberDensity.begin(), added.numberDensity.end(), density);
+  // The sort of the next step takes them to where they belong.
+  if (state_.context.communicator && state_.context.communicator->rank() > 0) {
+    added.resize(none);
+  }
+  changeFluid<D>(state_.context, left > 0 ? gone_.span() : std::span<const std::uint8_t>{}, added, p);
+  state_.fluidOfAll = static_cast<std::uint32_t>(state_.fluidOfAll + came - left);
+  return true;
+}
+
+/// Marks what has left; its number, at all processes.
+template <int D, class Backend>
+std::uint64_t OpenBoundaries<D, Backend>::letOut() {
+  if (regions_.empty()) return 0;
+  Particles<D, Backend>& p = state_.particles;
+  const std::uint32_t n = p.fluidCount;
+  gone_.resize(state_.context, n);
+  std::vector<std::uint32_t> counts = markOutflow<D>(
+      state_.context, {regions_, p.position.span().first(n), p.material.span().first(n)}, gone_.span());
+  sumOverProcesses(state_.context, std::span(counts));
+  for (std::size_t k = 0; k < counts.size(); ++k) {
+    FlowCount& out = p.flow.outflows[k / maxMaterials];
+    if (counts[k] > 0)
+      out += {counts[k], counts[k] * volume_ * state_.theCase.materials[k % maxMaterials].density};
+  }
+  return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
+}
+
+/// The layers of all inflows have gone on; those that have left their nozzles are fluid now, and as many follow.
+template <int D, class Backend>
+void OpenBoundaries<D, Backend>::letIn(const CellGrid<D>& grid, double start, Particles<D>& added) {
+  const double spacing = state_.theCase.spacing, dt = state_.timeStep;
+  Particles<D, Backend>& p = state_.particles;
+  for (std::size_t b = 0; b < state_.nozzles.size(); ++b) {
+    if (!state_.nozzles[b]) continue;
+    const NozzleLayers<D>& nozzle = *state_.nozzles[b];
+    OpenFlow::Inflow& inflow = p.flow.inflows[b];
+    inflow.way += dt * nozzle.speed(start, dt);
+    const double layers = std::floor(inflow.way / spacing * (1 + 1e-9));
+    if (layers == 0) continue;
+    if (layers > nozzle.depth())
+      throw RunError(fmt::format(
+          "inflow '{}' goes {:.3g} spacings in a step of {:.3g} s, expected at most {}; take "
+          "shorter steps, {} <= {:.2g}",
+          state_.theCase.bodies[b].name, layers, dt, nozzle.depth(), state_.theCase.time.stepKey(), dt / layers));
+    for (int k = 0; k < static_cast<int>(layers); ++k) addLayer(grid, b, inflow.way - (k + 0.5) * spacing, added);
+    inflow.way = std::max(0.0, inflow.way - layers * spacing);
+    const std::uint32_t walls = p.wallBegin();
+    shiftBody<D>(state_.context, grid, p.body.span().subspan(walls), static_cast<std::uint8_t>(b),
+                 (-layers * spacing) * nozzle.direction(), p.position.span().subspan(walls));
+  }
+}
+
+template <int D, class Backend>
+void OpenBoundaries<D, Backend>::addLayer(const CellGrid<D>& grid, std::size_t body, double way,
+                                          Particles<D>& added) {
+  const NozzleLayers<D>& nozzle = *state_.nozzles[body];
+  const Body& b = state_.theCase.bodies[body];
+  OpenFlow& flow = state_.particles.flow;
+  std::vector<Vec<D>> places = nozzle.layer(way, state_.time);
+  for (Vec<D>& x : places)
+    if (!grid.wrap(x))
+      throw RunError(
+          fmt::format("the nozzle of inflow '{}' is outside the domain at t = {:.6g} s", b.name, state_.time));
+  if (places.size() > std::numeric_limits<std::uint32_t>::max() - flow.nextId)
+    throw RunError(fmt::format("more than {} particles have been in the case: there are no numbers left for more",
+                               std::numeric_limits<std::uint32_t>::max()));
+  const std::uint32_t first = added.fluidCount;
+  appendParticles<D>(added, places);
+  const Vec<D> u = resized<D>(wallVelocity(b, state_.time, 0)) +
+                   nozzle.speed(state_.time - state_.timeStep, state_.timeStep) * nozzle.direction();
+  for (std::uint32_t i = first; i < added.fluidCount; ++i) {
+    added.velocity[i] = u;
+    added.material[i] = static_cast<std::uint8_t>(b.material);
+    added.body[i] = static_cast<std::uint8_t>(body);
+    added.id[i] = flow.nextId++;
+    if (added.hasTemperatures) added.temperature[i] = b.temperature;
+  }
+  const double mass = state_.theCase.materials[static_cast<std::size_t>(b.material)].density * volume_;
+  static_cast<FlowCount&>(flow.inflows[body]) += {places.size(), static_cast<double>(places.size()) * mass};
+}
+
+#define TREACLE_INSTANTIATE(Backend)         \
+  template class OpenBoundaries<2, Backend>; \
+  template class OpenBoundaries<3, Backend>;
+TREACLE_FOR_EACH_BACKEND(TREACLE_INSTANTIATE)
+#undef TREACLE_INSTANTIATE
+
+}  // namespace treacle

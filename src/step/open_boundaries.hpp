@@ -1,0 +1,40 @@
+#pragma once
+
+#include "flow_state.hpp"
+#include "treacle/search/cell_grid.hpp"
+#include "treacle/step/outflow.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace treacle {
+
+/// The fluid that comes into a state by the inflows of its case and leaves it by the outflows, after each step.
+template <int D, class Backend>
+class OpenBoundaries {
+ public:
+  explicit OpenBoundaries(FlowState<D, Backend>& state);
+
+  /// What came and went so far begins with the state, of so many particles, where it does not know. Collective.
+  void begin(Particles<D>& particles) const;
+
+  /// The step from `start` [s] has been accepted. `density`: what new particles are shown with until a step has
+  /// computed theirs. Returns whether the fluid is another now, and is to be sorted anew. Collective. Errors:
+  /// RunError where a nozzle is outside the domain or no fluid is left; std::bad_alloc.
+  bool follow(const CellGrid<D>& grid, double start, double density);
+
+  std::size_t bytes() const { return gone_.bytes(); }
+
+ private:
+  std::uint64_t letOut();
+  void letIn(const CellGrid<D>& grid, double start, Particles<D>& added);
+  void addLayer(const CellGrid<D>& grid, std::size_t body, double way, Particles<D>& added);
+
+  FlowState<D, Backend>& state_;
+  double volume_;  // of a particle [m3; m2 in 2D]
+  std::vector<OutflowRegion<D>> regions_;
+  Buffer<std::uint8_t, Backend> gone_;  // per own fluid particle
+};
+
+}  // namespace treacle

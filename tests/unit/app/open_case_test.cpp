@@ -1,0 +1,139 @@
+#include "treacle/core/error.hpp"
+#include "treacle/io/case_reader.hpp"
+#include "treacle/io/history.hpp"
+#include "treacle/model/checks.hpp"
+#include "treacle/model/create.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "unit/app/command.hpp"
+
+namespace treacle::test {
+namespace {
+
+using testing::HasSubstr;
+
+/// A nozzle over a floor, and a box that takes what has spread far.
+const std::string pouring = R"(title = "Pouring"
+dimensions = 2
+spacing = 1e-3
+domain = {min = [-10e-3, -4e-3], max = [10e-3, 14e-3]}
+gravity = {acceleration = [0, -10]}
+time = {step = 1e-3, end = 0.05}
+material = [{name = "syrup", density = 1000, dynamic_viscosity = 10, bulk_viscosity = 1e4, bulk_modulus = 1e6}]
+body = [
+  {name = "jet", type = "inflow", material = "syrup", speed = 0.2, nozzle = {shape = "rectangle", center = [0, 8e-3], direction = [0, -1], width = 4e-3}},
+  {name = "floor", type = "wall", material = "syrup", shape = "box", min = [-10e-3, -4e-3], max = [10e-3, 0]},
+]
+outflow = [{name = "rim", shape = "box", min = [4e-3, 0], max = [10e-3, 14e-3]}]
+)";
+
+Case caseWith(const std::vector<std::string>& overrides) {
+  Workshop shop;
+  shop.put("case.toml", pouring);
+  return readCase(shop / "case.toml", overrides);
+}
+
+TEST(OpenCase, IsReadAndWritten) {
+  Workshop shop;
+  for (const std::vector<std::string>& overrides : std::vector<std::vector<std::string>>{
+           {},
+           {"jet.speed='0.1*sin(t)^2'", "jet.start=0.01", "jet.end=0.02"},
+           {"jet.speed={times=[0,1],values=[0.1,0.2]}", "jet.velocity=[0.1,0]"},
+           {"jet.oscillation={amplitude=[1e-3,0],period=0.1}"},
+           {"outflow=[{name='end',shape='plane',point=[1e-3,0],normal=[1,1]}]"}}) {
+    const Case c = caseWith(overrides);
+    shop.put("written.toml", caseText(c));
+    EXPECT_EQ(readCase(shop / "written.toml"), c) << caseText(c);
+  }
+  const Case c = caseWith({});
+  EXPECT_EQ(c.bodies[0].inflow.speed->value, 0.2);
+  EXPECT_EQ(c.outflows[0].max[1], 14e-3);
+}
+
+struct Bad {
+  const char* override;
+  const char* message;
+};
+const Bad mistakes[] = {
+    {"jet.speed=-1",
+     "expected a number not less than 0 [m/s], an expression in t [s] or {times = [...], values = "
+     "[...]}, found -1"},
+    {"jet.speed='2*x'", "expected an expression in t [s] and the constant pi, found \"2*x\""},
+    {"jet.speed={times=[0,1,0.5],values=[1,2,3]}", "expected rising times, found 0.5 after 1"},
+    {"jet.speed={times=[0,1],values=[1]}", "expected as many values as times, 2, found 1"},
+    {"jet.speed={times=[0,1],values=[1,-2]}", "expected an array of finite numbers [m/s], found -2"},
+    {"jet.flow_rate=1", "expected one of speed and flow_rate, found both"},
+    {"jet.nozzle.direction=[0,0]", "expected a vector that is not zero"},
+    {"jet.nozzle.radius=1", "unknown key 'radius' in the nozzle of [[body]] 'jet' (rectangle)"},
+    {"jet.nozzle.width=0", "expected a positive number [m], found 0"},
+    {"jet.shape='box'", "unknown key 'shape' in [[body]] 'jet' (inflow)"},
+    {"rim.max=[0,0]", "expected more than min"},
+    {"rim.normal=[1,0]", "unknown key 'normal' in [[outflow]] 'rim' (box)"},
+    {"rim.shape='ball'", "expected 'box' or 'plane', found 'ball'"},
+};
+
+TEST(OpenCase, MistakesAreExplained) {
+  for (const Bad& bad : mistakes) {
+    SCOPED_TRACE(bad.override);
+    EXPECT_THAT(messageOf<InputError>([&] { caseWith({bad.override}); }), HasSubstr(bad.message));
+  }
+}
+
+std::string messageOfCreation(const std::vector<std::string>& overrides) {
+  return messageOf<InputError>([&] {
+    std::vector<std::string> notes;
+    createParticles<2>(caseWith(overrides), notes);
+  });
+}
+
+TEST(OpenCase, ANozzleNeedsItsRoom) {
+  EXPECT_THAT(messageOfCreation({"jet.nozzle.center=[0,3e-3]", "jet.nozzle.direction=[0,1]"}),
+              HasSubstr("inflow 'jet' and wall 'floor' overlap at"));
+  EXPECT_THAT(messageOfCreation({"jet.nozzle.center=[0,1e-3]", "jet.nozzle.direction=[0,1]"}),
+              HasSubstr("inflow 'jet' and wall 'floor' overlap at"));
+  EXPECT_THAT(messageOfCreation({"jet.nozzle.center=[0,0.2e-3]"}),
+              HasSubstr("fluid body 'jet' and wall body 'floor' overlap"));
+  EXPECT_THAT(messageOfCreation({"jet.nozzle.center=[0,12e-3]"}),
+              HasSubstr("body 'jet' reaches out of the domain"));
+  EXPECT_THAT(messageOfCreation({"jet.start=0.01"}), HasSubstr("and no inflow flows at the start"));
+}
+
+/// What a run leaves, and what it is when it is continued from a checkpoint.
+TEST(OpenCase, ARunCountsWhatComesAndGoes) {
+  Workshop shop;
+  shop.put("case.toml", pouring);
+  ASSERT_EQ(shop.call("run case.toml -o whole --backend cpu --threads 1 --quiet").exitCode, 0);
+  const std::vector<HistoryRow> rows = readHistory(shop / "whole/history.csv");
+  ASSERT_EQ(rows.size(), 50u);
+  EXPECT_EQ(rows.back().inflow.particles, 40u);
+  EXPECT_NEAR(rows.back().inflow.volume, 40e-6, 1e-18);
+  EXPECT_NEAR(rows.back().inflow.mass, 0.04, 1e-12);
+  for (const HistoryRow& row : rows) EXPECT_EQ(row.particles, 4 + row.inflow.particles - row.outflow.particles);
+  EXPECT_THAT(shop.content("whole/summary.json"), HasSubstr("\"inflow_particles\": 40"));
+  EXPECT_EQ(shop.call("plot whole --history").exitCode, 0);
+
+  ASSERT_EQ(shop.call("run case.toml -o half --backend cpu --threads 1 --quiet --end-time 0.025").exitCode, 0);
+  const Outcome rest =
+      shop.call("run case.toml -o rest --backend cpu --threads 1 --quiet --resume half/checkpoint.h5");
+  ASSERT_EQ(rest.exitCode, 0) << rest.err;
+  EXPECT_EQ(shop.content("rest/checkpoint.h5"), shop.content("whole/checkpoint.h5"));
+  const Outcome other = shop.call(
+      "run case.toml -o other --backend cpu --threads 1 --quiet --resume half/checkpoint.h5 --set "
+      "\"outflow=[{name='a',shape='plane',point=[5e-3,0],normal=[1,0]},{name='b',shape='plane',point=[-5e-3,0],"
+      "normal=[-1,0]}]\"");
+  EXPECT_EQ(other.exitCode, 2);
+  EXPECT_THAT(other.err, HasSubstr("outflows"));
+}
+
+TEST(OpenCase, TheShippedOneHasNoWarning) {
+  const Case c = readCase(std::filesystem::path(TREACLE_CASES) / "filling-2d.toml");
+  std::vector<std::string> notes;
+  createParticles<2>(c, notes);
+  EXPECT_THAT(notes, testing::IsEmpty());
+  EXPECT_THAT(caseWarnings(c), testing::IsEmpty());
+}
+
+}  // namespace
+}  // namespace treacle::test

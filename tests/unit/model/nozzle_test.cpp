@@ -1,0 +1,139 @@
+#include "treacle/model/nozzle.hpp"
+
+#include "treacle/core/error.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace treacle::test {
+namespace {
+
+Case caseOf(int dimensions) {
+  Case c;
+  c.dimensions = dimensions;
+  c.spacing = 0.1;
+  return c;
+}
+
+Body inflow(NozzleKind kind) {
+  Body b;
+  b.name = "jet";
+  b.kind = BodyKind::Inflow;
+  b.inflow.nozzle.kind = kind;
+  b.inflow.nozzle.center = {1, 2, 3};
+  b.inflow.nozzle.direction = {1, 2, -2};
+  b.inflow.speed = TimeFunction{0.5};
+  return b;
+}
+
+/// Places across the direction, a spacing from the next ones, within the opening; layers a way apart.
+TEST(NozzleLayers, AreALatticeAcrossTheDirection) {
+  const Case c = caseOf(3);
+  Body b = inflow(NozzleKind::Disc);
+  b.inflow.nozzle.radius = 1.23;
+  b.inflow.nozzle.innerRadius = 0.4;
+  const NozzleLayers<3> layers(c, b);
+  const Vec<3> n{1.0 / 3, 2.0 / 3, -2.0 / 3};
+  EXPECT_LE(norm(layers.direction() - n), 1e-15);
+  EXPECT_NEAR(layers.area(), std::numbers::pi * (1.23 * 1.23 - 0.4 * 0.4), 0.02 * layers.openingArea());
+  EXPECT_NEAR(layers.openingArea(), std::numbers::pi * (1.23 * 1.23 - 0.4 * 0.4), 1e-12);
+  const std::vector<Vec<3>> places = layers.layer(0.25, 7), next = layers.layer(0.35, 7);
+  ASSERT_EQ(places.size(), layers.size());
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const Vec<3> d = places[i] - Vec<3>{1, 2, 3};
+    EXPECT_NEAR(dot(d, n), 0.25, 1e-12);
+    const double r = norm(d - dot(d, n) * n);
+    EXPECT_LE(r, 1.23 + 1e-9);
+    EXPECT_GE(r, 0.4 - 1e-9);
+    EXPECT_LE(norm(next[i] - places[i] - 0.1 * n), 1e-12);
+    double nearest = 1;
+    for (std::size_t j = 0; j < places.size(); ++j)
+      if (j != i) nearest = std::min(nearest, norm(places[j] - places[i]));
+    EXPECT_NEAR(nearest, 0.1, 1e-12);
+  }
+  EXPECT_EQ(layers.depth(), 4);
+}
+
+TEST(NozzleLayers, ARectangleStandsAlongItsUp) {
+  const Case c = caseOf(3);
+  Body b = inflow(NozzleKind::Rectangle);
+  b.inflow.nozzle.direction = {0, 0, -2};
+  b.inflow.nozzle.width = 0.51;
+  b.inflow.nozzle.height = 0.2;
+  b.inflow.nozzle.up = {3, 0, 1};
+  const NozzleLayers<3> layers(c, b);
+  EXPECT_EQ(layers.size(), 10u);
+  double alongX = 0, alongY = 0;
+  for (const Vec<3>& x : layers.layer(0, 0)) {
+    alongX = std::max(alongX, std::abs(x[0] - 1)), alongY = std::max(alongY, std::abs(x[1] - 2));
+    EXPECT_NEAR(x[2], 3, 1e-12);
+  }
+  EXPECT_NEAR(alongX, 0.05, 1e-12);
+  EXPECT_NEAR(alongY, 0.2, 1e-12);
+  std::vector<std::string> notes;
+  describeNozzle(b, layers, notes);
+  EXPECT_THAT(notes, testing::ElementsAre(testing::HasSubstr("2 % less than the 0.102 m2 of its nozzle")));
+}
+
+TEST(NozzleLayers, InAPlaneAreASegment) {
+  const Case c = caseOf(2);
+  Body b = inflow(NozzleKind::Disc);
+  b.inflow.nozzle.center = {}, b.inflow.nozzle.direction = {0, -1, 0};
+  b.inflow.nozzle.radius = 0.2;
+  const NozzleLayers<2> disc(c, b);
+  EXPECT_EQ(disc.size(), 4u);
+  EXPECT_NEAR(disc.openingArea(), 0.4, 1e-15);
+  b.inflow.nozzle.kind = NozzleKind::Rectangle;
+  b.inflow.nozzle.width = 0.3;
+  EXPECT_EQ((NozzleLayers<2>(c, b).size()), 3u);
+}
+
+TEST(NozzleLayers, SpeedIsTheMeanOfAStep) {
+  const Case c = caseOf(2);
+  Body b = inflow(NozzleKind::Rectangle);
+  b.inflow.nozzle.direction = {1, 0, 0};
+  b.inflow.nozzle.width = 0.5;
+  b.inflow.start = 1, b.inflow.end = 3;
+  const NozzleLayers<2> layers(c, b);
+  EXPECT_EQ(layers.speed(1.5, 0.5), 0.5);
+  EXPECT_EQ(layers.speed(1.5, 0), 0.5);
+  EXPECT_EQ(layers.speed(0.5, 0), 0);
+  EXPECT_EQ(layers.speed(3, 0), 0);
+  EXPECT_NEAR(layers.speed(0.75, 1), 0.375, 1e-15);
+  EXPECT_NEAR(layers.speed(2.9, 1), 0.05, 1e-14);
+  EXPECT_EQ(layers.speed(4, 1), 0);
+  Body rate = b;
+  rate.inflow.speed.reset();
+  rate.inflow.flowRate = TimeFunction{0, "t"};
+  EXPECT_NEAR((NozzleLayers<2>(c, rate).speed(1, 2)), 2 / 0.5, 1e-12);
+}
+
+TEST(NozzleLayers, NeedRoomForAParticle) {
+  const Case c = caseOf(3);
+  Body b = inflow(NozzleKind::Disc);
+  b.inflow.nozzle.radius = 0.06, b.inflow.nozzle.innerRadius = 0.055;
+  EXPECT_THROW((NozzleLayers<3>(c, b)), InputError);
+  b.inflow.nozzle.radius = 1e9;
+  EXPECT_THROW((NozzleLayers<3>(c, b)), InputError);
+}
+
+TEST(TimeFunction, IntegratesExactly) {
+  const TimeFunction table{0, "", {1, 2, 4}, {3, 5, -1}};
+  EXPECT_EQ(table.at(0), 3);
+  EXPECT_EQ(table.at(1.5), 4);
+  EXPECT_EQ(table.at(3), 2);
+  EXPECT_EQ(table.at(9), -1);
+  EXPECT_NEAR(table.integral(0, 1), 3, 1e-15);
+  EXPECT_NEAR(table.integral(0, 5), 3 + 4 + 4 - 1, 1e-14);
+  EXPECT_NEAR(table.integral(1.5, 3), 2.25 + 3.5, 1e-14);
+  const TimeFunction formula{0, "6*t^5"};
+  EXPECT_NEAR(formula.integral(1, 2), 63, 1e-12);
+  EXPECT_EQ((TimeFunction{2}.integral(1, 4)), 6);
+  EXPECT_THROW((TimeFunction{0, "1/t"}.at(0)), InputError);
+}
+
+}  // namespace
+}  // namespace treacle::test
