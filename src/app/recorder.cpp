@@ -65,6 +65,7 @@ Recorder::Recorder(const Case& c, RunDirectory& directory, RunLog& log, double s
         write(snapshot);
       }) {
   if (c.output.balance) balance_.emplace(directory.balance(), c);
+  if (c.hasRigid()) rigid_.emplace(directory.rigidBodies(), c);
 }
 
 void Recorder::begin() { save(true, false); }
@@ -86,6 +87,7 @@ void Recorder::record(const StepReport& report) {
   history_.append(historyRow(case_, report));
   if (report.flow) flow_ = *report.flow;
   if (report.balance) balance_->append(report.step, report.time, *report.balance);
+  if (rigid_) rigid_->append(report.step, report.time, report.rigid);
   outputSeconds_ += timer.lap();
   const bool frame = frames_.due(report.time), checkpoint = checkpoints_.due(report.time);
   save(frame, checkpoint);

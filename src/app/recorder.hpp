@@ -7,6 +7,7 @@
 #include "run_log.hpp"
 #include "treacle/io/balance_writer.hpp"
 #include "treacle/io/history.hpp"
+#include "treacle/io/rigid_writer.hpp"
 #include "treacle/io/run_directory.hpp"
 #include "treacle/io/summary.hpp"
 #include "treacle/model/case.hpp"
@@ -86,6 +87,7 @@ class Recorder {
   std::deque<int> openFrames_;  // in pieces that may not all be on disk: iterations of their steps
   HistoryWriter history_;
   std::optional<BalanceWriter> balance_;
+  std::optional<RigidWriter> rigid_;
   Interval frames_, checkpoints_;
   std::int64_t frameStep_ = -1, checkpointStep_ = -1;  // of the last ones on disk; written by the output thread
   std::int64_t lastStep_ = -1;                         // of the last report

@@ -76,6 +76,16 @@ void requireFlow(const Case& c, const std::filesystem::path& file, const OpenFlo
                              flow.inflows.size(), flow.outflows.size(), c.bodies.size(), c.outflows.size()));
 }
 
+/// Where rigid bodies are, and what they weigh, only the state says. Errors: InputError for other ones.
+void requireRigid(const Case& c, const std::filesystem::path& file, const RigidMotion& rigid) {
+  for (std::size_t b = 0; b < c.bodies.size(); ++b) {
+    const bool known = b < rigid.bodies.size() && rigid.bodies[b].mass > 0;
+    if (known != (c.bodies[b].kind == BodyKind::Rigid))
+      refuse(file, fmt::format("body '{}' is {} in the state", c.bodies[b].name,
+                               known ? "a rigid one" : "no rigid one"));
+  }
+}
+
 /// The body that the case makes each particle of, by id: fluid first, each kind in the order of the file.
 std::vector<std::uint8_t> bodiesById(const MadeParticles& made) {
   std::vector<std::uint8_t> bodies;
@@ -96,7 +106,9 @@ void setBodies(const Case& c, const std::filesystem::path& file, const MadeParti
       p.body[i] = byId[p.id[i]];
     }
     const BodyKind kind = i < p.fluidCount ? BodyKind::Fluid : BodyKind::Wall;
-    const auto fits = [&](const Body& body) { return body.kind == kind || body.kind == BodyKind::Inflow; };
+    const auto fits = [&](const Body& body) {
+      return kind == BodyKind::Fluid ? body.holdsFluid() : body.kind != BodyKind::Fluid;
+    };
     if (p.body[i] >= c.bodies.size() || !fits(c.bodies[p.body[i]]))
       refuse(file, fmt::format("particle {} belongs to body {}, which is no {} body of the case", p.id[i],
                                p.body[i], nameOf(kind)));
@@ -139,6 +151,7 @@ StartState fittingState(const Case& c, const std::filesystem::path& file, const 
     requireFit(c, file, state, kinds);
     requireTemperatures(c, file, state.particles);
     requireFlow(c, file, state.particles.flow);
+    requireRigid(c, file, state.particles.rigid);
     setBodies(c, file, made, state.particles);
     setWallSurfaces(created, kinds.fluid + made.part.begin(kinds.walls), state.particles);
     return {std::move(state.particles), state.step, state.time};

@@ -17,7 +17,7 @@ std::string columns(const Case& c) {
   if (c.hasSurfaceTension()) text += ",surface_power,surface_energy";
   if (c.heat) text += ",heat_energy,viscous_heating,heat_from_walls,heat_from_surface";
   for (const Body& body : c.bodies) {
-    if (body.kind != BodyKind::Wall) continue;
+    if (!body.isWall()) continue;
     const auto add = [&](const std::string& quantity) { text += ',' + csvCell(body.name + quantity); };
     for (int k = 0; k < c.dimensions; ++k) add(fmt::format("_force_{}", "xyz"[k]));
     if (c.dimensions == 2)

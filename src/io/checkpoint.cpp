@@ -84,6 +84,60 @@ FlowCount readCount(hid_t file, const std::string& name) {
   return {static_cast<std::uint64_t>(particles), mass};
 }
 
+/// Numbers of a rigid body in the order of the file.
+template <class Body, class F>
+void forEachNumber(Body& b, F&& f) {
+  f("mass", b.mass);
+  for (auto& x : b.inertia) f("inertia", x);
+  for (auto* v : {&b.center, &b.velocity, &b.spin})
+    for (int k = 0; k < 3; ++k) f("motion", (*v)[k]);
+  for (auto& x : b.orientation) f("orientation", x);
+}
+constexpr std::uint64_t rigidNumbers = 20;
+
+void writeRigid(hid_t file, const RigidMotion& rigid) {
+  Buffer<double> numbers(rigid.bodies.size() * rigidNumbers);
+  double* to = numbers.data();
+  for (const RigidBody& body : rigid.bodies) forEachNumber(body, [&](const char*, double x) { *to++ = x; });
+  const auto put = [&](const char* name, std::span<const double> values) {
+    Buffer<double> field(values.size());
+    std::copy(values.begin(), values.end(), field.begin());
+    writeAttribute(file, (std::string(name) + "_count").c_str(), static_cast<std::uint32_t>(values.size()));
+    writeField(file, FieldInfo{name, Of::All, values.size()}, field);
+  };
+  put("rigid_bodies", numbers);
+  put("rigid_response", rigid.response);
+  put("rigid_change", rigid.change);
+}
+
+/// Errors: Hdf5Error for what no body is.
+RigidMotion readRigid(hid_t file) {
+  constexpr std::uint64_t mostUnknowns = 6 * maxBodies;
+  const auto get = [&](const char* name, std::uint64_t most) {
+    const auto count = readAttribute<std::uint32_t>(file, (std::string(name) + "_count").c_str());
+    if (count > most) throw Hdf5Error(fmt::format("{} values of {}, more than {}", count, name, most));
+    std::vector<double> values(count);
+    FieldReader<double>(file, FieldInfo{name, Of::All, count}).read({0, count}, values.data());
+    for (const double x : values)
+      if (!std::isfinite(x)) throw Hdf5Error(fmt::format("a value of {} is not finite", name));
+    return values;
+  };
+  RigidMotion rigid;
+  const std::vector<double> numbers = get("rigid_bodies", maxBodies * rigidNumbers);
+  if (numbers.size() % rigidNumbers != 0) throw Hdf5Error("the numbers of the rigid bodies are not complete");
+  const double* from = numbers.data();
+  rigid.bodies.resize(numbers.size() / rigidNumbers);
+  for (RigidBody& body : rigid.bodies) {
+    forEachNumber(body, [&](const char*, double& x) { x = *from++; });
+    if (!(body.mass >= 0)) throw Hdf5Error(fmt::format("a rigid body has a mass of {} kg", body.mass));
+  }
+  rigid.response = get("rigid_response", mostUnknowns * mostUnknowns);
+  rigid.change = get("rigid_change", mostUnknowns);
+  if (rigid.response.size() != rigid.change.size() * rigid.change.size() && !rigid.response.empty())
+    throw Hdf5Error("the response of the rigid bodies does not fit their number");
+  return rigid;
+}
+
 void writeFlow(hid_t file, const OpenFlow& flow) {
   writeAttribute(file, "next_id", flow.nextId);
   writeAttribute(file, "flow_body_count", static_cast<std::uint32_t>(flow.inflows.size()));
@@ -142,6 +196,7 @@ void fill(hid_t file, const Particles<D>& particles, std::int64_t step, double t
   writeAttribute(file, "planned_time_step", particles.steps.planned);
   writeAttribute(file, "time_step_error_rate", particles.steps.rate);
   writeFlow(file, particles.flow);
+  writeRigid(file, particles.rigid);
   forEachNamedField(particles, [&](const FieldInfo& info, const auto& field) { writeField(file, info, field); });
 }
 
@@ -251,7 +306,7 @@ Checkpoint<D> readContent(const std::filesystem::path& path, bool sealed, Partic
   if (version >= 6) particles.steps = readSteps(file);
   if (version >= 7) particles.hasShearRates = readAttribute<std::uint8_t>(file, "has_shear_rates") != 0;
   if (version >= 8) particles.hasTemperatures = readAttribute<std::uint8_t>(file, "has_temperatures") != 0;
-  if (version >= 9) particles.flow = readFlow(file);
+  if (version >= 9) particles.flow = readFlow(file), particles.rigid = readRigid(file);
   Selection selection{part, particles.fluidCount, particles.wallCount(), {}};
   checkpoint.fluidOfAll = selection.fluid, checkpoint.wallsOfAll = selection.walls;
   if (!part.isAll()) chooseWalls(file, particles.flow, selection);

@@ -36,9 +36,9 @@ struct FieldInfo {
 template <class P, class F>
 void forEachNamedField(P& particles, std::uint64_t modeValues, F&& f) {
   auto& [fluidCount, ghostCount, count, position, velocity, pressure, numberDensity, material, body, id,
-         acceleration, jerk, shearRate, hasShearRates, temperature, hasTemperatures, modes, steps, flow,
+         acceleration, jerk, shearRate, hasShearRates, temperature, hasTemperatures, modes, steps, flow, rigid,
          wallSurface] = particles;
-  static_cast<void>(steps), static_cast<void>(flow);  // numbers
+  static_cast<void>(steps), static_cast<void>(flow), static_cast<void>(rigid);  // numbers
   static_cast<void>(wallSurface);
   f(FieldInfo{"position", Of::All, count}, position), f(FieldInfo{"velocity", Of::All, count}, velocity);
   f(FieldInfo{"pressure", Of::All, count}, pressure);

@@ -111,8 +111,8 @@ void RunDirectory::lock() {
 }
 
 void RunDirectory::removeRun() const {
-  std::vector<fs::path> files{caseFile(),   history(),    balance(),      summary(),       checkpoint(),
-                              fluidIndex(), wallsIndex(), finalPicture(), historyPicture()};
+  std::vector<fs::path> files{caseFile(),   history(),    balance(),    rigidBodies(),  summary(),
+                              checkpoint(), fluidIndex(), wallsIndex(), finalPicture(), historyPicture()};
   for (std::size_t i = 0, named = files.size(); i < named; ++i)
     files.push_back(AtomicFile::temporaryName(files[i]));
   std::error_code error;

@@ -176,7 +176,7 @@ void warnSoftFluids(const Case& c, std::vector<std::string>& warnings) {
 
 void warnThinWalls(const Case& c, std::vector<std::string>& warnings) {
   for (const Body& body : c.bodies) {
-    if (body.kind != BodyKind::Wall) continue;
+    if (!body.isWall()) continue;
     const auto [extent, where] = thickness(body.shape, c.dimensions);
     const double reach = c.interactionRadius();
     if (extent >= reach * (1 - rounding)) continue;

@@ -31,7 +31,7 @@ std::vector<Filled<D>> fillBodies(const Case& c, BodyKind kind, std::vector<std:
   for (const Body& body : c.bodies)
     if (body.kind == BodyKind::Inflow)
       filled.push_back({&body, nozzlePoints<D>(c, body, kind, notes)});
-    else if (body.kind == kind)
+    else if (body.kind == kind || (kind == BodyKind::Wall && body.isWall()))
       filled.push_back({&body, bodyPoints<D>(c, body, notes)});
   return filled;
 }

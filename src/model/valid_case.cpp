@@ -263,10 +263,22 @@ void requireSound(const Checker& at, const Outflow& o) {
   requireDirection(at, "normal", o.normal);
 }
 
+/// The forces on it are those of MPH-I, and its torque has no nearest image.
+void requireRigid(const Checker& at) {
+  const Case& c = at.wholeCase();
+  if (c.method.kind != MethodKind::MphI)
+    at.fail({"type"}, fmt::format("only the method '{}' moves rigid bodies, found '{}'", nameOf(MethodKind::MphI),
+                                  nameOf(c.method.kind)));
+  for (int k = 0; k < c.dimensions; ++k)
+    if (c.domain.periodic[static_cast<std::size_t>(k)])
+      at.fail({"type"}, fmt::format("there can be no rigid body in a domain that is periodic along {}", "xyz"[k]));
+}
+
 /// Only fluids start with velocities of their own for each particle, only walls and nozzles are moved.
 void requireSound(const Checker& at, const Body& b) {
   if (b.kind == BodyKind::Inflow) return requireSound(at, b.inflow);
   requireSound(at, b.shape);
+  if (b.kind == BodyKind::Rigid) requireRigid(at);
   if (b.kind == BodyKind::Fluid) {
     constexpr const char* text = "only a body of type \"wall\" can have one";
     if (b.oscillation != Oscillation{}) at.fail({"oscillation"}, text);

@@ -137,6 +137,7 @@ bool moveAlike(const Body& a, const Body& b) {
   const auto swings = [](const Body& body) {
     return body.oscillation.period > 0 && norm(body.oscillation.amplitude) > 0;
   };
+  if (a.kind != BodyKind::Wall || b.kind != BodyKind::Wall) return false;
   if (a.velocity != b.velocity || swings(a) != swings(b)) return false;
   if (swings(a) && a.oscillation != b.oscillation) return false;
   const Vec<3> turn = spin(a);

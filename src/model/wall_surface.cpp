@@ -34,18 +34,19 @@ class SurfaceFinder {
   explicit SurfaceFinder(const Case& c)
       : spacing_(c.spacing), reach_(c.viscosityRadius()), search_(c.spacing, reach_, margin()) {
     for (const Body& body : c.bodies) {
-      const bool cut = body.kind == BodyKind::Wall && !body.where.empty();
+      const bool cut = body.isWall() && !body.where.empty();
       where_.push_back(cut ? std::make_unique<Expression>(body.where, D) : nullptr);
     }
     for (std::size_t b = 0; b < c.bodies.size(); ++b)
-      if (c.bodies[b].kind == BodyKind::Wall) addImages(c.domain, c.bodies[b], b);
+      if (c.bodies[b].isWall()) addImages(c.domain, c.bodies[b], b);
     around_.resize(c.bodies.size());
     const Vec<D> far = Vec<D>::filled(reach_ + margin());
     for (std::size_t b = 0; b < c.bodies.size(); ++b) {
-      if (c.bodies[b].kind != BodyKind::Wall) continue;
+      if (!c.bodies[b].isWall()) continue;
       const WallPart<D> own(c.bodies[b], {}, nullptr, spacing_);
       for (const Part& part : parts_)
-        if (moveAlike(c.bodies[b], c.bodies[part.body]) && part.wall.touches(own.min() - far, own.max() + far))
+        if ((part.body == b || moveAlike(c.bodies[b], c.bodies[part.body])) &&
+            part.wall.touches(own.min() - far, own.max() + far))
           around_[b].push_back(&part.wall);
     }
   }
@@ -214,7 +215,7 @@ std::vector<WallSurface<D>> createWallSurfaces(const Case& c, std::span<const Ve
     if (surfaces[k] != WallSurface<D>{}) ++seeing[body[k]];
   }
   for (std::size_t b = 0; b < c.bodies.size(); ++b)
-    if (c.bodies[b].kind == BodyKind::Wall && particles[b] > 0 && seeing[b] == 0)
+    if (c.bodies[b].isWall() && particles[b] > 0 && seeing[b] == 0)
       notes.push_back(fmt::format(
           "wall '{}': none of its {} particles has a surface of the walls within the viscosity radius h_v = {}; "
           "no fluid can be next to it",

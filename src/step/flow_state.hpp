@@ -31,6 +31,7 @@ struct FlowState {
   mutable Context<Backend> context;
   std::unique_ptr<DeviceLink> link;  // of the context, where processes share devices
   Particles<D, Backend> particles;
+  RigidMotion rigid;  // as it is tried for the step at hand; empty where the case has no rigid bodies
   std::vector<std::optional<NozzleLayers<D>>> nozzles;  // per body, of those that are inflows
   Buffer<WallMotion<D>, Backend> wallMotion;   // per body, of the step; empty: all walls keep their velocities
   Buffer<Vec<D>, Backend> velocity, position;  // the step's results before they are accepted

@@ -14,10 +14,33 @@ namespace treacle {
 /// Whether some wall moves, at the time of these particles or at any other.
 template <int D>
 bool someWallMoves(const Case& c, const Particles<D>& particles) {
-  if (someWallOscillates(c) || someWallRotates(c) || c.hasInflow()) return true;
+  if (someWallOscillates(c) || someWallRotates(c) || c.hasInflow() || c.hasRigid()) return true;
   for (std::uint32_t i = particles.wallBegin(); i < particles.count; ++i)
     if (norm2(particles.velocity[i]) > 0) return true;
   return false;
+}
+
+/// Sets motions and velocities of the walls for state.timeStep from state.time on: those of the bodies, with the
+/// speeds that nozzles have, and that rigid bodies are tried with.
+template <int D, class Backend>
+void setWallMotions(FlowState<D, Backend>& state) {
+  std::vector<WallMotion<D>> motion;
+  const Case& c = state.theCase;
+  for (std::size_t b = 0; b < c.bodies.size(); ++b) {
+    if (c.bodies[b].kind == BodyKind::Rigid) {
+      motion.push_back(rigidMotion<D>(state.rigid.bodies[b], state.timeStep));
+      continue;
+    }
+    motion.push_back(wallMotion<D>(c.domain, c.bodies[b], state.time, state.timeStep));
+    if (const auto& nozzle = state.nozzles[b])
+      motion.back().velocity =
+          motion.back().velocity + nozzle->speed(state.time, state.timeStep) * nozzle->direction();
+  }
+  fromHost(state.context, std::span<const WallMotion<D>>(motion), state.wallMotion);
+  Particles<D, Backend>& p = state.particles;
+  const std::uint32_t n = p.wallBegin();
+  setWallVelocities<D>(state.context, {state.wallMotion, p.body.span().subspan(n), p.position.span().subspan(n)},
+                       p.velocity.span().subspan(n));
 }
 
 /// What the walls of a state that it refers to move with: those that oscillate or rotate by the motions of their
@@ -27,21 +50,13 @@ class MovingBodies {
  public:
   explicit MovingBodies(FlowState<D, Backend>& state)
       : state_(state),
-        rotate_(someWallRotates(state.theCase)),
+        rotate_(someWallRotates(state.theCase) || state.theCase.hasRigid()),
         velocitiesChange_(rotate_ || someWallOscillates(state.theCase) || state.theCase.hasInflow()) {}
 
   /// Motions and velocities for state.timeStep from state.time on.
   void prepare() {
     if (!velocitiesChange_) return;
-    std::vector<WallMotion<D>> motion;
-    for (const Body& body : state_.theCase.bodies)
-      motion.push_back(wallMotion<D>(state_.theCase.domain, body, state_.time, state_.timeStep));
-    for (std::size_t b = 0; b < motion.size(); ++b)
-      if (const auto& nozzle = state_.nozzles[b])
-        motion[b].velocity =
-            motion[b].velocity + nozzle->speed(state_.time, state_.timeStep) * nozzle->direction();
-    fromHost(state_.context, std::span<const WallMotion<D>>(motion), state_.wallMotion);
-    setWallVelocities<D>(state_.context, walls(), velocities());
+    setWallMotions(state_);
   }
 
   /// By what dt is multiplied to give the ways of the wall particles in the step [m/s].

@@ -1,5 +1,6 @@
 #include "failure.hpp"
 #include "mph_solver.hpp"
+#include "rigid_bodies.hpp"
 #include "step_balance.hpp"
 #include "step_heat.hpp"
 #include "step_method.hpp"
@@ -15,6 +16,7 @@
 #include "treacle/mph/viscosity_scale.hpp"
 #include "treacle/step/first_guess.hpp"
 #include "treacle/step/solve_stages.hpp"
+#include "wall_forces.hpp"
 
 #include <cmath>
 
@@ -30,10 +32,11 @@ class MphStep final : public StepMethod<D, Backend> {
         neighbourhood_(state.theCase),
         pairs_(neighbourhood_.pairs()),
         wholeRows_(needsAssembled<Backend>(state.theCase.solver)),
-        solver_(solveStages(state.theCase, state.context.communicator != nullptr)) {
+        solver_(solveStages(solvedCase(state.theCase), state.context.communicator != nullptr)) {
     if (state.theCase.hasOwnViscosities()) rheology_.emplace(state.theCase);
     if (state.theCase.heat) heat_.emplace(state.theCase, pairs_);
     if (state.theCase.hasSurfaceTension()) surface_.emplace(state.theCase);
+    if (state.theCase.hasRigid()) rigid_.emplace(state);
   }
 
   void sortParticles() override { neighbourhood_.sort(state_.context, state_.particles); }
@@ -45,6 +48,12 @@ class MphStep final : public StepMethod<D, Backend> {
     clearValues(state_.context, state_.particles.pressure.span().subspan(active));
     numberDensity<D>(state_.context, pairs_, state_.particles.numberDensity.span().first(active));
     fillGhosts(state_.context, Held::Active, state_.particles.numberDensity.data());
+  }
+
+  /// Walls go with what rigid bodies are tried with first.
+  StagedReport predict() override {
+    if (rigid_) rigid_->start(), setWallMotions(state_);
+    return {};
   }
 
   void prepareSystem() override {
@@ -73,15 +82,7 @@ class MphStep final : public StepMethod<D, Backend> {
     state_.velocity.resize(state_.context, active);
     copyValues(state_.context, last.subspan(walls, active - walls), state_.velocity.data() + walls);
     guess(state_.velocity.span().first(n));
-    StagedReport report = solveOnce();
-    while (rheology_) {
-      const bool again = rheology_->follow(state_, neighbourhood_);
-      if (rheology_->isAnother()) state_.particles.modes.pressure = {};
-      if (!again) break;
-      prepareAgain();
-      report.follow(solveOnce());
-    }
-    return report;
+    return rigid_ ? solveWithBodies() : solveFluid();
   }
 
   /// With the modes of the state where the settings have it deflate, as the next step would.
@@ -159,10 +160,68 @@ class MphStep final : public StepMethod<D, Backend> {
            (rheology_ ? rheology_->bytes() : 0) + (heat_ ? heat_->bytes() : 0) +
            (surface_ ? surface_->bytes() : 0) + wallBlock_.bytes() + wallGradient_.bytes() + wallDensity_.bytes() +
            elastic_.bytes() + divergence_.bytes() + rhs_.bytes() + found_.bytes() + solver_.bytes() +
-           balance_.bytes();
+           balance_.bytes() + wallForces_.bytes() + rhsAtRest_.bytes() + pressure_.bytes() + surfaceForce_.bytes();
   }
 
  private:
+  /// Forces on rigid bodies are small differences of large pressures: with flows that are solved to the tolerance
+  /// of the case their velocities would not be found to a thousandth.
+  static Case solvedCase(Case c) {
+    if (c.hasRigid()) c.solver.tolerance = std::max(1e-4 * c.solver.tolerance, 1e-20);
+    return c;
+  }
+
+  /// The flow for the velocities that walls have, from the guess in state.velocity.
+  StagedReport solveFluid() {
+    StagedReport report = solveOnce();
+    while (rheology_) {
+      const bool again = rheology_->follow(state_, neighbourhood_);
+      if (rheology_->isAnother()) state_.particles.modes.pressure = {};
+      if (!again) break;
+      prepareAgain();
+      report.follow(solveOnce());
+    }
+    return report;
+  }
+
+  /// The flow and the velocities of the rigid bodies.
+  StagedReport solveWithBodies() {
+    wallForces_.prepare(state_, neighbourhood_);
+    std::optional<StagedReport> report;
+    rigid_->solve([&] {
+      if (!report) {
+        report = solveFluid();
+      } else {
+        takeWallVelocities();
+        report->follow(solveOnce());
+      }
+      return loads();
+    });
+    return *report;
+  }
+
+  /// Those that the walls have now, into the right-hand side and state.velocity, whose fluid stays.
+  void takeWallVelocities() {
+    const std::uint32_t fluid = pairs_.fluidCount;
+    found_.resize(state_.context, fluid);
+    copyValues(state_.context, std::span<const Vec<D>>(state_.velocity).first(fluid), found_.data());
+    copyValues(state_.context, std::span<const Vec<D>>(rhsAtRest_), rhs_.data());
+    addWallVelocities();
+    copyValues(state_.context, std::span<const Vec<D>>(found_), state_.velocity.data());
+  }
+
+  /// What bodies bear with the velocities in state.velocity.
+  std::vector<LoadSums> loads() {
+    const std::uint32_t active = pairs_.activeCount;
+    divergence_.resize(state_.context, active);
+    divergence<D>(state_.context, pairs_, state_.velocity.span().first(active), divergence_);
+    fillGhosts(state_.context, Held::Active, divergence_.data());
+    pressure_.resize(state_.context, active);
+    bulkPressure<D>(state_.context, pairs_, divergence_, elastic_, pressure_);
+    wallForces_.sum(state_, pairs_, state_.velocity, pressure_, surface_ ? &*surface_ : nullptr, surfaceForce_);
+    return wallForces_.loads(state_, pairs_, state_.velocity);
+  }
+
   void acceptHeat() {
     heat_->accept(state_);
     if (lastBalance_) lastBalance_->heat = heat_->balance(std::pow(pairs_.spacing, D));
@@ -253,6 +312,10 @@ class MphStep final : public StepMethod<D, Backend> {
     addPressureGradient<D>(state_.context, pairs_, elastic_, -1.0, rhs_);
     if (pairs_.terms.repulsionRadius > 0) addRepulsion<D>(state_.context, pairs_, 1 / state_.timeStep, rhs_);
     if (surface_) surface_->addForces(state_, pairs_, rhs_);
+    if (rigid_) {
+      rhsAtRest_.resize(state_.context, rhs_.size());
+      copyValues(state_.context, std::span<const Vec<D>>(rhs_), rhsAtRest_.data());
+    }
     if (state_.wallsMove) addWallVelocities();
   }
 
@@ -297,6 +360,11 @@ class MphStep final : public StepMethod<D, Backend> {
   Buffer<Vec<D>, Backend> found_;                     // velocities of the last solve, while the next is prepared
   std::optional<StepHeat<D, Backend>> heat_;          // where the case has heat
   std::optional<StepSurface<D, Backend>> surface_;    // where some fluid has a surface tension
+  std::optional<RigidSystem<D, Backend>> rigid_;      // where the case has rigid bodies; then also these
+  WallForces<D, Backend> wallForces_;
+  Buffer<Vec<D>, Backend> rhsAtRest_;     // the right-hand side without velocities of walls
+  Buffer<double, Backend> pressure_;      // per active particle [Pa]
+  Buffer<Vec<D>, Backend> surfaceForce_;  // likewise [N/m3]
   StepBalance<D, Backend> balance_;
   std::optional<Balance> lastBalance_;
 };

@@ -13,7 +13,7 @@ NearBlocks<D>::NearBlocks(const Case& c, const CellGrid<D>& cells) : cells_(cell
   for (int k = 0; k < D; ++k) blocks_.count[k] = std::max(1, cells.count[k] / cellsOfBlock);
   near_.resize(blocks_.cellCount());
   for (const Body& body : c.bodies)
-    bodyRests_.push_back(body.kind != BodyKind::Inflow && body.velocity == Vec<3>{} &&
+    bodyRests_.push_back(body.kind == BodyKind::Wall && body.velocity == Vec<3>{} &&
                          body.oscillation.period == 0 && !body.rotation);
 }
 

@@ -7,6 +7,7 @@
 #include "moving_bodies.hpp"
 #include "open_boundaries.hpp"
 #include "own_particles.hpp"
+#include "rigid_bodies.hpp"
 #include "step_method.hpp"
 #include "treacle/core/processes.hpp"
 #include "treacle/core/team.hpp"
@@ -83,6 +84,7 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
   std::unique_ptr<StepMethod<D, Backend>> method;
   std::optional<DistantWalls<D>> distant;  // which `particles` has not
   double lastSpeed = 0;                    // of the fastest particle [m/s]
+  std::vector<double> rigidReach;          // per body: from its centre to its farthest particle [m]
   std::optional<Watch> watch;
   std::optional<StepControl> control;  // of automatic steps
   double endOfStep = 0;                // time at the end of the step at hand [s]
@@ -99,6 +101,7 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     wallsMove = sumOverProcesses(context, someWallMoves(theCase, state)) > 0;
     const double mass = sumOverProcesses(context, fluidMass(theCase, state));
     boundaries.begin(state);
+    beginRigid(state);
     method = theCase.method.kind == MethodKind::Isph ? makeIsphStep(static_cast<Flow&>(*this))
                                                      : makeMphStep(static_cast<Flow&>(*this));
     distant.emplace(theCase, method->grid(), state, time, context.communicator);
@@ -115,6 +118,34 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     const Diagnostics start = diagnostics();
     lastSpeed = start.maxSpeed;
     watch.emplace(theCase, start, mass, this->fluidOfAll, wallsMove || theCase.isOpen());
+  }
+
+  /// Of what the state does not know. Collective.
+  void beginRigid(Particles<D>& state) {
+    if (!theCase.hasRigid()) {
+      state.rigid = {};
+      return;
+    }
+    if (state.rigid.bodies.empty()) state.rigid.bodies = rigidBodies<D>(theCase, context, state);
+    this->rigid = state.rigid;
+    rigidReach.resize(theCase.bodies.size());
+    for (std::uint32_t i = state.wallBegin(); i < state.count; ++i)
+      if (const std::size_t b = state.body[i]; b < rigidReach.size())
+        rigidReach[b] =
+            std::max(rigidReach[b], norm(resized<3>(state.position[i]) - state.rigid.bodies[b].center));
+    if (context.communicator)
+      for (double& reach : rigidReach)
+        reach = joinedOverProcesses(context, reach, [](double a, double b) { return std::max(a, b); });
+  }
+
+  /// That no part of a rigid body exceeds [m/s].
+  double rigidSpeed() const {
+    double speed = 0;
+    for (std::size_t b = 0; b < this->rigid.bodies.size(); ++b) {
+      const RigidBody& body = this->rigid.bodies[b];
+      if (body.mass > 0) speed = std::max(speed, norm(body.velocity) + norm(body.spin) * rigidReach[b]);
+    }
+    return speed;
   }
 
   void chooseTimeStep() {
@@ -154,7 +185,12 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     copyValues(context, std::span<const Vec<D>>(velocity).first(particles.fluidCount), particles.velocity.data());
     copyValues(context, moved.first(particles.fluidCount), particles.position.data());
     if (wallsMove) copyValues(context, moved.subspan(walls), particles.position.data() + walls);
-    distant->addStep(timeStep, method->longestWay(lastSpeed));
+    distant->addStep(timeStep, std::max(method->longestWay(lastSpeed), timeStep * rigidSpeed()));
+    if (theCase.hasRigid()) {
+      for (RigidBody& body : this->rigid.bodies)
+        if (body.mass > 0) body.advance(timeStep);
+      particles.rigid = this->rigid;
+    }
     ++step;
     time = endOfStep;
     particles.steps.last = timeStep;
@@ -253,6 +289,7 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     report.fallbacks = solved.fallbacks;
     report.failures = std::move(solved.failures);
     report.balance = method->balance();
+    report.rigid = particles.rigid.bodies;
     return report;
   }
 

@@ -8,6 +8,7 @@
 #include "treacle/mph/mph_neighbourhood.hpp"
 #include "treacle/mph/mph_repulsion.hpp"
 #include "treacle/step/balance_sums.hpp"
+#include "wall_forces.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -33,39 +34,22 @@ class StepBalance {
   }
 
   std::size_t bytes() const {
-    return walls_.bytes() + shear_.bytes() + wallForce_.bytes() + wallDivergence_.bytes() + wallDensity_.bytes() +
-           repulsion_.bytes() + surfaceForce_.bytes() + surfaceOfWalls_.bytes();
+    return walls_.bytes() + shear_.bytes() + repulsion_.bytes() + surfaceForce_.bytes();
   }
 
  private:
   void sumPairs(FlowState<D, Backend>& state, const MphNeighbourhood<D, Backend>& neighbourhood,
                 const StepSurface<D, Backend>* surface) {
     const MphPairs<D>& pairs = neighbourhood.pairs();
-    const std::uint32_t n = pairs.fluidCount, active = pairs.activeCount;  // of ghosts nothing is summed
-    ClusterListView walls = pairs.wallList;
-    if (walls.offset) {  // the lists of the step reach only as far as pressures
-      const double reach = std::max(pairs.terms.densityRadius, pairs.terms.viscosityRadius);
-      buildClusterList<D>(state.context, pairs.grid, neighbourhood.ranges(), pairs.position, n, pairs.ownEnd(),
-                          {reach, 0}, true, walls_);
-      walls = walls_.view();
-    }
+    const std::uint32_t n = pairs.fluidCount;
     shear_.resize(state.context, n);
-    wallForce_.resize(state.context, active - n);
-    wallDivergence_.resize(state.context, active - n);
-    wallDensity_.resize(state.context, active - n);
     shearDissipation<D>(state.context, pairs, state.velocity, shear_);
-    fluidAtWalls<D>(state.context, pairs, walls, state.velocity, state.particles.pressure.span().first(active),
-                    {wallForce_.span(), wallDivergence_.span(), wallDensity_.span()});
-    if (pairs.terms.repulsionRadius > 0) {
-      const double rate = 1 / state.timeStep;
-      repulsion_.resize(state.context, n);
-      repulsionPower<D>(state.context, pairs, rate, state.velocity, repulsion_);
-      addRepulsionOnWalls<D>(state.context, pairs, rate, wallForce_);
-    }
-    if (!surface) return;
-    surfaceForce_.resize(state.context, active);
-    surfaceOfWalls_.resize(state.context, n);
-    surface->allForces(state, pairs, walls, surfaceOfWalls_.span(), surfaceForce_.span(), wallForce_.span());
+    walls_.prepare(state, neighbourhood);
+    walls_.sum(state, pairs, state.velocity, state.particles.pressure.span().first(pairs.activeCount), surface,
+               surfaceForce_);
+    if (pairs.terms.repulsionRadius == 0) return;
+    repulsion_.resize(state.context, n);
+    repulsionPower<D>(state.context, pairs, 1 / state.timeStep, state.velocity, repulsion_);
   }
 
   void setPowers(FlowState<D, Backend>& state, const MphPairs<D>& pairs, std::span<const double> divergence,
@@ -80,8 +64,8 @@ class StepBalance {
                       divergence,
                       elastic,
                       shear_,
-                      wallDivergence_,
-                      wallDensity_,
+                      walls_.divergence(),
+                      walls_.density(),
                       repulsion_,
                       surfaceForce_,
                       surface ? surface->slope() : std::span<const Vec<D>>{}};
@@ -98,30 +82,23 @@ class StepBalance {
   }
 
   void setLoads(FlowState<D, Backend>& state, const MphPairs<D>& pairs, Balance& balance) {
-    const std::uint32_t n = pairs.fluidCount, walls = pairs.ownEnd() - n;
-    const LoadTerms<D> terms{state.particles.body.span().subspan(n, walls), pairs.position.subspan(n, walls),
-                             state.velocity.span().subspan(n, walls), wallForce_};
-    const std::vector<LoadSums> loads = sumLoads<D>(state.context, terms, state.theCase.bodies.size());
-    const double volume = std::pow(pairs.spacing, D);
+    const std::vector<LoadSums> loads = walls_.loads(state, pairs, state.velocity);
     for (std::size_t b = 0; b < loads.size(); ++b) {
-      if (state.theCase.bodies[b].kind != BodyKind::Wall) continue;
+      const Body& body = state.theCase.bodies[b];
+      if (!body.isWall()) continue;
       const LoadSums& load = loads[b];
-      balance.wallPower -= volume * load.power;
-      balance.walls.push_back(
-          {volume * load.force,
-           volume * (load.torque - cross(wallCenter(state.theCase.bodies[b], state.time), load.force))});
+      balance.wallPower -= load.power;
+      const Vec<3> center =
+          body.kind == BodyKind::Rigid ? state.rigid.bodies[b].center : wallCenter(body, state.time);
+      balance.walls.push_back({load.force, load.torque - cross(center, load.force)});
     }
   }
 
-  ClusterList<Backend> walls_;
-  Buffer<double, Backend> shear_;           // [W/m3]
-  Buffer<Vec<D>, Backend> wallForce_;       // [N/m3]
-  Buffer<double, Backend> wallDivergence_;  // [1/s]
-  Buffer<double, Backend> wallDensity_;     // [-]
-  Buffer<double, Backend> repulsion_;       // [W/m3]; empty where the scheme has none
-  // Of surface tension, empty where there is none: per active particle, and per fluid particle that of walls
-  // [N/m3].
-  Buffer<Vec<D>, Backend> surfaceForce_, surfaceOfWalls_;
+  WallForces<D, Backend> walls_;
+  Buffer<double, Backend> shear_;      // [W/m3]
+  Buffer<double, Backend> repulsion_;  // [W/m3]; empty where the scheme has none
+  Buffer<Vec<D>, Backend>
+      surfaceForce_;  // of surface tension per active particle [N/m3], empty where there is none
 };
 
 }  // namespace treacle

@@ -49,6 +49,7 @@ class RunDirectory {
   std::filesystem::path log() const { return path_ / "run.log"; }
   std::filesystem::path history() const { return path_ / "history.csv"; }
   std::filesystem::path balance() const { return path_ / "balance.csv"; }
+  std::filesystem::path rigidBodies() const { return path_ / "rigid_bodies.csv"; }
   std::filesystem::path summary() const { return path_ / "summary.json"; }
   std::filesystem::path checkpoint() const { return path_ / "checkpoint.h5"; }
   std::filesystem::path fluidIndex() const { return path_ / "fluid.pvd"; }

@@ -27,8 +27,9 @@ struct Shape {
   bool operator==(const Shape&) const = default;
 };
 
-/// An inflow is both: the fluid that comes out of it, and what drives that (Inflow), which counts as wall.
-enum class BodyKind { Fluid, Wall, Inflow };
+/// An inflow is both: the fluid that comes out of it, and what drives that (Inflow), which counts as wall. A rigid
+/// body is a wall that the fluid and gravity move.
+enum class BodyKind { Fluid, Wall, Inflow, Rigid };
 
 /// Displacement of a wall from where it starts: amplitude (sin(2 pi t / period + phase) - sin(phase)).
 struct Oscillation {
@@ -51,6 +52,16 @@ struct Rotation {
   bool operator==(const Rotation&) const = default;
 };
 
+/// What a rigid body has beside its particles.
+struct RigidSettings {
+  double mass = 0;           // [kg; per metre of depth in 2D]; 0: that of its material's density
+  Vec<3> angularVelocity{};  // at the start [rad/s]
+  std::array<bool, 3> translates{true, true, true};  // along these axes
+  std::array<bool, 3> rotates{true, true, true};     // about them; in two dimensions about z
+
+  bool operator==(const RigidSettings&) const = default;
+};
+
 /// Particles of one kind and material that fill a shape, or come out of a nozzle. Expressions are those of
 /// model/expression.hpp; an empty one is none.
 struct Body {
@@ -69,8 +80,11 @@ struct Body {
   std::string temperatureExpression{};  // of a fluid, in place of its temperature [K]
   double wallConductance = 0;           // of a wall, its conductivity over its thickness [W/(m2 K)]; 0: infinite
   Inflow inflow{};                      // of an inflow, in place of a shape
+  RigidSettings rigid{};                // of a rigid body
 
-  bool holdsFluid() const { return kind != BodyKind::Wall; }
+  bool holdsFluid() const { return kind == BodyKind::Fluid || kind == BodyKind::Inflow; }
+  /// Whether fluid meets its surface.
+  bool isWall() const { return kind == BodyKind::Wall || kind == BodyKind::Rigid; }
 
   bool operator==(const Body&) const = default;
 };

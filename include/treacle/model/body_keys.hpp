@@ -72,6 +72,19 @@ void visit(auto& v, Like<Outflow> auto& o, const Case&) {
   v({"normal", required, "any unit"}, o.normal);
 }
 
+/// What a rigid body has among the keys of its body.
+void visit(auto& v, Like<RigidSettings> auto& r, const Case& c) {
+  v({"mass", optional, c.dimensions == 2 ? "kg/m" : "kg", notNegative}, r.mass);
+  v({"translates"}, r.translates);
+  if (c.dimensions == 2) {
+    v({"angular_velocity", optional, "rad/s"}, r.angularVelocity[2]);
+    v({"rotates"}, r.rotates[2]);
+  } else {
+    v({"angular_velocity", optional, "rad/s"}, r.angularVelocity);
+    v({"rotates"}, r.rotates);
+  }
+}
+
 void visit(auto& v, Like<Body> auto& b, const Case& c) {
   v({"name", required}, b.name);
   v({"type", required}, b.kind);
@@ -85,8 +98,12 @@ void visit(auto& v, Like<Body> auto& b, const Case& c) {
   v({"shape", required}, b.shape.kind);
   v({"where"}, b.where, expression);
   v({"velocity", optional, "m/s"}, b.velocity, b.velocityExpression);
-  v({"oscillation"}, b.oscillation);
-  v({"rotation"}, b.rotation);
+  if (b.kind == BodyKind::Rigid) {
+    visit(v, b.rigid, c);
+  } else {
+    v({"oscillation"}, b.oscillation);
+    v({"rotation"}, b.rotation);
+  }
   if (c.heat) {
     const bool fluid = b.kind == BodyKind::Fluid;
     v({"temperature", fluid, "K", fluid ? positive : notNegative}, b.temperature, b.temperatureExpression);

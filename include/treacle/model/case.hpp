@@ -103,6 +103,9 @@ struct Case {
   bool hasInflow() const {
     return std::ranges::any_of(bodies, [](const Body& b) { return b.kind == BodyKind::Inflow; });
   }
+  bool hasRigid() const {
+    return std::ranges::any_of(bodies, [](const Body& b) { return b.kind == BodyKind::Rigid; });
+  }
   /// Whether the number of fluid particles changes.
   bool isOpen() const { return hasInflow() || !outflows.empty(); }
   bool hasSurfaceTension() const {

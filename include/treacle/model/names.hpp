@@ -25,8 +25,10 @@ inline constexpr std::span<const Named<E>> namesOf{};
 namespace names {
 inline constexpr Named<ShapeKind> shape[] = {
     {"box", ShapeKind::Box}, {"sphere", ShapeKind::Sphere}, {"cylinder", ShapeKind::Cylinder}};
-inline constexpr Named<BodyKind> body[] = {
-    {"fluid", BodyKind::Fluid}, {"wall", BodyKind::Wall}, {"inflow", BodyKind::Inflow}};
+inline constexpr Named<BodyKind> body[] = {{"fluid", BodyKind::Fluid},
+                                           {"wall", BodyKind::Wall},
+                                           {"inflow", BodyKind::Inflow},
+                                           {"rigid", BodyKind::Rigid}};
 inline constexpr Named<NozzleKind> nozzle[] = {{"disc", NozzleKind::Disc}, {"rectangle", NozzleKind::Rectangle}};
 inline constexpr Named<OutflowKind> outflow[] = {{"box", OutflowKind::Box}, {"plane", OutflowKind::Plane}};
 inline constexpr Named<MethodKind> method[] = {{"mph-i", MethodKind::MphI}, {"isph", MethodKind::Isph}};

@@ -3,6 +3,7 @@
 #include "treacle/core/buffer.hpp"
 #include "treacle/core/vec.hpp"
 #include "treacle/model/open_flow.hpp"
+#include "treacle/model/rigid_body.hpp"
 #include "treacle/model/solver_modes.hpp"
 #include "treacle/model/step_memory.hpp"
 #include "treacle/model/wall_surface.hpp"
@@ -104,6 +105,9 @@ struct Particles {
   // Of the fluid that comes and goes, which is part of the state.
   OpenFlow flow;
 
+  // Of the bodies that it moves, likewise.
+  RigidMotion rigid;
+
   // Of wall particle wallBegin() + k. Empty: walls have no surface, and the fluid meets their velocities where
   // their particles are.
   Buffer<WallSurface<D>, Backend> wallSurface;
@@ -114,6 +118,7 @@ struct Particles {
     modes.copyNumbers(from.modes);
     steps = from.steps;
     flow = from.flow;
+    rigid = from.rigid;
   }
 
   std::uint32_t wallBegin() const { return fluidCount + ghostCount; }
@@ -153,6 +158,7 @@ struct Particles {
     modes.pressure = {};
     steps = {};
     flow = {};
+    rigid = {};
     wallSurface.resize(context, numbers.surfaces);
   }
 

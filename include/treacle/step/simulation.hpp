@@ -76,6 +76,7 @@ struct StepReport {
   std::vector<std::string> warnings;  // of the watch
   std::optional<Balance> balance;     // with OutputSettings::balance
   std::optional<FlowReport> flow;     // where the case is open
+  std::vector<RigidBody> rigid;       // per body of the case, after the step, where some are rigid
   PhaseSeconds seconds;
 };
 

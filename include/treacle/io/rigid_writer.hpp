@@ -1,0 +1,28 @@
+#pragma once
+
+#include "treacle/io/row_file.hpp"
+#include "treacle/model/case.hpp"
+#include "treacle/model/rigid_body.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+namespace treacle {
+
+/// Appends where the rigid bodies of a case are, and how they move, to a new `rigid_bodies.csv`; numbers read back
+/// to the same bits. Errors: those of RowFile.
+class RigidWriter {
+ public:
+  /// Replaces an older file.
+  RigidWriter(std::filesystem::path path, const Case& c);
+
+  /// `step` and `time` [s] after the step; `bodies`: per body of the case.
+  void append(std::int64_t step, double time, const std::vector<RigidBody>& bodies);
+
+ private:
+  int dimensions_;
+  RowFile file_;
+};
+
+}  // namespace treacle

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+namespace treacle {
+
+/// Finds where a function of few unknowns is zero that is affine, or nearly so, and takes long to compute: by
+/// steps with its derivative, which each value makes better (Broyden). An affine one of n unknowns takes n + 2
+/// values with a derivative that is not known, and two or three with one that was so shortly before.
+class AffineSolve {
+ public:
+  using Function = std::function<std::vector<double>(const std::vector<double>& x)>;
+
+  struct Result {
+    int values = 0;          // of the function that were computed; its last one is that at x
+    bool converged = false;  // the next step would have been within the tolerance
+  };
+
+  /// `derivative`: n x n, row by row; empty: not known; takes what it is in the end. `scale`: of the unknowns, by
+  /// which a derivative that is not known is found and the `tolerance` of a step is measured. `most`: values after
+  /// these.
+  static Result run(const Function& f, std::vector<double>& x, std::vector<double>& derivative, double scale,
+                    double tolerance, int most);
+};
+
+}  // namespace treacle

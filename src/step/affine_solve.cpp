@@ -1,0 +1,85 @@
+#include "treacle/step/affine_solve.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+namespace treacle {
+namespace {
+
+using Vector = std::vector<double>;
+
+/// Gauss with pivots; a column without one gives zero.
+Vector solved(Vector a, Vector b) {
+  const std::size_t n = b.size();
+  for (std::size_t k = 0; k < n; ++k) {
+    std::size_t pivot = k;
+    for (std::size_t i = k + 1; i < n; ++i)
+      if (std::abs(a[i * n + k]) > std::abs(a[pivot * n + k])) pivot = i;
+    if (a[pivot * n + k] == 0) continue;
+    for (std::size_t j = 0; j < n; ++j) std::swap(a[k * n + j], a[pivot * n + j]);
+    std::swap(b[k], b[pivot]);
+    for (std::size_t i = k + 1; i < n; ++i) {
+      const double factor = a[i * n + k] / a[k * n + k];
+      for (std::size_t j = k; j < n; ++j) a[i * n + j] -= factor * a[k * n + j];
+      b[i] -= factor * b[k];
+    }
+  }
+  Vector x(n);
+  for (std::size_t k = n; k-- > 0;) {
+    double sum = b[k];
+    for (std::size_t j = k + 1; j < n; ++j) sum -= a[k * n + j] * x[j];
+    x[k] = a[k * n + k] == 0 ? 0 : sum / a[k * n + k];
+  }
+  return x;
+}
+
+double largest(const Vector& v) {
+  double most = 0;
+  for (const double x : v) most = std::max(most, std::abs(x));
+  return most;
+}
+
+}  // namespace
+
+AffineSolve::Result AffineSolve::run(const Function& f, Vector& x, Vector& derivative, double scale,
+                                     double tolerance, int most) {
+  const std::size_t n = x.size();
+  Result result;
+  const auto value = [&](const Vector& at) {
+    ++result.values;
+    return f(at);
+  };
+  Vector y = value(x);
+  if (derivative.size() != n * n) {
+    derivative.assign(n * n, 0);
+    for (std::size_t j = 0; j < n; ++j) {
+      Vector aside = x;
+      aside[j] += scale;
+      const Vector there = value(aside);
+      for (std::size_t i = 0; i < n; ++i) derivative[i * n + j] = (there[i] - y[i]) / scale;
+    }
+  }
+  for (int k = 0;; ++k) {
+    Vector step = solved(derivative, y);
+    result.converged = largest(step) <= tolerance * scale;
+    // What was computed last must be what the unknowns are.
+    if ((result.converged && (k > 0 || result.values == 1)) || k == most) return result;
+    double length2 = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      step[i] = -step[i];
+      x[i] += step[i];
+      length2 += step[i] * step[i];
+    }
+    const Vector before = std::exchange(y, value(x));
+    if (length2 == 0) continue;
+    for (std::size_t i = 0; i < n; ++i) {
+      double error = y[i] - before[i];
+      for (std::size_t j = 0; j < n; ++j) error -= derivative[i * n + j] * step[j];
+      for (std::size_t j = 0; j < n; ++j) derivative[i * n + j] += error * step[j] / length2;
+    }
+  }
+}
+
+}  // namespace treacle

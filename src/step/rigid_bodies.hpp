@@ -1,0 +1,170 @@
+#pragma once
+
+#include "moving_bodies.hpp"
+#include "treacle/core/error.hpp"
+#include "treacle/core/processes.hpp"
+#include "treacle/step/affine_solve.hpp"
+#include "treacle/step/balance_sums.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+namespace treacle {
+
+/// Masses, centres and inertia of the rigid bodies of a case from the wall particles that it makes of them, of
+/// which each process has a part; each particle is a cube of the spacing. Collective.
+template <int D>
+std::vector<RigidBody> rigidBodies(const Case& c, const Processes& processes, const Particles<D>& p) {
+  std::vector<RigidBody> bodies(c.bodies.size());
+  const double volume = std::pow(c.spacing, D);
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const Body& body = c.bodies[b];
+    if (body.kind != BodyKind::Rigid) continue;
+    const auto sum = [&]<std::size_t N>(auto&& term) {
+      std::array<double, N> sums{};
+      for (std::uint32_t i = p.wallBegin(); i < p.count; ++i)
+        if (p.body[i] == b) term(resized<3>(p.position[i]), sums);
+      sumOverProcesses(processes, std::span<double>(sums));
+      return sums;
+    };
+    const auto first = sum.template operator()<4>([](const Vec<3>& x, auto& s) {
+      s[0] += 1;
+      for (int k = 0; k < 3; ++k) s[static_cast<std::size_t>(k) + 1] += x[k];
+    });
+    if (first[0] == 0) throw InputError(fmt::format("rigid body '{}' has no particles", body.name));
+    RigidBody& r = bodies[b];
+    r.center = (1 / first[0]) * Vec<3>{first[1], first[2], first[3]};
+    const double whole = first[0] * volume * c.materials[static_cast<std::size_t>(body.material)].density;
+    r.mass = body.rigid.mass > 0 ? body.rigid.mass : whole;
+    const double each = r.mass / first[0], own = c.spacing * c.spacing / 6;
+    const auto second = sum.template operator()<6>([&](const Vec<3>& x, auto& s) {
+      const Vec<3> d = x - r.center;
+      const double xx = d[0] * d[0], yy = d[1] * d[1], zz = d[2] * d[2];
+      s[0] += yy + zz + own, s[1] += xx + zz + own, s[2] += xx + yy + own;
+      s[3] -= d[0] * d[1], s[4] -= d[0] * d[2], s[5] -= d[1] * d[2];
+    });
+    for (std::size_t k = 0; k < 6; ++k) r.inertia[k] = each * second[k];
+    r.velocity = body.velocity;
+    r.spin = body.rigid.angularVelocity;
+  }
+  return bodies;
+}
+
+/// The velocities of rigid bodies as unknowns of a step: those at which the forces of the fluid, which depend on
+/// them by way of its own velocities, and of gravity accelerate the bodies to them. Both are of the end of the
+/// step, so that a light body in a stiff fluid is as stable as the fluid is.
+template <int D, class Backend>
+class RigidSystem {
+ public:
+  explicit RigidSystem(FlowState<D, Backend>& state) : state_(state) {
+    const Case& c = state.theCase;
+    for (std::size_t b = 0; b < c.bodies.size(); ++b) {
+      const RigidSettings& r = c.bodies[b].rigid;
+      if (c.bodies[b].kind != BodyKind::Rigid) continue;
+      for (int k = 0; k < D; ++k)
+        if (r.translates[static_cast<std::size_t>(k)]) unknowns_.push_back({b, k});
+      for (int k = D == 2 ? 2 : 0; k < 3; ++k)
+        if (r.rotates[static_cast<std::size_t>(k)]) unknowns_.push_back({b, 3 + k});
+    }
+  }
+
+  /// The bodies of the step at hand start with the velocities that they had, changed as in the last step.
+  void start() {
+    state_.rigid = state_.particles.rigid;
+    std::vector<double> x = values(state_.rigid.bodies);
+    if (state_.rigid.change.size() == x.size())
+      for (std::size_t k = 0; k < x.size(); ++k) x[k] += state_.rigid.change[k];
+    set(x);
+  }
+
+  /// `loads(velocities)`: solves the flow with the velocities that state.rigid has, and returns what the bodies
+  /// then bear. The last flow that it solves is that of the velocities that are found. Errors: RunError.
+  template <class F>
+  void solve(F&& loads) {
+    std::vector<double> x = values(state_.rigid.bodies);
+    const double dt = state_.timeStep, scale = scaleOf(x);
+    const auto result = AffineSolve::run(
+        [&](const std::vector<double>& at) {
+          set(at);
+          setWallMotions(state_);
+          return residual(loads());
+        },
+        x, state_.rigid.response, scale, tolerance, mostValues);
+    if (!result.converged)
+      throw RunError(
+          fmt::format("the velocities of the rigid bodies were not found in {} solves; take {} <= {:.3g}",
+                      result.values, state_.theCase.time.stepKey(), dt / 2));
+    set(x);
+    const std::vector<double> before = values(state_.particles.rigid.bodies);
+    state_.rigid.change.resize(x.size());
+    for (std::size_t k = 0; k < x.size(); ++k) state_.rigid.change[k] = x[k] - before[k];
+  }
+
+ private:
+  struct Unknown {
+    std::size_t body;
+    int component;  // 0 to 2: velocity, 3 to 5: spin times the radius of gyration
+  };
+
+  static constexpr double tolerance = 1e-6;  // of a step to the solution, of the speeds that count
+  static constexpr int mostValues = 30;
+
+  std::vector<double> values(const std::vector<RigidBody>& bodies) const {
+    std::vector<double> x;
+    for (const Unknown& u : unknowns_) {
+      const RigidBody& b = bodies[u.body];
+      x.push_back(u.component < 3 ? b.velocity[u.component] : b.spin[u.component - 3] * b.gyration());
+    }
+    return x;
+  }
+
+  void set(const std::vector<double>& x) {
+    for (std::size_t k = 0; k < x.size(); ++k) {
+      RigidBody& b = state_.rigid.bodies[unknowns_[k].body];
+      const int component = unknowns_[k].component;
+      if (component < 3)
+        b.velocity[component] = x[k];
+      else
+        b.spin[component - 3] = x[k] / b.gyration();
+    }
+  }
+
+  /// Speeds that count in a step [m/s].
+  double scaleOf(const std::vector<double>& x) const {
+    double scale =
+        norm(state_.theCase.gravity) * state_.timeStep + 1e-6 * state_.theCase.spacing / state_.timeStep;
+    for (const double v : x) scale = std::max(scale, std::abs(v));
+    return scale;
+  }
+
+  /// What is missing for the velocities, over the masses [m/s].
+  std::vector<double> residual(const std::vector<LoadSums>& loads) const {
+    const double dt = state_.timeStep;
+    std::vector<double> r;
+    for (const Unknown& u : unknowns_) {
+      const RigidBody &b = state_.rigid.bodies[u.body], &before = state_.particles.rigid.bodies[u.body];
+      const LoadSums& load = loads[u.body];
+      if (u.component < 3) {
+        const double force = load.force[u.component] + b.mass * state_.theCase.gravity[u.component];
+        r.push_back(b.velocity[u.component] - before.velocity[u.component] - dt * force / b.mass);
+        continue;
+      }
+      // The inertia is that of the start of the step, about axes that rest.
+      const Vec<3> torque =
+          load.torque - cross(before.center, load.force) - cross(before.spin, before.inertiaTimes(before.spin));
+      const Vec<3> change = before.inertiaTimes(b.spin - before.spin) - dt * torque;
+      r.push_back(change[u.component - 3] / (b.mass * b.gyration()));
+    }
+    return r;
+  }
+
+  FlowState<D, Backend>& state_;
+  std::vector<Unknown> unknowns_;
+};
+
+}  // namespace treacle
