@@ -7,6 +7,7 @@
 
 #include "body_points.hpp"
 #include "lattice.hpp"
+#include "mesh_notes.hpp"
 #include "point_boxes.hpp"
 #include "point_grid.hpp"
 
@@ -27,8 +28,11 @@ struct Filled {
 template <int D>
 std::vector<Filled<D>> fillBodies(const Case& c, BodyKind kind, std::vector<std::string>& notes) {
   std::vector<Filled<D>> filled;
-  for (const Body& body : c.bodies)
-    if (body.kind == kind) filled.push_back({&body, bodyPoints<D>(c, body, notes)});
+  for (const Body& body : c.bodies) {
+    if (body.kind != kind) continue;
+    filled.push_back({&body, bodyPoints<D>(c, body, notes)});
+    noteMesh(c, body, notes);
+  }
   return filled;
 }
 

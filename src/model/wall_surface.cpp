@@ -2,6 +2,7 @@
 
 #include "cut_search.hpp"
 #include "face_corner.hpp"
+#include "solid.hpp"
 #include "treacle/model/particles.hpp"
 #include "wall_part.hpp"
 
@@ -29,10 +30,23 @@ struct Candidate {
 };
 
 template <int D>
+using Solids = std::vector<std::unique_ptr<const Solid<D>>>;
+
+template <int D>
+Solids<D> wallSolids(const Case& c) {
+  Solids<D> solids(c.bodies.size());
+  for (std::size_t b = 0; b < c.bodies.size(); ++b)
+    if (const Body& body = c.bodies[b]; body.kind == BodyKind::Wall && isSolid(body.shape))
+      solids[b] = std::make_unique<const Solid<D>>(body.shape, c.interactionRadius(), c.spacing);
+  return solids;
+}
+
+template <int D>
 class SurfaceFinder {
  public:
-  explicit SurfaceFinder(const Case& c)
-      : spacing_(c.spacing), reach_(c.viscosityRadius()), search_(c.spacing, reach_, margin()) {
+  /// `solids`: of each body that is a polygon or mesh; they must outlive the finder.
+  SurfaceFinder(const Case& c, const Solids<D>& solids)
+      : spacing_(c.spacing), reach_(c.viscosityRadius()), search_(c.spacing, reach_, margin()), solids_(solids) {
     for (const Body& body : c.bodies) {
       const bool cut = body.kind == BodyKind::Wall && !body.where.empty();
       where_.push_back(cut ? std::make_unique<Expression>(body.where, D) : nullptr);
@@ -43,7 +57,7 @@ class SurfaceFinder {
     const Vec<D> far = Vec<D>::filled(reach_ + margin());
     for (std::size_t b = 0; b < c.bodies.size(); ++b) {
       if (c.bodies[b].kind != BodyKind::Wall) continue;
-      const WallPart<D> own(c.bodies[b], {}, nullptr, spacing_);
+      const WallPart<D> own(c.bodies[b], {}, nullptr, solids_[b].get(), spacing_);
       for (const Part& part : parts_)
         if (moveAlike(c.bodies[b], c.bodies[part.body]) && part.wall.touches(own.min() - far, own.max() + far))
           around_[b].push_back(&part.wall);
@@ -81,7 +95,7 @@ class SurfaceFinder {
     Vec<D> image = low;
     for (int k = 0; k < D;) {
       for (int m = 0; m < D; ++m) shift[m] = image[m] * (domain.max[m] - domain.min[m]);
-      parts_.push_back({b, WallPart<D>(body, shift, where_[b].get(), spacing_)});
+      parts_.push_back({b, WallPart<D>(body, shift, where_[b].get(), solids_[b].get(), spacing_)});
       for (k = 0; k < D; ++k) {
         if (++image[k] <= -low[k]) break;
         image[k] = low[k];
@@ -92,18 +106,27 @@ class SurfaceFinder {
   /// The points of faces at right angles above the particle.
   void addPoints(const Vec<D>& x) {
     faces_.clear();
-    for (const WallPart<D>* part : near_.parts)
+    const bool several = near_.parts.size() > 1;
+    for (const WallPart<D>* part : near_.parts) {
+      const auto add = [&](double distance, const Vec<D>& n, bool behind) {
+        if (distance <= reach_) candidates_.push_back({n * distance, n, distance, behind, 1, {part}, {n}});
+      };
+      if (part->solid()) {
+        ways_.clear();
+        part->solid()->ways(x - part->shift(), reach_, several, ways_);
+        for (const auto& way : ways_) add(way.distance, way.out, false);
+        if (!several) continue;
+      }
       for (const Face<D>& face : part->faces()) {
         const auto [height, normal] = face.at(x);
         if (std::abs(height) <= reach_) faces_.push_back({part, &face});
-        const auto add = [&](double distance, const Vec<D>& n, bool behind) {
-          if (distance <= reach_) candidates_.push_back({n * distance, n, distance, behind, 1, {part}, {n}});
-        };
+        if (part->solid()) continue;
         // Rounding may put a particle of the surface outside.
         if (height <= 1e-5 * spacing_) add(std::max(0.0, -height), normal, false);
         // A thin rod has fluid behind its axis, too.
-        if (!face.flat() && face.side > 0 && height < 0) add(2 * face.radius + height, -normal, true);
+        if (const auto behind = face.behind(x)) add(behind->distance, behind->normal, true);
       }
+    }
   }
 
   /// The points where faces of different walls meet. In a concave corner none of them need have a point at right
@@ -179,11 +202,13 @@ class SurfaceFinder {
 
   double spacing_, reach_;  // [m]
   CutSearch<D> search_;
+  const Solids<D>& solids_;
   std::vector<std::unique_ptr<Expression>> where_;
   std::vector<Part> parts_;
   std::vector<std::vector<const WallPart<D>*>> around_;  // of each body: what its particles can see
   // Of the particle at hand:
   NearWalls<D> near_;
+  std::vector<typename Solid<D>::Way> ways_;
   std::vector<NearFace> faces_;
   std::vector<FaceCorner<D>> corners_;
   std::vector<Candidate<D>> candidates_;
@@ -202,8 +227,9 @@ std::vector<WallSurface<D>> createWallSurfaces(const Case& c, std::span<const Ve
   const std::size_t most = 1 + position.size() / share;
   const int threads =
       static_cast<int>(std::min<std::size_t>(most, static_cast<std::size_t>(omp_get_max_threads())));
+  const Solids<D> solids = wallSolids<D>(c);
   std::deque<SurfaceFinder<D>> finders;
-  for (int k = 0; k < threads; ++k) finders.emplace_back(c);
+  for (int k = 0; k < threads; ++k) finders.emplace_back(c, solids);
 #pragma omp parallel for num_threads(threads) schedule(dynamic, 64)
   for (std::size_t k = 0; k < position.size(); ++k)
     surfaces[k] = finders[static_cast<std::size_t>(omp_get_thread_num())].at(position[k], body[k]);
@@ -214,7 +240,12 @@ std::vector<WallSurface<D>> createWallSurfaces(const Case& c, std::span<const Ve
     if (surfaces[k] != WallSurface<D>{}) ++seeing[body[k]];
   }
   for (std::size_t b = 0; b < c.bodies.size(); ++b)
-    if (particles[b] > 0 && seeing[b] == 0)
+    if (particles[b] > 0 && seeing[b] == 0 && c.bodies[b].shape.kind == ShapeKind::Particles)
+      notes.push_back(fmt::format(
+          "wall '{}' is made of the particles of a file, whose surface is not known: fluid next to it meets the "
+          "velocity of each particle, and slips",
+          c.bodies[b].name));
+    else if (particles[b] > 0 && seeing[b] == 0)
       notes.push_back(fmt::format(
           "wall '{}': none of its {} particles has a surface of the walls within the viscosity radius h_v = {}; "
           "no fluid can be next to it",

@@ -36,6 +36,7 @@ std::string expectedNumber(const Key& key, bool orAuto = false, bool orExpressio
 std::string expectedNumbers(const Key& key);
 std::string expectedInteger(const Key& key);
 std::string expectedVector(const Key& key, int dimensions, bool orExpressions = false);
+std::string expectedPoints(const Key& key);
 std::string expectedEntries(const Key& key);
 
 /// "expected a positive number [s], found 0".
@@ -63,6 +64,8 @@ inline constexpr struct ExpressionTag {
 } expression;
 inline constexpr struct MaterialTag {
 } material;
+inline constexpr struct FileTag {
+} file;
 inline constexpr struct OrAutoTag {
 } orAuto;
 struct AllFit {
