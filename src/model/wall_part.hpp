@@ -62,6 +62,8 @@ class WallPart {
   /// Whether a point is where the shape is, but its condition does not hold.
   bool cutAt(const Vec<D>& x) const { return where_ && shapeContains(x) && !whereHolds(x); }
   bool cut() const { return where_ != nullptr; }
+  /// Whether its condition does not hold at a point, be it of the shape or not.
+  bool excludes(const Vec<D>& x) const { return !whereHolds(x); }
   /// Whether all points between two of its points belong to it, too.
   bool convex() const { return convex_ && !where_; }
   bool touches(const Vec<D>& min, const Vec<D>& max) const {

@@ -72,7 +72,7 @@ class SurfaceFinder {
     candidates_.clear();
     addPoints(x);
     if (near_.parts.size() > 1) addCorners(x);
-    if (near_.cut()) addExits(x);
+    if (near_.cut() && search_.mayFind(x, near_)) addExits(x);
     return chosen(x);
   }
 
