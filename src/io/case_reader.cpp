@@ -32,9 +32,9 @@ Case readCase(const std::filesystem::path& path, std::span<const std::string> ov
   if (!c.time.automatic) c.time.step /= c.resolution;
   try {
     if (width) applyWidth(c, *width);
-    setStepBounds(c);
-    requireValid(c);
     if (files == ShapeFiles::Read) readShapeFiles(c, path.parent_path());
+    setStepBounds(c);  // which follow from where bodies are
+    requireValid(c);
   } catch (const CaseError& error) {
     throw placed(error, sections);
   }

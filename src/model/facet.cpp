@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace treacle {
 
@@ -42,6 +43,21 @@ Vec<3> nearestOn<3>(const Facet<3>& f, const Vec<3>& x) {
   if (areaA <= 0 && cB >= bB && bC >= cC) return f[1] + (f[2] - f[1]) * ((cB - bB) / ((cB - bB) + (bC - cC)));
   const double all = areaA + areaB + areaC;
   return f[0] + ab * (areaB / all) + ac * (areaC / all);
+}
+
+template <>
+double covered<2>(const Facet<2>& f, const Vec<2>& x) {
+  const Vec<2> a = f[0] - x, b = f[1] - x;
+  return std::atan2(a[0] * b[1] - a[1] * b[0], dot(a, b)) / (2 * std::numbers::pi);
+}
+
+/// [van Oosterom, Strackee 1983]
+template <>
+double covered<3>(const Facet<3>& f, const Vec<3>& x) {
+  const Vec<3> a = f[0] - x, b = f[1] - x, c = f[2] - x;
+  const double na = norm(a), nb = norm(b), nc = norm(c);
+  const double denominator = na * nb * nc + dot(a, b) * nc + dot(b, c) * na + dot(c, a) * nb;
+  return std::atan2(dot(a, cross(b, c)), denominator) / (2 * std::numbers::pi);
 }
 
 }  // namespace treacle

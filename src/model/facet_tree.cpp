@@ -8,21 +8,7 @@
 namespace treacle {
 namespace {
 
-/// The share of the directions from x that a facet covers, negative seen from outside.
-double covered(const Facet<2>& f, const Vec<2>& x) {
-  const Vec<2> a = f[0] - x, b = f[1] - x;
-  return std::atan2(a[0] * b[1] - a[1] * b[0], dot(a, b)) / (2 * std::numbers::pi);
-}
-
-/// [van Oosterom, Strackee 1983]
-double covered(const Facet<3>& f, const Vec<3>& x) {
-  const Vec<3> a = f[0] - x, b = f[1] - x, c = f[2] - x;
-  const double na = norm(a), nb = norm(b), nc = norm(c);
-  const double denominator = na * nb * nc + dot(a, b) * nc + dot(b, c) * na + dot(c, a) * nb;
-  return std::atan2(dot(a, cross(b, c)), denominator) / (2 * std::numbers::pi);
-}
-
-/// The same of facets far away, by their flux.
+/// The share of the directions from x that facets far away cover, by their flux.
 template <int D>
 double coveredFromFar(const Vec<D>& flux, const Vec<D>& way, double distance) {
   const double sphere = D == 2 ? 2 * std::numbers::pi * distance : 4 * std::numbers::pi * distance * distance;
@@ -167,7 +153,7 @@ double FacetTree<D>::winding(const Vec<D>& x) const {
     if (const double d2 = norm2(way); d2 > far * far * node.radius * node.radius) {
       sum += coveredFromFar<D>(node.flux, way, std::sqrt(d2));
     } else if (node.right == 0) {
-      for (std::uint32_t k = node.begin; k < node.end; ++k) sum += covered(facets_[k], x);
+      for (std::uint32_t k = node.begin; k < node.end; ++k) sum += covered<D>(facets_[k], x);
     } else {
       stack[size++] = node.right, stack[size++] = index + 1;
     }

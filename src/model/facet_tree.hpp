@@ -23,6 +23,23 @@ Vec<D> facetNormal(const Facet<D>& facet);
 template <int D>
 Vec<D> nearestOn(const Facet<D>& facet, const Vec<D>& x);
 
+/// The share of the directions from x that a facet covers, negative seen from outside.
+template <int D>
+double covered(const Facet<D>& facet, const Vec<D>& x);
+
+template <>
+Vec<2> facetNormal<2>(const Facet<2>& facet);
+template <>
+Vec<3> facetNormal<3>(const Facet<3>& facet);
+template <>
+Vec<2> nearestOn<2>(const Facet<2>& facet, const Vec<2>& x);
+template <>
+Vec<3> nearestOn<3>(const Facet<3>& facet, const Vec<3>& x);
+template <>
+double covered<2>(const Facet<2>& facet, const Vec<2>& x);
+template <>
+double covered<3>(const Facet<3>& facet, const Vec<3>& x);
+
 /// Facets in a tree of boxes, with the questions how often they go round a point and which of them is near it.
 /// Nothing is asked of how they hang together.
 template <int D>

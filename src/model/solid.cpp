@@ -39,7 +39,8 @@ template <int D>
 typename Solid<D>::Answer Solid<D>::filled(const Vec<D>& x) const {
   const Vec<D> local = similarity_.pointBefore(x);
   const auto answer = [&](bool within, double sure) { return Answer{within, sure * similarity_.scale()}; };
-  const double d = tree_->nearest(local).distance;
+  // Farther away nothing need be known: in the middle of a ball all of its facets would be looked at.
+  const double limit = thickness_ + 16 * spacing_, d = std::min(tree_->nearest(local, limit).distance, limit);
   if (fill_ == FillKind::Sheet) return answer(d <= thickness_ / 2 + slack_, std::abs(d - thickness_ / 2 - slack_));
   const bool layer = fill_ != FillKind::Inside;
   const double end = thickness_ + slack_;
