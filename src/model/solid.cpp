@@ -104,12 +104,14 @@ void Solid<D>::ways(const Vec<D>& x, double reach, bool all, std::vector<Way>& f
   const Near near = tree_->nearest(local);
   const Vec<D> first = direction(local, near);
   const std::size_t begin = found.size();
-  const auto add = [&](const Vec<D>& out, double distance) { found.push_back({out, std::max(0.0, distance)}); };
+  const auto add = [&](const Vec<D>& out, double distance, bool clear) {
+    found.push_back({out, std::max(0.0, distance), clear});
+  };
   if (fill_ == FillKind::Sheet) {
-    add(-first, thickness_ / 2 - near.distance), add(first, thickness_ / 2 + near.distance);
+    add(-first, thickness_ / 2 - near.distance, true), add(first, thickness_ / 2 + near.distance, true);
   } else {
-    add(first, near.distance);
-    if (fill_ == FillKind::Outside) add(-first, thickness_ - near.distance);
+    add(first, near.distance, true);
+    if (fill_ == FillKind::Outside) add(-first, thickness_ - near.distance, false);
     otherWays(local, reach / similarity_.scale(), first, all, found);
   }
   for (std::size_t k = begin; k < found.size(); ++k)
@@ -139,7 +141,7 @@ void Solid<D>::otherWays(const Vec<D>& local, double reach, const Vec<D>& first,
     const Vec<D> out = (near.point - local) * (1 / near.distance);
     const double step = std::min(near.distance / 2, 2e-5 * spacing_);
     if (tree_->nearest(near.point - out * step, step * (1 - 1e-3)).facet == tree_->none) {
-      found.push_back({out, near.distance});
+      found.push_back({out, near.distance, false});
       if (++taken == most) return;
     }
     if (--tests == 0) return;

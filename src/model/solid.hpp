@@ -45,6 +45,7 @@ class Solid {
   struct Way {
     Vec<D> out;       // unit vector, outward
     double distance;  // [m]
+    bool clear;       // all on the way is of the solid
   };
   void ways(const Vec<D>& x, double reach, bool all, std::vector<Way>& found) const;
 

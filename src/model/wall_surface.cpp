@@ -24,6 +24,7 @@ struct Candidate {
   Vec<D> out;       // unit vector from the point into what must not be wall
   double distance;  // [m]
   bool behind;      // only as the second face
+  bool clear;       // all on the way to it is of the part, where the particle and its condition are
   int count;        // of the faces that meet in the point; 0: found by search, and tested there
   const WallPart<D>* part[D];
   Vec<D> normal[D];  // of these faces
@@ -108,13 +109,13 @@ class SurfaceFinder {
     faces_.clear();
     const bool several = near_.parts.size() > 1;
     for (const WallPart<D>* part : near_.parts) {
-      const auto add = [&](double distance, const Vec<D>& n, bool behind) {
-        if (distance <= reach_) candidates_.push_back({n * distance, n, distance, behind, 1, {part}, {n}});
+      const auto add = [&](double distance, const Vec<D>& n, bool behind, bool clear) {
+        if (distance <= reach_) candidates_.push_back({n * distance, n, distance, behind, clear, 1, {part}, {n}});
       };
       if (part->solid()) {
         ways_.clear();
         part->solid()->ways(x - part->shift(), reach_, several, ways_);
-        for (const auto& way : ways_) add(way.distance, way.out, false);
+        for (const auto& way : ways_) add(way.distance, way.out, false, way.clear && !part->cut());
         if (!several) continue;
       }
       for (const Face<D>& face : part->faces()) {
@@ -122,9 +123,9 @@ class SurfaceFinder {
         if (std::abs(height) <= reach_) faces_.push_back({part, &face});
         if (part->solid()) continue;
         // Rounding may put a particle of the surface outside.
-        if (height <= 1e-5 * spacing_) add(std::max(0.0, -height), normal, false);
+        if (height <= 1e-5 * spacing_) add(std::max(0.0, -height), normal, false, part->convex());
         // A thin rod has fluid behind its axis, too.
-        if (const auto behind = face.behind(x)) add(behind->distance, behind->normal, true);
+        if (const auto behind = face.behind(x)) add(behind->distance, behind->normal, true, part->convex());
       }
     }
   }
@@ -150,7 +151,7 @@ class SurfaceFinder {
     corners_.clear();
     findCorners<D, N>(x, bare, reach_, spacing_, corners_);
     for (const FaceCorner<D>& corner : corners_) {
-      Candidate<D> candidate{corner.way, corner.out, norm(corner.way), false, N, {}, {}};
+      Candidate<D> candidate{corner.way, corner.out, norm(corner.way), false, false, N, {}, {}};
       for (std::size_t i = 0; i < N; ++i)
         candidate.part[i] = faces[i].part, candidate.normal[i] = corner.normal[i];
       candidates_.push_back(candidate);
@@ -162,7 +163,7 @@ class SurfaceFinder {
     search_.find(x, near_, exits_);
     for (const auto& exit : exits_)
       if (exit.distance <= reach_)
-        candidates_.push_back({exit.way * exit.distance, exit.way, exit.distance, false, 0, {}, {}});
+        candidates_.push_back({exit.way * exit.distance, exit.way, exit.distance, false, false, 0, {}, {}});
   }
 
   /// Whether the walls end in a point, and reach from the particle to it.
@@ -171,7 +172,7 @@ class SurfaceFinder {
     for (int i = 0; i < a.count; ++i)
       if (!a.part[i]->contains(point - a.normal[i] * margin())) return false;
     if (a.count > 0 && near_.contain(point + a.out * margin())) return false;
-    if (a.count == 1 && a.part[0]->convex() && a.part[0]->contains(x)) return true;
+    if (a.clear && a.part[0]->contains(x)) return true;
     const double pieces = std::ceil(4 * a.distance / spacing_);
     for (int k = 1; k < pieces; ++k)
       if (!near_.contain(x + a.way * (k / pieces))) return false;

@@ -79,6 +79,23 @@ TEST_F(MeshCase, isReportedByCheck) {
   EXPECT_THAT(outcome.out, HasSubstr("m3, 0 open edges\n"));
 }
 
+TEST_F(MeshCase, warnsOfThinLayers) {
+  shop.put("thin.toml", meshCase + R"(
+[[body]]
+name = "mould"
+type = "wall"
+material = "syrup"
+shape = "mesh"
+file = "meshes/ball.stl"
+fill = "outside"
+thickness = 1e-3
+transform = { scale = 1e-3, translate = [0, 0, 6e-3] }
+where = "x > 1"
+)");
+  EXPECT_THAT(shop.call("check thin.toml").err,
+              HasSubstr("wall 'mould' is 1 mm thick (thickness), thinner than the viscosity radius h_v = 3.5 mm"));
+}
+
 TEST_F(MeshCase, isWrittenWithWhatFindsItsFileAgain) {
   const Case c = readCase(shop / "case.toml");
   EXPECT_EQ(c.bodies[0].shape.file.path, (shop / "meshes/ball.stl").string());
