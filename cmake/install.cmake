@@ -12,7 +12,7 @@ install(TARGETS treacle)
 install(TARGETS treacle_library ${rooms} EXPORT treacleTargets)
 install(EXPORT treacleTargets NAMESPACE treacle:: DESTINATION ${package_dir})
 install(DIRECTORY include/treacle DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN *.hpp)
-install(DIRECTORY cases DESTINATION ${CMAKE_INSTALL_DATADIR}/treacle FILES_MATCHING PATTERN *.toml)
+install(DIRECTORY cases DESTINATION ${CMAKE_INSTALL_DATADIR}/treacle FILES_MATCHING PATTERN *.toml PATTERN *.stl)
 
 configure_package_config_file(cmake/treacleConfig.cmake.in ${CMAKE_BINARY_DIR}/treacleConfig.cmake
   INSTALL_DESTINATION ${package_dir})

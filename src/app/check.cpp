@@ -10,7 +10,9 @@
 #include "treacle/io/case_reader.hpp"
 #include "treacle/model/checks.hpp"
 #include "treacle/model/create.hpp"
+#include "treacle/model/mesh.hpp"
 #include "treacle/model/names.hpp"
+#include "treacle/model/shape.hpp"
 #include "treacle/step/solve_stages.hpp"
 
 #include <fmt/format.h>
@@ -44,6 +46,19 @@ void printParticles(const Case& c, ParticleNumbers particles, const std::vector<
   print("# particles: {} fluid, {} wall\n", particles.fluid, particles.wall);
   for (std::size_t b = 0; b < c.bodies.size(); ++b)
     print("#   {} '{}': {}\n", nameOf(c.bodies[b].kind), c.bodies[b].name, ofBodies[b].all());
+}
+
+/// As they stand in the case.
+void printMeshes(const Case& c) {
+  for (const Body& body : c.bodies) {
+    if (!body.shape.file.mesh.value) continue;
+    const MeshFacts& facts = body.shape.file.mesh.value->facts();
+    const double scale = body.shape.transform ? body.shape.transform->scale : 1;
+    const Extent box = boundingBox(body.shape, c.dimensions);
+    print("# mesh of '{}': {} triangles from {} to {}, area {:.6g} m2, volume enclosed {:.6g} m3, {} open edges\n",
+          body.name, facts.triangles, positionText(box.min, c.dimensions), positionText(box.max, c.dimensions),
+          facts.area * scale * scale, std::abs(facts.volume) * scale * scale * scale, facts.openEdges);
+  }
 }
 
 /// Seconds of a step per fluid particle on one thread, as measured on one machine for the shipped cases.
@@ -102,6 +117,7 @@ void checkCommand(const CaseOptions& options) {
   AnyParticles particles = createParticles(c, warnings, &ofBodies);
   for (std::string& warning : caseWarnings(c)) warnings.push_back(std::move(warning));
   printParticles(c, particles.numbers(), ofBodies);
+  printMeshes(c);
   printMemory(c, particles, warnings);
   printTime(c, particles.numbers());
   printNumbers(c);

@@ -68,7 +68,7 @@ std::size_t chosenFrame(const RunDirectory& run, const std::optional<double>& ti
 
 ComparedRun readRun(const std::filesystem::path& path, const std::optional<double>& time) {
   const RunDirectory run = RunDirectory::open(path);
-  Case reference = readCase(run.caseFile());
+  Case reference = readCase(run.caseFile(), {}, ShapeFiles::Leave);
   const std::size_t number = chosenFrame(run, time, reference.output.interval);
   const auto file = run.fluidFrame(number);
   return {std::move(reference), run.frameTime(number), {file.string(), readFrame(file), number}};

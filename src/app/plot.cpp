@@ -32,7 +32,7 @@ std::size_t frameNumber(const PlotOptions& options, const RunDirectory& run) {
 
 void plotCommand(const PlotOptions& options) {
   const RunDirectory run = RunDirectory::open(options.directory);
-  const Case c = readCase(run.caseFile());
+  const Case c = readCase(run.caseFile(), {}, ShapeFiles::Leave);
   std::filesystem::path output = options.output;
   if (options.history) {
     if (output.empty()) output = run.historyPicture();

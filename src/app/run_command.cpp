@@ -10,6 +10,7 @@
 #include "together.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/io/case_reader.hpp"
+#include "treacle/io/shape_files.hpp"
 #include "treacle/model/case_error.hpp"
 #include "treacle/model/checks.hpp"
 #include "treacle/step/shareable.hpp"
@@ -104,6 +105,7 @@ void runCommand(const RunOptions& options, const Communicator& processes) {
     requireRoomForParticles(c);
     made = MadeParticles::of(c, warnings, partOf(processes));
     for (std::string& warning : caseWarnings(c)) warnings.push_back(std::move(warning));
+    releaseShapeFiles(c);
   });
   sharing.all = numbersOfAll(processes, made.particles.numbers());
   StartState start{AnyParticles(2)};

@@ -235,6 +235,14 @@ std::string placeOf(const toml::source_region& source) {
   return fmt::format("{}:{}:{}: ", *source.path, source.begin.line, source.begin.column);
 }
 
+fs::path fileNamedAt(const toml::source_region& source, const std::string& name) {
+  const bool inFile = source.path && !source.path->starts_with(setPrefix);
+  const fs::path folder = inFile ? fs::path(*source.path).parent_path() : fs::path();
+  std::error_code error;
+  const fs::path found = fs::absolute(folder / name, error).lexically_normal();
+  return error ? folder / name : found;
+}
+
 toml::table readDocument(const fs::path& path, std::span<const std::string> overrides) {
   std::vector<fs::path> chain;
   toml::table document = readWithBase(path, chain);

@@ -15,6 +15,10 @@ std::vector<std::string_view> topLevelKeys();
 /// "file:line:column: " or "--set key=value: ".
 std::string placeOf(const toml::source_region& source);
 
+/// The file that a value names, relative to the case file that holds it; where that is --set, to the current
+/// folder. Absolute.
+std::filesystem::path fileNamedAt(const toml::source_region& source, const std::string& name);
+
 /// A case file merged onto the file it names as `base`, with overrides on top. Tables merge key by key,
 /// [[material]] and [[body]] by name, everything else replaces. Every value remembers where it was written.
 /// Errors: InputError for files that cannot be read or parsed, cycles of bases, entries without a name or with the

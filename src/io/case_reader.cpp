@@ -2,6 +2,7 @@
 
 #include "case_document.hpp"
 #include "table_reader.hpp"
+#include "treacle/io/shape_files.hpp"
 #include "treacle/model/checks.hpp"
 
 namespace treacle {
@@ -19,7 +20,7 @@ InputError placed(const CaseError& error, const Sections& sections) {
 
 }  // namespace
 
-Case readCase(const std::filesystem::path& path, std::span<const std::string> overrides) {
+Case readCase(const std::filesystem::path& path, std::span<const std::string> overrides, ShapeFiles files) {
   const toml::table document = readDocument(path, overrides);
   Case c;
   Sections sections;
@@ -31,7 +32,8 @@ Case readCase(const std::filesystem::path& path, std::span<const std::string> ov
   if (!c.time.automatic) c.time.step /= c.resolution;
   try {
     if (width) applyWidth(c, *width);
-    setStepBounds(c);
+    if (files == ShapeFiles::Read) readShapeFiles(c, path.parent_path());
+    setStepBounds(c);  // which follow from where bodies are
     requireValid(c);
   } catch (const CaseError& error) {
     throw placed(error, sections);

@@ -55,7 +55,13 @@ class TableText {
   void operator()(const Key& key, const std::vector<double>& numbers) {
     put(key, fmt::format("[{}]", fmt::join(numbers, ", ")));
   }
+  void operator()(const Key& key, const std::vector<Vec<2>>& points) {
+    std::vector<std::string> pairs;
+    for (const Vec<2>& x : points) pairs.push_back(fmt::format("[{}, {}]", x[0], x[1]));
+    put(key, array(pairs));
+  }
   void operator()(const Key& key, const std::string& text) { put(key, tomlString(text)); }
+  void operator()(const Key& key, const std::string& path, keys::FileTag) { put(key, tomlString(path)); }
   void operator()(const Key& key, const std::string& text, keys::ExpressionTag) {
     if (!text.empty()) put(key, tomlString(text));
   }

@@ -101,7 +101,7 @@ HistoryDifference compareHistories(std::span<const HistoryRow> a, std::span<cons
 }
 
 RunDifference compareRuns(const RunDirectory& a, const RunDirectory& b) {
-  const Case reference = readCase(b.caseFile());
+  const Case reference = readCase(b.caseFile(), {}, ShapeFiles::Leave);
   const TimeMatch match = matchTimes(frameTimes(a), frameTimes(b));
   if (match.pairs.empty())
     throw InputError(fmt::format("{} and {}: no frames have the same time", a.path().string(), b.path().string()));

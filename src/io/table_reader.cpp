@@ -259,6 +259,26 @@ void TableReader::operator()(const Key& key, std::vector<double>& numbers) const
   for (const toml::node& entry : *node->as_array()) numbers.push_back(number(key, entry, expected));
 }
 
+void TableReader::operator()(const Key& key, std::vector<Vec<2>>& points) const {
+  const std::string expected = expectedPoints(key);
+  const toml::node* node = section_.value(key, expected);
+  if (!node) return;
+  if (!node->is_array()) throw section_.unexpected(key, expected, *node);
+  points.clear();
+  for (const toml::node& entry : *node->as_array()) {
+    const toml::array* pair = entry.as_array();
+    if (!pair || pair->size() != 2) throw section_.unexpected(key, expected, entry);
+    points.push_back({number(key, (*pair)[0], expected), number(key, (*pair)[1], expected)});
+  }
+}
+
+void TableReader::operator()(const Key& key, std::string& path, keys::FileTag) const {
+  const std::string* name = word(key);
+  if (!name) return;
+  if (name->empty()) throw section_.error(key.name, "expected the name of a file, found \"\"");
+  path = fileNamedAt(section_.table().get(key.name)->source(), *name).string();
+}
+
 void TableReader::operator()(const Key& key, std::string& text) const {
   if (const std::string* word = this->word(key)) text = *word;
 }

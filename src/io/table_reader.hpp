@@ -38,7 +38,9 @@ class TableReader {
   void operator()(const Key& key, Vec<3>& numbers, std::array<std::string, 3>& texts) const;
   void operator()(const Key& key, double& x, std::string& text) const;
   void operator()(const Key& key, std::vector<double>& numbers) const;
+  void operator()(const Key& key, std::vector<Vec<2>>& points) const;
   void operator()(const Key& key, std::string& text) const;
+  void operator()(const Key& key, std::string& path, keys::FileTag) const;  // made absolute
   void operator()(const Key& key, std::string& text, keys::ExpressionTag) const;
   void operator()(const Key& key, int& index, keys::MaterialTag) const;
   void operator()(const Key& key, double& x, bool& isAuto, keys::OrAutoTag) const;

@@ -1,12 +1,15 @@
 #include "body_points.hpp"
 
+#include "given_points.hpp"
 #include "lattice.hpp"
+#include "mesh_notes.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/model/nozzle.hpp"
 #include "treacle/model/shape.hpp"
 
 #include <fmt/format.h>
 #include <cmath>
+#include <functional>
 #include <optional>
 
 namespace treacle {
@@ -34,14 +37,23 @@ void requireInside(const Domain& domain, const Body& body, const Vec<D>& x) {
                                    positionText(domain.max, D)));
 }
 
+/// Before the condition of the body.
+template <int D>
+std::vector<Vec<D>> placesOf(const Case& c, const Body& body, std::vector<std::string>& notes,
+                             const std::function<bool(const Vec<D>&)>& keep) {
+  if (body.shape.kind == ShapeKind::Particles) return givenPoints<D>(c, body, notes, keep);
+  return latticePoints<D>(c, body, notes, keep);
+}
+
 }  // namespace
 
 template <int D>
 std::vector<Vec<D>> bodyPoints(const Case& c, const Body& body, std::vector<std::string>& notes) {
+  requireContent(body);
   std::optional<Expression> where;
   if (!body.where.empty()) where.emplace(body.where, D);
   std::size_t all = 0;
-  std::vector<Vec<D>> points = latticePoints<D>(body, c.spacing, notes, [&](const Vec<D>& x) {
+  std::vector<Vec<D>> points = placesOf<D>(c, body, notes, [&](const Vec<D>& x) {
     ++all;
     if (where && valueAt(x, *where, body, "where", body.where) == 0) return false;
     requireInside(c.domain, body, x);

@@ -10,9 +10,9 @@
 
 namespace treacle {
 
-/// The lattice points of a body (lattice.hpp) at which its condition `where` holds; a note says where there is
-/// none. Errors: InputError for too many points, for the first one outside the domain, or where the condition is
-/// no number.
+/// The points of a body (lattice.hpp, given_points.hpp) at which its condition `where` holds; a note says where
+/// there is none. Errors: InputError for too many points, for the first one outside the domain, or where the
+/// condition is no number.
 template <int D>
 std::vector<Vec<D>> bodyPoints(const Case& c, const Body& body, std::vector<std::string>& notes);
 

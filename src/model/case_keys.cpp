@@ -48,6 +48,10 @@ std::string expectedVector(const Key& key, int dimensions, bool orExpressions) {
       fmt::format("an array of {} finite numbers{}", dimensions, orExpressions ? " or expressions" : ""), key);
 }
 
+std::string expectedPoints(const Key& key) {
+  return withUnit("an array of points, each of 2 finite numbers", key);
+}
+
 std::string expectedEntries(const Key& key) { return fmt::format("at least one [[{}]]", key.name); }
 
 std::string mismatch(const Key& key, const std::string& expected, const std::string& found) {

@@ -50,18 +50,43 @@ const Material& materialOf(const Case& c, const Body& body) {
   return c.materials[static_cast<std::size_t>(body.material)];
 }
 
-/// Thinnest extent of a wall [m], with the words that say where.
-std::pair<double, std::string> thickness(const Shape& s, int dimensions) {
+/// That of a polygon or mesh that is not all of the inside; 0 stands for what is needed.
+double layerThickness(const Shape& s) {
+  const bool known = s.fill != FillKind::Inside && s.thickness > 0;
+  return known ? s.thickness : std::numeric_limits<double>::infinity();
+}
+
+/// Thinnest extent of a wall before its transform, with the words that say where.
+std::pair<double, std::string> ownThickness(const Shape& s, int dimensions) {
   if (s.kind == ShapeKind::Box) {
     int thinnest = 0;
     for (int k = 1; k < dimensions; ++k)
       if (s.max[k] - s.min[k] < s.max[thinnest] - s.min[thinnest]) thinnest = k;
     return {s.max[thinnest] - s.min[thinnest], std::string("along ") + "xyz"[thinnest]};
   }
+  if (s.kind == ShapeKind::Torus)
+    return {s.innerRadius > 0 ? s.tubeRadius - s.innerRadius : 2 * s.tubeRadius, "across its tube"};
+  if (s.kind == ShapeKind::Cone) {
+    const bool hollow = s.innerStartRadius > 0 || s.innerEndRadius > 0;
+    const double widest = 2 * std::max(s.startRadius, s.endRadius);
+    const double across =
+        hollow ? std::max(s.startRadius - s.innerStartRadius, s.endRadius - s.innerEndRadius) : widest;
+    const double length = norm(s.end - s.start);
+    return length < across ? std::pair{length, std::string("along its axis")}
+                           : std::pair{across, std::string(hollow ? "between its radii" : "across")};
+  }
   const double radial = s.innerRadius > 0 ? s.radius - s.innerRadius : 2 * s.radius;
   const double length = norm(s.end - s.start);
   if (s.kind == ShapeKind::Cylinder && length < radial) return {length, "along its axis"};
   return {radial, s.innerRadius > 0 ? "between its radii" : "across"};
+}
+
+/// The same as it stands in the case [m]; infinite where it is not known.
+std::pair<double, std::string> thickness(const Shape& s, int dimensions) {
+  if (s.kind == ShapeKind::Polygon || s.kind == ShapeKind::Mesh) return {layerThickness(s), "(thickness)"};
+  if (s.kind == ShapeKind::Particles) return {std::numeric_limits<double>::infinity(), ""};
+  auto [extent, where] = ownThickness(s, dimensions);
+  return {extent * (s.transform ? s.transform->scale : 1), std::move(where)};
 }
 
 /// Largest speed of a fluid body at the start, of a wall at any time [m/s].

@@ -8,6 +8,7 @@
 
 #include "body_points.hpp"
 #include "lattice.hpp"
+#include "mesh_notes.hpp"
 #include "point_boxes.hpp"
 #include "point_grid.hpp"
 
@@ -28,11 +29,14 @@ struct Filled {
 template <int D>
 std::vector<Filled<D>> fillBodies(const Case& c, BodyKind kind, std::vector<std::string>& notes) {
   std::vector<Filled<D>> filled;
-  for (const Body& body : c.bodies)
-    if (body.kind == BodyKind::Inflow)
+  for (const Body& body : c.bodies) {
+    if (body.kind == BodyKind::Inflow) {
       filled.push_back({&body, nozzlePoints<D>(c, body, kind, notes)});
-    else if (body.kind == kind || (kind == BodyKind::Wall && body.isWall()))
+    } else if (body.kind == kind || (kind == BodyKind::Wall && body.isWall())) {
       filled.push_back({&body, bodyPoints<D>(c, body, notes)});
+      noteMesh(c, body, notes);
+    }
+  }
   return filled;
 }
 

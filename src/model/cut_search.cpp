@@ -9,6 +9,7 @@ namespace treacle {
 namespace {
 
 constexpr double none = std::numeric_limits<double>::infinity();
+constexpr double beyond = 1.1;  // reaches: no direction at the rim is the best one
 
 template <int D>
 Vec<D> unit(const Vec<D>& a) {
@@ -170,11 +171,22 @@ CutSearch<D>::CutSearch(double spacing, double reach, double margin)
       if (a != b && norm(directions_[a] - directions_[b]) < neighbours) around_[a].push_back(static_cast<int>(b));
 }
 
+template <int D>
+bool CutSearch<D>::mayFind(const Vec<D>& x, const NearWalls<D>& walls) const {
+  for (const WallPart<D>* part : walls.parts) {
+    if (!part->cut()) continue;
+    if (!part->solid() || part->excludes(x)) return true;
+    for (const Vec<D>& d : directions_)
+      for (double t = spacing_ / 4; t < beyond * reach_ + spacing_ / 4; t += spacing_ / 4)
+        if (part->excludes(x + d * t)) return true;
+  }
+  return false;
+}
+
 /// The directions whose exits are cut ones, and nearer than those of the directions around them.
 template <int D>
 std::vector<typename CutSearch<D>::Start> CutSearch<D>::starts(const Vec<D>& x, const NearWalls<D>& walls) const {
   const Ray ray(*this, x, walls);
-  constexpr double beyond = 1.1;  // no direction is the best one
   std::vector<double> distance(directions_.size());
   for (std::size_t k = 0; k < directions_.size(); ++k) {
     const Vec<D>& d = directions_[k];

@@ -37,6 +37,10 @@ class CutSearch {
   /// `margin` [m]: what is thinner does not count.
   CutSearch(double spacing, double reach, double margin);
 
+  /// Whether a condition may leave a surface near x. To ask a polygon or mesh whether it contains a point takes
+  /// far longer than to ask its condition.
+  bool mayFind(const Vec<D>& x, const NearWalls<D>& walls) const;
+
   struct Exit {
     Vec<D> way;       // unit vector; outward where the surface is smooth
     double distance;  // [m]

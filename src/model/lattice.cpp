@@ -1,7 +1,9 @@
 #include "lattice.hpp"
 
+#include "solid_points.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/model/create.hpp"
+#include "treacle/model/mesh.hpp"
 #include "treacle/model/shape.hpp"
 
 #include <fmt/format.h>
@@ -12,9 +14,11 @@ namespace {
 
 constexpr double rounding = 1e-6;  // [spacings]
 
-/// Lattice points `origin + k spacing` with low <= k < high on each axis.
+/// Lattice points `origin + k spacing` with low <= k < high on each axis, which then go through the transform of
+/// their shape.
 template <int D>
 struct Lattice {
+  double spacing;  // before the transform
   Vec<D> origin;
   Vec<D> low, high;  // whole numbers; double, so that absurd extents do not overflow
 
@@ -28,6 +32,7 @@ struct Lattice {
 template <int D>
 Lattice<D> boxLattice(const Body& body, double spacing, std::vector<std::string>& notes) {
   Lattice<D> lattice{};
+  lattice.spacing = spacing;
   for (int k = 0; k < D; ++k) {
     const double min = body.shape.min[k], max = body.shape.max[k];
     const double spacings = (max - min) / spacing;
@@ -47,13 +52,14 @@ template <int D>
 Lattice<D> roundLattice(const Body& body, double spacing) {
   const Shape& s = body.shape;
   Lattice<D> lattice{};
+  lattice.spacing = spacing;
   lattice.origin = resized<D>(s.center);
-  if (s.kind == ShapeKind::Cylinder) {
+  if (s.kind == ShapeKind::Cylinder || s.kind == ShapeKind::Cone) {
     // Half a spacing along the axis: layers of particles stand in the middle of slices, as in a box.
     const Vec<D> axis = resized<D>(s.end - s.start);
     lattice.origin = resized<D>(s.start) + axis * (spacing / 2 / norm(axis));
   }
-  const Extent box = boundingBox(s, D);
+  const Extent box = untransformedBox(s, D);
   for (int k = 0; k < D; ++k) {
     lattice.low[k] = std::floor((box.min[k] - lattice.origin[k]) / spacing);
     lattice.high[k] = std::ceil((box.max[k] - lattice.origin[k]) / spacing) + 1;
@@ -61,40 +67,58 @@ Lattice<D> roundLattice(const Body& body, double spacing) {
   return lattice;
 }
 
+/// Before the transform of a shape.
+double spacingOf(const Body& body, double spacing) {
+  return body.shape.transform ? spacing / body.shape.transform->scale : spacing;
+}
+
+/// What a closed mesh holds at least: the inside that is farther from its surface than the middle of a cell from
+/// its corners.
+double meshPoints(const Mesh& mesh, double spacing) {
+  const double rim = std::sqrt(3.0) / 2 * spacing * mesh.facts().area;
+  return mesh.facts().closed() ? std::max(0.0, std::abs(mesh.facts().volume) - rim) / std::pow(spacing, 3) : 0;
+}
+
 }  // namespace
 
 double boxPoints(const Case& c) {
   std::vector<std::string> notes;
   double points = 0;
-  for (const Body& body : c.bodies)
-    if (body.shape.kind == ShapeKind::Box && body.where.empty())
-      points += c.dimensions == 2 ? boxLattice<2>(body, c.spacing, notes).points()
-                                  : boxLattice<3>(body, c.spacing, notes).points();
+  for (const Body& body : c.bodies) {
+    if (!body.where.empty()) continue;
+    const Shape& s = body.shape;
+    const double spacing = spacingOf(body, c.spacing);
+    if (s.kind == ShapeKind::Box)
+      points += c.dimensions == 2 ? boxLattice<2>(body, spacing, notes).points()
+                                  : boxLattice<3>(body, spacing, notes).points();
+    if (s.kind == ShapeKind::Mesh && s.fill == FillKind::Inside && s.file.mesh.value)
+      points += meshPoints(*s.file.mesh.value, spacing);
+    if (s.kind == ShapeKind::Particles && s.file.places.value)
+      points += static_cast<double>(s.file.places.value->size());
+  }
   return points;
 }
 
 template <int D>
-std::vector<Vec<D>> latticePoints(const Body& body, double spacing, std::vector<std::string>& notes,
+std::vector<Vec<D>> latticePoints(const Case& c, const Body& body, std::vector<std::string>& notes,
                                   const std::function<bool(const Vec<D>&)>& keep) {
+  if (isSolid(body.shape)) return solidPoints<D>(c, body, notes, keep);
   const bool box = body.shape.kind == ShapeKind::Box;
+  const double spacing = spacingOf(body, c.spacing);
   const Lattice<D> lattice = box ? boxLattice<D>(body, spacing, notes) : roundLattice<D>(body, spacing);
+  const Similarity<D> similarity = similarityOf<D>(body.shape);
 
-  const auto tooMany = [&] {
-    return InputError(
-        fmt::format("body '{}' would have more than {} particles; take a larger spacing or a lower "
-                    "resolution",
-                    body.name, maxParticles));
-  };
   // A thin shell fills little of its bounding box; beyond 16 times the limit searching it is no use either.
-  if (lattice.points() > static_cast<double>(maxParticles) * (box ? 1 : 16)) throw tooMany();
+  if (lattice.points() > static_cast<double>(maxParticles) * (box ? 1 : 16)) throw tooManyPoints(body);
 
   std::vector<Vec<D>> points;
   if (box) points.reserve(static_cast<std::size_t>(lattice.points()));
   Vec<D> k = lattice.low;
   for (int axis = 0; axis < D;) {
-    const Vec<D> x = lattice.origin + k * spacing;
-    if ((box || contains<D>(body.shape, x, rounding * spacing)) && keep(x)) points.push_back(x);
-    if (points.size() > maxParticles) throw tooMany();
+    const Vec<D> local = lattice.origin + k * spacing;
+    if (box || contains<D>(body.shape, local, rounding * spacing))
+      if (const Vec<D> x = similarity.point(local); keep(x)) points.push_back(x);
+    if (points.size() > maxParticles) throw tooManyPoints(body);
     for (axis = 0; axis < D; ++axis) {
       if (++k[axis] < lattice.high[axis]) break;
       k[axis] = lattice.low[axis];
@@ -103,9 +127,9 @@ std::vector<Vec<D>> latticePoints(const Body& body, double spacing, std::vector<
   return points;
 }
 
-template std::vector<Vec<2>> latticePoints<2>(const Body&, double, std::vector<std::string>&,
+template std::vector<Vec<2>> latticePoints<2>(const Case&, const Body&, std::vector<std::string>&,
                                               const std::function<bool(const Vec<2>&)>&);
-template std::vector<Vec<3>> latticePoints<3>(const Body&, double, std::vector<std::string>&,
+template std::vector<Vec<3>> latticePoints<3>(const Case&, const Body&, std::vector<std::string>&,
                                               const std::function<bool(const Vec<3>&)>&);
 
 }  // namespace treacle

@@ -1,3 +1,4 @@
+#include "polygon.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/model/case_error.hpp"
 #include "treacle/model/case_keys.hpp"
@@ -60,6 +61,11 @@ class Checker {
   }
   void operator()(const Key& key, const std::vector<double>& numbers) const {
     for (const double x : numbers) require(key.bound.holds(x), key, expectedNumbers(key), x);
+  }
+  void operator()(const Key& key, const std::string& path, keys::FileTag) const { (*this)(key, path); }
+  void operator()(const Key& key, const std::vector<Vec<2>>& points) const {
+    for (const Vec<2>& x : points)
+      for (int k = 0; k < 2; ++k) require(key.bound.holds(x[k]), key, expectedPoints(key), x[k]);
   }
   void operator()(const Key& key, Vec<3> x, const std::array<std::string, 3>& texts) const {
     for (int k = 0; k < case_.dimensions; ++k) {
@@ -230,9 +236,81 @@ void requireSound(const Checker& at, const Material& m) {
   if (m.rheology && m.dynamicViscosity != 0) at.fail({"dynamic_viscosity"}, viscosityBesideRheology);
 }
 
+void requireSound(const Checker& at, const Transform& t) {
+  if (const double length = norm(t.axis); length == 0 || !std::isfinite(length))
+    at.fail({"axis"}, fmt::format("expected a direction, found a vector of length {}", length));
+  if (t.angle != 0 && norm2(t.angles) > 0)
+    at.fail({"angles"}, "expected either angle, about axis, or angles, about x, y and z; found both");
+}
+
+void requireCone(const Checker& at, const Shape& s) {
+  if (s.startRadius == 0 && s.endRadius == 0)
+    at.fail({"end_radius"}, "expected more than 0 at one end of the axis, found 0 at both");
+  const auto requireLess = [&](std::string_view key, double inner, std::string_view of, double radius) {
+    if (inner > radius) at.fail({key}, fmt::format("expected at most {} = {}, found {}", of, radius, inner));
+  };
+  requireLess("inner_start_radius", s.innerStartRadius, "start_radius", s.startRadius);
+  requireLess("inner_end_radius", s.innerEndRadius, "end_radius", s.endRadius);
+  if (s.innerStartRadius == s.startRadius && s.innerEndRadius == s.endRadius)
+    at.fail({"inner_end_radius"}, "found no room between the inner and the outer radii");
+}
+
+void requireTorus(const Checker& at, const Shape& s) {
+  if (at.wholeCase().dimensions == 2)
+    at.fail({"shape"}, "a torus has three dimensions; in the plane a ring is a sphere with an inner_radius");
+  if (const double length = norm(s.axis); length == 0 || !std::isfinite(length))
+    at.fail({"axis"}, fmt::format("expected a direction, found a vector of length {}", length));
+  if (s.tubeRadius >= s.radius)
+    at.fail({"tube_radius"}, fmt::format("expected less than radius = {}, found {}", s.radius, s.tubeRadius));
+  if (s.innerRadius >= s.tubeRadius)
+    at.fail({"inner_radius"},
+            fmt::format("expected less than tube_radius = {}, found {}", s.tubeRadius, s.innerRadius));
+}
+
+void requirePolygon(const Checker& at, const Shape& s) {
+  constexpr std::size_t most = 10'000;
+  const std::size_t count = s.points.size();
+  if (count < 3 || count > most)
+    at.fail({"points"}, fmt::format("expected 3 to {} points, the corners in order, found {}", most, count));
+  const auto text = [&](std::size_t k) {
+    return fmt::format("({}, {})", s.points[k % count][0], s.points[k % count][1]);
+  };
+  if (const auto sides = crossingSides(s.points)) {
+    const auto [a, b] = *sides;
+    if (a == b)
+      at.fail({"points"},
+              fmt::format("found {} twice in a row, as points {} and {}", text(a), a + 1, (a + 1) % count + 1));
+    at.fail({"points"}, fmt::format("the side from {} to {} meets that from {} to {}: expected corners in order, "
+                                    "whose sides meet nowhere else",
+                                    text(a), text(a + 1), text(b), text(b + 1)));
+  }
+  if (signedArea2(s.points) == 0) at.fail({"points"}, "expected a polygon with an area, found points in a line");
+  if (at.wholeCase().dimensions == 3 && !(s.bottom < s.top))
+    at.fail({"top"}, fmt::format("expected more than bottom = {}, found {}", s.bottom, s.top));
+}
+
 void requireSound(const Checker& at, const Shape& s) {
-  if (s.kind == ShapeKind::Box) return requireOrder(at, s.min, s.max);
-  if (s.kind == ShapeKind::Cylinder && s.start == s.end) at.fail({"end"}, "expected a point other than start");
+  switch (s.kind) {
+    case ShapeKind::Box:
+      return requireOrder(at, s.min, s.max);
+    case ShapeKind::Torus:
+      return requireTorus(at, s);
+    case ShapeKind::Polygon:
+      return requirePolygon(at, s);
+    case ShapeKind::Mesh:
+      if (at.wholeCase().dimensions == 2)
+        at.fail({"shape"},
+                "a mesh has three dimensions; in the plane shape = \"polygon\" takes the points of an outline");
+      return;
+    case ShapeKind::Particles:
+      return;
+    case ShapeKind::Sphere:
+    case ShapeKind::Cylinder:
+    case ShapeKind::Cone:
+      break;
+  }
+  if (s.kind != ShapeKind::Sphere && s.start == s.end) at.fail({"end"}, "expected a point other than start");
+  if (s.kind == ShapeKind::Cone) return requireCone(at, s);
   if (s.innerRadius >= s.radius)
     at.fail({"inner_radius"}, fmt::format("expected less than radius = {}, found {}", s.radius, s.innerRadius));
 }

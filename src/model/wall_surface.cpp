@@ -2,6 +2,7 @@
 
 #include "cut_search.hpp"
 #include "face_corner.hpp"
+#include "solid.hpp"
 #include "treacle/model/particles.hpp"
 #include "wall_part.hpp"
 
@@ -23,16 +24,30 @@ struct Candidate {
   Vec<D> out;       // unit vector from the point into what must not be wall
   double distance;  // [m]
   bool behind;      // only as the second face
+  bool clear;       // all on the way to it is of the part, where the particle and its condition are
   int count;        // of the faces that meet in the point; 0: found by search, and tested there
   const WallPart<D>* part[D];
   Vec<D> normal[D];  // of these faces
 };
 
 template <int D>
+using Solids = std::vector<std::unique_ptr<const Solid<D>>>;
+
+template <int D>
+Solids<D> wallSolids(const Case& c) {
+  Solids<D> solids(c.bodies.size());
+  for (std::size_t b = 0; b < c.bodies.size(); ++b)
+    if (const Body& body = c.bodies[b]; body.isWall() && isSolid(body.shape))
+      solids[b] = std::make_unique<const Solid<D>>(body.shape, c.interactionRadius(), c.spacing);
+  return solids;
+}
+
+template <int D>
 class SurfaceFinder {
  public:
-  explicit SurfaceFinder(const Case& c)
-      : spacing_(c.spacing), reach_(c.viscosityRadius()), search_(c.spacing, reach_, margin()) {
+  /// `solids`: of each body that is a polygon or mesh; they must outlive the finder.
+  SurfaceFinder(const Case& c, const Solids<D>& solids)
+      : spacing_(c.spacing), reach_(c.viscosityRadius()), search_(c.spacing, reach_, margin()), solids_(solids) {
     for (const Body& body : c.bodies) {
       const bool cut = body.isWall() && !body.where.empty();
       where_.push_back(cut ? std::make_unique<Expression>(body.where, D) : nullptr);
@@ -43,7 +58,7 @@ class SurfaceFinder {
     const Vec<D> far = Vec<D>::filled(reach_ + margin());
     for (std::size_t b = 0; b < c.bodies.size(); ++b) {
       if (!c.bodies[b].isWall()) continue;
-      const WallPart<D> own(c.bodies[b], {}, nullptr, spacing_);
+      const WallPart<D> own(c.bodies[b], {}, nullptr, solids_[b].get(), spacing_);
       for (const Part& part : parts_)
         if ((part.body == b || moveAlike(c.bodies[b], c.bodies[part.body])) &&
             part.wall.touches(own.min() - far, own.max() + far))
@@ -59,7 +74,7 @@ class SurfaceFinder {
     candidates_.clear();
     addPoints(x);
     if (near_.parts.size() > 1) addCorners(x);
-    if (near_.cut()) addExits(x);
+    if (near_.cut() && search_.mayFind(x, near_)) addExits(x);
     return chosen(x);
   }
 
@@ -82,7 +97,7 @@ class SurfaceFinder {
     Vec<D> image = low;
     for (int k = 0; k < D;) {
       for (int m = 0; m < D; ++m) shift[m] = image[m] * (domain.max[m] - domain.min[m]);
-      parts_.push_back({b, WallPart<D>(body, shift, where_[b].get(), spacing_)});
+      parts_.push_back({b, WallPart<D>(body, shift, where_[b].get(), solids_[b].get(), spacing_)});
       for (k = 0; k < D; ++k) {
         if (++image[k] <= -low[k]) break;
         image[k] = low[k];
@@ -93,18 +108,27 @@ class SurfaceFinder {
   /// The points of faces at right angles above the particle.
   void addPoints(const Vec<D>& x) {
     faces_.clear();
-    for (const WallPart<D>* part : near_.parts)
+    const bool several = near_.parts.size() > 1;
+    for (const WallPart<D>* part : near_.parts) {
+      const auto add = [&](double distance, const Vec<D>& n, bool behind, bool clear) {
+        if (distance <= reach_) candidates_.push_back({n * distance, n, distance, behind, clear, 1, {part}, {n}});
+      };
+      if (part->solid()) {
+        ways_.clear();
+        part->solid()->ways(x - part->shift(), reach_, several, ways_);
+        for (const auto& way : ways_) add(way.distance, way.out, false, way.clear && !part->cut());
+        if (!several) continue;
+      }
       for (const Face<D>& face : part->faces()) {
         const auto [height, normal] = face.at(x);
         if (std::abs(height) <= reach_) faces_.push_back({part, &face});
-        const auto add = [&](double distance, const Vec<D>& n, bool behind) {
-          if (distance <= reach_) candidates_.push_back({n * distance, n, distance, behind, 1, {part}, {n}});
-        };
+        if (part->solid()) continue;
         // Rounding may put a particle of the surface outside.
-        if (height <= 1e-5 * spacing_) add(std::max(0.0, -height), normal, false);
+        if (height <= 1e-5 * spacing_) add(std::max(0.0, -height), normal, false, part->convex());
         // A thin rod has fluid behind its axis, too.
-        if (!face.flat() && face.side > 0 && height < 0) add(2 * face.radius + height, -normal, true);
+        if (const auto behind = face.behind(x)) add(behind->distance, behind->normal, true, part->convex());
       }
+    }
   }
 
   /// The points where faces of different walls meet. In a concave corner none of them need have a point at right
@@ -128,7 +152,7 @@ class SurfaceFinder {
     corners_.clear();
     findCorners<D, N>(x, bare, reach_, spacing_, corners_);
     for (const FaceCorner<D>& corner : corners_) {
-      Candidate<D> candidate{corner.way, corner.out, norm(corner.way), false, N, {}, {}};
+      Candidate<D> candidate{corner.way, corner.out, norm(corner.way), false, false, N, {}, {}};
       for (std::size_t i = 0; i < N; ++i)
         candidate.part[i] = faces[i].part, candidate.normal[i] = corner.normal[i];
       candidates_.push_back(candidate);
@@ -140,7 +164,7 @@ class SurfaceFinder {
     search_.find(x, near_, exits_);
     for (const auto& exit : exits_)
       if (exit.distance <= reach_)
-        candidates_.push_back({exit.way * exit.distance, exit.way, exit.distance, false, 0, {}, {}});
+        candidates_.push_back({exit.way * exit.distance, exit.way, exit.distance, false, false, 0, {}, {}});
   }
 
   /// Whether the walls end in a point, and reach from the particle to it.
@@ -149,7 +173,7 @@ class SurfaceFinder {
     for (int i = 0; i < a.count; ++i)
       if (!a.part[i]->contains(point - a.normal[i] * margin())) return false;
     if (a.count > 0 && near_.contain(point + a.out * margin())) return false;
-    if (a.count == 1 && a.part[0]->convex() && a.part[0]->contains(x)) return true;
+    if (a.clear && a.part[0]->contains(x)) return true;
     const double pieces = std::ceil(4 * a.distance / spacing_);
     for (int k = 1; k < pieces; ++k)
       if (!near_.contain(x + a.way * (k / pieces))) return false;
@@ -180,11 +204,13 @@ class SurfaceFinder {
 
   double spacing_, reach_;  // [m]
   CutSearch<D> search_;
+  const Solids<D>& solids_;
   std::vector<std::unique_ptr<Expression>> where_;
   std::vector<Part> parts_;
   std::vector<std::vector<const WallPart<D>*>> around_;  // of each body: what its particles can see
   // Of the particle at hand:
   NearWalls<D> near_;
+  std::vector<typename Solid<D>::Way> ways_;
   std::vector<NearFace> faces_;
   std::vector<FaceCorner<D>> corners_;
   std::vector<Candidate<D>> candidates_;
@@ -203,8 +229,9 @@ std::vector<WallSurface<D>> createWallSurfaces(const Case& c, std::span<const Ve
   const std::size_t most = 1 + position.size() / share;
   const int threads =
       static_cast<int>(std::min<std::size_t>(most, static_cast<std::size_t>(omp_get_max_threads())));
+  const Solids<D> solids = wallSolids<D>(c);
   std::deque<SurfaceFinder<D>> finders;
-  for (int k = 0; k < threads; ++k) finders.emplace_back(c);
+  for (int k = 0; k < threads; ++k) finders.emplace_back(c, solids);
 #pragma omp parallel for num_threads(threads) schedule(dynamic, 64)
   for (std::size_t k = 0; k < position.size(); ++k)
     surfaces[k] = finders[static_cast<std::size_t>(omp_get_thread_num())].at(position[k], body[k]);
@@ -215,7 +242,14 @@ std::vector<WallSurface<D>> createWallSurfaces(const Case& c, std::span<const Ve
     if (surfaces[k] != WallSurface<D>{}) ++seeing[body[k]];
   }
   for (std::size_t b = 0; b < c.bodies.size(); ++b)
-    if (c.bodies[b].isWall() && particles[b] > 0 && seeing[b] == 0)
+    if (!c.bodies[b].isWall())
+      continue;
+    else if (particles[b] > 0 && seeing[b] == 0 && c.bodies[b].shape.kind == ShapeKind::Particles)
+      notes.push_back(fmt::format(
+          "wall '{}' is made of the particles of a file, whose surface is not known: fluid next to it meets the "
+          "velocity of each particle, and slips",
+          c.bodies[b].name));
+    else if (particles[b] > 0 && seeing[b] == 0)
       notes.push_back(fmt::format(
           "wall '{}': none of its {} particles has a surface of the walls within the viscosity radius h_v = {}; "
           "no fluid can be next to it",

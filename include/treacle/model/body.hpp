@@ -2,27 +2,46 @@
 
 #include "treacle/core/vec.hpp"
 #include "treacle/model/inflow.hpp"
+#include "treacle/model/shape_file.hpp"
+#include "treacle/model/transform.hpp"
 
 #include <array>
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace treacle {
 
 /// Largest number of bodies: particles keep theirs in one byte, of which one value says that it is not known.
 inline constexpr std::size_t maxBodies = 255;
 
-enum class ShapeKind { Box, Sphere, Cylinder };
+enum class ShapeKind { Box, Sphere, Cylinder, Cone, Torus, Polygon, Mesh, Particles };
 
-/// A region of space. In two dimensions a sphere is a disc and a cylinder a strip along its axis.
+/// Which side of its boundary a polygon or mesh stands for: all of the inside, the inside up to a distance from
+/// the boundary (of a wall whose rest nobody sees), a layer on the outside, or a sheet, half on each side.
+enum class FillKind { Inside, Shell, Outside, Sheet };
+
+/// A region of space. In two dimensions a sphere is a disc, a cylinder a strip along its axis, a cone a strip
+/// whose width changes; a torus and a mesh have three. Particles stand where a file says.
 struct Shape {
   ShapeKind kind = ShapeKind::Box;
-  Vec<3> min{}, max{};     // box corners [m]
-  Vec<3> center{};         // sphere [m]
-  Vec<3> start{}, end{};   // cylinder: ends of the axis [m]
-  double radius = 0;       // sphere, cylinder [m]
-  double innerRadius = 0;  // sphere, cylinder: hollow inside [m]
+  Vec<3> min{}, max{};                              // box corners [m]
+  Vec<3> center{};                                  // sphere, torus [m]
+  Vec<3> start{}, end{};                            // cylinder, cone: ends of the axis [m]
+  double radius = 0;                                // sphere, cylinder; torus: of its circle [m]
+  double innerRadius = 0;                           // sphere, cylinder; torus: of its tube: hollow inside [m]
+  double startRadius = 0, endRadius = 0;            // cone: at the ends of its axis [m]
+  double innerStartRadius = 0, innerEndRadius = 0;  // cone: hollow inside [m]
+  double tubeRadius = 0;                            // torus [m]
+  Vec<3> axis{0, 0, 1};                             // torus: of any length but zero
+  std::vector<Vec<2>> points{};                     // polygon: its corners in order, either way round [m]
+  double bottom = 0, top = 0;                       // polygon in three dimensions: where it ends along z [m]
+  FillKind fill = FillKind::Inside;                 // polygon, mesh
+  double thickness = 0;  // of what is not all of the inside; 0: as far as particles act on each other [m]
+  ShapeFile file{};      // mesh, particles
+  bool flip = false;     // mesh: the file has its inside and outside the wrong way round
+  std::optional<Transform> transform{};
 
   bool operator==(const Shape&) const = default;
 };

@@ -17,23 +17,77 @@ void visit(auto& v, Like<Rotation> auto& r, const Case& c) {
   if (c.dimensions == 3) v({"axis", required, "any unit"}, r.axis);
 }
 
+void visit(auto& v, Like<Transform> auto& t, const Case& c) {
+  v({"scale", optional, "", positive}, t.scale);
+  if (c.dimensions == 3) v({"axis", optional, "any unit"}, t.axis);
+  v({"angle", optional, "deg"}, t.angle);
+  if (c.dimensions == 3) v({"angles", optional, "deg"}, t.angles);
+  v({"center", optional, "m"}, t.center);
+  v({"translate", optional, "m"}, t.translate);
+}
+
 /// The coordinates of a shape, which stand among the keys of its body.
-void visit(auto& v, Like<Shape> auto& s, const Case&) {
+void visit(auto& v, Like<Shape> auto& s, const Case& c) {
+  const auto radii = [&] {
+    v({"radius", required, "m", positive}, s.radius);
+    v({"inner_radius", optional, "m", notNegative}, s.innerRadius);
+  };
+  const auto axis = [&] {
+    v({"start", required, "m"}, s.start);
+    v({"end", required, "m"}, s.end);
+  };
+  const auto content = [&] {
+    v({"file", required}, s.file.path, keys::file);
+    v({"checksum"}, s.file.checksum);
+  };
+  const auto filling = [&] {
+    v({"fill"}, s.fill);
+    v({"thickness", optional, "m", notNegative}, s.thickness);
+  };
   switch (s.kind) {
     case ShapeKind::Box:
       v({"min", required, "m"}, s.min);
       v({"max", required, "m"}, s.max);
-      return;
+      break;
     case ShapeKind::Sphere:
       v({"center", required, "m"}, s.center);
+      radii();
       break;
     case ShapeKind::Cylinder:
-      v({"start", required, "m"}, s.start);
-      v({"end", required, "m"}, s.end);
+      axis();
+      radii();
+      break;
+    case ShapeKind::Cone:
+      axis();
+      v({"start_radius", required, "m", notNegative}, s.startRadius);
+      v({"end_radius", required, "m", notNegative}, s.endRadius);
+      v({"inner_start_radius", optional, "m", notNegative}, s.innerStartRadius);
+      v({"inner_end_radius", optional, "m", notNegative}, s.innerEndRadius);
+      break;
+    case ShapeKind::Torus:
+      v({"center", required, "m"}, s.center);
+      if (c.dimensions == 3) v({"axis", optional, "any unit"}, s.axis);
+      v({"tube_radius", required, "m", positive}, s.tubeRadius);
+      radii();
+      break;
+    case ShapeKind::Polygon:
+      v({"points", required, "m"}, s.points);
+      if (c.dimensions == 3) {
+        v({"bottom", required, "m"}, s.bottom);
+        v({"top", required, "m"}, s.top);
+      }
+      filling();
+      break;
+    case ShapeKind::Mesh:
+      content();
+      v({"flip"}, s.flip);
+      filling();
+      break;
+    case ShapeKind::Particles:
+      content();
       break;
   }
-  v({"radius", required, "m", positive}, s.radius);
-  v({"inner_radius", optional, "m", notNegative}, s.innerRadius);
+  v({"transform"}, s.transform);
 }
 
 void visit(auto& v, Like<Nozzle> auto& n, const Case& c) {

@@ -34,6 +34,8 @@ SolverSettings defaultSolver(MethodKind method, PreconditionerKind preconditione
 /// - v(key, vector, texts) for a vector that may have expressions in place of numbers, v(key, number, text)
 /// likewise,
 /// - v(key, index, keys::material) for a material, which a file calls by its name,
+/// - v(key, path, keys::file) for a file, which a case file names relative to itself,
+/// - v(key, points) for a list of points of the plane,
 /// - v(key, number, flag, keys::orAuto) for a number that may be "auto", which the flag says,
 /// - v(key, function) for a TimeFunction, which is a number, an expression or a table, and may be missing,
 /// - v(key, struct) for a table in the table,

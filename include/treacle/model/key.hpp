@@ -37,6 +37,7 @@ std::string expectedNumbers(const Key& key);
 std::string expectedFunction(const Key& key);
 std::string expectedInteger(const Key& key);
 std::string expectedVector(const Key& key, int dimensions, bool orExpressions = false);
+std::string expectedPoints(const Key& key);
 std::string expectedEntries(const Key& key);
 
 /// "expected a positive number [s], found 0".
@@ -64,6 +65,8 @@ inline constexpr struct ExpressionTag {
 } expression;
 inline constexpr struct MaterialTag {
 } material;
+inline constexpr struct FileTag {
+} file;
 inline constexpr struct OrAutoTag {
 } orAuto;
 struct AllFit {

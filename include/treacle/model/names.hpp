@@ -24,7 +24,13 @@ inline constexpr std::span<const Named<E>> namesOf{};
 
 namespace names {
 inline constexpr Named<ShapeKind> shape[] = {
-    {"box", ShapeKind::Box}, {"sphere", ShapeKind::Sphere}, {"cylinder", ShapeKind::Cylinder}};
+    {"box", ShapeKind::Box},   {"sphere", ShapeKind::Sphere},      {"cylinder", ShapeKind::Cylinder},
+    {"cone", ShapeKind::Cone}, {"torus", ShapeKind::Torus},        {"polygon", ShapeKind::Polygon},
+    {"mesh", ShapeKind::Mesh}, {"particles", ShapeKind::Particles}};
+inline constexpr Named<FillKind> fill[] = {{"inside", FillKind::Inside},
+                                           {"shell", FillKind::Shell},
+                                           {"outside", FillKind::Outside},
+                                           {"sheet", FillKind::Sheet}};
 inline constexpr Named<BodyKind> body[] = {{"fluid", BodyKind::Fluid},
                                            {"wall", BodyKind::Wall},
                                            {"inflow", BodyKind::Inflow},
@@ -90,6 +96,8 @@ inline constexpr Named<OutputPieces> pieces[] = {
 
 template <>
 inline constexpr std::span<const Named<ShapeKind>> namesOf<ShapeKind>{names::shape};
+template <>
+inline constexpr std::span<const Named<FillKind>> namesOf<FillKind>{names::fill};
 template <>
 inline constexpr std::span<const Named<BodyKind>> namesOf<BodyKind>{names::body};
 template <>

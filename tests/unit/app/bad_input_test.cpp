@@ -60,7 +60,7 @@ constexpr BadCase badCases[] = {
      "bad.toml:9:2: unknown key 'gravty' in the case file; did you mean 'gravity'?"},
     {"keyOfAnotherShape", "max = [6e-3, 6e-3]", "max = [6e-3, 6e-3]\nradius = 1",
      "bad.toml:26:1: unknown key 'radius' in [[body]] 'column' (box); expected 'name', 'type', 'material', "
-     "'shape', 'where', 'velocity', 'oscillation', 'rotation', 'min' or 'max'"},
+     "'shape', 'where', 'velocity', 'oscillation', 'rotation', 'min', 'max' or 'transform'"},
     {"missingKey", "density = 1000\n", "",
      "bad.toml:12:1: density in [[material]] 'syrup': missing; expected a positive number [kg/m3]"},
     {"missingTable", "[time]\nstep = 1e-3\nend = 2e-3\n", "",
@@ -146,8 +146,10 @@ constexpr BadCase badCases[] = {
      "multigrid.coarse_operators = \"spgemm\"\n[output]",
      "bad.toml:41:14: neighbours in [solver]: expected 'lists' with multigrid.coarse_operators = 'spgemm', found "
      "'ranges'"},
-    {"unknownShape", "shape = \"box\"", "shape = \"cone\"",
-     "bad.toml:23:9: shape in [[body]] 'column': expected 'box', 'sphere' or 'cylinder', found 'cone'"},
+    {"unknownShape", "shape = \"box\"", "shape = \"cube\"",
+     "bad.toml:23:9: shape in [[body]] 'column': expected 'box', 'sphere', 'cylinder', 'cone', 'torus', "
+     "'polygon', "
+     "'mesh' or 'particles', found 'cube'"},
     {"unknownField", "interval = 1e-3", "interval = 1e-3\nfields = [\"speed\"]",
      "bad.toml:41:10: fields in [output]: expected 'velocity', 'pressure', 'number_density', 'nearest_distance', "
      "'material', 'body', 'id', 'dynamic_viscosity', 'shear_rate' or 'temperature', found 'speed'"},

@@ -39,6 +39,24 @@ end = [-1e-3, 9e-3]
 radius = 1e-3
 oscillation = { amplitude = [1e-5, 0], period = 1 }
 rotation = { center = [0, 9e-3], speed = 1 }
+
+[[body]]
+name = "wedge"
+type = "wall"
+material = "syrup"
+shape = "cone"
+start = [6e-3, 9e-3]
+end = [8e-3, 9e-3]
+start_radius = 1e-3
+end_radius = 5e-4
+
+[[body]]
+name = "outline"
+type = "wall"
+material = "syrup"
+shape = "polygon"
+points = [[3e-3, 8e-3], [5e-3, 8e-3], [4e-3, 9e-3]]
+transform = { angle = 1 }
 )";
 
 Case goodCase(MethodKind method, const std::vector<std::string>& overrides = {}) {
@@ -189,6 +207,61 @@ const Mistake mistakes[] = {
      {"body", "left rod", "end"},
      "[[body]] 'left rod' (cylinder)",
      "expected a point other than start"},
+    {"radiiOfACone",
+     mph,
+     [](Case& c) { c.bodies[4].shape.startRadius = c.bodies[4].shape.endRadius = 0; },
+     {"wedge.start_radius=0", "wedge.end_radius=0"},
+     {"body", "wedge", "end_radius"},
+     "[[body]] 'wedge' (cone)",
+     "expected more than 0 at one end of the axis, found 0 at both"},
+    {"innerRadiusOfACone",
+     mph,
+     [](Case& c) { c.bodies[4].shape.innerStartRadius = 2e-3; },
+     {"wedge.inner_start_radius=2e-3"},
+     {"body", "wedge", "inner_start_radius"},
+     "[[body]] 'wedge' (cone)",
+     "expected at most start_radius = 0.001, found 0.002"},
+    {"pointsOfAPolygon",
+     mph,
+     [](Case& c) { c.bodies[5].shape.points.pop_back(); },
+     {"outline.points=[[3e-3, 8e-3], [5e-3, 8e-3]]"},
+     {"body", "outline", "points"},
+     "[[body]] 'outline' (polygon)",
+     "expected 3 to 10000 points, the corners in order, found 2"},
+    {"crossingSidesOfAPolygon",
+     mph,
+     [](Case& c) {
+       c.bodies[5].shape.points = {{0, 0}, {1, 1}, {1, 0}, {0, 1}};
+     },
+     {"outline.points=[[0, 0], [1, 1], [1, 0], [0, 1]]"},
+     {"body", "outline", "points"},
+     "[[body]] 'outline' (polygon)",
+     "the side from (0, 0) to (1, 1) meets that from (1, 0) to (0, 1): expected corners in order, whose sides "
+     "meet "
+     "nowhere else"},
+    {"pointTwiceInAPolygon",
+     mph,
+     [](Case& c) {
+       c.bodies[5].shape.points = {{0, 0}, {1, 1}, {1, 1}, {0, 1}};
+     },
+     {"outline.points=[[0, 0], [1, 1], [1, 1], [0, 1]]"},
+     {"body", "outline", "points"},
+     "[[body]] 'outline' (polygon)",
+     "found (1, 1) twice in a row, as points 2 and 3"},
+    {"thickness",
+     mph,
+     [](Case& c) { c.bodies[5].shape.thickness = -1; },
+     {"outline.thickness=-1"},
+     {"body", "outline", "thickness"},
+     "[[body]] 'outline' (polygon)",
+     "expected a number not less than 0 [m], found -1"},
+    {"scaleOfATransform",
+     mph,
+     [](Case& c) { c.bodies[5].shape.transform->scale = 0; },
+     {"outline.transform.scale=0"},
+     {"body", "outline", "transform", "scale"},
+     "the transform of [[body]] 'outline'",
+     "expected a positive number, found 0"},
     {"velocity",
      mph,
      [](Case& c) { c.bodies[1].velocity[0] = infinity; },
@@ -484,7 +557,7 @@ TEST(requireValid, knowsDirectionsOfLengthZeroInSpace) {
   Case c = goodCase(mph);
   c.dimensions = 3;
   c.domain.max[2] = 1;
-  for (Body& body : c.bodies) body.shape.max[2] = 1;
+  for (Body& body : c.bodies) body.shape.max[2] = body.shape.top = 1;
   EXPECT_NO_THROW(requireValid(c));
   c.bodies[3].rotation->axis = {};
   EXPECT_EQ(messageOf<CaseError>([&] { requireValid(c); }),

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "treacle/core/vec.hpp"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace treacle {
+
+class Mesh;
+
+/// What was read of a file. Comparisons pass over it: the file's checksum stands for it.
+template <class T>
+struct Content {
+  std::shared_ptr<const T> value{};
+
+  bool operator==(const Content&) const { return true; }
+};
+
+/// A file that a shape is made of. A case that was read without its files, or is made in code, has no content.
+struct ShapeFile {
+  std::string path{};                     // absolute where it comes from a case file
+  std::string checksum{};                 // of its bytes, 16 hexadecimal digits; empty: not known
+  Content<Mesh> mesh{};                   // in the coordinates of the file
+  Content<std::vector<Vec<3>>> places{};  // of particles [m]
+
+  bool operator==(const ShapeFile&) const = default;
+};
+
+}  // namespace treacle

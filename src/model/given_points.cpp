@@ -1,0 +1,41 @@
+#include "given_points.hpp"
+
+#include "point_grid.hpp"
+#include "treacle/model/shape.hpp"
+
+#include <fmt/format.h>
+
+namespace treacle {
+
+template <int D>
+std::vector<Vec<D>> givenPoints(const Case& c, const Body& body, std::vector<std::string>& notes,
+                                const std::function<bool(const Vec<D>&)>& keep) {
+  const std::vector<Vec<3>>& places = *body.shape.file.places.value;
+  const Similarity<D> similarity = similarityOf<D>(body.shape);
+  PointGrid<D> grid(c.domain, 0.5 * c.spacing * (1 - 1e-6), places.size());
+  std::vector<Vec<D>> points;
+  std::size_t left = 0;
+  for (const Vec<3>& place : places) {
+    const Vec<D> x = similarity.point(resized<D>(place));
+    if (!keep(x)) continue;  // first of all: it refuses what is not in the domain
+    if (grid.find(x) != PointGrid<D>::none) {
+      ++left;
+      continue;
+    }
+    grid.add(x, 0);
+    points.push_back(x);
+  }
+  if (left > 0)
+    notes.push_back(
+        fmt::format("body '{}': {} of the {} particles of {} left out, closer than half a spacing to an "
+                    "earlier one",
+                    body.name, left, places.size(), body.shape.file.path));
+  return points;
+}
+
+template std::vector<Vec<2>> givenPoints<2>(const Case&, const Body&, std::vector<std::string>&,
+                                            const std::function<bool(const Vec<2>&)>&);
+template std::vector<Vec<3>> givenPoints<3>(const Case&, const Body&, std::vector<std::string>&,
+                                            const std::function<bool(const Vec<3>&)>&);
+
+}  // namespace treacle
