@@ -72,16 +72,17 @@ std::string checksumText(std::string_view content) {
   return fmt::format("{:016x}", checksum.value());
 }
 
-/// Where a case was moved its files may lie beside it.
-fs::path foundPath(const fs::path& path, const fs::path& folder) {
+/// Where a case of a run was moved its files may lie beside it: the checksum tells whether they are those.
+fs::path foundPath(const ShapeFile& file, const fs::path& folder) {
+  const fs::path path = file.path;
   std::error_code error;
-  if (fs::exists(path, error)) return path;
+  if (file.checksum.empty() || fs::exists(path, error)) return path;
   const fs::path beside = fs::absolute(folder / path.filename(), error);
   return !error && fs::exists(beside, error) ? beside : path;
 }
 
 ShapeFile readFile(const ShapeFile& given, ShapeKind kind, int dimensions, const fs::path& folder) {
-  const fs::path path = foundPath(given.path, folder);
+  const fs::path path = foundPath(given, folder);
   ShapeFile file;
   file.path = path.string();
   const std::string content = contentOf(path);

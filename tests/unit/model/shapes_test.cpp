@@ -153,6 +153,28 @@ TEST(polygon, isFilledOnTheLatticeOfTheDomain) {
   EXPECT_EQ(placesOf<3>(polygon(other, -2, 3)), placesOf<3>(polygon(angle, -2, 3)));
 }
 
+/// Fluid inside and a wall outside of one outline: every place of the lattice belongs to one of them.
+TEST(polygon, partsTheLatticeWithTheLayerOutside) {
+  Case c = emptyCase(2);
+  const Shape inside = polygon({{-20.3, -11}, {17, -4.2}, {12, 14}, {-3, 6.6}});
+  Shape outside = inside;
+  outside.fill = FillKind::Outside, outside.thickness = 4.2;
+  c.bodies = {makeBody("fluid", BodyKind::Fluid, inside), makeBody("wall", BodyKind::Wall, outside)};
+  std::vector<std::string> notes;
+  const Particles<2> p = createParticles<2>(c, notes);
+  EXPECT_THAT(notes, IsEmpty());
+  const double area = 0.5 * (std::abs(37.3 * 25 - 32.3 * 6.8) + std::abs(32.3 * 17.6 - 17.3 * 25));
+  EXPECT_NEAR(static_cast<double>(p.fluidCount), area, 0.02 * area);
+  // A layer around a polygon: its length times the thickness, and a disc around its corners; less at the concave
+  // one.
+  double length = 0;
+  for (std::size_t k = 0; k < 4; ++k) length += norm(inside.points[(k + 1) % 4] - inside.points[k]);
+  const double layer = length * 4.2 + pi * 4.2 * 4.2;
+  EXPECT_NEAR(static_cast<double>(p.count - p.fluidCount), layer, 0.05 * layer);
+  for (std::size_t i = 0; i < p.count; ++i)
+    for (int k = 0; k < 2; ++k) EXPECT_NEAR(p.position[i][k] - std::floor(p.position[i][k]), 0.5, 1e-9);
+}
+
 /// The points of the outline that are nearer to x than those around them, by their distances: of its sides those
 /// at right angles, and the concave corner.
 std::vector<Vec<2>> waysOut(const Vec<2>& x) {
