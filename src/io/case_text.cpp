@@ -92,12 +92,11 @@ class TableText {
   }
   void operator()(const Key& key, const Nozzle& n) { put(key, TableText(case_, {}, n).onOneLine()); }
   void operator()(const Key& key, const std::optional<TimeFunction>& f) {
-    if (!f) return;
-    if (f->isTable())
-      put(key,
-          fmt::format("{{ times = [{}], values = [{}] }}", fmt::join(f->times, ", "), fmt::join(f->values, ", ")));
-    else
-      (*this)(key, f->value, f->expression);
+    if (f) put(key, textOf(*f));
+  }
+  void operator()(const Key& key, const TimeVector& functions) {
+    if (functions == TimeVector{}) return;
+    put(key, perAxis([&](std::size_t k) { return functions[k] ? textOf(*functions[k]) : "0"; }));
   }
   template <class Table>
   void operator()(const Key& key, const std::optional<Table>& table) {
@@ -110,6 +109,12 @@ class TableText {
   }
 
  private:
+  static std::string textOf(const TimeFunction& f) {
+    if (f.isTable())
+      return fmt::format("{{ times = [{}], values = [{}] }}", fmt::join(f.times, ", "), fmt::join(f.values, ", "));
+    return f.expression.empty() ? fmt::format("{}", f.value) : tomlString(f.expression);
+  }
+
   void put(const Key& key, const std::string& value) {
     values_.push_back(fmt::format("{} = {}", key.name, value));
   }

@@ -57,6 +57,11 @@ void TableReader::prepare(Body& body) {
   section_ = Section(section_.table(), fmt::format("{} ({})", section_.title(), nameOf(*shape)));
 }
 
+void TableReader::prepare(Rotation&) {
+  if (!section_.table().contains("speed") && !section_.table().contains("angle"))
+    throw section_.error("speed", "missing; expected a finite number [rad/s], or angle");
+}
+
 void TableReader::prepare(Nozzle& nozzle) {
   const auto kind = lookUp<NozzleKind>("shape");
   if (!kind) return;
@@ -306,28 +311,35 @@ void TableReader::operator()(const Key& key, double& x, bool& isAuto, keys::OrAu
   if (node && !isAuto) x = number(key, *node, expected);
 }
 
-void TableReader::operator()(const Key& key, std::optional<TimeFunction>& function) const {
-  const std::string expected = expectedFunction(key);
-  const toml::node* node = section_.value(key, expected);
-  if (!node) return;
+TimeFunction TableReader::function(const Key& key, const toml::node& node) const {
   TimeFunction f;
-  if (node->is_string()) {
-    f.expression = node->as_string()->get();
+  if (node.is_string()) {
+    f.expression = node.as_string()->get();
     try {
       Expression::ofTime(f.expression);
     } catch (const InputError& e) {
       throw section_.error(key.name, e.what());
     }
-  } else if (const toml::table* table = node->as_table()) {
+  } else if (const toml::table* table = node.as_table()) {
     const Section section(*table, titleOf(key.name));
     section.requireKnown({"times", "values"}, {}, "");
     const TableReader reader(case_, sections_, section, path_);
     reader({"times", true, "s"}, f.times);
     reader({"values", true, key.unit, key.bound}, f.values);
   } else {
-    f.value = number(key, *node, expected);
+    f.value = number(key, node, expectedFunction(key));
   }
-  function = std::move(f);
+  return f;
+}
+
+void TableReader::operator()(const Key& key, std::optional<TimeFunction>& function) const {
+  if (const toml::node* node = section_.value(key, expectedFunction(key))) function = this->function(key, *node);
+}
+
+void TableReader::operator()(const Key& key, TimeVector& functions) const {
+  const std::string expected = fmt::format("an array of {} of these: {}", case_.dimensions, expectedFunction(key));
+  const toml::array* array = this->array(key, expected);
+  for (std::size_t k = 0; array && k < array->size(); ++k) functions[k] = function(key, (*array)[k]);
 }
 
 void TableReader::operator()(const Key& key, OutputFields& fields) const {

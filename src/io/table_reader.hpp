@@ -46,6 +46,7 @@ class TableReader {
   void operator()(const Key& key, double& x, bool& isAuto, keys::OrAutoTag) const;
   void operator()(const Key& key, OutputFields& fields) const;
   void operator()(const Key& key, std::optional<TimeFunction>& function) const;
+  void operator()(const Key& key, TimeVector& functions) const;
 
   template <class E, class Fits = keys::AllFit>
   requires std::is_enum_v<E>
@@ -87,6 +88,7 @@ class TableReader {
   void prepare(Rheology& rheology);
   void prepare(ViscosityShift& shift);
   void prepare(Body& body);
+  void prepare(Rotation& rotation);
   void prepare(Nozzle& nozzle);
   void prepare(Outflow& outflow);
   void prepare(SolverSettings& solver);
@@ -127,6 +129,7 @@ class TableReader {
   const toml::array* array(const Key& key, const std::string& expected) const;
   double number(const Key& key, const toml::node& node, const std::string& expected) const;
   std::string expression(const Key& key, const toml::node& node) const;
+  TimeFunction function(const Key& key, const toml::node& node) const;
   /// The value of a key that need not be there nor be a word of E.
   template <class E>
   std::optional<E> lookUp(std::string_view key) const {

@@ -106,6 +106,9 @@ class Checker {
       fail({key.name}, e.what());
     }
   }
+  void operator()(const Key& key, const TimeVector& functions) const {
+    for (const auto& f : functions) (*this)(key, f);
+  }
   template <class Table>
   void operator()(const Key& key, const std::optional<Table>& table) const {
     if (table) (*this)(key, *table);
@@ -171,6 +174,7 @@ void requireOrder(const Checker& at, const Vec<3>& min, const Vec<3>& max) {
 void requireSound(const Checker& at, const Domain& d) { requireOrder(at, d.min, d.max); }
 
 void requireSound(const Checker& at, const Rotation& r) {
+  if (r.angle && r.speed != 0) at.fail({"angle"}, "expected one of speed and angle, found both");
   if (const double length = norm(r.axis); length == 0 || !std::isfinite(length))
     at.fail({"axis"}, fmt::format("expected a direction, found a vector of length {}", length));
 }
@@ -359,6 +363,7 @@ void requireSound(const Checker& at, const Body& b) {
   if (b.kind == BodyKind::Rigid) requireRigid(at);
   if (b.kind == BodyKind::Fluid) {
     constexpr const char* text = "only a body of type \"wall\" can have one";
+    if (b.displacement != TimeVector{}) at.fail({"displacement"}, text);
     if (b.oscillation != Oscillation{}) at.fail({"oscillation"}, text);
     if (b.rotation) at.fail({"rotation"}, text);
     return;

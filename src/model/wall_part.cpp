@@ -69,6 +69,8 @@ template class WallPart<3>;
 
 bool moveAlike(const Body& a, const Body& b) {
   constexpr double rounding = 1e-12;
+  if (a.displacement != b.displacement) return false;
+  if ((a.rotation && a.rotation->angle) || (b.rotation && b.rotation->angle)) return a.rotation == b.rotation;
   const auto spin = [](const Body& body) {
     return body.rotation ? body.rotation->speed * body.rotation->direction() : Vec<3>{};
   };

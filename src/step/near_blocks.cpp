@@ -1,6 +1,7 @@
 #include "treacle/step/near_blocks.hpp"
 
 #include "selected.hpp"
+#include "treacle/model/wall_motion.hpp"
 #include "treacle/search/cell_sort.hpp"
 
 #include <atomic>
@@ -14,7 +15,7 @@ NearBlocks<D>::NearBlocks(const Case& c, const CellGrid<D>& cells) : cells_(cell
   near_.resize(blocks_.cellCount());
   for (const Body& body : c.bodies)
     bodyRests_.push_back(body.kind == BodyKind::Wall && body.velocity == Vec<3>{} &&
-                         body.oscillation.period == 0 && !body.rotation);
+                         body.oscillation.period == 0 && !isDriven(body.displacement) && !body.rotation);
 }
 
 template <int D>

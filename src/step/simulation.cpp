@@ -84,7 +84,7 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
   std::unique_ptr<StepMethod<D, Backend>> method;
   std::optional<DistantWalls<D>> distant;  // which `particles` has not
   double lastSpeed = 0;                    // of the fastest particle [m/s]
-  std::vector<double> rigidReach;          // per body: from its centre to its farthest particle [m]
+  std::vector<double> reach;               // per body: from its centre to its farthest wall particle [m]
   std::optional<Watch> watch;
   std::optional<StepControl> control;  // of automatic steps
   double endOfStep = 0;                // time at the end of the step at hand [s]
@@ -122,28 +122,34 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
 
   /// Of what the state does not know. Collective.
   void beginRigid(Particles<D>& state) {
-    if (!theCase.hasRigid()) {
-      state.rigid = {};
-      return;
-    }
-    if (state.rigid.bodies.empty()) state.rigid.bodies = rigidBodies<D>(theCase, context, state);
+    if (!theCase.hasRigid()) state.rigid = {};
+    if (theCase.hasRigid() && state.rigid.bodies.empty())
+      state.rigid.bodies = rigidBodies<D>(theCase, context, state);
     this->rigid = state.rigid;
-    rigidReach.resize(theCase.bodies.size());
+    reach.resize(theCase.bodies.size());
     for (std::uint32_t i = state.wallBegin(); i < state.count; ++i)
-      if (const std::size_t b = state.body[i]; b < rigidReach.size())
-        rigidReach[b] =
-            std::max(rigidReach[b], norm(resized<3>(state.position[i]) - state.rigid.bodies[b].center));
-    if (context.communicator)
-      for (double& reach : rigidReach)
-        reach = joinedOverProcesses(context, reach, [](double a, double b) { return std::max(a, b); });
+      if (const std::size_t b = state.body[i]; b < reach.size())
+        reach[b] = std::max(reach[b], norm(resized<3>(state.position[i]) - centerOf(b)));
+    for (double& r : reach) r = joinedOverProcesses(context, r, [](double a, double b) { return std::max(a, b); });
   }
 
-  /// That no part of a rigid body exceeds [m/s].
-  double rigidSpeed() const {
+  Vec<3> centerOf(std::size_t b) const {
+    const Body& body = theCase.bodies[b];
+    return body.kind == BodyKind::Rigid ? this->rigid.bodies[b].center : wallCenter(body, time);
+  }
+
+  /// What no part of a body exceeds in the step at hand whose speed the case does not give as a number [m/s].
+  double freeSpeed() const {
     double speed = 0;
-    for (std::size_t b = 0; b < this->rigid.bodies.size(); ++b) {
-      const RigidBody& body = this->rigid.bodies[b];
-      if (body.mass > 0) speed = std::max(speed, norm(body.velocity) + norm(body.spin) * rigidReach[b]);
+    for (std::size_t b = 0; b < theCase.bodies.size(); ++b) {
+      const Body& body = theCase.bodies[b];
+      if (body.kind == BodyKind::Rigid) {
+        const RigidBody& r = this->rigid.bodies[b];
+        speed = std::max(speed, norm(r.velocity) + norm(r.spin) * reach[b]);
+      } else if (isDriven(body.displacement) || (body.rotation && body.rotation->angle)) {
+        const WallMotion<D> m = wallMotion<D>(theCase.domain, body, time, timeStep);
+        speed = std::max(speed, norm(m.velocity) + norm(m.spin) * reach[b]);
+      }
     }
     return speed;
   }
@@ -185,7 +191,7 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     copyValues(context, std::span<const Vec<D>>(velocity).first(particles.fluidCount), particles.velocity.data());
     copyValues(context, moved.first(particles.fluidCount), particles.position.data());
     if (wallsMove) copyValues(context, moved.subspan(walls), particles.position.data() + walls);
-    distant->addStep(timeStep, std::max(method->longestWay(lastSpeed), timeStep * rigidSpeed()));
+    distant->addStep(timeStep, std::max(method->longestWay(lastSpeed), timeStep * freeSpeed()));
     if (theCase.hasRigid()) {
       for (RigidBody& body : this->rigid.bodies)
         if (body.mass > 0) body.advance(timeStep);

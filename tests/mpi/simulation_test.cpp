@@ -73,6 +73,18 @@ TEST(SharedSimulation, FluidThatComesAndGoes) {
       {"filling-2d.toml", 60, {exact, plain, "resolution=4", "drain.min=[-0.02,0]", "drain.max=[0.065,0.0595]"}});
 }
 
+/// The velocities of bodies are found to a tolerance, in as many solves as roundings let it take.
+TEST(SharedSimulation, RigidBodies) {
+  const Case c = Settings{"floating-block-2d.toml", 0, {"solver.deflation=0"}}.read();
+  Simulation<2> shared(c, partOf<2>(c), 0, 0, &job()), alone(c, made<2>(c));
+  for (int k = 0; k < 5; ++k) {
+    const RigidBody a = shared.advance().rigid[0], b = alone.advance().rigid[0];
+    EXPECT_EQ(a.mass, b.mass);
+    EXPECT_LT(norm(a.velocity - b.velocity), 1e-6 * norm(b.velocity));
+    EXPECT_LT(norm(a.center - b.center), 1e-9 * c.spacing);
+  }
+}
+
 TEST(SharedSimulation, SeveralFluids) {
   compare<2>({"honey-and-syrup-2d.toml", 10, {"solver.tolerance=1e-18", "solver.deflation=0"}});
   compare<2>(

@@ -62,9 +62,10 @@ struct Oscillation {
 /// Rotation of a wall, counter-clockwise seen from the end of its axis. The centre goes along with the wall's
 /// translation and oscillation.
 struct Rotation {
-  Vec<3> center{};       // at the start [m]
-  Vec<3> axis{0, 0, 1};  // of any length but zero; in two dimensions this one
-  double speed = 0;      // [rad/s]
+  Vec<3> center{};                      // at the start [m]
+  Vec<3> axis{0, 0, 1};                 // of any length but zero; in two dimensions this one
+  double speed = 0;                     // [rad/s]
+  std::optional<TimeFunction> angle{};  // in place of the speed, how far it has turned since the start [rad]
 
   Vec<3> direction() const { return axis * (1 / norm(axis)); }
 
@@ -90,7 +91,8 @@ struct Body {
   Vec<3> velocity{};  // fluid: at the start; wall: prescribed translation [m/s]
   Shape shape;
   Oscillation oscillation{};                        // of a wall, on top of its velocity
-  std::optional<Rotation> rotation{};               // of a wall, on top of both
+  TimeVector displacement{};                        // of a wall since the start, on top of both [m]
+  std::optional<Rotation> rotation{};               // of a wall, on top of all
   std::array<std::string, 3> velocityExpression{};  // of a fluid, in place of a component of its velocity [m/s]
   std::string where{};                              // there are particles only where it is not zero
   // In cases with heat. Of a fluid that at the start; of a wall that of its surface or, where it has a

@@ -13,7 +13,8 @@ void visit(auto& v, Like<Oscillation> auto& o, const Case&) {
 
 void visit(auto& v, Like<Rotation> auto& r, const Case& c) {
   v({"center", required, "m"}, r.center);
-  v({"speed", required, "rad/s"}, r.speed);
+  v({"speed", optional, "rad/s"}, r.speed);
+  v({"angle", optional, "rad"}, r.angle);
   if (c.dimensions == 3) v({"axis", required, "any unit"}, r.axis);
 }
 
@@ -146,6 +147,7 @@ void visit(auto& v, Like<Body> auto& b, const Case& c) {
   if (b.kind == BodyKind::Inflow) {
     v({"velocity", optional, "m/s"}, b.velocity);
     v({"oscillation"}, b.oscillation);
+    v({"displacement", optional, "m"}, b.displacement);
     if (c.heat) v({"temperature", required, "K", positive}, b.temperature);
     return visit(v, b.inflow, c);
   }
@@ -156,6 +158,7 @@ void visit(auto& v, Like<Body> auto& b, const Case& c) {
     visit(v, b.rigid, c);
   } else {
     v({"oscillation"}, b.oscillation);
+    v({"displacement", optional, "m"}, b.displacement);
     v({"rotation"}, b.rotation);
   }
   if (c.heat) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,5 +25,8 @@ struct TimeFunction {
 
   bool operator==(const TimeFunction&) const = default;
 };
+
+/// Components of a vector; a missing one is zero.
+using TimeVector = std::array<std::optional<TimeFunction>, 3>;
 
 }  // namespace treacle

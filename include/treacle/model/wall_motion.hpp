@@ -61,6 +61,8 @@ struct WallMotion {
 /// Mean velocity of a wall, or of its centre if it rotates, in the step of dt from time t on [m/s]: the walls are
 /// where their motion puts them at the end of each step. With dt = 0 that at time t.
 Vec<3> wallVelocity(const Body& body, double t, double dt);
+/// Whether a vector changes.
+bool isDriven(const TimeVector& f);
 /// From where a wall, or its centre if it rotates, or a nozzle starts to where it is at time t [m].
 Vec<3> wallDisplacement(const Body& body, double t);
 /// The point that a wall which rotates turns about, at time t; of others the origin [m].

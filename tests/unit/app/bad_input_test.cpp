@@ -60,7 +60,7 @@ constexpr BadCase badCases[] = {
      "bad.toml:9:2: unknown key 'gravty' in the case file; did you mean 'gravity'?"},
     {"keyOfAnotherShape", "max = [6e-3, 6e-3]", "max = [6e-3, 6e-3]\nradius = 1",
      "bad.toml:26:1: unknown key 'radius' in [[body]] 'column' (box); expected 'name', 'type', 'material', "
-     "'shape', 'where', 'velocity', 'oscillation', 'rotation', 'min', 'max' or 'transform'"},
+     "'shape', 'where', 'velocity', 'oscillation', 'displacement', 'rotation', 'min', 'max' or 'transform'"},
     {"missingKey", "density = 1000\n", "",
      "bad.toml:12:1: density in [[material]] 'syrup': missing; expected a positive number [kg/m3]"},
     {"missingTable", "[time]\nstep = 1e-3\nend = 2e-3\n", "",
@@ -293,7 +293,8 @@ constexpr BadCase badCases[] = {
      "bad.toml:34:12: rotation in [[body]] 'floor' (box): expected a table, found 1"},
     {"axisInThePlane", "max = [12e-3, 0]",
      "max = [12e-3, 0]\nrotation = { center = [0, 0], speed = 1, axis = [0, 0, 1] }",
-     "bad.toml:34:42: unknown key 'axis' in the rotation of [[body]] 'floor'; expected 'center' or 'speed'"},
+     "bad.toml:34:42: unknown key 'axis' in the rotation of [[body]] 'floor'; expected 'center', 'speed' or "
+     "'angle'"},
     {"rotationAcrossAPeriod", "max = [12e-3, 12e-3]",
      "max = [16e-3, 12e-3]\nperiodic = [true, false]\n[[body]]\nname = \"blade\"\ntype = \"wall\"\n"
      "material = \"syrup\"\nshape = \"box\"\nmin = [7e-3, 1e-3]\nmax = [8e-3, 12e-3]\n"

@@ -52,6 +52,23 @@ TEST(OpenCase, IsReadAndWritten) {
   EXPECT_EQ(c.outflows[0].max[1], 14e-3);
 }
 
+TEST(OpenCase, MotionsAndRigidBodiesAreReadAndWritten) {
+  Workshop shop;
+  for (const char* motion :
+       {"type='wall', displacement=['1e-3*sin(t)', {times=[0,1], values=[0,1e-3]}]",
+        "type='wall', displacement=[0, '1e-3*t'], rotation={center=[0,0], angle='0.1*t'}",
+        "type='wall', rotation={center=[0,0], angle={times=[0,1,2], values=[0,1,1]}}", "type='rigid'",
+        "type='rigid', mass=0.3, angular_velocity=2, velocity=[0,1e-2], translates=[true,false], rotates=false"}) {
+    const std::string block =
+        "body = [\n{name='block', material='syrup', shape='box', min=[-2e-3,0], max=[2e-3,3e-3], " + motion +
+        "},\n";
+    shop.put("case.toml", replaced(pouring, "body = [\n", block));
+    const Case c = readCase(shop / "case.toml");
+    shop.put("written.toml", caseText(c));
+    EXPECT_EQ(readCase(shop / "written.toml"), c) << caseText(c);
+  }
+}
+
 struct Bad {
   const char* override;
   const char* message;
@@ -71,6 +88,11 @@ const Bad mistakes[] = {
     {"jet.shape='box'", "unknown key 'shape' in [[body]] 'jet' (inflow)"},
     {"rim.max=[0,0]", "expected more than min"},
     {"rim.normal=[1,0]", "unknown key 'normal' in [[outflow]] 'rim' (box)"},
+    {"floor.displacement=[0]", "expected an array of 2 of these: a finite number [m], an expression in t [s] or"},
+    {"floor.displacement=['x', 0]", "expected an expression in t [s]"},
+    {"floor.rotation={center=[0,0]}", "missing; expected a finite number [rad/s], or angle"},
+    {"floor.rotation={center=[0,0], speed=1, angle=2}", "expected one of speed and angle, found both"},
+    {"jet.mass=1", "unknown key 'mass'"},
     {"rim.shape='ball'", "expected 'box' or 'plane', found 'ball'"},
 };
 

@@ -41,6 +41,30 @@ TEST(WallMotion, AccelerationIsThatOfTheDisplacement) {
   }
 }
 
+/// By a formula, by a table, and turned by an angle: whatever the steps are.
+TEST(WallMotion, FollowsFunctionsOfTime) {
+  Body body = shaken;
+  body.displacement = {TimeFunction{0, "0.02*t^2"}, TimeFunction{0, "", {0, 0.3, 0.5}, {0.1, 0.2, 0.2}}, {}};
+  body.rotation = Rotation{.center = {0, 0.1, 0}, .axis = {0, 0, 1}, .angle = TimeFunction{0, "sin(2*t)"}};
+  Vec<2> way{}, x{0.3, 0.2};
+  double t = 0;
+  for (int k = 0; k < 100; ++k) {
+    const double dt = 0.01 * (1 + 0.5 * pseudoRandom(k));
+    way = way + dt * resized<2>(wallVelocity(body, t, dt));
+    x = x + dt * wallMotion<2>({}, body, t, dt).chordAt(x);
+    t += dt;
+    Vec<3> expected = displacement(t);
+    expected[0] += 0.02 * t * t, expected[1] += t < 0.3 ? t / 3 : 0.1;
+    ASSERT_LE(norm(way - resized<2>(expected)), 1e-14 * (k + 10));
+    const double angle = std::sin(2 * t);
+    const Vec<2> arm{0.3 * std::cos(angle) - 0.1 * std::sin(angle), 0.3 * std::sin(angle) + 0.1 * std::cos(angle)};
+    ASSERT_LE(norm(x - resized<2>(expected) - Vec<2>{0, 0.1} - arm), 1e-13);
+    const WallMotion<2> m = wallMotion<2>({}, body, t, 0);
+    EXPECT_NEAR(m.spin[2], 2 * std::cos(2 * t), 1e-8);
+    EXPECT_NEAR(m.sine, std::sin(angle), 1e-14);
+  }
+}
+
 TEST(WallMotion, WithoutOscillationIsTheBodysVelocity) {
   Body body = shaken;
   body.oscillation = {};

@@ -1,0 +1,37 @@
+#include "support/gpu.hpp"
+#include "support/isph_cases.hpp"
+#include "support/rigid_cases.hpp"
+#include "support/state_of.hpp"
+#include "treacle/step/simulation.hpp"
+
+#include <gtest/gtest.h>
+
+namespace treacle::test {
+namespace {
+
+template <int D>
+void compareBlocks(double density) {
+  Case c = blockCase(D, density);
+  c.gravity[1] = -10;
+  c.bodies[1].rigid.angularVelocity = {0, 0, 5};
+  c.solver.tolerance = 1e-16;
+  c.solver.deflation = 0;
+  Simulation<D> cpu(c, created<D>(c));
+  Simulation<D, Cuda> cuda(c, created<D>(c));
+  for (int k = 0; k < 8; ++k) {
+    const RigidBody a = cpu.advance().rigid[1], b = cuda.advance().rigid[1];
+    ASSERT_LE(norm(a.velocity - b.velocity), 1e-5 * norm(a.velocity));
+    ASSERT_LE(norm(a.spin - b.spin), 1e-4 * (norm(a.spin) + 1));
+    ASSERT_LE(norm(a.center - b.center), 1e-5 * c.spacing);
+  }
+}
+
+TEST(RigidBodiesTwin, MoveAsOnTheCpu) {
+  TREACLE_SKIP_WITHOUT_GPU();
+  compareBlocks<2>(300);
+  compareBlocks<2>(7000);
+  compareBlocks<3>(1);
+}
+
+}  // namespace
+}  // namespace treacle::test

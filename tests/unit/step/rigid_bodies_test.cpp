@@ -1,0 +1,178 @@
+#include "rigid_bodies.hpp"
+
+#include "support/isph_cases.hpp"
+#include "support/rigid_cases.hpp"
+#include "support/state_of.hpp"
+#include "treacle/step/simulation.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace treacle::test {
+namespace {
+
+TEST(AffineSolve, FindsTheZeroOfAnAffineFunction) {
+  for (const std::size_t n : {1u, 2u, 6u, 12u}) {
+    std::vector<double> a(n * n), zero(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      zero[i] = pseudoRandom(i) - 0.5;
+      for (std::size_t j = 0; j < n; ++j) a[i * n + j] = pseudoRandom(7 + i * n + j) - 0.5 + (i == j ? 1e3 : 0);
+    }
+    const auto f = [&](const std::vector<double>& x) {
+      std::vector<double> y(n);
+      for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t j = 0; j < n; ++j) y[i] += a[i * n + j] * (x[j] - zero[j]);
+      return y;
+    };
+    std::vector<double> x(n, 3.0), derivative;
+    const auto result = AffineSolve::run(f, x, derivative, 1, 1e-9, 20);
+    EXPECT_TRUE(result.converged);
+    EXPECT_LE(result.values, static_cast<int>(n) + 3);
+    for (std::size_t i = 0; i < n; ++i) EXPECT_NEAR(x[i], zero[i], 1e-9);
+    // From a derivative of a function that is not far.
+    for (double& d : a) d *= 1.05;
+    x.assign(n, 3.0);
+    const auto again = AffineSolve::run(f, x, derivative, 1, 1e-6, 20);
+    EXPECT_TRUE(again.converged);
+    EXPECT_LE(again.values, 6);
+    for (std::size_t i = 0; i < n; ++i) EXPECT_NEAR(x[i], zero[i], 1e-6);
+  }
+}
+
+TEST(RigidBodies, HaveMassAndInertiaOfTheirShapes) {
+  const Processes alone;
+  const Case plane = blockCase(2, 700), space = blockCase(3, 700);
+  const RigidBody a = rigidBodies<2>(plane, alone, created<2>(plane))[1];
+  EXPECT_NEAR(a.mass, 700 * 6e-3 * 4e-3, 1e-12);
+  EXPECT_LE(norm(a.center), 1e-12);
+  EXPECT_NEAR(a.inertia[2], a.mass * (36e-6 + 16e-6) / 12, 1e-12);
+  const RigidBody b = rigidBodies<3>(space, alone, created<3>(space))[1];
+  EXPECT_NEAR(b.mass, 700 * 6e-3 * 4e-3 * 4e-3, 1e-12);
+  EXPECT_NEAR(b.inertia[0], b.mass * (16e-6 + 16e-6) / 12, 1e-14);
+  EXPECT_NEAR(b.inertia[1], b.mass * (36e-6 + 16e-6) / 12, 1e-14);
+  for (const std::size_t k : {3u, 4u, 5u}) EXPECT_NEAR(b.inertia[k], 0, 1e-16);
+  Case given = plane;
+  given.bodies[1].rigid.mass = 0.5;
+  EXPECT_EQ(rigidBodies<2>(given, alone, created<2>(given))[1].mass, 0.5);
+}
+
+TEST(RigidBodies, TurnAsTheirMotionsTurnTheirParticles) {
+  RigidBody body;
+  body.mass = 1;
+  body.inertia = {1, 1, 1, 0, 0, 0};
+  body.center = {1, 2, 3};
+  body.velocity = {0.3, 0, -0.1};
+  body.spin = {0.5, -1, 2};
+  const Vec<3> start{1.5, 1.7, 3.2};
+  Vec<3> x = start;
+  for (int k = 0; k < 100; ++k) {
+    x = x + 0.01 * rigidMotion<3>(body, 0.01).chordAt(x);
+    body.advance(0.01);
+    const Vec<3> expected = body.center + turnedBy(body.orientation, start - Vec<3>{1, 2, 3});
+    ASSERT_LE(norm(x - expected), 1e-13);
+    ASSERT_LE(norm(rigidMotion<3>(body, 0.01).turned({1, 0, 0}) - turnedBy(body.orientation, {1, 0, 0})), 1e-13);
+  }
+}
+
+/// Momentum of fluid and bodies.
+template <int D>
+Vec<3> momentum(const Case& c, const Simulation<D>& simulation) {
+  const Particles<D> p = stateOf(simulation);
+  Vec<3> sum{};
+  for (std::uint32_t i = 0; i < p.fluidCount; ++i)
+    sum = sum + (c.materials[p.material[i]].density * std::pow(c.spacing, D)) * resized<3>(p.velocity[i]);
+  for (const RigidBody& body : p.rigid.bodies) sum = sum + body.mass * body.velocity;
+  return sum;
+}
+
+template <int D>
+void checkMomentum(double density) {
+  Case c = blockCase(D, density);
+  c.bodies[1].velocity = {0.1, 0.05, 0};
+  c.bodies[1].rigid.angularVelocity = {0, 0, 5};
+  Simulation<D> simulation(c, created<D>(c));
+  const Vec<3> before = momentum(c, simulation);
+  for (int k = 0; k < 10; ++k) simulation.advance();
+  const Vec<3> after = momentum(c, simulation);
+  const double fluid = c.materials[0].density * std::pow(c.spacing, D) * simulation.particles().fluidCount;
+  EXPECT_LE(norm(after - before), 2e-6 * (norm(before) + fluid * 0.11));
+  const RigidBody& body = simulation.particles().rigid.bodies[1];
+  EXPECT_LT(std::abs(body.spin[2]), 5);
+  EXPECT_LT(norm(body.velocity), 0.1);
+}
+
+TEST(RigidBodies, ExchangeMomentumWithTheFluid) {
+  for (const double density : {1.0, 1400.0, 2e4}) checkMomentum<2>(density);
+  checkMomentum<3>(500);
+}
+
+/// Of the fluid's density a body falls with it, whatever the viscosity.
+TEST(RigidBodies, FallFreelyWithTheFluid) {
+  Case c = blockCase(2, 1400);
+  c.gravity = {0, -10, 0};
+  Simulation<2> simulation(c, created<2>(c));
+  for (int k = 0; k < 20; ++k) simulation.advance();
+  const RigidBody& body = simulation.particles().rigid.bodies[1];
+  EXPECT_NEAR(body.velocity[1], -0.2, 1e-6);
+  EXPECT_NEAR(body.velocity[0], 0, 1e-6);
+  EXPECT_NEAR(body.center[1], -10 * 1e-6 * 210, 1e-8);
+}
+
+/// What the balance says that the fluid does to a body is what its velocity changes by.
+TEST(RigidBodies, AreAcceleratedByTheForcesOfTheBalance) {
+  Case c = blockCase(2, 300);
+  c.gravity = {1, -10, 0};
+  c.bodies[1].rigid.angularVelocity = {0, 0, 20};
+  c.output.balance = true;
+  Simulation<2> simulation(c, created<2>(c));
+  for (int k = 0; k < 8; ++k) {
+    const RigidBody before = simulation.particles().rigid.bodies[1];
+    const StepReport report = simulation.advance();
+    const RigidBody& after = report.rigid[1];
+    const WallLoad& load = report.balance->walls[0];
+    const Vec<3> force =
+        (after.mass / report.timeStep) * (after.velocity - before.velocity) - after.mass * c.gravity;
+    EXPECT_LE(norm(force - load.force), 2e-5 * (norm(load.force) + after.mass * 10));
+    const double torque = after.inertia[2] * (after.spin[2] - before.spin[2]) / report.timeStep;
+    EXPECT_NEAR(torque, load.torque[2], 2e-4 * (std::abs(load.torque[2]) + 1e-4));
+  }
+}
+
+TEST(RigidBodies, KeepWhatIsLocked) {
+  Case c = blockCase(2, 300);
+  c.gravity = {3, -10, 0};
+  c.bodies[1].velocity = {0, 0.02, 0};
+  c.bodies[1].rigid.translates = {true, false, true};
+  c.bodies[1].rigid.rotates[2] = false;
+  Simulation<2> simulation(c, created<2>(c));
+  for (int k = 0; k < 5; ++k) simulation.advance();
+  const RigidBody& body = simulation.particles().rigid.bodies[1];
+  EXPECT_EQ(body.velocity[1], 0.02);
+  EXPECT_EQ(body.spin[2], 0);
+  EXPECT_NE(body.velocity[0], 0);
+}
+
+template <int D>
+void checkContinued(Case c) {
+  c.gravity[1] = -10;
+  c.bodies[1].rigid.angularVelocity = {0, 0, 3};
+  Simulation<D> whole(c, created<D>(c));
+  for (int k = 0; k < 6; ++k) whole.advance();
+  Simulation<D> rest(c, stateOf(whole), whole.step(), whole.time());
+  for (int k = 0; k < 6; ++k) {
+    const StepReport a = whole.advance(), b = rest.advance();
+    ASSERT_EQ(a.iterations, b.iterations);
+    ASSERT_EQ(a.rigid, b.rigid);
+  }
+  EXPECT_TRUE(sameBits(stateOf(whole), stateOf(rest)));
+  EXPECT_EQ(whole.particles().rigid, rest.particles().rigid);
+}
+
+TEST(RigidBodies, ContinueFromACopyWithTheSameBits) {
+  checkContinued<2>(blockCase(2, 300));
+  checkContinued<3>(blockCase(3, 3000));
+}
+
+}  // namespace
+}  // namespace treacle::test
