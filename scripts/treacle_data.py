@@ -94,6 +94,10 @@ class Run:
     def balance(self):
         return read_table(self.path / "balance.csv")
 
+    @cached_property
+    def rigid_bodies(self):
+        return read_table(self.path / "rigid_bodies.csv")
+
     def _frames(self, index):
         text = (self.path / index).read_text()
         return [(float(t), self.path / f) for t, f in re.findall(r'timestep="([^"]*)".*?file="([^"]*)"', text)]
