@@ -3,6 +3,7 @@
 #include "mph_files.hpp"
 #include "treacle/io/import_case.hpp"
 
+#include <array>
 #include <string>
 #include <string_view>
 
