@@ -61,6 +61,12 @@ struct ConvergenceOptions {
   std::filesystem::path resume;        // checkpoint to start from; empty: the case's bodies
 };
 
+struct ImportOptions {
+  std::filesystem::path parameters, geometry;  // .data, and .grid or .boid
+  std::filesystem::path output;                // case file; empty: "<name of the parameters>.toml"
+  bool force = false;
+};
+
 /// Exit code of `compare` for runs that differ by more than the bound.
 inline constexpr int runsDiffer = 1;
 
@@ -72,6 +78,7 @@ void checkCommand(const CaseOptions& options);
 void infoCommand();
 void plotCommand(const PlotOptions& options);
 void convergenceCommand(const ConvergenceOptions& options);
+void importCommand(const ImportOptions& options);
 /// Whether the runs agree within the bound.
 bool compareCommand(const CompareOptions& options);
 

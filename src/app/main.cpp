@@ -184,6 +184,20 @@ void addCompare(CLI::App& app, CompareOptions& options, bool& agree) {
   compare->callback([&options, &agree] { agree = compareCommand(options); });
 }
 
+void addImport(CLI::App& app, ImportOptions& options) {
+  CLI::App* command =
+      app.add_subcommand("import", "Write a case from the files of the program of the method's authors");
+  command->add_option("DATA", options.parameters, "Parameters (.data)")->required();
+  command->add_option("PARTICLES", options.geometry, "Particles (.grid) or cuboids (.boid)")->required();
+  command
+      ->add_option("-o,--output", options.output,
+                   "Case file; default: the name of DATA with .toml, in the current "
+                   "directory")
+      ->type_name("FILE");
+  command->add_flag("--force", options.force, "Replace files that are there");
+  command->callback([&options] { importCommand(options); });
+}
+
 int report(const std::string& text, ExitCode code) {
   printError(fmt::format("treacle: error: {}\n", text));
   return static_cast<int>(code);
@@ -219,6 +233,7 @@ int execute(int argc, char** argv, const Communicator& job) {
   PlotOptions plot;
   CompareOptions compare;
   ConvergenceOptions convergence;
+  ImportOptions importOptions;
   bool agree = true;
   addRun(app, run, job);
   CLI::App* checkApp = app.add_subcommand("check", "Check a case; prints it with all keys, counts and stability");
@@ -228,12 +243,13 @@ int execute(int argc, char** argv, const Communicator& job) {
   addPlot(app, plot);
   addCompare(app, compare, agree);
   addConvergence(app, convergence);
+  addImport(app, importOptions);
 
   try {
     app.parse(argc, argv);
     if (app.get_subcommands().empty())
       throw InputError(
-          "expected a command: run, check, plot, compare, convergence or info; treacle --help tells more");
+          "expected a command: run, check, plot, compare, convergence, import or info; treacle --help tells more");
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return app.exit(e);  // help and version
     return report(fmt::format("{}; --help tells more", e.what()), ExitCode::BadInput);

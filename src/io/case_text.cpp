@@ -1,24 +1,12 @@
 #include "treacle/io/case_reader.hpp"
+
+#include "toml_string.hpp"
 #include "treacle/model/case_keys.hpp"
 
 #include <fmt/format.h>
 
 namespace treacle {
 namespace {
-
-/// A TOML basic string.
-std::string tomlString(std::string_view s) {
-  std::string q = "\"";
-  for (const char c : s) {
-    if (c == '"' || c == '\\')
-      q += '\\', q += c;
-    else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F)
-      q += fmt::format("\\u{:04X}", static_cast<unsigned>(c));
-    else
-      q += c;
-  }
-  return q + '"';
-}
 
 std::string array(const std::vector<std::string>& entries) {
   return fmt::format("[{}]", fmt::join(entries, ", "));

@@ -397,7 +397,7 @@ TEST_P(BadArguments, areRejectedWithReason) {
 }
 
 constexpr BadLine badLines[] = {
-    {"noCommand", "", "expected a command: run, check, plot, compare, convergence or info"},
+    {"noCommand", "", "expected a command: run, check, plot, compare, convergence, import or info"},
     {"unknownCommand", "rum small.toml", "rum"},
     {"noCase", "run", "CASE is required"},
     {"unknownOption", "run small.toml --fast", "--fast"},
