@@ -60,8 +60,8 @@ TEST(OpenCase, MotionsAndRigidBodiesAreReadAndWritten) {
         "type='wall', rotation={center=[0,0], angle={times=[0,1,2], values=[0,1,1]}}", "type='rigid'",
         "type='rigid', mass=0.3, angular_velocity=2, velocity=[0,1e-2], translates=[true,false], rotates=false"}) {
     const std::string block =
-        "body = [\n{name='block', material='syrup', shape='box', min=[-2e-3,0], max=[2e-3,3e-3], " + motion +
-        "},\n";
+        std::string("body = [\n{name='block', material='syrup', shape='box', min=[-2e-3,0], max=[2e-3,3e-3], ") +
+        motion + "},\n";
     shop.put("case.toml", replaced(pouring, "body = [\n", block));
     const Case c = readCase(shop / "case.toml");
     shop.put("written.toml", caseText(c));
