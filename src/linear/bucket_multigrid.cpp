@@ -4,6 +4,7 @@
 #include "treacle/linear/hat_cycle.hpp"
 
 #include <algorithm>
+#include <type_traits>
 #include <utility>
 
 namespace treacle {
@@ -12,9 +13,12 @@ namespace {
 /// Unit vectors that go through the cycle at a time, when it is turned into a matrix.
 constexpr std::uint32_t unitsAtATime = 256;
 
-std::uint32_t numberAt(const Context<Cpu>&, const std::uint32_t* place) { return *place; }
-[[maybe_unused]] std::uint32_t numberAt(const Context<Cuda>& context, const std::uint32_t* place) {
-  return valueOnHost(context, place);
+template <class Backend>
+std::uint32_t numberAt([[maybe_unused]] const Context<Backend>& context, const std::uint32_t* place) {
+  if constexpr (std::is_same_v<Backend, Cpu>)
+    return *place;
+  else
+    return valueOnHost(context, place);
 }
 
 }  // namespace

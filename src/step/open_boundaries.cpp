@@ -10,7 +10,7 @@
 
 #include <cmath>
 #include <limits>
-#include <numeric>
+#include <utility>
 
 namespace treacle {
 namespace {
@@ -59,32 +59,41 @@ template <int D, class Backend>
 bool OpenBoundaries<D, Backend>::follow(const CellGrid<D>& grid, double start, double density) {
   if (!state_.theCase.isOpen()) return false;
   Particles<D, Backend>& p = state_.particles;
-  const std::uint64_t left = letOut();
-  Particles<D> added;
+  Change change;
+  change.flow = p.flow;
   ParticleNumbers none;
   none.shearRates = p.hasShearRates, none.temperatures = p.hasTemperatures;
-  added.resize(none);
-  letIn(grid, start, added);
-  const std::uint64_t came = added.fluidCount;
-  if (left + came == 0) return false;
-  if (left == state_.fluidOfAll + came) throw RunError("no fluid is left: all of it has gone out by the outflows");
-  if (state_.fluidOfAll + came - left > maxParticles)
+  change.added.resize(none);
+  letOut(change);
+  letIn(grid, start, change);
+  const std::uint64_t came = change.added.fluidCount, all = state_.fluidOfAll + came - change.left;
+  if (all == 0) throw RunError("no fluid is left: all of it has gone out by the outflows");
+  if (all > maxParticles)
     throw RunError(fmt::format("inflows have filled the case with {} fluid particles, more than the limit of {}",
-                               state_.fluidOfAll + came - left, maxParticles));
-  std::fill(added.numberDensity.begin(), added.numberDensity.end(), density);
-  // The sort of the next step takes them to where they belong.
-  if (state_.context.communicator && state_.context.communicator->rank() > 0) {
-    added.resize(none);
+                               all, maxParticles));
+  const bool changes = change.left + came > 0;
+  if (changes) {
+    std::fill(change.added.numberDensity.begin(), change.added.numberDensity.end(), density);
+    // The first process has them all: the sort takes them to where they belong.
+    if (state_.context.communicator && state_.context.communicator->rank() > 0) change.added.resize(none);
+    const std::span<const std::uint8_t> nobody;
+    changeFluid<D>(state_.context, change.left > 0 ? std::span<const std::uint8_t>(gone_) : nobody, change.added,
+                   p);
+    state_.fluidOfAll = static_cast<std::uint32_t>(all);
   }
-  changeFluid<D>(state_.context, left > 0 ? gone_.span() : std::span<const std::uint8_t>{}, added, p);
-  state_.fluidOfAll = static_cast<std::uint32_t>(state_.fluidOfAll + came - left);
-  return true;
+  const std::uint32_t walls = p.wallBegin();
+  for (std::size_t b = 0; b < change.setBack.size(); ++b)
+    if (change.setBack[b] > 0)
+      shiftBody<D>(state_.context, grid, p.body.span().subspan(walls), static_cast<std::uint8_t>(b),
+                   -change.setBack[b] * state_.nozzles[b]->direction(), p.position.span().subspan(walls));
+  p.flow = std::move(change.flow);
+  return changes;
 }
 
-/// Marks what has left; its number, at all processes.
+/// Marks what has left.
 template <int D, class Backend>
-std::uint64_t OpenBoundaries<D, Backend>::letOut() {
-  if (regions_.empty()) return 0;
+void OpenBoundaries<D, Backend>::letOut(Change& change) {
+  if (regions_.empty()) return;
   Particles<D, Backend>& p = state_.particles;
   const std::uint32_t n = p.fluidCount;
   gone_.resize(state_.context, n);
@@ -92,52 +101,50 @@ std::uint64_t OpenBoundaries<D, Backend>::letOut() {
       state_.context, {regions_, p.position.span().first(n), p.material.span().first(n)}, gone_.span());
   sumOverProcesses(state_.context, std::span(counts));
   for (std::size_t k = 0; k < counts.size(); ++k) {
-    FlowCount& out = p.flow.outflows[k / maxMaterials];
-    if (counts[k] > 0)
-      out += {counts[k], counts[k] * volume_ * state_.theCase.materials[k % maxMaterials].density};
+    if (counts[k] == 0) continue;
+    change.left += counts[k];
+    change.flow.outflows[k / maxMaterials] +=
+        {counts[k], counts[k] * volume_ * state_.theCase.materials[k % maxMaterials].density};
   }
-  return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
 }
 
 /// The layers of all inflows have gone on; those that have left their nozzles are fluid now, and as many follow.
 template <int D, class Backend>
-void OpenBoundaries<D, Backend>::letIn(const CellGrid<D>& grid, double start, Particles<D>& added) {
+void OpenBoundaries<D, Backend>::letIn(const CellGrid<D>& grid, double start, Change& change) const {
   const double spacing = state_.theCase.spacing, dt = state_.timeStep;
-  Particles<D, Backend>& p = state_.particles;
+  change.setBack.resize(state_.nozzles.size());
   for (std::size_t b = 0; b < state_.nozzles.size(); ++b) {
     if (!state_.nozzles[b]) continue;
     const NozzleLayers<D>& nozzle = *state_.nozzles[b];
-    OpenFlow::Inflow& inflow = p.flow.inflows[b];
-    inflow.way += dt * nozzle.speed(start, dt);
-    const double layers = std::floor(inflow.way / spacing * (1 + 1e-9));
+    double& way = change.flow.inflows[b].way;
+    way += dt * nozzle.speed(start, dt);
+    const double layers = std::floor(way / spacing * (1 + 1e-9));
     if (layers == 0) continue;
     if (layers > nozzle.depth())
       throw RunError(fmt::format(
           "inflow '{}' goes {:.3g} spacings in a step of {:.3g} s, expected at most {}; take "
           "shorter steps, {} <= {:.2g}",
           state_.theCase.bodies[b].name, layers, dt, nozzle.depth(), state_.theCase.time.stepKey(), dt / layers));
-    for (int k = 0; k < static_cast<int>(layers); ++k) addLayer(grid, b, inflow.way - (k + 0.5) * spacing, added);
-    inflow.way = std::max(0.0, inflow.way - layers * spacing);
-    const std::uint32_t walls = p.wallBegin();
-    shiftBody<D>(state_.context, grid, p.body.span().subspan(walls), static_cast<std::uint8_t>(b),
-                 (-layers * spacing) * nozzle.direction(), p.position.span().subspan(walls));
+    for (int k = 0; k < static_cast<int>(layers); ++k) addLayer(grid, b, way - (k + 0.5) * spacing, change);
+    change.setBack[b] = layers * spacing;
+    way = std::max(0.0, way - layers * spacing);
   }
 }
 
 template <int D, class Backend>
 void OpenBoundaries<D, Backend>::addLayer(const CellGrid<D>& grid, std::size_t body, double way,
-                                          Particles<D>& added) {
+                                          Change& change) const {
   const NozzleLayers<D>& nozzle = *state_.nozzles[body];
   const Body& b = state_.theCase.bodies[body];
-  OpenFlow& flow = state_.particles.flow;
   std::vector<Vec<D>> places = nozzle.layer(way, state_.time);
   for (Vec<D>& x : places)
     if (!grid.wrap(x))
       throw RunError(
           fmt::format("the nozzle of inflow '{}' is outside the domain at t = {:.6g} s", b.name, state_.time));
-  if (places.size() > std::numeric_limits<std::uint32_t>::max() - flow.nextId)
+  if (places.size() > std::numeric_limits<std::uint32_t>::max() - change.flow.nextId)
     throw RunError(fmt::format("more than {} particles have been in the case: there are no numbers left for more",
                                std::numeric_limits<std::uint32_t>::max()));
+  Particles<D>& added = change.added;
   const std::uint32_t first = added.fluidCount;
   appendParticles<D>(added, places);
   const Vec<D> u = resized<D>(wallVelocity(b, state_.time, 0)) +
@@ -146,11 +153,11 @@ void OpenBoundaries<D, Backend>::addLayer(const CellGrid<D>& grid, std::size_t b
     added.velocity[i] = u;
     added.material[i] = static_cast<std::uint8_t>(b.material);
     added.body[i] = static_cast<std::uint8_t>(body);
-    added.id[i] = flow.nextId++;
+    added.id[i] = change.flow.nextId++;
     if (added.hasTemperatures) added.temperature[i] = b.temperature;
   }
   const double mass = state_.theCase.materials[static_cast<std::size_t>(b.material)].density * volume_;
-  static_cast<FlowCount&>(flow.inflows[body]) += {places.size(), static_cast<double>(places.size()) * mass};
+  static_cast<FlowCount&>(change.flow.inflows[body]) += {places.size(), static_cast<double>(places.size()) * mass};
 }
 
 #define TREACLE_INSTANTIATE(Backend)         \

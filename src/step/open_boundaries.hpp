@@ -27,9 +27,17 @@ class OpenBoundaries {
   std::size_t bytes() const { return gone_.bytes(); }
 
  private:
-  std::uint64_t letOut();
-  void letIn(const CellGrid<D>& grid, double start, Particles<D>& added);
-  void addLayer(const CellGrid<D>& grid, std::size_t body, double way, Particles<D>& added);
+  /// What a step changes, before anything of the state is touched.
+  struct Change {
+    OpenFlow flow;                // as it will be
+    std::uint64_t left = 0;       // particles that go, of all processes
+    Particles<D> added;           // that come
+    std::vector<double> setBack;  // per body: how far the layers of its nozzle are [m]
+  };
+
+  void letOut(Change& change);
+  void letIn(const CellGrid<D>& grid, double start, Change& change) const;
+  void addLayer(const CellGrid<D>& grid, std::size_t body, double way, Change& change) const;
 
   FlowState<D, Backend>& state_;
   double volume_;  // of a particle [m3; m2 in 2D]

@@ -64,6 +64,7 @@ TEST(OpenBoundaries, AJetKeepsTheLatticeOfItsNozzle) {
   checkJet<2>(jetCase(2));
   checkJet<3>(jetCase(3));
   checkJet<2>(jetCase(2, MethodKind::MphI, SchemeKind::Published));
+  checkJet<2>(jetCase(2, MethodKind::Isph));
 }
 
 /// What flows in is what the table says, to a layer, whatever the steps are.
