@@ -26,13 +26,17 @@ void checkChoice(std::uint32_t fluid, std::uint32_t walls, unsigned seed) {
   r.grid = CellGrid<D>::make(Vec<D>{}, Vec<D>::filled(1), r.grid.periodic, 0.031);
   Case c;
   c.dimensions = D;
-  c.bodies.resize(5);
+  c.bodies.resize(7);
+  for (Body& body : c.bodies) body.kind = BodyKind::Wall;
   c.bodies[1].velocity[0] = 0.1;
   c.bodies[2].oscillation.period = 1;
   c.bodies[3].rotation.emplace();
+  c.bodies[5].displacement[1] = TimeFunction{0, "t"};
+  c.bodies[6].kind = BodyKind::Rigid;
+  constexpr std::uint8_t moves[] = {1, 2, 3, 5, 6};
   for (std::uint32_t i = fluid; i < p.count; ++i) {
     p.velocity[i] = {};
-    p.body[i] = static_cast<std::uint8_t>(i % 40 < 3 && p.position[i][0] < 0.3 ? 1 + i % 3 : 4);
+    p.body[i] = static_cast<std::uint8_t>(i % 40 < 3 && p.position[i][0] < 0.3 ? moves[i % 5] : 4);
   }
   NearBlocks<D> near(c, r.grid);
   near.add(p);
