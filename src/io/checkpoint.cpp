@@ -87,18 +87,18 @@ FlowCount readCount(hid_t file, const std::string& name) {
 /// Numbers of a rigid body in the order of the file.
 template <class Body, class F>
 void forEachNumber(Body& b, F&& f) {
-  f("mass", b.mass);
-  for (auto& x : b.inertia) f("inertia", x);
+  f(b.mass);
+  for (auto& x : b.inertia) f(x);
   for (auto* v : {&b.center, &b.velocity, &b.spin})
-    for (int k = 0; k < 3; ++k) f("motion", (*v)[k]);
-  for (auto& x : b.orientation) f("orientation", x);
+    for (int k = 0; k < 3; ++k) f((*v)[k]);
+  for (auto& x : b.orientation) f(x);
 }
 constexpr std::uint64_t rigidNumbers = 20;
 
 void writeRigid(hid_t file, const RigidMotion& rigid) {
   Buffer<double> numbers(rigid.bodies.size() * rigidNumbers);
   double* to = numbers.data();
-  for (const RigidBody& body : rigid.bodies) forEachNumber(body, [&](const char*, double x) { *to++ = x; });
+  for (const RigidBody& body : rigid.bodies) forEachNumber(body, [&](double x) { *to++ = x; });
   const auto put = [&](const char* name, std::span<const double> values) {
     Buffer<double> field(values.size());
     std::copy(values.begin(), values.end(), field.begin());
@@ -128,7 +128,7 @@ RigidMotion readRigid(hid_t file) {
   const double* from = numbers.data();
   rigid.bodies.resize(numbers.size() / rigidNumbers);
   for (RigidBody& body : rigid.bodies) {
-    forEachNumber(body, [&](const char*, double& x) { x = *from++; });
+    forEachNumber(body, [&](double& x) { x = *from++; });
     if (!(body.mass >= 0)) throw Hdf5Error(fmt::format("a rigid body has a mass of {} kg", body.mass));
   }
   rigid.response = get("rigid_response", mostUnknowns * mostUnknowns);

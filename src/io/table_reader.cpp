@@ -32,18 +32,17 @@ void TableReader::prepare(Material&) {
     throw section_.error("dynamic_viscosity", viscosityBesideRheology);
 }
 
-void TableReader::prepare(Rheology& rheology) {
-  const auto model = lookUp<RheologyModel>("model");
-  if (!model) return;
-  rheology.model = *model;
-  section_ = Section(section_.table(), fmt::format("{} ({})", section_.title(), nameOf(*model)));
+/// Which keys there are the word at `key` says, which messages then name.
+template <class E>
+void TableReader::prepareKind(std::string_view key, E& kind) {
+  const auto named = lookUp<E>(key);
+  if (!named) return;
+  kind = *named;
+  section_ = Section(section_.table(), fmt::format("{} ({})", section_.title(), nameOf(kind)));
 }
-void TableReader::prepare(ViscosityShift& shift) {
-  const auto model = lookUp<ShiftModel>("model");
-  if (!model) return;
-  shift.model = *model;
-  section_ = Section(section_.table(), fmt::format("{} ({})", section_.title(), nameOf(*model)));
-}
+
+void TableReader::prepare(Rheology& rheology) { prepareKind("model", rheology.model); }
+void TableReader::prepare(ViscosityShift& shift) { prepareKind("model", shift.model); }
 
 void TableReader::prepare(Body& body) {
   if (const auto kind = lookUp<BodyKind>("type")) body.kind = *kind;
@@ -51,10 +50,7 @@ void TableReader::prepare(Body& body) {
     section_ = Section(section_.table(), section_.title() + " (inflow)");
     return;
   }
-  const auto shape = lookUp<ShapeKind>("shape");
-  if (!shape) return;
-  body.shape.kind = *shape;
-  section_ = Section(section_.table(), fmt::format("{} ({})", section_.title(), nameOf(*shape)));
+  prepareKind("shape", body.shape.kind);
 }
 
 void TableReader::prepare(Rotation&) {
@@ -62,19 +58,9 @@ void TableReader::prepare(Rotation&) {
     throw section_.error("speed", "missing; expected a finite number [rad/s], or angle");
 }
 
-void TableReader::prepare(Nozzle& nozzle) {
-  const auto kind = lookUp<NozzleKind>("shape");
-  if (!kind) return;
-  nozzle.kind = *kind;
-  section_ = Section(section_.table(), fmt::format("{} ({})", section_.title(), nameOf(*kind)));
-}
+void TableReader::prepare(Nozzle& nozzle) { prepareKind("shape", nozzle.kind); }
 
-void TableReader::prepare(Outflow& outflow) {
-  const auto kind = lookUp<OutflowKind>("shape");
-  if (!kind) return;
-  outflow.kind = *kind;
-  section_ = Section(section_.table(), fmt::format("{} ({})", section_.title(), nameOf(*kind)));
-}
+void TableReader::prepare(Outflow& outflow) { prepareKind("shape", outflow.kind); }
 
 void TableReader::prepare(SolverSettings& solver) {
   if (const auto preconditioner = lookUp<PreconditionerKind>("preconditioner"))
@@ -325,6 +311,7 @@ TimeFunction TableReader::function(const Key& key, const toml::node& node) const
     section.requireKnown({"times", "values"}, {}, "");
     const TableReader reader(case_, sections_, section, path_);
     reader({"times", true, "s"}, f.times);
+    if (f.times.empty()) throw section_.error(key.name, "expected at least one time, found none");
     reader({"values", true, key.unit, key.bound}, f.values);
   } else {
     f.value = number(key, node, expectedFunction(key));

@@ -94,6 +94,8 @@ class TableReader {
   void prepare(SolverSettings& solver);
   void prepare(TimeSettings& time);
   void nameMethod();
+  template <class E>
+  void prepareKind(std::string_view key, E& kind);
 
   template <class Table>
   void requireKnownKeys(const Table& member) const {

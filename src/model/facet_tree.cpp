@@ -139,25 +139,37 @@ double FacetTree<D>::distance2(const Node& node, const Vec<D>& x) {
   return sum;
 }
 
+/// Goes through the nodes from the root: into those that `enter` holds for, with `visit` of each facet of the
+/// leaves among them.
 template <int D>
-double FacetTree<D>::winding(const Vec<D>& x) const {
-  constexpr double far = 2.5;  // radii: the flux is then right to some 0.01 of what the node covers
-  double sum = 0;
+template <class Enter, class Visit>
+void FacetTree<D>::walk(Enter&& enter, Visit&& visit) const {
   std::uint32_t stack[64];
   int size = 0;
   stack[size++] = 0;
   while (size > 0) {
     const std::uint32_t index = stack[--size];
     const Node& node = nodes_[index];
-    const Vec<D> way = node.center - x;
-    if (const double d2 = norm2(way); d2 > far * far * node.radius * node.radius) {
-      sum += coveredFromFar<D>(node.flux, way, std::sqrt(d2));
-    } else if (node.right == 0) {
-      for (std::uint32_t k = node.begin; k < node.end; ++k) sum += covered<D>(facets_[k], x);
-    } else {
+    if (!enter(node)) continue;
+    if (node.right != 0)
       stack[size++] = node.right, stack[size++] = index + 1;
-    }
+    else
+      for (std::uint32_t k = node.begin; k < node.end; ++k) visit(k);
   }
+}
+
+template <int D>
+double FacetTree<D>::winding(const Vec<D>& x) const {
+  constexpr double far = 2.5;  // radii: the flux is then right to some 0.01 of what the node covers
+  double sum = 0;
+  const auto enter = [&](const Node& node) {
+    const Vec<D> way = node.center - x;
+    const double d2 = norm2(way);
+    const bool isFar = d2 > far * far * node.radius * node.radius;
+    if (isFar) sum += coveredFromFar<D>(node.flux, way, std::sqrt(d2));
+    return !isFar;
+  };
+  walk(enter, [&](std::uint32_t k) { sum += covered<D>(facets_[k], x); });
   return sum;
 }
 
@@ -197,51 +209,32 @@ void FacetTree<D>::near(const Vec<D>& x, double reach, const Vec<D>& beside,
                         const std::function<void(const Near&)>& f) const {
   constexpr double sixty = std::numbers::pi / 3;
   const bool all = norm2(beside) == 0;
-  std::uint32_t stack[64];
-  int size = 0;
-  stack[size++] = 0;
-  while (size > 0) {
-    const std::uint32_t index = stack[--size];
-    const Node& node = nodes_[index];
-    if (distance2(node, x) > reach * reach) continue;
-    if (!all && node.spread < sixty && angleBetween(beside, node.axis) + node.spread < sixty) continue;
-    if (node.right != 0) {
-      stack[size++] = node.right, stack[size++] = index + 1;
-      continue;
-    }
-    for (std::uint32_t k = node.begin; k < node.end; ++k) {
-      const Vec<D> point = nearestOn<D>(facets_[k], x);
-      if (const double distance = norm(point - x); distance <= reach) f({distance, point, k});
-    }
-  }
+  const auto enter = [&](const Node& node) {
+    if (distance2(node, x) > reach * reach) return false;
+    return all || node.spread >= sixty || angleBetween(beside, node.axis) + node.spread >= sixty;
+  };
+  walk(enter, [&](std::uint32_t k) {
+    const Vec<D> point = nearestOn<D>(facets_[k], x);
+    if (const double distance = norm(point - x); distance <= reach) f({distance, point, k});
+  });
 }
 
 template <int D>
 void FacetTree<D>::touching(const Vec<D>& min, const Vec<D>& max,
                             const std::function<void(std::uint32_t)>& f) const {
-  std::uint32_t stack[64];
-  int size = 0;
-  stack[size++] = 0;
-  const auto apart = [&](const Vec<D>& low, const Vec<D>& high) {
+  const auto touches = [&](const Vec<D>& low, const Vec<D>& high) {
     for (int m = 0; m < D; ++m)
-      if (low[m] > max[m] || high[m] < min[m]) return true;
-    return false;
+      if (low[m] > max[m] || high[m] < min[m]) return false;
+    return true;
   };
-  while (size > 0) {
-    const std::uint32_t index = stack[--size];
-    const Node& node = nodes_[index];
-    if (apart(node.min, node.max)) continue;
-    if (node.right != 0) {
-      stack[size++] = node.right, stack[size++] = index + 1;
-      continue;
-    }
-    for (std::uint32_t k = node.begin; k < node.end; ++k) {
-      Vec<D> low = facets_[k][0], high = low;
-      for (const Vec<D>& corner : facets_[k])
-        for (int m = 0; m < D; ++m) low[m] = std::min(low[m], corner[m]), high[m] = std::max(high[m], corner[m]);
-      if (!apart(low, high)) f(k);
-    }
-  }
+  walk([&](const Node& node) { return touches(node.min, node.max); },
+       [&](std::uint32_t k) {
+         Vec<D> low = facets_[k][0], high = low;
+         for (const Vec<D>& corner : facets_[k])
+           for (int m = 0; m < D; ++m)
+             low[m] = std::min(low[m], corner[m]), high[m] = std::max(high[m], corner[m]);
+         if (touches(low, high)) f(k);
+       });
 }
 
 template class FacetTree<2>;

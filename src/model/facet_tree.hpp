@@ -96,6 +96,8 @@ class FacetTree {
   static Node joined(const Node& a, const Node& b);
   static void finish(Node& node);
   static double distance2(const Node& node, const Vec<D>& x);
+  template <class Enter, class Visit>
+  void walk(Enter&& enter, Visit&& visit) const;
 
   std::vector<Facet<D>> facets_;
   std::vector<std::uint32_t> original_;

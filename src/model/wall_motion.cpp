@@ -57,7 +57,7 @@ Vec<3> wallDisplacement(const Body& body, double t) {
   return way;
 }
 
-bool someWallOscillates(const Case& c) {
+bool someWallIsDriven(const Case& c) {
   return std::ranges::any_of(c.bodies,
                              [](const Body& b) { return b.oscillation.period > 0 || isDriven(b.displacement); });
 }

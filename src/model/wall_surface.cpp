@@ -241,19 +241,20 @@ std::vector<WallSurface<D>> createWallSurfaces(const Case& c, std::span<const Ve
     ++particles[body[k]];
     if (surfaces[k] != WallSurface<D>{}) ++seeing[body[k]];
   }
-  for (std::size_t b = 0; b < c.bodies.size(); ++b)
-    if (!c.bodies[b].isWall())
-      continue;
-    else if (particles[b] > 0 && seeing[b] == 0 && c.bodies[b].shape.kind == ShapeKind::Particles)
-      notes.push_back(fmt::format(
-          "wall '{}' is made of the particles of a file, whose surface is not known: fluid next to it meets the "
-          "velocity of each particle, and slips",
-          c.bodies[b].name));
-    else if (particles[b] > 0 && seeing[b] == 0)
-      notes.push_back(fmt::format(
-          "wall '{}': none of its {} particles has a surface of the walls within the viscosity radius h_v = {}; "
-          "no fluid can be next to it",
-          c.bodies[b].name, particles[b], lengthText(c.viscosityRadius())));
+  for (std::size_t b = 0; b < c.bodies.size(); ++b) {
+    const Body& wall = c.bodies[b];
+    if (!wall.isWall() || particles[b] == 0 || seeing[b] > 0) continue;
+    notes.push_back(
+        wall.shape.kind == ShapeKind::Particles
+            ? fmt::format(
+                  "wall '{}' is made of the particles of a file, whose surface is not known: fluid next to it "
+                  "meets the velocity of each particle, and slips",
+                  wall.name)
+            : fmt::format(
+                  "wall '{}': none of its {} particles has a surface of the walls within the viscosity radius "
+                  "h_v = {}; no fluid can be next to it",
+                  wall.name, particles[b], lengthText(c.viscosityRadius())));
+  }
   return surfaces;
 }
 

@@ -1,9 +1,11 @@
 #pragma once
 
 #include "flow_state.hpp"
+#include "rigid_mass.hpp"
 #include "treacle/model/wall_motion.hpp"
 #include "treacle/step/wall_motion.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -14,7 +16,7 @@ namespace treacle {
 /// Whether some wall moves, at the time of these particles or at any other.
 template <int D>
 bool someWallMoves(const Case& c, const Particles<D>& particles) {
-  if (someWallOscillates(c) || someWallRotates(c) || c.hasInflow() || c.hasRigid()) return true;
+  if (someWallIsDriven(c) || someWallRotates(c) || c.hasInflow() || c.hasRigid()) return true;
   for (std::uint32_t i = particles.wallBegin(); i < particles.count; ++i)
     if (norm2(particles.velocity[i]) > 0) return true;
   return false;
@@ -51,12 +53,52 @@ class MovingBodies {
   explicit MovingBodies(FlowState<D, Backend>& state)
       : state_(state),
         rotate_(someWallRotates(state.theCase) || state.theCase.hasRigid()),
-        velocitiesChange_(rotate_ || someWallOscillates(state.theCase) || state.theCase.hasInflow()) {}
+        velocitiesChange_(rotate_ || someWallIsDriven(state.theCase) || state.theCase.hasInflow()) {}
 
-  /// Motions and velocities for state.timeStep from state.time on.
+  /// What the state does not know of its rigid bodies, and how far bodies reach. `particles`: the state's, as each
+  /// process comes with them. Collective.
+  void begin(Particles<D>& particles) {
+    const Case& c = state_.theCase;
+    if (!c.hasRigid())
+      particles.rigid = {};
+    else if (particles.rigid.bodies.empty())
+      particles.rigid.bodies = rigidBodies<D>(c, state_.context, particles);
+    state_.rigid = particles.rigid;
+    reach_.resize(c.bodies.size());
+    for (std::uint32_t i = particles.wallBegin(); i < particles.count; ++i)
+      if (const std::size_t b = particles.body[i]; b < reach_.size())
+        reach_[b] = std::max(reach_[b], norm(resized<3>(particles.position[i]) - centerOf(b)));
+    for (double& reach : reach_)
+      reach = joinedOverProcesses(state_.context, reach, [](double a, double b) { return std::max(a, b); });
+  }
+
+  /// Motions and velocities for state.timeStep from state.time on. In cases with rigid bodies the method sets them
+  /// once it knows what velocities to try (RigidSystem).
   void prepare() {
-    if (!velocitiesChange_) return;
-    setWallMotions(state_);
+    if (velocitiesChange_ && !state_.theCase.hasRigid()) setWallMotions(state_);
+  }
+
+  /// What no part of a body exceeds in the step at hand whose speed the case does not give as a number [m/s].
+  double freeSpeed() const {
+    const Case& c = state_.theCase;
+    double speed = 0;
+    for (std::size_t b = 0; b < c.bodies.size(); ++b) {
+      const Body& body = c.bodies[b];
+      const bool rigid = body.kind == BodyKind::Rigid;
+      if (!rigid && !isDriven(body.displacement) && !(body.rotation && body.rotation->angle)) continue;
+      const WallMotion<D> m = rigid ? rigidMotion<D>(state_.rigid.bodies[b], state_.timeStep)
+                                    : wallMotion<D>(c.domain, body, state_.time, state_.timeStep);
+      speed = std::max(speed, norm(m.velocity) + norm(m.spin) * reach_[b]);
+    }
+    return speed;
+  }
+
+  /// The rigid bodies have gone on with the velocities of the step.
+  void accept() {
+    if (!state_.theCase.hasRigid()) return;
+    for (RigidBody& body : state_.rigid.bodies)
+      if (body.mass > 0) body.advance(state_.timeStep);
+    state_.particles.rigid = state_.rigid;
   }
 
   /// By what dt is multiplied to give the ways of the wall particles in the step [m/s].
@@ -77,7 +119,13 @@ class MovingBodies {
   }
   std::span<Vec<D>> velocities() { return state_.particles.velocity.span().subspan(state_.particles.wallBegin()); }
 
+  Vec<3> centerOf(std::size_t b) const {
+    const Body& body = state_.theCase.bodies[b];
+    return body.kind == BodyKind::Rigid ? state_.rigid.bodies[b].center : wallCenter(body, state_.time);
+  }
+
   FlowState<D, Backend>& state_;
+  std::vector<double> reach_;  // per body: from its centre to its farthest wall particle [m]
   bool rotate_, velocitiesChange_;
   Buffer<Vec<D>, Backend> chord_;  // per wall particle, where some rotate [m/s]
 };

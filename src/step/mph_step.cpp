@@ -52,7 +52,7 @@ class MphStep final : public StepMethod<D, Backend> {
 
   /// Walls go with what rigid bodies are tried with first.
   StagedReport predict() override {
-    if (rigid_) rigid_->start(), setWallMotions(state_);
+    if (rigid_) rigid_->start();
     return {};
   }
 
@@ -134,8 +134,10 @@ class MphStep final : public StepMethod<D, Backend> {
     fillGhosts(state_.context, Held::Active, divergence_.data());
     bulkPressure<D>(state_.context, pairs_, divergence_, elastic_, state_.particles.pressure.span().first(active));
     if (rheology_) rheology_->accept(state_);
-    if (state_.theCase.output.balance)
-      lastBalance_ = balance_.make(state_, neighbourhood_, divergence_, elastic_, surface_ ? &*surface_ : nullptr);
+    if (state_.theCase.output.balance) {
+      if (!rigid_) wallForces_.prepare(state_, neighbourhood_);
+      lastBalance_ = balance_.make(state_, pairs_, divergence_, elastic_, surface_ ? &*surface_ : nullptr);
+    }
     if (heat_) acceptHeat();
     // The velocities of the start are given, no solution: nothing follows from the way to the first one.
     if (state_.step > 0)
@@ -160,7 +162,7 @@ class MphStep final : public StepMethod<D, Backend> {
            (rheology_ ? rheology_->bytes() : 0) + (heat_ ? heat_->bytes() : 0) +
            (surface_ ? surface_->bytes() : 0) + wallBlock_.bytes() + wallGradient_.bytes() + wallDensity_.bytes() +
            elastic_.bytes() + divergence_.bytes() + rhs_.bytes() + found_.bytes() + solver_.bytes() +
-           balance_.bytes() + wallForces_.bytes() + rhsAtRest_.bytes() + pressure_.bytes() + surfaceForce_.bytes();
+           balance_.bytes() + wallForces_.bytes() + rhsAtRest_.bytes() + pressure_.bytes();
   }
 
  private:
@@ -218,7 +220,7 @@ class MphStep final : public StepMethod<D, Backend> {
     fillGhosts(state_.context, Held::Active, divergence_.data());
     pressure_.resize(state_.context, active);
     bulkPressure<D>(state_.context, pairs_, divergence_, elastic_, pressure_);
-    wallForces_.sum(state_, pairs_, state_.velocity, pressure_, surface_ ? &*surface_ : nullptr, surfaceForce_);
+    wallForces_.sum(state_, pairs_, state_.velocity, pressure_, surface_ ? &*surface_ : nullptr);
     return wallForces_.loads(state_, pairs_, state_.velocity);
   }
 
@@ -361,11 +363,10 @@ class MphStep final : public StepMethod<D, Backend> {
   std::optional<StepHeat<D, Backend>> heat_;          // where the case has heat
   std::optional<StepSurface<D, Backend>> surface_;    // where some fluid has a surface tension
   std::optional<RigidSystem<D, Backend>> rigid_;      // where the case has rigid bodies; then also these
-  WallForces<D, Backend> wallForces_;
-  Buffer<Vec<D>, Backend> rhsAtRest_;     // the right-hand side without velocities of walls
-  Buffer<double, Backend> pressure_;      // per active particle [Pa]
-  Buffer<Vec<D>, Backend> surfaceForce_;  // likewise [N/m3]
-  StepBalance<D, Backend> balance_;
+  Buffer<Vec<D>, Backend> rhsAtRest_;                 // the right-hand side without velocities of walls
+  Buffer<double, Backend> pressure_;                  // per active particle [Pa]
+  WallForces<D, Backend> wallForces_;                 // for rigid bodies and the balance
+  StepBalance<D, Backend> balance_{wallForces_};
   std::optional<Balance> lastBalance_;
 };
 

@@ -38,7 +38,9 @@ void appendParticles(Particles<D>& p, const std::vector<Vec<D>>& places) {
 template <int D, class Backend>
 OpenBoundaries<D, Backend>::OpenBoundaries(FlowState<D, Backend>& state)
     : state_(state), volume_(std::pow(state.theCase.spacing, D)) {
-  for (const Outflow& o : state.theCase.outflows) regions_.push_back(OutflowRegion<D>::of(o));
+  std::vector<OutflowRegion<D>> regions;
+  for (const Outflow& o : state.theCase.outflows) regions.push_back(OutflowRegion<D>::of(o));
+  fromHost(state.context, std::span<const OutflowRegion<D>>(regions), regions_);
 }
 
 template <int D, class Backend>
@@ -98,7 +100,7 @@ void OpenBoundaries<D, Backend>::letOut(Change& change) {
   const std::uint32_t n = p.fluidCount;
   gone_.resize(state_.context, n);
   std::vector<std::uint32_t> counts = markOutflow<D>(
-      state_.context, {regions_, p.position.span().first(n), p.material.span().first(n)}, gone_.span());
+      state_.context, {regions_.span(), p.position.span().first(n), p.material.span().first(n)}, gone_.span());
   sumOverProcesses(state_.context, std::span(counts));
   for (std::size_t k = 0; k < counts.size(); ++k) {
     if (counts[k] == 0) continue;

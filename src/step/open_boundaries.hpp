@@ -41,7 +41,7 @@ class OpenBoundaries {
 
   FlowState<D, Backend>& state_;
   double volume_;  // of a particle [m3; m2 in 2D]
-  std::vector<OutflowRegion<D>> regions_;
+  Buffer<OutflowRegion<D>, Backend> regions_;
   Buffer<std::uint8_t, Backend> gone_;  // per own fluid particle
 };
 

@@ -2,58 +2,18 @@
 
 #include "moving_bodies.hpp"
 #include "treacle/core/error.hpp"
-#include "treacle/core/processes.hpp"
-#include "treacle/step/affine_solve.hpp"
+#include "treacle/linear/affine_solve.hpp"
 #include "treacle/step/balance_sums.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 namespace treacle {
-
-/// Masses, centres and inertia of the rigid bodies of a case from the wall particles that it makes of them, of
-/// which each process has a part; each particle is a cube of the spacing. Collective.
-template <int D>
-std::vector<RigidBody> rigidBodies(const Case& c, const Processes& processes, const Particles<D>& p) {
-  std::vector<RigidBody> bodies(c.bodies.size());
-  const double volume = std::pow(c.spacing, D);
-  for (std::size_t b = 0; b < bodies.size(); ++b) {
-    const Body& body = c.bodies[b];
-    if (body.kind != BodyKind::Rigid) continue;
-    const auto sum = [&]<std::size_t N>(auto&& term) {
-      std::array<double, N> sums{};
-      for (std::uint32_t i = p.wallBegin(); i < p.count; ++i)
-        if (p.body[i] == b) term(resized<3>(p.position[i]), sums);
-      sumOverProcesses(processes, std::span<double>(sums));
-      return sums;
-    };
-    const auto first = sum.template operator()<4>([](const Vec<3>& x, auto& s) {
-      s[0] += 1;
-      for (int k = 0; k < 3; ++k) s[static_cast<std::size_t>(k) + 1] += x[k];
-    });
-    if (first[0] == 0) throw InputError(fmt::format("rigid body '{}' has no particles", body.name));
-    RigidBody& r = bodies[b];
-    r.center = (1 / first[0]) * Vec<3>{first[1], first[2], first[3]};
-    const double whole = first[0] * volume * c.materials[static_cast<std::size_t>(body.material)].density;
-    r.mass = body.rigid.mass > 0 ? body.rigid.mass : whole;
-    const double each = r.mass / first[0], own = c.spacing * c.spacing / 6;
-    const auto second = sum.template operator()<6>([&](const Vec<3>& x, auto& s) {
-      const Vec<3> d = x - r.center;
-      const double xx = d[0] * d[0], yy = d[1] * d[1], zz = d[2] * d[2];
-      s[0] += yy + zz + own, s[1] += xx + zz + own, s[2] += xx + yy + own;
-      s[3] -= d[0] * d[1], s[4] -= d[0] * d[2], s[5] -= d[1] * d[2];
-    });
-    for (std::size_t k = 0; k < 6; ++k) r.inertia[k] = each * second[k];
-    r.velocity = body.velocity;
-    r.spin = body.rigid.angularVelocity;
-  }
-  return bodies;
-}
 
 /// The velocities of rigid bodies as unknowns of a step: those at which the forces of the fluid, which depend on
 /// them by way of its own velocities, and of gravity accelerate the bodies to them. Both are of the end of the
@@ -73,13 +33,15 @@ class RigidSystem {
     }
   }
 
-  /// The bodies of the step at hand start with the velocities that they had, changed as in the last step.
+  /// The bodies of the step at hand start with the velocities that they had, changed as in the last step, and so
+  /// do their walls.
   void start() {
     state_.rigid = state_.particles.rigid;
     std::vector<double> x = values(state_.rigid.bodies);
     if (state_.rigid.change.size() == x.size())
       for (std::size_t k = 0; k < x.size(); ++k) x[k] += state_.rigid.change[k];
     set(x);
+    setWallMotions(state_);
   }
 
   /// `loads(velocities)`: solves the flow with the velocities that state.rigid has, and returns what the bodies
@@ -88,10 +50,10 @@ class RigidSystem {
   void solve(F&& loads) {
     std::vector<double> x = values(state_.rigid.bodies);
     const double dt = state_.timeStep, scale = scaleOf(x);
+    bool isStart = true;  // whose velocities the walls and the right-hand side have
     const auto result = AffineSolve::run(
         [&](const std::vector<double>& at) {
-          set(at);
-          setWallMotions(state_);
+          if (!std::exchange(isStart, false)) set(at), setWallMotions(state_);
           return residual(loads());
         },
         x, state_.rigid.response, scale, tolerance, mostValues);

@@ -7,7 +7,6 @@
 #include "moving_bodies.hpp"
 #include "open_boundaries.hpp"
 #include "own_particles.hpp"
-#include "rigid_bodies.hpp"
 #include "step_method.hpp"
 #include "treacle/core/processes.hpp"
 #include "treacle/core/team.hpp"
@@ -84,7 +83,6 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
   std::unique_ptr<StepMethod<D, Backend>> method;
   std::optional<DistantWalls<D>> distant;  // which `particles` has not
   double lastSpeed = 0;                    // of the fastest particle [m/s]
-  std::vector<double> reach;               // per body: from its centre to its farthest wall particle [m]
   std::optional<Watch> watch;
   std::optional<StepControl> control;  // of automatic steps
   double endOfStep = 0;                // time at the end of the step at hand [s]
@@ -101,7 +99,7 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     wallsMove = sumOverProcesses(context, someWallMoves(theCase, state)) > 0;
     const double mass = sumOverProcesses(context, fluidMass(theCase, state));
     boundaries.begin(state);
-    beginRigid(state);
+    bodies.begin(state);
     method = theCase.method.kind == MethodKind::Isph ? makeIsphStep(static_cast<Flow&>(*this))
                                                      : makeMphStep(static_cast<Flow&>(*this));
     distant.emplace(theCase, method->grid(), state, time, context.communicator);
@@ -118,40 +116,6 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     const Diagnostics start = diagnostics();
     lastSpeed = start.maxSpeed;
     watch.emplace(theCase, start, mass, this->fluidOfAll, wallsMove || theCase.isOpen());
-  }
-
-  /// Of what the state does not know. Collective.
-  void beginRigid(Particles<D>& state) {
-    if (!theCase.hasRigid()) state.rigid = {};
-    if (theCase.hasRigid() && state.rigid.bodies.empty())
-      state.rigid.bodies = rigidBodies<D>(theCase, context, state);
-    this->rigid = state.rigid;
-    reach.resize(theCase.bodies.size());
-    for (std::uint32_t i = state.wallBegin(); i < state.count; ++i)
-      if (const std::size_t b = state.body[i]; b < reach.size())
-        reach[b] = std::max(reach[b], norm(resized<3>(state.position[i]) - centerOf(b)));
-    for (double& r : reach) r = joinedOverProcesses(context, r, [](double a, double b) { return std::max(a, b); });
-  }
-
-  Vec<3> centerOf(std::size_t b) const {
-    const Body& body = theCase.bodies[b];
-    return body.kind == BodyKind::Rigid ? this->rigid.bodies[b].center : wallCenter(body, time);
-  }
-
-  /// What no part of a body exceeds in the step at hand whose speed the case does not give as a number [m/s].
-  double freeSpeed() const {
-    double speed = 0;
-    for (std::size_t b = 0; b < theCase.bodies.size(); ++b) {
-      const Body& body = theCase.bodies[b];
-      if (body.kind == BodyKind::Rigid) {
-        const RigidBody& r = this->rigid.bodies[b];
-        speed = std::max(speed, norm(r.velocity) + norm(r.spin) * reach[b]);
-      } else if (isDriven(body.displacement) || (body.rotation && body.rotation->angle)) {
-        const WallMotion<D> m = wallMotion<D>(theCase.domain, body, time, timeStep);
-        speed = std::max(speed, norm(m.velocity) + norm(m.spin) * reach[b]);
-      }
-    }
-    return speed;
   }
 
   void chooseTimeStep() {
@@ -191,12 +155,8 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     copyValues(context, std::span<const Vec<D>>(velocity).first(particles.fluidCount), particles.velocity.data());
     copyValues(context, moved.first(particles.fluidCount), particles.position.data());
     if (wallsMove) copyValues(context, moved.subspan(walls), particles.position.data() + walls);
-    distant->addStep(timeStep, std::max(method->longestWay(lastSpeed), timeStep * freeSpeed()));
-    if (theCase.hasRigid()) {
-      for (RigidBody& body : this->rigid.bodies)
-        if (body.mass > 0) body.advance(timeStep);
-      particles.rigid = this->rigid;
-    }
+    distant->addStep(timeStep, std::max(method->longestWay(lastSpeed), timeStep * bodies.freeSpeed()));
+    bodies.accept();
     ++step;
     time = endOfStep;
     particles.steps.last = timeStep;

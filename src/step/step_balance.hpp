@@ -19,34 +19,29 @@ namespace treacle {
 template <int D, class Backend>
 class StepBalance {
  public:
+  /// `walls`: of the same step, prepared; must outlive this.
+  explicit StepBalance(WallForces<D, Backend>& walls) : walls_(walls) {}
+
   /// Once state.velocity and the pressures are those of the end of the step; positions and particles' velocities
   /// are still those of its start. `divergence`: C^T u^{k+1}, `elastic`: kappa [n - n_0]_+, per active particle;
   /// `surface`: null where no fluid has a surface tension.
-  Balance make(FlowState<D, Backend>& state, const MphNeighbourhood<D, Backend>& neighbourhood,
-               std::span<const double> divergence, std::span<const double> elastic,
-               const StepSurface<D, Backend>* surface) {
-    const MphPairs<D>& pairs = neighbourhood.pairs();
-    sumPairs(state, neighbourhood, surface);
+  Balance make(FlowState<D, Backend>& state, const MphPairs<D>& pairs, std::span<const double> divergence,
+               std::span<const double> elastic, const StepSurface<D, Backend>* surface) {
+    sumPairs(state, pairs, surface);
     Balance balance;
     setPowers(state, pairs, divergence, elastic, surface, balance);
     setLoads(state, pairs, balance);
     return balance;
   }
 
-  std::size_t bytes() const {
-    return walls_.bytes() + shear_.bytes() + repulsion_.bytes() + surfaceForce_.bytes();
-  }
+  std::size_t bytes() const { return shear_.bytes() + repulsion_.bytes(); }
 
  private:
-  void sumPairs(FlowState<D, Backend>& state, const MphNeighbourhood<D, Backend>& neighbourhood,
-                const StepSurface<D, Backend>* surface) {
-    const MphPairs<D>& pairs = neighbourhood.pairs();
+  void sumPairs(FlowState<D, Backend>& state, const MphPairs<D>& pairs, const StepSurface<D, Backend>* surface) {
     const std::uint32_t n = pairs.fluidCount;
     shear_.resize(state.context, n);
     shearDissipation<D>(state.context, pairs, state.velocity, shear_);
-    walls_.prepare(state, neighbourhood);
-    walls_.sum(state, pairs, state.velocity, state.particles.pressure.span().first(pairs.activeCount), surface,
-               surfaceForce_);
+    walls_.sum(state, pairs, state.velocity, state.particles.pressure.span().first(pairs.activeCount), surface);
     if (pairs.terms.repulsionRadius == 0) return;
     repulsion_.resize(state.context, n);
     repulsionPower<D>(state.context, pairs, 1 / state.timeStep, state.velocity, repulsion_);
@@ -67,7 +62,7 @@ class StepBalance {
                       walls_.divergence(),
                       walls_.density(),
                       repulsion_,
-                      surfaceForce_,
+                      walls_.surfaceForce(),
                       surface ? surface->slope() : std::span<const Vec<D>>{}};
     const auto sums = sumPowers<D>(state.context, terms, pairs.ownEnd());
     const double volume = std::pow(pairs.spacing, D);  // [K23 eq. (11)]
@@ -94,11 +89,9 @@ class StepBalance {
     }
   }
 
-  WallForces<D, Backend> walls_;
+  WallForces<D, Backend>& walls_;
   Buffer<double, Backend> shear_;      // [W/m3]
   Buffer<double, Backend> repulsion_;  // [W/m3]; empty where the scheme has none
-  Buffer<Vec<D>, Backend>
-      surfaceForce_;  // of surface tension per active particle [N/m3], empty where there is none
 };
 
 }  // namespace treacle

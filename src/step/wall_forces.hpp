@@ -31,10 +31,9 @@ class WallForces {
   }
 
   /// With these velocities and pressures of all active particles. `surface`: null where no fluid has a surface
-  /// tension; `surfaceForce`: then takes its forces, per active particle.
+  /// tension.
   void sum(FlowState<D, Backend>& state, const MphPairs<D>& pairs, std::span<const Vec<D>> u,
-           std::span<const double> pressure, const StepSurface<D, Backend>* surface,
-           Buffer<Vec<D>, Backend>& surfaceForce) {
+           std::span<const double> pressure, const StepSurface<D, Backend>* surface) {
     const std::uint32_t n = pairs.fluidCount, active = pairs.activeCount;  // of ghosts nothing is summed
     force_.resize(state.context, active - n);
     divergence_.resize(state.context, active - n);
@@ -43,9 +42,9 @@ class WallForces {
                     {force_.span(), divergence_.span(), density_.span()});
     if (pairs.terms.repulsionRadius > 0) addRepulsionOnWalls<D>(state.context, pairs, 1 / state.timeStep, force_);
     if (!surface) return;
-    surfaceForce.resize(state.context, active);
+    surfaceForce_.resize(state.context, active);
     surfaceOfWalls_.resize(state.context, n);
-    surface->allForces(state, pairs, walls_, surfaceOfWalls_.span(), surfaceForce.span(), force_.span());
+    surface->allForces(state, pairs, walls_, surfaceOfWalls_.span(), surfaceForce_.span(), force_.span());
   }
 
   /// Per body of the case, of all processes, after sum() with the velocities `u` [N], [N m] and [W]; in 2D per
@@ -63,8 +62,11 @@ class WallForces {
   std::span<const double> divergence() const { return divergence_; }  // the fluid's part, per wall particle [1/s]
   std::span<const double> density() const { return density_; }        // likewise [-]
 
+  std::span<const Vec<D>> surfaceForce() const { return surfaceForce_; }  // per active particle [N/m3], or empty
+
   std::size_t bytes() const {
-    return list_.bytes() + force_.bytes() + divergence_.bytes() + density_.bytes() + surfaceOfWalls_.bytes();
+    return list_.bytes() + force_.bytes() + divergence_.bytes() + density_.bytes() + surfaceForce_.bytes() +
+           surfaceOfWalls_.bytes();
   }
 
  private:
@@ -73,6 +75,7 @@ class WallForces {
   Buffer<Vec<D>, Backend> force_;           // per active wall particle [N/m3]
   Buffer<double, Backend> divergence_;      // [1/s]
   Buffer<double, Backend> density_;         // [-]
+  Buffer<Vec<D>, Backend> surfaceForce_;    // of surface tension, per active particle [N/m3]
   Buffer<Vec<D>, Backend> surfaceOfWalls_;  // per fluid particle, that of walls on it [N/m3]
 };
 

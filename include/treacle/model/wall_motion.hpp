@@ -70,8 +70,8 @@ Vec<3> wallCenter(const Body& body, double t);
 /// The acceleration of a wall, or of its centre, at time t [m/s2].
 Vec<3> wallAcceleration(const Body& body, double t);
 
-/// Whether some wall of the case does so.
-bool someWallOscillates(const Case& c);
+/// Whether the velocity of some wall of the case changes without its turning; whether some wall turns.
+bool someWallIsDriven(const Case& c);
 bool someWallRotates(const Case& c);
 
 /// All of a wall's motion in that step.

@@ -31,11 +31,11 @@ struct OutflowRegion {
   }
 };
 
-/// Particles and where they may leave; spans in the backend's memory, but for the regions, which are the host's.
+/// Particles and where they may leave; spans in the backend's memory.
 template <int D>
 struct OutflowTest {
-  std::vector<OutflowRegion<D>> regions;  // fewer than 255
-  std::span<const Vec<D>> position;       // [m]
+  std::span<const OutflowRegion<D>> regions;  // fewer than 255
+  std::span<const Vec<D>> position;           // [m]
   std::span<const std::uint8_t> material;
 };
 

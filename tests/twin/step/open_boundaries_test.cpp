@@ -24,10 +24,11 @@ TEST(OutflowTwin, EqualsTheCpu) {
         OutflowRegion<3>::of({"box", OutflowKind::Box, {-0.5, -0.5, -1}, {0.2, 0.5, 1}, {}, {}}),
         OutflowRegion<3>::of({"plane", OutflowKind::Plane, {}, {}, {0.1, 0, 0}, {1, 2, -1}})};
     const auto counts = markOutflow<3>(host, {regions, x, material}, gone);
+    const Buffer<OutflowRegion<3>, Cuda> there = copyToDevice(device, std::span<const OutflowRegion<3>>(regions));
     Buffer<Vec<3>, Cuda> y = copyToDevice(device, std::span<const Vec<3>>(x));
     Buffer<std::uint8_t, Cuda> m = copyToDevice(device, std::span<const std::uint8_t>(material)),
                                found(device, count);
-    EXPECT_EQ(markOutflow<3>(device, {regions, y.span(), m.span()}, found.span()), counts);
+    EXPECT_EQ(markOutflow<3>(device, {there.span(), y.span(), m.span()}, found.span()), counts);
     const Buffer<std::uint8_t> copy = copyToHost(device, found);
     EXPECT_TRUE(std::equal(gone.begin(), gone.end(), copy.begin()));
   }

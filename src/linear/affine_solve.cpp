@@ -1,4 +1,4 @@
-#include "treacle/step/affine_solve.hpp"
+#include "treacle/linear/affine_solve.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,42 @@
+#include "treacle/linear/affine_solve.hpp"
+
+#include "treacle/linear/lanczos_scalars.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <vector>
+
+namespace treacle::test {
+namespace {
+
+TEST(AffineSolve, FindsTheZeroOfAnAffineFunction) {
+  for (const std::size_t n : {1u, 2u, 6u, 12u}) {
+    std::vector<double> a(n * n), zero(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      zero[i] = pseudoRandom(i) - 0.5;
+      for (std::size_t j = 0; j < n; ++j) a[i * n + j] = pseudoRandom(7 + i * n + j) - 0.5 + (i == j ? 1e3 : 0);
+    }
+    const auto f = [&](const std::vector<double>& x) {
+      std::vector<double> y(n);
+      for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t j = 0; j < n; ++j) y[i] += a[i * n + j] * (x[j] - zero[j]);
+      return y;
+    };
+    std::vector<double> x(n, 3.0), derivative;
+    const auto result = AffineSolve::run(f, x, derivative, 1, 1e-9, 20);
+    EXPECT_TRUE(result.converged);
+    EXPECT_LE(result.values, static_cast<int>(n) + 3);
+    for (std::size_t i = 0; i < n; ++i) EXPECT_NEAR(x[i], zero[i], 1e-9);
+    // From a derivative of a function that is not far.
+    for (double& d : a) d *= 1.05;
+    x.assign(n, 3.0);
+    const auto again = AffineSolve::run(f, x, derivative, 1, 1e-6, 20);
+    EXPECT_TRUE(again.converged);
+    EXPECT_LE(again.values, 6);
+    for (std::size_t i = 0; i < n; ++i) EXPECT_NEAR(x[i], zero[i], 1e-6);
+  }
+}
+
+}  // namespace
+}  // namespace treacle::test
