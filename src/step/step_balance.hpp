@@ -85,7 +85,7 @@ class StepBalance {
       balance.wallPower -= load.power;
       const Vec<3> center =
           body.kind == BodyKind::Rigid ? state.rigid.bodies[b].center : wallCenter(body, state.time);
-      balance.walls.push_back({load.force, load.torque - cross(center, load.force)});
+      balance.walls.push_back({load.force, load.torque - cross(center, load.force), load.power});
     }
   }
 

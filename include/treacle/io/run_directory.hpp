@@ -36,6 +36,9 @@ class RunDirectory {
   /// Opens the directory of an existing run. Errors: InputError if there is none.
   static RunDirectory open(const std::filesystem::path& path);
 
+  /// Makes the directory of the files of probes. Errors: RunError.
+  void makeRoomForProbes() const;
+
   /// Writes fluid and walls as the next frame and brings both indices up to date. Errors: RunError.
   void writeFrame(const Frame& fluid, const Frame& walls, const OutputSettings& settings);
   /// Makes these pieces, which stand under the names below, the next frame. A group that nobody has particles of
@@ -50,6 +53,8 @@ class RunDirectory {
   std::filesystem::path history() const { return path_ / "history.csv"; }
   std::filesystem::path balance() const { return path_ / "balance.csv"; }
   std::filesystem::path rigidBodies() const { return path_ / "rigid_bodies.csv"; }
+  std::filesystem::path probe(std::string_view name) const;
+  std::filesystem::path probePicture(std::string_view name) const;
   std::filesystem::path summary() const { return path_ / "summary.json"; }
   std::filesystem::path checkpoint() const { return path_ / "checkpoint.h5"; }
   std::filesystem::path fluidIndex() const { return path_ / "fluid.pvd"; }
