@@ -26,7 +26,7 @@ void ProbeRecorder::record(const StepReport& report) {
   std::uint64_t due = 0;
   for (std::size_t k = 0; k < intervals_.size(); ++k)
     if (!intervals_[k] || intervals_[k]->due(report.time)) due |= std::uint64_t{1} << k;
-  take(due, report.time, report.balance ? &report.balance->walls : nullptr);
+  take(due, report.time, &report.loads);
 }
 
 void ProbeRecorder::take(std::uint64_t probes, double time, const std::vector<WallLoad>* walls) {

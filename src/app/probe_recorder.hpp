@@ -29,7 +29,7 @@ class ProbeRecorder {
   void record(const StepReport& report);
 
  private:
-  /// `walls`: the balance's, null where it is not known.
+  /// `walls`: what they bear, null where it is not known.
   void take(std::uint64_t probes, double time, const std::vector<WallLoad>* walls);
 
   const Case& case_;

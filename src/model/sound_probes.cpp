@@ -25,9 +25,6 @@ void requireOneOf(const Checker& at, std::string_view key, std::string_view what
 
 void requireLoad(const Checker& at, const Probe& p) {
   const Case& c = at.wholeCase();
-  if (c.method.kind != MethodKind::MphI)
-    at.fail({"type"}, fmt::format("only the method '{}' knows the forces on walls, found '{}'",
-                                  nameOf(MethodKind::MphI), nameOf(c.method.kind)));
   requireOneOf(at, "body", "a wall or rigid body", p.body, c.bodies);
   if (!std::ranges::find(c.bodies, p.body, &Body::name)->isWall())
     at.fail({"body"}, fmt::format("'{}' is fluid; expected the name of a wall or rigid body", p.body));

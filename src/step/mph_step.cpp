@@ -153,6 +153,9 @@ class MphStep final : public StepMethod<D, Backend> {
   }
 
   std::optional<Balance> balance() const override { return lastBalance_; }
+  std::vector<WallLoad> loads() const override {
+    return lastBalance_ ? lastBalance_->walls : std::vector<WallLoad>{};
+  }
 
   const CellGrid<D>& grid() const override { return pairs_.grid; }
   const CellOwners<D>& owners() const override { return neighbourhood_.owners(); }

@@ -256,6 +256,7 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     report.fallbacks = solved.fallbacks;
     report.failures = std::move(solved.failures);
     report.balance = method->balance();
+    report.loads = method->loads();
     report.rigid = particles.rigid.bodies;
     return report;
   }

@@ -21,7 +21,7 @@ class ProbeWriter {
   void append(double time, const Frame& fluid, const Frame& walls);
   /// Of one that is summed.
   void append(double time, const PartSums& sums);
-  /// Of a load; `walls`: those of the balance.
+  /// Of a load; `walls`: what the walls of the case bear, in their order.
   void append(double time, const std::vector<WallLoad>& walls);
 
  private:

@@ -110,10 +110,11 @@ struct Case {
   }
   /// Whether the number of fluid particles changes.
   bool isOpen() const { return hasInflow() || !outflows.empty(); }
-  /// Whether the balance of each step is computed: for its file, or for what walls bear.
-  bool needsBalance() const {
-    return output.balance || std::ranges::any_of(probes, [](const Probe& p) { return p.kind == ProbeKind::Load; });
+  bool hasLoads() const {
+    return std::ranges::any_of(probes, [](const Probe& p) { return p.kind == ProbeKind::Load; });
   }
+  /// Whether the balance of each step is computed: for its file, or for what walls bear. Of MPH-I.
+  bool needsBalance() const { return output.balance || hasLoads(); }
   bool hasSurfaceTension() const {
     return std::ranges::any_of(materials, [](const Material& m) { return m.surfaceTension > 0; });
   }

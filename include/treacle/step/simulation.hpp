@@ -76,6 +76,7 @@ struct StepReport {
   Watched watched;
   std::vector<std::string> warnings;  // of the watch
   std::optional<Balance> balance;     // with OutputSettings::balance
+  std::vector<WallLoad> loads;        // per wall body of the case, where one has a probe, or with a balance
   std::optional<FlowReport> flow;     // where the case is open
   std::vector<RigidBody> rigid;       // per body of the case, after the step, where some are rigid
   PhaseSeconds seconds;
