@@ -30,6 +30,15 @@ void requireLoad(const Checker& at, const Probe& p) {
     at.fail({"body"}, fmt::format("'{}' is fluid; expected the name of a wall or rigid body", p.body));
 }
 
+/// Elsewhere nothing can ever be read.
+void requireInside(const Checker& at, const Vec<3>& x) {
+  const Domain& domain = at.wholeCase().domain;
+  for (int k = 0; k < at.wholeCase().dimensions; ++k)
+    if (!(x[k] >= domain.min[k] && x[k] <= domain.max[k]))
+      at.fail({"point"}, fmt::format("expected a point of the domain, {} to {} m along {}, found {}",
+                                     domain.min[k], domain.max[k], "xyz"[k], x[k]));
+}
+
 void requireRectangle(const Checker& at, const Probe& p) {
   at.requireDirection("along", p.along);
   at.requireDirection("up", p.up);
@@ -44,6 +53,7 @@ void requireSound(const Checker& at, const ProbeBox& b) { at.requireOrder(b.min,
 void requireSound(const Checker& at, const Probe& p) {
   requireFileName(at, p.name);
   if (p.kind == ProbeKind::Load) return requireLoad(at, p);
+  if (p.kind == ProbeKind::Point) requireInside(at, p.point);
   if (p.kind == ProbeKind::Plane) requireRectangle(at, p);
   if ((p.kind == ProbeKind::Line || p.kind == ProbeKind::Height) && p.from == p.to)
     at.fail({"to"}, "expected a point other than from");

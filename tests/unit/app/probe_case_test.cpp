@@ -92,6 +92,7 @@ const Bad mistakes[] = {
     {"corner.kind='point'", "unknown key 'kind' in [[probe]] 'corner' (point)"},
     {"corner.type='dot'", "expected 'point', 'line', 'plane', 'height', 'flow', 'region' or 'load', found 'dot'"},
     {"corner.normal=[1,0]", "unknown key 'normal' in [[probe]] 'corner' (point)"},
+    {"corner.point=[1e-3,20e-3]", "expected a point of the domain, -0.004 to 0.012 m along y, found 0.02"},
     {"corner.name='a/b'", "expected letters, digits and . _ - +"},
     {"corner.name='level'", "two [[probe]] are named 'level'"},
     {"corner.interval=-1", "expected a number not less than 0 [s], found -1"},
