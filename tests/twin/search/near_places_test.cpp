@@ -18,7 +18,7 @@ void compareNear(std::uint32_t fluid, std::uint32_t wall, double reach) {
   for (const Vec<D>& x : r.particles.position)
     for (int k = 0; k < D; ++k) low[k] = std::min(low[k], x[k]), high[k] = std::max(high[k], x[k]);
   const Vec<3> size = high - low;
-  const ProbePlaces places{high, {-0.3 * size[0], 0, 0}, {0, -0.2 * size[1], 0}, 2, 2};
+  const ProbePlaces places{low, {0.3 * size[0], 0, 0}, {0, 0.2 * size[1], 0}, 2, 2};
   const auto near = Surroundings<D>::of(places, reach * size[0], {low, high, {true, true, false}});
   Context<Cuda> context;
   const Particles<D, Cuda> device = onDevice(context, r.particles);
