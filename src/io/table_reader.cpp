@@ -2,6 +2,7 @@
 
 #include "case_document.hpp"
 #include "suggestion.hpp"
+#include "time_table.hpp"
 #include "treacle/model/expression.hpp"
 
 #include <algorithm>
@@ -312,8 +313,16 @@ TimeFunction TableReader::function(const Key& key, const toml::node& node) const
     }
   } else if (const toml::table* table = node.as_table()) {
     const Section section(*table, titleOf(key.name));
-    section.requireKnown({"times", "values"}, {}, "");
+    section.requireKnown({"times", "values", "file", "column"}, {}, "");
     const TableReader reader(case_, sections_, section, path_);
+    if (table->contains("file")) {
+      if (table->contains("times") || table->contains("values"))
+        throw section_.error(key.name, "expected either file or times and values, found both");
+      std::string path, column;
+      reader({"file", true}, path, keys::file);
+      reader({"column"}, column);
+      return readTimeTable(path, column);
+    }
     reader({"times", true, "s"}, f.times);
     if (f.times.empty()) throw section_.error(key.name, "expected at least one time, found none");
     reader({"values", true, key.unit, key.bound}, f.values);

@@ -1,5 +1,6 @@
 #include "treacle/model/nozzle.hpp"
 
+#include "polygon.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/model/create.hpp"
 #include "treacle/model/wall_motion.hpp"
@@ -10,6 +11,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace treacle {
 namespace {
@@ -78,9 +80,41 @@ std::vector<Vec<N>> discOf(double radius, double inner, double wanted) {
   return best;
 }
 
+/// By the sides that a way from the point along the first axis crosses.
+bool isInside(const std::vector<Vec<2>>& polygon, const Vec<2>& x) {
+  bool inside = false;
+  for (std::size_t k = 0; k < polygon.size(); ++k) {
+    const Vec<2>&a = polygon[k], &b = polygon[(k + 1) % polygon.size()];
+    if ((a[1] > x[1]) != (b[1] > x[1]) && x[0] < a[0] + (x[1] - a[1]) / (b[1] - a[1]) * (b[0] - a[0]))
+      inside = !inside;
+  }
+  return inside;
+}
+
+/// Of the lattices with a particle in the centre, or between some, the one whose number is the nearest to
+/// `wanted`.
+template <int N>
+std::vector<Vec<N>> polygonOf(const std::vector<Vec<2>>& points, double spacing, double wanted) {
+  std::vector<Vec<N>> best;
+  if constexpr (N == 2) {
+    Vec<2> most{};
+    for (const Vec<2>& x : points)
+      for (int k = 0; k < 2; ++k) most[k] = std::max(most[k], std::abs(x[k]) / spacing);
+    const auto off = [&](const std::vector<Vec<2>>& p) {
+      return std::abs(static_cast<double>(p.size()) - wanted);
+    };
+    for (const Vec<2>& shift : {Vec<2>{0, 0}, Vec<2>{0.5, 0}, Vec<2>{0, 0.5}, Vec<2>{0.5, 0.5}}) {
+      auto places = latticeOf<2>(most, shift, [&](const Vec<2>& x) { return isInside(points, spacing * x); });
+      if (best.empty() || off(places) < off(best)) best = std::move(places);
+    }
+  }
+  return best;
+}
+
 template <int N>
 double areaOf(const Nozzle& n) {
   const double pi = std::numbers::pi;
+  if (n.kind == NozzleKind::Polygon) return 0.5 * std::abs(signedArea2(n.points));
   if (n.kind == NozzleKind::Rectangle) return N == 1 ? n.width : n.width * n.height;
   const auto disc = [&](double r) { return N == 1 ? 2 * r : pi * r * r; };
   return disc(n.radius) - disc(n.innerRadius);
@@ -90,6 +124,7 @@ template <int N>
 std::vector<Vec<N>> placesAcross(const Nozzle& n, double spacing) {
   if (n.kind == NozzleKind::Disc)
     return discOf<N>(n.radius / spacing, n.innerRadius / spacing, areaOf<N>(n) / std::pow(spacing, N));
+  if (n.kind == NozzleKind::Polygon) return polygonOf<N>(n.points, spacing, areaOf<N>(n) / std::pow(spacing, N));
   Vec<N> sides;
   sides[0] = n.width / spacing;
   if constexpr (N > 1) sides[1] = n.height / spacing;

@@ -27,15 +27,16 @@ void requireTorus(const Checker& at, const Shape& s) {
             fmt::format("expected less than tube_radius = {}, found {}", s.tubeRadius, s.innerRadius));
 }
 
-void requirePolygon(const Checker& at, const Shape& s) {
+/// Corners in order.
+void requireOutline(const Checker& at, const std::vector<Vec<2>>& points) {
   constexpr std::size_t most = 10'000;
-  const std::size_t count = s.points.size();
+  const std::size_t count = points.size();
   if (count < 3 || count > most)
     at.fail({"points"}, fmt::format("expected 3 to {} points, the corners in order, found {}", most, count));
   const auto text = [&](std::size_t k) {
-    return fmt::format("({}, {})", s.points[k % count][0], s.points[k % count][1]);
+    return fmt::format("({}, {})", points[k % count][0], points[k % count][1]);
   };
-  if (const auto sides = crossingSides(s.points)) {
+  if (const auto sides = crossingSides(points)) {
     const auto [a, b] = *sides;
     if (a == b)
       at.fail({"points"},
@@ -44,7 +45,11 @@ void requirePolygon(const Checker& at, const Shape& s) {
                                     "whose sides meet nowhere else",
                                     text(a), text(a + 1), text(b), text(b + 1)));
   }
-  if (signedArea2(s.points) == 0) at.fail({"points"}, "expected a polygon with an area, found points in a line");
+  if (signedArea2(points) == 0) at.fail({"points"}, "expected a polygon with an area, found points in a line");
+}
+
+void requirePolygon(const Checker& at, const Shape& s) {
+  requireOutline(at, s.points);
   if (at.wholeCase().dimensions == 3 && !(s.bottom < s.top))
     at.fail({"top"}, fmt::format("expected more than bottom = {}, found {}", s.bottom, s.top));
 }
@@ -103,6 +108,11 @@ void requireSound(const Checker& at, const Nozzle& n) {
   at.requireDirection("direction", n.direction);
   if (n.kind == NozzleKind::Disc && n.innerRadius >= n.radius)
     at.fail({"inner_radius"}, fmt::format("expected less than radius = {}, found {}", n.radius, n.innerRadius));
+  if (n.kind == NozzleKind::Polygon) {
+    if (at.wholeCase().dimensions == 2)
+      at.fail({"shape"}, "a polygon has two dimensions; in the plane an opening is a \"rectangle\" with a width");
+    requireOutline(at, n.points);
+  }
   if (norm(cross(n.up, n.direction)) <= 1e-6 * norm(n.up) * norm(n.direction) && norm(n.up) > 0)
     at.fail({"up"}, "expected a vector that is not along the direction");
 }

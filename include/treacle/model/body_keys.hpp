@@ -100,10 +100,13 @@ void visit(auto& v, Like<Nozzle> auto& n, const Case& c) {
     v({"inner_radius", optional, "m", notNegative}, n.innerRadius);
     return;
   }
-  v({"width", required, "m", positive}, n.width);
-  if (c.dimensions == 2) return;
-  v({"height", required, "m", positive}, n.height);
-  v({"up", optional, "any unit"}, n.up);
+  if (n.kind == NozzleKind::Rectangle) {
+    v({"width", required, "m", positive}, n.width);
+    if (c.dimensions == 3) v({"height", required, "m", positive}, n.height);
+  } else {
+    v({"points", required, "m"}, n.points);
+  }
+  if (c.dimensions == 3) v({"up", optional, "any unit"}, n.up);
 }
 
 /// What an inflow has in place of a shape, among the keys of its body.

@@ -6,10 +6,11 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace treacle {
 
-enum class NozzleKind { Disc, Rectangle };
+enum class NozzleKind { Disc, Rectangle, Polygon };
 
 /// The opening that fluid comes out of. In two dimensions it is a segment across the direction, a rectangle its
 /// width alone, a disc with a radius.
@@ -20,6 +21,8 @@ struct Nozzle {
   double radius = 0, innerRadius = 0;  // disc, ring [m]
   double width = 0, height = 0;        // rectangle [m]
   Vec<3> up{};                         // along the height, as far as it is across the direction; zero: any
+  // Of a polygon, from the centre: along the width, which is direction x up, and along up [m].
+  std::vector<Vec<2>> points{};
 
   bool operator==(const Nozzle&) const = default;
 };

@@ -35,7 +35,8 @@ inline constexpr Named<BodyKind> body[] = {{"fluid", BodyKind::Fluid},
                                            {"wall", BodyKind::Wall},
                                            {"inflow", BodyKind::Inflow},
                                            {"rigid", BodyKind::Rigid}};
-inline constexpr Named<NozzleKind> nozzle[] = {{"disc", NozzleKind::Disc}, {"rectangle", NozzleKind::Rectangle}};
+inline constexpr Named<NozzleKind> nozzle[] = {
+    {"disc", NozzleKind::Disc}, {"rectangle", NozzleKind::Rectangle}, {"polygon", NozzleKind::Polygon}};
 inline constexpr Named<OutflowKind> outflow[] = {{"box", OutflowKind::Box}, {"plane", OutflowKind::Plane}};
 inline constexpr Named<ProbeKind> probe[] = {{"point", ProbeKind::Point}, {"line", ProbeKind::Line},
                                              {"plane", ProbeKind::Plane}, {"height", ProbeKind::Height},

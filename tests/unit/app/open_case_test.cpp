@@ -52,6 +52,34 @@ TEST(OpenCase, IsReadAndWritten) {
   EXPECT_EQ(c.outflows[0].max[1], 14e-3);
 }
 
+/// Beside the case, by name or the second column; what is wrong is said with the line.
+TEST(OpenCase, TablesOfTimeComeFromFiles) {
+  Workshop shop;
+  shop.put("data/pump.csv", "# of the pump\n\"time\";speed;\"back pressure\"\n0;0.1;7\n0.5;0.2;8\n\n2;0.3;9\n");
+  shop.put("data/bare.txt", "0 0.5\n1\t0.25\n");
+  const auto speedOf = [&](const std::string& value) {
+    shop.put("case.toml", replaced(pouring, "speed = 0.2", "speed = " + value));
+    return *readCase(shop / "case.toml").bodies[0].inflow.speed;
+  };
+  const TimeFunction pump = speedOf("{file = 'data/pump.csv'}");
+  EXPECT_THAT(pump.times, testing::ElementsAre(0, 0.5, 2));
+  EXPECT_THAT(pump.values, testing::ElementsAre(0.1, 0.2, 0.3));
+  EXPECT_THAT(speedOf("{file = 'data/pump.csv', column = 'back pressure'}").values, testing::ElementsAre(7, 8, 9));
+  EXPECT_THAT(speedOf("{file = 'data/bare.txt'}").values, testing::ElementsAre(0.5, 0.25));
+  const auto message = [&](const std::string& value) { return messageOf<InputError>([&] { speedOf(value); }); };
+  EXPECT_THAT(message("{file = 'data/pump.csv', column = 'pressure'}"),
+              HasSubstr("pump.csv:2: no column 'pressure'; expected 'speed' or 'back pressure'"));
+  EXPECT_THAT(message("{file = 'data/bare.txt', column = 'x'}"), HasSubstr("no column 'x'"));
+  shop.put("data/bare.txt", "0 1\n0.5 x\n");
+  EXPECT_THAT(message("{file = 'data/bare.txt'}"), HasSubstr("bare.txt:2: expected numbers, found 'x'"));
+  shop.put("data/bare.txt", "0 1\n0.5\n");
+  EXPECT_THAT(message("{file = 'data/bare.txt'}"), HasSubstr("bare.txt:2: expected 2 numbers or more, found 1"));
+  shop.put("data/bare.txt", "0 1\n1 1\n0.5 1\n");
+  EXPECT_THAT(message("{file = 'data/bare.txt'}"), HasSubstr("expected rising times, found 0.5 after 1"));
+  shop.put("data/bare.txt", "time,speed\n");
+  EXPECT_THAT(message("{file = 'data/bare.txt'}"), HasSubstr("bare.txt: expected rows of a time and values"));
+}
+
 TEST(OpenCase, MotionsAndRigidBodiesAreReadAndWritten) {
   Workshop shop;
   for (const char* motion :
@@ -86,6 +114,10 @@ const Bad mistakes[] = {
     {"jet.nozzle.direction=[0,0]", "expected a direction, found a vector of length 0"},
     {"jet.nozzle.radius=1", "unknown key 'radius' in the nozzle of [[body]] 'jet' (rectangle)"},
     {"jet.nozzle.width=0", "expected a positive number [m], found 0"},
+    {"jet.nozzle={shape='polygon',center=[0,8e-3],direction=[0,-1],points=[[0,0],[1,0],[0,1]]}",
+     "a polygon has two dimensions"},
+    {"jet.speed={file='missing.csv'}", "missing.csv"},
+    {"jet.speed={file='a.csv', times=[0]}", "expected either file or times and values, found both"},
     {"jet.shape='box'", "unknown key 'shape' in [[body]] 'jet' (inflow)"},
     {"rim.max=[0,0]", "expected more than min"},
     {"rim.normal=[1,0]", "unknown key 'normal' in [[outflow]] 'rim' (box)"},

@@ -78,6 +78,25 @@ TEST(NozzleLayers, ARectangleStandsAlongItsUp) {
   EXPECT_THAT(notes, testing::ElementsAre(testing::HasSubstr("2 % less than the 0.102 m2 of its nozzle")));
 }
 
+/// An L, which is not convex, upright: along the width goes direction x up.
+TEST(NozzleLayers, APolygonHasItsOutline) {
+  const Case c = caseOf(3);
+  Body b = inflow(NozzleKind::Polygon);
+  b.inflow.nozzle.direction = {0, 0, -1};
+  b.inflow.nozzle.up = {0, 1, 0};
+  b.inflow.nozzle.points = {{-0.2, -0.3}, {0.4, -0.3}, {0.4, -0.1}, {0, -0.1}, {0, 0.3}, {-0.2, 0.3}};
+  const NozzleLayers<3> layers(c, b);
+  EXPECT_NEAR(layers.openingArea(), 0.2, 1e-15);
+  EXPECT_EQ(layers.size(), 20u);
+  for (const Vec<3>& x : layers.layer(0, 0)) {
+    const double u = x[0] - 1, v = x[1] - 2;  // (0, 0, -1) x (0, 1, 0) = (1, 0, 0)
+    EXPECT_TRUE((u > -0.2 && u < 0 && v > -0.3 && v < 0.3) || (u > 0 && u < 0.4 && v > -0.3 && v < -0.1));
+  }
+  b.inflow.nozzle.points = {{-1.04, -0.9}, {1.03, -0.95}, {0.02, 0.97}};
+  const NozzleLayers<3> triangle(c, b);
+  EXPECT_NEAR(triangle.area(), triangle.openingArea(), 0.02 * triangle.openingArea());
+}
+
 TEST(NozzleLayers, InAPlaneAreASegment) {
   const Case c = caseOf(2);
   Body b = inflow(NozzleKind::Disc);
