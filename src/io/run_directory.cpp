@@ -141,11 +141,14 @@ fs::path RunDirectory::framePath(std::string_view group, std::size_t frame,
   return path_ / frameName(group, frame, inPieces ? "pvtp" : "vtp");
 }
 
-void RunDirectory::writeFrame(const Frame& fluid, const Frame& walls, const OutputSettings& settings) {
+std::uint64_t RunDirectory::writeFrame(const Frame& fluid, const Frame& walls, const OutputSettings& settings) {
   const std::size_t frame = frameCount();
-  writeVtp(fluidFrame(frame), fluid, settings.fields, settings.precision);
-  writeVtp(wallsFrame(frame), walls, settings.fields, settings.precision);
+  const auto write = [&](const fs::path& path, const Frame& group) {
+    return writeVtp(path, group, settings.fields, settings.precision, settings.compression);
+  };
+  const std::uint64_t bytes = write(fluidFrame(frame), fluid) + write(wallsFrame(frame), walls);
   addFrame(fluid.time, "vtp", "vtp");
+  return bytes;
 }
 
 void RunDirectory::joinPieces(const FramePieces& pieces) {

@@ -1,38 +1,40 @@
 #include "treacle/io/atomic_file.hpp"
 #include "treacle/io/vtp.hpp"
+#include "vtk_blocks.hpp"
 #include "vtk_xml.hpp"
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <functional>
+#include <cstring>
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace treacle {
 
 namespace {
 
-/// One array of the appended block: its description and how to write its values.
+/// One array of the appended data.
 struct DataArray {
   std::string_view name, type;
   int components;
-  std::uint64_t bytes;
-  std::function<void(AtomicFile&)> writeValues;
+  ArrayBytes values;
+  std::uint64_t offset = 0;  // [B] from the start of the appended data, known once it is written
 };
 
 /// `value(k)` is scalar k of tuples * components, converted to T on the way out, a block at a time: a frame is
 /// never held twice.
 template <class T, class Value>
 DataArray dataArray(std::string_view name, int components, std::size_t tuples, Value value) {
+  static_assert(vtkBlock % sizeof(T) == 0);
   const std::size_t count = tuples * static_cast<std::size_t>(components);
-  return {name, vtkType<T>(), components, count * sizeof(T), [=](AtomicFile& file) {
-            std::vector<T> block(std::min<std::size_t>(count, 1 << 16));
-            for (std::size_t begin = 0; begin < count; begin += block.size()) {
-              const std::size_t size = std::min(block.size(), count - begin);
-              for (std::size_t k = 0; k < size; ++k) block[k] = static_cast<T>(value(begin + k));
-              file.write(block.data(), size * sizeof(T));
-            }
-          }};
+  const auto copy = [=](std::uint64_t begin, std::uint64_t end, char* out) {
+    for (std::uint64_t k = begin / sizeof(T); k < end / sizeof(T); ++k, out += sizeof(T)) {
+      const T converted = static_cast<T>(value(k));
+      std::memcpy(out, &converted, sizeof(T));
+    }
+  };
+  return {name, vtkType<T>(), components, {count * sizeof(T), copy}};
 }
 
 template <class Real>
@@ -67,32 +69,16 @@ std::vector<DataArray> pointData(const Frame& frame, const OutputFields& fields)
   return arrays;
 }
 
-std::string element(std::string_view name, const std::vector<DataArray>& arrays, std::uint64_t& offset) {
-  std::string xml = fmt::format("      <{}>\n", name);
-  for (const DataArray& a : arrays) {
-    xml += fmt::format(
-        "        <DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"appended\" "
-        "offset=\"{}\"/>\n",
-        a.type, a.name, a.components, offset);
-    offset += sizeof(std::uint64_t) + a.bytes;
-  }
-  return xml + fmt::format("      </{}>\n", name);
-}
+struct ArrayGroup {
+  std::string_view name;
+  std::vector<DataArray> arrays;
+};
 
-template <class Real>
-void write(const std::filesystem::path& path, const Frame& frame, const OutputFields& fields) {
-  const std::size_t count = frame.position.size();
-  const auto number = [](std::size_t k) { return k; };
-  const auto next = [](std::size_t k) { return k + 1; };
-  const std::vector<DataArray> data = pointData<Real>(frame, fields);
-  const std::vector<DataArray> points{vectorArray<Real>("position", frame.position)};
-  // A vertex per particle and not one for all: filters of ParaView that select cells then select particles.
-  const std::vector<DataArray> vertices{dataArray<std::int32_t>("connectivity", 1, count, number),
-                                        dataArray<std::int32_t>("offsets", 1, count, next)};
-
-  AtomicFile file(path);
-  file.write(fmt::format(R"(<?xml version="1.0"?>
-<VTKFile type="PolyData" version="1.0" byte_order="{}" header_type="UInt64">
+/// The file up to the appended data: as long whatever the offsets are.
+std::string header(const Frame& frame, const std::vector<ArrayGroup>& groups, OutputCompression compression) {
+  std::string xml = fmt::format(
+      R"(<?xml version="1.0"?>
+<VTKFile type="PolyData" version="1.0" byte_order="{}" header_type="UInt64"{}>
   <PolyData>
     <FieldData>
       <DataArray type="Float64" Name="TimeValue" NumberOfTuples="1" format="ascii">{}</DataArray>
@@ -100,29 +86,53 @@ void write(const std::filesystem::path& path, const Frame& frame, const OutputFi
     </FieldData>
     <Piece NumberOfPoints="{}" NumberOfVerts="{}" NumberOfLines="0" NumberOfStrips="0" NumberOfPolys="0">
 )",
-                         vtkByteOrder, frame.time, frame.dimensions, count, count));
-  std::uint64_t offset = 0;
-  file.write(element("PointData", data, offset));
-  file.write(element("Points", points, offset));
-  file.write(element("Verts", vertices, offset));
-  file.write("    </Piece>\n  </PolyData>\n  <AppendedData encoding=\"raw\">\n_");
-  for (const auto* group : {&data, &points, &vertices})
-    for (const DataArray& a : *group) {
-      file.write(&a.bytes, sizeof a.bytes);
-      a.writeValues(file);
+      vtkByteOrder,
+      compression == OutputCompression::None ? "" : fmt::format(" compressor=\"{}\"", vtkZlibCompressor),
+      frame.time, frame.dimensions, frame.position.size(), frame.position.size());
+  for (const ArrayGroup& group : groups) {
+    xml += fmt::format("      <{}>\n", group.name);
+    for (const DataArray& a : group.arrays)
+      xml += fmt::format(
+          "        <DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"appended\" "
+          "offset={:22}/>\n",
+          a.type, a.name, a.components, fmt::format("\"{}\"", a.offset));
+    xml += fmt::format("      </{}>\n", group.name);
+  }
+  return xml + "    </Piece>\n  </PolyData>\n  <AppendedData encoding=\"raw\">\n_";
+}
+
+template <class Real>
+std::uint64_t write(const std::filesystem::path& path, const Frame& frame, const OutputFields& fields,
+                    OutputCompression compression) {
+  const std::size_t count = frame.position.size();
+  const auto number = [](std::size_t k) { return k; };
+  const auto next = [](std::size_t k) { return k + 1; };
+  // A vertex per particle and not one for all: filters of ParaView that select cells then select particles.
+  std::vector<ArrayGroup> groups{{"PointData", pointData<Real>(frame, fields)},
+                                 {"Points", {vectorArray<Real>("position", frame.position)}},
+                                 {"Verts",
+                                  {dataArray<std::int32_t>("connectivity", 1, count, number),
+                                   dataArray<std::int32_t>("offsets", 1, count, next)}}};
+  AtomicFile file(path);
+  file.write(header(frame, groups, compression));
+  const std::uint64_t begin = file.size();
+  for (ArrayGroup& group : groups)
+    for (DataArray& a : group.arrays) {
+      a.offset = file.size() - begin;
+      compression == OutputCompression::None ? appendRaw(file, a.values) : appendCompressed(file, a.values);
     }
   file.write("\n  </AppendedData>\n</VTKFile>\n");
+  file.overwrite(0, header(frame, groups, compression));
   file.commit();
+  return file.size();
 }
 
 }  // namespace
 
-void writeVtp(const std::filesystem::path& path, const Frame& frame, const OutputFields& fields,
-              OutputPrecision precision) {
-  if (precision == OutputPrecision::Double)
-    write<double>(path, frame, fields);
-  else
-    write<float>(path, frame, fields);
+std::uint64_t writeVtp(const std::filesystem::path& path, const Frame& frame, const OutputFields& fields,
+                       OutputPrecision precision, OutputCompression compression) {
+  if (precision == OutputPrecision::Double) return write<double>(path, frame, fields, compression);
+  return write<float>(path, frame, fields, compression);
 }
 
 }  // namespace treacle

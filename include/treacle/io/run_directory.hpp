@@ -5,6 +5,7 @@
 #include "treacle/model/case.hpp"
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string_view>
@@ -36,8 +37,9 @@ class RunDirectory {
   /// Opens the directory of an existing run. Errors: InputError if there is none.
   static RunDirectory open(const std::filesystem::path& path);
 
-  /// Writes fluid and walls as the next frame and brings both indices up to date. Errors: RunError.
-  void writeFrame(const Frame& fluid, const Frame& walls, const OutputSettings& settings);
+  /// Writes fluid and walls as the next frame and brings both indices up to date. Returns the size of the two
+  /// files [B]. Errors: RunError.
+  std::uint64_t writeFrame(const Frame& fluid, const Frame& walls, const OutputSettings& settings);
   /// Makes these pieces, which stand under the names below, the next frame. A group that nobody has particles of
   /// has one file, as in writeFrame. Errors: RunError, also if a piece is not there.
   void joinPieces(const FramePieces& pieces);

@@ -123,6 +123,7 @@ void visit(auto& v, Like<OutputSettings> auto& o, const Case& c) {
   v({"fields"}, o.fields);
   v({"format"}, format);
   v({"precision"}, o.precision);
+  v({"compression"}, o.compression);
   v({"pieces"}, o.pieces);
   if (c.method.kind == MethodKind::MphI) v({"balance"}, o.balance);
 }

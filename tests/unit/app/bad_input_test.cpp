@@ -53,7 +53,9 @@ constexpr BadCase badCases[] = {
      "bad.toml:15:1: unknown key 'viscosity' in [[material]] 'syrup'; did you mean 'dynamic_viscosity' [Pa s]?"},
     {"unknownKeyNearNone", "interval", "zzz",
      "bad.toml:40:1: unknown key 'zzz' in [output]; expected 'interval', 'checkpoint_interval', 'fields', "
-     "'format', 'precision', 'pieces' or 'balance'"},
+     "'format', 'precision', 'compression', 'pieces' or 'balance'"},
+    {"unknownCompression", "interval = 1e-3", "interval = 1e-3\ncompression = \"lz4\"",
+     "bad.toml:41:15: compression in [output]: expected 'zlib' or 'none', found 'lz4'"},
     {"unknownPieces", "interval = 1e-3", "interval = 1e-3\npieces = \"two\"",
      "bad.toml:41:10: pieces in [output]: expected 'auto', 'one' or 'each', found 'two'"},
     {"unknownTable", "[gravity]", "[gravty]",
