@@ -32,7 +32,7 @@ std::vector<Vec<3>> positionsOfOthers(const Particles<D>& p) {
 }  // namespace
 
 bool writesPieces(const Case& c, const ParticleNumbers& particles, const Communicator& processes) {
-  if (processes.size() == 1 || c.output.pieces == OutputPieces::One) return false;
+  if (processes.size() == 1 || c.output.pieces == OutputPieces::One || c.output.surface) return false;
   return c.output.pieces == OutputPieces::Each || particles.fluid + particles.wall >= manyParticles;
 }
 

@@ -1,7 +1,7 @@
 #include "commands.hpp"
+#include "frame_number.hpp"
 #include "print.hpp"
 #include "run_log.hpp"
-#include "treacle/core/error.hpp"
 #include "treacle/io/case_reader.hpp"
 #include "treacle/io/history.hpp"
 #include "treacle/io/picture.hpp"
@@ -10,26 +10,7 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
-
 namespace treacle {
-namespace {
-
-std::size_t frameNumber(const PlotOptions& options, const RunDirectory& run) {
-  const std::size_t count = run.frameCount();
-  if (count == 0) throw InputError(fmt::format("{}: the run has no frame", run.path().string()));
-  if (options.frame == "last") return count - 1;
-  std::size_t number = 0;
-  const char* end = options.frame.data() + options.frame.size();
-  const auto [stop, error] = std::from_chars(options.frame.data(), end, number);
-  if (error != std::errc{} || stop != end || number >= count)
-    throw InputError(
-        fmt::format("--frame {}: expected 'last' or a number from 0 to {}", options.frame, count - 1));
-  return number;
-}
-
-}  // namespace
-
 void plotCommand(const PlotOptions& options) {
   const RunDirectory run = RunDirectory::open(options.directory);
   const Case c = readCase(run.caseFile(), {}, ShapeFiles::Leave);
@@ -38,7 +19,7 @@ void plotCommand(const PlotOptions& options) {
     if (output.empty()) output = run.historyPicture();
     drawHistory(output, readHistory(run.history()), c.title);
   } else {
-    const std::size_t frame = frameNumber(options, run);
+    const std::size_t frame = frameNumber(options.frame, run);
     if (output.empty()) output = run.framePicture(frame);
     PictureOptions picture;
     picture.field = options.field;

@@ -221,7 +221,10 @@ void Recorder::write(const Snapshot& s) {
     Frame fluid = fluidFrame(case_, s);
     const Frame walls = wallsFrame(s);
     const Arrangement arrangement = measureArrangement(fluid, walls, case_.domain, case_.spacing);
-    const std::uint64_t bytes = directory_.writeFrame(fluid, walls, case_.output);
+    std::uint64_t bytes = directory_.writeFrame(fluid, walls, case_.output);
+    if (case_.output.surface)
+      bytes += directory_.writeSurface(directory_.frameCount() - 1, freeSurface(fluid, case_.spacing),
+                                       SurfaceFormat::Vtp, case_.output.compression);
     frameStep_ = s.step;
     note(s.step, s.time, s.iterations, arrangement, {bytes, timer.lap()});
   }

@@ -25,6 +25,7 @@ struct OutputSettings {
   OutputPrecision precision = OutputPrecision::Single;
   OutputCompression compression = OutputCompression::Zlib;
   OutputPieces pieces = OutputPieces::Auto;
+  bool surface = false;  // of each frame, as triangles, beside it; three dimensions only
   bool balance = false;  // energy balance and loads on walls of each step; MPH-I only
 
   bool operator==(const OutputSettings&) const = default;

@@ -125,6 +125,7 @@ void visit(auto& v, Like<OutputSettings> auto& o, const Case& c) {
   v({"precision"}, o.precision);
   v({"compression"}, o.compression);
   v({"pieces"}, o.pieces);
+  v({"surface"}, o.surface);
   if (c.method.kind == MethodKind::MphI) v({"balance"}, o.balance);
 }
 

@@ -53,7 +53,9 @@ constexpr BadCase badCases[] = {
      "bad.toml:15:1: unknown key 'viscosity' in [[material]] 'syrup'; did you mean 'dynamic_viscosity' [Pa s]?"},
     {"unknownKeyNearNone", "interval", "zzz",
      "bad.toml:40:1: unknown key 'zzz' in [output]; expected 'interval', 'checkpoint_interval', 'fields', "
-     "'format', 'precision', 'compression', 'pieces' or 'balance'"},
+     "'format', 'precision', 'compression', 'pieces', 'surface' or 'balance'"},
+    {"surfaceInThePlane", "interval = 1e-3", "interval = 1e-3\nsurface = true",
+     "bad.toml:41:11: surface in [output]: found true in two dimensions; surfaces are those of three"},
     {"unknownCompression", "interval = 1e-3", "interval = 1e-3\ncompression = \"lz4\"",
      "bad.toml:41:15: compression in [output]: expected 'zlib' or 'none', found 'lz4'"},
     {"unknownPieces", "interval = 1e-3", "interval = 1e-3\npieces = \"two\"",
@@ -399,7 +401,7 @@ TEST_P(BadArguments, areRejectedWithReason) {
 }
 
 constexpr BadLine badLines[] = {
-    {"noCommand", "", "expected a command: run, check, plot, compare, convergence, import or info"},
+    {"noCommand", "", "expected a command: run, check, plot, surface, compare, convergence, import or info"},
     {"unknownCommand", "rum small.toml", "rum"},
     {"noCase", "run", "CASE is required"},
     {"unknownOption", "run small.toml --fast", "--fast"},

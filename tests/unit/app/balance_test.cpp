@@ -88,7 +88,7 @@ TEST(balance, isNotForIsph) {
   EXPECT_THAT(outcome.err,
               HasSubstr("case.toml:41:1: unknown key 'balance' in [output]: it belongs to the method 'mph-i'; "
                         "expected 'interval', 'checkpoint_interval', 'fields', 'format', 'precision', "
-                        "'compression' or 'pieces'"));
+                        "'compression', 'pieces' or 'surface'"));
 }
 
 }  // namespace

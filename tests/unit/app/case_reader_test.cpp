@@ -257,6 +257,7 @@ TEST(readCase, takesEveryKey) {
                      OutputPrecision::Double,
                      OutputCompression::None,
                      OutputPieces::Each,
+                     false,
                      true};
   expected.watch = {3, 4, 0.1, 0};
   EXPECT_EQ(c, expected);
