@@ -486,7 +486,8 @@ TEST(FullDisk, endsTheRunWithDiagnosisAndLeavesNoPartOfAFile) {
   Workshop shop;
   shop.put("small.toml", smallCase);
   // 4 KiB a file: enough for the texts, not for the walls of a frame.
-  const Outcome outcome = shop.call("run small.toml --threads 1", "trap '' XFSZ; ulimit -f 8;");
+  const Outcome outcome =
+      shop.call("run small.toml --threads 1 --set output.compression=none", "trap '' XFSZ; ulimit -f 8;");
   EXPECT_EQ(outcome.exitCode, 3);
   EXPECT_THAT(outcome.err, HasSubstr("small-run/frames/"));
   EXPECT_THAT(outcome.err, HasSubstr("File too large"));
