@@ -1,5 +1,6 @@
 #include "fill_field.hpp"
 
+#include "block_key.hpp"
 #include "treacle/core/parallel.hpp"
 
 #include <algorithm>
@@ -10,19 +11,16 @@
 namespace treacle {
 namespace {
 
-using Block = FillField::Block;
-
-constexpr int bits = 21;                        // of a key, per axis
-constexpr std::int64_t half = 1 << (bits - 1);  // blocks to either side of the origin
 constexpr int nodes = FillField::blockNodes;
 constexpr int nodesInAll = nodes * nodes * nodes;
 constexpr double splineReach = 2;  // [spacings]
 
 /// Radius of the ball that a particle fills at least, by the share at its place: one alone has 0.30, in a row
-/// 0.44, in a layer 0.67, at a corner of a lattice 0.58 [spacings].
-float ballRadius(double share) {
-  constexpr double ofSpacing3 = 0.75, lonely = 0.45, among = 0.52;
-  return static_cast<float>(ofSpacing3 * std::clamp((among - share) / (among - lonely), 0.0, 1.0));
+/// 0.44, in a layer 0.67, at a corner of a lattice 0.58. Triangles cut so much off a small ball that one of the
+/// volume of a particle, which has 0.62, must be larger [spacings].
+float ballRadius(double share, double node) {
+  constexpr double lonely = 0.45, among = 0.52;
+  return static_cast<float>((0.53 + 0.45 * node) * std::clamp((among - share) / (among - lonely), 0.0, 1.0));
 }
 
 /// Of nodes within their grid cells, so that nothing that is well placed, a lattice or a wall, meets them exactly:
@@ -37,26 +35,37 @@ double spline(double x) {
   return rest * rest * rest / 6;
 }
 
-std::uint64_t keyOf(const Block& b) {
-  std::uint64_t key = 0;
-  for (const int x : b) key = key << bits | static_cast<std::uint64_t>(x + half);
-  return key;
-}
+/// What particles make of the nodes of a block.
+struct BlockSums {
+  std::array<float, nodesInAll> share{};  // how much of them is filled
+  std::array<float, nodesInAll> ball{};   // 1/2 at the surface of the nearest ball, more inside
 
-Block blockOf(std::uint64_t key) {
-  Block block;
-  for (int k = 2; k >= 0; --k, key >>= bits)
-    block[static_cast<std::size_t>(k)] =
-        static_cast<int>(static_cast<std::int64_t>(key & ((1 << bits) - 1)) - half);
-  return block;
-}
-
-template <class F>
-void forEachNeighbour(const Block& b, F f) {
-  for (int x = -1; x <= 1; ++x)
-    for (int y = -1; y <= 1; ++y)
-      for (int z = -1; z <= 1; ++z) f(Block{b[0] + x, b[1] + y, b[2] + z});
-}
+  /// A particle at this place, from the first node on, with a ball of this radius [spacings]. False: it is too far
+  /// away.
+  bool add(const Vec<3, float>& at, float radius, double node) {
+    std::array<std::array<float, nodes>, 3> weight, square;
+    const double reach = splineReach / node;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const float place = at[static_cast<int>(k)];
+      if (!(place > -reach && place < nodes - 1 + reach)) return false;
+      for (std::size_t n = 0; n < nodes; ++n) {
+        const double x = (static_cast<double>(n) - place) * node;
+        weight[k][n] = static_cast<float>(spline(x)), square[k][n] = static_cast<float>(x * x);
+      }
+    }
+    for (std::size_t x = 0; x < nodes; ++x)
+      for (std::size_t y = 0; y < nodes; ++y) {
+        const float w = weight[0][x] * weight[1][y], d = square[0][x] + square[1][y];
+        if (w == 0) continue;
+        const std::size_t row = (x * nodes + y) * nodes;
+        for (std::size_t z = 0; z < nodes; ++z) share[row + z] += w * weight[2][z];
+        if (radius == 0) continue;
+        for (std::size_t z = 0; z < nodes; ++z)
+          ball[row + z] = std::max(ball[row + z], radius + 0.5F - std::sqrt(d + square[2][z]));
+      }
+    return true;
+  }
+};
 
 }  // namespace
 
@@ -76,7 +85,7 @@ void FillField::sort(const std::vector<Vec<3>>& position) {
     bool isNear = true;
     for (std::size_t k = 0; k < 3; ++k) {
       const double at = std::floor(nodesOf(position[i], k) / nodes);
-      isNear = isNear && std::abs(at) < half / 2 - 2;
+      isNear = isNear && std::abs(at) < mostBlocks;
       if (isNear) block[k] = static_cast<int>(at);
     }
     if (isNear) order.emplace_back(keyOf(block), static_cast<std::uint32_t>(i));
@@ -154,48 +163,24 @@ void FillField::findBalls(const std::vector<char>& deep) {
       for (int k = 0; k < 3; ++k) at[k] += nodes * double(block[static_cast<std::size_t>(k)]);
       double share = 0;
       forEachAround(at, [&](std::uint32_t, double weight) { share += weight; });
-      points_[i].ball = ballRadius(share);
+      points_[i].ball = ballRadius(share, node_);
     }
   });
 }
 
 bool FillField::values(const Block& block, float* out) const {
-  std::array<float, nodesInAll> share{}, balls{};
+  BlockSums sums;
   bool any = false;
-  const float toSpacings = static_cast<float>(node_);
   forEachNeighbour(block, [&](const Block& from) {
     const std::size_t b = find(from);
     if (b == keys_.size()) return;
-    for (std::uint32_t i = begin_[b]; i < begin_[b + 1]; ++i) {
-      std::array<std::array<float, nodes>, 3> weight, square;
-      bool touches = true;
-      for (std::size_t k = 0; k < 3; ++k) {
-        const float at = points_[i].nodes[static_cast<int>(k)] + static_cast<float>(nodes * (from[k] - block[k]));
-        touches = touches && at > -reach_ && at < nodes - 1 + reach_;
-        for (int n = 0; n < nodes && touches; ++n) {
-          const float x = (static_cast<float>(n) - at) * toSpacings;
-          weight[k][static_cast<std::size_t>(n)] = static_cast<float>(spline(x));
-          square[k][static_cast<std::size_t>(n)] = x * x;
-        }
-      }
-      if (!touches) continue;
-      const float ball = points_[i].ball;
-      any = true;
-      for (std::size_t x = 0; x < nodes; ++x) {
-        if (weight[0][x] == 0) continue;
-        for (std::size_t y = 0; y < nodes; ++y) {
-          const float w = weight[0][x] * weight[1][y], d = square[0][x] + square[1][y];
-          if (w == 0) continue;
-          float* s = &share[(x * nodes + y) * nodes];
-          for (std::size_t z = 0; z < nodes; ++z) s[z] += w * weight[2][z];
-          if (ball == 0) continue;
-          float* m = &balls[(x * nodes + y) * nodes];
-          for (std::size_t z = 0; z < nodes; ++z) m[z] = std::max(m[z], ball + 0.5F - std::sqrt(d + square[2][z]));
-        }
-      }
-    }
+    Vec<3, float> shift{};
+    for (std::size_t k = 0; k < 3; ++k)
+      shift[static_cast<int>(k)] = static_cast<float>(nodes * (from[k] - block[k]));
+    for (std::uint32_t i = begin_[b]; i < begin_[b + 1]; ++i)
+      any = sums.add(points_[i].nodes + shift, points_[i].ball, node_) || any;
   });
-  for (std::size_t k = 0; k < nodesInAll; ++k) out[k] = outside - std::max(share[k], balls[k]);
+  for (std::size_t k = 0; k < nodesInAll; ++k) out[k] = outside - std::max(sums.share[k], sums.ball[k]);
   return any;
 }
 

@@ -1,8 +1,8 @@
 #pragma once
 
+#include "block_key.hpp"
 #include "treacle/core/vec.hpp"
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -19,7 +19,6 @@ namespace treacle {
 /// particles all over them and around them, are not computed, nor are those far outside.
 class FillField {
  public:
-  using Block = std::array<int, 3>;
   static constexpr int blockNodes = 8;  // along an axis
 
   /// `node`: distance of nodes in spacings, 1/4 to 1. Particles whose position is not finite or absurdly far away

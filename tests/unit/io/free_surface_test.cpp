@@ -154,9 +154,11 @@ TEST_F(FreeSurfaceTest, SheetsAndDropsOfFewParticlesStay) {
   }
   Frame drops;
   for (int k = 0; k < 5; ++k) drops.position.push_back(spacing * Vec<3>{7.0 * k, 1.3 * k, -0.7 * k});
-  const FreeSurface surface = freeSurface(drops, spacing);
-  expectClosed(surface, 5);
-  EXPECT_NEAR(volumeRatio(surface, 5), 1, 0.05);  // 0.981
+  for (const double cell : {0.25, 0.5, 1.0}) {
+    const FreeSurface surface = freeSurface(drops, spacing, cell);
+    expectClosed(surface, 5);
+    EXPECT_NEAR(volumeRatio(surface, 5), 1, 0.1) << cell;  // 0.934, 1.011, 1.088
+  }
 }
 
 TEST_F(FreeSurfaceTest, DisorderAndCavitiesAreNoHoles) {
