@@ -6,8 +6,8 @@ import json
 import re
 import subprocess
 import time
-import zlib
 import xml.etree.ElementTree as ElementTree
+import zlib
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
