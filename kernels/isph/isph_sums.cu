@@ -175,6 +175,7 @@ void fillIsphMatrix(Context<Cuda>& context, const IsphPairs<D>& pairs, const Row
   template void sumOnFluid(Context<Cuda>&, const IsphPairs<D>&, const PressureSourceTerm<D>&); \
   template void sumOnFluid(Context<Cuda>&, const IsphPairs<D>&, const CorrectorTerm<D>&);      \
   template void sumOnWalls(Context<Cuda>&, const IsphPairs<D>&, const WallPressureTerm<D>&);   \
+  template void sumOnWalls(Context<Cuda>&, const IsphPairs<D>&, const WallForceTerm<D>&);      \
   template void preparePacked(Context<Cuda>&, const IsphPairs<D>&, PackedEntries<Cuda>&);      \
   template void fillIsphMatrix(Context<Cuda>&, const IsphPairs<D>&, const PressureRow<D>&,     \
                                const IsphMatrixParts<D, double>&);                             \

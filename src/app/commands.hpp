@@ -39,6 +39,7 @@ struct PlotOptions {
   std::string frame = "last";  // or a number
   PictureField field = PictureField::Speed;
   bool history = false;          // the curves of history.csv instead of a frame
+  std::string probe;             // what it has read instead of a frame
   std::filesystem::path output;  // empty: into the run directory
 };
 

@@ -165,11 +165,12 @@ void addConvergence(CLI::App& app, ConvergenceOptions& options) {
 }
 
 void addPlot(CLI::App& app, PlotOptions& options) {
-  CLI::App* plot = app.add_subcommand("plot", "Draw a frame or the history of a run as PNG");
+  CLI::App* plot = app.add_subcommand("plot", "Draw a frame, the history or a probe of a run as PNG");
   plot->add_option("DIR", options.directory, "Run directory")->required();
   plot->add_option("--frame", options.frame, "Number of the frame, or last")->type_name("N");
   addChoice<PictureField>(*plot, "--field", fieldNames, options.field, "What the colours show; default: speed");
   plot->add_flag("--history", options.history, "Curves of iterations, energies and extents over time");
+  plot->add_option("--probe", options.probe, "What a probe of the case has read")->type_name("NAME");
   plot->add_option("-o,--output", options.output, "PNG file; default: in the run directory")->type_name("FILE");
   plot->callback([&options] { plotCommand(options); });
 }

@@ -2,30 +2,53 @@
 #include "frame_number.hpp"
 #include "print.hpp"
 #include "run_log.hpp"
+#include "treacle/core/error.hpp"
 #include "treacle/io/case_reader.hpp"
 #include "treacle/io/history.hpp"
 #include "treacle/io/picture.hpp"
 #include "treacle/io/pvtp.hpp"
 #include "treacle/io/run_directory.hpp"
+#include "treacle/model/names.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <string_view>
+#include <vector>
+
 namespace treacle {
+namespace {
+
+const Probe& probeNamed(const std::string& name, const Case& c) {
+  const auto found = std::ranges::find(c.probes, name, &Probe::name);
+  if (found != c.probes.end()) return *found;
+  std::vector<std::string_view> names;
+  for (const Probe& probe : c.probes) names.push_back(probe.name);
+  throw InputError(names.empty() ? fmt::format("--probe {}: the case has no probes", name)
+                                 : fmt::format("--probe: {}", wrongWord(names, name)));
+}
+
+}  // namespace
+
 void plotCommand(const PlotOptions& options) {
   const RunDirectory run = RunDirectory::open(options.directory);
   const Case c = readCase(run.caseFile(), {}, ShapeFiles::Leave);
   std::filesystem::path output = options.output;
-  if (options.history) {
+  PictureOptions picture;
+  picture.field = options.field;
+  picture.spacing = c.spacing;
+  picture.gravity = c.gravity;
+  picture.title = c.title;
+  if (!options.probe.empty()) {
+    const Probe& probe = probeNamed(options.probe, c);
+    if (output.empty()) output = run.probePicture(probe.name);
+    drawProbe(output, readProbe(run.probe(probe.name)), probe, picture);
+  } else if (options.history) {
     if (output.empty()) output = run.historyPicture();
     drawHistory(output, readHistory(run.history()), c.title);
   } else {
     const std::size_t frame = frameNumber(options.frame, run);
     if (output.empty()) output = run.framePicture(frame);
-    PictureOptions picture;
-    picture.field = options.field;
-    picture.spacing = c.spacing;
-    picture.gravity = c.gravity;
-    picture.title = c.title;
     const std::size_t missing =
         drawFrame(output, readFrame(run.fluidFrame(frame)), readFrame(run.wallsFrame(frame)), picture);
     if (missing > 0)

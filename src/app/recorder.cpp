@@ -49,13 +49,14 @@ HistoryRow historyRow(const Case& c, const StepReport& r) {
 }  // namespace
 
 Recorder::Recorder(const Case& c, RunDirectory& directory, RunLog& log, double start, bool timings,
-                   CopyState copyState, OrderPieces orderPieces)
+                   CopyState copyState, ProbeRecorder::Measure measure, OrderPieces orderPieces)
     : case_(c),
       directory_(directory),
       log_(log),
       copyState_(std::move(copyState)),
       orderPieces_(std::move(orderPieces)),
       history_(directory.history(), {.flow = c.isOpen(), .timings = timings}),
+      probes_(c, directory, start, std::move(measure)),
       frames_(c.output.interval, c.time, start),
       checkpoints_(c.output.checkpointInterval, c.time, start),
       watch_(c),
@@ -68,7 +69,12 @@ Recorder::Recorder(const Case& c, RunDirectory& directory, RunLog& log, double s
   if (c.hasRigid()) rigid_.emplace(directory.rigidBodies(), c);
 }
 
-void Recorder::begin() { save(true, false); }
+void Recorder::begin() {
+  Timer timer;
+  probes_.begin();
+  outputSeconds_ += timer.lap();
+  save(true, false);
+}
 
 void Recorder::record(const StepReport& report) {
   if (steps_++ == 0) firstIterations_ = report.iterations;
@@ -86,8 +92,9 @@ void Recorder::record(const StepReport& report) {
   Timer timer;
   history_.append(historyRow(case_, report));
   if (report.flow) flow_ = *report.flow;
-  if (report.balance) balance_->append(report.step, report.time, *report.balance);
+  if (balance_ && report.balance) balance_->append(report.step, report.time, *report.balance);
   if (rigid_) rigid_->append(report.step, report.time, report.rigid);
+  probes_.record(report);
   outputSeconds_ += timer.lap();
   const bool frame = frames_.due(report.time), checkpoint = checkpoints_.due(report.time);
   save(frame, checkpoint);

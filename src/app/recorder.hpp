@@ -4,6 +4,7 @@
 #include "interval.hpp"
 #include "output_thread.hpp"
 #include "piece_writer.hpp"
+#include "probe_recorder.hpp"
 #include "run_log.hpp"
 #include "treacle/io/balance_writer.hpp"
 #include "treacle/io/history.hpp"
@@ -39,13 +40,13 @@ class Recorder {
   /// `start`: simulation time at which the run starts [s]. `timings`: the history has the seconds of the phases.
   /// `orderPieces`: frames are written in pieces; empty: they are not.
   Recorder(const Case& c, RunDirectory& directory, RunLog& log, double start, bool timings, CopyState copyState,
-           OrderPieces orderPieces = {});
+           ProbeRecorder::Measure measure, OrderPieces orderPieces = {});
 
-  /// The frame of the state at the start.
+  /// The frame of the state at the start, and what probes read there.
   void begin();
 
-  /// Rows of the history and, where the case wants it, the balance for every step, a frame and a checkpoint when
-  /// they are due.
+  /// Rows of the history and, where the case wants it, the balance for every step, what probes read, a frame and
+  /// a checkpoint when they are due.
   void record(const StepReport& report);
 
   /// Returns when all frames and checkpoints up to now are on disk.
@@ -88,6 +89,7 @@ class Recorder {
   HistoryWriter history_;
   std::optional<BalanceWriter> balance_;
   std::optional<RigidWriter> rigid_;
+  ProbeRecorder probes_;
   Interval frames_, checkpoints_;
   std::int64_t frameStep_ = -1, checkpointStep_ = -1;  // of the last ones on disk; written by the output thread
   std::int64_t lastStep_ = -1;                         // of the last report

@@ -49,7 +49,7 @@ void Run::execute(const std::vector<std::string>& warnings) {
     if (pieces_) ofPieces = [this](PieceOrder order, std::size_t frame) { return orderPieces(order, frame); };
     recorder_.emplace(
         case_, directory_, log_, start_.time, timings_, [this](Snapshot& s) { copyState(s); },
-        std::move(ofPieces));
+        [this](std::uint64_t probes) { return simulation_->measure(probes); }, std::move(ofPieces));
     recorder_->begin();
     advanceToEnd();
   });

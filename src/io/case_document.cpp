@@ -15,7 +15,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view setPrefix = "--set ";
-constexpr std::string_view namedLists[] = {"material", "body", "outflow"};  // arrays of tables addressed by name
+constexpr std::string_view namedLists[] = {"material", "body", "outflow",
+                                           "probe"};  // arrays of tables addressed by name
 
 InputError errorAt(const toml::source_region& source, const std::string& text) {
   return InputError(placeOf(source) + text);

@@ -1,5 +1,6 @@
 #include "canvas.hpp"
 #include "draw_axes.hpp"
+#include "draw_panels.hpp"
 #include "scale.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/io/picture.hpp"
@@ -7,21 +8,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace treacle {
 
 namespace {
 
-constexpr std::array<Rgb, 8> colors{{{0.13, 0.36, 0.60},
-                                     {0.85, 0.42, 0.08},
-                                     {0.10, 0.50, 0.35},
-                                     {0.42, 0.20, 0.52},
-                                     {0.75, 0.15, 0.20},
-                                     {0.30, 0.62, 0.80},
-                                     {0.55, 0.45, 0.10},
-                                     {0.40, 0.40, 0.43}}};
 constexpr Rgb gridColor{0.90, 0.90, 0.91};
 
 /// The plot area in pixels, and the iterations and decades that it shows.
@@ -114,7 +106,7 @@ void drawConvergence(const std::filesystem::path& path, const std::vector<Conver
   const double textLeft = area.left + 50;
   const double letters = theme.letters() * std::min(1.0, (width - 20 - textLeft) / widest);
   for (std::size_t k = 0; k < curves.size(); ++k) {
-    const Rgb color = colors[k % colors.size()];
+    const Rgb color = curveColors[k % curveColors.size()];
     drawCurve(canvas, area, curves[k], color, theme);
     const double y = legend + line * static_cast<double>(k);
     canvas.line({{area.left, y}, {area.left + 36, y}}, color, 4 * theme.unit);

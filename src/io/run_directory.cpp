@@ -48,6 +48,12 @@ bool isFrameName(std::string_view name) {
   return rest == ".vtp" || rest == ".pvtp" || rest == ".ply" || rest == ".png";
 }
 
+/// Likewise of probe() and probePicture().
+bool isProbeName(std::string_view name) {
+  if (name.ends_with(".tmp")) name.remove_suffix(4);
+  return name.ends_with(".csv") || name.ends_with(".png");
+}
+
 [[noreturn]] void unusable(const fs::path& path, std::string_view why) {
   throw InputError(fmt::format("output directory {}: {}", path.string(), why));
 }
@@ -120,10 +126,23 @@ void RunDirectory::removeRun() const {
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(path_ / "frames", error))
     if (isFrameName(entry.path().filename().string())) files.push_back(entry.path());
+  for (const auto& entry : fs::directory_iterator(path_ / "probes", error))
+    if (isProbeName(entry.path().filename().string())) files.push_back(entry.path());
   for (const fs::path& file : files) {
     fs::remove(file, error);
     if (error) unusable(path_, fmt::format("cannot remove {}: {}", file.string(), error.message()));
   }
+}
+
+void RunDirectory::makeRoomForProbes() const {
+  std::error_code error;
+  const fs::path probes = path_ / "probes";
+  fs::create_directories(probes, error);
+  if (error) throw RunError(fmt::format("cannot create {}: {}", probes.string(), error.message()));
+}
+fs::path RunDirectory::probe(std::string_view name) const { return path_ / fmt::format("probes/{}.csv", name); }
+fs::path RunDirectory::probePicture(std::string_view name) const {
+  return path_ / fmt::format("probes/{}.png", name);
 }
 
 fs::path RunDirectory::fluidFrame(std::size_t frame) const { return framePath("fluid", frame, fluidFrames_); }

@@ -61,6 +61,7 @@ void TableReader::prepare(Rotation&) {
 void TableReader::prepare(Nozzle& nozzle) { prepareKind("shape", nozzle.kind); }
 
 void TableReader::prepare(Outflow& outflow) { prepareKind("shape", outflow.kind); }
+void TableReader::prepare(Probe& probe) { prepareKind("type", probe.kind); }
 
 void TableReader::prepare(SolverSettings& solver) {
   if (const auto preconditioner = lookUp<PreconditionerKind>("preconditioner"))
@@ -108,6 +109,9 @@ std::vector<std::string_view> TableReader::knownKeys(const Nozzle& nozzle) const
 }
 std::vector<std::string_view> TableReader::knownKeys(const Outflow& outflow) const {
   return keysOfKind<OutflowKind>("shape", outflow, [](Outflow& o, OutflowKind kind) { o.kind = kind; });
+}
+std::vector<std::string_view> TableReader::knownKeys(const Probe& probe) const {
+  return keysOfKind<ProbeKind>("type", probe, [](Probe& p, ProbeKind kind) { p.kind = kind; });
 }
 std::vector<std::string_view> TableReader::knownKeys(const Rheology& rheology) const {
   return keysOfKind<RheologyModel>("model", rheology, [](Rheology& r, RheologyModel model) { r.model = model; });

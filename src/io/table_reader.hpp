@@ -91,6 +91,7 @@ class TableReader {
   void prepare(Rotation& rotation);
   void prepare(Nozzle& nozzle);
   void prepare(Outflow& outflow);
+  void prepare(Probe& probe);
   void prepare(SolverSettings& solver);
   void prepare(TimeSettings& time);
   void nameMethod();
@@ -120,6 +121,7 @@ class TableReader {
   std::vector<std::string_view> knownKeys(const Body& body) const;
   std::vector<std::string_view> knownKeys(const Nozzle& nozzle) const;
   std::vector<std::string_view> knownKeys(const Outflow& outflow) const;
+  std::vector<std::string_view> knownKeys(const Probe& probe) const;
   std::vector<std::string_view> knownKeys(const Rheology& rheology) const;
   std::vector<std::string_view> knownKeys(const ViscosityShift& shift) const;
   template <class E, class Table, class Set>

@@ -63,6 +63,7 @@ void fillIsphMatrix(Context<Cpu>&, const IsphPairs<D>& pairs, const Row& row, co
   template void sumOnFluid(Context<Cpu>&, const IsphPairs<D>&, const PressureSourceTerm<D>&); \
   template void sumOnFluid(Context<Cpu>&, const IsphPairs<D>&, const CorrectorTerm<D>&);      \
   template void sumOnWalls(Context<Cpu>&, const IsphPairs<D>&, const WallPressureTerm<D>&);   \
+  template void sumOnWalls(Context<Cpu>&, const IsphPairs<D>&, const WallForceTerm<D>&);      \
   template void fillIsphMatrix(Context<Cpu>&, const IsphPairs<D>&, const PressureRow<D>&,     \
                                const IsphMatrixParts<D, double>&);                            \
   template void fillIsphMatrix(Context<Cpu>&, const IsphPairs<D>&, const PressureRow<D>&,     \

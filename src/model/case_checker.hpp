@@ -199,5 +199,8 @@ void requireSound(const Checker& at, const Nozzle& nozzle);
 void requireSound(const Checker& at, const Inflow& inflow);
 void requireSound(const Checker& at, const Outflow& outflow);
 void requireSound(const Checker& at, const Body& body);
+// sound_probes.cpp
+void requireSound(const Checker& at, const ProbeBox& box);
+void requireSound(const Checker& at, const Probe& probe);
 
 }  // namespace treacle

@@ -42,7 +42,7 @@ struct AnySimulation::Held {
 namespace {
 
 /// What the first process asks of the others.
-enum class Order : int { Make, Advance, Copy, Share, Duty, Drop, End };
+enum class Order : int { Make, Advance, Copy, Measure, Share, Duty, Drop, End };
 
 struct DutyCall {
   int order;
@@ -113,6 +113,12 @@ void AnySimulation::copyParticles(AnyParticles& host) const {
   });
 }
 
+std::vector<ProbeReading> AnySimulation::measure(std::uint64_t probes) const {
+  give(processes_, Order::Measure);
+  if (processes_) processes_->broadcast(probes);
+  return part(processes_, [&] { return held_->visit([&](auto& s) { return s.measure(probes); }); });
+}
+
 ParticleNumbers AnySimulation::numbers() const {
   return held_->visit([](auto& s) { return s.numbers(); });
 }
@@ -181,6 +187,9 @@ void serveSimulation(const Case& c, AnyParticles particles, BackendKind backend,
           break;
         case Order::Copy:
           simulation->copyParticles(none);
+          break;
+        case Order::Measure:
+          simulation->measure(0);  // the first process says which
           break;
         case Order::Share:
           simulation->shares();

@@ -9,10 +9,12 @@
 #include "treacle/model/particles_copy.hpp"
 #include "treacle/search/particle_sort.hpp"
 #include "treacle/step/solve_stages.hpp"
+#include "wall_loads.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
+#include <vector>
 
 namespace treacle {
 
@@ -108,8 +110,10 @@ class IsphStep final : public StepMethod<D, Backend> {
     fillGhosts(state_.context, Held::Fluid, solution_.data());
     state_.velocity.resize(state_.context, pairs_.ownFluid());
     wallShare_.resize(state_.context, pairs_.ownFluid());
+    if (state_.theCase.hasLoads()) stopped_.resize(state_.context, pairs_.fluidCount);
     sumOnFluid(state_.context, pairs_,
-               CorrectorTerm<D>{solution_.data(), predicted_.data(), state_.velocity.data(), wallShare_.data()});
+               CorrectorTerm<D>{solution_.data(), predicted_.data(), state_.velocity.data(), wallShare_.data(),
+                                stopped_.data()});
   }
 
   std::span<const Vec<D>> transportVelocities() override {
@@ -131,7 +135,10 @@ class IsphStep final : public StepMethod<D, Backend> {
     copyValues(state_.context, std::span<const double>(solution_), pressure.data());
     clearValues(state_.context, pressure.subspan(pairs_.fluidCount));
     sumOnWalls(state_.context, pairs_, WallPressureTerm<D>{solution_.data(), pressure.data()});
+    if (state_.theCase.hasLoads()) sumLoadsOfWalls();
   }
+
+  std::vector<WallLoad> loads() const override { return loads_; }
 
   void describe(DiagnosticsInput<D>& in) const override {
     const std::uint32_t n = state_.particles.fluidCount;
@@ -155,13 +162,26 @@ class IsphStep final : public StepMethod<D, Backend> {
   std::size_t bytes() const override {
     return sort_.bytes() + fluidOfFluid_.bytes() + wallsOfFluid_.bytes() + fluidOfWalls_.bytes() +
            deficit_.bytes() + surface_.bytes() + predicted_.bytes() + source_.bytes() + solution_.bytes() +
-           transport_.bytes() + wallShare_.bytes() + pressure_.bytes() + viscosity_.bytes() + componentBytes();
+           transport_.bytes() + wallShare_.bytes() + stopped_.bytes() + wallForce_.bytes() + pressure_.bytes() +
+           viscosity_.bytes() + componentBytes();
   }
 
   /// Pairs up to this share of the kernel's radius make the smoother's matrix: 1.9 l with the usual kernel.
   static constexpr double nearShare = 0.79;
 
  private:
+  /// Before the step changes the particles' velocities, which an explicit viscous step has taken its forces of.
+  void sumLoadsOfWalls() {
+    const auto& rows = pairs_.fluidOfWalls;
+    fillGhosts(state_.context, Held::Fluid, stopped_.data());
+    wallForce_.resize(state_.context, rows.count);
+    const std::span<const Vec<D>> start = state_.particles.velocity;
+    sumOnWalls(state_.context, pairs_,
+               WallForceTerm<D>{solution_.data(), isImplicit() ? predicted_.data() : start.data(), stopped_.data(),
+                                std::isfinite(viscousLimit_), rows.first, wallForce_.data()});
+    loads_ = wallLoads(state_, loadsOfBodies<D, Backend>(state_, rows.first, pairs_.position, start, wallForce_));
+  }
+
   std::size_t componentBytes() const {
     std::size_t sum = 0;
     for (const auto& component : component_) sum += component.bytes();
@@ -260,6 +280,9 @@ class IsphStep final : public StepMethod<D, Backend> {
   Buffer<double, Backend> component_[D];   // of the viscous step's right-hand side
   Buffer<Vec<D>, Backend> transport_;
   Buffer<double, Backend> wallShare_;  // of the density in a full lattice
+  Buffer<double, Backend> stopped_;    // of CorrectorTerm, with ghosts; empty where nobody asks for loads
+  Buffer<Vec<D>, Backend> wallForce_;  // per own active wall particle, likewise [N/m3]
+  std::vector<WallLoad> loads_;        // of the last step
   IsphSolver<D, Backend, PressureRow<D>> pressure_;
   IsphSolver<D, Backend, ViscousRow<D>> viscosity_;
 };

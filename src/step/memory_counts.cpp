@@ -72,7 +72,7 @@ class Counter {
                                         if (wholeRows)
                                           gradientsOfWalls += nearEntries(pairs, list.first, list.last);
                                       });
-    if (c.output.balance)
+    if (c.needsBalance())
       countLists(pairs, fluid, active, {std::max(hn, hv), 0}, counts_.balanceLists, [](const ClusterList<>&) {});
     counts_.nearEntries = scaled(slicedFluid.near, ofFluid) + scaled(slicedWalls.near, ofWalls);
     counts_.stagedEntries = scaled(slicedFluid.staged, ofFluid) + scaled(slicedWalls.staged, ofWalls);

@@ -53,7 +53,7 @@ void planFields(const Case& c, const MemoryCounts& n, bool withGradient, MemoryS
   sum.keep<double>(fluid + 2 * n.active);
   sum.keep<Vec<D>>(fluid);
   if (c.heat) planHeat<D>(c, fluid, sum);
-  if (!c.output.balance) return;
+  if (!c.needsBalance()) return;
   planLists(n.balanceLists, sum);
   sum.keep<double>(fluid * (c.repulsionRadius() > 0 ? 2 : 1) + 2 * walls);
   sum.keep<Vec<D>>(walls);

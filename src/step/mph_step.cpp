@@ -134,7 +134,7 @@ class MphStep final : public StepMethod<D, Backend> {
     fillGhosts(state_.context, Held::Active, divergence_.data());
     bulkPressure<D>(state_.context, pairs_, divergence_, elastic_, state_.particles.pressure.span().first(active));
     if (rheology_) rheology_->accept(state_);
-    if (state_.theCase.output.balance) {
+    if (state_.theCase.needsBalance()) {
       if (!rigid_) wallForces_.prepare(state_, neighbourhood_);
       lastBalance_ = balance_.make(state_, pairs_, divergence_, elastic_, surface_ ? &*surface_ : nullptr);
     }
@@ -153,6 +153,9 @@ class MphStep final : public StepMethod<D, Backend> {
   }
 
   std::optional<Balance> balance() const override { return lastBalance_; }
+  std::vector<WallLoad> loads() const override {
+    return lastBalance_ ? lastBalance_->walls : std::vector<WallLoad>{};
+  }
 
   const CellGrid<D>& grid() const override { return pairs_.grid; }
   const CellOwners<D>& owners() const override { return neighbourhood_.owners(); }

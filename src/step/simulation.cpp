@@ -4,6 +4,7 @@
 #include "failure.hpp"
 #include "given_step.hpp"
 #include "held_walls.hpp"
+#include "measure.hpp"
 #include "moving_bodies.hpp"
 #include "open_boundaries.hpp"
 #include "own_particles.hpp"
@@ -255,6 +256,7 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     report.fallbacks = solved.fallbacks;
     report.failures = std::move(solved.failures);
     report.balance = method->balance();
+    report.loads = method->loads();
     report.rigid = particles.rigid.bodies;
     return report;
   }
@@ -333,6 +335,10 @@ std::uint32_t Simulation<D, Backend>::copyOwnParticles(Particles<D>& host) const
 template <int D, class Backend>
 ParticleNumbers Simulation<D, Backend>::numbers() const {
   return numbersOfAll(*state_, *state_->distant);
+}
+template <int D, class Backend>
+std::vector<ProbeReading> Simulation<D, Backend>::measure(std::uint64_t probes) const {
+  return treacle::measure(*state_, probes);
 }
 template <int D, class Backend>
 double Simulation<D, Backend>::time() const {

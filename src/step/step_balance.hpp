@@ -78,15 +78,8 @@ class StepBalance {
 
   void setLoads(FlowState<D, Backend>& state, const MphPairs<D>& pairs, Balance& balance) {
     const std::vector<LoadSums> loads = walls_.loads(state, pairs, state.velocity);
-    for (std::size_t b = 0; b < loads.size(); ++b) {
-      const Body& body = state.theCase.bodies[b];
-      if (!body.isWall()) continue;
-      const LoadSums& load = loads[b];
-      balance.wallPower -= load.power;
-      const Vec<3> center =
-          body.kind == BodyKind::Rigid ? state.rigid.bodies[b].center : wallCenter(body, state.time);
-      balance.walls.push_back({load.force, load.torque - cross(center, load.force)});
-    }
+    balance.walls = wallLoads(state, loads);
+    for (const WallLoad& load : balance.walls) balance.wallPower -= load.power;
   }
 
   WallForces<D, Backend>& walls_;

@@ -66,7 +66,7 @@ class StepHeat {
         conjugateGradient(context, a, k, rhs_, change_, {settings_.tolerance, settings_.maxIterations}, krylov_));
     a(change_, product_);
     setEach(context, HeatResult{constants, material, T, change_, rhs_, product_, next_}, own);
-    if (state.theCase.output.balance)
+    if (state.theCase.needsBalance())
       sums_ = sumHeat(context, HeatSums{constants, material, T, change_, next_, heating_, ofWalls_, ofSurface_});
   }
 

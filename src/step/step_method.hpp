@@ -9,6 +9,7 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 namespace treacle {
 
@@ -43,6 +44,8 @@ class StepMethod {
   virtual void accept() = 0;
   /// Of the step that was accepted last, where the case wants it.
   virtual std::optional<Balance> balance() const { return {}; }
+  /// What walls bear in that step, where the case wants it: per wall body, in the order of the case.
+  virtual std::vector<WallLoad> loads() const { return {}; }
   /// Completes what the diagnostics of a step are made of.
   virtual void describe(DiagnosticsInput<D>&) const {}
 

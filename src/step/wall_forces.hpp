@@ -5,10 +5,9 @@
 #include "treacle/mph/mph_balance.hpp"
 #include "treacle/mph/mph_neighbourhood.hpp"
 #include "treacle/mph/mph_repulsion.hpp"
-#include "treacle/step/balance_sums.hpp"
+#include "wall_loads.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
 namespace treacle {
@@ -50,13 +49,8 @@ class WallForces {
   /// Per body of the case, of all processes, after sum() with the velocities `u` [N], [N m] and [W]; in 2D per
   /// metre of depth.
   std::vector<LoadSums> loads(FlowState<D, Backend>& state, const MphPairs<D>& pairs, std::span<const Vec<D>> u) {
-    const std::uint32_t n = pairs.fluidCount, walls = pairs.ownEnd() - n;
-    const LoadTerms<D> terms{state.particles.body.span().subspan(n, walls), pairs.position.subspan(n, walls),
-                             u.subspan(n, walls), force_};
-    std::vector<LoadSums> loads = sumLoads<D>(state.context, terms, state.theCase.bodies.size());
-    const double volume = std::pow(pairs.spacing, D);
-    for (LoadSums& load : loads) load = {volume * load.force, volume * load.torque, volume * load.power};
-    return loads;
+    return loadsOfBodies<D, Backend>(state, pairs.fluidCount, pairs.position, u,
+                                     force_.span().first(pairs.ownEnd() - pairs.fluidCount));
   }
 
   std::span<const double> divergence() const { return divergence_; }  // the fluid's part, per wall particle [1/s]

@@ -73,6 +73,40 @@ TEST(SharedSimulation, FluidThatComesAndGoes) {
       {"filling-2d.toml", 60, {exact, plain, "resolution=4", "drain.min=[-0.02,0]", "drain.max=[0.065,0.0595]"}});
 }
 
+/// Sums are over all, and the first process gets all particles that are near, each once, walls too.
+TEST(SharedSimulation, ProbesReadTheSame) {
+  Case c = Settings{"dam-break-2d.toml", 0, {"solver.tolerance=1e-18", "solver.deflation=0"}}.read();
+  const auto probe = [&](ProbeKind kind, Vec<3> point, Vec<3> normal) {
+    Probe p;
+    p.name = std::to_string(c.probes.size()), p.kind = kind, p.point = point, p.normal = normal;
+    c.probes.push_back(p);
+  };
+  probe(ProbeKind::Region, {}, {});
+  probe(ProbeKind::Region, {0, 7.3e-3, 0}, {0.1, 1, 0});
+  probe(ProbeKind::Flow, {12e-3, 0, 0}, {1, 0, 0});
+  Probe line;
+  line.name = "line", line.kind = ProbeKind::Line, line.to = {20e-3, 20e-3, 0};
+  c.probes.push_back(line);
+  Simulation<2> shared(c, partOf<2>(c), 0, 0, &job()), alone(c, made<2>(c));
+  for (int k = 0; k < 5; ++k) shared.advance(), alone.advance();
+  const std::vector<ProbeReading> a = shared.measure(0b1111), b = alone.measure(0b1111);
+  ASSERT_EQ(a.size(), 4u);
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_NEAR(a[k].sums.volume, b[k].sums.volume, 1e-9 * b[k].sums.volume);
+    EXPECT_NEAR(a[k].sums.flow[0], b[k].sums.flow[0], 1e-9 * b[k].sums.volume);
+    EXPECT_NEAR(a[k].sums.moment[1], b[k].sums.moment[1], 1e-9 * b[k].sums.moment[1]);
+  }
+  if (job().rank() > 0) return;
+  const auto ids = [](const ProbeReading& reading) {
+    const Particles<2>& p = reading.particles.of<2>();
+    std::vector<std::uint32_t> sorted(p.id.begin(), p.id.end());
+    std::ranges::sort(sorted);
+    return std::pair(p.fluidCount, sorted);
+  };
+  EXPECT_GT(b[3].particles.of<2>().wallCount(), 20u);
+  EXPECT_EQ(ids(a[3]), ids(b[3]));
+}
+
 /// The velocities of bodies are found to a tolerance, in as many solves as roundings let it take.
 TEST(SharedSimulation, RigidBodies) {
   const Case c = Settings{"floating-block-2d.toml", 0, {"solver.deflation=0"}}.read();

@@ -3,6 +3,7 @@
 #include "treacle/io/convergence.hpp"
 #include "treacle/io/frame.hpp"
 #include "treacle/io/history.hpp"
+#include "treacle/io/probe_table.hpp"
 
 #include <cstddef>
 #include <filesystem>
@@ -47,6 +48,12 @@ std::size_t drawFrame(const std::filesystem::path& path, const Frame& fluid, con
 /// be written.
 void drawHistory(const std::filesystem::path& path, const std::vector<HistoryRow>& rows,
                  const std::string& title = {});
+
+/// Draws what a probe has read as PNG: of a line the profiles at some times, of a plane its last state, coloured
+/// by the field of the options, of all others curves over time. `options.spacing`: that of the case. Errors:
+/// InputError if it has read nothing, or nothing of the field; RunError if the file cannot be written.
+void drawProbe(const std::filesystem::path& path, const ProbeTable& table, const Probe& probe,
+               const PictureOptions& options);
 
 /// Draws residuals over iterations as PNG, on a logarithmic axis, one curve per solver; below it their names with
 /// iterations and milliseconds. Residuals that are zero or not finite are left out. `remark`: at the right of the

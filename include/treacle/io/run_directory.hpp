@@ -38,6 +38,9 @@ class RunDirectory {
   /// Opens the directory of an existing run. Errors: InputError if there is none.
   static RunDirectory open(const std::filesystem::path& path);
 
+  /// Makes the directory of the files of probes. Errors: RunError.
+  void makeRoomForProbes() const;
+
   /// Writes fluid and walls as the next frame and brings both indices up to date. Returns the size of the two
   /// files [B]. Errors: RunError.
   std::uint64_t writeFrame(const Frame& fluid, const Frame& walls, const OutputSettings& settings);
@@ -57,6 +60,8 @@ class RunDirectory {
   std::filesystem::path history() const { return path_ / "history.csv"; }
   std::filesystem::path balance() const { return path_ / "balance.csv"; }
   std::filesystem::path rigidBodies() const { return path_ / "rigid_bodies.csv"; }
+  std::filesystem::path probe(std::string_view name) const;
+  std::filesystem::path probePicture(std::string_view name) const;
   std::filesystem::path summary() const { return path_ / "summary.json"; }
   std::filesystem::path checkpoint() const { return path_ / "checkpoint.h5"; }
   std::filesystem::path fluidIndex() const { return path_ / "fluid.pvd"; }

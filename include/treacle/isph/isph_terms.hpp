@@ -159,6 +159,7 @@ struct CorrectorTerm {
   const Vec<D>* predicted;  // of fluid; walls: their velocity
   Vec<D>* velocity;
   double* wallShare = nullptr;  // of the particle's density in a full lattice, what walls make up [-]; may be null
+  double* stopped = nullptr;    // what it loses at walls, over sum V grad W of them [m2/s]; may be null
 
   TREACLE_HD void fluid(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d,
                         const Distance& r, double* sum) const {
@@ -187,10 +188,12 @@ struct CorrectorTerm {
     const WallContact& contact = pairs.contact;
     const double share = sum[3 * D + 1] * pairs.volume / pairs.latticeDensity;
     if (wallShare) wallShare[i] = share;
+    if (stopped) stopped[i] = 0;
     if (share > (pressure[i] > 0 ? contact.pressed : contact.touching) && norm2(towards) > 0) {
       const double away = share > contact.inside ? 0.02 * pairs.spacing / pairs.timeStep : 0, g = norm(towards);
       const double into = dot(v - wallVelocity, towards) / g + away;
       if (into > 0) v -= (into / g) * towards;
+      if (into > 0 && stopped) stopped[i] = into / g;
     }
     velocity[i] = v;
   }
@@ -211,6 +214,30 @@ struct WallPressureTerm {
   }
   TREACLE_HD void store(const IsphPairs<D>&, std::uint32_t i, const double* sum) const {
     result[i] = sum[1] > 0 ? sum[0] / sum[1] : 0;
+  }
+};
+
+/// Force on walls: what no-slip walls, pressures and the walls that stop particles take from the momentum of the
+/// fluid in a step. Rows of walls: i is the wall.
+template <int D>
+struct WallForceTerm {
+  static constexpr int values = D;
+  const double* pressure;   // of fluid [Pa]
+  const Vec<D>* velocity;   // that the viscous step takes its forces of, of fluid and walls [m/s]
+  const double* stopped;    // of CorrectorTerm
+  bool viscous;             // there is a viscous step
+  std::uint32_t firstWall;  // index of the first one that has a force
+  Vec<D>* force;            // [N/m3]
+
+  TREACLE_HD void fluid(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d,
+                        const Distance& r, double* sum) const {
+    const double slope = pairs.slope(r), p = pressure[j];
+    const double push = p + pairs.wallPressure(p, j, i, -1.0 * d) + pairs.density(j) / pairs.timeStep * stopped[j];
+    const double drag = viscous && pairs.noSlip ? 4 * pairs.pairViscosity(j, i) : 0;
+    for (int k = 0; k < D; ++k) sum[k] += slope * (drag * (velocity[j][k] - velocity[i][k]) - push * d[k]);
+  }
+  TREACLE_HD void store(const IsphPairs<D>&, std::uint32_t i, const double* sum) const {
+    for (int k = 0; k < D; ++k) force[i - firstWall][k] = sum[k];
   }
 };
 

@@ -10,8 +10,9 @@ namespace treacle {
 /// What the fluid exerts on a wall body by pressure, viscosity and repulsion; in 2D per metre of depth, the torque
 /// along z.
 struct WallLoad {
-  Vec<3> force{};   // [N]
-  Vec<3> torque{};  // about the wall's centre of rotation, else the origin [N m]
+  Vec<3> force{};    // [N]
+  Vec<3> torque{};   // about the wall's centre of rotation, else the origin [N m]
+  double power = 0;  // of the fluid on it [W]
 };
 
 /// The heat of the fluid in one step: the energy gains dt times the other three.

@@ -5,6 +5,7 @@
 #include "treacle/model/material.hpp"
 #include "treacle/model/method_settings.hpp"
 #include "treacle/model/output_settings.hpp"
+#include "treacle/model/probe.hpp"
 #include "treacle/model/solver_settings.hpp"
 
 #include <algorithm>
@@ -62,6 +63,7 @@ struct Case {
   std::optional<HeatSettings> heat{};  // missing: there are no temperatures; MPH-I only
   SolverSettings solver;
   OutputSettings output;
+  std::vector<Probe> probes{};
   WatchSettings watch;
 
   double pressureRadius() const { return method.pressureRadius * spacing; }  // h_p [m]
@@ -108,6 +110,11 @@ struct Case {
   }
   /// Whether the number of fluid particles changes.
   bool isOpen() const { return hasInflow() || !outflows.empty(); }
+  bool hasLoads() const {
+    return std::ranges::any_of(probes, [](const Probe& p) { return p.kind == ProbeKind::Load; });
+  }
+  /// Whether the balance of each step is computed: for its file, or for what walls bear. Of MPH-I.
+  bool needsBalance() const { return output.balance || hasLoads(); }
   bool hasSurfaceTension() const {
     return std::ranges::any_of(materials, [](const Material& m) { return m.surfaceTension > 0; });
   }

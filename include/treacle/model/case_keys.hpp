@@ -4,6 +4,7 @@
 #include "treacle/model/case.hpp"
 #include "treacle/model/key.hpp"
 #include "treacle/model/material_keys.hpp"
+#include "treacle/model/probe_keys.hpp"
 #include "treacle/model/settings_keys.hpp"
 #include "treacle/model/width.hpp"
 
@@ -42,8 +43,8 @@ SolverSettings defaultSolver(MethodKind method, PreconditionerKind preconditione
 /// - v(key, optional) for one that may be missing, as may an Oscillation, which then is Oscillation{},
 /// - v(key, vector of structs) for tables with names; the bound is that of their number.
 /// Which keys there are follows from dimensions and method of the case, from whether it has heat, from type and
-/// shape of a body, from the model of a rheology or shift, and from whether time steps are automatic. Vectors have
-/// as many components as the case has dimensions.
+/// shape of a body, from the type of a probe, from the model of a rheology or shift, and from whether time steps
+/// are automatic. Vectors have as many components as the case has dimensions.
 namespace keys {
 
 /// The table of which a case holds nothing but its vector.
@@ -101,6 +102,7 @@ void visit(auto& v, Like<Case> auto& c, const Case&) {
   }
   v({"solver"}, c.solver);
   v({"output"}, c.output);
+  v({"probe", optional, "", {0, maxProbes}}, c.probes);
   v({"watch"}, c.watch);
 }
 

@@ -37,6 +37,10 @@ inline constexpr Named<BodyKind> body[] = {{"fluid", BodyKind::Fluid},
                                            {"rigid", BodyKind::Rigid}};
 inline constexpr Named<NozzleKind> nozzle[] = {{"disc", NozzleKind::Disc}, {"rectangle", NozzleKind::Rectangle}};
 inline constexpr Named<OutflowKind> outflow[] = {{"box", OutflowKind::Box}, {"plane", OutflowKind::Plane}};
+inline constexpr Named<ProbeKind> probe[] = {{"point", ProbeKind::Point}, {"line", ProbeKind::Line},
+                                             {"plane", ProbeKind::Plane}, {"height", ProbeKind::Height},
+                                             {"flow", ProbeKind::Flow},   {"region", ProbeKind::Region},
+                                             {"load", ProbeKind::Load}};
 inline constexpr Named<MethodKind> method[] = {{"mph-i", MethodKind::MphI}, {"isph", MethodKind::Isph}};
 inline constexpr Named<SchemeKind> scheme[] = {{"accurate", SchemeKind::Accurate},
                                                {"published", SchemeKind::Published}};
@@ -106,6 +110,8 @@ template <>
 inline constexpr std::span<const Named<NozzleKind>> namesOf<NozzleKind>{names::nozzle};
 template <>
 inline constexpr std::span<const Named<OutflowKind>> namesOf<OutflowKind>{names::outflow};
+template <>
+inline constexpr std::span<const Named<ProbeKind>> namesOf<ProbeKind>{names::probe};
 template <>
 inline constexpr std::span<const Named<MethodKind>> namesOf<MethodKind>{names::method};
 template <>

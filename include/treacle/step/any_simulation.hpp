@@ -36,6 +36,7 @@ class AnySimulation {
   /// All fields; the particles get the dimensions of the simulation.
   void copyParticles(AnyParticles& host) const;
   ParticleNumbers numbers() const;
+  std::vector<ProbeReading> measure(std::uint64_t probes) const;
   double time() const;  // [s]
   std::int64_t step() const;
   std::size_t bytes() const;      // [B]

@@ -5,6 +5,7 @@
 #include "treacle/model/balance.hpp"
 #include "treacle/model/case.hpp"
 #include "treacle/model/particles.hpp"
+#include "treacle/step/probe_reading.hpp"
 #include "treacle/step/solver_trial.hpp"
 #include "treacle/step/watch.hpp"
 
@@ -75,6 +76,7 @@ struct StepReport {
   Watched watched;
   std::vector<std::string> warnings;  // of the watch
   std::optional<Balance> balance;     // with OutputSettings::balance
+  std::vector<WallLoad> loads;        // per wall body of the case, where one has a probe, or with a balance
   std::optional<FlowReport> flow;     // where the case is open
   std::vector<RigidBody> rigid;       // per body of the case, after the step, where some are rigid
   PhaseSeconds seconds;
@@ -115,6 +117,9 @@ class Simulation {
   /// others' `host` is not touched.
   void copyParticles(Particles<D>& host) const;
   ParticleNumbers numbers() const;  // of these
+  /// What the probes whose bits are set read now, but for loads. Of several processes the first gets it.
+  /// Collective. Errors: std::bad_alloc.
+  std::vector<ProbeReading> measure(std::uint64_t probes) const;
   /// Of several processes each gets what it is to show: its own fluid, ghosts with their positions, and walls, of
   /// which so many as are returned, the first ones, are its own, and the others those in reach. Every particle is
   /// one process's. Fields that walls do not have are undefined. Collective.

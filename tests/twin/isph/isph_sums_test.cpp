@@ -83,17 +83,32 @@ struct SumsTwin {
     Buffer<Vec<D>, Cuda> foundVelocity(d.context, n);
     std::vector<double> share(n);
     Buffer<double, Cuda> foundShare(d.context, n);
-    sumOnFluid(s.context, s.pairs, CorrectorTerm<D>{p.data(), v.data(), corrected.data(), share.data()});
+    std::vector<double> stopped(n);
+    Buffer<double, Cuda> foundStopped(d.context, n);
+    sumOnFluid(s.context, s.pairs,
+               CorrectorTerm<D>{p.data(), v.data(), corrected.data(), share.data(), stopped.data()});
     sumOnFluid(d.context, d.pairs,
-               CorrectorTerm<D>{pOnDevice.data(), vOnDevice.data(), foundVelocity.data(), foundShare.data()});
+               CorrectorTerm<D>{pOnDevice.data(), vOnDevice.data(), foundVelocity.data(), foundShare.data(),
+                                foundStopped.data()});
     expectClose(foundVelocity, corrected, "corrector");
     expectClose(foundShare, share, "share of walls");
+    expectClose(foundStopped, stopped, "stopped at walls");
 
     std::vector<double> walls(active);
     Buffer<double, Cuda> foundWalls = copyToDevice<double>(d.context, walls);
     sumOnWalls(s.context, s.pairs, WallPressureTerm<D>{p.data(), walls.data()});
     sumOnWalls(d.context, d.pairs, WallPressureTerm<D>{pOnDevice.data(), foundWalls.data()});
     expectClose(foundWalls, walls, "wall pressure");
+
+    const std::uint32_t first = s.pairs.fluidOfWalls.first;
+    std::vector<Vec<D>> force(s.pairs.fluidOfWalls.count);
+    Buffer<Vec<D>, Cuda> foundForce(d.context, force.size());
+    sumOnWalls(s.context, s.pairs,
+               WallForceTerm<D>{p.data(), v.data(), stopped.data(), true, first, force.data()});
+    sumOnWalls(
+        d.context, d.pairs,
+        WallForceTerm<D>{pOnDevice.data(), vOnDevice.data(), foundStopped.data(), true, first, foundForce.data()});
+    expectClose(foundForce, force, "force on walls");
   }
 
   void checkAll() {

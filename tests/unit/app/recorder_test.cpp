@@ -32,7 +32,7 @@ struct Recorded {
       : c((shop.put("case.toml", smallCase), readCase(shop / "case.toml"))),
         directory(RunDirectory::create(shop / "run", false)),
         log(directory.log(), true),
-        recorder(c, directory, log, 0, false, [this](Snapshot& s) { copyState(s); }) {}
+        recorder(c, directory, log, 0, false, [this](Snapshot& s) { copyState(s); }, {}) {}
 
   void copyState(Snapshot& snapshot) {
     std::vector<std::string> notes;
@@ -103,7 +103,7 @@ struct RecordedPieces {
         directory(RunDirectory::create(shop / "run", false)),
         log(directory.log(), true),
         recorder(
-            c, directory, log, 0, false, [](Snapshot&) { FAIL() << "all particles were asked for"; },
+            c, directory, log, 0, false, [](Snapshot&) { FAIL() << "all particles were asked for"; }, {},
             [this](PieceOrder order, std::size_t frame) { return answer(order, frame); }) {}
 
   std::vector<PiecedFrame> answer(PieceOrder order, std::size_t frame) {

@@ -178,5 +178,58 @@ TEST(IsphStep, ADropInFreeFallKeepsItsMomentum) {
   EXPECT_LE(norm(meanVelocity(simulation.particles()) - before - simulation.time() * c.gravity), 1e-14);
 }
 
+/// What walls bear is what the fluid loses: by pressure, by either viscous step, and where it is stopped.
+template <int D>
+void checkLoads(ViscousStep viscosity) {
+  Case c = tankCase(D, 6, 6);
+  c.materials[0].dynamicViscosity = 1;
+  c.method.isph.viscosity = viscosity;
+  c.solver.tolerance = 1e-26;
+  c.time.step = 2e-4;
+  c.probes.resize(1);
+  c.probes[0].name = "load", c.probes[0].kind = ProbeKind::Load, c.probes[0].body = "floor";
+  Particles<D> p = created<D>(c);
+  for (std::uint32_t i = 0; i < p.fluidCount; ++i) p.velocity[i][0] = 1.5, p.velocity[i][D - 1] = -0.5;
+  const double mass = c.materials[0].density * std::pow(c.spacing, D) * p.fluidCount;
+  Vec<D> last = meanVelocity(p);
+  Simulation<D> simulation(c, std::move(p));
+  double largest = 0;
+  for (int k = 0; k < 30; ++k) {
+    const StepReport report = simulation.advance();
+    ASSERT_EQ(report.loads.size(), c.bodies.size() - 1);
+    Vec<3> force{};
+    for (const WallLoad& load : report.loads) force += load.force;
+    largest = std::max(largest, norm(force));
+    const Vec<D> now = meanVelocity(simulation.particles());
+    const Vec<D> gained = mass / c.time.step * (now - last), weight = mass * resized<D>(c.gravity);
+    EXPECT_LE(norm(gained - weight + resized<D>(force)), 1e-8 * norm(force)) << "step " << k;
+    last = now;
+  }
+  EXPECT_GT(largest, 5 * mass * 9.81);  // an impact
+}
+
+TEST(IsphStep, WallsBearWhatTheFluidLoses) {
+  for (const ViscousStep viscosity : {ViscousStep::Explicit, ViscousStep::Implicit}) {
+    checkLoads<2>(viscosity);
+    checkLoads<3>(viscosity);
+  }
+}
+
+/// A tank at rest: the floor bears the water.
+TEST(IsphStep, TheFloorBearsTheWeight) {
+  Case c = tankCase(2, 10, 8);
+  c.probes.resize(1);
+  c.probes[0].name = "load", c.probes[0].kind = ProbeKind::Load, c.probes[0].body = "floor";
+  Particles<2> p = created<2>(c);
+  const double weight = c.materials[0].density * c.spacing * c.spacing * p.fluidCount * 9.81;
+  Simulation<2> simulation(c, std::move(p));
+  double mean = 0;
+  for (int k = 0; k < 300; ++k) {
+    const StepReport report = simulation.advance();
+    if (k >= 100) mean += report.loads[0].force[1] / 200;
+  }
+  EXPECT_NEAR(mean, -weight, 0.1 * weight);
+}
+
 }  // namespace
 }  // namespace treacle::test

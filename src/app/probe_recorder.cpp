@@ -1,0 +1,56 @@
+#include "probe_recorder.hpp"
+
+#include <cstddef>
+#include <utility>
+
+namespace treacle {
+
+ProbeRecorder::ProbeRecorder(const Case& c, const RunDirectory& directory, double start, Measure measure)
+    : case_(c), start_(start), measure_(std::move(measure)) {
+  if (c.probes.empty()) return;
+  directory.makeRoomForProbes();
+  for (const Probe& probe : c.probes) {
+    writers_.emplace_back(directory.probe(probe.name), c, probe);
+    intervals_.emplace_back();
+    if (probe.interval > 0) intervals_.back().emplace(probe.interval, c.time, start);
+  }
+}
+
+void ProbeRecorder::begin() {
+  std::uint64_t all = 0;
+  for (std::size_t k = 0; k < writers_.size(); ++k) all |= std::uint64_t{1} << k;
+  take(all, start_, nullptr);
+}
+
+void ProbeRecorder::record(const StepReport& report) {
+  std::uint64_t due = 0;
+  for (std::size_t k = 0; k < intervals_.size(); ++k)
+    if (!intervals_[k] || intervals_[k]->due(report.time)) due |= std::uint64_t{1} << k;
+  take(due, report.time, &report.loads);
+}
+
+void ProbeRecorder::take(std::uint64_t probes, double time, const std::vector<WallLoad>* walls) {
+  std::uint64_t measured = 0;
+  for (std::size_t k = 0; k < writers_.size(); ++k) {
+    const std::uint64_t bit = probes & std::uint64_t{1} << k;
+    if (case_.probes[k].kind != ProbeKind::Load)
+      measured |= bit;
+    else if (bit != 0 && walls)
+      writers_[k].append(time, *walls);
+  }
+  if (measured == 0) return;
+  for (const ProbeReading& reading : measure_(measured)) {
+    ProbeWriter& writer = writers_[reading.probe];
+    if (case_.probes[reading.probe].isSummed()) {
+      writer.append(time, reading.sums);
+      continue;
+    }
+    reading.particles.visit([&](const auto& p) {
+      Frame fluid = makeFrame(p, 0, p.fluidCount, time);
+      addViscosities(case_.materials, fluid);
+      writer.append(time, fluid, makeFrame(p, p.fluidCount, p.count, time));
+    });
+  }
+}
+
+}  // namespace treacle

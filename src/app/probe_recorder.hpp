@@ -1,0 +1,42 @@
+#pragma once
+
+#include "interval.hpp"
+#include "treacle/io/probe_writer.hpp"
+#include "treacle/io/run_directory.hpp"
+#include "treacle/step/simulation.hpp"
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <optional>
+#include <vector>
+
+namespace treacle {
+
+/// Writes what the probes of a case read, each at intervals of its own. Errors, of every member: RunError,
+/// std::bad_alloc.
+class ProbeRecorder {
+ public:
+  /// AnySimulation::measure.
+  using Measure = std::function<std::vector<ProbeReading>(std::uint64_t probes)>;
+
+  /// Replaces older files. `start`: simulation time at which the run starts [s]. The case must outlive this.
+  ProbeRecorder(const Case& c, const RunDirectory& directory, double start, Measure measure);
+
+  /// The state at the start. Loads have none.
+  void begin();
+  /// Those that are due after a step.
+  void record(const StepReport& report);
+
+ private:
+  /// `walls`: what they bear, null where it is not known.
+  void take(std::uint64_t probes, double time, const std::vector<WallLoad>* walls);
+
+  const Case& case_;
+  double start_;  // [s]
+  Measure measure_;
+  std::deque<ProbeWriter> writers_;                 // per probe; they cannot be moved
+  std::vector<std::optional<Interval>> intervals_;  // without one: every step
+};
+
+}  // namespace treacle

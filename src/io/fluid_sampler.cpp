@@ -1,0 +1,128 @@
+#include "fluid_sampler.hpp"
+
+#include "treacle/model/probe.hpp"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace treacle {
+namespace {
+
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+
+/// Particles are cubes: at the corner of one its centre is 0.87 spacings away.
+constexpr double nearestInFluid = 1;
+
+/// Wendland's C2 function over probeReach; its integral over the space is 1, lengths being in spacings.
+double wendland(double distance, int dimensions) {
+  const double q = distance / probeReach, r = probeReach;
+  if (q >= 1) return 0;
+  const double scale = dimensions == 2 ? 7 / (std::numbers::pi * r * r) : 21 / (2 * std::numbers::pi * r * r * r);
+  const double p = 1 - q;
+  return scale * p * p * p * p * (1 + 4 * q);
+}
+
+/// x of the symmetric positive definite system m x = b, in the first dimensions.
+Vec<3> solved(double m[3][3], Vec<3> b, int dimensions) {
+  for (int k = 0; k < dimensions; ++k)
+    for (int i = k + 1; i < dimensions; ++i) {
+      const double factor = m[i][k] / m[k][k];
+      for (int j = k; j < dimensions; ++j) m[i][j] -= factor * m[k][j];
+      b[i] -= factor * b[k];
+    }
+  for (int k = dimensions - 1; k >= 0; --k) {
+    for (int j = k + 1; j < dimensions; ++j) b[k] -= m[k][j] * b[j];
+    b[k] /= m[k][k];
+  }
+  return b;
+}
+
+}  // namespace
+
+FluidSampler::FluidSampler(const Frame& fluid, const Frame& walls, const Domain& domain, double spacing)
+    : fluid_(fluid),
+      dimensions_(fluid.dimensions),
+      spacing_(spacing),
+      shifts_(imageShifts(domain)),
+      fluidPoints_(fluid.position),
+      wallPoints_(walls.position) {}
+
+std::vector<FluidSampler::Neighbour> FluidSampler::neighbours(const Points& points, const Vec<3>& x) const {
+  std::vector<Neighbour> found;
+  std::vector<std::pair<std::size_t, double>> matches;
+  const double reach = probeReach * spacing_;
+  if (points.set.points.empty()) return found;
+  for (const Vec<3>& shift : shifts_) {
+    const Vec<3> image = x + shift;
+    points.tree.radiusSearch(image.v, reach * reach, matches, {});
+    for (const auto& [index, distance2] : matches)
+      if (const double weight = wendland(std::sqrt(distance2) / spacing_, dimensions_); weight > 0)
+        found.push_back({index, (1 / spacing_) * (points.set.points[index] - image), weight});
+  }
+  return found;
+}
+
+/// The fit is about the mean place of the neighbours. Where they lie in a plane nothing is known of what is across
+/// it: a small variance that is added lets the fit be constant there.
+FluidSample FluidSampler::at(const Vec<3>& x) const {
+  constexpr double leastVariance = 1e-3;  // [spacings2]
+  const std::vector<Neighbour> near = neighbours(fluidPoints_, x);
+  double sum = 0, nearest = nearestInFluid;
+  bool inside = false;
+  Vec<3> mean{};
+  for (const Neighbour& n : near) {
+    sum += n.weight, mean += n.weight * n.way;
+    inside = inside || norm(n.way) <= nearest;
+  }
+  if (!inside) return {{none, none, none}, none, none, none, none};
+  mean *= 1 / sum;
+  double variance[3][3] = {};
+  for (const Neighbour& n : near)
+    for (int i = 0; i < dimensions_; ++i)
+      for (int j = 0; j < dimensions_; ++j)
+        variance[i][j] += n.weight / sum * (n.way[i] - mean[i]) * (n.way[j] - mean[j]);
+  for (int i = 0; i < dimensions_; ++i) variance[i][i] += leastVariance;
+  // What is fitted is a sum of values: each counts by its weight and by where it is.
+  const Vec<3> slope = solved(variance, -mean, dimensions_);
+  const auto fitted = [&](auto&& value, auto zero) {
+    for (const Neighbour& n : near) zero += n.weight / sum * (1 + dot(slope, n.way - mean)) * value(n.index);
+    return zero;
+  };
+  const auto field = [&](const std::vector<double>& values) {
+    return values.empty() ? none : fitted([&](std::size_t k) { return values[k]; }, 0.0);
+  };
+  return {fitted([&](std::size_t k) { return fluid_.velocity[k]; }, Vec<3>{}), field(fluid_.pressure),
+          field(fluid_.dynamicViscosity), field(fluid_.shearRate), field(fluid_.temperature)};
+}
+
+double FluidSampler::filled(const Points& points, const Vec<3>& x) const {
+  double sum = 0;
+  for (const Neighbour& n : neighbours(points, x)) sum += n.weight;
+  return sum;
+}
+
+double FluidSampler::fraction(const Vec<3>& x) const {
+  constexpr double leastSpace = 0.05;  // beyond which a place is in the wall
+  const double space = 1 - filled(wallPoints_, x);
+  return space < leastSpace ? 0 : std::fmin(filled(fluidPoints_, x) / space, 1);
+}
+
+double FluidSampler::extent(const Vec<3>& from, const Vec<3>& to) const {
+  const double length = norm(to - from);
+  const int parts = static_cast<int>(std::ceil(4 * length / spacing_));
+  const auto isFluid = [&](double share) { return fraction(from + share * (to - from)) >= 0.5; };
+  for (int k = parts; k >= 0; --k) {
+    double low = static_cast<double>(k) / parts, high = static_cast<double>(k + 1) / parts;
+    if (!isFluid(low)) continue;
+    if (k == parts) return length;
+    for (int halving = 0; halving < 30; ++halving) {
+      const double middle = 0.5 * (low + high);
+      (isFluid(middle) ? low : high) = middle;
+    }
+    return low * length;
+  }
+  return 0;
+}
+
+}  // namespace treacle
