@@ -7,6 +7,7 @@ import re
 import subprocess
 import time
 import xml.etree.ElementTree as ElementTree
+import zlib
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -50,18 +51,25 @@ class Frame:
 
 
 def read_vtp(path):
-    """A frame as treacle writes it: appended binary data with 64-bit lengths."""
+    """A frame as treacle writes it: appended binary data with 64-bit lengths, compressed by zlib or not."""
     content = Path(path).read_bytes()
     mark = content.index(b'<AppendedData encoding="raw">')
     begin = content.index(b"_", mark) + 1
     header = ElementTree.fromstring(content[:mark] + b"</VTKFile>")
+    compressed = header.get("compressor") is not None
     dimensions = int(header.find(".//DataArray[@Name='dimensions']").text)
     fields = {}
     for array in header.findall(".//PointData/DataArray") + header.findall(".//Points/DataArray"):
         offset = begin + int(array.get("offset"))
         size = int(np.frombuffer(content, "<u8", 1, offset)[0])
         kind = np.dtype(vtk_types[array.get("type")])
-        values = np.frombuffer(content, kind, size // kind.itemsize, offset + 8)
+        if compressed:
+            sizes = np.frombuffer(content, "<u8", size, offset + 24).astype(int)
+            ends = offset + 24 + 8 * size + np.cumsum(sizes)
+            blocks = [zlib.decompress(content[end - length : end]) for length, end in zip(sizes, ends)]
+            values = np.frombuffer(b"".join(blocks), kind)
+        else:
+            values = np.frombuffer(content, kind, size // kind.itemsize, offset + 8)
         if array.get("NumberOfComponents") == "3":
             values = values.reshape(-1, 3)[:, :dimensions]
         fields[array.get("Name")] = values.astype(float) if kind.kind == "f" else values

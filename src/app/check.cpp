@@ -8,6 +8,7 @@
 #include "threads.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/io/case_reader.hpp"
+#include "treacle/io/free_surface.hpp"
 #include "treacle/model/checks.hpp"
 #include "treacle/model/create.hpp"
 #include "treacle/model/mesh.hpp"
@@ -116,6 +117,7 @@ void checkCommand(const CaseOptions& options) {
   requireRoomForParticles(c);
   AnyParticles particles = createParticles(c, warnings, &ofBodies);
   for (std::string& warning : caseWarnings(c)) warnings.push_back(std::move(warning));
+  if (c.output.surface && !hasFreeSurface()) warnings.push_back("output.surface: " + whyNoFreeSurface());
   printParticles(c, particles.numbers(), ofBodies);
   printMeshes(c);
   printMemory(c, particles, warnings);

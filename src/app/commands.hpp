@@ -2,6 +2,7 @@
 
 #include "treacle/core/communicator.hpp"
 #include "treacle/io/compare.hpp"
+#include "treacle/io/free_surface.hpp"
 #include "treacle/io/picture.hpp"
 #include "treacle/model/case.hpp"
 
@@ -42,6 +43,14 @@ struct PlotOptions {
   std::filesystem::path output;  // empty: into the run directory
 };
 
+struct SurfaceOptions {
+  std::filesystem::path directory;
+  std::optional<std::string> frame;  // its number, or "last"; missing: all
+  SurfaceFormat format = SurfaceFormat::Vtp;
+  double cell = 0.5;  // of the grid [spacings]
+  int threads = 0;    // 0: as many as OpenMP takes by itself
+};
+
 struct CompareOptions {
   std::filesystem::path a, b;  // run directories or CSV files of particles; b is the reference
   std::vector<ComparedField> fields{ComparedField::Position, ComparedField::Velocity};
@@ -78,6 +87,7 @@ void runCommand(const RunOptions& options, const Communicator& processes);
 void checkCommand(const CaseOptions& options);
 void infoCommand();
 void plotCommand(const PlotOptions& options);
+void surfaceCommand(const SurfaceOptions& options);
 void convergenceCommand(const ConvergenceOptions& options);
 void importCommand(const ImportOptions& options);
 /// Whether the runs agree within the bound.

@@ -4,6 +4,7 @@
 #include "memory.hpp"
 #include "print.hpp"
 #include "treacle/core/version.hpp"
+#include "treacle/io/free_surface.hpp"
 
 #include <fmt/format.h>
 #include <omp.h>
@@ -22,6 +23,7 @@ void infoCommand() {
   print("threads     {}\n", omp_get_max_threads());
   print("memory      {} available\n", bytesText(availableMemory()));
   print("CUDA        {}\n", build.cuda == std::string_view("ON") ? "compiled" : "not compiled");
+  print("surfaces    {}\n", hasFreeSurface() ? "by OpenVDB" : "not compiled");
   for (const DeviceInfo& device : cudaDevices())
     print("device      {}, {} multiprocessors, {}, {} available\n", deviceText(device), device.multiprocessors,
           bytesText(device.memory), bytesText(device.freeMemory));

@@ -33,6 +33,8 @@ constexpr Named<PictureField> fieldNames[] = {{"speed", PictureField::Speed},
                                               {"dynamic_viscosity", PictureField::DynamicViscosity},
                                               {"shear_rate", PictureField::ShearRate}};
 
+constexpr Named<SurfaceFormat> formatNames[] = {{"vtp", SurfaceFormat::Vtp}, {"ply", SurfaceFormat::Ply}};
+
 template <class E>
 std::string listOf(std::span<const Named<E>> words) {
   std::string list;
@@ -88,6 +90,15 @@ CLI::Validator threadNumber() {
     const bool good = isNumber(text, x) && x >= 1 && x <= mostThreads && x == std::floor(x);
     return good ? std::string{}
                 : fmt::format("expected a whole number from 1 to {}, found '{}'", mostThreads, text);
+  };
+  return CLI::Validator(check, "");
+}
+
+CLI::Validator cellEdge() {
+  const auto check = [](const std::string& text) {
+    double x = 0;
+    const bool good = isNumber(text, x) && x >= 0.25 && x <= 1;
+    return good ? std::string{} : fmt::format("expected a number from 0.25 to 1, found '{}'", text);
   };
   return CLI::Validator(check, "");
 }
@@ -164,6 +175,22 @@ void addPlot(CLI::App& app, PlotOptions& options) {
   plot->callback([&options] { plotCommand(options); });
 }
 
+void addSurface(CLI::App& app, SurfaceOptions& options) {
+  CLI::App* surface =
+      app.add_subcommand("surface", "Make triangles of the free surface of the fluid in the frames of a run");
+  surface->add_option("DIR", options.directory, "Run directory")->required();
+  surface->add_option("--frame", options.frame, "Number of the frame, or last; default: all")->type_name("N");
+  addChoice<SurfaceFormat>(*surface, "--format", formatNames, options.format,
+                           "vtp: for ParaView, with an index; ply: for renderers; default: vtp");
+  surface
+      ->add_option("--cell", options.cell,
+                   "Edge of the cells that triangles are found in, in particle spacings, 0.25 to 1; default: 0.5")
+      ->type_name("X")
+      ->check(cellEdge());
+  surface->add_option("--threads", options.threads, "Number of threads")->type_name("N")->check(threadNumber());
+  surface->callback([&options] { surfaceCommand(options); });
+}
+
 /// `agree`: what the command found.
 void addCompare(CLI::App& app, CompareOptions& options, bool& agree) {
   CLI::App* compare = app.add_subcommand("compare", "Compare two runs, or a run and particles in a CSV file");
@@ -232,6 +259,7 @@ int execute(int argc, char** argv, const Communicator& job) {
   RunOptions run;
   CaseOptions check;
   PlotOptions plot;
+  SurfaceOptions surface;
   CompareOptions compare;
   ConvergenceOptions convergence;
   ImportOptions importOptions;
@@ -242,6 +270,7 @@ int execute(int argc, char** argv, const Communicator& job) {
   checkApp->callback([&check] { checkCommand(check); });
   app.add_subcommand("info", "Version, build options and devices")->callback([] { infoCommand(); });
   addPlot(app, plot);
+  addSurface(app, surface);
   addCompare(app, compare, agree);
   addConvergence(app, convergence);
   addImport(app, importOptions);
@@ -250,7 +279,8 @@ int execute(int argc, char** argv, const Communicator& job) {
     app.parse(argc, argv);
     if (app.get_subcommands().empty())
       throw InputError(
-          "expected a command: run, check, plot, compare, convergence, import or info; treacle --help tells more");
+          "expected a command: run, check, plot, surface, compare, convergence, import or info; treacle --help "
+          "tells more");
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return app.exit(e);  // help and version
     return report(fmt::format("{}; --help tells more", e.what()), ExitCode::BadInput);

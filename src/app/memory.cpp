@@ -3,6 +3,7 @@
 #include "machine.hpp"
 #include "treacle/core/backend.hpp"
 #include "treacle/core/error.hpp"
+#include "treacle/io/free_surface.hpp"
 #include "treacle/model/create.hpp"
 
 #include <fmt/format.h>
@@ -12,9 +13,7 @@
 namespace treacle {
 namespace {
 
-constexpr std::uint64_t copiesToBeWritten = 3;  // two snapshots, and the file of a checkpoint
-// The program itself, its libraries and a picture; with CUDA the device code that it carries.
-constexpr std::uint64_t programBytes = (cudaCompiled ? 61 : 29) << 20;
+constexpr std::uint64_t copiesToBeWritten = 3;    // two snapshots, and the file of a checkpoint
 constexpr std::uint64_t driverBytes = 300 << 20;  // what CUDA takes of the host
 constexpr std::uint64_t cellBytes = 26;           // at least, of a search cell: ranges, marks, a grid's point
 
@@ -23,6 +22,17 @@ std::string contentText(const ParticleNumbers& particles, std::uint64_t cells) {
   const std::uint64_t all = particles.fluid + particles.wall;
   const std::string text = fmt::format("{} particles", all);
   return cells > all ? fmt::format("{} and {} search cells of the domain", text, cells) : text;
+}
+
+/// The program itself, its libraries and a picture; with CUDA the device code that it carries. OpenVDB is large.
+std::uint64_t programBytes() {
+  return std::uint64_t{(cudaCompiled ? 61u : 29u) + (hasFreeSurface() ? 28u : 0u)} << 20;
+}
+
+/// What is to be written: copies of the state, and what a surface is made of.
+std::uint64_t outputBytes(const Case& c, const ParticleNumbers& particles) {
+  constexpr std::uint64_t ofSurface = 80;  // per particle
+  return copiesToBeWritten * stateBytes(c, particles) + (c.output.surface ? ofSurface * particles.fluid : 0);
 }
 
 /// Of a particle's place.
@@ -44,7 +54,7 @@ void requireRoomForParticles(const Case& c) {
   require(fmt::format("{} particles", count), count * placeBytes(c));
 }
 
-std::uint64_t leastMemory(const Case& c) { return programBytes + cellBytes * searchCells(c); }
+std::uint64_t leastMemory(const Case& c) { return programBytes() + cellBytes * searchCells(c); }
 
 MemoryCounts countsFor(const Case& c, const AnyParticles& particles, bool onDevice) {
   MemoryCounts known;
@@ -55,9 +65,9 @@ MemoryCounts countsFor(const Case& c, const AnyParticles& particles, bool onDevi
 }
 
 std::uint64_t estimatedMemory(const Case& c, const MemoryCounts& n, bool onDevice) {
-  const std::uint64_t output = copiesToBeWritten * stateBytes(c, n.particles);
-  if (onDevice) return programBytes + driverBytes + output + distantWallBytes(c, n);
-  return programBytes + output + planMemory(c, n, BackendKind::Cpu).peak;
+  const std::uint64_t output = outputBytes(c, n.particles);
+  if (onDevice) return programBytes() + driverBytes + output + distantWallBytes(c, n);
+  return programBytes() + output + planMemory(c, n, BackendKind::Cpu).peak;
 }
 
 std::uint64_t estimatedDeviceMemory(const Case& c, const MemoryCounts& n) {
@@ -67,8 +77,8 @@ std::uint64_t estimatedDeviceMemory(const Case& c, const MemoryCounts& n) {
 std::uint64_t leastSharedMemory(const Case& c, const MemoryCounts& n, bool onDevice, const Sharing& sharing) {
   const std::uint64_t part = onDevice ? driverBytes : planMemory(c, n, BackendKind::Cpu).peak;
   const std::uint64_t places = (sharing.all.fluid + sharing.all.wall) * placeBytes(c);
-  const std::uint64_t output = copiesToBeWritten * stateBytes(c, sharing.all);
-  return sharing.onHost * (programBytes + std::max(part, places + stateBytes(c, n.particles))) + output;
+  const std::uint64_t output = outputBytes(c, sharing.all);
+  return sharing.onHost * (programBytes() + std::max(part, places + stateBytes(c, n.particles))) + output;
 }
 
 void requireMemory(const Case& c, const AnyParticles& particles, const DeviceInfo* device,

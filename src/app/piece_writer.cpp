@@ -1,6 +1,7 @@
 #include "piece_writer.hpp"
 
 #include "treacle/core/error.hpp"
+#include "treacle/core/timer.hpp"
 #include "treacle/io/vtp.hpp"
 
 #include <fmt/format.h>
@@ -17,7 +18,7 @@
 namespace treacle {
 namespace {
 
-constexpr std::uint64_t manyParticles = 2'000'000;  // of a frame: 110 MB in single precision
+constexpr std::uint64_t manyParticles = 2'000'000;  // of a frame: 110 MB in single precision, uncompressed
 
 /// Ghosts, and the walls near the own particles.
 template <int D>
@@ -31,7 +32,7 @@ std::vector<Vec<3>> positionsOfOthers(const Particles<D>& p) {
 }  // namespace
 
 bool writesPieces(const Case& c, const ParticleNumbers& particles, const Communicator& processes) {
-  if (processes.size() == 1 || c.output.pieces == OutputPieces::One) return false;
+  if (processes.size() == 1 || c.output.pieces == OutputPieces::One || c.output.surface) return false;
   return c.output.pieces == OutputPieces::Each || particles.fluid + particles.wall >= manyParticles;
 }
 
@@ -92,16 +93,19 @@ PiecedFrame PieceWriter::joined(const Piece& own) const {
     std::uint32_t fluid, walls;
     double least, density;
     std::uint64_t close, places;
+    FrameCost cost;
   };
   const ArrangementPart& a = own.arrangement;
   const std::vector<Part> parts =
-      processes_.all(Part{own.fluid, own.walls, a.least, a.density, a.close, a.places});
-  PiecedFrame frame{own.step, {own.time, case_.dimensions, {}, {}}, {}};
+      processes_.all(Part{own.fluid, own.walls, a.least, a.density, a.close, a.places, own.cost});
+  PiecedFrame frame{own.step, {own.time, case_.dimensions, {}, {}}, {}, {}};
   ArrangementPart all;
   for (int rank = 0; const Part& part : parts) {
     if (part.fluid > 0) frame.pieces.fluid.push_back(rank);
     if (part.walls > 0) frame.pieces.walls.push_back(rank);
     all.least = std::min(all.least, part.least);
+    frame.cost.bytes += part.cost.bytes;
+    frame.cost.seconds = std::max(frame.cost.seconds, part.cost.seconds);
     all.density += part.density, all.close += part.close, all.places += part.places;
     ++rank;
   }
@@ -113,7 +117,8 @@ PiecedFrame PieceWriter::joined(const Piece& own) const {
 
 /// Called by the output thread. What fails is for all processes to know, who learn it in collect().
 void PieceWriter::write(const Snapshot& s) {
-  Piece piece{s.step, s.time, 0, s.ownWalls, {}};
+  Timer timer;
+  Piece piece{s.step, s.time, 0, s.ownWalls, {}, {}};
   std::string failure;
   try {
     s.particles.visit([&](const auto& p) {
@@ -122,10 +127,11 @@ void PieceWriter::write(const Snapshot& s) {
       Frame fluid = makeFrame(p, 0, p.fluidCount, s.time);
       addViscosities(case_.materials, fluid);
       piece.arrangement = measureArrangementPart(fluid, positionsOfOthers(p), case_.domain, case_.spacing);
-      writePiece(directory_.fluidPiece(s.number, processes_.rank()), fluid);
-      writePiece(directory_.wallsPiece(s.number, processes_.rank()),
-                 makeFrame(p, begin, begin + s.ownWalls, s.time));
+      piece.cost.bytes = writePiece(directory_.fluidPiece(s.number, processes_.rank()), fluid) +
+                         writePiece(directory_.wallsPiece(s.number, processes_.rank()),
+                                    makeFrame(p, begin, begin + s.ownWalls, s.time));
     });
+    piece.cost.seconds = timer.lap();
   } catch (const std::bad_alloc&) {
     failure = "memory exhausted";
   } catch (const std::exception& e) {
@@ -137,8 +143,10 @@ void PieceWriter::write(const Snapshot& s) {
   hasNews_ = true;
 }
 
-void PieceWriter::writePiece(const std::filesystem::path& path, const Frame& piece) const {
-  if (!piece.position.empty()) writeVtp(path, piece, case_.output.fields, case_.output.precision);
+std::uint64_t PieceWriter::writePiece(const std::filesystem::path& path, const Frame& piece) const {
+  const OutputSettings& settings = case_.output;
+  if (piece.position.empty()) return 0;
+  return writeVtp(path, piece, settings.fields, settings.precision, settings.compression);
 }
 
 void PieceWriter::removePieces() {

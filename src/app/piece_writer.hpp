@@ -5,6 +5,7 @@
 #include "treacle/core/communicator.hpp"
 #include "treacle/io/arrangement.hpp"
 #include "treacle/io/run_directory.hpp"
+#include "treacle/io/summary.hpp"
 #include "treacle/model/case.hpp"
 #include "treacle/step/any_simulation.hpp"
 
@@ -23,6 +24,7 @@ struct PiecedFrame {
   std::int64_t step = 0;
   FramePieces pieces;
   Arrangement arrangement;
+  FrameCost cost;
 };
 
 /// Whether the processes of a run that has so many particles write a piece of each frame each.
@@ -53,13 +55,14 @@ class PieceWriter {
     double time = 0;                     // [s]
     std::uint32_t fluid = 0, walls = 0;  // particles
     ArrangementPart arrangement;
+    FrameCost cost;
   };
 
   void take(AnySimulation& simulation, std::size_t frame);
   std::vector<PiecedFrame> collect();
   PiecedFrame joined(const Piece& own) const;
   void write(const Snapshot& snapshot);
-  void writePiece(const std::filesystem::path& path, const Frame& piece) const;
+  std::uint64_t writePiece(const std::filesystem::path& path, const Frame& piece) const;
   void removePieces();
 
   const Case& case_;

@@ -1,4 +1,5 @@
 #include "commands.hpp"
+#include "frame_number.hpp"
 #include "print.hpp"
 #include "run_log.hpp"
 #include "treacle/core/error.hpp"
@@ -12,25 +13,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <string_view>
 #include <vector>
 
 namespace treacle {
 namespace {
-
-std::size_t frameNumber(const PlotOptions& options, const RunDirectory& run) {
-  const std::size_t count = run.frameCount();
-  if (count == 0) throw InputError(fmt::format("{}: the run has no frame", run.path().string()));
-  if (options.frame == "last") return count - 1;
-  std::size_t number = 0;
-  const char* end = options.frame.data() + options.frame.size();
-  const auto [stop, error] = std::from_chars(options.frame.data(), end, number);
-  if (error != std::errc{} || stop != end || number >= count)
-    throw InputError(
-        fmt::format("--frame {}: expected 'last' or a number from 0 to {}", options.frame, count - 1));
-  return number;
-}
 
 const Probe& probeNamed(const std::string& name, const Case& c) {
   const auto found = std::ranges::find(c.probes, name, &Probe::name);
@@ -60,7 +47,7 @@ void plotCommand(const PlotOptions& options) {
     if (output.empty()) output = run.historyPicture();
     drawHistory(output, readHistory(run.history()), c.title);
   } else {
-    const std::size_t frame = frameNumber(options, run);
+    const std::size_t frame = frameNumber(options.frame, run);
     if (output.empty()) output = run.framePicture(frame);
     const std::size_t missing =
         drawFrame(output, readFrame(run.fluidFrame(frame)), readFrame(run.wallsFrame(frame)), picture);

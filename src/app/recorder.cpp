@@ -122,7 +122,7 @@ void Recorder::joinPieces(PieceOrder order) {
     for (const PiecedFrame& f : orderPieces_(order, 0)) {
       directory_.joinPieces(f.pieces);
       frameStep_ = f.step;
-      note(f.step, f.pieces.time, openFrames_.front(), f.arrangement);
+      note(f.step, f.pieces.time, openFrames_.front(), f.arrangement, f.cost);
       openFrames_.pop_front();
     }
   } catch (...) {
@@ -193,6 +193,7 @@ void Recorder::summarise(RunSummary& summary) const {
       {"search", seconds_.search}, {"lists", seconds_.lists}, {"coefficients", seconds_.coefficients},
       {"coarse", seconds_.coarse}, {"solve", seconds_.solve}, {"update", seconds_.update},
       {"output", outputSeconds_}};
+  summary.frames = directory_.frameCount(), summary.frameCost = frameCost_;
   summary.outputThreadSeconds = output_.busySeconds();
 }
 
@@ -223,12 +224,16 @@ void Recorder::handOver(Snapshot& snapshot, bool frame, bool checkpoint) {
 void Recorder::write(const Snapshot& s) {
   const TraceRange range("output");
   if (s.frame) {
+    Timer timer;
     Frame fluid = fluidFrame(case_, s);
     const Frame walls = wallsFrame(s);
     const Arrangement arrangement = measureArrangement(fluid, walls, case_.domain, case_.spacing);
-    directory_.writeFrame(fluid, walls, case_.output);
+    std::uint64_t bytes = directory_.writeFrame(fluid, walls, case_.output);
+    if (case_.output.surface)
+      bytes += directory_.writeSurface(directory_.frameCount() - 1, freeSurface(fluid, case_.spacing),
+                                       SurfaceFormat::Vtp, case_.output.compression);
     frameStep_ = s.step;
-    note(s.step, s.time, s.iterations, arrangement);
+    note(s.step, s.time, s.iterations, arrangement, {bytes, timer.lap()});
   }
   if (s.checkpoint) {
     s.particles.visit([&](const auto& p) {
@@ -239,9 +244,12 @@ void Recorder::write(const Snapshot& s) {
 }
 
 /// Of a frame that is on disk. Called by the output thread, where frames are in pieces by the run's own.
-void Recorder::note(std::int64_t step, double time, int iterations, const Arrangement& arrangement) {
-  log_.info(fmt::format("frame {}: step {}, t = {:.6g} s, {} iterations, {}", directory_.frameCount() - 1, step,
-                        time, iterations, textOf(arrangement)));
+void Recorder::note(std::int64_t step, double time, int iterations, const Arrangement& arrangement,
+                    const FrameCost& cost) {
+  log_.info(fmt::format("frame {}: step {}, t = {:.6g} s, {} iterations, {}; {:.3g} MB in {:.3g} s",
+                        directory_.frameCount() - 1, step, time, iterations, textOf(arrangement),
+                        static_cast<double>(cost.bytes) / 1e6, cost.seconds));
+  frameCost_ += cost;
   lastArrangement_ = arrangement;
   smallestLeast_ = std::min(smallestLeast_, arrangement.least);
   smallestLow_ = std::min(smallestLow_, arrangement.low);

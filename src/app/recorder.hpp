@@ -74,7 +74,7 @@ class Recorder {
   void save(bool frame, bool checkpoint);
   void handOver(Snapshot& snapshot, bool frame, bool checkpoint);
   void write(const Snapshot& snapshot);
-  void note(std::int64_t step, double time, int iterations, const Arrangement& arrangement);
+  void note(std::int64_t step, double time, int iterations, const Arrangement& arrangement, const FrameCost& cost);
 
   bool inPieces() const { return static_cast<bool>(orderPieces_); }
   void takePieces();
@@ -100,6 +100,7 @@ class Recorder {
   double meanDensity_ = 0, densityError_ = 0, largestDensityError_ = 0;
   Arrangement lastArrangement_;  // written by the output thread, as are the next two, or where pieces are joined
   double smallestLeast_ = nearestReach, smallestLow_ = nearestReach;
+  FrameCost frameCost_;  // likewise
   ArrangementWatch watch_;
   std::mutex warningsMutex_;
   std::vector<std::string> warnings_;

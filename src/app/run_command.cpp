@@ -10,6 +10,7 @@
 #include "together.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/io/case_reader.hpp"
+#include "treacle/io/free_surface.hpp"
 #include "treacle/io/shape_files.hpp"
 #include "treacle/model/case_error.hpp"
 #include "treacle/model/checks.hpp"
@@ -101,6 +102,7 @@ void runCommand(const RunOptions& options, const Communicator& processes) {
   together(processes, [&] {
     startThreads(options.threads);
     c = caseOf(options);
+    if (c.output.surface && !hasFreeSurface()) throw InputError("output.surface: " + whyNoFreeSurface());
     if (shared) requireShareable(c, backend);
     requireRoomForParticles(c);
     made = MadeParticles::of(c, warnings, partOf(processes));

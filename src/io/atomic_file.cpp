@@ -38,12 +38,18 @@ AtomicFile::~AtomicFile() { discard(); }
 
 void AtomicFile::write(const void* data, std::size_t bytes) {
   const char* first = static_cast<const char*>(data);
+  size_ += bytes;
   if (pending_.size() + bytes > pendingLimit) flush();
   if (bytes > pendingLimit) {
     if (!writeAll(descriptor_, first, bytes)) fail();
   } else {
     pending_.insert(pending_.end(), first, first + bytes);
   }
+}
+
+void AtomicFile::overwrite(std::uint64_t place, const void* data, std::size_t bytes) {
+  flush();
+  if (!writeAllAt(descriptor_, place, static_cast<const char*>(data), bytes)) fail();
 }
 
 void AtomicFile::commit() {

@@ -13,9 +13,13 @@
 
 namespace treacle {
 
-bool writeAll(int descriptor, const char* data, std::size_t bytes) {
+namespace {
+
+/// writeSome(data, bytes): as ::write.
+template <class F>
+bool writeInPieces(const char* data, std::size_t bytes, F writeSome) {
   while (bytes > 0) {
-    const ssize_t written = ::write(descriptor, data, bytes);
+    const ssize_t written = writeSome(data, bytes);
     if (written < 0) {
       if (errno == EINTR) continue;
       return false;
@@ -24,6 +28,19 @@ bool writeAll(int descriptor, const char* data, std::size_t bytes) {
     bytes -= static_cast<std::size_t>(written);
   }
   return true;
+}
+
+}  // namespace
+
+bool writeAll(int descriptor, const char* data, std::size_t bytes) {
+  return writeInPieces(data, bytes,
+                       [&](const char* from, std::size_t size) { return ::write(descriptor, from, size); });
+}
+
+bool writeAllAt(int descriptor, std::uint64_t place, const char* data, std::size_t bytes) {
+  return writeInPieces(data, bytes, [&](const char* from, std::size_t size) {
+    return ::pwrite(descriptor, from, size, static_cast<off_t>(place) + (from - data));
+  });
 }
 
 std::optional<std::string> readAll(const std::filesystem::path& path, std::size_t most) {

@@ -38,13 +38,14 @@ std::optional<std::string_view> withoutNumber(std::string_view text, std::size_t
 
 /// Whether the name is one that frameName gives, or its temporary form.
 bool isFrameName(std::string_view name) {
-  if (!name.starts_with("fluid_") && !name.starts_with("walls_")) return false;
-  auto rest = withoutNumber(name.substr(6), 6);
+  const std::string_view group = name.substr(0, name.find('_') + 1);
+  if (group != "fluid_" && group != "walls_" && group != "surface_") return false;
+  auto rest = withoutNumber(name.substr(group.size()), 6);
   if (rest && rest->ends_with(".tmp")) rest->remove_suffix(4);
   if (rest && rest->starts_with(".p"))
     if (const auto extension = withoutNumber(rest->substr(2), 1))
       rest = extension == ".vtp" ? extension : std::nullopt;
-  return rest == ".vtp" || rest == ".pvtp" || rest == ".png";
+  return rest == ".vtp" || rest == ".pvtp" || rest == ".ply" || rest == ".png";
 }
 
 /// Likewise of probe() and probePicture().
@@ -117,8 +118,9 @@ void RunDirectory::lock() {
 }
 
 void RunDirectory::removeRun() const {
-  std::vector<fs::path> files{caseFile(),   history(),    balance(),    rigidBodies(),  summary(),
-                              checkpoint(), fluidIndex(), wallsIndex(), finalPicture(), historyPicture()};
+  std::vector<fs::path> files{caseFile(),     history(),      balance(),       rigidBodies(),
+                              summary(),      checkpoint(),   fluidIndex(),    wallsIndex(),
+                              surfaceIndex(), finalPicture(), historyPicture()};
   for (std::size_t i = 0, named = files.size(); i < named; ++i)
     files.push_back(AtomicFile::temporaryName(files[i]));
   std::error_code error;
@@ -153,6 +155,10 @@ fs::path RunDirectory::wallsPiece(std::size_t frame, int rank) const {
 }
 fs::path RunDirectory::framePicture(std::size_t frame) const { return path_ / frameName("fluid", frame, "png"); }
 
+fs::path RunDirectory::surfaceFile(std::size_t frame, SurfaceFormat format) const {
+  return path_ / frameName("surface", frame, format == SurfaceFormat::Vtp ? "vtp" : "ply");
+}
+
 /// The index says which frames are in pieces.
 fs::path RunDirectory::framePath(std::string_view group, std::size_t frame,
                                  const std::vector<PvdEntry>& written) const {
@@ -160,11 +166,27 @@ fs::path RunDirectory::framePath(std::string_view group, std::size_t frame,
   return path_ / frameName(group, frame, inPieces ? "pvtp" : "vtp");
 }
 
-void RunDirectory::writeFrame(const Frame& fluid, const Frame& walls, const OutputSettings& settings) {
+std::uint64_t RunDirectory::writeFrame(const Frame& fluid, const Frame& walls, const OutputSettings& settings) {
   const std::size_t frame = frameCount();
-  writeVtp(fluidFrame(frame), fluid, settings.fields, settings.precision);
-  writeVtp(wallsFrame(frame), walls, settings.fields, settings.precision);
+  const auto write = [&](const fs::path& path, const Frame& group) {
+    return writeVtp(path, group, settings.fields, settings.precision, settings.compression);
+  };
+  const std::uint64_t bytes = write(fluidFrame(frame), fluid) + write(wallsFrame(frame), walls);
   addFrame(fluid.time, "vtp", "vtp");
+  return bytes;
+}
+
+std::uint64_t RunDirectory::writeSurface(std::size_t frame, const FreeSurface& surface, SurfaceFormat format,
+                                         OutputCompression compression) const {
+  const fs::path path = surfaceFile(frame, format);
+  if (format == SurfaceFormat::Ply) return writeSurfacePly(path, surface);
+  const std::uint64_t bytes = writeSurfaceVtp(path, surface, compression);
+  std::vector<PvdEntry> made;
+  std::error_code error;
+  for (std::size_t k = 0; k < frameCount(); ++k)
+    if (fs::exists(surfaceFile(k, format), error)) made.push_back({frameTime(k), frameName("surface", k, "vtp")});
+  writePvd(surfaceIndex(), made);
+  return bytes;
 }
 
 void RunDirectory::joinPieces(const FramePieces& pieces) {

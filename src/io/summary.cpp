@@ -71,6 +71,7 @@ void writeSummary(const std::filesystem::path& path, const RunSummary& s) {
                               {"smallest_low", s.smallestLow}};
   json["seconds_per_phase"] = phases;
   if (!s.processes.empty()) json["shares"] = sharesOf(s.processes);
+  json["frames"] = {{"count", s.frames}, {"bytes", s.frameCost.bytes}, {"seconds", s.frameCost.seconds}};
   json["output_thread_seconds"] = s.outputThreadSeconds;
   json["wall_seconds"] = s.wallSeconds;
   json["peak_memory_bytes"] = s.peakMemory;

@@ -13,6 +13,9 @@ namespace treacle {
 constexpr std::string_view vtkByteOrder =
     std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian";
 
+/// The value of `compressor` in files whose arrays are compressed.
+constexpr std::string_view vtkZlibCompressor = "vtkZLibDataCompressor";
+
 template <class T>
 constexpr std::string_view vtkType() {
   if constexpr (std::is_same_v<T, float>) return "Float32";

@@ -1,5 +1,6 @@
 #include "treacle/core/error.hpp"
 #include "treacle/io/vtp.hpp"
+#include "vtk_blocks.hpp"
 #include "vtk_xml.hpp"
 #include "vtp_contents.hpp"
 
@@ -7,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <fstream>
 #include <limits>
 #include <string>
@@ -94,6 +96,11 @@ class VtpReader {
     std::size_t from = 0;
     const auto file = nextTag(header_, "VTKFile", from);
     if (!file || attribute(*file, "type") != "PolyData") foreign("no VTK PolyData");
+    if (const auto compressor = attribute(*file, "compressor")) {
+      isCompressed_ = true;
+      if (*compressor != vtkZlibCompressor)
+        foreign(fmt::format("expected the compressor {} or none, found {}", vtkZlibCompressor, *compressor));
+    }
     if (attribute(*file, "byte_order") != vtkByteOrder || attribute(*file, "header_type") != "UInt64")
       foreign(fmt::format("expected byte order {} and UInt64 headers", vtkByteOrder));
     if (appended == header_.npos) {
@@ -111,8 +118,10 @@ class VtpReader {
     const auto count = points ? parseNumber<std::uint64_t>(*points) : std::nullopt;
     if (!count) foreign("no number of points");
     count_ = *count;
-    // Checked before anybody reserves memory for that many particles.
-    if (count_ > (fileSize_ - dataBegin_) / sizeof(Vec<3, float>)) truncated();
+    // Checked before anybody reserves memory for that many particles, or multiplies their number.
+    const std::uint64_t most = isCompressed_ ? std::numeric_limits<std::uint32_t>::max()
+                                             : (fileSize_ - dataBegin_) / sizeof(Vec<3, float>);
+    if (count_ > most) truncated();
   }
 
   /// The arrays at the end of the file are none that anybody reads here: without its last tag they may be cut.
@@ -142,30 +151,31 @@ class VtpReader {
     return *value;
   }
 
-  /// Leaves the stream at the first value.
-  void seekValues(std::string_view name, std::string_view tag, std::uint64_t bytes) {
+  /// Moves the stream to an array; returns how many bytes the file has from there on.
+  std::uint64_t seekArray(std::string_view name, std::string_view tag) {
     const auto text = attribute(tag, "offset");
     const auto offset = text ? parseNumber<std::uint64_t>(*text) : std::nullopt;
     if (!offset) foreign(fmt::format("array '{}' is not appended", name));
-    std::uint64_t stored = 0;
     const std::uint64_t room = fileSize_ - dataBegin_;
-    if (*offset > room || room - *offset < sizeof stored) truncated();
+    if (*offset > room) truncated();
     stream_.seekg(static_cast<std::streamoff>(dataBegin_ + *offset));
-    stream_.read(reinterpret_cast<char*>(&stored), sizeof stored);
-    if (stored != bytes) foreign(fmt::format("array '{}' has {} bytes, expected {}", name, stored, bytes));
-    if (room - *offset - sizeof stored < bytes) truncated();
+    return room - *offset;
   }
 
-  template <class T, class Sink>
-  void readValues(std::string_view name, std::string_view tag, std::uint64_t count, Sink sink) {
-    seekValues(name, tag, count * sizeof(T));
-    std::vector<T> block(std::min<std::uint64_t>(count, 1 << 16));
-    for (std::uint64_t begin = 0; begin < count; begin += block.size()) {
-      const std::size_t size = std::min<std::uint64_t>(block.size(), count - begin);
-      stream_.read(reinterpret_cast<char*>(block.data()), static_cast<std::streamsize>(size * sizeof(T)));
-      if (!stream_) truncated();
-      for (std::size_t k = 0; k < size; ++k) sink(begin + k, block[k]);
-    }
+  template <class T, class Reserve, class Sink>
+  void readValues(std::string_view name, std::string_view tag, std::uint64_t count, Reserve reserve, Sink sink) {
+    const std::uint64_t room = seekArray(name, tag);
+    const auto take = [&](std::uint64_t begin, std::uint64_t end, const char* bytes) {
+      for (std::uint64_t k = begin / sizeof(T); k < end / sizeof(T); ++k, bytes += sizeof(T)) {
+        T value;
+        std::memcpy(&value, bytes, sizeof(T));
+        sink(k, value);
+      }
+    };
+    const std::string problem =
+        readAppended(stream_, isCompressed_, count * sizeof(T), room, sizeof(T), reserve, take);
+    if (!problem.empty())
+      fail(fmt::format("damaged, or not written by treacle: the array '{}' has {}", name, problem));
   }
 
   /// Fields that the file does not hold stay empty.
@@ -175,12 +185,12 @@ class VtpReader {
     const auto tag = findArray(name, from);
     if (!tag) return;
     const auto type = attribute(*tag, "type");
-    out.resize(count_);
     const std::uint64_t count = count_ * components;
-    if (type == vtkType<float>()) return readValues<float>(name, *tag, count, sink);
-    if (type == vtkType<double>()) return readValues<double>(name, *tag, count, sink);
-    if (type == vtkType<std::int32_t>()) return readValues<std::int32_t>(name, *tag, count, sink);
-    if (type == vtkType<std::uint32_t>()) return readValues<std::uint32_t>(name, *tag, count, sink);
+    const auto reserve = [&] { out.resize(count_); };
+    if (type == vtkType<float>()) return readValues<float>(name, *tag, count, reserve, sink);
+    if (type == vtkType<double>()) return readValues<double>(name, *tag, count, reserve, sink);
+    if (type == vtkType<std::int32_t>()) return readValues<std::int32_t>(name, *tag, count, reserve, sink);
+    if (type == vtkType<std::uint32_t>()) return readValues<std::uint32_t>(name, *tag, count, reserve, sink);
     foreign(fmt::format("array '{}' has an unexpected type", name));
   }
 
@@ -210,6 +220,7 @@ class VtpReader {
   std::uint64_t fileSize_ = 0;   // [B]
   std::uint64_t dataBegin_ = 0;  // [B] where the appended block starts
   std::uint64_t count_ = 0;      // particles
+  bool isCompressed_ = false;
   std::string header_;
 };
 

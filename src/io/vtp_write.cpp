@@ -1,39 +1,11 @@
-#include "treacle/io/atomic_file.hpp"
+#include "poly_data.hpp"
 #include "treacle/io/vtp.hpp"
-#include "vtk_xml.hpp"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <functional>
-#include <string>
+#include <utility>
 
 namespace treacle {
 
 namespace {
-
-/// One array of the appended block: its description and how to write its values.
-struct DataArray {
-  std::string_view name, type;
-  int components;
-  std::uint64_t bytes;
-  std::function<void(AtomicFile&)> writeValues;
-};
-
-/// `value(k)` is scalar k of tuples * components, converted to T on the way out, a block at a time: a frame is
-/// never held twice.
-template <class T, class Value>
-DataArray dataArray(std::string_view name, int components, std::size_t tuples, Value value) {
-  const std::size_t count = tuples * static_cast<std::size_t>(components);
-  return {name, vtkType<T>(), components, count * sizeof(T), [=](AtomicFile& file) {
-            std::vector<T> block(std::min<std::size_t>(count, 1 << 16));
-            for (std::size_t begin = 0; begin < count; begin += block.size()) {
-              const std::size_t size = std::min(block.size(), count - begin);
-              for (std::size_t k = 0; k < size; ++k) block[k] = static_cast<T>(value(begin + k));
-              file.write(block.data(), size * sizeof(T));
-            }
-          }};
-}
 
 template <class Real>
 DataArray vectorArray(std::string_view name, const std::vector<Vec<3>>& vectors) {
@@ -67,62 +39,29 @@ std::vector<DataArray> pointData(const Frame& frame, const OutputFields& fields)
   return arrays;
 }
 
-std::string element(std::string_view name, const std::vector<DataArray>& arrays, std::uint64_t& offset) {
-  std::string xml = fmt::format("      <{}>\n", name);
-  for (const DataArray& a : arrays) {
-    xml += fmt::format(
-        "        <DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"appended\" "
-        "offset=\"{}\"/>\n",
-        a.type, a.name, a.components, offset);
-    offset += sizeof(std::uint64_t) + a.bytes;
-  }
-  return xml + fmt::format("      </{}>\n", name);
-}
-
 template <class Real>
-void write(const std::filesystem::path& path, const Frame& frame, const OutputFields& fields) {
+std::uint64_t write(const std::filesystem::path& path, const Frame& frame, const OutputFields& fields,
+                    OutputCompression compression) {
   const std::size_t count = frame.position.size();
   const auto number = [](std::size_t k) { return k; };
   const auto next = [](std::size_t k) { return k + 1; };
-  const std::vector<DataArray> data = pointData<Real>(frame, fields);
-  const std::vector<DataArray> points{vectorArray<Real>("position", frame.position)};
   // A vertex per particle and not one for all: filters of ParaView that select cells then select particles.
-  const std::vector<DataArray> vertices{dataArray<std::int32_t>("connectivity", 1, count, number),
-                                        dataArray<std::int32_t>("offsets", 1, count, next)};
-
-  AtomicFile file(path);
-  file.write(fmt::format(R"(<?xml version="1.0"?>
-<VTKFile type="PolyData" version="1.0" byte_order="{}" header_type="UInt64">
-  <PolyData>
-    <FieldData>
-      <DataArray type="Float64" Name="TimeValue" NumberOfTuples="1" format="ascii">{}</DataArray>
-      <DataArray type="Int32" Name="dimensions" NumberOfTuples="1" format="ascii">{}</DataArray>
-    </FieldData>
-    <Piece NumberOfPoints="{}" NumberOfVerts="{}" NumberOfLines="0" NumberOfStrips="0" NumberOfPolys="0">
-)",
-                         vtkByteOrder, frame.time, frame.dimensions, count, count));
-  std::uint64_t offset = 0;
-  file.write(element("PointData", data, offset));
-  file.write(element("Points", points, offset));
-  file.write(element("Verts", vertices, offset));
-  file.write("    </Piece>\n  </PolyData>\n  <AppendedData encoding=\"raw\">\n_");
-  for (const auto* group : {&data, &points, &vertices})
-    for (const DataArray& a : *group) {
-      file.write(&a.bytes, sizeof a.bytes);
-      a.writeValues(file);
-    }
-  file.write("\n  </AppendedData>\n</VTKFile>\n");
-  file.commit();
+  PolyData data{frame.time, frame.dimensions, count, count, 0, {}};
+  data.groups = {{"PointData", "", pointData<Real>(frame, fields)},
+                 {"Points", "", {vectorArray<Real>("position", frame.position)}},
+                 {"Verts",
+                  "",
+                  {dataArray<std::int32_t>("connectivity", 1, count, number),
+                   dataArray<std::int32_t>("offsets", 1, count, next)}}};
+  return writePolyData(path, std::move(data), compression);
 }
 
 }  // namespace
 
-void writeVtp(const std::filesystem::path& path, const Frame& frame, const OutputFields& fields,
-              OutputPrecision precision) {
-  if (precision == OutputPrecision::Double)
-    write<double>(path, frame, fields);
-  else
-    write<float>(path, frame, fields);
+std::uint64_t writeVtp(const std::filesystem::path& path, const Frame& frame, const OutputFields& fields,
+                       OutputPrecision precision, OutputCompression compression) {
+  if (precision == OutputPrecision::Double) return write<double>(path, frame, fields, compression);
+  return write<float>(path, frame, fields, compression);
 }
 
 }  // namespace treacle

@@ -142,6 +142,17 @@ void requireSound(const Checker& at, const MethodSettings& m) {
               fmt::format("expected more than 1 spacing, found {}: particles would have no neighbours", radius));
 }
 
+/// A surface is made of all particles of a frame.
+void requireSurface(const Checker& at, const Case& c) {
+  if (!c.output.surface) return;
+  if (c.dimensions != 3)
+    at.fail({"output", "surface"}, "found true in two dimensions; surfaces are those of three");
+  if (c.output.pieces == OutputPieces::Each)
+    at.fail(
+        {"output", "surface"},
+        "found true beside pieces = \"each\"; expected \"one\" or \"auto\", or `treacle surface` after the run");
+}
+
 void requireSound(const Checker& at, const Case& c) {
   if (c.heat && c.method.kind != MethodKind::MphI) at.fail({"heat"}, heatOfMphI);
   if (std::ranges::none_of(c.bodies, &Body::holdsFluid))
@@ -149,6 +160,7 @@ void requireSound(const Checker& at, const Case& c) {
   requireMaterials(at, c);
   requireDomainSize(at, c);
   requirePeriodicLength(at, c);
+  requireSurface(at, c);
   for (const auto& [key, interval] :
        {std::pair("interval", c.output.interval), std::pair("checkpoint_interval", c.output.checkpointInterval)})
     if (interval > 0 && c.time.end / interval > maxSteps)

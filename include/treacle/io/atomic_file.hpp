@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <string_view>
 #include <vector>
@@ -23,6 +24,11 @@ class AtomicFile {
 
   void write(const void* data, std::size_t bytes);
   void write(std::string_view text) { write(text.data(), text.size()); }
+  /// In place of what has been written there, none of which may be beyond the end. Not for devices and pipes.
+  void overwrite(std::uint64_t place, const void* data, std::size_t bytes);
+  void overwrite(std::uint64_t place, std::string_view text) { overwrite(place, text.data(), text.size()); }
+  /// What has been written up to now [B].
+  std::uint64_t size() const { return size_; }
   void commit();
 
   static std::filesystem::path temporaryName(std::filesystem::path path) { return path += ".tmp"; }
@@ -36,6 +42,7 @@ class AtomicFile {
   std::filesystem::path path_, target_, temporary_;  // what the user calls it, and the file itself
   bool isFile_ = true;
   std::vector<char> pending_;
+  std::uint64_t size_ = 0;
   int descriptor_ = -1;
 };
 

@@ -1,10 +1,12 @@
 #pragma once
 
 #include "treacle/io/frame.hpp"
+#include "treacle/io/free_surface.hpp"
 #include "treacle/io/pvd.hpp"
 #include "treacle/model/case.hpp"
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string_view>
@@ -39,11 +41,16 @@ class RunDirectory {
   /// Makes the directory of the files of probes. Errors: RunError.
   void makeRoomForProbes() const;
 
-  /// Writes fluid and walls as the next frame and brings both indices up to date. Errors: RunError.
-  void writeFrame(const Frame& fluid, const Frame& walls, const OutputSettings& settings);
+  /// Writes fluid and walls as the next frame and brings both indices up to date. Returns the size of the two
+  /// files [B]. Errors: RunError.
+  std::uint64_t writeFrame(const Frame& fluid, const Frame& walls, const OutputSettings& settings);
   /// Makes these pieces, which stand under the names below, the next frame. A group that nobody has particles of
   /// has one file, as in writeFrame. Errors: RunError, also if a piece is not there.
   void joinPieces(const FramePieces& pieces);
+  /// Writes the surface of the fluid in a frame; those in .vtp that are there have an index. Returns the size of
+  /// the file [B]. Errors: RunError.
+  std::uint64_t writeSurface(std::size_t frame, const FreeSurface& surface, SurfaceFormat format,
+                             OutputCompression compression) const;
   std::size_t frameCount() const { return fluidFrames_.size(); }
   double frameTime(std::size_t frame) const { return fluidFrames_.at(frame).time; }  // [s]
 
@@ -64,6 +71,9 @@ class RunDirectory {
   /// The part of a frame that the process of this rank writes.
   std::filesystem::path fluidPiece(std::size_t frame, int rank) const;
   std::filesystem::path wallsPiece(std::size_t frame, int rank) const;
+
+  std::filesystem::path surfaceIndex() const { return path_ / "surface.pvd"; }
+  std::filesystem::path surfaceFile(std::size_t frame, SurfaceFormat format) const;
 
   std::filesystem::path finalPicture() const { return path_ / "final.png"; }
   std::filesystem::path historyPicture() const { return path_ / "history.png"; }

@@ -20,6 +20,17 @@ struct ProcessShare {
   std::uint64_t peakDeviceMemory = 0;  // [B]
 };
 
+/// What writing frames takes.
+struct FrameCost {
+  std::uint64_t bytes = 0;  // of their files
+  double seconds = 0;       // of the writing thread; where each process writes pieces of the slowest one's [s]
+
+  FrameCost& operator+=(const FrameCost& other) {
+    bytes += other.bytes, seconds += other.seconds;
+    return *this;
+  }
+};
+
 /// What a run was and what it took: `summary.json`.
 struct RunSummary {
   std::string version, commit;
@@ -49,6 +60,8 @@ struct RunSummary {
   Arrangement arrangement;                                          // of the last frame
   double smallestLeast = nearestReach, smallestLow = nearestReach;  // of all frames
 
+  std::uint64_t frames = 0;  // written
+  FrameCost frameCost;       // of all
   std::vector<std::pair<std::string, double>>
       phaseSeconds;                    // wall-clock time by phase, in the order of a step [s]
   double outputThreadSeconds = 0;      // writing frames and checkpoints beside the computation [s]

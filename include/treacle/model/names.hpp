@@ -95,6 +95,8 @@ inline constexpr Named<Coordinate> coordinate[] = {
 inline constexpr Named<OutputFormat> format[] = {{"vtp", OutputFormat::Vtp}};
 inline constexpr Named<OutputPrecision> output[] = {{"single", OutputPrecision::Single},
                                                     {"double", OutputPrecision::Double}};
+inline constexpr Named<OutputCompression> compression[] = {{"zlib", OutputCompression::Zlib},
+                                                           {"none", OutputCompression::None}};
 inline constexpr Named<OutputPieces> pieces[] = {
     {"auto", OutputPieces::Auto}, {"one", OutputPieces::One}, {"each", OutputPieces::Each}};
 }  // namespace names
@@ -155,6 +157,8 @@ template <>
 inline constexpr std::span<const Named<OutputFormat>> namesOf<OutputFormat>{names::format};
 template <>
 inline constexpr std::span<const Named<OutputPrecision>> namesOf<OutputPrecision>{names::output};
+template <>
+inline constexpr std::span<const Named<OutputCompression>> namesOf<OutputCompression>{names::compression};
 template <>
 inline constexpr std::span<const Named<OutputPieces>> namesOf<OutputPieces>{names::pieces};
 

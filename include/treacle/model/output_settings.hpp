@@ -13,6 +13,8 @@ struct OutputFields {
 
 enum class OutputFormat { Vtp };  // the only one
 enum class OutputPrecision { Single, Double };
+/// Of frames; zlib's as VTK has it.
+enum class OutputCompression { Zlib, None };
 /// Who writes frames where processes share a run: the first one all particles, or each its own.
 enum class OutputPieces { Auto, One, Each };
 
@@ -21,7 +23,9 @@ struct OutputSettings {
   double checkpointInterval = 0;  // between checkpoints [s]; 0: at the end of the run only
   OutputFields fields;
   OutputPrecision precision = OutputPrecision::Single;
+  OutputCompression compression = OutputCompression::Zlib;
   OutputPieces pieces = OutputPieces::Auto;
+  bool surface = false;  // of each frame, as triangles, beside it; three dimensions only
   bool balance = false;  // energy balance and loads on walls of each step; MPH-I only
 
   bool operator==(const OutputSettings&) const = default;

@@ -123,7 +123,9 @@ void visit(auto& v, Like<OutputSettings> auto& o, const Case& c) {
   v({"fields"}, o.fields);
   v({"format"}, format);
   v({"precision"}, o.precision);
+  v({"compression"}, o.compression);
   v({"pieces"}, o.pieces);
+  v({"surface"}, o.surface);
   if (c.method.kind == MethodKind::MphI) v({"balance"}, o.balance);
 }
 

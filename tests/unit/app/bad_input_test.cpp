@@ -53,7 +53,11 @@ constexpr BadCase badCases[] = {
      "bad.toml:15:1: unknown key 'viscosity' in [[material]] 'syrup'; did you mean 'dynamic_viscosity' [Pa s]?"},
     {"unknownKeyNearNone", "interval", "zzz",
      "bad.toml:40:1: unknown key 'zzz' in [output]; expected 'interval', 'checkpoint_interval', 'fields', "
-     "'format', 'precision', 'pieces' or 'balance'"},
+     "'format', 'precision', 'compression', 'pieces', 'surface' or 'balance'"},
+    {"surfaceInThePlane", "interval = 1e-3", "interval = 1e-3\nsurface = true",
+     "bad.toml:41:11: surface in [output]: found true in two dimensions; surfaces are those of three"},
+    {"unknownCompression", "interval = 1e-3", "interval = 1e-3\ncompression = \"lz4\"",
+     "bad.toml:41:15: compression in [output]: expected 'zlib' or 'none', found 'lz4'"},
     {"unknownPieces", "interval = 1e-3", "interval = 1e-3\npieces = \"two\"",
      "bad.toml:41:10: pieces in [output]: expected 'auto', 'one' or 'each', found 'two'"},
     {"unknownTable", "[gravity]", "[gravty]",
@@ -397,7 +401,7 @@ TEST_P(BadArguments, areRejectedWithReason) {
 }
 
 constexpr BadLine badLines[] = {
-    {"noCommand", "", "expected a command: run, check, plot, compare, convergence, import or info"},
+    {"noCommand", "", "expected a command: run, check, plot, surface, compare, convergence, import or info"},
     {"unknownCommand", "rum small.toml", "rum"},
     {"noCase", "run", "CASE is required"},
     {"unknownOption", "run small.toml --fast", "--fast"},
@@ -482,7 +486,8 @@ TEST(FullDisk, endsTheRunWithDiagnosisAndLeavesNoPartOfAFile) {
   Workshop shop;
   shop.put("small.toml", smallCase);
   // 4 KiB a file: enough for the texts, not for the walls of a frame.
-  const Outcome outcome = shop.call("run small.toml --threads 1", "trap '' XFSZ; ulimit -f 8;");
+  const Outcome outcome =
+      shop.call("run small.toml --threads 1 --set output.compression=none", "trap '' XFSZ; ulimit -f 8;");
   EXPECT_EQ(outcome.exitCode, 3);
   EXPECT_THAT(outcome.err, HasSubstr("small-run/frames/"));
   EXPECT_THAT(outcome.err, HasSubstr("File too large"));

@@ -87,8 +87,8 @@ TEST(balance, isNotForIsph) {
   EXPECT_EQ(outcome.exitCode, 2);
   EXPECT_THAT(outcome.err,
               HasSubstr("case.toml:41:1: unknown key 'balance' in [output]: it belongs to the method 'mph-i'; "
-                        "expected 'interval', 'checkpoint_interval', 'fields', 'format', 'precision' or "
-                        "'pieces'"));
+                        "expected 'interval', 'checkpoint_interval', 'fields', 'format', 'precision', "
+                        "'compression', 'pieces' or 'surface'"));
 }
 
 }  // namespace

@@ -203,6 +203,7 @@ interval = 0.25
 checkpoint_interval = 0.5
 fields = ["id", "pressure", "body"]
 precision = "double"
+compression = "none"
 pieces = "each"
 balance = true
 [watch]
@@ -254,7 +255,9 @@ TEST(readCase, takesEveryKey) {
                      0.5,
                      {false, true, false, false, false, true, true, false, false, false},
                      OutputPrecision::Double,
+                     OutputCompression::None,
                      OutputPieces::Each,
+                     false,
                      true};
   expected.watch = {3, 4, 0.1, 0};
   EXPECT_EQ(c, expected);

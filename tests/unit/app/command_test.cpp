@@ -153,6 +153,9 @@ TEST(run, leavesAllFiles) {
   EXPECT_THAT(summary, HasSubstr("\"steps\": 3"));
   EXPECT_THAT(summary, HasSubstr("\"threads\": 1"));
   EXPECT_THAT(summary, HasSubstr("\"output_thread_seconds\": "));
+  std::uintmax_t frames = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(run.path() / "frames")) frames += entry.file_size();
+  EXPECT_THAT(summary, HasSubstr("\"count\": 4,\n    \"bytes\": " + std::to_string(frames) + ","));
   const std::string log = shop.content("out/here/run.log");
   EXPECT_THAT(log, HasSubstr("frame 0: step 0, t = 0 s, 0 iterations"));
   EXPECT_THAT(log, HasSubstr("frame 3: step 3, t = 0.003 s, "));

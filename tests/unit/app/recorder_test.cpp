@@ -113,7 +113,7 @@ struct RecordedPieces {
       piece.position.resize(3);
       writeVtp(RunDirectory::joined(directory.path()).fluidPiece(frame, 0), piece, {}, OutputPrecision::Single);
       taken.push_back(frame);
-      open.push_back({step, {piece.time, 3, {0}, {}}, {}});
+      open.push_back({step, {piece.time, 3, {0}, {}}, {}, {1000, 0.25}});
       return {};
     }
     if (std::exchange(fails, false)) {
@@ -143,6 +143,11 @@ TEST(Recorder, PiecesBecomeFramesWhenAllAreThere) {
   r.recorder.writeFrame();
   EXPECT_EQ(r.taken.size(), 4u) << "the state is in the last frame";
   EXPECT_EQ(readFrame(r.directory.fluidFrame(2)).time, 2e-3);
+  RunSummary summary;
+  r.recorder.summarise(summary);
+  EXPECT_EQ(summary.frames, 4u);
+  EXPECT_EQ(summary.frameCost.bytes, 4000u);
+  EXPECT_EQ(summary.frameCost.seconds, 1);
   EXPECT_EQ(readPvd(r.directory.fluidIndex()).at(3).file, "frames/fluid_000003.pvtp");
 }
 

@@ -55,6 +55,19 @@ TEST(AtomicFile, WritesPiecesOfAnySizeInOrder) {
   EXPECT_TRUE(content(directory / "a") == expected);
 }
 
+TEST(AtomicFile, OverwritesWhatWasWritten) {
+  TemporaryDirectory directory;
+  AtomicFile file(directory / "a");
+  const std::string large(3 << 20, 'x');
+  file.write("0000 "), file.write(large), file.write(" 1111");
+  EXPECT_EQ(file.size(), large.size() + 10);
+  file.overwrite(0, "2222");
+  file.overwrite(large.size() + 6, "3333");
+  file.write("4");
+  file.commit();
+  EXPECT_EQ(content(directory / "a"), "2222 " + large + " 33334");
+}
+
 TEST(AtomicFile, FullDiskKeepsTheOldFileAndSaysWhy) {
   TemporaryDirectory directory;
   writeFile(directory / "a", "old");

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <omp.h>
 #include <signal.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -15,6 +16,7 @@ bool withFileLimit(rlim_t bytes, F f) {
   if (child == 0) {
     const rlimit limit{bytes, bytes};
     ::signal(SIGXFSZ, SIG_IGN);
+    omp_set_num_threads(1);  // the others have not come along
     bool good = ::setrlimit(RLIMIT_FSIZE, &limit) == 0;
     try {
       good = good && f();

@@ -162,12 +162,15 @@ TEST(RunDirectory, ForceRemovesTheOldRunAndNothingElse) {
         run.framePicture(0), run.checkpoint(), run.fluidFrame(1000000), directory / "history.csv.tmp",
         directory / "frames/walls_000007.vtp.tmp", directory / "frames/fluid_000003.pvtp",
         directory / "frames/walls_000003.pvtp.tmp", directory / "frames/walls_1000003.p12.vtp",
-        directory / "frames/fluid_000003.p0.vtp.tmp"})
+        directory / "frames/fluid_000003.p0.vtp.tmp", run.surfaceIndex(), run.surfaceFile(2, SurfaceFormat::Vtp),
+        run.surfaceFile(1000000, SurfaceFormat::Ply), directory / "frames/surface_000003.ply.tmp"})
     put(path, "old");
   const std::set<std::string> foreign{"notes.txt",
                                       "frames/fluid_1.vtp",
                                       "frames/fluid_00000a.vtp",
                                       "frames/my.png",
+                                      "frames/surface_3.vtp",
+                                      "frames/surface000003.vtp",
                                       "frames/fluid_000003.p.vtp",
                                       "frames/fluid_000003.p1.png",
                                       "frames/fluid_000003.p1.pvtp",

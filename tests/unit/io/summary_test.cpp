@@ -19,6 +19,7 @@ RunSummary summary() {
   s.meanDensity = 0.998, s.densityError = 0.0625, s.largestDensityError = 0.125;
   s.arrangement = {0.5, 0.75, 1.25}, s.smallestLeast = 0.0625, s.smallestLow = 0.25;
   s.phaseSeconds = {{"search", 0.5}, {"solve", 1.5}};
+  s.frames = 21, s.frameCost = {5000000000, 1.75};
   s.outputThreadSeconds = 0.125, s.wallSeconds = 2.25, s.peakMemory = 1000000, s.peakDeviceMemory = 3000000,
   s.done = true;
   return s;
@@ -57,6 +58,7 @@ TEST(Summary, HoldsEverything) {
   EXPECT_EQ(json["nearest_distance"].dump(),
             R"({"least":0.5,"low":0.75,"smallest_least":0.0625,"smallest_low":0.25})");
   EXPECT_EQ(json["seconds_per_phase"].dump(), R"({"search":0.5,"solve":1.5})");
+  EXPECT_EQ(json["frames"].dump(), R"({"count":21,"bytes":5000000000,"seconds":1.75})");
   EXPECT_EQ(json["output_thread_seconds"], 0.125);
   EXPECT_EQ(json["wall_seconds"], 2.25);
   EXPECT_EQ(json["peak_memory_bytes"], 1000000);

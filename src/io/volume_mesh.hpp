@@ -1,0 +1,33 @@
+#pragma once
+
+#include "treacle/core/vec.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+namespace treacle {
+
+/// A field on a grid of which some blocks of 8 x 8 x 8 nodes are known: elsewhere it has one of two values.
+struct BlockedField {
+  std::vector<std::array<int, 3>> blocks,
+      inside;  // which are to be asked for, and where it is `within` throughout
+  float outside = 0, within = 0;
+  /// Of blocks[k], the last axis running fastest; by several threads at once. False: outside throughout.
+  std::function<bool(std::size_t k, float* values)> values;
+};
+
+struct TriangleMesh {
+  std::vector<Vec<3, float>> points;                    // in nodes from that of block (0, 0, 0)
+  std::vector<std::array<std::uint32_t, 3>> triangles;  // anticlockwise as seen from where the field is positive
+};
+
+/// Whether this build has the library for it, OpenVDB.
+bool hasVolumeMesh();
+
+/// Where the field is zero, by dual contouring. Errors: std::bad_alloc; InputError where there is no library.
+TriangleMesh volumeMesh(const BlockedField& field);
+
+}  // namespace treacle
