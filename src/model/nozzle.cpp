@@ -91,22 +91,35 @@ bool isInside(const std::vector<Vec<2>>& polygon, const Vec<2>& x) {
   return inside;
 }
 
-/// Of the lattices with a particle in the centre, or between some, the one whose number is the nearest to
-/// `wanted`.
-template <int N>
-std::vector<Vec<N>> polygonOf(const std::vector<Vec<2>>& points, double spacing, double wanted) {
-  std::vector<Vec<N>> best;
-  if constexpr (N == 2) {
-    Vec<2> most{};
-    for (const Vec<2>& x : points)
-      for (int k = 0; k < 2; ++k) most[k] = std::max(most[k], std::abs(x[k]) / spacing);
-    const auto off = [&](const std::vector<Vec<2>>& p) {
-      return std::abs(static_cast<double>(p.size()) - wanted);
-    };
-    for (const Vec<2>& shift : {Vec<2>{0, 0}, Vec<2>{0.5, 0}, Vec<2>{0, 0.5}, Vec<2>{0.5, 0.5}}) {
-      auto places = latticeOf<2>(most, shift, [&](const Vec<2>& x) { return isInside(points, spacing * x); });
-      if (best.empty() || off(places) < off(best)) best = std::move(places);
-    }
+Vec<2> centroidOf(const std::vector<Vec<2>>& polygon) {
+  Vec<2> sum{};
+  double area = 0;  // six times, with its sign
+  for (std::size_t k = 0; k < polygon.size(); ++k) {
+    const Vec<2>&a = polygon[k], &b = polygon[(k + 1) % polygon.size()];
+    const double part = a[0] * b[1] - b[0] * a[1];
+    sum += part * (a + b), area += 3 * part;
+  }
+  return (1 / area) * sum;
+}
+
+/// Of lattices that are shifted by quarters of a spacing the one whose number is the nearest to `wanted`, and of
+/// these the one whose middle is the nearest to that of the polygon.
+std::vector<Vec<2>> polygonOf(const std::vector<Vec<2>>& points, double spacing, double wanted) {
+  Vec<2> most{};
+  for (const Vec<2>& x : points)
+    for (int k = 0; k < 2; ++k) most[k] = std::max(most[k], std::abs(x[k]) / spacing);
+  const Vec<2> middle = (1 / spacing) * centroidOf(points);
+  const auto off = [&](const std::vector<Vec<2>>& places) {
+    Vec<2> sum{};
+    for (const Vec<2>& x : places) sum += x;
+    const double count = static_cast<double>(places.size());
+    return std::pair(std::abs(count - wanted), places.empty() ? 0 : norm((1 / count) * sum - middle));
+  };
+  std::vector<Vec<2>> best;
+  for (int shift = 0; shift < 16; ++shift) {
+    auto places = latticeOf<2>(most, {0.25 * (shift % 4), 0.25 * (shift / 4)},
+                               [&](const Vec<2>& x) { return isInside(points, spacing * x); });
+    if (shift == 0 || off(places) < off(best)) best = std::move(places);
   }
   return best;
 }
@@ -124,7 +137,8 @@ template <int N>
 std::vector<Vec<N>> placesAcross(const Nozzle& n, double spacing) {
   if (n.kind == NozzleKind::Disc)
     return discOf<N>(n.radius / spacing, n.innerRadius / spacing, areaOf<N>(n) / std::pow(spacing, N));
-  if (n.kind == NozzleKind::Polygon) return polygonOf<N>(n.points, spacing, areaOf<N>(n) / std::pow(spacing, N));
+  if constexpr (N == 2)
+    if (n.kind == NozzleKind::Polygon) return polygonOf(n.points, spacing, areaOf<N>(n) / (spacing * spacing));
   Vec<N> sides;
   sides[0] = n.width / spacing;
   if constexpr (N > 1) sides[1] = n.height / spacing;

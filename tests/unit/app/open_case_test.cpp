@@ -114,8 +114,7 @@ const Bad mistakes[] = {
     {"jet.nozzle.direction=[0,0]", "expected a direction, found a vector of length 0"},
     {"jet.nozzle.radius=1", "unknown key 'radius' in the nozzle of [[body]] 'jet' (rectangle)"},
     {"jet.nozzle.width=0", "expected a positive number [m], found 0"},
-    {"jet.nozzle={shape='polygon',center=[0,8e-3],direction=[0,-1],points=[[0,0],[1,0],[0,1]]}",
-     "a polygon has two dimensions"},
+    {"jet.nozzle.shape='polygon'", "unknown key 'width' in the nozzle of [[body]] 'jet' (polygon)"},
     {"jet.speed={file='missing.csv'}", "missing.csv"},
     {"jet.speed={file='a.csv', times=[0]}", "expected either file or times and values, found both"},
     {"jet.shape='box'", "unknown key 'shape' in [[body]] 'jet' (inflow)"},
@@ -134,6 +133,18 @@ TEST(OpenCase, MistakesAreExplained) {
     SCOPED_TRACE(bad.override);
     EXPECT_THAT(messageOf<InputError>([&] { caseWith({bad.override}); }), HasSubstr(bad.message));
   }
+}
+
+TEST(OpenCase, APolygonIsAnOpeningInSpace) {
+  Workshop shop;
+  const auto message = [&](const std::string& dimensions, const std::string& points) {
+    std::string text = replaced(pouring, "shape = \"rectangle\"", "shape = \"polygon\"");
+    text = replaced(text, "width = 4e-3", "points = " + points);
+    shop.put("case.toml", replaced(text, "dimensions = 2", dimensions));
+    return messageOf<InputError>([&] { readCase(shop / "case.toml"); });
+  };
+  EXPECT_THAT(message("dimensions = 2", "[[0, 0], [1, 0], [0, 1]]"), HasSubstr("a polygon has two dimensions"));
+  EXPECT_THAT(message("dimensions = 2", "[[0, 0], [1, 0, 3]]"), HasSubstr("points in the nozzle"));
 }
 
 std::string messageOfCreation(const std::vector<std::string>& overrides) {
