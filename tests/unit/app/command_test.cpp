@@ -356,7 +356,7 @@ TEST(check, warnsWhereThisMachineHasNotTheMemory) {
   GTEST_SKIP() << "the address sanitizer needs more address space than the limit of this test";
 #endif
   Workshop shop;
-  const Outcome outcome = prepared(shop).call("check small.toml --set domain.max=[30,30]", "ulimit -v 600000;");
+  const Outcome outcome = prepared(shop).call("check small.toml --set domain.max=[30,30]", "ulimit -v 800000;");
   EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
   EXPECT_THAT(outcome.err, ContainsRegex("warning: 100 particles and 3.* search cells of the domain need about "));
 }
