@@ -1,5 +1,6 @@
 #include "fluid_sampler.hpp"
 
+#include "treacle/core/block.hpp"
 #include "treacle/model/probe.hpp"
 
 #include <cmath>
@@ -21,21 +22,6 @@ double wendland(double distance, int dimensions) {
   const double scale = dimensions == 2 ? 7 / (std::numbers::pi * r * r) : 21 / (2 * std::numbers::pi * r * r * r);
   const double p = 1 - q;
   return scale * p * p * p * p * (1 + 4 * q);
-}
-
-/// x of the symmetric positive definite system m x = b, in the first dimensions.
-Vec<3> solved(double m[3][3], Vec<3> b, int dimensions) {
-  for (int k = 0; k < dimensions; ++k)
-    for (int i = k + 1; i < dimensions; ++i) {
-      const double factor = m[i][k] / m[k][k];
-      for (int j = k; j < dimensions; ++j) m[i][j] -= factor * m[k][j];
-      b[i] -= factor * b[k];
-    }
-  for (int k = dimensions - 1; k >= 0; --k) {
-    for (int j = k + 1; j < dimensions; ++j) b[k] -= m[k][j] * b[j];
-    b[k] /= m[k][k];
-  }
-  return b;
 }
 
 }  // namespace
@@ -68,23 +54,19 @@ std::vector<FluidSampler::Neighbour> FluidSampler::neighbours(const Points& poin
 FluidSample FluidSampler::at(const Vec<3>& x) const {
   constexpr double leastVariance = 1e-3;  // [spacings2]
   const std::vector<Neighbour> near = neighbours(fluidPoints_, x);
-  double sum = 0, nearest = nearestInFluid;
+  double sum = 0;
   bool inside = false;
   Vec<3> mean{};
   for (const Neighbour& n : near) {
     sum += n.weight, mean += n.weight * n.way;
-    inside = inside || norm(n.way) <= nearest;
+    inside = inside || norm(n.way) <= nearestInFluid;
   }
   if (!inside) return {{none, none, none}, none, none, none, none};
   mean *= 1 / sum;
-  double variance[3][3] = {};
-  for (const Neighbour& n : near)
-    for (int i = 0; i < dimensions_; ++i)
-      for (int j = 0; j < dimensions_; ++j)
-        variance[i][j] += n.weight / sum * (n.way[i] - mean[i]) * (n.way[j] - mean[j]);
-  for (int i = 0; i < dimensions_; ++i) variance[i][i] += leastVariance;
+  Block<3> variance = Block<3>::diagonal(leastVariance);  // in the plane all there is along z
+  for (const Neighbour& n : near) variance.addOuter(n.weight / sum, n.way - mean, n.way - mean);
   // What is fitted is a sum of values: each counts by its weight and by where it is.
-  const Vec<3> slope = solved(variance, -mean, dimensions_);
+  const Vec<3> slope = inverse(variance) * -mean;
   const auto fitted = [&](auto&& value, auto zero) {
     for (const Neighbour& n : near) zero += n.weight / sum * (1 + dot(slope, n.way - mean)) * value(n.index);
     return zero;

@@ -1,5 +1,6 @@
 #include "treacle/io/pvd.hpp"
 
+#include "parse_number.hpp"
 #include "text_file.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/io/atomic_file.hpp"

@@ -1,5 +1,6 @@
 #include "time_table.hpp"
 
+#include "parse_number.hpp"
 #include "table_text.hpp"
 #include "text_file.hpp"
 #include "treacle/core/error.hpp"
@@ -8,24 +9,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cstddef>
 #include <optional>
 #include <string_view>
 #include <vector>
 
 namespace treacle {
-namespace {
-
-std::optional<double> numberIn(std::string_view text) {
-  double x = 0;
-  const char* const end = text.data() + text.size();
-  const auto result = std::from_chars(text.data(), end, x);
-  return result.ec == std::errc{} && result.ptr == end ? std::optional(x) : std::nullopt;
-}
-
-}  // namespace
-
 TimeFunction readTimeTable(const std::filesystem::path& path, const std::string& column) {
   const std::string text = readTextFile(path);
   TextLines lines(text);
@@ -49,14 +38,15 @@ TimeFunction readTimeTable(const std::filesystem::path& path, const std::string&
     if (first) separator = separatorOf(*line);
     splitLine(*line, separator, fields);
     if (first) {
-      const bool named = std::ranges::none_of(fields, [](std::string_view x) { return numberIn(x).has_value(); });
+      const bool named =
+          std::ranges::none_of(fields, [](std::string_view x) { return parseNumber<double>(x).has_value(); });
       findColumn(named);
       if (named) continue;
     }
     if (fields.size() <= values)
       refuse(fmt::format("expected {} numbers or more, found {}", values + 1, fields.size()));
     for (const std::size_t k : {std::size_t{0}, values}) {
-      const std::optional<double> x = numberIn(fields[k]);
+      const std::optional<double> x = parseNumber<double>(fields[k]);
       if (!x) refuse(fmt::format("expected numbers, found '{}'", fields[k]));
       (k == 0 ? f.times : f.values).push_back(*x);
     }

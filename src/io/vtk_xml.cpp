@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <string>
 
 namespace treacle {
@@ -25,18 +24,5 @@ std::optional<std::string_view> attribute(std::string_view tag, std::string_view
   if (end == tag.npos) return std::nullopt;
   return tag.substr(begin, end - begin);
 }
-
-template <class T>
-std::optional<T> parseNumber(std::string_view text) {
-  T value{};
-  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || stop != text.data() + text.size()) return std::nullopt;
-  return value;
-}
-
-template std::optional<double> parseNumber<double>(std::string_view);
-template std::optional<int> parseNumber<int>(std::string_view);
-template std::optional<std::int64_t> parseNumber<std::int64_t>(std::string_view);
-template std::optional<std::uint64_t> parseNumber<std::uint64_t>(std::string_view);
 
 }  // namespace treacle

@@ -31,8 +31,4 @@ std::optional<std::string_view> nextTag(std::string_view xml, std::string_view n
 /// The value of an attribute in the text of a tag.
 std::optional<std::string_view> attribute(std::string_view tag, std::string_view name);
 
-/// A number that fills the whole text.
-template <class T>
-std::optional<T> parseNumber(std::string_view text);
-
 }  // namespace treacle

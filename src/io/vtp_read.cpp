@@ -1,3 +1,4 @@
+#include "parse_number.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/io/vtp.hpp"
 #include "vtk_blocks.hpp"

@@ -1,5 +1,6 @@
 #include "treacle/model/nozzle.hpp"
 
+#include "facet_tree.hpp"
 #include "polygon.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/model/create.hpp"
@@ -80,17 +81,6 @@ std::vector<Vec<N>> discOf(double radius, double inner, double wanted) {
   return best;
 }
 
-/// By the sides that a way from the point along the first axis crosses.
-bool isInside(const std::vector<Vec<2>>& polygon, const Vec<2>& x) {
-  bool inside = false;
-  for (std::size_t k = 0; k < polygon.size(); ++k) {
-    const Vec<2>&a = polygon[k], &b = polygon[(k + 1) % polygon.size()];
-    if ((a[1] > x[1]) != (b[1] > x[1]) && x[0] < a[0] + (x[1] - a[1]) / (b[1] - a[1]) * (b[0] - a[0]))
-      inside = !inside;
-  }
-  return inside;
-}
-
 Vec<2> centroidOf(const std::vector<Vec<2>>& polygon) {
   Vec<2> sum{};
   double area = 0;  // six times, with its sign
@@ -109,6 +99,9 @@ std::vector<Vec<2>> polygonOf(const std::vector<Vec<2>>& points, double spacing,
   for (const Vec<2>& x : points)
     for (int k = 0; k < 2; ++k) most[k] = std::max(most[k], std::abs(x[k]) / spacing);
   const Vec<2> middle = (1 / spacing) * centroidOf(points);
+  Shape outline;
+  outline.points = points;
+  const FacetTree<2> sides(polygonFacets<2>(outline));
   const auto off = [&](const std::vector<Vec<2>>& places) {
     Vec<2> sum{};
     for (const Vec<2>& x : places) sum += x;
@@ -118,7 +111,7 @@ std::vector<Vec<2>> polygonOf(const std::vector<Vec<2>>& points, double spacing,
   std::vector<Vec<2>> best;
   for (int shift = 0; shift < 16; ++shift) {
     auto places = latticeOf<2>(most, {0.25 * (shift % 4), 0.25 * (shift / 4)},
-                               [&](const Vec<2>& x) { return isInside(points, spacing * x); });
+                               [&](const Vec<2>& x) { return sides.winding(spacing * x) > 0.5; });
     if (shift == 0 || off(places) < off(best)) best = std::move(places);
   }
   return best;

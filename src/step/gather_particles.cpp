@@ -68,10 +68,7 @@ void gatherParticles(const Communicator& processes, const HaloCounts& halo, cons
   nothing.hasShearRates = own.hasShearRates;
   nothing.hasTemperatures = own.hasTemperatures;
   Particles<D>& target = first ? whole : nothing;
-  const auto gather = [&]<class T>(std::span<const T> part, T* to) {
-    const std::vector<T> parts = processes.collect(part);
-    std::copy(parts.begin(), parts.end(), to);
-  };
+  const auto gather = [&]<class T>(std::span<const T> part, T* to) { collectTo(processes, part, to); };
   const auto gatherField = [&]<class T>(const Buffer<T>& from, Buffer<T>& to) {
     gather(from.span().first(own.fluidCount), to.data());
   };

@@ -1,12 +1,12 @@
 #pragma once
 
 #include "flow_state.hpp"
+#include "gather_particles.hpp"
 #include "treacle/core/halo.hpp"
 #include "treacle/search/near_places.hpp"
 #include "treacle/step/probe_reading.hpp"
 #include "treacle/step/probe_sums.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -23,10 +23,7 @@ Particles<D> collected(const Communicator& processes, const Particles<D>& own) {
   Particles<D> all;
   if (processes.rank() == 0) all.resize(numbersOfSome(own, numbers[0], numbers[1]));
   all.hasShearRates = own.hasShearRates, all.hasTemperatures = own.hasTemperatures;
-  const auto collect = [&]<class T>(std::span<const T> part, T* to) {
-    const std::vector<T> parts = processes.collect(part);
-    std::copy(parts.begin(), parts.end(), to);
-  };
+  const auto collect = [&]<class T>(std::span<const T> part, T* to) { collectTo(processes, part, to); };
   forEachSharedFieldOf(
       [&](const auto& from, auto& to) {
         collect(from.span().first(own.fluidCount), to.data());

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "unit/app/command.hpp"
+#include "unit/app/mistakes.hpp"
 
 namespace treacle::test {
 namespace {
@@ -52,11 +53,7 @@ TEST(HeatCase, IsReadAndWritten) {
   EXPECT_EQ(c.materials[0].specificHeat, 2000);
 }
 
-struct Bad {
-  const char* override;
-  const char* message;
-};
-const Bad mistakes[] = {
+const Mistake mistakes[] = {
     {"syrup.specific_heat=0",
      "specific_heat in [[material]] 'syrup': expected a positive number [J/(kg K)], found 0"},
     {"syrup.emissivity=2", "emissivity in [[material]] 'syrup': expected a number from 0 to 1, found 2"},
@@ -92,12 +89,7 @@ const Bad mistakes[] = {
      "[K], found 300"},
 };
 
-TEST(HeatCase, MistakesSayWhereAndWhatIsExpected) {
-  for (const Bad& bad : mistakes) {
-    const std::string message = messageOf<InputError>([&] { caseWith({bad.override}); });
-    EXPECT_THAT(message, HasSubstr(bad.message)) << bad.override;
-  }
-}
+TEST(HeatCase, MistakesSayWhereAndWhatIsExpected) { expectExplained(mistakes, caseWith); }
 
 TEST(HeatCase, KeysOfHeatBelongToCasesWithIt) {
   Workshop shop;

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "unit/app/command.hpp"
+#include "unit/app/mistakes.hpp"
 
 namespace treacle::test {
 namespace {
@@ -97,11 +98,7 @@ TEST(OpenCase, MotionsAndRigidBodiesAreReadAndWritten) {
   }
 }
 
-struct Bad {
-  const char* override;
-  const char* message;
-};
-const Bad mistakes[] = {
+const Mistake mistakes[] = {
     {"jet.speed=-1",
      "expected a number not less than 0 [m/s], an expression in t [s] or {times = [...], values = "
      "[...]}, found -1"},
@@ -128,12 +125,7 @@ const Bad mistakes[] = {
     {"rim.shape='ball'", "expected 'box' or 'plane', found 'ball'"},
 };
 
-TEST(OpenCase, MistakesAreExplained) {
-  for (const Bad& bad : mistakes) {
-    SCOPED_TRACE(bad.override);
-    EXPECT_THAT(messageOf<InputError>([&] { caseWith({bad.override}); }), HasSubstr(bad.message));
-  }
-}
+TEST(OpenCase, MistakesAreExplained) { expectExplained(mistakes, caseWith); }
 
 TEST(OpenCase, APolygonIsAnOpeningInSpace) {
   Workshop shop;

@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "unit/app/command.hpp"
+#include "unit/app/mistakes.hpp"
 
 namespace treacle::test {
 namespace {
@@ -84,11 +85,7 @@ TEST(ProbeCase, IsReadAndWritten) {
   EXPECT_EQ(readCase(shop / "written.toml"), c) << caseText(c);
 }
 
-struct Bad {
-  const char* override;
-  const char* message;
-};
-const Bad mistakes[] = {
+const Mistake mistakes[] = {
     {"corner.kind='point'", "unknown key 'kind' in [[probe]] 'corner' (point)"},
     {"corner.type='dot'", "expected 'point', 'line', 'plane', 'height', 'flow', 'region' or 'load', found 'dot'"},
     {"corner.normal=[1,0]", "unknown key 'normal' in [[probe]] 'corner' (point)"},
@@ -107,12 +104,7 @@ const Bad mistakes[] = {
     {"floor-load.body='column'", "'column' is fluid; expected the name of a wall or rigid body"},
 };
 
-TEST(ProbeCase, MistakesAreExplained) {
-  for (const Bad& bad : mistakes) {
-    SCOPED_TRACE(bad.override);
-    EXPECT_THAT(messageOf<InputError>([&] { caseWith({bad.override}); }), HasSubstr(bad.message));
-  }
-}
+TEST(ProbeCase, MistakesAreExplained) { expectExplained(mistakes, caseWith); }
 
 TEST(ProbeCase, IsphReadsLoadsToo) {
   Workshop shop;
