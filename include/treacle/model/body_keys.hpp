@@ -157,6 +157,8 @@ void visit(auto& v, Like<Body> auto& b, const Case& c) {
   v({"shape", required}, b.shape.kind);
   v({"where"}, b.where, expression);
   v({"velocity", optional, "m/s"}, b.velocity, b.velocityExpression);
+  const bool ofFile = b.kind == BodyKind::Fluid && b.shape.kind == ShapeKind::Particles;
+  if (ofFile) v({"file_velocities"}, b.fileVelocities);
   if (b.kind == BodyKind::Rigid) {
     visit(v, b.rigid, c);
   } else {
@@ -166,7 +168,9 @@ void visit(auto& v, Like<Body> auto& b, const Case& c) {
   }
   if (c.heat) {
     const bool fluid = b.kind == BodyKind::Fluid;
-    v({"temperature", fluid, "K", fluid ? positive : notNegative}, b.temperature, b.temperatureExpression);
+    if (ofFile) v({"file_temperatures"}, b.fileTemperatures);
+    if (!b.fileTemperatures)
+      v({"temperature", fluid, "K", fluid ? positive : notNegative}, b.temperature, b.temperatureExpression);
     if (!fluid) v({"wall_conductance", optional, "W/(m2 K)", notNegative}, b.wallConductance);
   }
   visit(v, b.shape, c);
