@@ -41,10 +41,45 @@ double largest(const Vector& v) {
   return most;
 }
 
+double product(const Vector& a, const Vector& b) {
+  double sum = 0;
+  for (std::size_t k = 0; k < a.size(); ++k) sum += a[k] * b[k];
+  return sum;
+}
+
+/// Moves what the derivative would take for the zero to where all restraints hold, by their pushes: one after the
+/// other until none moves it by more than `least` (projected Gauss-Seidel). What they cannot do together stays.
+void restrain(const Vector& derivative, const std::vector<Restraint>& restraints, double least, Vector& x) {
+  constexpr int mostRounds = 2000;
+  struct Held {
+    const Restraint* restraint;
+    Vector way;       // by which a push of 1 moves the zero
+    double rate = 0;  // of row . x along it
+    double push = 0;
+  };
+  std::vector<Held> held;
+  for (const Restraint& r : restraints) {
+    Vector way = solved(derivative, r.push);
+    if (const double rate = product(r.row, way); rate > 0) held.push_back({&r, std::move(way), rate});
+  }
+  for (int round = 0; round < mostRounds; ++round) {
+    double moved = 0;
+    for (Held& h : held) {
+      const double missing = (h.restraint->least - product(h.restraint->row, x)) / h.rate;
+      const double change = std::max(missing, -h.push);
+      if (change == 0) continue;
+      h.push += change;
+      for (std::size_t k = 0; k < x.size(); ++k) x[k] += change * h.way[k];
+      moved = std::max(moved, std::abs(change) * largest(h.way));
+    }
+    if (moved <= least) return;
+  }
+}
+
 }  // namespace
 
 AffineSolve::Result AffineSolve::run(const Function& f, Vector& x, Vector& derivative, double scale,
-                                     double tolerance, int most) {
+                                     double tolerance, int most, const std::vector<Restraint>& restraints) {
   const std::size_t n = x.size();
   Result result;
   const auto value = [&](const Vector& at) {
@@ -63,12 +98,14 @@ AffineSolve::Result AffineSolve::run(const Function& f, Vector& x, Vector& deriv
   }
   for (int k = 0;; ++k) {
     Vector step = solved(derivative, y);
+    for (std::size_t i = 0; i < n; ++i) step[i] = x[i] - step[i];
+    restrain(derivative, restraints, 0.1 * tolerance * scale, step);
+    for (std::size_t i = 0; i < n; ++i) step[i] -= x[i];
     result.converged = largest(step) <= tolerance * scale;
     // What was computed last must be what the unknowns are.
     if ((result.converged && (k > 0 || result.values == 1)) || k == most) return result;
     double length2 = 0;
     for (std::size_t i = 0; i < n; ++i) {
-      step[i] = -step[i];
       x[i] += step[i];
       length2 += step[i] * step[i];
     }

@@ -1,6 +1,7 @@
 #include "failure.hpp"
 #include "mph_solver.hpp"
 #include "rigid_bodies.hpp"
+#include "rigid_contacts.hpp"
 #include "step_balance.hpp"
 #include "step_heat.hpp"
 #include "step_method.hpp"
@@ -36,7 +37,7 @@ class MphStep final : public StepMethod<D, Backend> {
     if (state.theCase.hasOwnViscosities()) rheology_.emplace(state.theCase);
     if (state.theCase.heat) heat_.emplace(state.theCase, pairs_);
     if (state.theCase.hasSurfaceTension()) surface_.emplace(state.theCase);
-    if (state.theCase.hasRigid()) rigid_.emplace(state);
+    if (state.theCase.hasRigid()) rigid_.emplace(state), contacts_.emplace(state);
   }
 
   void sortParticles() override { neighbourhood_.sort(state_.context, state_.particles); }
@@ -165,7 +166,8 @@ class MphStep final : public StepMethod<D, Backend> {
            (rheology_ ? rheology_->bytes() : 0) + (heat_ ? heat_->bytes() : 0) +
            (surface_ ? surface_->bytes() : 0) + wallBlock_.bytes() + wallGradient_.bytes() + wallDensity_.bytes() +
            elastic_.bytes() + divergence_.bytes() + rhs_.bytes() + found_.bytes() + solver_.bytes() +
-           balance_.bytes() + wallForces_.bytes() + rhsAtRest_.bytes() + pressure_.bytes();
+           balance_.bytes() + wallForces_.bytes() + (contacts_ ? contacts_->bytes() : 0) + rhsAtRest_.bytes() +
+           pressure_.bytes();
   }
 
  private:
@@ -193,7 +195,7 @@ class MphStep final : public StepMethod<D, Backend> {
   StagedReport solveWithBodies() {
     wallForces_.prepare(state_, neighbourhood_);
     std::optional<StagedReport> report;
-    rigid_->solve([&] {
+    rigid_->solve(contacts_->find(state_, pairs_, wallSurface_), [&] {
       if (!report) {
         report = solveFluid();
       } else {
@@ -366,9 +368,10 @@ class MphStep final : public StepMethod<D, Backend> {
   std::optional<StepHeat<D, Backend>> heat_;          // where the case has heat
   std::optional<StepSurface<D, Backend>> surface_;    // where some fluid has a surface tension
   std::optional<RigidSystem<D, Backend>> rigid_;      // where the case has rigid bodies; then also these
-  Buffer<Vec<D>, Backend> rhsAtRest_;                 // the right-hand side without velocities of walls
-  Buffer<double, Backend> pressure_;                  // per active particle [Pa]
-  WallForces<D, Backend> wallForces_;                 // for rigid bodies and the balance
+  std::optional<RigidContacts<D, Backend>> contacts_;
+  Buffer<Vec<D>, Backend> rhsAtRest_;  // the right-hand side without velocities of walls
+  Buffer<double, Backend> pressure_;   // per active particle [Pa]
+  WallForces<D, Backend> wallForces_;  // for rigid bodies and the balance
   StepBalance<D, Backend> balance_{wallForces_};
   std::optional<Balance> lastBalance_;
 };

@@ -4,6 +4,7 @@
 #include "treacle/core/error.hpp"
 #include "treacle/linear/affine_solve.hpp"
 #include "treacle/step/balance_sums.hpp"
+#include "treacle/step/contacts.hpp"
 
 #include <fmt/format.h>
 
@@ -45,9 +46,10 @@ class RigidSystem {
   }
 
   /// `loads(velocities)`: solves the flow with the velocities that state.rigid has, and returns what the bodies
-  /// then bear. The last flow that it solves is that of the velocities that are found. Errors: RunError.
+  /// then bear. The last flow that it solves is that of the velocities that are found. `contacts`: of bodies with
+  /// each other and with walls, which push them apart and do not hold them. Errors: RunError.
   template <class F>
-  void solve(F&& loads) {
+  void solve(const std::vector<Contact<D>>& contacts, F&& loads) {
     std::vector<double> x = values(state_.rigid.bodies);
     const double dt = state_.timeStep, scale = scaleOf(x);
     bool isStart = true;  // whose velocities the walls and the right-hand side have
@@ -56,7 +58,7 @@ class RigidSystem {
           if (!std::exchange(isStart, false)) set(at), setWallMotions(state_);
           return residual(loads());
         },
-        x, state_.rigid.response, scale, tolerance, mostValues);
+        x, state_.rigid.response, scale, tolerance, mostValues, restraints(contacts));
     if (!result.converged)
       throw RunError(
           fmt::format("the velocities of the rigid bodies were not found in {} solves; take {} <= {:.3g}",
@@ -93,6 +95,47 @@ class RigidSystem {
         b.velocity[component] = x[k];
       else
         b.spin[component - 3] = x[k] / b.gyration();
+    }
+  }
+
+  /// That no surfaces that touch go into each other, in the step at hand, and that those that do come apart: of an
+  /// overlap a fifth in a step, at most a hundredth of a spacing, which takes no energy worth naming.
+  std::vector<Restraint> restraints(const std::vector<Contact<D>>& contacts) const {
+    const double dt = state_.timeStep, most = 0.01 * state_.theCase.spacing;
+    std::vector<Restraint> all;
+    for (const Contact<D>& contact : contacts) {
+      Restraint r{std::vector<double>(unknowns_.size()), std::vector<double>(unknowns_.size())};
+      r.least = (contact.gap > 0 ? -contact.gap : std::min(-0.2 * contact.gap, most)) / dt;
+      const Vec<3> place = resized<3>(contact.place), normal = resized<3>(contact.normal);
+      add(contact.body, place, normal, r);
+      if (state_.theCase.bodies[contact.other].kind == BodyKind::Rigid)
+        add(contact.other, place, -1.0 * normal, r);
+      else
+        r.least += dot(normal, resized<3>(given(contact.other).chordAt(contact.place)));
+      all.push_back(std::move(r));
+    }
+    return all;
+  }
+
+  /// How a body moves in the step that is not rigid.
+  WallMotion<D> given(std::size_t body) const {
+    const Case& c = state_.theCase;
+    return wallMotion<D>(c.domain, c.bodies[body], state_.time, state_.timeStep);
+  }
+
+  /// The part of a body: its velocity at a place along a normal, less what is locked, and what a force there along
+  /// it makes of the residual.
+  void add(std::size_t body, const Vec<3>& place, const Vec<3>& normal, Restraint& r) const {
+    const RigidBody& b = state_.particles.rigid.bodies[body];
+    const Vec<3> arm = place - b.center, turn = cross(arm, normal);
+    r.least -= dot(normal, b.velocity + cross(b.spin, arm));
+    for (std::size_t k = 0; k < unknowns_.size(); ++k) {
+      if (unknowns_[k].body != body) continue;
+      const int component = unknowns_[k].component;
+      r.row[k] = component < 3 ? normal[component] : turn[component - 3] / b.gyration();
+      r.push[k] = r.row[k] / b.mass;
+      r.least +=
+          component < 3 ? normal[component] * b.velocity[component] : turn[component - 3] * b.spin[component - 3];
     }
   }
 

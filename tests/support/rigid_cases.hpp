@@ -39,4 +39,42 @@ inline Case blockCase(int dimensions, double density) {
   return c;
 }
 
+/// A block without fluid below it that falls onto a floor, between fluid at its sides that has about no weight in
+/// this; in spacings of 1 mm.
+inline Case fallingBlockCase(int dimensions, double angle) {
+  Case c = blockCase(dimensions, 7000);
+  c.gravity = {0, -10, 0};
+  Body &blob = c.bodies[0], &block = c.bodies[1];
+  const double deep = dimensions == 3 ? 6e-3 : 0;
+  blob.where = dimensions == 3 ? "abs(x) > 5e-3 || abs(z) > 5e-3" : "abs(x) > 5e-3";
+  block.shape.transform = Transform{};
+  if (dimensions == 2)
+    block.shape.transform->angle = angle;
+  else
+    block.shape.transform->angles = {0, 0, angle};
+  block.velocity = {0, -0.6, 0};
+  Body floor;
+  floor.name = "floor";
+  floor.kind = BodyKind::Wall;
+  floor.shape.kind = ShapeKind::Box;
+  floor.shape.min = {-12e-3, -13e-3, -2 * deep}, floor.shape.max = {12e-3, -8e-3, 2 * deep};
+  c.bodies.push_back(floor);
+  return c;
+}
+
+/// Two blocks of some densities that go toward each other, fluid above and below.
+inline Case meetingBlocksCase(double first, double second) {
+  Case c = blockCase(2, first);
+  c.materials.push_back(c.materials[1]);
+  c.materials[2].name = "other", c.materials[2].density = second;
+  c.bodies[0].where = "abs(y) > 4e-3";
+  Body left = c.bodies[1], right = left;
+  left.shape.min = {-9e-3, -2e-3, 0}, left.shape.max = {-3e-3, 2e-3, 0};
+  right.shape.min = {3e-3, -2e-3, 0}, right.shape.max = {9e-3, 2e-3, 0};
+  left.velocity = {0.5, 0, 0}, right.velocity = {-0.25, 0, 0};
+  right.name = "other", right.material = 2;
+  c.bodies = {c.bodies[0], left, right};
+  return c;
+}
+
 }  // namespace treacle::test

@@ -5,9 +5,17 @@
 
 namespace treacle {
 
+/// That unknowns are on one side of a plane, row . x >= least, and what holds them there: a multiple >= 0 of
+/// `push`, by which the function is no longer zero.
+struct Restraint {
+  std::vector<double> row, push;
+  double least = 0;
+};
+
 /// Finds where a function of few unknowns is zero that is affine, or nearly so, and takes long to compute: by
 /// steps with its derivative, which each value makes better (Broyden). An affine one of n unknowns takes n + 2
 /// values with a derivative that is not known, and two or three with one that was so shortly before.
+/// With restraints it finds where the function is a sum of their pushes, of those alone that hold with equality.
 class AffineSolve {
  public:
   using Function = std::function<std::vector<double>(const std::vector<double>& x)>;
@@ -21,7 +29,7 @@ class AffineSolve {
   /// which a derivative that is not known is found and the `tolerance` of a step is measured. `most`: values after
   /// these.
   static Result run(const Function& f, std::vector<double>& x, std::vector<double>& derivative, double scale,
-                    double tolerance, int most);
+                    double tolerance, int most, const std::vector<Restraint>& restraints = {});
 };
 
 }  // namespace treacle

@@ -26,6 +26,27 @@ void compareBlocks(double density) {
   }
 }
 
+/// Until it has hit the floor with a corner and its side.
+template <int D>
+void compareFall() {
+  Case c = fallingBlockCase(D, 30);
+  c.solver.tolerance = 1e-16;
+  c.solver.deflation = 0;
+  Simulation<D> cpu(c, created<D>(c));
+  Simulation<D, Cuda> cuda(c, created<D>(c));
+  for (int k = 0; k < 25; ++k) {
+    const RigidBody a = cpu.advance().rigid[1], b = cuda.advance().rigid[1];
+    ASSERT_LE(norm(a.velocity - b.velocity), 1e-3 * 0.6) << k;
+    ASSERT_LE(norm(a.center - b.center), 1e-3 * c.spacing) << k;
+  }
+}
+
+TEST(RigidBodiesTwin, TouchAsOnTheCpu) {
+  TREACLE_SKIP_WITHOUT_GPU();
+  compareFall<2>();
+  compareFall<3>();
+}
+
 TEST(RigidBodiesTwin, MoveAsOnTheCpu) {
   TREACLE_SKIP_WITHOUT_GPU();
   compareBlocks<2>(300);

@@ -38,5 +38,24 @@ TEST(AffineSolve, FindsTheZeroOfAnAffineFunction) {
   }
 }
 
+/// Two unknowns of which one, coupled to the other, is held: the solution of the complementarity problem by hand.
+TEST(AffineSolve, KeepsToRestraints) {
+  const auto f = [](const std::vector<double>& x) {
+    return std::vector<double>{2 * x[0] + x[1] - 3, x[0] + 3 * x[1] + 5};
+  };
+  std::vector<double> x{0, 0}, derivative;
+  const Restraint floor{{0, 1}, {0, 0.5}, -1}, redundant{{0, 2}, {0, 3}, -2}, slack{{1, 0}, {1, 0}, -10};
+  auto result = AffineSolve::run(f, x, derivative, 1, 1e-9, 20, {slack, floor, redundant});
+  EXPECT_TRUE(result.converged);
+  EXPECT_NEAR(x[1], -1, 1e-9);  // without it -2.6
+  EXPECT_NEAR(x[0], 2, 1e-9);
+  // One that pulls is none.
+  const Restraint below{{0, 1}, {0, 0.5}, -4};
+  result = AffineSolve::run(f, x, derivative, 1, 1e-9, 20, {below});
+  EXPECT_TRUE(result.converged);
+  EXPECT_NEAR(x[1], -2.6, 1e-9);
+  EXPECT_NEAR(x[0], 2.8, 1e-9);
+}
+
 }  // namespace
 }  // namespace treacle::test

@@ -146,5 +146,52 @@ TEST(RigidBodies, ContinueFromACopyWithTheSameBits) {
   checkContinued<3>(blockCase(3, 3000));
 }
 
+/// Least height of the particles of the block above the floor's surface, less half a spacing.
+template <int D>
+double gapToFloor(const Case& c, const Simulation<D>& simulation) {
+  const Particles<D> p = stateOf(simulation);
+  double least = 1;
+  for (std::uint32_t i = p.wallBegin(); i < p.count; ++i)
+    if (p.body[i] == 1) least = std::min(least, p.position[i][1] + 8e-3 - c.spacing / 2);
+  return least;
+}
+
+template <int D>
+void checkFall(double angle, int steps, double tall) {
+  const Case c = fallingBlockCase(D, angle);
+  Simulation<D> simulation(c, created<D>(c));
+  double least = 1;
+  for (int k = 0; k < steps; ++k) {
+    simulation.advance();
+    least = std::min(least, gapToFloor(c, simulation));
+  }
+  EXPECT_GT(least, -0.1 * c.spacing);
+  const RigidBody& body = simulation.particles().rigid.bodies[1];
+  EXPECT_LT(norm(body.velocity), 2e-3) << body.velocity[0] << ' ' << body.velocity[1];
+  EXPECT_LT(norm(body.spin), 1);
+  EXPECT_NEAR(body.center[1], -8e-3 + tall / 2, 0.1 * c.spacing);
+}
+
+/// Flat, it stops; from a corner it falls onto its longer side.
+TEST(RigidBodies, RestOnAFloorWithoutFluidBetween) {
+  checkFall<2>(0, 16, 4e-3);
+  checkFall<2>(30, 60, 4e-3);
+  checkFall<3>(0, 16, 4e-3);
+}
+
+/// They go on together, and what one loses the other gets.
+TEST(RigidBodies, DoNotGoThroughEachOther) {
+  for (const double second : {7000.0, 500.0}) {
+    const Case c = meetingBlocksCase(7000, second);
+    Simulation<2> simulation(c, created<2>(c));
+    const Vec<3> before = momentum(c, simulation);
+    for (int k = 0; k < 30; ++k) simulation.advance();
+    const std::vector<RigidBody>& bodies = simulation.particles().rigid.bodies;
+    EXPECT_NEAR(bodies[2].center[0] - bodies[1].center[0], 6e-3, 0.05 * c.spacing);
+    EXPECT_NEAR(bodies[2].velocity[0], bodies[1].velocity[0], 1e-3);
+    EXPECT_LE(norm(momentum(c, simulation) - before), 1e-3 * norm(before));
+  }
+}
+
 }  // namespace
 }  // namespace treacle::test
