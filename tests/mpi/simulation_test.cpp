@@ -1,5 +1,6 @@
 #include "mpi/compare_simulations.hpp"
 #include "support/passing_body.hpp"
+#include "support/rigid_cases.hpp"
 #include "treacle/mph/mph_pairs.hpp"
 
 #include <gtest/gtest.h>
@@ -116,6 +117,18 @@ TEST(SharedSimulation, RigidBodies) {
     EXPECT_EQ(a.mass, b.mass);
     EXPECT_LT(norm(a.velocity - b.velocity), 1e-6 * norm(b.velocity));
     EXPECT_LT(norm(a.center - b.center), 1e-9 * c.spacing);
+  }
+}
+
+/// Until a block has landed on its corner and its side.
+TEST(SharedSimulation, RigidBodiesThatTouch) {
+  Case c = fallingBlockCase(2, 30);
+  c.solver.deflation = 0;
+  Simulation<2> shared(c, partOf<2>(c), 0, 0, &job()), alone(c, made<2>(c));
+  for (int k = 0; k < 20; ++k) {
+    const RigidBody a = shared.advance().rigid[1], b = alone.advance().rigid[1];
+    EXPECT_LT(norm(a.velocity - b.velocity), 1e-3 * 0.6);
+    EXPECT_LT(norm(a.center - b.center), 1e-3 * c.spacing);
   }
 }
 
