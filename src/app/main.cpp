@@ -226,6 +226,15 @@ void addImport(CLI::App& app, ImportOptions& options) {
   command->callback([&options] { importCommand(options); });
 }
 
+/// A command that a module of the Python package carries out: all words after its name are that module's, --help
+/// too.
+void addPython(CLI::App& app, const std::string& name, const std::string& help) {
+  CLI::App* command = app.add_subcommand(name, help);
+  command->set_help_flag();
+  command->prefix_command();
+  command->callback([command, name] { pythonCommand(name, command->remaining()); });
+}
+
 int report(const std::string& text, ExitCode code) {
   printError(fmt::format("treacle: error: {}\n", text));
   return static_cast<int>(code);
@@ -274,13 +283,16 @@ int execute(int argc, char** argv, const Communicator& job) {
   addCompare(app, compare, agree);
   addConvergence(app, convergence);
   addImport(app, importOptions);
+  addPython(app, "movie", "Make a film of a run (Python; pip install treacle[pictures])");
+  addPython(app, "report", "Write a run's summary, curves and frames as one HTML page (likewise)");
 
   try {
     app.parse(argc, argv);
     if (app.get_subcommands().empty())
       throw InputError(
-          "expected a command: run, check, plot, surface, compare, convergence, import or info; treacle --help "
-          "tells more");
+          "expected a command: run, check, plot, surface, movie, report, compare, convergence, import or info; "
+          "treacle "
+          "--help tells more");
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return app.exit(e);  // help and version
     return report(fmt::format("{}; --help tells more", e.what()), ExitCode::BadInput);
