@@ -40,6 +40,14 @@ def label(name):
     return name.replace("_", " ") + unit
 
 
+def scaled_unit(length):
+    """Of metres: the unit in which a length is between 1 and 1000, and how many of it a metre has."""
+    for name, count in (("m", 1), ("mm", 1e3), ("µm", 1e6)):
+        if length * count >= 1:
+            return name, count
+    return "µm", 1e6
+
+
 class Range:
     """What the colours of a field go from and to in all frames: all but one in 200 of the values at either end, since a few
     particles of a splash would leave one colour for the rest. Speeds begin at zero."""

@@ -11,6 +11,8 @@ from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 from vtkmodules.vtkRenderingCore import vtkActor2D, vtkPolyDataMapper2D, vtkTextActor
 import vtkmodules.vtkRenderingFreeType  # noqa: F401, draws letters
 
+from .fields import scaled_unit
+
 ink = (0.15, 0.15, 0.15)
 font = Path(matplotlib.get_data_path()) / "fonts" / "ttf" / "DejaVuSans.ttf"
 font_of_file = 4  # VTK_FONT_FILE
@@ -31,14 +33,6 @@ def ticks(low, high, most):
             break
     first, last = math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9)
     return [k * step for k in range(first, last + 1)]
-
-
-def scaled_unit(length):
-    """Of metres: the unit in which a length is between 1 and 1000, and how many of it a metre has."""
-    for name, count in (("m", 1), ("mm", 1e3), ("µm", 1e6)):
-        if length * count >= 1:
-            return name, count
-    return "µm", 1e6
 
 
 def lines(pairs, width=1):
