@@ -9,15 +9,36 @@ from .pictures.errors import PictureError, reported, require
 
 def arguments_of(argv):
     """What the command line says."""
-    parser = argparse.ArgumentParser(prog="treacle movie", description="Make a film of the frames of a run, or of one frame from all sides")
+    parser = argparse.ArgumentParser(
+        prog="treacle movie", description="Make a film of the frames of a run, or of one frame from all sides"
+    )
     parser.add_argument("directory", metavar="DIR", help="run directory")
-    parser.add_argument("-o", "--output", metavar="FILE", help=".mp4, .webm or .webp; default: DIR/movie.mp4, or turntable.mp4")
-    parser.add_argument("--field", default="speed", metavar="NAME", help="what the colours show: speed (default), pressure, temperature, dynamic_viscosity, …, or none")
+    parser.add_argument(
+        "-o", "--output", metavar="FILE", help=".mp4, .webm or .webp; default: DIR/movie.mp4, or turntable.mp4"
+    )
+    parser.add_argument(
+        "--field",
+        default="speed",
+        metavar="NAME",
+        help="what the colours show: speed (default), pressure, temperature, dynamic_viscosity, …, or none",
+    )
     parser.add_argument("--range", metavar="A,B", help="of the colours; default: that of the values in all frames")
     parser.add_argument("--colormap", default="viridis", metavar="NAME", help="one of Matplotlib's; default: viridis")
-    parser.add_argument("--surface", action="store_true", help="the shaded surface of the fluid instead of particles (3D)")
-    parser.add_argument("--walls", choices=["show", "hide", "faint"], default="show", help="default: show, but for those before the fluid")
-    parser.add_argument("--camera", default="corner", metavar="NAME|A,E[,ZOOM]", help="corner (default), front, back, left, right, top, bottom, or azimuth and elevation [degrees]")
+    parser.add_argument(
+        "--surface", action="store_true", help="the shaded surface of the fluid instead of particles (3D)"
+    )
+    parser.add_argument(
+        "--walls",
+        choices=["show", "hide", "faint"],
+        default="show",
+        help="default: show, but for those before the fluid",
+    )
+    parser.add_argument(
+        "--camera",
+        default="corner",
+        metavar="NAME|A,E[,ZOOM]",
+        help="corner (default), front, back, left, right, top, bottom, or azimuth and elevation [degrees]",
+    )
     parser.add_argument("--fps", type=float, default=25, metavar="N", help="pictures per second; default: 25")
     parser.add_argument("--size", default="1280x720", metavar="WxH", help="of the pictures [px]; default: 1280x720")
     parser.add_argument("--every", type=int, default=1, metavar="N", help="every Nth frame only")

@@ -8,11 +8,18 @@ from .pictures.errors import PictureError, reported, require
 
 def arguments_of(argv):
     """What the command line says."""
-    parser = argparse.ArgumentParser(prog="treacle report", description="Write summary, curves and frames of a run as one page of HTML, which needs no network")
+    parser = argparse.ArgumentParser(
+        prog="treacle report",
+        description="Write summary, curves and frames of a run as one page of HTML, which needs no network",
+    )
     parser.add_argument("directory", metavar="DIR", help="run directory")
     parser.add_argument("-o", "--output", metavar="FILE", help="default: DIR/report.html")
-    parser.add_argument("--frames", type=int, default=20, metavar="N", help="of the view, at equal distances; default: 20")
-    parser.add_argument("--max-points", type=int, default=20000, metavar="N", help="particles of a frame in the view; default: 20000")
+    parser.add_argument(
+        "--frames", type=int, default=20, metavar="N", help="of the view, at equal distances; default: 20"
+    )
+    parser.add_argument(
+        "--max-points", type=int, default=20000, metavar="N", help="particles of a frame in the view; default: 20000"
+    )
     parser.add_argument("-q", "--quiet", action="store_true", help="print nothing but errors")
     return parser.parse_args(argv)
 

@@ -7,8 +7,8 @@ import numpy as np
 
 from .errors import PictureError
 
-# Azimuth around the vertical and elevation above the horizontal plane [degrees]; from azimuth 0 one sees the first horizontal
-# axis go to the right. "corner" is the direction that `treacle plot` draws from.
+# Azimuth around the vertical and elevation above the horizontal plane [degrees]; from azimuth 0 one sees the first
+# horizontal axis go to the right. "corner" is the direction that `treacle plot` draws from.
 named = {
     "corner": (34.0, 26.5),
     "front": (0.0, 0.0),

@@ -14,7 +14,9 @@ def require(*modules):
         try:
             importlib.import_module(name)
         except ImportError as error:
-            raise PictureError(f"{error}; films and reports need more packages: pip install treacle[pictures]") from None
+            raise PictureError(
+                f"{error}; films and reports need more packages: pip install treacle[pictures]"
+            ) from None
 
 
 def reported(command, arguments):

@@ -49,8 +49,8 @@ def scaled_unit(length):
 
 
 class Range:
-    """What the colours of a field go from and to in all frames: all but one in 200 of the values at either end, since a few
-    particles of a splash would leave one colour for the rest. Speeds begin at zero."""
+    """What the colours of a field go from and to in all frames: all but one in 200 of the values at either end, since a
+    few particles of a splash would leave one colour for the rest. Speeds begin at zero."""
 
     def __init__(self, name):
         self.name = name

@@ -9,7 +9,20 @@ from .errors import PictureError
 
 # What ffmpeg is told by the ending of the file. H.264 with yuv420p is what every player and browser shows.
 codecs = {
-    ".mp4": ["-c:v", "libx264", "-preset", "medium", "-crf", "18", "-pix_fmt", "yuv420p", "-movflags", "+faststart", "-f", "mp4"],
+    ".mp4": [
+        "-c:v",
+        "libx264",
+        "-preset",
+        "medium",
+        "-crf",
+        "18",
+        "-pix_fmt",
+        "yuv420p",
+        "-movflags",
+        "+faststart",
+        "-f",
+        "mp4",
+    ],
     ".webm": ["-c:v", "libvpx-vp9", "-crf", "28", "-b:v", "0", "-row-mt", "1", "-pix_fmt", "yuv420p", "-f", "webm"],
     ".webp": ["-c:v", "libwebp_anim", "-quality", "75", "-loop", "0", "-f", "webp"],
 }
@@ -25,8 +38,10 @@ def ffmpeg():
 
         return imageio_ffmpeg.get_ffmpeg_exe()
     except (ImportError, RuntimeError):
-        raise PictureError("ffmpeg is missing; expected that of the system (apt install ffmpeg), or that of "
-                           "pip install treacle[pictures]") from None
+        raise PictureError(
+            "ffmpeg is missing; expected that of the system (apt install ffmpeg), or that of "
+            "pip install treacle[pictures]"
+        ) from None
 
 
 def checked(path):
@@ -49,7 +64,19 @@ class Film:
 
     def __enter__(self):
         self.hidden = self.path.with_name(f".{self.path.name}.tmp")
-        command = [ffmpeg(), "-hide_banner", "-loglevel", "error", "-y", "-f", "rawvideo", "-pix_fmt", "rgb24", "-s", "{}x{}".format(*self.size)]
+        command = [
+            ffmpeg(),
+            "-hide_banner",
+            "-loglevel",
+            "error",
+            "-y",
+            "-f",
+            "rawvideo",
+            "-pix_fmt",
+            "rgb24",
+            "-s",
+            "{}x{}".format(*self.size),
+        ]
         command += ["-r", f"{self.fps:g}", "-i", "-", "-an", *codecs[self.path.suffix.lower()], str(self.hidden)]
         self.messages = tempfile.TemporaryFile()
         self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=self.messages)

@@ -10,6 +10,7 @@ from tqdm import tqdm
 from . import camera, fields, surfaces
 from .errors import PictureError
 from .film import Film, checked, ffmpeg
+from .frame_choice import chosen_frames, decimals
 from .hiding import FluidBehind, seen
 from .particles import none, read_particles
 from .run_files import RunFiles
@@ -17,34 +18,6 @@ from .scene import Colours, Scene
 
 most_frames_looked_at = 50  # for the range of the colours and what the camera has to see
 walls_around = 0.15  # how much of them the camera shows beside the fluid, in parts of the fluid's extent
-
-
-def chosen_frames(run, options):
-    """Numbers of the frames of the film."""
-    if options.turntable is not None:
-        return [frame_number(options.turntable, len(run.fluid))]
-    begin = -np.inf if options.begin is None else options.begin
-    end = np.inf if options.end is None else options.end
-    slack = 1e-9 * abs(run.fluid[-1].time)
-    found = [k for k, frame in enumerate(run.fluid) if begin - slack <= frame.time <= end + slack]
-    if not found:
-        raise PictureError(f"--from, --to: no frame between them; the run has {len(run.fluid)}, from {run.fluid[0].time:g} to {run.fluid[-1].time:g} s")
-    return found[:: options.every]
-
-
-def frame_number(text, count):
-    """Of a number or "last"."""
-    if text == "last":
-        return count - 1
-    if not text.isdecimal() or int(text) >= count:
-        raise PictureError(f"--turntable: expected 'last' or a number from 0 to {count - 1}, found '{text}'")
-    return int(text)
-
-
-def decimals(times):
-    """Digits after the point that tell the times of frames apart."""
-    apart = np.diff(times).min() if len(times) > 1 else max(abs(times[0]), 1e-3)
-    return next((n for n in range(9) if np.all(np.abs(np.round(times, n) - times) < 0.01 * apart)), 9)
 
 
 class FilmMaker:
@@ -58,16 +31,22 @@ class FilmMaker:
         self.direction = None if self.flat else camera.direction(options.camera)
         self.view = camera.View.flat() if self.flat else camera.View.of(self.direction, run.gravity)
         self.digits = decimals(np.array([run.fluid[k].time for k in self.frames]))
+        self.shown = None  # the walls that are in the scene, and the view they are seen in
         self._check()
 
     def _check(self):
         if self.flat:
-            for name, asked in (("--surface", self.options.surface), ("--turntable", self.options.turntable is not None),
-                                ("--camera", self.options.camera != "corner")):
+            for name, asked in (
+                ("--surface", self.options.surface),
+                ("--turntable", self.options.turntable is not None),
+                ("--camera", self.options.camera != "corner"),
+            ):
                 if asked:
-                    raise PictureError(f"{self.run.path}: a case of two dimensions, which is seen from the front; expected three for {name}")
+                    flat = f"{self.run.path}: a case of two dimensions, which is seen from the front"
+                    raise PictureError(f"{flat}; expected three for {name}")
         if self.options.colormap not in matplotlib.colormaps:
-            raise PictureError(f"--colormap: '{self.options.colormap}' is none of Matplotlib's, such as viridis, plasma, turbo, coolwarm, gray")
+            some = "such as viridis, plasma, turbo, coolwarm, gray"
+            raise PictureError(f"--colormap: '{self.options.colormap}' is none of Matplotlib's, {some}")
 
     def progress(self, work, total, words):
         return tqdm(work, total=total, desc=words, unit="frame", file=sys.stderr, disable=self.options.quiet)
@@ -99,7 +78,7 @@ class FilmMaker:
         self.colours = Colours(self.field, self.given or found.bounds(), self.options.colormap)
 
     def _show_walls(self):
-        """In two dimensions all of them, in three those that are near the fluid: it is to be seen on a large plate, too."""
+        """In two dimensions all of them, in three those near the fluid: it is to be seen on a large plate, too."""
         places = self.view(self.walls(self.frames[0]).positions)
         if not self.flat and not self.extent.empty:
             around = walls_around * self.extent.size.max()
@@ -138,6 +117,9 @@ class FilmMaker:
 
     def draw_walls(self, scene, frame, behind):
         walls = self.walls(frame).positions
+        if self.shown and self.shown[0] is scene.view and np.array_equal(self.shown[1], walls):
+            return  # they are in the picture
+        self.shown = (scene.view, walls)
         faint = self.options.walls == "faint"
         places = scene.view(walls)
         if not (self.flat or faint):
@@ -190,5 +172,6 @@ def make(options, size, given):
             film.add(picture)
     scene.close()
     if not options.quiet:
-        seconds = time.perf_counter() - started
-        print(f"{path}: {count} pictures of {size[0]}x{size[1]}, {count / options.fps:.3g} s, {path.stat().st_size / 1e6:.3g} MB, made in {seconds:.3g} s")
+        seconds, megabytes = time.perf_counter() - started, path.stat().st_size / 1e6
+        what = f"{count} pictures of {size[0]}x{size[1]}, {count / options.fps:.3g} s"
+        print(f"{path}: {what}, {megabytes:.3g} MB, made in {seconds:.3g} s")

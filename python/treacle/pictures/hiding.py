@@ -23,8 +23,8 @@ def seen(places, spacing):
 
 
 class FluidBehind:
-    """Where the fluid of some frames is in the picture, and how far from the viewer: walls before it are left open, the same
-    ones in all frames of a film."""
+    """Where the fluid of some frames is in the picture, and how far from the viewer: walls before it are left open, the
+    same ones in all frames of a film."""
 
     def __init__(self, spacing):
         self.spacing = spacing

@@ -26,12 +26,11 @@ def round_length(most):
 
 def ticks(low, high, most):
     """At most so many round numbers in the range, at equal distances."""
-    step = round_length(high - low) / 10
-    for factor in (1, 2, 5, 10, 20, 50):
-        if (high - low) / (factor * step) <= most - 1:
-            step *= factor
+    power = 10.0 ** math.floor(math.log10((high - low) / (most + 1)))
+    for step in (factor * power for factor in (1, 2, 5, 10, 20, 50, 100)):
+        first, last = math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9)
+        if last - first < most:
             break
-    first, last = math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9)
     return [k * step for k in range(first, last + 1)]
 
 
@@ -64,8 +63,8 @@ def text(words, place, size, across="left", along="bottom"):
     style.SetFontFamily(font_of_file)
     style.SetFontFile(str(font))
     style.SetFontSize(size)
-    {"left": style.SetJustificationToLeft, "center": style.SetJustificationToCentered, "right": style.SetJustificationToRight}[across]()
-    {"bottom": style.SetVerticalJustificationToBottom, "center": style.SetVerticalJustificationToCentered, "top": style.SetVerticalJustificationToTop}[along]()
+    style.SetJustification(("left", "center", "right").index(across))  # as VTK numbers them
+    style.SetVerticalJustification(("bottom", "center", "top").index(along))
     return actor
 
 
@@ -77,8 +76,8 @@ def powers(low, high, most):
 
 
 def colour_bar(colours, words, corner, size, letters):
-    """Actors of a bar with numbers beside and words above it. corner: lower left [px]; size: width and height [px]; letters:
-    their height [px]."""
+    """Actors of a bar with numbers beside and words above it. corner: lower left [px]; size: width and height [px];
+    letters: their height [px]."""
     (x, y), (width, height) = corner, size
     points, cells, parts = vtkPoints(), vtkCellArray(), 256
     for k in range(parts):
@@ -109,12 +108,17 @@ def colour_bar(colours, words, corner, size, letters):
 
 
 def axes(low, high, place, letters):
-    """Actors of a frame around what is between two corners [m], with numbers along x and y. place(x, y): where that is [px];
-    letters: their height [px]."""
+    """Actors of a frame around what is between two corners [m], with numbers along x and y. place(x, y): where that is
+    [px]; letters: their height [px]."""
     (left, bottom), (right, top) = place(*low), place(*high)
     tick = letters / 3
     unit, count = scaled_unit(max(high[0] - low[0], high[1] - low[1]))
-    pairs = [((left, bottom), (right, bottom)), ((right, bottom), (right, top)), ((right, top), (left, top)), ((left, top), (left, bottom))]
+    pairs = [
+        ((left, bottom), (right, bottom)),
+        ((right, bottom), (right, top)),
+        ((right, top), (left, top)),
+        ((left, top), (left, bottom)),
+    ]
     actors = []
     for x in ticks(low[0], high[0], max(2, (right - left) / (5 * letters))):
         at = place(x, low[1])[0]
@@ -129,7 +133,8 @@ def axes(low, high, place, letters):
 
 
 def length_bar(metre, corner, most, letters):
-    """Actors of a bar of round length with its length. metre: [px]; corner: lower left [px]; most: its largest length [px]."""
+    """Actors of a bar of round length with its length. metre: [px]; corner: lower left [px]; most: its largest length
+    [px]."""
     length = round_length(most / metre)
     unit, count = scaled_unit(length)
     x, y = corner

@@ -5,8 +5,8 @@ import numpy as np
 most_points = 1200  # of a curve
 
 column_units = {
-    "pressure": "Pa", "dynamic_viscosity": "Pa s", "shear_rate": "1/s", "temperature": "K", "height": "m", "volume": "m³", "mass": "kg",
-    "volume_flow_rate": "m³/s", "mass_flow_rate": "kg/s", "power": "W", "torque": "N m",
+    "pressure": "Pa", "dynamic_viscosity": "Pa s", "shear_rate": "1/s", "temperature": "K", "height": "m",
+    "volume": "m³", "mass": "kg", "volume_flow_rate": "m³/s", "mass_flow_rate": "kg/s", "power": "W", "torque": "N m",
 }  # fmt: skip
 column_starts = {"velocity": "m/s", "center": "m", "force": "N", "torque": "N m"}
 
@@ -19,7 +19,7 @@ def thin(x, y):
         return x, y
     edges = np.linspace(0, len(x), most_points // 2 + 1).astype(int)
     chosen = {0, len(x) - 1}
-    for a, b in zip(edges[:-1], edges[1:]):
+    for a, b in zip(edges[:-1], edges[1:], strict=True):
         chosen |= {a + int(np.argmin(y[a:b])), a + int(np.argmax(y[a:b]))}
     chosen = sorted(chosen)
     return x[chosen], y[chosen]
@@ -69,20 +69,33 @@ def of_balance(balance, history):
     if not len(balance.get("time", [])):
         return []
     t = balance["time"]
-    names = ["shear_dissipation", "bulk_dissipation", "inertial_loss", "elastic_power", "wall_power", "repulsion_power", "surface_power"]
+    names = [
+        "shear_dissipation",
+        "bulk_dissipation",
+        "inertial_loss",
+        "elastic_power",
+        "wall_power",
+        "repulsion_power",
+        "surface_power",
+    ]
     powers = [name for name in names if name in balance and np.any(balance[name])]
-    charts = [_energy_since(balance, history, powers), chart("Power", "W", [curve(name, t, balance[name]) for name in powers])]
+    charts = [
+        _energy_since(balance, history, powers),
+        chart("Power", "W", [curve(name, t, balance[name]) for name in powers]),
+    ]
     heat = [name for name in ("viscous_heating", "heat_from_walls", "heat_from_surface") if name in balance]
     charts.append(chart("Heat", "W", [curve(name, t, balance[name]) for name in heat]))
     for quantity, unit in (("force", "N"), ("torque", "N m")):
         loads = [name for name in balance if f"_{quantity}" in name and np.any(balance[name])]
-        charts.append(chart(f"{quantity.capitalize()} on walls", unit, [curve(name, t, balance[name]) for name in loads]))
+        charts.append(
+            chart(f"{quantity.capitalize()} on walls", unit, [curve(name, t, balance[name]) for name in loads])
+        )
     return [one for one in charts if one]
 
 
 def _energy_since(balance, history, powers):
-    """Energies less those after the first step, and what was taken and given since, which is the same but for the solver's
-    tolerance (docs/output.md)."""
+    """Energies less those after the first step, and what was taken and given since, which is the same but for the
+    solver's tolerance (docs/output.md)."""
     step, energies = history.get("step", []), ("kinetic_energy", "potential_energy")
     rows = min(len(step), len(balance["step"]))
     if rows < 2 or not np.array_equal(step[:rows], balance["step"][:rows]):
@@ -96,7 +109,12 @@ def _energy_since(balance, history, powers):
     curves = [curve(name, t, history[name][:rows] - history[name][0]) for name in energies]
     curves += [curve(name.replace("_power", "_work"), t, amount) for name, amount in sums.items()]
     curves.append(curve("not accounted for", t, total - given))
-    return chart("Where the energy went", "J", curves, remark="Since the first step. Losses and dissipation are taken from the flow, work is given to it.")
+    return chart(
+        "Where the energy went",
+        "J",
+        curves,
+        remark="Since the first step. Losses and dissipation are taken from the flow, work is given to it.",
+    )
 
 
 def of_rigid_bodies(table):
@@ -105,14 +123,21 @@ def of_rigid_bodies(table):
         return []
     velocity = [name for name in table if "velocity" in name and "angular" not in name]
     turning = [name for name in table if "angular_velocity" in name]
-    places = [name for name in table if name[-2:] in ("_x", "_y", "_z") and "velocity" not in name and "axis" not in name]
+    places = [
+        name for name in table if name[-2:] in ("_x", "_y", "_z") and "velocity" not in name and "axis" not in name
+    ]
     parts = (("places", "m", places), ("velocities", "m/s", velocity), ("angular velocities", "1/s", turning))
-    charts = [chart(f"Rigid bodies: {what}", unit, [curve(n, table["time"], table[n]) for n in names]) for what, unit, names in parts]
+    charts = [
+        chart(f"Rigid bodies: {what}", unit, [curve(n, table["time"], table[n]) for n in names])
+        for what, unit, names in parts
+    ]
     return [one for one in charts if one]
 
 
 def unit_of(column):
-    return column_units.get(column) or next((unit for start, unit in column_starts.items() if column.startswith(start)), "")
+    return column_units.get(column) or next(
+        (unit for start, unit in column_starts.items() if column.startswith(start)), ""
+    )
 
 
 def of_probe(name, kind, table):
@@ -128,7 +153,9 @@ def of_probe(name, kind, table):
     charts = []
     for unit, columns in groups.items():
         what = columns[0] if len(columns) == 1 else columns[0].rsplit("_", 1)[0]
-        charts.append(chart(f"Probe {name}: {what.replace('_', ' ')}", unit, [curve(c, table["time"], table[c]) for c in columns]))
+        charts.append(
+            chart(f"Probe {name}: {what.replace('_', ' ')}", unit, [curve(c, table["time"], table[c]) for c in columns])
+        )
     return [one for one in charts if one]
 
 

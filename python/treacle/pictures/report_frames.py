@@ -50,7 +50,9 @@ class ReportFrames:
         self.share = min(1.0, most_points / max(1, self.most))
         self.fluid = [(time, thinned(particles, self.share)) for time, particles in self.fluid]
         # Fields of whole numbers are worth a look where they tell particles apart.
-        self.names = [n for n, found in self.spread.items() if n not in ("material", "body") or found.least < found.most]
+        self.names = [
+            n for n, found in self.spread.items() if n not in ("material", "body") or found.least < found.most
+        ]
         self.ranges = {name: self.spread[name].bounds() for name in self.names}
         self._read_walls(some, most_points)
         positions = [particles.positions for _, particles in self.fluid] + [self.walls[0].positions]
@@ -64,7 +66,11 @@ class ReportFrames:
         last = read_particles(files[-1]) if files else none()
         self.wall_share = min(1.0, most_points / max(1, len(first)))
         moving = len(first) != len(last) or not np.array_equal(first.positions, last.positions)
-        self.walls = [thinned(read_particles(path), self.wall_share) for path in files] if moving else [thinned(first, self.wall_share)]
+        self.walls = (
+            [thinned(read_particles(path), self.wall_share) for path in files]
+            if moving
+            else [thinned(first, self.wall_share)]
+        )
 
     def _positions(self, particles):
         """Whole numbers between the corners of the box, axis after axis."""
@@ -74,7 +80,9 @@ class ReportFrames:
 
     def _colours(self, particles, name):
         low, high = (self._scaled(name, np.array(self.ranges[name]))).tolist()
-        levels = np.clip((self._scaled(name, fields.values(particles, name)) - low) / (high - low), 0, 1) * colour_levels
+        levels = (
+            np.clip((self._scaled(name, fields.values(particles, name)) - low) / (high - low), 0, 1) * colour_levels
+        )
         return np.where(np.isfinite(levels), levels, 255).round().astype(np.uint8)
 
     def _scaled(self, name, values):
@@ -102,7 +110,11 @@ class ReportFrames:
                 for name in self.names
             ],
             "frames": [
-                {"time": time, "count": len(p), "data": packed([self._positions(p), *(self._colours(p, name) for name in self.names)])}
+                {
+                    "time": time,
+                    "count": len(p),
+                    "data": packed([self._positions(p), *(self._colours(p, name) for name in self.names)]),
+                }
                 for time, p in self.fluid
             ],
             "walls": [{"count": len(p), "data": packed([self._positions(p)])} for p in self.walls],
@@ -112,7 +124,8 @@ class ReportFrames:
         """What is left out, in words."""
         words = [f"{len(self.fluid)} of {len(self.run.fluid)} frames"]
         if self.share < 1:
-            words.append(f"of {self.most:,} fluid particles {100 * self.share:.2g} % are shown, chosen by chance, the same ones in all frames")
+            shown = f"of {self.most:,} fluid particles {100 * self.share:.2g} % are shown"
+            words.append(f"{shown}, chosen by chance, the same ones in all frames")
         if self.wall_share < 1:
             words.append(f"of the wall particles {100 * self.wall_share:.2g} %")
         return "; ".join(words) + "."

@@ -40,8 +40,8 @@ def warnings(lines, most=40):
 
 
 def page(title, subtitle, status, message, rows, lines, remark, case, data):
-    """The whole page. status: done, failed or not ended; rows: names and values; lines: warnings; case: its text; data: for
-    page.js."""
+    """The whole page. status: done, failed or not ended; rows: names and values; lines: warnings; case: its text; data:
+    for the scripts."""
     words = {
         "title": text(title),
         "subtitle": text(subtitle),
@@ -54,7 +54,8 @@ def page(title, subtitle, status, message, rows, lines, remark, case, data):
         "case": text(case),
         "data": json_text(data),
         "style": part("page.css"),
-        "script": part("page.js"),
+        "view": part("frame_view.js"),
+        "charts": part("charts.js"),
         "library": library(),
     }
     pieces = part("page.html").split("@@")  # text and names of words by turns

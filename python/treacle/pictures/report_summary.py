@@ -26,9 +26,11 @@ def status(run):
 
 
 def rows(run):
-    """Pairs of names and values of the table, from the summary; of a run that has not ended from case, log and history."""
+    """Pairs of names and values of the table, from the summary; of a run that has not ended from case and history."""
     case, summary = run.case, run.summary or {}
-    method = case["method"]["name"].upper() + (f", {case['method']['scheme']} scheme" if "scheme" in case["method"] else "")
+    method = case["method"]["name"].upper() + (
+        f", {case['method']['scheme']} scheme" if "scheme" in case["method"] else ""
+    )
     found = [("Method", f"{method}, {run.dimensions}D"), ("Spacing", f"{run.spacing * 1e3:.4g} mm")]
 
     def add(name, key, form=number):
@@ -44,15 +46,31 @@ def rows(run):
         found += _of_history(run)
     add("Steps", "steps")
     add("Simulated time", "time", lambda t: f"{t:.6g} s")
-    add("Time step", "time_step", lambda s: f"{s['mean']:.3g} s" if s["least"] == s["longest"] else f"{s['least']:.3g} to {s['longest']:.3g} s, mean {s['mean']:.3g} s")
+    add(
+        "Time step",
+        "time_step",
+        lambda s: (
+            f"{s['mean']:.3g} s"
+            if s["least"] == s["longest"]
+            else f"{s['least']:.3g} to {s['longest']:.3g} s, mean {s['mean']:.3g} s"
+        ),
+    )
     if summary.get("rejected_steps"):
         add("Rejected steps", "rejected_steps")
     add("Iterations", "iterations", lambda i: f"mean {i['mean']:.3g}, first {i['first']}, last {i['last']}")
     add("Fallbacks of the solver", "fallbacks")
     add("Density inside", "density.inside")
-    add("Nearest distance at the end", "nearest_distance", lambda d: f"{d['least']:.3g} spacings, 1 % below {d['low']:.3g}" if d["least"] is not None else "unknown")
+    add(
+        "Nearest distance at the end",
+        "nearest_distance",
+        lambda d: f"{d['least']:.3g} spacings, 1 % below {d['low']:.3g}" if d["least"] is not None else "unknown",
+    )
     add("Machine", "device", str)
-    add("Backend", "backend", lambda backend: ", ".join([backend, f"{summary['precision']} precision", *_many(summary, "thread", "process")]))
+    add(
+        "Backend",
+        "backend",
+        lambda backend: ", ".join([backend, f"{summary['precision']} precision", *_many(summary, "thread", "process")]),
+    )
     add("Wall-clock time", "wall_seconds", duration)
     add("Memory", "peak_memory_bytes", lambda b: f"{b / 1e6:,.0f} MB")
     if summary.get("peak_device_memory_bytes"):
@@ -72,7 +90,10 @@ def _of_history(run):
     history = run.history
     if not len(history.get("time", [])):
         return []
-    return [("Steps up to now", number(int(history["step"][-1]))), ("Simulated time up to now", f"{history['time'][-1]:.6g} s")]
+    return [
+        ("Steps up to now", number(int(history["step"][-1]))),
+        ("Simulated time up to now", f"{history['time'][-1]:.6g} s"),
+    ]
 
 
 def begun(run):

@@ -34,8 +34,8 @@ def read_index(path):
 
 
 def read_table(path):
-    """Columns of a CSV file by name, as arrays of numbers. A last row that is not whole is left out, and so are columns that
-    hold no numbers. Empty where there is no file."""
+    """Columns of a CSV file by name, as arrays of numbers. A last row that is not whole is left out, and so are columns
+    that hold no numbers. Empty where there is no file."""
     try:
         with open(path, newline="") as file:
             rows = list(csv.reader(file))

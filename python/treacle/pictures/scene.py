@@ -7,7 +7,7 @@ import numpy as np
 import pyvista
 from vtkmodules.vtkCommonCore import vtkLogger
 
-from . import fields, hiding, marks
+from . import fields, marks
 from .errors import PictureError
 
 wall_colour = "#b9bec4"
@@ -32,8 +32,10 @@ def require_drawing():
     """Raises PictureError where no library of OpenGL can draw without a display: VTK would crash."""
     window = pyvista.Plotter(off_screen=True, window_size=(16, 16))
     if type(window.render_window).__name__ == "vtkOSOpenGLRenderWindow" and not ctypes.util.find_library("OSMesa"):
-        raise PictureError("no OpenGL that draws without a display: expected EGL (apt install libegl1 libgl1-mesa-dri) or OSMesa "
-                           "(apt install libosmesa6)")
+        raise PictureError(
+            "no OpenGL that draws without a display: expected EGL (apt install libegl1 libgl1-mesa-dri) or OSMesa "
+            "(apt install libosmesa6)"
+        )
     window.close()
 
 
@@ -83,7 +85,9 @@ class Scene:
         if self.flat:
             self.marks = marks.axes(extent.low[:2], extent.high[:2], place, round(0.8 * self.letters))
         else:
-            self.marks = marks.length_bar(self.metre, (self.letters, self.letters), 0.2 * self.size[0], round(0.8 * self.letters))
+            self.marks = marks.length_bar(
+                self.metre, (self.letters, self.letters), 0.2 * self.size[0], round(0.8 * self.letters)
+            )
         if self.colours.field:
             place, shape = (0.865 * self.size[0], 0.2 * self.size[1]), (0.022 * self.size[0], 0.55 * self.size[1])
             words = fields.label(self.colours.field)
@@ -114,7 +118,16 @@ class Scene:
             mesh = pyvista.wrap(data)
             mesh.clear_point_data() if "normal" not in mesh.point_data else mesh.point_data.SetActiveNormals("normal")
             look = self._colouring(values)
-            self.fluid = self.plotter.add_mesh(mesh, smooth_shading="normal" not in mesh.point_data, specular=0.35, specular_power=25, reset_camera=False, show_scalar_bar=False, render=False, **look)
+            self.fluid = self.plotter.add_mesh(
+                mesh,
+                smooth_shading="normal" not in mesh.point_data,
+                specular=0.35,
+                specular_power=25,
+                reset_camera=False,
+                show_scalar_bar=False,
+                render=False,
+                **look,
+            )
 
     def picture(self, words):
         """Pixels, with words at the upper left."""

@@ -12,8 +12,10 @@ def program():
     """The program treacle: what TREACLE_PROGRAM names, else the one that the shell finds. Raises PictureError."""
     found = os.environ.get("TREACLE_PROGRAM") or shutil.which("treacle")
     if not found:
-        raise PictureError("--surface: the run has no surfaces, and the program treacle, which makes them, is not found; expected it "
-                           "in PATH or in the environment variable TREACLE_PROGRAM")
+        raise PictureError(
+            "--surface: the run has no surfaces, and the program treacle, which makes them, is not found; expected it "
+            "in PATH or in the environment variable TREACLE_PROGRAM"
+        )
     return found
 
 
