@@ -17,6 +17,7 @@
 #include <new>
 #include <span>
 #include <string>
+#include <utility>
 
 namespace {
 
@@ -226,13 +227,17 @@ void addImport(CLI::App& app, ImportOptions& options) {
   command->callback([&options] { importCommand(options); });
 }
 
-/// A command that a module of the Python package carries out: all words after its name are that module's, --help
-/// too.
-void addPython(CLI::App& app, const std::string& name, const std::string& help) {
-  CLI::App* command = app.add_subcommand(name, help);
-  command->set_help_flag();
-  command->prefix_command();
-  command->callback([command, name] { pythonCommand(name, command->remaining()); });
+/// Commands that a module of the Python package carries out, with their help. All words after the name are the
+/// module's,
+/// --help and names of other commands too, so that they do not come to the parser.
+constexpr std::pair<const char*, const char*> pythonCommands[] = {
+    {"movie", "Make a film of a run (Python; pip install treacle[pictures])"},
+    {"report", "Write a run's summary, curves and frames as one HTML page (likewise)"}};
+
+/// Does not return where the first word is one of these commands.
+void becomePython(int argc, char** argv) {
+  for (const auto& [name, help] : pythonCommands)
+    if (argc > 1 && std::string(argv[1]) == name) pythonCommand(name, {argv + 2, argv + argc});
 }
 
 int report(const std::string& text, ExitCode code) {
@@ -283,10 +288,10 @@ int execute(int argc, char** argv, const Communicator& job) {
   addCompare(app, compare, agree);
   addConvergence(app, convergence);
   addImport(app, importOptions);
-  addPython(app, "movie", "Make a film of a run (Python; pip install treacle[pictures])");
-  addPython(app, "report", "Write a run's summary, curves and frames as one HTML page (likewise)");
+  for (const auto& [name, help] : pythonCommands) app.add_subcommand(name, help);
 
   try {
+    becomePython(argc, argv);
     app.parse(argc, argv);
     if (app.get_subcommands().empty())
       throw InputError(
