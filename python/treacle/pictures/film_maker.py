@@ -162,7 +162,7 @@ def make(options, size, given):
     ffmpeg()  # before the long work
     maker = FilmMaker(run, options, size, given)
     if options.surface:
-        surfaces.require_surfaces(run, maker.frames, options.quiet)
+        surfaces.require_surfaces(run, maker.frames, lambda work: maker.progress(work, len(work), "making surfaces"))
     maker.look_at_frames()
     scene = Scene(size, maker.colours, run.spacing, maker.flat)
     count = max(2, round(options.seconds * options.fps)) if turntable else len(maker.frames)

@@ -3,7 +3,6 @@
 import os
 import shutil
 import subprocess
-import sys
 
 from .errors import PictureError
 
@@ -19,19 +18,15 @@ def program():
     return found
 
 
-def require_surfaces(run, frames, quiet):
-    """Makes the surfaces of frames of a RunFiles that have none. Raises PictureError with what the program says."""
+def require_surfaces(run, frames, progress):
+    """Makes the surfaces of frames of a RunFiles that have none. progress: wraps what goes over the frames. Raises
+    PictureError with what the program says."""
     missing = [frame for frame in frames if not run.surface_file(frame).is_file()]
-    if not missing:
-        return
-    command = [program(), "surface", str(run.path)]
-    if len(missing) == 1:
-        command += ["--frame", str(missing[0])]
-    if not quiet:
-        print(f"making surfaces of frames: {' '.join(command)}", file=sys.stderr)
-    try:
-        done = subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
-    except OSError as error:
-        raise PictureError(f"--surface: {command[0]}: {error.strerror}") from None
-    if done.returncode != 0:
-        raise PictureError(f"--surface: {' '.join(command)}: exit code {done.returncode}: {done.stderr.strip()}")
+    for frame in progress(missing) if missing else []:
+        command = [program(), "surface", str(run.path), "--frame", str(frame)]
+        try:
+            done = subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        except OSError as error:
+            raise PictureError(f"--surface: {command[0]}: {error.strerror}") from None
+        if done.returncode != 0:
+            raise PictureError(f"--surface: {' '.join(command)}: exit code {done.returncode}: {done.stderr.strip()}")
