@@ -50,32 +50,21 @@ def test_film_of_two_dimensions(flat, tmp_path):
     for k in range(3):
         assert difference(seen[k], seen[k + 1]) > 0.1
         assert difference(stamp[k], stamp[k + 1]) > 0.3  # another time
-        assert difference(bar[k], bar[k + 1]) < 0.1  # the same colours
+        assert difference(bar[k], bar[k + 1]) < 0.3  # the same colours
     assert list(tmp_path.iterdir()) == [tmp_path / "film.mp4"]
 
 
-def test_range_and_field_say_the_colours(flat, tmp_path):
-    done = called(
-        "movie",
-        flat,
-        "-q",
-        "-o",
-        tmp_path / "film.mp4",
-        "--size",
-        "480x270",
-        "--field",
-        "pressure",
-        "--range=-2e9,-1e9",
-        "--every",
-        "3",
-    )
+@pytest.mark.parametrize("bounds, colour", [("-2e9,-1e9", [253, 231, 37]), ("1e9,2e9", [68, 1, 84])])
+def test_range_and_field_say_the_colours(flat, tmp_path, bounds, colour):
+    options = ["-q", "-o", tmp_path / "film.mp4", "--field", "pressure", f"--range={bounds}", "--every", "3"]
+    done = called("movie", flat, *options)
     assert done.returncode == 0 and done.stdout == done.stderr == ""
     seen, _ = pictures(tmp_path / "film.mp4")
     assert len(seen) == 2
-    inside = seen[:, :, 60:400]
-    yellow = np.abs(inside - [253, 231, 37]).max(axis=3) < 40
-    blue = np.abs(inside - [68, 1, 84]).max(axis=3) < 40
-    assert yellow.sum() > 2000 and blue.sum() == 0
+    inside = seen[:, :, 160:1060]  # without the bar of the colours
+    coloured = np.ptp(inside, axis=3) > 60
+    assert coloured.sum() > 40000
+    assert (np.abs(inside[coloured] - colour).max(axis=1) < 12).mean() > 0.5  # but for the edges of the discs
 
 
 def test_film_of_three_dimensions_and_its_cameras(solid, tmp_path):
@@ -188,7 +177,8 @@ def test_frames_in_pieces(flat, tmp_path):
     pieces = run / "frames" / "fluid_000003.pvtp"
     pieces.write_text(
         '<?xml version="1.0"?>'
-        '<VTKFile type="PPolyData" version="1.0" byte_order="LittleEndian" header_type="UInt64"><PPolyData GhostLevel="0">'
+        '<VTKFile type="PPolyData" version="1.0" byte_order="LittleEndian" header_type="UInt64">'
+        '<PPolyData GhostLevel="0">'
         f"<PPointData>{arrays}</PPointData>"
         '<PPoints><PDataArray type="Float32" Name="position" NumberOfComponents="3"/></PPoints>'
         '<Piece Source="fluid_000003.vtp"/><Piece Source="fluid_000002.vtp"/></PPolyData></VTKFile>'

@@ -104,7 +104,8 @@ def test_thinned_frames_keep_their_particles(solid):
 
 def test_probes_inflow_and_log(tmp_path):
     directory = run("bottle.toml", tmp_path / "run", "--end-time", "0.03", "--set", "resolution=0.5")
-    _, data = reported(directory)
+    page, data = reported(directory)
+    assert "<th>Fluid particles at the end</th>" in page
     titles = [chart["title"] for chart in data["charts"]]
     assert "Fluid particles" in titles and any(title.startswith("Probe ") for title in titles)
     assert "Where the energy went" not in titles  # no balance

@@ -75,9 +75,9 @@ def powers(low, high, most):
     return [10.0**k for k in range(first, last + 1, every)] or [low, high]
 
 
-def colour_bar(colours, words, corner, size, letters):
+def colour_bar(colours, words, corner, size, end, letters):
     """Actors of a bar with numbers beside and words above it. corner: lower left [px]; size: width and height [px];
-    letters: their height [px]."""
+    end: of the words [px]; letters: their height [px]."""
     (x, y), (width, height) = corner, size
     points, cells, parts = vtkPoints(), vtkCellArray(), 256
     for k in range(parts):
@@ -104,7 +104,7 @@ def colour_bar(colours, words, corner, size, letters):
         at = y + height * scale(number)
         pairs.append(((edge, at), (edge + letters / 3, at)))
         actors.append(text(f"{number:.5g}", (edge + 0.6 * letters, at), letters, "left", "center"))
-    return [*actors, lines(pairs), text(words, (x, y + height + letters), letters)]
+    return [*actors, lines(pairs), text(words, (end, y + height + letters), letters, "right")]
 
 
 def axes(low, high, place, letters):

@@ -41,6 +41,8 @@ def rows(run):
             found.append((name, form(value)))
 
     add("Fluid particles", "fluid_particles")
+    if len(run.history.get("particles", [])):
+        found.append(("Fluid particles at the end", number(int(run.history["particles"][-1]))))
     add("Wall particles", "wall_particles")
     if run.summary is None:
         found += _of_history(run)

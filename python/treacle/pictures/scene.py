@@ -82,16 +82,15 @@ class Scene:
     def _mark(self, extent, place):
         for actor in self.marks:
             self.plotter.remove_actor(actor, reset_camera=False, render=False)
+        (width, height), edge, small = self.size, self.letters, round(0.8 * self.letters)
         if self.flat:
-            self.marks = marks.axes(extent.low[:2], extent.high[:2], place, round(0.8 * self.letters))
+            self.marks = marks.axes(extent.low[:2], extent.high[:2], place, small)
         else:
-            self.marks = marks.length_bar(
-                self.metre, (self.letters, self.letters), 0.2 * self.size[0], round(0.8 * self.letters)
-            )
+            self.marks = marks.length_bar(self.metre, (edge, edge), 0.2 * width, small)
         if self.colours.field:
-            place, shape = (0.865 * self.size[0], 0.2 * self.size[1]), (0.022 * self.size[0], 0.55 * self.size[1])
+            corner, shape = (0.865 * width, 0.2 * height), (0.022 * width, 0.55 * height)
             words = fields.label(self.colours.field)
-            self.marks += marks.colour_bar(self.colours, words, place, shape, round(0.8 * self.letters))
+            self.marks += marks.colour_bar(self.colours, words, corner, shape, width - edge, small)
         for actor in self.marks:
             self.plotter.add_actor(actor, reset_camera=False, render=False)
 
@@ -116,18 +115,10 @@ class Scene:
         self.fluid = None
         if data is not None and data.GetNumberOfPolys():
             mesh = pyvista.wrap(data)
-            mesh.clear_point_data() if "normal" not in mesh.point_data else mesh.point_data.SetActiveNormals("normal")
-            look = self._colouring(values)
-            self.fluid = self.plotter.add_mesh(
-                mesh,
-                smooth_shading="normal" not in mesh.point_data,
-                specular=0.35,
-                specular_power=25,
-                reset_camera=False,
-                show_scalar_bar=False,
-                render=False,
-                **look,
-            )
+            mesh.GetPointData().SetActiveNormals("normal")
+            shine = {"specular": 0.35, "specular_power": 25}
+            look = {**shine, **self._colouring(values)}
+            self.fluid = self.plotter.add_mesh(mesh, reset_camera=False, show_scalar_bar=False, render=False, **look)
 
     def picture(self, words):
         """Pixels, with words at the upper left."""
@@ -140,7 +131,7 @@ class Scene:
             pyvista.PolyData(np.asarray(positions, np.float32)),
             style="points",
             render_points_as_spheres=True,
-            ambient=0.2,
+            ambient=0.2 if look.get("lighting", True) else 0,
             point_size=max(1.0, self.metre * self.spacing),
             reset_camera=False,
             show_scalar_bar=False,
