@@ -17,6 +17,7 @@
 #include <new>
 #include <span>
 #include <string>
+#include <utility>
 
 namespace {
 
@@ -226,6 +227,19 @@ void addImport(CLI::App& app, ImportOptions& options) {
   command->callback([&options] { importCommand(options); });
 }
 
+/// Commands that a module of the Python package carries out, with their help. All words after the name are the
+/// module's,
+/// --help and names of other commands too, so that they do not come to the parser.
+constexpr std::pair<const char*, const char*> pythonCommands[] = {
+    {"movie", "Make a film of a run (Python; pip install treacle[pictures])"},
+    {"report", "Write a run's summary, curves and frames as one HTML page (likewise)"}};
+
+/// Does not return where the first word is one of these commands.
+void becomePython(int argc, char** argv) {
+  for (const auto& [name, help] : pythonCommands)
+    if (argc > 1 && std::string(argv[1]) == name) pythonCommand(name, {argv + 2, argv + argc});
+}
+
 int report(const std::string& text, ExitCode code) {
   printError(fmt::format("treacle: error: {}\n", text));
   return static_cast<int>(code);
@@ -274,13 +288,16 @@ int execute(int argc, char** argv, const Communicator& job) {
   addCompare(app, compare, agree);
   addConvergence(app, convergence);
   addImport(app, importOptions);
+  for (const auto& [name, help] : pythonCommands) app.add_subcommand(name, help);
 
   try {
+    becomePython(argc, argv);
     app.parse(argc, argv);
     if (app.get_subcommands().empty())
       throw InputError(
-          "expected a command: run, check, plot, surface, compare, convergence, import or info; treacle --help "
-          "tells more");
+          "expected a command: run, check, plot, surface, movie, report, compare, convergence, import or info; "
+          "treacle "
+          "--help tells more");
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return app.exit(e);  // help and version
     return report(fmt::format("{}; --help tells more", e.what()), ExitCode::BadInput);

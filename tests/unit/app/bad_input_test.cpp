@@ -401,7 +401,8 @@ TEST_P(BadArguments, areRejectedWithReason) {
 }
 
 constexpr BadLine badLines[] = {
-    {"noCommand", "", "expected a command: run, check, plot, surface, compare, convergence, import or info"},
+    {"noCommand", "",
+     "expected a command: run, check, plot, surface, movie, report, compare, convergence, import or info"},
     {"unknownCommand", "rum small.toml", "rum"},
     {"noCase", "run", "CASE is required"},
     {"unknownOption", "run small.toml --fast", "--fast"},

@@ -1,0 +1,36 @@
+"""Mistakes that a user can mend, and packages that may be missing."""
+
+import importlib
+import sys
+
+
+class PictureError(Exception):
+    """What was asked for cannot be drawn; the message says why, and what was expected."""
+
+
+def require(*modules):
+    """Imports modules by name. Raises PictureError with the way to install the first one that is missing."""
+    for name in modules:
+        try:
+            importlib.import_module(name)
+        except ImportError as error:
+            raise PictureError(
+                f"{error}; films and reports need more packages: pip install treacle[pictures]"
+            ) from None
+
+
+def reported(command, arguments):
+    """Exit code of command(arguments), as that of the program: 2 where a PictureError says what is wrong, 3 where files
+    cannot be read or written or Ctrl-C ends the work."""
+    try:
+        command(arguments)
+    except PictureError as error:
+        print(f"treacle: error: {error}", file=sys.stderr)
+        return 2
+    except OSError as error:
+        print(f"treacle: error: {error}", file=sys.stderr)
+        return 3
+    except KeyboardInterrupt:
+        print("treacle: error: stopped", file=sys.stderr)
+        return 3
+    return 0

@@ -1,0 +1,150 @@
+"""The files of a run directory, those of a run that goes on, too: what is not there yet is empty or None."""
+
+import csv
+import json
+import re
+import tomllib
+import xml.etree.ElementTree as ElementTree
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from .errors import PictureError
+
+
+@dataclass(frozen=True)
+class FrameFile:
+    """A line of an index of frames."""
+
+    time: float  # [s]
+    path: Path
+
+
+def read_index(path):
+    """The frames that a .pvd file names, in order; none where there is no file."""
+    try:
+        lines = ElementTree.parse(path).iterfind(".//DataSet")
+        return [FrameFile(float(line.get("timestep")), path.parent / line.get("file")) for line in lines]
+    except FileNotFoundError:
+        return []
+    except (ElementTree.ParseError, TypeError, ValueError) as error:
+        raise PictureError(f"{path}: not an index of frames as treacle writes it ({error})") from None
+
+
+def read_table(path):
+    """Columns of a CSV file by name, as arrays of numbers. A last row that is not whole is left out, and so are columns
+    that hold no numbers. Empty where there is no file."""
+    try:
+        with open(path, newline="") as file:
+            rows = list(csv.reader(file))
+    except FileNotFoundError:
+        return {}
+    if not rows:
+        return {}
+    names, values = rows[0], [row for row in rows[1:] if len(row) == len(rows[0])]
+    table = {}
+    for column, name in enumerate(names):
+        try:
+            table[name] = np.array([row[column] or "nan" for row in values], float)
+        except ValueError:
+            continue
+    return table
+
+
+class RunFiles:
+    """A run directory. Raises PictureError if it is none."""
+
+    def __init__(self, path):
+        self.path = Path(path)
+        if not self.path.is_dir():
+            raise PictureError(f"{path}: no such directory; expected that of a run")
+        if not (self.path / "case.toml").is_file() or not (self.path / "run.log").is_file():
+            raise PictureError(f"{path}: not the directory of a run: expected case.toml and run.log in it")
+
+    @cached_property
+    def case(self):
+        """The case with all its keys."""
+        try:
+            return tomllib.loads((self.path / "case.toml").read_text())
+        except tomllib.TOMLDecodeError as error:
+            raise PictureError(f"{self.path / 'case.toml'}: {error}") from None
+
+    @property
+    def dimensions(self):
+        return self.case["dimensions"]
+
+    @property
+    def spacing(self):
+        """Distance of particles [m]."""
+        return self.case["spacing"]
+
+    @property
+    def title(self):
+        return self.case.get("title") or self.path.name
+
+    @cached_property
+    def gravity(self):
+        """[m/s2], three components."""
+        given = self.case.get("gravity", {}).get("acceleration", [])
+        return np.array((list(given) + [0, 0, 0])[:3], float)
+
+    @property
+    def periodic(self):
+        """Whether some axis of the domain is."""
+        return any(np.atleast_1d(self.case["domain"].get("periodic", False)))
+
+    @cached_property
+    def fluid(self):
+        """Frames of the fluid. Raises PictureError where there is none yet."""
+        frames = read_index(self.path / "fluid.pvd")
+        if not frames:
+            raise PictureError(f"{self.path}: the run has no frame")
+        return frames
+
+    @cached_property
+    def walls(self):
+        """Frames of the walls, by the time of the fluid's; there may be fewer, and none in cases without walls."""
+        return read_index(self.path / "walls.pvd")
+
+    def surface_file(self, frame):
+        """Where the surface of the fluid in a frame is, if it has been made."""
+        number = re.search(r"(\d+)$", self.fluid[frame].path.name.split(".")[0])
+        return self.path / "frames" / f"surface_{number[1]}.vtp"
+
+    @cached_property
+    def summary(self):
+        """summary.json; None before the run has ended."""
+        try:
+            return json.loads((self.path / "summary.json").read_text())
+        except FileNotFoundError:
+            return None
+        except ValueError as error:
+            raise PictureError(f"{self.path / 'summary.json'}: {error}") from None
+
+    @cached_property
+    def log(self):
+        return (self.path / "run.log").read_text(errors="replace").splitlines()
+
+    @property
+    def warnings(self):
+        """Lines of the log, in order, with their time."""
+        return [line for line in self.log if re.match(r"\S+ \S+ (warning|error): ", line)]
+
+    @cached_property
+    def history(self):
+        return read_table(self.path / "history.csv")
+
+    @cached_property
+    def balance(self):
+        return read_table(self.path / "balance.csv")
+
+    @cached_property
+    def rigid_bodies(self):
+        return read_table(self.path / "rigid_bodies.csv")
+
+    @cached_property
+    def probes(self):
+        """What probes have read: tables by the names of the probes."""
+        return {file.stem: read_table(file) for file in sorted((self.path / "probes").glob("*.csv"))}

@@ -1,0 +1,50 @@
+#include "commands.hpp"
+#include "print.hpp"
+#include "treacle/core/error.hpp"
+
+#include <fmt/format.h>
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <system_error>
+
+namespace treacle {
+namespace {
+
+/// Runs the command of a module; where that cannot be imported, says why and how it comes.
+constexpr const char* launcher = R"(import importlib, sys
+name = sys.argv.pop(1)
+try:
+    main = importlib.import_module("treacle." + name).main
+except ImportError as error:
+    print(f"treacle: error: treacle {name} is written in Python: {error}; expected the package of "
+          f"`pip install treacle[pictures]` in {sys.executable}, or TREACLE_PYTHON=INTERPRETER", file=sys.stderr)
+    sys.exit(2)
+sys.exit(main(sys.argv[1:])))";
+
+}  // namespace
+
+void pythonCommand(const std::string& module, const std::vector<std::string>& arguments) {
+  const char* chosen = std::getenv("TREACLE_PYTHON");
+  const std::string interpreter = chosen != nullptr && *chosen != '\0' ? chosen : "python3";
+  std::error_code unknown;
+  const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", unknown);
+  if (!unknown) setenv("TREACLE_PROGRAM", self.c_str(), 0);  // what makes surfaces, if the module needs them
+  std::vector<std::string> words{interpreter, "-c", launcher, module};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<char*> pointers;
+  for (std::string& word : words) pointers.push_back(word.data());
+  pointers.push_back(nullptr);
+  flushPrinted();
+  execvp(interpreter.c_str(), pointers.data());
+  throw InputError(fmt::format(
+      "treacle {} is written in Python, and {} cannot be started: {}; expected Python 3 with the package of "
+      "`pip install treacle[pictures]`, or TREACLE_PYTHON=INTERPRETER",
+      module, interpreter, std::strerror(errno)));
+}
+
+}  // namespace treacle
