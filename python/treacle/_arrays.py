@@ -68,13 +68,13 @@ class DeviceArray:
 
     def __dlpack_device__(self) -> tuple[int, int]:
         self._check()
-        return self._session.field_in_place(self._name).__dlpack_device__()
+        device: tuple[int, int] = self._session.field_in_place(self._name).__dlpack_device__()
+        return device
 
     def get(self) -> np.ndarray:
         """A copy on the host."""
         self._check()
-        copied = self._session.copied_field(self._name)
-        assert copied is not None
+        copied: np.ndarray = self._session.copied_field(self._name)
         return copied
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> np.ndarray:

@@ -40,8 +40,7 @@ class Fluid:
     def _field(self, name: str) -> Array:
         if self._session.on_device:
             return DeviceArray(self._session, name)
-        copied = self._session.copied_field(name)
-        assert copied is not None
+        copied: np.ndarray = self._session.copied_field(name)
         return copied
 
     def _field_of_some(self, name: str) -> Array | None:
@@ -84,7 +83,8 @@ class Fluid:
         `Simulation.change` makes it go on with other constants. Errors: InputError for values that differ within a
         material, are negative, or are those of a rheology or of a viscosity that follows the temperature.
         """
-        return self._session.viscosities
+        copied: np.ndarray = self._session.viscosities
+        return copied
 
     @viscosities.setter
     def viscosities(self, values: Any) -> None:

@@ -63,6 +63,7 @@ std::string forPython(std::string text) {
   replace("--backend cpu", "backend=\"cpu\"");
   replace("--backend cuda", "backend=\"cuda\"");
   replace("--resume ", "checkpoint ");
+  replace("--force", "force=True");
   replace("--threads", "threads");
   replace("--set ", "overrides ");
   return text;

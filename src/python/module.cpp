@@ -25,6 +25,7 @@ namespace {
 namespace nb = nanobind;
 using namespace nb::literals;
 using Quiet = nb::call_guard<nb::gil_scoped_release>;
+using Arrays = nb::typed<nb::dict, nb::str, nb::any>;  // by name
 
 template <class E>
 E wordOf(const std::string& word, const char* what, std::initializer_list<std::pair<const char*, E>> words) {
@@ -52,13 +53,13 @@ std::unique_ptr<Session> makeSession(const Case& c, const std::string& backend, 
   return std::make_unique<Session>(c, options);
 }
 
-nb::dict tableOf(const RowTable& table) {
-  nb::dict arrays;
+Arrays tableOf(const RowTable& table) {
+  Arrays arrays;
   for (std::size_t k = 0; k < table.names.size(); ++k) arrays[table.names[k].c_str()] = arrayOf(table.columns[k]);
   return arrays;
 }
 
-nb::dict probeOf(const Session& session, const std::string& name) {
+Arrays probeOf(const Session& session, const std::string& name) {
   std::vector<std::string_view> known;
   for (std::size_t k = 0; k < session.theCase().probes.size(); ++k) {
     if (session.theCase().probes[k].name == name) return tableOf(session.probe(k));
@@ -81,7 +82,9 @@ void writeCheckpointOf(const Session& session, const std::filesystem::path& path
   });
 }
 
-nb::list tables() {
+using TableOfKeys = nb::typed<nb::tuple, nb::str, nb::typed<nb::list, nb::typed<nb::tuple, nb::str, nb::str, nb::str>>>;
+
+nb::typed<nb::list, TableOfKeys> tables() {
   nb::list all;
   for (const CaseTable& table : caseTables()) {
     nb::list keys;
@@ -91,7 +94,7 @@ nb::list tables() {
   return all;
 }
 
-nb::list devices() {
+nb::typed<nb::list, nb::typed<nb::tuple, nb::str, int, int, int, bool>> devices() {
   nb::list all;
   for (const DeviceInfo& device : cudaDevices())
     all.append(
@@ -147,6 +150,7 @@ void bindSession(nb::module_& m) {
       .def_prop_ro("time", [](const Session& s) { return s.simulation().time(); })
       .def_prop_ro("at_end", &Session::atEnd)
       .def_prop_ro("version", &Session::version)
+      .def_prop_ro("step_seconds", &Session::stepSeconds)
       .def_prop_ro("on_device", &Session::onDevice)
       .def_prop_ro("device", &Session::device)
       .def_prop_ro("case_text", [](const Session& s) { return caseText(s.theCase()); })
@@ -182,17 +186,19 @@ void bindSession(nb::module_& m) {
       .def_prop_ro("balance", [](const Session& s) { return tableOf(s.balance()); })
       .def_prop_ro("rigid_bodies", [](const Session& s) { return tableOf(s.rigidBodies()); })
       .def("probe", &probeOf, "name"_a)
-      .def("copied_field", &copiedField, "name"_a)
+      .def("copied_field", [](const Session& s, const std::string& name) { return nb::borrow<nb::any>(copiedField(s, name)); }, "name"_a)
       .def(
           "field_in_place",
           [](nb::handle_t<Session> self, const std::string& name) {
-            return fieldInPlace(nb::cast<const Session&>(self), name, self);
+            return nb::borrow<nb::any>(fieldInPlace(nb::cast<const Session&>(self), name, self));
           },
           "name"_a)
-      .def("field_address", &fieldAddress, "name"_a)
+      .def("field_address", [](const Session& s, const std::string& name) {
+        return nb::typed<nb::tuple, int, nb::typed<nb::tuple, int, nb::ellipsis>, nb::str>(fieldAddress(s, name));
+      }, "name"_a)
       .def("give_fluid", &giveFluid, "positions"_a.none(), "velocities"_a.none(), "temperatures"_a.none())
-      .def_prop_ro("viscosities", [](const Session& s) { return arrayOf(s.viscosities()); })
-      .def_prop_ro("walls", [](const Session& s) { return arraysOf(s.wallsFrame()); })
+      .def_prop_ro("viscosities", [](const Session& s) { return nb::borrow<nb::any>(arrayOf(s.viscosities())); })
+      .def_prop_ro("walls", [](const Session& s) { return Arrays(arraysOf(s.wallsFrame())); })
       .def("write_frame", &writeFrame, "path"_a, "walls"_a, Quiet())
       .def("write_checkpoint", &writeCheckpointOf, "path"_a, Quiet());
 }
@@ -232,7 +238,7 @@ NB_MODULE(_treacle, m) {
       "read_frame",
       [](const std::filesystem::path& path) {
         const Frame frame = readFrame(path);
-        return nb::make_tuple(frame.time, frame.dimensions, arraysOf(frame));
+        return nb::typed<nb::tuple, double, int, Arrays>(nb::make_tuple(frame.time, frame.dimensions, arraysOf(frame)));
       },
       "path"_a);
   m.def("case_tables", &tables, "(name, [(key, type, unit), ...]) of every table that a case can have.");

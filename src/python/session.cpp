@@ -4,6 +4,7 @@
 #include "memory.hpp"
 #include "threads.hpp"
 #include "treacle/core/error.hpp"
+#include "treacle/core/timer.hpp"
 #include "treacle/io/arrangement.hpp"
 #include "treacle/io/shape_files.hpp"
 #include "treacle/model/checks.hpp"
@@ -58,7 +59,9 @@ Session::Session(Case c, const Options& options) : case_(std::move(c)) {
 
 const StepReport& Session::advance() {
   ++version_;
+  Timer timer;
   report_ = simulation_->advance();
+  stepSeconds_ += timer.lap();
   historyWriter_->append(historyRow(case_, report_));
   if (balanceWriter_ && report_.balance) balanceWriter_->append(report_.step, report_.time, *report_.balance);
   if (rigidWriter_) rigidWriter_->append(report_.step, report_.time, report_.rigid);
@@ -77,6 +80,7 @@ void Session::change(Case next) {
   AnySimulation changed(next, particles(), backend_, simulation_->step(), simulation_->time());
   ++version_;
   simulation_.emplace(std::move(changed));
+  next.probes = std::move(case_.probes);  // they are the same, and who writes them refers to these
   case_ = std::move(next);
 }
 

@@ -49,6 +49,8 @@ class Session {
   const std::string& device() const { return device_; }
   /// Whether the case is at its end.
   bool atEnd() const { return case_.atEnd(simulation_->step(), simulation_->time()); }
+  /// Wall-clock time that the steps themselves have taken so far, without what is made of their reports [s].
+  double stepSeconds() const { return stepSeconds_; }
   /// Counts what may have moved the fields of the fluid, or put its particles into another order.
   std::int64_t version() const { return version_; }
 
@@ -75,6 +77,7 @@ class Session {
   std::optional<AnySimulation> simulation_;
   StepReport report_;
   std::int64_t version_ = 0;
+  double stepSeconds_ = 0;
 
   RowTable history_, balance_, rigid_;
   std::deque<RowTable> probes_;  // per probe of the case
