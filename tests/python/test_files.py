@@ -137,6 +137,6 @@ def test_progress_bar_is_for_terminals(drop, tmp_path):
     program.write_text(f"import treacle; treacle.Simulation({drop!r}, backend='cpu').run(until=2e-3)")
     quiet = subprocess.run([sys.executable, program], capture_output=True, text=True, check=True)
     assert (quiet.stdout, quiet.stderr) == ("", "")
-    terminal = ["script", "-qec", f"stty cols 80; {sys.executable} {program}", "/dev/null"]
+    terminal = ["script", "-qec", f"stty rows 24 cols 80; {sys.executable} {program}", "/dev/null"]
     shown = subprocess.run(terminal, capture_output=True, text=True, check=True)
     assert "A drop: 100%" in shown.stdout
