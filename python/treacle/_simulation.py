@@ -255,11 +255,10 @@ class Simulation:
             bar_format="{desc}: {percentage:3.0f}%|{bar}| {n:.4g}/{total:.4g} s [{elapsed}<{remaining}{postfix}]",
         ) as bar:
             while not self._is_there(until):
-                before = session.time
-                report = self.step()
+                self.step()
                 if recording is not None:
                     recording.record()
-                bar.update(report.time - before)
+                bar.update(max(min(session.time, end) - start - bar.n, 0.0))
                 if callback is not None and callback(self) is False:
                     return
 

@@ -82,7 +82,8 @@ void writeCheckpointOf(const Session& session, const std::filesystem::path& path
   });
 }
 
-using TableOfKeys = nb::typed<nb::tuple, nb::str, nb::typed<nb::list, nb::typed<nb::tuple, nb::str, nb::str, nb::str>>>;
+using TableOfKeys =
+    nb::typed<nb::tuple, nb::str, nb::typed<nb::list, nb::typed<nb::tuple, nb::str, nb::str, nb::str>>>;
 
 nb::typed<nb::list, TableOfKeys> tables() {
   nb::list all;
@@ -186,16 +187,23 @@ void bindSession(nb::module_& m) {
       .def_prop_ro("balance", [](const Session& s) { return tableOf(s.balance()); })
       .def_prop_ro("rigid_bodies", [](const Session& s) { return tableOf(s.rigidBodies()); })
       .def("probe", &probeOf, "name"_a)
-      .def("copied_field", [](const Session& s, const std::string& name) { return nb::borrow<nb::any>(copiedField(s, name)); }, "name"_a)
+      .def(
+          "copied_field",
+          [](const Session& s, const std::string& name) { return nb::borrow<nb::any>(copiedField(s, name)); },
+          "name"_a)
       .def(
           "field_in_place",
           [](nb::handle_t<Session> self, const std::string& name) {
             return nb::borrow<nb::any>(fieldInPlace(nb::cast<const Session&>(self), name, self));
           },
           "name"_a)
-      .def("field_address", [](const Session& s, const std::string& name) {
-        return nb::typed<nb::tuple, int, nb::typed<nb::tuple, int, nb::ellipsis>, nb::str>(fieldAddress(s, name));
-      }, "name"_a)
+      .def(
+          "field_address",
+          [](const Session& s, const std::string& name) {
+            return nb::typed<nb::tuple, int, nb::typed<nb::tuple, int, nb::ellipsis>, nb::str>(
+                fieldAddress(s, name));
+          },
+          "name"_a)
       .def("give_fluid", &giveFluid, "positions"_a.none(), "velocities"_a.none(), "temperatures"_a.none())
       .def_prop_ro("viscosities", [](const Session& s) { return nb::borrow<nb::any>(arrayOf(s.viscosities())); })
       .def_prop_ro("walls", [](const Session& s) { return Arrays(arraysOf(s.wallsFrame())); })
@@ -238,7 +246,8 @@ NB_MODULE(_treacle, m) {
       "read_frame",
       [](const std::filesystem::path& path) {
         const Frame frame = readFrame(path);
-        return nb::typed<nb::tuple, double, int, Arrays>(nb::make_tuple(frame.time, frame.dimensions, arraysOf(frame)));
+        return nb::typed<nb::tuple, double, int, Arrays>(
+            nb::make_tuple(frame.time, frame.dimensions, arraysOf(frame)));
       },
       "path"_a);
   m.def("case_tables", &tables, "(name, [(key, type, unit), ...]) of every table that a case can have.");
