@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import warnings
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any, Literal, Union
@@ -14,10 +13,10 @@ from tqdm.auto import tqdm
 from . import _treacle
 from ._fluid import Fluid
 from ._frames import Frame, frame_of
+from ._recording import Recording, warn
 from ._toml import case_text, override_texts
 from ._treacle import StepReport
 from .cases import Case
-from .errors import RunError, SimulationWarning
 
 Backend = Literal["auto", "cpu", "cuda"]
 Precision = Literal["mixed", "double"]
@@ -118,7 +117,7 @@ class Simulation:
         )
         self._session = _treacle.Session.make(data, backend, precision or "", threads, checkpoint)
         self._fluid = Fluid(self._session)
-        _warn(self._session.take_warnings())
+        warn(self._session.take_warnings())
 
     def __repr__(self) -> str:
         return (
@@ -204,7 +203,7 @@ class Simulation:
         """
         report = self._session.advance()
         if report.warnings:
-            _warn([f"step {report.step}: {text}" for text in report.warnings])
+            warn([f"step {report.step}: {text}" for text in report.warnings])
         return report
 
     def run(
@@ -228,7 +227,7 @@ class Simulation:
         written. Ctrl-C ends the run after the step at hand, with KeyboardInterrupt. The simulation then is as after the
         last step, and a run directory is complete up to there.
         """
-        recording = None if output is None else _Recording(self._session, output, force)
+        recording = None if output is None else Recording(self._session, output, force)
         try:
             self._make_steps(until, callback, recording, progress)
         except BaseException as error:
@@ -242,7 +241,7 @@ class Simulation:
         self,
         until: float | None,
         callback: Callable[[Simulation], object] | None,
-        recording: _Recording | None,
+        recording: Recording | None,
         progress: bool,
     ) -> None:
         session = self._session
@@ -317,33 +316,6 @@ class Simulation:
         Errors: RunError if the file cannot be written; an older one then stays.
         """
         self._session.write_checkpoint(os.fspath(path))
-
-
-class _Recording:
-    """A run directory that grows with the steps."""
-
-    def __init__(self, session: _treacle.Session, directory: str | os.PathLike[str], force: bool) -> None:
-        self._session = session
-        self._native = _treacle.Recording(session, os.fspath(directory), force)
-        self._step = session.step
-
-    def record(self) -> None:
-        self._native.record()
-        self._step = self._session.step
-        _warn(self._native.take_warnings())
-
-    def end(self, error: BaseException | None) -> None:
-        """Completes the directory. `error`: what has ended the run."""
-        if error is not None and self._session.step == self._step + 1:
-            self._native.record()  # the step was made, and then somebody has pressed Ctrl-C
-        failure = "" if error is None else str(error) if isinstance(error, RunError) else f"stopped by {type(error).__name__}"
-        self._native.finish(failure)
-        _warn(self._native.take_warnings())
-
-
-def _warn(texts: Iterable[str]) -> None:
-    for text in texts:
-        warnings.warn(text, SimulationWarning, stacklevel=3)
 
 
 def _table(columns: dict[str, np.ndarray]) -> dict[str, np.ndarray]:

@@ -95,6 +95,7 @@ def test_directory_is_replaced_with_force_alone(drop, tmp_path):
         treacle.Simulation(drop, backend="cpu").run(output=tmp_path / "run", progress=False)
 
 
+@pytest.mark.filterwarnings("ignore::treacle.SimulationWarning")
 @pytest.mark.parametrize("how", ["interrupt", "callback", "failure"])
 def test_run_that_is_stopped_leaves_a_whole_directory(drop, tmp_path, how):
     if how == "failure":

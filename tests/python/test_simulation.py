@@ -4,6 +4,7 @@ import os
 import signal
 import sys
 import threading
+import time
 
 import numpy as np
 import pytest
@@ -105,6 +106,7 @@ def test_tables_grow_with_the_steps(sim):
         sim.probe("lod")
 
 
+@pytest.mark.filterwarnings("ignore::treacle.SimulationWarning")
 def test_failed_step_keeps_the_state(drop):
     drop["body"][0]["velocity"] = [0, 4]
     drop["watch"] = {"courant": 0, "energy": 0}
@@ -150,7 +152,8 @@ def test_other_threads_go_on_during_steps(sim):
     sys.setswitchinterval(60)
     try:
         thread.start()
-        for _ in range(20):
+        end = time.monotonic() + 20  # a machine that is busy may take a while to begin with it
+        while turns == 0 and time.monotonic() < end:
             sim._session.advance()
     finally:
         sys.setswitchinterval(interval)
