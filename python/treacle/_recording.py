@@ -27,7 +27,12 @@ class Recording:
         """Completes the directory. `error`: what has ended the run."""
         if error is not None and self._session.step == self._step + 1:
             self._native.record()  # the step was made, and then somebody has pressed Ctrl-C
-        self._native.finish(_reason(error))
+        try:
+            self._native.finish(_reason(error))
+        except RunError as failure:
+            if error is None:
+                raise
+            warn([f"the run directory could not be completed: {failure}"])  # what came first is what is raised
         warn(self._native.take_warnings())
 
 

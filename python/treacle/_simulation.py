@@ -217,8 +217,8 @@ class Simulation:
     ) -> None:
         """Makes steps up to a time [s], by default the end of the case.
 
-        `until` is met exactly by steps that lead to it: steps of one length end with the one nearest to it, those that
-        vary in length with the first one at or after it, for which only the end of the case is met exactly.
+        Steps of one length end with the one nearest to `until`; those that vary in length end with the first one at or
+        after it, and meet the end of the case exactly.
         `callback(sim)` is called after every step; where it returns False, the run ends. `output` is a run directory,
         written as `treacle run` does; one that holds a run is replaced with `force` alone. `progress` shows a bar in
         terminals and notebooks.
@@ -272,7 +272,8 @@ class Simulation:
 
         Constants of materials, gravity, and what [rheology], [heat], [solver] and [watch] say can change between steps,
         and the end of the time. It takes about as long as the start of a simulation, and for a moment the memory of
-        another one. Errors: InputError for other keys and for values that cannot be; nothing is changed then.
+        another one. Errors: InputError for other keys, for values that cannot be, and during a run with `output`;
+        nothing is changed then.
         """
         self._session.change(_treacle.parse_case(self.case_text, override_texts(overrides)))
 

@@ -10,10 +10,13 @@
 
 #include <fmt/format.h>
 
+#include <exception>
+
 namespace treacle {
 namespace {
 
 RunDirectory made(const Session& session, const std::filesystem::path& directory, bool force) {
+  if (session.isRecorded()) throw InputError("output: another run directory is being written of the same steps");
   if (session.theCase().output.surface && !hasFreeSurface())
     throw InputError("output.surface: " + whyNoFreeSurface());
   return RunDirectory::create(directory, force);
@@ -39,6 +42,7 @@ Recording::Recording(Session& session, const std::filesystem::path& directory, b
   log_.info("solver: " + solverText(solveStages(session.theCase()).front()));
   writeFile(directory_.caseFile(), caseText(session.theCase()));
   recorder_.begin();
+  session_.setRecorded(true);
 }
 
 void Recording::record() {
@@ -47,20 +51,34 @@ void Recording::record() {
     log_.warning(fmt::format("step {}: {}", session_.lastReport().step, text));
 }
 
+/// As much as is possible, whatever goes wrong on the way.
 void Recording::finish(const std::string& failure) {
-  recorder_.wait();
-  recorder_.writeCheckpoint();
-  recorder_.writeFrame();
-  recorder_.drawPicture();
+  session_.setRecorded(false);
+  std::exception_ptr first;
+  summary_.message = failure;
+  const auto attempt = [&](auto&& action) {
+    try {
+      action();
+    } catch (const std::exception& e) {
+      log_.error(e.what());
+      if (!first) first = std::current_exception();
+      if (summary_.message.empty()) summary_.message = e.what();
+    }
+  };
+  if (!failure.empty()) log_.error(failure);
+  if (session_.isLost()) recorder_.loseSimulation();
+  attempt([&] { recorder_.wait(); });
+  attempt([&] { recorder_.writeCheckpoint(); });
+  attempt([&] { recorder_.writeFrame(); });
+  attempt([&] { recorder_.drawPicture(); });
   summary_.steps = session_.simulation().step(), summary_.time = session_.simulation().time();
   recorder_.summarise(summary_);
-  summary_.peakDeviceMemory = session_.simulation().peakBytes();
+  if (!session_.isLost()) attempt([&] { summary_.peakDeviceMemory = session_.simulation().peakBytes(); });
   summary_.wallSeconds = timer_.lap();
   summary_.peakMemory = peakMemory();
-  summary_.done = failure.empty();
-  summary_.message = failure;
-  if (!failure.empty()) log_.error(failure);
-  writeSummary(directory_.summary(), summary_);
+  summary_.done = summary_.message.empty();
+  attempt([&] { writeSummary(directory_.summary(), summary_); });
+  if (first) std::rethrow_exception(first);
 }
 
 }  // namespace treacle

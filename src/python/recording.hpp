@@ -18,9 +18,10 @@ namespace treacle {
 class Recording {
  public:
   /// Begins with the frame of the session's state. Errors: InputError for a directory that cannot be taken
-  /// (RunDirectory::create).
+  /// (RunDirectory::create), and where another one is written of the session.
   Recording(Session& session, const std::filesystem::path& directory, bool force);
   Recording(const Recording&) = delete;
+  ~Recording() { session_.setRecorded(false); }
 
   /// After a step of the session.
   void record();

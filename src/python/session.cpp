@@ -3,6 +3,7 @@
 #include "machine.hpp"
 #include "memory.hpp"
 #include "threads.hpp"
+#include "treacle/core/cuda.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/core/timer.hpp"
 #include "treacle/io/arrangement.hpp"
@@ -60,7 +61,12 @@ Session::Session(Case c, const Options& options) : case_(std::move(c)) {
 const StepReport& Session::advance() {
   ++version_;
   Timer timer;
-  report_ = simulation_->advance();
+  try {
+    report_ = simulation_->advance();
+  } catch (const DeviceFailure&) {
+    isLost_ = true;
+    throw;
+  }
   stepSeconds_ += timer.lap();
   historyWriter_->append(historyRow(case_, report_));
   if (balanceWriter_ && report_.balance) balanceWriter_->append(report_.step, report_.time, *report_.balance);
@@ -73,6 +79,8 @@ void Session::giveFluid(const GivenFluid& given) { simulation_->giveFluid(given)
 
 void Session::change(Case next) {
   requireValid(next);
+  if (isRecorded_)
+    throw InputError("a run directory is being written, whose case is this one; expected a change between runs");
   if (!hasSameParticles(case_, next))
     throw InputError(
         "between steps only constants of materials, gravity, [rheology], [heat], [solver], [watch] and the end of "

@@ -40,8 +40,15 @@ class Session {
   void giveFluid(const GivenFluid& given);
 
   /// Goes on with another case, which may have other constants of materials, gravity, solver and so on, but the
-  /// same particles. Errors: InputError for a case that differs in something else.
+  /// same particles. Errors: InputError for a case that differs in something else, and while it is recorded.
   void change(Case next);
+
+  /// Whether a run directory is written of the steps, which has the case and refers to this one.
+  void setRecorded(bool is) { isRecorded_ = is; }
+  bool isRecorded() const { return isRecorded_; }
+
+  /// Whether the memory of the simulation is lost, with its device.
+  bool isLost() const { return isLost_; }
 
   const Case& theCase() const { return case_; }
   const AnySimulation& simulation() const { return *simulation_; }
@@ -78,6 +85,7 @@ class Session {
   StepReport report_;
   std::int64_t version_ = 0;
   double stepSeconds_ = 0;
+  bool isRecorded_ = false, isLost_ = false;
 
   RowTable history_, balance_, rigid_;
   std::deque<RowTable> probes_;  // per probe of the case

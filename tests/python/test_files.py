@@ -3,6 +3,7 @@
 import csv
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -95,6 +96,17 @@ def test_directory_is_replaced_with_force_alone(drop, tmp_path):
         treacle.Simulation(drop, backend="cpu").run(output=tmp_path / "run", progress=False)
 
 
+def test_case_cannot_change_while_it_is_recorded(sim, tmp_path):
+    """case.toml would not be what was run."""
+    with pytest.raises(treacle.InputError, match="a run directory is being written"):
+        sim.run(output=tmp_path / "a", callback=lambda s: s.change({"honey.density": 1000}), progress=False)
+    with pytest.raises(treacle.InputError, match="another run directory is being written"):
+        sim.run(output=tmp_path / "b", callback=lambda s: s.run(output=tmp_path / "c"), progress=False)
+    sim.change({"honey.density": 1000})
+    sim.run(output=tmp_path / "d", progress=False)
+    assert sim.at_end
+
+
 @pytest.mark.filterwarnings("ignore::treacle.SimulationWarning")
 @pytest.mark.parametrize("how", ["interrupt", "callback", "failure"])
 def test_run_that_is_stopped_leaves_a_whole_directory(drop, tmp_path, how):
@@ -119,6 +131,15 @@ def test_run_that_is_stopped_leaves_a_whole_directory(drop, tmp_path, how):
     assert len(rows) == 1 + sim.step_count
     resumed = treacle.Simulation.from_checkpoint(tmp_path / "run/checkpoint.h5", backend="cpu")
     assert resumed.step_count == sim.step_count
+
+
+@pytest.mark.filterwarnings("ignore::treacle.SimulationWarning")
+def test_directory_that_is_gone_ends_the_run(sim, tmp_path):
+    with pytest.raises(treacle.RunError, match="removed while the run went on"):
+        sim.run(output=tmp_path / "run", callback=lambda s: shutil.rmtree(tmp_path / "run"), progress=False)
+    steps = sim.step_count
+    sim.run(until=sim.time + 1e-3, progress=False)
+    assert sim.step_count == steps + 1
 
 
 def test_command_of_the_package_is_the_program(tmp_path):
