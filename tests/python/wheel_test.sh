@@ -45,7 +45,8 @@ sim = treacle.Simulation.from_file("drop.toml")
 sim.run(output="by-module", progress=False)
 assert sim.at_end and len(sim.history["step"]) == 20
 system = ("ld-linux", "libc.", "libm.", "libdl.", "libpthread.", "librt.", "libresolv.", "libgcc_s.", "libstdc++.")
-foreign = {path for path in loaded() - before if sys.prefix not in path and not Path(path).name.startswith(system)}
+own = (sys.prefix, sys.base_prefix + "/lib/python")
+foreign = {path for path in loaded() - before if not path.startswith(own) and not Path(path).name.startswith(system)}
 assert sim.backend == "cuda" or not foreign, foreign
 command = Path(sys.prefix) / "bin/treacle"
 subprocess.run([command, "run", "drop.toml", "-o", "by-program", "--quiet"], check=True)
