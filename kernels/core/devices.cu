@@ -44,5 +44,6 @@ std::vector<DeviceInfo> cudaDevices() {
 }
 
 void useDevice(std::size_t number) { TREACLE_CUDA_CHECK(cudaSetDevice(static_cast<int>(number))); }
+void waitForDevice() { TREACLE_CUDA_CHECK(cudaDeviceSynchronize()); }
 
 }  // namespace treacle

@@ -5,12 +5,10 @@
 
 namespace treacle {
 
-ProbeRecorder::ProbeRecorder(const Case& c, const RunDirectory& directory, double start, Measure measure)
+ProbeRecorder::ProbeRecorder(const Case& c, const Target& target, double start, Measure measure)
     : case_(c), start_(start), measure_(std::move(measure)) {
-  if (c.probes.empty()) return;
-  directory.makeRoomForProbes();
   for (const Probe& probe : c.probes) {
-    writers_.emplace_back(directory.probe(probe.name), c, probe);
+    writers_.emplace_back(target(probe), c, probe);
     intervals_.emplace_back();
     if (probe.interval > 0) intervals_.back().emplace(probe.interval, c.time, start);
   }

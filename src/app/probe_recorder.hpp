@@ -2,7 +2,6 @@
 
 #include "interval.hpp"
 #include "treacle/io/probe_writer.hpp"
-#include "treacle/io/run_directory.hpp"
 #include "treacle/step/simulation.hpp"
 
 #include <cstdint>
@@ -13,15 +12,19 @@
 
 namespace treacle {
 
-/// Writes what the probes of a case read, each at intervals of its own. Errors, of every member: RunError,
+/// Records what the probes of a case read, each at intervals of its own. Errors, of every member: RunError,
 /// std::bad_alloc.
 class ProbeRecorder {
  public:
   /// AnySimulation::measure.
   using Measure = std::function<std::vector<ProbeReading>(std::uint64_t probes)>;
 
-  /// Replaces older files. `start`: simulation time at which the run starts [s]. The case must outlive this.
-  ProbeRecorder(const Case& c, const RunDirectory& directory, double start, Measure measure);
+  /// Where the rows of a probe go.
+  using Target = std::function<RowTarget(const Probe&)>;
+
+  /// Replaces what the targets hold. `start`: simulation time at which the run starts [s]. The case must outlive
+  /// this.
+  ProbeRecorder(const Case& c, const Target& target, double start, Measure measure);
 
   /// The state at the start. Loads have none.
   void begin();

@@ -1,5 +1,6 @@
 #include "recorder.hpp"
 
+#include "history_row.hpp"
 #include "treacle/core/timer.hpp"
 #include "treacle/core/trace.hpp"
 #include "treacle/io/checkpoint.hpp"
@@ -9,7 +10,6 @@
 #include <omp.h>
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace treacle {
@@ -25,25 +25,11 @@ Frame wallsFrame(const Snapshot& s) {
   return s.particles.visit([&](const auto& p) { return makeFrame(p, p.fluidCount, p.count, s.time); });
 }
 
-HistoryRow historyRow(const Case& c, const StepReport& r) {
-  const Diagnostics& d = r.diagnostics;
-  const PhaseSeconds& s = r.seconds;
-  HistoryRow row;
-  row.step = r.step, row.time = r.time, row.timeStep = r.timeStep;
-  row.iterations = r.iterations, row.residual = r.residual, row.fallbacks = r.fallbacks;
-  row.kineticEnergy = d.kineticEnergy, row.potentialEnergy = d.potentialEnergy;
-  row.frontX = d.frontX, row.top = d.top, row.maxSpeed = d.maxSpeed;
-  row.meanDensity = d.meanDensityRatio, row.densityError = d.meanDensityError;
-  row.seconds = s.total();
-  if (r.flow) {
-    const auto flow = [&](const FlowCount& count) {
-      return HistoryFlow{count.particles, static_cast<double>(count.particles) * std::pow(c.spacing, c.dimensions),
-                         count.mass};
-    };
-    row.particles = r.flow->particles, row.inflow = flow(r.flow->in), row.outflow = flow(r.flow->out);
-  }
-  row.timings = {s.search, s.lists, s.coefficients, s.coarse, s.solve, s.update};
-  return row;
+ProbeRecorder::Target filesOf(const RunDirectory& directory) {
+  return [&directory](const Probe& probe) {
+    directory.makeRoomForProbes();
+    return directory.probe(probe.name);
+  };
 }
 
 }  // namespace
@@ -56,7 +42,7 @@ Recorder::Recorder(const Case& c, RunDirectory& directory, RunLog& log, double s
       copyState_(std::move(copyState)),
       orderPieces_(std::move(orderPieces)),
       history_(directory.history(), {.flow = c.isOpen(), .timings = timings}),
-      probes_(c, directory, start, std::move(measure)),
+      probes_(c, filesOf(directory), start, std::move(measure)),
       frames_(c.output.interval, c.time, start),
       checkpoints_(c.output.checkpointInterval, c.time, start),
       watch_(c),

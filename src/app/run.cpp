@@ -4,15 +4,13 @@
 #include "machine.hpp"
 #include "memory.hpp"
 #include "pinned_snapshot.hpp"
+#include "run_summary.hpp"
 #include "treacle/core/error.hpp"
-#include "treacle/core/version.hpp"
 #include "treacle/io/atomic_file.hpp"
 #include "treacle/io/case_reader.hpp"
-#include "treacle/model/names.hpp"
 #include "treacle/step/solve_stages.hpp"
 
 #include <fmt/format.h>
-#include <omp.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -57,16 +55,9 @@ void Run::execute(const std::vector<std::string>& warnings) {
 }
 
 void Run::describe() {
-  const BuildInfo build = buildInfo();
-  summary_.version = build.version, summary_.commit = build.commit;
-  summary_.backend = onDevice() ? "cuda" : "cpu", summary_.device = device_;
-  summary_.threads = omp_get_max_threads();
-  summary_.precision = nameOf(case_.solver.precision);
-  summary_.title = case_.title;
-  summary_.dimensions = case_.dimensions;
-  summary_.fluidParticles = particles_.fluid, summary_.wallParticles = particles_.wall;
-  log_.info(fmt::format("treacle {} ({}), backend {}, {}, {} threads of the host{}", build.version, build.commit,
-                        summary_.backend, device_, summary_.threads,
+  summary_ = startOfSummary(case_, onDevice(), device_, particles_);
+  log_.info(fmt::format("treacle {} ({}), backend {}, {}, {} threads of the host{}", summary_.version,
+                        summary_.commit, summary_.backend, device_, summary_.threads,
                         processes_.size() > 1 ? fmt::format(" in each of {} processes", processes_.size()) : ""));
   say(fmt::format("{}: {} fluid and {} wall particles, {}, into {}", case_.title.empty() ? "case" : case_.title,
                   particles_.fluid, particles_.wall, stepsText(), directory_.path().string()));

@@ -6,6 +6,7 @@ namespace treacle {
 
 std::vector<DeviceInfo> cudaDevices() { return {}; }
 void useDevice(std::size_t) {}
+void waitForDevice() {}
 
 PinnedMemory::PinnedMemory(void*, std::size_t) {}
 PinnedMemory::~PinnedMemory() = default;

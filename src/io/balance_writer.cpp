@@ -30,11 +30,11 @@ std::string columns(const Case& c) {
 
 }  // namespace
 
-BalanceWriter::BalanceWriter(std::filesystem::path path, const Case& c)
+BalanceWriter::BalanceWriter(RowTarget to, const Case& c)
     : dimensions_(c.dimensions),
       repels_(c.repulsionRadius() > 0),
       hasSurface_(c.hasSurfaceTension()),
-      file_(std::move(path), columns(c)) {}
+      rows_(std::move(to), columns(c)) {}
 
 void BalanceWriter::append(std::int64_t step, double time, const Balance& b) {
   std::string row = fmt::format("{},{},{},{},{},{},{},{}", step, time, b.shearDissipation, b.bulkDissipation,
@@ -46,7 +46,7 @@ void BalanceWriter::append(std::int64_t step, double time, const Balance& b) {
     for (int k = 0; k < dimensions_; ++k) row += fmt::format(",{}", load.force[k]);
     for (int k = dimensions_ == 2 ? 2 : 0; k < 3; ++k) row += fmt::format(",{}", load.torque[k]);
   }
-  file_.append(std::move(row));
+  rows_.append(std::move(row));
 }
 
 }  // namespace treacle

@@ -18,20 +18,23 @@ constexpr std::string_view setPrefix = "--set ";
 constexpr std::string_view namedLists[] = {"material", "body", "outflow",
                                            "probe"};  // arrays of tables addressed by name
 
-InputError errorAt(const toml::source_region& source, const std::string& text) {
-  return InputError(placeOf(source) + text);
+CaseFileError errorAt(const toml::source_region& source, const std::string& text) {
+  return treacle::errorAt(source, {}, text);
+}
+
+/// Of a file as a whole.
+CaseFileError errorIn(const fs::path& path, const std::string& text) {
+  return {{path.string()}, {}, fmt::format("{}: {}", path.string(), text)};
 }
 
 /// Pipes, too, `treacle check <(...)`; those that nobody writes to are empty and not waited for.
 std::string readText(const fs::path& path) {
   std::error_code ignored;
-  if (fs::is_directory(path, ignored)) throw InputError(fmt::format("{}: is a directory", path.string()));
+  if (fs::is_directory(path, ignored)) throw errorIn(path, "is a directory");
   constexpr std::size_t largest = 64 << 20;  // [B]
   const std::optional<std::string> text = readAll(path, largest);
-  if (!text)
-    throw InputError(
-        fmt::format("{}: {}", path.string(), fs::exists(path, ignored) ? "cannot be read" : "no such case file"));
-  if (text->size() > largest) throw InputError(fmt::format("{}: too large for a case file", path.string()));
+  if (!text) throw errorIn(path, fs::exists(path, ignored) ? "cannot be read" : "no such case file");
+  if (text->size() > largest) throw errorIn(path, "too large for a case file");
   return *text;
 }
 
@@ -71,9 +74,10 @@ std::size_t lineOfDeepKey(std::string_view text) {
 
 toml::table parse(std::string_view text, const std::string& source) {
   if (const std::size_t line = lineOfDeepKey(text); line > 0)
-    throw InputError(fmt::format("{}:{}: not valid TOML for a case: a key of hundreds of parts", source, line));
+    throw CaseFileError({source, static_cast<std::uint32_t>(line)}, {},
+                        fmt::format("{}:{}: not valid TOML for a case: a key of hundreds of parts", source, line));
   try {
-    return toml::parse(text, source);
+    return source.empty() ? toml::parse(text) : toml::parse(text, source);
   } catch (const toml::parse_error& e) {
     throw errorAt(e.source(), fmt::format("not valid TOML: {}", e.description()));
   }
@@ -134,17 +138,17 @@ fs::path resolved(const fs::path& path) {
   return error ? path : found;
 }
 
-/// `chain`: the files that led here, for the detection of cycles.
-toml::table readWithBase(const fs::path& path, std::vector<fs::path>& chain) {
-  toml::table document = parse(readText(path), path.string());
+toml::table readWithBase(const fs::path& path, std::vector<fs::path>& chain);
+
+/// `chain`: the files that led here, for the detection of cycles. `folder`: of the file that the document is.
+toml::table withBase(toml::table document, const fs::path& folder, std::vector<fs::path>& chain) {
   requireNames(document);
-  chain.push_back(resolved(path));
   const toml::node* base = document.get("base");
   if (!base) return document;
 
   const auto* name = base->as_string();
   if (!name || name->get().empty()) throw errorAt(base->source(), "base: expected the name of a case file");
-  const fs::path basePath = (path.parent_path() / name->get()).lexically_normal();
+  const fs::path basePath = (folder / name->get()).lexically_normal();
   if (std::ranges::find(chain, resolved(basePath)) != chain.end())
     throw errorAt(base->source(), fmt::format("base: '{}' inherits from itself", name->get()));
   if (std::error_code ignored; !fs::is_regular_file(basePath, ignored))
@@ -153,6 +157,12 @@ toml::table readWithBase(const fs::path& path, std::vector<fs::path>& chain) {
   document.erase("base");
   merge(merged, std::move(document));
   return merged;
+}
+
+toml::table readWithBase(const fs::path& path, std::vector<fs::path>& chain) {
+  toml::table document = parse(readText(path), path.string());
+  chain.push_back(resolved(path));
+  return withBase(std::move(document), path.parent_path(), chain);
 }
 
 /// Parses "key=value" as a TOML line; a value that is no TOML becomes a string: `solver.krylov=cg`.
@@ -236,6 +246,13 @@ std::string placeOf(const toml::source_region& source) {
   return fmt::format("{}:{}:{}: ", *source.path, source.begin.line, source.begin.column);
 }
 
+CaseFileError errorAt(const toml::source_region& source, std::string key, const std::string& text) {
+  CasePlace place;
+  if (source.path && !source.path->starts_with(setPrefix))
+    place = {*source.path, source.begin.line, source.begin.column};
+  return {std::move(place), std::move(key), placeOf(source) + text};
+}
+
 fs::path fileNamedAt(const toml::source_region& source, const std::string& name) {
   const bool inFile = source.path && !source.path->starts_with(setPrefix);
   const fs::path folder = inFile ? fs::path(*source.path).parent_path() : fs::path();
@@ -244,12 +261,24 @@ fs::path fileNamedAt(const toml::source_region& source, const std::string& name)
   return error ? folder / name : found;
 }
 
-toml::table readDocument(const fs::path& path, std::span<const std::string> overrides) {
-  std::vector<fs::path> chain;
-  toml::table document = readWithBase(path, chain);
+namespace {
+
+toml::table overridden(toml::table document, std::span<const std::string> overrides) {
   for (const std::string& text : overrides) applyOverride(document, text);
   requireNames(document);
   return document;
+}
+
+}  // namespace
+
+toml::table readDocument(const fs::path& path, std::span<const std::string> overrides) {
+  std::vector<fs::path> chain;
+  return overridden(readWithBase(path, chain), overrides);
+}
+
+toml::table documentOf(std::string_view text, std::span<const std::string> overrides) {
+  std::vector<fs::path> chain;
+  return overridden(withBase(parse(text, {}), {}, chain), overrides);
 }
 
 }  // namespace treacle

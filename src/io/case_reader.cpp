@@ -9,19 +9,17 @@ namespace treacle {
 namespace {
 
 /// The same error with its place in the file; without one where no table of the file holds the value.
-InputError placed(const CaseError& error, const Sections& sections) {
+CaseFileError placed(const CaseError& error, const Sections& sections) {
   CasePath path = error.path();
   const std::string key = path.back();
   path.pop_back();
   const auto section = sections.find(path);
-  if (section == sections.end()) return error;
+  if (section == sections.end()) return {{}, key, error.what()};
   return section->second.error(key, error.text());
 }
 
-}  // namespace
-
-Case readCase(const std::filesystem::path& path, std::span<const std::string> overrides, ShapeFiles files) {
-  const toml::table document = readDocument(path, overrides);
+/// `folder`: that of the file.
+Case caseOf(const toml::table& document, const std::filesystem::path& folder, ShapeFiles files) {
   Case c;
   Sections sections;
   TableReader top(c, sections, Section(document, "the case file"), {});
@@ -32,13 +30,23 @@ Case readCase(const std::filesystem::path& path, std::span<const std::string> ov
   if (!c.time.automatic) c.time.step /= c.resolution;
   try {
     if (width) applyWidth(c, *width);
-    if (files == ShapeFiles::Read) readShapeFiles(c, path.parent_path());
+    if (files == ShapeFiles::Read) readShapeFiles(c, folder);
     setStepBounds(c);  // which follow from where bodies are
     requireValid(c);
   } catch (const CaseError& error) {
     throw placed(error, sections);
   }
   return c;
+}
+
+}  // namespace
+
+Case readCase(const std::filesystem::path& path, std::span<const std::string> overrides, ShapeFiles files) {
+  return caseOf(readDocument(path, overrides), path.parent_path(), files);
+}
+
+Case readCaseText(std::string_view text, std::span<const std::string> overrides, ShapeFiles files) {
+  return caseOf(documentOf(text, overrides), {}, files);
 }
 
 }  // namespace treacle

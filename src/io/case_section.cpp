@@ -43,19 +43,20 @@ void Section::requireKnown(const std::vector<std::string_view>& known,
     if (std::ranges::find(known, key.str()) != known.end()) continue;
     const toml::source_region& place = key.source().path ? key.source() : value.source();
     const bool ofOther = std::ranges::find(foreign, key.str()) != foreign.end();
-    throw InputError(fmt::format("{}unknown key '{}' in {}{}", placeOf(place), key.str(), title_,
-                                 ofOther ? fmt::format(": it belongs to {}; expected {}", owner, listOf(known))
-                                         : suggestion(key.str(), known)));
+    throw errorAt(place, std::string(key.str()),
+                  fmt::format("unknown key '{}' in {}{}", key.str(), title_,
+                              ofOther ? fmt::format(": it belongs to {}; expected {}", owner, listOf(known))
+                                      : suggestion(key.str(), known)));
   }
 }
 
-InputError Section::error(std::string_view key, const std::string& text) const {
+CaseFileError Section::error(std::string_view key, const std::string& text) const {
   const toml::node* node = table_->get(key);
-  return InputError(
-      fmt::format("{}{} in {}: {}", placeOf(node ? node->source() : table_->source()), key, title_, text));
+  return errorAt(node ? node->source() : table_->source(), std::string(key),
+                 fmt::format("{} in {}: {}", key, title_, text));
 }
 
-InputError Section::unexpected(const Key& key, const std::string& expected, const toml::node& found) const {
+CaseFileError Section::unexpected(const Key& key, const std::string& expected, const toml::node& found) const {
   return error(key.name, mismatch(key, expected, describe(found)));
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "treacle/core/error.hpp"
+#include "treacle/io/case_reader.hpp"
 #include "treacle/model/case_keys.hpp"
 
 #include <toml++/toml.h>
@@ -21,17 +21,17 @@ class Section {
   const std::string& title() const { return title_; }
 
   /// The value of a key; none where it is optional and not there. `expected`: what a required one is to be.
-  /// Errors: InputError.
+  /// Errors: CaseFileError.
   const toml::node* value(const Key& key, const std::string& expected) const;
 
-  /// Errors: InputError for a key that is not among `known`; that for one of `foreign` says whose it is.
+  /// Errors: CaseFileError for a key that is not among `known`; that for one of `foreign` says whose it is.
   void requireKnown(const std::vector<std::string_view>& known, const std::vector<std::string_view>& foreign,
                     std::string_view owner) const;
 
   /// "place: key in title: text", for the caller to throw; without a place of its own the key gets the table's.
-  InputError error(std::string_view key, const std::string& text) const;
+  CaseFileError error(std::string_view key, const std::string& text) const;
   /// The same for a value that is not what was expected.
-  InputError unexpected(const Key& key, const std::string& expected, const toml::node& found) const;
+  CaseFileError unexpected(const Key& key, const std::string& expected, const toml::node& found) const;
 
  private:
   const toml::table* table_;

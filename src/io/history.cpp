@@ -91,14 +91,14 @@ HistoryRow parseRow(std::string_view line, const Layout& layout, const std::stri
 
 }  // namespace
 
-HistoryWriter::HistoryWriter(std::filesystem::path path, HistoryColumns some)
-    : columns_(some), file_(std::move(path), columns({some})) {}
+HistoryWriter::HistoryWriter(RowTarget to, HistoryColumns some)
+    : columns_(some), rows_(std::move(to), columns({some})) {}
 
 void HistoryWriter::append(const HistoryRow& row) {
   std::string line;
   forEachColumn(row, {columns_}, [&](auto value) { line += fmt::format("{},", value); });
   line.pop_back();
-  file_.append(line);
+  rows_.append(line);
 }
 
 std::vector<HistoryRow> readHistory(const std::filesystem::path& path) {

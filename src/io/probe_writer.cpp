@@ -49,8 +49,8 @@ std::string columns(const Case& c, const Probe& p) {
 
 }  // namespace
 
-ProbeWriter::ProbeWriter(std::filesystem::path path, const Case& c, const Probe& probe)
-    : case_(c), probe_(probe), file_(std::move(path), columns(c, probe)) {}
+ProbeWriter::ProbeWriter(RowTarget to, const Case& c, const Probe& probe)
+    : case_(c), probe_(probe), rows_(std::move(to), columns(c, probe)) {}
 
 std::string ProbeWriter::components(const Vec<3>& v) const {
   std::string text;
@@ -63,7 +63,7 @@ void ProbeWriter::append(double time, const Frame& fluid, const Frame& walls) {
   if (probe_.kind == ProbeKind::Height) {
     const Vec<3> way = probe_.to - probe_.from;
     const double height = sampler.extent(probe_.from, probe_.to);
-    return file_.append(
+    return rows_.append(
         fmt::format("{},{}{}", time, height, components(probe_.from + (height / norm(way)) * way)));
   }
   const ProbePlaces places = ProbePlaces::of(probe_, case_.spacing);
@@ -80,14 +80,14 @@ void ProbeWriter::append(double time, const Frame& fluid, const Frame& walls) {
     if (case_.hasOwnViscosities()) rows += fmt::format(",{},{}", s.viscosity, s.shearRate);
     if (case_.heat) rows += fmt::format(",{}", s.temperature);
   }
-  file_.append(std::move(rows));
+  rows_.append(std::move(rows));
 }
 
 /// Means are those by volume. Of a part without fluid they are 0/0, not a number.
 void ProbeWriter::append(double time, const PartSums& s) {
   if (probe_.kind == ProbeKind::Flow) {
     const Vec<3> downstream = (1 / norm(probe_.normal)) * probe_.normal;
-    return file_.append(fmt::format("{},{},{}", time, dot(s.flow, downstream), dot(s.momentum, downstream)));
+    return rows_.append(fmt::format("{},{},{}", time, dot(s.flow, downstream), dot(s.momentum, downstream)));
   }
   const auto mean = [&](double sum) { return sum / s.volume; };
   std::string row = fmt::format("{},{},{}", time, s.volume, s.mass);
@@ -96,7 +96,7 @@ void ProbeWriter::append(double time, const PartSums& s) {
   row += fmt::format(",{},{}", mean(s.pressure), mean(s.viscosity));
   if (case_.hasOwnViscosities()) row += fmt::format(",{}", mean(s.shearRate));
   if (case_.heat) row += fmt::format(",{}", mean(s.temperature));
-  file_.append(std::move(row));
+  rows_.append(std::move(row));
 }
 
 void ProbeWriter::append(double time, const std::vector<WallLoad>& walls) {
@@ -108,7 +108,7 @@ void ProbeWriter::append(double time, const std::vector<WallLoad>& walls) {
   const WallLoad& load = walls.at(index);
   std::string row = fmt::format("{}{}", time, components(load.force));
   for (int k = case_.dimensions == 2 ? 2 : 0; k < 3; ++k) row += fmt::format(",{}", load.torque[k]);
-  file_.append(row + fmt::format(",{}", load.power));
+  rows_.append(row + fmt::format(",{}", load.power));
 }
 
 }  // namespace treacle

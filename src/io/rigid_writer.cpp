@@ -30,8 +30,8 @@ std::string columns(const Case& c) {
 
 }  // namespace
 
-RigidWriter::RigidWriter(std::filesystem::path path, const Case& c)
-    : dimensions_(c.dimensions), file_(std::move(path), columns(c)) {}
+RigidWriter::RigidWriter(RowTarget to, const Case& c)
+    : dimensions_(c.dimensions), rows_(std::move(to), columns(c)) {}
 
 void RigidWriter::append(std::int64_t step, double time, const std::vector<RigidBody>& bodies) {
   std::string row = fmt::format("{},{}", step, time);
@@ -48,7 +48,7 @@ void RigidWriter::append(std::int64_t step, double time, const std::vector<Rigid
     for (const double q : body.orientation) add(q);
     for (int k = 0; k < 3; ++k) add(body.spin[k]);
   }
-  file_.append(std::move(row));
+  rows_.append(std::move(row));
 }
 
 }  // namespace treacle

@@ -119,6 +119,16 @@ std::vector<ProbeReading> AnySimulation::measure(std::uint64_t probes) const {
   return part(processes_, [&] { return held_->visit([&](auto& s) { return s.measure(probes); }); });
 }
 
+FieldMemory AnySimulation::field(FluidField field) const {
+  return held_->visit([&](auto& s) { return s.field(field); });
+}
+void AnySimulation::copyField(FluidField field, void* host) const {
+  held_->visit([&](auto& s) { s.copyField(field, host); });
+}
+void AnySimulation::giveFluid(const GivenFluid& given) {
+  held_->visit([&](auto& s) { s.giveFluid(given); });
+}
+
 ParticleNumbers AnySimulation::numbers() const {
   return held_->visit([](auto& s) { return s.numbers(); });
 }

@@ -2,6 +2,7 @@
 
 #include "all_particles.hpp"
 #include "failure.hpp"
+#include "give_fluid.hpp"
 #include "given_step.hpp"
 #include "held_walls.hpp"
 #include "measure.hpp"
@@ -20,6 +21,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -84,6 +86,7 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
   std::unique_ptr<StepMethod<D, Backend>> method;
   std::optional<DistantWalls<D>> distant;  // which `particles` has not
   double lastSpeed = 0;                    // of the fastest particle [m/s]
+  double mass = 0;                         // of the fluid at the start [kg; per metre of depth in 2D]
   std::optional<Watch> watch;
   std::optional<StepControl> control;  // of automatic steps
   double endOfStep = 0;                // time at the end of the step at hand [s]
@@ -98,7 +101,7 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     }
     this->fluidOfAll = static_cast<std::uint32_t>(sumOverProcesses(context, state.fluidCount));
     wallsMove = sumOverProcesses(context, someWallMoves(theCase, state)) > 0;
-    const double mass = sumOverProcesses(context, fluidMass(theCase, state));
+    mass = sumOverProcesses(context, fluidMass(theCase, state));
     boundaries.begin(state);
     bodies.begin(state);
     method = theCase.method.kind == MethodKind::Isph ? makeIsphStep(static_cast<Flow&>(*this))
@@ -114,9 +117,47 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
       method->findNeighbours();
       method->computeDensities();
     }
+    startWatch();
+  }
+
+  /// From the state as it is.
+  void startWatch() {
     const Diagnostics start = diagnostics();
     lastSpeed = start.maxSpeed;
     watch.emplace(theCase, start, mass, this->fluidOfAll, wallsMove || theCase.isOpen());
+  }
+
+  /// What the fluid remembers does not lead to a state that somebody else has made.
+  void giveFluid(const GivenFluid& given) {
+    if (context.communicator) throw InputError("processes share the simulation; expected one that is alone");
+    const std::uint32_t n = particles.fluidCount;
+    if (std::is_same_v<Backend, Cuda> && given.where == BackendKind::Cuda) waitForDevice();
+    const auto here = [&]<class T>(T, std::span<const double> values, const char* what) {
+      return values.empty() && n > 0 ? Buffer<T, Backend>{}
+                                     : broughtHere<T>(context, values, given.where, n, what);
+    };
+    Buffer<Vec<D>, Backend> x = here(Vec<D>{}, given.position, "positions");
+    const Buffer<Vec<D>, Backend> u = here(Vec<D>{}, given.velocity, "velocities");
+    const Buffer<double, Backend> warm = here(double{}, given.temperature, "temperatures");
+    if (x.size() > 0) requireInside(context, method->grid(), particles, x);
+    if (u.size() > 0 && !std::isfinite(diagnosticsOf(particles.position, u.span()).kineticEnergy))
+      throw InputError("velocities: expected finite numbers [m/s], found others");
+    if (warm.size() > 0 && !particles.hasTemperatures)
+      throw InputError("temperatures: the case has no heat; expected a case with [heat]");
+    if (warm.size() > 0) requireWarm(context, warm);
+    const auto take = [&](const auto& from, auto& to) {
+      if (from.size() > 0) copyValues(context, from.span(), to.data());
+    };
+    take(x, particles.position), take(u, particles.velocity), take(warm, particles.temperature);
+    if (x.size() == 0 && u.size() == 0) return;
+    forEachFlowMemoryOf([&](auto& field) { clearValues(context, field.span()); }, particles);
+    this->shearRatesKnown = false;
+    particles.modes.pressure = {}, particles.steps = {};
+    if (x.size() > 0) {
+      particles.modes.drop();
+      distant->addStep(0, std::numeric_limits<double>::infinity());  // who knows how far they have gone
+    }
+    startWatch();
   }
 
   void chooseTimeStep() {
@@ -312,6 +353,19 @@ StepReport Simulation<D, Backend>::advance() {
   StepReport report;
   withTeam<Backend>([&] { report = state_->advance(); });
   return report;
+}
+template <int D, class Backend>
+FieldMemory Simulation<D, Backend>::field(FluidField field) const {
+  if constexpr (std::is_same_v<Backend, Cuda>) state_->context.synchronize();
+  return fieldMemory(state_->particles, field);
+}
+template <int D, class Backend>
+void Simulation<D, Backend>::copyField(FluidField field, void* host) const {
+  treacle::copyField(state_->context, fieldMemory(state_->particles, field), host);
+}
+template <int D, class Backend>
+void Simulation<D, Backend>::giveFluid(const GivenFluid& given) {
+  withTeam<Backend>([&] { state_->giveFluid(given); });
 }
 template <int D, class Backend>
 std::vector<SolverTrial> Simulation<D, Backend>::convergence(std::span<const SolverSettings> solvers) {

@@ -21,4 +21,8 @@ std::vector<DeviceInfo> cudaDevices();
 /// Makes one of them the current one of this thread: that of contexts made from now on. Errors: DeviceFailure.
 void useDevice(std::size_t number);
 
+/// Returns when the current device has done all that this process has asked of it, whoever in it did. Errors:
+/// DeviceFailure.
+void waitForDevice();
+
 }  // namespace treacle

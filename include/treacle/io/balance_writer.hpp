@@ -1,6 +1,6 @@
 #pragma once
 
-#include "treacle/io/row_file.hpp"
+#include "treacle/io/rows.hpp"
 #include "treacle/model/balance.hpp"
 #include "treacle/model/case.hpp"
 
@@ -13,8 +13,8 @@ namespace treacle {
 /// RowFile.
 class BalanceWriter {
  public:
-  /// Replaces an older file. The case names the walls and the dimension.
-  BalanceWriter(std::filesystem::path path, const Case& c);
+  /// Replaces what the target holds. The case names the walls and the dimension.
+  BalanceWriter(RowTarget to, const Case& c);
 
   /// `step` and `time` [s] after the step.
   void append(std::int64_t step, double time, const Balance& balance);
@@ -23,7 +23,7 @@ class BalanceWriter {
   int dimensions_;
   bool repels_;
   bool hasSurface_;
-  RowFile file_;
+  Rows rows_;
 };
 
 }  // namespace treacle

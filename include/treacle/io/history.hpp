@@ -1,6 +1,6 @@
 #pragma once
 
-#include "treacle/io/row_file.hpp"
+#include "treacle/io/rows.hpp"
 
 #include <cstdint>
 #include <filesystem>
@@ -49,14 +49,14 @@ struct HistoryColumns {
 /// Appends rows to a new file; numbers read back to the same bits. Errors: those of RowFile.
 class HistoryWriter {
  public:
-  /// Replaces an older file.
-  explicit HistoryWriter(std::filesystem::path path, HistoryColumns columns = {});
+  /// Replaces what the target holds.
+  explicit HistoryWriter(RowTarget to, HistoryColumns columns = {});
 
   void append(const HistoryRow& row);
 
  private:
   HistoryColumns columns_;
-  RowFile file_;
+  Rows rows_;
 };
 
 /// All rows, with or without timings, also of versions that had fewer columns; an unfinished last line is left

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "treacle/io/frame.hpp"
-#include "treacle/io/row_file.hpp"
+#include "treacle/io/rows.hpp"
 #include "treacle/model/balance.hpp"
 #include "treacle/model/case.hpp"
 
@@ -14,8 +14,8 @@ namespace treacle {
 /// those of RowFile.
 class ProbeWriter {
  public:
-  /// Replaces an older file. `c` and `probe` must outlive this.
-  ProbeWriter(std::filesystem::path path, const Case& c, const Probe& probe);
+  /// Replaces what the target holds. `c` and `probe` must outlive this.
+  ProbeWriter(RowTarget to, const Case& c, const Probe& probe);
 
   /// At a time [s], of a probe that is sampled: all fluid and walls within probeReach of its places.
   void append(double time, const Frame& fluid, const Frame& walls);
@@ -29,7 +29,7 @@ class ProbeWriter {
 
   const Case& case_;
   const Probe& probe_;
-  RowFile file_;
+  Rows rows_;
 };
 
 }  // namespace treacle

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "treacle/io/row_file.hpp"
+#include "treacle/io/rows.hpp"
 #include "treacle/model/case.hpp"
 #include "treacle/model/rigid_body.hpp"
 
@@ -14,15 +14,15 @@ namespace treacle {
 /// to the same bits. Errors: those of RowFile.
 class RigidWriter {
  public:
-  /// Replaces an older file.
-  RigidWriter(std::filesystem::path path, const Case& c);
+  /// Replaces what the target holds.
+  RigidWriter(RowTarget to, const Case& c);
 
   /// `step` and `time` [s] after the step; `bodies`: per body of the case.
   void append(std::int64_t step, double time, const std::vector<RigidBody>& bodies);
 
  private:
   int dimensions_;
-  RowFile file_;
+  Rows rows_;
 };
 
 }  // namespace treacle

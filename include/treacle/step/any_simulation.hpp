@@ -36,6 +36,9 @@ class AnySimulation {
   /// All fields; the particles get the dimensions of the simulation.
   void copyParticles(AnyParticles& host) const;
   ParticleNumbers numbers() const;
+  FieldMemory field(FluidField field) const;
+  void copyField(FluidField field, void* host) const;
+  void giveFluid(const GivenFluid& given);
   std::vector<ProbeReading> measure(std::uint64_t probes) const;
   double time() const;  // [s]
   std::int64_t step() const;

@@ -5,6 +5,7 @@
 #include "treacle/model/balance.hpp"
 #include "treacle/model/case.hpp"
 #include "treacle/model/particles.hpp"
+#include "treacle/step/fluid_access.hpp"
 #include "treacle/step/probe_reading.hpp"
 #include "treacle/step/solver_trial.hpp"
 #include "treacle/step/watch.hpp"
@@ -124,6 +125,14 @@ class Simulation {
   /// which so many as are returned, the first ones, are its own, and the others those in reach. Every particle is
   /// one process's. Fields that walls do not have are undefined. Collective.
   std::uint32_t copyOwnParticles(Particles<D>& host) const;
+  /// A field of the fluid where it lies; on a device once all that writes it is done.
+  FieldMemory field(FluidField field) const;
+  /// The same, copied to the host, where there is to be room for it.
+  void copyField(FluidField field, void* host) const;
+  /// Changes the state between steps. With other positions or velocities the flow has no memory of earlier steps,
+  /// and the watch begins anew; pressures and densities stay those of the last step. Errors: InputError, for a
+  /// simulation that processes share as well; std::bad_alloc. The state is then as before.
+  void giveFluid(const GivenFluid& given);
   double time() const;  // [s]
   std::int64_t step() const;
   std::size_t bytes() const;      // memory held [B]

@@ -43,6 +43,37 @@ TEST(caseFiles, allAreReadAndTheirResolvedTextGivesTheSameCase) {
     }
 }
 
+TEST(caseFiles, textsThatAreNoFilesGiveTheSameCaseAndErrorsWithoutAPlace) {
+  const fs::path file = fs::path(TREACLE_CASES) / "dam-break-2d.toml";
+  const Case c = readCase(file);
+  EXPECT_EQ(readCaseText(caseText(c)), c);
+  const std::string overrides[] = {"time.step=auto"};
+  EXPECT_TRUE(readCaseText(caseText(c), overrides).time.automatic);
+  try {
+    readCaseText("dimensions = 2\nspacing = 0");
+    FAIL();
+  } catch (const CaseFileError& e) {
+    EXPECT_EQ(e.place().file, "");
+    EXPECT_EQ(e.place().line, 0u);
+    EXPECT_EQ(e.key(), "spacing");
+    EXPECT_STREQ(e.what(), "spacing in the case file: expected a positive number [m], found 0");
+  }
+}
+
+TEST(caseFiles, errorsSayWhereTheyAre) {
+  Workshop shop;
+  shop.put("bad.toml", "dimensions = 2\n  spacing = 0");
+  try {
+    readCase(shop / "bad.toml");
+    FAIL();
+  } catch (const CaseFileError& e) {
+    EXPECT_EQ(e.place().file, (shop / "bad.toml").string());
+    EXPECT_EQ(e.place().line, 2u);
+    EXPECT_EQ(e.place().column, 13u);
+    EXPECT_EQ(e.key(), "spacing");
+  }
+}
+
 TEST(caseFiles, stepsMayBeAutomatic) {
   const fs::path file = fs::path(TREACLE_CASES) / "dam-break-2d.toml";
   const std::string open[] = {"time.step=auto", "resolution=4"};

@@ -8,6 +8,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <vector>
 
 namespace treacle::test {
 namespace {
@@ -64,6 +66,36 @@ void expectSameSteps() {
 TEST(AnySimulation, StepsLikeTheSimulationThatItChose) {
   expectSameSteps<2>();
   expectSameSteps<3>();
+}
+
+/// All particles fall alike: what is given them stays on top of what gravity adds.
+TEST(AnySimulation, GivenVelocitiesAndPositionsAreGoneOnFrom) {
+  const Case c = fallingBlock(2);
+  AnySimulation simulation(c, particlesOf(c));
+  simulation.advance();
+  const FieldMemory x = simulation.field(FluidField::Position);
+  ASSERT_EQ(x.components, 2);
+  std::vector<double> place(2 * x.count), speed(2 * x.count, 0.5);
+  simulation.copyField(FluidField::Position, place.data());
+  for (std::size_t i = 0; i < x.count; ++i) place[2 * i] += 0.01;
+  simulation.giveFluid({place, speed, {}});
+  const StepReport report = simulation.advance();
+  // An implicit step: u = 0.5 + g dt, and x follows by u dt.
+  EXPECT_NEAR(report.diagnostics.maxSpeed, std::hypot(0.501, 0.49), 1e-6);
+  EXPECT_NEAR(report.diagnostics.frontX, *std::ranges::max_element(place) + 0.501e-3, 1e-8);
+}
+
+TEST(AnySimulation, RefusesToGiveTheFluidWhatCannotBe) {
+  const Case c = fallingBlock(2);
+  AnySimulation simulation(c, particlesOf(c));
+  const std::size_t n = simulation.field(FluidField::Velocity).count;
+  const std::vector<double> outside(2 * n, 1.0), few(2, 0.0), endless(2 * n, HUGE_VAL), warm(n, 300.0);
+  EXPECT_THROW(simulation.giveFluid({outside, {}, {}}), InputError);
+  EXPECT_THROW(simulation.giveFluid({{}, few, {}}), InputError);
+  EXPECT_THROW(simulation.giveFluid({{}, endless, {}}), InputError);
+  EXPECT_THROW(simulation.giveFluid({{}, {}, warm}), InputError);
+  EXPECT_EQ(simulation.field(FluidField::Temperature).data, nullptr);
+  EXPECT_EQ(simulation.advance().step, 1);
 }
 
 TEST(AnySimulation, RefusesWhatItCannotRun) {

@@ -1,0 +1,74 @@
+"""Particles at one instant, as files hold them."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from . import _treacle
+
+
+@dataclass(frozen=True)
+class Frame:
+    """One group of particles, fluid or walls, at one instant, in the order of their ids.
+
+    n is the number of particles, D that of dimensions. Fields that a file does not hold are None.
+    """
+
+    time: float
+    """[s]"""
+    dimensions: int
+    positions: np.ndarray
+    """(n, D) [m]"""
+    velocities: np.ndarray | None
+    """(n, D) [m/s]"""
+    pressures: np.ndarray | None
+    """(n,) [Pa]"""
+    number_densities: np.ndarray | None
+    """(n,) [-]"""
+    nearest_distances: np.ndarray | None
+    """(n,) to the nearest other particle, over the spacing [-]; of fluid"""
+    viscosities: np.ndarray | None
+    """(n,) [Pa s]; of fluid where a material has a rheology or a viscosity that follows the temperature"""
+    shear_rates: np.ndarray | None
+    """(n,) [1/s]; likewise"""
+    temperatures: np.ndarray | None
+    """(n,) [K]; of fluid in cases with heat"""
+    materials: np.ndarray | None
+    """(n,) indices into the materials of the case"""
+    bodies: np.ndarray | None
+    """(n,) indices into the bodies of the case"""
+    ids: np.ndarray | None
+    """(n,) names that particles keep for good"""
+
+    def __len__(self) -> int:
+        return len(self.positions)
+
+
+def frame_of(time: float, dimensions: int, arrays: dict[str, Any]) -> Frame:
+    return Frame(
+        time=time,
+        dimensions=dimensions,
+        positions=arrays["position"],
+        velocities=arrays["velocity"],
+        pressures=arrays["pressure"],
+        number_densities=arrays["number_density"],
+        nearest_distances=arrays["nearest_distance"],
+        viscosities=arrays["dynamic_viscosity"],
+        shear_rates=arrays["shear_rate"],
+        temperatures=arrays["temperature"],
+        materials=arrays["material"],
+        bodies=arrays["body"],
+        ids=arrays["id"],
+    )
+
+
+def read_frame(path: str | os.PathLike[str]) -> Frame:
+    """Reads a frame of `treacle run` or `Simulation.write_frame` (.vtp, .pvtp).
+
+    Errors: InputError for a file that is missing, foreign or damaged.
+    """
+    return frame_of(*_treacle.read_frame(os.fspath(path)))

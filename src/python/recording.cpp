@@ -1,0 +1,84 @@
+#include "recording.hpp"
+
+#include "machine.hpp"
+#include "run_summary.hpp"
+#include "treacle/core/error.hpp"
+#include "treacle/io/atomic_file.hpp"
+#include "treacle/io/case_reader.hpp"
+#include "treacle/io/free_surface.hpp"
+#include "treacle/step/solve_stages.hpp"
+
+#include <fmt/format.h>
+
+#include <exception>
+
+namespace treacle {
+namespace {
+
+RunDirectory made(const Session& session, const std::filesystem::path& directory, bool force) {
+  if (session.isRecorded()) throw InputError("output: another run directory is being written of the same steps");
+  if (session.theCase().output.surface && !hasFreeSurface())
+    throw InputError("output.surface: " + whyNoFreeSurface());
+  return RunDirectory::create(directory, force);
+}
+
+}  // namespace
+
+Recording::Recording(Session& session, const std::filesystem::path& directory, bool force)
+    : session_(session),
+      directory_(made(session, directory, force)),
+      log_(directory_.log(), true),
+      summary_(
+          startOfSummary(session.theCase(), session.onDevice(), session.device(), session.simulation().numbers())),
+      recorder_(
+          session.theCase(), directory_, log_, session.simulation().time(), true,
+          [this](Snapshot& s) {
+            session_.simulation().copyParticles(s.particles);
+            s.step = session_.simulation().step(), s.time = session_.simulation().time();
+          },
+          [this](std::uint64_t probes) { return session_.simulation().measure(probes); }) {
+  log_.info(fmt::format("treacle {} ({}) from Python, backend {}, {}, {} threads of the host", summary_.version,
+                        summary_.commit, summary_.backend, session.device(), summary_.threads));
+  log_.info("solver: " + solverText(solveStages(session.theCase()).front()));
+  writeFile(directory_.caseFile(), caseText(session.theCase()));
+  recorder_.begin();
+  session_.setRecorded(true);
+}
+
+void Recording::record() {
+  recorder_.record(session_.lastReport());
+  for (const std::string& text : session_.lastReport().warnings)
+    log_.warning(fmt::format("step {}: {}", session_.lastReport().step, text));
+}
+
+/// As much as is possible, whatever goes wrong on the way.
+void Recording::finish(const std::string& failure) {
+  session_.setRecorded(false);
+  std::exception_ptr first;
+  summary_.message = failure;
+  const auto attempt = [&](auto&& action) {
+    try {
+      action();
+    } catch (const std::exception& e) {
+      log_.error(e.what());
+      if (!first) first = std::current_exception();
+      if (summary_.message.empty()) summary_.message = e.what();
+    }
+  };
+  if (!failure.empty()) log_.error(failure);
+  if (session_.isLost()) recorder_.loseSimulation();
+  attempt([&] { recorder_.wait(); });
+  attempt([&] { recorder_.writeCheckpoint(); });
+  attempt([&] { recorder_.writeFrame(); });
+  attempt([&] { recorder_.drawPicture(); });
+  summary_.steps = session_.simulation().step(), summary_.time = session_.simulation().time();
+  recorder_.summarise(summary_);
+  if (!session_.isLost()) attempt([&] { summary_.peakDeviceMemory = session_.simulation().peakBytes(); });
+  summary_.wallSeconds = timer_.lap();
+  summary_.peakMemory = peakMemory();
+  summary_.done = summary_.message.empty();
+  attempt([&] { writeSummary(directory_.summary(), summary_); });
+  if (first) std::rethrow_exception(first);
+}
+
+}  // namespace treacle

@@ -1,0 +1,135 @@
+#include "session.hpp"
+
+#include "machine.hpp"
+#include "memory.hpp"
+#include "threads.hpp"
+#include "treacle/core/cuda.hpp"
+#include "treacle/core/error.hpp"
+#include "treacle/core/timer.hpp"
+#include "treacle/io/arrangement.hpp"
+#include "treacle/io/shape_files.hpp"
+#include "treacle/model/checks.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <utility>
+
+namespace treacle {
+namespace {
+
+/// Whether going on with another case leaves the particles what they are.
+bool hasSameParticles(const Case& c, Case next) {
+  const bool sameMaterials = std::ranges::equal(c.materials, next.materials, {}, &Material::name, &Material::name);
+  if (!sameMaterials || c.heat.has_value() != next.heat.has_value()) return false;
+  if (c.hasSurfaceTension() != next.hasSurfaceTension()) return false;
+  next.materials = c.materials, next.gravity = c.gravity, next.rheology = c.rheology, next.heat = c.heat;
+  next.solver = c.solver, next.watch = c.watch, next.title = c.title, next.resolution = c.resolution;
+  next.time.end = c.time.end, next.time.tolerance = c.time.tolerance, next.time.least = c.time.least;
+  if (c.time.stepsVary() && next.time.stepsVary())
+    next.time.step = c.time.step, next.time.courant = c.time.courant;
+  return next == c;
+}
+
+}  // namespace
+
+Session::Session(Case c, const Options& options) : case_(std::move(c)) {
+  startThreads(options.threads);
+  const std::optional<DeviceInfo> device = deviceFor(options.backend);
+  if (device) backend_ = BackendKind::Cuda;
+  device_ = device ? deviceText(*device) : processorName();
+  if (options.precision) case_.solver.precision = *options.precision;
+  requireRoomForParticles(case_);
+  MadeParticles made = MadeParticles::of(case_, warnings_);
+  for (std::string& warning : caseWarnings(case_)) warnings_.push_back(std::move(warning));
+  if (!device)
+    for (std::string& warning : cpuWarnings(case_)) warnings_.push_back(std::move(warning));
+  releaseShapeFiles(case_);
+  StartState start = options.checkpoint.empty() ? StartState{std::move(made.particles)}
+                                                : fittingState(case_, options.checkpoint, made);
+  requireMemory(case_, start.particles, device ? &*device : nullptr);
+  simulation_.emplace(case_, std::move(start.particles), backend_, start.step, start.time);
+
+  historyWriter_.emplace(&history_, HistoryColumns{.flow = case_.isOpen(), .timings = true});
+  if (case_.output.balance) balanceWriter_.emplace(&balance_, case_);
+  if (case_.hasRigid()) rigidWriter_.emplace(&rigid_, case_);
+  probeRecorder_.emplace(
+      case_, [this](const Probe&) { return &probes_.emplace_back(); }, start.time,
+      [this](std::uint64_t probes) { return simulation_->measure(probes); });
+  probeRecorder_->begin();
+}
+
+const StepReport& Session::advance() {
+  ++version_;
+  Timer timer;
+  try {
+    report_ = simulation_->advance();
+  } catch (const DeviceFailure&) {
+    isLost_ = true;
+    throw;
+  }
+  stepSeconds_ += timer.lap();
+  historyWriter_->append(historyRow(case_, report_));
+  if (balanceWriter_ && report_.balance) balanceWriter_->append(report_.step, report_.time, *report_.balance);
+  if (rigidWriter_) rigidWriter_->append(report_.step, report_.time, report_.rigid);
+  probeRecorder_->record(report_);
+  return report_;
+}
+
+void Session::giveFluid(const GivenFluid& given) { simulation_->giveFluid(given); }
+
+void Session::change(Case next) {
+  requireValid(next);
+  if (isRecorded_)
+    throw InputError("a run directory is being written, whose case is this one; expected a change between runs");
+  if (!hasSameParticles(case_, next))
+    throw InputError(
+        "between steps only constants of materials, gravity, [rheology], [heat], [solver], [watch] and the end of "
+        "the time can change, and the length of steps that vary; expected a case that differs in these alone");
+  AnySimulation changed(next, particles(), backend_, simulation_->step(), simulation_->time());
+  ++version_;
+  simulation_.emplace(std::move(changed));
+  next.probes = std::move(case_.probes);  // they are the same, and who writes them refers to these
+  case_ = std::move(next);
+}
+
+AnyParticles Session::particles() const {
+  AnyParticles host(case_.dimensions);
+  simulation_->copyParticles(host);
+  return host;
+}
+
+std::vector<double> Session::viscosities() const {
+  Frame fluid;
+  const auto copied = [&](FluidField field, auto value) {
+    std::vector<decltype(value)> values(simulation_->field(field).count);
+    simulation_->copyField(field, values.data());
+    return values;
+  };
+  const std::vector<std::uint8_t> materials = copied(FluidField::Material, std::uint8_t{});
+  fluid.material.assign(materials.begin(), materials.end());
+  fluid.shearRate = copied(FluidField::ShearRate, double{});
+  fluid.temperature = copied(FluidField::Temperature, double{});
+  fluid.shearRate.resize(materials.size());  // where no material has a rheology they do not matter
+  addViscosities(case_.materials, fluid);
+  return std::move(fluid.dynamicViscosity);
+}
+
+Frame Session::fluidFrame() const {
+  Frame fluid, walls;
+  particles().visit([&](const auto& p) {
+    fluid = makeFrame(p, 0, p.fluidCount, simulation_->time());
+    walls = makeFrame(p, p.fluidCount, p.count, simulation_->time());
+  });
+  addViscosities(case_.materials, fluid);
+  measureArrangement(fluid, walls, case_.domain, case_.spacing);
+  return fluid;
+}
+
+Frame Session::wallsFrame() const {
+  return particles().visit(
+      [&](const auto& p) { return makeFrame(p, p.fluidCount, p.count, simulation_->time()); });
+}
+
+std::vector<std::string> Session::takeWarnings() { return std::exchange(warnings_, {}); }
+
+}  // namespace treacle

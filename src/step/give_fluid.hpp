@@ -1,0 +1,116 @@
+#pragma once
+
+#include "flow_state.hpp"
+#include "treacle/core/copy_values.hpp"
+#include "treacle/core/device.hpp"
+#include "treacle/core/error.hpp"
+#include "treacle/search/cell_grid.hpp"
+#include "treacle/step/fluid_access.hpp"
+#include "treacle/step/move_particles.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <string>
+#include <type_traits>
+
+namespace treacle {
+
+template <int D, class Backend>
+FieldMemory fieldMemory(const Particles<D, Backend>& p, FluidField field) {
+  constexpr BackendKind where = std::is_same_v<Backend, Cuda> ? BackendKind::Cuda : BackendKind::Cpu;
+  const auto of = [&](const auto& buffer, int components, bool has = true) {
+    const std::size_t bytes = p.fluidCount * sizeof(*buffer.data());
+    return has ? FieldMemory{buffer.data(), p.fluidCount, bytes, components, where} : FieldMemory{.where = where};
+  };
+  switch (field) {
+    case FluidField::Position:
+      return of(p.position, D);
+    case FluidField::Velocity:
+      return of(p.velocity, D);
+    case FluidField::Pressure:
+      return of(p.pressure, 1);
+    case FluidField::NumberDensity:
+      return of(p.numberDensity, 1);
+    case FluidField::ShearRate:
+      return of(p.shearRate, 1, p.hasShearRates);
+    case FluidField::Temperature:
+      return of(p.temperature, 1, p.hasTemperatures);
+    case FluidField::Material:
+      return of(p.material, 1);
+    case FluidField::Body:
+      return of(p.body, 1);
+    case FluidField::Id:
+      return of(p.id, 1);
+  }
+  return {};
+}
+
+/// To the host; `host` has room for it.
+inline void copyField(const Context<Cpu>&, const FieldMemory& field, void* host) {
+  if (field.bytes > 0) std::memcpy(host, field.data, field.bytes);
+}
+inline void copyField(const Context<Cuda>& context, const FieldMemory& field, void* host) {
+  if (field.bytes > 0) copyBytesToHost(context, field.data, host, field.bytes);
+}
+
+/// What was given, of one kind, in the backend's memory.
+template <class T, class Backend>
+Buffer<T, Backend> broughtHere(Context<Backend>& context, std::span<const double> given, BackendKind where,
+                               std::uint32_t count, const char* what) {
+  constexpr std::size_t components = sizeof(T) / sizeof(double);
+  if (given.size() != count * components)
+    throw InputError(fmt::format("{}: expected {} numbers for each of {} particles, found {} numbers", what,
+                                 components, count, given.size()));
+  const std::span<const T> values(reinterpret_cast<const T*>(given.data()), count);
+  Buffer<T, Backend> here;
+  here.resize(context, count);
+  if constexpr (std::is_same_v<Backend, Cuda>) {
+    if (where == BackendKind::Cuda)
+      copyValues(context, values, here.data());
+    else
+      copyFromHost(context, values, here.data());
+  } else {
+    if (where == BackendKind::Cuda)
+      throw InputError(
+          fmt::format("{}: in the memory of a GPU, but the CPU computes; expected memory of the host", what));
+    copyValues(context, values, here.data());
+  }
+  return here;
+}
+
+/// Errors: InputError for a particle outside of an open domain, or a place that is none. Particles of periodic
+/// domains are brought back.
+template <int D, class Backend>
+void requireInside(Context<Backend>& context, const CellGrid<D>& grid, const Particles<D, Backend>& particles,
+                   Buffer<Vec<D>, Backend>& position) {
+  Buffer<Vec<D>, Backend> inside;
+  inside.resize(context, position.size());
+  const std::uint32_t out = moveParticles<D>(context, grid, 0, position.span(),
+                                             particles.velocity.span().first(position.size()), inside.span());
+  if (out != noParticle) {
+    Vec<D> x{};
+    copyToHost(context, std::span<const Vec<D>>(position).subspan(out, 1), &x);
+    std::string place;
+    for (int k = 0; k < D; ++k) place += fmt::format("{}{:g}", k > 0 ? ", " : "", x[k]);
+    throw InputError(
+        fmt::format("positions: expected places in the domain [m], found ({}) for particle {}", place, out));
+  }
+  position = std::move(inside);
+}
+
+/// Errors: InputError for a temperature that is not positive.
+template <class Backend>
+void requireWarm(Context<Backend>& context, const Buffer<double, Backend>& temperature) {
+  Buffer<double> host(temperature.size());
+  copyToHost(context, temperature.span(), host.data());
+  for (std::size_t i = 0; i < host.size(); ++i)
+    if (!(std::isfinite(host[i]) && host[i] > 0))
+      throw InputError(
+          fmt::format("temperatures: expected positive numbers [K], found {:g} for particle {}", host[i], i));
+}
+
+}  // namespace treacle

@@ -1,0 +1,197 @@
+"""Fields of the fluid: what is read of them, and what comes of giving them."""
+
+import numpy as np
+import pytest
+import treacle
+
+
+@pytest.fixture
+def sim(drop):
+    sim = treacle.Simulation(drop, backend="cpu")
+    sim.step()
+    return sim
+
+
+def test_shapes_and_types(sim):
+    n = len(sim.fluid)
+    assert n == pytest.approx(np.pi * 64, rel=0.05)
+    for name, shape, kind in (
+        ("positions", (n, 2), np.float64),
+        ("velocities", (n, 2), np.float64),
+        ("pressures", (n,), np.float64),
+        ("number_densities", (n,), np.float64),
+        ("viscosities", (n,), np.float64),
+        ("materials", (n,), np.uint8),
+        ("bodies", (n,), np.uint8),
+        ("ids", (n,), np.uint32),
+    ):
+        values = getattr(sim.fluid, name)
+        assert isinstance(values, np.ndarray)
+        assert (values.shape, values.dtype) == (shape, kind), name
+    assert sim.fluid.temperatures is None
+    assert sim.fluid.shear_rates is None
+    assert sorted(sim.fluid.ids) == list(range(n))
+    assert sim.materials == ["honey"]
+    assert sim.bodies == ["drop", "floor"]
+
+
+def test_three_dimensions(drop):
+    for table in (drop["domain"], *drop["body"]):
+        for key in ("min", "max", "center"):
+            if key in table:
+                table[key] = [*table[key], {"min": -0.016, "max": 0.016, "center": 0}[key]]
+    drop["dimensions"] = 3
+    drop["spacing"] = 2e-3
+    drop["gravity"]["acceleration"] = [0, -9.81, 0]
+    drop["domain"]["periodic"] = [False, False, True]
+    drop["body"][0]["radius"] = 0.006
+    del drop["probe"], drop["output"]
+    drop["body"][1]["min"][1] = drop["domain"]["min"][1] = -0.01
+    sim = treacle.Simulation(drop, backend="cpu")
+    sim.step()
+    n = len(sim.fluid)
+    assert sim.fluid.positions.shape == (n, 3)
+    assert sim.walls.positions.shape[1] == 3
+    x = sim.fluid.positions
+    x[:, 2] += 0.0325  # once around the domain and a little more
+    sim.fluid.positions = x
+    assert np.abs(sim.fluid.positions[:, 2]).max() <= 0.016
+    sim.step()
+
+
+def test_copies_outlive_steps_and_simulations(sim):
+    x = sim.fluid.positions
+    kept = x.copy()
+    sim.step()
+    del sim
+    np.testing.assert_array_equal(x, kept)
+    x[:] = 0  # nobody else's
+
+
+def test_walls_are_those_of_the_case(sim):
+    walls = sim.walls
+    assert len(walls) == 60 * 5
+    assert walls.positions[:, 1].max() < 0
+    assert walls.temperatures is None
+
+
+def test_velocities_are_taken(sim):
+    sim.fluid.velocities = np.tile([0.1, 0.0], (len(sim.fluid), 1))
+    np.testing.assert_array_equal(sim.fluid.velocities[7], [0.1, 0.0])
+    sim.step()
+    assert sim.fluid.velocities[:, 0].mean() == pytest.approx(0.1, rel=0.2)
+    sim.fluid.velocities = [0, 0.5]
+    np.testing.assert_array_equal(sim.fluid.velocities[-1], [0, 0.5])
+
+
+def test_given_state_is_computed_as_a_start_is(drop):
+    """A drop that is given velocities before the first step does what one that starts with them does."""
+    drop["body"][0]["center"] = [0, 0.015]
+    given = treacle.Simulation(drop, backend="cpu")
+    given.fluid.velocities = [0.2, -0.1]
+    drop["body"][0]["velocity"] = [0.2, -0.1]
+    started = treacle.Simulation(drop, backend="cpu")
+    for _ in range(12):
+        assert given.step().iterations == started.step().iterations
+    np.testing.assert_array_equal(given.fluid.positions, started.fluid.positions)
+    np.testing.assert_array_equal(given.fluid.velocities, started.fluid.velocities)
+
+
+def test_positions_are_taken(drop):
+    """A drop that is put somewhere else falls there, and meets the floor there."""
+    drop["domain"]["max"][1] = drop["body"][0]["center"][1] = 0.2
+    drop["domain"]["max"][1] = 0.25
+    sim = treacle.Simulation(drop, backend="cpu")
+    sim.step()
+    lifted = sim.fluid.positions
+    sim.fluid.positions = lifted - [0, 0.191]
+    assert sim.fluid.positions[:, 1].min() > 0
+    sim.fluid.velocities = 0
+    for _ in range(20):
+        sim.step()
+    assert 0 < sim.fluid.positions[:, 1].min() < 2e-3  # far from where walls were near at the start
+    assert sim.history["front_x"][-1] < 0.012
+
+
+def test_bad_values_change_nothing(sim):
+    n = len(sim.fluid)
+    x, u = sim.fluid.positions, sim.fluid.velocities
+    far, none = x.copy(), x.copy()
+    far[3, 0], none[5, 1] = 7, np.nan
+    for values, message in (
+        ({"positions": far}, r"positions: expected places in the domain \[m\], found \(7, .*\) for particle 3"),
+        ({"positions": none}, "for particle 5"),
+        ({"positions": x[:-1]}, rf"positions: expected an array of shape \({n}, 2\), found \({n - 1}, 2\)"),
+        ({"velocities": u.T}, "velocities: expected an array of shape"),
+        ({"velocities": u * np.inf}, "velocities: expected finite numbers"),
+        ({"velocities": "fast"}, "velocities: expected an array of numbers"),
+        ({"temperatures": 300}, "temperatures: the case has no heat"),
+        ({"velocities": u + 1, "positions": far}, "positions"),
+    ):
+        with np.errstate(invalid="ignore"), pytest.raises(treacle.InputError, match=message):
+            sim.fluid.set(**values)
+    np.testing.assert_array_equal(sim.fluid.positions, x)
+    np.testing.assert_array_equal(sim.fluid.velocities, u)
+    sim.step()
+
+
+def test_temperatures_are_taken(warm_drop):
+    sim = treacle.Simulation(warm_drop, backend="cpu")
+    sim.step()
+    cold = sim.fluid.viscosities.mean()
+    assert set(np.round(sim.fluid.temperatures)) == {300.0}
+    sim.fluid.temperatures = np.full(len(sim.fluid), 320.0)
+    # Arrhenius: exp(E / R (1/T - 1/T_0))
+    factor = np.exp(5e4 / 8.314462618 * (1 / 320 - 1 / 300))
+    np.testing.assert_allclose(sim.fluid.viscosities, 10 * factor, rtol=1e-9)
+    assert sim.fluid.viscosities.mean() < 0.4 * cold
+    sim.step()
+    assert sim.fluid.temperatures.mean() == pytest.approx(320, abs=1)
+    for bad in (0, -3, np.nan):
+        with pytest.raises(treacle.InputError, match=r"temperatures: expected positive numbers \[K\]"):
+            sim.fluid.temperatures = bad
+
+
+def test_viscosities_are_those_of_materials(sim, warm_drop):
+    n = len(sim.fluid)
+    sim.fluid.viscosities = np.full(n, 20.0)
+    assert set(sim.fluid.viscosities) == {20.0}
+    sim.fluid.viscosities = 30
+    assert "dynamic_viscosity = 30" in sim.case_text
+    sim.step()
+    with pytest.raises(treacle.InputError, match="one value for all particles of material 'honey', found 0 to"):
+        sim.fluid.viscosities = np.arange(n)
+    with pytest.raises(treacle.InputError, match="not less than 0"):
+        sim.fluid.viscosities = -1
+    warm = treacle.Simulation(warm_drop, backend="cpu")
+    with pytest.raises(treacle.InputError, match="follow from shear rates and temperatures"):
+        warm.fluid.viscosities = 20
+
+
+def test_several_materials(drop):
+    drop["material"].append({**drop["material"][0], "name": "syrup", "dynamic_viscosity": 2})
+    drop["body"].insert(
+        1, {**drop["body"][0], "name": "other", "material": "syrup", "center": [0.018, 0.01]}
+    )
+    sim = treacle.Simulation(drop, backend="cpu")
+    assert set(sim.fluid.viscosities) == {2.0, 10.0}
+    sim.fluid.viscosities = 2 * sim.fluid.viscosities
+    assert set(sim.fluid.viscosities) == {4.0, 20.0}
+    np.testing.assert_array_equal(sim.fluid.viscosities == 4, sim.fluid.materials == 1)
+    np.testing.assert_array_equal(sim.fluid.bodies, np.where(sim.fluid.materials == 1, 1, 0))
+
+
+def test_array_in_place_refuses_when_it_is_out_of_date(sim):
+    """The class is that of GPUs; where the memory is does not matter to it."""
+    array = treacle.DeviceArray(sim._session, "positions")
+    there = np.from_dlpack(array)
+    assert there.__array_interface__["data"][0] == sim._session.field_address("positions")[0]
+    np.testing.assert_array_equal(there, sim.fluid.positions)
+    np.testing.assert_array_equal(np.asarray(array), sim.fluid.positions)
+    assert (array.shape, array.dtype) == (sim.fluid.positions.shape, np.float64)
+    sim.step()
+    for use in (lambda: array.shape, array.get, array.__dlpack__, lambda: np.asarray(array)):
+        with pytest.raises(RuntimeError, match="out of date"):
+            use()
+    with pytest.raises(AttributeError):
+        treacle.DeviceArray(sim._session, "positions").__cuda_array_interface__
