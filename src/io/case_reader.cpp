@@ -27,7 +27,7 @@ Case readCase(const std::filesystem::path& path, std::span<const std::string> ov
   TableReader top(c, sections, Section(document, "the case file"), {});
   top.read(c);
   std::optional<Width> width;
-  top({"width"}, width);
+  top(keys::widthKey, width);
   c.spacing /= c.resolution;
   if (!c.time.automatic) c.time.step /= c.resolution;
   try {
