@@ -6,6 +6,7 @@
 #include "treacle/core/cuda.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/core/version.hpp"
+#include "treacle/io/case_reference.hpp"
 #include "treacle/model/names.hpp"
 
 #include <fmt/format.h>
@@ -269,6 +270,12 @@ int execute(int argc, char** argv, const Communicator& job) {
   addCase(*checkApp, check);
   checkApp->callback([&check] { checkCommand(check); });
   app.add_subcommand("info", "Version, build options and devices")->callback([] { infoCommand(); });
+  app.add_subcommand("keys", "Print all keys of case files (Markdown)")->callback([] {
+    print("{}", keyReference());
+  });
+  app.add_subcommand("schema", "Print the JSON schema of case files, for editors")->callback([] {
+    print("{}", caseSchema());
+  });
   addPlot(app, plot);
   addSurface(app, surface);
   addCompare(app, compare, agree);
