@@ -1,5 +1,6 @@
 #include "commands.hpp"
 #include "interrupt.hpp"
+#include "manual.hpp"
 #include "memory.hpp"
 #include "print.hpp"
 #include "threads.hpp"
@@ -34,6 +35,7 @@ constexpr Named<PictureField> fieldNames[] = {{"speed", PictureField::Speed},
                                               {"dynamic_viscosity", PictureField::DynamicViscosity},
                                               {"shear_rate", PictureField::ShearRate}};
 
+constexpr Named<Shell> shellNames[] = {{"bash", Shell::Bash}, {"zsh", Shell::Zsh}, {"fish", Shell::Fish}};
 constexpr Named<SurfaceFormat> formatNames[] = {{"vtp", SurfaceFormat::Vtp}, {"ply", SurfaceFormat::Ply}};
 
 template <class E>
@@ -147,6 +149,32 @@ void addRun(CLI::App& app, RunOptions& options, const Communicator& job) {
   run->callback([&options, &job] { runCommand(options, job); });
 }
 
+void addCheck(CLI::App& app, CheckOptions& options) {
+  CLI::App* check =
+      app.add_subcommand("check", "Check a case; prints it with all keys, counts, stability and advice");
+  addCase(*check, options.input);
+  check->add_flag("--estimate", options.estimate, "Make some steps and tell how long all of them will take");
+  addChoice<BackendChoice>(*check, "--backend", backendNames, options.backend,
+                           "Of --estimate; auto: a GPU where there is one, else the CPU");
+  check->add_option("--threads", options.threads, "Number of threads")->type_name("N")->check(threadNumber());
+  check->callback([&options] { checkCommand(options); });
+}
+
+/// Commands that print what the program knows of its cases and of itself.
+void addTexts(CLI::App& app, Shell& shell) {
+  app.add_subcommand("keys", "Print all keys of case files as Markdown")->callback([] {
+    printText(keyReference());
+  });
+  app.add_subcommand("schema", "Print a JSON schema of case files, for editors")->callback([] {
+    printText(caseSchema());
+  });
+  CLI::App* completion = app.add_subcommand("completion", "Print a script that completes commands in a shell");
+  addChoice<Shell>(*completion, "SHELL", shellNames, shell, "The shell");
+  completion->get_option("SHELL")->required();
+  completion->callback([&app, &shell] { printText(completionScript(app, shell)); });
+  app.add_subcommand("man", "Print the manual page")->callback([&app] { printText(manPage(app)); });
+}
+
 void addConvergence(CLI::App& app, ConvergenceOptions& options) {
   CLI::App* command = app.add_subcommand("convergence", "Compare solvers on one linear system of a case");
   addCase(*command, options.input);
@@ -258,7 +286,7 @@ int execute(int argc, char** argv, const Communicator& job) {
   app.set_version_flag("--version", fmt::format("treacle {} ({})", buildInfo().version, buildInfo().commit));
   app.footer("Exit codes: 0 done, 1 compared runs differ, 2 bad input, 3 the run failed.");
   RunOptions run;
-  CaseOptions check;
+  CheckOptions check;
   PlotOptions plot;
   SurfaceOptions surface;
   CompareOptions compare;
@@ -266,16 +294,10 @@ int execute(int argc, char** argv, const Communicator& job) {
   ImportOptions importOptions;
   bool agree = true;
   addRun(app, run, job);
-  CLI::App* checkApp = app.add_subcommand("check", "Check a case; prints it with all keys, counts and stability");
-  addCase(*checkApp, check);
-  checkApp->callback([&check] { checkCommand(check); });
+  addCheck(app, check);
   app.add_subcommand("info", "Version, build options and devices")->callback([] { infoCommand(); });
-  app.add_subcommand("keys", "Print all keys of case files (Markdown)")->callback([] {
-    print("{}", keyReference());
-  });
-  app.add_subcommand("schema", "Print the JSON schema of case files, for editors")->callback([] {
-    print("{}", caseSchema());
-  });
+  Shell shell = Shell::Bash;
+  addTexts(app, shell);
   addPlot(app, plot);
   addSurface(app, surface);
   addCompare(app, compare, agree);
@@ -286,8 +308,9 @@ int execute(int argc, char** argv, const Communicator& job) {
     app.parse(argc, argv);
     if (app.get_subcommands().empty())
       throw InputError(
-          "expected a command: run, check, plot, surface, compare, convergence, import or info; treacle --help "
-          "tells more");
+          "expected a command: run, check, plot, surface, compare, convergence, import, keys, schema, completion, "
+          "man or "
+          "info; treacle --help tells more");
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return app.exit(e);  // help and version
     return report(fmt::format("{}; --help tells more", e.what()), ExitCode::BadInput);
