@@ -11,28 +11,43 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
+#include <cstddef>
+#include <numeric>
+#include <string>
 #include <utility>
+#include <vector>
 
 namespace treacle {
 namespace {
 
-constexpr int warmUp = 2;             // steps that do not count: memory is taken, and solves begin without a guess
-constexpr int fewest = 5, most = 50;  // steps that do
-constexpr double enough = 5;          // seconds that they take if there are more than the fewest
+constexpr int warmUp = 2;  // steps that do not count: memory is taken, and solves begin without a guess
+constexpr std::size_t fewest = 5, most = 50;  // steps that do
+constexpr double enough = 5;                  // seconds that they take if there are more than the fewest
 // What whole runs took per step, over the mean of the steps that were timed (docs/choosing.md).
 constexpr double leastFactor = 0.6, mostFactor = 2;
 
+/// Steps that were timed.
 struct Timed {
-  int steps = 0, iterations = 0, rejected = 0;
-  double seconds = 0, shortest = 0, longest = 0;
+  std::vector<double> seconds, particles;  // of each; the latter of fluid
+  int iterations = 0;
 
-  void add(const StepReport& report, double wall) {
-    shortest = steps == 0 ? wall : std::min(shortest, wall), longest = std::max(longest, wall);
-    ++steps, seconds += wall, iterations += report.iterations, rejected += report.rejected;
-  }
-  double mean() const { return seconds / steps; }
+  double sum() const { return std::accumulate(seconds.begin(), seconds.end(), 0.0); }
 };
+
+/// Of the later half: solves become easier from step to step, while first guesses become better.
+double laterMean(const std::vector<double>& values) {
+  const std::size_t half = values.size() / 2;
+  return std::accumulate(values.begin() + static_cast<std::ptrdiff_t>(half), values.end(), 0.0) /
+         static_cast<double>(values.size() - half);
+}
+
+/// By how much more particles the coming steps have than those that were timed, where fluid comes in as it has.
+double growth(const Case& c, const StepReport& now, const Timed& timed) {
+  if (!now.flow || now.time <= 0) return 1;
+  const double net = static_cast<double>(now.flow->in.particles) - static_cast<double>(now.flow->out.particles);
+  const double coming = std::max(0.0, net) / now.time * (c.time.end - now.time);
+  return (timed.particles.back() + coming / 2) / std::max(1.0, laterMean(timed.particles));
+}
 
 /// Steps from now on.
 double stepsLeft(const Case& c, const AnySimulation& simulation, double length) {
@@ -47,42 +62,47 @@ void printEstimate(const Case& c, AnyParticles particles, BackendKind backend) {
   AnySimulation simulation(c, std::move(particles), backend);
   double before = timer.lap();
   Timed timed;
-  double length = c.time.step;
+  StepReport report;
   const auto atEnd = [&] { return c.atEnd(simulation.step(), simulation.time()); };
-  while (!atEnd() && (timed.steps < fewest || (timed.steps < most && timed.seconds < enough))) {
+  const auto timedEnough = [&] {
+    const std::size_t steps = timed.seconds.size();
+    return steps >= most || (steps >= fewest && timed.sum() >= enough);
+  };
+  while (!atEnd() && !timedEnough()) {
     const bool counts = simulation.step() >= warmUp;
-    StepReport report;
     try {
       report = simulation.advance();
     } catch (const RunError& error) {
       throw RunError(
           fmt::format("after step {} (t = {:.6g} s): {}", simulation.step(), simulation.time(), error.what()));
     }
-    length = report.timeStep;
     const double wall = timer.lap();
-    if (counts)
-      timed.add(report, wall);
-    else
+    if (!counts) {
       before += wall;
+      continue;
+    }
+    timed.seconds.push_back(wall), timed.iterations += report.iterations;
+    timed.particles.push_back(static_cast<double>(simulation.numbers().fluid));
   }
   if (atEnd()) {
     print("# run time: {}, without output; these are all {} steps of the case\n",
-          durationText(before + timed.seconds), simulation.step());
+          durationText(before + timed.sum()), simulation.step());
     return;
   }
-  const double left = stepsLeft(c, simulation, c.time.stepsVary() ? length : c.time.step);
-  const double done = before + timed.seconds, whole = done + left * timed.mean();
-  print("# timed: {} steps of {:.3g} s ({:.2g} to {:.2g}), {:.1f} iterations each, after {:.2g} s for the start\n",
-        timed.steps, timed.mean(), timed.shortest, timed.longest,
-        static_cast<double>(timed.iterations) / timed.steps, before);
+  const double left = stepsLeft(c, simulation, report.timeStep), perStep = laterMean(timed.seconds);
+  const double done = before + timed.sum(), rest = left * perStep * growth(c, report, timed);
+  const auto [shortest, longest] = std::ranges::minmax(timed.seconds);
+  print("# timed: {} steps of {:.2g} to {:.2g} s, {:.3g} s in the later half, {:.1f} iterations each\n",
+        timed.seconds.size(), shortest, longest, perStep,
+        timed.iterations / static_cast<double>(timed.seconds.size()));
+  const std::string machine =
+      backend == BackendKind::Cuda ? "the GPU" : fmt::format("{} threads", omp_get_max_threads());
   print(
-      "# run time: about {} on {} for {}{:.0f} steps, without output; {} to {} as solves become harder or "
-      "easier\n",
-      durationText(whole),
-      backend == BackendKind::Cuda ? "the GPU" : fmt::format("{} threads", omp_get_max_threads()),
-      c.time.stepsVary() ? "some " : "", static_cast<double>(simulation.step()) + left,
-      durationText(done + leastFactor * left * timed.mean()),
-      durationText(done + mostFactor * left * timed.mean()));
+      "# run time: about {} on {} for {}{:.0f} steps, without output; from {} to {} as solves become easier or "
+      "harder\n",
+      durationText(done + rest), machine, c.time.stepsVary() ? "some " : "",
+      static_cast<double>(simulation.step()) + left, durationText(done + leastFactor * rest),
+      durationText(done + mostFactor * rest));
 }
 
 }  // namespace treacle
