@@ -31,7 +31,11 @@ void printResolution(const Case& c, const FlowScales& flow) {
 }
 
 void printFluid(const FluidNumbers& n, const FlowScales& flow, bool elastic) {
-  print("# fluid '{}': Reynolds number {:.3g} at {:.3g} m/s", n.material, n.reynolds, n.speed);
+  print("# fluid '{}': ", n.material);
+  if (n.viscousTime > 0)
+    print("Reynolds number {:.3g} at {:.3g} m/s", n.reynolds, n.speed);
+  else
+    print("no viscosity, {:.3g} m/s", n.speed);
   if (n.viscousTime > 0) print(", viscous time {:.3g} s", n.viscousTime);
   if (elastic && n.ratio > 0) print(", lambda / mu = {:.4g}", n.ratio);
   if (n.compression > 0)

@@ -255,6 +255,14 @@ void addImport(CLI::App& app, ImportOptions& options) {
   command->callback([&options] { importCommand(options); });
 }
 
+/// "run, check, plot"
+std::string commandList(const CLI::App& app) {
+  std::string list;
+  for (const CommandText& command : commandTexts(app))
+    if (!command.name.empty()) list += (list.empty() ? "" : ", ") + command.name;
+  return list;
+}
+
 int report(const std::string& text, ExitCode code) {
   printError(fmt::format("treacle: error: {}\n", text));
   return static_cast<int>(code);
@@ -295,22 +303,19 @@ int execute(int argc, char** argv, const Communicator& job) {
   bool agree = true;
   addRun(app, run, job);
   addCheck(app, check);
-  app.add_subcommand("info", "Version, build options and devices")->callback([] { infoCommand(); });
-  Shell shell = Shell::Bash;
-  addTexts(app, shell);
   addPlot(app, plot);
   addSurface(app, surface);
   addCompare(app, compare, agree);
   addConvergence(app, convergence);
   addImport(app, importOptions);
+  Shell shell = Shell::Bash;
+  addTexts(app, shell);
+  app.add_subcommand("info", "Version, build options and devices")->callback([] { infoCommand(); });
 
   try {
     app.parse(argc, argv);
     if (app.get_subcommands().empty())
-      throw InputError(
-          "expected a command: run, check, plot, surface, compare, convergence, import, keys, schema, completion, "
-          "man or "
-          "info; treacle --help tells more");
+      throw InputError(fmt::format("expected a command: {}; treacle --help tells more", commandList(app)));
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return app.exit(e);  // help and version
     return report(fmt::format("{}; --help tells more", e.what()), ExitCode::BadInput);
