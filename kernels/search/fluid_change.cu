@@ -1,8 +1,7 @@
 #include "treacle/search/fluid_change.hpp"
 
 #include "core/device_link.hpp"
-#include "core/launch.hpp"
-#include "core/scan.hpp"
+#include "core/list_where.cuh"
 #include "search/migration.cuh"
 #include "treacle/core/copy_values.hpp"
 
@@ -14,25 +13,12 @@
 namespace treacle {
 namespace {
 
-/// The fluid particles that stay, ascending; their number. One thread per particle; reads its mark and, of those
-/// that stay, how many do before it; writes its index there; atomics no.
+/// The fluid particles that stay, ascending; their number.
 std::uint32_t listKept(Context<Cuda>& context, std::span<const std::uint8_t> gone, std::uint32_t count,
                        Buffer<std::uint32_t, Cuda>& kept) {
   kept.resize(context, count);
-  if (gone.empty()) {
-    forEach(context, count,
-            [kept = kept.data()] __device__(std::size_t i) { kept[i] = static_cast<std::uint32_t>(i); });
-    return count;
-  }
-  Buffer<std::uint32_t, Cuda> place(context, std::size_t{count} + 1);  // the last one: of all
-  forEach(context, std::size_t{count} + 1, [gone, count, place = place.data()] __device__(std::size_t i) {
-    place[i] = i < count && gone[i] == 0 ? 1 : 0;
-  });
-  sumBefore(context, place.span());
-  forEach(context, count, [gone, place = place.data(), kept = kept.data()] __device__(std::size_t i) {
-    if (gone[i] == 0) kept[place[i]] = static_cast<std::uint32_t>(i);
-  });
-  return valueOnHost(context, place.data() + count);
+  return listWhere(
+      context, 0, count, [gone] __device__(std::uint32_t i) { return gone.empty() || gone[i] == 0; }, kept.data());
 }
 
 /// For so much fluid, before anything has changed: where memory gives out all particles are still there.

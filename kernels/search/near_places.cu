@@ -1,29 +1,11 @@
 #include "treacle/search/near_places.hpp"
 
 #include "core/launch.hpp"
-#include "core/scan.hpp"
+#include "core/list_where.cuh"
 #include "treacle/core/copy_values.hpp"
 
 namespace treacle {
 namespace {
-
-/// Appends the particles of [begin, begin + count) that are in the surroundings to `index`, which has room for
-/// `listed` and them, ascending; returns how many the list has then. One thread per particle; reads its position
-/// and how many come before it, writes its index; atomics no.
-template <int D>
-std::uint32_t listNear(Context<Cuda>& context, const Surroundings<D>& near, const Vec<D>* position,
-                       std::uint32_t begin, std::uint32_t count, std::uint32_t* index, std::uint32_t listed) {
-  Buffer<std::uint32_t, Cuda> place(context, std::size_t{count} + 1);  // the last one: of all
-  forEach(context, std::size_t{count} + 1,
-          [near, position = position + begin, count, place = place.data()] __device__(std::size_t i) {
-            place[i] = i < count && near.holds(position[i]) ? 1 : 0;
-          });
-  sumBefore(context, place.span());
-  forEach(context, count, [begin, place = place.data(), index = index + listed] __device__(std::size_t i) {
-    if (place[i] != place[i + 1]) index[place[i]] = begin + static_cast<std::uint32_t>(i);
-  });
-  return listed + valueOnHost(context, place.data() + count);
-}
 
 /// The values of these particles. One thread for each: reads its index and value, writes the value.
 template <class T>
@@ -41,9 +23,11 @@ template <int D>
 void copyNear(Context<Cuda>& context, const Surroundings<D>& near, const Particles<D, Cuda>& particles,
               std::uint32_t walls, Particles<D>& host) {
   Buffer<std::uint32_t, Cuda> index(context, std::size_t{particles.fluidCount} + walls);
-  const Vec<D>* position = particles.position.data();
-  const std::uint32_t fluid = listNear(context, near, position, 0, particles.fluidCount, index.data(), 0);
-  const std::uint32_t all = listNear(context, near, position, particles.wallBegin(), walls, index.data(), fluid);
+  const auto isNear = [near, position = particles.position.data()] __device__(std::uint32_t i) {
+    return near.holds(position[i]);
+  };
+  const std::uint32_t fluid = listWhere(context, 0, particles.fluidCount, isNear, index.data());
+  const std::uint32_t all = listWhere(context, particles.wallBegin(), walls, isNear, index.data(), fluid);
   host.resize(numbersOfSome(particles, fluid, all - fluid));
   const auto take = [&](std::uint32_t count) {
     return [&, count](const auto& from, auto& to) {

@@ -217,11 +217,10 @@ class Schema {
     for (std::size_t k = 0; k < marked.size(); ++k)
       if (marked[k]) words.push_back(a.values[k]);
     json is{{"properties", {{a.name, {{"enum", words}}}}}, {"required", json::array({a.name})}};
-    if (a.values.front() == "number") {
-      is["properties"][a.name] = {{"const", "auto"}};
-      if (marked[0]) is = {{"not", is}};
-    }
-    return is;
+    if (a.values.front() == "number") is["properties"][a.name] = {{"const", "auto"}};
+    if (a.values.front() == "false") is["properties"][a.name] = {{"const", true}};
+    const bool isDefault = a.values.front() == "number" || a.values.front() == "false";
+    return isDefault && marked[0] ? json{{"not", is}} : is;
   }
 
   /// Which keys are required, are not there, or are something else, by other keys of the same table.

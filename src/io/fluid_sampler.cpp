@@ -2,10 +2,10 @@
 
 #include "treacle/core/block.hpp"
 #include "treacle/model/probe.hpp"
+#include "treacle/model/smoothing_kernel.hpp"
 
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 namespace treacle {
 namespace {
@@ -15,13 +15,10 @@ constexpr double none = std::numeric_limits<double>::quiet_NaN();
 /// Particles are cubes: at the corner of one its centre is 0.87 spacings away.
 constexpr double nearestInFluid = 1;
 
-/// Wendland's C2 function over probeReach; its integral over the space is 1, lengths being in spacings.
-double wendland(double distance, int dimensions) {
-  const double q = distance / probeReach, r = probeReach;
-  if (q >= 1) return 0;
-  const double scale = dimensions == 2 ? 7 / (std::numbers::pi * r * r) : 21 / (2 * std::numbers::pi * r * r * r);
-  const double p = 1 - q;
-  return scale * p * p * p * p * (1 + 4 * q);
+/// Over probeReach; its integral over the space is 1, lengths being in spacings.
+double weightAt(double distance, int dimensions) {
+  const auto kernel = [&]<int D>() { return SmoothingKernel<D>::make(KernelKind::WendlandC2, probeReach / 2); };
+  return dimensions == 2 ? kernel.operator()<2>().value(distance) : kernel.operator()<3>().value(distance);
 }
 
 }  // namespace
@@ -43,7 +40,7 @@ std::vector<FluidSampler::Neighbour> FluidSampler::neighbours(const Points& poin
     const Vec<3> image = x + shift;
     points.tree.radiusSearch(image.v, reach * reach, matches, {});
     for (const auto& [index, distance2] : matches)
-      if (const double weight = wendland(std::sqrt(distance2) / spacing_, dimensions_); weight > 0)
+      if (const double weight = weightAt(std::sqrt(distance2) / spacing_, dimensions_); weight > 0)
         found.push_back({index, (1 / spacing_) * (points.set.points[index] - image), weight});
   }
   return found;

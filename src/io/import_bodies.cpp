@@ -4,21 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <memory>
 #include <utility>
 
 namespace treacle {
 namespace {
-
-/// Fluid particles of one type that start with so many different velocities at most become a body for each.
-constexpr std::size_t mostVelocities = 16;
-
-/// Particles of one body.
-struct Group {
-  Vec<3> velocity{};
-  std::vector<const MphParticle*> particles;
-};
 
 class BodyMaker {
  public:
@@ -40,16 +32,17 @@ class BodyMaker {
     if (g_.particles.empty()) return;
     for (int type = 0; type < mphTypes; ++type) {
       if (materialOf_[static_cast<std::size_t>(type)] < 0) continue;
-      const std::vector<Group> groups = groupsOf(type);
-      for (std::size_t k = 0; k < groups.size(); ++k) {
-        const std::string suffix =
-            groups.size() == 1 ? nameOfMphType(type) : fmt::format("{}-{}", nameOfMphType(type), k + 1);
-        Body& body = add(type, suffix + "-particles", groups[k].velocity, g_.path);
-        body.shape.kind = ShapeKind::Particles;
-        body.shape.file.path = fmt::format("{}-{}.csv", name_, suffix);
-        body.shape.file.places.value = places(groups[k]);
-        imported_.tables.push_back({body.shape.file.path, tableText(*body.shape.file.places.value)});
-      }
+      const std::string typeName{nameOfMphType(type)};
+      GivenParticles given = particlesOf(type);
+      const bool same = std::ranges::adjacent_find(given.velocity, std::not_equal_to{}) == given.velocity.end();
+      const Vec<3> velocity = same && !given.velocity.empty() ? given.velocity[0] : Vec<3>{};
+      if (same) given.velocity.clear();
+      Body& body = add(type, typeName + "-particles", velocity, g_.path);
+      body.shape.kind = ShapeKind::Particles;
+      body.shape.file.path = fmt::format("{}-{}.csv", name_, typeName);
+      body.fileVelocities = !given.velocity.empty();
+      imported_.tables.push_back({body.shape.file.path, tableText(given)});
+      body.shape.file.particles.value = std::make_shared<const GivenParticles>(std::move(given));
     }
   }
 
@@ -122,42 +115,32 @@ class BodyMaker {
                        type, type, p_.path));
   }
 
-  std::vector<Group> groupsOf(int type) {
-    std::vector<Group> groups;
-    Group all;
+  /// Of one type. Walls have no velocities of their own.
+  GivenParticles particlesOf(int type) {
+    GivenParticles given;
     for (const MphParticle& particle : g_.particles) {
       if (particle.type != type) continue;
-      all.particles.push_back(&particle);
-      all.velocity += particle.velocity;
-      if (groups.size() > mostVelocities) continue;
-      auto group = std::ranges::find(groups, particle.velocity, &Group::velocity);
-      if (group == groups.end()) group = groups.insert(groups.end(), Group{particle.velocity, {}});
-      group->particles.push_back(&particle);
+      given.position.push_back(inPlane(particle.position));
+      if (type < firstMphWall)
+        given.velocity.push_back(flattened(particle.velocity, fmt::format("{}: the velocity", g_.path)));
     }
-    if (type < firstMphWall && groups.size() <= mostVelocities) return groups;
-    all.velocity *= 1.0 / static_cast<double>(all.particles.size());
-    if (type < firstMphWall)
-      note(
-          fmt::format("{}: the particles of type {} have more than {} different velocities, of which the mean is "
-                      "taken; that of each one is lost",
-                      g_.path, type, mostVelocities));
-    return {std::move(all)};
+    return given;
   }
 
-  std::shared_ptr<const std::vector<Vec<3>>> places(const Group& group) const {
-    std::vector<Vec<3>> x;
-    x.reserve(group.particles.size());
-    for (const MphParticle* particle : group.particles) x.push_back(inPlane(particle->position));
-    return std::make_shared<const std::vector<Vec<3>>>(std::move(x));
-  }
-
-  std::string tableText(const std::vector<Vec<3>>& places) const {
+  std::string tableText(const GivenParticles& given) const {
     const bool plane = imported_.value.dimensions == 2;
-    std::string text = plane ? "x,y\n" : "x,y,z\n";
+    std::string text = plane ? "x,y" : "x,y,z";
+    if (!given.velocity.empty()) text += plane ? ",vx,vy" : ",vx,vy,vz";
     const auto end = std::back_inserter(text);
-    for (const Vec<3>& x : places)
-      plane ? fmt::format_to(end, "{},{}\n", x[0], x[1]) : fmt::format_to(end, "{},{},{}\n", x[0], x[1], x[2]);
-    return text;
+    const auto add = [&](const Vec<3>& x, std::string_view before) {
+      fmt::format_to(end, "{}{},{}", before, x[0], x[1]);
+      if (!plane) fmt::format_to(end, ",{}", x[2]);
+    };
+    for (std::size_t k = 0; k < given.position.size(); ++k) {
+      add(given.position[k], "\n");
+      if (!given.velocity.empty()) add(given.velocity[k], ",");
+    }
+    return text + '\n';
   }
 
   ImportedCase& imported_;

@@ -36,6 +36,7 @@ std::string bodyText(const Case& c, const Body& b) {
     text += fmt::format("min = {}\nmax = {}\n", vectorText(b.shape.min, d), vectorText(b.shape.max, d));
   else
     text += fmt::format("file = {}\n", tomlString(b.shape.file.path));
+  if (b.fileVelocities) text += "file_velocities = true\n";
   if (b.velocity != Vec<3>{}) text += fmt::format("velocity = {}\n", vectorText(b.velocity, d));
   if (b.rotation)
     text +=

@@ -86,7 +86,9 @@ template <>
 struct OwnAxes<Body> {
   static std::vector<OwnAxis<Body>> of() {
     return {wordAxis<BodyKind, Body>("type", [](Body& b, BodyKind kind) { b.kind = kind; }),
-            wordAxis<ShapeKind, Body>("shape", [](Body& b, ShapeKind kind) { b.shape.kind = kind; })};
+            wordAxis<ShapeKind, Body>("shape", [](Body& b, ShapeKind kind) { b.shape.kind = kind; }),
+            {{"file_temperatures", {"false", "true"}},
+             [](Body& b, std::size_t value) { b.fileTemperatures = value == 1; }}};
   }
 };
 template <>
@@ -123,6 +125,9 @@ bool prepare(SolverSettings& s, const Case& c) {
   return true;
 }
 bool prepare(TimeSettings& t, const Case& c) { return !t.automatic || c.method.kind == MethodKind::MphI; }
+bool prepare(Body& b, const Case& c) {
+  return !b.fileTemperatures || (c.heat && b.kind == BodyKind::Fluid && b.shape.kind == ShapeKind::Particles);
+}
 bool prepare(Material& m, const Case& c) { return !m.rheology || c.method.kind == MethodKind::MphI; }
 
 /// Goes over the keys of one table in all of its variants.

@@ -37,7 +37,8 @@ enum class ValueKind {
 /// What the keys of a table follow from: the case ("dimensions", "method", "heat") or a key of the table itself.
 struct KeyAxis {
   std::string name;
-  std::vector<std::string> values;  // words; "2" and "3"; "with" and "without"; "auto" and "number"
+  std::vector<std::string>
+      values;  // words; "2" and "3"; "without" and "with"; "number" and "auto"; "false" and "true"
 };
 
 /// The axes that all tables have, which come first.

@@ -110,6 +110,7 @@ std::string axisText(const KeyAxis& axis, const std::vector<bool>& marked, std::
   if (number == MethodAxis) return marked[0] ? "MPH-I" : "ISPH";
   if (number == HeatAxis) return marked[1] ? "heat" : "no heat";
   if (axis.values.front() == "without") return (marked[1] ? "with " : "without ") + code(axis.name);
+  if (axis.values.front() == "false") return code(axis.name) + ' ' + code(axis.values[marked[1] ? 1 : 0]);
   const auto few = static_cast<std::size_t>(std::ranges::count(marked, true));
   const bool others = 2 * few > marked.size() + 1;
   std::vector<std::string> words;
@@ -123,6 +124,8 @@ bool isImplied(const KeyTable& t, const std::vector<bool>& in, std::size_t axis,
                const std::vector<std::size_t>& by) {
   return std::ranges::any_of(by, [&](std::size_t other) {
     if (other == axis || other < CaseAxes) return false;
+    const std::string& first = t.axes[other].values.front();  // of those below the key may be missing
+    if ((first == "without" || first == "number" || first == "false") && t.valuesOf(in, other)[0]) return false;
     std::vector<bool> there(in.size());
     for (const KeyRow& r : t.rows)
       for (std::size_t v = 0; v < in.size() && r.name == t.axes[other].name; ++v) there[v] = there[v] || r.in[v];

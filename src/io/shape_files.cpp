@@ -45,7 +45,7 @@ Triangles trianglesOf(const fs::path& path, std::string_view content) {
   throw InputError(fmt::format("{}: expected a mesh, .stl, .obj or .ply, found '{}'", path.string(), extension));
 }
 
-std::vector<Vec<3>> placesOf(const fs::path& path, int dimensions) {
+GivenParticles particlesOf(const fs::path& path, int dimensions) {
   const std::string extension = extensionOf(path);
   Frame frame;
   if (extension == ".csv")
@@ -59,11 +59,19 @@ std::vector<Vec<3>> placesOf(const fs::path& path, int dimensions) {
   if (frame.dimensions != dimensions)
     throw InputError(fmt::format("{}: holds particles in {} dimensions, the case has {}", path.string(),
                                  frame.dimensions, dimensions));
-  for (std::size_t k = 0; k < frame.position.size(); ++k)
-    if (const Vec<3>& x = frame.position[k]; !std::isfinite(x[0] + x[1] + x[2]))
-      throw InputError(fmt::format("{}: particle {} is at ({}, {}, {}); expected finite numbers", path.string(),
-                                   k + 1, x[0], x[1], x[2]));
-  return std::move(frame.position);
+  const auto requireFinite = [&](const std::vector<Vec<3>>& vectors, std::string_view what) {
+    for (std::size_t k = 0; k < vectors.size(); ++k)
+      if (const Vec<3>& x = vectors[k]; !std::isfinite(x[0] + x[1] + x[2]))
+        throw InputError(fmt::format("{}: the {} of particle {} is ({}, {}, {}); expected finite numbers",
+                                     path.string(), what, k + 1, x[0], x[1], x[2]));
+  };
+  requireFinite(frame.position, "position");
+  requireFinite(frame.velocity, "velocity");
+  for (std::size_t k = 0; k < frame.temperature.size(); ++k)
+    if (const double t = frame.temperature[k]; !(t > 0) || !std::isfinite(t))
+      throw InputError(fmt::format("{}: the temperature of particle {} is {} K; expected more than 0",
+                                   path.string(), k + 1, t));
+  return {std::move(frame.position), std::move(frame.velocity), std::move(frame.temperature)};
 }
 
 std::string checksumText(std::string_view content) {
@@ -95,7 +103,7 @@ ShapeFile readFile(const ShapeFile& given, ShapeKind kind, int dimensions, const
   if (kind == ShapeKind::Mesh)
     file.mesh.value = std::make_shared<const Mesh>(trianglesOf(path, content));
   else
-    file.places.value = std::make_shared<const std::vector<Vec<3>>>(placesOf(path, dimensions));
+    file.particles.value = std::make_shared<const GivenParticles>(particlesOf(path, dimensions));
   return file;
 }
 
@@ -109,7 +117,7 @@ void readShapeFiles(Case& c, const fs::path& folder) {
     Shape& s = body.shape;
     const bool mesh = s.kind == ShapeKind::Mesh;
     if (!mesh && s.kind != ShapeKind::Particles) continue;
-    if (mesh ? s.file.mesh.value != nullptr : s.file.places.value != nullptr) continue;
+    if (mesh ? s.file.mesh.value != nullptr : s.file.particles.value != nullptr) continue;
     const auto [entry, isNew] = known.try_emplace({s.kind, s.file.path, s.file.checksum});
     try {
       if (isNew) entry->second = readFile(s.file, s.kind, c.dimensions, folder);
@@ -121,7 +129,7 @@ void readShapeFiles(Case& c, const fs::path& folder) {
 }
 
 void releaseShapeFiles(Case& c) {
-  for (Body& body : c.bodies) body.shape.file.mesh.value.reset(), body.shape.file.places.value.reset();
+  for (Body& body : c.bodies) body.shape.file.mesh.value.reset(), body.shape.file.particles.value.reset();
 }
 
 }  // namespace treacle

@@ -39,40 +39,40 @@ void requireInside(const Domain& domain, const Body& body, const Vec<D>& x) {
 
 /// Before the condition of the body.
 template <int D>
-std::vector<Vec<D>> placesOf(const Case& c, const Body& body, std::vector<std::string>& notes,
-                             const std::function<bool(const Vec<D>&)>& keep) {
+BodyPoints<D> pointsOf(const Case& c, const Body& body, std::vector<std::string>& notes,
+                       const std::function<bool(const Vec<D>&)>& keep) {
   if (body.shape.kind == ShapeKind::Particles) return givenPoints<D>(c, body, notes, keep);
-  return latticePoints<D>(c, body, notes, keep);
+  return {latticePoints<D>(c, body, notes, keep), {}};
 }
 
 }  // namespace
 
 template <int D>
-std::vector<Vec<D>> bodyPoints(const Case& c, const Body& body, std::vector<std::string>& notes) {
+BodyPoints<D> bodyPoints(const Case& c, const Body& body, std::vector<std::string>& notes) {
   requireContent(body);
   std::optional<Expression> where;
   if (!body.where.empty()) where.emplace(body.where, D);
   std::size_t all = 0;
-  std::vector<Vec<D>> points = placesOf<D>(c, body, notes, [&](const Vec<D>& x) {
+  BodyPoints<D> points = pointsOf<D>(c, body, notes, [&](const Vec<D>& x) {
     ++all;
     if (where && valueAt(x, *where, body, "where", body.where) == 0) return false;
     requireInside(c.domain, body, x);
     return true;
   });
-  if (where && points.empty())
+  if (where && points.size() == 0)
     notes.push_back(
         fmt::format("body '{}': where = \"{}\" holds at none of its {} particles", body.name, body.where, all));
   return points;
 }
 
 template <int D>
-std::vector<Vec<D>> nozzlePoints(const Case& c, const Body& body, BodyKind kind, std::vector<std::string>& notes) {
+BodyPoints<D> nozzlePoints(const Case& c, const Body& body, BodyKind kind, std::vector<std::string>& notes) {
   const NozzleLayers<D> layers(c, body);
-  std::vector<Vec<D>> points;
+  BodyPoints<D> points;
   const auto add = [&](double way) {
     for (const Vec<D>& x : layers.layer(way, 0)) {
       requireInside(c.domain, body, x);
-      points.push_back(x);
+      points.place.push_back(x);
     }
   };
   if (kind == BodyKind::Fluid) {
@@ -86,7 +86,10 @@ std::vector<Vec<D>> nozzlePoints(const Case& c, const Body& body, BodyKind kind,
 
 template <int D>
 InitialState<D>::InitialState(const Case& c, const Body& body)
-    : body_(body), wall_(wallMotion<D>(c.domain, body, 0, 0)), expressions_(D) {
+    : body_(body),
+      wall_(wallMotion<D>(c.domain, body, 0, 0)),
+      expressions_(D),
+      similarity_(similarityOf<D>(body.shape)) {
   if (body.kind == BodyKind::Inflow) {
     const NozzleLayers<D> layers(c, body);
     wall_.velocity = wall_.velocity + layers.speed(0, 0) * layers.direction();
@@ -97,17 +100,23 @@ InitialState<D>::InitialState(const Case& c, const Body& body)
 }
 
 template <int D>
-Vec<D> InitialState<D>::velocityAt(const Vec<D>& x) const {
+Vec<D> InitialState<D>::velocityAt(const BodyPoints<D>& points, std::size_t k) const {
+  const Vec<D>& x = points.place[k];
   if (body_.kind != BodyKind::Fluid) return wall_.velocityAt(x);
   Vec<D> u = resized<D>(body_.velocity);
-  for (std::size_t k = 0; k < D; ++k)
-    if (expressions_[k])
-      u[static_cast<int>(k)] = valueAt(x, *expressions_[k], body_, "velocity", body_.velocityExpression[k]);
+  for (std::size_t axis = 0; axis < D; ++axis)
+    if (expressions_[axis])
+      u[static_cast<int>(axis)] =
+          valueAt(x, *expressions_[axis], body_, "velocity", body_.velocityExpression[axis]);
+  if (body_.fileVelocities)
+    u += similarity_.direction(resized<D>(body_.shape.file.particles.value->velocity[points.given[k]]));
   return u;
 }
 
 template <int D>
-double InitialState<D>::temperatureAt(const Vec<D>& x) const {
+double InitialState<D>::temperatureAt(const BodyPoints<D>& points, std::size_t k) const {
+  if (body_.fileTemperatures) return body_.shape.file.particles.value->temperature[points.given[k]];
+  const Vec<D>& x = points.place[k];
   if (!temperature_) return body_.temperature;
   const double T = valueAt(x, *temperature_, body_, "temperature", body_.temperatureExpression);
   if (!(T > 0))
@@ -117,10 +126,10 @@ double InitialState<D>::temperatureAt(const Vec<D>& x) const {
   return T;
 }
 
-template std::vector<Vec<2>> bodyPoints<2>(const Case&, const Body&, std::vector<std::string>&);
-template std::vector<Vec<3>> bodyPoints<3>(const Case&, const Body&, std::vector<std::string>&);
-template std::vector<Vec<2>> nozzlePoints<2>(const Case&, const Body&, BodyKind, std::vector<std::string>&);
-template std::vector<Vec<3>> nozzlePoints<3>(const Case&, const Body&, BodyKind, std::vector<std::string>&);
+template BodyPoints<2> bodyPoints<2>(const Case&, const Body&, std::vector<std::string>&);
+template BodyPoints<3> bodyPoints<3>(const Case&, const Body&, std::vector<std::string>&);
+template BodyPoints<2> nozzlePoints<2>(const Case&, const Body&, BodyKind, std::vector<std::string>&);
+template BodyPoints<3> nozzlePoints<3>(const Case&, const Body&, BodyKind, std::vector<std::string>&);
 template class InitialState<2>;
 template class InitialState<3>;
 

@@ -22,7 +22,7 @@ namespace {
 template <int D>
 struct Filled {
   const Body* body;
-  std::vector<Vec<D>> points;
+  BodyPoints<D> points;
 };
 
 /// The points of all bodies of one kind, not yet freed of overlaps.
@@ -57,7 +57,7 @@ void requireTurnable(const Domain& domain, const Filled<D>& f) {
     const double across = std::sqrt(std::max(0.0, 1 - axis[k] * axis[k]));
     if (!domain.periodic[static_cast<std::size_t>(k)] || across < 1e-6) continue;
     double reach = 0;
-    for (const Vec<D>& x : f.points) {
+    for (const Vec<D>& x : f.points.place) {
       const Vec<3> d = resized<3>(x) - f.body->rotation->center;
       const double along = dot(d, axis), radius = norm(d - along * axis);
       reach = std::max(reach, std::abs(along * axis[k]) + radius * across);
@@ -78,7 +78,7 @@ PointGrid<D> gridFor(const Domain& domain, double radius, const std::vector<Fill
   for (const Filled<D>& f : filled)
     if (const auto near = boxes.near(f.body); !near.empty())
       count += static_cast<std::size_t>(
-          std::ranges::count_if(f.points, [&](const Vec<D>& x) { return near.contain(x); }));
+          std::ranges::count_if(f.points.place, [&](const Vec<D>& x) { return near.contain(x); }));
   return PointGrid<D>(domain, radius, count);
 }
 
@@ -103,26 +103,22 @@ void unite(BodyKind kind, std::vector<Filled<D>>& filled, const PointBoxes<D>& b
     auto& points = filled[b].points;
     const auto near = boxes.near(filled[b].body);
     if (near.empty()) continue;
-    std::size_t kept = 0;
+    const std::size_t all = points.size();
     std::uint32_t other = PointGrid<D>::none;
-    for (const Vec<D>& x : points) {
-      if (!near.contain(x)) {
-        points[kept++] = x;
-        continue;
-      }
+    points.filter([&](std::size_t k) {
+      const Vec<D>& x = points.place[k];
+      if (!near.contain(x)) return true;
       if (const std::uint32_t tag = grid.find(x); tag != PointGrid<D>::none) {
         other = tag;
         if (kind == BodyKind::Wall) requireNoNozzle(*filled[b].body, *filled[other].body, x);
-        continue;
+        return false;
       }
       grid.add(x, b);
-      points[kept++] = x;
-    }
-    if (kept < points.size())
+      return true;
+    });
+    if (points.size() < all)
       notes.push_back(fmt::format("body '{}': {} of {} particles left out, their place is taken by body '{}'",
-                                  filled[b].body->name, points.size() - kept, points.size(),
-                                  filled[other].body->name));
-    points.resize(kept);
+                                  filled[b].body->name, all - points.size(), all, filled[other].body->name));
   }
 }
 
@@ -134,7 +130,7 @@ void requireApart(const std::vector<Filled<D>>& fluid, const PointGrid<D>& grid,
     const auto near = boxes.near(wall.body);
     if (near.empty()) continue;
     std::vector<std::pair<std::uint32_t, Vec<D>>> hits;
-    for (const Vec<D>& x : wall.points) {
+    for (const Vec<D>& x : wall.points.place) {
       if (!near.contain(x)) continue;
       if (const std::uint32_t tag = grid.find(x); tag != PointGrid<D>::none) hits.push_back({tag, x});
     }
@@ -161,11 +157,10 @@ void append(const Case& c, BodyKind kind, const std::vector<Filled<D>>& filled, 
     const InitialState<D> initial(c, *f.body);
     const bool warm = c.heat && kind == BodyKind::Fluid;
     const auto place = [&](std::size_t k) {
-      const Vec<D>& x = f.points[begin + k];
       const std::size_t i = at + k;
-      particles.position[i] = x;
-      particles.velocity[i] = initial.velocityAt(x);
-      if (warm) particles.temperature[i] = initial.temperatureAt(x);
+      particles.position[i] = f.points.place[begin + k];
+      particles.velocity[i] = initial.velocityAt(f.points, begin + k);
+      if (warm) particles.temperature[i] = initial.temperatureAt(f.points, begin + k);
       particles.pressure[i] = 0;
       particles.numberDensity[i] = 0;
       particles.material[i] = static_cast<std::uint8_t>(f.body->material);
@@ -203,7 +198,7 @@ Particles<D> createParticles(const Case& c, std::vector<std::string>& notes, std
   const double radius = 0.5 * c.spacing * (1 - 1e-6);
   PointBoxes<D> boxes(c.domain, radius);
   for (const auto* group : {&fluid, &walls})
-    for (const Filled<D>& f : *group) boxes.add(f.body, f.points);
+    for (const Filled<D>& f : *group) boxes.add(f.body, f.points.place);
   PointGrid<D> fluidGrid = gridFor(c.domain, radius, fluid, boxes);
   unite(BodyKind::Fluid, fluid, boxes, fluidGrid, notes);
   {

@@ -18,13 +18,15 @@ double largestSpeed(const Case& c, const Body& body) {
   const double carried =
       norm(body.velocity) + (o.period > 0 ? 2 * std::numbers::pi * norm(o.amplitude) / o.period : 0);
   const bool expressions = body.velocityExpression != decltype(body.velocityExpression){};
-  if (!expressions && !body.rotation) return carried;
+  if (!expressions && !body.fileVelocities && !body.rotation) return carried;
   const InitialState<D> initial(c, body);
   const WallMotion<D> wall = wallMotion<D>(c.domain, body, 0, 0);
   std::vector<std::string> notes;
   double speed = 0;
-  for (const Vec<D>& x : bodyPoints<D>(c, body, notes))
-    speed = std::max(speed, norm(body.rotation ? wall.swirl(wall.arm(x)) : initial.velocityAt(x)));
+  const BodyPoints<D> points = bodyPoints<D>(c, body, notes);
+  for (std::size_t k = 0; k < points.size(); ++k)
+    speed = std::max(speed,
+                     norm(body.rotation ? wall.swirl(wall.arm(points.place[k])) : initial.velocityAt(points, k)));
   return body.rotation ? carried + speed : speed;
 }
 

@@ -8,22 +8,22 @@
 namespace treacle {
 
 template <int D>
-std::vector<Vec<D>> givenPoints(const Case& c, const Body& body, std::vector<std::string>& notes,
-                                const std::function<bool(const Vec<D>&)>& keep) {
-  const std::vector<Vec<3>>& places = *body.shape.file.places.value;
+BodyPoints<D> givenPoints(const Case& c, const Body& body, std::vector<std::string>& notes,
+                          const std::function<bool(const Vec<D>&)>& keep) {
+  const std::vector<Vec<3>>& places = body.shape.file.particles.value->position;
   const Similarity<D> similarity = similarityOf<D>(body.shape);
   PointGrid<D> grid(c.domain, 0.5 * c.spacing * (1 - 1e-6), places.size());
-  std::vector<Vec<D>> points;
+  BodyPoints<D> points;
   std::size_t left = 0;
-  for (const Vec<3>& place : places) {
-    const Vec<D> x = similarity.point(resized<D>(place));
+  for (std::uint32_t k = 0; k < places.size(); ++k) {
+    const Vec<D> x = similarity.point(resized<D>(places[k]));
     if (!keep(x)) continue;  // first of all: it refuses what is not in the domain
     if (grid.find(x) != PointGrid<D>::none) {
       ++left;
       continue;
     }
     grid.add(x, 0);
-    points.push_back(x);
+    points.place.push_back(x), points.given.push_back(k);
   }
   if (left > 0)
     notes.push_back(
@@ -33,9 +33,9 @@ std::vector<Vec<D>> givenPoints(const Case& c, const Body& body, std::vector<std
   return points;
 }
 
-template std::vector<Vec<2>> givenPoints<2>(const Case&, const Body&, std::vector<std::string>&,
-                                            const std::function<bool(const Vec<2>&)>&);
-template std::vector<Vec<3>> givenPoints<3>(const Case&, const Body&, std::vector<std::string>&,
-                                            const std::function<bool(const Vec<3>&)>&);
+template BodyPoints<2> givenPoints<2>(const Case&, const Body&, std::vector<std::string>&,
+                                      const std::function<bool(const Vec<2>&)>&);
+template BodyPoints<3> givenPoints<3>(const Case&, const Body&, std::vector<std::string>&,
+                                      const std::function<bool(const Vec<3>&)>&);
 
 }  // namespace treacle

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "treacle/model/case.hpp"
+#include "body_points.hpp"
 
 #include <functional>
 #include <string>
@@ -12,7 +12,7 @@ namespace treacle {
 /// spacing to an earlier one are left out, and a note says how many. `keep`: called with each of the others; where
 /// it is false the point is left out. Errors: what `keep` throws.
 template <int D>
-std::vector<Vec<D>> givenPoints(const Case& c, const Body& body, std::vector<std::string>& notes,
-                                const std::function<bool(const Vec<D>&)>& keep);
+BodyPoints<D> givenPoints(const Case& c, const Body& body, std::vector<std::string>& notes,
+                          const std::function<bool(const Vec<D>&)>& keep);
 
 }  // namespace treacle

@@ -93,8 +93,8 @@ double boxPoints(const Case& c) {
                                   : boxLattice<3>(body, spacing, notes).points();
     if (s.kind == ShapeKind::Mesh && s.fill == FillKind::Inside && s.file.mesh.value)
       points += meshPoints(*s.file.mesh.value, spacing);
-    if (s.kind == ShapeKind::Particles && s.file.places.value)
-      points += static_cast<double>(s.file.places.value->size());
+    if (s.kind == ShapeKind::Particles && s.file.particles.value)
+      points += static_cast<double>(s.file.particles.value->position.size());
   }
   return points;
 }

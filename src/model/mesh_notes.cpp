@@ -22,8 +22,17 @@ std::string counted(std::size_t count, std::string_view what) {
 
 void requireContent(const Body& body) {
   const Shape& s = body.shape;
-  if (s.kind == ShapeKind::Particles && !s.file.places.value)
+  if (s.kind == ShapeKind::Particles && !s.file.particles.value)
     throw InputError(fmt::format("body '{}': its particles have not been read from {}", body.name, s.file.path));
+  const auto requireField = [&](bool wanted, std::size_t count, std::string_view key, std::string_view what) {
+    if (wanted && count == 0)
+      throw InputError(fmt::format("body '{}': {} = true: {} holds no {}", body.name, key, s.file.path, what));
+  };
+  if (s.kind == ShapeKind::Particles) {
+    requireField(body.fileVelocities, s.file.particles.value->velocity.size(), "file_velocities", "velocities");
+    requireField(body.fileTemperatures, s.file.particles.value->temperature.size(), "file_temperatures",
+                 "temperatures");
+  }
   if (s.kind != ShapeKind::Mesh) return;
   if (!s.file.mesh.value)
     throw InputError(fmt::format("body '{}': its mesh has not been read from {}", body.name, s.file.path));

@@ -110,7 +110,7 @@ Extent untransformedBox(const Shape& s, int dimensions) {
       if (s.file.mesh.value) box = {s.file.mesh.value->facts().min, s.file.mesh.value->facts().max};
       break;
     case ShapeKind::Particles:
-      if (s.file.places.value) box = pointsBox(*s.file.places.value);
+      if (s.file.particles.value) box = pointsBox(s.file.particles.value->position);
       break;
   }
   if (s.kind == ShapeKind::Polygon || s.kind == ShapeKind::Mesh)

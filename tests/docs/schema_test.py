@@ -87,6 +87,15 @@ if not validator.is_valid({"base": "dam-break-2d.toml", "material": [{"name": "f
 if validator.is_valid({"base": "dam-break-2d.toml", "spacing": -1}):
     failures.append("a wrong number in a case with a base is taken")
 
+warm = tomllib.loads((source / "cases/glass-gob-2d.toml").read_text())
+fluid = next(b["name"] for b in warm["body"] if b["type"] == "fluid")
+of_file = {"name": fluid, "type": "fluid", "material": entry(warm["body"], fluid)["material"], "shape": "particles", "file": "a.csv"}
+others = [b for b in warm["body"] if b["name"] != fluid]
+for keys, valid in (({}, False), ({"temperature": 1400}, True), ({"file_temperatures": True}, True),
+                    ({"file_temperatures": True, "temperature": 1400}, False)):
+    if validator.is_valid(warm | {"body": others + [of_file | keys]}) != valid:
+        failures.append(f"fluid of a file with {keys} is {'refused' if valid else 'taken'}")
+
 # The program writes out every key of a case; what it writes is valid, too.
 for name in ("dam-break-2d", "isph-dam-break-2d", "glass-gob-2d", "bottle"):
     written = run("check", str(source / f"cases/{name}.toml"), "--set", "resolution=0.5")

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "treacle/isph/smoothing_kernel.hpp"
+#include "treacle/model/smoothing_kernel.hpp"
 #include "treacle/model/wall_motion.hpp"
 #include "treacle/search/material_particles.hpp"
 #include "treacle/search/neighbour_rows.hpp"

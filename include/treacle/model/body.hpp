@@ -100,6 +100,8 @@ struct Body {
   double temperature = 0;
   std::string temperatureExpression{};  // of a fluid, in place of its temperature [K]
   double wallConductance = 0;           // of a wall, its conductivity over its thickness [W/(m2 K)]; 0: infinite
+  bool fileVelocities = false;          // fluid of a file has its velocities, on top of that of the body
+  bool fileTemperatures = false;        // likewise, in place of its temperature
   Inflow inflow{};                      // of an inflow, in place of a shape
   RigidSettings rigid{};                // of a rigid body
 

@@ -203,6 +203,10 @@ void visit(auto& v, Like<Body> auto& b, const Case& c) {
   v({"where", "Only those particles are made at which this is not zero"}, b.where, expression);
   v({"velocity", "Velocity: of a fluid or rigid body at the start, of a wall for the whole run", optional, "m/s"},
     b.velocity, b.velocityExpression);
+  const bool ofFile = b.kind == BodyKind::Fluid && b.shape.kind == ShapeKind::Particles;
+  if (ofFile)
+    v({"file_velocities", "Whether particles have the velocities of the file, on top of that of the body"},
+      b.fileVelocities);
   if (b.kind == BodyKind::Rigid) {
     visit(v, b.rigid, c);
   } else {
@@ -215,11 +219,16 @@ void visit(auto& v, Like<Body> auto& b, const Case& c) {
   }
   if (c.heat) {
     const bool fluid = b.kind == BodyKind::Fluid;
-    v({"temperature",
-       "Of a fluid at the start; of a wall that of its surface, or with wall_conductance that behind it, 0 being "
-       "an adiabatic wall",
-       fluid, "K", fluid ? positive : notNegative},
-      b.temperature, b.temperatureExpression);
+    if (ofFile)
+      v({"file_temperatures", "Whether particles have the temperatures of the file, in place of temperature"},
+        b.fileTemperatures);
+    if (!b.fileTemperatures)
+      v({"temperature",
+         "Of a fluid at the start; of a wall that of its surface, or with wall_conductance that behind it, 0 "
+         "being "
+         "an adiabatic wall",
+         fluid, "K", fluid ? positive : notNegative},
+        b.temperature, b.temperatureExpression);
     if (!fluid)
       v({"wall_conductance", "Conductivity of the wall over its thickness; 0: its surface has the temperature",
          optional, "W/(m2 K)", notNegative},

@@ -2,7 +2,6 @@
 
 #include "treacle/core/vec.hpp"
 
-#include <array>
 #include <cstddef>
 #include <optional>
 #include <string>

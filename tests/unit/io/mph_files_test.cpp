@@ -186,21 +186,19 @@ TEST(ImportedCase, ParticlesOfALaterTime) {
       StartsWith("box.data:5: EndTime: expected a time after that of the particles in box.grid, 1, found"));
 }
 
-TEST(ImportedCase, VelocitiesMakeBodiesOrTheirMean) {
+TEST(ImportedCase, VelocitiesAreThoseOfTheParticles) {
   MphGeometry g = readMphParticles("box.grid", mphParticles);
   g.particles[0].velocity = {1, 0, 0};
-  const ImportedCase two = converted(mphParameters, g);
-  ASSERT_EQ(two.value.bodies.size(), 4u);
-  EXPECT_EQ(two.value.bodies[0].velocity, (Vec<3>{1, 0, 0}));
-  EXPECT_EQ(two.value.bodies[1].velocity, (Vec<3>{0.25, -0.5, 0}));
-  EXPECT_EQ(two.tables[0].name, "box-fluid1-1.csv");
-  EXPECT_THAT(two.warnings, IsEmpty());
-  for (std::size_t k = 0; k < 24; ++k) g.particles[k].velocity = {static_cast<double>(k), 0, 0};
-  const ImportedCase many = converted(mphParameters, g);
-  ASSERT_EQ(many.value.bodies.size(), 3u);
-  EXPECT_EQ(many.value.bodies[0].velocity, (Vec<3>{11.5, 0, 0}));
-  EXPECT_EQ(many.value.bodies[0].shape.file.places.value->size(), 24u);
-  EXPECT_THAT(many.warnings, ElementsAre(HasSubstr("more than 16 different velocities")));
+  const ImportedCase imported = converted(mphParameters, g);
+  ASSERT_EQ(imported.value.bodies.size(), 3u);
+  const Body& fluid = imported.value.bodies[0];
+  EXPECT_TRUE(fluid.fileVelocities);
+  EXPECT_EQ(fluid.velocity, (Vec<3>{}));
+  EXPECT_EQ(fluid.shape.file.particles.value->velocity[0], (Vec<3>{1, 0, 0}));
+  EXPECT_EQ(fluid.shape.file.particles.value->velocity[1], (Vec<3>{0.25, -0.5, 0}));
+  EXPECT_THAT(imported.tables[0].content, StartsWith("x,y,vx,vy\n"));
+  EXPECT_THAT(imported.tables[0].content, HasSubstr(",1,0\n"));
+  EXPECT_THAT(imported.warnings, IsEmpty());
 }
 
 TEST(ImportedCase, NeedsTheDensitiesOfItsTypes) {

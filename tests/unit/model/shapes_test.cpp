@@ -323,16 +323,28 @@ TEST(particlesOfAFile, standWhereItSays) {
   Shape s;
   s.kind = ShapeKind::Particles;
   s.file.path = "/some.csv";
-  s.file.places.value = std::make_shared<const std::vector<Vec<3>>>(
-      std::vector<Vec<3>>{{0, 0, 0}, {1, 0, 0}, {0, 0.9, 0}, {1.2, 0.3, 0}});
+  s.file.particles.value = std::make_shared<const GivenParticles>(GivenParticles{
+      {{0, 0, 0}, {1, 0, 0}, {1.2, 0.3, 0}, {0, 0.9, 0}}, {{1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {4, 1, 0}}, {}});
   s.transform = Transform{.scale = 1, .angle = 90};
   c.bodies = {makeBody("given", BodyKind::Fluid, s)};
   std::vector<std::string> notes;
   const Particles<2> p = createParticles<2>(c, notes);
   ASSERT_EQ(p.count, 3u);
   EXPECT_LT(norm(p.position[2] - Vec<2>{-0.9, 0}), 1e-15);
+  EXPECT_EQ(p.velocity[2], Vec<2>{});
   EXPECT_THAT(notes, ElementsAre("body 'given': 1 of the 4 particles of /some.csv left out, closer than half a "
                                  "spacing to an earlier one"));
+
+  // Turned as the places are, on top of the velocity of the body.
+  c.bodies[0].fileVelocities = true;
+  c.bodies[0].velocity = {0, 10, 0};
+  const Particles<2> moving = createParticles<2>(c, notes);
+  EXPECT_LT(norm(moving.velocity[1] - Vec<2>{0, 12}), 1e-14);
+  EXPECT_LT(norm(moving.velocity[2] - Vec<2>{-1, 14}), 1e-14);
+  c.heat.emplace();
+  c.bodies[0].fileTemperatures = true;
+  EXPECT_EQ(messageOf<InputError>([&] { createParticles<2>(c, notes); }),
+            "body 'given': file_temperatures = true: /some.csv holds no temperatures");
 }
 
 TEST(applyWidth, refusesWhatHasNoCoordinatesToChange) {

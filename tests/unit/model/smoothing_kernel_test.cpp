@@ -1,4 +1,4 @@
-#include "treacle/isph/smoothing_kernel.hpp"
+#include "treacle/model/smoothing_kernel.hpp"
 
 #include <gtest/gtest.h>
 
