@@ -19,3 +19,20 @@ configure_package_config_file(cmake/treacleConfig.cmake.in ${CMAKE_BINARY_DIR}/t
 write_basic_package_version_file(${CMAKE_BINARY_DIR}/treacleConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_BINARY_DIR}/treacleConfig.cmake ${CMAKE_BINARY_DIR}/treacleConfigVersion.cmake
   DESTINATION ${package_dir})
+
+# What the program says of itself: manual page, completion of commands in shells, schema of case files for editors.
+set(texts ${CMAKE_BINARY_DIR}/texts)
+set(made)
+function(treacle_text FILE DESTINATION)
+  add_custom_command(OUTPUT ${texts}/${FILE} DEPENDS treacle
+    COMMAND ${CMAKE_COMMAND} -E make_directory ${texts} COMMAND treacle ${ARGN} > ${texts}/${FILE} VERBATIM)
+  install(FILES ${texts}/${FILE} DESTINATION ${DESTINATION})
+  set(made ${made} ${texts}/${FILE} PARENT_SCOPE)
+endfunction()
+treacle_text(treacle.1 ${CMAKE_INSTALL_MANDIR}/man1 man)
+treacle_text(treacle ${CMAKE_INSTALL_DATADIR}/bash-completion/completions completion bash)
+treacle_text(_treacle ${CMAKE_INSTALL_DATADIR}/zsh/site-functions completion zsh)
+treacle_text(treacle.fish ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d completion fish)
+treacle_text(case.schema.json ${CMAKE_INSTALL_DATADIR}/treacle schema)
+add_custom_target(treacle_texts ALL DEPENDS ${made})
+install(FILES LICENSE THIRD-PARTY-NOTICES.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})

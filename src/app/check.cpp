@@ -1,5 +1,7 @@
+#include "advice.hpp"
 #include "backend.hpp"
 #include "commands.hpp"
+#include "estimate.hpp"
 #include "machine.hpp"
 #include "memory.hpp"
 #include "print.hpp"
@@ -72,9 +74,11 @@ double secondsPerParticle(const Case& c) {
 
 void printTime(const Case& c, ParticleNumbers particles) {
   const double step = secondsPerParticle(c) * static_cast<double>(particles.fluid) / omp_get_max_threads();
-  print("# time per step: very roughly {:.2g} s on {} threads of a processor, {} for {} steps or more\n", step,
-        omp_get_max_threads(), durationText(step * c.time.end / c.time.step),
-        std::llround(c.time.end / c.time.step));
+  print(
+      "# time per step: very roughly {:.2g} s on {} threads of a processor, {} for {} steps or more (--estimate "
+      "measures)\n",
+      step, omp_get_max_threads(), durationText(step * c.time.end / c.time.step),
+      std::llround(c.time.end / c.time.step));
 }
 
 void printAutomaticSteps(const Case& c) {
@@ -109,9 +113,9 @@ void printNumbers(const Case& c) {
 
 }  // namespace
 
-void checkCommand(const CaseOptions& options) {
-  startThreads(0);
-  const Case c = readCase(options.file, options.overrides);
+void checkCommand(const CheckOptions& options) {
+  startThreads(options.threads);
+  const Case c = readCase(options.input.file, options.input.overrides);
   std::vector<std::string> warnings;
   std::vector<BodyCount> ofBodies;
   requireRoomForParticles(c);
@@ -121,8 +125,14 @@ void checkCommand(const CaseOptions& options) {
   printParticles(c, particles.numbers(), ofBodies);
   printMeshes(c);
   printMemory(c, particles, warnings);
-  printTime(c, particles.numbers());
+  if (!options.estimate) printTime(c, particles.numbers());
   printNumbers(c);
+  printAdvice(c);
+  if (options.estimate) {
+    const BackendKind backend = deviceFor(options.backend) ? BackendKind::Cuda : BackendKind::Cpu;
+    flushPrinted();
+    printEstimate(c, std::move(particles), backend);
+  }
   print("\n{}", caseText(c));
   flushPrinted();
   for (const std::string& warning : warnings) printWarning(warning);

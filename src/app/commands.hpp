@@ -34,6 +34,13 @@ struct RunOptions {
   bool quiet = false;
 };
 
+struct CheckOptions {
+  CaseOptions input;
+  bool estimate = false;  // makes some steps
+  BackendChoice backend = BackendChoice::Auto;
+  int threads = 0;  // 0: as many as OpenMP takes by itself
+};
+
 struct PlotOptions {
   std::filesystem::path directory;
   std::string frame = "last";  // or a number
@@ -84,7 +91,7 @@ inline constexpr int runsDiffer = 1;
 /// Errors: InputError, RunError, std::bad_alloc.
 /// `processes`: those that run it together, all of which call this.
 void runCommand(const RunOptions& options, const Communicator& processes);
-void checkCommand(const CaseOptions& options);
+void checkCommand(const CheckOptions& options);
 void infoCommand();
 void plotCommand(const PlotOptions& options);
 void surfaceCommand(const SurfaceOptions& options);

@@ -1,11 +1,13 @@
 #include "commands.hpp"
 #include "interrupt.hpp"
+#include "manual.hpp"
 #include "memory.hpp"
 #include "print.hpp"
 #include "threads.hpp"
 #include "treacle/core/cuda.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/core/version.hpp"
+#include "treacle/io/case_reference.hpp"
 #include "treacle/model/names.hpp"
 
 #include <fmt/format.h>
@@ -34,6 +36,7 @@ constexpr Named<PictureField> fieldNames[] = {{"speed", PictureField::Speed},
                                               {"dynamic_viscosity", PictureField::DynamicViscosity},
                                               {"shear_rate", PictureField::ShearRate}};
 
+constexpr Named<Shell> shellNames[] = {{"bash", Shell::Bash}, {"zsh", Shell::Zsh}, {"fish", Shell::Fish}};
 constexpr Named<SurfaceFormat> formatNames[] = {{"vtp", SurfaceFormat::Vtp}, {"ply", SurfaceFormat::Ply}};
 
 template <class E>
@@ -147,6 +150,32 @@ void addRun(CLI::App& app, RunOptions& options, const Communicator& job) {
   run->callback([&options, &job] { runCommand(options, job); });
 }
 
+void addCheck(CLI::App& app, CheckOptions& options) {
+  CLI::App* check =
+      app.add_subcommand("check", "Check a case; prints it with all keys, counts, stability and advice");
+  addCase(*check, options.input);
+  check->add_flag("--estimate", options.estimate, "Make some steps and tell how long all of them will take");
+  addChoice<BackendChoice>(*check, "--backend", backendNames, options.backend,
+                           "Of --estimate; auto: a GPU where there is one, else the CPU");
+  check->add_option("--threads", options.threads, "Number of threads")->type_name("N")->check(threadNumber());
+  check->callback([&options] { checkCommand(options); });
+}
+
+/// Commands that print what the program knows of its cases and of itself.
+void addTexts(CLI::App& app, Shell& shell) {
+  app.add_subcommand("keys", "Print all keys of case files as Markdown")->callback([] {
+    printText(keyReference());
+  });
+  app.add_subcommand("schema", "Print a JSON schema of case files, for editors")->callback([] {
+    printText(caseSchema());
+  });
+  CLI::App* completion = app.add_subcommand("completion", "Print a script that completes commands in a shell");
+  addChoice<Shell>(*completion, "SHELL", shellNames, shell, "The shell");
+  completion->get_option("SHELL")->required();
+  completion->callback([&app, &shell] { printText(completionScript(app, shell)); });
+  app.add_subcommand("man", "Print the manual page")->callback([&app] { printText(manPage(app)); });
+}
+
 void addConvergence(CLI::App& app, ConvergenceOptions& options) {
   CLI::App* command = app.add_subcommand("convergence", "Compare solvers on one linear system of a case");
   addCase(*command, options.input);
@@ -228,8 +257,7 @@ void addImport(CLI::App& app, ImportOptions& options) {
 }
 
 /// Commands that a module of the Python package carries out, with their help. All words after the name are the
-/// module's,
-/// --help and names of other commands too, so that they do not come to the parser.
+/// module's, --help and names of other commands too, so that they do not come to the parser.
 constexpr std::pair<const char*, const char*> pythonCommands[] = {
     {"movie", "Make a film of a run (Python; pip install treacle[pictures])"},
     {"report", "Write a run's summary, curves and frames as one HTML page (likewise)"}};
@@ -238,6 +266,14 @@ constexpr std::pair<const char*, const char*> pythonCommands[] = {
 void becomePython(int argc, char** argv) {
   for (const auto& [name, help] : pythonCommands)
     if (argc > 1 && std::string(argv[1]) == name) pythonCommand(name, {argv + 2, argv + argc});
+}
+
+/// "run, check, plot"
+std::string commandList(const CLI::App& app) {
+  std::string list;
+  for (const CommandText& command : commandTexts(app))
+    if (!command.name.empty()) list += (list.empty() ? "" : ", ") + command.name;
+  return list;
 }
 
 int report(const std::string& text, ExitCode code) {
@@ -271,7 +307,7 @@ int execute(int argc, char** argv, const Communicator& job) {
   app.set_version_flag("--version", fmt::format("treacle {} ({})", buildInfo().version, buildInfo().commit));
   app.footer("Exit codes: 0 done, 1 compared runs differ, 2 bad input, 3 the run failed.");
   RunOptions run;
-  CaseOptions check;
+  CheckOptions check;
   PlotOptions plot;
   SurfaceOptions surface;
   CompareOptions compare;
@@ -279,25 +315,22 @@ int execute(int argc, char** argv, const Communicator& job) {
   ImportOptions importOptions;
   bool agree = true;
   addRun(app, run, job);
-  CLI::App* checkApp = app.add_subcommand("check", "Check a case; prints it with all keys, counts and stability");
-  addCase(*checkApp, check);
-  checkApp->callback([&check] { checkCommand(check); });
-  app.add_subcommand("info", "Version, build options and devices")->callback([] { infoCommand(); });
+  addCheck(app, check);
   addPlot(app, plot);
   addSurface(app, surface);
   addCompare(app, compare, agree);
   addConvergence(app, convergence);
   addImport(app, importOptions);
   for (const auto& [name, help] : pythonCommands) app.add_subcommand(name, help);
+  Shell shell = Shell::Bash;
+  addTexts(app, shell);
+  app.add_subcommand("info", "Version, build options and devices")->callback([] { infoCommand(); });
 
   try {
     becomePython(argc, argv);
     app.parse(argc, argv);
     if (app.get_subcommands().empty())
-      throw InputError(
-          "expected a command: run, check, plot, surface, movie, report, compare, convergence, import or info; "
-          "treacle "
-          "--help tells more");
+      throw InputError(fmt::format("expected a command: {}; treacle --help tells more", commandList(app)));
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return app.exit(e);  // help and version
     return report(fmt::format("{}; --help tells more", e.what()), ExitCode::BadInput);

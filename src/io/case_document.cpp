@@ -236,7 +236,7 @@ void applyOverride(toml::table& document, const std::string& text) {
 
 std::vector<std::string_view> topLevelKeys() {
   std::vector<std::string_view> known = keys::namesIn(Case{}, Case{});
-  known.insert(known.end(), {"base", "width"});
+  known.insert(known.end(), {keys::baseKey.name, keys::widthKey.name});
   return known;
 }
 

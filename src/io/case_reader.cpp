@@ -25,7 +25,7 @@ Case caseOf(const toml::table& document, const std::filesystem::path& folder, Sh
   TableReader top(c, sections, Section(document, "the case file"), {});
   top.read(c);
   std::optional<Width> width;
-  top({"width"}, width);
+  top(keys::widthKey, width);
   c.spacing /= c.resolution;
   if (!c.time.automatic) c.time.step /= c.resolution;
   try {

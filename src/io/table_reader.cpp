@@ -12,7 +12,7 @@ namespace treacle {
 
 /// The method, on which the keys of other tables depend, is read before them; whether there is heat, likewise.
 void TableReader::prepare(Case& c) {
-  (*this)({"method"}, c.method);
+  (*this)({"method", "Numerical method"}, c.method);
   if (section_.table().contains("heat")) {
     if (c.method.kind != MethodKind::MphI) throw section_.error("heat", heatOfMphI);
     c.heat.emplace();
@@ -21,7 +21,7 @@ void TableReader::prepare(Case& c) {
 }
 
 void TableReader::prepare(MethodSettings& method) {
-  (*this)({"name"}, method.kind);
+  (*this)({"name", "Numerical method"}, method.kind);
   if (method.kind == MethodKind::MphI)
     if (const auto scheme = lookUp<SchemeKind>("scheme")) method = defaultMethod(*scheme);
   nameMethod();
@@ -319,13 +319,13 @@ TimeFunction TableReader::function(const Key& key, const toml::node& node) const
       if (table->contains("times") || table->contains("values"))
         throw section_.error(key.name, "expected either file or times and values, found both");
       std::string path, column;
-      reader({"file", true}, path, keys::file);
-      reader({"column"}, column);
+      reader({"file", "Text file with the table", keys::required}, path, keys::file);
+      reader({"column", "Name of its column"}, column);
       return readTimeTable(path, column);
     }
-    reader({"times", true, "s"}, f.times);
+    reader({"times", "Rising times", keys::required, "s"}, f.times);
     if (f.times.empty()) throw section_.error(key.name, "expected at least one time, found none");
-    reader({"values", true, key.unit, key.bound}, f.values);
+    reader({"values", "Values at these times", keys::required, key.unit, key.bound}, f.values);
   } else {
     f.value = number(key, node, expectedFunction(key));
   }

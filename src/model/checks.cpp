@@ -1,6 +1,6 @@
 #include "treacle/model/checks.hpp"
 
-#include "body_points.hpp"
+#include "fluid_extent.hpp"
 #include "treacle/model/names.hpp"
 #include "treacle/model/shape.hpp"
 
@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 namespace treacle {
 namespace {
@@ -16,35 +15,6 @@ namespace {
 constexpr double rounding = 1e-6;  // relative error allowed in "a whole number of steps"
 
 bool wholeNumber(double x) { return std::abs(x - std::round(x)) <= rounding * std::max(1.0, std::abs(x)); }
-
-/// Where something is, measured against gravity, which is not zero [m].
-struct Heights {
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  double extent() const { return std::max(0.0, high - low); }
-};
-
-Heights heightsOf(const Case& c, const Extent& box) {
-  Heights h;
-  for (int k = 0; k < 8; ++k) {
-    const Vec<3> corner{k & 1 ? box.max[0] : box.min[0], k & 2 ? box.max[1] : box.min[1],
-                        k & 4 ? box.max[2] : box.min[2]};
-    const double up = -dot(corner, c.gravity) / norm(c.gravity);
-    h.low = std::min(h.low, up), h.high = std::max(h.high, up);
-  }
-  return h;
-}
-
-/// Extent of all fluid bodies along gravity [m].
-double fluidHeight(const Case& c) {
-  if (norm(c.gravity) == 0) return 0;
-  Heights all;
-  for (const Body& body : c.bodies) {
-    if (body.kind != BodyKind::Fluid) continue;
-    const Heights h = heightsOf(c, boundingBox(body.shape, c.dimensions));
-    all.low = std::min(all.low, h.low), all.high = std::max(all.high, h.high);
-  }
-  return all.extent();
-}
 
 const Material& materialOf(const Case& c, const Body& body) {
   return c.materials[static_cast<std::size_t>(body.material)];
@@ -87,25 +57,6 @@ std::pair<double, std::string> thickness(const Shape& s, int dimensions) {
   if (s.kind == ShapeKind::Particles) return {std::numeric_limits<double>::infinity(), ""};
   auto [extent, where] = ownThickness(s, dimensions);
   return {extent * (s.transform ? s.transform->scale : 1), std::move(where)};
-}
-
-/// Largest speed of a fluid body at the start, of a wall at any time [m/s].
-template <int D>
-double largestSpeed(const Case& c, const Body& body) {
-  const Oscillation& o = body.oscillation;
-  const double carried =
-      norm(body.velocity) + (o.period > 0 ? 2 * std::numbers::pi * norm(o.amplitude) / o.period : 0);
-  const bool expressions = body.velocityExpression != decltype(body.velocityExpression){};
-  if (!expressions && !body.fileVelocities && !body.rotation) return carried;
-  const InitialState<D> initial(c, body);
-  const WallMotion<D> wall = wallMotion<D>(c.domain, body, 0, 0);
-  std::vector<std::string> notes;
-  double speed = 0;
-  const BodyPoints<D> points = bodyPoints<D>(c, body, notes);
-  for (std::size_t k = 0; k < points.size(); ++k)
-    speed = std::max(speed,
-                     norm(body.rotation ? wall.swirl(wall.arm(points.place[k])) : initial.velocityAt(points, k)));
-  return body.rotation ? carried + speed : speed;
 }
 
 /// What the interaction radius is called.
@@ -231,14 +182,6 @@ void warnShortRadii(const Case& c, std::vector<std::string>& warnings) {
   check("pressure_radius", m.pressureRadius, mps ? 1.5 : 2.5, nameOf(m.pressureWeight));
   check("viscosity_radius", m.viscosityRadius, m.viscosityWeight == ViscosityWeight::Mps ? 1.5 : 2,
         nameOf(m.viscosityWeight));
-}
-
-/// Largest of the initial speeds and those of the walls [m/s].
-double givenSpeed(const Case& c) {
-  double speed = 0;
-  for (const Body& body : c.bodies)
-    speed = std::max(speed, c.dimensions == 2 ? largestSpeed<2>(c, body) : largestSpeed<3>(c, body));
-  return speed;
 }
 
 /// Of the longest step that a run makes.

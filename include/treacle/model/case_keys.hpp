@@ -47,6 +47,10 @@ SolverSettings defaultSolver(MethodKind method, PreconditionerKind preconditione
 /// are automatic. Vectors have as many components as the case has dimensions.
 namespace keys {
 
+/// What a case file has at its top beside the keys of a case, which know nothing of it once it is read.
+inline constexpr Key baseKey{"base", "Case file, relative to this one, that this one changes"};
+inline constexpr Key widthKey{"width", "A stretch of one axis becomes wider or narrower"};
+
 /// The table of which a case holds nothing but its vector.
 template <class Vector>
 struct Gravity {
@@ -56,54 +60,70 @@ template <class Vector>
 Gravity(Vector&) -> Gravity<Vector>;  // clang 14 does not find it by itself
 
 void visit(auto& v, Like<Domain> auto& d, const Case&) {
-  v({"min", required, "m"}, d.min);
-  v({"max", required, "m"}, d.max);
-  v({"periodic"}, d.periodic);
+  v({"min", "Corner of the domain with the least coordinates", required, "m"}, d.min);
+  v({"max", "Corner of the domain with the largest coordinates; every particle must start inside", required, "m"},
+    d.max);
+  v({"periodic",
+     "Whether what leaves on one side comes in on the other; a particle that leaves an open side ends the run"},
+    d.periodic);
 }
 
 template <class Vector>
 void visit(auto& v, const Gravity<Vector>& g, const Case&) {
-  v({"acceleration", optional, "m/s2"}, g.acceleration);
+  v({"acceleration", "Gravity", optional, "m/s2"}, g.acceleration);
 }
 
 void visit(auto& v, Like<Width> auto& w, const Case& c) {
-  v({"axis", required}, w.axis, [&](Coordinate axis) { return static_cast<int>(axis) < c.dimensions; });
-  v({"from", required, "m"}, w.from);
-  v({"to", required, "m"}, w.to);
-  v({"factor", optional, "", positive}, w.factor);
+  v({"axis", "Axis that is scaled", required}, w.axis,
+    [&](Coordinate axis) { return static_cast<int>(axis) < c.dimensions; });
+  v({"from", "Where the stretch that is scaled begins", required, "m"}, w.from);
+  v({"to", "Where it ends; what is beyond moves along", required, "m"}, w.to);
+  v({"factor", "What the stretch is scaled by", optional, "", positive}, w.factor);
 }
 
 void visit(auto& v, Like<TimeSettings> auto& t, const Case&) {
-  v({"step", required, "s", positive}, t.step, t.automatic, orAuto);
-  v({"end", required, "s", positive}, t.end);
-  v({"courant", optional, "", notNegative}, t.courant);
+  v({"step", "Time step at resolution 1, with courant the longest one; auto: as long as errors allow, with MPH-I",
+     required, "s", positive},
+    t.step, t.automatic, orAuto);
+  v({"end", "End of the run", required, "s", positive}, t.end);
+  v({"courant",
+     "Courant number: in a step the fastest particle goes at most so many spacings; 0 or 1e-6 to 100, 0 being no "
+     "bound, with automatic steps 1",
+     optional, "", notNegative},
+    t.courant);
   if (!t.automatic) return;
-  v({"tolerance", optional, "", stepTolerance}, t.tolerance);
-  v({"min_step", optional, "s", positive}, t.least);
-  v({"max_step", optional, "s", positive}, t.step);
+  v({"tolerance", "Largest error of an automatic step, as a part of the way that the fluid goes in it", optional,
+     "", stepTolerance},
+    t.tolerance);
+  v({"min_step", "Shortest automatic step; by default a 10,000th of max_step", optional, "s", positive}, t.least);
+  v({"max_step", "Longest automatic step; by default the longest that is known to be stable, at most end",
+     optional, "s", positive},
+    t.step);
 }
 
 void visit(auto& v, Like<Case> auto& c, const Case&) {
   const Gravity gravity{c.gravity};
-  v({"title"}, c.title);
-  v({"dimensions", required, "", {2, 3}}, c.dimensions);
-  v({"spacing", required, "m", positive}, c.spacing);
-  v({"resolution", optional, "", positive}, c.resolution);
-  v({"domain", required}, c.domain);
-  v({"gravity"}, gravity);
-  v({"material", required, "", {1, maxMaterials}}, c.materials);
-  v({"body", required, "", {1, maxBodies}}, c.bodies);
-  v({"outflow", optional, "", {0, maxOutflows}}, c.outflows);
-  v({"time", required}, c.time);
-  v({"method"}, c.method);
+  v({"title", "Title in pictures and summary"}, c.title);
+  v({"dimensions", "Number of dimensions, and of components of all vectors of the file", required, "", {2, 3}},
+    c.dimensions);
+  v({"spacing", "Distance between particles at the start, at resolution 1", required, "m", positive}, c.spacing);
+  v({"resolution", "What spacing and time.step, unless that is auto, are divided by", optional, "", positive},
+    c.resolution);
+  v({"domain", "Where particles may be", required}, c.domain);
+  v({"gravity", "Gravity"}, gravity);
+  v({"material", "Materials, of fluids and walls", required, "", {1, maxMaterials}}, c.materials);
+  v({"body", "What particles are made of", required, "", {1, maxBodies}}, c.bodies);
+  v({"outflow", "Where fluid leaves", optional, "", {0, maxOutflows}}, c.outflows);
+  v({"time", "Time step and end of the run", required}, c.time);
+  v({"method", "Numerical method and its settings"}, c.method);
   if (c.method.kind == MethodKind::MphI) {
-    v({"rheology"}, c.rheology);
-    v({"heat"}, c.heat);
+    v({"rheology", "How viscosity and flow are brought together where a material has a rheology"}, c.rheology);
+    v({"heat", "The case has temperatures; may be empty"}, c.heat);
   }
-  v({"solver"}, c.solver);
-  v({"output"}, c.output);
-  v({"probe", optional, "", {0, maxProbes}}, c.probes);
-  v({"watch"}, c.watch);
+  v({"solver", "How the linear system of a step is solved"}, c.solver);
+  v({"output", "What is written"}, c.output);
+  v({"probe", "What is measured while the case runs", optional, "", {0, maxProbes}}, c.probes);
+  v({"watch", "Bounds beyond which a run ends because it no longer means anything"}, c.watch);
 }
 
 /// The keys of a table: of which shape, by the shape of a body.

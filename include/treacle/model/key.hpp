@@ -25,6 +25,7 @@ struct Bound {
 /// A key of a case file.
 struct Key {
   std::string_view name;
+  std::string_view about;      // what it is: a sentence without its full stop
   bool required = false;       // else there is a default, what the member is at first
   std::string_view unit = "";  // of its numbers
   Bound bound{};

@@ -93,6 +93,70 @@ TEST(check, saysWhatAutomaticStepsMayBe) {
   EXPECT_THAT(outcome.out, HasSubstr("\nstep = \"auto\"\n"));
 }
 
+TEST(check, printsNumbersOfFluidsAndAdvice) {
+  Workshop shop;
+  const Outcome outcome = prepared(shop).call("check small.toml");
+  EXPECT_EQ(outcome.exitCode, 0);
+  EXPECT_THAT(outcome.out,
+              HasSubstr("# resolution: 6 particles across the shortest side of the fluid, 0.006 m; "));
+  // U = rho g L^2/mu = 0.036 m/s, which is less than a fall over 6 mm; Re = rho U L/mu.
+  EXPECT_THAT(outcome.out,
+              HasSubstr("# fluid 'syrup': Reynolds number 0.0216 at 0.036 m/s, viscous time 0.0036 s, "
+                        "lambda / mu = 1000, compressed by 0.006 % under 0.006 m of itself\n"));
+  EXPECT_THAT(outcome.out,
+              HasSubstr("bulk_modulus from 6e+03 (1 % under its own weight) to 5e+06 (stable with this "
+                        "step)\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("# advice for the step: \"auto\", or at most 0.005 s (dt kappa / lambda of "
+                                     "'syrup')\n"));
+  const Outcome tense = shop.call("check small.toml --set syrup.surface_tension=8");
+  EXPECT_THAT(tense.out, HasSubstr("Bond number 0.045, capillary step 0.0025 s\n"));
+  EXPECT_THAT(tense.out, HasSubstr("or at most 0.0025 s (surface tension of 'syrup')\n"));
+}
+
+TEST(check, estimatesTimeByRealSteps) {
+  Workshop shop;
+  const Outcome whole = prepared(shop).call("check small.toml --estimate --backend cpu --threads 1");
+  EXPECT_EQ(whole.exitCode, 0) << whole.err;
+  EXPECT_THAT(whole.out, HasSubstr("s, without output; these are all 2 steps of the case\n"));
+  const Outcome longer = shop.call("check small.toml --estimate --backend cpu --threads 1 --set time.end=1");
+  EXPECT_EQ(longer.exitCode, 0) << longer.err;
+  EXPECT_THAT(longer.out, HasSubstr("# timed: 50 steps of "));
+  EXPECT_THAT(longer.out, ContainsRegex("# run time: about .* on 1 threads for 1000 steps, without output; "));
+  EXPECT_FALSE(std::filesystem::exists(shop / "small-run"));
+  const Outcome failed =
+      shop.call("check small.toml --estimate --backend cpu --threads 1 --set solver.max_iterations=1");
+  EXPECT_EQ(failed.exitCode, 3);
+  EXPECT_THAT(failed.err, HasSubstr("after step 0"));
+}
+
+TEST(completion, offersCommandsOptionsAndWords) {
+  Workshop shop;
+  const auto offered = [&](const std::string& words, int place) {
+    shop.put("ask.sh", "source <(\"$1\" completion bash)\nCOMP_WORDS=(" + words +
+                           ")\nCOMP_CWORD=" + std::to_string(place) + "\n_treacle\necho \"${COMPREPLY[@]}\"\n");
+    return shop.call("x 2>/dev/null; bash ask.sh '" TREACLE_BINARY "'").out;
+  };
+  EXPECT_EQ(offered("treacle conv", 1), "convergence\n");
+  EXPECT_EQ(offered("treacle run --bac", 2), "--backend\n");
+  EXPECT_EQ(offered("treacle run --backend cu", 3), "cuda\n");
+  EXPECT_EQ(offered("treacle check ask", 2), "ask.sh\n");
+  EXPECT_EQ(offered("treacle completion f", 2), "fish\n");
+  EXPECT_THAT(shop.call("completion zsh").out, HasSubstr("'check:Check a case"));
+  EXPECT_THAT(shop.call("completion fish").out,
+              HasSubstr("__fish_seen_subcommand_from plot' -l field -xa 'speed "));
+  EXPECT_EQ(shop.call("completion tcsh").exitCode, 2);
+}
+
+TEST(man, hasEveryCommandAndOption) {
+  Workshop shop;
+  const std::string page = shop.call("man").out;
+  EXPECT_THAT(page, StartsWith(".TH TREACLE 1 "));
+  for (const char* command : {"run", "check", "plot", "surface", "compare", "convergence", "import", "keys",
+                              "schema", "completion", "man", "info"})
+    EXPECT_THAT(page, HasSubstr(std::string(".SS treacle ") + command + '\n'));
+  EXPECT_THAT(page, HasSubstr("\\fB\\-\\-resume\\fR \\fIFILE\\fR"));
+}
+
 TEST(run, automaticStepsMeetFramesAndEnd) {
   Workshop shop;
   const Outcome outcome = prepared(shop).call(

@@ -196,8 +196,8 @@ TEST(ImportedCase, VelocitiesAreThoseOfTheParticles) {
   EXPECT_EQ(fluid.velocity, (Vec<3>{}));
   EXPECT_EQ(fluid.shape.file.particles.value->velocity[0], (Vec<3>{1, 0, 0}));
   EXPECT_EQ(fluid.shape.file.particles.value->velocity[1], (Vec<3>{0.25, -0.5, 0}));
-  EXPECT_THAT(imported.tables[0].text, StartsWith("x,y,vx,vy\n"));
-  EXPECT_THAT(imported.tables[0].text, HasSubstr(",1,0\n"));
+  EXPECT_THAT(imported.tables[0].content, StartsWith("x,y,vx,vy\n"));
+  EXPECT_THAT(imported.tables[0].content, HasSubstr(",1,0\n"));
   EXPECT_THAT(imported.warnings, IsEmpty());
 }
 

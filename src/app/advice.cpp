@@ -1,0 +1,102 @@
+#include "advice.hpp"
+
+#include "print.hpp"
+#include "treacle/model/checks.hpp"
+#include "treacle/model/flow_scales.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace treacle {
+namespace {
+
+constexpr double recommendedRatio = 1000;  // of bulk to shear viscosity [K23 Table 1]
+constexpr double mostCompressed = 0.01;    // by the weight of the fluid
+
+/// How many particles lie across the shortest side of the fluid, and the errors measured with so many
+/// (docs/validation.md).
+void printResolution(const Case& c, const FlowScales& flow) {
+  if (flow.length == 0) return;
+  const double across = flow.length / c.spacing;
+  print("# resolution: {:.3g} particles across the shortest side of the fluid, {:.3g} m", across, flow.length);
+  if (c.method.kind == MethodKind::MphI && c.method.scheme == SchemeKind::Accurate)
+    print(
+        "; rates and fronts are within 1 to 5 % with 20 (resolution = {:.3g}), 2.5 % with 40 ({:.3g}), 1.5 % with "
+        "80 ({:.3g})",
+        c.resolution * 20 / across, c.resolution * 40 / across, c.resolution * 80 / across);
+  print("\n");
+}
+
+void printFluid(const FluidNumbers& n, const FlowScales& flow, bool elastic) {
+  print("# fluid '{}': ", n.material);
+  if (n.viscousTime > 0)
+    print("Reynolds number {:.3g} at {:.3g} m/s", n.reynolds, n.speed);
+  else
+    print("no viscosity, {:.3g} m/s", n.speed);
+  if (n.viscousTime > 0) print(", viscous time {:.3g} s", n.viscousTime);
+  if (elastic && n.ratio > 0) print(", lambda / mu = {:.4g}", n.ratio);
+  if (n.compression > 0)
+    print(", compressed by {:.2g} % under {:.3g} m of itself", 100 * n.compression, flow.height);
+  if (n.capillaryStep > 0) print(", Bond number {:.3g}, capillary step {:.3g} s", n.bond, n.capillaryStep);
+  print("\n");
+}
+
+/// A bulk viscosity that is enough, and the bulk moduli that go with a step: stiff enough for the weight, soft
+/// enough for the step.
+void printBulk(const Case& c, const Material& m, const FlowScales& flow) {
+  const double mu = c.typicalViscosity(m), lambda = recommendedRatio * mu;
+  if (mu == 0) return;
+  const double most = mostCompression(c) * std::max(lambda, m.bulkViscosity) / c.time.step;
+  const double least = m.density * norm(c.gravity) * flow.height / mostCompressed;
+  print("# advice for '{}': bulk_viscosity {:.3g} ({:g} times the viscosity), ", m.name, lambda, recommendedRatio);
+  if (c.time.automatic)
+    print(
+        "bulk_modulus of at least {:.3g} (1 % under its own weight); steps may then be as long as {:g} "
+        "bulk_viscosity / bulk_modulus\n",
+        least, mostCompression(c));
+  else if (least == 0)
+    print("bulk_modulus of at most {:.3g} (stable with this step)\n", most);
+  else if (least < most)
+    print("bulk_modulus from {:.3g} (1 % under its own weight) to {:.3g} (stable with this step)\n", least, most);
+  else
+    print("and a shorter step: a bulk_modulus of {:.3g}, 1 % under its own weight, needs {:.3g} s\n", least,
+          c.time.step * most / least);
+}
+
+/// Of MPH-I, whose steps are bounded by stability, surface tension and the speeds that are known.
+void printStep(const Case& c, const std::vector<FluidNumbers>& fluids, const FlowScales& flow) {
+  StableStep longest = longestStableStep(c);
+  const auto bound = [&](double length, std::string reason) {
+    if (length < longest.length) longest = {length, std::move(reason)};
+  };
+  for (const FluidNumbers& n : fluids)
+    if (n.capillaryStep > 0) bound(n.capillaryStep, fmt::format("surface tension of '{}'", n.material));
+  if (flow.given > 0) bound(c.spacing / flow.given, "one spacing at the given speeds");
+  if (!std::isfinite(longest.length)) return;
+  print("# advice for the step: \"auto\", or at most {:.3g} s ({})\n", longest.length, longest.reason);
+}
+
+}  // namespace
+
+void printAdvice(const Case& c) {
+  const bool elastic = c.method.kind == MethodKind::MphI;
+  const FlowScales flow = flowScales(c);
+  const std::vector<FluidNumbers> fluids = fluidNumbers(c);
+  printResolution(c, flow);
+  for (const FluidNumbers& n : fluids) printFluid(n, flow, elastic);
+  if (!elastic) {
+    const double speed = std::max(flow.given, flow.fall);
+    if (speed > 0)
+      print("# advice for the step: at most {:.3g} s, half a spacing at {:.3g} m/s\n", 0.5 * c.spacing / speed,
+            speed);
+    return;
+  }
+  for (const FluidNumbers& n : fluids)
+    printBulk(c, *std::ranges::find(c.materials, n.material, &Material::name), flow);
+  printStep(c, fluids, flow);
+}
+
+}  // namespace treacle
