@@ -144,7 +144,7 @@ class Collector {
       Collector inside(tables_);
       inside.found_ = &found;
       keys::visit(inside, withHeat, withHeat);
-      inside({"width"}, std::optional<Width>());
+      inside({"width", "What is made wider"}, std::optional<Width>());
     }
     tables_.push_back(std::move(found));
   }
