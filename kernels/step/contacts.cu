@@ -2,6 +2,7 @@
 
 #include "core/launch.hpp"
 #include "core/list_where.cuh"
+#include "treacle/core/copy_values.hpp"
 
 namespace treacle {
 

@@ -213,6 +213,7 @@ class Body:
     file: str | PathLike[str] | None = None
     checksum: str | None = None
     flip: bool | None = None
+    file_velocities: bool | None = None
     nozzle: Nozzle | None = None
     speed: float | str | TimeTable | None = None
     """[m/s]"""
@@ -226,6 +227,7 @@ class Body:
     rotates: bool | bool | Sequence[bool] | None = None
     temperature: float | str | None = None
     """[K]"""
+    file_temperatures: bool | None = None
     wall_conductance: float | None = None
     """[W/(m2 K)]"""
     axis: Sequence[float] | None = None
