@@ -25,21 +25,21 @@ import treacle
 RESOLUTION = float(os.environ.get("RESOLUTION", 1))
 WANTED = 4e-3  # thickness [m]
 INTERVAL = 0.1  # between two decisions [s]
-DURATION = 7.0  # s
+DURATION = 11.0  # s
 FIRST_SPEED = 0.02  # of the nozzle, right for the pump's first flow rate [m/s]
-BEHIND, WINDOW = 10e-3, 5e-3  # the sensor: its middle behind the nozzle's, its length [m]
-PUMP = {"times": [0, 1.5, 3, 4, 6], "values": [8e-5, 8e-5, 1.2e-4, 1.2e-4, 6e-5]}  # flow rate [m2/s]
+BEHIND, WINDOW = 8e-3, 5e-3  # the sensor: its middle behind the nozzle's, its length [m]
+PUMP = {"times": [0, 1.5, 5, 6, 10], "values": [8e-5, 8e-5, 1.2e-4, 1.2e-4, 7e-5]}  # flow rate [m2/s]
 
 
 def bead(way, sensor):
     """`way`: times [s] and places [m] of the nozzle; `sensor`: where the thickness is read [m]."""
-    adhesive = {"name": "adhesive", "density": 1200, "dynamic_viscosity": 50, "bulk_viscosity": 3e4, "bulk_modulus": 5e6}
+    adhesive = {"name": "adhesive", "density": 1200, "dynamic_viscosity": 50, "bulk_viscosity": 3e4, "bulk_modulus": 3e6}
     return {
         "title": "A bead of adhesive under control",
         "dimensions": 2,
         "spacing": 1e-3,
         "resolution": RESOLUTION,
-        "domain": {"min": [-0.03, -0.006], "max": [0.2, 0.02]},
+        "domain": {"min": [-0.03, -0.01], "max": [0.32, 0.02]},
         "gravity": {"acceleration": [0, -9.81]},
         "time": {"step": 2e-3, "end": way[0][-1]},
         "material": [adhesive],
@@ -57,8 +57,8 @@ def bead(way, sensor):
                 "type": "wall",
                 "material": "adhesive",
                 "shape": "box",
-                "min": [-0.02, -4e-3],
-                "max": [0.19, 0],
+                "min": [-0.02, -4e-3 / RESOLUTION],
+                "max": [0.31, 0],
             },
         ],
         "probe": [
@@ -74,7 +74,7 @@ def bead(way, sensor):
 
 # %% [markdown]
 # The controller. What it sees now was laid when the nozzle was there, with the speed that it had then: thickness times that
-# speed is what the pump gave, and that over the wanted thickness is the speed for now. It takes 40 % of the correction at a
+# speed is what the pump gave, and that over the wanted thickness is the speed for now. It takes 60 % of the correction at a
 # time, and may change the speed by at most 3 mm/s in an interval.
 
 
@@ -86,7 +86,7 @@ def controlled(thickness, sensor, way):
     if sensor - WINDOW / 2 < 0.005:
         return now  # nothing to be seen yet but the bead's beginning
     then = speeds[min(np.searchsorted(places, sensor), len(speeds)) - 1]
-    change = 0.4 * (thickness * then / WANTED - now)
+    change = 0.6 * (thickness * then / WANTED - now)
     return float(now + np.clip(change, -3e-3, 3e-3))
 
 
@@ -117,12 +117,12 @@ def lay(controller):
 
 
 # %% [markdown]
-# The thickness in the end is counted from the particles, in strips of 5 mm, from 10 mm to where the nozzle was 10 mm before its last place.
+# The thickness in the end is counted from the particles, in strips of 10 mm, from 10 mm to where the nozzle was 10 mm before its last place.
 
 
 # %%
 def profile(sim, way):
-    edges = np.arange(0.01, way[1, -1] - 0.01, 5e-3)
+    edges = np.arange(0.01, way[1, -1] - 0.01, 10e-3)
     count, _ = np.histogram(np.asarray(sim.fluid.positions)[:, 0], edges)
     return (edges[1:] + edges[:-1]) / 2, count * sim.spacing**2 / np.diff(edges)
 
@@ -148,11 +148,11 @@ for axis, (name, (sim, way, places, thickness, _)) in zip(axes, results.items())
     axis.plot(x[:, 0], x[:, 1], ".", markersize=2 / RESOLUTION)
     axis.plot(walls[:, 0], walls[:, 1], ".", color="grey", markersize=2 / RESOLUTION)
     axis.axhline(WANTED * 1e3, color="k", linewidth=0.5)
-    axis.set(xlim=(-25, 185), ylim=(-4, 13), ylabel="mm", title=name)
+    axis.set(xlim=(-10, 290), ylim=(-4, 13), ylabel="mm", title=name)
     axes[2].plot(places * 1e3, thickness * 1e3, label=name)
     axes[3].plot(way[0, 1:], np.diff(way[1]) / np.diff(way[0]) * 1e3, label=f"nozzle, {name}")
 axes[2].axhline(WANTED * 1e3, color="k", linewidth=0.5)
-axes[2].set(xlim=(-25, 185), xlabel="mm", ylabel="thickness [mm]")
+axes[2].set(xlim=(-10, 290), xlabel="mm", ylabel="thickness [mm]")
 axes[2].legend(fontsize=7)
 axes[3].plot(PUMP["times"] + [DURATION], np.array(PUMP["values"] + [PUMP["values"][-1]]) / WANTED * 1e3, "k:", label="right for the pump")
 axes[3].set(xlabel="time [s]", ylabel="speed [mm/s]")
