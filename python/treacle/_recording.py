@@ -19,14 +19,19 @@ class Recording:
         self._step = session.step
 
     def record(self) -> None:
+        self._step = self._session.step  # whatever comes of it
         self._native.record()
-        self._step = self._session.step
         warn(self._native.take_warnings())
 
     def end(self, error: BaseException | None) -> None:
         """Completes the directory. `error`: what has ended the run."""
-        if error is not None and self._session.step == self._step + 1:
-            self._native.record()  # the step was made, and then somebody has pressed Ctrl-C
+        try:
+            if error is not None and self._session.step == self._step + 1:
+                self.record()  # the step was made, and then somebody has pressed Ctrl-C
+        finally:
+            self._finish(error)
+
+    def _finish(self, error: BaseException | None) -> None:
         try:
             self._native.finish(_reason(error))
         except RunError as failure:

@@ -3,7 +3,6 @@
 import csv
 import json
 import os
-import shutil
 import signal
 import subprocess
 import sys
@@ -134,9 +133,12 @@ def test_run_that_is_stopped_leaves_a_whole_directory(drop, tmp_path, how):
 
 
 @pytest.mark.filterwarnings("ignore::treacle.SimulationWarning")
-def test_directory_that_is_gone_ends_the_run(sim, tmp_path):
-    with pytest.raises(treacle.RunError, match="removed while the run went on"):
-        sim.run(output=tmp_path / "run", callback=lambda s: shutil.rmtree(tmp_path / "run"), progress=False)
+def test_file_that_cannot_be_written_ends_the_run(sim, tmp_path):
+    history = tmp_path / "run/history.csv"
+    with pytest.raises(treacle.RunError, match="history.csv: it was removed while the run went on"):
+        sim.run(output=tmp_path / "run", callback=lambda s: history.unlink(), progress=False)
+    summary = json.loads((tmp_path / "run/summary.json").read_text())
+    assert (summary["status"], "history.csv" in summary["message"]) == ("failed", True)
     steps = sim.step_count
     sim.run(until=sim.time + 1e-3, progress=False)
     assert sim.step_count == steps + 1
