@@ -259,7 +259,7 @@ void addImport(CLI::App& app, ImportOptions& options) {
 /// Commands that a module of the Python package carries out, with their help. All words after the name are the
 /// module's, --help and names of other commands too, so that they do not come to the parser.
 constexpr std::pair<const char*, const char*> pythonCommands[] = {
-    {"movie", "Make a film of a run (Python; pip install treacle[pictures])"},
+    {"movie", "Make a film of a run (Python; pip install '.[pictures]')"},
     {"report", "Write a run's summary, curves and frames as one HTML page (likewise)"}};
 
 /// Does not return where the first word is one of these commands.

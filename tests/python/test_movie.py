@@ -6,7 +6,7 @@ import stat
 import pytest
 
 for package in ("numpy", "vtk", "pyvista", "tqdm", "imageio_ffmpeg"):
-    pytest.importorskip(package, reason="films need pip install treacle[pictures]")
+    pytest.importorskip(package, reason="films need pip install '.[pictures]'")
 
 import imageio_ffmpeg
 import numpy as np

@@ -10,7 +10,7 @@ import zlib
 import pytest
 
 for package in ("numpy", "vtk", "plotly", "tqdm"):
-    pytest.importorskip(package, reason="reports need pip install treacle[pictures]")
+    pytest.importorskip(package, reason="reports need pip install '.[pictures]'")
 
 import numpy as np
 from picture_runs import called, copied, flat_run, run, solid_run

@@ -15,7 +15,7 @@ def require(*modules):
             importlib.import_module(name)
         except ImportError as error:
             raise PictureError(
-                f"{error}; films and reports need more packages: pip install treacle[pictures]"
+                f"{error}; films and reports need more packages: in treacle's sources, pip install '.[pictures]'"
             ) from None
 
 

@@ -40,7 +40,7 @@ def ffmpeg():
     except (ImportError, RuntimeError):
         raise PictureError(
             "ffmpeg is missing; expected that of the system (apt install ffmpeg), or that of "
-            "pip install treacle[pictures]"
+            "pip install '.[pictures]'"
         ) from None
 
 

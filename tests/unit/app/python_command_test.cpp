@@ -38,10 +38,10 @@ TEST_F(PythonCommand, SaysWhatIsMissing) {
   Outcome outcome = shop.call("movie run", "export TREACLE_PYTHON=/no/such/python;");
   EXPECT_EQ(outcome.exitCode, 2);
   EXPECT_THAT(outcome.err, HasSubstr("treacle movie is written in Python, and /no/such/python cannot be started"));
-  EXPECT_THAT(outcome.err, HasSubstr("pip install treacle[pictures]"));
+  EXPECT_THAT(outcome.err, HasSubstr("pip install '.[pictures]'"));
   // -I -S: a Python without any package.
   outcome = callWith("exec python3 -I -S \"$@\"", "report run");
   EXPECT_EQ(outcome.exitCode, 2);
   EXPECT_THAT(outcome.err, HasSubstr("treacle report is written in Python: No module named 'treacle'"));
-  EXPECT_THAT(outcome.err, HasSubstr("pip install treacle[pictures]"));
+  EXPECT_THAT(outcome.err, HasSubstr("pip install '.[pictures]'"));
 }
