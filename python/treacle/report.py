@@ -3,7 +3,7 @@
 import argparse
 import sys
 
-from .pictures.errors import PictureError, reported, require
+from .pictures.errors import PictureError, command, require
 
 
 def arguments_of(argv):
@@ -37,11 +37,7 @@ def make(options):
 
 def main(argv=None):
     """The command; returns its exit code."""
-    try:
-        options = arguments_of(sys.argv[1:] if argv is None else argv)
-    except SystemExit as stop:  # help, or a word that is no option
-        return stop.code or 0
-    return reported(make, options)
+    return command(arguments_of, make, argv)
 
 
 if __name__ == "__main__":

@@ -51,6 +51,14 @@ double product(const Vector& a, const Vector& b) {
 /// other until none moves it by more than `least` (projected Gauss-Seidel). What they cannot do together stays.
 void restrain(const Vector& derivative, const std::vector<Restraint>& restraints, double least, Vector& x) {
   constexpr int mostRounds = 2000;
+  if (restraints.empty()) return;
+  const std::size_t n = x.size();
+  std::vector<Vector> ways;  // by which a residual of 1 in one place moves the zero
+  for (std::size_t j = 0; j < n; ++j) {
+    Vector unit(n);
+    unit[j] = 1;
+    ways.push_back(solved(derivative, unit));
+  }
   struct Held {
     const Restraint* restraint;
     Vector way;       // by which a push of 1 moves the zero
@@ -59,7 +67,9 @@ void restrain(const Vector& derivative, const std::vector<Restraint>& restraints
   };
   std::vector<Held> held;
   for (const Restraint& r : restraints) {
-    Vector way = solved(derivative, r.push);
+    Vector way(n);
+    for (std::size_t j = 0; j < n; ++j)
+      for (std::size_t k = 0; k < n && r.push[j] != 0; ++k) way[k] += r.push[j] * ways[j][k];
     if (const double rate = product(r.row, way); rate > 0) held.push_back({&r, std::move(way), rate});
   }
   for (int round = 0; round < mostRounds; ++round) {
@@ -69,7 +79,7 @@ void restrain(const Vector& derivative, const std::vector<Restraint>& restraints
       const double change = std::max(missing, -h.push);
       if (change == 0) continue;
       h.push += change;
-      for (std::size_t k = 0; k < x.size(); ++k) x[k] += change * h.way[k];
+      for (std::size_t k = 0; k < n; ++k) x[k] += change * h.way[k];
       moved = std::max(moved, std::abs(change) * largest(h.way));
     }
     if (moved <= least) return;

@@ -113,4 +113,41 @@ void requireWarm(Context<Backend>& context, const Buffer<double, Backend>& tempe
           fmt::format("temperatures: expected positive numbers [K], found {:g} for particle {}", host[i], i));
 }
 
+/// What was given, in the backend's memory and found to be possible; empty where nothing was.
+template <int D, class Backend>
+struct CheckedFluid {
+  Buffer<Vec<D>, Backend> position, velocity;
+  Buffer<double, Backend> temperature;
+
+  /// `energy(velocity)`: the kinetic energy with these. Errors: InputError.
+  template <class Energy>
+  static CheckedFluid of(Context<Backend>& context, const GivenFluid& given, const CellGrid<D>& grid,
+                         const Particles<D, Backend>& particles, Energy&& energy) {
+    const std::uint32_t n = particles.fluidCount;
+    if (std::is_same_v<Backend, Cuda> && given.where == BackendKind::Cuda) waitForDevice();
+    const auto here = [&]<class T>(Buffer<T, Backend>& to, std::span<const double> values, const char* what) {
+      if (!values.empty() || n == 0) to = broughtHere<T>(context, values, given.where, n, what);
+    };
+    CheckedFluid fluid;
+    here(fluid.position, given.position, "positions");
+    here(fluid.velocity, given.velocity, "velocities");
+    here(fluid.temperature, given.temperature, "temperatures");
+    if (fluid.position.size() > 0) requireInside(context, grid, particles, fluid.position);
+    if (fluid.velocity.size() > 0 && !std::isfinite(energy(fluid.velocity.span())))
+      throw InputError("velocities: expected finite numbers [m/s], found others");
+    if (fluid.temperature.size() > 0 && !particles.hasTemperatures)
+      throw InputError("temperatures: the case has no heat; expected a case with [heat]");
+    if (fluid.temperature.size() > 0) requireWarm(context, fluid.temperature);
+    return fluid;
+  }
+
+  void copyTo(Context<Backend>& context, Particles<D, Backend>& particles) const {
+    const auto copy = [&](const auto& from, auto& to) {
+      if (from.size() > 0) copyValues(context, from.span(), to.data());
+    };
+    copy(position, particles.position), copy(velocity, particles.velocity);
+    copy(temperature, particles.temperature);
+  }
+};
+
 }  // namespace treacle

@@ -22,10 +22,10 @@ bool someWallMoves(const Case& c, const Particles<D>& particles) {
   return false;
 }
 
-/// Sets motions and velocities of the walls for state.timeStep from state.time on: those of the bodies, with the
-/// speeds that nozzles have, and that rigid bodies are tried with.
+/// Per body of the case, for state.timeStep from state.time on: nozzles with the speeds that they have, rigid
+/// bodies with those that they are tried with.
 template <int D, class Backend>
-void setWallMotions(FlowState<D, Backend>& state) {
+std::vector<WallMotion<D>> bodyMotions(const FlowState<D, Backend>& state) {
   std::vector<WallMotion<D>> motion;
   const Case& c = state.theCase;
   for (std::size_t b = 0; b < c.bodies.size(); ++b) {
@@ -38,6 +38,13 @@ void setWallMotions(FlowState<D, Backend>& state) {
       motion.back().velocity =
           motion.back().velocity + nozzle->speed(state.time, state.timeStep) * nozzle->direction();
   }
+  return motion;
+}
+
+/// Sets motions and velocities of the walls to these.
+template <int D, class Backend>
+void setWallMotions(FlowState<D, Backend>& state) {
+  const std::vector<WallMotion<D>> motion = bodyMotions(state);
   fromHost(state.context, std::span<const WallMotion<D>>(motion), state.wallMotion);
   Particles<D, Backend>& p = state.particles;
   const std::uint32_t n = p.wallBegin();

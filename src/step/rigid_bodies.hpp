@@ -101,7 +101,9 @@ class RigidSystem {
   /// That no surfaces that touch go into each other, in the step at hand, and that those that do come apart: of an
   /// overlap a fifth in a step, at most a hundredth of a spacing, which takes no energy worth naming.
   std::vector<Restraint> restraints(const std::vector<Contact<D>>& contacts) const {
+    if (contacts.empty()) return {};
     const double dt = state_.timeStep, most = 0.01 * state_.theCase.spacing;
+    const std::vector<WallMotion<D>> motion = bodyMotions(state_);
     std::vector<Restraint> all;
     for (const Contact<D>& contact : contacts) {
       Restraint r{std::vector<double>(unknowns_.size()), std::vector<double>(unknowns_.size())};
@@ -111,16 +113,10 @@ class RigidSystem {
       if (state_.theCase.bodies[contact.other].kind == BodyKind::Rigid)
         add(contact.other, place, -1.0 * normal, r);
       else
-        r.least += dot(normal, resized<3>(given(contact.other).chordAt(contact.place)));
+        r.least += dot(normal, resized<3>(motion[contact.other].chordAt(contact.place)));
       all.push_back(std::move(r));
     }
     return all;
-  }
-
-  /// How a body moves in the step that is not rigid.
-  WallMotion<D> given(std::size_t body) const {
-    const Case& c = state_.theCase;
-    return wallMotion<D>(c.domain, c.bodies[body], state_.time, state_.timeStep);
   }
 
   /// The part of a body: its velocity at a place along a normal, less what is locked, and what a force there along

@@ -130,30 +130,15 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
   /// What the fluid remembers does not lead to a state that somebody else has made.
   void giveFluid(const GivenFluid& given) {
     if (context.communicator) throw InputError("processes share the simulation; expected one that is alone");
-    const std::uint32_t n = particles.fluidCount;
-    if (std::is_same_v<Backend, Cuda> && given.where == BackendKind::Cuda) waitForDevice();
-    const auto here = [&]<class T>(T, std::span<const double> values, const char* what) {
-      return values.empty() && n > 0 ? Buffer<T, Backend>{}
-                                     : broughtHere<T>(context, values, given.where, n, what);
-    };
-    Buffer<Vec<D>, Backend> x = here(Vec<D>{}, given.position, "positions");
-    const Buffer<Vec<D>, Backend> u = here(Vec<D>{}, given.velocity, "velocities");
-    const Buffer<double, Backend> warm = here(double{}, given.temperature, "temperatures");
-    if (x.size() > 0) requireInside(context, method->grid(), particles, x);
-    if (u.size() > 0 && !std::isfinite(diagnosticsOf(particles.position, u.span()).kineticEnergy))
-      throw InputError("velocities: expected finite numbers [m/s], found others");
-    if (warm.size() > 0 && !particles.hasTemperatures)
-      throw InputError("temperatures: the case has no heat; expected a case with [heat]");
-    if (warm.size() > 0) requireWarm(context, warm);
-    const auto take = [&](const auto& from, auto& to) {
-      if (from.size() > 0) copyValues(context, from.span(), to.data());
-    };
-    take(x, particles.position), take(u, particles.velocity), take(warm, particles.temperature);
-    if (x.size() == 0 && u.size() == 0) return;
+    const auto fluid = CheckedFluid<D, Backend>::of(
+        context, given, method->grid(), particles,
+        [&](std::span<const Vec<D>> u) { return diagnosticsOf(particles.position, u).kineticEnergy; });
+    fluid.copyTo(context, particles);
+    if (fluid.position.size() == 0 && fluid.velocity.size() == 0) return;
     forEachFlowMemoryOf([&](auto& field) { clearValues(context, field.span()); }, particles);
     this->shearRatesKnown = false;
     particles.modes.pressure = {}, particles.steps = {};
-    if (x.size() > 0) {
+    if (fluid.position.size() > 0) {
       particles.modes.drop();
       distant->addStep(0, std::numeric_limits<double>::infinity());  // who knows how far they have gone
     }

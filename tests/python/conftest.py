@@ -91,3 +91,19 @@ def warm_drop(drop: dict) -> dict:
     drop["body"][0]["temperature"] = 300
     drop["body"][1]["temperature"] = 350
     return drop
+
+
+@pytest.fixture(scope="module")
+def flat(tmp_path_factory):
+    """Directory of a run in two dimensions that films and reports are made of."""
+    from picture_runs import flat_run
+
+    return flat_run(tmp_path_factory.mktemp("flat") / "run")
+
+
+@pytest.fixture(scope="module")
+def solid(tmp_path_factory):
+    """The same in three dimensions."""
+    from picture_runs import solid_run
+
+    return solid_run(tmp_path_factory.mktemp("solid") / "run")

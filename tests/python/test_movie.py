@@ -10,20 +10,10 @@ for package in ("numpy", "vtk", "pyvista", "tqdm", "imageio_ffmpeg"):
 
 import imageio_ffmpeg
 import numpy as np
-from picture_runs import called, copied, flat_run, solid_run, started
+from picture_runs import called, copied, started
 
 from treacle.pictures import camera, fields, hiding, marks, particles
 from treacle.pictures.run_files import RunFiles
-
-
-@pytest.fixture(scope="module")
-def flat(tmp_path_factory):
-    return flat_run(tmp_path_factory.mktemp("flat") / "run")
-
-
-@pytest.fixture(scope="module")
-def solid(tmp_path_factory):
-    return solid_run(tmp_path_factory.mktemp("solid") / "run")
 
 
 def pictures(path):

@@ -13,19 +13,9 @@ for package in ("numpy", "vtk", "plotly", "tqdm"):
     pytest.importorskip(package, reason="reports need pip install '.[pictures]'")
 
 import numpy as np
-from picture_runs import called, copied, flat_run, run, solid_run
+from picture_runs import called, copied, run
 
 from treacle.pictures import particles, report_curves, report_frames
-
-
-@pytest.fixture(scope="module")
-def flat(tmp_path_factory):
-    return flat_run(tmp_path_factory.mktemp("flat") / "run")
-
-
-@pytest.fixture(scope="module")
-def solid(tmp_path_factory):
-    return solid_run(tmp_path_factory.mktemp("solid") / "run")
 
 
 def reported(directory, *options):

@@ -29,9 +29,8 @@ class CaseFileError : public InputError {
       : InputError(message), place_(std::move(place)), key_(std::move(key)) {}
 
   const CasePlace& place() const { return place_; }
-  const std::string& key() const {
-    return key_;
-  }  // the last part of the way to it; empty: no single one is at fault
+  /// The last part of the way to it; empty: no single one is at fault.
+  const std::string& key() const { return key_; }
 
  private:
   CasePlace place_;

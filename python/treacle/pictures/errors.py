@@ -19,11 +19,13 @@ def require(*modules):
             ) from None
 
 
-def reported(command, arguments):
-    """Exit code of command(arguments), as that of the program: 2 where a PictureError says what is wrong, 3 where files
-    cannot be read or written or Ctrl-C ends the work."""
+def command(arguments_of, make, argv):
+    """Exit code of make(arguments_of(argv)), as that of the program: 2 where a PictureError says what is wrong, 3 where
+    files cannot be read or written or Ctrl-C ends the work. argv is None: the words of the command line."""
     try:
-        command(arguments)
+        make(arguments_of(sys.argv[1:] if argv is None else argv))
+    except SystemExit as stop:  # help, or a word that is no option
+        return stop.code or 0
     except PictureError as error:
         print(f"treacle: error: {error}", file=sys.stderr)
         return 2

@@ -9,36 +9,40 @@
 namespace treacle::test {
 namespace {
 
+/// Calls check(a, b) with the second body of a case after each step, on the CPU and the device.
+template <int D, class Check>
+void compareBodies(Case c, int steps, Check&& check) {
+  c.solver.tolerance = 1e-16;
+  c.solver.deflation = 0;
+  Simulation<D> cpu(c, created<D>(c));
+  Simulation<D, Cuda> cuda(c, created<D>(c));
+  for (int k = 0; k < steps && !::testing::Test::HasFatalFailure(); ++k) {
+    const RigidBody a = cpu.advance().rigid[1], b = cuda.advance().rigid[1];
+    SCOPED_TRACE(k);
+    check(a, b);
+  }
+}
+
 template <int D>
 void compareBlocks(double density) {
   Case c = blockCase(D, density);
   c.gravity[1] = -10;
   c.bodies[1].rigid.angularVelocity = {0, 0, 5};
-  c.solver.tolerance = 1e-16;
-  c.solver.deflation = 0;
-  Simulation<D> cpu(c, created<D>(c));
-  Simulation<D, Cuda> cuda(c, created<D>(c));
-  for (int k = 0; k < 8; ++k) {
-    const RigidBody a = cpu.advance().rigid[1], b = cuda.advance().rigid[1];
+  compareBodies<D>(c, 8, [&](const RigidBody& a, const RigidBody& b) {
     ASSERT_LE(norm(a.velocity - b.velocity), 1e-5 * norm(a.velocity));
     ASSERT_LE(norm(a.spin - b.spin), 1e-4 * (norm(a.spin) + 1));
     ASSERT_LE(norm(a.center - b.center), 1e-5 * c.spacing);
-  }
+  });
 }
 
 /// Until it has hit the floor with a corner and its side.
 template <int D>
 void compareFall() {
-  Case c = fallingBlockCase(D, 30);
-  c.solver.tolerance = 1e-16;
-  c.solver.deflation = 0;
-  Simulation<D> cpu(c, created<D>(c));
-  Simulation<D, Cuda> cuda(c, created<D>(c));
-  for (int k = 0; k < 25; ++k) {
-    const RigidBody a = cpu.advance().rigid[1], b = cuda.advance().rigid[1];
-    ASSERT_LE(norm(a.velocity - b.velocity), 1e-3 * 0.6) << k;
-    ASSERT_LE(norm(a.center - b.center), 1e-3 * c.spacing) << k;
-  }
+  const Case c = fallingBlockCase(D, 30);
+  compareBodies<D>(c, 25, [&](const RigidBody& a, const RigidBody& b) {
+    ASSERT_LE(norm(a.velocity - b.velocity), 1e-3 * 0.6);
+    ASSERT_LE(norm(a.center - b.center), 1e-3 * c.spacing);
+  });
 }
 
 TEST(RigidBodiesTwin, TouchAsOnTheCpu) {
