@@ -5,18 +5,13 @@
 # and the controller does not know how. Ten times a second it reads how thick the bead is behind the nozzle, and says how fast the
 # nozzle is to go next: slower where the bead is too thin.
 #
-# How the program is steered: motions of nozzles are part of the case and cannot change while a simulation runs. So the case is run
-# for a tenth of a second, to a checkpoint, and the next tenth goes on from there with a case whose table of the nozzle's way
-# has one more entry. What is before that time stays as it was, so that the nozzle stands where the checkpoint has it. The table also says how
-# the nozzle would go on, with the same speed: otherwise it would stop where the table ends, and the layer of fluid that leaves it just then would have half its
-# speed. The probe, too, is put to another place each time, behind the nozzle.
+# `sim.steer` tells the nozzle how to go on. What is read are the places of the particles.
 #
 # `RESOLUTION=2 python controller.py` runs it with half the spacing.
 
 # %%
 import os
-import tempfile
-from pathlib import Path
+import tomllib
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -31,11 +26,8 @@ BEHIND, WINDOW = 8e-3, 5e-3  # the sensor: its middle behind the nozzle's, its l
 PUMP = {"times": [0, 1.5, 5, 6, 10], "values": [8e-5, 8e-5, 1.2e-4, 1.2e-4, 7e-5]}  # flow rate [m2/s]
 
 
-def bead(way, sensor):
-    """`way`: times [s] and places [m] of the nozzle; `sensor`: where the thickness is read [m]."""
+def bead():
     adhesive = {"name": "adhesive", "density": 1200, "dynamic_viscosity": 50, "bulk_viscosity": 3e4, "bulk_modulus": 3e6}
-    times, places = way
-    ahead = {"times": [*times, times[-1] + INTERVAL], "values": [*places, 2 * places[-1] - places[-2]]}
     return {
         "title": "A bead of adhesive under control",
         "dimensions": 2,
@@ -43,7 +35,7 @@ def bead(way, sensor):
         "resolution": RESOLUTION,
         "domain": {"min": [-0.03, -0.01], "max": [0.32, 0.02]},
         "gravity": {"acceleration": [0, -9.81]},
-        "time": {"step": 2e-3, "end": times[-1]},
+        "time": {"step": 2e-3, "end": DURATION},
         "material": [adhesive],
         "body": [
             {
@@ -51,7 +43,6 @@ def bead(way, sensor):
                 "type": "inflow",
                 "material": "adhesive",
                 "flow_rate": PUMP,
-                "displacement": [ahead, 0],
                 "nozzle": {"shape": "rectangle", "center": [0, 7e-3], "direction": [0, -1], "width": 4e-3},
             },
             {
@@ -62,14 +53,6 @@ def bead(way, sensor):
                 "min": [-0.02, -4e-3 / RESOLUTION],
                 "max": [0.31, 0],
             },
-        ],
-        "probe": [
-            {
-                "name": "sensor",
-                "type": "region",
-                "box": {"min": [sensor - WINDOW / 2, 0], "max": [sensor + WINDOW / 2, 0.02]},
-                "interval": INTERVAL,
-            }
         ],
     }
 
@@ -97,25 +80,25 @@ def uncontrolled(thickness, sensor, way):
 
 
 # %%
+def thickness_at(sim, sensor):
+    x = np.asarray(sim.fluid.positions)[:, 0]
+    return np.count_nonzero(abs(x - sensor) < WINDOW / 2) * sim.spacing**2 / WINDOW
+
+
 def lay(controller):
     """The bead in the end, the way of the nozzle, and what the sensor saw."""
-    way, seen = ([0.0, INTERVAL], [0.0, FIRST_SPEED * INTERVAL]), []
-    with tempfile.TemporaryDirectory() as folder:
-        checkpoint = Path(folder) / "bead.h5"
+    sim, way, seen = treacle.Simulation(bead(), backend="cpu"), ([0.0], [0.0]), []
+    speed = FIRST_SPEED
+    while not sim.at_end:
+        sim.steer("nozzle", velocity=[speed, 0])
+        sim.run(until=sim.time + INTERVAL, progress=False)
+        way[1].append(way[1][-1] + speed * (sim.time - way[0][-1]))
+        way[0].append(sim.time)
         sensor = way[1][-1] - BEHIND
-        sim = treacle.Simulation(bead(way, sensor), backend="cpu")
-        while True:
-            sim.run(progress=False)
-            thickness = sim.probe("sensor")["volume"][-1] / WINDOW
-            seen.append((sim.time, sensor, thickness))
-            if sim.time > DURATION - INTERVAL / 2:
-                return sim, np.array(way), np.array(seen)
-            speed = controller(thickness, sensor, way)
-            way[0].append(round(way[0][-1] + INTERVAL, 9))
-            way[1].append(way[1][-1] + speed * INTERVAL)
-            sensor = way[1][-1] - BEHIND
-            sim.write_checkpoint(checkpoint)
-            sim = treacle.Simulation.from_checkpoint(checkpoint, bead(way, sensor), backend="cpu")
+        thickness = thickness_at(sim, sensor)
+        seen.append((sim.time, sensor, thickness))
+        speed = controller(thickness, sensor, way)
+    return sim, np.array(way), np.array(seen)
 
 
 # %% [markdown]
@@ -144,15 +127,14 @@ ratio = results["fixed speed"][-1] / results["controller"][-1]
 print(f"the controller makes the error {ratio:.1f} times smaller")
 
 # %% [markdown]
-# Do the checkpoints change anything? The way of the nozzle at fixed speed, given as a whole to one run without a stop, should
-# lay the same bead.
+# The simulation's case has the way that the nozzle was steered along: run from the start, it should lay the same bead.
 
 # %%
-stopped, way = results["fixed speed"][:2]
-straight = treacle.Simulation(bead(way.tolist(), 0), backend="cpu")
-straight.run(progress=False)
-beads = [np.asarray(sim.fluid.positions)[np.argsort(np.asarray(sim.fluid.ids))] for sim in (stopped, straight)]
-print(f"with and without {len(way[0]) - 2} checkpoints particles are {np.abs(beads[0] - beads[1]).max():g} m apart")
+steered = results["controller"][0]
+again = treacle.Simulation(tomllib.loads(steered.case_text), backend="cpu")
+again.run(progress=False)
+beads = [np.asarray(sim.fluid.positions)[np.argsort(np.asarray(sim.fluid.ids))] for sim in (steered, again)]
+print(f"steered and run again particles are {np.abs(beads[0] - beads[1]).max():.1e} m apart")
 
 # %%
 figure, axes = plt.subplots(4, 1, figsize=(8, 6.5), layout="constrained", height_ratios=[1, 1, 1.6, 1.6])

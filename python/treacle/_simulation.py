@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, Literal, Union
 
 import numpy as np
+from numpy.typing import ArrayLike
 from tqdm.auto import tqdm
 
 from . import _treacle
@@ -276,6 +277,29 @@ class Simulation:
         nothing is changed then.
         """
         self._session.change(_treacle.parse_case(self.case_text, override_texts(overrides)))
+
+    def steer(
+        self,
+        body: str,
+        *,
+        velocity: ArrayLike | None = None,
+        angular_velocity: float | None = None,
+        speed: float | None = None,
+        flow_rate: float | None = None,
+    ) -> None:
+        """A wall or a nozzle goes on with these velocities, until it is steered again; what is None stays as it is.
+
+        - `velocity` (D,) [m/s]: of the wall, of its centre if it rotates, or of the nozzle of an inflow.
+        - `angular_velocity` [rad/s]: of a wall that has a rotation, about its axis.
+        - `speed` [m/s] or `flow_rate` [m3/s; m2/s in two dimensions]: of an inflow, whichever its case gives.
+
+        The motion of the body in `case_text`, and in the run directory if one is written, becomes tables that keep its
+        past, so that checkpoints fit and a run of that case goes the same way. The first time takes about as long as
+        the start of a simulation for a body without such tables, and for a moment the memory of another one. Errors:
+        InputError for a body that does not have what is steered, or moves by an oscillation or a formula.
+        """
+        numbers = None if velocity is None else [float(v) for v in np.atleast_1d(velocity)]
+        self._session.steer(body, numbers, angular_velocity, speed, flow_rate)
 
     @property
     def history(self) -> dict[str, np.ndarray]:

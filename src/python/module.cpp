@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/filesystem.h>
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/unique_ptr.h>
 #include <nanobind/stl/vector.h>
@@ -67,6 +68,19 @@ Arrays probeOf(const Session& session, const std::string& name) {
   }
   throw InputError(known.empty() ? fmt::format("probe '{}': the case has no probes", name)
                                  : fmt::format("probe: {}", wrongWord(known, name)));
+}
+
+void steer(Session& session, const std::string& body, const std::optional<std::vector<double>>& velocity,
+           std::optional<double> spin, std::optional<double> speed, std::optional<double> flowRate) {
+  Steering steering{.spin = spin, .speed = speed, .flowRate = flowRate};
+  const auto dimensions = static_cast<std::size_t>(session.theCase().dimensions);
+  if (velocity && velocity->size() != dimensions)
+    throw InputError(fmt::format("velocity: expected {} numbers, found {}", dimensions, velocity->size()));
+  if (velocity) {
+    steering.velocity.emplace();
+    for (std::size_t k = 0; k < dimensions; ++k) (*steering.velocity)[static_cast<int>(k)] = (*velocity)[k];
+  }
+  session.steer(body, steering);
 }
 
 std::uint64_t writeFrame(const Session& session, const std::filesystem::path& path, bool walls) {
@@ -141,6 +155,8 @@ void bindSession(nb::module_& m) {
       .def_static("make", &makeSession, "case"_a, "backend"_a, "precision"_a, "threads"_a, "checkpoint"_a, Quiet())
       .def("advance", &Session::advance, Quiet(), nb::rv_policy::copy)
       .def("change", &Session::change, "case"_a, Quiet())
+      .def("steer", &steer, "body"_a, "velocity"_a.none(), "spin"_a.none(), "speed"_a.none(), "flow_rate"_a.none(),
+           Quiet())
       .def("take_warnings",
            [](Session& s) {
              std::vector<std::string> texts = s.takeWarnings();

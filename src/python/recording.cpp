@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include <exception>
+#include <utility>
 
 namespace treacle {
 namespace {
@@ -33,6 +34,7 @@ Recording::Recording(Session& session, const std::filesystem::path& directory, b
       recorder_(
           session.theCase(), directory_, log_, session.simulation().time(), true,
           [this](Snapshot& s) {
+            writeCase();
             session_.simulation().copyParticles(s.particles);
             s.step = session_.simulation().step(), s.time = session_.simulation().time();
           },
@@ -40,9 +42,15 @@ Recording::Recording(Session& session, const std::filesystem::path& directory, b
   log_.info(fmt::format("treacle {} ({}) from Python, backend {}, {}, {} threads of the host", summary_.version,
                         summary_.commit, summary_.backend, session.device(), summary_.threads));
   log_.info("solver: " + solverText(solveStages(session.theCase()).front()));
-  writeFile(directory_.caseFile(), caseText(session.theCase()));
+  writeCase();
   recorder_.begin();
   session_.setRecorded(true);
+}
+
+/// The case that a checkpoint of now goes on with. What it says of earlier times does not change.
+void Recording::writeCase() {
+  if (std::exchange(steered_, session_.steerings()) != session_.steerings())
+    writeFile(directory_.caseFile(), caseText(session_.theCase()));
 }
 
 void Recording::record() {

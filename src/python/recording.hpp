@@ -33,11 +33,14 @@ class Recording {
   std::vector<std::string> takeWarnings() { return recorder_.takeWarnings(); }
 
  private:
+  void writeCase();
+
   Timer timer_;
   Session& session_;
   RunDirectory directory_;
   RunLog log_;
   RunSummary summary_;
+  int steered_ = -1;  // how often the session was when the case was written
   Recorder recorder_;
 };
 

@@ -9,9 +9,11 @@
 #include "treacle/io/arrangement.hpp"
 #include "treacle/io/shape_files.hpp"
 #include "treacle/model/checks.hpp"
+#include "treacle/model/names.hpp"
 
 #include <algorithm>
 #include <functional>
+#include <string_view>
 #include <utility>
 
 namespace treacle {
@@ -28,6 +30,15 @@ bool hasSameParticles(const Case& c, Case next) {
   if (c.time.stepsVary() && next.time.stepsVary())
     next.time.step = c.time.step, next.time.courant = c.time.courant;
   return next == c;
+}
+
+std::size_t bodyNamed(const Case& c, const std::string& name) {
+  std::vector<std::string_view> known;
+  for (std::size_t b = 0; b < c.bodies.size(); ++b) {
+    if (c.bodies[b].name == name) return b;
+    known.push_back(c.bodies[b].name);
+  }
+  throw InputError("body: " + wrongWord(known, name));
 }
 
 }  // namespace
@@ -85,11 +96,31 @@ void Session::change(Case next) {
     throw InputError(
         "between steps only constants of materials, gravity, [rheology], [heat], [solver], [watch] and the end of "
         "the time can change, and the length of steps that vary; expected a case that differs in these alone");
+  makeAnew(next);
+  next.probes = std::move(case_.probes);  // they are the same, and who writes them refers to these
+  case_ = std::move(next);
+}
+
+/// The simulation around its particles.
+void Session::makeAnew(const Case& next) {
   AnySimulation changed(next, particles(), backend_, simulation_->step(), simulation_->time());
   ++version_;
   simulation_.emplace(std::move(changed));
-  next.probes = std::move(case_.probes);  // they are the same, and who writes them refers to these
-  case_ = std::move(next);
+}
+
+void Session::steer(const std::string& body, const Steering& steering) {
+  const std::size_t b = bodyNamed(case_, body);
+  Body next = steered(case_.bodies[b], steering, simulation_->time());
+  if (isSteeredAlready(case_.bodies[b], next)) {
+    simulation_->giveMotion(b, next);
+  } else {
+    Case changed = case_;
+    changed.bodies[b] = next;
+    requireValid(changed);
+    makeAnew(changed);
+  }
+  case_.bodies[b] = std::move(next);
+  ++steerings_;
 }
 
 AnyParticles Session::particles() const {

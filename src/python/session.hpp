@@ -7,6 +7,7 @@
 #include "treacle/io/balance_writer.hpp"
 #include "treacle/io/history.hpp"
 #include "treacle/io/rigid_writer.hpp"
+#include "treacle/model/steering.hpp"
 #include "treacle/step/any_simulation.hpp"
 
 #include <cstdint>
@@ -43,6 +44,12 @@ class Session {
   /// same particles. Errors: InputError for a case that differs in something else, and while it is recorded.
   void change(Case next);
 
+  /// A wall or nozzle goes on as this says; a run directory that is being written has it, too. Errors: InputError
+  /// for a name that is none, and those of steered(); RunError, std::bad_alloc.
+  void steer(const std::string& body, const Steering& steering);
+  /// How often that was done.
+  int steerings() const { return steerings_; }
+
   /// Whether a run directory is written of the steps, which has the case and refers to this one.
   void setRecorded(bool is) { isRecorded_ = is; }
   bool isRecorded() const { return isRecorded_; }
@@ -77,6 +84,8 @@ class Session {
   std::vector<std::string> takeWarnings();
 
  private:
+  void makeAnew(const Case& next);
+
   Case case_;
   BackendKind backend_ = BackendKind::Cpu;
   std::string device_;
@@ -85,6 +94,7 @@ class Session {
   StepReport report_;
   std::int64_t version_ = 0;
   double stepSeconds_ = 0;
+  int steerings_ = 0;
   bool isRecorded_ = false, isLost_ = false;
 
   RowTable history_, balance_, rigid_;

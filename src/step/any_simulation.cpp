@@ -128,6 +128,9 @@ void AnySimulation::copyField(FluidField field, void* host) const {
 void AnySimulation::giveFluid(const GivenFluid& given) {
   held_->visit([&](auto& s) { s.giveFluid(given); });
 }
+void AnySimulation::giveMotion(std::size_t body, const Body& as) {
+  held_->visit([&](auto& s) { s.giveMotion(body, as); });
+}
 
 ParticleNumbers AnySimulation::numbers() const {
   return held_->visit([](auto& s) { return s.numbers(); });

@@ -149,8 +149,9 @@ void OpenBoundaries<D, Backend>::addLayer(const CellGrid<D>& grid, std::size_t b
   Particles<D>& added = change.added;
   const std::uint32_t first = added.fluidCount;
   appendParticles<D>(added, places);
-  const Vec<D> u = resized<D>(wallVelocity(b, state_.time, 0)) +
-                   nozzle.speed(state_.time - state_.timeStep, state_.timeStep) * nozzle.direction();
+  const double start = state_.time - state_.timeStep;
+  const Vec<D> u = resized<D>(wallVelocity(b, start, state_.timeStep)) +
+                   nozzle.speed(start, state_.timeStep) * nozzle.direction();
   for (std::uint32_t i = first; i < added.fluidCount; ++i) {
     added.velocity[i] = u;
     added.material[i] = static_cast<std::uint8_t>(b.material);

@@ -127,9 +127,13 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     watch.emplace(theCase, start, mass, this->fluidOfAll, wallsMove || theCase.isOpen());
   }
 
+  void requireAlone() const {
+    if (context.communicator) throw InputError("processes share the simulation; expected one that is alone");
+  }
+
   /// What the fluid remembers does not lead to a state that somebody else has made.
   void giveFluid(const GivenFluid& given) {
-    if (context.communicator) throw InputError("processes share the simulation; expected one that is alone");
+    requireAlone();
     const auto fluid = CheckedFluid<D, Backend>::of(
         context, given, method->grid(), particles,
         [&](std::span<const Vec<D>> u) { return diagnosticsOf(particles.position, u).kineticEnergy; });
@@ -143,6 +147,12 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
       distant->addStep(0, std::numeric_limits<double>::infinity());  // who knows how far they have gone
     }
     startWatch();
+  }
+
+  void giveMotion(std::size_t body, const Body& as) {
+    requireAlone();
+    theCase.bodies[body] = as;
+    if (auto& nozzle = this->nozzles[body]) nozzle.emplace(theCase, as);
   }
 
   void chooseTimeStep() {
@@ -351,6 +361,10 @@ void Simulation<D, Backend>::copyField(FluidField field, void* host) const {
 template <int D, class Backend>
 void Simulation<D, Backend>::giveFluid(const GivenFluid& given) {
   withTeam<Backend>([&] { state_->giveFluid(given); });
+}
+template <int D, class Backend>
+void Simulation<D, Backend>::giveMotion(std::size_t body, const Body& as) {
+  state_->giveMotion(body, as);
 }
 template <int D, class Backend>
 std::vector<SolverTrial> Simulation<D, Backend>::convergence(std::span<const SolverSettings> solvers) {

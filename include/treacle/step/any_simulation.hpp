@@ -39,6 +39,7 @@ class AnySimulation {
   FieldMemory field(FluidField field) const;
   void copyField(FluidField field, void* host) const;
   void giveFluid(const GivenFluid& given);
+  void giveMotion(std::size_t body, const Body& as);
   std::vector<ProbeReading> measure(std::uint64_t probes) const;
   double time() const;  // [s]
   std::int64_t step() const;

@@ -133,6 +133,9 @@ class Simulation {
   /// and the watch begins anew; pressures and densities stay those of the last step. Errors: InputError, for a
   /// simulation that processes share as well; std::bad_alloc. The state is then as before.
   void giveFluid(const GivenFluid& given);
+  /// A body of the case moves from now on as this one does, which is where it is now (model/steering.hpp). Errors:
+  /// InputError for a simulation that processes share.
+  void giveMotion(std::size_t body, const Body& as);
   double time() const;  // [s]
   std::int64_t step() const;
   std::size_t bytes() const;      // memory held [B]
