@@ -22,10 +22,11 @@ class Fluid:
     GPU it gives the field itself (`DeviceArray`), which holds until the next step. Particles stand in the order that
     the search likes, which changes with every step; `ids` names them for good.
 
-    Positions, velocities, viscosities and temperatures can be assigned between steps: from an array of the same shape
+    Positions, velocities, viscosities (or their factors) and temperatures can be assigned between steps: from an array of
+    the same shape
     in the present order, of NumPy or anything with DLPack, on the host or on the GPU that computes, or from one number
-    or row for all. The flow then has no memory of earlier steps, and the watch begins anew. Pressures and number
-    densities stay those of the last step until the next one.
+    or row for all. After other positions or velocities the flow has no memory of earlier steps, and the watch begins
+    anew. Pressures and number densities stay those of the last step until the next one.
     """
 
     def __init__(self, session: _treacle.Session) -> None:
@@ -77,11 +78,13 @@ class Fluid:
 
     @property
     def viscosities(self) -> np.ndarray:
-        """(n,) a copy on the host [Pa s]: of shear rates and temperatures where materials have a rheology or follow them.
+        """(n,) a copy on the host [Pa s]: of shear rates, temperatures and factors where the case has them.
 
-        A fluid has the viscosity of its material: an assigned array has one value per material, for which
-        `Simulation.change` makes it go on with other constants. Errors: InputError for values that differ within a
-        material, are negative, or are those of a rheology or of a viscosity that follows the temperature.
+        Particles keep what is assigned until it is assigned again, by factors to the viscosities of their materials
+        (`viscosity_factors`). One value per material, where there are no factors, makes the material another one, as
+        `Simulation.change` does. Errors of assignment: InputError for others than positive numbers on the host, where
+        a material has a rheology or a viscosity that follows the temperature, and with ISPH for values that differ
+        within a material.
         """
         copied: np.ndarray = self._session.viscosities
         return copied
@@ -89,24 +92,35 @@ class Fluid:
     @viscosities.setter
     def viscosities(self, values: Any) -> None:
         given = _expanded(given_array(_on_host(values), "viscosities"), (len(self),), "viscosities")
-        if self._session.has_own_viscosities:
-            raise InputError(
-                "viscosities: they follow from shear rates and temperatures in this case; expected one without a "
-                "rheology and without a viscosity that follows the temperature"
-            )
         materials = np.asarray(self._session.copied_field("materials"))
-        changes = {}
-        for number, name in enumerate(self._session.material_names):
-            of_material = given[materials == number]
-            if len(of_material) == 0:
-                continue
-            if not (of_material == of_material[0]).all():
-                raise InputError(
-                    f"viscosities: expected one value for all particles of material '{name}', found "
-                    f"{of_material.min():g} to {of_material.max():g}: a fluid has the viscosity of its material"
-                )
-            changes[f"material.{quoted(name)}.dynamic_viscosity"] = float(of_material[0])
-        self._session.change(_treacle.parse_case(self._session.case_text, override_texts(changes)))
+        own = np.array(self._session.newtonian_viscosities)
+        if (own[materials] <= 0).any():
+            name = self._session.material_names[materials[own[materials] <= 0][0]]
+            raise InputError(
+                f"viscosities: that of material '{name}' follows from shear rates or temperatures, or is 0; its "
+                "viscosity_factors can be assigned"
+            )
+        if not (np.isfinite(given) & (given > 0)).all():
+            raise InputError(f"viscosities: expected positive numbers [Pa s], found {given.min():g}")
+        kinds = {int(m): np.unique(given[materials == m]) for m in np.unique(materials)}
+        if self.viscosity_factors is None and all(len(values) == 1 for values in kinds.values()):
+            names = self._session.material_names
+            changes = {f"material.{quoted(names[m])}.dynamic_viscosity": float(v[0]) for m, v in kinds.items()}
+            self._session.change(_treacle.parse_case(self._session.case_text, override_texts(changes)))
+        else:
+            self.viscosity_factors = given / own[materials]
+
+    @property
+    def viscosity_factors(self) -> Array | None:
+        """(n,) by what the viscosities of the materials are multiplied [-]; None where all are 1 for good.
+
+        Assigning them where there are none gives the fluid such a field. Errors of assignment: InputError for others than positive numbers, and with ISPH.
+        """
+        return self._field_of_some("viscosity_factors")
+
+    @viscosity_factors.setter
+    def viscosity_factors(self, values: Any) -> None:
+        self.set(viscosity_factors=values)
 
     @property
     def pressures(self) -> Array:
@@ -138,7 +152,14 @@ class Fluid:
         """(n,) names that particles keep for good."""
         return self._field("ids")
 
-    def set(self, *, positions: Any = None, velocities: Any = None, temperatures: Any = None) -> None:
+    def set(
+        self,
+        *,
+        positions: Any = None,
+        velocities: Any = None,
+        temperatures: Any = None,
+        viscosity_factors: Any = None,
+    ) -> None:
         """Assigns several fields at once: all of them or, with InputError, none."""
         n, d = len(self), self._session.dimensions
         given = [
@@ -147,6 +168,7 @@ class Fluid:
                 (positions, (n, d), "positions"),
                 (velocities, (n, d), "velocities"),
                 (temperatures, (n,), "temperatures"),
+                (viscosity_factors, (n,), "viscosity_factors"),
             )
         ]
         self._session.give_fluid(*given)

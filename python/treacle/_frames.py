@@ -32,11 +32,13 @@ class Frame:
     nearest_distances: np.ndarray | None
     """(n,) to the nearest other particle, over the spacing [-]; of fluid"""
     viscosities: np.ndarray | None
-    """(n,) [Pa s]; of fluid where a material has a rheology or a viscosity that follows the temperature"""
+    """(n,) [Pa s]; of fluid where particles have their own"""
     shear_rates: np.ndarray | None
     """(n,) [1/s]; likewise"""
     temperatures: np.ndarray | None
     """(n,) [K]; of fluid in cases with heat"""
+    viscosity_factors: np.ndarray | None
+    """(n,) [-]; of fluid where particles have them"""
     materials: np.ndarray | None
     """(n,) indices into the materials of the case"""
     bodies: np.ndarray | None
@@ -60,6 +62,7 @@ def frame_of(time: float, dimensions: int, arrays: dict[str, Any]) -> Frame:
         viscosities=arrays["dynamic_viscosity"],
         shear_rates=arrays["shear_rate"],
         temperatures=arrays["temperature"],
+        viscosity_factors=arrays["viscosity_factor"],
         materials=arrays["material"],
         bodies=arrays["body"],
         ids=arrays["id"],

@@ -176,6 +176,7 @@ class Body:
     where: str | None = None
     velocity: Sequence[float | str] | Sequence[float] | None = None
     """[m/s]"""
+    viscosity_factor: float | str | None = None
     oscillation: Oscillation | None = None
     displacement: Sequence[float | str | TimeTable] | None = None
     """[m]"""
@@ -361,7 +362,7 @@ class Output:
     """[s]"""
     checkpoint_interval: float | None = None
     """[s]"""
-    fields: Sequence[Literal["velocity", "pressure", "number_density", "nearest_distance", "material", "body", "id", "dynamic_viscosity", "shear_rate", "temperature"]] | None = None
+    fields: Sequence[Literal["velocity", "pressure", "number_density", "nearest_distance", "material", "body", "id", "dynamic_viscosity", "shear_rate", "temperature", "viscosity_factor"]] | None = None
     format: Literal["vtp"] | None = None
     precision: Literal["single", "double"] | None = None
     compression: Literal["zlib", "none"] | None = None

@@ -48,7 +48,7 @@ Kinds kindsOf(const MadeParticles& made) {
 /// What a fluid of unknown temperature would start with nobody can say.
 template <int D>
 void requireTemperatures(const Case& c, const std::filesystem::path& file, const Particles<D>& p) {
-  if (c.heat && !p.hasTemperatures) refuse(file, "a state without temperatures, but the case has heat");
+  if (c.heat && !p.has.temperatures) refuse(file, "a state without temperatures, but the case has heat");
 }
 
 template <int D>

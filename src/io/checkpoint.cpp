@@ -26,10 +26,11 @@ namespace treacle {
 namespace {
 
 constexpr std::string_view formatName = "treacle checkpoint";
-constexpr std::int32_t formatVersion = 9;  // 1: without acceleration and jerk; 2: without bodies and modes; 3:
-                                           // without method and checksums; 4: without kept eigenvalue; 5: without
-                                           // memory of the time steps; 6: without shear rates; 7: without
-                                           // temperatures; 8: without fluid that comes and goes
+constexpr std::int32_t formatVersion = 10;  // 1: without acceleration and jerk; 2: without bodies and modes; 3:
+                                            // without method and checksums; 4: without kept eigenvalue; 5: without
+                                            // memory of the time steps; 6: without shear rates; 7: without
+                                            // temperatures; 8: without fluid that comes and goes; 9:
+                                            // without factors of viscosities
 
 bool isFinite(double x) { return std::isfinite(x); }
 template <int D, class T>
@@ -50,6 +51,9 @@ void requireSound(const Particles<D>& particles) {
     if (rate < 0) throw Hdf5Error(fmt::format("a shear rate of {} 1/s, expected at least 0", rate));
   for (const double T : particles.temperature)
     if (!(T > 0)) throw Hdf5Error(fmt::format("a temperature of {} K, expected more than 0", T));
+  for (const double factor : particles.viscosityFactor)
+    if (!(factor > 0))
+      throw Hdf5Error(fmt::format("a factor of the viscosity of {}, expected more than 0", factor));
 }
 
 /// Looks at the ids of all particles, `fluid` of which come first: those of walls follow each other, after those
@@ -182,8 +186,9 @@ void fill(hid_t file, const Particles<D>& particles, std::int64_t step, double t
   writeAttribute(file, "time", time);
   writeAttribute(file, "fluid_count", particles.fluidCount);
   writeAttribute(file, "wall_count", particles.wallCount());
-  writeAttribute(file, "has_shear_rates", std::uint8_t{particles.hasShearRates});
-  writeAttribute(file, "has_temperatures", std::uint8_t{particles.hasTemperatures});
+  writeAttribute(file, "has_shear_rates", std::uint8_t{particles.has.shearRates});
+  writeAttribute(file, "has_temperatures", std::uint8_t{particles.has.temperatures});
+  writeAttribute(file, "has_viscosity_factors", std::uint8_t{particles.has.viscosityFactors});
   const ModeAge& age = particles.modes.age;
   writeAttribute(file, "mode_count", particles.modeCount());
   writeAttribute(file, "modes_due", age.due);
@@ -304,8 +309,10 @@ Checkpoint<D> readContent(const std::filesystem::path& path, bool sealed, Partic
   if (version >= 3) modes = readModeNumbers(file, particles.modes.age);
   if (version >= 5) particles.modes.pressure = readEigenvalue(file);
   if (version >= 6) particles.steps = readSteps(file);
-  if (version >= 7) particles.hasShearRates = readAttribute<std::uint8_t>(file, "has_shear_rates") != 0;
-  if (version >= 8) particles.hasTemperatures = readAttribute<std::uint8_t>(file, "has_temperatures") != 0;
+  const auto has = [&](std::int32_t since, const char* name) {
+    return version >= since && readAttribute<std::uint8_t>(file, name) != 0;
+  };
+  particles.has = {has(7, "has_shear_rates"), has(8, "has_temperatures"), has(10, "has_viscosity_factors")};
   if (version >= 9) particles.flow = readFlow(file), particles.rigid = readRigid(file);
   Selection selection{part, particles.fluidCount, particles.wallCount(), {}};
   checkpoint.fluidOfAll = selection.fluid, checkpoint.wallsOfAll = selection.walls;

@@ -36,7 +36,7 @@ struct FieldInfo {
 template <class P, class F>
 void forEachNamedField(P& particles, std::uint64_t modeValues, F&& f) {
   auto& [fluidCount, ghostCount, count, position, velocity, pressure, numberDensity, material, body, id,
-         acceleration, jerk, shearRate, hasShearRates, temperature, hasTemperatures, modes, steps, flow, rigid,
+         acceleration, jerk, has, shearRate, temperature, viscosityFactor, modes, steps, flow, rigid,
          wallSurface] = particles;
   static_cast<void>(steps), static_cast<void>(flow), static_cast<void>(rigid);  // numbers
   static_cast<void>(wallSurface);
@@ -47,8 +47,9 @@ void forEachNamedField(P& particles, std::uint64_t modeValues, F&& f) {
   f(FieldInfo{"id", Of::All, count}, id);
   f(FieldInfo{"acceleration", Of::Fluid, fluidCount, 2}, acceleration);
   f(FieldInfo{"jerk", Of::Fluid, fluidCount, 2}, jerk);
-  f(FieldInfo{"shear_rate", Of::Fluid, hasShearRates ? fluidCount : 0, 7}, shearRate);
-  f(FieldInfo{"temperature", Of::Fluid, hasTemperatures ? fluidCount : 0, 8}, temperature);
+  f(FieldInfo{"shear_rate", Of::Fluid, has.shearRates ? fluidCount : 0, 7}, shearRate);
+  f(FieldInfo{"temperature", Of::Fluid, has.temperatures ? fluidCount : 0, 8}, temperature);
+  f(FieldInfo{"viscosity_factor", Of::Fluid, has.viscosityFactors ? fluidCount : 0, 10}, viscosityFactor);
   f(FieldInfo{"modes", Of::Modes, modeValues, 3}, modes.vectors);
 }
 

@@ -35,10 +35,12 @@ Frame makeFrame(const Particles<D>& particles, std::uint32_t begin, std::uint32_
   frame.material = gathered<std::int32_t>(particles.material, order, same);
   frame.body = gathered<std::int32_t>(particles.body, order, same);
   frame.id = gathered<std::uint32_t>(particles.id, order, same);
-  if (particles.hasShearRates && end <= particles.fluidCount)
+  if (particles.has.shearRates && end <= particles.fluidCount)
     frame.shearRate = gathered<double>(particles.shearRate, order, same);
-  if (particles.hasTemperatures && end <= particles.fluidCount)
+  if (particles.has.temperatures && end <= particles.fluidCount)
     frame.temperature = gathered<double>(particles.temperature, order, same);
+  if (particles.has.viscosityFactors && end <= particles.fluidCount)
+    frame.viscosityFactor = gathered<double>(particles.viscosityFactor, order, same);
   return frame;
 }
 
@@ -50,7 +52,8 @@ void addViscosities(const std::vector<Material>& materials, Frame& frame) {
   for (std::size_t i = 0; i < frame.shearRate.size(); ++i) {
     const auto m = static_cast<std::size_t>(frame.material[i]);
     const double shift = shifts[m] && !frame.temperature.empty() ? (*shifts[m])(frame.temperature[i]) : 1;
-    frame.dynamicViscosity[i] = materials[m].viscosity(frame.shearRate[i], shift);
+    const double factor = frame.viscosityFactor.empty() ? 1 : frame.viscosityFactor[i];
+    frame.dynamicViscosity[i] = factor * materials[m].viscosity(frame.shearRate[i], shift);
   }
 }
 

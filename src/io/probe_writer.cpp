@@ -50,7 +50,10 @@ std::string columns(const Case& c, const Probe& p) {
 }  // namespace
 
 ProbeWriter::ProbeWriter(RowTarget to, const Case& c, const Probe& probe)
-    : case_(c), probe_(probe), rows_(std::move(to), columns(c, probe)) {}
+    : case_(c),
+      probe_(probe),
+      hasOwnViscosities_(c.hasOwnViscosities()),
+      rows_(std::move(to), columns(c, probe)) {}
 
 std::string ProbeWriter::components(const Vec<3>& v) const {
   std::string text;
@@ -77,7 +80,7 @@ void ProbeWriter::append(double time, const Frame& fluid, const Frame& walls) {
     rows += fmt::format("{}", time);
     if (probe_.kind == ProbeKind::Line) rows += fmt::format(",{}", norm(x - probe_.from));
     rows += components(x) + components(s.velocity) + fmt::format(",{}", s.pressure);
-    if (case_.hasOwnViscosities()) rows += fmt::format(",{},{}", s.viscosity, s.shearRate);
+    if (hasOwnViscosities_) rows += fmt::format(",{},{}", s.viscosity, s.shearRate);
     if (case_.heat) rows += fmt::format(",{}", s.temperature);
   }
   rows_.append(std::move(rows));
@@ -94,7 +97,7 @@ void ProbeWriter::append(double time, const PartSums& s) {
   for (int k = 0; k < case_.dimensions; ++k) row += fmt::format(",{}", s.moment[k] / s.mass);
   for (int k = 0; k < case_.dimensions; ++k) row += fmt::format(",{}", mean(s.flow[k]));
   row += fmt::format(",{},{}", mean(s.pressure), mean(s.viscosity));
-  if (case_.hasOwnViscosities()) row += fmt::format(",{}", mean(s.shearRate));
+  if (hasOwnViscosities_) row += fmt::format(",{}", mean(s.shearRate));
   if (case_.heat) row += fmt::format(",{}", mean(s.temperature));
   rows_.append(std::move(row));
 }

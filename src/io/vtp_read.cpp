@@ -45,6 +45,7 @@ class VtpReader {
     readScalars("dynamic_viscosity", frame.dynamicViscosity);
     readScalars("shear_rate", frame.shearRate);
     readScalars("temperature", frame.temperature);
+    readScalars("viscosity_factor", frame.viscosityFactor);
     readScalars("nearest_distance", frame.nearestDistance);
     readScalars("material", frame.material);
     readScalars("body", frame.body);

@@ -27,6 +27,15 @@ double valueAt(const Vec<D>& x, const Expression& expression, const Body& body, 
   return value;
 }
 
+template <int D>
+double positiveAt(const Vec<D>& x, const Expression& expression, const Body& body, const char* key,
+                  const std::string& text, const char* unit) {
+  const double value = valueAt(x, expression, body, key, text);
+  if (value > 0) return value;
+  throw InputError(fmt::format("{} of body '{}': \"{}\" is {}{} for the particle at {}; expected more than 0", key,
+                               body.name, text, value, unit, positionText(resized<3>(x), D)));
+}
+
 /// Asked for each particle as it is made: a body that is too large by far ends there and not in all the memory.
 template <int D>
 void requireInside(const Domain& domain, const Body& body, const Vec<D>& x) {
@@ -97,6 +106,7 @@ InitialState<D>::InitialState(const Case& c, const Body& body)
   for (std::size_t k = 0; k < D; ++k)
     if (const std::string& text = body.velocityExpression[k]; !text.empty()) expressions_[k].emplace(text, D);
   if (!body.temperatureExpression.empty()) temperature_.emplace(body.temperatureExpression, D);
+  if (!body.viscosityFactorExpression.empty()) viscosityFactor_.emplace(body.viscosityFactorExpression, D);
 }
 
 template <int D>
@@ -118,12 +128,14 @@ double InitialState<D>::temperatureAt(const BodyPoints<D>& points, std::size_t k
   if (body_.fileTemperatures) return body_.shape.file.particles.value->temperature[points.given[k]];
   const Vec<D>& x = points.place[k];
   if (!temperature_) return body_.temperature;
-  const double T = valueAt(x, *temperature_, body_, "temperature", body_.temperatureExpression);
-  if (!(T > 0))
-    throw InputError(
-        fmt::format("temperature of body '{}': \"{}\" is {} K for the particle at {}; expected more than 0",
-                    body_.name, body_.temperatureExpression, T, positionText(resized<3>(x), D)));
-  return T;
+  return positiveAt(x, *temperature_, body_, "temperature", body_.temperatureExpression, " K");
+}
+
+template <int D>
+double InitialState<D>::viscosityFactorAt(const Vec<D>& x) const {
+  if (viscosityFactor_)
+    return positiveAt(x, *viscosityFactor_, body_, "viscosity_factor", body_.viscosityFactorExpression, "");
+  return body_.viscosityFactor > 0 ? body_.viscosityFactor : 1;
 }
 
 template BodyPoints<2> bodyPoints<2>(const Case&, const Body&, std::vector<std::string>&);

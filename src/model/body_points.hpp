@@ -57,12 +57,14 @@ class InitialState {
   Vec<D> velocityAt(const BodyPoints<D>& points, std::size_t k) const;
   /// Likewise, of a fluid in a case with heat [K]. Errors: InputError where it is not a positive number.
   double temperatureAt(const BodyPoints<D>& points, std::size_t k) const;
+  /// Of a fluid at a place [-]. Errors likewise.
+  double viscosityFactorAt(const Vec<D>& x) const;
 
  private:
   const Body& body_;
   WallMotion<D> wall_;
   std::vector<std::optional<Expression>> expressions_;  // of the components
-  std::optional<Expression> temperature_;
+  std::optional<Expression> temperature_, viscosityFactor_;
   Similarity<D> similarity_;
 };
 

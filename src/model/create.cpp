@@ -155,12 +155,14 @@ void append(const Case& c, BodyKind kind, const std::vector<Filled<D>>& filled, 
     const std::uint32_t begin = std::clamp(first, id, id + count) - id,
                         made = std::clamp(end, id, id + count) - id;
     const InitialState<D> initial(c, *f.body);
-    const bool warm = c.heat && kind == BodyKind::Fluid;
+    const bool warm = c.heat && kind == BodyKind::Fluid,
+               factors = particles.has.viscosityFactors && kind == BodyKind::Fluid;
     const auto place = [&](std::size_t k) {
       const std::size_t i = at + k;
       particles.position[i] = f.points.place[begin + k];
       particles.velocity[i] = initial.velocityAt(f.points, begin + k);
       if (warm) particles.temperature[i] = initial.temperatureAt(f.points, begin + k);
+      if (factors) particles.viscosityFactor[i] = initial.viscosityFactorAt(f.points.place[begin + k]);
       particles.pressure[i] = 0;
       particles.numberDensity[i] = 0;
       particles.material[i] = static_cast<std::uint8_t>(f.body->material);
@@ -170,7 +172,7 @@ void append(const Case& c, BodyKind kind, const std::vector<Filled<D>>& filled, 
     const std::uint32_t size = made - begin;
     // Expressions throw, and are not for several threads at once.
     const bool expressions = f.body->velocityExpression != decltype(f.body->velocityExpression){} ||
-                             !f.body->temperatureExpression.empty();
+                             !f.body->temperatureExpression.empty() || !f.body->viscosityFactorExpression.empty();
     if (expressions)
       for (std::size_t k = 0; k < size; ++k) place(k);
     else
@@ -212,7 +214,7 @@ Particles<D> createParticles(const Case& c, std::vector<std::string>& notes, std
   const std::uint32_t n = part.size(fluidCount), count = part.size(wallCount);
   Particles<D> particles;
   ParticleNumbers numbers{n, count};
-  numbers.temperatures = c.heat.has_value();
+  numbers.has.temperatures = c.heat.has_value(), numbers.has.viscosityFactors = c.hasViscosityFactors();
   particles.resize(numbers);
   std::uint32_t id = 0, at = 0;
   append(c, BodyKind::Fluid, fluid, part.begin(fluidCount), part.end(fluidCount), particles, id, at);

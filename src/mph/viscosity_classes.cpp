@@ -35,19 +35,31 @@ Range shifts(const Case& c, const Material& m) {
   return range;
 }
 
+/// By which viscosities of particles are multiplied: what bodies say, and, as formulas and who changes a state may
+/// say anything, three powers of ten on both sides.
+Range factors(const Case& c) {
+  if (!c.hasViscosityFactors()) return {1, 1};
+  Range range{1e-3, 1e3};
+  for (const Body& body : c.bodies)
+    if (const double factor = body.viscosityFactor; factor > 0)
+      range = {std::min(range.least, factor), std::max(range.most, factor)};
+  return range;
+}
+
 /// Of shear rates from rest to a million per second, beyond which nothing flows that is computed here.
 Range viscosities(const Case& c, const Material& m) {
-  const Range shift = shifts(c, m);
+  const Range shift = shifts(c, m), factor = factors(c);
   Range range{m.viscosity(0, shift.least), m.viscosity(0, shift.most)};
   for (double rate = 1e-6; rate < 2e6; rate *= 10) {
     range.least = std::min(range.least, m.viscosity(rate, shift.least));
     range.most = std::max(range.most, m.viscosity(rate, shift.most));
   }
-  return range;
+  return {factor.least * range.least, factor.most * range.most};
 }
 
-bool hasSteps(const ViscosityClasses& classes, const Material& m) {
-  return m.hasOwnViscosities() || (classes.ofNeighbours && m.dynamicViscosity > 0);
+bool hasSteps(const ViscosityClasses& classes, const Case& c, const Material& m) {
+  return m.hasOwnViscosities() || (c.hasViscosityFactors() && m.dynamicViscosity > 0) ||
+         (classes.ofNeighbours && m.dynamicViscosity > 0);
 }
 
 /// Among particles of another fluid, or at a surface, a particle may be resisted by a fraction of its viscosity,
@@ -66,13 +78,13 @@ ViscosityClasses ViscosityClasses::make(const Case& c) {
   for (const Material& m : c.materials) {
     classes.material[classes.count] = static_cast<std::uint8_t>(classes.count);
     classes.viscosity[classes.count++] = flowingViscosity(m, c.typicalShift(m));
-    shared += hasSteps(classes, m);
+    shared += hasSteps(classes, c, m);
   }
   const int each = shared > 0 ? (most - classes.count) / shared : 0;
   // A few wide steps would say less of a particle than its material does.
   if (classes.ofNeighbours && each < 3) return classes;
   for (std::size_t m = 0; m < c.materials.size(); ++m) {
-    if (!hasSteps(classes, c.materials[m])) continue;
+    if (!hasSteps(classes, c, c.materials[m])) continue;
     const Range range = rangeOf(classes, c, c.materials[m]);
     const double width = std::max(std::log(range.most / range.least) / each, 0.1);
     classes.steps_[m] = {classes.count, each, range.least, 1 / width};

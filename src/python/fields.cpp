@@ -24,13 +24,15 @@ struct NamedField {
   const char* name;
   FluidField field;
   Number number = Number::Double;
+  bool notAlways = false;  // whether there are cases without it
 };
 constexpr NamedField namedFields[] = {{"positions", FluidField::Position},
                                       {"velocities", FluidField::Velocity},
                                       {"pressures", FluidField::Pressure},
                                       {"number_densities", FluidField::NumberDensity},
-                                      {"shear_rates", FluidField::ShearRate},
-                                      {"temperatures", FluidField::Temperature},
+                                      {"shear_rates", FluidField::ShearRate, Number::Double, true},
+                                      {"temperatures", FluidField::Temperature, Number::Double, true},
+                                      {"viscosity_factors", FluidField::ViscosityFactor, Number::Double, true},
                                       {"materials", FluidField::Material, Number::Byte},
                                       {"bodies", FluidField::Body, Number::Byte},
                                       {"ids", FluidField::Id, Number::Word}};
@@ -79,8 +81,7 @@ class Given {
 nb::object copiedField(const Session& session, const std::string& name) {
   const NamedField& named = fieldNamed(name);
   const FieldMemory m = session.simulation().field(named.field);
-  if (!m.data && m.count == 0 && (named.field == FluidField::ShearRate || named.field == FluidField::Temperature))
-    return nb::none();
+  if (named.notAlways && !m.data && m.count == 0) return nb::none();
   return withNumber(named.number, [&]<class T>(T) -> nb::object {
     auto* values = new T[std::max<std::size_t>(m.bytes / sizeof(T), 1)];
     const nb::capsule owner(values, [](void* p) noexcept { delete[] static_cast<T*>(p); });
@@ -111,16 +112,17 @@ nb::tuple fieldAddress(const Session& session, const std::string& name) {
 }
 
 void giveFluid(Session& session, const nb::object& positions, const nb::object& velocities,
-               const nb::object& temperatures) {
-  const Given x(positions, "positions"), u(velocities, "velocities"), warm(temperatures, "temperatures");
+               const nb::object& temperatures, const nb::object& viscosityFactors) {
+  const Given x(positions, "positions"), u(velocities, "velocities"), warm(temperatures, "temperatures"),
+      factors(viscosityFactors, "viscosity_factors");
   std::optional<bool> onDevice;
-  for (const Given* given : {&x, &u, &warm}) {
+  for (const Given* given : {&x, &u, &warm, &factors}) {
     if (!given->isThere()) continue;
     if (onDevice && *onDevice != given->isOnDevice())
       throw InputError("expected arrays in the memory of the host, or all in that of the GPU, found both");
     onDevice = given->isOnDevice();
   }
-  const GivenFluid given{x.span(), u.span(), warm.span(),
+  const GivenFluid given{x.span(), u.span(), warm.span(), factors.span(),
                          onDevice.value_or(false) ? BackendKind::Cuda : BackendKind::Cpu};
   const nb::gil_scoped_release release;
   session.giveFluid(given);

@@ -21,7 +21,7 @@ nanobind::tuple fieldAddress(const Session& session, const std::string& name);
 
 /// Numbers in the memory of the host or of the device, each None or an array of doubles in the order of C.
 void giveFluid(Session& session, const nanobind::object& positions, const nanobind::object& velocities,
-               const nanobind::object& temperatures);
+               const nanobind::object& temperatures, const nanobind::object& viscosityFactors);
 
 /// Name, copied array of every field of walls, in the order of their ids.
 nanobind::dict arraysOf(const Frame& frame);

@@ -180,7 +180,13 @@ void bindSession(nb::module_& m) {
       .def_prop_ro("fluid_count", [](const Session& s) { return s.simulation().numbers().fluid; })
       .def_prop_ro("wall_count", [](const Session& s) { return s.simulation().numbers().wall; })
       .def_prop_ro("bytes", [](const Session& s) { return s.simulation().bytes(); })
-      .def_prop_ro("has_own_viscosities", [](const Session& s) { return s.theCase().hasOwnViscosities(); })
+      .def_prop_ro("newtonian_viscosities",
+                   [](const Session& s) {
+                     std::vector<double> viscosities;  // 0 where it follows from something
+                     for (const Material& material : s.theCase().materials)
+                       viscosities.push_back(material.hasOwnViscosities() ? 0 : material.dynamicViscosity);
+                     return viscosities;
+                   })
       .def_prop_ro("material_names",
                    [](const Session& s) {
                      std::vector<std::string> names;
@@ -220,7 +226,8 @@ void bindSession(nb::module_& m) {
                 fieldAddress(s, name));
           },
           "name"_a)
-      .def("give_fluid", &giveFluid, "positions"_a.none(), "velocities"_a.none(), "temperatures"_a.none())
+      .def("give_fluid", &giveFluid, "positions"_a.none(), "velocities"_a.none(), "temperatures"_a.none(),
+           "viscosity_factors"_a.none())
       .def_prop_ro("viscosities", [](const Session& s) { return nb::borrow<nb::any>(arrayOf(s.viscosities())); })
       .def_prop_ro("walls", [](const Session& s) { return Arrays(arraysOf(s.wallsFrame())); })
       .def("write_frame", &writeFrame, "path"_a, "walls"_a, Quiet())

@@ -49,7 +49,7 @@ Recording::Recording(Session& session, const std::filesystem::path& directory, b
 
 /// The case that a checkpoint of now goes on with. What it says of earlier times does not change.
 void Recording::writeCase() {
-  if (std::exchange(steered_, session_.steerings()) != session_.steerings())
+  if (std::exchange(written_, session_.revision()) != session_.revision())
     writeFile(directory_.caseFile(), caseText(session_.theCase()));
 }
 

@@ -40,7 +40,7 @@ class Recording {
   RunDirectory directory_;
   RunLog log_;
   RunSummary summary_;
-  int steered_ = -1;  // how often the session was when the case was written
+  int written_ = -1;  // revision of the case that was written
   Recorder recorder_;
 };
 

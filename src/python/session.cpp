@@ -86,7 +86,12 @@ const StepReport& Session::advance() {
   return report_;
 }
 
-void Session::giveFluid(const GivenFluid& given) { simulation_->giveFluid(given); }
+void Session::giveFluid(const GivenFluid& given) {
+  simulation_->giveFluid(given);
+  if (given.viscosityFactor.empty() || case_.hasViscosityFactors()) return;
+  case_.haveViscosityFactors();
+  ++revision_, ++version_;
+}
 
 void Session::change(Case next) {
   requireValid(next);
@@ -120,7 +125,7 @@ void Session::steer(const std::string& body, const Steering& steering) {
     makeAnew(changed);
   }
   case_.bodies[b] = std::move(next);
-  ++steerings_;
+  ++revision_;
 }
 
 AnyParticles Session::particles() const {
@@ -140,6 +145,7 @@ std::vector<double> Session::viscosities() const {
   fluid.material.assign(materials.begin(), materials.end());
   fluid.shearRate = copied(FluidField::ShearRate, double{});
   fluid.temperature = copied(FluidField::Temperature, double{});
+  fluid.viscosityFactor = copied(FluidField::ViscosityFactor, double{});
   fluid.shearRate.resize(materials.size());  // where no material has a rheology they do not matter
   addViscosities(case_.materials, fluid);
   return std::move(fluid.dynamicViscosity);

@@ -47,8 +47,8 @@ class Session {
   /// A wall or nozzle goes on as this says; a run directory that is being written has it, too. Errors: InputError
   /// for a name that is none, and those of steered(); RunError, std::bad_alloc.
   void steer(const std::string& body, const Steering& steering);
-  /// How often that was done.
-  int steerings() const { return steerings_; }
+  /// How often the case has become another one that the run from its start is one of as well.
+  int revision() const { return revision_; }
 
   /// Whether a run directory is written of the steps, which has the case and refers to this one.
   void setRecorded(bool is) { isRecorded_ = is; }
@@ -94,7 +94,7 @@ class Session {
   StepReport report_;
   std::int64_t version_ = 0;
   double stepSeconds_ = 0;
-  int steerings_ = 0;
+  int revision_ = 0;
   bool isRecorded_ = false, isLost_ = false;
 
   RowTable history_, balance_, rigid_;

@@ -65,8 +65,7 @@ void gatherParticles(const Communicator& processes, const HaloCounts& halo, cons
   }
   // What the others' fields are gathered into: none, but all take part in the same ones.
   Particles<D> nothing;
-  nothing.hasShearRates = own.hasShearRates;
-  nothing.hasTemperatures = own.hasTemperatures;
+  nothing.has = own.has;
   Particles<D>& target = first ? whole : nothing;
   const auto gather = [&]<class T>(std::span<const T> part, T* to) { collectTo(processes, part, to); };
   const auto gatherField = [&]<class T>(const Buffer<T>& from, Buffer<T>& to) {

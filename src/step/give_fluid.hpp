@@ -36,9 +36,11 @@ FieldMemory fieldMemory(const Particles<D, Backend>& p, FluidField field) {
     case FluidField::NumberDensity:
       return of(p.numberDensity, 1);
     case FluidField::ShearRate:
-      return of(p.shearRate, 1, p.hasShearRates);
+      return of(p.shearRate, 1, p.has.shearRates);
     case FluidField::Temperature:
-      return of(p.temperature, 1, p.hasTemperatures);
+      return of(p.temperature, 1, p.has.temperatures);
+    case FluidField::ViscosityFactor:
+      return of(p.viscosityFactor, 1, p.has.viscosityFactors);
     case FluidField::Material:
       return of(p.material, 1);
     case FluidField::Body:
@@ -102,27 +104,28 @@ void requireInside(Context<Backend>& context, const CellGrid<D>& grid, const Par
   position = std::move(inside);
 }
 
-/// Errors: InputError for a temperature that is not positive.
+/// Errors: InputError for numbers that are not positive.
 template <class Backend>
-void requireWarm(Context<Backend>& context, const Buffer<double, Backend>& temperature) {
-  Buffer<double> host(temperature.size());
-  copyToHost(context, temperature.span(), host.data());
+void requirePositive(Context<Backend>& context, const Buffer<double, Backend>& values, const char* what,
+                     const char* unit) {
+  Buffer<double> host(values.size());
+  copyToHost(context, values.span(), host.data());
   for (std::size_t i = 0; i < host.size(); ++i)
     if (!(std::isfinite(host[i]) && host[i] > 0))
       throw InputError(
-          fmt::format("temperatures: expected positive numbers [K], found {:g} for particle {}", host[i], i));
+          fmt::format("{}: expected positive numbers{}, found {:g} for particle {}", what, unit, host[i], i));
 }
 
 /// What was given, in the backend's memory and found to be possible; empty where nothing was.
 template <int D, class Backend>
 struct CheckedFluid {
   Buffer<Vec<D>, Backend> position, velocity;
-  Buffer<double, Backend> temperature;
+  Buffer<double, Backend> temperature, viscosityFactor;
 
   /// `energy(velocity)`: the kinetic energy with these. Errors: InputError.
   template <class Energy>
-  static CheckedFluid of(Context<Backend>& context, const GivenFluid& given, const CellGrid<D>& grid,
-                         const Particles<D, Backend>& particles, Energy&& energy) {
+  static CheckedFluid of(Context<Backend>& context, MethodKind method, const GivenFluid& given,
+                         const CellGrid<D>& grid, const Particles<D, Backend>& particles, Energy&& energy) {
     const std::uint32_t n = particles.fluidCount;
     if (std::is_same_v<Backend, Cuda> && given.where == BackendKind::Cuda) waitForDevice();
     const auto here = [&]<class T>(Buffer<T, Backend>& to, std::span<const double> values, const char* what) {
@@ -132,12 +135,17 @@ struct CheckedFluid {
     here(fluid.position, given.position, "positions");
     here(fluid.velocity, given.velocity, "velocities");
     here(fluid.temperature, given.temperature, "temperatures");
+    here(fluid.viscosityFactor, given.viscosityFactor, "viscosity_factors");
     if (fluid.position.size() > 0) requireInside(context, grid, particles, fluid.position);
     if (fluid.velocity.size() > 0 && !std::isfinite(energy(fluid.velocity.span())))
       throw InputError("velocities: expected finite numbers [m/s], found others");
-    if (fluid.temperature.size() > 0 && !particles.hasTemperatures)
+    if (fluid.temperature.size() > 0 && !particles.has.temperatures)
       throw InputError("temperatures: the case has no heat; expected a case with [heat]");
-    if (fluid.temperature.size() > 0) requireWarm(context, fluid.temperature);
+    if (fluid.viscosityFactor.size() > 0 && method != MethodKind::MphI)
+      throw InputError(
+          "viscosity_factors: expected a case of the method 'mph-i', where particles can have their own");
+    requirePositive(context, fluid.temperature, "temperatures", " [K]");
+    requirePositive(context, fluid.viscosityFactor, "viscosity_factors", "");
     return fluid;
   }
 
@@ -146,7 +154,7 @@ struct CheckedFluid {
       if (from.size() > 0) copyValues(context, from.span(), to.data());
     };
     copy(position, particles.position), copy(velocity, particles.velocity);
-    copy(temperature, particles.temperature);
+    copy(temperature, particles.temperature), copy(viscosityFactor, particles.viscosityFactor);
   }
 };
 

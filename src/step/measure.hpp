@@ -22,7 +22,7 @@ Particles<D> collected(const Communicator& processes, const Particles<D>& own) {
   processes.sum(std::span<std::uint64_t>(numbers));
   Particles<D> all;
   if (processes.rank() == 0) all.resize(numbersOfSome(own, numbers[0], numbers[1]));
-  all.hasShearRates = own.hasShearRates, all.hasTemperatures = own.hasTemperatures;
+  all.has = own.has;
   const auto collect = [&]<class T>(std::span<const T> part, T* to) { collectTo(processes, part, to); };
   forEachSharedFieldOf(
       [&](const auto& from, auto& to) {
@@ -59,9 +59,10 @@ PartTerms<D> partTerms(const FlowState<D, Backend>& state, const Probe& probe) {
   for (std::size_t m = 0; m < c.materials.size(); ++m) terms.density[m] = c.materials[m].density;
   terms.position = p.position.span().first(n), terms.velocity = p.velocity.span().first(n);
   terms.pressure = p.pressure.span().first(n), terms.material = p.material.span().first(n);
-  if (p.hasShearRates) terms.shearRate = p.shearRate.span().first(n);
-  if (p.hasTemperatures) terms.temperature = p.temperature.span().first(n);
+  if (p.has.shearRates) terms.shearRate = p.shearRate.span().first(n);
+  if (p.has.temperatures) terms.temperature = p.temperature.span().first(n);
   terms.viscosities.temperature = terms.temperature;
+  if (p.has.viscosityFactors) terms.viscosities.factor = p.viscosityFactor.span().first(n);
   return terms;
 }
 

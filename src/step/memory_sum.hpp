@@ -65,8 +65,9 @@ std::uint64_t fieldBytes(const ParticleNumbers& n) {
   const Particles<D> none;
   forEachSharedFieldOf(add(n.fluid + n.wall), none);
   forEachFluidFieldOf(add(n.fluid), none);
-  add(n.shearRates ? n.fluid : 0)(none.shearRate);
-  add(n.temperatures ? n.fluid : 0)(none.temperature);
+  add(n.has.shearRates ? n.fluid : 0)(none.shearRate);
+  add(n.has.temperatures ? n.fluid : 0)(none.temperature);
+  add(n.has.viscosityFactors ? n.fluid : 0)(none.viscosityFactor);
   add(n.fluid * n.modes)(none.modes.vectors);
   forEachWallFieldOf(add(n.surfaces), none);
   return sum;
@@ -94,8 +95,7 @@ void planState(const Case& c, const MemoryCounts& n, BackendKind backend, Memory
   numbers.wall = wall;
   if (numbers.surfaces > 0) numbers.surfaces = wall;
   numbers.modes = std::max(numbers.modes, modesOf(c));
-  numbers.shearRates = c.hasOwnViscosities();
-  numbers.temperatures = c.heat.has_value();
+  numbers.has = {c.hasOwnViscosities(), c.heat.has_value(), c.hasViscosityFactors()};
   sum.keep<std::byte>(fieldBytes<D>(numbers));
   sum.keep<Vec<D>>(n.wallsMove ? all : fluid);                             // positions of the end
   sum.keep<Vec<D>>(c.method.kind == MethodKind::MphI ? n.active : fluid);  // velocities

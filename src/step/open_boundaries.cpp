@@ -64,7 +64,7 @@ bool OpenBoundaries<D, Backend>::follow(const CellGrid<D>& grid, double start, d
   Change change;
   change.flow = p.flow;
   ParticleNumbers none;
-  none.shearRates = p.hasShearRates, none.temperatures = p.hasTemperatures;
+  none.has = p.has;
   change.added.resize(none);
   letOut(change);
   letIn(grid, start, change);
@@ -157,7 +157,8 @@ void OpenBoundaries<D, Backend>::addLayer(const CellGrid<D>& grid, std::size_t b
     added.material[i] = static_cast<std::uint8_t>(b.material);
     added.body[i] = static_cast<std::uint8_t>(body);
     added.id[i] = change.flow.nextId++;
-    if (added.hasTemperatures) added.temperature[i] = b.temperature;
+    if (added.has.temperatures) added.temperature[i] = b.temperature;
+    if (added.has.viscosityFactors) added.viscosityFactor[i] = b.viscosityFactor > 0 ? b.viscosityFactor : 1;
   }
   const double mass = state_.theCase.materials[static_cast<std::size_t>(b.material)].density * volume_;
   static_cast<FlowCount&>(change.flow.inflows[body]) += {places.size(), static_cast<double>(places.size()) * mass};

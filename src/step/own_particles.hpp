@@ -46,8 +46,7 @@ std::uint32_t copyOwnParticles(FlowState<D, Backend>& state, const CellGrid<D>& 
   const auto beside = selected(0, walls.count, [&](std::uint32_t i) { return owners.isBesideOwn(cellOf(i)); });
   ParticleNumbers numbers{p.fluidCount, own.size() + far.count + beside.size()};
   numbers.ghosts = p.ghostCount;
-  numbers.shearRates = p.hasShearRates;
-  numbers.temperatures = p.hasTemperatures;
+  numbers.has = p.has;
   host.resize(numbers);
   const std::uint32_t begin = p.wallBegin();
   forEachSharedFieldOf(
@@ -58,10 +57,11 @@ std::uint32_t copyOwnParticles(FlowState<D, Backend>& state, const CellGrid<D>& 
         gather(held.span(), beside, to.data() + begin + own.size() + far.count);
       },
       p, walls, far, host);
-  if (p.hasShearRates)
-    copyToHost(state.context, std::span<const double>(p.shearRate).first(p.fluidCount), host.shearRate.data());
-  if (p.hasTemperatures)
-    copyToHost(state.context, std::span<const double>(p.temperature).first(p.fluidCount), host.temperature.data());
+  const auto show = [&](bool has, const auto& field, auto& to) {
+    if (has) copyToHost(state.context, field.span().first(p.fluidCount), to.data());
+  };
+  show(p.has.shearRates, p.shearRate, host.shearRate), show(p.has.temperatures, p.temperature, host.temperature);
+  show(p.has.viscosityFactors, p.viscosityFactor, host.viscosityFactor);
   return static_cast<std::uint32_t>(own.size()) + far.count;
 }
 

@@ -37,23 +37,21 @@ void toBackend(Context<Cuda>& context, const Particles<D>& host, Particles<D, Cu
   copyToDevice(context, host, particles);
 }
 
-/// Whether there is room for them; what they are is not known where there was none.
+/// Whether the fluid has a field; it has this value where it had none.
 template <int D>
-void setShearRates(bool wanted, Particles<D>& particles) {
-  if (particles.hasShearRates == wanted) return;
-  particles.hasShearRates = wanted;
-  particles.shearRate.resize(wanted ? particles.fluidCount : 0);
-  std::fill(particles.shearRate.begin(), particles.shearRate.end(), 0.0);
+void setField(bool wanted, bool FluidExtras::*has, Buffer<double> Particles<D>::*field, double value,
+              Particles<D>& particles) {
+  if (std::exchange(particles.has.*has, wanted) == wanted) return;
+  (particles.*field).resize(wanted ? particles.fluidCount : 0);
+  std::fill((particles.*field).begin(), (particles.*field).end(), value);
 }
 
 /// Temperatures are part of the state, not of its memory. Errors: InputError where they are missing.
 template <int D>
 void requireTemperatures(const Case& c, Particles<D>& particles) {
-  if (c.heat && !particles.hasTemperatures)
+  if (c.heat && !particles.has.temperatures)
     throw InputError("the case has heat, but its state has no temperatures");
-  if (c.heat || !particles.hasTemperatures) return;
-  particles.hasTemperatures = false;
-  particles.temperature.resize(0);
+  if (!c.heat) setField(false, &FluidExtras::temperatures, &Particles<D>::temperature, 0, particles);
 }
 
 /// Of the fluid [kg; per metre of depth in 2D].
@@ -108,8 +106,10 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
                                                      : makeMphStep(static_cast<Flow&>(*this));
     distant.emplace(theCase, method->grid(), state, time, context.communicator);
     requireTemperatures(theCase, state);
-    this->shearRatesKnown = step > 0 && state.hasShearRates;
-    setShearRates(theCase.hasOwnViscosities(), state);
+    this->shearRatesKnown = step > 0 && state.has.shearRates;
+    setField(theCase.hasOwnViscosities(), &FluidExtras::shearRates, &Particles<D>::shearRate, 0, state);
+    setField(theCase.hasViscosityFactors(), &FluidExtras::viscosityFactors, &Particles<D>::viscosityFactor, 1,
+             state);
     toBackend(context, std::move(state), particles);
     if (step == 0) forEachFlowMemoryOf([&](auto& field) { clearValues(context, field.span()); }, particles);
     method->sortParticles();
@@ -131,12 +131,26 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     if (context.communicator) throw InputError("processes share the simulation; expected one that is alone");
   }
 
+  /// From now on, which is another kind of step.
+  void haveViscosityFactors() {
+    theCase.haveViscosityFactors();
+    particles.has.viscosityFactors = true;
+    particles.viscosityFactor.resize(context, particles.fluidCount);
+    if (!std::exchange(particles.has.shearRates, true)) {
+      particles.shearRate.resize(context, particles.fluidCount);
+      clearValues(context, particles.shearRate.span());
+      this->shearRatesKnown = false;
+    }
+    method = makeMphStep(static_cast<Flow&>(*this));
+  }
+
   /// What the fluid remembers does not lead to a state that somebody else has made.
   void giveFluid(const GivenFluid& given) {
     requireAlone();
     const auto fluid = CheckedFluid<D, Backend>::of(
-        context, given, method->grid(), particles,
+        context, theCase.method.kind, given, method->grid(), particles,
         [&](std::span<const Vec<D>> u) { return diagnosticsOf(particles.position, u).kineticEnergy; });
+    if (fluid.viscosityFactor.size() > 0 && !particles.has.viscosityFactors) haveViscosityFactors();
     fluid.copyTo(context, particles);
     if (fluid.position.size() == 0 && fluid.velocity.size() == 0) return;
     forEachFlowMemoryOf([&](auto& field) { clearValues(context, field.span()); }, particles);

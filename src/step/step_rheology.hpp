@@ -9,9 +9,9 @@
 
 namespace treacle {
 
-/// The viscosities of a step of MPH-I where particles have their own: from the temperatures and shear rates that
-/// the particles carry, and from the shear rates of each solve in the step. What is not accepted has not changed
-/// the particles.
+/// The viscosities of a step of MPH-I where particles have their own: from the temperatures, factors and shear
+/// rates that the particles carry, and from the shear rates of each solve in the step. What is not accepted has
+/// not changed the particles.
 template <int D, class Backend>
 class StepRheology {
  public:
@@ -36,7 +36,8 @@ class StepRheology {
       fillGhosts(state.context, Held::Active, state.velocity.data());
       shearRate<D>(state.context, neighbourhood.pairs(), state.velocity, share_, rate_);
     }
-    if (state.particles.hasTemperatures) table_.temperature = state.particles.temperature.span().first(own);
+    if (state.particles.has.temperatures) table_.temperature = state.particles.temperature.span().first(own);
+    if (state.particles.has.viscosityFactors) table_.factor = state.particles.viscosityFactor.span().first(own);
     solves_ = 0;
     apply(state, neighbourhood);
   }

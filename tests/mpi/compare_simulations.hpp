@@ -124,10 +124,13 @@ void expectSameFields(const Case& c, const Particles<D>& a, const Particles<D>& 
     if (wall) continue;
     ASSERT_LT(norm(a.acceleration[i] - b.acceleration[j]) * c.time.step, 1e-6 * speed) << id;
     ASSERT_EQ(norm2(a.jerk[i]) > 0, norm2(b.jerk[j]) > 0) << id;
-    if (a.hasTemperatures) {
+    if (a.has.temperatures) {
       ASSERT_NEAR(a.temperature[i], b.temperature[j], 1e-8 * b.temperature[j]) << id;
     }
-    if (a.hasShearRates) {
+    if (a.has.viscosityFactors) {
+      ASSERT_EQ(a.viscosityFactor[i], b.viscosityFactor[j]) << id;
+    }
+    if (a.has.shearRates) {
       ASSERT_NEAR(a.shearRate[i], b.shearRate[j], 1e-6 * speed / c.spacing) << id;
     }
   }

@@ -63,7 +63,7 @@ struct Flow {
     }
     const ParticlePart part{static_cast<std::uint32_t>(job().rank()), static_cast<std::uint32_t>(job().size())};
     const std::uint32_t begin = part.begin(fluid), size = part.size(fluid);
-    particles.resize({size, walls, modes, walls, 0, true, true});
+    particles.resize({size, walls, modes, walls, 0, {true, true, true}});
     for (std::uint32_t k = 0; k < particles.count; ++k) {
       const std::uint32_t i = k < size ? begin + k : fluid + (k - size);
       particles.position[k] = i < fluid ? position[i] : wallPosition[i - fluid];
@@ -80,6 +80,7 @@ struct Flow {
       particles.jerk[k] = {mark(begin + k, 5)};
       particles.shearRate[k] = mark(begin + k, 9);
       particles.temperature[k] = mark(begin + k, 10);
+      particles.viscosityFactor[k] = mark(begin + k, 11);
       for (std::uint32_t m = 0; m < modes; ++m)
         particles.modes.vectors[m * size + k] = {static_cast<float>(mark(begin + k, 6 + m))};
     }
@@ -155,6 +156,7 @@ struct Flow {
       EXPECT_EQ(p.jerk[i][0], mark(id, 5));
       EXPECT_EQ(p.shearRate[i], mark(id, 9));
       EXPECT_EQ(p.temperature[i], mark(id, 10));
+      EXPECT_EQ(p.viscosityFactor[i], mark(id, 11));
       EXPECT_EQ(p.material[i], id % 3);
       EXPECT_EQ(p.body[i], id % 5);
       for (std::uint32_t m = 0; m < p.modeCount(); ++m)

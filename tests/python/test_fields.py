@@ -152,20 +152,67 @@ def test_temperatures_are_taken(warm_drop):
             sim.fluid.temperatures = bad
 
 
-def test_viscosities_are_those_of_materials(sim, warm_drop):
+def test_one_viscosity_makes_another_material(sim):
     n = len(sim.fluid)
     sim.fluid.viscosities = np.full(n, 20.0)
     assert set(sim.fluid.viscosities) == {20.0}
     sim.fluid.viscosities = 30
     assert "dynamic_viscosity = 30" in sim.case_text
+    assert sim.fluid.viscosity_factors is None
     sim.step()
-    with pytest.raises(treacle.InputError, match="one value for all particles of material 'honey', found 0 to"):
-        sim.fluid.viscosities = np.arange(n)
-    with pytest.raises(treacle.InputError, match="not less than 0"):
-        sim.fluid.viscosities = -1
+
+
+def test_viscosities_of_particles_stay_with_them(sim, tmp_path):
+    sim.step()
+    wanted = {i: 5.0 + i for i in sim.fluid.ids}
+    sim.fluid.viscosities = [wanted[i] for i in sim.fluid.ids]
+    assert "viscosity_factor = 1" in sim.case_text
+    for _ in range(5):
+        sim.step()
+    np.testing.assert_allclose(sim.fluid.viscosities, [wanted[i] for i in sim.fluid.ids], rtol=1e-14)
+    sim.fluid.viscosity_factors *= 2
+    sim.write_checkpoint(tmp_path / "state.h5")
+    sim.write_frame(tmp_path / "fluid.vtp")
+    import tomllib
+
+    again = treacle.Simulation.from_checkpoint(tmp_path / "state.h5", tomllib.loads(sim.case_text), backend="cpu")
+    assert dict(zip(again.fluid.ids, again.fluid.viscosities)) == dict(zip(sim.fluid.ids, sim.fluid.viscosities))
+    frame = treacle.read_frame(tmp_path / "fluid.vtp")
+    np.testing.assert_allclose(frame.viscosities, [2 * wanted[i] for i in frame.ids], rtol=1e-6)
+
+
+def test_film_with_a_graded_viscosity(drop):
+    """A film that runs down a plate, of mu = mu_0 exp(3 y/H): u(H) = rho g H^2/mu_0 (1/3 - (1 - exp(-3))/9)."""
+    del drop["probe"]
+    drop["domain"] = {"min": [-0.008, -0.01], "max": [0.008, 0.03], "periodic": [True, False]}
+    drop["gravity"] = {"acceleration": [9.81, 0]}
+    drop["body"][0] = {"name": "film", "type": "fluid", "material": "honey", "shape": "box", "min": [-0.008, 0],
+                       "max": [0.008, 0.02]}
+    drop["body"][1]["min"], drop["body"][1]["max"] = [-0.008, -0.005], [0.008, 0]
+    drop["time"]["end"] = 0.3
+    sim = treacle.Simulation(drop, backend="cpu")
+    sim.fluid.viscosities = 10 * np.exp(3 * sim.fluid.positions[:, 1] / 0.02)
+    sim.run(progress=False)
+    exact = 1400 * 9.81 * 0.02**2 / 10 * (1 / 3 - (1 - np.exp(-3)) / 9)
+    assert sim.history["max_speed"][-1] == pytest.approx(exact, rel=0.02)
+
+
+def test_viscosities_that_cannot_be(sim, warm_drop):
+    text = sim.case_text
+    for values in (-1, 0, np.nan, [0.0, *np.ones(len(sim.fluid) - 1)]):
+        with pytest.raises(treacle.InputError, match="viscosities: expected positive numbers"):
+            sim.fluid.viscosities = values
+    assert sim.case_text == text
     warm = treacle.Simulation(warm_drop, backend="cpu")
-    with pytest.raises(treacle.InputError, match="follow from shear rates and temperatures"):
-        warm.fluid.viscosities = 20
+    with pytest.raises(treacle.InputError, match="follows from shear rates or temperatures"):
+        warm.fluid.viscosities = 5
+    before = warm.fluid.viscosities
+    warm.fluid.viscosity_factors = 3
+    np.testing.assert_allclose(warm.fluid.viscosities, 3 * before)
+    with pytest.raises(treacle.InputError, match="viscosity_factors: expected positive numbers"):
+        warm.fluid.viscosity_factors = 0
+    warm.step()
+
 
 
 def test_several_materials(drop):

@@ -153,6 +153,17 @@ def test_temperatures(warm_drop, torch):
     assert sim.fluid.shear_rates.shape == (len(sim.fluid),)
 
 
+def test_viscosities_of_particles(drop, torch):
+    sim = treacle.Simulation(drop, backend="cuda")
+    sim.fluid.viscosities = np.linspace(5, 50, len(sim.fluid))
+    wanted = dict(zip(sim.fluid.ids.get(), sim.fluid.viscosities))
+    sim.step()
+    np.testing.assert_array_equal(sim.fluid.viscosities, [wanted[i] for i in sim.fluid.ids.get()])
+    sim.fluid.viscosity_factors = 2 * torch.from_dlpack(sim.fluid.viscosity_factors)
+    np.testing.assert_array_equal(sim.fluid.viscosities, [2 * wanted[i] for i in sim.fluid.ids.get()])
+    sim.step()
+
+
 def test_the_cpu_does_not_take_what_lies_on_the_gpu(drop, torch):
     sim = treacle.Simulation(drop, backend="cpu")
     with pytest.raises(treacle.InputError, match="in the memory of a GPU, but the CPU computes"):

@@ -24,7 +24,7 @@ struct RandomParticles {
     Vec<D, bool> periodic{};
     for (int k = 0; k + 1 < D; ++k) periodic[k] = true;
     grid = CellGrid<D>::make(Vec<D>{}, Vec<D>::filled(1), periodic, radius);
-    particles.resize({fluid, wall, seed % 3, seed % 2 * wall, 0, seed % 2 > 0, seed % 2 > 0});
+    particles.resize({fluid, wall, seed % 3, seed % 2 * wall, 0, {seed % 2 > 0, seed % 2 > 0, seed % 2 > 0}});
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> unit(0, 1);
     for (std::uint32_t i = 0; i < particles.count; ++i) {
@@ -36,8 +36,9 @@ struct RandomParticles {
         particles.position[i][D - 1] *= 0.5;  // leaves walls without fluid near them
         particles.acceleration[i] = -particles.position[i];
         particles.jerk[i] = -particles.velocity[i];
-        if (particles.hasShearRates) particles.shearRate[i] = i + 0.5;
-        if (particles.hasTemperatures) particles.temperature[i] = 300.25 + i;
+        if (particles.has.shearRates) particles.shearRate[i] = i + 0.5;
+        if (particles.has.temperatures) particles.temperature[i] = 300.25 + i;
+        if (particles.has.viscosityFactors) particles.viscosityFactor[i] = 0.25 + i;
         for (std::uint32_t m = 0; m < particles.modeCount(); ++m)
           particles.modes.vectors[std::size_t{m} * fluid + i] =
               Vec<D, float>::filled(static_cast<float>(i + 0.25 * m));

@@ -22,6 +22,7 @@ struct Frame {
   std::vector<double> dynamicViscosity;  // of fluid in cases where a material has a rheology [Pa s]
   std::vector<double> shearRate;         // likewise [1/s]
   std::vector<double> temperature;       // of fluid in cases with heat [K]
+  std::vector<double> viscosityFactor;   // of fluid in cases where bodies give one [-]
   std::vector<std::int32_t> material;    // index into the case's materials
   std::vector<std::int32_t> body;        // index into the case's bodies
   std::vector<std::uint32_t> id;
@@ -32,21 +33,22 @@ struct Frame {
 template <class F>
 void forEachFrameField(F&& f) {
   [[maybe_unused]] const auto& [dimensions, time, position, velocity, pressure, numberDensity, nearestDistance,
-                                dynamicViscosity, shearRate, temperature, material, body, id] = Frame{};
+                                dynamicViscosity, shearRate, temperature, viscosityFactor, material, body, id] =
+      Frame{};
   f("position", &Frame::position), f("velocity", &Frame::velocity), f("pressure", &Frame::pressure);
   f("number_density", &Frame::numberDensity), f("nearest_distance", &Frame::nearestDistance);
   f("dynamic_viscosity", &Frame::dynamicViscosity), f("shear_rate", &Frame::shearRate);
-  f("temperature", &Frame::temperature);
+  f("temperature", &Frame::temperature), f("viscosity_factor", &Frame::viscosityFactor);
   f("material", &Frame::material), f("body", &Frame::body), f("id", &Frame::id);
 }
 
-/// Copies particles [begin, end), sorted by id: files do not depend on how the search sorts. Shear rates and
-/// temperatures are those of fluid where it has some.
+/// Copies particles [begin, end), sorted by id: files do not depend on how the search sorts. Shear rates,
+/// temperatures and factors are those of fluid where it has some.
 template <int D>
 Frame makeFrame(const Particles<D>& particles, std::uint32_t begin, std::uint32_t end, double time);
 
-/// Completes a frame of fluid with the viscosities of its shear rates and temperatures, if it has some, in the
-/// materials of the case.
+/// Completes a frame of fluid with the viscosities of its shear rates, temperatures and factors, if it has some,
+/// in the materials of the case.
 void addViscosities(const std::vector<Material>& materials, Frame& frame);
 
 extern template Frame makeFrame<2>(const Particles<2>&, std::uint32_t, std::uint32_t, double);

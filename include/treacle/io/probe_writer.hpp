@@ -29,6 +29,7 @@ class ProbeWriter {
 
   const Case& case_;
   const Probe& probe_;
+  const bool hasOwnViscosities_;  // when its columns were named: the case may change
   Rows rows_;
 };
 

@@ -99,15 +99,21 @@ struct Body {
   // conductance, of what is behind it; 0: the wall is adiabatic [K].
   double temperature = 0;
   std::string temperatureExpression{};  // of a fluid, in place of its temperature [K]
-  double wallConductance = 0;           // of a wall, its conductivity over its thickness [W/(m2 K)]; 0: infinite
-  bool fileVelocities = false;          // fluid of a file has its velocities, on top of that of the body
-  bool fileTemperatures = false;        // likewise, in place of its temperature
-  Inflow inflow{};                      // of an inflow, in place of a shape
-  RigidSettings rigid{};                // of a rigid body
+  // Of a fluid, by what the viscosities of its particles are multiplied, which then are part of the state; 0: 1,
+  // and no part of it where no body says more.
+  double viscosityFactor = 0;
+  std::string viscosityFactorExpression{};  // in place of it
+  double wallConductance = 0;     // of a wall, its conductivity over its thickness [W/(m2 K)]; 0: infinite
+  bool fileVelocities = false;    // fluid of a file has its velocities, on top of that of the body
+  bool fileTemperatures = false;  // likewise, in place of its temperature
+  Inflow inflow{};                // of an inflow, in place of a shape
+  RigidSettings rigid{};          // of a rigid body
 
   bool holdsFluid() const { return kind == BodyKind::Fluid || kind == BodyKind::Inflow; }
   /// Whether fluid meets its surface.
   bool isWall() const { return kind == BodyKind::Wall || kind == BodyKind::Rigid; }
+
+  bool givesViscosityFactor() const { return viscosityFactor > 0 || !viscosityFactorExpression.empty(); }
 
   bool operator==(const Body&) const = default;
 };

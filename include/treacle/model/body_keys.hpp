@@ -197,6 +197,10 @@ void visit(auto& v, Like<Body> auto& b, const Case& c) {
     v({"displacement", "How far the nozzle is displaced in time, along each axis", optional, "m"}, b.displacement);
     if (c.heat)
       v({"temperature", "Temperature of the fluid that comes in", required, "K", positive}, b.temperature);
+    if (c.method.kind == MethodKind::MphI)
+      v({"viscosity_factor", "By what the viscosity of the fluid that comes in is multiplied; 0: 1", optional, "",
+         notNegative},
+        b.viscosityFactor);
     return visit(v, b.inflow, c);
   }
   v({"shape", "Shape that is filled with particles", required}, b.shape.kind);
@@ -207,6 +211,13 @@ void visit(auto& v, Like<Body> auto& b, const Case& c) {
   if (ofFile)
     v({"file_velocities", "Whether particles have the velocities of the file, on top of that of the body"},
       b.fileVelocities);
+  if (b.kind == BodyKind::Fluid && c.method.kind == MethodKind::MphI)
+    v({"viscosity_factor",
+       "By what viscosities of its particles are multiplied, each keeping its own; 0: 1, or none where no body "
+       "has "
+       "any",
+       optional, "", notNegative},
+      b.viscosityFactor, b.viscosityFactorExpression);
   if (b.kind == BodyKind::Rigid) {
     visit(v, b.rigid, c);
   } else {

@@ -83,10 +83,20 @@ struct Case {
     return method.kind == MethodKind::Isph ? 2 * smoothingLength()
                                            : std::max({viscosityRadius(), densityRadius(), 2 * pressureRadius()});
   }
-  /// Whether particles have viscosities of their own, by their shear rates or temperatures: they then have the
-  /// former, too.
+  /// Whether particles have viscosities of their own, by their shear rates, temperatures or factors: they then
+  /// have the first of these, too.
   bool hasOwnViscosities() const {
-    return std::ranges::any_of(materials, [](const Material& m) { return m.hasOwnViscosities(); });
+    return hasViscosityFactors() ||
+           std::ranges::any_of(materials, [](const Material& m) { return m.hasOwnViscosities(); });
+  }
+  bool hasViscosityFactors() const {
+    return std::ranges::any_of(bodies, [](const Body& b) { return b.givesViscosityFactor(); });
+  }
+  /// Leaves viscosities what they are.
+  void haveViscosityFactors() {
+    if (hasViscosityFactors()) return;
+    const auto first = std::ranges::find_if(bodies, &Body::holdsFluid);
+    if (first != bodies.end()) first->viscosityFactor = 1;
   }
   /// The temperature that the first fluid of a material of the case starts with; where a formula says that, one
   /// that the material has its constants at [K]. And a_T there.

@@ -197,6 +197,7 @@ inline constexpr OutputFieldName outputFieldNames[] = {{"velocity", &OutputField
                                                        {"id", &OutputFields::id},
                                                        {"dynamic_viscosity", &OutputFields::dynamicViscosity},
                                                        {"shear_rate", &OutputFields::shearRate},
-                                                       {"temperature", &OutputFields::temperature}};
+                                                       {"temperature", &OutputFields::temperature},
+                                                       {"viscosity_factor", &OutputFields::viscosityFactor}};
 
 }  // namespace treacle

@@ -7,6 +7,7 @@ struct OutputFields {
        body = true, id = true;
   bool dynamicViscosity = true, shearRate = true;  // in cases where a material has a rheology
   bool temperature = true;                         // in cases with heat
+  bool viscosityFactor = true;                     // in cases where a body gives one
 
   bool operator==(const OutputFields&) const = default;
 };

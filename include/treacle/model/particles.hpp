@@ -13,19 +13,29 @@
 
 namespace treacle {
 
+/// Which fields the fluid has that not every case needs.
+struct FluidExtras {
+  bool shearRates = false;        // where viscosities are particles' own (Case::hasOwnViscosities)
+  bool temperatures = false;      // with heat
+  bool viscosityFactors = false;  // where some body gives one
+
+  bool operator==(const FluidExtras&) const = default;
+};
+
 /// What the fluid remembers of earlier steps; nothing before the first one. Sets without shear rates have no field
 /// of them.
 template <class F, class... Sets>
 void forEachFlowMemoryOf(F&& f, Sets&... sets) {
   f(sets.acceleration...), f(sets.jerk...);
-  if ((sets.hasShearRates && ...)) f(sets.shearRate...);
+  if ((sets.has.shearRates && ...)) f(sets.shearRate...);
 }
 
-/// The fields that walls do not have. Likewise of temperatures.
+/// The fields that walls do not have. Likewise of temperatures and factors.
 template <class F, class... Sets>
 void forEachFluidFieldOf(F&& f, Sets&... sets) {
   forEachFlowMemoryOf(f, sets...);
-  if ((sets.hasTemperatures && ...)) f(sets.temperature...);
+  if ((sets.has.temperatures && ...)) f(sets.temperature...);
+  if ((sets.has.viscosityFactors && ...)) f(sets.viscosityFactor...);
 }
 
 /// The fields that fluid and walls have.
@@ -54,8 +64,8 @@ void forEachFieldOf(F&& f, Sets&... sets) {
 /// How many particles of each kind, modes of the solver and known surfaces of walls there are.
 struct ParticleNumbers {
   std::uint64_t fluid = 0, wall = 0, modes = 0, surfaces = 0;
-  std::uint64_t ghosts = 0;                       // fluid of other processes
-  bool shearRates = false, temperatures = false;  // whether the fluid has some
+  std::uint64_t ghosts = 0;  // fluid of other processes
+  FluidExtras has{};
 
   bool operator==(const ParticleNumbers&) const = default;
 };
@@ -87,14 +97,11 @@ struct Particles {
   Buffer<Vec<D>, Backend> acceleration;  // (u^k - u^{k-1}) / dt of the fluid [m/s2]; zero: not known
   Buffer<Vec<D>, Backend> jerk;          // that of the acceleration, of the fluid [m/s3]; zero: not known
 
-  // sqrt(2 E:E) that the next solve takes the viscosity of a fluid with a rheology from, of the fluid [1/s]; empty
-  // unless hasShearRates, which it is to be where some material has a rheology.
-  Buffer<double, Backend> shearRate;
-  bool hasShearRates = false;
-
-  // T of the fluid [K]; empty unless hasTemperatures, which it is to be where the case has heat.
-  Buffer<double, Backend> temperature;
-  bool hasTemperatures = false;
+  // Of the fluid; empty unless it has them.
+  FluidExtras has{};
+  Buffer<double, Backend> shearRate;        // sqrt(2 E:E) that the next solve takes the viscosity from [1/s]
+  Buffer<double, Backend> temperature;      // T [K]
+  Buffer<double, Backend> viscosityFactor;  // by which the viscosity of the material is multiplied [-]
 
   // The memory of the solver, likewise.
   SolverModes<D, Backend> modes;
@@ -128,7 +135,7 @@ struct Particles {
   }
 
   ParticleNumbers numbers() const {
-    return {fluidCount, wallCount(), modeCount(), wallSurface.size(), ghostCount, hasShearRates, hasTemperatures};
+    return {fluidCount, wallCount(), modeCount(), wallSurface.size(), ghostCount, has};
   }
 
   /// The content is undefined afterwards. Errors: std::bad_alloc.
@@ -147,10 +154,8 @@ struct Particles {
     const auto resizeTo = [&](std::uint32_t size) {
       return [&, size](auto& field) { field.resize(context, size); };
     };
-    hasShearRates = numbers.shearRates;
-    if (!hasShearRates) shearRate.resize(context, 0);
-    hasTemperatures = numbers.temperatures;
-    if (!hasTemperatures) temperature.resize(context, 0);
+    has = numbers.has;
+    for (auto* field : {&shearRate, &temperature, &viscosityFactor}) field->resize(context, 0);
     forEachSharedFieldOf(resizeTo(count), *this);
     forEachFluidFieldOf(resizeTo(fluid), *this);
     modes.vectors.resize(context, fluid * numbers.modes);

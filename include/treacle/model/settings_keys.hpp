@@ -184,7 +184,8 @@ void visit(auto& v, Like<OutputSettings> auto& o, const Case& c) {
      notNegative},
     o.checkpointInterval);
   v({"fields",
-     "Fields in the frames; dynamic_viscosity, shear_rate and temperature are there where the case has them"},
+     "Fields in the frames; dynamic_viscosity, shear_rate, temperature and viscosity_factor are there where the "
+     "case has them"},
     o.fields);
   v({"format", "Format of the frames: VTK XML PolyData"}, format);
   v({"precision", "Precision of positions and fields in the frames"}, o.precision);

@@ -12,20 +12,22 @@
 
 namespace treacle {
 
-/// The viscosities of particles from their shear rates and temperatures, particle by particle; the shear rates are
-/// those of mph_balance.hpp. Spans are in the backend's memory.
+/// The viscosities of particles from their shear rates, temperatures and factors, particle by particle; the shear
+/// rates are those of mph_balance.hpp. Spans are in the backend's memory.
 
 /// By material.
 struct RheologyTable {
   Rheology of[maxMaterials];
   ShiftFactor shift[maxMaterials];
   std::span<const double> temperature{};  // per particle [K]; empty: no viscosity follows it
+  std::span<const double> factor{};       // likewise, by which it is multiplied [-]; empty: 1
 
   static RheologyTable make(const Case& c);
 
   /// Of a particle i of material m at a shear rate of gamma [1/s], [Pa s].
   TREACLE_HD double viscosity(std::size_t i, int m, double rate) const {
-    return of[m].viscosity(rate, temperature.empty() ? 1 : shift[m](temperature[i]));
+    const double mu = of[m].viscosity(rate, temperature.empty() ? 1 : shift[m](temperature[i]));
+    return factor.empty() ? mu : factor[i] * mu;
   }
 };
 

@@ -51,8 +51,7 @@ struct Surroundings {
 template <int D, class Backend>
 ParticleNumbers numbersOfSome(const Particles<D, Backend>& particles, std::size_t fluid, std::size_t walls) {
   ParticleNumbers numbers{fluid, walls};
-  numbers.shearRates = particles.hasShearRates;
-  numbers.temperatures = particles.hasTemperatures;
+  numbers.has = particles.has;
   return numbers;
 }
 

@@ -9,7 +9,18 @@
 namespace treacle {
 
 /// The fields of the fluid that callers may look at between steps.
-enum class FluidField { Position, Velocity, Pressure, NumberDensity, ShearRate, Temperature, Material, Body, Id };
+enum class FluidField {
+  Position,
+  Velocity,
+  Pressure,
+  NumberDensity,
+  ShearRate,
+  Temperature,
+  ViscosityFactor,
+  Material,
+  Body,
+  Id
+};
 
 /// Where one of them lies: `count` entries of `components` numbers each, of the type of Particles. What makes a
 /// step may move it, give up the memory, and put the particles into another order.
@@ -23,10 +34,11 @@ struct FieldMemory {
 /// What the fluid is to have from now on: numbers per particle in the present order of Particles, whichever is
 /// empty stays as it is.
 struct GivenFluid {
-  std::span<const double> position;      // as many numbers per particle as there are dimensions [m]
-  std::span<const double> velocity;      // likewise [m/s]
-  std::span<const double> temperature;   // [K]
-  BackendKind where = BackendKind::Cpu;  // whose memory these are in
+  std::span<const double> position;           // as many numbers per particle as there are dimensions [m]
+  std::span<const double> velocity;           // likewise [m/s]
+  std::span<const double> temperature;        // [K]
+  std::span<const double> viscosityFactor{};  // [-]; where there are none, the fluid has some then
+  BackendKind where = BackendKind::Cpu;       // whose memory these are in
 };
 
 }  // namespace treacle

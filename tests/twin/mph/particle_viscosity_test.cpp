@@ -30,7 +30,7 @@ Case threeFluids() {
 /// What the loops read and write; the first particles are fluid.
 struct Fields {
   std::vector<std::uint8_t> material, kind;
-  std::vector<double> rate, found, share, viscosity, scaled, temperature;
+  std::vector<double> rate, found, share, viscosity, scaled, temperature, factor;
 
   Fields(std::size_t fluid, std::size_t walls) : kind(fluid + walls), viscosity(fluid), scaled(fluid) {
     std::mt19937 random(static_cast<unsigned>(fluid));
@@ -41,6 +41,7 @@ struct Fields {
       found.push_back(std::pow(10, 8 * unit(random) - 4));
       share.push_back(1 + unit(random));
       temperature.push_back(280 + 120 * unit(random));
+      factor.push_back(0.1 + unit(random));
     }
   }
 };
@@ -64,9 +65,11 @@ TEST(ParticleViscosityTwin, EqualsTheCpu) {
     const auto material = copyToDevice<std::uint8_t>(cuda, f.material);
     auto rate = copyToDevice<double>(cuda, f.rate);
     const auto found = copyToDevice<double>(cuda, f.found), share = copyToDevice<double>(cuda, f.share);
-    const auto temperature = copyToDevice<double>(cuda, f.temperature);
+    const auto temperature = copyToDevice<double>(cuda, f.temperature),
+               factor = copyToDevice<double>(cuda, f.factor);
     RheologyTable table = RheologyTable::make(c), onDevice = table;
     table.temperature = f.temperature, onDevice.temperature = temperature.span();
+    table.factor = f.factor, onDevice.factor = factor.span();
     Buffer<double, Cuda> viscosity(cuda, fluid), scaled(cuda, fluid);
     Buffer<std::uint8_t, Cuda> kind(cuda, f.kind.size());
 

@@ -16,7 +16,7 @@ void compareChange(std::uint32_t fluid, std::uint32_t wall, std::uint32_t come, 
   RandomParticles<D> r(fluid, wall, fluid + 3 * wall + 7);
   Particles<D> added;
   ParticleNumbers numbers{come};
-  numbers.shearRates = r.particles.hasShearRates, numbers.temperatures = r.particles.hasTemperatures;
+  numbers.has = r.particles.has;
   added.resize(numbers);
   const auto number = [](auto& field) {
     for (std::size_t i = 0; i < field.size(); ++i) {

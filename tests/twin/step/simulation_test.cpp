@@ -145,7 +145,7 @@ void compareRheology(int materials, Precision precision) {
   std::vector<double> rate(expected.fluidCount);
   for (std::uint32_t i = 0; i < expected.fluidCount; ++i) rate[expected.id[i]] = expected.shearRate[i];
   const double most = *std::max_element(rate.begin(), rate.end());
-  ASSERT_TRUE(found.hasShearRates);
+  ASSERT_TRUE(found.has.shearRates);
   for (std::uint32_t i = 0; i < found.fluidCount; ++i)
     ASSERT_NEAR(found.shearRate[i], rate[found.id[i]], 1e-6 * most);
 }
@@ -176,7 +176,7 @@ void compareHeat(Precision precision) {
   c.bodies[0].temperature = 400;
   const auto start = [&] {
     Particles<D> p = bodyOnFloor<D>(c, 0.02);
-    p.hasTemperatures = true;
+    p.has.temperatures = true;
     p.temperature.resize(p.fluidCount);
     for (std::uint32_t i = 0; i < p.fluidCount; ++i) p.temperature[i] = 400 + 5e3 * p.position[i][0];
     return p;
@@ -196,7 +196,7 @@ void compareHeat(Precision precision) {
   EXPECT_LE(farthest(expected, found), agreement * c.spacing);
   std::vector<double> T(expected.fluidCount);
   for (std::uint32_t i = 0; i < expected.fluidCount; ++i) T[expected.id[i]] = expected.temperature[i];
-  ASSERT_TRUE(found.hasTemperatures);
+  ASSERT_TRUE(found.has.temperatures);
   for (std::uint32_t i = 0; i < found.fluidCount; ++i) ASSERT_NEAR(found.temperature[i], T[found.id[i]], 1e-7);
 }
 

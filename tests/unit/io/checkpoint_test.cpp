@@ -33,7 +33,7 @@ constexpr double time3 = 3 * 0.1;  // [s]; not the decimal 0.3
 template <int D>
 Particles<D> randomParticles(std::uint32_t fluid, std::uint32_t wall) {
   Particles<D> particles;
-  particles.resize({fluid, wall, fluid % 4, 0, 0, fluid % 2 == 0, fluid % 2 == 0});
+  particles.resize({fluid, wall, fluid % 4, 0, 0, {fluid % 2 == 0, fluid % 2 == 0, fluid % 2 == 0}});
   particles.modes.age = {7, 13};
   particles.modes.pressure = {3.75, 4, 6};
   particles.steps = {0.01, 0.02, 0.3};
@@ -72,10 +72,10 @@ void expectSame(const Particles<D>& a, const Particles<D>& b) {
   EXPECT_TRUE(sameBits(a.id, b.id));
   EXPECT_TRUE(sameBits(a.acceleration, b.acceleration));
   EXPECT_TRUE(sameBits(a.jerk, b.jerk));
-  EXPECT_EQ(a.hasShearRates, b.hasShearRates);
+  EXPECT_EQ(a.has, b.has);
   EXPECT_TRUE(sameBits(a.shearRate, b.shearRate));
-  EXPECT_EQ(a.hasTemperatures, b.hasTemperatures);
   EXPECT_TRUE(sameBits(a.temperature, b.temperature));
+  EXPECT_TRUE(sameBits(a.viscosityFactor, b.viscosityFactor));
   EXPECT_EQ(a.modeCount(), b.modeCount());
   EXPECT_TRUE(sameBits(a.modes.vectors, b.modes.vectors));
   EXPECT_EQ(a.modes.age, b.modes.age);
@@ -268,9 +268,9 @@ TEST(Checkpoint, OtherVersionsAndDimensionsAreRefused) {
   const auto path = directory / "c.h5";
   writeCheckpoint<3>(path, randomParticles<3>(5, 5), 1, 1, MethodKind::MphI);
   EXPECT_THAT(refusal<2>(path), HasSubstr("3 dimensions, expected 2"));
-  for (const int version : {0, 10}) {
+  for (const int version : {0, 11}) {
     changeAttribute(path, "version", version);
-    EXPECT_THAT(refusal<3>(path), HasSubstr(fmt::format("version {}, expected 1 to 9", version)));
+    EXPECT_THAT(refusal<3>(path), HasSubstr(fmt::format("version {}, expected 1 to 10", version)));
   }
 }
 
@@ -314,11 +314,11 @@ TEST(Checkpoint, ShearRatesAreThereOrNot) {
   TemporaryDirectory directory;
   const auto path = directory / "c.h5";
   Particles<2> particles = randomParticles<2>(6, 5);
-  ASSERT_TRUE(particles.hasShearRates);
+  ASSERT_TRUE(particles.has.shearRates);
   writeCheckpoint<2>(path, particles, 7, time3, MethodKind::MphI);
   expectSame(readCheckpoint<2>(path).particles, particles);
   changeAttribute(path, "version", 6);
-  EXPECT_FALSE(readCheckpoint<2>(path).particles.hasShearRates);
+  EXPECT_FALSE(readCheckpoint<2>(path).particles.has.shearRates);
   particles.shearRate[3] = -1;
   EXPECT_THAT(messageOf<RunError>([&] { writeCheckpoint<2>(path, particles, 7, time3, MethodKind::MphI); }),
               HasSubstr("a shear rate of -1 1/s, expected at least 0"));
@@ -328,13 +328,27 @@ TEST(Checkpoint, TemperaturesAreThereOrNot) {
   TemporaryDirectory directory;
   const auto path = directory / "c.h5";
   Particles<2> particles = randomParticles<2>(6, 5);
-  ASSERT_TRUE(particles.hasTemperatures);
+  ASSERT_TRUE(particles.has.temperatures);
   writeCheckpoint<2>(path, particles, 7, time3, MethodKind::MphI);
   changeAttribute(path, "version", 7);
-  EXPECT_FALSE(readCheckpoint<2>(path).particles.hasTemperatures);
+  EXPECT_FALSE(readCheckpoint<2>(path).particles.has.temperatures);
   particles.temperature[3] = 0;
   EXPECT_THAT(messageOf<RunError>([&] { writeCheckpoint<2>(path, particles, 7, time3, MethodKind::MphI); }),
               HasSubstr("a temperature of 0 K, expected more than 0"));
+}
+
+TEST(Checkpoint, FactorsOfViscositiesAreThereOrNot) {
+  TemporaryDirectory directory;
+  const auto path = directory / "c.h5";
+  Particles<2> particles = randomParticles<2>(6, 5);
+  ASSERT_TRUE(particles.has.viscosityFactors);
+  writeCheckpoint<2>(path, particles, 7, time3, MethodKind::MphI);
+  expectSame(readCheckpoint<2>(path).particles, particles);
+  changeAttribute(path, "version", 9);
+  EXPECT_FALSE(readCheckpoint<2>(path).particles.has.viscosityFactors);
+  particles.viscosityFactor[3] = 0;
+  EXPECT_THAT(messageOf<RunError>([&] { writeCheckpoint<2>(path, particles, 7, time3, MethodKind::MphI); }),
+              HasSubstr("a factor of the viscosity of 0, expected more than 0"));
 }
 
 TEST(Checkpoint, DamagedFilesAreRefused) {

@@ -14,7 +14,7 @@ namespace {
 template <int D>
 Particles<D> shuffledParticles(std::uint32_t fluid, std::uint32_t walls) {
   Particles<D> particles;
-  particles.resize({fluid, walls, 0, 0, 0, true, true});
+  particles.resize({fluid, walls, 0, 0, 0, {true, true}});
   std::iota(particles.id.begin(), particles.id.end(), 0u);
   std::mt19937 generator(7);
   std::shuffle(particles.id.begin(), particles.id.begin() + fluid, generator);
@@ -67,6 +67,10 @@ TEST(Frame, HasViscositiesOfShearRates) {
       ViscosityShift{.model = ShiftModel::Table, .temperatures = {302, 304}, .factors = {4, 1}};
   addViscosities(materials, frame);
   EXPECT_NEAR(frame.dynamicViscosity[3], 7 * 2, 1e-12);  // at 303 K
+  frame.viscosityFactor = {1, 2, 0.5, 1, 1};
+  addViscosities(materials, frame);
+  EXPECT_EQ(frame.dynamicViscosity[1], 14);
+  EXPECT_EQ(frame.dynamicViscosity[2], 2);
   Frame newtonian;
   newtonian.material = {0};
   addViscosities(materials, newtonian);

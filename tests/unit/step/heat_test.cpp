@@ -32,7 +32,7 @@ LoadedWalls<D> closed(SchemeKind scheme) {
   start.c.materials[1].viscosityShift =
       ViscosityShift{.model = ShiftModel::Arrhenius, .reference = 320, .activationEnergy = 4e4};
   start.c.bodies[0].temperature = 300;
-  start.particles.hasTemperatures = true;
+  start.particles.has.temperatures = true;
   start.particles.temperature.resize(start.particles.fluidCount);
   for (std::uint32_t i = 0; i < start.particles.fluidCount; ++i)
     start.particles.temperature[i] = 300 + 2e4 * start.particles.position[i][0];
@@ -125,7 +125,7 @@ TEST(HeatSteps, ContinueFromACopyWithTheSameBits) {
   Simulation<2> whole(c, particlesOf(c));
   for (int k = 0; k < 5; ++k) whole.advance();
   Particles<2> state = stateOf(whole);
-  ASSERT_TRUE(state.hasTemperatures);
+  ASSERT_TRUE(state.has.temperatures);
   Simulation<2> resumed(c, std::move(state), whole.step(), whole.time());
   for (int k = 0; k < 5; ++k) whole.advance(), resumed.advance();
   expectSameBits(stateOf(whole), stateOf(resumed));
@@ -134,7 +134,7 @@ TEST(HeatSteps, ContinueFromACopyWithTheSameBits) {
 TEST(HeatSteps, NeedTemperatures) {
   const Case c = gob();
   Particles<2> p = particlesOf(c);
-  p.hasTemperatures = false;
+  p.has.temperatures = false;
   p.temperature.resize(0);
   EXPECT_THROW(Simulation<2>(c, std::move(p)), InputError);
   Case cold = gob();
@@ -142,7 +142,7 @@ TEST(HeatSteps, NeedTemperatures) {
   cold.materials[0].viscosityShift.reset();
   Simulation<2> without(cold, particlesOf(c));
   without.advance();
-  EXPECT_FALSE(without.particles().hasTemperatures);
+  EXPECT_FALSE(without.particles().has.temperatures);
 }
 
 TEST(HeatSteps, SayWhatFailed) {

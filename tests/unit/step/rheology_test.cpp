@@ -92,7 +92,7 @@ TEST(RheologySteps, ContinueFromACopyWithTheSameBits) {
   Simulation<2> whole(c, particlesOf(c));
   for (int k = 0; k < 5; ++k) whole.advance();
   Particles<2> state = stateOf(whole);
-  ASSERT_TRUE(state.hasShearRates);
+  ASSERT_TRUE(state.has.shearRates);
   Simulation<2> resumed(c, std::move(state), whole.step(), whole.time());
   for (int k = 0; k < 5; ++k) whole.advance(), resumed.advance();
   expectSameBits(stateOf(whole), stateOf(resumed));
@@ -106,11 +106,48 @@ TEST(RheologySteps, ContinueWithAStateOfAnotherFluid) {
   Simulation<2> other(damBreak(grease()), std::move(state), 3, 3e-3);
   other.advance();
   Particles<2> yielding = stateOf(other);
-  ASSERT_TRUE(yielding.hasShearRates);
+  ASSERT_TRUE(yielding.has.shearRates);
   EXPECT_GT(*std::max_element(yielding.shearRate.begin(), yielding.shearRate.end()), 0);
   Simulation<2> back(newtonian, std::move(yielding), 4, 4e-3);
   back.advance();
-  EXPECT_FALSE(back.particles().hasShearRates);
+  EXPECT_FALSE(back.particles().has.shearRates);
+}
+
+/// A fluid whose particles have twice the viscosity of their material is one of twice the viscosity.
+TEST(RheologySteps, HaveTheFactorsOfTheirParticles) {
+  Case thick = damBreak({});
+  thick.materials[0].rheology.reset();
+  thick.materials[0].dynamicViscosity = 20;
+  thick.solver.tolerance = 1e-22;
+  Case twice = thick;
+  twice.materials[0].dynamicViscosity = 10;
+  twice.bodies[0].viscosityFactor = 2;
+  EXPECT_LT(difference(stateAfter(thick, 10), stateAfter(twice, 10)), 1e-8);
+  twice.materials[0].dynamicViscosity = 0;
+  twice.materials[0].rheology = grease();
+  thick.materials[0].rheology = grease();
+  thick.materials[0].dynamicViscosity = 0;
+  thick.materials[0].rheology->yieldStress *= 2, thick.materials[0].rheology->plasticViscosity *= 2;
+  thick.rheology = twice.rheology = {10, 1e-6};
+  EXPECT_LT(difference(stateAfter(thick, 5), stateAfter(twice, 5)), 1e-6);
+}
+
+/// Particles keep theirs while others pass them, and a state without them has ones.
+TEST(RheologySteps, KeepTheFactorsOfParticles) {
+  Case c = damBreak({});
+  c.materials[0].rheology.reset();
+  c.materials[0].dynamicViscosity = 10;
+  Particles<2> before = particlesOf(c);
+  c.bodies[0].viscosityFactorExpression = "1 + 100*x";
+  std::vector<double> given(before.fluidCount);
+  for (std::uint32_t i = 0; i < before.fluidCount; ++i) given[before.id[i]] = 1 + 100 * before.position[i][0];
+  const Particles<2> after = stateAfter(c, 30);
+  for (std::uint32_t i = 0; i < after.fluidCount; ++i) ASSERT_EQ(after.viscosityFactor[i], given[after.id[i]]);
+  Simulation<2> from(c, std::move(before));
+  from.advance();
+  EXPECT_EQ(from.particles().viscosityFactor[0], 1);
+  c.bodies[0].viscosityFactorExpression = "x - 1";
+  EXPECT_THROW(particlesOf(c), InputError);
 }
 
 /// Solves of a step that are repeated come to viscosities that their own shear rates have.
