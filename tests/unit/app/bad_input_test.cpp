@@ -64,7 +64,8 @@ constexpr BadCase badCases[] = {
      "bad.toml:9:2: unknown key 'gravty' in the case file; did you mean 'gravity'?"},
     {"keyOfAnotherShape", "max = [6e-3, 6e-3]", "max = [6e-3, 6e-3]\nradius = 1",
      "bad.toml:26:1: unknown key 'radius' in [[body]] 'column' (box); expected 'name', 'type', 'material', "
-     "'shape', 'where', 'velocity', 'oscillation', 'displacement', 'rotation', 'min', 'max' or 'transform'"},
+     "'shape', 'where', 'velocity', 'viscosity_factor', 'oscillation', 'displacement', 'rotation', 'min', 'max' "
+     "or 'transform'"},
     {"missingKey", "density = 1000\n", "",
      "bad.toml:12:1: density in [[material]] 'syrup': missing; expected a positive number [kg/m3]"},
     {"missingTable", "[time]\nstep = 1e-3\nend = 2e-3\n", "",
@@ -156,7 +157,8 @@ constexpr BadCase badCases[] = {
      "'mesh' or 'particles', found 'cube'"},
     {"unknownField", "interval = 1e-3", "interval = 1e-3\nfields = [\"speed\"]",
      "bad.toml:41:10: fields in [output]: expected 'velocity', 'pressure', 'number_density', 'nearest_distance', "
-     "'material', 'body', 'id', 'dynamic_viscosity', 'shear_rate' or 'temperature', found 'speed'"},
+     "'material', 'body', 'id', 'dynamic_viscosity', 'shear_rate', 'temperature' or 'viscosity_factor', found "
+     "'speed'"},
     {"minAboveMax", "max = [6e-3, 6e-3]", "max = [6e-3, -6e-3]",
      "bad.toml:25:7: max in [[body]] 'column' (box): expected more than min on every axis, found -0.006 <= 0 "
      "along y"},

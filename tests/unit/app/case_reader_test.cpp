@@ -284,7 +284,7 @@ TEST(readCase, takesEveryKey) {
   expected.solver.projected = {7, 3, 1, 55};
   expected.output = {0.25,
                      0.5,
-                     {false, true, false, false, false, true, true, false, false, false},
+                     {false, true, false, false, false, true, true, false, false, false, false},
                      OutputPrecision::Double,
                      OutputCompression::None,
                      OutputPieces::Each,
@@ -366,7 +366,7 @@ density = 1500
   const Case base = readCase(shop / "cases/base.toml"), c = readCase(shop / "derived.toml");
   Case expected = base;
   expected.time.end = 3e-3;
-  expected.output.fields = {true, false, false, false, false, false, false, false, false, false};
+  expected.output.fields = {true, false, false, false, false, false, false, false, false, false, false};
   expected.materials[0].density = 1500;
   expected.materials.push_back({"water", 998, 1e-3, 1, 1});
   expected.bodies[1].material = 1;
