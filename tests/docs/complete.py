@@ -1,7 +1,8 @@
-"""Whether every command of the pages is run by a test or stands in not_run.toml, and what else can be said without running it.
+"""Whether every command of the pages is run by a test or stands in not_run.toml, and whether what they name is there.
 
 usage: complete.py TREACLE SOURCE PAGE...    PAGE: those that run_commands.py runs
 """
+
 import pathlib
 import re
 import subprocess
@@ -23,7 +24,9 @@ def blocks(page, listed):
             found.append(f"{block.line}: unknown comment before the block: '{block.kind}'")
         for line, command in block.commands if block.language == "sh" else ():
             if command not in listed:
-                found.append(f"{line}: neither in not_run.toml nor, since the page is not in tests/docs/CMakeLists.txt, run: {command}")
+                found.append(
+                    f"{line}: neither run, as the page is not in tests/docs/CMakeLists.txt, nor in not_run.toml: {command}"
+                )
         if block.language != "sh" and block.kind not in ("synopsis", "file"):
             lines = [line for line, command in block.commands if pages.is_command(command)]
             found += [f"{line}: a command in a block of '{block.language}': expected 'sh'" for line in lines]
@@ -93,7 +96,9 @@ def main(program, source, *tested):
                 wrong += synopsis(block.text, program_help)
         failures += [f"{page.name}:{what}" for what in wrong]
     count = sum(len(block.commands) for page in everything for block in page.blocks if block.language == "sh")
-    print(*failures, f"{count} commands in blocks, {sum(len(page.inline) for page in everything)} in sentences", sep="\n")
+    print(
+        *failures, f"{count} commands in blocks, {sum(len(page.inline) for page in everything)} in sentences", sep="\n"
+    )
     return not failures and count > 100
 
 

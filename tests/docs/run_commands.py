@@ -1,17 +1,19 @@
-"""Runs the commands of a page, in order, or those within the sentences of all pages; each script in a copy of the repository.
+"""Runs the commands of a page, in order, or those within the sentences of all pages, in a copy of the repository.
 
 usage: run_commands.py TREACLE SOURCE PAGE      PAGE: docs/tutorial.md
        run_commands.py TREACLE SOURCE --inline
 
-TREACLE_MPI=1, TREACLE_OPENVDB=1: what the program was built with; TREACLE_PYTHON: a Python with what films and reports need.
+Environment: TREACLE_MPI, TREACLE_OPENVDB: set where the program was built with them; TREACLE_PYTHON: a Python with what
+films and reports need.
 
 Before a block of a page may stand a comment,
   <!-- file: NAME -->                the block, of whatever language, becomes this file
   <!-- first steps only: REASON -->  of `treacle run` in it only the first steps are made (firstSteps in stage/all.sh)
   <!-- synopsis: COMMAND -->         complete.py compares it with the help of the program
-What is not run stands in not_run.toml, with the reason. Before the commands of docs/NAME.md, stage/NAME.sh makes what they
-take. A script ends at the first command that fails.
+What is not run stands in not_run.toml, with the reason. Before the commands of docs/NAME.md, stage/NAME.sh makes what
+they take. A script ends at the first command that fails.
 """
+
 import os
 import pathlib
 import re
@@ -78,7 +80,11 @@ def surroundings(program, source, folder):
         path.chmod(0o755)
     for preset in ("release", "cpu-only"):
         (folder / "build" / preset).symlink_to(program.parent.parent)
-    mpi = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1"}
+    mpi = {
+        "OMPI_ALLOW_RUN_AS_ROOT": "1",
+        "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+        "OMPI_MCA_rmaps_base_oversubscribe": "1",
+    }
     path = f"{python.parent}:{program.parent}:{os.environ['PATH']}"
     return os.environ | mpi | {"PATH": path, "HOME": str(folder)}
 

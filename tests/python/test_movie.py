@@ -13,6 +13,7 @@ import numpy as np
 from picture_runs import called, copied, started
 
 from treacle.pictures import camera, fields, hiding, marks, particles
+from treacle.pictures.continued_run import run_of
 from treacle.pictures.run_files import RunFiles
 
 
@@ -157,6 +158,26 @@ def test_run_that_goes_on(flat, tmp_path):
     done = called("movie", run, "--size", "320x240")
     assert done.returncode == 0, done.stderr
     assert len(pictures(run / "movie.mp4")[0]) == 4
+
+
+def test_film_of_two_parts_of_a_run(continued, tmp_path):
+    films = []
+    for directories in ([continued.whole], [continued.first, continued.second]):
+        done = called("movie", *directories, "-q", "-o", tmp_path / "film.mp4", "--size", "320x240")
+        assert done.returncode == 0, done.stderr
+        films.append(pictures(tmp_path / "film.mp4")[0])
+    assert films[0].shape == films[1].shape == (5, 240, 320, 3)
+    assert difference(*films) < 0.01  # 0: the states are the same to the bit
+    assert min(difference(films[1][k], films[1][k + 1]) for k in range(4)) > 0.05
+
+    run = run_of([continued.first, continued.second])
+    assert [frame.time for frame in run.fluid] == [frame.time for frame in run.walls] == [0, 0.01, 0.02, 0.03, 0.04]
+    assert [run.origin(k) for k in range(5)] == [(continued.first, 0), (continued.first, 1)] + [
+        (continued.second, k) for k in range(3)
+    ]
+    assert run.surface_file(3) == continued.second / "frames" / "surface_000001.vtp"
+    assert called("movie", *[continued.first, continued.second], "-q", "--size", "320x240").returncode == 0
+    assert (continued.second / "movie.mp4").is_file() and not (continued.first / "movie.mp4").exists()
 
 
 def test_frames_in_pieces(flat, tmp_path):

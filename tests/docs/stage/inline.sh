@@ -1,4 +1,4 @@
-# What the words of sentences stand for: CASE.toml, its run DIR, two runs A and B, the files DATA and
+# What the words of sentences stand for: CASE.toml, its runs DIR, A and B, MORE of it, the files DATA and
 # PARTICLES, whose name must say what it is.
 . tests/docs/stage/import.sh
 mkdir staged staged/docs
@@ -7,6 +7,7 @@ cp tests/docs/stage/CASE.toml staged/drop.toml
 cp box.data staged/DATA
 cp box.boid staged
 for run in DIR A B; do treacle run staged/CASE.toml --quiet -o staged/$run; done
+treacle run staged/CASE.toml --quiet -o staged/MORE --resume staged/DIR/checkpoint.h5 --end-time 0.03
 
 apart() { # COMMAND: in a folder of its own
   local folder
