@@ -2,6 +2,8 @@
 
 import os
 import stat
+import subprocess
+import sys
 
 import pytest
 
@@ -10,7 +12,7 @@ for package in ("numpy", "vtk", "pyvista", "tqdm", "imageio_ffmpeg"):
 
 import imageio_ffmpeg
 import numpy as np
-from picture_runs import called, copied, started
+from picture_runs import called, copied, repository, started
 
 from treacle.pictures import camera, fields, hiding, marks, particles
 from treacle.pictures.continued_run import run_of
@@ -158,6 +160,19 @@ def test_run_that_goes_on(flat, tmp_path):
     done = called("movie", run, "--size", "320x240")
     assert done.returncode == 0, done.stderr
     assert len(pictures(run / "movie.mp4")[0]) == 4
+
+
+def test_nothing_compiled_is_needed():
+    """The sources as they are make films; whoever wants more is told how it comes."""
+    code = "import treacle.movie, treacle.report\ntry:\n  from treacle import Simulation\nexcept ImportError as error:\n  print(error)"
+    done = subprocess.run(
+        [sys.executable, "-c", code],
+        env=os.environ | {"PYTHONPATH": str(repository / "python")},
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stderr
+    assert "treacle.Simulation needs the compiled part of the package" in done.stdout
 
 
 def test_film_of_two_parts_of_a_run(continued, tmp_path):
