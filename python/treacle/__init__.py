@@ -7,25 +7,8 @@ sim.run()
 
 from __future__ import annotations
 
-try:
-    from . import _treacle as _treacle
-except ImportError as error:
-    if "libcusparse" not in str(error):
-        raise
-    raise ImportError(
-        f"{error}: this treacle computes on GPUs and needs NVIDIA's cuSPARSE; expected that of the CUDA toolkit in the "
-        "search path of libraries, or `pip install nvidia-cusparse` (CUDA 13) or nvidia-cusparse-cu12 (CUDA 12)"
-    ) from None
-
-from . import cases
-from ._arrays import DeviceArray
-from ._fluid import Fluid
-from ._frames import Frame, read_frame
-from ._simulation import Simulation
-from ._treacle import StepReport
-from ._treacle import version as __version__
-from .cases import Case
-from .errors import InputError, RunError, SimulationWarning
+from importlib.util import find_spec
+from typing import TYPE_CHECKING
 
 __all__ = [
     "Case",
@@ -41,3 +24,35 @@ __all__ = [
     "cases",
     "read_frame",
 ]
+
+if TYPE_CHECKING or find_spec("._treacle", __name__):
+    try:
+        from . import _treacle as _treacle
+    except ImportError as error:
+        if "libcusparse" not in str(error):
+            raise
+        raise ImportError(
+            f"{error}: this treacle computes on GPUs and needs NVIDIA's cuSPARSE; expected that of the CUDA toolkit in the "
+            "search path of libraries, or `pip install nvidia-cusparse` (CUDA 13) or nvidia-cusparse-cu12 (CUDA 12)"
+        ) from None
+
+    from . import cases
+    from ._arrays import DeviceArray
+    from ._fluid import Fluid
+    from ._frames import Frame, read_frame
+    from ._simulation import Simulation
+    from ._treacle import StepReport
+    from ._treacle import version as __version__
+    from .cases import Case
+    from .errors import InputError, RunError, SimulationWarning
+
+else:  # treacle's sources as they are: films and reports need nothing that is compiled
+
+    def __getattr__(name: str) -> None:
+        if name not in __all__:
+            raise AttributeError(f"module 'treacle' has no attribute '{name}'")
+        raise ImportError(
+            f"treacle.{name} needs the compiled part of the package, of which only treacle.movie and treacle.report do "
+            "without; expected `pip install .` in treacle's sources, or build/PRESET/python of a build with "
+            "-DTREACLE_PYTHON=ON in PYTHONPATH"
+        )

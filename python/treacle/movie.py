@@ -12,7 +12,9 @@ def arguments_of(argv):
     parser = argparse.ArgumentParser(
         prog="treacle movie", description="Make a film of the frames of a run, or of one frame from all sides"
     )
-    parser.add_argument("directory", metavar="DIR", help="run directory")
+    parser.add_argument(
+        "directories", nargs="+", metavar="DIR", help="run directory, and those of runs that continued it, in order"
+    )
     parser.add_argument(
         "-o", "--output", metavar="FILE", help=".mp4, .webm or .webp; default: DIR/movie.mp4, or turntable.mp4"
     )

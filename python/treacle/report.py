@@ -12,7 +12,9 @@ def arguments_of(argv):
         prog="treacle report",
         description="Write summary, curves and frames of a run as one page of HTML, which needs no network",
     )
-    parser.add_argument("directory", metavar="DIR", help="run directory")
+    parser.add_argument(
+        "directories", nargs="+", metavar="DIR", help="run directory, and those of runs that continued it, in order"
+    )
     parser.add_argument("-o", "--output", metavar="FILE", help="default: DIR/report.html")
     parser.add_argument(
         "--frames", type=int, default=20, metavar="N", help="of the view, at equal distances; default: 20"

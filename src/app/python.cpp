@@ -21,8 +21,8 @@ name = sys.argv.pop(1)
 try:
     main = importlib.import_module("treacle." + name).main
 except ImportError as error:
-    print(f"treacle: error: treacle {name} is written in Python: {error}; expected the package of treacle's sources, "
-          f"`pip install '.[pictures]'` in {sys.executable}, or TREACLE_PYTHON=INTERPRETER", file=sys.stderr)
+    print(f"treacle: error: treacle {name} is written in Python: {error}; expected the package of treacle's sources, by "
+          f"`pip install '.[pictures]'` in {sys.executable} or by scripts/pictures, or TREACLE_PYTHON=INTERPRETER", file=sys.stderr)
     sys.exit(2)
 sys.exit(main(sys.argv[1:])))";
 
@@ -43,8 +43,8 @@ void pythonCommand(const std::string& module, const std::vector<std::string>& ar
   execvp(interpreter.c_str(), pointers.data());
   throw InputError(
       fmt::format("treacle {} is written in Python, and {} cannot be started: {}; expected Python 3 with the "
-                  "package of treacle's sources, "
-                  "`pip install '.[pictures]'`, or TREACLE_PYTHON=INTERPRETER",
+                  "package of treacle's sources, by "
+                  "`pip install '.[pictures]'` or by scripts/pictures, or TREACLE_PYTHON=INTERPRETER",
                   module, interpreter, std::strerror(errno)));
 }
 

@@ -107,3 +107,11 @@ def solid(tmp_path_factory):
     from picture_runs import solid_run
 
     return solid_run(tmp_path_factory.mktemp("solid") / "run")
+
+
+@pytest.fixture(scope="module")
+def continued(tmp_path_factory):
+    """Directories of a run and of one that has the same states in two parts."""
+    from picture_runs import continued_runs
+
+    return continued_runs(tmp_path_factory.mktemp("continued"), DROP_TOML)

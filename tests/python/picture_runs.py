@@ -68,6 +68,18 @@ def solid_run(directory):
     )
 
 
+def continued_runs(directory, case):
+    """A run whole, to 0.04 s, and one in two parts, of which the first went on for 5 ms after the state that the second one
+    begins with, at 0.02 s: their directories."""
+    file = directory / "case.toml"
+    file.write_text(case)
+    whole, first, kept, second = (directory / name for name in ("whole", "first", "kept", "second"))
+    for place, end in (whole, "0.04"), (first, "0.025"), (kept, "0.02"):
+        run(file, place, "--end-time", end)
+    run(file, second, "--end-time", "0.04", "--resume", str(kept / "checkpoint.h5"))
+    return SimpleNamespace(whole=whole, first=first, second=second)
+
+
 def started(module, *arguments):
     """python -m treacle.MODULE ARGUMENTS: what it left."""
     return subprocess.run(

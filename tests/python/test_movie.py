@@ -2,6 +2,8 @@
 
 import os
 import stat
+import subprocess
+import sys
 
 import pytest
 
@@ -10,9 +12,10 @@ for package in ("numpy", "vtk", "pyvista", "tqdm", "imageio_ffmpeg"):
 
 import imageio_ffmpeg
 import numpy as np
-from picture_runs import called, copied, started
+from picture_runs import called, copied, repository, started
 
 from treacle.pictures import camera, fields, hiding, marks, particles
+from treacle.pictures.continued_run import run_of
 from treacle.pictures.run_files import RunFiles
 
 
@@ -157,6 +160,39 @@ def test_run_that_goes_on(flat, tmp_path):
     done = called("movie", run, "--size", "320x240")
     assert done.returncode == 0, done.stderr
     assert len(pictures(run / "movie.mp4")[0]) == 4
+
+
+def test_nothing_compiled_is_needed():
+    """The sources as they are make films; whoever wants more is told how it comes."""
+    code = "import treacle.movie, treacle.report\ntry:\n  from treacle import Simulation\nexcept ImportError as error:\n  print(error)"
+    done = subprocess.run(
+        [sys.executable, "-c", code],
+        env=os.environ | {"PYTHONPATH": str(repository / "python")},
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stderr
+    assert "treacle.Simulation needs the compiled part of the package" in done.stdout
+
+
+def test_film_of_two_parts_of_a_run(continued, tmp_path):
+    films = []
+    for directories in ([continued.whole], [continued.first, continued.second]):
+        done = called("movie", *directories, "-q", "-o", tmp_path / "film.mp4", "--size", "320x240")
+        assert done.returncode == 0, done.stderr
+        films.append(pictures(tmp_path / "film.mp4")[0])
+    assert films[0].shape == films[1].shape == (5, 240, 320, 3)
+    assert difference(*films) < 0.01  # 0: the states are the same to the bit
+    assert min(difference(films[1][k], films[1][k + 1]) for k in range(4)) > 0.05
+
+    run = run_of([continued.first, continued.second])
+    assert [frame.time for frame in run.fluid] == [frame.time for frame in run.walls] == [0, 0.01, 0.02, 0.03, 0.04]
+    assert [run.origin(k) for k in range(5)] == [(continued.first, 0), (continued.first, 1)] + [
+        (continued.second, k) for k in range(3)
+    ]
+    assert run.surface_file(3) == continued.second / "frames" / "surface_000001.vtp"
+    assert called("movie", *[continued.first, continued.second], "-q", "--size", "320x240").returncode == 0
+    assert (continued.second / "movie.mp4").is_file() and not (continued.first / "movie.mp4").exists()
 
 
 def test_frames_in_pieces(flat, tmp_path):

@@ -18,9 +18,9 @@ from picture_runs import called, copied, run
 from treacle.pictures import particles, report_curves, report_frames
 
 
-def reported(directory, *options):
-    """The page of a run without the library, and its data."""
-    done = called("report", directory, *options)
+def reported(directory, *options, before=()):
+    """The page of a run without the library, and its data. before: directories of what it continued."""
+    done = called("report", *before, directory, *options)
     assert done.returncode == 0, done.stderr
     page = (directory / "report.html").read_text()
     before, after = re.split(r"<script>/\*\*\n\* plotly\.js.*?</script>", page, flags=re.S)
@@ -99,6 +99,59 @@ def test_probes_inflow_and_log(tmp_path):
     titles = [chart["title"] for chart in data["charts"]]
     assert "Fluid particles" in titles and any(title.startswith("Probe ") for title in titles)
     assert "Where the energy went" not in titles  # no balance
+
+
+def rows(page):
+    """The table of a page without what depends on the machine, or is of files."""
+    found = dict(re.findall(r"<tr><th>(.*?)</th><td>(.*?)</td>", page))
+    return {name: value for name, value in found.items() if name not in ("Wall-clock time", "Memory", "Frames")}
+
+
+def test_two_parts_of_a_run_are_one(continued, tmp_path):
+    page, data = reported(continued.second, before=[continued.first])
+    whole_page, whole = reported(continued.whole)
+    assert [frame["time"] for frame in data["view"]["frames"]] == [0, 0.01, 0.02, 0.03, 0.04]
+    assert data["view"] == whole["view"]
+    titles = [chart["title"] for chart in whole["charts"]]
+    assert {"Energy", "Where the energy went", "Probe load: force", "Probe way-up: speed"} <= set(titles)
+    assert [chart["title"] for chart in data["charts"]] == titles
+    for part, chart in zip(data["charts"], whole["charts"], strict=True):
+        if chart["title"] != "Computing time per step":
+            assert part == chart, chart["title"]  # to the bit, since the states are
+    energy = data["charts"][0]["curves"][0]["x"]
+    np.testing.assert_allclose(energy, np.arange(1, 41) * 1e-3, rtol=1e-12)  # each step once
+    assert rows(page) == rows(whole_page) and rows(page)["Steps"] == "40"
+    assert f"{continued.first} → {continued.second}" in page
+    seconds = [
+        json.loads((part / "summary.json").read_text())["wall_seconds"] for part in (continued.first, continued.second)
+    ]
+    assert f"<th>Wall-clock time</th><td>{sum(seconds):.3g} s" in page
+
+    killed = copied(continued.first, tmp_path / "killed")
+    (killed / "summary.json").unlink()
+    page, data = reported(continued.second, before=[killed])
+    assert rows(page) == rows(whole_page) and "<th>Wall-clock time</th>" not in page and data["phases"] == []
+
+
+@pytest.mark.parametrize(
+    "order, said",
+    [
+        (["second", "first"], "begins at 0 s, not after"),
+        (["first", "first"], "begins at 0 s, not after"),
+        (["flat", "second"], "has other dimensions or another spacing"),
+        (["gap", "second"], "begins at 0.02 s, "),
+    ],
+)
+def test_runs_that_do_not_continue_each_other(continued, flat, tmp_path, order, said):
+    gap = copied(continued.first, tmp_path / "gap")
+    for name, lines in (("fluid.pvd", 5), ("history.csv", 11)):  # to 0.01 s
+        kept = (gap / name).read_text().splitlines()[:lines]
+        (gap / name).write_text("\n".join(kept + ["</Collection></VTKFile>"] * (name == "fluid.pvd")) + "\n")
+    places = {"first": continued.first, "second": continued.second, "flat": copied(flat, tmp_path / "flat"), "gap": gap}
+    case = places["flat"] / "case.toml"
+    case.write_text(re.sub(r"(?m)^spacing = .*", "spacing = 2e-3", case.read_text()))
+    done = called("report", *[places[name] for name in order])
+    assert done.returncode == 2 and said in done.stderr and "by --resume" in done.stderr
 
 
 def test_run_that_goes_on(flat, tmp_path):

@@ -15,7 +15,8 @@ def require(*modules):
             importlib.import_module(name)
         except ImportError as error:
             raise PictureError(
-                f"{error}; films and reports need more packages: in treacle's sources, pip install '.[pictures]'"
+                f"{error}; films and reports need more packages: in treacle's sources, scripts/pictures or pip install "
+                "'.[pictures]'"
             ) from None
 
 

@@ -8,12 +8,12 @@ import numpy as np
 from tqdm import tqdm
 
 from . import camera, fields, surfaces
+from .continued_run import run_of
 from .errors import PictureError
 from .film import Film, checked, ffmpeg
 from .frame_choice import chosen_frames, decimals
 from .hiding import FluidBehind, seen
 from .particles import none, read_particles
-from .run_files import RunFiles
 from .scene import Colours, Scene
 
 most_frames_looked_at = 50  # for the range of the colours and what the camera has to see
@@ -156,7 +156,7 @@ class FilmMaker:
 def make(options, size, given):
     """Makes the film. Raises PictureError, OSError."""
     started = time.perf_counter()
-    run = RunFiles(options.directory)
+    run = run_of(options.directories)
     turntable = options.turntable is not None
     path = checked(options.output or run.path / ("turntable.mp4" if turntable else "movie.mp4"))
     ffmpeg()  # before the long work

@@ -6,9 +6,9 @@ from pathlib import Path
 from tqdm import tqdm
 
 from . import report_curves, report_page, report_summary
+from .continued_run import run_of
 from .errors import PictureError
 from .report_frames import ReportFrames
-from .run_files import RunFiles
 
 
 def charts(run):
@@ -23,7 +23,7 @@ def charts(run):
 
 def make(options):
     """Makes the page. Raises PictureError, OSError."""
-    run = RunFiles(options.directory)
+    run = run_of(options.directories)
     path = Path(options.output or run.path / "report.html")
     if not path.parent.is_dir():
         raise PictureError(f"{path}: no such directory: {path.parent}")
@@ -35,7 +35,7 @@ def make(options):
     status, message = report_summary.status(run)
     content = report_page.page(
         title=run.title,
-        subtitle=" · ".join(word for word in (str(run.path), report_summary.begun(run)) if word),
+        subtitle=" · ".join(word for word in (run.places, report_summary.begun(run)) if word),
         status=status,
         message=message,
         rows=report_summary.rows(run),

@@ -72,6 +72,11 @@ class RunFiles:
             raise PictureError(f"{self.path / 'case.toml'}: {error}") from None
 
     @property
+    def places(self):
+        """The directory, in words."""
+        return str(self.path)
+
+    @property
     def dimensions(self):
         return self.case["dimensions"]
 
@@ -110,8 +115,14 @@ class RunFiles:
 
     def surface_file(self, frame):
         """Where the surface of the fluid in a frame is, if it has been made."""
-        number = re.search(r"(\d+)$", self.fluid[frame].path.name.split(".")[0])
-        return self.path / "frames" / f"surface_{number[1]}.vtp"
+        return self.fluid[frame].path.with_name(f"surface_{self._digits(frame)}.vtp")
+
+    def origin(self, frame):
+        """The run directory that a frame is in, and its number there."""
+        return self.fluid[frame].path.parents[1], int(self._digits(frame))
+
+    def _digits(self, frame):
+        return re.search(r"(\d+)$", self.fluid[frame].path.name.split(".")[0])[1]
 
     @cached_property
     def summary(self):

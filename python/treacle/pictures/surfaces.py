@@ -23,7 +23,8 @@ def require_surfaces(run, frames, progress):
     PictureError with what the program says."""
     missing = [frame for frame in frames if not run.surface_file(frame).is_file()]
     for frame in progress(missing) if missing else []:
-        command = [program(), "surface", str(run.path), "--frame", str(frame)]
+        directory, number = run.origin(frame)
+        command = [program(), "surface", str(directory), "--frame", str(number)]
         try:
             done = subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
         except OSError as error:

@@ -1,0 +1,1 @@
+cp tests/docs/stage/CASE.toml .
