@@ -53,24 +53,16 @@ class RigidSystem {
     std::vector<double> x = values(state_.rigid.bodies);
     const double dt = state_.timeStep, scale = scaleOf(x);
     bool isStart = true;  // whose velocities the walls and the right-hand side have
-    const auto value = [&](const std::vector<double>& at) {
-      if (!std::exchange(isStart, false)) set(at), setWallMotions(state_);
-      return residual(loads());
-    };
-    const std::vector<Restraint> restrained = restraints(contacts);
-    AffineSolve::Result result =
-        AffineSolve::run(value, x, state_.rigid.response, scale, tolerance, mostValues, restrained);
-    int solves = result.values;
-    for (int round = 1; round < mostRounds && !result.converged; ++round) {
-      state_.rigid.response.clear();
-      result = AffineSolve::run(value, x, state_.rigid.response, nearby * scale, tolerance / nearby, mostValues,
-                                restrained);
-      solves += result.values;
-    }
+    const auto result = AffineSolve::run(
+        [&](const std::vector<double>& at) {
+          if (!std::exchange(isStart, false)) set(at), setWallMotions(state_);
+          return residual(loads());
+        },
+        x, state_.rigid.response, scale, tolerance, mostSteps, restraints(contacts));
     if (!result.converged)
       throw RunError(
-          fmt::format("the velocities of the rigid bodies were not found in {} solves; take {} <= {:.3g}", solves,
-                      state_.theCase.time.stepKey(), dt / 2));
+          fmt::format("the velocities of the rigid bodies were not found in {} solves; take {} <= {:.3g}",
+                      result.values, state_.theCase.time.stepKey(), dt / 2));
     set(x);
     const std::vector<double> before = values(state_.particles.rigid.bodies);
     state_.rigid.change.resize(x.size());
@@ -84,10 +76,7 @@ class RigidSystem {
   };
 
   static constexpr double tolerance = 1e-6;  // of a step to the solution, of the speeds that count
-  // Where fluid comes off a body or meets it, its forces have kinks, at which a derivative that follows from the
-  // steps fails: after so many values it is found anew, from values this near, in as many rounds.
-  static constexpr int mostValues = 8, mostRounds = 5;
-  static constexpr double nearby = 1e-3;
+  static constexpr int mostSteps = 40;
 
   std::vector<double> values(const std::vector<RigidBody>& bodies) const {
     std::vector<double> x;
