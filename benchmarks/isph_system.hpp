@@ -18,8 +18,8 @@ class IsphPressureSystem {
   /// motion a simulation prescribes.
   IsphPressureSystem(const Case& c, const Particles<D>& state, double timeStep) : flow_(c, 0, 0), method_(flow_) {
     for (const Body& body : c.bodies)
-      if (body.oscillation.period > 0 || body.rotation)
-        throw InputError("walls that oscillate or rotate are not compared");
+      if (body.oscillation.period > 0 || body.rotation || body.kind == BodyKind::Rigid)
+        throw InputError("walls that oscillate or rotate, and rigid bodies, are not compared");
     copyToDevice(flow_.context, state, flow_.particles);
     flow_.timeStep = timeStep;
     method_.sortParticles();

@@ -10,6 +10,24 @@ namespace treacle {
 
 namespace {
 
+/// Of what some fluid is made; of all materials where no body says so. Those of walls may be anything.
+template <int D>
+void setBounds(const Case& c, IsphPairs<D>& pairs) {
+  const auto hasFluid = [&](int m) {
+    return std::ranges::any_of(c.bodies, [&](const Body& b) { return b.holdsFluid() && b.material == m; });
+  };
+  const bool known = std::ranges::any_of(c.bodies, &Body::holdsFluid);
+  const MaterialTable& m = pairs.materials;
+  pairs.leastDensity = std::numeric_limits<double>::infinity();
+  for (int a = 0; a < m.count; ++a) {
+    if (known && !hasFluid(a)) continue;
+    pairs.leastDensity = std::min(pairs.leastDensity, m.density[a]);
+    pairs.mostViscosity = std::max(pairs.mostViscosity, m.viscosity(a));
+    for (int b = 0; b < m.count; ++b)
+      pairs.mostDiffusivity = std::max(pairs.mostDiffusivity, m.pairViscosity[a][b] / m.density[a]);
+  }
+}
+
 /// Share of a lattice's density that the half of it below a particle makes up.
 template <int D>
 double shareOfHalfLattice(const IsphPairs<D>& pairs) {
@@ -35,6 +53,7 @@ IsphPairs<D> makeIsphPairs(const Case& c) {
       CellGrid<D>::make(resized<D>(c.domain.min), resized<D>(c.domain.max), periodic, 2 * c.smoothingLength());
   pairs.kernel = SmoothingKernel<D>::make(s.kernel, c.smoothingLength());
   pairs.materials = MaterialTable::make(c);
+  setBounds(c, pairs);
   pairs.gravity = resized<D>(c.gravity);
   pairs.volume = std::pow(c.spacing, D);
   const auto weight = [&](double r) { return pairs.kernel.value(r); };
@@ -52,10 +71,8 @@ template <int D>
 double explicitViscousLimit(const IsphPairs<D>& pairs) {
   const double slopes =
       latticeSum<D>(pairs.kernel.radius(), pairs.spacing, [&](double r) { return 2 * pairs.slope(r); });
-  double viscosity = 0;  // kinematic
-  for (int m = 0; m < pairs.materials.count; ++m)
-    viscosity = std::max(viscosity, pairs.materials.viscosity(m) / pairs.materials.density[m]);
-  return viscosity > 0 ? 0.5 / (viscosity * slopes) : std::numeric_limits<double>::infinity();
+  const double diffusivity = pairs.mostDiffusivity;
+  return diffusivity > 0 ? 0.5 / (diffusivity * slopes) : std::numeric_limits<double>::infinity();
 }
 
 #define TREACLE_INSTANTIATE(D)                         \

@@ -8,6 +8,9 @@
 namespace treacle {
 namespace {
 
+constexpr int patience = 8;      // steps by which the derivative is made better before it is found anew
+constexpr double nearby = 1e-3;  // from values that much of the scale aside
+
 using Vector = std::vector<double>;
 
 /// Gauss with pivots; a column without one gives zero.
@@ -97,15 +100,18 @@ AffineSolve::Result AffineSolve::run(const Function& f, Vector& x, Vector& deriv
     return f(at);
   };
   Vector y = value(x);
-  if (derivative.size() != n * n) {
+  bool isLast = true;  // the value at x is what was computed last
+  const auto differentiate = [&](double by) {
     derivative.assign(n * n, 0);
     for (std::size_t j = 0; j < n; ++j) {
       Vector aside = x;
-      aside[j] += scale;
+      aside[j] += by;
       const Vector there = value(aside);
-      for (std::size_t i = 0; i < n; ++i) derivative[i * n + j] = (there[i] - y[i]) / scale;
+      for (std::size_t i = 0; i < n; ++i) derivative[i * n + j] = (there[i] - y[i]) / by;
     }
-  }
+    isLast = false;
+  };
+  if (derivative.size() != n * n) differentiate(scale);
   for (int k = 0;; ++k) {
     Vector step = solved(derivative, y);
     for (std::size_t i = 0; i < n; ++i) step[i] = x[i] - step[i];
@@ -113,13 +119,18 @@ AffineSolve::Result AffineSolve::run(const Function& f, Vector& x, Vector& deriv
     for (std::size_t i = 0; i < n; ++i) step[i] -= x[i];
     result.converged = largest(step) <= tolerance * scale;
     // What was computed last must be what the unknowns are.
-    if ((result.converged && (k > 0 || result.values == 1)) || k == most) return result;
+    if ((result.converged && isLast) || k == most) return result;
+    if (k > 0 && k % patience == 0) {
+      differentiate(nearby * scale);
+      continue;
+    }
     double length2 = 0;
     for (std::size_t i = 0; i < n; ++i) {
       x[i] += step[i];
       length2 += step[i] * step[i];
     }
     const Vector before = std::exchange(y, value(x));
+    isLast = true;
     if (length2 == 0) continue;
     for (std::size_t i = 0; i < n; ++i) {
       double error = y[i] - before[i];

@@ -181,6 +181,12 @@ void append(const Case& c, BodyKind kind, const std::vector<Filled<D>>& filled, 
   }
 }
 
+/// For the velocities that fluid meets at walls, and for the gaps of rigid bodies.
+bool needsWallSurfaces(const Case& c) {
+  if (c.method.kind == MethodKind::Isph) return c.hasRigid();
+  return c.method.wallVelocity == WallVelocity::Extrapolated;
+}
+
 }  // namespace
 
 template <int D>
@@ -220,11 +226,12 @@ Particles<D> createParticles(const Case& c, std::vector<std::string>& notes, std
   append(c, BodyKind::Fluid, fluid, part.begin(fluidCount), part.end(fluidCount), particles, id, at);
   append(c, BodyKind::Wall, walls, fluidCount + part.begin(wallCount), fluidCount + part.end(wallCount), particles,
          id, at);
-  if (c.method.kind == MethodKind::MphI && c.method.wallVelocity == WallVelocity::Extrapolated) {
-    std::vector<std::string> ofPart;
-    const auto surfaces =
-        createWallSurfaces<D>(c, particles.position.span().subspan(n, count),
-                              particles.body.span().subspan(n, count), part.isAll() ? notes : ofPart);
+  if (needsWallSurfaces(c)) {
+    std::vector<std::string> untold;
+    // What the notes say is about the viscosity of MPH-I at walls.
+    const bool tell = part.isAll() && c.method.kind == MethodKind::MphI;
+    const auto surfaces = createWallSurfaces<D>(c, particles.position.span().subspan(n, count),
+                                                particles.body.span().subspan(n, count), tell ? notes : untold);
     particles.wallSurface.resize(count);
     std::copy(surfaces.begin(), surfaces.end(), particles.wallSurface.begin());
   }

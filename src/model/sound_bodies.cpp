@@ -80,12 +80,9 @@ void requireShape(const Checker& at, const Shape& s) {
     at.fail({"inner_radius"}, fmt::format("expected less than radius = {}, found {}", s.radius, s.innerRadius));
 }
 
-/// The forces on it are those of MPH-I, and its torque has no nearest image.
+/// Its torque has no nearest image.
 void requireRigid(const Checker& at) {
   const Case& c = at.wholeCase();
-  if (c.method.kind != MethodKind::MphI)
-    at.fail({"type"}, fmt::format("only the method '{}' moves rigid bodies, found '{}'", nameOf(MethodKind::MphI),
-                                  nameOf(c.method.kind)));
   for (int k = 0; k < c.dimensions; ++k)
     if (c.domain.periodic[static_cast<std::size_t>(k)])
       at.fail({"type"}, fmt::format("there can be no rigid body in a domain that is periodic along {}", "xyz"[k]));

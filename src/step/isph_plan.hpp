@@ -62,6 +62,8 @@ void planIsph(const Case& c, const MemoryCounts& n, BackendKind backend, MemoryS
   sum.keep<std::uint8_t>(fluid);
   sum.keep<double>(3 * fluid);
   if (c.method.isph.shifting != 0) sum.keep<Vec<D>>(fluid);
+  if (c.hasLoads() || c.hasRigid()) sum.keep<Vec<D>>(fluid + walls);
+  if (c.hasRigid()) sum.keep<double>(fluid), sum.keep<WallSurface<D>>(walls);
   planIsphSystem<D, T>(c, n, backend, sum);
   const double limit = explicitViscousLimit(makeIsphPairs<D>(c));
   if (!isViscousStepImplicit(c.method.isph.viscosity, limit, c.time.step)) return;

@@ -1,19 +1,19 @@
 #pragma once
 
-#include "failure.hpp"
+#include "isph_failure.hpp"
+#include "isph_predictor.hpp"
 #include "isph_solver.hpp"
+#include "isph_wall_forces.hpp"
+#include "placed_surfaces.hpp"
+#include "step_bodies.hpp"
 #include "step_method.hpp"
 #include "take_trial.hpp"
 #include "treacle/core/halo.hpp"
 #include "treacle/isph/isph_particles.hpp"
-#include "treacle/model/particles_copy.hpp"
 #include "treacle/search/particle_sort.hpp"
 #include "treacle/step/solve_stages.hpp"
-#include "wall_loads.hpp"
 
-#include <fmt/format.h>
-
-#include <cmath>
+#include <optional>
 #include <vector>
 
 namespace treacle {
@@ -25,9 +25,10 @@ class IsphStep final : public StepMethod<D, Backend> {
   explicit IsphStep(FlowState<D, Backend>& state)
       : state_(state),
         pairs_(makeIsphPairs<D>(state.theCase)),
-        viscousLimit_(explicitViscousLimit(pairs_)),
-        pressure_(solveStages(state.theCase)),
-        viscosity_(solveStages(state.theCase)) {}
+        predictor_(state, pairs_),
+        pressure_(solveStages(solvedCase(state.theCase))) {
+    if (state.theCase.hasRigid()) bodies_.emplace(state);
+  }
 
   void sortParticles() override { sort_.sort(state_.context, pairs_.grid, state_.particles); }
 
@@ -35,7 +36,6 @@ class IsphStep final : public StepMethod<D, Backend> {
     const Particles<D, Backend>& p = state_.particles;
     sort_.place(p, pairs_);
     pairs_.body = p.body.data();
-    pairs_.wallMotion = state_.wallMotion.empty() ? nullptr : state_.wallMotion.data();
     find(RowKind::FluidOfFluid, fluidOfFluid_);
     find(RowKind::WallsOfFluid, wallsOfFluid_);
     find(RowKind::FluidOfWalls, fluidOfWalls_);
@@ -50,30 +50,21 @@ class IsphStep final : public StepMethod<D, Backend> {
     sumOnFluid(state_.context, pairs_, densityTerm());
   }
 
-  /// v* of [O23 eq. (7)].
+  /// v*, with walls that go with what rigid bodies are tried with first.
   StagedReport predict() override {
+    if (bodies_) bodies_->start();
+    pairs_.wallMotion = state_.wallMotion.empty() ? nullptr : state_.wallMotion.data();
     pairs_.timeStep = state_.timeStep;
     pairs_.materials.setTimeStep(state_.timeStep);
-    if (isImplicit()) return solveViscosity();
-    state_.phases.run(state_.context, phases::coefficients, [&] {
-      preparePrediction();
-      const bool viscous = std::isfinite(viscousLimit_);
-      if (viscous) fillGhosts(state_.context, Held::Fluid, state_.particles.velocity.data());
-      const PredictorTerm<D> predictor{state_.particles.velocity.data(), predicted_.data(), viscous};
-      sumOnFluid(state_.context, pairs_, BothTerms<DensityTerm<D>, PredictorTerm<D>>{densityTerm(), predictor});
-    });
-    return {};
+    prepareDensities();
+    solution_.resize(state_.context, pairs_.fluidCount);
+    return predictor_.predict(ranges(), densityTerm(), solution());
   }
 
   void prepareSystem() override {
-    fillGhosts(state_.context, Held::Fluid, predicted_.data());
     fillGhosts(state_.context, Held::Fluid, surface_.data());
-    source_.resize(state_.context, pairs_.ownFluid());
-    sumOnFluid(state_.context, pairs_,
-               PressureSourceTerm<D>{predicted_.data(), state_.particles.numberDensity.data(), surface_.data(),
-                                     source_.data()});
     closed_ = isClosed(state_.context, ownSurface());
-    if (closed_) takeLevel(state_.context, Level::Mean, source_);
+    computeSource();
     pressure_.prepareMatrix(state_.context, pairs_, ranges(), row());
   }
 
@@ -81,9 +72,7 @@ class IsphStep final : public StepMethod<D, Backend> {
 
   StagedReport solve() override {
     guess(solution());
-    const StagedReport report = pressure_.solve(state_.context, source_, solution());
-    if (report.status != SolveStatus::Converged) fail("pressure", report);
-    return report;
+    return bodies_ ? solveWithBodies() : solvePressure();
   }
 
   /// Of the pressure equation.
@@ -105,15 +94,7 @@ class IsphStep final : public StepMethod<D, Backend> {
   }
 
   void correctVelocities() override {
-    if (closed_) takeLevel(state_.context, pairs_.negativePressure ? Level::Mean : Level::Least, solution());
-    settlePressure(state_.context, ownSurface(), !pairs_.negativePressure, solution());
-    fillGhosts(state_.context, Held::Fluid, solution_.data());
-    state_.velocity.resize(state_.context, pairs_.ownFluid());
-    wallShare_.resize(state_.context, pairs_.ownFluid());
-    if (state_.theCase.hasLoads()) stopped_.resize(state_.context, pairs_.fluidCount);
-    sumOnFluid(state_.context, pairs_,
-               CorrectorTerm<D>{solution_.data(), predicted_.data(), state_.velocity.data(), wallShare_.data(),
-                                stopped_.data()});
+    if (!bodies_) correct(solution_);
   }
 
   std::span<const Vec<D>> transportVelocities() override {
@@ -135,7 +116,7 @@ class IsphStep final : public StepMethod<D, Backend> {
     copyValues(state_.context, std::span<const double>(solution_), pressure.data());
     clearValues(state_.context, pressure.subspan(pairs_.fluidCount));
     sumOnWalls(state_.context, pairs_, WallPressureTerm<D>{solution_.data(), pressure.data()});
-    if (state_.theCase.hasLoads()) sumLoadsOfWalls();
+    if (state_.theCase.hasLoads()) loads_ = wallLoads(state_, loadsOfWalls());
   }
 
   std::vector<WallLoad> loads() const override { return loads_; }
@@ -161,31 +142,68 @@ class IsphStep final : public StepMethod<D, Backend> {
   const MaterialTable& materials() const override { return pairs_.materials; }
   std::size_t bytes() const override {
     return sort_.bytes() + fluidOfFluid_.bytes() + wallsOfFluid_.bytes() + fluidOfWalls_.bytes() +
-           deficit_.bytes() + surface_.bytes() + predicted_.bytes() + source_.bytes() + solution_.bytes() +
-           transport_.bytes() + wallShare_.bytes() + stopped_.bytes() + wallForce_.bytes() + pressure_.bytes() +
-           viscosity_.bytes() + componentBytes();
+           deficit_.bytes() + surface_.bytes() + predictor_.bytes() + source_.bytes() + solution_.bytes() +
+           transport_.bytes() + wallShare_.bytes() + forces_.bytes() + pressure_.bytes() +
+           (bodies_ ? bodies_->bytes() : 0) + pressing_.bytes() + wallSurface_.bytes();
   }
 
   /// Pairs up to this share of the kernel's radius make the smoother's matrix: 1.9 l with the usual kernel.
   static constexpr double nearShare = 0.79;
 
  private:
-  /// Before the step changes the particles' velocities, which an explicit viscous step has taken its forces of.
-  void sumLoadsOfWalls() {
-    const auto& rows = pairs_.fluidOfWalls;
-    fillGhosts(state_.context, Held::Fluid, stopped_.data());
-    wallForce_.resize(state_.context, rows.count);
-    const std::span<const Vec<D>> start = state_.particles.velocity;
-    sumOnWalls(state_.context, pairs_,
-               WallForceTerm<D>{solution_.data(), isImplicit() ? predicted_.data() : start.data(), stopped_.data(),
-                                std::isfinite(viscousLimit_), rows.first, wallForce_.data()});
-    loads_ = wallLoads(state_, loadsOfBodies<D, Backend>(state_, rows.first, pairs_.position, start, wallForce_));
+  /// The flow and the velocities of the rigid bodies. Each solve starts from what the last step has left, which is
+  /// zero where nothing moves and a right-hand side may be.
+  StagedReport solveWithBodies() {
+    placeWallSurfaces(state_, pairs_.fluidCount, pairs_.activeCount - pairs_.fluidCount, wallSurface_);
+    pressing_.resize(state_.context, pairs_.ownFluid());
+    const auto flow = [&](bool isFirst) {
+      StagedReport report;
+      if (!isFirst) {
+        report = predictor_.follow(solution());
+        computeSource();
+        guess(solution());
+      }
+      report.follow(solvePressure());
+      correct(isFirst ? solution_ : pressing_);
+      if (isFirst) copyValues(state_.context, std::span<const double>(solution()), pressing_.data());
+      return report;
+    };
+    return bodies_->solve(pairs_, wallSurface_, flow, [&] { return loadsOfWalls(); });
   }
 
-  std::size_t componentBytes() const {
-    std::size_t sum = 0;
-    for (const auto& component : component_) sum += component.bytes();
-    return sum;
+  void computeSource() {
+    Buffer<Vec<D>, Backend>& predicted = predictor_.velocity();
+    fillGhosts(state_.context, Held::Fluid, predicted.data());
+    source_.resize(state_.context, pairs_.ownFluid());
+    sumOnFluid(state_.context, pairs_,
+               PressureSourceTerm<D>{predicted.data(), state_.particles.numberDensity.data(), surface_.data(),
+                                     source_.data()});
+    if (closed_) takeLevel(state_.context, Level::Mean, source_);
+  }
+
+  /// From the guess in solution_, and to there. Errors: RunError.
+  StagedReport solvePressure() {
+    const StagedReport report = pressure_.solve(state_.context, source_, solution());
+    requireConverged(state_, "pressure", report);
+    return report;
+  }
+
+  /// The step's pressures, and velocities by them. `pressing`: CorrectorTerm.
+  void correct(const Buffer<double, Backend>& pressing) {
+    if (closed_) takeLevel(state_.context, pairs_.negativePressure ? Level::Mean : Level::Least, solution());
+    settlePressure(state_.context, ownSurface(), !pairs_.negativePressure, solution());
+    fillGhosts(state_.context, Held::Fluid, solution_.data());
+    state_.velocity.resize(state_.context, pairs_.ownFluid());
+    wallShare_.resize(state_.context, pairs_.ownFluid());
+    Vec<D>* stopped = bodies_ || state_.theCase.hasLoads() ? forces_.prepare(state_, pairs_) : nullptr;
+    sumOnFluid(state_.context, pairs_,
+               CorrectorTerm<D>{solution_.data(), pressing.data(), predictor_.velocity().data(),
+                                state_.velocity.data(), wallShare_.data(), stopped});
+  }
+
+  /// Before the step changes the particles' velocities, which an explicit viscous step has taken its forces of.
+  std::vector<LoadSums> loadsOfWalls() {
+    return forces_.loads(state_, pairs_, solution_, predictor_.viscousVelocity(), predictor_.isViscous());
   }
 
   void find(RowKind kind, NeighbourRows<Backend>& rows) {
@@ -211,80 +229,24 @@ class IsphStep final : public StepMethod<D, Backend> {
     return {state_.particles.numberDensity.data(), deficit_.data(), surface_.data()};
   }
 
-  bool isImplicit() const {
-    return isViscousStepImplicit(state_.theCase.method.isph.viscosity, viscousLimit_, state_.timeStep);
-  }
-
-  /// Room for v* and the pressures, and the velocities of the walls in v*.
-  void preparePrediction() {
-    const std::uint32_t n = pairs_.fluidCount, active = pairs_.activeCount;
-    prepareDensities();
-    predicted_.resize(state_.context, active);
-    solution_.resize(state_.context, n);
-    copyValues(state_.context, std::span<const Vec<D>>(state_.particles.velocity).subspan(n, active - n),
-               predicted_.data() + n);
-  }
-
-  /// predicted = v* of (rho/dt - mu lap) v* = rho/dt v + rho g, one component after the other.
-  StagedReport solveViscosity() {
-    state_.phases.run(state_.context, phases::coefficients, [&] {
-      preparePrediction();
-      sumOnFluid(state_.context, pairs_, densityTerm());
-      viscosity_.prepareMatrix(state_.context, pairs_, ranges(), ViscousRow<D>{});
-      ViscousSourceTerm<D> term{state_.particles.velocity.data(), {}};
-      for (int k = 0; k < D; ++k) {
-        component_[k].resize(state_.context, pairs_.ownFluid());
-        term.source[k] = component_[k].data();
-      }
-      sumOnFluid(state_.context, pairs_, term);
-    });
-    state_.phases.run(state_.context, phases::coarse, [&] { viscosity_.preparePreconditioner(state_.context); });
-    StagedReport total;
-    state_.phases.run(state_.context, phases::solve, [&] {
-      for (int k = 0; k < D; ++k) total.follow(solveComponent(k));
-    });
-    return total;
-  }
-
-  StagedReport solveComponent(int k) {
-    const std::uint32_t n = pairs_.ownFluid();
-    takeComponent<D>(state_.context, std::span<const Vec<D>>(state_.particles.velocity).first(n), k, solution());
-    StagedReport report = viscosity_.solve(state_.context, component_[k], solution());
-    if (report.status != SolveStatus::Converged) fail("viscosity", report);
-    putComponent<D>(state_.context, solution(), k, predicted_.span().first(n));
-    return report;
-  }
-
-  [[noreturn]] void fail(const char* what, const StagedReport& report) {
-    std::string diagnosis =
-        fmt::format("{}: {}", what, describeFailure(report, state_.theCase.solver.tolerance, report.failures));
-    if (report.status == SolveStatus::NotFinite) {
-      Particles<D> host;
-      copyToHost(state_.context, state_.particles, host);
-      diagnosis += "; " + describeNotFinite<D>(state_.context, host, host.velocity);
-    }
-    throw RunError(diagnosis);
-  }
-
   FlowState<D, Backend>& state_;
   IsphPairs<D> pairs_;
-  double viscousLimit_;  // [s]
   ParticleSort<D, Backend> sort_;
   NeighbourRows<Backend> fluidOfFluid_, wallsOfFluid_, fluidOfWalls_;
   bool closed_ = false;  // no particle is at the free surface
   Buffer<Vec<D>, Backend> deficit_;
   Buffer<std::uint8_t, Backend> surface_;  // with ghosts, which all that neighbours read has
-  Buffer<Vec<D>, Backend> predicted_;      // v*, with ghosts; walls: their velocities
-  Buffer<double, Backend> source_;         // of the pressure equation
-  Buffer<double, Backend> solution_;       // with ghosts: of the pressure equation; before, a component of v*
-  Buffer<double, Backend> component_[D];   // of the viscous step's right-hand side
+  IsphPredictor<D, Backend> predictor_;
+  Buffer<double, Backend> source_;    // of the pressure equation
+  Buffer<double, Backend> solution_;  // with ghosts: of the pressure equation; before, a component of v*
   Buffer<Vec<D>, Backend> transport_;
   Buffer<double, Backend> wallShare_;  // of the density in a full lattice
-  Buffer<double, Backend> stopped_;    // of CorrectorTerm, with ghosts; empty where nobody asks for loads
-  Buffer<Vec<D>, Backend> wallForce_;  // per own active wall particle, likewise [N/m3]
+  IsphWallForces<D, Backend> forces_;  // for rigid bodies and probes
   std::vector<WallLoad> loads_;        // of the last step
   IsphSolver<D, Backend, PressureRow<D>> pressure_;
-  IsphSolver<D, Backend, ViscousRow<D>> viscosity_;
+  std::optional<StepBodies<D, Backend>> bodies_;  // where the case has rigid bodies; then also:
+  Buffer<double, Backend> pressing_;              // those of the step's first solve
+  Buffer<WallSurface<D>, Backend> wallSurface_;   // per active wall particle
 };
 
 }  // namespace treacle

@@ -22,6 +22,15 @@ bool someWallMoves(const Case& c, const Particles<D>& particles) {
   return false;
 }
 
+/// Of a rigid body in a step of dt [s] that changes its velocities from those that it had `before`.
+template <int D>
+WallMotion<D> rigidMotion(const RigidBody& before, const RigidBody& body, double dt) {
+  WallMotion<D> m = rigidMotion<D>(body, dt);
+  m.acceleration = resized<D>((1 / dt) * (body.velocity - before.velocity));
+  m.spinChange = (1 / dt) * (body.spin - before.spin);
+  return m;
+}
+
 /// Per body of the case, for state.timeStep from state.time on: nozzles with the speeds that they have, rigid
 /// bodies with those that they are tried with.
 template <int D, class Backend>
@@ -30,7 +39,7 @@ std::vector<WallMotion<D>> bodyMotions(const FlowState<D, Backend>& state) {
   const Case& c = state.theCase;
   for (std::size_t b = 0; b < c.bodies.size(); ++b) {
     if (c.bodies[b].kind == BodyKind::Rigid) {
-      motion.push_back(rigidMotion<D>(state.rigid.bodies[b], state.timeStep));
+      motion.push_back(rigidMotion<D>(state.particles.rigid.bodies[b], state.rigid.bodies[b], state.timeStep));
       continue;
     }
     motion.push_back(wallMotion<D>(c.domain, c.bodies[b], state.time, state.timeStep));

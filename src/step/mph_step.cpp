@@ -1,8 +1,8 @@
 #include "failure.hpp"
 #include "mph_solver.hpp"
-#include "rigid_bodies.hpp"
-#include "rigid_contacts.hpp"
+#include "placed_surfaces.hpp"
 #include "step_balance.hpp"
+#include "step_bodies.hpp"
 #include "step_heat.hpp"
 #include "step_method.hpp"
 #include "step_rheology.hpp"
@@ -37,7 +37,7 @@ class MphStep final : public StepMethod<D, Backend> {
     if (state.theCase.hasOwnViscosities()) rheology_.emplace(state.theCase);
     if (state.theCase.heat) heat_.emplace(state.theCase, pairs_);
     if (state.theCase.hasSurfaceTension()) surface_.emplace(state.theCase);
-    if (state.theCase.hasRigid()) rigid_.emplace(state), contacts_.emplace(state);
+    if (state.theCase.hasRigid()) bodies_.emplace(state);
   }
 
   void sortParticles() override { neighbourhood_.sort(state_.context, state_.particles); }
@@ -53,7 +53,7 @@ class MphStep final : public StepMethod<D, Backend> {
 
   /// Walls go with what rigid bodies are tried with first.
   StagedReport predict() override {
-    if (rigid_) rigid_->start();
+    if (bodies_) bodies_->start();
     return {};
   }
 
@@ -83,7 +83,7 @@ class MphStep final : public StepMethod<D, Backend> {
     state_.velocity.resize(state_.context, active);
     copyValues(state_.context, last.subspan(walls, active - walls), state_.velocity.data() + walls);
     guess(state_.velocity.span().first(n));
-    return rigid_ ? solveWithBodies() : solveFluid();
+    return bodies_ ? solveWithBodies() : solveFluid();
   }
 
   /// With the modes of the state where the settings have it deflate, as the next step would.
@@ -136,7 +136,7 @@ class MphStep final : public StepMethod<D, Backend> {
     bulkPressure<D>(state_.context, pairs_, divergence_, elastic_, state_.particles.pressure.span().first(active));
     if (rheology_) rheology_->accept(state_);
     if (state_.theCase.needsBalance()) {
-      if (!rigid_) wallForces_.prepare(state_, neighbourhood_);
+      if (!bodies_) wallForces_.prepare(state_, neighbourhood_);
       lastBalance_ = balance_.make(state_, pairs_, divergence_, elastic_, surface_ ? &*surface_ : nullptr);
     }
     if (heat_) acceptHeat();
@@ -166,18 +166,11 @@ class MphStep final : public StepMethod<D, Backend> {
            (rheology_ ? rheology_->bytes() : 0) + (heat_ ? heat_->bytes() : 0) +
            (surface_ ? surface_->bytes() : 0) + wallBlock_.bytes() + wallGradient_.bytes() + wallDensity_.bytes() +
            elastic_.bytes() + divergence_.bytes() + rhs_.bytes() + found_.bytes() + solver_.bytes() +
-           balance_.bytes() + wallForces_.bytes() + (contacts_ ? contacts_->bytes() : 0) + rhsAtRest_.bytes() +
+           balance_.bytes() + wallForces_.bytes() + (bodies_ ? bodies_->bytes() : 0) + rhsAtRest_.bytes() +
            pressure_.bytes();
   }
 
  private:
-  /// Forces on rigid bodies are small differences of large pressures: with flows that are solved to the tolerance
-  /// of the case their velocities would not be found to a thousandth.
-  static Case solvedCase(Case c) {
-    if (c.hasRigid()) c.solver.tolerance = std::max(1e-4 * c.solver.tolerance, 1e-20);
-    return c;
-  }
-
   /// The flow for the velocities that walls have, from the guess in state.velocity.
   StagedReport solveFluid() {
     StagedReport report = solveOnce();
@@ -194,17 +187,12 @@ class MphStep final : public StepMethod<D, Backend> {
   /// The flow and the velocities of the rigid bodies.
   StagedReport solveWithBodies() {
     wallForces_.prepare(state_, neighbourhood_);
-    std::optional<StagedReport> report;
-    rigid_->solve(contacts_->find(state_, pairs_, wallSurface_), [&] {
-      if (!report) {
-        report = solveFluid();
-      } else {
-        takeWallVelocities();
-        report->follow(solveOnce());
-      }
-      return loads();
-    });
-    return *report;
+    const auto flow = [&](bool isFirst) {
+      if (isFirst) return solveFluid();
+      takeWallVelocities();
+      return solveOnce();
+    };
+    return bodies_->solve(pairs_, wallSurface_, flow, [&] { return loads(); });
   }
 
   /// Those that the walls have now, into the right-hand side and state.velocity, whose fluid stays.
@@ -279,13 +267,8 @@ class MphStep final : public StepMethod<D, Backend> {
   WallTerms<D> wallTermsView() { return {wallBlock_.span(), wallGradient_.span()}; }
 
   void placeWallSurfaces() {
-    Particles<D, Backend>& p = state_.particles;
-    if (p.wallSurface.empty()) return;
-    const std::uint32_t n = pairs_.fluidCount, walls = pairs_.activeCount - n;
-    wallSurface_.resize(state_.context, walls);
-    placeSurfaces<D>(state_.context, {p.wallSurface.span(), state_.wallMotion.span()},
-                     p.body.span().subspan(n, walls), wallSurface_.span());
-    neighbourhood_.setWallSurfaces(wallSurface_);
+    treacle::placeWallSurfaces(state_, pairs_.fluidCount, pairs_.activeCount - pairs_.fluidCount, wallSurface_);
+    if (!state_.particles.wallSurface.empty()) neighbourhood_.setWallSurfaces(wallSurface_);
   }
 
   /// B, which everything that contains C needs.
@@ -319,7 +302,7 @@ class MphStep final : public StepMethod<D, Backend> {
     addPressureGradient<D>(state_.context, pairs_, elastic_, -1.0, rhs_);
     if (pairs_.terms.repulsionRadius > 0) addRepulsion<D>(state_.context, pairs_, 1 / state_.timeStep, rhs_);
     if (surface_) surface_->addForces(state_, pairs_, rhs_);
-    if (rigid_) {
+    if (bodies_) {
       rhsAtRest_.resize(state_.context, rhs_.size());
       copyValues(state_.context, std::span<const Vec<D>>(rhs_), rhsAtRest_.data());
     }
@@ -367,11 +350,10 @@ class MphStep final : public StepMethod<D, Backend> {
   Buffer<Vec<D>, Backend> found_;                     // velocities of the last solve, while the next is prepared
   std::optional<StepHeat<D, Backend>> heat_;          // where the case has heat
   std::optional<StepSurface<D, Backend>> surface_;    // where some fluid has a surface tension
-  std::optional<RigidSystem<D, Backend>> rigid_;      // where the case has rigid bodies; then also these
-  std::optional<RigidContacts<D, Backend>> contacts_;
-  Buffer<Vec<D>, Backend> rhsAtRest_;  // the right-hand side without velocities of walls
-  Buffer<double, Backend> pressure_;   // per active particle [Pa]
-  WallForces<D, Backend> wallForces_;  // for rigid bodies and the balance
+  std::optional<StepBodies<D, Backend>> bodies_;      // where the case has rigid bodies; then also:
+  Buffer<Vec<D>, Backend> rhsAtRest_;                 // the right-hand side without velocities of walls
+  Buffer<double, Backend> pressure_;                  // per active particle [Pa]
+  WallForces<D, Backend> wallForces_;                 // for rigid bodies and the balance
   StepBalance<D, Backend> balance_{wallForces_};
   std::optional<Balance> lastBalance_;
 };

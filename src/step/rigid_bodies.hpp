@@ -58,7 +58,7 @@ class RigidSystem {
           if (!std::exchange(isStart, false)) set(at), setWallMotions(state_);
           return residual(loads());
         },
-        x, state_.rigid.response, scale, tolerance, mostValues, restraints(contacts));
+        x, state_.rigid.response, scale, tolerance, mostSteps, restraints(contacts));
     if (!result.converged)
       throw RunError(
           fmt::format("the velocities of the rigid bodies were not found in {} solves; take {} <= {:.3g}",
@@ -76,7 +76,7 @@ class RigidSystem {
   };
 
   static constexpr double tolerance = 1e-6;  // of a step to the solution, of the speeds that count
-  static constexpr int mostValues = 30;
+  static constexpr int mostSteps = 40;
 
   std::vector<double> values(const std::vector<RigidBody>& bodies) const {
     std::vector<double> x;

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "flow_state.hpp"
-#include "treacle/mph/mph_pairs.hpp"
+#include "treacle/search/sorted_particles.hpp"
 #include "treacle/step/contacts.hpp"
 
 #include <algorithm>
@@ -22,13 +22,13 @@ class RigidContacts {
   }
 
   /// On the cells of the step. `surface`: of the active walls, as they are; empty: not known. Collective.
-  std::vector<Contact<D>> find(FlowState<D, Backend>& state, const MphPairs<D>& pairs,
+  std::vector<Contact<D>> find(FlowState<D, Backend>& state, const SortedParticles<D>& sorted,
                                std::span<const WallSurface<D>> surface) {
     const Particles<D, Backend>& p = state.particles;
-    const ContactSearch<D> search{pairs.grid,       pairs.cells,     p.position.data(),
-                                  p.body.data(),    p.id.data(),     surface.empty() ? nullptr : surface.data(),
-                                  pairs.fluidCount, isRigid_.span(), pairs.spacing};
-    std::vector<Contact<D>> contacts = findContacts<D>(state.context, search, pairs.fluidCount, pairs.ownEnd());
+    const ContactSearch<D> search{sorted.grid,       sorted.cells,    p.position.data(),
+                                  p.body.data(),     p.id.data(),     surface.empty() ? nullptr : surface.data(),
+                                  sorted.fluidCount, isRigid_.span(), sorted.spacing};
+    std::vector<Contact<D>> contacts = findContacts<D>(state.context, search, sorted.fluidCount, sorted.ownEnd());
     if (const Communicator* processes = state.context.communicator) {
       const auto parts = processes->swap(std::vector(static_cast<std::size_t>(processes->size()), contacts));
       contacts.clear();

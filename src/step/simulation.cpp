@@ -336,7 +336,8 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
   }
 
   std::size_t bytes() const {
-    std::size_t sum = velocity.bytes() + position.bytes() + bodies.bytes() + boundaries.bytes() + method->bytes();
+    std::size_t sum = velocity.bytes() + position.bytes() + this->wallMotion.bytes() + bodies.bytes() +
+                      boundaries.bytes() + method->bytes();
     particles.forEachField([&](const auto& field) { sum += field.bytes(); });
     return std::is_same_v<Backend, Cpu> ? sum + distant->bytes() : sum;
   }

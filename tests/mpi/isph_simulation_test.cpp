@@ -1,5 +1,6 @@
 #include "mpi/compare_simulations.hpp"
 #include "support/passing_body.hpp"
+#include "support/rigid_cases.hpp"
 #include "treacle/isph/isph_pairs.hpp"
 
 #include <gtest/gtest.h>
@@ -50,6 +51,31 @@ TEST(SharedIsph, WallsComeAndGo) {
   c.solver.tolerance = 1e-18;
   compareWallsThatComeAndGo(c);
 }
+
+/// The velocities of bodies are found to a tolerance, in as many solves as roundings let it take.
+void compareBodies(const Case& c, int steps, double scale) {
+  Simulation<2> shared(c, partOf<2>(c), 0, 0, &job()), alone(c, made<2>(c));
+  for (int k = 0; k < steps; ++k) {
+    const auto a = shared.advance().rigid, b = alone.advance().rigid;
+    for (std::size_t n = 0; n < a.size(); ++n) {
+      EXPECT_EQ(a[n].mass, b[n].mass);
+      EXPECT_LT(norm(a[n].velocity - b[n].velocity), scale);
+      EXPECT_LT(norm(a[n].center - b[n].center), scale * c.time.step * steps);
+    }
+  }
+}
+
+TEST(SharedIsph, RigidBodies) {
+  compareBodies(Settings{"isph-floating-block-2d.toml", 0, {}}.read(), 5, 1e-8);
+  for (const double viscosity : {1e-3, 5.0}) {
+    Case c = withIsph(blockCase(2, 300), viscosity);
+    c.gravity = {1, -10, 0};
+    c.bodies[1].rigid.angularVelocity = {0, 0, 5};
+    compareBodies(c, 5, 1e-6);
+  }
+}
+
+TEST(SharedIsph, RigidBodiesThatTouch) { compareBodies(withIsph(fallingBlockCase(2, 30), 5), 20, 1e-3 * 0.6); }
 
 TEST(SharedIsph, SameBitsFromRunToRun) { expectSameBitsAgain("isph-dam-break-2d.toml"); }
 

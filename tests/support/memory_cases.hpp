@@ -46,6 +46,7 @@ inline std::vector<MemoryCase> memoryCases() {
   all.push_back({"isph-dam-break-2d.toml", {}});
   all.push_back({"isph-dam-break-2d.toml", {"solver.preconditioner=cell-multigrid"}});
   all.push_back({"isph-dam-break-2d.toml", {"method.viscosity=implicit", "water.dynamic_viscosity=1"}});
+  all.push_back({"isph-floating-block-2d.toml", {}});
   all.push_back({"isph-dam-break.toml", {"width.factor=0.5"}});
   return all;
 }

@@ -39,6 +39,42 @@ inline Case blockCase(int dimensions, double density) {
   return c;
 }
 
+/// The same case for ISPH, with a fluid of some viscosity [Pa s]: of 5 the viscous step is implicit.
+inline Case withIsph(Case c, double viscosity) {
+  c.method.kind = MethodKind::Isph;
+  c.solver.preconditioner = PreconditionerKind::HatMultigrid;
+  c.solver.firstGuess = FirstGuess::Last;
+  for (Material& m : c.materials) m.dynamicViscosity = viscosity, m.bulkViscosity = 0, m.bulkModulus = 0;
+  return c;
+}
+
+/// A block of wood that floats in water at rest with six tenths of its height below the surface, as it does; in
+/// spacings of 1 cm, and of ISPH. The upper corners of the block are dry.
+inline Case floatingBlockCase() {
+  Case c = withIsph(blockCase(2, 600), 1e-3);
+  c.spacing = 0.01;
+  c.domain = {{-0.3, -0.1, 0}, {0.3, 0.4, 0}, {}};
+  c.materials[0].density = 1000;
+  c.gravity = {0, -10, 0};
+  c.method.isph.alpha = 0.02;
+  Body &pool = c.bodies[0], &block = c.bodies[1];
+  pool.shape.min = {-0.2, 0, 0}, pool.shape.max = {0.2, 0.2, 0};
+  pool.where = "abs(x) > 0.1 || y < 0.14";
+  block.shape.min = {-0.1, 0.14, 0}, block.shape.max = {0.1, 0.24, 0};
+  const auto add = [&](const char* name, const Vec<3>& min, const Vec<3>& max) {
+    Body wall;
+    wall.name = name;
+    wall.kind = BodyKind::Wall;
+    wall.shape.kind = ShapeKind::Box;
+    wall.shape.min = min, wall.shape.max = max;
+    c.bodies.push_back(wall);
+  };
+  add("floor", {-0.23, -0.03, 0}, {0.23, 0, 0});
+  add("left", {-0.23, 0, 0}, {-0.2, 0.3, 0});
+  add("right", {0.2, 0, 0}, {0.23, 0.3, 0});
+  return c;
+}
+
 /// A block without fluid below it that falls onto a floor, between fluid at its sides that has about no weight in
 /// this; in spacings of 1 mm.
 inline Case fallingBlockCase(int dimensions, double angle) {

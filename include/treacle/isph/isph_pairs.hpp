@@ -40,9 +40,11 @@ struct IsphPairs : MaterialParticles<D> {
   const WallMotion<D>* wallMotion = nullptr;  // per body; none: no wall accelerates
   SmoothingKernel<D> kernel{};
   SurfaceCriterion surface;
-  Vec<D> gravity{};           // [m/s2]
-  double volume = 0;          // of a particle, l^D [m^D]
-  double latticeDensity = 0;  // sum of V W over a full lattice [-]
+  Vec<D> gravity{};                            // [m/s2]
+  double volume = 0;                           // of a particle, l^D [m^D]
+  double latticeDensity = 0;                   // sum of V W over a full lattice [-]
+  double leastDensity = 0, mostViscosity = 0;  // of fluids [kg/m3], [Pa s]
+  double mostDiffusivity = 0;                  // of their momentum, next to walls, too [m2/s]
   WallContact contact;
   double timeStep = 0;            // [s]
   double alpha = 0;               // [-]

@@ -2,7 +2,6 @@
 
 #include "treacle/isph/isph_pairs.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
@@ -156,10 +155,11 @@ template <int D>
 struct CorrectorTerm {
   static constexpr int values = 3 * D + 2;
   const double* pressure;
+  const double* pressing;   // pressure by which a particle has one; what is solved again must not jump by that
   const Vec<D>* predicted;  // of fluid; walls: their velocity
   Vec<D>* velocity;
   double* wallShare = nullptr;  // of the particle's density in a full lattice, what walls make up [-]; may be null
-  double* stopped = nullptr;    // what it loses at walls, over sum V grad W of them [m2/s]; may be null
+  Vec<D>* stopped = nullptr;  // velocity that it loses at walls, over the sum of their slopes [m3/s]; may be null
 
   TREACLE_HD void fluid(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d,
                         const Distance& r, double* sum) const {
@@ -188,12 +188,12 @@ struct CorrectorTerm {
     const WallContact& contact = pairs.contact;
     const double share = sum[3 * D + 1] * pairs.volume / pairs.latticeDensity;
     if (wallShare) wallShare[i] = share;
-    if (stopped) stopped[i] = 0;
-    if (share > (pressure[i] > 0 ? contact.pressed : contact.touching) && norm2(towards) > 0) {
+    if (stopped) stopped[i] = {};
+    if (share > (pressing[i] > 0 ? contact.pressed : contact.touching) && norm2(towards) > 0) {
       const double away = share > contact.inside ? 0.02 * pairs.spacing / pairs.timeStep : 0, g = norm(towards);
       const double into = dot(v - wallVelocity, towards) / g + away;
       if (into > 0) v -= (into / g) * towards;
-      if (into > 0 && stopped) stopped[i] = into / g;
+      if (into > 0 && stopped) stopped[i] = (into / (g * sum[3 * D])) * towards;
     }
     velocity[i] = v;
   }
@@ -218,13 +218,14 @@ struct WallPressureTerm {
 };
 
 /// Force on walls: what no-slip walls, pressures and the walls that stop particles take from the momentum of the
-/// fluid in a step. Rows of walls: i is the wall.
+/// fluid in a step. What stops a particle is shared out by slopes and has one direction: walls on two sides of it
+/// are not driven apart. Rows of walls: i is the wall.
 template <int D>
 struct WallForceTerm {
   static constexpr int values = D;
   const double* pressure;   // of fluid [Pa]
   const Vec<D>* velocity;   // that the viscous step takes its forces of, of fluid and walls [m/s]
-  const double* stopped;    // of CorrectorTerm
+  const Vec<D>* stopped;    // of CorrectorTerm
   bool viscous;             // there is a viscous step
   std::uint32_t firstWall;  // index of the first one that has a force
   Vec<D>* force;            // [N/m3]
@@ -232,9 +233,10 @@ struct WallForceTerm {
   TREACLE_HD void fluid(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d,
                         const Distance& r, double* sum) const {
     const double slope = pairs.slope(r), p = pressure[j];
-    const double push = p + pairs.wallPressure(p, j, i, -1.0 * d) + pairs.density(j) / pairs.timeStep * stopped[j];
+    const double push = p + pairs.wallPressure(p, j, i, -1.0 * d), inertia = pairs.density(j) / pairs.timeStep;
     const double drag = viscous && pairs.noSlip ? 4 * pairs.pairViscosity(j, i) : 0;
-    for (int k = 0; k < D; ++k) sum[k] += slope * (drag * (velocity[j][k] - velocity[i][k]) - push * d[k]);
+    for (int k = 0; k < D; ++k)
+      sum[k] += slope * (drag * (velocity[j][k] - velocity[i][k]) - push * d[k] + inertia * stopped[j][k]);
   }
   TREACLE_HD void store(const IsphPairs<D>&, std::uint32_t i, const double* sum) const {
     for (int k = 0; k < D; ++k) force[i - firstWall][k] = sum[k];
@@ -253,10 +255,7 @@ struct PressureRow {
     return pairs.pressureCoefficient(r, pairs.substance(i), pairs.substance(j));
   }
   /// Bound on all of them.
-  double largest(const IsphPairs<D>& pairs) const {
-    const MaterialTable& m = pairs.materials;
-    return 2 * pairs.slope(0) / *std::min_element(m.density, m.density + m.count);
-  }
+  double largest(const IsphPairs<D>& pairs) const { return 2 * pairs.slope(0) / pairs.leastDensity; }
   TREACLE_HD double wall(const IsphPairs<D>&, std::uint32_t, std::uint32_t, const Distance&) const { return 0; }
   TREACLE_HD double own(const IsphPairs<D>&, std::uint32_t) const { return 0; }
 };
@@ -269,11 +268,7 @@ struct ViscousRow {
                                 const Distance& r) const {
     return 2 * pairs.slope(r) * pairs.pairViscosity(i, j);
   }
-  double largest(const IsphPairs<D>& pairs) const {
-    double viscosity = 0;
-    for (int m = 0; m < pairs.materials.count; ++m) viscosity = std::max(viscosity, pairs.materials.viscosity(m));
-    return 2 * pairs.slope(0) * viscosity;
-  }
+  double largest(const IsphPairs<D>& pairs) const { return 2 * pairs.slope(0) * pairs.mostViscosity; }
   TREACLE_HD double wall(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Distance& r) const {
     return pairs.noSlip ? 2 * coefficient(pairs, i, j, r) : 0;
   }

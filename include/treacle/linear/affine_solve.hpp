@@ -14,8 +14,9 @@ struct Restraint {
 
 /// Finds where a function of few unknowns is zero that is affine, or nearly so, and takes long to compute: by
 /// steps with its derivative, which each value makes better (Broyden). An affine one of n unknowns takes n + 2
-/// values with a derivative that is not known, and two or three with one that was so shortly before.
-/// With restraints it finds where the function is a sum of their pushes, of those alone that hold with equality.
+/// values with a derivative that is not known, and two or three with one that was so shortly before. One with
+/// kinks leads such a derivative astray: where eight steps do not do, it is found anew from values nearby. With
+/// restraints it finds where the function is a sum of their pushes, of those alone that hold with equality.
 class AffineSolve {
  public:
   using Function = std::function<std::vector<double>(const std::vector<double>& x)>;
@@ -26,8 +27,7 @@ class AffineSolve {
   };
 
   /// `derivative`: n x n, row by row; empty: not known; takes what it is in the end. `scale`: of the unknowns, by
-  /// which a derivative that is not known is found and the `tolerance` of a step is measured. `most`: values after
-  /// these.
+  /// which a derivative that is not known is found and the `tolerance` of a step is measured. `most`: steps.
   static Result run(const Function& f, std::vector<double>& x, std::vector<double>& derivative, double scale,
                     double tolerance, int most, const std::vector<Restraint>& restraints = {});
 };

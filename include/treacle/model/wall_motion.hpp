@@ -18,6 +18,7 @@ struct WallMotion {
   Vec<D> center{};              // at the start of the step [m]
   Vec<D> period{};              // of the domain, 0 on open axes [m]
   Vec<3> spin{};                // omega [rad/s]
+  Vec<3> spinChange{};          // of a rigid body: of omega over the step, over dt [rad/s2]
   double along = 1;             // sin(omega dt) / (omega dt)
   double inwards = 0;           // (1 - cos(omega dt)) / (omega^2 dt) [s]
   Vec<3> axis{};                // of the rotation, of length 1
@@ -31,11 +32,12 @@ struct WallMotion {
     return d;
   }
   /// omega x d
-  TREACLE_HD Vec<D> swirl(const Vec<D>& d) const {
+  TREACLE_HD Vec<D> swirl(const Vec<D>& d) const { return product(spin, d); }
+  TREACLE_HD static Vec<D> product(const Vec<3>& w, const Vec<D>& d) {
     if constexpr (D == 2)
-      return {-spin[2] * d[1], spin[2] * d[0]};
+      return {-w[2] * d[1], w[2] * d[0]};
     else
-      return cross(spin, d);
+      return cross(w, d);
   }
 
   /// At x at the start of the step [m/s].
@@ -55,7 +57,10 @@ struct WallMotion {
     }
   }
   /// Of a particle at x [m/s2].
-  TREACLE_HD Vec<D> accelerationAt(const Vec<D>& x) const { return acceleration + swirl(swirl(arm(x))); }
+  TREACLE_HD Vec<D> accelerationAt(const Vec<D>& x) const {
+    const Vec<D> d = arm(x);
+    return acceleration + product(spinChange, d) + swirl(swirl(d));
+  }
 };
 
 /// Mean velocity of a wall, or of its centre if it rotates, in the step of dt from time t on [m/s]: the walls are

@@ -83,13 +83,13 @@ struct SumsTwin {
     Buffer<Vec<D>, Cuda> foundVelocity(d.context, n);
     std::vector<double> share(n);
     Buffer<double, Cuda> foundShare(d.context, n);
-    std::vector<double> stopped(n);
-    Buffer<double, Cuda> foundStopped(d.context, n);
+    std::vector<Vec<D>> stopped(n);
+    Buffer<Vec<D>, Cuda> foundStopped(d.context, n);
     sumOnFluid(s.context, s.pairs,
-               CorrectorTerm<D>{p.data(), v.data(), corrected.data(), share.data(), stopped.data()});
+               CorrectorTerm<D>{p.data(), p.data(), v.data(), corrected.data(), share.data(), stopped.data()});
     sumOnFluid(d.context, d.pairs,
-               CorrectorTerm<D>{pOnDevice.data(), vOnDevice.data(), foundVelocity.data(), foundShare.data(),
-                                foundStopped.data()});
+               CorrectorTerm<D>{pOnDevice.data(), pOnDevice.data(), vOnDevice.data(), foundVelocity.data(),
+                                foundShare.data(), foundStopped.data()});
     expectClose(foundVelocity, corrected, "corrector");
     expectClose(foundShare, share, "share of walls");
     expectClose(foundStopped, stopped, "stopped at walls");

@@ -24,11 +24,10 @@ void compareBodies(Case c, int steps, Check&& check) {
 }
 
 template <int D>
-void compareBlocks(double density) {
-  Case c = blockCase(D, density);
+void compareBlocks(Case c, int steps = 8) {
   c.gravity[1] = -10;
   c.bodies[1].rigid.angularVelocity = {0, 0, 5};
-  compareBodies<D>(c, 8, [&](const RigidBody& a, const RigidBody& b) {
+  compareBodies<D>(c, steps, [&](const RigidBody& a, const RigidBody& b) {
     ASSERT_LE(norm(a.velocity - b.velocity), 1e-5 * norm(a.velocity));
     ASSERT_LE(norm(a.spin - b.spin), 1e-4 * (norm(a.spin) + 1));
     ASSERT_LE(norm(a.center - b.center), 1e-5 * c.spacing);
@@ -37,8 +36,7 @@ void compareBlocks(double density) {
 
 /// Until it has hit the floor with a corner and its side.
 template <int D>
-void compareFall() {
-  const Case c = fallingBlockCase(D, 30);
+void compareFall(const Case& c) {
   compareBodies<D>(c, 25, [&](const RigidBody& a, const RigidBody& b) {
     ASSERT_LE(norm(a.velocity - b.velocity), 1e-3 * 0.6);
     ASSERT_LE(norm(a.center - b.center), 1e-3 * c.spacing);
@@ -47,15 +45,24 @@ void compareFall() {
 
 TEST(RigidBodiesTwin, TouchAsOnTheCpu) {
   TREACLE_SKIP_WITHOUT_GPU();
-  compareFall<2>();
-  compareFall<3>();
+  compareFall<2>(fallingBlockCase(2, 30));
+  compareFall<3>(fallingBlockCase(3, 30));
+  compareFall<2>(withIsph(fallingBlockCase(2, 30), 5));
 }
 
 TEST(RigidBodiesTwin, MoveAsOnTheCpu) {
   TREACLE_SKIP_WITHOUT_GPU();
-  compareBlocks<2>(300);
-  compareBlocks<2>(7000);
-  compareBlocks<3>(1);
+  compareBlocks<2>(blockCase(2, 300));
+  compareBlocks<2>(blockCase(2, 7000));
+  compareBlocks<3>(blockCase(3, 1));
+}
+
+TEST(RigidBodiesTwin, MoveAsOnTheCpuWithIsph) {
+  TREACLE_SKIP_WITHOUT_GPU();
+  for (const double viscosity : {1e-3, 5.0}) {
+    compareBlocks<2>(withIsph(blockCase(2, 300), viscosity));
+    compareBlocks<3>(withIsph(blockCase(3, 1), viscosity), 5);  // then what is rounded grows twentyfold in a step
+  }
 }
 
 }  // namespace

@@ -80,12 +80,14 @@ TEST(isphCases, widthOfTheDamBreakIsAFactor) {
 }
 
 TEST(isphCases, thoseInTwoDimensionsDivideAtHalfAndHigherResolutions) {
-  for (const char* name : {"isph-dam-break-2d.toml", "isph-hydrostatic.toml", "isph-sloshing.toml"})
+  for (const char* name :
+       {"isph-dam-break-2d.toml", "isph-floating-block-2d.toml", "isph-hydrostatic.toml", "isph-sloshing.toml"})
     for (const char* resolution : {"resolution=0.5", "resolution=1", "resolution=2"}) {
       SCOPED_TRACE(testing::Message() << name << ", " << resolution);
       countsOf(shippedCase(name, {resolution}));
     }
   EXPECT_EQ(countsOf(shippedCase("isph-dam-break-2d.toml"))[0], 40u * 80);
+  EXPECT_EQ(countsOf(shippedCase("isph-floating-block-2d.toml"))[1], 80u * 50 - 20 * 10);
   EXPECT_EQ(countsOf(shippedCase("isph-hydrostatic.toml"))[0], 50u * 50);
   EXPECT_EQ(countsOf(shippedCase("isph-sloshing.toml"))[0], 90u * 30);
 }

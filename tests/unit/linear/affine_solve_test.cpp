@@ -38,6 +38,23 @@ TEST(AffineSolve, FindsTheZeroOfAnAffineFunction) {
   }
 }
 
+/// From the derivative of quite another function: it would not become right in twelve steps.
+TEST(AffineSolve, FindsAnewADerivativeThatLeadsAstray) {
+  constexpr std::size_t n = 12;
+  const auto f = [](const std::vector<double>& x) {
+    std::vector<double> y(n);
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t j = 0; j < n; ++j) y[i] += (pseudoRandom(i * n + j) + (i == j ? 4 : 0)) * (x[j] - 0.5);
+    return y;
+  };
+  std::vector<double> x(n, 3.0), derivative(n * n);
+  for (std::size_t k = 0; k < n * n; ++k) derivative[k] = pseudoRandom(1000 + k);
+  const auto result = AffineSolve::run(f, x, derivative, 1, 1e-6, 12);
+  EXPECT_TRUE(result.converged);
+  EXPECT_LE(result.values, 25);
+  for (const double found : x) EXPECT_NEAR(found, 0.5, 1e-6);
+}
+
 /// Two unknowns of which one, coupled to the other, is held: the solution of the complementarity problem by hand.
 TEST(AffineSolve, KeepsToRestraints) {
   const auto f = [](const std::vector<double>& x) {

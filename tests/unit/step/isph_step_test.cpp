@@ -215,6 +215,36 @@ TEST(IsphStep, WallsBearWhatTheFluidLoses) {
   }
 }
 
+/// A particle that is stopped between two walls gives them what it loses, and does not drive them apart.
+TEST(IsphStep, WallsOnBothSidesOfAParticleShareWhatItLoses) {
+  Case c = waterCase(2, {20, 20, 0});
+  c.watch.insideWalls = 0;
+  const double l = c.spacing;
+  c.materials[0].dynamicViscosity = 0;
+  c.time.step = 1e-3;
+  for (const char* name : {"drop", "lower", "upper"}) {
+    Body body;
+    body.name = name;
+    body.kind = c.bodies.empty() ? BodyKind::Fluid : BodyKind::Wall;
+    c.bodies.push_back(body);
+  }
+  c.probes.resize(1);
+  c.probes[0].name = "load", c.probes[0].kind = ProbeKind::Load, c.probes[0].body = "lower";
+  std::vector<Vec<2>> walls = latticeAt<2>({5 * l, 9.45 * l}, {11, 1}, l);
+  for (const Vec<2>& x : latticeAt<2>({5 * l, 10.6 * l}, {11, 1}, l)) walls.push_back(x);
+  Particles<2> p = particlesAt<2>({{10 * l, 10 * l}}, walls);
+  for (std::uint32_t i = 1; i < p.count; ++i) p.body[i] = i <= 11 ? 1 : 2;
+  p.velocity[0] = {0, 1};  // a kernel is steeper at the wall that is farther away
+  const double push = c.materials[0].density * l * l / c.time.step;  // that would stop it [N/m]
+  Simulation<2> simulation(c, std::move(p));
+  const StepReport report = simulation.advance();
+  ASSERT_EQ(report.loads.size(), 2u);
+  const double lost = 1 - simulation.particles().velocity[0][1];
+  EXPECT_GT(lost, 0.5);
+  EXPECT_NEAR(report.loads[0].force[1] + report.loads[1].force[1], lost * push, 1e-9 * push);
+  for (const WallLoad& load : report.loads) EXPECT_LE(norm(load.force), lost * push);
+}
+
 /// A tank at rest: the floor bears the water.
 TEST(IsphStep, TheFloorBearsTheWeight) {
   Case c = tankCase(2, 10, 8);

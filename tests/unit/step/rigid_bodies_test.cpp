@@ -1,3 +1,4 @@
+#include "moving_bodies.hpp"
 #include "rigid_mass.hpp"
 
 #include "support/isph_cases.hpp"
@@ -47,6 +48,24 @@ TEST(RigidBodies, TurnAsTheirMotionsTurnTheirParticles) {
   }
 }
 
+/// By what the velocity of a particle that goes along changes.
+TEST(RigidBodies, AccelerateTheirParticles) {
+  const double dt = 1e-6;
+  RigidBody before;
+  before.mass = 1;
+  before.inertia = {1, 1, 1, 0, 0, 0};
+  before.center = {1, 2, 3};
+  before.velocity = {0.3, 0, -0.1};
+  before.spin = {0.5, -1, 2};
+  RigidBody after = before;
+  after.advance(dt);
+  after.velocity = before.velocity + dt * Vec<3>{3, -5, 1};
+  after.spin = before.spin + dt * Vec<3>{-7, 2, 4};
+  const Vec<3> x{1.5, 1.7, 3.2}, u = rigidMotion<3>(before, dt).velocityAt(x);
+  const Vec<3> change = rigidMotion<3>(after, dt).velocityAt(x + dt * u) - u;
+  EXPECT_LE(norm(rigidMotion<3>(before, after, dt).accelerationAt(x) - (1 / dt) * change), 1e-4);
+}
+
 /// Momentum of fluid and bodies.
 template <int D>
 Vec<3> momentum(const Case& c, const Simulation<D>& simulation) {
@@ -59,8 +78,7 @@ Vec<3> momentum(const Case& c, const Simulation<D>& simulation) {
 }
 
 template <int D>
-void checkMomentum(double density) {
-  Case c = blockCase(D, density);
+void checkMomentum(Case c) {
   c.bodies[1].velocity = {0.1, 0.05, 0};
   c.bodies[1].rigid.angularVelocity = {0, 0, 5};
   Simulation<D> simulation(c, created<D>(c));
@@ -71,44 +89,108 @@ void checkMomentum(double density) {
   EXPECT_LE(norm(after - before), 2e-6 * (norm(before) + fluid * 0.11));
   const RigidBody& body = simulation.particles().rigid.bodies[1];
   EXPECT_LT(std::abs(body.spin[2]), 5);
-  EXPECT_LT(norm(body.velocity), 0.1);
+  EXPECT_LT(norm(body.velocity), norm(c.bodies[1].velocity));
 }
 
 TEST(RigidBodies, ExchangeMomentumWithTheFluid) {
-  for (const double density : {1.0, 1400.0, 2e4}) checkMomentum<2>(density);
-  checkMomentum<3>(500);
+  for (const double density : {1.0, 1400.0, 2e4}) checkMomentum<2>(blockCase(2, density));
+  checkMomentum<3>(blockCase(3, 500));
+}
+
+/// Of either viscous step.
+TEST(RigidBodies, ExchangeMomentumWithTheFluidOfIsph) {
+  for (const double viscosity : {1e-3, 5.0}) {
+    for (const double density : {1.0, 1400.0, 2e4}) checkMomentum<2>(withIsph(blockCase(2, density), viscosity));
+    checkMomentum<3>(withIsph(blockCase(3, 500), viscosity));
+  }
 }
 
 /// Of the fluid's density a body falls with it, whatever the viscosity.
-TEST(RigidBodies, FallFreelyWithTheFluid) {
-  Case c = blockCase(2, 1400);
+void checkFreeFall(Case c, double tolerance) {
   c.gravity = {0, -10, 0};
   Simulation<2> simulation(c, created<2>(c));
   for (int k = 0; k < 20; ++k) simulation.advance();
   const RigidBody& body = simulation.particles().rigid.bodies[1];
-  EXPECT_NEAR(body.velocity[1], -0.2, 1e-6);
-  EXPECT_NEAR(body.velocity[0], 0, 1e-6);
-  EXPECT_NEAR(body.center[1], -10 * 1e-6 * 210, 1e-8);
+  EXPECT_NEAR(body.velocity[1], -0.2, tolerance);
+  EXPECT_NEAR(body.velocity[0], 0, tolerance);
+  EXPECT_NEAR(body.center[1], -10 * 1e-6 * 210, 0.02 * tolerance);
 }
 
-/// What the balance says that the fluid does to a body is what its velocity changes by.
-TEST(RigidBodies, AreAcceleratedByTheForcesOfTheBalance) {
-  Case c = blockCase(2, 300);
+TEST(RigidBodies, FallFreelyWithTheFluid) {
+  checkFreeFall(blockCase(2, 1400), 1e-6);
+  for (const double viscosity : {0.0, 5.0}) checkFreeFall(withIsph(blockCase(2, 1400), viscosity), 1e-6);
+  // Fluid of the start of a step meets walls of its end: measured 1.1e-4.
+  checkFreeFall(withIsph(blockCase(2, 1400), 1e-3), 1.2e-4);
+}
+
+/// What balance and probes say that the fluid does to a body is what its velocity changes by.
+void checkForces(Case c) {
   c.gravity = {1, -10, 0};
   c.bodies[1].rigid.angularVelocity = {0, 0, 20};
-  c.output.balance = true;
+  c.probes.resize(1);
+  c.probes[0].name = "load", c.probes[0].kind = ProbeKind::Load, c.probes[0].body = "block";
   Simulation<2> simulation(c, created<2>(c));
   for (int k = 0; k < 8; ++k) {
     const RigidBody before = simulation.particles().rigid.bodies[1];
     const StepReport report = simulation.advance();
     const RigidBody& after = report.rigid[1];
-    const WallLoad& load = report.balance->walls[0];
+    const WallLoad& load = report.loads[0];
     const Vec<3> force =
         (after.mass / report.timeStep) * (after.velocity - before.velocity) - after.mass * c.gravity;
     EXPECT_LE(norm(force - load.force), 2e-5 * (norm(load.force) + after.mass * 10));
     const double torque = after.inertia[2] * (after.spin[2] - before.spin[2]) / report.timeStep;
     EXPECT_NEAR(torque, load.torque[2], 2e-4 * (std::abs(load.torque[2]) + 1e-4));
   }
+}
+
+TEST(RigidBodies, AreAcceleratedByTheForcesOfTheBalance) {
+  checkForces(blockCase(2, 300));
+  for (const double viscosity : {1e-3, 5.0}) checkForces(withIsph(blockCase(2, 300), viscosity));
+}
+
+/// Accelerations before the fluid has gone anywhere: what pushes the fluid of a disc, less its weight, over its
+/// mass and the fluid's that goes along, in a wide basin that of the disc. With a radius of ten spacings it
+/// is 1.13 to 1.19 times that.
+TEST(RigidBodies, TakeFluidAlongInIsph) {
+  for (const double density : {1.0, 500.0, 2000.0, 2e4}) {
+    Case c = withIsph(blockCase(2, density), 0);
+    c.domain = {{-0.08, -0.08, 0}, {0.08, 0.08, 0}, {}};
+    c.materials[0].density = 1000;
+    c.gravity = {0, -10, 0};
+    c.time.step = 1e-4;
+    Body &tank = c.bodies[0], &disc = c.bodies[1];
+    tank.shape.min = {-60.5e-3, -60.5e-3, 0}, tank.shape.max = {60.5e-3, 60.5e-3, 0};
+    tank.where = "x^2 + y^2 > 0.01025^2";
+    disc.shape.kind = ShapeKind::Sphere;
+    disc.shape.radius = 0.01025;
+    Body wall = tank;
+    wall.name = "wall", wall.kind = BodyKind::Wall;
+    wall.shape.min = {-64.5e-3, -64.5e-3, 0}, wall.shape.max = {64.5e-3, 60.5e-3, 0};
+    wall.where = "abs(x) > 0.0605 || y < -0.0605";
+    c.bodies.push_back(wall);
+    Simulation<2> simulation(c, created<2>(c));
+    const double found = simulation.advance().rigid[1].velocity[1] / c.time.step;
+    const double along = ((1000 - density) * 10 / found - density) / 1000;
+    EXPECT_NEAR(along, 1.16, 0.04) << density;
+  }
+}
+
+/// Its weight is what the water that it takes the place of would weigh.
+TEST(RigidBodies, FloatAsArchimedesSays) {
+  Case c = floatingBlockCase();
+  c.probes.resize(1);
+  c.probes[0].name = "load", c.probes[0].kind = ProbeKind::Load, c.probes[0].body = "block";
+  Simulation<2> simulation(c, created<2>(c));
+  const double weight = 600 * 0.2 * 0.1 * 10;
+  double force = 0, height = 0;
+  for (int k = 0; k < 1000; ++k) {
+    const StepReport report = simulation.advance();
+    force += report.loads[0].force[1] / 1000, height += report.rigid[1].center[1] / 1000;
+    ASSERT_LT(std::abs(report.rigid[1].center[1] - 0.19), 1.5 * c.spacing);
+  }
+  EXPECT_NEAR(force, weight, 0.01 * weight);
+  EXPECT_NEAR(height, 0.19, 0.5 * c.spacing);
+  EXPECT_LT(std::abs(simulation.particles().rigid.bodies[1].spin[2]), 0.1);
 }
 
 TEST(RigidBodies, KeepWhatIsLocked) {
@@ -144,6 +226,9 @@ void checkContinued(Case c) {
 TEST(RigidBodies, ContinueFromACopyWithTheSameBits) {
   checkContinued<2>(blockCase(2, 300));
   checkContinued<3>(blockCase(3, 3000));
+  checkContinued<2>(withIsph(blockCase(2, 300), 1e-3));
+  checkContinued<2>(withIsph(blockCase(2, 300), 5));
+  checkContinued<3>(withIsph(blockCase(3, 3000), 1e-3));
 }
 
 /// Least height of the particles of the block above the floor's surface, less half a spacing.
@@ -157,8 +242,7 @@ double gapToFloor(const Case& c, const Simulation<D>& simulation) {
 }
 
 template <int D>
-void checkFall(double angle, int steps, double tall) {
-  const Case c = fallingBlockCase(D, angle);
+void checkFall(const Case& c, int steps, double tall) {
   Simulation<D> simulation(c, created<D>(c));
   double least = 1;
   for (int k = 0; k < steps; ++k) {
@@ -174,15 +258,21 @@ void checkFall(double angle, int steps, double tall) {
 
 /// Flat, it stops; from a corner it falls onto its longer side.
 TEST(RigidBodies, RestOnAFloorWithoutFluidBetween) {
-  checkFall<2>(0, 16, 4e-3);
-  checkFall<2>(30, 60, 4e-3);
-  checkFall<3>(0, 16, 4e-3);
+  checkFall<2>(fallingBlockCase(2, 0), 16, 4e-3);
+  checkFall<2>(fallingBlockCase(2, 30), 60, 4e-3);
+  checkFall<3>(fallingBlockCase(3, 0), 16, 4e-3);
+}
+
+TEST(RigidBodies, RestOnAFloorWithoutFluidBetweenInIsph) {
+  checkFall<2>(withIsph(fallingBlockCase(2, 0), 5), 16, 4e-3);
+  checkFall<2>(withIsph(fallingBlockCase(2, 30), 5), 60, 4e-3);
+  checkFall<3>(withIsph(fallingBlockCase(3, 0), 5), 16, 4e-3);
 }
 
 /// They go on together, and what one loses the other gets.
 TEST(RigidBodies, DoNotGoThroughEachOther) {
-  for (const double second : {7000.0, 500.0}) {
-    const Case c = meetingBlocksCase(7000, second);
+  const Case heavy = meetingBlocksCase(7000, 7000), light = meetingBlocksCase(7000, 500);
+  for (const Case& c : {heavy, light, withIsph(heavy, 5), withIsph(light, 1e-3)}) {
     Simulation<2> simulation(c, created<2>(c));
     const Vec<3> before = momentum(c, simulation);
     for (int k = 0; k < 30; ++k) simulation.advance();
