@@ -2,7 +2,9 @@
 
 #include <omp.h>
 
+#include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <exception>
 
 #ifdef __x86_64__
@@ -17,11 +19,11 @@ namespace {
 /// this core, and a system gives those who slept a core sooner than those who did not.
 constexpr int looks = 20000;
 
-/// Until the condition holds for the number.
+/// Until the condition holds for the number. Returns whether it took no sleep.
 template <class Condition>
-void waitUntil(const std::atomic<unsigned>& number, Condition&& condition) {
+bool waitUntil(const std::atomic<unsigned>& number, Condition&& condition) {
   for (int look = 0; look < looks; ++look) {
-    if (condition(number.load(std::memory_order_acquire))) return;
+    if (condition(number.load(std::memory_order_acquire))) return true;
 #ifdef __x86_64__
     _mm_pause();
 #endif
@@ -29,7 +31,38 @@ void waitUntil(const std::atomic<unsigned>& number, Condition&& condition) {
   for (unsigned now = number.load(std::memory_order_acquire); !condition(now);
        now = number.load(std::memory_order_acquire))
     number.wait(now, std::memory_order_acquire);
+  return false;
 }
+
+/// What a leader has learnt of the others. Where a machine has other work for their cores, a loop of microseconds
+/// may wait milliseconds for each of them: the leader then does all of some loops by itself before it asks again.
+struct Patience {
+  using Clock = std::chrono::steady_clock;
+  static constexpr unsigned least = 16, most = 4096;  // loops that it does alone
+
+  bool isAlone = false;  // in the job at hand
+  unsigned left = 0;     // jobs that are still to be done alone
+  unsigned next = 0;     // how many there will be if the others are late once more
+  Clock::time_point start{};
+
+  void begin() {
+    isAlone = left > 0;
+    if (isAlone)
+      --left;
+    else
+      start = Clock::now();
+  }
+  /// The leader was done at `own`, and all of them are now.
+  void learn(bool wereQuick, Clock::time_point own) {
+    if (wereQuick || Clock::now() - own <= 4 * (own - start)) {
+      next /= 2;
+    } else {
+      next = std::clamp(2 * next, least, most);
+      left = next;
+    }
+  }
+};
+thread_local Patience patience;
 
 }  // namespace
 
@@ -62,13 +95,23 @@ void Team::start(Call call, void* job) {
   led_ = nullptr;
   call_ = call;
   job_ = job;
+  if (call) {
+    patience.begin();
+    if (patience.isAlone) return;
+  }
   started_.store(started_.load(std::memory_order_relaxed) + 1, std::memory_order_release);
   started_.notify_all();
 }
 
 void Team::finish() {
-  const unsigned all = started_.load(std::memory_order_relaxed) * static_cast<unsigned>(size_ - 1);
-  waitUntil(done_, [all](unsigned done) { return done == all; });
+  if (patience.isAlone) {
+    for (int thread = 1; thread < size_; ++thread) call_(job_, thread);
+  } else {
+    const Patience::Clock::time_point own = Patience::Clock::now();
+    const unsigned all = started_.load(std::memory_order_relaxed) * static_cast<unsigned>(size_ - 1);
+    const bool wereQuick = waitUntil(done_, [all](unsigned done) { return done == all; });
+    patience.learn(wereQuick, own);
+  }
   led_ = this;
 }
 

@@ -4,8 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <numeric>
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
 namespace treacle {
@@ -21,6 +23,15 @@ class Threads {
  private:
   int before_;
 };
+
+/// On a thread that has not led a team yet, and so has not waited for one.
+template <class F>
+void leadAnew(int threads, F&& body) {
+  std::thread([&] {
+    const Threads limit(threads);
+    Team::lead(body);
+  }).join();
+}
 
 TEST(Team, SharesLoopsOfAllLengthsOncePerIteration) {
   for (const int threads : {1, 2, 3, 5}) {
@@ -40,8 +51,7 @@ TEST(Team, SharesLoopsOfAllLengthsOncePerIteration) {
 }
 
 TEST(Team, HasAShareForEveryThread) {
-  const Threads limit(3);
-  Team::lead([&] {
+  leadAnew(3, [] {
     std::vector<int> threads(3, -1);
     auto job = [&](int thread) { threads[static_cast<std::size_t>(thread)] = omp_get_thread_num(); };
     Team::led()->run(job);
@@ -73,6 +83,25 @@ TEST(Team, ALoopInsideALoopIsComplete) {
     EXPECT_NE(Team::led(), nullptr);
   });
   for (const std::vector<int>& row : visits) EXPECT_EQ(row, std::vector<int>(100, 1));
+}
+
+/// Where the others come late the leader does some loops alone, and asks them again.
+TEST(Team, DoesNotWaitAgainAndAgainForThreadsThatAreLate) {
+  int byOthers = 0, shares = 0;
+  leadAnew(2, [&] {
+    const auto leader = std::this_thread::get_id();
+    auto job = [&](int thread) {
+      if (thread == 0) return;
+      ++shares;
+      if (std::this_thread::get_id() == leader) return;
+      ++byOthers;
+      std::this_thread::sleep_for(std::chrono::milliseconds(3));  // as if another program had the core
+    };
+    for (int k = 0; k < 1000; ++k) Team::led()->run(job);
+  });
+  EXPECT_EQ(shares, 1000);
+  EXPECT_GE(byOthers, 4);  // after 16, 32, 64, ... loops
+  EXPECT_LE(byOthers, 8);
 }
 
 TEST(Team, HandsOnWhatIsThrownAndCanLeadAgain) {
