@@ -81,6 +81,8 @@ def read(path, name):
             page.names.append((line(found.start()), words))
         elif words[0] != "treacle" or len(words) > 2 or words[1] in alone:
             page.inline.append((line(found.start()), plain(found[1])))
+    of_blocks = {command for block in blocks for _, command in block.commands}
+    page.inline = [one for one in page.inline if one[1] not in of_blocks]  # they name one that is run there
     return page
 
 
