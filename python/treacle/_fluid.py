@@ -22,11 +22,10 @@ class Fluid:
     GPU it gives the field itself (`DeviceArray`), which holds until the next step. Particles stand in the order that
     the search likes, which changes with every step; `ids` names them for good.
 
-    Positions, velocities, viscosities (or their factors) and temperatures can be assigned between steps: from an array of
-    the same shape
-    in the present order, of NumPy or anything with DLPack, on the host or on the GPU that computes, or from one number
-    or row for all. After other positions or velocities the flow has no memory of earlier steps, and the watch begins
-    anew. Pressures and number densities stay those of the last step until the next one.
+    Positions, velocities, viscosities (or their factors) and temperatures can be assigned between steps: from an array
+    of the same shape in the present order, of NumPy or anything with DLPack, on the host or on the GPU that computes,
+    or from one number or row for all. After other positions or velocities the flow has no memory of earlier steps, and
+    the watch begins anew. Pressures and number densities stay those of the last step until the next one.
     """
 
     def __init__(self, session: _treacle.Session) -> None:
@@ -114,7 +113,8 @@ class Fluid:
     def viscosity_factors(self) -> Array | None:
         """(n,) by what the viscosities of the materials are multiplied [-]; None where all are 1 for good.
 
-        Assigning them where there are none gives the fluid such a field. Errors of assignment: InputError for others than positive numbers, and with ISPH.
+        Assigning them where there are none gives the fluid such a field. Errors of assignment: InputError for others
+        than positive numbers, and with ISPH.
         """
         return self._field_of_some("viscosity_factors")
 

@@ -13,8 +13,6 @@ struct Steering {
   std::optional<double> spin{};      // of a wall that has a rotation, about its axis [rad/s]
   std::optional<double> speed{};     // of the fluid relative to the nozzle that it comes out of [m/s]
   std::optional<double> flowRate{};  // or that through all of it [m3/s; m2/s in 2D]
-
-  bool isEmpty() const { return !velocity && !spin && !speed && !flowRate; }
 };
 
 /// The body that has moved as this one until time t [s], and goes on with these velocities. Its motion becomes
