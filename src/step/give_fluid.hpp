@@ -16,6 +16,7 @@
 #include <span>
 #include <string>
 #include <type_traits>
+#include <utility>
 
 namespace treacle {
 
@@ -114,6 +115,19 @@ void requirePositive(Context<Backend>& context, const Buffer<double, Backend>& v
     if (!(std::isfinite(host[i]) && host[i] > 0))
       throw InputError(
           fmt::format("{}: expected positive numbers{}, found {:g} for particle {}", what, unit, host[i], i));
+}
+
+/// The fluid of a state gets room for factors of its viscosities, and for the shear rates that go with them.
+template <int D, class Backend>
+void haveViscosityFactors(FlowState<D, Backend>& state) {
+  Particles<D, Backend>& p = state.particles;
+  state.theCase.haveViscosityFactors();
+  p.has.viscosityFactors = true;
+  p.viscosityFactor.resize(state.context, p.fluidCount);
+  if (std::exchange(p.has.shearRates, true)) return;
+  p.shearRate.resize(state.context, p.fluidCount);
+  clearValues(state.context, p.shearRate.span());
+  state.shearRatesKnown = false;
 }
 
 /// What was given, in the backend's memory and found to be possible; empty where nothing was.

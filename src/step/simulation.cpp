@@ -9,10 +9,10 @@
 #include "moving_bodies.hpp"
 #include "open_boundaries.hpp"
 #include "own_particles.hpp"
+#include "start_state.hpp"
 #include "step_method.hpp"
 #include "treacle/core/processes.hpp"
 #include "treacle/core/team.hpp"
-#include "treacle/model/particles_copy.hpp"
 #include "treacle/step/diagnostics.hpp"
 #include "treacle/step/move_particles.hpp"
 #include "treacle/step/shareable.hpp"
@@ -27,40 +27,6 @@
 
 namespace treacle {
 namespace {
-
-template <int D>
-void toBackend(Context<Cpu>&, Particles<D> host, Particles<D>& particles) {
-  particles = std::move(host);
-}
-template <int D>
-void toBackend(Context<Cuda>& context, const Particles<D>& host, Particles<D, Cuda>& particles) {
-  copyToDevice(context, host, particles);
-}
-
-/// Whether the fluid has a field; it has this value where it had none.
-template <int D>
-void setField(bool wanted, bool FluidExtras::*has, Buffer<double> Particles<D>::*field, double value,
-              Particles<D>& particles) {
-  if (std::exchange(particles.has.*has, wanted) == wanted) return;
-  (particles.*field).resize(wanted ? particles.fluidCount : 0);
-  std::fill((particles.*field).begin(), (particles.*field).end(), value);
-}
-
-/// Temperatures are part of the state, not of its memory. Errors: InputError where they are missing.
-template <int D>
-void requireTemperatures(const Case& c, Particles<D>& particles) {
-  if (c.heat && !particles.has.temperatures)
-    throw InputError("the case has heat, but its state has no temperatures");
-  if (!c.heat) setField(false, &FluidExtras::temperatures, &Particles<D>::temperature, 0, particles);
-}
-
-/// Of the fluid [kg; per metre of depth in 2D].
-template <int D>
-double fluidMass(const Case& c, const Particles<D>& particles) {
-  double density = 0;
-  for (std::uint32_t i = 0; i < particles.fluidCount; ++i) density += c.materials[particles.material[i]].density;
-  return density * std::pow(c.spacing, D);
-}
 
 /// Loops of the host have a team.
 template <class Backend, class F>
@@ -131,26 +97,16 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     if (context.communicator) throw InputError("processes share the simulation; expected one that is alone");
   }
 
-  /// From now on, which is another kind of step.
-  void haveViscosityFactors() {
-    theCase.haveViscosityFactors();
-    particles.has.viscosityFactors = true;
-    particles.viscosityFactor.resize(context, particles.fluidCount);
-    if (!std::exchange(particles.has.shearRates, true)) {
-      particles.shearRate.resize(context, particles.fluidCount);
-      clearValues(context, particles.shearRate.span());
-      this->shearRatesKnown = false;
-    }
-    method = makeMphStep(static_cast<Flow&>(*this));
-  }
-
   /// What the fluid remembers does not lead to a state that somebody else has made.
   void giveFluid(const GivenFluid& given) {
     requireAlone();
     const auto fluid = CheckedFluid<D, Backend>::of(
         context, theCase.method.kind, given, method->grid(), particles,
         [&](std::span<const Vec<D>> u) { return diagnosticsOf(particles.position, u).kineticEnergy; });
-    if (fluid.viscosityFactor.size() > 0 && !particles.has.viscosityFactors) haveViscosityFactors();
+    if (fluid.viscosityFactor.size() > 0 && !particles.has.viscosityFactors) {
+      haveViscosityFactors<D, Backend>(*this);
+      method = makeMphStep(static_cast<Flow&>(*this));  // of another kind
+    }
     fluid.copyTo(context, particles);
     if (fluid.position.size() == 0 && fluid.velocity.size() == 0) return;
     forEachFlowMemoryOf([&](auto& field) { clearValues(context, field.span()); }, particles);

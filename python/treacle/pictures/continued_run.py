@@ -60,36 +60,27 @@ class ContinuedRun(RunFiles):
             found += [part.walls[min(k, len(part.walls) - 1)] for k in range(count) if part.walls]
         return found
 
-    def _joined(self, name):
+    def _joined(self, table_of):
         """A table of all parts that have it, with the columns that all of these have."""
-        tables = [(getattr(part, name), until) for part, until in self._kept]
+        tables = [(table_of(part), until) for part, until in self._kept]
         return joined([(table, until) for table, until in tables if len(table.get("time", []))])
 
     @cached_property
     def history(self):
-        return self._joined("history")
+        return self._joined(lambda part: part.history)
 
     @cached_property
     def balance(self):
-        return self._joined("balance")
+        return self._joined(lambda part: part.balance)
 
     @cached_property
     def rigid_bodies(self):
-        return self._joined("rigid_bodies")
+        return self._joined(lambda part: part.rigid_bodies)
 
     @cached_property
     def probes(self):
         names = sorted({name for part in self.parts for name in part.probes})
-        return {
-            name: joined(
-                [
-                    (part.probes[name], until)
-                    for part, until in self._kept
-                    if len(part.probes.get(name, {}).get("time", []))
-                ]
-            )
-            for name in names
-        }
+        return {name: self._joined(lambda part, name=name: part.probes.get(name, {})) for name in names}
 
     @cached_property
     def log(self):

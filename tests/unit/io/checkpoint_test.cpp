@@ -310,45 +310,35 @@ TEST(Checkpoint, EarlierVersionsAreReadWithoutBodiesAndMemoryOfTheFlow) {
   expectSame(read.particles, particles);
 }
 
-TEST(Checkpoint, ShearRatesAreThereOrNot) {
+/// A field that versions from `since` on may have, and a value that it cannot have.
+void expectFieldOrNot(int since, bool FluidExtras::*has, Buffer<double> Particles<2>::*field, double bad,
+                      const std::string& text) {
   TemporaryDirectory directory;
   const auto path = directory / "c.h5";
   Particles<2> particles = randomParticles<2>(6, 5);
-  ASSERT_TRUE(particles.has.shearRates);
+  ASSERT_TRUE(particles.has.*has);
   writeCheckpoint<2>(path, particles, 7, time3, MethodKind::MphI);
   expectSame(readCheckpoint<2>(path).particles, particles);
-  changeAttribute(path, "version", 6);
-  EXPECT_FALSE(readCheckpoint<2>(path).particles.has.shearRates);
-  particles.shearRate[3] = -1;
+  changeAttribute(path, "version", since - 1);
+  EXPECT_FALSE(readCheckpoint<2>(path).particles.has.*has);
+  (particles.*field)[3] = bad;
   EXPECT_THAT(messageOf<RunError>([&] { writeCheckpoint<2>(path, particles, 7, time3, MethodKind::MphI); }),
-              HasSubstr("a shear rate of -1 1/s, expected at least 0"));
+              HasSubstr(text));
+}
+
+TEST(Checkpoint, ShearRatesAreThereOrNot) {
+  expectFieldOrNot(7, &FluidExtras::shearRates, &Particles<2>::shearRate, -1,
+                   "a shear rate of -1 1/s, expected at least 0");
 }
 
 TEST(Checkpoint, TemperaturesAreThereOrNot) {
-  TemporaryDirectory directory;
-  const auto path = directory / "c.h5";
-  Particles<2> particles = randomParticles<2>(6, 5);
-  ASSERT_TRUE(particles.has.temperatures);
-  writeCheckpoint<2>(path, particles, 7, time3, MethodKind::MphI);
-  changeAttribute(path, "version", 7);
-  EXPECT_FALSE(readCheckpoint<2>(path).particles.has.temperatures);
-  particles.temperature[3] = 0;
-  EXPECT_THAT(messageOf<RunError>([&] { writeCheckpoint<2>(path, particles, 7, time3, MethodKind::MphI); }),
-              HasSubstr("a temperature of 0 K, expected more than 0"));
+  expectFieldOrNot(8, &FluidExtras::temperatures, &Particles<2>::temperature, 0,
+                   "a temperature of 0 K, expected more than 0");
 }
 
 TEST(Checkpoint, FactorsOfViscositiesAreThereOrNot) {
-  TemporaryDirectory directory;
-  const auto path = directory / "c.h5";
-  Particles<2> particles = randomParticles<2>(6, 5);
-  ASSERT_TRUE(particles.has.viscosityFactors);
-  writeCheckpoint<2>(path, particles, 7, time3, MethodKind::MphI);
-  expectSame(readCheckpoint<2>(path).particles, particles);
-  changeAttribute(path, "version", 9);
-  EXPECT_FALSE(readCheckpoint<2>(path).particles.has.viscosityFactors);
-  particles.viscosityFactor[3] = 0;
-  EXPECT_THAT(messageOf<RunError>([&] { writeCheckpoint<2>(path, particles, 7, time3, MethodKind::MphI); }),
-              HasSubstr("a factor of the viscosity of 0, expected more than 0"));
+  expectFieldOrNot(10, &FluidExtras::viscosityFactors, &Particles<2>::viscosityFactor, 0,
+                   "a factor of the viscosity of 0, expected more than 0");
 }
 
 TEST(Checkpoint, DamagedFilesAreRefused) {

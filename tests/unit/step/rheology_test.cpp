@@ -23,6 +23,14 @@ Case damBreak(const Rheology& rheology) {
   return c;
 }
 
+/// The same of a Newtonian one.
+Case newtonianDamBreak(double viscosity) {
+  Case c = damBreak({});
+  c.materials[0].rheology.reset();
+  c.materials[0].dynamicViscosity = viscosity;
+  return c;
+}
+
 Particles<2> particlesOf(const Case& c) {
   std::vector<std::string> notes;
   return createParticles<2>(c, notes);
@@ -52,9 +60,7 @@ double difference(const Particles<2>& a, const Particles<2>& b) {
 }
 
 TEST(RheologySteps, OfAFluidThatIsNewtonianAreItsSteps) {
-  Case newtonian = damBreak({});
-  newtonian.materials[0].rheology.reset();
-  newtonian.materials[0].dynamicViscosity = 10;
+  Case newtonian = newtonianDamBreak(10);
   newtonian.solver.tolerance = 1e-22;
   Case powerLaw = newtonian;
   powerLaw.materials[0].dynamicViscosity = 0;
@@ -99,9 +105,7 @@ TEST(RheologySteps, ContinueFromACopyWithTheSameBits) {
 }
 
 TEST(RheologySteps, ContinueWithAStateOfAnotherFluid) {
-  Case newtonian = damBreak({});
-  newtonian.materials[0].rheology.reset();
-  newtonian.materials[0].dynamicViscosity = 10;
+  Case newtonian = newtonianDamBreak(10);
   Particles<2> state = stateAfter(newtonian, 3);
   Simulation<2> other(damBreak(grease()), std::move(state), 3, 3e-3);
   other.advance();
@@ -115,9 +119,7 @@ TEST(RheologySteps, ContinueWithAStateOfAnotherFluid) {
 
 /// A fluid whose particles have twice the viscosity of their material is one of twice the viscosity.
 TEST(RheologySteps, HaveTheFactorsOfTheirParticles) {
-  Case thick = damBreak({});
-  thick.materials[0].rheology.reset();
-  thick.materials[0].dynamicViscosity = 20;
+  Case thick = newtonianDamBreak(20);
   thick.solver.tolerance = 1e-22;
   Case twice = thick;
   twice.materials[0].dynamicViscosity = 10;
@@ -134,9 +136,7 @@ TEST(RheologySteps, HaveTheFactorsOfTheirParticles) {
 
 /// Particles keep theirs while others pass them, and a state without them has ones.
 TEST(RheologySteps, KeepTheFactorsOfParticles) {
-  Case c = damBreak({});
-  c.materials[0].rheology.reset();
-  c.materials[0].dynamicViscosity = 10;
+  Case c = newtonianDamBreak(10);
   Particles<2> before = particlesOf(c);
   c.bodies[0].viscosityFactorExpression = "1 + 100*x";
   std::vector<double> given(before.fluidCount);
