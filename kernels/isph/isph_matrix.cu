@@ -154,16 +154,17 @@ void jacobi(Context<Cuda>& context, const IsphMatrix<T>& a, std::span<const doub
 
 /// Twice one thread per row: it counts its entries, then writes them.
 template <class T>
-void compressed(Context<Cuda>& context, const IsphMatrix<T>& a, BlockCsr<1, double, Cuda>& result) {
+void compressed(Context<Cuda>& context, const IsphMatrix<T>& a, std::uint32_t rows,
+                BlockCsr<1, double, Cuda>& result) {
   const auto forEachEntry = [a] __device__(std::size_t i, auto&& f) {
-    if (!(a.diagonal[i] > 0)) return;
+    if (i >= a.rows || !(a.diagonal[i] > 0)) return;
     f(static_cast<std::uint32_t>(i), a.diagonal[i]);
     for (const std::size_t section : {i, a.rows + i})
       for (std::uint64_t k = a.start[section]; k < a.start[section + 1]; ++k)
         if (const double c = a.coefficientAt(section, k); c > 0) f(a.column[k], -c);
   };
-  result.rowStart.resize(context, std::size_t{a.rows} + 1);
-  forEach(context, a.rows, [forEachEntry, start = result.rowStart.data()] __device__(std::size_t i) {
+  result.rowStart.resize(context, std::size_t{rows} + 1);
+  forEach(context, rows, [forEachEntry, start = result.rowStart.data()] __device__(std::size_t i) {
     std::uint64_t entries = 0;
     forEachEntry(i, [&](std::uint32_t, double) { ++entries; });
     start[i] = entries;
@@ -192,7 +193,7 @@ void compressed(Context<Cuda>& context, const IsphMatrix<T>& a, BlockCsr<1, doub
   template void lastSweep<T>(Context<Cuda>&, const IsphMatrix<T>&, std::span<const double>, std::span<const T>, \
                              std::span<double>);                                                                \
   template void jacobi<T>(Context<Cuda>&, const IsphMatrix<T>&, std::span<const double>, std::span<double>);    \
-  template void compressed<T>(Context<Cuda>&, const IsphMatrix<T>&, BlockCsr<1, double, Cuda>&);
+  template void compressed<T>(Context<Cuda>&, const IsphMatrix<T>&, std::uint32_t, BlockCsr<1, double, Cuda>&);
 TREACLE_INSTANTIATE(double)
 TREACLE_INSTANTIATE(float)
 #undef TREACLE_INSTANTIATE

@@ -28,7 +28,8 @@ __global__ void __launch_bounds__(32 * warpsPerBlock)
 }
 
 /// One warp per bucket and adjacent cell of the upper half; reads the particles around them; writes the block, and
-/// its transpose in the other bucket's row. No atomics.
+/// its transpose in the other bucket's row. The viscous part of a block is added by the process that the bucket is
+/// of. No atomics.
 template <int D, class Mph>
 __global__ void __launch_bounds__(32 * warpsPerBlock)
     offDiagonalKernel(const __grid_constant__ MphPairs<D> pairs, const __grid_constant__ Mph mph,
@@ -43,8 +44,9 @@ __global__ void __launch_bounds__(32 * warpsPerBlock)
   if (!adjacent.occupied(g.ranges)) return;
 
   const std::uint32_t firstJ = g.ranges.fluidBegin[adjacent.linear], lastJ = g.ranges.fluidEnd[adjacent.linear];
-  const Block<D> viscous =
-      sumOfLanes(viscousPart(pairs, mph, g.begin[b], g.begin[b + 1], firstJ, lastJ, adjacent.shift));
+  Block<D> viscous{};
+  if (g.isOwn(b))
+    viscous = sumOfLanes(viscousPart(pairs, mph, g.begin[b], g.begin[b + 1], firstJ, lastJ, adjacent.shift));
   const Block<D> pressure = sumOfLanes(pressurePart(pairs, g, own, offset));
 
   const std::uint64_t here = g.place(b, occupiedNeighbours(pairs.grid, g.ranges, own), o);
@@ -71,7 +73,8 @@ __global__ void __launch_bounds__(32 * warpsPerBlock)
   const Vec<D, int> own = g.cellOf(pairs, b);
   const std::uint64_t here = g.place(b, occupiedNeighbours(pairs.grid, g.ranges, own), Galerkin<D>::self);
   Block<D> sum = pressurePart(pairs, g, own, Vec<D, int>{});
-  for (std::uint32_t i = g.begin[b] + lane; i < g.begin[b + 1]; i += 32) sum += g.ownBlock[i];
+  if (g.isOwn(b))
+    for (std::uint32_t i = g.begin[b] + lane; i < g.begin[b + 1]; i += 32) sum += g.ownBlock[i];
   const std::uint64_t k = g.rowStart[b] + lane;
   if (k < g.rowStart[b + 1] && k != here) sum += g.cross[k];
   sum = sumOfLanes(sum);
@@ -97,6 +100,7 @@ void bucketGalerkin(Context<Cuda>& context, const MphPairs<D>& pairs, const Cell
   const std::uint32_t rows = levels.count(0);
   a0.rowStart.resize(context, std::size_t{rows} + 1);
   Galerkin<D> g{.ranges = viewOf(ranges),
+                .own = pairs.ownRanges(),
                 .buckets = rows,
                 .begin = levels.begin[0].data(),
                 .bucketOf = levels.bucketOf.data(),

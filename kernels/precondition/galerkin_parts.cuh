@@ -13,17 +13,20 @@ struct Galerkin {
   static constexpr int neighbours = power<D>(3), self = neighbours / 2;
 
   CellRangesView ranges;
+  OwnRanges own;
   std::uint32_t buckets;
   const std::uint32_t* begin;     // first particle of every bucket, and the end
   const std::uint32_t* bucketOf;  // per particle
   const Vec<D>* columns;          // 2^D per particle
   const std::uint8_t* lower;      // per particle: bit k: the lower cell of axis k is the one below its own
-  const Block<D>* ownBlock;       // inertia and walls per fluid particle
+  const Block<D>* ownBlock;       // inertia and walls per own fluid particle
   std::uint64_t* rowStart;
   std::uint32_t* column;
   Block<D>* block;
   Block<D>* cross;  // beside every block: its part of V, with the sign of the diagonal
 
+  /// Whether it is the process's own, which then adds what all its particles have; if not, they are ghosts.
+  __device__ bool isOwn(std::uint32_t bucket) const { return begin[bucket] < own.ownFluid; }
   __device__ Vec<D, int> cellOf(const MphPairs<D>& pairs, std::uint32_t bucket) const {
     return pairs.grid.cellOf(pairs.position[begin[bucket]]);
   }
@@ -33,12 +36,12 @@ struct Galerkin {
   }
 };
 
-/// sum += lambda_k (R C)_{Ik} (R C)_{Jk}^T over the particles k of [first, last), which the lanes take in turns. I
+/// sum += lambda_k (R C)_{Ik} (R C)_{Jk}^T over these particles k, which the lanes take in turns. I
 /// is the cell from which offsets count, J stands at `other`, the particles' cell at `at`.
 template <int D>
-__device__ void addColumns(const MphPairs<D>& pairs, const Galerkin<D>& g, std::uint32_t first, std::uint32_t last,
+__device__ void addColumns(const MphPairs<D>& pairs, const Galerkin<D>& g, const IndexRange& particles,
                            const Vec<D, int>& at, const Vec<D, int>& other, Block<D>& sum) {
-  for (std::uint32_t k = first + threadIdx.x % 32; k < last; k += 32) {
+  for (std::uint32_t k = particles.begin + threadIdx.x % 32; k < particles.end; k += 32) {
     const unsigned below = g.lower[k];
     Vec<D, int> lower = at;
     for (int c = 0; c < D; ++c) lower[c] -= below >> c & 1;
@@ -49,7 +52,7 @@ __device__ void addColumns(const MphPairs<D>& pairs, const Galerkin<D>& g, std::
   }
 }
 
-/// A lane's part of (R C Lambda C^T P)_{IJ}: over the cells that are adjacent to both.
+/// A lane's part of (R C Lambda C^T P)_{IJ}: over the own particles of the cells that are adjacent to both.
 template <int D>
 __device__ Block<D> pressurePart(const MphPairs<D>& pairs, const Galerkin<D>& g, const Vec<D, int>& own,
                                  const Vec<D, int>& other) {
@@ -61,8 +64,8 @@ __device__ Block<D> pressurePart(const MphPairs<D>& pairs, const Galerkin<D>& g,
     if (!adjacent) continue;
     const AdjacentCell<D> cell(pairs.grid, own, at);
     if (!cell.inside) continue;
-    addColumns(pairs, g, g.ranges.fluidBegin[cell.linear], g.ranges.fluidEnd[cell.linear], at, other, sum);
-    addColumns(pairs, g, g.ranges.wallBegin[cell.linear], g.ranges.wallEnd[cell.linear], at, other, sum);
+    addColumns(pairs, g, g.own.fluid(cell.linear), at, other, sum);
+    addColumns(pairs, g, g.own.walls(cell.linear), at, other, sum);
   }
   return sum;
 }

@@ -6,8 +6,8 @@
 
 namespace treacle {
 
-/// (R C)_{I k}, per particle k for the 2^D cells I around it: the sum of C_ik over the fluid particles i of the
-/// cell.
+/// (R C)_{I k}, per own particle k for the 2^D cells I around it: the sum of C_ik over the fluid particles i of
+/// the cell.
 template <int D, class Mph>
 struct RestrictedColumns {
   static constexpr int slots = power<D>(2), values = D * slots;
@@ -64,7 +64,7 @@ void restrictedColumns(Context<Cuda>& context, const MphPairs<D>& pairs, Buffer<
   });
   if (pairs.renormalisation)
     forEach(
-        context, std::size_t{slots} * pairs.fluidCount,
+        context, std::size_t{slots} * pairs.ownFluid(),
         [b = pairs.renormalisation, c = columns.data()] __device__(std::size_t k) { c[k] = b[k / slots] * c[k]; });
 }
 

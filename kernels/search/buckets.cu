@@ -95,8 +95,9 @@ __global__ void __launch_bounds__(blockSize)
 }  // namespace
 
 void findBuckets(Context<Cuda>& context, std::span<const std::uint64_t> key, int cellShift, int dimensions,
-                 BucketLevels<Cuda>& levels) {
-  const std::vector<std::uint32_t> counts = countBuckets(context, key, cellShift, dimensions);
+                 BucketLevels<Cuda>& levels, std::size_t mostLevels) {
+  std::vector<std::uint32_t> counts = countBuckets(context, key, cellShift, dimensions);
+  if (counts.size() > mostLevels) counts.resize(mostLevels);
   levels.begin.resize(counts.size());
   // Keys of one level's buckets and of the next one's, in turns.
   Buffer<std::uint64_t, Cuda> even(context, counts[0]), odd(context, counts.size() > 1 ? counts[1] : 0);

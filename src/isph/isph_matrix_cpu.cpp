@@ -59,24 +59,24 @@ void jacobi(Context<Cpu>&, const IsphMatrix<T>& a, std::span<const double> r, st
 }
 
 template <class T>
-void compressed(Context<Cpu>&, const IsphMatrix<T>& a, BlockCsr<1>& result) {
-  result.rowStart.resize(std::size_t{a.rows} + 1);
+void compressed(Context<Cpu>&, const IsphMatrix<T>& a, std::uint32_t rows, BlockCsr<1>& result) {
+  result.rowStart.resize(std::size_t{rows} + 1);
   result.rowStart[0] = 0;
   std::vector<std::pair<std::uint32_t, double>> entries;
   const auto takeRow = [&](std::size_t i) {
     entries.clear();
-    if (!(a.diagonal[i] > 0)) return;
+    if (i >= a.rows || !(a.diagonal[i] > 0)) return;
     entries.emplace_back(static_cast<std::uint32_t>(i), a.diagonal[i]);
     for (const std::size_t section : {i, a.rows + i})
       for (std::uint64_t k = a.start[section]; k < a.start[section + 1]; ++k)
         if (a.coefficient[k] > 0) entries.emplace_back(a.column[k], -static_cast<double>(a.coefficient[k]));
   };
-  for (std::size_t i = 0; i < a.rows; ++i) {
+  for (std::size_t i = 0; i < rows; ++i) {
     takeRow(i);
     result.rowStart[i + 1] = result.rowStart[i] + entries.size();
   }
-  result.column.resize(result.rowStart[a.rows]);
-  result.value.resize(result.rowStart[a.rows]);
+  result.column.resize(result.rowStart[rows]);
+  result.value.resize(result.rowStart[rows]);
   for (std::size_t i = 0; i < a.rows; ++i) {
     takeRow(i);
     std::sort(entries.begin(), entries.end());
@@ -96,7 +96,7 @@ void compressed(Context<Cpu>&, const IsphMatrix<T>& a, BlockCsr<1>& result) {
   template void lastSweep<T>(Context<Cpu>&, const IsphMatrix<T>&, std::span<const double>, std::span<const T>,    \
                              std::span<double>);                                                                  \
   template void jacobi<T>(Context<Cpu>&, const IsphMatrix<T>&, std::span<const double>, std::span<double>);       \
-  template void compressed<T>(Context<Cpu>&, const IsphMatrix<T>&, BlockCsr<1>&);
+  template void compressed<T>(Context<Cpu>&, const IsphMatrix<T>&, std::uint32_t, BlockCsr<1>&);
 TREACLE_INSTANTIATE(double)
 TREACLE_INSTANTIATE(float)
 #undef TREACLE_INSTANTIATE

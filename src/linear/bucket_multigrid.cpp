@@ -1,6 +1,7 @@
 #include "treacle/linear/bucket_multigrid.hpp"
 
 #include "treacle/core/copy_values.hpp"
+#include "treacle/core/device_link.hpp"
 #include "treacle/linear/hat_cycle.hpp"
 
 #include <algorithm>
@@ -130,6 +131,8 @@ void BucketMultigrid<D, T, Backend>::apply(Context<Backend>& context, std::span<
                                            std::span<const Vec<D>> r, std::span<Vec<D>> z) {
   Level& finest = levels_[0];
   bucketRestrict<D, T>(context, view(0), inverse, r, {finest.b.data(), finest.x.data(), finest.next.data()});
+  for (Buffer<Vec<D, T>, Backend>* v : {&finest.b, &finest.x})  // the first sweep is linear
+    sumOverSharing(context, std::span(reinterpret_cast<T*>(v->data()), D * v->size()));
   cycle(context, 0);
   bucketProlong<D, T>(context, view(0), finest.x.data(), inverse, r, z);
 }

@@ -12,13 +12,14 @@ namespace {
 
 constexpr std::uint32_t noBucket = ~std::uint32_t{0};
 
-/// (R C)_{I k}: the sum of C_ik over the fluid particles i of each cell I.
+/// (R C)_{I k} of own particles k: the sum of C_ik over the fluid particles i of each cell I.
 template <bool Renormalised, int D>
 void restrictedColumns(const MphPairs<D>& pairs, Buffer<Vec<D>>& columns) {
   constexpr int slots = power<D>(2);
   columns.resize(std::size_t{slots} * pairs.activeCount);
   parallelFor(pairs.activeCount, parallelGrain, [&](std::size_t index) {
     const auto k = static_cast<std::uint32_t>(index);
+    if (!pairs.isOwn(k)) return;
     const Vec<D>& xk = pairs.position[k];
     const Vec<D, int> cell = pairs.grid.cellOf(xk), lower = lowerCell(pairs.grid, xk, cell);
     Vec<D>* column = &columns[std::size_t{slots} * k];
@@ -35,7 +36,8 @@ void restrictedColumns(const MphPairs<D>& pairs, Buffer<Vec<D>>& columns) {
   });
 }
 
-/// One row of A^0 on the 3^D adjacent cells.
+/// One row of A^0 on the 3^D adjacent cells: what the process's own particles put there, and, where the bucket is
+/// its own, all else.
 template <int D>
 struct BucketRow {
   static constexpr int neighbours = power<D>(3);
@@ -45,12 +47,13 @@ struct BucketRow {
   const CellRanges<>& ranges;
   const BucketLevels<>& levels;
   std::uint32_t begin = 0, end = 0;  // the bucket's particles
+  bool isOwn = true;
   std::array<AdjacentCell<D>, neighbours> cell{};
   std::array<std::uint32_t, neighbours> bucket{};  // noBucket: outside the domain or empty
   std::array<Block<D>, neighbours> block{};
 
   BucketRow(const MphPairs<D>& p, const CellRanges<>& r, const BucketLevels<>& l, std::uint32_t b)
-      : pairs(p), ranges(r), levels(l), begin(l.begin[0][b]), end(l.begin[0][b + 1]) {
+      : pairs(p), ranges(r), levels(l), begin(l.begin[0][b]), end(l.begin[0][b + 1]), isOwn(p.isOwn(begin)) {
     const Vec<D, int> own = p.grid.cellOf(p.position[begin]);
     for (int o = 0; o < neighbours; ++o) {
       cell[o] = {p.grid, own, adjacentOffset<D>(o)};
@@ -59,11 +62,11 @@ struct BucketRow {
   }
 
   void addPressure(const Buffer<Vec<D>>& columns) {
+    const OwnRanges own = pairs.ownRanges();
     for (int o = 0; o < neighbours; ++o) {
       if (!cell[o].inside) continue;
-      const std::size_t at = cell[o].linear;
-      addColumns(o, ranges.fluidBegin[at], ranges.fluidEnd[at], columns);
-      addColumns(o, ranges.wallBegin[at], ranges.wallEnd[at], columns);
+      addColumns(o, own.fluid(cell[o].linear), columns);
+      addColumns(o, own.walls(cell[o].linear), columns);
     }
   }
 
@@ -79,10 +82,10 @@ struct BucketRow {
   }
 
  private:
-  void addColumns(int o, std::uint32_t first, std::uint32_t last, const Buffer<Vec<D>>& columns) {
+  void addColumns(int o, const IndexRange& particles, const Buffer<Vec<D>>& columns) {
     constexpr int slots = power<D>(2);
     const Vec<D, int> offset = adjacentOffset<D>(o);
-    for (std::uint32_t k = first; k < last; ++k) {
+    for (std::uint32_t k = particles.begin; k < particles.end; ++k) {
       const Vec<D>& xk = pairs.position[k];
       const Vec<D, int> lower = offset + lowerCell(pairs.grid, xk, cell[o].cell);
       const int mine = columnSlot<D>(-lower);
@@ -143,8 +146,10 @@ void bucketGalerkin(Context<Cpu>&, const MphPairs<D>& pairs, const CellRanges<>&
   parallelForDynamic(rows, 8, 8, [&](std::size_t b) {
     BucketRow<D> row(pairs, ranges, levels, static_cast<std::uint32_t>(b));
     row.addPressure(columns);
-    row.addViscosity();
-    for (std::uint32_t i = row.begin; i < row.end; ++i) row.block[BucketRow<D>::self] += terms.block[i];
+    if (row.isOwn) {
+      row.addViscosity();
+      for (std::uint32_t i = row.begin; i < row.end; ++i) row.block[BucketRow<D>::self] += terms.block[i];
+    }
 
     std::array<int, neighbours> order;
     for (int o = 0; o < neighbours; ++o) order[o] = o;

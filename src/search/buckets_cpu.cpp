@@ -21,10 +21,11 @@ void findRuns(std::vector<std::uint64_t>& keys, Buffer<std::uint32_t>& begin) {
 }  // namespace
 
 void findBuckets(Context<Cpu>&, std::span<const std::uint64_t> key, int cellShift, int dimensions,
-                 BucketLevels<>& levels) {
+                 BucketLevels<>& levels, std::size_t mostLevels) {
   std::vector<std::uint64_t> keys(key.begin(), key.end());
   levels.begin.clear();
-  for (int shift = cellShift; levels.begin.empty() || keys.size() > 1; shift = dimensions) {
+  for (int shift = cellShift; levels.begin.empty() || (keys.size() > 1 && levels.begin.size() < mostLevels);
+       shift = dimensions) {
     for (std::uint64_t& k : keys) k >>= shift;
     findRuns(keys, levels.begin.emplace_back());
   }

@@ -4,7 +4,7 @@
 #include "treacle/core/halo.hpp"
 #include "treacle/linear/cell_multigrid.hpp"
 #include "treacle/precondition/isph_hat_multigrid.hpp"
-#include "treacle/search/buckets.hpp"
+#include "treacle/search/shared_buckets.hpp"
 #include "treacle/step/solve_stages.hpp"
 
 #include <utility>
@@ -60,8 +60,8 @@ class IsphSystem final : public StagedSystem<Backend> {
   }
 
   std::size_t bytes() const {
-    std::size_t sum =
-        diagonal_.bytes() + moments_.bytes() + withGhosts_.bytes() + compressed_.bytes() + levels_.bytes();
+    std::size_t sum = diagonal_.bytes() + moments_.bytes() + withGhosts_.bytes() + compressed_.bytes() +
+                      levels_.bytes() + shared_.bytes();
     const auto add = [&](const auto& data) {
       sum += data.coefficient.bytes() + data.packed.bytes() + data.inverseNear.bytes() + data.hats.bytes() +
              data.cells.bytes();
@@ -129,9 +129,16 @@ class IsphSystem final : public StagedSystem<Backend> {
                       mostWholeNodes(stage_, context));
     giveUp(moments_);
     if (stage_.preconditioner != PreconditionerKind::CellMultigrid) return;
-    findBuckets(context, ranges_->key, D * CellGrid<D>::subBits, D, levels_);
-    compressed(context, data.matrix, compressed_);
-    data.cells.setup(context, compressed_, levels_.begin, stage_.cells.levels, stage_.cells.sweeps);
+    compressed(context, data.matrix, pairs_->fluidCount, compressed_);
+    if (context.halo) {
+      findSharedBuckets(context, *pairs_, ranges_->key, shared_);
+      const typename CellMultigrid<T, Backend>::SharedCells shared{
+          shared_.local.begin[0], {shared_.all.count(0), shared_.own, shared_.number}};
+      data.cells.setup(context, compressed_, shared_.all.begin, stage_.cells.levels, stage_.cells.sweeps, &shared);
+    } else {
+      findBuckets(context, ranges_->key, D * CellGrid<D>::subBits, D, levels_);
+      data.cells.setup(context, compressed_, levels_.begin, stage_.cells.levels, stage_.cells.sweeps);
+    }
   }
 
   SolverSettings stage_;  // the one that is prepared
@@ -143,6 +150,7 @@ class IsphSystem final : public StagedSystem<Backend> {
   Buffer<double, Backend> withGhosts_;  // what is multiplied
   BlockCsr<1, double, Backend> compressed_;
   BucketLevels<Backend> levels_;
+  SharedBuckets<Backend> shared_;  // where processes share the simulation, in place of them
   Data<double> double_;
   Data<float> single_;
 };

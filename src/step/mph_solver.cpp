@@ -1,6 +1,7 @@
 #include "mph_solver.hpp"
 
 #include "treacle/linear/diagonal.hpp"
+#include "treacle/linear/joined_rows.hpp"
 #include "treacle/precondition/bucket_galerkin.hpp"
 #include "treacle/step/solve_stages.hpp"
 
@@ -106,9 +107,17 @@ void MphSystem<D, Backend>::prepareMultigrid(Context<Backend>& context, Precondi
   const MultigridSettings& m = stage_.multigrid;
   if (m.particleDiagonal == SmootherDiagonal::ExtendedJacobi)
     extendedJacobiInverse<D, double, T>(context, assembled_, k.inverse);
+  const CycleSweeps sweeps{m.finestSweeps, m.middleSweeps, m.coarsestSweeps};
+  if (context.halo) {
+    findSharedBuckets(context, *pairs_, ranges_->key, shared_);
+    bucketGalerkin(context, *pairs_, *ranges_, shared_.local, terms_, columns_, bucketPart_);
+    giveUp(columns_);
+    joinRows<D>(context, bucketPart_, {shared_.all.count(0), shared_.own, shared_.number}, bucketMatrix_);
+    k.multigrid.setup(context, bucketMatrix_, {shared_.all.begin.begin(), shared_.all.begin.end()}, sweeps);
+    return;
+  }
   findBuckets(context, ranges_->key, D * CellGrid<D>::subBits, D, levels_);
   std::vector<std::span<const std::uint32_t>> members(levels_.begin.begin(), levels_.begin.end());
-  const CycleSweeps sweeps{m.finestSweeps, m.middleSweeps, m.coarsestSweeps};
   if constexpr (std::is_same_v<Backend, Cuda>) {
     if (usesSpgemm<Backend>(stage_)) {
       spgemm_.compute(context, assembled_, members[0], bucketMatrix_);
@@ -152,8 +161,9 @@ void MphSystem<D, Backend>::precondition(Context<Backend>& context, std::span<co
 
 template <int D, class Backend>
 std::size_t MphSystem<D, Backend>::bytes() const {
-  std::size_t sum = rows_.bytes() + assembled_.bytes() + bucketMatrix_.bytes() + matrixFree_.bytes() +
-                    levels_.bytes() + columns_.bytes() + spgemm_.bytes() + diagonal_.bytes();
+  std::size_t sum = rows_.bytes() + assembled_.bytes() + bucketMatrix_.bytes() + bucketPart_.bytes() +
+                    matrixFree_.bytes() + levels_.bytes() + shared_.bytes() + columns_.bytes() + spgemm_.bytes() +
+                    diagonal_.bytes();
   const auto add = [&](const auto& k) {
     sum += k.inverse.bytes() + k.blockInverse.bytes() + k.multigrid.bytes() + k.projected.bytes();
   };

@@ -6,7 +6,7 @@
 #include "treacle/mph/mph_assembly.hpp"
 #include "treacle/mph/mph_operator.hpp"
 #include "treacle/precondition/projected_multigrid.hpp"
-#include "treacle/search/buckets.hpp"
+#include "treacle/search/shared_buckets.hpp"
 
 #include <vector>
 
@@ -60,7 +60,8 @@ class MphSystem final : public StagedSystem<Backend> {
   BlockCsr<D, double, Backend> assembled_;
   MphOperator<D, Backend> matrixFree_;
   BucketLevels<Backend> levels_;
-  BlockCsr<D, double, Backend> bucketMatrix_;  // A^0
+  SharedBuckets<Backend> shared_;  // where processes share the simulation, in place of them
+  BlockCsr<D, double, Backend> bucketMatrix_, bucketPart_;  // A^0, and this process's part of it
   Buffer<Vec<D>, Backend> columns_;
   DeviceOnly<GalerkinSpgemm<D>, Backend> spgemm_;
   Buffer<Block<D>, Backend> diagonal_;

@@ -33,7 +33,7 @@ class MphStep final : public StepMethod<D, Backend> {
         neighbourhood_(state.theCase),
         pairs_(neighbourhood_.pairs()),
         wholeRows_(needsAssembled<Backend>(state.theCase.solver)),
-        solver_(solveStages(solvedCase(state.theCase), state.context.communicator != nullptr)) {
+        solver_(solveStages(solvedCase(state.theCase))) {
     if (state.theCase.hasOwnViscosities()) rheology_.emplace(state.theCase);
     if (state.theCase.heat) heat_.emplace(state.theCase, pairs_);
     if (state.theCase.hasSurfaceTension()) surface_.emplace(state.theCase);

@@ -35,7 +35,7 @@ std::vector<SolverSettings> isphStages(const Case& c) {
 
 }  // namespace
 
-std::vector<SolverSettings> solveStages(const Case& c, bool shared) {
+std::vector<SolverSettings> solveStages(const Case& c) {
   if (c.method.kind == MethodKind::Isph) return isphStages(c);
   if (c.solver.preconditioner != PreconditionerKind::ProjectedMultigrid) return {c.solver};
   const ProjectionConstants constants = constantsOf(c);
@@ -58,7 +58,7 @@ std::vector<SolverSettings> solveStages(const Case& c, bool shared) {
   SolverSettings papers = c.solver;
   papers.krylov = KrylovKind::Cr;
   papers.deflation = 0;
-  papers.preconditioner = shared ? PreconditionerKind::BlockJacobi : PreconditionerKind::BucketMultigrid;
+  papers.preconditioner = PreconditionerKind::BucketMultigrid;
   papers.precision = Precision::Double;
   papers.multigrid = {};
   return {first, stronger, papers};

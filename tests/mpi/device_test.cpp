@@ -43,6 +43,19 @@ TEST_F(SharedOnDevices, ThreeDimensions) {
   compare<3, Cuda>({"published/dam-break-3d.toml", 5, {"solver.tolerance=1e-16"}});
 }
 
+TEST_F(SharedOnDevices, BucketMultigrid) {
+  const std::string buckets = "solver.preconditioner=bucket-multigrid", exact = "solver.tolerance=1e-18";
+  compare<2, Cuda>({"published/dam-break-2d.toml", 5, {buckets, exact, "resolution=2"}});
+  compare<3, Cuda>({"dam-break-3d.toml", 3, {buckets, exact}});
+  compare<2, Cuda>({"../tests/validation/cases/couette.toml", 5, {buckets, exact}});
+}
+
+TEST_F(SharedOnDevices, CellMultigrid) {
+  const std::string cells = "solver.preconditioner=cell-multigrid", exact = "solver.tolerance=1e-18";
+  compare<2, Cuda>({"isph-dam-break-2d.toml", 10, {cells, exact}});
+  compare<3, Cuda>({"isph-dam-break.toml", 3, {cells, exact}});
+}
+
 /// Grids whose nodes the processes divide: in two dimensions the two finest.
 TEST_F(SharedOnDevices, DividedGrids) {
   if (job().size() == 1) return;  // there is nothing to divide

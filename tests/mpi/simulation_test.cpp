@@ -30,6 +30,15 @@ TEST(SharedSimulation, ThreeDimensions) {
   compare<3>({"published/dam-break-3d.toml", 3, {"resolution=0.7", "solver.tolerance=1e-16"}});
 }
 
+/// [K23]'s: a process has the buckets of its search cells and their neighbours, all have the coarser ones.
+TEST(SharedSimulation, BucketMultigrid) {
+  const std::string buckets = "solver.preconditioner=bucket-multigrid", exact = "solver.tolerance=1e-18";
+  compare<2>({"published/dam-break-2d.toml", 5, {buckets, exact}});
+  compare<2>({"dam-break-2d.toml", 3, {buckets, exact, "solver.precision=mixed"}});
+  compare<3>({"dam-break-3d.toml", 2, {buckets, exact, "resolution=0.7"}});
+  compare<2>({"../tests/validation/cases/couette.toml", 5, {buckets, exact}});
+}
+
 /// Grids whose nodes the processes divide: the two finest of the first case; those below stand whole at every
 /// process.
 TEST(SharedSimulation, DividedGrids) {
@@ -172,8 +181,9 @@ TEST(SharedSimulation, FallsBack) {
 
 /// A drop in the corners of four cells, `up` cells above the lower end, falls out of some of them: there is
 /// nothing left to do for other processes.
-void followDrop(const Vec<3>& gravity, int up, bool walls) {
-  Case c = Settings{"dam-break-2d.toml", 0, {"solver.tolerance=1e-18"}}.read();
+void followDrop(const Vec<3>& gravity, int up, bool walls, const std::string& preconditioner) {
+  const std::string key = "solver.preconditioner=" + preconditioner;
+  Case c = Settings{"dam-break-2d.toml", 0, {"solver.tolerance=1e-16", key}}.read();
   const CellGrid<2> grid = makeMphPairs<2>(c).grid;
   if (!walls) c.bodies.resize(1);
   Shape& drop = c.bodies[0].shape;
@@ -202,15 +212,19 @@ void followDrop(const Vec<3>& gravity, int up, bool walls) {
     ASSERT_LT(norm(whole.position[here[id]] - expected.position[there[id]]), 1e-7 * c.spacing);
 }
 
-TEST(SharedSimulation, ProcessesWithoutFluid) { followDrop({-20, -20, 0}, 4, false); }
-TEST(SharedSimulation, ProcessesWithWallsAlone) { followDrop({0, -20, 0}, 3, true); }
+TEST(SharedSimulation, ProcessesWithoutFluid) {
+  for (const char* preconditioner : {"projected-multigrid", "bucket-multigrid"})
+    followDrop({-20, -20, 0}, 4, false, preconditioner);
+}
+TEST(SharedSimulation, ProcessesWithWallsAlone) { followDrop({0, -20, 0}, 3, true, "projected-multigrid"); }
 
 TEST(SharedSimulation, AgreesOnAParticleThatLeaves) { expectAgreementOnAParticleThatLeaves(); }
 
 TEST(SharedSimulation, RefusesWhatCannotBeShared) {
   if (job().size() == 1) return;
-  for (const char* key : {"solver.preconditioner=bucket-multigrid", "solver.operator=assembled"}) {
-    const Case c = Settings{"dam-break-2d.toml", 0, {key}}.read();
+  const std::string buckets = "solver.preconditioner=bucket-multigrid";
+  for (const char* key : {"solver.multigrid.particle_diagonal=extended-jacobi", "solver.operator=assembled"}) {
+    const Case c = Settings{"dam-break-2d.toml", 0, {buckets, key}}.read();
     EXPECT_THROW(Simulation<2>(c, partOf<2>(c), 0, 0, &job()), InputError) << key;
   }
 }

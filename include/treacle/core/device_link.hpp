@@ -2,6 +2,7 @@
 
 #include "treacle/core/communicator.hpp"
 #include "treacle/core/cuda.hpp"
+#include "treacle/core/processes.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -73,6 +74,15 @@ void sumOverDevices(const Context<Cuda>& context, std::span<V> values) {
   static_assert(std::is_trivially_copyable_v<V> && sizeof(V) % sizeof(T) == 0);
   if (context.link && !values.empty())
     context.link->sum(reinterpret_cast<T*>(values.data()), values.size_bytes() / sizeof(T));
+}
+
+/// The same of values in the backend's memory, for code that is written for both backends.
+template <class T, class Backend>
+void sumOverSharing(const Context<Backend>& context, std::span<T> values) {
+  if constexpr (std::is_same_v<Backend, Cpu>)
+    sumOverProcesses(context, values);
+  else
+    sumOverDevices(context, values);
 }
 
 }  // namespace treacle

@@ -129,10 +129,10 @@ void jacobi(Context<Cpu>&, const IsphMatrix<T>& a, std::span<const double> r, st
 template <class T>
 void jacobi(Context<Cuda>&, const IsphMatrix<T>& a, std::span<const double> r, std::span<double> z);
 
-/// The matrix as others take it, without its zeros; rows of zeros are empty.
+/// The matrix as others take it, without its zeros; rows of zeros are empty, and those of ghosts, up to `rows`.
 template <class T>
-void compressed(Context<Cpu>&, const IsphMatrix<T>& a, BlockCsr<1>& result);
+void compressed(Context<Cpu>&, const IsphMatrix<T>& a, std::uint32_t rows, BlockCsr<1>& result);
 template <class T>
-void compressed(Context<Cuda>&, const IsphMatrix<T>& a, BlockCsr<1, double, Cuda>& result);
+void compressed(Context<Cuda>&, const IsphMatrix<T>& a, std::uint32_t rows, BlockCsr<1, double, Cuda>& result);
 
 }  // namespace treacle

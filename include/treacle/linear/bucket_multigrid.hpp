@@ -22,6 +22,9 @@ struct CycleSweeps {
 /// iteration [K23 eq. (42)]. D numbers per particle and bucket: as many as space has dimensions, or one in any
 /// space. T is the precision of everything inside; the vectors outside are double.
 ///
+/// Where processes share a simulation the levels are those of all, whole at every process, and so is all that a
+/// cycle does; what it begins with is summed over the processes.
+///
 /// From the first level with at most `denseUnknowns` unknowns on, if there is one, the whole rest of the cycle is
 /// one symmetric matrix, made by running the cycle on the unit vectors: on a device small levels would otherwise
 /// take a launch per sweep. An apply() is then a fixed series of kernels on fixed memory.

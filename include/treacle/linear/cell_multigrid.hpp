@@ -3,6 +3,7 @@
 #include "treacle/linear/bucket_multigrid.hpp"
 #include "treacle/linear/galerkin_spgemm.hpp"
 #include "treacle/linear/hat_cycle.hpp"
+#include "treacle/linear/joined_rows.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -30,24 +31,34 @@ class CellMultigrid {
   using Members = Buffer<std::uint32_t, Backend>;
 
  public:
+  /// A process's cells of the first level, its own and those of ghosts, in a matrix whose ghosts' rows are empty.
+  struct SharedCells {
+    std::span<const std::uint32_t> members;
+    JoinedRows rows;
+  };
+
   /// `a`: symmetric positive (semi-)definite; nothing refers to its empty rows. `cells`: per level the first
   /// member of each cell and the end, particles on the first level, else cells of the level before
   /// (BucketLevels::begin); they must outlive the last apply(). The first `m` levels are used; 0: all. n >= 1
-  /// sweeps.
+  /// sweeps. With `shared`, in a simulation that processes share, `cells` are those of all.
   void setup(Context<Backend>& context, const BlockCsr<1, double, Backend>& a, std::span<const Members> cells,
-             int m, int n) {
+             int m, int n, const SharedCells* shared = nullptr) {
     inverseDiagonal_.resize(context, a.rows());
     hatValues<T, 1>(context, a, {}, inverseDiagonal_);
     const std::size_t count = m == 0 ? cells.size() : std::min(cells.size(), static_cast<std::size_t>(m));
     std::vector<std::span<const std::uint32_t>> members(cells.begin(), cells.begin() + count);
     const CycleSweeps sweeps{.finest = n, .middle = n, .coarsest = 2 * n};
-    if constexpr (onDevice) {
-      spgemm_.compute(context, a, members[0], finest_);
+    BlockCsr<1, double, Backend>& coarse = shared ? part_ : finest_;
+    const std::span<const std::uint32_t> ofParticles = shared ? shared->members : members[0];
+    if constexpr (onDevice)
+      spgemm_.compute(context, a, ofParticles, coarse);
+    else
+      coarsen<1, double>(context, a, ofParticles, coarse);
+    if (shared) joinRows<1>(context, part_, shared->rows, finest_);
+    if constexpr (onDevice)
       cycle_.setup(context, finest_, std::move(members), sweeps, &spgemm_);
-    } else {
-      coarsen<1, double>(context, a, members[0], finest_);
+    else
       cycle_.setup(context, finest_, std::move(members), sweeps);
-    }
   }
 
   /// z = M r, per particle
@@ -59,12 +70,12 @@ class CellMultigrid {
 
   std::size_t levelCount() const { return cycle_.levelCount(); }
   std::size_t bytes() const {
-    return inverseDiagonal_.bytes() + finest_.bytes() + cycle_.bytes() + spgemm_.bytes();
+    return inverseDiagonal_.bytes() + part_.bytes() + finest_.bytes() + cycle_.bytes() + spgemm_.bytes();
   }
 
  private:
-  Buffer<T, Backend> inverseDiagonal_;   // of the particles
-  BlockCsr<1, double, Backend> finest_;  // A_1
+  Buffer<T, Backend> inverseDiagonal_;          // of the particles
+  BlockCsr<1, double, Backend> finest_, part_;  // A_1, and this process's part of it
   BucketMultigrid<1, T, Backend> cycle_;
   DeviceOnly<GalerkinSpgemm<1>, Backend> spgemm_;
 };

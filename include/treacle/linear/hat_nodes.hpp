@@ -67,10 +67,7 @@ void fillNodes(const Context<Backend>& context, const HatNodes<D, Backend>& node
 template <int B, int D, class T, class Backend>
 void sumAtNodes(const Context<Backend>& context, const HatNodes<D, Backend>& nodes, std::span<T> values) {
   if (nodes.division) return nodes.division->halo.addGhosts(context, values.data(), B);
-  if constexpr (std::is_same_v<Backend, Cpu>)
-    sumOverProcesses(context, values);
-  else
-    sumOverDevices(context, values);
+  sumOverSharing(context, values);
 }
 
 /// Nodes at the points where `active` is not zero, one value per lattice point.

@@ -4,7 +4,9 @@
 #include "treacle/core/buffer.hpp"
 #include "treacle/core/cuda.hpp"
 
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -27,11 +29,14 @@ struct BucketLevels {
   }
 };
 
+inline constexpr std::size_t allLevels = std::numeric_limits<std::size_t>::max();
+
 /// `key`: ascending sort keys of the fluid particles; key >> cellShift is the cell's Hilbert index, and dropping
-/// another `dimensions` bits gives each coarser bucket's.
+/// another `dimensions` bits gives each coarser bucket's. At most so many levels are made; for one alone keys need
+/// not ascend, if those of each cell stand together.
 void findBuckets(Context<Cpu>&, std::span<const std::uint64_t> key, int cellShift, int dimensions,
-                 BucketLevels<>& levels);
+                 BucketLevels<>& levels, std::size_t mostLevels = allLevels);
 void findBuckets(Context<Cuda>&, std::span<const std::uint64_t> key, int cellShift, int dimensions,
-                 BucketLevels<Cuda>& levels);
+                 BucketLevels<Cuda>& levels, std::size_t mostLevels = allLevels);
 
 }  // namespace treacle

@@ -12,9 +12,8 @@ namespace treacle {
 
 /// The ways in which the linear systems of a case are solved, each one the fallback of the one before it. Those of
 /// the projected multigrid have their degrees filled in and stop early: one that needs so many iterations is not
-/// what this preconditioner is chosen for, and another way is cheaper. `shared`: by several processes, whose last
-/// resort is block-Jacobi.
-std::vector<SolverSettings> solveStages(const Case& c, bool shared = false);
+/// what this preconditioner is chosen for, and another way is cheaper.
+std::vector<SolverSettings> solveStages(const Case& c);
 
 /// How many nodes a grid of the preconditioner may have that the processes of a simulation do not divide.
 inline std::uint64_t mostWholeNodes(const SolverSettings& settings, const Processes& processes) {

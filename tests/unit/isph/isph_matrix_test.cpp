@@ -58,7 +58,7 @@ void checkMatrix(IsphScene<D>& s, const Row& row, const Matrix& expected) {
   EXPECT_LE((applied(scaled, x) - inverse.cwiseProduct(x)).norm(), operatorTolerance * inverse.norm());
 
   BlockCsr<1> csr;
-  compressed(s.context, a, csr);
+  compressed(s.context, a, a.rows, csr);
   EXPECT_EQ((dense(csr) - found).norm(), 0);
   for (std::uint32_t i = 0; i < s.n(); ++i) {
     EXPECT_TRUE(std::is_sorted(csr.column.begin() + csr.rowStart[i], csr.column.begin() + csr.rowStart[i + 1]));
@@ -169,7 +169,7 @@ TEST(IsphMatrix, OfNobody) {
   IsphScene<2> s(c, particlesAt<2>({}, {{0.05, 0.05}}));
   const IsphTestSystem<2, double> system(s, PressureRow<2>{s.surface.data()});
   BlockCsr<1> csr;
-  compressed(s.context, system.a, csr);
+  compressed(s.context, system.a, system.a.rows, csr);
   EXPECT_EQ(csr.rows(), 0u);
 }
 
