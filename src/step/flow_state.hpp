@@ -25,7 +25,6 @@ struct FlowState {
   double time;        // [s]
   double timeStep;    // of the step at hand, or the last one [s]
   bool wallsMove = false;
-  bool shearRatesKnown = false;  // the particles', where they have some
   std::uint32_t fluidOfAll = 0;  // number of fluid particles, those of all processes
 
   mutable Context<Backend> context;

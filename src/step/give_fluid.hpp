@@ -127,7 +127,6 @@ void haveViscosityFactors(FlowState<D, Backend>& state) {
   if (std::exchange(p.has.shearRates, true)) return;
   p.shearRate.resize(state.context, p.fluidCount);
   clearValues(state.context, p.shearRate.span());
-  state.shearRatesKnown = false;
 }
 
 /// What was given, in the backend's memory and found to be possible; empty where nothing was.

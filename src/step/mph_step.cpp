@@ -78,11 +78,7 @@ class MphStep final : public StepMethod<D, Backend> {
 
   /// Leaves the walls' velocities in state.velocity, too.
   StagedReport solve() override {
-    const std::uint32_t n = pairs_.ownFluid(), walls = pairs_.fluidCount, active = pairs_.activeCount;
-    const std::span<const Vec<D>> last = state_.particles.velocity;
-    state_.velocity.resize(state_.context, active);
-    copyValues(state_.context, last.subspan(walls, active - walls), state_.velocity.data() + walls);
-    guess(state_.velocity.span().first(n));
+    guessAll();
     return bodies_ ? solveWithBodies() : solveFluid();
   }
 
@@ -264,6 +260,14 @@ class MphStep final : public StepMethod<D, Backend> {
                    Extrapolation<D>::make(state_.theCase.solver.firstGuess, state_.timeStep, state_.lastStep()),
                    state_.particles.velocity.span().first(u.size()), memory(), u);
   }
+  /// Into state.velocity, with the velocities of the walls.
+  void guessAll() {
+    const std::uint32_t walls = pairs_.fluidCount, active = pairs_.activeCount;
+    const std::span<const Vec<D>> last = state_.particles.velocity;
+    state_.velocity.resize(state_.context, active);
+    copyValues(state_.context, last.subspan(walls, active - walls), state_.velocity.data() + walls);
+    guess(state_.velocity.span().first(pairs_.ownFluid()));
+  }
   WallTerms<D> wallTermsView() { return {wallBlock_.span(), wallGradient_.span()}; }
 
   void placeWallSurfaces() {
@@ -281,7 +285,11 @@ class MphStep final : public StepMethod<D, Backend> {
   }
 
   void scaleViscosity() {
-    if (rheology_) return rheology_->start(state_, neighbourhood_);
+    if (rheology_) {
+      guessAll();
+      fillGhosts(state_.context, Held::Active, state_.velocity.data());
+      return rheology_->start(state_, neighbourhood_);
+    }
     const double correction = state_.theCase.method.viscosityCorrection;
     if (correction == 0) return;
     viscosityScale_.resize(state_.context, pairs_.fluidCount);

@@ -72,7 +72,6 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
                                                      : makeMphStep(static_cast<Flow&>(*this));
     distant.emplace(theCase, method->grid(), state, time, context.communicator);
     requireTemperatures(theCase, state);
-    this->shearRatesKnown = step > 0 && state.has.shearRates;
     setField(theCase.hasOwnViscosities(), &FluidExtras::shearRates, &Particles<D>::shearRate, 0, state);
     setField(theCase.hasViscosityFactors(), &FluidExtras::viscosityFactors, &Particles<D>::viscosityFactor, 1,
              state);
@@ -110,7 +109,6 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     fluid.copyTo(context, particles);
     if (fluid.position.size() == 0 && fluid.velocity.size() == 0) return;
     forEachFlowMemoryOf([&](auto& field) { clearValues(context, field.span()); }, particles);
-    this->shearRatesKnown = false;
     particles.modes.pressure = {}, particles.steps = {};
     if (fluid.position.size() > 0) {
       particles.modes.drop();

@@ -9,16 +9,17 @@
 
 namespace treacle {
 
-/// The viscosities of a step of MPH-I where particles have their own: from the temperatures, factors and shear
-/// rates that the particles carry, and from the shear rates of each solve in the step. What is not accepted has
-/// not changed the particles.
+/// The viscosities of a step of MPH-I where particles have their own: from the temperatures and factors that the
+/// particles carry and the shear rates of the flow that the step begins its solve with, then from those of each
+/// solve. What is not accepted has not changed the particles.
 template <int D, class Backend>
 class StepRheology {
  public:
   explicit StepRheology(const Case& c)
       : table_(RheologyTable::make(c)), settings_(c.rheology), correction_(c.method.viscosityCorrection) {}
 
-  /// For the first solve of a step, on its neighbours, walls' surfaces and velocities.
+  /// For the first solve of a step, on its neighbours and walls' surfaces; from its first guess, state.velocity,
+  /// ghosts included: with the rates of the step before, most steps would need another solve.
   void start(FlowState<D, Backend>& state, MphNeighbourhood<D, Backend>& neighbourhood) {
     const std::uint32_t fluid = neighbourhood.pairs().fluidCount, own = neighbourhood.pairs().ownFluid();
     for (Buffer<double, Backend>* field : {&share_, &viscosity_, &scaled_}) field->resize(state.context, fluid);
@@ -26,16 +27,7 @@ class StepRheology {
     class_.resize(state.context, neighbourhood.pairs().activeCount);
     neighbourhood.setViscosities({}, {});
     viscosityScale<D>(state.context, neighbourhood.pairs(), 1, share_.span());
-    if (state.shearRatesKnown) {
-      copyValues(state.context, std::span<const double>(state.particles.shearRate).first(own), rate_.data());
-    } else {
-      const std::uint32_t active = neighbourhood.pairs().activeCount;
-      state.velocity.resize(state.context, active);
-      copyValues(state.context, std::span<const Vec<D>>(state.particles.velocity).first(active),
-                 state.velocity.data());
-      fillGhosts(state.context, Held::Active, state.velocity.data());
-      shearRate<D>(state.context, neighbourhood.pairs(), state.velocity, share_, rate_);
-    }
+    shearRate<D>(state.context, neighbourhood.pairs(), state.velocity, share_, rate_);
     if (state.particles.has.temperatures) table_.temperature = state.particles.temperature.span().first(own);
     if (state.particles.has.viscosityFactors) table_.factor = state.particles.viscosityFactor.span().first(own);
     solves_ = 0;
@@ -63,7 +55,6 @@ class StepRheology {
   /// The particles take the rates that the last solve has led to.
   void accept(FlowState<D, Backend>& state) {
     copyValues(state.context, std::span<const double>(rate_), state.particles.shearRate.data());
-    state.shearRatesKnown = true;
   }
 
   std::size_t bytes() const {
