@@ -46,10 +46,10 @@ struct SumSurface {
   }
 };
 
-/// y += force of the surface per fluid particle, from the fluid and the walls around it.
+/// The force of the surface per fluid particle, from the fluid and the walls around it, and what keeps it apart.
 template <int D>
 struct SurfaceForce {
-  static constexpr int values = D;
+  static constexpr int values = 2 * D;
   static constexpr bool uses(ListSegment s) { return isFluid(s); }
   using StoresVectors = void;
   using Own = Vec<D>;
@@ -58,7 +58,7 @@ struct SurfaceForce {
   SurfaceTerms<D> terms;
   const SurfaceSums<D>* sums;
   const Vec<D>* m;
-  Vec<D>* y;
+  Vec<D>*force, *apart;
   Vec<D>* ofWalls;  // or null
 
   __device__ Own loadOwn(const MphPairs<D>&, std::uint32_t i) const { return m[i]; }
@@ -66,17 +66,49 @@ struct SurfaceForce {
 
   __device__ void add(const MphPairs<D>&, double* sum, const Vec<D>& d, const PairDistance<double>& r,
                       const Own& own, const Other& other, ListSegment) const {
-    const double g = terms.gradient(r.square);
-    addScaled(sum, (g - terms.core(r.inverse)) * (norm2(own) + norm2(other)), d);
+    const double g = terms.gradient(r.square), both = norm2(own) + norm2(other);
+    addScaled(sum, g * both, d);
     addScaled(sum, -g * dot(own, d), own);
     addScaled(sum, -g * dot(other, d), other);
+    addScaled(sum + D, -terms.core(r.inverse) * both, d);
   }
-  __device__ void store(const MphPairs<D>&, std::uint32_t i, const Vec<D>& ofFluid) const {
+  __device__ void store(const MphPairs<D>&, std::uint32_t i, const Vec<2 * D>& sum) const {
+    Vec<D> ofFluid;
+    for (int k = 0; k < D; ++k) ofFluid[k] = sum[k], apart[i][k] = sum[D + k];
     const SurfaceSums<D> s = sums[i];
     const Vec<D> wall = terms.ofWalls(s, m[i], ofFluid);
-    y[i] += ofFluid + wall;
+    force[i] = ofFluid + wall;
     if (ofWalls) ofWalls[i] = s.walls > 0 ? wall * (1 / s.walls) : Vec<D>{};
   }
+};
+
+/// y += the force per fluid particle and what it shares of those along the surface with its neighbours.
+template <int D>
+struct EvenForce {
+  static constexpr int values = D;
+  static constexpr bool uses(ListSegment s) { return isFluid(s); }
+  struct Own {
+    Vec<D> m, f;
+  };
+  using Other = Own;
+
+  SurfaceTerms<D> terms;
+  const Vec<D>*free, *f;
+  Vec<D>* y;
+
+  __device__ Own loadOwn(const MphPairs<D>&, std::uint32_t i) const { return {free[i], f[i]}; }
+  __device__ Other loadOther(const MphPairs<D>&, std::uint32_t j) const { return {free[j], f[j]}; }
+
+  __device__ void add(const MphPairs<D>&, double* sum, const Vec<D>&, const PairDistance<double>& r,
+                      const Own& own, const Other& other, ListSegment) const {
+    const Vec<D> normal = own.m + other.m, step = other.f - own.f;
+    const double normal2 = norm2(normal);
+    if (!(norm2(own.m) > 0 && norm2(other.m) > 0 && normal2 > 0)) return;
+    const double k = terms.evening(r.square);
+    addScaled(sum, k, step);
+    addScaled(sum, -k * dot(normal, step) / normal2, normal);
+  }
+  __device__ void store(const MphPairs<D>&, std::uint32_t i, int n, double sum) const { y[i][n] += f[i][n] + sum; }
 };
 
 /// The reaction per wall particle of the list.
@@ -109,19 +141,28 @@ struct SurfaceReaction {
 
 template <int D>
 void surfaceSlope(Context<Cuda>& context, const MphPairs<D>& pairs, const SurfaceTerms<D>& terms,
-                  std::span<SurfaceSums<D>> sums, std::span<Vec<D>> m) {
+                  std::span<SurfaceSums<D>> sums, std::span<Vec<D>> m, std::span<Vec<D>> free) {
   sumOnFluid(context, pairs, SumSurface<D>{terms, sums.data()});
   forEach(context, pairs.ownFluid(),
-          [terms, material = pairs.material.data(), from = sums.data(), to = m.data()] __device__(std::size_t i) {
+          [terms, material = pairs.material.data(), from = sums.data(), to = m.data(),
+           alone = free.data()] __device__(std::size_t i) {
             to[i] = terms.slope(material[i], from[i]);
+            alone[i] = from[i].walls > 0 ? Vec<D>{} : to[i];
           });
 }
 
 template <int D>
-void addSurfaceTension(Context<Cuda>& context, const MphPairs<D>& pairs, const SurfaceTerms<D>& terms,
-                       std::span<const SurfaceSums<D>> sums, std::span<const Vec<D>> m, std::span<Vec<D>> y,
-                       std::span<Vec<D>> ofWalls) {
-  sumOnFluid(context, pairs, SurfaceForce<D>{terms, sums.data(), m.data(), y.data(), ofWalls.data()});
+void surfaceForces(Context<Cuda>& context, const MphPairs<D>& pairs, const SurfaceTerms<D>& terms,
+                   std::span<const SurfaceSums<D>> sums, std::span<const Vec<D>> m, std::span<Vec<D>> force,
+                   std::span<Vec<D>> apart, std::span<Vec<D>> ofWalls) {
+  sumOnFluid(context, pairs,
+             SurfaceForce<D>{terms, sums.data(), m.data(), force.data(), apart.data(), ofWalls.data()});
+}
+
+template <int D>
+void evenAlongSurface(Context<Cuda>& context, const MphPairs<D>& pairs, const SurfaceTerms<D>& terms,
+                      std::span<const Vec<D>> free, std::span<const Vec<D>> f, std::span<Vec<D>> y) {
+  sumOnFluid(context, pairs, EvenForce<D>{terms, free.data(), f.data(), y.data()});
 }
 
 template <int D>
@@ -132,14 +173,16 @@ void surfaceOnWalls(Context<Cuda>& context, const MphPairs<D>& pairs, const Surf
             SurfaceReaction<D>{terms, ofWalls.data(), y.data(), load.data(), pairs.fluidCount});
 }
 
-#define TREACLE_INSTANTIATE(D)                                                                                    \
-  template void surfaceSlope<D>(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&,                       \
-                                std::span<SurfaceSums<D>>, std::span<Vec<D>>);                                    \
-  template void addSurfaceTension<D>(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&,                  \
-                                     std::span<const SurfaceSums<D>>, std::span<const Vec<D>>, std::span<Vec<D>>, \
-                                     std::span<Vec<D>>);                                                          \
-  template void surfaceOnWalls<D>(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&,                     \
-                                  const ClusterListView&, std::span<const Vec<D>>, std::span<Vec<D>>,             \
+#define TREACLE_INSTANTIATE(D)                                                                                \
+  template void surfaceSlope<D>(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&,                   \
+                                std::span<SurfaceSums<D>>, std::span<Vec<D>>, std::span<Vec<D>>);             \
+  template void surfaceForces<D>(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&,                  \
+                                 std::span<const SurfaceSums<D>>, std::span<const Vec<D>>, std::span<Vec<D>>, \
+                                 std::span<Vec<D>>, std::span<Vec<D>>);                                       \
+  template void evenAlongSurface<D>(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&,               \
+                                    std::span<const Vec<D>>, std::span<const Vec<D>>, std::span<Vec<D>>);     \
+  template void surfaceOnWalls<D>(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&,                 \
+                                  const ClusterListView&, std::span<const Vec<D>>, std::span<Vec<D>>,         \
                                   std::span<Vec<D>>);
 TREACLE_INSTANTIATE(2)
 TREACLE_INSTANTIATE(3)

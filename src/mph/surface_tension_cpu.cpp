@@ -6,7 +6,7 @@ namespace treacle {
 
 template <int D>
 void surfaceSlope(Context<Cpu>&, const MphPairs<D>& pairs, const SurfaceTerms<D>& terms,
-                  std::span<SurfaceSums<D>> sums, std::span<Vec<D>> m) {
+                  std::span<SurfaceSums<D>> sums, std::span<Vec<D>> m, std::span<Vec<D>> free) {
   const double floor2 = distanceFloor2(pairs);
   const ClusterListView& list = pairs.fluidList;
   forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const ClusterPlaces<D>& x, std::uint32_t c) {
@@ -33,21 +33,22 @@ void surfaceSlope(Context<Cpu>&, const MphPairs<D>& pairs, const SurfaceTerms<D>
       for (int k = 0; k < D; ++k) sum.fluid[k] = fluid[k][lane], sum.wall[k] = wall[k][lane];
       sum.filled = filled[lane], sum.walls = walls[lane], sum.pull = pull[lane];
       m[i] = terms.slope(pairs.material[i], sum);
+      free[i] = sum.walls > 0 ? Vec<D>{} : m[i];
     }
   });
 }
 
 template <int D>
-void addSurfaceTension(Context<Cpu>&, const MphPairs<D>& pairs, const SurfaceTerms<D>& terms,
-                       std::span<const SurfaceSums<D>> sums, std::span<const Vec<D>> m, std::span<Vec<D>> y,
-                       std::span<Vec<D>> ofWalls) {
+void surfaceForces(Context<Cpu>&, const MphPairs<D>& pairs, const SurfaceTerms<D>& terms,
+                   std::span<const SurfaceSums<D>> sums, std::span<const Vec<D>> m, std::span<Vec<D>> force,
+                   std::span<Vec<D>> apart, std::span<Vec<D>> ofWalls) {
   const double floor2 = distanceFloor2(pairs);
   const ClusterListView& list = pairs.fluidList;
   forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const ClusterPlaces<D>& x, std::uint32_t c) {
     const VecLanes<D> mi = loadLanes<D>(range, m);
     Lanes mi2 = {};
     for (int k = 0; k < D; ++k) mi2 += mi[k] * mi[k];
-    VecLanes<D> sum = {};
+    VecLanes<D> sum = {}, away = {};
     for (ListSegment s : {ListSegment::NearFluid, ListSegment::FarFluid})
       for (std::uint32_t j : list.segment(c, s)) {
         const PairLanes<D> pair(pairs, j, x, floor2);
@@ -58,17 +59,51 @@ void addSurfaceTension(Context<Cpu>&, const MphPairs<D>& pairs, const SurfaceTer
           alongI += mi[k] * pair.d[k];
           alongJ += mj[k] * pair.d[k];
         }
-        const Lanes both = mi2 + norm2(mj), along = (g - terms.core(pair.r.inverse)) * both;
-        for (int k = 0; k < D; ++k) sum[k] += along * pair.d[k] - g * (alongI * mi[k] + alongJ * mj[k]);
+        const Lanes both = mi2 + norm2(mj), core = terms.core(pair.r.inverse) * both;
+        for (int k = 0; k < D; ++k) {
+          sum[k] += g * (both * pair.d[k] - alongI * mi[k] - alongJ * mj[k]);
+          away[k] -= core * pair.d[k];
+        }
       }
+    storeLanes<D>(range, away, apart);
     for (std::uint32_t lane = 0; lane < range.count; ++lane) {
       const std::uint32_t i = range.first + lane;
       Vec<D> ofFluid;
       for (int k = 0; k < D; ++k) ofFluid[k] = sum[k][lane];
       const Vec<D> wall = terms.ofWalls(sums[i], m[i], ofFluid);
-      y[i] += ofFluid + wall;
+      force[i] = ofFluid + wall;
       if (!ofWalls.empty()) ofWalls[i] = sums[i].walls > 0 ? wall * (1 / sums[i].walls) : Vec<D>{};
     }
+  });
+}
+
+template <int D>
+void evenAlongSurface(Context<Cpu>&, const MphPairs<D>& pairs, const SurfaceTerms<D>& terms,
+                      std::span<const Vec<D>> free, std::span<const Vec<D>> f, std::span<Vec<D>> y) {
+  const double floor2 = distanceFloor2(pairs);
+  const ClusterListView& list = pairs.fluidList;
+  forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const ClusterPlaces<D>& x, std::uint32_t c) {
+    const VecLanes<D> mi = loadLanes<D>(range, free), fi = loadLanes<D>(range, f);
+    VecLanes<D> sum = loadLanes<D>(range, std::span<const Vec<D>>(y));
+    Lanes mi2 = {};
+    for (int a = 0; a < D; ++a) sum[a] += fi[a], mi2 += mi[a] * mi[a];
+    for (ListSegment s : {ListSegment::NearFluid, ListSegment::FarFluid})
+      for (std::uint32_t j : list.segment(c, s)) {
+        const PairLanes<D> pair(pairs, j, x, floor2);
+        const Vec<D>& mj = free[j];
+        const double mj2 = norm2(mj);
+        if (mj2 == 0) continue;
+        Lanes normal2 = {}, across = {};
+        VecLanes<D> normal, step;
+        for (int a = 0; a < D; ++a) {
+          normal[a] = mi[a] + mj[a], step[a] = f[j][a] - fi[a];
+          normal2 += normal[a] * normal[a], across += normal[a] * step[a];
+        }
+        const Lanes k = mi2 > 0.0 && normal2 > 0.0 ? terms.evening(pair.r.square) : Lanes{};
+        const Lanes part = normal2 > 0.0 ? across / normal2 : Lanes{};
+        for (int a = 0; a < D; ++a) sum[a] += k * (step[a] - part * normal[a]);
+      }
+    storeLanes<D>(range, sum, y);
   });
 }
 
@@ -93,14 +128,16 @@ void surfaceOnWalls(Context<Cpu>&, const MphPairs<D>& pairs, const SurfaceTerms<
   });
 }
 
-#define TREACLE_INSTANTIATE(D)                                                                                    \
-  template void surfaceSlope<D>(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&,                        \
-                                std::span<SurfaceSums<D>>, std::span<Vec<D>>);                                    \
-  template void addSurfaceTension<D>(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&,                   \
-                                     std::span<const SurfaceSums<D>>, std::span<const Vec<D>>, std::span<Vec<D>>, \
-                                     std::span<Vec<D>>);                                                          \
-  template void surfaceOnWalls<D>(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&,                      \
-                                  const ClusterListView&, std::span<const Vec<D>>, std::span<Vec<D>>,             \
+#define TREACLE_INSTANTIATE(D)                                                                                \
+  template void surfaceSlope<D>(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&,                    \
+                                std::span<SurfaceSums<D>>, std::span<Vec<D>>, std::span<Vec<D>>);             \
+  template void surfaceForces<D>(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&,                   \
+                                 std::span<const SurfaceSums<D>>, std::span<const Vec<D>>, std::span<Vec<D>>, \
+                                 std::span<Vec<D>>, std::span<Vec<D>>);                                       \
+  template void evenAlongSurface<D>(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&,                \
+                                    std::span<const Vec<D>>, std::span<const Vec<D>>, std::span<Vec<D>>);     \
+  template void surfaceOnWalls<D>(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&,                  \
+                                  const ClusterListView&, std::span<const Vec<D>>, std::span<Vec<D>>,         \
                                   std::span<Vec<D>>);
 TREACLE_INSTANTIATE(2)
 TREACLE_INSTANTIATE(3)

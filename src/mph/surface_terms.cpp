@@ -18,6 +18,8 @@ SurfaceTerms<D> SurfaceTerms<D>::make(const Case& c) {
   terms.coreRadius = 0.95 * c.spacing;
   terms.coreFactor = 0.5 / (terms.coreRadius * terms.coreRadius);
   terms.noise2 = 0.01 / (h * h);
+  terms.evenFactor =
+      1 / (1 + latticeSum<D>(h, c.spacing, [&](double r) { return positivePart(1 - r * r / (h * h)); }));
   for (std::size_t m = 0; m < c.materials.size(); ++m) {
     terms.tension[m] = c.materials[m].surfaceTension;
     const double cosine = std::cos(c.materials[m].contactAngle * std::numbers::pi / 180);

@@ -10,38 +10,53 @@ namespace treacle {
 template <int D, class Backend>
 class StepSurface {
  public:
-  explicit StepSurface(const Case& c) : terms_(SurfaceTerms<D>::make(c)) {}
+  explicit StepSurface(const Case& c)
+      : terms_(SurfaceTerms<D>::make(c)), wallsBearIt_(c.needsBalance() || c.hasRigid()) {}
 
   /// On the neighbours of the step.
   void prepare(FlowState<D, Backend>& state, const MphPairs<D>& pairs) {
-    sums_.resize(state.context, pairs.ownFluid());
-    slope_.resize(state.context, pairs.fluidCount);
-    surfaceSlope<D>(state.context, pairs, terms_, sums_.span(), slope_.span());
-    fillGhosts(state.context, Held::Fluid, slope_.data());
+    Context<Backend>& context = state.context;
+    sums_.resize(context, pairs.ownFluid());
+    for (Buffer<Vec<D>, Backend>* field : {&slope_, &free_, &force_, &even_})
+      field->resize(context, pairs.fluidCount);
+    if (wallsBearIt_) ofWalls_.resize(context, pairs.fluidCount);
+    surfaceSlope<D>(context, pairs, terms_, sums_.span(), slope_.span(), free_.span());
+    fillGhosts(context, Held::Fluid, slope_.data());
+    fillGhosts(context, Held::Fluid, free_.data());
+    surfaceForces<D>(context, pairs, terms_, sums_.span(), slope_.span(), force_.span(), even_.span(),
+                     ofWalls_.span());
+    fillGhosts(context, Held::Fluid, force_.data());
+    if (wallsBearIt_) fillGhosts(context, Held::Fluid, ofWalls_.data());
+    evenAlongSurface<D>(context, pairs, terms_, free_.span(), force_.span(), even_.span());
+    fillGhosts(context, Held::Fluid, even_.data());
   }
 
   /// y += the forces per own fluid particle [N/m3].
   void addForces(FlowState<D, Backend>& state, const MphPairs<D>& pairs, std::span<Vec<D>> y) const {
-    addSurfaceTension<D>(state.context, pairs, terms_, sums_.span(), slope_.span(), y);
+    evenAlongSurface<D>(state.context, pairs, terms_, free_.span(), even_.span(), y);
   }
 
   /// Sets y to the forces on own fluid particles and, from the place of the first wall particle on, on those of
-  /// `walls`, which are added to `load` [N/m3]. `ofWalls`: room per fluid particle.
+  /// `walls`, which are added to `load` [N/m3]. Of cases with a balance or rigid bodies.
   void allForces(FlowState<D, Backend>& state, const MphPairs<D>& pairs, const ClusterListView& walls,
-                 std::span<Vec<D>> ofWalls, std::span<Vec<D>> y, std::span<Vec<D>> load) const {
+                 std::span<Vec<D>> y, std::span<Vec<D>> load) const {
     clearValues(state.context, y);
-    addSurfaceTension<D>(state.context, pairs, terms_, sums_.span(), slope_.span(), y, ofWalls);
-    fillGhosts(state.context, Held::Fluid, ofWalls.data());
-    surfaceOnWalls<D>(state.context, pairs, terms_, walls, ofWalls, y.subspan(pairs.fluidCount), load);
+    addForces(state, pairs, y);
+    surfaceOnWalls<D>(state.context, pairs, terms_, walls, ofWalls_.span(), y.subspan(pairs.fluidCount), load);
   }
 
   std::span<const Vec<D>> slope() const { return slope_; }  // m per fluid particle
-  std::size_t bytes() const { return sums_.bytes() + slope_.bytes(); }
+  std::size_t bytes() const {
+    return sums_.bytes() + slope_.bytes() + free_.bytes() + force_.bytes() + even_.bytes() + ofWalls_.bytes();
+  }
 
  private:
   SurfaceTerms<D> terms_;
+  bool wallsBearIt_;
   Buffer<SurfaceSums<D>, Backend> sums_;
-  Buffer<Vec<D>, Backend> slope_;
+  Buffer<Vec<D>, Backend> slope_, free_;  // m, and where no walls are around [Pa^1/2]
+  Buffer<Vec<D>, Backend> force_, even_;  // of stress and walls; shared once, with what keeps apart [N/m3]
+  Buffer<Vec<D>, Backend> ofWalls_;       // that of walls alone, over what they fill around a particle [N/m3]
 };
 
 }  // namespace treacle

@@ -42,8 +42,7 @@ class WallForces {
     if (pairs.terms.repulsionRadius > 0) addRepulsionOnWalls<D>(state.context, pairs, 1 / state.timeStep, force_);
     if (!surface) return;
     surfaceForce_.resize(state.context, active);
-    surfaceOfWalls_.resize(state.context, n);
-    surface->allForces(state, pairs, walls_, surfaceOfWalls_.span(), surfaceForce_.span(), force_.span());
+    surface->allForces(state, pairs, walls_, surfaceForce_.span(), force_.span());
   }
 
   /// Per body of the case, of all processes, after sum() with the velocities `u` [N], [N m] and [W]; in 2D per
@@ -59,18 +58,16 @@ class WallForces {
   std::span<const Vec<D>> surfaceForce() const { return surfaceForce_; }  // per active particle [N/m3], or empty
 
   std::size_t bytes() const {
-    return list_.bytes() + force_.bytes() + divergence_.bytes() + density_.bytes() + surfaceForce_.bytes() +
-           surfaceOfWalls_.bytes();
+    return list_.bytes() + force_.bytes() + divergence_.bytes() + density_.bytes() + surfaceForce_.bytes();
   }
 
  private:
   ClusterList<Backend> list_;
   ClusterListView walls_;
-  Buffer<Vec<D>, Backend> force_;           // per active wall particle [N/m3]
-  Buffer<double, Backend> divergence_;      // [1/s]
-  Buffer<double, Backend> density_;         // [-]
-  Buffer<Vec<D>, Backend> surfaceForce_;    // of surface tension, per active particle [N/m3]
-  Buffer<Vec<D>, Backend> surfaceOfWalls_;  // per fluid particle, that of walls on it [N/m3]
+  Buffer<Vec<D>, Backend> force_;         // per active wall particle [N/m3]
+  Buffer<double, Backend> divergence_;    // [1/s]
+  Buffer<double, Backend> density_;       // [-]
+  Buffer<Vec<D>, Backend> surfaceForce_;  // of surface tension, per active particle [N/m3]
 };
 
 }  // namespace treacle

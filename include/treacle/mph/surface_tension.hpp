@@ -18,6 +18,14 @@ namespace treacle {
 /// is gamma. A tension lets particles gather; the second term, with k = 0.5 and r_0 = 0.95 l, keeps those of the
 /// surface apart.
 ///
+/// What is left of the forces along the surface comes of how its particles stand, and moves them without end. It
+/// is shared among neighbours twice, what keeps particles apart only once:
+///
+///   f_i += sum_j k_ij (I - n n^T) (f_j - f_i),   k = K [1 - r^2/h^2]_+,   n along m_i + m_j
+///
+/// with K such that k and K itself add up to 1 on a full lattice; momentum stays what it was. Not near walls,
+/// where forces along the surface are to be.
+///
 /// At walls the surface ends in a contact line. There G is continued as if the surface went on behind the wall,
 /// and the wall holds what the stress pulls off it and pulls along itself as the contact angle says.
 
@@ -38,6 +46,7 @@ struct SurfaceTerms {
   double noise2 = 0;             // square of a |G| that particles in disorder have inside of the fluid [1/m2]
   double coreRadius = 0;         // r_0 [m]
   double coreFactor = 0;         // k / r_0^2 [1/m2]
+  double evenFactor = 0;         // K
   double tension[maxMaterials];  // gamma [N/m]
   double pull[maxMaterials];     // of a wall of the material along itself, over gamma
 
@@ -58,6 +67,11 @@ struct SurfaceTerms {
   template <class Real>
   TREACLE_HD Real core(const Real& inverseDistance) const {
     return coreFactor * positivePart(coreRadius * inverseDistance - 1.0);
+  }
+  /// The part k of the difference of their forces that two neighbours share.
+  template <class Real>
+  TREACLE_HD Real evening(const Real& r2) const {
+    return evenFactor * positivePart(1.0 - inverseSquare * r2);
   }
   /// m of a particle, 8/3 gamma |G| being |m|^2 where |G| is more than noise. Of what lies along a wall the wall
   /// hides its share.
@@ -84,24 +98,34 @@ struct SurfaceTerms {
 /// |m_i|^2 per volume is 4/3 of the energy of the surface, gamma per area.
 inline constexpr double surfaceEnergyShare = 0.75;
 
-/// The sums and m_i per own fluid particle [Pa^1/2].
+/// Per own fluid particle the sums and m_i [Pa^1/2]; `free` is m_i, too, but zero where walls are around.
 template <int D>
 void surfaceSlope(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&, std::span<SurfaceSums<D>> sums,
-                  std::span<Vec<D>> m);
+                  std::span<Vec<D>> m, std::span<Vec<D>> free);
 template <int D>
 void surfaceSlope(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&, std::span<SurfaceSums<D>> sums,
-                  std::span<Vec<D>> m);
+                  std::span<Vec<D>> m, std::span<Vec<D>> free);
 
-/// y_i += f_i and the force of the walls per own fluid particle [N/m3]; m of all fluid, ghosts included.
-/// `ofWalls`, unless it is empty: the latter alone, over what walls fill of the particle's surroundings.
+/// Per own fluid particle [N/m3]: the force of stress and walls; `apart`, what keeps particles apart; and, unless
+/// it is empty, `ofWalls`, that of walls alone over what they fill of the particle's surroundings. m of all fluid,
+/// ghosts included.
 template <int D>
-void addSurfaceTension(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&,
-                       std::span<const SurfaceSums<D>> sums, std::span<const Vec<D>> m, std::span<Vec<D>> y,
-                       std::span<Vec<D>> ofWalls = {});
+void surfaceForces(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&, std::span<const SurfaceSums<D>> sums,
+                   std::span<const Vec<D>> m, std::span<Vec<D>> force, std::span<Vec<D>> apart,
+                   std::span<Vec<D>> ofWalls = {});
 template <int D>
-void addSurfaceTension(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&,
-                       std::span<const SurfaceSums<D>> sums, std::span<const Vec<D>> m, std::span<Vec<D>> y,
-                       std::span<Vec<D>> ofWalls = {});
+void surfaceForces(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&,
+                   std::span<const SurfaceSums<D>> sums, std::span<const Vec<D>> m, std::span<Vec<D>> force,
+                   std::span<Vec<D>> apart, std::span<Vec<D>> ofWalls = {});
+
+/// y_i += f_i and what the particle shares of the forces along the surface with its neighbours, per own fluid
+/// particle [N/m3]. f and `free` of all fluid, ghosts included; where `free` is zero nothing is shared.
+template <int D>
+void evenAlongSurface(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&, std::span<const Vec<D>> free,
+                      std::span<const Vec<D>> f, std::span<Vec<D>> y);
+template <int D>
+void evenAlongSurface(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&, std::span<const Vec<D>> free,
+                      std::span<const Vec<D>> f, std::span<Vec<D>> y);
 
 /// Sets y per wall particle of the list to the reaction, as `ofWalls` has it of all fluid, ghosts included, and
 /// adds it to `load` [N/m3].

@@ -232,20 +232,30 @@ void checkSurfaceTension(bool lists) {
   for (Material& m : s.c.materials) m.contactAngle = 50;
   const SurfaceTerms<D> terms = SurfaceTerms<D>::make(s.c);
   std::vector<SurfaceSums<D>> sums(n);
-  std::vector<Vec<D>> slope(n), force(n), ofWalls(n), reaction(walls), load(walls, Vec<D>::filled(1));
+  std::vector<Vec<D>> slope(n), free(n), force(n), apart(n), ofWalls(n), even(n), reaction(walls),
+      load(walls, Vec<D>::filled(1));
   Buffer<SurfaceSums<D>, Cuda> sumsFound(d.context, n);
-  Buffer<Vec<D>, Cuda> slopeFound(d.context, n), ofWallsFound(d.context, n), reactionFound(d.context, walls);
-  auto forceFound = copyToDevice<Vec<D>>(d.context, force);
+  Buffer<Vec<D>, Cuda> slopeFound(d.context, n), freeFound(d.context, n), ofWallsFound(d.context, n),
+      reactionFound(d.context, walls);
+  Buffer<Vec<D>, Cuda> forceFound(d.context, n), apartFound(d.context, n);
+  auto evenFound = copyToDevice<Vec<D>>(d.context, even);
   auto loadFound = copyToDevice<Vec<D>>(d.context, load);
 
-  surfaceSlope<D>(s.context, s.pairs(), terms, sums, slope);
-  surfaceSlope<D>(d.context, d.pairs, terms, sumsFound.span(), slopeFound.span());
+  surfaceSlope<D>(s.context, s.pairs(), terms, sums, slope, free);
+  surfaceSlope<D>(d.context, d.pairs, terms, sumsFound.span(), slopeFound.span(), freeFound.span());
   EXPECT_LE(difference<Vec<D>>(d.context, slope, slopeFound), operatorTolerance);
-  addSurfaceTension<D>(s.context, s.pairs(), terms, sums, slope, force, ofWalls);
-  addSurfaceTension<D>(d.context, d.pairs, terms, copyToDevice<SurfaceSums<D>>(d.context, sums),
-                       copyToDevice<Vec<D>>(d.context, slope), forceFound.span(), ofWallsFound.span());
+  EXPECT_LE(difference<Vec<D>>(d.context, free, freeFound), operatorTolerance);
+  surfaceForces<D>(s.context, s.pairs(), terms, sums, slope, force, apart, ofWalls);
+  surfaceForces<D>(d.context, d.pairs, terms, copyToDevice<SurfaceSums<D>>(d.context, sums),
+                   copyToDevice<Vec<D>>(d.context, slope), forceFound.span(), apartFound.span(),
+                   ofWallsFound.span());
   EXPECT_LE(difference<Vec<D>>(d.context, force, forceFound), operatorTolerance);
+  EXPECT_LE(difference<Vec<D>>(d.context, apart, apartFound), operatorTolerance);
   EXPECT_LE(difference<Vec<D>>(d.context, ofWalls, ofWallsFound), operatorTolerance);
+  evenAlongSurface<D>(s.context, s.pairs(), terms, free, force, even);
+  evenAlongSurface<D>(d.context, d.pairs, terms, copyToDevice<Vec<D>>(d.context, free),
+                      copyToDevice<Vec<D>>(d.context, force), evenFound.span());
+  EXPECT_LE(difference<Vec<D>>(d.context, even, evenFound), operatorTolerance);
   ClusterList<Cpu> wallList;  // those of a step do not reach as far
   buildClusterList<D>(s.context, s.pairs().grid, s.ranges(), s.pairs().position, n, n + walls,
                       {s.c.interactionRadius(), 0}, true, wallList);

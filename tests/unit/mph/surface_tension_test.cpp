@@ -32,7 +32,7 @@ struct Slab {
   MphNeighbourhood<D> neighbourhood;
   SurfaceTerms<D> terms = SurfaceTerms<D>::make(c);
   std::vector<SurfaceSums<D>> sums;
-  std::vector<Vec<D>> slope, force;
+  std::vector<Vec<D>> slope, free, force, apart, even;
 
   explicit Slab(double jitter)
       : particles(jitteredLattice<D>(
@@ -43,9 +43,10 @@ struct Slab {
     neighbourhood.sort(context, particles);
     neighbourhood.buildLists(context, particles);
     const std::uint32_t n = neighbourhood.pairs().fluidCount;
-    sums.resize(n), slope.resize(n), force.assign(n, Vec<D>{});
-    surfaceSlope<D>(context, neighbourhood.pairs(), terms, sums, slope);
-    addSurfaceTension<D>(context, neighbourhood.pairs(), terms, sums, slope, force);
+    sums.resize(n), slope.resize(n), free.resize(n), force.resize(n), apart.resize(n), even.assign(n, Vec<D>{});
+    surfaceSlope<D>(context, neighbourhood.pairs(), terms, sums, slope, free);
+    surfaceForces<D>(context, neighbourhood.pairs(), terms, sums, slope, force, apart);
+    evenAlongSurface<D>(context, neighbourhood.pairs(), terms, free, force, even);
   }
 };
 
@@ -84,7 +85,7 @@ void checkMomentum() {
   const Slab<D> s(0.3);
   Vec<D> total{};
   double sum = 0;
-  for (const Vec<D>& f : s.force) total += f, sum += norm(f);
+  for (std::size_t i = 0; i < s.force.size(); ++i) total += s.force[i] + s.apart[i], sum += norm(s.force[i]);
   EXPECT_GT(sum, 0);
   EXPECT_LE(norm(total), operatorTolerance * sum);
   EXPECT_NEAR(tensionOf(s) / 0.07, 1, 0.3);  // 1.23 in 2D and 1.26 in 3D: a rough surface is larger
@@ -95,6 +96,24 @@ TEST(SurfaceTension, ForcesAreEqualAndOpposite) {
   checkMomentum<3>();
 }
 
+template <int D>
+void checkEven() {
+  const Slab<D> s(0.3);
+  Vec<D> change{};
+  double sum = 0, before = 0, after = 0;
+  for (std::size_t i = 0; i < s.force.size(); ++i) {
+    change += s.even[i] - s.force[i], sum += norm(s.force[i]);
+    for (int k = 0; k < D - 1; ++k) before += s.force[i][k] * s.force[i][k], after += s.even[i][k] * s.even[i][k];
+  }
+  EXPECT_LE(norm(change), operatorTolerance * sum);
+  EXPECT_LE(after, 0.4 * before);
+}
+
+TEST(SurfaceTension, ForcesAlongTheSurfaceAreSharedAmongNeighbours) {
+  checkEven<2>();
+  checkEven<3>();
+}
+
 /// Half of a block with a vertical edge on a floor, right of the middle; the lower half of the domain is wall.
 template <int D>
 struct EdgeOnFloor {
@@ -103,7 +122,7 @@ struct EdgeOnFloor {
   Particles<D> particles;
   MphNeighbourhood<D> neighbourhood;
   std::vector<SurfaceSums<D>> sums;
-  std::vector<Vec<D>> slope, force, ofWalls, reaction, load;
+  std::vector<Vec<D>> slope, free, force, apart, even, ofWalls, reaction, load;
   double line = 1;  // length of the contact line [m]; in 2D per metre of depth
 
   explicit EdgeOnFloor(double angle, double jitter)
@@ -114,14 +133,16 @@ struct EdgeOnFloor {
     const MphPairs<D>& pairs = neighbourhood.pairs();
     const std::uint32_t n = pairs.fluidCount;
     const auto terms = SurfaceTerms<D>::make(c);
-    sums.resize(n), slope.resize(n), force.resize(n), ofWalls.resize(n);
+    sums.resize(n), slope.resize(n), free.resize(n), force.resize(n), apart.resize(n), ofWalls.resize(n);
     reaction.resize(pairs.activeCount - n), load.assign(pairs.activeCount - n, Vec<D>::filled(2));
-    surfaceSlope<D>(context, pairs, terms, sums, slope);
-    addSurfaceTension<D>(context, pairs, terms, sums, slope, force, ofWalls);
+    surfaceSlope<D>(context, pairs, terms, sums, slope, free);
+    surfaceForces<D>(context, pairs, terms, sums, slope, force, apart, ofWalls);
     ClusterList<Cpu> walls;  // those of a step do not reach as far
     buildClusterList<D>(context, pairs.grid, neighbourhood.ranges(), pairs.position, n, pairs.ownEnd(),
                         {c.interactionRadius(), 0}, true, walls);
     surfaceOnWalls<D>(context, pairs, terms, walls.view(), ofWalls, reaction, load);
+    even.assign(n, Vec<D>{});
+    evenAlongSurface<D>(context, pairs, terms, free, force, even);
     if (D == 3) line = c.domain.max[1];
   }
   static Case& withAngle(Case& c, double angle) {
@@ -174,6 +195,28 @@ void checkReaction() {
     EXPECT_LE(norm(s.load[j] - s.reaction[j] - Vec<D>::filled(2)), 1e-12 * sum);
   }
   EXPECT_LE(norm(total), operatorTolerance * sum);
+}
+
+/// Lines pull at single particles, and the forces of those stay theirs.
+template <int D>
+void checkNearWalls() {
+  const EdgeOnFloor<D> s(60, 0.3);
+  std::size_t near = 0, changed = 0;
+  for (std::size_t i = 0; i < s.force.size(); ++i) {
+    const bool same = norm(s.even[i] - s.force[i]) == 0;
+    if (s.sums[i].walls > 0) {
+      ++near;
+      EXPECT_TRUE(same);
+    }
+    if (!same) ++changed;
+  }
+  EXPECT_GT(near, 0u);
+  EXPECT_GT(changed, 0u);
+}
+
+TEST(SurfaceTension, ForcesNearWallsAreNotShared) {
+  checkNearWalls<2>();
+  checkNearWalls<3>();
 }
 
 TEST(SurfaceTension, OfWallsHasAReaction) {
