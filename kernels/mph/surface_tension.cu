@@ -82,7 +82,7 @@ struct SurfaceForce {
   }
 };
 
-/// y += the force per fluid particle and what it shares of those along the surface with its neighbours.
+/// y += the force per fluid particle, what it shares of those along the surface with its neighbours, and `apart`.
 template <int D>
 struct EvenForce {
   static constexpr int values = D;
@@ -93,22 +93,24 @@ struct EvenForce {
   using Other = Own;
 
   SurfaceTerms<D> terms;
-  const Vec<D>*free, *f;
+  const Vec<D>*free, *f, *apart;  // the last may be null
   Vec<D>* y;
 
   __device__ Own loadOwn(const MphPairs<D>&, std::uint32_t i) const { return {free[i], f[i]}; }
   __device__ Other loadOther(const MphPairs<D>&, std::uint32_t j) const { return {free[j], f[j]}; }
 
-  __device__ void add(const MphPairs<D>&, double* sum, const Vec<D>&, const PairDistance<double>& r,
+  __device__ void add(const MphPairs<D>&, double* sum, const Vec<D>& d, const PairDistance<double>& r,
                       const Own& own, const Other& other, ListSegment) const {
-    const Vec<D> normal = own.m + other.m, step = other.f - own.f;
+    const Vec<D> normal = own.m + other.m;
     const double normal2 = norm2(normal);
     if (!(norm2(own.m) > 0 && norm2(other.m) > 0 && normal2 > 0)) return;
-    const double k = terms.evening(r.square);
-    addScaled(sum, k, step);
-    addScaled(sum, -k * dot(normal, step) / normal2, normal);
+    const double unit2 = r.inverse * r.inverse, across = dot(normal, d);
+    const double k = terms.evening(r.square) * (1 - across * across * unit2 / normal2);
+    addScaled(sum, k * unit2 * dot(d, other.f - own.f), d);
   }
-  __device__ void store(const MphPairs<D>&, std::uint32_t i, int n, double sum) const { y[i][n] += f[i][n] + sum; }
+  __device__ void store(const MphPairs<D>&, std::uint32_t i, int n, double sum) const {
+    y[i][n] += f[i][n] + sum + (apart ? apart[i][n] : 0.0);
+  }
 };
 
 /// The reaction per wall particle of the list.
@@ -161,8 +163,9 @@ void surfaceForces(Context<Cuda>& context, const MphPairs<D>& pairs, const Surfa
 
 template <int D>
 void evenAlongSurface(Context<Cuda>& context, const MphPairs<D>& pairs, const SurfaceTerms<D>& terms,
-                      std::span<const Vec<D>> free, std::span<const Vec<D>> f, std::span<Vec<D>> y) {
-  sumOnFluid(context, pairs, EvenForce<D>{terms, free.data(), f.data(), y.data()});
+                      std::span<const Vec<D>> free, std::span<const Vec<D>> f, std::span<Vec<D>> y,
+                      std::span<const Vec<D>> apart) {
+  sumOnFluid(context, pairs, EvenForce<D>{terms, free.data(), f.data(), apart.data(), y.data()});
 }
 
 template <int D>
@@ -180,7 +183,8 @@ void surfaceOnWalls(Context<Cuda>& context, const MphPairs<D>& pairs, const Surf
                                  std::span<const SurfaceSums<D>>, std::span<const Vec<D>>, std::span<Vec<D>>, \
                                  std::span<Vec<D>>, std::span<Vec<D>>);                                       \
   template void evenAlongSurface<D>(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&,               \
-                                    std::span<const Vec<D>>, std::span<const Vec<D>>, std::span<Vec<D>>);     \
+                                    std::span<const Vec<D>>, std::span<const Vec<D>>, std::span<Vec<D>>,      \
+                                    std::span<const Vec<D>>);                                                 \
   template void surfaceOnWalls<D>(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&,                 \
                                   const ClusterListView&, std::span<const Vec<D>>, std::span<Vec<D>>,         \
                                   std::span<Vec<D>>);

@@ -79,7 +79,8 @@ void surfaceForces(Context<Cpu>&, const MphPairs<D>& pairs, const SurfaceTerms<D
 
 template <int D>
 void evenAlongSurface(Context<Cpu>&, const MphPairs<D>& pairs, const SurfaceTerms<D>& terms,
-                      std::span<const Vec<D>> free, std::span<const Vec<D>> f, std::span<Vec<D>> y) {
+                      std::span<const Vec<D>> free, std::span<const Vec<D>> f, std::span<Vec<D>> y,
+                      std::span<const Vec<D>> apart) {
   const double floor2 = distanceFloor2(pairs);
   const ClusterListView& list = pairs.fluidList;
   forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const ClusterPlaces<D>& x, std::uint32_t c) {
@@ -87,21 +88,24 @@ void evenAlongSurface(Context<Cpu>&, const MphPairs<D>& pairs, const SurfaceTerm
     VecLanes<D> sum = loadLanes<D>(range, std::span<const Vec<D>>(y));
     Lanes mi2 = {};
     for (int a = 0; a < D; ++a) sum[a] += fi[a], mi2 += mi[a] * mi[a];
+    if (!apart.empty()) {
+      const VecLanes<D> more = loadLanes<D>(range, apart);
+      for (int a = 0; a < D; ++a) sum[a] += more[a];
+    }
     for (ListSegment s : {ListSegment::NearFluid, ListSegment::FarFluid})
       for (std::uint32_t j : list.segment(c, s)) {
         const PairLanes<D> pair(pairs, j, x, floor2);
         const Vec<D>& mj = free[j];
         const double mj2 = norm2(mj);
         if (mj2 == 0) continue;
-        Lanes normal2 = {}, across = {};
-        VecLanes<D> normal, step;
+        Lanes normal2 = {}, across = {}, closing = {};
         for (int a = 0; a < D; ++a) {
-          normal[a] = mi[a] + mj[a], step[a] = f[j][a] - fi[a];
-          normal2 += normal[a] * normal[a], across += normal[a] * step[a];
+          const Lanes n = mi[a] + mj[a];
+          normal2 += n * n, across += n * pair.d[a], closing += pair.d[a] * (f[j][a] - fi[a]);
         }
-        const Lanes k = mi2 > 0.0 && normal2 > 0.0 ? terms.evening(pair.r.square) : Lanes{};
-        const Lanes part = normal2 > 0.0 ? across / normal2 : Lanes{};
-        for (int a = 0; a < D; ++a) sum[a] += k * (step[a] - part * normal[a]);
+        const Lanes unit2 = pair.r.inverse * pair.r.inverse, along = 1.0 - across * across * unit2 / normal2;
+        const Lanes k = terms.evening(pair.r.square) * along * unit2 * closing;
+        for (int a = 0; a < D; ++a) sum[a] += (mi2 > 0.0 && normal2 > 0.0 ? k : Lanes{}) * pair.d[a];
       }
     storeLanes<D>(range, sum, y);
   });
@@ -135,7 +139,8 @@ void surfaceOnWalls(Context<Cpu>&, const MphPairs<D>& pairs, const SurfaceTerms<
                                  std::span<const SurfaceSums<D>>, std::span<const Vec<D>>, std::span<Vec<D>>, \
                                  std::span<Vec<D>>, std::span<Vec<D>>);                                       \
   template void evenAlongSurface<D>(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&,                \
-                                    std::span<const Vec<D>>, std::span<const Vec<D>>, std::span<Vec<D>>);     \
+                                    std::span<const Vec<D>>, std::span<const Vec<D>>, std::span<Vec<D>>,      \
+                                    std::span<const Vec<D>>);                                                 \
   template void surfaceOnWalls<D>(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&,                  \
                                   const ClusterListView&, std::span<const Vec<D>>, std::span<Vec<D>>,         \
                                   std::span<Vec<D>>);

@@ -18,8 +18,9 @@ SurfaceTerms<D> SurfaceTerms<D>::make(const Case& c) {
   terms.coreRadius = 0.95 * c.spacing;
   terms.coreFactor = 0.5 / (terms.coreRadius * terms.coreRadius);
   terms.noise2 = 0.01 / (h * h);
+  const double along = D == 2 ? 3.0 / 8 : 4.0 / 15;  // mean of (e.t)^2 (1 - (e.n)^2) over all directions e
   terms.evenFactor =
-      1 / (1 + latticeSum<D>(h, c.spacing, [&](double r) { return positivePart(1 - r * r / (h * h)); }));
+      1 / (along * latticeSum<D>(h, c.spacing, [&](double r) { return positivePart(1 - r * r / (h * h)); }));
   for (std::size_t m = 0; m < c.materials.size(); ++m) {
     terms.tension[m] = c.materials[m].surfaceTension;
     const double cosine = std::cos(c.materials[m].contactAngle * std::numbers::pi / 180);

@@ -17,23 +17,24 @@ class StepSurface {
   void prepare(FlowState<D, Backend>& state, const MphPairs<D>& pairs) {
     Context<Backend>& context = state.context;
     sums_.resize(context, pairs.ownFluid());
-    for (Buffer<Vec<D>, Backend>* field : {&slope_, &free_, &force_, &even_})
+    for (Buffer<Vec<D>, Backend>* field : {&slope_, &free_, &force_, &apart_, &even_})
       field->resize(context, pairs.fluidCount);
     if (wallsBearIt_) ofWalls_.resize(context, pairs.fluidCount);
     surfaceSlope<D>(context, pairs, terms_, sums_.span(), slope_.span(), free_.span());
     fillGhosts(context, Held::Fluid, slope_.data());
     fillGhosts(context, Held::Fluid, free_.data());
-    surfaceForces<D>(context, pairs, terms_, sums_.span(), slope_.span(), force_.span(), even_.span(),
+    surfaceForces<D>(context, pairs, terms_, sums_.span(), slope_.span(), force_.span(), apart_.span(),
                      ofWalls_.span());
     fillGhosts(context, Held::Fluid, force_.data());
     if (wallsBearIt_) fillGhosts(context, Held::Fluid, ofWalls_.data());
+    clearValues(context, even_.span());
     evenAlongSurface<D>(context, pairs, terms_, free_.span(), force_.span(), even_.span());
     fillGhosts(context, Held::Fluid, even_.data());
   }
 
   /// y += the forces per own fluid particle [N/m3].
   void addForces(FlowState<D, Backend>& state, const MphPairs<D>& pairs, std::span<Vec<D>> y) const {
-    evenAlongSurface<D>(state.context, pairs, terms_, free_.span(), even_.span(), y);
+    evenAlongSurface<D>(state.context, pairs, terms_, free_.span(), even_.span(), y, apart_.span());
   }
 
   /// Sets y to the forces on own fluid particles and, from the place of the first wall particle on, on those of
@@ -47,7 +48,8 @@ class StepSurface {
 
   std::span<const Vec<D>> slope() const { return slope_; }  // m per fluid particle
   std::size_t bytes() const {
-    return sums_.bytes() + slope_.bytes() + free_.bytes() + force_.bytes() + even_.bytes() + ofWalls_.bytes();
+    return sums_.bytes() + slope_.bytes() + free_.bytes() + force_.bytes() + apart_.bytes() + even_.bytes() +
+           ofWalls_.bytes();
   }
 
  private:
@@ -55,7 +57,8 @@ class StepSurface {
   bool wallsBearIt_;
   Buffer<SurfaceSums<D>, Backend> sums_;
   Buffer<Vec<D>, Backend> slope_, free_;  // m, and where no walls are around [Pa^1/2]
-  Buffer<Vec<D>, Backend> force_, even_;  // of stress and walls; shared once, with what keeps apart [N/m3]
+  Buffer<Vec<D>, Backend> apart_;         // what keeps particles apart [N/m3]
+  Buffer<Vec<D>, Backend> force_, even_;  // of stress and walls; shared once [N/m3]
   Buffer<Vec<D>, Backend> ofWalls_;       // that of walls alone, over what they fill around a particle [N/m3]
 };
 

@@ -19,12 +19,12 @@ namespace treacle {
 /// surface apart.
 ///
 /// What is left of the forces along the surface comes of how its particles stand, and moves them without end. It
-/// is shared among neighbours twice, what keeps particles apart only once:
+/// is shared among neighbours, twice, by pair forces that are central (what keeps particles apart is not):
 ///
-///   f_i += sum_j k_ij (I - n n^T) (f_j - f_i),   k = K [1 - r^2/h^2]_+,   n along m_i + m_j
+///   f_i += sum_j k_ij (1 - (e.n)^2) e (e.(f_j - f_i)),   k = K [1 - r^2/h^2]_+,   n along m_i + m_j
 ///
-/// with K such that k and K itself add up to 1 on a full lattice; momentum stays what it was. Not near walls,
-/// where forces along the surface are to be.
+/// With K a particle of a full lattice takes, along the surface, just its neighbours' mean. Not near walls, where
+/// forces along the surface are to be.
 ///
 /// At walls the surface ends in a contact line. There G is continued as if the surface went on behind the wall,
 /// and the wall holds what the stress pulls off it and pulls along itself as the contact angle says.
@@ -118,14 +118,15 @@ void surfaceForces(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&,
                    std::span<const SurfaceSums<D>> sums, std::span<const Vec<D>> m, std::span<Vec<D>> force,
                    std::span<Vec<D>> apart, std::span<Vec<D>> ofWalls = {});
 
-/// y_i += f_i and what the particle shares of the forces along the surface with its neighbours, per own fluid
-/// particle [N/m3]. f and `free` of all fluid, ghosts included; where `free` is zero nothing is shared.
+/// y_i += f_i and what the particle shares of the forces along the surface with its neighbours, and apart_i unless
+/// `apart` is empty, per own fluid particle [N/m3]. f and `free` of all fluid, ghosts included; where `free` is
+/// zero nothing is shared.
 template <int D>
 void evenAlongSurface(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&, std::span<const Vec<D>> free,
-                      std::span<const Vec<D>> f, std::span<Vec<D>> y);
+                      std::span<const Vec<D>> f, std::span<Vec<D>> y, std::span<const Vec<D>> apart = {});
 template <int D>
 void evenAlongSurface(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&, std::span<const Vec<D>> free,
-                      std::span<const Vec<D>> f, std::span<Vec<D>> y);
+                      std::span<const Vec<D>> f, std::span<Vec<D>> y, std::span<const Vec<D>> apart = {});
 
 /// Sets y per wall particle of the list to the reaction, as `ofWalls` has it of all fluid, ghosts included, and
 /// adds it to `load` [N/m3].

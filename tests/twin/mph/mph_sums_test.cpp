@@ -252,9 +252,10 @@ void checkSurfaceTension(bool lists) {
   EXPECT_LE(difference<Vec<D>>(d.context, force, forceFound), operatorTolerance);
   EXPECT_LE(difference<Vec<D>>(d.context, apart, apartFound), operatorTolerance);
   EXPECT_LE(difference<Vec<D>>(d.context, ofWalls, ofWallsFound), operatorTolerance);
-  evenAlongSurface<D>(s.context, s.pairs(), terms, free, force, even);
+  evenAlongSurface<D>(s.context, s.pairs(), terms, free, force, even, apart);
   evenAlongSurface<D>(d.context, d.pairs, terms, copyToDevice<Vec<D>>(d.context, free),
-                      copyToDevice<Vec<D>>(d.context, force), evenFound.span());
+                      copyToDevice<Vec<D>>(d.context, force), evenFound.span(),
+                      copyToDevice<Vec<D>>(d.context, apart));
   EXPECT_LE(difference<Vec<D>>(d.context, even, evenFound), operatorTolerance);
   ClusterList<Cpu> wallList;  // those of a step do not reach as far
   buildClusterList<D>(s.context, s.pairs().grid, s.ranges(), s.pairs().position, n, n + walls,

@@ -197,13 +197,18 @@ void checkReaction() {
   EXPECT_LE(norm(total), operatorTolerance * sum);
 }
 
-/// Lines pull at single particles, and the forces of those stay theirs.
+/// Lines pull at single particles, and the forces of those stay theirs. Of the others the torque stays, too.
 template <int D>
 void checkNearWalls() {
   const EdgeOnFloor<D> s(60, 0.3);
+  const auto& x = s.neighbourhood.pairs().position;
   std::size_t near = 0, changed = 0;
+  double torque = 0, size = 0;
   for (std::size_t i = 0; i < s.force.size(); ++i) {
-    const bool same = norm(s.even[i] - s.force[i]) == 0;
+    const Vec<D> change = s.even[i] - s.force[i];
+    torque += x[i][0] * change[D - 1] - x[i][D - 1] * change[0];
+    size += norm(x[i]) * norm(change);
+    const bool same = norm(change) == 0;
     if (s.sums[i].walls > 0) {
       ++near;
       EXPECT_TRUE(same);
@@ -212,9 +217,10 @@ void checkNearWalls() {
   }
   EXPECT_GT(near, 0u);
   EXPECT_GT(changed, 0u);
+  EXPECT_LE(std::abs(torque), operatorTolerance * size);
 }
 
-TEST(SurfaceTension, ForcesNearWallsAreNotShared) {
+TEST(SurfaceTension, SharedForcesKeepTheirTorqueAndThoseNearWallsTheirPlace) {
   checkNearWalls<2>();
   checkNearWalls<3>();
 }
