@@ -1,7 +1,6 @@
 #include "run.hpp"
 
 #include "interrupt.hpp"
-#include "machine.hpp"
 #include "memory.hpp"
 #include "pinned_snapshot.hpp"
 #include "run_summary.hpp"

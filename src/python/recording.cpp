@@ -1,6 +1,5 @@
 #include "recording.hpp"
 
-#include "machine.hpp"
 #include "run_summary.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/core/peak_memory.hpp"
