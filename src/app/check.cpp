@@ -16,12 +16,16 @@
 #include "treacle/model/mesh.hpp"
 #include "treacle/model/names.hpp"
 #include "treacle/model/shape.hpp"
+#include "treacle/step/shareable.hpp"
 #include "treacle/step/solve_stages.hpp"
 
 #include <fmt/format.h>
 #include <omp.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <vector>
 
 namespace treacle {
 namespace {
@@ -43,6 +47,29 @@ void printMemory(const Case& c, const AnyParticles& particles, std::vector<std::
   requireMemory(c, device ? onDevice : onCpu, device ? &*device : nullptr);
 } catch (const RunError& error) {
   warnings.push_back(error.what());
+}
+
+/// What processes that share the case need: the fullest ones are counted, others have less. Errors: InputError for
+/// a case that they cannot share.
+void printSharedMemory(const Case& c, const AnyParticles& particles, int processes) {
+  requireShareable(c, BackendKind::Cpu);
+  const ParticleNumbers all = particles.numbers();
+  const std::vector<MemoryCounts> fullest = countForProcesses(c, particles, false, processes);
+  const auto largest = [&](auto&& memory) {
+    std::uint64_t most = 0;
+    for (const MemoryCounts& counts : fullest) most = std::max(most, memory(counts));
+    return most;
+  };
+  std::vector<std::uint64_t> each;
+  for (const MemoryCounts& counts : fullest) each.push_back(processMemory(c, counts, false, all));
+  each.resize(static_cast<std::size_t>(processes), *std::ranges::min_element(each));
+  const std::uint64_t gathered = gatheredMemory(c, all);
+  print("# memory of {} processes: up to {} each, the first one {} more; {} of one machine, {} available here\n",
+        processes, bytesText(*std::ranges::max_element(each)), bytesText(gathered),
+        bytesText(memoryOfHost(each, each.size(), gathered)), bytesText(availableMemory()));
+  print("# device memory of {} processes: up to {} each; beside it up to {} of the host\n", processes,
+        bytesText(largest([&](const MemoryCounts& n) { return estimatedDeviceMemory(c, n); })),
+        bytesText(largest([&](const MemoryCounts& n) { return processMemory(c, n, true, all); })));
 }
 
 void printParticles(const Case& c, ParticleNumbers particles, const std::vector<BodyCount>& ofBodies) {
@@ -124,7 +151,10 @@ void checkCommand(const CheckOptions& options) {
   if (c.output.surface && !hasFreeSurface()) warnings.push_back("output.surface: " + whyNoFreeSurface());
   printParticles(c, particles.numbers(), ofBodies);
   printMeshes(c);
-  printMemory(c, particles, warnings);
+  if (options.processes > 1)
+    printSharedMemory(c, particles, options.processes);
+  else
+    printMemory(c, particles, warnings);
   if (!options.estimate) printTime(c, particles.numbers());
   printNumbers(c);
   printAdvice(c);

@@ -11,9 +11,6 @@ namespace treacle {
 /// control group [B].
 std::uint64_t availableMemory();
 
-/// Largest resident size of this process so far [B].
-std::uint64_t peakMemory();
-
 /// Model name of the processor, "unknown processor" where the system does not tell.
 std::string processorName();
 

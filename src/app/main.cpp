@@ -155,6 +155,11 @@ void addCheck(CLI::App& app, CheckOptions& options) {
       app.add_subcommand("check", "Check a case; prints it with all keys, counts, stability and advice");
   addCase(*check, options.input);
   check->add_flag("--estimate", options.estimate, "Make some steps and tell how long all of them will take");
+  check
+      ->add_option("--processes", options.processes,
+                   "Tell the memory of each of so many processes that share the case")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1'000'000));
   addChoice<BackendChoice>(*check, "--backend", backendNames, options.backend,
                            "Of --estimate; auto: a GPU where there is one, else the CPU");
   check->add_option("--threads", options.threads, "Number of threads")->type_name("N")->check(threadNumber());

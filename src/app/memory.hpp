@@ -1,11 +1,13 @@
 #pragma once
 
+#include "treacle/core/communicator.hpp"
 #include "treacle/core/cuda.hpp"
 #include "treacle/core/device.hpp"
 #include "treacle/step/memory_plan.hpp"
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace treacle {
 
@@ -19,6 +21,10 @@ std::uint64_t leastMemory(const Case& c);
 /// What decides on the memory of a run with these particles. `onDevice`: the run computes on a GPU. Errors:
 /// RunError where there is less than leastMemory().
 MemoryCounts countsFor(const Case& c, const AnyParticles& particles, bool onDevice);
+/// The same for this one of several processes, each of which has a part of the particles. Collective; all throw.
+/// Errors: InputError also for more processes than search cells with fluid. A process that has no memory for it
+/// ends the job.
+MemoryCounts countsFor(const Case& c, const AnyParticles& part, bool onDevice, const Communicator& processes);
 
 /// Memory of the host that a run of the case will need at its peak [B]: the arrays of the simulation, the copies
 /// of its state that are written, and the program.
@@ -27,21 +33,28 @@ std::uint64_t estimatedMemory(const Case& c, const MemoryCounts& counts, bool on
 /// The same for the memory of the GPU.
 std::uint64_t estimatedDeviceMemory(const Case& c, const MemoryCounts& counts);
 
-/// How many processes share a run, how many of them this host has, and the particles of all of them.
+/// Memory of the host that one of several processes needs at its peak, `counts` being its own, without what the
+/// first one needs beside that. `all`: particles of all; each process looks at their places as it makes its part
+/// [B].
+std::uint64_t processMemory(const Case& c, const MemoryCounts& counts, bool onDevice, const ParticleNumbers& all);
+
+/// What the first of several processes needs beside that, for the copies of the whole state that it writes and its
+/// picture [B].
+std::uint64_t gatheredMemory(const Case& c, const ParticleNumbers& all);
+
+/// How many processes share a run, the particles of all of them, and what those need that share this host [B].
 struct Sharing {
-  std::uint64_t processes = 1, onHost = 1;
+  std::uint64_t processes = 1;
   ParticleNumbers all = {};
+  std::uint64_t hostMemory = 0;
 };
-/// What the host needs at least where they do: each process makes its part of the particles, to which it looks at
-/// the places of all; the first one writes checkpoints. `counts`: of one part. What processes hold of others'
-/// parts is not counted [B].
-std::uint64_t leastSharedMemory(const Case& c, const MemoryCounts& counts, bool onDevice, const Sharing& sharing);
+/// Of the `onHost` processes with the most of `each`, and the first one's `gathered` [B].
+std::uint64_t memoryOfHost(std::vector<std::uint64_t> each, std::uint64_t onHost, std::uint64_t gathered);
 
 /// `device`: what the run computes on, null for the CPU. Errors: RunError where the case clearly needs more memory
 /// than the host, or the device, has free.
-void requireMemory(const Case& c, const AnyParticles& particles, const DeviceInfo* device,
-                   const Sharing& sharing = {});
-/// The same where they are counted.
+void requireMemory(const Case& c, const AnyParticles& particles, const DeviceInfo* device);
+/// The same where they are counted, also for one of several processes.
 void requireMemory(const Case& c, const MemoryCounts& counts, const DeviceInfo* device,
                    const Sharing& sharing = {});
 

@@ -31,8 +31,8 @@ std::vector<Vec<3>> positionsOfOthers(const Particles<D>& p) {
 
 }  // namespace
 
-bool writesPieces(const Case& c, const ParticleNumbers& particles, const Communicator& processes) {
-  if (processes.size() == 1 || c.output.pieces == OutputPieces::One || c.output.surface) return false;
+bool writesPieces(const Case& c, const ParticleNumbers& particles, std::uint64_t processes) {
+  if (processes <= 1 || c.output.pieces == OutputPieces::One || c.output.surface) return false;
   return c.output.pieces == OutputPieces::Each || particles.fluid + particles.wall >= manyParticles;
 }
 

@@ -27,8 +27,8 @@ struct PiecedFrame {
   FrameCost cost;
 };
 
-/// Whether the processes of a run that has so many particles write a piece of each frame each.
-bool writesPieces(const Case& c, const ParticleNumbers& particles, const Communicator& processes);
+/// Whether so many processes of a run that has so many particles write a piece of each frame each.
+bool writesPieces(const Case& c, const ParticleNumbers& particles, std::uint64_t processes);
 
 /// What the first process of those that share a run asks of all, itself included.
 enum class PieceOrder : int { Take, Collect, Finish };

@@ -1,11 +1,11 @@
 #include "run.hpp"
 
 #include "interrupt.hpp"
-#include "machine.hpp"
 #include "memory.hpp"
 #include "pinned_snapshot.hpp"
 #include "run_summary.hpp"
 #include "treacle/core/error.hpp"
+#include "treacle/core/peak_memory.hpp"
 #include "treacle/io/atomic_file.hpp"
 #include "treacle/io/case_reader.hpp"
 #include "treacle/step/solve_stages.hpp"
@@ -32,7 +32,8 @@ Run::Run(const Case& c, StartState start, const ParticleNumbers& particles, Back
       timings_(options.timings),
       log_(directory_.log(), options.quiet),
       progress_(c, start_.step, start_.time, options.quiet) {
-  if (writesPieces(c, particles, processes)) pieces_.emplace(c, directory_, processes);
+  if (writesPieces(c, particles, static_cast<std::uint64_t>(processes.size())))
+    pieces_.emplace(c, directory_, processes);
 }
 
 void Run::execute(const std::vector<std::string>& warnings) {
@@ -168,8 +169,8 @@ void Run::finish() {
     recorder_->summarise(summary_);
     if (processes_.size() > 1)
       for (const AnySimulation::Share& s : simulation_->shares())
-        summary_.processes.push_back(
-            {s.fluidParticles, s.traffic.bytes, s.traffic.calls, s.traffic.seconds, s.waiting, s.peakBytes});
+        summary_.processes.push_back({s.fluidParticles, s.traffic.bytes, s.traffic.calls, s.traffic.seconds,
+                                      s.waiting, s.peakBytes, s.peakHostBytes});
     log_.info(
         fmt::format("watch, largest of all steps: energy {:.3g}, courant {:.3g}, inside_walls {:.3g}, density "
                     "{:.3g}",

@@ -14,6 +14,7 @@
 #include "treacle/io/shape_files.hpp"
 #include "treacle/model/case_error.hpp"
 #include "treacle/model/checks.hpp"
+#include "treacle/model/wall_sight.hpp"
 #include "treacle/step/shareable.hpp"
 
 #include <fmt/format.h>
@@ -52,11 +53,11 @@ void requireElsewhere(const std::filesystem::path& directory, const std::filesys
                                  checkpoint.string()));
 }
 
-/// Every host has about as many processes.
-Sharing sharingOf(const Communicator& processes) {
+/// Every host has about as many.
+std::uint64_t processesOnHost(const Communicator& processes) {
   const std::vector<int> local = processes.all(processes.localRank());
   const std::uint64_t size = local.size(), hosts = std::ranges::count(local, 0);
-  return {size, (size + hosts - 1) / hosts};
+  return (size + hosts - 1) / hosts;
 }
 
 ParticlePart partOf(const Communicator& processes) {
@@ -65,9 +66,35 @@ ParticlePart partOf(const Communicator& processes) {
 
 /// Each has a part of them.
 ParticleNumbers numbersOfAll(const Communicator& processes, const ParticleNumbers& own) {
-  std::array numbers{own.fluid, own.wall};
+  std::array numbers{own.fluid, own.wall, own.surfaces};
   processes.sum(std::span<std::uint64_t>(numbers));
-  return {numbers[0], numbers[1]};
+  ParticleNumbers all{numbers[0], numbers[1], 0, numbers[2]};
+  all.has = own.has;
+  return all;
+}
+
+/// What createParticles notes where one process makes all of them.
+void noteWalls(const Case& c, const AnyParticles& part, const Communicator& processes,
+               std::vector<std::string>& notes) {
+  if (c.method.kind != MethodKind::MphI || c.method.wallVelocity != WallVelocity::Extrapolated) return;
+  std::vector<WallSight> sight = part.visit([&]<int D>(const Particles<D>& p) {
+    return wallSight<D>(c, p.body.span().subspan(p.wallBegin()), p.wallSurface.span());
+  });
+  std::vector<std::uint64_t> counts;
+  for (const WallSight& s : sight) counts.insert(counts.end(), {s.particles, s.seeing});
+  processes.sum(std::span(counts));
+  for (std::size_t b = 0; b < sight.size(); ++b) sight[b] = {counts[2 * b], counts[2 * b + 1]};
+  noteBlindWalls(c, sight, notes);
+}
+
+/// Errors: those of requireMemory, at all processes.
+void requireMemoryOfAll(const Case& c, const AnyParticles& part, const DeviceInfo* device,
+                        const ParticleNumbers& all, const Communicator& processes) {
+  const MemoryCounts counts = countsFor(c, part, device != nullptr, processes);
+  const std::uint64_t own = processMemory(c, counts, device != nullptr, all);
+  const Sharing sharing{static_cast<std::uint64_t>(processes.size()), all,
+                        memoryOfHost(processes.all(own), processesOnHost(processes), gatheredMemory(c, all))};
+  together(processes, [&] { requireMemory(c, counts, device, sharing); });
 }
 
 /// Whether every process has a device: all compute on devices, or none.
@@ -80,7 +107,8 @@ bool allHaveOne(const Communicator& processes, bool has) {
 void follow(const Case& c, StartState start, const ParticleNumbers& particles, BackendKind backend,
             const std::filesystem::path& directory, const Communicator& processes) {
   std::optional<PieceWriter> pieces;
-  if (writesPieces(c, particles, processes)) pieces.emplace(c, RunDirectory::joined(directory), processes);
+  if (writesPieces(c, particles, static_cast<std::uint64_t>(processes.size())))
+    pieces.emplace(c, RunDirectory::joined(directory), processes);
   serveSimulation(c, std::move(start.particles), backend, start.step, start.time, processes,
                   [&](AnySimulation& s, int order, std::int64_t frame) {
                     pieces->answer(s, static_cast<PieceOrder>(order), static_cast<std::size_t>(frame));
@@ -95,7 +123,6 @@ void runCommand(const RunOptions& options, const Communicator& processes) {
   together(processes, [&] { device = deviceFor(options.backend, processes.localRank()); });
   if (!allHaveOne(processes, device.has_value())) device.reset();
   const BackendKind backend = device ? BackendKind::Cuda : BackendKind::Cpu;
-  Sharing sharing = sharingOf(processes);
   Case c;
   std::vector<std::string> warnings;
   MadeParticles made;
@@ -109,12 +136,14 @@ void runCommand(const RunOptions& options, const Communicator& processes) {
     for (std::string& warning : caseWarnings(c)) warnings.push_back(std::move(warning));
     releaseShapeFiles(c);
   });
-  sharing.all = numbersOfAll(processes, made.particles.numbers());
+  if (shared) noteWalls(c, made.particles, processes, warnings);
+  const ParticleNumbers all = numbersOfAll(processes, made.particles.numbers());
   StartState start{AnyParticles(2)};
   together(processes, [&] {
     start = options.resume.empty() ? StartState{std::move(made.particles)} : resumedState(c, options.resume, made);
-    requireMemory(c, start.particles, device ? &*device : nullptr, sharing);
+    if (!shared) requireMemory(c, start.particles, device ? &*device : nullptr);
   });
+  if (shared) requireMemoryOfAll(c, start.particles, device ? &*device : nullptr, all, processes);
   made = {};
   requireSame(processes, fmt::format("{}\n{} {}", caseText(c), start.step, start.time));
   catchInterrupts();
@@ -125,11 +154,11 @@ void runCommand(const RunOptions& options, const Communicator& processes) {
     requireElsewhere(directory, options.resume);
     files.emplace(RunDirectory::create(directory, options.force));
   });
-  if (processes.rank() > 0) return follow(c, std::move(start), sharing.all, backend, directory, processes);
+  if (processes.rank() > 0) return follow(c, std::move(start), all, backend, directory, processes);
   const Followers followers(processes);
   if (!device)
     for (std::string& warning : cpuWarnings(c)) warnings.push_back(std::move(warning));
-  Run run(c, std::move(start), sharing.all, backend, std::move(*files), options,
+  Run run(c, std::move(start), all, backend, std::move(*files), options,
           device ? deviceText(*device) : processorName(), processes);
   run.execute(warnings);
 }

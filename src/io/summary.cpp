@@ -30,6 +30,7 @@ Json sharesOf(const std::vector<ProcessShare>& processes) {
           {"exchanges", spread(processes, &ProcessShare::exchanges)},
           {"exchange_seconds", spread(processes, &ProcessShare::exchangeSeconds)},
           {"waiting_seconds", spread(processes, &ProcessShare::waitingSeconds)},
+          {"peak_memory", spread(processes, &ProcessShare::peakMemory)},
           {"peak_device_memory", spread(processes, &ProcessShare::peakDeviceMemory)}};
 }
 

@@ -4,6 +4,7 @@
 #include "face_corner.hpp"
 #include "solid.hpp"
 #include "treacle/model/particles.hpp"
+#include "treacle/model/wall_sight.hpp"
 #include "wall_part.hpp"
 
 #include <fmt/format.h>
@@ -236,25 +237,7 @@ std::vector<WallSurface<D>> createWallSurfaces(const Case& c, std::span<const Ve
   for (std::size_t k = 0; k < position.size(); ++k)
     surfaces[k] = finders[static_cast<std::size_t>(omp_get_thread_num())].at(position[k], body[k]);
 
-  std::vector<std::size_t> particles(c.bodies.size()), seeing(c.bodies.size());
-  for (std::size_t k = 0; k < position.size(); ++k) {
-    ++particles[body[k]];
-    if (surfaces[k] != WallSurface<D>{}) ++seeing[body[k]];
-  }
-  for (std::size_t b = 0; b < c.bodies.size(); ++b) {
-    const Body& wall = c.bodies[b];
-    if (!wall.isWall() || particles[b] == 0 || seeing[b] > 0) continue;
-    notes.push_back(
-        wall.shape.kind == ShapeKind::Particles
-            ? fmt::format(
-                  "wall '{}' is made of the particles of a file, whose surface is not known: fluid next to it "
-                  "meets the velocity of each particle, and slips",
-                  wall.name)
-            : fmt::format(
-                  "wall '{}': none of its {} particles has a surface of the walls within the viscosity radius "
-                  "h_v = {}; no fluid can be next to it",
-                  wall.name, particles[b], lengthText(c.viscosityRadius())));
-  }
+  noteBlindWalls(c, wallSight<D>(c, body, surfaces), notes);
   return surfaces;
 }
 

@@ -1,8 +1,8 @@
 #include "recording.hpp"
 
-#include "machine.hpp"
 #include "run_summary.hpp"
 #include "treacle/core/error.hpp"
+#include "treacle/core/peak_memory.hpp"
 #include "treacle/io/atomic_file.hpp"
 #include "treacle/io/case_reader.hpp"
 #include "treacle/io/free_surface.hpp"

@@ -3,10 +3,20 @@
 #include "sort_groups.hpp"
 
 #include <algorithm>
-#include <string>
+#include <bit>
 #include <vector>
 
 namespace treacle {
+namespace {
+
+/// Grows by one where so much fluid has come in that it may fill other cells: a seventh to a quarter of what there
+/// was.
+int sizeClass(std::uint64_t fluid) {
+  const int octave = std::bit_width(fluid);
+  return octave < 3 ? 4 * octave : 4 * octave + static_cast<int>(fluid >> (octave - 3) & 3);
+}
+
+}  // namespace
 
 template <int D, class Backend>
 void ProcessParts<D, Backend>::assignFirst(const Communicator& job, const CellGrid<D>& grid,
@@ -14,11 +24,6 @@ void ProcessParts<D, Backend>::assignFirst(const Communicator& job, const CellGr
   std::vector<std::uint32_t> work(grid.cellCount());
   addWork<D>(grid, fluid, fluidWork, work);
   job.sum(std::span(work));
-  const auto filled = std::ranges::count_if(work, [](std::uint32_t w) { return w > 0; });
-  if (job.size() > filled)
-    throw InputError(std::to_string(job.size()) + " processes, but the fluid fills only " +
-                     std::to_string(filled) +
-                     " cells of the search, the parts that it can be divided into; start fewer processes");
   std::vector<std::uint8_t> active(grid.cellCount());
   for (std::size_t cell = 0; cell < work.size(); ++cell)
     if (work[cell] > 0)
@@ -30,12 +35,15 @@ void ProcessParts<D, Backend>::assignFirst(const Communicator& job, const CellGr
 
 template <int D, class Backend>
 bool ProcessParts<D, Backend>::isUneven(const Communicator& job, std::uint32_t fluid) const {
-  const std::vector<std::uint64_t> all =
-      job.all(std::uint64_t{fluidWork} * fluid + std::uint64_t{wallWork} * halo_.ownWalls);
-  std::uint64_t most = 0, total = 0;
-  for (std::uint64_t own : all) most = std::max(most, own), total += own;
+  struct Owned {
+    std::uint64_t fluid, work;
+  };
+  const Owned own{fluid, std::uint64_t{fluidWork} * fluid + std::uint64_t{wallWork} * halo_.ownWalls};
+  std::uint64_t most = 0, total = 0, fluidOfAll = 0;
+  for (const Owned& o : job.all(own)) most = std::max(most, o.work), total += o.work, fluidOfAll += o.fluid;
   const double imbalance = total > 0 ? static_cast<double>(most) * job.size() / static_cast<double>(total) : 1;
-  return imbalance > std::max(mostImbalance, 1.05 * owners_.imbalance());
+  if (imbalance <= mostImbalance) return false;
+  return imbalance > 1.05 * owners_.imbalance() || sizeClass(fluidOfAll) > sizeClass(halo_.fluidOfAll);
 }
 
 template <int D, class Backend>

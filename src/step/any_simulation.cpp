@@ -2,6 +2,7 @@
 
 #include "treacle/core/cuda.hpp"
 #include "treacle/core/error.hpp"
+#include "treacle/core/peak_memory.hpp"
 #include "treacle/model/checks.hpp"
 #include "treacle/step/shareable.hpp"
 
@@ -163,6 +164,7 @@ std::vector<AnySimulation::Share> AnySimulation::shares() const {
   own.traffic.bytes += link.bytes, own.traffic.calls += link.calls, own.traffic.seconds += link.seconds;
   own.waiting = link.waiting;
   own.peakBytes = peakBytes();
+  own.peakHostBytes = peakMemory();
   return processes_->all(own);
 }
 

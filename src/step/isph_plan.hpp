@@ -11,7 +11,7 @@ namespace treacle {
 /// IsphSystem, its matrix and preconditioner in T, and the vectors of its solves.
 template <int D, class T>
 void planIsphSystem(const Case& c, const MemoryCounts& n, BackendKind backend, MemorySum& sum) {
-  const std::uint64_t fluid = n.particles.fluid, entries = n.fluidOfFluid;
+  const std::uint64_t fluid = n.particles.fluid, held = n.heldFluid(), entries = n.fluidOfFluid;
   const bool packed =
       backend == BackendKind::Cuda && std::is_same_v<T, float> && fluid >= PackedEntries<Cuda>::fewest;
   if (packed) {
@@ -30,16 +30,16 @@ void planIsphSystem(const Case& c, const MemoryCounts& n, BackendKind backend, M
   planSolve(c, fluid, sum);
   if (c.solver.preconditioner == PreconditionerKind::HatMultigrid) {
     constexpr std::uint64_t corners = 1 << D;
-    sum.keep<T>(2 * fluid);
-    sum.keep<Vec<D, T>>(fluid);  // places in their cells, and on a CPU the corners of these
-    if (backend == BackendKind::Cpu) sum.keep<std::uint32_t>(corners * fluid);
+    sum.keep<T>(fluid + held);
+    sum.keep<Vec<D, T>>(held);  // places in their cells, and on a CPU the corners of these
+    if (backend == BackendKind::Cpu) sum.keep<std::uint32_t>(corners * held);
     if (backend == BackendKind::Cuda) {
       sum.use<T>(StepPart::Pressures, corners * corners * n.fluidGrids.front().nodes);
       sum.keep<T>(HatTransfer<D, T, Cuda>::sumsPerNode * n.fluidGrids.front().nodes);
     }
-    planGrids<T, 1>(n.fluidGrids, backend, sum);
+    planGrids<D, T, 1>(n.fluidGrids, backend, sum);
   } else if (c.solver.preconditioner == PreconditionerKind::CellMultigrid) {
-    planBucketLevels(n, sum);
+    planBucketLevels<1>(n, sum);
     sum.keepRows<double>(fluid, entries);
     sum.keep<T>(fluid);
     const int levels = c.solver.cells.levels;
@@ -51,16 +51,17 @@ void planIsphSystem(const Case& c, const MemoryCounts& n, BackendKind backend, M
 /// A step of ISPH.
 template <int D, class T>
 void planIsph(const Case& c, const MemoryCounts& n, BackendKind backend, MemorySum& sum) {
-  const std::uint64_t fluid = n.particles.fluid, walls = n.active - fluid;
+  const std::uint64_t fluid = n.particles.fluid, held = n.heldFluid(), walls = n.activeWalls(),
+                      ownWalls = walls - n.sharing.ghostWalls;
   for (const auto& [rows, entries] :
-       {std::pair{fluid, n.fluidOfFluid}, std::pair{fluid, n.wallsOfFluid}, std::pair{walls, n.fluidOfWalls}}) {
+       {std::pair{fluid, n.fluidOfFluid}, std::pair{fluid, n.wallsOfFluid}, std::pair{ownWalls, n.fluidOfWalls}}) {
     sum.keep<std::uint64_t>(2 * rows + 1);
     sum.keep<std::uint32_t>(entries);
   }
   if (backend == BackendKind::Cuda) sum.borrow<float>(StepPart::Matrix, 4 * n.active);  // while rows are found
   sum.keep<Vec<D>>(fluid + n.active);                                                   // deficit, v*
-  sum.keep<std::uint8_t>(fluid);
-  sum.keep<double>(3 * fluid);
+  sum.keep<std::uint8_t>(held);
+  sum.keep<double>(2 * fluid + held);
   if (c.method.isph.shifting != 0) sum.keep<Vec<D>>(fluid);
   if (c.hasLoads() || c.hasRigid()) sum.keep<Vec<D>>(fluid + walls);
   if (c.hasRigid()) sum.keep<double>(fluid), sum.keep<WallSurface<D>>(walls);

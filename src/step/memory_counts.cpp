@@ -1,14 +1,13 @@
 #include "treacle/step/memory_counts.hpp"
 
-#include "moving_bodies.hpp"
+#include "grid_counts.hpp"
+#include "starting_part.hpp"
 #include "treacle/isph/isph_pairs.hpp"
 #include "treacle/mph/mph_assembly.hpp"
 #include "treacle/mph/mph_neighbours.hpp"
 #include "treacle/mph/near_products.hpp"
-#include "treacle/precondition/hat_grid.hpp"
-#include "treacle/search/buckets.hpp"
 #include "treacle/search/neighbour_rows.hpp"
-#include "treacle/step/near_blocks.hpp"
+#include "treacle/search/shared_buckets.hpp"
 
 #include <algorithm>
 
@@ -36,36 +35,31 @@ std::uint64_t scaled(std::uint64_t count, double by) {
   return static_cast<std::uint64_t>(static_cast<double>(count) * by);
 }
 
-/// Sorted particles of a case, and what is counted around them.
+/// What is counted around the particles of a step.
 template <int D>
 class Counter {
  public:
-  Counter(const Case& c, const CellGrid<D>& grid, const Particles<D>& particles)
-      : particles_(startingParticles(c, grid, particles)) {
-    sortByCell(context_, grid, particles_, ranges_, workspace_);
-    counts_.particles = particles.numbers();
-    counts_.nearWalls = particles_.wallCount();
-    counts_.active = ranges_.activeCount;
+  Counter(const CellGrid<D>& grid, StartingPart<D>& part) : part_(part), context_(part.context()) {
+    part.count(counts_);
     counts_.cells = grid.cellCount();
-    counts_.wallsMove = someWallMoves(c, particles_);
   }
 
   MemoryCounts mph(const Case& c, bool wholeRows) {
     MphPairs<D> pairs = makeMphPairs<D>(c);
-    describe(pairs);
+    part_.place(pairs);
     const double hp = pairs.terms.pressureRadius, hn = pairs.terms.densityRadius, hv = pairs.terms.viscosityRadius;
     const double far = std::max({hv, hn, wholeRows ? 2 * hp : hp});
-    const std::uint32_t fluid = pairs.fluidCount, active = pairs.activeCount;
+    const std::uint32_t fluid = pairs.fluidCount, ownFluid = pairs.ownFluid(), ownEnd = pairs.ownEnd();
     Sliced slicedFluid, slicedWalls;
     std::uint64_t gradients = 0, gradientsOfWalls = 0, rows = 0;
     const double ofFluid =
-        countLists(pairs, 0, fluid, {hp, far}, counts_.fluidLists, [&](const ClusterList<>& list) {
+        countLists(pairs, 0, ownFluid, {hp, far}, counts_.fluidLists, [&](const ClusterList<>& list) {
           pairs.fluidList = list.view();
           slicedFluid.add(pairs, list.first, list.last);
           if (wholeRows) gradients += nearEntries(pairs, list.first, list.last);
           if (wholeRows) rows += coupledEntries(pairs, list.first, list.last);
         });
-    const double ofWalls = countLists(pairs, fluid, active, {hp, hn > hp ? hn : 0}, counts_.wallLists,
+    const double ofWalls = countLists(pairs, fluid, ownEnd, {hp, hn > hp ? hn : 0}, counts_.wallLists,
                                       [&](const ClusterList<>& list) {
                                         pairs.wallList = list.view();
                                         slicedWalls.add(pairs, list.first, list.last);
@@ -73,20 +67,21 @@ class Counter {
                                           gradientsOfWalls += nearEntries(pairs, list.first, list.last);
                                       });
     if (c.needsBalance())
-      countLists(pairs, fluid, active, {std::max(hn, hv), 0}, counts_.balanceLists, [](const ClusterList<>&) {});
+      countLists(pairs, fluid, ownEnd, {std::max(hn, hv), 0}, counts_.balanceLists, [](const ClusterList<>&) {});
     counts_.nearEntries = scaled(slicedFluid.near, ofFluid) + scaled(slicedWalls.near, ofWalls);
     counts_.stagedEntries = scaled(slicedFluid.staged, ofFluid) + scaled(slicedWalls.staged, ofWalls);
     counts_.gradientEntries = scaled(gradients, ofFluid) + scaled(gradientsOfWalls, ofWalls);
     counts_.rowEntries = scaled(rows, ofFluid);
-    counts_.pressureGrids = grids(pairs, HatsOn::Active, hatReach, 1);
-    counts_.fluidGrids = grids(pairs, HatsOn::Fluid, 1, D);
-    countBuckets(pairs.grid);
+    const GridCounts<D> grids(c, pairs, part_);
+    counts_.pressureGrids = grids.levels(HatsOn::Active, hatReach, 1);
+    counts_.fluidGrids = grids.levels(HatsOn::Fluid, 1, D);
+    countBuckets(pairs);
     return counts_;
   }
 
   MemoryCounts isph(const Case& c) {
     IsphPairs<D> pairs = makeIsphPairs<D>(c);
-    describe(pairs);
+    part_.place(pairs);
     const RowRadii radii{pairs.kernel.radius(), pairs.kernel.radius()};
     const auto count = [&](RowKind kind) {
       const RowSearch search = RowSearch::make<D>(kind, pairs);
@@ -100,27 +95,12 @@ class Counter {
     counts_.fluidOfFluid = count(RowKind::FluidOfFluid);
     counts_.wallsOfFluid = count(RowKind::WallsOfFluid);
     counts_.fluidOfWalls = count(RowKind::FluidOfWalls);
-    counts_.fluidGrids = grids(pairs, HatsOn::Fluid, 1, 1);
-    countBuckets(pairs.grid);
+    counts_.fluidGrids = GridCounts<D>(c, pairs, part_).levels(HatsOn::Fluid, 1, 1);
+    countBuckets(pairs);
     return counts_;
   }
 
  private:
-  static Particles<D> startingParticles(const Case& c, const CellGrid<D>& grid, const Particles<D>& all) {
-    NearBlocks<D> near(c, grid);
-    near.add(all);
-    return nearParticles(near, all);
-  }
-
-  template <class Pairs>
-  void describe(Pairs& pairs) {
-    pairs.fluidCount = particles_.fluidCount;
-    pairs.activeCount = ranges_.activeCount;
-    pairs.position = particles_.position;
-    pairs.material = particles_.material;
-    pairs.cells = viewOf(ranges_);
-  }
-
   /// Of particles [first, last); `counted` gets the list of each window. Returns by what its counts are to be
   /// multiplied.
   template <class F>
@@ -128,10 +108,10 @@ class Counter {
                     MemoryCounts::Lists& lists, F&& counted) {
     lists.clusters = (last - first + clusterSize - 1) / clusterSize;
     std::array<std::uint64_t, listSegments> entries{};
-    const bool walls = first >= particles_.fluidCount;
+    const bool walls = first >= pairs.fluidCount;
     const double by = forEachWindow(first, last, [&](std::uint32_t begin, std::uint32_t end) {
       ClusterList<> list;
-      buildClusterList<D>(context_, pairs.grid, ranges_, pairs.position, begin, end, radii, walls, list);
+      buildClusterList<D>(context_, pairs.grid, part_.ranges(), pairs.position, begin, end, radii, walls, list);
       for (std::uint32_t c = 0; c < list.clusterCount(); ++c)
         for (int s = 0; s < listSegments; ++s) entries[s] += list.segment(c, static_cast<ListSegment>(s)).size();
       counted(list);
@@ -178,65 +158,90 @@ class Counter {
     return entries;
   }
 
-  /// Those of HatMultigrid, down to the smallest level that a backend may take; `numbers` per node.
-  std::vector<MemoryCounts::Grid> grids(const SortedParticles<D>& particles, HatsOn what, int reach, int numbers) {
-    SortedParticles<D> on = particles;
-    HatNodes<D> nodes;
-    findHatNodes(context_, on, what, nodes);
-    std::vector<MemoryCounts::Grid> levels;
-    while (true) {
-      BlockCsr<1> a;
-      hatPattern(context_, nodes, a, reach);
-      levels.push_back({nodes.count(), nodes.nodeAt.size(), a.column.size()});
-      if (static_cast<std::uint32_t>(numbers) * nodes.count() <= leastUnknowns) return levels;
-      HatNodes<D> coarse;
-      coarserNodes<D>(context_, nodes, coarse);
-      // As HatMultigrid does.
-      if (static_cast<std::uint32_t>(numbers) * coarse.count() > leastUnknowns &&
-          coarse.count() > 0.9 * nodes.count())
-        return levels;
-      nodes = std::move(coarse);
-    }
-  }
-  static constexpr std::uint32_t leastUnknowns = 200;
-
-  void countBuckets(const CellGrid<D>& grid) {
+  void countBuckets(const SortedParticles<D>& particles) {
+    constexpr int cellShift = D * CellGrid<D>::subBits;
+    const CellRanges<>& all = part_.rangesOfAll();
     BucketLevels<> levels;
-    findBuckets(context_, ranges_.key, D * CellGrid<D>::subBits, D, levels);
-    for (std::size_t l = 0; l < levels.begin.size(); ++l) counts_.buckets.push_back(levels.count(l));
-    const auto occupied = [&](std::size_t c) { return ranges_.fluidEnd[c] > ranges_.fluidBegin[c]; };
-    for (std::size_t c = 0; c < grid.cellCount(); ++c)
-      if (occupied(c))
-        forEachAdjacentCell(grid, grid.cellAt(c), [&](const Vec<D, int>& cell) {
-          counts_.bucketEntries += occupied(grid.linear(cell));
-        });
+    SharedBuckets<> shared;
+    if (context_.communicator)
+      findSharedBuckets(context_, particles, part_.ranges().key, shared);
+    else
+      findBuckets(context_, all.key, cellShift, D, levels);
+    const BucketLevels<>& ofAll = context_.communicator ? shared.all : levels;
+    for (std::size_t l = 0; l < ofAll.begin.size(); ++l) counts_.buckets.push_back(ofAll.count(l));
+    std::vector<std::uint8_t> occupied = occupiedCells(all);
+    if (context_.communicator) context_.communicator->anyOf(occupied);
+    counts_.bucketEntries = adjacentPairs(particles.grid, occupied);
+    if (!counts_.isShared()) return;
+    const std::vector<std::uint8_t> held = occupiedCells(part_.ranges());
+    counts_.sharing.buckets = static_cast<std::uint64_t>(std::ranges::count(held, 1));
+    counts_.sharing.bucketEntries = adjacentPairs(particles.grid, held);
   }
 
-  Context<Cpu> context_;
-  Particles<D> particles_;
-  CellRanges<> ranges_;
-  SortWorkspace<> workspace_;
+  /// Per cell: whether it has fluid.
+  static std::vector<std::uint8_t> occupiedCells(const CellRanges<>& ranges) {
+    std::vector<std::uint8_t> occupied(ranges.fluidEnd.size());
+    for (std::size_t c = 0; c < occupied.size(); ++c) occupied[c] = ranges.fluidEnd[c] > ranges.fluidBegin[c];
+    return occupied;
+  }
+  static std::uint64_t adjacentPairs(const CellGrid<D>& grid, const std::vector<std::uint8_t>& occupied) {
+    std::uint64_t pairs = 0;
+    for (std::size_t c = 0; c < occupied.size(); ++c)
+      if (occupied[c])
+        forEachAdjacentCell(grid, grid.cellAt(c),
+                            [&](const Vec<D, int>& cell) { pairs += occupied[grid.linear(cell)]; });
+    return pairs;
+  }
+
+  StartingPart<D>& part_;
+  Context<Cpu>& context_;
   MemoryCounts counts_;
 };
 
 template <int D>
-MemoryCounts countParticles(const Case& c, const Particles<D>& particles, bool wholeRows) {
-  if (c.method.kind == MethodKind::Isph) return Counter<D>(c, makeIsphPairs<D>(c).grid, particles).isph(c);
-  return Counter<D>(c, makeMphPairs<D>(c).grid, particles).mph(c, wholeRows);
+CellGrid<D> gridOf(const Case& c) {
+  return c.method.kind == MethodKind::Isph ? makeIsphPairs<D>(c).grid : makeMphPairs<D>(c).grid;
+}
+
+template <int D>
+MemoryCounts countPart(const Case& c, const CellGrid<D>& grid, StartingPart<D>&& part, bool wholeRows) {
+  Counter<D> counter(grid, part);
+  return c.method.kind == MethodKind::Isph ? counter.isph(c) : counter.mph(c, wholeRows);
 }
 
 }  // namespace
 
 std::uint64_t searchCells(const Case& c) {
-  const auto cells = [&]<int D>(std::integral_constant<int, D>) {
-    return c.method.kind == MethodKind::Isph ? makeIsphPairs<D>(c).grid.cellCount()
-                                             : makeMphPairs<D>(c).grid.cellCount();
-  };
-  return c.dimensions == 2 ? cells(std::integral_constant<int, 2>{}) : cells(std::integral_constant<int, 3>{});
+  return c.dimensions == 2 ? gridOf<2>(c).cellCount() : gridOf<3>(c).cellCount();
 }
 
 MemoryCounts countForMemory(const Case& c, const AnyParticles& particles, bool wholeRows) {
-  return particles.visit([&](const auto& p) { return countParticles(c, p, wholeRows); });
+  return particles.visit([&]<int D>(const Particles<D>& all) {
+    const CellGrid<D> grid = gridOf<D>(c);
+    return countPart<D>(c, grid, StartingPart<D>(c, grid, all), wholeRows);
+  });
+}
+
+MemoryCounts countForMemory(const Case& c, const AnyParticles& part, bool wholeRows,
+                            const Communicator& processes) {
+  if (processes.size() == 1) return countForMemory(c, part, wholeRows);
+  return part.visit([&]<int D>(const Particles<D>& some) {
+    const CellGrid<D> grid = gridOf<D>(c);
+    return countPart<D>(c, grid, StartingPart<D>(c, grid, some, processes), wholeRows);
+  });
+}
+
+std::vector<MemoryCounts> countForProcesses(const Case& c, const AnyParticles& particles, bool wholeRows,
+                                            int processes, std::size_t most) {
+  return particles.visit([&]<int D>(const Particles<D>& all) {
+    const CellGrid<D> grid = gridOf<D>(c);
+    const StartingPart<D> whole(c, grid, all);
+    const StartingWork<D> work(c, grid, whole.ranges(), processes);
+    std::vector<MemoryCounts> counts;
+    for (const int rank : work.fullest(grid, whole.ranges(), most))
+      counts.push_back(countPart<D>(c, grid, StartingPart<D>(whole, grid, work, rank), wholeRows));
+    return counts;
+  });
 }
 
 }  // namespace treacle

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "treacle/core/buffer.hpp"
+#include "treacle/core/symmetric_block.hpp"
 #include "treacle/linear/block_csr.hpp"
 #include "treacle/linear/deflation_scalars.hpp"
 #include "treacle/model/case.hpp"
@@ -63,7 +64,7 @@ std::uint64_t fieldBytes(const ParticleNumbers& n) {
     return [&sum, count]<class T>(const Buffer<T>&) { sum += count * sizeof(T); };
   };
   const Particles<D> none;
-  forEachSharedFieldOf(add(n.fluid + n.wall), none);
+  forEachSharedFieldOf(add(n.fluid + n.ghosts + n.wall), none);
   forEachFluidFieldOf(add(n.fluid), none);
   add(n.has.shearRates ? n.fluid : 0)(none.shearRate);
   add(n.has.temperatures ? n.fluid : 0)(none.temperature);
@@ -87,10 +88,27 @@ std::uint64_t distantBytes(const MemoryCounts& n) {
   return (n.particles.wall - n.nearWalls) * (each + (n.particles.surfaces > 0 ? sizeof(WallSurface<D>) : 0));
 }
 
+/// Decomposition, and what is exchanged. Where processes share a GPU's step owners are on either side.
+template <int D>
+void planParts(const Case& c, const MemoryCounts& n, BackendKind backend, MemorySum& sum) {
+  const std::uint64_t sent = n.sharing.sentFluid + n.sharing.sentWalls;
+  sum.keep<std::int32_t>(n.cells);
+  sum.keep<std::uint8_t>(2 * n.cells);                                // places, cells with fluid
+  if (backend == BackendKind::Cpu) sum.keep<std::uint32_t>(n.cells);  // their order
+  sum.keep<std::uint32_t>(sent);
+  // The largest value that goes to ghosts.
+  const bool renormalised =
+      c.method.kind == MethodKind::MphI && c.method.pressureGradient != PressureGradient::Plain;
+  sum.keep<std::byte>(sent * (renormalised ? sizeof(SymmetricBlock<D>) : sizeof(Vec<D>)));
+  // A vector of the solve with its ghosts (withGhosts).
+  sum.keep<std::byte>(n.heldFluid() * (c.method.kind == MethodKind::Isph ? sizeof(double) : sizeof(Vec<D>)));
+  if (c.heat) sum.keep<double>(n.heldFluid());
+}
+
 /// The state, what a step makes of it, and its sort.
 template <int D>
 void planState(const Case& c, const MemoryCounts& n, BackendKind backend, MemorySum& sum) {
-  const std::uint64_t fluid = n.particles.fluid, wall = n.nearWalls, all = fluid + wall;
+  const std::uint64_t fluid = n.particles.fluid, wall = n.nearWalls, all = n.heldFluid() + wall;
   ParticleNumbers numbers = n.particles;
   numbers.wall = wall;
   if (numbers.surfaces > 0) numbers.surfaces = wall;
@@ -103,10 +121,11 @@ void planState(const Case& c, const MemoryCounts& n, BackendKind backend, Memory
   sum.keep<std::uint32_t>(4 * n.cells);  // ranges
   sum.keep<std::uint8_t>(n.cells);
   sum.keep<std::uint64_t>(fluid);
+  if (n.isShared()) planParts<D>(c, n, backend, sum);
   if (backend == BackendKind::Cpu) {
     sum.keep<std::byte>(distantBytes<D>(n));
     sum.use<SortWorkspace<>::KeyedIndex>(StepPart::Sort, all);
-    sum.use<Vec<D>>(StepPart::Sort, fluid);
+    sum.use<Vec<D>>(StepPart::Sort, n.isShared() ? std::max(fluid, wall) : fluid);  // walls change hands
     return;
   }
   sum.use<std::uint64_t>(StepPart::Sort, all);
@@ -126,15 +145,20 @@ inline void planSolve(const Case& c, std::uint64_t unknowns, MemorySum& sum) {
 }
 
 /// HatMultigrid with B unknowns per node on these grids, the finest matrix and nodes included.
-template <class T, int B>
+template <int D, class T, int B>
 void planGrids(const std::vector<MemoryCounts::Grid>& grids, BackendKind backend, MemorySum& sum) {
   const std::uint64_t most = backend == BackendKind::Cpu ? 200 : 1100;  // that are inverted
   for (const MemoryCounts::Grid& g : grids) {
     const std::uint64_t unknowns = B * g.nodes;
     sum.keep<std::uint32_t>(g.points + g.nodes);
+    if (g.divided) {  // owners, which points are nodes; about as many nodes are others' ghosts as are ghosts here
+      sum.keep<std::int32_t>(g.points + g.ghosts);
+      sum.keep<std::uint8_t>(g.points);
+      sum.keep<double>(D * g.ghosts);
+    }
     sum.keepRows<Block<B>>(g.nodes, g.entries);
     sum.keep<T>(2 * unknowns);
-    if (unknowns <= most) {
+    if (!g.divided && unknowns <= most) {
       sum.keep<T>(unknowns * unknowns);
       // A device inverts in panels of 32, with one row and one column of them beside the matrix.
       const std::uint64_t stride = (unknowns + 31) / 32 * 32;

@@ -24,8 +24,9 @@ inline std::uint64_t entriesIn(const MemoryCounts::Lists& lists, std::initialize
 
 /// StepHeat.
 template <int D>
-void planHeat(const Case& c, std::uint64_t fluid, MemorySum& sum) {
-  sum.keep<double>((c.heat->viscousHeating ? 11 : 10) * fluid);
+void planHeat(const Case& c, const MemoryCounts& n, MemorySum& sum) {
+  const std::uint64_t fluid = n.particles.fluid;
+  sum.keep<double>((c.heat->viscousHeating ? 10 : 9) * fluid + n.heldFluid());
   sum.keep<HeatExchange>(fluid);
   for (int k = 0; k < 4; ++k) sum.use<double>(StepPart::Solve, fluid);  // conjugate gradients
   if (!hasSurfaceHeat(c)) return;
@@ -37,27 +38,27 @@ void planHeat(const Case& c, std::uint64_t fluid, MemorySum& sum) {
 /// What MphStep has besides lists and solver.
 template <int D>
 void planFields(const Case& c, const MemoryCounts& n, bool withGradient, MemorySum& sum) {
-  const std::uint64_t fluid = n.particles.fluid, walls = n.active - fluid;
+  const std::uint64_t fluid = n.particles.fluid, held = n.heldFluid(), walls = n.activeWalls();
   if (n.particles.surfaces > 0) sum.keep<WallSurface<D>>(walls);
-  if (c.method.pressureGradient != PressureGradient::Plain) sum.keep<SymmetricBlock<D>>(fluid);
+  if (c.method.pressureGradient != PressureGradient::Plain) sum.keep<SymmetricBlock<D>>(held);
   if (c.hasOwnViscosities()) {
-    sum.keep<double>(5 * fluid);
+    sum.keep<double>(3 * held + 2 * fluid);
     sum.keep<std::uint8_t>(n.active);
     sum.keep<Vec<D>>(n.active);
   } else if (c.method.viscosityCorrection != 0) {
-    sum.keep<double>(fluid);
+    sum.keep<double>(held);
   }
-  if (c.hasSurfaceTension()) sum.keep<SurfaceSums<D>>(fluid), sum.keep<Vec<D>>(5 * fluid);
+  if (c.hasSurfaceTension()) sum.keep<SurfaceSums<D>>(fluid), sum.keep<Vec<D>>(5 * held);
   sum.keep<Block<D>>(fluid);
   if (withGradient) sum.keep<Vec<D>>(fluid);
   sum.keep<double>(fluid + 2 * n.active);
   sum.keep<Vec<D>>(fluid);
-  if (c.heat) planHeat<D>(c, fluid, sum);
+  if (c.heat) planHeat<D>(c, n, sum);
   if (!c.needsBalance()) return;
   planLists(n.balanceLists, sum);
   sum.keep<double>(fluid * (c.repulsionRadius() > 0 ? 2 : 1) + 2 * walls);
   sum.keep<Vec<D>>(walls);
-  if (c.hasSurfaceTension()) sum.keep<Vec<D>>(n.active + fluid);
+  if (c.hasSurfaceTension()) sum.keep<Vec<D>>(n.active + held);
 }
 
 /// MphOperator, matrix-free.
@@ -103,7 +104,7 @@ inline void planPacked(std::uint64_t clusters, std::uint64_t entries, MemorySum&
 template <int D, class T>
 void planProducts(const Case& c, const MemoryCounts& n, BackendKind backend, bool renormalised, MemorySum& sum) {
   using enum ListSegment;
-  const std::uint64_t fluid = n.particles.fluid;
+  const std::uint64_t fluid = n.heldFluid();
   const bool stiff = isTooStiffToPack(makeMphPairs<D>(c));
   sum.keep<Block<D, T>>(fluid);
   if (backend == BackendKind::Cuda) {
@@ -135,7 +136,7 @@ void planProducts(const Case& c, const MemoryCounts& n, BackendKind backend, boo
 /// ProjectedMultigrid.
 template <int D, class T>
 void planProjected(const Case& c, const MemoryCounts& n, BackendKind backend, bool renormalised, MemorySum& sum) {
-  const std::uint64_t fluid = n.particles.fluid, nodes = n.pressureGrids.front().nodes;
+  const std::uint64_t fluid = n.heldFluid(), nodes = n.pressureGrids.front().nodes;
   planProducts<D, T>(c, n, backend, renormalised, sum);
   if (c.hasSeveralFluids()) {
     sum.keep<double>(fluid);
@@ -155,8 +156,8 @@ void planProjected(const Case& c, const MemoryCounts& n, BackendKind backend, bo
   }
   sum.use<ViscousMoments<D, T>>(StepPart::Velocities, fluid);
   for (int k = 0; k < 3; ++k) sum.use<T>(StepPart::Estimate, n.active);
-  planGrids<T, 1>(n.pressureGrids, backend, sum);
-  planGrids<T, D>(n.fluidGrids, backend, sum);
+  planGrids<D, T, 1>(n.pressureGrids, backend, sum);
+  planGrids<D, T, D>(n.fluidGrids, backend, sum);
 }
 
 /// BucketMultigrid of B unknowns per bucket, on a matrix of n.bucketEntries blocks that is there in double
@@ -183,9 +184,13 @@ void planBuckets(const MemoryCounts& n, std::size_t levels, BackendKind backend,
   }
 }
 
-inline void planBucketLevels(const MemoryCounts& n, MemorySum& sum) {
+/// Those of all processes, of which a process has made a part.
+template <int B>
+void planBucketLevels(const MemoryCounts& n, MemorySum& sum) {
   for (std::uint64_t count : n.buckets) sum.keep<std::uint32_t>(count + 1);
-  sum.keep<std::uint32_t>(n.particles.fluid);
+  if (!n.isShared()) return sum.keep<std::uint32_t>(n.particles.fluid);
+  sum.keep<std::uint32_t>(n.buckets[0] + n.heldFluid() + 2 * n.sharing.buckets);
+  sum.keepRows<Block<B>>(n.sharing.buckets, n.sharing.bucketEntries);
 }
 
 /// Per unknown of A by cuSPARSE's products of sparse matrices, whose memory only it knows: as measured [B].
@@ -204,7 +209,7 @@ void planPreconditioner(const Case& c, const MemoryCounts& n, BackendKind backen
   if (kind == PreconditionerKind::BlockJacobi) return sum.keep<Block<D, T>>(fluid);
   sum.keep<Vec<D, T>>(fluid);
   if (kind != PreconditionerKind::BucketMultigrid) return;
-  planBucketLevels(n, sum);
+  planBucketLevels<D>(n, sum);
   planBuckets<D, T>(n, n.buckets.size(), backend, sum);
   if (backend == BackendKind::Cuda && c.solver.multigrid.coarseOperators == CoarseKind::Spgemm)
     return sum.keep<std::byte>(spgemmBytes<D> * D * fluid);

@@ -2,8 +2,12 @@
 
 #include "treacle/core/error.hpp"
 #include "treacle/model/names.hpp"
+#include "treacle/search/cell_sort.hpp"
 
 #include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
 
 namespace treacle {
 
@@ -27,5 +31,27 @@ void requireShareable(const Case& c, BackendKind backend) {
     refuse(fmt::format("solver.multigrid.coarse_operators = {}", nameOf(buckets.coarseOperators)),
            std::string(nameOf(CoarseKind::Direct)));
 }
+
+void requireCells(const Case& c, std::uint64_t filled, int processes) {
+  if (c.hasInflow() || static_cast<std::uint64_t>(processes) <= filled) return;
+  throw InputError(fmt::format(
+      "{} processes, but the fluid fills only {} cells of the search, the parts that it can be divided "
+      "into; start fewer processes",
+      processes, filled));
+}
+
+template <int D>
+void requireCells(const Case& c, const CellGrid<D>& grid, std::span<const Vec<D>> some,
+                  const Communicator& processes) {
+  if (c.hasInflow()) return;
+  std::vector<std::uint8_t> filled(grid.cellCount());
+  for (const Vec<D>& x : some)
+    if (isFinitePosition(x)) filled[grid.linear(grid.cellOf(x))] = 1;  // of others the sort says so
+  processes.anyOf(filled);
+  requireCells(c, static_cast<std::uint64_t>(std::ranges::count(filled, 1)), processes.size());
+}
+
+template void requireCells<2>(const Case&, const CellGrid<2>&, std::span<const Vec<2>>, const Communicator&);
+template void requireCells<3>(const Case&, const CellGrid<3>&, std::span<const Vec<3>>, const Communicator&);
 
 }  // namespace treacle

@@ -70,6 +70,9 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     bodies.begin(state);
     method = theCase.method.kind == MethodKind::Isph ? makeIsphStep(static_cast<Flow&>(*this))
                                                      : makeMphStep(static_cast<Flow&>(*this));
+    if (context.communicator)
+      requireCells<D>(theCase, method->grid(), state.position.span().first(state.fluidCount),
+                      *context.communicator);
     distant.emplace(theCase, method->grid(), state, time, context.communicator);
     requireTemperatures(theCase, state);
     setField(theCase.hasOwnViscosities(), &FluidExtras::shearRates, &Particles<D>::shearRate, 0, state);

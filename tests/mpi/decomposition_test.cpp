@@ -5,6 +5,7 @@
 #include "treacle/core/device_link.hpp"
 #include "treacle/model/particle_part.hpp"
 #include "treacle/model/particles_copy.hpp"
+#include "treacle/search/fluid_change.hpp"
 
 #include <gtest/gtest.h>
 
@@ -338,14 +339,29 @@ TYPED_TEST(DecompositionTest, ProcessesWithoutFluid) {
   EXPECT_FALSE(flow.context.halo->someHaveNone);
 }
 
+/// All fluid is one process's where it fills a single cell. Then more comes, to the first process and into many
+/// cells, and every process gets some of it, though none could have had before.
 TYPED_TEST(DecompositionTest, MoreProcessesThanCells) {
-  Flow<2, TypeParam> flow(false, 10, 10);
-  for (std::uint32_t i = 0; i < flow.particles.fluidCount; ++i) flow.particles.position[i] = {0.5, 0.5 + 0.01 * i};
-  if (job().size() > 1) {
-    EXPECT_THROW(flow.sort(), InputError);
-  } else {
-    EXPECT_NO_THROW(flow.sort());
+  Flow<2, TypeParam> flow(false, 40, 100, 0.25);
+  for (std::uint32_t i = 0; i < flow.particles.fluidCount; ++i)
+    flow.particles.position[i] = {0.6, 0.51 + 0.005 * i};
+  flow.sort();
+  EXPECT_EQ(std::ranges::count(job().all(flow.particles.fluidCount), 0u), job().size() - 1);
+  Particles<2> added;
+  added.resize({job().rank() == 0 ? 2000u : 0u, 0, 0, 0, 0, flow.particles.has});
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> uniform(0, 5);
+  for (std::uint32_t i = 0; i < added.count; ++i) {
+    added.position[i] = {uniform(random), uniform(random)};
+    added.id[i] = 1000 + i;
   }
+  Context<Cpu> host;
+  flow.particles.modes.drop();
+  changeFluid<2>(host, {}, added, flow.particles);
+  flow.sort();
+  flow.sort();
+  const std::vector<std::uint32_t> own = job().all(flow.particles.fluidCount);
+  EXPECT_LT(*std::ranges::max_element(own), 1.2 * 2040 / job().size());
 }
 
 /// A position that is not finite at one process ends the sort at all of them.

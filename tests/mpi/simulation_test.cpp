@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -81,6 +82,42 @@ TEST(SharedSimulation, FluidThatComesAndGoes) {
   compare<2>({"filling-2d.toml", 40, {exact, plain, "resolution=4"}});
   compare<2>(
       {"filling-2d.toml", 60, {exact, plain, "resolution=4", "drain.min=[-0.02,0]", "drain.max=[0.065,0.0595]"}});
+}
+
+/// A nozzle narrower than a search cell: what it begins with is too little to be divided, and what comes is given
+/// to processes that had nothing, even if those that had some were as uneven before.
+TEST(SharedSimulation, BeginsWithALayerOfAnInflow) {
+  const Settings jet{"buckling-jet-2d.toml",
+                     60,
+                     {"nozzle.nozzle.width=0.003", "nozzle.speed=1", "solver.tolerance=1e-22",
+                      "solver.deflation=0", "solver.precision=double"}};
+  compare<2>(jet);
+  const auto processesWithFluid = [](const Simulation<2>& shared) {
+    const std::vector<std::uint32_t> own = job().all(shared.particles().fluidCount);
+    return static_cast<int>(own.size() - static_cast<std::size_t>(std::ranges::count(own, 0u)));
+  };
+  const Case c = jet.read();
+  Simulation<2> shared(c, partOf<2>(c), 0, 0, &job());
+  EXPECT_LE(processesWithFluid(shared), 2);
+  for (int k = 0; k < jet.steps; ++k) shared.advance();
+  EXPECT_EQ(processesWithFluid(shared), job().size());
+}
+
+/// Where nothing comes in a process without a cell would never have anything to do.
+TEST(SharedSimulation, HasNoMoreProcessesThanCells) {
+  Case c = Settings{"dam-break-2d.toml", 0, {}}.read();
+  const CellGrid<2> grid = makeMphPairs<2>(c).grid;
+  c.bodies.resize(1);
+  c.bodies[0].shape.kind = ShapeKind::Sphere;
+  c.bodies[0].shape.radius = 1.2 * c.spacing;
+  c.bodies[0].shape.center = {grid.origin[0] + 2.5 * grid.edge[0], grid.origin[1] + 2.5 * grid.edge[1], 0};
+  bool refused = false;
+  try {
+    Simulation<2>(c, partOf<2>(c), 0, 0, &job());
+  } catch (const InputError&) {
+    refused = true;
+  }
+  EXPECT_EQ(refused, job().size() > 1);
 }
 
 /// Sums are over all, and the first process gets all particles that are near, each once, walls too.

@@ -18,6 +18,7 @@ struct ProcessShare {
   double exchangeSeconds = 0;          // in which it exchanged, or waited for others to [s]
   double waitingSeconds = 0;           // of these, where devices know [s]
   std::uint64_t peakDeviceMemory = 0;  // [B]
+  std::uint64_t peakMemory = 0;        // [B]
 };
 
 /// What writing frames takes.

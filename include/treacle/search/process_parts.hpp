@@ -25,12 +25,12 @@ class ProcessParts {
   /// those of a wall particle the fluid among them and one of two products.
   static constexpr std::uint32_t fluidWork = 4, wallWork = 1;
 
-  /// Gives the cells out for the first time; each process has some of the fluid, whichever, and all walls. Errors:
-  /// InputError, at all processes, if there are more of them than cells with fluid.
+  /// Gives the cells out for the first time; each process has some of the fluid, whichever, and all walls.
   void assignFirst(const Communicator&, const CellGrid<D>&, std::span<const Vec<D>> fluid,
                    std::span<const Vec<D>> walls);
   /// Whether cells are to change hands, now that this process has so many fluid particles. Once they are as evenly
-  /// given out as they can be, it is not tried again until that has become worse. Collective.
+  /// given out as they can be, it is not tried again until that has become worse, or much fluid has come in.
+  /// Collective.
   bool isUneven(const Communicator&, std::uint32_t fluid) const;
 
   /// The halo's numbers: of own fluid; then, from what is sent to whom, of ghost fluid; then, once all else is

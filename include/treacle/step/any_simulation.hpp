@@ -52,8 +52,9 @@ class AnySimulation {
   struct Share {
     std::uint64_t fluidParticles = 0;
     Communicator::Traffic traffic;
-    double waiting = 0;         // of the time in exchanges, for others [s]; on devices, where that is known
-    std::size_t peakBytes = 0;  // of device memory [B]
+    double waiting = 0;               // of the time in exchanges, for others [s]; on devices, where that is known
+    std::size_t peakBytes = 0;        // of device memory [B]
+    std::uint64_t peakHostBytes = 0;  // of the process, whatever it has done so far [B]
   };
   std::vector<Share> shares() const;
 

@@ -168,36 +168,62 @@ TEST(DeviceMemory, ARunThatDoesNotFitIsRefused) {
   EXPECT_THAT(refusal(), HasSubstr("Some GPU gives no device memory"));
 }
 
-/// Each of several processes needs memory for its part, and for the places of all particles at the start.
 TEST(DeviceMemory, OfSeveralProcessesIsThatOfAPart) {
   const Case c = test::MemoryCase{"dam-break-2d.toml", {}}.read();
   std::vector<std::string> notes;
-  const ParticleNumbers all = createParticles(c, notes).numbers();
-  const MemoryCounts whole = countsFor(c, createParticles(c, notes), true);
-  const MemoryCounts part = countsFor(c, createParticles(c, notes, nullptr, {1, 4}), true);
-  EXPECT_EQ(part.particles.fluid, all.fluid / 4);
-  EXPECT_EQ(part.particles.wall, all.wall / 4);
+  const AnyParticles particles = createParticles(c, notes);
+  const ParticleNumbers all = particles.numbers();
+  const MemoryCounts whole = countsFor(c, particles, true);
+  const MemoryCounts part = countForProcesses(c, particles, false, 4).front();
+  EXPECT_LT(part.particles.fluid, all.fluid / 2);
+  EXPECT_GT(part.heldFluid(), part.particles.fluid);
   EXPECT_LT(estimatedDeviceMemory(c, part), estimatedDeviceMemory(c, whole));
   DeviceInfo device;
   device.name = "Some GPU";
   device.freeMemory = estimatedDeviceMemory(c, part);
-  EXPECT_NO_THROW(requireMemory(c, part, &device, {4, 2, all}));
+  EXPECT_NO_THROW(requireMemory(c, part, &device, {4, all, 1}));
   device.freeMemory -= 1;
   try {
-    requireMemory(c, part, &device, {4, 2, all});
+    requireMemory(c, part, &device, {4, all, 1});
     FAIL() << "a run that does not fit was let through";
   } catch (const RunError& error) {
     EXPECT_THAT(error.what(), HasSubstr("1300 particles, shared by 4 processes, need about "));
   }
-  const MemoryCounts many = countsOf(2, 1000);
-  ParticleNumbers fourTimes = many.particles;
-  fourTimes.fluid *= 4;
+}
+
+/// A host has memory for its processes, those with the most, and for what the first one gathers.
+TEST(HostMemory, OfSeveralProcessesIsTheirSum) {
+  constexpr double mebibyte = 1 << 20;
+  EXPECT_EQ(memoryOfHost({5, 9, 2, 7}, 4, 100), 123u);
+  EXPECT_EQ(memoryOfHost({5, 9, 2, 7}, 2, 100), 116u);
+  const Case c = caseOf(2);
+  MemoryCounts part = countsOf(2, 1000);
+  ParticleNumbers all = part.particles;
+  all.fluid *= 4, all.wall *= 4, all.surfaces *= 4;
+  EXPECT_NEAR(static_cast<double>(gatheredMemory(c, all)), 4.0 * gatheredMemory(c, part.particles), 50 * mebibyte);
   for (const bool onDevice : {false, true}) {
-    const auto least = [&](std::uint64_t onHost) {
-      return leastSharedMemory(c, many, onDevice, {4, onHost, fourTimes});
-    };
-    EXPECT_LT(least(1), least(4));
-    EXPECT_LT(least(4), 4 * least(1)) << "only the first process writes";
+    const std::uint64_t alone = processMemory(c, part, onDevice, part.particles);
+    part.sharing.processes = 4, part.particles.ghosts = 100'000, part.active += 100'000;
+    const std::uint64_t shared = processMemory(c, part, onDevice, part.particles);
+    EXPECT_GT(shared, alone);
+    ParticleNumbers many = all;
+    many.fluid *= 1000;  // the places of so many do not fit into what the steps take
+    EXPECT_GT(processMemory(c, part, onDevice, many), shared + many.fluid);
+    part.sharing = {}, part.particles.ghosts = 0, part.active -= 100'000;
+  }
+}
+
+TEST(HostMemory, WhatDoesNotFitIsRefusedForAllProcesses) {
+  const Case c = test::MemoryCase{"dam-break-2d.toml", {}}.read();
+  std::vector<std::string> notes;
+  const AnyParticles particles = createParticles(c, notes);
+  const MemoryCounts part = countForProcesses(c, particles, false, 2).front();
+  EXPECT_NO_THROW(requireMemory(c, part, nullptr, {2, particles.numbers(), 1}));
+  try {
+    requireMemory(c, part, nullptr, {2, particles.numbers(), std::uint64_t{1} << 60});
+    FAIL() << "a run that does not fit was let through";
+  } catch (const RunError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("1300 particles, shared by 2 processes, need about 1.07e+09 GiB"));
   }
 }
 

@@ -1,4 +1,5 @@
 #include "treacle/model/wall_surface.hpp"
+#include "treacle/model/wall_sight.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -379,6 +380,21 @@ TEST(createWallSurfaces, notesWallsWithoutASurface) {
   EXPECT_THAT(notes,
               ElementsAre("wall 'core': none of its 16 particles has a surface of the walls within the viscosity "
                           "radius h_v = 3.5 m; no fluid can be next to it"));
+  // Those who have a part each know it together.
+  const WallSurface<2> none{};
+  std::vector<WallSight> sum(c.bodies.size());
+  for (const std::size_t begin : {std::size_t{0}, surfaces.size() / 2}) {
+    const auto part = std::span(surfaces).subspan(begin, surfaces.size() / 2);
+    const std::vector<WallSight> sight = wallSight<2>(c, body.subspan(4 + begin), part);
+    EXPECT_EQ(sight[1].seeing, 0u);
+    EXPECT_EQ(sight[2].seeing + static_cast<std::size_t>(std::ranges::count(part, none)), part.size());
+    for (std::size_t b = 0; b < sum.size(); ++b)
+      sum[b].particles += sight[b].particles, sum[b].seeing += sight[b].seeing;
+  }
+  std::vector<std::string> together;
+  noteBlindWalls(c, sum, together);
+  EXPECT_EQ(together, notes);
+
   c.bodies[1].velocity = {1, 0};
   notes.clear();
   createWallSurfaces<2>(c, position.subspan(4), body.subspan(4), notes);
