@@ -81,6 +81,10 @@ TEST(SharedSimulation, FluidThatComesAndGoes) {
   compare<2>({"filling-2d.toml", 40, {exact, plain, "resolution=4"}});
   compare<2>(
       {"filling-2d.toml", 60, {exact, plain, "resolution=4", "drain.min=[-0.02,0]", "drain.max=[0.065,0.0595]"}});
+  compare<2>({"filling-2d.toml",
+              60,
+              {exact, plain, "resolution=4", "drain.min=[-0.02,0]", "drain.max=[0.065,0.0595]",
+               "nozzle.rotation={center=[0.002,0.062],angle='20*t'}"}});
 }
 
 /// Sums are over all, and the first process gets all particles that are near, each once, walls too.

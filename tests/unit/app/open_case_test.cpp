@@ -43,6 +43,8 @@ TEST(OpenCase, IsReadAndWritten) {
            {"jet.speed='0.1*sin(t)^2'", "jet.start=0.01", "jet.end=0.02"},
            {"jet.speed={times=[0,1],values=[0.1,0.2]}", "jet.velocity=[0.1,0]"},
            {"jet.oscillation={amplitude=[1e-3,0],period=0.1}"},
+           {"jet.rotation={center=[0,9e-3],speed=2}"},
+           {"jet.rotation={center=[0,9e-3],angle='0.1*sin(9*t)'}"},
            {"outflow=[{name='end',shape='plane',point=[1e-3,0],normal=[1,1]}]"}}) {
     const Case c = caseWith(overrides);
     shop.put("written.toml", caseText(c));
@@ -121,6 +123,10 @@ const Mistake mistakes[] = {
     {"floor.displacement=['x', 0]", "expected an expression in t [s]"},
     {"floor.rotation={center=[0,0]}", "missing; expected a finite number [rad/s], or angle"},
     {"floor.rotation={center=[0,0], speed=1, angle=2}", "expected one of speed and angle, found both"},
+    {"jet.rotation={center=[0,0]}",
+     "speed in the rotation of [[body]] 'jet': missing; expected a finite number [rad/s], or angle"},
+    {"jet.rotation={center=[0,0], angle='x'}", "expected an expression in t [s]"},
+    {"jet.rotation={center=[0,0], speed=1, axis=[0,0,1]}", "unknown key 'axis' in the rotation of [[body]] 'jet'"},
     {"jet.mass=1", "unknown key 'mass'"},
     {"rim.shape='ball'", "expected 'box' or 'plane', found 'ball'"},
 };
