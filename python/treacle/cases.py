@@ -181,6 +181,7 @@ class Body:
     displacement: Sequence[float | str | TimeTable] | None = None
     """[m]"""
     rotation: Rotation | None = None
+    friction: float | None = None
     min: Sequence[float] | None = None
     """[m]"""
     max: Sequence[float] | None = None

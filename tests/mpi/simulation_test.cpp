@@ -135,13 +135,16 @@ TEST(SharedSimulation, RigidBodies) {
 
 /// Until a block has landed on its corner and its side.
 TEST(SharedSimulation, RigidBodiesThatTouch) {
-  Case c = fallingBlockCase(2, 30);
-  c.solver.deflation = 0;
-  Simulation<2> shared(c, partOf<2>(c), 0, 0, &job()), alone(c, made<2>(c));
-  for (int k = 0; k < 20; ++k) {
-    const RigidBody a = shared.advance().rigid[1], b = alone.advance().rigid[1];
-    EXPECT_LT(norm(a.velocity - b.velocity), 1e-3 * 0.6);
-    EXPECT_LT(norm(a.center - b.center), 1e-3 * c.spacing);
+  for (const double friction : {0.0, 0.5}) {
+    Case c = fallingBlockCase(2, 30);
+    c.solver.deflation = 0;
+    c.bodies[1].friction = c.bodies[2].friction = friction;
+    Simulation<2> shared(c, partOf<2>(c), 0, 0, &job()), alone(c, made<2>(c));
+    for (int k = 0; k < 20; ++k) {
+      const RigidBody a = shared.advance().rigid[1], b = alone.advance().rigid[1];
+      EXPECT_LT(norm(a.velocity - b.velocity), 1e-3 * 0.6);
+      EXPECT_LT(norm(a.center - b.center), 1e-3 * c.spacing);
+    }
   }
 }
 

@@ -108,6 +108,7 @@ struct Body {
   bool fileTemperatures = false;  // likewise, in place of its temperature
   Inflow inflow{};                // of an inflow, in place of a shape
   RigidSettings rigid{};          // of a rigid body
+  double friction = 0;            // of a rigid body or wall that others touch: its coefficient
 
   bool holdsFluid() const { return kind == BodyKind::Fluid || kind == BodyKind::Inflow; }
   /// Whether fluid meets its surface.

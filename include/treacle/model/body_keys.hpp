@@ -227,6 +227,11 @@ void visit(auto& v, Like<Body> auto& b, const Case& c) {
       b.displacement);
     v({"rotation", "The wall turns, on top of all other motion"}, b.rotation);
   }
+  if (b.isWall())
+    v({"friction",
+       "Coefficient of Coulomb friction where rigid bodies touch; of two bodies the geometric mean counts",
+       optional, "", notNegative},
+      b.friction);
   if (c.heat) {
     const bool fluid = b.kind == BodyKind::Fluid;
     if (ofFile)

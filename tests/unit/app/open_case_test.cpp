@@ -85,11 +85,12 @@ TEST(OpenCase, TablesOfTimeComeFromFiles) {
 
 TEST(OpenCase, MotionsAndRigidBodiesAreReadAndWritten) {
   Workshop shop;
-  for (const char* motion :
-       {"type='wall', displacement=['1e-3*sin(t)', {times=[0,1], values=[0,1e-3]}]",
-        "type='wall', displacement=[0, '1e-3*t'], rotation={center=[0,0], angle='0.1*t'}",
-        "type='wall', rotation={center=[0,0], angle={times=[0,1,2], values=[0,1,1]}}", "type='rigid'",
-        "type='rigid', mass=0.3, angular_velocity=2, velocity=[0,1e-2], translates=[true,false], rotates=false"}) {
+  for (const char* motion : {"type='wall', displacement=['1e-3*sin(t)', {times=[0,1], values=[0,1e-3]}]",
+                             "type='wall', displacement=[0, '1e-3*t'], rotation={center=[0,0], angle='0.1*t'}",
+                             "type='wall', rotation={center=[0,0], angle={times=[0,1,2], values=[0,1,1]}}",
+                             "type='rigid'", "type='wall', friction=0.2",
+                             "type='rigid', mass=0.3, friction=0.5, angular_velocity=2, velocity=[0,1e-2], "
+                             "translates=[true,false], rotates=false"}) {
     const std::string block =
         std::string("body = [\n{name='block', material='syrup', shape='box', min=[-2e-3,0], max=[2e-3,3e-3], ") +
         motion + "},\n";
@@ -127,6 +128,8 @@ const Mistake mistakes[] = {
      "speed in the rotation of [[body]] 'jet': missing; expected a finite number [rad/s], or angle"},
     {"jet.rotation={center=[0,0], angle='x'}", "expected an expression in t [s]"},
     {"jet.rotation={center=[0,0], speed=1, axis=[0,0,1]}", "unknown key 'axis' in the rotation of [[body]] 'jet'"},
+    {"floor.friction=-0.1", "friction in [[body]] 'floor' (box): expected a number not less than 0, found -0.1"},
+    {"jet.friction=0.1", "unknown key 'friction' in [[body]] 'jet' (inflow)"},
     {"jet.mass=1", "unknown key 'mass'"},
     {"rim.shape='ball'", "expected 'box' or 'plane', found 'ball'"},
 };
