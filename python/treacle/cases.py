@@ -181,7 +181,6 @@ class Body:
     displacement: Sequence[float | str | TimeTable] | None = None
     """[m]"""
     rotation: Rotation | None = None
-    friction: float | None = None
     min: Sequence[float] | None = None
     """[m]"""
     max: Sequence[float] | None = None
@@ -216,6 +215,7 @@ class Body:
     checksum: str | None = None
     flip: bool | None = None
     file_velocities: bool | None = None
+    friction: float | None = None
     nozzle: Nozzle | None = None
     speed: float | str | TimeTable | None = None
     """[m/s]"""

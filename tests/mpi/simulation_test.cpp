@@ -82,7 +82,7 @@ TEST(SharedSimulation, FluidThatComesAndGoes) {
   compare<2>(
       {"filling-2d.toml", 60, {exact, plain, "resolution=4", "drain.min=[-0.02,0]", "drain.max=[0.065,0.0595]"}});
   compare<2>({"filling-2d.toml",
-              60,
+              30,
               {exact, plain, "resolution=4", "drain.min=[-0.02,0]", "drain.max=[0.065,0.0595]",
                "nozzle.rotation={center=[0.002,0.062],angle='20*t'}"}});
 }
