@@ -290,7 +290,7 @@ class Simulation:
         """A wall or a nozzle goes on with these velocities, until it is steered again; what is None stays as it is.
 
         - `velocity` (D,) [m/s]: of the wall, of its centre if it rotates, or of the nozzle of an inflow.
-        - `angular_velocity` [rad/s]: of a wall that has a rotation, about its axis.
+        - `angular_velocity` [rad/s]: of a wall or nozzle that has a rotation, about its axis.
         - `speed` [m/s] or `flow_rate` [m3/s; m2/s in two dimensions]: of an inflow, whichever its case gives.
 
         The motion of the body in `case_text`, and in the run directory if one is written, becomes tables that keep its

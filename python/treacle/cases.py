@@ -215,6 +215,7 @@ class Body:
     checksum: str | None = None
     flip: bool | None = None
     file_velocities: bool | None = None
+    friction: float | None = None
     nozzle: Nozzle | None = None
     speed: float | str | TimeTable | None = None
     """[m/s]"""

@@ -50,6 +50,52 @@ double product(const Vector& a, const Vector& b) {
   return sum;
 }
 
+/// What moves the zero along one row.
+struct Mover {
+  const Vector* row;
+  Vector way;       // by which a push of 1 moves the zero
+  double rate = 0;  // of row . x along it
+  double push = 0;
+
+  /// What row . x lacks of `aim`.
+  double missing(double aim, const Vector& x) const { return aim - product(*row, x); }
+  /// Returns how far x has gone.
+  double change(double by, Vector& x) {
+    if (by == 0) return 0;
+    push += by;
+    for (std::size_t k = 0; k < x.size(); ++k) x[k] += by * way[k];
+    return std::abs(by) * largest(way);
+  }
+};
+
+struct Held {
+  const Restraint* restraint;
+  Mover normal;
+  std::vector<Mover> slides{};  // as those of the restraint
+  double rate = 0;              // of all slides together, along whatever direction, at most
+
+  double hold(Vector& x) {
+    const double missing = normal.missing(restraint->least, x) / normal.rate;
+    return normal.change(std::max(missing, -normal.push), x);
+  }
+
+  /// A step of the same length along all slides, so that what is cut off leaves the direction of what is missing.
+  double slide(Vector& x) {
+    double length2 = 0;
+    Vector wanted;
+    for (std::size_t s = 0; s < slides.size(); ++s) {
+      wanted.push_back(slides[s].push + slides[s].missing(restraint->slides[s].rest, x) / rate);
+      length2 += wanted.back() * wanted.back();
+    }
+    const double most = restraint->grip * normal.push, length = std::sqrt(length2);
+    const double part = length > most ? most / length : 1;
+    double moved = 0;
+    for (std::size_t s = 0; s < slides.size(); ++s)
+      moved = std::max(moved, slides[s].change(part * wanted[s] - slides[s].push, x));
+    return moved;
+  }
+};
+
 /// Moves what the derivative would take for the zero to where all restraints hold, by their pushes: one after the
 /// other until none moves it by more than `least` (projected Gauss-Seidel). What they cannot do together stays.
 void restrain(const Vector& derivative, const std::vector<Restraint>& restraints, double least, Vector& x) {
@@ -62,28 +108,31 @@ void restrain(const Vector& derivative, const std::vector<Restraint>& restraints
     unit[j] = 1;
     ways.push_back(solved(derivative, unit));
   }
-  struct Held {
-    const Restraint* restraint;
-    Vector way;       // by which a push of 1 moves the zero
-    double rate = 0;  // of row . x along it
-    double push = 0;
+  const auto mover = [&](const Vector& row, const Vector& push) {
+    Mover m{&row, Vector(n)};
+    for (std::size_t j = 0; j < n; ++j)
+      for (std::size_t k = 0; k < n && push[j] != 0; ++k) m.way[k] += push[j] * ways[j][k];
+    m.rate = product(row, m.way);
+    return m;
   };
   std::vector<Held> held;
   for (const Restraint& r : restraints) {
-    Vector way(n);
-    for (std::size_t j = 0; j < n; ++j)
-      for (std::size_t k = 0; k < n && r.push[j] != 0; ++k) way[k] += r.push[j] * ways[j][k];
-    if (const double rate = product(r.row, way); rate > 0) held.push_back({&r, std::move(way), rate});
+    Held h{&r, mover(r.row, r.push)};
+    if (!(h.normal.rate > 0)) continue;
+    double rate2 = 0;
+    for (const Restraint::Slide& s : r.slides) h.slides.push_back(mover(s.row, s.push));
+    for (const Mover& a : h.slides)
+      for (const Mover& b : h.slides) rate2 += product(*a.row, b.way) * product(*a.row, b.way);
+    h.rate = std::sqrt(rate2);
+    // Of what is locked, and of derivatives that are not yet any good.
+    if (h.rate == 0 || std::ranges::any_of(h.slides, [](const Mover& m) { return m.rate < 0; })) h.slides.clear();
+    held.push_back(std::move(h));
   }
   for (int round = 0; round < mostRounds; ++round) {
     double moved = 0;
     for (Held& h : held) {
-      const double missing = (h.restraint->least - product(h.restraint->row, x)) / h.rate;
-      const double change = std::max(missing, -h.push);
-      if (change == 0) continue;
-      h.push += change;
-      for (std::size_t k = 0; k < n; ++k) x[k] += change * h.way[k];
-      moved = std::max(moved, std::abs(change) * largest(h.way));
+      moved = std::max(moved, h.hold(x));
+      moved = std::max(moved, h.slide(x));
     }
     if (moved <= least) return;
   }

@@ -99,10 +99,7 @@ InitialState<D>::InitialState(const Case& c, const Body& body)
       wall_(wallMotion<D>(c.domain, body, 0, 0)),
       expressions_(D),
       similarity_(similarityOf<D>(body.shape)) {
-  if (body.kind == BodyKind::Inflow) {
-    const NozzleLayers<D> layers(c, body);
-    wall_.velocity = wall_.velocity + layers.speed(0, 0) * layers.direction();
-  }
+  if (body.kind == BodyKind::Inflow) wall_ = NozzleLayers<D>(c, body).motion(c.domain, 0, 0);
   for (std::size_t k = 0; k < D; ++k)
     if (const std::string& text = body.velocityExpression[k]; !text.empty()) expressions_[k].emplace(text, D);
   if (!body.temperatureExpression.empty()) temperature_.emplace(body.temperatureExpression, D);

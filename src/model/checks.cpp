@@ -1,6 +1,7 @@
 #include "treacle/model/checks.hpp"
 
 #include "fluid_extent.hpp"
+#include "treacle/model/friction.hpp"
 #include "treacle/model/names.hpp"
 #include "treacle/model/shape.hpp"
 
@@ -220,6 +221,21 @@ void warnTension(const Case& c, std::vector<std::string>& warnings) {
   }
 }
 
+/// Of bodies of which only one has friction.
+void warnFriction(const Case& c, std::vector<std::string>& warnings) {
+  for (const Body& body : c.bodies) {
+    const auto rubs = [&](const Body& other) {
+      return &other != &body && (body.kind == BodyKind::Rigid || other.kind == BodyKind::Rigid) &&
+             frictionBetween(body, other) > 0;
+    };
+    if (body.friction == 0 || std::ranges::any_of(c.bodies, rubs)) continue;
+    warnings.push_back(fmt::format("body '{}' has friction = {:g} without effect: {}", body.name, body.friction,
+                                   c.hasRigid()
+                                       ? "no body that it can touch has any, and the geometric mean of both counts"
+                                       : "no body is rigid, and fluid knows no friction"));
+  }
+}
+
 void warnTimes(const Case& c, std::vector<std::string>& warnings) {
   if (!wholeNumber(c.time.end / c.time.step))
     warnings.push_back(fmt::format(
@@ -289,6 +305,7 @@ std::vector<std::string> caseWarnings(const Case& c) {
   warnCourant(c, warnings);
   warnTension(c, warnings);
   warnThinWalls(c, warnings);
+  warnFriction(c, warnings);
   warnShortRadii(c, warnings);
   if (!c.time.stepsVary()) warnTimes(c, warnings);
   return warnings;

@@ -50,7 +50,7 @@ std::size_t total(const std::vector<Filled<D>>& filled) {
 /// The nearest image of its centre must stay the same one as a wall turns. Errors: InputError for a wall that
 /// would reach half a period from it.
 template <int D>
-void requireTurnable(const Domain& domain, const Filled<D>& f) {
+void requireTurnable(const Domain& domain, double spacing, const Filled<D>& f) {
   if (!f.body->rotation) return;
   const Vec<3> axis = f.body->rotation->direction();
   for (int k = 0; k < D; ++k) {
@@ -62,11 +62,12 @@ void requireTurnable(const Domain& domain, const Filled<D>& f) {
       const double along = dot(d, axis), radius = norm(d - along * axis);
       reach = std::max(reach, std::abs(along * axis[k]) + radius * across);
     }
+    if (f.body->kind == BodyKind::Inflow) reach += spacing;  // its layers go as far before they are set back
     if (const double half = (domain.max[k] - domain.min[k]) / 2; reach >= half)
       throw InputError(fmt::format(
-          "rotating wall '{}' reaches {} along the periodic {} axis from its centre; expected less than half the "
+          "rotating {} '{}' reaches {} along the periodic {} axis from its centre; expected less than half the "
           "domain, {}",
-          f.body->name, lengthText(reach), "xyz"[k], lengthText(half)));
+          nameOf(f.body->kind), f.body->name, lengthText(reach), "xyz"[k], lengthText(half)));
   }
 }
 
@@ -200,7 +201,7 @@ Particles<D> createParticles(const Case& c, std::vector<std::string>& notes, std
   if (total(fluid) + total(walls) > maxParticles)
     throw InputError(fmt::format("the case would have {} particles, more than the limit of {}",
                                  total(fluid) + total(walls), maxParticles));
-  for (const auto& f : walls) requireTurnable(c.domain, f);
+  for (const auto& f : walls) requireTurnable(c.domain, c.spacing, f);
 
   // Points exactly half a spacing apart, give or take rounding, do not count as overlapping.
   const double radius = 0.5 * c.spacing * (1 - 1e-6);

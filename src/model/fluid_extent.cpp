@@ -23,7 +23,8 @@ double largestSpeed(const Case& c, const Body& body) {
   const WallMotion<D> wall = wallMotion<D>(c.domain, body, 0, 0);
   std::vector<std::string> notes;
   double speed = 0;
-  const BodyPoints<D> points = bodyPoints<D>(c, body, notes);
+  const BodyPoints<D> points = body.kind == BodyKind::Inflow ? nozzlePoints<D>(c, body, BodyKind::Wall, notes)
+                                                             : bodyPoints<D>(c, body, notes);
   for (std::size_t k = 0; k < points.size(); ++k)
     speed = std::max(speed,
                      norm(body.rotation ? wall.swirl(wall.arm(points.place[k])) : initial.velocityAt(points, k)));

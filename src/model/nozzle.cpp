@@ -4,7 +4,7 @@
 #include "polygon.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/model/create.hpp"
-#include "treacle/model/wall_motion.hpp"
+#include "wall_turn.hpp"
 
 #include <fmt/format.h>
 
@@ -163,11 +163,24 @@ NozzleLayers<D>::NozzleLayers(const Case& c, const Body& body)
 }
 
 template <int D>
+Vec<D> NozzleLayers<D>::direction(double t) const {
+  return body_.rotation ? wallTurn<D>(body_, t).turned(direction_) : direction_;
+}
+
+template <int D>
 std::vector<Vec<D>> NozzleLayers<D>::layer(double way, double t) const {
-  const Vec<D> middle = resized<D>(body_.inflow.nozzle.center + wallDisplacement(body_, t)) + way * direction_;
   std::vector<Vec<D>> places;
   places.reserve(across_.size());
-  for (const Vec<D>& x : across_) places.push_back(middle + x);
+  const Vec<3>& center = body_.inflow.nozzle.center;
+  if (!body_.rotation) {
+    const Vec<D> middle = resized<D>(center + wallDisplacement(body_, t)) + way * direction_;
+    for (const Vec<D>& x : across_) places.push_back(middle + x);
+    return places;
+  }
+  const WallMotion<D> turn = wallTurn<D>(body_, t);
+  const Vec<D> pivot = resized<D>(wallCenter(body_, t)),
+               middle = resized<D>(center - body_.rotation->center) + way * direction_;
+  for (const Vec<D>& x : across_) places.push_back(pivot + turn.turned(middle + x));
   return places;
 }
 
@@ -181,6 +194,24 @@ double NozzleLayers<D>::speed(double t, double dt) const {
   const double from = std::max(t, inflow.start), to = std::min(t + dt, end);
   if (!(from < to)) return 0;
   return std::max(0.0, rate.isConstant() && to - from == dt ? rate.value : rate.integral(from, to) / dt) / over;
+}
+
+template <int D>
+WallMotion<D> NozzleLayers<D>::motion(const Domain& domain, double t, double dt) const {
+  WallMotion<D> m = wallMotion<D>(domain, body_, t, dt);
+  // In the direction of the end of the step: a way within the nozzle and one with it, by the chord of the arc from
+  // where a particle was, lead to the place that it has on the layer then.
+  const Vec<D> flow = speed(t, dt) * direction(t + dt);
+  m.velocity = m.velocity + flow;
+  m.acceleration = m.acceleration + 2.0 * m.swirl(flow);  // of Coriolis: the layers go along what turns
+  return m;
+}
+
+template <int D>
+WallMotion<D> NozzleLayers<D>::motionAtEnd(const Domain& domain, double t, double dt) const {
+  WallMotion<D> m = motion(domain, t, dt);
+  m.center = resized<D>(wallCenter(body_, t + dt));
+  return m;
 }
 
 template <int D>

@@ -1,5 +1,7 @@
 #include "treacle/model/wall_motion.hpp"
 
+#include "wall_turn.hpp"
+
 #include <algorithm>
 #include <cstddef>
 #include <numbers>
@@ -88,25 +90,34 @@ Vec<3> wallAcceleration(const Body& body, double t) {
 }
 
 template <int D>
-WallMotion<D> wallMotion(const Domain& domain, const Body& body, double t, double dt) {
+WallMotion<D> wallTurn(const Body& body, double t) {
   WallMotion<D> m;
+  if (!body.rotation) return m;
+  const double turned = angleAt(*body.rotation, t);
+  m.axis = body.rotation->direction();
+  m.sine = std::sin(turned);
+  m.cosine = std::cos(turned);
+  return m;
+}
+
+template <int D>
+WallMotion<D> wallMotion(const Domain& domain, const Body& body, double t, double dt) {
+  WallMotion<D> m = wallTurn<D>(body, t);
   m.velocity = resized<D>(wallVelocity(body, t, dt));
   m.acceleration = resized<D>(wallAcceleration(body, t + dt));
   if (!body.rotation) return m;
   m.center = resized<D>(wallCenter(body, t));
   for (int k = 0; k < D; ++k)
     if (domain.periodic[static_cast<std::size_t>(k)]) m.period[k] = domain.max[k] - domain.min[k];
-  const double speed = spinOver(*body.rotation, t, dt), turned = angleAt(*body.rotation, t),
-               half = sinc(speed * dt / 2);
-  m.axis = body.rotation->direction();
+  const double speed = spinOver(*body.rotation, t, dt), half = sinc(speed * dt / 2);
   m.spin = speed * m.axis;
-  m.sine = std::sin(turned);
-  m.cosine = std::cos(turned);
   m.along = sinc(speed * dt);
   m.inwards = dt / 2 * half * half;
   return m;
 }
 
+template WallMotion<2> wallTurn<2>(const Body&, double);
+template WallMotion<3> wallTurn<3>(const Body&, double);
 template WallMotion<2> wallMotion<2>(const Domain&, const Body&, double, double);
 template WallMotion<3> wallMotion<3>(const Domain&, const Body&, double, double);
 

@@ -42,10 +42,9 @@ std::vector<WallMotion<D>> bodyMotions(const FlowState<D, Backend>& state) {
       motion.push_back(rigidMotion<D>(state.particles.rigid.bodies[b], state.rigid.bodies[b], state.timeStep));
       continue;
     }
-    motion.push_back(wallMotion<D>(c.domain, c.bodies[b], state.time, state.timeStep));
-    if (const auto& nozzle = state.nozzles[b])
-      motion.back().velocity =
-          motion.back().velocity + nozzle->speed(state.time, state.timeStep) * nozzle->direction();
+    const auto& nozzle = state.nozzles[b];
+    motion.push_back(nozzle ? nozzle->motion(c.domain, state.time, state.timeStep)
+                            : wallMotion<D>(c.domain, c.bodies[b], state.time, state.timeStep));
   }
   return motion;
 }

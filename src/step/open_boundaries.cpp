@@ -87,7 +87,8 @@ bool OpenBoundaries<D, Backend>::follow(const CellGrid<D>& grid, double start, d
   for (std::size_t b = 0; b < change.setBack.size(); ++b)
     if (change.setBack[b] > 0)
       shiftBody<D>(state_.context, grid, p.body.span().subspan(walls), static_cast<std::uint8_t>(b),
-                   -change.setBack[b] * state_.nozzles[b]->direction(), p.position.span().subspan(walls));
+                   -change.setBack[b] * state_.nozzles[b]->direction(state_.time),
+                   p.position.span().subspan(walls));
   p.flow = std::move(change.flow);
   return changes;
 }
@@ -149,11 +150,10 @@ void OpenBoundaries<D, Backend>::addLayer(const CellGrid<D>& grid, std::size_t b
   Particles<D>& added = change.added;
   const std::uint32_t first = added.fluidCount;
   appendParticles<D>(added, places);
-  const double start = state_.time - state_.timeStep;
-  const Vec<D> u = resized<D>(wallVelocity(b, start, state_.timeStep)) +
-                   nozzle.speed(start, state_.timeStep) * nozzle.direction();
+  const WallMotion<D> motion =
+      nozzle.motionAtEnd(state_.theCase.domain, state_.time - state_.timeStep, state_.timeStep);
   for (std::uint32_t i = first; i < added.fluidCount; ++i) {
-    added.velocity[i] = u;
+    added.velocity[i] = motion.velocityAt(added.position[i]);
     added.material[i] = static_cast<std::uint8_t>(b.material);
     added.body[i] = static_cast<std::uint8_t>(body);
     added.id[i] = change.flow.nextId++;

@@ -3,12 +3,14 @@
 #include "moving_bodies.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/linear/affine_solve.hpp"
+#include "treacle/model/friction.hpp"
 #include "treacle/step/balance_sums.hpp"
 #include "treacle/step/contacts.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <utility>
@@ -106,32 +108,66 @@ class RigidSystem {
     const std::vector<WallMotion<D>> motion = bodyMotions(state_);
     std::vector<Restraint> all;
     for (const Contact<D>& contact : contacts) {
-      Restraint r{std::vector<double>(unknowns_.size()), std::vector<double>(unknowns_.size())};
-      r.least = (contact.gap > 0 ? -contact.gap : std::min(-0.2 * contact.gap, most)) / dt;
-      const Vec<3> place = resized<3>(contact.place), normal = resized<3>(contact.normal);
-      add(contact.body, place, normal, r);
-      if (state_.theCase.bodies[contact.other].kind == BodyKind::Rigid)
-        add(contact.other, place, -1.0 * normal, r);
-      else
-        r.least += dot(normal, resized<3>(motion[contact.other].chordAt(contact.place)));
-      all.push_back(std::move(r));
+      const double apart = (contact.gap > 0 ? -contact.gap : std::min(-0.2 * contact.gap, most)) / dt;
+      all.push_back(along(contact, contact.place, contact.normal, motion[contact.other], apart));
+      addFriction(contact, motion[contact.other], all.back());
     }
     return all;
   }
 
-  /// The part of a body: its velocity at a place along a normal, less what is locked, and what a force there along
-  /// it makes of the residual.
-  void add(std::size_t body, const Vec<3>& place, const Vec<3>& normal, Restraint& r) const {
+  /// Surfaces that are pressed together do not slide on each other, as far as friction holds them. Of all contacts
+  /// of two bodies it acts in the surface of the same one, so that one that turns as it comes down on a plane, and
+  /// touches it at both ends in a step, can stand still at both; that of the particle is half a spacing from it.
+  void addFriction(const Contact<D>& contact, const WallMotion<D>& other, Restraint& r) const {
+    r.grip = frictionBetween(state_.theCase.bodies[contact.body], state_.theCase.bodies[contact.other]);
+    if (r.grip == 0) return;
+    const bool own = state_.theCase.bodies[contact.other].kind == BodyKind::Rigid && contact.body > contact.other;
+    const Vec<D> place = contact.place - (0.5 * state_.theCase.spacing + (own ? 0 : contact.gap)) * contact.normal;
+    for (const Vec<D>& tangent : tangents(contact.normal)) {
+      Restraint held = along(contact, place, tangent, other, 0);
+      r.slides.push_back({std::move(held.row), std::move(held.push), held.least});
+    }
+  }
+
+  static std::array<Vec<D>, D - 1> tangents(const Vec<D>& normal) {
+    if constexpr (D == 2) {
+      return {Vec<2>{-normal[1], normal[0]}};
+    } else {
+      int axis = 0;  // the one that is the farthest from the normal
+      for (int k = 1; k < 3; ++k)
+        if (std::abs(normal[k]) < std::abs(normal[axis])) axis = k;
+      Vec<3> unit{};
+      unit[axis] = 1;
+      const Vec<3> across = cross(normal, unit), first = (1 / norm(across)) * across;
+      return {first, cross(normal, first)};
+    }
+  }
+
+  /// That the body goes along a direction, relative to the other one at a place, with at least `least`.
+  Restraint along(const Contact<D>& contact, const Vec<D>& place, const Vec<D>& direction,
+                  const WallMotion<D>& other, double least) const {
+    Restraint r{std::vector<double>(unknowns_.size()), std::vector<double>(unknowns_.size()), least};
+    add(contact.body, resized<3>(place), resized<3>(direction), r);
+    if (state_.theCase.bodies[contact.other].kind == BodyKind::Rigid)
+      add(contact.other, resized<3>(place), -1.0 * resized<3>(direction), r);
+    else
+      r.least += dot(resized<3>(direction), resized<3>(other.chordAt(place)));
+    return r;
+  }
+
+  /// The part of a body: its velocity at a place along a direction, less what is locked, and what a force there
+  /// along it makes of the residual.
+  void add(std::size_t body, const Vec<3>& place, const Vec<3>& direction, Restraint& r) const {
     const RigidBody& b = state_.particles.rigid.bodies[body];
-    const Vec<3> arm = place - b.center, turn = cross(arm, normal);
-    r.least -= dot(normal, b.velocity + cross(b.spin, arm));
+    const Vec<3> arm = place - b.center, turn = cross(arm, direction);
+    r.least -= dot(direction, b.velocity + cross(b.spin, arm));
     for (std::size_t k = 0; k < unknowns_.size(); ++k) {
       if (unknowns_[k].body != body) continue;
       const int component = unknowns_[k].component;
-      r.row[k] = component < 3 ? normal[component] : turn[component - 3] / b.gyration();
+      r.row[k] = component < 3 ? direction[component] : turn[component - 3] / b.gyration();
       r.push[k] = r.row[k] / b.mass;
-      r.least +=
-          component < 3 ? normal[component] * b.velocity[component] : turn[component - 3] * b.spin[component - 3];
+      r.least += component < 3 ? direction[component] * b.velocity[component]
+                               : turn[component - 3] * b.spin[component - 3];
     }
   }
 

@@ -82,6 +82,10 @@ TEST(SharedSimulation, FluidThatComesAndGoes) {
   compare<2>({"filling-2d.toml", 40, {exact, plain, "resolution=4"}});
   compare<2>(
       {"filling-2d.toml", 60, {exact, plain, "resolution=4", "drain.min=[-0.02,0]", "drain.max=[0.065,0.0595]"}});
+  compare<2>({"filling-2d.toml",
+              30,
+              {exact, plain, "resolution=4", "drain.min=[-0.02,0]", "drain.max=[0.065,0.0595]",
+               "nozzle.rotation={center=[0.002,0.062],angle='20*t'}"}});
 }
 
 /// A nozzle narrower than a search cell: what it begins with is too little to be divided, and what comes is given
@@ -168,13 +172,16 @@ TEST(SharedSimulation, RigidBodies) {
 
 /// Until a block has landed on its corner and its side.
 TEST(SharedSimulation, RigidBodiesThatTouch) {
-  Case c = fallingBlockCase(2, 30);
-  c.solver.deflation = 0;
-  Simulation<2> shared(c, partOf<2>(c), 0, 0, &job()), alone(c, made<2>(c));
-  for (int k = 0; k < 20; ++k) {
-    const RigidBody a = shared.advance().rigid[1], b = alone.advance().rigid[1];
-    EXPECT_LT(norm(a.velocity - b.velocity), 1e-3 * 0.6);
-    EXPECT_LT(norm(a.center - b.center), 1e-3 * c.spacing);
+  for (const double friction : {0.0, 0.5}) {
+    Case c = fallingBlockCase(2, 30);
+    c.solver.deflation = 0;
+    c.bodies[1].friction = c.bodies[2].friction = friction;
+    Simulation<2> shared(c, partOf<2>(c), 0, 0, &job()), alone(c, made<2>(c));
+    for (int k = 0; k < 20; ++k) {
+      const RigidBody a = shared.advance().rigid[1], b = alone.advance().rigid[1];
+      EXPECT_LT(norm(a.velocity - b.velocity), 1e-3 * 0.6);
+      EXPECT_LT(norm(a.center - b.center), 1e-3 * c.spacing);
+    }
   }
 }
 

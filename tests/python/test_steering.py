@@ -114,6 +114,23 @@ def test_wall_at_rest_begins_to_turn_and_stops(drop):
     assert np.abs(sim.walls.velocities).max() < 1e-9
 
 
+def test_nozzle_turns_and_pours_to_the_side(bead):
+    """Fluid leaves with the velocity of where it leaves, in the direction that the nozzle has by then."""
+    pivot = np.array([-0.01, 7e-3])
+    bead["body"][0] |= {"rotation": {"center": pivot.tolist(), "speed": 0}}
+    sim = treacle.Simulation(bead, backend="cpu", overrides={"gravity.acceleration": [0, 0]})
+    sim.run(until=0.01, progress=False)
+    sim.steer("nozzle", angular_velocity=20.0)
+    known = sim.fluid.ids
+    while len(sim.fluid) == len(known):
+        sim.step()
+    turn, new = 20 * (sim.time - 0.01), ~np.isin(sim.fluid.ids, known)
+    arm = sim.fluid.positions[new] - pivot
+    expected = 0.1 * np.array([np.sin(turn), -np.cos(turn)]) + 20 * np.stack([-arm[:, 1], arm[:, 0]], axis=1)
+    assert new.sum() == 4
+    np.testing.assert_allclose(sim.fluid.velocities[new], expected, atol=1e-9)
+
+
 def test_what_cannot_be_steered_changes_nothing(bead):
     sim = treacle.Simulation(bead, backend="cpu")
     text = sim.case_text
@@ -122,6 +139,7 @@ def test_what_cannot_be_steered_changes_nothing(bead):
         ({"body": "nozzle", "velocity": [1, 0, 0]}, "velocity: expected 2 numbers, found 3"),
         ({"body": "nozzle", "speed": 1}, "the case gives its flow_rate"),
         ({"body": "floor", "angular_velocity": 1}, "it has no rotation"),
+        ({"body": "nozzle", "angular_velocity": 1}, "it has no rotation"),
         ({"body": "nozzle", "velocity": [float("nan"), 0]}, "expected finite numbers"),
     ):
         with pytest.raises(treacle.InputError, match=message):

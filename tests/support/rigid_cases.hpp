@@ -2,6 +2,8 @@
 
 #include "treacle/model/case.hpp"
 
+#include <cmath>
+
 namespace treacle::test {
 
 /// A block of some density in the middle of a blob of fluid, without walls; in spacings of 1 mm.
@@ -95,6 +97,33 @@ inline Case fallingBlockCase(int dimensions, double angle) {
   floor.shape.kind = ShapeKind::Box;
   floor.shape.min = {-12e-3, -13e-3, -2 * deep}, floor.shape.max = {12e-3, -8e-3, 2 * deep};
   c.bodies.push_back(floor);
+  return c;
+}
+
+/// A block that lies on a slope, of which gravity is tilted in its place: along x it goes down. Drops of fluid
+/// stand on the slope at both ends of it, farther away than they act on it.
+inline Case slopeCase(int dimensions, double slope, double friction) {
+  Case c = fallingBlockCase(dimensions, 0);
+  c.gravity = {10 * std::sin(slope), -10 * std::cos(slope), 0};
+  Body &drops = c.bodies[0], &block = c.bodies[1], &floor = c.bodies[2];
+  const double deep = dimensions == 3 ? 2e-3 : 0;
+  drops.shape.min = {-9e-3, -8e-3, -deep / 2}, drops.shape.max = {9e-3, -6e-3, deep / 2};
+  drops.where = "abs(x) > 7e-3";
+  block.shape.min = {-3e-3, -8e-3, -deep}, block.shape.max = {3e-3, -4e-3, deep};
+  block.shape.transform.reset();
+  block.velocity = {};
+  block.friction = floor.friction = friction;
+  return c;
+}
+
+/// The same for ISPH, by which particles act less far: a shorter block, and drops that are nearer, in search cells
+/// from which those next to them reach below all of the block.
+inline Case isphSlopeCase(double slope, double friction) {
+  Case c = withIsph(slopeCase(2, slope, friction), 5);
+  c.domain.min[0] = -31e-3, c.domain.max[0] = 31.41e-3;  // cells of 2.4 mm, from -4.6 mm and from 2.6 mm on
+  c.bodies[0].shape.min[0] = -5e-3, c.bodies[0].shape.max[0] = 5e-3;
+  c.bodies[0].where = "abs(x) > 4e-3";
+  c.bodies[1].shape.min = {-2e-3, -8e-3, 0}, c.bodies[1].shape.max = {2e-3, -6e-3, 0};
   return c;
 }
 

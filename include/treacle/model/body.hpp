@@ -59,8 +59,8 @@ struct Oscillation {
   bool operator==(const Oscillation&) const = default;
 };
 
-/// Rotation of a wall, counter-clockwise seen from the end of its axis. The centre goes along with the wall's
-/// translation and oscillation.
+/// Rotation of a wall or nozzle, counter-clockwise seen from the end of its axis. The centre goes along with the
+/// translation, oscillation and displacement.
 struct Rotation {
   Vec<3> center{};                      // at the start [m]
   Vec<3> axis{0, 0, 1};                 // of any length but zero; in two dimensions this one
@@ -90,9 +90,9 @@ struct Body {
   int material = 0;   // index into Case::materials
   Vec<3> velocity{};  // fluid: at the start; wall: prescribed translation [m/s]
   Shape shape;
-  Oscillation oscillation{};                        // of a wall, on top of its velocity
-  TimeVector displacement{};                        // of a wall since the start, on top of both [m]
-  std::optional<Rotation> rotation{};               // of a wall, on top of all
+  Oscillation oscillation{};                        // of a wall or nozzle, on top of its velocity
+  TimeVector displacement{};                        // likewise since the start, on top of both [m]
+  std::optional<Rotation> rotation{};               // likewise, on top of all
   std::array<std::string, 3> velocityExpression{};  // of a fluid, in place of a component of its velocity [m/s]
   std::string where{};                              // there are particles only where it is not zero
   // In cases with heat. Of a fluid that at the start; of a wall that of its surface or, where it has a
@@ -108,6 +108,7 @@ struct Body {
   bool fileTemperatures = false;  // likewise, in place of its temperature
   Inflow inflow{};                // of an inflow, in place of a shape
   RigidSettings rigid{};          // of a rigid body
+  double friction = 0;            // of a rigid body or wall that others touch: its coefficient
 
   bool holdsFluid() const { return kind == BodyKind::Fluid || kind == BodyKind::Inflow; }
   /// Whether fluid meets its surface.

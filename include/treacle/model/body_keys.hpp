@@ -12,13 +12,11 @@ void visit(auto& v, Like<Oscillation> auto& o, const Case&) {
 }
 
 void visit(auto& v, Like<Rotation> auto& r, const Case& c) {
-  v({"center", "A point of the axis, at the start; it goes along with the wall's velocity and oscillation",
-     required, "m"},
-    r.center);
+  v({"center", "A point of the axis, at the start; it goes along with all other motion", required, "m"}, r.center);
   v({"speed", "Speed of the rotation, positive counter-clockwise seen from the end of the axis", optional,
      "rad/s"},
     r.speed);
-  v({"angle", "How far the wall has turned, in place of a speed", optional, "rad"}, r.angle);
+  v({"angle", "How far the wall or nozzle has turned, in place of a speed", optional, "rad"}, r.angle);
   if (c.dimensions == 3)
     v({"axis", "Direction of the axis, of any length but zero", required, "any unit"}, r.axis);
 }
@@ -195,6 +193,7 @@ void visit(auto& v, Like<Body> auto& b, const Case& c) {
     v({"velocity", "Velocity of the nozzle", optional, "m/s"}, b.velocity);
     v({"oscillation", "The nozzle swings to and fro"}, b.oscillation);
     v({"displacement", "How far the nozzle is displaced in time, along each axis", optional, "m"}, b.displacement);
+    v({"rotation", "The nozzle turns, on top of all other motion"}, b.rotation);
     if (c.heat)
       v({"temperature", "Temperature of the fluid that comes in", required, "K", positive}, b.temperature);
     if (c.method.kind == MethodKind::MphI)
@@ -228,6 +227,11 @@ void visit(auto& v, Like<Body> auto& b, const Case& c) {
       b.displacement);
     v({"rotation", "The wall turns, on top of all other motion"}, b.rotation);
   }
+  if (b.isWall())
+    v({"friction",
+       "Coefficient of Coulomb friction where rigid bodies touch; of two bodies the geometric mean counts",
+       optional, "", notNegative},
+      b.friction);
   if (c.heat) {
     const bool fluid = b.kind == BodyKind::Fluid;
     if (ofFile)

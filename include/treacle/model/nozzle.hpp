@@ -1,6 +1,7 @@
 #pragma once
 
 #include "treacle/model/case.hpp"
+#include "treacle/model/wall_motion.hpp"
 
 #include <cstddef>
 #include <string>
@@ -20,8 +21,8 @@ class NozzleLayers {
   std::size_t size() const { return across_.size(); }
   /// How many layers stand behind the opening: as deep as particles act on each other.
   int depth() const { return depth_; }
-  /// Of length 1.
-  const Vec<D>& direction() const { return direction_; }
+  /// That fluid leaves in where the nozzle is turned to at time t [s]; of length 1.
+  Vec<D> direction(double t) const;
   /// Cross-section of the particles, and of the opening as it was asked for [m2; m in 2D].
   double area() const { return area_; }
   double openingArea() const { return openingArea_; }
@@ -31,13 +32,18 @@ class NozzleLayers {
   /// With which the fluid leaves the nozzle: the mean over the step of dt from t on, or that at t where dt is 0
   /// [m/s]. Errors: InputError for a formula without a value.
   double speed(double t, double dt) const;
+  /// That of the layers in the step of dt from t on, by which they get to where layer() has them.
+  WallMotion<D> motion(const Domain& domain, double t, double dt) const;
+  /// The same about where the nozzle is when that step has ended: its velocityAt is that of fluid that leaves
+  /// then.
+  WallMotion<D> motionAtEnd(const Domain& domain, double t, double dt) const;
 
  private:
   const Body body_;
   double spacing_;
   int depth_;
-  Vec<D> direction_;
-  std::vector<Vec<D>> across_;  // from the centre [m]
+  Vec<D> direction_;            // at the start
+  std::vector<Vec<D>> across_;  // from the centre, at the start [m]
   double area_, openingArea_;
 };
 

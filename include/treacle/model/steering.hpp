@@ -10,7 +10,7 @@ namespace treacle {
 /// How a wall or an inflow is to go on from some time; what is not given stays as the case has it.
 struct Steering {
   std::optional<Vec<3>> velocity{};  // of a wall, or its centre if it rotates, or of a nozzle [m/s]
-  std::optional<double> spin{};      // of a wall that has a rotation, about its axis [rad/s]
+  std::optional<double> spin{};      // of one that has a rotation, about its axis [rad/s]
   std::optional<double> speed{};     // of the fluid relative to the nozzle that it comes out of [m/s]
   std::optional<double> flowRate{};  // or that through all of it [m3/s; m2/s in 2D]
 };

@@ -43,6 +43,8 @@ TEST(OpenCase, IsReadAndWritten) {
            {"jet.speed='0.1*sin(t)^2'", "jet.start=0.01", "jet.end=0.02"},
            {"jet.speed={times=[0,1],values=[0.1,0.2]}", "jet.velocity=[0.1,0]"},
            {"jet.oscillation={amplitude=[1e-3,0],period=0.1}"},
+           {"jet.rotation={center=[0,9e-3],speed=2}"},
+           {"jet.rotation={center=[0,9e-3],angle='0.1*sin(9*t)'}"},
            {"outflow=[{name='end',shape='plane',point=[1e-3,0],normal=[1,1]}]"}}) {
     const Case c = caseWith(overrides);
     shop.put("written.toml", caseText(c));
@@ -83,11 +85,12 @@ TEST(OpenCase, TablesOfTimeComeFromFiles) {
 
 TEST(OpenCase, MotionsAndRigidBodiesAreReadAndWritten) {
   Workshop shop;
-  for (const char* motion :
-       {"type='wall', displacement=['1e-3*sin(t)', {times=[0,1], values=[0,1e-3]}]",
-        "type='wall', displacement=[0, '1e-3*t'], rotation={center=[0,0], angle='0.1*t'}",
-        "type='wall', rotation={center=[0,0], angle={times=[0,1,2], values=[0,1,1]}}", "type='rigid'",
-        "type='rigid', mass=0.3, angular_velocity=2, velocity=[0,1e-2], translates=[true,false], rotates=false"}) {
+  for (const char* motion : {"type='wall', displacement=['1e-3*sin(t)', {times=[0,1], values=[0,1e-3]}]",
+                             "type='wall', displacement=[0, '1e-3*t'], rotation={center=[0,0], angle='0.1*t'}",
+                             "type='wall', rotation={center=[0,0], angle={times=[0,1,2], values=[0,1,1]}}",
+                             "type='rigid'", "type='wall', friction=0.2",
+                             "type='rigid', mass=0.3, friction=0.5, angular_velocity=2, velocity=[0,1e-2], "
+                             "translates=[true,false], rotates=false"}) {
     const std::string block =
         std::string("body = [\n{name='block', material='syrup', shape='box', min=[-2e-3,0], max=[2e-3,3e-3], ") +
         motion + "},\n";
@@ -121,6 +124,12 @@ const Mistake mistakes[] = {
     {"floor.displacement=['x', 0]", "expected an expression in t [s]"},
     {"floor.rotation={center=[0,0]}", "missing; expected a finite number [rad/s], or angle"},
     {"floor.rotation={center=[0,0], speed=1, angle=2}", "expected one of speed and angle, found both"},
+    {"jet.rotation={center=[0,0]}",
+     "speed in the rotation of [[body]] 'jet': missing; expected a finite number [rad/s], or angle"},
+    {"jet.rotation={center=[0,0], angle='x'}", "expected an expression in t [s]"},
+    {"jet.rotation={center=[0,0], speed=1, axis=[0,0,1]}", "unknown key 'axis' in the rotation of [[body]] 'jet'"},
+    {"floor.friction=-0.1", "friction in [[body]] 'floor' (box): expected a number not less than 0, found -0.1"},
+    {"jet.friction=0.1", "unknown key 'friction' in [[body]] 'jet' (inflow)"},
     {"jet.mass=1", "unknown key 'mass'"},
     {"rim.shape='ball'", "expected 'box' or 'plane', found 'ball'"},
 };

@@ -74,5 +74,35 @@ TEST(AffineSolve, KeepsToRestraints) {
   EXPECT_NEAR(x[0], 2.8, 1e-9);
 }
 
+/// What lies on a plane is held by friction up to its grip, and beyond that braked against the way that it slides.
+TEST(AffineSolve, GripsWhatItHolds) {
+  const auto f = [](const std::vector<double>& x) {
+    return std::vector<double>{2 * (x[0] - 3), 2 * (x[1] + 1), 2 * (x[2] - 4)};
+  };
+  Restraint floor{{0, 1, 0}, {0, 1, 0}, 0, {{{1, 0, 0}, {1, 0, 0}, 0}, {{0, 0, 1}, {0, 0, 1}, 0}}, 0.5};
+  const auto found = [&] {
+    std::vector<double> x{0, 0, 0}, derivative;
+    EXPECT_TRUE(AffineSolve::run(f, x, derivative, 1, 1e-9, 20, {floor}).converged);
+    return x;
+  };
+  // The plane pushes with 2, friction with 1 in the direction (-3, -4)/5.
+  std::vector<double> x = found();
+  EXPECT_NEAR(x[0], 3 - 0.3, 1e-8);
+  EXPECT_NEAR(x[1], 0, 1e-8);
+  EXPECT_NEAR(x[2], 4 - 0.4, 1e-8);
+  floor.slides[0].rest = 3;  // a plane that moves: there the push of 1 is along the other axis
+  x = found();
+  EXPECT_NEAR(x[0], 3, 1e-8);
+  EXPECT_NEAR(x[2], 4 - 0.5, 1e-8);
+  floor.grip = 5;
+  x = found();
+  EXPECT_NEAR(x[0], 3, 1e-8);
+  EXPECT_NEAR(x[2], 0, 1e-8);
+  floor.least = -2;  // that the fluid lifts it off
+  x = found();
+  EXPECT_NEAR(x[1], -1, 1e-8);
+  EXPECT_NEAR(x[2], 4, 1e-8);
+}
+
 }  // namespace
 }  // namespace treacle::test

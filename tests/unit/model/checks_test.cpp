@@ -76,6 +76,17 @@ TEST(courantNumber, takesTheFastestPointOfARotatingWall) {
   EXPECT_NEAR(courantNumber(c), 5 + std::hypot(9.5, 1.5), 1e-9);
 }
 
+TEST(courantNumber, takesTheFastestPointOfARotatingNozzle) {
+  Case c = damBreak();
+  c.bodies.push_back(makeBody("jet", BodyKind::Inflow, {}));
+  c.bodies[2].inflow.nozzle.center = {0, 30e-3, 0};
+  c.bodies[2].inflow.nozzle.direction = {1, 0, 0};
+  c.bodies[2].inflow.nozzle.radius = 2e-3;
+  c.bodies[2].inflow.speed = TimeFunction{1};
+  c.bodies[2].rotation = Rotation{.center = {}, .speed = 1000};
+  EXPECT_NEAR(courantNumber(c), std::hypot(31.5, 3.5), 1e-9);
+}
+
 TEST(courantNumber, isBoundedWhereItLimitsTheSteps) {
   Case c = damBreak();
   c.bodies[0].velocity = {3, 4};
@@ -342,6 +353,18 @@ TEST(caseWarnings, wallsThinnerThanTheViscosityRadius) {  // h_v = 3.5
     c.bodies[0].kind = BodyKind::Fluid;
     EXPECT_THAT(caseWarnings(c), IsEmpty());
   }
+}
+
+TEST(caseWarnings, frictionThatMeetsNone) {
+  Case c = damBreak();
+  c.bodies[1].friction = 0.3;
+  EXPECT_THAT(caseWarnings(c),
+              ElementsAre(HasSubstr("'floor' has friction = 0.3 without effect: no body is rigid")));
+  c.bodies.push_back(makeBody("block", BodyKind::Rigid, box({25e-3, 0}, {35e-3, 10e-3})));
+  EXPECT_THAT(caseWarnings(c),
+              ElementsAre(HasSubstr("'floor' has friction = 0.3 without effect: no body that it can touch")));
+  c.bodies[2].friction = 0.1;
+  EXPECT_THAT(caseWarnings(c), IsEmpty());
 }
 
 TEST(caseWarnings, radiiThatAreShortForTheirWeights) {

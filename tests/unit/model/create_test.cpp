@@ -263,6 +263,21 @@ TEST(createParticles, rejectsRotationsAcrossHalfAPeriod) {
   EXPECT_EQ(messageOfCreation<3>(c), "no error");
 }
 
+/// Their first layer goes on by a spacing before it leaves.
+TEST(createParticles, rejectsNozzlesThatTurnAcrossAPeriod) {
+  Case c = emptyCase(3);
+  c.domain = {{-10, -10, -10}, {10, 10, 10}, {true, false, false}};
+  c.bodies = {makeBody("jet", BodyKind::Inflow, {})};
+  c.bodies[0].inflow.nozzle.center = {0, 5.2, 0};
+  c.bodies[0].inflow.nozzle.direction = {0, 1, 0};
+  c.bodies[0].inflow.nozzle.radius = 0.5;
+  c.bodies[0].inflow.speed = TimeFunction{1};
+  c.bodies[0].rotation = Rotation{.center = {0, -5, 0}, .speed = 1};
+  EXPECT_THAT(messageOfCreation<3>(c), HasSubstr("rotating inflow 'jet' reaches"));
+  c.bodies[0].rotation->center[1] = -2;
+  EXPECT_EQ(messageOfCreation<3>(c), "no error");
+}
+
 TEST(createParticles, rejectsExpressionsThatAreNotFiniteAtAParticle) {
   Case c = emptyCase(2);
   c.bodies = {makeBody("drop", BodyKind::Fluid, box({0, 0}, {2, 1}))};

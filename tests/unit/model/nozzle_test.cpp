@@ -37,7 +37,7 @@ TEST(NozzleLayers, AreALatticeAcrossTheDirection) {
   b.inflow.nozzle.innerRadius = 0.4;
   const NozzleLayers<3> layers(c, b);
   const Vec<3> n{1.0 / 3, 2.0 / 3, -2.0 / 3};
-  EXPECT_LE(norm(layers.direction() - n), 1e-15);
+  EXPECT_LE(norm(layers.direction(7) - n), 1e-15);
   EXPECT_NEAR(layers.area(), std::numbers::pi * (1.23 * 1.23 - 0.4 * 0.4), 0.02 * layers.openingArea());
   EXPECT_NEAR(layers.openingArea(), std::numbers::pi * (1.23 * 1.23 - 0.4 * 0.4), 1e-12);
   const std::vector<Vec<3>> places = layers.layer(0.25, 7), next = layers.layer(0.35, 7);
@@ -128,6 +128,38 @@ TEST(NozzleLayers, SpeedIsTheMeanOfAStep) {
   rate.inflow.speed.reset();
   rate.inflow.flowRate = TimeFunction{0, "t"};
   EXPECT_NEAR((NozzleLayers<2>(c, rate).speed(1, 2)), 2 / 0.5, 1e-12);
+}
+
+/// The motion of a step leads each place of a layer to where that layer is at its end, whatever it turns and moves
+/// by; fluid that leaves has the velocities, and what drives it the accelerations, of these places.
+TEST(NozzleLayers, TurnWithTheirNozzle) {
+  const Case c = caseOf(3);
+  Body b = inflow(NozzleKind::Disc);
+  b.inflow.nozzle.radius = 0.2;
+  b.velocity = {0.1, -0.2, 0.3};
+  b.rotation = Rotation{.center = {0.5, 1, 4}, .axis = {1, -2, 0.5}, .angle = TimeFunction{0, "2*t+0.1"}};
+  const NozzleLayers<3> layers(c, b);
+  const double t = 0.3, dt = 0.2, way = -0.15;
+  const WallMotion<3> motion = layers.motion(c.domain, t, dt);
+  const auto from = layers.layer(way, t), to = layers.layer(way + 0.5 * dt, t + dt);
+  ASSERT_GT(from.size(), 5u);
+  const Vec<3> axis = b.rotation->direction(), arm = from[0] - (Vec<3>{0.5, 1, 4} + t * b.velocity);
+  EXPECT_NEAR(norm(arm), norm(NozzleLayers<3>(c, b).layer(way, 0)[0] - b.rotation->center), 1e-12);
+  EXPECT_NEAR(dot(layers.direction(t), axis), dot(layers.direction(0), axis), 1e-14);
+  EXPECT_NEAR(dot(layers.direction(t), layers.direction(0)),
+              std::cos(2 * t) + (1 - std::cos(2 * t)) * std::pow(dot(layers.direction(0), axis), 2), 1e-14);
+  for (std::size_t i = 0; i < from.size(); ++i)
+    EXPECT_LE(norm(from[i] + dt * motion.chordAt(from[i]) - to[i]), 1e-12);
+
+  const double e = 1e-4;
+  const auto before = layers.layer(way - 0.5 * e, t - e), after = layers.layer(way + 0.5 * e, t + e);
+  const WallMotion<3> leaving = layers.motionAtEnd(c.domain, t - 1e-9, 1e-9);
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    const Vec<3> u = (1 / (2 * e)) * (after[i] - before[i]);
+    const Vec<3> a = (1 / (e * e)) * (after[i] - 2.0 * from[i] + before[i]);
+    EXPECT_LE(norm(leaving.velocityAt(from[i]) - u), 1e-6);
+    EXPECT_LE(norm(leaving.accelerationAt(from[i]) - a), 1e-4);
+  }
 }
 
 TEST(NozzleLayers, NeedRoomForAParticle) {

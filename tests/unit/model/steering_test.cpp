@@ -1,10 +1,12 @@
 #include "treacle/model/steering.hpp"
 
 #include "treacle/core/error.hpp"
+#include "treacle/model/nozzle.hpp"
 #include "treacle/model/wall_motion.hpp"
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <string>
 
@@ -74,6 +76,21 @@ TEST(Steering, Turns) {
   EXPECT_NEAR(before.spin[2], 2, 1e-12);
   EXPECT_NEAR(after.spin[2], -4, 1e-9);
   EXPECT_NEAR(after.sine, 0, 1e-12);  // 2 - 2
+}
+
+/// A nozzle, too.
+TEST(Steering, TurnsNozzles) {
+  Body body = inflow();
+  body.inflow.nozzle.direction = {1, 0, 0};
+  body.inflow.nozzle.radius = 1;
+  body.rotation = Rotation{};
+  Case c;
+  c.dimensions = 2;
+  c.spacing = 0.5;
+  body = steered(steered(body, {.spin = 3}, 0), {.spin = -1}, 0.5);
+  EXPECT_LE(norm(NozzleLayers<2>(c, body).direction(0.25) - Vec<2>{std::cos(0.75), std::sin(0.75)}), 1e-12);
+  EXPECT_LE(norm(NozzleLayers<2>(c, body).direction(1.5) - Vec<2>{std::cos(0.5), std::sin(0.5)}), 1e-9);
+  expectRefusal([&] { steered(inflow(), {.spin = 1}, 1); }, "it has no rotation");
 }
 
 TEST(Steering, SwitchesTheFlowAtOnce) {
