@@ -46,20 +46,17 @@ struct SumSurface {
   }
 };
 
-/// The force of the surface per fluid particle, from the fluid and the walls around it, and what keeps it apart.
+/// The force of the stress per fluid particle, from the fluid around it, and what keeps it apart.
 template <int D>
 struct SurfaceForce {
   static constexpr int values = 2 * D;
   static constexpr bool uses(ListSegment s) { return isFluid(s); }
-  using StoresVectors = void;
   using Own = Vec<D>;
   using Other = Vec<D>;
 
   SurfaceTerms<D> terms;
-  const SurfaceSums<D>* sums;
   const Vec<D>* m;
   Vec<D>*force, *apart;
-  Vec<D>* ofWalls;  // or null
 
   __device__ Own loadOwn(const MphPairs<D>&, std::uint32_t i) const { return m[i]; }
   __device__ Other loadOther(const MphPairs<D>&, std::uint32_t j) const { return m[j]; }
@@ -72,13 +69,8 @@ struct SurfaceForce {
     addScaled(sum, -g * dot(other, d), other);
     addScaled(sum + D, -terms.core(r.inverse) * both, d);
   }
-  __device__ void store(const MphPairs<D>&, std::uint32_t i, const Vec<2 * D>& sum) const {
-    Vec<D> ofFluid;
-    for (int k = 0; k < D; ++k) ofFluid[k] = sum[k], apart[i][k] = sum[D + k];
-    const SurfaceSums<D> s = sums[i];
-    const Vec<D> wall = terms.ofWalls(s, m[i], ofFluid);
-    force[i] = ofFluid + wall;
-    if (ofWalls) ofWalls[i] = s.walls > 0 ? wall * (1 / s.walls) : Vec<D>{};
+  __device__ void store(const MphPairs<D>&, std::uint32_t i, int n, double sum) const {
+    (n < D ? force[i][n] : apart[i][n - D]) = sum;
   }
 };
 
@@ -157,8 +149,15 @@ template <int D>
 void surfaceForces(Context<Cuda>& context, const MphPairs<D>& pairs, const SurfaceTerms<D>& terms,
                    std::span<const SurfaceSums<D>> sums, std::span<const Vec<D>> m, std::span<Vec<D>> force,
                    std::span<Vec<D>> apart, std::span<Vec<D>> ofWalls) {
-  sumOnFluid(context, pairs,
-             SurfaceForce<D>{terms, sums.data(), m.data(), force.data(), apart.data(), ofWalls.data()});
+  sumOnFluid(context, pairs, SurfaceForce<D>{terms, m.data(), force.data(), apart.data()});
+  forEach(context, pairs.ownFluid(),
+          [terms, from = sums.data(), slope = m.data(), to = force.data(),
+           alone = ofWalls.data()] __device__(std::size_t i) {
+            const SurfaceSums<D> s = from[i];
+            const Vec<D> wall = terms.ofWalls(s, slope[i], to[i]);
+            to[i] += wall;
+            if (alone) alone[i] = s.walls > 0 ? wall * (1 / s.walls) : Vec<D>{};
+          });
 }
 
 template <int D>
