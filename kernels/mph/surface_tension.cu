@@ -94,10 +94,9 @@ struct EvenForce {
   __device__ void add(const MphPairs<D>&, double* sum, const Vec<D>& d, const PairDistance<double>& r,
                       const Own& own, const Other& other, ListSegment) const {
     const Vec<D> normal = own.m + other.m;
-    const double normal2 = norm2(normal);
-    if (!(norm2(own.m) > 0 && norm2(other.m) > 0 && normal2 > 0)) return;
+    if (!(norm2(own.m) > 0 && norm2(other.m) > 0)) return;
     const double unit2 = r.inverse * r.inverse, across = dot(normal, d);
-    const double k = terms.evening(r.square) * (1 - across * across * unit2 / normal2);
+    const double k = terms.evening(r.square) * (1 - across * across * unit2 / (norm2(normal) + terms.evenNoise));
     addScaled(sum, k * unit2 * dot(d, other.f - own.f), d);
   }
   __device__ void store(const MphPairs<D>&, std::uint32_t i, int n, double sum) const {
@@ -141,7 +140,7 @@ void surfaceSlope(Context<Cuda>& context, const MphPairs<D>& pairs, const Surfac
           [terms, material = pairs.material.data(), from = sums.data(), to = m.data(),
            alone = free.data()] __device__(std::size_t i) {
             to[i] = terms.slope(material[i], from[i]);
-            alone[i] = from[i].walls > 0 ? Vec<D>{} : to[i];
+            alone[i] = terms.sharing(material[i], from[i], to[i]);
           });
 }
 

@@ -33,7 +33,7 @@ void surfaceSlope(Context<Cpu>&, const MphPairs<D>& pairs, const SurfaceTerms<D>
       for (int k = 0; k < D; ++k) sum.fluid[k] = fluid[k][lane], sum.wall[k] = wall[k][lane];
       sum.filled = filled[lane], sum.walls = walls[lane], sum.pull = pull[lane];
       m[i] = terms.slope(pairs.material[i], sum);
-      free[i] = sum.walls > 0 ? Vec<D>{} : m[i];
+      free[i] = terms.sharing(pairs.material[i], sum, m[i]);
     }
   });
 }
@@ -98,14 +98,14 @@ void evenAlongSurface(Context<Cpu>&, const MphPairs<D>& pairs, const SurfaceTerm
         const Vec<D>& mj = free[j];
         const double mj2 = norm2(mj);
         if (mj2 == 0) continue;
-        Lanes normal2 = {}, across = {}, closing = {};
+        Lanes normal2 = broadcast(terms.evenNoise), across = {}, closing = {};
         for (int a = 0; a < D; ++a) {
           const Lanes n = mi[a] + mj[a];
           normal2 += n * n, across += n * pair.d[a], closing += pair.d[a] * (f[j][a] - fi[a]);
         }
         const Lanes unit2 = pair.r.inverse * pair.r.inverse, along = 1.0 - across * across * unit2 / normal2;
         const Lanes k = terms.evening(pair.r.square) * along * unit2 * closing;
-        for (int a = 0; a < D; ++a) sum[a] += (mi2 > 0.0 && normal2 > 0.0 ? k : Lanes{}) * pair.d[a];
+        for (int a = 0; a < D; ++a) sum[a] += (mi2 > 0.0 ? k : Lanes{}) * pair.d[a];
       }
     storeLanes<D>(range, sum, y);
   });

@@ -1,6 +1,7 @@
 #include "treacle/model/lattice_sum.hpp"
 #include "treacle/mph/surface_tension.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -21,6 +22,9 @@ SurfaceTerms<D> SurfaceTerms<D>::make(const Case& c) {
   const double along = D == 2 ? 3.0 / 8 : 4.0 / 15;  // mean of (e.t)^2 (1 - (e.n)^2) over all directions e
   terms.evenFactor =
       1 / (along * latticeSum<D>(h, c.spacing, [&](double r) { return positivePart(1 - r * r / (h * h)); }));
+  double largest = 0;
+  for (const Material& m : c.materials) largest = std::max(largest, m.surfaceTension);
+  terms.evenNoise = 1e-3 * 8.0 / 3.0 * largest * std::sqrt(terms.noise2);
   for (std::size_t m = 0; m < c.materials.size(); ++m) {
     terms.tension[m] = c.materials[m].surfaceTension;
     const double cosine = std::cos(c.materials[m].contactAngle * std::numbers::pi / 180);

@@ -23,8 +23,8 @@ namespace treacle {
 ///
 ///   f_i += sum_j k_ij (1 - (e.n)^2) e (e.(f_j - f_i)),   k = K [1 - r^2/h^2]_+,   n along m_i + m_j
 ///
-/// With K a particle of a full lattice takes, along the surface, just its neighbours' mean. Not near walls, where
-/// forces along the surface are to be.
+/// n being shorter than 1 where m is noise. With K a particle of a full lattice takes, along the surface, just its
+/// neighbours' mean. Not near walls, where forces along the surface are to be.
 ///
 /// At walls the surface ends in a contact line. There G is continued as if the surface went on behind the wall,
 /// and the wall holds what the stress pulls off it and pulls along itself as the contact angle says.
@@ -47,6 +47,7 @@ struct SurfaceTerms {
   double coreRadius = 0;         // r_0 [m]
   double coreFactor = 0;         // k / r_0^2 [1/m2]
   double evenFactor = 0;         // K
+  double evenNoise = 0;          // |m|^2 that tells no direction, since particles in disorder have it [Pa]
   double tension[maxMaterials];  // gamma [N/m]
   double pull[maxMaterials];     // of a wall of the material along itself, over gamma
 
@@ -67,6 +68,15 @@ struct SurfaceTerms {
   template <class Real>
   TREACLE_HD Real core(const Real& inverseDistance) const {
     return coreFactor * positivePart(coreRadius * inverseDistance - 1.0);
+  }
+  /// m of a particle that shares forces along the surface, and never quite zero: its length may be rounding alone.
+  TREACLE_HD Vec<D> sharing(int material, const SurfaceSums<D>& s, const Vec<D>& m) const {
+    if (s.walls > 0 || tension[material] == 0) return {};
+    const double least2 = 1e-12 * evenNoise;
+    if (norm2(m) > least2) return m;
+    Vec<D> small{};
+    small[0] = sqrt(least2);
+    return small;
   }
   /// The part k of the difference of their forces that two neighbours share.
   template <class Real>
