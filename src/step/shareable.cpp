@@ -41,17 +41,17 @@ void requireCells(const Case& c, std::uint64_t filled, int processes) {
 }
 
 template <int D>
-void requireCells(const Case& c, const CellGrid<D>& grid, std::span<const Vec<D>> some,
+void requireCells(const Case& c, const CellGrid<D>& grid, const Particles<D>& some,
                   const Communicator& processes) {
   if (c.hasInflow()) return;
   std::vector<std::uint8_t> filled(grid.cellCount());
-  for (const Vec<D>& x : some)
+  for (const Vec<D>& x : some.position.span().first(some.fluidCount))
     if (isFinitePosition(x)) filled[grid.linear(grid.cellOf(x))] = 1;  // of others the sort says so
   processes.anyOf(filled);
   requireCells(c, static_cast<std::uint64_t>(std::ranges::count(filled, 1)), processes.size());
 }
 
-template void requireCells<2>(const Case&, const CellGrid<2>&, std::span<const Vec<2>>, const Communicator&);
-template void requireCells<3>(const Case&, const CellGrid<3>&, std::span<const Vec<3>>, const Communicator&);
+template void requireCells<2>(const Case&, const CellGrid<2>&, const Particles<2>&, const Communicator&);
+template void requireCells<3>(const Case&, const CellGrid<3>&, const Particles<3>&, const Communicator&);
 
 }  // namespace treacle

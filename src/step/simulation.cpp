@@ -70,14 +70,9 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     bodies.begin(state);
     method = theCase.method.kind == MethodKind::Isph ? makeIsphStep(static_cast<Flow&>(*this))
                                                      : makeMphStep(static_cast<Flow&>(*this));
-    if (context.communicator)
-      requireCells<D>(theCase, method->grid(), state.position.span().first(state.fluidCount),
-                      *context.communicator);
+    if (context.communicator) requireCells<D>(theCase, method->grid(), state, *context.communicator);
     distant.emplace(theCase, method->grid(), state, time, context.communicator);
-    requireTemperatures(theCase, state);
-    setField(theCase.hasOwnViscosities(), &FluidExtras::shearRates, &Particles<D>::shearRate, 0, state);
-    setField(theCase.hasViscosityFactors(), &FluidExtras::viscosityFactors, &Particles<D>::viscosityFactor, 1,
-             state);
+    setExtras(theCase, state);
     toBackend(context, std::move(state), particles);
     if (step == 0) forEachFlowMemoryOf([&](auto& field) { clearValues(context, field.span()); }, particles);
     method->sortParticles();

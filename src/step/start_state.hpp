@@ -40,6 +40,14 @@ void requireTemperatures(const Case& c, Particles<D>& particles) {
   if (!c.heat) setField(false, &FluidExtras::temperatures, &Particles<D>::temperature, 0, particles);
 }
 
+/// The fields that the case wants the fluid to have, and no others. Errors: those of requireTemperatures.
+template <int D>
+void setExtras(const Case& c, Particles<D>& particles) {
+  requireTemperatures(c, particles);
+  setField(c.hasOwnViscosities(), &FluidExtras::shearRates, &Particles<D>::shearRate, 0, particles);
+  setField(c.hasViscosityFactors(), &FluidExtras::viscosityFactors, &Particles<D>::viscosityFactor, 1, particles);
+}
+
 /// Of the fluid [kg; per metre of depth in 2D].
 template <int D>
 double fluidMass(const Case& c, const Particles<D>& particles) {

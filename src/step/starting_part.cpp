@@ -3,6 +3,7 @@
 #include "moving_bodies.hpp"
 #include "treacle/core/processes.hpp"
 #include "treacle/model/particles_copy.hpp"
+#include "treacle/search/particle_sort.hpp"
 #include "treacle/step/near_blocks.hpp"
 #include "treacle/step/shareable.hpp"
 #include "walls_of_all.hpp"
@@ -82,7 +83,7 @@ StartingPart<D>::StartingPart(const Case& c, const CellGrid<D>& grid, const Part
                               const Communicator& processes)
     : has_(some.has), modes_(some.modeCount()), rank_(processes.rank()) {
   context_.communicator = &processes;
-  requireCells<D>(c, grid, some.position.span().first(some.fluidCount), processes);
+  requireCells(c, grid, some, processes);
   NearBlocks<D> near(c, grid);
   near.add(some);
   near.unite(processes);
@@ -172,13 +173,7 @@ void StartingPart<D>::countSent(const CellGrid<D>& grid) {
 
 template <int D>
 void StartingPart<D>::place(SortedParticles<D>& sorted) const {
-  sorted.fluidCount = particles_.wallBegin();
-  sorted.activeCount = ranges_.activeCount;
-  sorted.ghostFluid = particles_.ghostCount;
-  sorted.ghostWalls = ranges_.ghostWalls;
-  sorted.position = particles_.position;
-  sorted.material = particles_.material;
-  sorted.cells = viewOf(ranges_);
+  placeSorted(particles_, ranges_, sorted);
   sorted.owner = owner_;
 }
 

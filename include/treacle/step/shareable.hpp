@@ -3,10 +3,10 @@
 #include "treacle/core/backend.hpp"
 #include "treacle/core/communicator.hpp"
 #include "treacle/model/case.hpp"
+#include "treacle/model/particles.hpp"
 #include "treacle/search/cell_grid.hpp"
 
 #include <cstdint>
-#include <span>
 
 namespace treacle {
 
@@ -16,9 +16,8 @@ void requireShareable(const Case& c, BackendKind backend);
 /// `filled`: search cells with fluid in them, the parts that it can be divided into. Errors: InputError for more
 /// processes than these, most of which would never have anything to do; where fluid comes in they may have.
 void requireCells(const Case& c, std::uint64_t filled, int processes);
-/// The same where each of the processes has `some` of the fluid, whichever [m]. Collective; all throw.
+/// The same where each of the processes has `some` of the particles, whichever. Collective; all throw.
 template <int D>
-void requireCells(const Case& c, const CellGrid<D>& grid, std::span<const Vec<D>> some,
-                  const Communicator& processes);
+void requireCells(const Case& c, const CellGrid<D>& grid, const Particles<D>& some, const Communicator& processes);
 
 }  // namespace treacle

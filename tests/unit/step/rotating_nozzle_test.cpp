@@ -1,3 +1,4 @@
+#include "support/continued_jet.hpp"
 #include "support/isph_cases.hpp"
 #include "support/open_cases.hpp"
 #include "support/state_of.hpp"
@@ -130,21 +131,10 @@ TEST(RotatingNozzle, ThrowsWhatItsMotionGives) {
 template <int D>
 void checkContinued(MethodKind method) {
   Case c = jetCase(D, method);
-  c.gravity[1] = -2;
   c.bodies[0].rotation = Rotation{.center = {-1e-3, 2e-3, 0},
                                   .axis = D == 3 ? Vec<3>{1, -1, 2} : Vec<3>{0, 0, 1},
                                   .angle = TimeFunction{0, "2*t+0.05*sin(60*t)"}};
-  Simulation<D> whole(c, created<D>(c));
-  for (int k = 0; k < 45; ++k) whole.advance();
-  Simulation<D> rest(c, stateOf(whole), whole.step(), whole.time());
-  for (int k = 0; k < 45; ++k) {
-    const StepReport a = whole.advance(), b = rest.advance();
-    ASSERT_EQ(a.flow->in, b.flow->in);
-    ASSERT_EQ(a.iterations, b.iterations);
-  }
-  EXPECT_GT(whole.particles().flow.out().particles, 0u);
-  EXPECT_TRUE(sameBits(stateOf(whole), stateOf(rest)));
-  EXPECT_EQ(whole.particles().flow, rest.particles().flow);
+  checkContinuedJet<D>(c);
 }
 
 TEST(RotatingNozzle, ContinuesFromACopyWithTheSameBits) {
