@@ -4,7 +4,8 @@
 
 namespace treacle {
 
-/// Sum of f(r) over the other points of a full cubic lattice within `radius`, r their distance [m].
+/// Sum of f(r) over the other points of a full cubic lattice in a cube around `radius`, r their distance [m]. Its
+/// corners are further away: f is to be zero there.
 template <int D, class F>
 double latticeSum(double radius, double spacing, F&& f) {
   const int reach = static_cast<int>(std::ceil(radius / spacing));
