@@ -8,7 +8,7 @@ namespace {
 /// What fluid and walls are around each fluid particle.
 template <int D>
 struct SumSurface {
-  static constexpr int values = 2 * D + 3;
+  static constexpr int values = 2 * D + 5;
   static constexpr bool uses(ListSegment) { return true; }
   struct Own {};
   struct Other {
@@ -25,15 +25,17 @@ struct SumSurface {
 
   __device__ void add(const MphPairs<D>&, double* sum, const Vec<D>& d, const PairDistance<double>& r, Own,
                       const Other& other, ListSegment segment) const {
-    const double g = terms.gradient(r.square), share = terms.share(g, r.square);
+    const double g = terms.gradient(r.square), share = terms.share(g, r.square), w = terms.weight(r.square);
     if (isFluid(segment)) {
       addScaled(sum, g, d);
       sum[2 * D] += share;
+      sum[2 * D + 3] += w;
       return;
     }
     addScaled(sum + D, g, d);
     sum[2 * D + 1] += share;
     sum[2 * D + 2] = fma(share, other.pull, sum[2 * D + 2]);
+    sum[2 * D + 4] += w;
   }
   __device__ void store(const MphPairs<D>&, std::uint32_t i, int n, double sum) const {
     SurfaceSums<D>& s = sums[i];
@@ -41,62 +43,105 @@ struct SumSurface {
                     : n < 2 * D      ? s.wall[n - D]
                     : n == 2 * D     ? s.filled
                     : n == 2 * D + 1 ? s.walls
-                                     : s.pull;
+                    : n == 2 * D + 2 ? s.pull
+                    : n == 2 * D + 3 ? s.colour
+                                     : s.wallColour;
     value = sum;
   }
 };
 
-/// The force of the stress per fluid particle, from the fluid around it, and what keeps it apart.
+/// Per fluid particle, from the fluid around it: the force of the stress, what keeps it apart, and S.
 template <int D>
 struct SurfaceForce {
-  static constexpr int values = 2 * D;
+  static constexpr int values = 3 * D;
   static constexpr bool uses(ListSegment s) { return isFluid(s); }
   using Own = Vec<D>;
   using Other = Vec<D>;
 
   SurfaceTerms<D> terms;
   const Vec<D>* m;
-  Vec<D>*force, *apart;
+  Vec<D>*force, *apart, *press;
 
   __device__ Own loadOwn(const MphPairs<D>&, std::uint32_t i) const { return m[i]; }
   __device__ Other loadOther(const MphPairs<D>&, std::uint32_t j) const { return m[j]; }
 
   __device__ void add(const MphPairs<D>&, double* sum, const Vec<D>& d, const PairDistance<double>& r,
                       const Own& own, const Other& other, ListSegment) const {
-    const double g = terms.gradient(r.square), both = norm2(own) + norm2(other);
+    const double g = terms.gradient(r.square), other2 = norm2(other), both = norm2(own) + other2;
     addScaled(sum, g * both, d);
     addScaled(sum, -g * dot(own, d), own);
     addScaled(sum, -g * dot(other, d), other);
     addScaled(sum + D, -terms.core(r.inverse) * both, d);
+    addScaled(sum + 2 * D, terms.weight(r.square) * sqrt(other2), other);
   }
   __device__ void store(const MphPairs<D>&, std::uint32_t i, int n, double sum) const {
-    (n < D ? force[i][n] : apart[i][n - D]) = sum;
+    (n < D ? force[i][n] : n < 2 * D ? apart[i][n - D] : press[i][n - 2 * D]) = sum;
   }
 };
 
-/// y += the force per fluid particle, what it shares of those along the surface with its neighbours, and `apart`.
+/// force += what makes up for the depth of the tension, per fluid particle, and the sums of the fits around it.
+template <int D>
+struct SurfaceBend {
+  static constexpr int values = D + 2;
+  static constexpr bool uses(ListSegment s) { return isFluid(s); }
+  using Own = Vec<D>;
+  struct Other {
+    Vec<D> m;
+    SurfaceFit fit;
+  };
+
+  SurfaceTerms<D> terms;
+  const Vec<D>* normal;
+  const SurfaceFit* fit;
+  Vec<D>* force;
+  SurfaceFit* fitted;
+
+  __device__ Own loadOwn(const MphPairs<D>&, std::uint32_t i) const { return normal[i]; }
+  __device__ Other loadOther(const MphPairs<D>&, std::uint32_t j) const { return {normal[j], fit[j]}; }
+
+  __device__ void add(const MphPairs<D>&, double* sum, const Vec<D>& d, const PairDistance<double>& r,
+                      const Own& own, const Other& other, ListSegment) const {
+    const double closing = dot(other.m, d) * norm(own) - dot(own, d) * norm(other.m);
+    addScaled(sum, terms.bending(r.square, r.inverse) * closing, d);
+    const double near = terms.nearness(r.square);
+    sum[D] = fma(near, other.fit.force, sum[D]);
+    sum[D + 1] = fma(near, other.fit.press, sum[D + 1]);
+  }
+  __device__ void store(const MphPairs<D>&, std::uint32_t i, int n, double sum) const {
+    if (n < D)
+      force[i][n] += sum;
+    else
+      (n == D ? fitted[i].force : fitted[i].press) = sum;
+  }
+};
+
+/// y += the force per fluid particle, what it shares of it along the surface with its neighbours, and `apart`.
 template <int D>
 struct EvenForce {
   static constexpr int values = D;
   static constexpr bool uses(ListSegment s) { return isFluid(s); }
   struct Own {
     Vec<D> m, f;
+    bool shares;
   };
   using Other = Own;
 
   SurfaceTerms<D> terms;
-  const Vec<D>*free, *f, *apart;  // the last may be null
+  const Vec<D>* normal;
+  const SurfaceFit* fit;
+  const Vec<D>*f, *apart;  // the last may be null
   Vec<D>* y;
 
-  __device__ Own loadOwn(const MphPairs<D>&, std::uint32_t i) const { return {free[i], f[i]}; }
-  __device__ Other loadOther(const MphPairs<D>&, std::uint32_t j) const { return {free[j], f[j]}; }
+  __device__ Own loadOwn(const MphPairs<D>&, std::uint32_t i) const { return {normal[i], f[i], fit[i].press > 0}; }
+  __device__ Other loadOther(const MphPairs<D>& pairs, std::uint32_t j) const { return loadOwn(pairs, j); }
 
   __device__ void add(const MphPairs<D>&, double* sum, const Vec<D>& d, const PairDistance<double>& r,
                       const Own& own, const Other& other, ListSegment) const {
-    const Vec<D> normal = own.m + other.m;
-    if (!(norm2(own.m) > 0 && norm2(other.m) > 0)) return;
-    const double unit2 = r.inverse * r.inverse, across = dot(normal, d);
-    const double k = terms.evening(r.square) * (1 - across * across * unit2 / (norm2(normal) + terms.evenNoise));
+    if (!(own.shares && other.shares)) return;
+    const Vec<D> n = own.m + other.m;
+    const double unit2 = r.inverse * r.inverse, across = dot(n, d);
+    const double along = 1 - across * across * unit2 / (norm2(n) + terms.evenNoise);
+    const double k = terms.evenFactor * terms.nearness(r.square) * along;
     addScaled(sum, k * unit2 * dot(d, other.f - own.f), d);
   }
   __device__ void store(const MphPairs<D>&, std::uint32_t i, int n, double sum) const {
@@ -134,36 +179,37 @@ struct SurfaceReaction {
 
 template <int D>
 void surfaceSlope(Context<Cuda>& context, const MphPairs<D>& pairs, const SurfaceTerms<D>& terms,
-                  std::span<SurfaceSums<D>> sums, std::span<Vec<D>> m, std::span<Vec<D>> free) {
+                  std::span<SurfaceSums<D>> sums, std::span<Vec<D>> m) {
   sumOnFluid(context, pairs, SumSurface<D>{terms, sums.data()});
   forEach(context, pairs.ownFluid(),
-          [terms, material = pairs.material.data(), from = sums.data(), to = m.data(),
-           alone = free.data()] __device__(std::size_t i) {
+          [terms, material = pairs.material.data(), from = sums.data(), to = m.data()] __device__(std::size_t i) {
             to[i] = terms.slope(material[i], from[i]);
-            alone[i] = terms.sharing(material[i], from[i], to[i]);
           });
 }
 
 template <int D>
 void surfaceForces(Context<Cuda>& context, const MphPairs<D>& pairs, const SurfaceTerms<D>& terms,
-                   std::span<const SurfaceSums<D>> sums, std::span<const Vec<D>> m, std::span<Vec<D>> force,
-                   std::span<Vec<D>> apart, std::span<Vec<D>> ofWalls) {
-  sumOnFluid(context, pairs, SurfaceForce<D>{terms, m.data(), force.data(), apart.data()});
+                   std::span<const SurfaceSums<D>> sums, std::span<const Vec<D>> m, const SurfaceForces<D>& of) {
+  sumOnFluid(context, pairs, SurfaceForce<D>{terms, m.data(), of.force.data(), of.apart.data(), of.press.data()});
   forEach(context, pairs.ownFluid(),
-          [terms, from = sums.data(), slope = m.data(), to = force.data(),
-           alone = ofWalls.data()] __device__(std::size_t i) {
-            const SurfaceSums<D> s = from[i];
-            const Vec<D> wall = terms.ofWalls(s, slope[i], to[i]);
-            to[i] += wall;
-            if (alone) alone[i] = s.walls > 0 ? wall * (1 / s.walls) : Vec<D>{};
-          });
+          [terms, material = pairs.material.data(), from = sums.data(), slope = m.data(),
+           of] __device__(std::size_t i) { terms.finish(material[i], i, from[i], slope[i], of.force[i], of); });
+}
+
+template <int D>
+void bendSurface(Context<Cuda>& context, const MphPairs<D>& pairs, const SurfaceTerms<D>& terms,
+                 const SurfaceForces<D>& of, std::span<SurfaceFit> fitted) {
+  sumOnFluid(context, pairs,
+             SurfaceBend<D>{terms, of.normal.data(), of.fit.data(), of.force.data(), fitted.data()});
+  forEach(context, pairs.ownFluid(),
+          [terms, sums = fitted.data(), of] __device__(std::size_t i) { terms.split(i, sums[i], of); });
 }
 
 template <int D>
 void evenAlongSurface(Context<Cuda>& context, const MphPairs<D>& pairs, const SurfaceTerms<D>& terms,
-                      std::span<const Vec<D>> free, std::span<const Vec<D>> f, std::span<Vec<D>> y,
-                      std::span<const Vec<D>> apart) {
-  sumOnFluid(context, pairs, EvenForce<D>{terms, free.data(), f.data(), apart.data(), y.data()});
+                      std::span<const Vec<D>> normal, std::span<const SurfaceFit> fit, std::span<const Vec<D>> f,
+                      std::span<Vec<D>> y, std::span<const Vec<D>> apart) {
+  sumOnFluid(context, pairs, EvenForce<D>{terms, normal.data(), fit.data(), f.data(), apart.data(), y.data()});
 }
 
 template <int D>
@@ -174,17 +220,19 @@ void surfaceOnWalls(Context<Cuda>& context, const MphPairs<D>& pairs, const Surf
             SurfaceReaction<D>{terms, ofWalls.data(), y.data(), load.data(), pairs.fluidCount});
 }
 
-#define TREACLE_INSTANTIATE(D)                                                                                \
-  template void surfaceSlope<D>(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&,                   \
-                                std::span<SurfaceSums<D>>, std::span<Vec<D>>, std::span<Vec<D>>);             \
-  template void surfaceForces<D>(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&,                  \
-                                 std::span<const SurfaceSums<D>>, std::span<const Vec<D>>, std::span<Vec<D>>, \
-                                 std::span<Vec<D>>, std::span<Vec<D>>);                                       \
-  template void evenAlongSurface<D>(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&,               \
-                                    std::span<const Vec<D>>, std::span<const Vec<D>>, std::span<Vec<D>>,      \
-                                    std::span<const Vec<D>>);                                                 \
-  template void surfaceOnWalls<D>(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&,                 \
-                                  const ClusterListView&, std::span<const Vec<D>>, std::span<Vec<D>>,         \
+#define TREACLE_INSTANTIATE(D)                                                                            \
+  template void surfaceSlope<D>(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&,               \
+                                std::span<SurfaceSums<D>>, std::span<Vec<D>>);                            \
+  template void surfaceForces<D>(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&,              \
+                                 std::span<const SurfaceSums<D>>, std::span<const Vec<D>>,                \
+                                 const SurfaceForces<D>&);                                                \
+  template void bendSurface<D>(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&,                \
+                               const SurfaceForces<D>&, std::span<SurfaceFit>);                           \
+  template void evenAlongSurface<D>(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&,           \
+                                    std::span<const Vec<D>>, std::span<const SurfaceFit>,                 \
+                                    std::span<const Vec<D>>, std::span<Vec<D>>, std::span<const Vec<D>>); \
+  template void surfaceOnWalls<D>(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&,             \
+                                  const ClusterListView&, std::span<const Vec<D>>, std::span<Vec<D>>,     \
                                   std::span<Vec<D>>);
 TREACLE_INSTANTIATE(2)
 TREACLE_INSTANTIATE(3)

@@ -2,21 +2,24 @@
 
 #include "treacle/mph/mph_lanes.hpp"
 
+#include <cmath>
+
 namespace treacle {
 
 template <int D>
 void surfaceSlope(Context<Cpu>&, const MphPairs<D>& pairs, const SurfaceTerms<D>& terms,
-                  std::span<SurfaceSums<D>> sums, std::span<Vec<D>> m, std::span<Vec<D>> free) {
+                  std::span<SurfaceSums<D>> sums, std::span<Vec<D>> m) {
   const double floor2 = distanceFloor2(pairs);
   const ClusterListView& list = pairs.fluidList;
   forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const ClusterPlaces<D>& x, std::uint32_t c) {
     VecLanes<D> fluid = {}, wall = {};
-    Lanes filled = {}, walls = {}, pull = {};
+    Lanes filled = {}, walls = {}, colour = {}, wallColour = {}, pull = {};
     for (ListSegment s : {ListSegment::NearFluid, ListSegment::FarFluid})
       for (std::uint32_t j : list.segment(c, s)) {
         const PairLanes<D> pair(pairs, j, x, floor2);
         const Lanes g = terms.gradient(pair.r.square);
         filled += terms.share(g, pair.r.square);
+        colour += terms.weight(pair.r.square);
         for (int k = 0; k < D; ++k) fluid[k] += g * pair.d[k];
       }
     for (ListSegment s : {ListSegment::NearWall, ListSegment::FarWall})
@@ -24,6 +27,7 @@ void surfaceSlope(Context<Cpu>&, const MphPairs<D>& pairs, const SurfaceTerms<D>
         const PairLanes<D> pair(pairs, j, x, floor2);
         const Lanes g = terms.gradient(pair.r.square), share = terms.share(g, pair.r.square);
         walls += share;
+        wallColour += terms.weight(pair.r.square);
         pull += terms.pull[pairs.material[j]] * share;
         for (int k = 0; k < D; ++k) wall[k] += g * pair.d[k];
       }
@@ -32,80 +36,113 @@ void surfaceSlope(Context<Cpu>&, const MphPairs<D>& pairs, const SurfaceTerms<D>
       SurfaceSums<D>& sum = sums[i];
       for (int k = 0; k < D; ++k) sum.fluid[k] = fluid[k][lane], sum.wall[k] = wall[k][lane];
       sum.filled = filled[lane], sum.walls = walls[lane], sum.pull = pull[lane];
+      sum.colour = colour[lane], sum.wallColour = wallColour[lane];
       m[i] = terms.slope(pairs.material[i], sum);
-      free[i] = terms.sharing(pairs.material[i], sum, m[i]);
     }
   });
 }
 
 template <int D>
 void surfaceForces(Context<Cpu>&, const MphPairs<D>& pairs, const SurfaceTerms<D>& terms,
-                   std::span<const SurfaceSums<D>> sums, std::span<const Vec<D>> m, std::span<Vec<D>> force,
-                   std::span<Vec<D>> apart, std::span<Vec<D>> ofWalls) {
+                   std::span<const SurfaceSums<D>> sums, std::span<const Vec<D>> m, const SurfaceForces<D>& of) {
   const double floor2 = distanceFloor2(pairs);
   const ClusterListView& list = pairs.fluidList;
   forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const ClusterPlaces<D>& x, std::uint32_t c) {
     const VecLanes<D> mi = loadLanes<D>(range, m);
     Lanes mi2 = {};
     for (int k = 0; k < D; ++k) mi2 += mi[k] * mi[k];
-    VecLanes<D> sum = {}, away = {};
+    VecLanes<D> sum = {}, away = {}, press = {};
     for (ListSegment s : {ListSegment::NearFluid, ListSegment::FarFluid})
       for (std::uint32_t j : list.segment(c, s)) {
         const PairLanes<D> pair(pairs, j, x, floor2);
-        const Lanes g = terms.gradient(pair.r.square);
+        const Lanes g = terms.gradient(pair.r.square), w = terms.weight(pair.r.square);
         const Vec<D>& mj = m[j];
+        const double mj2 = norm2(mj), mj1 = std::sqrt(mj2);
         Lanes alongI = {}, alongJ = {};
         for (int k = 0; k < D; ++k) {
           alongI += mi[k] * pair.d[k];
           alongJ += mj[k] * pair.d[k];
         }
-        const Lanes both = mi2 + norm2(mj), core = terms.core(pair.r.inverse) * both;
+        const Lanes both = mi2 + mj2, core = terms.core(pair.r.inverse) * both;
         for (int k = 0; k < D; ++k) {
           sum[k] += g * (both * pair.d[k] - alongI * mi[k] - alongJ * mj[k]);
           away[k] -= core * pair.d[k];
+          press[k] += w * (mj1 * mj[k]);
         }
       }
-    storeLanes<D>(range, away, apart);
+    storeLanes<D>(range, away, of.apart);
+    storeLanes<D>(range, press, of.press);
     for (std::uint32_t lane = 0; lane < range.count; ++lane) {
       const std::uint32_t i = range.first + lane;
       Vec<D> ofFluid;
       for (int k = 0; k < D; ++k) ofFluid[k] = sum[k][lane];
-      const Vec<D> wall = terms.ofWalls(sums[i], m[i], ofFluid);
-      force[i] = ofFluid + wall;
-      if (!ofWalls.empty()) ofWalls[i] = sums[i].walls > 0 ? wall * (1 / sums[i].walls) : Vec<D>{};
+      terms.finish(pairs.material[i], i, sums[i], m[i], ofFluid, of);
+    }
+  });
+}
+
+template <int D>
+void bendSurface(Context<Cpu>&, const MphPairs<D>& pairs, const SurfaceTerms<D>& terms, const SurfaceForces<D>& of,
+                 std::span<SurfaceFit> fitted) {
+  const double floor2 = distanceFloor2(pairs);
+  const ClusterListView& list = pairs.fluidList;
+  forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const ClusterPlaces<D>& x, std::uint32_t c) {
+    const VecLanes<D> mi = loadLanes<D>(range, std::span<const Vec<D>>(of.normal));
+    Lanes mi1 = {};
+    for (int k = 0; k < D; ++k) mi1 += mi[k] * mi[k];
+    for (std::uint32_t lane = 0; lane < clusterSize; ++lane) mi1[lane] = std::sqrt(mi1[lane]);
+    VecLanes<D> sum = loadLanes<D>(range, std::span<const Vec<D>>(of.force));
+    Lanes force = {}, press = {};
+    for (ListSegment s : {ListSegment::NearFluid, ListSegment::FarFluid})
+      for (std::uint32_t j : list.segment(c, s)) {
+        const PairLanes<D> pair(pairs, j, x, floor2);
+        const Vec<D>& mj = of.normal[j];
+        const double mj1 = norm(mj);
+        Lanes closing = {};
+        for (int k = 0; k < D; ++k) closing += pair.d[k] * (mi1 * mj[k] - mj1 * mi[k]);
+        const Lanes bent = terms.bending(pair.r.square, pair.r.inverse) * closing;
+        for (int k = 0; k < D; ++k) sum[k] += bent * pair.d[k];
+        const Lanes near = terms.nearness(pair.r.square);
+        force += near * of.fit[j].force, press += near * of.fit[j].press;
+      }
+    storeLanes<D>(range, sum, of.force);
+    for (std::uint32_t lane = 0; lane < range.count; ++lane) {
+      const std::uint32_t i = range.first + lane;
+      fitted[i] = {force[lane], press[lane]};
+      terms.split(i, fitted[i], of);
     }
   });
 }
 
 template <int D>
 void evenAlongSurface(Context<Cpu>&, const MphPairs<D>& pairs, const SurfaceTerms<D>& terms,
-                      std::span<const Vec<D>> free, std::span<const Vec<D>> f, std::span<Vec<D>> y,
-                      std::span<const Vec<D>> apart) {
+                      std::span<const Vec<D>> normal, std::span<const SurfaceFit> fit, std::span<const Vec<D>> f,
+                      std::span<Vec<D>> y, std::span<const Vec<D>> apart) {
   const double floor2 = distanceFloor2(pairs);
   const ClusterListView& list = pairs.fluidList;
   forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const ClusterPlaces<D>& x, std::uint32_t c) {
-    const VecLanes<D> mi = loadLanes<D>(range, free), fi = loadLanes<D>(range, f);
+    const VecLanes<D> mi = loadLanes<D>(range, normal), fi = loadLanes<D>(range, f);
     VecLanes<D> sum = loadLanes<D>(range, std::span<const Vec<D>>(y));
-    Lanes mi2 = {};
-    for (int a = 0; a < D; ++a) sum[a] += fi[a], mi2 += mi[a] * mi[a];
+    Lanes shares = {};
+    for (std::uint32_t lane = 0; lane < range.count; ++lane) shares[lane] = fit[range.first + lane].press;
+    for (int a = 0; a < D; ++a) sum[a] += fi[a];
     if (!apart.empty()) {
       const VecLanes<D> more = loadLanes<D>(range, apart);
       for (int a = 0; a < D; ++a) sum[a] += more[a];
     }
     for (ListSegment s : {ListSegment::NearFluid, ListSegment::FarFluid})
       for (std::uint32_t j : list.segment(c, s)) {
+        if (fit[j].press == 0) continue;
         const PairLanes<D> pair(pairs, j, x, floor2);
-        const Vec<D>& mj = free[j];
-        const double mj2 = norm2(mj);
-        if (mj2 == 0) continue;
+        const Vec<D>& mj = normal[j];
         Lanes normal2 = broadcast(terms.evenNoise), across = {}, closing = {};
         for (int a = 0; a < D; ++a) {
           const Lanes n = mi[a] + mj[a];
           normal2 += n * n, across += n * pair.d[a], closing += pair.d[a] * (f[j][a] - fi[a]);
         }
         const Lanes unit2 = pair.r.inverse * pair.r.inverse, along = 1.0 - across * across * unit2 / normal2;
-        const Lanes k = terms.evening(pair.r.square) * along * unit2 * closing;
-        for (int a = 0; a < D; ++a) sum[a] += (mi2 > 0.0 ? k : Lanes{}) * pair.d[a];
+        const Lanes k = terms.evenFactor * terms.nearness(pair.r.square) * along * unit2 * closing;
+        for (int a = 0; a < D; ++a) sum[a] += (shares > 0.0 ? k : Lanes{}) * pair.d[a];
       }
     storeLanes<D>(range, sum, y);
   });
@@ -132,17 +169,19 @@ void surfaceOnWalls(Context<Cpu>&, const MphPairs<D>& pairs, const SurfaceTerms<
   });
 }
 
-#define TREACLE_INSTANTIATE(D)                                                                                \
-  template void surfaceSlope<D>(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&,                    \
-                                std::span<SurfaceSums<D>>, std::span<Vec<D>>, std::span<Vec<D>>);             \
-  template void surfaceForces<D>(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&,                   \
-                                 std::span<const SurfaceSums<D>>, std::span<const Vec<D>>, std::span<Vec<D>>, \
-                                 std::span<Vec<D>>, std::span<Vec<D>>);                                       \
-  template void evenAlongSurface<D>(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&,                \
-                                    std::span<const Vec<D>>, std::span<const Vec<D>>, std::span<Vec<D>>,      \
-                                    std::span<const Vec<D>>);                                                 \
-  template void surfaceOnWalls<D>(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&,                  \
-                                  const ClusterListView&, std::span<const Vec<D>>, std::span<Vec<D>>,         \
+#define TREACLE_INSTANTIATE(D)                                                                            \
+  template void surfaceSlope<D>(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&,                \
+                                std::span<SurfaceSums<D>>, std::span<Vec<D>>);                            \
+  template void surfaceForces<D>(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&,               \
+                                 std::span<const SurfaceSums<D>>, std::span<const Vec<D>>,                \
+                                 const SurfaceForces<D>&);                                                \
+  template void bendSurface<D>(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&,                 \
+                               const SurfaceForces<D>&, std::span<SurfaceFit>);                           \
+  template void evenAlongSurface<D>(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&,            \
+                                    std::span<const Vec<D>>, std::span<const SurfaceFit>,                 \
+                                    std::span<const Vec<D>>, std::span<Vec<D>>, std::span<const Vec<D>>); \
+  template void surfaceOnWalls<D>(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&,              \
+                                  const ClusterListView&, std::span<const Vec<D>>, std::span<Vec<D>>,     \
                                   std::span<Vec<D>>);
 TREACLE_INSTANTIATE(2)
 TREACLE_INSTANTIATE(3)

@@ -4,32 +4,102 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 namespace treacle {
 
+namespace {
+
+/// A plane surface of a full lattice, half a spacing above its outermost row, with gamma = 1: what its pairs add
+/// up to in a column below a unit of it, along the first axis.
+struct PlaneSurface {
+  double tension = 0;  // near 1
+  double depth = 0;    // at which it acts in the mean [m]
+  double bent = 0;     // by what the tension falls with the curvature and B, per unit of B [m2]
+};
+
+/// f(rows down, d) for all neighbours of a particle that many rows below the surface.
+template <int D, class F>
+void overHalfLattice(int row, int reach, double l, F&& f) {
+  const int across = D == 3 ? reach : 0;
+  for (int along = -reach; along <= reach; ++along)
+    for (int side = -across; side <= across; ++side)
+      for (int down = -row; down <= reach; ++down) {
+        Vec<D> d{};
+        d[0] = along * l, d[D - 1] = down * l;
+        if (D == 3) d[1] = side * l;
+        f(down, d);
+      }
+}
+
+template <int D>
+PlaneSurface planeSurface(const SurfaceTerms<D>& terms, double l, int reach) {
+  std::vector<double> m2(2 * reach + 1);  // |m|^2 of each row
+  for (int row = 0; row < static_cast<int>(m2.size()); ++row) {
+    double gradient = 0, colour = 0;
+    overHalfLattice<D>(row, reach, l, [&](int, const Vec<D>& d) {
+      gradient += terms.gradient(norm2(d)) * d[D - 1];
+      colour += terms.weight(norm2(d));
+    });
+    m2[row] = 2 * gradient * gradient / (colour * std::sqrt(gradient * gradient + terms.noise2));
+  }
+  PlaneSurface plane;
+  for (int row = 0; row <= reach; ++row)
+    overHalfLattice<D>(row, reach, l, [&](int down, const Vec<D>& d) {
+      const double r2 = norm2(d), along2 = d[0] * d[0];
+      if (r2 == 0) return;
+      const double part = 0.5 * (m2[row] + m2[row + down]) * terms.gradient(r2) * along2 * l;
+      plane.tension += part;
+      plane.depth += part * (row + 0.5 * down + 0.5) * l;
+      plane.bent += 0.5 * positivePart(1 - terms.inverseSquare * r2) * std::sqrt(m2[row] * m2[row + down]) *
+                    along2 * along2 / r2 * l;
+    });
+  plane.depth /= plane.tension;
+  return plane;
+}
+
+/// By what a curvature kappa lessens the colour at a surface, over kappa / 2: the second moment of w in its plane
+/// [m].
+template <int D>
+double secondMoment(const SurfaceTerms<D>& terms, double l, int reach) {
+  double sum = 0;
+  const int across = D == 3 ? reach : 0;
+  for (int along = -reach; along <= reach; ++along)
+    for (int side = -across; side <= across; ++side)
+      sum += terms.weight((along * along + side * side) * l * l) * along * along * l;
+  return sum;
+}
+
+}  // namespace
+
 template <int D>
 SurfaceTerms<D> SurfaceTerms<D>::make(const Case& c) {
-  const double h = c.interactionRadius();
+  const double h = c.interactionRadius(), l = c.spacing;
   SurfaceTerms terms{};
   terms.inverseSquare = 1 / (h * h);
-  const double lattice =
-      1 + latticeSum<D>(h, c.spacing, [&](double r) { return std::pow(positivePart(1 - r * r / (h * h)), 4); });
-  terms.gradientFactor = 8 / (h * h * lattice);
-  terms.shareFactor = 1 / latticeSum<D>(h, c.spacing, [&](double r) { return terms.gradient(r * r) * r * r; });
-  terms.coreRadius = 0.95 * c.spacing;
+  terms.weightFactor =
+      1 / (1 + latticeSum<D>(h, l, [&](double r) { return std::pow(positivePart(1 - r * r / (h * h)), 6); }));
+  terms.gradientFactor = 12 / (h * h) * terms.weightFactor;
+  terms.shareFactor = 1 / latticeSum<D>(h, l, [&](double r) { return terms.gradient(r * r) * r * r; });
+  terms.coreRadius = 0.95 * l;
   terms.coreFactor = 0.5 / (terms.coreRadius * terms.coreRadius);
   terms.noise2 = 0.01 / (h * h);
+  const int reach = static_cast<int>(h / l) + 1;
+  const PlaneSurface plane = planeSurface<D>(terms, l, reach);
+  // The tension of a curved surface, the integral of 2 gamma dc from less than 1/2 on, grows with each of its
+  // curvatures by the moment; the one of a ball has two.
+  terms.bendFactor = (plane.depth + (D - 1) * secondMoment<D>(terms, l, reach)) / plane.bent;
   const double along = D == 2 ? 3.0 / 8 : 4.0 / 15;  // mean of (e.t)^2 (1 - (e.n)^2) over all directions e
   terms.evenFactor =
-      1 / (along * latticeSum<D>(h, c.spacing, [&](double r) { return positivePart(1 - r * r / (h * h)); }));
+      1 / (along * latticeSum<D>(h, l, [&](double r) { return positivePart(1 - r * r / (h * h)); }));
   double largest = 0;
   for (const Material& m : c.materials) largest = std::max(largest, m.surfaceTension);
-  terms.evenNoise = 1e-3 * 8.0 / 3.0 * largest * std::sqrt(terms.noise2);
+  terms.evenNoise = 1e-3 * 2 * largest * std::sqrt(terms.noise2);
   for (std::size_t m = 0; m < c.materials.size(); ++m) {
     terms.tension[m] = c.materials[m].surfaceTension;
     const double cosine = std::cos(c.materials[m].contactAngle * std::numbers::pi / 180);
     // 1 times the cosine would do where stress and surface were sharp; found by drops on walls.
-    terms.pull[m] = (1.25 + 0.14 * cosine) * cosine;
+    terms.pull[m] = (1.36 + 0.1 * cosine) * cosine;
   }
   return terms;
 }

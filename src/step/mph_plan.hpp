@@ -48,7 +48,11 @@ void planFields(const Case& c, const MemoryCounts& n, bool withGradient, MemoryS
   } else if (c.method.viscosityCorrection != 0) {
     sum.keep<double>(held);
   }
-  if (c.hasSurfaceTension()) sum.keep<SurfaceSums<D>>(fluid), sum.keep<Vec<D>>(5 * held);
+  if (c.hasSurfaceTension()) {
+    sum.keep<SurfaceSums<D>>(fluid);
+    sum.keep<Vec<D>>(4 * held + 2 * fluid);
+    sum.keep<SurfaceFit>(held + fluid);
+  }
   sum.keep<Block<D>>(fluid);
   if (withGradient) sum.keep<Vec<D>>(fluid);
   sum.keep<double>(fluid + 2 * n.active);

@@ -4,6 +4,8 @@
 #include "treacle/core/halo.hpp"
 #include "treacle/mph/surface_tension.hpp"
 
+#include <utility>
+
 namespace treacle {
 
 /// The surface tension of a step of MPH-I, of the places at its start.
@@ -16,25 +18,37 @@ class StepSurface {
   /// On the neighbours of the step.
   void prepare(FlowState<D, Backend>& state, const MphPairs<D>& pairs) {
     Context<Backend>& context = state.context;
-    sums_.resize(context, pairs.ownFluid());
-    for (Buffer<Vec<D>, Backend>* field : {&slope_, &free_, &force_, &apart_, &even_})
+    for (Buffer<Vec<D>, Backend>* field : {&slope_, &normal_, &force_, &even_})
       field->resize(context, pairs.fluidCount);
+    fit_.resize(context, pairs.fluidCount);
     if (wallsBearIt_) ofWalls_.resize(context, pairs.fluidCount);
-    surfaceSlope<D>(context, pairs, terms_, sums_.span(), slope_.span(), free_.span());
+    sums_.resize(context, pairs.ownFluid());
+    press_.resize(context, pairs.ownFluid());
+    apart_.resize(context, pairs.ownFluid());
+    fitted_.resize(context, pairs.ownFluid());
+
+    surfaceSlope<D>(context, pairs, terms_, sums_.span(), slope_.span());
     fillGhosts(context, Held::Fluid, slope_.data());
-    fillGhosts(context, Held::Fluid, free_.data());
-    surfaceForces<D>(context, pairs, terms_, sums_.span(), slope_.span(), force_.span(), apart_.span(),
-                     ofWalls_.span());
-    fillGhosts(context, Held::Fluid, force_.data());
+    const SurfaceForces<D> forces{force_.span(),  apart_.span(), press_.span(),
+                                  normal_.span(), fit_.span(),   ofWalls_.span()};
+    surfaceForces<D>(context, pairs, terms_, sums_.span(), slope_.span(), forces);
+    fillGhosts(context, Held::Fluid, normal_.data());
+    fillGhosts(context, Held::Fluid, fit_.data());
     if (wallsBearIt_) fillGhosts(context, Held::Fluid, ofWalls_.data());
-    clearValues(context, even_.span());
-    evenAlongSurface<D>(context, pairs, terms_, free_.span(), force_.span(), even_.span());
-    fillGhosts(context, Held::Fluid, even_.data());
+    bendSurface<D>(context, pairs, terms_, forces, fitted_.span());
+    fillGhosts(context, Held::Fluid, force_.data());
+    for (int k = 0; k < 3; ++k) {
+      clearValues(context, even_.span());
+      evenAlongSurface<D>(context, pairs, terms_, normal_.span(), fit_.span(), force_.span(), even_.span());
+      fillGhosts(context, Held::Fluid, even_.data());
+      std::swap(force_, even_);
+    }
   }
 
   /// y += the forces per own fluid particle [N/m3].
   void addForces(FlowState<D, Backend>& state, const MphPairs<D>& pairs, std::span<Vec<D>> y) const {
-    evenAlongSurface<D>(state.context, pairs, terms_, free_.span(), even_.span(), y, apart_.span());
+    evenAlongSurface<D>(state.context, pairs, terms_, normal_.span(), fit_.span(), force_.span(), y,
+                        apart_.span());
   }
 
   /// Sets y to the forces on own fluid particles and, from the place of the first wall particle on, on those of
@@ -48,18 +62,20 @@ class StepSurface {
 
   std::span<const Vec<D>> slope() const { return slope_; }  // m per fluid particle
   std::size_t bytes() const {
-    return sums_.bytes() + slope_.bytes() + free_.bytes() + force_.bytes() + apart_.bytes() + even_.bytes() +
-           ofWalls_.bytes();
+    return sums_.bytes() + slope_.bytes() + normal_.bytes() + force_.bytes() + even_.bytes() + fit_.bytes() +
+           press_.bytes() + apart_.bytes() + fitted_.bytes() + ofWalls_.bytes();
   }
 
  private:
   SurfaceTerms<D> terms_;
   bool wallsBearIt_;
   Buffer<SurfaceSums<D>, Backend> sums_;
-  Buffer<Vec<D>, Backend> slope_, free_;  // m, and where no walls are around [Pa^1/2]
-  Buffer<Vec<D>, Backend> apart_;         // what keeps particles apart [N/m3]
-  Buffer<Vec<D>, Backend> force_, even_;  // of stress and walls; shared once [N/m3]
-  Buffer<Vec<D>, Backend> ofWalls_;       // that of walls alone, over what they fill around a particle [N/m3]
+  Buffer<Vec<D>, Backend> slope_, normal_;  // m, and with the direction of S [Pa^1/2]
+  Buffer<Vec<D>, Backend> force_, even_;    // to be shared; shared once more [N/m3]
+  Buffer<Vec<D>, Backend> press_;           // S [Pa]
+  Buffer<Vec<D>, Backend> apart_;           // what is not shared [N/m3]
+  Buffer<SurfaceFit, Backend> fit_, fitted_;
+  Buffer<Vec<D>, Backend> ofWalls_;  // that of walls alone, over what they fill around a particle [N/m3]
 };
 
 }  // namespace treacle

@@ -8,26 +8,36 @@ namespace treacle {
 
 /// Surface tension of free surfaces as a stress along them, a continuum surface stress (docs/surface-tension.md):
 ///
-///   sigma_i = |m_i|^2 I - m_i m_i^T [Pa],   m_i = G_i sqrt(8/3 gamma / |G_i|),   G_i = sum_j grad w_ij
+///   sigma_i = |m_i|^2 I - m_i m_i^T [Pa],   m_i = G_i sqrt(2 gamma / (c_i |G_i|)),   G_i = sum_j grad w_ij
 ///   f_i = sum_j (sigma_i + sigma_j) grad w_ij - (|m_i|^2 + |m_j|^2) k [r_0 - r]_+ e / r_0^2 [N/m3]
 ///
-/// with w = A (1 - r^2/h^2)^4, d = x_j - x_i = r e. G is not zero near a free surface alone, whose normal it has;
-/// walls are in it like fluid. The stress has no component along it, so that a plane surface bears no force. The
-/// forces are those of pairs of fluid, equal and opposite. Across a cut through a plane surface they add up to the
-/// integral of 8/3 gamma c dc, the colour c, of which G is the gradient, rising from 1/2 at the surface to 1: that
-/// is gamma. A tension lets particles gather; the second term, with k = 0.5 and r_0 = 0.95 l, keeps those of the
-/// surface apart.
+/// with w = A (1 - r^2/h^2)^6, d = x_j - x_i = r e. G is not zero near a free surface alone, whose normal it has,
+/// and c is the colour, the sum of w, of which G is the gradient; walls are in both like fluid. The stress has no
+/// component along G, so that a plane surface bears no force. The forces are those of pairs of fluid, equal and
+/// opposite. Across a cut through a plane surface they add up to the integral of 2 gamma dc, c rising from 1/2 at
+/// the surface to 1: that is gamma. A tension lets particles gather; the second term, with k = 0.5 and r_0 = 0.95
+/// l, keeps those of the surface apart.
 ///
-/// What is left of the forces along the surface comes of how its particles stand, and moves them without end. It
-/// is shared among neighbours, twice, by pair forces that are central (what keeps particles apart is not):
+/// The tension acts at a mean depth delta_1 below the surface. Between there and the surface the pressure gamma
+/// times the curvature is missing, which would push along the surface; and where the surface is curved c does not
+/// begin at 1/2. Both are made up for by central forces between particles whose normals n differ:
 ///
-///   f_i += sum_j k_ij (1 - (e.n)^2) e (e.(f_j - f_i)),   k = K [1 - r^2/h^2]_+,   n along m_i + m_j
+///   f_i += B sum_j [1 - r^2/h^2]_+ |m_i| |m_j| e (e.(n_j - n_i)),   n_i along S_i = sum_j w_ij |m_j| m_j
+///
+/// which leave gamma (1 - delta kappa) of the tension along a direction of curvature kappa.
+///
+/// What a surface of uniform tension has of forces is along S, whose curvature is smooth. What else there is comes
+/// of how the particles stand, and moves them without end: f_i less q_i S_i, where the curvature q is the fit of f
+/// by q S among the neighbours. It is shared among them, four times, by pair forces that are central (what keeps
+/// particles apart is not):
+///
+///   f_i += sum_j k_ij (1 - (e.n)^2) e (e.(f_j - f_i)),   k = K [1 - r^2/h^2]_+,   n along |m_i| n_i + |m_j| n_j
 ///
 /// n being shorter than 1 where m is noise. With K a particle of a full lattice takes, along the surface, just its
 /// neighbours' mean. Not near walls, where forces along the surface are to be.
 ///
-/// At walls the surface ends in a contact line. There G is continued as if the surface went on behind the wall,
-/// and the wall holds what the stress pulls off it and pulls along itself as the contact angle says.
+/// At walls the surface ends in a contact line. There G and c are continued as if the surface went on behind the
+/// wall, and the wall holds what the stress pulls off it and pulls along itself as the contact angle says.
 
 /// What a fluid particle has of fluid and of walls around it; sums of r^2 gradient are shares of a full lattice's.
 template <int D>
@@ -35,17 +45,39 @@ struct SurfaceSums {
   Vec<D> fluid, wall;  // parts of G [1/m]
   double filled;       // with the share of the fluid
   double walls;        // of walls
+  double colour;       // sum of w of fluid, the particle's own included
+  double wallColour;   // of walls
   double pull;         // of walls, each with what it pulls along itself over gamma
+};
+
+/// How well q S is the force f of a particle: f.S [Pa N/m3] and S.S [Pa2]. Zero near walls and where there is no
+/// tension; anywhere else the second is not.
+struct SurfaceFit {
+  double force;
+  double press;
+};
+
+/// Fields of the fluid that surfaceForces() sets, of own particles alone.
+template <int D>
+struct SurfaceForces {
+  std::span<Vec<D>> force;   // of stress and walls [N/m3]
+  std::span<Vec<D>> apart;   // what keeps particles apart, and is not shared [N/m3]
+  std::span<Vec<D>> press;   // S [Pa]
+  std::span<Vec<D>> normal;  // |m| n [Pa^1/2]
+  std::span<SurfaceFit> fit;
+  std::span<Vec<D>> ofWalls{};  // unless empty: of walls alone, over what they fill around a particle [N/m3]
 };
 
 template <int D>
 struct SurfaceTerms {
   double inverseSquare = 0;      // 1/h^2 [1/m2]
-  double gradientFactor = 0;     // 8 A / h^2, where A makes the sum over a full lattice 1 [1/m2]
+  double weightFactor = 0;       // A, which makes the sum of w over a full lattice 1
+  double gradientFactor = 0;     // 12 A / h^2 [1/m2]
   double shareFactor = 0;        // 1 over the sum of r^2 gradient over a full lattice
   double noise2 = 0;             // square of a |G| that particles in disorder have inside of the fluid [1/m2]
   double coreRadius = 0;         // r_0 [m]
   double coreFactor = 0;         // k / r_0^2 [1/m2]
+  double bendFactor = 0;         // B [1/m]
   double evenFactor = 0;         // K
   double evenNoise = 0;          // |m|^2 that tells no direction, since particles in disorder have it [Pa]
   double tension[maxMaterials];  // gamma [N/m]
@@ -57,7 +89,14 @@ struct SurfaceTerms {
   template <class Real>
   TREACLE_HD Real gradient(const Real& r2) const {
     const Real part = positivePart(1.0 - inverseSquare * r2);
-    return gradientFactor * (part * part * part);
+    const Real square = part * part;
+    return gradientFactor * (square * square * part);
+  }
+  /// w
+  template <class Real>
+  TREACLE_HD Real weight(const Real& r2) const {
+    const Real part = positivePart(1.0 - inverseSquare * r2), square = part * part;
+    return weightFactor * (square * square * square);
   }
   /// The share that a neighbour fills, from its gradient.
   template <class Real>
@@ -69,27 +108,24 @@ struct SurfaceTerms {
   TREACLE_HD Real core(const Real& inverseDistance) const {
     return coreFactor * positivePart(coreRadius * inverseDistance - 1.0);
   }
-  /// m of a particle that shares forces along the surface, and never quite zero: its length may be rounding alone.
-  TREACLE_HD Vec<D> sharing(int material, const SurfaceSums<D>& s, const Vec<D>& m) const {
-    if (s.walls > 0 || tension[material] == 0) return {};
-    const double least2 = 1e-12 * evenNoise;
-    if (norm2(m) > least2) return m;
-    Vec<D> small{};
-    small[0] = sqrt(least2);
-    return small;
-  }
-  /// The part k of the difference of their forces that two neighbours share.
+  /// What is to be multiplied by |m_i| |m_j| (n_j - n_i).d d.
   template <class Real>
-  TREACLE_HD Real evening(const Real& r2) const {
-    return evenFactor * positivePart(1.0 - inverseSquare * r2);
+  TREACLE_HD Real bending(const Real& r2, const Real& inverseDistance) const {
+    return bendFactor * nearness(r2) * (inverseDistance * inverseDistance);
   }
-  /// m of a particle, 8/3 gamma |G| being |m|^2 where |G| is more than noise. Of what lies along a wall the wall
-  /// hides its share.
+  /// [1 - r^2/h^2]_+
+  template <class Real>
+  TREACLE_HD Real nearness(const Real& r2) const {
+    return positivePart(1.0 - inverseSquare * r2);
+  }
+  /// m of a particle, 2 gamma |G| / c being |m|^2 where |G| is more than noise. Of what lies along a wall, and of
+  /// c, the wall hides its share.
   TREACLE_HD Vec<D> slope(int material, const SurfaceSums<D>& s) const {
     Vec<D> g = s.fluid + s.wall;
     const double size2 = norm2(s.wall);
     if (size2 > 0) g += (g - s.wall * (dot(g, s.wall) / size2)) * (s.walls / (1 - s.walls));
-    return g * sqrt(8.0 / 3.0 * tension[material] / sqrt(norm2(g) + noise2));
+    const double open = fmax(1 - s.wallColour, s.colour);  // never less than the fluid that is there
+    return g * sqrt(2 * tension[material] * open / (s.colour * sqrt(norm2(g) + noise2)));
   }
   /// The force of the walls on a particle that the fluid's stress gives `ofFluid` [N/m3].
   TREACLE_HD Vec<D> ofWalls(const SurfaceSums<D>& s, const Vec<D>& m, const Vec<D>& ofFluid) const {
@@ -103,40 +139,68 @@ struct SurfaceTerms {
     const double held = away < 0 ? 0 : away < most ? away : most;
     return inward * held - along * (line * s.pull / (s.walls * sqrt(m2)));
   }
+  /// All of `of` for particle i, whose S is there, where the stress of the fluid gives `ofFluid`.
+  TREACLE_HD void finish(int material, std::uint32_t i, const SurfaceSums<D>& s, const Vec<D>& m,
+                         const Vec<D>& ofFluid, const SurfaceForces<D>& of) const {
+    const Vec<D> press = of.press[i], wall = ofWalls(s, m, ofFluid), force = ofFluid + wall;
+    const double size2 = norm2(press);
+    of.force[i] = force;
+    of.normal[i] = size2 > 0 ? press * sqrt(norm2(m) / size2) : Vec<D>{};
+    // Never quite zero where forces are shared: S may be rounding alone.
+    const double least = 1e-6 * evenNoise;
+    of.fit[i] = s.walls > 0 || tension[material] == 0 ? SurfaceFit{0, 0}
+                                                      : SurfaceFit{dot(press, force), size2 + least * least};
+    if (!of.ofWalls.empty()) of.ofWalls[i] = s.walls > 0 ? wall * (1 / s.walls) : Vec<D>{};
+  }
+  /// Moves q S from the force of particle i to what is not shared; `fitted`: the sums of its neighbours.
+  TREACLE_HD void split(std::uint32_t i, const SurfaceFit& fitted, const SurfaceForces<D>& of) const {
+    if (of.fit[i].press == 0) return;
+    const Vec<D> smooth = of.press[i] * (fitted.force / fitted.press);
+    of.force[i] -= smooth;
+    of.apart[i] += smooth;
+  }
 };
 
-/// |m_i|^2 per volume is 4/3 of the energy of the surface, gamma per area.
-inline constexpr double surfaceEnergyShare = 0.75;
+/// Of |m_i|^2 per volume, the energy of the surface, gamma per area: 1 / (2 ln 2).
+inline constexpr double surfaceEnergyShare = 0.72134752044448169;
 
-/// Per own fluid particle the sums and m_i [Pa^1/2]; `free` is m_i, too, but zero where walls are around.
+/// Per own fluid particle the sums and m_i [Pa^1/2].
 template <int D>
 void surfaceSlope(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&, std::span<SurfaceSums<D>> sums,
-                  std::span<Vec<D>> m, std::span<Vec<D>> free);
+                  std::span<Vec<D>> m);
 template <int D>
 void surfaceSlope(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&, std::span<SurfaceSums<D>> sums,
-                  std::span<Vec<D>> m, std::span<Vec<D>> free);
+                  std::span<Vec<D>> m);
 
-/// Per own fluid particle [N/m3]: the force of stress and walls; `apart`, what keeps particles apart; and, unless
-/// it is empty, `ofWalls`, that of walls alone over what they fill of the particle's surroundings. m of all fluid,
-/// ghosts included.
+/// m of all fluid, ghosts included.
 template <int D>
 void surfaceForces(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&, std::span<const SurfaceSums<D>> sums,
-                   std::span<const Vec<D>> m, std::span<Vec<D>> force, std::span<Vec<D>> apart,
-                   std::span<Vec<D>> ofWalls = {});
+                   std::span<const Vec<D>> m, const SurfaceForces<D>& of);
 template <int D>
 void surfaceForces(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&,
-                   std::span<const SurfaceSums<D>> sums, std::span<const Vec<D>> m, std::span<Vec<D>> force,
-                   std::span<Vec<D>> apart, std::span<Vec<D>> ofWalls = {});
+                   std::span<const SurfaceSums<D>> sums, std::span<const Vec<D>> m, const SurfaceForces<D>& of);
 
-/// y_i += f_i and what the particle shares of the forces along the surface with its neighbours, and apart_i unless
-/// `apart` is empty, per own fluid particle [N/m3]. f and `free` of all fluid, ghosts included; where `free` is
+/// Per own fluid particle: adds to `force` what makes up for the depth of the tension, and moves the smooth part
+/// of it along the surface's curvature, q S, to `apart`: what is left in `force` is to be shared. `normal` and
+/// `fit` of all fluid, ghosts included; `fitted` is room for sums.
+template <int D>
+void bendSurface(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&, const SurfaceForces<D>& of,
+                 std::span<SurfaceFit> fitted);
+template <int D>
+void bendSurface(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&, const SurfaceForces<D>& of,
+                 std::span<SurfaceFit> fitted);
+
+/// y_i += f_i and what the particle shares of it with its neighbours along the surface, and apart_i unless `apart`
+/// is empty, per own fluid particle [N/m3]. `normal`, `fit` and f of all fluid, ghosts included; where `fit` is
 /// zero nothing is shared.
 template <int D>
-void evenAlongSurface(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&, std::span<const Vec<D>> free,
-                      std::span<const Vec<D>> f, std::span<Vec<D>> y, std::span<const Vec<D>> apart = {});
+void evenAlongSurface(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&, std::span<const Vec<D>> normal,
+                      std::span<const SurfaceFit> fit, std::span<const Vec<D>> f, std::span<Vec<D>> y,
+                      std::span<const Vec<D>> apart = {});
 template <int D>
-void evenAlongSurface(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&, std::span<const Vec<D>> free,
-                      std::span<const Vec<D>> f, std::span<Vec<D>> y, std::span<const Vec<D>> apart = {});
+void evenAlongSurface(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&, std::span<const Vec<D>> normal,
+                      std::span<const SurfaceFit> fit, std::span<const Vec<D>> f, std::span<Vec<D>> y,
+                      std::span<const Vec<D>> apart = {});
 
 /// Sets y per wall particle of the list to the reaction, as `ofWalls` has it of all fluid, ghosts included, and
 /// adds it to `load` [N/m3].

@@ -232,31 +232,39 @@ void checkSurfaceTension(bool lists) {
   for (Material& m : s.c.materials) m.contactAngle = 50;
   const SurfaceTerms<D> terms = SurfaceTerms<D>::make(s.c);
   std::vector<SurfaceSums<D>> sums(n);
-  std::vector<Vec<D>> slope(n), free(n), force(n), apart(n), ofWalls(n), even(n), reaction(walls),
+  std::vector<SurfaceFit> fit(n), fitted(n);
+  std::vector<Vec<D>> slope(n), force(n), apart(n), press(n), normal(n), ofWalls(n), even(n), reaction(walls),
       load(walls, Vec<D>::filled(1));
   Buffer<SurfaceSums<D>, Cuda> sumsFound(d.context, n);
-  Buffer<Vec<D>, Cuda> slopeFound(d.context, n), freeFound(d.context, n), ofWallsFound(d.context, n),
-      reactionFound(d.context, walls);
-  Buffer<Vec<D>, Cuda> forceFound(d.context, n), apartFound(d.context, n);
+  Buffer<SurfaceFit, Cuda> fitFound(d.context, n), fittedFound(d.context, n);
+  Buffer<Vec<D>, Cuda> slopeFound(d.context, n), ofWallsFound(d.context, n), reactionFound(d.context, walls),
+      forceFound(d.context, n), apartFound(d.context, n), pressFound(d.context, n), normalFound(d.context, n);
   auto evenFound = copyToDevice<Vec<D>>(d.context, even);
   auto loadFound = copyToDevice<Vec<D>>(d.context, load);
+  const SurfaceForces<D> forces{force, apart, press, normal, fit, ofWalls};
+  const SurfaceForces<D> forcesFound{forceFound.span(),  apartFound.span(), pressFound.span(),
+                                     normalFound.span(), fitFound.span(),   ofWallsFound.span()};
+  const auto expectSame = [&](std::span<const Vec<D>> expected, const Buffer<Vec<D>, Cuda>& found) {
+    EXPECT_LE(difference<Vec<D>>(d.context, expected, found), operatorTolerance);
+  };
 
-  surfaceSlope<D>(s.context, s.pairs(), terms, sums, slope, free);
-  surfaceSlope<D>(d.context, d.pairs, terms, sumsFound.span(), slopeFound.span(), freeFound.span());
-  EXPECT_LE(difference<Vec<D>>(d.context, slope, slopeFound), operatorTolerance);
-  EXPECT_LE(difference<Vec<D>>(d.context, free, freeFound), operatorTolerance);
-  surfaceForces<D>(s.context, s.pairs(), terms, sums, slope, force, apart, ofWalls);
-  surfaceForces<D>(d.context, d.pairs, terms, copyToDevice<SurfaceSums<D>>(d.context, sums),
-                   copyToDevice<Vec<D>>(d.context, slope), forceFound.span(), apartFound.span(),
-                   ofWallsFound.span());
-  EXPECT_LE(difference<Vec<D>>(d.context, force, forceFound), operatorTolerance);
-  EXPECT_LE(difference<Vec<D>>(d.context, apart, apartFound), operatorTolerance);
-  EXPECT_LE(difference<Vec<D>>(d.context, ofWalls, ofWallsFound), operatorTolerance);
-  evenAlongSurface<D>(s.context, s.pairs(), terms, free, force, even, apart);
-  evenAlongSurface<D>(d.context, d.pairs, terms, copyToDevice<Vec<D>>(d.context, free),
-                      copyToDevice<Vec<D>>(d.context, force), evenFound.span(),
-                      copyToDevice<Vec<D>>(d.context, apart));
-  EXPECT_LE(difference<Vec<D>>(d.context, even, evenFound), operatorTolerance);
+  surfaceSlope<D>(s.context, s.pairs(), terms, sums, slope);
+  surfaceSlope<D>(d.context, d.pairs, terms, sumsFound.span(), slopeFound.span());
+  EXPECT_LE(difference<SurfaceSums<D>>(d.context, sums, sumsFound), operatorTolerance);
+  expectSame(slope, slopeFound);
+  surfaceForces<D>(s.context, s.pairs(), terms, sums, slope, forces);
+  surfaceForces<D>(d.context, d.pairs, terms, sumsFound.span(), slopeFound.span(), forcesFound);
+  expectSame(force, forceFound), expectSame(apart, apartFound), expectSame(press, pressFound);
+  expectSame(normal, normalFound), expectSame(ofWalls, ofWallsFound);
+  EXPECT_LE(difference<SurfaceFit>(d.context, fit, fitFound), operatorTolerance);
+  bendSurface<D>(s.context, s.pairs(), terms, forces, fitted);
+  bendSurface<D>(d.context, d.pairs, terms, forcesFound, fittedFound.span());
+  expectSame(force, forceFound), expectSame(apart, apartFound);
+  EXPECT_LE(difference<SurfaceFit>(d.context, fitted, fittedFound), operatorTolerance);
+  evenAlongSurface<D>(s.context, s.pairs(), terms, normal, fit, force, even, apart);
+  evenAlongSurface<D>(d.context, d.pairs, terms, normalFound.span(), fitFound.span(), forceFound.span(),
+                      evenFound.span(), apartFound.span());
+  expectSame(even, evenFound);
   ClusterList<Cpu> wallList;  // those of a step do not reach as far
   buildClusterList<D>(s.context, s.pairs().grid, s.ranges(), s.pairs().position, n, n + walls,
                       {s.c.interactionRadius(), 0}, true, wallList);

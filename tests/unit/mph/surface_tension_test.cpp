@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace treacle::test {
 namespace {
@@ -24,36 +25,53 @@ Case slabCase() {
   return c;
 }
 
+/// What surface tension does to the fluid of a case.
 template <int D>
-struct Slab {
-  Case c = slabCase<D>();
+struct Surface {
   Context<Cpu> context;
   Particles<D> particles;
   MphNeighbourhood<D> neighbourhood;
-  SurfaceTerms<D> terms = SurfaceTerms<D>::make(c);
+  SurfaceTerms<D> terms;
   std::vector<SurfaceSums<D>> sums;
-  std::vector<Vec<D>> slope, free, force, apart, even;
+  std::vector<Vec<D>> slope, press, normal, force, apart, even, ofWalls;
+  std::vector<Vec<D>> stress, core;  // force and apart before bendSurface()
+  std::vector<SurfaceFit> fit, fitted;
 
-  explicit Slab(double jitter)
-      : particles(jitteredLattice<D>(
-            c, jitter, 1, [&](const Vec<D>& x) { return x[D - 1] > 4 * c.spacing && x[D - 1] < 18 * c.spacing; },
-            [](const Vec<D>&) { return false; })),
-        neighbourhood(c) {
+  Surface(const Case& c, Particles<D>&& of)
+      : particles(std::move(of)), neighbourhood(c), terms(SurfaceTerms<D>::make(c)) {
     std::fill(particles.material.data(), particles.material.data() + particles.count, 0);
     neighbourhood.sort(context, particles);
     neighbourhood.buildLists(context, particles);
-    const std::uint32_t n = neighbourhood.pairs().fluidCount;
-    sums.resize(n), slope.resize(n), free.resize(n), force.resize(n), apart.resize(n), even.assign(n, Vec<D>{});
-    surfaceSlope<D>(context, neighbourhood.pairs(), terms, sums, slope, free);
-    surfaceForces<D>(context, neighbourhood.pairs(), terms, sums, slope, force, apart);
-    evenAlongSurface<D>(context, neighbourhood.pairs(), terms, free, force, even);
+    const std::uint32_t n = pairs().fluidCount;
+    sums.resize(n), slope.resize(n), force.resize(n), apart.resize(n), press.resize(n), normal.resize(n);
+    ofWalls.resize(n), fit.resize(n), fitted.resize(n), even.assign(n, Vec<D>{});
+    const SurfaceForces<D> forces{force, apart, press, normal, fit, ofWalls};
+    surfaceSlope<D>(context, pairs(), terms, sums, slope);
+    surfaceForces<D>(context, pairs(), terms, sums, slope, forces);
+    stress = force, core = apart;
+    bendSurface<D>(context, pairs(), terms, forces, fitted);
+    evenAlongSurface<D>(context, pairs(), terms, normal, fit, force, even);
   }
+  const MphPairs<D>& pairs() const { return neighbourhood.pairs(); }
+};
+
+template <int D>
+struct Slab : Surface<D> {
+  Case c = slabCase<D>();
+
+  explicit Slab(double jitter)
+      : Surface<D>(slabCase<D>(), jitteredLattice<D>(
+                                      slabCase<D>(), jitter, 1,
+                                      [l = slabCase<D>().spacing](const Vec<D>& x) {
+                                        return x[D - 1] > 4 * l && x[D - 1] < 18 * l;
+                                      },
+                                      [](const Vec<D>&) { return false; })) {}
 };
 
 /// Tension of both surfaces from the virial of the pairs, as what their forces do along the first axis.
 template <int D>
 double tensionOf(const Slab<D>& s) {
-  const MphPairs<D>& pairs = s.neighbourhood.pairs();
+  const MphPairs<D>& pairs = s.pairs();
   double virial = 0;
   for (std::uint32_t i = 0; i < pairs.fluidCount; ++i)
     for (std::uint32_t j = 0; j < i; ++j) {
@@ -69,9 +87,10 @@ double tensionOf(const Slab<D>& s) {
 template <int D>
 void checkPlane() {
   const Slab<D> s(0);
-  EXPECT_NEAR(tensionOf(s) / 0.07, 1, 0.02);  // 0.983 in 2D and 0.993 in 3D
+  EXPECT_NEAR(tensionOf(s) / 0.07, 1, 0.01);  // 0.991 in 2D and 0.992 in 3D
   double most = 0;
-  for (const Vec<D>& f : s.force) most = std::max(most, norm(f));
+  for (std::size_t i = 0; i < s.force.size(); ++i)
+    most = std::max({most, norm(s.stress[i]), norm(s.force[i] + s.apart[i])});
   EXPECT_LE(most, 1e-9 * 0.07 / (s.c.spacing * s.c.spacing));
 }
 
@@ -85,10 +104,10 @@ void checkMomentum() {
   const Slab<D> s(0.3);
   Vec<D> total{};
   double sum = 0;
-  for (std::size_t i = 0; i < s.force.size(); ++i) total += s.force[i] + s.apart[i], sum += norm(s.force[i]);
+  for (std::size_t i = 0; i < s.force.size(); ++i) total += s.force[i] + s.apart[i], sum += norm(s.stress[i]);
   EXPECT_GT(sum, 0);
   EXPECT_LE(norm(total), operatorTolerance * sum);
-  EXPECT_NEAR(tensionOf(s) / 0.07, 1, 0.3);  // 1.23 in 2D and 1.26 in 3D: a rough surface is larger
+  EXPECT_NEAR(tensionOf(s) / 0.07, 1, 0.45);  // 1.34 in 2D and 1.38 in 3D: a rough surface is larger
 }
 
 TEST(SurfaceTension, ForcesAreEqualAndOpposite) {
@@ -114,38 +133,116 @@ TEST(SurfaceTension, ForcesAlongTheSurfaceAreSharedAmongNeighbours) {
   checkEven<3>();
 }
 
+/// A disc or a ball of the lattice, with its centre in the middle of the domain.
+template <int D>
+struct Drop : Surface<D> {
+  int spacings;  // in the radius
+
+  explicit Drop(int inRadius)
+      : Surface<D>(dropCase(inRadius), jitteredLattice<D>(
+                                           dropCase(inRadius), 0, 1,
+                                           [inRadius, c = dropCase(inRadius)](const Vec<D>& x) {
+                                             return norm(x - Vec<D>::filled(c.domain.max[0] / 2)) <
+                                                    inRadius * c.spacing;
+                                           },
+                                           [](const Vec<D>&) { return false; })),
+        spacings(inRadius) {}
+  static Case dropCase(int inRadius) {
+    Case c = slabCase<D>();
+    for (int k = 0; k < D; ++k) c.domain.max[k] = 2 * (inRadius + 2) * c.spacing, c.domain.periodic[k] = false;
+    return c;
+  }
+  double spacing() const { return dropCase(spacings).spacing; }
+  Vec<D> fromMiddle(std::uint32_t i) const {
+    return this->pairs().position[i] - Vec<D>::filled((spacings + 2) * spacing());
+  }
+  /// What bendSurface() adds [N/m3].
+  Vec<D> bend(std::uint32_t i) const { return this->force[i] + this->apart[i] - this->stress[i] - this->core[i]; }
+};
+
+/// Mean depth of the tension of a plane surface, from its pairs.
+template <int D>
+double depthOf(const Slab<D>& s) {
+  double sum = 0, moment = 0;
+  for (std::uint32_t i = 0; i < s.pairs().fluidCount; ++i)
+    for (std::uint32_t j = 0; j < i; ++j) {
+      const Vec<D> d = s.pairs().difference(i, j);
+      const double height = s.pairs().position[i][D - 1] + d[D - 1] / 2;
+      if (height < 11 * s.c.spacing) continue;
+      const double part = s.terms.gradient(norm2(d)) * d[0] * d[0] * (norm2(s.slope[i]) + norm2(s.slope[j]));
+      sum += part, moment += part * (18 * s.c.spacing - height);
+    }
+  return moment / sum;
+}
+
+/// Along a curved surface the tension is lessened by gamma delta over the radius, where delta is the depth at
+/// which it acts and, for each direction that is curved, the second moment of w in the plane of the surface: over
+/// that, in a drop of so many spacings, by the virial.
+template <int D>
+double bending(int inRadius) {
+  const Drop<D> s(inRadius);
+  const double volume = std::pow(s.spacing(), D), pi = std::numbers::pi, h = s.spacing() * 3.5;
+  const double delta = depthOf(Slab<D>(0)) + (D == 2 ? 0.1013 : 2 * 0.0982) * h;
+  double virial = 0, torque = 0, size = 0;
+  Vec<D> total{};
+  for (std::uint32_t i = 0; i < s.pairs().fluidCount; ++i) {
+    const Vec<D> bend = s.bend(i), x = s.fromMiddle(i);
+    virial += volume * dot(bend, x);
+    total += bend, size += norm(bend);
+    torque += x[0] * bend[1] - x[1] * bend[0];
+  }
+  const double particles = volume * s.pairs().fluidCount;
+  const double radius = D == 2 ? std::sqrt(particles / pi) : std::cbrt(particles / (4 * pi / 3));
+  EXPECT_LE(norm(total), operatorTolerance * size);
+  EXPECT_LE(std::abs(torque), operatorTolerance * size * radius);
+  return virial / (0.07 * delta * (D == 2 ? 2 * pi : 8 * pi * radius));
+}
+
+TEST(SurfaceTension, FallsWithTheCurvatureByItsDepth) {
+  // Of rows along the surface, which drops get, it is 1 in 2D; that all directions of the lattice have more in the
+  // mean does not depend on the size.
+  EXPECT_NEAR(bending<2>(20), 1.17, 0.02);
+  EXPECT_NEAR(bending<2>(40), 1.17, 0.02);
+  // Each direction's curvature lessens the tension across it, too, by a third.
+  EXPECT_NEAR(bending<3>(18), 1.17 * 4 / 3, 0.1);
+}
+
+/// What is shared of the forces on a drop is noise: what presses on it is not.
+template <int D>
+void checkSmooth() {
+  const Drop<D> s(D == 2 ? 20 : 9);
+  double pressing = 0, shared = 0;
+  for (std::uint32_t i = 0; i < s.pairs().fluidCount; ++i) {
+    pressing -= dot(s.stress[i], s.fromMiddle(i));
+    shared -= dot(s.force[i] - s.bend(i), s.fromMiddle(i));
+  }
+  EXPECT_GT(pressing, 0);
+  EXPECT_LE(std::abs(shared), 0.25 * pressing);  // 0.16: steps of the lattice
+}
+
+TEST(SurfaceTension, WhatPressesOnADropIsNotShared) {
+  checkSmooth<2>();
+  checkSmooth<3>();
+}
+
 /// Half of a block with a vertical edge on a floor, right of the middle; the lower half of the domain is wall.
 template <int D>
-struct EdgeOnFloor {
-  Case c = slabCase<D>();
-  Context<Cpu> context;
-  Particles<D> particles;
-  MphNeighbourhood<D> neighbourhood;
-  std::vector<SurfaceSums<D>> sums;
-  std::vector<Vec<D>> slope, free, force, apart, even, ofWalls, reaction, load;
-  double line = 1;  // length of the contact line [m]; in 2D per metre of depth
+struct EdgeOnFloor : Surface<D> {
+  Case c;
+  std::vector<Vec<D>> reaction, load;
 
-  explicit EdgeOnFloor(double angle, double jitter)
-      : particles(edge(withAngle(c, angle), jitter)), neighbourhood(c) {
-    std::fill(particles.material.data(), particles.material.data() + particles.count, 0);
-    neighbourhood.sort(context, particles);
-    neighbourhood.buildLists(context, particles);
-    const MphPairs<D>& pairs = neighbourhood.pairs();
+  EdgeOnFloor(double angle, double jitter)
+      : Surface<D>(edgeCase(angle), edge(edgeCase(angle), jitter)), c(edgeCase(angle)) {
+    const MphPairs<D>& pairs = this->pairs();
     const std::uint32_t n = pairs.fluidCount;
-    const auto terms = SurfaceTerms<D>::make(c);
-    sums.resize(n), slope.resize(n), free.resize(n), force.resize(n), apart.resize(n), ofWalls.resize(n);
     reaction.resize(pairs.activeCount - n), load.assign(pairs.activeCount - n, Vec<D>::filled(2));
-    surfaceSlope<D>(context, pairs, terms, sums, slope, free);
-    surfaceForces<D>(context, pairs, terms, sums, slope, force, apart, ofWalls);
     ClusterList<Cpu> walls;  // those of a step do not reach as far
-    buildClusterList<D>(context, pairs.grid, neighbourhood.ranges(), pairs.position, n, pairs.ownEnd(),
+    buildClusterList<D>(this->context, pairs.grid, this->neighbourhood.ranges(), pairs.position, n, pairs.ownEnd(),
                         {c.interactionRadius(), 0}, true, walls);
-    surfaceOnWalls<D>(context, pairs, terms, walls.view(), ofWalls, reaction, load);
-    even.assign(n, Vec<D>{});
-    evenAlongSurface<D>(context, pairs, terms, free, force, even);
-    if (D == 3) line = c.domain.max[1];
+    surfaceOnWalls<D>(this->context, pairs, this->terms, walls.view(), this->ofWalls, reaction, load);
   }
-  static Case& withAngle(Case& c, double angle) {
+  static Case edgeCase(double angle) {
+    Case c = slabCase<D>();
     c.materials[0].contactAngle = angle, c.domain.periodic[0] = false;
     return c;
   }
@@ -158,10 +255,11 @@ struct EdgeOnFloor {
   /// What the walls do to the fluid at the right edge, over gamma and the length of the line.
   Vec<D> atLine() const {
     Vec<D> sum{};
-    const auto& position = neighbourhood.pairs().position;
-    for (std::uint32_t i = 0; i < sums.size(); ++i)
+    const auto& position = this->pairs().position;
+    for (std::uint32_t i = 0; i < this->sums.size(); ++i)
       if (position[i][0] > 5.5 * c.spacing && position[i][D - 1] < 14 * c.spacing)
-        sum += ofWalls[i] * sums[i].walls;
+        sum += this->ofWalls[i] * this->sums[i].walls;
+    const double line = D == 3 ? c.domain.max[1] : 1;  // in 2D per metre of depth
     return sum * (std::pow(c.spacing, D) / (c.materials[0].surfaceTension * line));
   }
 };
@@ -174,7 +272,7 @@ void checkLine() {
     SCOPED_TRACE(angle);
     const Vec<D> pull = EdgeOnFloor<D>(angle, 0).atLine();
     const double cosine = std::cos(angle * std::numbers::pi / 180);
-    EXPECT_NEAR(pull[0], (1.25 + 0.14 * cosine) * cosine, 0.15);
+    EXPECT_NEAR(pull[0], (1.36 + 0.1 * cosine) * cosine, 0.15);
     EXPECT_NEAR(pull[D - 1], -1, 0.2);
   }
 }
@@ -189,7 +287,7 @@ void checkReaction() {
   const EdgeOnFloor<D> s(60, 0.3);
   Vec<D> total{};
   double sum = 0;
-  for (const Vec<D>& f : s.force) total += f, sum += norm(f);
+  for (const Vec<D>& f : s.stress) total += f, sum += norm(f);
   for (std::size_t j = 0; j < s.reaction.size(); ++j) {
     total += s.reaction[j];
     EXPECT_LE(norm(s.load[j] - s.reaction[j] - Vec<D>::filled(2)), 1e-12 * sum);
@@ -201,7 +299,7 @@ void checkReaction() {
 template <int D>
 void checkNearWalls() {
   const EdgeOnFloor<D> s(60, 0.3);
-  const auto& x = s.neighbourhood.pairs().position;
+  const auto& x = s.pairs().position;
   std::size_t near = 0, changed = 0;
   double torque = 0, size = 0;
   for (std::size_t i = 0; i < s.force.size(); ++i) {
