@@ -7,7 +7,7 @@ depth = 0.02  # mean depth [m]
 weight, viscosity, tension = 1000 * 1, 10, 1  # rho g [N/m3], mu [Pa s], gamma [N/m]
 
 
-def levelling(name, title, length, settings=(), bar=0.07, refined=True):
+def levelling(name, title, length, settings=(), bar=0.04, refined=True):
     """`length`: of the wave [m]."""
     k = 2 * np.pi / length
     x = k * depth
@@ -31,5 +31,5 @@ def levelling(name, title, length, settings=(), bar=0.07, refined=True):
 def long_wave(name, title, length, end, interval, bar):
     ends = [f"domain.max=[{length},0.026]", f"layer.max=[{length},0.025]", f"floor.max=[{length},0]",
             f"layer.where=y < 0.02 + 0.001*cos(2*pi*x/{length})", f"time.end={end}", f"output.interval={interval}"]
-    # Not refined: late amplitudes are a spacing or two, and the rows of the lattice draw them flat.
+    # Not refined: x1 is below 1 % already, and particles of long runs on fine lattices gather, which lessens the tension.
     return levelling(name, title, length, tuple(ends), bar, refined=False)

@@ -28,4 +28,4 @@ def wetting(degrees):
     # Not refined: what is left is not the spacing's, lines still move at the end, by some 3 degrees from run to run.
     return Study(name=f"wetting-drop-{degrees}", title=f"Drop on a wall, {degrees} degrees", case="wetting-drop.toml",
                  settings=(f"wall.contact_angle={degrees}",), levels=[Level(1), Level(2)],
-                 bars={"contact angle in degrees": 9}, refined=False, measure=measure, x_label="t [s]", y_label="angle [degrees]")
+                 bars={"contact angle in degrees": 6}, refined=False, measure=measure, x_label="t [s]", y_label="angle [degrees]")
