@@ -16,9 +16,10 @@ struct PlaneSurface {
   double tension = 0;  // near 1
   double depth = 0;    // at which it acts in the mean [m]
   double bent = 0;     // by what the tension falls with the curvature and B, per unit of B [m2]
+  double moment = 0;   // second moment of w in the plane; times half a curvature, by what that lessens c [m]
 };
 
-/// f(rows down, d) for all neighbours of a particle that many rows below the surface.
+/// f(rows down, d) for all neighbours of a particle that many rows below the surface, and for itself.
 template <int D, class F>
 void overHalfLattice(int row, int reach, double l, F&& f) {
   const int across = D == 3 ? reach : 0;
@@ -33,15 +34,16 @@ void overHalfLattice(int row, int reach, double l, F&& f) {
 }
 
 template <int D>
-PlaneSurface planeSurface(const SurfaceTerms<D>& terms, double l, int reach) {
-  std::vector<double> m2(2 * reach + 1);  // |m|^2 of each row
+PlaneSurface planeSurface(SurfaceTerms<D> terms, double l, int reach) {
+  terms.tension[0] = 1;
+  std::vector<double> m2(2 * reach + 1);  // |m|^2 of each row [1/m]
   for (int row = 0; row < static_cast<int>(m2.size()); ++row) {
-    double gradient = 0, colour = 0;
+    SurfaceSums<D> sums{};
     overHalfLattice<D>(row, reach, l, [&](int, const Vec<D>& d) {
-      gradient += terms.gradient(norm2(d)) * d[D - 1];
-      colour += terms.weight(norm2(d));
+      sums.fluid += terms.gradient(norm2(d)) * d;
+      sums.colour += terms.weight(norm2(d));
     });
-    m2[row] = 2 * gradient * gradient / (colour * std::sqrt(gradient * gradient + terms.noise2));
+    m2[row] = norm2(terms.slope(0, sums));
   }
   PlaneSurface plane;
   for (int row = 0; row <= reach; ++row)
@@ -51,23 +53,11 @@ PlaneSurface planeSurface(const SurfaceTerms<D>& terms, double l, int reach) {
       const double part = 0.5 * (m2[row] + m2[row + down]) * terms.gradient(r2) * along2 * l;
       plane.tension += part;
       plane.depth += part * (row + 0.5 * down + 0.5) * l;
-      plane.bent += 0.5 * positivePart(1 - terms.inverseSquare * r2) * std::sqrt(m2[row] * m2[row + down]) *
-                    along2 * along2 / r2 * l;
+      plane.bent += 0.5 * terms.nearness(r2) * std::sqrt(m2[row] * m2[row + down]) * along2 * along2 / r2 * l;
+      if (row == 0 && down == 0) plane.moment += terms.weight(r2) * along2 / l;
     });
   plane.depth /= plane.tension;
   return plane;
-}
-
-/// By what a curvature kappa lessens the colour at a surface, over kappa / 2: the second moment of w in its plane
-/// [m].
-template <int D>
-double secondMoment(const SurfaceTerms<D>& terms, double l, int reach) {
-  double sum = 0;
-  const int across = D == 3 ? reach : 0;
-  for (int along = -reach; along <= reach; ++along)
-    for (int side = -across; side <= across; ++side)
-      sum += terms.weight((along * along + side * side) * l * l) * along * along * l;
-  return sum;
 }
 
 }  // namespace
@@ -77,21 +67,20 @@ SurfaceTerms<D> SurfaceTerms<D>::make(const Case& c) {
   const double h = c.interactionRadius(), l = c.spacing;
   SurfaceTerms terms{};
   terms.inverseSquare = 1 / (h * h);
+  terms.weightFactor = 1;
   terms.weightFactor =
-      1 / (1 + latticeSum<D>(h, l, [&](double r) { return std::pow(positivePart(1 - r * r / (h * h)), 6); }));
+      1 / (terms.weight(0.0) + latticeSum<D>(h, l, [&](double r) { return terms.weight(r * r); }));
   terms.gradientFactor = 12 / (h * h) * terms.weightFactor;
   terms.shareFactor = 1 / latticeSum<D>(h, l, [&](double r) { return terms.gradient(r * r) * r * r; });
   terms.coreRadius = 0.95 * l;
   terms.coreFactor = 0.5 / (terms.coreRadius * terms.coreRadius);
   terms.noise2 = 0.01 / (h * h);
-  const int reach = static_cast<int>(h / l) + 1;
-  const PlaneSurface plane = planeSurface<D>(terms, l, reach);
+  const PlaneSurface plane = planeSurface(terms, l, static_cast<int>(h / l) + 1);
   // The tension of a curved surface, the integral of 2 gamma dc from less than 1/2 on, grows with each of its
   // curvatures by the moment; the one of a ball has two.
-  terms.bendFactor = (plane.depth + (D - 1) * secondMoment<D>(terms, l, reach)) / plane.bent;
+  terms.bendFactor = (plane.depth + (D - 1) * plane.moment) / plane.bent;
   const double along = D == 2 ? 3.0 / 8 : 4.0 / 15;  // mean of (e.t)^2 (1 - (e.n)^2) over all directions e
-  terms.evenFactor =
-      1 / (along * latticeSum<D>(h, l, [&](double r) { return positivePart(1 - r * r / (h * h)); }));
+  terms.evenFactor = 1 / (along * latticeSum<D>(h, l, [&](double r) { return terms.nearness(r * r); }));
   double largest = 0;
   for (const Material& m : c.materials) largest = std::max(largest, m.surfaceTension);
   terms.evenNoise = 1e-3 * 2 * largest * std::sqrt(terms.noise2);

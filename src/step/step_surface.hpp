@@ -37,7 +37,7 @@ class StepSurface {
     if (wallsBearIt_) fillGhosts(context, Held::Fluid, ofWalls_.data());
     bendSurface<D>(context, pairs, terms_, forces, fitted_.span());
     fillGhosts(context, Held::Fluid, force_.data());
-    for (int k = 0; k < 3; ++k) {
+    for (int k = 1; k < passes_; ++k) {
       clearValues(context, even_.span());
       evenAlongSurface<D>(context, pairs, terms_, normal_.span(), fit_.span(), force_.span(), even_.span());
       fillGhosts(context, Held::Fluid, even_.data());
@@ -67,15 +67,17 @@ class StepSurface {
   }
 
  private:
+  static constexpr int passes_ = 4;  // of sharing, the last one by addForces()
+
   SurfaceTerms<D> terms_;
   bool wallsBearIt_;
   Buffer<SurfaceSums<D>, Backend> sums_;
-  Buffer<Vec<D>, Backend> slope_, normal_;  // m, and with the direction of S [Pa^1/2]
-  Buffer<Vec<D>, Backend> force_, even_;    // to be shared; shared once more [N/m3]
-  Buffer<Vec<D>, Backend> press_;           // S [Pa]
-  Buffer<Vec<D>, Backend> apart_;           // what is not shared [N/m3]
-  Buffer<SurfaceFit, Backend> fit_, fitted_;
-  Buffer<Vec<D>, Backend> ofWalls_;  // that of walls alone, over what they fill around a particle [N/m3]
+  Buffer<Vec<D>, Backend> slope_, normal_;    // m, and with the direction of S [Pa^1/2]
+  Buffer<Vec<D>, Backend> force_, even_;      // to be shared; shared once more [N/m3]
+  Buffer<Vec<D>, Backend> press_;             // S [Pa]
+  Buffer<Vec<D>, Backend> apart_;             // what is not shared [N/m3]
+  Buffer<SurfaceFit, Backend> fit_, fitted_;  // of each particle; summed over its neighbours
+  Buffer<Vec<D>, Backend> ofWalls_;           // that of walls alone, over what they fill around a particle [N/m3]
 };
 
 }  // namespace treacle

@@ -181,7 +181,9 @@ double depthOf(const Slab<D>& s) {
 template <int D>
 double bending(int inRadius) {
   const Drop<D> s(inRadius);
-  const double volume = std::pow(s.spacing(), D), pi = std::numbers::pi, h = s.spacing() * 3.5;
+  const double volume = std::pow(s.spacing(), D), pi = std::numbers::pi;
+  const double h = Drop<D>::dropCase(inRadius).interactionRadius();
+  // 7/pi B(3/2, 7) and, in 3D, 1/(224 B(3/2, 7)) of h, B being Euler's function: moments of w without a lattice.
   const double delta = depthOf(Slab<D>(0)) + (D == 2 ? 0.1013 : 2 * 0.0982) * h;
   double virial = 0, torque = 0, size = 0;
   Vec<D> total{};
