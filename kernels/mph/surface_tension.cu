@@ -10,20 +10,18 @@ template <int D>
 struct SumSurface {
   static constexpr int values = 2 * D + 5;
   static constexpr bool uses(ListSegment) { return true; }
-  struct Own {};
-  struct Other {
-    double pull;
+  struct Own {
+    int material;
   };
+  using Other = Own;
 
   SurfaceTerms<D> terms;
   SurfaceSums<D>* sums;
 
-  __device__ Own loadOwn(const MphPairs<D>&, std::uint32_t) const { return {}; }
-  __device__ Other loadOther(const MphPairs<D>& pairs, std::uint32_t j) const {
-    return {terms.pull[pairs.material[j]]};
-  }
+  __device__ Own loadOwn(const MphPairs<D>& pairs, std::uint32_t i) const { return {pairs.material[i]}; }
+  __device__ Other loadOther(const MphPairs<D>& pairs, std::uint32_t j) const { return loadOwn(pairs, j); }
 
-  __device__ void add(const MphPairs<D>&, double* sum, const Vec<D>& d, const PairDistance<double>& r, Own,
+  __device__ void add(const MphPairs<D>&, double* sum, const Vec<D>& d, const PairDistance<double>& r, Own own,
                       const Other& other, ListSegment segment) const {
     const double g = terms.gradient(r.square), share = terms.share(g, r.square), w = terms.weight(r.square);
     if (isFluid(segment)) {
@@ -34,7 +32,7 @@ struct SumSurface {
     }
     addScaled(sum + D, g, d);
     sum[2 * D + 1] += share;
-    sum[2 * D + 2] = fma(share, other.pull, sum[2 * D + 2]);
+    sum[2 * D + 2] = fma(share, terms.pull(own.material, other.material), sum[2 * D + 2]);
     sum[2 * D + 4] += w;
   }
   __device__ void store(const MphPairs<D>&, std::uint32_t i, int n, double sum) const {
@@ -55,24 +53,24 @@ template <int D>
 struct SurfaceForce {
   static constexpr int values = 3 * D;
   static constexpr bool uses(ListSegment s) { return isFluid(s); }
-  using Own = Vec<D>;
-  using Other = Vec<D>;
+  using Own = SurfaceSlope<D>;
+  using Other = Own;
 
   SurfaceTerms<D> terms;
-  const Vec<D>* m;
+  const SurfaceSlope<D>* slope;
   Vec<D>*force, *apart, *press;
 
-  __device__ Own loadOwn(const MphPairs<D>&, std::uint32_t i) const { return m[i]; }
-  __device__ Other loadOther(const MphPairs<D>&, std::uint32_t j) const { return m[j]; }
+  __device__ Own loadOwn(const MphPairs<D>&, std::uint32_t i) const { return slope[i]; }
+  __device__ Other loadOther(const MphPairs<D>&, std::uint32_t j) const { return slope[j]; }
 
   __device__ void add(const MphPairs<D>&, double* sum, const Vec<D>& d, const PairDistance<double>& r,
                       const Own& own, const Other& other, ListSegment) const {
-    const double g = terms.gradient(r.square), other2 = norm2(other), both = norm2(own) + other2;
+    const double g = terms.gradient(r.square), other2 = norm2(other.m), both = norm2(own.m) + other2;
     addScaled(sum, g * both, d);
-    addScaled(sum, -g * dot(own, d), own);
-    addScaled(sum, -g * dot(other, d), other);
+    addScaled(sum, -g * own.tie * dot(own.m, d), own.m);
+    addScaled(sum, -g * other.tie * dot(other.m, d), other.m);
     addScaled(sum + D, -terms.core(r.inverse) * both, d);
-    addScaled(sum + 2 * D, terms.weight(r.square) * sqrt(other2), other);
+    addScaled(sum + 2 * D, terms.weight(r.square) * sqrt(other2), other.m);
   }
   __device__ void store(const MphPairs<D>&, std::uint32_t i, int n, double sum) const {
     (n < D ? force[i][n] : n < 2 * D ? apart[i][n - D] : press[i][n - 2 * D]) = sum;
@@ -115,7 +113,7 @@ struct SurfaceBend {
   }
 };
 
-/// y += the force per fluid particle, what it shares of it along the surface with its neighbours, and `apart`.
+/// y = the force per fluid particle, what it shares of it along the surface with its neighbours, and `apart`.
 template <int D>
 struct EvenForce {
   static constexpr int values = D;
@@ -145,7 +143,7 @@ struct EvenForce {
     addScaled(sum, k * unit2 * dot(d, other.f - own.f), d);
   }
   __device__ void store(const MphPairs<D>&, std::uint32_t i, int n, double sum) const {
-    y[i][n] += f[i][n] + sum + (apart ? apart[i][n] : 0.0);
+    y[i][n] = f[i][n] + sum + (apart ? apart[i][n] : 0.0);
   }
 };
 
@@ -179,21 +177,22 @@ struct SurfaceReaction {
 
 template <int D>
 void surfaceSlope(Context<Cuda>& context, const MphPairs<D>& pairs, const SurfaceTerms<D>& terms,
-                  std::span<SurfaceSums<D>> sums, std::span<Vec<D>> m) {
+                  std::span<SurfaceSums<D>> sums, std::span<SurfaceSlope<D>> slope) {
   sumOnFluid(context, pairs, SumSurface<D>{terms, sums.data()});
   forEach(context, pairs.ownFluid(),
-          [terms, material = pairs.material.data(), from = sums.data(), to = m.data()] __device__(std::size_t i) {
-            to[i] = terms.slope(material[i], from[i]);
-          });
+          [terms, material = pairs.material.data(), from = sums.data(),
+           to = slope.data()] __device__(std::size_t i) { to[i] = terms.slope(material[i], from[i]); });
 }
 
 template <int D>
 void surfaceForces(Context<Cuda>& context, const MphPairs<D>& pairs, const SurfaceTerms<D>& terms,
-                   std::span<const SurfaceSums<D>> sums, std::span<const Vec<D>> m, const SurfaceForces<D>& of) {
-  sumOnFluid(context, pairs, SurfaceForce<D>{terms, m.data(), of.force.data(), of.apart.data(), of.press.data()});
+                   std::span<const SurfaceSums<D>> sums, std::span<const SurfaceSlope<D>> slope,
+                   const SurfaceForces<D>& of) {
+  sumOnFluid(context, pairs,
+             SurfaceForce<D>{terms, slope.data(), of.force.data(), of.apart.data(), of.press.data()});
   forEach(context, pairs.ownFluid(),
-          [terms, material = pairs.material.data(), from = sums.data(), slope = m.data(),
-           of] __device__(std::size_t i) { terms.finish(material[i], i, from[i], slope[i], of.force[i], of); });
+          [terms, material = pairs.material.data(), from = sums.data(), slopes = slope.data(),
+           of] __device__(std::size_t i) { terms.finish(material[i], i, from[i], slopes[i].m, of.force[i], of); });
 }
 
 template <int D>
@@ -213,6 +212,11 @@ void evenAlongSurface(Context<Cuda>& context, const MphPairs<D>& pairs, const Su
 }
 
 template <int D>
+void addSurfaceForces(Context<Cuda>& context, std::span<const Vec<D>> f, std::span<Vec<D>> y) {
+  forEach(context, f.size(), [from = f.data(), to = y.data()] __device__(std::size_t i) { to[i] += from[i]; });
+}
+
+template <int D>
 void surfaceOnWalls(Context<Cuda>& context, const MphPairs<D>& pairs, const SurfaceTerms<D>& terms,
                     const ClusterListView& walls, std::span<const Vec<D>> ofWalls, std::span<Vec<D>> y,
                     std::span<Vec<D>> load) {
@@ -222,15 +226,16 @@ void surfaceOnWalls(Context<Cuda>& context, const MphPairs<D>& pairs, const Surf
 
 #define TREACLE_INSTANTIATE(D)                                                                            \
   template void surfaceSlope<D>(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&,               \
-                                std::span<SurfaceSums<D>>, std::span<Vec<D>>);                            \
+                                std::span<SurfaceSums<D>>, std::span<SurfaceSlope<D>>);                   \
   template void surfaceForces<D>(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&,              \
-                                 std::span<const SurfaceSums<D>>, std::span<const Vec<D>>,                \
+                                 std::span<const SurfaceSums<D>>, std::span<const SurfaceSlope<D>>,       \
                                  const SurfaceForces<D>&);                                                \
   template void bendSurface<D>(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&,                \
                                const SurfaceForces<D>&, std::span<SurfaceFit>);                           \
   template void evenAlongSurface<D>(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&,           \
                                     std::span<const Vec<D>>, std::span<const SurfaceFit>,                 \
                                     std::span<const Vec<D>>, std::span<Vec<D>>, std::span<const Vec<D>>); \
+  template void addSurfaceForces<D>(Context<Cuda>&, std::span<const Vec<D>>, std::span<Vec<D>>);          \
   template void surfaceOnWalls<D>(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&,             \
                                   const ClusterListView&, std::span<const Vec<D>>, std::span<Vec<D>>,     \
                                   std::span<Vec<D>>);

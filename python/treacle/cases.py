@@ -63,6 +63,13 @@ class Rheology:
 
 
 @dataclass(kw_only=True)
+class ContactAngle:
+    name: str | None = None
+    angle: float | None = None
+    """[deg]"""
+
+
+@dataclass(kw_only=True)
 class ViscosityShift:
     model: Literal["arrhenius", "vft", "wlf", "table"] | None = None
     reference_temperature: float | None = None
@@ -101,6 +108,7 @@ class Material:
     """[N/m]"""
     contact_angle: float | None = None
     """[deg]"""
+    contact_angles: Sequence[ContactAngle] | None = None
     specific_heat: float | None = None
     """[J/(kg K)]"""
     conductivity: float | None = None

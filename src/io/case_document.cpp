@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <optional>
+#include <span>
 
 namespace treacle {
 namespace {
@@ -16,7 +17,8 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view setPrefix = "--set ";
 constexpr std::string_view namedLists[] = {"material", "body", "outflow",
-                                           "probe"};  // arrays of tables addressed by name
+                                           "probe"};           // arrays of tables addressed by name
+constexpr std::string_view namedBelow[] = {"contact_angles"};  // those of other tables, merged by name
 
 CaseFileError errorAt(const toml::source_region& source, const std::string& text) {
   return treacle::errorAt(source, {}, text);
@@ -83,6 +85,10 @@ toml::table parse(std::string_view text, const std::string& source) {
   }
 }
 
+bool contains(std::span<const std::string_view> names, std::string_view name) {
+  return std::ranges::find(names, name) != names.end();
+}
+
 std::string_view nameOf(const toml::table& entry) { return entry["name"].value_or(std::string_view{}); }
 
 toml::table* findNamed(toml::array& list, std::string_view name) {
@@ -121,7 +127,7 @@ void mergeNamed(toml::array& into, toml::array&& from) {
 void merge(toml::table& into, toml::table&& from) {
   for (auto&& [key, value] : from) {
     toml::node* existing = into.get(key);
-    const bool named = std::ranges::find(namedLists, key.str()) != std::end(namedLists);
+    const bool named = contains(namedLists, key.str()) || contains(namedBelow, key.str());
     if (existing && existing->is_table() && value.is_table())
       merge(*existing->as_table(), std::move(*value.as_table()));
     else if (named && existing && existing->is_array_of_tables() && value.is_array_of_tables())
@@ -212,7 +218,7 @@ void applyOverride(toml::table& document, const std::string& text) {
   const toml::key key = given.begin()->first;
   toml::node& value = given.begin()->second;
   if (key == "base") throw errorAt(value.source(), "base can only be given in a case file");
-  if (std::ranges::find(namedLists, key.str()) != std::end(namedLists) && value.is_table()) {
+  if (contains(namedLists, key.str()) && value.is_table()) {
     for (auto&& [name, entry] : *value.as_table()) overrideEntry(document, key.str(), name.str(), entry);
     return;
   }

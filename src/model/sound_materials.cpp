@@ -53,10 +53,15 @@ void requireSound(const Checker& at, const Material& m) {
   if (m.viscosityShift && !at.wholeCase().heat)
     at.fail({"viscosity_shift"}, "there are no temperatures in a case without [heat]");
   if (at.wholeCase().method.kind != MethodKind::MphI &&
-      (m.surfaceTension != 0 || m.contactAngle != Material{}.contactAngle))
-    at.fail({m.surfaceTension != 0 ? "surface_tension" : "contact_angle"},
+      (m.surfaceTension != 0 || m.contactAngle != Material{}.contactAngle || !m.contactAngles.empty()))
+    at.fail({m.surfaceTension != 0                       ? "surface_tension"
+             : m.contactAngle != Material{}.contactAngle ? "contact_angle"
+                                                         : "contact_angles"},
             fmt::format("only the method '{}' has surface tension, found '{}'", nameOf(MethodKind::MphI),
                         nameOf(at.wholeCase().method.kind)));
+  for (const ContactAngle& a : m.contactAngles)
+    if (std::ranges::find(at.wholeCase().materials, a.name, &Material::name) == at.wholeCase().materials.end())
+      at.fail({"contact_angles", a.name, "name"}, fmt::format("unknown material '{}'", a.name));
   if (m.rheology && m.dynamicViscosity != 0) at.fail({"dynamic_viscosity"}, viscosityBesideRheology);
 }
 

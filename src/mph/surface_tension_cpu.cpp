@@ -8,7 +8,7 @@ namespace treacle {
 
 template <int D>
 void surfaceSlope(Context<Cpu>&, const MphPairs<D>& pairs, const SurfaceTerms<D>& terms,
-                  std::span<SurfaceSums<D>> sums, std::span<Vec<D>> m) {
+                  std::span<SurfaceSums<D>> sums, std::span<SurfaceSlope<D>> slope) {
   const double floor2 = distanceFloor2(pairs);
   const ClusterListView& list = pairs.fluidList;
   forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const ClusterPlaces<D>& x, std::uint32_t c) {
@@ -28,7 +28,8 @@ void surfaceSlope(Context<Cpu>&, const MphPairs<D>& pairs, const SurfaceTerms<D>
         const Lanes g = terms.gradient(pair.r.square), share = terms.share(g, pair.r.square);
         walls += share;
         wallColour += terms.weight(pair.r.square);
-        pull += terms.pull[pairs.material[j]] * share;
+        for (std::uint32_t lane = 0; lane < range.count; ++lane)
+          pull[lane] += terms.pull(pairs.material[range.first + lane], pairs.material[j]) * share[lane];
         for (int k = 0; k < D; ++k) wall[k] += g * pair.d[k];
       }
     for (std::uint32_t lane = 0; lane < range.count; ++lane) {
@@ -37,32 +38,39 @@ void surfaceSlope(Context<Cpu>&, const MphPairs<D>& pairs, const SurfaceTerms<D>
       for (int k = 0; k < D; ++k) sum.fluid[k] = fluid[k][lane], sum.wall[k] = wall[k][lane];
       sum.filled = filled[lane], sum.walls = walls[lane], sum.pull = pull[lane];
       sum.colour = colour[lane], sum.wallColour = wallColour[lane];
-      m[i] = terms.slope(pairs.material[i], sum);
+      slope[i] = terms.slope(pairs.material[i], sum);
     }
   });
 }
 
 template <int D>
 void surfaceForces(Context<Cpu>&, const MphPairs<D>& pairs, const SurfaceTerms<D>& terms,
-                   std::span<const SurfaceSums<D>> sums, std::span<const Vec<D>> m, const SurfaceForces<D>& of) {
+                   std::span<const SurfaceSums<D>> sums, std::span<const SurfaceSlope<D>> slope,
+                   const SurfaceForces<D>& of) {
   const double floor2 = distanceFloor2(pairs);
   const ClusterListView& list = pairs.fluidList;
   forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const ClusterPlaces<D>& x, std::uint32_t c) {
-    const VecLanes<D> mi = loadLanes<D>(range, m);
-    Lanes mi2 = {};
+    VecLanes<D> mi = {};
+    Lanes mi2 = {}, tie = {};
+    for (std::uint32_t lane = 0; lane < range.count; ++lane) {
+      const SurfaceSlope<D>& own = slope[range.first + lane];
+      for (int k = 0; k < D; ++k) mi[k][lane] = own.m[k];
+      tie[lane] = own.tie;
+    }
     for (int k = 0; k < D; ++k) mi2 += mi[k] * mi[k];
     VecLanes<D> sum = {}, away = {}, press = {};
     for (ListSegment s : {ListSegment::NearFluid, ListSegment::FarFluid})
       for (std::uint32_t j : list.segment(c, s)) {
         const PairLanes<D> pair(pairs, j, x, floor2);
         const Lanes g = terms.gradient(pair.r.square), w = terms.weight(pair.r.square);
-        const Vec<D>& mj = m[j];
+        const Vec<D>& mj = slope[j].m;
         const double mj2 = norm2(mj), mj1 = std::sqrt(mj2);
         Lanes alongI = {}, alongJ = {};
         for (int k = 0; k < D; ++k) {
           alongI += mi[k] * pair.d[k];
           alongJ += mj[k] * pair.d[k];
         }
+        alongI *= tie, alongJ *= slope[j].tie;
         const Lanes both = mi2 + mj2, core = terms.core(pair.r.inverse) * both;
         for (int k = 0; k < D; ++k) {
           sum[k] += g * (both * pair.d[k] - alongI * mi[k] - alongJ * mj[k]);
@@ -76,7 +84,7 @@ void surfaceForces(Context<Cpu>&, const MphPairs<D>& pairs, const SurfaceTerms<D
       const std::uint32_t i = range.first + lane;
       Vec<D> ofFluid;
       for (int k = 0; k < D; ++k) ofFluid[k] = sum[k][lane];
-      terms.finish(pairs.material[i], i, sums[i], m[i], ofFluid, of);
+      terms.finish(pairs.material[i], i, sums[i], slope[i].m, ofFluid, of);
     }
   });
 }
@@ -122,10 +130,9 @@ void evenAlongSurface(Context<Cpu>&, const MphPairs<D>& pairs, const SurfaceTerm
   const ClusterListView& list = pairs.fluidList;
   forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const ClusterPlaces<D>& x, std::uint32_t c) {
     const VecLanes<D> mi = loadLanes<D>(range, normal), fi = loadLanes<D>(range, f);
-    VecLanes<D> sum = loadLanes<D>(range, std::span<const Vec<D>>(y));
+    VecLanes<D> sum = fi;
     Lanes shares = {};
     for (std::uint32_t lane = 0; lane < range.count; ++lane) shares[lane] = fit[range.first + lane].press;
-    for (int a = 0; a < D; ++a) sum[a] += fi[a];
     if (!apart.empty()) {
       const VecLanes<D> more = loadLanes<D>(range, apart);
       for (int a = 0; a < D; ++a) sum[a] += more[a];
@@ -146,6 +153,11 @@ void evenAlongSurface(Context<Cpu>&, const MphPairs<D>& pairs, const SurfaceTerm
       }
     storeLanes<D>(range, sum, y);
   });
+}
+
+template <int D>
+void addSurfaceForces(Context<Cpu>&, std::span<const Vec<D>> f, std::span<Vec<D>> y) {
+  parallelFor(f.size(), parallelGrain, [&](std::size_t i) { y[i] += f[i]; });
 }
 
 template <int D>
@@ -171,15 +183,16 @@ void surfaceOnWalls(Context<Cpu>&, const MphPairs<D>& pairs, const SurfaceTerms<
 
 #define TREACLE_INSTANTIATE(D)                                                                            \
   template void surfaceSlope<D>(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&,                \
-                                std::span<SurfaceSums<D>>, std::span<Vec<D>>);                            \
+                                std::span<SurfaceSums<D>>, std::span<SurfaceSlope<D>>);                   \
   template void surfaceForces<D>(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&,               \
-                                 std::span<const SurfaceSums<D>>, std::span<const Vec<D>>,                \
+                                 std::span<const SurfaceSums<D>>, std::span<const SurfaceSlope<D>>,       \
                                  const SurfaceForces<D>&);                                                \
   template void bendSurface<D>(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&,                 \
                                const SurfaceForces<D>&, std::span<SurfaceFit>);                           \
   template void evenAlongSurface<D>(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&,            \
                                     std::span<const Vec<D>>, std::span<const SurfaceFit>,                 \
                                     std::span<const Vec<D>>, std::span<Vec<D>>, std::span<const Vec<D>>); \
+  template void addSurfaceForces<D>(Context<Cpu>&, std::span<const Vec<D>>, std::span<Vec<D>>);           \
   template void surfaceOnWalls<D>(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&,              \
                                   const ClusterListView&, std::span<const Vec<D>>, std::span<Vec<D>>,     \
                                   std::span<Vec<D>>);

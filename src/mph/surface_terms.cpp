@@ -43,7 +43,7 @@ PlaneSurface planeSurface(SurfaceTerms<D> terms, double l, int reach) {
       sums.fluid += terms.gradient(norm2(d)) * d;
       sums.colour += terms.weight(norm2(d));
     });
-    m2[row] = norm2(terms.slope(0, sums));
+    m2[row] = norm2(terms.slope(0, sums).m);
   }
   PlaneSurface plane;
   for (int row = 0; row <= reach; ++row)
@@ -70,15 +70,15 @@ SurfaceTerms<D> SurfaceTerms<D>::make(const Case& c) {
   terms.weightFactor = 1;
   terms.weightFactor =
       1 / (terms.weight(0.0) + latticeSum<D>(h, l, [&](double r) { return terms.weight(r * r); }));
-  terms.gradientFactor = 12 / (h * h) * terms.weightFactor;
+  terms.gradientFactor = 11 / (h * h) * terms.weightFactor;
   terms.shareFactor = 1 / latticeSum<D>(h, l, [&](double r) { return terms.gradient(r * r) * r * r; });
   terms.coreRadius = 0.95 * l;
   terms.coreFactor = 0.5 / (terms.coreRadius * terms.coreRadius);
   terms.noise2 = 0.01 / (h * h);
   const PlaneSurface plane = planeSurface(terms, l, static_cast<int>(h / l) + 1);
-  // The tension of a curved surface, the integral of 2 gamma dc from less than 1/2 on, grows with each of its
-  // curvatures by the moment; the one of a ball has two.
-  terms.bendFactor = (plane.depth + (D - 1) * plane.moment) / plane.bent;
+  // The tension of a curved surface, the integral of 2 gamma p dc from less than 1/2 on, grows with each of its
+  // curvatures by p(1/2) times the moment; the one of a ball has two.
+  terms.bendFactor = (plane.depth + (D - 1) * terms.profile(0.5) * plane.moment) / plane.bent;
   const double along = D == 2 ? 3.0 / 8 : 4.0 / 15;  // mean of (e.t)^2 (1 - (e.n)^2) over all directions e
   terms.evenFactor = 1 / (along * latticeSum<D>(h, l, [&](double r) { return terms.nearness(r * r); }));
   double largest = 0;
@@ -86,9 +86,13 @@ SurfaceTerms<D> SurfaceTerms<D>::make(const Case& c) {
   terms.evenNoise = 1e-3 * 2 * largest * std::sqrt(terms.noise2);
   for (std::size_t m = 0; m < c.materials.size(); ++m) {
     terms.tension[m] = c.materials[m].surfaceTension;
-    const double cosine = std::cos(c.materials[m].contactAngle * std::numbers::pi / 180);
-    // 1 times the cosine would do where stress and surface were sharp; found by drops on walls.
-    terms.pull[m] = (1.36 + 0.1 * cosine) * cosine;
+    for (std::size_t wall = 0; wall < c.materials.size(); ++wall) {
+      const double angle = c.materials[wall].contactAngleWith(c.materials[m].name);
+      const double cosine = std::cos(angle * std::numbers::pi / 180);
+      // 1 times the cosine would do where stress and surface were sharp; found by the rise in a slit and drops.
+      const double factor = cosine > 0 ? 1.36 + 0.1 * cosine : 1.1 + 1.1 * std::pow(cosine, 6);
+      terms.pulls[m * maxMaterials + wall] = factor * cosine;
+    }
   }
   return terms;
 }

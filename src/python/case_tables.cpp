@@ -22,6 +22,7 @@ constexpr const char* classOf(const Width&) { return "Width"; }
 constexpr const char* classOf(const TimeSettings&) { return "Time"; }
 constexpr const char* classOf(const Material&) { return "Material"; }
 constexpr const char* classOf(const Rheology&) { return "Rheology"; }
+constexpr const char* classOf(const ContactAngle&) { return "ContactAngle"; }
 constexpr const char* classOf(const ViscosityShift&) { return "ViscosityShift"; }
 constexpr const char* classOf(const Body&) { return "Body"; }
 constexpr const char* classOf(const Oscillation&) { return "Oscillation"; }

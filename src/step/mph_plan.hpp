@@ -50,7 +50,8 @@ void planFields(const Case& c, const MemoryCounts& n, bool withGradient, MemoryS
   }
   if (c.hasSurfaceTension()) {
     sum.keep<SurfaceSums<D>>(fluid);
-    sum.keep<Vec<D>>(4 * held + 2 * fluid);
+    sum.keep<SurfaceSlope<D>>(held);
+    sum.keep<Vec<D>>(3 * held + 2 * fluid);
     sum.keep<SurfaceFit>(held + fluid);
   }
   sum.keep<Block<D>>(fluid);

@@ -309,7 +309,7 @@ class MphStep final : public StepMethod<D, Backend> {
                          resized<D>(state_.theCase.gravity), rhs_);
     addPressureGradient<D>(state_.context, pairs_, elastic_, -1.0, rhs_);
     if (pairs_.terms.repulsionRadius > 0) addRepulsion<D>(state_.context, pairs_, 1 / state_.timeStep, rhs_);
-    if (surface_) surface_->addForces(state_, pairs_, rhs_);
+    if (surface_) surface_->addForces(state_, rhs_);
     if (bodies_) {
       rhsAtRest_.resize(state_.context, rhs_.size());
       copyValues(state_.context, std::span<const Vec<D>>(rhs_), rhsAtRest_.data());

@@ -63,7 +63,7 @@ class StepBalance {
                       walls_.density(),
                       repulsion_,
                       walls_.surfaceForce(),
-                      surface ? surface->slope() : std::span<const Vec<D>>{}};
+                      surface ? surface->slope() : std::span<const SurfaceSlope<D>>{}};
     const auto sums = sumPowers<D>(state.context, terms, pairs.ownEnd());
     const double volume = std::pow(pairs.spacing, D);  // [K23 eq. (11)]
     balance.shearDissipation = volume * sums[Terms::Shear];

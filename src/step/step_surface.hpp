@@ -18,8 +18,8 @@ class StepSurface {
   /// On the neighbours of the step.
   void prepare(FlowState<D, Backend>& state, const MphPairs<D>& pairs) {
     Context<Backend>& context = state.context;
-    for (Buffer<Vec<D>, Backend>* field : {&slope_, &normal_, &force_, &even_})
-      field->resize(context, pairs.fluidCount);
+    for (Buffer<Vec<D>, Backend>* field : {&normal_, &force_, &even_}) field->resize(context, pairs.fluidCount);
+    slope_.resize(context, pairs.fluidCount);
     fit_.resize(context, pairs.fluidCount);
     if (wallsBearIt_) ofWalls_.resize(context, pairs.fluidCount);
     sums_.resize(context, pairs.ownFluid());
@@ -36,44 +36,43 @@ class StepSurface {
     fillGhosts(context, Held::Fluid, fit_.data());
     if (wallsBearIt_) fillGhosts(context, Held::Fluid, ofWalls_.data());
     bendSurface<D>(context, pairs, terms_, forces, fitted_.span());
-    fillGhosts(context, Held::Fluid, force_.data());
-    for (int k = 1; k < passes_; ++k) {
-      clearValues(context, even_.span());
-      evenAlongSurface<D>(context, pairs, terms_, normal_.span(), fit_.span(), force_.span(), even_.span());
-      fillGhosts(context, Held::Fluid, even_.data());
-      std::swap(force_, even_);
+    for (int k = 0; k < surfacePasses<D>; ++k) {
+      if (k > 0) std::swap(force_, even_);
+      fillGhosts(context, Held::Fluid, force_.data());
+      const bool last = k == surfacePasses<D> - 1;
+      evenAlongSurface<D>(context, pairs, terms_, normal_.span(), fit_.span(), force_.span(), even_.span(),
+                          last ? std::span<const Vec<D>>(apart_.span()) : std::span<const Vec<D>>{});
     }
   }
 
   /// y += the forces per own fluid particle [N/m3].
-  void addForces(FlowState<D, Backend>& state, const MphPairs<D>& pairs, std::span<Vec<D>> y) const {
-    evenAlongSurface<D>(state.context, pairs, terms_, normal_.span(), fit_.span(), force_.span(), y,
-                        apart_.span());
+  void addForces(FlowState<D, Backend>& state, std::span<Vec<D>> y) const {
+    addSurfaceForces<D>(state.context, even_.span().first(y.size()), y);
   }
 
   /// Sets y to the forces on own fluid particles and, from the place of the first wall particle on, on those of
   /// `walls`, which are added to `load` [N/m3]. Of cases with a balance or rigid bodies.
   void allForces(FlowState<D, Backend>& state, const MphPairs<D>& pairs, const ClusterListView& walls,
                  std::span<Vec<D>> y, std::span<Vec<D>> load) const {
-    clearValues(state.context, y);
-    addForces(state, pairs, y);
+    const std::uint32_t n = pairs.ownFluid();
+    copyValues(state.context, std::span<const Vec<D>>(even_.span()).first(n), y.data());
+    clearValues(state.context, y.subspan(n));
     surfaceOnWalls<D>(state.context, pairs, terms_, walls, ofWalls_.span(), y.subspan(pairs.fluidCount), load);
   }
 
-  std::span<const Vec<D>> slope() const { return slope_; }  // m per fluid particle
+  std::span<const SurfaceSlope<D>> slope() const { return slope_; }  // per fluid particle
   std::size_t bytes() const {
     return sums_.bytes() + slope_.bytes() + normal_.bytes() + force_.bytes() + even_.bytes() + fit_.bytes() +
            press_.bytes() + apart_.bytes() + fitted_.bytes() + ofWalls_.bytes();
   }
 
  private:
-  static constexpr int passes_ = 4;  // of sharing, the last one by addForces()
-
   SurfaceTerms<D> terms_;
   bool wallsBearIt_;
   Buffer<SurfaceSums<D>, Backend> sums_;
-  Buffer<Vec<D>, Backend> slope_, normal_;    // m, and with the direction of S [Pa^1/2]
-  Buffer<Vec<D>, Backend> force_, even_;      // to be shared; shared once more [N/m3]
+  Buffer<SurfaceSlope<D>, Backend> slope_;
+  Buffer<Vec<D>, Backend> normal_;            // |m| in the direction of S [Pa^1/2]
+  Buffer<Vec<D>, Backend> force_, even_;      // to be shared; shared, in the end all of it [N/m3]
   Buffer<Vec<D>, Backend> press_;             // S [Pa]
   Buffer<Vec<D>, Backend> apart_;             // what is not shared [N/m3]
   Buffer<SurfaceFit, Backend> fit_, fitted_;  // of each particle; summed over its neighbours

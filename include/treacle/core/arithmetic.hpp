@@ -34,6 +34,8 @@ TREACLE_HD inline float inverseSqrt(float x) {
 #endif
 }
 
+TREACLE_HD inline double squareRoot(double x) { return sqrt(x); }
+
 /// x where it is positive, else zero; on a device without occupying the double-precision units.
 TREACLE_HD inline double positivePart(double x) {
 #ifdef __CUDA_ARCH__

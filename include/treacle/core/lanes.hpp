@@ -52,4 +52,13 @@ inline Lanes inverseSqrt(Lanes x) {
 #endif
 }
 
+inline Lanes squareRoot(Lanes x) {
+#ifdef __AVX512F__
+  return (Lanes)_mm512_maskz_sqrt_pd(0xff, (__m512d)x);
+#else
+  for (int k = 0; k < laneCount; ++k) x[k] = std::sqrt(x[k]);
+  return x;
+#endif
+}
+
 }  // namespace treacle

@@ -6,8 +6,18 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace treacle {
+
+/// That of a wall with the free surfaces of one fluid.
+struct ContactAngle {
+  std::string name;   // of the fluid's material
+  double angle = 90;  // measured in the fluid [deg]
+
+  bool operator==(const ContactAngle&) const = default;
+};
 
 struct Material {
   std::string name;
@@ -17,7 +27,8 @@ struct Material {
   double bulkModulus = 0;       // kappa [Pa]
   double slipLength = 0;        // how far behind a wall its velocity, extrapolated, is the wall's [m]; 0: no slip
   double surfaceTension = 0;    // gamma of its free surface [N/m]; MPH-I only
-  double contactAngle = 90;     // of a wall, with free surfaces of all fluids [deg]
+  double contactAngle = 90;     // of a wall, with free surfaces of all other fluids than these [deg]
+  std::vector<ContactAngle> contactAngles{};
   std::optional<Rheology> rheology{};  // of a fluid that is not Newtonian; MPH-I only
   // In cases with heat.
   double specificHeat = 0;                         // c_p [J/(kg K)]
@@ -28,6 +39,12 @@ struct Material {
   /// mu at a shear rate [1/s], where a_T is `shift` [Pa s].
   double viscosity(double rate, double shift) const {
     return rheology ? rheology->viscosity(rate, shift) : shift * dynamicViscosity;
+  }
+  /// Of a wall of this material with a fluid [deg].
+  double contactAngleWith(std::string_view fluid) const {
+    for (const ContactAngle& a : contactAngles)
+      if (a.name == fluid) return a.angle;
+    return contactAngle;
   }
   /// Whether its viscosity is not one number.
   bool hasOwnViscosities() const { return rheology.has_value() || viscosityShift.has_value(); }

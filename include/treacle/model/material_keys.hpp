@@ -62,6 +62,12 @@ void visit(auto& v, Like<ViscosityShift> auto& s, const Case&) {
   v({"max_factor", "The factor is at most this", optional, "", positive}, s.most);
 }
 
+void visit(auto& v, Like<ContactAngle> auto& a, const Case&) {
+  v({"name", "Name of the material of the fluid, unique among them", required}, a.name);
+  v({"angle", "Angle of its free surfaces with the wall, measured in the fluid", required, "deg", {0, 180}},
+    a.angle);
+}
+
 void visit(auto& v, Like<Material> auto& m, const Case& c) {
   v({"name", "Name of the material, unique among them", required}, m.name);
   v({"density", "Density", required, "kg/m3", positive}, m.density);
@@ -92,6 +98,12 @@ void visit(auto& v, Like<Material> auto& m, const Case& c) {
      "deg",
      {0, 180}},
     m.contactAngle);
+  v({"contact_angles",
+     "Of a wall: contact angles of single fluids, in place of contact_angle",
+     optional,
+     "",
+     {0, maxMaterials}},
+    m.contactAngles);
   if (!c.heat) return;
   v({"specific_heat", "Specific heat capacity", required, "J/(kg K)", positive}, m.specificHeat);
   v({"conductivity", "Thermal conductivity", required, "W/(m K)", notNegative}, m.conductivity);

@@ -8,15 +8,17 @@ namespace treacle {
 
 /// Surface tension of free surfaces as a stress along them, a continuum surface stress (docs/surface-tension.md):
 ///
-///   sigma_i = |m_i|^2 I - m_i m_i^T [Pa],   m_i = G_i sqrt(2 gamma / (c_i |G_i|)),   G_i = sum_j grad w_ij
-///   f_i = sum_j (sigma_i + sigma_j) grad w_ij - (|m_i|^2 + |m_j|^2) k [r_0 - r]_+ e / r_0^2 [N/m3]
+///   sigma_i = |m_i|^2 I - t_i m_i m_i^T [Pa],   m_i = G_i sqrt(2 gamma p(c_i) / (c_i |G_i|)),   G_i = sum_j grad
+///   w_ij f_i = sum_j (sigma_i + sigma_j) grad w_ij - (|m_i|^2 + |m_j|^2) k [r_0 - r]_+ e / r_0^2 [N/m3]
 ///
-/// with w = A (1 - r^2/h^2)^6, d = x_j - x_i = r e. G is not zero near a free surface alone, whose normal it has,
-/// and c is the colour, the sum of w, of which G is the gradient; walls are in both like fluid. The stress has no
-/// component along G, so that a plane surface bears no force. The forces are those of pairs of fluid, equal and
-/// opposite. Across a cut through a plane surface they add up to the integral of 2 gamma dc, c rising from 1/2 at
-/// the surface to 1: that is gamma. A tension lets particles gather; the second term, with k = 0.5 and r_0 = 0.95
-/// l, keeps those of the surface apart.
+/// with w = A (1 - r^2/h^2)^5.5, d = x_j - x_i = r e. G is not zero near a free surface alone, whose normal it
+/// has, and c is the colour, the sum of w, of which G is the gradient; walls are in both like fluid. The stress
+/// has no component along G, so that a plane surface bears no force. The forces are those of pairs of fluid, equal
+/// and opposite. Across a cut through a plane surface they add up to the integral of 2 gamma p dc, c rising from
+/// 1/2 at the surface to 1: that is gamma, p = 5/4 - c/3 being 1 in the mean. Its slope makes the tension of a
+/// lattice the same however it is stretched. t is 1 but for a particle that is outside of a plane surface, c <
+/// 1/2, as one that stands on it alone: there it is 2 c, so that what has run out is drawn back. A tension lets
+/// particles gather; the second term, with k = 0.5 and r_0 = 0.95 l, keeps those of the surface apart.
 ///
 /// The tension acts at a mean depth delta_1 below the surface. Between there and the surface the pressure gamma
 /// times the curvature is missing, which would push along the surface; and where the surface is curved c does not
@@ -28,8 +30,8 @@ namespace treacle {
 ///
 /// What a surface of uniform tension has of forces is along S, whose curvature is smooth. What else there is comes
 /// of how the particles stand, and moves them without end: f_i less q_i S_i, where the curvature q is the fit of f
-/// by q S among the neighbours. It is shared among them, four times, by pair forces that are central (what keeps
-/// particles apart is not):
+/// by q S among the neighbours. It is shared among them, surfacePasses times, by pair forces that are central
+/// (what keeps particles apart is not):
 ///
 ///   f_i += sum_j k_ij (1 - (e.n)^2) e (e.(f_j - f_i)),   k = K [1 - r^2/h^2]_+,   n along |m_i| n_i + |m_j| n_j
 ///
@@ -37,7 +39,8 @@ namespace treacle {
 /// neighbours' mean. Not near walls, where forces along the surface are to be.
 ///
 /// At walls the surface ends in a contact line. There G and c are continued as if the surface went on behind the
-/// wall, and the wall holds what the stress pulls off it and pulls along itself as the contact angle says.
+/// wall, and the wall holds what the stress pulls off it and pulls along itself as its contact angle with the
+/// fluid says.
 
 /// What a fluid particle has of fluid and of walls around it; sums of r^2 gradient are shares of a full lattice's.
 template <int D>
@@ -47,7 +50,14 @@ struct SurfaceSums {
   double walls;        // of walls
   double colour;       // sum of w of fluid, the particle's own included
   double wallColour;   // of walls
-  double pull;         // of walls, each with what it pulls along itself over gamma
+  double pull;         // of walls, each with what it pulls the fluid along itself over gamma
+};
+
+/// What the stress of a particle follows from.
+template <int D>
+struct SurfaceSlope {
+  Vec<D> m;    // [Pa^1/2]
+  double tie;  // t [-]
 };
 
 /// How well q S is the force f of a particle: f.S [Pa N/m3] and S.S [Pa2]. Zero near walls and where there is no
@@ -72,7 +82,7 @@ template <int D>
 struct SurfaceTerms {
   double inverseSquare = 0;      // 1/h^2 [1/m2]
   double weightFactor = 0;       // A, which makes the sum of w over a full lattice 1
-  double gradientFactor = 0;     // 12 A / h^2 [1/m2]
+  double gradientFactor = 0;     // 11 A / h^2 [1/m2]
   double shareFactor = 0;        // 1 over the sum of r^2 gradient over a full lattice
   double noise2 = 0;             // square of a |G| that particles in disorder have inside of the fluid [1/m2]
   double coreRadius = 0;         // r_0 [m]
@@ -81,22 +91,24 @@ struct SurfaceTerms {
   double evenFactor = 0;         // K
   double evenNoise = 0;          // |m|^2 that tells no direction, since particles in disorder have it [Pa]
   double tension[maxMaterials];  // gamma [N/m]
-  double pull[maxMaterials];     // of a wall of the material along itself, over gamma
+  double pulls[maxMaterials * maxMaterials];  // pull(), by fluid and wall
 
   static SurfaceTerms make(const Case& c);
+
+  /// What a wall of one material pulls a fluid of another along itself, over gamma.
+  TREACLE_HD double pull(int fluid, int wall) const { return pulls[fluid * int{maxMaterials} + wall]; }
 
   /// grad w = gradient d, d = x_j - x_i; r2 = d.d
   template <class Real>
   TREACLE_HD Real gradient(const Real& r2) const {
-    const Real part = positivePart(1.0 - inverseSquare * r2);
-    const Real square = part * part;
-    return gradientFactor * (square * square * part);
+    const Real part = nearness(r2), square = part * part;
+    return gradientFactor * (square * square * squareRoot(part));
   }
   /// w
   template <class Real>
   TREACLE_HD Real weight(const Real& r2) const {
-    const Real part = positivePart(1.0 - inverseSquare * r2), square = part * part;
-    return weightFactor * (square * square * square);
+    const Real part = nearness(r2), square = part * part;
+    return weightFactor * (square * square * part * squareRoot(part));
   }
   /// The share that a neighbour fills, from its gradient.
   template <class Real>
@@ -118,14 +130,18 @@ struct SurfaceTerms {
   TREACLE_HD Real nearness(const Real& r2) const {
     return positivePart(1.0 - inverseSquare * r2);
   }
-  /// m of a particle, 2 gamma |G| / c being |m|^2 where |G| is more than noise. Of what lies along a wall, and of
+  /// p, of a colour c
+  TREACLE_HD static double profile(double colour) { return 1.25 - colour / 3; }
+  /// Of a particle, 2 gamma p |G| / c being |m|^2 where |G| is more than noise. Of what lies along a wall, and of
   /// c, the wall hides its share.
-  TREACLE_HD Vec<D> slope(int material, const SurfaceSums<D>& s) const {
+  TREACLE_HD SurfaceSlope<D> slope(int material, const SurfaceSums<D>& s) const {
     Vec<D> g = s.fluid + s.wall;
     const double size2 = norm2(s.wall);
     if (size2 > 0) g += (g - s.wall * (dot(g, s.wall) / size2)) * (s.walls / (1 - s.walls));
     const double open = fmax(1 - s.wallColour, s.colour);  // never less than the fluid that is there
-    return g * sqrt(2 * tension[material] * open / (s.colour * sqrt(norm2(g) + noise2)));
+    const double colour = s.colour / open;                 // at most 1
+    const double m2 = 2 * tension[material] * profile(colour) / (colour * sqrt(norm2(g) + noise2));
+    return {g * sqrt(m2), fmin(1.0, 2 * colour)};
   }
   /// The force of the walls on a particle that the fluid's stress gives `ofFluid` [N/m3].
   TREACLE_HD Vec<D> ofWalls(const SurfaceSums<D>& s, const Vec<D>& m, const Vec<D>& ofFluid) const {
@@ -161,24 +177,30 @@ struct SurfaceTerms {
   }
 };
 
-/// Of |m_i|^2 per volume, the energy of the surface, gamma per area: 1 / (2 ln 2).
-inline constexpr double surfaceEnergyShare = 0.72134752044448169;
+/// Of |m_i|^2 per volume, the energy of the surface, gamma per area: 1 / (5/2 ln 2 - 1/3).
+inline constexpr double surfaceEnergyShare = 0.71451914811128452;
 
-/// Per own fluid particle the sums and m_i [Pa^1/2].
+/// How often noise is shared. In 3D more leaves the fastest particles of a ball as fast, and its pressure is
+/// higher.
+template <int D>
+inline constexpr int surfacePasses = D == 2 ? 8 : 4;
+
+/// Per own fluid particle the sums and its slope.
 template <int D>
 void surfaceSlope(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&, std::span<SurfaceSums<D>> sums,
-                  std::span<Vec<D>> m);
+                  std::span<SurfaceSlope<D>> slope);
 template <int D>
 void surfaceSlope(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&, std::span<SurfaceSums<D>> sums,
-                  std::span<Vec<D>> m);
+                  std::span<SurfaceSlope<D>> slope);
 
-/// m of all fluid, ghosts included.
+/// `slope` of all fluid, ghosts included.
 template <int D>
 void surfaceForces(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&, std::span<const SurfaceSums<D>> sums,
-                   std::span<const Vec<D>> m, const SurfaceForces<D>& of);
+                   std::span<const SurfaceSlope<D>> slope, const SurfaceForces<D>& of);
 template <int D>
 void surfaceForces(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&,
-                   std::span<const SurfaceSums<D>> sums, std::span<const Vec<D>> m, const SurfaceForces<D>& of);
+                   std::span<const SurfaceSums<D>> sums, std::span<const SurfaceSlope<D>> slope,
+                   const SurfaceForces<D>& of);
 
 /// Per own fluid particle: adds to `force` what makes up for the depth of the tension, and moves the smooth part
 /// of it along the surface's curvature, q S, to `apart`: what is left in `force` is to be shared. `normal` and
@@ -190,7 +212,7 @@ template <int D>
 void bendSurface(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&, const SurfaceForces<D>& of,
                  std::span<SurfaceFit> fitted);
 
-/// y_i += f_i and what the particle shares of it with its neighbours along the surface, and apart_i unless `apart`
+/// y_i = f_i and what the particle shares of it with its neighbours along the surface, and apart_i unless `apart`
 /// is empty, per own fluid particle [N/m3]. `normal`, `fit` and f of all fluid, ghosts included; where `fit` is
 /// zero nothing is shared.
 template <int D>
@@ -201,6 +223,12 @@ template <int D>
 void evenAlongSurface(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&, std::span<const Vec<D>> normal,
                       std::span<const SurfaceFit> fit, std::span<const Vec<D>> f, std::span<Vec<D>> y,
                       std::span<const Vec<D>> apart = {});
+
+/// y += f per own fluid particle [N/m3].
+template <int D>
+void addSurfaceForces(Context<Cpu>&, std::span<const Vec<D>> f, std::span<Vec<D>> y);
+template <int D>
+void addSurfaceForces(Context<Cuda>&, std::span<const Vec<D>> f, std::span<Vec<D>> y);
 
 /// Sets y per wall particle of the list to the reaction, as `ofWalls` has it of all fluid, ghosts included, and
 /// adds it to `load` [N/m3].

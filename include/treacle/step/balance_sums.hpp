@@ -28,9 +28,9 @@ struct PowerTerms {
   std::span<const double> shear;           // of the fluid [W/m3]
   std::span<const double> wallDivergence;  // the fluid's parts of C^T u and n at walls
   std::span<const double> wallDensity;
-  std::span<const double> repulsion;     // what it gives to the fluid [W/m3], or empty
-  std::span<const Vec<D>> surfaceForce;  // of surface tension, on walls, too [N/m3], or empty
-  std::span<const Vec<D>> surfaceSlope;  // m of it (surface_tension.hpp), or empty
+  std::span<const double> repulsion;              // what it gives to the fluid [W/m3], or empty
+  std::span<const Vec<D>> surfaceForce;           // of surface tension, on walls, too [N/m3], or empty
+  std::span<const SurfaceSlope<D>> surfaceSlope;  // surface_tension.hpp; or empty
 
   /// Pairs of walls do no work on the fluid, and what they are compressed by without fluid it cannot get back.
   TREACLE_HD void add(std::size_t i, double* sums) const {
@@ -48,7 +48,7 @@ struct PowerTerms {
     if (!fluid) return;
     sums[Shear] += shear[i];
     if (!repulsion.empty()) sums[Repulsion] += repulsion[i];
-    if (!surfaceSlope.empty()) sums[SurfaceEnergy] += surfaceEnergyShare * norm2(surfaceSlope[i]);
+    if (!surfaceSlope.empty()) sums[SurfaceEnergy] += surfaceEnergyShare * norm2(surfaceSlope[i].m);
     sums[Inertial] += 0.5 * materials.inertia[m] * norm2(after[i] - before[i]);
   }
 };

@@ -431,6 +431,24 @@ const Mistake mistakes[] = {
      {"material", "syrup", "contact_angle"},
      "[[material]] 'syrup'",
      "expected a number from 0 to 180 [deg], found 190"},
+    {"contactAngleOfOneFluid",
+     mph,
+     [](Case& c) {
+       c.materials[0].contactAngles = {{"syrup", 190}};
+     },
+     {"syrup.contact_angles=[{name=\"syrup\", angle=190}]"},
+     {"material", "syrup", "contact_angles", "syrup", "angle"},
+     "[[contact_angles]] 'syrup'",
+     "expected a number from 0 to 180 [deg], found 190"},
+    {"contactAngleOfNoFluid",
+     mph,
+     [](Case& c) {
+       c.materials[0].contactAngles = {{"honey", 40}};
+     },
+     {"syrup.contact_angles=[{name=\"honey\", angle=40}]"},
+     {"material", "syrup", "contact_angles", "honey", "name"},
+     "[[contact_angles]] 'honey'",
+     "unknown material 'honey'"},
     {"watchedShare",
      mph,
      [](Case& c) { c.watch.insideWalls = 2; },
@@ -551,6 +569,11 @@ TEST(requireValid, refusesWhatOnlyCodeCanSay) {
             "material.syrup.surface_tension: only the method 'mph-i' has surface tension, found 'isph'");
   EXPECT_EQ(messageFor(isph, [](Case& c) { c.materials[0].contactAngle = 60; }),
             "material.syrup.contact_angle: only the method 'mph-i' has surface tension, found 'isph'");
+  EXPECT_EQ(messageFor(isph,
+                       [](Case& c) {
+                         c.materials[0].contactAngles = {{"syrup", 60}};
+                       }),
+            "material.syrup.contact_angles: only the method 'mph-i' has surface tension, found 'isph'");
 }
 
 TEST(requireValid, knowsDirectionsOfLengthZeroInSpace) {
