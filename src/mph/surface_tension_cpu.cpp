@@ -98,7 +98,7 @@ void bendSurface(Context<Cpu>&, const MphPairs<D>& pairs, const SurfaceTerms<D>&
     const VecLanes<D> mi = loadLanes<D>(range, std::span<const Vec<D>>(of.normal));
     Lanes mi1 = {};
     for (int k = 0; k < D; ++k) mi1 += mi[k] * mi[k];
-    for (std::uint32_t lane = 0; lane < clusterSize; ++lane) mi1[lane] = std::sqrt(mi1[lane]);
+    mi1 = squareRoot(mi1);
     VecLanes<D> sum = loadLanes<D>(range, std::span<const Vec<D>>(of.force));
     Lanes force = {}, press = {};
     for (ListSegment s : {ListSegment::NearFluid, ListSegment::FarFluid})

@@ -2,21 +2,25 @@
 
 #include "treacle/mph/mph_pairs.hpp"
 
+#include <numbers>
 #include <span>
 
 namespace treacle {
 
 /// Surface tension of free surfaces as a stress along them, a continuum surface stress (docs/surface-tension.md):
 ///
-///   sigma_i = |m_i|^2 I - t_i m_i m_i^T [Pa],   m_i = G_i sqrt(2 gamma p(c_i) / (c_i |G_i|)),   G_i = sum_j grad
-///   w_ij f_i = sum_j (sigma_i + sigma_j) grad w_ij - (|m_i|^2 + |m_j|^2) k [r_0 - r]_+ e / r_0^2 [N/m3]
+///   sigma_i = |m_i|^2 I - t_i m_i m_i^T [Pa],   m_i = G_i sqrt(2 gamma p(c_i) / (c_i |G_i|)) [Pa^1/2]
+///
+///   f_i = sum_j (sigma_i + sigma_j) grad w_ij - (|m_i|^2 + |m_j|^2) k [r_0 - r]_+ e / r_0^2 [N/m3]
+///
+///   G_i = sum_j grad w_ij [1/m],   c_i = sum_j w_ij,   p = 5/4 - c/3,   t = min(1, 2 c)
 ///
 /// with w = A (1 - r^2/h^2)^5.5, d = x_j - x_i = r e. G is not zero near a free surface alone, whose normal it
 /// has, and c is the colour, the sum of w, of which G is the gradient; walls are in both like fluid. The stress
 /// has no component along G, so that a plane surface bears no force. The forces are those of pairs of fluid, equal
 /// and opposite. Across a cut through a plane surface they add up to the integral of 2 gamma p dc, c rising from
-/// 1/2 at the surface to 1: that is gamma, p = 5/4 - c/3 being 1 in the mean. Its slope makes the tension of a
-/// lattice the same however it is stretched. t is 1 but for a particle that is outside of a plane surface, c <
+/// 1/2 at the surface to 1: that is gamma, p being 1 in the mean. Its slope makes the tension of a lattice nearly
+/// the same however it is stretched. t is 1 but for a particle that is outside of a plane surface, c <
 /// 1/2, as one that stands on it alone: there it is 2 c, so that what has run out is drawn back. A tension lets
 /// particles gather; the second term, with k = 0.5 and r_0 = 0.95 l, keeps those of the surface apart.
 ///
@@ -177,8 +181,9 @@ struct SurfaceTerms {
   }
 };
 
-/// Of |m_i|^2 per volume, the energy of the surface, gamma per area: 1 / (5/2 ln 2 - 1/3).
-inline constexpr double surfaceEnergyShare = 0.71451914811128452;
+/// Of |m_i|^2 per volume, the energy of the surface, gamma per area: 1 over the integral of 2 p/c dc
+/// from 1/2 to 1.
+inline constexpr double surfaceEnergyShare = 1 / (2.5 * std::numbers::ln2 - 1.0 / 3);
 
 /// How often noise is shared. In 3D more leaves the fastest particles of a ball as fast, and its pressure is
 /// higher.
