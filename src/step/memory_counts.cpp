@@ -66,8 +66,8 @@ class Counter {
                                         if (wholeRows)
                                           gradientsOfWalls += nearEntries(pairs, list.first, list.last);
                                       });
-    if (c.needsBalance())
-      countLists(pairs, fluid, ownEnd, {std::max(hn, hv), 0}, counts_.balanceLists, [](const ClusterList<>&) {});
+    if (c.needsBalance() || c.hasRigid())
+      countLists(pairs, fluid, ownEnd, {std::max(hn, hv), 0}, counts_.wallForceLists, [](const ClusterList<>&) {});
     counts_.nearEntries = scaled(slicedFluid.near, ofFluid) + scaled(slicedWalls.near, ofWalls);
     counts_.stagedEntries = scaled(slicedFluid.staged, ofFluid) + scaled(slicedWalls.staged, ofWalls);
     counts_.gradientEntries = scaled(gradients, ofFluid) + scaled(gradientsOfWalls, ofWalls);

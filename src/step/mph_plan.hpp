@@ -35,6 +35,16 @@ void planHeat(const Case& c, const MemoryCounts& n, MemorySum& sum) {
   sum.keep<HeatExchange>(fluid);
 }
 
+/// WallForces, and what StepSurface keeps for them.
+template <int D>
+void planWallForces(const Case& c, const MemoryCounts& n, MemorySum& sum) {
+  const std::uint64_t walls = n.activeWalls();
+  planLists(n.wallForceLists, sum);
+  sum.keep<double>(2 * walls);
+  sum.keep<Vec<D>>(walls);
+  if (c.hasSurfaceTension()) sum.keep<Vec<D>>(n.active + n.heldFluid());
+}
+
 /// What MphStep has besides lists and solver.
 template <int D>
 void planFields(const Case& c, const MemoryCounts& n, bool withGradient, MemorySum& sum) {
@@ -59,11 +69,12 @@ void planFields(const Case& c, const MemoryCounts& n, bool withGradient, MemoryS
   sum.keep<double>(fluid + 2 * n.active);
   sum.keep<Vec<D>>(fluid);
   if (c.heat) planHeat<D>(c, n, sum);
-  if (!c.needsBalance()) return;
-  planLists(n.balanceLists, sum);
-  sum.keep<double>(fluid * (c.repulsionRadius() > 0 ? 2 : 1) + 2 * walls);
-  sum.keep<Vec<D>>(walls);
-  if (c.hasSurfaceTension()) sum.keep<Vec<D>>(n.active + held);
+  if (c.hasRigid()) {  // pressures, the right-hand side at rest and velocities found
+    sum.keep<double>(n.active);
+    sum.keep<Vec<D>>(c.hasOwnViscosities() ? fluid : 2 * fluid);
+  }
+  if (c.needsBalance()) sum.keep<double>(fluid * (c.repulsionRadius() > 0 ? 2 : 1));
+  if (c.needsBalance() || c.hasRigid()) planWallForces<D>(c, n, sum);
 }
 
 /// MphOperator, matrix-free.

@@ -42,7 +42,7 @@ struct MemoryCounts {
   Sharing sharing;
 
   // MPH-I.
-  Lists fluidLists, wallLists, balanceLists;
+  Lists fluidLists, wallLists, wallForceLists;
   std::uint64_t nearEntries = 0;       // each particle's own neighbours within h_p, in slices
   std::uint64_t stagedEntries = 0;     // of these what single-precision products with B have
   std::uint64_t gradientEntries = 0;   // of C

@@ -373,6 +373,35 @@ density = 1500
   EXPECT_EQ(c, expected);
 }
 
+TEST(readCase, mergesContactAnglesByTheirFluid) {
+  Workshop shop;
+  shop.put("base.toml", std::string(smallCase) + R"(
+[[material]]
+name = "water"
+density = 998
+dynamic_viscosity = 1e-3
+bulk_viscosity = 1
+bulk_modulus = 1
+contact_angles = [{name = "syrup", angle = 40}, {name = "water", angle = 70}]
+)");
+  shop.put("derived.toml", R"(base = "base.toml"
+[[material]]
+name = "water"
+contact_angles = [{name = "water", angle = 110}, {name = "oil", angle = 20}]
+[[material]]
+name = "oil"
+density = 900
+dynamic_viscosity = 1
+bulk_viscosity = 1
+bulk_modulus = 1
+)");
+  const Case base = readCase(shop / "base.toml"), c = readCase(shop / "derived.toml");
+  Case expected = base;
+  expected.materials[1].contactAngles = {{"syrup", 40}, {"water", 110}, {"oil", 20}};
+  expected.materials.push_back({"oil", 900, 1, 1, 1});
+  EXPECT_EQ(c, expected);
+}
+
 TEST(readCase, overridesComeOnTop) {
   Workshop shop;
   shop.put("case.toml", smallCase);

@@ -34,7 +34,7 @@ MemoryCounts countsOf(int dimensions, std::uint64_t thousands = 1) {
   counts.particles = {1000 * n, 500 * n, 0, 500 * n};
   counts.nearWalls = 400 * n, counts.active = 1200 * n, counts.cells = 100 * n;
   counts.fluidLists = {125 * n, {10000 * n, 20000 * n, 1000 * n, 2000 * n}};
-  counts.wallLists = counts.balanceLists = {25 * n, {1000 * n, 0, 1000 * n, 0}};
+  counts.wallLists = counts.wallForceLists = {25 * n, {1000 * n, 0, 1000 * n, 0}};
   counts.nearEntries = counts.gradientEntries = 1000 * near * n;
   counts.rowEntries = 5000 * near * n;
   counts.pressureGrids = {{20000 * n, 30000 * n, 200000 * n}, {100, 200, 1000}};

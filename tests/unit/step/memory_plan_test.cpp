@@ -42,6 +42,22 @@ TEST(MemoryPlan, IsWhatSimulationsHaveOnTheCpu) {
   }
 }
 
+/// What their walls bear, by itself and with surface tension.
+TEST(MemoryPlan, KnowsWhatRigidBodiesTake) {
+  const MemoryCase plain{"floating-block-2d.toml", {"solver.deflation=0"}};
+  MemoryCase tense = plain;
+  tense.settings.push_back("honey.surface_tension=0.07");
+  for (const MemoryCase& memoryCase : {plain, tense}) {
+    SCOPED_TRACE(memoryCase.name());
+    Planned p = Planned::of(memoryCase.read());
+    HostAccount::startPeak();
+    for (int k = 0; k < 2; ++k) p.simulation.advance();
+    EXPECT_EQ(p.live(), p.simulation.bytes());
+    EXPECT_NEAR(excess(p.plan.held, p.live()), 0, 0.01);
+    EXPECT_NEAR(excess(p.plan.peak, p.peak()), 0, 0.01);
+  }
+}
+
 /// Large enough for arrays that are given up once their part of the step is done.
 TEST(MemoryPlan, KnowsWhatIsGivenUp) {
   const MemoryCase large{
