@@ -74,7 +74,7 @@ void planFields(const Case& c, const MemoryCounts& n, bool withGradient, MemoryS
     sum.keep<Vec<D>>(c.hasOwnViscosities() ? fluid : 2 * fluid);
   }
   if (c.needsBalance()) sum.keep<double>(fluid * (c.repulsionRadius() > 0 ? 2 : 1));
-  if (c.needsBalance() || c.hasRigid()) planWallForces<D>(c, n, sum);
+  if (c.needsWallForces()) planWallForces<D>(c, n, sum);
 }
 
 /// MphOperator, matrix-free.

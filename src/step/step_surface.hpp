@@ -12,8 +12,7 @@ namespace treacle {
 template <int D, class Backend>
 class StepSurface {
  public:
-  explicit StepSurface(const Case& c)
-      : terms_(SurfaceTerms<D>::make(c)), wallsBearIt_(c.needsBalance() || c.hasRigid()) {}
+  explicit StepSurface(const Case& c) : terms_(SurfaceTerms<D>::make(c)), wallsBearIt_(c.needsWallForces()) {}
 
   /// On the neighbours of the step.
   void prepare(FlowState<D, Backend>& state, const MphPairs<D>& pairs) {

@@ -125,6 +125,8 @@ struct Case {
   }
   /// Whether the balance of each step is computed: for its file, or for what walls bear. Of MPH-I.
   bool needsBalance() const { return output.balance || hasLoads(); }
+  /// Whether what walls bear is summed in each step: for the balance or for rigid bodies. Of MPH-I.
+  bool needsWallForces() const { return needsBalance() || hasRigid(); }
   bool hasSurfaceTension() const {
     return std::ranges::any_of(materials, [](const Material& m) { return m.surfaceTension > 0; });
   }

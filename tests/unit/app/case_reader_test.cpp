@@ -343,6 +343,16 @@ TEST(readCase, weightsAndRadiiFollowFromTheSchemeUnlessGiven) {
   EXPECT_EQ(methodOf({"method.pressure_radius=2.5", "method.scheme=published"}), wide);
 }
 
+/// One more material, at the end of a case.
+const std::string water = R"(
+[[material]]
+name = "water"
+density = 998
+dynamic_viscosity = 1e-3
+bulk_viscosity = 1
+bulk_modulus = 1
+)";
+
 TEST(readCase, mergesOntoItsBase) {
   Workshop shop;
   shop.put("cases/base.toml", smallCase);
@@ -350,19 +360,13 @@ TEST(readCase, mergesOntoItsBase) {
   shop.put("derived.toml", R"(base = "cases/middle.toml"
 [output]
 fields = ["velocity"]
-[[material]]
-name = "water"
-density = 998
-dynamic_viscosity = 1e-3
-bulk_viscosity = 1
-bulk_modulus = 1
 [[body]]
 name = "floor"
 material = "water"
 [[material]]
 name = "syrup"
 density = 1500
-)");
+)" + water);
   const Case base = readCase(shop / "cases/base.toml"), c = readCase(shop / "derived.toml");
   Case expected = base;
   expected.time.end = 3e-3;
@@ -375,14 +379,8 @@ density = 1500
 
 TEST(readCase, mergesContactAnglesByTheirFluid) {
   Workshop shop;
-  shop.put("base.toml", std::string(smallCase) + R"(
-[[material]]
-name = "water"
-density = 998
-dynamic_viscosity = 1e-3
-bulk_viscosity = 1
-bulk_modulus = 1
-contact_angles = [{name = "syrup", angle = 40}, {name = "water", angle = 70}]
+  shop.put("base.toml", std::string(smallCase) + water +
+                            R"(contact_angles = [{name = "syrup", angle = 40}, {name = "water", angle = 70}]
 )");
   shop.put("derived.toml", R"(base = "base.toml"
 [[material]]
