@@ -5,7 +5,7 @@ namespace treacle {
 double Case::typicalTemperature(const Material& m) const {
   for (const Body& body : bodies)
     if (body.holdsFluid() && &materials[static_cast<std::size_t>(body.material)] == &m &&
-        body.temperatureExpression.empty())
+        body.temperatureExpression.empty() && !body.fileTemperatures)
       return body.temperature;
   if (!m.viscosityShift) return heat->ambient;
   const ViscosityShift& s = *m.viscosityShift;

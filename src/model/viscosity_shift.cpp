@@ -28,6 +28,9 @@ ShiftFactor ShiftFactor::make(const ViscosityShift& s) {
         f.temperature[k] = s.temperatures[static_cast<std::size_t>(k)];
         f.logarithm[k] = std::log(s.factors[static_cast<std::size_t>(k)]);
       }
+      // Its rows bound it.
+      f.least = *std::min_element(f.logarithm, f.logarithm + f.rows);
+      f.most = *std::max_element(f.logarithm, f.logarithm + f.rows);
       break;
   }
   return f;

@@ -1,6 +1,7 @@
 #include "treacle/mph/viscosity_classes.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace treacle {
 namespace {
@@ -15,14 +16,15 @@ struct Range {
   double least, most;  // [Pa s]
 };
 
-/// a_T between the lowest and the highest temperature that a case gives, and a little beyond; where formulas give
-/// them at all temperatures.
+/// a_T between the lowest and the highest temperature that a case gives, and a little beyond; where formulas or
+/// files give them at all temperatures.
 Range shifts(const Case& c, const Material& m) {
   if (!c.heat || !m.viscosityShift) return {1, 1};
   const ShiftFactor factor = ShiftFactor::make(*m.viscosityShift);
   double least = c.heat->ambient, most = least;
   for (const Body& body : c.bodies) {
-    if (!body.temperatureExpression.empty()) return {m.viscosityShift->least, m.viscosityShift->most};
+    if (!body.temperatureExpression.empty() || body.fileTemperatures)
+      return {std::exp(factor.least), std::exp(factor.most)};
     if (body.temperature == 0) continue;
     least = std::min(least, body.temperature), most = std::max(most, body.temperature);
   }
@@ -58,8 +60,8 @@ Range viscosities(const Case& c, const Material& m) {
 }
 
 bool hasSteps(const ViscosityClasses& classes, const Case& c, const Material& m) {
-  return m.hasOwnViscosities() || (c.hasViscosityFactors() && m.dynamicViscosity > 0) ||
-         (classes.ofNeighbours && m.dynamicViscosity > 0);
+  if (m.rheology) return true;
+  return m.dynamicViscosity > 0 && (m.viscosityShift || c.hasViscosityFactors() || classes.ofNeighbours);
 }
 
 /// Among particles of another fluid, or at a surface, a particle may be resisted by a fraction of its viscosity,

@@ -41,7 +41,7 @@ struct ShiftFactor {
 
   ShiftModel model = ShiftModel::Arrhenius;
   int rows = 0;                                                        // of a table
-  double reference = 1, numerator = 0, pole = 0, least = 1, most = 1;  // of ln a
+  double reference = 1, numerator = 0, pole = 0, least = 0, most = 0;  // of ln a; as they are here, a = 1
   double temperature[ViscosityShift::mostRows];
   double logarithm[ViscosityShift::mostRows];
 

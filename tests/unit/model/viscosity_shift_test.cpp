@@ -34,6 +34,15 @@ TEST(ViscosityShift, HasBounds) {
   EXPECT_NEAR(at(table, 500), 0.01, 1e-12);
 }
 
+TEST(ViscosityShift, LeavesATableItsFactors) {
+  ViscosityShift steep = table;
+  steep.factors = {1e9, 1, 1e-9};
+  EXPECT_NEAR(at(steep, 300) / 1e9, 1, 1e-12);
+  EXPECT_NEAR(at(steep, 360) / 1e-9, 1, 1e-12);
+}
+
+TEST(ViscosityShift, IsOneForMaterialsWithout) { EXPECT_EQ(ShiftFactor{}(500), 1); }
+
 /// At another temperature a fluid has the stress that it has at the reference for a_T times the shear rate.
 TEST(ViscosityShift, MovesTheFlowCurveOfARheology) {
   const Rheology carreau{.model = RheologyModel::CarreauYasuda,

@@ -4,6 +4,7 @@
 #include "treacle/core/error.hpp"
 #include "treacle/io/case_reader.hpp"
 #include "treacle/model/create.hpp"
+#include "treacle/mph/particle_viscosity.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -37,6 +38,16 @@ LoadedWalls<D> closed(SchemeKind scheme) {
   for (std::uint32_t i = 0; i < start.particles.fluidCount; ++i)
     start.particles.temperature[i] = 300 + 2e4 * start.particles.position[i][0];
   return start;
+}
+
+TEST(HeatSteps, TakeTheViscosityOfAMaterialWithoutAShift) {
+  Case c = closed<2>(SchemeKind::Accurate).c;
+  c.materials[0].rheology = Rheology::newtonian(3);
+  RheologyTable table = RheologyTable::make(c);
+  const double temperature[] = {350};
+  table.temperature = temperature;
+  EXPECT_EQ(table.viscosity(0, 0, 1), 3);
+  EXPECT_LT(table.viscosity(0, 1, 1), c.materials[1].dynamicViscosity);
 }
 
 /// What the motion loses to the viscosity is what the fluid has gained, to rounding, whatever the tolerance.
