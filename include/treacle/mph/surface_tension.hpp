@@ -136,12 +136,15 @@ struct SurfaceTerms {
   }
   /// p, of a colour c
   TREACLE_HD static double profile(double colour) { return 1.25 - colour / 3; }
+  /// The share of the lattice around a particle that walls leave, at least what a particle between two of them has
+  /// that close up on it.
+  TREACLE_HD static double besideWalls(const SurfaceSums<D>& s) { return fmax(1 - s.walls, 0.1); }
   /// Of a particle, 2 gamma p |G| / c being |m|^2 where |G| is more than noise. Of what lies along a wall, and of
   /// c, the wall hides its share.
   TREACLE_HD SurfaceSlope<D> slope(int material, const SurfaceSums<D>& s) const {
     Vec<D> g = s.fluid + s.wall;
     const double size2 = norm2(s.wall);
-    if (size2 > 0) g += (g - s.wall * (dot(g, s.wall) / size2)) * (s.walls / (1 - s.walls));
+    if (size2 > 0) g += (g - s.wall * (dot(g, s.wall) / size2)) * (s.walls / besideWalls(s));
     const double open = fmax(1 - s.wallColour, s.colour);  // never less than the fluid that is there
     const double colour = s.colour / open;                 // at most 1
     const double m2 = 2 * tension[material] * profile(colour) / (colour * sqrt(norm2(g) + noise2));
@@ -154,7 +157,7 @@ struct SurfaceTerms {
     const Vec<D> inward = s.wall * (1 / size), along = m - inward * dot(m, inward);
     const double sine = norm(along) / sqrt(m2);  // of the angle between surface and wall
     if (!(sine > 0)) return {};
-    const double line = 2 * m2 * size * fmin(1.0, s.filled / (1 - s.walls));
+    const double line = 2 * m2 * size * fmin(1.0, s.filled / besideWalls(s));
     const double away = -dot(ofFluid, inward), most = line * sine * sine;
     const double held = away < 0 ? 0 : away < most ? away : most;
     return inward * held - along * (line * s.pull / (s.walls * sqrt(m2)));

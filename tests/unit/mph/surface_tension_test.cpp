@@ -374,6 +374,18 @@ TEST(SurfaceTension, SharedForcesKeepTheirTorqueAndThoseNearWallsTheirPlace) {
   checkNearWalls<3>();
 }
 
+/// A particle between two of them may have all of its neighbourhood, and more, in the walls.
+TEST(SurfaceTension, WallsThatCloseUpOnAParticleHoldItAsFirmlyAsBefore) {
+  const SurfaceTerms<2> terms = SurfaceTerms<2>::make(slabCase<2>());
+  const auto pullOf = [&](double walls) {
+    const SurfaceSums<2> sums{{0, 10}, {300, 5}, 0.05, walls, 0.3, walls, 0.5 * walls};
+    return terms.ofWalls(sums, terms.slope(0, sums).m, {-1e9, 0});
+  };
+  const Vec<2> before = pullOf(0.95);
+  EXPECT_GT(before[0], 0);  // towards the walls
+  for (const double walls : {1.0, 1.05}) EXPECT_LT(norm(pullOf(walls) - before), 0.2 * norm(before)) << walls;
+}
+
 TEST(SurfaceTension, OfWallsHasAReaction) {
   checkReaction<2>();
   checkReaction<3>();
