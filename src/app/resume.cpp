@@ -45,10 +45,17 @@ Kinds kindsOf(const MadeParticles& made) {
   return kinds;
 }
 
-/// What a fluid of unknown temperature would start with nobody can say.
+/// What a fluid of unknown temperature would start with nobody can say, and factors of its viscosity that come or
+/// go would make another fluid of it.
 template <int D>
-void requireTemperatures(const Case& c, const std::filesystem::path& file, const Particles<D>& p) {
+void requireFields(const Case& c, const std::filesystem::path& file, const Particles<D>& p) {
   if (c.heat && !p.has.temperatures) refuse(file, "a state without temperatures, but the case has heat");
+  if (c.hasViscosityFactors() && !p.has.viscosityFactors)
+    refuse(file, "a state without factors of the viscosity, but a body of the case has a viscosity_factor");
+  if (!c.hasViscosityFactors() && p.has.viscosityFactors)
+    refuse(file,
+           "a state with factors of the viscosity, but no body of the case has a viscosity_factor; expected the "
+           "case.toml of the run, or viscosity_factor = 1");
 }
 
 template <int D>
@@ -149,7 +156,7 @@ StartState fittingState(const Case& c, const std::filesystem::path& file, const 
     const Kinds kinds = kindsOf(made);
     requireMethod(c, file, state.method);
     requireFit(c, file, state, kinds);
-    requireTemperatures(c, file, state.particles);
+    requireFields(c, file, state.particles);
     requireFlow(c, file, state.particles.flow);
     requireRigid(c, file, state.particles.rigid);
     setBodies(c, file, made, state.particles);

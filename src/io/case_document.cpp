@@ -97,24 +97,29 @@ toml::table* findNamed(toml::array& list, std::string_view name) {
   return nullptr;
 }
 
+/// One entry of each name.
+void requireDistinct(std::string_view listName, toml::array& list) {
+  for (toml::node& entry : list)
+    if (const std::string_view name = nameOf(*entry.as_table()); !name.empty() && findNamed(list, name) != &entry)
+      throw errorAt(entry.source(), fmt::format("two [[{}]] are named '{}'", listName, name));
+}
+
 /// Merging needs a name on every entry of the named lists, and one entry of each name.
 void requireNames(toml::table& document) {
   for (std::string_view listName : namedLists) {
     toml::array* list = document[listName].as_array();
     if (!list || !list->is_array_of_tables()) continue;
-    for (toml::node& entry : *list) {
-      const std::string_view name = nameOf(*entry.as_table());
-      if (name.empty())
+    for (toml::node& entry : *list)
+      if (nameOf(*entry.as_table()).empty())
         throw errorAt(entry.source(), fmt::format("every [[{}]] needs a name: name = \"...\"", listName));
-      if (findNamed(*list, name) != &entry)
-        throw errorAt(entry.source(), fmt::format("two [[{}]] are named '{}'", listName, name));
-    }
+    requireDistinct(listName, *list);
   }
 }
 
 void merge(toml::table& into, toml::table&& from);
 
-void mergeNamed(toml::array& into, toml::array&& from) {
+void mergeNamed(std::string_view listName, toml::array& into, toml::array&& from) {
+  requireDistinct(listName, from);
   for (toml::node& entry : from) {
     toml::table& table = *entry.as_table();
     if (toml::table* existing = findNamed(into, nameOf(table)))
@@ -131,7 +136,7 @@ void merge(toml::table& into, toml::table&& from) {
     if (existing && existing->is_table() && value.is_table())
       merge(*existing->as_table(), std::move(*value.as_table()));
     else if (named && existing && existing->is_array_of_tables() && value.is_array_of_tables())
-      mergeNamed(*existing->as_array(), std::move(*value.as_array()));
+      mergeNamed(key.str(), *existing->as_array(), std::move(*value.as_array()));
     else
       into.insert_or_assign(key, std::move(value));
   }

@@ -31,7 +31,8 @@ Case caseOf(const toml::table& document, const std::filesystem::path& folder, Sh
   try {
     if (width) applyWidth(c, *width);
     if (files == ShapeFiles::Read) readShapeFiles(c, folder);
-    setStepBounds(c);  // which follow from where bodies are
+    requireValidMaterials(c);
+    setStepBounds(c);  // which follow from materials, and from where bodies are
     requireValid(c);
   } catch (const CaseError& error) {
     throw placed(error, sections);

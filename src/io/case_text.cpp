@@ -17,7 +17,8 @@ class TableText {
  public:
   /// `path`: what the headings of the tables in it begin with.
   template <class Table>
-  TableText(const Case& c, std::string path, const Table& table) : case_(c), path_(std::move(path)) {
+  TableText(const Case& c, std::string path, const Table& table)
+      : case_(c), path_(std::move(path)), isTop_(std::is_same_v<Table, Case>) {
     keys::visit(*this, table, c);
   }
 
@@ -92,8 +93,15 @@ class TableText {
   }
   template <class Table>
   void operator()(const Key& key, const std::vector<Table>& tables) {
-    for (const Table& table : tables)
-      tables_ += fmt::format("\n[[{}]]\n{}", key.name, TableText(case_, {}, table).text());
+    std::vector<std::string> entries;
+    for (const Table& table : tables) {
+      const TableText entry(case_, {}, table);
+      if (isTop_)
+        tables_ += fmt::format("\n[[{}]]\n{}", key.name, entry.text());
+      else
+        entries.push_back(entry.onOneLine());
+    }
+    if (!entries.empty()) put(key, array(entries));
   }
 
  private:
@@ -116,6 +124,7 @@ class TableText {
 
   const Case& case_;
   std::string path_;
+  bool isTop_;                       // of the file
   std::vector<std::string> values_;  // "key = value"
   std::string tables_;
 };

@@ -27,6 +27,7 @@ enum Column : std::size_t {
   Pressure,
   NumberDensity,
   NearestDistance,
+  Temperature,
   Id,
   columnCount
 };
@@ -42,6 +43,7 @@ constexpr std::array<std::string_view, 5> spellings[columnCount] = {
     {"pressure"},
     {"number_density"},
     {"nearest_distance"},
+    {"temperature"},
     {"id"}};
 
 /// columnCount: none of those that are known.
@@ -119,6 +121,7 @@ class ParticleCsv {
     if (has(Pressure)) frame_.pressure.push_back(number(Pressure));
     if (has(NumberDensity)) frame_.numberDensity.push_back(number(NumberDensity));
     if (has(NearestDistance)) frame_.nearestDistance.push_back(number(NearestDistance));
+    if (has(Temperature)) frame_.temperature.push_back(number(Temperature));
     if (has(Id)) frame_.id.push_back(parsed<std::uint32_t>(Id, "a whole number from 0 to 4294967295"));
   }
 

@@ -13,10 +13,10 @@ namespace treacle {
 /// The method, on which the keys of other tables depend, is read before them; whether there is heat, likewise.
 void TableReader::prepare(Case& c) {
   (*this)({"method", "Numerical method"}, c.method);
-  if (section_.table().contains("heat")) {
-    if (c.method.kind != MethodKind::MphI) throw section_.error("heat", heatOfMphI);
-    c.heat.emplace();
-  }
+  if (c.method.kind != MethodKind::MphI)
+    for (const auto& [key, text] : {std::pair("heat", heatOfMphI), std::pair("rheology", rheologyOfMphI)})
+      if (section_.table().contains(key)) throw section_.error(key, text);
+  if (section_.table().contains("heat")) c.heat.emplace();
   c.solver = defaultSolver(c.method.kind);
 }
 
@@ -52,6 +52,7 @@ void TableReader::prepare(Body& body) {
     return;
   }
   prepareKind("shape", body.shape.kind);
+  body.fileTemperatures = section_.table()["file_temperatures"].value_or(false);
 }
 
 void TableReader::prepare(Rotation&) {
@@ -168,6 +169,7 @@ std::vector<TableReader::Entry> TableReader::entries(const Key& key) const {
   const std::string expected = expectedEntries(key);
   const toml::node* node = section_.value(key, expected);
   if (!node) return {};
+  if (const toml::array* list = node->as_array(); list && list->empty() && key.bound.least == 0) return {};
   if (!node->is_array_of_tables()) throw section_.unexpected(key, expected, *node);
   std::vector<Entry> entries;
   for (const toml::node& entry : *node->as_array())

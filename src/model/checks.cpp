@@ -221,6 +221,30 @@ void warnTension(const Case& c, std::vector<std::string>& warnings) {
   }
 }
 
+/// Keys of a fluid on a material that no fluid is made of, and those of walls likewise, or where no surface meets
+/// them.
+void warnKeysOfOthers(const Case& c, std::vector<std::string>& warnings) {
+  for (const Material& m : c.materials) {
+    const auto isOf = [&](auto&& kind) {
+      return std::ranges::any_of(c.bodies, [&](const Body& b) { return &materialOf(c, b) == &m && kind(b); });
+    };
+    const bool fluid = isOf([](const Body& b) { return b.holdsFluid(); });
+    const bool wall = isOf([](const Body& b) { return b.isWall(); });
+    const bool tension = std::ranges::any_of(c.materials, [](const Material& f) { return f.surfaceTension > 0; });
+    const auto warn = [&](std::string_view key, std::string_view why) {
+      warnings.push_back(fmt::format("material '{}' has {} without effect: {}", m.name, key, why));
+    };
+    constexpr std::string_view noFluid = "no fluid is made of it", noWall = "no wall is made of it";
+    if (m.surfaceTension > 0 && !fluid) warn("surface_tension", noFluid);
+    if (c.heat && m.emissivity > 0 && !fluid) warn("emissivity", noFluid);
+    const bool angle = m.contactAngle != Material{}.contactAngle;
+    if (angle && !wall) warn("contact_angle", noWall);
+    if (!m.contactAngles.empty() && !wall) warn("contact_angles", noWall);
+    if ((angle || !m.contactAngles.empty()) && wall && !tension)
+      warn(angle ? "contact_angle" : "contact_angles", "no fluid has a surface_tension");
+  }
+}
+
 /// Of bodies of which only one has friction.
 void warnFriction(const Case& c, std::vector<std::string>& warnings) {
   for (const Body& body : c.bodies) {
@@ -304,6 +328,7 @@ std::vector<std::string> caseWarnings(const Case& c) {
   }
   warnCourant(c, warnings);
   warnTension(c, warnings);
+  warnKeysOfOthers(c, warnings);
   warnThinWalls(c, warnings);
   warnFriction(c, warnings);
   warnShortRadii(c, warnings);

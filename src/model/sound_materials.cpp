@@ -9,6 +9,12 @@ void requireSound(const Checker& at, const Rheology& r) {
   if (r.mostViscosity > 0 && r.mostViscosity <= r.leastViscosity)
     at.fail({"max_viscosity"},
             fmt::format("expected more than min_viscosity = {}, found {}", r.leastViscosity, r.mostViscosity));
+  // What the fluid has however fast it is sheared.
+  const auto [slowest, key] = r.model == Bingham || r.model == Casson
+                                  ? std::pair(r.plasticViscosity, "plastic_viscosity")
+                                  : std::pair(r.infiniteViscosity, "infinite_viscosity");
+  if (r.mostViscosity > 0 && r.mostViscosity <= slowest)
+    at.fail({"max_viscosity"}, fmt::format("expected more than {} = {}, found {}", key, slowest, r.mostViscosity));
   const bool plateaus = r.model == Cross || r.model == CarreauYasuda;
   if (plateaus && r.infiniteViscosity > r.zeroViscosity)
     at.fail({"infinite_viscosity"},
@@ -31,6 +37,10 @@ void requireSound(const Checker& at, const Rheology& r) {
 
 /// Shift factors that are defined at all temperatures, and tables that are functions.
 void requireSound(const Checker& at, const ViscosityShift& s) {
+  if (s.model != ShiftModel::Table && s.least > 1)
+    at.fail({"min_factor"}, fmt::format("expected at most 1, the factor at the reference, found {}", s.least));
+  if (s.model != ShiftModel::Table && s.most < 1)
+    at.fail({"max_factor"}, fmt::format("expected at least 1, the factor at the reference, found {}", s.most));
   if (s.least >= s.most)
     at.fail({"max_factor"}, fmt::format("expected more than min_factor = {}, found {}", s.least, s.most));
   if (s.model == ShiftModel::Vft && s.divergence >= s.reference)
@@ -47,9 +57,7 @@ void requireSound(const Checker& at, const ViscosityShift& s) {
 }
 
 void requireSound(const Checker& at, const Material& m) {
-  if (m.rheology && at.wholeCase().method.kind != MethodKind::MphI)
-    at.fail({"rheology"}, fmt::format("only the method '{}' has fluids that are not Newtonian, found '{}'",
-                                      nameOf(MethodKind::MphI), nameOf(at.wholeCase().method.kind)));
+  if (m.rheology && at.wholeCase().method.kind != MethodKind::MphI) at.fail({"rheology"}, rheologyOfMphI);
   if (m.viscosityShift && !at.wholeCase().heat)
     at.fail({"viscosity_shift"}, "there are no temperatures in a case without [heat]");
   if (at.wholeCase().method.kind != MethodKind::MphI &&

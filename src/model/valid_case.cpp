@@ -171,4 +171,8 @@ void requireValid(const Case& c) { Checker(c, {}).check(c); }
 
 void requireValid(const Width& width, const Case& c) { Checker(c, {"width"}).check(width); }
 
+void requireValidMaterials(const Case& c) {
+  for (const Material& m : c.materials) Checker(c, {"material", m.name}).check(m);
+}
+
 }  // namespace treacle

@@ -17,8 +17,10 @@ namespace treacle {
 inline constexpr const char* viscosityBesideRheology =
     "the viscosity is that of the rheology; expected one of them";
 
-/// What is said of a case of another method with heat.
+/// What is said of a case of another method with heat, and of one with a rheology.
 inline constexpr const char* heatOfMphI = "only the method 'mph-i' has temperatures, found 'isph'";
+inline constexpr const char* rheologyOfMphI =
+    "only the method 'mph-i' has fluids that are not Newtonian, found 'isph'";
 
 /// The method of a case that says no more than its scheme.
 MethodSettings defaultMethod(SchemeKind scheme);

@@ -14,8 +14,9 @@ inline constexpr double maxSteps = 1e15;
 /// Whether a case can be run, as far as that can be said without its particles: each value by itself, as
 /// keys::visit bounds it, and what values must be together. Errors: CaseError, for the first that cannot be used.
 void requireValid(const Case& c);
-/// The same for a width of the case.
+/// The same for a width of the case, and for its materials alone.
 void requireValid(const Width& width, const Case& c);
+void requireValidMaterials(const Case& c);
 
 /// Dimensionless numbers of one material at the case's time step and spacing.
 struct StabilityNumbers {
@@ -51,8 +52,8 @@ void setStepBounds(Case& c);
 double courantNumber(const Case& c);
 
 /// What a user should know although the case can be run: unstable compression, fluids that cannot carry what lies
-/// on them, long steps, thin walls, radii that are short for their weights, times that are not whole numbers of
-/// steps.
+/// on them, long steps, keys without effect, thin walls, radii that are short for their weights, times that are
+/// not whole numbers of steps.
 std::vector<std::string> caseWarnings(const Case& c);
 
 }  // namespace treacle

@@ -30,7 +30,7 @@ void visit(auto& v, Like<Rheology> auto& r, const Case&) {
        flowIndex},
       r.flowIndex);
   if (r.model == CarreauYasuda)
-    v({"transition", "Exponent a of Yasuda; 2 is the model of Carreau", optional, "", positive}, r.transition);
+    v({"transition", "Exponent a of Yasuda; 2 is the model of Carreau", optional, "", yasuda}, r.transition);
   v({"min_viscosity", "The viscosity is at least this; a power law with n > 1 needs it", optional, "Pa s",
      notNegative},
     r.leastViscosity);

@@ -400,6 +400,25 @@ bulk_modulus = 1
   EXPECT_EQ(c, expected);
 }
 
+TEST(caseText, holdsContactAngles) {
+  Workshop shop;
+  shop.put("case.toml", std::string(smallCase) + water + "contact_angles = [{name = \"syrup\", angle = 40}]\n");
+  const std::string two[] = {R"(water.contact_angles=[{name="water", angle=70}])"},
+                    none[] = {"water.contact_angles=[]"},
+                    twice[] = {R"(water.contact_angles=[{name="water", angle=70}, {name="water", angle=80}])"};
+  Case c = readCase(shop / "case.toml", two);
+  const std::vector<ContactAngle> both{{"syrup", 40}, {"water", 70}};
+  EXPECT_EQ(c.materials[1].contactAngles, both);
+  EXPECT_EQ(readCaseText(caseText(c)), c) << caseText(c);
+  c.materials[1].contactAngles.clear();
+  EXPECT_EQ(readCase(shop / "case.toml", none), c);
+  EXPECT_EQ(readCaseText(caseText(c)), c);
+  EXPECT_NE(messageOf<InputError>([&] {
+              readCase(shop / "case.toml", twice);
+            }).find("two [[contact_angles]] are named 'water'"),
+            std::string::npos);
+}
+
 TEST(readCase, overridesComeOnTop) {
   Workshop shop;
   shop.put("case.toml", smallCase);

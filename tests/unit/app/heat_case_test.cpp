@@ -2,6 +2,7 @@
 #include "treacle/io/case_reader.hpp"
 #include "treacle/model/case_error.hpp"
 #include "treacle/model/checks.hpp"
+#include "treacle/model/create.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -76,6 +77,14 @@ const Mistake mistakes[] = {
      "t0 in the viscosity_shift of [[material]] 'syrup' (vft): expected less than reference_temperature = 300 K, "
      "found "
      "400"},
+    {"syrup.viscosity_shift={model='arrhenius', reference_temperature=300, activation_energy=5e4, min_factor=2}",
+     "min_factor in the viscosity_shift of [[material]] 'syrup' (arrhenius): expected at most 1, the factor at "
+     "the "
+     "reference, found 2"},
+    {"syrup.viscosity_shift={model='arrhenius', reference_temperature=300, activation_energy=5e4, max_factor=0.5}",
+     "max_factor in the viscosity_shift of [[material]] 'syrup' (arrhenius): expected at least 1, the factor at "
+     "the "
+     "reference, found 0.5"},
     {"syrup.viscosity_shift={model='table', temperatures=[300, 290], factors=[2, 1]}",
      "temperatures in the viscosity_shift of [[material]] 'syrup' (table): expected rising numbers, found 290 "
      "after 300"},
@@ -103,9 +112,43 @@ TEST(HeatCase, KeysOfHeatBelongToCasesWithIt) {
   shop.put("isph.toml", "heat = {}\n" + smallIsphCase);
   EXPECT_THAT(messageOf<InputError>([&] { readCase(shop / "isph.toml"); }),
               HasSubstr("only the method 'mph-i' has temperatures, found 'isph'"));
+  shop.put("rheology.toml", "rheology = {}\n" + smallIsphCase);
+  EXPECT_THAT(messageOf<InputError>([&] { readCase(shop / "rheology.toml"); }),
+              HasSubstr("only the method 'mph-i' has fluids that are not Newtonian, found 'isph'"));
   Case c = caseWith({});
   c.method.kind = MethodKind::Isph;
   EXPECT_THROW(requireValid(c), CaseError);
+}
+
+/// Automatic steps follow from the viscosities under a heavier fluid, which a wrong table does not have.
+TEST(HeatCase, WrongTablesAreExplainedWithAutomaticStepsToo) {
+  const std::vector<std::string> layers = {
+      R"(material=[{name="heavy", density=2000, dynamic_viscosity=1, bulk_viscosity=1e3, bulk_modulus=1e4, specific_heat=1, conductivity=1}])",
+      R"(body=[{name="above", type="fluid", material="heavy", shape="box", min=[0, 6e-3], max=[6e-3, 8e-3], temperature=310}])",
+      "syrup.viscosity_shift={model='table', temperatures=[300, 310], factors=[2]}", "time.step=auto"};
+  EXPECT_THAT(messageOf<InputError>([&] { caseWith(layers); }),
+              HasSubstr("expected as many numbers as temperatures"));
+}
+
+TEST(HeatCase, FilesOfTemperaturesAreInPlaceOfOne) {
+  Workshop shop;
+  shop.put("given.csv", "x,y,temperature\n1e-3,1e-3,400\n2e-3,1e-3,410\n");
+  const std::string given =
+      replaced(warmCase, "shape = \"box\"\nmin = [0, 0]\nmax = [6e-3, 6e-3]\ntemperature = 310",
+               "shape = \"particles\"\nfile = \"given.csv\"\nfile_temperatures = true");
+  shop.put("case.toml", given);
+  const std::vector<std::string> overrides = {
+      "syrup.viscosity_shift={model='arrhenius', reference_temperature=350, activation_energy=5e4}"};
+  const Case c = readCase(shop / "case.toml", overrides);
+  std::vector<std::string> notes;
+  const Particles<2> p = createParticles<2>(c, notes);
+  EXPECT_EQ(p.temperature[0], 400);
+  EXPECT_EQ(p.temperature[1], 410);
+  EXPECT_EQ(c.typicalShift(c.materials[0]), 1);  // that of the reference: the case does not say which they are
+  shop.put("both.toml",
+           replaced(given, "file_temperatures = true", "file_temperatures = true\ntemperature = 310"));
+  EXPECT_THAT(messageOf<InputError>([&] { readCase(shop / "both.toml"); }),
+              HasSubstr("unknown key 'temperature'"));
 }
 
 TEST(HeatCase, RunsShowTemperaturesAndContinue) {

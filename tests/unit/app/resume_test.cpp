@@ -183,6 +183,13 @@ TEST(resume, refusesWhatDoesNotFit) {
                 "its time 0.003 s is not a whole number of steps of 0.002 s (time.step)");
   expectRefused(shop, "whole/checkpoint.h5 --set resolution=2",
                 "36 fluid and 64 wall particles, but the case has 144 and 256");
+  expectRefused(shop, "whole/checkpoint.h5 --set column.viscosity_factor=5",
+                "a state without factors of the viscosity, but a body of the case has a viscosity_factor");
+  ASSERT_EQ(
+      shop.call("run case.toml -o factors --threads 1 --end-time 3e-3 --set column.viscosity_factor=5").exitCode,
+      0);
+  expectRefused(shop, "factors/checkpoint.h5",
+                "a state with factors of the viscosity, but no body of the case has a viscosity_factor");
 }
 
 TEST(resume, refusesTheStateOfAnotherMethod) {

@@ -132,7 +132,17 @@ const Bad mistakes[] = {
     {"model = 'cross', zero_viscosity = 3, time_constant = 0, flow_index = 0.5",
      "time_constant in the rheology of [[material]] 'syrup' (cross): expected a positive number [s], found 0"},
     {"model = 'carreau-yasuda', zero_viscosity = 3, time_constant = 1, flow_index = 0.5, transition = 0",
-     "transition in the rheology of [[material]] 'syrup' (carreau-yasuda): expected a positive number, found 0"},
+     "transition in the rheology of [[material]] 'syrup' (carreau-yasuda): expected a number between 0 and 20, "
+     "found "
+     "0"},
+    {"model = 'bingham', yield_stress = 20, plastic_viscosity = 2, regularisation = 1, max_viscosity = 2",
+     "max_viscosity in the rheology of [[material]] 'syrup' (bingham): expected more than plastic_viscosity = 2, "
+     "found 2"},
+    {"model = 'cross', zero_viscosity = 3, infinite_viscosity = 1, time_constant = 1, flow_index = 0.5, "
+     "max_viscosity = 0.5",
+     "max_viscosity in the rheology of [[material]] 'syrup' (cross): expected more than infinite_viscosity = 1, "
+     "found "
+     "0.5"},
 };
 
 TEST(RheologyCase, MistakesSayWhereAndWhatIsExpected) {

@@ -230,6 +230,27 @@ Case heavyOnLight() {
   return c;
 }
 
+TEST(caseWarnings, keysOfFluidsOnWallsAndOfWallsOnFluids) {
+  Case c = damBreak();
+  c.materials.push_back(c.materials[0]);
+  c.materials[1].name = "steel";
+  c.bodies[1].material = 1;
+  Material &fluid = c.materials[0], &wall = c.materials[1];
+  fluid.surfaceTension = 0.07, wall.contactAngle = 60, wall.contactAngles = {{"syrup", 40}};
+  EXPECT_THAT(caseWarnings(c), IsEmpty());
+  fluid.surfaceTension = 0;
+  EXPECT_THAT(caseWarnings(c), ElementsAre("material 'steel' has contact_angle without effect: no fluid has a "
+                                           "surface_tension"));
+  std::swap(fluid.contactAngle, wall.contactAngle), std::swap(fluid.contactAngles, wall.contactAngles);
+  wall.surfaceTension = 0.07, wall.emissivity = 0.9;
+  c.heat.emplace();
+  EXPECT_THAT(caseWarnings(c),
+              ElementsAre("material 'syrup' has contact_angle without effect: no wall is made of it",
+                          "material 'syrup' has contact_angles without effect: no wall is made of it",
+                          "material 'steel' has surface_tension without effect: no fluid is made of it",
+                          "material 'steel' has emissivity without effect: no fluid is made of it"));
+}
+
 TEST(caseWarnings, lightFluidsUnderHeavyOnes) {
   Case c = heavyOnLight();
   EXPECT_THAT(caseWarnings(c), ElementsAre(AllOf(HasSubstr("fluid 'below' is too light and too thin for"),
