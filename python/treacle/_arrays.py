@@ -62,8 +62,10 @@ class DeviceArray:
         return {"shape": shape, "typestr": kind, "data": (address, False), "version": 3, "strides": None, "stream": None}
 
     def __dlpack__(self, **options: Any) -> Any:
-        """The data are there for all streams."""
+        """The data are there for all streams. Errors: BufferError where a copy is asked for, which get() makes."""
         self._check()
+        if options.get("copy"):
+            raise BufferError("expected no copy, or that of get(): these are the simulation's own data")
         return self._session.field_in_place(self._name).__dlpack__()
 
     def __dlpack_device__(self) -> tuple[int, int]:

@@ -44,9 +44,7 @@ class Fluid:
         return copied
 
     def _field_of_some(self, name: str) -> Array | None:
-        if self._session.field_address(name)[0] == 0:
-            return None
-        return self._field(name)
+        return self._field(name) if self._session.has_field(name) else None
 
     @property
     def positions(self) -> Array:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
@@ -18,6 +19,7 @@ from ._recording import Recording, warn
 from ._toml import case_text, override_texts
 from ._treacle import StepReport
 from .cases import Case
+from .errors import InputError
 
 Backend = Literal["auto", "cpu", "cuda"]
 Precision = Literal["mixed", "double"]
@@ -37,7 +39,7 @@ class Simulation:
     - `precision`: "mixed" or "double"; the case's if it is None.
     - `overrides`: changes of single keys, `{"time.end": 1, "honey.density": 1400}`, or texts as `treacle run --set`
       takes them.
-    - `threads`: number of threads of the CPU, for the whole process; 0 leaves it to OpenMP.
+    - `threads`: number of threads of the CPU, whichever thread of Python calls; 0 leaves it to OpenMP.
 
     Errors: InputError for what is wrong with the case or the arguments; RunError for a machine with too little memory.
     """
@@ -247,6 +249,8 @@ class Simulation:
     ) -> None:
         session = self._session
         start, end = session.time, session.end if until is None else float(until)
+        if math.isnan(end):
+            raise InputError("until: expected a time [s], found nan")
         with tqdm(
             total=max(end - start, 0.0),
             disable=None if progress else True,

@@ -29,8 +29,12 @@ int startable(int count) {
 
 }  // namespace
 
-void startThreads(int count) {
+void useThreads(int count) {
   if (count > 0) omp_set_num_threads(count);
+}
+
+void startThreads(int count) {
+  useThreads(count);
   const int wanted = omp_get_max_threads();
   const char* origin = count > 0 ? "--threads" : "OMP_NUM_THREADS";
   if (wanted > mostThreads)

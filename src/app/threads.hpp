@@ -10,4 +10,7 @@ inline constexpr int mostThreads = 1024;
 /// InputError for more than there can be.
 void startThreads(int count);
 
+/// The same for the thread that calls it, of threads that have been started: OpenMP keeps their number by thread.
+void useThreads(int count);
+
 }  // namespace treacle

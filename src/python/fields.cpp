@@ -24,18 +24,20 @@ struct NamedField {
   const char* name;
   FluidField field;
   Number number = Number::Double;
-  bool notAlways = false;  // whether there are cases without it
+  bool (*isThere)(const Case&) = nullptr;  // whether a case has it; null: all have
 };
-constexpr NamedField namedFields[] = {{"positions", FluidField::Position},
-                                      {"velocities", FluidField::Velocity},
-                                      {"pressures", FluidField::Pressure},
-                                      {"number_densities", FluidField::NumberDensity},
-                                      {"shear_rates", FluidField::ShearRate, Number::Double, true},
-                                      {"temperatures", FluidField::Temperature, Number::Double, true},
-                                      {"viscosity_factors", FluidField::ViscosityFactor, Number::Double, true},
-                                      {"materials", FluidField::Material, Number::Byte},
-                                      {"bodies", FluidField::Body, Number::Byte},
-                                      {"ids", FluidField::Id, Number::Word}};
+constexpr NamedField namedFields[] = {
+    {"positions", FluidField::Position},
+    {"velocities", FluidField::Velocity},
+    {"pressures", FluidField::Pressure},
+    {"number_densities", FluidField::NumberDensity},
+    {"shear_rates", FluidField::ShearRate, Number::Double, [](const Case& c) { return c.hasOwnViscosities(); }},
+    {"temperatures", FluidField::Temperature, Number::Double, [](const Case& c) { return c.heat.has_value(); }},
+    {"viscosity_factors", FluidField::ViscosityFactor, Number::Double,
+     [](const Case& c) { return c.hasViscosityFactors(); }},
+    {"materials", FluidField::Material, Number::Byte},
+    {"bodies", FluidField::Body, Number::Byte},
+    {"ids", FluidField::Id, Number::Word}};
 
 const NamedField& fieldNamed(const std::string& name) {
   for (const NamedField& f : namedFields)
@@ -78,10 +80,15 @@ class Given {
 
 }  // namespace
 
+bool hasField(const Session& session, const std::string& name) {
+  const NamedField& named = fieldNamed(name);
+  return !named.isThere || named.isThere(session.theCase());
+}
+
 nb::object copiedField(const Session& session, const std::string& name) {
+  if (!hasField(session, name)) return nb::none();
   const NamedField& named = fieldNamed(name);
   const FieldMemory m = session.simulation().field(named.field);
-  if (named.notAlways && !m.data && m.count == 0) return nb::none();
   return withNumber(named.number, [&]<class T>(T) -> nb::object {
     auto* values = new T[std::max<std::size_t>(m.bytes / sizeof(T), 1)];
     const nb::capsule owner(values, [](void* p) noexcept { delete[] static_cast<T*>(p); });

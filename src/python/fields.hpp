@@ -9,8 +9,11 @@
 
 namespace treacle {
 
-/// A copy of a field of the fluid as an array of NumPy's; None where the fluid does not have it. Names are those
-/// of FluidField, in Python's plural. Errors: InputError for others.
+/// Whether the fluid has a field. Names are those of FluidField, in Python's plural. Errors: InputError for
+/// others.
+bool hasField(const Session& session, const std::string& name);
+
+/// A copy of a field of the fluid as an array of NumPy's; None where the fluid does not have it.
 nanobind::object copiedField(const Session& session, const std::string& name);
 
 /// The field where it lies, by DLPack; `owner`, which keeps the session, lives as long as the array.

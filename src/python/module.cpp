@@ -209,6 +209,7 @@ void bindSession(nb::module_& m) {
       .def_prop_ro("balance", [](const Session& s) { return tableOf(s.balance()); })
       .def_prop_ro("rigid_bodies", [](const Session& s) { return tableOf(s.rigidBodies()); })
       .def("probe", &probeOf, "name"_a)
+      .def("has_field", &hasField, "name"_a)
       .def(
           "copied_field",
           [](const Session& s, const std::string& name) { return nb::borrow<nb::any>(copiedField(s, name)); },

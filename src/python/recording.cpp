@@ -45,6 +45,7 @@ Recording::Recording(Session& session, const std::filesystem::path& directory, b
   writeCase();
   recorder_.begin();
   session_.setRecorded(true);
+  isRecording_ = true;
 }
 
 /// The case that a checkpoint of now goes on with. What it says of earlier times does not change.
@@ -61,7 +62,7 @@ void Recording::record() {
 
 /// As much as is possible, whatever goes wrong on the way.
 void Recording::finish(const std::string& failure) {
-  session_.setRecorded(false);
+  release();
   std::exception_ptr first;
   summary_.message = failure;
   const auto attempt = [&](auto&& action) {

@@ -9,6 +9,7 @@
 
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace treacle {
@@ -21,7 +22,7 @@ class Recording {
   /// (RunDirectory::create), and where another one is written of the session.
   Recording(Session& session, const std::filesystem::path& directory, bool force);
   Recording(const Recording&) = delete;
-  ~Recording() { session_.setRecorded(false); }
+  ~Recording() { release(); }
 
   /// After a step of the session.
   void record();
@@ -34,12 +35,17 @@ class Recording {
 
  private:
   void writeCase();
+  /// Once: later another one may be written of the session.
+  void release() {
+    if (std::exchange(isRecording_, false)) session_.setRecorded(false);
+  }
 
   Timer timer_;
   Session& session_;
   RunDirectory directory_;
   RunLog log_;
   RunSummary summary_;
+  bool isRecording_ = false;
   int written_ = -1;  // revision of the case that was written
   Recorder recorder_;
 };

@@ -43,8 +43,8 @@ std::size_t bodyNamed(const Case& c, const std::string& name) {
 
 }  // namespace
 
-Session::Session(Case c, const Options& options) : case_(std::move(c)) {
-  startThreads(options.threads);
+Session::Session(Case c, const Options& options) : case_(std::move(c)), threads_(options.threads) {
+  startThreads(threads_);
   const std::optional<DeviceInfo> device = deviceFor(options.backend);
   if (device) backend_ = BackendKind::Cuda;
   device_ = device ? deviceText(*device) : processorName();
@@ -70,6 +70,7 @@ Session::Session(Case c, const Options& options) : case_(std::move(c)) {
 }
 
 const StepReport& Session::advance() {
+  useThreads(threads_);
   ++version_;
   Timer timer;
   try {
@@ -87,6 +88,7 @@ const StepReport& Session::advance() {
 }
 
 void Session::giveFluid(const GivenFluid& given) {
+  useThreads(threads_);
   simulation_->giveFluid(given);
   if (given.viscosityFactor.empty() || case_.hasViscosityFactors()) return;
   case_.haveViscosityFactors();
@@ -108,6 +110,7 @@ void Session::change(Case next) {
 
 /// The simulation around its particles.
 void Session::makeAnew(const Case& next) {
+  useThreads(threads_);
   AnySimulation changed(next, particles(), backend_, simulation_->step(), simulation_->time());
   ++version_;
   simulation_.emplace(std::move(changed));

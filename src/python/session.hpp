@@ -87,6 +87,7 @@ class Session {
   void makeAnew(const Case& next);
 
   Case case_;
+  int threads_;
   BackendKind backend_ = BackendKind::Cpu;
   std::string device_;
   std::vector<std::string> warnings_;

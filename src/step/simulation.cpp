@@ -105,9 +105,10 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
       method = makeMphStep(static_cast<Flow&>(*this));  // of another kind
     }
     fluid.copyTo(context, particles);
+    particles.modes.pressure = {};  // the solver's, of viscosities, too
     if (fluid.position.size() == 0 && fluid.velocity.size() == 0) return;
     forEachFlowMemoryOf([&](auto& field) { clearValues(context, field.span()); }, particles);
-    particles.modes.pressure = {}, particles.steps = {};
+    particles.steps = {};
     if (fluid.position.size() > 0) {
       particles.modes.drop();
       distant->addStep(0, std::numeric_limits<double>::infinity());  // who knows how far they have gone

@@ -236,6 +236,8 @@ def test_array_in_place_refuses_when_it_is_out_of_date(sim):
     np.testing.assert_array_equal(there, sim.fluid.positions)
     np.testing.assert_array_equal(np.asarray(array), sim.fluid.positions)
     assert (array.shape, array.dtype) == (sim.fluid.positions.shape, np.float64)
+    with pytest.raises(BufferError, match="expected no copy"):
+        array.__dlpack__(copy=True)
     sim.step()
     for use in (lambda: array.shape, array.get, array.__dlpack__, lambda: np.asarray(array)):
         with pytest.raises(RuntimeError, match="out of date"):

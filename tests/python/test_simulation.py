@@ -1,5 +1,6 @@
 """Steps, runs, and what is told of them."""
 
+import ctypes
 import os
 import signal
 import sys
@@ -47,6 +48,28 @@ def test_run_to_a_time_and_to_the_end(sim):
     assert sim.step_count == 20
     sim.run(progress=False)
     assert sim.step_count == 20
+
+
+def test_run_refuses_a_time_that_never_comes(sim):
+    with pytest.raises(treacle.InputError, match="until: expected a time"):
+        sim.run(until=float("nan"))
+    assert sim.step_count == 0
+
+
+def test_threads_are_those_of_the_simulation(drop):
+    """Whichever thread of Python makes the steps: OpenMP keeps the number by thread."""
+    openmp = ctypes.CDLL("libgomp.so.1")
+    sim = treacle.Simulation(drop, backend="cpu", threads=3)
+    found = []
+
+    def step():
+        sim.step()
+        found.append(openmp.omp_get_max_threads())
+
+    thread = threading.Thread(target=step)
+    thread.start()
+    thread.join()
+    assert found == [3]
 
 
 def test_automatic_steps_meet_the_end(drop):
