@@ -38,7 +38,7 @@ function(treacle_compile_options TARGET)
   # No -ffast-math: sums keep their order. The two flags only free sqrt from errno and traps, which lets it vectorise.
   target_compile_options(${TARGET} PRIVATE
     $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wshadow -fno-math-errno -fno-trapping-math>
-    $<$<AND:$<COMPILE_LANGUAGE:CXX>,$<BOOL:${TREACLE_NATIVE}>>:-march=native>
+    $<$<COMPILE_LANGUAGE:CXX>:${TREACLE_NATIVE_OPTIONS}>
     $<$<COMPILE_LANGUAGE:CXX>:-Wno-psabi>  # Lanes are wider than many a processor's registers, and never leave one build
     $<$<AND:$<COMPILE_LANGUAGE:CXX>,$<BOOL:${TREACLE_WERROR}>>:-Werror>
     $<$<COMPILE_LANGUAGE:CUDA>:--expt-relaxed-constexpr --extended-lambda -Xcompiler=-Wall,-Wextra>  # std::span and loop bodies in device code

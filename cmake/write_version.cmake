@@ -12,7 +12,7 @@ file(CONFIGURE OUTPUT ${OUTPUT} @ONLY CONTENT [[
 
 namespace treacle {
 BuildInfo buildInfo() {
-  return {"@VERSION@", "@COMMIT@", "@BUILD_TYPE@", "@COMPILER@", "@NATIVE@", "@CUDA@", "@ARCHITECTURES@"};
+  return {"@VERSION@", "@COMMIT@", "@BUILD_TYPE@", "@COMPILER@", "@NATIVE@", "@CUDA@", "@MPI@", "@ARCHITECTURES@"};
 }
 }  // namespace treacle
 ]])

@@ -23,7 +23,7 @@ namespace {
 constexpr int warmUp = 2;  // steps that do not count: memory is taken, and solves begin without a guess
 constexpr std::size_t fewest = 5, most = 50;  // steps that do
 constexpr double enough = 5;                  // seconds that they take if there are more than the fewest
-// What whole runs took per step, over the mean of the steps that were timed (docs/choosing.md).
+// What whole runs took per step, over the mean of the steps that were timed (docs/command.md).
 constexpr double leastFactor = 0.6, mostFactor = 2;
 
 /// Steps that were timed.

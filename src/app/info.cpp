@@ -15,14 +15,16 @@ namespace treacle {
 
 void infoCommand() {
   const BuildInfo build = buildInfo();
-  const auto yesNo = [](std::string_view option) { return option == "ON" ? "yes" : "no"; };
+  const auto isOn = [](std::string_view option) { return option == "ON"; };
+  const auto compiled = [](bool is) { return is ? "compiled" : "not compiled"; };
   print("treacle     {} ({})\n", build.version, build.commit);
   print("build       {}, {}\n", build.buildType, build.compiler);
-  print("native      {}\n", yesNo(build.native));
+  print("native      {}\n", isOn(build.native) ? "yes" : "no");
   print("processor   {}\n", processorName());
   print("threads     {}\n", omp_get_max_threads());
   print("memory      {} available\n", bytesText(availableMemory()));
-  print("CUDA        {}\n", build.cuda == std::string_view("ON") ? "compiled" : "not compiled");
+  print("CUDA        {}\n", compiled(isOn(build.cuda)));
+  print("MPI         {}\n", compiled(isOn(build.mpi)));
   print("surfaces    {}\n", hasFreeSurface() ? "by OpenVDB" : "not compiled");
   for (const DeviceInfo& device : cudaDevices())
     print("device      {}, {} multiprocessors, {}, {} available\n", deviceText(device), device.multiprocessors,

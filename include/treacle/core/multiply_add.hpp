@@ -11,7 +11,7 @@ namespace treacle {
 /// next: who writes which one keeps the last bit.
 template <class T>
 TREACLE_HD inline T multiplyAdd(T a, T b, T c) {
-#if defined(__CUDA_ARCH__) || defined(__FMA__)
+#if defined(__CUDA_ARCH__) || defined(__FMA__) || defined(__ARM_FEATURE_FMA)
   return std::fma(a, b, c);
 #else
   return a * b + c;

@@ -9,6 +9,7 @@ struct BuildInfo {
   const char* compiler;
   const char* native;         // "ON": optimised for the processor of the building machine
   const char* cuda;           // "ON": the CUDA backend was compiled
+  const char* mpi;            // "ON": several processes can share a case
   const char* architectures;  // for which, as CMAKE_CUDA_ARCHITECTURES names them
 };
 
