@@ -18,9 +18,9 @@ def judged(error, value, scheme, bars={"drag": 0.1}, ranges={"published": {"rate
     return good, printed.getvalue()
 
 
-def second(coarse, fine, scheme="accurate", orders={}, number=1):
+def second(coarse, fine, scheme="accurate", orders={}, number=1, bars={"drag": 0.1}):
     """Likewise of a level with half the spacing of the one before and this error after that one."""
-    study = Study("sphere", "Sphere", [], {"drag": 0.1}, None, "", "", orders=orders)
+    study = Study("sphere", "Sphere", [], bars, None, "", "", orders=orders)
     row = {"level": "x2", "scheme": scheme, "size": 1, "particles": 1, "steps": 1, "iterations": 1, "seconds": 1, "backend": "cpu",
            "errors": {"drag": fine}, "values": {}}
     with contextlib.redirect_stdout(io.StringIO()) as printed:
@@ -65,6 +65,10 @@ class Judgement(unittest.TestCase):
         self.assertFalse(second(0.009, 0.011)[0])
         self.assertFalse(second(0.08, float("nan"))[0])
         self.assertTrue(second(0.05, 0.2, number=2)[0])
+        self.assertTrue(second(1e-6, 1e-4, bars={"drag": 1e-3})[0])
+        good, printed = second(1e-6, 1e-2 / 3, bars={"drag": 1e-3})  # small, but more than the bar
+        self.assertFalse(good)
+        self.assertIn("bar 0.001: NOT MET", printed)
 
     def test_a_study_may_ask_for_another_order_and_the_published_scheme_for_none(self):
         self.assertTrue(second(0.08, 0.05, orders={"drag": 0.6})[0])

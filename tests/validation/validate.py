@@ -68,12 +68,13 @@ def run_level(study, level, options, directory):
 
 
 def print_level(study, row, last, number):
-    """One block of lines; returns whether all is met that the level of this number is judged by: bars and ranges the first, orders the
-    second, nothing the others."""
+    """One block of lines; returns whether all is met that the level of this number is judged by: bars and ranges the first, orders and
+    bars the second, nothing the others."""
     print(f"{study.name} {row['level']}: {row['particles']} particles, {row['steps']} steps, "
           f"{row['iterations']:.1f} iterations, {row['seconds']} s ({row['backend']}), scheme {row['scheme']}")
-    bars, ranges = (study.bars_of(row["scheme"]), study.ranges_of(row["scheme"])) if number == 0 else ({}, {})
     orders = study.orders_of(row["scheme"]) if number == 1 else {}
+    bars = study.bars_of(row["scheme"]) if number == 0 or orders else {}
+    ranges = study.ranges_of(row["scheme"]) if number == 0 else {}
     good = ranges is not None
     if not good:
         print(f"  ranges of the scheme {row['scheme']}: the study has none, NOT MET")

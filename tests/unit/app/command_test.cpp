@@ -370,7 +370,7 @@ TEST(run, stopsOnSignalAfterTheStepWithLastFrameCheckpointAndSummary) {
 TEST(run, goesOnWhereTheTerminalIsGoneAndHangUpsAreIgnored) {
   Workshop shop;
   const Outcome outcome = prepared(shop).call(
-      "run small.toml --threads 1 --quiet --end-time 1 & run=$!; "
+      "run small.toml --threads 1 --quiet --end-time 30 & run=$!; "
       "while [ ! -s small-run/history.csv ]; do sleep 0.05; done; kill -HUP $run; sleep 0.3; kill -TERM $run; "
       "wait $run",
       "trap '' HUP;");
@@ -405,7 +405,7 @@ TEST(run, needsThreadsThatTheMachineStarts) {
   GTEST_SKIP() << "the address sanitizer needs more address space than the limit of this test";
 #endif
   Workshop shop;
-  Outcome outcome = prepared(shop).call("run small.toml --threads 300", "ulimit -v 1000000;");
+  Outcome outcome = prepared(shop).call("run small.toml --threads 300", "ulimit -s 8192; ulimit -v 1000000;");
   EXPECT_EQ(outcome.exitCode, 2);
   EXPECT_THAT(outcome.err, ContainsRegex("--threads 300: this machine starts no more than [0-9]+ threads"));
   for (const char* command : {"run small.toml", "check small.toml", "compare a b"}) {

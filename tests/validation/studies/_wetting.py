@@ -1,4 +1,5 @@
-"""A drop at rest on a wall, whatever its contact angle."""
+"""A drop on a wall, whatever its contact angle, as it is after 114 capillary times mu R / gamma; on walls that it wets it goes on
+spreading (docs/surface-tension.md)."""
 
 import numpy as np
 from study import Level, Outcome, Study
