@@ -10,7 +10,7 @@ parts = ("MGCR total", "MGCR main", "MGCR preconditioning", "MGCR set-up", "CR t
 y_label = "time of a step / fluid particles [µs]"
 derived = (
     "The time of MGCR's main iterations is derived: what CR's iterations cost on the same system, times MGCR's number; the "
-    "rest of its iterations is preconditioning. Set-up are the coarse operators."
+    "rest of its iterations is preconditioning; a negative one says that both times waver by more than that. Set-up are the coarse operators."
 )
 
 
