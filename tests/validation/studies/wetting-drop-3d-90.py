@@ -1,0 +1,3 @@
+from studies._wetting import wetting
+
+study = wetting(90, 3)
