@@ -38,9 +38,8 @@ class Level:
 class Study:
     """levels: from coarse to fine; the first, and the second where it takes little time, are what continuous integration runs. bars:
     largest error allowed at the first, and at the second where it has orders, by the names of Outcome.errors; every bar must be met,
-    whatever the scheme; published: those of
-    them that are others for the scheme of that name, which does not converge. orders: least observed order from the first level to the
-    second of the errors for which it is not usual_order; only the accurate scheme is judged by orders, and only until an error is
+    whatever the scheme; published: those of them that are others for the scheme of that name, which does not converge. orders: least
+    observed order from the first level to the second of the errors for which it is not usual_order; only the accurate scheme is judged by orders, and only until an error is
     small. ranges: by the scheme of the case, least and largest of Outcome.values at the first level: where a scheme itself is off by
     more than a wrong constant would be, a bar alone would let that pass. They say what this scheme gives, not what is right, so better
     physics need a scheme of their own. measure: takes a Run (treacle_data) to an Outcome. size: what orders are counted in, a function
