@@ -64,7 +64,7 @@ class LinearSystem {
     elastic.resize(context, pairs().activeCount);
     rhs_.resize(context, fluidCount());
     numberDensity<D>(context, pairs(), density);
-    elasticPressure<D>(context, pairs(), density, elastic);
+    elasticPressure<D>(context, pairs(), density, {}, elastic);
     inertiaAndGravity<D>(context, pairs(), firstGuess(), resized<D>(c.gravity), rhs_);
     addPressureGradient<D>(context, pairs(), elastic, -1.0, rhs_);
   }

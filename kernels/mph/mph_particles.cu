@@ -21,9 +21,10 @@ void fill(const Context<Cuda>& context, const MphPairs<D>& pairs, std::span<T> t
 
 template <int D>
 void elasticPressure(Context<Cuda>& context, const MphPairs<D>& pairs, std::span<const double> n,
-                     std::span<double> elastic) {
-  fill(context, pairs, elastic,
-       [n] __device__(const MphPairs<D>& pairs, std::uint32_t i) { return elasticPressureOf(pairs, i, n[i]); });
+                     std::span<const Adhesion<D>> adhesion, std::span<double> elastic) {
+  fill(context, pairs, elastic, [n, adhesion] __device__(const MphPairs<D>& pairs, std::uint32_t i) {
+    return elasticPressureOf(pairs, i, n[i], adhesion);
+  });
 }
 
 template <int D>
@@ -44,7 +45,7 @@ void bulkPressure(Context<Cuda>& context, const MphPairs<D>& pairs, std::span<co
 
 #define TREACLE_INSTANTIATE(D)                                                                                   \
   template void elasticPressure<D>(Context<Cuda>&, const MphPairs<D>&, std::span<const double>,                  \
-                                   std::span<double>);                                                           \
+                                   std::span<const Adhesion<D>>, std::span<double>);                             \
   template void inertiaAndGravity<D>(Context<Cuda>&, const MphPairs<D>&, std::span<const Vec<D>>, const Vec<D>&, \
                                      std::span<Vec<D>>);                                                         \
   template void bulkPressure<D>(Context<Cuda>&, const MphPairs<D>&, std::span<const double>,                     \

@@ -27,13 +27,13 @@ struct SumSurface {
     if (isFluid(segment)) {
       addScaled(sum, g, d);
       sum[2 * D] += share;
-      sum[2 * D + 3] += w;
+      sum[2 * D + 2] += w;
       return;
     }
     addScaled(sum + D, g, d);
     sum[2 * D + 1] += share;
-    sum[2 * D + 2] = fma(share, terms.pull(own.material, other.material), sum[2 * D + 2]);
-    sum[2 * D + 4] += w;
+    sum[2 * D + 3] += w;
+    sum[2 * D + 4] = fma(share, terms.dryPull(own.material, other.material), sum[2 * D + 4]);
   }
   __device__ void store(const MphPairs<D>&, std::uint32_t i, int n, double sum) const {
     SurfaceSums<D>& s = sums[i];
@@ -41,30 +41,76 @@ struct SumSurface {
                     : n < 2 * D      ? s.wall[n - D]
                     : n == 2 * D     ? s.filled
                     : n == 2 * D + 1 ? s.walls
-                    : n == 2 * D + 2 ? s.pull
-                    : n == 2 * D + 3 ? s.colour
-                                     : s.wallColour;
+                    : n == 2 * D + 2 ? s.colour
+                    : n == 2 * D + 3 ? s.wallColour
+                                     : s.repelled;
     value = sum;
   }
 };
 
-/// Per fluid particle, from the fluid around it: the force of the stress, what keeps it apart, and S.
+/// What walls and fluid are around each wall particle of the list.
+template <int D>
+struct SumAtWalls {
+  static constexpr int values = D + 4;
+  static constexpr bool uses(ListSegment) { return true; }
+  struct Own {
+    int material;
+  };
+  using Other = Own;
+
+  SurfaceTerms<D> terms;
+  WallSums<D>* sums;
+  std::uint32_t first;
+
+  __device__ Own loadOwn(const MphPairs<D>& pairs, std::uint32_t j) const { return {pairs.material[j]}; }
+  __device__ Other loadOther(const MphPairs<D>& pairs, std::uint32_t i) const { return loadOwn(pairs, i); }
+
+  __device__ void add(const MphPairs<D>&, double* sum, const Vec<D>& d, const PairDistance<double>& r, Own own,
+                      const Other& other, ListSegment segment) const {
+    const double v = terms.wetting(r.square);
+    sum[D + 2] += terms.weight(r.square);
+    if (isFluid(segment)) {
+      sum[D + 1] += v;
+      sum[D + 3] = fma(v, terms.dryPull(other.material, own.material), sum[D + 3]);
+      return;
+    }
+    addScaled(sum, terms.wettingGradient(r.square), d);
+    sum[D] += v;
+  }
+  __device__ void store(const MphPairs<D>&, std::uint32_t j, int n, double sum) const {
+    WallSums<D>& s = sums[j - first];
+    (n < D ? s.wall[n] : n == D ? s.walls : n == D + 1 ? s.filled : n == D + 2 ? s.colour : s.repels) = sum;
+  }
+};
+
+/// Per fluid particle: the force of the stress, what keeps it apart and walls pull along themselves, and S.
 template <int D>
 struct SurfaceForce {
   static constexpr int values = 3 * D;
-  static constexpr bool uses(ListSegment s) { return isFluid(s); }
-  using Own = SurfaceSlope<D>;
+  static constexpr bool uses(ListSegment) { return true; }
+  struct Own : SurfaceSlope<D> {  // of a wall m is what it pulls with, Adhesion::along
+    int material;
+  };
   using Other = Own;
 
   SurfaceTerms<D> terms;
   const SurfaceSlope<D>* slope;
+  const Adhesion<D>* adhesion;
   Vec<D>*force, *apart, *press;
 
-  __device__ Own loadOwn(const MphPairs<D>&, std::uint32_t i) const { return slope[i]; }
-  __device__ Other loadOther(const MphPairs<D>&, std::uint32_t j) const { return slope[j]; }
+  __device__ Own loadOwn(const MphPairs<D>& pairs, std::uint32_t i) const { return {slope[i], pairs.material[i]}; }
+  __device__ Other loadOther(const MphPairs<D>& pairs, std::uint32_t j) const {
+    if (j < pairs.fluidCount) return loadOwn(pairs, j);
+    return {{adhesion[j].along, 0}, pairs.material[j]};
+  }
 
   __device__ void add(const MphPairs<D>&, double* sum, const Vec<D>& d, const PairDistance<double>& r,
-                      const Own& own, const Other& other, ListSegment) const {
+                      const Own& own, const Other& other, ListSegment segment) const {
+    if (!isFluid(segment)) {
+      if (norm2(other.m) > 0)
+        addScaled(sum + D, terms.wetPull(own.material, other.material), terms.alongWall(d, r.square, other.m));
+      return;
+    }
     const double g = terms.gradient(r.square), other2 = norm2(other.m), both = norm2(own.m) + other2;
     addScaled(sum, g * both, d);
     addScaled(sum, -g * own.tie * dot(own.m, d), own.m);
@@ -152,20 +198,30 @@ template <int D>
 struct SurfaceReaction {
   static constexpr int values = D;
   static constexpr bool uses(ListSegment s) { return isFluid(s); }
-  struct Own {};
-  using Other = Vec<D>;
+  struct Own {
+    Vec<D> force;  // of a wall what it pulls with, Adhesion::along; of fluid what walls hold
+    int material;
+  };
+  using Other = Own;
 
   SurfaceTerms<D> terms;
   const Vec<D>* ofWalls;
+  const Adhesion<D>* adhesion;
   Vec<D>*y, *load;
   std::uint32_t first;
 
-  __device__ Own loadOwn(const MphPairs<D>&, std::uint32_t) const { return {}; }
-  __device__ Other loadOther(const MphPairs<D>&, std::uint32_t i) const { return ofWalls[i]; }
+  __device__ Own loadOwn(const MphPairs<D>& pairs, std::uint32_t j) const {
+    return {adhesion[j].along, pairs.material[j]};
+  }
+  __device__ Other loadOther(const MphPairs<D>& pairs, std::uint32_t i) const {
+    return {ofWalls[i], pairs.material[i]};
+  }
 
-  __device__ void add(const MphPairs<D>&, double* sum, const Vec<D>&, const PairDistance<double>& r, Own,
-                      const Other& other, ListSegment) const {
-    addScaled(sum, -terms.share(terms.gradient(r.square), r.square), other);
+  __device__ void add(const MphPairs<D>&, double* sum, const Vec<D>& d, const PairDistance<double>& r,
+                      const Own& own, const Other& other, ListSegment) const {
+    addScaled(sum, -terms.share(terms.gradient(r.square), r.square), other.force);
+    if (norm2(own.force) > 0)
+      addScaled(sum, terms.wetPull(other.material, own.material), terms.alongWall(d, r.square, own.force));
   }
   __device__ void store(const MphPairs<D>&, std::uint32_t j, int n, double sum) const {
     y[j - first][n] = sum;
@@ -177,19 +233,38 @@ struct SurfaceReaction {
 
 template <int D>
 void surfaceSlope(Context<Cuda>& context, const MphPairs<D>& pairs, const SurfaceTerms<D>& terms,
-                  std::span<SurfaceSums<D>> sums, std::span<SurfaceSlope<D>> slope) {
+                  std::span<SurfaceSums<D>> sums, std::span<SurfaceSlope<D>> slope,
+                  std::span<Adhesion<D>> adhesion) {
   sumOnFluid(context, pairs, SumSurface<D>{terms, sums.data()});
   forEach(context, pairs.ownFluid(),
-          [terms, material = pairs.material.data(), from = sums.data(),
-           to = slope.data()] __device__(std::size_t i) { to[i] = terms.slope(material[i], from[i]); });
+          [terms, material = pairs.material.data(), from = sums.data(), to = slope.data(),
+           adheres = adhesion.data()] __device__(std::size_t i) {
+            to[i] = terms.slope(material[i], from[i]);
+            adheres[i] = terms.adhesion(from[i]);
+          });
+}
+
+template <int D>
+void wallAdhesion(Context<Cuda>& context, const MphPairs<D>& pairs, const SurfaceTerms<D>& terms,
+                  const ClusterListView& walls, std::span<WallSums<D>> sums, std::span<Adhesion<D>> adhesion) {
+  // Without lists, sums over walls count where fluid is within the radius of densities; these look as far as lists
+  // do.
+  MphPairs<D> far = pairs;
+  far.terms.densityRadius = fmax(pairs.terms.densityRadius, pairs.terms.viscosityRadius);
+  sumOnList(context, far, walls, SumAtWalls<D>{terms, sums.data(), pairs.fluidCount});
+  forEach(context, pairs.ownEnd() - pairs.fluidCount,
+          [terms, from = sums.data(), to = adhesion.data()] __device__(std::size_t j) {
+            to[j] = terms.adhesion(from[j]);
+          });
 }
 
 template <int D>
 void surfaceForces(Context<Cuda>& context, const MphPairs<D>& pairs, const SurfaceTerms<D>& terms,
                    std::span<const SurfaceSums<D>> sums, std::span<const SurfaceSlope<D>> slope,
-                   const SurfaceForces<D>& of) {
-  sumOnFluid(context, pairs,
-             SurfaceForce<D>{terms, slope.data(), of.force.data(), of.apart.data(), of.press.data()});
+                   std::span<const Adhesion<D>> adhesion, const SurfaceForces<D>& of) {
+  sumOnFluid(
+      context, pairs,
+      SurfaceForce<D>{terms, slope.data(), adhesion.data(), of.force.data(), of.apart.data(), of.press.data()});
   forEach(context, pairs.ownFluid(),
           [terms, material = pairs.material.data(), from = sums.data(), slopes = slope.data(),
            of] __device__(std::size_t i) { terms.finish(material[i], i, from[i], slopes[i].m, of.force[i], of); });
@@ -218,27 +293,29 @@ void addSurfaceForces(Context<Cuda>& context, std::span<const Vec<D>> f, std::sp
 
 template <int D>
 void surfaceOnWalls(Context<Cuda>& context, const MphPairs<D>& pairs, const SurfaceTerms<D>& terms,
-                    const ClusterListView& walls, std::span<const Vec<D>> ofWalls, std::span<Vec<D>> y,
-                    std::span<Vec<D>> load) {
+                    const ClusterListView& walls, std::span<const Vec<D>> ofWalls,
+                    std::span<const Adhesion<D>> adhesion, std::span<Vec<D>> y, std::span<Vec<D>> load) {
   sumOnList(context, pairs, walls,
-            SurfaceReaction<D>{terms, ofWalls.data(), y.data(), load.data(), pairs.fluidCount});
+            SurfaceReaction<D>{terms, ofWalls.data(), adhesion.data(), y.data(), load.data(), pairs.fluidCount});
 }
 
-#define TREACLE_INSTANTIATE(D)                                                                            \
-  template void surfaceSlope<D>(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&,               \
-                                std::span<SurfaceSums<D>>, std::span<SurfaceSlope<D>>);                   \
-  template void surfaceForces<D>(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&,              \
-                                 std::span<const SurfaceSums<D>>, std::span<const SurfaceSlope<D>>,       \
-                                 const SurfaceForces<D>&);                                                \
-  template void bendSurface<D>(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&,                \
-                               const SurfaceForces<D>&, std::span<SurfaceFit>);                           \
-  template void evenAlongSurface<D>(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&,           \
-                                    std::span<const Vec<D>>, std::span<const SurfaceFit>,                 \
-                                    std::span<const Vec<D>>, std::span<Vec<D>>, std::span<const Vec<D>>); \
-  template void addSurfaceForces<D>(Context<Cuda>&, std::span<const Vec<D>>, std::span<Vec<D>>);          \
-  template void surfaceOnWalls<D>(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&,             \
-                                  const ClusterListView&, std::span<const Vec<D>>, std::span<Vec<D>>,     \
-                                  std::span<Vec<D>>);
+#define TREACLE_INSTANTIATE(D)                                                                                   \
+  template void surfaceSlope<D>(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&,                      \
+                                std::span<SurfaceSums<D>>, std::span<SurfaceSlope<D>>, std::span<Adhesion<D>>);  \
+  template void wallAdhesion<D>(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&,                      \
+                                const ClusterListView&, std::span<WallSums<D>>, std::span<Adhesion<D>>);         \
+  template void surfaceForces<D>(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&,                     \
+                                 std::span<const SurfaceSums<D>>, std::span<const SurfaceSlope<D>>,              \
+                                 std::span<const Adhesion<D>>, const SurfaceForces<D>&);                         \
+  template void bendSurface<D>(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&,                       \
+                               const SurfaceForces<D>&, std::span<SurfaceFit>);                                  \
+  template void evenAlongSurface<D>(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&,                  \
+                                    std::span<const Vec<D>>, std::span<const SurfaceFit>,                        \
+                                    std::span<const Vec<D>>, std::span<Vec<D>>, std::span<const Vec<D>>);        \
+  template void addSurfaceForces<D>(Context<Cuda>&, std::span<const Vec<D>>, std::span<Vec<D>>);                 \
+  template void surfaceOnWalls<D>(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&,                    \
+                                  const ClusterListView&, std::span<const Vec<D>>, std::span<const Adhesion<D>>, \
+                                  std::span<Vec<D>>, std::span<Vec<D>>);
 TREACLE_INSTANTIATE(2)
 TREACLE_INSTANTIATE(3)
 #undef TREACLE_INSTANTIATE

@@ -14,8 +14,8 @@ void fill(std::span<T> to, F&& formula) {
 
 template <int D>
 void elasticPressure(Context<Cpu>&, const MphPairs<D>& pairs, std::span<const double> n,
-                     std::span<double> elastic) {
-  fill(elastic, [&](std::uint32_t i) { return elasticPressureOf(pairs, i, n[i]); });
+                     std::span<const Adhesion<D>> adhesion, std::span<double> elastic) {
+  fill(elastic, [&](std::uint32_t i) { return elasticPressureOf(pairs, i, n[i], adhesion); });
 }
 
 template <int D>
@@ -33,7 +33,7 @@ void bulkPressure(Context<Cpu>&, const MphPairs<D>& pairs, std::span<const doubl
 
 #define TREACLE_INSTANTIATE(D)                                                                                  \
   template void elasticPressure<D>(Context<Cpu>&, const MphPairs<D>&, std::span<const double>,                  \
-                                   std::span<double>);                                                          \
+                                   std::span<const Adhesion<D>>, std::span<double>);                            \
   template void inertiaAndGravity<D>(Context<Cpu>&, const MphPairs<D>&, std::span<const Vec<D>>, const Vec<D>&, \
                                      std::span<Vec<D>>);                                                        \
   template void bulkPressure<D>(Context<Cpu>&, const MphPairs<D>&, std::span<const double>,                     \

@@ -8,12 +8,13 @@ namespace treacle {
 
 template <int D>
 void surfaceSlope(Context<Cpu>&, const MphPairs<D>& pairs, const SurfaceTerms<D>& terms,
-                  std::span<SurfaceSums<D>> sums, std::span<SurfaceSlope<D>> slope) {
+                  std::span<SurfaceSums<D>> sums, std::span<SurfaceSlope<D>> slope,
+                  std::span<Adhesion<D>> adhesion) {
   const double floor2 = distanceFloor2(pairs);
   const ClusterListView& list = pairs.fluidList;
   forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const ClusterPlaces<D>& x, std::uint32_t c) {
     VecLanes<D> fluid = {}, wall = {};
-    Lanes filled = {}, walls = {}, colour = {}, wallColour = {}, pull = {};
+    Lanes filled = {}, walls = {}, colour = {}, wallColour = {}, repelled = {};
     for (ListSegment s : {ListSegment::NearFluid, ListSegment::FarFluid})
       for (std::uint32_t j : list.segment(c, s)) {
         const PairLanes<D> pair(pairs, j, x, floor2);
@@ -29,16 +30,50 @@ void surfaceSlope(Context<Cpu>&, const MphPairs<D>& pairs, const SurfaceTerms<D>
         walls += share;
         wallColour += terms.weight(pair.r.square);
         for (std::uint32_t lane = 0; lane < range.count; ++lane)
-          pull[lane] += terms.pull(pairs.material[range.first + lane], pairs.material[j]) * share[lane];
+          repelled[lane] += terms.dryPull(pairs.material[range.first + lane], pairs.material[j]) * share[lane];
         for (int k = 0; k < D; ++k) wall[k] += g * pair.d[k];
       }
     for (std::uint32_t lane = 0; lane < range.count; ++lane) {
       const std::uint32_t i = range.first + lane;
       SurfaceSums<D>& sum = sums[i];
       for (int k = 0; k < D; ++k) sum.fluid[k] = fluid[k][lane], sum.wall[k] = wall[k][lane];
-      sum.filled = filled[lane], sum.walls = walls[lane], sum.pull = pull[lane];
+      sum.filled = filled[lane], sum.walls = walls[lane], sum.repelled = repelled[lane];
       sum.colour = colour[lane], sum.wallColour = wallColour[lane];
       slope[i] = terms.slope(pairs.material[i], sum);
+      adhesion[i] = terms.adhesion(sum);
+    }
+  });
+}
+
+template <int D>
+void wallAdhesion(Context<Cpu>&, const MphPairs<D>& pairs, const SurfaceTerms<D>& terms,
+                  const ClusterListView& list, std::span<WallSums<D>> sums, std::span<Adhesion<D>> adhesion) {
+  const double floor2 = distanceFloor2(pairs);
+  forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const ClusterPlaces<D>& x, std::uint32_t c) {
+    VecLanes<D> wall = {};
+    Lanes walls = {}, filled = {}, colour = {}, repels = {};
+    for (ListSegment s : {ListSegment::NearFluid, ListSegment::FarFluid})
+      for (std::uint32_t j : list.segment(c, s)) {
+        const PairLanes<D> pair(pairs, j, x, floor2);
+        const Lanes v = terms.wetting(pair.r.square);
+        filled += v;
+        colour += terms.weight(pair.r.square);
+        for (std::uint32_t lane = 0; lane < range.count; ++lane)
+          repels[lane] += terms.dryPull(pairs.material[j], pairs.material[range.first + lane]) * v[lane];
+      }
+    for (ListSegment s : {ListSegment::NearWall, ListSegment::FarWall})
+      for (std::uint32_t j : list.segment(c, s)) {
+        const PairLanes<D> pair(pairs, j, x, floor2);
+        const Lanes g = terms.wettingGradient(pair.r.square);
+        walls += terms.wetting(pair.r.square);
+        colour += terms.weight(pair.r.square);
+        for (int k = 0; k < D; ++k) wall[k] += g * pair.d[k];
+      }
+    for (std::uint32_t lane = 0; lane < range.count; ++lane) {
+      WallSums<D>& sum = sums[range.first + lane - list.first];
+      for (int k = 0; k < D; ++k) sum.wall[k] = wall[k][lane];
+      sum.walls = walls[lane], sum.filled = filled[lane], sum.colour = colour[lane], sum.repels = repels[lane];
+      adhesion[range.first + lane - list.first] = terms.adhesion(sum);
     }
   });
 }
@@ -46,7 +81,7 @@ void surfaceSlope(Context<Cpu>&, const MphPairs<D>& pairs, const SurfaceTerms<D>
 template <int D>
 void surfaceForces(Context<Cpu>&, const MphPairs<D>& pairs, const SurfaceTerms<D>& terms,
                    std::span<const SurfaceSums<D>> sums, std::span<const SurfaceSlope<D>> slope,
-                   const SurfaceForces<D>& of) {
+                   std::span<const Adhesion<D>> adhesion, const SurfaceForces<D>& of) {
   const double floor2 = distanceFloor2(pairs);
   const ClusterListView& list = pairs.fluidList;
   forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const ClusterPlaces<D>& x, std::uint32_t c) {
@@ -77,6 +112,17 @@ void surfaceForces(Context<Cpu>&, const MphPairs<D>& pairs, const SurfaceTerms<D
           away[k] -= core * pair.d[k];
           press[k] += w * (mj1 * mj[k]);
         }
+      }
+    for (ListSegment s : {ListSegment::NearWall, ListSegment::FarWall})
+      for (std::uint32_t j : list.segment(c, s)) {
+        const Vec<D>& along = adhesion[j].along;
+        if (norm2(along) == 0) continue;
+        const PairLanes<D> pair(pairs, j, x, floor2);
+        const VecLanes<D> force = terms.alongWall(pair.d, pair.r.square, along);
+        Lanes pull = {};
+        for (std::uint32_t lane = 0; lane < range.count; ++lane)
+          pull[lane] = terms.wetPull(pairs.material[range.first + lane], pairs.material[j]);
+        for (int k = 0; k < D; ++k) away[k] += pull * force[k];
       }
     storeLanes<D>(range, away, of.apart);
     storeLanes<D>(range, press, of.press);
@@ -162,8 +208,8 @@ void addSurfaceForces(Context<Cpu>&, std::span<const Vec<D>> f, std::span<Vec<D>
 
 template <int D>
 void surfaceOnWalls(Context<Cpu>&, const MphPairs<D>& pairs, const SurfaceTerms<D>& terms,
-                    const ClusterListView& walls, std::span<const Vec<D>> ofWalls, std::span<Vec<D>> y,
-                    std::span<Vec<D>> load) {
+                    const ClusterListView& walls, std::span<const Vec<D>> ofWalls,
+                    std::span<const Adhesion<D>> adhesion, std::span<Vec<D>> y, std::span<Vec<D>> load) {
   const double floor2 = distanceFloor2(pairs);
   forEachCluster<D>(pairs, walls, [&](const ClusterRange& range, const ClusterPlaces<D>& x, std::uint32_t c) {
     VecLanes<D> sum = {};
@@ -172,6 +218,15 @@ void surfaceOnWalls(Context<Cpu>&, const MphPairs<D>& pairs, const SurfaceTerms<
         const PairLanes<D> pair(pairs, i, x, floor2);
         const Lanes share = terms.share(terms.gradient(pair.r.square), pair.r.square);
         for (int k = 0; k < D; ++k) sum[k] -= share * ofWalls[i][k];
+        for (std::uint32_t lane = 0; lane < range.count; ++lane) {
+          const std::uint32_t j = range.first + lane;
+          if (norm2(adhesion[j].along) == 0) continue;
+          Vec<D> d;
+          for (int k = 0; k < D; ++k) d[k] = pair.d[k][lane];
+          const Vec<D> pull = terms.alongWall(d, norm2(d), adhesion[j].along) *
+                              terms.wetPull(pairs.material[i], pairs.material[j]);
+          for (int k = 0; k < D; ++k) sum[k][lane] += pull[k];
+        }
       }
     const ClusterRange place(range.first - walls.first, range.first - walls.first + range.count);
     VecLanes<D> all = loadLanes<D>(place, std::span<const Vec<D>>(load));
@@ -181,21 +236,23 @@ void surfaceOnWalls(Context<Cpu>&, const MphPairs<D>& pairs, const SurfaceTerms<
   });
 }
 
-#define TREACLE_INSTANTIATE(D)                                                                            \
-  template void surfaceSlope<D>(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&,                \
-                                std::span<SurfaceSums<D>>, std::span<SurfaceSlope<D>>);                   \
-  template void surfaceForces<D>(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&,               \
-                                 std::span<const SurfaceSums<D>>, std::span<const SurfaceSlope<D>>,       \
-                                 const SurfaceForces<D>&);                                                \
-  template void bendSurface<D>(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&,                 \
-                               const SurfaceForces<D>&, std::span<SurfaceFit>);                           \
-  template void evenAlongSurface<D>(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&,            \
-                                    std::span<const Vec<D>>, std::span<const SurfaceFit>,                 \
-                                    std::span<const Vec<D>>, std::span<Vec<D>>, std::span<const Vec<D>>); \
-  template void addSurfaceForces<D>(Context<Cpu>&, std::span<const Vec<D>>, std::span<Vec<D>>);           \
-  template void surfaceOnWalls<D>(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&,              \
-                                  const ClusterListView&, std::span<const Vec<D>>, std::span<Vec<D>>,     \
-                                  std::span<Vec<D>>);
+#define TREACLE_INSTANTIATE(D)                                                                                   \
+  template void surfaceSlope<D>(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&,                       \
+                                std::span<SurfaceSums<D>>, std::span<SurfaceSlope<D>>, std::span<Adhesion<D>>);  \
+  template void wallAdhesion<D>(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&,                       \
+                                const ClusterListView&, std::span<WallSums<D>>, std::span<Adhesion<D>>);         \
+  template void surfaceForces<D>(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&,                      \
+                                 std::span<const SurfaceSums<D>>, std::span<const SurfaceSlope<D>>,              \
+                                 std::span<const Adhesion<D>>, const SurfaceForces<D>&);                         \
+  template void bendSurface<D>(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&,                        \
+                               const SurfaceForces<D>&, std::span<SurfaceFit>);                                  \
+  template void evenAlongSurface<D>(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&,                   \
+                                    std::span<const Vec<D>>, std::span<const SurfaceFit>,                        \
+                                    std::span<const Vec<D>>, std::span<Vec<D>>, std::span<const Vec<D>>);        \
+  template void addSurfaceForces<D>(Context<Cpu>&, std::span<const Vec<D>>, std::span<Vec<D>>);                  \
+  template void surfaceOnWalls<D>(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&,                     \
+                                  const ClusterListView&, std::span<const Vec<D>>, std::span<const Adhesion<D>>, \
+                                  std::span<Vec<D>>, std::span<Vec<D>>);
 TREACLE_INSTANTIATE(2)
 TREACLE_INSTANTIATE(3)
 #undef TREACLE_INSTANTIATE

@@ -35,11 +35,10 @@ void planHeat(const Case& c, const MemoryCounts& n, MemorySum& sum) {
   sum.keep<HeatExchange>(fluid);
 }
 
-/// WallForces, and what StepSurface keeps for them.
+/// WallForces but for their lists, and what StepSurface keeps for them.
 template <int D>
 void planWallForces(const Case& c, const MemoryCounts& n, MemorySum& sum) {
   const std::uint64_t walls = n.activeWalls();
-  planLists(n.wallForceLists, sum);
   sum.keep<double>(2 * walls);
   sum.keep<Vec<D>>(walls);
   if (c.hasSurfaceTension()) sum.keep<Vec<D>>(n.active + n.heldFluid());
@@ -63,7 +62,10 @@ void planFields(const Case& c, const MemoryCounts& n, bool withGradient, MemoryS
     sum.keep<SurfaceSlope<D>>(held);
     sum.keep<Vec<D>>(3 * held + 2 * fluid);
     sum.keep<SurfaceFit>(held + fluid);
+    sum.keep<WallSums<D>>(walls);
+    sum.keep<Adhesion<D>>(n.active);
   }
+  if (c.hasSurfaceTension() || c.needsWallForces()) planLists(n.wallForceLists, sum);
   sum.keep<Block<D>>(fluid);
   if (withGradient) sum.keep<Vec<D>>(fluid);
   sum.keep<double>(fluid + 2 * n.active);

@@ -61,7 +61,8 @@ class MphStep final : public StepMethod<D, Backend> {
     neighbourhood_.setTimeStep(state_.timeStep);
     placeWallSurfaces();
     renormalise();
-    if (surface_) surface_->prepare(state_, pairs_);
+    if (surface_ || state_.theCase.needsWallForces()) wallForces_.prepare(state_, neighbourhood_);
+    if (surface_) surface_->prepare(state_, pairs_, wallForces_.walls());
     scaleViscosity();
     computeDensities();
     wallDensity_.resize(state_.context, state_.particles.fluidCount);
@@ -131,10 +132,8 @@ class MphStep final : public StepMethod<D, Backend> {
     fillGhosts(state_.context, Held::Active, divergence_.data());
     bulkPressure<D>(state_.context, pairs_, divergence_, elastic_, state_.particles.pressure.span().first(active));
     if (rheology_) rheology_->accept(state_);
-    if (state_.theCase.needsBalance()) {
-      if (!bodies_) wallForces_.prepare(state_, neighbourhood_);
+    if (state_.theCase.needsBalance())
       lastBalance_ = balance_.make(state_, pairs_, divergence_, elastic_, surface_ ? &*surface_ : nullptr);
-    }
     if (heat_) acceptHeat();
     // The velocities of the start are given, no solution: nothing follows from the way to the first one.
     if (state_.step > 0)
@@ -182,7 +181,6 @@ class MphStep final : public StepMethod<D, Backend> {
 
   /// The flow and the velocities of the rigid bodies.
   StagedReport solveWithBodies() {
-    wallForces_.prepare(state_, neighbourhood_);
     const auto flow = [&](bool isFirst) {
       if (isFirst) return solveFluid();
       takeWallVelocities();
@@ -302,7 +300,7 @@ class MphStep final : public StepMethod<D, Backend> {
   void computeRightHandSide() {
     elastic_.resize(state_.context, pairs_.activeCount);
     elasticPressure<D>(state_.context, pairs_, state_.particles.numberDensity.span().first(pairs_.activeCount),
-                       elastic_);
+                       surface_ ? surface_->adhesion() : std::span<const Adhesion<D>>{}, elastic_);
     rhs_.resize(state_.context, state_.particles.fluidCount);
     inertiaAndGravity<D>(state_.context, pairs_,
                          state_.particles.velocity.span().first(state_.particles.fluidCount),
@@ -350,7 +348,7 @@ class MphStep final : public StepMethod<D, Backend> {
   Buffer<Block<D>, Backend> wallBlock_;
   Buffer<Vec<D>, Backend> wallGradient_;
   Buffer<double, Backend> wallDensity_;  // the walls' part of n per fluid particle
-  Buffer<double, Backend> elastic_;      // kappa [n - n_0]_+ per particle [Pa]
+  Buffer<double, Backend> elastic_;      // elasticPressure() per particle [Pa]
   Buffer<double, Backend> divergence_;   // C^T u per particle [1/s]
   Buffer<Vec<D>, Backend> rhs_;
   MphSolver<D, Backend> solver_;
@@ -361,7 +359,7 @@ class MphStep final : public StepMethod<D, Backend> {
   std::optional<StepBodies<D, Backend>> bodies_;      // where the case has rigid bodies; then also:
   Buffer<Vec<D>, Backend> rhsAtRest_;                 // the right-hand side without velocities of walls
   Buffer<double, Backend> pressure_;                  // per active particle [Pa]
-  WallForces<D, Backend> wallForces_;                 // for rigid bodies and the balance
+  WallForces<D, Backend> wallForces_;                 // for rigid bodies, the balance and surface tension
   StepBalance<D, Backend> balance_{wallForces_};
   std::optional<Balance> lastBalance_;
 };

@@ -14,9 +14,10 @@ class StepSurface {
  public:
   explicit StepSurface(const Case& c) : terms_(SurfaceTerms<D>::make(c)), wallsBearIt_(c.needsWallForces()) {}
 
-  /// On the neighbours of the step.
-  void prepare(FlowState<D, Backend>& state, const MphPairs<D>& pairs) {
+  /// On the neighbours of the step; `walls`: those of wall particles, as far as surfaces reach.
+  void prepare(FlowState<D, Backend>& state, const MphPairs<D>& pairs, const ClusterListView& walls) {
     Context<Backend>& context = state.context;
+    const std::uint32_t fluid = pairs.fluidCount, wallCount = pairs.ownEnd() - fluid;
     for (Buffer<Vec<D>, Backend>* field : {&normal_, &force_, &even_}) field->resize(context, pairs.fluidCount);
     slope_.resize(context, pairs.fluidCount);
     fit_.resize(context, pairs.fluidCount);
@@ -25,12 +26,16 @@ class StepSurface {
     press_.resize(context, pairs.ownFluid());
     apart_.resize(context, pairs.ownFluid());
     fitted_.resize(context, pairs.ownFluid());
+    atWalls_.resize(context, wallCount);
+    adhesion_.resize(context, pairs.activeCount);
 
-    surfaceSlope<D>(context, pairs, terms_, sums_.span(), slope_.span());
+    surfaceSlope<D>(context, pairs, terms_, sums_.span(), slope_.span(), adhesion_.span().first(pairs.ownFluid()));
+    wallAdhesion<D>(context, pairs, terms_, walls, atWalls_.span(), adhesion_.span().subspan(fluid, wallCount));
     fillGhosts(context, Held::Fluid, slope_.data());
+    fillGhosts(context, Held::Active, adhesion_.data());
     const SurfaceForces<D> forces{force_.span(),  apart_.span(), press_.span(),
                                   normal_.span(), fit_.span(),   ofWalls_.span()};
-    surfaceForces<D>(context, pairs, terms_, sums_.span(), slope_.span(), forces);
+    surfaceForces<D>(context, pairs, terms_, sums_.span(), slope_.span(), adhesion_.span(), forces);
     fillGhosts(context, Held::Fluid, normal_.data());
     fillGhosts(context, Held::Fluid, fit_.data());
     if (wallsBearIt_) fillGhosts(context, Held::Fluid, ofWalls_.data());
@@ -56,13 +61,16 @@ class StepSurface {
     const std::uint32_t n = pairs.ownFluid();
     copyValues(state.context, std::span<const Vec<D>>(even_.span()).first(n), y.data());
     clearValues(state.context, y.subspan(n));
-    surfaceOnWalls<D>(state.context, pairs, terms_, walls, ofWalls_.span(), y.subspan(pairs.fluidCount), load);
+    surfaceOnWalls<D>(state.context, pairs, terms_, walls, ofWalls_.span(), adhesion_.span(),
+                      y.subspan(pairs.fluidCount), load);
   }
 
-  std::span<const SurfaceSlope<D>> slope() const { return slope_; }  // per fluid particle
+  std::span<const SurfaceSlope<D>> slope() const { return slope_; }    // per fluid particle
+  std::span<const Adhesion<D>> adhesion() const { return adhesion_; }  // per active particle
   std::size_t bytes() const {
     return sums_.bytes() + slope_.bytes() + normal_.bytes() + force_.bytes() + even_.bytes() + fit_.bytes() +
-           press_.bytes() + apart_.bytes() + fitted_.bytes() + ofWalls_.bytes();
+           press_.bytes() + apart_.bytes() + fitted_.bytes() + ofWalls_.bytes() + atWalls_.bytes() +
+           adhesion_.bytes();
   }
 
  private:
@@ -75,7 +83,9 @@ class StepSurface {
   Buffer<Vec<D>, Backend> press_;             // S [Pa]
   Buffer<Vec<D>, Backend> apart_;             // what is not shared [N/m3]
   Buffer<SurfaceFit, Backend> fit_, fitted_;  // of each particle; summed over its neighbours
-  Buffer<Vec<D>, Backend> ofWalls_;           // that of walls alone, over what they fill around a particle [N/m3]
+  Buffer<Vec<D>, Backend> ofWalls_;           // what walls hold, over what they fill around a particle [N/m3]
+  Buffer<WallSums<D>, Backend> atWalls_;      // per own wall particle
+  Buffer<Adhesion<D>, Backend> adhesion_;
 };
 
 }  // namespace treacle

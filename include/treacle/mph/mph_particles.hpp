@@ -2,6 +2,7 @@
 
 #include "treacle/core/cuda.hpp"
 #include "treacle/mph/mph_pairs.hpp"
+#include "treacle/mph/surface_tension.hpp"
 
 #include <cstdint>
 #include <span>
@@ -11,11 +12,14 @@ namespace treacle {
 /// What a step of MPH-I does particle by particle, without neighbours. Spans "per particle" have activeCount, "per
 /// fluid particle" fluidCount elements.
 
-/// kappa [n - n_0]_+ per particle [Pa]: the explicit part of Psi [K23 eq. (14)], cut at the free surface.
+/// kappa [n - n_0]_+ per particle [Pa]: the explicit part of Psi [K23 eq. (14)], cut at the free surface. Where
+/// there is a surface tension, `adhesion` says which particles bear pressures below zero; empty: none does.
 template <int D>
-void elasticPressure(Context<Cpu>&, const MphPairs<D>&, std::span<const double> n, std::span<double> elastic);
+void elasticPressure(Context<Cpu>&, const MphPairs<D>&, std::span<const double> n,
+                     std::span<const Adhesion<D>> adhesion, std::span<double> elastic);
 template <int D>
-void elasticPressure(Context<Cuda>&, const MphPairs<D>&, std::span<const double> n, std::span<double> elastic);
+void elasticPressure(Context<Cuda>&, const MphPairs<D>&, std::span<const double> n,
+                     std::span<const Adhesion<D>> adhesion, std::span<double> elastic);
 
 /// rho/dt u + rho g per fluid particle: b of [K23 eq. (16)] before the pair sums.
 template <int D>
@@ -36,8 +40,11 @@ void bulkPressure(Context<Cuda>&, const MphPairs<D>&, std::span<const double> di
 
 /// The formulas, for particle i.
 template <int D>
-TREACLE_HD double elasticPressureOf(const MphPairs<D>& pairs, std::uint32_t i, double n) {
-  return pairs.bulkModulus(i) * positivePart(n - pairs.restDensity);
+TREACLE_HD double elasticPressureOf(const MphPairs<D>& pairs, std::uint32_t i, double n,
+                                    std::span<const Adhesion<D>> adhesion) {
+  if (adhesion.empty() || n >= pairs.restDensity)
+    return pairs.bulkModulus(i) * positivePart(n - pairs.restDensity);
+  return -pairs.bulkModulus(i) * adhesion[i].bears * positivePart(pairs.restDensity * adhesion[i].rest - n);
 }
 template <int D>
 TREACLE_HD Vec<D> inertiaAndGravityOf(const MphPairs<D>& pairs, std::uint32_t i, const Vec<D>& u,

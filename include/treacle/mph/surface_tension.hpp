@@ -43,8 +43,18 @@ namespace treacle {
 /// neighbours' mean. Not near walls, where forces along the surface are to be.
 ///
 /// At walls the surface ends in a contact line. There G and c are continued as if the surface went on behind the
-/// wall, and the wall holds what the stress pulls off it and pulls along itself as its contact angle with the
-/// fluid says.
+/// wall, and the wall holds what the stress pulls off it. A wall that the fluid wets, with a contact angle of at
+/// most 90 degrees, pulls it along itself by the gradient, along the wall, of an energy that wall particles have
+/// per volume where fluid lies on them:
+///
+///   e_j = -gamma K(theta) 2 |H_j| F(f_j),   H_j = sum over walls of grad v_jk [1/m],   v = A_v (1 - r^2/h^2)^3
+///
+/// f_j being the share of what other walls leave around the particle that fluid has, with the weight v, and F a
+/// smooth step of it from 0 to 0.85. The sum of 2 |H_j| over the depth of a wall is 1 per area, so that a line is
+/// pulled by gamma K whatever its shape. A wall that is not wetted pushes at the stress itself.
+///
+/// Under surfaces that curve inward the pressure is less than zero, which kappa [n - n_0]_+ never is. Where they
+/// lie well inside, or covered, particles bear that, too (Adhesion), unless a wall is near that is not wetted.
 
 /// What a fluid particle has of fluid and of walls around it; sums of r^2 gradient are shares of a full lattice's.
 template <int D>
@@ -54,7 +64,25 @@ struct SurfaceSums {
   double walls;        // of walls
   double colour;       // sum of w of fluid, the particle's own included
   double wallColour;   // of walls
-  double pull;         // of walls, each with what it pulls the fluid along itself over gamma
+  double repelled;     // of walls that it does not wet the share, each with its K, which is negative
+};
+
+/// What a wall particle has of walls and of fluid around it, by the weight v unless told.
+template <int D>
+struct WallSums {
+  Vec<D> wall;    // H [1/m]
+  double walls;   // of walls, the particle's own included
+  double filled;  // of fluid
+  double colour;  // of both, by w
+  double repels;  // of fluid that does not wet it, with its K, which is negative
+};
+
+/// What particles of fluid and of walls do against pressures below zero, and what these pull fluid by.
+template <int D>
+struct Adhesion {
+  double rest;   // number density at which its pressure is zero, over n_0: that of a plane lattice at the same c
+  double bears;  // share of a pressure below zero that it bears, 0 to 1
+  Vec<D> along;  // of a wall: H_j 2 dF/df_j over what other walls leave around it [1/m]; of fluid nothing
 };
 
 /// What the stress of a particle follows from.
@@ -74,12 +102,12 @@ struct SurfaceFit {
 /// Fields of the fluid that surfaceForces() sets, of own particles alone.
 template <int D>
 struct SurfaceForces {
-  std::span<Vec<D>> force;   // of stress and walls [N/m3]
-  std::span<Vec<D>> apart;   // what keeps particles apart, and is not shared [N/m3]
+  std::span<Vec<D>> force;   // of stress, and what ofWalls() has of it [N/m3]
+  std::span<Vec<D>> apart;   // what keeps particles apart and wetted walls pull; it is not shared [N/m3]
   std::span<Vec<D>> press;   // S [Pa]
   std::span<Vec<D>> normal;  // |m| n [Pa^1/2]
   std::span<SurfaceFit> fit;
-  std::span<Vec<D>> ofWalls{};  // unless empty: of walls alone, over what they fill around a particle [N/m3]
+  std::span<Vec<D>> ofWalls{};  // unless empty: ofWalls(), over what they fill around a particle [N/m3]
 };
 
 template <int D>
@@ -94,13 +122,21 @@ struct SurfaceTerms {
   double bendFactor = 0;         // B [1/m]
   double evenFactor = 0;         // K
   double evenNoise = 0;          // |m|^2 that tells no direction, since particles in disorder have it [Pa]
+  double wettingFactor = 0;      // A_v, which makes the sum of v over a full lattice 1
   double tension[maxMaterials];  // gamma [N/m]
   double pulls[maxMaterials * maxMaterials];  // pull(), by fluid and wall
 
+  static constexpr int rows = 8;
+  double rowColour[rows],
+      rowDensity[rows];  // c and n/n_0 of the rows of a plane lattice, from the outermost one on
+
   static SurfaceTerms make(const Case& c);
 
-  /// What a wall of one material pulls a fluid of another along itself, over gamma.
+  /// K(theta), what a wall of one material pulls a fluid of another along itself, over gamma.
   TREACLE_HD double pull(int fluid, int wall) const { return pulls[fluid * int{maxMaterials} + wall]; }
+  /// The same for walls that it wets [N/m], and for those that it does not, over gamma; else nothing.
+  TREACLE_HD double wetPull(int fluid, int wall) const { return tension[fluid] * fmax(pull(fluid, wall), 0.0); }
+  TREACLE_HD double dryPull(int fluid, int wall) const { return fmin(pull(fluid, wall), 0.0); }
 
   /// grad w = gradient d, d = x_j - x_i; r2 = d.d
   template <class Real>
@@ -113,6 +149,31 @@ struct SurfaceTerms {
   TREACLE_HD Real weight(const Real& r2) const {
     const Real part = nearness(r2), square = part * part;
     return weightFactor * (square * square * part * squareRoot(part));
+  }
+  /// v
+  template <class Real>
+  TREACLE_HD Real wetting(const Real& r2) const {
+    const Real part = nearness(r2);
+    return wettingFactor * (part * part * part);
+  }
+  /// grad v = wettingGradient d
+  template <class Real>
+  TREACLE_HD Real wettingGradient(const Real& r2) const {
+    const Real part = nearness(r2);
+    return 6 * wettingFactor * inverseSquare * (part * part);
+  }
+  /// The force of a wall particle on a fluid particle at x_i over wetPull() [1/m2], d = x_j - x_i; the wall
+  /// particle has the opposite.
+  template <class V, class Real>
+  TREACLE_HD V alongWall(const V& d, const Real& r2, const Vec<D>& along) const {
+    const double size = norm(along);
+    const Vec<D> normal = along * (1 / size);
+    Real across = normal[0] * d[0];
+    for (int k = 1; k < D; ++k) across += normal[k] * d[k];
+    const Real g = size * wettingGradient(r2);
+    V force;
+    for (int k = 0; k < D; ++k) force[k] = g * (d[k] - across * normal[k]);
+    return force;
   }
   /// The share that a neighbour fills, from its gradient.
   template <class Real>
@@ -139,18 +200,45 @@ struct SurfaceTerms {
   /// The share of the lattice around a particle that walls leave, at least what a particle between two of them has
   /// that close up on it.
   TREACLE_HD static double besideWalls(const SurfaceSums<D>& s) { return fmax(1 - s.walls, 0.1); }
+  /// The share that fluid has of the colour that walls leave around a fluid particle, at most 1.
+  TREACLE_HD static double openColour(const SurfaceSums<D>& s) {
+    return s.colour / fmax(1 - s.wallColour, s.colour);  // the latter never less than the fluid that is there
+  }
   /// Of a particle, 2 gamma p |G| / c being |m|^2 where |G| is more than noise. Of what lies along a wall, and of
   /// c, the wall hides its share.
   TREACLE_HD SurfaceSlope<D> slope(int material, const SurfaceSums<D>& s) const {
     Vec<D> g = s.fluid + s.wall;
     const double size2 = norm2(s.wall);
     if (size2 > 0) g += (g - s.wall * (dot(g, s.wall) / size2)) * (s.walls / besideWalls(s));
-    const double open = fmax(1 - s.wallColour, s.colour);  // never less than the fluid that is there
-    const double colour = s.colour / open;                 // at most 1
+    const double colour = openColour(s);
     const double m2 = 2 * tension[material] * profile(colour) / (colour * sqrt(norm2(g) + noise2));
     return {g * sqrt(m2), fmin(1.0, 2 * colour)};
   }
-  /// The force of the walls on a particle that the fluid's stress gives `ofFluid` [N/m3].
+  /// From 0 at a to 1 at b and beyond.
+  TREACLE_HD static double smoothStep(double x, double a, double b) {
+    const double t = fmin(1.0, fmax(0.0, (x - a) / (b - a)));
+    return t * t * (3 - 2 * t);
+  }
+  /// n/n_0 of a particle of a plane lattice, or between its rows, of the colour c.
+  TREACLE_HD double restShare(double colour) const {
+    if (colour <= rowColour[0]) return rowDensity[0] * colour / rowColour[0];
+    for (int row = 1; row < rows; ++row)
+      if (colour < rowColour[row])
+        return rowDensity[row - 1] + (rowDensity[row] - rowDensity[row - 1]) * (colour - rowColour[row - 1]) /
+                                         (rowColour[row] - rowColour[row - 1]);
+    return 1;
+  }
+  TREACLE_HD Adhesion<D> adhesion(const SurfaceSums<D>& s) const {
+    return {restShare(s.colour + s.wallColour), s.repelled < 0 ? 0 : smoothStep(openColour(s), 0.8, 0.9), {}};
+  }
+  TREACLE_HD Adhesion<D> adhesion(const WallSums<D>& s) const {
+    const double rest = fmax(1 - s.walls, 0.01), share = s.filled / rest, full = 0.85;
+    const double part = fmin(1.0, share / full);
+    return {restShare(s.colour), s.repels < 0 ? 0 : smoothStep(fmin(share, s.colour), 0.6, 0.7),
+            s.wall * (2 * 6 * part * (1 - part) / (full * rest))};
+  }
+  /// What of the stress of a particle, that gives it `ofFluid`, the walls hold, and what those that it does not
+  /// wet push it along themselves [N/m3].
   TREACLE_HD Vec<D> ofWalls(const SurfaceSums<D>& s, const Vec<D>& m, const Vec<D>& ofFluid) const {
     const double size = norm(s.wall), m2 = norm2(m);
     if (!(size > 0 && m2 > 0)) return {};
@@ -160,7 +248,7 @@ struct SurfaceTerms {
     const double line = 2 * m2 * size * fmin(1.0, s.filled / besideWalls(s));
     const double away = -dot(ofFluid, inward), most = line * sine * sine;
     const double held = away < 0 ? 0 : away < most ? away : most;
-    return inward * held - along * (line * s.pull / (s.walls * sqrt(m2)));
+    return inward * held - along * (line * s.repelled / (s.walls * sqrt(m2)));
   }
   /// All of `of` for particle i, whose S is there, where the stress of the fluid gives `ofFluid`.
   TREACLE_HD void finish(int material, std::uint32_t i, const SurfaceSums<D>& s, const Vec<D>& m,
@@ -193,22 +281,31 @@ inline constexpr double surfaceEnergyShare = 1 / (2.5 * std::numbers::ln2 - 1.0 
 template <int D>
 inline constexpr int surfacePasses = D == 2 ? 8 : 4;
 
-/// Per own fluid particle the sums and its slope.
+/// Per own fluid particle the sums, its slope and how it bears pressures below zero.
 template <int D>
 void surfaceSlope(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&, std::span<SurfaceSums<D>> sums,
-                  std::span<SurfaceSlope<D>> slope);
+                  std::span<SurfaceSlope<D>> slope, std::span<Adhesion<D>> adhesion);
 template <int D>
 void surfaceSlope(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&, std::span<SurfaceSums<D>> sums,
-                  std::span<SurfaceSlope<D>> slope);
+                  std::span<SurfaceSlope<D>> slope, std::span<Adhesion<D>> adhesion);
 
-/// `slope` of all fluid, ghosts included.
+/// Per wall particle of a list that reaches to h, from the first wall particle on.
+template <int D>
+void wallAdhesion(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&, const ClusterListView& walls,
+                  std::span<WallSums<D>> sums, std::span<Adhesion<D>> adhesion);
+template <int D>
+void wallAdhesion(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&, const ClusterListView& walls,
+                  std::span<WallSums<D>> sums, std::span<Adhesion<D>> adhesion);
+
+/// `slope` of all fluid, `adhesion` of all active particles, ghosts included.
 template <int D>
 void surfaceForces(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&, std::span<const SurfaceSums<D>> sums,
-                   std::span<const SurfaceSlope<D>> slope, const SurfaceForces<D>& of);
+                   std::span<const SurfaceSlope<D>> slope, std::span<const Adhesion<D>> adhesion,
+                   const SurfaceForces<D>& of);
 template <int D>
 void surfaceForces(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&,
                    std::span<const SurfaceSums<D>> sums, std::span<const SurfaceSlope<D>> slope,
-                   const SurfaceForces<D>& of);
+                   std::span<const Adhesion<D>> adhesion, const SurfaceForces<D>& of);
 
 /// Per own fluid particle: adds to `force` what makes up for the depth of the tension, and moves the smooth part
 /// of it along the surface's curvature, q S, to `apart`: what is left in `force` is to be shared. `normal` and
@@ -239,12 +336,14 @@ template <int D>
 void addSurfaceForces(Context<Cuda>&, std::span<const Vec<D>> f, std::span<Vec<D>> y);
 
 /// Sets y per wall particle of the list to the reaction, as `ofWalls` has it of all fluid, ghosts included, and
-/// adds it to `load` [N/m3].
+/// `adhesion` of active particles, and adds it to `load` [N/m3].
 template <int D>
 void surfaceOnWalls(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&, const ClusterListView& walls,
-                    std::span<const Vec<D>> ofWalls, std::span<Vec<D>> y, std::span<Vec<D>> load);
+                    std::span<const Vec<D>> ofWalls, std::span<const Adhesion<D>> adhesion, std::span<Vec<D>> y,
+                    std::span<Vec<D>> load);
 template <int D>
 void surfaceOnWalls(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&, const ClusterListView& walls,
-                    std::span<const Vec<D>> ofWalls, std::span<Vec<D>> y, std::span<Vec<D>> load);
+                    std::span<const Vec<D>> ofWalls, std::span<const Adhesion<D>> adhesion, std::span<Vec<D>> y,
+                    std::span<Vec<D>> load);
 
 }  // namespace treacle

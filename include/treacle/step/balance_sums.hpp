@@ -24,7 +24,7 @@ struct PowerTerms {
   std::span<const std::uint8_t> material;
   std::span<const Vec<D>> before, after;   // u^k of the fluid, u^{k+1} of all [m/s]
   std::span<const double> divergence;      // C^T u^{k+1} [1/s]
-  std::span<const double> elastic;         // kappa [n - n_0]_+ [Pa]
+  std::span<const double> elastic;         // elasticPressure() [Pa]
   std::span<const double> shear;           // of the fluid [W/m3]
   std::span<const double> wallDivergence;  // the fluid's parts of C^T u and n at walls
   std::span<const double> wallDensity;
@@ -38,10 +38,10 @@ struct PowerTerms {
     const bool fluid = i < fluidCount;
     const double worked = fluid ? divergence[i] : wallDivergence[i - fluidCount];
     sums[Bulk] += materials.bulkViscosity[m] * divergence[i] * worked;
+    sums[Elastic] -= elastic[i] * worked;
     if (elastic[i] > 0) {
       const double kappa = materials.bulkModulus[m], strain = elastic[i] / kappa;
       const double without = fluid ? 0 : strain - wallDensity[i - fluidCount];
-      sums[Elastic] -= elastic[i] * worked;
       sums[ElasticEnergy] += 0.5 * kappa * (strain * strain - (without > 0 ? without * without : 0));
     }
     if (!surfaceForce.empty()) sums[Surface] += dot(surfaceForce[i], after[i]);

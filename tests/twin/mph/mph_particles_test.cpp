@@ -64,8 +64,8 @@ void checkPressures(Twins<D>& t) {
   const Particles<D>& p = t.r.particles;
   Buffer<double> elastic(p.count), pressure(p.count);
   Buffer<double, Cuda> deviceElastic(t.context, p.count), devicePressure(t.context, p.count);
-  elasticPressure<D>(t.r.context, t.hostPairs, p.numberDensity, elastic);
-  elasticPressure<D>(t.context, t.devicePairs, t.device.numberDensity, deviceElastic);
+  elasticPressure<D>(t.r.context, t.hostPairs, p.numberDensity, {}, elastic);
+  elasticPressure<D>(t.context, t.devicePairs, t.device.numberDensity, {}, deviceElastic);
   t.expectEqual(elastic, deviceElastic);
   bulkPressure<D>(t.r.context, t.hostPairs, p.pressure, elastic, pressure);
   bulkPressure<D>(t.context, t.devicePairs, t.device.pressure, deviceElastic, devicePressure);

@@ -229,16 +229,20 @@ void checkSurfaceTension(bool lists) {
   if (!lists) d.pairs.fluidList.offset = d.pairs.wallList.offset = nullptr;
   const std::uint32_t n = s.pairs().fluidCount, walls = s.pairs().activeCount - n;
   s.c.materials[0].surfaceTension = 0.07;
-  for (Material& m : s.c.materials) m.contactAngle = 50, m.contactAngles = {{s.c.materials[0].name, 70}};
+  for (std::size_t m = 0; m < s.c.materials.size(); ++m) s.c.materials[m].contactAngle = m % 2 == 0 ? 50 : 130;
   const SurfaceTerms<D> terms = SurfaceTerms<D>::make(s.c);
   std::vector<SurfaceSums<D>> sums(n);
   std::vector<SurfaceFit> fit(n), fitted(n);
   std::vector<SurfaceSlope<D>> slope(n);
+  std::vector<WallSums<D>> atWalls(walls);
+  std::vector<Adhesion<D>> adhesion(n + walls);
   std::vector<Vec<D>> force(n), apart(n), press(n), normal(n), ofWalls(n), even(n), reaction(walls),
       load(walls, Vec<D>::filled(1));
   Buffer<SurfaceSums<D>, Cuda> sumsFound(d.context, n);
   Buffer<SurfaceFit, Cuda> fitFound(d.context, n), fittedFound(d.context, n);
   Buffer<SurfaceSlope<D>, Cuda> slopeFound(d.context, n);
+  Buffer<WallSums<D>, Cuda> atWallsFound(d.context, walls);
+  Buffer<Adhesion<D>, Cuda> adhesionFound(d.context, n + walls);
   Buffer<Vec<D>, Cuda> ofWallsFound(d.context, n), reactionFound(d.context, walls), forceFound(d.context, n),
       apartFound(d.context, n), evenFound(d.context, n), pressFound(d.context, n), normalFound(d.context, n);
   auto loadFound = copyToDevice<Vec<D>>(d.context, load);
@@ -249,12 +253,24 @@ void checkSurfaceTension(bool lists) {
     EXPECT_LE(difference<Vec<D>>(d.context, expected, found), operatorTolerance);
   };
 
-  surfaceSlope<D>(s.context, s.pairs(), terms, sums, slope);
-  surfaceSlope<D>(d.context, d.pairs, terms, sumsFound.span(), slopeFound.span());
+  ClusterList<Cpu> wallList;  // those of a step do not reach as far
+  buildClusterList<D>(s.context, s.pairs().grid, s.ranges(), s.pairs().position, n, n + walls,
+                      {s.c.interactionRadius(), 0}, true, wallList);
+  const ClusterList<Cuda> wallsDevice = onDevice(d.context, wallList.view());
+  const ClusterListView wallsFound = lists ? wallsDevice.view() : d.pairs.wallList;
+
+  const std::span<Adhesion<D>> adheres = adhesion;
+  surfaceSlope<D>(s.context, s.pairs(), terms, sums, slope, adheres.first(n));
+  surfaceSlope<D>(d.context, d.pairs, terms, sumsFound.span(), slopeFound.span(), adhesionFound.span().first(n));
+  wallAdhesion<D>(s.context, s.pairs(), terms, wallList.view(), atWalls, adheres.subspan(n));
+  wallAdhesion<D>(d.context, d.pairs, terms, wallsFound, atWallsFound.span(), adhesionFound.span().subspan(n));
+  EXPECT_LE(difference<WallSums<D>>(d.context, atWalls, atWallsFound), operatorTolerance);
+  EXPECT_LE(difference<Adhesion<D>>(d.context, adhesion, adhesionFound), operatorTolerance);
   EXPECT_LE(difference<SurfaceSums<D>>(d.context, sums, sumsFound), operatorTolerance);
   EXPECT_LE(difference<SurfaceSlope<D>>(d.context, slope, slopeFound), operatorTolerance);
-  surfaceForces<D>(s.context, s.pairs(), terms, sums, slope, forces);
-  surfaceForces<D>(d.context, d.pairs, terms, sumsFound.span(), slopeFound.span(), forcesFound);
+  surfaceForces<D>(s.context, s.pairs(), terms, sums, slope, adhesion, forces);
+  surfaceForces<D>(d.context, d.pairs, terms, sumsFound.span(), slopeFound.span(), adhesionFound.span(),
+                   forcesFound);
   expectSame(force, forceFound), expectSame(apart, apartFound), expectSame(press, pressFound);
   expectSame(normal, normalFound), expectSame(ofWalls, ofWallsFound);
   EXPECT_LE(difference<SurfaceFit>(d.context, fit, fitFound), operatorTolerance);
@@ -270,13 +286,9 @@ void checkSurfaceTension(bool lists) {
   addSurfaceForces<D>(s.context, even, force);
   addSurfaceForces<D>(d.context, evenFound.span(), addedFound.span());
   expectSame(force, addedFound);
-  ClusterList<Cpu> wallList;  // those of a step do not reach as far
-  buildClusterList<D>(s.context, s.pairs().grid, s.ranges(), s.pairs().position, n, n + walls,
-                      {s.c.interactionRadius(), 0}, true, wallList);
-  const ClusterList<Cuda> wallsDevice = onDevice(d.context, wallList.view());
-  surfaceOnWalls<D>(s.context, s.pairs(), terms, wallList.view(), ofWalls, reaction, load);
-  surfaceOnWalls<D>(d.context, d.pairs, terms, lists ? wallsDevice.view() : d.pairs.wallList,
-                    copyToDevice<Vec<D>>(d.context, ofWalls), reactionFound.span(), loadFound.span());
+  surfaceOnWalls<D>(s.context, s.pairs(), terms, wallList.view(), ofWalls, adhesion, reaction, load);
+  surfaceOnWalls<D>(d.context, d.pairs, terms, wallsFound, copyToDevice<Vec<D>>(d.context, ofWalls),
+                    adhesionFound.span(), reactionFound.span(), loadFound.span());
   EXPECT_LE(difference<Vec<D>>(d.context, reaction, reactionFound), operatorTolerance);
   EXPECT_LE(difference<Vec<D>>(d.context, load, loadFound), operatorTolerance);
 }
