@@ -126,9 +126,9 @@ struct SurfaceTerms {
   double tension[maxMaterials];  // gamma [N/m]
   double pulls[maxMaterials * maxMaterials];  // pull(), by fluid and wall
 
-  static constexpr int rows = 8;
-  double rowColour[rows],
-      rowDensity[rows];  // c and n/n_0 of the rows of a plane lattice, from the outermost one on
+  static constexpr int rows = 8;  // of a plane lattice, from the outermost one on
+  double rowColour[rows];         // c
+  double rowDensity[rows];        // n/n_0
 
   static SurfaceTerms make(const Case& c);
 
