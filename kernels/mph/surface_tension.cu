@@ -5,10 +5,9 @@
 namespace treacle {
 namespace {
 
-/// What fluid and walls are around each fluid particle.
+/// Sums over all neighbours that read the materials of both.
 template <int D>
-struct SumSurface {
-  static constexpr int values = 2 * D + 5;
+struct OfMaterials {
   static constexpr bool uses(ListSegment) { return true; }
   struct Own {
     int material;
@@ -16,10 +15,19 @@ struct SumSurface {
   using Other = Own;
 
   SurfaceTerms<D> terms;
-  SurfaceSums<D>* sums;
 
   __device__ Own loadOwn(const MphPairs<D>& pairs, std::uint32_t i) const { return {pairs.material[i]}; }
-  __device__ Other loadOther(const MphPairs<D>& pairs, std::uint32_t j) const { return loadOwn(pairs, j); }
+  __device__ Other loadOther(const MphPairs<D>& pairs, std::uint32_t j) const { return {pairs.material[j]}; }
+};
+
+/// What fluid and walls are around each fluid particle.
+template <int D>
+struct SumSurface : OfMaterials<D> {
+  static constexpr int values = 2 * D + 5;
+  using typename OfMaterials<D>::Own, typename OfMaterials<D>::Other;
+  using OfMaterials<D>::terms;
+
+  SurfaceSums<D>* sums;
 
   __device__ void add(const MphPairs<D>&, double* sum, const Vec<D>& d, const PairDistance<double>& r, Own own,
                       const Other& other, ListSegment segment) const {
@@ -50,20 +58,13 @@ struct SumSurface {
 
 /// What walls and fluid are around each wall particle of the list.
 template <int D>
-struct SumAtWalls {
+struct SumAtWalls : OfMaterials<D> {
   static constexpr int values = D + 4;
-  static constexpr bool uses(ListSegment) { return true; }
-  struct Own {
-    int material;
-  };
-  using Other = Own;
+  using typename OfMaterials<D>::Own, typename OfMaterials<D>::Other;
+  using OfMaterials<D>::terms;
 
-  SurfaceTerms<D> terms;
   WallSums<D>* sums;
   std::uint32_t first;
-
-  __device__ Own loadOwn(const MphPairs<D>& pairs, std::uint32_t j) const { return {pairs.material[j]}; }
-  __device__ Other loadOther(const MphPairs<D>& pairs, std::uint32_t i) const { return loadOwn(pairs, i); }
 
   __device__ void add(const MphPairs<D>&, double* sum, const Vec<D>& d, const PairDistance<double>& r, Own own,
                       const Other& other, ListSegment segment) const {
@@ -199,10 +200,13 @@ struct SurfaceReaction {
   static constexpr int values = D;
   static constexpr bool uses(ListSegment s) { return isFluid(s); }
   struct Own {
-    Vec<D> force;  // of a wall what it pulls with, Adhesion::along; of fluid what walls hold
+    Vec<D> along;  // Adhesion
     int material;
   };
-  using Other = Own;
+  struct Other {
+    Vec<D> ofWalls;
+    int material;
+  };
 
   SurfaceTerms<D> terms;
   const Vec<D>* ofWalls;
@@ -219,9 +223,9 @@ struct SurfaceReaction {
 
   __device__ void add(const MphPairs<D>&, double* sum, const Vec<D>& d, const PairDistance<double>& r,
                       const Own& own, const Other& other, ListSegment) const {
-    addScaled(sum, -terms.share(terms.gradient(r.square), r.square), other.force);
-    if (norm2(own.force) > 0)
-      addScaled(sum, terms.wetPull(other.material, own.material), terms.alongWall(d, r.square, own.force));
+    addScaled(sum, -terms.share(terms.gradient(r.square), r.square), other.ofWalls);
+    if (norm2(own.along) > 0)
+      addScaled(sum, terms.wetPull(other.material, own.material), terms.alongWall(d, r.square, own.along));
   }
   __device__ void store(const MphPairs<D>&, std::uint32_t j, int n, double sum) const {
     y[j - first][n] = sum;
@@ -235,7 +239,7 @@ template <int D>
 void surfaceSlope(Context<Cuda>& context, const MphPairs<D>& pairs, const SurfaceTerms<D>& terms,
                   std::span<SurfaceSums<D>> sums, std::span<SurfaceSlope<D>> slope,
                   std::span<Adhesion<D>> adhesion) {
-  sumOnFluid(context, pairs, SumSurface<D>{terms, sums.data()});
+  sumOnFluid(context, pairs, SumSurface<D>{{terms}, sums.data()});
   forEach(context, pairs.ownFluid(),
           [terms, material = pairs.material.data(), from = sums.data(), to = slope.data(),
            adheres = adhesion.data()] __device__(std::size_t i) {
@@ -251,7 +255,7 @@ void wallAdhesion(Context<Cuda>& context, const MphPairs<D>& pairs, const Surfac
   // do.
   MphPairs<D> far = pairs;
   far.terms.densityRadius = fmax(pairs.terms.densityRadius, pairs.terms.viscosityRadius);
-  sumOnList(context, far, walls, SumAtWalls<D>{terms, sums.data(), pairs.fluidCount});
+  sumOnList(context, far, walls, SumAtWalls<D>{{terms}, sums.data(), pairs.fluidCount});
   forEach(context, pairs.ownEnd() - pairs.fluidCount,
           [terms, from = sums.data(), to = adhesion.data()] __device__(std::size_t j) {
             to[j] = terms.adhesion(from[j]);

@@ -65,7 +65,7 @@ void planFields(const Case& c, const MemoryCounts& n, bool withGradient, MemoryS
     sum.keep<WallSums<D>>(walls);
     sum.keep<Adhesion<D>>(n.active);
   }
-  if (c.hasSurfaceTension() || c.needsWallForces()) planLists(n.wallForceLists, sum);
+  if (n.wallForceLists.clusters > 0) planLists(n.wallForceLists, sum);
   sum.keep<Block<D>>(fluid);
   if (withGradient) sum.keep<Vec<D>>(fluid);
   sum.keep<double>(fluid + 2 * n.active);

@@ -23,7 +23,7 @@ class StepBalance {
   explicit StepBalance(WallForces<D, Backend>& walls) : walls_(walls) {}
 
   /// Once state.velocity and the pressures are those of the end of the step; positions and particles' velocities
-  /// are still those of its start. `divergence`: C^T u^{k+1}, `elastic`: kappa [n - n_0]_+, per active particle;
+  /// are still those of its start. `divergence`: C^T u^{k+1}, `elastic`: elasticPressure(), per active particle;
   /// `surface`: null where no fluid has a surface tension.
   Balance make(FlowState<D, Backend>& state, const MphPairs<D>& pairs, std::span<const double> divergence,
                std::span<const double> elastic, const StepSurface<D, Backend>* surface) {

@@ -83,9 +83,9 @@ class StepSurface {
   Buffer<Vec<D>, Backend> press_;             // S [Pa]
   Buffer<Vec<D>, Backend> apart_;             // what is not shared [N/m3]
   Buffer<SurfaceFit, Backend> fit_, fitted_;  // of each particle; summed over its neighbours
-  Buffer<Vec<D>, Backend> ofWalls_;           // what walls hold, over what they fill around a particle [N/m3]
+  Buffer<Vec<D>, Backend> ofWalls_;           // SurfaceForces::ofWalls [N/m3]
   Buffer<WallSums<D>, Backend> atWalls_;      // per own wall particle
-  Buffer<Adhesion<D>, Backend> adhesion_;
+  Buffer<Adhesion<D>, Backend> adhesion_;     // per active particle
 };
 
 }  // namespace treacle

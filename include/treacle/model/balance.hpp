@@ -30,7 +30,7 @@ struct Balance {
   double shearDissipation = 0;        // [W]
   double bulkDissipation = 0;         // [W]
   double inertialLoss = 0;            // sum of m |u^{k+1} - u^k|^2 / (2 dt): what the implicit step takes [W]
-  double elasticPower = 0;            // what kappa [n - n_0]_+ gives to the motion [W]
+  double elasticPower = 0;            // what the elastic pressures give to the motion [W]
   double elasticEnergy = 0;           // [J]
   double wallPower = 0;               // what walls that move give to the fluid [W]
   std::vector<WallLoad> walls;        // of the wall bodies, in the order of the case

@@ -64,7 +64,7 @@ struct SurfaceSums {
   double walls;        // of walls
   double colour;       // sum of w of fluid, the particle's own included
   double wallColour;   // of walls
-  double repelled;     // of walls that it does not wet the share, each with its K, which is negative
+  double repelled;     // share of walls that it does not wet, each with its K, which is negative
 };
 
 /// What a wall particle has of walls and of fluid around it, by the weight v unless told.
@@ -228,14 +228,16 @@ struct SurfaceTerms {
                                          (rowColour[row] - rowColour[row - 1]);
     return 1;
   }
+  /// Of fluid: its outermost row has less than 0.8 of the colour that walls leave, the second one more than 0.9.
   TREACLE_HD Adhesion<D> adhesion(const SurfaceSums<D>& s) const {
     return {restShare(s.colour + s.wallColour), s.repelled < 0 ? 0 : smoothStep(openColour(s), 0.8, 0.9), {}};
   }
+  /// Of a wall particle; deep ones have next to nothing beside them. dF/df = 6 x (1 - x) / full, x = f / full.
   TREACLE_HD Adhesion<D> adhesion(const WallSums<D>& s) const {
-    const double rest = fmax(1 - s.walls, 0.01), share = s.filled / rest, full = 0.85;
+    const double beside = fmax(1 - s.walls, 0.01), share = s.filled / beside, full = 0.85;
     const double part = fmin(1.0, share / full);
     return {restShare(s.colour), s.repels < 0 ? 0 : smoothStep(fmin(share, s.colour), 0.6, 0.7),
-            s.wall * (2 * 6 * part * (1 - part) / (full * rest))};
+            s.wall * (2 * 6 * part * (1 - part) / (full * beside))};
   }
   /// What of the stress of a particle, that gives it `ofFluid`, the walls hold, and what those that it does not
   /// wet push it along themselves [N/m3].

@@ -67,6 +67,12 @@ void checkPressures(Twins<D>& t) {
   elasticPressure<D>(t.r.context, t.hostPairs, p.numberDensity, {}, elastic);
   elasticPressure<D>(t.context, t.devicePairs, t.device.numberDensity, {}, deviceElastic);
   t.expectEqual(elastic, deviceElastic);
+  std::vector<Adhesion<D>> adhesion(p.count);  // at rest above or below their density; borne in part
+  for (std::size_t i = 0; i < p.count; ++i) adhesion[i] = {0.2 + 0.01 * (i % 89), 0.1 * (i % 11), {}};
+  elasticPressure<D>(t.r.context, t.hostPairs, p.numberDensity, adhesion, elastic);
+  const auto deviceAdhesion = copyToDevice<Adhesion<D>>(t.context, adhesion);
+  elasticPressure<D>(t.context, t.devicePairs, t.device.numberDensity, deviceAdhesion, deviceElastic);
+  t.expectEqual(elastic, deviceElastic);
   bulkPressure<D>(t.r.context, t.hostPairs, p.pressure, elastic, pressure);
   bulkPressure<D>(t.context, t.devicePairs, t.device.pressure, deviceElastic, devicePressure);
   t.expectEqual(pressure, devicePressure);
