@@ -102,7 +102,7 @@ struct SurfaceForce {
   __device__ Own loadOwn(const MphPairs<D>& pairs, std::uint32_t i) const { return {slope[i], pairs.material[i]}; }
   __device__ Other loadOther(const MphPairs<D>& pairs, std::uint32_t j) const {
     if (j < pairs.fluidCount) return loadOwn(pairs, j);
-    return {{adhesion[j].along, 0}, pairs.material[j]};
+    return {{adhesion[j].along}, pairs.material[j]};
   }
 
   __device__ void add(const MphPairs<D>&, double* sum, const Vec<D>& d, const PairDistance<double>& r,
@@ -116,6 +116,10 @@ struct SurfaceForce {
     addScaled(sum, g * both, d);
     addScaled(sum, -g * own.tie * dot(own.m, d), own.m);
     addScaled(sum, -g * other.tie * dot(other.m, d), other.m);
+    if constexpr (D == 3) {
+      addScaled(sum, g * dot(own.line, d), own.line);
+      addScaled(sum, g * dot(other.line, d), other.line);
+    }
     addScaled(sum + D, -terms.core(r.inverse) * both, d);
     addScaled(sum + 2 * D, terms.weight(r.square) * sqrt(other2), other.m);
   }

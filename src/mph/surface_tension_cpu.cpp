@@ -85,11 +85,13 @@ void surfaceForces(Context<Cpu>&, const MphPairs<D>& pairs, const SurfaceTerms<D
   const double floor2 = distanceFloor2(pairs);
   const ClusterListView& list = pairs.fluidList;
   forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const ClusterPlaces<D>& x, std::uint32_t c) {
-    VecLanes<D> mi = {};
+    VecLanes<D> mi = {}, li = {};
     Lanes mi2 = {}, tie = {};
     for (std::uint32_t lane = 0; lane < range.count; ++lane) {
       const SurfaceSlope<D>& own = slope[range.first + lane];
       for (int k = 0; k < D; ++k) mi[k][lane] = own.m[k];
+      if constexpr (D == 3)
+        for (int k = 0; k < D; ++k) li[k][lane] = own.line[k];
       tie[lane] = own.tie;
     }
     for (int k = 0; k < D; ++k) mi2 += mi[k] * mi[k];
@@ -111,6 +113,12 @@ void surfaceForces(Context<Cpu>&, const MphPairs<D>& pairs, const SurfaceTerms<D
           sum[k] += g * (both * pair.d[k] - alongI * mi[k] - alongJ * mj[k]);
           away[k] -= core * pair.d[k];
           press[k] += w * (mj1 * mj[k]);
+        }
+        if constexpr (D == 3) {
+          const Vec<D>& lj = slope[j].line;
+          const Lanes ofI = g * (li[0] * pair.d[0] + li[1] * pair.d[1] + li[2] * pair.d[2]);
+          const Lanes ofJ = g * (lj[0] * pair.d[0] + lj[1] * pair.d[1] + lj[2] * pair.d[2]);
+          for (int k = 0; k < D; ++k) sum[k] += ofI * li[k] + ofJ * lj[k];
         }
       }
     for (ListSegment s : {ListSegment::NearWall, ListSegment::FarWall})

@@ -60,13 +60,13 @@ PlaneSurface planeSurface(SurfaceTerms<D> terms, double l, int reach) {
   return plane;
 }
 
-/// K(theta). Of walls that are wetted it is the cosine in the plane, but for 4 % that lines stay behind by in a
-/// slit. In space, and beyond 90 degrees, where stress and surface are not sharp, it was found by drops at rest.
+/// K(theta). Of walls that are wetted it is the cosine, in the plane but for 4 % that lines stay behind by in a
+/// slit, stepped by the lattice as they are; in space they are curved, and cross its rows. Beyond 90 degrees,
+/// where stress and surface are not sharp, it was found by drops at rest in the plane.
 template <int D>
 double pullOf(double cosine) {
-  const double c2 = cosine * cosine, c6 = c2 * c2 * c2;
-  if (cosine > 0) return cosine * (D == 2 ? 1.04 : 0.64 + 0.6 * c6 * c2);
-  return cosine * (D == 2 ? 1.1 + 1.1 * c6 : 1.31 + 1.3 * c6);
+  if (cosine > 0) return cosine * (D == 2 ? 1.04 : 1.0);
+  return cosine * (1.1 + 1.1 * std::pow(cosine, 6));
 }
 
 /// Sets rowColour and rowDensity.

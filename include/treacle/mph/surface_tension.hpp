@@ -9,7 +9,7 @@ namespace treacle {
 
 /// Surface tension of free surfaces as a stress along them, a continuum surface stress (docs/surface-tension.md):
 ///
-///   sigma_i = |m_i|^2 I - t_i m_i m_i^T [Pa],   m_i = G_i sqrt(2 gamma p(c_i) / (c_i |G_i|)) [Pa^1/2]
+///   sigma_i = |m_i|^2 I - t_i m_i m_i^T + l_i l_i^T [Pa],   m_i = G_i sqrt(2 gamma p(c_i) / (c_i |G_i|)) [Pa^1/2]
 ///
 ///   f_i = sum_j (sigma_i + sigma_j) grad w_ij - (|m_i|^2 + |m_j|^2) k [r_0 - r]_+ e / r_0^2 [N/m3]
 ///
@@ -43,9 +43,10 @@ namespace treacle {
 /// neighbours' mean. Not near walls, where forces along the surface are to be.
 ///
 /// At walls the surface ends in a contact line. There G and c are continued as if the surface went on behind the
-/// wall, and the wall holds what the stress pulls off it. A wall that the fluid wets, with a contact angle of at
-/// most 90 degrees, pulls it along itself by the gradient, along the wall, of an energy that wall particles have
-/// per volume where fluid lies on them:
+/// wall, and the wall holds what the stress pulls off it. In 3D the line is curved, and a tension along it pulls
+/// it inward; the pairs of this tension that the wall hides are made up for by l, along the line. A wall that the
+/// fluid wets, with a contact angle of at most 90 degrees, pulls it along itself by the gradient, along the wall,
+/// of an energy that wall particles have per volume where fluid lies on them:
 ///
 ///   e_j = -gamma K(theta) 2 |H_j| F(f_j),   H_j = sum over walls of grad v_jk [1/m],   v = A_v (1 - r^2/h^2)^3
 ///
@@ -90,6 +91,12 @@ template <int D>
 struct SurfaceSlope {
   Vec<D> m;    // [Pa^1/2]
   double tie;  // t [-]
+};
+template <>
+struct SurfaceSlope<3> {
+  Vec<3> m;
+  double tie;
+  Vec<3> line;  // l [Pa^1/2]
 };
 
 /// How well q S is the force f of a particle: f.S [Pa N/m3] and S.S [Pa2]. Zero near walls and where there is no
@@ -205,14 +212,24 @@ struct SurfaceTerms {
     return s.colour / fmax(1 - s.wallColour, s.colour);  // the latter never less than the fluid that is there
   }
   /// Of a particle, 2 gamma p |G| / c being |m|^2 where |G| is more than noise. Of what lies along a wall, and of
-  /// c, the wall hides its share.
+  /// c, the wall hides its share s, and of the stress along a contact line, which is |m|^2, s/(1 - s) of what is
+  /// left. Where surface and wall are parallel there is no line.
   TREACLE_HD SurfaceSlope<D> slope(int material, const SurfaceSums<D>& s) const {
     Vec<D> g = s.fluid + s.wall;
     const double size2 = norm2(s.wall);
     if (size2 > 0) g += (g - s.wall * (dot(g, s.wall) / size2)) * (s.walls / besideWalls(s));
     const double colour = openColour(s);
     const double m2 = 2 * tension[material] * profile(colour) / (colour * sqrt(norm2(g) + noise2));
-    return {g * sqrt(m2), fmin(1.0, 2 * colour)};
+    SurfaceSlope<D> result;
+    result.m = g * sqrt(m2), result.tie = fmin(1.0, 2 * colour);
+    if constexpr (D == 3) {
+      const Vec<D> line = cross(s.wall, result.m);  // |H| |m| times the sine of the angle between surface and wall
+      const double all = size2 * norm2(result.m);
+      result.line = all > 0
+                        ? line * sqrt(norm2(result.m) * s.walls / (besideWalls(s) * (norm2(line) + 0.01 * all)))
+                        : Vec<D>{};
+    }
+    return result;
   }
   /// From 0 at a to 1 at b and beyond.
   TREACLE_HD static double smoothStep(double x, double a, double b) {

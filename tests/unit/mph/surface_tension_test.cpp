@@ -328,10 +328,9 @@ struct EdgeOnFloor : Surface<D> {
 /// was found to give the angle (surface_terms.cpp).
 template <int D>
 void checkLine() {
-  // K(45) = 1.04 cos 45, in 3D (0.64 + 0.6 cos^8 45) cos 45,
-  // K(135) = (1.1 + 1.1 cos^6 135) cos 135, in 3D (1.31 + 1.3 cos^6 135) cos 135
-  const double wetted = D == 2 ? 0.735 : 0.479, repelled = D == 2 ? -0.875 : -1.041;
-  for (const auto& [angle, along] : {std::pair(45.0, wetted), std::pair(90.0, 0.0), std::pair(135.0, repelled)}) {
+  // K(45) = 1.04 cos 45 and, in 3D, cos 45, K(135) = (1.1 + 1.1 cos^6 135) cos 135
+  for (const auto& [angle, along] :
+       {std::pair(45.0, D == 2 ? 0.735 : 0.707), std::pair(90.0, 0.0), std::pair(135.0, -0.875)}) {
     SCOPED_TRACE(angle);
     const Vec<D> pull = EdgeOnFloor<D>(angle, 0).atLine();
     EXPECT_NEAR(pull[0], along, 0.15);
@@ -342,6 +341,31 @@ void checkLine() {
 TEST(SurfaceTension, IsHeldByWallsAndPulledAlongThem) {
   checkLine<2>();
   checkLine<3>();
+}
+
+/// Next to a line the wall hides half of the stress along it, which l makes up for; far from it there is nothing.
+TEST(SurfaceTension, IsMadeUpForAlongTheLineWhereWallsHideIt) {
+  const EdgeOnFloor<3> s(90, 0);
+  const double l = s.c.spacing;
+  const auto& x = s.pairs().position;
+  std::size_t atLine = 0;
+  for (std::size_t i = 0; i < s.slope.size(); ++i) {
+    const SurfaceSlope<3>& of = s.slope[i];
+    const double m2 = norm2(of.m), line2 = norm2(of.line), walls = s.sums[i].walls;
+    if (walls == 0) {
+      EXPECT_EQ(line2, 0);
+    }
+    if (x[i][0] > 10 * l && x[i][2] < 9 * l) {
+      ++atLine;
+      EXPECT_NEAR(line2, of.line[1] * of.line[1], 1e-12 * m2);
+      EXPECT_NEAR(line2, m2 * walls / (1 - walls), 0.05 * m2);
+      EXPECT_GT(line2, 0.5 * m2);
+    }
+    if (x[i][0] > 4.6 * l && x[i][0] < 6.4 * l) {
+      EXPECT_LE(line2, 1e-12 * s.terms.tension[0] / l);
+    }
+  }
+  EXPECT_GT(atLine, 0u);
 }
 
 template <int D>
