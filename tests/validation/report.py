@@ -1,5 +1,5 @@
-"""Writes what validate.py measured into docs/validation.md and docs/validation-isph.md: a table between the marks of each study, all
-schemes side by side, and its picture. Needs Matplotlib for the pictures alone."""
+"""Writes what validate.py measured into docs/validation*.md: a table between the marks of each study, all schemes side by side, and its
+picture. Needs Matplotlib for the pictures alone."""
 
 import re
 import sys
@@ -9,12 +9,16 @@ from study import order
 from treacle_figure import figure
 
 root = Path(__file__).resolve().parents[2]
-pages = [root / "docs" / "validation.md", root / "docs" / "validation-isph.md"]
+pages = sorted((root / "docs").glob("validation*.md"))
 schemes = ("accurate", "published", "isph")  # in this order
 
 
 def page_of(name):
-    return pages[name.startswith("isph-")]
+    """The page that has marks for a study, or none."""
+    for page in pages:
+        if re.search(f"<!-- {name} -->.*<!-- end of {name} -->", page.read_text(), flags=re.S):
+            return page
+    return None
 
 
 def number(value, digits=3):
@@ -115,26 +119,23 @@ def with_blocks(text, found):
     return text
 
 
-def of_page(page, found):
-    return {name: block for name, block in found.items() if page_of(name) == page}
-
-
 def write(records, studies):
     found, of = blocks(records, studies), merged(records)
-    for name in found:
-        if not re.search(f"<!-- {name} -->.*<!-- end of {name} -->", page_of(name).read_text(), flags=re.S):
-            print(f"report: {page_of(name)} has no marks <!-- {name} --> ... <!-- end of {name} -->", file=sys.stderr)
-            return 2
+    page = {name: page_of(name) for name in found}
+    if missing := [name for name in found if not page[name]]:
+        print(f"report: no page has marks <!-- NAME --> ... <!-- end of NAME --> for {', '.join(missing)}", file=sys.stderr)
+        return 2
     for study in (study for study in studies if study.name in found):
         draw(study, of[study.name], root / "docs" / "images" / f"validation-{study.name}.png")
-    for page in pages:
-        page.write_text(with_blocks(page.read_text(), of_page(page, found)))
+    for each in pages:
+        each.write_text(with_blocks(each.read_text(), {name: block for name, block in found.items() if page[name] == each}))
     return 0
 
 
 def check(records, studies):
     """Whether the pages hold the tables of the records."""
-    stale = [name for name, block in blocks(records, studies).items() if block not in page_of(name).read_text()]
+    texts = [page.read_text() for page in pages]
+    stale = [name for name, block in blocks(records, studies).items() if not any(block in text for text in texts)]
     for name in stale:
-        print(f"report: {page_of(name)}: the table of {name} is not that of the records (validate.py --report)", file=sys.stderr)
+        print(f"report: no page has the table of {name} as it is in the records (validate.py --report)", file=sys.stderr)
     return 1 if stale else 0
