@@ -66,7 +66,7 @@ class Counter {
                                         if (wholeRows)
                                           gradientsOfWalls += nearEntries(pairs, list.first, list.last);
                                       });
-    if (c.needsWallForces() || c.hasSurfaceTension())
+    if (c.needsWallNeighbours())
       countLists(pairs, fluid, ownEnd, {std::max(hn, hv), 0}, counts_.wallForceLists, [](const ClusterList<>&) {});
     counts_.nearEntries = scaled(slicedFluid.near, ofFluid) + scaled(slicedWalls.near, ofWalls);
     counts_.stagedEntries = scaled(slicedFluid.staged, ofFluid) + scaled(slicedWalls.staged, ofWalls);

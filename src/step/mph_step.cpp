@@ -61,7 +61,7 @@ class MphStep final : public StepMethod<D, Backend> {
     neighbourhood_.setTimeStep(state_.timeStep);
     placeWallSurfaces();
     renormalise();
-    if (surface_ || state_.theCase.needsWallForces()) wallForces_.prepare(state_, neighbourhood_);
+    if (state_.theCase.needsWallNeighbours()) wallForces_.prepare(state_, neighbourhood_);
     if (surface_) surface_->prepare(state_, pairs_, wallForces_.walls());
     scaleViscosity();
     computeDensities();

@@ -130,6 +130,8 @@ struct Case {
   bool hasSurfaceTension() const {
     return std::ranges::any_of(materials, [](const Material& m) { return m.surfaceTension > 0; });
   }
+  /// Whether walls look for fluid as far as any pair acts, and not as far as densities alone. Of MPH-I.
+  bool needsWallNeighbours() const { return needsWallForces() || hasSurfaceTension(); }
   /// Steps to the end, where all have one length.
   std::int64_t steps() const { return std::llround(time.end / time.step); }
   /// Whether a run that has made so many steps, and is at time `now` [s], is at its end.
