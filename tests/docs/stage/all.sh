@@ -1,7 +1,7 @@
 # Before the commands of every page; $source is the repository.
 
-# What `treacle run CASE.toml [options]` does, but sixteen steps of it with a frame each, by twice the spacing where the
-# case allows it.
+# What `treacle run CASE.toml [options]` does, but sixteen steps of it, or as long as sixteen of the longest where steps are
+# automatic, with a frame each, by twice the spacing where the case allows it.
 firstSteps() {
   local case=$1 overrides=() others=() coarse=(--set resolution=0.5) step
   shift
@@ -19,7 +19,8 @@ firstSteps() {
   treacle check "$case" "${overrides[@]}" "${coarse[@]}" >/dev/null 2>&1 || coarse=()
   overrides+=("${coarse[@]}")
   step=$(treacle check "$case" "${overrides[@]}" |
-    awk '/^\[/ { section = $1 } section == "[time]" && $1 == "step" { print $3 }')
+    awk '/^\[/ { section = $1 } section == "[time]" { is[$1] = $3 }
+      END { print is["step"] == "\"auto\"" ? is["max_step"] : is["step"] }')
   treacle run "$case" "${others[@]}" "${overrides[@]}" --set output.interval="$step" \
     --end-time "$(awk "BEGIN { print 16 * $step }")"
 }
