@@ -21,6 +21,10 @@ def page_of(name):
     return None
 
 
+def named(rows, key):
+    return ", ".join(sorted({row[key] for row in rows}))
+
+
 def number(value, digits=3):
     return f"{value:.{digits}g}" if abs(value) < 1e4 else f"{value:.0f}"
 
@@ -80,7 +84,7 @@ def table(study, of):
     for scheme, rows in of.items():
         add("" if scheme != next(iter(of)) else "iterations", scheme,
             cells_of(study, [row | {"values": {"iterations": row["iterations"]}} for row in rows], "values", "iterations", labels))
-    notes = [f"{scheme}: {', '.join(sorted({row['device'] for row in rows}))}, commit {rows[0]['commit']}" for scheme, rows in of.items()]
+    notes = [f"{scheme}: {named(rows, 'device')}, commit {named(rows, 'commit')}" for scheme, rows in of.items()]
     text = ""
     if "accurate" in of and study.refined and study.orders:
         least = ", ".join(f"{name} {p:g}" for name, p in study.orders.items())

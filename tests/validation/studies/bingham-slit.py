@@ -18,7 +18,7 @@ study = Study(
     name="bingham-slit",
     title="Poiseuille flow of a Bingham fluid",
     levels=[Level(2, (f"paste.rheology.yield_stress={20 * phi:g}",), f"phi = {phi}") for phi in (0.5, 0.2)]
-    + [Level(r, ("paste.rheology.yield_stress=16",), "phi = 0.8") for r in (2, 4)],
+    + [Level(r, ("paste.rheology.yield_stress=16",), "phi = 0.8") for r in (2, 4, 8)],
     bars={"profile": 0.012, "flow rate": 0.01},
     measure=measurement(profile),
     x_label="y [m]",
