@@ -8,27 +8,27 @@ edge = 0.01  # lower edge of the walls [m]
 
 
 def rise(exact, section, pool):
-    """exact: the rise [m]; section: area of the slit or tube [m2], or its width [m] in two dimensions; pool: that beside the walls;
-    each with which places are there. Levels are those of the mass above the lower edge of the walls, the rise their difference, as
-    a mean of the last half of the run."""
+    """exact: the rise [m]; section: the area of the slit or tube [m2], or its width [m] in two dimensions, and which places above the
+    edge of the walls are in it; pool: likewise beside the walls. Levels are those of the mass above that edge, the rise their
+    difference, as a mean of the last half of the run."""
 
     def measure(run):
         volume = spacing_of(run.frame(0))**run.frame(0).position.shape[1]
-        rise = []
+        heights = []
         for frame in run.frames():
             above = frame.position[frame.position[:, -1] > edge]
             inside, around = (np.sum(holds(above)) / area for area, holds in (section, pool))
-            rise.append((inside - around) * volume)
-        rise, late = np.array(rise), run.times > run.times[-1] / 2
-        mean = rise[late].mean()
+            heights.append((inside - around) * volume)
+        heights, late = np.array(heights), run.times > run.times[-1] / 2
+        mean = heights[late].mean()
         return Outcome({"rise": abs(mean / exact - 1)},
-                       {"rise over exact": mean / exact, "scatter of the rise": rise[late].std() / exact},
-                       {"particles": (run.times, 1e3 * rise)}, {"exact": (run.times, np.full(len(rise), 1e3 * exact))})
+                       {"rise over exact": mean / exact, "scatter of the rise": heights[late].std() / exact},
+                       {"particles": (run.times, 1e3 * heights)}, {"exact": (run.times, np.full(len(heights), 1e3 * exact))})
 
     return measure
 
 
 def slit(depth):
-    """Of 12 mm between plates, in a pool that is 80 mm wide."""
+    """Between plates 12 mm apart and `depth` [m] deep, 1 in two dimensions, in a pool that is 80 mm wide."""
     exact = 2 * 1 * np.cos(np.radians(60)) / (1000 * 10 * 0.012)  # 2 gamma cos(theta) / (rho g w) [m]
     return rise(exact, (0.012 * depth, lambda x: abs(x[:, 0]) < 0.006), (0.052 * depth, lambda x: abs(x[:, 0]) > 0.014))
