@@ -31,11 +31,16 @@ __device__ inline T transposedSum(const T* v) {
 ///   uses(segment)                                      which parts of the lists count
 ///   add(pairs, sums, d, distance, own, other, segment)
 ///   store(pairs, i, n, sum)                            called once per particle and sum
-/// or, with a type StoresVectors, store(pairs, i, sums) once per particle; and, where they want what
-/// LocalPositions has stored of a particle, loadOther(pairs, j, stored).
+/// or, with a type StoresVectors, store(pairs, i, sums) once per particle, `sums` being a vector, or, with
+/// StoresAll, an array; and, where they want what LocalPositions has stored of a particle, loadOther(pairs, j,
+/// stored).
 template <class Terms>
 inline constexpr bool storesVectors = requires {
   typename Terms::StoresVectors;
+};
+template <class Terms>
+inline constexpr bool storesAll = requires {
+  typename Terms::StoresAll;
 };
 
 template <class Terms, int D, class Stored>
@@ -145,6 +150,11 @@ class ClusterSum {
       if constexpr (storesVectors<Terms>) {
         static_assert(rounds == 1);
         Vec<values, T> all;
+        for (int c = 0; c < values; ++c) all[c] = __shfl_sync(~0u, total, lane - n % values + c);
+        if (used && n % values == 0) terms.store(pairs_, first_ + own, all);
+      } else if constexpr (storesAll<Terms>) {
+        static_assert(rounds == 1);
+        T all[values];
         for (int c = 0; c < values; ++c) all[c] = __shfl_sync(~0u, total, lane - n % values + c);
         if (used && n % values == 0) terms.store(pairs_, first_ + own, all);
       } else {

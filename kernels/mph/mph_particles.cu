@@ -21,9 +21,18 @@ void fill(const Context<Cuda>& context, const MphPairs<D>& pairs, std::span<T> t
 
 template <int D>
 void elasticPressure(Context<Cuda>& context, const MphPairs<D>& pairs, std::span<const double> n,
-                     std::span<const Adhesion<D>> adhesion, std::span<double> elastic) {
-  fill(context, pairs, elastic, [n, adhesion] __device__(const MphPairs<D>& pairs, std::uint32_t i) {
-    return elasticPressureOf(pairs, i, n[i], adhesion);
+                     std::span<const Adhesion<D>> adhesion, std::span<double> elastic,
+                     std::span<const double> held) {
+  fill(context, pairs, elastic, [n, adhesion, held] __device__(const MphPairs<D>& pairs, std::uint32_t i) {
+    return elasticPressureOf(pairs, i, n[i], adhesion, held);
+  });
+}
+
+template <int D>
+void holdPressures(Context<Cuda>& context, const MphPairs<D>& pairs, double dt, const VolumeChange<D>& change,
+                   std::span<double> held) {
+  fill(context, pairs, held, [dt, change, held] __device__(const MphPairs<D>& pairs, std::uint32_t i) {
+    return heldPressureOf(pairs, i, dt, change, held[i]);
   });
 }
 
@@ -45,7 +54,9 @@ void bulkPressure(Context<Cuda>& context, const MphPairs<D>& pairs, std::span<co
 
 #define TREACLE_INSTANTIATE(D)                                                                                   \
   template void elasticPressure<D>(Context<Cuda>&, const MphPairs<D>&, std::span<const double>,                  \
-                                   std::span<const Adhesion<D>>, std::span<double>);                             \
+                                   std::span<const Adhesion<D>>, std::span<double>, std::span<const double>);    \
+  template void holdPressures<D>(Context<Cuda>&, const MphPairs<D>&, double, const VolumeChange<D>&,             \
+                                 std::span<double>);                                                             \
   template void inertiaAndGravity<D>(Context<Cuda>&, const MphPairs<D>&, std::span<const Vec<D>>, const Vec<D>&, \
                                      std::span<Vec<D>>);                                                         \
   template void bulkPressure<D>(Context<Cuda>&, const MphPairs<D>&, std::span<const double>,                     \

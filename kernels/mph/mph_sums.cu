@@ -28,6 +28,37 @@ struct NumberDensity {
   }
 };
 
+/// The same with the openness of the particle's place.
+template <int D>
+struct DensityAndOpenness {
+  static constexpr int values = D + 1;
+  static constexpr bool uses(ListSegment) { return true; }
+  using StoresAll = void;
+  using Own = std::uint32_t;
+  using Other = std::uint32_t;
+
+  MphTerms<D> mph;
+  double factor;  // MphPairs::opennessFactor
+  double *n, *open;
+
+  __device__ Own loadOwn(const MphPairs<D>&, std::uint32_t i) const { return i; }
+  __device__ Other loadOther(const MphPairs<D>&, std::uint32_t j) const { return j; }
+
+  __device__ void add(const MphPairs<D>&, double* sum, const Vec<D>& d, const PairDistance<double>& r, Own own,
+                      Other other, ListSegment) const {
+    if (own == other) return;
+    sum[0] += mph.density(1.0, r);
+    const double v = mph.openness(r);
+    for (int k = 0; k < D; ++k) sum[1 + k] = fma(v, d[k], sum[1 + k]);
+  }
+  __device__ void store(const MphPairs<D>&, std::uint32_t i, const double* sum) const {
+    n[i] = mph.densityFactor * sum[0];
+    double square = 0;
+    for (int k = 0; k < D; ++k) square = fma(sum[1 + k], sum[1 + k], square);
+    open[i] = factor * sqrt(square);
+  }
+};
+
 /// What wall particles add to n_i, per fluid particle.
 template <int D, class Mph>
 struct WallDensity {
@@ -126,7 +157,10 @@ struct WallDrag {
 }  // namespace
 
 template <int D>
-void numberDensity(Context<Cuda>& context, const MphPairs<D>& pairs, std::span<double> n) {
+void numberDensity(Context<Cuda>& context, const MphPairs<D>& pairs, std::span<double> n, std::span<double> open) {
+  if (!open.empty())
+    return sumOnAll(context, pairs,
+                    DensityAndOpenness<D>{pairs.terms, pairs.opennessFactor(), n.data(), open.data()});
   if (pairs.terms.densityRadius > pairs.terms.pressureRadius)
     return sumOnAll(context, pairs, NumberDensity<D, MphTerms<D>, true>{pairs.terms, n.data()});
   withKnownWeights<PublishedWeights>(pairs.terms, [&]<class Mph>(const Mph& mph) {
@@ -178,7 +212,7 @@ void addWallDrag(Context<Cuda>& context, const MphPairs<D>& pairs, std::span<con
 }
 
 #define TREACLE_INSTANTIATE(D)                                                                                 \
-  template void numberDensity<D>(Context<Cuda>&, const MphPairs<D>&, std::span<double>);                       \
+  template void numberDensity<D>(Context<Cuda>&, const MphPairs<D>&, std::span<double>, std::span<double>);    \
   template void wallDensity<D>(Context<Cuda>&, const MphPairs<D>&, std::span<double>);                         \
   template void addPressureGradient<D>(Context<Cuda>&, const MphPairs<D>&, std::span<const double>, double,    \
                                        std::span<Vec<D>>);                                                     \

@@ -291,6 +291,9 @@ class Method:
     viscosity_radius: float | None = None
     """[spacings]"""
     viscosity_correction: float | None = None
+    keeps_volume: bool | None = None
+    ambient_pressure: float | None = None
+    """[Pa]"""
     kernel: Literal["cubic-spline", "wendland-c2"] | None = None
     smoothing_ratio: float | None = None
     """[spacings]"""

@@ -26,7 +26,7 @@ namespace treacle {
 namespace {
 
 constexpr std::string_view formatName = "treacle checkpoint";
-constexpr std::int32_t formatVersion = 10;  // 1: without acceleration and jerk; 2: without bodies and modes; 3:
+constexpr std::int32_t formatVersion = 11;  // 1: without acceleration and jerk; 2: without bodies and modes; 3:
                                             // without method and checksums; 4: without kept eigenvalue; 5: without
                                             // memory of the time steps; 6: without shear rates; 7: without
                                             // temperatures; 8: without fluid that comes and goes; 9:

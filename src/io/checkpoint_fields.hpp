@@ -35,14 +35,15 @@ struct FieldInfo {
 /// is added that is not written here.
 template <class P, class F>
 void forEachNamedField(P& particles, std::uint64_t modeValues, F&& f) {
-  auto& [fluidCount, ghostCount, count, position, velocity, pressure, numberDensity, material, body, id,
-         acceleration, jerk, has, shearRate, temperature, viscosityFactor, modes, steps, flow, rigid,
+  auto& [fluidCount, ghostCount, count, position, velocity, pressure, numberDensity, heldPressure, material, body,
+         id, start, acceleration, jerk, has, shearRate, temperature, viscosityFactor, modes, steps, flow, rigid,
          wallSurface] = particles;
   static_cast<void>(steps), static_cast<void>(flow), static_cast<void>(rigid);  // numbers
-  static_cast<void>(wallSurface);
+  static_cast<void>(wallSurface), static_cast<void>(start);                     // there is none between steps
   f(FieldInfo{"position", Of::All, count}, position), f(FieldInfo{"velocity", Of::All, count}, velocity);
   f(FieldInfo{"pressure", Of::All, count}, pressure);
   f(FieldInfo{"number_density", Of::All, count}, numberDensity);
+  f(FieldInfo{"held_pressure", Of::All, count, 11}, heldPressure);
   f(FieldInfo{"material", Of::All, count}, material), f(FieldInfo{"body", Of::All, count, 3, unknownBody}, body);
   f(FieldInfo{"id", Of::All, count}, id);
   f(FieldInfo{"acceleration", Of::Fluid, fluidCount, 2}, acceleration);

@@ -165,6 +165,7 @@ void append(const Case& c, BodyKind kind, const std::vector<Filled<D>>& filled, 
       if (warm) particles.temperature[i] = initial.temperatureAt(f.points, begin + k);
       if (factors) particles.viscosityFactor[i] = initial.viscosityFactorAt(f.points.place[begin + k]);
       particles.pressure[i] = 0;
+      particles.heldPressure[i] = 0;
       particles.numberDensity[i] = 0;
       particles.material[i] = static_cast<std::uint8_t>(f.body->material);
       particles.body[i] = body;

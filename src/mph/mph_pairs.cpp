@@ -20,9 +20,13 @@ MphPairs<D> makeMphPairs(const Case& c) {
                                     return pairs.terms.gradient(ExactDistance(r * r)) * r * r;
                                   });
   pairs.terms.repulsionRadius = c.repulsionRadius();
-  const auto densityWeight = Weight<D>::make(hn, c.spacing, c.method.pressureWeight);
+  pairs.terms.tensionRadius = 1.25 * c.spacing;
+  pairs.terms.inverseTensionRadius = 1 / pairs.terms.tensionRadius;
+  const auto densityWeight = c.holdsPressures() ? DensityWeight<D>::window(hn, c.spacing)
+                                                : DensityWeight<D>::make(hn, c.spacing, c.method.pressureWeight);
   pairs.terms.setDensityWeight(densityWeight);
   pairs.restDensity = latticeNumberDensity(densityWeight, c.spacing);
+  pairs.ambientPressure = c.method.ambientPressure;
   pairs.materials = MaterialTable::make(c);
   pairs.classes = ViscosityClasses::make(c);
   if (c.hasOwnViscosities()) {

@@ -14,8 +14,15 @@ void fill(std::span<T> to, F&& formula) {
 
 template <int D>
 void elasticPressure(Context<Cpu>&, const MphPairs<D>& pairs, std::span<const double> n,
-                     std::span<const Adhesion<D>> adhesion, std::span<double> elastic) {
-  fill(elastic, [&](std::uint32_t i) { return elasticPressureOf(pairs, i, n[i], adhesion); });
+                     std::span<const Adhesion<D>> adhesion, std::span<double> elastic,
+                     std::span<const double> held) {
+  fill(elastic, [&](std::uint32_t i) { return elasticPressureOf(pairs, i, n[i], adhesion, held); });
+}
+
+template <int D>
+void holdPressures(Context<Cpu>&, const MphPairs<D>& pairs, double dt, const VolumeChange<D>& change,
+                   std::span<double> held) {
+  fill(held, [&](std::uint32_t i) { return heldPressureOf(pairs, i, dt, change, held[i]); });
 }
 
 template <int D>
@@ -33,7 +40,9 @@ void bulkPressure(Context<Cpu>&, const MphPairs<D>& pairs, std::span<const doubl
 
 #define TREACLE_INSTANTIATE(D)                                                                                  \
   template void elasticPressure<D>(Context<Cpu>&, const MphPairs<D>&, std::span<const double>,                  \
-                                   std::span<const Adhesion<D>>, std::span<double>);                            \
+                                   std::span<const Adhesion<D>>, std::span<double>, std::span<const double>);   \
+  template void holdPressures<D>(Context<Cpu>&, const MphPairs<D>&, double, const VolumeChange<D>&,             \
+                                 std::span<double>);                                                            \
   template void inertiaAndGravity<D>(Context<Cpu>&, const MphPairs<D>&, std::span<const Vec<D>>, const Vec<D>&, \
                                      std::span<Vec<D>>);                                                        \
   template void bulkPressure<D>(Context<Cpu>&, const MphPairs<D>&, std::span<const double>,                     \

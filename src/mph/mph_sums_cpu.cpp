@@ -67,13 +67,14 @@ void divergenceOf(const MphPairs<D>& pairs, const ClusterListView& list, std::sp
 }  // namespace
 
 template <int D>
-void numberDensity(Context<Cpu>&, const MphPairs<D>& pairs, std::span<double> n) {
+void numberDensity(Context<Cpu>&, const MphPairs<D>& pairs, std::span<double> n, std::span<double> open) {
   const double floor2 = distanceFloor2(pairs);
   std::span<const ListSegment> segments = nearSegments;
   if (pairs.terms.densityRadius > pairs.terms.pressureRadius) segments = allSegments;
   for (const ClusterListView& list : {pairs.fluidList, pairs.wallList})
     forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const ClusterPlaces<D>& x, std::uint32_t c) {
       Lanes sum = {};
+      VecLanes<D> away = {};
       for (ListSegment s : segments)
         for (std::uint32_t j : list.segment(c, s)) {
           const PairLanes<D> pair(pairs, j, x, floor2);
@@ -81,8 +82,15 @@ void numberDensity(Context<Cpu>&, const MphPairs<D>& pairs, std::span<double> n)
           const std::uint32_t self = j - range.first;
           if (self < clusterSize) w[self] = 0;  // a particle is not its own neighbour
           sum += w;
+          if (open.empty()) continue;
+          const Lanes v = pairs.terms.openness(pair.r);
+          for (int k = 0; k < D; ++k) away[k] += v * pair.d[k];
         }
       storeLanes(range, sum, n);
+      if (open.empty()) return;
+      Lanes square = {};
+      for (int k = 0; k < D; ++k) square += away[k] * away[k];
+      storeLanes(range, pairs.opennessFactor() * squareRoot(square), open);
     });
 }
 
@@ -171,7 +179,7 @@ void addWallDrag(Context<Cpu>&, const MphPairs<D>& pairs, std::span<const Vec<D>
 }
 
 #define TREACLE_INSTANTIATE(D)                                                                                \
-  template void numberDensity<D>(Context<Cpu>&, const MphPairs<D>&, std::span<double>);                       \
+  template void numberDensity<D>(Context<Cpu>&, const MphPairs<D>&, std::span<double>, std::span<double>);    \
   template void wallDensity<D>(Context<Cpu>&, const MphPairs<D>&, std::span<double>);                         \
   template void addPressureGradient<D>(Context<Cpu>&, const MphPairs<D>&, std::span<const double>, double,    \
                                        std::span<Vec<D>>);                                                    \

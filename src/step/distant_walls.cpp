@@ -161,7 +161,7 @@ void DistantWalls<D>::copyTo(Particles<D>& particles, std::uint32_t first,
     gather(surface_.span(), which, particles.wallSurface.data() + (first - particles.fluidCount));
   parallelFor(which.size(), parallelGrain, [&](std::size_t k) {
     particles.velocity[first + k] = {};
-    particles.pressure[first + k] = particles.numberDensity[first + k] = 0;
+    particles.pressure[first + k] = particles.numberDensity[first + k] = particles.heldPressure[first + k] = 0;
   });
 }
 

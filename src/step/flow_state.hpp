@@ -21,24 +21,27 @@ namespace treacle {
 template <int D, class Backend>
 struct FlowState {
   Case theCase;
-  std::int64_t step;  // steps done
-  double time;        // [s]
-  double timeStep;    // of the step at hand, or the last one [s]
+  std::int64_t step;    // steps done
+  double time;          // [s]
+  double timeStep;      // of the step at hand, or the last one [s]
+  double velocityStep;  // over which velocities change in it [s]
   bool wallsMove = false;
   std::uint32_t fluidOfAll = 0;  // number of fluid particles, those of all processes
 
   mutable Context<Backend> context;
   std::unique_ptr<DeviceLink> link;  // of the context, where processes share devices
   Particles<D, Backend> particles;
-  RigidMotion rigid;  // as it is tried for the step at hand; empty where the case has no rigid bodies
+  // Where the walls of rigid bodies are in the step at hand, with the velocities that are tried for it; empty
+  // where the case has none.
+  RigidMotion rigid;
   std::vector<std::optional<NozzleLayers<D>>> nozzles;  // per body, of those that are inflows
-  Buffer<WallMotion<D>, Backend> wallMotion;   // per body, of the step; empty: all walls keep their velocities
+  Buffer<WallMotion<D>, Backend> wallMotion;   // per body, where walls are; empty: all keep their velocities
   Buffer<Vec<D>, Backend> velocity, position;  // the step's results before they are accepted
 
   StepPhases<Backend> phases;  // of the step at hand
 
   FlowState(const Case& c, std::int64_t startStep, double startTime)
-      : theCase(c), step(startStep), time(startTime), timeStep(c.time.step) {
+      : theCase(c), step(startStep), time(startTime), timeStep(c.time.step), velocityStep(c.time.step) {
     for (const Body& body : theCase.bodies) {
       nozzles.emplace_back();
       if (body.kind == BodyKind::Inflow) nozzles.back().emplace(theCase, body);
@@ -52,6 +55,11 @@ struct FlowState {
       link = DeviceLink::make(processes, context);
       context.link = link.get();
     }
+  }
+
+  /// Pressures that the first so many particles hold; none where the scheme has none.
+  std::span<const double> heldPressures(std::uint32_t count) const {
+    return theCase.holdsPressures() ? particles.heldPressure.span().first(count) : std::span<const double>{};
   }
 
   /// The step before that at hand; as long as this one where that is not known [s].

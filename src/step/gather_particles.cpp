@@ -10,7 +10,7 @@ namespace {
 /// What its owner alone knows of an active wall particle.
 struct WallState {
   std::uint32_t id;
-  double pressure, numberDensity;
+  double pressure, numberDensity, heldPressure;
 };
 
 template <int D>
@@ -18,7 +18,7 @@ std::vector<WallState> ownWallStates(const HaloCounts& halo, const Particles<D>&
   std::vector<WallState> states(halo.ownWalls);
   for (std::uint32_t k = 0; k < halo.ownWalls; ++k) {
     const std::uint32_t i = halo.fluid + k;
-    states[k] = {p.id[i], p.pressure[i], p.numberDensity[i]};
+    states[k] = {p.id[i], p.pressure[i], p.numberDensity[i], p.heldPressure[i]};
   }
   return states;
 }
@@ -42,11 +42,13 @@ void putWalls(const Particles<D>& own, const std::vector<WallState>& states, Par
       own, whole);
   std::fill(whole.pressure.begin() + whole.fluidCount, whole.pressure.end(), 0.0);
   std::fill(whole.numberDensity.begin() + whole.fluidCount, whole.numberDensity.end(), 0.0);
+  std::fill(whole.heldPressure.begin() + whole.fluidCount, whole.heldPressure.end(), 0.0);
   const auto ids = whole.id.span().subspan(whole.fluidCount, order.size());
   for (const WallState& s : states) {
     const std::size_t i = whole.fluidCount + (std::ranges::lower_bound(ids, s.id) - ids.begin());
     whole.pressure[i] = s.pressure;
     whole.numberDensity[i] = s.numberDensity;
+    whole.heldPressure[i] = s.heldPressure;
   }
 }
 

@@ -28,10 +28,9 @@ void addFluid(const Context<Cuda>& context, std::span<const Vec<D>> position, Ne
 }
 
 /// Makes the walls of the state those that are near something that moves in any process, and all others distant
-/// ones, where these may be others than before. `cells`: those of the search. Collective. Errors: std::bad_alloc.
+/// ones. `cells`: those of the search. Collective. Errors: std::bad_alloc.
 template <int D, class Backend>
 void holdNearWalls(FlowState<D, Backend>& state, const CellGrid<D>& cells, DistantWalls<D>& distant) {
-  if (!distant.isDue()) return;
   Particles<D, Backend>& particles = state.particles;
   Particles<D> walls;
   copyWallsToHost(state.context, particles, walls);

@@ -66,6 +66,7 @@ std::uint64_t fieldBytes(const ParticleNumbers& n) {
   const Particles<D> none;
   forEachSharedFieldOf(add(n.fluid + n.ghosts + n.wall), none);
   forEachFluidFieldOf(add(n.fluid), none);
+  add(n.has.starts ? n.fluid + n.ghosts + n.wall : 0)(none.start);
   add(n.has.shearRates ? n.fluid : 0)(none.shearRate);
   add(n.has.temperatures ? n.fluid : 0)(none.temperature);
   add(n.has.viscosityFactors ? n.fluid : 0)(none.viscosityFactor);
@@ -113,11 +114,11 @@ void planState(const Case& c, const MemoryCounts& n, BackendKind backend, Memory
   numbers.wall = wall;
   if (numbers.surfaces > 0) numbers.surfaces = wall;
   numbers.modes = std::max(numbers.modes, modesOf(c));
-  numbers.has = {c.hasOwnViscosities(), c.heat.has_value(), c.hasViscosityFactors()};
+  numbers.has = {c.hasOwnViscosities(), c.heat.has_value(), c.hasViscosityFactors(), c.middleShare() > 0};
   sum.keep<std::byte>(fieldBytes<D>(numbers));
   sum.keep<Vec<D>>(n.wallsMove ? all : fluid);                             // positions of the end
   sum.keep<Vec<D>>(c.method.kind == MethodKind::MphI ? n.active : fluid);  // velocities
-  if (someWallRotates(c)) sum.keep<Vec<D>>(wall);
+  if (someWallRotates(c) || someWallIsDriven(c) || c.hasInflow() || c.hasRigid()) sum.keep<Vec<D>>(wall);  // ways
   sum.keep<std::uint32_t>(4 * n.cells);  // ranges
   sum.keep<std::uint8_t>(n.cells);
   sum.keep<std::uint64_t>(fluid);

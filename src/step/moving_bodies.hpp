@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace treacle {
@@ -31,20 +32,49 @@ WallMotion<D> rigidMotion(const RigidBody& before, const RigidBody& body, double
   return m;
 }
 
-/// Per body of the case, for state.timeStep from state.time on: nozzles with the speeds that they have, rigid
-/// bodies with those that they are tried with.
+/// Of body b of the case, which is not rigid, over dt from time t on: nozzles with the speeds that they have.
+template <int D, class Backend>
+WallMotion<D> drivenMotion(const FlowState<D, Backend>& state, std::size_t b, double t, double dt) {
+  const Case& c = state.theCase;
+  const auto& nozzle = state.nozzles[b];
+  return nozzle ? nozzle->motion(c.domain, t, dt) : wallMotion<D>(c.domain, c.bodies[b], t, dt);
+}
+
+/// What walls go by from the start of the step at hand to dt later, per body of the case; rigid bodies with these
+/// velocities.
+template <int D, class Backend>
+std::vector<WallMotion<D>> waysOfBodies(const FlowState<D, Backend>& state, const std::vector<RigidBody>& rigid,
+                                        double dt) {
+  std::vector<WallMotion<D>> motion;
+  for (std::size_t b = 0; b < state.theCase.bodies.size(); ++b)
+    motion.push_back(state.theCase.bodies[b].kind == BodyKind::Rigid ? rigidMotion<D>(rigid[b], dt)
+                                                                     : drivenMotion<D>(state, b, state.time, dt));
+  return motion;
+}
+
+/// What the fluid meets in the step at hand where walls are then: driven ones with the mean velocities of the
+/// step, rigid ones with those that they are tried with.
 template <int D, class Backend>
 std::vector<WallMotion<D>> bodyMotions(const FlowState<D, Backend>& state) {
   std::vector<WallMotion<D>> motion;
-  const Case& c = state.theCase;
-  for (std::size_t b = 0; b < c.bodies.size(); ++b) {
-    if (c.bodies[b].kind == BodyKind::Rigid) {
-      motion.push_back(rigidMotion<D>(state.particles.rigid.bodies[b], state.rigid.bodies[b], state.timeStep));
+  const double dt = state.timeStep, early = state.theCase.middleShare() * dt;
+  for (std::size_t b = 0; b < state.theCase.bodies.size(); ++b) {
+    if (state.theCase.bodies[b].kind == BodyKind::Rigid) {
+      motion.push_back(rigidMotion<D>(state.particles.rigid.bodies[b], state.rigid.bodies[b], state.velocityStep));
       continue;
     }
-    const auto& nozzle = state.nozzles[b];
-    motion.push_back(nozzle ? nozzle->motion(c.domain, state.time, state.timeStep)
-                            : wallMotion<D>(c.domain, c.bodies[b], state.time, state.timeStep));
+    WallMotion<D> m = drivenMotion<D>(state, b, state.time + early, dt - early);
+    if (early > 0) {
+      const WallMotion<D> whole = drivenMotion<D>(state, b, state.time, dt);
+      m.velocity = whole.velocity;
+      if (const auto& nozzle = state.nozzles[b]) {  // in the direction that it has now, not at the end
+        const double t = state.time;
+        m.velocity += nozzle->speed(t, dt) * (nozzle->direction(t + early) - nozzle->direction(t + dt));
+      }
+      m.spin = whole.spin;
+      m.along = 1, m.inwards = 0;
+    }
+    motion.push_back(m);
   }
   return motion;
 }
@@ -67,8 +97,8 @@ class MovingBodies {
  public:
   explicit MovingBodies(FlowState<D, Backend>& state)
       : state_(state),
-        rotate_(someWallRotates(state.theCase) || state.theCase.hasRigid()),
-        velocitiesChange_(rotate_ || someWallIsDriven(state.theCase) || state.theCase.hasInflow()) {}
+        velocitiesChange_(someWallRotates(state.theCase) || state.theCase.hasRigid() ||
+                          someWallIsDriven(state.theCase) || state.theCase.hasInflow()) {}
 
   /// What the state does not know of its rigid bodies, and how far bodies reach. `particles`: the state's, as each
   /// process comes with them. Collective.
@@ -87,8 +117,8 @@ class MovingBodies {
       reach = joinedOverProcesses(state_.context, reach, [](double a, double b) { return std::max(a, b); });
   }
 
-  /// Motions and velocities for state.timeStep from state.time on. In cases with rigid bodies the method sets them
-  /// once it knows what velocities to try (RigidSystem).
+  /// Motions and velocities for the step at hand where walls are in it. In cases with rigid bodies the method sets
+  /// them once it knows what velocities to try (RigidSystem).
   void prepare() {
     if (velocitiesChange_ && !state_.theCase.hasRigid()) setWallMotions(state_);
   }
@@ -111,29 +141,33 @@ class MovingBodies {
   /// The rigid bodies have gone on with the velocities of the step.
   void accept() {
     if (!state_.theCase.hasRigid()) return;
-    for (RigidBody& body : state_.rigid.bodies)
-      if (body.mass > 0) body.advance(state_.timeStep);
+    std::vector<RigidBody> bodies = state_.particles.rigid.bodies;
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+      if (bodies[b].mass == 0) continue;
+      bodies[b].velocity = state_.rigid.bodies[b].velocity;
+      bodies[b].spin = state_.rigid.bodies[b].spin;
+      bodies[b].advance(state_.timeStep);
+    }
+    state_.rigid.bodies = std::move(bodies);
     state_.particles.rigid = state_.rigid;
   }
 
-  /// By what dt is multiplied to give the ways of the wall particles in the step [m/s].
-  std::span<const Vec<D>> transportVelocities() {
-    if (!rotate_) return velocities();
-    chord_.resize(state_.context, state_.particles.wallCount());
-    setWallChords<D>(state_.context, walls(), chord_);
+  /// By what dt is multiplied to give the ways of the wall particles from the start of the step at hand to dt [s]
+  /// later [m/s]. `from`: where they are at its start. `rigid`: rigid bodies with the velocities that they go by.
+  std::span<const Vec<D>> ways(std::span<const Vec<D>> from, double dt, const std::vector<RigidBody>& rigid) {
+    const Particles<D, Backend>& p = state_.particles;
+    const std::uint32_t n = p.wallBegin();
+    if (!velocitiesChange_) return p.velocity.span().subspan(n);
+    const std::vector<WallMotion<D>> motion = waysOfBodies(state_, rigid, dt);
+    fromHost(state_.context, std::span<const WallMotion<D>>(motion), way_);
+    chord_.resize(state_.context, p.wallCount());
+    setWallChords<D>(state_.context, {way_, p.body.span().subspan(n), from}, chord_);
     return chord_.span();
   }
 
-  std::size_t bytes() const { return chord_.bytes(); }
+  std::size_t bytes() const { return way_.bytes() + chord_.bytes(); }
 
  private:
-  MovingWalls<D> walls() const {
-    const Particles<D, Backend>& p = state_.particles;
-    const std::uint32_t n = p.wallBegin();
-    return {state_.wallMotion, p.body.span().subspan(n), p.position.span().subspan(n)};
-  }
-  std::span<Vec<D>> velocities() { return state_.particles.velocity.span().subspan(state_.particles.wallBegin()); }
-
   Vec<3> centerOf(std::size_t b) const {
     const Body& body = state_.theCase.bodies[b];
     return body.kind == BodyKind::Rigid ? state_.rigid.bodies[b].center : wallCenter(body, state_.time);
@@ -141,8 +175,9 @@ class MovingBodies {
 
   FlowState<D, Backend>& state_;
   std::vector<double> reach_;  // per body: from its centre to its farthest wall particle [m]
-  bool rotate_, velocitiesChange_;
-  Buffer<Vec<D>, Backend> chord_;  // per wall particle, where some rotate [m/s]
+  bool velocitiesChange_;
+  Buffer<WallMotion<D>, Backend> way_;  // waysOfBodies()
+  Buffer<Vec<D>, Backend> chord_;       // per wall particle, where velocities change [m/s]
 };
 
 }  // namespace treacle

@@ -68,7 +68,7 @@ void planFields(const Case& c, const MemoryCounts& n, bool withGradient, MemoryS
   if (n.wallForceLists.clusters > 0) planLists(n.wallForceLists, sum);
   sum.keep<Block<D>>(fluid);
   if (withGradient) sum.keep<Vec<D>>(fluid);
-  sum.keep<double>(fluid + 2 * n.active);
+  sum.keep<double>(fluid + (c.holdsPressures() ? 3 : 2) * n.active);
   sum.keep<Vec<D>>(fluid);
   if (c.heat) planHeat<D>(c, n, sum);
   if (c.hasRigid()) {  // pressures, the right-hand side at rest and velocities found

@@ -32,6 +32,7 @@ class MphStep final : public StepMethod<D, Backend> {
       : state_(state),
         neighbourhood_(state.theCase),
         pairs_(neighbourhood_.pairs()),
+        holds_(state.theCase.holdsPressures()),
         wholeRows_(needsAssembled<Backend>(state.theCase.solver)),
         solver_(solveStages(solvedCase(state.theCase))) {
     if (state.theCase.hasOwnViscosities()) rheology_.emplace(state.theCase);
@@ -47,7 +48,10 @@ class MphStep final : public StepMethod<D, Backend> {
     const std::uint32_t active = pairs_.activeCount;
     clearValues(state_.context, state_.particles.numberDensity.span().subspan(active));
     clearValues(state_.context, state_.particles.pressure.span().subspan(active));
-    numberDensity<D>(state_.context, pairs_, state_.particles.numberDensity.span().first(active));
+    clearValues(state_.context, state_.particles.heldPressure.span().subspan(active));
+    elastic_.resize(state_.context, active);
+    if (holds_) open_.resize(state_.context, active);
+    numberDensity<D>(state_.context, pairs_, state_.particles.numberDensity.span().first(active), open_.span());
     fillGhosts(state_.context, Held::Active, state_.particles.numberDensity.data());
   }
 
@@ -58,7 +62,7 @@ class MphStep final : public StepMethod<D, Backend> {
   }
 
   void prepareSystem() override {
-    neighbourhood_.setTimeStep(state_.timeStep);
+    neighbourhood_.setTimeStep(state_.velocityStep);
     placeWallSurfaces();
     renormalise();
     if (state_.theCase.needsWallNeighbours()) wallForces_.prepare(state_, neighbourhood_);
@@ -135,9 +139,10 @@ class MphStep final : public StepMethod<D, Backend> {
     if (state_.theCase.needsBalance())
       lastBalance_ = balance_.make(state_, pairs_, divergence_, elastic_, surface_ ? &*surface_ : nullptr);
     if (heat_) acceptHeat();
+    if (holds_) hold();
     // The velocities of the start are given, no solution: nothing follows from the way to the first one.
     if (state_.step > 0)
-      updateFlowMemory<D>(state_.context, state_.timeStep, state_.lastStep(),
+      updateFlowMemory<D>(state_.context, state_.velocityStep, state_.lastStep(),
                           state_.particles.velocity.span().first(n), state_.velocity.span().first(n), memory());
   }
 
@@ -146,6 +151,7 @@ class MphStep final : public StepMethod<D, Backend> {
     in.numberDensity = state_.particles.numberDensity.span().first(n);
     in.restDensity = in.neighbourDensity = pairs_.restDensity;
     if (wallDensity_.size() == n) in.wallDensity = wallDensity_;
+    if (open_.size() >= n) in.open = open_.span().first(n);
   }
 
   std::optional<Balance> balance() const override { return lastBalance_; }
@@ -160,9 +166,9 @@ class MphStep final : public StepMethod<D, Backend> {
     return neighbourhood_.bytes() + wallSurface_.bytes() + renormalisation_.bytes() + viscosityScale_.bytes() +
            (rheology_ ? rheology_->bytes() : 0) + (heat_ ? heat_->bytes() : 0) +
            (surface_ ? surface_->bytes() : 0) + wallBlock_.bytes() + wallGradient_.bytes() + wallDensity_.bytes() +
-           elastic_.bytes() + divergence_.bytes() + rhs_.bytes() + found_.bytes() + solver_.bytes() +
-           balance_.bytes() + wallForces_.bytes() + (bodies_ ? bodies_->bytes() : 0) + rhsAtRest_.bytes() +
-           pressure_.bytes();
+           open_.bytes() + elastic_.bytes() + divergence_.bytes() + rhs_.bytes() + found_.bytes() +
+           solver_.bytes() + balance_.bytes() + wallForces_.bytes() + (bodies_ ? bodies_->bytes() : 0) +
+           rhsAtRest_.bytes() + pressure_.bytes();
   }
 
  private:
@@ -254,9 +260,10 @@ class MphStep final : public StepMethod<D, Backend> {
 
   FlowMemory<D> memory() { return {state_.particles.acceleration.span(), state_.particles.jerk.span()}; }
   void guess(std::span<Vec<D>> u) {
-    extrapolate<D>(state_.context,
-                   Extrapolation<D>::make(state_.theCase.solver.firstGuess, state_.timeStep, state_.lastStep()),
-                   state_.particles.velocity.span().first(u.size()), memory(), u);
+    extrapolate<D>(
+        state_.context,
+        Extrapolation<D>::make(state_.theCase.solver.firstGuess, state_.velocityStep, state_.lastStep()),
+        state_.particles.velocity.span().first(u.size()), memory(), u);
   }
   /// Into state.velocity, with the velocities of the walls.
   void guessAll() {
@@ -298,15 +305,17 @@ class MphStep final : public StepMethod<D, Backend> {
 
   /// b of [K23 eq. (16)], and the terms of the repulsion and of prescribed wall velocities.
   void computeRightHandSide() {
-    elastic_.resize(state_.context, pairs_.activeCount);
+    const std::span<const double> held = state_.heldPressures(pairs_.activeCount);
+    if (holds_) fillGhosts(state_.context, Held::Active, state_.particles.heldPressure.data());
     elasticPressure<D>(state_.context, pairs_, state_.particles.numberDensity.span().first(pairs_.activeCount),
-                       surface_ ? surface_->adhesion() : std::span<const Adhesion<D>>{}, elastic_);
+                       surface_ ? surface_->adhesion() : std::span<const Adhesion<D>>{}, elastic_, held);
     rhs_.resize(state_.context, state_.particles.fluidCount);
     inertiaAndGravity<D>(state_.context, pairs_,
                          state_.particles.velocity.span().first(state_.particles.fluidCount),
                          resized<D>(state_.theCase.gravity), rhs_);
     addPressureGradient<D>(state_.context, pairs_, elastic_, -1.0, rhs_);
-    if (pairs_.terms.repulsionRadius > 0) addRepulsion<D>(state_.context, pairs_, 1 / state_.timeStep, rhs_);
+    if (pairs_.terms.repulsionRadius > 0)
+      addRepulsion<D>(state_.context, pairs_, {1 / state_.timeStep, held}, rhs_);
     if (surface_) surface_->addForces(state_, rhs_);
     if (bodies_) {
       rhsAtRest_.resize(state_.context, rhs_.size());
@@ -330,6 +339,15 @@ class MphStep final : public StepMethod<D, Backend> {
     addPressureGradient<D>(state_.context, pairs_, divergence_, -1.0, rhs_);
   }
 
+  /// The pressures that own particles hold after the step.
+  void hold() {
+    const std::uint32_t active = pairs_.activeCount;
+    holdPressures<D>(state_.context, pairs_, state_.timeStep,
+                     {state_.particles.numberDensity.span().first(active), open_,
+                      surface_ ? surface_->adhesion() : std::span<const Adhesion<D>>{}, divergence_},
+                     state_.particles.heldPressure.span().first(active));
+  }
+
   std::string notFiniteOnHost() {
     Particles<D> host;
     copyToHost(state_.context, state_.particles, host);
@@ -341,6 +359,7 @@ class MphStep final : public StepMethod<D, Backend> {
   FlowState<D, Backend>& state_;
   MphNeighbourhood<D, Backend> neighbourhood_;
   const MphPairs<D>& pairs_;
+  bool holds_;                                   // whether particles hold pressures
   bool wholeRows_;                               // of A in the lists
   Buffer<WallSurface<D>, Backend> wallSurface_;  // per active wall particle
   Buffer<SymmetricBlock<D>, Backend> renormalisation_;
@@ -348,6 +367,7 @@ class MphStep final : public StepMethod<D, Backend> {
   Buffer<Block<D>, Backend> wallBlock_;
   Buffer<Vec<D>, Backend> wallGradient_;
   Buffer<double, Backend> wallDensity_;  // the walls' part of n per fluid particle
+  Buffer<double, Backend> open_;         // how open places of particles are, where they hold pressures [-]
   Buffer<double, Backend> elastic_;      // elasticPressure() per particle [Pa]
   Buffer<double, Backend> divergence_;   // C^T u per particle [1/s]
   Buffer<Vec<D>, Backend> rhs_;

@@ -40,6 +40,8 @@ class RigidSystem {
   /// do their walls.
   void start() {
     state_.rigid = state_.particles.rigid;
+    for (RigidBody& b : state_.rigid.bodies)
+      if (b.mass > 0) b.advance(early());
     std::vector<double> x = values(state_.rigid.bodies);
     if (state_.rigid.change.size() == x.size())
       for (std::size_t k = 0; k < x.size(); ++k) x[k] += state_.rigid.change[k];
@@ -108,11 +110,27 @@ class RigidSystem {
     const std::vector<WallMotion<D>> motion = bodyMotions(state_);
     std::vector<Restraint> all;
     for (const Contact<D>& contact : contacts) {
-      const double apart = (contact.gap > 0 ? -contact.gap : std::min(-0.2 * contact.gap, most)) / dt;
+      const double gap = contact.gap - early() * opening(contact, motion[contact.other]);
+      const double apart = (gap > 0 ? -gap : std::min(-0.2 * gap, most)) / dt;
       all.push_back(along(contact, contact.place, contact.normal, motion[contact.other], apart));
       addFriction(contact, motion[contact.other], all.back());
     }
     return all;
+  }
+
+  /// By how much of a step the bodies have gone on to where their walls are [s].
+  double early() const { return state_.theCase.middleShare() * state_.timeStep; }
+
+  /// How fast the gap of a contact has opened since the start of the step [m/s].
+  double opening(const Contact<D>& contact, const WallMotion<D>& other) const {
+    const auto speed = [&](const Vec<3>& velocity) { return dot(resized<3>(contact.normal), velocity); };
+    const auto before = [&](std::size_t b) {
+      const RigidBody& body = state_.particles.rigid.bodies[b];
+      return speed(body.velocity + cross(body.spin, resized<3>(contact.place) - state_.rigid.bodies[b].center));
+    };
+    return before(contact.body) - (state_.theCase.bodies[contact.other].kind == BodyKind::Rigid
+                                       ? before(contact.other)
+                                       : speed(resized<3>(other.chordAt(contact.place))));
   }
 
   /// Surfaces that are pressed together do not slide on each other, as far as friction holds them. Of all contacts
@@ -158,30 +176,31 @@ class RigidSystem {
   /// The part of a body: its velocity at a place along a direction, less what is locked, and what a force there
   /// along it makes of the residual.
   void add(std::size_t body, const Vec<3>& place, const Vec<3>& direction, Restraint& r) const {
-    const RigidBody& b = state_.particles.rigid.bodies[body];
+    const RigidBody& b = state_.rigid.bodies[body];
+    const RigidBody& before = state_.particles.rigid.bodies[body];
     const Vec<3> arm = place - b.center, turn = cross(arm, direction);
-    r.least -= dot(direction, b.velocity + cross(b.spin, arm));
+    r.least -= dot(direction, before.velocity + cross(before.spin, arm));
     for (std::size_t k = 0; k < unknowns_.size(); ++k) {
       if (unknowns_[k].body != body) continue;
       const int component = unknowns_[k].component;
       r.row[k] = component < 3 ? direction[component] : turn[component - 3] / b.gyration();
       r.push[k] = r.row[k] / b.mass;
-      r.least += component < 3 ? direction[component] * b.velocity[component]
-                               : turn[component - 3] * b.spin[component - 3];
+      r.least += component < 3 ? direction[component] * before.velocity[component]
+                               : turn[component - 3] * before.spin[component - 3];
     }
   }
 
   /// Speeds that count in a step [m/s].
   double scaleOf(const std::vector<double>& x) const {
     double scale =
-        norm(state_.theCase.gravity) * state_.timeStep + 1e-6 * state_.theCase.spacing / state_.timeStep;
+        norm(state_.theCase.gravity) * state_.velocityStep + 1e-6 * state_.theCase.spacing / state_.timeStep;
     for (const double v : x) scale = std::max(scale, std::abs(v));
     return scale;
   }
 
   /// What is missing for the velocities, over the masses [m/s].
   std::vector<double> residual(const std::vector<LoadSums>& loads) const {
-    const double dt = state_.timeStep;
+    const double dt = state_.velocityStep;
     std::vector<double> r;
     for (const Unknown& u : unknowns_) {
       const RigidBody &b = state_.rigid.bodies[u.body], &before = state_.particles.rigid.bodies[u.body];
@@ -191,10 +210,10 @@ class RigidSystem {
         r.push_back(b.velocity[u.component] - before.velocity[u.component] - dt * force / b.mass);
         continue;
       }
-      // The inertia is that of the start of the step, about axes that rest.
+      // The inertia is that of where the body is, about axes that rest.
       const Vec<3> torque =
-          load.torque - cross(before.center, load.force) - cross(before.spin, before.inertiaTimes(before.spin));
-      const Vec<3> change = before.inertiaTimes(b.spin - before.spin) - dt * torque;
+          load.torque - cross(b.center, load.force) - cross(before.spin, b.inertiaTimes(before.spin));
+      const Vec<3> change = b.inertiaTimes(b.spin - before.spin) - dt * torque;
       r.push_back(change[u.component - 3] / (b.mass * b.gyration()));
     }
     return r;

@@ -20,6 +20,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -42,8 +43,8 @@ void withTeam(F&& body) {
 template <int D, class Backend>
 struct Simulation<D, Backend>::State : FlowState<D, Backend> {
   using Flow = FlowState<D, Backend>;
-  using Flow::theCase, Flow::context, Flow::particles, Flow::step, Flow::time, Flow::timeStep, Flow::velocity,
-      Flow::position, Flow::wallsMove, Flow::phases;
+  using Flow::theCase, Flow::context, Flow::particles, Flow::step, Flow::time, Flow::timeStep, Flow::velocityStep,
+      Flow::velocity, Flow::position, Flow::wallsMove, Flow::phases;
 
   MovingBodies<D, Backend> bodies;
   OpenBoundaries<D, Backend> boundaries;
@@ -74,13 +75,19 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     distant.emplace(theCase, method->grid(), state, time, context.communicator);
     setExtras(theCase, state);
     toBackend(context, std::move(state), particles);
-    if (step == 0) forEachFlowMemoryOf([&](auto& field) { clearValues(context, field.span()); }, particles);
-    method->sortParticles();
+    if (step == 0) forgetFlow();
+    // A state that goes on is in the order that its last step has left it in, which the next one's sort follows.
+    if (step == 0 || context.communicator || theCase.middleShare() == 0) method->sortParticles();
     if (step == 0) {  // else the state has the densities of its last step
       method->findNeighbours();
       method->computeDensities();
     }
     startWatch();
+  }
+
+  void forgetFlow() {
+    forEachFlowMemoryOf([&](auto& field) { clearValues(context, field.span()); }, particles);
+    clearValues(context, particles.heldPressure.span());
   }
 
   /// From the state as it is.
@@ -107,7 +114,7 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     fluid.copyTo(context, particles);
     particles.modes.pressure = {};  // the solver's, of viscosities, too
     if (fluid.position.size() == 0 && fluid.velocity.size() == 0) return;
-    forEachFlowMemoryOf([&](auto& field) { clearValues(context, field.span()); }, particles);
+    forgetFlow();
     particles.steps = {};
     if (fluid.position.size() > 0) {
       particles.modes.drop();
@@ -126,39 +133,71 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     const StepControl::Step next =
         control ? control->next(particles.steps, time, lastSpeed) : givenStep(theCase, step, time, lastSpeed);
     timeStep = next.length, endOfStep = next.end;
+    // Velocities belong to the middles of steps where forces do.
+    velocityStep = theCase.middleShare() > 0 ? 0.5 * (this->lastStep() + timeStep) : timeStep;
   }
 
-  /// x^{k+1} of [K23 eq. (15)] into `position`; walls by their prescribed motion.
-  void move() {
+  /// Places that particles have at the start of the step at hand.
+  std::span<const Vec<D>> starts() const { return particles.has.starts ? particles.start : particles.position; }
+
+  /// Where forces belong to the middle of the step at hand, all particles go there: the fluid with the velocities
+  /// that it has, walls by their own motion. Errors: RunError; the state is then as before.
+  void goToMiddle() {
+    const double share = theCase.middleShare();
+    if (share == 0) return;
+    move(share * timeStep, particles.velocity, this->particles.rigid.bodies);
+    particles.start.resize(context, particles.count);
+    copyValues(context, std::span<const Vec<D>>(particles.position), particles.start.data());
+    particles.has.starts = true;
+    takeMoved();
+  }
+
+  /// Back to where all were at the start of the step.
+  void goBack() {
+    if (!std::exchange(particles.has.starts, false)) return;
+    copyValues(context, std::span<const Vec<D>>(particles.start), particles.position.data());
+    particles.start.resize(context, 0);
+  }
+
+  /// x^{k+1} = x^k + dt u^{k+1} of [K23 eq. (15)] into `position`; walls by their prescribed motion. `u`: of the
+  /// fluid; `bodiesGo`: rigid bodies with their velocities.
+  void move(double dt, std::span<const Vec<D>> u, const std::vector<RigidBody>& bodiesGo) {
+    const std::uint32_t n = particles.wallBegin();
     position.resize(context, wallsMove ? particles.count : particles.fluidCount);
     agreed(context, [&] {
-      moveRange(0, particles.fluidCount, method->transportVelocities());
-      if (wallsMove) moveRange(particles.wallBegin(), particles.count, bodies.transportVelocities());
+      moveRange(0, particles.fluidCount, dt, u);
+      if (wallsMove) moveRange(n, particles.count, dt, bodies.ways(starts().subspan(n), dt, bodiesGo));
     });
   }
 
   /// `u`: of the particles from `begin` on.
-  void moveRange(std::uint32_t begin, std::uint32_t end, std::span<const Vec<D>> u) {
-    const std::span<const Vec<D>> x = particles.position;
+  void moveRange(std::uint32_t begin, std::uint32_t end, double dt, std::span<const Vec<D>> u) {
     const std::uint32_t size = end - begin;
-    const std::uint32_t out = moveParticles<D>(context, method->grid(), timeStep, x.subspan(begin, size),
+    const std::uint32_t out = moveParticles<D>(context, method->grid(), dt, starts().subspan(begin, size),
                                                u.first(size), position.span().subspan(begin, size));
     if (out == noParticle) return;
     Particles<D> host;
     copyToHost(context, particles, host);
+    if (host.has.starts) std::swap(host.position, host.start);
     Vec<D> uOut{};
     copyToHost(context, u.subspan(out, 1), &uOut);
     watch->requireSlow(timeStep, norm(uOut));  // then it is not the domain that is too small
     throw RunError(describeLeaving<D>(host, begin + out, uOut, timeStep));
   }
 
-  void accept() {
+  /// Particles are where they were moved to.
+  void takeMoved() {
     const std::uint32_t walls = particles.wallBegin();
     const std::span<const Vec<D>> moved = position;
-    method->accept();
-    copyValues(context, std::span<const Vec<D>>(velocity).first(particles.fluidCount), particles.velocity.data());
     copyValues(context, moved.first(particles.fluidCount), particles.position.data());
     if (wallsMove) copyValues(context, moved.subspan(walls), particles.position.data() + walls);
+  }
+
+  void accept() {
+    method->accept();
+    copyValues(context, std::span<const Vec<D>>(velocity).first(particles.fluidCount), particles.velocity.data());
+    takeMoved();
+    if (std::exchange(particles.has.starts, false)) particles.start.resize(context, 0);
     distant->addStep(timeStep, std::max(method->longestWay(lastSpeed), timeStep * bodies.freeSpeed()));
     bodies.accept();
     ++step;
@@ -196,8 +235,12 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     while (!(trySolve(solved) && isExact(report))) {
       ++report.rejected;
       particles.modes.pressure = {};  // of steps of that length
+      goBack();
       chooseTimeStep();
-      bodies.prepare();
+      if (theCase.middleShare() > 0)
+        arrange();
+      else
+        bodies.prepare();
     }
     return solved;
   }
@@ -216,8 +259,9 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
   bool isExact(StepReport& report) {
     phases.run(context, treacle::phases::update, [&] {
       const std::uint32_t n = particles.fluidCount;
-      const auto change = stepChange<D>(context, {particles.velocity.span().first(n), velocity.span().first(n)});
-      report.error = control->error(change, timeStep, particles.steps);
+      StepChangeTerms<D> terms{particles.velocity.span().first(n), velocity.span().first(n)};
+      if (theCase.middleShare() > 0) terms.acceleration = particles.acceleration, terms.step = velocityStep;
+      report.error = control->error(stepChange<D>(context, terms), timeStep, particles.steps);
     });
     if (!control->accept(timeStep, report.error, particles.steps)) return false;
     const double most = theCase.time.tolerance;
@@ -229,20 +273,45 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     return true;
   }
 
-  StepReport advance() {
-    StepReport report;
-    chooseTimeStep();
-    bodies.prepare();
-    phases.start(context);
+  /// Particles to where their forces are in the step at hand, and in order there.
+  void arrange() {
     phases.run(context, treacle::phases::search, [&] {
-      holdNearWalls(*this, method->grid(), *distant);
+      goToMiddle();
+      bodies.prepare();
       method->sortParticles();
     });
     phases.run(context, treacle::phases::lists, [&] { method->findNeighbours(); });
+  }
+
+  void begin() {
+    chooseTimeStep();
+    phases.start(context);
+    phases.run(context, treacle::phases::search, [&] {
+      const double early = theCase.middleShare() * timeStep;
+      if (distant->isDue(early, early * std::max(lastSpeed, bodies.freeSpeed())))
+        holdNearWalls(*this, method->grid(), *distant);
+    });
+    arrange();
+  }
+
+  StepReport advance() {
+    try {
+      return advanceOrFail();
+    } catch (const DeviceFailure&) {
+      throw;  // nothing on it is trusted
+    } catch (...) {
+      goBack();
+      throw;
+    }
+  }
+
+  StepReport advanceOrFail() {
+    StepReport report;
+    begin();
     StagedReport solved = control ? solveExactly(report) : solve();
     phases.run(context, treacle::phases::update, [&] {
       method->correctVelocities();
-      move();
+      move(timeStep, method->transportVelocities(), this->rigid.bodies);
       report.diagnostics = diagnosticsOf(position, velocity);
       report.watched = watch->look(timeStep, report.diagnostics, report.warnings);
       lastSpeed = report.diagnostics.maxSpeed;
@@ -254,6 +323,7 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     report.step = step;
     report.time = time;
     report.timeStep = timeStep;
+    report.velocityStep = velocityStep;
     report.iterations = solved.iterations;
     report.residual = solved.residual;
     report.fallbacks = solved.fallbacks;
@@ -275,16 +345,12 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
   }
 
   std::vector<SolverTrial> convergence(std::span<const SolverSettings> solvers) {
-    chooseTimeStep();
-    bodies.prepare();
-    phases.start(context);
-    holdNearWalls(*this, method->grid(), *distant);
-    method->sortParticles();
-    method->findNeighbours();
+    begin();
     method->predict();
     method->prepareSystem();
     std::vector<SolverTrial> trials;
     for (const SolverSettings& solver : solvers) trials.push_back(method->solveBy(solver));
+    goBack();
     return trials;
   }
 
@@ -292,6 +358,7 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     std::size_t sum = velocity.bytes() + position.bytes() + this->wallMotion.bytes() + bodies.bytes() +
                       boundaries.bytes() + method->bytes();
     particles.forEachField([&](const auto& field) { sum += field.bytes(); });
+    if (!particles.has.starts) sum += particles.start.bytes();
     return std::is_same_v<Backend, Cpu> ? sum + distant->bytes() : sum;
   }
 };

@@ -61,7 +61,9 @@ Watched Watch::look(double dt, const Diagnostics& d, std::vector<std::string>& w
   w.energy = wallsMove_ ? 0 : energyRise(dt, d);
   w.courant = d.maxSpeed * dt / case_.spacing;
   w.insideWalls = particles_ > 0 ? d.insideWalls / particles_ : 0;
-  w.density = std::max(d.excessDensity, d.meanDensityError);
+  // Of MPH-I a few particles inside tell nothing: thin sheets and threads have hardly any.
+  const bool tells = case_.method.kind == MethodKind::Isph || d.interiorParticles > 0.25 * particles_;
+  w.density = std::max(d.excessDensity, tells ? d.meanDensityError : 0.0);
   for (std::size_t k = 0; k < bounds().size(); ++k) {
     const Bound& bound = bounds()[k];
     const double value = w.*bound.value, most = case_.watch.*bound.most;

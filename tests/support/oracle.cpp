@@ -43,6 +43,14 @@ double Oracle<D>::dw(double r, double h) const {
   return r > h ? 0 : slopeScale * std::pow(l / h, D) / (D == 2 ? f.integral2D : f.integral3D) * f.slope(r / h) / h;
 }
 
+/// The window has a test of its own.
+template <int D>
+double Oracle<D>::densityWeight(double r) const {
+  if (!s.c.holdsPressures()) return w(r, hn);
+  const double q = r / hn;
+  return q > 1 ? 0 : std::pow(l / hn, D) / DensityWindow::integral<D>() * DensityWindow::at(1 - q * q);
+}
+
 /// With the weight of [K23] what its eq. (4) makes of it. For c = A f(r/h) / r^2 a full neighbourhood has the
 /// viscosity 1 where the integral of c r^4 is 2 D (D + 2) l^D; `moment` is the integral of f(q) q^(D+1) from 0
 /// to 1.
@@ -135,7 +143,7 @@ template <int D>
 double Oracle<D>::numberDensity(std::uint32_t i) const {
   double n = 0;
   for (std::uint32_t j = 0; j < count(); ++j)
-    if (j != i) n += w(norm(difference(i, j)), hn);
+    if (j != i) n += densityWeight(norm(difference(i, j)));
   return n;
 }
 
@@ -244,11 +252,11 @@ Matrix Oracle<D>::viscosityMatrix() const {
 template <int D>
 double Oracle<D>::restDensity() const {
   const int reach = static_cast<int>(std::ceil(hn / l)), side = 2 * reach + 1;
-  double n = -w(0, hn);
+  double n = -densityWeight(0);
   for (int place = 0; place < std::pow(side, D); ++place) {
     double square = 0;
     for (int k = 0, rest = place; k < D; ++k, rest /= side) square += std::pow(rest % side - reach, 2);
-    n += w(l * std::sqrt(square), hn);
+    n += densityWeight(l * std::sqrt(square));
   }
   return n;
 }

@@ -23,7 +23,7 @@ struct Oracle {
       : s(scene),
         l(s.c.spacing),
         hp(s.c.method.pressureRadius * l),
-        hn(std::max(s.c.method.densityRadius * l, hp)),
+        hn(s.c.densityRadius()),
         hv(s.c.method.viscosityRadius * l),
         dt(s.c.time.step) {
     if (s.c.method.pressureGradient == PressureGradient::Renormalised) slopeScale = 1 / latticeMoment();
@@ -35,6 +35,8 @@ struct Oracle {
   /// w and dw/dr of the case's weight, as of eq. (3), with l^d.
   double w(double r, double h) const;
   double dw(double r, double h) const;
+  /// That of densities with the radius h_n.
+  double densityWeight(double r) const;
   /// c of a viscous pair block mu c d d^T.
   double viscousBlock(double r) const;
   /// Force on i from j where both are too close [N/m3].

@@ -50,6 +50,8 @@ struct MethodSettings {
   double viscosityRadius = 3.5;  // h_v / l
   // Which share of the viscosity that its missing neighbours would give it a particle gets from those it has.
   double viscosityCorrection = 0.5;
+  bool keepsVolume = false;         // whether forces belong to the middle of a step and fluid bears tension
+  double ambientPressure = 101325;  // around the fluid; it parts where its own is less than minus that [Pa]
   IsphSettings isph;
 
   bool operator==(const MethodSettings&) const = default;

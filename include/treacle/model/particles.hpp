@@ -13,11 +13,12 @@
 
 namespace treacle {
 
-/// Which fields the fluid has that not every case needs.
+/// Which fields there are that not every case needs, or not at every time.
 struct FluidExtras {
   bool shearRates = false;        // where viscosities are particles' own (Case::hasOwnViscosities)
   bool temperatures = false;      // with heat
   bool viscosityFactors = false;  // where some body gives one
+  bool starts = false;            // within a step whose forces are those of its middle; walls have it, too
 
   bool operator==(const FluidExtras&) const = default;
 };
@@ -41,8 +42,9 @@ void forEachFluidFieldOf(F&& f, Sets&... sets) {
 /// The fields that fluid and walls have.
 template <class F, class... Sets>
 void forEachSharedFieldOf(F&& f, Sets&... sets) {
-  f(sets.position...), f(sets.velocity...), f(sets.pressure...), f(sets.numberDensity...), f(sets.material...),
-      f(sets.body...), f(sets.id...);
+  f(sets.position...), f(sets.velocity...), f(sets.pressure...), f(sets.numberDensity...), f(sets.heldPressure...),
+      f(sets.material...), f(sets.body...), f(sets.id...);
+  if ((sets.has.starts && ...)) f(sets.start...);
 }
 
 /// The fields that walls alone have; empty where nothing is known.
@@ -88,9 +90,12 @@ struct Particles {
   Buffer<Vec<D>, Backend> velocity;        // u [m/s]
   Buffer<double, Backend> pressure;        // Psi [Pa]
   Buffer<double, Backend> numberDensity;   // n [-]
+  Buffer<double, Backend> heldPressure;    // part of the elastic pressure that follows the divergence [Pa]
   Buffer<std::uint8_t, Backend> material;  // index into Case::materials
   Buffer<std::uint8_t, Backend> body;      // index into Case::bodies
   Buffer<std::uint32_t, Backend> id;
+
+  Buffer<Vec<D>, Backend> start;  // x at the start of the step at hand [m]; empty unless it has it
 
   // The memory of the flow: what the first guess of a solve is extrapolated from. Walls have none, and it is not
   // part of the state that frames show. Undefined before the first step.
@@ -155,6 +160,7 @@ struct Particles {
       return [&, size](auto& field) { field.resize(context, size); };
     };
     has = numbers.has;
+    start.resize(context, 0);
     for (auto* field : {&shearRate, &temperature, &viscosityFactor}) field->resize(context, 0);
     forEachSharedFieldOf(resizeTo(count), *this);
     forEachFluidFieldOf(resizeTo(fluid), *this);

@@ -21,10 +21,11 @@ struct ViscousSide {
 /// What every pair sum of a step reads.
 template <int D>
 struct MphPairs : MaterialParticles<D> {
-  ClusterListView fluidList;  // near h_p, far h_v, h_n or, to assemble A, 2 h_p, whichever is most
-  ClusterListView wallList;   // near h_p, far h_n if that is more
-  MphTerms<D> terms{};        // lengths in metres
-  double restDensity = 0;     // n_0 [-]
+  ClusterListView fluidList;   // near h_p, far h_v, h_n or, to assemble A, 2 h_p, whichever is most
+  ClusterListView wallList;    // near h_p, far h_n if that is more
+  MphTerms<D> terms{};         // lengths in metres
+  double restDensity = 0;      // n_0 [-]
+  double ambientPressure = 0;  // elastic pressures are never below minus this [Pa]
   const WallSurface<D>* wallSurface =
       nullptr;  // of the first wall particle; null: the fluid meets walls as they are
   const SymmetricBlock<D>* renormalisation = nullptr;  // B per fluid particle (renormalisation.hpp); null: I
@@ -34,6 +35,9 @@ struct MphPairs : MaterialParticles<D> {
   bool ownViscosities = false;
   ViscosityClasses classes;
   const std::uint8_t* viscosityClass = nullptr;  // per particle; null: the materials
+
+  /// By what sums of MphTerms::openness are multiplied.
+  TREACLE_HD double opennessFactor() const { return terms.densityFactor / (restDensity * this->spacing); }
 
   /// x_j - x_i at the nearest images [m].
   TREACLE_HD Vec<D> difference(std::uint32_t i, std::uint32_t j) const {

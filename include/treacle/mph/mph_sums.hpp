@@ -11,11 +11,12 @@ namespace treacle {
 /// fluidCount elements; results are overwritten unless the name says add, and set for own particles alone. What is
 /// read of neighbours must be there for ghosts, too (fillGhosts).
 
-/// n_i = sum_j w_ij^p, per particle [K23 eq. (7)].
+/// n_i = sum_j w_ij^p, per particle [K23 eq. (7)]. `open`, unless empty: how open its place is, |sum_j v_ij d_ij|
+/// / (n_0 l) with v = [1-q^2]_+^3 (cover.hpp).
 template <int D>
-void numberDensity(Context<Cpu>&, const MphPairs<D>&, std::span<double> n);
+void numberDensity(Context<Cpu>&, const MphPairs<D>&, std::span<double> n, std::span<double> open = {});
 template <int D>
-void numberDensity(Context<Cuda>&, const MphPairs<D>&, std::span<double> n);
+void numberDensity(Context<Cuda>&, const MphPairs<D>&, std::span<double> n, std::span<double> open = {});
 
 /// The part of n_i that wall particles make up, per fluid particle.
 template <int D>

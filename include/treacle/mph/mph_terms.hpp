@@ -71,7 +71,9 @@ struct MphTerms {
   T densityRadius;                            // h_n
   T densityFactor, gradientFactor, viscousFactor;
   Weights weights;
-  T repulsionRadius = 0;  // r_0; 0: no repulsion
+  T repulsionRadius = 0;                          // r_0; 0: no repulsion
+  T tensionRadius = 0, inverseTensionRadius = 0;  // r_t, 1/r_t
+  bool window = false;                            // whether densities have DensityWindow for their weight
 
   /// For the radius h_v and the spacing l [m]; lengths in metres. Densities have the radius of pressures.
   static MphTerms make(const Weight<D>& pressure, ViscosityWeight viscosity, double viscosityRadius,
@@ -99,29 +101,41 @@ struct MphTerms {
             static_cast<U>(gradientFactor),
             static_cast<U>(viscousFactor / unit),
             weights,
-            static_cast<U>(repulsionRadius / unit)};
+            static_cast<U>(repulsionRadius / unit),
+            static_cast<U>(tensionRadius / unit),
+            static_cast<U>(inverseTensionRadius * unit),
+            window};
   }
   /// The same with their weights known.
   template <class Known>
   MphTerms<D, T, Known> with(Known known) const {
     return {pressureRadius, inversePressureRadius, viscosityRadius, inverseViscosityRadius,
             densityRadius,  densityFactor,         gradientFactor,  viscousFactor,
-            known,          repulsionRadius};
+            known,          repulsionRadius,       tensionRadius,   inverseTensionRadius,
+            window};
   }
-  /// Another weight of densities, of the same kind as that of pressures; lengths in metres.
-  void setDensityWeight(const Weight<D>& density) {
+  /// Another weight of densities; lengths in metres.
+  void setDensityWeight(const DensityWeight<D>& density) {
     densityRadius = static_cast<T>(density.radius);
     densityFactor = static_cast<T>(density.scale);
+    window = density.isWindow;
   }
 
   /// w
   template <class Factor, class Distance>
   TREACLE_HD auto density(Factor factor, const Distance& r) const {
+    if (window) return factor * DensityWindow::at(positivePart(T(1) - r.square / (densityRadius * densityRadius)));
     const auto part = positivePart(T(1) - T(1) / (r.inverse * densityRadius));
     if (weights.pressure == PressureWeight::Mps) return factor * part * part;
     const auto q = T(1) - part, square = part * part;
     if (weights.pressure == PressureWeight::WendlandC2) return factor * square * square * (T(1) + T(4) * q);
     return factor * square * square * square * (T(3) + q * (T(18) + T(35) * q));
+  }
+  /// What is to be multiplied by d, and by densityFactor, to give the openness of a place: [1-q^2]_+^3 / l.
+  template <class Distance>
+  TREACLE_HD auto openness(const Distance& r) const {
+    const auto part = positivePart(T(1) - r.square * (T(1) / (densityRadius * densityRadius)));
+    return part * part * part;
   }
   /// -w' / r: factor times (1/r - 1/h_p), (1-q)^3/h_p or (1-q)^5 (1+5q)/h_p
   template <class Distance>
@@ -161,6 +175,14 @@ struct MphTerms {
   template <class Distance>
   TREACLE_HD auto repulsionShape(const Distance& r) const {
     return resistanceShape(r) * positivePart(repulsionRadius * r.inverse - T(1));
+  }
+  /// What keeps neighbours under tension apart, whose pull on each other is the less the nearer they are: times
+  /// gradientFactor and their tensions -e times a force per volume that grows as they come near. With h_p = 2.5 l
+  /// and r_t = 1.25 l the pull of a pair is then the less the nearer it is, and turns into a push at 0.1 l.
+  template <class Distance>
+  TREACLE_HD auto tensionShape(const Distance& r) const {
+    const auto part = positivePart(T(1) - r.square * r.inverse * inverseTensionRadius);
+    return T(1.1) * inversePressureRadius * part * part;
   }
 
  private:

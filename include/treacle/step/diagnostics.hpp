@@ -2,6 +2,7 @@
 
 #include "treacle/core/cuda.hpp"
 #include "treacle/core/macros.hpp"
+#include "treacle/mph/cover.hpp"
 #include "treacle/mph/mph_pairs.hpp"
 #include "treacle/step/simulation.hpp"
 
@@ -26,7 +27,8 @@ struct DiagnosticsInput {
   std::span<const std::uint8_t> surface{};  // 1: at the free surface
   // Of MPH-I, else empty.
   std::span<const double> numberDensity{};
-  double restDensity = 0;  // n_0 [-]
+  double restDensity = 0;          // n_0 [-]
+  std::span<const double> open{};  // of numberDensity(), empty where it is not known
   // What walls make up of the density, empty where it is not known, and what the neighbours in a full lattice do.
   std::span<const double> wallDensity{};
   double neighbourDensity = 0;
@@ -63,6 +65,11 @@ struct DiagnosticsTerm {
         d.elasticEnergy = 0.5 * volume * in.materials.bulkModulus[in.material[i]] * excess * excess;
       }
     }
+    if (!in.open.empty())
+      if (const double ratio = in.numberDensity[i] / in.restDensity; Cover::isInside(in.open[i], ratio)) {
+        d.interiorParticles = 1;
+        d.insideVolume = Cover::of(in.open[i], ratio).rest / ratio;
+      }
     if (in.density.empty()) return d;
     d.excessDensity = in.density[i] > 1 ? in.density[i] - 1 : 0;
     d.meanDensityRatio = in.density[i];
@@ -91,7 +98,8 @@ TREACLE_HD inline Diagnostics joined(const Diagnostics& a, const Diagnostics& b)
           a.excessDensity + b.excessDensity,
           a.elasticEnergy + b.elasticEnergy,
           a.insideWalls + b.insideWalls,
-          a.gravityPower + b.gravityPower};
+          a.gravityPower + b.gravityPower,
+          a.insideVolume + b.insideVolume};
 }
 
 /// Sums into means; `count` of particles.
@@ -101,6 +109,10 @@ inline Diagnostics averaged(Diagnostics d, std::size_t count) {
     d.excessDensity /= static_cast<double>(count);
   }
   if (d.interiorParticles > 0) d.meanDensityError /= d.interiorParticles;
+  if (d.insideVolume > 0) {
+    d.meanDensityRatio = d.interiorParticles / d.insideVolume;
+    d.meanDensityError = std::abs(d.insideVolume / d.interiorParticles - 1);
+  }
   return d;
 }
 

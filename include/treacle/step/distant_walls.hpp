@@ -6,6 +6,7 @@
 #include "treacle/model/particles.hpp"
 #include "treacle/step/near_blocks.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -35,8 +36,11 @@ class DistantWalls {
 
   /// A step of dt [s] was made, in which no fluid went farther than `fluidWay` [m].
   void addStep(double dt, double fluidWay);
-  /// Whether something may have come near.
-  bool isDue() const { return storedSome_ && way_ > near_.margin(); }
+  /// Whether something may have come near, or does so within another dt [s] in which no fluid goes farther than
+  /// `fluidWay` [m].
+  bool isDue(double dt, double fluidWay) const {
+    return storedSome_ && way_ + std::max(fluidWay, dt * wallSpeed_) > near_.margin();
+  }
 
   /// Whether other walls than before are to be held where these blocks are near.
   bool differs(const NearBlocks<D>& near) const;

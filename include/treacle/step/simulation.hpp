@@ -27,15 +27,19 @@ struct Diagnostics {
   double frontX = 0;           // largest x [m]
   double top = 0;              // largest coordinate against gravity [m]
   double maxSpeed = 0;         // [m/s]
-  // Of ISPH; zero for MPH-I.
-  double meanDensityRatio = 0;   // mean of <rho> / rho
-  double meanDensityError = 0;   // mean of |<rho> / rho - 1| over the particles that are not at the free surface
-  double interiorParticles = 0;  // number of these
+  // Of MPH-I by the accurate scheme: the density of the fluid inside, over that of its material, of particles
+  // whose places are not open (Cover); how much more or less volume than its own it has; their number. Zero where
+  // there are none, and with the published scheme. Of ISPH: the mean of <rho> / rho; that of |<rho> / rho - 1|
+  // over the particles that are not at the free surface; the number of these.
+  double meanDensityRatio = 0;
+  double meanDensityError = 0;
+  double interiorParticles = 0;
   // For the watch (step/watch.hpp).
   double excessDensity = 0;  // mean of [<rho> / rho - 1]_+, for MPH-I of [n / n_0 - 1]_+
   double elasticEnergy = 0;  // sum of l^d kappa [n - n_0]_+^2 / 2 of MPH-I [J; per metre of depth in 2D]
   double insideWalls = 0;    // particles whose neighbourhood is filled by walls alone
   double gravityPower = 0;   // sum of m g.u [W; per metre of depth in 2D]
+  double insideVolume = 0;   // of MPH-I: sum over the particles inside of their volumes, over l^d
 };
 
 /// Wall-clock seconds of one step, or summed over steps.
@@ -66,13 +70,15 @@ struct StepReport {
   std::int64_t step = 0;  // number of steps done
   double time = 0;        // [s], after the step
   double timeStep = 0;    // [s]
-  double error = 0;       // by which automatic steps are chosen (StepControl)
-  int rejected = 0;       // longer steps that were tried before, with larger errors or without a solution
-  int iterations = 0;     // of all linear solves, those of ISPH's implicit viscosity and of rejected steps
-                          // included, and of all ways to try them
-  double residual = 0;    // |r|^2 / |b|^2 at the end of the last solve
-  int fallbacks = 0;      // ways that failed (solveStages)
-  std::string failures;   // which, and why
+  double velocityStep =
+      0;                 // over which velocities have changed: times the powers of the balance it is energies [s]
+  double error = 0;      // by which automatic steps are chosen (StepControl)
+  int rejected = 0;      // longer steps that were tried before, with larger errors or without a solution
+  int iterations = 0;    // of all linear solves, those of ISPH's implicit viscosity and of rejected steps
+                         // included, and of all ways to try them
+  double residual = 0;   // |r|^2 / |b|^2 at the end of the last solve
+  int fallbacks = 0;     // ways that failed (solveStages)
+  std::string failures;  // which, and why
   Diagnostics diagnostics;
   Watched watched;
   std::vector<std::string> warnings;  // of the watch

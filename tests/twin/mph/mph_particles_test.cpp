@@ -68,11 +68,36 @@ void checkPressures(Twins<D>& t) {
   elasticPressure<D>(t.context, t.devicePairs, t.device.numberDensity, {}, deviceElastic);
   t.expectEqual(elastic, deviceElastic);
   std::vector<Adhesion<D>> adhesion(p.count);  // at rest above or below their density; borne in part
-  for (std::size_t i = 0; i < p.count; ++i) adhesion[i] = {0.2 + 0.01 * (i % 89), 0.1 * (i % 11), {}};
-  elasticPressure<D>(t.r.context, t.hostPairs, p.numberDensity, adhesion, elastic);
+  std::vector<double> open(p.count), divergence(p.count), held(p.count);
+  for (std::size_t i = 0; i < p.count; ++i) {
+    adhesion[i] = {0.2 + 0.01 * (i % 89), 0.1 * (i % 11), {}};
+    open[i] = 0.004 * (i % 101), divergence[i] = 0.1 * (i % 7) - 0.3, held[i] = 100.0 * (i % 13) - 600;
+  }
   const auto deviceAdhesion = copyToDevice<Adhesion<D>>(t.context, adhesion);
+  const auto deviceOpen = copyToDevice<double>(t.context, open),
+             deviceDivergence = copyToDevice<double>(t.context, divergence);
+  elasticPressure<D>(t.r.context, t.hostPairs, p.numberDensity, adhesion, elastic);
   elasticPressure<D>(t.context, t.devicePairs, t.device.numberDensity, deviceAdhesion, deviceElastic);
   t.expectEqual(elastic, deviceElastic);
+  t.hostPairs.ambientPressure = t.devicePairs.ambientPressure = 400;  // some would have less
+  for (const bool adheres : {false, true}) {
+    Buffer<double> host(p.count);
+    std::copy(held.begin(), held.end(), host.begin());
+    auto device = copyToDevice<double>(t.context, held);
+    holdPressures<D>(
+        t.r.context, t.hostPairs, 1e-3,
+        {p.numberDensity, open, adheres ? std::span<const Adhesion<D>>(adhesion) : std::span<const Adhesion<D>>{},
+         divergence},
+        host);
+    holdPressures<D>(t.context, t.devicePairs, 1e-3,
+                     {t.device.numberDensity, deviceOpen,
+                      adheres ? deviceAdhesion.span() : std::span<const Adhesion<D>>{}, deviceDivergence},
+                     device);
+    t.expectEqual(host, device);
+    elasticPressure<D>(t.r.context, t.hostPairs, p.numberDensity, {}, elastic, host);
+    elasticPressure<D>(t.context, t.devicePairs, t.device.numberDensity, {}, deviceElastic, device);
+    t.expectEqual(elastic, deviceElastic);
+  }
   bulkPressure<D>(t.r.context, t.hostPairs, p.pressure, elastic, pressure);
   bulkPressure<D>(t.context, t.devicePairs, t.device.pressure, deviceElastic, devicePressure);
   t.expectEqual(pressure, devicePressure);

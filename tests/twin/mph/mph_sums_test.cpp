@@ -90,6 +90,13 @@ struct SumsTwin {
     numberDensity<D>(d.context, d.pairs, found);
     EXPECT_LE(difference<double>(d.context, expected.span(), found), kernelTolerance);
 
+    Buffer<double> open(active);
+    Buffer<double, Cuda> openFound(d.context, active);
+    numberDensity<D>(s.context, s.pairs(), expected, open);
+    numberDensity<D>(d.context, d.pairs, found, openFound);
+    EXPECT_LE(difference<double>(d.context, expected.span(), found), kernelTolerance);
+    EXPECT_LE(difference<double>(d.context, open.span(), openFound), operatorTolerance);
+
     Buffer<double> wallsExpected(n);
     Buffer<double, Cuda> wallsFound(d.context, n);
     wallDensity<D>(s.context, s.pairs(), wallsExpected);
@@ -202,16 +209,23 @@ void checkRepulsion(bool lists) {
   auto forceFound = copyToDevice<Vec<D>>(d.context, force), wallsFound = copyToDevice<Vec<D>>(d.context, onWalls);
   Buffer<double, Cuda> powerFound(d.context, n);
   const auto u = randomVectors<D>(active, 8);
+  std::vector<double> held(active);  // some of them tensions, and some of these more than count
+  for (std::size_t i = 0; i < active; ++i) held[i] = 20.0 * (i % 53) - 800;
+  const auto deviceHeld = copyToDevice<double>(d.context, held);
 
-  addRepulsion<D>(s.context, s.pairs(), 1e3, force);
-  addRepulsion<D>(d.context, d.pairs, 1e3, forceFound.span());
-  EXPECT_LE(difference<Vec<D>>(d.context, force, forceFound), operatorTolerance);
-  addRepulsionOnWalls<D>(s.context, s.pairs(), 1e3, onWalls);
-  addRepulsionOnWalls<D>(d.context, d.pairs, 1e3, wallsFound.span());
-  EXPECT_LE(difference<Vec<D>>(d.context, onWalls, wallsFound), operatorTolerance);
-  repulsionPower<D>(s.context, s.pairs(), 1e3, u, power);
-  repulsionPower<D>(d.context, d.pairs, 1e3, copyToDevice<Vec<D>>(d.context, u), powerFound);
-  EXPECT_LE(difference<double>(d.context, power.span(), powerFound), operatorTolerance);
+  for (const bool tension : {false, true}) {
+    const PairsApart host{1e3, tension ? std::span<const double>(held) : std::span<const double>{}},
+        device{1e3, tension ? deviceHeld.span() : std::span<const double>{}};
+    addRepulsion<D>(s.context, s.pairs(), host, force);
+    addRepulsion<D>(d.context, d.pairs, device, forceFound.span());
+    EXPECT_LE(difference<Vec<D>>(d.context, force, forceFound), operatorTolerance);
+    addRepulsionOnWalls<D>(s.context, s.pairs(), host, onWalls);
+    addRepulsionOnWalls<D>(d.context, d.pairs, device, wallsFound.span());
+    EXPECT_LE(difference<Vec<D>>(d.context, onWalls, wallsFound), operatorTolerance);
+    repulsionPower<D>(s.context, s.pairs(), host, u, power);
+    repulsionPower<D>(d.context, d.pairs, device, copyToDevice<Vec<D>>(d.context, u), powerFound);
+    EXPECT_LE(difference<double>(d.context, power.span(), powerFound), operatorTolerance);
+  }
 }
 
 TEST(PairSumsTwin, RepulsionEqualsTheCpu) {

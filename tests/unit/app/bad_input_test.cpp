@@ -174,7 +174,7 @@ constexpr BadCase badCases[] = {
     {"keyOfIsph", "[output]", "[method]\nviscosity = \"explicit\"\n[output]",
      "bad.toml:40:1: unknown key 'viscosity' in [method]: it belongs to the method 'isph'; expected 'name', "
      "'scheme', 'pressure_weight', 'viscosity_weight', 'wall_velocity', 'pressure_gradient', 'pressure_radius', "
-     "'density_radius', 'viscosity_radius' or 'viscosity_correction'"},
+     "'density_radius', 'viscosity_radius', 'viscosity_correction', 'keeps_volume' or 'ambient_pressure'"},
     {"keyOfMph", bulk, "[method]\nname = \"isph\"\npressure_radius = 2\n",
      "bad.toml:18:1: unknown key 'pressure_radius' in [method] (isph): it belongs to the method 'mph-i'; expected "
      "'name', 'kernel', 'smoothing_ratio', 'alpha', 'walls', 'viscosity', 'shifting' or 'negative_pressure'"},

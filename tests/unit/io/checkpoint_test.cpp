@@ -268,9 +268,9 @@ TEST(Checkpoint, OtherVersionsAndDimensionsAreRefused) {
   const auto path = directory / "c.h5";
   writeCheckpoint<3>(path, randomParticles<3>(5, 5), 1, 1, MethodKind::MphI);
   EXPECT_THAT(refusal<2>(path), HasSubstr("3 dimensions, expected 2"));
-  for (const int version : {0, 11}) {
+  for (const int version : {0, 12}) {
     changeAttribute(path, "version", version);
-    EXPECT_THAT(refusal<3>(path), HasSubstr(fmt::format("version {}, expected 1 to 10", version)));
+    EXPECT_THAT(refusal<3>(path), HasSubstr(fmt::format("version {}, expected 1 to 11", version)));
   }
 }
 

@@ -80,7 +80,7 @@ void checkWallDensity(SchemeKind scheme) {
   for (std::uint32_t i = 0; i < s.n(); ++i) {
     double expected = 0;
     for (std::uint32_t j = s.n(); j < oracle.count(); ++j)
-      expected += oracle.w(norm(oracle.difference(i, j)), oracle.hn);
+      expected += oracle.densityWeight(norm(oracle.difference(i, j)));
     ASSERT_NEAR(n[i], expected, kernelTolerance) << "particle " << i;
     touching += expected > 0;
   }
