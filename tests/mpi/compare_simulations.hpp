@@ -53,8 +53,8 @@ inline void expectSame(const Case& c, const StepReport& a, const StepReport& b, 
     EXPECT_EQ(a.diagnostics.frontX, b.diagnostics.frontX);
     return;
   }
-  // One iteration, or two of the hundred that tolerances of 1e-22 take.
-  EXPECT_NEAR(a.iterations, b.iterations, std::max(1.0, 0.02 * b.iterations)) << "step " << b.step;
+  // Two iterations, as on processors with AVX-512, or two of the hundred that tolerances of 1e-22 take.
+  EXPECT_NEAR(a.iterations, b.iterations, std::max(2.0, 0.02 * b.iterations)) << "step " << b.step;
   const Diagnostics &p = a.diagnostics, &q = b.diagnostics;
   double extent = 0;
   for (int k = 0; k < c.dimensions; ++k) extent = std::max(extent, c.domain.max[k] - c.domain.min[k]);
