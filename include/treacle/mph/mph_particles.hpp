@@ -58,8 +58,8 @@ template <int D>
 void bulkPressure(Context<Cuda>&, const MphPairs<D>&, std::span<const double> div, std::span<const double> elastic,
                   std::span<double> pressure);
 
-/// What of the elastic pressure follows the number density at once, where particles hold the rest: enough to keep
-/// particles evenly spread. It is cut at zero, so that of the noise of the density its mean has a part.
+/// The share of the elastic pressure that follows the number density at once, where particles hold the rest. It
+/// keeps particles evenly spread. It is cut at zero, so that noise of the density adds to its mean.
 inline constexpr double promptShare = 0.5;
 
 /// The formulas, for particle i.
