@@ -79,8 +79,7 @@ void visit(auto& v, Like<MethodSettings> auto& m, const Case& c) {
     m.viscosityCorrection);
   v({"keeps_volume",
      "Whether forces are those of the middle of a step and the fluid bears tension, so that fluid that turns, "
-     "folds or "
-     "goes on for long keeps its volume"},
+     "folds or goes on for long keeps its volume"},
     m.keepsVolume);
   v({"ambient_pressure",
      "With keeps_volume: the fluid bears pressures down to minus this one where it has no free surface, and parts "

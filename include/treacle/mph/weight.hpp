@@ -55,11 +55,10 @@ inline double slopeReach(PressureWeight kind) {
   return kind == PressureWeight::Mps ? 1 : kind == PressureWeight::WendlandC2 ? 0.92 : 0.85;
 }
 
-/// Weight of densities of fluid that keeps its volume: as much of a window as can be had that keeps
-/// of a wave of particles next to nothing, so that sums over it know how much fluid there is and not how its
-/// particles stand (docs/accurate.md). It is that of Kaiser and Bessel [R. M. Lewitt, J. Opt. Soc. Am. A 7, 1990]
-/// of order 2 with the taper 10, s I_2(10 sqrt(s)) / I_2(10), s = 1 - q^2, by a polynomial that is off by less
-/// than 0.0005.
+/// Weight of densities of fluid that keeps its volume: a window, whose transform is next to nothing for waves as
+/// short as the spacing. Sums over it know how much fluid there is and not how its particles stand
+/// (docs/accurate.md). It is that of Kaiser and Bessel [R. M. Lewitt, J. Opt. Soc. Am. A 7, 1990] of order 2 with
+/// the taper 10, s I_2(10 sqrt(s)) / I_2(10), s = 1 - q^2, by a polynomial that is off by less than 0.0005.
 struct DensityWindow {
   /// `s` not below zero.
   template <class Real>

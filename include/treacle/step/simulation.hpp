@@ -27,10 +27,10 @@ struct Diagnostics {
   double frontX = 0;           // largest x [m]
   double top = 0;              // largest coordinate against gravity [m]
   double maxSpeed = 0;         // [m/s]
-  // Of MPH-I by the accurate scheme: the density of the fluid inside, over that of its material, of particles
-  // whose places are not open (Cover); how much more or less volume than its own it has; their number. Zero where
-  // there are none, and with the published scheme. Of ISPH: the mean of <rho> / rho; that of |<rho> / rho - 1|
-  // over the particles that are not at the free surface; the number of these.
+  // Of MPH-I with keeps_volume: the density of the fluid inside over that of its material, by particles whose
+  // places are not open (Cover); the share of its volume that it has gained or lost; the number of these
+  // particles. Zero where there are none. Of ISPH: the mean of <rho> / rho; that of |<rho> / rho - 1| over the
+  // particles that are not at the free surface; the number of these.
   double meanDensityRatio = 0;
   double meanDensityError = 0;
   double interiorParticles = 0;
@@ -70,8 +70,8 @@ struct StepReport {
   std::int64_t step = 0;  // number of steps done
   double time = 0;        // [s], after the step
   double timeStep = 0;    // [s]
-  double velocityStep =
-      0;                 // over which velocities have changed: times the powers of the balance it is energies [s]
+  // Over which velocities have changed: times the powers of the balance it is energies [s].
+  double velocityStep = 0;
   double error = 0;      // by which automatic steps are chosen (StepControl)
   int rejected = 0;      // longer steps that were tried before, with larger errors or without a solution
   int iterations = 0;    // of all linear solves, those of ISPH's implicit viscosity and of rejected steps
