@@ -65,7 +65,7 @@ void shiftedVelocity(Context<Cuda>& context, const Shifting& shifting, std::span
                      std::span<const std::uint8_t> surface, std::span<const Vec<D>> velocity,
                      std::span<Vec<D>> transport) {
   forEach(context, transport.size(), [shifting, deficit, surface, velocity, transport] __device__(std::size_t i) {
-    transport[i] = shiftedVelocity(shifting, deficit[i], surface[i] != 0, velocity[i]);
+    transport[i] = surface[i] ? velocity[i] : shiftedVelocity(shifting, deficit[i], velocity[i]);
   });
 }
 

@@ -29,10 +29,18 @@ void elasticPressure(Context<Cuda>& context, const MphPairs<D>& pairs, std::span
 }
 
 template <int D>
-void holdPressures(Context<Cuda>& context, const MphPairs<D>& pairs, double dt, const VolumeChange<D>& change,
-                   std::span<double> held) {
-  fill(context, pairs, held, [dt, change, held] __device__(const MphPairs<D>& pairs, std::uint32_t i) {
-    return heldPressureOf(pairs, i, dt, change, held[i]);
+void holdPressures(Context<Cuda>& context, const MphPairs<D>& pairs, double dt, const Surroundings& around,
+                   std::span<const double> divergence, std::span<double> held) {
+  fill(context, pairs, held, [dt, around, divergence, held] __device__(const MphPairs<D>& pairs, std::uint32_t i) {
+    return heldPressureOf(pairs, i, dt, around, divergence[i], held[i]);
+  });
+}
+
+template <int D>
+void spreadVelocities(Context<Cuda>& context, const MphPairs<D>& pairs, double dt, const Surroundings& around,
+                      std::span<const Vec<D>> u, std::span<Vec<D>> crowding) {
+  fill(context, pairs, crowding, [dt, around, u, crowding] __device__(const MphPairs<D>& pairs, std::uint32_t i) {
+    return spreadVelocityOf(pairs, i, dt, around, u[i], crowding[i]);
   });
 }
 
@@ -55,8 +63,10 @@ void bulkPressure(Context<Cuda>& context, const MphPairs<D>& pairs, std::span<co
 #define TREACLE_INSTANTIATE(D)                                                                                   \
   template void elasticPressure<D>(Context<Cuda>&, const MphPairs<D>&, std::span<const double>,                  \
                                    std::span<const Adhesion<D>>, std::span<double>, std::span<const double>);    \
-  template void holdPressures<D>(Context<Cuda>&, const MphPairs<D>&, double, const VolumeChange<D>&,             \
-                                 std::span<double>);                                                             \
+  template void holdPressures<D>(Context<Cuda>&, const MphPairs<D>&, double, const Surroundings&,                \
+                                 std::span<const double>, std::span<double>);                                    \
+  template void spreadVelocities<D>(Context<Cuda>&, const MphPairs<D>&, double, const Surroundings&,             \
+                                    std::span<const Vec<D>>, std::span<Vec<D>>);                                 \
   template void inertiaAndGravity<D>(Context<Cuda>&, const MphPairs<D>&, std::span<const Vec<D>>, const Vec<D>&, \
                                      std::span<Vec<D>>);                                                         \
   template void bulkPressure<D>(Context<Cuda>&, const MphPairs<D>&, std::span<const double>,                     \

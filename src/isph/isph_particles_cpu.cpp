@@ -36,7 +36,7 @@ void shiftedVelocity(Context<Cpu>&, const Shifting& shifting, std::span<const Ve
                      std::span<const std::uint8_t> surface, std::span<const Vec<D>> velocity,
                      std::span<Vec<D>> transport) {
   parallelFor(transport.size(), parallelGrain, [&](std::size_t i) {
-    transport[i] = shiftedVelocity(shifting, deficit[i], surface[i] != 0, velocity[i]);
+    transport[i] = surface[i] ? velocity[i] : shiftedVelocity(shifting, deficit[i], velocity[i]);
   });
 }
 

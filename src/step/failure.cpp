@@ -75,9 +75,12 @@ std::string describeNotFinite(const Processes& processes, const Particles<D>& pa
 template <int D>
 std::string describeLeaving(const Particles<D>& particles, std::uint32_t i, const Vec<D>& u, double dt) {
   const Vec<D>& x = particles.position[i];
-  return fmt::format("{} particle {} left the domain: from {} m to {} m at velocity {} m/s",
-                     i < particles.fluidCount ? "fluid" : "wall", particles.id[i], describe(x),
-                     describe(x + dt * u), describe(u));
+  const char* kind = i < particles.fluidCount ? "fluid" : "wall";
+  if (isFinite(x) && !isFinite(u))
+    return fmt::format("the velocity of {} particle {} at {} m is not finite: {} m/s", kind, particles.id[i],
+                       describe(x), describe(u));
+  return fmt::format("{} particle {} left the domain: from {} m to {} m at velocity {} m/s", kind, particles.id[i],
+                     describe(x), describe(x + dt * u), describe(u));
 }
 
 template std::string describeNotFinite<2>(const Processes&, const Particles<2>&, std::span<const Vec<2>>);

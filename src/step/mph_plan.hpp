@@ -68,8 +68,9 @@ void planFields(const Case& c, const MemoryCounts& n, bool withGradient, MemoryS
   if (n.wallForceLists.clusters > 0) planLists(n.wallForceLists, sum);
   sum.keep<Block<D>>(fluid);
   if (withGradient) sum.keep<Vec<D>>(fluid);
-  sum.keep<double>(fluid + (c.holdsPressures() ? 3 : 2) * n.active);
+  sum.keep<double>(fluid + (c.keepsVolume() ? 3 : 2) * n.active);
   sum.keep<Vec<D>>(fluid);
+  if (c.holdsPressures()) sum.keep<double>(n.active), sum.keep<Vec<D>>(fluid);
   if (c.heat) planHeat<D>(c, n, sum);
   if (c.hasRigid()) {  // pressures, the right-hand side at rest and velocities found
     sum.keep<double>(n.active);

@@ -20,6 +20,7 @@
 #include "wall_forces.hpp"
 
 #include <cmath>
+#include <vector>
 
 namespace treacle {
 namespace {
@@ -50,7 +51,7 @@ class MphStep final : public StepMethod<D, Backend> {
     clearValues(state_.context, state_.particles.pressure.span().subspan(active));
     clearValues(state_.context, state_.particles.heldPressure.span().subspan(active));
     elastic_.resize(state_.context, active);
-    if (holds_) open_.resize(state_.context, active);
+    if (state_.theCase.keepsVolume()) open_.resize(state_.context, active);
     numberDensity<D>(state_.context, pairs_, state_.particles.numberDensity.span().first(active), open_.span());
     fillGhosts(state_.context, Held::Active, state_.particles.numberDensity.data());
   }
@@ -123,10 +124,21 @@ class MphStep final : public StepMethod<D, Backend> {
   }
 
   std::span<const Vec<D>> transportVelocities() override {
-    return state_.velocity.span().first(pairs_.ownFluid());
+    const std::span<const Vec<D>> u = state_.velocity.span().first(pairs_.ownFluid());
+    if (!holds_) return u;
+    const std::uint32_t active = pairs_.activeCount;
+    if (ones_.size() < active)
+      fromHost(state_.context, std::span<const double>(std::vector<double>(active, 1.0)), ones_);
+    transport_.resize(state_.context, u.size());
+    clearValues(state_.context, transport_.span());
+    addPressureGradient<D>(state_.context, pairs_, ones_.span().first(active), 1, transport_.span());
+    spreadVelocities<D>(state_.context, pairs_, state_.timeStep, surroundings(), u, transport_.span());
+    return transport_.span();
   }
 
-  double longestWay(double speed) const override { return speed * state_.timeStep; }
+  double longestWay(double speed) const override {
+    return speed * state_.timeStep + (holds_ ? longestShift * state_.theCase.spacing : 0);
+  }
 
   /// Psi of [K23 eq. (14)] with the new velocities.
   void accept() override {
@@ -139,7 +151,9 @@ class MphStep final : public StepMethod<D, Backend> {
     if (state_.theCase.needsBalance())
       lastBalance_ = balance_.make(state_, pairs_, divergence_, elastic_, surface_ ? &*surface_ : nullptr);
     if (heat_) acceptHeat();
-    if (holds_) hold();
+    if (holds_)
+      holdPressures<D>(state_.context, pairs_, state_.timeStep, surroundings(), divergence_,
+                       state_.particles.heldPressure.span().first(active));
     // The velocities of the start are given, no solution: nothing follows from the way to the first one.
     if (state_.step > 0)
       updateFlowMemory<D>(state_.context, state_.velocityStep, state_.lastStep(),
@@ -168,7 +182,7 @@ class MphStep final : public StepMethod<D, Backend> {
            (surface_ ? surface_->bytes() : 0) + wallBlock_.bytes() + wallGradient_.bytes() + wallDensity_.bytes() +
            open_.bytes() + elastic_.bytes() + divergence_.bytes() + rhs_.bytes() + found_.bytes() +
            solver_.bytes() + balance_.bytes() + wallForces_.bytes() + (bodies_ ? bodies_->bytes() : 0) +
-           rhsAtRest_.bytes() + pressure_.bytes();
+           rhsAtRest_.bytes() + pressure_.bytes() + ones_.bytes() + transport_.bytes();
   }
 
  private:
@@ -314,8 +328,7 @@ class MphStep final : public StepMethod<D, Backend> {
                          state_.particles.velocity.span().first(state_.particles.fluidCount),
                          resized<D>(state_.theCase.gravity), rhs_);
     addPressureGradient<D>(state_.context, pairs_, elastic_, -1.0, rhs_);
-    if (pairs_.terms.repulsionRadius > 0)
-      addRepulsion<D>(state_.context, pairs_, {1 / state_.timeStep, held}, rhs_);
+    if (pairs_.terms.repulsionRadius > 0) addRepulsion<D>(state_.context, pairs_, 1 / state_.timeStep, rhs_);
     if (surface_) surface_->addForces(state_, rhs_);
     if (bodies_) {
       rhsAtRest_.resize(state_.context, rhs_.size());
@@ -339,13 +352,8 @@ class MphStep final : public StepMethod<D, Backend> {
     addPressureGradient<D>(state_.context, pairs_, divergence_, -1.0, rhs_);
   }
 
-  /// The pressures that own particles hold after the step.
-  void hold() {
-    const std::uint32_t active = pairs_.activeCount;
-    holdPressures<D>(state_.context, pairs_, state_.timeStep,
-                     {state_.particles.numberDensity.span().first(active), open_,
-                      surface_ ? surface_->adhesion() : std::span<const Adhesion<D>>{}, divergence_},
-                     state_.particles.heldPressure.span().first(active));
+  Surroundings surroundings() const {
+    return {state_.particles.numberDensity.span().first(pairs_.activeCount), open_.span()};
   }
 
   std::string notFiniteOnHost() {
@@ -368,6 +376,8 @@ class MphStep final : public StepMethod<D, Backend> {
   Buffer<Vec<D>, Backend> wallGradient_;
   Buffer<double, Backend> wallDensity_;  // the walls' part of n per fluid particle
   Buffer<double, Backend> open_;         // how open places of particles are, where they hold pressures [-]
+  Buffer<double, Backend> ones_;         // where particles hold pressures; likewise:
+  Buffer<Vec<D>, Backend> transport_;    // what the fluid goes with
   Buffer<double, Backend> elastic_;      // elasticPressure() per particle [Pa]
   Buffer<double, Backend> divergence_;   // C^T u per particle [1/s]
   Buffer<Vec<D>, Backend> rhs_;

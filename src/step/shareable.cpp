@@ -20,7 +20,6 @@ void requireShareable(const Case& c, BackendKind backend) {
   if (backend == BackendKind::Cuda && c.solver.neighbours != NeighbourKind::Lists)
     refuse(fmt::format("solver.neighbours = {}", nameOf(c.solver.neighbours)),
            std::string(nameOf(NeighbourKind::Lists)));
-  if (c.method.keepsVolume) refuse("method.keeps_volume = true", "false");  // not tested
   if (c.solver.operatorKind == OperatorKind::Assembled)
     refuse("solver.operator = assembled", std::string(nameOf(OperatorKind::MatrixFree)));
   if (c.solver.preconditioner != PreconditionerKind::BucketMultigrid) return;

@@ -181,7 +181,8 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     if (host.has.starts) std::swap(host.position, host.start);
     Vec<D> uOut{};
     copyToHost(context, u.subspan(out, 1), &uOut);
-    watch->requireSlow(timeStep, norm(uOut));  // then it is not the domain that is too small
+    if (std::isfinite(norm(uOut)))
+      watch->requireSlow(timeStep, norm(uOut));  // then it is not the domain that is too small
     throw RunError(describeLeaving<D>(host, begin + out, uOut, timeStep));
   }
 
@@ -259,8 +260,7 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
   bool isExact(StepReport& report) {
     phases.run(context, treacle::phases::update, [&] {
       const std::uint32_t n = particles.fluidCount;
-      StepChangeTerms<D> terms{particles.velocity.span().first(n), velocity.span().first(n)};
-      if (theCase.middleShare() > 0) terms.acceleration = particles.acceleration, terms.step = velocityStep;
+      const StepChangeTerms<D> terms{particles.velocity.span().first(n), velocity.span().first(n)};
       report.error = control->error(stepChange<D>(context, terms), timeStep, particles.steps);
     });
     if (!control->accept(timeStep, report.error, particles.steps)) return false;

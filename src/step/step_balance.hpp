@@ -44,8 +44,7 @@ class StepBalance {
     walls_.sum(state, pairs, state.velocity, state.particles.pressure.span().first(pairs.activeCount), surface);
     if (pairs.terms.repulsionRadius == 0) return;
     repulsion_.resize(state.context, n);
-    repulsionPower<D>(state.context, pairs, {1 / state.timeStep, state.heldPressures(pairs.activeCount)},
-                      state.velocity, repulsion_);
+    repulsionPower<D>(state.context, pairs, 1 / state.timeStep, state.velocity, repulsion_);
   }
 
   void setPowers(FlowState<D, Backend>& state, const MphPairs<D>& pairs, std::span<const double> divergence,

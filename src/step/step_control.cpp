@@ -15,7 +15,6 @@ constexpr double shareAfterFailure = 0.25;
 
 StepControl::StepControl(const Case& c)
     : tolerance_(c.time.tolerance),
-      secondOrder_(c.middleShare() > 0),
       least_(c.time.least),
       longest_(c.time.step),
       end_(c.time.end),
@@ -46,8 +45,7 @@ double StepControl::error(const StepChange& d, double length, const StepMemory& 
   if (d.change == 0) return 0;
   const double over = memory.last > 0 ? 0.5 * (length + memory.last) : length;
   const double acceleration = d.change / over;
-  const double error = length * std::min(acceleration / (2 * d.speed), std::sqrt(acceleration / (2 * spacing_)));
-  return secondOrder_ ? std::sqrt(tolerance_ * error) : error;
+  return length * std::min(acceleration / (2 * d.speed), std::sqrt(acceleration / (2 * spacing_)));
 }
 
 bool StepControl::accept(double length, double error, StepMemory& memory) const {

@@ -39,8 +39,7 @@ class WallForces {
     density_.resize(state.context, active - n);
     fluidAtWalls<D>(state.context, pairs, walls_, u, pressure,
                     {force_.span(), divergence_.span(), density_.span()});
-    if (pairs.terms.repulsionRadius > 0)
-      addRepulsionOnWalls<D>(state.context, pairs, {1 / state.timeStep, state.heldPressures(active)}, force_);
+    if (pairs.terms.repulsionRadius > 0) addRepulsionOnWalls<D>(state.context, pairs, 1 / state.timeStep, force_);
     if (!surface) return;
     surfaceForce_.resize(state.context, active);
     surface->allForces(state, pairs, walls_, surfaceForce_.span(), force_.span());

@@ -83,9 +83,10 @@ struct StepEnergy {
       : gained(report.diagnostics.kineticEnergy - before.kineticEnergy),
         fallen(before.potentialEnergy - report.diagnostics.potentialEnergy) {
     const Balance& b = *report.balance;
-    const double dt = report.timeStep;
+    const double dt = report.velocityStep;
     lost = dt * (b.inertialLoss + b.shearDissipation + b.bulkDissipation);
-    given = dt * (b.elasticPower + b.wallPower + b.repulsionPower + b.surfacePower) + fallen;
+    given =
+        dt * (b.elasticPower + b.wallPower + b.repulsionPower + b.surfacePower + report.diagnostics.gravityPower);
   }
   double scale() const { return std::abs(gained) + lost + std::abs(given); }
 };

@@ -46,7 +46,7 @@ double Oracle<D>::dw(double r, double h) const {
 /// The window has a test of its own.
 template <int D>
 double Oracle<D>::densityWeight(double r) const {
-  if (!s.c.holdsPressures()) return w(r, hn);
+  if (!s.c.keepsVolume()) return w(r, hn);
   const double q = r / hn;
   return q > 1 ? 0 : std::pow(l / hn, D) / DensityWindow::integral<D>() * DensityWindow::at(1 - q * q);
 }

@@ -2,6 +2,7 @@
 
 #include "treacle/core/cuda.hpp"
 #include "treacle/core/vec.hpp"
+#include "treacle/model/shifting.hpp"
 
 #include <cstdint>
 #include <span>
@@ -25,15 +26,7 @@ enum class Level { Mean, Least };
 void takeLevel(Context<Cpu>&, Level level, std::span<double> x);
 void takeLevel(Context<Cuda>&, Level level, std::span<double> x);
 
-/// Shifting towards where neighbours lack: displacement -coefficient l^2 sum V grad W, at most a tenth of l, not
-/// at the free surface.
-struct Shifting {
-  double coefficient;  // [-]
-  double spacing;      // l [m]
-  double timeStep;     // [s]
-};
-
-/// transport = velocity + displacement / dt: what the particles move with.
+/// transport: what the particles move with (Shifting); those at the free surface are not shifted.
 template <int D>
 void shiftedVelocity(Context<Cpu>&, const Shifting& shifting, std::span<const Vec<D>> deficit,
                      std::span<const std::uint8_t> surface, std::span<const Vec<D>> velocity,
@@ -43,22 +36,10 @@ void shiftedVelocity(Context<Cuda>&, const Shifting& shifting, std::span<const V
                      std::span<const std::uint8_t> surface, std::span<const Vec<D>> velocity,
                      std::span<Vec<D>> transport);
 
-/// No particle is shifted farther in a step [spacings].
-inline constexpr double longestShift = 0.1;
-
-/// The two formulas, for one particle.
+/// The formula, for one particle.
 TREACLE_HD inline double settledPressure(bool surface, bool cut, double p) {
   return surface || (cut && p < 0) ? 0 : p;
 }
-template <int D>
-TREACLE_HD Vec<D> shiftedVelocity(const Shifting& s, const Vec<D>& deficit, bool surface, const Vec<D>& velocity) {
-  if (surface) return velocity;
-  Vec<D> displacement = (-s.coefficient * s.spacing * s.spacing) * deficit;
-  const double length = norm(displacement), most = longestShift * s.spacing;
-  if (length > most) displacement *= most / length;
-  return velocity + (1 / s.timeStep) * displacement;
-}
-
 /// component k of v as a vector of numbers, and back.
 template <int D>
 void takeComponent(Context<Cpu>&, std::span<const Vec<D>> v, int k, std::span<double> x);

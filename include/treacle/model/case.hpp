@@ -67,21 +67,25 @@ struct Case {
   WatchSettings watch;
 
   double pressureRadius() const { return method.pressureRadius * spacing; }  // h_p [m]
-  /// h_n [m]
-  /// Of fluid that keeps its volume 3.5 spacings or more, which its weight is made for (DensityWindow).
   double densityRadius() const {
-    return std::max({method.densityRadius, method.pressureRadius, holdsPressures() ? 3.5 : 0.0}) * spacing;
-  }
+    return std::max(method.densityRadius, method.pressureRadius) * spacing;
+  }                                                                            // h_n [m]
   double viscosityRadius() const { return method.viscosityRadius * spacing; }  // h_v [m]
   /// r_0: distance below which particles of the accurate scheme of MPH-I repel each other; 0: they do not [m].
   double repulsionRadius() const { return method.scheme == SchemeKind::Accurate ? 0.53 * spacing : 0; }
   /// Smoothing length h of ISPH [m].
   double smoothingLength() const { return method.isph.smoothingRatio * spacing; }
-  /// Farthest distance at which particles act on each other [m].
+  /// Whether the formulas are those of the accurate scheme of MPH-I.
+  bool isAccurate() const { return method.kind == MethodKind::MphI && method.scheme == SchemeKind::Accurate; }
   /// Where in a step the forces on the fluid are those that it has: at its start, as in [K23], or in its middle.
-  double middleShare() const { return holdsPressures() ? 0.5 : 0; }
+  double middleShare() const { return keepsVolume() ? 0.5 : 0; }
+  /// Whether the motion and the weight of densities are those that keep the volume (docs/accurate.md). A surface
+  /// tension, which acts by the places of particles, would need steps half as long, and was made for other
+  /// densities.
+  bool keepsVolume() const { return isAccurate() && !hasSurfaceTension(); }
   /// Whether particles hold a part of their elastic pressure (Particles::heldPressure).
-  bool holdsPressures() const { return method.kind == MethodKind::MphI && method.keepsVolume; }
+  bool holdsPressures() const { return isAccurate() && method.tension; }
+  /// Farthest distance at which particles act on each other [m].
   double interactionRadius() const {
     return method.kind == MethodKind::Isph ? 2 * smoothingLength() : std::max(viscosityRadius(), densityRadius());
   }

@@ -46,11 +46,11 @@ struct MethodSettings {
   PressureGradient pressureGradient = PressureGradient::Renormalised;
   // Effective radii in particle spacings.
   double pressureRadius = 2.5;   // h_p / l
-  double densityRadius = 3;      // h_n / l, at least that of the pressure
+  double densityRadius = 3.5;    // h_n / l, at least that of the pressure
   double viscosityRadius = 3.5;  // h_v / l
   // Which share of the viscosity that its missing neighbours would give it a particle gets from those it has.
   double viscosityCorrection = 0.5;
-  bool keepsVolume = false;         // whether forces belong to the middle of a step and fluid bears tension
+  bool tension = false;             // whether fluid bears pressures below zero
   double ambientPressure = 101325;  // around the fluid; it parts where its own is less than minus that [Pa]
   IsphSettings isph;
 

@@ -77,12 +77,12 @@ void visit(auto& v, Like<MethodSettings> auto& m, const Case& c) {
      "",
      {0, 1}},
     m.viscosityCorrection);
-  v({"keeps_volume",
-     "Whether forces are those of the middle of a step and the fluid bears tension, so that fluid that turns, "
-     "folds or goes on for long keeps its volume"},
-    m.keepsVolume);
+  v({"tension",
+     "Whether the fluid bears pressures below zero where it is surrounded, so that fluid that is pulled, or that "
+     "folds, keeps its volume; of the accurate scheme"},
+    m.tension);
   v({"ambient_pressure",
-     "With keeps_volume: the fluid bears pressures down to minus this one where it has no free surface, and parts "
+     "With tension: the fluid bears pressures down to minus this one where it has no free surface, and parts "
      "below",
      optional, "Pa", notNegative},
     m.ambientPressure);

@@ -71,9 +71,8 @@ struct MphTerms {
   T densityRadius;                            // h_n
   T densityFactor, gradientFactor, viscousFactor;
   Weights weights;
-  T repulsionRadius = 0;                          // r_0; 0: no repulsion
-  T tensionRadius = 0, inverseTensionRadius = 0;  // r_t, 1/r_t
-  bool window = false;                            // whether densities have DensityWindow for their weight
+  T repulsionRadius = 0;  // r_0; 0: no repulsion
+  bool window = false;    // whether densities have DensityWindow for their weight
 
   /// For the radius h_v and the spacing l [m]; lengths in metres. Densities have the radius of pressures.
   static MphTerms make(const Weight<D>& pressure, ViscosityWeight viscosity, double viscosityRadius,
@@ -102,8 +101,6 @@ struct MphTerms {
             static_cast<U>(viscousFactor / unit),
             weights,
             static_cast<U>(repulsionRadius / unit),
-            static_cast<U>(tensionRadius / unit),
-            static_cast<U>(inverseTensionRadius * unit),
             window};
   }
   /// The same with their weights known.
@@ -111,8 +108,7 @@ struct MphTerms {
   MphTerms<D, T, Known> with(Known known) const {
     return {pressureRadius, inversePressureRadius, viscosityRadius, inverseViscosityRadius,
             densityRadius,  densityFactor,         gradientFactor,  viscousFactor,
-            known,          repulsionRadius,       tensionRadius,   inverseTensionRadius,
-            window};
+            known,          repulsionRadius,       window};
   }
   /// Another weight of densities; lengths in metres.
   void setDensityWeight(const DensityWeight<D>& density) {
@@ -175,14 +171,6 @@ struct MphTerms {
   template <class Distance>
   TREACLE_HD auto repulsionShape(const Distance& r) const {
     return resistanceShape(r) * positivePart(repulsionRadius * r.inverse - T(1));
-  }
-  /// What keeps neighbours under tension apart, whose pull on each other is the less the nearer they are: times
-  /// gradientFactor and their tensions -e times a force per volume that grows as they come near. With h_p = 2.5 l
-  /// and r_t = 1.25 l the pull of a pair is then the less the nearer it is, and turns into a push at 0.1 l.
-  template <class Distance>
-  TREACLE_HD auto tensionShape(const Distance& r) const {
-    const auto part = positivePart(T(1) - r.square * r.inverse * inverseTensionRadius);
-    return T(1.1) * inversePressureRadius * part * part;
   }
 
  private:

@@ -27,7 +27,7 @@ struct Diagnostics {
   double frontX = 0;           // largest x [m]
   double top = 0;              // largest coordinate against gravity [m]
   double maxSpeed = 0;         // [m/s]
-  // Of MPH-I with keeps_volume: the density of the fluid inside over that of its material, by particles whose
+  // Of the accurate scheme of MPH-I: the density of the fluid inside over that of its material, by particles whose
   // places are not open (Cover); the share of its volume that it has gained or lost; the number of these
   // particles. Zero where there are none. Of ISPH: the mean of <rho> / rho; that of |<rho> / rho - 1| over the
   // particles that are not at the free surface; the number of these.

@@ -14,7 +14,7 @@ namespace treacle {
 /// What a step does to velocities: root mean squares over the fluid [m/s].
 struct StepChange {
   double speed = 0;   // |u^{k+1}|
-  double change = 0;  // |u^{k+1} - u^k|, or what of it could not be foreseen
+  double change = 0;  // |u^{k+1} - u^k|
 
   /// Of sums of squares over so many particles.
   static StepChange mean(const std::array<double, 2>& sums, std::size_t particles) {
@@ -30,15 +30,10 @@ struct StepChangeTerms {
   static constexpr int count = 2;
 
   std::span<const Vec<D>> before, after;  // u^k, u^{k+1} [m/s]
-  // What counts is the change beyond that of this acceleration over `step` [m/s2], [s]; empty: all of it does.
-  std::span<const Vec<D>> acceleration = {};
-  double step = 0;
 
   TREACLE_HD void add(std::size_t i, double* sums) const {
     sums[0] += norm2(after[i]);
-    Vec<D> change = after[i] - before[i];
-    if (!acceleration.empty()) change -= step * acceleration[i];
-    sums[1] += norm2(change);
+    sums[1] += norm2(after[i] - before[i]);
   }
 };
 

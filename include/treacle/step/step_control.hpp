@@ -40,7 +40,6 @@ class StepControl {
   bool isShortest(double length) const { return length <= least_ * (1 + rounding); }
 
   double tolerance_;                         // [-]
-  bool secondOrder_;                         // whether errors go with the square of a step
   double least_, longest_, end_, interval_;  // [s]
   double reach_;                             // way of the fastest particle in a step, at most [m]
   double spacing_;                           // [m]

@@ -209,23 +209,16 @@ void checkRepulsion(bool lists) {
   auto forceFound = copyToDevice<Vec<D>>(d.context, force), wallsFound = copyToDevice<Vec<D>>(d.context, onWalls);
   Buffer<double, Cuda> powerFound(d.context, n);
   const auto u = randomVectors<D>(active, 8);
-  std::vector<double> held(active);  // some of them tensions, and some of these more than count
-  for (std::size_t i = 0; i < active; ++i) held[i] = 20.0 * (i % 53) - 800;
-  const auto deviceHeld = copyToDevice<double>(d.context, held);
 
-  for (const bool tension : {false, true}) {
-    const PairsApart host{1e3, tension ? std::span<const double>(held) : std::span<const double>{}},
-        device{1e3, tension ? deviceHeld.span() : std::span<const double>{}};
-    addRepulsion<D>(s.context, s.pairs(), host, force);
-    addRepulsion<D>(d.context, d.pairs, device, forceFound.span());
-    EXPECT_LE(difference<Vec<D>>(d.context, force, forceFound), operatorTolerance);
-    addRepulsionOnWalls<D>(s.context, s.pairs(), host, onWalls);
-    addRepulsionOnWalls<D>(d.context, d.pairs, device, wallsFound.span());
-    EXPECT_LE(difference<Vec<D>>(d.context, onWalls, wallsFound), operatorTolerance);
-    repulsionPower<D>(s.context, s.pairs(), host, u, power);
-    repulsionPower<D>(d.context, d.pairs, device, copyToDevice<Vec<D>>(d.context, u), powerFound);
-    EXPECT_LE(difference<double>(d.context, power.span(), powerFound), operatorTolerance);
-  }
+  addRepulsion<D>(s.context, s.pairs(), 1e3, force);
+  addRepulsion<D>(d.context, d.pairs, 1e3, forceFound.span());
+  EXPECT_LE(difference<Vec<D>>(d.context, force, forceFound), operatorTolerance);
+  addRepulsionOnWalls<D>(s.context, s.pairs(), 1e3, onWalls);
+  addRepulsionOnWalls<D>(d.context, d.pairs, 1e3, wallsFound.span());
+  EXPECT_LE(difference<Vec<D>>(d.context, onWalls, wallsFound), operatorTolerance);
+  repulsionPower<D>(s.context, s.pairs(), 1e3, u, power);
+  repulsionPower<D>(d.context, d.pairs, 1e3, copyToDevice<Vec<D>>(d.context, u), powerFound);
+  EXPECT_LE(difference<double>(d.context, power.span(), powerFound), operatorTolerance);
 }
 
 TEST(PairSumsTwin, RepulsionEqualsTheCpu) {

@@ -78,13 +78,13 @@ double farthest(const Particles<D>& a, const Particles<D>& b) {
 constexpr double agreement = 1e-8, tightTolerance = 1e-22;
 
 template <int D>
-void compareSteps(const SolverSettings& settings, SchemeKind scheme, bool keepsVolume = false) {
+void compareSteps(const SolverSettings& settings, SchemeKind scheme, bool tension = false) {
   // Residuals of CG go up and down; in single precision the CPU's own variants (matrix-free, assembled) differ by
   // 9 %. CR in double precision, this near to the limit of rounding, took 149 for 154.
   const bool rough = settings.krylov == KrylovKind::Cg || settings.precision == Precision::Mixed;
   const double spread = rough ? 0.15 : 0.05;
   Case c = stepCase(D, settings, scheme);
-  c.method.keepsVolume = keepsVolume;
+  c.method.tension = tension;
   c.solver.tolerance = tightTolerance;
   Simulation<D> cpu(c, bodyOnFloor<D>(c, 0.02));
   Simulation<D, Cuda> cuda(c, bodyOnFloor<D>(c, 0.02));

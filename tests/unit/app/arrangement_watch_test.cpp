@@ -125,7 +125,7 @@ TEST(ArrangementWatch, theDamBreakIsWithinAllBounds) {
   EXPECT_EQ(countOf(", nearest distances from ", log), 21u);
   const auto json = nlohmann::json::parse(shop.content("dam/summary.json"));
   EXPECT_NEAR(json["nearest_distance"]["smallest_least"], 0.602, 0.02);
-  EXPECT_NEAR(json["density"]["inside"], 0.9941, 1e-3);
+  EXPECT_NEAR(json["density"]["inside"], 0.9993, 1e-3);
 }
 
 }  // namespace

@@ -338,7 +338,7 @@ TEST(run, warnsOnceOfFallbacksAndCountsThem) {
 TEST(run, particleThatLeavesOpenDomainEndsTheRun) {
   Workshop shop;
   const Outcome outcome =
-      prepared(shop).call("run small.toml --threads 1 --end-time 0.02 --set 'column.velocity=[0,20]'");
+      prepared(shop).call("run small.toml --threads 1 --end-time 0.02 --set 'column.velocity=[0,9]'");
   EXPECT_EQ(outcome.exitCode, 3);
   EXPECT_THAT(outcome.err, HasSubstr("domain"));
   const RunDirectory run = RunDirectory::open(shop / "small-run");

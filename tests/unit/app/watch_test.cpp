@@ -31,16 +31,15 @@ TEST(WatchedRun, EndsWhereBulkConstantsMakeTheStepUnstable) {
     const std::string run = dam + "--set method.scheme=" + scheme + " --set fluid.";
     const std::string most =
         scheme == "published" ? "bulk_viscosity / step = 1e+07" : "0.5 bulk_viscosity / step = 5e+06";
-    for (const char* modulus : {"1e9", "1e12"})
-      expectEnded(run + "bulk_modulus=" + modulus, "the step is unstable",
-                  "take bulk_modulus <= " + most + " for 'fluid', or time.step <= ");
+    expectEnded(run + "bulk_modulus=1e12", "the step is unstable",
+                "take bulk_modulus <= " + most + " for 'fluid', or time.step <= ");
     expectEnded(run + "bulk_viscosity=0", "the step is unstable", "give 'fluid' a bulk_viscosity of at least");
   }
 }
 
 TEST(WatchedRun, SeesTheSameByTheEnergyAlone) {
   expectEnded(
-      dam + "--set fluid.bulk_modulus=1e9 --set watch.courant=0 --set watch.inside_walls=0 --set watch.density=0",
+      dam + "--set fluid.bulk_modulus=1e12 --set watch.courant=0 --set watch.inside_walls=0 --set watch.density=0",
       "energy of the fluid have risen by", "watch.energy = 1 is exceeded");
 }
 

@@ -153,7 +153,7 @@ TEST(Case, radiiFollowFromTheMethod) {
   EXPECT_DOUBLE_EQ(c.interactionRadius(), 3.5e-3);
   EXPECT_DOUBLE_EQ(c.searchEdge(), 5e-3);
   c.method.viscosityRadius = 2;
-  EXPECT_DOUBLE_EQ(c.interactionRadius(), 3e-3);
+  EXPECT_DOUBLE_EQ(c.interactionRadius(), 3.5e-3);
   c.method.densityRadius = 5.5;
   EXPECT_DOUBLE_EQ(c.interactionRadius(), 5.5e-3);
   EXPECT_DOUBLE_EQ(c.searchEdge(), 5.5e-3);
@@ -202,7 +202,7 @@ TEST(caseWarnings, compressionWhereDensitiesReachFartherThanDivergences) {
       caseWarnings(c),
       ElementsAre(AllOf(HasSubstr("dt kappa / lambda = 0.8 is greater than 0.5"),
                         HasSubstr("bulk_modulus <= 0.5 bulk_viscosity / step, or a step of at most 0.000625 s"))));
-  c.method.pressureRadius = 3;
+  c.method.pressureRadius = 3.5;
   EXPECT_THAT(caseWarnings(c), IsEmpty());
 }
 

@@ -22,8 +22,8 @@ template <int D>
 std::vector<Vec<D>> forces(Scene<D>& s) {
   std::vector<Vec<D>> force(s.pairs().activeCount, Vec<D>{});
   const std::span<Vec<D>> all(force);
-  addRepulsion<D>(s.context, s.pairs(), {rate}, all.first(s.n()));
-  addRepulsionOnWalls<D>(s.context, s.pairs(), {rate}, all.subspan(s.n()));
+  addRepulsion<D>(s.context, s.pairs(), rate, all.first(s.n()));
+  addRepulsionOnWalls<D>(s.context, s.pairs(), rate, all.subspan(s.n()));
   return force;
 }
 
@@ -64,7 +64,7 @@ void checkPower() {
   const std::vector<Vec<D>> force = forces(s);
   const auto powerOf = [&](const std::vector<Vec<D>>& u) {
     std::vector<double> power(s.n());
-    repulsionPower<D>(s.context, s.pairs(), {rate}, u, power);
+    repulsionPower<D>(s.context, s.pairs(), rate, u, power);
     double sum = 0;
     for (const double p : power) sum += p;
     return sum;

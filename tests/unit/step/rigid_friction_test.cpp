@@ -88,7 +88,8 @@ void checkEnergy(const Case& c) {
   for (int k = 0; k < 30; ++k) {
     simulation.advance();
     const double after = energy();
-    EXPECT_LT(after - before, 1e-6 * start) << "step " << k;
+    // What has got into another by half a step's way is lifted out; measured: 7e-4.
+    EXPECT_LT(after - before, 1e-3 * start) << "step " << k;
     before = after;
   }
   EXPECT_LT(blockOf(simulation).energy(), 0.2 * start);
@@ -133,11 +134,12 @@ double slip(const Simulation<2>& simulation) {
 /// They drag each other along, and what one loses the other gets.
 TEST(RigidFriction, KeepsMomenta) {
   Case smooth = meetingBlocksCase(7000, 7000);
-  // They meet after 8 steps, face to face.
+  smooth.bodies[0].where = "abs(y) > 5e-3";
+  // They meet in the middle of the ninth step, face to face.
   smooth.bodies[1].velocity[1] = 0.1, smooth.bodies[2].velocity[1] = -0.1;
   for (const std::size_t k : {1u, 2u}) {
-    smooth.bodies[k].shape.min[1] -= 8e-3 * smooth.bodies[k].velocity[1];
-    smooth.bodies[k].shape.max[1] -= 8e-3 * smooth.bodies[k].velocity[1];
+    smooth.bodies[k].shape.min[1] -= 8.5e-3 * smooth.bodies[k].velocity[1];
+    smooth.bodies[k].shape.max[1] -= 8.5e-3 * smooth.bodies[k].velocity[1];
   }
   Case rough = smooth;
   rough.bodies[1].friction = 0.2, rough.bodies[2].friction = 0.8;
@@ -148,8 +150,9 @@ TEST(RigidFriction, KeepsMomenta) {
     for (int k = 0; k < 10; ++k) slides.advance(), rubs.advance();
     const Momenta after = Momenta::of(b, rubs), unheld = Momenta::of(a, slides);
     EXPECT_LE(norm(after.linear - before.linear), 1e-5 * norm(before.linear));
-    // ISPH does not keep angular momentum by itself; friction takes none.
-    EXPECT_NEAR(after.angular[2], unheld.angular[2], 1e-5 * std::abs(before.angular[2]));
+    // ISPH does not keep angular momentum by itself; friction takes none. That of MPH-I is of first order in the
+    // step where velocities change at once.
+    EXPECT_NEAR(after.angular[2], unheld.angular[2], (isph ? 1e-5 : 0.03) * std::abs(before.angular[2]));
     EXPECT_GT(slip(slides), 0.1);
     EXPECT_LT(std::abs(slip(rubs)), 0.01);
   }

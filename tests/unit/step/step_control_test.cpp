@@ -14,9 +14,8 @@ namespace {
 
 constexpr double spacing = 1e-3;  // [m]
 
-Case automaticCase(double tolerance, double longest, double end, bool keepsVolume = false) {
+Case automaticCase(double tolerance, double longest, double end) {
   Case c;
-  c.method.keepsVolume = keepsVolume;
   c.spacing = spacing;
   c.time.automatic = true;
   c.time.tolerance = tolerance;
@@ -77,31 +76,6 @@ Way follow(const Case& c, Particle p, const Velocity& velocity) {
       ++way.rejected;
       continue;
     }
-    p = {p.x + step.length * u, u};
-    way.times.push_back(step.end);
-    way.places.push_back(p.x);
-    way.steps.push_back(step.length);
-  }
-  return way;
-}
-
-/// The same of fluid that keeps its volume, whose forces are those of the middle of a step; what counts is the
-/// change of the velocity beyond that of the last acceleration.
-Way followInMiddle(const Case& c, Particle p, const Velocity& velocity) {
-  const StepControl control(c);
-  StepMemory memory;
-  Way way{.places = {p.x}};
-  double acceleration = 0;
-  while (!c.atEnd(0, way.times.back())) {
-    const StepControl::Step step = control.next(memory, way.times.back(), std::abs(p.u));
-    const double over = memory.last > 0 ? 0.5 * (step.length + memory.last) : step.length;
-    const double u = velocity({p.x + 0.5 * step.length * p.u, p.u}, over);
-    if (!control.accept(step.length, control.error(changeOf(p.u + over * acceleration, u), step.length, memory),
-                        memory)) {
-      ++way.rejected;
-      continue;
-    }
-    acceleration = (u - p.u) / over;
     p = {p.x + step.length * u, u};
     way.times.push_back(step.end);
     way.places.push_back(p.x);
@@ -181,23 +155,6 @@ TEST(StepControl, KeepsTheErrorBelowTheToleranceAtAllTimes) {
     equal.times.push_back(equal.times.back() + end / count);
   }
   EXPECT_GT(equal.largestError(creptTo), 5 * way.largestError(creptTo));
-}
-
-/// Half the tolerance takes steps that are shorter by the root of two.
-TEST(StepControl, ErrorsInTheMiddleAreOfSecondOrder) {
-  double last = 0, lastSteps = 0;
-  for (const double tolerance : {0.04, 0.01, 0.0025}) {
-    const Way way = followInMiddle(automaticCase(tolerance, 20, 20, true), {0.01, 0.01}, creeping);
-    const double error = way.lastError(creptTo);
-    const auto steps = static_cast<double>(way.steps.size());
-    EXPECT_LT(error, tolerance);
-    EXPECT_LE(way.rejected, 5);
-    if (last > 0) {
-      EXPECT_GT(std::log2(last / error), 1.2) << tolerance;
-      EXPECT_LT(std::log2(steps / lastSteps), 1.5) << tolerance;
-    }
-    last = error, lastSteps = steps;
-  }
 }
 
 TEST(StepControl, StartsFromRestByTheSpacing) {

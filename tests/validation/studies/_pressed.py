@@ -29,7 +29,7 @@ def measure(run):
     return Outcome({"stress": abs(stress / (mu * slope) - 1)}, values, {"at the end": (y, u / u.max())})
 
 
-def study(name, pressure):
+def study(name, pressure, bar=0.009):
     return Study(
         name=name,
         title=f"Couette flow under a mean pressure of {pressure:g} Pa",
@@ -37,7 +37,7 @@ def study(name, pressure):
         settings=(f"gravity.acceleration=[0, {-pressure / (500 * H):g}]",),
         levels=[level(0.5), level(0.125), level(0.03)],
         refined=False,  # the levels are shear rates
-        bars={"stress": 0.009},
+        bars={"stress": bar},
         measure=measure,
         x_label="y [m]",
         y_label="u / U",

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "treacle/core/macros.hpp"
+#include "treacle/core/vec.hpp"
+
+namespace treacle {
+
+/// Shifting towards where neighbours lack: displacement -coefficient l^2 deficit, at most longestShift l.
+struct Shifting {
+  double coefficient;  // [-]
+  double spacing;      // l [m]
+  double timeStep;     // [s]
+};
+
+/// No particle is shifted farther in a step [spacings].
+inline constexpr double longestShift = 0.1;
+
+/// What a particle moves with: velocity + displacement / dt. `deficit`: sum V grad W, which points to where
+/// neighbours crowd [1/m].
+template <int D>
+TREACLE_HD Vec<D> shiftedVelocity(const Shifting& s, const Vec<D>& deficit, const Vec<D>& velocity) {
+  Vec<D> displacement = (-s.coefficient * s.spacing * s.spacing) * deficit;
+  const double length = norm(displacement), most = longestShift * s.spacing;
+  if (length > most) displacement *= most / length;
+  return velocity + (1 / s.timeStep) * displacement;
+}
+
+}  // namespace treacle
