@@ -254,7 +254,8 @@ TEST(SimulationTwin, DeflatesLikeTheCpu) {
   auto cuda = b.start<Cuda>(8);
   for (int step = 1; step <= 12; ++step) {
     const StepReport expected = cpu.advance(), found = cuda.advance();
-    EXPECT_NEAR(found.iterations, expected.iterations, 2) << "step " << step;
+    // A mode that one of the two has found a step earlier saves up to three.
+    EXPECT_NEAR(found.iterations, expected.iterations, 3) << "step " << step;
     EXPECT_EQ(found.fallbacks, 0);
     // Values near the least one, and copies of values, may come and go.
     EXPECT_NEAR(cuda.particles().modeCount(), cpu.particles().modeCount(), 1) << "step " << step;
