@@ -67,9 +67,8 @@ struct Case {
   WatchSettings watch;
 
   double pressureRadius() const { return method.pressureRadius * spacing; }  // h_p [m]
-  double densityRadius() const {
-    return std::max(method.densityRadius, method.pressureRadius) * spacing;
-  }                                                                            // h_n [m]
+  /// h_n [m]. Fluids with a surface tension have one of their own (makeMphPairs).
+  double densityRadius() const { return std::max(method.densityRadius, method.pressureRadius) * spacing; }
   double viscosityRadius() const { return method.viscosityRadius * spacing; }  // h_v [m]
   /// r_0: distance below which particles of the accurate scheme of MPH-I repel each other; 0: they do not [m].
   double repulsionRadius() const { return method.scheme == SchemeKind::Accurate ? 0.53 * spacing : 0; }

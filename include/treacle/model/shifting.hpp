@@ -5,7 +5,8 @@
 
 namespace treacle {
 
-/// Shifting towards where neighbours lack: displacement -coefficient l^2 deficit, at most longestShift l.
+/// Shifting to where neighbours lack: displacement -coefficient l^2 crowding, at most longestShift l. It is one
+/// for ISPH and for fluid under tension of MPH-I.
 struct Shifting {
   double coefficient;  // [-]
   double spacing;      // l [m]
@@ -15,11 +16,11 @@ struct Shifting {
 /// No particle is shifted farther in a step [spacings].
 inline constexpr double longestShift = 0.1;
 
-/// What a particle moves with: velocity + displacement / dt. `deficit`: sum V grad W, which points to where
-/// neighbours crowd [1/m].
+/// What a particle moves with: velocity + displacement / dt. `crowding`: sum V grad W, or C 1 of MPH-I, which
+/// points to where neighbours crowd [1/m].
 template <int D>
-TREACLE_HD Vec<D> shiftedVelocity(const Shifting& s, const Vec<D>& deficit, const Vec<D>& velocity) {
-  Vec<D> displacement = (-s.coefficient * s.spacing * s.spacing) * deficit;
+TREACLE_HD Vec<D> shiftedVelocity(const Shifting& s, const Vec<D>& crowding, const Vec<D>& velocity) {
+  Vec<D> displacement = (-s.coefficient * s.spacing * s.spacing) * crowding;
   const double length = norm(displacement), most = longestShift * s.spacing;
   if (length > most) displacement *= most / length;
   return velocity + (1 / s.timeStep) * displacement;
