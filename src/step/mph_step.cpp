@@ -375,7 +375,7 @@ class MphStep final : public StepMethod<D, Backend> {
   Buffer<Block<D>, Backend> wallBlock_;
   Buffer<Vec<D>, Backend> wallGradient_;
   Buffer<double, Backend> wallDensity_;  // the walls' part of n per fluid particle
-  Buffer<double, Backend> open_;         // how open places of particles are, where they hold pressures [-]
+  Buffer<double, Backend> open_;         // how open places of particles are, where the case keeps its volume [-]
   Buffer<double, Backend> ones_;         // where particles hold pressures; likewise:
   Buffer<Vec<D>, Backend> transport_;    // what the fluid goes with
   Buffer<double, Backend> elastic_;      // elasticPressure() per particle [Pa]

@@ -267,7 +267,8 @@ TEST(SharedSimulation, AgreesOnAParticleThatLeaves) { expectAgreementOnAParticle
 TEST(SharedSimulation, RefusesWhatCannotBeShared) {
   if (job().size() == 1) return;
   const std::string buckets = "solver.preconditioner=bucket-multigrid";
-  for (const char* key : {"solver.multigrid.particle_diagonal=extended-jacobi", "solver.operator=assembled"}) {
+  for (const char* key : {"solver.multigrid.particle_diagonal=extended-jacobi", "solver.operator=assembled",
+                          "method.tension=true"}) {
     const Case c = Settings{"dam-break-2d.toml", 0, {buckets, key}}.read();
     EXPECT_THROW(Simulation<2>(c, partOf<2>(c), 0, 0, &job()), InputError) << key;
   }
