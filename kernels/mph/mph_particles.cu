@@ -1,46 +1,14 @@
 #include "treacle/mph/mph_particles.hpp"
 
-#include "core/launch.hpp"
+#include "mph/fill.cuh"
 
 namespace treacle {
-namespace {
-
-/// One thread per element: to[i] = formula(pairs, i). The pairs are too large for a copy in every thread. No
-/// atomics.
-template <int D, class T, class Formula>
-__global__ void fillKernel(const __grid_constant__ MphPairs<D> pairs, std::span<T> to, const Formula formula) {
-  const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
-  if (i < to.size()) to[i] = formula(pairs, i);
-}
-template <int D, class T, class Formula>
-void fill(const Context<Cuda>& context, const MphPairs<D>& pairs, std::span<T> to, const Formula& formula) {
-  launch(context, blocksFor(to.size(), 256), 256, 0, fillKernel<D, T, Formula>, pairs, to, formula);
-}
-
-}  // namespace
 
 template <int D>
 void elasticPressure(Context<Cuda>& context, const MphPairs<D>& pairs, std::span<const double> n,
-                     std::span<const Adhesion<D>> adhesion, std::span<double> elastic,
-                     std::span<const double> held) {
-  fill(context, pairs, elastic, [n, adhesion, held] __device__(const MphPairs<D>& pairs, std::uint32_t i) {
-    return elasticPressureOf(pairs, i, n[i], adhesion, held);
-  });
-}
-
-template <int D>
-void holdPressures(Context<Cuda>& context, const MphPairs<D>& pairs, double dt, const Surroundings& around,
-                   std::span<const double> divergence, std::span<double> held) {
-  fill(context, pairs, held, [dt, around, divergence, held] __device__(const MphPairs<D>& pairs, std::uint32_t i) {
-    return heldPressureOf(pairs, i, dt, around, divergence[i], held[i]);
-  });
-}
-
-template <int D>
-void spreadVelocities(Context<Cuda>& context, const MphPairs<D>& pairs, double dt, const Surroundings& around,
-                      std::span<const Vec<D>> u, std::span<Vec<D>> crowding) {
-  fill(context, pairs, crowding, [dt, around, u, crowding] __device__(const MphPairs<D>& pairs, std::uint32_t i) {
-    return spreadVelocityOf(pairs, i, dt, around, u[i], crowding[i]);
+                     std::span<const Adhesion<D>> adhesion, std::span<double> elastic) {
+  fill(context, pairs, elastic, [n, adhesion] __device__(const MphPairs<D>& pairs, std::uint32_t i) {
+    return elasticPressureOf(pairs, i, n[i], adhesion);
   });
 }
 
@@ -62,11 +30,7 @@ void bulkPressure(Context<Cuda>& context, const MphPairs<D>& pairs, std::span<co
 
 #define TREACLE_INSTANTIATE(D)                                                                                   \
   template void elasticPressure<D>(Context<Cuda>&, const MphPairs<D>&, std::span<const double>,                  \
-                                   std::span<const Adhesion<D>>, std::span<double>, std::span<const double>);    \
-  template void holdPressures<D>(Context<Cuda>&, const MphPairs<D>&, double, const Surroundings&,                \
-                                 std::span<const double>, std::span<double>);                                    \
-  template void spreadVelocities<D>(Context<Cuda>&, const MphPairs<D>&, double, const Surroundings&,             \
-                                    std::span<const Vec<D>>, std::span<Vec<D>>);                                 \
+                                   std::span<const Adhesion<D>>, std::span<double>);                             \
   template void inertiaAndGravity<D>(Context<Cuda>&, const MphPairs<D>&, std::span<const Vec<D>>, const Vec<D>&, \
                                      std::span<Vec<D>>);                                                         \
   template void bulkPressure<D>(Context<Cuda>&, const MphPairs<D>&, std::span<const double>,                     \

@@ -291,7 +291,6 @@ class Method:
     viscosity_radius: float | None = None
     """[spacings]"""
     viscosity_correction: float | None = None
-    tension: bool | None = None
     ambient_pressure: float | None = None
     """[Pa]"""
     kernel: Literal["cubic-spline", "wendland-c2"] | None = None

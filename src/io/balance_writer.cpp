@@ -14,6 +14,7 @@ std::string columns(const Case& c) {
   std::string text =
       "step,time,shear_dissipation,bulk_dissipation,inertial_loss,elastic_power,elastic_energy,wall_power";
   if (c.repulsionRadius() > 0) text += ",repulsion_power";
+  if (c.keepsVolume()) text += ",shift_power";
   if (c.hasSurfaceTension()) text += ",surface_power,surface_energy";
   if (c.heat) text += ",heat_energy,viscous_heating,heat_from_walls,heat_from_surface";
   for (const Body& body : c.bodies) {
@@ -33,6 +34,7 @@ std::string columns(const Case& c) {
 BalanceWriter::BalanceWriter(RowTarget to, const Case& c)
     : dimensions_(c.dimensions),
       repels_(c.repulsionRadius() > 0),
+      shifts_(c.keepsVolume()),
       hasSurface_(c.hasSurfaceTension()),
       rows_(std::move(to), columns(c)) {}
 
@@ -40,6 +42,7 @@ void BalanceWriter::append(std::int64_t step, double time, const Balance& b) {
   std::string row = fmt::format("{},{},{},{},{},{},{},{}", step, time, b.shearDissipation, b.bulkDissipation,
                                 b.inertialLoss, b.elasticPower, b.elasticEnergy, b.wallPower);
   if (repels_) row += fmt::format(",{}", b.repulsionPower);
+  if (shifts_) row += fmt::format(",{}", b.shiftPower);
   if (hasSurface_) row += fmt::format(",{},{}", b.surfacePower, b.surfaceEnergy);
   if (b.heat) row += fmt::format(",{},{},{},{}", b.heat->energy, b.heat->heating, b.heat->walls, b.heat->surface);
   for (const WallLoad& load : b.walls) {

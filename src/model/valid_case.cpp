@@ -140,13 +140,6 @@ void requireSound(const Checker& at, const MethodSettings& m) {
     if (radius <= 1)
       at.fail({key},
               fmt::format("expected more than 1 spacing, found {}: particles would have no neighbours", radius));
-  if (!m.tension) return;
-  if (m.scheme != SchemeKind::Accurate)
-    at.fail({"tension"}, fmt::format("found true with scheme = '{}'; only the scheme '{}' has it",
-                                     nameOf(m.scheme), nameOf(SchemeKind::Accurate)));
-  if (at.wholeCase().hasSurfaceTension())
-    at.fail({"tension"},
-            "found true beside a surface_tension, with which fluid bears pressures below zero anyway");
 }
 
 /// A surface is made of all particles of a frame.

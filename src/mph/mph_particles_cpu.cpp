@@ -14,21 +14,8 @@ void fill(std::span<T> to, F&& formula) {
 
 template <int D>
 void elasticPressure(Context<Cpu>&, const MphPairs<D>& pairs, std::span<const double> n,
-                     std::span<const Adhesion<D>> adhesion, std::span<double> elastic,
-                     std::span<const double> held) {
-  fill(elastic, [&](std::uint32_t i) { return elasticPressureOf(pairs, i, n[i], adhesion, held); });
-}
-
-template <int D>
-void holdPressures(Context<Cpu>&, const MphPairs<D>& pairs, double dt, const Surroundings& around,
-                   std::span<const double> divergence, std::span<double> held) {
-  fill(held, [&](std::uint32_t i) { return heldPressureOf(pairs, i, dt, around, divergence[i], held[i]); });
-}
-
-template <int D>
-void spreadVelocities(Context<Cpu>&, const MphPairs<D>& pairs, double dt, const Surroundings& around,
-                      std::span<const Vec<D>> u, std::span<Vec<D>> crowding) {
-  fill(crowding, [&](std::uint32_t i) { return spreadVelocityOf(pairs, i, dt, around, u[i], crowding[i]); });
+                     std::span<const Adhesion<D>> adhesion, std::span<double> elastic) {
+  fill(elastic, [&](std::uint32_t i) { return elasticPressureOf(pairs, i, n[i], adhesion); });
 }
 
 template <int D>
@@ -46,11 +33,7 @@ void bulkPressure(Context<Cpu>&, const MphPairs<D>& pairs, std::span<const doubl
 
 #define TREACLE_INSTANTIATE(D)                                                                                  \
   template void elasticPressure<D>(Context<Cpu>&, const MphPairs<D>&, std::span<const double>,                  \
-                                   std::span<const Adhesion<D>>, std::span<double>, std::span<const double>);   \
-  template void holdPressures<D>(Context<Cpu>&, const MphPairs<D>&, double, const Surroundings&,                \
-                                 std::span<const double>, std::span<double>);                                   \
-  template void spreadVelocities<D>(Context<Cpu>&, const MphPairs<D>&, double, const Surroundings&,             \
-                                    std::span<const Vec<D>>, std::span<Vec<D>>);                                \
+                                   std::span<const Adhesion<D>>, std::span<double>);                            \
   template void inertiaAndGravity<D>(Context<Cpu>&, const MphPairs<D>&, std::span<const Vec<D>>, const Vec<D>&, \
                                      std::span<Vec<D>>);                                                        \
   template void bulkPressure<D>(Context<Cpu>&, const MphPairs<D>&, std::span<const double>,                     \

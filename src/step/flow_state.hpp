@@ -57,11 +57,6 @@ struct FlowState {
     }
   }
 
-  /// Pressures that the first so many particles hold; none where the scheme has none.
-  std::span<const double> heldPressures(std::uint32_t count) const {
-    return theCase.holdsPressures() ? particles.heldPressure.span().first(count) : std::span<const double>{};
-  }
-
   /// The step before that at hand; as long as this one where that is not known [s].
   double lastStep() const { return particles.steps.last > 0 ? particles.steps.last : timeStep; }
 };

@@ -5,6 +5,7 @@
 #include "surface_heat.hpp"
 #include "treacle/mph/conduction.hpp"
 #include "treacle/mph/surface_tension.hpp"
+#include "treacle/mph/tension.hpp"
 #include "treacle/mph/wall_surfaces.hpp"
 #include "treacle/precondition/bucket_cells.hpp"
 
@@ -41,6 +42,7 @@ void planWallForces(const Case& c, const MemoryCounts& n, MemorySum& sum) {
   const std::uint64_t walls = n.activeWalls();
   sum.keep<double>(2 * walls);
   sum.keep<Vec<D>>(walls);
+  if (c.keepsVolume()) sum.keep<Vec<D>>(n.active);
   if (c.hasSurfaceTension()) sum.keep<Vec<D>>(n.active + n.heldFluid());
 }
 
@@ -70,7 +72,11 @@ void planFields(const Case& c, const MemoryCounts& n, bool withGradient, MemoryS
   if (withGradient) sum.keep<Vec<D>>(fluid);
   sum.keep<double>(fluid + (c.keepsVolume() ? 3 : 2) * n.active);
   sum.keep<Vec<D>>(fluid);
-  if (c.holdsPressures()) sum.keep<double>(n.active), sum.keep<Vec<D>>(fluid);
+  if (c.keepsVolume()) {
+    sum.keep<Vec<D>>(n.active + fluid);
+    sum.keep<Covered>(held);
+    sum.keep<double>(held);
+  }
   if (c.heat) planHeat<D>(c, n, sum);
   if (c.hasRigid()) {  // pressures, the right-hand side at rest and velocities found
     sum.keep<double>(n.active);

@@ -7,6 +7,7 @@
 #include "step_method.hpp"
 #include "step_rheology.hpp"
 #include "step_surface.hpp"
+#include "step_tension.hpp"
 #include "take_trial.hpp"
 #include "treacle/core/halo.hpp"
 #include "treacle/model/particles_copy.hpp"
@@ -33,12 +34,12 @@ class MphStep final : public StepMethod<D, Backend> {
       : state_(state),
         neighbourhood_(state.theCase),
         pairs_(neighbourhood_.pairs()),
-        holds_(state.theCase.holdsPressures()),
         wholeRows_(needsAssembled<Backend>(state.theCase.solver)),
         solver_(solveStages(solvedCase(state.theCase))) {
     if (state.theCase.hasOwnViscosities()) rheology_.emplace(state.theCase);
     if (state.theCase.heat) heat_.emplace(state.theCase, pairs_);
     if (state.theCase.hasSurfaceTension()) surface_.emplace(state.theCase);
+    if (state.theCase.keepsVolume()) tension_.emplace();
     if (state.theCase.hasRigid()) bodies_.emplace(state);
   }
 
@@ -72,6 +73,7 @@ class MphStep final : public StepMethod<D, Backend> {
     computeDensities();
     wallDensity_.resize(state_.context, state_.particles.fluidCount);
     wallDensity<D>(state_.context, pairs_, wallDensity_);
+    if (tension_) tension_->prepare(state_, pairs_, surroundings());
     prepareViscous();
   }
 
@@ -124,20 +126,12 @@ class MphStep final : public StepMethod<D, Backend> {
   }
 
   std::span<const Vec<D>> transportVelocities() override {
-    const std::span<const Vec<D>> u = state_.velocity.span().first(pairs_.ownFluid());
-    if (!holds_) return u;
-    const std::uint32_t active = pairs_.activeCount;
-    if (ones_.size() < active)
-      fromHost(state_.context, std::span<const double>(std::vector<double>(active, 1.0)), ones_);
-    transport_.resize(state_.context, u.size());
-    clearValues(state_.context, transport_.span());
-    addPressureGradient<D>(state_.context, pairs_, ones_.span().first(active), 1, transport_.span());
-    spreadVelocities<D>(state_.context, pairs_, state_.timeStep, surroundings(), u, transport_.span());
-    return transport_.span();
+    if (!tension_) return state_.velocity.span().first(pairs_.ownFluid());
+    return tension_->transport(state_, pairs_);
   }
 
   double longestWay(double speed) const override {
-    return speed * state_.timeStep + (holds_ ? longestShift * state_.theCase.spacing : 0);
+    return speed * state_.timeStep + (tension_ ? longestShift * state_.theCase.spacing : 0);
   }
 
   /// Psi of [K23 eq. (14)] with the new velocities.
@@ -149,11 +143,10 @@ class MphStep final : public StepMethod<D, Backend> {
     bulkPressure<D>(state_.context, pairs_, divergence_, elastic_, state_.particles.pressure.span().first(active));
     if (rheology_) rheology_->accept(state_);
     if (state_.theCase.needsBalance())
-      lastBalance_ = balance_.make(state_, pairs_, divergence_, elastic_, surface_ ? &*surface_ : nullptr);
+      lastBalance_ = balance_.make(state_, pairs_, divergence_, elastic_, surface_ ? &*surface_ : nullptr,
+                                   tension_ ? &*tension_ : nullptr);
     if (heat_) acceptHeat();
-    if (holds_)
-      holdPressures<D>(state_.context, pairs_, state_.timeStep, surroundings(), divergence_,
-                       state_.particles.heldPressure.span().first(active));
+    if (tension_) tension_->accept(state_, pairs_, surroundings());
     // The velocities of the start are given, no solution: nothing follows from the way to the first one.
     if (state_.step > 0)
       updateFlowMemory<D>(state_.context, state_.velocityStep, state_.lastStep(),
@@ -179,10 +172,10 @@ class MphStep final : public StepMethod<D, Backend> {
   std::size_t bytes() const override {
     return neighbourhood_.bytes() + wallSurface_.bytes() + renormalisation_.bytes() + viscosityScale_.bytes() +
            (rheology_ ? rheology_->bytes() : 0) + (heat_ ? heat_->bytes() : 0) +
-           (surface_ ? surface_->bytes() : 0) + wallBlock_.bytes() + wallGradient_.bytes() + wallDensity_.bytes() +
-           open_.bytes() + elastic_.bytes() + divergence_.bytes() + rhs_.bytes() + found_.bytes() +
-           solver_.bytes() + balance_.bytes() + wallForces_.bytes() + (bodies_ ? bodies_->bytes() : 0) +
-           rhsAtRest_.bytes() + pressure_.bytes() + ones_.bytes() + transport_.bytes();
+           (surface_ ? surface_->bytes() : 0) + (tension_ ? tension_->bytes() : 0) + wallBlock_.bytes() +
+           wallGradient_.bytes() + wallDensity_.bytes() + open_.bytes() + elastic_.bytes() + divergence_.bytes() +
+           rhs_.bytes() + found_.bytes() + solver_.bytes() + balance_.bytes() + wallForces_.bytes() +
+           (bodies_ ? bodies_->bytes() : 0) + rhsAtRest_.bytes() + pressure_.bytes();
   }
 
  private:
@@ -227,7 +220,7 @@ class MphStep final : public StepMethod<D, Backend> {
     fillGhosts(state_.context, Held::Active, divergence_.data());
     pressure_.resize(state_.context, active);
     bulkPressure<D>(state_.context, pairs_, divergence_, elastic_, pressure_);
-    wallForces_.sum(state_, pairs_, state_.velocity, pressure_, surface_ ? &*surface_ : nullptr);
+    wallForces_.sum(state_, pairs_, state_.velocity, pressure_, explicitForces());
     return wallForces_.loads(state_, pairs_, state_.velocity);
   }
 
@@ -319,17 +312,15 @@ class MphStep final : public StepMethod<D, Backend> {
 
   /// b of [K23 eq. (16)], and the terms of the repulsion and of prescribed wall velocities.
   void computeRightHandSide() {
-    const std::span<const double> held = state_.heldPressures(pairs_.activeCount);
-    if (holds_) fillGhosts(state_.context, Held::Active, state_.particles.heldPressure.data());
     elasticPressure<D>(state_.context, pairs_, state_.particles.numberDensity.span().first(pairs_.activeCount),
-                       surface_ ? surface_->adhesion() : std::span<const Adhesion<D>>{}, elastic_, held);
+                       surface_ ? surface_->adhesion() : std::span<const Adhesion<D>>{}, elastic_);
     rhs_.resize(state_.context, state_.particles.fluidCount);
     inertiaAndGravity<D>(state_.context, pairs_,
                          state_.particles.velocity.span().first(state_.particles.fluidCount),
                          resized<D>(state_.theCase.gravity), rhs_);
     addPressureGradient<D>(state_.context, pairs_, elastic_, -1.0, rhs_);
     if (pairs_.terms.repulsionRadius > 0) addRepulsion<D>(state_.context, pairs_, 1 / state_.timeStep, rhs_);
-    if (surface_) surface_->addForces(state_, rhs_);
+    if (const auto* others = explicitForces()) others->addForces(state_, rhs_);
     if (bodies_) {
       rhsAtRest_.resize(state_.context, rhs_.size());
       copyValues(state_.context, std::span<const Vec<D>>(rhs_), rhsAtRest_.data());
@@ -352,8 +343,10 @@ class MphStep final : public StepMethod<D, Backend> {
     addPressureGradient<D>(state_.context, pairs_, divergence_, -1.0, rhs_);
   }
 
-  Surroundings surroundings() const {
-    return {state_.particles.numberDensity.span().first(pairs_.activeCount), open_.span()};
+  Surroundings surroundings() const { return {state_.particles.numberDensity, open_, wallDensity_}; }
+  const ExplicitForces<D, Backend>* explicitForces() const {
+    if (surface_) return &*surface_;
+    return tension_ ? &*tension_ : nullptr;
   }
 
   std::string notFiniteOnHost() {
@@ -367,7 +360,6 @@ class MphStep final : public StepMethod<D, Backend> {
   FlowState<D, Backend>& state_;
   MphNeighbourhood<D, Backend> neighbourhood_;
   const MphPairs<D>& pairs_;
-  bool holds_;                                   // whether particles hold pressures
   bool wholeRows_;                               // of A in the lists
   Buffer<WallSurface<D>, Backend> wallSurface_;  // per active wall particle
   Buffer<SymmetricBlock<D>, Backend> renormalisation_;
@@ -376,8 +368,6 @@ class MphStep final : public StepMethod<D, Backend> {
   Buffer<Vec<D>, Backend> wallGradient_;
   Buffer<double, Backend> wallDensity_;  // the walls' part of n per fluid particle
   Buffer<double, Backend> open_;         // how open places of particles are, where the case keeps its volume [-]
-  Buffer<double, Backend> ones_;         // where particles hold pressures; likewise:
-  Buffer<Vec<D>, Backend> transport_;    // what the fluid goes with
   Buffer<double, Backend> elastic_;      // elasticPressure() per particle [Pa]
   Buffer<double, Backend> divergence_;   // C^T u per particle [1/s]
   Buffer<Vec<D>, Backend> rhs_;
@@ -386,6 +376,7 @@ class MphStep final : public StepMethod<D, Backend> {
   Buffer<Vec<D>, Backend> found_;                     // velocities of the last solve, while the next is prepared
   std::optional<StepHeat<D, Backend>> heat_;          // where the case has heat
   std::optional<StepSurface<D, Backend>> surface_;    // where some fluid has a surface tension
+  std::optional<StepTension<D, Backend>> tension_;    // where the case keeps its volume
   std::optional<StepBodies<D, Backend>> bodies_;      // where the case has rigid bodies; then also:
   Buffer<Vec<D>, Backend> rhsAtRest_;                 // the right-hand side without velocities of walls
   Buffer<double, Backend> pressure_;                  // per active particle [Pa]

@@ -153,6 +153,7 @@ void OpenBoundaries<D, Backend>::addLayer(const CellGrid<D>& grid, std::size_t b
   const WallMotion<D> motion =
       nozzle.motionAtEnd(state_.theCase.domain, state_.time - state_.timeStep, state_.timeStep);
   for (std::uint32_t i = first; i < added.fluidCount; ++i) {
+    added.pressure[i] = added.heldPressure[i] = 0;
     added.velocity[i] = motion.velocityAt(added.position[i]);
     added.material[i] = static_cast<std::uint8_t>(b.material);
     added.body[i] = static_cast<std::uint8_t>(body);

@@ -20,8 +20,6 @@ void requireShareable(const Case& c, BackendKind backend) {
   if (backend == BackendKind::Cuda && c.solver.neighbours != NeighbourKind::Lists)
     refuse(fmt::format("solver.neighbours = {}", nameOf(c.solver.neighbours)),
            std::string(nameOf(NeighbourKind::Lists)));
-  // The pressures that walls hold would stay behind where the border between processes moves.
-  if (c.method.tension) refuse("method.tension = true", "false");
   if (c.solver.operatorKind == OperatorKind::Assembled)
     refuse("solver.operator = assembled", std::string(nameOf(OperatorKind::MatrixFree)));
   if (c.solver.preconditioner != PreconditionerKind::BucketMultigrid) return;

@@ -2,6 +2,7 @@
 
 #include "flow_state.hpp"
 #include "step_surface.hpp"
+#include "step_tension.hpp"
 #include "treacle/model/balance.hpp"
 #include "treacle/model/wall_motion.hpp"
 #include "treacle/mph/mph_balance.hpp"
@@ -24,12 +25,15 @@ class StepBalance {
 
   /// Once state.velocity and the pressures are those of the end of the step; positions and particles' velocities
   /// are still those of its start. `divergence`: C^T u^{k+1}, `elastic`: elasticPressure(), per active particle;
-  /// `surface`: null where no fluid has a surface tension.
+  /// `surface`, `tension`: null where the case has none; it has at most one of them.
   Balance make(FlowState<D, Backend>& state, const MphPairs<D>& pairs, std::span<const double> divergence,
-               std::span<const double> elastic, const StepSurface<D, Backend>* surface) {
-    sumPairs(state, pairs, surface);
+               std::span<const double> elastic, const StepSurface<D, Backend>* surface,
+               const StepTension<D, Backend>* tension) {
+    const ExplicitForces<D, Backend>* others = surface;
+    if (tension) others = tension;
+    sumPairs(state, pairs, others);
     Balance balance;
-    setPowers(state, pairs, divergence, elastic, surface, balance);
+    setPowers(state, pairs, divergence, elastic, surface, tension, balance);
     setLoads(state, pairs, balance);
     return balance;
   }
@@ -37,18 +41,19 @@ class StepBalance {
   std::size_t bytes() const { return shear_.bytes() + repulsion_.bytes(); }
 
  private:
-  void sumPairs(FlowState<D, Backend>& state, const MphPairs<D>& pairs, const StepSurface<D, Backend>* surface) {
+  void sumPairs(FlowState<D, Backend>& state, const MphPairs<D>& pairs, const ExplicitForces<D, Backend>* others) {
     const std::uint32_t n = pairs.fluidCount;
     shear_.resize(state.context, n);
     shearDissipation<D>(state.context, pairs, state.velocity, shear_);
-    walls_.sum(state, pairs, state.velocity, state.particles.pressure.span().first(pairs.activeCount), surface);
+    walls_.sum(state, pairs, state.velocity, state.particles.pressure.span().first(pairs.activeCount), others);
     if (pairs.terms.repulsionRadius == 0) return;
     repulsion_.resize(state.context, n);
     repulsionPower<D>(state.context, pairs, 1 / state.timeStep, state.velocity, repulsion_);
   }
 
   void setPowers(FlowState<D, Backend>& state, const MphPairs<D>& pairs, std::span<const double> divergence,
-                 std::span<const double> elastic, const StepSurface<D, Backend>* surface, Balance& balance) {
+                 std::span<const double> elastic, const StepSurface<D, Backend>* surface,
+                 const StepTension<D, Backend>* tension, Balance& balance) {
     using Terms = PowerTerms<D>;
     const Terms terms{pairs.fluidCount,
                       pairs.ownFluid(),
@@ -62,8 +67,10 @@ class StepBalance {
                       walls_.divergence(),
                       walls_.density(),
                       repulsion_,
-                      walls_.surfaceForce(),
-                      surface ? surface->slope() : std::span<const SurfaceSlope<D>>{}};
+                      walls_.otherForce(),
+                      surface ? surface->slope() : std::span<const SurfaceSlope<D>>{},
+                      tension ? tension->transport() : std::span<const Vec<D>>{},
+                      state.velocityStep * resized<D>(state.theCase.gravity)};
     const auto sums = sumPowers<D>(state.context, terms, pairs.ownEnd());
     const double volume = std::pow(pairs.spacing, D);  // [K23 eq. (11)]
     balance.shearDissipation = volume * sums[Terms::Shear];
@@ -71,7 +78,8 @@ class StepBalance {
     balance.inertialLoss = volume * sums[Terms::Inertial];
     balance.elasticPower = volume * sums[Terms::Elastic];
     balance.repulsionPower = volume * sums[Terms::Repulsion];
-    balance.surfacePower = volume * sums[Terms::Surface];
+    (surface ? balance.surfacePower : balance.elasticPower) += volume * sums[Terms::Force];
+    balance.shiftPower = volume * sums[Terms::Shift];
     balance.surfaceEnergy = volume * sums[Terms::SurfaceEnergy];
     balance.elasticEnergy = volume * sums[Terms::ElasticEnergy];
   }

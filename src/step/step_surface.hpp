@@ -1,6 +1,6 @@
 #pragma once
 
-#include "flow_state.hpp"
+#include "explicit_forces.hpp"
 #include "treacle/core/halo.hpp"
 #include "treacle/mph/surface_tension.hpp"
 
@@ -10,7 +10,7 @@ namespace treacle {
 
 /// The surface tension of a step of MPH-I, of the places at its start.
 template <int D, class Backend>
-class StepSurface {
+class StepSurface final : public ExplicitForces<D, Backend> {
  public:
   explicit StepSurface(const Case& c) : terms_(SurfaceTerms<D>::make(c)), wallsBearIt_(c.needsWallForces()) {}
 
@@ -49,15 +49,12 @@ class StepSurface {
     }
   }
 
-  /// y += the forces per own fluid particle [N/m3].
-  void addForces(FlowState<D, Backend>& state, std::span<Vec<D>> y) const {
+  void addForces(FlowState<D, Backend>& state, std::span<Vec<D>> y) const override {
     addSurfaceForces<D>(state.context, even_.span().first(y.size()), y);
   }
 
-  /// Sets y to the forces on own fluid particles and, from the place of the first wall particle on, on those of
-  /// `walls`, which are added to `load` [N/m3]. Of cases with a balance or rigid bodies.
   void allForces(FlowState<D, Backend>& state, const MphPairs<D>& pairs, const ClusterListView& walls,
-                 std::span<Vec<D>> y, std::span<Vec<D>> load) const {
+                 std::span<Vec<D>> y, std::span<Vec<D>> load) const override {
     const std::uint32_t n = pairs.ownFluid();
     copyValues(state.context, std::span<const Vec<D>>(even_.span()).first(n), y.data());
     clearValues(state.context, y.subspan(n));

@@ -1,7 +1,6 @@
 #pragma once
 
-#include "flow_state.hpp"
-#include "step_surface.hpp"
+#include "explicit_forces.hpp"
 #include "treacle/mph/mph_balance.hpp"
 #include "treacle/mph/mph_neighbourhood.hpp"
 #include "treacle/mph/mph_repulsion.hpp"
@@ -29,10 +28,9 @@ class WallForces {
     walls_ = list_.view();
   }
 
-  /// With these velocities and pressures of all active particles. `surface`: null where no fluid has a surface
-  /// tension.
+  /// With these velocities and pressures of all active particles. `others`: null where there are none.
   void sum(FlowState<D, Backend>& state, const MphPairs<D>& pairs, std::span<const Vec<D>> u,
-           std::span<const double> pressure, const StepSurface<D, Backend>* surface) {
+           std::span<const double> pressure, const ExplicitForces<D, Backend>* others) {
     const std::uint32_t n = pairs.fluidCount, active = pairs.activeCount;  // of ghosts nothing is summed
     force_.resize(state.context, active - n);
     divergence_.resize(state.context, active - n);
@@ -40,9 +38,9 @@ class WallForces {
     fluidAtWalls<D>(state.context, pairs, walls_, u, pressure,
                     {force_.span(), divergence_.span(), density_.span()});
     if (pairs.terms.repulsionRadius > 0) addRepulsionOnWalls<D>(state.context, pairs, 1 / state.timeStep, force_);
-    if (!surface) return;
-    surfaceForce_.resize(state.context, active);
-    surface->allForces(state, pairs, walls_, surfaceForce_.span(), force_.span());
+    if (!others) return;
+    otherForce_.resize(state.context, active);
+    others->allForces(state, pairs, walls_, otherForce_.span(), force_.span());
   }
 
   /// Per body of the case, of all processes, after sum() with the velocities `u` [N], [N m] and [W]; in 2D per
@@ -56,19 +54,21 @@ class WallForces {
   std::span<const double> divergence() const { return divergence_; }  // the fluid's part, per wall particle [1/s]
   std::span<const double> density() const { return density_; }        // likewise [-]
 
-  std::span<const Vec<D>> surfaceForce() const { return surfaceForce_; }  // per active particle [N/m3], or empty
+  std::span<const Vec<D>> otherForce() const {
+    return otherForce_;
+  }  // of ExplicitForces, per active particle [N/m3], or empty
 
   std::size_t bytes() const {
-    return list_.bytes() + force_.bytes() + divergence_.bytes() + density_.bytes() + surfaceForce_.bytes();
+    return list_.bytes() + force_.bytes() + divergence_.bytes() + density_.bytes() + otherForce_.bytes();
   }
 
  private:
   ClusterList<Backend> list_;
   ClusterListView walls_;
-  Buffer<Vec<D>, Backend> force_;         // per active wall particle [N/m3]
-  Buffer<double, Backend> divergence_;    // [1/s]
-  Buffer<double, Backend> density_;       // [-]
-  Buffer<Vec<D>, Backend> surfaceForce_;  // of surface tension, per active particle [N/m3]
+  Buffer<Vec<D>, Backend> force_;       // per active wall particle [N/m3]
+  Buffer<double, Backend> divergence_;  // [1/s]
+  Buffer<double, Backend> density_;     // [-]
+  Buffer<Vec<D>, Backend> otherForce_;  // of ExplicitForces, per active particle [N/m3]
 };
 
 }  // namespace treacle

@@ -81,6 +81,7 @@ inline void expectSame(const Case& c, const StepReport& a, const StepReport& b, 
   expectNear(a.balance->bulkDissipation, b.balance->bulkDissipation, power, "bulk", b.step);
   expectNear(a.balance->elasticPower, b.balance->elasticPower, power, "elastic power", b.step);
   expectNear(a.balance->repulsionPower, b.balance->repulsionPower, power, "repulsion", b.step);
+  expectNear(a.balance->shiftPower, b.balance->shiftPower, power, "shift", b.step);
   expectNear(a.balance->surfacePower, b.balance->surfacePower, power, "surface power", b.step);
   expectNear(a.balance->surfaceEnergy, b.balance->surfaceEnergy, b.balance->surfaceEnergy, "surface energy",
              b.step);
@@ -113,7 +114,7 @@ void expectSameFields(const Case& c, const Particles<D>& a, const Particles<D>& 
     ASSERT_EQ(i < a.fluidCount, j < b.fluidCount);
     EXPECT_EQ(a.material[i], b.material[j]);
     EXPECT_EQ(a.body[i], b.body[j]);
-    ASSERT_LT(norm(a.position[i] - b.position[j]), 1e-8 * c.spacing) << id;
+    ASSERT_LT(norm(a.position[i] - b.position[j]), 2e-8 * c.spacing) << id;
     ASSERT_LT(norm(a.velocity[i] - b.velocity[j]), 1e-6 * speed) << id;
     ASSERT_NEAR(a.pressure[i], b.pressure[j], 1e-4 * stress) << id;  // the bulk viscosity amplifies what is left
     // Wall particles without fluid in reach have a density only where one beside them in the sort has fluid.

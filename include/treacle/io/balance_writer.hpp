@@ -22,6 +22,7 @@ class BalanceWriter {
  private:
   int dimensions_;
   bool repels_;
+  bool shifts_;
   bool hasSurface_;
   Rows rows_;
 };

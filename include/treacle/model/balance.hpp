@@ -25,7 +25,7 @@ struct HeatBalance {
 
 /// Where the energy of the fluid goes in one step of MPH-I, with the velocities at its end and the places at its
 /// start; in 2D per metre of depth. Kinetic energy gains dt times the power of gravity, elastic pressures,
-/// repulsion, surface tension and walls less the two dissipations and the inertial loss.
+/// repulsion, surface tension, shift and walls less the two dissipations and the inertial loss.
 struct Balance {
   double shearDissipation = 0;        // [W]
   double bulkDissipation = 0;         // [W]
@@ -35,6 +35,7 @@ struct Balance {
   double wallPower = 0;               // what walls that move give to the fluid [W]
   std::vector<WallLoad> walls;        // of the wall bodies, in the order of the case
   double repulsionPower = 0;          // what the repulsion of close particles gives to the motion [W]
+  double shiftPower = 0;              // what the shift of particles adds to their potential energy [W]
   double surfacePower = 0;            // what surface tension gives to the motion [W]
   double surfaceEnergy = 0;           // of the free surfaces, gamma times their area [J]
   std::optional<HeatBalance> heat{};  // in cases with heat

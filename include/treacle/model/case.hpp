@@ -78,12 +78,10 @@ struct Case {
   bool isAccurate() const { return method.kind == MethodKind::MphI && method.scheme == SchemeKind::Accurate; }
   /// Where in a step the forces on the fluid are those that it has: at its start, as in [K23], or in its middle.
   double middleShare() const { return keepsVolume() ? 0.5 : 0; }
-  /// Whether the motion and the weight of densities are those that keep the volume (docs/accurate.md). A surface
-  /// tension, which acts by the places of particles, would need steps half as long, and was made for other
-  /// densities.
+  /// Whether the motion, the weight of densities and the tension of the fluid are those that keep the volume
+  /// (docs/accurate.md). A surface tension, which acts by the places of particles, would need steps half as long,
+  /// and was made for other densities.
   bool keepsVolume() const { return isAccurate() && !hasSurfaceTension(); }
-  /// Whether particles hold a part of their elastic pressure (Particles::heldPressure).
-  bool holdsPressures() const { return isAccurate() && method.tension; }
   /// Farthest distance at which particles act on each other [m].
   double interactionRadius() const {
     return method.kind == MethodKind::Isph ? 2 * smoothingLength() : std::max(viscosityRadius(), densityRadius());

@@ -50,7 +50,6 @@ struct MethodSettings {
   double viscosityRadius = 3.5;  // h_v / l
   // Which share of the viscosity that its missing neighbours would give it a particle gets from those it has.
   double viscosityCorrection = 0.5;
-  bool tension = false;             // whether fluid bears pressures below zero
   double ambientPressure = 101325;  // around the fluid; it parts where its own is less than minus that [Pa]
   IsphSettings isph;
 

@@ -90,7 +90,7 @@ struct Particles {
   Buffer<Vec<D>, Backend> velocity;        // u [m/s]
   Buffer<double, Backend> pressure;        // Psi [Pa]
   Buffer<double, Backend> numberDensity;   // n [-]
-  Buffer<double, Backend> heldPressure;    // part of the elastic pressure that follows the divergence [Pa]
+  Buffer<double, Backend> heldPressure;    // tension of the fluid, below zero (mph/tension.hpp) [Pa]
   Buffer<std::uint8_t, Backend> material;  // index into Case::materials
   Buffer<std::uint8_t, Backend> body;      // index into Case::bodies
   Buffer<std::uint32_t, Backend> id;

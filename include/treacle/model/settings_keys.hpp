@@ -77,13 +77,9 @@ void visit(auto& v, Like<MethodSettings> auto& m, const Case& c) {
      "",
      {0, 1}},
     m.viscosityCorrection);
-  v({"tension",
-     "Whether the fluid bears pressures below zero where it is surrounded, so that fluid that is pulled, or that "
-     "folds, keeps its volume; of the accurate scheme"},
-    m.tension);
   v({"ambient_pressure",
-     "With tension: the fluid bears pressures down to minus this one where it has no free surface, and parts "
-     "below",
+     "The fluid bears pressures down to minus this one where it has no free surface, and parts below; of the "
+     "accurate scheme",
      optional, "Pa", notNegative},
     m.ambientPressure);
 }

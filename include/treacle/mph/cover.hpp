@@ -9,21 +9,30 @@ namespace treacle {
 /// What a number density n of a particle says of the fluid around it. The place of a particle is open by
 /// g = |sum_j v_ij d_ij| / (n_0 l), v = [1-q^2]_+^3: nothing inside of the fluid, and what is missing on one side
 /// near a free surface. In the outermost rows of a lattice with a plane surface g is 0.83, 0.34 and 0.02, in 3D
-/// 0.85, 0.32 and 0.01, and n/n_0 is about 1 - 0.04 g - 0.45 g^2.
+/// 0.85, 0.32 and 0.01, and n/n_0 is about 1 - 0.04 g - 0.45 g^2. Where a wall that makes up the share w of n_0
+/// ends a surface, it fills that share of what is missing: then g and 1 - n/n_0 are (1 - w) times those without
+/// it.
 struct Cover {
   double rest;   // n/n_0 of fluid that has its density and is as open
   double bears;  // share of a pressure below zero that it bears, 0 to 1
+  double tells;  // how far its number density tells what fluid is missing, 0 to 1
 
-  /// Whether a particle counts for the volume of the fluid: not if it is alone or nearly so.
-  TREACLE_HD static bool isInside(double open, double ratio) { return ratio > 0.4 && open < inside * ratio; }
+  /// Whether a particle counts for the volume of the fluid: not if it is alone or nearly so, and not beside a
+  /// wall, where a gap under fluid that has rolled onto it would count as fluid that has swollen. `walls`: w.
+  TREACLE_HD static bool isInside(double open, double ratio, double walls) {
+    return ratio > 0.4 && open < inside * ratio && walls < 0.05;
+  }
 
-  TREACLE_HD static Cover of(double open, double ratio) {
-    const double rest = 1 - open * (0.04 + 0.45 * open);
-    return {rest, falling(open, inside, 0.35) * falling(rest - ratio, 0.15, 0.3)};
+  /// `walls`: w. Where a surface meets a wall fluid parts from it and rolls onto it, so that less openness counts.
+  TREACLE_HD static Cover of(double open, double ratio, double walls = 0) {
+    const double rest = 1 - open * (0.04 + 0.45 * open / (1 - fmin(0.9, walls)));
+    const double bears = falling(open, inside, outside) * falling(rest - ratio, 0.08, 0.12);
+    const double scale = 1 - 0.8 * fmin(1.0, 10 * walls);
+    return {rest, bears, bears * falling(open, scale * inside, scale * outside)};
   }
 
  private:
-  static constexpr double inside = 0.2;
+  static constexpr double inside = 0.2, outside = 0.35;
 
   /// From 1 up to a to 0 from b on.
   TREACLE_HD static double falling(double x, double a, double b) {

@@ -133,6 +133,12 @@ struct MphTerms {
     const auto part = positivePart(T(1) - r.square * (T(1) / (densityRadius * densityRadius)));
     return part * part * part;
   }
+  /// -w' / r of the window.
+  template <class Distance>
+  TREACLE_HD auto densityGradient(const Distance& r) const {
+    const T square = densityRadius * densityRadius;
+    return (2 * densityFactor / square) * DensityWindow::slope(positivePart(T(1) - r.square * (T(1) / square)));
+  }
   /// -w' / r: factor times (1/r - 1/h_p), (1-q)^3/h_p or (1-q)^5 (1+5q)/h_p
   template <class Distance>
   TREACLE_HD auto gradientShape(const Distance& r) const {

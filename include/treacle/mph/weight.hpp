@@ -67,6 +67,14 @@ struct DensityWindow {
            (0.00663 +
             s * (0.02628 + s * (0.26834 + s * (-0.17536 + s * (0.99654 + s * (-0.56423 + s * 0.4418))))));
   }
+  /// Its derivative by s.
+  template <class Real>
+  TREACLE_HD static Real slope(const Real& s) {
+    return s *
+           (2 * 0.00663 +
+            s * (3 * 0.02628 + s * (4 * 0.26834 + s * (5 * -0.17536 +
+                                                       s * (6 * 0.99654 + s * (7 * -0.56423 + s * 8 * 0.4418))))));
+  }
   /// Its integral over all space, in units of h.
   template <int D>
   static double integral() {

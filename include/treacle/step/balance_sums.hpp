@@ -17,7 +17,7 @@ namespace treacle {
 /// those of walls start with the first wall particle.
 template <int D>
 struct PowerTerms {
-  enum { Shear, Bulk, Inertial, Elastic, ElasticEnergy, Repulsion, Surface, SurfaceEnergy, count };
+  enum { Shear, Bulk, Inertial, Elastic, ElasticEnergy, Repulsion, Shift, Force, SurfaceEnergy, count };
 
   std::uint32_t fluidCount, ownFluid;  // fluid from ownFluid on is other processes'
   MaterialTable materials;
@@ -29,8 +29,10 @@ struct PowerTerms {
   std::span<const double> wallDivergence;  // the fluid's parts of C^T u and n at walls
   std::span<const double> wallDensity;
   std::span<const double> repulsion;              // what it gives to the fluid [W/m3], or empty
-  std::span<const Vec<D>> surfaceForce;           // of surface tension, on walls, too [N/m3], or empty
+  std::span<const Vec<D>> force;                  // of ExplicitForces, on walls, too [N/m3], or empty
   std::span<const SurfaceSlope<D>> surfaceSlope;  // surface_tension.hpp; or empty
+  std::span<const Vec<D>> transport;              // what own fluid goes with, if that is not `after` [m/s]
+  Vec<D> gravity;                                 // times that dt of the inertia [m/s]
 
   /// Pairs of walls do no work on the fluid, and what they are compressed by without fluid it cannot get back.
   TREACLE_HD void add(std::size_t i, double* sums) const {
@@ -44,10 +46,11 @@ struct PowerTerms {
       const double without = fluid ? 0 : strain - wallDensity[i - fluidCount];
       sums[ElasticEnergy] += 0.5 * kappa * (strain * strain - (without > 0 ? without * without : 0));
     }
-    if (!surfaceForce.empty()) sums[Surface] += dot(surfaceForce[i], after[i]);
+    if (!force.empty()) sums[Force] += dot(force[i], after[i]);
     if (!fluid) return;
     sums[Shear] += shear[i];
     if (!repulsion.empty()) sums[Repulsion] += repulsion[i];
+    if (!transport.empty()) sums[Shift] -= materials.inertia[m] * dot(gravity, transport[i] - after[i]);
     if (!surfaceSlope.empty()) sums[SurfaceEnergy] += surfaceEnergyShare * norm2(surfaceSlope[i].m);
     sums[Inertial] += 0.5 * materials.inertia[m] * norm2(after[i] - before[i]);
   }

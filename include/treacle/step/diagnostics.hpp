@@ -65,11 +65,14 @@ struct DiagnosticsTerm {
         d.elasticEnergy = 0.5 * volume * in.materials.bulkModulus[in.material[i]] * excess * excess;
       }
     }
-    if (!in.open.empty())
-      if (const double ratio = in.numberDensity[i] / in.restDensity; Cover::isInside(in.open[i], ratio)) {
+    if (!in.open.empty()) {
+      const double ratio = in.numberDensity[i] / in.restDensity;
+      const double walls = in.wallDensity.empty() ? 0 : in.wallDensity[i] / in.restDensity;
+      if (Cover::isInside(in.open[i], ratio, walls)) {
         d.interiorParticles = 1;
         d.insideVolume = Cover::of(in.open[i], ratio).rest / ratio;
       }
+    }
     if (in.density.empty()) return d;
     d.excessDensity = in.density[i] > 1 ? in.density[i] - 1 : 0;
     d.meanDensityRatio = in.density[i];

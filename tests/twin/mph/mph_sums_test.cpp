@@ -7,6 +7,7 @@
 #include "treacle/mph/mph_repulsion.hpp"
 #include "treacle/mph/renormalisation.hpp"
 #include "treacle/mph/surface_tension.hpp"
+#include "treacle/mph/tension.hpp"
 #include "treacle/mph/viscosity_scale.hpp"
 
 #include <gtest/gtest.h>
@@ -219,6 +220,71 @@ void checkRepulsion(bool lists) {
   repulsionPower<D>(s.context, s.pairs(), 1e3, u, power);
   repulsionPower<D>(d.context, d.pairs, 1e3, copyToDevice<Vec<D>>(d.context, u), powerFound);
   EXPECT_LE(difference<double>(d.context, power.span(), powerFound), operatorTolerance);
+}
+
+/// All of mph/tension.hpp, on places as open as they come.
+template <int D>
+void checkTension(bool lists) {
+  Scene<D> s = makeScene<D>({.seed = 3, .jitter = 0.3, .scheme = SchemeKind::Accurate});
+  DeviceScene<D> d(s);
+  if (!lists) d.pairs.fluidList.offset = d.pairs.wallList.offset = nullptr;
+  MphPairs<D> host = s.pairs();
+  host.ambientPressure = d.pairs.ambientPressure = 400;  // some would have less
+  const std::uint32_t n = host.fluidCount, active = host.activeCount;
+  std::vector<double> density(active), open(active), walls(n), tension(active), mean(active);
+  for (std::uint32_t i = 0; i < active; ++i) {
+    density[i] = (0.8 + 0.003 * (i % 83)) * host.restDensity, open[i] = 0.004 * (i % 101);
+    tension[i] = -50.0 * (i % 13);
+    if (i < n) walls[i] = 0.05 * (i % 7) * host.restDensity;
+  }
+  std::vector<Covered> covered(n);
+  std::vector<Vec<D>> force(active), transport(n);
+  const auto u = randomVectors<D>(active, 8);
+  const auto densityFound = copyToDevice<double>(d.context, density),
+             openFound = copyToDevice<double>(d.context, open),
+             wallsFound = copyToDevice<double>(d.context, walls);
+  auto tensionFound = copyToDevice<double>(d.context, tension), meanFound = copyToDevice<double>(d.context, mean);
+  auto coveredFound = copyToDevice<Covered>(d.context, covered);
+  auto forceFound = copyToDevice<Vec<D>>(d.context, force),
+       transportFound = copyToDevice<Vec<D>>(d.context, transport);
+  const auto uFound = copyToDevice<Vec<D>>(d.context, u);
+  const Surroundings around{density, open, walls}, aroundFound{densityFound, openFound, wallsFound};
+
+  for (const bool ofWalls : {false, true}) {
+    const ClusterListView& list = ofWalls ? host.wallList : host.fluidList;
+    tensionForces<D>(s.context, host, list, tension, force);
+    tensionForces<D>(d.context, d.pairs, ofWalls ? d.pairs.wallList : d.pairs.fluidList, tensionFound,
+                     forceFound.span());
+  }
+  EXPECT_LE(difference<Vec<D>>(d.context, force, forceFound), operatorTolerance);
+  spreadVelocities<D>(s.context, host, 1e-3, u, tension, transport);
+  spreadVelocities<D>(d.context, d.pairs, 1e-3, uFound, tensionFound, transportFound.span());
+  EXPECT_LE(difference<Vec<D>>(d.context, transport, transportFound), operatorTolerance);
+  lackOfDensity<D>(s.context, host, around, covered);
+  lackOfDensity<D>(d.context, d.pairs, aroundFound, coveredFound.span());
+  EXPECT_LE(difference<Covered>(d.context, covered, coveredFound), operatorTolerance);
+  coveredMeans<D>(s.context, host, host.fluidList, covered, mean);
+  coveredMeans<D>(d.context, d.pairs, d.pairs.fluidList, coveredFound, meanFound.span());
+  EXPECT_LE(difference<double>(d.context, mean, meanFound), operatorTolerance);
+  followDensity<D>(s.context, host, 1e-3, around, std::span(mean).first(n), std::span(tension).first(n));
+  followDensity<D>(d.context, d.pairs, 1e-3, aroundFound, meanFound.span().first(n), tensionFound.span().first(n));
+  coverTension<D>(s.context, host, around, std::span(tension).first(n), covered);
+  coverTension<D>(d.context, d.pairs, aroundFound, tensionFound.span().first(n), coveredFound.span());
+  coveredMeans<D>(s.context, host, host.wallList, covered, tension);
+  coveredMeans<D>(d.context, d.pairs, d.pairs.wallList, coveredFound, tensionFound.span());
+  EXPECT_LE(difference<double>(d.context, tension, tensionFound), operatorTolerance);
+  EXPECT_LE(difference<Covered>(d.context, covered, coveredFound), operatorTolerance);
+  addValues(s.context, density, mean);
+  addValues(d.context, densityFound, meanFound.span());
+  EXPECT_LE(difference<double>(d.context, mean, meanFound), operatorTolerance);
+}
+
+TEST(PairSumsTwin, TensionEqualsTheCpu) {
+  TREACLE_SKIP_WITHOUT_GPU();
+  for (const bool lists : {true, false}) {
+    checkTension<2>(lists);
+    checkTension<3>(lists);
+  }
 }
 
 TEST(PairSumsTwin, RepulsionEqualsTheCpu) {

@@ -20,6 +20,7 @@ void expectClose(const Balance& expected, const Balance& found, double arm) {
   EXPECT_PRED2(close, expected.elasticEnergy, found.elasticEnergy);
   EXPECT_PRED2(close, expected.wallPower, found.wallPower);
   EXPECT_PRED2(close, expected.repulsionPower, found.repulsionPower);
+  EXPECT_PRED2(close, expected.shiftPower, found.shiftPower);
   ASSERT_EQ(expected.walls.size(), found.walls.size());
   for (std::size_t k = 0; k < expected.walls.size(); ++k) {
     const WallLoad &a = expected.walls[k], &b = found.walls[k];

@@ -112,12 +112,6 @@ constexpr BadCase badCases[] = {
      "bad.toml:17:16: bulk_modulus in [[material]] 'syrup': expected a number not less than 0 [Pa], found nan"},
     {"infinity", "min = [0, 0]", "min = [0, -inf]",
      "bad.toml:24:7: min in [[body]] 'column' (box): expected an array of 2 finite numbers [m], found -inf"},
-    {"tensionOfThePublishedScheme", "[output]", "[method]\nscheme = \"published\"\ntension = true\n[output]",
-     "bad.toml:41:11: tension in [method]: found true with scheme = 'published'; only the scheme 'accurate' has "
-     "it"},
-    {"tensionBesideASurfaceTension", bulk,
-     "bulk_viscosity = 1e4\nbulk_modulus = 1e6\nsurface_tension = 1\n[method]\ntension = true\n",
-     "bad.toml:20:11: tension in [method]: found true beside a surface_tension, with which fluid bears"},
     {"zeroRadius", "[output]", "[method]\npressure_radius = 0\n[output]",
      "bad.toml:40:19: pressure_radius in [method]: expected a number between 0 and 20 [spacings], found 0"},
     {"unknownMaterial", "material = \"syrup\"", "material = \"sirup\"",
@@ -180,7 +174,7 @@ constexpr BadCase badCases[] = {
     {"keyOfIsph", "[output]", "[method]\nviscosity = \"explicit\"\n[output]",
      "bad.toml:40:1: unknown key 'viscosity' in [method]: it belongs to the method 'isph'; expected 'name', "
      "'scheme', 'pressure_weight', 'viscosity_weight', 'wall_velocity', 'pressure_gradient', 'pressure_radius', "
-     "'density_radius', 'viscosity_radius', 'viscosity_correction', 'tension' or 'ambient_pressure'"},
+     "'density_radius', 'viscosity_radius', 'viscosity_correction' or 'ambient_pressure'"},
     {"keyOfMph", bulk, "[method]\nname = \"isph\"\npressure_radius = 2\n",
      "bad.toml:18:1: unknown key 'pressure_radius' in [method] (isph): it belongs to the method 'mph-i'; expected "
      "'name', 'kernel', 'smoothing_ratio', 'alpha', 'walls', 'viscosity', 'shifting' or 'negative_pressure'"},

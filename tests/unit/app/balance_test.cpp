@@ -42,20 +42,20 @@ TEST(balance, closesWithTheHistory) {
   ASSERT_EQ(history.size(), 6u);
   EXPECT_EQ(lines[0],
             "step,time,shear_dissipation,bulk_dissipation,inertial_loss,elastic_power,elastic_energy,wall_power,"
-            "repulsion_power,floor_force_x,floor_force_y,floor_torque");
+            "repulsion_power,shift_power,floor_force_x,floor_force_y,floor_torque");
   for (std::size_t k = 0; k < 6; ++k) {
     const std::vector<double> row = numbersOf(lines[k + 1]);
-    ASSERT_EQ(row.size(), 12u);
+    ASSERT_EQ(row.size(), 13u);
     EXPECT_EQ(row[0], static_cast<double>(k + 1));
     EXPECT_EQ(row[1], history[k].time);
     if (k == 0) continue;
     const double gained = history[k].kineticEnergy + history[k].potentialEnergy - history[k - 1].kineticEnergy -
                           history[k - 1].potentialEnergy;
-    const double lost = 1e-3 * (row[2] + row[3] + row[4]), given = 1e-3 * (row[5] + row[7] + row[8]);
+    const double lost = 1e-3 * (row[2] + row[3] + row[4]), given = 1e-3 * (row[5] + row[7] + row[8] + row[9]);
     EXPECT_GT(lost, 0);
     EXPECT_NEAR(gained + lost, given, 1e-8 * lost);
     // The floor has one velocity: its power is that of the force it exerts.
-    EXPECT_NEAR(row[7], -0.05 * row[9], 1e-12 * row[7]);
+    EXPECT_NEAR(row[7], -0.05 * row[10], 1e-12 * row[7]);
   }
 }
 

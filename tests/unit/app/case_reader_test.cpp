@@ -208,7 +208,6 @@ pressure_radius = 2
 density_radius = 2.25
 viscosity_radius = 3
 viscosity_correction = 0.25
-tension = false
 ambient_pressure = 77
 [solver]
 krylov = "cg"

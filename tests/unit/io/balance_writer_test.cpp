@@ -18,6 +18,7 @@ constexpr const char* powers =
 Case caseOf(int dimensions, const std::vector<std::string>& walls) {
   Case c;
   c.dimensions = dimensions;
+  c.method.scheme = SchemeKind::Published;
   c.bodies.resize(1);
   c.bodies[0].name = "pool";
   for (const std::string& name : walls) {
@@ -49,16 +50,17 @@ TEST(BalanceWriter, FormatIsFixed) {
   EXPECT_EQ(content(directory / "balance.csv"), columns + "\n4,0.5,0,0,0,0,0,0,1,2,3,4,5,6\n");
 }
 
-TEST(BalanceWriter, ThePowerOfTheRepulsionStandsWhereTheSchemeHasOne) {
+TEST(BalanceWriter, ThePowersOfRepulsionAndShiftStandWhereTheSchemeHasThem) {
   TemporaryDirectory directory;
   Case c = caseOf(2, {"floor"});
   c.method.scheme = SchemeKind::Accurate;
   c.spacing = 1e-3;
   BalanceWriter writer(directory / "balance.csv", c);
-  writer.append(3, 0.003, {1, 2.5, 1e-3, -4, 1e-20, 0.1, {{{7, -8, 0}, {0, 0, 9}}}, 0.75});
-  EXPECT_EQ(content(directory / "balance.csv"), std::string(powers) +
-                                                    ",repulsion_power,floor_force_x,floor_force_y,floor_torque\n"
-                                                    "3,0.003,1,2.5,0.001,-4,1e-20,0.1,0.75,7,-8,9\n");
+  writer.append(3, 0.003, {1, 2.5, 1e-3, -4, 1e-20, 0.1, {{{7, -8, 0}, {0, 0, 9}}}, 0.75, -0.5});
+  EXPECT_EQ(content(directory / "balance.csv"),
+            std::string(powers) +
+                ",repulsion_power,shift_power,floor_force_x,floor_force_y,floor_torque\n"
+                "3,0.003,1,2.5,0.001,-4,1e-20,0.1,0.75,-0.5,7,-8,9\n");
 }
 
 TEST(BalanceWriter, SurfacesStandWhereSomeFluidHasATension) {

@@ -36,6 +36,7 @@ void checkEnergy(const Case& c, Simulation<D>& s) {
   const StepEnergy energy(before, report);
   const double dt = report.velocityStep, scale = energy.scale();
   EXPECT_NEAR(energy.gained + energy.lost, energy.given, 5e-12 * scale);  // measured: 4e-13
+  EXPECT_NEAR(energy.fallen, report.timeStep * (report.diagnostics.gravityPower - b.shiftPower), 5e-12 * scale);
   // No term is so small that it could be missed.
   for (const double term : {b.inertialLoss, b.shearDissipation, b.bulkDissipation, b.elasticPower, b.wallPower})
     EXPECT_GT(std::abs(dt * term), 1e-6 * scale);

@@ -3,12 +3,14 @@
 #include "support/scene.hpp"
 #include "support/state_of.hpp"
 #include "treacle/model/case_keys.hpp"
-#include "treacle/mph/mph_particles.hpp"
+#include "treacle/mph/tension.hpp"
 #include "treacle/step/simulation.hpp"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace treacle::test {
 namespace {
@@ -60,8 +62,7 @@ TEST(KeepsVolume, FluidThatTurnsStaysOnItsCircles) {
 }
 
 TEST(KeepsVolume, ContinuesFromACopyWithTheSameBits) {
-  Case c = ringCase();
-  c.method.tension = true;
+  const Case c = ringCase();
   Simulation<2> whole(c, created<2>(c));
   for (int k = 0; k < 7; ++k) whole.advance();
   Simulation<2> resumed(c, stateOf(whole), whole.step(), whole.time());
@@ -77,38 +78,124 @@ TEST(KeepsVolume, TheDensityInsideIsMeasured) {
   EXPECT_GT(d.interiorParticles, 0.3 * s.particles().fluidCount);
 }
 
-/// Of fluid at rest that a step expands by 0.1 %: its pressure over the bulk modulus.
-double heldAfter(double open, double n, double ambient) {
+/// Of fluid without tension: its tension after a step of 1 ms, over the bulk modulus.
+double tensionAfter(double open, double n, double ambient) {
   const Scene<2> s = makeScene<2>({.scheme = SchemeKind::Accurate});
   MphPairs<2> pairs = s.pairs();
   pairs.ambientPressure = ambient;
-  const double density = n * pairs.restDensity;
-  return heldPressureOf<2>(pairs, 0, 1e-3, {{&density, 1}, {&open, 1}}, -1, 0) / pairs.bulkModulus(0);
+  const double density = n * pairs.restDensity, walls = 0;
+  const Surroundings around{{&density, 1}, {&open, 1}, {&walls, 1}};
+  const Covered lack = lackOf<2>(pairs, 0, around);
+  const double mean = lack[1] > 0 ? lack[0] / lack[1] : 0;
+  return tensionOf<2>(pairs, 0, 1e-3, around, mean, 0) / pairs.bulkModulus(0);
 }
 
-TEST(KeepsVolume, TensionIsHeldInsideDownToTheAmbientPressure) {
-  const double inside = heldAfter(0, 1, 1e9);
-  EXPECT_NEAR(inside, -1e-3 * divergenceShare, 1e-12);
-  EXPECT_EQ(heldAfter(0.4, 0.95, 1e9), 0) << "at a free surface";
-  EXPECT_EQ(heldAfter(0, 0.5, 1e9), 0) << "nearly alone";
-  EXPECT_LT(heldAfter(0, 0.95, 1e9), inside) << "a gap is drawn together";
-  EXPECT_EQ(heldAfter(0, 1, 0), 0);
+TEST(KeepsVolume, TensionFollowsTheDensityDownToTheAmbientPressure) {
+  const double inside = tensionAfter(0, 0.95, 1e9);
+  EXPECT_LT(inside, 0);
+  EXPECT_EQ(tensionAfter(0, 1.01, 1e9), 0) << "nothing lacks";
+  EXPECT_NEAR(tensionAfter(0, 0.98, 1e9), 0.4 * inside, 1e-12);
+  EXPECT_EQ(tensionAfter(0.4, 0.8, 1e9), 0) << "at a free surface";
+  EXPECT_EQ(tensionAfter(0, 0.5, 1e9), 0) << "nearly alone";
+  EXPECT_EQ(tensionAfter(0, 0.95, 0), 0) << "without air around it";
+}
+
+/// What a wall fills does not lack: where the surface of a fluid ends at a wall, and where it is covered by one.
+TEST(KeepsVolume, TheDensityAtRestIsKnownWhereASurfaceMeetsAWall) {
+  const double open = 0.34, missing = 1 - Cover::of(open, 1).rest;
+  for (const double wall : {0.1, 0.34, 0.5})
+    EXPECT_NEAR(1 - Cover::of((1 - wall) * open, 1, wall).rest, (1 - wall) * missing, 1e-12);
+  EXPECT_EQ(Cover::of(0, 1, 0.3).rest, 1);
+  EXPECT_EQ(Cover::of(0.1, 1).tells, 1);
+  EXPECT_EQ(Cover::of(0.1, 1, 0.3).tells, 0) << "fluid may part from the wall";
+}
+
+/// The gradient of the density's weight is its derivative.
+TEST(KeepsVolume, TheForceOfATensionIsTheGradientOfTheDensity) {
+  const Scene<2> s = makeScene<2>({.scheme = SchemeKind::Accurate});
+  const MphTerms<2>& terms = s.pairs().terms;
+  const double l = s.pairs().spacing, step = 1e-5 * l;
+  const auto w = [&](double r) { return terms.density(terms.densityFactor, ExactDistance(r * r)); };
+  for (const double r : {0.4 * l, l, 2.2 * l, 3.3 * l})
+    EXPECT_NEAR(terms.densityGradient(ExactDistance(r * r)) * r, (w(r - step) - w(r + step)) / (2 * step),
+                1e-7 * w(0.1 * l) / l);
+  EXPECT_EQ(terms.densityGradient(ExactDistance(13 * l * l)), 0);
+}
+
+/// Tensions that differ pull all fluid together, and walls by as much as walls pull the fluid, whatever materials.
+TEST(KeepsVolume, TensionForcesHaveNoSum) {
+  Scene<2> s = makeScene<2>({.seed = 3, .jitter = 0.3, .scheme = SchemeKind::Accurate});
+  const MphPairs<2>& pairs = s.pairs();
+  std::vector<double> tension(pairs.activeCount);
+  for (std::uint32_t i = 0; i < pairs.activeCount; ++i) tension[i] = -1.0 * (i % 7);
+  std::vector<Vec<2>> force(pairs.activeCount);
+  tensionForces<2>(s.context, pairs, pairs.fluidList, tension, force);
+  tensionForces<2>(s.context, pairs, pairs.wallList, tension, force);
+  Vec<2> sum{};
+  double size = 0;
+  for (const Vec<2>& f : force) sum += f, size += norm(f);
+  EXPECT_GT(size, 0);
+  EXPECT_LE(norm(sum), 1e-12 * size);
+}
+
+TEST(KeepsVolume, TheSofterOfTwoMaterialsTellsTheirTension) {
+  Scene<2> s = makeScene<2>({.scheme = SchemeKind::Accurate});
+  MphPairs<2> pairs = s.pairs();
+  pairs.materials.bulkModulus[0] = 1e6, pairs.materials.bulkModulus[1] = 1e2;
+  const auto pair = [&](Substance a, double p, Substance b, double q) {
+    return pairTension(tensionShare(pairs, a, b), p, q);
+  };
+  EXPECT_EQ(pair(0, -3, 0, -5), -8) << "the sum inside of a material";
+  EXPECT_NEAR(pair(0, -7, 1, -7), -14, 1e-12) << "which all of one tension have";
+  EXPECT_NEAR(pair(0, -7, 1, -3), -6, 1e-3);
+  EXPECT_NEAR(pair(0, -7, 1, -3), pair(1, -3, 0, -7), 1e-12);
+  pairs.materials.bulkModulus[0] = pairs.materials.bulkModulus[1] = 0;
+  EXPECT_EQ(pair(0, -3, 1, -5), -8);
 }
 
 /// A particle that neighbours crowd from one side.
-TEST(KeepsVolume, ParticlesThatBearTensionAreShiftedToWhereNeighboursLack) {
+TEST(KeepsVolume, ParticlesUnderTensionAreShiftedToWhereNeighboursLack) {
   const Scene<2> s = makeScene<2>({.scheme = SchemeKind::Accurate});
   const MphPairs<2>& pairs = s.pairs();
-  const double dt = 1e-3, n = pairs.restDensity, l = pairs.spacing;
-  const auto way = [&](double open, double crowding) {
-    return dt *
-           (spreadVelocityOf<2>(pairs, 0, dt, {{&n, 1}, {&open, 1}}, {2, 3}, {crowding / l, 0}) - Vec<2>{2, 3});
+  const double dt = 1e-3, l = pairs.spacing, kappa = pairs.bulkModulus(0);
+  const auto way = [&](double tension, double crowding) {
+    const double sums[] = {crowding / l, 0, 5 / dt / shiftPerRate, 5};  // a step in which pairs go their distance
+    return dt * (spreadVelocityOf<2>(pairs, 0, dt, tension, sums, {2, 3}) - Vec<2>{2, 3});
   };
-  const double share = shiftingShare * pairs.bulkModulus(0) * dt / pairs.bulkViscosity(0);
-  EXPECT_NEAR(way(0, 0.1)[0], -share * 0.1 * l, 1e-12 * l);
-  EXPECT_EQ(way(0, 0.1)[1], 0);
-  EXPECT_NEAR(way(0, 1e6)[0], -longestShift * l, 1e-12 * l);
-  EXPECT_EQ(way(0.4, 0.1)[0], 0) << "at a free surface";
+  EXPECT_NEAR(way(-kappa, 0.01)[0], -0.01 * l, 1e-12 * l);
+  EXPECT_EQ(way(-kappa, 0.01)[1], 0);
+  EXPECT_NEAR(way(-0.5 * shiftedFrom * kappa, 0.01)[0], -0.005 * l, 1e-12 * l);
+  EXPECT_NEAR(way(-kappa, 1e6)[0], -longestShift * l, 1e-12 * l);
+  EXPECT_EQ(way(0, 0.01)[0], 0) << "without tension";
+}
+
+/// Whether a particle has neighbours across a periodic end.
+bool meetsImages(const MphPairs<2>& pairs, std::uint32_t i) {
+  for (std::uint32_t j = 0; j < pairs.activeCount; ++j) {
+    const Vec<2> d = pairs.difference(i, j);
+    if (norm(d) < pairs.terms.pressureRadius && norm(d - (pairs.position[j] - pairs.position[i])) > 0) return true;
+  }
+  return false;
+}
+
+/// A rigid rotation shifts nothing, a strain does.
+TEST(KeepsVolume, NothingIsShiftedInFluidThatTurnsAsAWhole) {
+  Scene<2> s = makeScene<2>({.seed = 3, .jitter = 0.3, .scheme = SchemeKind::Accurate});
+  const MphPairs<2>& pairs = s.pairs();
+  std::vector<Vec<2>> u(pairs.activeCount), transport(pairs.fluidCount);
+  const std::vector<double> tension(pairs.activeCount, -1e9);
+  for (const double strain : {0.0, 1.0}) {
+    for (std::uint32_t i = 0; i < pairs.activeCount; ++i)
+      u[i] = {-pairs.position[i][1] + strain * pairs.position[i][0], pairs.position[i][0]};
+    spreadVelocities<2>(s.context, pairs, 1e-3, u, tension, transport);
+    double shift = 0;
+    for (std::uint32_t i = 0; i < pairs.fluidCount; ++i)
+      if (!meetsImages(pairs, i)) shift = std::max(shift, norm(transport[i] - u[i]));
+    if (strain == 0)
+      EXPECT_LE(shift, 1e-12 * pairs.spacing);
+    else
+      EXPECT_GT(shift, 0.01 * pairs.spacing);
+  }
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ def measure(run):
     motion = np.append(at_start, h["kinetic_energy"] + h["potential_energy"])  # at step 0, 1, ...
     released = at_start - h["potential_energy"][-1]
     spent = np.cumsum(dt * (b["shear_dissipation"] + b["bulk_dissipation"] - b["wall_power"]
-                              - b.get("repulsion_power", 0)))
+                              - b.get("repulsion_power", 0) - b.get("shift_power", 0)))
     missing = (motion[1:-1] + b["elastic_energy"][1:] + spent[:-1] - at_start) / released
     work = np.cumsum(dt * b["elastic_power"])[:-1]
     elastic = (b["elastic_energy"][1:] + work) / released  # that elastic pressures gave and did not have

@@ -1,0 +1,160 @@
+#pragma once
+
+#include "treacle/core/cuda.hpp"
+#include "treacle/model/shifting.hpp"
+#include "treacle/mph/cover.hpp"
+#include "treacle/mph/mph_pairs.hpp"
+
+#include <cmath>
+#include <cstdint>
+#include <span>
+
+namespace treacle {
+
+/// Fluid under tension (docs/accurate.md): what it takes for a fluid that is pulled, or whose gaps have closed, to
+/// keep its volume. Spans have an element for each fluid particle, or for each active particle where that is said.
+
+/// What number densities say of the fluid around particles: those of numberDensity() and wallDensity().
+struct Surroundings {
+  std::span<const double> n, open, walls;
+
+  TREACLE_HD Cover cover(std::uint32_t i, double rest) const {
+    return Cover::of(open[i], n[i] / rest, walls[i] / rest);
+  }
+};
+
+/// (b q, b) of a quantity q of a particle and its weight b in means.
+using Covered = Vec<2>;
+
+/// q = min(0, n - n_0), n_0 being that of fluid whose place is as open; b = Cover::tells. For own fluid particles.
+template <int D>
+void lackOfDensity(Context<Cpu>&, const MphPairs<D>&, const Surroundings&, std::span<Covered> lack);
+template <int D>
+void lackOfDensity(Context<Cuda>&, const MphPairs<D>&, const Surroundings&, std::span<Covered> lack);
+
+/// mean_i = sum_j w_ij b_j q_j / sum_j w_ij b_j over the fluid around the particles i of the list, each fluid
+/// particle among its own neighbours (coveredMeanOf). `mean`: per active particle, written for those of the list.
+template <int D>
+void coveredMeans(Context<Cpu>&, const MphPairs<D>&, const ClusterListView& list, std::span<const Covered> q,
+                  std::span<double> mean);
+template <int D>
+void coveredMeans(Context<Cuda>&, const MphPairs<D>&, const ClusterListView& list, std::span<const Covered> q,
+                  std::span<double> mean);
+
+/// q = P, the tension of own fluid [Pa], b = Cover::bears.
+template <int D>
+void coverTension(Context<Cpu>&, const MphPairs<D>&, const Surroundings&, std::span<const double> tension,
+                  std::span<Covered> covered);
+template <int D>
+void coverTension(Context<Cuda>&, const MphPairs<D>&, const Surroundings&, std::span<const double> tension,
+                  std::span<Covered> covered);
+
+/// P of own fluid at the end of a step of dt [s] (tensionOf). `lack`: the means of lackOfDensity().
+template <int D>
+void followDensity(Context<Cpu>&, const MphPairs<D>&, double dt, const Surroundings&, std::span<const double> lack,
+                   std::span<double> tension);
+template <int D>
+void followDensity(Context<Cuda>&, const MphPairs<D>&, double dt, const Surroundings&,
+                   std::span<const double> lack, std::span<double> tension);
+
+/// force_i = sum_j 2 P_ij w'_ij e_ij, the force of the tensions [N/m3], w being the weight of densities and P_ij
+/// the tension of a pair (pairTension). Of fluid particles from all neighbours, of walls from the fluid.
+/// `tension`, `force`: per active particle, the latter written for those of the list.
+template <int D>
+void tensionForces(Context<Cpu>&, const MphPairs<D>&, const ClusterListView& list, std::span<const double> tension,
+                   std::span<Vec<D>> force);
+template <int D>
+void tensionForces(Context<Cuda>&, const MphPairs<D>&, const ClusterListView& list,
+                   std::span<const double> tension, std::span<Vec<D>> force);
+
+/// What own fluid particles go with in a step of dt [s] (spreadVelocityOf). `u`, `tension`: per active particle.
+template <int D>
+void spreadVelocities(Context<Cpu>&, const MphPairs<D>&, double dt, std::span<const Vec<D>> u,
+                      std::span<const double> tension, std::span<Vec<D>> transport);
+template <int D>
+void spreadVelocities(Context<Cuda>&, const MphPairs<D>&, double dt, std::span<const Vec<D>> u,
+                      std::span<const double> tension, std::span<Vec<D>> transport);
+
+/// y += x, element by element.
+void addValues(Context<Cpu>&, std::span<const double> x, std::span<double> y);
+void addValues(Context<Cuda>&, std::span<const double> x, std::span<double> y);
+
+/// The formulas, for particle i.
+template <int D>
+TREACLE_HD Covered lackOf(const MphPairs<D>& pairs, std::uint32_t i, const Surroundings& around) {
+  const Cover cover = around.cover(i, pairs.restDensity);
+  return {cover.tells * fmin(0.0, around.n[i] - cover.rest * pairs.restDensity), cover.tells};
+}
+
+/// The mean, from the sums of w b q and w b without the factor of w. Where the weights come to less than 1 % of
+/// those of a full neighbourhood it fades: else what is next to nothing would decide.
+template <int D>
+TREACLE_HD double coveredMeanOf(const MphPairs<D>& pairs, const Covered& sum) {
+  return sum[0] / fmax(sum[1], 0.01 * pairs.restDensity / pairs.terms.densityFactor);
+}
+
+/// The time in which a tension follows the density, in units of lambda / kappa.
+inline constexpr double tensionTime = 3;
+
+template <int D>
+TREACLE_HD Covered coveredTensionOf(const MphPairs<D>& pairs, std::uint32_t i, const Surroundings& around,
+                                    double tension) {
+  const double bears = around.cover(i, pairs.restDensity).bears;
+  return {bears * tension, bears};
+}
+
+/// P is drawn towards the mean of kappa min(0, n - n_0) over the neighbours of a particle:
+///
+///   P^{k+1} = f P^k + (1 - f) kappa <min(0, n - n_0)>,   f = exp(-dt / T),   T = 3 lambda / kappa
+///
+/// Only covered particles have it, and it is not below minus the ambient pressure. `lack`: the mean.
+template <int D>
+TREACLE_HD double tensionOf(const MphPairs<D>& pairs, std::uint32_t i, double dt, const Surroundings& around,
+                            double lack, double before) {
+  const double kappa = pairs.bulkModulus(i), lambda = pairs.bulkViscosity(i);
+  if (kappa == 0 || lambda == 0) return 0;
+  const double kept = exp(-dt * kappa / (tensionTime * lambda));
+  return around.cover(i, pairs.restDensity).bears *
+         fmax(kept * before + (1 - kept) * kappa * lack, -pairs.ambientPressure);
+}
+
+/// 2 kappa_j / (kappa_i + kappa_j), by the materials of a pair.
+template <int D>
+TREACLE_HD double tensionShare(const MphPairs<D>& pairs, Substance own, Substance other) {
+  const double a = pairs.materials.bulkModulus[own], b = pairs.materials.bulkModulus[other];
+  return own == other || a + b == 0 ? 1 : 2 * b / (a + b);
+}
+
+/// 2 P_ij = 2 (kappa_j P_i + kappa_i P_j) / (kappa_i + kappa_j). Tension is one on both sides of an interface.
+/// Both sides find it from their density with the same relative error, so that the softer one knows it better.
+template <class T>
+TREACLE_HD T pairTension(const T& share, const T& own, double other) {
+  return share * (own - other) + 2 * other;
+}
+
+/// The tension from which on particles are shifted as far as they are, in units of kappa.
+inline constexpr double shiftedFrom = 0.002;
+/// How far that is: mean rates of pairs times dt.
+inline constexpr double shiftPerRate = 6;
+
+/// A flow that strains the fluid brings its particles out of order. Pressures above zero put them back, and
+/// tension does not. Particles under tension are therefore moved by
+///
+///   -6 dt l^2 a min(1, -P / 0.002 kappa) sum_j (-w'_ij) e_ij,
+///
+/// a being the mean of |u_ij . e_ij| / r_ij over the pairs with the weights -w'_ij / r_ij: nothing in an even
+/// lattice, in fluid that turns like a rigid body, and at rest. (Pairs that count by their own rates would drive
+/// particles to where the fluid is strained less.) `sums`: sum (-w') e [1/m], sum (-w'/r) |u . e| / r and
+/// sum (-w'/r), over the neighbours.
+template <int D>
+TREACLE_HD Vec<D> spreadVelocityOf(const MphPairs<D>& pairs, std::uint32_t i, double dt, double tension,
+                                   const double* sums, const Vec<D>& u) {
+  const double kappa = pairs.bulkModulus(i), rates = sums[D], weights = sums[D + 1];
+  if (kappa == 0 || weights == 0) return u;
+  Vec<D> crowding;
+  for (int k = 0; k < D; ++k) crowding[k] = sums[k];
+  const double coefficient = shiftPerRate * dt * (rates / weights) * fmin(1.0, -tension / (shiftedFrom * kappa));
+  return shiftedVelocity({coefficient, pairs.spacing, dt}, crowding, u);
+}
+
+}  // namespace treacle

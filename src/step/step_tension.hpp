@@ -1,0 +1,77 @@
+#pragma once
+
+#include "explicit_forces.hpp"
+#include "treacle/core/halo.hpp"
+#include "treacle/mph/surface_tension.hpp"
+#include "treacle/mph/tension.hpp"
+
+namespace treacle {
+
+/// The tension of the fluid in a step of MPH-I, and the shift that keeps its particles in order.
+template <int D, class Backend>
+class StepTension final : public ExplicitForces<D, Backend> {
+ public:
+  /// The forces of the tensions that particles have, on the neighbours of the step. Walls have the mean of the
+  /// fluid around them. `around`: of the places at hand.
+  void prepare(FlowState<D, Backend>& state, const MphPairs<D>& pairs, const Surroundings& around) {
+    Context<Backend>& context = state.context;
+    const std::uint32_t own = pairs.ownFluid();
+    const std::span<double> held = state.particles.heldPressure.span().first(pairs.activeCount);
+    covered_.resize(context, pairs.fluidCount);
+    force_.resize(context, pairs.activeCount);
+    coverTension<D>(context, pairs, around, held.first(own), covered_.span().first(own));
+    fillGhosts(context, Held::Fluid, covered_.data());
+    coveredMeans<D>(context, pairs, pairs.wallList, covered_, held);
+    fillGhosts(context, Held::Active, held.data());
+    tensionForces<D>(context, pairs, pairs.fluidList, held, force_.span());
+  }
+
+  void addForces(FlowState<D, Backend>& state, std::span<Vec<D>> y) const override {
+    addSurfaceForces<D>(state.context, force_.span().first(y.size()), y);
+  }
+
+  void allForces(FlowState<D, Backend>& state, const MphPairs<D>& pairs, const ClusterListView& walls,
+                 std::span<Vec<D>> y, std::span<Vec<D>> load) const override {
+    const std::uint32_t n = pairs.ownFluid();
+    copyValues(state.context, std::span<const Vec<D>>(force_.span()).first(n), y.data());
+    clearValues(state.context, y.subspan(n));
+    tensionForces<D>(state.context, pairs, walls, tension(state, pairs), y);
+    addSurfaceForces<D>(state.context, y.subspan(pairs.fluidCount), load);
+  }
+
+  /// What own fluid particles go with.
+  std::span<const Vec<D>> transport(FlowState<D, Backend>& state, const MphPairs<D>& pairs) {
+    transport_.resize(state.context, pairs.ownFluid());
+    spreadVelocities<D>(state.context, pairs, state.timeStep, state.velocity, tension(state, pairs),
+                        transport_.span());
+    return transport_.span();
+  }
+
+  /// Adds the tensions of the step to the pressures, and renews those of the fluid. `around`: as in prepare().
+  void accept(FlowState<D, Backend>& state, const MphPairs<D>& pairs, const Surroundings& around) {
+    Context<Backend>& context = state.context;
+    const std::uint32_t own = pairs.ownFluid();
+    const std::span<double> held = state.particles.heldPressure.span().first(pairs.activeCount);
+    addValues(context, held, state.particles.pressure.span().first(pairs.activeCount));
+    lackOfDensity<D>(context, pairs, around, covered_.span().first(own));
+    fillGhosts(context, Held::Fluid, covered_.data());
+    mean_.resize(context, pairs.fluidCount);
+    coveredMeans<D>(context, pairs, pairs.fluidList, covered_, mean_.span());
+    followDensity<D>(context, pairs, state.timeStep, around, mean_.span().first(own), held.first(own));
+  }
+
+  std::span<const Vec<D>> transport() const { return transport_; }  // of the last step
+  std::size_t bytes() const { return force_.bytes() + covered_.bytes() + mean_.bytes() + transport_.bytes(); }
+
+ private:
+  static std::span<const double> tension(const FlowState<D, Backend>& state, const MphPairs<D>& pairs) {
+    return state.particles.heldPressure.span().first(pairs.activeCount);
+  }
+
+  Buffer<Vec<D>, Backend> force_;      // per active particle; of fluid [N/m3]
+  Buffer<Covered, Backend> covered_;   // per fluid particle; the tension, then the lack of density
+  Buffer<double, Backend> mean_;       // of the lack, per fluid particle
+  Buffer<Vec<D>, Backend> transport_;  // per own fluid particle [m/s]
+};
+
+}  // namespace treacle
