@@ -60,7 +60,7 @@ struct TensionForce {
 
 template <int D>
 struct Spreading {
-  static constexpr int values = D + 2;
+  static constexpr int values = D + 1;
   static constexpr bool uses(ListSegment s) { return isNear(s); }
   using StoresAll = void;
   using Own = Vec<D>;
@@ -79,8 +79,7 @@ struct Spreading {
                       const Own& own, const Other& other, ListSegment) const {
     const double f = mph.gradient(r);
     for (int k = 0; k < D; ++k) sum[k] = fma(f, d[k], sum[k]);
-    sum[D] = fma(f, r.overSquare(fabs(differenceAlong(other, own, d))), sum[D]);
-    sum[D + 1] = fma(f, r.overSquare(norm2(d)), sum[D + 1]);
+    sum[D] = fma(f, fabs(differenceAlong(other, own, d)), sum[D]);
   }
   __device__ void store(const MphPairs<D>& pairs, std::uint32_t i, const double* sums) const {
     transport[i] = spreadVelocityOf(pairs, i, dt, tension[i], sums, u[i]);

@@ -100,24 +100,22 @@ void spreadVelocities(Context<Cpu>&, const MphPairs<D>& pairs, double dt, std::s
   const ClusterListView& list = pairs.fluidList;
   forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const ClusterPlaces<D>& x, std::uint32_t c) {
     const VecLanes<D> own = loadLanes<D>(range, u);
-    Lanes sum[D + 2] = {};
+    Lanes sum[D + 1] = {};
     for (ListSegment s : {ListSegment::NearFluid, ListSegment::NearWall})
       for (std::uint32_t j : list.segment(c, s)) {
         const PairLanes<D> pair(pairs, j, x, floor2);
         const Lanes f = pairs.terms.gradient(pair.r);
-        Lanes along = {}, square = {};
+        Lanes along = {};
         for (int k = 0; k < D; ++k) {
           along += (u[j][k] - own[k]) * pair.d[k];
-          square += pair.d[k] * pair.d[k];
           sum[k] += f * pair.d[k];
         }
-        sum[D] += f * pair.r.overSquare(max(along, -along));
-        sum[D + 1] += f * pair.r.overSquare(square);
+        sum[D] += f * max(along, -along);
       }
     for (std::uint32_t lane = 0; lane < range.count; ++lane) {
       const std::uint32_t i = range.first + lane;
-      double sums[D + 2];
-      for (int k = 0; k < D + 2; ++k) sums[k] = sum[k][lane];
+      double sums[D + 1];
+      for (int k = 0; k < D + 1; ++k) sums[k] = sum[k][lane];
       transport[i] = spreadVelocityOf(pairs, i, dt, tension[i], sums, u[i]);
     }
   });

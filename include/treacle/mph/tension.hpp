@@ -135,25 +135,24 @@ TREACLE_HD T pairTension(const T& share, const T& own, double other) {
 /// The tension from which on particles are shifted as far as they are, in units of kappa.
 inline constexpr double shiftedFrom = 0.002;
 /// How far that is: mean rates of pairs times dt.
-inline constexpr double shiftPerRate = 6;
+inline constexpr double shiftPerRate = 5;
 
 /// A flow that strains the fluid brings its particles out of order. Pressures above zero put them back, and
 /// tension does not. Particles under tension are therefore moved by
 ///
-///   -6 dt l^2 a min(1, -P / 0.002 kappa) sum_j (-w'_ij) e_ij,
+///   -5 dt a l^2 min(1, -P / 0.002 kappa) sum_j (-w'_ij) e_ij,   a = sum_j (-w'_ij) |u_ij . e_ij| / D.
 ///
-/// a being the mean of |u_ij . e_ij| / r_ij over the pairs with the weights -w'_ij / r_ij: nothing in an even
-/// lattice, in fluid that turns like a rigid body, and at rest. (Pairs that count by their own rates would drive
-/// particles to where the fluid is strained less.) `sums`: sum (-w') e [1/m], sum (-w'/r) |u . e| / r and
-/// sum (-w'/r), over the neighbours.
+/// a is a mean of |u_ij . e_ij| / r_ij, since the sum of -w'_ij r_ij is D. Nothing moves in an even lattice, in
+/// fluid that turns like a rigid body, and at rest. (Pairs that count by their own rates would drive particles to
+/// where the fluid is strained less.) `sums`: that of (-w') e [1/m], then D a [1/s].
 template <int D>
 TREACLE_HD Vec<D> spreadVelocityOf(const MphPairs<D>& pairs, std::uint32_t i, double dt, double tension,
                                    const double* sums, const Vec<D>& u) {
-  const double kappa = pairs.bulkModulus(i), rates = sums[D], weights = sums[D + 1];
-  if (kappa == 0 || weights == 0) return u;
+  const double kappa = pairs.bulkModulus(i);
+  if (kappa == 0) return u;
   Vec<D> crowding;
   for (int k = 0; k < D; ++k) crowding[k] = sums[k];
-  const double coefficient = shiftPerRate * dt * (rates / weights) * fmin(1.0, -tension / (shiftedFrom * kappa));
+  const double coefficient = shiftPerRate * dt * sums[D] / D * fmin(1.0, -tension / (shiftedFrom * kappa));
   return shiftedVelocity({coefficient, pairs.spacing, dt}, crowding, u);
 }
 
