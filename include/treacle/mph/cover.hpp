@@ -23,16 +23,16 @@ struct Cover {
     return ratio > 0.4 && open < inside * ratio && walls < 0.05;
   }
 
-  /// `walls`: w. Where a surface meets a wall fluid parts from it and rolls onto it, so that less openness counts.
+  /// `walls`: w. The formula for the rest is right to some 0.5 % next to a surface, which kappa makes a tension
+  /// far above the stress of a slow flow. Only places that are hardly open tell.
   TREACLE_HD static Cover of(double open, double ratio, double walls = 0) {
     const double rest = 1 - open * (0.04 + 0.45 * open / (1 - fmin(0.9, walls)));
-    const double bears = falling(open, inside, outside) * falling(rest - ratio, 0.08, 0.12);
-    const double scale = 1 - 0.8 * fmin(1.0, 10 * walls);
-    return {rest, bears, bears * falling(open, scale * inside, scale * outside)};
+    const double bears = falling(open, inside, 0.35) * falling(rest - ratio, 0.08, 0.12);
+    return {rest, bears, bears * falling(open, 0.04, 0.07)};
   }
 
  private:
-  static constexpr double inside = 0.2, outside = 0.35;
+  static constexpr double inside = 0.2;
 
   /// From 1 up to a to 0 from b on.
   TREACLE_HD static double falling(double x, double a, double b) {

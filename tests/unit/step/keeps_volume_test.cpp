@@ -106,8 +106,9 @@ TEST(KeepsVolume, TheDensityAtRestIsKnownWhereASurfaceMeetsAWall) {
   for (const double wall : {0.1, 0.34, 0.5})
     EXPECT_NEAR(1 - Cover::of((1 - wall) * open, 1, wall).rest, (1 - wall) * missing, 1e-12);
   EXPECT_EQ(Cover::of(0, 1, 0.3).rest, 1);
-  EXPECT_EQ(Cover::of(0.1, 1).tells, 1);
-  EXPECT_EQ(Cover::of(0.1, 1, 0.3).tells, 0) << "fluid may part from the wall";
+  EXPECT_EQ(Cover::of(0.03, 1).tells, 1);
+  EXPECT_EQ(Cover::of(0.1, 1).tells, 0) << "though it bears what its neighbours tell:";
+  EXPECT_EQ(Cover::of(0.1, 1).bears, 1);
 }
 
 /// The gradient of the density's weight is its derivative.
