@@ -71,7 +71,7 @@ Diagnostics computeDiagnostics(Context<Cuda>& context, const DiagnosticsInput<D>
   const Diagnostics all =
       joinedOverProcesses(context, valueOnHost(context, partial + blocks),
                           [](const Diagnostics& a, const Diagnostics& b) { return joined(a, b); });
-  return averaged(all, joinedOverProcesses(context, in.position.size(), std::plus<>()));
+  return averaged(all, joinedOverProcesses(context, in.position.size(), std::plus<>()), in.ownShare());
 }
 
 template Diagnostics computeDiagnostics<2>(Context<Cuda>&, const DiagnosticsInput<2>&);

@@ -12,7 +12,7 @@ Diagnostics computeDiagnostics(Context<Cpu>& context, const DiagnosticsInput<D>&
   Diagnostics d = noDiagnostics();
   for (std::size_t i = 0; i < in.position.size(); ++i) d = joined(d, term(in, i));
   d = joinedOverProcesses(context, d, [](const Diagnostics& a, const Diagnostics& b) { return joined(a, b); });
-  return averaged(d, joinedOverProcesses(context, in.position.size(), std::plus<>()));
+  return averaged(d, joinedOverProcesses(context, in.position.size(), std::plus<>()), in.ownShare());
 }
 
 template Diagnostics computeDiagnostics<2>(Context<Cpu>&, const DiagnosticsInput<2>&);

@@ -157,6 +157,7 @@ class MphStep final : public StepMethod<D, Backend> {
     const std::uint32_t n = state_.particles.fluidCount;
     in.numberDensity = state_.particles.numberDensity.span().first(n);
     in.restDensity = in.neighbourDensity = pairs_.restDensity;
+    in.ownDensity = pairs_.terms.density(pairs_.terms.densityFactor, ExactDistance(0));
     if (wallDensity_.size() == n) in.wallDensity = wallDensity_;
     if (open_.size() >= n) in.open = open_.span().first(n);
   }

@@ -28,10 +28,13 @@ struct DiagnosticsInput {
   // Of MPH-I, else empty.
   std::span<const double> numberDensity{};
   double restDensity = 0;          // n_0 [-]
+  double ownDensity = 0;           // w(0), which n leaves out [-]
   std::span<const double> open{};  // of numberDensity(), empty where it is not known
   // What walls make up of the density, empty where it is not known, and what the neighbours in a full lattice do.
   std::span<const double> wallDensity{};
   double neighbourDensity = 0;
+
+  double ownShare() const { return restDensity > 0 ? ownDensity / restDensity : 0; }
 };
 
 /// What a particle adds to the diagnostics.
@@ -105,16 +108,17 @@ TREACLE_HD inline Diagnostics joined(const Diagnostics& a, const Diagnostics& b)
           a.insideVolume + b.insideVolume};
 }
 
-/// Sums into means; `count` of particles.
-inline Diagnostics averaged(Diagnostics d, std::size_t count) {
+/// Sums into means; `count` of particles. n + w(0) is the sum that is proportional to the density: n alone changes
+/// by a quarter more in 2D and by a tenth more in 3D. `own`: w(0) / n_0.
+inline Diagnostics averaged(Diagnostics d, std::size_t count, double own) {
   if (count > 0) {
     d.meanDensityRatio /= static_cast<double>(count);
     d.excessDensity /= static_cast<double>(count);
   }
   if (d.interiorParticles > 0) d.meanDensityError /= d.interiorParticles;
   if (d.insideVolume > 0) {
-    d.meanDensityRatio = d.interiorParticles / d.insideVolume;
-    d.meanDensityError = std::abs(d.insideVolume / d.interiorParticles - 1);
+    d.meanDensityRatio = (d.interiorParticles / d.insideVolume + own) / (1 + own);
+    d.meanDensityError = std::abs(1 / d.meanDensityRatio - 1);
   }
   return d;
 }
