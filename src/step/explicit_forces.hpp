@@ -7,7 +7,8 @@
 
 namespace treacle {
 
-/// Forces of a step of MPH-I that are those of the places at its start, beside pressures and viscosity.
+/// Forces of a step of MPH-I that follow from places alone, beside elastic pressures: those of surface tension and
+/// of the tension of the fluid.
 template <int D, class Backend>
 class ExplicitForces {
  public:
