@@ -58,9 +58,8 @@ void checkDamBreak(const std::string& resolution, const std::string& exactStep, 
     const double error = largestError(o, exact, start);
     EXPECT_LT(error, 0.4 * tolerance);  // measured: 0.22 to 0.28 of it
     EXPECT_LE(o.rejected, 4);
-    // Equal steps of the same error would be so many, since theirs is of first order. Measured: 2.4 times and
-    // more.
-    EXPECT_GT(equal.steps * equalError / error, 2 * o.steps) << tolerance;
+    // Equal steps of the same error would be so many, since theirs is of first order.
+    EXPECT_GT(equal.steps * equalError / error, 3 * o.steps) << tolerance;
   }
 }
 

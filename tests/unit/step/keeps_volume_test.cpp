@@ -1,4 +1,5 @@
 #include "support/isph_cases.hpp"
+#include "support/ring_in_drum.hpp"
 #include "support/same_bits.hpp"
 #include "support/scene.hpp"
 #include "support/state_of.hpp"
@@ -15,27 +16,10 @@
 namespace treacle::test {
 namespace {
 
-/// A ring of fluid in a drum that turns at 25 rad/s, without gravity.
+/// In a drum that turns at 25 rad/s.
 Case ringCase(SchemeKind scheme = SchemeKind::Accurate) {
-  Case c;
-  c.dimensions = 2;
-  c.spacing = 1e-3;
-  c.domain.min = {-0.026, -0.026, 0}, c.domain.max = {0.026, 0.026, 0};
-  c.time.step = 1e-3, c.time.end = 1;
-  c.method = defaultMethod(scheme);
-  c.watch.density = 0;
-  Material honey;
-  honey.name = "honey", honey.density = 1400, honey.dynamicViscosity = 10;
-  honey.bulkViscosity = 1e4, honey.bulkModulus = 1e6;
-  c.materials = {honey};
-  Body fluid, drum;
-  fluid.name = "fluid", fluid.kind = BodyKind::Fluid;
-  fluid.shape.kind = drum.shape.kind = ShapeKind::Sphere;
-  fluid.shape.radius = 0.02, fluid.shape.innerRadius = 0.01;
-  drum.name = "drum", drum.kind = BodyKind::Wall;
-  drum.shape.radius = 0.024, drum.shape.innerRadius = 0.02;
-  drum.rotation = Rotation{{0, 0, 0}, {0, 0, 1}, 25};
-  c.bodies = {fluid, drum};
+  Case c = ringInDrum(scheme);
+  c.bodies[1].rotation = Rotation{{0, 0, 0}, {0, 0, 1}, 25};
   return c;
 }
 

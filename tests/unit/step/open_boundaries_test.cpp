@@ -53,9 +53,9 @@ void checkJet(const Case& c) {
   for (std::uint32_t i = 0; i < p.fluidCount; ++i) {
     Vec<D> u = p.velocity[i];
     u[0] -= speed;
-    ASSERT_LE(norm(u), 1e-4 * speed);  // measured: 6e-6; pressures at its surfaces
+    ASSERT_LE(norm(u), 1e-4 * speed);  // the density at its surfaces is known to 0.5 %; measured: more than 5e-5
     const double places = p.position[i][0] / l - 0.5;
-    ASSERT_NEAR(places, std::round(places), 2e-4);
+    ASSERT_NEAR(places, std::round(places), 1e-4);
     ASSERT_LE(p.position[i][0], 0.02 * (1 + 1e-9));
     ASSERT_EQ(p.body[i], 0);
   }
@@ -121,7 +121,7 @@ TEST(OpenBoundaries, ANozzleMayMove) {
   for (int k = 0; k < 50; ++k) simulation.advance();
   const Particles<2> p = stateOf(simulation);
   EXPECT_EQ(p.fluidCount, 6u * 16);
-  for (std::uint32_t i = 0; i < p.fluidCount; ++i) EXPECT_LE(norm(p.velocity[i] - Vec<2>{0.35, 0.08}), 2e-5);
+  for (std::uint32_t i = 0; i < p.fluidCount; ++i) EXPECT_LE(norm(p.velocity[i] - Vec<2>{0.35, 0.08}), 1.5e-5);
   for (std::uint32_t i = p.fluidCount; i < p.count; ++i) {
     EXPECT_LE(p.position[i][0], 0.05 * 0.05 + 0.5 * c.spacing + 1e-9);
     EXPECT_NEAR(p.position[i][1] - 0.08 * 0.05, 0, 2.5 * c.spacing + 1e-9);
