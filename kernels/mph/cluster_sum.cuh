@@ -132,33 +132,39 @@ class ClusterSum {
 
   __device__ void store(const Terms& terms, T (&sum)[paddedSums], int part, T (*exchange)[32]) const {
     const int lane = threadIdx.x % 32, group = lane / S::slots, slot = lane % S::slots;
+    T total[rounds];  // of the lane's slot
 #pragma unroll
     for (int r = 0; r < rounds; ++r) {
-      T total = transposedSum<S::slots>(&sum[r * S::slots]);
+      total[r] = transposedSum<S::slots>(&sum[r * S::slots]);
       if constexpr (S::warps > 1) {
         const int warp = threadIdx.x / 32;
         __syncthreads();
-        exchange[warp][lane] = total;
+        exchange[warp][lane] = total[r];
         __syncthreads();
-        total = 0;
-        for (int w = 0; w < S::warps; ++w) total += exchange[warp - part + w][lane];
-        if (part != 0) continue;
+        total[r] = 0;
+        for (int w = 0; w < S::warps; ++w) total[r] += exchange[warp - part + w][lane];
       }
-      const int n = r * S::slots + slot, t = n / values;
-      const std::uint32_t own = group * S::own + t;
-      const bool used = n < sums && own < count_;
-      if constexpr (storesVectors<Terms>) {
-        static_assert(rounds == 1);
-        Vec<values, T> all;
-        for (int c = 0; c < values; ++c) all[c] = __shfl_sync(~0u, total, lane - n % values + c);
-        if (used && n % values == 0) terms.store(pairs_, first_ + own, all);
-      } else if constexpr (storesAll<Terms>) {
-        static_assert(rounds == 1);
-        T all[values];
-        for (int c = 0; c < values; ++c) all[c] = __shfl_sync(~0u, total, lane - n % values + c);
-        if (used && n % values == 0) terms.store(pairs_, first_ + own, all);
-      } else {
-        if (used) terms.store(pairs_, first_ + own, n % values, total);
+    }
+    if (part != 0) return;
+    if constexpr (storesVectors<Terms> || storesAll<Terms>) {
+      std::conditional_t<storesAll<Terms>, T[values], Vec<values, T>> all;
+#pragma unroll
+      for (int c = 0; c < values; ++c) {
+        const int n = slot * values + c;  // of particle `slot` of the group
+#pragma unroll
+        for (int r = 0; r < rounds; ++r) {
+          const T there = __shfl_sync(~0u, total[r], group * S::slots + n % S::slots);
+          if (n / S::slots == r) all[c] = there;
+        }
+      }
+      const std::uint32_t own = group * S::own + slot;
+      if (slot < S::own && own < count_) terms.store(pairs_, first_ + own, all);
+    } else {
+#pragma unroll
+      for (int r = 0; r < rounds; ++r) {
+        const int n = r * S::slots + slot;
+        const std::uint32_t own = group * S::own + n / values;
+        if (n < sums && own < count_) terms.store(pairs_, first_ + own, n % values, total[r]);
       }
     }
   }

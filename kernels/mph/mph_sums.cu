@@ -28,18 +28,18 @@ struct NumberDensity {
   }
 };
 
-/// The same with the openness of the particle's place.
+/// The same with what else there is to know of the particle's place (PlaceSums).
 template <int D>
-struct DensityAndOpenness {
-  static constexpr int values = D + 1;
+struct DensityAndPlace {
+  static constexpr int values = D + 2;
   static constexpr bool uses(ListSegment) { return true; }
   using StoresAll = void;
   using Own = std::uint32_t;
   using Other = std::uint32_t;
 
   MphTerms<D> mph;
-  double factor;  // MphPairs::opennessFactor
-  double *n, *open;
+  double openScale, wideScale;  // MphPairs::opennessFactor, wideScale
+  double *n, *open, *wide;
 
   __device__ Own loadOwn(const MphPairs<D>&, std::uint32_t i) const { return i; }
   __device__ Other loadOther(const MphPairs<D>&, std::uint32_t j) const { return j; }
@@ -50,12 +50,14 @@ struct DensityAndOpenness {
     sum[0] += mph.density(1.0, r);
     const double v = mph.openness(r);
     for (int k = 0; k < D; ++k) sum[1 + k] = fma(v, d[k], sum[1 + k]);
+    sum[1 + D] += v;
   }
   __device__ void store(const MphPairs<D>&, std::uint32_t i, const double* sum) const {
     n[i] = mph.densityFactor * sum[0];
     double square = 0;
     for (int k = 0; k < D; ++k) square = fma(sum[1 + k], sum[1 + k], square);
-    open[i] = factor * sqrt(square);
+    open[i] = openScale * sqrt(square);
+    wide[i] = wideScale * sum[1 + D];
   }
 };
 
@@ -157,10 +159,12 @@ struct WallDrag {
 }  // namespace
 
 template <int D>
-void numberDensity(Context<Cuda>& context, const MphPairs<D>& pairs, std::span<double> n, std::span<double> open) {
-  if (!open.empty())
+void numberDensity(Context<Cuda>& context, const MphPairs<D>& pairs, std::span<double> n,
+                   const PlaceSums& places) {
+  if (!places.open.empty())
     return sumOnAll(context, pairs,
-                    DensityAndOpenness<D>{pairs.terms, pairs.opennessFactor(), n.data(), open.data()});
+                    DensityAndPlace<D>{pairs.terms, pairs.opennessFactor(), pairs.wideScale, n.data(),
+                                       places.open.data(), places.wide.data()});
   if (pairs.terms.densityRadius > pairs.terms.pressureRadius)
     return sumOnAll(context, pairs, NumberDensity<D, MphTerms<D>, true>{pairs.terms, n.data()});
   withKnownWeights<PublishedWeights>(pairs.terms, [&]<class Mph>(const Mph& mph) {
@@ -212,7 +216,7 @@ void addWallDrag(Context<Cuda>& context, const MphPairs<D>& pairs, std::span<con
 }
 
 #define TREACLE_INSTANTIATE(D)                                                                                 \
-  template void numberDensity<D>(Context<Cuda>&, const MphPairs<D>&, std::span<double>, std::span<double>);    \
+  template void numberDensity<D>(Context<Cuda>&, const MphPairs<D>&, std::span<double>, const PlaceSums&);     \
   template void wallDensity<D>(Context<Cuda>&, const MphPairs<D>&, std::span<double>);                         \
   template void addPressureGradient<D>(Context<Cuda>&, const MphPairs<D>&, std::span<const double>, double,    \
                                        std::span<Vec<D>>);                                                     \

@@ -89,7 +89,7 @@ struct Spreading {
 }  // namespace
 
 template <int D>
-void lackOfDensity(Context<Cuda>& context, const MphPairs<D>& pairs, const Surroundings& around,
+void lackOfDensity(Context<Cuda>& context, const MphPairs<D>& pairs, const Places& around,
                    std::span<Covered> lack) {
   fill(context, pairs, lack,
        [around] __device__(const MphPairs<D>& pairs, std::uint32_t i) { return lackOf(pairs, i, around); });
@@ -102,7 +102,7 @@ void coveredMeans(Context<Cuda>& context, const MphPairs<D>& pairs, const Cluste
 }
 
 template <int D>
-void coverTension(Context<Cuda>& context, const MphPairs<D>& pairs, const Surroundings& around,
+void coverTension(Context<Cuda>& context, const MphPairs<D>& pairs, const Places& around,
                   std::span<const double> tension, std::span<Covered> covered) {
   fill(context, pairs, covered, [around, tension] __device__(const MphPairs<D>& pairs, std::uint32_t i) {
     return coveredTensionOf(pairs, i, around, tension[i]);
@@ -110,7 +110,7 @@ void coverTension(Context<Cuda>& context, const MphPairs<D>& pairs, const Surrou
 }
 
 template <int D>
-void followDensity(Context<Cuda>& context, const MphPairs<D>& pairs, double dt, const Surroundings& around,
+void followDensity(Context<Cuda>& context, const MphPairs<D>& pairs, double dt, const Places& around,
                    std::span<const double> lack, std::span<double> tension) {
   fill(context, pairs, tension, [dt, around, lack, tension] __device__(const MphPairs<D>& pairs, std::uint32_t i) {
     return tensionOf(pairs, i, dt, around, lack[i], tension[i]);
@@ -132,17 +132,26 @@ void spreadVelocities(Context<Cuda>& context, const MphPairs<D>& pairs, double d
   sumOnFluid(context, pairs, Spreading<D>{pairs.terms, dt, u.data(), tension.data(), transport.data()});
 }
 
+template <int D>
+void letGapsClose(Context<Cuda>& context, const MphPairs<D>& pairs, const Places& places,
+                  std::span<SymmetricBlock<D>> b) {
+  forEach(context, b.size(), [places, rest = pairs.restDensity, b = b.data()] __device__(std::size_t i) {
+    b[i] = std::sqrt(places.resists(static_cast<std::uint32_t>(i), rest)) * b[i];
+  });
+}
+
 void addValues(Context<Cuda>& context, std::span<const double> x, std::span<double> y) {
   forEach(context, y.size(), [x, y] __device__(std::size_t i) { y[i] += x[i]; });
 }
 
 #define TREACLE_INSTANTIATE(D)                                                                                    \
-  template void lackOfDensity<D>(Context<Cuda>&, const MphPairs<D>&, const Surroundings&, std::span<Covered>);    \
+  template void lackOfDensity<D>(Context<Cuda>&, const MphPairs<D>&, const Places&, std::span<Covered>);          \
   template void coveredMeans<D>(Context<Cuda>&, const MphPairs<D>&, const ClusterListView&,                       \
                                 std::span<const Covered>, std::span<double>);                                     \
-  template void coverTension<D>(Context<Cuda>&, const MphPairs<D>&, const Surroundings&, std::span<const double>, \
+  template void letGapsClose<D>(Context<Cuda>&, const MphPairs<D>&, const Places&, std::span<SymmetricBlock<D>>); \
+  template void coverTension<D>(Context<Cuda>&, const MphPairs<D>&, const Places&, std::span<const double>,       \
                                 std::span<Covered>);                                                              \
-  template void followDensity<D>(Context<Cuda>&, const MphPairs<D>&, double, const Surroundings&,                 \
+  template void followDensity<D>(Context<Cuda>&, const MphPairs<D>&, double, const Places&,                       \
                                  std::span<const double>, std::span<double>);                                     \
   template void tensionForces<D>(Context<Cuda>&, const MphPairs<D>&, const ClusterListView&,                      \
                                  std::span<const double>, std::span<Vec<D>>);                                     \

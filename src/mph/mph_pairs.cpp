@@ -35,6 +35,8 @@ MphPairs<D> makeMphPairs(const Case& c) {
   const auto densityWeight = densityWeightOf<D>(c);
   pairs.terms.setDensityWeight(densityWeight);
   pairs.restDensity = latticeNumberDensity(densityWeight, c.spacing);
+  pairs.wideScale = 1 / latticeSum<D>(densityWeight.radius, c.spacing,
+                                      [&](double r) { return pairs.terms.openness(ExactDistance(r * r)); });
   pairs.ambientPressure = c.method.ambientPressure;
   pairs.materials = MaterialTable::make(c);
   pairs.classes = ViscosityClasses::make(c);

@@ -67,13 +67,13 @@ void divergenceOf(const MphPairs<D>& pairs, const ClusterListView& list, std::sp
 }  // namespace
 
 template <int D>
-void numberDensity(Context<Cpu>&, const MphPairs<D>& pairs, std::span<double> n, std::span<double> open) {
+void numberDensity(Context<Cpu>&, const MphPairs<D>& pairs, std::span<double> n, const PlaceSums& places) {
   const double floor2 = distanceFloor2(pairs);
   std::span<const ListSegment> segments = nearSegments;
   if (pairs.terms.densityRadius > pairs.terms.pressureRadius) segments = allSegments;
   for (const ClusterListView& list : {pairs.fluidList, pairs.wallList})
     forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const ClusterPlaces<D>& x, std::uint32_t c) {
-      Lanes sum = {};
+      Lanes sum = {}, around = {};
       VecLanes<D> away = {};
       for (ListSegment s : segments)
         for (std::uint32_t j : list.segment(c, s)) {
@@ -82,15 +82,18 @@ void numberDensity(Context<Cpu>&, const MphPairs<D>& pairs, std::span<double> n,
           const std::uint32_t self = j - range.first;
           if (self < clusterSize) w[self] = 0;  // a particle is not its own neighbour
           sum += w;
-          if (open.empty()) continue;
-          const Lanes v = pairs.terms.openness(pair.r);
+          if (places.open.empty()) continue;
+          Lanes v = pairs.terms.openness(pair.r);
+          if (self < clusterSize) v[self] = 0;
+          around += v;
           for (int k = 0; k < D; ++k) away[k] += v * pair.d[k];
         }
       storeLanes(range, sum, n);
-      if (open.empty()) return;
+      if (places.open.empty()) return;
+      storeLanes(range, pairs.wideScale * around, places.wide);
       Lanes square = {};
       for (int k = 0; k < D; ++k) square += away[k] * away[k];
-      storeLanes(range, pairs.opennessFactor() * squareRoot(square), open);
+      storeLanes(range, pairs.opennessFactor() * squareRoot(square), places.open);
     });
 }
 
@@ -179,7 +182,7 @@ void addWallDrag(Context<Cpu>&, const MphPairs<D>& pairs, std::span<const Vec<D>
 }
 
 #define TREACLE_INSTANTIATE(D)                                                                                \
-  template void numberDensity<D>(Context<Cpu>&, const MphPairs<D>&, std::span<double>, std::span<double>);    \
+  template void numberDensity<D>(Context<Cpu>&, const MphPairs<D>&, std::span<double>, const PlaceSums&);     \
   template void wallDensity<D>(Context<Cpu>&, const MphPairs<D>&, std::span<double>);                         \
   template void addPressureGradient<D>(Context<Cpu>&, const MphPairs<D>&, std::span<const double>, double,    \
                                        std::span<Vec<D>>);                                                    \

@@ -38,7 +38,7 @@ class PairTensionLanes {
 }  // namespace
 
 template <int D>
-void lackOfDensity(Context<Cpu>&, const MphPairs<D>& pairs, const Surroundings& around, std::span<Covered> lack) {
+void lackOfDensity(Context<Cpu>&, const MphPairs<D>& pairs, const Places& around, std::span<Covered> lack) {
   forEachParticle(lack.size(), [&](std::uint32_t i) { lack[i] = lackOf(pairs, i, around); });
 }
 
@@ -60,14 +60,14 @@ void coveredMeans(Context<Cpu>&, const MphPairs<D>& pairs, const ClusterListView
 }
 
 template <int D>
-void coverTension(Context<Cpu>&, const MphPairs<D>& pairs, const Surroundings& around,
-                  std::span<const double> tension, std::span<Covered> covered) {
+void coverTension(Context<Cpu>&, const MphPairs<D>& pairs, const Places& around, std::span<const double> tension,
+                  std::span<Covered> covered) {
   forEachParticle(covered.size(),
                   [&](std::uint32_t i) { covered[i] = coveredTensionOf(pairs, i, around, tension[i]); });
 }
 
 template <int D>
-void followDensity(Context<Cpu>&, const MphPairs<D>& pairs, double dt, const Surroundings& around,
+void followDensity(Context<Cpu>&, const MphPairs<D>& pairs, double dt, const Places& around,
                    std::span<const double> lack, std::span<double> tension) {
   forEachParticle(tension.size(),
                   [&](std::uint32_t i) { tension[i] = tensionOf(pairs, i, dt, around, lack[i], tension[i]); });
@@ -121,17 +121,24 @@ void spreadVelocities(Context<Cpu>&, const MphPairs<D>& pairs, double dt, std::s
   });
 }
 
+template <int D>
+void letGapsClose(Context<Cpu>&, const MphPairs<D>& pairs, const Places& places, std::span<SymmetricBlock<D>> b) {
+  forEachParticle(b.size(),
+                  [&](std::uint32_t i) { b[i] = std::sqrt(places.resists(i, pairs.restDensity)) * b[i]; });
+}
+
 void addValues(Context<Cpu>&, std::span<const double> x, std::span<double> y) {
   forEachParticle(y.size(), [&](std::uint32_t i) { y[i] += x[i]; });
 }
 
 #define TREACLE_INSTANTIATE(D)                                                                                   \
-  template void lackOfDensity<D>(Context<Cpu>&, const MphPairs<D>&, const Surroundings&, std::span<Covered>);    \
+  template void lackOfDensity<D>(Context<Cpu>&, const MphPairs<D>&, const Places&, std::span<Covered>);          \
   template void coveredMeans<D>(Context<Cpu>&, const MphPairs<D>&, const ClusterListView&,                       \
                                 std::span<const Covered>, std::span<double>);                                    \
-  template void coverTension<D>(Context<Cpu>&, const MphPairs<D>&, const Surroundings&, std::span<const double>, \
+  template void letGapsClose<D>(Context<Cpu>&, const MphPairs<D>&, const Places&, std::span<SymmetricBlock<D>>); \
+  template void coverTension<D>(Context<Cpu>&, const MphPairs<D>&, const Places&, std::span<const double>,       \
                                 std::span<Covered>);                                                             \
-  template void followDensity<D>(Context<Cpu>&, const MphPairs<D>&, double, const Surroundings&,                 \
+  template void followDensity<D>(Context<Cpu>&, const MphPairs<D>&, double, const Places&,                       \
                                  std::span<const double>, std::span<double>);                                    \
   template void tensionForces<D>(Context<Cpu>&, const MphPairs<D>&, const ClusterListView&,                      \
                                  std::span<const double>, std::span<Vec<D>>);                                    \

@@ -70,7 +70,7 @@ void planFields(const Case& c, const MemoryCounts& n, bool withGradient, MemoryS
   if (n.wallForceLists.clusters > 0) planLists(n.wallForceLists, sum);
   sum.keep<Block<D>>(fluid);
   if (withGradient) sum.keep<Vec<D>>(fluid);
-  sum.keep<double>(fluid + (c.keepsVolume() ? 3 : 2) * n.active);
+  sum.keep<double>(fluid + (c.keepsVolume() ? 4 : 2) * n.active);
   sum.keep<Vec<D>>(fluid);
   if (c.keepsVolume()) {
     sum.keep<Vec<D>>(n.active + fluid);

@@ -52,8 +52,12 @@ class MphStep final : public StepMethod<D, Backend> {
     clearValues(state_.context, state_.particles.pressure.span().subspan(active));
     clearValues(state_.context, state_.particles.heldPressure.span().subspan(active));
     elastic_.resize(state_.context, active);
-    if (state_.theCase.keepsVolume()) open_.resize(state_.context, active);
-    numberDensity<D>(state_.context, pairs_, state_.particles.numberDensity.span().first(active), open_.span());
+    if (state_.theCase.keepsVolume()) {
+      open_.resize(state_.context, active);
+      wide_.resize(state_.context, active);
+    }
+    numberDensity<D>(state_.context, pairs_, state_.particles.numberDensity.span().first(active),
+                     {open_.span(), wide_.span()});
     fillGhosts(state_.context, Held::Active, state_.particles.numberDensity.data());
   }
 
@@ -66,14 +70,14 @@ class MphStep final : public StepMethod<D, Backend> {
   void prepareSystem() override {
     neighbourhood_.setTimeStep(state_.velocityStep);
     placeWallSurfaces();
+    computeDensities();
+    wallDensity_.resize(state_.context, state_.particles.fluidCount);
+    wallDensity<D>(state_.context, pairs_, wallDensity_);
     renormalise();
     if (state_.theCase.needsWallNeighbours()) wallForces_.prepare(state_, neighbourhood_);
     if (surface_) surface_->prepare(state_, pairs_, wallForces_.walls());
     scaleViscosity();
-    computeDensities();
-    wallDensity_.resize(state_.context, state_.particles.fluidCount);
-    wallDensity<D>(state_.context, pairs_, wallDensity_);
-    if (tension_) tension_->prepare(state_, pairs_, surroundings());
+    if (tension_) tension_->prepare(state_, pairs_, places());
     prepareViscous();
   }
 
@@ -146,7 +150,7 @@ class MphStep final : public StepMethod<D, Backend> {
       lastBalance_ = balance_.make(state_, pairs_, divergence_, elastic_, surface_ ? &*surface_ : nullptr,
                                    tension_ ? &*tension_ : nullptr);
     if (heat_) acceptHeat();
-    if (tension_) tension_->accept(state_, pairs_, surroundings());
+    if (tension_) tension_->accept(state_, pairs_, places());
     // The velocities of the start are given, no solution: nothing follows from the way to the first one.
     if (state_.step > 0)
       updateFlowMemory<D>(state_.context, state_.velocityStep, state_.lastStep(),
@@ -174,9 +178,9 @@ class MphStep final : public StepMethod<D, Backend> {
     return neighbourhood_.bytes() + wallSurface_.bytes() + renormalisation_.bytes() + viscosityScale_.bytes() +
            (rheology_ ? rheology_->bytes() : 0) + (heat_ ? heat_->bytes() : 0) +
            (surface_ ? surface_->bytes() : 0) + (tension_ ? tension_->bytes() : 0) + wallBlock_.bytes() +
-           wallGradient_.bytes() + wallDensity_.bytes() + open_.bytes() + elastic_.bytes() + divergence_.bytes() +
-           rhs_.bytes() + found_.bytes() + solver_.bytes() + balance_.bytes() + wallForces_.bytes() +
-           (bodies_ ? bodies_->bytes() : 0) + rhsAtRest_.bytes() + pressure_.bytes();
+           wallGradient_.bytes() + wallDensity_.bytes() + open_.bytes() + wide_.bytes() + elastic_.bytes() +
+           divergence_.bytes() + rhs_.bytes() + found_.bytes() + solver_.bytes() + balance_.bytes() +
+           wallForces_.bytes() + (bodies_ ? bodies_->bytes() : 0) + rhsAtRest_.bytes() + pressure_.bytes();
   }
 
  private:
@@ -293,6 +297,8 @@ class MphStep final : public StepMethod<D, Backend> {
     if (state_.theCase.method.pressureGradient == PressureGradient::Plain) return;
     renormalisation_.resize(state_.context, pairs_.fluidCount);
     renormalisation<D>(state_.context, pairs_, renormalisation_.span());
+    if (tension_)
+      letGapsClose<D>(state_.context, pairs_, places(), renormalisation_.span().first(pairs_.ownFluid()));
     fillGhosts(state_.context, Held::Fluid, renormalisation_.data());
     neighbourhood_.setRenormalisation(renormalisation_);
   }
@@ -344,7 +350,7 @@ class MphStep final : public StepMethod<D, Backend> {
     addPressureGradient<D>(state_.context, pairs_, divergence_, -1.0, rhs_);
   }
 
-  Surroundings surroundings() const { return {state_.particles.numberDensity, open_, wallDensity_}; }
+  Places places() const { return {state_.particles.numberDensity, open_, wide_, wallDensity_}; }
   const ExplicitForces<D, Backend>* explicitForces() const {
     if (surface_) return &*surface_;
     return tension_ ? &*tension_ : nullptr;
@@ -368,7 +374,7 @@ class MphStep final : public StepMethod<D, Backend> {
   Buffer<Block<D>, Backend> wallBlock_;
   Buffer<Vec<D>, Backend> wallGradient_;
   Buffer<double, Backend> wallDensity_;  // the walls' part of n per fluid particle
-  Buffer<double, Backend> open_;         // how open places of particles are, where the case keeps its volume [-]
+  Buffer<double, Backend> open_, wide_;  // PlaceSums, where the case keeps its volume [-]
   Buffer<double, Backend> elastic_;      // elasticPressure() per particle [Pa]
   Buffer<double, Backend> divergence_;   // C^T u per particle [1/s]
   Buffer<Vec<D>, Backend> rhs_;

@@ -13,7 +13,7 @@ class StepTension final : public ExplicitForces<D, Backend> {
  public:
   /// The forces of the tensions that particles have, on the neighbours of the step. Walls have the mean of the
   /// fluid around them. `around`: of the places at hand.
-  void prepare(FlowState<D, Backend>& state, const MphPairs<D>& pairs, const Surroundings& around) {
+  void prepare(FlowState<D, Backend>& state, const MphPairs<D>& pairs, const Places& around) {
     Context<Backend>& context = state.context;
     const std::uint32_t own = pairs.ownFluid();
     const std::span<double> held = state.particles.heldPressure.span().first(pairs.activeCount);
@@ -48,7 +48,7 @@ class StepTension final : public ExplicitForces<D, Backend> {
   }
 
   /// Adds the tensions of the step to the pressures, and renews those of the fluid. `around`: as in prepare().
-  void accept(FlowState<D, Backend>& state, const MphPairs<D>& pairs, const Surroundings& around) {
+  void accept(FlowState<D, Backend>& state, const MphPairs<D>& pairs, const Places& around) {
     Context<Backend>& context = state.context;
     const std::uint32_t own = pairs.ownFluid();
     const std::span<double> held = state.particles.heldPressure.span().first(pairs.activeCount);

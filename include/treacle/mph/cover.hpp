@@ -3,6 +3,8 @@
 #include "treacle/core/macros.hpp"
 
 #include <cmath>
+#include <cstdint>
+#include <span>
 
 namespace treacle {
 
@@ -31,6 +33,16 @@ struct Cover {
     return {rest, bears, bears * falling(open, 0.04, 0.07)};
   }
 
+  /// The share of its bulk viscosity that a particle has, 0 to 1. A divergence that is a sum over particles takes
+  /// two surfaces that come close for one fluid, and lambda would hold the gap between them open. A particle next
+  /// to a gap has less around it than `rest` says. A thin sheet has so, too, but its surroundings lack more by a
+  /// wider weight than by that of the density, while beyond a gap there is fluid again. `wide`: what stands around
+  /// the particle over that of a full lattice, by the weight v.
+  TREACLE_HD static double resists(double open, double ratio, double wide, double walls) {
+    const double sheet = fmax(0.0, ratio - wide), gap = of(open, ratio, walls).rest - ratio - 5 * sheet;
+    return fmax(exp(-fmax(0.0, gap - 0.02) / 0.01), 1 - falling(1 - ratio, 0.4, 0.5));
+  }
+
  private:
   static constexpr double inside = 0.2;
 
@@ -38,6 +50,19 @@ struct Cover {
   TREACLE_HD static double falling(double x, double a, double b) {
     const double t = fmin(1.0, fmax(0.0, (b - x) / (b - a)));
     return t * t * (3 - 2 * t);
+  }
+};
+
+/// What number densities say of the places of particles: the sums of numberDensity() and wallDensity(). `rest`:
+/// n_0.
+struct Places {
+  std::span<const double> n, open, wide, walls;
+
+  TREACLE_HD Cover cover(std::uint32_t i, double rest) const {
+    return Cover::of(open[i], n[i] / rest, walls[i] / rest);
+  }
+  TREACLE_HD double resists(std::uint32_t i, double rest) const {
+    return Cover::resists(open[i], n[i] / rest, wide[i], walls[i] / rest);
   }
 };
 

@@ -25,6 +25,7 @@ struct MphPairs : MaterialParticles<D> {
   ClusterListView wallList;    // near h_p, far h_n if that is more
   MphTerms<D> terms{};         // lengths in metres
   double restDensity = 0;      // n_0 [-]
+  double wideScale = 0;        // of sums of MphTerms::openness, to be 1 in a full lattice
   double ambientPressure = 0;  // elastic pressures are never below minus this [Pa]
   const WallSurface<D>* wallSurface =
       nullptr;  // of the first wall particle; null: the fluid meets walls as they are

@@ -11,12 +11,17 @@ namespace treacle {
 /// fluidCount elements; results are overwritten unless the name says add, and set for own particles alone. What is
 /// read of neighbours must be there for ghosts, too (fillGhosts).
 
-/// n_i = sum_j w_ij^p, per particle [K23 eq. (7)]. `open`, unless empty: how open its place is, |sum_j v_ij d_ij|
-/// / (n_0 l) with v = [1-q^2]_+^3 (cover.hpp).
+/// What numberDensity() finds beside n, per particle, with v = [1-q^2]_+^3 (cover.hpp); empty: nothing.
+struct PlaceSums {
+  std::span<double> open;  // |sum_j v_ij d_ij| / (n_0 l): how open its place is
+  std::span<double> wide;  // sum_j v_ij over that of a full lattice
+};
+
+/// n_i = sum_j w_ij^p, per particle [K23 eq. (7)].
 template <int D>
-void numberDensity(Context<Cpu>&, const MphPairs<D>&, std::span<double> n, std::span<double> open = {});
+void numberDensity(Context<Cpu>&, const MphPairs<D>&, std::span<double> n, const PlaceSums& places = {});
 template <int D>
-void numberDensity(Context<Cuda>&, const MphPairs<D>&, std::span<double> n, std::span<double> open = {});
+void numberDensity(Context<Cuda>&, const MphPairs<D>&, std::span<double> n, const PlaceSums& places = {});
 
 /// The part of n_i that wall particles make up, per fluid particle.
 template <int D>

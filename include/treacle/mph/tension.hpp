@@ -14,23 +14,14 @@ namespace treacle {
 /// Fluid under tension (docs/accurate.md): what it takes for a fluid that is pulled, or whose gaps have closed, to
 /// keep its volume. Spans have an element for each fluid particle, or for each active particle where that is said.
 
-/// What number densities say of the fluid around particles: those of numberDensity() and wallDensity().
-struct Surroundings {
-  std::span<const double> n, open, walls;
-
-  TREACLE_HD Cover cover(std::uint32_t i, double rest) const {
-    return Cover::of(open[i], n[i] / rest, walls[i] / rest);
-  }
-};
-
 /// (b q, b) of a quantity q of a particle and its weight b in means.
 using Covered = Vec<2>;
 
 /// q = min(0, n - n_0), n_0 being that of fluid whose place is as open; b = Cover::tells. For own fluid particles.
 template <int D>
-void lackOfDensity(Context<Cpu>&, const MphPairs<D>&, const Surroundings&, std::span<Covered> lack);
+void lackOfDensity(Context<Cpu>&, const MphPairs<D>&, const Places&, std::span<Covered> lack);
 template <int D>
-void lackOfDensity(Context<Cuda>&, const MphPairs<D>&, const Surroundings&, std::span<Covered> lack);
+void lackOfDensity(Context<Cuda>&, const MphPairs<D>&, const Places&, std::span<Covered> lack);
 
 /// mean_i = sum_j w_ij b_j q_j / sum_j w_ij b_j over the fluid around the particles i of the list, each fluid
 /// particle among its own neighbours (coveredMeanOf). `mean`: per active particle, written for those of the list.
@@ -43,19 +34,19 @@ void coveredMeans(Context<Cuda>&, const MphPairs<D>&, const ClusterListView& lis
 
 /// q = P, the tension of own fluid [Pa], b = Cover::bears.
 template <int D>
-void coverTension(Context<Cpu>&, const MphPairs<D>&, const Surroundings&, std::span<const double> tension,
+void coverTension(Context<Cpu>&, const MphPairs<D>&, const Places&, std::span<const double> tension,
                   std::span<Covered> covered);
 template <int D>
-void coverTension(Context<Cuda>&, const MphPairs<D>&, const Surroundings&, std::span<const double> tension,
+void coverTension(Context<Cuda>&, const MphPairs<D>&, const Places&, std::span<const double> tension,
                   std::span<Covered> covered);
 
 /// P of own fluid at the end of a step of dt [s] (tensionOf). `lack`: the means of lackOfDensity().
 template <int D>
-void followDensity(Context<Cpu>&, const MphPairs<D>&, double dt, const Surroundings&, std::span<const double> lack,
+void followDensity(Context<Cpu>&, const MphPairs<D>&, double dt, const Places&, std::span<const double> lack,
                    std::span<double> tension);
 template <int D>
-void followDensity(Context<Cuda>&, const MphPairs<D>&, double dt, const Surroundings&,
-                   std::span<const double> lack, std::span<double> tension);
+void followDensity(Context<Cuda>&, const MphPairs<D>&, double dt, const Places&, std::span<const double> lack,
+                   std::span<double> tension);
 
 /// force_i = sum_j 2 P_ij w'_ij e_ij, the force of the tensions [N/m3], w being the weight of densities and P_ij
 /// the tension of a pair (pairTension). Of fluid particles from all neighbours, of walls from the fluid.
@@ -75,13 +66,20 @@ template <int D>
 void spreadVelocities(Context<Cuda>&, const MphPairs<D>&, double dt, std::span<const Vec<D>> u,
                       std::span<const double> tension, std::span<Vec<D>> transport);
 
+/// B of own fluid (renormalisation.hpp) by the root of Places::resists: C takes B once and C^T once, so that
+/// lambda is multiplied by that share.
+template <int D>
+void letGapsClose(Context<Cpu>&, const MphPairs<D>&, const Places&, std::span<SymmetricBlock<D>> b);
+template <int D>
+void letGapsClose(Context<Cuda>&, const MphPairs<D>&, const Places&, std::span<SymmetricBlock<D>> b);
+
 /// y += x, element by element.
 void addValues(Context<Cpu>&, std::span<const double> x, std::span<double> y);
 void addValues(Context<Cuda>&, std::span<const double> x, std::span<double> y);
 
 /// The formulas, for particle i.
 template <int D>
-TREACLE_HD Covered lackOf(const MphPairs<D>& pairs, std::uint32_t i, const Surroundings& around) {
+TREACLE_HD Covered lackOf(const MphPairs<D>& pairs, std::uint32_t i, const Places& around) {
   const Cover cover = around.cover(i, pairs.restDensity);
   return {cover.tells * fmin(0.0, around.n[i] - cover.rest * pairs.restDensity), cover.tells};
 }
@@ -97,7 +95,7 @@ TREACLE_HD double coveredMeanOf(const MphPairs<D>& pairs, const Covered& sum) {
 inline constexpr double tensionTime = 3;
 
 template <int D>
-TREACLE_HD Covered coveredTensionOf(const MphPairs<D>& pairs, std::uint32_t i, const Surroundings& around,
+TREACLE_HD Covered coveredTensionOf(const MphPairs<D>& pairs, std::uint32_t i, const Places& around,
                                     double tension) {
   const double bears = around.cover(i, pairs.restDensity).bears;
   return {bears * tension, bears};
@@ -109,7 +107,7 @@ TREACLE_HD Covered coveredTensionOf(const MphPairs<D>& pairs, std::uint32_t i, c
 ///
 /// Only covered particles have it, and it is not below minus the ambient pressure. `lack`: the mean.
 template <int D>
-TREACLE_HD double tensionOf(const MphPairs<D>& pairs, std::uint32_t i, double dt, const Surroundings& around,
+TREACLE_HD double tensionOf(const MphPairs<D>& pairs, std::uint32_t i, double dt, const Places& around,
                             double lack, double before) {
   const double kappa = pairs.bulkModulus(i), lambda = pairs.bulkViscosity(i);
   if (kappa == 0 || lambda == 0) return 0;

@@ -91,12 +91,13 @@ struct SumsTwin {
     numberDensity<D>(d.context, d.pairs, found);
     EXPECT_LE(difference<double>(d.context, expected.span(), found), kernelTolerance);
 
-    Buffer<double> open(active);
-    Buffer<double, Cuda> openFound(d.context, active);
-    numberDensity<D>(s.context, s.pairs(), expected, open);
-    numberDensity<D>(d.context, d.pairs, found, openFound);
+    Buffer<double> open(active), wide(active);
+    Buffer<double, Cuda> openFound(d.context, active), wideFound(d.context, active);
+    numberDensity<D>(s.context, s.pairs(), expected, {open, wide});
+    numberDensity<D>(d.context, d.pairs, found, {openFound, wideFound});
     EXPECT_LE(difference<double>(d.context, expected.span(), found), kernelTolerance);
     EXPECT_LE(difference<double>(d.context, open.span(), openFound), operatorTolerance);
+    EXPECT_LE(difference<double>(d.context, wide.span(), wideFound), kernelTolerance);
 
     Buffer<double> wallsExpected(n);
     Buffer<double, Cuda> wallsFound(d.context, n);
@@ -231,9 +232,10 @@ void checkTension(bool lists) {
   MphPairs<D> host = s.pairs();
   host.ambientPressure = d.pairs.ambientPressure = 400;  // some would have less
   const std::uint32_t n = host.fluidCount, active = host.activeCount;
-  std::vector<double> density(active), open(active), walls(n), tension(active), mean(active);
+  std::vector<double> density(active), open(active), wide(active), walls(n), tension(active), mean(active);
   for (std::uint32_t i = 0; i < active; ++i) {
     density[i] = (0.8 + 0.003 * (i % 83)) * host.restDensity, open[i] = 0.004 * (i % 101);
+    wide[i] = 0.8 + 0.003 * (i % 71);
     tension[i] = -50.0 * (i % 13);
     if (i < n) walls[i] = 0.05 * (i % 7) * host.restDensity;
   }
@@ -241,14 +243,14 @@ void checkTension(bool lists) {
   std::vector<Vec<D>> force(active), transport(n);
   const auto u = randomVectors<D>(active, 8);
   const auto densityFound = copyToDevice<double>(d.context, density),
-             openFound = copyToDevice<double>(d.context, open),
+             openFound = copyToDevice<double>(d.context, open), wideFound = copyToDevice<double>(d.context, wide),
              wallsFound = copyToDevice<double>(d.context, walls);
   auto tensionFound = copyToDevice<double>(d.context, tension), meanFound = copyToDevice<double>(d.context, mean);
   auto coveredFound = copyToDevice<Covered>(d.context, covered);
   auto forceFound = copyToDevice<Vec<D>>(d.context, force),
        transportFound = copyToDevice<Vec<D>>(d.context, transport);
   const auto uFound = copyToDevice<Vec<D>>(d.context, u);
-  const Surroundings around{density, open, walls}, aroundFound{densityFound, openFound, wallsFound};
+  const Places around{density, open, wide, walls}, aroundFound{densityFound, openFound, wideFound, wallsFound};
 
   for (const bool ofWalls : {false, true}) {
     const ClusterListView& list = ofWalls ? host.wallList : host.fluidList;
@@ -274,6 +276,11 @@ void checkTension(bool lists) {
   coveredMeans<D>(d.context, d.pairs, d.pairs.wallList, coveredFound, tensionFound.span());
   EXPECT_LE(difference<double>(d.context, tension, tensionFound), operatorTolerance);
   EXPECT_LE(difference<Covered>(d.context, covered, coveredFound), operatorTolerance);
+  std::vector<SymmetricBlock<D>> b(s.renormalisation.begin(), s.renormalisation.end());
+  auto bFound = copyToDevice<SymmetricBlock<D>>(d.context, b);
+  letGapsClose<D>(s.context, host, around, b);
+  letGapsClose<D>(d.context, d.pairs, aroundFound, bFound.span());
+  EXPECT_LE(difference<SymmetricBlock<D>>(d.context, b, bFound), operatorTolerance);
   addValues(s.context, density, mean);
   addValues(d.context, densityFound, meanFound.span());
   EXPECT_LE(difference<double>(d.context, mean, meanFound), operatorTolerance);

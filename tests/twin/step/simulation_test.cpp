@@ -1,7 +1,7 @@
 #include "treacle/step/simulation.hpp"
 #include "support/gpu.hpp"
 #include "support/isph_cases.hpp"
-#include "support/ring_in_drum.hpp"
+#include "support/layer_with_gap.hpp"
 #include "support/scene.hpp"
 #include "support/state_of.hpp"
 #include "support/stretched_body.hpp"
@@ -136,6 +136,18 @@ TEST(SimulationTwin, BearsTensionLikeTheCpu) {
   const double least = *std::min_element(found.heldPressure.begin(), found.heldPressure.end());
   EXPECT_LT(least, -1) << "none bears tension";
   EXPECT_LE(farthest(stateOf(cpu), found), 1e-6 * c.spacing);
+}
+
+/// Until the gap is closed and after.
+TEST(SimulationTwin, ClosesGapsLikeTheCpu) {
+  TREACLE_SKIP_WITHOUT_GPU();
+  Case c = layerWithGap();
+  c.solver.tolerance = tightTolerance;
+  c.solver.precision = Precision::Double;
+  Simulation<2> cpu(c, created<2>(c));
+  Simulation<2, Cuda> cuda(c, created<2>(c));
+  for (int step = 0; step < 20; ++step) cpu.advance(), cuda.advance();
+  EXPECT_LE(farthest(stateOf(cpu), stateOf(cuda)), 1e-6 * c.spacing);
 }
 
 /// A Bingham fluid alone, and one beside another fluid.

@@ -1,4 +1,5 @@
 #include "support/isph_cases.hpp"
+#include "support/layer_with_gap.hpp"
 #include "support/ring_in_drum.hpp"
 #include "support/same_bits.hpp"
 #include "support/scene.hpp"
@@ -11,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 namespace treacle::test {
@@ -68,7 +70,7 @@ double tensionAfter(double open, double n, double ambient) {
   MphPairs<2> pairs = s.pairs();
   pairs.ambientPressure = ambient;
   const double density = n * pairs.restDensity, walls = 0;
-  const Surroundings around{{&density, 1}, {&open, 1}, {&walls, 1}};
+  const Places around{{&density, 1}, {&open, 1}, {}, {&walls, 1}};
   const Covered lack = lackOf<2>(pairs, 0, around);
   const double mean = lack[1] > 0 ? lack[0] / lack[1] : 0;
   return tensionOf<2>(pairs, 0, 1e-3, around, mean, 0) / pairs.bulkModulus(0);
@@ -93,6 +95,82 @@ TEST(KeepsVolume, TheDensityAtRestIsKnownWhereASurfaceMeetsAWall) {
   EXPECT_EQ(Cover::of(0.03, 1).tells, 1);
   EXPECT_EQ(Cover::of(0.1, 1).tells, 0) << "though it bears what its neighbours tell:";
   EXPECT_EQ(Cover::of(0.1, 1).bears, 1);
+}
+
+/// Of the particle at the origin of a lattice whose other particles, at integers, are moved or left out.
+template <int D, class F>
+double resistanceIn(F&& moved) {
+  const Scene<D> s = makeScene<D>({.scheme = SchemeKind::Accurate});
+  const MphPairs<D>& pairs = s.pairs();
+  double n = 0, wide = 0;
+  Vec<D> away{};
+  constexpr int reach = 5, depth = D == 3 ? reach : 0;
+  for (int z = -depth; z <= depth; ++z)
+    for (int y = -reach; y <= reach; ++y)
+      for (int x = -reach; x <= reach; ++x) {
+        if (x == 0 && y == 0 && z == 0) continue;
+        const std::optional<Vec<3>> place = moved(Vec<3>{double(x), double(y), double(z)});
+        if (!place) continue;
+        const Vec<D> d = resized<D>(pairs.spacing * *place);
+        const ExactDistance r(norm2(d));
+        n += pairs.terms.density(pairs.terms.densityFactor, r);
+        wide += pairs.terms.openness(r);
+        away += pairs.terms.openness(r) * d;
+      }
+  return Cover::resists(pairs.opennessFactor() * norm(away), n / pairs.restDensity, pairs.wideScale * wide, 0);
+}
+
+template <int D>
+void checkResistance() {
+  using Place = std::optional<Vec<3>>;
+  const auto gap = [](double width) {
+    return resistanceIn<D>([width](Vec<3> x) -> Place {
+      return Vec<3>{x[0], x[1] + (x[1] > 0 ? width : 0), x[2]};
+    });
+  };
+  const auto sheet = [](int below, int above) {
+    return resistanceIn<D>(
+        [=](Vec<3> x) -> Place { return x[1] >= -below && x[1] <= above ? Place(x) : Place(); });
+  };
+  EXPECT_EQ(gap(0), 1);
+  for (const double width : {0.35, 0.5, 0.8, 1.0}) EXPECT_LE(gap(width), 1e-3) << width;
+  EXPECT_GT(gap(0.05), 0.8);
+  EXPECT_EQ(gap(2.5), 1) << "the other side is out of reach";
+  for (int rows = 1; rows < 7; ++rows)
+    for (int row = 0; row < rows; ++row)
+      EXPECT_EQ(sheet(row, rows - 1 - row), 1) << "row " << row << " of a sheet of " << rows;
+  for (int row = 0; row < 3; ++row) {
+    EXPECT_EQ(sheet(9, row), 1) << "row " << row << " below a free surface";
+    const auto corner = [row](Vec<3> x) { return x[0] <= row && x[1] <= row ? Place(x) : Place(); };
+    EXPECT_EQ(resistanceIn<D>(corner), 1) << "row " << row << " at an edge";
+  }
+  EXPECT_EQ(resistanceIn<D>([](Vec<3> x) -> Place {
+              return Vec<3>{1.5 * x[0], x[1] / 1.5, x[2]};
+            }),
+            1)
+      << "a strained lattice";
+}
+
+/// The bulk viscosity holds no gap open, and all else together.
+TEST(KeepsVolume, BulkViscosityIsLeftOutNextToGaps) {
+  checkResistance<2>();
+  checkResistance<3>();
+}
+
+/// The viscosity mu alone holds the layer above the gap: it sinks within some mu / (rho g h) = 0.09 s, and not
+/// within lambda / (rho g h).
+TEST(KeepsVolume, FluidSinksOverAGapInIt) {
+  const Case c = layerWithGap();
+  Simulation<2> s(c, created<2>(c));
+  const auto upper = [&] {
+    double height = 0, count = 0;
+    for (std::uint32_t i = 0; i < s.particles().fluidCount; ++i)
+      if (s.particles().body[i] == 1) height += s.particles().position[i][1], ++count;
+    return height / count;
+  };
+  const double start = upper(), gap = 5e-4;
+  for (int k = 0; k < 200; ++k) s.advance();
+  EXPECT_NEAR(start - upper(), gap, 0.02 * gap);
 }
 
 /// The gradient of the density's weight is its derivative.
