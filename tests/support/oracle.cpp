@@ -190,11 +190,11 @@ Matrix renormalisationOracle(const Matrix& moment) {
 }
 
 template <int D>
-double Oracle<D>::dissipation(const Vector& u) const {
+double Oracle<D>::dissipation(const Vector& u, const std::function<Matrix(std::uint32_t)>& factor) const {
   double sum = 0;
   for (std::uint32_t i = 0; i < count(); ++i) {
     double divergence = 0;
-    const Matrix b = renormalisation(i);
+    const Matrix b = factor ? factor(i) : renormalisation(i);
     for (std::uint32_t j = 0; j < count(); ++j) {
       if (j == i) continue;
       const Vec<D> d = difference(i, j);

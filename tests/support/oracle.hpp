@@ -3,6 +3,8 @@
 #include "support/scene.hpp"
 
 #include <algorithm>
+#include <cstdint>
+#include <functional>
 #include <vector>
 
 namespace treacle::test {
@@ -62,7 +64,8 @@ struct Oracle {
   Matrix renormalisation(std::uint32_t i) const;
 
   /// Rayleigh's dissipation function of eq. (10) for the velocities of all particles [W].
-  double dissipation(const Vector& u) const;
+  /// `b`: by what C is multiplied, renormalisation() unless told.
+  double dissipation(const Vector& u, const std::function<Matrix(std::uint32_t)>& b = {}) const;
 
   /// C: fluid unknowns by all particles. `reach`: in h_p, from which on pairs are left out.
   Matrix gradientMatrix(double reach = 1) const;

@@ -3,6 +3,8 @@
 #include "support/state_of.hpp"
 #include "support/tolerances.hpp"
 #include "treacle/core/parallel.hpp"
+#include "treacle/model/lattice_sum.hpp"
+#include "treacle/mph/cover.hpp"
 
 #include <gtest/gtest.h>
 #include <omp.h>
@@ -151,9 +153,29 @@ struct PlainBalance {
 
   bool isFluid(std::uint32_t i) const { return i < s.particles.fluidCount; }
 
+  /// That of the gradient, and the root of the share of its bulk viscosity that a particle has (Cover::resists).
+  Matrix factorOfC(std::uint32_t i) const {
+    const Matrix b = oracle.renormalisation(i);
+    if (!s.c.keepsVolume() || !isFluid(i)) return b;
+    const auto v = [&](double r) { return std::pow(std::max(0.0, 1 - r * r / (oracle.hn * oracle.hn)), 3); };
+    double n = 0, walls = 0, wide = 0;
+    Vec<D> away{};
+    for (std::uint32_t j = 0; j < oracle.count(); ++j) {
+      if (j == i) continue;
+      const Vec<D> d = oracle.difference(i, j);
+      n += oracle.densityWeight(norm(d));
+      if (!isFluid(j)) walls += oracle.densityWeight(norm(d));
+      wide += v(norm(d));
+      away += v(norm(d)) * d;
+    }
+    const double rest = oracle.restDensity(), open = oracle.densityWeight(0) * norm(away) / (rest * oracle.l);
+    return std::sqrt(Cover::resists(open, n / rest, wide / latticeSum<D>(oracle.hn, oracle.l, v), walls / rest)) *
+           b;
+  }
+
   /// u_ij.B_i e_ij w'_ij^p summed over all particles.
   double divergence(std::uint32_t i) const {
-    const Matrix b = oracle.renormalisation(i);
+    const Matrix b = factorOfC(i);
     double sum = 0;
     for (std::uint32_t j = 0; j < oracle.count(); ++j) {
       if (j == i) continue;
@@ -192,7 +214,7 @@ struct PlainBalance {
     std::vector<Matrix> matrix;
     for (std::uint32_t i = 0; i < oracle.count(); ++i) {
       pressure.push_back(oracle.material(i).bulkViscosity * divergence(i) + elasticPressure(i));
-      matrix.push_back(oracle.renormalisation(i));
+      matrix.push_back(factorOfC(i));
     }
     Balance b;
     b.walls.resize(2);
@@ -282,7 +304,8 @@ void checkDissipations(SchemeKind scheme) {
   SCOPED_TRACE(nameOf(scheme));
   const LoadedWalls<D> start(WallsMove::Not, 1, scheme);
   const auto twiceRayleigh = [](const Stepped<D>& step) {
-    return 2 * step.plain.oracle.dissipation(flat<D>(step.plain.u));
+    return 2 * step.plain.oracle.dissipation(flat<D>(step.plain.u),
+                                             [&](std::uint32_t i) { return step.plain.factorOfC(i); });
   };
   const Stepped<D> both(start);
   const double whole = twiceRayleigh(both);
