@@ -30,10 +30,11 @@ study = Study(
     name="energy",
     title="Energy balance of the dam break, at one spacing and several time steps",
     levels=[Level(1, (f"time.step={dt:g}",)) for dt in (4e-3, 2e-3, 1e-3, 5e-4, 2.5e-4)],
-    bars={"closing": 0.14, "elastic part": 0.145, "inertial part": 0.0057, "beyond the two parts": 1e-7},
+    bars={"closing": 0.0125, "elastic part": 0.0145, "inertial part": 0.0057, "beyond the two parts": 1e-7},
     published={"closing": 0.013, "elastic part": 0.018, "inertial part": 0.0055},
-    # What elastic pressures give is not what elastic energies lose where the gradient is renormalised, whatever the step.
-    orders={"closing": 0.1, "elastic part": 0.1},
+    # What elastic pressures give is not what elastic energies lose where the gradient is renormalised, whatever the step: only the bars
+    # hold that part. The sum of both parts, which have opposite signs, has no order either.
+    orders={"closing": float("-inf"), "elastic part": float("-inf")},
     measure=measure,
     x_label="t [s]",
     y_label="missing energy / potential energy released",
