@@ -5,6 +5,7 @@
 #include "step_bodies.hpp"
 #include "step_heat.hpp"
 #include "step_method.hpp"
+#include "step_places.hpp"
 #include "step_rheology.hpp"
 #include "step_surface.hpp"
 #include "step_tension.hpp"
@@ -48,17 +49,10 @@ class MphStep final : public StepMethod<D, Backend> {
 
   void computeDensities() override {
     const std::uint32_t active = pairs_.activeCount;
-    clearValues(state_.context, state_.particles.numberDensity.span().subspan(active));
     clearValues(state_.context, state_.particles.pressure.span().subspan(active));
     clearValues(state_.context, state_.particles.heldPressure.span().subspan(active));
     elastic_.resize(state_.context, active);
-    if (state_.theCase.keepsVolume()) {
-      open_.resize(state_.context, active);
-      wide_.resize(state_.context, active);
-    }
-    numberDensity<D>(state_.context, pairs_, state_.particles.numberDensity.span().first(active),
-                     {open_.span(), wide_.span()});
-    fillGhosts(state_.context, Held::Active, state_.particles.numberDensity.data());
+    places_.compute(state_, pairs_);
   }
 
   /// Walls go with what rigid bodies are tried with first.
@@ -71,13 +65,11 @@ class MphStep final : public StepMethod<D, Backend> {
     neighbourhood_.setTimeStep(state_.velocityStep);
     placeWallSurfaces();
     computeDensities();
-    wallDensity_.resize(state_.context, state_.particles.fluidCount);
-    wallDensity<D>(state_.context, pairs_, wallDensity_);
     renormalise();
     if (state_.theCase.needsWallNeighbours()) wallForces_.prepare(state_, neighbourhood_);
     if (surface_) surface_->prepare(state_, pairs_, wallForces_.walls());
     scaleViscosity();
-    if (tension_) tension_->prepare(state_, pairs_, places());
+    if (tension_) tension_->prepare(state_, pairs_, places_.of(state_));
     prepareViscous();
   }
 
@@ -150,21 +142,14 @@ class MphStep final : public StepMethod<D, Backend> {
       lastBalance_ = balance_.make(state_, pairs_, divergence_, elastic_, surface_ ? &*surface_ : nullptr,
                                    tension_ ? &*tension_ : nullptr);
     if (heat_) acceptHeat();
-    if (tension_) tension_->accept(state_, pairs_, places());
+    if (tension_) tension_->accept(state_, pairs_, places_.of(state_));
     // The velocities of the start are given, no solution: nothing follows from the way to the first one.
     if (state_.step > 0)
       updateFlowMemory<D>(state_.context, state_.velocityStep, state_.lastStep(),
                           state_.particles.velocity.span().first(n), state_.velocity.span().first(n), memory());
   }
 
-  void describe(DiagnosticsInput<D>& in) const override {
-    const std::uint32_t n = state_.particles.fluidCount;
-    in.numberDensity = state_.particles.numberDensity.span().first(n);
-    in.restDensity = in.neighbourDensity = pairs_.restDensity;
-    in.ownDensity = pairs_.terms.density(pairs_.terms.densityFactor, ExactDistance(0));
-    if (wallDensity_.size() == n) in.wallDensity = wallDensity_;
-    if (open_.size() >= n) in.open = open_.span().first(n);
-  }
+  void describe(DiagnosticsInput<D>& in) const override { places_.describe(state_, pairs_, in); }
 
   std::optional<Balance> balance() const override { return lastBalance_; }
   std::vector<WallLoad> loads() const override {
@@ -178,9 +163,9 @@ class MphStep final : public StepMethod<D, Backend> {
     return neighbourhood_.bytes() + wallSurface_.bytes() + renormalisation_.bytes() + viscosityScale_.bytes() +
            (rheology_ ? rheology_->bytes() : 0) + (heat_ ? heat_->bytes() : 0) +
            (surface_ ? surface_->bytes() : 0) + (tension_ ? tension_->bytes() : 0) + wallBlock_.bytes() +
-           wallGradient_.bytes() + wallDensity_.bytes() + open_.bytes() + wide_.bytes() + elastic_.bytes() +
-           divergence_.bytes() + rhs_.bytes() + found_.bytes() + solver_.bytes() + balance_.bytes() +
-           wallForces_.bytes() + (bodies_ ? bodies_->bytes() : 0) + rhsAtRest_.bytes() + pressure_.bytes();
+           wallGradient_.bytes() + places_.bytes() + elastic_.bytes() + divergence_.bytes() + rhs_.bytes() +
+           found_.bytes() + solver_.bytes() + balance_.bytes() + wallForces_.bytes() +
+           (bodies_ ? bodies_->bytes() : 0) + rhsAtRest_.bytes() + pressure_.bytes();
   }
 
  private:
@@ -298,7 +283,8 @@ class MphStep final : public StepMethod<D, Backend> {
     renormalisation_.resize(state_.context, pairs_.fluidCount);
     renormalisation<D>(state_.context, pairs_, renormalisation_.span());
     if (tension_)
-      letGapsClose<D>(state_.context, pairs_, places(), renormalisation_.span().first(pairs_.ownFluid()));
+      letGapsClose<D>(state_.context, pairs_, places_.of(state_),
+                      renormalisation_.span().first(pairs_.ownFluid()));
     fillGhosts(state_.context, Held::Fluid, renormalisation_.data());
     neighbourhood_.setRenormalisation(renormalisation_);
   }
@@ -350,7 +336,6 @@ class MphStep final : public StepMethod<D, Backend> {
     addPressureGradient<D>(state_.context, pairs_, divergence_, -1.0, rhs_);
   }
 
-  Places places() const { return {state_.particles.numberDensity, open_, wide_, wallDensity_}; }
   const ExplicitForces<D, Backend>* explicitForces() const {
     if (surface_) return &*surface_;
     return tension_ ? &*tension_ : nullptr;
@@ -373,10 +358,9 @@ class MphStep final : public StepMethod<D, Backend> {
   Buffer<double, Backend> viscosityScale_;
   Buffer<Block<D>, Backend> wallBlock_;
   Buffer<Vec<D>, Backend> wallGradient_;
-  Buffer<double, Backend> wallDensity_;  // the walls' part of n per fluid particle
-  Buffer<double, Backend> open_, wide_;  // PlaceSums, where the case keeps its volume [-]
-  Buffer<double, Backend> elastic_;      // elasticPressure() per particle [Pa]
-  Buffer<double, Backend> divergence_;   // C^T u per particle [1/s]
+  StepPlaces<D, Backend> places_;
+  Buffer<double, Backend> elastic_;     // elasticPressure() per particle [Pa]
+  Buffer<double, Backend> divergence_;  // C^T u per particle [1/s]
   Buffer<Vec<D>, Backend> rhs_;
   MphSolver<D, Backend> solver_;
   std::optional<StepRheology<D, Backend>> rheology_;  // where particles have their own viscosities

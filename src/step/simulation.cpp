@@ -11,10 +11,10 @@
 #include "own_particles.hpp"
 #include "start_state.hpp"
 #include "step_method.hpp"
+#include "step_motion.hpp"
 #include "treacle/core/processes.hpp"
 #include "treacle/core/team.hpp"
 #include "treacle/step/diagnostics.hpp"
-#include "treacle/step/move_particles.hpp"
 #include "treacle/step/shareable.hpp"
 #include "treacle/step/step_control.hpp"
 
@@ -47,6 +47,7 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
       Flow::velocity, Flow::position, Flow::wallsMove, Flow::phases;
 
   MovingBodies<D, Backend> bodies;
+  StepMotion<D, Backend> motion;
   OpenBoundaries<D, Backend> boundaries;
   std::unique_ptr<StepMethod<D, Backend>> method;
   std::optional<DistantWalls<D>> distant;  // which `particles` has not
@@ -58,7 +59,7 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
   bool tooCoarse = false;              // an automatic step was, and it was said
 
   State(const Case& c, Particles<D> state, std::int64_t startStep, double startTime, const Communicator* processes)
-      : Flow(c, startStep, startTime), bodies(*this), boundaries(*this) {
+      : Flow(c, startStep, startTime), bodies(*this), motion(*this, bodies), boundaries(*this) {
     if (theCase.time.automatic) control.emplace(theCase);
     if (processes && processes->size() > 1) {
       requireShareable(theCase, std::is_same_v<Backend, Cpu> ? BackendKind::Cpu : BackendKind::Cuda);
@@ -137,68 +138,16 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     velocityStep = theCase.middleShare() > 0 ? 0.5 * (this->lastStep() + timeStep) : timeStep;
   }
 
-  /// Places that particles have at the start of the step at hand.
-  std::span<const Vec<D>> starts() const { return particles.has.starts ? particles.start : particles.position; }
-
-  /// Where forces belong to the middle of the step at hand, all particles go there: the fluid with the velocities
-  /// that it has, walls by their own motion. Errors: RunError; the state is then as before.
+  /// Where forces belong to the middle of the step at hand, all particles go there.
   void goToMiddle() {
     const double share = theCase.middleShare();
-    if (share == 0) return;
-    move(share * timeStep, particles.velocity, this->particles.rigid.bodies);
-    particles.start.resize(context, particles.count);
-    copyValues(context, std::span<const Vec<D>>(particles.position), particles.start.data());
-    particles.has.starts = true;
-    takeMoved();
-  }
-
-  /// Back to where all were at the start of the step.
-  void goBack() {
-    if (!std::exchange(particles.has.starts, false)) return;
-    copyValues(context, std::span<const Vec<D>>(particles.start), particles.position.data());
-    particles.start.resize(context, 0);
-  }
-
-  /// x^{k+1} = x^k + dt u^{k+1} of [K23 eq. (15)] into `position`; walls by their prescribed motion. `u`: of the
-  /// fluid; `bodiesGo`: rigid bodies with their velocities.
-  void move(double dt, std::span<const Vec<D>> u, const std::vector<RigidBody>& bodiesGo) {
-    const std::uint32_t n = particles.wallBegin();
-    position.resize(context, wallsMove ? particles.count : particles.fluidCount);
-    agreed(context, [&] {
-      moveRange(0, particles.fluidCount, dt, u);
-      if (wallsMove) moveRange(n, particles.count, dt, bodies.ways(starts().subspan(n), dt, bodiesGo));
-    });
-  }
-
-  /// `u`: of the particles from `begin` on.
-  void moveRange(std::uint32_t begin, std::uint32_t end, double dt, std::span<const Vec<D>> u) {
-    const std::uint32_t size = end - begin;
-    const std::uint32_t out = moveParticles<D>(context, method->grid(), dt, starts().subspan(begin, size),
-                                               u.first(size), position.span().subspan(begin, size));
-    if (out == noParticle) return;
-    Particles<D> host;
-    copyToHost(context, particles, host);
-    if (host.has.starts) std::swap(host.position, host.start);
-    Vec<D> uOut{};
-    copyToHost(context, u.subspan(out, 1), &uOut);
-    if (std::isfinite(norm(uOut)))
-      watch->requireSlow(timeStep, norm(uOut));  // then it is not the domain that is too small
-    throw RunError(describeLeaving<D>(host, begin + out, uOut, timeStep));
-  }
-
-  /// Particles are where they were moved to.
-  void takeMoved() {
-    const std::uint32_t walls = particles.wallBegin();
-    const std::span<const Vec<D>> moved = position;
-    copyValues(context, moved.first(particles.fluidCount), particles.position.data());
-    if (wallsMove) copyValues(context, moved.subspan(walls), particles.position.data() + walls);
+    if (share > 0) motion.goTo(method->grid(), *watch, share * timeStep);
   }
 
   void accept() {
     method->accept();
     copyValues(context, std::span<const Vec<D>>(velocity).first(particles.fluidCount), particles.velocity.data());
-    takeMoved();
-    if (std::exchange(particles.has.starts, false)) particles.start.resize(context, 0);
+    motion.accept();
     distant->addStep(timeStep, std::max(method->longestWay(lastSpeed), timeStep * bodies.freeSpeed()));
     bodies.accept();
     ++step;
@@ -236,7 +185,7 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     while (!(trySolve(solved) && isExact(report))) {
       ++report.rejected;
       particles.modes.pressure = {};  // of steps of that length
-      goBack();
+      motion.goBack();
       chooseTimeStep();
       if (theCase.middleShare() > 0)
         arrange();
@@ -300,7 +249,7 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     } catch (const DeviceFailure&) {
       throw;  // nothing on it is trusted
     } catch (...) {
-      goBack();
+      motion.goBack();
       throw;
     }
   }
@@ -311,7 +260,7 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     StagedReport solved = control ? solveExactly(report) : solve();
     phases.run(context, treacle::phases::update, [&] {
       method->correctVelocities();
-      move(timeStep, method->transportVelocities(), this->rigid.bodies);
+      motion.move(method->grid(), *watch, timeStep, method->transportVelocities(), this->rigid.bodies);
       report.diagnostics = diagnosticsOf(position, velocity);
       report.watched = watch->look(timeStep, report.diagnostics, report.warnings);
       lastSpeed = report.diagnostics.maxSpeed;
@@ -350,7 +299,7 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     method->prepareSystem();
     std::vector<SolverTrial> trials;
     for (const SolverSettings& solver : solvers) trials.push_back(method->solveBy(solver));
-    goBack();
+    motion.goBack();
     return trials;
   }
 
