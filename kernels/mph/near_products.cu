@@ -113,9 +113,9 @@ template <int D>
 void NearProducts<D>::bulkStress(Context<Cuda>& context, std::span<const Vec<D>> u, std::span<double> q) const {
   const PlainVectors<D, double, Vec<D>> vectors{u.data()};
   const Renormalised<D> b{pairs_->renormalisation, pairs_->fluidCount};
-  const auto store = [q = q.data(), material = pairs_->material.data(), materials = pairs_->materials] __device__(
-                         std::uint32_t k, double divergence) {
-    q[k] = materials.bulkViscosity[material[k]] * divergence;
+  const auto store = [q = q.data(), material = pairs_->material.data(), materials = pairs_->materials,
+                      share = pairs_->bulkShare()] __device__(std::uint32_t k, double divergence) {
+    q[k] = share.of(k) * materials.bulkViscosity[material[k]] * divergence;
   };
   const auto start = [&]<class Weights>(const MphTerms<D, double, Weights>& terms) {
     nearDivergence(context, NearView<D, double, Weights>::make(*pairs_, *this, terms), vectors, b, store);

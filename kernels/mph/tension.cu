@@ -134,28 +134,42 @@ void spreadVelocities(Context<Cuda>& context, const MphPairs<D>& pairs, double d
 
 template <int D>
 void letGapsClose(Context<Cuda>& context, const MphPairs<D>& pairs, const Places& places,
-                  std::span<SymmetricBlock<D>> b) {
-  forEach(context, b.size(), [places, rest = pairs.restDensity, b = b.data()] __device__(std::size_t i) {
-    b[i] = std::sqrt(places.resists(static_cast<std::uint32_t>(i), rest)) * b[i];
+                  std::span<SymmetricBlock<D>> b, std::span<Covered> logarithm) {
+  forEach(context, b.size(), [places, rest = pairs.restDensity, b, logarithm] __device__(std::size_t i) {
+    const double resists = places.resists(static_cast<std::uint32_t>(i), rest);
+    b[i] = std::sqrt(resists) * b[i];
+    logarithm[i] = logarithmOf(resists);
   });
 }
 
-void addValues(Context<Cuda>& context, std::span<const double> x, std::span<double> y) {
-  forEach(context, y.size(), [x, y] __device__(std::size_t i) { y[i] += x[i]; });
+void letWallsYield(Context<Cuda>& context, std::span<double> mean) {
+  forEach(context, mean.size(), [mean] __device__(std::size_t i) { mean[i] = wallShareOf(mean[i]); });
 }
 
-#define TREACLE_INSTANTIATE(D)                                                                                    \
-  template void lackOfDensity<D>(Context<Cuda>&, const MphPairs<D>&, const Places&, std::span<Covered>);          \
-  template void coveredMeans<D>(Context<Cuda>&, const MphPairs<D>&, const ClusterListView&,                       \
-                                std::span<const Covered>, std::span<double>);                                     \
-  template void letGapsClose<D>(Context<Cuda>&, const MphPairs<D>&, const Places&, std::span<SymmetricBlock<D>>); \
-  template void coverTension<D>(Context<Cuda>&, const MphPairs<D>&, const Places&, std::span<const double>,       \
-                                std::span<Covered>);                                                              \
-  template void followDensity<D>(Context<Cuda>&, const MphPairs<D>&, double, const Places&,                       \
-                                 std::span<const double>, std::span<double>);                                     \
-  template void tensionForces<D>(Context<Cuda>&, const MphPairs<D>&, const ClusterListView&,                      \
-                                 std::span<const double>, std::span<Vec<D>>);                                     \
-  template void spreadVelocities<D>(Context<Cuda>&, const MphPairs<D>&, double, std::span<const Vec<D>>,          \
+template <int D>
+void actingPressures(Context<Cuda>& context, const MphPairs<D>& pairs, const Places& around,
+                     std::span<const double> tension, std::span<double> pressure) {
+  fill(context, pairs, pressure,
+       [around, tension, pressure] __device__(const MphPairs<D>& pairs, std::uint32_t i) {
+         return actingPressureOf(pairs, i, around, tension[i], pressure[i]);
+       });
+}
+
+#define TREACLE_INSTANTIATE(D)                                                                                   \
+  template void lackOfDensity<D>(Context<Cuda>&, const MphPairs<D>&, const Places&, std::span<Covered>);         \
+  template void coveredMeans<D>(Context<Cuda>&, const MphPairs<D>&, const ClusterListView&,                      \
+                                std::span<const Covered>, std::span<double>);                                    \
+  template void letGapsClose<D>(Context<Cuda>&, const MphPairs<D>&, const Places&, std::span<SymmetricBlock<D>>, \
+                                std::span<Covered>);                                                             \
+  template void actingPressures<D>(Context<Cuda>&, const MphPairs<D>&, const Places&, std::span<const double>,   \
+                                   std::span<double>);                                                           \
+  template void coverTension<D>(Context<Cuda>&, const MphPairs<D>&, const Places&, std::span<const double>,      \
+                                std::span<Covered>);                                                             \
+  template void followDensity<D>(Context<Cuda>&, const MphPairs<D>&, double, const Places&,                      \
+                                 std::span<const double>, std::span<double>);                                    \
+  template void tensionForces<D>(Context<Cuda>&, const MphPairs<D>&, const ClusterListView&,                     \
+                                 std::span<const double>, std::span<Vec<D>>);                                    \
+  template void spreadVelocities<D>(Context<Cuda>&, const MphPairs<D>&, double, std::span<const Vec<D>>,         \
                                     std::span<const double>, std::span<Vec<D>>);
 TREACLE_INSTANTIATE(2)
 TREACLE_INSTANTIATE(3)

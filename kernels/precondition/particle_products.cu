@@ -89,7 +89,7 @@ __global__ void __launch_bounds__(128)
   });
   if (k < view.fluidCount) others += table.weight[material[k]] * norm2(own);
   const T factor = view.mph.gradientFactor;
-  inverseDiagonal[k] = 1 / (table.shift[material[k]] + factor * factor * others);
+  inverseDiagonal[k] = 1 / (table.shiftOf(k, material[k]) + factor * factor * others);
 }
 
 }  // namespace

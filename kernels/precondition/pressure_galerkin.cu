@@ -176,7 +176,7 @@ __global__ void __launch_bounds__(D == 2 ? 96 : 256)
   const auto add = [&](std::uint32_t from, std::uint32_t to) {
     for (std::uint32_t i = from; i < to; ++i) {
       const Vec<D> place = g.cells.fraction(g.position[i], cell);
-      sum += g.table.shift[g.material[i]] * cornerWeight(place, a) * cornerWeight(place, b);
+      sum += g.table.shiftOf(i, g.material[i]) * cornerWeight(place, a) * cornerWeight(place, b);
     }
   };
   const IndexRange walls = g.ranges.walls(c);

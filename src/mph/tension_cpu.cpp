@@ -122,27 +122,42 @@ void spreadVelocities(Context<Cpu>&, const MphPairs<D>& pairs, double dt, std::s
 }
 
 template <int D>
-void letGapsClose(Context<Cpu>&, const MphPairs<D>& pairs, const Places& places, std::span<SymmetricBlock<D>> b) {
-  forEachParticle(b.size(),
-                  [&](std::uint32_t i) { b[i] = std::sqrt(places.resists(i, pairs.restDensity)) * b[i]; });
+void letGapsClose(Context<Cpu>&, const MphPairs<D>& pairs, const Places& places, std::span<SymmetricBlock<D>> b,
+                  std::span<Covered> logarithm) {
+  forEachParticle(b.size(), [&](std::uint32_t i) {
+    const double resists = places.resists(i, pairs.restDensity);
+    b[i] = std::sqrt(resists) * b[i];
+    logarithm[i] = logarithmOf(resists);
+  });
 }
 
-void addValues(Context<Cpu>&, std::span<const double> x, std::span<double> y) {
-  forEachParticle(y.size(), [&](std::uint32_t i) { y[i] += x[i]; });
+void letWallsYield(Context<Cpu>&, std::span<double> mean) {
+  forEachParticle(mean.size(), [&](std::uint32_t i) { mean[i] = wallShareOf(mean[i]); });
 }
 
-#define TREACLE_INSTANTIATE(D)                                                                                   \
-  template void lackOfDensity<D>(Context<Cpu>&, const MphPairs<D>&, const Places&, std::span<Covered>);          \
-  template void coveredMeans<D>(Context<Cpu>&, const MphPairs<D>&, const ClusterListView&,                       \
-                                std::span<const Covered>, std::span<double>);                                    \
-  template void letGapsClose<D>(Context<Cpu>&, const MphPairs<D>&, const Places&, std::span<SymmetricBlock<D>>); \
-  template void coverTension<D>(Context<Cpu>&, const MphPairs<D>&, const Places&, std::span<const double>,       \
-                                std::span<Covered>);                                                             \
-  template void followDensity<D>(Context<Cpu>&, const MphPairs<D>&, double, const Places&,                       \
-                                 std::span<const double>, std::span<double>);                                    \
-  template void tensionForces<D>(Context<Cpu>&, const MphPairs<D>&, const ClusterListView&,                      \
-                                 std::span<const double>, std::span<Vec<D>>);                                    \
-  template void spreadVelocities<D>(Context<Cpu>&, const MphPairs<D>&, double, std::span<const Vec<D>>,          \
+template <int D>
+void actingPressures(Context<Cpu>&, const MphPairs<D>& pairs, const Places& around,
+                     std::span<const double> tension, std::span<double> pressure) {
+  forEachParticle(pressure.size(), [&](std::uint32_t i) {
+    pressure[i] = actingPressureOf(pairs, i, around, tension[i], pressure[i]);
+  });
+}
+
+#define TREACLE_INSTANTIATE(D)                                                                                  \
+  template void lackOfDensity<D>(Context<Cpu>&, const MphPairs<D>&, const Places&, std::span<Covered>);         \
+  template void coveredMeans<D>(Context<Cpu>&, const MphPairs<D>&, const ClusterListView&,                      \
+                                std::span<const Covered>, std::span<double>);                                   \
+  template void letGapsClose<D>(Context<Cpu>&, const MphPairs<D>&, const Places&, std::span<SymmetricBlock<D>>, \
+                                std::span<Covered>);                                                            \
+  template void actingPressures<D>(Context<Cpu>&, const MphPairs<D>&, const Places&, std::span<const double>,   \
+                                   std::span<double>);                                                          \
+  template void coverTension<D>(Context<Cpu>&, const MphPairs<D>&, const Places&, std::span<const double>,      \
+                                std::span<Covered>);                                                            \
+  template void followDensity<D>(Context<Cpu>&, const MphPairs<D>&, double, const Places&,                      \
+                                 std::span<const double>, std::span<double>);                                   \
+  template void tensionForces<D>(Context<Cpu>&, const MphPairs<D>&, const ClusterListView&,                     \
+                                 std::span<const double>, std::span<Vec<D>>);                                   \
+  template void spreadVelocities<D>(Context<Cpu>&, const MphPairs<D>&, double, std::span<const Vec<D>>,         \
                                     std::span<const double>, std::span<Vec<D>>);
 TREACLE_INSTANTIATE(2)
 TREACLE_INSTANTIATE(3)

@@ -241,7 +241,7 @@ void ParticleProducts<D, T, Cpu>::inverseDiagonals(Context<Cpu>&, const Projecti
                                       [](int k, const LanesOf<T>* d) { return d[k]; });
     for (std::uint32_t lane = 0; lane < walk.range.count; ++lane) {
       const std::uint32_t k = walk.range.first + lane;
-      pressure[k] = 1 / (table.shift[material[k]] + sum[lane]);
+      pressure[k] = 1 / (table.shiftOf(k, material[k]) + sum[lane]);
     }
   });
 }

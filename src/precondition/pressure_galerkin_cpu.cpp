@@ -153,7 +153,7 @@ void pressureGalerkin(Context<Cpu>& context, const MphPairs<D>& pairs, const Pro
     cells.forEachCellAround(node, 1, [&](const Vec<D, int>& cell) {
       forEachParticle(pairs, cell, [&](std::uint32_t k) {
         const Vec<D> place = cells.fraction(pairs.position[k], cell);
-        const double w = table.shift[pairs.classOf()[k]] * cells.hat(node, cell, place);
+        const double w = table.shiftOf(k, pairs.classOf()[k]) * cells.hat(node, cell, place);
         int own = 0, step = 1;  // corner of the cell that is the node, as a slot
         for (int axis = 0; axis < D; ++axis, step *= 3) own += step * cells.above(node[axis], cell[axis], axis);
         forEachCorner(place, [&](int corner, double hat) {

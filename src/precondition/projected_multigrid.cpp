@@ -15,6 +15,7 @@ ProjectionTable<T> ProjectionConstants::table(double shift) const {
     t.inverseLambda[m] = static_cast<T>(1 / lambda[m]);
     t.shift[m] = static_cast<T>(shift / lambda[m]);
   }
+  t.share = share;
   return t;
 }
 template ProjectionTable<double> ProjectionConstants::table<double>(double) const;
@@ -30,6 +31,7 @@ ProjectionConstants projectionConstants(const MphPairs<D>& pairs) {
     return std::pow(terms.gradient(PairDistance<double>{r * r, 1 / r}) * r, 2);
   });
   ProjectionConstants c{};
+  c.share = pairs.bulkShare();
   std::fill_n(c.weight, ViscosityClasses::most, 1.0);
   std::fill_n(c.lambda, ViscosityClasses::most, 1.0);
   double largestWeight = 0, largestLambda = 0;

@@ -75,7 +75,7 @@ void planFields(const Case& c, const MemoryCounts& n, bool withGradient, MemoryS
   if (c.keepsVolume()) {
     sum.keep<Vec<D>>(n.active + fluid);
     sum.keep<Covered>(held);
-    sum.keep<double>(held);
+    sum.keep<double>(held + n.active);
   }
   if (c.heat) planHeat<D>(c, n, sum);
   if (c.hasRigid()) {  // pressures, the right-hand side at rest and velocities found

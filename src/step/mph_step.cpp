@@ -283,8 +283,8 @@ class MphStep final : public StepMethod<D, Backend> {
     renormalisation_.resize(state_.context, pairs_.fluidCount);
     renormalisation<D>(state_.context, pairs_, renormalisation_.span());
     if (tension_)
-      letGapsClose<D>(state_.context, pairs_, places_.of(state_),
-                      renormalisation_.span().first(pairs_.ownFluid()));
+      neighbourhood_.setWallShares(
+          tension_->letGapsClose(state_, pairs_, places_.of(state_), renormalisation_.span()));
     fillGhosts(state_.context, Held::Fluid, renormalisation_.data());
     neighbourhood_.setRenormalisation(renormalisation_);
   }

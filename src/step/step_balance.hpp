@@ -58,6 +58,7 @@ class StepBalance {
     const Terms terms{pairs.fluidCount,
                       pairs.ownFluid(),
                       pairs.materials,
+                      pairs.bulkShare(),
                       pairs.material,
                       state.particles.velocity,
                       state.velocity,

@@ -11,6 +11,23 @@ namespace treacle {
 template <int D, class Backend>
 class StepTension final : public ExplicitForces<D, Backend> {
  public:
+  /// Leaves fluid and walls next to gaps a share of their lambda: the fluid by `b`, that of fluid particles, and
+  /// the walls by what is returned. `around`: of the places at hand.
+  std::span<const double> letGapsClose(FlowState<D, Backend>& state, const MphPairs<D>& pairs,
+                                       const Places& around, std::span<SymmetricBlock<D>> b) {
+    Context<Backend>& context = state.context;
+    const std::uint32_t own = pairs.ownFluid();
+    covered_.resize(context, pairs.fluidCount);
+    wallShare_.resize(context, pairs.activeCount);
+    treacle::letGapsClose<D>(context, pairs, around, b.first(own), covered_.span().first(own));
+    fillGhosts(context, Held::Fluid, covered_.data());
+    clearValues(context, wallShare_.span());
+    coveredMeans<D>(context, pairs, pairs.wallList, covered_, wallShare_.span());
+    letWallsYield(context, wallShare_.span());
+    fillGhosts(context, Held::Active, wallShare_.data());
+    return wallShare_.span();
+  }
+
   /// The forces of the tensions that particles have, on the neighbours of the step. Walls have the mean of the
   /// fluid around them. `around`: of the places at hand.
   void prepare(FlowState<D, Backend>& state, const MphPairs<D>& pairs, const Places& around) {
@@ -47,12 +64,13 @@ class StepTension final : public ExplicitForces<D, Backend> {
     return transport_.span();
   }
 
-  /// Adds the tensions of the step to the pressures, and renews those of the fluid. `around`: as in prepare().
+  /// Leaves the pressures that act, with the tensions of the step, and renews the tensions of the fluid. `around`:
+  /// as in prepare().
   void accept(FlowState<D, Backend>& state, const MphPairs<D>& pairs, const Places& around) {
     Context<Backend>& context = state.context;
     const std::uint32_t own = pairs.ownFluid();
     const std::span<double> held = state.particles.heldPressure.span().first(pairs.activeCount);
-    addValues(context, held, state.particles.pressure.span().first(pairs.activeCount));
+    actingPressures<D>(context, pairs, around, held, state.particles.pressure.span().first(pairs.activeCount));
     lackOfDensity<D>(context, pairs, around, covered_.span().first(own));
     fillGhosts(context, Held::Fluid, covered_.data());
     mean_.resize(context, pairs.fluidCount);
@@ -61,7 +79,9 @@ class StepTension final : public ExplicitForces<D, Backend> {
   }
 
   std::span<const Vec<D>> transport() const { return transport_; }  // of the last step
-  std::size_t bytes() const { return force_.bytes() + covered_.bytes() + mean_.bytes() + transport_.bytes(); }
+  std::size_t bytes() const {
+    return force_.bytes() + covered_.bytes() + wallShare_.bytes() + mean_.bytes() + transport_.bytes();
+  }
 
  private:
   static std::span<const double> tension(const FlowState<D, Backend>& state, const MphPairs<D>& pairs) {
@@ -69,8 +89,9 @@ class StepTension final : public ExplicitForces<D, Backend> {
   }
 
   Buffer<Vec<D>, Backend> force_;      // per active particle; of fluid [N/m3]
-  Buffer<Covered, Backend> covered_;   // per fluid particle; the tension, then the lack of density
+  Buffer<Covered, Backend> covered_;   // per fluid particle; ln f, the tension, the lack of density
   Buffer<double, Backend> mean_;       // of the lack, per fluid particle
+  Buffer<double, Backend> wallShare_;  // per active particle
   Buffer<Vec<D>, Backend> transport_;  // per own fluid particle [m/s]
 };
 

@@ -63,7 +63,7 @@ struct DeviceScene {
   BucketLevels<Cuda> levels;
   Buffer<WallSurface<D>, Cuda> wallSurface;
   Buffer<SymmetricBlock<D>, Cuda> renormalisation;
-  Buffer<double, Cuda> viscosityScale;
+  Buffer<double, Cuda> viscosityScale, wallShare;
   Buffer<Block<D>, Cuda> wallBlock;
   Buffer<Vec<D>, Cuda> wallGradient;
   MphPairs<D> pairs;  // looks at the members above
@@ -89,6 +89,10 @@ struct DeviceScene {
     if (!s.viscosityScale.empty()) {
       copyToDevice<double>(context, s.viscosityScale, viscosityScale);
       pairs.viscosityScale = viscosityScale.data();
+    }
+    if (!s.wallShare.empty()) {
+      copyToDevice<double>(context, s.wallShare, wallShare);
+      pairs.wallShare = wallShare.data();
     }
     pairs.position = position;
     pairs.material = material;

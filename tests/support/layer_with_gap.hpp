@@ -4,8 +4,8 @@
 
 namespace treacle::test {
 
-/// A layer of honey on a floor, periodic to the sides, with a gap of half a spacing in its middle.
-inline Case layerWithGap() {
+/// A layer of honey on a floor, periodic to the sides, with a gap of half a spacing in its middle, or under it.
+inline Case layerWithGap(bool onTheFloor = false) {
   Case c = ringInDrum();
   c.domain.min = {0, -0.004, 0}, c.domain.max = {0.02, 0.03, 0};
   c.domain.periodic = {true, false, false};
@@ -15,6 +15,7 @@ inline Case layerWithGap() {
   lower.shape = {};
   lower.shape.min = {0, 0, 0}, lower.shape.max = {0.02, 0.008, 0};
   Body upper = lower, floor = lower;
+  if (onTheFloor) lower.shape.min[1] += 0.0005, lower.shape.max[1] += 0.0005;
   upper.name = "upper";
   upper.shape.min[1] = 0.0085, upper.shape.max[1] = 0.0165;
   floor.name = "floor", floor.kind = BodyKind::Wall;

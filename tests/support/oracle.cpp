@@ -190,11 +190,12 @@ Matrix renormalisationOracle(const Matrix& moment) {
 }
 
 template <int D>
-double Oracle<D>::dissipation(const Vector& u, const std::function<Matrix(std::uint32_t)>& factor) const {
+double Oracle<D>::dissipation(const Vector& u, const std::function<Matrix(std::uint32_t)>& factor,
+                              const std::function<double(std::uint32_t)>& lambda) const {
   double sum = 0;
   for (std::uint32_t i = 0; i < count(); ++i) {
     double divergence = 0;
-    const Matrix b = factor ? factor(i) : renormalisation(i);
+    const Matrix b = factor(i);
     for (std::uint32_t j = 0; j < count(); ++j) {
       if (j == i) continue;
       const Vec<D> d = difference(i, j);
@@ -207,7 +208,7 @@ double Oracle<D>::dissipation(const Vector& u, const std::function<Matrix(std::u
       if (j > i)
         sum += mu(i, j) * pairScale(i, j) * wallFactor(i, j) / 2 * viscousBlock(r) * r * r * along * along;
     }
-    sum += material(i).bulkViscosity / 2 * divergence * divergence;
+    sum += lambda(i) / 2 * divergence * divergence;
   }
   return sum * std::pow(l, D);
 }
@@ -287,7 +288,7 @@ template <int D>
 Matrix Oracle<D>::matrix() const {
   Vector inertia(s.unknowns()), lambda(count());
   for (Index i = 0; i < s.unknowns(); ++i) inertia[i] = material(i / D).density / dt;
-  for (std::uint32_t i = 0; i < count(); ++i) lambda[i] = material(i).bulkViscosity;
+  for (std::uint32_t i = 0; i < count(); ++i) lambda[i] = bulkViscosity(i);
   const Matrix c = gradientMatrix();
   Matrix a = viscosityMatrix() + c * lambda.asDiagonal() * c.transpose();
   a.addToDiagonal(inertia);

@@ -34,6 +34,12 @@ struct Oracle {
   std::uint32_t count() const { return s.particles.count; }
   const Material& material(std::uint32_t i) const { return s.c.materials[s.particles.material[i]]; }
 
+  /// lambda [Pa s]
+  double bulkViscosity(std::uint32_t i) const {
+    const double whole = material(i).bulkViscosity;
+    return i < s.wallShare.size() ? s.wallShare[i] * whole : whole;
+  }
+
   /// w and dw/dr of the case's weight, as of eq. (3), with l^d.
   double w(double r, double h) const;
   double dw(double r, double h) const;
@@ -64,8 +70,13 @@ struct Oracle {
   Matrix renormalisation(std::uint32_t i) const;
 
   /// Rayleigh's dissipation function of eq. (10) for the velocities of all particles [W].
-  /// `b`: by what C is multiplied, renormalisation() unless told.
-  double dissipation(const Vector& u, const std::function<Matrix(std::uint32_t)>& b = {}) const;
+  double dissipation(const Vector& u) const {
+    return dissipation(
+        u, [&](std::uint32_t i) { return renormalisation(i); }, [&](std::uint32_t i) { return bulkViscosity(i); });
+  }
+  /// `b`: by what C is multiplied. `lambda`: in place of bulkViscosity().
+  double dissipation(const Vector& u, const std::function<Matrix(std::uint32_t)>& b,
+                     const std::function<double(std::uint32_t)>& lambda) const;
 
   /// C: fluid unknowns by all particles. `reach`: in h_p, from which on pairs are left out.
   Matrix gradientMatrix(double reach = 1) const;

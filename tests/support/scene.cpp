@@ -91,6 +91,12 @@ void prepare(Scene<D>& s) {
     viscosityScale<D>(s.context, s.pairs(), correction, s.viscosityScale.span());
     s.neighbourhood->setViscosityScale(s.viscosityScale);
   }
+  if (s.c.keepsVolume()) {  // as gaps here and there would have it
+    s.wallShare.resize(s.pairs().activeCount);
+    for (std::uint32_t i = 0; i < s.wallShare.size(); ++i)
+      s.wallShare[i] = i < s.n() ? 1 : std::exp(-0.6 * (i % 7));
+    s.neighbourhood->setWallShares(s.wallShare);
+  }
   s.wallBlock.resize(s.n());
   s.wallGradient.resize(s.n());
   wallTerms<D>(s.context, s.pairs(), s.terms());

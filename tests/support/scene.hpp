@@ -27,6 +27,7 @@ struct Scene {
   Buffer<WallSurface<D>> wallSurface;         // per active wall particle
   Buffer<SymmetricBlock<D>> renormalisation;  // per fluid particle where the case has it
   Buffer<double> viscosityScale;              // likewise
+  Buffer<double> wallShare;                   // per active particle where the case lets gaps close
   Buffer<Block<D>> wallBlock;
   Buffer<Vec<D>> wallGradient;
 

@@ -56,6 +56,10 @@ class MphNeighbourhood {
     pairs_.renormalisation = b.empty() ? nullptr : b.data();
   }
 
+  /// The share of lambda that walls have, per active particle and read for walls alone; must outlive the sums of
+  /// the step. Empty: all.
+  void setWallShares(std::span<const double> share) { pairs_.wallShare = share.empty() ? nullptr : share.data(); }
+
   /// Per fluid particle; must outlive the sums of the step. Empty: 1 everywhere.
   void setViscosityScale(std::span<const double> scale) {
     pairs_.viscosityScale = scale.empty() ? nullptr : scale.data();

@@ -18,6 +18,15 @@ struct ViscousSide {
   double scale;
 };
 
+/// The share of its lambda that a particle has: fluid all, which B leaves out next to gaps, and walls what
+/// letWallsYield() left them.
+struct BulkShare {
+  const double* ofWalls = nullptr;  // per active particle, and read for walls alone; null: all
+  std::uint32_t fluidCount = 0;
+
+  TREACLE_HD double of(std::size_t i) const { return ofWalls && i >= fluidCount ? ofWalls[i] : 1; }
+};
+
 /// What every pair sum of a step reads.
 template <int D>
 struct MphPairs : MaterialParticles<D> {
@@ -30,12 +39,19 @@ struct MphPairs : MaterialParticles<D> {
   const WallSurface<D>* wallSurface =
       nullptr;  // of the first wall particle; null: the fluid meets walls as they are
   const SymmetricBlock<D>* renormalisation = nullptr;  // B per fluid particle (renormalisation.hpp); null: I
+  const double* wallShare = nullptr;                   // BulkShare::ofWalls
   const double* viscosityScale = nullptr;              // per fluid particle (viscosity_scale.hpp); null: 1
   // Whether particles have viscosities of their own (particle_viscosity.hpp): the scale is then times mu [Pa s],
   // and the viscosities of the materials are all 1.
   bool ownViscosities = false;
   ViscosityClasses classes;
   const std::uint8_t* viscosityClass = nullptr;  // per particle; null: the materials
+
+  /// lambda [Pa s]
+  TREACLE_HD double bulkViscosity(std::uint32_t i) const {
+    return this->materials.bulkViscosity[this->material[i]] * bulkShare().of(i);
+  }
+  TREACLE_HD BulkShare bulkShare() const { return {wallShare, this->fluidCount}; }
 
   /// By what sums of MphTerms::openness are multiplied.
   TREACLE_HD double opennessFactor() const { return terms.densityFactor / (restDensity * this->spacing); }

@@ -66,16 +66,27 @@ template <int D>
 void spreadVelocities(Context<Cuda>&, const MphPairs<D>&, double dt, std::span<const Vec<D>> u,
                       std::span<const double> tension, std::span<Vec<D>> transport);
 
-/// B of own fluid (renormalisation.hpp) by the root of Places::resists: C takes B once and C^T once, so that
-/// lambda is multiplied by that share.
+/// B of own fluid (renormalisation.hpp) by the root of f = Places::resists: C takes B once and C^T once, so that
+/// lambda is multiplied by f. (ln f, 1) per own fluid particle is for letWallsYield().
 template <int D>
-void letGapsClose(Context<Cpu>&, const MphPairs<D>&, const Places&, std::span<SymmetricBlock<D>> b);
+void letGapsClose(Context<Cpu>&, const MphPairs<D>&, const Places&, std::span<SymmetricBlock<D>> b,
+                  std::span<Covered> logarithm);
 template <int D>
-void letGapsClose(Context<Cuda>&, const MphPairs<D>&, const Places&, std::span<SymmetricBlock<D>> b);
+void letGapsClose(Context<Cuda>&, const MphPairs<D>&, const Places&, std::span<SymmetricBlock<D>> b,
+                  std::span<Covered> logarithm);
 
-/// y += x, element by element.
-void addValues(Context<Cpu>&, std::span<const double> x, std::span<double> y);
-void addValues(Context<Cuda>&, std::span<const double> x, std::span<double> y);
+/// From the mean of ln f around walls to the share of lambda that they have (wallShareOf()).
+void letWallsYield(Context<Cpu>&, std::span<double> mean);
+void letWallsYield(Context<Cuda>&, std::span<double> mean);
+
+/// From the pressures that C is multiplied by to those that act (actingPressureOf()). `tension`, `pressure`: per
+/// active particle; of ghosts the latter is of no use.
+template <int D>
+void actingPressures(Context<Cpu>&, const MphPairs<D>&, const Places&, std::span<const double> tension,
+                     std::span<double> pressure);
+template <int D>
+void actingPressures(Context<Cuda>&, const MphPairs<D>&, const Places&, std::span<const double> tension,
+                     std::span<double> pressure);
 
 /// The formulas, for particle i.
 template <int D>
@@ -90,6 +101,12 @@ template <int D>
 TREACLE_HD double coveredMeanOf(const MphPairs<D>& pairs, const Covered& sum) {
   return sum[0] / fmax(sum[1], 0.01 * pairs.restDensity / pairs.terms.densityFactor);
 }
+
+/// ln f of a particle, whose f counts as 1e-4 or more.
+TREACLE_HD inline Covered logarithmOf(double resists) { return {log(fmax(1e-4, resists)), 1}; }
+/// The share of its lambda that a wall particle has: the root of the mean f around it. Fluid that has rolled onto
+/// a wall with a gap under it would else never come down.
+TREACLE_HD inline double wallShareOf(double mean) { return exp(0.5 * mean); }
 
 /// The time in which a tension follows the density, in units of lambda / kappa.
 inline constexpr double tensionTime = 3;
@@ -128,6 +145,15 @@ TREACLE_HD double tensionShare(const MphPairs<D>& pairs, Substance own, Substanc
 template <class T>
 TREACLE_HD T pairTension(const T& share, const T& own, double other) {
   return share * (own - other) + 2 * other;
+}
+
+/// The pressure of a particle as its neighbours find it [Pa]: that of the system by the root of f, which stands in
+/// C, and the tension.
+template <int D>
+TREACLE_HD double actingPressureOf(const MphPairs<D>& pairs, std::uint32_t i, const Places& around, double tension,
+                                   double pressure) {
+  const double f = i < pairs.ownFluid() ? around.resists(i, pairs.restDensity) : 1;
+  return sqrt(f) * pressure + tension;
 }
 
 /// The tension from which on particles are shifted as far as they are, in units of kappa.

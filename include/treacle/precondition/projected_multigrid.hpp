@@ -28,6 +28,7 @@ struct ProjectionConstants {
   double stiffness;
   double resistance;  // V's mean diagonal in a full lattice, over the viscosity [1/m2]
   double extent;      // of the domain, in spacings
+  BulkShare share;
   bool severalFluids;
 
   /// `shift` of S' in units of 1/lambda.

@@ -18,12 +18,19 @@ namespace treacle {
 /// elsewhere only where the text says so.
 
 /// Per class (MphPairs::classOf), which is the material where fluids are Newtonian, in the precision of the
-/// preconditioner.
+/// preconditioner. Walls next to gaps have a share of lambda.
 template <class T>
 struct ProjectionTable {
   T weight[ViscosityClasses::most];         // w: about the inverse of the diagonal of rho/dt I + V [m3 s/kg]
   T inverseLambda[ViscosityClasses::most];  // 1/lambda [1/(Pa s)]
   T shift[ViscosityClasses::most];          // pressureShift / lambda
+  BulkShare share;
+
+  /// 1/lambda and the shift of particle k of class m.
+  TREACLE_HD T inverseLambdaOf(std::size_t k, std::uint8_t m) const {
+    return inverseLambda[m] / static_cast<T>(share.of(k));
+  }
+  TREACLE_HD T shiftOf(std::size_t k, std::uint8_t m) const { return shift[m] / static_cast<T>(share.of(k)); }
 };
 
 /// S' = pressureShift Lambda^-1 + C^T W C stands for the Schur complement Lambda^-1 + C^T (rho/dt I + V)^-1 C.
@@ -127,7 +134,7 @@ struct StartPressure {
   TREACLE_HD std::uint8_t own(std::size_t k) const { return material[k]; }
   TREACLE_HD void put(std::size_t k, T divergence, std::uint8_t m) const {
     T b = divergence;
-    if (holdsPressure) b -= table.inverseLambda[m] * v.solution[k];
+    if (holdsPressure) b -= table.inverseLambdaOf(k, m) * v.solution[k];
     v.residual[k] = b;
     v.solution[k] = v.correction[k] = step.gain / *lambdaMax * inverseDiagonal[k] * b;
   }
@@ -150,18 +157,18 @@ struct PressureStep {
 
   /// What else the step needs of a particle: a device fetches it while the neighbours are on their way.
   struct Own {
-    T residual, correction, solution, inverseDiagonal, lambdaMax;
-    std::uint8_t material;
+    T residual, correction, solution, inverseDiagonal, lambdaMax, shift;
   };
   TREACLE_HD Own own(std::size_t k, std::uint8_t m) const {
-    if constexpr (Kind == StepKind::Residual) return {v.residual[k], v.correction[k], 0, 0, 1, m};
-    return {v.residual[k], v.correction[k], v.solution[k], inverseDiagonal[k], *lambdaMax, m};
+    if constexpr (Kind == StepKind::Residual)
+      return {v.residual[k], v.correction[k], 0, 0, 1, table.shiftOf(k, m)};
+    return {v.residual[k], v.correction[k], v.solution[k], inverseDiagonal[k], *lambdaMax, table.shiftOf(k, m)};
   }
   TREACLE_HD Own own(std::size_t k) const { return own(k, material[k]); }
 
   TREACLE_HD void put(std::size_t k, T divergence, std::uint8_t m) const { put(k, divergence, own(k, m)); }
   TREACLE_HD void put(std::size_t k, T divergence, const Own& o) const {
-    const T r = o.residual - (divergence + table.shift[o.material] * o.correction);
+    const T r = o.residual - (divergence + o.shift * o.correction);
     v.residual[k] = r;
     if constexpr (Kind != StepKind::Residual) {
       const T change = step.previous * o.correction + step.gain / o.lambdaMax * o.inverseDiagonal * r;
@@ -182,7 +189,7 @@ struct StorePressure {
 
   TREACLE_HD std::uint8_t own(std::size_t k) const { return material[k]; }
   TREACLE_HD void put(std::size_t k, T divergence, std::uint8_t m) const {
-    y[k] = divergence + table.shift[m] * x[k];
+    y[k] = divergence + table.shiftOf(k, m) * x[k];
   }
 };
 

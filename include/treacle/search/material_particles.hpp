@@ -16,7 +16,6 @@ struct MaterialParticles : SortedParticles<D> {
 
   TREACLE_HD double density(std::uint32_t i) const { return materials.density[this->material[i]]; }
   TREACLE_HD double inertia(std::uint32_t i) const { return materials.inertia[this->material[i]]; }
-  TREACLE_HD double bulkViscosity(std::uint32_t i) const { return materials.bulkViscosity[this->material[i]]; }
   TREACLE_HD double bulkModulus(std::uint32_t i) const { return materials.bulkModulus[this->material[i]]; }
 
   TREACLE_HD Substance substance(std::uint32_t i) const { return this->material[i]; }

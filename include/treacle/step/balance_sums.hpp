@@ -21,6 +21,7 @@ struct PowerTerms {
 
   std::uint32_t fluidCount, ownFluid;  // fluid from ownFluid on is other processes'
   MaterialTable materials;
+  BulkShare bulkShare;
   std::span<const std::uint8_t> material;
   std::span<const Vec<D>> before, after;   // u^k of the fluid, u^{k+1} of all [m/s]
   std::span<const double> divergence;      // C^T u^{k+1} [1/s]
@@ -39,7 +40,7 @@ struct PowerTerms {
     const int m = material[i];
     const bool fluid = i < fluidCount;
     const double worked = fluid ? divergence[i] : wallDivergence[i - fluidCount];
-    sums[Bulk] += materials.bulkViscosity[m] * divergence[i] * worked;
+    sums[Bulk] += bulkShare.of(i) * materials.bulkViscosity[m] * divergence[i] * worked;
     sums[Elastic] -= elastic[i] * worked;
     if (elastic[i] > 0) {
       const double kappa = materials.bulkModulus[m], strain = elastic[i] / kappa;

@@ -139,15 +139,19 @@ TEST(SimulationTwin, BearsTensionLikeTheCpu) {
 }
 
 /// Until the gap is closed and after.
-TEST(SimulationTwin, ClosesGapsLikeTheCpu) {
-  TREACLE_SKIP_WITHOUT_GPU();
-  Case c = layerWithGap();
+void compareGaps(bool onTheFloor) {
+  Case c = layerWithGap(onTheFloor);
   c.solver.tolerance = tightTolerance;
   c.solver.precision = Precision::Double;
   Simulation<2> cpu(c, created<2>(c));
   Simulation<2, Cuda> cuda(c, created<2>(c));
   for (int step = 0; step < 20; ++step) cpu.advance(), cuda.advance();
   EXPECT_LE(farthest(stateOf(cpu), stateOf(cuda)), 1e-6 * c.spacing);
+}
+
+TEST(SimulationTwin, ClosesGapsLikeTheCpu) {
+  TREACLE_SKIP_WITHOUT_GPU();
+  for (const bool onTheFloor : {false, true}) compareGaps(onTheFloor);
 }
 
 /// A Bingham fluid alone, and one beside another fluid.

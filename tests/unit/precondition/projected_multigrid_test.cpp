@@ -114,7 +114,7 @@ Matrix pressureOracle(const Scene<D>& s, const ProjectionConstants& constants, d
   EXPECT_EQ(c.rightCols(c.cols() - active).norm(), 0) << "a wall that matters is not active";
   Vector w(s.unknowns()), shift(active);
   for (Index k = 0; k < w.size(); ++k) w[k] = constants.weight[s.particles.material[k / D]];
-  for (Index k = 0; k < active; ++k) shift[k] = pressureShift / oracle.material(k).bulkViscosity;
+  for (Index k = 0; k < active; ++k) shift[k] = pressureShift / oracle.bulkViscosity(k);
   Matrix expected = c.leftCols(active).transpose() * w.asDiagonal() * c.leftCols(active);
   expected.addToDiagonal(shift);
   return expected;

@@ -144,19 +144,36 @@ template <int D>
 struct PlainBalance {
   const Scene<D>& s;
   const Oracle<D> oracle{s};
-  std::vector<Vec<D>> u;  // as the scene's particles
+  std::vector<Vec<D>> u;        // as the scene's particles
+  std::vector<double> resists;  // f: the share of its lambda that a fluid particle has (Cover::resists)
 
   PlainBalance(const Scene<D>& scene, const Particles<D>& after) : s(scene), u(after.count) {
     for (std::uint32_t i = 0; i < after.count; ++i)
       for (int k = 0; k < D; ++k) u[after.id[i]][k] = after.velocity[i][k];
+    for (std::uint32_t i = 0; i < s.particles.fluidCount; ++i)
+      resists.push_back(s.c.keepsVolume() ? resistanceOf(i) : 1);
   }
 
   bool isFluid(std::uint32_t i) const { return i < s.particles.fluidCount; }
 
-  /// That of the gradient, and the root of the share of its bulk viscosity that a particle has (Cover::resists).
+  /// That of the gradient, and the root of f.
   Matrix factorOfC(std::uint32_t i) const {
-    const Matrix b = oracle.renormalisation(i);
-    if (!s.c.keepsVolume() || !isFluid(i)) return b;
+    return (isFluid(i) ? std::sqrt(resists[i]) : 1) * oracle.renormalisation(i);
+  }
+
+  /// Walls have the root of the geometric mean of f around them.
+  double lambda(std::uint32_t i) const {
+    const double whole = oracle.material(i).bulkViscosity;
+    if (isFluid(i)) return whole;
+    double sum = 0, weights = 0;
+    for (std::uint32_t j = 0; j < s.particles.fluidCount; ++j) {
+      const double w = oracle.densityWeight(norm(oracle.difference(i, j)));
+      sum += w * std::log(std::max(1e-4, resists[j])), weights += w;
+    }
+    return std::exp(sum / std::max(weights, 0.01 * oracle.restDensity()) / 2) * whole;
+  }
+
+  double resistanceOf(std::uint32_t i) const {
     const auto v = [&](double r) { return std::pow(std::max(0.0, 1 - r * r / (oracle.hn * oracle.hn)), 3); };
     double n = 0, walls = 0, wide = 0;
     Vec<D> away{};
@@ -169,8 +186,7 @@ struct PlainBalance {
       away += v(norm(d)) * d;
     }
     const double rest = oracle.restDensity(), open = oracle.densityWeight(0) * norm(away) / (rest * oracle.l);
-    return std::sqrt(Cover::resists(open, n / rest, wide / latticeSum<D>(oracle.hn, oracle.l, v), walls / rest)) *
-           b;
+    return Cover::resists(open, n / rest, wide / latticeSum<D>(oracle.hn, oracle.l, v), walls / rest);
   }
 
   /// u_ij.B_i e_ij w'_ij^p summed over all particles.
@@ -213,7 +229,7 @@ struct PlainBalance {
     std::vector<double> pressure;
     std::vector<Matrix> matrix;
     for (std::uint32_t i = 0; i < oracle.count(); ++i) {
-      pressure.push_back(oracle.material(i).bulkViscosity * divergence(i) + elasticPressure(i));
+      pressure.push_back(lambda(i) * divergence(i) + elasticPressure(i));
       matrix.push_back(factorOfC(i));
     }
     Balance b;
@@ -304,8 +320,9 @@ void checkDissipations(SchemeKind scheme) {
   SCOPED_TRACE(nameOf(scheme));
   const LoadedWalls<D> start(WallsMove::Not, 1, scheme);
   const auto twiceRayleigh = [](const Stepped<D>& step) {
-    return 2 * step.plain.oracle.dissipation(flat<D>(step.plain.u),
-                                             [&](std::uint32_t i) { return step.plain.factorOfC(i); });
+    return 2 * step.plain.oracle.dissipation(
+                   flat<D>(step.plain.u), [&](std::uint32_t i) { return step.plain.factorOfC(i); },
+                   [&](std::uint32_t i) { return step.plain.lambda(i); });
   };
   const Stepped<D> both(start);
   const double whole = twiceRayleigh(both);

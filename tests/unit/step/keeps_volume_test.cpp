@@ -159,8 +159,8 @@ TEST(KeepsVolume, BulkViscosityIsLeftOutNextToGaps) {
 
 /// The viscosity mu alone holds the layer above the gap: it sinks within some mu / (rho g h) = 0.09 s, and not
 /// within lambda / (rho g h).
-TEST(KeepsVolume, FluidSinksOverAGapInIt) {
-  const Case c = layerWithGap();
+void checkSinking(bool onTheFloor) {
+  const Case c = layerWithGap(onTheFloor);
   Simulation<2> s(c, created<2>(c));
   const auto upper = [&] {
     double height = 0, count = 0;
@@ -172,6 +172,9 @@ TEST(KeepsVolume, FluidSinksOverAGapInIt) {
   for (int k = 0; k < 200; ++k) s.advance();
   EXPECT_NEAR(start - upper(), gap, 0.02 * gap);
 }
+
+TEST(KeepsVolume, FluidSinksOverAGapInIt) { checkSinking(false); }
+TEST(KeepsVolume, FluidSinksOntoAWall) { checkSinking(true); }
 
 /// The gradient of the density's weight is its derivative.
 TEST(KeepsVolume, TheForceOfATensionIsTheGradientOfTheDensity) {
