@@ -78,7 +78,8 @@ struct Twin {
   }
 
   void checkProducts() {
-    const ProjectionTable<T> table = constants.template table<T>();
+    const auto table = constants.template table<T>(),
+               tableOnDevice = projectionConstants(d.pairs).template table<T>();
     const Buffer<T> q = randomScalars(active(), 1);
     products.gather(s.context, q.span());
     productsOnDevice.gather(d.context, copyToDevice<T>(d.context, q).span());
@@ -91,7 +92,7 @@ struct Twin {
                       FinishVelocity<D, T>{table, s.pairs().material.data(), z.data(), gradient.data()});
     productsOnDevice.gradient(
         d.context, productsOnDevice.scalars(),
-        FinishVelocity<D, T>{table, d.pairs.material.data(), zOnDevice.data(), gradientOnDevice.data()});
+        FinishVelocity<D, T>{tableOnDevice, d.pairs.material.data(), zOnDevice.data(), gradientOnDevice.data()});
     EXPECT_LE(differ(copyToHost(d.context, gradientOnDevice), gradient), productTolerance()) << "gradient";
 
     Buffer<Gathered<D, T>> u = randomVectors(2);
@@ -102,18 +103,18 @@ struct Twin {
     Buffer<T, Cuda> divOnDevice(d.context, active());
     products.divergence(s.context, products.vectors(),
                         StorePressure<T, Cpu>{table, s.pairs().material.data(), products.scalars(), div.data()});
-    productsOnDevice.divergence(
-        d.context, productsOnDevice.vectors(),
-        StorePressure<T, Cuda>{table, d.pairs.material.data(), productsOnDevice.scalars(), divOnDevice.data()});
+    productsOnDevice.divergence(d.context, productsOnDevice.vectors(),
+                                StorePressure<T, Cuda>{tableOnDevice, d.pairs.material.data(),
+                                                       productsOnDevice.scalars(), divOnDevice.data()});
     EXPECT_LE(differ(copyToHost(d.context, divOnDevice), div), productTolerance()) << "divergence";
 
     products.gather(s.context, q.span());
     productsOnDevice.gather(d.context, copyToDevice<T>(d.context, q).span());
     products.schur(s.context, table, products.scalars(),
                    StorePressure<T, Cpu>{table, s.pairs().material.data(), products.scalars(), div.data()});
-    productsOnDevice.schur(
-        d.context, table, productsOnDevice.scalars(),
-        StorePressure<T, Cuda>{table, d.pairs.material.data(), productsOnDevice.scalars(), divOnDevice.data()});
+    productsOnDevice.schur(d.context, tableOnDevice, productsOnDevice.scalars(),
+                           StorePressure<T, Cuda>{tableOnDevice, d.pairs.material.data(),
+                                                  productsOnDevice.scalars(), divOnDevice.data()});
     EXPECT_LE(differ(copyToHost(d.context, divOnDevice), div), schurTolerance()) << "S'";
 
     Buffer<T> pressure(active());
@@ -121,7 +122,7 @@ struct Twin {
     Buffer<T, Cuda> pressureOnDevice(d.context, active());
     Buffer<Block<D, T>, Cuda> velocityOnDevice(d.context, s.n());
     products.inverseDiagonals(s.context, table, pressure, velocity);
-    productsOnDevice.inverseDiagonals(d.context, table, pressureOnDevice, velocityOnDevice);
+    productsOnDevice.inverseDiagonals(d.context, tableOnDevice, pressureOnDevice, velocityOnDevice);
     EXPECT_LE(differ(copyToHost(d.context, pressureOnDevice), pressure), toleranceOf<T>) << "diagonal of S'";
     Buffer<double> resisting(s.n());
     Buffer<double, Cuda> resistingOnDevice(d.context, s.n());
@@ -182,9 +183,10 @@ struct Twin {
     Buffer<T, Cuda> parts;
     BlockCsr<1> pressure;
     BlockCsr<1, double, Cuda> pressureOnDevice;
-    const ProjectionTable<double> table = constants.template table<double>();
+    const auto table = constants.template table<double>(),
+               tableOnDevice = projectionConstants(d.pairs).template table<double>();
     pressureGalerkin(s.context, s.pairs(), table, nodes, columns, pressure);
-    pressureGalerkin(d.context, d.pairs, aOnDevice.near(), table, nodesOnDevice, parts, pressureOnDevice);
+    pressureGalerkin(d.context, d.pairs, aOnDevice.near(), tableOnDevice, nodesOnDevice, parts, pressureOnDevice);
     checkNodes(nodes, nodesOnDevice, std::span<const Block<1>>(pressure.value.span()),
                copyToHost(d.context, pressureOnDevice.value), "P^T S' P");
 
