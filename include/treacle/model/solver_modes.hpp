@@ -45,14 +45,15 @@ struct KeptEigenvalue {
 
   double value = 0;         // 0: not known
   std::int32_t due = 0;     // solves until it is estimated anew
-  std::int32_t fewest = 0;  // iterations that one of the solves since then took; 0: not known
+  std::int32_t fewest = 0;  // iterations that a solve took, of all since one took longer; 0: not known
 
   bool isKnown() const { return value > 0 && due > 0; }
-  void estimated(double largest) { *this = {largest, longest, 0}; }
-  /// After a solve: one that takes more iterations than others may have outgrown the value.
+  void estimated(double largest) { *this = {largest, longest, fewest}; }
+  /// After a solve: one that takes more iterations than others may have outgrown the value. When fluid meets a wall
+  /// the value may grow in each of several steps.
   void solved(std::int32_t iterations) {
     --due;
-    if (takesLonger(iterations, fewest)) due = 0;
+    if (takesLonger(iterations, fewest)) due = 0, fewest = iterations;
   }
 
   bool operator==(const KeptEigenvalue&) const = default;

@@ -91,9 +91,11 @@ TEST(KeptEigenvalue, IsKnownForSomeSolvesAndUntilOneTakesLonger) {
     for (; kept.isKnown(); ++k) kept.solved(iterations(k));
     return k;
   };
-  EXPECT_EQ(solvesUntilDue([](int) { return 9; }), KeptEigenvalue::longest);
   EXPECT_EQ(solvesUntilDue([](int k) { return 5 + k % 2; }), KeptEigenvalue::longest) << "one more is none";
-  EXPECT_EQ(solvesUntilDue([](int k) { return k < 2 ? 9 : 11; }), 3);
+  EXPECT_EQ(solvesUntilDue([](int k) { return k < 2 ? 5 : 9; }), 3);
+  EXPECT_EQ(solvesUntilDue([](int) { return 12; }), 1) << "it grows on";
+  EXPECT_EQ(solvesUntilDue([](int) { return 12; }), KeptEigenvalue::longest);
+  EXPECT_EQ(solvesUntilDue([](int) { return 5; }), KeptEigenvalue::longest);
   EXPECT_EQ(kept.value, 3.5);
 }
 
