@@ -184,6 +184,8 @@ class Body:
     where: str | None = None
     velocity: Sequence[float | str] | Sequence[float] | None = None
     """[m/s]"""
+    disorder: float | None = None
+    """[spacings]"""
     viscosity_factor: float | str | None = None
     oscillation: Oscillation | None = None
     displacement: Sequence[float | str | TimeTable] | None = None

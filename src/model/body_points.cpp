@@ -4,6 +4,7 @@
 #include "lattice.hpp"
 #include "mesh_notes.hpp"
 #include "treacle/core/error.hpp"
+#include "treacle/core/pseudo_random.hpp"
 #include "treacle/model/nozzle.hpp"
 #include "treacle/model/shape.hpp"
 
@@ -96,6 +97,7 @@ BodyPoints<D> nozzlePoints(const Case& c, const Body& body, BodyKind kind, std::
 template <int D>
 InitialState<D>::InitialState(const Case& c, const Body& body)
     : body_(body),
+      disorder_(body.disorder * c.spacing),
       wall_(wallMotion<D>(c.domain, body, 0, 0)),
       expressions_(D),
       similarity_(similarityOf<D>(body.shape)) {
@@ -104,6 +106,15 @@ InitialState<D>::InitialState(const Case& c, const Body& body)
     if (const std::string& text = body.velocityExpression[k]; !text.empty()) expressions_[k].emplace(text, D);
   if (!body.temperatureExpression.empty()) temperature_.emplace(body.temperatureExpression, D);
   if (!body.viscosityFactorExpression.empty()) viscosityFactor_.emplace(body.viscosityFactorExpression, D);
+}
+
+template <int D>
+Vec<D> InitialState<D>::placeOf(const BodyPoints<D>& points, std::size_t k, std::uint32_t id) const {
+  Vec<D> x = points.place[k];
+  if (disorder_ > 0)
+    for (int axis = 0; axis < D; ++axis)
+      x[axis] += disorder_ * pseudoRandom(D * id + static_cast<std::uint32_t>(axis));
+  return x;
 }
 
 template <int D>

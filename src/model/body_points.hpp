@@ -53,6 +53,8 @@ class InitialState {
  public:
   InitialState(const Case& c, const Body& body);
 
+  /// Where particle `id` at point k stands [m].
+  Vec<D> placeOf(const BodyPoints<D>& points, std::size_t k, std::uint32_t id) const;
   /// At point k [m/s]. Errors: InputError where it is not finite.
   Vec<D> velocityAt(const BodyPoints<D>& points, std::size_t k) const;
   /// Likewise, of a fluid in a case with heat [K]. Errors: InputError where it is not a positive number.
@@ -62,6 +64,7 @@ class InitialState {
 
  private:
   const Body& body_;
+  double disorder_;  // [m]
   WallMotion<D> wall_;
   std::vector<std::optional<Expression>> expressions_;  // of the components
   std::optional<Expression> temperature_, viscosityFactor_;

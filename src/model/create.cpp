@@ -160,7 +160,8 @@ void append(const Case& c, BodyKind kind, const std::vector<Filled<D>>& filled, 
                factors = particles.has.viscosityFactors && kind == BodyKind::Fluid;
     const auto place = [&](std::size_t k) {
       const std::size_t i = at + k;
-      particles.position[i] = f.points.place[begin + k];
+      particles.id[i] = static_cast<std::uint32_t>(id + begin + k);
+      particles.position[i] = initial.placeOf(f.points, begin + k, particles.id[i]);
       particles.velocity[i] = initial.velocityAt(f.points, begin + k);
       if (warm) particles.temperature[i] = initial.temperatureAt(f.points, begin + k);
       if (factors) particles.viscosityFactor[i] = initial.viscosityFactorAt(f.points.place[begin + k]);
@@ -169,7 +170,6 @@ void append(const Case& c, BodyKind kind, const std::vector<Filled<D>>& filled, 
       particles.numberDensity[i] = 0;
       particles.material[i] = static_cast<std::uint8_t>(f.body->material);
       particles.body[i] = body;
-      particles.id[i] = static_cast<std::uint32_t>(id + begin + k);
     };
     const std::uint32_t size = made - begin;
     // Expressions throw, and are not for several threads at once.

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "treacle/core/pseudo_random.hpp"
 #include "treacle/linear/hat_multigrid.hpp"
-#include "treacle/linear/lanczos_scalars.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "support/isph_scene.hpp"
 
-#include "treacle/linear/lanczos_scalars.hpp"
+#include "treacle/core/pseudo_random.hpp"
 #include "treacle/search/particle_sort.hpp"
 
 namespace treacle::test {

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "treacle/core/pseudo_random.hpp"
 #include "treacle/linear/block_csr.hpp"
-#include "treacle/linear/lanczos_scalars.hpp"
 #include "treacle/search/buckets.hpp"
 
 #include <algorithm>

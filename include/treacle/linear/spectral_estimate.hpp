@@ -3,6 +3,7 @@
 #include "treacle/core/backend.hpp"
 #include "treacle/core/buffer.hpp"
 #include "treacle/core/cuda.hpp"
+#include "treacle/core/pseudo_random.hpp"
 #include "treacle/linear/lanczos_scalars.hpp"
 
 #include <algorithm>

@@ -206,6 +206,10 @@ void visit(auto& v, Like<Body> auto& b, const Case& c) {
   v({"where", "Only those particles are made at which this is not zero"}, b.where, expression);
   v({"velocity", "Velocity: of a fluid or rigid body at the start, of a wall for the whole run", optional, "m/s"},
     b.velocity, b.velocityExpression);
+  if (b.kind == BodyKind::Fluid)
+    v({"disorder", "How far its particles stand off the lattice at the start, at random, along each axis at most",
+       optional, "spacings", disorder},
+      b.disorder);
   const bool ofFile = b.kind == BodyKind::Fluid && b.shape.kind == ShapeKind::Particles;
   if (ofFile)
     v({"file_velocities", "Whether particles have the velocities of the file, on top of that of the body"},

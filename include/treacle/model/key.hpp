@@ -56,7 +56,7 @@ std::vector<std::string_view> wordsThat(Fits&& fits) {
 namespace keys {
 
 inline constexpr bool required = true, optional = false;
-inline constexpr Bound positive{.least = 0, .open = true}, notNegative{.least = 0};
+inline constexpr Bound positive{.least = 0, .open = true}, notNegative{.least = 0}, disorder{0, 0.45};
 // Beyond these a step or a solve would take as good as for ever.
 inline constexpr Bound radius{.least = 0, .most = 20, .open = true}, iterations{1, 1e6}, sweeps{1, 1000},
     degree{0, 1000}, stepTolerance{1e-6, 0.5}, flowIndex{.least = 0, .most = 5, .open = true};

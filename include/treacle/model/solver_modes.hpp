@@ -49,8 +49,8 @@ struct KeptEigenvalue {
 
   bool isKnown() const { return value > 0 && due > 0; }
   void estimated(double largest) { *this = {largest, longest, fewest}; }
-  /// After a solve: one that takes more iterations than others may have outgrown the value. When fluid meets a wall
-  /// the value may grow in each of several steps.
+  /// After a solve: one that takes more iterations than others may have outgrown the value. When fluid meets a
+  /// wall the value may grow in each of several steps.
   void solved(std::int32_t iterations) {
     --due;
     if (takesLonger(iterations, fewest)) due = 0, fewest = iterations;

@@ -1,4 +1,5 @@
 #include "treacle/linear/dense_inverse.hpp"
+#include "treacle/core/pseudo_random.hpp"
 
 #include "support/gpu.hpp"
 #include "support/hats.hpp"

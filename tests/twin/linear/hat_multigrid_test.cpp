@@ -1,4 +1,5 @@
 #include "treacle/linear/hat_multigrid.hpp"
+#include "treacle/core/pseudo_random.hpp"
 #include "treacle/linear/spectral_estimate.hpp"
 
 #include "support/gpu.hpp"

@@ -1,6 +1,7 @@
 #include "support/gpu.hpp"
 #include "support/isph_cases.hpp"
 #include "support/scene.hpp"
+#include "treacle/core/pseudo_random.hpp"
 #include "treacle/step/simulation.hpp"
 
 #include <gtest/gtest.h>

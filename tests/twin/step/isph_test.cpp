@@ -5,6 +5,7 @@
 #include "support/tolerances.hpp"
 #include "support/wall_motions.hpp"
 #include "treacle/core/error.hpp"
+#include "treacle/core/pseudo_random.hpp"
 #include "treacle/step/diagnostics.hpp"
 #include "treacle/step/wall_motion.hpp"
 

@@ -64,8 +64,9 @@ constexpr BadCase badCases[] = {
      "bad.toml:9:2: unknown key 'gravty' in the case file; did you mean 'gravity'?"},
     {"keyOfAnotherShape", "max = [6e-3, 6e-3]", "max = [6e-3, 6e-3]\nradius = 1",
      "bad.toml:26:1: unknown key 'radius' in [[body]] 'column' (box); expected 'name', 'type', 'material', "
-     "'shape', 'where', 'velocity', 'viscosity_factor', 'oscillation', 'displacement', 'rotation', 'min', 'max' "
-     "or 'transform'"},
+     "'shape', 'where', 'velocity', 'disorder', 'viscosity_factor', 'oscillation', 'displacement', 'rotation', "
+     "'min', "
+     "'max' or 'transform'"},
     {"missingKey", "density = 1000\n", "",
      "bad.toml:12:1: density in [[material]] 'syrup': missing; expected a positive number [kg/m3]"},
     {"missingTable", "[time]\nstep = 1e-3\nend = 2e-3\n", "",

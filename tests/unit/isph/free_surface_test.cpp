@@ -1,4 +1,5 @@
 #include "support/isph_scene.hpp"
+#include "treacle/core/pseudo_random.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 #include "treacle/linear/affine_solve.hpp"
 
-#include "treacle/linear/lanczos_scalars.hpp"
+#include "treacle/core/pseudo_random.hpp"
 
 #include <gtest/gtest.h>
 

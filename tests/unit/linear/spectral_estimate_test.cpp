@@ -1,4 +1,5 @@
 #include "treacle/linear/spectral_estimate.hpp"
+#include "treacle/core/pseudo_random.hpp"
 
 #include "support/dense.hpp"
 #include "support/hats.hpp"

@@ -37,6 +37,33 @@ double leastDistance(const Particles<D>& p) {
   return least;
 }
 
+TEST(createParticles, takesFluidOffItsLatticeAtRandom) {
+  Case c = emptyCase(2);
+  c.bodies = {makeBody("wall", BodyKind::Wall, box({-40, -2}, {0, 3})),
+              makeBody("drop", BodyKind::Fluid, box({0, 0}, {40, 40}))};
+  std::vector<std::string> notes;
+  const Particles<2> even = createParticles<2>(c, notes);
+  c.bodies[1].disorder = 0.3;
+  const Particles<2> p = createParticles<2>(c, notes);
+  Vec<2> mean{}, square{};
+  for (std::uint32_t i = 0; i < p.count; ++i) {
+    const Vec<2> way = p.position[i] - even.position[i];
+    if (i >= p.fluidCount) EXPECT_EQ(way, Vec<2>{}) << "walls stay";
+    for (int k = 0; k < 2; ++k) {
+      EXPECT_LT(std::abs(way[k]), 0.3 * c.spacing);
+      mean[k] += way[k] / p.fluidCount, square[k] += way[k] * way[k] / p.fluidCount;
+    }
+  }
+  for (int k = 0; k < 2; ++k) {
+    EXPECT_NEAR(mean[k], 0, 0.02 * c.spacing);
+    EXPECT_NEAR(std::sqrt(3 * square[k]), 0.3 * c.spacing, 0.02 * c.spacing);
+  }
+  // Whoever makes them, of however many processes.
+  const Particles<2> part = createParticles<2>(c, notes, nullptr, {1, 3});
+  ASSERT_GT(part.fluidCount, 0u);
+  for (std::uint32_t i = 0; i < part.fluidCount; ++i) EXPECT_EQ(part.position[i], p.position[part.id[i]]);
+}
+
 TEST(createParticles, fillsBoxesWithCellCentredLattices) {
   Case c = emptyCase(2);
   c.materials.push_back(c.materials[0]);

@@ -1,4 +1,5 @@
 #include "treacle/precondition/isph_hat_multigrid.hpp"
+#include "treacle/core/pseudo_random.hpp"
 
 #include "support/isph_scene.hpp"
 #include "support/tolerances.hpp"

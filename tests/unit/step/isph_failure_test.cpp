@@ -1,5 +1,6 @@
 #include "support/isph_cases.hpp"
 #include "treacle/core/error.hpp"
+#include "treacle/core/pseudo_random.hpp"
 #include "treacle/step/solve_stages.hpp"
 
 #include <gtest/gtest.h>

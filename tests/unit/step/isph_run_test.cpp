@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 #include <omp.h>
+#include "treacle/core/pseudo_random.hpp"
 
 namespace treacle::test {
 namespace {

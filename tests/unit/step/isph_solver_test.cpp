@@ -3,6 +3,7 @@
 #include "support/isph_cases.hpp"
 #include "support/matrices.hpp"
 #include "support/pressure_column.hpp"
+#include "treacle/core/pseudo_random.hpp"
 #include "treacle/step/solve_stages.hpp"
 
 #include <gtest/gtest.h>

@@ -2,6 +2,7 @@
 #include "support/isph_oracle.hpp"
 
 #include <gtest/gtest.h>
+#include "treacle/core/pseudo_random.hpp"
 
 namespace treacle::test {
 namespace {

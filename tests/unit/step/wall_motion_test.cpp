@@ -1,4 +1,5 @@
 #include "treacle/step/wall_motion.hpp"
+#include "treacle/core/pseudo_random.hpp"
 
 #include "support/isph_cases.hpp"
 #include "support/wall_motions.hpp"
