@@ -146,6 +146,10 @@ void letWallsYield(Context<Cuda>& context, std::span<double> mean) {
   forEach(context, mean.size(), [mean] __device__(std::size_t i) { mean[i] = wallShareOf(mean[i]); });
 }
 
+void shareTension(Context<Cuda>& context, std::span<const double> share, std::span<double> tension) {
+  forEach(context, tension.size(), [share, tension] __device__(std::size_t i) { tension[i] *= share[i]; });
+}
+
 template <int D>
 void actingPressures(Context<Cuda>& context, const MphPairs<D>& pairs, const Places& around,
                      std::span<const double> tension, std::span<double> pressure) {

@@ -135,6 +135,10 @@ void letWallsYield(Context<Cpu>&, std::span<double> mean) {
   forEachParticle(mean.size(), [&](std::uint32_t i) { mean[i] = wallShareOf(mean[i]); });
 }
 
+void shareTension(Context<Cpu>&, std::span<const double> share, std::span<double> tension) {
+  forEachParticle(tension.size(), [&](std::uint32_t i) { tension[i] *= share[i]; });
+}
+
 template <int D>
 void actingPressures(Context<Cpu>&, const MphPairs<D>& pairs, const Places& around,
                      std::span<const double> tension, std::span<double> pressure) {

@@ -29,7 +29,7 @@ class StepTension final : public ExplicitForces<D, Backend> {
   }
 
   /// The forces of the tensions that particles have, on the neighbours of the step. Walls have the mean of the
-  /// fluid around them. `around`: of the places at hand.
+  /// fluid around them, by their share. `around`: of the places at hand, for which letGapsClose() was.
   void prepare(FlowState<D, Backend>& state, const MphPairs<D>& pairs, const Places& around) {
     Context<Backend>& context = state.context;
     const std::uint32_t own = pairs.ownFluid();
@@ -39,6 +39,8 @@ class StepTension final : public ExplicitForces<D, Backend> {
     coverTension<D>(context, pairs, around, held.first(own), covered_.span().first(own));
     fillGhosts(context, Held::Fluid, covered_.data());
     coveredMeans<D>(context, pairs, pairs.wallList, covered_, held);
+    const std::uint32_t fluid = pairs.fluidCount, walls = pairs.ownEnd() - fluid;
+    shareTension(context, wallShare_.span().subspan(fluid, walls), held.subspan(fluid, walls));
     fillGhosts(context, Held::Active, held.data());
     tensionForces<D>(context, pairs, pairs.fluidList, held, force_.span());
   }

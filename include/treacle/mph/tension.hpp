@@ -79,6 +79,10 @@ void letGapsClose(Context<Cuda>&, const MphPairs<D>&, const Places&, std::span<S
 void letWallsYield(Context<Cpu>&, std::span<double> mean);
 void letWallsYield(Context<Cuda>&, std::span<double> mean);
 
+/// tension *= share, element by element.
+void shareTension(Context<Cpu>&, std::span<const double> share, std::span<double> tension);
+void shareTension(Context<Cuda>&, std::span<const double> share, std::span<double> tension);
+
 /// From the pressures that C is multiplied by to those that act (actingPressureOf()). `tension`, `pressure`: per
 /// active particle; of ghosts the latter is of no use.
 template <int D>
@@ -122,14 +126,16 @@ TREACLE_HD Covered coveredTensionOf(const MphPairs<D>& pairs, std::uint32_t i, c
 ///
 ///   P^{k+1} = f P^k + (1 - f) kappa <min(0, n - n_0)>,   f = exp(-dt / T),   T = 3 lambda / kappa
 ///
-/// Only covered particles have it, and it is not below minus the ambient pressure. `lack`: the mean.
+/// Only covered particles have it, beside gaps by the root of f as other pressures, and it is not below minus the
+/// ambient pressure. Where little resists, tension would move particles to and fro and give them energy. `lack`:
+/// the mean.
 template <int D>
 TREACLE_HD double tensionOf(const MphPairs<D>& pairs, std::uint32_t i, double dt, const Places& around,
                             double lack, double before) {
   const double kappa = pairs.bulkModulus(i), lambda = pairs.bulkViscosity(i);
   if (kappa == 0 || lambda == 0) return 0;
   const double kept = exp(-dt * kappa / (tensionTime * lambda));
-  return around.cover(i, pairs.restDensity).bears *
+  return sqrt(around.resists(i, pairs.restDensity)) * around.cover(i, pairs.restDensity).bears *
          fmax(kept * before + (1 - kept) * kappa * lack, -pairs.ambientPressure);
 }
 

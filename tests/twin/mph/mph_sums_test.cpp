@@ -285,6 +285,9 @@ void checkTension(bool lists) {
   letWallsYield(s.context, mean);
   letWallsYield(d.context, meanFound.span());
   EXPECT_LE(difference<double>(d.context, mean, meanFound), operatorTolerance);
+  shareTension(s.context, mean, tension);
+  shareTension(d.context, meanFound, tensionFound.span());
+  EXPECT_LE(difference<double>(d.context, tension, tensionFound), operatorTolerance);
   actingPressures<D>(s.context, host, around, density, mean);
   actingPressures<D>(d.context, d.pairs, aroundFound, densityFound, meanFound.span());
   EXPECT_LE(difference<double>(d.context, mean, meanFound), operatorTolerance);
