@@ -29,7 +29,7 @@ class StepTension final : public ExplicitForces<D, Backend> {
   }
 
   /// The forces of the tensions that particles have, on the neighbours of the step. Walls have the mean of the
-  /// fluid around them, by their share. `around`: of the places at hand, for which letGapsClose() was.
+  /// fluid around them, by their share. `around`: of the places at hand. letGapsClose() comes first.
   void prepare(FlowState<D, Backend>& state, const MphPairs<D>& pairs, const Places& around) {
     Context<Backend>& context = state.context;
     const std::uint32_t own = pairs.ownFluid();

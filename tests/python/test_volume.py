@@ -53,7 +53,7 @@ def density_by_cells(fluid, walls):
     return SPACING ** fluid.shape[1] / sizes[inside].mean(), inside.sum()
 
 
-@pytest.mark.parametrize(("dimensions", "change"), [(2, -0.04), (2, 0.0), (2, 0.03), (3, -0.04), (3, 0.03)])
+@pytest.mark.parametrize(("dimensions", "change"), [(2, -0.04), (2, 0.0), (2, 0.012), (3, -0.04), (3, 0.012)])
 def test_measured_density_is_that_of_the_cells(dimensions, change):
     sim = treacle.Simulation(squeezed(dimensions, change), backend="cpu")
     sim.run(progress=False)

@@ -126,9 +126,9 @@ TREACLE_HD Covered coveredTensionOf(const MphPairs<D>& pairs, std::uint32_t i, c
 ///
 ///   P^{k+1} = f P^k + (1 - f) kappa <min(0, n - n_0)>,   f = exp(-dt / T),   T = 3 lambda / kappa
 ///
-/// Only covered particles have it, beside gaps by the root of f as other pressures, and it is not below minus the
-/// ambient pressure. Where little resists, tension would move particles to and fro and give them energy. `lack`:
-/// the mean.
+/// Only covered particles have it, beside gaps by the root of Places::resists as other pressures, and it is not
+/// below minus the ambient pressure. Where little resists, tension would move particles to and fro and give them
+/// energy. `lack`: the mean.
 template <int D>
 TREACLE_HD double tensionOf(const MphPairs<D>& pairs, std::uint32_t i, double dt, const Places& around,
                             double lack, double before) {
