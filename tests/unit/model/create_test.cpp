@@ -48,7 +48,9 @@ TEST(createParticles, takesFluidOffItsLatticeAtRandom) {
   Vec<2> mean{}, square{};
   for (std::uint32_t i = 0; i < p.count; ++i) {
     const Vec<2> way = p.position[i] - even.position[i];
-    if (i >= p.fluidCount) EXPECT_EQ(way, Vec<2>{}) << "walls stay";
+    if (i >= p.fluidCount) {
+      EXPECT_EQ(way, Vec<2>{}) << "walls stay";
+    }
     for (int k = 0; k < 2; ++k) {
       EXPECT_LT(std::abs(way[k]), 0.3 * c.spacing);
       mean[k] += way[k] / p.fluidCount, square[k] += way[k] * way[k] / p.fluidCount;
