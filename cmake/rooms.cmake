@@ -12,19 +12,52 @@ endif()
 # treacle_room(NAME SOURCES a.cpp ... DEPENDS core ... PRIVATE lib ...): library treacle_NAME, alias treacle::NAME.
 function(treacle_room NAME)
   cmake_parse_arguments(ROOM "" "" "SOURCES;DEPENDS;PRIVATE" ${ARGN})
-  add_library(treacle_${NAME} ${TREACLE_LIBRARY_KIND} ${ROOM_SOURCES})
+  set(loops ${ROOM_SOURCES})
+  list(FILTER loops INCLUDE REGEX "_cpu\\.cpp$")
+  if(TREACLE_PROCESSORS AND loops)
+    list(FILTER ROOM_SOURCES EXCLUDE REGEX "_cpu\\.cpp$")
+    treacle_loops(${NAME})
+  endif()
+  treacle_library(treacle_${NAME} ${TREACLE_LIBRARY_KIND} ${ROOM_SOURCES})
   add_library(treacle::${NAME} ALIAS treacle_${NAME})
-  set_target_properties(treacle_${NAME} PROPERTIES EXPORT_NAME ${NAME} POSITION_INDEPENDENT_CODE ON DEFINE_SYMBOL "")
-  target_include_directories(treacle_${NAME} PUBLIC
-    $<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
-  target_compile_features(treacle_${NAME} PUBLIC cxx_std_20)
-  foreach(dependency IN LISTS ROOM_DEPENDS)
-    target_link_libraries(treacle_${NAME} PUBLIC treacle_${dependency})
-  endforeach()
-  target_link_libraries(treacle_${NAME} PRIVATE ${ROOM_PRIVATE})
-  treacle_compile_options(treacle_${NAME})
+  set_target_properties(treacle_${NAME} PROPERTIES EXPORT_NAME ${NAME})
+  if(TARGET treacle_${NAME}_loops)
+    target_link_libraries(treacle_${NAME} PUBLIC treacle_${NAME}_loops)
+  endif()
   set_property(GLOBAL APPEND PROPERTY TREACLE_ROOMS treacle_${NAME})
 endfunction()
+
+# The loops of a room, *_cpu.cpp, as a library of their own: one for the lowest processor, and one for each of
+# TREACLE_PROCESSORS in a directory of its name, where the dynamic loader looks first on a machine that has it (ld.so(8),
+# "glibc-hwcaps"). They call what is in the room's other library, which loads them.
+macro(treacle_loops NAME)
+  treacle_library(treacle_${NAME}_loops SHARED ${loops})
+  set_target_properties(treacle_${NAME}_loops PROPERTIES EXPORT_NAME ${NAME}_loops)
+  set_property(GLOBAL APPEND PROPERTY TREACLE_ROOMS treacle_${NAME}_loops)
+  foreach(processor IN LISTS TREACLE_PROCESSORS)
+    set(target treacle_${NAME}_loops_${processor})
+    treacle_library(${target} SHARED ${loops})
+    target_compile_options(${target} PRIVATE -march=${processor})
+    set_target_properties(${target} PROPERTIES OUTPUT_NAME treacle_${NAME}_loops
+      LIBRARY_OUTPUT_DIRECTORY ${CMAKE_LIBRARY_OUTPUT_DIRECTORY}/glibc-hwcaps/${processor})
+    set_property(GLOBAL APPEND PROPERTY TREACLE_LOOPS_OF_${processor} ${target})
+    add_dependencies(treacle_${NAME}_loops ${target})
+  endforeach()
+endmacro()
+
+# A library of a room; takes the room's arguments.
+macro(treacle_library TARGET)
+  add_library(${TARGET} ${ARGN})
+  set_target_properties(${TARGET} PROPERTIES POSITION_INDEPENDENT_CODE ON DEFINE_SYMBOL "")
+  target_include_directories(${TARGET} PUBLIC
+    $<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_compile_features(${TARGET} PUBLIC cxx_std_20)
+  foreach(dependency IN LISTS ROOM_DEPENDS)
+    target_link_libraries(${TARGET} PUBLIC treacle_${dependency})
+  endforeach()
+  target_link_libraries(${TARGET} PRIVATE ${ROOM_PRIVATE})
+  treacle_compile_options(${TARGET})
+endmacro()
 
 # treacle_kernels(NAME SOURCES foo.cu ... PRIVATE lib ...): adds CUDA sources to the library of a room.
 function(treacle_kernels NAME)
@@ -38,8 +71,10 @@ function(treacle_compile_options TARGET)
   # No -ffast-math: sums keep their order. The two flags only free sqrt from errno and traps, which lets it vectorise.
   target_compile_options(${TARGET} PRIVATE
     $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wshadow -fno-math-errno -fno-trapping-math>
-    $<$<COMPILE_LANGUAGE:CXX>:${TREACLE_NATIVE_OPTIONS}>
-    $<$<COMPILE_LANGUAGE:CXX>:-Wno-psabi>  # Lanes are wider than many a processor's registers, and never leave one build
+    $<$<COMPILE_LANGUAGE:CXX>:${TREACLE_PROCESSOR_OPTIONS}>
+    $<$<COMPILE_LANGUAGE:CXX>:-Wno-psabi>  # vectors may be wider than registers, and never leave one build
+    # g++ 12 warns about its own AVX-512 header.
+    $<$<AND:$<COMPILE_LANG_AND_ID:CXX,GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-uninitialized -Wno-maybe-uninitialized>
     $<$<AND:$<COMPILE_LANGUAGE:CXX>,$<BOOL:${TREACLE_WERROR}>>:-Werror>
     $<$<COMPILE_LANGUAGE:CUDA>:--expt-relaxed-constexpr --extended-lambda -Xcompiler=-Wall,-Wextra>  # std::span and loop bodies in device code
     $<$<AND:$<COMPILE_LANGUAGE:CUDA>,$<BOOL:${TREACLE_WERROR}>>:-Werror all-warnings>)

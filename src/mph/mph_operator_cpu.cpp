@@ -10,14 +10,12 @@ namespace {
 constexpr std::uint64_t prefetchDistance = 32;
 
 Lanes loadCoefficient(const Buffer<double>& values, std::uint64_t entry) {
-  Lanes lanes;
   __builtin_prefetch(values.data() + (entry + prefetchDistance) * clusterSize);
-  std::memcpy(&lanes, values.data() + entry * clusterSize, sizeof(lanes));
-  return lanes;
+  return load<Lanes>(values.data() + entry * clusterSize);
 }
 
-void storeCoefficient(Buffer<double>& values, std::uint64_t entry, Lanes lanes) {
-  std::memcpy(values.data() + entry * clusterSize, &lanes, sizeof(lanes));
+void storeCoefficient(Buffer<double>& values, std::uint64_t entry, const Lanes& lanes) {
+  store(lanes, values.data() + entry * clusterSize);
 }
 
 /// Calls body.operator()<Wraps>(): within the domain no pair has to look for its nearest images.

@@ -196,14 +196,14 @@ void evenAlongSurface(Context<Cpu>&, const MphPairs<D>& pairs, const SurfaceTerm
         if (fit[j].press == 0) continue;
         const PairLanes<D> pair(pairs, j, x, floor2);
         const Vec<D>& mj = normal[j];
-        Lanes normal2 = broadcast(terms.evenNoise), across = {}, closing = {};
+        Lanes normal2 = terms.evenNoise, across = {}, closing = {};
         for (int a = 0; a < D; ++a) {
           const Lanes n = mi[a] + mj[a];
           normal2 += n * n, across += n * pair.d[a], closing += pair.d[a] * (f[j][a] - fi[a]);
         }
         const Lanes unit2 = pair.r.inverse * pair.r.inverse, along = 1.0 - across * across * unit2 / normal2;
         const Lanes k = terms.evenFactor * terms.nearness(pair.r.square) * along * unit2 * closing;
-        for (int a = 0; a < D; ++a) sum[a] += (shares > 0.0 ? k : Lanes{}) * pair.d[a];
+        for (int a = 0; a < D; ++a) sum[a] += select(shares > 0.0, k, Lanes(0.0)) * pair.d[a];
       }
     storeLanes<D>(range, sum, y);
   });

@@ -6,7 +6,6 @@
 #include "treacle/search/cluster_lanes.hpp"
 
 #include <cstdint>
-#include <cstring>
 #include <initializer_list>
 
 namespace treacle {
@@ -16,21 +15,21 @@ template <int D>
 struct PackedElement : ElementBits<D, std::uint32_t> {
   using Bits = ElementBits<D, std::uint32_t>;
   using Bits::bits, Bits::lastBits, Bits::largest;
-  using Words = std::uint32_t __attribute__((vector_size(clusterSize * sizeof(std::uint32_t))));
-  using WordPair = std::uint32_t __attribute__((vector_size(2 * clusterSize * sizeof(std::uint32_t))));
-  using IntPair = std::int32_t __attribute__((vector_size(2 * clusterSize * sizeof(std::int32_t))));
-  using FloatPair = float __attribute__((vector_size(2 * clusterSize * sizeof(float))));
+  using Words = LanesOf<std::uint32_t>;
+  using WordPair = Simd<std::uint32_t, 2 * laneCount>;
+  using IntPair = Simd<std::int32_t, 2 * laneCount>;
+  using FloatPair = Simd<float, 2 * laneCount>;
 
   /// Eight elements `factor` v, which are at most `largest`.
   static Words pack(const VecLanes<D>& v, const Lanes& factor) {
-    using Ints = std::int32_t __attribute__((vector_size(clusterSize * sizeof(std::int32_t))));
     constexpr double rounder = 6755399441055744.0;  // 1.5 2^52: adding it leaves whole numbers
     Words packed = {};
     for (int k = 0; k < D; ++k) {
       const bool last = k == D - 1;
       const int own = last ? lastBits : bits;
       const Lanes rounded = (v[k] * factor * (1 / Bits::unitOf(k)) + rounder) - rounder;
-      packed |= (Words) __builtin_convertvector(rounded, Ints) << (32 - own) >> (last ? 32 - own : k * bits);
+      packed |=
+          convert<Words>(convert<LanesOf<std::int32_t>>(rounded)) << (32 - own) >> (last ? 32 - own : k * bits);
     }
     return packed;
   }
@@ -40,7 +39,7 @@ struct PackedElement : ElementBits<D, std::uint32_t> {
     constexpr std::uint32_t mask = ~std::uint32_t{0} << (32 - bits);
     for (int k = 0; k < D; ++k) {
       const WordPair field = k == D - 1 ? words << (32 - lastBits) : words << (k * bits) & mask;
-      v[k] = __builtin_convertvector((IntPair)field, FloatPair);
+      v[k] = convert<FloatPair>(convert<IntPair>(field));
     }
   }
   static constexpr double unitOfUnpacked = 1u << (32 - bits);
@@ -79,15 +78,13 @@ class PackedWriter {
     rows_.pairs[cluster_] = static_cast<std::uint32_t>(next_ / 2 - rows_.start[cluster_]);
   }
   void add(std::uint32_t column, const Words& words) {
-    std::uint32_t any = 0;
-    for (std::uint32_t lane = 0; lane < clusterSize; ++lane) any |= words[lane];
-    if (any) write(column, words);
+    if (any_of(words != 0u)) write(column, words);
   }
 
  private:
   void write(std::uint32_t column, const Words& words) {
     rows_.column[next_] = column;
-    std::memcpy(&rows_.word[next_++ * clusterSize], &words, sizeof(words));
+    store(words, &rows_.word[next_++ * clusterSize]);
   }
   PackedRows& rows_;
   std::uint32_t cluster_;
@@ -102,10 +99,8 @@ template <int D, class F>
   const std::uint32_t *at = &rows.column[2 * first], *words = &rows.word[2 * clusterSize * first];
   for (std::uint32_t p = 0, n = rows.pairs[cluster]; p < n; ++p, at += 2, words += 2 * clusterSize) {
     __builtin_prefetch(words + packedPrefetch * 2 * clusterSize);
-    typename Element::WordPair both;
-    std::memcpy(&both, words, sizeof(both));
     typename Element::FloatPair element[D];
-    Element::unpack(both, element);
+    Element::unpack(load<typename Element::WordPair>(words), element);
     f(at[0], at[1], element);
   }
 }

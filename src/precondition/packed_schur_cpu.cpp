@@ -10,22 +10,19 @@ namespace {
 
 template <int D>
 using FloatPair = typename PackedElement<D>::FloatPair;
-using Floats = LanesOf<float>;
 
 /// One number for the rows of each of two columns.
 template <int D>
 [[gnu::always_inline]] inline FloatPair<D> spread(float one, float other) {
-  const Floats a = {one, one, one, one, one, one, one, one},
-               b = {other, other, other, other, other, other, other, other};
-  return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+  return generate<FloatPair<D>>([&](auto k) { return k < laneCount ? one : other; });
 }
 
 /// Sum of both halves, times a factor, lane by lane.
 template <int D>
 void storeHalves(const FloatPair<D>& sum, float factor, float* at) {
-  const Floats total = factor * (__builtin_shufflevector(sum, sum, 0, 1, 2, 3, 4, 5, 6, 7) +
-                                 __builtin_shufflevector(sum, sum, 8, 9, 10, 11, 12, 13, 14, 15));
-  std::memcpy(at, &total, sizeof(total));
+  float both[2 * laneCount];
+  store(sum, both);
+  for (int lane = 0; lane < laneCount; ++lane) at[lane] = factor * (both[lane] + both[laneCount + lane]);
 }
 
 /// Products of C^T with u: the divergence of eight particles.

@@ -107,8 +107,8 @@ void ParticleProducts<D, T, Cpu>::sumGradients() {
     for (int k = 0; k < D; ++k) {
       const LanesOf<T> all = fluid[k] + walls[k];
       const std::size_t at = (std::size_t{D} * c + k) * clusterSize;
-      std::memcpy(&wallGradient_[at], &walls[k], sizeof(all));
-      std::memcpy(&gradient_[at], &all, sizeof(all));
+      store(walls[k], &wallGradient_[at]);
+      store(all, &gradient_[at]);
     }
   });
 }

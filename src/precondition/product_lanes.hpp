@@ -3,31 +3,16 @@
 #include "treacle/core/buffer.hpp"
 #include "treacle/mph/mph_lanes.hpp"
 
-#include <cstring>
 #include <limits>
 
 namespace treacle {
-
-/// Eight numbers of the preconditioner's precision.
-template <class T>
-struct LaneType;
-template <>
-struct LaneType<double> {
-  using type = Lanes;
-};
-template <>
-struct LaneType<float> {
-  using type = float __attribute__((vector_size(laneCount * sizeof(float))));
-};
-template <class T>
-using LanesOf = typename LaneType<T>::type;
 
 /// A particle meets itself at a 1/r so large that single precision may not hold its cube; the coefficient meets a
 /// difference of zero and may be zero, too.
 template <class T>
 inline void storeCoefficient(Buffer<T>& values, std::uint64_t entry, const Lanes& lanes) {
-  for (int k = 0; k < laneCount; ++k)
-    values[entry * clusterSize + k] = lanes[k] < std::numeric_limits<T>::max() ? static_cast<T>(lanes[k]) : T(0);
+  const Lanes kept = select(lanes < double{std::numeric_limits<T>::max()}, lanes, Lanes(0.0));
+  store(convert<LanesOf<T>>(kept), &values[entry * clusterSize]);
 }
 
 /// -w'/r of eight pairs, zero from `reach` h_p on.
@@ -35,15 +20,8 @@ template <int D>
 inline auto gradientWithin(const MphPairs<D>& pairs, double reach) {
   const double length = reach * pairs.terms.pressureRadius;
   return [&pairs, square = length * length](const PairDistance<Lanes>& r) {
-    return r.square < square ? pairs.terms.gradient(r) : Lanes{};
+    return select(r.square < square, pairs.terms.gradient(r), Lanes(0.0));
   };
-}
-
-template <class T>
-inline LanesOf<T> loadLanes(const T* values) {
-  LanesOf<T> lanes;
-  std::memcpy(&lanes, values, sizeof(lanes));
-  return lanes;
 }
 
 /// Entries ahead whose coefficients are asked for: the memory takes longer than the arithmetic in between.
@@ -58,7 +36,7 @@ class ClusterWalk {
   ClusterWalk(const MphPairs<D>& pairs, const ClusterListView& list, std::uint32_t cluster,
               const Vec<D, T>* position, const T* lanes)
       : range(list, cluster), pairs_(pairs), list_(list), cluster_(cluster), position_(position) {
-    for (int k = 0; k < D; ++k) x_[k] = loadLanes(lanes + (std::size_t{D} * cluster + k) * clusterSize);
+    for (int k = 0; k < D; ++k) x_[k] = load<LanesOf<T>>(lanes + (std::size_t{D} * cluster + k) * clusterSize);
   }
 
   /// Calls f(half, j, c, d) for the entries of a segment; c: the eight coefficients, d = x_j - x_i; `half`
@@ -81,7 +59,7 @@ class ClusterWalk {
       for (int k = 0; k < D; ++k) d[k] = position_[j][k] - x_[k];
       if constexpr (Wraps) moveToNearest(pairs_.grid, d);
       __builtin_prefetch(next + prefetchDistance * clusterSize);
-      f(half, j, loadLanes(next), d);
+      f(half, j, load<LanesOf<T>>(next), d);
       next += clusterSize;
     };
     std::size_t p = 0;
@@ -103,7 +81,7 @@ class ClusterWalk {
 template <class F>
 inline void forEachClusterOf(const ClusterListView& list, F&& f) {
   parallelFor(list.clusterCount(), parallelGrain / clusterSize,
-              [&](std::size_t c) { f(static_cast<std::uint32_t>(c)); });
+              [&] [[gnu::flatten]] (std::size_t c) { f(static_cast<std::uint32_t>(c)); });
 }
 
 /// f(lane) for the particles of a cluster, which are independent of each other: a full cluster as one vector.
@@ -137,10 +115,7 @@ struct VectorSums {
   T at[D][clusterSize];
 
   explicit VectorSums(const LanesOf<T> (&sum)[2][D]) {
-    for (int k = 0; k < D; ++k) {
-      const LanesOf<T> total = sum[0][k] + sum[1][k];
-      std::memcpy(at[k], &total, sizeof(total));
-    }
+    for (int k = 0; k < D; ++k) store(sum[0][k] + sum[1][k], at[k]);
   }
   Vec<D, T> operator[](std::size_t lane) const {
     Vec<D, T> v;
@@ -152,16 +127,13 @@ struct VectorSums {
 /// The vectors of a cluster's particles, lane by lane.
 template <int D, class T>
 inline void loadVectors(const ClusterRange& range, const Gathered<D, T>* u, LanesOf<T> (&lanes)[D]) {
-  T at[D][clusterSize];
-  if (range.count == clusterSize) {
-    const Gathered<D, T>* first = u + range.first;
-    for (std::size_t lane = 0; lane < clusterSize; ++lane)
-      for (int k = 0; k < D; ++k) at[k][lane] = first[lane][k];
-  } else {
-    for (std::uint32_t lane = 0; lane < clusterSize; ++lane)
-      for (int k = 0; k < D; ++k) at[k][lane] = u[range.particle(lane)][k];
-  }
-  for (int k = 0; k < D; ++k) lanes[k] = loadLanes(at[k]);
+  for (int k = 0; k < D; ++k)
+    if (range.count == clusterSize) {
+      const Gathered<D, T>* first = u + range.first;
+      lanes[k] = generate<LanesOf<T>>([&](auto lane) { return first[lane][k]; });
+    } else {
+      lanes[k] = generate<LanesOf<T>>([&](auto lane) { return u[range.particle(lane)][k]; });
+    }
 }
 
 /// Sum of g d.(u_j - u_i) over near fluid; walls at rest have no `own` velocities. The differences are formed pair

@@ -36,11 +36,8 @@ void ParticleProducts<D, T, Cpu>::renormalise() {
     for (Buffer<T>* gradient : {&gradient_, &wallGradient_}) {
       T* at = &(*gradient)[std::size_t{D} * clusterSize * c];
       LanesOf<T> v[D];
-      std::memcpy(v, at, sizeof(v));
-      for (int k = 0; k < D; ++k) {
-        const LanesOf<T> product = b.row(k, v);
-        std::memcpy(at + k * clusterSize, &product, sizeof(product));
-      }
+      for (int k = 0; k < D; ++k) v[k] = load<LanesOf<T>>(at + k * clusterSize);
+      for (int k = 0; k < D; ++k) store<T>(b.row(k, v), at + k * clusterSize);
     }
   });
 }

@@ -20,11 +20,8 @@ struct Reach {
 
   Reach(const CellGrid<D>& grid, const VecLanes<D>& x, double radius) : reach2(radius * radius * (1 + 1e-6)) {
     for (int k = 0; k < D; ++k) {
-      lo[k] = hi[k] = x[k][0];
-      for (int lane = 1; lane < laneCount; ++lane) {
-        lo[k] = std::min(lo[k], x[k][lane]);
-        hi[k] = std::max(hi[k], x[k][lane]);
-      }
+      lo[k] = hmin(x[k]);
+      hi[k] = hmax(x[k]);
       first[k] = static_cast<int>(std::floor((lo[k] - radius - grid.origin[k]) * grid.inverseEdge[k]));
       last[k] = static_cast<int>(std::floor((hi[k] + radius - grid.origin[k]) * grid.inverseEdge[k]));
       if (!grid.periodic[k]) {
@@ -91,9 +88,9 @@ struct ListBuilder {
         if (reach.wraps) moveToNearest(grid, d.c);
         Lanes r2 = {};
         for (int k = 0; k < D; ++k) r2 += d[k] * d[k];
-        if (anyAtMost(r2, near2))
+        if (any_of(r2 <= near2))
           sink(firstSegment, j);
-        else if (anyAtMost(r2, far2))
+        else if (any_of(r2 <= far2))
           sink(firstSegment + 1, j);
       }
     };

@@ -1,8 +1,9 @@
 #pragma once
 
 #include "treacle/core/block.hpp"
-
-#include <cstring>
+#ifndef __CUDACC__
+#include "treacle/core/lanes.hpp"
+#endif
 
 namespace treacle {
 
@@ -32,14 +33,12 @@ template <class T>
 class RowSum<2, T> {
  public:
   void add(const Block<2, T>& m, const Vec<2, T>& x) {
-    Four a;
-    std::memcpy(&a, &m, sizeof(a));
-    part_ += a * Four{x[0], x[1], x[0], x[1]};
+    part_ += load<Four>(m.a) * generate<Four>([&](auto k) { return x[k % 2]; });
   }
   Vec<2, T> total() const { return {part_[0] + part_[1], part_[2] + part_[3]}; }
 
  private:
-  typedef T Four __attribute__((vector_size(4 * sizeof(T))));
+  using Four = Simd<T, 4>;
   Four part_ = {};
 };
 #endif

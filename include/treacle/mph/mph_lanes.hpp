@@ -8,7 +8,7 @@ namespace treacle {
 
 /// Squares of distances below this fraction of h_p count as this fraction: a particle meets itself in its
 /// cluster's list, and two may coincide; their differences are then zero and so is every term, whatever 1/r.
-inline constexpr double tinyDistance2 = 1e-24;
+inline constexpr double tinyDistance2 = 1e-20;
 
 /// Where the particles of a cluster stand [m], and whether neighbours may be nearer across a periodic end.
 template <int D>
@@ -39,7 +39,7 @@ struct PairLanes {
   void measure(double floor2) {
     Lanes r2 = {};
     for (int k = 0; k < D; ++k) r2 += d[k] * d[k];
-    r.square = max(r2, broadcast(floor2));
+    r.square = max(r2, Lanes(floor2));
     r.inverse = inverseSqrt(r.square);
   }
 };
@@ -50,9 +50,10 @@ inline double distanceFloor2(const MphPairs<D>& pairs) {
 }
 
 /// Runs body(range, places, cluster) for every cluster of the list.
+/// `flatten`: sums stay in registers only where everything is inlined.
 template <int D, class F>
 inline void forEachCluster(const MphPairs<D>& pairs, const ClusterListView& list, F&& body) {
-  parallelFor(list.clusterCount(), parallelGrain / clusterSize, [&](std::size_t index) {
+  parallelFor(list.clusterCount(), parallelGrain / clusterSize, [&] [[gnu::flatten]] (std::size_t index) {
     const auto c = static_cast<std::uint32_t>(index);
     const ClusterRange range(list, c);
     body(range, ClusterPlaces<D>{loadLanes<D>(range, pairs.position), list.wraps[c] != 0}, c);
@@ -64,8 +65,8 @@ inline void forEachCluster(const MphPairs<D>& pairs, const ClusterListView& list
 template <int D>
 inline Lanes wallFactors(const MphPairs<D>& pairs, const ClusterRange& range, std::uint32_t j,
                          const VecLanes<D>& d) {
-  if (!pairs.wallSurface) return broadcast(1.0);
-  Lanes factors = broadcast(1.0);
+  Lanes factors = 1.0;
+  if (!pairs.wallSurface) return factors;
   const bool wall = j >= pairs.fluidCount;
   for (std::uint32_t lane = 0; lane < range.count; ++lane) {
     Vec<D> toOther;
@@ -80,10 +81,8 @@ inline Lanes wallFactors(const MphPairs<D>& pairs, const ClusterRange& range, st
 template <class LaneVector, int D, class T>
 inline SymmetricBlock<D, LaneVector> loadBlocks(const ClusterRange& range, const SymmetricBlock<D, T>* blocks) {
   SymmetricBlock<D, LaneVector> lanes;
-  for (std::uint32_t lane = 0; lane < clusterSize; ++lane) {
-    const SymmetricBlock<D, T>& one = blocks[range.particle(lane)];
-    for (int at = 0; at < one.size; ++at) lanes.a[at][lane] = one.a[at];
-  }
+  for (int at = 0; at < lanes.size; ++at)
+    lanes.a[at] = generate<LaneVector>([&](auto lane) { return blocks[range.particle(lane)].a[at]; });
   return lanes;
 }
 
@@ -104,23 +103,23 @@ class ViscosityLanes {
   ViscosityLanes(const MphPairs<D>& pairs, const ClusterRange& range) : pairs_(pairs) {
     const double factor = pairs.terms.viscousFactor;
     if (pairs.viscosityScale)
-      for (std::uint32_t lane = 0; lane < clusterSize; ++lane)
-        scale_[lane] = pairs.viscousSide(range.particle(lane)).scale;
+      scale_ = generate<Lanes>([&](auto lane) { return pairs.viscousSide(range.particle(lane)).scale; });
     if (pairs.isOneSubstance()) {
-      ofSubstance_[0] = broadcast(factor * pairs.onlyViscosity());
+      ofSubstance_[0] = factor * pairs.onlyViscosity();
       return;
     }
     for (std::uint32_t lane = 0; lane < clusterSize; ++lane)
       substance_[lane] = pairs.substance(range.particle(lane));
     for (int m = 0; m < pairs.materials.count; ++m)
-      for (std::uint32_t lane = 0; lane < clusterSize; ++lane)
-        ofSubstance_[m][lane] = factor * pairs.viscosity(substance_[lane], static_cast<Substance>(m));
+      ofSubstance_[m] = generate<Lanes>(
+          [&](auto lane) { return factor * pairs.viscosity(substance_[lane], static_cast<Substance>(m)); });
   }
   Lanes with(std::uint32_t j) const {
     const Lanes& unscaled = ofSubstance_[pairs_.substance(j)];
     if (!MayBeScaled || !pairs_.viscosityScale) return unscaled;
     const double scale = pairs_.viscousSide(j).scale;
-    const bool bothFluid = scale > 0 && scale_[0] > 0;  // a cluster is all fluid or all wall
+    const double own = scale_[0];
+    const bool bothFluid = scale > 0 && own > 0;  // a cluster is all fluid or all wall
     if (bothFluid && pairs_.ownViscosities && !pairs_.isOneSubstance()) return ofMaterials(j);
     return unscaled * ((bothFluid ? 0.5 : 1.0) * (scale_ + scale));
   }
@@ -128,10 +127,9 @@ class ViscosityLanes {
  private:
   Lanes ofMaterials(std::uint32_t j) const {
     const ViscousSide other = pairs_.viscousSide(j);
-    Lanes mu;
-    for (std::uint32_t lane = 0; lane < clusterSize; ++lane)
-      mu[lane] = pairs_.terms.viscousFactor * pairs_.viscosityOf({substance_[lane], scale_[lane]}, other);
-    return mu;
+    return generate<Lanes>([&](auto lane) {
+      return pairs_.terms.viscousFactor * pairs_.viscosityOf({substance_[lane], scale_[lane]}, other);
+    });
   }
 
   const MphPairs<D>& pairs_;
