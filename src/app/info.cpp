@@ -3,6 +3,7 @@
 #include "machine.hpp"
 #include "memory.hpp"
 #include "print.hpp"
+#include "treacle/core/vectors.hpp"
 #include "treacle/core/version.hpp"
 #include "treacle/io/free_surface.hpp"
 
@@ -21,6 +22,7 @@ void infoCommand() {
   print("build       {}, {}\n", build.buildType, build.compiler);
   print("native      {}\n", isOn(build.native) ? "yes" : "no");
   print("processor   {}\n", processorName());
+  print("vectors     {}\n", vectorInstructions());
   print("threads     {}\n", omp_get_max_threads());
   print("memory      {} available\n", bytesText(availableMemory()));
   print("CUDA        {}\n", compiled(isOn(build.cuda)));
