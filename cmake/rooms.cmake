@@ -14,6 +14,10 @@ function(treacle_room NAME)
   cmake_parse_arguments(ROOM "" "" "SOURCES;DEPENDS;PRIVATE" ${ARGN})
   set(loops ${ROOM_SOURCES})
   list(FILTER loops INCLUDE REGEX "_cpu\\.cpp$")
+  # g++ 12 warns about its own AVX-512 header, which they include.
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+    set_source_files_properties(${loops} PROPERTIES COMPILE_OPTIONS "-Wno-uninitialized;-Wno-maybe-uninitialized")
+  endif()
   if(TREACLE_PROCESSORS AND loops)
     list(FILTER ROOM_SOURCES EXCLUDE REGEX "_cpu\\.cpp$")
     treacle_loops(${NAME})
@@ -73,8 +77,6 @@ function(treacle_compile_options TARGET)
     $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wshadow -fno-math-errno -fno-trapping-math>
     $<$<COMPILE_LANGUAGE:CXX>:${TREACLE_PROCESSOR_OPTIONS}>
     $<$<COMPILE_LANGUAGE:CXX>:-Wno-psabi>  # vectors may be wider than registers, and never leave one build
-    # g++ 12 warns about its own AVX-512 header.
-    $<$<AND:$<COMPILE_LANG_AND_ID:CXX,GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-uninitialized -Wno-maybe-uninitialized>
     $<$<AND:$<COMPILE_LANGUAGE:CXX>,$<BOOL:${TREACLE_WERROR}>>:-Werror>
     $<$<COMPILE_LANGUAGE:CUDA>:--expt-relaxed-constexpr --extended-lambda -Xcompiler=-Wall,-Wextra>  # std::span and loop bodies in device code
     $<$<AND:$<COMPILE_LANGUAGE:CUDA>,$<BOOL:${TREACLE_WERROR}>>:-Werror all-warnings>)
