@@ -14,33 +14,38 @@ function(treacle_room NAME)
   cmake_parse_arguments(ROOM "" "" "SOURCES;DEPENDS;PRIVATE" ${ARGN})
   set(loops ${ROOM_SOURCES})
   list(FILTER loops INCLUDE REGEX "_cpu\\.cpp$")
-  # g++ 12 warns about its own AVX-512 header, which they include.
-  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
-    set_source_files_properties(${loops} PROPERTIES COMPILE_OPTIONS "-Wno-uninitialized;-Wno-maybe-uninitialized")
-  endif()
-  if(TREACLE_PROCESSORS AND loops)
-    list(FILTER ROOM_SOURCES EXCLUDE REGEX "_cpu\\.cpp$")
+  list(FILTER ROOM_SOURCES EXCLUDE REGEX "_cpu\\.cpp$")
+  if(loops)
     treacle_loops(${NAME})
   endif()
   treacle_library(treacle_${NAME} ${TREACLE_LIBRARY_KIND} ${ROOM_SOURCES})
   add_library(treacle::${NAME} ALIAS treacle_${NAME})
   set_target_properties(treacle_${NAME} PROPERTIES EXPORT_NAME ${NAME})
-  if(TARGET treacle_${NAME}_loops)
-    target_link_libraries(treacle_${NAME} PUBLIC treacle_${NAME}_loops)
-  endif()
   set_property(GLOBAL APPEND PROPERTY TREACLE_ROOMS treacle_${NAME})
+  if(loops AND TREACLE_PROCESSORS)
+    target_link_libraries(treacle_${NAME} PUBLIC treacle_${NAME}_loops)
+  elseif(loops)
+    target_sources(treacle_${NAME} PRIVATE $<TARGET_OBJECTS:treacle_${NAME}_loops>)
+  endif()
 endfunction()
 
-# The loops of a room, *_cpu.cpp, as a library of their own: one for the lowest processor, and one for each of
-# TREACLE_PROCESSORS in a directory of its name, where the dynamic loader looks first on a machine that has it (ld.so(8),
-# "glibc-hwcaps"). They call what is in the room's other library, which loads them.
+# The loops of a room, *_cpu.cpp, apart from its other sources. With TREACLE_PROCESSORS they are a library of their own:
+# one for the lowest processor, and one for each of TREACLE_PROCESSORS in a directory of its name, where the dynamic
+# loader looks first on a machine that has it (ld.so(8), "glibc-hwcaps"). They call what is in the room's other library,
+# which loads them.
 macro(treacle_loops NAME)
-  treacle_library(treacle_${NAME}_loops SHARED ${loops})
-  set_target_properties(treacle_${NAME}_loops PROPERTIES EXPORT_NAME ${NAME}_loops)
-  set_property(GLOBAL APPEND PROPERTY TREACLE_ROOMS treacle_${NAME}_loops)
+  if(NOT TREACLE_PROCESSORS)
+    treacle_library(treacle_${NAME}_loops OBJECT ${loops})
+  else()
+    treacle_library(treacle_${NAME}_loops SHARED ${loops})
+    set_target_properties(treacle_${NAME}_loops PROPERTIES EXPORT_NAME ${NAME}_loops)
+    set_property(GLOBAL APPEND PROPERTY TREACLE_ROOMS treacle_${NAME}_loops)
+  endif()
+  treacle_loop_options(treacle_${NAME}_loops)
   foreach(processor IN LISTS TREACLE_PROCESSORS)
     set(target treacle_${NAME}_loops_${processor})
     treacle_library(${target} SHARED ${loops})
+    treacle_loop_options(${target})
     target_compile_options(${target} PRIVATE -march=${processor})
     set_target_properties(${target} PROPERTIES OUTPUT_NAME treacle_${NAME}_loops
       LIBRARY_OUTPUT_DIRECTORY ${CMAKE_LIBRARY_OUTPUT_DIRECTORY}/glibc-hwcaps/${processor})
@@ -48,6 +53,13 @@ macro(treacle_loops NAME)
     add_dependencies(treacle_${NAME}_loops ${target})
   endforeach()
 endmacro()
+
+function(treacle_loop_options TARGET)
+  # g++ 12 warns about its own AVX-512 header, which they include.
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+    target_compile_options(${TARGET} PRIVATE -Wno-uninitialized -Wno-maybe-uninitialized)
+  endif()
+endfunction()
 
 # A library of a room; takes the room's arguments.
 macro(treacle_library TARGET)
@@ -63,10 +75,19 @@ macro(treacle_library TARGET)
   treacle_compile_options(${TARGET})
 endmacro()
 
-# treacle_kernels(NAME SOURCES foo.cu ... PRIVATE lib ...): adds CUDA sources to the library of a room.
+# treacle_kernels(NAME SOURCES foo.cu ... LARGE bar.cu ... PRIVATE lib ...): adds CUDA sources to the library of a room.
+# SOURCES compile in batches, as C++ does (CMake's own batches have no CUDA before 3.31); LARGE ones compile alone, so
+# that several cores share them.
 function(treacle_kernels NAME)
-  cmake_parse_arguments(KERNELS "" "" "SOURCES;PRIVATE" ${ARGN})
-  target_sources(treacle_${NAME} PRIVATE ${KERNELS_SOURCES})
+  cmake_parse_arguments(KERNELS "" "" "SOURCES;LARGE;PRIVATE" ${ARGN})
+  list(LENGTH KERNELS_SOURCES count)
+  if(CMAKE_UNITY_BUILD AND count GREATER 1)
+    list(TRANSFORM KERNELS_SOURCES REPLACE "(.+)" "#include \"${CMAKE_CURRENT_SOURCE_DIR}/\\1\"")
+    list(JOIN KERNELS_SOURCES "\n" text)
+    set(KERNELS_SOURCES ${CMAKE_CURRENT_BINARY_DIR}/${NAME}_batch.cu)
+    file(CONFIGURE OUTPUT ${KERNELS_SOURCES} CONTENT "${text}\n" @ONLY)
+  endif()
+  target_sources(treacle_${NAME} PRIVATE ${KERNELS_SOURCES} ${KERNELS_LARGE})
   target_include_directories(treacle_${NAME} PRIVATE ${CMAKE_SOURCE_DIR}/kernels)
   target_link_libraries(treacle_${NAME} PRIVATE ${TREACLE_CUDA_RUNTIME} ${KERNELS_PRIVATE})
 endfunction()
@@ -77,6 +98,7 @@ function(treacle_compile_options TARGET)
     $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wshadow -fno-math-errno -fno-trapping-math>
     $<$<COMPILE_LANGUAGE:CXX>:${TREACLE_PROCESSOR_OPTIONS}>
     $<$<COMPILE_LANGUAGE:CXX>:-Wno-psabi>  # vectors may be wider than registers, and never leave one build
+    $<$<AND:$<CXX_COMPILER_ID:GNU>,$<COMPILE_LANGUAGE:CXX>,$<BOOL:${CMAKE_UNITY_BUILD}>>:-Wno-subobject-linkage>  # takes a batch's sources for headers
     $<$<AND:$<COMPILE_LANGUAGE:CXX>,$<BOOL:${TREACLE_WERROR}>>:-Werror>
     $<$<COMPILE_LANGUAGE:CUDA>:--expt-relaxed-constexpr --extended-lambda -Xcompiler=-Wall,-Wextra>  # std::span and loop bodies in device code
     $<$<AND:$<COMPILE_LANGUAGE:CUDA>,$<BOOL:${TREACLE_WERROR}>>:-Werror all-warnings>)

@@ -9,7 +9,7 @@
 namespace treacle {
 namespace {
 
-constexpr int warpsPerBlock = 4;
+constexpr int coarseWarpsPerBlock = 4;
 constexpr std::uint64_t overflow = std::uint64_t{1} << 40;  // counted by a row with too many columns
 
 /// Adjacent buckets, itself included; one lane each. Single numbers may be of two or three dimensions.
@@ -19,10 +19,10 @@ constexpr int maxColumns = D == 2 ? 9 : 27;
 /// One warp per coarse row; reads the columns of its fine rows and their parents; writes the number of distinct
 /// parents to rowStart, or, with Fill, the parents, in the order in which they first appear. No atomics.
 template <int D, class T, bool Fill>
-__global__ void __launch_bounds__(32 * warpsPerBlock)
+__global__ void __launch_bounds__(32 * coarseWarpsPerBlock)
     patternKernel(BlockCsrView<D, T> fine, std::uint32_t rows, const std::uint32_t* members,
                   const std::uint32_t* parent, std::uint64_t* rowStart, std::uint32_t* column) {
-  const std::uint32_t row = blockIdx.x * warpsPerBlock + threadIdx.x / 32;
+  const std::uint32_t row = blockIdx.x * coarseWarpsPerBlock + threadIdx.x / 32;
   if (row >= rows) return;
   const unsigned lane = threadIdx.x % 32;
   std::uint32_t mine = ~0u, found = 0;  // lane n keeps the n-th distinct parent
@@ -73,7 +73,7 @@ void coarsen(Context<Cuda>& context, const BlockCsr<D, T, Cuda>& fine, std::span
   findParents(context, members, parent);
 
   const BlockCsrView<D, T> pattern = viewOf(fine);
-  const unsigned blocks = blocksFor(rows, warpsPerBlock), threads = 32 * warpsPerBlock;
+  const unsigned blocks = blocksFor(rows, coarseWarpsPerBlock), threads = 32 * coarseWarpsPerBlock;
   coarse.rowStart.resize(context, std::size_t{rows} + 1);
   std::uint32_t* none = nullptr;
   launch(context, blocks, threads, 0, patternKernel<D, T, false>, pattern, rows, members.data(), parent.data(),

@@ -13,7 +13,7 @@
 namespace treacle {
 namespace {
 
-constexpr int warpsPerBlock = 8;
+constexpr int scalarWarpsPerBlock = 8;
 
 /// What kernels write of a scalar matrix.
 struct ScalarView {
@@ -25,8 +25,9 @@ ScalarView viewOf(ScalarCsr& m) { return {m.start.data(), m.column.data(), m.val
 
 /// One warp per block row; reads its blocks; writes the scalar rows. No atomics.
 template <int B>
-__global__ void __launch_bounds__(32 * warpsPerBlock) scalarRowsKernel(BlockCsrView<B, double> a, ScalarView to) {
-  const std::uint32_t row = blockIdx.x * warpsPerBlock + threadIdx.x / 32, lane = threadIdx.x % 32;
+__global__ void __launch_bounds__(32 * scalarWarpsPerBlock)
+    scalarRowsKernel(BlockCsrView<B, double> a, ScalarView to) {
+  const std::uint32_t row = blockIdx.x * scalarWarpsPerBlock + threadIdx.x / 32, lane = threadIdx.x % 32;
   if (row >= a.rows) return;
   const std::uint64_t begin = a.rowStart[row];
   const auto length = static_cast<std::uint32_t>(a.rowStart[row + 1] - begin) * B;
@@ -107,7 +108,7 @@ struct GalerkinSpgemm<B>::Impl {
     const std::int64_t n = std::int64_t{B} * fine.rows();
     a.resize(context, n, n);
     a.reserveEntries(context, countable(fine.value.size() * (B * B)));
-    launch(context, blocksFor(fine.rows(), warpsPerBlock), 32 * warpsPerBlock, 0, scalarRowsKernel<B>,
+    launch(context, blocksFor(fine.rows(), scalarWarpsPerBlock), 32 * scalarWarpsPerBlock, 0, scalarRowsKernel<B>,
            treacle::viewOf(fine), viewOf(a));
   }
 

@@ -9,7 +9,7 @@
 namespace treacle {
 namespace {
 
-constexpr int warpsPerBlock = 4;
+constexpr int nodeWarpsPerBlock = 4;
 /// What a block gets without asking.
 constexpr std::size_t sharedBytes = 48 << 10;
 static_assert(hatGatherPlaces<3>(hatReach) * sizeof(Block<3>) <= sharedBytes, "not even one warp would fit");
@@ -17,9 +17,9 @@ static_assert(hatGatherPlaces<3>(hatReach) * sizeof(Block<3>) <= sharedBytes, "n
 /// One warp per node; reads which points around it are nodes; writes their number to rowStart, or, with Fill, the
 /// nodes in the order of the points. No atomics.
 template <int D, bool Fill>
-__global__ void __launch_bounds__(32 * warpsPerBlock)
+__global__ void __launch_bounds__(32 * nodeWarpsPerBlock)
     patternKernel(HatNodesView<D> nodes, int reach, std::uint64_t* rowStart, std::uint32_t* column) {
-  const std::uint32_t row = blockIdx.x * warpsPerBlock + threadIdx.x / 32;
+  const std::uint32_t row = blockIdx.x * nodeWarpsPerBlock + threadIdx.x / 32;
   if (row >= nodes.count) return;
   const unsigned lane = threadIdx.x % 32;
   const HatBox<D> box = HatBox<D>::around(nodes.lattice, nodes.pointOf(row), reach);
@@ -41,7 +41,7 @@ __global__ void __launch_bounds__(32 * warpsPerBlock)
 /// a time. Reads A and both sets of nodes; writes the coarse values. No atomics: the columns of a row are
 /// distinct.
 template <int D, int B>
-__global__ void __launch_bounds__(32 * warpsPerBlock)
+__global__ void __launch_bounds__(32 * nodeWarpsPerBlock)
     coarsenKernel(HatNodesView<D> fine, BlockCsrView<B, double> a, HatNodesView<D> coarse,
                   BlockCsrView<B, double> coarsePattern, double* coarseValue, int reach, unsigned places) {
   constexpr unsigned elements = B * B;
@@ -143,7 +143,7 @@ void coarserNodes(Context<Cuda>& context, const HatNodes<D, Cuda>& fine, HatNode
 
 template <int D, int B>
 void hatPattern(Context<Cuda>& context, const HatNodes<D, Cuda>& nodes, BlockCsr<B, double, Cuda>& a, int reach) {
-  const unsigned blocks = blocksFor(nodes.count(), warpsPerBlock), threads = 32 * warpsPerBlock;
+  const unsigned blocks = blocksFor(nodes.count(), nodeWarpsPerBlock), threads = 32 * nodeWarpsPerBlock;
   a.rowStart.resize(context, std::size_t{nodes.count()} + 1);
   std::uint32_t* none = nullptr;
   launch(context, blocks, threads, 0, patternKernel<D, false>, nodes.view(), reach, a.rowStart.data(), none);
@@ -160,7 +160,7 @@ void coarsenHats(Context<Cuda>& context, const HatNodes<D, Cuda>& fine, const Bl
   hatPattern<D>(context, coarse, coarseA, reach);
   const unsigned places = hatGatherPlaces<D>(reach);
   const std::size_t bytesPerWarp = places * sizeof(Block<B>);
-  const auto warps = static_cast<unsigned>(std::min<std::size_t>(warpsPerBlock, sharedBytes / bytesPerWarp));
+  const auto warps = static_cast<unsigned>(std::min<std::size_t>(nodeWarpsPerBlock, sharedBytes / bytesPerWarp));
   launch(context, blocksFor(coarse.count(), warps), 32 * warps, warps * bytesPerWarp, coarsenKernel<D, B>,
          fine.view(), viewOf(a), coarse.view(), viewOf(coarseA), reinterpret_cast<double*>(coarseA.value.data()),
          reach, places);

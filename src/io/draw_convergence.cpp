@@ -17,7 +17,7 @@ namespace {
 constexpr Rgb gridColor{0.90, 0.90, 0.91};
 
 /// The plot area in pixels, and the iterations and decades that it shows.
-struct Area {
+struct ResidualArea {
   double left, top, width, height;  // [px]
   double iterations = 1;
   int low = -1, high = 0;  // powers of ten
@@ -30,7 +30,7 @@ struct Area {
 /// Whether a logarithm shows it.
 bool isVisible(double residual) { return residual > 0 && std::isfinite(residual); }
 
-void setRange(Area& area, const std::vector<ConvergenceCurve>& curves) {
+void setRange(ResidualArea& area, const std::vector<ConvergenceCurve>& curves) {
   double least = 1, most = 0;
   for (const ConvergenceCurve& curve : curves) {
     area.iterations = std::max(area.iterations, static_cast<double>(curve.iterations()));
@@ -42,7 +42,7 @@ void setRange(Area& area, const std::vector<ConvergenceCurve>& curves) {
   area.low = std::min(area.high - 1, static_cast<int>(std::floor(std::log10(least) + 1e-9)));
 }
 
-void drawIterationAxis(Canvas& canvas, const Area& area, const Theme& theme) {
+void drawIterationAxis(Canvas& canvas, const ResidualArea& area, const Theme& theme) {
   const double bottom = area.top + area.height;
   for (const double tick : niceTicks(0, area.iterations, 9)) {
     if (tick != std::floor(tick)) continue;
@@ -55,7 +55,7 @@ void drawIterationAxis(Canvas& canvas, const Area& area, const Theme& theme) {
               theme.ink);
 }
 
-void drawResidualAxis(Canvas& canvas, const Area& area, const Theme& theme) {
+void drawResidualAxis(Canvas& canvas, const ResidualArea& area, const Theme& theme) {
   const int pitch = (area.high - area.low + 9) / 10;  // at most ten decades get a label
   for (int exponent = area.high; exponent >= area.low; exponent -= pitch) {
     const double y = area.at(0, std::pow(10.0, exponent)).y;
@@ -65,7 +65,8 @@ void drawResidualAxis(Canvas& canvas, const Area& area, const Theme& theme) {
   canvas.text({area.left, area.top - 17 * theme.unit}, "|r| / |b|", theme.letters(), Align::Left, theme.ink);
 }
 
-void drawCurve(Canvas& canvas, const Area& area, const ConvergenceCurve& curve, Rgb color, const Theme& theme) {
+void drawCurve(Canvas& canvas, const ResidualArea& area, const ConvergenceCurve& curve, Rgb color,
+               const Theme& theme) {
   std::vector<Point> points;
   for (std::size_t k = 0; k < curve.residuals.size(); ++k)
     if (isVisible(curve.residuals[k])) points.push_back(area.at(static_cast<double>(k), curve.residuals[k]));
@@ -95,7 +96,7 @@ void drawConvergence(const std::filesystem::path& path, const std::vector<Conver
   Canvas canvas(width, static_cast<int>(legend + line * static_cast<double>(curves.size())) + 20);
   drawHeading(canvas, title, remark, theme);
 
-  Area area{105, 105, width - 145.0, 425};
+  ResidualArea area{105, 105, width - 145.0, 425};
   setRange(area, curves);
   drawIterationAxis(canvas, area, theme);
   drawResidualAxis(canvas, area, theme);

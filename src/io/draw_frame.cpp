@@ -58,7 +58,7 @@ Range colorRange(const FieldValues& field, const PictureOptions& options) {
 }
 
 /// Farther from the origin than this positions are no multiples of a spacing, and a picture shows nothing.
-bool isDrawable(const Vec<3>& x, double spacing) {
+bool isInReach(const Vec<3>& x, double spacing) {
   const double farthest = std::min(1e15 * spacing, 1e150);  // [m]
   return std::all_of(x.v, x.v + 3, [&](double component) { return std::abs(component) <= farthest; });
 }
@@ -69,7 +69,7 @@ std::vector<Particle> drawable(const Frame& frame, double spacing, Color color) 
   std::vector<Particle> particles;
   particles.reserve(frame.position.size());
   for (std::size_t i = 0; i < frame.position.size(); ++i)
-    if (isDrawable(frame.position[i], spacing)) particles.push_back({frame.position[i], color(i)});
+    if (isInReach(frame.position[i], spacing)) particles.push_back({frame.position[i], color(i)});
   return particles;
 }
 

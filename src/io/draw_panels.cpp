@@ -15,7 +15,7 @@ namespace treacle {
 namespace {
 
 /// A plot area and what it shows: [left, left + width] x [top, top + height] in pixels.
-struct Area {
+struct PanelArea {
   double left, top, width, height;  // [px]
   double start, end, low, high;     // of the axes
 
@@ -24,7 +24,7 @@ struct Area {
   }
 };
 
-void setRange(Area& area, const Panel& panel) {
+void setRange(PanelArea& area, const Panel& panel) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   area.low = infinity, area.high = -infinity;
   for (const PanelCurve& curve : panel.curves)
@@ -41,7 +41,7 @@ void setRange(Area& area, const Panel& panel) {
 }
 
 /// At most about four points per pixel column, the extremes among them: long runs draw as fast as short ones.
-std::vector<Point> polyline(const Area& area, const PanelCurve& curve) {
+std::vector<Point> polyline(const PanelArea& area, const PanelCurve& curve) {
   const std::size_t columns = static_cast<std::size_t>(2 * area.width);
   const std::size_t group = std::max<std::size_t>(1, curve.x.size() / columns);
   std::vector<Point> values, points;
@@ -63,7 +63,8 @@ std::vector<Point> polyline(const Area& area, const PanelCurve& curve) {
   return points;
 }
 
-void drawCommonAxis(Canvas& canvas, const Area& area, const PanelAxis& axis, const Theme& theme, bool labels) {
+void drawCommonAxis(Canvas& canvas, const PanelArea& area, const PanelAxis& axis, const Theme& theme,
+                    bool labels) {
   const std::vector<double> ticks = niceTicks(area.start, area.end, 9);
   const double step = ticks.size() > 1 ? ticks[1] - ticks[0] : 0;
   const Scale scale = axis.unit == "m" ? lengthScale(area.end, step) : scaleFor(ticks, axis.unit);
@@ -79,7 +80,7 @@ void drawCommonAxis(Canvas& canvas, const Area& area, const PanelAxis& axis, con
                 fmt::format("{} [{}]", axis.label, scale.unit), theme.letters(), Align::Center, theme.ink);
 }
 
-void drawValueAxis(Canvas& canvas, const Area& area, const Panel& panel, const Theme& theme) {
+void drawValueAxis(Canvas& canvas, const PanelArea& area, const Panel& panel, const Theme& theme) {
   const std::vector<double> ticks = niceTicks(area.low, area.high, 4);
   const double step = ticks.size() > 1 ? ticks[1] - ticks[0] : 0;
   const Scale scale = panel.unit == "m" ? lengthScale(area.high, step) : scaleFor(ticks, panel.unit);
@@ -93,7 +94,7 @@ void drawValueAxis(Canvas& canvas, const Area& area, const Panel& panel, const T
               theme.ink);
 }
 
-void drawCurves(Canvas& canvas, const Area& area, const Panel& panel, const Theme& theme) {
+void drawCurves(Canvas& canvas, const PanelArea& area, const Panel& panel, const Theme& theme) {
   canvas.clip({area.left, area.top}, {area.width, area.height});
   for (const PanelCurve& curve : panel.curves) {
     const std::vector<Point> points = polyline(area, curve);
@@ -119,7 +120,7 @@ void drawPanels(const std::filesystem::path& path, const std::string& title, Pan
   Canvas canvas(width, height);
   drawHeading(canvas, title, "", theme);
   if (!(axis.high > axis.low)) axis.high = axis.low + std::max(std::abs(axis.low), 1e-30);
-  Area area{105, 0, width - 145.0, panelHeight, axis.low, axis.high, 0, 1};
+  PanelArea area{105, 0, width - 145.0, panelHeight, axis.low, axis.high, 0, 1};
   for (std::size_t k = 0; k < panels.size(); ++k) {
     area.top = first + pitch * double(k);
     setRange(area, panels[k]);

@@ -42,9 +42,9 @@ void findNormals(FreeSurface& surface) {
 }
 
 /// Means over the particles around each point, by how much of it they fill.
-void findFields(const Frame& fluid, const FillField& field, const std::vector<Vec<3, float>>& nodes,
+void findFields(const Frame& fluid, const FillField& field, const std::vector<Vec<3, float>>& positions,
                 FreeSurface& surface) {
-  const std::size_t count = nodes.size();
+  const std::size_t count = positions.size();
   const auto add = [&](std::string_view name, int components, bool has) {
     if (has) surface.fields.push_back({std::string(name), components, {}});
   };
@@ -61,7 +61,7 @@ void findFields(const Frame& fluid, const FillField& field, const std::vector<Ve
     double all = 0, most = 0;
     Vec<3> velocity{};
     std::array<double, std::size(scalars)> sums{};
-    field.forEachAround(converted<double>(nodes[p]), [&](std::uint32_t i, double weight) {
+    field.forEachAround(converted<double>(positions[p]), [&](std::uint32_t i, double weight) {
       all += weight;
       if (first > 0) velocity += weight * fluid.velocity[i];
       for (std::size_t k = 0; k < sources.size(); ++k) sums[k] += weight * (*sources[k])[i];

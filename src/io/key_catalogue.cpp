@@ -10,8 +10,6 @@
 namespace treacle {
 namespace {
 
-using nlohmann::json;
-
 /// Goes over the keys of one table in all of its variants.
 class Catalogue {
  public:
@@ -67,7 +65,7 @@ class Catalogue {
 
     void operator()(const Key& key, double x) { note(key, ValueKind::Number, ifHeld(key, x)); }
     void operator()(const Key& key, int x) {
-      note(key, ValueKind::Integer, key.bound.holds(x) ? json(x) : json());
+      note(key, ValueKind::Integer, key.bound.holds(x) ? nlohmann::json(x) : nlohmann::json());
     }
     void operator()(const Key& key, bool flag) { note(key, ValueKind::Flag, flag); }
     void operator()(const Key& key, const std::array<bool, 3>& flags) { note(key, ValueKind::Flags, flags[0]); }
@@ -111,14 +109,16 @@ class Catalogue {
     }
 
    private:
-    static json ifHeld(const Key& key, double x) { return key.bound.holds(x) ? json(x) : json(); }
-    json vector(const Vec<3>& x) const {
+    static nlohmann::json ifHeld(const Key& key, double x) {
+      return key.bound.holds(x) ? nlohmann::json(x) : nlohmann::json();
+    }
+    nlohmann::json vector(const Vec<3>& x) const {
       std::vector<double> components;
       for (int k = 0; k < dimensions; ++k) components.push_back(x[k]);
       return components;
     }
 
-    void note(const Key& key, ValueKind kind, json value = {}, std::vector<std::string> words = {},
+    void note(const Key& key, ValueKind kind, nlohmann::json value = {}, std::vector<std::string> words = {},
               std::string table = {}) {
       KeyTable& t = all.tables_[place];
       const KeyRow row{.name = std::string(key.name),

@@ -11,7 +11,7 @@
 namespace treacle {
 namespace {
 
-std::string listOf(const std::vector<std::string>& parts) { return fmt::format("{}", fmt::join(parts, ", ")); }
+std::string joined(const std::vector<std::string>& parts) { return fmt::format("{}", fmt::join(parts, ", ")); }
 
 std::string code(const std::string& text) { return '`' + text + '`'; }
 
@@ -52,7 +52,7 @@ std::string boundText(const Bound& b) {
 std::string wordList(const KeyRow& r) {
   std::vector<std::string> words;
   for (const std::string& word : r.words) words.push_back(code('"' + word + '"'));
-  return listOf(words);
+  return joined(words);
 }
 
 std::string valueText(const KeyRow& r, const std::vector<KeyTable>& all) {
@@ -152,7 +152,7 @@ std::string conditionText(const KeyTable& t, const std::vector<bool>& in, const 
   }
   std::vector<std::string> parts;
   for (const std::size_t a : axes) parts.push_back(axisText(t.axes[a], t.valuesOf(in, a), a));
-  return listOf(parts);
+  return joined(parts);
 }
 
 std::string textOf(const nlohmann::json& value) {
@@ -161,7 +161,7 @@ std::string textOf(const nlohmann::json& value) {
     std::vector<std::string> numbers;
     for (const auto& x : value) numbers.push_back(fmt::format("{}", x.get<double>()));
     const bool zero = std::ranges::all_of(value, [](const auto& x) { return x.template get<double>() == 0; });
-    return zero ? "zero" : code('[' + listOf(numbers) + ']');
+    return zero ? "zero" : code('[' + joined(numbers) + ']');
   }
   return value.is_array() ? "all" : code(value.dump());
 }

@@ -68,7 +68,7 @@ struct Mover {
   }
 };
 
-struct Held {
+struct HeldRestraint {
   const Restraint* restraint;
   Mover normal;
   std::vector<Mover> slides{};  // as those of the restraint
@@ -115,9 +115,9 @@ void restrain(const Vector& derivative, const std::vector<Restraint>& restraints
     m.rate = product(row, m.way);
     return m;
   };
-  std::vector<Held> held;
+  std::vector<HeldRestraint> held;
   for (const Restraint& r : restraints) {
-    Held h{&r, mover(r.row, r.push)};
+    HeldRestraint h{&r, mover(r.row, r.push)};
     if (!(h.normal.rate > 0)) continue;
     double rate2 = 0;
     for (const Restraint::Slide& s : r.slides) h.slides.push_back(mover(s.row, s.push));
@@ -130,7 +130,7 @@ void restrain(const Vector& derivative, const std::vector<Restraint>& restraints
   }
   for (int round = 0; round < mostRounds; ++round) {
     double moved = 0;
-    for (Held& h : held) {
+    for (HeldRestraint& h : held) {
       moved = std::max(moved, h.hold(x));
       moved = std::max(moved, h.slide(x));
     }

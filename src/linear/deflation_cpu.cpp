@@ -11,27 +11,6 @@
 namespace treacle {
 namespace {
 
-// As in vector_cpu.cpp, the loops over a chunk take bare pointers.
-
-template <class T>
-double dotChunk(const T* x, const double* y, std::size_t n) {
-  double sum = 0;
-#pragma omp simd reduction(+ : sum)
-  for (std::size_t i = 0; i < n; ++i) sum += double(x[i]) * y[i];
-  return sum;
-}
-
-template <class T, class U>
-void addChunk(double c, const T* x, U* y, std::size_t n) {
-#pragma omp simd
-  for (std::size_t i = 0; i < n; ++i) y[i] += static_cast<U>(c * x[i]);
-}
-
-void directionChunk(const double* z, double beta, double* p, std::size_t n) {
-#pragma omp simd
-  for (std::size_t i = 0; i < n; ++i) p[i] = z[i] + beta * p[i];
-}
-
 void narrowChunk(double c, const double* x, float* y, std::size_t n) {
 #pragma omp simd
   for (std::size_t i = 0; i < n; ++i) y[i] = static_cast<float>(c * x[i]);

@@ -24,4 +24,25 @@ double sumChunks(Context<Cpu>& context, std::size_t n, F&& body) {
   return sum;
 }
 
+// Loops over a chunk take bare pointers: through a closure's references g++ 12 turns them into gathers.
+
+template <class T>
+double dotChunk(const T* x, const double* y, std::size_t n) {
+  double sum = 0;
+#pragma omp simd reduction(+ : sum)
+  for (std::size_t i = 0; i < n; ++i) sum += double(x[i]) * y[i];
+  return sum;
+}
+
+template <class T, class U>
+void addChunk(double c, const T* x, U* y, std::size_t n) {
+#pragma omp simd
+  for (std::size_t i = 0; i < n; ++i) y[i] += static_cast<U>(c * x[i]);
+}
+
+inline void directionChunk(const double* z, double beta, double* p, std::size_t n) {
+#pragma omp simd
+  for (std::size_t i = 0; i < n; ++i) p[i] = z[i] + beta * p[i];
+}
+
 }  // namespace treacle

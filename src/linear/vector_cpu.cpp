@@ -8,15 +8,6 @@
 namespace treacle {
 namespace {
 
-// The loops over a chunk take bare pointers: through a closure's references g++ 12 turns them into gathers.
-
-double dotChunk(const double* x, const double* y, std::size_t n) {
-  double sum = 0;
-#pragma omp simd reduction(+ : sum)
-  for (std::size_t i = 0; i < n; ++i) sum += x[i] * y[i];
-  return sum;
-}
-
 double subtractFromChunk(const double* b, double* r, std::size_t n) {
   double sum = 0;
 #pragma omp simd reduction(+ : sum)
@@ -35,16 +26,6 @@ double subtractChunk(double alpha, const double* q, double* r, std::size_t n) {
     sum += r[i] * r[i];
   }
   return sum;
-}
-
-void addChunk(double alpha, const double* p, double* x, std::size_t n) {
-#pragma omp simd
-  for (std::size_t i = 0; i < n; ++i) x[i] += alpha * p[i];
-}
-
-void directionChunk(const double* z, double beta, double* p, std::size_t n) {
-#pragma omp simd
-  for (std::size_t i = 0; i < n; ++i) p[i] = z[i] + beta * p[i];
 }
 
 void roundChunk(double* p, std::size_t n) {

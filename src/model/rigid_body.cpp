@@ -1,5 +1,7 @@
 #include "treacle/model/rigid_body.hpp"
 
+#include "treacle/core/arithmetic.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -13,8 +15,6 @@ Quaternion product(const Quaternion& a, const Quaternion& b) {
   const Vec<3> w = a[0] * v + b[0] * u + cross(u, v);
   return {a[0] * b[0] - dot(u, v), w[0], w[1], w[2]};
 }
-
-double sinc(double x) { return x == 0 ? 1 : std::sin(x) / x; }
 
 }  // namespace
 

@@ -1,5 +1,6 @@
 #include "treacle/model/wall_motion.hpp"
 
+#include "treacle/core/arithmetic.hpp"
 #include "wall_turn.hpp"
 
 #include <algorithm>
@@ -8,8 +9,6 @@
 
 namespace treacle {
 namespace {
-
-double sinc(double x) { return x == 0 ? 1 : std::sin(x) / x; }
 
 /// A function of time as seen in a step, as what it changes by over the step's length; where that is zero over a
 /// millionth of a second about t, which is what a derivative is then taken for.

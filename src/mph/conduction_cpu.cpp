@@ -30,9 +30,6 @@ HeatTable HeatTable::make(const Case& c) {
 
 namespace {
 
-constexpr ListSegment fluidSegments[] = {ListSegment::NearFluid, ListSegment::FarFluid};
-constexpr ListSegment wallSegments[] = {ListSegment::NearWall, ListSegment::FarWall};
-
 /// kappa_ij of the fluid particles of a cluster with another one, over what the terms have for the pair.
 template <int D>
 class ConductivityLanes {

@@ -10,8 +10,6 @@
 namespace treacle {
 namespace {
 
-constexpr ListSegment fluidSegments[] = {ListSegment::NearFluid, ListSegment::FarFluid};
-
 /// Column indices of row i, ascending: i and the fluid particles that V or C Lambda C^T can couple to it.
 template <int D>
 void rowPattern(const MphPairs<D>& pairs, std::uint32_t i, std::vector<std::uint32_t>& columns) {

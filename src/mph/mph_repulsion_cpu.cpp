@@ -30,8 +30,7 @@ void addForce(const MphPairs<D>& pairs, const ClusterListView& list, std::span<c
 
 template <int D>
 void addRepulsion(Context<Cpu>&, const MphPairs<D>& pairs, double rate, std::span<Vec<D>> y) {
-  constexpr ListSegment segments[] = {ListSegment::NearFluid, ListSegment::NearWall};
-  addForce<D>(pairs, pairs.fluidList, segments, rate, y);
+  addForce<D>(pairs, pairs.fluidList, nearSegments, rate, y);
 }
 
 template <int D>

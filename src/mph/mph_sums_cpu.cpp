@@ -5,11 +5,6 @@
 namespace treacle {
 namespace {
 
-constexpr ListSegment nearSegments[] = {ListSegment::NearFluid, ListSegment::NearWall};
-constexpr ListSegment allSegments[] = {ListSegment::NearFluid, ListSegment::FarFluid, ListSegment::NearWall,
-                                       ListSegment::FarWall};
-constexpr ListSegment wallSegments[] = {ListSegment::NearWall, ListSegment::FarWall};
-
 /// C q / gradientFactor of the particles of a cluster of fluid.
 template <bool Renormalised, int D>
 VecLanes<D> pressureGradient(const MphPairs<D>& pairs, const ClusterRange& range, const ClusterPlaces<D>& x,

@@ -6,10 +6,6 @@
 namespace treacle {
 namespace {
 
-constexpr ListSegment fluidSegments[] = {ListSegment::NearFluid, ListSegment::FarFluid};
-constexpr ListSegment allSegments[] = {ListSegment::NearFluid, ListSegment::FarFluid, ListSegment::NearWall,
-                                       ListSegment::FarWall};
-
 /// f(i) for every i below `count`.
 template <class F>
 void forEachParticle(std::size_t count, F&& f) {

@@ -13,7 +13,7 @@ namespace {
 /// against figures measured with the authors' published program: same equations on the same lattice, so positions
 /// agree to the solver's tolerance, here to the five digits that are published, and iterations to the effect of
 /// rounding: measured within 0.07 % (mean) and 0.5 % (at the end), the first solve to the iteration.
-struct Outcome {
+struct IterationOutcome {
   int firstIterations = 0;
   double meanIterations = 0;
   int lastIterations = 0;
@@ -21,14 +21,14 @@ struct Outcome {
   Vec<3> centre{};  // of the fluid [m]
 };
 
-Outcome run(const std::string& file, const std::vector<std::string>& changes, int steps) {
+IterationOutcome run(const std::string& file, const std::vector<std::string>& changes, int steps) {
   std::vector<std::string> settings{"solver.krylov=cr", "solver.preconditioner=bucket-multigrid",
                                     "solver.precision=double", "solver.first_guess=last"};
   settings.insert(settings.end(), changes.begin(), changes.end());
   const Case c = readCase(std::string(TREACLE_CASES) + "/" + file, settings);
   std::vector<std::string> notes;
   AnySimulation simulation(c, createParticles(c, notes));
-  Outcome o;
+  IterationOutcome o;
   for (int k = 1; k <= steps; ++k) {
     const StepReport report = simulation.advance();
     if (k == 1) o.firstIterations = report.iterations;
@@ -51,7 +51,7 @@ void expectWithin(double value, double reference, double fraction, const char* w
 }
 
 TEST(PublishedDamBreak, TwoDimensionsX1) {
-  const Outcome o = run("published/dam-break-2d.toml", {}, 200);
+  const IterationOutcome o = run("published/dam-break-2d.toml", {}, 200);
   EXPECT_NEAR(o.firstIterations, 338, 1);
   expectWithin(o.meanIterations, 233, 0.01, "mean iterations");
   expectWithin(o.lastIterations, 243, 0.02, "iterations at 0.2 s");
@@ -62,7 +62,7 @@ TEST(PublishedDamBreak, TwoDimensionsX1) {
 }
 
 TEST(PublishedDamBreak, TwoDimensionsX1Half) {
-  const Outcome o = run("published/dam-break-2d.toml", {"resolution=2"}, 400);
+  const IterationOutcome o = run("published/dam-break-2d.toml", {"resolution=2"}, 400);
   EXPECT_NEAR(o.firstIterations, 377, 1);
   expectWithin(o.meanIterations, 258, 0.01, "mean iterations");
   expectWithin(o.lastIterations, 268, 0.02, "iterations at 0.2 s");
@@ -71,20 +71,20 @@ TEST(PublishedDamBreak, TwoDimensionsX1Half) {
 }
 
 TEST(PublishedDamBreak, UnpreconditionedX1) {
-  const Outcome o = run("published/dam-break-2d.toml", {"solver.preconditioner=none"}, 200);
+  const IterationOutcome o = run("published/dam-break-2d.toml", {"solver.preconditioner=none"}, 200);
   expectWithin(o.lastIterations, 415, 0.02, "iterations of plain CR at 0.2 s");
 }
 
 TEST(PublishedDamBreak, AsPrintedNeedsTheIterationsOfAnIndependentProgram) {
   // [K23 sect. 3.2] to the letter: two sweeps everywhere, four at the top, extended Jacobi on the particles.
-  const Outcome o =
+  const IterationOutcome o =
       run("published/dam-break-2d.toml",
           {"solver.multigrid.middle_sweeps=2", "solver.multigrid.particle_diagonal=extended-jacobi"}, 200);
   expectWithin(o.lastIterations, 251, 0.02, "iterations at 0.2 s");
 }
 
 TEST(PublishedDamBreak, ThreeDimensionsX2) {
-  const Outcome o = run("published/dam-break-3d.toml", {"resolution=0.5"}, 100);
+  const IterationOutcome o = run("published/dam-break-3d.toml", {"resolution=0.5"}, 100);
   EXPECT_NEAR(o.firstIterations, 395, 1);
   expectWithin(o.meanIterations, 284, 0.01, "mean iterations");
   expectWithin(o.lastIterations, 273, 0.02, "iterations at 0.2 s");

@@ -36,6 +36,8 @@ TREACLE_HD inline float inverseSqrt(float x) {
 
 TREACLE_HD inline double squareRoot(double x) { return sqrt(x); }
 
+inline double sinc(double x) { return x == 0 ? 1 : std::sin(x) / x; }
+
 /// x where it is positive, else zero; on a device without occupying the double-precision units.
 TREACLE_HD inline double positivePart(double x) {
 #ifdef __CUDA_ARCH__

@@ -21,6 +21,11 @@ inline constexpr std::uint32_t clusterSize = 8;
 /// The parts of a cluster's list, in this order.
 enum class ListSegment { NearFluid, FarFluid, NearWall, FarWall };
 inline constexpr int listSegments = 4;
+inline constexpr ListSegment allSegments[] = {ListSegment::NearFluid, ListSegment::FarFluid, ListSegment::NearWall,
+                                              ListSegment::FarWall};
+inline constexpr ListSegment nearSegments[] = {ListSegment::NearFluid, ListSegment::NearWall};
+inline constexpr ListSegment fluidSegments[] = {ListSegment::NearFluid, ListSegment::FarFluid};
+inline constexpr ListSegment wallSegments[] = {ListSegment::NearWall, ListSegment::FarWall};
 
 /// What pair sums read of the lists; host or device memory.
 struct ClusterListView {

@@ -14,12 +14,6 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
-/// A workshop with the small case in small.toml.
-Workshop& prepared(Workshop& shop) {
-  shop.put("small.toml", smallCase);
-  return shop;
-}
-
 nlohmann::json summaryOf(const Workshop& shop, const std::string& run) {
   return nlohmann::json::parse(shop.content(run + "/summary.json"));
 }
@@ -28,7 +22,7 @@ TEST(backend, cudaIsRefusedWhereItIsNotWithWhatIsMissing) {
   if (!cudaDevices().empty()) GTEST_SKIP() << "this machine has a CUDA device";
   Workshop shop;
   const bool compiled = shop.call("info").out.find("CUDA        compiled") != std::string::npos;
-  const Outcome outcome = prepared(shop).call("run small.toml --backend cuda");
+  const Outcome outcome = withSmallCase(shop).call("run small.toml --backend cuda");
   EXPECT_EQ(outcome.exitCode, 2);
   EXPECT_EQ(outcome.err,
             std::string("treacle: error: --backend cuda: ") +
@@ -46,7 +40,7 @@ TEST(backend, aDeviceWithoutCodeIsNamedWithWhatToBuild) {
 
 TEST(backend, cpuIsTakenWhereItIsAskedForOrAllThereIs) {
   Workshop shop;
-  prepared(shop);
+  withSmallCase(shop);
   ASSERT_EQ(shop.call("run small.toml --backend cpu --threads 1 --quiet").exitCode, 0);
   const auto summary = summaryOf(shop, "small-run");
   EXPECT_EQ(summary["backend"], "cpu");
@@ -58,7 +52,7 @@ TEST(backend, cpuIsTakenWhereItIsAskedForOrAllThereIs) {
 
 TEST(backend, settingsForGpusAreNotedOnTheCpu) {
   Workshop shop;
-  prepared(shop);
+  withSmallCase(shop);
   const std::string run = "run small.toml --backend cpu --threads 1 --set solver.preconditioner=bucket-multigrid ";
   const Outcome ranges = shop.call(run + "--set solver.neighbours=ranges -o ranges");
   EXPECT_EQ(ranges.exitCode, 0);
@@ -79,7 +73,7 @@ class OnDevice : public testing::TestWithParam<const char*> {};
 TEST_P(OnDevice, agreesWithTheCpu) {
   TREACLE_SKIP_WITHOUT_GPU();
   Workshop shop;
-  prepared(shop);
+  withSmallCase(shop);
   const std::string run = std::string("run small.toml --quiet --set output.precision=double ") + GetParam();
   ASSERT_EQ(shop.call(run + " --backend cpu -o cpu").exitCode, 0);
   const Outcome outcome = shop.call(run + " --backend cuda -o cuda");
@@ -105,7 +99,7 @@ INSTANTIATE_TEST_SUITE_P(Run, OnDevice,
 TEST(onDevice, autoTakesTheDevice) {
   TREACLE_SKIP_WITHOUT_GPU();
   Workshop shop;
-  ASSERT_EQ(prepared(shop).call("run small.toml --quiet").exitCode, 0);
+  ASSERT_EQ(withSmallCase(shop).call("run small.toml --quiet").exitCode, 0);
   EXPECT_EQ(summaryOf(shop, "small-run")["backend"], "cuda");
 }
 
@@ -113,7 +107,7 @@ TEST(onDevice, aResumedRunGivesTheSameBits) {
   TREACLE_SKIP_WITHOUT_GPU();
   Workshop shop;
   const std::string run = "run small.toml --quiet --backend cuda --set output.precision=double ";
-  ASSERT_EQ(prepared(shop).call(run + "-o whole --end-time 8e-3").exitCode, 0);
+  ASSERT_EQ(withSmallCase(shop).call(run + "-o whole --end-time 8e-3").exitCode, 0);
   ASSERT_EQ(shop.call(run + "-o half --end-time 4e-3").exitCode, 0);
   ASSERT_EQ(shop.call(run + "-o resumed --end-time 8e-3 --resume half/checkpoint.h5").exitCode, 0);
   EXPECT_EQ(shop.content("whole/checkpoint.h5"), shop.content("resumed/checkpoint.h5"));

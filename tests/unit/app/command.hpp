@@ -1,5 +1,6 @@
 #pragma once
 
+#include "support/replaced.hpp"
 #include "support/temporary_directory.hpp"
 
 #include <sys/wait.h>
@@ -79,14 +80,13 @@ end = 2e-3
 interval = 1e-3
 )";
 
-/// The text with one occurrence of `from` replaced.
-inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const std::size_t at = text.find(from);
-  if (at == text.npos) throw std::logic_error("not in the text: " + from);
-  return text.replace(at, from.size(), to);
+/// A workshop with the small case in small.toml.
+inline Workshop& withSmallCase(Workshop& shop) {
+  shop.put("small.toml", smallCase);
+  return shop;
 }
 
-/// The same for ISPH.
+/// The small case for ISPH.
 inline const std::string smallIsphCase =
     replaced(smallCase, "bulk_viscosity = 1e4\nbulk_modulus = 1e6\n", "\n[method]\nname = \"isph\"\n");
 

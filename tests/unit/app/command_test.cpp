@@ -23,12 +23,6 @@ using testing::StartsWith;
 
 constexpr std::string_view pngSignature = "\x89PNG";
 
-/// A workshop with the small case in small.toml.
-Workshop& prepared(Workshop& shop) {
-  shop.put("small.toml", smallCase);
-  return shop;
-}
-
 TEST(helpAndVersion, documentTheExitCodes) {
   Workshop shop;
   const Outcome help = shop.call("--help");
@@ -49,7 +43,8 @@ TEST(info, namesVersionAndThreads) {
 
 TEST(check, printsCountsNumbersAndCaseThatCanBeRunAgain) {
   Workshop shop;
-  const Outcome outcome = prepared(shop).call("check small.toml --set resolution=2 --set 'column.velocity=[1,0]'");
+  const Outcome outcome =
+      withSmallCase(shop).call("check small.toml --set resolution=2 --set 'column.velocity=[1,0]'");
   EXPECT_EQ(outcome.exitCode, 0);
   EXPECT_THAT(outcome.err, IsEmpty());
   EXPECT_THAT(outcome.out, HasSubstr("# particles: 144 fluid, 256 wall\n"));
@@ -73,7 +68,8 @@ TEST(check, printsCountsNumbersAndCaseThatCanBeRunAgain) {
 
 TEST(check, countsTheLeastStepsWhereTheyVary) {
   Workshop shop;
-  const Outcome outcome = prepared(shop).call("check small.toml --set time.courant=0.1 --set time.step=1.5e-3");
+  const Outcome outcome =
+      withSmallCase(shop).call("check small.toml --set time.courant=0.1 --set time.step=1.5e-3");
   EXPECT_EQ(outcome.exitCode, 0);
   EXPECT_THAT(outcome.err, IsEmpty());
   EXPECT_THAT(outcome.out, HasSubstr("# steps: 2 or more\n"));
@@ -82,7 +78,7 @@ TEST(check, countsTheLeastStepsWhereTheyVary) {
 
 TEST(check, saysWhatAutomaticStepsMayBe) {
   Workshop shop;
-  const Outcome outcome = prepared(shop).call("check small.toml --set time.step=auto");
+  const Outcome outcome = withSmallCase(shop).call("check small.toml --set time.step=auto");
   EXPECT_EQ(outcome.exitCode, 0);
   EXPECT_THAT(outcome.err, IsEmpty());
   EXPECT_THAT(
@@ -95,7 +91,7 @@ TEST(check, saysWhatAutomaticStepsMayBe) {
 
 TEST(check, printsNumbersOfFluidsAndAdvice) {
   Workshop shop;
-  const Outcome outcome = prepared(shop).call("check small.toml");
+  const Outcome outcome = withSmallCase(shop).call("check small.toml");
   EXPECT_EQ(outcome.exitCode, 0);
   EXPECT_THAT(outcome.out,
               HasSubstr("# resolution: 6 particles across the shortest side of the fluid, 0.006 m; "));
@@ -115,7 +111,7 @@ TEST(check, printsNumbersOfFluidsAndAdvice) {
 
 TEST(check, estimatesTimeByRealSteps) {
   Workshop shop;
-  const Outcome whole = prepared(shop).call("check small.toml --estimate --backend cpu --threads 1");
+  const Outcome whole = withSmallCase(shop).call("check small.toml --estimate --backend cpu --threads 1");
   EXPECT_EQ(whole.exitCode, 0) << whole.err;
   EXPECT_THAT(whole.out, HasSubstr("s, without output; these are all 2 steps of the case\n"));
   const Outcome longer = shop.call("check small.toml --estimate --backend cpu --threads 1 --set time.end=1");
@@ -159,7 +155,7 @@ TEST(man, hasEveryCommandAndOption) {
 
 TEST(run, automaticStepsMeetFramesAndEnd) {
   Workshop shop;
-  const Outcome outcome = prepared(shop).call(
+  const Outcome outcome = withSmallCase(shop).call(
       "run small.toml --threads 1 --set time.step=auto --set output.interval=3e-3 --end-time 1e-2");
   ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
   EXPECT_THAT(outcome.err, IsEmpty());
@@ -188,7 +184,7 @@ TEST(run, automaticStepsMeetFramesAndEnd) {
 
 TEST(run, leavesAllFiles) {
   Workshop shop;
-  const Outcome outcome = prepared(shop).call("run small.toml --threads 1 -o out/here --end-time 3e-3");
+  const Outcome outcome = withSmallCase(shop).call("run small.toml --threads 1 -o out/here --end-time 3e-3");
   EXPECT_EQ(outcome.exitCode, 0);
   EXPECT_THAT(outcome.err, IsEmpty());
   EXPECT_THAT(outcome.out,
@@ -228,7 +224,7 @@ TEST(run, leavesAllFiles) {
 
 TEST(run, historyHasTheTimingsThatWereAskedFor) {
   Workshop shop;
-  ASSERT_EQ(prepared(shop).call("run small.toml --threads 1 --quiet --timings").exitCode, 0);
+  ASSERT_EQ(withSmallCase(shop).call("run small.toml --threads 1 --quiet --timings").exitCode, 0);
   const auto rows = readHistory(shop / "small-run/history.csv");
   ASSERT_EQ(rows.size(), 2u);
   for (const HistoryRow& row : rows) {
@@ -246,7 +242,7 @@ TEST(run, historyHasTheTimingsThatWereAskedFor) {
 TEST(run, framesFollowSimulationTime) {
   Workshop shop;
   // Steps of 0.7 ms; the multiples of 1 ms fall to steps 1 (0.7), 3 (2.1), 4 (2.8); then the end, step 5.
-  prepared(shop).call("run small.toml --threads 1 --set time.step=7e-4 --end-time 3.5e-3");
+  withSmallCase(shop).call("run small.toml --threads 1 --set time.step=7e-4 --end-time 3.5e-3");
   const RunDirectory run = RunDirectory::open(shop / "small-run");
   std::vector<int> steps;
   for (std::size_t k = 0; k < run.frameCount(); ++k)
@@ -259,7 +255,7 @@ TEST(run, framesFollowSimulationTime) {
 TEST(run, stepsFollowTheCourantNumberAndMeetTheEnd) {
   Workshop shop;
   const Outcome outcome =
-      prepared(shop).call("run small.toml --threads 1 --set time.courant=0.002 --end-time 4e-3");
+      withSmallCase(shop).call("run small.toml --threads 1 --set time.courant=0.002 --end-time 4e-3");
   ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
   EXPECT_THAT(outcome.err, IsEmpty());
   EXPECT_THAT(outcome.out,
@@ -287,7 +283,7 @@ TEST(run, stepsFollowTheCourantNumberAndMeetTheEnd) {
 
 TEST(run, quietPrintsNothing) {
   Workshop shop;
-  const Outcome outcome = prepared(shop).call("run small.toml --threads 1 --quiet");
+  const Outcome outcome = withSmallCase(shop).call("run small.toml --threads 1 --quiet");
   EXPECT_EQ(outcome.exitCode, 0);
   EXPECT_THAT(outcome.out, IsEmpty());
   EXPECT_THAT(outcome.err, IsEmpty());
@@ -295,8 +291,9 @@ TEST(run, quietPrintsNothing) {
 
 TEST(run, resolvedCaseGivesTheSameRun) {
   Workshop shop;
-  ASSERT_EQ(prepared(shop).call("run small.toml --threads 1 --set resolution=2 --set syrup.density=1200").exitCode,
-            0);
+  ASSERT_EQ(
+      withSmallCase(shop).call("run small.toml --threads 1 --set resolution=2 --set syrup.density=1200").exitCode,
+      0);
   ASSERT_EQ(shop.call("run small-run/case.toml --threads 1 -o again").exitCode, 0);
   for (const char* frame : {"fluid_000000.vtp", "fluid_000002.vtp", "walls_000002.vtp"})
     EXPECT_EQ(shop.content(std::string("small-run/frames/") + frame),
@@ -305,7 +302,7 @@ TEST(run, resolvedCaseGivesTheSameRun) {
 
 TEST(run, withoutConvergenceFailsAndKeepsTheLastGoodState) {
   Workshop shop;
-  const Outcome outcome = prepared(shop).call("run small.toml --threads 1 --set solver.max_iterations=3");
+  const Outcome outcome = withSmallCase(shop).call("run small.toml --threads 1 --set solver.max_iterations=3");
   EXPECT_EQ(outcome.exitCode, 3);
   EXPECT_THAT(outcome.err, StartsWith("treacle: error: after step 0 (t = 0 s): "));
   EXPECT_THAT(outcome.err, HasSubstr("The last state written is frame 0 (t = 0 s) in small-run"));
@@ -319,7 +316,7 @@ TEST(run, withoutConvergenceFailsAndKeepsTheLastGoodState) {
 TEST(run, warnsOnceOfFallbacksAndCountsThem) {
   Workshop shop;
   const Outcome outcome =
-      prepared(shop).call("run small.toml --threads 1 --set solver.projected.iteration_bound=2 -o fallbacks");
+      withSmallCase(shop).call("run small.toml --threads 1 --set solver.projected.iteration_bound=2 -o fallbacks");
   EXPECT_EQ(outcome.exitCode, 0);
   const std::string warning = "step 1: the linear solver had to fall back after cg, projected-multigrid, mixed";
   EXPECT_THAT(outcome.err, StartsWith("treacle: warning: " + warning));
@@ -338,7 +335,7 @@ TEST(run, warnsOnceOfFallbacksAndCountsThem) {
 TEST(run, particleThatLeavesOpenDomainEndsTheRun) {
   Workshop shop;
   const Outcome outcome =
-      prepared(shop).call("run small.toml --threads 1 --end-time 0.02 --set 'column.velocity=[0,9]'");
+      withSmallCase(shop).call("run small.toml --threads 1 --end-time 0.02 --set 'column.velocity=[0,9]'");
   EXPECT_EQ(outcome.exitCode, 3);
   EXPECT_THAT(outcome.err, HasSubstr("domain"));
   const RunDirectory run = RunDirectory::open(shop / "small-run");
@@ -354,7 +351,7 @@ TEST(run, stopsOnSignalAfterTheStepWithLastFrameCheckpointAndSummary) {
                                    "while [ ! -s small-run/history.csv ]; do sleep 0.05; done; sleep 0.3; "
                                    "kill -") +
                                signal + " $run; wait $run";
-    const Outcome outcome = prepared(shop).call(script);
+    const Outcome outcome = withSmallCase(shop).call(script);
     EXPECT_EQ(outcome.exitCode, 3);
     const std::string summary = shop.content("small-run/summary.json");
     EXPECT_THAT(summary, HasSubstr("\"status\": \"failed\""));
@@ -369,7 +366,7 @@ TEST(run, stopsOnSignalAfterTheStepWithLastFrameCheckpointAndSummary) {
 
 TEST(run, goesOnWhereTheTerminalIsGoneAndHangUpsAreIgnored) {
   Workshop shop;
-  const Outcome outcome = prepared(shop).call(
+  const Outcome outcome = withSmallCase(shop).call(
       "run small.toml --threads 1 --quiet --end-time 30 & run=$!; "
       "while [ ! -s small-run/history.csv ]; do sleep 0.05; done; kill -HUP $run; sleep 0.3; kill -TERM $run; "
       "wait $run",
@@ -380,7 +377,7 @@ TEST(run, goesOnWhereTheTerminalIsGoneAndHangUpsAreIgnored) {
 
 TEST(run, whoseHistoryIsRemovedFailsAndKeepsTheLastGoodState) {
   Workshop shop;
-  const Outcome outcome = prepared(shop).call(
+  const Outcome outcome = withSmallCase(shop).call(
       "run small.toml --threads 1 --quiet --end-time 30 & run=$!; "
       "while [ ! -s small-run/history.csv ]; do sleep 0.05; done; rm small-run/history.csv; wait $run");
   EXPECT_EQ(outcome.exitCode, 3);
@@ -390,7 +387,7 @@ TEST(run, whoseHistoryIsRemovedFailsAndKeepsTheLastGoodState) {
 
 TEST(run, leavesTheDirectoryOfAnotherOneAlone) {
   Workshop shop;
-  const Outcome outcome = prepared(shop).call(
+  const Outcome outcome = withSmallCase(shop).call(
       "run small.toml --threads 1 --quiet --end-time 30 & run=$!; "
       "while [ ! -s small-run/history.csv ]; do sleep 0.05; done; "
       "'" TREACLE_BINARY "' run small.toml --threads 1 --force; echo code $?; kill -TERM $run; wait $run");
@@ -405,7 +402,7 @@ TEST(run, needsThreadsThatTheMachineStarts) {
   GTEST_SKIP() << "the address sanitizer needs more address space than the limit of this test";
 #endif
   Workshop shop;
-  Outcome outcome = prepared(shop).call("run small.toml --threads 300", "ulimit -s 8192; ulimit -v 1000000;");
+  Outcome outcome = withSmallCase(shop).call("run small.toml --threads 300", "ulimit -s 8192; ulimit -v 1000000;");
   EXPECT_EQ(outcome.exitCode, 2);
   EXPECT_THAT(outcome.err, ContainsRegex("--threads 300: this machine starts no more than [0-9]+ threads"));
   for (const char* command : {"run small.toml", "check small.toml", "compare a b"}) {
@@ -420,7 +417,8 @@ TEST(check, warnsWhereThisMachineHasNotTheMemory) {
   GTEST_SKIP() << "the address sanitizer needs more address space than the limit of this test";
 #endif
   Workshop shop;
-  const Outcome outcome = prepared(shop).call("check small.toml --set domain.max=[30,30]", "ulimit -v 800000;");
+  const Outcome outcome =
+      withSmallCase(shop).call("check small.toml --set domain.max=[30,30]", "ulimit -v 800000;");
   EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
   EXPECT_THAT(outcome.err, ContainsRegex("warning: 100 particles and 3.* search cells of the domain need about "));
 }
@@ -431,8 +429,8 @@ TEST(run, caseThatDoesNotFitIntoMemoryIsRefused) {
 #endif
   Workshop shop;
   // 3.8 million particles; the limit leaves room to create them, not to run them.
-  const Outcome outcome =
-      prepared(shop).call("run small.toml --backend cpu --threads 1 --set resolution=200", "ulimit -v 1500000;");
+  const Outcome outcome = withSmallCase(shop).call("run small.toml --backend cpu --threads 1 --set resolution=200",
+                                                   "ulimit -v 1500000;");
   EXPECT_EQ(outcome.exitCode, 3);
   EXPECT_THAT(outcome.err, HasSubstr("particles need about "));
   EXPECT_THAT(outcome.err, HasSubstr("available"));
@@ -441,7 +439,7 @@ TEST(run, caseThatDoesNotFitIntoMemoryIsRefused) {
 
 TEST(plot, drawsFramesAndHistory) {
   Workshop shop;
-  ASSERT_EQ(prepared(shop).call("run small.toml --threads 1 --quiet").exitCode, 0);
+  ASSERT_EQ(withSmallCase(shop).call("run small.toml --threads 1 --quiet").exitCode, 0);
   EXPECT_EQ(shop.call("plot small-run --frame 1 --field pressure").out, "small-run/frames/fluid_000001.png\n");
   EXPECT_THAT(shop.content("small-run/frames/fluid_000001.png"), StartsWith(std::string(pngSignature)));
   EXPECT_EQ(shop.call("plot small-run -o last.png").exitCode, 0);

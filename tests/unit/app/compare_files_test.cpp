@@ -15,7 +15,7 @@ using testing::IsEmpty;
 using testing::StartsWith;
 
 /// A workshop with a run of the small case, frames at 0, 0.001 and 0.002 s, in double precision.
-Workshop& prepared(Workshop& shop) {
+Workshop& withDoubleRun(Workshop& shop) {
   shop.put("small.toml", smallCase);
   EXPECT_EQ(shop.call("run small.toml --quiet --threads 1 -o run --set 'output.precision=\"double\"'").exitCode,
             0);
@@ -40,7 +40,7 @@ constexpr const char* allFields = " --field position --field velocity --field pr
 
 TEST(compareFiles, aFrameAsTableAgreesWithItsRunToTheBit) {
   Workshop shop;
-  const Frame frame = frameOf(prepared(shop), 2);
+  const Frame frame = frameOf(withDoubleRun(shop), 2);
   for (const bool withIds : {true, false}) {
     shop.put("table.csv", tableOf(frame, withIds));
     for (const char* sides : {"table.csv run", "run table.csv", "table.csv table.csv"}) {
@@ -54,7 +54,7 @@ TEST(compareFiles, aFrameAsTableAgreesWithItsRunToTheBit) {
 
 TEST(compareFiles, byIdShowsTheTableOfFrames) {
   Workshop shop;
-  shop.put("table.csv", tableOf(frameOf(prepared(shop), 1), true));
+  shop.put("table.csv", tableOf(frameOf(withDoubleRun(shop), 1), true));
   const Outcome outcome = shop.call("compare table.csv run --time 0.0012 --csv out.csv");
   EXPECT_EQ(outcome.exitCode, 0);
   EXPECT_THAT(outcome.out, StartsWith("A: table.csv, 36 particles\nB: run/frames/fluid_000001.vtp, 36 "
@@ -66,7 +66,7 @@ TEST(compareFiles, byIdShowsTheTableOfFrames) {
 
 TEST(compareFiles, setsShowTheirMeasures) {
   Workshop shop;
-  Frame frame = frameOf(prepared(shop), 2);
+  Frame frame = frameOf(withDoubleRun(shop), 2);
   for (Vec<3>& x : frame.position) x[0] += 1e-4;
   frame.position.push_back({{3e-3, 7.5e-3}}), frame.velocity.push_back({});
   frame.pressure.push_back(0), frame.numberDensity.push_back(1);
@@ -86,7 +86,7 @@ TEST(compareFiles, setsShowTheirMeasures) {
 
 TEST(compareFiles, timeChoosesTheNearestFrame) {
   Workshop shop;
-  shop.put("table.csv", tableOf(frameOf(prepared(shop), 1), false));
+  shop.put("table.csv", tableOf(frameOf(withDoubleRun(shop), 1), false));
   EXPECT_EQ(shop.call("compare table.csv run --bound 0").exitCode, 1);  // the last frame
   for (const char* time : {"0.001", "0.0006", "0.0014"})
     EXPECT_EQ(shop.call(fmt::format("compare run table.csv --bound 0 --time {}", time)).exitCode, 0) << time;
@@ -95,7 +95,7 @@ TEST(compareFiles, timeChoosesTheNearestFrame) {
 
 TEST(compareFiles, whatCannotBeComparedIsBadInput) {
   Workshop shop;
-  const Frame frame = frameOf(prepared(shop), 2);
+  const Frame frame = frameOf(withDoubleRun(shop), 2);
   shop.put("table.csv", tableOf(frame, true));
   const auto expectRefused = [&](const std::string& arguments, const std::string& message) {
     const Outcome outcome = shop.call("compare " + arguments);

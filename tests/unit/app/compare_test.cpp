@@ -14,7 +14,7 @@ using testing::IsEmpty;
 using testing::StartsWith;
 
 /// A workshop with a run of the small case in run-b.
-Workshop& prepared(Workshop& shop) {
+Workshop& withRunB(Workshop& shop) {
   shop.put("small.toml", smallCase);
   EXPECT_EQ(shop.call("run small.toml --quiet --threads 1 -o run-b").exitCode, 0);
   return shop;
@@ -26,7 +26,7 @@ void runAs(const Workshop& shop, const std::string& options) {
 
 TEST(compare, operatorsAgree) {
   Workshop shop;
-  runAs(prepared(shop), "--set solver.operator=assembled");
+  runAs(withRunB(shop), "--set solver.operator=assembled");
   const Outcome outcome = shop.call("compare run-a run-b --csv table.csv");
   EXPECT_EQ(outcome.exitCode, 0);
   EXPECT_THAT(outcome.err, IsEmpty());
@@ -42,7 +42,7 @@ TEST(compare, operatorsAgree) {
 
 TEST(compare, aRunAgreesWithItselfToTheBit) {
   Workshop shop;
-  const Outcome outcome = prepared(shop).call(
+  const Outcome outcome = withRunB(shop).call(
       "compare run-b run-b --quiet --bound 0 --field pressure --field position --field number_density "
       "--field nearest_distance");
   EXPECT_EQ(outcome.exitCode, 0);
@@ -51,7 +51,7 @@ TEST(compare, aRunAgreesWithItselfToTheBit) {
 
 TEST(compare, otherViscosityDiffersFromTheFirstStepOn) {
   Workshop shop;
-  runAs(prepared(shop), "--set syrup.dynamic_viscosity=20");
+  runAs(withRunB(shop), "--set syrup.dynamic_viscosity=20");
   const Outcome outcome = shop.call("compare run-a run-b --quiet");
   EXPECT_EQ(outcome.exitCode, 1);
   EXPECT_THAT(outcome.err, IsEmpty());
@@ -62,7 +62,7 @@ TEST(compare, otherViscosityDiffersFromTheFirstStepOn) {
 
 TEST(compare, framesWithoutPartnerAreListed) {
   Workshop shop;
-  runAs(prepared(shop), "--end-time 3e-3");
+  runAs(withRunB(shop), "--end-time 3e-3");
   const Outcome outcome = shop.call("compare run-a run-b");
   EXPECT_EQ(outcome.exitCode, 0);
   EXPECT_THAT(outcome.out, HasSubstr("\nframes of run-a without a partner, t [s]: 0.003\n"));
@@ -70,7 +70,7 @@ TEST(compare, framesWithoutPartnerAreListed) {
 
 TEST(compare, whatCannotBeComparedIsBadInput) {
   Workshop shop;
-  runAs(prepared(shop), "--set 'output.fields=[\"velocity\"]'");
+  runAs(withRunB(shop), "--set 'output.fields=[\"velocity\"]'");
   const auto expectRefused = [&](const std::string& arguments, const std::string& message) {
     const Outcome outcome = shop.call("compare " + arguments);
     EXPECT_EQ(outcome.exitCode, 2);

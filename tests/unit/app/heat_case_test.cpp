@@ -24,7 +24,7 @@ const std::string warmCase =
                       "max = [6e-3, 6e-3]", "max = [6e-3, 6e-3]\ntemperature = 310"),
              "max = [12e-3, 0]", "max = [12e-3, 0]\ntemperature = 350\nwall_conductance = 100");
 
-Case caseWith(const std::vector<std::string>& overrides) {
+Case heatCaseWith(const std::vector<std::string>& overrides) {
   Workshop shop;
   shop.put("case.toml", warmCase);
   return readCase(shop / "case.toml", overrides);
@@ -42,11 +42,11 @@ TEST(HeatCase, IsReadAndWritten) {
            {shift + "{model='vft', reference_temperature=300, b=500, t0=100, max_factor=1e3}"},
            {shift + "{model='wlf', reference_temperature=300, c1=17, c2=50}"},
            {shift + "{model='table', temperatures=[300, 310, 350], factors=[2, 1, 0.1]}"}}) {
-    const Case c = caseWith(overrides);
+    const Case c = heatCaseWith(overrides);
     shop.put("written.toml", caseText(c));
     EXPECT_EQ(readCase(shop / "written.toml"), c) << caseText(c);
   }
-  const Case c = caseWith({});
+  const Case c = heatCaseWith({});
   EXPECT_EQ(c.heat->transfer, 5);
   EXPECT_EQ(c.heat->ambient, 293.15);
   EXPECT_EQ(c.bodies[0].temperature, 310);
@@ -54,7 +54,7 @@ TEST(HeatCase, IsReadAndWritten) {
   EXPECT_EQ(c.materials[0].specificHeat, 2000);
 }
 
-const Mistake mistakes[] = {
+const Mistake heatMistakes[] = {
     {"syrup.specific_heat=0",
      "specific_heat in [[material]] 'syrup': expected a positive number [J/(kg K)], found 0"},
     {"syrup.emissivity=2", "emissivity in [[material]] 'syrup': expected a number from 0 to 1, found 2"},
@@ -98,7 +98,7 @@ const Mistake mistakes[] = {
      "[K], found 300"},
 };
 
-TEST(HeatCase, MistakesSayWhereAndWhatIsExpected) { expectExplained(mistakes, caseWith); }
+TEST(HeatCase, MistakesSayWhereAndWhatIsExpected) { expectExplained(heatMistakes, heatCaseWith); }
 
 TEST(HeatCase, KeysOfHeatBelongToCasesWithIt) {
   Workshop shop;
@@ -115,7 +115,7 @@ TEST(HeatCase, KeysOfHeatBelongToCasesWithIt) {
   shop.put("rheology.toml", "rheology = {}\n" + smallIsphCase);
   EXPECT_THAT(messageOf<InputError>([&] { readCase(shop / "rheology.toml"); }),
               HasSubstr("only the method 'mph-i' has fluids that are not Newtonian, found 'isph'"));
-  Case c = caseWith({});
+  Case c = heatCaseWith({});
   c.method.kind = MethodKind::Isph;
   EXPECT_THROW(requireValid(c), CaseError);
 }
@@ -126,7 +126,7 @@ TEST(HeatCase, WrongTablesAreExplainedWithAutomaticStepsToo) {
       R"(material=[{name="heavy", density=2000, dynamic_viscosity=1, bulk_viscosity=1e3, bulk_modulus=1e4, specific_heat=1, conductivity=1}])",
       R"(body=[{name="above", type="fluid", material="heavy", shape="box", min=[0, 6e-3], max=[6e-3, 8e-3], temperature=310}])",
       "syrup.viscosity_shift={model='table', temperatures=[300, 310], factors=[2]}", "time.step=auto"};
-  EXPECT_THAT(messageOf<InputError>([&] { caseWith(layers); }),
+  EXPECT_THAT(messageOf<InputError>([&] { heatCaseWith(layers); }),
               HasSubstr("expected as many numbers as temperatures"));
 }
 

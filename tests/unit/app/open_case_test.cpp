@@ -30,7 +30,7 @@ body = [
 outflow = [{name = "rim", shape = "box", min = [4e-3, 0], max = [10e-3, 14e-3]}]
 )";
 
-Case caseWith(const std::vector<std::string>& overrides) {
+Case openCaseWith(const std::vector<std::string>& overrides) {
   Workshop shop;
   shop.put("case.toml", pouring);
   return readCase(shop / "case.toml", overrides);
@@ -46,11 +46,11 @@ TEST(OpenCase, IsReadAndWritten) {
            {"jet.rotation={center=[0,9e-3],speed=2}"},
            {"jet.rotation={center=[0,9e-3],angle='0.1*sin(9*t)'}"},
            {"outflow=[{name='end',shape='plane',point=[1e-3,0],normal=[1,1]}]"}}) {
-    const Case c = caseWith(overrides);
+    const Case c = openCaseWith(overrides);
     shop.put("written.toml", caseText(c));
     EXPECT_EQ(readCase(shop / "written.toml"), c) << caseText(c);
   }
-  const Case c = caseWith({});
+  const Case c = openCaseWith({});
   EXPECT_EQ(c.bodies[0].inflow.speed->value, 0.2);
   EXPECT_EQ(c.outflows[0].max[1], 14e-3);
 }
@@ -101,7 +101,7 @@ TEST(OpenCase, MotionsAndRigidBodiesAreReadAndWritten) {
   }
 }
 
-const Mistake mistakes[] = {
+const Mistake openMistakes[] = {
     {"jet.speed=-1",
      "expected a number not less than 0 [m/s], an expression in t [s] or {times = [...], values = "
      "[...]}, found -1"},
@@ -134,7 +134,7 @@ const Mistake mistakes[] = {
     {"rim.shape='ball'", "expected 'box' or 'plane', found 'ball'"},
 };
 
-TEST(OpenCase, MistakesAreExplained) { expectExplained(mistakes, caseWith); }
+TEST(OpenCase, MistakesAreExplained) { expectExplained(openMistakes, openCaseWith); }
 
 TEST(OpenCase, APolygonIsAnOpeningInSpace) {
   Workshop shop;
@@ -151,7 +151,7 @@ TEST(OpenCase, APolygonIsAnOpeningInSpace) {
 std::string messageOfCreation(const std::vector<std::string>& overrides) {
   return messageOf<InputError>([&] {
     std::vector<std::string> notes;
-    createParticles<2>(caseWith(overrides), notes);
+    createParticles<2>(openCaseWith(overrides), notes);
   });
 }
 

@@ -70,7 +70,7 @@ body = "floor"
 interval = 1e-2
 )";
 
-Case caseWith(const std::vector<std::string>& overrides) {
+Case probeCaseWith(const std::vector<std::string>& overrides) {
   Workshop shop;
   shop.put("case.toml", smallCase + probes);
   return readCase(shop / "case.toml", overrides);
@@ -78,14 +78,14 @@ Case caseWith(const std::vector<std::string>& overrides) {
 
 TEST(ProbeCase, IsReadAndWritten) {
   Workshop shop;
-  const Case c = caseWith({"through.box={min=[0,0],max=[1,1e-3]}"});
+  const Case c = probeCaseWith({"through.box={min=[0,0],max=[1,1e-3]}"});
   ASSERT_EQ(c.probes.size(), 8u);
   EXPECT_TRUE(c.needsBalance());
   shop.put("written.toml", caseText(c));
   EXPECT_EQ(readCase(shop / "written.toml"), c) << caseText(c);
 }
 
-const Mistake mistakes[] = {
+const Mistake probeMistakes[] = {
     {"corner.kind='point'", "unknown key 'kind' in [[probe]] 'corner' (point)"},
     {"corner.type='dot'", "expected 'point', 'line', 'plane', 'height', 'flow', 'region' or 'load', found 'dot'"},
     {"corner.normal=[1,0]", "unknown key 'normal' in [[probe]] 'corner' (point)"},
@@ -104,7 +104,7 @@ const Mistake mistakes[] = {
     {"floor-load.body='column'", "'column' is fluid; expected the name of a wall or rigid body"},
 };
 
-TEST(ProbeCase, MistakesAreExplained) { expectExplained(mistakes, caseWith); }
+TEST(ProbeCase, MistakesAreExplained) { expectExplained(probeMistakes, probeCaseWith); }
 
 TEST(ProbeCase, IsphReadsLoadsToo) {
   Workshop shop;

@@ -17,7 +17,7 @@ using testing::HasSubstr;
 using testing::StartsWith;
 
 /// A workshop with 8 steps of the small case on a moving floor in case.toml.
-Workshop& prepared(Workshop& shop) {
+Workshop& withMovingFloor(Workshop& shop) {
   shop.put("case.toml", replaced(replaced(smallCase, "max = [12e-3, 0]", "max = [12e-3, 0]\nvelocity = [0.05, 0]"),
                                  "end = 2e-3", "end = 8e-3"));
   return shop;
@@ -43,7 +43,7 @@ void expectRefused(const Workshop& shop, const std::string& arguments, const std
 void checkBits(const std::string& more) {
   Workshop shop;
   const std::string options = " --set output.precision=double --set time.step=7e-4 --threads 1" + more;
-  ASSERT_EQ(prepared(shop).call("run case.toml -o whole --end-time 7e-3" + options).exitCode, 0);
+  ASSERT_EQ(withMovingFloor(shop).call("run case.toml -o whole --end-time 7e-3" + options).exitCode, 0);
   ASSERT_EQ(shop.call("run case.toml -o half --end-time 3.5e-3" + options).exitCode, 0);
   const Outcome outcome =
       shop.call("run case.toml -o resumed --end-time 7e-3 --resume half/checkpoint.h5" + options);
@@ -75,7 +75,7 @@ TEST(resume, givesTheSameBitsWhereWallsHaveSurfaces) { checkBits(" --set method.
 TEST(resume, givesTheSameBitsWithStepsThatVary) {
   Workshop shop;
   const std::string options = " --set output.precision=double --set time.courant=0.01 --threads 1";
-  ASSERT_EQ(prepared(shop).call("run case.toml -o whole" + options).exitCode, 0);
+  ASSERT_EQ(withMovingFloor(shop).call("run case.toml -o whole" + options).exitCode, 0);
   const auto whole = readHistory(shop / "whole/history.csv");
   ASSERT_GT(whole.size(), 8u);
   // After the first step: a later one would be cut to meet the end, and differ by rounding.
@@ -96,7 +96,7 @@ TEST(resume, givesTheSameBitsWithStepsThatVary) {
 TEST(resume, givesTheSameBitsWithAutomaticSteps) {
   Workshop shop;
   const std::string options = " --set output.precision=double --set time.step=auto --threads 1";
-  ASSERT_EQ(prepared(shop).call("run case.toml -o whole" + options).exitCode, 0);
+  ASSERT_EQ(withMovingFloor(shop).call("run case.toml -o whole" + options).exitCode, 0);
   // Ended where the whole run has a frame, which its steps meet, too.
   ASSERT_EQ(shop.call("run case.toml -o half --end-time 3e-3" + options).exitCode, 0);
   const Outcome outcome = shop.call("run case.toml -o resumed --resume half/checkpoint.h5" + options);
@@ -116,7 +116,7 @@ TEST(resume, givesTheSameBitsWithAutomaticSteps) {
 
 TEST(resume, takesUpAutomaticStepsWhereEqualOnesEnded) {
   Workshop shop;
-  ASSERT_EQ(prepared(shop).call("run case.toml -o equal --threads 1 --end-time 4e-3").exitCode, 0);
+  ASSERT_EQ(withMovingFloor(shop).call("run case.toml -o equal --threads 1 --end-time 4e-3").exitCode, 0);
   ASSERT_EQ(shop.call("run case.toml -o other --threads 1 --set time.step=auto --set time.tolerance=0.5 "
                       "--set output.interval=0 --resume equal/checkpoint.h5")
                 .exitCode,
@@ -129,14 +129,15 @@ TEST(resume, takesUpAutomaticStepsWhereEqualOnesEnded) {
 
 TEST(resume, startsWithTheFrameThatTheRunEndedWith) {
   Workshop shop;
-  ASSERT_EQ(prepared(shop).call("run case.toml -o whole --threads 1 --end-time 4e-3").exitCode, 0);
+  ASSERT_EQ(withMovingFloor(shop).call("run case.toml -o whole --threads 1 --end-time 4e-3").exitCode, 0);
   ASSERT_EQ(shop.call("run case.toml -o resumed --threads 1 --resume whole/checkpoint.h5").exitCode, 0);
   expectSameFrames(shop, 4, 0);
 }
 
 TEST(resume, continuesAFailedRun) {
   Workshop shop;
-  const Outcome failed = prepared(shop).call("run case.toml -o failed --threads 1 --set solver.max_iterations=3");
+  const Outcome failed =
+      withMovingFloor(shop).call("run case.toml -o failed --threads 1 --set solver.max_iterations=3");
   EXPECT_EQ(failed.exitCode, 3);
   EXPECT_THAT(failed.err, HasSubstr("Continue from the last checkpoint with --resume failed/checkpoint.h5"));
   ASSERT_EQ(shop.call("run case.toml -o resumed --threads 1 --resume failed/checkpoint.h5").exitCode, 0);
@@ -146,7 +147,7 @@ TEST(resume, continuesAFailedRun) {
 
 TEST(resume, continuesWithAShorterStep) {
   Workshop shop;
-  ASSERT_EQ(prepared(shop).call("run case.toml -o whole --threads 1 --end-time 4e-3").exitCode, 0);
+  ASSERT_EQ(withMovingFloor(shop).call("run case.toml -o whole --threads 1 --end-time 4e-3").exitCode, 0);
   ASSERT_EQ(
       shop.call("run case.toml -o finer --threads 1 --set time.step=5e-4 --resume whole/checkpoint.h5").exitCode,
       0);
@@ -163,7 +164,7 @@ TEST(resume, checkpointsFollowTheirInterval) {
       "run case.toml -o out --threads 1 --quiet --end-time 30 --set output.checkpoint_interval=3e-3 "
       "--set output.interval=0 --set 'floor.velocity=[0, 0]' --set 'gravity.acceleration=[0, -1e-3]' & run=$!; "
       "while [ ! -s out/checkpoint.h5 ]; do sleep 0.05; done; kill -KILL $run; wait $run";
-  prepared(shop).call(script);
+  withMovingFloor(shop).call(script);
   const Checkpoint<2> checkpoint = readCheckpoint<2>(shop / "out/checkpoint.h5");
   EXPECT_GT(checkpoint.step, 0);
   EXPECT_EQ(checkpoint.step % 3, 0);
@@ -171,7 +172,7 @@ TEST(resume, checkpointsFollowTheirInterval) {
 
 TEST(resume, refusesWhatDoesNotFit) {
   Workshop shop;
-  ASSERT_EQ(prepared(shop).call("run case.toml -o whole --threads 1 --end-time 3e-3").exitCode, 0);
+  ASSERT_EQ(withMovingFloor(shop).call("run case.toml -o whole --threads 1 --end-time 3e-3").exitCode, 0);
   shop.put("text.h5", "no checkpoint");
   shop.put("cut.h5", shop.content("whole/checkpoint.h5").substr(0, 4000));
   expectRefused(shop, "none.h5", "none.h5: No such file or directory");
@@ -202,7 +203,7 @@ TEST(resume, refusesTheStateOfAnotherMethod) {
 
 TEST(resume, refusesToReplaceItsOwnCheckpoint) {
   Workshop shop;
-  ASSERT_EQ(prepared(shop).call("run case.toml --threads 1 --end-time 3e-3").exitCode, 0);
+  ASSERT_EQ(withMovingFloor(shop).call("run case.toml --threads 1 --end-time 3e-3").exitCode, 0);
   const Outcome outcome = shop.call("run case.toml --force --resume ./case-run/checkpoint.h5");
   EXPECT_EQ(outcome.exitCode, 2);
   EXPECT_THAT(outcome.err, HasSubstr("lies in the run directory; choose another one with --output"));
@@ -211,7 +212,7 @@ TEST(resume, refusesToReplaceItsOwnCheckpoint) {
 
 TEST(resume, refusesOtherDimensionsMaterialsAndDomains) {
   Workshop shop;
-  prepared(shop);
+  withMovingFloor(shop);
   const auto put = [&](auto change) {
     Particles<2> p;
     p.resize(36, 64);

@@ -12,7 +12,7 @@ namespace {
 using testing::HasSubstr;
 
 /// A workshop with the small case in small.toml and two runs of it in a and b.
-Workshop& prepared(Workshop& shop) {
+Workshop& withTwoRuns(Workshop& shop) {
   shop.put("small.toml", smallCase);
   for (const char* run : {"a", "b"})
     EXPECT_EQ(shop.call(std::string("run small.toml --threads 1 --quiet -o ") + run).exitCode, 0);
@@ -24,7 +24,7 @@ constexpr const char* full = ": No space left on device\n";
 TEST(Streams, whatCannotBePrintedIsAnErrorOfItsOwnCode) {
   if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full";
   Workshop shop;
-  prepared(shop);
+  withTwoRuns(shop);
   for (const char* command :
        {"check small.toml", "info", "--help", "plot a", "compare a b", "compare a b --quiet --bound 0"}) {
     const Outcome outcome = shop.call(std::string(command) + " >/dev/full");
@@ -74,7 +74,7 @@ TEST(Streams, closedOnesAreNotTakenByFiles) {
 
 TEST(Streams, filesOfTheUserStayWhatTheyAre) {
   Workshop shop;
-  prepared(shop);
+  withTwoRuns(shop);
   std::filesystem::create_symlink("table.csv", shop / "link");
   ASSERT_EQ(shop.call("compare a b --csv link").exitCode, 0);
   EXPECT_TRUE(std::filesystem::is_symlink(shop / "link"));
@@ -88,7 +88,7 @@ TEST(Streams, filesOfTheUserStayWhatTheyAre) {
 
 TEST(Streams, framesThatAreCutOrHaveNoTimeAreNotCompared) {
   Workshop shop;
-  prepared(shop);
+  withTwoRuns(shop);
   const std::string frame = shop.content("b/frames/fluid_000002.vtp"), index = shop.content("b/fluid.pvd");
   shop.put("b/frames/fluid_000002.vtp", frame.substr(0, frame.size() - 60));
   Outcome outcome = shop.call("compare a b");

@@ -26,7 +26,7 @@ Frame rectangle() {
   return f;
 }
 
-Case referenceCase() {
+Case setCase() {
   Case c;
   c.spacing = 1;
   c.domain.max = {{10, 10}};
@@ -53,7 +53,7 @@ TEST(CompareSets, ASetInAnotherOrderDoesNotDiffer) {
     std::reverse(a.pressure.begin(), a.pressure.end());
     std::reverse(a.numberDensity.begin(), a.numberDensity.end());
     std::reverse(a.nearestDistance.begin(), a.nearestDistance.end());
-    const SetDifference d = compareSets(a, b, referenceCase());
+    const SetDifference d = compareSets(a, b, setCase());
     for (const auto& field : d.nearest.fields) {
       ASSERT_TRUE(field);
       EXPECT_EQ(field->maximum, 0);
@@ -69,7 +69,7 @@ TEST(CompareSets, AMovedSet) {
   Frame a = rectangle();
   for (Vec<3>& x : a.position) x += Vec<3>{{0.3, -0.4}};
   for (Vec<3>& u : a.velocity) u += Vec<3>{{0, 2}};
-  const SetDifference d = compareSets(a, rectangle(), referenceCase());
+  const SetDifference d = compareSets(a, rectangle(), setCase());
   EXPECT_EQ(find(d, "particles").a, 12);
   EXPECT_EQ(find(d, "particles").difference, 0);
   EXPECT_DOUBLE_EQ(*find(d, "max_x").a, 3.3);
@@ -99,7 +99,7 @@ TEST(CompareSets, AMovedSet) {
 TEST(CompareSets, WhatOnlyTheReferenceHasCounts) {
   Frame a = rectangle();
   a.position.resize(8), a.velocity.resize(8), a.pressure.resize(8);  // without the upper row
-  const SetDifference d = compareSets(a, rectangle(), referenceCase());
+  const SetDifference d = compareSets(a, rectangle(), setCase());
   EXPECT_EQ(find(d, "particles").difference, 4);
   EXPECT_DOUBLE_EQ(*find(d, "particles").relative, 4 / 12.0);
   EXPECT_EQ(find(d, "nearest_max").a, 0);
@@ -109,13 +109,13 @@ TEST(CompareSets, WhatOnlyTheReferenceHasCounts) {
   EXPECT_EQ(d.nearest[ComparedField::Position]->maximum, 1);
   EXPECT_EQ(d.nearest[ComparedField::Velocity]->maximum, 0);
   // The other way round it is a's velocities that are held against b's lower rows.
-  EXPECT_EQ(compareSets(rectangle(), a, referenceCase()).nearest[ComparedField::Velocity]->maximum, 1);
+  EXPECT_EQ(compareSets(rectangle(), a, setCase()).nearest[ComparedField::Velocity]->maximum, 1);
 }
 
 TEST(CompareSets, AcrossPeriodicEnds) {
   Frame a = rectangle(), b = rectangle();
   a.position[0][0] = 10 - 0.25, b.position[0][0] = 0.25;
-  Case c = referenceCase();
+  Case c = setCase();
   EXPECT_NEAR(*find(compareSets(a, b, c), "nearest_max").a, 6.75, 1e-12);
   c.domain.periodic[0] = true;
   const SetDifference d = compareSets(a, b, c);
@@ -128,14 +128,14 @@ TEST(CompareSets, AcrossPeriodicEnds) {
 TEST(CompareSets, NotANumberShows) {
   Frame a = rectangle();
   a.velocity[5][0] = std::nan("");
-  const SetDifference d = compareSets(a, rectangle(), referenceCase());
+  const SetDifference d = compareSets(a, rectangle(), setCase());
   EXPECT_TRUE(std::isnan(d.nearest[ComparedField::Velocity]->relative));
   EXPECT_TRUE(std::isnan(d.nearest[ComparedField::Velocity]->maximum));
 }
 
 TEST(CompareSets, RefusesWhatIsNoSet) {
   const auto message = [](const Frame& a) {
-    return messageOf<InputError>([&] { compareSets(a, rectangle(), referenceCase()); });
+    return messageOf<InputError>([&] { compareSets(a, rectangle(), setCase()); });
   };
   Frame a = rectangle();
   a.dimensions = 3;

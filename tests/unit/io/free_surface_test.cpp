@@ -23,7 +23,7 @@ using namespace treacle::test;
 
 namespace {
 
-constexpr double spacing = 2e-3;  // [m]
+constexpr double surfaceSpacing = 2e-3;  // [m]
 
 /// Lattice places, counted in spacings, that lie in a box of whole numbers and for which `isIn`; the lattice has
 /// its particles in the middles of cells.
@@ -32,7 +32,7 @@ Frame latticeFrame(int length, const std::function<bool(const Vec<3>&)>& isIn) {
   for (int x = -length; x < length; ++x)
     for (int y = -length; y < length; ++y)
       for (int z = -length; z < length; ++z)
-        if (const Vec<3> at{x + 0.5, y + 0.5, z + 0.5}; isIn(at)) frame.position.push_back(spacing * at);
+        if (const Vec<3> at{x + 0.5, y + 0.5, z + 0.5}; isIn(at)) frame.position.push_back(surfaceSpacing * at);
   return frame;
 }
 
@@ -47,7 +47,7 @@ double volumeRatio(const FreeSurface& surface, std::size_t particles) {
   double volume = 0;
   for (const auto& [a, b, c] : surface.triangles)
     volume += dot(at(surface, a), cross(at(surface, b), at(surface, c))) / 6;
-  return volume / (static_cast<double>(particles) * std::pow(spacing, 3));
+  return volume / (static_cast<double>(particles) * std::pow(surfaceSpacing, 3));
 }
 
 /// Each side of a triangle has one on its other side, which runs along it the other way; and the surface consists
@@ -68,7 +68,7 @@ double largestAngle(const FreeSurface& surface) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, Vec<3>> normals;
   for (const auto& t : surface.triangles) {
     const Vec<3> area = cross(at(surface, t[1]) - at(surface, t[0]), at(surface, t[2]) - at(surface, t[0]));
-    if (norm(area) < 1e-3 * spacing * spacing) continue;
+    if (norm(area) < 1e-3 * surfaceSpacing * surfaceSpacing) continue;
     for (std::size_t k = 0; k < 3; ++k) normals[{t[k], t[(k + 1) % 3]}] = 1 / norm(area) * area;
   }
   double least = 1;
@@ -87,8 +87,8 @@ Frame ballWithFields() {
   Frame frame = ball(5);
   frame.time = 0.25;
   for (const Vec<3>& x : frame.position) {
-    frame.velocity.push_back({1, 2, x[2] / spacing});
-    frame.pressure.push_back(1e4 * x[0] / spacing);
+    frame.velocity.push_back({1, 2, x[2] / surfaceSpacing});
+    frame.pressure.push_back(1e4 * x[0] / surfaceSpacing);
     frame.temperature.push_back(300);
     frame.material.push_back(x[0] < 0 ? 0 : 3);
   }
@@ -107,13 +107,13 @@ class FreeSurfaceTest : public testing::Test {
 TEST_F(FreeSurfaceTest, OfABallIsClosedAndSmoothAndHoldsItsVolume) {
   const Vec<3> middle{0.2, -0.1, 0.3};
   const Frame frame = ball(10, middle);
-  const FreeSurface surface = freeSurface(frame, spacing);
+  const FreeSurface surface = freeSurface(frame, surfaceSpacing);
   expectClosed(surface);
   EXPECT_NEAR(volumeRatio(surface, frame.position.size()), 1, 0.015);  // 0.988
   EXPECT_LT(largestAngle(surface), 25);                                // 23.3
   double nearest = 1e9, farthest = 0, outwards = 1;
   for (std::uint32_t p = 0; p < surface.points.size(); ++p) {
-    const Vec<3> x = 1 / spacing * at(surface, p) - middle;
+    const Vec<3> x = 1 / surfaceSpacing * at(surface, p) - middle;
     nearest = std::min(nearest, norm(x)), farthest = std::max(farthest, norm(x));
     outwards = std::min(outwards, dot(x, converted<double>(surface.normals[p])) / norm(x));
   }
@@ -128,13 +128,13 @@ TEST_F(FreeSurfaceTest, OfACuboidIsFlatAndWhereItsCellsEnd) {
     double cell, volume, unevenness;  // measured: 0.9925, 0.9909, 0.9859; 0.0004, 0.0035, 0.030
   };
   for (const Bounds& b : {Bounds{0.25, 0.01, 0.001}, Bounds{0.5, 0.011, 0.005}, Bounds{1, 0.016, 0.04}}) {
-    const FreeSurface surface = freeSurface(frame, spacing, b.cell);
+    const FreeSurface surface = freeSurface(frame, surfaceSpacing, b.cell);
     expectClosed(surface);
     EXPECT_NEAR(volumeRatio(surface, frame.position.size()), 1, b.volume);
     double worst = 0;
     std::size_t flat = 0;
     for (std::uint32_t p = 0; p < surface.points.size(); ++p)
-      if (const Vec<3> x = 1 / spacing * at(surface, p); std::abs(x[1]) < 6 && std::abs(x[2]) < 10) {
+      if (const Vec<3> x = 1 / surfaceSpacing * at(surface, p); std::abs(x[1]) < 6 && std::abs(x[2]) < 10) {
         worst = std::max(worst, std::abs(std::abs(x[0]) - 10));
         ++flat;
       }
@@ -147,15 +147,15 @@ TEST_F(FreeSurfaceTest, SheetsAndDropsOfFewParticlesStay) {
   const double volumes[] = {0.76, 0.93, 0.95};  // 0.768, 0.940, 0.959: their rims are rounded
   for (const int layers : {1, 2, 3}) {
     const Frame frame = slab(layers);
-    const FreeSurface surface = freeSurface(frame, spacing);
+    const FreeSurface surface = freeSurface(frame, surfaceSpacing);
     expectClosed(surface);
     EXPECT_GT(volumeRatio(surface, frame.position.size()), volumes[layers - 1]) << layers;
     EXPECT_LT(volumeRatio(surface, frame.position.size()), 1) << layers;
   }
   Frame drops;
-  for (int k = 0; k < 5; ++k) drops.position.push_back(spacing * Vec<3>{7.0 * k, 1.3 * k, -0.7 * k});
+  for (int k = 0; k < 5; ++k) drops.position.push_back(surfaceSpacing * Vec<3>{7.0 * k, 1.3 * k, -0.7 * k});
   for (const double cell : {0.25, 0.5, 1.0}) {
-    const FreeSurface surface = freeSurface(drops, spacing, cell);
+    const FreeSurface surface = freeSurface(drops, surfaceSpacing, cell);
     expectClosed(surface, 5);
     EXPECT_NEAR(volumeRatio(surface, 5), 1, 0.1) << cell;  // 0.934, 1.011, 1.088
   }
@@ -163,19 +163,19 @@ TEST_F(FreeSurfaceTest, SheetsAndDropsOfFewParticlesStay) {
 
 TEST_F(FreeSurfaceTest, DisorderAndCavitiesAreNoHoles) {
   std::mt19937 generator(1);
-  std::uniform_real_distribution<double> shift(-0.15 * spacing, 0.15 * spacing);
+  std::uniform_real_distribution<double> shift(-0.15 * surfaceSpacing, 0.15 * surfaceSpacing);
   // Large enough for blocks deep inside, which are not computed, on either side of the cavity.
   Frame frame = latticeFrame(24, [](const Vec<3>& x) { return norm(x) > 5; });
   for (Vec<3>& x : frame.position)
     for (int k = 0; k < 3; ++k) x[k] += shift(generator);
-  const FreeSurface surface = freeSurface(frame, spacing);
+  const FreeSurface surface = freeSurface(frame, surfaceSpacing);
   expectClosed(surface, 2);
   EXPECT_NEAR(volumeRatio(surface, frame.position.size()), 1, 0.01);
 }
 
 TEST_F(FreeSurfaceTest, HasTheFieldsOfTheFluidBelowIt) {
   const Frame frame = ballWithFields();
-  const FreeSurface surface = freeSurface(frame, spacing);
+  const FreeSurface surface = freeSurface(frame, surfaceSpacing);
   EXPECT_EQ(surface.time, 0.25);
   ASSERT_EQ(surface.fields.size(), 3u);
   EXPECT_EQ(surface.fields[0].name + surface.fields[1].name + surface.fields[2].name,
@@ -183,7 +183,7 @@ TEST_F(FreeSurfaceTest, HasTheFieldsOfTheFluidBelowIt) {
   double farthest = 0;  // between a point and where the fluid has such a pressure or velocity [spacings]
   bool constant = true, divided = true;
   for (std::uint32_t p = 0; p < surface.points.size(); ++p) {
-    const Vec<3> x = 1 / spacing * at(surface, p);
+    const Vec<3> x = 1 / surfaceSpacing * at(surface, p);
     const float* u = &surface.fields[0].values[3 * p];
     farthest = std::max({farthest, std::abs(surface.fields[1].values[p] / 1e4 - x[0]), std::abs(u[2] - x[2])});
     constant = constant && std::abs(u[0] - 1) < 1e-6 && std::abs(u[1] - 2) < 1e-6 &&
@@ -201,7 +201,7 @@ TEST_F(FreeSurfaceTest, IsTheSameWhateverTheNumberOfThreads) {
   std::vector<FreeSurface> made;
   for (const int k : {1, 3}) {
     omp_set_num_threads(k);
-    made.push_back(freeSurface(frame, spacing));
+    made.push_back(freeSurface(frame, surfaceSpacing));
   }
   omp_set_num_threads(threads);
   EXPECT_EQ(made[0].triangles, made[1].triangles);
@@ -211,7 +211,7 @@ TEST_F(FreeSurfaceTest, IsTheSameWhateverTheNumberOfThreads) {
 
 TEST_F(FreeSurfaceTest, FilesHoldIt) {
   TemporaryDirectory directory;
-  const FreeSurface surface = freeSurface(ballWithFields(), spacing);
+  const FreeSurface surface = freeSurface(ballWithFields(), surfaceSpacing);
   for (const OutputCompression compression : {OutputCompression::None, OutputCompression::Zlib}) {
     const auto bytes = writeSurfaceVtp(directory / "a.vtp", surface, compression);
     EXPECT_EQ(bytes, std::filesystem::file_size(directory / "a.vtp"));
@@ -232,12 +232,13 @@ TEST_F(FreeSurfaceTest, FilesHoldIt) {
   const Mesh mesh(readPly("a.ply", content(directory / "a.ply")));
   EXPECT_EQ(mesh.facts().triangles, surface.triangles.size());
   EXPECT_EQ(mesh.facts().openEdges, 0u);
-  EXPECT_NEAR(mesh.facts().volume, volumeRatio(surface, 1) * std::pow(spacing, 3), 1e-6 * mesh.facts().volume);
+  EXPECT_NEAR(mesh.facts().volume, volumeRatio(surface, 1) * std::pow(surfaceSpacing, 3),
+              1e-6 * mesh.facts().volume);
 }
 
 TEST_F(FreeSurfaceTest, FullDiskLeavesNoFile) {
   TemporaryDirectory directory;
-  const FreeSurface surface = freeSurface(ball(5), spacing);
+  const FreeSurface surface = freeSurface(ball(5), surfaceSpacing);
   EXPECT_TRUE(withFileLimit(10 << 10, [&] {
     return !messageOf<RunError>([&] { writeSurfacePly(directory / "a.ply", surface); }).empty() &&
            !messageOf<RunError>([&] { writeSurfaceVtp(directory / "a.vtp", surface, {}); }).empty();
@@ -247,19 +248,20 @@ TEST_F(FreeSurfaceTest, FullDiskLeavesNoFile) {
 
 TEST_F(FreeSurfaceTest, ParticlesThatLieNowhereAreLeftOut) {
   Frame frame = ball(3);
-  const std::size_t triangles = freeSurface(frame, spacing).triangles.size();
+  const std::size_t triangles = freeSurface(frame, surfaceSpacing).triangles.size();
   constexpr double infinity = std::numeric_limits<double>::infinity(), nan = std::nan("");
   for (const double x : {nan, infinity, -infinity, 1e300, -1e10}) frame.position.push_back({0, x, 0});
-  const FreeSurface surface = freeSurface(frame, spacing);
+  const FreeSurface surface = freeSurface(frame, surfaceSpacing);
   EXPECT_EQ(surface.leftOut, 5u);
   EXPECT_EQ(surface.triangles.size(), triangles);
-  EXPECT_TRUE(freeSurface({}, spacing).points.empty());
+  EXPECT_TRUE(freeSurface({}, surfaceSpacing).points.empty());
 }
 
 TEST_F(FreeSurfaceTest, TwoDimensionsHaveNone) {
   Frame frame = ball(3);
   frame.dimensions = 2;
-  EXPECT_NE(messageOf<InputError>([&] { freeSurface(frame, spacing); }).find("two dimensions"), std::string::npos);
+  EXPECT_NE(messageOf<InputError>([&] { freeSurface(frame, surfaceSpacing); }).find("two dimensions"),
+            std::string::npos);
 }
 
 TEST_F(FreeSurfaceTest, ARunHasAnIndexOfThoseThatAreThere) {
@@ -270,7 +272,7 @@ TEST_F(FreeSurfaceTest, ARunHasAnIndexOfThoseThatAreThere) {
     frame.time = time;
     run.writeFrame(frame, {}, {});
   }
-  const FreeSurface surface = freeSurface(frame, spacing);
+  const FreeSurface surface = freeSurface(frame, surfaceSpacing);
   run.writeSurface(1, surface, SurfaceFormat::Ply, OutputCompression::Zlib);
   EXPECT_FALSE(std::filesystem::exists(run.surfaceIndex()));
   for (const std::size_t k : {2, 0}) run.writeSurface(k, surface, SurfaceFormat::Vtp, OutputCompression::Zlib);

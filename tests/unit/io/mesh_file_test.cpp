@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "support/replaced.hpp"
 #include "support/sample_mesh.hpp"
 #include "support/temporary_directory.hpp"
 
@@ -105,10 +106,6 @@ class MeshFile : public testing::Test {
   TemporaryDirectory shop;
 };
 
-std::string with(std::string text, const std::string& from, const std::string& to) {
-  return text.replace(text.find(from), from.size(), to);
-}
-
 TEST_F(MeshFile, isTakenInEachFormat) {
   const Triangles ball = ballMesh(2, 2);
   const Triangles again = read("ball.STL", stlText(ball));
@@ -165,29 +162,29 @@ TEST_F(MeshFile, ofBadStlIsRefusedWithItsPlace) {
   EXPECT_THAT(message("a.stl", obj),
               AllOf(StartsWith("a.stl: truncated, or no STL: "), EndsWith("begin with 'solid'")));
   EXPECT_EQ(message("a.stl", obj.substr(0, 50)), "a.stl:1: expected 'solid' of an ASCII STL, found '#'");
-  EXPECT_EQ(message("a.stl", with(asciiStl, "vertex 0 1 0", "vertex 0 nan 0")),
+  EXPECT_EQ(message("a.stl", replaced(asciiStl, "vertex 0 1 0", "vertex 0 nan 0")),
             "a.stl:5: expected a finite number of at most 1e+40, found 'nan'");
-  EXPECT_EQ(message("a.stl", with(asciiStl, "vertex 0 1 0", "vertex 0 1e999 0")),
+  EXPECT_EQ(message("a.stl", replaced(asciiStl, "vertex 0 1 0", "vertex 0 1e999 0")),
             "a.stl:5: expected a finite number of at most 1e+40, found '1e999'");
-  EXPECT_EQ(message("a.stl", with(asciiStl, "vertex 0 1 0", "vertex 0 1")),
+  EXPECT_EQ(message("a.stl", replaced(asciiStl, "vertex 0 1 0", "vertex 0 1")),
             "a.stl:5: expected 3 numbers after 'vertex', found 2");
-  EXPECT_EQ(message("a.stl", with(asciiStl, "    vertex 1 0 0\n", "")),
+  EXPECT_EQ(message("a.stl", replaced(asciiStl, "    vertex 1 0 0\n", "")),
             "a.stl:6: expected 'vertex' of an ASCII STL, found 'endloop'");
   EXPECT_EQ(message("a.stl", asciiStl.substr(0, 150)),
             "a.stl:11: truncated: expected 'vertex', found the end of the file");
-  EXPECT_EQ(message("a.stl", with(asciiStl, "endsolid wedge\n", "")),
+  EXPECT_EQ(message("a.stl", replaced(asciiStl, "endsolid wedge\n", "")),
             "a.stl:15: truncated: expected 'facet' or 'endsolid', found the end of the file");
   EXPECT_EQ(message("a.stl", "solid\nendsolid\n"), "a.stl:2: no faces in this STL");
 }
 
 TEST_F(MeshFile, ofBadObjIsRefusedWithItsLine) {
-  EXPECT_EQ(message("a.obj", with(obj, "-5 -4 -1", "1 2 6")),
+  EXPECT_EQ(message("a.obj", replaced(obj, "-5 -4 -1", "1 2 6")),
             "a.obj:10: expected the number of one of the 5 vertices before this face, found 6");
-  EXPECT_THAT(message("a.obj", with(obj, "-5 -4 -1", "-6 2 3")), EndsWith("found -6"));
-  EXPECT_THAT(message("a.obj", with(obj, "-5 -4 -1", "0 2 3")), EndsWith("found 0"));
-  EXPECT_EQ(message("a.obj", with(obj, "-5 -4 -1", "a 2 3")), "a.obj:10: expected a whole number, found 'a'");
-  EXPECT_EQ(message("a.obj", with(obj, "-5 -4 -1", "1 2")), "a.obj:10: expected 3 corners or more, found 2");
-  EXPECT_EQ(message("a.obj", with(obj, "v 1 1 0", "v 1 inf 0")),
+  EXPECT_THAT(message("a.obj", replaced(obj, "-5 -4 -1", "-6 2 3")), EndsWith("found -6"));
+  EXPECT_THAT(message("a.obj", replaced(obj, "-5 -4 -1", "0 2 3")), EndsWith("found 0"));
+  EXPECT_EQ(message("a.obj", replaced(obj, "-5 -4 -1", "a 2 3")), "a.obj:10: expected a whole number, found 'a'");
+  EXPECT_EQ(message("a.obj", replaced(obj, "-5 -4 -1", "1 2")), "a.obj:10: expected 3 corners or more, found 2");
+  EXPECT_EQ(message("a.obj", replaced(obj, "v 1 1 0", "v 1 inf 0")),
             "a.obj:5: expected a finite number of at most 1e+40, found 'inf'");
   EXPECT_EQ(message("a.obj", ply),
             "a.obj:17: no faces: expected lines of an OBJ, 'v x y z' and 'f a b c', found 0 vertices and no face");
@@ -197,16 +194,18 @@ TEST_F(MeshFile, ofBadPlyIsRefusedWithItsPlace) {
   EXPECT_EQ(message("a.ply", obj), "a.ply:1: expected a PLY, which begins with 'ply'");
   EXPECT_EQ(message("a.ply", ply.substr(0, 54)),
             "a.ply:4: truncated: expected 'end_header', found the end of the file");
-  EXPECT_EQ(message("a.ply", with(ply, "3 0 1 3", "3 0 1 4")), "a.ply:17: expected indices from 0 to 3, found 4");
-  EXPECT_EQ(message("a.ply", with(ply, "3 0 1 3", "2 0 1")), "a.ply:17: expected 3 corners or more, found 2");
-  EXPECT_EQ(message("a.ply", with(ply, "3 0 1 3\n", "")), "a.ply:16: truncated: expected 2 of 'face', found 1");
-  EXPECT_EQ(message("a.ply", with(ply, "0 1 0 255", "0 nan 0 255")),
+  EXPECT_EQ(message("a.ply", replaced(ply, "3 0 1 3", "3 0 1 4")),
+            "a.ply:17: expected indices from 0 to 3, found 4");
+  EXPECT_EQ(message("a.ply", replaced(ply, "3 0 1 3", "2 0 1")), "a.ply:17: expected 3 corners or more, found 2");
+  EXPECT_EQ(message("a.ply", replaced(ply, "3 0 1 3\n", "")),
+            "a.ply:16: truncated: expected 2 of 'face', found 1");
+  EXPECT_EQ(message("a.ply", replaced(ply, "0 1 0 255", "0 nan 0 255")),
             "a.ply:14: expected a finite number of at most 1e+40, found 'nan'");
-  EXPECT_EQ(message("a.ply", with(ply, "property float z", "property half z")),
+  EXPECT_EQ(message("a.ply", replaced(ply, "property float z", "property half z")),
             "a.ply:7: expected a type such as 'float', found 'half'");
-  EXPECT_EQ(message("a.ply", with(ply, "property float z", "property float w")),
+  EXPECT_EQ(message("a.ply", replaced(ply, "property float z", "property float w")),
             "a.ply: expected 'x', 'y' and 'z' among the properties of 'vertex'");
-  EXPECT_THAT(message("a.ply", with(ply, "vertex 4", "vertex 2000000000")),
+  EXPECT_THAT(message("a.ply", replaced(ply, "vertex 4", "vertex 2000000000")),
               HasSubstr("truncated: the header promises 2000000000 of 'vertex' in "));
   EXPECT_THAT(message("a.ply", binaryPly(false, 2'000'000'000)),
               HasSubstr("promises 2000000000 of 'vertex' in 48000000000 bytes or more, 122 are left in the file"));

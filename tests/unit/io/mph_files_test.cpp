@@ -5,6 +5,7 @@
 
 #include "import_parts.hpp"
 #include "support/mph_case.hpp"
+#include "support/replaced.hpp"
 #include "support/temporary_directory.hpp"
 #include "treacle/core/error.hpp"
 
@@ -15,12 +16,6 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::StartsWith;
-
-std::string with(std::string text, const std::string& from, const std::string& to) {
-  const std::size_t at = text.find(from);
-  if (at == text.npos) throw std::logic_error("not in the text: " + from);
-  return text.replace(at, from.size(), to);
-}
 
 std::string parameterError(const std::string& text) {
   return messageOf<InputError>([&] { readMphParameters("box.data", text); });
@@ -41,8 +36,8 @@ ImportedCase converted(const std::string& parameters, const std::string& cuboids
 
 TEST(MphParameters, AllRows) {
   const MphParameters p =
-      readMphParameters("box.data", with(mphParameters, "Wall3  Center 0 0 0  Velocity 0 0 0  Omega 0 0 0",
-                                         "Wall3\tCenter 1 2 3\tVelocity 4 5 6\tOmega 7 8 +9e0  # turns\r"));
+      readMphParameters("box.data", replaced(mphParameters, "Wall3  Center 0 0 0  Velocity 0 0 0  Omega 0 0 0",
+                                             "Wall3\tCenter 1 2 3\tVelocity 4 5 6\tOmega 7 8 +9e0  # turns\r"));
   EXPECT_EQ(p.step, 1e-3);
   EXPECT_EQ(p.end, 4e-3);
   EXPECT_EQ(p.profileInterval, 5e-3);
@@ -62,22 +57,23 @@ TEST(MphParameters, AllRows) {
 
 TEST(MphParameters, MessagesNameLineAndWhatWasExpected) {
   EXPECT_THAT(parameterError(""), StartsWith("box.data:1: the file ends without the rows Dt, EndTime, "));
-  EXPECT_THAT(parameterError(with(mphParameters, "BulkModulus ", "BulkModule ")),
+  EXPECT_THAT(parameterError(replaced(mphParameters, "BulkModulus ", "BulkModule ")),
               StartsWith("box.data:17: the file ends without the row BulkModulus; expected a file of parameters"));
-  EXPECT_EQ(parameterError(with(mphParameters, "1e-3", "0")), "box.data:2: expected a positive number, found '0'");
-  EXPECT_EQ(parameterError(with(mphParameters, "1100", "nan")),
+  EXPECT_EQ(parameterError(replaced(mphParameters, "1e-3", "0")),
+            "box.data:2: expected a positive number, found '0'");
+  EXPECT_EQ(parameterError(replaced(mphParameters, "1100", "nan")),
             "box.data:9: expected a finite number, found 'nan'");
-  EXPECT_EQ(parameterError(with(mphParameters, "1100", "1e999")),
+  EXPECT_EQ(parameterError(replaced(mphParameters, "1100", "1e999")),
             "box.data:9: expected a finite number, found '1e999'");
-  EXPECT_EQ(parameterError(with(mphParameters, "1100", "-1")),
+  EXPECT_EQ(parameterError(replaced(mphParameters, "1100", "-1")),
             "box.data:9: expected a number that is not negative, found -1");
-  EXPECT_EQ(parameterError(with(mphParameters, "1100", "1 1 1100")),
+  EXPECT_EQ(parameterError(replaced(mphParameters, "1100", "1 1 1100")),
             "box.data:9: Density: expected 4 numbers, one for each of the types 0 to 3, found 6");
-  EXPECT_EQ(parameterError(with(mphParameters, "0 -10 0", "-10")),
+  EXPECT_EQ(parameterError(replaced(mphParameters, "0 -10 0", "-10")),
             "box.data:15: Gravity: expected 3 values, found 1");
   EXPECT_EQ(parameterError(mphParameters + "Dt 1\n"),
             "box.data:18: Dt stands twice, first in line 2; expected it once");
-  EXPECT_THAT(parameterError(with(mphParameters, "Omega 0 0 0", "Omega 0 0")),
+  EXPECT_THAT(parameterError(replaced(mphParameters, "Omega 0 0 0", "Omega 0 0")),
               StartsWith("box.data:16: Wall2: expected 'Center' with 3 numbers"));
 }
 
@@ -86,25 +82,27 @@ TEST(MphParticles, MessagesNameLineAndWhatWasExpected) {
   EXPECT_THAT(particleError(""), StartsWith("box.grid:1: the file is empty"));
   EXPECT_THAT(particleError("0\n"), StartsWith("box.grid:1: the file ends after the time"));
   EXPECT_THAT(particleError("0 1\n"), StartsWith("box.grid:1: expected one number, the time [s], found 2 words"));
-  EXPECT_THAT(particleError(with(mphParticles, "0.0", "-1")), HasSubstr("expected a time that is not negative"));
-  EXPECT_THAT(particleError(with(mphParticles, "128 ", "")), StartsWith("box.grid:2: expected 8 numbers"));
-  EXPECT_THAT(particleError(with(mphParticles, "128 ", "-1 ")),
+  EXPECT_THAT(particleError(replaced(mphParticles, "0.0", "-1")),
+              HasSubstr("expected a time that is not negative"));
+  EXPECT_THAT(particleError(replaced(mphParticles, "128 ", "")), StartsWith("box.grid:2: expected 8 numbers"));
+  EXPECT_THAT(particleError(replaced(mphParticles, "128 ", "-1 ")),
               StartsWith("box.grid:2: expected the number of particles, a whole number from 1 to "));
-  EXPECT_THAT(particleError(with(mphParticles, "128 ", "4000000000 ")),
+  EXPECT_THAT(particleError(replaced(mphParticles, "128 ", "4000000000 ")),
               StartsWith("box.grid:2: expected rows of 4000000000 particles, found a file of "));
-  EXPECT_EQ(particleError(with(mphParticles, "128 ", "127 ")),
+  EXPECT_EQ(particleError(replaced(mphParticles, "128 ", "127 ")),
             "box.grid:130: expected 127 particles, as many as the second row says, found more");
   EXPECT_EQ(particleError(mphParticles.substr(0, mphParticles.rfind('\n', mphParticles.size() - 2) + 1)),
             "box.grid:129: expected 128 particles, the file ends after 127");
   EXPECT_THAT(particleError(mphParticles.substr(0, mphParticles.size() - 4)),
               StartsWith("box.grid:130: expected 7 values"));
   EXPECT_EQ(
-      particleError(with(mphParticles, "\n1 ", "\n4 ")),
+      particleError(replaced(mphParticles, "\n1 ", "\n4 ")),
       "box.grid:3: expected a type, 0 and 1 for fluids, 2 and 3 for walls, a whole number from 0 to 3, found '4'");
-  EXPECT_EQ(particleError(with(mphParticles, "0.25", "inf")), "box.grid:3: expected a finite number, found 'inf'");
-  EXPECT_EQ(particleError(with(mphParticles, "5.000000e-04", "1")),
+  EXPECT_EQ(particleError(replaced(mphParticles, "0.25", "inf")),
+            "box.grid:3: expected a finite number, found 'inf'");
+  EXPECT_EQ(particleError(replaced(mphParticles, "5.000000e-04", "1")),
             "box.grid:3: expected a particle inside of the domain, x from -0.004 to less than 0.014, found 1");
-  EXPECT_EQ(particleError(with(mphParticles, "-2e-3 2e-3", "2e-3 2e-3")),
+  EXPECT_EQ(particleError(replaced(mphParticles, "-2e-3 2e-3", "2e-3 2e-3")),
             "box.grid:2: expected the least z and then the largest z, found 0.002 and 0.002");
 }
 
@@ -115,16 +113,16 @@ TEST(MphCuboids, MessagesNameLineAndWhatWasExpected) {
               StartsWith("box.boid:4: the file has no cuboid"));
   EXPECT_EQ(cuboidError(mphCuboids.substr(0, mphCuboids.rfind("EndCuboid"))),
             "box.boid:24: the file ends in the cuboid of line 19");
-  EXPECT_EQ(cuboidError(with(mphCuboids, "  Type      1\n", "")),
+  EXPECT_EQ(cuboidError(replaced(mphCuboids, "  Type      1\n", "")),
             "box.boid:10: expected 'Type' in the cuboid, which ends without it");
-  EXPECT_THAT(cuboidError(with(mphCuboids, "Type      1", "Type 1.5")), HasSubstr("found '1.5'"));
-  EXPECT_EQ(cuboidError(with(mphCuboids, "Type ", "Tipe ")),
+  EXPECT_THAT(cuboidError(replaced(mphCuboids, "Type      1", "Type 1.5")), HasSubstr("found '1.5'"));
+  EXPECT_EQ(cuboidError(replaced(mphCuboids, "Type ", "Tipe ")),
             "box.boid:7: expected 'Spacing', 'Type', 'Lower', 'Upper', 'Velocity' or 'EndCuboid', found 'Tipe'");
-  EXPECT_THAT(cuboidError(with(mphCuboids, "Spacing   1e-3", "Spacing 2e-3")),
+  EXPECT_THAT(cuboidError(replaced(mphCuboids, "Spacing   1e-3", "Spacing 2e-3")),
               StartsWith("box.boid:6: expected the Spacing to be the ParticleDistance, 0.001, found 0.002"));
-  EXPECT_EQ(cuboidError(with(mphCuboids, "4e-3 6e-3 0.5e-3", "4e-3 -6e-3 0.5e-3")),
+  EXPECT_EQ(cuboidError(replaced(mphCuboids, "4e-3 6e-3 0.5e-3", "4e-3 -6e-3 0.5e-3")),
             "box.boid:11: expected the y of Lower to be less than that of Upper, found 0 and -0.006");
-  EXPECT_EQ(cuboidError(with(mphCuboids, "4e-3 6e-3 0.5e-3", "4e-3 6e-3")),
+  EXPECT_EQ(cuboidError(replaced(mphCuboids, "4e-3 6e-3 0.5e-3", "4e-3 6e-3")),
             "box.boid:9: Upper: expected 3 values, found 2");
   EXPECT_EQ(cuboidError(mphCuboids + "LowerDomain 0 0 0\n"),
             "box.boid:26: 'LowerDomain' stands twice; expected it once");
@@ -135,11 +133,11 @@ TEST(MphCuboids, MessagesNameLineAndWhatWasExpected) {
 }
 
 TEST(ImportedCase, WarnsOfWhatIsLeftOut) {
-  std::string text = with(mphParameters, "SurfaceTension           0      0 ", "SurfaceTension 0.01 0.07 ");
-  text = with(text, "InteractionRatio(Type0)  1      1", "InteractionRatio(Type1) 1 0.5") + "Colour 1\n";
-  text = with(text, "0 -10 0", "0 -10 1");
-  text = with(text, "Velocity 0 0 0  Omega 0 0 0", "Velocity 1 0 2  Omega 3 0 0");
-  const ImportedCase imported = converted(text, with(mphCuboids, "0.25 -0.5 0", "0.25 -0.5 1"));
+  std::string text = replaced(mphParameters, "SurfaceTension           0      0 ", "SurfaceTension 0.01 0.07 ");
+  text = replaced(text, "InteractionRatio(Type0)  1      1", "InteractionRatio(Type1) 1 0.5") + "Colour 1\n";
+  text = replaced(text, "0 -10 0", "0 -10 1");
+  text = replaced(text, "Velocity 0 0 0  Omega 0 0 0", "Velocity 1 0 2  Omega 3 0 0");
+  const ImportedCase imported = converted(text, replaced(mphCuboids, "0.25 -0.5 0", "0.25 -0.5 1"));
   EXPECT_THAT(
       imported.warnings,
       ElementsAre(
@@ -159,8 +157,8 @@ TEST(ImportedCase, WarnsOfWhatIsLeftOut) {
 }
 
 TEST(ImportedCase, WarnsOfVelocitiesOfWallsAndFractionsOfSpacings) {
-  std::string cuboids = with(mphCuboids, "Upper     4e-3 6e-3", "Upper 4e-3 6.4e-3");
-  cuboids = with(cuboids, "Velocity  0 0 0", "Velocity 1 0 0");
+  std::string cuboids = replaced(mphCuboids, "Upper     4e-3 6e-3", "Upper 4e-3 6.4e-3");
+  cuboids = replaced(cuboids, "Velocity  0 0 0", "Velocity 1 0 0");
   EXPECT_THAT(
       converted(mphParameters, cuboids).warnings,
       ElementsAre("box.boid: velocities of type 2 are not those of the row Wall2 in box.data, and left out",
@@ -170,17 +168,17 @@ TEST(ImportedCase, WarnsOfVelocitiesOfWallsAndFractionsOfSpacings) {
 
 TEST(ImportedCase, ShortDomainIsOpen) {
   const ImportedCase imported =
-      converted(mphParameters, with(mphCuboids, "14e-3 14e-3  2e-3", "14e-3 6.7e-3 2e-3"));
+      converted(mphParameters, replaced(mphCuboids, "14e-3 14e-3  2e-3", "14e-3 6.7e-3 2e-3"));
   EXPECT_EQ(imported.value.domain.periodic, (std::array<bool, 3>{true, false, false}));
   EXPECT_THAT(imported.warnings, ElementsAre(HasSubstr("so open there and not periodic")));
 }
 
 TEST(ImportedCase, ParticlesOfALaterTime) {
-  const MphGeometry g = readMphParticles("box.grid", with(mphParticles, "0.0", "1e-3"));
+  const MphGeometry g = readMphParticles("box.grid", replaced(mphParticles, "0.0", "1e-3"));
   const ImportedCase imported = converted(mphParameters, g);
   EXPECT_DOUBLE_EQ(imported.value.time.end, 3e-3);
   EXPECT_THAT(imported.warnings, ElementsAre(StartsWith("box.grid: the particles are those of t = 0.001")));
-  const MphGeometry late = readMphParticles("box.grid", with(mphParticles, "0.0", "1"));
+  const MphGeometry late = readMphParticles("box.grid", replaced(mphParticles, "0.0", "1"));
   EXPECT_THAT(
       messageOf<InputError>([&] { converted(mphParameters, late); }),
       StartsWith("box.data:5: EndTime: expected a time after that of the particles in box.grid, 1, found"));
@@ -202,11 +200,12 @@ TEST(ImportedCase, VelocitiesAreThoseOfTheParticles) {
 }
 
 TEST(ImportedCase, NeedsTheDensitiesOfItsTypes) {
-  EXPECT_EQ(messageOf<InputError>([] { converted(with(mphParameters, "1000 ", "0 ")); }),
+  EXPECT_EQ(messageOf<InputError>([] { converted(replaced(mphParameters, "1000 ", "0 ")); }),
             "box.data:9: Density: expected a positive number for type 1, of which there are particles, found 0");
-  EXPECT_EQ(converted(with(mphParameters, "1100 ", "0 ")).value.materials.size(), 3u) << "type 0 has no particles";
+  EXPECT_EQ(converted(replaced(mphParameters, "1100 ", "0 ")).value.materials.size(), 3u)
+      << "type 0 has no particles";
   EXPECT_THAT(messageOf<InputError>(
-                  [] { converted(with(mphParameters, "RadiusRatioP             1.8", "RadiusRatioP 90")); }),
+                  [] { converted(replaced(mphParameters, "RadiusRatioP             1.8", "RadiusRatioP 90")); }),
               StartsWith("box.data, box.boid: cannot be a case: "));
 }
 

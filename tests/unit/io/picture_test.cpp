@@ -56,20 +56,22 @@ class Png {
   std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy)> surface_;
 };
 
-constexpr double spacing = 1e-3;  // [m]
+constexpr double pictureSpacing = 1e-3;  // [m]
 constexpr Rgb wallGrey{0.80, 0.80, 0.82};
 
 /// Lattice of particles on [from, to), all with the speed of their half: left 0, right 1 m/s.
 Frame block(int dimensions, Vec<3> from, Vec<3> to) {
   Frame frame;
   frame.dimensions = dimensions;
-  const auto cells = [&](int k) { return k < dimensions ? int(std::lround((to[k] - from[k]) / spacing)) : 1; };
+  const auto cells = [&](int k) {
+    return k < dimensions ? int(std::lround((to[k] - from[k]) / pictureSpacing)) : 1;
+  };
   for (int c = 0; c < cells(2); ++c)
     for (int b = 0; b < cells(1); ++b)
       for (int a = 0; a < cells(0); ++a) {
         Vec<3> x = from;
         const std::array<int, 3> cell{a, b, c};
-        for (int k = 0; k < dimensions; ++k) x[k] += (cell[static_cast<std::size_t>(k)] + 0.5) * spacing;
+        for (int k = 0; k < dimensions; ++k) x[k] += (cell[static_cast<std::size_t>(k)] + 0.5) * pictureSpacing;
         frame.position.push_back(x);
         frame.velocity.push_back({0, a < cells(0) / 2 ? 0.0 : 1.0, 0});
         frame.pressure.push_back(-5 + 10 * (a % 2));
@@ -79,7 +81,7 @@ Frame block(int dimensions, Vec<3> from, Vec<3> to) {
 
 PictureOptions options() {
   PictureOptions o;
-  o.spacing = spacing;
+  o.spacing = pictureSpacing;
   o.title = "Test";
   return o;
 }

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const std::vector<std::string> names{"a.p0.vtp", "a.p1.vtp", "a.p2.vtp"};
+const std::vector<std::string> pieceNames{"a.p0.vtp", "a.p1.vtp", "a.p2.vtp"};
 
 /// A frame of 30 particles in three files of 10, 1 and 19, and their index.
 struct Pieces {
@@ -33,7 +33,7 @@ struct Pieces {
       whole.dynamicViscosity.push_back(2.0 / (1 + k));
     }
     write(0, part(0, 10)), write(1, part(10, 11)), write(2, part(11, 30));
-    writePvtp(index, names);
+    writePvtp(index, pieceNames);
   }
 
   Frame part(std::ptrdiff_t begin, std::ptrdiff_t end) const {
@@ -47,7 +47,7 @@ struct Pieces {
 
   void write(int rank, const Frame& piece, const OutputFields& fields = {},
              OutputPrecision precision = OutputPrecision::Double) const {
-    writeVtp(directory / names[static_cast<std::size_t>(rank)], piece, fields, precision);
+    writeVtp(directory / pieceNames[static_cast<std::size_t>(rank)], piece, fields, precision);
   }
 
   std::string changed(const std::string& from, const std::string& to) const {
@@ -63,7 +63,7 @@ struct Pieces {
   }
   void expectUnwritable(const std::string& part) const {
     const std::string before = content(index);
-    const std::string message = messageOf<RunError>([&] { writePvtp(index, names); });
+    const std::string message = messageOf<RunError>([&] { writePvtp(index, pieceNames); });
     EXPECT_NE(message.find(part), std::string::npos) << message;
     EXPECT_EQ(content(index), before);
   }
@@ -130,16 +130,16 @@ TEST(Pvtp, APieceWithoutParticlesIsRead) {
 
 TEST(Pvtp, OtherFilesAreReadAsTheyAre) {
   const Pieces pieces;
-  EXPECT_EQ(readFrame(pieces.directory / names[2]).id, pieces.part(11, 30).id);
+  EXPECT_EQ(readFrame(pieces.directory / pieceNames[2]).id, pieces.part(11, 30).id);
 }
 
 TEST(Pvtp, IsNotWrittenWithoutItsPieces) {
   const Pieces pieces;
-  fs::remove(pieces.directory / names[2]);
-  pieces.expectUnwritable("a.pvtp: its piece " + (pieces.directory / names[2]).string() + ": No such file");
+  fs::remove(pieces.directory / pieceNames[2]);
+  pieces.expectUnwritable("a.pvtp: its piece " + (pieces.directory / pieceNames[2]).string() + ": No such file");
   pieces.write(2, pieces.part(11, 30));
-  const std::string sound = content(pieces.directory / names[0]);
-  put(pieces.directory / names[0], sound.substr(0, sound.size() - 9));
+  const std::string sound = content(pieces.directory / pieceNames[0]);
+  put(pieces.directory / pieceNames[0], sound.substr(0, sound.size() - 9));
   pieces.expectUnwritable("a.p0.vtp: truncated");
   pieces.write(0, pieces.part(0, 0));
   pieces.expectUnwritable("a.p0.vtp: no particles");
@@ -159,12 +159,12 @@ TEST(Pvtp, IsNotWrittenForPiecesOfSeveralFrames) {
 
 TEST(Pvtp, APieceThatIsMissingOrDamagedIsNamed) {
   const Pieces pieces;
-  const std::string sound = content(pieces.directory / names[2]);
-  put(pieces.directory / names[2], sound.substr(0, sound.size() / 2));
+  const std::string sound = content(pieces.directory / pieceNames[2]);
+  put(pieces.directory / pieceNames[2], sound.substr(0, sound.size() / 2));
   pieces.expectUnreadable("a.p2.vtp: truncated");
-  put(pieces.directory / names[2], "<VTKFile type=\"ImageData\">");
+  put(pieces.directory / pieceNames[2], "<VTKFile type=\"ImageData\">");
   pieces.expectUnreadable("a.p2.vtp: not a particle file");
-  fs::remove(pieces.directory / names[2]);
+  fs::remove(pieces.directory / pieceNames[2]);
   pieces.expectUnreadable("a.p2.vtp: No such file");
 }
 

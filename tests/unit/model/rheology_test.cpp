@@ -18,7 +18,7 @@ const Rheology herschelBulkley{.model = HerschelBulkley,
                                .regularisation = 100,
                                .mostViscosity = 1e4};
 const Rheology casson{.model = Casson, .yieldStress = 5, .plasticViscosity = 0.1, .regularisation = 400};
-const Rheology cross{
+const Rheology crossModel{
     .model = Cross, .flowIndex = 0.25, .zeroViscosity = 100, .infiniteViscosity = 1, .timeConstant = 2};
 const Rheology carreau{.model = CarreauYasuda,
                        .flowIndex = 0.4,
@@ -35,7 +35,7 @@ TEST(Rheology, IsTheFormulaOfItsModel) {
   EXPECT_NEAR(herschelBulkley.viscosity(8), 2 / std::sqrt(8) + 50.0 / 8, 1e-12);
   const double root = std::sqrt(0.1) + std::sqrt(5.0 / 8) * (1 - std::exp(-std::sqrt(400 * 8.0)));
   EXPECT_NEAR(casson.viscosity(8), root * root, 1e-14);
-  EXPECT_NEAR(cross.viscosity(8), 1 + 99 / (1 + 8), 1e-12);  // (2 8)^(3/4) = 8
+  EXPECT_NEAR(crossModel.viscosity(8), 1 + 99 / (1 + 8), 1e-12);  // (2 8)^(3/4) = 8
   EXPECT_NEAR(carreau.viscosity(8), 1 + 99 * std::pow(1 + std::pow(16, 1.3), -0.6 / 1.3), 1e-12);
   EXPECT_EQ(Rheology::newtonian(7).viscosity(8), 7);
 }
@@ -47,15 +47,15 @@ TEST(Rheology, OfAFluidAtRestIsFinite) {
   EXPECT_EQ(bingham.viscosity(0), 2 + 20 * 50);
   EXPECT_EQ(herschelBulkley.viscosity(0), 1e4);
   EXPECT_NEAR(casson.viscosity(0), std::pow(std::sqrt(0.1) + std::sqrt(5 * 400), 2), 1e-10);
-  EXPECT_EQ(cross.viscosity(0), 100);
+  EXPECT_EQ(crossModel.viscosity(0), 100);
   EXPECT_EQ(carreau.viscosity(0), 100);
   EXPECT_EQ(Rheology::newtonian(7).viscosity(0), 7);
-  for (const Rheology& r : {bingham, casson, cross, carreau})  // no jump where the series begins
+  for (const Rheology& r : {bingham, casson, crossModel, carreau})  // no jump where the series begins
     EXPECT_NEAR(r.viscosity(1e-12), r.viscosity(0), 1e-4 * r.viscosity(0));
 }
 
 TEST(Rheology, GrowsInStressAndFallsInViscosity) {
-  for (const Rheology& r : {powerLaw(0.5), bingham, herschelBulkley, casson, cross, carreau})
+  for (const Rheology& r : {powerLaw(0.5), bingham, herschelBulkley, casson, crossModel, carreau})
     for (double rate = 1e-8; rate < 1e8; rate *= 1.3) {
       ASSERT_LE(r.viscosity(1.3 * rate), r.viscosity(rate) * (1 + 1e-14));
       ASSERT_GT(r.viscosity(1.3 * rate) * 1.3 * rate, r.viscosity(rate) * rate) << rate;

@@ -30,7 +30,7 @@ Case fallingBlock(int dimensions) {
   return c;
 }
 
-AnyParticles particlesOf(const Case& c) {
+AnyParticles anyParticlesOf(const Case& c) {
   std::vector<std::string> notes;
   return createParticles(c, notes);
 }
@@ -38,10 +38,10 @@ AnyParticles particlesOf(const Case& c) {
 template <int D>
 void expectSameSteps() {
   const Case c = fallingBlock(D);
-  AnySimulation any(c, particlesOf(c));
+  AnySimulation any(c, anyParticlesOf(c));
   std::vector<std::string> notes;
   Simulation<D> simulation(c, createParticles<D>(c, notes));
-  EXPECT_EQ(any.numbers(), particlesOf(c).numbers());
+  EXPECT_EQ(any.numbers(), anyParticlesOf(c).numbers());
   for (int k = 0; k < 3; ++k) {
     const StepReport a = any.advance(), b = simulation.advance();
     EXPECT_EQ(a.iterations, b.iterations);
@@ -71,7 +71,7 @@ TEST(AnySimulation, StepsLikeTheSimulationThatItChose) {
 /// All particles fall alike: what is given them stays on top of what gravity adds.
 TEST(AnySimulation, GivenVelocitiesAndPositionsAreGoneOnFrom) {
   const Case c = fallingBlock(2);
-  AnySimulation simulation(c, particlesOf(c));
+  AnySimulation simulation(c, anyParticlesOf(c));
   simulation.advance();
   const FieldMemory x = simulation.field(FluidField::Position);
   ASSERT_EQ(x.components, 2);
@@ -87,7 +87,7 @@ TEST(AnySimulation, GivenVelocitiesAndPositionsAreGoneOnFrom) {
 
 TEST(AnySimulation, RefusesToGiveTheFluidWhatCannotBe) {
   const Case c = fallingBlock(2);
-  AnySimulation simulation(c, particlesOf(c));
+  AnySimulation simulation(c, anyParticlesOf(c));
   const std::size_t n = simulation.field(FluidField::Velocity).count;
   const std::vector<double> outside(2 * n, 1.0), few(2, 0.0), endless(2 * n, HUGE_VAL), warm(n, 300.0);
   EXPECT_THROW(simulation.giveFluid({outside, {}, {}}), InputError);
@@ -103,9 +103,9 @@ TEST(AnySimulation, RefusesWhatItCannotRun) {
   EXPECT_THROW(AnySimulation(c, AnyParticles(3)), InputError);
   Case bad = c;
   bad.time.step = 0;
-  EXPECT_THROW(AnySimulation(bad, particlesOf(c)), CaseError);
+  EXPECT_THROW(AnySimulation(bad, anyParticlesOf(c)), CaseError);
   if (!cudaCompiled) {
-    EXPECT_THROW(AnySimulation(c, particlesOf(c), BackendKind::Cuda), InputError);
+    EXPECT_THROW(AnySimulation(c, anyParticlesOf(c), BackendKind::Cuda), InputError);
   }
 }
 

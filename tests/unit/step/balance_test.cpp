@@ -31,7 +31,7 @@ struct Momenta {
 };
 
 template <int D>
-void checkEnergy(const Case& c, Simulation<D>& s) {
+void checkEnergyBalance(const Case& c, Simulation<D>& s) {
   const Diagnostics before = s.diagnostics();
   const StepReport report = s.advance();
   const Balance& b = *report.balance;
@@ -103,8 +103,8 @@ void checkMotions(Check&& check) {
 }
 
 TEST(Balance, EnergyIsConserved) {
-  checkMotions<2>(checkEnergy<2>);
-  checkMotions<3>(checkEnergy<3>);
+  checkMotions<2>(checkEnergyBalance<2>);
+  checkMotions<3>(checkEnergyBalance<3>);
 }
 
 /// Walls that move take part: they are wetted.

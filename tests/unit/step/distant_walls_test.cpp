@@ -107,7 +107,7 @@ TEST(DistantWalls, FollowStepsThatVaryAndParticlesThatAreShifted) {
 
 /// The state is continued while the fluid is in flight and walls have come and gone.
 template <int D>
-void checkContinued(const Case& c, int steps) {
+void checkContinuedWalls(const Case& c, int steps) {
   Simulation<D> whole(c, particlesOf<D>(c));
   for (int k = 0; k < steps; ++k) whole.advance();
   omp_set_num_threads(2);
@@ -123,9 +123,9 @@ void checkContinued(const Case& c, int steps) {
 }
 
 TEST(DistantWalls, AContinuedRunGivesTheSameBitsOnAnyNumberOfThreads) {
-  checkContinued<2>(passingBody(2, MethodKind::MphI), 26);
-  checkContinued<2>(passingBody(2, MethodKind::Isph), 52);
-  checkContinued<3>(passingBody(3, MethodKind::MphI), 10);
+  checkContinuedWalls<2>(passingBody(2, MethodKind::MphI), 26);
+  checkContinuedWalls<2>(passingBody(2, MethodKind::Isph), 52);
+  checkContinuedWalls<3>(passingBody(3, MethodKind::MphI), 10);
 }
 
 /// What a run holds does not depend on how long its floor is.

@@ -18,7 +18,7 @@ Case gob(const std::vector<std::string>& overrides = {}) {
   return readCase(std::string(TREACLE_CASES) + "/glass-gob-2d.toml", overrides);
 }
 
-Particles<2> particlesOf(const Case& c) {
+Particles<2> gobParticles(const Case& c) {
   std::vector<std::string> notes;
   return createParticles<2>(c, notes);
 }
@@ -112,7 +112,7 @@ TEST(HeatSteps, HaveNoNewExtremes) {
 TEST(HeatSteps, KeepOneTemperature) {
   Case c = gob({"heat.ambient_temperature=700", "gob.temperature=700", "plate.temperature=700",
                 "heat.viscous_heating=false"});
-  Simulation<2> s(c, particlesOf(c));
+  Simulation<2> s(c, gobParticles(c));
   for (int k = 0; k < 3; ++k) s.advance();
   for (const double T : s.particles().temperature) EXPECT_NEAR(T, 700, 1e-9);
 }
@@ -121,7 +121,7 @@ TEST(HeatSteps, KeepOneTemperature) {
 TEST(HeatSteps, RadiateByTheFourthPower) {
   Case c = gob({"gravity.acceleration=[0,0]", "glass.conductivity=4e4", "heat.heat_transfer=0",
                 "plate.temperature=0", "plate.wall_conductance=0", "gob.center=[0,0.02]", "time.step=0.05"});
-  Simulation<2> s(c, particlesOf(c));
+  Simulation<2> s(c, gobParticles(c));
   for (int k = 0; k < 100; ++k) s.advance();
   double T = 1375;
   for (int k = 0; k < 5000; ++k)
@@ -133,7 +133,7 @@ TEST(HeatSteps, RadiateByTheFourthPower) {
 
 TEST(HeatSteps, ContinueFromACopyWithTheSameBits) {
   const Case c = gob();
-  Simulation<2> whole(c, particlesOf(c));
+  Simulation<2> whole(c, gobParticles(c));
   for (int k = 0; k < 5; ++k) whole.advance();
   Particles<2> state = stateOf(whole);
   ASSERT_TRUE(state.has.temperatures);
@@ -144,21 +144,21 @@ TEST(HeatSteps, ContinueFromACopyWithTheSameBits) {
 
 TEST(HeatSteps, NeedTemperatures) {
   const Case c = gob();
-  Particles<2> p = particlesOf(c);
+  Particles<2> p = gobParticles(c);
   p.has.temperatures = false;
   p.temperature.resize(0);
   EXPECT_THROW(Simulation<2>(c, std::move(p)), InputError);
   Case cold = gob();
   cold.heat.reset();
   cold.materials[0].viscosityShift.reset();
-  Simulation<2> without(cold, particlesOf(c));
+  Simulation<2> without(cold, gobParticles(c));
   without.advance();
   EXPECT_FALSE(without.particles().has.temperatures);
 }
 
 TEST(HeatSteps, SayWhatFailed) {
   const Case c = gob({"heat.max_iterations=1", "heat.tolerance=1e-20"});
-  Simulation<2> s(c, particlesOf(c));
+  Simulation<2> s(c, gobParticles(c));
   try {
     s.advance();
     FAIL() << "one iteration was enough";

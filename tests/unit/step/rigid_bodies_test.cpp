@@ -208,7 +208,7 @@ TEST(RigidBodies, KeepWhatIsLocked) {
 }
 
 template <int D>
-void checkContinued(Case c) {
+void checkContinuedBodies(Case c) {
   c.gravity[1] = -10;
   c.bodies[1].rigid.angularVelocity = {0, 0, 3};
   Simulation<D> whole(c, created<D>(c));
@@ -224,11 +224,11 @@ void checkContinued(Case c) {
 }
 
 TEST(RigidBodies, ContinueFromACopyWithTheSameBits) {
-  checkContinued<2>(blockCase(2, 300));
-  checkContinued<3>(blockCase(3, 3000));
-  checkContinued<2>(withIsph(blockCase(2, 300), 1e-3));
-  checkContinued<2>(withIsph(blockCase(2, 300), 5));
-  checkContinued<3>(withIsph(blockCase(3, 3000), 1e-3));
+  checkContinuedBodies<2>(blockCase(2, 300));
+  checkContinuedBodies<3>(blockCase(3, 3000));
+  checkContinuedBodies<2>(withIsph(blockCase(2, 300), 1e-3));
+  checkContinuedBodies<2>(withIsph(blockCase(2, 300), 5));
+  checkContinuedBodies<3>(withIsph(blockCase(3, 3000), 1e-3));
 }
 
 /// Least height of the particles of the block above the floor's surface, less half a spacing.

@@ -77,7 +77,7 @@ Case tumblingCase(int dimensions, double angle, double friction) {
 }
 
 template <int D>
-void checkEnergy(const Case& c) {
+void checkFrictionEnergy(const Case& c) {
   Simulation<D> simulation(c, created<D>(c));
   const auto energy = [&] {
     const RigidBody& block = blockOf(simulation);
@@ -97,11 +97,11 @@ void checkEnergy(const Case& c) {
 
 TEST(RigidFriction, TakesEnergyAndGivesNone) {
   for (const double friction : {0.3, 2.0}) {
-    for (const double angle : {0.0, 30.0}) checkEnergy<2>(tumblingCase(2, angle, friction));
-    checkEnergy<3>(tumblingCase(3, 20, friction));
+    for (const double angle : {0.0, 30.0}) checkFrictionEnergy<2>(tumblingCase(2, angle, friction));
+    checkFrictionEnergy<3>(tumblingCase(3, 20, friction));
     Case flat = isphSlopeCase(0, friction);
     flat.bodies[1].velocity = {0.05, 0, 0};
-    checkEnergy<2>(flat);
+    checkFrictionEnergy<2>(flat);
   }
 }
 
@@ -171,7 +171,7 @@ TEST(RigidFriction, NeedsTwo) {
 }
 
 template <int D>
-void checkContinued(const Case& c) {
+void checkContinuedFriction(const Case& c) {
   Simulation<D> whole(c, created<D>(c));
   for (int k = 0; k < 10; ++k) whole.advance();
   Simulation<D> rest(c, stateOf(whole), whole.step(), whole.time());
@@ -183,9 +183,9 @@ void checkContinued(const Case& c) {
 }
 
 TEST(RigidFriction, ContinuesFromACopyWithTheSameBits) {
-  checkContinued<2>(tumblingCase(2, 30, 0.3));
-  checkContinued<3>(tumblingCase(3, 20, 0.3));
-  checkContinued<2>(isphSlopeCase(slope, 0.3));
+  checkContinuedFriction<2>(tumblingCase(2, 30, 0.3));
+  checkContinuedFriction<3>(tumblingCase(3, 20, 0.3));
+  checkContinuedFriction<2>(isphSlopeCase(slope, 0.3));
 }
 
 }  // namespace
