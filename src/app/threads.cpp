@@ -1,10 +1,12 @@
 #include "threads.hpp"
 
 #include "treacle/core/error.hpp"
+#include "treacle/core/team.hpp"
 
 #include <fmt/format.h>
 #include <omp.h>
 
+#include <cstdlib>
 #include <latch>
 #include <system_error>
 #include <thread>
@@ -31,6 +33,7 @@ int startable(int count) {
 
 void useThreads(int count) {
   if (count > 0) omp_set_num_threads(count);
+  Team::fitToWork(count == 0 && !std::getenv("OMP_NUM_THREADS"));
 }
 
 void startThreads(int count) {

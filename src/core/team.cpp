@@ -19,6 +19,9 @@ namespace {
 /// this core, and a system gives those who slept a core sooner than those who did not.
 constexpr int looks = 20000;
 
+/// Some 30 microseconds of a product; a thread that waits is called within one.
+constexpr std::size_t workPerThread = 500;
+
 /// Until the condition holds for the number. Returns whether it took no sleep.
 template <class Condition>
 bool waitUntil(const std::atomic<unsigned>& number, Condition&& condition) {
@@ -64,10 +67,24 @@ struct Patience {
 };
 thread_local Patience patience;
 
+/// So many threads of OpenMP until it goes, for loops without a team, too.
+class ThreadLimit {
+ public:
+  explicit ThreadLimit(int count) : before_(omp_get_max_threads()) { omp_set_num_threads(count); }
+  ~ThreadLimit() { omp_set_num_threads(before_); }
+  ThreadLimit(const ThreadLimit&) = delete;
+  ThreadLimit& operator=(const ThreadLimit&) = delete;
+
+ private:
+  int before_;
+};
+
 }  // namespace
 
-void Team::lead(const std::function<void()>& body) {
-  const int threads = omp_get_max_threads();
+void Team::lead(const std::function<void()>& body, std::size_t work) {
+  int threads = omp_get_max_threads();
+  if (fitsWork_) threads = static_cast<int>(std::min(work / workPerThread + 1, static_cast<std::size_t>(threads)));
+  const ThreadLimit limit(threads);
   if (threads == 1 || omp_in_parallel()) return body();
   Team team;
   std::exception_ptr failure;

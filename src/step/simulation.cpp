@@ -29,11 +29,11 @@
 namespace treacle {
 namespace {
 
-/// Loops of the host have a team.
-template <class Backend, class F>
-void withTeam(F&& body) {
+/// Loops of the host have a team. A particle in 3D has as much to do as four in 2D.
+template <int D, class Backend, class F>
+void withTeam(std::size_t fluid, F&& body) {
   if constexpr (std::is_same_v<Backend, Cpu>)
-    Team::lead(body);
+    Team::lead(body, D == 3 ? 4 * fluid : fluid);
   else
     body();
 }
@@ -330,7 +330,7 @@ Simulation<D, Backend>::Simulation(Simulation&&) noexcept = default;
 template <int D, class Backend>
 StepReport Simulation<D, Backend>::advance() {
   StepReport report;
-  withTeam<Backend>([&] { report = state_->advance(); });
+  withTeam<D, Backend>(state_->particles.fluidCount, [&] { report = state_->advance(); });
   return report;
 }
 template <int D, class Backend>
@@ -344,7 +344,7 @@ void Simulation<D, Backend>::copyField(FluidField field, void* host) const {
 }
 template <int D, class Backend>
 void Simulation<D, Backend>::giveFluid(const GivenFluid& given) {
-  withTeam<Backend>([&] { state_->giveFluid(given); });
+  withTeam<D, Backend>(state_->particles.fluidCount, [&] { state_->giveFluid(given); });
 }
 template <int D, class Backend>
 void Simulation<D, Backend>::giveMotion(std::size_t body, const Body& as) {
@@ -353,7 +353,7 @@ void Simulation<D, Backend>::giveMotion(std::size_t body, const Body& as) {
 template <int D, class Backend>
 std::vector<SolverTrial> Simulation<D, Backend>::convergence(std::span<const SolverSettings> solvers) {
   std::vector<SolverTrial> trials;
-  withTeam<Backend>([&] { trials = state_->convergence(solvers); });
+  withTeam<D, Backend>(state_->particles.fluidCount, [&] { trials = state_->convergence(solvers); });
   return trials;
 }
 template <int D, class Backend>

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstddef>
 #include <functional>
+#include <limits>
 
 namespace treacle {
 
@@ -11,8 +12,14 @@ namespace treacle {
 class Team {
  public:
   /// Runs body() on the calling thread while the other threads of OpenMP serve its loops (parallel.hpp). Throws
-  /// what body throws. With one thread, or inside another team, body() has no team of its own.
-  static void lead(const std::function<void()>& body);
+  /// what body throws. With one thread, or inside another team, body() has no team of its own. `work`: of a loop,
+  /// as so many particles in 2D; it counts where teams fit their work.
+  static void lead(const std::function<void()>& body, std::size_t work = std::numeric_limits<std::size_t>::max());
+
+  /// Whether teams leave out threads that would have little to do: each gets a work of 250 or more. To call a
+  /// thread for less takes as long as it saves, and beside other programs far longer. False: all threads of
+  /// OpenMP.
+  static void fitToWork(bool fit) { fitsWork_ = fit; }
 
   /// The team that the calling thread leads and whose threads are waiting; null: none.
   static Team* led() { return led_; }
@@ -48,6 +55,7 @@ class Team {
   void serve(int thread);
 
   static inline thread_local Team* led_ = nullptr;
+  static inline std::atomic<bool> fitsWork_{false};
 
   int size_ = 1;
   // What the leader writes and the others read in one cache line, and what they write in another: a job is known

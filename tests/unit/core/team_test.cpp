@@ -50,6 +50,22 @@ TEST(Team, SharesLoopsOfAllLengthsOncePerIteration) {
   }
 }
 
+TEST(Team, FitsItsWorkWhereItIsToldTo) {
+  const Threads limit(4);
+  const auto sizeFor = [](std::size_t work) {
+    int size = 0;
+    Team::lead([&] { size = Team::led() ? Team::led()->size() : omp_get_max_threads(); }, work);
+    return size;
+  };
+  EXPECT_EQ(sizeFor(314), 4);
+  Team::fitToWork(true);
+  EXPECT_EQ(sizeFor(0), 1);
+  EXPECT_EQ(sizeFor(314), 1);
+  EXPECT_EQ(sizeFor(600), 2);
+  EXPECT_EQ(sizeFor(1'000'000), 4);
+  Team::fitToWork(false);
+}
+
 TEST(Team, HasAShareForEveryThread) {
   leadAnew(3, [] {
     std::vector<int> threads(3, -1);
