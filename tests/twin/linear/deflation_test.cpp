@@ -32,22 +32,22 @@ double distance(const std::vector<T>& a, const Buffer<T>& b) {
 
 /// One vector on both sides.
 template <class T = double>
-struct Both {
+struct BothFields {
   std::vector<T> host;
   Buffer<T, Cuda> device;
 
-  Both(const Context<Cuda>& context, std::size_t n, unsigned seed)
+  BothFields(const Context<Cuda>& context, std::size_t n, unsigned seed)
       : host(randomValues<T>(n, seed)), device(copyToDevice<T>(context, host)) {}
   double difference(const Context<Cuda>& context) const { return distance(host, copyToHost(context, device)); }
 };
 
 /// Scalars on both sides.
 template <class S>
-struct BothScalars {
+struct BothDeflationScalars {
   S host;
   Buffer<S, Cuda> device;
 
-  BothScalars(const Context<Cuda>& context, const S& start) : host(start), device(context, 1) {
+  BothDeflationScalars(const Context<Cuda>& context, const S& start) : host(start), device(context, 1) {
     copyBytesToDevice(context, &start, device.data(), sizeof(start));
   }
   S found(const Context<Cuda>& context) const { return valueOnHost(context, device.data()); }
@@ -62,12 +62,12 @@ void compareDeflated(std::size_t n, int modes) {
   Context<Cpu> cpu;
   Context<Cuda> cuda;
   const double scale = kernelTolerance * (1 + std::sqrt(double(n)));
-  Both<float> w(cuda, n * modes, 1);
-  Both aw(cuda, n * modes, 2), r(cuda, n, 3), z(cuda, n, 4), p(cuda, n, 5), x(cuda, n, 6), wide(cuda, n, 7);
+  BothFields<float> w(cuda, n * modes, 1);
+  BothFields aw(cuda, n * modes, 2), r(cuda, n, 3), z(cuda, n, 4), p(cuda, n, 5), x(cuda, n, 6), wide(cuda, n, 7);
   KrylovScalars start;
   start.bb = 3, start.iteration = 1, start.rho = 2;
-  BothScalars<KrylovScalars> k(cuda, start);
-  BothScalars<DeflationScalars> s(cuda, {});
+  BothDeflationScalars<KrylovScalars> k(cuda, start);
+  BothDeflationScalars<DeflationScalars> s(cuda, {});
   const Deflated host{w.host, aw.host, modes, &s.host};
   const Deflated device{w.device, aw.device, modes, s.device.data()};
 
@@ -97,7 +97,7 @@ void compareDeflated(std::size_t n, int modes) {
     next.iteration = k.host.iteration = 1;
     copyBytesToDevice(cuda, &next, k.device.data(), sizeof(next));
   }
-  for (const Both<>* v : {&x, &r, &p}) EXPECT_LE(v->difference(cuda), 1e-11);
+  for (const BothFields<>* v : {&x, &r, &p}) EXPECT_LE(v->difference(cuda), 1e-11);
 }
 
 TEST(DeflationTwin, EqualsTheCpu) {
@@ -113,16 +113,16 @@ TEST(DeflationTwin, RecordsAndCombinesLikeTheCpu) {
   constexpr int rows = DeflationScalars::maxBasis;
   for (const std::size_t n : {0u, 1u, 31u, 33u, 10007u}) {
     SCOPED_TRACE(n);
-    Both r(cuda, n, 1), p(cuda, n, 2);
-    Both<float> basis(cuda, n * rows, 3), w(cuda, n * 3, 4);
-    BothScalars<KrylovScalars> k(cuda, {});
-    BothScalars<DeflationScalars> s(cuda, {});
+    BothFields r(cuda, n, 1), p(cuda, n, 2);
+    BothFields<float> basis(cuda, n * rows, 3), w(cuda, n * 3, 4);
+    BothDeflationScalars<KrylovScalars> k(cuda, {});
+    BothDeflationScalars<DeflationScalars> s(cuda, {});
     for (const int iteration : {0, 1, 2, rows - 1, rows, rows + 1}) {
       KrylovScalars now = k.host;
       now.iteration = iteration, now.alpha = 1 + iteration;
       k.host = now;
       copyBytesToDevice(cuda, &now, k.device.data(), sizeof(now));
-      Both z(cuda, n, 10 + iteration);
+      BothFields z(cuda, n, 10 + iteration);
       for (double& v : z.host) v = std::abs(v);
       copyToDevice<double>(cuda, z.host, z.device);
       recordedDirection(cpu, z.host, z.host, p.host, &k.host, &s.host, basis.host);
@@ -152,9 +152,9 @@ TEST(DeflationTwin, SumsHaveTheSameBitsEachTime) {
   TREACLE_SKIP_WITHOUT_GPU();
   Context<Cuda> cuda;
   constexpr std::size_t n = 300007;
-  Both<float> w(cuda, n * 8, 1);
-  Both aw(cuda, n * 8, 2);
-  BothScalars<DeflationScalars> s(cuda, {});
+  BothFields<float> w(cuda, n * 8, 1);
+  BothFields aw(cuda, n * 8, 2);
+  BothDeflationScalars<DeflationScalars> s(cuda, {});
   const Deflated d{w.device, aw.device, 8, s.device.data()};
   galerkinRow(cuda, d, 3);
   const ModeMatrix first = s.found(cuda).galerkin;

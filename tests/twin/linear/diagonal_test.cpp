@@ -10,7 +10,7 @@ namespace treacle::test {
 namespace {
 
 template <int D, class T>
-void checkTwins(std::uint32_t n, double tolerance) {
+void checkDiagonalTwins(std::uint32_t n, double tolerance) {
   SCOPED_TRACE(testing::Message() << D << "-D, " << n << " particles");
   Context<Cpu> host;
   Context<Cuda> context;
@@ -51,10 +51,10 @@ void checkTwins(std::uint32_t n, double tolerance) {
 TEST(Diagonal, ActsLikeTheCpu) {
   TREACLE_SKIP_WITHOUT_GPU();
   for (std::uint32_t n : {0u, 1u, 31u, 33u, 10007u}) {
-    checkTwins<2, double>(n, operatorTolerance);
-    checkTwins<3, double>(n, operatorTolerance);
-    checkTwins<2, float>(n, singleTolerance);
-    checkTwins<3, float>(n, singleTolerance);
+    checkDiagonalTwins<2, double>(n, operatorTolerance);
+    checkDiagonalTwins<3, double>(n, operatorTolerance);
+    checkDiagonalTwins<2, float>(n, singleTolerance);
+    checkDiagonalTwins<3, float>(n, singleTolerance);
   }
 }
 

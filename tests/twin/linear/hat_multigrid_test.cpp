@@ -16,12 +16,12 @@ namespace {
 
 /// The same problem on both sides.
 template <int D, int B = 1>
-struct Both {
+struct BothHats {
   HatProblem<D, B> host;
   HatNodes<D, Cuda> nodes;
   BlockCsr<B, double, Cuda> a;
 
-  Both(Context<Cuda>& context, const HatCase<D>& c) : host(c, 0.1) {
+  BothHats(Context<Cuda>& context, const HatCase<D>& c) : host(c, 0.1) {
     numberNodes<D>(context, c.lattice, copyToDevice<std::uint8_t>(context, c.active), nodes);
     a = onDevice(context, host.a);
   }
@@ -52,7 +52,7 @@ void checkEstimates(Context<Cuda>& context, int size) {
   for (const HatCase<D>& c : hatCases<D>(size))
     for (int steps : {1, 10, 20}) {
       SCOPED_TRACE(testing::Message() << D << "-D, " << c.name << ", " << steps << " steps");
-      const Both<D, B> both(context, c);
+      const BothHats<D, B> both(context, c);
       const double expected = estimate<double>(host, both.host.a, steps);
       EXPECT_NEAR(estimate<double>(context, both.a, steps), expected, 1e-9 * expected);
       // Single precision takes fewer steps until only rounding errors are left, and not always as many on both
@@ -87,7 +87,7 @@ struct Cycles {
     SCOPED_TRACE(testing::Message() << D << "-D, " << c.name << ", " << c.active.size() << " points, degree "
                                     << degree << ", " << B << " numbers per node"
                                     << (sizeof(T) == 4 ? ", single precision" : ""));
-    Both<D, B> both(context, c);
+    BothHats<D, B> both(context, c);
     onCpu.setup(host, both.host.nodes, both.host.a, {degree, both.host.reach});
     onGpu.setup(context, both.nodes, both.a, {degree, both.host.reach});
     ASSERT_EQ(onGpu.levelCount(), onCpu.levelCount());

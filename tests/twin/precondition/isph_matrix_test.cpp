@@ -9,7 +9,7 @@ namespace treacle::test {
 namespace {
 
 template <class T>
-constexpr double toleranceOf = std::is_same_v<T, double> ? operatorTolerance : 10 * singleTolerance;
+constexpr double matrixToleranceOf = std::is_same_v<T, double> ? operatorTolerance : 10 * singleTolerance;
 
 enum class Storage { Plain, Packed };
 
@@ -41,7 +41,7 @@ struct MatrixTwin {
   }
 
   void checkParts() {
-    EXPECT_LE(differ<double>(d.context, device.diagonal, host.diagonal.span()), toleranceOf<T>);
+    EXPECT_LE(differ<double>(d.context, device.diagonal, host.diagonal.span()), matrixToleranceOf<T>);
     EXPECT_LE(differ<T>(d.context, device.inverseNear, host.inverseNear.span()), wholeTolerance);
     const Buffer<IsphMoments<D>> moments = copyToHost(d.context, device.moments);
     std::vector<float> a, b;
@@ -59,7 +59,7 @@ struct MatrixTwin {
     multiply<T>(s.context, host.a, x, y);
     multiply<T>(d.context, device.a, xOnDevice, found);
     multiply<T>(d.context, device.a, xOnDevice, again);
-    EXPECT_LE(differ<double>(d.context, found, y), toleranceOf<T>) << "product";
+    EXPECT_LE(differ<double>(d.context, found, y), matrixToleranceOf<T>) << "product";
     EXPECT_EQ(differ<double>(d.context, again, copyToHost(d.context, found).span()), 0) << "not the same bits";
     std::vector<double> single(n);
     for (std::uint32_t i = 0; i < n; ++i) single[i] = static_cast<float>(x[i]);
@@ -70,11 +70,11 @@ struct MatrixTwin {
         << "product of single numbers";
     jacobi<T>(s.context, host.a, r, y);
     jacobi<T>(d.context, device.a, rOnDevice, found);
-    EXPECT_LE(differ<double>(d.context, found, y), toleranceOf<T>) << "jacobi";
+    EXPECT_LE(differ<double>(d.context, found, y), matrixToleranceOf<T>) << "jacobi";
 
     std::vector<T> iterate(n), z(n);
     Buffer<T, Cuda> foundZ(d.context, n);
-    const double rounded = std::max(toleranceOf<T>, wholeTolerance * (sizeof(T) == 4));
+    const double rounded = std::max(matrixToleranceOf<T>, wholeTolerance * (sizeof(T) == 4));
     firstSweep<T>(s.context, host.a, r, z);
     firstSweep<T>(d.context, device.a, rOnDevice, foundZ);
     EXPECT_LE(differ<T>(d.context, foundZ, z), rounded) << "first sweep";
@@ -95,7 +95,7 @@ struct MatrixTwin {
     BlockCsr<1, double, Cuda> found;
     compressed<T>(s.context, host.a, host.a.rows + 3, expected);
     compressed<T>(d.context, device.a, device.a.rows + 3, found);
-    EXPECT_LE(valueDifference(onHost(d.context, found), expected), toleranceOf<T>);
+    EXPECT_LE(valueDifference(onHost(d.context, found), expected), matrixToleranceOf<T>);
   }
 
   void checkPreconditioner() {
@@ -145,13 +145,13 @@ struct MatrixTwin {
     transfer.restrict(s.context, nodes, fine, std::span<T>(b));
     const auto fineOnDevice = copyToDevice<T>(d.context, fine);
     transferOnDevice.restrict(d.context, nodesOnDevice, fineOnDevice.span(), bFound.span());
-    EXPECT_LE(differ<T>(d.context, bFound, b), toleranceOf<T>) << "restriction of particles";
+    EXPECT_LE(differ<T>(d.context, bFound, b), matrixToleranceOf<T>) << "restriction of particles";
     Buffer<T, Cuda> sums(d.context, HatTransfer<D, T, Cuda>::sumsPerNode * nodes.count());
     transferOnDevice.restrictFluid(d.context, nodesOnDevice, fineOnDevice.span(), sums, bFound.span());
-    EXPECT_LE(differ<T>(d.context, bFound, b), toleranceOf<T>) << "restriction";
+    EXPECT_LE(differ<T>(d.context, bFound, b), matrixToleranceOf<T>) << "restriction";
     transfer.addProlonged(s.context, nodes, std::span<const T>(b), std::span<T>(z));
     transferOnDevice.addProlonged(d.context, nodesOnDevice, copyToDevice<T>(d.context, b).span(), zFound.span());
-    EXPECT_LE(differ<T>(d.context, zFound, z), toleranceOf<T>) << "prolongation";
+    EXPECT_LE(differ<T>(d.context, zFound, z), matrixToleranceOf<T>) << "prolongation";
   }
 
   void checkAll() {

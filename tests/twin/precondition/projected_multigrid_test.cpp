@@ -12,7 +12,7 @@ namespace {
 
 /// Of what is not a product with C.
 template <class T>
-constexpr double toleranceOf = std::is_same_v<T, double> ? operatorTolerance : 200 * singleTolerance;
+constexpr double projectedToleranceOf = std::is_same_v<T, double> ? operatorTolerance : 200 * singleTolerance;
 
 /// One scene with its products and preconditioner on both backends.
 template <int D, class T>
@@ -37,7 +37,8 @@ struct Twin {
   /// dimensions, 2.7e-5 in two. Else positions have 16 bits in three dimensions: 3e-5 spacings, and 1e-4 of a
   /// product where they are random.
   double productTolerance() const {
-    if (D == 2 || std::is_same_v<T, double> || (isStiff() && s.pairs().renormalisation)) return toleranceOf<T>;
+    if (D == 2 || std::is_same_v<T, double> || (isStiff() && s.pairs().renormalisation))
+      return projectedToleranceOf<T>;
     return s.pairs().renormalisation ? 3e-3 : 5e-4;
   }
   /// On the CPU elements of C have few bits in products with S'.
@@ -123,12 +124,13 @@ struct Twin {
     Buffer<Block<D, T>, Cuda> velocityOnDevice(d.context, s.n());
     products.inverseDiagonals(s.context, table, pressure, velocity);
     productsOnDevice.inverseDiagonals(d.context, tableOnDevice, pressureOnDevice, velocityOnDevice);
-    EXPECT_LE(differ(copyToHost(d.context, pressureOnDevice), pressure), toleranceOf<T>) << "diagonal of S'";
+    EXPECT_LE(differ(copyToHost(d.context, pressureOnDevice), pressure), projectedToleranceOf<T>)
+        << "diagonal of S'";
     Buffer<double> resisting(s.n());
     Buffer<double, Cuda> resistingOnDevice(d.context, s.n());
     products.resistingViscosity(s.context, constants.resistance, resisting.span());
     productsOnDevice.resistingViscosity(d.context, constants.resistance, resistingOnDevice.span());
-    EXPECT_LE(differ(copyToHost(d.context, resistingOnDevice), resisting), toleranceOf<T>)
+    EXPECT_LE(differ(copyToHost(d.context, resistingOnDevice), resisting), projectedToleranceOf<T>)
         << "resisting viscosity";
     checkViscous(u, uOnDevice, velocity, velocityOnDevice);
   }
@@ -150,9 +152,10 @@ struct Twin {
                                   T(0.7),
                                   {residualOnDevice.data(), zOnDevice.data(), xOnDevice.data()},
                                   nextOnDevice.data()});
-    EXPECT_LE(differ(copyToHost(d.context, residualOnDevice), residual), toleranceOf<T>) << "viscous product";
-    EXPECT_LE(differ(copyToHost(d.context, nextOnDevice), next), toleranceOf<T>) << "correction";
-    EXPECT_LE(differ(copyToHost(d.context, xOnDevice), x), toleranceOf<T>) << "iterate";
+    EXPECT_LE(differ(copyToHost(d.context, residualOnDevice), residual), projectedToleranceOf<T>)
+        << "viscous product";
+    EXPECT_LE(differ(copyToHost(d.context, nextOnDevice), next), projectedToleranceOf<T>) << "correction";
+    EXPECT_LE(differ(copyToHost(d.context, xOnDevice), x), projectedToleranceOf<T>) << "iterate";
   }
 
   template <class Values>
@@ -168,7 +171,7 @@ struct Twin {
         worst = std::max(worst, std::abs(values[k].a[e] - matrix[k].a[e]));
         largest = std::max(largest, std::abs(matrix[k].a[e]));
       }
-    EXPECT_LE(worst, toleranceOf<T> * largest) << what;
+    EXPECT_LE(worst, projectedToleranceOf<T> * largest) << what;
   }
 
   void checkGrid() {
@@ -213,11 +216,11 @@ struct Twin {
     auto xOnDevice = copyToDevice<T>(d.context, x);
     transfer.restrict(s.context, nodes, r.span(), b);
     transferOnDevice.restrict(d.context, nodesOnDevice, copyToDevice<T>(d.context, r).span(), bOnDevice);
-    EXPECT_LE(differ(copyToHost(d.context, bOnDevice), b), toleranceOf<T>) << "restriction";
+    EXPECT_LE(differ(copyToHost(d.context, bOnDevice), b), projectedToleranceOf<T>) << "restriction";
     transfer.prolong(s.context, nodes, b, products.scalars(), x);
     transferOnDevice.prolong(d.context, nodesOnDevice, copyToDevice<T>(d.context, b), productsOnDevice.scalars(),
                              xOnDevice);
-    EXPECT_LE(differ(copyToHost(d.context, xOnDevice), x), toleranceOf<T>) << "prolongation";
+    EXPECT_LE(differ(copyToHost(d.context, xOnDevice), x), projectedToleranceOf<T>) << "prolongation";
 
     const Buffer<Gathered<D, T>> u = randomVectors(7);
     Buffer<T> bu(D * fluidNodes.count());
@@ -225,14 +228,17 @@ struct Twin {
     transfer.restrict(s.context, fluidNodes, u.span(), bu);
     transferOnDevice.restrict(d.context, fluidNodesOnDevice, copyToDevice<Gathered<D, T>>(d.context, u).span(),
                               buOnDevice);
-    EXPECT_LE(differ(copyToHost(d.context, buOnDevice), bu), toleranceOf<T>) << "restriction of velocities";
+    EXPECT_LE(differ(copyToHost(d.context, buOnDevice), bu), projectedToleranceOf<T>)
+        << "restriction of velocities";
     Buffer<Gathered<D, T>> z(s.n()), y = randomVectors(8);
     Buffer<Gathered<D, T>, Cuda> zOnDevice(d.context, s.n());
     auto yOnDevice = copyToDevice<Gathered<D, T>>(d.context, y);
     transfer.prolong(s.context, fluidNodes, bu, z, y);
     transferOnDevice.prolong(d.context, fluidNodesOnDevice, copyToDevice<T>(d.context, bu), zOnDevice, yOnDevice);
-    EXPECT_LE(differ(copyToHost(d.context, zOnDevice), z), toleranceOf<T>) << "prolongation of velocities";
-    EXPECT_LE(differ(copyToHost(d.context, yOnDevice), y), toleranceOf<T>) << "prolongation of velocities";
+    EXPECT_LE(differ(copyToHost(d.context, zOnDevice), z), projectedToleranceOf<T>)
+        << "prolongation of velocities";
+    EXPECT_LE(differ(copyToHost(d.context, yOnDevice), y), projectedToleranceOf<T>)
+        << "prolongation of velocities";
   }
 
   /// z = M r on both; the two choose their smallest grids differently, so they agree as two good cycles do.

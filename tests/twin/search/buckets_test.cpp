@@ -20,7 +20,7 @@ void check(Context<Cuda>& context, const Buffer<std::uint64_t>& key, int cellShi
 }
 
 template <int D>
-void checkSizes() {
+void checkBucketsSizes() {
   Context<Cuda> context;
   BucketLevels<Cuda> found;  // one for all, as from step to step
   for (std::uint32_t fluid : {0u, 1u, 31u, 20011u, 33u})
@@ -33,8 +33,8 @@ void checkSizes() {
 
 TEST(BucketsTwin, EqualTheCpu) {
   TREACLE_SKIP_WITHOUT_GPU();
-  checkSizes<2>();
-  checkSizes<3>();
+  checkBucketsSizes<2>();
+  checkBucketsSizes<3>();
 }
 
 TEST(BucketsTwin, OfOneCellAndOfTheEndsOfTheLongestCurve) {

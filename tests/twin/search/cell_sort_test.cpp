@@ -29,7 +29,7 @@ struct DeviceSort {
 };
 
 template <int D>
-void checkSizes() {
+void checkCellSortSizes() {
   DeviceSort<D> sort;
   for (std::uint32_t fluid : {0u, 1u, 31u, 33u, 20011u})
     for (std::uint32_t wall : {0u, 1u, 33u, 7001u}) {
@@ -46,8 +46,8 @@ void checkSizes() {
 
 TEST(CellSortTwin, EqualsTheCpu) {
   TREACLE_SKIP_WITHOUT_GPU();
-  checkSizes<2>();
-  checkSizes<3>();
+  checkCellSortSizes<2>();
+  checkCellSortSizes<3>();
 }
 
 TEST(CellSortTwin, KeepsTheOrderOfEqualKeys) {

@@ -15,7 +15,7 @@ void expectSameLists(const Context<Cuda>& context, const ClusterList<>& expected
 }
 
 template <int D>
-void checkSizes() {
+void checkClusterListSizes() {
   Context<Cuda> context;
   for (std::uint32_t fluid : {0u, 1u, 31u, 33u, 20011u})
     for (std::uint32_t wall : {0u, 1u, 3000u}) {
@@ -42,8 +42,8 @@ void checkSizes() {
 
 TEST(ClusterListTwin, EqualsTheCpu) {
   TREACLE_SKIP_WITHOUT_GPU();
-  checkSizes<2>();
-  checkSizes<3>();
+  checkClusterListSizes<2>();
+  checkClusterListSizes<3>();
 }
 
 }  // namespace

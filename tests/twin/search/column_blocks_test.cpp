@@ -57,7 +57,7 @@ std::size_t checkBlocks(RandomParticles<D>& r, std::uint32_t fluid) {
 }
 
 template <int D>
-void checkSizes() {
+void checkColumnBlocksSizes() {
   for (const std::uint32_t fluid : {0u, 1u, 127u, 129u, 20011u}) {
     SCOPED_TRACE(testing::Message() << D << "D, " << fluid << " fluid");
     RandomParticles<D> r(fluid, 33, fluid + 5);
@@ -68,8 +68,8 @@ void checkSizes() {
 
 TEST(ColumnBlocksTwin, HoldTheNeighboursOfTheirRows) {
   TREACLE_SKIP_WITHOUT_GPU();
-  checkSizes<2>();
-  checkSizes<3>();
+  checkColumnBlocksSizes<2>();
+  checkColumnBlocksSizes<3>();
 }
 
 }  // namespace

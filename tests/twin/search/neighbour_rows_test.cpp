@@ -34,7 +34,7 @@ void checkRows(Context<Cuda>& context, RandomParticles<D>& r, NeighbourRows<Cuda
 }
 
 template <int D>
-void checkSizes() {
+void checkNeighbourRowsSizes() {
   Context<Cuda> context;
   NeighbourRows<Cuda> found;  // what it keeps must fit the next search, too
   for (std::uint32_t fluid : {0u, 20011u, 1u, 31u, 33u})
@@ -51,8 +51,8 @@ void checkSizes() {
 
 TEST(NeighbourRowsTwin, EqualTheCpu) {
   TREACLE_SKIP_WITHOUT_GPU();
-  checkSizes<2>();
-  checkSizes<3>();
+  checkNeighbourRowsSizes<2>();
+  checkNeighbourRowsSizes<3>();
 }
 
 }  // namespace

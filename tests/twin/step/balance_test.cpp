@@ -11,7 +11,7 @@ namespace {
 
 /// Velocities of the two differ by the residuals of their solves; balances are sums of their squares. `arm`: how
 /// far walls reach from where their torques are taken [m].
-void expectClose(const Balance& expected, const Balance& found, double arm) {
+void expectCloseBalance(const Balance& expected, const Balance& found, double arm) {
   const auto close = [](double a, double b) { return std::abs(a - b) <= 1e-8 * std::abs(a); };
   EXPECT_PRED2(close, expected.shearDissipation, found.shearDissipation);
   EXPECT_PRED2(close, expected.bulkDissipation, found.bulkDissipation);
@@ -30,7 +30,7 @@ void expectClose(const Balance& expected, const Balance& found, double arm) {
   }
 }
 
-bool sameBits(const Balance& a, const Balance& b) {
+bool sameBalance(const Balance& a, const Balance& b) {
   bool same = a.shearDissipation == b.shearDissipation && a.bulkDissipation == b.bulkDissipation &&
               a.inertialLoss == b.inertialLoss && a.elasticPower == b.elasticPower &&
               a.elasticEnergy == b.elasticEnergy && a.wallPower == b.wallPower && a.walls.size() == b.walls.size();
@@ -55,8 +55,8 @@ void compare(WallsMove how, NeighbourKind neighbours, const std::array<double, 2
   const double arm = norm(start.c.domain.max);
   for (int step = 0; step < 3; ++step) {
     const Balance found = *cuda.advance().balance;
-    expectClose(*cpu.advance().balance, found, arm);
-    EXPECT_TRUE(sameBits(found, *again.advance().balance));
+    expectCloseBalance(*cpu.advance().balance, found, arm);
+    EXPECT_TRUE(sameBalance(found, *again.advance().balance));
   }
 }
 

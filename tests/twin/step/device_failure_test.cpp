@@ -2,6 +2,7 @@
 #include "support/gpu.hpp"
 #include "support/isph_cases.hpp"
 #include "support/scene.hpp"
+#include "support/state_of.hpp"
 #include "support/temporary_directory.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/io/checkpoint.hpp"
@@ -36,13 +37,6 @@ Particles<D> layer(const Case& c) {
       [&](const Vec<D>& x) { return x[D - 1] < floor; });
   for (Vec<D>& u : p.velocity) u = {};
   knowSurface(c, floor, p);
-  return p;
-}
-
-template <int D>
-Particles<D> stateOf(const Simulation<D, Cuda>& s) {
-  Particles<D> p;
-  s.copyParticles(p);
   return p;
 }
 

@@ -21,7 +21,7 @@ DiagnosticsInput<D> inputOf(const Particles<D, Backend>& p, const Vec<D>& gravit
 }
 
 /// Extremes are the same bits but for what the device fuses; sums differ by their order.
-void expectClose(const Diagnostics& expected, const Diagnostics& found) {
+void expectCloseDiagnostics(const Diagnostics& expected, const Diagnostics& found) {
   const auto close = [](double a, double b) {
     return a == b || std::abs(a - b) <= operatorTolerance * std::abs(a);
   };
@@ -33,7 +33,7 @@ void expectClose(const Diagnostics& expected, const Diagnostics& found) {
 }
 
 template <int D>
-void checkSizes() {
+void checkDiagnosticsSizes() {
   Context<Cuda> context;
   Vec<D> gravity = Vec<D>::filled(-0.5);
   gravity[D - 1] = -9.81;
@@ -44,7 +44,7 @@ void checkSizes() {
     const Particles<D, Cuda> device = onDevice(context, r.particles);
     for (const Vec<D>& g : {gravity, Vec<D>{}}) {
       const Diagnostics found = computeDiagnostics(context, inputOf<D>(device, g));
-      expectClose(computeDiagnostics(r.context, inputOf<D>(r.particles, g)), found);
+      expectCloseDiagnostics(computeDiagnostics(r.context, inputOf<D>(r.particles, g)), found);
       const Diagnostics again = computeDiagnostics(context, inputOf<D>(device, g));
       EXPECT_EQ(found.kineticEnergy, again.kineticEnergy);
       EXPECT_EQ(found.potentialEnergy, again.potentialEnergy);
@@ -54,8 +54,8 @@ void checkSizes() {
 
 TEST(DiagnosticsTwin, EqualTheCpu) {
   TREACLE_SKIP_WITHOUT_GPU();
-  checkSizes<2>();
-  checkSizes<3>();
+  checkDiagnosticsSizes<2>();
+  checkDiagnosticsSizes<3>();
 }
 
 }  // namespace

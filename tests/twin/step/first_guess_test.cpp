@@ -46,7 +46,7 @@ auto memoryOf(P& p) {
 }
 
 template <int D>
-void checkSizes() {
+void checkFirstGuessSizes() {
   for (const std::uint32_t fluid : {0u, 1u, 31u, 33u, 20011u}) {
     SCOPED_TRACE(testing::Message() << D << "D, " << fluid << " fluid particles");
     Pair<D> pair(fluid);
@@ -67,8 +67,8 @@ void checkSizes() {
 
 TEST(FirstGuessTwin, EqualsTheCpu) {
   TREACLE_SKIP_WITHOUT_GPU();
-  checkSizes<2>();
-  checkSizes<3>();
+  checkFirstGuessSizes<2>();
+  checkFirstGuessSizes<3>();
 }
 
 }  // namespace

@@ -16,8 +16,8 @@ namespace {
 
 /// Fails unless device memory holds the same but for rounding.
 template <int D>
-void expectClose(const Context<Cuda>& context, const Buffer<Vec<D>>& expected,
-                 const Buffer<Vec<D>, Cuda>& device) {
+void expectCloseWalls(const Context<Cuda>& context, const Buffer<Vec<D>>& expected,
+                      const Buffer<Vec<D>, Cuda>& device) {
   const Buffer<Vec<D>> found = copyToHost(context, device);
   ASSERT_EQ(found.size(), expected.size());
   double most = 0, apart = 0;
@@ -46,10 +46,10 @@ void checkWallMotions() {
     Buffer<Vec<D>, Cuda> found(context, walls);
     setWallVelocities<D>(host, {motions, body, position}, expected);
     setWallVelocities<D>(context, onDevice, found);
-    expectClose(context, expected, found);
+    expectCloseWalls(context, expected, found);
     setWallChords<D>(host, {motions, body, position}, expected);
     setWallChords<D>(context, onDevice, found);
-    expectClose(context, expected, found);
+    expectCloseWalls(context, expected, found);
   }
 }
 

@@ -8,7 +8,7 @@ namespace treacle::test {
 namespace {
 
 template <int D>
-void checkSizes() {
+void checkStepChangeSizes() {
   Context<Cuda> context;
   for (const std::uint32_t fluid : {0u, 1u, 31u, 33u, 20011u, 700001u}) {
     SCOPED_TRACE(testing::Message() << D << "D, " << fluid << " fluid particles");
@@ -29,8 +29,8 @@ void checkSizes() {
 
 TEST(StepChangeTwin, EqualsTheCpu) {
   TREACLE_SKIP_WITHOUT_GPU();
-  checkSizes<2>();
-  checkSizes<3>();
+  checkStepChangeSizes<2>();
+  checkStepChangeSizes<3>();
 }
 
 }  // namespace
