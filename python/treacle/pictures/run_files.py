@@ -3,7 +3,7 @@
 import csv
 import json
 import re
-import tomllib
+import sys
 import xml.etree.ElementTree as ElementTree
 from dataclasses import dataclass
 from functools import cached_property
@@ -12,6 +12,11 @@ from pathlib import Path
 import numpy as np
 
 from .errors import PictureError
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
 
 
 @dataclass(frozen=True)
