@@ -76,8 +76,8 @@ macro(treacle_library TARGET)
 endmacro()
 
 # treacle_kernels(NAME SOURCES foo.cu ... LARGE bar.cu ... PRIVATE lib ...): adds CUDA sources to the library of a room.
-# SOURCES compile in batches, as C++ does (CMake's own batches have no CUDA before 3.31); LARGE ones compile alone, so
-# that several cores share them.
+# SOURCES compile together, in a batch that is written here (CMake's own batches have no CUDA before 3.31); LARGE ones
+# compile alone, so that several cores share them. One call of a room may have several SOURCES.
 function(treacle_kernels NAME)
   cmake_parse_arguments(KERNELS "" "" "SOURCES;LARGE;PRIVATE" ${ARGN})
   list(LENGTH KERNELS_SOURCES count)
