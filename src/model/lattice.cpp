@@ -7,7 +7,9 @@
 #include "treacle/model/shape.hpp"
 
 #include <fmt/format.h>
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace treacle {
 namespace {
@@ -29,8 +31,36 @@ struct Lattice {
   }
 };
 
+/// How far a point is from the boxes around all fluid at the start and from the nozzles [m].
+double distanceToFluid(const Case& c, const Vec<3>& x) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Body& body : c.bodies) {
+    if (!body.holdsFluid()) continue;
+    const bool nozzle = body.kind == BodyKind::Inflow;
+    const Extent box = nozzle ? Extent{body.inflow.nozzle.center, body.inflow.nozzle.center}
+                              : boundingBox(body.shape, c.dimensions);
+    Vec<3> d{};
+    for (int k = 0; k < c.dimensions; ++k) d[k] = x[k] - std::clamp(x[k], box.min[k], box.max[k]);
+    least = std::min(least, norm(d));
+  }
+  return least;
+}
+
+/// Whether the particles of a box begin at the face `max` of an axis: that of a wall which is nearer to the fluid.
 template <int D>
-Lattice<D> boxLattice(const Body& body, double spacing, std::vector<std::string>& notes) {
+bool beginsAtMax(const Case& c, const Body& body, int axis) {
+  if (body.kind != BodyKind::Wall) return false;
+  const Similarity<D> similarity = similarityOf<D>(body.shape);
+  const auto distance = [&](double along) {
+    Vec<D> middle = 0.5 * resized<D>(body.shape.min + body.shape.max);
+    middle[axis] = along;
+    return distanceToFluid(c, resized<3>(similarity.point(middle)));
+  };
+  return distance(body.shape.max[axis]) < distance(body.shape.min[axis]) - rounding * c.spacing;
+}
+
+template <int D>
+Lattice<D> boxLattice(const Case& c, const Body& body, double spacing, std::vector<std::string>& notes) {
   Lattice<D> lattice{};
   lattice.spacing = spacing;
   for (int k = 0; k < D; ++k) {
@@ -39,11 +69,13 @@ Lattice<D> boxLattice(const Body& body, double spacing, std::vector<std::string>
     const double count = std::max(1.0, std::round(spacings));
     lattice.origin[k] = min + spacing / 2;
     lattice.high[k] = count;
-    if (std::abs(spacings - count) > rounding * std::max(1.0, spacings))
-      notes.push_back(fmt::format(
-          "body '{}': {} along {} is {:.6g} spacings; filled with {:.0f} particle{} from its min corner ({})",
-          body.name, lengthText(max - min), "xyz"[k], spacings, count, count == 1 ? "" : "s",
-          lengthText(count * spacing)));
+    if (std::abs(spacings - count) <= rounding * std::max(1.0, spacings)) continue;
+    const bool fromMax = beginsAtMax<D>(c, body, k);
+    if (fromMax) lattice.origin[k] = max - (count - 0.5) * spacing;
+    notes.push_back(fmt::format(
+        "body '{}': {} along {} is {:.6g} spacings; filled with {:.0f} particle{} from its {} corner ({})",
+        body.name, lengthText(max - min), "xyz"[k], spacings, count, count == 1 ? "" : "s",
+        fromMax ? "max" : "min", lengthText(count * spacing)));
   }
   return lattice;
 }
@@ -89,8 +121,8 @@ double boxPoints(const Case& c) {
     const Shape& s = body.shape;
     const double spacing = spacingOf(body, c.spacing);
     if (s.kind == ShapeKind::Box)
-      points += c.dimensions == 2 ? boxLattice<2>(body, spacing, notes).points()
-                                  : boxLattice<3>(body, spacing, notes).points();
+      points += c.dimensions == 2 ? boxLattice<2>(c, body, spacing, notes).points()
+                                  : boxLattice<3>(c, body, spacing, notes).points();
     if (s.kind == ShapeKind::Mesh && s.fill == FillKind::Inside && s.file.mesh.value)
       points += meshPoints(*s.file.mesh.value, spacing);
     if (s.kind == ShapeKind::Particles && s.file.particles.value)
@@ -105,7 +137,7 @@ std::vector<Vec<D>> latticePoints(const Case& c, const Body& body, std::vector<s
   if (isSolid(body.shape)) return solidPoints<D>(c, body, notes, keep);
   const bool box = body.shape.kind == ShapeKind::Box;
   const double spacing = spacingOf(body, c.spacing);
-  const Lattice<D> lattice = box ? boxLattice<D>(body, spacing, notes) : roundLattice<D>(body, spacing);
+  const Lattice<D> lattice = box ? boxLattice<D>(c, body, spacing, notes) : roundLattice<D>(body, spacing);
   const Similarity<D> similarity = similarityOf<D>(body.shape);
 
   // A thin shell fills little of its bounding box; beyond 16 times the limit searching it is no use either.

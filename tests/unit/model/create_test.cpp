@@ -110,6 +110,35 @@ TEST(createParticles, roundsBoxesToWholeNumbersAndSaysSo) {
                           "min corner (1 mm)"));
 }
 
+/// How far the first wall particle of a body stands behind the face of the fluid that it faces, in two dimensions.
+double depthBehindFluid(const Case& c, int body, int axis, double face) {
+  std::vector<std::string> notes;
+  const Particles<2> p = createParticles<2>(c, notes);
+  double depth = 1e300;
+  for (std::uint32_t i = p.fluidCount; i < p.count; ++i)
+    if (p.body[i] == body) depth = std::min(depth, std::abs(p.position[i][axis] - face));
+  return depth;
+}
+
+TEST(createParticles, wallsOfBrokenThicknessBeginAtTheFluid) {
+  Case c = emptyCase(2);
+  c.bodies = {makeBody("fluid", BodyKind::Fluid, box({0, 0}, {10, 10})),
+              makeBody("left", BodyKind::Wall, box({-3.4, -3.4}, {0, 10})),
+              makeBody("right", BodyKind::Wall, box({12, 0}, {15.6, 10})),
+              makeBody("floor", BodyKind::Wall, box({0, -3.6}, {15.6, 0})),
+              makeBody("lid", BodyKind::Wall, box({0, 13}, {15.6, 16.6}))};
+  EXPECT_NEAR(depthBehindFluid(c, 1, 0, 0), 0.5, 1e-9);
+  EXPECT_NEAR(depthBehindFluid(c, 2, 0, 12), 0.5, 1e-9);
+  EXPECT_NEAR(depthBehindFluid(c, 3, 1, 0), 0.5, 1e-9);
+  EXPECT_NEAR(depthBehindFluid(c, 4, 1, 13), 0.5, 1e-9);
+
+  // The same plate stood upside down: its corner `min` faces the fluid then.
+  c.bodies[3].shape = box({0, 0}, {15.6, 3.6});
+  c.bodies[3].shape.transform = Transform{.angles = {0, 0, 180}};
+  c.bodies[3].shape.transform->translate = {15.6, 0, 0};
+  EXPECT_NEAR(depthBehindFluid(c, 3, 1, 0), 0.5, 1e-9);
+}
+
 TEST(createParticles, extentsThatMissWholeNumbersByRoundingAreWhole) {
   Case c = emptyCase(2);
   c.spacing = 1e-3 / 64;
