@@ -4,6 +4,8 @@
 #include "treacle/core/halo.hpp"
 #include "treacle/mph/mph_neighbours.hpp"
 
+#include <numeric>
+
 namespace treacle {
 namespace {
 
@@ -281,6 +283,14 @@ std::size_t ParticleProducts<D, T, Cpu>::bytes() const {
          selfBlock_.bytes() + renormalisation_.bytes() + fluidLanes_.bytes() + wallLanes_.bytes() +
          gradient_.bytes() + wallGradient_.bytes() + gradientRows_.bytes() + divergenceRows_.bytes() +
          wallRows_.bytes();
+}
+
+template <int D, class T>
+typename ParticleProducts<D, T, Cpu>::PackedPairs ParticleProducts<D, T, Cpu>::packedPairs() const {
+  const auto sum = [](const PackedRows& rows) {
+    return std::accumulate(rows.pairs.begin(), rows.pairs.end(), 0.0);
+  };
+  return {sum(gradientRows_), sum(divergenceRows_) + sum(wallRows_)};
 }
 
 #define TREACLE_GRADIENT(D, T, ...)                                                                           \

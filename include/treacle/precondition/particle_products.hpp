@@ -64,6 +64,11 @@ class ParticleProducts<D, T, Cpu> {
   void gather(Context<Cpu>&, std::span<const Gathered<D, T>> u);
   void gatherWeighted(Context<Cpu>&, const ProjectionTable<T>& table, std::span<const Vec<D>> u);
   std::size_t bytes() const;
+  /// Pairs of columns that schur() passes in single precision.
+  struct PackedPairs {
+    double gradient = 0, divergence = 0;
+  };
+  PackedPairs packedPairs() const;
 
  private:
   void sumGradients();
