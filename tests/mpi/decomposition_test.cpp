@@ -74,6 +74,7 @@ struct Flow {
       particles.body[k] = static_cast<std::uint8_t>(i % 5);
       particles.pressure[k] = mark(i, 1);
       particles.numberDensity[k] = mark(i, 2);
+      particles.heldPressure[k] = mark(i, 12);
       particles.velocity[k] = {mark(i, 3)};
     }
     for (std::uint32_t k = 0; k < size; ++k) {
@@ -152,6 +153,7 @@ struct Flow {
       EXPECT_EQ(p.position[i], position[id]);
       EXPECT_EQ(p.pressure[i], mark(id, 1));
       EXPECT_EQ(p.numberDensity[i], mark(id, 2));
+      EXPECT_EQ(p.heldPressure[i], mark(id, 12));
       EXPECT_EQ(p.velocity[i][0], mark(id, 3));
       EXPECT_EQ(p.acceleration[i][0], mark(id, 4));
       EXPECT_EQ(p.jerk[i][0], mark(id, 5));

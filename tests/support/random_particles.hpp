@@ -45,7 +45,7 @@ struct RandomParticles {
       }
       if (i >= fluid && !particles.wallSurface.empty())
         particles.wallSurface[i - fluid] = {converted<float>(particles.position[i]), {}};
-      particles.pressure[i] = particles.numberDensity[i] = 0;
+      particles.pressure[i] = particles.numberDensity[i] = particles.heldPressure[i] = 0;
       particles.material[i] = 0;
       particles.body[i] = static_cast<std::uint8_t>(i % 7);
       particles.id[i] = i;
