@@ -44,7 +44,9 @@ double secondsOf(auto&& work) {
 /// Multiplications with additions of a vector type that one thread does in a second.
 template <class Vector>
 double operationsPerSecond() {
-  constexpr int chains = 6, turns = 20'000'000;
+  // Enough of them for the latency of the units, and few enough for the registers.
+  constexpr bool oneRegister = sizeof(Vector) <= sizeof(std::experimental::native_simd<float>);
+  constexpr int chains = oneRegister ? 10 : 5, turns = 20'000'000;
   Vector sum[chains] = {}, factor = Vector(0.999999f), summand = Vector(1e-3f);
   const double seconds = secondsOf([&] {
     for (int turn = 0; turn < turns; ++turn)
