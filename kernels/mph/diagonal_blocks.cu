@@ -80,7 +80,7 @@ void diagonalBlocks(Context<Cuda>& context, const MphPairs<D>& pairs, const Wall
                     std::span<Block<D>> diagonal) {
   Buffer<double, Cuda> sums(context, std::size_t{diagonalValues<D>} * pairs.fluidCount);
   const auto places = LocalPositions<D, double>::make(pairs);
-  withKnownTerms<PublishedWeights, AccurateWeights>(pairs, [&](const auto& mph, auto renormalised) {
+  withSchemeTerms(pairs, [&](const auto& mph, auto renormalised) {
     using Terms = DiagonalTerms<D, std::decay_t<decltype(mph)>, decltype(renormalised)::value>;
     const ListTask<Terms> task{pairs.fluidList, {mph, sums.data()}};
     if (!pairs.fluidList.offset)

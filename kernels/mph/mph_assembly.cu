@@ -74,7 +74,7 @@ void assemble(Context<Cuda>& context, const MphPairs<D>& pairs, const WallTerms<
           });
   const Assembly<D> assembly{rows.rowStart.data(), rows.column.data(), rows.value.data(), own.data(),
                              terms.block.data(),   a.rowStart.data(),  a.column.data(),   a.value.data()};
-  withKnownTerms<PublishedWeights, AccurateWeights>(pairs, [&]<class Mph>(const Mph& mph, auto renormalised) {
+  withSchemeTerms(pairs, [&]<class Mph>(const Mph& mph, auto renormalised) {
     launch(context, blocks, threads, 0, blocksKernel<D, Mph, decltype(renormalised)::value>, pairs, mph, assembly);
   });
 }

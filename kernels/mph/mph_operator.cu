@@ -50,7 +50,7 @@ void MphOperator<D, Cuda>::prepare(Context<Cuda>& context, const MphPairs<D>& pa
   q_.resize(context, pairs.activeCount);
   selfBlock_.resize(context, pairs.fluidCount);
   if (!pairs.renormalisation) selfGradient_.resize(context, pairs.fluidCount);
-  withKnownWeights<PublishedWeights, AccurateWeights>(pairs.terms, [&](const auto& mph) {
+  withScheme(pairs.terms, [&](const auto& mph) {
     sumOnFluid(context, pairs,
                SelfSums<D, std::decay_t<decltype(mph)>>{mph, terms, selfBlock_.data(), selfGradient_.data()});
   });
@@ -71,10 +71,9 @@ void MphOperator<D, Cuda>::multiply(Context<Cuda>& context, std::span<const Vec<
         context, *pairs_, ListTask<OnFluid>{pairs_->fluidList, {mph, self, u.data(), y.data(), q_.data()}},
         ListTask<OnWalls>{pairs_->wallList, {mph, u.data(), q_.data()}}, places);
   };
-  withKnownWeights<PublishedWeights>(pairs_->terms, [&](const auto& mph) {
-    withSharing(*pairs_, [&](auto sharing) {
-      withPairViscosity(*pairs_, [&](auto viscosity) { firstPass(mph, sharing, viscosity); });
-    });
+  const auto terms = pairs_->terms.with(PublishedScheme{});
+  withSharing(*pairs_, [&](auto sharing) {
+    withPairViscosity(*pairs_, [&](auto viscosity) { firstPass(terms, sharing, viscosity); });
   });
   fillGhosts(context, Held::Active, q_.data());
   if (pairs_->fluidList.offset)
@@ -89,14 +88,13 @@ template <int D>
 void MphOperator<D, Cuda>::multiplyRenormalised(Context<Cuda>& context, std::span<const Vec<D>> u,
                                                 std::span<Vec<D>> y) {
   const auto places = LocalPositions<D, double>::make(*pairs_);
-  withKnownWeights<KnownViscosityWeight<AccurateWeights::viscosity>>(pairs_->terms, [&](const auto& mph) {
-    withSharing(*pairs_, [&](auto sharing) {
-      withPairViscosity(*pairs_, [&](auto viscosity) {
-        using OnFluid = Viscosity<D, double, viscosity, std::decay_t<decltype(mph)>, Vec<D>, StoreProduct<D>>;
-        launchClusterSums<D, double, decltype(sharing)>(
-            context, *pairs_, ListTask<OnFluid>{pairs_->fluidList, {mph, selfBlock_.data(), u.data(), {y.data()}}},
-            places);
-      });
+  const auto terms = pairs_->terms.with(AccurateScheme{});
+  withSharing(*pairs_, [&](auto sharing) {
+    withPairViscosity(*pairs_, [&](auto viscosity) {
+      using OnFluid = Viscosity<D, double, viscosity, std::decay_t<decltype(terms)>, Vec<D>, StoreProduct<D>>;
+      launchClusterSums<D, double, decltype(sharing)>(
+          context, *pairs_, ListTask<OnFluid>{pairs_->fluidList, {terms, selfBlock_.data(), u.data(), {y.data()}}},
+          places);
     });
   });
   if (pairs_->fluidList.offset) {
@@ -105,8 +103,8 @@ void MphOperator<D, Cuda>::multiplyRenormalised(Context<Cuda>& context, std::spa
     near_.addPressureGradient(context, q_, y);
     return;
   }
-  using OnAll = Divergence<D, double, MphTerms<D>, true, true, true, true>;
-  const OnAll sums{pairs_->terms, u.data(), q_.data()};
+  using OnAll = Divergence<D, double, std::decay_t<decltype(terms)>, true, true, true, true>;
+  const OnAll sums{terms, u.data(), q_.data()};
   launchClusterSums<D, double, Sharing<4, 1, true>>(context, *pairs_, ListTask<OnAll>{pairs_->fluidList, sums},
                                                     ListTask<OnAll>{pairs_->wallList, sums}, places);
   fillGhosts(context, Held::Active, q_.data());

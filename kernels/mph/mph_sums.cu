@@ -167,14 +167,14 @@ void numberDensity(Context<Cuda>& context, const MphPairs<D>& pairs, std::span<d
                                        places.open.data(), places.wide.data()});
   if (pairs.terms.densityRadius > pairs.terms.pressureRadius)
     return sumOnAll(context, pairs, NumberDensity<D, MphTerms<D>, true>{pairs.terms, n.data()});
-  withKnownWeights<PublishedWeights>(pairs.terms, [&]<class Mph>(const Mph& mph) {
+  withScheme(pairs.terms, [&]<class Mph>(const Mph& mph) {
     sumOnAll(context, pairs, NumberDensity<D, Mph, false>{mph, n.data()});
   });
 }
 
 template <int D>
 void wallDensity(Context<Cuda>& context, const MphPairs<D>& pairs, std::span<double> n) {
-  withKnownWeights<PublishedWeights>(pairs.terms, [&]<class Mph>(const Mph& mph) {
+  withScheme(pairs.terms, [&]<class Mph>(const Mph& mph) {
     sumOnFluid(context, pairs, WallDensity<D, Mph>{mph, n.data()});
   });
 }

@@ -100,8 +100,8 @@ void NearProducts<D>::addPressureGradient(Context<Cuda>& context, std::span<cons
   using Scalars = PlainScalars<D, double>;
   const Scalars scalars{q.data()};
   const Renormalised<D> b{pairs_->renormalisation, pairs_->fluidCount};
-  withPressureTerms(*pairs_, [&]<class Weights>(const MphTerms<D, double, Weights>& terms, auto renormalised) {
-    const auto view = NearView<D, double, Weights>::make(*pairs_, *this, terms);
+  withSchemeTerms(*pairs_, [&]<class Scheme>(const MphTerms<D, double, Scheme>& terms, auto renormalised) {
+    const auto view = NearView<D, double, Scheme>::make(*pairs_, *this, terms);
     if constexpr (renormalised)
       nearGradient(context, view, Stresses<D, double, Scalars, Renormalised<D>>{scalars, b}, add);
     else
@@ -117,10 +117,8 @@ void NearProducts<D>::bulkStress(Context<Cuda>& context, std::span<const Vec<D>>
                       share = pairs_->bulkShare()] __device__(std::uint32_t k, double divergence) {
     q[k] = share.of(k) * materials.bulkViscosity[material[k]] * divergence;
   };
-  const auto start = [&]<class Weights>(const MphTerms<D, double, Weights>& terms) {
-    nearDivergence(context, NearView<D, double, Weights>::make(*pairs_, *this, terms), vectors, b, store);
-  };
-  withKnownWeights<KnownPressureWeight<AccurateWeights::pressure>>(pairs_->terms, start);
+  const auto terms = pairs_->terms.with(AccurateScheme{});
+  nearDivergence(context, NearView<D, double, AccurateScheme>::make(*pairs_, *this, terms), vectors, b, store);
 }
 
 template class NearProducts<2>;

@@ -78,21 +78,21 @@ struct NearLists<D, float> {
 };
 
 /// The same with the terms of the pairs.
-template <int D, class T, class Weights>
+template <int D, class T, class Scheme>
 struct NearView : NearLists<D, T> {
-  MphTerms<D, T, Weights> mph;
+  MphTerms<D, T, Scheme> mph;
 
   /// `terms`: those of the pairs, with the weights that the kernel is to know.
   static NearView make(const MphPairs<D>& pairs, const NearProducts<D>& near,
-                       const MphTerms<D, double, Weights>& terms) {
+                       const MphTerms<D, double, Scheme>& terms) {
     const double unit = LocalPositions<D, T>::unit(pairs);
     return {NearLists<D, T>::make(pairs, near), terms.template inUnitsOf<T>(unit)};
   }
 };
 
 /// Of a pair whose difference is d.
-template <int D, class T, class Weights>
-__device__ inline T gradientShape(const NearView<D, T, Weights>& view, const Vec<D, T>& d) {
+template <int D, class T, class Scheme>
+__device__ inline T gradientShape(const NearView<D, T, Scheme>& view, const Vec<D, T>& d) {
   T r2 = view.floor;
   for (int k = 0; k < D; ++k) r2 = fma(d[k], d[k], r2);
   return view.mph.gradientShape(PairDistance<T>{r2, inverseSqrt(r2)});
@@ -227,9 +227,9 @@ struct PlainVectors {
   }
 };
 /// `split` threads per own fluid particle: store(i, (C q)_i); reads positions and q of the neighbours. No atomics.
-template <class Split, int D, class T, class Weights, class Scalars, class Store>
+template <class Split, int D, class T, class Scheme, class Scalars, class Store>
 __global__ void __launch_bounds__(128)
-    nearGradientKernel(const Split split, const __grid_constant__ NearView<D, T, Weights> view, const Scalars q,
+    nearGradientKernel(const Split split, const __grid_constant__ NearView<D, T, Scheme> view, const Scalars q,
                        const __grid_constant__ Store store) {
   waitForEarlierKernels();
   const std::uint32_t thread = blockIdx.x * blockDim.x + threadIdx.x, own = thread / split;
@@ -254,9 +254,9 @@ __global__ void __launch_bounds__(128)
 
 /// `split` threads per particle: store(k, (C^T u)_k), walls at rest; reads positions and u of the neighbours. No
 /// atomics.
-template <class Split, int D, class T, class Weights, class Vectors, class Columns, class Store>
+template <class Split, int D, class T, class Scheme, class Vectors, class Columns, class Store>
 __global__ void __launch_bounds__(128)
-    nearDivergenceKernel(const Split split, const __grid_constant__ NearView<D, T, Weights> view, const Vectors u,
+    nearDivergenceKernel(const Split split, const __grid_constant__ NearView<D, T, Scheme> view, const Vectors u,
                          const Columns columns, const __grid_constant__ Store store) {
   waitForEarlierKernels();
   const std::uint32_t thread = blockIdx.x * blockDim.x + threadIdx.x, own = thread / split;
@@ -292,20 +292,20 @@ void withSplit(std::uint32_t particles, F&& f) {
     f(Threads<1>{});
 }
 
-template <int D, class T, class Weights, class Scalars, class Store>
-void nearGradient(const Context<Cuda>& context, const NearView<D, T, Weights>& view, const Scalars& q,
+template <int D, class T, class Scheme, class Scalars, class Store>
+void nearGradient(const Context<Cuda>& context, const NearView<D, T, Scheme>& view, const Scalars& q,
                   const Store& store) {
   withSplit<D>(view.fluidCount, [&](auto split) {
     launchEarly(context, blocksFor(std::size_t{view.ownFluid} * split, 128), 128, 0,
-                nearGradientKernel<decltype(split), D, T, Weights, Scalars, Store>, split, view, q, store);
+                nearGradientKernel<decltype(split), D, T, Scheme, Scalars, Store>, split, view, q, store);
   });
 }
-template <int D, class T, class Weights, class Vectors, class Columns, class Store>
-void nearDivergence(const Context<Cuda>& context, const NearView<D, T, Weights>& view, const Vectors& u,
+template <int D, class T, class Scheme, class Vectors, class Columns, class Store>
+void nearDivergence(const Context<Cuda>& context, const NearView<D, T, Scheme>& view, const Vectors& u,
                     const Columns& columns, const Store& store) {
   withSplit<D>(view.activeCount, [&](auto split) {
     launchEarly(context, blocksFor(std::size_t{view.activeCount} * split, 128), 128, 0,
-                nearDivergenceKernel<decltype(split), D, T, Weights, Vectors, Columns, Store>, split, view, u,
+                nearDivergenceKernel<decltype(split), D, T, Scheme, Vectors, Columns, Store>, split, view, u,
                 columns, store);
   });
 }

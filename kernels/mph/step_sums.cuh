@@ -4,14 +4,13 @@
 
 namespace treacle {
 
-/// f(terms, whether the pairs may have surfaces of walls or B) for sums that the published scheme has without
-/// both.
+/// f(terms, whether the pairs may have surfaces of walls or B): the published scheme has neither.
 template <int D, class F>
 void withStepTerms(const MphPairs<D>& pairs, F&& f) {
-  if (PublishedWeights::are(pairs.terms.weights) && !pairs.wallSurface && !pairs.renormalisation)
-    f(pairs.terms.with(PublishedWeights{}), std::false_type{});
+  if (pairs.terms.scheme.kind == SchemeKind::Published)
+    f(pairs.terms.with(PublishedScheme{}), std::false_type{});
   else
-    f(pairs.terms, std::true_type{});
+    f(pairs.terms.with(AccurateScheme{}), std::true_type{});
 }
 
 /// The factor of a pair's viscosity, 1 where it is not Corrected.

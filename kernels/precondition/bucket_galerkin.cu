@@ -121,7 +121,7 @@ void bucketGalerkin(Context<Cuda>& context, const MphPairs<D>& pairs, const Cell
   g.block = a0.value.data();
   g.cross = cross.data();
   launch(context, blocks, threads, 0, patternKernel<D, true>, pairs, g);
-  withViscosityTerms(pairs, [&]<class Mph>(const Mph& mph) {
+  withScheme(pairs.terms, [&]<class Mph>(const Mph& mph) {
     launch(context, blocksFor(std::size_t{rows} * Galerkin<D>::self, warpsPerBlock), threads, 0,
            offDiagonalKernel<D, Mph>, pairs, mph, g);
   });

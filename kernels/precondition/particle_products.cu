@@ -40,10 +40,10 @@ void placeParticles(const Context<Cuda>& context, const MphPairs<D>& pairs, cons
 }
 
 /// The lists with these positions.
-template <int D, class T, class Weights>
-NearView<D, T, Weights> viewOf(const MphPairs<D>& pairs, const NearProducts<D>& near,
-                               const MphTerms<D, double, Weights>& terms) {
-  auto view = NearView<D, T, Weights>::make(pairs, near, terms);
+template <int D, class T, class Scheme>
+NearView<D, T, Scheme> viewOf(const MphPairs<D>& pairs, const NearProducts<D>& near,
+                              const MphTerms<D, double, Scheme>& terms) {
+  auto view = NearView<D, T, Scheme>::make(pairs, near, terms);
   if constexpr (std::is_same_v<T, float>)
     static_cast<NearLists<D, float>&>(view) = CoarsePositions<D>::listsOf(pairs, near);
   return view;
@@ -63,9 +63,9 @@ struct RoundedTensors {
 };
 
 /// One thread per particle: the inverse diagonal of S', from the positions of the neighbours. No atomics.
-template <int D, class T, class Weights, class Columns>
+template <int D, class T, class Scheme, class Columns>
 __global__ void __launch_bounds__(128)
-    pressureDiagonalKernel(const __grid_constant__ NearView<D, T, Weights> view, const Columns columns,
+    pressureDiagonalKernel(const __grid_constant__ NearView<D, T, Scheme> view, const Columns columns,
                            const std::uint8_t* material, const __grid_constant__ ProjectionTable<T> table,
                            T reach2, T* inverseDiagonal) {
   const std::uint32_t k = blockIdx.x * blockDim.x + threadIdx.x;
@@ -213,7 +213,7 @@ void ParticleProducts<D, T, Cuda>::gradient(Context<Cuda>& context, ScalarField<
   fillGhosts(context, q);
   if constexpr (std::is_same_v<T, float>)
     if (pairs_->renormalisation) return stagedGradient(context, staged_, *pairs_, a_->near(), q, store);
-  withPressureTerms(*pairs_, [&](const auto& terms, auto renormalised) {
+  withSchemeTerms(*pairs_, [&](const auto& terms, auto renormalised) {
     const auto scalars = gathered<D>(q);
     if constexpr (!renormalised)
       nearGradient(context, viewOf<D, T>(*pairs_, a_->near(), terms), scalars, store);
@@ -230,7 +230,7 @@ void ParticleProducts<D, T, Cuda>::divergence(Context<Cuda>& context, VectorFiel
   fillGhosts(context, u);
   if constexpr (std::is_same_v<T, float>)
     if (pairs_->renormalisation) return stagedDivergence(context, staged_, *pairs_, a_->near(), u, store);
-  withPressureTerms(*pairs_, [&](const auto& terms, auto renormalised) {
+  withSchemeTerms(*pairs_, [&](const auto& terms, auto renormalised) {
     if constexpr (!renormalised)
       nearDivergence(context, viewOf<D, T>(*pairs_, a_->near(), terms), gathered(u), Plain<D, T>{}, store);
     else if constexpr (std::is_same_v<T, double>)
@@ -245,7 +245,7 @@ void ParticleProducts<D, T, Cuda>::schur(Context<Cuda>& context, const Projectio
   const std::uint8_t* material = pairs_->classOf();
   if constexpr (std::is_same_v<T, float>)
     if (pairs_->activeCount <= onePassParticles<D> && !pairs_->renormalisation && !context.halo)
-      return withPressureTerms(*pairs_, [&](const auto& terms, auto renormalised) {
+      return withSchemeTerms(*pairs_, [&](const auto& terms, auto renormalised) {
         if constexpr (!renormalised)
           nearSchur(context, viewOf<D, T>(*pairs_, a_->near(), terms), gathered<D>(q), table, material, store);
       });
@@ -270,7 +270,7 @@ void ParticleProducts<D, T, Cuda>::viscous(Context<Cuda>& context, Gathered<D, T
     launchClusterSums<D, T, decltype(sharing)>(
         context, *pairs_, ListTask<Terms>{pairs_->fluidList, {mph, selfBlock_.data(), u, store}}, places);
   };
-  withViscosityTerms(*pairs_, [&](const auto& terms) {
+  withScheme(pairs_->terms, [&](const auto& terms) {
     const auto mph = terms.template inUnitsOf<T>(places.unit(*pairs_));
     withListSharing(*pairs_, [&](auto sharing) {
       if constexpr (std::is_same_v<T, float>)
@@ -286,13 +286,13 @@ void ParticleProducts<D, T, Cuda>::inverseDiagonals(Context<Cuda>& context, cons
                                                     std::span<T> pressure, std::span<Block<D, T>> velocity) const {
   const double reach =
       productReach<T>(*pairs_) * pairs_->terms.pressureRadius / LocalPositions<D, T>::unit(*pairs_);
-  const auto start = [&]<class Weights, class Columns>(const MphTerms<D, double, Weights>& terms,
-                                                       const Columns& columns) {
-    launch(context, blocksFor(pairs_->activeCount, 128), 128, 0, pressureDiagonalKernel<D, T, Weights, Columns>,
-           NearView<D, T, Weights>::make(*pairs_, a_->near(), terms), columns, pairs_->classOf(), table,
+  const auto start = [&]<class Scheme, class Columns>(const MphTerms<D, double, Scheme>& terms,
+                                                      const Columns& columns) {
+    launch(context, blocksFor(pairs_->activeCount, 128), 128, 0, pressureDiagonalKernel<D, T, Scheme, Columns>,
+           NearView<D, T, Scheme>::make(*pairs_, a_->near(), terms), columns, pairs_->classOf(), table,
            static_cast<T>(reach * reach), pressure.data());
   };
-  withPressureTerms(*pairs_, [&](const auto& terms, auto renormalised) {
+  withSchemeTerms(*pairs_, [&](const auto& terms, auto renormalised) {
     if constexpr (renormalised)
       start(terms, RoundedTensors<D, T>{tensors(*pairs_)});
     else

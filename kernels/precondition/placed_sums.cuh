@@ -55,9 +55,9 @@ struct PlacedVectors {
 /// Lanes threads per particle: store(k, (C^T W C q)_k) in one pass; each lane forms W C q of one neighbour after
 /// the other from that neighbour's list. Nine (2D) or 23 times (3D) the arithmetic of two passes, and half the
 /// launches: pays where those take the time. No atomics.
-template <int Lanes, int D, class T, class Weights, class Scalars, class Store>
+template <int Lanes, int D, class T, class Scheme, class Scalars, class Store>
 __global__ void __launch_bounds__(128)
-    nearSchurKernel(const __grid_constant__ NearView<D, T, Weights> view, const Scalars q,
+    nearSchurKernel(const __grid_constant__ NearView<D, T, Scheme> view, const Scalars q,
                     const __grid_constant__ ProjectionTable<T> table, const std::uint8_t* material,
                     const __grid_constant__ Store store) {
   waitForEarlierKernels();
@@ -103,11 +103,11 @@ __global__ void __launch_bounds__(128)
 template <int D>
 inline constexpr std::uint32_t onePassParticles = D == 2 ? 4000 : 3000;
 
-template <int D, class T, class Weights, class Scalars, class Store>
-void nearSchur(const Context<Cuda>& context, const NearView<D, T, Weights>& view, const Scalars& q,
+template <int D, class T, class Scheme, class Scalars, class Store>
+void nearSchur(const Context<Cuda>& context, const NearView<D, T, Scheme>& view, const Scalars& q,
                const ProjectionTable<T>& table, const std::uint8_t* material, const Store& store) {
   constexpr int lanes = D == 2 ? 16 : 32;
   launchEarly(context, blocksFor(std::size_t{view.activeCount} * lanes, 128), 128, 0,
-              nearSchurKernel<lanes, D, T, Weights, Scalars, Store>, view, q, table, material, store);
+              nearSchurKernel<lanes, D, T, Scheme, Scalars, Store>, view, q, table, material, store);
 }
 }  // namespace treacle

@@ -54,9 +54,9 @@ __device__ inline Vec<D> fromLowest(Vec<D> place) {
   return place;
 }
 
-template <bool Renormalised, int D, class T, class Weights>
+template <bool Renormalised, int D, class T, class Scheme>
 __device__ inline StagedNeighbour<D, T> stagedNeighbour(const PressureGalerkin<D, T>& g,
-                                                        const NearView<D, T, Weights>& near, std::uint32_t i,
+                                                        const NearView<D, T, Scheme>& near, std::uint32_t i,
                                                         const Vec<D>& from, std::uint32_t j) {
   const Vec<D, T> d = near.difference(near.other(j), near.own(i));
   StagedNeighbour<D, T> staged;
@@ -79,10 +79,10 @@ __device__ inline T nodeHat(const Vec<D, T>& at, int n) {
 /// One block per cell: the columns of C P of its fluid particles, a few at a time in shared memory, and from them
 /// the matrices of its halves; then the corner hats of all its particles, and the mass matrix. Each thread owns
 /// its entries. No atomics.
-template <bool Renormalised, int D, class T, class Weights>
+template <bool Renormalised, int D, class T, class Scheme>
 __global__ void __launch_bounds__(D == 2 ? 96 : 256)
     cellPartsKernel(const __grid_constant__ PressureGalerkin<D, T> g,
-                    const __grid_constant__ NearView<D, T, Weights> near) {
+                    const __grid_constant__ NearView<D, T, Scheme> near) {
   using Parts = CellParts<D, T>;
   constexpr int threads = D == 2 ? 96 : 256, batch = D == 2 ? 20 : 36, width = D * slots<D>;
   constexpr int mine = (Parts::gram + threads - 1) / threads;
@@ -272,10 +272,10 @@ void pressureGalerkin(Context<Cuda>& context, const MphPairs<D>& pairs, const Ne
       .rowStart = s.rowStart.data(),
       .column = s.column.data(),
       .value = reinterpret_cast<double*>(s.value.data())};
-  withPressureTerms(pairs, [&]<class Weights>(const MphTerms<D, double, Weights>& terms, auto renormalised) {
+  withSchemeTerms(pairs, [&]<class Scheme>(const MphTerms<D, double, Scheme>& terms, auto renormalised) {
     launch(context, nodes.count(), D == 2 ? 96 : 256, 0,
-           cellPartsKernel<decltype(renormalised)::value, D, T, Weights>, g,
-           NearView<D, T, Weights>::make(pairs, near, terms));
+           cellPartsKernel<decltype(renormalised)::value, D, T, Scheme>, g,
+           NearView<D, T, Scheme>::make(pairs, near, terms));
   });
   launch(context, D == 2 ? blocksFor(nodes.count(), 4) : nodes.count(), 128, 0, pressureGalerkinKernel<D, T>, g);
   sumRows<D>(context, nodes, hatReach, s);

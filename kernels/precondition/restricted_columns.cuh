@@ -52,8 +52,7 @@ void restrictedColumns(Context<Cuda>& context, const MphPairs<D>& pairs, Buffer<
   constexpr int slots = power<D>(2);
   columns.resize(context, std::size_t{slots} * pairs.activeCount);
   const auto places = LocalPositions<D, double>::make(pairs);
-  using Published = KnownPressureWeight<PublishedWeights::pressure>;
-  withKnownWeights<Published>(pairs.terms, [&]<class Mph>(const Mph& mph) {
+  withScheme(pairs.terms, [&]<class Mph>(const Mph& mph) {
     using Terms = RestrictedColumns<D, Mph>;
     const Terms terms{mph, reinterpret_cast<double*>(columns.data())};
     const ListTask<Terms> fluid{pairs.fluidList, terms}, walls{pairs.wallList, terms};

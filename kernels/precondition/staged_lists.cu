@@ -12,9 +12,9 @@ constexpr unsigned slice = nearSlice;
 constexpr std::uint32_t nobody = 0xffffffff;
 
 /// What the rows are made of, and where they are written.
-template <int D, class Word, class Weights>
+template <int D, class Word>
 struct StagedRows {
-  NearView<D, float, Weights> near;
+  NearView<D, float, AccurateScheme> near;
   bool hasInner;         // some blocks have no ghosts, and that counts
   std::uint32_t ownEnd;  // of the walls
   Renormalised<D> tensors;
@@ -108,9 +108,9 @@ __device__ inline std::uint32_t placeAmong(const std::uint32_t* sorted, std::uin
 /// A block per block of particles, `split` threads for each of them; reads the rows of NearProducts and positions,
 /// writes the block's members and the lengths of its slices' rows. Atomics in shared memory, on which the result
 /// does not depend.
-template <class Split, int D, class Word, class Weights>
+template <class Split, int D, class Word>
 __global__ void __launch_bounds__(StagedLists<D>::threads)
-    membersKernel(const Split split, const __grid_constant__ StagedRows<D, Word, Weights> out) {
+    membersKernel(const Split split, const __grid_constant__ StagedRows<D, Word> out) {
   constexpr std::uint32_t particles = StagedLists<D>::threads / Split::value,
                           capacity = StagedLists<D>::capacity(Split::value);
   __shared__ MemberTable<capacity> table;
@@ -146,9 +146,9 @@ __global__ void __launch_bounds__(StagedLists<D>::threads)
 }
 
 /// The same; reads positions, B and members, writes the rows. No atomics.
-template <class Split, int D, class Word, class Weights>
+template <class Split, int D, class Word>
 __global__ void __launch_bounds__(StagedLists<D>::threads)
-    rowsKernel(const Split split, const __grid_constant__ StagedRows<D, Word, Weights> out) {
+    rowsKernel(const Split split, const __grid_constant__ StagedRows<D, Word> out) {
   constexpr std::uint32_t particles = StagedLists<D>::threads / Split::value,
                           capacity = StagedLists<D>::capacity(Split::value);
   __shared__ std::uint32_t member[capacity];
@@ -205,28 +205,25 @@ void StagedLists<D>::makeRows(Context<Cuda>& context, const MphPairs<D>& pairs, 
   start_.resize(context, std::size_t{slices} + 1);
   own_.resize(context, pairs.fluidCount);
   unit_ = largestElement(pairs) / ElementBits<D, Word>::largest;
-  const auto start = [&]<class Weights>(const MphTerms<D, double, Weights>& terms) {
-    StagedRows<D, Word, Weights> rows{};
-    rows.near = NearView<D, float, Weights>::make(pairs, near, terms);
-    const float length = static_cast<float>(reach) * rows.near.mph.pressureRadius;
-    rows.reach2 = length * length;
-    rows.perShape = static_cast<float>(pairs.terms.gradientFactor / unit_);
-    rows.tensors = {pairs.renormalisation, pairs.fluidCount};
-    rows.hasInner = context.halo && !context.halo->sentFluid.empty();
-    rows.ownEnd = pairs.ownEnd();
-    rows.member = member_.data(), rows.memberCount = memberCount_.data(), rows.start = start_.data();
-    withSharing(*this, [&](auto split) {
-      using Split = decltype(split);
-      launch(context, blocks, threads, 0, membersKernel<Split, D, Word, Weights>, split, rows);
-      const std::uint64_t room = startRows(context, start_) * slice;
-      place_.resize(context, room);
-      for (auto* elements : {&column_, &row_}) elements->resize(context, sizeof(Word) * room);
-      rows.place = place_.data(), rows.own = own_.data();
-      rows.column = reinterpret_cast<Word*>(column_.data()), rows.row = reinterpret_cast<Word*>(row_.data());
-      launch(context, blocks, threads, 0, rowsKernel<Split, D, Word, Weights>, split, rows);
-    });
-  };
-  withKnownWeights<KnownPressureWeight<AccurateWeights::pressure>>(pairs.terms, start);
+  StagedRows<D, Word> rows{};
+  rows.near = NearView<D, float, AccurateScheme>::make(pairs, near, pairs.terms.with(AccurateScheme{}));
+  const float length = static_cast<float>(reach) * rows.near.mph.pressureRadius;
+  rows.reach2 = length * length;
+  rows.perShape = static_cast<float>(pairs.terms.gradientFactor / unit_);
+  rows.tensors = {pairs.renormalisation, pairs.fluidCount};
+  rows.hasInner = context.halo && !context.halo->sentFluid.empty();
+  rows.ownEnd = pairs.ownEnd();
+  rows.member = member_.data(), rows.memberCount = memberCount_.data(), rows.start = start_.data();
+  withSharing(*this, [&](auto split) {
+    using Split = decltype(split);
+    launch(context, blocks, threads, 0, membersKernel<Split, D, Word>, split, rows);
+    const std::uint64_t room = startRows(context, start_) * slice;
+    place_.resize(context, room);
+    for (auto* elements : {&column_, &row_}) elements->resize(context, sizeof(Word) * room);
+    rows.place = place_.data(), rows.own = own_.data();
+    rows.column = reinterpret_cast<Word*>(column_.data()), rows.row = reinterpret_cast<Word*>(row_.data());
+    launch(context, blocks, threads, 0, rowsKernel<Split, D, Word>, split, rows);
+  });
 }
 
 template <int D>

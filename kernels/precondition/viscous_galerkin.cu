@@ -48,7 +48,7 @@ void viscousGalerkin(Context<Cuda>& context, const MphPairs<D>& pairs, const Wal
                      const HatNodes<D, Cuda>& nodes, Buffer<ViscousMoments<D, T>, Cuda>& moments,
                      Buffer<T, Cuda>& parts, BlockCsr<D, double, Cuda>& a) {
   moments.resize(context, pairs.fluidCount);
-  withViscosityTerms(pairs, [&]<class Mph>(const Mph& mph) {
+  withScheme(pairs.terms, [&]<class Mph>(const Mph& mph) {
     using Terms = MomentSums<D, T, Mph>;
     const ListTask<Terms> task{pairs.fluidList, {mph, moments.data()}};
     launchClusterSums<D, double, Sharing<2, 1>>(context, pairs, task, LocalPositions<D, double>::make(pairs));

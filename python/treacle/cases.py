@@ -282,10 +282,6 @@ class Time:
 class Method:
     name: Literal["mph-i", "isph"] | None = None
     scheme: Literal["accurate", "published"] | None = None
-    pressure_weight: Literal["wendland-c2", "wendland-c4", "mps"] | None = None
-    viscosity_weight: Literal["quadratic", "biquadratic", "mps"] | None = None
-    wall_velocity: Literal["extrapolated", "own"] | None = None
-    pressure_gradient: Literal["renormalised", "plain"] | None = None
     pressure_radius: float | None = None
     """[spacings]"""
     density_radius: float | None = None

@@ -76,7 +76,7 @@ ParticleNumbers numbersOfAll(const Communicator& processes, const ParticleNumber
 /// What createParticles notes where one process makes all of them.
 void noteWalls(const Case& c, const AnyParticles& part, const Communicator& processes,
                std::vector<std::string>& notes) {
-  if (c.method.kind != MethodKind::MphI || c.method.wallVelocity != WallVelocity::Extrapolated) return;
+  if (!c.isAccurate()) return;
   std::vector<WallSight> sight = part.visit([&]<int D>(const Particles<D>& p) {
     return wallSight<D>(c, p.body.span().subspan(p.wallBegin()), p.wallSurface.span());
   });

@@ -63,10 +63,6 @@ MethodSettings defaultMethod(SchemeKind scheme) {
   MethodSettings method;
   if (scheme == SchemeKind::Accurate) return method;
   method.scheme = scheme;  // [K23 Table 1] for the radii
-  method.pressureWeight = PressureWeight::Mps;
-  method.viscosityWeight = ViscosityWeight::Mps;
-  method.wallVelocity = WallVelocity::Own;
-  method.pressureGradient = PressureGradient::Plain;
   method.pressureRadius = 1.75;
   method.densityRadius = 0;
   method.viscosityRadius = 3.5;

@@ -165,24 +165,22 @@ void warnThinWalls(const Case& c, std::vector<std::string>& warnings) {
   }
 }
 
-/// Sums over particles are to stand for integrals. With radii from these on, those of a Wendland function over a
-/// cubic lattice vary by less than 2.5 % with the place, of its slope times r by less than 6 %, and those of the
-/// biquadratic weight times r^2 by less than 4.5 %; at 2 spacings the former vary by up to 6 % (C2) and 25 % (C4),
-/// at 1.75 the latter by 7 %.
+/// Sums over particles are to stand for integrals. With radii from these on, the sums of Wendland's C2 over a
+/// cubic lattice vary by less than 2.5 % with the place, and those of its slope times r by less than 6 %; at 2
+/// spacings the former vary by up to 6 %. The weights of [K23] need the neighbours along the diagonal.
 void warnShortRadii(const Case& c, std::vector<std::string>& warnings) {
   const MethodSettings& m = c.method;
   if (m.kind != MethodKind::MphI) return;
-  const auto check = [&](std::string_view key, double radius, double least, std::string_view weight) {
+  const auto check = [&](std::string_view key, double radius, double least) {
     if (radius >= least * (1 - rounding)) return;
     warnings.push_back(fmt::format(
-        "method.{} = {:g} spacings is short for the weight '{}', expected at least {:g}: sums over so few "
+        "method.{} = {:g} spacings is short for the scheme '{}', expected at least {:g}: sums over so few "
         "neighbours depend on where these stand",
-        key, radius, weight, least));
+        key, radius, nameOf(m.scheme), least));
   };
-  const bool mps = m.pressureWeight == PressureWeight::Mps;  // needs the neighbours along the diagonal
-  check("pressure_radius", m.pressureRadius, mps ? 1.5 : 2.5, nameOf(m.pressureWeight));
-  check("viscosity_radius", m.viscosityRadius, m.viscosityWeight == ViscosityWeight::Mps ? 1.5 : 2,
-        nameOf(m.viscosityWeight));
+  const bool published = m.scheme == SchemeKind::Published;
+  check("pressure_radius", m.pressureRadius, published ? 1.5 : 2.5);
+  check("viscosity_radius", m.viscosityRadius, published ? 1.5 : 2);
 }
 
 /// Of the longest step that a run makes.

@@ -186,7 +186,7 @@ void append(const Case& c, BodyKind kind, const std::vector<Filled<D>>& filled, 
 /// For the velocities that fluid meets at walls, and for the gaps of rigid bodies.
 bool needsWallSurfaces(const Case& c) {
   if (c.method.kind == MethodKind::Isph) return c.hasRigid();
-  return c.method.wallVelocity == WallVelocity::Extrapolated;
+  return c.isAccurate();
 }
 
 }  // namespace

@@ -181,7 +181,7 @@ void diagonalBlocks(Context<Cpu>&, const MphPairs<D>& pairs, const WallTerms<D>&
       }
     });
   };
-  withKnownWeights<PublishedWeights>(pairs.terms, [&](const auto& mph) {
+  withScheme(pairs.terms, [&](const auto& mph) {
     withRenormalisation(pairs, [&]<bool Renormalised>() {
       pairs.viscosityScale ? sumUp.template operator()<Renormalised, true>(mph)
                            : sumUp.template operator()<Renormalised, false>(mph);

@@ -11,7 +11,7 @@ template <int D>
 DensityWeight<D> densityWeightOf(const Case& c) {
   if (c.keepsVolume()) return DensityWeight<D>::window(c.densityRadius(), c.spacing);
   const double radius = c.isAccurate() ? 3 * c.spacing : c.densityRadius();
-  return DensityWeight<D>::make(radius, c.spacing, c.method.pressureWeight);
+  return DensityWeight<D>::make(radius, c.spacing, c.method.scheme);
 }
 
 }  // namespace
@@ -24,10 +24,10 @@ MphPairs<D> makeMphPairs(const Case& c) {
   MphPairs<D> pairs;
   pairs.spacing = c.spacing;
   pairs.grid = CellGrid<D>::make(resized<D>(c.domain.min), resized<D>(c.domain.max), periodic, c.searchEdge());
-  const auto pressureWeight = Weight<D>::make(hp, c.spacing, c.method.pressureWeight);
-  pairs.terms = MphTerms<D>::make(pressureWeight, c.method.viscosityWeight, hv, c.spacing);
+  const auto pressure = Weight<D>::make(hp, c.spacing, c.method.scheme);
+  pairs.terms = MphTerms<D>::make(pressure, hv, c.spacing);
   // A lattice's sum is not quite the integral. Where B is to make the gradient exact, a full lattice needs none.
-  if (c.method.pressureGradient == PressureGradient::Renormalised)
+  if (c.isAccurate())
     pairs.terms.gradientFactor *= D / latticeSum<D>(hp, c.spacing, [&](double r) {
                                     return pairs.terms.gradient(ExactDistance(r * r)) * r * r;
                                   });

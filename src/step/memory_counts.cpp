@@ -125,7 +125,7 @@ class Counter {
     std::uint64_t near = 0, staged = 0;
 
     void add(const MphPairs<D>& pairs, std::uint32_t first, std::uint32_t last) {
-      const double reach = slopeReach(pairs.terms.weights.pressure) * pairs.terms.pressureRadius;
+      const double reach = slopeReach(pairs.terms.scheme.kind) * pairs.terms.pressureRadius;
       for (std::uint32_t slice = first; slice < last; slice += nearSlice) {
         Sliced longest;
         for (std::uint32_t i = slice; i < std::min(last, slice + nearSlice); ++i) {

@@ -98,8 +98,7 @@ void planParts(const Case& c, const MemoryCounts& n, BackendKind backend, Memory
   if (backend == BackendKind::Cpu) sum.keep<std::uint32_t>(n.cells);  // their order
   sum.keep<std::uint32_t>(sent);
   // The largest value that goes to ghosts.
-  const bool renormalised =
-      c.method.kind == MethodKind::MphI && c.method.pressureGradient != PressureGradient::Plain;
+  const bool renormalised = c.isAccurate();
   sum.keep<std::byte>(sent * (renormalised ? sizeof(SymmetricBlock<D>) : sizeof(Vec<D>)));
   // A vector of the solve with its ghosts (withGhosts).
   sum.keep<std::byte>(n.heldFluid() * (c.method.kind == MethodKind::Isph ? sizeof(double) : sizeof(Vec<D>)));

@@ -51,7 +51,7 @@ template <int D>
 void planFields(const Case& c, const MemoryCounts& n, bool withGradient, MemorySum& sum) {
   const std::uint64_t fluid = n.particles.fluid, held = n.heldFluid(), walls = n.activeWalls();
   if (n.particles.surfaces > 0) sum.keep<WallSurface<D>>(walls);
-  if (c.method.pressureGradient != PressureGradient::Plain) sum.keep<SymmetricBlock<D>>(held);
+  if (c.isAccurate()) sum.keep<SymmetricBlock<D>>(held);
   if (c.hasOwnViscosities()) {
     sum.keep<double>(3 * held + 2 * fluid);
     sum.keep<std::uint8_t>(n.active);
@@ -225,7 +225,7 @@ inline constexpr std::uint64_t spgemmBytes = D == 2 ? 4300 : 27800;
 template <int D, class T>
 void planPreconditioner(const Case& c, const MemoryCounts& n, BackendKind backend, MemorySum& sum) {
   const std::uint64_t fluid = n.particles.fluid;
-  const bool renormalised = c.method.pressureGradient != PressureGradient::Plain;
+  const bool renormalised = c.isAccurate();
   const PreconditionerKind kind = c.solver.preconditioner;
   if (kind == PreconditionerKind::None) return;
   if (kind == PreconditionerKind::ProjectedMultigrid) return planProjected<D, T>(c, n, backend, renormalised, sum);
@@ -249,8 +249,7 @@ void planPreconditioner(const Case& c, const MemoryCounts& n, BackendKind backen
 template <int D, class T>
 void planMph(const Case& c, const MemoryCounts& n, BackendKind backend, MemorySum& sum) {
   const std::uint64_t fluid = n.particles.fluid;
-  const bool renormalised = c.method.pressureGradient != PressureGradient::Plain,
-             onCpu = backend == BackendKind::Cpu;
+  const bool renormalised = c.isAccurate(), onCpu = backend == BackendKind::Cpu;
   const bool lists = onCpu || c.solver.neighbours == NeighbourKind::Lists;
   if (lists) planLists(n.fluidLists, sum), planLists(n.wallLists, sum);
   planFields<D>(c, n, onCpu || !renormalised, sum);

@@ -279,7 +279,7 @@ class MphStep final : public StepMethod<D, Backend> {
 
   /// B, which everything that contains C needs.
   void renormalise() {
-    if (state_.theCase.method.pressureGradient == PressureGradient::Plain) return;
+    if (!state_.theCase.isAccurate()) return;
     renormalisation_.resize(state_.context, pairs_.fluidCount);
     renormalisation<D>(state_.context, pairs_, renormalisation_.span());
     if (tension_)

@@ -14,32 +14,25 @@ struct WeightFunction {
   double integral2D, integral3D;
 };
 
-WeightFunction functionOf(PressureWeight weight) {
-  switch (weight) {
-    case PressureWeight::Mps:
-      return {[](double q) { return std::pow(1 - q, 2); }, [](double q) { return -2 * (1 - q); }, M_PI / 6,
-              2 * M_PI / 15};
-    case PressureWeight::WendlandC2:
-      return {[](double q) { return std::pow(1 - q, 4) * (4 * q + 1); },
-              [](double q) { return -20 * q * std::pow(1 - q, 3); }, M_PI / 7, 2 * M_PI / 21};
-    case PressureWeight::WendlandC4:
-      break;
-  }
-  return {[](double q) { return std::pow(1 - q, 6) * (35 * q * q + 18 * q + 3); },
-          [](double q) { return -56 * q * (5 * q + 1) * std::pow(1 - q, 5); }, M_PI / 3, 32 * M_PI / 165};
+WeightFunction functionOf(SchemeKind scheme) {
+  if (scheme == SchemeKind::Published)
+    return {[](double q) { return std::pow(1 - q, 2); }, [](double q) { return -2 * (1 - q); }, M_PI / 6,
+            2 * M_PI / 15};
+  return {[](double q) { return std::pow(1 - q, 4) * (4 * q + 1); },
+          [](double q) { return -20 * q * std::pow(1 - q, 3); }, M_PI / 7, 2 * M_PI / 21};
 }
 
 }  // namespace
 
 template <int D>
 double Oracle<D>::w(double r, double h) const {
-  const WeightFunction f = functionOf(s.c.method.pressureWeight);
+  const WeightFunction f = functionOf(s.c.method.scheme);
   return r > h ? 0 : std::pow(l / h, D) / (D == 2 ? f.integral2D : f.integral3D) * f.value(r / h);
 }
 
 template <int D>
 double Oracle<D>::dw(double r, double h) const {
-  const WeightFunction f = functionOf(s.c.method.pressureWeight);
+  const WeightFunction f = functionOf(s.c.method.scheme);
   return r > h ? 0 : slopeScale * std::pow(l / h, D) / (D == 2 ? f.integral2D : f.integral3D) * f.slope(r / h) / h;
 }
 
@@ -58,14 +51,13 @@ template <int D>
 double Oracle<D>::viscousBlock(double r) const {
   const double q = r / hv;
   if (q > 1) return 0;
-  if (s.c.method.viscosityWeight == ViscosityWeight::Mps) {
+  if (!s.c.isAccurate()) {
     const double integral = D == 2 ? M_PI / 6 : 2 * M_PI / 15;
     return 4 * (D + 2) * std::pow(l / hv, D) / (integral * hv) * (1 - q) / std::pow(r, 3);
   }
-  const bool quadratic = s.c.method.viscosityWeight == ViscosityWeight::Quadratic;
   const double sphere = D == 2 ? 2 * M_PI : 4 * M_PI;
-  const double moment = quadratic ? (D == 2 ? 1.0 / 105 : 1.0 / 168) : (D == 2 ? 1.0 / 24 : 8.0 / 315);
-  const double f = quadratic ? q * std::pow(1 - q, 2) : std::pow(1 - q * q, 2);
+  const double moment = D == 2 ? 1.0 / 105 : 1.0 / 168;
+  const double f = q * std::pow(1 - q, 2);
   return 2 * D * (D + 2) * std::pow(l, D) / (sphere * moment * std::pow(hv, D + 2)) * f / (r * r);
 }
 
@@ -173,8 +165,7 @@ Matrix Oracle<D>::moment(std::uint32_t i) const {
 
 template <int D>
 Matrix Oracle<D>::renormalisation(std::uint32_t i) const {
-  if (s.c.method.pressureGradient == PressureGradient::Plain || i >= s.particles.fluidCount)
-    return Matrix::Identity(D, D);
+  if (!s.c.isAccurate() || i >= s.particles.fluidCount) return Matrix::Identity(D, D);
   return renormalisationOracle(moment(i));
 }
 

@@ -28,7 +28,7 @@ struct Oracle {
         hn(s.c.densityRadius()),
         hv(s.c.method.viscosityRadius * l),
         dt(s.c.time.step) {
-    if (s.c.method.pressureGradient == PressureGradient::Renormalised) slopeScale = 1 / latticeMoment();
+    if (s.c.isAccurate()) slopeScale = 1 / latticeMoment();
   }
 
   std::uint32_t count() const { return s.particles.count; }

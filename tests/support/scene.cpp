@@ -60,7 +60,7 @@ Particles<D> jitteredLattice(const Case& c, double jitter, unsigned seed, const 
 
 template <int D>
 void knowSurface(const Case& c, double height, Particles<D>& p) {
-  if (c.method.wallVelocity == WallVelocity::Own) return;
+  if (!c.isAccurate()) return;
   p.wallSurface.resize(p.wallCount());
   for (std::uint32_t k = 0; k < p.wallCount(); ++k) {
     WallSurface<D>& surface = p.wallSurface[k] = {};
@@ -81,7 +81,7 @@ void prepare(Scene<D>& s) {
                      s.wallSurface.span());
     s.neighbourhood->setWallSurfaces(s.wallSurface);
   }
-  if (s.c.method.pressureGradient == PressureGradient::Renormalised) {
+  if (s.c.isAccurate()) {
     s.renormalisation.resize(s.n());
     renormalisation<D>(s.context, s.pairs(), s.renormalisation.span());
     s.neighbourhood->setRenormalisation(s.renormalisation);

@@ -81,9 +81,7 @@ struct Case {
   /// Whether the motion, the weight of densities and the tension of the fluid are those that keep the volume
   /// (docs/accurate.md). A surface tension, which acts by the places of particles, would need steps half as long,
   /// and was made for other densities. Gaps close by the matrix of the renormalised gradient.
-  bool keepsVolume() const {
-    return isAccurate() && !hasSurfaceTension() && method.pressureGradient == PressureGradient::Renormalised;
-  }
+  bool keepsVolume() const { return isAccurate() && !hasSurfaceTension(); }
   /// Farthest distance at which particles act on each other [m].
   double interactionRadius() const {
     return method.kind == MethodKind::Isph ? 2 * smoothingLength() : std::max(viscosityRadius(), densityRadius());

@@ -20,30 +20,21 @@ struct IsphSettings {
   bool operator==(const IsphSettings&) const = default;
 };
 
-/// Of MPH-I: weights and radii that go together; what a case does not say itself is its scheme's (defaultMethod).
-/// Accurate converges under refinement; Published is that of [K23].
+/// The formulas of MPH-I. Published: those of [K23]. Accurate: formulas that converge under refinement
+/// (docs/accurate.md). The scheme decides on
+/// - the weights of divergences and pressure gradients, (1-q)^2 or Wendland's C2, (1-q)^4 (1+4q), with q = r/h,
+/// - the weight of the viscosity of a pair, (1-q)/q^3 or (1-q)^2/q,
+/// - the velocity that the fluid meets in a wall: that of each wall particle, or the wall's velocity extrapolated
+///   through its surface,
+/// - the pressure gradient: the plain sum over neighbours, or a renormalised one whose transpose, the divergence,
+///   is exact for velocities that are linear in space, also at free surfaces,
+/// and on the radii that a case does not give (defaultMethod).
 enum class SchemeKind { Accurate, Published };
-/// Weight of densities, divergences and pressure gradients, and weight of the viscosity, with q = r/h: those of
-/// [K23], (1-q)^2 and what its derivative makes of the viscosity, (1-q)/q^3; Wendland's functions C2,
-/// (1-q)^4 (1+4q), and C4, (1-q)^6 (3+18q+35q^2); (1-q^2)^2/q^2, and (1-q)^2/q.
-enum class PressureWeight { Mps, WendlandC2, WendlandC4 };
-enum class ViscosityWeight { Mps, Biquadratic, Quadratic };
-/// Which velocity the fluid meets in a wall: each wall particle's own, so that a wall ends somewhere between its
-/// first particles and the fluid, or the wall's velocity extrapolated through its surface, which is then where it
-/// ends.
-enum class WallVelocity { Own, Extrapolated };
-/// Which gradient the pressure has: the plain sum over neighbours, or one whose transpose, the divergence, is
-/// exact for velocities that are linear in space, at free surfaces, too.
-enum class PressureGradient { Plain, Renormalised };
 
 /// Of MPH-I, the accurate scheme's.
 struct MethodSettings {
   MethodKind kind = MethodKind::MphI;
   SchemeKind scheme = SchemeKind::Accurate;
-  PressureWeight pressureWeight = PressureWeight::WendlandC2;
-  ViscosityWeight viscosityWeight = ViscosityWeight::Quadratic;
-  WallVelocity wallVelocity = WallVelocity::Extrapolated;
-  PressureGradient pressureGradient = PressureGradient::Renormalised;
   // Effective radii in particle spacings.
   double pressureRadius = 2.5;   // h_p / l
   double densityRadius = 3.5;    // h_n / l, at least that of the pressure

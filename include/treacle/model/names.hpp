@@ -45,16 +45,6 @@ inline constexpr Named<ProbeKind> probe[] = {{"point", ProbeKind::Point}, {"line
 inline constexpr Named<MethodKind> method[] = {{"mph-i", MethodKind::MphI}, {"isph", MethodKind::Isph}};
 inline constexpr Named<SchemeKind> scheme[] = {{"accurate", SchemeKind::Accurate},
                                                {"published", SchemeKind::Published}};
-inline constexpr Named<PressureWeight> pressureWeight[] = {{"wendland-c2", PressureWeight::WendlandC2},
-                                                           {"wendland-c4", PressureWeight::WendlandC4},
-                                                           {"mps", PressureWeight::Mps}};
-inline constexpr Named<WallVelocity> wallVelocity[] = {{"extrapolated", WallVelocity::Extrapolated},
-                                                       {"own", WallVelocity::Own}};
-inline constexpr Named<PressureGradient> pressureGradient[] = {{"renormalised", PressureGradient::Renormalised},
-                                                               {"plain", PressureGradient::Plain}};
-inline constexpr Named<ViscosityWeight> viscosityWeight[] = {{"quadratic", ViscosityWeight::Quadratic},
-                                                             {"biquadratic", ViscosityWeight::Biquadratic},
-                                                             {"mps", ViscosityWeight::Mps}};
 inline constexpr Named<KernelKind> kernel[] = {{"cubic-spline", KernelKind::CubicSpline},
                                                {"wendland-c2", KernelKind::WendlandC2}};
 inline constexpr Named<WallSlip> slip[] = {{"no-slip", WallSlip::NoSlip}, {"free-slip", WallSlip::FreeSlip}};
@@ -117,14 +107,6 @@ template <>
 inline constexpr std::span<const Named<MethodKind>> namesOf<MethodKind>{names::method};
 template <>
 inline constexpr std::span<const Named<SchemeKind>> namesOf<SchemeKind>{names::scheme};
-template <>
-inline constexpr std::span<const Named<PressureWeight>> namesOf<PressureWeight>{names::pressureWeight};
-template <>
-inline constexpr std::span<const Named<WallVelocity>> namesOf<WallVelocity>{names::wallVelocity};
-template <>
-inline constexpr std::span<const Named<PressureGradient>> namesOf<PressureGradient>{names::pressureGradient};
-template <>
-inline constexpr std::span<const Named<ViscosityWeight>> namesOf<ViscosityWeight>{names::viscosityWeight};
 template <>
 inline constexpr std::span<const Named<KernelKind>> namesOf<KernelKind>{names::kernel};
 template <>

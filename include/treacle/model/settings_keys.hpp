@@ -53,15 +53,6 @@ void visit(auto& v, Like<MethodSettings> auto& m, const Case& c) {
   if (c.method.kind == MethodKind::Isph) return visit(v, m.isph, c);
   v({"scheme", "Formulas that converge, or those of the paper [K23]; sets the defaults of the keys below"},
     m.scheme);
-  v({"pressure_weight", "Weight of density, divergence and pressure gradient"}, m.pressureWeight);
-  v({"viscosity_weight", "Weight of the viscosity of a pair"}, m.viscosityWeight);
-  v({"wall_velocity",
-     "Velocity that the fluid meets in a wall: extrapolated through the surface of the wall, or that of each wall "
-     "particle"},
-    m.wallVelocity);
-  v({"pressure_gradient",
-     "Gradient that is exact for linear fields whatever stands around a particle, or the plain sum"},
-    m.pressureGradient);
   v({"pressure_radius", "Radius h_p of divergence and pressure gradient", optional, "spacings", radius},
     m.pressureRadius);
   v({"density_radius",

@@ -9,6 +9,7 @@
 #include "treacle/search/material_particles.hpp"
 
 #include <cstdint>
+#include <stdexcept>
 
 namespace treacle {
 
@@ -118,26 +119,14 @@ void withRenormalisation(const MphPairs<D>& pairs, F&& f) {
   pairs.renormalisation ? f.template operator()<true>() : f.template operator()<false>();
 }
 
-/// f(terms, whether they have B) for sums whose compiler knows both of a scheme: the published one's weights go
-/// without B, those of the accurate one with it. The terms of other cases have their weights at run time.
-template <class Published, class Accurate, int D, class F>
-void withKnownTerms(const MphPairs<D>& pairs, F&& f) {
-  if (pairs.renormalisation)
-    withKnownWeights<Accurate>(pairs.terms, [&](const auto& terms) { f(terms, std::true_type{}); });
-  else
-    withKnownWeights<Published>(pairs.terms, [&](const auto& terms) { f(terms, std::false_type{}); });
-}
-/// For sums that need the terms of pressures alone.
+/// f(terms, whether they have B) for sums whose compiler knows both: B belongs to the accurate scheme. Errors:
+/// std::logic_error for pairs of the accurate scheme whose B is not known yet.
 template <int D, class F>
-void withPressureTerms(const MphPairs<D>& pairs, F&& f) {
-  withKnownTerms<KnownPressureWeight<PublishedWeights::pressure>, KnownPressureWeight<AccurateWeights::pressure>>(
-      pairs, f);
-}
-/// For sums that need the terms of the viscosity alone: f(terms).
-template <int D, class F>
-void withViscosityTerms(const MphPairs<D>& pairs, F&& f) {
-  withKnownWeights<KnownViscosityWeight<PublishedWeights::viscosity>,
-                   KnownViscosityWeight<AccurateWeights::viscosity>>(pairs.terms, f);
+void withSchemeTerms(const MphPairs<D>& pairs, F&& f) {
+  const bool published = pairs.terms.scheme.kind == SchemeKind::Published;
+  if (published == (pairs.renormalisation != nullptr)) throw std::logic_error("B is not that of the scheme");
+  published ? f(pairs.terms.with(PublishedScheme{}), std::false_type{})
+            : f(pairs.terms.with(AccurateScheme{}), std::true_type{});
 }
 
 /// The constants of a case, without particles.

@@ -25,72 +25,55 @@ struct ExactDistance {
   TREACLE_HD double overSquare(double x) const { return x / square; }
 };
 
-/// The weights of a case, chosen while the program runs.
-struct CaseWeights {
-  PressureWeight pressure;
-  ViscosityWeight viscosity;
+/// The scheme of a case, chosen while the program runs.
+struct CaseScheme {
+  SchemeKind kind;
 };
-
-/// Weights that the compiler knows, for loops that a choice pair by pair would slow down, and whose roundings
-/// depend on what else they could compute: both weights, or the one that a loop needs. `are`: those of the case.
-template <PressureWeight Weight>
-struct KnownPressureWeight {
-  static constexpr PressureWeight pressure = Weight;
-  static constexpr bool are(const CaseWeights& weights) { return weights.pressure == pressure; }
+/// A scheme that the compiler knows, for loops that a choice pair by pair would slow down, and whose roundings
+/// depend on what else they could compute.
+template <SchemeKind Kind>
+struct KnownScheme {
+  static constexpr SchemeKind kind = Kind;
 };
-template <ViscosityWeight Weight>
-struct KnownViscosityWeight {
-  static constexpr ViscosityWeight viscosity = Weight;
-  static constexpr bool are(const CaseWeights& weights) { return weights.viscosity == viscosity; }
-};
-template <PressureWeight Pressure, ViscosityWeight Viscosity>
-struct KnownWeights {
-  static constexpr PressureWeight pressure = Pressure;
-  static constexpr ViscosityWeight viscosity = Viscosity;
-  static constexpr bool are(const CaseWeights& weights) {
-    return weights.pressure == pressure && weights.viscosity == viscosity;
-  }
-};
-/// Those of the schemes: of [K23], and what `scheme = "accurate"` takes unless told otherwise.
-using PublishedWeights = KnownWeights<PressureWeight::Mps, ViscosityWeight::Mps>;
-using AccurateWeights = KnownWeights<PressureWeight::WendlandC2, ViscosityWeight::Quadratic>;
+using PublishedScheme = KnownScheme<SchemeKind::Published>;
+using AccurateScheme = KnownScheme<SchemeKind::Accurate>;
 
 /// What a pair of particles does in MPH-I, d = x_j - x_i and r = |d|, e = d/r:
 ///   number density   n_i = sum of density, whose radius may be larger           [K23 eq. (7)]
 ///   pressures        -e w'^p = gradient d: the elements of C                   [K23 eqs. (4), (14)]
 ///   viscosity        2 (D+2) mu e e^T (-w'^v) / r = mu viscous d d^T: a block of V   [K23 eqs. (4), (16)]
 ///   repulsion        -mu viscous d d^T v, v = [r_0 - r]_+ e / dt: not of [K23], see docs/solver.md
-/// with the weights of the case in place of w^p and -w'^v. These formulas stand nowhere else; a loop calls them in
-/// its own arithmetic. A `...Shape` lacks the factor of the same name, for loops that multiply their sums by it in
-/// the end. All are zero from their radius on. T is the precision of the constants; lengths are in whatever unit
-/// they were made for. Weights: CaseWeights, or known ones, without those that are not needed.
-template <int D, class T = double, class Weights = CaseWeights>
+/// with the weights of the scheme in place of w^p and -w'^v. These formulas stand nowhere else; a loop calls them
+/// in its own arithmetic. A `...Shape` lacks the factor of the same name, for loops that multiply their sums by it
+/// in the end. All are zero from their radius on. T is the precision of the constants; lengths are in whatever
+/// unit they were made for. Scheme: CaseScheme, or a known one.
+template <int D, class T = double, class Scheme = CaseScheme>
 struct MphTerms {
   T pressureRadius, inversePressureRadius;    // h_p, 1/h_p
   T viscosityRadius, inverseViscosityRadius;  // h_v, 1/h_v
   T densityRadius;                            // h_n
   T densityFactor, gradientFactor, viscousFactor;
-  Weights weights;
+  Scheme scheme;
   T repulsionRadius = 0;  // r_0; 0: no repulsion
   bool window = false;    // whether densities have DensityWindow for their weight
 
   /// For the radius h_v and the spacing l [m]; lengths in metres. Densities have the radius of pressures.
-  static MphTerms make(const Weight<D>& pressure, ViscosityWeight viscosity, double viscosityRadius,
-                       double spacing) {
+  static MphTerms make(const Weight<D>& pressure, double viscosityRadius, double spacing) {
     const double hp = pressure.radius, hv = viscosityRadius;
-    return {static_cast<T>(hp),
-            static_cast<T>(1 / hp),
-            static_cast<T>(hv),
-            static_cast<T>(1 / hv),
-            static_cast<T>(hp),
-            static_cast<T>(pressure.scale),
-            static_cast<T>(pressure.slopeFactor() * pressure.scale / hp),
-            static_cast<T>(viscosityFactor(viscosity) * 4 * (D + 2) * Weight<D>::make(hv, spacing).scale / hv),
-            {pressure.kind, viscosity}};
+    return {
+        static_cast<T>(hp),
+        static_cast<T>(1 / hp),
+        static_cast<T>(hv),
+        static_cast<T>(1 / hv),
+        static_cast<T>(hp),
+        static_cast<T>(pressure.scale),
+        static_cast<T>(pressure.slopeFactor() * pressure.scale / hp),
+        static_cast<T>(viscosityFactor(pressure.scheme) * 4 * (D + 2) * Weight<D>::make(hv, spacing).scale / hv),
+        {pressure.scheme}};
   }
   /// The same for lengths in another unit [m]. Pair blocks d d^T and gradients d are still those per metre.
   template <class U>
-  MphTerms<D, U, Weights> inUnitsOf(double unit) const {
+  MphTerms<D, U, Scheme> inUnitsOf(double unit) const {
     return {static_cast<U>(pressureRadius / unit),
             static_cast<U>(inversePressureRadius * unit),
             static_cast<U>(viscosityRadius / unit),
@@ -99,11 +82,11 @@ struct MphTerms {
             static_cast<U>(densityFactor),
             static_cast<U>(gradientFactor),
             static_cast<U>(viscousFactor / unit),
-            weights,
+            scheme,
             static_cast<U>(repulsionRadius / unit),
             window};
   }
-  /// The same with their weights known.
+  /// The same with their scheme known.
   template <class Known>
   MphTerms<D, T, Known> with(Known known) const {
     return {pressureRadius, inversePressureRadius, viscosityRadius, inverseViscosityRadius,
@@ -122,10 +105,9 @@ struct MphTerms {
   TREACLE_HD auto density(Factor factor, const Distance& r) const {
     if (window) return factor * DensityWindow::at(positivePart(T(1) - r.square / (densityRadius * densityRadius)));
     const auto part = positivePart(T(1) - T(1) / (r.inverse * densityRadius));
-    if (weights.pressure == PressureWeight::Mps) return factor * part * part;
+    if (scheme.kind == SchemeKind::Published) return factor * part * part;
     const auto q = T(1) - part, square = part * part;
-    if (weights.pressure == PressureWeight::WendlandC2) return factor * square * square * (T(1) + T(4) * q);
-    return factor * square * square * square * (T(3) + q * (T(18) + T(35) * q));
+    return factor * square * square * (T(1) + T(4) * q);
   }
   /// What is to be multiplied by d, and by densityFactor, to give the openness of a place: [1-q^2]_+^3 / l.
   template <class Distance>
@@ -139,29 +121,23 @@ struct MphTerms {
     const T square = densityRadius * densityRadius;
     return (2 * densityFactor / square) * DensityWindow::slope(positivePart(T(1) - r.square * (T(1) / square)));
   }
-  /// -w' / r: factor times (1/r - 1/h_p), (1-q)^3/h_p or (1-q)^5 (1+5q)/h_p
+  /// -w' / r: factor times (1/r - 1/h_p) or (1-q)^3/h_p
   template <class Distance>
   TREACLE_HD auto gradientShape(const Distance& r) const {
-    if (weights.pressure == PressureWeight::Mps) return positivePart(r.inverse - inversePressureRadius);
+    if (scheme.kind == SchemeKind::Published) return positivePart(r.inverse - inversePressureRadius);
     const auto q = r.square * r.inverse * inversePressureRadius, s = positivePart(T(1) - q);
-    const auto cube = inversePressureRadius * s * s * s;
-    if (weights.pressure == PressureWeight::WendlandC2) return cube;
-    return cube * s * s * (T(1) + T(5) * q);
+    return inversePressureRadius * s * s * s;
   }
   template <class Distance>
   TREACLE_HD auto gradient(const Distance& r) const {
     return gradientFactor * gradientShape(r);
   }
-  /// What a pair resists along e, viscous r^2: factor times (1/r - 1/h_v), (1-q^2)^2/h_v or q (1-q)^2/h_v
+  /// What a pair resists along e, viscous r^2: factor times (1/r - 1/h_v) or q (1-q)^2/h_v
   template <class Distance>
   TREACLE_HD auto resistanceShape(const Distance& r) const {
-    if (weights.viscosity == ViscosityWeight::Mps) return positivePart(r.inverse - inverseViscosityRadius);
-    if (weights.viscosity == ViscosityWeight::Quadratic) {
-      const auto q = r.square * r.inverse * inverseViscosityRadius, s = positivePart(T(1) - q);
-      return inverseViscosityRadius * q * s * s;
-    }
-    const auto s = positivePart(T(1) - r.square * (inverseViscosityRadius * inverseViscosityRadius));
-    return inverseViscosityRadius * s * s;
+    if (scheme.kind == SchemeKind::Published) return positivePart(r.inverse - inverseViscosityRadius);
+    const auto q = r.square * r.inverse * inverseViscosityRadius, s = positivePart(T(1) - q);
+    return inverseViscosityRadius * q * s * s;
   }
   /// The pair's coefficient of d d^T, with what is to be multiplied by it.
   template <class Factor, class Distance>
@@ -181,18 +157,15 @@ struct MphTerms {
 
  private:
   /// So that sums over a full neighbourhood give the same viscosity as with the weight of [K23].
-  static double viscosityFactor(ViscosityWeight weight) {
-    if (weight == ViscosityWeight::Mps) return 1;
-    if (weight == ViscosityWeight::Quadratic) return D == 2 ? 35.0 / 4 : 42.0 / 5;
-    return D == 2 ? 2 : 63.0 / 32;
+  static double viscosityFactor(SchemeKind scheme) {
+    return scheme == SchemeKind::Published ? 1 : D == 2 ? 35.0 / 4 : 42.0 / 5;
   }
 };
 
-/// f(terms) with the first of `Known` that are the weights of the terms, or, if none are, with those of the case.
-template <class... Known, int D, class F>
-void withKnownWeights(const MphTerms<D>& terms, F&& f) {
-  const bool known = ((Known::are(terms.weights) && (f(terms.with(Known{})), true)) || ...);
-  if (!known) f(terms);
+/// f(terms), whose scheme the compiler knows.
+template <int D, class F>
+void withScheme(const MphTerms<D>& terms, F&& f) {
+  terms.scheme.kind == SchemeKind::Published ? f(terms.with(PublishedScheme{})) : f(terms.with(AccurateScheme{}));
 }
 
 }  // namespace treacle

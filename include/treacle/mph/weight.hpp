@@ -11,49 +11,36 @@
 namespace treacle {
 
 /// Weight function w(r) = l^d / (S h^d) f(r/h) with the particle volume l^d inside, so that the sum over a full
-/// neighbourhood is about 1: f = (1-q)^2 of [K23 eq. (3)], or one of Wendland's (PressureWeight). S is the
+/// neighbourhood is about 1: f = (1-q)^2 of [K23 eq. (3)], or Wendland's C2, (1-q)^4 (1+4q). S is the
 /// integral of f over all space in units of h.
 template <int D>
 struct Weight {
   double radius;  // h [m]
   double scale;   // l^d / (S h^d) [-]
-  PressureWeight kind = PressureWeight::Mps;
+  SchemeKind scheme = SchemeKind::Published;
 
-  static Weight make(double radius, double spacing, PressureWeight kind = PressureWeight::Mps) {
-    return {radius, std::pow(spacing / radius, D) / integral(kind), kind};
+  static Weight make(double radius, double spacing, SchemeKind scheme = SchemeKind::Published) {
+    return {radius, std::pow(spacing / radius, D) / integral(scheme), scheme};
   }
 
   TREACLE_HD double value(double r) const {
     const double q = r / radius, s = 1 - q;
     if (s <= 0) return 0;
-    if (kind == PressureWeight::Mps) return scale * s * s;
-    if (kind == PressureWeight::WendlandC2) return scale * s * s * s * s * (1 + 4 * q);
-    return scale * s * s * s * s * s * s * (3 + q * (18 + 35 * q));
+    return scheme == SchemeKind::Published ? scale * s * s : scale * s * s * s * s * (1 + 4 * q);
   }
-  /// k of -w'(r) = k scale/h g(q), g being 1-q, q (1-q)^3 or q (1-q)^5 (1+5q)   [K23 eq. (5)]
-  double slopeFactor() const {
-    return kind == PressureWeight::Mps ? 2 : kind == PressureWeight::WendlandC2 ? 20 : 56;
-  }
+  /// k of -w'(r) = k scale/h g(q), g being 1-q or q (1-q)^3   [K23 eq. (5)]
+  double slopeFactor() const { return scheme == SchemeKind::Published ? 2 : 20; }
 
  private:
-  static double integral(PressureWeight kind) {
+  static double integral(SchemeKind scheme) {
     constexpr double pi = std::numbers::pi;
-    switch (kind) {
-      case PressureWeight::Mps:
-        return D == 2 ? pi / 6 : 2 * pi / 15;
-      case PressureWeight::WendlandC2:
-        return D == 2 ? pi / 7 : 2 * pi / 21;
-      case PressureWeight::WendlandC4:
-        break;
-    }
-    return D == 2 ? pi / 3 : 32 * pi / 165;
+    if (scheme == SchemeKind::Published) return D == 2 ? pi / 6 : 2 * pi / 15;
+    return D == 2 ? pi / 7 : 2 * pi / 21;
   }
 };
 
 /// From this part of the radius on, slopes are less than half a percent of the largest; 1 where they end abruptly.
-inline double slopeReach(PressureWeight kind) {
-  return kind == PressureWeight::Mps ? 1 : kind == PressureWeight::WendlandC2 ? 0.92 : 0.85;
-}
+inline double slopeReach(SchemeKind scheme) { return scheme == SchemeKind::Published ? 1 : 0.92; }
 
 /// Weight of densities of fluid that keeps its volume: a window, whose transform is next to nothing for waves as
 /// short as the spacing. Sums over it know how much fluid there is and not how its particles stand
@@ -94,8 +81,8 @@ template <int D>
 struct DensityWeight : Weight<D> {
   bool isWindow = false;
 
-  static DensityWeight make(double radius, double spacing, PressureWeight pressure) {
-    return {Weight<D>::make(radius, spacing, pressure), false};
+  static DensityWeight make(double radius, double spacing, SchemeKind scheme) {
+    return {Weight<D>::make(radius, spacing, scheme), false};
   }
   static DensityWeight window(double radius, double spacing) {
     return {{radius, std::pow(spacing / radius, D) / DensityWindow::integral<D>()}, true};

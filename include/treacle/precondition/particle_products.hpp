@@ -22,7 +22,7 @@ class ParticleProducts;
 /// (docs/solver.md).
 template <class T, int D>
 double productReach(const MphPairs<D>& pairs) {
-  return std::is_same_v<T, float> && pairs.renormalisation ? slopeReach(pairs.terms.weights.pressure) : 1;
+  return std::is_same_v<T, float> && pairs.renormalisation ? slopeReach(pairs.terms.scheme.kind) : 1;
 }
 
 /// As MphOperator<D, Cpu>: one number per pair and term is kept. In single precision schur() has elements of C in

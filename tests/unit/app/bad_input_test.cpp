@@ -174,8 +174,8 @@ constexpr BadCase badCases[] = {
      "bad.toml:40:8: name in [method]: expected a string, found 1"},
     {"keyOfIsph", "[output]", "[method]\nviscosity = \"explicit\"\n[output]",
      "bad.toml:40:1: unknown key 'viscosity' in [method]: it belongs to the method 'isph'; expected 'name', "
-     "'scheme', 'pressure_weight', 'viscosity_weight', 'wall_velocity', 'pressure_gradient', 'pressure_radius', "
-     "'density_radius', 'viscosity_radius', 'viscosity_correction' or 'ambient_pressure'"},
+     "'scheme', 'pressure_radius', 'density_radius', 'viscosity_radius', 'viscosity_correction' or "
+     "'ambient_pressure'"},
     {"keyOfMph", bulk, "[method]\nname = \"isph\"\npressure_radius = 2\n",
      "bad.toml:18:1: unknown key 'pressure_radius' in [method] (isph): it belongs to the method 'mph-i'; expected "
      "'name', 'kernel', 'smoothing_ratio', 'alpha', 'walls', 'viscosity', 'shifting' or 'negative_pressure'"},
@@ -558,7 +558,7 @@ constexpr Warning warnings[] = {
      "next "
      "to it misses neighbours"},
     {"shortRadius", "[output]", "[method]\nscheme = \"accurate\"\npressure_radius = 2\n[output]",
-     "method.pressure_radius = 2 spacings is short for the weight 'wendland-c2', expected at least 2.5: sums over "
+     "method.pressure_radius = 2 spacings is short for the scheme 'accurate', expected at least 2.5: sums over "
      "so "
      "few neighbours depend on where these stand"},
     {"unstableCompression", "bulk_modulus = 1e6", "bulk_modulus = 2e7",

@@ -201,10 +201,6 @@ end = 7
 courant = 0.3
 [method]
 scheme = "published"
-pressure_weight = "wendland-c4"
-viscosity_weight = "biquadratic"
-wall_velocity = "extrapolated"
-pressure_gradient = "renormalised"
 pressure_radius = 2
 density_radius = 2.25
 viscosity_radius = 3
@@ -270,8 +266,6 @@ TEST(readCase, takesEveryKey) {
   expected.bodies[0].disorder = 0.2;
   expected.time = {1e-3 / 1.5, 7, 0.3};
   expected.method.scheme = SchemeKind::Published;
-  expected.method.pressureWeight = PressureWeight::WendlandC4;
-  expected.method.viscosityWeight = ViscosityWeight::Biquadratic;
   expected.method.pressureRadius = 2, expected.method.densityRadius = 2.25, expected.method.viscosityRadius = 3;
   expected.method.viscosityCorrection = 0.25;
   expected.method.ambientPressure = 77;

@@ -45,7 +45,6 @@ TEST_F(Import, cuboidsBecomeBoxes) {
   EXPECT_EQ(c.dimensions, 2);
   EXPECT_EQ(c.domain.periodic, (std::array<bool, 3>{true, true, false}));
   EXPECT_EQ(c.method.scheme, SchemeKind::Published);
-  EXPECT_EQ(c.method.pressureWeight, PressureWeight::Mps);
   EXPECT_DOUBLE_EQ(c.pressureRadius(), 1.8e-3);
   EXPECT_DOUBLE_EQ(c.densityRadius(), 1.8e-3);
   EXPECT_DOUBLE_EQ(c.viscosityRadius(), 3.4e-3);

@@ -388,33 +388,26 @@ TEST(caseWarnings, frictionThatMeetsNone) {
   EXPECT_THAT(caseWarnings(c), IsEmpty());
 }
 
-TEST(caseWarnings, radiiThatAreShortForTheirWeights) {
+TEST(caseWarnings, radiiThatAreShortForTheirScheme) {
   Case c = damBreak();
   c.method = defaultMethod(SchemeKind::Published);
   c.method.viscosityRadius = 1.5;
-  EXPECT_THAT(caseWarnings(c), IsEmpty()) << "weights of the paper";
+  EXPECT_THAT(caseWarnings(c), IsEmpty());
   c.method.pressureRadius = c.method.viscosityRadius = 1.4;  // without the neighbours on the diagonals
   EXPECT_THAT(caseWarnings(c),
-              ElementsAre(HasSubstr("pressure_radius = 1.4 spacings is short for the weight 'mps'"),
+              ElementsAre(HasSubstr("pressure_radius = 1.4 spacings is short for the scheme 'published'"),
                           HasSubstr("viscosity_radius = 1.4 spacings is short")));
-  c.method.pressureRadius = 1.75, c.method.viscosityRadius = 1.5;
-  for (const PressureWeight weight : {PressureWeight::WendlandC2, PressureWeight::WendlandC4}) {
-    c.method.pressureWeight = weight;
-    c.method.pressureRadius = 2.5;
-    EXPECT_THAT(caseWarnings(c), IsEmpty());
-    c.method.pressureRadius = 2.4;
-    EXPECT_THAT(caseWarnings(c), ElementsAre(HasSubstr("method.pressure_radius = 2.4 spacings is short for")));
-  }
-  c.method.pressureRadius = 3;
-  c.method.viscosityWeight = ViscosityWeight::Biquadratic;
-  EXPECT_THAT(
-      caseWarnings(c),
-      ElementsAre("method.viscosity_radius = 1.5 spacings is short for the weight 'biquadratic', expected at "
-                  "least 2: sums over so few neighbours depend on where these stand"));
+  c.method = defaultMethod(SchemeKind::Accurate);
   c.method.viscosityRadius = 2;
   EXPECT_THAT(caseWarnings(c), IsEmpty());
+  c.method.pressureRadius = 2.4;
+  c.method.viscosityRadius = 1.9;
+  EXPECT_THAT(caseWarnings(c),
+              ElementsAre(HasSubstr("method.pressure_radius = 2.4 spacings is short for the scheme 'accurate'"),
+                          "method.viscosity_radius = 1.9 spacings is short for the scheme 'accurate', expected at "
+                          "least 2: sums over so few neighbours depend on where these stand"));
   c.method.viscosityRadius = 1.5;
-  c.method.kind = MethodKind::Isph;  // has no such weights
+  c.method.kind = MethodKind::Isph;  // has no such radii
   c.time.step = 1e-4;
   EXPECT_THAT(caseWarnings(c), IsEmpty());
 }

@@ -216,7 +216,7 @@ TEST(createParticles, partsMakeTheWhole) {
               makeBody("third", BodyKind::Fluid, box({0, 5}, {1, 6}))};
   c.bodies[1].velocityExpression[0] = "x + 3*y";
   c.bodies[2].velocity = {0, -1};
-  c.method.wallVelocity = WallVelocity::Extrapolated;
+  c.method = defaultMethod(SchemeKind::Accurate);
   std::vector<std::string> notes;
   std::vector<BodyCount> counts;
   const Particles<2> whole = createParticles<2>(c, notes, &counts);

@@ -5,10 +5,7 @@
 namespace treacle {
 namespace {
 
-constexpr PressureWeight pressureWeights[] = {PressureWeight::Mps, PressureWeight::WendlandC2,
-                                              PressureWeight::WendlandC4};
-constexpr ViscosityWeight viscosityWeights[] = {ViscosityWeight::Mps, ViscosityWeight::Biquadratic,
-                                                ViscosityWeight::Quadratic};
+constexpr SchemeKind schemes[] = {SchemeKind::Published, SchemeKind::Accurate};
 
 /// Of f(r) over all space, by the midpoint rule; the volume element is 2 pi r dr or 4 pi r^2 dr.
 template <int D, class F>
@@ -26,8 +23,8 @@ double integral(double radius, F&& f) {
 template <int D>
 void checkIntegral() {
   const double l = 0.3, volume = std::pow(l, D);
-  for (const PressureWeight kind : pressureWeights) {
-    const auto w = Weight<D>::make(2.3 * l, l, kind);
+  for (const SchemeKind scheme : schemes) {
+    const auto w = Weight<D>::make(2.3 * l, l, scheme);
     EXPECT_NEAR(integral<D>(w.radius, [&](double r) { return w.value(r); }), volume, 1e-6 * volume);
     EXPECT_EQ(w.value(w.radius), 0);
     EXPECT_EQ(w.value(2 * w.radius), 0);
@@ -40,15 +37,15 @@ TEST(Weight, IntegratesToTheParticleVolume) {
 }
 
 TEST(Weight, SlopesBeyondTheirReachAreNextToNothing) {
-  for (const PressureWeight kind : pressureWeights) {
-    const auto terms = MphTerms<3>::make(Weight<3>::make(1, 0.3, kind), ViscosityWeight::Mps, 1, 0.3);
+  for (const SchemeKind scheme : schemes) {
+    const auto terms = MphTerms<3>::make(Weight<3>::make(1, 0.3, scheme), 1, 0.3);
     const auto slope = [&](double r) { return r * terms.gradient(ExactDistance(r * r)); };
     double largest = 0, beyond = 0;
     for (double r = 0.001; r < 1; r += 0.001) {
       largest = std::max(largest, slope(r));
-      if (r >= slopeReach(kind)) beyond = std::max(beyond, slope(r));
+      if (r >= slopeReach(scheme)) beyond = std::max(beyond, slope(r));
     }
-    EXPECT_LT(beyond, 0.005 * largest) << static_cast<int>(kind);
+    EXPECT_LT(beyond, 0.005 * largest) << static_cast<int>(scheme);
     EXPECT_GT(largest, 0);
   }
 }
@@ -57,14 +54,14 @@ TEST(Weight, SlopesBeyondTheirReachAreNextToNothing) {
 /// weight and its numerical derivative.
 template <int D, class Real>
 void checkPressureTerms(double unit, double tolerance) {
-  for (const PressureWeight kind : pressureWeights) {
-    const auto w = Weight<D>::make(1.75e-3, 1e-3, kind);
-    auto exact = MphTerms<D>::make(w, ViscosityWeight::Mps, 3.5e-3, 1e-3);
-    const auto density = DensityWeight<D>::make(2.2e-3, 1e-3, kind);
+  for (const SchemeKind scheme : schemes) {
+    const auto w = Weight<D>::make(1.75e-3, 1e-3, scheme);
+    auto exact = MphTerms<D>::make(w, 3.5e-3, 1e-3);
+    const auto density = DensityWeight<D>::make(2.2e-3, 1e-3, scheme);
     exact.setDensityWeight(density);
     const auto terms = exact.template inUnitsOf<Real>(unit);
     for (const double r : {0.4e-3, 1.3e-3, 1.74e-3, 2.9e-3, 4e-3}) {
-      SCOPED_TRACE(testing::Message() << "weight " << static_cast<int>(kind) << ", r " << r);
+      SCOPED_TRACE(testing::Message() << "scheme " << static_cast<int>(scheme) << ", r " << r);
       const double s = r / unit, step = 1e-8;
       const PairDistance<Real> distance{static_cast<Real>(s * s), static_cast<Real>(1 / s)};
       const double slope = (w.value(r + step) - w.value(r - step)) / (2 * step);
@@ -82,14 +79,14 @@ template <int D, class Real>
 void checkViscosityTerms(double unit, double tolerance) {
   const double l = 1e-3, hv = 3.5e-3;
   const auto w = Weight<D>::make(hv, l);
-  for (const ViscosityWeight kind : viscosityWeights) {
-    const auto exact = MphTerms<D>::make(Weight<D>::make(1.75e-3, l), kind, hv, l);
+  for (const SchemeKind scheme : schemes) {
+    const auto exact = MphTerms<D>::make(Weight<D>::make(1.75e-3, l, scheme), hv, l);
     const auto blockOf = [&](double r) { return exact.viscous(exact.viscousFactor, ExactDistance(r * r)); };
     const double moment = integral<D>(hv, [&](double r) { return blockOf(r) * std::pow(r, 4); }) / std::pow(l, D);
     EXPECT_NEAR(moment, 2 * D * (D + 2), 1e-6 * moment);
     const auto terms = exact.template inUnitsOf<Real>(unit);
     for (const double r : {0.4e-3, 1.3e-3, 2.9e-3, 3.6e-3}) {
-      SCOPED_TRACE(testing::Message() << "weight " << static_cast<int>(kind) << ", r " << r);
+      SCOPED_TRACE(testing::Message() << "scheme " << static_cast<int>(scheme) << ", r " << r);
       const double s = r / unit;
       const PairDistance<Real> distance{static_cast<Real>(s * s), static_cast<Real>(1 / s)};
       const double block = blockOf(r);
@@ -97,7 +94,7 @@ void checkViscosityTerms(double unit, double tolerance) {
       EXPECT_NEAR(terms.viscousFactor * terms.viscousShape(distance) * s * s, block * r * r,
                   tolerance * block * r * r);
       EXPECT_NEAR(terms.viscous(terms.viscousFactor, distance) * s * s, block * r * r, tolerance * block * r * r);
-      if (kind == ViscosityWeight::Mps && r < hv) {
+      if (scheme == SchemeKind::Published && r < hv) {
         const double slope = -2 * w.scale / hv * (1 - r / hv);
         EXPECT_NEAR(block * r * r, 2 * (D + 2) * -slope / r, 1e-12 * block * r * r);
       }
@@ -116,43 +113,32 @@ TEST(MphTerms, AreThoseOfTheWeightsInEveryArithmetic) {
   checkViscosityTerms<3, float>(3.5e-3, 1e-5);
 }
 
-/// Loops whose compiler knows the weights, and the choice between them.
-template <class Known>
-void checkKnownWeights(PressureWeight pressure, ViscosityWeight viscosity) {
-  SCOPED_TRACE(testing::Message() << static_cast<int>(pressure) << ", " << static_cast<int>(viscosity));
-  const auto chosen = MphTerms<3>::make(Weight<3>::make(3e-3, 1e-3, pressure), viscosity, 3.5e-3, 1e-3);
-  int calls = 0;
-  withKnownWeights<Known>(chosen, [&]<class Weights>(const MphTerms<3, double, Weights>& terms) {
-    ++calls;
-    EXPECT_EQ((std::is_same_v<Weights, Known>), Known::are(chosen.weights));
-    EXPECT_EQ(terms.weights.pressure, pressure);
-    EXPECT_EQ(terms.weights.viscosity, viscosity);
-    const ExactDistance r(1.7e-3 * 1.7e-3);
-    EXPECT_DOUBLE_EQ(terms.density(terms.densityFactor, r), chosen.density(chosen.densityFactor, r));
-    EXPECT_DOUBLE_EQ(terms.gradient(r), chosen.gradient(r));
-    EXPECT_DOUBLE_EQ(terms.viscous(terms.viscousFactor, r), chosen.viscous(chosen.viscousFactor, r));
-  });
-  EXPECT_EQ(calls, 1);
-}
-
-TEST(MphTerms, AreTheSameWhereTheCompilerKnowsTheWeights) {
-  for (const PressureWeight pressure : pressureWeights)
-    for (const ViscosityWeight viscosity : viscosityWeights) {
-      checkKnownWeights<PublishedWeights>(pressure, viscosity);
-      checkKnownWeights<AccurateWeights>(pressure, viscosity);
-    }
+TEST(MphTerms, AreTheSameWhereTheCompilerKnowsTheScheme) {
+  for (const SchemeKind scheme : schemes) {
+    const auto chosen = MphTerms<3>::make(Weight<3>::make(3e-3, 1e-3, scheme), 3.5e-3, 1e-3);
+    int calls = 0;
+    withScheme(chosen, [&]<class Scheme>(const MphTerms<3, double, Scheme>& terms) {
+      ++calls;
+      EXPECT_EQ(Scheme::kind, scheme);
+      const ExactDistance r(1.7e-3 * 1.7e-3);
+      EXPECT_DOUBLE_EQ(terms.density(terms.densityFactor, r), chosen.density(chosen.densityFactor, r));
+      EXPECT_DOUBLE_EQ(terms.gradient(r), chosen.gradient(r));
+      EXPECT_DOUBLE_EQ(terms.viscous(terms.viscousFactor, r), chosen.viscous(chosen.viscousFactor, r));
+    });
+    EXPECT_EQ(calls, 1);
+  }
 }
 
 TEST(Weight, LatticeNumberDensityIsTheSumOverNeighbours) {
   // 2D, h = 1.75 l: four neighbours at l and four at sqrt(2) l; 3D: 6, 12 and 8 at l, sqrt(2) l, sqrt(3) l.
-  const auto w2 = DensityWeight<2>::make(1.75, 1.0, PressureWeight::Mps);
+  const auto w2 = DensityWeight<2>::make(1.75, 1.0, SchemeKind::Published);
   EXPECT_DOUBLE_EQ(latticeNumberDensity(w2, 1.0), 4 * w2.value(1) + 4 * w2.value(std::sqrt(2.0)));
-  const auto w3 = DensityWeight<3>::make(1.75, 1.0, PressureWeight::Mps);
+  const auto w3 = DensityWeight<3>::make(1.75, 1.0, SchemeKind::Published);
   EXPECT_NEAR(latticeNumberDensity(w3, 1.0),
               6 * w3.value(1) + 12 * w3.value(std::sqrt(2.0)) + 8 * w3.value(std::sqrt(3.0)), 1e-15);
   // A wide neighbourhood sums to 1 less the particle's own share.
-  for (const PressureWeight kind : pressureWeights) {
-    const auto wide = DensityWeight<2>::make(20.0, 1.0, kind);
+  for (const SchemeKind scheme : schemes) {
+    const auto wide = DensityWeight<2>::make(20.0, 1.0, scheme);
     EXPECT_NEAR(latticeNumberDensity(wide, 1.0) + wide.value(0), 1, 1e-3);
   }
 }
@@ -187,7 +173,7 @@ TEST(Weight, OfDensitiesHardlySeesStrainAtConstantVolume) {
     EXPECT_NEAR(strained(DensityWeight<2>::window(3.5, 1), eps), 0, 5e-4) << eps;
     EXPECT_NEAR(strained(DensityWeight<3>::window(3.5, 1), eps), 0, 1e-3) << eps;
   }
-  EXPECT_LT(strained(DensityWeight<2>::make(1.75, 1, PressureWeight::Mps), 0.05), -0.001);
+  EXPECT_LT(strained(DensityWeight<2>::make(1.75, 1, SchemeKind::Published), 0.05), -0.001);
 }
 
 }  // namespace

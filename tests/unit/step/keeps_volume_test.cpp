@@ -175,15 +175,6 @@ void checkSinking(bool onTheFloor, double share) {
 }
 
 TEST(KeepsVolume, FluidSinksOverAGapInIt) { checkSinking(false, 0.02); }
-/// Without the matrix that gaps close by, all of what keeps the volume is left out.
-TEST(KeepsVolume, NeedsTheRenormalisedGradient) {
-  Case c = layerWithGap();
-  EXPECT_TRUE(c.keepsVolume());
-  c.method.pressureGradient = PressureGradient::Plain;
-  EXPECT_FALSE(c.keepsVolume());
-  Simulation<2> s(c, created<2>(c));
-  EXPECT_GT(s.advance().iterations, 0);
-}
 TEST(KeepsVolume, FluidSinksOntoAWall) { checkSinking(true, 0.1); }
 
 /// The gradient of the density's weight is its derivative.
