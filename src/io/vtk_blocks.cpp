@@ -19,7 +19,7 @@
 namespace treacle {
 namespace {
 
-constexpr int level = 2;  // the next ones make frames hardly smaller (docs/output.md)
+constexpr int level = 2;  // the next ones make frames hardly smaller (docs/notes/output.md)
 
 /// No deflated byte stands for more than this.
 constexpr std::uint64_t mostExpansion = 1032;

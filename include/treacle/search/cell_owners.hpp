@@ -24,8 +24,8 @@ struct CellOwnersView {
 
 /// Which process owns which cells: blocks of about equal work, made by cutting the cells in two again and again,
 /// each time across the longest side of those that have work. What processes share is then half to a fifth of what
-/// it is between parts of the Hilbert curve, whose borders are rough (docs/clusters.md). Every process knows all
-/// owners.
+/// it is between parts of the Hilbert curve, whose borders are rough (docs/notes/clusters.md). Every process knows
+/// all owners.
 template <int D>
 class CellOwners {
  public:
