@@ -1,4 +1,3 @@
-. tests/docs/stage/import.sh
 cp tests/docs/stage/CASE.toml .
 
 # A run, and the particles that another solver gives.
