@@ -33,7 +33,7 @@ def in_site(path):
 
 def folder_of(uri):
     """The folder in the repository that the links of a page start from."""
-    return "" if uri in top_pages.values() else "docs"
+    return "" if uri in top_pages.values() else posixpath.dirname("docs/" + uri)
 
 
 def targets(text, folder):
@@ -51,7 +51,7 @@ def tracked(folder):
 def on_files(files, config):
     pages = {uri: (root / name).read_text() for name, uri in top_pages.items()}
     texts = [(text, "") for text in pages.values()]
-    texts += [(path.read_text(), "docs") for path in (root / "docs").glob("*.md")]
+    texts += [(path.read_text(), str(path.parent.relative_to(root))) for path in (root / "docs").rglob("*.md")]
     for uri, text in pages.items():
         files.append(File.generated(config, uri, content=text))
     made = set()
