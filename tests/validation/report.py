@@ -11,22 +11,43 @@ from treacle_figure import figure
 root = Path(__file__).resolve().parents[2]
 pages = sorted((root / "docs").glob("validation*.md"))
 schemes = ("accurate", "published", "isph")  # in this order
+groups = {  # studies that share a table: its mark, and what their lines are called
+    "couette-pressure": {"couette-pressure": "100 Pa", "couette-pressure-high": "1000 Pa"},
+    "taylor-green": {"taylor-green": "0.01 m/s", "taylor-green-strained": "0.1 m/s"},
+    "taylor-couette": {"taylor-couette": "λ = 1000 μ", "taylor-couette-soft": "λ = 100 μ"},
+    "rotation": {"rotating-drop": "disc", "rotating-drop-3d": "ball"},
+    "trouton": {"trouton-planar": "sheet", "trouton-3d": "bar"},
+    "power-laws": {"power-law-slit": "n = 0.5", "power-law-slit-thickening": "n = 1.5"},
+    "shear-rates": {"couette-carreau-yasuda": "Carreau-Yasuda", "couette-cross": "Cross"},
+    "heaps": {"bingham-heap": "plane", "bingham-heap-3d": "round"},
+    "conduction": {"heated-slab": "slab", "heated-layers": "two layers", "cooled-slab": "cooled, Bi = 1", "cooled-slab-fast": "cooled, Bi = 10"},
+    "two-layers": {"two-layer-couette": "10,000 to 1", "two-layer-couette-1000": "1,000 to 1"},
+    "static-drops": {"static-drop": "drop", "static-drop-3d": "ball"},
+    "relaxing-drops": {"relaxing-drop": "drop", "relaxing-drop-3d": "ball"},
+    "films": {"levelling-film": "1.96", "levelling-film-1": "1", "levelling-film-05": "0.5"},
+    "wetting-drops": {"wetting-drop-45": "2D, 45°", "wetting-drop-90": "2D, 90°", "wetting-drop-135": "2D, 135°",
+                      "wetting-drop-3d-45": "3D, 45°", "wetting-drop-3d-90": "3D, 90°", "wetting-drop-3d-135": "3D, 135°"},
+    "isph-drops": {"isph-drop": "axis", "isph-drop-diagonal": "diagonal"},
+}
 
 
 def page_of(name):
-    """The page that has marks for a study, or none."""
+    """The page that has marks for a table, or none."""
     for page in pages:
         if re.search(f"<!-- {name} -->.*<!-- end of {name} -->", page.read_text(), flags=re.S):
             return page
     return None
 
 
-def named(rows, key):
-    return ", ".join(sorted({row[key] for row in rows}))
+def number(value):
+    return f"{value:.2g}" if abs(value) < 1e3 else f"{value:.0f}"
 
 
-def number(value, digits=3):
-    return f"{value:.{digits}g}" if abs(value) < 1e4 else f"{value:.0f}"
+def headings(labels):
+    """What the columns of levels are called: r4 is resolution 4; the resolution is left out where all levels have the same one."""
+    parts = [label.removeprefix("x").partition(" ") for label in labels]
+    same = len({resolution for resolution, _, _ in parts}) == 1 and len(parts) > 1
+    return [name if same else f"r{resolution} {name}".rstrip() for resolution, _, name in parts]
 
 
 def merged(records):
@@ -40,56 +61,35 @@ def merged(records):
     return {name: {s: of[s] for s in schemes if s in of} for name, of in result.items()}
 
 
-def cells_of(study, rows, kind, name, labels):
-    """What a scheme has in the columns of the levels: values, and errors with their observed orders."""
-    by_label, cells = {row["level"]: k for k, row in enumerate(rows)}, []
-    for label in labels:
-        k = by_label.get(label)
-        value = None if k is None else rows[k][kind].get(name)
-        if value is None:
-            cells.append("")
-            continue
-        cell = number(value, 3 if kind == "errors" else 4)
-        if kind == "errors" and study.refined and k > 0:
-            p = order(rows[k - 1]["errors"][name], value, rows[k - 1]["size"], rows[k]["size"])
-            cell += "" if p is None else f" ({p:.2f})"
+def error_cells(study, rows, name):
+    """The errors of all levels of a scheme, with their observed orders."""
+    cells = []
+    for k, row in enumerate(rows):
+        value = row["errors"].get(name)
+        cell = "" if value is None else number(value)
+        if value is not None and study.refined and k > 0:
+            p = order(rows[k - 1]["errors"][name], value, rows[k - 1]["size"], row["size"])
+            cell += "" if p is None else f" ({round(p, 1) + 0.0:g})"
         cells.append(cell)
     return cells
 
 
-def table(study, of):
-    """Markdown: columns are levels; a line for each error and each measured value of each scheme. of: scheme to levels."""
-    first = next(iter(of.values()))
-    labels, schemes_too = [row["level"] for row in max(of.values(), key=len)], len(of) > 1
-    lines = []
-
-    def add(name, scheme, cells, bound=""):
-        lines.append("| " + " | ".join([name] + [scheme] * schemes_too + cells + [bound]) + " |")
-
-    add("", "scheme", labels, f"bound at {labels[0]}")
-    lines.append("|" + "---|" * (2 + schemes_too + len(labels)))
-    add("particles", "", [str(row["particles"]) for row in max(of.values(), key=len)])
-    for kind in "errors", "values":
-        names = dict.fromkeys(name for rows in of.values() for name in rows[0][kind])
-        for name in names:
-            title = f"error: {name}" if kind == "errors" else name
-            for scheme, rows in of.items():
-                if name not in rows[0][kind]:
-                    continue
-                bar, (low, high) = study.bars_of(scheme).get(name), (study.ranges_of(scheme) or {}).get(name, (None, None))
-                bound = (f"{bar:g}" if kind == "errors" and bar is not None else
-                         f"{low:g} to {high:g}" if kind == "values" and low is not None else "")
-                add(title, scheme, cells_of(study, rows, kind, name, labels), bound)
-                title = ""
-    for scheme, rows in of.items():
-        add("" if scheme != next(iter(of)) else "iterations", scheme,
-            cells_of(study, [row | {"values": {"iterations": row["iterations"]}} for row in rows], "values", "iterations", labels))
-    notes = [f"{scheme}: {named(rows, 'device')}, commit {named(rows, 'commit')}" for scheme, rows in of.items()]
-    text = ""
-    if "accurate" in of and study.refined and study.orders:
-        least = ", ".join(f"{name} {p:g}" for name, p in study.orders.items())
-        text = f"Least order from {labels[0]} to {labels[1]}, where it is not 0.9: {least}. "
-    return "\n".join(lines + ["", text + "; ".join(notes) + "."])
+def table(parts):
+    """Markdown: a line for each error; a column for each level of the first scheme, and one for the finest level of each other one.
+    parts: what the lines of a study are called, the study, and scheme to levels. Measured values, numbers of particles and iterations,
+    devices and commits are in the records, bounds in the studies."""
+    _, _, of = max(parts, key=lambda part: len(next(iter(part[2].values()))))
+    first, *others = of
+    names = headings([row["level"] for row in of[first]])
+    lines = [["error", *names, *(f"{scheme}, {headings([row['level'] for row in of[scheme]])[-1]}" for scheme in others)]]
+    for label, study, of in parts:
+        for name in of[first][0]["errors"]:
+            title = ": ".join(part for part in (label, name if not label or len(of[first][0]["errors"]) > 1 else "") if part)
+            cells = error_cells(study, of[first], name)
+            cells += [""] * (len(names) - len(cells))
+            lines.append([title, *cells, *(number(of[scheme][-1]["errors"][name]) for scheme in others)])
+    lines = ["| " + " | ".join(line) + " |" for line in lines]
+    return "\n".join([lines[0], "|" + "---|" * (1 + len(names) + len(others)), *lines[1:]])
 
 
 def draw(study, of, path):
@@ -109,11 +109,16 @@ def draw(study, of, path):
 
 
 def blocks(records, studies):
-    """Name of a study to what stands between its marks, these included."""
-    of = merged(records)
-    return {study.name: f"<!-- {study.name} -->\n{table(study, of[study.name])}\n\n"
-                        f"![{study.title}](images/validation-{study.name}.png)\n<!-- end of {study.name} -->"
-            for study in studies if study.name in of}
+    """Name of a table to what stands between its marks, these included. A group without all of its studies has none."""
+    of, by_name, found = merged(records), {study.name: study for study in studies}, {}
+    grouped = {name for group in groups.values() for name in group}
+    for mark, group in (groups | {name: {name: ""} for name in by_name if name not in grouped}).items():
+        if not all(name in of and name in by_name for name in group):
+            continue
+        pictures = [f"![{by_name[name].title}](images/validation-{name}.png)" for name in group]
+        parts = [(label, by_name[name], of[name]) for name, label in group.items()]
+        found[mark] = "\n".join([f"<!-- {mark} -->", table(parts), "", *pictures, f"<!-- end of {mark} -->"])
+    return found
 
 
 def with_blocks(text, found):
@@ -129,7 +134,7 @@ def write(records, studies):
     if missing := [name for name in found if not page[name]]:
         print(f"report: no page has marks <!-- NAME --> ... <!-- end of NAME --> for {', '.join(missing)}", file=sys.stderr)
         return 2
-    for study in (study for study in studies if study.name in found):
+    for study in (study for study in studies if study.name in of):
         draw(study, of[study.name], root / "docs" / "images" / f"validation-{study.name}.png")
     for each in pages:
         each.write_text(with_blocks(each.read_text(), {name: block for name, block in found.items() if page[name] == each}))
