@@ -71,6 +71,6 @@ def told_growth(rows, names):
     told = {}
     for name in names:
         if found := growth(rows, name):
-            p, low, high, a, b = found
-            told.setdefault(f"{a['case']} → {b['case']}", []).append(f"{name} {number(low)} → {number(high)} (N^{p:.2f})")
-    return " ".join(f"{ends}: {', '.join(parts)}." for ends, parts in told.items())
+            p, _, _, a, b = found
+            told.setdefault(f"{a['case']} to {b['case']}", []).append(f"{name} {p:.2f}")
+    return " ".join(f"Growth from {ends} as N^p, p: {', '.join(parts)}." for ends, parts in told.items())

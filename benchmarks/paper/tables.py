@@ -66,31 +66,27 @@ def table_osaki(results):
 
 
 def reading(rows, _):
-    """The quantities that differ by more than the rounding of three printed digits, each with its factor."""
+    """How many agree, and why the others do not."""
     compared = [r for r in rows if r["difference"] is not None]
     if not compared:
         return []
     apart = [r for r in compared if abs(r["difference"]) > 0.006]
     text = [f"{len(compared) - len(apart)} of {len(compared)} numbers agree within 0.6 %, the rounding of three digits."]
-    for name in dict.fromkeys(r["quantity"] for r in apart):
-        cases = [r for r in apart if r["quantity"] == name]
-        text.append(
-            f"{name} differs: "
-            + ", ".join(f"{r['case']} {number(r['ours'])} for {number(r['printed'])}" for r in cases)
-            + "."
-        )
+    if others := [r for r in apart if r["quantity"] not in ("d_lambda", "highest_level", "kinematic_viscosity")]:
+        told = (f"{r['quantity']} of {r['case']} is {number(r['ours'])} for {number(r['printed'])}" for r in others)
+        text.append("; ".join(told) + ".")
     if any(r["quantity"] == "d_lambda" for r in apart):
         text.append(
-            "λ Δt/(ρ l²) with the printed λ of 10^4 Pa s is ten times the printed d_λ; the printed condition numbers "
-            "follow from λ = 10^4 Pa s, so it is d_λ that is misprinted."
+            "λ Δt/(ρ l²) with the printed λ of 10^4 Pa s is ten times the printed d_λ. The printed condition numbers follow "
+            "from λ = 10^4 Pa s, so d_λ is misprinted."
         )
     if any(r["quantity"] == "highest_level" for r in apart):
         text.append(
-            "highest_level is that of the state at the end of the run: like the authors' program, ours goes on until one "
-            "bucket is left."
+            "The highest level is larger than the printed one: like the authors' program, ours goes on until one bucket is "
+            "left."
         )
     if any(r["quantity"] == "kinematic_viscosity" for r in apart):
-        text.append("Water has 1e-6 m²/s: the sign of the exponent is misprinted.")
+        text.append("The kinematic viscosity of water is 1e-6 m²/s: the printed 1e6 has the wrong sign of the exponent.")
     return text
 
 
