@@ -282,7 +282,7 @@ def main():
         device = Run(Path(directory) / "treacle").summary["device"]
         case = Path(directory) / "version"
         write_foam(case, 8, next(setting for run, setting in settings if run is foam))
-        version = re.search(r"Version\s*:\s*(\S+)", call(["blockMesh"], cwd=case, env=environment))[1]
+        version = re.search(r"OPENFOAM=(\S+)", call(["blockMesh"], cwd=case, env=environment))[1]
     for r in rows:
         r["cpu_seconds"] = round(r["cpu_seconds"], 3)
     least = [{"what": name, "bound": bound, "kind": kind, "row": good[0] if good else None}
