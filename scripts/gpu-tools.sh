@@ -20,8 +20,8 @@ findPrograms() {
   fail "no treacle in $*; build it (cmake --preset gpu && cmake --build --preset gpu) or set TREACLE_BIN"
 }
 
-# cuSPARSE and NCCL are too large to travel with the programs: those of the machine's toolkit, driver, system or Python
-# packages.
+# cuSPARSE, which solve_benchmark and some tests need, and NCCL are too large to travel with the programs: those of the
+# machine's toolkit, driver, system or Python packages.
 findLibraries() {
   local name missing
   missing=$(ldd "$programs/treacle" 2>&1)

@@ -145,7 +145,7 @@ struct GalerkinSpgemm<B>::Impl {
 };
 
 template <int B>
-GalerkinSpgemm<B>::GalerkinSpgemm() : impl_(std::make_unique<Impl>()) {}
+GalerkinSpgemm<B>::GalerkinSpgemm() = default;
 template <int B>
 GalerkinSpgemm<B>::GalerkinSpgemm(GalerkinSpgemm&&) noexcept = default;
 template <int B>
@@ -157,12 +157,14 @@ template <int B>
 void GalerkinSpgemm<B>::compute(Context<Cuda>& context, const BlockCsr<B, double, Cuda>& fine,
                                 std::span<const std::uint32_t> members, BlockCsr<B, double, Cuda>& coarse) {
   if (fine.value.empty()) return clear(context, static_cast<std::uint32_t>(members.size() - 1), coarse);
+  if (!impl_) impl_ = std::make_unique<Impl>();  // cuSPARSE is loaded where it is needed
   impl_->setSummation(context, members, fine.rows());
   impl_->compute(context, fine, coarse);
 }
 
 template <int B>
 std::size_t GalerkinSpgemm<B>::bytes() const {
+  if (!impl_) return 0;
   std::size_t sum = impl_->product.bytes() + impl_->parent.bytes();
   for (const ScalarCsr* m : {&impl_->a, &impl_->p, &impl_->r, &impl_->ap, &impl_->rap}) sum += m->bytes();
   return sum;

@@ -20,15 +20,15 @@ class Descriptor {
  public:
   Descriptor(const ScalarCsr& m, std::int32_t* column, double* value) {
     TREACLE_CUSPARSE_CHECK(
-        cusparseCreateCsr(&matrix_, m.rows, m.columns, column ? static_cast<std::int64_t>(m.column.size()) : 0,
-                          const_cast<std::int32_t*>(m.start.data()), column, value, CUSPARSE_INDEX_32I,
-                          CUSPARSE_INDEX_32I, CUSPARSE_INDEX_BASE_ZERO, CUDA_R_64F));
+        cusparse().CreateCsr(&matrix_, m.rows, m.columns, column ? static_cast<std::int64_t>(m.column.size()) : 0,
+                             const_cast<std::int32_t*>(m.start.data()), column, value, CUSPARSE_INDEX_32I,
+                             CUSPARSE_INDEX_32I, CUSPARSE_INDEX_BASE_ZERO, CUDA_R_64F));
   }
   /// A matrix that is read. The constness is given back by what the products take.
   explicit Descriptor(const ScalarCsr& m)
       : Descriptor(m, const_cast<std::int32_t*>(m.column.data()), const_cast<double*>(m.value.data())) {}
   Descriptor(const Descriptor&) = delete;
-  ~Descriptor() { cusparseDestroySpMat(matrix_); }
+  ~Descriptor() { cusparse().DestroySpMat(matrix_); }
   operator cusparseSpMatDescr_t() const { return matrix_; }
 
  private:
@@ -38,9 +38,9 @@ class Descriptor {
 /// The state of one product between cuSPARSE's calls.
 class State {
  public:
-  State() { TREACLE_CUSPARSE_CHECK(cusparseSpGEMM_createDescr(&state_)); }
+  State() { TREACLE_CUSPARSE_CHECK(cusparse().SpGEMM_createDescr(&state_)); }
   State(const State&) = delete;
-  ~State() { cusparseSpGEMM_destroyDescr(state_); }
+  ~State() { cusparse().SpGEMM_destroyDescr(state_); }
   operator cusparseSpGEMMDescr_t() const { return state_; }
 
  private:
@@ -79,29 +79,29 @@ bool ScalarProduct::attempt(Context<Cuda>& context, const ScalarCsr& a, const Sc
 
   std::size_t bytes = 0;
   void* none = nullptr;
-  if (!TREACLE_HAD_RESOURCES(call(cusparseSpGEMM_workEstimation, &bytes, none))) return false;
+  if (!TREACLE_HAD_RESOURCES(call(cusparse().SpGEMM_workEstimation, &bytes, none))) return false;
   void* estimate = workspace(context, estimate_, bytes);
-  if (!TREACLE_HAD_RESOURCES(call(cusparseSpGEMM_workEstimation, &bytes, estimate))) return false;
+  if (!TREACLE_HAD_RESOURCES(call(cusparse().SpGEMM_workEstimation, &bytes, estimate))) return false;
 
   std::size_t workBytes = 0;
   if (algorithm == CUSPARSE_SPGEMM_DEFAULT) {
-    if (!TREACLE_HAD_RESOURCES(call(cusparseSpGEMM_compute, &workBytes, none))) return false;
+    if (!TREACLE_HAD_RESOURCES(call(cusparse().SpGEMM_compute, &workBytes, none))) return false;
   } else {
     std::size_t* unasked = nullptr;
-    if (!TREACLE_HAD_RESOURCES(call(cusparseSpGEMM_estimateMemory, chunkFraction, &bytes, none, unasked)))
+    if (!TREACLE_HAD_RESOURCES(call(cusparse().SpGEMM_estimateMemory, chunkFraction, &bytes, none, unasked)))
       return false;
     void* memory = workspace(context, memory_, bytes);
-    if (!TREACLE_HAD_RESOURCES(call(cusparseSpGEMM_estimateMemory, chunkFraction, &bytes, memory, &workBytes)))
+    if (!TREACLE_HAD_RESOURCES(call(cusparse().SpGEMM_estimateMemory, chunkFraction, &bytes, memory, &workBytes)))
       return false;
   }
   void* work = workspace(context, work_, workBytes);
-  if (!TREACLE_HAD_RESOURCES(call(cusparseSpGEMM_compute, &workBytes, work))) return false;
+  if (!TREACLE_HAD_RESOURCES(call(cusparse().SpGEMM_compute, &workBytes, work))) return false;
 
   std::int64_t rows = 0, columns = 0, entries = 0;
-  TREACLE_CUSPARSE_CHECK(cusparseSpMatGetSize(mc, &rows, &columns, &entries));
+  TREACLE_CUSPARSE_CHECK(cusparse().SpMatGetSize(mc, &rows, &columns, &entries));
   c.reserveEntries(context, entries);
-  TREACLE_CUSPARSE_CHECK(cusparseCsrSetPointers(mc, c.start.data(), c.column.data(), c.value.data()));
-  TREACLE_CUSPARSE_CHECK(call(cusparseSpGEMM_copy));
+  TREACLE_CUSPARSE_CHECK(cusparse().CsrSetPointers(mc, c.start.data(), c.column.data(), c.value.data()));
+  TREACLE_CUSPARSE_CHECK(call(cusparse().SpGEMM_copy));
   return true;
 }
 
@@ -115,14 +115,14 @@ void ScalarProduct::transpose(Context<Cuda>& context, const ScalarCsr& a, Scalar
                     t.column.data(), CUDA_R_64F, CUSPARSE_ACTION_NUMERIC, CUSPARSE_INDEX_BASE_ZERO,
                     CUSPARSE_CSR2CSC_ALG1, rest);
   };
-  TREACLE_CUSPARSE_CHECK(cusparseSetStream(handle_, context.stream()));
+  TREACLE_CUSPARSE_CHECK(cusparse().SetStream(handle_, context.stream()));
   std::size_t bytes = 0;
-  TREACLE_CUSPARSE_CHECK(call(cusparseCsr2cscEx2_bufferSize, &bytes));
-  TREACLE_CUSPARSE_CHECK(call(cusparseCsr2cscEx2, workspace(context, work_, bytes)));
+  TREACLE_CUSPARSE_CHECK(call(cusparse().Csr2cscEx2_bufferSize, &bytes));
+  TREACLE_CUSPARSE_CHECK(call(cusparse().Csr2cscEx2, workspace(context, work_, bytes)));
 }
 
 void ScalarProduct::compute(Context<Cuda>& context, const ScalarCsr& a, const ScalarCsr& b, ScalarCsr& c) {
-  TREACLE_CUSPARSE_CHECK(cusparseSetStream(handle_, context.stream()));
+  TREACLE_CUSPARSE_CHECK(cusparse().SetStream(handle_, context.stream()));
   for (; algorithm_ < algorithmCount; ++algorithm_) {
     try {
       if (attempt(context, a, b, c, algorithms[algorithm_])) return;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "linear/cusparse_check.hpp"
+#include "linear/cusparse.hpp"
 #include "treacle/core/cuda.hpp"
 
 #include <cstdint>
@@ -29,9 +29,9 @@ struct ScalarCsr {
 /// Products of such matrices; keeps its workspace, and the algorithm that the last product got through with.
 class ScalarProduct {
  public:
-  ScalarProduct() { TREACLE_CUSPARSE_CHECK(cusparseCreate(&handle_)); }
+  ScalarProduct() { TREACLE_CUSPARSE_CHECK(cusparse().Create(&handle_)); }
   ScalarProduct(const ScalarProduct&) = delete;
-  ~ScalarProduct() { cusparseDestroy(handle_); }
+  ~ScalarProduct() { cusparse().Destroy(handle_); }
 
   /// t = a^T, columns ascending. `a` must have entries.
   void transpose(Context<Cuda>&, const ScalarCsr& a, ScalarCsr& t);

@@ -26,16 +26,7 @@ __all__ = [
 ]
 
 if TYPE_CHECKING or find_spec("._treacle", __name__):
-    try:
-        from . import _treacle as _treacle
-    except ImportError as error:
-        if "libcusparse" not in str(error):
-            raise
-        raise ImportError(
-            f"{error}: this treacle computes on GPUs and needs NVIDIA's cuSPARSE; expected that of the CUDA toolkit in the "
-            "search path of libraries, or `pip install nvidia-cusparse` (CUDA 13) or nvidia-cusparse-cu12 (CUDA 12)"
-        ) from None
-
+    from . import _treacle as _treacle
     from . import cases
     from ._arrays import DeviceArray
     from ._fluid import Fluid
