@@ -1,6 +1,7 @@
 #include "treacle/core/device.hpp"
 
 #include "core/cuda_check.hpp"
+#include "core/launch.hpp"
 
 namespace treacle {
 namespace {
@@ -27,6 +28,15 @@ bool hasCode() {
 }
 
 }  // namespace
+
+bool startsKernelsEarly() {
+  static const bool yes = [] {
+    cudaFuncAttributes attributes;
+    TREACLE_CUDA_CHECK(cudaFuncGetAttributes(&attributes, anyKernel));
+    return attributes.ptxVersion >= 90;
+  }();
+  return yes;
+}
 
 std::vector<DeviceInfo> cudaDevices() {
   int count = 0, current = 0;

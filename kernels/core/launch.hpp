@@ -48,16 +48,9 @@ __device__ inline void letNextKernelBegin() {
 /// begin. Some block of each kernel has to wait, so that its end is the end of those before.
 __device__ inline void readBeforeEarlierKernelEnds() { __threadfence(); }
 
-/// Whether the device starts a kernel while the one before it ends (compute capability 9.0).
-inline bool startsKernelsEarly() {
-  static const bool yes = [] {
-    int device = 0, major = 0;
-    TREACLE_CUDA_CHECK(cudaGetDevice(&device));
-    TREACLE_CUDA_CHECK(cudaDeviceGetAttribute(&major, cudaDevAttrComputeCapabilityMajor, device));
-    return major >= 9;
-  }();
-  return yes;
-}
+/// Whether kernels can start while the one before them ends. This takes a device of compute capability 9.0 or
+/// later and code that was compiled for it: older PTX has no statement that waits.
+bool startsKernelsEarly();
 
 /// As launch(), for kernels that begin with waitForEarlierKernels(), all of their threads: they are brought to the
 /// multiprocessors while the kernel before them ends, which takes a fifth off the time of the smallest ones.

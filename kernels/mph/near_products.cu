@@ -56,7 +56,8 @@ __global__ void __launch_bounds__(128) listKernel(const Split split, const __gri
     const auto rows = static_cast<std::uint32_t>(sliceStart[s + 1] - sliceStart[s]);
     for (count += part; valid && count < rows; count += split) entry[base + std::uint64_t{slice} * count] = i;
   } else {
-    const unsigned rows = __reduce_max_sync(~0u, count);
+    unsigned rows = count;
+    for (int offset = 16; offset > 0; offset /= 2) rows = max(rows, __shfl_xor_sync(~0u, rows, offset));
     if (threadIdx.x % 32 == 0) atomicMax(reinterpret_cast<unsigned long long*>(&sliceStart[s]), rows);
   }
 }
