@@ -9,6 +9,12 @@ else()
   set(TREACLE_CUDA_RUNTIME CUDA::cudart_static)
 endif()
 
+# Compressed kernels take a third of the space, and about as long to load.
+set(TREACLE_CUDA_OPTIONS --expt-relaxed-constexpr --extended-lambda -Xcompiler=-Wall,-Wextra)  # std::span and loop bodies in device code
+if(CUDAToolkit_VERSION VERSION_GREATER_EQUAL 12.8)
+  list(APPEND TREACLE_CUDA_OPTIONS --compress-mode=size)
+endif()
+
 # treacle_room(NAME SOURCES a.cpp ... DEPENDS core ... PRIVATE lib ...): library treacle_NAME, alias treacle::NAME.
 function(treacle_room NAME)
   cmake_parse_arguments(ROOM "" "" "SOURCES;DEPENDS;PRIVATE" ${ARGN})
@@ -76,8 +82,9 @@ macro(treacle_library TARGET)
 endmacro()
 
 # treacle_kernels(NAME SOURCES foo.cu ... LARGE bar.cu ... PRIVATE lib ...): adds CUDA sources to the library of a room.
-# SOURCES compile together, in a batch that is written here (CMake's own batches have no CUDA before 3.31); LARGE ones
-# compile alone, so that several cores share them. One call of a room may have several SOURCES.
+# SOURCES compile together, in a batch that is written here (CMake's own batches have no CUDA before 3.31, and are the
+# same for all versions only if they have none); LARGE ones compile alone, so that several cores share them. One call of a
+# room may have several SOURCES.
 function(treacle_kernels NAME)
   cmake_parse_arguments(KERNELS "" "" "SOURCES;LARGE;PRIVATE" ${ARGN})
   list(LENGTH KERNELS_SOURCES count)
@@ -88,6 +95,8 @@ function(treacle_kernels NAME)
     file(CONFIGURE OUTPUT ${KERNELS_SOURCES} CONTENT "${text}\n" @ONLY)
   endif()
   target_sources(treacle_${NAME} PRIVATE ${KERNELS_SOURCES} ${KERNELS_LARGE})
+  set_source_files_properties(${KERNELS_SOURCES} ${KERNELS_LARGE} TARGET_DIRECTORY treacle_${NAME}
+    PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   target_include_directories(treacle_${NAME} PRIVATE ${CMAKE_SOURCE_DIR}/kernels)
   target_link_libraries(treacle_${NAME} PRIVATE ${TREACLE_CUDA_RUNTIME} ${KERNELS_PRIVATE})
 endfunction()
@@ -100,6 +109,6 @@ function(treacle_compile_options TARGET)
     $<$<COMPILE_LANGUAGE:CXX>:-Wno-psabi>  # vectors may be wider than registers, and never leave one build
     $<$<AND:$<CXX_COMPILER_ID:GNU>,$<COMPILE_LANGUAGE:CXX>,$<BOOL:${CMAKE_UNITY_BUILD}>>:-Wno-subobject-linkage>  # takes a batch's sources for headers
     $<$<AND:$<COMPILE_LANGUAGE:CXX>,$<BOOL:${TREACLE_WERROR}>>:-Werror>
-    $<$<COMPILE_LANGUAGE:CUDA>:--expt-relaxed-constexpr --extended-lambda -Xcompiler=-Wall,-Wextra>  # std::span and loop bodies in device code
+    $<$<COMPILE_LANGUAGE:CUDA>:${TREACLE_CUDA_OPTIONS}>
     $<$<AND:$<COMPILE_LANGUAGE:CUDA>,$<BOOL:${TREACLE_WERROR}>>:-Werror all-warnings>)
 endfunction()
