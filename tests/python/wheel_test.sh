@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# tests/python/wheel_test.sh WHEEL PYTHON: installs the wheel into an empty virtual environment and runs a case by the module
-# and by the program, where PATH has nothing else: no compiler, no tool. What is loaded with the module, beyond what an empty
+# tests/python/wheel_test.sh WHEEL PYTHON: installs the wheel, which may have 60 MB, into an empty virtual environment and runs
+# a case by the module and by the program, where PATH has nothing else: no compiler, no tool. What is loaded with the module, beyond what an empty
 # interpreter has, must be the environment's own or the C and C++ runtime: nothing of this machine's packages.
 set -euo pipefail
 
@@ -9,6 +9,11 @@ if [ $# -ne 2 ]; then
   exit 2
 fi
 wheel=$(realpath "$1")
+bytes=$(stat -c %s "$wheel")
+if [ "$bytes" -gt 60000000 ]; then
+  echo "wheel_test: error: $wheel has $bytes bytes; expected at most 60 MB" >&2
+  exit 1
+fi
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 "$2" -m venv "$folder/env"
@@ -51,6 +56,8 @@ assert sim.backend == "cuda" or not foreign, foreign
 command = Path(sys.prefix) / "bin/treacle"
 subprocess.run([command, "run", "drop.toml", "-o", "by-program", "--quiet"], check=True)
 subprocess.run([command, "compare", "by-program", "by-module", "--quiet"], check=True)
+info = subprocess.run([command, "info"], check=True, capture_output=True, text=True).stdout
+print(*[line for line in info.splitlines() if line.startswith("CUDA")])
 print(f"{treacle.__version__} on Python {sys.version.split()[0]}, {sim.backend}: {len(loaded())} libraries, run and compared")
 CODE
 env -i PATH="$folder/env/bin" HOME="$folder" "$folder/env/bin/python" run.py
