@@ -115,54 +115,109 @@ void ParticleProducts<D, T, Cpu>::sumGradients() {
   });
 }
 
+/// B in the precision of the products, and the sums of g d multiplied by it.
 template <int D, class T>
-template <class Store>
-void ParticleProducts<D, T, Cpu>::gradient(Context<Cpu>& context, ScalarField<T, Cpu> q,
-                                           const Store& store) const {
-  fillGhosts(context, Held::Active, q.at);
-  if (pairs_->renormalisation) return renormalisedGradient(q, store);
+void ParticleProducts<D, T, Cpu>::renormalise() {
+  renormalisation_.resize(pairs_->fluidCount);
+  for (std::uint32_t i = 0; i < pairs_->fluidCount; ++i)
+    for (int at = 0; at < SymmetricBlock<D>::size; ++at)
+      renormalisation_[i].a[at] = static_cast<T>(pairs_->renormalisation[i].a[at]);
   const ClusterListView& list = pairs_->fluidList;
   forEachClusterOf(list, [&](std::uint32_t c) {
-    const ClusterWalk<D, T> walk(*pairs_, list, c, position_.data(), fluidLanes_.data());
-    LanesOf<T> sum[2][D] = {};
-    const T* coefficient = pressure_.data() + pressureStart_[c] * clusterSize;
-    const auto add = [&](int half, std::uint32_t j, const LanesOf<T>& g, const LanesOf<T>* d) {
-      const LanesOf<T> f = g * q[j];
-      for (int k = 0; k < D; ++k) sum[half][k] += f * d[k];
-    };
-    walk.forEach(ListSegment::NearFluid, coefficient, add);
-    walk.forEach(ListSegment::NearWall, coefficient, add);
-    const VectorSums<D, T> sums(sum);
-    const T* own = &gradient_[std::size_t{D} * clusterSize * c];
-    storeSums(*pairs_, walk.range, store, [&](std::size_t i, std::size_t lane) {
-      Vec<D, T> total;
-      for (int k = 0; k < D; ++k) total[k] = sums.at[k][lane] + own[k * clusterSize + lane] * q[i];
-      return total;
-    });
+    const SymmetricBlock<D, LanesOf<T>> b = loadBlocks<LanesOf<T>>(ClusterRange(list, c), renormalisation_.data());
+    for (Buffer<T>* gradient : {&gradient_, &wallGradient_}) {
+      T* at = &(*gradient)[std::size_t{D} * clusterSize * c];
+      LanesOf<T> v[D];
+      for (int k = 0; k < D; ++k) v[k] = load<LanesOf<T>>(at + k * clusterSize);
+      for (int k = 0; k < D; ++k) store<T>(b.row(k, v), at + k * clusterSize);
+    }
   });
 }
 
 template <int D, class T>
 template <class Store>
+void ParticleProducts<D, T, Cpu>::gradient(Context<Cpu>& context, ScalarField<T, Cpu> q,
+                                           const Store& store) const {
+  fillGhosts(context, Held::Active, q.at);
+  withRenormalisation(*pairs_, [&]<bool Renormalised>() {
+    const ClusterListView& list = pairs_->fluidList;
+    forEachClusterOf(list, [&](std::uint32_t c) {
+      const ClusterWalk<D, T> walk(*pairs_, list, c, position_.data(), fluidLanes_.data());
+      LanesOf<T> sum[2][D] = {};
+      const T* coefficient = pressure_.data() + pressureStart_[c] * clusterSize;
+      const auto addFrom = [&](auto wall) {
+        return [&](int half, std::uint32_t j, const LanesOf<T>& g, const LanesOf<T>* d) {
+          const LanesOf<T> f = g * q[j];
+          LanesOf<T> fd[D];
+          for (int k = 0; k < D; ++k) fd[k] = f * d[k];
+          for (int k = 0; k < D; ++k) {
+            if constexpr (Renormalised && !decltype(wall)::value)
+              sum[half][k] += renormalisation_[j].row(k, fd);
+            else
+              sum[half][k] += fd[k];
+          }
+        };
+      };
+      walk.forEach(ListSegment::NearFluid, coefficient, addFrom(std::false_type{}));
+      walk.forEach(ListSegment::NearWall, coefficient, addFrom(std::true_type{}));
+      const VectorSums<D, T> sums(sum);
+      const T* own = &gradient_[std::size_t{D} * clusterSize * c];
+      storeSums(*pairs_, walk.range, store, [&](std::size_t i, std::size_t lane) {
+        Vec<D, T> total;
+        for (int k = 0; k < D; ++k) total[k] = sums.at[k][lane] + own[k * clusterSize + lane] * q[i];
+        return total;
+      });
+    });
+  });
+}
+
+/// The differences of velocities are formed pair by pair, because that of a rigid motion must vanish to the last
+/// bit: the bulk viscosity would amplify the rest. Walls rest, and have no B.
+template <int D, class T>
+template <class Store>
 void ParticleProducts<D, T, Cpu>::divergence(Context<Cpu>& context, VectorField<D, T, Cpu> field,
                                              const Store& store) const {
   fillGhosts(context, Held::Fluid, field.at);
-  if (pairs_->renormalisation) return renormalisedDivergence(field, store);
   const Gathered<D, T>* u = field.at;
-  forEachClusterOf(pairs_->fluidList, [&](std::uint32_t c) {
-    const ClusterWalk<D, T> walk(*pairs_, pairs_->fluidList, c, position_.data(), fluidLanes_.data());
-    LanesOf<T> ui[D];
-    loadVectors(walk.range, u, ui);
-    const T* coefficient = pressure_.data() + pressureStart_[c] * clusterSize;
-    const VectorSums<1, T> sums = sumAlong<true>(walk, coefficient, u, ui);
-    const T* walls = &wallGradient_[std::size_t{D} * clusterSize * c];
-    storeSums(*pairs_, walk.range, store, [&](std::size_t i, std::size_t lane) {
-      T total = -sums.at[0][lane];
-      for (int k = 0; k < D; ++k) total += walls[k * clusterSize + lane] * u[i][k];
-      return total;
+  withRenormalisation(*pairs_, [&]<bool Renormalised>() {
+    forEachClusterOf(pairs_->fluidList, [&](std::uint32_t c) {
+      const ClusterWalk<D, T> walk(*pairs_, pairs_->fluidList, c, position_.data(), fluidLanes_.data());
+      LanesOf<T> ui[D];
+      loadVectors(walk.range, u, ui);
+      SymmetricBlock<D, LanesOf<T>> b = {};
+      if constexpr (Renormalised) b = loadBlocks<LanesOf<T>>(walk.range, renormalisation_.data());
+      const auto along = [&](std::uint32_t j, const LanesOf<T>* d) {
+        LanesOf<T> sum = {};
+        for (int k = 0; k < D; ++k) {
+          if constexpr (Renormalised)
+            sum += (u[j][k] - ui[k]) * b.row(k, d);
+          else
+            sum += (u[j][k] - ui[k]) * d[k];
+        }
+        return sum;
+      };
+      const VectorSums<1, T> sums = sumOverFluid(walk, pressure_.data() + pressureStart_[c] * clusterSize, along);
+      const T* walls = &wallGradient_[std::size_t{D} * clusterSize * c];
+      storeSums(*pairs_, walk.range, store, [&](std::size_t i, std::size_t lane) {
+        T total = -sums.at[0][lane];
+        for (int k = 0; k < D; ++k) total += walls[k * clusterSize + lane] * u[i][k];
+        return total;
+      });
     });
   });
-  storeAtWalls<D, T>(*pairs_, position_.data(), wallLanes_.data(), wall_.data(), wallStart_.data(), u, store);
+  const ClusterListView& walls = pairs_->wallList;
+  forEachClusterOf(walls, [&](std::uint32_t c) {
+    if (walls.segment(c, ListSegment::NearFluid).empty())
+      return storeSums(*pairs_, ClusterRange(walls, c), store, [](std::size_t, std::size_t) { return T(0); });
+    const ClusterWalk<D, T> walk(*pairs_, walls, c, position_.data(), wallLanes_.data());
+    const auto along = [&](std::uint32_t j, const LanesOf<T>* d) {
+      LanesOf<T> sum = {};
+      for (int k = 0; k < D; ++k) sum += u[j][k] * d[k];
+      return sum;
+    };
+    const VectorSums<1, T> sums = sumOverFluid(walk, wall_.data() + wallStart_[c] * clusterSize, along);
+    storeSums(*pairs_, walk.range, store, [&](std::size_t, std::size_t lane) { return -sums.at[0][lane]; });
+  });
 }
 
 template <int D, class T>

@@ -136,39 +136,16 @@ inline void loadVectors(const ClusterRange& range, const Gathered<D, T>* u, Lane
     }
 }
 
-/// Sum of g d.(u_j - u_i) over near fluid; walls at rest have no `own` velocities. The differences are formed pair
-/// by pair, because that of a rigid motion must vanish to the last bit: the bulk viscosity would amplify the rest.
-template <bool Moving, int D, class T>
-inline VectorSums<1, T> sumAlong(const ClusterWalk<D, T>& walk, const T* coefficient, const Gathered<D, T>* u,
-                                 const LanesOf<T>* own = nullptr) {
+/// Sum of g along(j, d) over near fluid.
+template <int D, class T, class Along>
+[[gnu::always_inline]] inline VectorSums<1, T> sumOverFluid(const ClusterWalk<D, T>& walk, const T* coefficient,
+                                                            Along&& along) {
   LanesOf<T> sum[2][1] = {};
   walk.forEach(ListSegment::NearFluid, coefficient,
                [&](int half, std::uint32_t j, const LanesOf<T>& g, const LanesOf<T>* d) {
-                 const auto relative = [&](int k) {
-                   if constexpr (Moving)
-                     return u[j][k] - own[k];
-                   else
-                     return u[j][k];
-                 };
-                 LanesOf<T> along = relative(0) * d[0];
-                 for (int k = 1; k < D; ++k) along += relative(k) * d[k];
-                 sum[half][0] += g * along;
+                 sum[half][0] += g * along(j, d);
                });
   return VectorSums<1, T>(sum);
-}
-
-/// store(C^T u) of the walls, which have no B, from the fluid near them: `coefficient` has g from start[c] on.
-template <int D, class T, class Store>
-inline void storeAtWalls(const MphPairs<D>& pairs, const Vec<D, T>* position, const T* lanes, const T* coefficient,
-                         const std::uint64_t* start, const Gathered<D, T>* u, const Store& store) {
-  const ClusterListView& walls = pairs.wallList;
-  forEachClusterOf(walls, [&](std::uint32_t c) {
-    if (walls.segment(c, ListSegment::NearFluid).empty())
-      return storeSums(pairs, ClusterRange(walls, c), store, [](std::size_t, std::size_t) { return T(0); });
-    const ClusterWalk<D, T> walk(pairs, walls, c, position, lanes);
-    const VectorSums<1, T> sums = sumAlong<false>(walk, coefficient + start[c] * clusterSize, u);
-    storeSums(pairs, walk.range, store, [&](std::size_t, std::size_t lane) { return -sums.at[0][lane]; });
-  });
 }
 
 }  // namespace treacle

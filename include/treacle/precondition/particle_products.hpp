@@ -80,10 +80,6 @@ class ParticleProducts<D, T, Cpu> {
                    const Store& store);
   // Where the pairs have B.
   void renormalise();
-  template <class Store>
-  void renormalisedGradient(ScalarField<T, Cpu> q, const Store& store) const;
-  template <class Store>
-  void renormalisedDivergence(VectorField<D, T, Cpu> u, const Store& store) const;
 
   const MphPairs<D>* pairs_ = nullptr;
   WallTerms<D> terms_{};
