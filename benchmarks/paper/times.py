@@ -64,7 +64,7 @@ def gpu_reading(rows, results):
     if small and on_gpu and all(r["MGCR"] < r["CR"] for r in small):
         text.append(
             "The multigrid is not slower in small cases here, because the Krylov loop is one CUDA graph without the host, and coarse "
-            "levels of at most 1100 unknowns are one dense matrix ([performance.md](performance.md))."
+            "levels of at most 1100 unknowns are one dense matrix ([notes](notes/performance.md#mph-i-on-a-gpu))."
         )
     return text
 
