@@ -4,7 +4,8 @@ import argparse
 import math
 import sys
 
-from .pictures.errors import PictureError, command, require
+from ._command import command
+from .pictures.errors import PictureError, require
 
 
 def arguments_of(argv):

@@ -1,21 +1,9 @@
 """Surfaces of the fluid, made by the program where a run has none yet."""
 
-import os
-import shutil
 import subprocess
 
+from .._command import program
 from .errors import PictureError
-
-
-def program():
-    """The program treacle: what TREACLE_PROGRAM names, else the one that the shell finds. Raises PictureError."""
-    found = os.environ.get("TREACLE_PROGRAM") or shutil.which("treacle")
-    if not found:
-        raise PictureError(
-            "--surface: the run has no surfaces, and the program treacle, which makes them, is not found; expected it "
-            "in PATH or in the environment variable TREACLE_PROGRAM"
-        )
-    return found
 
 
 def require_surfaces(run, frames, progress):
@@ -24,7 +12,13 @@ def require_surfaces(run, frames, progress):
     missing = [frame for frame in frames if not run.surface_file(frame).is_file()]
     for frame in progress(missing) if missing else []:
         directory, number = run.origin(frame)
-        command = [program(), "surface", str(directory), "--frame", str(number)]
+        found = program()
+        if not found:
+            raise PictureError(
+                "--surface: the run has no surfaces, and the program treacle, which makes them, is not found; expected it "
+                "in PATH or in the environment variable TREACLE_PROGRAM"
+            )
+        command = [found, "surface", str(directory), "--frame", str(number)]
         try:
             done = subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
         except OSError as error:
