@@ -30,6 +30,10 @@ endforeach()
 install(EXPORT treacleTargets NAMESPACE treacle:: DESTINATION ${package_dir})
 install(DIRECTORY include/treacle DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN *.hpp)
 install(DIRECTORY cases DESTINATION ${CMAKE_INSTALL_DATADIR}/treacle FILES_MATCHING PATTERN *.toml PATTERN *.stl)
+# For the commands that are Python: beside the program, which looks there.
+install(DIRECTORY python/treacle DESTINATION ${CMAKE_INSTALL_DATADIR}/treacle/python PATTERN __pycache__ EXCLUDE)
+file(MAKE_DIRECTORY ${CMAKE_BINARY_DIR}/share/treacle)
+file(CREATE_LINK ${CMAKE_SOURCE_DIR}/python ${CMAKE_BINARY_DIR}/share/treacle/python SYMBOLIC)
 
 configure_package_config_file(cmake/treacleConfig.cmake.in ${CMAKE_BINARY_DIR}/treacleConfig.cmake
   INSTALL_DESTINATION ${package_dir})

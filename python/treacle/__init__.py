@@ -37,13 +37,13 @@ if TYPE_CHECKING or find_spec("._treacle", __name__):
     from .cases import Case
     from .errors import InputError, RunError, SimulationWarning
 
-else:  # treacle's sources as they are: films and reports need nothing that is compiled
+else:  # treacle's sources as they are: films, reports and imports need nothing that is compiled
 
     def __getattr__(name: str) -> None:
         if name not in __all__:
             raise AttributeError(f"module 'treacle' has no attribute '{name}'")
         raise ImportError(
-            f"treacle.{name} needs the compiled part of the package, of which only treacle.movie and treacle.report do "
-            "without; expected `pip install .` in treacle's sources, or build/PRESET/python of a build with "
+            f"treacle.{name} needs the compiled part of the package, which treacle.movie, treacle.report and "
+            "treacle.import_case do without; expected `pip install .` in treacle's sources, or build/PRESET/python of a build with "
             "-DTREACLE_PYTHON=ON in PYTHONPATH"
         )

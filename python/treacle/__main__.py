@@ -1,4 +1,5 @@
-"""The command `treacle`: what draws films and reports is Python, the rest is the program that the package carries."""
+"""The command `treacle`: films and reports are Python, the rest is the program that the package carries. What that
+leaves to Python is run by this interpreter."""
 
 from __future__ import annotations
 
@@ -18,6 +19,7 @@ def main(arguments: list[str] | None = None) -> int:
     if not program.exists():
         print(f"treacle: error: this installation does not have the program: no {program}", file=sys.stderr)
         return 3
+    os.environ.setdefault("TREACLE_PYTHON", sys.executable)
     os.execv(program, ["treacle", *arguments])
 
 

@@ -97,10 +97,10 @@ void infoCommand();
 void plotCommand(const PlotOptions& options);
 void surfaceCommand(const SurfaceOptions& options);
 void convergenceCommand(const ConvergenceOptions& options);
-void importCommand(const ImportOptions& options);
 /// Becomes the Python interpreter that runs a module of the package treacle with these arguments; does not return.
-/// Errors: InputError where there is no interpreter.
-void pythonCommand(const std::string& module, const std::vector<std::string>& arguments);
+/// `command`: its name in messages. Errors: InputError where there is no interpreter.
+void pythonCommand(const std::string& command, const std::string& module,
+                   const std::vector<std::string>& arguments);
 /// Whether the runs agree within the bound.
 bool compareCommand(const CompareOptions& options);
 

@@ -258,7 +258,13 @@ void addImport(CLI::App& app, ImportOptions& options) {
                    "directory")
       ->type_name("FILE");
   command->add_flag("--force", options.force, "Replace files that are there");
-  command->callback([&options] { importCommand(options); });
+  command->callback([&options] {
+    std::vector<std::string> words;
+    if (!options.output.empty()) words.push_back("--output=" + options.output.string());
+    if (options.force) words.emplace_back("--force");
+    words.insert(words.end(), {"--", options.parameters.string(), options.geometry.string()});
+    pythonCommand("import", "import_case", words);
+  });
 }
 
 /// Commands that a module of the Python package carries out, with their help. All words after the name are the
@@ -270,7 +276,7 @@ constexpr std::pair<const char*, const char*> pythonCommands[] = {
 /// Does not return where the first word is one of these commands.
 void becomePython(int argc, char** argv) {
   for (const auto& [name, help] : pythonCommands)
-    if (argc > 1 && std::string(argv[1]) == name) pythonCommand(name, {argv + 2, argv + argc});
+    if (argc > 1 && std::string(argv[1]) == name) pythonCommand(name, name, {argv + 2, argv + argc});
 }
 
 /// "run, check, plot"

@@ -15,11 +15,15 @@
 namespace treacle {
 namespace {
 
-/// Runs the command of a module; where that cannot be imported, says why and how it comes.
-constexpr const char* launcher = R"(import importlib, sys
+/// Runs the command of a module, of an installed package or else of the one beside the program; where that cannot
+/// be imported, says why and how it comes.
+constexpr const char* launcher = R"(import importlib, os, sys
 name = sys.argv.pop(1)
+beside = os.path.dirname(os.environ.get("TREACLE_PROGRAM", "")) + "/../share/treacle/python"
+sys.path[:] = [folder for folder in sys.path if folder] + [beside]  # nothing of the current directory
 try:
-    main = importlib.import_module("treacle." + name).main
+    if sys.version_info < (3, 10): raise ImportError("it needs Python 3.10 or later")
+    main = importlib.import_module("treacle." + sys.argv.pop(1)).main
 except ImportError as error:
     print(f"treacle: error: treacle {name} is written in Python: {error}; expected the package of treacle's sources, by "
           f"`pip install '.[pictures]'` in {sys.executable} or by scripts/pictures, or TREACLE_PYTHON=INTERPRETER", file=sys.stderr)
@@ -28,13 +32,14 @@ sys.exit(main(sys.argv[1:])))";
 
 }  // namespace
 
-void pythonCommand(const std::string& module, const std::vector<std::string>& arguments) {
+void pythonCommand(const std::string& command, const std::string& module,
+                   const std::vector<std::string>& arguments) {
   const char* chosen = std::getenv("TREACLE_PYTHON");
   const std::string interpreter = chosen != nullptr && *chosen != '\0' ? chosen : "python3";
   std::error_code unknown;
   const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", unknown);
-  if (!unknown) setenv("TREACLE_PROGRAM", self.c_str(), 0);  // what makes surfaces, if the module needs them
-  std::vector<std::string> words{interpreter, "-c", launcher, module};
+  if (!unknown) setenv("TREACLE_PROGRAM", self.c_str(), 0);  // for a module that needs it
+  std::vector<std::string> words{interpreter, "-c", launcher, command, module};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> pointers;
   for (std::string& word : words) pointers.push_back(word.data());
@@ -45,7 +50,7 @@ void pythonCommand(const std::string& module, const std::vector<std::string>& ar
       fmt::format("treacle {} is written in Python, and {} cannot be started: {}; expected Python 3 with the "
                   "package of treacle's sources, by "
                   "`pip install '.[pictures]'` or by scripts/pictures, or TREACLE_PYTHON=INTERPRETER",
-                  module, interpreter, std::strerror(errno)));
+                  command, interpreter, std::strerror(errno)));
 }
 
 }  // namespace treacle

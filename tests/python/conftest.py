@@ -2,11 +2,13 @@
 
 import copy
 import os
+import sys
 from pathlib import Path
 
 import pytest
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")  # ctest runs tests side by side
+os.environ["TREACLE_PYTHON"] = sys.executable  # for commands of the program that are Python
 
 DROP_TOML = """title = "A drop"
 dimensions = 2

@@ -1,5 +1,5 @@
 # Files of the authors' program: two parts with %% between them.
-cuboids=tests/fuzz/corpus/import/cuboids
+cuboids=tests/python/mph_files/cuboids
 sed '/^%%$/,$d' $cuboids >box.data
 sed '1,/^%%$/d' $cuboids >box.boid
-sed '1,/^%%$/d' tests/fuzz/corpus/import/flat >box.grid
+sed '1,/^%%$/d' tests/python/mph_files/flat >box.grid

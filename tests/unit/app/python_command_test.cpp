@@ -8,6 +8,7 @@
 using namespace treacle::test;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::StartsWith;
 
 namespace {
 
@@ -28,10 +29,12 @@ TEST_F(PythonCommand, HandsOnItsWordsItsNameAndTheExitCode) {
   const Outcome outcome = callWith(R"(shift 2; printf '%s;' "$@"; echo "$TREACLE_PROGRAM"; exit 3)",
                                    "movie run --size 4x4 --help -o 'a b.mp4'");
   EXPECT_EQ(outcome.exitCode, 3);
-  EXPECT_THAT(outcome.out, testing::StartsWith("movie;run;--size;4x4;--help;-o;a b.mp4;/"));
+  EXPECT_THAT(outcome.out, StartsWith("movie;movie;run;--size;4x4;--help;-o;a b.mp4;/"));
   EXPECT_THAT(outcome.out, testing::EndsWith("/treacle\n"));
   EXPECT_THAT(outcome.err, IsEmpty());
   EXPECT_THAT(callWith("shift 2; echo \"$1\"", "report run").out, HasSubstr("report\n"));
+  EXPECT_EQ(callWith("shift 2; echo \"$*\"", "import a.data -o x.toml --force -- -b.grid").out,
+            "import import_case --output=x.toml --force -- a.data -b.grid\n");
 }
 
 TEST_F(PythonCommand, SaysWhatIsMissing) {
@@ -39,9 +42,20 @@ TEST_F(PythonCommand, SaysWhatIsMissing) {
   EXPECT_EQ(outcome.exitCode, 2);
   EXPECT_THAT(outcome.err, HasSubstr("treacle movie is written in Python, and /no/such/python cannot be started"));
   EXPECT_THAT(outcome.err, HasSubstr("pip install '.[pictures]'"));
-  // -I -S: a Python without any package.
+  // -I -S: a Python without any package; that of the sources lies beside the program.
   outcome = callWith("exec python3 -I -S \"$@\"", "report run");
+  EXPECT_EQ(outcome.exitCode, 2);
+  EXPECT_THAT(outcome.err, StartsWith("treacle: error: No module named '"));
+  EXPECT_THAT(outcome.err, HasSubstr("pip install '.[pictures]'"));
+  outcome = callWith("export TREACLE_PROGRAM=/no/such/treacle; exec python3 -I -S \"$@\"", "report run");
   EXPECT_EQ(outcome.exitCode, 2);
   EXPECT_THAT(outcome.err, HasSubstr("treacle report is written in Python: No module named 'treacle'"));
   EXPECT_THAT(outcome.err, HasSubstr("pip install '.[pictures]'"));
+}
+
+TEST_F(PythonCommand, ImportsWithoutAnyPackage) {
+  shop.put("argparse.py", "raise ImportError('of the current directory')");
+  const Outcome outcome = callWith("unset PYTHONPATH; exec python3 -S \"$@\"", "import x.data x.grid");
+  EXPECT_EQ(outcome.exitCode, 2);
+  EXPECT_EQ(outcome.err, "treacle: error: x.grid: No such file or directory\n");
 }
