@@ -43,7 +43,7 @@ else:  # treacle's sources as they are: films, reports and imports need nothing 
         if name not in __all__:
             raise AttributeError(f"module 'treacle' has no attribute '{name}'")
         raise ImportError(
-            f"treacle.{name} needs the compiled part of the package, which treacle.movie, treacle.report and "
-            "treacle.import_case do without; expected `pip install .` in treacle's sources, or build/PRESET/python of a build with "
-            "-DTREACLE_PYTHON=ON in PYTHONPATH"
+            f"treacle.{name} needs the compiled part of the package, which treacle.movie, treacle.report, treacle.plot "
+            "and treacle.import_case do without; expected `pip install .` in treacle's sources, or build/PRESET/python "
+            "of a build with -DTREACLE_PYTHON=ON in PYTHONPATH"
         )

@@ -9,9 +9,9 @@ import re
 import subprocess
 import sys
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
-from ._command import command, program, say
+from ._command import command, program, say, write_files
 from .errors import InputError, RunError
 from .mph_files.convert import Imported, import_files
 
@@ -33,34 +33,14 @@ def arguments_of(argv: Sequence[str]) -> argparse.Namespace:
     return parser.parse_args(argv)
 
 
+def encoded(text: str) -> bytes:
+    """A text with names of files as the system has them."""
+    return text.encode(errors="surrogateescape")
+
+
 def stem(path: str) -> str:
     """The name of a file without its ending."""
     return os.path.splitext(os.path.basename(path))[0]
-
-
-def write(contents: Mapping[str, str]) -> None:
-    """Writes files by their paths. All of them are complete before the first one appears under its name. Raises RunError."""
-    staged: list[tuple[str, str]] = []
-    path = ""
-    try:
-        for path, text in contents.items():
-            target = os.path.realpath(path)
-            if is_file := not os.path.exists(path) or os.path.isfile(path) or os.path.isdir(path):
-                staged.append((f"{target}.tmp", target))
-            with open(f"{target}.tmp" if is_file else path, "w", encoding="utf-8", errors="surrogateescape") as file:
-                file.write(text)
-                file.flush()
-                if is_file:
-                    os.fsync(file.fileno())
-        while staged:
-            os.replace(*staged[0])
-            staged.pop(0)
-    except OSError as error:
-        raise RunError(f"cannot write {path}: {error.strerror}") from None
-    finally:
-        for temporary, _ in staged:
-            with contextlib.suppress(OSError):
-                os.unlink(temporary)
 
 
 def require_writable(path: str, options: argparse.Namespace) -> None:
@@ -74,17 +54,17 @@ def require_writable(path: str, options: argparse.Namespace) -> None:
 
 
 def check(imported: Imported, options: argparse.Namespace) -> tuple[list[str], str]:
-    """What the program warns of as it makes the case's particles, and their numbers. Raises InputError where the case cannot
-    be run, RunError where there is not enough memory."""
+    """What the program warns of as it makes the case's particles, and their numbers. Raises InputError where the case
+    cannot be run, RunError where there is not enough memory."""
     found = program()
     if not found:
         raise InputError(
-            "the program treacle, which checks what is imported, is not found; expected it in PATH or in the environment "
-            "variable TREACLE_PROGRAM"
+            "the program treacle, which checks what is imported, is not found; expected it in PATH or in the "
+            "environment variable TREACLE_PROGRAM"
         )
     with tempfile.TemporaryDirectory() as folder:
         files = imported.tables | {"case.toml": imported.text}
-        write({os.path.join(folder, name): text for name, text in files.items()})
+        write_files({os.path.join(folder, name): encoded(text) for name, text in files.items()})
         command = [found, "check", os.path.join(folder, "case.toml")]
         try:
             done = subprocess.run(command, capture_output=True, encoding="utf-8", errors="replace")
@@ -116,7 +96,7 @@ def make(options: argparse.Namespace) -> None:
     contents = {os.path.join(folder, name): text for name, text in imported.tables.items()} | {output: imported.text}
     for path in contents:
         require_writable(path, options)
-    write(contents)
+    write_files({path: encoded(text) for path, text in contents.items()})
     say("\n".join([*contents, numbers]))
     for warning in imported.warnings + warnings:
         print(f"treacle: warning: {warning}", file=sys.stderr)

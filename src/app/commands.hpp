@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace treacle {
@@ -94,13 +95,17 @@ inline constexpr int runsDiffer = 1;
 void runCommand(const RunOptions& options, const Communicator& processes);
 void checkCommand(const CheckOptions& options);
 void infoCommand();
-void plotCommand(const PlotOptions& options);
+/// `field`: the word for that of the options.
+void plotCommand(const PlotOptions& options, std::string_view field);
 void surfaceCommand(const SurfaceOptions& options);
 void convergenceCommand(const ConvergenceOptions& options);
 /// Becomes the Python interpreter that runs a module of the package treacle with these arguments; does not return.
 /// `command`: its name in messages. Errors: InputError where there is no interpreter.
 void pythonCommand(const std::string& command, const std::string& module,
                    const std::vector<std::string>& arguments);
+/// Likewise: draws a table of a directory, with options of treacle.plot that say which.
+void drawCurves(const std::filesystem::path& directory, const std::filesystem::path& picture,
+                std::vector<std::string> options);
 /// Whether the runs agree within the bound.
 bool compareCommand(const CompareOptions& options);
 

@@ -12,7 +12,6 @@
 #include "treacle/core/cuda.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/io/case_reader.hpp"
-#include "treacle/io/picture.hpp"
 #include "treacle/model/checks.hpp"
 #include "treacle/model/create.hpp"
 #include "treacle/step/any_simulation.hpp"
@@ -99,8 +98,12 @@ void compareSolvers(const Case& c, AnySimulation simulation, const std::vector<S
   printTable(curves);
   writeConvergence(directory / "convergence.csv", curves);
   writeSolvers(directory / "solvers.csv", curves);
-  drawConvergence(directory / "convergence.png", curves, c.title, where);
-  print("picture: {}\n", (directory / "convergence.png").string());
+  try {
+    drawCurves(directory, directory / "convergence.png",
+               {"--convergence", "--title=" + c.title, "--remark=" + where});
+  } catch (const InputError& error) {  // what was compared is told, and is in the tables
+    printWarning(error.what());
+  }
 }
 
 fs::path directoryOf(const ConvergenceOptions& options) {

@@ -207,7 +207,10 @@ void addPlot(CLI::App& app, PlotOptions& options) {
   plot->add_flag("--history", options.history, "Curves of iterations, energies and extents over time");
   plot->add_option("--probe", options.probe, "What a probe of the case has read")->type_name("NAME");
   plot->add_option("-o,--output", options.output, "PNG file; default: in the run directory")->type_name("FILE");
-  plot->callback([&options] { plotCommand(options); });
+  plot->callback([&options] {
+    for (const auto& [word, field] : fieldNames)
+      if (field == options.field) plotCommand(options, word);
+  });
 }
 
 void addSurface(CLI::App& app, SurfaceOptions& options) {

@@ -4,7 +4,6 @@
 #include "run_log.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/io/case_reader.hpp"
-#include "treacle/io/history.hpp"
 #include "treacle/io/picture.hpp"
 #include "treacle/io/pvtp.hpp"
 #include "treacle/io/run_directory.hpp"
@@ -30,31 +29,29 @@ const Probe& probeNamed(const std::string& name, const Case& c) {
 
 }  // namespace
 
-void plotCommand(const PlotOptions& options) {
+void plotCommand(const PlotOptions& options, std::string_view field) {
   const RunDirectory run = RunDirectory::open(options.directory);
   const Case c = readCase(run.caseFile(), {}, ShapeFiles::Leave);
   std::filesystem::path output = options.output;
+  if (!options.probe.empty()) {
+    const Probe& probe = probeNamed(options.probe, c);
+    if (output.empty()) output = run.probePicture(probe.name);
+    return drawCurves(options.directory, output, {"--probe=" + probe.name, fmt::format("--field={}", field)});
+  }
+  if (options.history)
+    return drawCurves(options.directory, output.empty() ? run.historyPicture() : output, {"--history"});
   PictureOptions picture;
   picture.field = options.field;
   picture.spacing = c.spacing;
   picture.gravity = c.gravity;
   picture.title = c.title;
-  if (!options.probe.empty()) {
-    const Probe& probe = probeNamed(options.probe, c);
-    if (output.empty()) output = run.probePicture(probe.name);
-    drawProbe(output, readProbe(run.probe(probe.name)), probe, picture);
-  } else if (options.history) {
-    if (output.empty()) output = run.historyPicture();
-    drawHistory(output, readHistory(run.history()), c.title);
-  } else {
-    const std::size_t frame = frameNumber(options.frame, run);
-    if (output.empty()) output = run.framePicture(frame);
-    const std::size_t missing =
-        drawFrame(output, readFrame(run.fluidFrame(frame)), readFrame(run.wallsFrame(frame)), picture);
-    if (missing > 0)
-      printWarning(fmt::format("frame {}: {} particle{} without a position that can be drawn", frame, missing,
-                               missing == 1 ? "" : "s"));
-  }
+  const std::size_t frame = frameNumber(options.frame, run);
+  if (output.empty()) output = run.framePicture(frame);
+  const std::size_t missing =
+      drawFrame(output, readFrame(run.fluidFrame(frame)), readFrame(run.wallsFrame(frame)), picture);
+  if (missing > 0)
+    printWarning(fmt::format("frame {}: {} particle{} without a position that can be drawn", frame, missing,
+                             missing == 1 ? "" : "s"));
   print("{}\n", output.string());
 }
 

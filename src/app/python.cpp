@@ -53,4 +53,10 @@ void pythonCommand(const std::string& command, const std::string& module,
                   command, interpreter, std::strerror(errno)));
 }
 
+void drawCurves(const std::filesystem::path& directory, const std::filesystem::path& picture,
+                std::vector<std::string> options) {
+  options.insert(options.end(), {"--output=" + picture.string(), "--", directory.string()});
+  pythonCommand("plot", "plot", options);
+}
+
 }  // namespace treacle

@@ -60,13 +60,6 @@ Canvas::Canvas(int width, int height)
   rectangle({0, 0}, {double(width), double(height)}, {1, 1, 1});
 }
 
-void Canvas::clip(Point topLeft, Point size) {
-  cairo_rectangle(context_.get(), topLeft.x, topLeft.y, size.x, size.y);
-  cairo_clip(context_.get());
-}
-
-void Canvas::unclip() { cairo_reset_clip(context_.get()); }
-
 void Canvas::line(const std::vector<Point>& points, Rgb color, double lineWidth, double opacity) {
   cairo_t* cr = context_.get();
   cairo_new_path(cr);

@@ -26,10 +26,6 @@ class Canvas {
   int width() const { return width_; }
   int height() const { return height_; }
 
-  /// Only what is drawn inside the rectangle shows, until unclip(). Discs are not clipped.
-  void clip(Point topLeft, Point size);
-  void unclip();
-
   void line(const std::vector<Point>& points, Rgb color, double lineWidth, double opacity = 1);
   void rectangle(Point topLeft, Point size, Rgb color);
   void frame(Point topLeft, Point size, Rgb color, double lineWidth);

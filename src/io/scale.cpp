@@ -31,8 +31,6 @@ std::string superscript(int exponent) {
 
 bool isDrawable(double x) { return std::abs(x) <= 1e150; }
 
-std::string powerOfTen(int exponent) { return "10" + superscript(exponent); }
-
 std::vector<double> niceTicks(double low, double high, int wanted) {
   if (!(high > low)) return {low};
   const double gaps = std::max(wanted - 1, 1);
@@ -70,7 +68,7 @@ Scale scaleFor(const std::vector<double>& ticks, const std::string& unit) {
   int exponent = static_cast<int>(std::floor(std::log10(largest) + 1e-9));
   exponent = exponent >= -2 && exponent <= 3 ? 0 : static_cast<int>(std::floor(exponent / 3.0)) * 3;
   const double factor = std::pow(10.0, exponent);
-  const std::string power = exponent == 0 ? "" : powerOfTen(exponent);
+  const std::string power = exponent == 0 ? "" : "10" + superscript(exponent);
   const std::string gap = power.empty() || unit.empty() ? "" : " ";
   return {factor, decimalsFor(step / factor), power + gap + unit};
 }

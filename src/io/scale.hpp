@@ -21,9 +21,6 @@ struct Scale {
   std::string text(double value) const;
 };
 
-/// "10⁻³"
-std::string powerOfTen(int exponent);
-
 /// For ticks of a quantity in `unit`; a power of ten moves into the unit where numbers would be long.
 Scale scaleFor(const std::vector<double>& ticks, const std::string& unit);
 

@@ -1,15 +1,11 @@
 #pragma once
 
-#include "treacle/io/convergence.hpp"
 #include "treacle/io/frame.hpp"
-#include "treacle/io/history.hpp"
-#include "treacle/io/probe_table.hpp"
 
 #include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <vector>
 
 namespace treacle {
 
@@ -42,23 +38,5 @@ struct PictureOptions {
 /// holds no particle, or spacing or width are unusable; RunError if the file cannot be written.
 std::size_t drawFrame(const std::filesystem::path& path, const Frame& fluid, const Frame& walls,
                       const PictureOptions& options);
-
-/// Draws iterations, energies, extents and largest speed over time as PNG.
-/// Values that are not finite are left out. Errors: InputError if there are no rows; RunError if the file cannot
-/// be written.
-void drawHistory(const std::filesystem::path& path, const std::vector<HistoryRow>& rows,
-                 const std::string& title = {});
-
-/// Draws what a probe has read as PNG: of a line the profiles at some times, of a plane its last state, coloured
-/// by the field of the options, of all others curves over time. `options.spacing`: that of the case. Errors:
-/// InputError if it has read nothing, or nothing of the field; RunError if the file cannot be written.
-void drawProbe(const std::filesystem::path& path, const ProbeTable& table, const Probe& probe,
-               const PictureOptions& options);
-
-/// Draws residuals over iterations as PNG, on a logarithmic axis, one curve per solver; below it their names with
-/// iterations and milliseconds. Residuals that are zero or not finite are left out. `remark`: at the right of the
-/// title. Errors: InputError if there is no curve; RunError if the file cannot be written.
-void drawConvergence(const std::filesystem::path& path, const std::vector<ConvergenceCurve>& curves,
-                     const std::string& title = {}, const std::string& remark = {});
 
 }  // namespace treacle

@@ -16,6 +16,6 @@ def require(*modules):
             importlib.import_module(name)
         except ImportError as error:
             raise PictureError(
-                f"{error}; films and reports need more packages: in treacle's sources, scripts/pictures or pip install "
-                "'.[pictures]'"
+                f"{error}; films, reports and curves need more packages: in treacle's sources, scripts/pictures or pip "
+                "install '.[pictures]'"
             ) from None

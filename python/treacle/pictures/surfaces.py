@@ -15,8 +15,8 @@ def require_surfaces(run, frames, progress):
         found = program()
         if not found:
             raise PictureError(
-                "--surface: the run has no surfaces, and the program treacle, which makes them, is not found; expected it "
-                "in PATH or in the environment variable TREACLE_PROGRAM"
+                "--surface: the run has no surfaces, and the program treacle, which makes them, is not found; expected "
+                "it in PATH or in the environment variable TREACLE_PROGRAM"
             )
         command = [found, "surface", str(directory), "--frame", str(number)]
         try:

@@ -234,7 +234,6 @@ TEST(run, historyHasTheTimingsThatWereAskedFor) {
     EXPECT_NEAR(t.search + t.lists + t.coefficients + t.coarse + t.solve + t.update, row.seconds,
                 1e-9 * row.seconds);
   }
-  EXPECT_EQ(shop.call("plot small-run --history").exitCode, 0);
   ASSERT_EQ(shop.call("run small.toml --threads 1 --quiet -o plain").exitCode, 0);
   EXPECT_EQ(shop.call("compare small-run plain --bound 0").exitCode, 0);
 }
@@ -437,15 +436,13 @@ TEST(run, caseThatDoesNotFitIntoMemoryIsRefused) {
   EXPECT_FALSE(std::filesystem::exists(shop / "small-run"));
 }
 
-TEST(plot, drawsFramesAndHistory) {
+TEST(plot, drawsFrames) {
   Workshop shop;
   ASSERT_EQ(withSmallCase(shop).call("run small.toml --threads 1 --quiet").exitCode, 0);
   EXPECT_EQ(shop.call("plot small-run --frame 1 --field pressure").out, "small-run/frames/fluid_000001.png\n");
   EXPECT_THAT(shop.content("small-run/frames/fluid_000001.png"), StartsWith(std::string(pngSignature)));
   EXPECT_EQ(shop.call("plot small-run -o last.png").exitCode, 0);
   EXPECT_THAT(shop.content("last.png"), StartsWith(std::string(pngSignature)));
-  EXPECT_EQ(shop.call("plot small-run --history").exitCode, 0);
-  EXPECT_THAT(shop.content("small-run/history.png"), StartsWith(std::string(pngSignature)));
   Frame odd = readVtp(shop / "small-run/frames/fluid_000001.vtp");
   odd.position[7][1] = std::nan("");
   writeVtp(shop / "small-run/frames/fluid_000001.vtp", odd, {}, OutputPrecision::Single);

@@ -76,12 +76,12 @@ void readCurves(const std::string& text, std::vector<Row>& rows) {
 /// Calls the command, and looks at its files: every curve goes from iteration 0 to the end that the table tells.
 std::vector<Row> rowsOf(const Workshop& shop, const std::string& arguments, const std::string& directory) {
   Timer timer;
-  const Outcome outcome = shop.call("convergence " + arguments + " --backend cpu --threads 1");
+  const std::string noPicture = "export TREACLE_PYTHON=true;";
+  const Outcome outcome = shop.call("convergence " + arguments + " --backend cpu --threads 1", noPicture);
   const double seconds = timer.lap();
   EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
   EXPECT_THAT(outcome.err, IsEmpty());
   EXPECT_THAT(outcome.out, HasSubstr("iterations  |r| / |b|  set-up [ms]  solve [ms]\n"));
-  EXPECT_THAT(shop.content(directory + "/convergence.png"), StartsWith("\x89PNG"));
   std::vector<Row> rows = solversOf(shop.content(directory + "/solvers.csv"));
   readCurves(shop.content(directory + "/convergence.csv"), rows);
   double inRows = 0;

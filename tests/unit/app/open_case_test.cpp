@@ -179,7 +179,6 @@ TEST(OpenCase, ARunCountsWhatComesAndGoes) {
   EXPECT_NEAR(rows.back().inflow.mass, 0.04, 1e-12);
   for (const HistoryRow& row : rows) EXPECT_EQ(row.particles, 4 + row.inflow.particles - row.outflow.particles);
   EXPECT_THAT(shop.content("whole/summary.json"), HasSubstr("\"inflow_particles\": 40"));
-  EXPECT_EQ(shop.call("plot whole --history").exitCode, 0);
 
   ASSERT_EQ(shop.call("run case.toml -o half --backend cpu --threads 1 --quiet --end-time 0.025").exitCode, 0);
   const Outcome rest =

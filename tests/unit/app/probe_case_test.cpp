@@ -1,7 +1,6 @@
 #include "treacle/core/error.hpp"
 #include "treacle/io/case_reader.hpp"
 #include "treacle/io/history.hpp"
-#include "treacle/io/probe_table.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -9,6 +8,7 @@
 
 #include <cmath>
 
+#include "support/probe_table.hpp"
 #include "unit/app/command.hpp"
 #include "unit/app/mistakes.hpp"
 
@@ -166,10 +166,6 @@ TEST(ProbeCase, ProbesAreRead) {
   EXPECT_THAT(balance, HasSubstr(fmt::format(",{},{},{}\n", last(load, "force_x"), last(load, "force_y"),
                                              last(load, "torque"))));
 
-  for (const char* name : {"corner", "profile", "cut", "level", "through", "all", "floor-load"})
-    EXPECT_EQ(shop.call(std::string("plot run --probe ") + name).exitCode, 0) << name;
-  EXPECT_TRUE(std::filesystem::exists(shop / "run/probes/profile.png"));
-  EXPECT_EQ(shop.call("plot run --probe cut --field pressure").exitCode, 0);
   const Outcome unknown = shop.call("plot run --probe levle");
   EXPECT_EQ(unknown.exitCode, 2);
   EXPECT_THAT(unknown.err, HasSubstr("found 'levle'"));
@@ -187,19 +183,6 @@ TEST(ProbeCase, ProbesAreRead) {
   ASSERT_EQ(shop.call("run plain.toml -o run --force --backend cpu --threads 1 --quiet").exitCode, 0);
   EXPECT_FALSE(std::filesystem::exists(shop / "run/probes/corner.csv"));
   EXPECT_THAT(shop.call("plot run --probe corner").err, HasSubstr("the case has no probes"));
-}
-
-TEST(ProbeTable, OthersAreRefused) {
-  Workshop shop;
-  for (const auto& [text, message] : {std::pair{"", ":1: expected the header of a probe"},
-                                      {"step,time\n", ":1: expected the header of a probe"},
-                                      {"time,a\n1,2\n1\n", ":3: expected 2 numbers, found '1'"},
-                                      {"time,a\n1,x\n", ":2: expected 2 numbers"}}) {
-    shop.put("probe.csv", text);
-    EXPECT_THAT(messageOf<InputError>([&] { readProbe(shop / "probe.csv"); }), HasSubstr(message));
-  }
-  shop.put("probe.csv", "time,a\n1,nan\n2,3\n4");
-  EXPECT_EQ(readProbe(shop / "probe.csv").rows(), 2u);
 }
 
 }  // namespace

@@ -53,6 +53,27 @@ TEST_F(PythonCommand, SaysWhatIsMissing) {
   EXPECT_THAT(outcome.err, HasSubstr("pip install '.[pictures]'"));
 }
 
+TEST_F(PythonCommand, DrawsCurves) {
+  const std::string echo = R"(shift 2; printf '%s;' "$@")";
+  ASSERT_EQ(withSmallCase(shop).call("run small.toml -o -run --quiet --threads 1").exitCode, 0);
+  EXPECT_EQ(callWith(echo, "plot --history -- -run").out,
+            "plot;plot;--history;--output=-run/history.png;--;-run;");
+  EXPECT_EQ(callWith(echo, "plot --history -o a.png -- -run").out, "plot;plot;--history;--output=a.png;--;-run;");
+  const Outcome compared = callWith(echo, "convergence small.toml -o here --threads 1 --solver ''");
+  EXPECT_EQ(compared.exitCode, 0) << compared.err;
+  EXPECT_THAT(compared.out,
+              testing::EndsWith("plot;plot;--convergence;--title=Small dam break;--remark=step 1, from "
+                                "t = 0 s;--output=here/convergence.png;--;here;"));
+}
+
+TEST_F(PythonCommand, ComparesSolversWithoutPython) {
+  const Outcome outcome = withSmallCase(shop).call("convergence small.toml -o here --threads 1 --solver ''",
+                                                   "export TREACLE_PYTHON=/no/such/python;");
+  EXPECT_EQ(outcome.exitCode, 0);
+  EXPECT_THAT(outcome.err, StartsWith("treacle: warning: treacle plot is written in Python, and /no/such/python"));
+  EXPECT_THAT(shop.content("here/solvers.csv"), HasSubstr("converged"));
+}
+
 TEST_F(PythonCommand, ImportsWithoutAnyPackage) {
   shop.put("argparse.py", "raise ImportError('of the current directory')");
   const Outcome outcome = callWith("unset PYTHONPATH; exec python3 -S \"$@\"", "import x.data x.grid");

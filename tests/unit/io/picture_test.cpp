@@ -211,7 +211,6 @@ TEST(Picture, BadRequests) {
   o.width = 10;
   EXPECT_NE(messageFor(o).find("width"), std::string::npos);
   EXPECT_THROW(drawFrame(path, Frame{}, Frame{}, options()), InputError);
-  EXPECT_THROW(drawHistory(path, {}), InputError);
   EXPECT_FALSE(fs::exists(path));
 }
 
@@ -223,62 +222,4 @@ TEST(Picture, FullDiskLeavesNoFile) {
     return message.find("File too large") != message.npos;
   }));
   EXPECT_TRUE(fs::is_empty(directory.path()));
-}
-
-TEST(Picture, HistoryCurvesAreThere) {
-  TemporaryDirectory directory;
-  constexpr Rgb purple{0.42, 0.20, 0.52};
-  for (const int count : {1, 2, 200, 100000}) {
-    std::vector<HistoryRow> rows;
-    for (int k = 1; k <= count; ++k) {
-      const double t = 0.2 * k / count;
-      HistoryRow row;
-      row.step = k, row.time = t, row.iterations = 230 + k % 9;
-      row.kineticEnergy = t * (0.2 - t), row.potentialEnergy = 1 - t;
-      row.frontX = 0.02 + t, row.top = 0.02 - 0.01 * t, row.maxSpeed = std::sin(40 * t);
-      rows.push_back(row);
-    }
-    drawHistory(directory / "a.png", rows, "Test");
-    const Png png(directory / "a.png");
-    EXPECT_EQ(png.width(), 1200);
-    if (count >= 200) {
-      // The last panel's curve runs from the left to the right: a pixel of it in every column.
-      int columns = 0;
-      for (int x = 110; x < 1155; ++x)
-        for (int y = png.height() - 250; y < png.height(); ++y) {
-          const auto pixel = png.at(x, y);
-          if (std::abs(pixel[0] - 255 * purple.red) < 40 && std::abs(pixel[1] - 255 * purple.green) < 40 &&
-              std::abs(pixel[2] - 255 * purple.blue) < 40) {
-            ++columns;
-            break;
-          }
-        }
-      EXPECT_GT(columns, 1000) << count;
-    }
-  }
-}
-
-TEST(Picture, HistoriesOfAllNumbersAreDrawn) {
-  TemporaryDirectory directory;
-  const double most = std::numeric_limits<double>::max(), least = std::numeric_limits<double>::denorm_min();
-  const double none = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
-  for (const double a : {most, -most, 1e308, 1e150, least, 1e-310, 1e16, infinity, none, 0.0})
-    for (const double b : {-most, 1e150, least, 3e-320, 1e16 + 4, infinity, -infinity, none, 0.0}) {
-      std::vector<HistoryRow> rows(3);
-      for (std::size_t k = 0; k < 3; ++k) {
-        rows[k].time = static_cast<double>(k);
-        rows[k].kineticEnergy = k % 2 == 0 ? a : b, rows[k].frontX = b, rows[k].top = a, rows[k].maxSpeed = a;
-      }
-      EXPECT_NO_THROW(drawHistory(directory / "a.png", rows));
-    }
-  for (const double end : {least, 1e-310, 1e16, 1e149}) {
-    std::vector<HistoryRow> rows(2);
-    rows[1].time = end;
-    EXPECT_NO_THROW(drawHistory(directory / "a.png", rows));
-    rows[0].time = std::nextafter(end, 0);
-    EXPECT_NO_THROW(drawHistory(directory / "a.png", rows));
-  }
-  std::vector<HistoryRow> rows(2);
-  rows[1].time = infinity;
-  EXPECT_THROW(drawHistory(directory / "a.png", rows), InputError);
 }

@@ -1,7 +1,6 @@
 #include "treacle/io/rows.hpp"
+#include "support/probe_table.hpp"
 #include "support/temporary_directory.hpp"
-
-#include "treacle/io/probe_table.hpp"
 
 #include <gtest/gtest.h>
 
