@@ -85,8 +85,8 @@ def test_both_formats_give_the_same_particles_and_steps(shop):
         done = treacle("run", f"{name}.toml", "-q", "--threads", "1", "--set", "output.precision=double")
         assert done.returncode == 0, done.stderr
         assert len(list(Path(f"{name}-run/frames").glob("fluid_*.vtp"))) == 3
-    # Positions differ by rounding, of which the solves, to 1e-12 of the squares, make 1e-7.
-    compared = treacle("compare", "boid-run", "grid-run", "--bound", "1e-6")
+    # Positions differ by rounding. Solves end at 1e-6 of the residual, so velocities may differ by as much.
+    compared = treacle("compare", "boid-run", "grid-run", "--bound", "1e-5")
     assert compared.returncode == 0, compared.stdout
     # The lattice of a cuboid begins half a spacing inside of it.
     with open("grid-fluid1.csv") as file:
