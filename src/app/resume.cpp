@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <utility>
 
 namespace treacle {
@@ -28,9 +27,9 @@ bool isInside(const Domain& domain, const Vec<D>& x) {
 }
 
 /// The methods take different things out of a state: pressures of one mean nothing to the other.
-void requireMethod(const Case& c, const std::filesystem::path& file, const std::optional<MethodKind>& method) {
-  if (method && *method != c.method.kind)
-    refuse(file, fmt::format("a state of the method '{}', but that of the case is '{}'", nameOf(*method),
+void requireMethod(const Case& c, const std::filesystem::path& file, MethodKind method) {
+  if (method != c.method.kind)
+    refuse(file, fmt::format("a state of the method '{}', but that of the case is '{}'", nameOf(method),
                              nameOf(c.method.kind)));
 }
 
@@ -93,25 +92,10 @@ void requireRigid(const Case& c, const std::filesystem::path& file, const RigidM
   }
 }
 
-/// The body that the case makes each particle of, by id: fluid first, each kind in the order of the file.
-std::vector<std::uint8_t> bodiesById(const MadeParticles& made) {
-  std::vector<std::uint8_t> bodies;
-  for (const auto ofKind : {&BodyCount::fluid, &BodyCount::wall})
-    for (std::size_t b = 0; b < made.ofBodies.size(); ++b)
-      bodies.insert(bodies.end(), made.ofBodies[b].*ofKind, static_cast<std::uint8_t>(b));
-  return bodies;
-}
-
-/// Bodies that an older file does not name are those that the case makes the particles of. Errors: InputError for
-/// a body that the case does not have, or that is of the other kind.
+/// Errors: InputError for a body that the case does not have, or that is of the other kind.
 template <int D>
-void setBodies(const Case& c, const std::filesystem::path& file, const MadeParticles& made, Particles<D>& p) {
-  std::vector<std::uint8_t> byId;
+void requireBodies(const Case& c, const std::filesystem::path& file, const Particles<D>& p) {
   for (std::uint32_t i = 0; i < p.count; ++i) {
-    if (p.body[i] == unknownBody) {
-      if (byId.empty()) byId = bodiesById(made);
-      p.body[i] = byId[p.id[i]];
-    }
     const BodyKind kind = i < p.fluidCount ? BodyKind::Fluid : BodyKind::Wall;
     const auto fits = [&](const Body& body) {
       return kind == BodyKind::Fluid ? body.holdsFluid() : body.kind != BodyKind::Fluid;
@@ -159,7 +143,7 @@ StartState fittingState(const Case& c, const std::filesystem::path& file, const 
     requireFields(c, file, state.particles);
     requireFlow(c, file, state.particles.flow);
     requireRigid(c, file, state.particles.rigid);
-    setBodies(c, file, made, state.particles);
+    requireBodies(c, file, state.particles);
     setWallSurfaces(created, kinds.fluid + made.part.begin(kinds.walls), state.particles);
     return {std::move(state.particles), state.step, state.time};
   });

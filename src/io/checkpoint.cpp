@@ -2,7 +2,6 @@
 
 #include "checkpoint_fields.hpp"
 #include "checksum.hpp"
-#include "posix.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/io/atomic_file.hpp"
 #include "treacle/model/case.hpp"
@@ -26,11 +25,7 @@ namespace treacle {
 namespace {
 
 constexpr std::string_view formatName = "treacle checkpoint";
-constexpr std::int32_t formatVersion = 11;  // 1: without acceleration and jerk; 2: without bodies and modes; 3:
-                                            // without method and checksums; 4: without kept eigenvalue; 5: without
-                                            // memory of the time steps; 6: without shear rates; 7: without
-                                            // temperatures; 8: without fluid that comes and goes; 9:
-                                            // without factors of viscosities
+constexpr std::int32_t formatVersion = 11;  // no other one is read
 
 bool isFinite(double x) { return std::isfinite(x); }
 template <int D, class T>
@@ -205,23 +200,20 @@ void fill(hid_t file, const Particles<D>& particles, std::int64_t step, double t
   forEachNamedField(particles, [&](const FieldInfo& info, const auto& field) { writeField(file, info, field); });
 }
 
-/// Version of the file. Errors: Hdf5Error unless it says that it is a checkpoint of a known version and this
-/// dimension.
-std::int32_t requireFormat(hid_t file, int dimensions) {
+/// Errors: Hdf5Error unless the file says that it is a checkpoint of this format and dimension.
+void requireFormat(hid_t file, int dimensions) {
   if (readText(file, "format") != formatName) throw Hdf5Error("an HDF5 file of another program");
-  const auto version = readAttribute<std::int32_t>(file, "version");
-  if (version < 1 || version > formatVersion)
-    throw Hdf5Error(fmt::format("version {}, expected 1 to {}", version, formatVersion));
+  if (const auto found = readAttribute<std::int32_t>(file, "version"); found != formatVersion)
+    throw Hdf5Error(fmt::format("a checkpoint of format {}, expected format {}", found, formatVersion));
   if (const auto found = readAttribute<std::int32_t>(file, "dimensions"); found != dimensions)
     throw Hdf5Error(fmt::format("{} dimensions, expected {}", found, dimensions));
-  return version;
 }
 
-std::optional<MethodKind> readMethod(hid_t file) {
+MethodKind readMethod(hid_t file) {
   const std::string word = readText(file, "method");
   const auto method = valueNamed<MethodKind>(word);
   if (!method) throw Hdf5Error(fmt::format("its method is '{}', which is none of this version", word));
-  return method;
+  return *method;
 }
 
 /// Errors: Hdf5Error for numbers that no simulation has.
@@ -297,34 +289,24 @@ void chooseWalls(hid_t file, const OpenFlow& flow, Selection& selection) {
 
 /// Errors: Hdf5Error.
 template <int D>
-Checkpoint<D> readContent(const std::filesystem::path& path, bool sealed, ParticlePart part) {
+Checkpoint<D> readContent(const std::filesystem::path& path, ParticlePart part) {
   const Hdf5Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
-  const std::int32_t version = requireFormat(file, D);
+  requireFormat(file, D);
   Checkpoint<D> checkpoint;
   readNumbers(file, checkpoint);
-  if (version >= 4) checkpoint.method = readMethod(file);
-  if (version >= 4 && !sealed) throw Hdf5Error("its checksum is missing");
+  checkpoint.method = readMethod(file);
   Particles<D>& particles = checkpoint.particles;
-  std::uint32_t modes = 0;
-  if (version >= 3) modes = readModeNumbers(file, particles.modes.age);
-  if (version >= 5) particles.modes.pressure = readEigenvalue(file);
-  if (version >= 6) particles.steps = readSteps(file);
-  const auto has = [&](std::int32_t since, const char* name) {
-    return version >= since && readAttribute<std::uint8_t>(file, name) != 0;
-  };
-  particles.has = {has(7, "has_shear_rates"), has(8, "has_temperatures"), has(10, "has_viscosity_factors")};
-  if (version >= 9) particles.flow = readFlow(file), particles.rigid = readRigid(file);
+  const std::uint32_t modes = readModeNumbers(file, particles.modes.age);
+  particles.modes.pressure = readEigenvalue(file);
+  particles.steps = readSteps(file);
+  const auto has = [&](const char* name) { return readAttribute<std::uint8_t>(file, name) != 0; };
+  particles.has = {has("has_shear_rates"), has("has_temperatures"), has("has_viscosity_factors")};
+  particles.flow = readFlow(file), particles.rigid = readRigid(file);
   Selection selection{part, particles.fluidCount, particles.wallCount(), {}};
   checkpoint.fluidOfAll = selection.fluid, checkpoint.wallsOfAll = selection.walls;
   if (!part.isAll()) chooseWalls(file, particles.flow, selection);
   forEachNamedField(particles, std::uint64_t{selection.fluid} * modes,
-                    [&]<class T>(const FieldInfo& info, Buffer<T>& field) {
-                      if (version >= info.since) return readField(file, info, selection, field);
-                      field.resize(selection.count(info));
-                      T older{};
-                      if constexpr (std::is_integral_v<T>) older = static_cast<T>(info.older);
-                      std::fill(field.begin(), field.end(), older);
-                    });
+                    [&](const FieldInfo& info, auto& field) { readField(file, info, selection, field); });
   requireSound(particles);
   if (part.isAll()) requireIds(particles.id, particles.fluidCount, particles.flow);
   particles.fluidCount = part.size(selection.fluid);
@@ -369,16 +351,19 @@ template <int D>
 Checkpoint<D> readCheckpoint(const std::filesystem::path& path, ParticlePart part) {
   const Hdf5Silence silence;
   requireReadable(path);
-  // HDF5 trusts what it reads, and a damaged file can end the program: what has a checksum is looked at before,
-  // what has none, as files of earlier versions, is tried in another process.
-  const std::optional<bool> sealed = checksumHolds(path);
+  // HDF5 trusts what it reads, and a damaged file can end the program: the checksum is looked at before.
+  const std::optional<bool> holds = checksumHolds(path);
   const auto refuse = [&](std::string_view why) {
     return InputError(fmt::format("{}: no usable checkpoint: {}", path.string(), why));
   };
-  if (sealed && !*sealed) throw refuse("damaged, its checksum is another one");
-  if (!sealed && !survives([&] { readContent<D>(path, false, part); })) throw refuse("damaged");
+  if (!holds)
+    throw refuse(
+        fmt::format("its checksum is missing: it is cut off, another program has written it, or its format is "
+                    "older than 4; expected format {}",
+                    formatVersion));
+  if (!*holds) throw refuse("damaged, its checksum is another one");
   try {
-    return readContent<D>(path, sealed.has_value(), part);
+    return readContent<D>(path, part);
   } catch (const Hdf5Error& e) {
     throw refuse(e.what());
   }

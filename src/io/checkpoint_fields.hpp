@@ -25,9 +25,7 @@ enum class Of { All, Fluid, Modes };
 struct FieldInfo {
   const char* name;
   Of of;
-  std::uint64_t count;     // of its values
-  std::int32_t since = 1;  // first version of the format with it
-  std::uint8_t older = 0;  // what whole numbers count as in older files; others are zero
+  std::uint64_t count;  // of its values
 };
 
 /// Calls f(info, field) for every field but the surfaces of the walls, which follow from the case; `modeValues`:
@@ -43,15 +41,15 @@ void forEachNamedField(P& particles, std::uint64_t modeValues, F&& f) {
   f(FieldInfo{"position", Of::All, count}, position), f(FieldInfo{"velocity", Of::All, count}, velocity);
   f(FieldInfo{"pressure", Of::All, count}, pressure);
   f(FieldInfo{"number_density", Of::All, count}, numberDensity);
-  f(FieldInfo{"held_pressure", Of::All, count, 11}, heldPressure);
-  f(FieldInfo{"material", Of::All, count}, material), f(FieldInfo{"body", Of::All, count, 3, unknownBody}, body);
+  f(FieldInfo{"held_pressure", Of::All, count}, heldPressure);
+  f(FieldInfo{"material", Of::All, count}, material), f(FieldInfo{"body", Of::All, count}, body);
   f(FieldInfo{"id", Of::All, count}, id);
-  f(FieldInfo{"acceleration", Of::Fluid, fluidCount, 2}, acceleration);
-  f(FieldInfo{"jerk", Of::Fluid, fluidCount, 2}, jerk);
-  f(FieldInfo{"shear_rate", Of::Fluid, has.shearRates ? fluidCount : 0, 7}, shearRate);
-  f(FieldInfo{"temperature", Of::Fluid, has.temperatures ? fluidCount : 0, 8}, temperature);
-  f(FieldInfo{"viscosity_factor", Of::Fluid, has.viscosityFactors ? fluidCount : 0, 10}, viscosityFactor);
-  f(FieldInfo{"modes", Of::Modes, modeValues, 3}, modes.vectors);
+  f(FieldInfo{"acceleration", Of::Fluid, fluidCount}, acceleration);
+  f(FieldInfo{"jerk", Of::Fluid, fluidCount}, jerk);
+  f(FieldInfo{"shear_rate", Of::Fluid, has.shearRates ? fluidCount : 0}, shearRate);
+  f(FieldInfo{"temperature", Of::Fluid, has.temperatures ? fluidCount : 0}, temperature);
+  f(FieldInfo{"viscosity_factor", Of::Fluid, has.viscosityFactors ? fluidCount : 0}, viscosityFactor);
+  f(FieldInfo{"modes", Of::Modes, modeValues}, modes.vectors);
 }
 
 template <class P, class F>

@@ -2,8 +2,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -60,27 +58,6 @@ std::optional<std::string> readAll(const std::filesystem::path& path, std::size_
   }
   ::close(descriptor);
   return got < 0 ? std::nullopt : std::optional(std::move(text));
-}
-
-bool survives(const std::function<void()>& f) {
-  const pid_t child = ::fork();
-  if (child < 0) return true;
-  if (child == 0) {
-    const rlimit none{0, 0};
-    ::setrlimit(RLIMIT_CORE, &none);
-    const int null = ::open("/dev/null", O_WRONLY);
-    if (null >= 0) ::dup2(null, STDERR_FILENO);
-    try {
-      f();
-    } catch (...) {
-      // It came back.
-    }
-    ::_exit(0);
-  }
-  int status = 0;
-  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
-  return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
 std::string writeFailure(const std::filesystem::path& path, int error) {

@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <string>
 
@@ -18,10 +17,6 @@ bool writeAllAt(int descriptor, std::uint64_t place, const char* data, std::size
 /// What a file, a pipe or a device holds, or its first `most` + 1 bytes where that is more; nothing where it
 /// cannot be read. A pipe that nobody writes to is empty.
 std::optional<std::string> readAll(const std::filesystem::path& path, std::size_t most);
-
-/// Whether f, called in a copy of this process, comes back: false where a signal ends it. True where there can be
-/// no copy. f must not need other threads.
-bool survives(const std::function<void()>& f);
 
 /// "cannot write PATH: REASON" for a value of errno.
 std::string writeFailure(const std::filesystem::path& path, int error);

@@ -1,4 +1,4 @@
-// Checkpoints. The checksum is made anew, or none would be read; files of earlier versions have none.
+// Checkpoints. The checksum is made anew, or none would be read.
 
 #include "treacle/io/checkpoint.hpp"
 #include "checksum.hpp"

@@ -6,7 +6,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 
 namespace treacle {
 
@@ -14,10 +13,10 @@ namespace treacle {
 /// interruption.
 template <int D>
 struct Checkpoint {
-  Particles<D> particles;            // in the order they had, which decides the rounding of later steps
-  std::int64_t step = 0;             // number of steps done
-  double time = 0;                   // [s]
-  std::optional<MethodKind> method;  // that it was computed by; not known of earlier versions
+  Particles<D> particles;  // in the order they had, which decides the rounding of later steps
+  std::int64_t step = 0;   // number of steps done
+  double time = 0;         // [s]
+  MethodKind method = {};  // that it was computed by
   std::uint32_t fluidOfAll = 0, wallsOfAll = 0;  // in the file, of which `particles` may have a part
 };
 
@@ -28,11 +27,10 @@ template <int D>
 void writeCheckpoint(const std::filesystem::path& path, const Particles<D>& particles, std::int64_t step,
                      double time, MethodKind method);
 
-/// Reads a file of writeCheckpoint. Files of earlier versions lack fields: what is not known of the flow's memory
-/// is zero, bodies are unknownBody, the solver has no modes. Errors: InputError with path and reason for a file
-/// that is missing, foreign, truncated, damaged, or of another version or dimension, or whose values are none of a
-/// simulation: not finite, or with ids that are not those of the particles. `part`: of the fluid in the
-/// order of the file, of the walls by their ids; of values only its own are looked at.
+/// Reads a file of writeCheckpoint. Errors: InputError with path and reason for a file that is missing, foreign,
+/// truncated, damaged, or of another format or dimension, or whose values are none of a simulation: not finite, or
+/// with ids that are not those of the particles. `part`: of the fluid in the order of the file, of the walls by
+/// their ids; of values only its own are looked at.
 template <int D>
 Checkpoint<D> readCheckpoint(const std::filesystem::path& path, ParticlePart part = {});
 

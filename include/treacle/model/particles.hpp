@@ -72,9 +72,6 @@ struct ParticleNumbers {
   bool operator==(const ParticleNumbers&) const = default;
 };
 
-/// In place of a body: not known. Case files have fewer bodies than this.
-inline constexpr std::uint8_t unknownBody = 255;
-
 /// The only owner of per-particle fields. Fluid particles come first, [0, fluidCount), then wall particles,
 /// [wallBegin(), count); inside both groups the search keeps them sorted by cell. `id` names a particle for
 /// good: 0 … count-1 in the order of creation, and then in the order in which fluid comes in. Where processes

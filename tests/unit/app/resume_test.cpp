@@ -177,7 +177,7 @@ TEST(resume, refusesWhatDoesNotFit) {
   shop.put("cut.h5", shop.content("whole/checkpoint.h5").substr(0, 4000));
   expectRefused(shop, "none.h5", "none.h5: No such file or directory");
   expectRefused(shop, "text.h5", "text.h5: not a treacle checkpoint: not an HDF5 file");
-  expectRefused(shop, "cut.h5", "cut.h5: no usable checkpoint: truncated file");
+  expectRefused(shop, "cut.h5", "cut.h5: no usable checkpoint: its checksum is missing: it is cut off");
   expectRefused(shop, "whole/checkpoint.h5 --end-time 3e-3",
                 "its time 0.003 s is not before the end of the run, 0.003 s; choose a later one with --end-time");
   expectRefused(shop, "whole/checkpoint.h5 --set time.step=2e-3",

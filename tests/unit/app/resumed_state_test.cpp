@@ -73,19 +73,9 @@ TEST(resumedState, refusesTheStateOfAnotherMethod) {
               HasSubstr("c.h5: a state of the method 'isph', but that of the case is 'mph-i'"));
 }
 
-TEST(resumedState, takesBodiesThatTheFileDoesNotKnowFromTheCase) {
-  Resumed r;
-  std::fill(r.saved.body.begin(), r.saved.body.end(), unknownBody);
-  const StartState state = r.state(1, 1e-3);
-  const Particles<2>& p = state.particles.of<2>();
-  for (std::uint32_t i = 0; i < p.count; ++i) EXPECT_EQ(p.body[i], i < p.fluidCount ? 0 : 1);
-  EXPECT_EQ(p.id[0], p.fluidCount - 1);
-}
-
 /// Of several processes each takes a part, with the surfaces of its walls.
 TEST(resumedState, takesAPart) {
   Resumed r;
-  std::fill(r.saved.body.begin(), r.saved.body.end(), unknownBody);
   const StartState all = r.state(1, 1e-3);
   const Particles<2>& whole = all.particles.of<2>();
   std::vector<std::uint32_t> place(whole.count);
