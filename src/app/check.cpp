@@ -35,41 +35,32 @@ void printMemory(const Case& c, const AnyParticles& particles, std::vector<std::
   if (leastMemory(c) > availableMemory())
     print("# memory: more than {} needed, {} available\n", bytesText(leastMemory(c)),
           bytesText(availableMemory()));
-  const MemoryCounts onCpu = countsFor(c, particles, false);
-  const bool same = storesMatrix(c, BackendKind::Cpu) == storesMatrix(c, BackendKind::Cuda);
-  const MemoryCounts onDevice = same ? onCpu : countsFor(c, particles, true);
-  print("# memory: about {} needed, {} available\n", bytesText(estimatedMemory(c, onCpu, false)),
+  const MemoryCounts counts = countsFor(c, particles);
+  const MemoryEstimate onCpu = estimatedMemory(c, counts, false), onDevice = estimatedMemory(c, counts, true);
+  print("# memory: about {} needed, {} available\n", bytesText(onCpu.host + onCpu.first),
         bytesText(availableMemory()));
   const auto device = deviceFor(BackendChoice::Auto);
-  print("# device memory: about {} needed", bytesText(estimatedDeviceMemory(c, onDevice)));
+  print("# device memory: about {} needed", bytesText(onDevice.device));
   if (device) print(", {} available on {}", bytesText(device->freeMemory), device->name);
-  print("; beside it about {} of the host\n", bytesText(estimatedMemory(c, onDevice, true)));
-  requireMemory(c, device ? onDevice : onCpu, device ? &*device : nullptr);
+  print("; beside it about {} of the host\n", bytesText(onDevice.host + onDevice.first));
+  requireMemory(c, counts, device ? &*device : nullptr);
 } catch (const RunError& error) {
   warnings.push_back(error.what());
 }
 
-/// What processes that share the case need: the fullest ones are counted, others have less. Errors: InputError for
-/// a case that they cannot share.
+/// What processes that share the case need. Errors: InputError for a case that they cannot share.
 void printSharedMemory(const Case& c, const AnyParticles& particles, int processes) {
   requireShareable(c, BackendKind::Cpu);
-  const ParticleNumbers all = particles.numbers();
-  const std::vector<MemoryCounts> fullest = countForProcesses(c, particles, false, processes);
-  const auto largest = [&](auto&& memory) {
-    std::uint64_t most = 0;
-    for (const MemoryCounts& counts : fullest) most = std::max(most, memory(counts));
-    return most;
-  };
-  std::vector<std::uint64_t> each;
-  for (const MemoryCounts& counts : fullest) each.push_back(processMemory(c, counts, false, all));
-  each.resize(static_cast<std::size_t>(processes), *std::ranges::min_element(each));
-  const std::uint64_t gathered = gatheredMemory(c, all);
-  print("# memory of {} processes: up to {} each, the first one {} more; {} of one machine, {} available here\n",
-        processes, bytesText(*std::ranges::max_element(each)), bytesText(gathered),
-        bytesText(memoryOfHost(each, each.size(), gathered)), bytesText(availableMemory()));
-  print("# device memory of {} processes: up to {} each; beside it up to {} of the host\n", processes,
-        bytesText(largest([&](const MemoryCounts& n) { return estimatedDeviceMemory(c, n); })),
-        bytesText(largest([&](const MemoryCounts& n) { return processMemory(c, n, true, all); })));
+  const auto count = static_cast<std::uint64_t>(processes);
+  const MemoryCounts all = countForMemory(c, particles);
+  requireCells(c, all.filledCells, processes);
+  const MemoryEstimate onCpu = estimatedMemory(c, all, false, count),
+                       onDevice = estimatedMemory(c, all, true, count);
+  print("# memory of {} processes: about {} each, the first one {} more; {} of one machine, {} available here\n",
+        processes, bytesText(onCpu.host), bytesText(onCpu.first), bytesText(count * onCpu.host + onCpu.first),
+        bytesText(availableMemory()));
+  print("# device memory of {} processes: about {} each; beside it about {} of the host\n", processes,
+        bytesText(onDevice.device), bytesText(onDevice.host));
 }
 
 void printParticles(const Case& c, ParticleNumbers particles, const std::vector<BodyCount>& ofBodies) {

@@ -11,9 +11,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <functional>
 #include <new>
-#include <numeric>
 
 namespace treacle {
 namespace {
@@ -23,6 +21,10 @@ constexpr std::uint64_t driverBytes = 300 << 20;  // what CUDA takes of the host
 constexpr std::uint64_t pictureBytes = 11 << 20;  // of the program's: what draws one
 constexpr std::uint64_t messageBytes = 9 << 20;   // MPI: its library and what it has for messages
 constexpr std::uint64_t cellBytes = 26;           // at least, of a search cell: ranges, marks, a grid's point
+
+/// An estimate may be so much too large. A device on which memory gives out keeps its state, so what may fit is
+/// tried there.
+constexpr double mostOfDevice = 1.15;
 
 /// What is to be stored, for messages.
 std::string contentText(const ParticleNumbers& particles, std::uint64_t cells) {
@@ -42,16 +44,9 @@ std::uint64_t outputBytes(const Case& c, const ParticleNumbers& particles) {
   return copiesToBeWritten * stateBytes(c, particles) + (c.output.surface ? ofSurface * particles.fluid : 0);
 }
 
-/// Of a particle's place.
-std::uint64_t placeBytes(const Case& c) { return static_cast<std::uint64_t>(c.dimensions) * sizeof(double); }
-
-/// What a sum over processes takes beside the matrix of a grid that stands whole at each of them.
-std::uint64_t sumBytes(const Case& c, const MemoryCounts& n) {
-  const auto bytes = [](const std::vector<MemoryCounts::Grid>& grids, std::uint64_t numbers) {
-    return grids.empty() || grids.front().divided ? 0 : grids.front().entries * numbers * sizeof(double);
-  };
-  const auto d = static_cast<std::uint64_t>(c.dimensions);
-  return std::max(bytes(n.pressureGrids, 1), bytes(n.fluidGrids, c.method.kind == MethodKind::Isph ? 1 : d * d));
+/// Of the places of particles.
+std::uint64_t placeBytes(const Case& c, const ParticleNumbers& n) {
+  return (n.fluid + n.wall) * static_cast<std::uint64_t>(c.dimensions) * sizeof(double);
 }
 
 void require(const std::string& content, std::uint64_t needed) {
@@ -67,70 +62,53 @@ void requireRoomForParticles(const Case& c) {
   const double points = boxPoints(c);
   if (points > static_cast<double>(maxParticles)) return;  // createParticles says so
   const auto count = static_cast<std::uint64_t>(points);
-  require(fmt::format("{} particles", count), count * placeBytes(c));
+  require(fmt::format("{} particles", count), placeBytes(c, {.fluid = count}));
 }
 
 std::uint64_t leastMemory(const Case& c) { return programBytes() + cellBytes * searchCells(c); }
 
-MemoryCounts countsFor(const Case& c, const AnyParticles& particles, bool onDevice) {
-  MemoryCounts known;
-  known.particles = particles.numbers();
-  known.cells = searchCells(c);
-  require(contentText(known.particles, known.cells), leastMemory(c));
-  return countForMemory(c, particles, storesMatrix(c, onDevice ? BackendKind::Cuda : BackendKind::Cpu));
+MemoryCounts countsFor(const Case& c, const AnyParticles& particles) {
+  require(contentText(particles.numbers(), searchCells(c)), leastMemory(c));
+  return countForMemory(c, particles);
 }
 
-MemoryCounts countsFor(const Case& c, const AnyParticles& part, bool onDevice, const Communicator& processes) {
-  together(processes, [&] { require(contentText(part.numbers(), searchCells(c)), leastMemory(c)); });
+MemoryCounts countsFor(const Case& c, const AnyParticles& some, const Communicator& processes) {
+  together(processes, [&] { require(contentText(some.numbers(), searchCells(c)), leastMemory(c)); });
   try {
-    return countForMemory(c, part, storesMatrix(c, onDevice ? BackendKind::Cuda : BackendKind::Cpu), processes);
+    return countForMemory(c, some, &processes);
   } catch (const std::bad_alloc&) {  // the others wait for it
     processes.abort("memory exhausted", static_cast<int>(ExitCode::RunFailed));
   }
 }
 
-std::uint64_t estimatedMemory(const Case& c, const MemoryCounts& n, bool onDevice) {
-  const std::uint64_t output = outputBytes(c, n.particles);
-  if (onDevice) return programBytes() + driverBytes + output + distantWallBytes(c, n);
-  return programBytes() + output + planMemory(c, n, BackendKind::Cpu).peak;
-}
-
-std::uint64_t estimatedDeviceMemory(const Case& c, const MemoryCounts& n) {
-  return planMemory(c, n, BackendKind::Cuda).peak;
-}
-
 /// A process that begins has the places of all, then its part twice while that is given out, which a GPU takes it
 /// from.
-std::uint64_t processMemory(const Case& c, const MemoryCounts& n, bool onDevice, const ParticleNumbers& all) {
-  const std::uint64_t state = stateBytes(c, n.particles);
-  const std::uint64_t begin =
-      std::max((all.fluid + all.wall) * placeBytes(c) + state, 2 * state + cellBytes * n.cells);
-  const std::uint64_t steps =
-      onDevice ? distantWallBytes(c, n) : planMemory(c, n, BackendKind::Cpu).peak + sumBytes(c, n);
-  const bool pieces = writesPieces(c, all, n.sharing.processes);
-  return programBytes() - pictureBytes + messageBytes + (onDevice ? driverBytes : 0) + std::max(begin, steps) +
-         (pieces ? 2 * state : 0);
-}
-
-std::uint64_t gatheredMemory(const Case& c, const ParticleNumbers& all) {
-  return pictureBytes + outputBytes(c, all);
-}
-
-std::uint64_t memoryOfHost(std::vector<std::uint64_t> each, std::uint64_t onHost, std::uint64_t gathered) {
-  std::ranges::sort(each, std::greater{});
-  each.resize(std::min<std::size_t>(each.size(), onHost));
-  return std::accumulate(each.begin(), each.end(), gathered);
+MemoryEstimate estimatedMemory(const Case& c, const MemoryCounts& all, bool onDevice, std::uint64_t processes) {
+  const MemoryCounts n = all.share(c, processes);
+  const std::uint64_t state = stateBytes(c, n.particles), places = placeBytes(c, all.particles),
+                      driver = onDevice ? driverBytes : 0,
+                      simulation = simulationBytes(c, n, onDevice ? BackendKind::Cuda : BackendKind::Cpu),
+                      steps = onDevice ? distantWallBytes(c, n) : simulation;
+  MemoryEstimate estimate{programBytes() + driver + steps, outputBytes(c, all.particles),
+                          onDevice ? simulation : 0};
+  if (processes == 1) return estimate;
+  estimate.host += messageBytes - pictureBytes +
+                   std::max(steps, std::max(places + state, 2 * state + cellBytes * n.cells)) - steps;
+  if (writesPieces(c, all.particles, processes)) estimate.host += 2 * state;
+  estimate.first += pictureBytes;
+  return estimate;
 }
 
 void requireMemory(const Case& c, const AnyParticles& particles, const DeviceInfo* device) {
-  requireMemory(c, countsFor(c, particles, device != nullptr), device);
+  requireMemory(c, countsFor(c, particles), device);
 }
 
-void requireMemory(const Case& c, const MemoryCounts& n, const DeviceInfo* device, const Sharing& sharing) {
-  const bool shared = sharing.processes > 1;
-  const std::string content = contentText(shared ? sharing.all : n.particles, n.cells) +
-                              (shared ? fmt::format(", shared by {} processes,", sharing.processes) : "");
-  require(content, shared ? sharing.hostMemory : estimatedMemory(c, n, device != nullptr));
+void requireMemory(const Case& c, const MemoryCounts& all, const DeviceInfo* device, std::uint64_t processes,
+                   std::uint64_t onHost) {
+  const std::string content = contentText(all.particles, all.cells) +
+                              (processes > 1 ? fmt::format(", shared by {} processes,", processes) : "");
+  const MemoryEstimate needed = estimatedMemory(c, all, device != nullptr, processes);
+  require(content, onHost * needed.host + needed.first);
   if (!device) return;
   if (device->freeMemory == 0)
     throw RunError(fmt::format(
@@ -138,12 +116,11 @@ void requireMemory(const Case& c, const MemoryCounts& n, const DeviceInfo* devic
         "(nvidia-smi shows them); wait for them, choose another device by CUDA_VISIBLE_DEVICES, or take "
         "--backend cpu",
         device->name));
-  const std::uint64_t onDevice = estimatedDeviceMemory(c, n);
-  if (onDevice > device->freeMemory)
+  if (static_cast<double>(needed.device) > mostOfDevice * static_cast<double>(device->freeMemory))
     throw RunError(
         fmt::format("{} need about {} of device memory, {} available on {}; take a lower resolution, a smaller "
                     "domain or --backend cpu",
-                    content, bytesText(onDevice), bytesText(device->freeMemory), device->name));
+                    content, bytesText(needed.device), bytesText(device->freeMemory), device->name));
 }
 
 std::string exhaustedText(const DeviceMemoryNumbers& n) {

@@ -89,12 +89,11 @@ void noteWalls(const Case& c, const AnyParticles& part, const Communicator& proc
 
 /// Errors: those of requireMemory, at all processes.
 void requireMemoryOfAll(const Case& c, const AnyParticles& part, const DeviceInfo* device,
-                        const ParticleNumbers& all, const Communicator& processes) {
-  const MemoryCounts counts = countsFor(c, part, device != nullptr, processes);
-  const std::uint64_t own = processMemory(c, counts, device != nullptr, all);
-  const Sharing sharing{static_cast<std::uint64_t>(processes.size()), all,
-                        memoryOfHost(processes.all(own), processesOnHost(processes), gatheredMemory(c, all))};
-  together(processes, [&] { requireMemory(c, counts, device, sharing); });
+                        const Communicator& processes) {
+  const MemoryCounts all = countsFor(c, part, processes);
+  const std::uint64_t onHost = processesOnHost(processes);
+  together(processes,
+           [&] { requireMemory(c, all, device, static_cast<std::uint64_t>(processes.size()), onHost); });
 }
 
 /// Whether every process has a device: all compute on devices, or none.
@@ -143,7 +142,7 @@ void runCommand(const RunOptions& options, const Communicator& processes) {
     start = options.resume.empty() ? StartState{std::move(made.particles)} : resumedState(c, options.resume, made);
     if (!shared) requireMemory(c, start.particles, device ? &*device : nullptr);
   });
-  if (shared) requireMemoryOfAll(c, start.particles, device ? &*device : nullptr, all, processes);
+  if (shared) requireMemoryOfAll(c, start.particles, device ? &*device : nullptr, processes);
   made = {};
   requireSame(processes, fmt::format("{}\n{} {}", caseText(c), start.step, start.time));
   catchInterrupts();
