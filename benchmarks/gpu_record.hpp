@@ -2,7 +2,7 @@
 
 #include "treacle/core/cuda.hpp"
 #include "treacle/core/phase_clock.hpp"
-#include "treacle/io/case_reader.hpp"
+#include "treacle/io/case/case_reader.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -1,9 +1,9 @@
 #pragma once
 
 #include "gpu_record.hpp"
-#include "treacle/model/create.hpp"
-#include "treacle/model/names.hpp"
-#include "treacle/step/any_simulation.hpp"
+#include "treacle/model/case/names.hpp"
+#include "treacle/model/particles/create.hpp"
+#include "treacle/step/run/any_simulation.hpp"
 
 namespace treacle {
 

@@ -13,8 +13,8 @@
 #include "isph_phases.hpp"
 #include "treacle/core/device.hpp"
 #include "treacle/core/version.hpp"
-#include "treacle/io/checkpoint.hpp"
-#include "treacle/model/create.hpp"
+#include "treacle/io/checkpoint/checkpoint.hpp"
+#include "treacle/model/particles/create.hpp"
 
 #include <CLI/CLI.hpp>
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "gpu_record.hpp"
-#include "treacle/step/solve_stages.hpp"
+#include "treacle/step/method/solve_stages.hpp"
 
 #include <cusparse.h>
 

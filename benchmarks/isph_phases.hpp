@@ -2,7 +2,7 @@
 
 #include "isph_options.hpp"
 #include "solve_record.hpp"
-#include "treacle/step/any_simulation.hpp"
+#include "treacle/step/run/any_simulation.hpp"
 
 namespace treacle {
 

@@ -1,10 +1,10 @@
 #pragma once
 
 #include "isph_matrix.hpp"
-#include "isph_step.hpp"
 #include "isph_traffic.hpp"
+#include "method/isph_step.hpp"
 #include "treacle/core/error.hpp"
-#include "treacle/model/particles_copy.hpp"
+#include "treacle/model/particles/particles_copy.hpp"
 
 #include <span>
 

@@ -3,7 +3,7 @@
 #include "library_blas.hpp"
 #include "library_csr.hpp"
 #include "library_loop.hpp"
-#include "treacle/model/case.hpp"
+#include "treacle/model/case/case.hpp"
 
 #include <functional>
 #include <span>

@@ -1,9 +1,9 @@
 #pragma once
 
 #include "treacle/linear/block_csr.hpp"
-#include "treacle/model/case.hpp"
-#include "treacle/model/particles.hpp"
-#include "treacle/model/particles_copy.hpp"
+#include "treacle/model/case/case.hpp"
+#include "treacle/model/particles/particles.hpp"
+#include "treacle/model/particles/particles_copy.hpp"
 #include "treacle/mph/mph_assembly.hpp"
 #include "treacle/mph/mph_neighbourhood.hpp"
 #include "treacle/mph/mph_particles.hpp"

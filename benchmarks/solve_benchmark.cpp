@@ -11,9 +11,9 @@
 #include "study_state.hpp"
 #include "treacle/core/device.hpp"
 #include "treacle/core/version.hpp"
-#include "treacle/io/checkpoint.hpp"
-#include "treacle/model/create.hpp"
-#include "treacle/step/simulation.hpp"
+#include "treacle/io/checkpoint/checkpoint.hpp"
+#include "treacle/model/particles/create.hpp"
+#include "treacle/step/run/simulation.hpp"
 
 #include <CLI/CLI.hpp>
 

@@ -2,7 +2,7 @@
 
 #include "library_solver.hpp"
 #include "linear_system.hpp"
-#include "mph_solver.hpp"
+#include "method/mph_solver.hpp"
 #include "solve_record.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/mph/mph_operator.hpp"

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "treacle/core/error.hpp"
-#include "treacle/model/particles.hpp"
+#include "treacle/model/particles/particles.hpp"
 
 #include <algorithm>
 #include <cstdint>

@@ -15,7 +15,8 @@ if(CUDAToolkit_VERSION VERSION_GREATER_EQUAL 12.8)
   list(APPEND TREACLE_CUDA_OPTIONS --compress-mode=size)
 endif()
 
-# treacle_room(NAME SOURCES a.cpp ... DEPENDS core ... PRIVATE lib ...): library treacle_NAME, alias treacle::NAME.
+# treacle_room(NAME SOURCES a.cpp ... DEPENDS core ... PRIVATE lib ...): library treacle_NAME, alias treacle::NAME. The
+# headers of a room are in include/NAME, which only rooms that depend on it see.
 function(treacle_room NAME)
   cmake_parse_arguments(ROOM "" "" "SOURCES;DEPENDS;PRIVATE" ${ARGN})
   set(loops ${ROOM_SOURCES})
@@ -28,11 +29,18 @@ function(treacle_room NAME)
   add_library(treacle::${NAME} ALIAS treacle_${NAME})
   set_target_properties(treacle_${NAME} PROPERTIES EXPORT_NAME ${NAME})
   set_property(GLOBAL APPEND PROPERTY TREACLE_ROOMS treacle_${NAME})
+  treacle_headers(${NAME})
   if(loops AND TREACLE_PROCESSORS)
     target_link_libraries(treacle_${NAME} PUBLIC treacle_${NAME}_loops)
   elseif(loops)
     target_sources(treacle_${NAME} PRIVATE $<TARGET_OBJECTS:treacle_${NAME}_loops>)
   endif()
+endfunction()
+
+# Declares the headers of a room, so that the target all_verify_interface_header_sets compiles each of them alone.
+function(treacle_headers NAME)
+  file(GLOB_RECURSE headers CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/include/${NAME}/*.hpp)
+  target_sources(treacle_${NAME} PUBLIC FILE_SET HEADERS BASE_DIRS ${CMAKE_SOURCE_DIR}/include/${NAME} FILES ${headers})
 endfunction()
 
 # The loops of a room, *_cpu.cpp, apart from its other sources. With TREACLE_PROCESSORS they are a library of their own:
@@ -71,8 +79,8 @@ endfunction()
 macro(treacle_library TARGET)
   add_library(${TARGET} ${ARGN})
   set_target_properties(${TARGET} PROPERTIES POSITION_INDEPENDENT_CODE ON DEFINE_SYMBOL "")
-  target_include_directories(${TARGET} PUBLIC
-    $<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_include_directories(${TARGET} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR} PUBLIC
+    $<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}/include/${NAME}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_compile_features(${TARGET} PUBLIC cxx_std_20)
   foreach(dependency IN LISTS ROOM_DEPENDS)
     target_link_libraries(${TARGET} PUBLIC treacle_${dependency})

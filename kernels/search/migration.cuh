@@ -1,7 +1,7 @@
 #pragma once
 
 #include "treacle/core/cuda.hpp"
-#include "treacle/model/particles.hpp"
+#include "treacle/model/particles/particles.hpp"
 #include "treacle/search/cell_sort.hpp"
 
 #include <cstddef>

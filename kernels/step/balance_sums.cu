@@ -1,4 +1,4 @@
-#include "treacle/step/balance_sums.hpp"
+#include "treacle/step/readings/balance_sums.hpp"
 
 #include "core/reduce_many.cuh"
 

@@ -1,4 +1,4 @@
-#include "treacle/step/contacts.hpp"
+#include "treacle/step/bodies/contacts.hpp"
 
 #include "core/launch.hpp"
 #include "core/list_where.cuh"

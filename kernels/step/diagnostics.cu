@@ -1,4 +1,4 @@
-#include "treacle/step/diagnostics.hpp"
+#include "treacle/step/readings/diagnostics.hpp"
 
 #include "core/launch.hpp"
 #include "treacle/core/processes.hpp"

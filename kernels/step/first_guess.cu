@@ -1,4 +1,4 @@
-#include "treacle/step/first_guess.hpp"
+#include "treacle/step/method/first_guess.hpp"
 
 #include "core/launch.hpp"
 

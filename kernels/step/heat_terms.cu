@@ -1,4 +1,4 @@
-#include "treacle/step/heat_terms.hpp"
+#include "treacle/step/method/heat_terms.hpp"
 
 #include "core/launch.hpp"
 #include "core/reduce_many.cuh"

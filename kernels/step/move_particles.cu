@@ -1,4 +1,4 @@
-#include "treacle/step/move_particles.hpp"
+#include "treacle/step/method/move_particles.hpp"
 
 #include "core/launch.hpp"
 

@@ -1,4 +1,4 @@
-#include "treacle/step/outflow.hpp"
+#include "treacle/step/flow/outflow.hpp"
 
 #include "core/launch.hpp"
 

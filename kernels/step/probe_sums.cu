@@ -1,4 +1,4 @@
-#include "treacle/step/probe_sums.hpp"
+#include "treacle/step/readings/probe_sums.hpp"
 
 #include "core/reduce_many.cuh"
 

@@ -1,4 +1,4 @@
-#include "treacle/step/step_change.hpp"
+#include "treacle/step/readings/step_change.hpp"
 
 #include "core/reduce_many.cuh"
 #include "treacle/core/processes.hpp"

@@ -1,8 +1,8 @@
 #include "advice.hpp"
 
 #include "print.hpp"
-#include "treacle/model/checks.hpp"
-#include "treacle/model/flow_scales.hpp"
+#include "treacle/model/case/checks.hpp"
+#include "treacle/model/case/flow_scales.hpp"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "treacle/io/arrangement.hpp"
-#include "treacle/model/case.hpp"
+#include "treacle/io/frames/arrangement.hpp"
+#include "treacle/model/case/case.hpp"
 
 #include <limits>
 #include <string>

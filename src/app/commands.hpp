@@ -1,10 +1,10 @@
 #pragma once
 
 #include "treacle/core/communicator.hpp"
-#include "treacle/io/compare.hpp"
-#include "treacle/io/free_surface.hpp"
-#include "treacle/io/picture.hpp"
-#include "treacle/model/case.hpp"
+#include "treacle/io/compare/compare.hpp"
+#include "treacle/io/picture/picture.hpp"
+#include "treacle/io/surface/free_surface.hpp"
+#include "treacle/model/case/case.hpp"
 
 #include <filesystem>
 #include <optional>

@@ -1,4 +1,4 @@
-#include "treacle/io/compare.hpp"
+#include "treacle/io/compare/compare.hpp"
 #include "commands.hpp"
 #include "compare_files.hpp"
 #include "compare_tables.hpp"

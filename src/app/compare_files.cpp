@@ -3,11 +3,11 @@
 #include "compare_tables.hpp"
 #include "print.hpp"
 #include "treacle/core/error.hpp"
-#include "treacle/io/case_reader.hpp"
-#include "treacle/io/compare_sets.hpp"
-#include "treacle/io/particle_csv.hpp"
-#include "treacle/io/pvtp.hpp"
-#include "treacle/io/run_directory.hpp"
+#include "treacle/io/case/case_reader.hpp"
+#include "treacle/io/compare/compare_sets.hpp"
+#include "treacle/io/files/run_directory.hpp"
+#include "treacle/io/frames/particle_csv.hpp"
+#include "treacle/io/frames/pvtp.hpp"
 
 #include <fmt/format.h>
 

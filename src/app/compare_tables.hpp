@@ -1,7 +1,7 @@
 #pragma once
 
-#include "treacle/io/compare.hpp"
-#include "treacle/io/compare_sets.hpp"
+#include "treacle/io/compare/compare.hpp"
+#include "treacle/io/compare/compare_sets.hpp"
 
 #include <span>
 #include <string>

@@ -1,8 +1,8 @@
 #include "compared_solvers.hpp"
 
 #include "treacle/core/error.hpp"
-#include "treacle/io/case_reader.hpp"
-#include "treacle/model/names.hpp"
+#include "treacle/io/case/case_reader.hpp"
+#include "treacle/model/case/names.hpp"
 
 #include <fmt/format.h>
 

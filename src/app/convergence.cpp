@@ -1,4 +1,4 @@
-#include "treacle/io/convergence.hpp"
+#include "treacle/io/tables/convergence.hpp"
 #include "backend.hpp"
 #include "commands.hpp"
 #include "compared_solvers.hpp"
@@ -11,10 +11,10 @@
 #include "threads.hpp"
 #include "treacle/core/cuda.hpp"
 #include "treacle/core/error.hpp"
-#include "treacle/io/case_reader.hpp"
-#include "treacle/model/checks.hpp"
-#include "treacle/model/create.hpp"
-#include "treacle/step/any_simulation.hpp"
+#include "treacle/io/case/case_reader.hpp"
+#include "treacle/model/case/checks.hpp"
+#include "treacle/model/particles/create.hpp"
+#include "treacle/step/run/any_simulation.hpp"
 
 #include <fmt/format.h>
 #include <omp.h>

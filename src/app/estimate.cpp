@@ -4,7 +4,7 @@
 #include "progress.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/core/timer.hpp"
-#include "treacle/step/any_simulation.hpp"
+#include "treacle/step/run/any_simulation.hpp"
 
 #include <fmt/format.h>
 #include <omp.h>

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "treacle/core/backend.hpp"
-#include "treacle/model/any_particles.hpp"
-#include "treacle/model/case.hpp"
+#include "treacle/model/case/case.hpp"
+#include "treacle/model/particles/any_particles.hpp"
 
 namespace treacle {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "treacle/io/run_directory.hpp"
+#include "treacle/io/files/run_directory.hpp"
 
 #include <cstddef>
 #include <string>

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "treacle/io/history.hpp"
-#include "treacle/model/case.hpp"
-#include "treacle/step/simulation.hpp"
+#include "treacle/io/tables/history.hpp"
+#include "treacle/model/case/case.hpp"
+#include "treacle/step/run/simulation.hpp"
 
 namespace treacle {
 

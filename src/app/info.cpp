@@ -5,7 +5,7 @@
 #include "print.hpp"
 #include "treacle/core/vectors.hpp"
 #include "treacle/core/version.hpp"
-#include "treacle/io/free_surface.hpp"
+#include "treacle/io/surface/free_surface.hpp"
 
 #include <fmt/format.h>
 #include <omp.h>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "treacle/model/case.hpp"
+#include "treacle/model/case/case.hpp"
 
 #include <cmath>
 

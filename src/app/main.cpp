@@ -7,8 +7,8 @@
 #include "treacle/core/cuda.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/core/version.hpp"
-#include "treacle/io/case_reference.hpp"
-#include "treacle/model/names.hpp"
+#include "treacle/io/case/case_reference.hpp"
+#include "treacle/model/case/names.hpp"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>

@@ -5,8 +5,8 @@
 #include "together.hpp"
 #include "treacle/core/backend.hpp"
 #include "treacle/core/error.hpp"
-#include "treacle/io/free_surface.hpp"
-#include "treacle/model/create.hpp"
+#include "treacle/io/surface/free_surface.hpp"
+#include "treacle/model/particles/create.hpp"
 
 #include <fmt/format.h>
 

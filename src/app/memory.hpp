@@ -3,7 +3,7 @@
 #include "treacle/core/communicator.hpp"
 #include "treacle/core/cuda.hpp"
 #include "treacle/core/device.hpp"
-#include "treacle/step/memory_plan.hpp"
+#include "treacle/step/run/memory_plan.hpp"
 
 #include <cstdint>
 #include <string>

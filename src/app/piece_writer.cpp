@@ -2,7 +2,7 @@
 
 #include "treacle/core/error.hpp"
 #include "treacle/core/timer.hpp"
-#include "treacle/io/vtp.hpp"
+#include "treacle/io/frames/vtp.hpp"
 
 #include <fmt/format.h>
 #include <omp.h>

@@ -3,11 +3,11 @@
 #include "output_thread.hpp"
 #include "snapshot.hpp"
 #include "treacle/core/communicator.hpp"
-#include "treacle/io/arrangement.hpp"
-#include "treacle/io/run_directory.hpp"
-#include "treacle/io/summary.hpp"
-#include "treacle/model/case.hpp"
-#include "treacle/step/any_simulation.hpp"
+#include "treacle/io/files/run_directory.hpp"
+#include "treacle/io/frames/arrangement.hpp"
+#include "treacle/io/tables/summary.hpp"
+#include "treacle/model/case/case.hpp"
+#include "treacle/step/run/any_simulation.hpp"
 
 #include <atomic>
 #include <cstddef>

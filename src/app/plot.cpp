@@ -3,11 +3,11 @@
 #include "print.hpp"
 #include "run_log.hpp"
 #include "treacle/core/error.hpp"
-#include "treacle/io/case_reader.hpp"
-#include "treacle/io/picture.hpp"
-#include "treacle/io/pvtp.hpp"
-#include "treacle/io/run_directory.hpp"
-#include "treacle/model/names.hpp"
+#include "treacle/io/case/case_reader.hpp"
+#include "treacle/io/files/run_directory.hpp"
+#include "treacle/io/frames/pvtp.hpp"
+#include "treacle/io/picture/picture.hpp"
+#include "treacle/model/case/names.hpp"
 
 #include <fmt/format.h>
 

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "interval.hpp"
-#include "treacle/io/probe_writer.hpp"
-#include "treacle/step/simulation.hpp"
+#include "treacle/io/tables/probe_writer.hpp"
+#include "treacle/step/run/simulation.hpp"
 
 #include <cstdint>
 #include <deque>

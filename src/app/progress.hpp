@@ -1,7 +1,7 @@
 #pragma once
 
-#include "treacle/model/case.hpp"
-#include "treacle/step/simulation.hpp"
+#include "treacle/model/case/case.hpp"
+#include "treacle/step/run/simulation.hpp"
 
 #include <chrono>
 #include <cstdint>

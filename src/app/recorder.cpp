@@ -3,8 +3,8 @@
 #include "history_row.hpp"
 #include "treacle/core/timer.hpp"
 #include "treacle/core/trace.hpp"
-#include "treacle/io/checkpoint.hpp"
-#include "treacle/io/picture.hpp"
+#include "treacle/io/checkpoint/checkpoint.hpp"
+#include "treacle/io/picture/picture.hpp"
 
 #include <fmt/format.h>
 #include <omp.h>

@@ -6,13 +6,13 @@
 #include "piece_writer.hpp"
 #include "probe_recorder.hpp"
 #include "run_log.hpp"
-#include "treacle/io/balance_writer.hpp"
-#include "treacle/io/history.hpp"
-#include "treacle/io/rigid_writer.hpp"
-#include "treacle/io/run_directory.hpp"
-#include "treacle/io/summary.hpp"
-#include "treacle/model/case.hpp"
-#include "treacle/step/simulation.hpp"
+#include "treacle/io/files/run_directory.hpp"
+#include "treacle/io/tables/balance_writer.hpp"
+#include "treacle/io/tables/history.hpp"
+#include "treacle/io/tables/rigid_writer.hpp"
+#include "treacle/io/tables/summary.hpp"
+#include "treacle/model/case/case.hpp"
+#include "treacle/step/run/simulation.hpp"
 
 #include <cstdint>
 #include <deque>

@@ -1,10 +1,10 @@
 #include "resume.hpp"
 
 #include "treacle/core/error.hpp"
-#include "treacle/io/checkpoint.hpp"
-#include "treacle/model/checks.hpp"
-#include "treacle/model/create.hpp"
-#include "treacle/model/names.hpp"
+#include "treacle/io/checkpoint/checkpoint.hpp"
+#include "treacle/model/case/checks.hpp"
+#include "treacle/model/case/names.hpp"
+#include "treacle/model/particles/create.hpp"
 
 #include <fmt/format.h>
 

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "treacle/model/any_particles.hpp"
-#include "treacle/model/case.hpp"
-#include "treacle/model/create.hpp"
-#include "treacle/model/particle_part.hpp"
+#include "treacle/model/case/case.hpp"
+#include "treacle/model/particles/any_particles.hpp"
+#include "treacle/model/particles/create.hpp"
+#include "treacle/model/particles/particle_part.hpp"
 
 #include <cstdint>
 #include <filesystem>

@@ -6,9 +6,9 @@
 #include "run_summary.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/core/peak_memory.hpp"
-#include "treacle/io/atomic_file.hpp"
-#include "treacle/io/case_reader.hpp"
-#include "treacle/step/solve_stages.hpp"
+#include "treacle/io/case/case_reader.hpp"
+#include "treacle/io/files/atomic_file.hpp"
+#include "treacle/step/method/solve_stages.hpp"
 
 #include <fmt/format.h>
 

@@ -6,9 +6,9 @@
 #include "resume.hpp"
 #include "run_log.hpp"
 #include "treacle/core/timer.hpp"
-#include "treacle/io/run_directory.hpp"
-#include "treacle/io/summary.hpp"
-#include "treacle/step/any_simulation.hpp"
+#include "treacle/io/files/run_directory.hpp"
+#include "treacle/io/tables/summary.hpp"
+#include "treacle/step/run/any_simulation.hpp"
 
 #include <functional>
 #include <optional>

@@ -9,13 +9,13 @@
 #include "threads.hpp"
 #include "together.hpp"
 #include "treacle/core/error.hpp"
-#include "treacle/io/case_reader.hpp"
-#include "treacle/io/free_surface.hpp"
-#include "treacle/io/shape_files.hpp"
-#include "treacle/model/case_error.hpp"
-#include "treacle/model/checks.hpp"
-#include "treacle/model/wall_sight.hpp"
-#include "treacle/step/shareable.hpp"
+#include "treacle/io/case/case_reader.hpp"
+#include "treacle/io/shapes/shape_files.hpp"
+#include "treacle/io/surface/free_surface.hpp"
+#include "treacle/model/case/case_error.hpp"
+#include "treacle/model/case/checks.hpp"
+#include "treacle/model/geometry/wall_sight.hpp"
+#include "treacle/step/run/shareable.hpp"
 
 #include <fmt/format.h>
 

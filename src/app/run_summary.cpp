@@ -1,7 +1,7 @@
 #include "run_summary.hpp"
 
 #include "treacle/core/version.hpp"
-#include "treacle/model/names.hpp"
+#include "treacle/model/case/names.hpp"
 
 #include <omp.h>
 

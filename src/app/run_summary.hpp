@@ -1,8 +1,8 @@
 #pragma once
 
-#include "treacle/io/summary.hpp"
-#include "treacle/model/case.hpp"
-#include "treacle/model/particles.hpp"
+#include "treacle/io/tables/summary.hpp"
+#include "treacle/model/case/case.hpp"
+#include "treacle/model/particles/particles.hpp"
 
 #include <string>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "treacle/model/any_particles.hpp"
+#include "treacle/model/particles/any_particles.hpp"
 
 #include <cstddef>
 #include <cstdint>

@@ -5,10 +5,10 @@
 #include "threads.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/core/timer.hpp"
-#include "treacle/io/case_reader.hpp"
-#include "treacle/io/free_surface.hpp"
-#include "treacle/io/pvtp.hpp"
-#include "treacle/io/run_directory.hpp"
+#include "treacle/io/case/case_reader.hpp"
+#include "treacle/io/files/run_directory.hpp"
+#include "treacle/io/frames/pvtp.hpp"
+#include "treacle/io/surface/free_surface.hpp"
 
 #include <fmt/format.h>
 

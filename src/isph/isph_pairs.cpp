@@ -1,6 +1,6 @@
 #include "treacle/isph/isph_pairs.hpp"
 
-#include "treacle/model/lattice_sum.hpp"
+#include "treacle/model/particles/lattice_sum.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "treacle/model/lattice_sum.hpp"
+#include "treacle/model/particles/lattice_sum.hpp"
 #include "treacle/mph/surface_tension.hpp"
 
 #include <algorithm>

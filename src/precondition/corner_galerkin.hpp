@@ -11,7 +11,7 @@ namespace treacle {
 
 /// The hat of a node at a particle of a cell that has it as a corner.
 template <int D>
-struct CornerHat {
+struct NodeHat {
   std::uint32_t node;
   double value;
   Vec<D> gradient;  // [1/m]
@@ -50,7 +50,7 @@ void cornerGalerkin(Context<Cpu>& context, const SortedParticles<D>& particles, 
         if (!cells.isCorner(other, cell)) return;
         particles.forEachOwnFluid(particles.grid.linear(cell), [&](std::uint32_t i) {
           const Vec<D> place = cells.fraction(particles.position[i], cell);
-          CornerHat<D> p{static_cast<std::uint32_t>(row), 0, {}}, q{a.column[e], 0, {}};
+          NodeHat<D> p{static_cast<std::uint32_t>(row), 0, {}}, q{a.column[e], 0, {}};
           cells.cornerHat(node, cell, place, p.value, p.gradient);
           cells.cornerHat(other, cell, place, q.value, q.gradient);
           sum += term(i, p, q);

@@ -8,7 +8,7 @@ void isphGalerkin(Context<Cpu>& context, const SortedParticles<D>& particles,
                   std::span<const IsphMoments<D>> moments, const HatNodes<D>& nodes, Buffer<T>&, BlockCsr<1>& a) {
   cornerGalerkin<D, 1>(
       context, particles, nodes,
-      [&](std::uint32_t i, const CornerHat<D>& p, const CornerHat<D>& q) {
+      [&](std::uint32_t i, const NodeHat<D>& p, const NodeHat<D>& q) {
         Vec<D, float> gp, gq;
         for (int k = 0; k < D; ++k)
           gp[k] = static_cast<float>(p.gradient[k]), gq[k] = static_cast<float>(q.gradient[k]);

@@ -39,7 +39,7 @@ void viscousGalerkin(Context<Cpu>& context, const MphPairs<D>& pairs, const Wall
   viscousMoments(pairs, moments);
   cornerGalerkin<D, D>(
       context, pairs, nodes,
-      [&](std::uint32_t i, const CornerHat<D>& p, const CornerHat<D>& q) {
+      [&](std::uint32_t i, const NodeHat<D>& p, const NodeHat<D>& q) {
         Block<D> sum = toDouble(moments[i]).between(p.gradient, q.gradient);
         for (int k = 0; k < D * D; ++k) sum.a[k] += p.value * q.value * terms.block[i].a[k];
         return sum;

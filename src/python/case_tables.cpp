@@ -1,6 +1,6 @@
 #include "case_tables.hpp"
 
-#include "treacle/model/case_keys.hpp"
+#include "treacle/model/case/case_keys.hpp"
 
 #include <fmt/format.h>
 

@@ -3,8 +3,8 @@
 #include "memory.hpp"
 #include "treacle/core/cuda.hpp"
 #include "treacle/core/error.hpp"
-#include "treacle/io/case_reader.hpp"
-#include "treacle/model/case_error.hpp"
+#include "treacle/io/case/case_reader.hpp"
+#include "treacle/model/case/case_error.hpp"
 
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/string.h>

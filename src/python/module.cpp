@@ -6,11 +6,11 @@
 #include "treacle/core/device.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/core/version.hpp"
-#include "treacle/io/case_reader.hpp"
-#include "treacle/io/checkpoint.hpp"
-#include "treacle/io/pvtp.hpp"
-#include "treacle/io/vtp.hpp"
-#include "treacle/model/names.hpp"
+#include "treacle/io/case/case_reader.hpp"
+#include "treacle/io/checkpoint/checkpoint.hpp"
+#include "treacle/io/frames/pvtp.hpp"
+#include "treacle/io/frames/vtp.hpp"
+#include "treacle/model/case/names.hpp"
 
 #include <fmt/format.h>
 #include <nanobind/nanobind.h>

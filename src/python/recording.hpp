@@ -4,8 +4,8 @@
 #include "run_log.hpp"
 #include "session.hpp"
 #include "treacle/core/timer.hpp"
-#include "treacle/io/run_directory.hpp"
-#include "treacle/io/summary.hpp"
+#include "treacle/io/files/run_directory.hpp"
+#include "treacle/io/tables/summary.hpp"
 
 #include <filesystem>
 #include <string>

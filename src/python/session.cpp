@@ -6,10 +6,10 @@
 #include "treacle/core/cuda.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/core/timer.hpp"
-#include "treacle/io/arrangement.hpp"
-#include "treacle/io/shape_files.hpp"
-#include "treacle/model/checks.hpp"
-#include "treacle/model/names.hpp"
+#include "treacle/io/frames/arrangement.hpp"
+#include "treacle/io/shapes/shape_files.hpp"
+#include "treacle/model/case/checks.hpp"
+#include "treacle/model/case/names.hpp"
 
 #include <algorithm>
 #include <functional>

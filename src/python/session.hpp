@@ -4,11 +4,11 @@
 #include "history_row.hpp"
 #include "probe_recorder.hpp"
 #include "resume.hpp"
-#include "treacle/io/balance_writer.hpp"
-#include "treacle/io/history.hpp"
-#include "treacle/io/rigid_writer.hpp"
-#include "treacle/model/steering.hpp"
-#include "treacle/step/any_simulation.hpp"
+#include "treacle/io/tables/balance_writer.hpp"
+#include "treacle/io/tables/history.hpp"
+#include "treacle/io/tables/rigid_writer.hpp"
+#include "treacle/model/case/steering.hpp"
+#include "treacle/step/run/any_simulation.hpp"
 
 #include <cstdint>
 #include <deque>

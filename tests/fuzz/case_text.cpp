@@ -1,8 +1,8 @@
 // Text of a case file. One that is taken must come back from what is written of it.
 
 #include "input_file.hpp"
-#include "treacle/io/case_reader.hpp"
-#include "treacle/model/checks.hpp"
+#include "treacle/io/case/case_reader.hpp"
+#include "treacle/model/case/checks.hpp"
 
 using namespace treacle;
 

@@ -1,7 +1,7 @@
 // Checkpoints. The checksum is made anew, or none would be read.
 
-#include "treacle/io/checkpoint.hpp"
-#include "checksum.hpp"
+#include "treacle/io/checkpoint/checkpoint.hpp"
+#include "files/checksum.hpp"
 #include "input_file.hpp"
 
 using namespace treacle;

@@ -1,8 +1,8 @@
 // Particles of other programs, and histories.
 
 #include "input_file.hpp"
-#include "treacle/io/history.hpp"
-#include "treacle/io/particle_csv.hpp"
+#include "treacle/io/frames/particle_csv.hpp"
+#include "treacle/io/tables/history.hpp"
 
 using namespace treacle;
 

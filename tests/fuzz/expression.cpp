@@ -1,6 +1,6 @@
 // Expressions of a case, such as those of `where`.
 
-#include "treacle/model/expression.hpp"
+#include "treacle/model/case/expression.hpp"
 #include "input_file.hpp"
 
 #include <string>

@@ -1,9 +1,9 @@
 // Meshes in each of their formats, and what is done with those that are taken.
 
-#include "treacle/model/mesh.hpp"
+#include "treacle/model/geometry/mesh.hpp"
 #include "input_file.hpp"
-#include "mesh_format.hpp"
-#include "treacle/model/create.hpp"
+#include "shapes/mesh_format.hpp"
+#include "treacle/model/particles/create.hpp"
 
 #include <string>
 #include <vector>

@@ -1,7 +1,7 @@
 // Overrides of a case, one a line.
 
 #include "input_file.hpp"
-#include "treacle/io/case_reader.hpp"
+#include "treacle/io/case/case_reader.hpp"
 
 #include <string>
 #include <vector>

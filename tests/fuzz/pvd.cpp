@@ -1,6 +1,6 @@
 // Indices of frames. Times must ascend.
 
-#include "treacle/io/pvd.hpp"
+#include "treacle/io/frames/pvd.hpp"
 #include "input_file.hpp"
 
 using namespace treacle;

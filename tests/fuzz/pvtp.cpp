@@ -1,8 +1,8 @@
 // Indices of frames in pieces, beside which there are pieces that fit, and one that does not.
 
-#include "treacle/io/pvtp.hpp"
+#include "treacle/io/frames/pvtp.hpp"
 #include "input_file.hpp"
-#include "treacle/io/vtp.hpp"
+#include "treacle/io/frames/vtp.hpp"
 
 #include <cstdio>
 #include <fstream>

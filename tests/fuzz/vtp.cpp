@@ -1,8 +1,8 @@
 // Frames, and pictures of them.
 
-#include "treacle/io/vtp.hpp"
+#include "treacle/io/frames/vtp.hpp"
 #include "input_file.hpp"
-#include "treacle/io/picture.hpp"
+#include "treacle/io/picture/picture.hpp"
 
 using namespace treacle;
 

@@ -2,11 +2,11 @@
 
 #include "mpi/job.hpp"
 #include "treacle/core/error.hpp"
-#include "treacle/io/arrangement.hpp"
-#include "treacle/io/case_reader.hpp"
-#include "treacle/io/frame.hpp"
-#include "treacle/model/create.hpp"
-#include "treacle/step/simulation.hpp"
+#include "treacle/io/case/case_reader.hpp"
+#include "treacle/io/frames/arrangement.hpp"
+#include "treacle/io/frames/frame.hpp"
+#include "treacle/model/particles/create.hpp"
+#include "treacle/step/run/simulation.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,8 +3,8 @@
 #include "mpi/job.hpp"
 #include "support/gpu.hpp"
 #include "treacle/core/device_link.hpp"
-#include "treacle/model/particle_part.hpp"
-#include "treacle/model/particles_copy.hpp"
+#include "treacle/model/particles/particle_part.hpp"
+#include "treacle/model/particles/particles_copy.hpp"
 #include "treacle/search/fluid_change.hpp"
 
 #include <gtest/gtest.h>

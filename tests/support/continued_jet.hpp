@@ -2,7 +2,7 @@
 
 #include "support/isph_cases.hpp"
 #include "support/state_of.hpp"
-#include "treacle/step/simulation.hpp"
+#include "treacle/step/run/simulation.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "treacle/model/particles_copy.hpp"
+#include "treacle/model/particles/particles_copy.hpp"
 
 #include <gtest/gtest.h>
 

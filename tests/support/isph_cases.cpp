@@ -1,7 +1,7 @@
 #include "support/isph_cases.hpp"
 
-#include "treacle/model/create.hpp"
-#include "treacle/model/particles_copy.hpp"
+#include "treacle/model/particles/create.hpp"
+#include "treacle/model/particles/particles_copy.hpp"
 
 #include <gtest/gtest.h>
 #include <unordered_map>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "support/isph_scene.hpp"
-#include "treacle/step/simulation.hpp"
+#include "treacle/step/run/simulation.hpp"
 
 namespace treacle::test {
 

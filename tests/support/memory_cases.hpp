@@ -1,9 +1,9 @@
 #pragma once
 
-#include "treacle/io/case_reader.hpp"
-#include "treacle/model/create.hpp"
-#include "treacle/step/any_simulation.hpp"
-#include "treacle/step/memory_plan.hpp"
+#include "treacle/io/case/case_reader.hpp"
+#include "treacle/model/particles/create.hpp"
+#include "treacle/step/run/any_simulation.hpp"
+#include "treacle/step/run/memory_plan.hpp"
 
 #include <string>
 #include <vector>

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "treacle/model/case_keys.hpp"
-#include "treacle/model/create.hpp"
-#include "treacle/model/particles_copy.hpp"
-#include "treacle/step/simulation.hpp"
+#include "treacle/model/case/case_keys.hpp"
+#include "treacle/model/particles/create.hpp"
+#include "treacle/model/particles/particles_copy.hpp"
+#include "treacle/step/run/simulation.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "treacle/model/case.hpp"
-#include "treacle/model/case_keys.hpp"
+#include "treacle/model/case/case.hpp"
+#include "treacle/model/case/case_keys.hpp"
 
 namespace treacle::test {
 

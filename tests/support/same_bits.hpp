@@ -1,6 +1,6 @@
 #pragma once
 
-#include "treacle/model/particles.hpp"
+#include "treacle/model/particles/particles.hpp"
 
 #include <gtest/gtest.h>
 

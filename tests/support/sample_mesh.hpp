@@ -1,7 +1,7 @@
 #pragma once
 
-#include "treacle/model/mesh.hpp"
-#include "treacle/model/shape.hpp"
+#include "treacle/model/geometry/mesh.hpp"
+#include "treacle/model/geometry/shape.hpp"
 
 #include <cmath>
 #include <cstring>

@@ -1,6 +1,6 @@
 #include "support/scene.hpp"
 
-#include "treacle/model/case_keys.hpp"
+#include "treacle/model/case/case_keys.hpp"
 #include "treacle/mph/renormalisation.hpp"
 #include "treacle/mph/viscosity_scale.hpp"
 #include "treacle/mph/wall_surfaces.hpp"

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "support/dense.hpp"
-#include "treacle/model/case.hpp"
+#include "treacle/model/case/case.hpp"
 #include "treacle/mph/mph_assembly.hpp"
 #include "treacle/mph/mph_neighbourhood.hpp"
 #include "treacle/mph/mph_operator.hpp"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "treacle/step/simulation.hpp"
+#include "treacle/step/run/simulation.hpp"
 
 namespace treacle::test {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "support/scene.hpp"
-#include "treacle/model/create.hpp"
+#include "treacle/model/particles/create.hpp"
 
 #include <cmath>
 #include <string>

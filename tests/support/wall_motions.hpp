@@ -1,7 +1,7 @@
 #pragma once
 
 #include "support/isph_scene.hpp"
-#include "treacle/model/wall_motion.hpp"
+#include "treacle/model/motion/wall_motion.hpp"
 
 #include <vector>
 

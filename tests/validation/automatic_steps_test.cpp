@@ -1,6 +1,6 @@
-#include "treacle/io/case_reader.hpp"
-#include "treacle/model/create.hpp"
-#include "treacle/step/any_simulation.hpp"
+#include "treacle/io/case/case_reader.hpp"
+#include "treacle/model/particles/create.hpp"
+#include "treacle/step/run/any_simulation.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
-#include "treacle/io/case_reader.hpp"
-#include "treacle/model/create.hpp"
-#include "treacle/step/simulation.hpp"
+#include "treacle/io/case/case_reader.hpp"
+#include "treacle/model/particles/create.hpp"
+#include "treacle/step/run/simulation.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // A program outside the project: one time step of a square of fluid that falls freely, through installed headers.
-#include "treacle/model/create.hpp"
-#include "treacle/step/simulation.hpp"
+#include "treacle/model/particles/create.hpp"
+#include "treacle/step/run/simulation.hpp"
 
 #include <cmath>
 #include <cstdio>

@@ -2,7 +2,7 @@
 #include "support/device_faults.hpp"
 #include "support/gpu.hpp"
 #include "treacle/linear/diagonal.hpp"
-#include "treacle/model/case.hpp"
+#include "treacle/model/case/case.hpp"
 
 #include <gtest/gtest.h>
 

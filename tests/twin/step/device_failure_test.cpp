@@ -5,7 +5,7 @@
 #include "support/state_of.hpp"
 #include "support/temporary_directory.hpp"
 #include "treacle/core/error.hpp"
-#include "treacle/io/checkpoint.hpp"
+#include "treacle/io/checkpoint/checkpoint.hpp"
 
 #include <gtest/gtest.h>
 

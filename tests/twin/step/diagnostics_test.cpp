@@ -1,4 +1,4 @@
-#include "treacle/step/diagnostics.hpp"
+#include "treacle/step/readings/diagnostics.hpp"
 #include "support/device_particles.hpp"
 #include "support/gpu.hpp"
 #include "support/random_particles.hpp"

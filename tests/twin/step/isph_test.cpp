@@ -6,8 +6,8 @@
 #include "support/wall_motions.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/core/pseudo_random.hpp"
-#include "treacle/step/diagnostics.hpp"
-#include "treacle/step/wall_motion.hpp"
+#include "treacle/step/readings/diagnostics.hpp"
+#include "treacle/step/walls/wall_motion.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "treacle/step/move_particles.hpp"
+#include "treacle/step/method/move_particles.hpp"
 #include "support/device_particles.hpp"
 #include "support/gpu.hpp"
 #include "support/random_particles.hpp"

@@ -2,8 +2,8 @@
 #include "support/isph_cases.hpp"
 #include "support/open_cases.hpp"
 #include "support/state_of.hpp"
-#include "treacle/step/outflow.hpp"
-#include "treacle/step/simulation.hpp"
+#include "treacle/step/flow/outflow.hpp"
+#include "treacle/step/run/simulation.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
-#include "treacle/step/probe_sums.hpp"
+#include "treacle/step/readings/probe_sums.hpp"
 
 #include "support/gpu.hpp"
 #include "support/isph_cases.hpp"
 #include "support/isph_scene.hpp"
 #include "support/open_cases.hpp"
 #include "support/state_of.hpp"
-#include "treacle/step/simulation.hpp"
+#include "treacle/step/run/simulation.hpp"
 
 #include <gtest/gtest.h>
 

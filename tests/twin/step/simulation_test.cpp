@@ -1,4 +1,4 @@
-#include "treacle/step/simulation.hpp"
+#include "treacle/step/run/simulation.hpp"
 #include "support/gpu.hpp"
 #include "support/isph_cases.hpp"
 #include "support/layer_with_gap.hpp"
@@ -7,7 +7,7 @@
 #include "support/stretched_body.hpp"
 #include "support/torn_cluster.hpp"
 #include "treacle/core/error.hpp"
-#include "treacle/model/case_keys.hpp"
+#include "treacle/model/case/case_keys.hpp"
 
 #include <gtest/gtest.h>
 

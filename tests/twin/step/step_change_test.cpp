@@ -1,4 +1,4 @@
-#include "treacle/step/step_change.hpp"
+#include "treacle/step/readings/step_change.hpp"
 #include "support/device_particles.hpp"
 #include "support/gpu.hpp"
 #include "support/random_particles.hpp"

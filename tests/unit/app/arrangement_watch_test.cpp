@@ -1,9 +1,9 @@
 #include "arrangement_watch.hpp"
 
 #include "command.hpp"
-#include "treacle/io/run_directory.hpp"
-#include "treacle/io/vtp.hpp"
-#include "treacle/model/case_keys.hpp"
+#include "treacle/io/files/run_directory.hpp"
+#include "treacle/io/frames/vtp.hpp"
+#include "treacle/model/case/case_keys.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -2,9 +2,9 @@
 #include <gtest/gtest.h>
 
 #include "command.hpp"
-#include "treacle/io/history.hpp"
-#include "treacle/io/run_directory.hpp"
-#include "treacle/io/vtp.hpp"
+#include "treacle/io/files/run_directory.hpp"
+#include "treacle/io/frames/vtp.hpp"
+#include "treacle/io/tables/history.hpp"
 
 namespace treacle::test {
 namespace {

@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "command.hpp"
-#include "treacle/io/history.hpp"
+#include "treacle/io/tables/history.hpp"
 
 namespace treacle::test {
 namespace {

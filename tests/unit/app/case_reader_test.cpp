@@ -1,7 +1,7 @@
-#include "treacle/io/case_reader.hpp"
+#include "treacle/io/case/case_reader.hpp"
 
 #include "treacle/core/error.hpp"
-#include "treacle/model/case_keys.hpp"
+#include "treacle/model/case/case_keys.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,11 +7,11 @@
 #include <cmath>
 
 #include "command.hpp"
-#include "treacle/io/case_reader.hpp"
-#include "treacle/io/checkpoint.hpp"
-#include "treacle/io/history.hpp"
-#include "treacle/io/run_directory.hpp"
-#include "treacle/io/vtp.hpp"
+#include "treacle/io/case/case_reader.hpp"
+#include "treacle/io/checkpoint/checkpoint.hpp"
+#include "treacle/io/files/run_directory.hpp"
+#include "treacle/io/frames/vtp.hpp"
+#include "treacle/io/tables/history.hpp"
 
 namespace treacle::test {
 namespace {

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "command.hpp"
-#include "treacle/io/run_directory.hpp"
-#include "treacle/io/vtp.hpp"
+#include "treacle/io/files/run_directory.hpp"
+#include "treacle/io/frames/vtp.hpp"
 
 namespace treacle::test {
 namespace {

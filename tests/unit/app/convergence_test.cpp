@@ -9,9 +9,9 @@
 
 #include "command.hpp"
 #include "treacle/core/timer.hpp"
-#include "treacle/io/case_reader.hpp"
-#include "treacle/model/create.hpp"
-#include "treacle/step/simulation.hpp"
+#include "treacle/io/case/case_reader.hpp"
+#include "treacle/model/particles/create.hpp"
+#include "treacle/step/run/simulation.hpp"
 
 namespace treacle::test {
 namespace {

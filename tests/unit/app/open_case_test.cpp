@@ -1,8 +1,8 @@
 #include "treacle/core/error.hpp"
-#include "treacle/io/case_reader.hpp"
-#include "treacle/io/history.hpp"
-#include "treacle/model/checks.hpp"
-#include "treacle/model/create.hpp"
+#include "treacle/io/case/case_reader.hpp"
+#include "treacle/io/tables/history.hpp"
+#include "treacle/model/case/checks.hpp"
+#include "treacle/model/particles/create.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 #include "treacle/core/error.hpp"
-#include "treacle/io/case_reader.hpp"
-#include "treacle/io/history.hpp"
+#include "treacle/io/case/case_reader.hpp"
+#include "treacle/io/tables/history.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

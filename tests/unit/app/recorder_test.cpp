@@ -1,11 +1,11 @@
 #include "recorder.hpp"
 
 #include "treacle/core/error.hpp"
-#include "treacle/io/case_reader.hpp"
-#include "treacle/io/checkpoint.hpp"
-#include "treacle/io/pvtp.hpp"
-#include "treacle/io/vtp.hpp"
-#include "treacle/model/create.hpp"
+#include "treacle/io/case/case_reader.hpp"
+#include "treacle/io/checkpoint/checkpoint.hpp"
+#include "treacle/io/frames/pvtp.hpp"
+#include "treacle/io/frames/vtp.hpp"
+#include "treacle/model/particles/create.hpp"
 
 #include <gtest/gtest.h>
 

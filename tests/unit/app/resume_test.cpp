@@ -6,9 +6,9 @@
 #include <type_traits>
 
 #include "command.hpp"
-#include "treacle/io/checkpoint.hpp"
-#include "treacle/io/history.hpp"
-#include "treacle/io/run_directory.hpp"
+#include "treacle/io/checkpoint/checkpoint.hpp"
+#include "treacle/io/files/run_directory.hpp"
+#include "treacle/io/tables/history.hpp"
 
 namespace treacle::test {
 namespace {

@@ -2,9 +2,9 @@
 
 #include "support/temporary_directory.hpp"
 #include "treacle/core/error.hpp"
-#include "treacle/io/case_reader.hpp"
-#include "treacle/io/checkpoint.hpp"
-#include "treacle/model/create.hpp"
+#include "treacle/io/case/case_reader.hpp"
+#include "treacle/io/checkpoint/checkpoint.hpp"
+#include "treacle/model/particles/create.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

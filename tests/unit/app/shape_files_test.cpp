@@ -4,8 +4,8 @@
 #include "command.hpp"
 #include "support/sample_mesh.hpp"
 #include "treacle/core/error.hpp"
-#include "treacle/io/case_reader.hpp"
-#include "treacle/model/create.hpp"
+#include "treacle/io/case/case_reader.hpp"
+#include "treacle/model/particles/create.hpp"
 
 namespace treacle::test {
 namespace {

@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "command.hpp"
-#include "treacle/io/history.hpp"
+#include "treacle/io/tables/history.hpp"
 
 namespace treacle::test {
 namespace {

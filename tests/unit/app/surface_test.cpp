@@ -1,8 +1,8 @@
 #include "command.hpp"
-#include "treacle/io/case_reader.hpp"
-#include "treacle/io/free_surface.hpp"
-#include "treacle/io/pvd.hpp"
-#include "treacle/io/run_directory.hpp"
+#include "treacle/io/case/case_reader.hpp"
+#include "treacle/io/files/run_directory.hpp"
+#include "treacle/io/frames/pvd.hpp"
+#include "treacle/io/surface/free_surface.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "command.hpp"
-#include "treacle/io/checkpoint.hpp"
+#include "treacle/io/checkpoint/checkpoint.hpp"
 
 namespace treacle::test {
 namespace {

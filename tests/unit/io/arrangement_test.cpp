@@ -1,4 +1,4 @@
-#include "treacle/io/arrangement.hpp"
+#include "treacle/io/frames/arrangement.hpp"
 
 #include <gtest/gtest.h>
 

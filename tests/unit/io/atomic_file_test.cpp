@@ -1,4 +1,4 @@
-#include "treacle/io/atomic_file.hpp"
+#include "treacle/io/files/atomic_file.hpp"
 
 #include "limited_files.hpp"
 #include "support/temporary_directory.hpp"

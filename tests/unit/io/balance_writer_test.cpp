@@ -1,4 +1,4 @@
-#include "treacle/io/balance_writer.hpp"
+#include "treacle/io/tables/balance_writer.hpp"
 
 #include "limited_files.hpp"
 #include "support/temporary_directory.hpp"

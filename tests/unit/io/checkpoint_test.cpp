@@ -1,10 +1,10 @@
-#include "treacle/io/checkpoint.hpp"
+#include "treacle/io/checkpoint/checkpoint.hpp"
 
-#include "checksum.hpp"
+#include "files/checksum.hpp"
 #include "limited_files.hpp"
 #include "support/temporary_directory.hpp"
 #include "treacle/core/error.hpp"
-#include "treacle/io/atomic_file.hpp"
+#include "treacle/io/files/atomic_file.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

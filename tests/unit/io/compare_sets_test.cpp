@@ -1,4 +1,4 @@
-#include "treacle/io/compare_sets.hpp"
+#include "treacle/io/compare/compare_sets.hpp"
 
 #include "sample_frame.hpp"
 #include "support/temporary_directory.hpp"

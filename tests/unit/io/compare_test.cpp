@@ -1,10 +1,10 @@
-#include "treacle/io/compare.hpp"
+#include "treacle/io/compare/compare.hpp"
 
 #include "sample_frame.hpp"
 #include "support/temporary_directory.hpp"
 #include "treacle/core/error.hpp"
-#include "treacle/io/atomic_file.hpp"
-#include "treacle/io/case_reader.hpp"
+#include "treacle/io/case/case_reader.hpp"
+#include "treacle/io/files/atomic_file.hpp"
 
 #include <algorithm>
 #include <cmath>

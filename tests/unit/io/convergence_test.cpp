@@ -1,4 +1,4 @@
-#include "treacle/io/convergence.hpp"
+#include "treacle/io/tables/convergence.hpp"
 
 #include "support/temporary_directory.hpp"
 

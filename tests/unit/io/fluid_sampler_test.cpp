@@ -1,6 +1,6 @@
-#include "fluid_sampler.hpp"
+#include "compare/fluid_sampler.hpp"
 
-#include "treacle/model/probe.hpp"
+#include "treacle/model/case/probe.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "treacle/io/frame.hpp"
+#include "treacle/io/frames/frame.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
-#include "treacle/io/free_surface.hpp"
+#include "treacle/io/surface/free_surface.hpp"
 
 #include "limited_files.hpp"
-#include "mesh_format.hpp"
+#include "shapes/mesh_format.hpp"
 #include "support/temporary_directory.hpp"
 #include "treacle/core/error.hpp"
-#include "treacle/io/run_directory.hpp"
-#include "treacle/io/vtp.hpp"
+#include "treacle/io/files/run_directory.hpp"
+#include "treacle/io/frames/vtp.hpp"
 
 #include <gtest/gtest.h>
 #include <omp.h>

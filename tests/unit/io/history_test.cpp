@@ -1,4 +1,4 @@
-#include "treacle/io/history.hpp"
+#include "treacle/io/tables/history.hpp"
 
 #include "limited_files.hpp"
 #include "support/temporary_directory.hpp"

@@ -1,5 +1,5 @@
-#include "key_catalogue.hpp"
-#include "treacle/io/case_reference.hpp"
+#include "case/key_catalogue.hpp"
+#include "treacle/io/case/case_reference.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 #include "treacle/core/error.hpp"
-#include "treacle/io/shape_files.hpp"
+#include "treacle/io/shapes/shape_files.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

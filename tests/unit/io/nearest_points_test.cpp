@@ -1,4 +1,4 @@
-#include "nearest_points.hpp"
+#include "compare/nearest_points.hpp"
 
 #include <gtest/gtest.h>
 

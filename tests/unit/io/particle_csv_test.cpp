@@ -1,4 +1,4 @@
-#include "treacle/io/particle_csv.hpp"
+#include "treacle/io/frames/particle_csv.hpp"
 
 #include "support/temporary_directory.hpp"
 #include "treacle/core/error.hpp"

@@ -1,7 +1,7 @@
-#include "treacle/io/picture.hpp"
+#include "treacle/io/picture/picture.hpp"
 
-#include "color_map.hpp"
 #include "limited_files.hpp"
+#include "picture/color_map.hpp"
 #include "support/temporary_directory.hpp"
 #include "treacle/core/error.hpp"
 

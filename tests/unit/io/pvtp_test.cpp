@@ -1,10 +1,10 @@
-#include "treacle/io/pvtp.hpp"
+#include "treacle/io/frames/pvtp.hpp"
 
 #include "limited_files.hpp"
 #include "sample_frame.hpp"
 #include "support/temporary_directory.hpp"
 #include "treacle/core/error.hpp"
-#include "treacle/io/vtp.hpp"
+#include "treacle/io/frames/vtp.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "treacle/io/rows.hpp"
+#include "treacle/io/files/rows.hpp"
 #include "support/probe_table.hpp"
 #include "support/temporary_directory.hpp"
 

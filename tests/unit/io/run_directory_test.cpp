@@ -1,11 +1,11 @@
-#include "treacle/io/run_directory.hpp"
+#include "treacle/io/files/run_directory.hpp"
 
 #include "sample_frame.hpp"
 #include "support/temporary_directory.hpp"
 #include "treacle/core/error.hpp"
-#include "treacle/io/history.hpp"
-#include "treacle/io/pvtp.hpp"
-#include "treacle/io/vtp.hpp"
+#include "treacle/io/frames/pvtp.hpp"
+#include "treacle/io/frames/vtp.hpp"
+#include "treacle/io/tables/history.hpp"
 
 #include <unistd.h>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "treacle/io/frame.hpp"
+#include "treacle/io/frames/frame.hpp"
 
 #include <random>
 

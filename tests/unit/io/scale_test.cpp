@@ -1,6 +1,6 @@
-#include "scale.hpp"
+#include "picture/scale.hpp"
 
-#include "color_map.hpp"
+#include "picture/color_map.hpp"
 
 #include <gtest/gtest.h>
 

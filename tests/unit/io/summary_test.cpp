@@ -1,4 +1,4 @@
-#include "treacle/io/summary.hpp"
+#include "treacle/io/tables/summary.hpp"
 
 #include "support/temporary_directory.hpp"
 

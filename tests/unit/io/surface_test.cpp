@@ -1,4 +1,4 @@
-#include "surface.hpp"
+#include "surface/surface.hpp"
 
 #include <gtest/gtest.h>
 

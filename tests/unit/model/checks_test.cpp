@@ -1,5 +1,5 @@
-#include "treacle/model/checks.hpp"
-#include "treacle/model/case_keys.hpp"
+#include "treacle/model/case/checks.hpp"
+#include "treacle/model/case/case_keys.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

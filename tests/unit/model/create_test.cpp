@@ -1,4 +1,4 @@
-#include "treacle/model/create.hpp"
+#include "treacle/model/particles/create.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

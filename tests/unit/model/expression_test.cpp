@@ -1,4 +1,4 @@
-#include "treacle/model/expression.hpp"
+#include "treacle/model/case/expression.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "treacle/model/flow_scales.hpp"
+#include "treacle/model/case/flow_scales.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
-#include "treacle/model/mesh.hpp"
+#include "treacle/model/geometry/mesh.hpp"
 #include "treacle/core/error.hpp"
-#include "treacle/model/create.hpp"
+#include "treacle/model/particles/create.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "treacle/model/nozzle.hpp"
+#include "treacle/model/motion/nozzle.hpp"
 
 #include "treacle/core/error.hpp"
 

@@ -1,4 +1,4 @@
-#include "treacle/model/rheology.hpp"
+#include "treacle/model/materials/rheology.hpp"
 
 #include <gtest/gtest.h>
 

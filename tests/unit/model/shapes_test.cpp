@@ -1,8 +1,8 @@
 #include "treacle/core/error.hpp"
-#include "treacle/model/create.hpp"
-#include "treacle/model/shape.hpp"
-#include "treacle/model/wall_surface.hpp"
-#include "treacle/model/width.hpp"
+#include "treacle/model/case/width.hpp"
+#include "treacle/model/geometry/shape.hpp"
+#include "treacle/model/geometry/wall_surface.hpp"
+#include "treacle/model/particles/create.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "treacle/model/smoothing_kernel.hpp"
+#include "treacle/model/particles/smoothing_kernel.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
-#include "treacle/model/steering.hpp"
+#include "treacle/model/case/steering.hpp"
 
 #include "treacle/core/error.hpp"
-#include "treacle/model/nozzle.hpp"
-#include "treacle/model/wall_motion.hpp"
+#include "treacle/model/motion/nozzle.hpp"
+#include "treacle/model/motion/wall_motion.hpp"
 
 #include <gtest/gtest.h>
 

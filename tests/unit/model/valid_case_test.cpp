@@ -1,7 +1,7 @@
-#include "treacle/io/case_reader.hpp"
-#include "treacle/model/case_error.hpp"
-#include "treacle/model/case_keys.hpp"
-#include "treacle/model/checks.hpp"
+#include "treacle/io/case/case_reader.hpp"
+#include "treacle/model/case/case_error.hpp"
+#include "treacle/model/case/case_keys.hpp"
+#include "treacle/model/case/checks.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-#include "treacle/model/viscosity_shift.hpp"
-#include "treacle/model/rheology.hpp"
+#include "treacle/model/materials/viscosity_shift.hpp"
+#include "treacle/model/materials/rheology.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-#include "treacle/model/wall_surface.hpp"
-#include "treacle/model/wall_sight.hpp"
+#include "treacle/model/geometry/wall_surface.hpp"
+#include "treacle/model/geometry/wall_sight.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 #include <random>
 
 #include "sample_case.hpp"
-#include "treacle/model/create.hpp"
+#include "treacle/model/particles/create.hpp"
 
 namespace treacle::test {
 namespace {

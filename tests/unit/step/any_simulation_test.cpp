@@ -1,9 +1,9 @@
-#include "treacle/step/any_simulation.hpp"
+#include "treacle/step/run/any_simulation.hpp"
 #include "support/state_of.hpp"
 
 #include "treacle/core/error.hpp"
-#include "treacle/model/case_error.hpp"
-#include "treacle/model/create.hpp"
+#include "treacle/model/case/case_error.hpp"
+#include "treacle/model/particles/create.hpp"
 
 #include <gtest/gtest.h>
 

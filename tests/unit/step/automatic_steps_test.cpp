@@ -1,7 +1,7 @@
 #include "support/scene.hpp"
 #include "support/state_of.hpp"
 #include "treacle/core/error.hpp"
-#include "treacle/step/simulation.hpp"
+#include "treacle/step/run/simulation.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

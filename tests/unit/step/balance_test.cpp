@@ -3,7 +3,7 @@
 #include "support/state_of.hpp"
 #include "support/tolerances.hpp"
 #include "treacle/core/parallel.hpp"
-#include "treacle/model/lattice_sum.hpp"
+#include "treacle/model/particles/lattice_sum.hpp"
 #include "treacle/mph/cover.hpp"
 
 #include <gtest/gtest.h>

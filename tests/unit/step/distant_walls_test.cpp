@@ -1,4 +1,4 @@
-#include "treacle/step/distant_walls.hpp"
+#include "treacle/step/walls/distant_walls.hpp"
 
 #include "support/passing_body.hpp"
 #include "support/random_particles.hpp"

@@ -1,7 +1,7 @@
-#include "treacle/step/first_guess.hpp"
+#include "treacle/step/method/first_guess.hpp"
 
 #include "support/scene.hpp"
-#include "treacle/step/simulation.hpp"
+#include "treacle/step/run/simulation.hpp"
 
 #include <gtest/gtest.h>
 

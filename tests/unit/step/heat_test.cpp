@@ -2,8 +2,8 @@
 #include "support/same_bits.hpp"
 #include "support/state_of.hpp"
 #include "treacle/core/error.hpp"
-#include "treacle/io/case_reader.hpp"
-#include "treacle/model/create.hpp"
+#include "treacle/io/case/case_reader.hpp"
+#include "treacle/model/particles/create.hpp"
 #include "treacle/mph/particle_viscosity.hpp"
 
 #include <gmock/gmock.h>

@@ -1,6 +1,6 @@
 #include "support/scene.hpp"
 #include "support/state_of.hpp"
-#include "treacle/step/simulation.hpp"
+#include "treacle/step/run/simulation.hpp"
 
 #include <gtest/gtest.h>
 #include <omp.h>

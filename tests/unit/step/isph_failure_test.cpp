@@ -1,7 +1,7 @@
 #include "support/isph_cases.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/core/pseudo_random.hpp"
-#include "treacle/step/solve_stages.hpp"
+#include "treacle/step/method/solve_stages.hpp"
 
 #include <gtest/gtest.h>
 

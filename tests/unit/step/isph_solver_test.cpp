@@ -1,10 +1,10 @@
-#include "isph_solver.hpp"
+#include "method/isph_solver.hpp"
 
 #include "support/isph_cases.hpp"
 #include "support/matrices.hpp"
 #include "support/pressure_column.hpp"
 #include "treacle/core/pseudo_random.hpp"
-#include "treacle/step/solve_stages.hpp"
+#include "treacle/step/method/solve_stages.hpp"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 #include "support/isph_oracle.hpp"
 #include "support/state_of.hpp"
 #include "treacle/core/pseudo_random.hpp"
-#include "treacle/step/solve_stages.hpp"
+#include "treacle/step/method/solve_stages.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,9 +4,9 @@
 #include "support/same_bits.hpp"
 #include "support/scene.hpp"
 #include "support/state_of.hpp"
-#include "treacle/model/case_keys.hpp"
+#include "treacle/model/case/case_keys.hpp"
 #include "treacle/mph/tension.hpp"
-#include "treacle/step/simulation.hpp"
+#include "treacle/step/run/simulation.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "treacle/step/memory_plan.hpp"
+#include "treacle/step/run/memory_plan.hpp"
 
 #include "support/memory_cases.hpp"
 #include "treacle/core/buffer.hpp"

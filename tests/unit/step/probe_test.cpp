@@ -1,6 +1,6 @@
 #include "treacle/search/near_places.hpp"
-#include "treacle/step/any_simulation.hpp"
-#include "treacle/step/probe_sums.hpp"
+#include "treacle/step/readings/probe_sums.hpp"
+#include "treacle/step/run/any_simulation.hpp"
 
 #include <gtest/gtest.h>
 

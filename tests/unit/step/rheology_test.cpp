@@ -1,8 +1,8 @@
 #include "support/loaded_walls.hpp"
 #include "support/same_bits.hpp"
 #include "support/state_of.hpp"
-#include "treacle/io/case_reader.hpp"
-#include "treacle/model/create.hpp"
+#include "treacle/io/case/case_reader.hpp"
+#include "treacle/model/particles/create.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
-#include "moving_bodies.hpp"
-#include "rigid_mass.hpp"
+#include "bodies/moving_bodies.hpp"
+#include "bodies/rigid_mass.hpp"
 
 #include "support/isph_cases.hpp"
 #include "support/rigid_cases.hpp"
 #include "support/state_of.hpp"
-#include "treacle/step/simulation.hpp"
+#include "treacle/step/run/simulation.hpp"
 
 #include <gtest/gtest.h>
 

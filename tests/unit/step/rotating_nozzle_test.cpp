@@ -2,9 +2,9 @@
 #include "support/isph_cases.hpp"
 #include "support/open_cases.hpp"
 #include "support/state_of.hpp"
-#include "treacle/model/create.hpp"
-#include "treacle/model/nozzle.hpp"
-#include "treacle/step/simulation.hpp"
+#include "treacle/model/motion/nozzle.hpp"
+#include "treacle/model/particles/create.hpp"
+#include "treacle/step/run/simulation.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "treacle/step/simulation.hpp"
+#include "treacle/step/run/simulation.hpp"
 
 #include "support/oracle.hpp"
 

@@ -1,8 +1,8 @@
-#include "treacle/step/solve_stages.hpp"
+#include "treacle/step/method/solve_stages.hpp"
 
-#include "mph_solver.hpp"
+#include "method/mph_solver.hpp"
 #include "support/oracle.hpp"
-#include "treacle/step/simulation.hpp"
+#include "treacle/step/run/simulation.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
-#include "treacle/step/step_control.hpp"
+#include "treacle/step/run/step_control.hpp"
 
-#include "treacle/model/case.hpp"
+#include "treacle/model/case/case.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 #include "support/torn_cluster.hpp"
-#include "treacle/step/simulation.hpp"
+#include "treacle/step/run/simulation.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "treacle/step/wall_motion.hpp"
+#include "treacle/step/walls/wall_motion.hpp"
 #include "treacle/core/pseudo_random.hpp"
 
 #include "support/isph_cases.hpp"

@@ -1,7 +1,7 @@
 #include "support/isph_cases.hpp"
 #include "support/state_of.hpp"
 #include "treacle/core/pseudo_random.hpp"
-#include "treacle/model/wall_motion.hpp"
+#include "treacle/model/motion/wall_motion.hpp"
 
 #include <gtest/gtest.h>
 #include <omp.h>

@@ -1,10 +1,10 @@
-#include "treacle/step/watch.hpp"
+#include "treacle/step/run/watch.hpp"
 #include "support/isph_cases.hpp"
 #include "support/scene.hpp"
 #include "treacle/core/error.hpp"
-#include "treacle/model/case_keys.hpp"
-#include "treacle/model/create.hpp"
-#include "treacle/step/simulation.hpp"
+#include "treacle/model/case/case_keys.hpp"
+#include "treacle/model/particles/create.hpp"
+#include "treacle/step/run/simulation.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

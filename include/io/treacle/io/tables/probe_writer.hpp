@@ -1,0 +1,36 @@
+#pragma once
+
+#include "treacle/io/files/rows.hpp"
+#include "treacle/io/frames/frame.hpp"
+#include "treacle/model/case/case.hpp"
+#include "treacle/model/state/balance.hpp"
+
+#include <filesystem>
+#include <string>
+
+namespace treacle {
+
+/// Appends what a probe reads to a new CSV file (docs/probes.md); numbers read back to the same bits. Errors:
+/// those of RowFile.
+class ProbeWriter {
+ public:
+  /// Replaces what the target holds. `c` and `probe` must outlive this.
+  ProbeWriter(RowTarget to, const Case& c, const Probe& probe);
+
+  /// At a time [s], of a probe that is sampled: all fluid and walls within probeReach of its places.
+  void append(double time, const Frame& fluid, const Frame& walls);
+  /// Of one that is summed.
+  void append(double time, const PartSums& sums);
+  /// Of a load; `walls`: what the walls of the case bear, in their order.
+  void append(double time, const std::vector<WallLoad>& walls);
+
+ private:
+  std::string components(const Vec<3>& v) const;
+
+  const Case& case_;
+  const Probe& probe_;
+  const bool hasOwnViscosities_;  // when its columns were named: the case may change
+  Rows rows_;
+};
+
+}  // namespace treacle

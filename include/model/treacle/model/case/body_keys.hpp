@@ -1,0 +1,259 @@
+#pragma once
+
+#include "treacle/model/case/case.hpp"
+#include "treacle/model/case/key.hpp"
+
+namespace treacle::keys {
+
+void visit(auto& v, Like<Oscillation> auto& o, const Case&) {
+  v({"amplitude", "How far the wall goes to either side, along which axis", required, "m"}, o.amplitude);
+  v({"period", "Time of one oscillation", required, "s", positive}, o.period);
+  v({"phase", "Where in its oscillation the wall starts", optional, "rad"}, o.phase);
+}
+
+void visit(auto& v, Like<Rotation> auto& r, const Case& c) {
+  v({"center", "A point of the axis, at the start; it goes along with all other motion", required, "m"}, r.center);
+  v({"speed", "Speed of the rotation, positive counter-clockwise seen from the end of the axis", optional,
+     "rad/s"},
+    r.speed);
+  v({"angle", "How far the wall or nozzle has turned, in place of a speed", optional, "rad"}, r.angle);
+  if (c.dimensions == 3)
+    v({"axis", "Direction of the axis, of any length but zero", required, "any unit"}, r.axis);
+}
+
+void visit(auto& v, Like<Transform> auto& t, const Case& c) {
+  v({"scale", "Factor that the shape is scaled by; 1e-3 takes a file in millimetres", optional, "", positive},
+    t.scale);
+  if (c.dimensions == 3)
+    v({"axis", "Axis that the shape is turned about by angle, of any length but zero", optional, "any unit"},
+      t.axis);
+  v({"angle", "Angle that the shape is turned by, counter-clockwise seen from the end of the axis", optional,
+     "deg"},
+    t.angle);
+  if (c.dimensions == 3)
+    v({"angles", "Angles about the axes x, y and z of the case, in this order, in place of angle", optional,
+       "deg"},
+      t.angles);
+  v({"center", "Point that scaling and turning leave where it is", optional, "m"}, t.center);
+  v({"translate", "Way that the shape is moved by, after scaling and turning", optional, "m"}, t.translate);
+}
+
+/// The coordinates of a shape, which stand among the keys of its body.
+void visit(auto& v, Like<Shape> auto& s, const Case& c) {
+  const auto radii = [&] {
+    v({"radius", "Radius; of a torus that of its circle", required, "m", positive}, s.radius);
+    v({"inner_radius", "Hollow inside this radius; of a torus its tube is", optional, "m", notNegative},
+      s.innerRadius);
+  };
+  const auto axis = [&] {
+    v({"start", "One end of the axis", required, "m"}, s.start);
+    v({"end", "The other end of the axis", required, "m"}, s.end);
+  };
+  const auto content = [&] {
+    v({"file",
+       "File of the shape, relative to the case file: .stl, .obj or .ply of a mesh, .vtp, .pvtp or .csv of "
+       "particles",
+       required},
+      s.file.path, keys::file);
+    v({"checksum",
+       "What the checksum of the file must be; a run writes it, so that a file that has changed is noticed"},
+      s.file.checksum);
+  };
+  const auto filling = [&] {
+    v({"fill",
+       "Which side of the boundary is filled: all of the inside, the inside up to thickness, a layer outside, or "
+       "a sheet on both sides"},
+      s.fill);
+    v({"thickness",
+       "Thickness of a shell, of a layer outside or of a sheet; 0: as far as particles act on each other",
+       optional, "m", notNegative},
+      s.thickness);
+  };
+  switch (s.kind) {
+    case ShapeKind::Box:
+      v({"min", "Corner of the box with the least coordinates", required, "m"}, s.min);
+      v({"max", "Corner of the box with the largest coordinates", required, "m"}, s.max);
+      break;
+    case ShapeKind::Sphere:
+      v({"center", "Centre", required, "m"}, s.center);
+      radii();
+      break;
+    case ShapeKind::Cylinder:
+      axis();
+      radii();
+      break;
+    case ShapeKind::Cone:
+      axis();
+      v({"start_radius", "Radius at the start of the axis; 0 is a tip", required, "m", notNegative},
+        s.startRadius);
+      v({"end_radius", "Radius at the end of the axis; 0 is a tip", required, "m", notNegative}, s.endRadius);
+      v({"inner_start_radius", "Hollow inside this radius at the start of the axis", optional, "m", notNegative},
+        s.innerStartRadius);
+      v({"inner_end_radius", "Hollow inside this radius at the end of the axis", optional, "m", notNegative},
+        s.innerEndRadius);
+      break;
+    case ShapeKind::Torus:
+      v({"center", "Centre of the circle", required, "m"}, s.center);
+      if (c.dimensions == 3)
+        v({"axis", "Direction of the axis, of any length but zero", optional, "any unit"}, s.axis);
+      v({"tube_radius", "Radius of the tube, less than radius", required, "m", positive}, s.tubeRadius);
+      radii();
+      break;
+    case ShapeKind::Polygon:
+      v({"points", "Corners in order, either way round, from 3 to 10,000; sides meet nowhere else", required, "m"},
+        s.points);
+      if (c.dimensions == 3) {
+        v({"bottom", "Where the prism of the polygon begins along z", required, "m"}, s.bottom);
+        v({"top", "Where it ends along z", required, "m"}, s.top);
+      }
+      filling();
+      break;
+    case ShapeKind::Mesh:
+      content();
+      v({"flip", "Turns inside and outside of the mesh round"}, s.flip);
+      filling();
+      break;
+    case ShapeKind::Particles:
+      content();
+      break;
+  }
+  v({"transform", "The shape is scaled, turned and moved"}, s.transform);
+}
+
+void visit(auto& v, Like<Nozzle> auto& n, const Case& c) {
+  v({"shape", "Shape of the opening", required}, n.kind);
+  v({"center", "Centre of the opening", required, "m"}, n.center);
+  v({"direction", "Direction that fluid leaves in, of any length", required, "any unit"}, n.direction);
+  if (n.kind == NozzleKind::Disc) {
+    v({"radius", "Radius of the disc, in two dimensions half the width of the opening", required, "m", positive},
+      n.radius);
+    v({"inner_radius", "Radius of the hole of a ring", optional, "m", notNegative}, n.innerRadius);
+    return;
+  }
+  if (n.kind == NozzleKind::Rectangle) {
+    v({"width", "Width of the rectangle", required, "m", positive}, n.width);
+    if (c.dimensions == 3) v({"height", "Height of the rectangle", required, "m", positive}, n.height);
+  } else {
+    v({"points", "Corners in order, from the centre: along the width, which is direction x up, and along up",
+       required, "m"},
+      n.points);
+  }
+  if (c.dimensions == 3)
+    v({"up", "Vector that the height is along, as far as it is across the direction; zero: any", optional,
+       "any unit"},
+      n.up);
+}
+
+/// What an inflow has in place of a shape, among the keys of its body.
+void visit(auto& v, Like<Inflow> auto& i, const Case& c) {
+  v({"nozzle", "The opening that fluid comes out of", required}, i.nozzle);
+  v({"speed", "Speed of the fluid relative to the nozzle, in place of a flow rate", optional, "m/s", notNegative},
+    i.speed);
+  v({"flow_rate", "Flow through all of the opening, in place of a speed", optional,
+     c.dimensions == 2 ? "m2/s" : "m3/s", notNegative},
+    i.flowRate);
+  v({"start", "When the flow begins", optional, "s", notNegative}, i.start);
+  v({"end", "When the flow ends; 0: it does not", optional, "s", notNegative}, i.end);
+}
+
+void visit(auto& v, Like<Outflow> auto& o, const Case&) {
+  v({"name", "Name of the outflow, unique among them", required}, o.name);
+  v({"shape", "Whether fluid leaves in a box or beyond a plane", required}, o.kind);
+  if (o.kind == OutflowKind::Box) {
+    v({"min", "Corner of the box with the least coordinates", required, "m"}, o.min);
+    v({"max", "Corner of the box with the largest coordinates", required, "m"}, o.max);
+    return;
+  }
+  v({"point", "A point of the plane", required, "m"}, o.point);
+  v({"normal", "Normal of the plane, of any length; what is beyond the plane in this direction is taken out",
+     required, "any unit"},
+    o.normal);
+}
+
+/// What a rigid body has among the keys of its body.
+void visit(auto& v, Like<RigidSettings> auto& r, const Case& c) {
+  v({"mass", "Mass of the body; 0: that of its particles with the density of its material", optional,
+     c.dimensions == 2 ? "kg/m" : "kg", notNegative},
+    r.mass);
+  v({"translates", "Along which axes the body may move; along others it keeps its velocity"}, r.translates);
+  if (c.dimensions == 2) {
+    v({"angular_velocity", "Angular velocity at the start", optional, "rad/s"}, r.angularVelocity[2]);
+    v({"rotates", "Whether the body may turn"}, r.rotates[2]);
+  } else {
+    v({"angular_velocity", "Angular velocity at the start", optional, "rad/s"}, r.angularVelocity);
+    v({"rotates", "About which axes the body may turn"}, r.rotates);
+  }
+}
+
+void visit(auto& v, Like<Body> auto& b, const Case& c) {
+  v({"name", "Name of the body, unique among them", required}, b.name);
+  v({"type", "Fluid, a wall, an inflow, or a rigid body, a wall that the fluid moves", required}, b.kind);
+  v({"material", "Name of the material", required}, b.material, material);
+  if (b.kind == BodyKind::Inflow) {
+    v({"velocity", "Velocity of the nozzle", optional, "m/s"}, b.velocity);
+    v({"oscillation", "The nozzle swings to and fro"}, b.oscillation);
+    v({"displacement", "How far the nozzle is displaced in time, along each axis", optional, "m"}, b.displacement);
+    v({"rotation", "The nozzle turns, on top of all other motion"}, b.rotation);
+    if (c.heat)
+      v({"temperature", "Temperature of the fluid that comes in", required, "K", positive}, b.temperature);
+    if (c.method.kind == MethodKind::MphI)
+      v({"viscosity_factor", "By what the viscosity of the fluid that comes in is multiplied; 0: 1", optional, "",
+         notNegative},
+        b.viscosityFactor);
+    return visit(v, b.inflow, c);
+  }
+  v({"shape", "Shape that is filled with particles", required}, b.shape.kind);
+  v({"where", "Only those particles are made at which this is not zero"}, b.where, expression);
+  v({"velocity", "Velocity: of a fluid or rigid body at the start, of a wall for the whole run", optional, "m/s"},
+    b.velocity, b.velocityExpression);
+  if (b.kind == BodyKind::Fluid)
+    v({"disorder", "How far its particles stand off the lattice at the start, at random, along each axis at most",
+       optional, "spacings", disorder},
+      b.disorder);
+  const bool ofFile = b.kind == BodyKind::Fluid && b.shape.kind == ShapeKind::Particles;
+  if (ofFile)
+    v({"file_velocities", "Whether particles have the velocities of the file, on top of that of the body"},
+      b.fileVelocities);
+  if (b.kind == BodyKind::Fluid && c.method.kind == MethodKind::MphI)
+    v({"viscosity_factor",
+       "By what viscosities of its particles are multiplied, each keeping its own; 0: 1, or none where no body "
+       "has "
+       "any",
+       optional, "", notNegative},
+      b.viscosityFactor, b.viscosityFactorExpression);
+  if (b.kind == BodyKind::Rigid) {
+    visit(v, b.rigid, c);
+  } else {
+    v({"oscillation", "The wall swings to and fro, on top of its velocity"}, b.oscillation);
+    v({"displacement",
+       "How far the wall is displaced in time, along each axis, on top of its velocity and oscillation", optional,
+       "m"},
+      b.displacement);
+    v({"rotation", "The wall turns, on top of all other motion"}, b.rotation);
+  }
+  if (b.isWall())
+    v({"friction",
+       "Coefficient of Coulomb friction where rigid bodies touch; of two bodies the geometric mean counts",
+       optional, "", notNegative},
+      b.friction);
+  if (c.heat) {
+    const bool fluid = b.kind == BodyKind::Fluid;
+    if (ofFile)
+      v({"file_temperatures", "Whether particles have the temperatures of the file, in place of temperature"},
+        b.fileTemperatures);
+    if (!b.fileTemperatures)
+      v({"temperature",
+         "Of a fluid at the start; of a wall that of its surface, or with wall_conductance that behind it, 0 "
+         "being "
+         "an adiabatic wall",
+         fluid, "K", fluid ? positive : notNegative},
+        b.temperature, b.temperatureExpression);
+    if (!fluid)
+      v({"wall_conductance", "Conductivity of the wall over its thickness; 0: its surface has the temperature",
+         optional, "W/(m2 K)", notNegative},
+        b.wallConductance);
+  }
+  visit(v, b.shape, c);
+}
+
+}  // namespace treacle::keys

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "treacle/model/case/case.hpp"
+
+#include <string>
+#include <vector>
+
+namespace treacle {
+
+/// What a case says beforehand about the size and speed of its flow (docs/choosing.md).
+struct FlowScales {
+  double length = 0;  // L: shortest side of a box around a fluid body, or of a nozzle [m]
+  double height = 0;  // of all fluid along gravity [m]
+  double fall = 0;    // speed of a fall over that height [m/s]
+  double given = 0;   // largest of the speeds of fluid, walls and nozzles that the case gives [m/s]
+};
+
+/// 0 where the case does not say: of nozzles with a flow rate speeds are not looked at.
+FlowScales flowScales(const Case& c);
+
+/// Numbers of one fluid of a case. Those of something that it does not have are 0.
+struct FluidNumbers {
+  std::string material;
+  double speed = 0;        // U: given, or of a fall over the height that viscosity holds back, rho g L^2/mu [m/s]
+  double reynolds = 0;     // rho U L / mu
+  double viscousTime = 0;  // rho L^2 / mu, in which a flow comes to rest or up to speed [s]
+  double ratio = 0;        // lambda / mu
+  double compression = 0;  // rho g H / kappa, by its own weight in the end
+  double capillaryStep =
+      0;            // up to which surface tension lets a step be: max(2 mu l/gamma, sqrt(rho l^3/gamma)) [s]
+  double bond = 0;  // rho g L^2 / gamma
+};
+
+/// Of the materials that some fluid body or inflow is made of.
+std::vector<FluidNumbers> fluidNumbers(const Case& c);
+
+}  // namespace treacle

@@ -1,0 +1,114 @@
+#pragma once
+
+#include "treacle/model/case/case.hpp"
+#include "treacle/model/case/key.hpp"
+
+namespace treacle::keys {
+
+void visit(auto& v, Like<Rheology> auto& r, const Case&) {
+  using enum RheologyModel;
+  v({"model", "Formula of the viscosity", required}, r.model);
+  if (r.yields()) {
+    v({"yield_stress", "Yield stress", required, "Pa", positive}, r.yieldStress);
+    v({"regularisation", "Time constant m of Papanastasiou's regularisation of the yield stress", required, "s",
+       regularisation},
+      r.regularisation);
+  }
+  if (r.model == Bingham || r.model == Casson)
+    v({"plastic_viscosity", "Plastic viscosity", required, "Pa s", positive}, r.plasticViscosity);
+  if (r.model == PowerLaw || r.model == HerschelBulkley)
+    v({"consistency", "Consistency K", required, "Pa s^n", positive}, r.consistency);
+  if (r.model == Cross || r.model == CarreauYasuda) {
+    v({"zero_viscosity", "Viscosity at rest", required, "Pa s", positive}, r.zeroViscosity);
+    v({"infinite_viscosity", "Viscosity of infinitely fast shear, at most zero_viscosity", optional, "Pa s",
+       notNegative},
+      r.infiniteViscosity);
+    v({"time_constant", "Time constant k", required, "s", positive}, r.timeConstant);
+  }
+  if (r.hasIndex())
+    v({"flow_index", "Exponent n: below 1 the fluid thins when it is sheared, above 1 it thickens", required, "",
+       flowIndex},
+      r.flowIndex);
+  if (r.model == CarreauYasuda)
+    v({"transition", "Exponent a of Yasuda; 2 is the model of Carreau", optional, "", yasuda}, r.transition);
+  v({"min_viscosity", "The viscosity is at least this; a power law with n > 1 needs it", optional, "Pa s",
+     notNegative},
+    r.leastViscosity);
+  v({"max_viscosity",
+     "The viscosity is at most this, 0 being no bound; power law and Herschel-Bulkley with n < 1 need it",
+     optional, "Pa s", notNegative},
+    r.mostViscosity);
+}
+
+void visit(auto& v, Like<ViscosityShift> auto& s, const Case&) {
+  v({"model", "Formula of the shift factor a of the viscosity", required}, s.model);
+  if (s.model == ShiftModel::Table) {
+    v({"temperatures", "Rising temperatures of the table, 2 to 16", required, "K", positive}, s.temperatures);
+    v({"factors", "The factor a at each of them", required, "", positive}, s.factors);
+    return;
+  }
+  v({"reference_temperature", "Temperature at which the factor is 1", required, "K", positive}, s.reference);
+  if (s.model == ShiftModel::Arrhenius)
+    v({"activation_energy", "Activation energy E", required, "J/mol", positive}, s.activationEnergy);
+  if (s.model == ShiftModel::Vft) {
+    v({"b", "Constant B", required, "K", positive}, s.slope);
+    v({"t0", "Temperature T0 at which the viscosity diverges", required, "K", notNegative}, s.divergence);
+  }
+  if (s.model == ShiftModel::Wlf) {
+    v({"c1", "Constant C1", required, "", positive}, s.c1);
+    v({"c2", "Constant C2", required, "K", positive}, s.c2);
+  }
+  v({"min_factor", "The factor is at least this", optional, "", positive}, s.least);
+  v({"max_factor", "The factor is at most this", optional, "", positive}, s.most);
+}
+
+void visit(auto& v, Like<ContactAngle> auto& a, const Case&) {
+  v({"name", "Name of the material of the fluid, unique among them", required}, a.name);
+  v({"angle", "Angle of its free surfaces with the wall, measured in the fluid", required, "deg", {0, 180}},
+    a.angle);
+}
+
+void visit(auto& v, Like<Material> auto& m, const Case& c) {
+  v({"name", "Name of the material, unique among them", required}, m.name);
+  v({"density", "Density", required, "kg/m3", positive}, m.density);
+  if (c.method.kind == MethodKind::MphI)
+    v({"rheology", "Viscosity that follows the shear rate, in place of dynamic_viscosity"}, m.rheology);
+  if (!m.rheology)
+    v({"dynamic_viscosity", "Shear viscosity mu", required, "Pa s", notNegative}, m.dynamicViscosity);
+  if (c.method.kind != MethodKind::MphI) return;
+  v({"bulk_viscosity",
+     "Bulk viscosity lambda, which stands in for incompressibility, some 1000 times the shear viscosity; of a "
+     "fluid not 0 together with bulk_modulus",
+     required, "Pa s", notNegative},
+    m.bulkViscosity);
+  v({"bulk_modulus",
+     "Bulk modulus kappa, with which the fluid takes its volume back, at most half of bulk_viscosity over the "
+     "step with the default scheme",
+     required, "Pa", notNegative},
+    m.bulkModulus);
+  v({"slip_length",
+     "Of a fluid: how far behind the surface of a wall its velocity, extrapolated, meets the wall's; 0: no slip",
+     optional, "m", notNegative},
+    m.slipLength);
+  v({"surface_tension", "Surface tension of the free surfaces of this fluid", optional, "N/m", notNegative},
+    m.surfaceTension);
+  v({"contact_angle",
+     "Of a wall: angle of free surfaces with it, measured in the fluid",
+     optional,
+     "deg",
+     {0, 180}},
+    m.contactAngle);
+  v({"contact_angles",
+     "Of a wall: contact angles of single fluids, in place of contact_angle",
+     optional,
+     "",
+     {0, maxMaterials}},
+    m.contactAngles);
+  if (!c.heat) return;
+  v({"specific_heat", "Specific heat capacity", required, "J/(kg K)", positive}, m.specificHeat);
+  v({"conductivity", "Thermal conductivity", required, "W/(m K)", notNegative}, m.conductivity);
+  v({"emissivity", "Emissivity of free surfaces of this fluid", optional, "", {0, 1}}, m.emissivity);
+  v({"viscosity_shift", "Viscosity that follows the temperature"}, m.viscosityShift);
+}
+
+}  // namespace treacle::keys

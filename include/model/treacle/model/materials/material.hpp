@@ -1,0 +1,58 @@
+#pragma once
+
+#include "treacle/model/materials/rheology.hpp"
+#include "treacle/model/materials/viscosity_shift.hpp"
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace treacle {
+
+/// That of a wall with the free surfaces of one fluid.
+struct ContactAngle {
+  std::string name;   // of the fluid's material
+  double angle = 90;  // measured in the fluid [deg]
+
+  bool operator==(const ContactAngle&) const = default;
+};
+
+struct Material {
+  std::string name;
+  double density = 0;           // rho [kg/m3]
+  double dynamicViscosity = 0;  // mu, without a rheology [Pa s]
+  double bulkViscosity = 0;     // lambda [Pa s]
+  double bulkModulus = 0;       // kappa [Pa]
+  double slipLength = 0;        // how far behind a wall its velocity, extrapolated, is the wall's [m]; 0: no slip
+  double surfaceTension = 0;    // gamma of its free surface [N/m]; MPH-I only
+  double contactAngle = 90;     // of a wall, with free surfaces of all other fluids than these [deg]
+  std::vector<ContactAngle> contactAngles{};
+  std::optional<Rheology> rheology{};  // of a fluid that is not Newtonian; MPH-I only
+  // In cases with heat.
+  double specificHeat = 0;                         // c_p [J/(kg K)]
+  double conductivity = 0;                         // k [W/(m K)]
+  double emissivity = 0;                           // of the free surface [-]
+  std::optional<ViscosityShift> viscosityShift{};  // missing: the viscosity does not follow the temperature
+
+  /// mu at a shear rate [1/s], where a_T is `shift` [Pa s].
+  double viscosity(double rate, double shift) const {
+    return rheology ? rheology->viscosity(rate, shift) : shift * dynamicViscosity;
+  }
+  /// Of a wall of this material with a fluid [deg].
+  double contactAngleWith(std::string_view fluid) const {
+    for (const ContactAngle& a : contactAngles)
+      if (a.name == fluid) return a.angle;
+    return contactAngle;
+  }
+  /// Whether its viscosity is not one number.
+  bool hasOwnViscosities() const { return rheology.has_value() || viscosityShift.has_value(); }
+
+  bool operator==(const Material&) const = default;
+};
+
+/// Largest number of materials of one case: pair sums look their constants up in small tables.
+inline constexpr std::size_t maxMaterials = 16;
+
+}  // namespace treacle

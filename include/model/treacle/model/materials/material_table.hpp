@@ -1,0 +1,26 @@
+#pragma once
+
+#include "treacle/model/case/case.hpp"
+
+namespace treacle {
+
+/// Material constants as the pair sums look them up, by material index.
+struct MaterialTable {
+  int count = 0;
+  double density[maxMaterials];                      // rho [kg/m3]
+  double inertia[maxMaterials];                      // rho / dt [kg/(m3 s)]
+  double bulkViscosity[maxMaterials];                // lambda [Pa s]
+  double bulkModulus[maxMaterials];                  // kappa [Pa]
+  double slipLength[maxMaterials];                   // [m]
+  double pairViscosity[maxMaterials][maxMaterials];  // mu_ij = 2 mu_i mu_j / (mu_i + mu_j) [Pa s]
+  double pairMobility[maxMaterials][maxMaterials];   // 4 / (rho_i + rho_j) [m3/kg], of ISPH's pressure equation
+
+  double viscosity(int m) const { return pairViscosity[m][m]; }  // mu [Pa s]
+
+  static MaterialTable make(const Case& c);
+  void setTimeStep(double dt) {
+    for (int m = 0; m < count; ++m) inertia[m] = density[m] / dt;
+  }
+};
+
+}  // namespace treacle

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "treacle/model/case/probe.hpp"
+#include "treacle/model/particles/any_particles.hpp"
+
+#include <cstddef>
+
+namespace treacle {
+
+/// What a probe has found in a state.
+struct ProbeReading {
+  std::size_t probe = 0;      // index into the probes of the case
+  PartSums sums{};            // of one that is summed
+  AnyParticles particles{2};  // of one that is sampled: those within probeReach of its places
+};
+
+}  // namespace treacle

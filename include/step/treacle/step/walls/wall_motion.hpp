@@ -1,0 +1,40 @@
+#pragma once
+
+#include "treacle/core/cuda.hpp"
+#include "treacle/model/motion/wall_motion.hpp"
+#include "treacle/search/cell_grid.hpp"
+
+#include <cstdint>
+#include <span>
+
+namespace treacle {
+
+/// Wall particles and what moves them; spans in the backend's memory.
+template <int D>
+struct MovingWalls {
+  std::span<const WallMotion<D>> motion;  // per body of the case
+  std::span<const std::uint8_t> body;     // per wall particle, less than the number of bodies
+  std::span<const Vec<D>> position;       // likewise [m]
+};
+
+/// The velocities of the rigid motions where the particles are, per wall particle [m/s].
+template <int D>
+void setWallVelocities(Context<Cpu>&, const MovingWalls<D>& walls, std::span<Vec<D>> velocity);
+template <int D>
+void setWallVelocities(Context<Cuda>&, const MovingWalls<D>& walls, std::span<Vec<D>> velocity);
+
+/// Their ways in the step over dt, likewise.
+template <int D>
+void setWallChords(Context<Cpu>&, const MovingWalls<D>& walls, std::span<Vec<D>> chord);
+template <int D>
+void setWallChords(Context<Cuda>&, const MovingWalls<D>& walls, std::span<Vec<D>> chord);
+
+/// Moves the wall particles of one body by a vector [m]. `position`: per wall particle.
+template <int D>
+void shiftBody(Context<Cpu>&, const CellGrid<D>& grid, std::span<const std::uint8_t> body, std::uint8_t which,
+               const Vec<D>& by, std::span<Vec<D>> position);
+template <int D>
+void shiftBody(Context<Cuda>&, const CellGrid<D>& grid, std::span<const std::uint8_t> body, std::uint8_t which,
+               const Vec<D>& by, std::span<Vec<D>> position);
+
+}  // namespace treacle

@@ -1,0 +1,379 @@
+#include "treacle/io/checkpoint/checkpoint.hpp"
+
+#include "checkpoint_fields.hpp"
+#include "files/checksum.hpp"
+#include "treacle/core/error.hpp"
+#include "treacle/io/files/atomic_file.hpp"
+#include "treacle/model/case/case.hpp"
+#include "treacle/model/case/names.hpp"
+#include "treacle/model/particles/create.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <span>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace treacle {
+namespace {
+
+constexpr std::string_view formatName = "treacle checkpoint";
+constexpr std::int32_t formatVersion = 11;  // no other one is read
+
+bool isFinite(double x) { return std::isfinite(x); }
+template <int D, class T>
+bool isFinite(const Vec<D, T>& x) {
+  return std::all_of(x.v, x.v + D, [](T component) { return std::isfinite(component); });
+}
+
+/// Errors: Hdf5Error.
+template <int D>
+void requireSound(const Particles<D>& particles) {
+  forEachNamedField(particles, [&]<class T>(const FieldInfo& info, const Buffer<T>& field) {
+    if constexpr (!std::is_integral_v<T>)
+      for (std::size_t k = 0; k < field.size(); ++k)
+        if (!isFinite(field[k]))
+          throw Hdf5Error(fmt::format("value {} of the field {} is not finite", k, info.name));
+  });
+  for (const double rate : particles.shearRate)
+    if (rate < 0) throw Hdf5Error(fmt::format("a shear rate of {} 1/s, expected at least 0", rate));
+  for (const double T : particles.temperature)
+    if (!(T > 0)) throw Hdf5Error(fmt::format("a temperature of {} K, expected more than 0", T));
+  for (const double factor : particles.viscosityFactor)
+    if (!(factor > 0))
+      throw Hdf5Error(fmt::format("a factor of the viscosity of {}, expected more than 0", factor));
+}
+
+/// Looks at the ids of all particles, `fluid` of which come first: those of walls follow each other, after those
+/// that the fluid had at the start. Returns that of the first wall. Errors: Hdf5Error.
+std::uint32_t requireIds(std::span<const std::uint32_t> ids, std::uint32_t fluid, const OpenFlow& flow) {
+  const bool open = flow.nextId > 0;
+  const std::uint64_t end = open ? flow.nextId : ids.size();
+  const std::uint32_t walls = static_cast<std::uint32_t>(ids.size()) - fluid;
+  const std::uint32_t first = open && walls > 0 ? *std::ranges::min_element(ids.subspan(fluid)) : fluid;
+  std::vector<bool> taken(end);
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    const std::uint32_t id = ids[i];
+    if (id >= end) throw Hdf5Error(fmt::format("a particle has id {}, expected less than {}", id, end));
+    if ((id - first < walls) == (i < fluid))
+      throw Hdf5Error(fmt::format("particle {} is among those of the other kind", id));
+    if (taken[id]) throw Hdf5Error(fmt::format("two particles have the id {}", id));
+    taken[id] = true;
+  }
+  return first;
+}
+
+void writeCount(hid_t file, const std::string& name, const FlowCount& count) {
+  writeAttribute(file, (name + "_particles").c_str(), static_cast<std::int64_t>(count.particles));
+  writeAttribute(file, (name + "_mass").c_str(), count.mass);
+}
+FlowCount readCount(hid_t file, const std::string& name) {
+  const auto particles = readAttribute<std::int64_t>(file, (name + "_particles").c_str());
+  const auto mass = readAttribute<double>(file, (name + "_mass").c_str());
+  if (particles < 0 || !(mass >= 0) || !std::isfinite(mass))
+    throw Hdf5Error(
+        fmt::format("{} particles of {} kg came or went, expected numbers not less than 0", particles, mass));
+  return {static_cast<std::uint64_t>(particles), mass};
+}
+
+/// Numbers of a rigid body in the order of the file.
+template <class Body, class F>
+void forEachNumber(Body& b, F&& f) {
+  f(b.mass);
+  for (auto& x : b.inertia) f(x);
+  for (auto* v : {&b.center, &b.velocity, &b.spin})
+    for (int k = 0; k < 3; ++k) f((*v)[k]);
+  for (auto& x : b.orientation) f(x);
+}
+constexpr std::uint64_t rigidNumbers = 20;
+
+void writeRigid(hid_t file, const RigidMotion& rigid) {
+  Buffer<double> numbers(rigid.bodies.size() * rigidNumbers);
+  double* to = numbers.data();
+  for (const RigidBody& body : rigid.bodies) forEachNumber(body, [&](double x) { *to++ = x; });
+  const auto put = [&](const char* name, std::span<const double> values) {
+    Buffer<double> field(values.size());
+    std::copy(values.begin(), values.end(), field.begin());
+    writeAttribute(file, (std::string(name) + "_count").c_str(), static_cast<std::uint32_t>(values.size()));
+    writeField(file, FieldInfo{name, Of::All, values.size()}, field);
+  };
+  put("rigid_bodies", numbers);
+  put("rigid_response", rigid.response);
+  put("rigid_change", rigid.change);
+}
+
+/// Errors: Hdf5Error for what no body is.
+RigidMotion readRigid(hid_t file) {
+  constexpr std::uint64_t mostUnknowns = 6 * maxBodies;
+  const auto get = [&](const char* name, std::uint64_t most) {
+    const auto count = readAttribute<std::uint32_t>(file, (std::string(name) + "_count").c_str());
+    if (count > most) throw Hdf5Error(fmt::format("{} values of {}, more than {}", count, name, most));
+    std::vector<double> values(count);
+    FieldReader<double>(file, FieldInfo{name, Of::All, count}).read({0, count}, values.data());
+    for (const double x : values)
+      if (!std::isfinite(x)) throw Hdf5Error(fmt::format("a value of {} is not finite", name));
+    return values;
+  };
+  RigidMotion rigid;
+  const std::vector<double> numbers = get("rigid_bodies", maxBodies * rigidNumbers);
+  if (numbers.size() % rigidNumbers != 0) throw Hdf5Error("the numbers of the rigid bodies are not complete");
+  const double* from = numbers.data();
+  rigid.bodies.resize(numbers.size() / rigidNumbers);
+  for (RigidBody& body : rigid.bodies) {
+    forEachNumber(body, [&](double& x) { x = *from++; });
+    if (!(body.mass >= 0)) throw Hdf5Error(fmt::format("a rigid body has a mass of {} kg", body.mass));
+  }
+  rigid.response = get("rigid_response", mostUnknowns * mostUnknowns);
+  rigid.change = get("rigid_change", mostUnknowns);
+  if (rigid.response.size() != rigid.change.size() * rigid.change.size() && !rigid.response.empty())
+    throw Hdf5Error("the response of the rigid bodies does not fit their number");
+  return rigid;
+}
+
+void writeFlow(hid_t file, const OpenFlow& flow) {
+  writeAttribute(file, "next_id", flow.nextId);
+  writeAttribute(file, "flow_body_count", static_cast<std::uint32_t>(flow.inflows.size()));
+  writeAttribute(file, "outflow_count", static_cast<std::uint32_t>(flow.outflows.size()));
+  for (std::size_t k = 0; k < flow.inflows.size(); ++k) {
+    const std::string name = fmt::format("inflow_{}", k);
+    writeCount(file, name, flow.inflows[k]);
+    writeAttribute(file, (name + "_way").c_str(), flow.inflows[k].way);
+  }
+  for (std::size_t k = 0; k < flow.outflows.size(); ++k)
+    writeCount(file, fmt::format("outflow_{}", k), flow.outflows[k]);
+}
+
+/// Errors: Hdf5Error for what no run remembers.
+OpenFlow readFlow(hid_t file) {
+  OpenFlow flow;
+  flow.nextId = readAttribute<std::uint32_t>(file, "next_id");
+  const auto bodies = readAttribute<std::uint32_t>(file, "flow_body_count"),
+             outflows = readAttribute<std::uint32_t>(file, "outflow_count");
+  if (bodies > maxBodies || outflows > maxOutflows)
+    throw Hdf5Error(fmt::format("{} bodies and {} outflows, more than the limits of {} and {}", bodies, outflows,
+                                maxBodies, maxOutflows));
+  for (std::uint32_t k = 0; k < bodies; ++k) {
+    const std::string name = fmt::format("inflow_{}", k);
+    OpenFlow::Inflow inflow{readCount(file, name), readAttribute<double>(file, (name + "_way").c_str())};
+    if (!(inflow.way >= 0) || !std::isfinite(inflow.way))
+      throw Hdf5Error(fmt::format("the layers of an inflow have gone {} m, expected at least 0", inflow.way));
+    flow.inflows.push_back(inflow);
+  }
+  for (std::uint32_t k = 0; k < outflows; ++k)
+    flow.outflows.push_back(readCount(file, fmt::format("outflow_{}", k)));
+  return flow;
+}
+
+template <int D>
+void fill(hid_t file, const Particles<D>& particles, std::int64_t step, double time, MethodKind method) {
+  writeText(file, "format", formatName);
+  writeAttribute(file, "version", formatVersion);
+  writeText(file, "method", nameOf(method));
+  writeAttribute(file, "dimensions", std::int32_t{D});
+  writeAttribute(file, "step", step);
+  writeAttribute(file, "time", time);
+  writeAttribute(file, "fluid_count", particles.fluidCount);
+  writeAttribute(file, "wall_count", particles.wallCount());
+  writeAttribute(file, "has_shear_rates", std::uint8_t{particles.has.shearRates});
+  writeAttribute(file, "has_temperatures", std::uint8_t{particles.has.temperatures});
+  writeAttribute(file, "has_viscosity_factors", std::uint8_t{particles.has.viscosityFactors});
+  const ModeAge& age = particles.modes.age;
+  writeAttribute(file, "mode_count", particles.modeCount());
+  writeAttribute(file, "modes_due", age.due);
+  writeAttribute(file, "modes_fewest_iterations", age.fewest);
+  const KeptEigenvalue& pressure = particles.modes.pressure;
+  writeAttribute(file, "pressure_eigenvalue", pressure.value);
+  writeAttribute(file, "pressure_eigenvalue_due", pressure.due);
+  writeAttribute(file, "pressure_eigenvalue_fewest_iterations", pressure.fewest);
+  writeAttribute(file, "time_step", particles.steps.last);
+  writeAttribute(file, "planned_time_step", particles.steps.planned);
+  writeAttribute(file, "time_step_error_rate", particles.steps.rate);
+  writeFlow(file, particles.flow);
+  writeRigid(file, particles.rigid);
+  forEachNamedField(particles, [&](const FieldInfo& info, const auto& field) { writeField(file, info, field); });
+}
+
+/// Errors: Hdf5Error unless the file says that it is a checkpoint of this format and dimension.
+void requireFormat(hid_t file, int dimensions) {
+  if (readText(file, "format") != formatName) throw Hdf5Error("an HDF5 file of another program");
+  if (const auto found = readAttribute<std::int32_t>(file, "version"); found != formatVersion)
+    throw Hdf5Error(fmt::format("a checkpoint of format {}, expected format {}", found, formatVersion));
+  if (const auto found = readAttribute<std::int32_t>(file, "dimensions"); found != dimensions)
+    throw Hdf5Error(fmt::format("{} dimensions, expected {}", found, dimensions));
+}
+
+MethodKind readMethod(hid_t file) {
+  const std::string word = readText(file, "method");
+  const auto method = valueNamed<MethodKind>(word);
+  if (!method) throw Hdf5Error(fmt::format("its method is '{}', which is none of this version", word));
+  return *method;
+}
+
+/// Errors: Hdf5Error for numbers that no simulation has.
+template <int D>
+void readNumbers(hid_t file, Checkpoint<D>& checkpoint) {
+  checkpoint.step = readAttribute<std::int64_t>(file, "step");
+  checkpoint.time = readAttribute<double>(file, "time");
+  if (checkpoint.step < 0 || !(checkpoint.time >= 0) || !std::isfinite(checkpoint.time))
+    throw Hdf5Error(fmt::format("after step {} at t = {} s, expected numbers not less than 0", checkpoint.step,
+                                checkpoint.time));
+  const std::uint64_t fluid = readAttribute<std::uint32_t>(file, "fluid_count"),
+                      wall = readAttribute<std::uint32_t>(file, "wall_count");
+  if (fluid + wall > maxParticles)
+    throw Hdf5Error(fmt::format("{} particles, more than the limit of {}", fluid + wall, maxParticles));
+  checkpoint.particles.fluidCount = static_cast<std::uint32_t>(fluid);
+  checkpoint.particles.count = static_cast<std::uint32_t>(fluid + wall);
+}
+
+/// How many there are. Errors: Hdf5Error for more than a solver can have.
+std::uint32_t readModeNumbers(hid_t file, ModeAge& age) {
+  age = {readAttribute<std::int32_t>(file, "modes_due"),
+         readAttribute<std::int32_t>(file, "modes_fewest_iterations")};
+  const auto count = readAttribute<std::uint32_t>(file, "mode_count");
+  if (count > maxModes) throw Hdf5Error(fmt::format("{} modes, more than the limit of {}", count, maxModes));
+  return count;
+}
+
+/// Errors: Hdf5Error for what no solver keeps.
+KeptEigenvalue readEigenvalue(hid_t file) {
+  const KeptEigenvalue kept{readAttribute<double>(file, "pressure_eigenvalue"),
+                            readAttribute<std::int32_t>(file, "pressure_eigenvalue_due"),
+                            readAttribute<std::int32_t>(file, "pressure_eigenvalue_fewest_iterations")};
+  if (!(kept.value >= 0) || !std::isfinite(kept.value) || kept.due > KeptEigenvalue::longest)
+    throw Hdf5Error(fmt::format("an eigenvalue of {} for {} more solves", kept.value, kept.due));
+  return kept;
+}
+
+/// Errors: Hdf5Error for what no run remembers.
+StepMemory readSteps(hid_t file) {
+  const StepMemory steps{readAttribute<double>(file, "time_step"),
+                         readAttribute<double>(file, "planned_time_step"),
+                         readAttribute<double>(file, "time_step_error_rate")};
+  for (const double x : {steps.last, steps.planned, steps.rate})
+    if (!(x >= 0) || !std::isfinite(x))
+      throw Hdf5Error(fmt::format("time steps of {} and {} s with an error rate of {} 1/s", steps.last,
+                                  steps.planned, steps.rate));
+  return steps;
+}
+
+void requireReadable(const std::filesystem::path& path) {
+  std::error_code error;
+  static_cast<void>(std::filesystem::file_size(path, error));
+  if (error) throw InputError(fmt::format("{}: {}", path.string(), error.message()));
+  if (!std::ifstream(path)) throw InputError(fmt::format("{}: cannot be read", path.string()));
+  if (H5Fis_hdf5(path.c_str()) <= 0)
+    throw InputError(fmt::format("{}: not a treacle checkpoint: not an HDF5 file", path.string()));
+}
+
+/// The walls of a part; it also looks at all ids, since a part does not see whether others have the same. Errors:
+/// Hdf5Error.
+void chooseWalls(hid_t file, const OpenFlow& flow, Selection& selection) {
+  const std::uint32_t fluid = selection.fluid, walls = selection.walls;
+  const FieldInfo info{"id", Of::All, std::uint64_t{fluid} + walls};
+  const FieldReader<std::uint32_t> reader(file, info);
+  Buffer<std::uint32_t> ids(info.count);
+  reader.read({0, info.count}, ids.data());
+  const std::uint32_t first = requireIds(ids, fluid, flow) + selection.part.begin(walls);
+  selection.chosenWalls.resize(selection.part.size(walls));
+  for (std::uint32_t k = 0; k < walls; ++k)
+    if (const std::uint32_t place = ids[fluid + k] - first; place < selection.chosenWalls.size())
+      selection.chosenWalls[place] = k;
+}
+
+/// Errors: Hdf5Error.
+template <int D>
+Checkpoint<D> readContent(const std::filesystem::path& path, ParticlePart part) {
+  const Hdf5Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  requireFormat(file, D);
+  Checkpoint<D> checkpoint;
+  readNumbers(file, checkpoint);
+  checkpoint.method = readMethod(file);
+  Particles<D>& particles = checkpoint.particles;
+  const std::uint32_t modes = readModeNumbers(file, particles.modes.age);
+  particles.modes.pressure = readEigenvalue(file);
+  particles.steps = readSteps(file);
+  const auto has = [&](const char* name) { return readAttribute<std::uint8_t>(file, name) != 0; };
+  particles.has = {has("has_shear_rates"), has("has_temperatures"), has("has_viscosity_factors")};
+  particles.flow = readFlow(file), particles.rigid = readRigid(file);
+  Selection selection{part, particles.fluidCount, particles.wallCount(), {}};
+  checkpoint.fluidOfAll = selection.fluid, checkpoint.wallsOfAll = selection.walls;
+  if (!part.isAll()) chooseWalls(file, particles.flow, selection);
+  forEachNamedField(particles, std::uint64_t{selection.fluid} * modes,
+                    [&](const FieldInfo& info, auto& field) { readField(file, info, selection, field); });
+  requireSound(particles);
+  if (part.isAll()) requireIds(particles.id, particles.fluidCount, particles.flow);
+  particles.fluidCount = part.size(selection.fluid);
+  particles.count = particles.fluidCount + part.size(selection.walls);
+  return checkpoint;
+}
+
+}  // namespace
+
+template <int D>
+void writeCheckpoint(const std::filesystem::path& path, const Particles<D>& particles, std::int64_t step,
+                     double time, MethodKind method) {
+  const Hdf5Silence silence;
+  try {
+    requireSound(particles);  // what cannot be read back must not replace what can
+    requireIds(particles.id, particles.fluidCount, particles.flow);
+    // HDF5 makes the file in memory: it cannot close a file that a full disk keeps it from finishing.
+    std::size_t bytes = 1 << 16;
+    forEachNamedField(particles, [&](const FieldInfo&, const auto& field) { bytes += field.bytes(); });
+    const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+    hdf5Checked(H5Pset_fapl_core(access, bytes, false));
+    // It would read an existing file of this name first; below a file there is none.
+    const auto name = path / "memory";
+    const Hdf5Handle file(H5Fcreate(name.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose);
+    fill(file, particles, step, time, method);
+    hdf5Checked(H5Fflush(file, H5F_SCOPE_LOCAL));
+    const ssize_t size = hdf5Checked(H5Fget_file_image(file, nullptr, 0));
+    void* image = nullptr;  // takes the address of the driver's pointer to its memory: the bytes without a copy
+    hdf5Checked(H5Fget_vfd_handle(file, access, &image));
+    const void* content = *static_cast<const void* const*>(image);
+    const ChecksumRecord record = ChecksumRecord::of(content, static_cast<std::size_t>(size));
+    AtomicFile target(path);
+    target.write(content, static_cast<std::size_t>(size));
+    target.write(&record, sizeof record);
+    target.commit();
+  } catch (const Hdf5Error& e) {
+    throw RunError(fmt::format("cannot write {}: {}", path.string(), e.what()));
+  }
+}
+
+template <int D>
+Checkpoint<D> readCheckpoint(const std::filesystem::path& path, ParticlePart part) {
+  const Hdf5Silence silence;
+  requireReadable(path);
+  // HDF5 trusts what it reads, and a damaged file can end the program: the checksum is looked at before.
+  const std::optional<bool> holds = checksumHolds(path);
+  const auto refuse = [&](std::string_view why) {
+    return InputError(fmt::format("{}: no usable checkpoint: {}", path.string(), why));
+  };
+  if (!holds)
+    throw refuse(
+        fmt::format("its checksum is missing: it is cut off, another program has written it, or its format is "
+                    "older than 4; expected format {}",
+                    formatVersion));
+  if (!*holds) throw refuse("damaged, its checksum is another one");
+  try {
+    return readContent<D>(path, part);
+  } catch (const Hdf5Error& e) {
+    throw refuse(e.what());
+  }
+}
+
+template void writeCheckpoint<2>(const std::filesystem::path&, const Particles<2>&, std::int64_t, double,
+                                 MethodKind);
+template void writeCheckpoint<3>(const std::filesystem::path&, const Particles<3>&, std::int64_t, double,
+                                 MethodKind);
+template Checkpoint<2> readCheckpoint<2>(const std::filesystem::path&, ParticlePart);
+template Checkpoint<3> readCheckpoint<3>(const std::filesystem::path&, ParticlePart);
+
+}  // namespace treacle

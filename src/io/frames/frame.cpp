@@ -1,0 +1,63 @@
+#include "treacle/io/frames/frame.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <optional>
+
+namespace treacle {
+
+namespace {
+
+template <class Out, class Buffer, class Convert>
+std::vector<Out> gathered(const Buffer& field, const std::vector<std::uint32_t>& order, Convert convert) {
+  std::vector<Out> values(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i) values[i] = convert(field[order[i]]);
+  return values;
+}
+
+}  // namespace
+
+template <int D>
+Frame makeFrame(const Particles<D>& particles, std::uint32_t begin, std::uint32_t end, double time) {
+  std::vector<std::uint32_t> order(end - begin);
+  std::iota(order.begin(), order.end(), begin);
+  std::sort(order.begin(), order.end(), [&](auto a, auto b) { return particles.id[a] < particles.id[b]; });
+
+  const auto inSpace = [](const Vec<D>& v) { return resized<3>(v); };
+  const auto same = [](auto value) { return value; };
+  Frame frame;
+  frame.dimensions = D;
+  frame.time = time;
+  frame.position = gathered<Vec<3>>(particles.position, order, inSpace);
+  frame.velocity = gathered<Vec<3>>(particles.velocity, order, inSpace);
+  frame.pressure = gathered<double>(particles.pressure, order, same);
+  frame.numberDensity = gathered<double>(particles.numberDensity, order, same);
+  frame.material = gathered<std::int32_t>(particles.material, order, same);
+  frame.body = gathered<std::int32_t>(particles.body, order, same);
+  frame.id = gathered<std::uint32_t>(particles.id, order, same);
+  if (particles.has.shearRates && end <= particles.fluidCount)
+    frame.shearRate = gathered<double>(particles.shearRate, order, same);
+  if (particles.has.temperatures && end <= particles.fluidCount)
+    frame.temperature = gathered<double>(particles.temperature, order, same);
+  if (particles.has.viscosityFactors && end <= particles.fluidCount)
+    frame.viscosityFactor = gathered<double>(particles.viscosityFactor, order, same);
+  return frame;
+}
+
+void addViscosities(const std::vector<Material>& materials, Frame& frame) {
+  std::vector<std::optional<ShiftFactor>> shifts(materials.size());
+  for (std::size_t m = 0; m < materials.size(); ++m)
+    if (materials[m].viscosityShift) shifts[m] = ShiftFactor::make(*materials[m].viscosityShift);
+  frame.dynamicViscosity.resize(frame.shearRate.size());
+  for (std::size_t i = 0; i < frame.shearRate.size(); ++i) {
+    const auto m = static_cast<std::size_t>(frame.material[i]);
+    const double shift = shifts[m] && !frame.temperature.empty() ? (*shifts[m])(frame.temperature[i]) : 1;
+    const double factor = frame.viscosityFactor.empty() ? 1 : frame.viscosityFactor[i];
+    frame.dynamicViscosity[i] = factor * materials[m].viscosity(frame.shearRate[i], shift);
+  }
+}
+
+template Frame makeFrame<2>(const Particles<2>&, std::uint32_t, std::uint32_t, double);
+template Frame makeFrame<3>(const Particles<3>&, std::uint32_t, std::uint32_t, double);
+
+}  // namespace treacle

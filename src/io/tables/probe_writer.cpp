@@ -1,0 +1,117 @@
+#include "treacle/io/tables/probe_writer.hpp"
+
+#include "compare/fluid_sampler.hpp"
+#include "treacle/core/parallel.hpp"
+
+#include <fmt/format.h>
+
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+namespace treacle {
+namespace {
+
+/// ",NAME_x,NAME_y" and so on; without a name ",x,y".
+std::string axes(const Case& c, const std::string& name) {
+  std::string text;
+  for (int k = 0; k < c.dimensions; ++k) text += fmt::format(",{}{}{}", name, name.empty() ? "" : "_", "xyz"[k]);
+  return text;
+}
+
+/// Of fields that not all cases have.
+std::string ownFields(const Case& c) {
+  return std::string(c.hasOwnViscosities() ? ",dynamic_viscosity,shear_rate" : "") +
+         (c.heat ? ",temperature" : "");
+}
+
+std::string columns(const Case& c, const Probe& p) {
+  switch (p.kind) {
+    case ProbeKind::Point:
+    case ProbeKind::Line:
+    case ProbeKind::Plane:
+      return fmt::format("time{}{}{},pressure{}", p.kind == ProbeKind::Line ? ",distance" : "", axes(c, ""),
+                         axes(c, "velocity"), ownFields(c));
+    case ProbeKind::Height:
+      return "time,height" + axes(c, "");
+    case ProbeKind::Flow:
+      return "time,volume_flow_rate,mass_flow_rate";
+    case ProbeKind::Region:
+      return fmt::format("time,volume,mass{}{},pressure,dynamic_viscosity{}{}", axes(c, "center"),
+                         axes(c, "velocity"), c.hasOwnViscosities() ? ",shear_rate" : "",
+                         c.heat ? ",temperature" : "");
+    case ProbeKind::Load:
+      break;
+  }
+  return fmt::format("time{}{},power", axes(c, "force"),
+                     c.dimensions == 2 ? ",torque" : ",torque_x,torque_y,torque_z");
+}
+
+}  // namespace
+
+ProbeWriter::ProbeWriter(RowTarget to, const Case& c, const Probe& probe)
+    : case_(c),
+      probe_(probe),
+      hasOwnViscosities_(c.hasOwnViscosities()),
+      rows_(std::move(to), columns(c, probe)) {}
+
+std::string ProbeWriter::components(const Vec<3>& v) const {
+  std::string text;
+  for (int k = 0; k < case_.dimensions; ++k) text += fmt::format(",{}", v[k]);
+  return text;
+}
+
+void ProbeWriter::append(double time, const Frame& fluid, const Frame& walls) {
+  const FluidSampler sampler(fluid, walls, case_.domain, case_.spacing);
+  if (probe_.kind == ProbeKind::Height) {
+    const Vec<3> way = probe_.to - probe_.from;
+    const double height = sampler.extent(probe_.from, probe_.to);
+    return rows_.append(
+        fmt::format("{},{}{}", time, height, components(probe_.from + (height / norm(way)) * way)));
+  }
+  const ProbePlaces places = ProbePlaces::of(probe_, case_.spacing);
+  std::vector<FluidSample> samples(places.count());
+  parallelFor(samples.size(), parallelGrain, [&](std::size_t k) { samples[k] = sampler.at(places.at(k)); });
+  std::string rows;
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    const Vec<3> x = places.at(k);
+    const FluidSample& s = samples[k];
+    if (k > 0) rows += '\n';
+    rows += fmt::format("{}", time);
+    if (probe_.kind == ProbeKind::Line) rows += fmt::format(",{}", norm(x - probe_.from));
+    rows += components(x) + components(s.velocity) + fmt::format(",{}", s.pressure);
+    if (hasOwnViscosities_) rows += fmt::format(",{},{}", s.viscosity, s.shearRate);
+    if (case_.heat) rows += fmt::format(",{}", s.temperature);
+  }
+  rows_.append(std::move(rows));
+}
+
+/// Means are those by volume. Of a part without fluid they are 0/0, not a number.
+void ProbeWriter::append(double time, const PartSums& s) {
+  if (probe_.kind == ProbeKind::Flow) {
+    const Vec<3> downstream = (1 / norm(probe_.normal)) * probe_.normal;
+    return rows_.append(fmt::format("{},{},{}", time, dot(s.flow, downstream), dot(s.momentum, downstream)));
+  }
+  const auto mean = [&](double sum) { return sum / s.volume; };
+  std::string row = fmt::format("{},{},{}", time, s.volume, s.mass);
+  for (int k = 0; k < case_.dimensions; ++k) row += fmt::format(",{}", s.moment[k] / s.mass);
+  for (int k = 0; k < case_.dimensions; ++k) row += fmt::format(",{}", mean(s.flow[k]));
+  row += fmt::format(",{},{}", mean(s.pressure), mean(s.viscosity));
+  if (hasOwnViscosities_) row += fmt::format(",{}", mean(s.shearRate));
+  if (case_.heat) row += fmt::format(",{}", mean(s.temperature));
+  rows_.append(std::move(row));
+}
+
+void ProbeWriter::append(double time, const std::vector<WallLoad>& walls) {
+  std::size_t index = 0;  // among the walls of the case
+  for (const Body& body : case_.bodies) {
+    if (body.name == probe_.body) break;
+    index += body.isWall();
+  }
+  const WallLoad& load = walls.at(index);
+  std::string row = fmt::format("{}{}", time, components(load.force));
+  for (int k = case_.dimensions == 2 ? 2 : 0; k < 3; ++k) row += fmt::format(",{}", load.torque[k]);
+  rows_.append(row + fmt::format(",{}", load.power));
+}
+
+}  // namespace treacle

@@ -1,0 +1,337 @@
+#include "treacle/model/case/checks.hpp"
+
+#include "particles/fluid_extent.hpp"
+#include "treacle/model/case/names.hpp"
+#include "treacle/model/geometry/shape.hpp"
+#include "treacle/model/motion/friction.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace treacle {
+namespace {
+
+constexpr double rounding = 1e-6;  // relative error allowed in "a whole number of steps"
+
+bool wholeNumber(double x) { return std::abs(x - std::round(x)) <= rounding * std::max(1.0, std::abs(x)); }
+
+const Material& materialOf(const Case& c, const Body& body) {
+  return c.materials[static_cast<std::size_t>(body.material)];
+}
+
+/// That of a polygon or mesh that is not all of the inside; 0 stands for what is needed.
+double layerThickness(const Shape& s) {
+  const bool known = s.fill != FillKind::Inside && s.thickness > 0;
+  return known ? s.thickness : std::numeric_limits<double>::infinity();
+}
+
+/// Thinnest extent of a wall before its transform, with the words that say where.
+std::pair<double, std::string> ownThickness(const Shape& s, int dimensions) {
+  if (s.kind == ShapeKind::Box) {
+    int thinnest = 0;
+    for (int k = 1; k < dimensions; ++k)
+      if (s.max[k] - s.min[k] < s.max[thinnest] - s.min[thinnest]) thinnest = k;
+    return {s.max[thinnest] - s.min[thinnest], std::string("along ") + "xyz"[thinnest]};
+  }
+  if (s.kind == ShapeKind::Torus)
+    return {s.innerRadius > 0 ? s.tubeRadius - s.innerRadius : 2 * s.tubeRadius, "across its tube"};
+  if (s.kind == ShapeKind::Cone) {
+    const bool hollow = s.innerStartRadius > 0 || s.innerEndRadius > 0;
+    const double widest = 2 * std::max(s.startRadius, s.endRadius);
+    const double across =
+        hollow ? std::max(s.startRadius - s.innerStartRadius, s.endRadius - s.innerEndRadius) : widest;
+    const double length = norm(s.end - s.start);
+    return length < across ? std::pair{length, std::string("along its axis")}
+                           : std::pair{across, std::string(hollow ? "between its radii" : "across")};
+  }
+  const double radial = s.innerRadius > 0 ? s.radius - s.innerRadius : 2 * s.radius;
+  const double length = norm(s.end - s.start);
+  if (s.kind == ShapeKind::Cylinder && length < radial) return {length, "along its axis"};
+  return {radial, s.innerRadius > 0 ? "between its radii" : "across"};
+}
+
+/// The same as it stands in the case [m]; infinite where it is not known.
+std::pair<double, std::string> thickness(const Shape& s, int dimensions) {
+  if (s.kind == ShapeKind::Polygon || s.kind == ShapeKind::Mesh) return {layerThickness(s), "(thickness)"};
+  if (s.kind == ShapeKind::Particles) return {std::numeric_limits<double>::infinity(), ""};
+  auto [extent, where] = ownThickness(s, dimensions);
+  return {extent * (s.transform ? s.transform->scale : 1), std::move(where)};
+}
+
+/// What the interaction radius is called.
+std::string_view reachName(const Case& c) {
+  if (c.method.kind == MethodKind::Isph) return "reach 2 h of the kernel";
+  if (c.viscosityRadius() >= c.densityRadius()) return "viscosity radius h_v";
+  return c.densityRadius() > c.pressureRadius() ? "density radius h_n" : "pressure radius h_p";
+}
+
+void warnCompression(const Case& c, std::vector<std::string>& warnings) {
+  const double most = mostCompression(c);
+  for (const StabilityNumbers& n : stabilityNumbers(c)) {
+    if (n.compression <= most * (1 + rounding)) continue;
+    std::string advice = "give it a bulk_viscosity of at least bulk_modulus times the step";
+    if (std::isfinite(n.compression))
+      advice = fmt::format("take bulk_modulus <= {}, or a step of at most {:.3g} s", mostBulkModulusText(c),
+                           c.time.step * most / n.compression);
+    warnings.push_back(
+        fmt::format("material '{}': dt kappa / lambda = {:.4g} is greater than {:g}, the step may be unstable; {}",
+                    n.material, n.compression, most, advice));
+  }
+}
+
+/// What the fluid bodies that lie on a fluid body weigh, as a pressure [Pa]: those above it along gravity, which
+/// is not zero, that overlap with it across. `heavier`: only those of a larger density.
+double weightOn(const Case& c, const Body& below, bool heavier) {
+  int down = 0;
+  for (int k = 1; k < c.dimensions; ++k)
+    if (std::abs(c.gravity[k]) > std::abs(c.gravity[down])) down = k;
+  const Extent box = boundingBox(below.shape, c.dimensions);
+  const Heights h = heightsOf(c, box);
+  double pressure = 0;
+  for (const Body& body : c.bodies) {
+    const double density = materialOf(c, body).density;
+    if (body.kind != BodyKind::Fluid || &body == &below) continue;
+    if (heavier && density <= materialOf(c, below).density) continue;
+    const Extent other = boundingBox(body.shape, c.dimensions);
+    const Heights its = heightsOf(c, other);
+    bool onIt = its.low + its.high > h.low + h.high;
+    for (int k = 0; k < c.dimensions; ++k)
+      onIt = onIt && (k == down || (other.min[k] < box.max[k] && box.min[k] < other.max[k]));
+    if (onIt) pressure += density * norm(c.gravity) * (its.high - std::max(its.low, h.low));
+  }
+  return pressure;
+}
+
+// Spacings, and l^2/mu times the mean diagonal of V in a lattice: 2.2 to 2.6.
+constexpr double mostPushed = 0.5, latticeViscosity = 2.5;
+
+/// The longest step of a fluid that carries the pressure p [Pa] of heavier ones [s].
+double longestCarryingStep(const Case& c, const Material& m, double p) {
+  const double inertia = m.density * c.spacing * c.spacing;
+  const double half = 0.5 * mostPushed * latticeViscosity * c.typicalViscosity(m) / p;
+  return half + std::sqrt(half * half + mostPushed * inertia / p);
+}
+
+/// A particle that the pressure on one side of it does not meet on the other goes so many spacings in a step.
+/// Light and thin fluids cannot keep their particles in order under a heavy one: those give way, the density
+/// rises, and the heavy fluid sinks in. Measured for a fluid of 1 to 1000 kg/m3 and 1e-4 to 1 Pa s under one of
+/// 1000 kg/m3 and 10 Pa s: it carries with 0.5, and by the accurate scheme with 1; with 3 it does not.
+void warnLightFluids(const Case& c, std::vector<std::string>& warnings) {
+  for (const Body& body : c.bodies) {
+    const double p = body.kind == BodyKind::Fluid ? weightOn(c, body, true) : 0;
+    if (p == 0) continue;
+    const Material& m = materialOf(c, body);
+    const double dt = c.time.step, inertia = m.density * c.spacing * c.spacing;  // times 1/dt like a viscosity
+    const double way = p * dt / (inertia / dt + latticeViscosity * c.typicalViscosity(m));
+    if (way <= mostPushed * (1 + rounding)) continue;
+    warnings.push_back(fmt::format(
+        "fluid '{}' is too light and too thin for the heavier fluid on it: a pressure of {:.3g} Pa can move its "
+        "particles by {:.3g} spacings in a step, more than {:g}, so that the heavier fluid may sink into it; take "
+        "steps of at most {:.2g} s, or a dynamic_viscosity of '{}' of at least {:.2g} Pa s",
+        body.name, p, way, mostPushed, longestCarryingStep(c, m, p), m.name,
+        (p * dt / mostPushed - inertia / dt) / latticeViscosity));
+  }
+}
+
+/// What its own weight and that of the fluids on it do to the volume of a fluid: the bulk modulus lets it be
+/// compressed by p / kappa in the end, the bulk viscosity by p / lambda in a second.
+void warnSoftFluids(const Case& c, std::vector<std::string>& warnings) {
+  constexpr double most = 0.1;
+  for (const Body& body : c.bodies) {
+    if (body.kind != BodyKind::Fluid) continue;
+    const Material& m = materialOf(c, body);
+    const double own = heightsOf(c, boundingBox(body.shape, c.dimensions)).extent();
+    const double p = weightOn(c, body, false) + m.density * norm(c.gravity) * own;
+    const double share = std::min(p / m.bulkModulus, p * c.time.end / m.bulkViscosity);
+    if (!(share > most)) continue;
+    warnings.push_back(fmt::format(
+        "fluid '{}' is too soft for the weight that it carries: {:.3g} Pa may compress it by {:.2g} %; take a "
+        "bulk_modulus of '{}' of at least {:.2g} Pa, and a bulk_viscosity of at least {:.2g} Pa s",
+        body.name, p, 100 * std::min(share, 1.0), m.name, p / most, p / most * c.time.step / mostCompression(c)));
+  }
+}
+
+void warnThinWalls(const Case& c, std::vector<std::string>& warnings) {
+  for (const Body& body : c.bodies) {
+    if (!body.isWall()) continue;
+    const auto [extent, where] = thickness(body.shape, c.dimensions);
+    const double reach = c.interactionRadius();
+    if (extent >= reach * (1 - rounding)) continue;
+    warnings.push_back(fmt::format(
+        "wall '{}' is {} thick {}, thinner than the {} = {} ({:g} spacings): fluid next to it misses neighbours",
+        body.name, lengthText(extent), where, reachName(c), lengthText(reach), reach / c.spacing));
+  }
+}
+
+/// Sums over particles are to stand for integrals. With radii from these on, the sums of Wendland's C2 over a
+/// cubic lattice vary by less than 2.5 % with the place, and those of its slope times r by less than 6 %; at 2
+/// spacings the former vary by up to 6 %. The weights of [K23] need the neighbours along the diagonal.
+void warnShortRadii(const Case& c, std::vector<std::string>& warnings) {
+  const MethodSettings& m = c.method;
+  if (m.kind != MethodKind::MphI) return;
+  const auto check = [&](std::string_view key, double radius, double least) {
+    if (radius >= least * (1 - rounding)) return;
+    warnings.push_back(fmt::format(
+        "method.{} = {:g} spacings is short for the scheme '{}', expected at least {:g}: sums over so few "
+        "neighbours depend on where these stand",
+        key, radius, nameOf(m.scheme), least));
+  };
+  const bool published = m.scheme == SchemeKind::Published;
+  check("pressure_radius", m.pressureRadius, published ? 1.5 : 2.5);
+  check("viscosity_radius", m.viscosityRadius, published ? 1.5 : 2);
+}
+
+/// Of the longest step that a run makes.
+double courantNumberAt(const Case& c, double speed) {
+  const double number = speed * c.time.step / c.spacing;
+  const double most = c.time.mostCourant();
+  return most > 0 ? std::min(number, most) : number;
+}
+
+/// The forces of MPH-I are implicit but for gravity; ISPH moves on what it has at the start of a step. How fast a
+/// viscous fluid falls nobody knows before, so with MPH-I the speeds that the case gives count alone.
+void warnCourant(const Case& c, std::vector<std::string>& warnings) {
+  const bool isph = c.method.kind == MethodKind::Isph;
+  const double largest = isph ? 0.5 : 1, number = isph ? courantNumber(c) : courantNumberAt(c, givenSpeed(c));
+  if (number <= largest * (1 + rounding)) return;
+  warnings.push_back(fmt::format(
+      "the Courant number of steps of {:g} s is {:.3g}, more than {:g}: {}; take steps of at most {:.2g} "
+      "s, or let time.courant limit them",
+      c.time.step, number, largest,
+      isph ? "the step may be unstable" : "particles may pass each other or enter walls in a step",
+      c.time.step * largest / number));
+}
+
+/// Surface tension acts as it is at the start of a step: a step is not to be much longer than what viscosity and
+/// inertia take to move a particle by its spacing (docs/surface-tension.md).
+void warnTension(const Case& c, std::vector<std::string>& warnings) {
+  for (const Material& m : c.materials) {
+    if (m.surfaceTension == 0) continue;
+    const double most = std::max(2 * c.typicalViscosity(m) * c.spacing / m.surfaceTension,
+                                 std::sqrt(m.density * std::pow(c.spacing, 3) / m.surfaceTension));
+    if (c.time.step <= most * (1 + rounding)) continue;
+    warnings.push_back(fmt::format(
+        "material '{}': steps of {:g} s are long for its surface tension, particles of the surface may leave it; "
+        "take {} <= {:.2g}",
+        m.name, c.time.step, c.time.stepKey(), most));
+  }
+}
+
+/// Keys of a fluid on a material that no fluid is made of, and those of walls likewise, or where no surface meets
+/// them.
+void warnKeysOfOthers(const Case& c, std::vector<std::string>& warnings) {
+  for (const Material& m : c.materials) {
+    const auto isOf = [&](auto&& kind) {
+      return std::ranges::any_of(c.bodies, [&](const Body& b) { return &materialOf(c, b) == &m && kind(b); });
+    };
+    const bool fluid = isOf([](const Body& b) { return b.holdsFluid(); });
+    const bool wall = isOf([](const Body& b) { return b.isWall(); });
+    const bool tension = std::ranges::any_of(c.materials, [](const Material& f) { return f.surfaceTension > 0; });
+    const auto warn = [&](std::string_view key, std::string_view why) {
+      warnings.push_back(fmt::format("material '{}' has {} without effect: {}", m.name, key, why));
+    };
+    constexpr std::string_view noFluid = "no fluid is made of it", noWall = "no wall is made of it";
+    if (m.surfaceTension > 0 && !fluid) warn("surface_tension", noFluid);
+    if (c.heat && m.emissivity > 0 && !fluid) warn("emissivity", noFluid);
+    const bool angle = m.contactAngle != Material{}.contactAngle;
+    if (angle && !wall) warn("contact_angle", noWall);
+    if (!m.contactAngles.empty() && !wall) warn("contact_angles", noWall);
+    if ((angle || !m.contactAngles.empty()) && wall && !tension)
+      warn(angle ? "contact_angle" : "contact_angles", "no fluid has a surface_tension");
+  }
+}
+
+/// Of bodies of which only one has friction.
+void warnFriction(const Case& c, std::vector<std::string>& warnings) {
+  for (const Body& body : c.bodies) {
+    const auto rubs = [&](const Body& other) {
+      return &other != &body && (body.kind == BodyKind::Rigid || other.kind == BodyKind::Rigid) &&
+             frictionBetween(body, other) > 0;
+    };
+    if (body.friction == 0 || std::ranges::any_of(c.bodies, rubs)) continue;
+    warnings.push_back(fmt::format("body '{}' has friction = {:g} without effect: {}", body.name, body.friction,
+                                   c.hasRigid()
+                                       ? "no body that it can touch has any, and the geometric mean of both counts"
+                                       : "no body is rigid, and fluid knows no friction"));
+  }
+}
+
+void warnTimes(const Case& c, std::vector<std::string>& warnings) {
+  if (!wholeNumber(c.time.end / c.time.step))
+    warnings.push_back(fmt::format(
+        "time.end = {:g} s is not a whole number of steps of {:g} s; the run makes {} steps and ends at {:.6g} s",
+        c.time.end, c.time.step, c.steps(), static_cast<double>(c.steps()) * c.time.step));
+  if (c.output.interval > 0 && !wholeNumber(c.output.interval / c.time.step))
+    warnings.push_back(
+        fmt::format("output.interval = {:g} s is not a whole number of steps of {:g} s; frames are written at "
+                    "the nearest step",
+                    c.output.interval, c.time.step));
+}
+
+}  // namespace
+
+std::vector<StabilityNumbers> stabilityNumbers(const Case& c) {
+  std::vector<StabilityNumbers> numbers;
+  for (const Material& m : c.materials) {
+    const double diffusion = c.time.step / (m.density * c.spacing * c.spacing);
+    const bool elastic = c.method.kind == MethodKind::MphI && m.bulkModulus > 0;
+    const double compression = elastic ? c.time.step * m.bulkModulus / m.bulkViscosity : 0;
+    numbers.push_back({m.name, compression, c.typicalViscosity(m) * diffusion, m.bulkViscosity * diffusion});
+  }
+  return numbers;
+}
+
+double mostCompression(const Case& c) { return c.densityRadius() > c.pressureRadius() * (1 + rounding) ? 0.5 : 1; }
+
+std::string mostBulkModulusText(const Case& c) {
+  return mostCompression(c) == 1 ? "bulk_viscosity / step" : "0.5 bulk_viscosity / step";
+}
+
+StableStep longestStableStep(const Case& c) {
+  StableStep stable{std::numeric_limits<double>::infinity(), "nothing"};
+  const auto bound = [&](double length, std::string reason) {
+    if (length < stable.length) stable = {length, std::move(reason)};
+  };
+  for (const Material& m : c.materials)
+    if (m.bulkModulus > 0 && m.bulkViscosity > 0)  // without the latter no step is
+      bound(mostCompression(c) * m.bulkViscosity / m.bulkModulus,
+            fmt::format("dt kappa / lambda of '{}'", m.name));
+  for (const Body& body : c.bodies) {
+    if (body.kind != BodyKind::Fluid || norm(c.gravity) == 0) continue;
+    if (const double p = weightOn(c, body, true); p > 0)
+      bound(longestCarryingStep(c, materialOf(c, body), p), fmt::format("the heavier fluid on '{}'", body.name));
+  }
+  return stable;
+}
+
+void setStepBounds(Case& c) {
+  TimeSettings& t = c.time;
+  if (!t.automatic) return;
+  if (t.step == 0) t.step = std::min(longestStableStep(c).length, t.end);
+  if (t.least == 0) t.least = t.step / 1e4;
+}
+
+double courantNumber(const Case& c) {
+  return courantNumberAt(c, std::max(givenSpeed(c), std::sqrt(2 * norm(c.gravity) * fluidHeight(c))));
+}
+
+std::vector<std::string> caseWarnings(const Case& c) {
+  std::vector<std::string> warnings;
+  warnCompression(c, warnings);
+  if (c.method.kind == MethodKind::MphI && norm(c.gravity) > 0) {
+    warnLightFluids(c, warnings);
+    warnSoftFluids(c, warnings);
+  }
+  warnCourant(c, warnings);
+  warnTension(c, warnings);
+  warnKeysOfOthers(c, warnings);
+  warnThinWalls(c, warnings);
+  warnFriction(c, warnings);
+  warnShortRadii(c, warnings);
+  if (!c.time.stepsVary()) warnTimes(c, warnings);
+  return warnings;
+}
+
+}  // namespace treacle

@@ -1,0 +1,84 @@
+#include "treacle/model/case/flow_scales.hpp"
+
+#include "particles/fluid_extent.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+namespace treacle {
+namespace {
+
+double nozzleWidth(const Nozzle& n, int dimensions) {
+  if (n.kind == NozzleKind::Disc) return n.innerRadius > 0 ? n.radius - n.innerRadius : 2 * n.radius;
+  if (n.kind == NozzleKind::Rectangle) return dimensions == 3 ? std::min(n.width, n.height) : n.width;
+  Vec<2> low{}, high{};
+  for (const Vec<2>& x : n.points)
+    for (int k = 0; k < 2; ++k) low[k] = std::min(low[k], x[k]), high[k] = std::max(high[k], x[k]);
+  return std::min(high[0] - low[0], high[1] - low[1]);
+}
+
+double shortestSide(const Case& c, const Body& body) {
+  if (body.kind == BodyKind::Inflow) return nozzleWidth(body.inflow.nozzle, c.dimensions);
+  const Extent box = boundingBox(body.shape, c.dimensions);
+  double side = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < c.dimensions; ++k) side = std::min(side, box.max[k] - box.min[k]);
+  return side;
+}
+
+double inflowSpeed(const Inflow& inflow) {
+  if (!inflow.speed) return 0;
+  const TimeFunction& speed = *inflow.speed;
+  return speed.isTable() ? *std::ranges::max_element(speed.values) : speed.at(inflow.start);
+}
+
+FluidNumbers numbersOf(const Case& c, const Material& m, const FlowScales& flow) {
+  FluidNumbers n{.material = m.name};
+  const double mu = c.typicalViscosity(m), g = norm(c.gravity), inertia = m.density * flow.length * flow.length;
+  // Where inertia rules a fluid falls freely, where viscosity does it flows as fast as its weight shears it.
+  n.speed = std::max(flow.given, mu > 0 ? std::min(flow.fall, inertia * g / mu) : flow.fall);
+  if (m.bulkModulus > 0) n.compression = m.density * g * flow.height / m.bulkModulus;
+  if (m.surfaceTension > 0) {
+    n.capillaryStep = std::max(2 * mu * c.spacing / m.surfaceTension,
+                               std::sqrt(m.density * std::pow(c.spacing, 3) / m.surfaceTension));
+    n.bond = inertia * g / m.surfaceTension;
+    const double inertial = std::sqrt(m.surfaceTension / (m.density * flow.length));
+    n.speed = std::max(n.speed, mu > 0 ? std::min(inertial, m.surfaceTension / mu) : inertial);
+  }
+  if (mu > 0) {
+    n.reynolds = m.density * n.speed * flow.length / mu;
+    n.viscousTime = inertia / mu;
+    n.ratio = m.bulkViscosity / mu;
+  }
+  return n;
+}
+
+}  // namespace
+
+FlowScales flowScales(const Case& c) {
+  FlowScales flow;
+  flow.height = fluidHeight(c);
+  flow.fall = std::sqrt(2 * norm(c.gravity) * flow.height);
+  flow.given = givenSpeed(c);
+  double shortest = std::numeric_limits<double>::infinity();
+  for (const Body& body : c.bodies) {
+    if (!body.holdsFluid()) continue;
+    shortest = std::min(shortest, shortestSide(c, body));
+    flow.given = std::max(flow.given, inflowSpeed(body.inflow));
+  }
+  if (std::isfinite(shortest)) flow.length = shortest;
+  return flow;
+}
+
+std::vector<FluidNumbers> fluidNumbers(const Case& c) {
+  const FlowScales flow = flowScales(c);
+  std::vector<FluidNumbers> numbers;
+  for (std::size_t k = 0; k < c.materials.size(); ++k)
+    if (std::ranges::any_of(c.bodies,
+                            [&](const Body& b) { return b.holdsFluid() && b.material == static_cast<int>(k); }))
+      numbers.push_back(numbersOf(c, c.materials[k], flow));
+  return numbers;
+}
+
+}  // namespace treacle

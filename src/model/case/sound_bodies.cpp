@@ -1,0 +1,156 @@
+#include "case_checker.hpp"
+#include "geometry/polygon.hpp"
+
+namespace treacle {
+namespace {
+
+void requireCone(const Checker& at, const Shape& s) {
+  if (s.startRadius == 0 && s.endRadius == 0)
+    at.fail({"end_radius"}, "expected more than 0 at one end of the axis, found 0 at both");
+  const auto requireLess = [&](std::string_view key, double inner, std::string_view of, double radius) {
+    if (inner > radius) at.fail({key}, fmt::format("expected at most {} = {}, found {}", of, radius, inner));
+  };
+  requireLess("inner_start_radius", s.innerStartRadius, "start_radius", s.startRadius);
+  requireLess("inner_end_radius", s.innerEndRadius, "end_radius", s.endRadius);
+  if (s.innerStartRadius == s.startRadius && s.innerEndRadius == s.endRadius)
+    at.fail({"inner_end_radius"}, "found no room between the inner and the outer radii");
+}
+
+void requireTorus(const Checker& at, const Shape& s) {
+  if (at.wholeCase().dimensions == 2)
+    at.fail({"shape"}, "a torus has three dimensions; in the plane a ring is a sphere with an inner_radius");
+  at.requireDirection("axis", s.axis);
+  if (s.tubeRadius >= s.radius)
+    at.fail({"tube_radius"}, fmt::format("expected less than radius = {}, found {}", s.radius, s.tubeRadius));
+  if (s.innerRadius >= s.tubeRadius)
+    at.fail({"inner_radius"},
+            fmt::format("expected less than tube_radius = {}, found {}", s.tubeRadius, s.innerRadius));
+}
+
+/// Corners in order.
+void requireOutline(const Checker& at, const std::vector<Vec<2>>& points) {
+  constexpr std::size_t most = 10'000;
+  const std::size_t count = points.size();
+  if (count < 3 || count > most)
+    at.fail({"points"}, fmt::format("expected 3 to {} points, the corners in order, found {}", most, count));
+  const auto text = [&](std::size_t k) {
+    return fmt::format("({}, {})", points[k % count][0], points[k % count][1]);
+  };
+  if (const auto sides = crossingSides(points)) {
+    const auto [a, b] = *sides;
+    if (a == b)
+      at.fail({"points"},
+              fmt::format("found {} twice in a row, as points {} and {}", text(a), a + 1, (a + 1) % count + 1));
+    at.fail({"points"}, fmt::format("the side from {} to {} meets that from {} to {}: expected corners in order, "
+                                    "whose sides meet nowhere else",
+                                    text(a), text(a + 1), text(b), text(b + 1)));
+  }
+  if (signedArea2(points) == 0) at.fail({"points"}, "expected a polygon with an area, found points in a line");
+}
+
+void requirePolygon(const Checker& at, const Shape& s) {
+  requireOutline(at, s.points);
+  if (at.wholeCase().dimensions == 3 && !(s.bottom < s.top))
+    at.fail({"top"}, fmt::format("expected more than bottom = {}, found {}", s.bottom, s.top));
+}
+
+void requireShape(const Checker& at, const Shape& s) {
+  switch (s.kind) {
+    case ShapeKind::Box:
+      return at.requireOrder(s.min, s.max);
+    case ShapeKind::Torus:
+      return requireTorus(at, s);
+    case ShapeKind::Polygon:
+      return requirePolygon(at, s);
+    case ShapeKind::Mesh:
+      if (at.wholeCase().dimensions == 2)
+        at.fail({"shape"},
+                "a mesh has three dimensions; in the plane shape = \"polygon\" takes the points of an outline");
+      return;
+    case ShapeKind::Particles:
+      return;
+    case ShapeKind::Sphere:
+    case ShapeKind::Cylinder:
+    case ShapeKind::Cone:
+      break;
+  }
+  if (s.kind != ShapeKind::Sphere && s.start == s.end) at.fail({"end"}, "expected a point other than start");
+  if (s.kind == ShapeKind::Cone) return requireCone(at, s);
+  if (s.innerRadius >= s.radius)
+    at.fail({"inner_radius"}, fmt::format("expected less than radius = {}, found {}", s.radius, s.innerRadius));
+}
+
+/// Its torque has no nearest image.
+void requireRigid(const Checker& at) {
+  const Case& c = at.wholeCase();
+  for (int k = 0; k < c.dimensions; ++k)
+    if (c.domain.periodic[static_cast<std::size_t>(k)])
+      at.fail({"type"}, fmt::format("there can be no rigid body in a domain that is periodic along {}", "xyz"[k]));
+}
+
+}  // namespace
+
+void requireSound(const Checker& at, const Rotation& r) {
+  if (r.angle && r.speed != 0) at.fail({"angle"}, "expected one of speed and angle, found both");
+  at.requireDirection("axis", r.axis);
+}
+
+void requireSound(const Checker& at, const Transform& t) {
+  at.requireDirection("axis", t.axis);
+  if (t.angle != 0 && norm2(t.angles) > 0)
+    at.fail({"angles"}, "expected either angle, about axis, or angles, about x, y and z; found both");
+}
+
+void requireSound(const Checker& at, const Nozzle& n) {
+  at.requireDirection("direction", n.direction);
+  if (n.kind == NozzleKind::Disc && n.innerRadius >= n.radius)
+    at.fail({"inner_radius"}, fmt::format("expected less than radius = {}, found {}", n.radius, n.innerRadius));
+  if (n.kind == NozzleKind::Polygon) {
+    if (at.wholeCase().dimensions == 2)
+      at.fail({"shape"}, "a polygon has two dimensions; in the plane an opening is a \"rectangle\" with a width");
+    requireOutline(at, n.points);
+  }
+  if (norm(cross(n.up, n.direction)) <= 1e-6 * norm(n.up) * norm(n.direction) && norm(n.up) > 0)
+    at.fail({"up"}, "expected a vector that is not along the direction");
+}
+
+void requireSound(const Checker& at, const Inflow& i) {
+  if (i.speed.has_value() == i.flowRate.has_value())
+    at.fail({i.speed ? "flow_rate" : "speed"},
+            i.speed ? "expected one of speed and flow_rate, found both" : "missing; expected speed or flow_rate");
+  if (i.end > 0 && i.end <= i.start)
+    at.fail({"end"},
+            fmt::format("expected 0, which is never, or more than start = {} s, found {}", i.start, i.end));
+}
+
+void requireSound(const Checker& at, const Outflow& o) {
+  if (o.kind == OutflowKind::Box) return at.requireOrder(o.min, o.max);
+  at.requireDirection("normal", o.normal);
+}
+
+/// Only fluids start with velocities of their own for each particle, only walls and nozzles are moved.
+void requireSound(const Checker& at, const Body& b) {
+  if (b.kind == BodyKind::Inflow) return requireSound(at, b.inflow);
+  requireShape(at, b.shape);
+  if (b.kind == BodyKind::Rigid) requireRigid(at);
+  if (b.kind == BodyKind::Fluid) {
+    constexpr const char* text = "only a body of type \"wall\" can have one";
+    if (b.displacement != TimeVector{}) at.fail({"displacement"}, text);
+    if (b.oscillation != Oscillation{}) at.fail({"oscillation"}, text);
+    if (b.rotation) at.fail({"rotation"}, text);
+    return;
+  }
+  if (!b.temperatureExpression.empty())
+    at.fail({"temperature"}, fmt::format("only a body of type \"fluid\" can have an expression, found \"{}\"",
+                                         b.temperatureExpression));
+  if (b.wallConductance > 0 && b.temperature == 0)
+    at.fail({"temperature"},
+            "missing; expected that of what is behind a wall with wall_conductance: a positive number [K]");
+  for (const std::string& text : b.velocityExpression)
+    if (!text.empty())
+      at.fail({"velocity"}, fmt::format("only a body of type \"fluid\" can have expressions; expected an array of "
+                                        "{} finite numbers [m/s], found \"{}\"",
+                                        at.wholeCase().dimensions, text));
+}
+
+}  // namespace treacle

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "facet_tree.hpp"
+#include "treacle/model/case/body.hpp"
+
+#include <optional>
+#include <utility>
+
+namespace treacle {
+
+/// Twice the area that a polygon goes round, negative clockwise [m2].
+double signedArea2(const std::vector<Vec<2>>& points);
+
+/// Indices of two sides of a polygon that cut or touch each other, other than at the corner between them; of a
+/// side without a length twice its own. A side is called by the corner that it begins at.
+std::optional<std::pair<std::size_t, std::size_t>> crossingSides(const std::vector<Vec<2>>& points);
+
+/// The boundary of a polygon, which must not cross itself, counter-clockwise; in space that of a prism.
+template <int D>
+std::vector<Facet<D>> polygonFacets(const Shape& polygon);
+
+}  // namespace treacle

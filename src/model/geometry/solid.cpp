@@ -1,0 +1,154 @@
+#include "solid.hpp"
+
+#include "polygon.hpp"
+#include "treacle/model/geometry/mesh.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace treacle {
+namespace {
+
+template <int D>
+std::shared_ptr<const FacetTree<D>> treeOf(const Shape& s) {
+  if constexpr (D == 3)
+    if (s.kind == ShapeKind::Mesh) return {s.file.mesh.value, &s.file.mesh.value->tree()};
+  return std::make_shared<const FacetTree<D>>(polygonFacets<D>(s));
+}
+
+}  // namespace
+
+template <int D>
+Solid<D>::Solid(const Shape& s, double needed, double spacing)
+    : similarity_(similarityOf<D>(s)),
+      tree_(treeOf<D>(s)),
+      fill_(s.fill),
+      closed_(s.kind != ShapeKind::Mesh || s.file.mesh.value->facts().closed()),
+      sign_(s.flip ? -1 : 1),
+      thickness_((s.thickness > 0 ? s.thickness : needed) / similarity_.scale()),
+      slack_(1e-6 * spacing / similarity_.scale()),
+      spacing_(spacing / similarity_.scale()) {
+  Shape layered = s;
+  layered.thickness = thickness_ * similarity_.scale();
+  const Extent box = boundingBox(layered, D);
+  const Vec<D> margin = Vec<D>::filled(1e-6 * spacing);
+  min_ = resized<D>(box.min) - margin, max_ = resized<D>(box.max) + margin;
+}
+
+template <int D>
+typename Solid<D>::Answer Solid<D>::filled(const Vec<D>& x) const {
+  const Vec<D> local = similarity_.pointBefore(x);
+  const auto answer = [&](bool within, double sure) { return Answer{within, sure * similarity_.scale()}; };
+  // Farther away nothing need be known: in the middle of a ball all of its facets would be looked at.
+  const double limit = thickness_ + 16 * spacing_, d = std::min(tree_->nearest(local, limit).distance, limit);
+  if (fill_ == FillKind::Sheet) return answer(d <= thickness_ / 2 + slack_, std::abs(d - thickness_ / 2 - slack_));
+  const bool layer = fill_ != FillKind::Inside;
+  const double end = thickness_ + slack_;
+  if (layer && d > end) return answer(false, d - end);
+  if (d <= slack_) return answer(fill_ != FillKind::Outside, 0);
+  const double w = sign_ * tree_->winding(local);
+  // Beside holes winding numbers change with the place. They are harmonic: where they are within 1.5 of their
+  // middle in a ball of radius d, none changes by more than 1.5 D r / (d - r) on a way of r.
+  const double off = std::abs(w - 0.5);
+  double sure = closed_ ? d - slack_ : (d - slack_) * off / (off + 1.5 * D);
+  const bool within = (w >= 0.5) != (fill_ == FillKind::Outside);
+  if (layer && within) sure = std::min(sure, end - d);
+  return answer(within, sure);
+}
+
+template <int D>
+bool Solid<D>::contains(const Vec<D>& x) const {
+  for (int k = 0; k < D; ++k)
+    if (x[k] < min_[k] || x[k] > max_[k]) return false;
+  const Vec<D> local = similarity_.pointBefore(x);
+  switch (fill_) {
+    case FillKind::Inside:
+    case FillKind::Shell:
+      break;
+    case FillKind::Outside:
+      return tree_->nearest(local, thickness_ + slack_).facet != tree_->none && !inside(local);
+    case FillKind::Sheet:
+      return tree_->nearest(local, thickness_ / 2 + slack_).facet != tree_->none;
+  }
+  return inside(local);
+}
+
+/// From a point to its nearest one, a unit vector; from a point of the boundary outward.
+template <int D>
+Vec<D> Solid<D>::direction(const Vec<D>& local, const Near& near) const {
+  if (near.distance > 10 * slack_) return (near.point - local) * (1 / near.distance);
+  const Vec<D> normal = facetNormal<D>(tree_->facet(near.facet)) * sign_;
+  return normal * ((fill_ == FillKind::Outside ? -1 : 1) / norm(normal));
+}
+
+template <int D>
+typename Solid<D>::At Solid<D>::at(int face, const Vec<D>& x) const {
+  const Vec<D> local = similarity_.pointBefore(x);
+  const Near near = tree_->nearest(local);
+  Vec<D> towards = direction(local, near);
+  const auto result = [&](double height, const Vec<D>& normal) {
+    return At{height * similarity_.scale(), similarity_.direction(normal)};
+  };
+  if (fill_ == FillKind::Sheet) return result(near.distance - thickness_ / 2, -towards);
+  const bool onSurface = near.distance <= 10 * slack_;
+  const bool within = onSurface || inside(local) != (fill_ == FillKind::Outside);
+  const double height = within ? -near.distance : near.distance;
+  if (!within) towards = -towards;
+  if (face == 0) return result(height, towards);
+  return result(-height - thickness_, -towards);
+}
+
+template <int D>
+void Solid<D>::ways(const Vec<D>& x, double reach, bool all, std::vector<Way>& found) const {
+  const Vec<D> local = similarity_.pointBefore(x);
+  const Near near = tree_->nearest(local);
+  const Vec<D> first = direction(local, near);
+  const std::size_t begin = found.size();
+  const auto add = [&](const Vec<D>& out, double distance, bool clear) {
+    found.push_back({out, std::max(0.0, distance), clear});
+  };
+  if (fill_ == FillKind::Sheet) {
+    add(-first, thickness_ / 2 - near.distance, true), add(first, thickness_ / 2 + near.distance, true);
+  } else {
+    add(first, near.distance, true);
+    if (fill_ == FillKind::Outside) add(-first, thickness_ - near.distance, false);
+    otherWays(local, reach / similarity_.scale(), first, all, found);
+  }
+  for (std::size_t k = begin; k < found.size(); ++k)
+    found[k].out = similarity_.direction(found[k].out), found[k].distance *= similarity_.scale();
+  std::erase_if(found, [&](const Way& way) { return way.distance > reach; });
+}
+
+template <int D>
+void Solid<D>::otherWays(const Vec<D>& local, double reach, const Vec<D>& first, bool all,
+                         std::vector<Way>& found) const {
+  constexpr double sixty = 0.5 + 1e-6;  // its cosine, with rounding
+  std::vector<Near> nears;
+  const double facing = sign_ * (fill_ == FillKind::Outside ? -1 : 1);
+  tree_->near(local, reach, all ? Vec<D>{} : first * facing, [&](const Near& near) {
+    if (near.distance <= 10 * slack_) return;
+    if (dot(near.point - local, first) <= (all ? 0.999 : sixty) * near.distance) nears.push_back(near);
+  });
+  std::ranges::sort(nears, {}, &Near::distance);
+  const std::size_t most = all ? 6 : 3;
+  std::size_t tests = all ? 64 : 32, taken = 0;
+  const Vec<D>* before = nullptr;
+  for (const Near& near : nears) {
+    if (before && norm(near.point - *before) < 1e-3 * spacing_) continue;
+    before = &near.point;
+    // It is nearer than the points around it if none of them is nearer to a point on the way just before it: so
+    // close that no other side of an edge is there.
+    const Vec<D> out = (near.point - local) * (1 / near.distance);
+    const double step = std::min(near.distance / 2, 2e-5 * spacing_);
+    if (tree_->nearest(near.point - out * step, step * (1 - 1e-3)).facet == tree_->none) {
+      found.push_back({out, near.distance, false});
+      if (++taken == most) return;
+    }
+    if (--tests == 0) return;
+  }
+}
+
+template class Solid<2>;
+template class Solid<3>;
+
+}  // namespace treacle

@@ -1,0 +1,118 @@
+#include "solid_points.hpp"
+
+#include "treacle/core/parallel.hpp"
+#include "treacle/model/case/names.hpp"
+#include "treacle/model/particles/create.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+
+namespace treacle {
+namespace {
+
+/// Points `origin + k spacing` with 0 <= k < count on each axis.
+template <int D>
+struct Rows {
+  Vec<D> origin;
+  Vec<D, std::int64_t> count;
+};
+
+/// Those of the lattice that may be of the solid and are in the domain, or a spacing beside it: there a particle
+/// shows that the body reaches out.
+template <int D>
+Rows<D> rowsOf(const Case& c, const Body& body, const Solid<D>& solid) {
+  const Domain& domain = c.domain;
+  double points = 1;
+  Rows<D> rows{};
+  for (int k = 0; k < D; ++k) {
+    const double first = domain.min[k] + c.spacing / 2;
+    const double last = std::ceil((domain.max[k] - domain.min[k]) / c.spacing);
+    const double low = std::max(std::ceil((solid.min()[k] - first) / c.spacing), -1.0),
+                 high = std::min(std::floor((solid.max()[k] - first) / c.spacing), last);
+    rows.origin[k] = first + low * c.spacing;
+    points *= std::max(0.0, high - low + 1);
+    rows.count[k] = static_cast<std::int64_t>(std::clamp(high - low + 1, 0.0, 1e15));
+  }
+  if (points > static_cast<double>(maxParticles) * 16) throw tooManyPoints(body);
+  return rows;
+}
+
+/// Errors: InputError for one that cannot be meant so.
+template <int D>
+void requireNearDomain(const Case& c, const Body& body, const Solid<D>& solid) {
+  constexpr double much = 10;
+  const Domain& domain = c.domain;
+  bool apart = false, larger = true;
+  for (int k = 0; k < D; ++k) {
+    apart = apart || solid.min()[k] >= domain.max[k] || solid.max()[k] < domain.min[k];
+    larger = larger && solid.max()[k] - solid.min()[k] > much * (domain.max[k] - domain.min[k]);
+  }
+  if (!apart && !larger) return;
+  throw InputError(fmt::format(
+      "body '{}' {}: it reaches from {} to {}, the domain from {} to {}{}", body.name,
+      apart ? "is outside of the domain" : "is far larger than the domain",
+      positionText(resized<3>(solid.min()), D), positionText(resized<3>(solid.max()), D),
+      positionText(domain.min, D), positionText(domain.max, D),
+      body.shape.kind == ShapeKind::Mesh
+          ? "; one metre is one unit of the file, or transform.scale of one: 1e-3 for a file in millimetres"
+          : ""));
+}
+
+}  // namespace
+
+InputError tooManyPoints(const Body& body) {
+  return InputError(
+      fmt::format("body '{}' would have more than {} particles; take a larger spacing or a lower "
+                  "resolution",
+                  body.name, maxParticles));
+}
+
+template <int D>
+std::vector<Vec<D>> solidPoints(const Case& c, const Body& body, std::vector<std::string>& notes,
+                                const std::function<bool(const Vec<D>&)>& keep) {
+  const Solid<D> solid(body.shape, c.interactionRadius(), c.spacing);
+  requireNearDomain(c, body, solid);
+  const Rows<D> rows = rowsOf(c, body, solid);
+  const std::int64_t length = rows.count[0], count = rows.count[1] * (D == 3 ? rows.count[D - 1] : 1);
+  const auto at = [&](std::int64_t i, std::int64_t row) {
+    Vec<D> x = rows.origin;
+    x[0] += static_cast<double>(i) * c.spacing, x[1] += static_cast<double>(row % rows.count[1]) * c.spacing;
+    if constexpr (D == 3) x[2] += static_cast<double>(row / rows.count[1]) * c.spacing;
+    return x;
+  };
+  const std::int64_t some = std::min(count, 1 + (std::int64_t{1} << 22) / std::max<std::int64_t>(length, 1));
+  std::vector<char> within(static_cast<std::size_t>(length * some));
+  std::vector<Vec<D>> points;
+  bool any = false;
+  for (std::int64_t begin = 0; begin < count; begin += some) {
+    const std::int64_t end = std::min(begin + some, count);
+    parallelForDynamic(static_cast<std::size_t>(end - begin), 2, 1, [&](std::size_t r) {
+      char* row = within.data() + static_cast<std::int64_t>(r) * length;
+      for (std::int64_t i = 0; i < length;) {
+        const auto [is, sure] = solid.filled(at(i, begin + static_cast<std::int64_t>(r)));
+        const double further = std::ceil(sure / c.spacing) - 1;  // points for which that is the answer, too
+        const auto last = i + 1 + static_cast<std::int64_t>(std::clamp(further, 0.0, static_cast<double>(length)));
+        for (; i < std::min(last, length); ++i) row[i] = is;
+      }
+    });
+    for (std::int64_t k = 0; k < (end - begin) * length; ++k) {
+      if (!within[static_cast<std::size_t>(k)]) continue;
+      any = true;
+      if (const Vec<D> x = at(k % length, begin + k / length); keep(x)) points.push_back(x);
+      if (points.size() > maxParticles) throw tooManyPoints(body);
+    }
+  }
+  if (!any)
+    notes.push_back(
+        fmt::format("body '{}' ({}, {}) has no particles: no point of the lattice of spacing {} is in it",
+                    body.name, nameOf(body.shape.kind), nameOf(body.shape.fill), lengthText(c.spacing)));
+  return points;
+}
+
+template std::vector<Vec<2>> solidPoints<2>(const Case&, const Body&, std::vector<std::string>&,
+                                            const std::function<bool(const Vec<2>&)>&);
+template std::vector<Vec<3>> solidPoints<3>(const Case&, const Body&, std::vector<std::string>&,
+                                            const std::function<bool(const Vec<3>&)>&);
+
+}  // namespace treacle

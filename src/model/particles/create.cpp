@@ -1,0 +1,264 @@
+#include "treacle/model/particles/create.hpp"
+
+#include "treacle/core/error.hpp"
+#include "treacle/core/parallel.hpp"
+#include "treacle/model/case/names.hpp"
+#include "treacle/model/geometry/shape.hpp"
+#include "treacle/model/geometry/wall_surface.hpp"
+
+#include "body_points.hpp"
+#include "geometry/mesh_notes.hpp"
+#include "geometry/point_boxes.hpp"
+#include "geometry/point_grid.hpp"
+#include "lattice.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+
+namespace treacle {
+namespace {
+
+template <int D>
+struct Filled {
+  const Body* body;
+  BodyPoints<D> points;
+};
+
+/// The points of all bodies of one kind, not yet freed of overlaps.
+template <int D>
+std::vector<Filled<D>> fillBodies(const Case& c, BodyKind kind, std::vector<std::string>& notes) {
+  std::vector<Filled<D>> filled;
+  for (const Body& body : c.bodies) {
+    if (body.kind == BodyKind::Inflow) {
+      filled.push_back({&body, nozzlePoints<D>(c, body, kind, notes)});
+    } else if (body.kind == kind || (kind == BodyKind::Wall && body.isWall())) {
+      filled.push_back({&body, bodyPoints<D>(c, body, notes)});
+      noteMesh(c, body, notes);
+    }
+  }
+  return filled;
+}
+
+template <int D>
+std::size_t total(const std::vector<Filled<D>>& filled) {
+  std::size_t count = 0;
+  for (const Filled<D>& f : filled) count += f.points.size();
+  return count;
+}
+
+/// The nearest image of its centre must stay the same one as a wall turns. Errors: InputError for a wall that
+/// would reach half a period from it.
+template <int D>
+void requireTurnable(const Domain& domain, double spacing, const Filled<D>& f) {
+  if (!f.body->rotation) return;
+  const Vec<3> axis = f.body->rotation->direction();
+  for (int k = 0; k < D; ++k) {
+    const double across = std::sqrt(std::max(0.0, 1 - axis[k] * axis[k]));
+    if (!domain.periodic[static_cast<std::size_t>(k)] || across < 1e-6) continue;
+    double reach = 0;
+    for (const Vec<D>& x : f.points.place) {
+      const Vec<3> d = resized<3>(x) - f.body->rotation->center;
+      const double along = dot(d, axis), radius = norm(d - along * axis);
+      reach = std::max(reach, std::abs(along * axis[k]) + radius * across);
+    }
+    if (f.body->kind == BodyKind::Inflow) reach += spacing;  // its layers go as far before they are set back
+    if (const double half = (domain.max[k] - domain.min[k]) / 2; reach >= half)
+      throw InputError(fmt::format(
+          "rotating {} '{}' reaches {} along the periodic {} axis from its centre; expected less than half the "
+          "domain, {}",
+          nameOf(f.body->kind), f.body->name, lengthText(reach), "xyz"[k], lengthText(half)));
+  }
+}
+
+/// A grid for those points of the bodies that may be too near others.
+template <int D>
+PointGrid<D> gridFor(const Domain& domain, double radius, const std::vector<Filled<D>>& filled,
+                     const PointBoxes<D>& boxes) {
+  std::size_t count = 0;
+  for (const Filled<D>& f : filled)
+    if (const auto near = boxes.near(f.body); !near.empty())
+      count += static_cast<std::size_t>(
+          std::ranges::count_if(f.points.place, [&](const Vec<D>& x) { return near.contain(x); }));
+  return PointGrid<D>(domain, radius, count);
+}
+
+/// What drives an inflow needs all its room. Errors: InputError for walls of which one is that of an inflow.
+template <int D>
+void requireNoNozzle(const Body& a, const Body& b, const Vec<D>& x) {
+  if (a.kind != BodyKind::Inflow && b.kind != BodyKind::Inflow) return;
+  const bool first = a.kind == BodyKind::Inflow;
+  throw InputError(fmt::format(
+      "inflow '{}' and {} '{}' overlap at {}: an inflow needs the room of its nozzle, and as much behind it as "
+      "particles act on each other",
+      first ? a.name : b.name, nameOf((first ? b : a).kind), first ? b.name : a.name,
+      positionText(resized<3>(x), D)));
+}
+
+/// Union in file order: drops points closer than half a spacing to an earlier one and puts those of the rest on
+/// the grid that may be so near to others.
+template <int D>
+void unite(BodyKind kind, std::vector<Filled<D>>& filled, const PointBoxes<D>& boxes, PointGrid<D>& grid,
+           std::vector<std::string>& notes) {
+  for (std::uint32_t b = 0; b < filled.size(); ++b) {
+    auto& points = filled[b].points;
+    const auto near = boxes.near(filled[b].body);
+    if (near.empty()) continue;
+    const std::size_t all = points.size();
+    std::uint32_t other = PointGrid<D>::none;
+    points.filter([&](std::size_t k) {
+      const Vec<D>& x = points.place[k];
+      if (!near.contain(x)) return true;
+      if (const std::uint32_t tag = grid.find(x); tag != PointGrid<D>::none) {
+        other = tag;
+        if (kind == BodyKind::Wall) requireNoNozzle(*filled[b].body, *filled[other].body, x);
+        return false;
+      }
+      grid.add(x, b);
+      return true;
+    });
+    if (points.size() < all)
+      notes.push_back(fmt::format("body '{}': {} of {} particles left out, their place is taken by body '{}'",
+                                  filled[b].body->name, all - points.size(), all, filled[other].body->name));
+  }
+}
+
+/// Errors: InputError for the first wall that shares places with the fluid.
+template <int D>
+void requireApart(const std::vector<Filled<D>>& fluid, const PointGrid<D>& grid,
+                  const std::vector<Filled<D>>& walls, const PointBoxes<D>& boxes) {
+  for (const Filled<D>& wall : walls) {
+    const auto near = boxes.near(wall.body);
+    if (near.empty()) continue;
+    std::vector<std::pair<std::uint32_t, Vec<D>>> hits;
+    for (const Vec<D>& x : wall.points.place) {
+      if (!near.contain(x)) continue;
+      if (const std::uint32_t tag = grid.find(x); tag != PointGrid<D>::none) hits.push_back({tag, x});
+    }
+    if (!hits.empty())
+      throw InputError(
+          fmt::format("fluid body '{}' and wall body '{}' overlap: {} wall particle{} closer than half a spacing "
+                      "to the fluid, "
+                      "the first at {}",
+                      fluid[hits[0].first].body->name, wall.body->name, hits.size(), hits.size() == 1 ? "" : "s",
+                      positionText(resized<3>(hits[0].second), D)));
+  }
+}
+
+/// Makes particles of those points whose ids are in [first, end); `id`: of the next point, `at`: where the next
+/// particle is to stand.
+template <int D>
+void append(const Case& c, BodyKind kind, const std::vector<Filled<D>>& filled, std::uint32_t first,
+            std::uint32_t end, Particles<D>& particles, std::uint32_t& id, std::uint32_t& at) {
+  for (const Filled<D>& f : filled) {
+    const auto body = static_cast<std::uint8_t>(f.body - c.bodies.data());
+    const auto count = static_cast<std::uint32_t>(f.points.size());
+    const std::uint32_t begin = std::clamp(first, id, id + count) - id,
+                        made = std::clamp(end, id, id + count) - id;
+    const InitialState<D> initial(c, *f.body);
+    const bool warm = c.heat && kind == BodyKind::Fluid,
+               factors = particles.has.viscosityFactors && kind == BodyKind::Fluid;
+    const auto place = [&](std::size_t k) {
+      const std::size_t i = at + k;
+      particles.id[i] = static_cast<std::uint32_t>(id + begin + k);
+      particles.position[i] = initial.placeOf(f.points, begin + k, particles.id[i]);
+      particles.velocity[i] = initial.velocityAt(f.points, begin + k);
+      if (warm) particles.temperature[i] = initial.temperatureAt(f.points, begin + k);
+      if (factors) particles.viscosityFactor[i] = initial.viscosityFactorAt(f.points.place[begin + k]);
+      particles.pressure[i] = 0;
+      particles.heldPressure[i] = 0;
+      particles.numberDensity[i] = 0;
+      particles.material[i] = static_cast<std::uint8_t>(f.body->material);
+      particles.body[i] = body;
+    };
+    const std::uint32_t size = made - begin;
+    // Expressions throw, and are not for several threads at once.
+    const bool expressions = f.body->velocityExpression != decltype(f.body->velocityExpression){} ||
+                             !f.body->temperatureExpression.empty() || !f.body->viscosityFactorExpression.empty();
+    if (expressions)
+      for (std::size_t k = 0; k < size; ++k) place(k);
+    else
+      parallelFor(size, parallelGrain, place);
+    id += count, at += size;
+  }
+}
+
+/// For the velocities that fluid meets at walls, and for the gaps of rigid bodies.
+bool needsWallSurfaces(const Case& c) {
+  if (c.method.kind == MethodKind::Isph) return c.hasRigid();
+  return c.isAccurate();
+}
+
+}  // namespace
+
+template <int D>
+Particles<D> createParticles(const Case& c, std::vector<std::string>& notes, std::vector<BodyCount>* bodyCounts,
+                             ParticlePart part) {
+  auto fluid = fillBodies<D>(c, BodyKind::Fluid, notes);
+  auto walls = fillBodies<D>(c, BodyKind::Wall, notes);
+  if (total(fluid) == 0)
+    throw InputError(fmt::format("the case has no fluid: no body of type \"fluid\" holds a particle{}",
+                                 c.hasInflow() ? ", and no inflow flows at the start" : ""));
+  if (total(fluid) + total(walls) > maxParticles)
+    throw InputError(fmt::format("the case would have {} particles, more than the limit of {}",
+                                 total(fluid) + total(walls), maxParticles));
+  for (const auto& f : walls) requireTurnable(c.domain, c.spacing, f);
+
+  // Points exactly half a spacing apart, give or take rounding, do not count as overlapping.
+  const double radius = 0.5 * c.spacing * (1 - 1e-6);
+  PointBoxes<D> boxes(c.domain, radius);
+  for (const auto* group : {&fluid, &walls})
+    for (const Filled<D>& f : *group) boxes.add(f.body, f.points.place);
+  PointGrid<D> fluidGrid = gridFor(c.domain, radius, fluid, boxes);
+  unite(BodyKind::Fluid, fluid, boxes, fluidGrid, notes);
+  {
+    PointGrid<D> wallGrid = gridFor(c.domain, radius, walls, boxes);
+    unite(BodyKind::Wall, walls, boxes, wallGrid, notes);
+  }
+  requireApart(fluid, fluidGrid, walls, boxes);
+
+  const auto fluidCount = static_cast<std::uint32_t>(total(fluid)),
+             wallCount = static_cast<std::uint32_t>(total(walls));
+  const std::uint32_t n = part.size(fluidCount), count = part.size(wallCount);
+  Particles<D> particles;
+  ParticleNumbers numbers{n, count};
+  numbers.has.temperatures = c.heat.has_value(), numbers.has.viscosityFactors = c.hasViscosityFactors();
+  particles.resize(numbers);
+  std::uint32_t id = 0, at = 0;
+  append(c, BodyKind::Fluid, fluid, part.begin(fluidCount), part.end(fluidCount), particles, id, at);
+  append(c, BodyKind::Wall, walls, fluidCount + part.begin(wallCount), fluidCount + part.end(wallCount), particles,
+         id, at);
+  if (needsWallSurfaces(c)) {
+    std::vector<std::string> untold;
+    // What the notes say is about the viscosity of MPH-I at walls.
+    const bool tell = part.isAll() && c.method.kind == MethodKind::MphI;
+    const auto surfaces = createWallSurfaces<D>(c, particles.position.span().subspan(n, count),
+                                                particles.body.span().subspan(n, count), tell ? notes : untold);
+    particles.wallSurface.resize(count);
+    std::copy(surfaces.begin(), surfaces.end(), particles.wallSurface.begin());
+  }
+  if (bodyCounts) {
+    bodyCounts->assign(c.bodies.size(), {});
+    const auto countOf = [&](const std::vector<Filled<D>>& group, std::uint32_t BodyCount::*ofKind) {
+      for (const Filled<D>& f : group)
+        (*bodyCounts)[static_cast<std::size_t>(f.body - c.bodies.data())].*ofKind =
+            static_cast<std::uint32_t>(f.points.size());
+    };
+    countOf(fluid, &BodyCount::fluid);
+    countOf(walls, &BodyCount::wall);
+  }
+  return particles;
+}
+
+AnyParticles createParticles(const Case& c, std::vector<std::string>& notes, std::vector<BodyCount>* bodyCounts,
+                             ParticlePart part) {
+  if (c.dimensions == 2) return createParticles<2>(c, notes, bodyCounts, part);
+  return createParticles<3>(c, notes, bodyCounts, part);
+}
+
+template Particles<2> createParticles<2>(const Case&, std::vector<std::string>&, std::vector<BodyCount>*,
+                                         ParticlePart);
+template Particles<3> createParticles<3>(const Case&, std::vector<std::string>&, std::vector<BodyCount>*,
+                                         ParticlePart);
+
+}  // namespace treacle

@@ -1,0 +1,226 @@
+#pragma once
+
+#include "moving_bodies.hpp"
+#include "treacle/core/error.hpp"
+#include "treacle/linear/affine_solve.hpp"
+#include "treacle/model/motion/friction.hpp"
+#include "treacle/step/bodies/contacts.hpp"
+#include "treacle/step/readings/balance_sums.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+namespace treacle {
+
+/// The velocities of rigid bodies as unknowns of a step: those at which the forces of the fluid, which depend on
+/// them by way of its own velocities, and of gravity accelerate the bodies to them. Both are of the end of the
+/// step, so that a light body in a stiff fluid is as stable as the fluid is.
+template <int D, class Backend>
+class RigidSystem {
+ public:
+  explicit RigidSystem(FlowState<D, Backend>& state) : state_(state) {
+    const Case& c = state.theCase;
+    for (std::size_t b = 0; b < c.bodies.size(); ++b) {
+      const RigidSettings& r = c.bodies[b].rigid;
+      if (c.bodies[b].kind != BodyKind::Rigid) continue;
+      for (int k = 0; k < D; ++k)
+        if (r.translates[static_cast<std::size_t>(k)]) unknowns_.push_back({b, k});
+      for (int k = D == 2 ? 2 : 0; k < 3; ++k)
+        if (r.rotates[static_cast<std::size_t>(k)]) unknowns_.push_back({b, 3 + k});
+    }
+  }
+
+  /// The bodies of the step at hand start with the velocities that they had, changed as in the last step, and so
+  /// do their walls.
+  void start() {
+    state_.rigid = state_.particles.rigid;
+    for (RigidBody& b : state_.rigid.bodies)
+      if (b.mass > 0) b.advance(early());
+    std::vector<double> x = values(state_.rigid.bodies);
+    if (state_.rigid.change.size() == x.size())
+      for (std::size_t k = 0; k < x.size(); ++k) x[k] += state_.rigid.change[k];
+    set(x);
+    setWallMotions(state_);
+  }
+
+  /// `loads(velocities)`: solves the flow with the velocities that state.rigid has, and returns what the bodies
+  /// then bear. The last flow that it solves is that of the velocities that are found. `contacts`: of bodies with
+  /// each other and with walls, which push them apart and do not hold them. Errors: RunError.
+  template <class F>
+  void solve(const std::vector<Contact<D>>& contacts, F&& loads) {
+    std::vector<double> x = values(state_.rigid.bodies);
+    const double dt = state_.timeStep, scale = scaleOf(x);
+    bool isStart = true;  // whose velocities the walls and the right-hand side have
+    const auto result = AffineSolve::run(
+        [&](const std::vector<double>& at) {
+          if (!std::exchange(isStart, false)) set(at), setWallMotions(state_);
+          return residual(loads());
+        },
+        x, state_.rigid.response, scale, tolerance, mostSteps, restraints(contacts));
+    if (!result.converged)
+      throw RunError(
+          fmt::format("the velocities of the rigid bodies were not found in {} solves; take {} <= {:.3g}",
+                      result.values, state_.theCase.time.stepKey(), dt / 2));
+    set(x);
+    const std::vector<double> before = values(state_.particles.rigid.bodies);
+    state_.rigid.change.resize(x.size());
+    for (std::size_t k = 0; k < x.size(); ++k) state_.rigid.change[k] = x[k] - before[k];
+  }
+
+ private:
+  struct Unknown {
+    std::size_t body;
+    int component;  // 0 to 2: velocity, 3 to 5: spin times the radius of gyration
+  };
+
+  static constexpr double tolerance = 1e-6;  // of a step to the solution, of the speeds that count
+  static constexpr int mostSteps = 40;
+
+  std::vector<double> values(const std::vector<RigidBody>& bodies) const {
+    std::vector<double> x;
+    for (const Unknown& u : unknowns_) {
+      const RigidBody& b = bodies[u.body];
+      x.push_back(u.component < 3 ? b.velocity[u.component] : b.spin[u.component - 3] * b.gyration());
+    }
+    return x;
+  }
+
+  void set(const std::vector<double>& x) {
+    for (std::size_t k = 0; k < x.size(); ++k) {
+      RigidBody& b = state_.rigid.bodies[unknowns_[k].body];
+      const int component = unknowns_[k].component;
+      if (component < 3)
+        b.velocity[component] = x[k];
+      else
+        b.spin[component - 3] = x[k] / b.gyration();
+    }
+  }
+
+  /// That no surfaces that touch go into each other, in the step at hand, and that those that do come apart: of an
+  /// overlap a fifth in a step, at most a hundredth of a spacing, which takes no energy worth naming.
+  std::vector<Restraint> restraints(const std::vector<Contact<D>>& contacts) const {
+    if (contacts.empty()) return {};
+    const double dt = state_.timeStep, most = 0.01 * state_.theCase.spacing;
+    const std::vector<WallMotion<D>> motion = bodyMotions(state_);
+    std::vector<Restraint> all;
+    for (const Contact<D>& contact : contacts) {
+      const double gap = contact.gap - early() * opening(contact, motion[contact.other]);
+      const double apart = (gap > 0 ? -gap : std::min(-0.2 * gap, most)) / dt;
+      all.push_back(along(contact, contact.place, contact.normal, motion[contact.other], apart));
+      addFriction(contact, motion[contact.other], all.back());
+    }
+    return all;
+  }
+
+  /// By how much of a step the bodies have gone on to where their walls are [s].
+  double early() const { return state_.theCase.middleShare() * state_.timeStep; }
+
+  /// How fast the gap of a contact has opened since the start of the step [m/s].
+  double opening(const Contact<D>& contact, const WallMotion<D>& other) const {
+    const auto speed = [&](const Vec<3>& velocity) { return dot(resized<3>(contact.normal), velocity); };
+    const auto before = [&](std::size_t b) {
+      const RigidBody& body = state_.particles.rigid.bodies[b];
+      return speed(body.velocity + cross(body.spin, resized<3>(contact.place) - state_.rigid.bodies[b].center));
+    };
+    return before(contact.body) - (state_.theCase.bodies[contact.other].kind == BodyKind::Rigid
+                                       ? before(contact.other)
+                                       : speed(resized<3>(other.chordAt(contact.place))));
+  }
+
+  /// Surfaces that are pressed together do not slide on each other, as far as friction holds them. Of all contacts
+  /// of two bodies it acts in the surface of the same one, so that one that turns as it comes down on a plane, and
+  /// touches it at both ends in a step, can stand still at both; that of the particle is half a spacing from it.
+  void addFriction(const Contact<D>& contact, const WallMotion<D>& other, Restraint& r) const {
+    r.grip = frictionBetween(state_.theCase.bodies[contact.body], state_.theCase.bodies[contact.other]);
+    if (r.grip == 0) return;
+    const bool own = state_.theCase.bodies[contact.other].kind == BodyKind::Rigid && contact.body > contact.other;
+    const Vec<D> place = contact.place - (0.5 * state_.theCase.spacing + (own ? 0 : contact.gap)) * contact.normal;
+    for (const Vec<D>& tangent : tangents(contact.normal)) {
+      Restraint held = along(contact, place, tangent, other, 0);
+      r.slides.push_back({std::move(held.row), std::move(held.push), held.least});
+    }
+  }
+
+  static std::array<Vec<D>, D - 1> tangents(const Vec<D>& normal) {
+    if constexpr (D == 2) {
+      return {Vec<2>{-normal[1], normal[0]}};
+    } else {
+      int axis = 0;  // the one that is the farthest from the normal
+      for (int k = 1; k < 3; ++k)
+        if (std::abs(normal[k]) < std::abs(normal[axis])) axis = k;
+      Vec<3> unit{};
+      unit[axis] = 1;
+      const Vec<3> across = cross(normal, unit), first = (1 / norm(across)) * across;
+      return {first, cross(normal, first)};
+    }
+  }
+
+  /// That the body goes along a direction, relative to the other one at a place, with at least `least`.
+  Restraint along(const Contact<D>& contact, const Vec<D>& place, const Vec<D>& direction,
+                  const WallMotion<D>& other, double least) const {
+    Restraint r{std::vector<double>(unknowns_.size()), std::vector<double>(unknowns_.size()), least};
+    add(contact.body, resized<3>(place), resized<3>(direction), r);
+    if (state_.theCase.bodies[contact.other].kind == BodyKind::Rigid)
+      add(contact.other, resized<3>(place), -1.0 * resized<3>(direction), r);
+    else
+      r.least += dot(resized<3>(direction), resized<3>(other.chordAt(place)));
+    return r;
+  }
+
+  /// The part of a body: its velocity at a place along a direction, less what is locked, and what a force there
+  /// along it makes of the residual.
+  void add(std::size_t body, const Vec<3>& place, const Vec<3>& direction, Restraint& r) const {
+    const RigidBody& b = state_.rigid.bodies[body];
+    const RigidBody& before = state_.particles.rigid.bodies[body];
+    const Vec<3> arm = place - b.center, turn = cross(arm, direction);
+    r.least -= dot(direction, before.velocity + cross(before.spin, arm));
+    for (std::size_t k = 0; k < unknowns_.size(); ++k) {
+      if (unknowns_[k].body != body) continue;
+      const int component = unknowns_[k].component;
+      r.row[k] = component < 3 ? direction[component] : turn[component - 3] / b.gyration();
+      r.push[k] = r.row[k] / b.mass;
+      r.least += component < 3 ? direction[component] * before.velocity[component]
+                               : turn[component - 3] * before.spin[component - 3];
+    }
+  }
+
+  /// Speeds that count in a step [m/s].
+  double scaleOf(const std::vector<double>& x) const {
+    double scale =
+        norm(state_.theCase.gravity) * state_.velocityStep + 1e-6 * state_.theCase.spacing / state_.timeStep;
+    for (const double v : x) scale = std::max(scale, std::abs(v));
+    return scale;
+  }
+
+  /// What is missing for the velocities, over the masses [m/s].
+  std::vector<double> residual(const std::vector<LoadSums>& loads) const {
+    const double dt = state_.velocityStep;
+    std::vector<double> r;
+    for (const Unknown& u : unknowns_) {
+      const RigidBody &b = state_.rigid.bodies[u.body], &before = state_.particles.rigid.bodies[u.body];
+      const LoadSums& load = loads[u.body];
+      if (u.component < 3) {
+        const double force = load.force[u.component] + b.mass * state_.theCase.gravity[u.component];
+        r.push_back(b.velocity[u.component] - before.velocity[u.component] - dt * force / b.mass);
+        continue;
+      }
+      // The inertia is that of where the body is, about axes that rest.
+      const Vec<3> torque =
+          load.torque - cross(b.center, load.force) - cross(before.spin, b.inertiaTimes(before.spin));
+      const Vec<3> change = b.inertiaTimes(b.spin - before.spin) - dt * torque;
+      r.push_back(change[u.component - 3] / (b.mass * b.gyration()));
+    }
+    return r;
+  }
+
+  FlowState<D, Backend>& state_;
+  std::vector<Unknown> unknowns_;
+};
+
+}  // namespace treacle

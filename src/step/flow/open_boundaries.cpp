@@ -1,0 +1,174 @@
+#include "open_boundaries.hpp"
+
+#include "treacle/core/error.hpp"
+#include "treacle/core/processes.hpp"
+#include "treacle/model/particles/create.hpp"
+#include "treacle/search/fluid_change.hpp"
+#include "treacle/step/walls/wall_motion.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace treacle {
+namespace {
+
+/// Appends one at rest in its own fields; those of the flow's memory are zero.
+template <int D>
+void appendParticles(Particles<D>& p, const std::vector<Vec<D>>& places) {
+  const std::uint32_t before = p.fluidCount;
+  Particles<D> more;
+  ParticleNumbers numbers = p.numbers();
+  numbers.fluid += places.size();
+  more.resize(numbers);
+  const auto copy = [&]<class T>(const Buffer<T>& from, Buffer<T>& to) {
+    std::copy(from.begin(), from.end(), to.begin());
+    std::fill(to.begin() + before, to.end(), T{});
+  };
+  forEachSharedFieldOf(copy, p, more);
+  forEachFluidFieldOf(copy, p, more);
+  std::copy(places.begin(), places.end(), more.position.begin() + before);
+  p = std::move(more);
+}
+
+}  // namespace
+
+template <int D, class Backend>
+OpenBoundaries<D, Backend>::OpenBoundaries(FlowState<D, Backend>& state)
+    : state_(state), volume_(std::pow(state.theCase.spacing, D)) {
+  std::vector<OutflowRegion<D>> regions;
+  for (const Outflow& o : state.theCase.outflows) regions.push_back(OutflowRegion<D>::of(o));
+  fromHost(state.context, std::span<const OutflowRegion<D>>(regions), regions_);
+}
+
+template <int D, class Backend>
+void OpenBoundaries<D, Backend>::begin(Particles<D>& particles) const {
+  const Case& c = state_.theCase;
+  if (!c.isOpen()) {
+    particles.flow = {};
+    return;
+  }
+  const auto count = static_cast<std::uint32_t>(sumOverProcesses(state_.context, particles.count));
+  if (particles.flow.nextId != 0) return;
+  particles.flow.nextId = count;
+  particles.flow.inflows.resize(c.bodies.size());
+  particles.flow.outflows.resize(c.outflows.size());
+}
+
+template <int D, class Backend>
+bool OpenBoundaries<D, Backend>::follow(const CellGrid<D>& grid, double start, double density) {
+  if (!state_.theCase.isOpen()) return false;
+  Particles<D, Backend>& p = state_.particles;
+  Change change;
+  change.flow = p.flow;
+  ParticleNumbers none;
+  none.has = p.has;
+  change.added.resize(none);
+  letOut(change);
+  letIn(grid, start, change);
+  const std::uint64_t came = change.added.fluidCount, all = state_.fluidOfAll + came - change.left;
+  if (all == 0) throw RunError("no fluid is left: all of it has gone out by the outflows");
+  if (all > maxParticles)
+    throw RunError(fmt::format("inflows have filled the case with {} fluid particles, more than the limit of {}",
+                               all, maxParticles));
+  const bool changes = change.left + came > 0;
+  if (changes) {
+    std::fill(change.added.numberDensity.begin(), change.added.numberDensity.end(), density);
+    // The first process has them all: the sort takes them to where they belong.
+    if (state_.context.communicator && state_.context.communicator->rank() > 0) change.added.resize(none);
+    const std::span<const std::uint8_t> nobody;
+    changeFluid<D>(state_.context, change.left > 0 ? std::span<const std::uint8_t>(gone_) : nobody, change.added,
+                   p);
+    state_.fluidOfAll = static_cast<std::uint32_t>(all);
+  }
+  const std::uint32_t walls = p.wallBegin();
+  for (std::size_t b = 0; b < change.setBack.size(); ++b)
+    if (change.setBack[b] > 0)
+      shiftBody<D>(state_.context, grid, p.body.span().subspan(walls), static_cast<std::uint8_t>(b),
+                   -change.setBack[b] * state_.nozzles[b]->direction(state_.time),
+                   p.position.span().subspan(walls));
+  p.flow = std::move(change.flow);
+  return changes;
+}
+
+/// Marks what has left.
+template <int D, class Backend>
+void OpenBoundaries<D, Backend>::letOut(Change& change) {
+  if (regions_.empty()) return;
+  Particles<D, Backend>& p = state_.particles;
+  const std::uint32_t n = p.fluidCount;
+  gone_.resize(state_.context, n);
+  std::vector<std::uint32_t> counts = markOutflow<D>(
+      state_.context, {regions_.span(), p.position.span().first(n), p.material.span().first(n)}, gone_.span());
+  sumOverProcesses(state_.context, std::span(counts));
+  for (std::size_t k = 0; k < counts.size(); ++k) {
+    if (counts[k] == 0) continue;
+    change.left += counts[k];
+    change.flow.outflows[k / maxMaterials] +=
+        {counts[k], counts[k] * volume_ * state_.theCase.materials[k % maxMaterials].density};
+  }
+}
+
+/// The layers of all inflows have gone on; those that have left their nozzles are fluid now, and as many follow.
+template <int D, class Backend>
+void OpenBoundaries<D, Backend>::letIn(const CellGrid<D>& grid, double start, Change& change) const {
+  const double spacing = state_.theCase.spacing, dt = state_.timeStep;
+  change.setBack.resize(state_.nozzles.size());
+  for (std::size_t b = 0; b < state_.nozzles.size(); ++b) {
+    if (!state_.nozzles[b]) continue;
+    const NozzleLayers<D>& nozzle = *state_.nozzles[b];
+    double& way = change.flow.inflows[b].way;
+    way += dt * nozzle.speed(start, dt);
+    const double layers = std::floor(way / spacing * (1 + 1e-9));
+    if (layers == 0) continue;
+    if (layers > nozzle.depth())
+      throw RunError(fmt::format(
+          "inflow '{}' goes {:.3g} spacings in a step of {:.3g} s, expected at most {}; take "
+          "shorter steps, {} <= {:.2g}",
+          state_.theCase.bodies[b].name, layers, dt, nozzle.depth(), state_.theCase.time.stepKey(), dt / layers));
+    for (int k = 0; k < static_cast<int>(layers); ++k) addLayer(grid, b, way - (k + 0.5) * spacing, change);
+    change.setBack[b] = layers * spacing;
+    way = std::max(0.0, way - layers * spacing);
+  }
+}
+
+template <int D, class Backend>
+void OpenBoundaries<D, Backend>::addLayer(const CellGrid<D>& grid, std::size_t body, double way,
+                                          Change& change) const {
+  const NozzleLayers<D>& nozzle = *state_.nozzles[body];
+  const Body& b = state_.theCase.bodies[body];
+  std::vector<Vec<D>> places = nozzle.layer(way, state_.time);
+  for (Vec<D>& x : places)
+    if (!grid.wrap(x))
+      throw RunError(
+          fmt::format("the nozzle of inflow '{}' is outside the domain at t = {:.6g} s", b.name, state_.time));
+  if (places.size() > std::numeric_limits<std::uint32_t>::max() - change.flow.nextId)
+    throw RunError(fmt::format("more than {} particles have been in the case: there are no numbers left for more",
+                               std::numeric_limits<std::uint32_t>::max()));
+  Particles<D>& added = change.added;
+  const std::uint32_t first = added.fluidCount;
+  appendParticles<D>(added, places);
+  const WallMotion<D> motion =
+      nozzle.motionAtEnd(state_.theCase.domain, state_.time - state_.timeStep, state_.timeStep);
+  for (std::uint32_t i = first; i < added.fluidCount; ++i) {
+    added.pressure[i] = added.heldPressure[i] = 0;
+    added.velocity[i] = motion.velocityAt(added.position[i]);
+    added.material[i] = static_cast<std::uint8_t>(b.material);
+    added.body[i] = static_cast<std::uint8_t>(body);
+    added.id[i] = change.flow.nextId++;
+    if (added.has.temperatures) added.temperature[i] = b.temperature;
+    if (added.has.viscosityFactors) added.viscosityFactor[i] = b.viscosityFactor > 0 ? b.viscosityFactor : 1;
+  }
+  const double mass = state_.theCase.materials[static_cast<std::size_t>(b.material)].density * volume_;
+  static_cast<FlowCount&>(change.flow.inflows[body]) += {places.size(), static_cast<double>(places.size()) * mass};
+}
+
+#define TREACLE_INSTANTIATE(Backend)         \
+  template class OpenBoundaries<2, Backend>; \
+  template class OpenBoundaries<3, Backend>;
+TREACLE_FOR_EACH_BACKEND(TREACLE_INSTANTIATE)
+#undef TREACLE_INSTANTIATE
+
+}  // namespace treacle

@@ -1,0 +1,252 @@
+#pragma once
+
+#include "bodies/step_bodies.hpp"
+#include "isph_failure.hpp"
+#include "isph_predictor.hpp"
+#include "isph_solver.hpp"
+#include "run/step_method.hpp"
+#include "run/take_trial.hpp"
+#include "treacle/core/halo.hpp"
+#include "treacle/isph/isph_particles.hpp"
+#include "treacle/search/particle_sort.hpp"
+#include "treacle/step/method/solve_stages.hpp"
+#include "walls/isph_wall_forces.hpp"
+#include "walls/placed_surfaces.hpp"
+
+#include <optional>
+#include <vector>
+
+namespace treacle {
+
+/// ISPH: predictor, pressure Poisson equation, corrector [O23 eqs. (7)-(11)].
+template <int D, class Backend>
+class IsphStep final : public StepMethod<D, Backend> {
+ public:
+  explicit IsphStep(FlowState<D, Backend>& state)
+      : state_(state),
+        pairs_(makeIsphPairs<D>(state.theCase)),
+        predictor_(state, pairs_),
+        pressure_(solveStages(solvedCase(state.theCase))) {
+    if (state.theCase.hasRigid()) bodies_.emplace(state);
+  }
+
+  void sortParticles() override { sort_.sort(state_.context, pairs_.grid, state_.particles); }
+
+  void findNeighbours() override {
+    const Particles<D, Backend>& p = state_.particles;
+    sort_.place(p, pairs_);
+    pairs_.body = p.body.data();
+    find(RowKind::FluidOfFluid, fluidOfFluid_);
+    find(RowKind::WallsOfFluid, wallsOfFluid_);
+    find(RowKind::FluidOfWalls, fluidOfWalls_);
+    pairs_.fluidOfFluid = fluidOfFluid_.view();
+    pairs_.fluidEntries = fluidOfFluid_.column.size();
+    pairs_.wallsOfFluid = wallsOfFluid_.view();
+    pairs_.fluidOfWalls = fluidOfWalls_.view();
+  }
+
+  void computeDensities() override {
+    prepareDensities();
+    sumOnFluid(state_.context, pairs_, densityTerm());
+  }
+
+  /// v*, with walls that go with what rigid bodies are tried with first.
+  StagedReport predict() override {
+    if (bodies_) bodies_->start();
+    pairs_.wallMotion = state_.wallMotion.empty() ? nullptr : state_.wallMotion.data();
+    pairs_.timeStep = state_.timeStep;
+    pairs_.materials.setTimeStep(state_.timeStep);
+    prepareDensities();
+    solution_.resize(state_.context, pairs_.fluidCount);
+    return predictor_.predict(ranges(), densityTerm(), solution());
+  }
+
+  void prepareSystem() override {
+    fillGhosts(state_.context, Held::Fluid, surface_.data());
+    closed_ = isClosed(state_.context, ownSurface());
+    computeSource();
+    pressure_.prepareMatrix(state_.context, pairs_, ranges(), row());
+  }
+
+  void preparePreconditioner() override { pressure_.preparePreconditioner(state_.context); }
+
+  StagedReport solve() override {
+    guess(solution());
+    return bodies_ ? solveWithBodies() : solvePressure();
+  }
+
+  /// Of the pressure equation.
+  SolverTrial solveBy(const SolverSettings& settings) override {
+    const SolverSettings stage = singleStage(state_.theCase, settings);
+    IsphSolver<D, Backend, PressureRow<D>> solver({stage});
+    Buffer<double, Backend> x;
+    x.resize(state_.context, pairs_.ownFluid());
+    return takeTrial(
+        state_.context, stage,
+        [&] {
+          solver.prepareMatrix(state_.context, pairs_, ranges(), row());
+          solver.preparePreconditioner(state_.context);
+        },
+        [&](double* history) {
+          guess(x);
+          return solver.solve(state_.context, source_, x, history);
+        });
+  }
+
+  void correctVelocities() override {
+    if (!bodies_) correct(solution_);
+  }
+
+  std::span<const Vec<D>> transportVelocities() override {
+    const double coefficient = state_.theCase.method.isph.shifting;
+    if (coefficient == 0) return state_.velocity.span();
+    transport_.resize(state_.context, pairs_.ownFluid());
+    shiftedVelocity<D>(state_.context, {coefficient, state_.theCase.spacing, state_.timeStep}, deficit_,
+                       ownSurface(), state_.velocity, transport_);
+    return transport_.span();
+  }
+
+  double longestWay(double speed) const override {
+    const double shift = state_.theCase.method.isph.shifting == 0 ? 0 : longestShift * state_.theCase.spacing;
+    return speed * state_.timeStep + shift;
+  }
+
+  void accept() override {
+    std::span<double> pressure = state_.particles.pressure;
+    copyValues(state_.context, std::span<const double>(solution_), pressure.data());
+    clearValues(state_.context, pressure.subspan(pairs_.fluidCount));
+    sumOnWalls(state_.context, pairs_, WallPressureTerm<D>{solution_.data(), pressure.data()});
+    if (state_.theCase.hasLoads()) loads_ = wallLoads(state_, loadsOfWalls());
+  }
+
+  std::vector<WallLoad> loads() const override { return loads_; }
+
+  void describe(DiagnosticsInput<D>& in) const override {
+    const std::uint32_t n = state_.particles.fluidCount;
+    if (surface_.size() != state_.particles.wallBegin()) return;
+    in.density = state_.particles.numberDensity.span().first(n);
+    in.surface = surface_.span().first(n);
+    if (wallShare_.size() != n) return;
+    in.wallDensity = wallShare_;
+    in.neighbourDensity = 1 - pairs_.volume * pairs_.kernel.value(0) / pairs_.latticeDensity;
+  }
+
+  /// The linear system at hand, for those who solve it in other ways.
+  const IsphPairs<D>& pairs() const { return pairs_; }
+  const CellRanges<Backend>& ranges() const { return sort_.ranges(); }
+  PressureRow<D> row() const { return {surface_.data()}; }
+  std::span<const double> source() const { return source_; }
+
+  const CellGrid<D>& grid() const override { return pairs_.grid; }
+  const CellOwners<D>& owners() const override { return sort_.owners(); }
+  const MaterialTable& materials() const override { return pairs_.materials; }
+  std::size_t bytes() const override {
+    return sort_.bytes() + fluidOfFluid_.bytes() + wallsOfFluid_.bytes() + fluidOfWalls_.bytes() +
+           deficit_.bytes() + surface_.bytes() + predictor_.bytes() + source_.bytes() + solution_.bytes() +
+           transport_.bytes() + wallShare_.bytes() + forces_.bytes() + pressure_.bytes() +
+           (bodies_ ? bodies_->bytes() : 0) + pressing_.bytes() + wallSurface_.bytes();
+  }
+
+  /// Pairs up to this share of the kernel's radius make the smoother's matrix: 1.9 l with the usual kernel.
+  static constexpr double nearShare = 0.79;
+
+ private:
+  /// The flow and the velocities of the rigid bodies. Each solve starts from what the last step has left, which is
+  /// zero where nothing moves and a right-hand side may be.
+  StagedReport solveWithBodies() {
+    placeWallSurfaces(state_, pairs_.fluidCount, pairs_.activeCount - pairs_.fluidCount, wallSurface_);
+    pressing_.resize(state_.context, pairs_.ownFluid());
+    const auto flow = [&](bool isFirst) {
+      StagedReport report;
+      if (!isFirst) {
+        report = predictor_.follow(solution());
+        computeSource();
+        guess(solution());
+      }
+      report.follow(solvePressure());
+      correct(isFirst ? solution_ : pressing_);
+      if (isFirst) copyValues(state_.context, std::span<const double>(solution()), pressing_.data());
+      return report;
+    };
+    return bodies_->solve(pairs_, wallSurface_, flow, [&] { return loadsOfWalls(); });
+  }
+
+  void computeSource() {
+    Buffer<Vec<D>, Backend>& predicted = predictor_.velocity();
+    fillGhosts(state_.context, Held::Fluid, predicted.data());
+    source_.resize(state_.context, pairs_.ownFluid());
+    sumOnFluid(state_.context, pairs_,
+               PressureSourceTerm<D>{predicted.data(), state_.particles.numberDensity.data(), surface_.data(),
+                                     source_.data()});
+    if (closed_) takeLevel(state_.context, Level::Mean, source_);
+  }
+
+  /// From the guess in solution_, and to there. Errors: RunError.
+  StagedReport solvePressure() {
+    const StagedReport report = pressure_.solve(state_.context, source_, solution());
+    requireConverged(state_, "pressure", report);
+    return report;
+  }
+
+  /// The step's pressures, and velocities by them. `pressing`: CorrectorTerm.
+  void correct(const Buffer<double, Backend>& pressing) {
+    if (closed_) takeLevel(state_.context, pairs_.negativePressure ? Level::Mean : Level::Least, solution());
+    settlePressure(state_.context, ownSurface(), !pairs_.negativePressure, solution());
+    fillGhosts(state_.context, Held::Fluid, solution_.data());
+    state_.velocity.resize(state_.context, pairs_.ownFluid());
+    wallShare_.resize(state_.context, pairs_.ownFluid());
+    Vec<D>* stopped = bodies_ || state_.theCase.hasLoads() ? forces_.prepare(state_, pairs_) : nullptr;
+    sumOnFluid(state_.context, pairs_,
+               CorrectorTerm<D>{solution_.data(), pressing.data(), predictor_.velocity().data(),
+                                state_.velocity.data(), wallShare_.data(), stopped});
+  }
+
+  /// Before the step changes the particles' velocities, which an explicit viscous step has taken its forces of.
+  std::vector<LoadSums> loadsOfWalls() {
+    return forces_.loads(state_, pairs_, solution_, predictor_.viscousVelocity(), predictor_.isViscous());
+  }
+
+  void find(RowKind kind, NeighbourRows<Backend>& rows) {
+    const double radius = pairs_.kernel.radius();
+    treacle::findNeighbours<D>(state_.context, pairs_, {nearShare * radius, radius}, kind, rows);
+  }
+
+  std::span<double> solution() { return solution_.span().first(pairs_.ownFluid()); }
+  std::span<const std::uint8_t> ownSurface() const { return surface_.span().first(pairs_.ownFluid()); }
+
+  /// The pressures of the last step.
+  void guess(std::span<double> x) const {
+    copyValues(state_.context, std::span<const double>(state_.particles.pressure).first(x.size()), x.data());
+  }
+
+  void prepareDensities() {
+    const std::uint32_t n = pairs_.fluidCount;
+    deficit_.resize(state_.context, pairs_.ownFluid());
+    surface_.resize(state_.context, n);
+    clearValues(state_.context, state_.particles.numberDensity.span().subspan(n));
+  }
+  DensityTerm<D> densityTerm() {
+    return {state_.particles.numberDensity.data(), deficit_.data(), surface_.data()};
+  }
+
+  FlowState<D, Backend>& state_;
+  IsphPairs<D> pairs_;
+  ParticleSort<D, Backend> sort_;
+  NeighbourRows<Backend> fluidOfFluid_, wallsOfFluid_, fluidOfWalls_;
+  bool closed_ = false;  // no particle is at the free surface
+  Buffer<Vec<D>, Backend> deficit_;
+  Buffer<std::uint8_t, Backend> surface_;  // with ghosts, which all that neighbours read has
+  IsphPredictor<D, Backend> predictor_;
+  Buffer<double, Backend> source_;    // of the pressure equation
+  Buffer<double, Backend> solution_;  // with ghosts: of the pressure equation; before, a component of v*
+  Buffer<Vec<D>, Backend> transport_;
+  Buffer<double, Backend> wallShare_;  // of the density in a full lattice
+  IsphWallForces<D, Backend> forces_;  // for rigid bodies and probes
+  std::vector<WallLoad> loads_;        // of the last step
+  IsphSolver<D, Backend, PressureRow<D>> pressure_;
+  std::optional<StepBodies<D, Backend>> bodies_;  // where the case has rigid bodies; then also:
+  Buffer<double, Backend> pressing_;              // those of the step's first solve
+  Buffer<WallSurface<D>, Backend> wallSurface_;   // per active wall particle
+};
+
+}  // namespace treacle

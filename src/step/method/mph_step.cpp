@@ -1,0 +1,392 @@
+#include "bodies/step_bodies.hpp"
+#include "mph_solver.hpp"
+#include "readings/step_balance.hpp"
+#include "run/failure.hpp"
+#include "run/step_method.hpp"
+#include "run/take_trial.hpp"
+#include "step_heat.hpp"
+#include "step_places.hpp"
+#include "step_rheology.hpp"
+#include "step_surface.hpp"
+#include "step_tension.hpp"
+#include "treacle/core/halo.hpp"
+#include "treacle/model/particles/particles_copy.hpp"
+#include "treacle/mph/mph_neighbourhood.hpp"
+#include "treacle/mph/mph_particles.hpp"
+#include "treacle/mph/mph_repulsion.hpp"
+#include "treacle/mph/renormalisation.hpp"
+#include "treacle/mph/viscosity_scale.hpp"
+#include "treacle/step/method/first_guess.hpp"
+#include "treacle/step/method/solve_stages.hpp"
+#include "walls/placed_surfaces.hpp"
+#include "walls/wall_forces.hpp"
+
+#include <cmath>
+#include <vector>
+
+namespace treacle {
+namespace {
+
+/// MPH-I: pressure and viscosity together in one system for the velocities [K23 eqs. (13)-(16)].
+template <int D, class Backend>
+class MphStep final : public StepMethod<D, Backend> {
+ public:
+  explicit MphStep(FlowState<D, Backend>& state)
+      : state_(state),
+        neighbourhood_(state.theCase),
+        pairs_(neighbourhood_.pairs()),
+        wholeRows_(needsAssembled<Backend>(state.theCase.solver)),
+        solver_(solveStages(solvedCase(state.theCase))) {
+    if (state.theCase.hasOwnViscosities()) rheology_.emplace(state.theCase);
+    if (state.theCase.heat) heat_.emplace(state.theCase, pairs_);
+    if (state.theCase.hasSurfaceTension()) surface_.emplace(state.theCase);
+    if (state.theCase.keepsVolume()) tension_.emplace();
+    if (state.theCase.hasRigid()) bodies_.emplace(state);
+  }
+
+  void sortParticles() override { neighbourhood_.sort(state_.context, state_.particles); }
+  void findNeighbours() override { neighbourhood_.buildLists(state_.context, state_.particles, wholeRows_); }
+
+  void computeDensities() override {
+    const std::uint32_t active = pairs_.activeCount;
+    clearValues(state_.context, state_.particles.pressure.span().subspan(active));
+    clearValues(state_.context, state_.particles.heldPressure.span().subspan(active));
+    elastic_.resize(state_.context, active);
+    places_.compute(state_, pairs_);
+  }
+
+  /// Walls go with what rigid bodies are tried with first.
+  StagedReport predict() override {
+    if (bodies_) bodies_->start();
+    return {};
+  }
+
+  void prepareSystem() override {
+    neighbourhood_.setTimeStep(state_.velocityStep);
+    placeWallSurfaces();
+    computeDensities();
+    renormalise();
+    if (state_.theCase.needsWallNeighbours()) wallForces_.prepare(state_, neighbourhood_);
+    if (surface_) surface_->prepare(state_, pairs_, wallForces_.walls());
+    scaleViscosity();
+    if (tension_) tension_->prepare(state_, pairs_, places_.of(state_));
+    prepareViscous();
+  }
+
+  /// What is kept of another step's system is that of one of about the same length.
+  void preparePreconditioner() override {
+    if (std::abs(state_.timeStep - state_.lastStep()) > 0.1 * state_.lastStep())
+      state_.particles.modes.pressure = {};
+    solver_.preparePreconditioner(state_.context, &state_.particles.modes.pressure);
+  }
+
+  /// Leaves the walls' velocities in state.velocity, too.
+  StagedReport solve() override {
+    guessAll();
+    return bodies_ ? solveWithBodies() : solveFluid();
+  }
+
+  /// With the modes of the state where the settings have it deflate, as the next step would.
+  SolverTrial solveBy(const SolverSettings& settings) override {
+    const SolverSettings stage = singleStage(state_.theCase, settings);
+    if (needsAssembled<Backend>(stage) && !wholeRows_) {
+      wholeRows_ = true;
+      findNeighbours();
+    }
+    MphSolver<D, Backend> solver(stage);
+    // As the next step would, where its solver is tried; that of another precision has another eigenvalue.
+    KeptEigenvalue pressure;
+    if (stage.precision == state_.theCase.solver.precision) pressure = state_.particles.modes.pressure;
+    Buffer<Vec<D>, Backend> u;
+    u.resize(state_.context, pairs_.ownFluid());
+    return takeTrial(
+        state_.context, stage,
+        [&] {
+          solver.prepareOperator(state_.context, pairs_, neighbourhood_.ranges(), wallTermsView());
+          solver.preparePreconditioner(state_.context, &pressure);
+        },
+        [&](double* history) {
+          guess(u);
+          const SolverModes<D, Backend>& kept = state_.particles.modes;
+          SolverModes<D, Backend> modes;
+          modes.vectors.resize(state_.context, kept.vectors.size());
+          copyValues(state_.context, kept.vectors.span(), modes.vectors.data());
+          modes.age = kept.age;
+          return solver.solve(state_.context, rhs_, u, &modes, history);
+        });
+  }
+
+  /// Temperatures, which may fail before anything is accepted.
+  void correctVelocities() override {
+    if (heat_) heat_->solve(state_, pairs_);
+  }
+
+  std::span<const Vec<D>> transportVelocities() override {
+    if (!tension_) return state_.velocity.span().first(pairs_.ownFluid());
+    return tension_->transport(state_, pairs_);
+  }
+
+  double longestWay(double speed) const override {
+    return speed * state_.timeStep + (tension_ ? longestShift * state_.theCase.spacing : 0);
+  }
+
+  /// Psi of [K23 eq. (14)] with the new velocities.
+  void accept() override {
+    const std::uint32_t active = pairs_.activeCount, n = pairs_.ownFluid();
+    divergence_.resize(state_.context, active);
+    divergence<D>(state_.context, pairs_, state_.velocity.span().first(active), divergence_);
+    fillGhosts(state_.context, Held::Active, divergence_.data());
+    bulkPressure<D>(state_.context, pairs_, divergence_, elastic_, state_.particles.pressure.span().first(active));
+    if (rheology_) rheology_->accept(state_);
+    if (state_.theCase.needsBalance())
+      lastBalance_ = balance_.make(state_, pairs_, divergence_, elastic_, surface_ ? &*surface_ : nullptr,
+                                   tension_ ? &*tension_ : nullptr);
+    if (heat_) acceptHeat();
+    if (tension_) tension_->accept(state_, pairs_, places_.of(state_));
+    // The velocities of the start are given, no solution: nothing follows from the way to the first one.
+    if (state_.step > 0)
+      updateFlowMemory<D>(state_.context, state_.velocityStep, state_.lastStep(),
+                          state_.particles.velocity.span().first(n), state_.velocity.span().first(n), memory());
+  }
+
+  void describe(DiagnosticsInput<D>& in) const override { places_.describe(state_, pairs_, in); }
+
+  std::optional<Balance> balance() const override { return lastBalance_; }
+  std::vector<WallLoad> loads() const override {
+    return lastBalance_ ? lastBalance_->walls : std::vector<WallLoad>{};
+  }
+
+  const CellGrid<D>& grid() const override { return pairs_.grid; }
+  const CellOwners<D>& owners() const override { return neighbourhood_.owners(); }
+  const MaterialTable& materials() const override { return pairs_.materials; }
+  std::size_t bytes() const override {
+    return neighbourhood_.bytes() + wallSurface_.bytes() + renormalisation_.bytes() + viscosityScale_.bytes() +
+           (rheology_ ? rheology_->bytes() : 0) + (heat_ ? heat_->bytes() : 0) +
+           (surface_ ? surface_->bytes() : 0) + (tension_ ? tension_->bytes() : 0) + wallBlock_.bytes() +
+           wallGradient_.bytes() + places_.bytes() + elastic_.bytes() + divergence_.bytes() + rhs_.bytes() +
+           found_.bytes() + solver_.bytes() + balance_.bytes() + wallForces_.bytes() +
+           (bodies_ ? bodies_->bytes() : 0) + rhsAtRest_.bytes() + pressure_.bytes();
+  }
+
+ private:
+  /// The flow for the velocities that walls have, from the guess in state.velocity.
+  StagedReport solveFluid() {
+    StagedReport report = solveOnce();
+    while (rheology_) {
+      const bool again = rheology_->follow(state_, neighbourhood_);
+      if (rheology_->isAnother()) state_.particles.modes.pressure = {};
+      if (!again) break;
+      prepareAgain();
+      report.follow(solveOnce());
+    }
+    return report;
+  }
+
+  /// The flow and the velocities of the rigid bodies.
+  StagedReport solveWithBodies() {
+    const auto flow = [&](bool isFirst) {
+      if (isFirst) return solveFluid();
+      takeWallVelocities();
+      return solveOnce();
+    };
+    return bodies_->solve(pairs_, wallSurface_, flow, [&] { return loads(); });
+  }
+
+  /// Those that the walls have now, into the right-hand side and state.velocity, whose fluid stays.
+  void takeWallVelocities() {
+    const std::uint32_t fluid = pairs_.fluidCount;
+    found_.resize(state_.context, fluid);
+    copyValues(state_.context, std::span<const Vec<D>>(state_.velocity).first(fluid), found_.data());
+    copyValues(state_.context, std::span<const Vec<D>>(rhsAtRest_), rhs_.data());
+    addWallVelocities();
+    copyValues(state_.context, std::span<const Vec<D>>(found_), state_.velocity.data());
+  }
+
+  /// What bodies bear with the velocities in state.velocity.
+  std::vector<LoadSums> loads() {
+    const std::uint32_t active = pairs_.activeCount;
+    divergence_.resize(state_.context, active);
+    divergence<D>(state_.context, pairs_, state_.velocity.span().first(active), divergence_);
+    fillGhosts(state_.context, Held::Active, divergence_.data());
+    pressure_.resize(state_.context, active);
+    bulkPressure<D>(state_.context, pairs_, divergence_, elastic_, pressure_);
+    wallForces_.sum(state_, pairs_, state_.velocity, pressure_, explicitForces());
+    return wallForces_.loads(state_, pairs_, state_.velocity);
+  }
+
+  void acceptHeat() {
+    heat_->accept(state_);
+    if (lastBalance_) lastBalance_->heat = heat_->balance(std::pow(pairs_.spacing, D));
+  }
+
+  /// All that the viscosity is in, on neighbours, densities and velocities that stay.
+  void prepareViscous() {
+    wallBlock_.resize(state_.context, state_.particles.fluidCount);
+    const bool productsTakeGradient = std::is_same_v<Backend, Cpu> || !pairs_.renormalisation;
+    wallGradient_.resize(state_.context, productsTakeGradient ? state_.particles.fluidCount : 0);
+    wallTerms<D>(state_.context, pairs_, wallTermsView());
+    computeRightHandSide();
+    solver_.prepareOperator(state_.context, pairs_, neighbourhood_.ranges(), wallTermsView());
+  }
+
+  /// Once more with other viscosities, from the velocities that there are.
+  void prepareAgain() {
+    found_.resize(state_.context, state_.velocity.size());
+    copyValues(state_.context, std::span<const Vec<D>>(state_.velocity), found_.data());
+    prepareViscous();
+    preparePreconditioner();
+    copyValues(state_.context, std::span<const Vec<D>>(found_), state_.velocity.data());
+  }
+
+  /// From the guess in state.velocity, and to there, ghosts included. Errors: RunError.
+  StagedReport solveOnce() {
+    SolverModes<D, Backend>& modes = state_.particles.modes;
+    const bool noModes = state_.context.halo && state_.context.halo->someHaveNone;
+    StagedReport report = solver_.solve(state_.context, rhs_, state_.velocity.span().first(pairs_.ownFluid()),
+                                        noModes ? nullptr : &modes);
+    fillGhosts(state_.context, Held::Fluid, state_.velocity.data());
+    if (report.fallbacks == 0 && report.status == SolveStatus::Converged)
+      modes.pressure.solved(report.iterations);
+    else
+      modes.pressure = {};
+    if (report.status == SolveStatus::Converged) return report;
+    std::string diagnosis = describeFailure(report, state_.theCase.solver.tolerance, report.failures);
+    if (report.status == SolveStatus::NotFinite) diagnosis += "; " + notFiniteOnHost();
+    throw RunError(diagnosis);
+  }
+
+  FlowMemory<D> memory() { return {state_.particles.acceleration.span(), state_.particles.jerk.span()}; }
+  void guess(std::span<Vec<D>> u) {
+    extrapolate<D>(
+        state_.context,
+        Extrapolation<D>::make(state_.theCase.solver.firstGuess, state_.velocityStep, state_.lastStep()),
+        state_.particles.velocity.span().first(u.size()), memory(), u);
+  }
+  /// Into state.velocity, with the velocities of the walls.
+  void guessAll() {
+    const std::uint32_t walls = pairs_.fluidCount, active = pairs_.activeCount;
+    const std::span<const Vec<D>> last = state_.particles.velocity;
+    state_.velocity.resize(state_.context, active);
+    copyValues(state_.context, last.subspan(walls, active - walls), state_.velocity.data() + walls);
+    guess(state_.velocity.span().first(pairs_.ownFluid()));
+  }
+  WallTerms<D> wallTermsView() { return {wallBlock_.span(), wallGradient_.span()}; }
+
+  void placeWallSurfaces() {
+    treacle::placeWallSurfaces(state_, pairs_.fluidCount, pairs_.activeCount - pairs_.fluidCount, wallSurface_);
+    if (!state_.particles.wallSurface.empty()) neighbourhood_.setWallSurfaces(wallSurface_);
+  }
+
+  /// B, which everything that contains C needs.
+  void renormalise() {
+    if (!state_.theCase.isAccurate()) return;
+    renormalisation_.resize(state_.context, pairs_.fluidCount);
+    renormalisation<D>(state_.context, pairs_, renormalisation_.span());
+    if (tension_)
+      neighbourhood_.setWallShares(
+          tension_->letGapsClose(state_, pairs_, places_.of(state_), renormalisation_.span()));
+    fillGhosts(state_.context, Held::Fluid, renormalisation_.data());
+    neighbourhood_.setRenormalisation(renormalisation_);
+  }
+
+  void scaleViscosity() {
+    if (rheology_) {
+      guessAll();
+      fillGhosts(state_.context, Held::Active, state_.velocity.data());
+      return rheology_->start(state_, neighbourhood_);
+    }
+    const double correction = state_.theCase.method.viscosityCorrection;
+    if (correction == 0) return;
+    viscosityScale_.resize(state_.context, pairs_.fluidCount);
+    viscosityScale<D>(state_.context, pairs_, correction, viscosityScale_.span());
+    fillGhosts(state_.context, Held::Fluid, viscosityScale_.data());
+    neighbourhood_.setViscosityScale(viscosityScale_);
+  }
+
+  /// b of [K23 eq. (16)], and the terms of the repulsion and of prescribed wall velocities.
+  void computeRightHandSide() {
+    elasticPressure<D>(state_.context, pairs_, state_.particles.numberDensity.span().first(pairs_.activeCount),
+                       surface_ ? surface_->adhesion() : std::span<const Adhesion<D>>{}, elastic_);
+    rhs_.resize(state_.context, state_.particles.fluidCount);
+    inertiaAndGravity<D>(state_.context, pairs_,
+                         state_.particles.velocity.span().first(state_.particles.fluidCount),
+                         resized<D>(state_.theCase.gravity), rhs_);
+    addPressureGradient<D>(state_.context, pairs_, elastic_, -1.0, rhs_);
+    if (pairs_.terms.repulsionRadius > 0) addRepulsion<D>(state_.context, pairs_, 1 / state_.timeStep, rhs_);
+    if (const auto* others = explicitForces()) others->addForces(state_, rhs_);
+    if (bodies_) {
+      rhsAtRest_.resize(state_.context, rhs_.size());
+      copyValues(state_.context, std::span<const Vec<D>>(rhs_), rhsAtRest_.data());
+    }
+    if (state_.wallsMove) addWallVelocities();
+  }
+
+  /// b -= A_full (0 on the fluid, u on the walls)
+  void addWallVelocities() {
+    const std::uint32_t n = pairs_.fluidCount, active = pairs_.activeCount;
+    const std::span<const Vec<D>> u = state_.particles.velocity;
+    state_.velocity.resize(state_.context, active);
+    clearValues(state_.context, state_.velocity.span().first(n));
+    copyValues(state_.context, u.subspan(n, active - n), state_.velocity.data() + n);
+    addWallDrag<D>(state_.context, pairs_, state_.velocity, rhs_);
+    divergence_.resize(state_.context, active);
+    divergence<D>(state_.context, pairs_, state_.velocity, divergence_);
+    fillGhosts(state_.context, Held::Active, divergence_.data());
+    bulkPressure<D>(state_.context, pairs_, divergence_, {}, divergence_);
+    addPressureGradient<D>(state_.context, pairs_, divergence_, -1.0, rhs_);
+  }
+
+  const ExplicitForces<D, Backend>* explicitForces() const {
+    if (surface_) return &*surface_;
+    return tension_ ? &*tension_ : nullptr;
+  }
+
+  std::string notFiniteOnHost() {
+    Particles<D> host;
+    copyToHost(state_.context, state_.particles, host);
+    Buffer<Vec<D>> b(rhs_.size());
+    copyToHost(state_.context, std::span<const Vec<D>>(rhs_), b.data());
+    return describeNotFinite<D>(state_.context, host, b);
+  }
+
+  FlowState<D, Backend>& state_;
+  MphNeighbourhood<D, Backend> neighbourhood_;
+  const MphPairs<D>& pairs_;
+  bool wholeRows_;                               // of A in the lists
+  Buffer<WallSurface<D>, Backend> wallSurface_;  // per active wall particle
+  Buffer<SymmetricBlock<D>, Backend> renormalisation_;
+  Buffer<double, Backend> viscosityScale_;
+  Buffer<Block<D>, Backend> wallBlock_;
+  Buffer<Vec<D>, Backend> wallGradient_;
+  StepPlaces<D, Backend> places_;
+  Buffer<double, Backend> elastic_;     // elasticPressure() per particle [Pa]
+  Buffer<double, Backend> divergence_;  // C^T u per particle [1/s]
+  Buffer<Vec<D>, Backend> rhs_;
+  MphSolver<D, Backend> solver_;
+  std::optional<StepRheology<D, Backend>> rheology_;  // where particles have their own viscosities
+  Buffer<Vec<D>, Backend> found_;                     // velocities of the last solve, while the next is prepared
+  std::optional<StepHeat<D, Backend>> heat_;          // where the case has heat
+  std::optional<StepSurface<D, Backend>> surface_;    // where some fluid has a surface tension
+  std::optional<StepTension<D, Backend>> tension_;    // where the case keeps its volume
+  std::optional<StepBodies<D, Backend>> bodies_;      // where the case has rigid bodies; then also:
+  Buffer<Vec<D>, Backend> rhsAtRest_;                 // the right-hand side without velocities of walls
+  Buffer<double, Backend> pressure_;                  // per active particle [Pa]
+  WallForces<D, Backend> wallForces_;                 // for rigid bodies, the balance and surface tension
+  StepBalance<D, Backend> balance_{wallForces_};
+  std::optional<Balance> lastBalance_;
+};
+
+}  // namespace
+
+template <int D, class Backend>
+std::unique_ptr<StepMethod<D, Backend>> makeMphStep(FlowState<D, Backend>& state) {
+  return std::make_unique<MphStep<D, Backend>>(state);
+}
+
+#define TREACLE_INSTANTIATE(Backend)                                                    \
+  template std::unique_ptr<StepMethod<2, Backend>> makeMphStep(FlowState<2, Backend>&); \
+  template std::unique_ptr<StepMethod<3, Backend>> makeMphStep(FlowState<3, Backend>&);
+TREACLE_FOR_EACH_BACKEND(TREACLE_INSTANTIATE)
+#undef TREACLE_INSTANTIATE
+
+}  // namespace treacle

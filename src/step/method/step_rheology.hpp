@@ -1,0 +1,86 @@
+#pragma once
+
+#include "run/flow_state.hpp"
+#include "treacle/core/halo.hpp"
+#include "treacle/mph/mph_balance.hpp"
+#include "treacle/mph/mph_neighbourhood.hpp"
+#include "treacle/mph/particle_viscosity.hpp"
+#include "treacle/mph/viscosity_scale.hpp"
+
+namespace treacle {
+
+/// The viscosities of a step of MPH-I where particles have their own: from the temperatures and factors that the
+/// particles carry and the shear rates of the flow that the step begins its solve with, then from those of each
+/// solve. What is not accepted has not changed the particles.
+template <int D, class Backend>
+class StepRheology {
+ public:
+  explicit StepRheology(const Case& c)
+      : table_(RheologyTable::make(c)), settings_(c.rheology), correction_(c.method.viscosityCorrection) {}
+
+  /// For the first solve of a step, on its neighbours and walls' surfaces; from its first guess, state.velocity,
+  /// ghosts included: with the rates of the step before, most steps would need another solve.
+  void start(FlowState<D, Backend>& state, MphNeighbourhood<D, Backend>& neighbourhood) {
+    const std::uint32_t fluid = neighbourhood.pairs().fluidCount, own = neighbourhood.pairs().ownFluid();
+    for (Buffer<double, Backend>* field : {&share_, &viscosity_, &scaled_}) field->resize(state.context, fluid);
+    for (Buffer<double, Backend>* field : {&rate_, &found_}) field->resize(state.context, own);
+    class_.resize(state.context, neighbourhood.pairs().activeCount);
+    neighbourhood.setViscosities({}, {});
+    viscosityScale<D>(state.context, neighbourhood.pairs(), 1, share_.span());
+    shearRate<D>(state.context, neighbourhood.pairs(), state.velocity, share_, rate_);
+    if (state.particles.has.temperatures) table_.temperature = state.particles.temperature.span().first(own);
+    if (state.particles.has.viscosityFactors) table_.factor = state.particles.viscosityFactor.span().first(own);
+    solves_ = 0;
+    apply(state, neighbourhood);
+  }
+
+  /// Takes the velocities of a solve, state.velocity, ghosts included; whether the step is to be solved once more,
+  /// with viscosities that follow from them.
+  bool follow(FlowState<D, Backend>& state, MphNeighbourhood<D, Backend>& neighbourhood) {
+    const MphPairs<D>& pairs = neighbourhood.pairs();
+    const std::uint32_t own = pairs.ownFluid();
+    shearRate<D>(state.context, pairs, state.velocity, share_, found_);
+    change_ = nextRates(state.context,
+                        RateTerms{table_, pairs.material, rate_.span().first(own), found_.span().first(own),
+                                  viscosity_.span().first(own), rate_.span().first(own)});
+    if (++solves_ >= settings_.iterations || change_ <= settings_.tolerance) return false;
+    apply(state, neighbourhood);
+    return true;
+  }
+
+  /// Whether viscosities have changed so much that what is known of the spectrum of the last system says little of
+  /// the next one's: a smoother that takes an eigenvalue for too small lets residuals grow.
+  bool isAnother() const { return change_ > 0.1; }
+
+  /// The particles take the rates that the last solve has led to.
+  void accept(FlowState<D, Backend>& state) {
+    copyValues(state.context, std::span<const double>(rate_), state.particles.shearRate.data());
+  }
+
+  std::size_t bytes() const {
+    return share_.bytes() + viscosity_.bytes() + scaled_.bytes() + rate_.bytes() + found_.bytes() + class_.bytes();
+  }
+
+ private:
+  /// The viscosities of rate_.
+  void apply(FlowState<D, Backend>& state, MphNeighbourhood<D, Backend>& neighbourhood) {
+    const MphPairs<D>& pairs = neighbourhood.pairs();
+    setViscosities(state.context, ViscosityTerms{table_, correction_, pairs.material, rate_.span(), share_.span(),
+                                                 viscosity_.span(), scaled_.span()});
+    fillGhosts(state.context, Held::Fluid, viscosity_.data());
+    fillGhosts(state.context, Held::Fluid, scaled_.data());
+    setClasses(state.context, ClassTerms{pairs.classes, pairs.material, viscosity_.span(), class_.span()});
+    neighbourhood.setViscosities(scaled_, class_);
+  }
+
+  RheologyTable table_;
+  RheologySettings settings_;
+  double correction_;
+  int solves_ = 0;                                      // of the step at hand
+  double change_ = 0;                                   // of the viscosity by the last solve
+  Buffer<double, Backend> share_, viscosity_, scaled_;  // per fluid particle: 1/m_i [-], mu_i and s_i mu_i [Pa s]
+  Buffer<double, Backend> rate_, found_;  // per own one: gamma of these viscosities, and of the last solve [1/s]
+  Buffer<std::uint8_t, Backend> class_;   // per active particle
+};
+
+}  // namespace treacle

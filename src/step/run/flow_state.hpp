@@ -1,0 +1,64 @@
+#pragma once
+
+#include "step_phases.hpp"
+#include "treacle/core/copy_values.hpp"
+#include "treacle/core/device_link.hpp"
+#include "treacle/model/case/case.hpp"
+#include "treacle/model/motion/nozzle.hpp"
+#include "treacle/model/motion/wall_motion.hpp"
+#include "treacle/model/particles/particles.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace treacle {
+
+/// The state of a simulation and what a step makes of it, the same for all methods.
+template <int D, class Backend>
+struct FlowState {
+  Case theCase;
+  std::int64_t step;    // steps done
+  double time;          // [s]
+  double timeStep;      // of the step at hand, or the last one [s]
+  double velocityStep;  // over which velocities change in it [s]
+  bool wallsMove = false;
+  std::uint32_t fluidOfAll = 0;  // number of fluid particles, those of all processes
+
+  mutable Context<Backend> context;
+  std::unique_ptr<DeviceLink> link;  // of the context, where processes share devices
+  Particles<D, Backend> particles;
+  // Where the walls of rigid bodies are in the step at hand, with the velocities that are tried for it; empty
+  // where the case has none.
+  RigidMotion rigid;
+  std::vector<std::optional<NozzleLayers<D>>> nozzles;  // per body, of those that are inflows
+  Buffer<WallMotion<D>, Backend> wallMotion;   // per body, where walls are; empty: all keep their velocities
+  Buffer<Vec<D>, Backend> velocity, position;  // the step's results before they are accepted
+
+  StepPhases<Backend> phases;  // of the step at hand
+
+  FlowState(const Case& c, std::int64_t startStep, double startTime)
+      : theCase(c), step(startStep), time(startTime), timeStep(c.time.step), velocityStep(c.time.step) {
+    for (const Body& body : theCase.bodies) {
+      nozzles.emplace_back();
+      if (body.kind == BodyKind::Inflow) nozzles.back().emplace(theCase, body);
+    }
+  }
+
+  /// With the others of these processes.
+  void share(const Communicator& processes) {
+    context.communicator = &processes;
+    if constexpr (std::is_same_v<Backend, Cuda>) {
+      link = DeviceLink::make(processes, context);
+      context.link = link.get();
+    }
+  }
+
+  /// The step before that at hand; as long as this one where that is not known [s].
+  double lastStep() const { return particles.steps.last > 0 ? particles.steps.last : timeStep; }
+};
+
+}  // namespace treacle
