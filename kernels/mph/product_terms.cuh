@@ -2,25 +2,9 @@
 
 #include "mph/cluster_sum.cuh"
 #include "treacle/mph/mph_sums.hpp"
+#include "treacle/mph/pair_sums.hpp"
 
 namespace treacle {
-
-constexpr bool isFluid(ListSegment s) { return s == ListSegment::NearFluid || s == ListSegment::FarFluid; }
-constexpr bool isNear(ListSegment s) { return s == ListSegment::NearFluid || s == ListSegment::NearWall; }
-constexpr bool isWall(ListSegment s) { return !isFluid(s); }
-
-/// (a - b).d
-template <int D, class T>
-__device__ inline T differenceAlong(const Vec<D, T>& a, const Vec<D, T>& b, const Vec<D, T>& d) {
-  T sum = (a[0] - b[0]) * d[0];
-  for (int k = 1; k < D; ++k) sum = fma(a[k] - b[k], d[k], sum);
-  return sum;
-}
-
-template <int D, class T>
-__device__ inline void addScaled(T* sum, T factor, const Vec<D, T>& d) {
-  for (int k = 0; k < D; ++k) sum[k] = fma(factor, d[k], sum[k]);
-}
 
 /// One fetch where the type allows it.
 template <int D, class T>

@@ -30,7 +30,7 @@ VecLanes<D> difference(const MphPairs<D>& pairs, std::uint32_t j, const VecLanes
   VecLanes<D> d;
   const Vec<D>& xj = pairs.position[j];  // broadcast from memory
   for (int k = 0; k < D; ++k) d[k] = xj[k] - x[k];
-  if constexpr (Wraps) moveToNearest(pairs.grid, d.c);
+  if constexpr (Wraps) moveToNearest(pairs.grid, d.v);
   return d;
 }
 

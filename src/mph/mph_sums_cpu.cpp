@@ -1,6 +1,5 @@
-#include "treacle/mph/mph_sums.hpp"
-
-#include "treacle/mph/mph_lanes.hpp"
+#include "lane_sums.hpp"
+#include "treacle/mph/density_sums.hpp"
 
 namespace treacle {
 namespace {
@@ -61,52 +60,8 @@ void divergenceOf(const MphPairs<D>& pairs, const ClusterListView& list, std::sp
 
 }  // namespace
 
-template <int D>
-void numberDensity(Context<Cpu>&, const MphPairs<D>& pairs, std::span<double> n, const PlaceSums& places) {
-  const double floor2 = distanceFloor2(pairs);
-  std::span<const ListSegment> segments = nearSegments;
-  if (pairs.terms.densityRadius > pairs.terms.pressureRadius) segments = allSegments;
-  for (const ClusterListView& list : {pairs.fluidList, pairs.wallList})
-    forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const ClusterPlaces<D>& x, std::uint32_t c) {
-      Lanes sum = {}, around = {};
-      VecLanes<D> away = {};
-      for (ListSegment s : segments)
-        for (std::uint32_t j : list.segment(c, s)) {
-          const PairLanes<D> pair(pairs, j, x, floor2);
-          Lanes w = pairs.terms.density(pairs.terms.densityFactor, pair.r);
-          const std::uint32_t self = j - range.first;
-          if (self < clusterSize) w[self] = 0;  // a particle is not its own neighbour
-          sum += w;
-          if (places.open.empty()) continue;
-          Lanes v = pairs.terms.openness(pair.r);
-          if (self < clusterSize) v[self] = 0;
-          around += v;
-          for (int k = 0; k < D; ++k) away[k] += v * pair.d[k];
-        }
-      storeLanes(range, sum, n);
-      if (places.open.empty()) return;
-      storeLanes(range, pairs.wideScale * around, places.wide);
-      Lanes square = {};
-      for (int k = 0; k < D; ++k) square += away[k] * away[k];
-      storeLanes(range, pairs.opennessFactor() * squareRoot(square), places.open);
-    });
-}
-
-template <int D>
-void wallDensity(Context<Cpu>&, const MphPairs<D>& pairs, std::span<double> n) {
-  const double floor2 = distanceFloor2(pairs);
-  const ClusterListView& list = pairs.fluidList;
-  forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const ClusterPlaces<D>& x, std::uint32_t c) {
-    Lanes sum = {};
-    for (ListSegment s : wallSegments)
-      for (std::uint32_t j : list.segment(c, s))
-        sum += pairs.terms.density(pairs.terms.densityFactor, PairLanes<D>(pairs, j, x, floor2).r);
-    storeLanes(range, sum, n);
-  });
-}
-
-template <int D>
-void addPressureGradient(Context<Cpu>&, const MphPairs<D>& pairs, std::span<const double> q, double factor,
+template <int D, class Backend>
+void addPressureGradient(Context<Backend>&, const MphPairs<D>& pairs, std::span<const double> q, double factor,
                          std::span<Vec<D>> y) {
   const ClusterListView& list = pairs.fluidList;
   forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const ClusterPlaces<D>& x, std::uint32_t c) {
@@ -118,72 +73,18 @@ void addPressureGradient(Context<Cpu>&, const MphPairs<D>& pairs, std::span<cons
   });
 }
 
-template <int D>
-void divergence(Context<Cpu>&, const MphPairs<D>& pairs, std::span<const Vec<D>> u, std::span<double> div) {
+template <int D, class Backend>
+void divergence(Context<Backend>&, const MphPairs<D>& pairs, std::span<const Vec<D>> u, std::span<double> div) {
   withRenormalisation(pairs,
                       [&]<bool Renormalised>() { divergenceOf<Renormalised>(pairs, pairs.fluidList, u, div); });
   divergenceOf<false>(pairs, pairs.wallList, u, div);
 }
 
-template <int D>
-void wallTerms(Context<Cpu>&, const MphPairs<D>& pairs, const WallTerms<D>& terms) {
-  const double floor2 = distanceFloor2(pairs);
-  const ClusterListView& list = pairs.fluidList;
-  forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const ClusterPlaces<D>& x, std::uint32_t c) {
-    const ViscosityLanes<D> viscosity(pairs, range);
-    Lanes block[D][D] = {};
-    VecLanes<D> gradient = {};
-    for (ListSegment s : wallSegments)
-      for (std::uint32_t j : list.segment(c, s)) {
-        const PairLanes<D> pair(pairs, j, x, floor2);
-        const Lanes f = pairs.terms.viscous(viscosity.with(j), pair.r) * wallFactors(pairs, range, j, pair.d);
-        const Lanes g = pairs.terms.gradient(pair.r);
-        for (int r = 0; r < D; ++r) {
-          gradient[r] += g * pair.d[r];
-          for (int k = 0; k < D; ++k) block[r][k] += f * pair.d[r] * pair.d[k];
-        }
-      }
-    for (std::uint32_t lane = 0; lane < range.count; ++lane) {
-      const std::uint32_t i = range.first + lane;
-      terms.block[i] = Block<D>::diagonal(pairs.inertia(i));
-      Vec<D> own;
-      for (int r = 0; r < D; ++r) {
-        own[r] = gradient[r][lane];
-        for (int k = 0; k < D; ++k) terms.block[i](r, k) += block[r][k][lane];
-      }
-      terms.gradient[i] = pairs.corrected(i, own);
-    }
-  });
-}
-
-template <int D>
-void addWallDrag(Context<Cpu>&, const MphPairs<D>& pairs, std::span<const Vec<D>> u, std::span<Vec<D>> y) {
-  const double floor2 = distanceFloor2(pairs);
-  const ClusterListView& list = pairs.fluidList;
-  forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const ClusterPlaces<D>& x, std::uint32_t c) {
-    const ViscosityLanes<D> viscosity(pairs, range);
-    VecLanes<D> yi = loadLanes<D>(range, std::span<const Vec<D>>(y));
-    for (ListSegment s : wallSegments)
-      for (std::uint32_t j : list.segment(c, s)) {
-        const PairLanes<D> pair(pairs, j, x, floor2);
-        Lanes along = {};
-        for (int k = 0; k < D; ++k) along += pair.d[k] * u[j][k];
-        const Lanes f =
-            pairs.terms.viscous(viscosity.with(j), pair.r) * wallFactors(pairs, range, j, pair.d) * along;
-        for (int k = 0; k < D; ++k) yi[k] += f * pair.d[k];
-      }
-    storeLanes<D>(range, yi, y);
-  });
-}
-
-#define TREACLE_INSTANTIATE(D)                                                                                \
-  template void numberDensity<D>(Context<Cpu>&, const MphPairs<D>&, std::span<double>, const PlaceSums&);     \
-  template void wallDensity<D>(Context<Cpu>&, const MphPairs<D>&, std::span<double>);                         \
-  template void addPressureGradient<D>(Context<Cpu>&, const MphPairs<D>&, std::span<const double>, double,    \
-                                       std::span<Vec<D>>);                                                    \
-  template void divergence<D>(Context<Cpu>&, const MphPairs<D>&, std::span<const Vec<D>>, std::span<double>); \
-  template void wallTerms<D>(Context<Cpu>&, const MphPairs<D>&, const WallTerms<D>&);                         \
-  template void addWallDrag<D>(Context<Cpu>&, const MphPairs<D>&, std::span<const Vec<D>>, std::span<Vec<D>>);
+#define TREACLE_INSTANTIATE(D)                                                                          \
+  TREACLE_DENSITY_SUMS(D, Cpu)                                                                          \
+  template void addPressureGradient(Context<Cpu>&, const MphPairs<D>&, std::span<const double>, double, \
+                                    std::span<Vec<D>>);                                                 \
+  template void divergence(Context<Cpu>&, const MphPairs<D>&, std::span<const Vec<D>>, std::span<double>);
 TREACLE_INSTANTIATE(2)
 TREACLE_INSTANTIATE(3)
 #undef TREACLE_INSTANTIATE

@@ -85,7 +85,7 @@ struct ListBuilder {
       for (std::uint32_t j = begin; j < end; ++j) {
         VecLanes<D> d;
         for (int k = 0; k < D; ++k) d[k] = position[j][k] - x[k];
-        if (reach.wraps) moveToNearest(grid, d.c);
+        if (reach.wraps) moveToNearest(grid, d.v);
         Lanes r2 = {};
         for (int k = 0; k < D; ++k) r2 += d[k] * d[k];
         if (any_of(r2 <= near2))

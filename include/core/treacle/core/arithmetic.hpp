@@ -35,6 +35,7 @@ TREACLE_HD inline float inverseSqrt(float x) {
 }
 
 TREACLE_HD inline double squareRoot(double x) { return sqrt(x); }
+TREACLE_HD inline double absoluteValue(double x) { return fabs(x); }
 
 inline double sinc(double x) { return x == 0 ? 1 : std::sin(x) / x; }
 

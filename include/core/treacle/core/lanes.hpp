@@ -52,5 +52,6 @@ template <class T, class Abi>
 }
 
 [[gnu::always_inline]] inline Lanes squareRoot(const Lanes& x) { return sqrt(x); }
+[[gnu::always_inline]] inline Lanes absoluteValue(const Lanes& x) { return max(x, -x); }
 
 }  // namespace treacle

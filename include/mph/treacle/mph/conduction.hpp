@@ -46,11 +46,7 @@ struct Conduction {
 
   /// Whether a wall particle conducts.
   TREACLE_HD bool conducts(std::uint32_t wall) const { return walls[body[wall]].temperature > 0; }
-  /// Over c_ij r^2, of two fluid particles of materials a and b [W/(m K)].
-  TREACLE_HD double ofFluid(Substance a, Substance b, double scaleA, double scaleB) const {
-    return 0.5 * (scaleA + scaleB) * table.pairConductivity[a][b];
-  }
-  /// The same of a fluid and a wall particle; d = x_wall - x_fluid [m].
+  /// Over c_ij r^2, of a fluid and a wall particle [W/(m K)]; d = x_wall - x_fluid [m].
   template <int D>
   TREACLE_HD double ofWall(const MphPairs<D>& pairs, std::uint32_t fluid, std::uint32_t wall,
                            const Vec<D>& d) const {
@@ -65,10 +61,8 @@ struct Conduction {
 };
 
 /// s_i per own fluid particle, with neighbours that conduct.
-template <int D>
-void conductionScale(Context<Cpu>&, const MphPairs<D>&, const Conduction&, std::span<double> scale);
-template <int D>
-void conductionScale(Context<Cuda>&, const MphPairs<D>&, const Conduction&, std::span<double> scale);
+template <int D, class Backend>
+void conductionScale(Context<Backend>&, const MphPairs<D>&, const Conduction&, std::span<double> scale);
 
 /// What a particle gets per volume is gain - coefficient T.
 struct HeatExchange {
@@ -77,19 +71,13 @@ struct HeatExchange {
 };
 
 /// Per own fluid particle: the sum of kappa over fluid neighbours [W/(m3 K)], and what the walls are to it.
-template <int D>
-void conductionDiagonal(Context<Cpu>&, const MphPairs<D>&, const Conduction&, std::span<double> ofFluid,
-                        std::span<HeatExchange> ofWalls);
-template <int D>
-void conductionDiagonal(Context<Cuda>&, const MphPairs<D>&, const Conduction&, std::span<double> ofFluid,
+template <int D, class Backend>
+void conductionDiagonal(Context<Backend>&, const MphPairs<D>&, const Conduction&, std::span<double> ofFluid,
                         std::span<HeatExchange> ofWalls);
 
 /// y_i = extra_i T_i + sum_j kappa_ij (T_i - T_j) per own fluid particle; T of ghosts, too.
-template <int D>
-void conduct(Context<Cpu>&, const MphPairs<D>&, const Conduction&, std::span<const double> extra,
-             std::span<const double> T, std::span<double> y);
-template <int D>
-void conduct(Context<Cuda>&, const MphPairs<D>&, const Conduction&, std::span<const double> extra,
+template <int D, class Backend>
+void conduct(Context<Backend>&, const MphPairs<D>&, const Conduction&, std::span<const double> extra,
              std::span<const double> T, std::span<double> y);
 
 }  // namespace treacle

@@ -23,7 +23,10 @@ struct SurfaceLack {
   static SurfaceLack make(const MphPairs<D>& pairs);
 
   /// Whether a neighbour at distance r is where a particle lacks some; along: d.lack.
-  TREACLE_HD static bool covers(double along, double lack, double r) { return -along > 0.75 * lack * r; }
+  template <class Real>
+  TREACLE_HD static auto covers(const Real& along, const Real& lack, const Real& r) {
+    return -along > 0.75 * lack * r;
+  }
 
   /// The area of an uncovered particle over its volume [1/m].
   TREACLE_HD double area(double lack) const {
@@ -33,11 +36,8 @@ struct SurfaceLack {
 };
 
 /// Per own fluid particle: sum_j g d [1/m], and the area of the free surface over the volume [1/m].
-template <int D>
-void surfaceArea(Context<Cpu>&, const MphPairs<D>&, const SurfaceLack&, std::span<Vec<D>> lack,
-                 std::span<double> area);
-template <int D>
-void surfaceArea(Context<Cuda>&, const MphPairs<D>&, const SurfaceLack&, std::span<Vec<D>> lack,
+template <int D, class Backend>
+void surfaceArea(Context<Backend>&, const MphPairs<D>&, const SurfaceLack&, std::span<Vec<D>> lack,
                  std::span<double> area);
 
 }  // namespace treacle

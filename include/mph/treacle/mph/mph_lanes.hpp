@@ -31,7 +31,7 @@ struct PairLanes {
   PairLanes(const MphPairs<D>& pairs, std::uint32_t j, const ClusterPlaces<D>& own, double floor2) {
     const Vec<D>& xj = pairs.position[j];
     for (int k = 0; k < D; ++k) d[k] = xj[k] - own.x[k];
-    if (own.wraps) moveToNearest(pairs.grid, d.c);
+    if (own.wraps) moveToNearest(pairs.grid, d.v);
     measure(floor2);
   }
 
@@ -100,8 +100,11 @@ inline VecLanes<D> corrected(const MphPairs<D>& pairs, std::uint32_t k, const Ve
 template <int D, bool MayBeScaled = true>
 class ViscosityLanes {
  public:
-  ViscosityLanes(const MphPairs<D>& pairs, const ClusterRange& range) : pairs_(pairs) {
-    const double factor = pairs.terms.viscousFactor;
+  ViscosityLanes(const MphPairs<D>& pairs, const ClusterRange& range)
+      : ViscosityLanes(pairs, range, pairs.terms.viscousFactor) {}
+  /// mu_ij times another factor.
+  ViscosityLanes(const MphPairs<D>& pairs, const ClusterRange& range, double factor)
+      : pairs_(pairs), factor_(factor) {
     if (pairs.viscosityScale)
       scale_ = generate<Lanes>([&](auto lane) { return pairs.viscousSide(range.particle(lane)).scale; });
     if (pairs.isOneSubstance()) {
@@ -128,11 +131,12 @@ class ViscosityLanes {
   Lanes ofMaterials(std::uint32_t j) const {
     const ViscousSide other = pairs_.viscousSide(j);
     return generate<Lanes>([&](auto lane) {
-      return pairs_.terms.viscousFactor * pairs_.viscosityOf({substance_[lane], scale_[lane]}, other);
+      return factor_ * pairs_.viscosityOf({substance_[lane], scale_[lane]}, other);
     });
   }
 
   const MphPairs<D>& pairs_;
+  double factor_;
   Lanes scale_{};
   Substance substance_[clusterSize];  // of several materials
   Lanes ofSubstance_[maxMaterials];

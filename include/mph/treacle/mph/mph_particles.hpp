@@ -15,29 +15,20 @@ namespace treacle {
 
 /// kappa [n - n_0]_+ per particle [Pa]: the explicit part of Psi [K23 eq. (14)], cut at the free surface. Where
 /// there is a surface tension, `adhesion` says which particles bear pressures below zero; empty: none does.
-template <int D>
-void elasticPressure(Context<Cpu>&, const MphPairs<D>&, std::span<const double> n,
-                     std::span<const Adhesion<D>> adhesion, std::span<double> elastic);
-template <int D>
-void elasticPressure(Context<Cuda>&, const MphPairs<D>&, std::span<const double> n,
+template <int D, class Backend>
+void elasticPressure(Context<Backend>&, const MphPairs<D>&, std::span<const double> n,
                      std::span<const Adhesion<D>> adhesion, std::span<double> elastic);
 
 /// rho/dt u + rho g per fluid particle: b of [K23 eq. (16)] before the pair sums.
-template <int D>
-void inertiaAndGravity(Context<Cpu>&, const MphPairs<D>&, std::span<const Vec<D>> u, const Vec<D>& gravity,
-                       std::span<Vec<D>> b);
-template <int D>
-void inertiaAndGravity(Context<Cuda>&, const MphPairs<D>&, std::span<const Vec<D>> u, const Vec<D>& gravity,
+template <int D, class Backend>
+void inertiaAndGravity(Context<Backend>&, const MphPairs<D>&, std::span<const Vec<D>> u, const Vec<D>& gravity,
                        std::span<Vec<D>> b);
 
 /// pressure_i = lambda_i div_i + elastic_i per particle [Pa] [K23 eq. (14)]; an empty `elastic` counts as zero.
 /// `pressure` may be `div`.
-template <int D>
-void bulkPressure(Context<Cpu>&, const MphPairs<D>&, std::span<const double> div, std::span<const double> elastic,
-                  std::span<double> pressure);
-template <int D>
-void bulkPressure(Context<Cuda>&, const MphPairs<D>&, std::span<const double> div, std::span<const double> elastic,
-                  std::span<double> pressure);
+template <int D, class Backend>
+void bulkPressure(Context<Backend>&, const MphPairs<D>&, std::span<const double> div,
+                  std::span<const double> elastic, std::span<double> pressure);
 
 /// The formulas, for particle i.
 template <int D>

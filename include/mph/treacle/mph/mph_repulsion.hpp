@@ -11,24 +11,17 @@ namespace treacle {
 /// right-hand side alone. `rate`: 1/dt [1/s].
 
 /// y_i += force of the repulsion per fluid particle [N/m3], that of walls included.
-template <int D>
-void addRepulsion(Context<Cpu>&, const MphPairs<D>&, double rate, std::span<Vec<D>> y);
-template <int D>
-void addRepulsion(Context<Cuda>&, const MphPairs<D>&, double rate, std::span<Vec<D>> y);
+template <int D, class Backend>
+void addRepulsion(Context<Backend>&, const MphPairs<D>&, double rate, std::span<Vec<D>> y);
 
 /// The same per active wall particle: what the fluid does there.
-template <int D>
-void addRepulsionOnWalls(Context<Cpu>&, const MphPairs<D>&, double rate, std::span<Vec<D>> y);
-template <int D>
-void addRepulsionOnWalls(Context<Cuda>&, const MphPairs<D>&, double rate, std::span<Vec<D>> y);
+template <int D, class Backend>
+void addRepulsionOnWalls(Context<Backend>&, const MphPairs<D>&, double rate, std::span<Vec<D>> y);
 
 /// What it gives to the motion per fluid particle [W/m3], pairs of fluid shared by halves: the sum over the
 /// particles has each pair once, but those of walls. u per active particle, walls included.
-template <int D>
-void repulsionPower(Context<Cpu>&, const MphPairs<D>&, double rate, std::span<const Vec<D>> u,
-                    std::span<double> power);
-template <int D>
-void repulsionPower(Context<Cuda>&, const MphPairs<D>&, double rate, std::span<const Vec<D>> u,
+template <int D, class Backend>
+void repulsionPower(Context<Backend>&, const MphPairs<D>&, double rate, std::span<const Vec<D>> u,
                     std::span<double> power);
 
 }  // namespace treacle

@@ -18,31 +18,22 @@ struct PlaceSums {
 };
 
 /// n_i = sum_j w_ij^p, per particle [K23 eq. (7)].
-template <int D>
-void numberDensity(Context<Cpu>&, const MphPairs<D>&, std::span<double> n, const PlaceSums& places = {});
-template <int D>
-void numberDensity(Context<Cuda>&, const MphPairs<D>&, std::span<double> n, const PlaceSums& places = {});
+template <int D, class Backend>
+void numberDensity(Context<Backend>&, const MphPairs<D>&, std::span<double> n, const PlaceSums& places = {});
 
 /// The part of n_i that wall particles make up, per fluid particle.
-template <int D>
-void wallDensity(Context<Cpu>&, const MphPairs<D>&, std::span<double> n);
-template <int D>
-void wallDensity(Context<Cuda>&, const MphPairs<D>&, std::span<double> n);
+template <int D, class Backend>
+void wallDensity(Context<Backend>&, const MphPairs<D>&, std::span<double> n);
 
 /// y_i += factor (C q)_i = -factor sum_j (q_i B_i + q_j B_j) e_ij w'_ij^p per fluid particle; q per particle. B:
 /// of the pairs (renormalisation.hpp), the unit matrix where they have none.
-template <int D>
-void addPressureGradient(Context<Cpu>&, const MphPairs<D>&, std::span<const double> q, double factor,
-                         std::span<Vec<D>> y);
-template <int D>
-void addPressureGradient(Context<Cuda>&, const MphPairs<D>&, std::span<const double> q, double factor,
+template <int D, class Backend>
+void addPressureGradient(Context<Backend>&, const MphPairs<D>&, std::span<const double> q, double factor,
                          std::span<Vec<D>> y);
 
 /// (C^T u)_i = sum_j (u_j - u_i).B_i e_ij w'_ij^p per particle [K23 eq. (14)]; u per particle, walls included.
-template <int D>
-void divergence(Context<Cpu>&, const MphPairs<D>&, std::span<const Vec<D>> u, std::span<double> div);
-template <int D>
-void divergence(Context<Cuda>&, const MphPairs<D>&, std::span<const Vec<D>> u, std::span<double> div);
+template <int D, class Backend>
+void divergence(Context<Backend>&, const MphPairs<D>&, std::span<const Vec<D>> u, std::span<double> div);
 
 /// What the walls and the inertia put on a fluid particle's own velocity.
 template <int D>
@@ -52,15 +43,11 @@ struct WallTerms {
   // it only for pairs without B.
   std::span<Vec<D>> gradient;
 };
-template <int D>
-void wallTerms(Context<Cpu>&, const MphPairs<D>&, const WallTerms<D>&);
-template <int D>
-void wallTerms(Context<Cuda>&, const MphPairs<D>&, const WallTerms<D>&);
+template <int D, class Backend>
+void wallTerms(Context<Backend>&, const MphPairs<D>&, const WallTerms<D>&);
 
 /// y_i += viscous force density of moving walls: sum over walls of the pair block times u_j, per fluid particle.
-template <int D>
-void addWallDrag(Context<Cpu>&, const MphPairs<D>&, std::span<const Vec<D>> u, std::span<Vec<D>> y);
-template <int D>
-void addWallDrag(Context<Cuda>&, const MphPairs<D>&, std::span<const Vec<D>> u, std::span<Vec<D>> y);
+template <int D, class Backend>
+void addWallDrag(Context<Backend>&, const MphPairs<D>&, std::span<const Vec<D>> u, std::span<Vec<D>> y);
 
 }  // namespace treacle

@@ -48,8 +48,8 @@ struct ViscosityTerms {
 };
 
 /// Of the first particles, as many as there are rates.
-void setViscosities(Context<Cpu>&, const ViscosityTerms&);
-void setViscosities(Context<Cuda>&, const ViscosityTerms&);
+template <class Backend>
+void setViscosities(Context<Backend>&, const ViscosityTerms&);
 
 /// Sets the class of a particle: fluid has a viscosity, walls are of their materials' class.
 struct ClassTerms {
@@ -62,8 +62,8 @@ struct ClassTerms {
     kind[i] = i < viscosity.size() ? classes.of(material[i], viscosity[i]) : material[i];
   }
 };
-void setClasses(Context<Cpu>&, const ClassTerms&);
-void setClasses(Context<Cuda>&, const ClassTerms&);
+template <class Backend>
+void setClasses(Context<Backend>&, const ClassTerms&);
 
 /// What a particle's shear rate after a solve says: the rate that the next one is to take, and what it adds to the
 /// sums of |change of mu| gamma^2 and mu gamma^2.
@@ -88,7 +88,7 @@ struct RateTerms {
 
 /// Sets all rates; the change of the viscosity over all processes. The order of the sums depends on the number of
 /// particles alone.
-double nextRates(Context<Cpu>&, const RateTerms&);
-double nextRates(Context<Cuda>&, const RateTerms&);
+template <class Backend>
+double nextRates(Context<Backend>&, const RateTerms&);
 
 }  // namespace treacle

@@ -74,9 +74,7 @@ TREACLE_HD inline SymmetricBlock<3> renormalisationOf(const SymmetricBlock<3>& m
 /// B of every fluid particle from its neighbours within h_p, walls among them. It makes C^T u, minus the
 /// divergence, exact for velocities that are linear in space, whatever stands around a particle (Randles, Libersky
 /// 1996; Bonet, Lok 1999), but for a factor, which is as if the particle's bulk viscosity were less.
-template <int D>
-void renormalisation(Context<Cpu>&, const MphPairs<D>&, std::span<SymmetricBlock<D>> b);
-template <int D>
-void renormalisation(Context<Cuda>&, const MphPairs<D>&, std::span<SymmetricBlock<D>> b);
+template <int D, class Backend>
+void renormalisation(Context<Backend>&, const MphPairs<D>&, std::span<SymmetricBlock<D>> b);
 
 }  // namespace treacle

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "treacle/mph/mph_pairs.hpp"
+#include "treacle/mph/pair_sums.hpp"
 
 #include <numbers>
 #include <span>
@@ -171,15 +171,13 @@ struct SurfaceTerms {
   }
   /// The force of a wall particle on a fluid particle at x_i over wetPull() [1/m2], d = x_j - x_i; the wall
   /// particle has the opposite.
-  template <class V, class Real>
-  TREACLE_HD V alongWall(const V& d, const Real& r2, const Vec<D>& along) const {
-    const double size = norm(along);
-    const Vec<D> normal = along * (1 / size);
-    Real across = normal[0] * d[0];
-    for (int k = 1; k < D; ++k) across += normal[k] * d[k];
-    const Real g = size * wettingGradient(r2);
-    V force;
-    for (int k = 0; k < D; ++k) force[k] = g * (d[k] - across * normal[k]);
+  template <class T, class Along>
+  TREACLE_HD Vec<D, T> alongWall(const Vec<D, T>& d, const T& r2, const Vec<D, Along>& along) const {
+    constexpr double tiny = 1e-100;  // of a wall particle that does not pull
+    const Along size = squareRoot(norm2(along));
+    const T across = treacle::along(along, d) / (size + tiny), g = wettingGradient(r2);
+    Vec<D, T> force;
+    for (int k = 0; k < D; ++k) force[k] = g * (size * d[k] - across * along[k]);
     return force;
   }
   /// The share that a neighbour fills, from its gradient.
@@ -301,67 +299,44 @@ template <int D>
 inline constexpr int surfacePasses = D == 2 ? 8 : 4;
 
 /// Per own fluid particle the sums, its slope and how it bears pressures below zero.
-template <int D>
-void surfaceSlope(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&, std::span<SurfaceSums<D>> sums,
-                  std::span<SurfaceSlope<D>> slope, std::span<Adhesion<D>> adhesion);
-template <int D>
-void surfaceSlope(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&, std::span<SurfaceSums<D>> sums,
+template <int D, class Backend>
+void surfaceSlope(Context<Backend>&, const MphPairs<D>&, const SurfaceTerms<D>&, std::span<SurfaceSums<D>> sums,
                   std::span<SurfaceSlope<D>> slope, std::span<Adhesion<D>> adhesion);
 
 /// Per wall particle of a list that reaches to h, from the first wall particle on.
-template <int D>
-void wallAdhesion(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&, const ClusterListView& walls,
-                  std::span<WallSums<D>> sums, std::span<Adhesion<D>> adhesion);
-template <int D>
-void wallAdhesion(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&, const ClusterListView& walls,
+template <int D, class Backend>
+void wallAdhesion(Context<Backend>&, const MphPairs<D>&, const SurfaceTerms<D>&, const ClusterListView& walls,
                   std::span<WallSums<D>> sums, std::span<Adhesion<D>> adhesion);
 
 /// `slope` of all fluid, `adhesion` of all active particles, ghosts included.
-template <int D>
-void surfaceForces(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&, std::span<const SurfaceSums<D>> sums,
-                   std::span<const SurfaceSlope<D>> slope, std::span<const Adhesion<D>> adhesion,
-                   const SurfaceForces<D>& of);
-template <int D>
-void surfaceForces(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&,
+template <int D, class Backend>
+void surfaceForces(Context<Backend>&, const MphPairs<D>&, const SurfaceTerms<D>&,
                    std::span<const SurfaceSums<D>> sums, std::span<const SurfaceSlope<D>> slope,
                    std::span<const Adhesion<D>> adhesion, const SurfaceForces<D>& of);
 
 /// Per own fluid particle: adds to `force` what makes up for the depth of the tension, and moves the smooth part
 /// of it along the surface's curvature, q S, to `apart`: what is left in `force` is to be shared. `normal` and
 /// `fit` of all fluid, ghosts included; `fitted` is room for sums.
-template <int D>
-void bendSurface(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&, const SurfaceForces<D>& of,
-                 std::span<SurfaceFit> fitted);
-template <int D>
-void bendSurface(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&, const SurfaceForces<D>& of,
+template <int D, class Backend>
+void bendSurface(Context<Backend>&, const MphPairs<D>&, const SurfaceTerms<D>&, const SurfaceForces<D>& of,
                  std::span<SurfaceFit> fitted);
 
 /// y_i = f_i and what the particle shares of it with its neighbours along the surface, and apart_i unless `apart`
 /// is empty, per own fluid particle [N/m3]. `normal`, `fit` and f of all fluid, ghosts included; where `fit` is
 /// zero nothing is shared.
-template <int D>
-void evenAlongSurface(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&, std::span<const Vec<D>> normal,
-                      std::span<const SurfaceFit> fit, std::span<const Vec<D>> f, std::span<Vec<D>> y,
-                      std::span<const Vec<D>> apart = {});
-template <int D>
-void evenAlongSurface(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&, std::span<const Vec<D>> normal,
-                      std::span<const SurfaceFit> fit, std::span<const Vec<D>> f, std::span<Vec<D>> y,
-                      std::span<const Vec<D>> apart = {});
+template <int D, class Backend>
+void evenAlongSurface(Context<Backend>&, const MphPairs<D>&, const SurfaceTerms<D>&,
+                      std::span<const Vec<D>> normal, std::span<const SurfaceFit> fit, std::span<const Vec<D>> f,
+                      std::span<Vec<D>> y, std::span<const Vec<D>> apart = {});
 
 /// y += f per own fluid particle [N/m3].
-template <int D>
-void addSurfaceForces(Context<Cpu>&, std::span<const Vec<D>> f, std::span<Vec<D>> y);
-template <int D>
-void addSurfaceForces(Context<Cuda>&, std::span<const Vec<D>> f, std::span<Vec<D>> y);
+template <int D, class Backend>
+void addSurfaceForces(Context<Backend>&, std::span<const Vec<D>> f, std::span<Vec<D>> y);
 
 /// Sets y per wall particle of the list to the reaction, as `ofWalls` has it of all fluid, ghosts included, and
 /// `adhesion` of active particles, and adds it to `load` [N/m3].
-template <int D>
-void surfaceOnWalls(Context<Cpu>&, const MphPairs<D>&, const SurfaceTerms<D>&, const ClusterListView& walls,
-                    std::span<const Vec<D>> ofWalls, std::span<const Adhesion<D>> adhesion, std::span<Vec<D>> y,
-                    std::span<Vec<D>> load);
-template <int D>
-void surfaceOnWalls(Context<Cuda>&, const MphPairs<D>&, const SurfaceTerms<D>&, const ClusterListView& walls,
+template <int D, class Backend>
+void surfaceOnWalls(Context<Backend>&, const MphPairs<D>&, const SurfaceTerms<D>&, const ClusterListView& walls,
                     std::span<const Vec<D>> ofWalls, std::span<const Adhesion<D>> adhesion, std::span<Vec<D>> y,
                     std::span<Vec<D>> load);
 

@@ -18,78 +18,55 @@ namespace treacle {
 using Covered = Vec<2>;
 
 /// q = min(0, n - n_0), n_0 being that of fluid whose place is as open; b = Cover::tells. For own fluid particles.
-template <int D>
-void lackOfDensity(Context<Cpu>&, const MphPairs<D>&, const Places&, std::span<Covered> lack);
-template <int D>
-void lackOfDensity(Context<Cuda>&, const MphPairs<D>&, const Places&, std::span<Covered> lack);
+template <int D, class Backend>
+void lackOfDensity(Context<Backend>&, const MphPairs<D>&, const Places&, std::span<Covered> lack);
 
 /// mean_i = sum_j w_ij b_j q_j / sum_j w_ij b_j over the fluid around the particles i of the list, each fluid
 /// particle among its own neighbours (coveredMeanOf). `mean`: per active particle, written for those of the list.
-template <int D>
-void coveredMeans(Context<Cpu>&, const MphPairs<D>&, const ClusterListView& list, std::span<const Covered> q,
-                  std::span<double> mean);
-template <int D>
-void coveredMeans(Context<Cuda>&, const MphPairs<D>&, const ClusterListView& list, std::span<const Covered> q,
+template <int D, class Backend>
+void coveredMeans(Context<Backend>&, const MphPairs<D>&, const ClusterListView& list, std::span<const Covered> q,
                   std::span<double> mean);
 
 /// q = P, the tension of own fluid [Pa], b = Cover::bears.
-template <int D>
-void coverTension(Context<Cpu>&, const MphPairs<D>&, const Places&, std::span<const double> tension,
-                  std::span<Covered> covered);
-template <int D>
-void coverTension(Context<Cuda>&, const MphPairs<D>&, const Places&, std::span<const double> tension,
+template <int D, class Backend>
+void coverTension(Context<Backend>&, const MphPairs<D>&, const Places&, std::span<const double> tension,
                   std::span<Covered> covered);
 
 /// P of own fluid at the end of a step of dt [s] (tensionOf). `lack`: the means of lackOfDensity().
-template <int D>
-void followDensity(Context<Cpu>&, const MphPairs<D>&, double dt, const Places&, std::span<const double> lack,
-                   std::span<double> tension);
-template <int D>
-void followDensity(Context<Cuda>&, const MphPairs<D>&, double dt, const Places&, std::span<const double> lack,
+template <int D, class Backend>
+void followDensity(Context<Backend>&, const MphPairs<D>&, double dt, const Places&, std::span<const double> lack,
                    std::span<double> tension);
 
 /// force_i = sum_j 2 P_ij w'_ij e_ij, the force of the tensions [N/m3], w being the weight of densities and P_ij
 /// the tension of a pair (pairTension). Of fluid particles from all neighbours, of walls from the fluid.
 /// `tension`, `force`: per active particle, the latter written for those of the list.
-template <int D>
-void tensionForces(Context<Cpu>&, const MphPairs<D>&, const ClusterListView& list, std::span<const double> tension,
-                   std::span<Vec<D>> force);
-template <int D>
-void tensionForces(Context<Cuda>&, const MphPairs<D>&, const ClusterListView& list,
+template <int D, class Backend>
+void tensionForces(Context<Backend>&, const MphPairs<D>&, const ClusterListView& list,
                    std::span<const double> tension, std::span<Vec<D>> force);
 
 /// What own fluid particles go with in a step of dt [s] (spreadVelocityOf). `u`, `tension`: per active particle.
-template <int D>
-void spreadVelocities(Context<Cpu>&, const MphPairs<D>&, double dt, std::span<const Vec<D>> u,
-                      std::span<const double> tension, std::span<Vec<D>> transport);
-template <int D>
-void spreadVelocities(Context<Cuda>&, const MphPairs<D>&, double dt, std::span<const Vec<D>> u,
+template <int D, class Backend>
+void spreadVelocities(Context<Backend>&, const MphPairs<D>&, double dt, std::span<const Vec<D>> u,
                       std::span<const double> tension, std::span<Vec<D>> transport);
 
 /// B of own fluid (renormalisation.hpp) by the root of f = Places::resists: C takes B once and C^T once, so that
 /// lambda is multiplied by f. (ln f, 1) per own fluid particle is for letWallsYield().
-template <int D>
-void letGapsClose(Context<Cpu>&, const MphPairs<D>&, const Places&, std::span<SymmetricBlock<D>> b,
-                  std::span<Covered> logarithm);
-template <int D>
-void letGapsClose(Context<Cuda>&, const MphPairs<D>&, const Places&, std::span<SymmetricBlock<D>> b,
+template <int D, class Backend>
+void letGapsClose(Context<Backend>&, const MphPairs<D>&, const Places&, std::span<SymmetricBlock<D>> b,
                   std::span<Covered> logarithm);
 
 /// From the mean of ln f around walls to the share of lambda that they have (wallShareOf()).
-void letWallsYield(Context<Cpu>&, std::span<double> mean);
-void letWallsYield(Context<Cuda>&, std::span<double> mean);
+template <class Backend>
+void letWallsYield(Context<Backend>&, std::span<double> mean);
 
 /// tension *= share, element by element.
-void shareTension(Context<Cpu>&, std::span<const double> share, std::span<double> tension);
-void shareTension(Context<Cuda>&, std::span<const double> share, std::span<double> tension);
+template <class Backend>
+void shareTension(Context<Backend>&, std::span<const double> share, std::span<double> tension);
 
 /// From the pressures that C is multiplied by to those that act (actingPressureOf()). `tension`, `pressure`: per
 /// active particle; of ghosts the latter is of no use.
-template <int D>
-void actingPressures(Context<Cpu>&, const MphPairs<D>&, const Places&, std::span<const double> tension,
-                     std::span<double> pressure);
-template <int D>
-void actingPressures(Context<Cuda>&, const MphPairs<D>&, const Places&, std::span<const double> tension,
+template <int D, class Backend>
+void actingPressures(Context<Backend>&, const MphPairs<D>&, const Places&, std::span<const double> tension,
                      std::span<double> pressure);
 
 /// The formulas, for particle i.

@@ -24,9 +24,7 @@ TREACLE_HD double viscosityScaleOf(double moment, double correction) {
 /// The scale of every fluid particle from its neighbours within h_v, walls among them. The viscosity of a pair is
 /// multiplied by the mean of both scales, that of a pair with a wall by the fluid's. Ignores what scales the pairs
 /// have.
-template <int D>
-void viscosityScale(Context<Cpu>&, const MphPairs<D>&, double correction, std::span<double> scale);
-template <int D>
-void viscosityScale(Context<Cuda>&, const MphPairs<D>&, double correction, std::span<double> scale);
+template <int D, class Backend>
+void viscosityScale(Context<Backend>&, const MphPairs<D>&, double correction, std::span<double> scale);
 
 }  // namespace treacle

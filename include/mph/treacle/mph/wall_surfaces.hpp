@@ -20,11 +20,8 @@ struct KnownSurfaces {
 };
 
 /// Those of the first wall particles, which belong to these bodies, as they are now.
-template <int D>
-void placeSurfaces(Context<Cpu>&, const KnownSurfaces<D>&, std::span<const std::uint8_t> body,
-                   std::span<WallSurface<D>> placed);
-template <int D>
-void placeSurfaces(Context<Cuda>&, const KnownSurfaces<D>&, std::span<const std::uint8_t> body,
+template <int D, class Backend>
+void placeSurfaces(Context<Backend>&, const KnownSurfaces<D>&, std::span<const std::uint8_t> body,
                    std::span<WallSurface<D>> placed);
 
 /// The formula, for wall particle k.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "treacle/core/lanes.hpp"
+#include "treacle/core/vec.hpp"
 #include "treacle/search/cluster_list.hpp"
 
 #include <algorithm>
@@ -11,11 +12,7 @@ static_assert(laneCount == clusterSize);
 
 /// D components of a vector quantity of the eight particles of a cluster.
 template <int D>
-struct VecLanes {
-  Lanes c[D];
-  Lanes& operator[](int k) { return c[k]; }
-  const Lanes& operator[](int k) const { return c[k]; }
-};
+using VecLanes = Vec<D, Lanes>;
 
 /// The particles of one cluster; lanes past the end repeat the last particle and are not stored.
 struct ClusterRange {

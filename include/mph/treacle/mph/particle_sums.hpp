@@ -1,0 +1,134 @@
+#pragma once
+
+#include "treacle/mph/mph_particles.hpp"
+#include "treacle/mph/pair_sums.hpp"
+#include "treacle/mph/particle_viscosity.hpp"
+#include "treacle/mph/renormalisation.hpp"
+#include "treacle/mph/viscosity_scale.hpp"
+#include "treacle/mph/wall_surfaces.hpp"
+
+namespace treacle {
+
+// What a step finds out about each particle by itself, or by one simple sum, for the sources of both backends,
+// which instantiate it: mph_particles.hpp, particle_viscosity.hpp, renormalisation.hpp, viscosity_scale.hpp and
+// wall_surfaces.hpp.
+
+template <int D, class Backend>
+void elasticPressure(Context<Backend>& context, const MphPairs<D>& pairs, std::span<const double> n,
+                     std::span<const Adhesion<D>> adhesion, std::span<double> elastic) {
+  forEachParticle(context, pairs, elastic.size(), [=] TREACLE_HD(const MphPairs<D>& of, std::uint32_t i) {
+    elastic[i] = elasticPressureOf(of, i, n[i], adhesion);
+  });
+}
+
+template <int D, class Backend>
+void inertiaAndGravity(Context<Backend>& context, const MphPairs<D>& pairs, std::span<const Vec<D>> u,
+                       const Vec<D>& gravity, std::span<Vec<D>> b) {
+  forEachParticle(context, pairs, b.size(), [=] TREACLE_HD(const MphPairs<D>& of, std::uint32_t i) {
+    b[i] = inertiaAndGravityOf(of, i, u[i], gravity);
+  });
+}
+
+template <int D, class Backend>
+void bulkPressure(Context<Backend>& context, const MphPairs<D>& pairs, std::span<const double> div,
+                  std::span<const double> elastic, std::span<double> pressure) {
+  forEachParticle(context, pairs, pressure.size(), [=] TREACLE_HD(const MphPairs<D>& of, std::uint32_t i) {
+    pressure[i] = bulkPressureOf(of, i, div[i], elastic.empty() ? 0.0 : elastic[i]);
+  });
+}
+
+template <class Backend>
+void setViscosities(Context<Backend>& context, const ViscosityTerms& terms) {
+  forEach(context, terms.rate.size(), [=] TREACLE_HD(std::size_t i) { terms.set(i); });
+}
+
+template <class Backend>
+void setClasses(Context<Backend>& context, const ClassTerms& terms) {
+  forEach(context, terms.kind.size(), [=] TREACLE_HD(std::size_t i) { terms.set(i); });
+}
+
+template <class Backend>
+double nextRates(Context<Backend>& context, const RateTerms& terms) {
+  return RateTerms::change(sumEach<RateTerms::count>(
+      context, terms.found.size(), [=] TREACLE_HD(std::size_t i, double* sums) { terms.add(i, sums); }));
+}
+
+template <int D, class Backend>
+void placeSurfaces(Context<Backend>& context, const KnownSurfaces<D>& known, std::span<const std::uint8_t> body,
+                   std::span<WallSurface<D>> placed) {
+  forEach(context, placed.size(), [=] TREACLE_HD(std::size_t k) { placed[k] = placedSurface(known, k, body[k]); });
+}
+
+/// Sum of c r^4 per fluid particle.
+template <int D>
+struct ViscousMoment {
+  static constexpr int values = 1;
+  static constexpr bool uses(ListSegment) { return true; }
+
+  double correction;
+  double* scale;
+
+  template <class At>
+  TREACLE_HD At own(const MphPairs<D>&, const At& at) const {
+    return at;
+  }
+  template <class T, class O>
+  TREACLE_HD void add(const MphPairs<D>& pairs, T* sum, const Vec<D, T>& d, const PairDistance<T>& r, const O&,
+                      const OneParticle&, ListSegment) const {
+    sum[0] += pairs.terms.resistanceShape(r) * norm2(d);
+  }
+  TREACLE_HD void store(const MphPairs<D>& pairs, std::uint32_t i, int, double sum) const {
+    scale[i] = viscosityScaleOf<D>(pairs.terms.viscousFactor * sum, correction);
+  }
+};
+
+template <int D, class Backend>
+void viscosityScale(Context<Backend>& context, const MphPairs<D>& pairs, double correction,
+                    std::span<double> scale) {
+  sumOnFluid(context, pairs, ViscousMoment<D>{correction, scale.data()});
+}
+
+/// M_i = sum of g d d^T per fluid particle, its upper triangle.
+template <int D>
+struct Moments {
+  static constexpr int values = SymmetricBlock<D>::size;
+  static constexpr bool uses(ListSegment s) { return isNear(s); }
+
+  SymmetricBlock<D>* moment;
+
+  template <class At>
+  TREACLE_HD At own(const MphPairs<D>&, const At& at) const {
+    return at;
+  }
+  template <class T, class O>
+  TREACLE_HD void add(const MphPairs<D>& pairs, T* sum, const Vec<D, T>& d, const PairDistance<T>& r, const O&,
+                      const OneParticle&, ListSegment) const {
+    const T g = pairs.terms.gradientShape(r);
+    int n = 0;
+    for (int i = 0; i < D; ++i)
+      for (int k = i; k < D; ++k, ++n) sum[n] += g * d[i] * d[k];
+  }
+  TREACLE_HD void store(const MphPairs<D>& pairs, std::uint32_t i, int n, double sum) const {
+    moment[i].a[n] = pairs.terms.gradientFactor * sum;
+  }
+};
+
+template <int D, class Backend>
+void renormalisation(Context<Backend>& context, const MphPairs<D>& pairs, std::span<SymmetricBlock<D>> b) {
+  sumOnFluid(context, pairs, Moments<D>{b.data()});
+  forEach(context, b.size(), [=] TREACLE_HD(std::size_t i) { b[i] = renormalisationOf(b[i]); });
+}
+
+#define TREACLE_PARTICLE_SUMS(D, Backend)                                                                        \
+  template void elasticPressure(Context<Backend>&, const MphPairs<D>&, std::span<const double>,                  \
+                                std::span<const Adhesion<D>>, std::span<double>);                                \
+  template void inertiaAndGravity(Context<Backend>&, const MphPairs<D>&, std::span<const Vec<D>>, const Vec<D>&, \
+                                  std::span<Vec<D>>);                                                            \
+  template void bulkPressure(Context<Backend>&, const MphPairs<D>&, std::span<const double>,                     \
+                             std::span<const double>, std::span<double>);                                        \
+  template void placeSurfaces(Context<Backend>&, const KnownSurfaces<D>&, std::span<const std::uint8_t>,         \
+                              std::span<WallSurface<D>>);                                                        \
+  template void viscosityScale(Context<Backend>&, const MphPairs<D>&, double, std::span<double>);                \
+  template void renormalisation(Context<Backend>&, const MphPairs<D>&, std::span<SymmetricBlock<D>>);
+
+}  // namespace treacle

@@ -1,0 +1,12 @@
+#include "mph/step_sums.cuh"
+#include "treacle/mph/particle_sums.hpp"
+
+namespace treacle {
+
+TREACLE_PARTICLE_SUMS(2, Cuda)
+TREACLE_PARTICLE_SUMS(3, Cuda)
+template void setViscosities(Context<Cuda>&, const ViscosityTerms&);
+template void setClasses(Context<Cuda>&, const ClassTerms&);
+template double nextRates(Context<Cuda>&, const RateTerms&);
+
+}  // namespace treacle

@@ -1,0 +1,15 @@
+#include "treacle/mph/particle_viscosity.hpp"
+
+namespace treacle {
+
+RheologyTable RheologyTable::make(const Case& c) {
+  RheologyTable table;
+  for (std::size_t m = 0; m < c.materials.size(); ++m) {
+    const Material& material = c.materials[m];
+    table.of[m] = material.rheology.value_or(Rheology::newtonian(material.dynamicViscosity));
+    if (material.viscosityShift) table.shift[m] = ShiftFactor::make(*material.viscosityShift);
+  }
+  return table;
+}
+
+}  // namespace treacle
