@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""benchmarks/cluster_steps.py --program FILE [--launch "mpirun -n {n} ..."] [--timeout S] [--set KEY=VALUE ...] [--run CASE:RESOLUTION:WIDTH:END:PROCESSES[:LINK] ...] OUT.json
+"""benchmarks/cluster_steps.py --program FILE [--launch "mpirun -n {n} ..."] [--timeout S] [--set KEY=VALUE ...]
+    [--run CASE:RESOLUTION:WIDTH:END:PROCESSES[:LINK] ...] OUT.json
 
 The first steps of runs by one process and by several, without frames but the first and last. CASE: thin-dam-break-3d (beside this
 file) or a case with [width]; WIDTH: its width.factor; LINK: peer, nccl or mpi, what processes on GPUs talk by at best
-(TREACLE_LINK). --set goes to all runs. Written for each run: milliseconds per step of each phase, at the process that conducts, iterations, memory, and
-what each process had to do."""
+(TREACLE_LINK). --set goes to all runs. Written for each run: milliseconds per step of each phase, at the process that conducts,
+iterations, memory, and what each process had to do."""
 
 import argparse
 import json

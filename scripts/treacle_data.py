@@ -1,5 +1,5 @@
 """Runs treacle and reads what it leaves, as NumPy arrays in SI units. Used by the validation studies and the reproduction
-of the papers; needs Python 3.9 and NumPy."""
+of the papers; needs Python 3.10 and NumPy."""
 
 import csv
 import json
@@ -66,7 +66,7 @@ def read_vtp(path):
         if compressed:
             sizes = np.frombuffer(content, "<u8", size, offset + 24).astype(int)
             ends = offset + 24 + 8 * size + np.cumsum(sizes)
-            blocks = [zlib.decompress(content[end - length : end]) for length, end in zip(sizes, ends)]
+            blocks = [zlib.decompress(content[end - length : end]) for length, end in zip(sizes, ends, strict=True)]
             values = np.frombuffer(b"".join(blocks), kind)
         else:
             values = np.frombuffer(content, kind, size // kind.itemsize, offset + 8)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Union
+from typing import Any
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from ._arrays import DeviceArray, given_array
 from ._toml import override_texts, quoted
 from .errors import InputError
 
-Array = Union[np.ndarray, DeviceArray]
+Array = np.ndarray | DeviceArray
 """A copy in NumPy where the CPU computes; the field itself, in the GPU's memory, where that does."""
 
 

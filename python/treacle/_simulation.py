@@ -6,7 +6,7 @@ import math
 import os
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
-from typing import Any, Literal, Union
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -23,7 +23,7 @@ from .errors import InputError
 
 Backend = Literal["auto", "cpu", "cuda"]
 Precision = Literal["mixed", "double"]
-Overrides = Union[Mapping[str, Any], Iterable[str], None]
+Overrides = Mapping[str, Any] | Iterable[str] | None
 
 _WHOLE = {"step", "iterations", "fallbacks", "particles", "inflow_particles", "outflow_particles"}
 

@@ -176,7 +176,8 @@ def test_viscosities_of_particles_stay_with_them(sim, tmp_path):
     import tomllib
 
     again = treacle.Simulation.from_checkpoint(tmp_path / "state.h5", tomllib.loads(sim.case_text), backend="cpu")
-    assert dict(zip(again.fluid.ids, again.fluid.viscosities)) == dict(zip(sim.fluid.ids, sim.fluid.viscosities))
+    viscosities = [dict(zip(one.fluid.ids, one.fluid.viscosities, strict=True)) for one in (again, sim)]
+    assert viscosities[0] == viscosities[1]
     frame = treacle.read_frame(tmp_path / "fluid.vtp")
     np.testing.assert_allclose(frame.viscosities, [2 * wanted[i] for i in frame.ids], rtol=1e-6)
 
@@ -243,4 +244,4 @@ def test_array_in_place_refuses_when_it_is_out_of_date(sim):
         with pytest.raises(RuntimeError, match="out of date"):
             use()
     with pytest.raises(AttributeError):
-        treacle.DeviceArray(sim._session, "positions").__cuda_array_interface__
+        _ = treacle.DeviceArray(sim._session, "positions").__cuda_array_interface__

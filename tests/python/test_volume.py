@@ -39,7 +39,8 @@ def squeezed(dimensions, change):
 
 
 def density_by_cells(fluid, walls):
-    """Of the fluid over that of its material, by the Voronoi cells of particles 2.5 spacings from walls and from open cells; their number."""
+    """Of the fluid over that of its material, by the Voronoi cells of particles 2.5 spacings from walls and from open cells;
+    their number."""
     cells = spatial.Voronoi(np.vstack([fluid, walls]))
     sizes = np.full(len(fluid), np.nan)
     for i, place in enumerate(fluid):

@@ -20,7 +20,8 @@ groups = {  # studies that share a table: its mark, and what their lines are cal
     "power-laws": {"power-law-slit": "n = 0.5", "power-law-slit-thickening": "n = 1.5"},
     "shear-rates": {"couette-carreau-yasuda": "Carreau-Yasuda", "couette-cross": "Cross"},
     "heaps": {"bingham-heap": "plane", "bingham-heap-3d": "round"},
-    "conduction": {"heated-slab": "slab", "heated-layers": "two layers", "cooled-slab": "cooled, Bi = 1", "cooled-slab-fast": "cooled, Bi = 10"},
+    "conduction": {"heated-slab": "slab", "heated-layers": "two layers",
+                   "cooled-slab": "cooled, Bi = 1", "cooled-slab-fast": "cooled, Bi = 10"},
     "two-layers": {"two-layer-couette": "10,000 to 1", "two-layer-couette-1000": "1,000 to 1"},
     "static-drops": {"static-drop": "drop", "static-drop-3d": "ball"},
     "relaxing-drops": {"relaxing-drop": "drop", "relaxing-drop-3d": "ball"},
@@ -99,7 +100,7 @@ def draw(study, of, path):
     with figure(path, study.title, study.x_label, study.y_label) as axes:
         for name, (x, y) in rows[-1]["exact"].items():
             axes.plot(x, y, "k-", linewidth=1, label=name)
-        for row, mark in zip(shown, ("o", "s", ".")):
+        for row, mark in zip(shown, ("o", "s", "."), strict=False):
             for k, (name, (x, y)) in enumerate(row["curves"].items()):
                 axes.plot(x, y, mark, markersize=3, markerfacecolor="none", color=f"C{k}", alpha=0.8,
                           label=f"{name}, {row['level']}")
@@ -124,7 +125,7 @@ def blocks(records, studies):
 def with_blocks(text, found):
     """The text of a page with them; it has marks for each."""
     for name, block in found.items():
-        text = re.sub(f"<!-- {name} -->.*?<!-- end of {name} -->", lambda _: block, text, flags=re.S)
+        text = re.sub(f"<!-- {name} -->.*?<!-- end of {name} -->", lambda _, block=block: block, text, flags=re.S)
     return text
 
 

@@ -7,8 +7,11 @@ import unittest
 from study import Study, scheme_in
 from validate import print_level
 
+usual_bars, no_orders = {"drag": 0.1}, {}
+usual_ranges = {"published": {"rate": (0.8, 0.9)}, "accurate": {"rate": (0.98, 1.02)}}
 
-def judged(error, value, scheme, bars={"drag": 0.1}, ranges={"published": {"rate": (0.8, 0.9)}, "accurate": {"rate": (0.98, 1.02)}}):
+
+def judged(error, value, scheme, bars=usual_bars, ranges=usual_ranges):
     """Whether a level with this error and this value is good, and what is printed."""
     study = Study("sphere", "Sphere", [], bars, None, "", "", ranges=ranges)
     row = {"level": "x1", "scheme": scheme, "size": 1, "particles": 1, "steps": 1, "iterations": 1, "seconds": 1, "backend": "cpu",
@@ -18,7 +21,7 @@ def judged(error, value, scheme, bars={"drag": 0.1}, ranges={"published": {"rate
     return good, printed.getvalue()
 
 
-def second(coarse, fine, scheme="accurate", orders={}, number=1, bars={"drag": 0.1}):
+def second(coarse, fine, scheme="accurate", orders=no_orders, number=1, bars=usual_bars):
     """Likewise of a level with half the spacing of the one before and this error after that one."""
     study = Study("sphere", "Sphere", [], bars, None, "", "", orders=orders)
     row = {"level": "x2", "scheme": scheme, "size": 1, "particles": 1, "steps": 1, "iterations": 1, "seconds": 1, "backend": "cpu",

@@ -1,5 +1,6 @@
 """Films by ffmpeg: pictures go to it through a pipe, and the file appears when it is whole."""
 
+import contextlib
 import shutil
 import subprocess
 import tempfile
@@ -94,10 +95,8 @@ class Film:
         try:
             if kind is not None:
                 self.process.kill()
-            try:
+            with contextlib.suppress(BrokenPipeError):
                 self.process.stdin.close()
-            except BrokenPipeError:
-                pass
             if self.process.wait() != 0 and kind is None:
                 self._fail()
             if kind is None:

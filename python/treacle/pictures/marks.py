@@ -5,11 +5,11 @@ from pathlib import Path
 
 import matplotlib
 import numpy as np
+import vtkmodules.vtkRenderingFreeType  # noqa: F401, draws letters
 from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonCore import VTK_UNSIGNED_CHAR, vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 from vtkmodules.vtkRenderingCore import vtkActor2D, vtkPolyDataMapper2D, vtkTextActor
-import vtkmodules.vtkRenderingFreeType  # noqa: F401, draws letters
 
 from .fields import scaled_unit
 

@@ -1,5 +1,7 @@
 """Curves for the page of a report: what the tables of a run hold over time, thinned so that peaks stay."""
 
+from itertools import pairwise
+
 import numpy as np
 
 most_points = 1200  # of a curve
@@ -19,7 +21,7 @@ def thin(x, y):
         return x, y
     edges = np.linspace(0, len(x), most_points // 2 + 1).astype(int)
     chosen = {0, len(x) - 1}
-    for a, b in zip(edges[:-1], edges[1:], strict=True):
+    for a, b in pairwise(edges):
         chosen |= {a + int(np.argmin(y[a:b])), a + int(np.argmax(y[a:b]))}
     chosen = sorted(chosen)
     return x[chosen], y[chosen]

@@ -102,7 +102,10 @@ def turns(points):
     return angle
 
 
-def between(points, k, turned, sharp=np.radians(40)):
+sharp = np.radians(40)  # turn of a kink
+
+
+def between(points, k, turned):
     """The point half-way along edge k, on the polynomial through up to four neighbours that no kink divides."""
     first = k - 1 if k > 0 and turned[k] < sharp else k
     last = k + 2 if k + 2 < len(points) and turned[k + 1] < sharp else k + 1
@@ -198,7 +201,7 @@ class Fluid:
             l0 = 1 - l1 - l2
             weights = [l0 * (2 * l0 - 1), l1 * (2 * l1 - 1), l2 * (2 * l2 - 1), 4 * l0 * l1, 4 * l1 * l2, 4 * l0 * l2]
             node = [*corners[:, best], *middles[:, best]]
-            result[start:start + 1000] = sum(w[:, None] * values[i] for w, i in zip(weights, node))
+            result[start:start + 1000] = sum(w[:, None] * values[i] for w, i in zip(weights, node, strict=True))
         return result
 
     def moved(self, displacement):

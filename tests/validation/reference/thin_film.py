@@ -58,7 +58,7 @@ def main():
         coarse, fine = (fronts(*box, times, cells) for cells in (options.cells // 2, options.cells))
         change = max(abs(np.array(coarse) / fine - 1))
         print(f"{name}: {options.cells} cells, against half as many {100 * change:.3f} %")
-        rows = ", ".join(f"[{t:g}, {front:.6g}]" for t, front in zip(times, fine))
+        rows = ", ".join(f"[{t:g}, {front:.6g}]" for t, front in zip(times, fine, strict=True))
         lines.append(f'"{name}": {{"cells": {options.cells}, "change": {change:.1e}, "fronts": [{rows}]}}')
     text = '{"units": "s, m",\n' + ",\n".join(lines) + "\n}\n"
     json.loads(text)
