@@ -81,7 +81,9 @@ def read_table(path):
     with open(path) as file:
         names = next(csv.reader(file))  # names of bodies may be in quotes
         rows = np.loadtxt(file, delimiter=",", ndmin=2)
-    return {name: rows[:, column] for column, name in enumerate(names)} if rows.size else {n: np.empty(0) for n in names}
+    return (
+        {name: rows[:, column] for column, name in enumerate(names)} if rows.size else {n: np.empty(0) for n in names}
+    )
 
 
 class Run:

@@ -59,7 +59,14 @@ class DeviceArray:
         address, shape, kind = self._session.field_address(self._name)
         if not self._session.on_device:
             raise AttributeError("__cuda_array_interface__: the CPU computes")
-        return {"shape": shape, "typestr": kind, "data": (address, False), "version": 3, "strides": None, "stream": None}
+        return {
+            "shape": shape,
+            "typestr": kind,
+            "data": (address, False),
+            "version": 3,
+            "strides": None,
+            "stream": None,
+        }
 
     def __dlpack__(self, **options: Any) -> Any:
         """The data are there for all streams. Errors: BufferError where a copy is asked for, which get() makes."""

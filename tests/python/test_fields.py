@@ -187,8 +187,14 @@ def test_film_with_a_graded_viscosity(drop):
     del drop["probe"]
     drop["domain"] = {"min": [-0.008, -0.01], "max": [0.008, 0.03], "periodic": [True, False]}
     drop["gravity"] = {"acceleration": [9.81, 0]}
-    drop["body"][0] = {"name": "film", "type": "fluid", "material": "honey", "shape": "box", "min": [-0.008, 0],
-                       "max": [0.008, 0.02]}
+    drop["body"][0] = {
+        "name": "film",
+        "type": "fluid",
+        "material": "honey",
+        "shape": "box",
+        "min": [-0.008, 0],
+        "max": [0.008, 0.02],
+    }
     drop["body"][1]["min"], drop["body"][1]["max"] = [-0.008, -0.005], [0.008, 0]
     drop["time"]["end"] = 0.3
     sim = treacle.Simulation(drop, backend="cpu")
@@ -215,12 +221,9 @@ def test_viscosities_that_cannot_be(sim, warm_drop):
     warm.step()
 
 
-
 def test_several_materials(drop):
     drop["material"].append({**drop["material"][0], "name": "syrup", "dynamic_viscosity": 2})
-    drop["body"].insert(
-        1, {**drop["body"][0], "name": "other", "material": "syrup", "center": [0.018, 0.01]}
-    )
+    drop["body"].insert(1, {**drop["body"][0], "name": "other", "material": "syrup", "center": [0.018, 0.01]})
     sim = treacle.Simulation(drop, backend="cpu")
     assert set(sim.fluid.viscosities) == {2.0, 10.0}
     sim.fluid.viscosities = 2 * sim.fluid.viscosities

@@ -153,7 +153,9 @@ def test_command_of_the_package_is_the_program(tmp_path):
     ]
     assert told[0] == told[1]
     assert treacle.__version__ in told[0]
-    bad = subprocess.run([sys.executable, "-m", "treacle", "run", tmp_path / "none.toml"], capture_output=True, check=False)
+    bad = subprocess.run(
+        [sys.executable, "-m", "treacle", "run", tmp_path / "none.toml"], capture_output=True, check=False
+    )
     assert bad.returncode == 2
 
 

@@ -18,13 +18,33 @@ def squeezed(dimensions, change):
     return {
         "dimensions": dimensions,
         "spacing": SPACING,
-        "domain": {"min": [*up, -2 * plate], "max": [width] * along + [HEIGHT + 2 * plate], "periodic": [True] * along + [False]},
+        "domain": {
+            "min": [*up, -2 * plate],
+            "max": [width] * along + [HEIGHT + 2 * plate],
+            "periodic": [True] * along + [False],
+        },
         "gravity": {"acceleration": [0] * dimensions},
         "time": {"step": 1e-3, "end": TIME},
-        "material": [{"name": "resin", "density": 1000, "dynamic_viscosity": 10, "bulk_viscosity": 1e4, "bulk_modulus": 1e6}],
+        "material": [
+            {"name": "resin", "density": 1000, "dynamic_viscosity": 10, "bulk_viscosity": 1e4, "bulk_modulus": 1e6}
+        ],
         "body": [
-            {"name": "resin", "type": "fluid", "material": "resin", "shape": "box", "min": [*up, 0], "max": [width] * along + [HEIGHT]},
-            {"name": "floor", "type": "wall", "material": "resin", "shape": "box", "min": [*up, -plate], "max": [width] * along + [0]},
+            {
+                "name": "resin",
+                "type": "fluid",
+                "material": "resin",
+                "shape": "box",
+                "min": [*up, 0],
+                "max": [width] * along + [HEIGHT],
+            },
+            {
+                "name": "floor",
+                "type": "wall",
+                "material": "resin",
+                "shape": "box",
+                "min": [*up, -plate],
+                "max": [width] * along + [0],
+            },
             {
                 "name": "lid",
                 "type": "wall",

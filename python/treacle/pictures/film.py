@@ -40,8 +40,7 @@ def ffmpeg():
         return imageio_ffmpeg.get_ffmpeg_exe()
     except (ImportError, RuntimeError):
         raise PictureError(
-            "ffmpeg is missing; expected that of the system (apt install ffmpeg), or that of "
-            "pip install '.[pictures]'"
+            "ffmpeg is missing; expected that of the system (apt install ffmpeg), or that of pip install '.[pictures]'"
         ) from None
 
 
