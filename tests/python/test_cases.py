@@ -123,10 +123,11 @@ def test_values_that_toml_does_not_have(drop):
         treacle.Simulation({2: 3})
 
 
-def test_dataclasses_have_every_key():
-    """A key that is new in the program is missing here until scripts/python-cases has been run."""
+@pytest.mark.parametrize("script", ["python-cases", "python-types"])
+def test_files_that_scripts_write_are_up_to_date(script):
+    """A key that is new in the program, or a new function of the module, is missing until the script has been run."""
     checked = subprocess.run(
-        [sys.executable, ROOT / "scripts/python-cases", "--check"], capture_output=True, text=True, check=False
+        [sys.executable, ROOT / "scripts" / script, "--check"], capture_output=True, text=True, check=False
     )
     assert checked.returncode == 0, checked.stderr
 
