@@ -59,14 +59,15 @@ def main():
     parser.add_argument("--run", nargs="*", default=defaults)
     parser.add_argument("out")
     options = parser.parse_args()
-    record = {"what": "the first steps of runs by one process and by several; milliseconds per step without output", "runs": []}
+    runs: list[dict] = []
+    record = {"what": "the first steps of runs by one process and by several; milliseconds per step without output", "runs": runs}
     with tempfile.TemporaryDirectory() as directory:
         for spec in options.run:
             if not (done := run(options, spec, directory)):
                 continue
             ran, summary = done
             record |= {"commit": summary["commit"], "device": summary["device"], "precision": summary["precision"]}
-            record["runs"].append(ran)
+            runs.append(ran)
             print(f"{spec}: {ran['milliseconds_per_step_of_all']:.2f} ms a step, {ran['iterations']['mean']:.2f} iterations", flush=True)
             Path(options.out).write_text(json.dumps(record, indent=1) + "\n")
 

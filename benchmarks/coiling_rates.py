@@ -126,7 +126,8 @@ class Coiling:
             return np.unwrap(np.arctan2(self.y[rows, at], self.x[rows, at]))
 
         low, high = phase(part), phase(2 * part)
-        found, end = [], len(rows) - 1
+        found: list[list[float]] = []
+        end = len(rows) - 1
         while True:
             before = np.flatnonzero(abs(low[end] - low[: end + 1]) >= 2 * np.pi)
             if not len(before):

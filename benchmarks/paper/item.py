@@ -68,7 +68,7 @@ def growth(rows, name, x="particles"):
 
 def told_growth(rows, names):
     """A sentence on how the columns grow over the sizes of the rows."""
-    told = {}
+    told: dict[str, list[str]] = {}
     for name in names:
         if found := growth(rows, name):
             p, _, _, a, b = found

@@ -75,10 +75,10 @@ for folder in ("cases", "tests/validation/cases"):
             failures.append(f"{path}: {'.'.join(map(str, error.path))}: {error.message[:200]}")
 
 base = tomllib.loads(case.read_text())
-for what, (path, value) in mistakes.items():
-    if validator.is_valid(changed(base, path, value)):
+for what, (way, value) in mistakes.items():
+    if validator.is_valid(changed(base, way, value)):
         failures.append(f"{what} is taken by the schema")
-    if run("check", str(case), "--set", f"{'.'.join(path)}={toml(value)}").returncode != 2:
+    if run("check", str(case), "--set", f"{'.'.join(way)}={toml(value)}").returncode != 2:
         failures.append(f"{what} is taken by the program")
 for key in ("dimensions", "material", "time"):
     if validator.is_valid({k: v for k, v in base.items() if k != key}):

@@ -53,7 +53,7 @@ def headings(labels):
 
 def merged(records):
     """Study to scheme to levels, from several records; the later one wins."""
-    result = {}
+    result: dict[str, dict[str, list]] = {}
     for record in records:
         for name, rows in record.items():
             # Records from before there was another scheme do not say which they are of.
@@ -89,8 +89,8 @@ def table(parts):
             cells = error_cells(study, of[first], name)
             cells += [""] * (len(names) - len(cells))
             lines.append([title, *cells, *(number(of[scheme][-1]["errors"][name]) for scheme in others)])
-    lines = ["| " + " | ".join(line) + " |" for line in lines]
-    return "\n".join([lines[0], "|" + "---|" * (1 + len(names) + len(others)), *lines[1:]])
+    head, *body = ["| " + " | ".join(line) + " |" for line in lines]
+    return "\n".join([head, "|" + "---|" * (1 + len(names) + len(others)), *body])
 
 
 def draw(study, of, path):
@@ -122,10 +122,15 @@ def blocks(records, studies):
     return found
 
 
+def with_block(text, name, block):
+    """The text of a page with a block between its marks."""
+    return re.sub(f"<!-- {name} -->.*?<!-- end of {name} -->", lambda _: block, text, flags=re.S)
+
+
 def with_blocks(text, found):
     """The text of a page with them; it has marks for each."""
     for name, block in found.items():
-        text = re.sub(f"<!-- {name} -->.*?<!-- end of {name} -->", lambda _, block=block: block, text, flags=re.S)
+        text = with_block(text, name, block)
     return text
 
 

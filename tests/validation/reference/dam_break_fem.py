@@ -316,8 +316,8 @@ def solve(mesh, step, end, contact=1):
     sizes = Sizes(mesh, contact)
     fluid = Fluid(resample(np.array([[0, side], [side, side], [side, 0]]), sizes), sizes)
     steps, meshes, began = round(end / step), 1, time.time()
-    rows, elements, unknowns, residual = [], [], [], 0
-    dissipated, dissipation = 0, 0
+    rows, elements, unknowns, residual = [], [], [], 0.0
+    dissipated, dissipation = 0.0, 0.0
     for i in range(1, steps + 1):
         if fluid.worn(fluid.predicted(step)[0]):
             fluid = Fluid(resample(fluid.outline(), sizes), sizes, fluid)
@@ -325,7 +325,7 @@ def solve(mesh, step, end, contact=1):
         fluid.advance(step, first=i == 1)
         elements.append(fluid.t.shape[1])
         unknowns.append(fluid.unknowns)
-        residual = max(residual, fluid.residual)
+        residual = max(residual, float(fluid.residual))
         dissipated += step * (dissipation + fluid.dissipation) / 2
         dissipation = fluid.dissipation
         if abs(i * step / 0.01 - round(i * step / 0.01)) < 1e-6:
