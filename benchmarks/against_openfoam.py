@@ -23,17 +23,17 @@ Needs interFoam and blockMesh (Debian: apt-get install openfoam), and NumPy."""
 import argparse
 import json
 import os
-import re
 import subprocess
 import sys
 import tempfile
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 
 root = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(root / "scripts"))
-from treacle_data import Run, call, json_text  # noqa: E402
+from treacle_data import Run, call, json_text, searched  # noqa: E402
 
 environment = {"WM_PROJECT_DIR": "/usr/share/openfoam", **os.environ}  # where Debian has it
 times = (0.05, 0.1, 0.2)  # [s]
@@ -168,7 +168,7 @@ def foam_fronts(case, rows, columns, cell):
         path = case / f"{t:g}" / "alpha.fluid"
         if not path.exists():
             return None, None
-        values = re.search(r"internalField\s+nonuniform List<scalar>\s*\d+\s*\(([^)]*)\)", path.read_text())[1]
+        values = searched(r"internalField\s+nonuniform List<scalar>\s*\d+\s*\(([^)]*)\)", path.read_text())
         alpha = np.array(values.split(), float).reshape(rows, columns)
         places = []
         for line in np.column_stack([alpha, np.zeros(rows)]):
@@ -194,7 +194,7 @@ def foam(_, setting, directory):
 
 def sweep():
     """Settings of both programs, with the function that runs each."""
-    settings = []
+    settings: list[tuple[Callable, dict]] = []
     for resolution in (1, 1.4, 1.5, 1.8, 2, 2.5, 3, 3.5, 4):
         for correction in (0.5, 0):
             for step in (10e-3, 5e-3, 2.5e-3, 1e-3):
@@ -241,7 +241,7 @@ def fineness(row):
 
 def no_luck(row, rows, key, bound):
     """Whether all that is as fine or finer is below the bound, too."""
-    best = {}
+    best: dict[tuple, dict] = {}
     for r in rows:
         place = fineness(r), r["step"]
         if place not in best or (-r.get("correctors", 0), r["tolerance"]) < (-best[place].get("correctors", 0), best[place]["tolerance"]):
@@ -282,7 +282,7 @@ def main():
         device = Run(Path(directory) / "treacle").summary["device"]
         case = Path(directory) / "version"
         write_foam(case, 8, next(setting for run, setting in settings if run is foam))
-        version = re.search(r"OPENFOAM=(\S+)", call(["blockMesh"], cwd=case, env=environment))[1]
+        version = searched(r"OPENFOAM=(\S+)", call(["blockMesh"], cwd=case, env=environment))
     for r in rows:
         r["cpu_seconds"] = round(r["cpu_seconds"], 3)
     least = [{"what": name, "bound": bound, "kind": kind, "row": good[0] if good else None}

@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""benchmarks/cluster_steps.py --program FILE [--launch "mpirun -n {n} ..."] [--timeout S] [--set KEY=VALUE ...] [--run CASE:RESOLUTION:WIDTH:END:PROCESSES[:LINK] ...] OUT.json
+"""benchmarks/cluster_steps.py --program FILE [--launch "mpirun -n {n} ..."] [--timeout S] [--set KEY=VALUE ...]
+    [--run CASE:RESOLUTION:WIDTH:END:PROCESSES[:LINK] ...] OUT.json
 
 The first steps of runs by one process and by several, without frames but the first and last. CASE: thin-dam-break-3d (beside this
 file) or a case with [width]; WIDTH: its width.factor; LINK: peer, nccl or mpi, what processes on GPUs talk by at best
-(TREACLE_LINK). --set goes to all runs. Written for each run: milliseconds per step of each phase, at the process that conducts, iterations, memory, and
-what each process had to do."""
+(TREACLE_LINK). --set goes to all runs. Written for each run: milliseconds per step of each phase, at the process that conducts,
+iterations, memory, and what each process had to do."""
 
 import argparse
 import json
@@ -58,14 +59,15 @@ def main():
     parser.add_argument("--run", nargs="*", default=defaults)
     parser.add_argument("out")
     options = parser.parse_args()
-    record = {"what": "the first steps of runs by one process and by several; milliseconds per step without output", "runs": []}
+    runs: list[dict] = []
+    record = {"what": "the first steps of runs by one process and by several; milliseconds per step without output", "runs": runs}
     with tempfile.TemporaryDirectory() as directory:
         for spec in options.run:
             if not (done := run(options, spec, directory)):
                 continue
             ran, summary = done
             record |= {"commit": summary["commit"], "device": summary["device"], "precision": summary["precision"]}
-            record["runs"].append(ran)
+            runs.append(ran)
             print(f"{spec}: {ran['milliseconds_per_step_of_all']:.2f} ms a step, {ran['iterations']['mean']:.2f} iterations", flush=True)
             Path(options.out).write_text(json.dumps(record, indent=1) + "\n")
 

@@ -18,20 +18,20 @@ from pathlib import Path
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "scripts"))
-from treacle_data import read_table  # noqa: E402
+from treacle_data import read_table
 
 
 class ThinRope:
-    """Steady coiling of a thin rope without gravity and inertia, H = U = 1: the viscous limit of Ribe (2004). In the frame that goes round
-    with the coil, per arc length: tangent d' = (w - rate ez) x d, spin w of the rope by its moment M = 3 w'_across + 2 w'_along, M' = N x d,
-    force N constant. At the nozzle the rope is vertical and does not spin; where it is laid down it is horizontal and rests."""
+    """Steady coiling of a thin rope without gravity and inertia, H = U = 1: the viscous limit of Ribe (2004). In the frame that goes
+    round with the coil, per arc length: tangent d' = (w - rate ez) x d, spin w of the rope by its moment M = 3 w'_across + 2 w'_along,
+    M' = N x d, force N constant. At the nozzle the rope is vertical and does not spin; where it is laid down it is horizontal and rests."""
 
     def __init__(self):
         self.unknowns = np.array([16.52, 0, 1.088, -22.11, 39.09, 157.2, 4.0, 1.4006])  # M at the nozzle, N, rate, length
         for _ in range(20):
             residual = self.residual(self.unknowns)
             steps = 1e-6 * np.maximum(1, abs(self.unknowns))
-            columns = [(self.residual(self.unknowns + s * e) - residual) / s for s, e in zip(steps, np.eye(8))]
+            columns = [(self.residual(self.unknowns + s * e) - residual) / s for s, e in zip(steps, np.eye(8), strict=True)]
             change = np.linalg.solve(np.transpose(columns), -residual)
             self.unknowns = self.unknowns + change
             if abs(change).max() < 1e-9:
@@ -80,7 +80,10 @@ class Coiling:
         low, high = (np.array([p["box"][end][2] for p in slices]) for end in ("min", "max"))
         tables = [read_table(run / "probes" / f"{p['name']}.csv") for p in slices]
         rows = min(len(t["time"]) for t in tables)
-        column = lambda name: np.array([t[name][:rows] for t in tables]).T
+
+        def column(name):
+            return np.array([t[name][:rows] for t in tables]).T
+
         self.time, self.z = tables[0]["time"][:rows], (low + high) / 2
         self.area = column("volume") / (high - low)  # of the fluid at a height
         self.x, self.y = column("center_x") - self.nozzle[0], column("center_y") - self.nozzle[1]
@@ -123,7 +126,8 @@ class Coiling:
             return np.unwrap(np.arctan2(self.y[rows, at], self.x[rows, at]))
 
         low, high = phase(part), phase(2 * part)
-        found, end = [], len(rows) - 1
+        found: list[list[float]] = []
+        end = len(rows) - 1
         while True:
             before = np.flatnonzero(abs(low[end] - low[: end + 1]) >= 2 * np.pi)
             if not len(before):
@@ -157,7 +161,8 @@ def main():
         scaled = (last[:, 1] * last[:, 2] * last[:, 4] ** 2).mean() / coiling.flow
         rows.append([height, rate, radius])
         print(f"{Path(run).name:20} {len(last):5}  {1e3 * height:6.2f}  {1e3 * last[:, 1].std():4.2f}  {height / radius / 2:4.1f}"
-              f"  {1e3 * radius:6.3f}  {rate:10.3f}  {last[:, 2].std():5.3f}  {higher:6.3f}  {np.pi * scaled:8.3f}  {scaled:12.3f}  {np.pi * scaled / theory.rate:6.3f}")
+              f"  {1e3 * radius:6.3f}  {rate:10.3f}  {last[:, 2].std():5.3f}  {higher:6.3f}"
+              f"  {np.pi * scaled:8.3f}  {scaled:12.3f}  {np.pi * scaled / theory.rate:6.3f}")
     if len(rows) > 1:
         height, rate, radius = np.log(np.transpose(rows))
         slope, _ = np.polyfit(height, rate, 1)

@@ -58,9 +58,9 @@ def main():
     runs, build = [], {}
     with tempfile.TemporaryDirectory() as directory:
         for spec in options.case.split(","):
-            best = {}
-            for kind in kinds * options.repeat:
-                summary = run(options, spec, *kind, directory)
+            best: dict[tuple[str, str], dict] = {}
+            for scheme, threads in kinds * options.repeat:
+                kind, summary = (scheme, threads), run(options, spec, scheme, threads, directory)
                 build = {k: summary[k] for k in ("commit", "device", "precision")}
                 if kind not in best or seconds(summary) < seconds(best[kind]):
                     best[kind] = summary

@@ -1,5 +1,6 @@
 """What the site has beside docs/ (mkdocs.yml): pages of the top folder, and the files of the repository that pages
 link to, so that the links of GitHub hold on the site, too."""
+
 import pathlib
 import posixpath
 import re

@@ -1,8 +1,9 @@
 """Runs treacle and reads what it leaves, as NumPy arrays in SI units. Used by the validation studies and the reproduction
-of the papers; needs Python 3.9 and NumPy."""
+of the papers; needs Python 3.10 and NumPy."""
 
 import csv
 import json
+import math
 import re
 import subprocess
 import time
@@ -25,6 +26,13 @@ def json_text(value):
     """Indented JSON with each list of numbers on one line."""
     text = json.dumps(value, indent=1, ensure_ascii=False)
     return re.sub(r"\[[^\[\]{}\"]*\]", lambda numbers: re.sub(r"\s+", " ", numbers[0]), text) + "\n"
+
+
+def searched(pattern, text, flags=0):
+    """The first group of a pattern in a text. Raises ValueError where the text does not have it."""
+    if not (found := re.search(pattern, text, flags)):
+        raise ValueError(f"expected {pattern} in: {text[:200]}")
+    return found[1]
 
 
 def call(command, **options):
@@ -57,23 +65,23 @@ def read_vtp(path):
     begin = content.index(b"_", mark) + 1
     header = ElementTree.fromstring(content[:mark] + b"</VTKFile>")
     compressed = header.get("compressor") is not None
-    dimensions = int(header.find(".//DataArray[@Name='dimensions']").text)
+    dimensions = int(header.findtext(".//DataArray[@Name='dimensions']", ""))
     fields = {}
     for array in header.findall(".//PointData/DataArray") + header.findall(".//Points/DataArray"):
-        offset = begin + int(array.get("offset"))
+        offset = begin + int(array.attrib["offset"])
         size = int(np.frombuffer(content, "<u8", 1, offset)[0])
-        kind = np.dtype(vtk_types[array.get("type")])
+        kind = np.dtype(vtk_types[array.attrib["type"]])
         if compressed:
             sizes = np.frombuffer(content, "<u8", size, offset + 24).astype(int)
             ends = offset + 24 + 8 * size + np.cumsum(sizes)
-            blocks = [zlib.decompress(content[end - length : end]) for length, end in zip(sizes, ends)]
+            blocks = [zlib.decompress(content[end - length : end]) for length, end in zip(sizes, ends, strict=True)]
             values = np.frombuffer(b"".join(blocks), kind)
         else:
             values = np.frombuffer(content, kind, size // kind.itemsize, offset + 8)
         if array.get("NumberOfComponents") == "3":
             values = values.reshape(-1, 3)[:, :dimensions]
-        fields[array.get("Name")] = values.astype(float) if kind.kind == "f" else values
-    return Frame(float(header.find(".//DataArray[@Name='TimeValue']").text), fields)
+        fields[array.attrib["Name"]] = values.astype(float) if kind.kind == "f" else values
+    return Frame(float(header.findtext(".//DataArray[@Name='TimeValue']", "")), fields)
 
 
 def read_table(path):
@@ -81,7 +89,9 @@ def read_table(path):
     with open(path) as file:
         names = next(csv.reader(file))  # names of bodies may be in quotes
         rows = np.loadtxt(file, delimiter=",", ndmin=2)
-    return {name: rows[:, column] for column, name in enumerate(names)} if rows.size else {n: np.empty(0) for n in names}
+    return (
+        {name: rows[:, column] for column, name in enumerate(names)} if rows.size else {n: np.empty(0) for n in names}
+    )
 
 
 class Run:
@@ -89,6 +99,7 @@ class Run:
 
     def __init__(self, path):
         self.path = Path(path)
+        self.seconds = math.nan  # that the command took which made it, where it is known
 
     @cached_property
     def summary(self):

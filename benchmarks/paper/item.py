@@ -1,8 +1,8 @@
 """What a reproduced table or figure is."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Callable, Optional
 
 
 @dataclass(frozen=True)
@@ -27,7 +27,7 @@ class Item:
     needs: tuple
     rows: Callable
     reading: Callable
-    plot: Optional[Callable] = None
+    plot: Callable | None = None
 
 
 def number(value):
@@ -68,7 +68,7 @@ def growth(rows, name, x="particles"):
 
 def told_growth(rows, names):
     """A sentence on how the columns grow over the sizes of the rows."""
-    told = {}
+    told: dict[str, list[str]] = {}
     for name in names:
         if found := growth(rows, name):
             p, _, _, a, b = found

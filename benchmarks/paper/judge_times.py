@@ -1,5 +1,7 @@
 """Judgements on times."""
 
+from itertools import pairwise
+
 from cases import cpu_resolutions, cube, cube_resolutions, resolutions, scaled, thread_counts, thread_resolutions
 from item import number
 from judging import both, iteration_points, sizes, smaller, time_points, verdict
@@ -63,7 +65,7 @@ def preconditioning_minor(r):
 
 def preconditioning_falls(r):
     found = [(c.label, b["MGCR preconditioning"]) for c in sizes(r) for b in [r.breakdown(c)] if b]
-    points = [(f"{b[0]} against {a[0]}", b[1], a[1]) for a, b in zip(found, found[1:])]
+    points = [(f"{b[0]} against {a[0]}", b[1], a[1]) for a, b in pairwise(found)]
     return smaller(points, "preconditioning, µs on the GPU")
 
 
@@ -107,7 +109,7 @@ def overhead_of_threads(r):
     found = []
     for f in thread_resolutions:
         times = [r.unit_time(scaled(f), "MGCR", "cpu", n) for n in thread_counts]
-        known = [(n, t) for n, t in zip(thread_counts, times) if t]
+        known = [(n, t) for n, t in zip(thread_counts, times, strict=True) if t]
         if len(known) > 1 and times[0]:
             found.append((scaled(f).label, times[0] / known[-1][1], known[-1][0]))
     if len(found) < 2:

@@ -167,7 +167,7 @@ class Laboratory:
         treacle_data.call(call + words + self.options(spec))
         rows, histories = read_quoted(directory / "solvers.csv"), read_quoted(directory / "convergence.csv")
         found = {}
-        for label, row in zip(isph_solvers, rows):
+        for label, row in zip(isph_solvers, rows, strict=True):
             residuals = [float(f"{float(h['relative_residual']):.4g}") for h in histories if h["solver"] == row["solver"]]
             found[label] = {
                 "name": row["solver"],

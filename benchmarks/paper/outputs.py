@@ -5,6 +5,7 @@ import re
 import tomllib
 
 import numpy as np
+from treacle_data import searched
 
 
 def parameters(text):
@@ -21,8 +22,8 @@ def parameters(text):
         **{k: material[k] for k in ("density", "dynamic_viscosity", "bulk_viscosity", "bulk_modulus") if k in material},
         **{k: v for k, v in case["method"].items() if not isinstance(v, (str, bool))},
         "tolerance": case["solver"]["tolerance"],
-        "particles": int(re.search(r"particles: (\d+) fluid", text)[1]),
-        "steps": int(re.search(r"steps: (\d+)", text)[1]),
+        "particles": int(searched(r"particles: (\d+) fluid", text)),
+        "steps": int(searched(r"steps: (\d+)", text)),
         **{name: float(m[1]) for name, m in found.items() if m},
     }
 

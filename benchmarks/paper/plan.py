@@ -11,7 +11,9 @@ from cases import isph_solvers, trial_steps
 
 def place(item):
     """In the order of the papers: tables, figures, ours."""
-    paper, kind, number = re.fullmatch(r"(k23|o23|backends)-?([a-z]*)(\d*)", item.name).groups()
+    if not (words := re.fullmatch(r"(k23|o23|backends)-?([a-z]*)(\d*)", item.name)):
+        raise ValueError(f"{item.name}: expected a table or figure of k23 or o23, or backends")
+    paper, kind, number = words.groups()
     return ("k23", "o23", "backends").index(paper), kind != "table", int(number or 0)
 
 

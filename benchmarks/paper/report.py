@@ -140,7 +140,7 @@ def page(record, results, docs):
     if apart := [r for r in rows if r["verdict"] in ("partly", "contradicted")]:
         lines.append("The numbers of those that are not confirmed (of a/b the paper has the first smaller):")
         lines.append("\n".join(f"- *{r['statement'].rpartition(' (')[0]}* {r['our numbers']}." for r in apart))
-    known = set()
+    known: set[str] = set()
     lines += [section(item, results, docs / "images", known) for item in items.values()]
     (docs / "images").mkdir(parents=True, exist_ok=True)
     (docs / "reproduction.md").write_text("\n\n".join(line.rstrip() for line in lines) + "\n")

@@ -44,7 +44,7 @@ def show_list():
 
 def measure(options, names):
     """Returns an exit code."""
-    largest = {s: options.largest for s in ("2d", "small", "3d", "isph")}
+    largest = dict.fromkeys(("2d", "small", "3d", "isph"), options.largest)
     if options.quick:
         largest = {"2d": 1600, "3d": 1000, "isph": 58621}
     isph_end = 0.02 if options.quick else math.inf

@@ -1,7 +1,7 @@
 """The statements of both papers' conclusions and abstracts, and of what they rest on, each judged by our numbers."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Callable
 
 import judge_iterations
 import judge_times

@@ -45,7 +45,7 @@ def series(case_of, printed, results):
         found = results.get(Spec("check", case))
         state = results.get(Spec("state", case)) or {}
         ours = {**found, **derived(found), "highest_level": state.get("highest_level")} if found else {}
-        told = {"spacing": 1e-3 / f, "step": 1e-3 / f, **dict(zip(published.columns, values))}
+        told = {"spacing": 1e-3 / f, "step": 1e-3 / f, **dict(zip(published.columns, values, strict=True))}
         rows += [row(case.label, name, value, ours.get(name)) for name, value in told.items()]
     return rows
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .errors import InputError
 
@@ -59,7 +60,14 @@ class DeviceArray:
         address, shape, kind = self._session.field_address(self._name)
         if not self._session.on_device:
             raise AttributeError("__cuda_array_interface__: the CPU computes")
-        return {"shape": shape, "typestr": kind, "data": (address, False), "version": 3, "strides": None, "stream": None}
+        return {
+            "shape": shape,
+            "typestr": kind,
+            "data": (address, False),
+            "version": 3,
+            "strides": None,
+            "stream": None,
+        }
 
     def __dlpack__(self, **options: Any) -> Any:
         """The data are there for all streams. Errors: BufferError where a copy is asked for, which get() makes."""
@@ -73,13 +81,13 @@ class DeviceArray:
         device: tuple[int, int] = self._session.field_in_place(self._name).__dlpack_device__()
         return device
 
-    def get(self) -> np.ndarray:
+    def get(self) -> NDArray[Any]:
         """A copy on the host."""
         self._check()
-        copied: np.ndarray = self._session.copied_field(self._name)
+        copied: NDArray[Any] = self._session.copied_field(self._name)
         return copied
 
-    def __array__(self, dtype: Any = None, copy: bool | None = None) -> np.ndarray:
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> NDArray[Any]:
         if copy is False:
             raise ValueError("the array lies in the memory of the GPU: NumPy needs a copy")
         values = self.get()

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Any, Union
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from . import _treacle
 from ._arrays import DeviceArray, given_array
 from ._toml import override_texts, quoted
 from .errors import InputError
 
-Array = Union[np.ndarray, DeviceArray]
+Array = NDArray[Any] | DeviceArray
 """A copy in NumPy where the CPU computes; the field itself, in the GPU's memory, where that does."""
 
 
@@ -40,7 +41,7 @@ class Fluid:
     def _field(self, name: str) -> Array:
         if self._session.on_device:
             return DeviceArray(self._session, name)
-        copied: np.ndarray = self._session.copied_field(name)
+        copied: NDArray[Any] = self._session.copied_field(name)
         return copied
 
     def _field_of_some(self, name: str) -> Array | None:
@@ -74,7 +75,7 @@ class Fluid:
         self.set(temperatures=values)
 
     @property
-    def viscosities(self) -> np.ndarray:
+    def viscosities(self) -> NDArray[np.float64]:
         """(n,) a copy on the host [Pa s]: of shear rates, temperatures and factors where the case has them.
 
         Particles keep what is assigned until it is assigned again, by factors to the viscosities of their materials
@@ -83,7 +84,7 @@ class Fluid:
         a material has a rheology or a viscosity that follows the temperature, and with ISPH for values that differ
         within a material.
         """
-        copied: np.ndarray = self._session.viscosities
+        copied: NDArray[np.float64] = self._session.viscosities
         return copied
 
     @viscosities.setter

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from . import _treacle
 
@@ -21,29 +22,29 @@ class Frame:
     time: float
     """[s]"""
     dimensions: int
-    positions: np.ndarray
+    positions: NDArray[np.float64]
     """(n, D) [m]"""
-    velocities: np.ndarray | None
+    velocities: NDArray[np.float64] | None
     """(n, D) [m/s]"""
-    pressures: np.ndarray | None
+    pressures: NDArray[np.float64] | None
     """(n,) [Pa]"""
-    number_densities: np.ndarray | None
+    number_densities: NDArray[np.float64] | None
     """(n,) [-]"""
-    nearest_distances: np.ndarray | None
+    nearest_distances: NDArray[np.float64] | None
     """(n,) to the nearest other particle, over the spacing [-]; of fluid"""
-    viscosities: np.ndarray | None
+    viscosities: NDArray[np.float64] | None
     """(n,) [Pa s]; of fluid where particles have their own"""
-    shear_rates: np.ndarray | None
+    shear_rates: NDArray[np.float64] | None
     """(n,) [1/s]; likewise"""
-    temperatures: np.ndarray | None
+    temperatures: NDArray[np.float64] | None
     """(n,) [K]; of fluid in cases with heat"""
-    viscosity_factors: np.ndarray | None
+    viscosity_factors: NDArray[np.float64] | None
     """(n,) [-]; of fluid where particles have them"""
-    materials: np.ndarray | None
+    materials: NDArray[np.int32] | None
     """(n,) indices into the materials of the case"""
-    bodies: np.ndarray | None
+    bodies: NDArray[np.int32] | None
     """(n,) indices into the bodies of the case"""
-    ids: np.ndarray | None
+    ids: NDArray[np.uint32] | None
     """(n,) names that particles keep for good"""
 
     def __len__(self) -> int:

@@ -6,10 +6,10 @@ import math
 import os
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
-from typing import Any, Literal, Union
+from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 from tqdm.auto import tqdm
 
 from . import _treacle
@@ -23,7 +23,7 @@ from .errors import InputError
 
 Backend = Literal["auto", "cpu", "cuda"]
 Precision = Literal["mixed", "double"]
-Overrides = Union[Mapping[str, Any], Iterable[str], None]
+Overrides = Mapping[str, Any] | Iterable[str] | None
 
 _WHOLE = {"step", "iterations", "fallbacks", "particles", "inflow_particles", "outflow_particles"}
 
@@ -306,17 +306,17 @@ class Simulation:
         self._session.steer(body, numbers, angular_velocity, speed, flow_rate)
 
     @property
-    def history(self) -> dict[str, np.ndarray]:
+    def history(self) -> dict[str, NDArray[Any]]:
         """What the steps of this object have told: the columns of `history.csv`, one entry per step."""
         return _table(self._session.history)
 
     @property
-    def balance(self) -> dict[str, np.ndarray]:
+    def balance(self) -> dict[str, NDArray[Any]]:
         """The columns of `balance.csv`, one entry per step; empty unless `output.balance` of the case is true."""
         return _table(self._session.balance)
 
     @property
-    def rigid_bodies(self) -> dict[str, np.ndarray]:
+    def rigid_bodies(self) -> dict[str, NDArray[Any]]:
         """The columns of `rigid_bodies.csv`, one entry per step; empty in cases without rigid bodies."""
         return _table(self._session.rigid_bodies)
 
@@ -325,7 +325,7 @@ class Simulation:
         """Names of the probes of the case."""
         return self._session.probe_names
 
-    def probe(self, name: str) -> dict[str, np.ndarray]:
+    def probe(self, name: str) -> dict[str, NDArray[Any]]:
         """What a probe has read so far, at its interval: the columns of its file.
 
         Errors: InputError for a name that is none.
@@ -347,5 +347,5 @@ class Simulation:
         self._session.write_checkpoint(os.fspath(path))
 
 
-def _table(columns: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+def _table(columns: dict[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
     return {name: values.astype(np.int64) if name in _WHOLE else values for name, values in columns.items()}

@@ -3,12 +3,13 @@
 import argparse
 import math
 import sys
+from collections.abc import Sequence
 
 from ._command import command
 from .pictures.errors import PictureError, require
 
 
-def arguments_of(argv):
+def arguments_of(argv: Sequence[str]) -> argparse.Namespace:
     """What the command line says."""
     parser = argparse.ArgumentParser(
         prog="treacle movie", description="Make a film of the frames of a run, or of one frame from all sides"
@@ -53,7 +54,7 @@ def arguments_of(argv):
     return parser.parse_args(argv)
 
 
-def size_of(text):
+def size_of(text: str) -> tuple[int, int]:
     """Width and height [px]: even numbers, since H.264 halves them for its colours."""
     words = text.lower().split("x")
     if len(words) != 2 or not all(word.isdecimal() for word in words):
@@ -66,7 +67,7 @@ def size_of(text):
     return width, height
 
 
-def range_of(text):
+def range_of(text: str) -> tuple[float, float]:
     """Two numbers, the second one larger."""
     try:
         low, high = (float(word) for word in text.split(","))
@@ -77,7 +78,7 @@ def range_of(text):
     return low, high
 
 
-def check(options):
+def check(options: argparse.Namespace) -> None:
     """Numbers that no run is needed for."""
     for name, value, low, high in (("fps", options.fps, 0.1, 240), ("seconds", options.seconds, 0.1, 600)):
         if not low <= value <= high:
@@ -86,7 +87,7 @@ def check(options):
         raise PictureError(f"--every: expected a whole number from 1, found {options.every}")
 
 
-def make(options):
+def make(options: argparse.Namespace) -> None:
     """Makes the film and prints what it is."""
     check(options)
     size = size_of(options.size)
@@ -97,7 +98,7 @@ def make(options):
     film_maker.make(options, size, given)
 
 
-def main(argv=None):
+def main(argv: Sequence[str] | None = None) -> int:
     """The command; returns its exit code."""
     return command(arguments_of, make, argv)
 

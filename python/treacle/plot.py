@@ -2,12 +2,13 @@
 
 import argparse
 import sys
+from collections.abc import Sequence
 
 from ._command import command
 from .pictures.errors import PictureError, require
 
 
-def arguments_of(argv):
+def arguments_of(argv: Sequence[str]) -> argparse.Namespace:
     """What the program says: a directory, and which of its tables becomes which picture."""
     parser = argparse.ArgumentParser(prog="treacle plot", description="Draw curves of a run, or of compared solvers")
     parser.add_argument("directory", metavar="DIR", help="run directory, or that of treacle convergence")
@@ -22,7 +23,7 @@ def arguments_of(argv):
     return parser.parse_args(argv)
 
 
-def make(options):
+def make(options: argparse.Namespace) -> None:
     """Draws the picture and prints where it is."""
     try:
         require("numpy", "matplotlib")
@@ -36,7 +37,7 @@ def make(options):
     curve_maker.make(options)
 
 
-def main(argv=None):
+def main(argv: Sequence[str] | None = None) -> int:
     """The command; returns its exit code."""
     return command(arguments_of, make, argv)
 

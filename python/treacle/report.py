@@ -2,12 +2,13 @@
 
 import argparse
 import sys
+from collections.abc import Sequence
 
 from ._command import command
 from .pictures.errors import PictureError, require
 
 
-def arguments_of(argv):
+def arguments_of(argv: Sequence[str]) -> argparse.Namespace:
     """What the command line says."""
     parser = argparse.ArgumentParser(
         prog="treacle report",
@@ -27,7 +28,7 @@ def arguments_of(argv):
     return parser.parse_args(argv)
 
 
-def make(options):
+def make(options: argparse.Namespace) -> None:
     """Makes the page and prints what it is."""
     for name, value, high in (("frames", options.frames, 1000), ("max-points", options.max_points, 1000000)):
         if not 1 <= value <= high:
@@ -38,7 +39,7 @@ def make(options):
     report_maker.make(options)
 
 
-def main(argv=None):
+def main(argv: Sequence[str] | None = None) -> int:
     """The command; returns its exit code."""
     return command(arguments_of, make, argv)
 

@@ -73,7 +73,7 @@ def synopsis(text, program_help):
             continue
         for option, argument in said:
             same = [known for names, known in options if option in names]
-            if not same or "|" in same[0] and same[0] != argument:
+            if not same or ("|" in same[0] and same[0] != argument):
                 yield f"synopsis: treacle {command} {option} {argument}; the program: {same or 'no such option'}"
         for words, _ in options:
             if not words & ({option for option, _ in said} | {"-h"}):

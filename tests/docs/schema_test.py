@@ -2,6 +2,7 @@
 
 usage: schema_test.py TREACLE SOURCE
 """
+
 import copy
 import json
 import pathlib
@@ -74,10 +75,10 @@ for folder in ("cases", "tests/validation/cases"):
             failures.append(f"{path}: {'.'.join(map(str, error.path))}: {error.message[:200]}")
 
 base = tomllib.loads(case.read_text())
-for what, (path, value) in mistakes.items():
-    if validator.is_valid(changed(base, path, value)):
+for what, (way, value) in mistakes.items():
+    if validator.is_valid(changed(base, way, value)):
         failures.append(f"{what} is taken by the schema")
-    if run("check", str(case), "--set", f"{'.'.join(path)}={toml(value)}").returncode != 2:
+    if run("check", str(case), "--set", f"{'.'.join(way)}={toml(value)}").returncode != 2:
         failures.append(f"{what} is taken by the program")
 for key in ("dimensions", "material", "time"):
     if validator.is_valid({k: v for k, v in base.items() if k != key}):
@@ -89,10 +90,20 @@ if validator.is_valid({"base": "dam-break-2d.toml", "spacing": -1}):
 
 warm = tomllib.loads((source / "cases/glass-gob-2d.toml").read_text())
 fluid = next(b["name"] for b in warm["body"] if b["type"] == "fluid")
-of_file = {"name": fluid, "type": "fluid", "material": entry(warm["body"], fluid)["material"], "shape": "particles", "file": "a.csv"}
+of_file = {
+    "name": fluid,
+    "type": "fluid",
+    "material": entry(warm["body"], fluid)["material"],
+    "shape": "particles",
+    "file": "a.csv",
+}
 others = [b for b in warm["body"] if b["name"] != fluid]
-for keys, valid in (({}, False), ({"temperature": 1400}, True), ({"file_temperatures": True}, True),
-                    ({"file_temperatures": True, "temperature": 1400}, False)):
+for keys, valid in (
+    ({}, False),
+    ({"temperature": 1400}, True),
+    ({"file_temperatures": True}, True),
+    ({"file_temperatures": True, "temperature": 1400}, False),
+):
     if validator.is_valid(warm | {"body": others + [of_file | keys]}) != valid:
         failures.append(f"fluid of a file with {keys} is {'refused' if valid else 'taken'}")
 

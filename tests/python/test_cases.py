@@ -25,7 +25,8 @@ def test_file_dict_and_dataclass_are_the_same_case(drop_file, drop):
         material=[cases.Material(**material)],
         body=[cases.Body(**body) for body in drop["body"]],
         probe=[
-            cases.Probe(**{"from_" if key == "from" else key: value for key, value in probe.items()}) for probe in probes
+            cases.Probe(**{"from_" if key == "from" else key: value for key, value in probe.items()})
+            for probe in probes
         ],
     )
     texts = [treacle.Simulation(one, backend="cpu").case_text for one in (drop_file, str(drop_file), drop, case)]
@@ -122,10 +123,11 @@ def test_values_that_toml_does_not_have(drop):
         treacle.Simulation({2: 3})
 
 
-def test_dataclasses_have_every_key():
-    """A key that is new in the program is missing here until scripts/python-cases has been run."""
+@pytest.mark.parametrize("script", ["python-cases", "python-types"])
+def test_files_that_scripts_write_are_up_to_date(script):
+    """A key that is new in the program, or a new function of the module, is missing until the script has been run."""
     checked = subprocess.run(
-        [sys.executable, ROOT / "scripts/python-cases", "--check"], capture_output=True, text=True, check=False
+        [sys.executable, ROOT / "scripts" / script, "--check"], capture_output=True, text=True, check=False
     )
     assert checked.returncode == 0, checked.stderr
 
@@ -134,8 +136,11 @@ def test_tables_name_the_keys_of_every_case_of_the_repository():
     """The dataclasses take every case there is: no key of theirs is missing."""
     import tomllib
 
-    fields = {name: {f.rstrip("_") for f in cls.__dataclass_fields__} for name, cls in vars(cases).items()
-              if hasattr(cls, "__dataclass_fields__")}
+    fields = {
+        name: {f.rstrip("_") for f in cls.__dataclass_fields__}
+        for name, cls in vars(cases).items()
+        if hasattr(cls, "__dataclass_fields__")
+    }
     of = {"material": "Material", "body": "Body", "outflow": "Outflow", "probe": "Probe"}
     seen = 0
     for path in sorted((ROOT / "cases").glob("**/*.toml")):

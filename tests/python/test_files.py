@@ -47,7 +47,7 @@ def test_errors_of_files(sim, tmp_path):
     with pytest.raises(treacle.RunError, match="cannot write"):
         sim.write_checkpoint(tmp_path / "none" / "state.h5")
     (tmp_path / "case.toml").write_text(sim.case_text)
-    with pytest.raises(treacle.InputError, match="bad.vtp: not a treacle checkpoint"):
+    with pytest.raises(treacle.InputError, match=r"bad\.vtp: not a treacle checkpoint"):
         treacle.Simulation.from_checkpoint(tmp_path / "bad.vtp")
 
 
@@ -60,7 +60,7 @@ def test_checkpoint_goes_on_with_the_same_bits(sim, drop, tmp_path):
     np.testing.assert_array_equal(resumed.fluid.positions, sim.fluid.positions)
     np.testing.assert_array_equal(resumed.fluid.velocities, sim.fluid.velocities)
     drop["body"][0]["radius"] = 0.004
-    with pytest.raises(treacle.InputError, match="checkpoint .*particles, but the case has"):
+    with pytest.raises(treacle.InputError, match=r"checkpoint .*particles, but the case has"):
         treacle.Simulation.from_checkpoint(tmp_path / "state.h5", drop, backend="cpu")
 
 
@@ -93,7 +93,7 @@ def test_directory_is_replaced_with_force_alone(drop, tmp_path):
         treacle.Simulation(drop, backend="cpu").run(output=tmp_path, progress=False)
     for force in (False, True):
         treacle.Simulation(drop, backend="cpu").run(output=tmp_path / "run", force=force, progress=False)
-    with pytest.raises(treacle.InputError, match="holds a run already.*replace the run with force=True"):
+    with pytest.raises(treacle.InputError, match=r"holds a run already.*replace the run with force=True"):
         treacle.Simulation(drop, backend="cpu").run(output=tmp_path / "run", progress=False)
 
 
@@ -137,7 +137,7 @@ def test_run_that_is_stopped_leaves_a_whole_directory(drop, tmp_path, how):
 @pytest.mark.filterwarnings("ignore::treacle.SimulationWarning")
 def test_file_that_cannot_be_written_ends_the_run(sim, tmp_path):
     history = tmp_path / "run/history.csv"
-    with pytest.raises(treacle.RunError, match="history.csv: it was removed while the run went on"):
+    with pytest.raises(treacle.RunError, match=r"history\.csv: it was removed while the run went on"):
         sim.run(output=tmp_path / "run", callback=lambda s: history.unlink(), progress=False)
     summary = json.loads((tmp_path / "run/summary.json").read_text())
     assert (summary["status"], "history.csv" in summary["message"]) == ("failed", True)
@@ -153,7 +153,9 @@ def test_command_of_the_package_is_the_program(tmp_path):
     ]
     assert told[0] == told[1]
     assert treacle.__version__ in told[0]
-    bad = subprocess.run([sys.executable, "-m", "treacle", "run", tmp_path / "none.toml"], capture_output=True, check=False)
+    bad = subprocess.run(
+        [sys.executable, "-m", "treacle", "run", tmp_path / "none.toml"], capture_output=True, check=False
+    )
     assert bad.returncode == 2
 
 

@@ -156,7 +156,7 @@ def test_temperatures(warm_drop, torch):
 def test_viscosities_of_particles(drop, torch):
     sim = treacle.Simulation(drop, backend="cuda")
     sim.fluid.viscosities = np.linspace(5, 50, len(sim.fluid))
-    wanted = dict(zip(sim.fluid.ids.get(), sim.fluid.viscosities))
+    wanted = dict(zip(sim.fluid.ids.get(), sim.fluid.viscosities, strict=True))
     sim.step()
     np.testing.assert_array_equal(sim.fluid.viscosities, [wanted[i] for i in sim.fluid.ids.get()])
     sim.fluid.viscosity_factors = 2 * torch.from_dlpack(sim.fluid.viscosity_factors)

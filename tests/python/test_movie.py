@@ -13,7 +13,6 @@ for package in ("numpy", "vtk", "pyvista", "tqdm", "imageio_ffmpeg"):
 import imageio_ffmpeg
 import numpy as np
 from picture_runs import called, copied, repository, started
-
 from treacle.pictures import camera, fields, hiding, marks, particles
 from treacle.pictures.continued_run import run_of
 from treacle.pictures.run_files import RunFiles

@@ -5,7 +5,6 @@ from pathlib import Path
 import picture_runs
 import pytest
 from mph_case import cuboids, parameters, particles, replaced
-
 from treacle.errors import InputError
 from treacle.mph_files.convert import converted
 from treacle.mph_files.geometry import read_cuboids, read_particles

@@ -12,7 +12,6 @@ pytest.importorskip("matplotlib", reason="curves need pip install '.[pictures]'"
 import numpy as np
 from matplotlib import image
 from picture_runs import called, copied, program, run
-
 from treacle.pictures import curve_maker, panels
 from treacle.pictures.errors import PictureError
 

@@ -14,7 +14,6 @@ for package in ("numpy", "vtk", "plotly", "tqdm"):
 
 import numpy as np
 from picture_runs import called, copied, run
-
 from treacle.pictures import particles, report_curves, report_frames
 
 

@@ -31,7 +31,7 @@ def test_free_fall(drop):
     """Before it touches anything a drop falls as a stone does: an implicit step adds g dt to every velocity."""
     drop["body"][0]["center"] = [0, 0.02]
     sim = treacle.Simulation(drop, backend="cpu", precision="double")
-    before = dict(zip(sim.fluid.ids, sim.fluid.positions))
+    before = dict(zip(sim.fluid.ids, sim.fluid.positions, strict=True))
     for _ in range(5):
         sim.step()
     np.testing.assert_allclose(sim.fluid.velocities, np.tile([0, -9.81 * 5e-3], (len(sim.fluid), 1)), atol=1e-8)

@@ -18,13 +18,33 @@ def squeezed(dimensions, change):
     return {
         "dimensions": dimensions,
         "spacing": SPACING,
-        "domain": {"min": [*up, -2 * plate], "max": [width] * along + [HEIGHT + 2 * plate], "periodic": [True] * along + [False]},
+        "domain": {
+            "min": [*up, -2 * plate],
+            "max": [width] * along + [HEIGHT + 2 * plate],
+            "periodic": [True] * along + [False],
+        },
         "gravity": {"acceleration": [0] * dimensions},
         "time": {"step": 1e-3, "end": TIME},
-        "material": [{"name": "resin", "density": 1000, "dynamic_viscosity": 10, "bulk_viscosity": 1e4, "bulk_modulus": 1e6}],
+        "material": [
+            {"name": "resin", "density": 1000, "dynamic_viscosity": 10, "bulk_viscosity": 1e4, "bulk_modulus": 1e6}
+        ],
         "body": [
-            {"name": "resin", "type": "fluid", "material": "resin", "shape": "box", "min": [*up, 0], "max": [width] * along + [HEIGHT]},
-            {"name": "floor", "type": "wall", "material": "resin", "shape": "box", "min": [*up, -plate], "max": [width] * along + [0]},
+            {
+                "name": "resin",
+                "type": "fluid",
+                "material": "resin",
+                "shape": "box",
+                "min": [*up, 0],
+                "max": [width] * along + [HEIGHT],
+            },
+            {
+                "name": "floor",
+                "type": "wall",
+                "material": "resin",
+                "shape": "box",
+                "min": [*up, -plate],
+                "max": [width] * along + [0],
+            },
             {
                 "name": "lid",
                 "type": "wall",
@@ -39,7 +59,8 @@ def squeezed(dimensions, change):
 
 
 def density_by_cells(fluid, walls):
-    """Of the fluid over that of its material, by the Voronoi cells of particles 2.5 spacings from walls and from open cells; their number."""
+    """Of the fluid over that of its material, by the Voronoi cells of particles 2.5 spacings from walls and from open cells;
+    their number."""
     cells = spatial.Voronoi(np.vstack([fluid, walls]))
     sizes = np.full(len(fluid), np.nan)
     for i, place in enumerate(fluid):

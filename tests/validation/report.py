@@ -20,7 +20,8 @@ groups = {  # studies that share a table: its mark, and what their lines are cal
     "power-laws": {"power-law-slit": "n = 0.5", "power-law-slit-thickening": "n = 1.5"},
     "shear-rates": {"couette-carreau-yasuda": "Carreau-Yasuda", "couette-cross": "Cross"},
     "heaps": {"bingham-heap": "plane", "bingham-heap-3d": "round"},
-    "conduction": {"heated-slab": "slab", "heated-layers": "two layers", "cooled-slab": "cooled, Bi = 1", "cooled-slab-fast": "cooled, Bi = 10"},
+    "conduction": {"heated-slab": "slab", "heated-layers": "two layers",
+                   "cooled-slab": "cooled, Bi = 1", "cooled-slab-fast": "cooled, Bi = 10"},
     "two-layers": {"two-layer-couette": "10,000 to 1", "two-layer-couette-1000": "1,000 to 1"},
     "static-drops": {"static-drop": "drop", "static-drop-3d": "ball"},
     "relaxing-drops": {"relaxing-drop": "drop", "relaxing-drop-3d": "ball"},
@@ -52,7 +53,7 @@ def headings(labels):
 
 def merged(records):
     """Study to scheme to levels, from several records; the later one wins."""
-    result = {}
+    result: dict[str, dict[str, list]] = {}
     for record in records:
         for name, rows in record.items():
             # Records from before there was another scheme do not say which they are of.
@@ -88,8 +89,8 @@ def table(parts):
             cells = error_cells(study, of[first], name)
             cells += [""] * (len(names) - len(cells))
             lines.append([title, *cells, *(number(of[scheme][-1]["errors"][name]) for scheme in others)])
-    lines = ["| " + " | ".join(line) + " |" for line in lines]
-    return "\n".join([lines[0], "|" + "---|" * (1 + len(names) + len(others)), *lines[1:]])
+    head, *body = ["| " + " | ".join(line) + " |" for line in lines]
+    return "\n".join([head, "|" + "---|" * (1 + len(names) + len(others)), *body])
 
 
 def draw(study, of, path):
@@ -99,7 +100,7 @@ def draw(study, of, path):
     with figure(path, study.title, study.x_label, study.y_label) as axes:
         for name, (x, y) in rows[-1]["exact"].items():
             axes.plot(x, y, "k-", linewidth=1, label=name)
-        for row, mark in zip(shown, ("o", "s", ".")):
+        for row, mark in zip(shown, ("o", "s", "."), strict=False):
             for k, (name, (x, y)) in enumerate(row["curves"].items()):
                 axes.plot(x, y, mark, markersize=3, markerfacecolor="none", color=f"C{k}", alpha=0.8,
                           label=f"{name}, {row['level']}")
@@ -121,10 +122,15 @@ def blocks(records, studies):
     return found
 
 
+def with_block(text, name, block):
+    """The text of a page with a block between its marks."""
+    return re.sub(f"<!-- {name} -->.*?<!-- end of {name} -->", lambda _: block, text, flags=re.S)
+
+
 def with_blocks(text, found):
     """The text of a page with them; it has marks for each."""
     for name, block in found.items():
-        text = re.sub(f"<!-- {name} -->.*?<!-- end of {name} -->", lambda _: block, text, flags=re.S)
+        text = with_block(text, name, block)
     return text
 
 

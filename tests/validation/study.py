@@ -2,9 +2,9 @@
 
 import math
 import re
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Callable
 
 cases = Path(__file__).parent / "cases"
 usual_order, small = 0.9, 0.01  # least observed order, and the error from which on none is asked for
@@ -34,16 +34,22 @@ class Level:
         return f"x{self.resolution:g} " + self.name if self.name else " ".join([f"x{self.resolution:g}", *self.settings])
 
 
+def spacing_of(level):
+    """Over that of the case file."""
+    return 1 / level.resolution
+
+
 @dataclass
 class Study:
     """levels: from coarse to fine; the first, and the second where it takes little time, are what continuous integration runs. bars:
     largest error allowed at the first, and at the second where it has orders, by the names of Outcome.errors; every bar must be met,
     whatever the scheme; published: those of them that are others for the scheme of that name, which does not converge. orders: least
-    observed order from the first level to the second of the errors for which it is not usual_order; only the accurate scheme is judged by orders, and only until an error is
-    small. ranges: by the scheme of the case, least and largest of Outcome.values at the first level: where a scheme itself is off by
-    more than a wrong constant would be, a bar alone would let that pass. They say what this scheme gives, not what is right, so better
-    physics need a scheme of their own. measure: takes a Run (treacle_data) to an Outcome. size: what orders are counted in, a function
-    of the level; particle spacing unless told. refined: false where levels are other flows, so that there are no orders."""
+    observed order from the first level to the second of the errors for which it is not usual_order; only the accurate scheme is judged
+    by orders, and only until an error is small. ranges: by the scheme of the case, least and largest of Outcome.values at the first
+    level: where a scheme itself is off by more than a wrong constant would be, a bar alone would let that pass. They say what this
+    scheme gives, not what is right, so better physics need a scheme of their own. measure: takes a Run (treacle_data) to an Outcome.
+    size: what orders are counted in, a function of the level; particle spacing unless told. refined: false where
+    levels are other flows, so that there are no orders."""
 
     name: str
     title: str
@@ -57,7 +63,7 @@ class Study:
     orders: dict = field(default_factory=dict)
     ranges: dict = field(default_factory=dict)
     case: str = ""
-    size: Callable = staticmethod(lambda level: 1 / level.resolution)
+    size: Callable = spacing_of
     refined: bool = True
 
     @property
@@ -80,7 +86,10 @@ class Study:
 def scheme_in(text):
     """[method] scheme in the text of a case; a case without one is by the accurate scheme, one of ISPH by "isph"."""
     method = text.partition("\n[method]\n")[2].partition("\n[")[0]
-    word = lambda key, default: (re.search(rf'^{key} *= *"([^"]*)"', method, re.MULTILINE) or (None, default))[1]
+
+    def word(key, default):
+        return (re.search(rf'^{key} *= *"([^"]*)"', method, re.MULTILINE) or (None, default))[1]
+
     return "isph" if word("name", "mph-i") == "isph" else word("scheme", "accurate")
 
 

@@ -7,10 +7,18 @@ import unittest
 from study import Study, scheme_in
 from validate import print_level
 
+usual_bars = {"drag": 0.1}
+no_orders: dict[str, float] = {}
+usual_ranges = {"published": {"rate": (0.8, 0.9)}, "accurate": {"rate": (0.98, 1.02)}}
 
-def judged(error, value, scheme, bars={"drag": 0.1}, ranges={"published": {"rate": (0.8, 0.9)}, "accurate": {"rate": (0.98, 1.02)}}):
+
+def measure(run):
+    raise AssertionError("rows are given")
+
+
+def judged(error, value, scheme, bars=usual_bars, ranges=usual_ranges):
     """Whether a level with this error and this value is good, and what is printed."""
-    study = Study("sphere", "Sphere", [], bars, None, "", "", ranges=ranges)
+    study = Study("sphere", "Sphere", [], bars, measure, "", "", ranges=ranges)
     row = {"level": "x1", "scheme": scheme, "size": 1, "particles": 1, "steps": 1, "iterations": 1, "seconds": 1, "backend": "cpu",
            "errors": {"drag": error}, "values": {"rate": value}}
     with contextlib.redirect_stdout(io.StringIO()) as printed:
@@ -18,9 +26,9 @@ def judged(error, value, scheme, bars={"drag": 0.1}, ranges={"published": {"rate
     return good, printed.getvalue()
 
 
-def second(coarse, fine, scheme="accurate", orders={}, number=1, bars={"drag": 0.1}):
+def second(coarse, fine, scheme="accurate", orders=no_orders, number=1, bars=usual_bars):
     """Likewise of a level with half the spacing of the one before and this error after that one."""
-    study = Study("sphere", "Sphere", [], bars, None, "", "", orders=orders)
+    study = Study("sphere", "Sphere", [], bars, measure, "", "", orders=orders)
     row = {"level": "x2", "scheme": scheme, "size": 1, "particles": 1, "steps": 1, "iterations": 1, "seconds": 1, "backend": "cpu",
            "errors": {"drag": fine}, "values": {}}
     with contextlib.redirect_stdout(io.StringIO()) as printed:
@@ -50,7 +58,7 @@ class Judgement(unittest.TestCase):
         self.assertTrue(judged(0.05, 0.85, "other", ranges={})[0])
 
     def test_the_published_scheme_may_have_other_bars(self):
-        study = Study("sphere", "Sphere", [], {"drag": 0.1, "lift": 0.2}, None, "", "", published={"drag": 0.3})
+        study = Study("sphere", "Sphere", [], {"drag": 0.1, "lift": 0.2}, measure, "", "", published={"drag": 0.3})
         self.assertEqual(study.bars_of("published"), {"drag": 0.3, "lift": 0.2})
         self.assertEqual(study.bars_of("accurate"), {"drag": 0.1, "lift": 0.2})
 

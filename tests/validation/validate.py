@@ -110,7 +110,8 @@ def print_level(study, row, last, number):
 
 
 def run_study(study, options, scratch):
-    rows, good = [], True
+    rows: list[dict] = []
+    good = True
     for number, level in enumerate(study.levels if options.all_levels else study.levels[: options.levels]):
         row = run_level(study, level, options, scratch / f"{study.name}-{number}")
         good = print_level(study, row, rows[-1] if rows else None, number) and good

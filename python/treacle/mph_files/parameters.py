@@ -41,8 +41,10 @@ def read_parameters(path: str, content: bytes) -> Parameters:
     """path: for messages. Raises InputError that begins with path:line and says what was found and expected."""
     lines = Lines(path, content)
     defaults: dict[str, Sequence[float]] = {"SurfaceTension": [0.0] * type_count}
-    defaults |= dict.fromkeys(_not_negative, [0.0]) | dict.fromkeys(_walls, [0.0] * 9)
-    p = Parameters(path, defaults | dict.fromkeys(_ratios, [1.0] * type_count))
+    defaults |= {row: [0.0] for row in _not_negative}
+    defaults |= {row: [0.0] * 9 for row in _walls}
+    defaults |= {row: [1.0] * type_count for row in _ratios}
+    p = Parameters(path, defaults)
     while lines.next():
         key = lines.word(0)
         if key in p.lines:

@@ -1,10 +1,14 @@
 """Where a picture is seen from: parallel projection, gravity pointing down."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from .arrays import Array, Floats
 from .errors import PictureError
 
 # Azimuth around the vertical and elevation above the horizontal plane [degrees]; from azimuth 0 one sees the first
@@ -29,7 +33,7 @@ class Direction:
     zoom: float = 1.0
 
 
-def direction(text):
+def direction(text: str) -> Direction:
     """Of a name or AZIMUTH,ELEVATION[,ZOOM]. Raises PictureError."""
     if text in named:
         return Direction(*named[text])
@@ -49,20 +53,21 @@ def direction(text):
 class View:
     """Orthonormal directions of a picture in space, as rows: to the right, up, to the viewer."""
 
-    def __init__(self, axes):
-        self.axes = np.asarray(axes, float)
+    def __init__(self, axes: ArrayLike) -> None:
+        self.axes: Floats = np.asarray(axes, float)
 
-    def __call__(self, positions):
+    def __call__(self, positions: Array) -> Floats:
         """Where positions are in the picture and how near to the viewer: three columns [m]."""
-        return positions @ self.axes.T
+        places: Floats = positions @ self.axes.T
+        return places
 
     @staticmethod
-    def flat():
+    def flat() -> View:
         """Of two dimensions."""
         return View(np.eye(3))
 
     @staticmethod
-    def of(seen, gravity):
+    def of(seen: Direction, gravity: Floats) -> View:
         """Along a Direction. Up is against the main axis of gravity, z without one."""
         axis = int(np.argmax(np.abs(gravity))) if np.any(gravity) else 2
         up = np.zeros(3)
@@ -80,23 +85,24 @@ class View:
 class Extent:
     """What a view has to show: the box of all that is added, in its directions."""
 
-    def __init__(self):
-        self.low, self.high = np.full(3, np.inf), np.full(3, -np.inf)
+    def __init__(self) -> None:
+        self.low: Floats = np.full(3, np.inf)
+        self.high: Floats = np.full(3, -np.inf)
 
-    def add(self, places, margin=0.0):
+    def add(self, places: Floats, margin: float = 0.0) -> None:
         """Positions in the view [m], three columns, and what they reach beyond."""
         if len(places):
             self.low = np.minimum(self.low, places.min(axis=0) - margin)
             self.high = np.maximum(self.high, places.max(axis=0) + margin)
 
     @property
-    def empty(self):
+    def empty(self) -> bool:
         return bool(np.any(self.low > self.high))
 
     @property
-    def center(self):
+    def center(self) -> Floats:
         return (self.low + self.high) / 2
 
     @property
-    def size(self):
+    def size(self) -> Floats:
         return self.high - self.low

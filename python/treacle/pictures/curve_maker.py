@@ -1,11 +1,15 @@
 """Pictures of a run's tables: its history, what a probe has read, and residuals of solvers."""
 
 import csv
+from argparse import Namespace
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from .._command import say
+from .arrays import Floats, Table
 from .errors import PictureError
 from .panels import Panel, draw_panels, draw_plane, draw_residuals
 from .report_curves import unit_of
@@ -13,8 +17,10 @@ from .run_files import RunFiles
 
 most_profiles = 4  # of a line
 
+Part = tuple[str, str, slice]  # of a table: a name, the column of the x axis, rows
 
-def make(options):
+
+def make(options: Namespace) -> None:
     """Draws what the options of treacle.plot ask for."""
     directory = Path(options.directory)
     if options.convergence:
@@ -31,7 +37,7 @@ def make(options):
     return say(options.output)
 
 
-def read_numbers(path, first):
+def read_numbers(path: Path, first: str) -> Table:
     """Columns of a table by name; first: the name of its first one. A last line that is not whole is left out. Raises
     PictureError with path and line."""
     try:
@@ -52,7 +58,7 @@ def read_numbers(path, first):
     return dict(zip(names, np.array(rows).reshape(-1, len(names)).T, strict=True))
 
 
-def history_panels(table):
+def history_panels(table: Table) -> list[Panel]:
     """Of history.csv."""
     shown = [
         ("iterations", "", {"": "iterations"}),
@@ -70,7 +76,7 @@ def history_panels(table):
     ]
 
 
-def draw_probe(options, run):
+def draw_probe(options: Namespace, run: RunFiles) -> None:
     """A line's profiles at some times, a plane at its last time, of all others the curves over time."""
     probe = next((one for one in run.case.get("probe", []) if one["name"] == options.probe), None)
     if probe is None:
@@ -89,14 +95,14 @@ def draw_probe(options, run):
         draw_panels(options.output, title, "time [s]", probe_panels(table, [("", "time", slice(None))]))
 
 
-def blocks_of(time):
+def blocks_of(time: Floats) -> list[slice]:
     """Slices of rows of one time each, as many as the first one has; a last one with fewer is not whole yet."""
     starts = np.flatnonzero(np.diff(time, prepend=-np.inf))
     size = starts[1] if len(starts) > 1 else len(time)
     return [slice(start, start + size) for start in starts if start + size <= len(time)]
 
 
-def profiles_of(table):
+def profiles_of(table: Table) -> list[Part]:
     """Name, column of the x axis and rows of some times, the last one among them."""
     blocks = blocks_of(table["time"])
     count = min(len(blocks), most_profiles)
@@ -104,9 +110,9 @@ def profiles_of(table):
     return [(f"{table['time'][block.start]:.3g} s", "distance", block) for block in some]
 
 
-def probe_panels(table, parts):
+def probe_panels(table: Table, parts: Sequence[Part]) -> list[Panel]:
     """A panel for each quantity, with curves of its components at each of the parts."""
-    panels = {}
+    panels: dict[str, Panel] = {}
     for column in table:
         if column in ("time", "distance", "x", "y", "z"):
             continue
@@ -117,7 +123,7 @@ def probe_panels(table, parts):
     return list(panels.values())
 
 
-def draw_plane_of(options, title, probe, rows):
+def draw_plane_of(options: Namespace, title: str, probe: Mapping[str, Any], rows: Table) -> None:
     """rows: columns of the table at the last time."""
     speed = np.sqrt(sum(rows[name] ** 2 for name in rows if name.startswith("velocity_")))
     viscosity = np.log10(rows.get("dynamic_viscosity", np.nan))
@@ -139,9 +145,9 @@ def draw_plane_of(options, title, probe, rows):
     draw_plane(options.output, title, f"t = {rows['time'][0]:.4g} s", grid, label, least)
 
 
-def residuals_of(directory):
+def residuals_of(directory: Path) -> list[tuple[str, list[float]]]:
     """Name, text and residuals of each solver that treacle convergence has compared. Raises PictureError."""
-    curves = {}
+    curves: dict[str, tuple[str, list[float]]] = {}
     try:
         with open(directory / "solvers.csv", newline="") as file:
             for row in csv.DictReader(file):

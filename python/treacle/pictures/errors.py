@@ -9,7 +9,7 @@ class PictureError(InputError):
     """What was asked for cannot be drawn; the message says why, and what was expected."""
 
 
-def require(*modules):
+def require(*modules: str) -> None:
     """Imports modules by name. Raises PictureError with the way to install the first one that is missing."""
     for name in modules:
         try:

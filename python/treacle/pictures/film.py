@@ -1,10 +1,15 @@
 """Films by ffmpeg: pictures go to it through a pipe, and the file appears when it is whole."""
 
+from __future__ import annotations
+
+import contextlib
 import shutil
 import subprocess
 import tempfile
 from pathlib import Path
+from typing import NoReturn
 
+from .arrays import Array
 from .errors import PictureError
 
 # What ffmpeg is told by the ending of the file. H.264 with yuv420p is what every player and browser shows.
@@ -28,7 +33,7 @@ codecs = {
 }
 
 
-def ffmpeg():
+def ffmpeg() -> str:
     """The program of the system, else that of the package imageio-ffmpeg. Raises PictureError."""
     found = shutil.which("ffmpeg")
     if found:
@@ -36,15 +41,15 @@ def ffmpeg():
     try:
         import imageio_ffmpeg
 
-        return imageio_ffmpeg.get_ffmpeg_exe()
+        packaged: str = imageio_ffmpeg.get_ffmpeg_exe()
+        return packaged
     except (ImportError, RuntimeError):
         raise PictureError(
-            "ffmpeg is missing; expected that of the system (apt install ffmpeg), or that of "
-            "pip install '.[pictures]'"
+            "ffmpeg is missing; expected that of the system (apt install ffmpeg), or that of pip install '.[pictures]'"
         ) from None
 
 
-def checked(path):
+def checked(path: str | Path) -> Path:
     """The path of a film whose ending says what it is. Raises PictureError."""
     path = Path(path)
     if path.suffix.lower() not in codecs:
@@ -57,12 +62,12 @@ def checked(path):
 class Film:
     """A film that is being made; with `with` it is whole at the end, or not there."""
 
-    def __init__(self, path, size, fps):
+    def __init__(self, path: str | Path, size: tuple[int, int], fps: float) -> None:
         self.path = checked(path)
         self.size = size
         self.fps = fps
 
-    def __enter__(self):
+    def __enter__(self) -> Film:
         self.hidden = self.path.with_name(f".{self.path.name}.tmp")
         command = [
             ffmpeg(),
@@ -82,22 +87,22 @@ class Film:
         self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=self.messages)
         return self
 
-    def add(self, picture):
+    def add(self, picture: Array) -> None:
         """Pixels, rows from the top: bytes of shape height, width, 3. Raises PictureError if ffmpeg has ended."""
+        assert self.process.stdin is not None  # a pipe was asked for
         assert picture.shape == (self.size[1], self.size[0], 3)
         try:
             self.process.stdin.write(picture.tobytes())
         except BrokenPipeError:
             self._fail()
 
-    def __exit__(self, kind, *_):
+    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
         try:
             if kind is not None:
                 self.process.kill()
-            try:
+            assert self.process.stdin is not None
+            with contextlib.suppress(BrokenPipeError):
                 self.process.stdin.close()
-            except BrokenPipeError:
-                pass
             if self.process.wait() != 0 and kind is None:
                 self._fail()
             if kind is None:
@@ -107,7 +112,7 @@ class Film:
             self.messages.close()
             self.hidden.unlink(missing_ok=True)
 
-    def _fail(self):
+    def _fail(self) -> NoReturn:
         code = self.process.wait()
         self.messages.seek(0)
         said = self.messages.read().decode(errors="replace").strip() or "it said nothing"

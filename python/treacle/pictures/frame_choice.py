@@ -1,11 +1,15 @@
 """Which frames a film shows, and how their times are written."""
 
+from argparse import Namespace
+
 import numpy as np
 
+from .arrays import Floats
 from .errors import PictureError
+from .run_files import RunFiles
 
 
-def chosen_frames(run, options):
+def chosen_frames(run: RunFiles, options: Namespace) -> list[int]:
     """Numbers of the frames of the film."""
     if options.turntable is not None:
         return [frame_number(options.turntable, len(run.fluid))]
@@ -19,7 +23,7 @@ def chosen_frames(run, options):
     return found[:: options.every]
 
 
-def frame_number(text, count):
+def frame_number(text: str, count: int) -> int:
     """Of a number or "last"."""
     if text == "last":
         return count - 1
@@ -28,7 +32,7 @@ def frame_number(text, count):
     return int(text)
 
 
-def decimals(times):
+def decimals(times: Floats) -> int:
     """Digits after the point that tell the times of frames apart."""
     apart = np.diff(times).min() if len(times) > 1 else max(abs(times[0]), 1e-3)
     return next((n for n in range(9) if np.all(np.abs(np.round(times, n) - times) < 0.01 * apart)), 9)

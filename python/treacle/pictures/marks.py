@@ -1,30 +1,38 @@
 """Marks on pictures that say how large things are: axes of two dimensions, a bar of some length in three."""
 
+from __future__ import annotations
+
 import math
+from collections.abc import Callable, Iterable
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import matplotlib
 import numpy as np
+import vtkmodules.vtkRenderingFreeType  # noqa: F401, draws letters
 from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonCore import VTK_UNSIGNED_CHAR, vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 from vtkmodules.vtkRenderingCore import vtkActor2D, vtkPolyDataMapper2D, vtkTextActor
-import vtkmodules.vtkRenderingFreeType  # noqa: F401, draws letters
 
+from .arrays import Floats, Place
 from .fields import scaled_unit
+
+if TYPE_CHECKING:
+    from .scene import Colours
 
 ink = (0.15, 0.15, 0.15)
 font = Path(matplotlib.get_data_path()) / "fonts" / "ttf" / "DejaVuSans.ttf"
 font_of_file = 4  # VTK_FONT_FILE
 
 
-def round_length(most):
+def round_length(most: float) -> float:
     """The largest of 1, 2 and 5 times a power of ten that is not above it."""
     power = 10.0 ** math.floor(math.log10(most))
     return max(factor * power for factor in (1, 2, 5) if factor * power <= most * (1 + 1e-9))
 
 
-def ticks(low, high, most):
+def ticks(low: float, high: float, most: float) -> list[float]:
     """At most so many round numbers in the range, at equal distances."""
     power = 10.0 ** math.floor(math.log10((high - low) / (most + 1)))
     for step in (factor * power for factor in (1, 2, 5, 10, 20, 50, 100)):
@@ -34,7 +42,7 @@ def ticks(low, high, most):
     return [k * step for k in range(first, last + 1)]
 
 
-def lines(pairs, width=1):
+def lines(pairs: Iterable[tuple[Place, Place]], width: float = 1) -> vtkActor2D:
     """Straight lines between pairs of places [px]."""
     points, cells = vtkPoints(), vtkCellArray()
     for a, b in pairs:
@@ -53,7 +61,7 @@ def lines(pairs, width=1):
     return actor
 
 
-def text(words, place, size, across="left", along="bottom"):
+def text(words: str, place: Place, size: int, across: str = "left", along: str = "bottom") -> vtkTextActor:
     """Words at a place [px] of letters so high [px]; across: left, center or right; along: bottom, center or top."""
     actor = vtkTextActor()
     actor.SetInput(words)
@@ -68,14 +76,14 @@ def text(words, place, size, across="left", along="bottom"):
     return actor
 
 
-def powers(low, high, most):
+def powers(low: float, high: float, most: int) -> list[float]:
     """At most so many round numbers in a range of powers of ten."""
     first, last = math.ceil(math.log10(low) - 1e-9), math.floor(math.log10(high) + 1e-9)
     every = max(1, math.ceil((last - first + 1) / most))
     return [10.0**k for k in range(first, last + 1, every)] or [low, high]
 
 
-def colour_bar(colours, words, corner, size, end, letters):
+def colour_bar(colours: Colours, words: str, corner: Place, size: Place, end: float, letters: int) -> list[vtkActor2D]:
     """Actors of a bar with numbers beside and words above it. corner: lower left [px]; size: width and height [px];
     end: of the words [px]; letters: their height [px]."""
     (x, y), (width, height) = corner, size
@@ -95,6 +103,7 @@ def colour_bar(colours, words, corner, size, end, letters):
     bar = vtkActor2D()
     bar.SetMapper(mapper)
     low, high = colours.bounds
+    scale: Callable[[float], float]
     if colours.logarithmic:
         numbers, scale = powers(low, high, 8), lambda value: math.log(value / low) / math.log(high / low)
     else:
@@ -107,7 +116,7 @@ def colour_bar(colours, words, corner, size, end, letters):
     return [*actors, lines(pairs), text(words, (end, y + height + letters), letters, "right")]
 
 
-def axes(low, high, place, letters):
+def axes(low: Floats, high: Floats, place: Callable[[float, float], Place], letters: int) -> list[vtkActor2D]:
     """Actors of a frame around what is between two corners [m], with numbers along x and y. place(x, y): where that is
     [px]; letters: their height [px]."""
     (left, bottom), (right, top) = place(*low), place(*high)
@@ -132,7 +141,7 @@ def axes(low, high, place, letters):
     return [lines(pairs), *actors]
 
 
-def length_bar(metre, corner, most, letters):
+def length_bar(metre: float, corner: Place, most: float, letters: int) -> list[vtkActor2D]:
     """Actors of a bar of round length with its length. metre: [px]; corner: lower left [px]; most: its largest length
     [px]."""
     length = round_length(most / metre)

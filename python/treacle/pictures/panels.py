@@ -1,12 +1,16 @@
 """What Matplotlib draws: curves in panels below each other, residuals on a logarithmic axis, a plane."""
 
 import io
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
+from numpy.typing import ArrayLike
 
 from .._command import write_files
+from .arrays import Floats
 
 colors = ["#215c99", "#d96b14", "#1a8059", "#6b3385", "#bf2633", "#4d9ecc", "#8c731a", "#66666e"]
 most = 1e150  # farther from zero numbers are left out: arithmetic with them might not be finite
@@ -19,17 +23,17 @@ class Panel:
 
     label: str
     unit: str
-    curves: list
+    curves: list[tuple[str, Floats, Floats]]
 
 
-def drawable(x, y):
+def drawable(x: ArrayLike, y: ArrayLike) -> tuple[Floats, ...]:
     """The points that can be drawn; numbers next to nothing are nothing."""
     x, y = np.asarray(x, float), np.asarray(y, float)
     keep = (np.abs(x) <= most) & (np.abs(y) <= most)
     return tuple(np.where(np.abs(values[keep]) < 1 / most, 0, values[keep]) for values in (x, y))
 
 
-def draw_panels(path, title, x_label, panels):
+def draw_panels(path: str, title: str, x_label: str, panels: Sequence[Panel]) -> None:
     """A PNG with the panels below each other, over a common axis."""
     figure, axes = _figure(0.9 + 2.2 * len(panels), title, rows=max(1, len(panels)))
     for ax, panel in zip(axes, panels, strict=False):
@@ -46,7 +50,7 @@ def draw_panels(path, title, x_label, panels):
     _save(figure, path)
 
 
-def draw_residuals(path, curves, title, remark):
+def draw_residuals(path: str, curves: Sequence[tuple[str, Sequence[float]]], title: str, remark: str) -> None:
     """A PNG of residuals over iterations. curves: text and residuals of each solver."""
     figure, (ax,) = _figure(6 + 0.25 * len(curves), title, remark)
     ax.set_yscale("log")
@@ -62,11 +66,13 @@ def draw_residuals(path, curves, title, remark):
     _save(figure, path)
 
 
-def draw_plane(path, title, remark, grid, label, least=None):
+def draw_plane(
+    path: str, title: str, remark: str, grid: Sequence[Floats], label: str, least: float | None = None
+) -> None:
     """A PNG of values at the points of a rectangle. grid: x, y and values, as rows; not finite where no fluid is.
     least: where the colours begin, if not at the least value."""
     x, y, values = grid
-    values = np.ma.masked_where(~(np.abs(values) <= most), values)
+    values = np.ma.masked_where(~(np.abs(values) <= most), values)  # type: ignore[no-untyped-call]  # NumPy has none
     aspect = np.clip(np.ptp(y) / max(np.ptp(x), 1e-300), 0.25, 1)
     figure, (ax,) = _figure(1.5 + 8 * aspect, title, remark)
     if min(values.shape) > 1:
@@ -79,7 +85,7 @@ def draw_plane(path, title, remark, grid, label, least=None):
     _save(figure, path)
 
 
-def _figure(height, title, remark="", rows=1):
+def _figure(height: float, title: str, remark: str = "", rows: int = 1) -> tuple[Figure, Any]:
     figure = Figure(figsize=(width, height), dpi=100, layout="constrained")
     figure.suptitle(title, x=0.02, ha="left", weight="bold", parse_math=False)
     figure.text(0.98, 0.99, remark, ha="right", va="top", parse_math=False)
@@ -90,7 +96,7 @@ def _figure(height, title, remark="", rows=1):
     return figure, axes
 
 
-def _save(figure, path):
+def _save(figure: Figure, path: str) -> None:
     picture = io.BytesIO()
     figure.savefig(picture, format="png")
     write_files({str(path): picture.getvalue()})

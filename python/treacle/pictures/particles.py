@@ -1,11 +1,16 @@
 """Frames as arrays: positions and fields of particles, or points and triangles of surfaces."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLPPolyDataReader
 
+from .arrays import Array
 from .errors import PictureError
 
 
@@ -13,32 +18,36 @@ from .errors import PictureError
 class Particles:
     """Of one frame; rows whose position is not finite are left out."""
 
-    positions: np.ndarray  # [m], three columns
-    fields: dict  # arrays of one row per particle
-    data: object  # what VTK has read, all rows
+    positions: Array  # [m], three columns
+    fields: dict[str, Array]  # of one row per particle
+    data: Any  # what VTK has read, all rows
 
-    def __len__(self):
+    def __len__(self) -> int:
         return len(self.positions)
 
-    def chosen(self, rows):
+    def chosen(self, rows: Array) -> Particles:
         """Those of some rows, or by a mask."""
         return Particles(self.positions[rows], {name: values[rows] for name, values in self.fields.items()}, self.data)
 
 
-def none():
+def none() -> Particles:
     return Particles(np.zeros((0, 3)), {}, None)
 
 
-def read_particles(path):
+class Messages(list[str]):
+    """What VTK reports, which it calls this with."""
+
+    CallDataType = "string0"  # the report is a text
+
+    def __call__(self, _: object, __: str, text: str = "") -> None:
+        self.append(text.strip())
+
+
+def read_particles(path: Path) -> Particles:
     """A .vtp file, or a .pvtp file and the pieces that it names. Raises PictureError where it cannot be read."""
-    messages = []
-
-    def take(_, __, text=""):
-        messages.append(text.strip())
-
-    take.CallDataType = "string0"
+    messages = Messages()
     reader = vtkXMLPPolyDataReader() if path.suffix == ".pvtp" else vtkXMLPolyDataReader()
-    reader.AddObserver("ErrorEvent", take)
+    reader.AddObserver("ErrorEvent", messages)
     if hasattr(reader, "GetReaderErrorObserver"):
         reader.SetReaderErrorObserver(None)
     if not path.is_file():

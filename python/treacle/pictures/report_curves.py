@@ -1,8 +1,17 @@
 """Curves for the page of a report: what the tables of a run hold over time, thinned so that peaks stay."""
 
+from collections.abc import Iterable, Sequence
+from itertools import pairwise
+from typing import Any
+
 import numpy as np
+from numpy.typing import ArrayLike
+
+from .arrays import Floats, Table
 
 most_points = 1200  # of a curve
+
+Chart = dict[str, Any]  # for the script of the page; a curve of it, too
 
 column_units = {
     "pressure": "Pa", "dynamic_viscosity": "Pa s", "shear_rate": "1/s", "temperature": "K", "height": "m",
@@ -11,7 +20,7 @@ column_units = {
 column_starts = {"velocity": "m/s", "center": "m", "force": "N", "torque": "N m"}
 
 
-def thin(x, y):
+def thin(x: Floats, y: Floats) -> tuple[Floats, Floats]:
     """At most some thousand points of a curve: the least and the greatest value of each of many parts, in order."""
     keep = np.isfinite(x) & np.isfinite(y)
     x, y = x[keep], y[keep]
@@ -19,36 +28,38 @@ def thin(x, y):
         return x, y
     edges = np.linspace(0, len(x), most_points // 2 + 1).astype(int)
     chosen = {0, len(x) - 1}
-    for a, b in zip(edges[:-1], edges[1:], strict=True):
+    for a, b in pairwise(edges):
         chosen |= {a + int(np.argmin(y[a:b])), a + int(np.argmax(y[a:b]))}
-    chosen = sorted(chosen)
-    return x[chosen], y[chosen]
+    rows = sorted(chosen)
+    return x[rows], y[rows]
 
 
-def numbers(values):
+def numbers(values: Iterable[float]) -> list[float]:
     """For JSON, with six digits."""
     return [float(f"{value:.6g}") for value in values]
 
 
-def curve(name, x, y):
+def curve(name: str, x: ArrayLike, y: ArrayLike) -> Chart:
     x, y = thin(np.asarray(x, float), np.asarray(y, float))
     return {"name": name.replace("_", " "), "x": [float(f"{value:.9g}") for value in x], "y": numbers(y)}
 
 
-def chart(title, y, curves, x="time [s]", logarithmic=False, remark=""):
+def chart(
+    title: str, y: str, curves: list[Chart], x: str = "time [s]", logarithmic: bool = False, remark: str = ""
+) -> Chart | None:
     """A chart as the page draws it, or None where no curve has a point."""
     curves = [one for one in curves if one["x"]]
     return {"title": title, "x": x, "y": y, "log": logarithmic, "curves": curves, "remark": remark} if curves else None
 
 
-def of_history(table):
+def of_history(table: Table) -> list[Chart]:
     """Charts of history.csv."""
     if not len(table.get("time", [])):
         return []
     t = table["time"]
 
-    def of(title, y, *names, **options):
-        return chart(title, y, [curve(name, t, table[name]) for name in names if name in table], **options)
+    def of(title: str, y: str, *names: str) -> Chart | None:
+        return chart(title, y, [curve(name, t, table[name]) for name in names if name in table])
 
     charts = [
         of("Energy", "J", "kinetic_energy", "potential_energy"),
@@ -64,7 +75,7 @@ def of_history(table):
     return [one for one in charts if one]
 
 
-def of_balance(balance, history):
+def of_balance(balance: Table, history: Table) -> list[Chart]:
     """Charts of balance.csv: where energy has gone since the first step, powers, forces on walls."""
     if not len(balance.get("time", [])):
         return []
@@ -93,10 +104,10 @@ def of_balance(balance, history):
     return [one for one in charts if one]
 
 
-def _energy_since(balance, history, powers):
+def _energy_since(balance: Table, history: Table, powers: Sequence[str]) -> Chart | None:
     """Energies less those after the first step, and what was taken and given since, which is the same but for the
     solver's tolerance (docs/output.md)."""
-    step, energies = history.get("step", []), ("kinetic_energy", "potential_energy")
+    step, energies = history.get("step", np.zeros(0)), ("kinetic_energy", "potential_energy")
     rows = min(len(step), len(balance["step"]))
     if rows < 2 or not np.array_equal(step[:rows], balance["step"][:rows]):
         return None
@@ -117,7 +128,7 @@ def _energy_since(balance, history, powers):
     )
 
 
-def of_rigid_bodies(table):
+def of_rigid_bodies(table: Table) -> list[Chart]:
     """Places and velocities."""
     if not len(table.get("time", [])):
         return []
@@ -134,19 +145,19 @@ def of_rigid_bodies(table):
     return [one for one in charts if one]
 
 
-def unit_of(column):
+def unit_of(column: str) -> str:
     return column_units.get(column) or next(
         (unit for start, unit in column_starts.items() if column.startswith(start)), ""
     )
 
 
-def of_probe(name, kind, table):
+def of_probe(name: str, kind: str | None, table: Table) -> list[Chart]:
     """Charts of what a probe has read, by its type in the case."""
     if not len(table.get("time", [])):
         return []
     if kind in ("line", "plane"):
         return _of_places(name, kind, table)
-    groups = {}
+    groups: dict[str, list[str]] = {}
     for column in table:
         if column not in ("time", "x", "y", "z"):
             groups.setdefault(unit_of(column), []).append(column)
@@ -159,7 +170,7 @@ def of_probe(name, kind, table):
     return [one for one in charts if one]
 
 
-def _of_places(name, kind, table):
+def _of_places(name: str, kind: str, table: Table) -> list[Chart]:
     """Profiles along a line at some times; of a plane nothing but how speeds are spread at these."""
     times = np.unique(table["time"])
     some = times[np.unique(np.linspace(0, len(times) - 1, 5).round().astype(int))]

@@ -2,17 +2,22 @@
 
 import base64
 import zlib
+from collections.abc import Callable, Iterable
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from . import fields
-from .particles import none, read_particles
+from .arrays import Array, Floats
+from .particles import Particles, none, read_particles
+from .run_files import RunFiles
 
 position_levels = 65535  # of an axis of the box around all frames
 colour_levels = 254  # of a field's range; 255 stands for no value
 
 
-def kept(ids, share):
+def kept(ids: Array, share: float) -> NDArray[np.bool_]:
     """Mask of a share of the particles, the same ones in all frames: chosen by their identifiers as if by chance."""
     mixed = ids.astype(np.uint64) * np.uint64(0x9E3779B97F4A7C15)
     mixed ^= mixed >> np.uint64(32)
@@ -20,14 +25,14 @@ def kept(ids, share):
     return (mixed >> np.uint64(40)).astype(float) / 2.0**24 < share
 
 
-def thinned(particles, share):
+def thinned(particles: Particles, share: float) -> Particles:
     """A share of them; all with a share of 1."""
     if share >= 1 or len(particles) == 0:
         return particles
     return particles.chosen(kept(particles.fields.get("id", np.arange(len(particles))), share))
 
 
-def packed(arrays):
+def packed(arrays: Iterable[Array]) -> str:
     """Bytes of arrays one after the other, compressed (zlib), as text."""
     return base64.b64encode(zlib.compress(b"".join(array.tobytes() for array in arrays), 6)).decode()
 
@@ -35,11 +40,12 @@ def packed(arrays):
 class ReportFrames:
     """Some frames of a RunFiles, at most `most_points` particles of each. progress: wraps what goes over the frames."""
 
-    def __init__(self, run, count, most_points, progress):
+    def __init__(self, run: RunFiles, count: int, most_points: int, progress: Callable[[Array], Iterable[int]]) -> None:
         self.run = run
         some = np.unique(np.linspace(0, len(run.fluid) - 1, min(count, len(run.fluid))).round().astype(int))
         self.most = 0  # particles in one of these frames
-        self.spread, self.fluid = {}, []
+        self.spread: dict[str, fields.Range] = {}
+        self.fluid: list[tuple[float, Particles]] = []
         for k in progress(some):
             particles = read_particles(run.fluid[k].path)
             self.most = max(self.most, len(particles))
@@ -55,11 +61,11 @@ class ReportFrames:
         ]
         self.ranges = {name: self.spread[name].bounds() for name in self.names}
         self._read_walls(some, most_points)
-        positions = [particles.positions for _, particles in self.fluid] + [self.walls[0].positions]
-        positions = np.concatenate([part for part in positions if len(part)] or [np.zeros((1, 3))])
+        parts = [particles.positions for _, particles in self.fluid] + [self.walls[0].positions]
+        positions = np.concatenate([part for part in parts if len(part)] or [np.zeros((1, 3))])
         self.low, self.high = positions.min(axis=0).astype(float), positions.max(axis=0).astype(float)
 
-    def _read_walls(self, numbers, most_points):
+    def _read_walls(self, numbers: Array, most_points: int) -> None:
         """Of the first frame, and of all where they move; thinned like the fluid."""
         files = [self.run.walls[min(k, len(self.run.walls) - 1)].path for k in numbers] if self.run.walls else []
         first = read_particles(files[0]) if files else none()
@@ -72,26 +78,27 @@ class ReportFrames:
             else [thinned(first, self.wall_share)]
         )
 
-    def _positions(self, particles):
+    def _positions(self, particles: Particles) -> Array:
         """Whole numbers between the corners of the box, axis after axis."""
         span = np.maximum(self.high - self.low, 1e-30)
         levels = (particles.positions - self.low) / span * position_levels
-        return np.clip(levels.round(), 0, position_levels).astype("<u2").T[: self.run.dimensions].copy()
+        numbers: Array = np.clip(levels.round(), 0, position_levels).astype("<u2")
+        return numbers.T[: self.run.dimensions].copy()
 
-    def _colours(self, particles, name):
+    def _colours(self, particles: Particles, name: str) -> NDArray[np.uint8]:
         low, high = (self._scaled(name, np.array(self.ranges[name]))).tolist()
         levels = (
             np.clip((self._scaled(name, fields.values(particles, name)) - low) / (high - low), 0, 1) * colour_levels
         )
         return np.where(np.isfinite(levels), levels, 255).round().astype(np.uint8)
 
-    def _scaled(self, name, values):
+    def _scaled(self, name: str, values: Floats) -> Floats:
         if not fields.logarithmic(name, self.ranges[name]):
             return values
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.log10(values)
 
-    def data(self):
+    def data(self) -> dict[str, Any]:
         """What the page needs, for JSON."""
         unit, metre = fields.scaled_unit(float((self.high - self.low).max()))
         return {
@@ -120,7 +127,7 @@ class ReportFrames:
             "walls": [{"count": len(p), "data": packed([self._positions(p)])} for p in self.walls],
         }
 
-    def remark(self):
+    def remark(self) -> str:
         """What is left out, in words."""
         words = [f"{len(self.fluid)} of {len(self.run.fluid)} frames"]
         if self.share < 1:

@@ -1,17 +1,22 @@
 """The work of `treacle report`: parts of the page from the files of a run."""
 
 import sys
+from argparse import Namespace
+from collections.abc import Iterable
 from pathlib import Path
+from typing import Any
 
 from tqdm import tqdm
 
 from . import report_curves, report_page, report_summary
+from .arrays import Array
 from .continued_run import run_of
 from .errors import PictureError
 from .report_frames import ReportFrames
+from .run_files import RunFiles
 
 
-def charts(run):
+def charts(run: RunFiles) -> list[dict[str, Any]]:
     """All curves of a RunFiles."""
     found = report_curves.of_history(run.history) + report_curves.of_balance(run.balance, run.history)
     found += report_curves.of_rigid_bodies(run.rigid_bodies)
@@ -21,14 +26,14 @@ def charts(run):
     return found
 
 
-def make(options):
+def make(options: Namespace) -> None:
     """Makes the page. Raises PictureError, OSError."""
     run = run_of(options.directories)
     path = Path(options.output or run.path / "report.html")
     if not path.parent.is_dir():
         raise PictureError(f"{path}: no such directory: {path.parent}")
 
-    def progress(work):
+    def progress(work: Array) -> Iterable[int]:
         return tqdm(work, desc="reading frames", unit="frame", file=sys.stderr, disable=options.quiet)
 
     frames = ReportFrames(run, options.frames, options.max_points, progress)

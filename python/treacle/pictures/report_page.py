@@ -2,35 +2,36 @@
 
 import html
 import json
+from collections.abc import Iterable, Mapping, Sequence
 from importlib import resources
 from pathlib import Path
 
 import plotly
 
 
-def text(value):
+def text(value: object) -> str:
     return html.escape(str(value))
 
 
-def json_text(value):
+def json_text(value: object) -> str:
     """JSON that may stand in a script element."""
     return json.dumps(value, ensure_ascii=False, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
 
 
-def library():
+def library() -> str:
     """plotly.js, MIT License, as the package plotly ships it."""
     return (Path(plotly.__file__).parent / "package_data" / "plotly.min.js").read_text(encoding="utf-8")
 
 
-def part(name):
+def part(name: str) -> str:
     return resources.files(__package__).joinpath(name).read_text(encoding="utf-8")
 
 
-def table(rows):
+def table(rows: Iterable[tuple[str, str]]) -> str:
     return "".join(f"<tr><th>{text(name)}</th><td>{text(value)}</td></tr>" for name, value in rows)
 
 
-def warnings(lines, most=40):
+def warnings(lines: Sequence[str], most: int = 40) -> str:
     """A list of the first ones, and how many more there are; nothing without any."""
     if not lines:
         return '<p class="quiet">None.</p>'
@@ -39,7 +40,17 @@ def warnings(lines, most=40):
     return f"<ul>{items}</ul>{more}"
 
 
-def page(title, subtitle, status, message, rows, lines, remark, case, data):
+def page(
+    title: str,
+    subtitle: str,
+    status: str,
+    message: str,
+    rows: Iterable[tuple[str, str]],
+    lines: Sequence[str],
+    remark: str,
+    case: str,
+    data: Mapping[str, object],
+) -> str:
     """The whole page. status: done, failed or not ended; rows: names and values; lines: warnings; case: its text; data:
     for the scripts."""
     words = {

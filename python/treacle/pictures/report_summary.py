@@ -1,16 +1,20 @@
 """The table of a report, and what the log warns of."""
 
 import re
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from .run_files import RunFiles
 
 
-def number(value, digits=4):
+def number(value: float, digits: int = 4) -> str:
     """With few digits and groups of thousands."""
     if isinstance(value, int) or (isinstance(value, float) and value.is_integer() and abs(value) < 1e12):
         return f"{int(value):,}"
     return f"{value:.{digits}g}"
 
 
-def duration(seconds):
+def duration(seconds: float) -> str:
     if seconds < 100:
         return f"{seconds:.3g} s"
     minutes, rest = divmod(round(seconds), 60)
@@ -18,14 +22,14 @@ def duration(seconds):
     return f"{hours} h {minutes} min" if hours else f"{minutes} min {rest} s"
 
 
-def status(run):
+def status(run: RunFiles) -> tuple[str, str]:
     """A word and what it means: done, failed or not ended."""
     if run.summary is None:
         return "not ended", "The run goes on, or was killed: there is no summary yet."
     return run.summary["status"], run.summary.get("message", "")
 
 
-def rows(run):
+def rows(run: RunFiles) -> list[tuple[str, str]]:
     """Pairs of names and values of the table, from the summary; of a run that has not ended from case and history."""
     case, summary = run.case, run.summary or {}
     method = case["method"]["name"].upper() + (
@@ -33,8 +37,8 @@ def rows(run):
     )
     found = [("Method", f"{method}, {run.dimensions}D"), ("Spacing", f"{run.spacing * 1e3:.4g} mm")]
 
-    def add(name, key, form=number):
-        value = summary
+    def add(name: str, key: str, form: Callable[[Any], str] = number) -> None:
+        value: Any = summary
         for part in key.split("."):
             value = value.get(part) if isinstance(value, dict) else None
         if value is not None:
@@ -81,14 +85,14 @@ def rows(run):
     return found
 
 
-def _many(summary, *words):
+def _many(summary: Mapping[str, Any], *words: str) -> list[str]:
     """How many threads and processes; one process is not worth a word."""
     counts = [summary.get("threads", 1), summary.get("processes", 1)]
     found = [f"{counts[0]} {words[0]}{'s' if counts[0] > 1 else ''}"]
     return found + ([f"{counts[1]} {words[1]}es"] if counts[1] > 1 else [])
 
 
-def _of_history(run):
+def _of_history(run: RunFiles) -> list[tuple[str, str]]:
     history = run.history
     if not len(history.get("time", [])):
         return []
@@ -98,13 +102,13 @@ def _of_history(run):
     ]
 
 
-def begun(run):
+def begun(run: RunFiles) -> str:
     """Version, backend and machine as the log begins with, and when."""
     first = re.match(r"(\S+ \S+?)(?:\.\d+)? info: (.*)", run.log[0]) if run.log else None
     return f"{first[2]}; begun {first[1]}" if first else ""
 
 
-def phases(run):
+def phases(run: RunFiles) -> list[tuple[str, float]]:
     """Seconds by phase of a step, the longest first."""
     seconds = (run.summary or {}).get("seconds_per_phase", {})
     return sorted(((name, value) for name, value in seconds.items() if value > 0), key=lambda pair: -pair[1])

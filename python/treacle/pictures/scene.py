@@ -1,13 +1,17 @@
 """Pictures of frames, drawn by VTK without a display."""
 
 import ctypes.util
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import pyvista
 from vtkmodules.vtkCommonCore import vtkLogger
 
 from . import fields, marks
+from .arrays import Array, Floats, Place
+from .camera import Extent, View
 from .errors import PictureError
 
 wall_colour = "#b9bec4"
@@ -20,15 +24,15 @@ class Colours:
     """What they stand for, the same in all pictures of a film."""
 
     field: str | None
-    bounds: tuple = (0.0, 1.0)
+    bounds: tuple[float, float] = (0.0, 1.0)
     map: str = "viridis"
 
     @property
-    def logarithmic(self):
+    def logarithmic(self) -> bool:
         return self.field is not None and fields.logarithmic(self.field, self.bounds)
 
 
-def require_drawing():
+def require_drawing() -> None:
     """Raises PictureError where no library of OpenGL can draw without a display: VTK would crash."""
     window = pyvista.Plotter(off_screen=True, window_size=(16, 16))
     if type(window.render_window).__name__ == "vtkOSOpenGLRenderWindow" and not ctypes.util.find_library("OSMesa"):
@@ -42,7 +46,7 @@ def require_drawing():
 class Scene:
     """A place for one picture after another. flat: of two dimensions."""
 
-    def __init__(self, size, colours, spacing, flat):
+    def __init__(self, size: tuple[int, int], colours: Colours, spacing: float, flat: bool) -> None:
         vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)  # it tells which displays it has not found
         require_drawing()
         self.size, self.colours, self.spacing, self.flat = size, colours, spacing, flat
@@ -54,12 +58,12 @@ class Scene:
         self.stamp = marks.text("", (self.letters, size[1] - self.letters), self.letters, along="top")
         self.plotter.add_actor(self.stamp, reset_camera=False, render=False)
         self.fluid = self.walls = None
-        self.marks = []
+        self.marks: list[Any] = []  # actors of VTK
 
-    def close(self):
+    def close(self) -> None:
         self.plotter.close()
 
-    def aim(self, view, extent):
+    def aim(self, view: View, extent: Extent) -> None:
         """Looks along a View at an Extent, which fills what title, colours and axes leave of the picture."""
         width, height = self.size
         bar = 0.16 * width if self.colours.field else 0.03 * width
@@ -79,7 +83,7 @@ class Scene:
         self.view, self.metre = view, metre
         self._mark(extent, lambda x, y: (width / 2 + metre * (x - middle[0]), height / 2 + metre * (y - middle[1])))
 
-    def _mark(self, extent, place):
+    def _mark(self, extent: Extent, place: Callable[[float, float], Place]) -> None:
         for actor in self.marks:
             self.plotter.remove_actor(actor, reset_camera=False, render=False)
         (width, height), edge, small = self.size, self.letters, round(0.8 * self.letters)
@@ -94,7 +98,7 @@ class Scene:
         for actor in self.marks:
             self.plotter.add_actor(actor, reset_camera=False, render=False)
 
-    def draw_walls(self, positions, faint):
+    def draw_walls(self, positions: Array, faint: bool) -> None:
         """Grey balls; faint: translucent ones."""
         self.plotter.remove_actor(self.walls, reset_camera=False, render=False)
         self.walls = None
@@ -102,14 +106,14 @@ class Scene:
             look = {"opacity": points_of_faint_walls, "lighting": False} if faint else {"lighting": not self.flat}
             self.walls = self._points(positions, color=wall_colour, **look)
 
-    def draw_particles(self, positions, values):
+    def draw_particles(self, positions: Array, values: Floats | None) -> None:
         """Balls, in two dimensions discs, of one spacing. values: of the colours' field, None without one."""
         self.plotter.remove_actor(self.fluid, reset_camera=False, render=False)
         self.fluid = None
         if len(positions):
             self.fluid = self._points(positions, lighting=not self.flat, **self._colouring(values))
 
-    def draw_surface(self, data, values):
+    def draw_surface(self, data: Any, values: Floats | None) -> None:
         """Shaded triangles, a surface as `treacle surface` makes it; data: as VTK reads it."""
         self.plotter.remove_actor(self.fluid, reset_camera=False, render=False)
         self.fluid = None
@@ -120,13 +124,13 @@ class Scene:
             look = {**shine, **self._colouring(values)}
             self.fluid = self.plotter.add_mesh(mesh, reset_camera=False, show_scalar_bar=False, render=False, **look)
 
-    def picture(self, words):
+    def picture(self, words: str) -> Array:
         """Pixels, with words at the upper left."""
         self.stamp.SetInput(words)
         self.plotter.render()
         return np.ascontiguousarray(self.plotter.screenshot(return_img=True))
 
-    def _points(self, positions, **look):
+    def _points(self, positions: Array, **look: Any) -> Any:
         return self.plotter.add_mesh(
             pyvista.PolyData(np.asarray(positions, np.float32)),
             style="points",
@@ -139,7 +143,7 @@ class Scene:
             **look,
         )
 
-    def _colouring(self, values):
+    def _colouring(self, values: Floats | None) -> dict[str, Any]:
         if values is None:
             return {"color": fluid_colour}
         return {

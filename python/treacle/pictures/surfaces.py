@@ -1,12 +1,14 @@
 """Surfaces of the fluid, made by the program where a run has none yet."""
 
 import subprocess
+from collections.abc import Callable, Iterable, Sequence
 
 from .._command import program
 from .errors import PictureError
+from .run_files import RunFiles
 
 
-def require_surfaces(run, frames, progress):
+def require_surfaces(run: RunFiles, frames: Sequence[int], progress: Callable[[list[int]], Iterable[int]]) -> None:
     """Makes the surfaces of frames of a RunFiles that have none. progress: wraps what goes over the frames. Raises
     PictureError with what the program says."""
     missing = [frame for frame in frames if not run.surface_file(frame).is_file()]

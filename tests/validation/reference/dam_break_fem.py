@@ -102,7 +102,10 @@ def turns(points):
     return angle
 
 
-def between(points, k, turned, sharp=np.radians(40)):
+sharp = np.radians(40)  # turn of a kink
+
+
+def between(points, k, turned):
     """The point half-way along edge k, on the polynomial through up to four neighbours that no kink divides."""
     first = k - 1 if k > 0 and turned[k] < sharp else k
     last = k + 2 if k + 2 < len(points) and turned[k + 1] < sharp else k + 1
@@ -198,7 +201,7 @@ class Fluid:
             l0 = 1 - l1 - l2
             weights = [l0 * (2 * l0 - 1), l1 * (2 * l1 - 1), l2 * (2 * l2 - 1), 4 * l0 * l1, 4 * l1 * l2, 4 * l0 * l2]
             node = [*corners[:, best], *middles[:, best]]
-            result[start:start + 1000] = sum(w[:, None] * values[i] for w, i in zip(weights, node))
+            result[start:start + 1000] = sum(w[:, None] * values[i] for w, i in zip(weights, node, strict=True))
         return result
 
     def moved(self, displacement):
@@ -313,8 +316,8 @@ def solve(mesh, step, end, contact=1):
     sizes = Sizes(mesh, contact)
     fluid = Fluid(resample(np.array([[0, side], [side, side], [side, 0]]), sizes), sizes)
     steps, meshes, began = round(end / step), 1, time.time()
-    rows, elements, unknowns, residual = [], [], [], 0
-    dissipated, dissipation = 0, 0
+    rows, elements, unknowns, residual = [], [], [], 0.0
+    dissipated, dissipation = 0.0, 0.0
     for i in range(1, steps + 1):
         if fluid.worn(fluid.predicted(step)[0]):
             fluid = Fluid(resample(fluid.outline(), sizes), sizes, fluid)
@@ -322,7 +325,7 @@ def solve(mesh, step, end, contact=1):
         fluid.advance(step, first=i == 1)
         elements.append(fluid.t.shape[1])
         unknowns.append(fluid.unknowns)
-        residual = max(residual, fluid.residual)
+        residual = max(residual, float(fluid.residual))
         dissipated += step * (dissipation + fluid.dissipation) / 2
         dissipation = fluid.dissipation
         if abs(i * step / 0.01 - round(i * step / 0.01)) < 1e-6:

@@ -54,11 +54,11 @@ def main():
     parser.add_argument("--cells", type=int, default=160, help="of the box at the start; half as many are run to compare")
     options = parser.parse_args()
     lines = []
-    for name, (*box, times) in currents.items():
-        coarse, fine = (fronts(*box, times, cells) for cells in (options.cells // 2, options.cells))
+    for name, (n, radius, height, moment, times) in currents.items():
+        coarse, fine = (fronts(n, radius, height, moment, times, cells) for cells in (options.cells // 2, options.cells))
         change = max(abs(np.array(coarse) / fine - 1))
         print(f"{name}: {options.cells} cells, against half as many {100 * change:.3f} %")
-        rows = ", ".join(f"[{t:g}, {front:.6g}]" for t, front in zip(times, fine))
+        rows = ", ".join(f"[{t:g}, {front:.6g}]" for t, front in zip(times, fine, strict=True))
         lines.append(f'"{name}": {{"cells": {options.cells}, "change": {change:.1e}, "fronts": [{rows}]}}')
     text = '{"units": "s, m",\n' + ",\n".join(lines) + "\n}\n"
     json.loads(text)

@@ -20,7 +20,10 @@ def measurement(ratio, length, width):
         of = [abs(heights - row) < 1e-8 for row in rows]
         height = np.array([frame.position[k, -1].mean() for k in of])
         speed = np.array([frame.velocity[k, -1].mean() for k in of])
-        across = lambda values: values[2:] - values[:-2]
+
+        def across(values):
+            return values[2:] - values[:-2]
+
         rate, stretch = across(speed) / across(height), across(height) / across(rows)
         above = rows[1:-1] + length  # the tip
         middle = (above > width) & (above < length - 1.5 * width)

@@ -14,9 +14,9 @@ def measurement(viscosity):
         forces = np.array([np.mean(run.balance[f"plate {k}_force_x"][late]) for k in range(6)])
         stress = np.cumsum(forces)[:5] / length  # the fluid drags a plate forward from above and holds it from below
         found, exact = stress / rates, viscosity(rates)
-        errors = {f"viscosity at {rate:g}/s": abs(error) for rate, error in zip(rates, found / exact - 1)}
+        errors = {f"viscosity at {rate:g}/s": abs(error) for rate, error in zip(rates, found / exact - 1, strict=True)}
         line = np.geomspace(0.1, 100, 61)
-        return Outcome(errors, {f"at {rate:g}/s [Pa s]": mu for rate, mu in zip(rates, found)},
+        return Outcome(errors, {f"at {rate:g}/s [Pa s]": mu for rate, mu in zip(rates, found, strict=True)},
                        {"measured": (rates, found)}, {"exact": (line, viscosity(line))})
 
     return measure

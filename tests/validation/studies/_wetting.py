@@ -2,8 +2,8 @@
 (docs/surface-tension.md)."""
 
 import numpy as np
-from study import Level, Outcome, Study
 from studies._tension import spacing_of
+from study import Level, Outcome, Study
 
 
 def height_of_disc(angle):
@@ -41,4 +41,5 @@ def wetting(degrees, dimensions=2):
     name = "wetting-drop-3d" if in_space else "wetting-drop"
     return Study(name=f"{name}-{degrees}", title=f"Drop on a wall{' in three dimensions' if in_space else ''}, {degrees} degrees",
                  case=f"{name}.toml", settings=(f"wall.contact_angle={degrees}",), levels=[Level(1), Level(2)],
-                 bars={"contact angle in degrees": 9 if in_space and degrees < 90 else 5}, refined=False, measure=measure, x_label="t [s]", y_label="angle [degrees]")
+                 bars={"contact angle in degrees": 9 if in_space and degrees < 90 else 5}, refined=False, measure=measure,
+                 x_label="t [s]", y_label="angle [degrees]")

@@ -1,6 +1,6 @@
 import numpy as np
-from study import Level, Study
 from studies._heap import measurement
+from study import Level, Study
 
 radius = 0.1888  # as bingham-heap, round: 0.1880 to 0.1896 m by how the fluid spreads in the end
 

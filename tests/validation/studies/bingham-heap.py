@@ -1,5 +1,5 @@
-from study import Level, Study
 from studies._heap import measurement
+from study import Level, Study
 
 width = 0.1921  # of half the heap by the stress on its floor and, to first order in height over width, its normal stresses [m]
 

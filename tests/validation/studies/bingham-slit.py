@@ -1,8 +1,8 @@
 import re
 
 import numpy as np
-from study import Level, Study
 from studies._slit import h, measurement, wall_stress
+from study import Level, Study
 
 
 def profile(run, place):

@@ -1,5 +1,5 @@
-from study import Level, Study
 from studies._rates import measurement, rates
+from study import Level, Study
 
 study = Study(
     name="couette-cross",

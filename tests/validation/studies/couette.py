@@ -1,6 +1,6 @@
 import numpy as np
-from study import Level, Outcome, Study
 from studies._channels import H, couette, profiles
+from study import Level, Outcome, Study
 
 U, mu, length = 0.2, 1.0, 0.02  # plate [m/s], [Pa s], plates [m]
 

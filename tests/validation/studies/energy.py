@@ -21,7 +21,10 @@ def measure(run):
     inertial = np.cumsum(dt * b["inertial_loss"])[:-1] / released
     errors = {"closing": abs(missing).max(), "elastic part": abs(elastic).max(), "inertial part": inertial.max(),
               "beyond the two parts": abs(missing - elastic + inertial).max()}
-    share = lambda column: (dt * b[column]).sum() / released
+
+    def share(column):
+        return (dt * b[column]).sum() / released
+
     values = {"shear dissipation / released": share("shear_dissipation"), "bulk dissipation / released": share("bulk_dissipation")}
     return Outcome(errors, values, {"missing": (h["time"][:-1], missing)}, {"exact": (h["time"], np.zeros_like(dt))})
 

@@ -1,5 +1,5 @@
-from study import Level, Study
 from studies._similarity import measurement
+from study import Level, Study
 
 study = Study(
     name="gravity-current",

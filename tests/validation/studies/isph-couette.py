@@ -1,6 +1,6 @@
 import numpy as np
-from study import Level, Outcome, Study
 from studies._channels import H, couette, profiles
+from study import Level, Outcome, Study
 
 U = 0.2  # of the plate [m/s]
 

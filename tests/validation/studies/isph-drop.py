@@ -1,5 +1,5 @@
-from study import Level, Study
 from studies._drop import measure
+from study import Level, Study
 
 study = Study(
     name="isph-drop",

@@ -8,7 +8,7 @@ def measure(run):
     """Pressures layer by layer, means over the last quarter of the run; the topmost layer, where p = 0, is left out. drift: the
     farthest that the centre of mass goes; pressure at one time: of single particles, which scatter."""
     start = run.frame(0)
-    layers = int(round(np.sqrt(len(start.id))))
+    layers = round(np.sqrt(len(start.id)))
     total, count, scatter, drift = np.zeros(layers), np.zeros(layers), [], 0
     for frame in run.frames():
         drift = max(drift, np.linalg.norm((frame.position - start.position).mean(axis=0)))

@@ -1,6 +1,6 @@
 import numpy as np
-from study import Level, Outcome, Study
 from studies._channels import H, nu, poiseuille, profiles
+from study import Level, Outcome, Study
 
 g = 2.0  # [m/s2]
 U = g * H**2 / (8 * nu)  # steady speed at the surface [m/s]

@@ -1,6 +1,6 @@
 import numpy as np
-from study import Level, Outcome, Study
 from studies._vortices import rms
+from study import Level, Outcome, Study
 
 k, nu, rho = 2 * np.pi, 1e-2, 1e3  # wave number [1/m], viscosity [m2/s], [kg/m3]; U = 1 m/s, in a square of 1 m
 

@@ -1,6 +1,6 @@
 import numpy as np
-from study import Level, Outcome, Study
 from studies._channels import H, nu, poiseuille, profiles
+from study import Level, Outcome, Study
 
 g, length = 2.0, 0.02  # acceleration [m/s2], plates [m]
 U = g * H**2 / (8 * nu)  # steady speed in the middle [m/s]

@@ -1,5 +1,5 @@
-from study import Level, Study
 from studies._slit import power_law
+from study import Level, Study
 
 study = Study(
     name="power-law-slit",

@@ -29,7 +29,7 @@ def speed_of_interface(rate):
 
     none = np.zeros(4)
     walls = [np.append(row, none) for row in derivatives(0, depth)[:2]] + [np.append(none, row) for row in derivatives(1, -depth)[:2]]
-    meeting = [np.append(upper, -lower) for upper, lower in zip(derivatives(0, 0)[:2], derivatives(1, 0)[:2])]
+    meeting = [np.append(upper, -lower) for upper, lower in zip(derivatives(0, 0)[:2], derivatives(1, 0)[:2], strict=True)]
     stresses = [np.append(stress(0), -stress(1)) for stress in (shear, normal)]
     load = np.zeros(8)
     load[7] = -(density[0] - density[1]) * gravity

@@ -1,5 +1,5 @@
-from study import Level, Study
 from studies._rotation import measure
+from study import Level, Study
 
 study = Study(
     name="rotating-drop-3d",

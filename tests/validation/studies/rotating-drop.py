@@ -1,6 +1,6 @@
 import numpy as np
-from study import Level, Study
 from studies import _rotation
+from study import Level, Study
 
 
 def measure(run):

@@ -1,5 +1,5 @@
-from study import Level, Study
 from studies._cylinders import measure
+from study import Level, Study
 
 study = Study(
     name="taylor-couette",

@@ -1,5 +1,5 @@
-from study import Level, Study
 from studies._extension import measurement
+from study import Level, Study
 
 study = Study(
     name="trouton-planar",
