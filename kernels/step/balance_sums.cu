@@ -1,6 +1,6 @@
 #include "treacle/step/readings/balance_sums.hpp"
 
-#include "core/reduce_many.cuh"
+#include "core/reduce.cuh"
 
 namespace treacle {
 namespace {
@@ -21,25 +21,8 @@ __global__ void __launch_bounds__(256) sumLoadsKernel(const __grid_constant__ Lo
 
 }  // namespace
 
-template <int D>
-std::array<double, PowerTerms<D>::count> sumPowers(Context<Cuda>& context, const PowerTerms<D>& terms,
-                                                   std::size_t active) {
-  constexpr int count = PowerTerms<D>::count;
-  using Sums = std::array<double, count>;
-  auto* result = static_cast<double*>(context.scratch(sizeof(Sums)));
-  reduceMany<count>(
-      context, active,
-      [terms] __device__(std::size_t i, double* sums) {
-        if (i < terms.ownFluid || i >= terms.fluidCount) terms.add(i, sums);
-      },
-      [result] __device__(const double* sums, int lane) {
-        if (lane < count) result[lane] = sums[lane];
-      });
-  return valueOnHost(context, reinterpret_cast<const Sums*>(result));
-}
-
-template <int D>
-std::vector<LoadSums> sumLoads(Context<Cuda>& context, const LoadTerms<D>& terms, std::size_t bodies) {
+template <int D, class Backend>
+std::vector<LoadSums> sumLoads(Context<Backend>& context, const LoadTerms<D>& terms, std::size_t bodies) {
   std::vector<LoadSums> loads(bodies);
   const std::size_t bytes = bodies * sizeof(LoadSums);
   auto* result = static_cast<double*>(context.scratch(bytes));
@@ -49,12 +32,7 @@ std::vector<LoadSums> sumLoads(Context<Cuda>& context, const LoadTerms<D>& terms
   return loads;
 }
 
-#define TREACLE_INSTANTIATE(D)                                                                         \
-  template std::array<double, PowerTerms<D>::count> sumPowers<D>(Context<Cuda>&, const PowerTerms<D>&, \
-                                                                 std::size_t);                         \
-  template std::vector<LoadSums> sumLoads<D>(Context<Cuda>&, const LoadTerms<D>&, std::size_t);
-TREACLE_INSTANTIATE(2)
-TREACLE_INSTANTIATE(3)
-#undef TREACLE_INSTANTIATE
+template std::vector<LoadSums> sumLoads(Context<Cuda>&, const LoadTerms<2>&, std::size_t);
+template std::vector<LoadSums> sumLoads(Context<Cuda>&, const LoadTerms<3>&, std::size_t);
 
 }  // namespace treacle

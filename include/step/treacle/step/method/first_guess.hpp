@@ -48,20 +48,14 @@ struct MotionDerivatives {
 };
 
 /// First guess of a solve per fluid particle [m/s], from the velocities u of the last step.
-template <int D>
-void extrapolate(Context<Cpu>&, const Extrapolation<D>&, std::span<const Vec<D>> u, FlowMemory<D>,
-                 std::span<Vec<D>> guess);
-template <int D>
-void extrapolate(Context<Cuda>&, const Extrapolation<D>&, std::span<const Vec<D>> u, FlowMemory<D>,
+template <int D, class Backend>
+void extrapolate(Context<Backend>&, const Extrapolation<D>&, std::span<const Vec<D>> u, FlowMemory<D>,
                  std::span<Vec<D>> guess);
 
 /// Brings the memory of the fluid particles up to date after a step of dt that followed one of lastStep [s], with
 /// their velocities before and after it.
-template <int D>
-void updateFlowMemory(Context<Cpu>&, double dt, double lastStep, std::span<const Vec<D>> before,
-                      std::span<const Vec<D>> after, FlowMemory<D>);
-template <int D>
-void updateFlowMemory(Context<Cuda>&, double dt, double lastStep, std::span<const Vec<D>> before,
+template <int D, class Backend>
+void updateFlowMemory(Context<Backend>&, double dt, double lastStep, std::span<const Vec<D>> before,
                       std::span<const Vec<D>> after, FlowMemory<D>);
 
 }  // namespace treacle

@@ -90,10 +90,8 @@ struct HeatResult {
 };
 
 /// terms.set(i) for i < count.
-template <class Terms>
-void setEach(Context<Cpu>&, const Terms& terms, std::size_t count);
-template <class Terms>
-void setEach(Context<Cuda>&, const Terms& terms, std::size_t count);
+template <class Terms, class Backend>
+void setEach(Context<Backend>&, const Terms& terms, std::size_t count);
 
 /// What a particle adds to the heat balance of a step, per volume of a particle.
 struct HeatSums {
@@ -115,7 +113,7 @@ struct HeatSums {
 };
 
 /// Over own particles of all processes, in an order that depends on their number alone.
-std::array<double, HeatSums::count> sumHeat(Context<Cpu>&, const HeatSums& terms);
-std::array<double, HeatSums::count> sumHeat(Context<Cuda>&, const HeatSums& terms);
+template <class Backend>
+std::array<double, HeatSums::count> sumHeat(Context<Backend>&, const HeatSums& terms);
 
 }  // namespace treacle

@@ -58,10 +58,8 @@ struct PowerTerms {
 };
 
 /// Sums over active particles [0, active), in an order that depends on their number alone; of all processes.
-template <int D>
-std::array<double, PowerTerms<D>::count> sumPowers(Context<Cpu>&, const PowerTerms<D>&, std::size_t active);
-template <int D>
-std::array<double, PowerTerms<D>::count> sumPowers(Context<Cuda>&, const PowerTerms<D>&, std::size_t active);
+template <int D, class Backend>
+std::array<double, PowerTerms<D>::count> sumPowers(Context<Backend>&, const PowerTerms<D>&, std::size_t active);
 
 /// What a body bears, per volume of a particle.
 struct LoadSums {
@@ -89,9 +87,7 @@ struct LoadTerms {
 };
 
 /// Per body, in an order that depends on the number of wall particles alone. Errors: none, body < bodies.
-template <int D>
-std::vector<LoadSums> sumLoads(Context<Cpu>&, const LoadTerms<D>&, std::size_t bodies);
-template <int D>
-std::vector<LoadSums> sumLoads(Context<Cuda>&, const LoadTerms<D>&, std::size_t bodies);
+template <int D, class Backend>
+std::vector<LoadSums> sumLoads(Context<Backend>&, const LoadTerms<D>&, std::size_t bodies);
 
 }  // namespace treacle

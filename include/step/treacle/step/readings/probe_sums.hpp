@@ -77,9 +77,7 @@ struct PartTerms {
 };
 
 /// Over all processes, in an order that depends on the number of particles alone.
-template <int D>
-PartSums sumPart(Context<Cpu>&, const PartTerms<D>&);
-template <int D>
-PartSums sumPart(Context<Cuda>&, const PartTerms<D>&);
+template <int D, class Backend>
+PartSums sumPart(Context<Backend>&, const PartTerms<D>&);
 
 }  // namespace treacle

@@ -38,9 +38,7 @@ struct StepChangeTerms {
 };
 
 /// The order of the sums depends on the number of particles alone.
-template <int D>
-StepChange stepChange(Context<Cpu>&, const StepChangeTerms<D>&);
-template <int D>
-StepChange stepChange(Context<Cuda>&, const StepChangeTerms<D>&);
+template <int D, class Backend>
+StepChange stepChange(Context<Backend>&, const StepChangeTerms<D>&);
 
 }  // namespace treacle

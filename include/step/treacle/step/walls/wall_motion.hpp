@@ -18,23 +18,16 @@ struct MovingWalls {
 };
 
 /// The velocities of the rigid motions where the particles are, per wall particle [m/s].
-template <int D>
-void setWallVelocities(Context<Cpu>&, const MovingWalls<D>& walls, std::span<Vec<D>> velocity);
-template <int D>
-void setWallVelocities(Context<Cuda>&, const MovingWalls<D>& walls, std::span<Vec<D>> velocity);
+template <int D, class Backend>
+void setWallVelocities(Context<Backend>&, const MovingWalls<D>& walls, std::span<Vec<D>> velocity);
 
 /// Their ways in the step over dt, likewise.
-template <int D>
-void setWallChords(Context<Cpu>&, const MovingWalls<D>& walls, std::span<Vec<D>> chord);
-template <int D>
-void setWallChords(Context<Cuda>&, const MovingWalls<D>& walls, std::span<Vec<D>> chord);
+template <int D, class Backend>
+void setWallChords(Context<Backend>&, const MovingWalls<D>& walls, std::span<Vec<D>> chord);
 
 /// Moves the wall particles of one body by a vector [m]. `position`: per wall particle.
-template <int D>
-void shiftBody(Context<Cpu>&, const CellGrid<D>& grid, std::span<const std::uint8_t> body, std::uint8_t which,
-               const Vec<D>& by, std::span<Vec<D>> position);
-template <int D>
-void shiftBody(Context<Cuda>&, const CellGrid<D>& grid, std::span<const std::uint8_t> body, std::uint8_t which,
+template <int D, class Backend>
+void shiftBody(Context<Backend>&, const CellGrid<D>& grid, std::span<const std::uint8_t> body, std::uint8_t which,
                const Vec<D>& by, std::span<Vec<D>> position);
 
 }  // namespace treacle

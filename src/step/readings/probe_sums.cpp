@@ -1,9 +1,6 @@
-#include "treacle/core/processes.hpp"
 #include "treacle/step/readings/probe_sums.hpp"
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <limits>
 
 namespace treacle {
@@ -25,17 +22,7 @@ PartWeight<D> PartWeight<D>::of(const Probe& probe, const Case& c) {
   return w;
 }
 
-template <int D>
-PartSums sumPart(Context<Cpu>& context, const PartTerms<D>& terms) {
-  std::array<double, PartSums::count> sums{};
-  for (std::size_t i = 0; i < terms.position.size(); ++i) terms.add(i, sums.data());
-  sumOverProcesses(context, std::span<double>(sums));
-  return std::bit_cast<PartSums>(sums);
-}
-
 template struct PartWeight<2>;
 template struct PartWeight<3>;
-template PartSums sumPart(Context<Cpu>&, const PartTerms<2>&);
-template PartSums sumPart(Context<Cpu>&, const PartTerms<3>&);
 
 }  // namespace treacle

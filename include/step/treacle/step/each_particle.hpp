@@ -1,0 +1,113 @@
+#pragma once
+
+#include "treacle/core/macros.hpp"
+#include "treacle/core/processes.hpp"
+#include "treacle/step/method/first_guess.hpp"
+#include "treacle/step/method/heat_terms.hpp"
+#include "treacle/step/readings/balance_sums.hpp"
+#include "treacle/step/readings/probe_sums.hpp"
+#include "treacle/step/readings/step_change.hpp"
+#include "treacle/step/walls/wall_motion.hpp"
+
+#include <bit>
+#include <functional>
+
+namespace treacle {
+
+// What a step does with each particle by itself, and sums over them, for the sources of both backends, which
+// instantiate it. A thread of a device has one particle; there are no atomics but those of the reductions.
+
+template <int D, class Backend>
+void setWallVelocities(Context<Backend>& context, const MovingWalls<D>& walls, std::span<Vec<D>> velocity) {
+  forEach(context, velocity.size(), [=] TREACLE_HD(std::size_t k) {
+    velocity[k] = walls.motion[walls.body[k]].velocityAt(walls.position[k]);
+  });
+}
+
+template <int D, class Backend>
+void setWallChords(Context<Backend>& context, const MovingWalls<D>& walls, std::span<Vec<D>> chord) {
+  forEach(context, chord.size(),
+          [=] TREACLE_HD(std::size_t k) { chord[k] = walls.motion[walls.body[k]].chordAt(walls.position[k]); });
+}
+
+template <int D, class Backend>
+void shiftBody(Context<Backend>& context, const CellGrid<D>& grid, std::span<const std::uint8_t> body,
+               std::uint8_t which, const Vec<D>& by, std::span<Vec<D>> position) {
+  forEach(context, position.size(), [=] TREACLE_HD(std::size_t k) {
+    if (body[k] != which) return;
+    Vec<D> moved = position[k] + by;
+    grid.wrap(moved);
+    position[k] = moved;
+  });
+}
+
+template <int D, class Backend>
+void extrapolate(Context<Backend>& context, const Extrapolation<D>& next, std::span<const Vec<D>> u,
+                 FlowMemory<D> memory, std::span<Vec<D>> guess) {
+  forEach(context, guess.size(),
+          [=] TREACLE_HD(std::size_t i) { guess[i] = next(u[i], memory.acceleration[i], memory.jerk[i]); });
+}
+
+template <int D, class Backend>
+void updateFlowMemory(Context<Backend>& context, double dt, double lastStep, std::span<const Vec<D>> before,
+                      std::span<const Vec<D>> after, FlowMemory<D> memory) {
+  forEach(context, after.size(), [=] TREACLE_HD(std::size_t i) {
+    const auto r = MotionDerivatives<D>::make(dt, lastStep, before[i], after[i], memory.acceleration[i]);
+    memory.acceleration[i] = r.acceleration;
+    memory.jerk[i] = r.jerk;
+  });
+}
+
+template <class Terms, class Backend>
+void setEach(Context<Backend>& context, const Terms& terms, std::size_t count) {
+  forEach(context, count, [=] TREACLE_HD(std::size_t i) { terms.set(i); });
+}
+
+template <class Backend>
+std::array<double, HeatSums::count> sumHeat(Context<Backend>& context, const HeatSums& terms) {
+  return sumEach<HeatSums::count>(context, terms.next.size(),
+                                  [=] TREACLE_HD(std::size_t i, double* sums) { terms.add(i, sums); });
+}
+
+template <int D, class Backend>
+std::array<double, PowerTerms<D>::count> sumPowers(Context<Backend>& context, const PowerTerms<D>& terms,
+                                                   std::size_t active) {
+  return sumEach<PowerTerms<D>::count>(context, active, [=] TREACLE_HD(std::size_t i, double* sums) {
+    if (i < terms.ownFluid || i >= terms.fluidCount) terms.add(i, sums);
+  });
+}
+
+template <int D, class Backend>
+PartSums sumPart(Context<Backend>& context, const PartTerms<D>& terms) {
+  return std::bit_cast<PartSums>(sumEach<PartSums::count>(
+      context, terms.position.size(), [=] TREACLE_HD(std::size_t i, double* sums) { terms.add(i, sums); }));
+}
+
+template <int D, class Backend>
+StepChange stepChange(Context<Backend>& context, const StepChangeTerms<D>& terms) {
+  const auto all = sumEach<StepChangeTerms<D>::count>(
+      context, terms.after.size(), [=] TREACLE_HD(std::size_t i, double* sums) { terms.add(i, sums); });
+  return StepChange::mean(all, joinedOverProcesses(context, terms.after.size(), std::plus<>()));
+}
+
+#define TREACLE_EACH_PARTICLE(D, Backend)                                                                       \
+  template void setWallVelocities(Context<Backend>&, const MovingWalls<D>&, std::span<Vec<D>>);                 \
+  template void setWallChords(Context<Backend>&, const MovingWalls<D>&, std::span<Vec<D>>);                     \
+  template void shiftBody(Context<Backend>&, const CellGrid<D>&, std::span<const std::uint8_t>, std::uint8_t,   \
+                          const Vec<D>&, std::span<Vec<D>>);                                                    \
+  template void extrapolate(Context<Backend>&, const Extrapolation<D>&, std::span<const Vec<D>>, FlowMemory<D>, \
+                            std::span<Vec<D>>);                                                                 \
+  template void updateFlowMemory(Context<Backend>&, double, double, std::span<const Vec<D>>,                    \
+                                 std::span<const Vec<D>>, FlowMemory<D>);                                       \
+  template std::array<double, PowerTerms<D>::count> sumPowers(Context<Backend>&, const PowerTerms<D>&,          \
+                                                              std::size_t);                                     \
+  template PartSums sumPart(Context<Backend>&, const PartTerms<D>&);                                            \
+  template StepChange stepChange(Context<Backend>&, const StepChangeTerms<D>&);
+#define TREACLE_EACH_TEMPERATURE(Backend)                                        \
+  template void setEach(Context<Backend>&, const HeatSystemTerms&, std::size_t); \
+  template void setEach(Context<Backend>&, const Difference&, std::size_t);      \
+  template void setEach(Context<Backend>&, const Scaled&, std::size_t);          \
+  template void setEach(Context<Backend>&, const HeatResult&, std::size_t);      \
+  template std::array<double, HeatSums::count> sumHeat(Context<Backend>&, const HeatSums&);
+
+}  // namespace treacle
