@@ -5,7 +5,6 @@
 #include "together.hpp"
 #include "treacle/core/backend.hpp"
 #include "treacle/core/error.hpp"
-#include "treacle/io/surface/free_surface.hpp"
 #include "treacle/model/particles/create.hpp"
 
 #include <fmt/format.h>
@@ -34,8 +33,8 @@ std::string contentText(const ParticleNumbers& particles, std::uint64_t cells) {
 }
 
 /// The program itself, its libraries and a picture; with CUDA also its tables of device code. OpenVDB is large.
-std::uint64_t programBytes() {
-  return std::uint64_t{(cudaCompiled ? 38u : 29u) + (hasFreeSurface() ? 28u : 0u)} << 20;
+std::uint64_t programBytes(const Case& c) {
+  return std::uint64_t{(cudaCompiled ? 38u : 29u) + (c.output.surface ? 28u : 0u)} << 20;
 }
 
 /// What is to be written: copies of the state, and what a surface is made of.
@@ -65,7 +64,7 @@ void requireRoomForParticles(const Case& c) {
   require(fmt::format("{} particles", count), placeBytes(c, {.fluid = count}));
 }
 
-std::uint64_t leastMemory(const Case& c) { return programBytes() + cellBytes * searchCells(c); }
+std::uint64_t leastMemory(const Case& c) { return programBytes(c) + cellBytes * searchCells(c); }
 
 MemoryCounts countsFor(const Case& c, const AnyParticles& particles) {
   require(contentText(particles.numbers(), searchCells(c)), leastMemory(c));
@@ -89,7 +88,7 @@ MemoryEstimate estimatedMemory(const Case& c, const MemoryCounts& all, bool onDe
                       driver = onDevice ? driverBytes : 0,
                       simulation = simulationBytes(c, n, onDevice ? BackendKind::Cuda : BackendKind::Cpu),
                       steps = onDevice ? distantWallBytes(c, n) : simulation;
-  MemoryEstimate estimate{programBytes() + driver + steps, outputBytes(c, all.particles),
+  MemoryEstimate estimate{programBytes(c) + driver + steps, outputBytes(c, all.particles),
                           onDevice ? simulation : 0};
   if (processes == 1) return estimate;
   estimate.host += messageBytes - pictureBytes +

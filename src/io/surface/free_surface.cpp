@@ -78,12 +78,9 @@ void findFields(const Frame& fluid, const FillField& field, const std::vector<Ve
 
 }  // namespace
 
-bool hasFreeSurface() { return hasVolumeMesh(); }
+bool hasFreeSurface() { return whyNoVolumeMesh().empty(); }
 
-std::string whyNoFreeSurface() {
-  return "this build makes no surfaces: OpenVDB was not found when it was configured (Debian: libopenvdb-dev and "
-         "libboost-dev, which scripts/setup installs; then configure and build again)";
-}
+std::string whyNoFreeSurface() { return whyNoVolumeMesh(); }
 
 FreeSurface freeSurface(const Frame& fluid, double spacing, double node) {
   if (!hasFreeSurface()) throw InputError(whyNoFreeSurface());

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <string>
 #include <vector>
 
 namespace treacle {
@@ -24,10 +25,15 @@ struct TriangleMesh {
   std::vector<std::array<std::uint32_t, 3>> triangles;  // anticlockwise as seen from where the field is positive
 };
 
-/// Whether this build has the library for it, OpenVDB.
-bool hasVolumeMesh();
+/// Why volumeMesh() cannot be called; empty where it can. Loads the module that calls OpenVDB.
+std::string whyNoVolumeMesh();
 
-/// Where the field is zero, by dual contouring. Errors: std::bad_alloc; InputError where there is no library.
+/// Where the field is zero, by dual contouring. Errors: std::bad_alloc; InputError where whyNoVolumeMesh() says
+/// so.
 TriangleMesh volumeMesh(const BlockedField& field);
+
+/// The one function of the module.
+using VolumeMeshFunction = void(const BlockedField& field, TriangleMesh& mesh);
+inline constexpr const char* volumeMeshFunction = "treacleVolumeMesh";
 
 }  // namespace treacle

@@ -30,7 +30,7 @@ struct FreeSurface {
   std::size_t leftOut = 0;             // particles that lie nowhere, or absurdly far away
 };
 
-/// Whether this build can: it needs OpenVDB.
+/// Whether surfaces can be made: the build needs OpenVDB, which is loaded here.
 bool hasFreeSurface();
 /// What to say where it cannot.
 std::string whyNoFreeSurface();
