@@ -124,7 +124,7 @@ void restrain(const Vector& derivative, const std::vector<Restraint>& restraints
     for (const Mover& a : h.slides)
       for (const Mover& b : h.slides) rate2 += product(*a.row, b.way) * product(*a.row, b.way);
     h.rate = std::sqrt(rate2);
-    // Of what is locked, and of derivatives that are not yet any good.
+    // The body is locked, or the derivative is not any good yet.
     if (h.rate == 0 || std::ranges::any_of(h.slides, [](const Mover& m) { return m.rate < 0; })) h.slides.clear();
     held.push_back(std::move(h));
   }
