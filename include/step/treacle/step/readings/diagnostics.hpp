@@ -125,9 +125,7 @@ inline Diagnostics averaged(Diagnostics d, std::size_t count, double own) {
 
 /// Sums and extremes over the particles; the order of the sums depends on their number alone. Of no particles:
 /// zeros, and minus infinity for the two coordinates.
-template <int D>
-Diagnostics computeDiagnostics(Context<Cpu>&, const DiagnosticsInput<D>&);
-template <int D>
-Diagnostics computeDiagnostics(Context<Cuda>&, const DiagnosticsInput<D>&);
+template <int D, class Backend>
+Diagnostics computeDiagnostics(Context<Backend>&, const DiagnosticsInput<D>&);
 
 }  // namespace treacle
