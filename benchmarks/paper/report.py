@@ -21,7 +21,7 @@ benchmarks/paper/reproduce.py --report benchmarks/results/RECORD.json           
 - The default solver computes the states at 0.2 s. Each solver takes a few steps from their checkpoints. Iterations are those of the first step (of ours, the mean), times those of the median of the other steps.
 - The figures in the papers have no readable points. This page therefore judges the statements of the papers, and compares iterations with those of the authors' published program. Rounding alone changes counts of late states by some 5 %.
 - The authors' machines are one NVIDIA A100 (80 GB) and one Xeon Gold 6252.
-- Tables show the first and the last case, pictures show all. The record has every number.
+- Tables show the first and the last case, pictures show all. The record has every number. Its commit, named below, may be an earlier state of the program.
 """
 
 
