@@ -181,6 +181,9 @@ def unsaid(mentioned: list[tuple[str, str]], record: Record) -> list[str]:
 
 
 def main(source: Path) -> int:
+    if not (source / results).is_dir():
+        print(f"skipped: no {results}, as in a source archive")
+        return skipped
     records, failures = read(source)
     absent: list[str] = []
     try:

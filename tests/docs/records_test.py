@@ -164,6 +164,10 @@ class Records(unittest.TestCase):
         self.there.list('and = ["kernels"]')
         self.expect(1, "other.json: not in measures.toml", "kernels: no such file or folder")
 
+    def test_no_records(self) -> None:
+        (self.there.root / "benchmarks").rename(self.there.root / "was")
+        self.expect(77, "skipped: no benchmarks/results")
+
     def test_no_repository(self) -> None:
         (self.there.root / ".git").rename(self.there.root / "was.git")
         self.expect(77, "skipped: no git history")
