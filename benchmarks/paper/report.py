@@ -8,7 +8,7 @@ from statements import statements
 
 head = """# Reproduction of the two papers
 
-treacle reproduces every table and figure of [K23] and [O23] that has numbers. One script measures them, and writes this page from one record:
+treacle reproduces every table and figure of [K23] and [O23] that has numbers. One script measures them and writes this page:
 
 ```sh
 benchmarks/paper/reproduce.py --program treacle --backend cuda --out DIR --portion 1      # then 2, 3, 4; or --all
@@ -16,12 +16,13 @@ benchmarks/paper/reproduce.py --collect DIR --record benchmarks/results/RECORD.j
 benchmarks/paper/reproduce.py --report benchmarks/results/RECORD.json                     # this page
 ```
 
-- CG, CR, MGCG and MGCR are the solvers of the papers in this program: double precision, the last velocity as first guess, |r|²/|b|² < 1e-12, the sweeps of the authors' program. *Ours* is the default solver of this program.
+- CG, CR, MGCG and MGCR are the solvers of the papers in treacle: double precision, the last velocity as first guess, |r|²/|b|² < 1e-12, the sweeps of the authors' program. *Ours* is treacle's default solver.
 - The cases of [K23] use its formulas (`scheme = "published"`, `cases/published` and `cases/small`). Cases have the names of the paper: x1/4 is resolution 4, x2 is resolution 0.5. N is the number of fluid particles.
 - The default solver computes the states at 0.2 s. Each solver takes a few steps from their checkpoints. Iterations are those of the first step (of ours, the mean), times those of the median of the other steps.
-- The figures in the papers have no readable points. This page therefore judges the statements of the papers, and compares iterations with those of the authors' published program. Rounding alone changes counts of late states by some 5 %.
+- The figures in the papers have no readable points. This page therefore judges the statements of the papers, and compares iterations with those of the authors' published program. Rounding changes counts of late states by some 5 %.
+- A number agrees with a printed one if it is within 0.6 %, the rounding of three digits.
 - The authors' machines are one NVIDIA A100 (80 GB) and one Xeon Gold 6252.
-- Tables show the first and the last case, pictures show all. The record has every number. Its commit, named below, may be an earlier state of the program.
+- Tables show the first and the last case, pictures and the record all. The commit of the record, named below, may be an earlier state of the program.
 """
 
 
@@ -135,11 +136,15 @@ def page(record, results, docs):
         "## Statements",
         f"What the papers conclude, judged by our numbers: {told}. [statements.py](../benchmarks/paper/statements.py) has the rule "
         "of each verdict, and the record the numbers.",
-        markdown([{"statement": r["statement"], "verdict": r["verdict"]} for r in rows]),
     ]
-    if apart := [r for r in rows if r["verdict"] in ("partly", "contradicted")]:
-        lines.append("The numbers of those that are not confirmed (of a/b the paper has the first smaller):")
-        lines.append("\n".join(f"- *{r['statement'].rpartition(' (')[0]}* {r['our numbers']}." for r in apart))
+    agreed = [(s.source, s.text) for s, r in zip(statements, rows, strict=True) if r["verdict"] == "confirmed"]
+    for source in dict.fromkeys(source for source, _ in agreed):
+        lines += [f"Confirmed, {source}:", "\n".join(f"- {text}" for at, text in agreed if at == source)]
+    apart = [r for r in rows if r["verdict"] in ("partly", "contradicted")]
+    if bullets := [f"- {r['statement']} *{r['verdict'].capitalize()}*: {r['our numbers']}." for r in apart]:
+        lines += ["Confirmed in part, or contradicted (of a/b the paper has the first smaller):", "\n".join(bullets)]
+    if missing := [f"- {r['statement']}" for r in rows if r["verdict"] == "not measured"]:
+        lines += ["Not measured:", "\n".join(missing)]
     known: set[str] = set()
     lines += [section(item, results, docs / "images", known) for item in items.values()]
     (docs / "images").mkdir(parents=True, exist_ok=True)

@@ -47,7 +47,7 @@ statements = [
     ),
     Statement(
         k5,
-        "It was smaller with the CR solvers than with the CG solvers, with and without preconditioning.",
+        "The number of iterations was smaller with the CR solvers than with the CG solvers, with and without preconditioning.",
         f"fewer {every}",
         "k23-fig3",
         judge_iterations.residuals_below_gradients,
@@ -82,7 +82,7 @@ statements = [
     ),
     Statement(
         k5,
-        "They showed better performance than conventional solvers for large problems.",
+        "MGCR and MGCG showed better performance than conventional solvers for large problems.",
         f"faster from x1/8 on, {every}",
         "k23-fig8",
         judge_times.large_faster,

@@ -71,7 +71,7 @@ def reading(rows, _):
     if not compared:
         return []
     apart = [r for r in compared if abs(r["difference"]) > 0.006]
-    text = [f"{len(compared) - len(apart)} of {len(compared)} numbers agree within 0.6 %, the rounding of three digits."]
+    text = [f"{len(compared) - len(apart)} of {len(compared)} numbers agree."]
     if others := [r for r in apart if r["quantity"] not in ("d_lambda", "highest_level", "kinematic_viscosity")]:
         told = (f"{r['quantity']} of {r['case']} is {number(r['ours'])} for {number(r['printed'])}" for r in others)
         text.append("; ".join(told) + ".")

@@ -66,7 +66,7 @@ void printBulk(const Case& c, const Material& m, const FlowScales& flow) {
           c.time.step * most / least);
 }
 
-/// Of MPH-I, whose steps are bounded by stability, surface tension and the speeds that are known.
+/// Prints the time step of a case of MPH-I, which stability, surface tension and the known speeds limit.
 void printStep(const Case& c, const std::vector<FluidNumbers>& fluids, const FlowScales& flow) {
   StableStep longest = longestStableStep(c);
   const auto bound = [&](double length, std::string reason) {

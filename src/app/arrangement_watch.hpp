@@ -14,7 +14,7 @@ namespace treacle {
 class ArrangementWatch {
  public:
   static constexpr double leastBound = closeDistance, lowBound = 0.4, densityBound = 0.02;
-  /// Of ISPH, in whose splashes some particles always lie together: the share that does.
+  /// The share of close particles that is usual in ISPH, in whose splashes some always lie together.
   static constexpr double closeBound = 0.05;
 
   explicit ArrangementWatch(const Case& c) : case_(c) {}

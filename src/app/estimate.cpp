@@ -34,7 +34,7 @@ struct Timed {
   double sum() const { return std::accumulate(seconds.begin(), seconds.end(), 0.0); }
 };
 
-/// Of the later half: solves become easier from step to step, while first guesses become better.
+/// The mean of the later half: solves become easier from step to step, since first guesses become better.
 double laterMean(const std::vector<double>& values) {
   const std::size_t half = values.size() / 2;
   return std::accumulate(values.begin() + static_cast<std::ptrdiff_t>(half), values.end(), 0.0) /

@@ -43,7 +43,7 @@ std::uint64_t outputBytes(const Case& c, const ParticleNumbers& particles) {
   return copiesToBeWritten * stateBytes(c, particles) + (c.output.surface ? ofSurface * particles.fluid : 0);
 }
 
-/// Of the places of particles.
+/// The memory of the places of particles.
 std::uint64_t placeBytes(const Case& c, const ParticleNumbers& n) {
   return (n.fluid + n.wall) * static_cast<std::uint64_t>(c.dimensions) * sizeof(double);
 }

@@ -28,7 +28,7 @@ class ProbeRecorder {
 
   /// The state at the start. Loads have none.
   void begin();
-  /// Those that are due after a step.
+  /// Records the probes that are due after a step.
   void record(const StepReport& report);
 
  private:

@@ -100,7 +100,7 @@ void Recorder::takePieces() {
   outputSeconds_ += timer.lap();
 }
 
-/// Of those that are there.
+/// Joins the pieces that have been written so far.
 void Recorder::joinPieces(PieceOrder order) {
   if (openFrames_.empty()) return;
   Timer timer;
@@ -229,7 +229,8 @@ void Recorder::write(const Snapshot& s) {
   }
 }
 
-/// Of a frame that is on disk. Called by the output thread, where frames are in pieces by the run's own.
+/// Notes in the log that a frame is on disk. The output thread calls it, or, if frames are in pieces, that of the
+/// run.
 void Recorder::note(std::int64_t step, double time, int iterations, const Arrangement& arrangement,
                     const FrameCost& cost) {
   log_.info(fmt::format("frame {}: step {}, t = {:.6g} s, {} iterations, {}; {:.3g} MB in {:.3g} s",

@@ -10,7 +10,8 @@ namespace treacle {
 
 namespace {
 
-/// Of what some fluid is made; of all materials where no body says so. Those of walls may be anything.
+/// Bounds are those of the materials of fluid bodies, or of all materials if there is no fluid body. Materials of
+/// walls may be anything.
 template <int D>
 void setBounds(const Case& c, IsphPairs<D>& pairs) {
   const auto hasFluid = [&](int m) {

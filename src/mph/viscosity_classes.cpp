@@ -48,7 +48,7 @@ Range factors(const Case& c) {
   return range;
 }
 
-/// Of shear rates from rest to a million per second, beyond which nothing flows that is computed here.
+/// The viscosities at shear rates from rest to a million per second; no case here flows faster.
 Range viscosities(const Case& c, const Material& m) {
   const Range shift = shifts(c, m), factor = factors(c);
   Range range{m.viscosity(0, shift.least), m.viscosity(0, shift.most)};

@@ -18,7 +18,7 @@ nanobind::object arrayOf(std::vector<T> values) {
   const nanobind::capsule owner(kept, [](void* p) noexcept { delete static_cast<std::vector<T>*>(p); });
   return nanobind::cast(nanobind::ndarray<nanobind::numpy, T>(kept->data(), {kept->size()}, owner));
 }
-/// Of a row per vector.
+/// An array that has a row for each vector.
 inline nanobind::object arrayOf(std::vector<Vec<3>> values, std::size_t components) {
   auto* kept = new std::vector<double>(values.size() * components);
   for (std::size_t i = 0; i < values.size(); ++i)

@@ -18,8 +18,8 @@ NAMES = sorted(path.stem for path in EXAMPLES.glob("*.py"))
 COARSE = {"RESOLUTION": "0.5", "OMP_NUM_THREADS": "1", "MPLBACKEND": "agg", "PYTHONDONTWRITEBYTECODE": "1"}
 
 
-def printed(name, folder):
-    """What an example prints, which has made its picture in that folder."""
+def run_script(name, folder):
+    """What an example prints as a script, which has made its picture in that folder."""
     ran = subprocess.run(
         [sys.executable, EXAMPLES / f"{name}.py"],
         cwd=folder,
@@ -33,51 +33,6 @@ def printed(name, folder):
     return ran.stdout
 
 
-def number(pattern, text):
-    """The number that stands where the pattern has its group."""
-    found = re.search(pattern, text)
-    assert found, f"{pattern} not in {text}"
-    return float(found.group(1))
-
-
-def test_dam_break_of_two_backends_is_one(tmp_path):
-    text = printed("dam_break", tmp_path)
-    apart = number(r"differ by up to (\S+) m at 0.01 s", text)
-    assert 0 < apart < 1e-9  # 2.4e-14: the runs are two, and alike
-    assert number(r", (\S+) m at 0.2 s", text) < 2e-5  # 2.1e-10, spacing 2e-3
-    assert number(r"energies differ by (\S+)", text) < 1e-6  # 4.7e-10
-
-
-def test_fit_finds_the_rheology(tmp_path):
-    pytest.importorskip("scipy")
-    text = printed("fit_rheology", tmp_path)
-    assert abs(number(r"yield_stress: .* error (\S+) %", text)) < 2  # 0.1, from noise of 0.6
-    assert abs(number(r"plastic_viscosity: .* error (\S+) %", text)) < 3  # -0.4, from noise of 1.0
-    assert 0.8 < number(r"what remains is (\S+) times", text) < 1.3
-
-
-def test_study_finds_the_law(tmp_path):
-    text = printed("parameter_study", tmp_path)
-    assert abs(number(r"gravity\)\^(\S+);", text) - 1) < 0.01  # 0.996
-    assert number(r"differ by up to (\S+) %", text) < 9  # 7.2
-    rows = (tmp_path / "parameter_study.csv").read_text().splitlines()
-    assert len(rows) == 9 and rows[0].startswith("viscosity_pa_s,gravity_m_s2,arrival_s")
-
-
-def test_torque_goes_with_viscosity_and_speed(tmp_path):
-    text = printed("stirred_tank", tmp_path)
-    assert abs(number(r"formula .* error (\S+) %", text)) < 9  # 6.0
-    assert abs(number(r"speed\)\^(\S+);", text) - 1) < 0.02  # 1.003
-    assert number(r"over both it differs by up to (\S+) %", text) < 5  # 2.7
-
-
-def test_controller_keeps_the_bead_even(tmp_path):
-    text = printed("controller", tmp_path)
-    assert number(r"controller: .* nozzle (\S+) m from", text) < 1e-9  # the program follows
-    assert number(r"particles are (\S+) m apart", text) < 1e-5  # 7e-7: its case is what was done
-    assert number(r"the error (\S+) times smaller", text) > 1.7  # 2.6
-
-
 @pytest.fixture(scope="module")
 def notebooks():
     """The script that makes notebooks, as a module."""
@@ -87,6 +42,68 @@ def notebooks():
     module = importlib.util.module_from_spec(importlib.util.spec_from_loader("make_notebooks", loader))
     loader.exec_module(module)
     return module
+
+
+@pytest.fixture
+def printed(notebooks, tmp_path, monkeypatch):
+    """printed(name): what an example prints as a notebook, which draws a picture."""
+
+    def run(name):
+        for variable, value in COARSE.items():
+            if variable != "MPLBACKEND":  # a notebook has its own
+                monkeypatch.setenv(variable, value)
+        notebook = notebooks.notebook_of(EXAMPLES / f"{name}.py")
+        notebooks.execute(notebook, tmp_path)
+        outputs = [o for c in notebook.cells if c.cell_type == "code" for o in c.outputs]
+        assert any("image/png" in o.get("data", {}) for o in outputs)
+        assert not [o for o in outputs if o.get("name") == "stderr"]
+        return "".join(o["text"] for o in outputs if o.get("name") == "stdout")
+
+    return run
+
+
+def number(pattern, text):
+    """The number that stands where the pattern has its group."""
+    found = re.search(pattern, text)
+    assert found, f"{pattern} not in {text}"
+    return float(found.group(1))
+
+
+def test_dam_break_of_two_backends_is_one(tmp_path):
+    text = run_script("dam_break", tmp_path)
+    apart = number(r"differ by up to (\S+) m at 0.01 s", text)
+    assert 0 < apart < 1e-9  # 2.4e-14: the runs are two, and alike
+    assert number(r", (\S+) m at 0.2 s", text) < 2e-5  # 2.1e-10, spacing 2e-3
+    assert number(r"energies differ by (\S+)", text) < 1e-6  # 4.7e-10
+
+
+def test_fit_finds_the_rheology(printed):
+    text = printed("fit_rheology")
+    assert abs(number(r"yield_stress: .* error (\S+) %", text)) < 2  # 0.1, from noise of 0.6
+    assert abs(number(r"plastic_viscosity: .* error (\S+) %", text)) < 3  # -0.4, from noise of 1.0
+    assert 0.8 < number(r"what remains is (\S+) times", text) < 1.3
+
+
+def test_study_finds_the_law(printed, tmp_path):
+    text = printed("parameter_study")
+    assert abs(number(r"gravity\)\^(\S+);", text) - 1) < 0.01  # 0.996
+    assert number(r"differ by up to (\S+) %", text) < 9  # 7.2
+    rows = (tmp_path / "parameter_study.csv").read_text().splitlines()
+    assert len(rows) == 9 and rows[0].startswith("viscosity_pa_s,gravity_m_s2,arrival_s")
+
+
+def test_torque_goes_with_viscosity_and_speed(printed):
+    text = printed("stirred_tank")
+    assert abs(number(r"formula .* error (\S+) %", text)) < 9  # 6.0
+    assert abs(number(r"speed\)\^(\S+);", text) - 1) < 0.02  # 1.003
+    assert number(r"over both it differs by up to (\S+) %", text) < 5  # 2.7
+
+
+def test_controller_keeps_the_bead_even(printed):
+    text = printed("controller")
+    assert number(r"controller: .* nozzle (\S+) m from", text) < 1e-9  # the program follows
+    assert number(r"particles are (\S+) m apart", text) < 1e-5  # 7e-7: its case is what was done
+    assert number(r"the error (\S+) times smaller", text) > 1.7  # 2.6
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -100,15 +117,3 @@ def test_notebooks_are_those_of_the_scripts(notebooks, name):
     )
     pictures = [o for c in kept.cells if c.cell_type == "code" for o in c.outputs if "image/png" in o.get("data", {})]
     assert len(pictures) == 1
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_notebooks_run(notebooks, name, tmp_path, monkeypatch):
-    for variable, value in COARSE.items():
-        if variable != "MPLBACKEND":  # a notebook has its own
-            monkeypatch.setenv(variable, value)
-    notebook = notebooks.notebook_of(EXAMPLES / f"{name}.py")
-    notebooks.execute(notebook, tmp_path)
-    outputs = [o for c in notebook.cells if c.cell_type == "code" for o in c.outputs]
-    assert any("image/png" in o.get("data", {}) for o in outputs)
-    assert not [o for o in outputs if o.get("name") == "stderr"]

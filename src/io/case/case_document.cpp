@@ -24,7 +24,7 @@ CaseFileError errorAt(const toml::source_region& source, const std::string& text
   return treacle::errorAt(source, {}, text);
 }
 
-/// Of a file as a whole.
+/// An error of the file as a whole.
 CaseFileError errorIn(const fs::path& path, const std::string& text) {
   return {{path.string()}, {}, fmt::format("{}: {}", path.string(), text)};
 }

@@ -84,7 +84,7 @@ class Schema {
     return names;
   }
 
-  /// Of a whole case file.
+  /// The condition for a whole case file.
   static json conditionOf(const std::array<std::size_t, CaseAxes>& s) {
     const json dimensions{{"properties", {{"dimensions", {{"const", s[DimensionsAxis] + 2}}}}},
                           {"required", json::array({"dimensions"})}};

@@ -28,7 +28,7 @@ OwnAxis<T> wordAxis(const char* key, Set set) {
   return {{key, allWords<E>()}, [set](T& table, std::size_t value) { set(table, namesOf<E>[value].value); }};
 }
 
-/// Those of most tables: none.
+/// The axes of a table. Most tables have none.
 template <class T>
 struct OwnAxes {
   static std::vector<OwnAxis<T>> of() { return {}; }

@@ -22,7 +22,7 @@ struct Magnitudes {
   double mean = 0, rms = 0, maximum = 0;
 };
 
-/// Of size(k) for k in [0, count), count > 0.
+/// The magnitudes of size(k) for k in [0, count), count > 0.
 template <class Size>
 Magnitudes magnitudes(std::size_t count, Size size) {
   Magnitudes m;
@@ -88,7 +88,7 @@ class SetComparison {
     d_.measures.push_back({std::move(name), std::move(unit), a, b, std::abs(a - b), relativeTo(scale, a - b)});
   }
 
-  /// Of every axis, or of the open ones.
+  /// Adds the components along every axis, or along those that are not periodic.
   void addVector(const std::string& name, const std::string& unit, const Vec<3>& a, const Vec<3>& b, double scale,
                  bool periodicToo) {
     for (int k = 0; k < b_.dimensions; ++k)

@@ -100,7 +100,7 @@ std::uint64_t closeOnes(std::span<const double> distances) {
   return static_cast<std::uint64_t>(std::ranges::count_if(distances, [](double d) { return d < closeDistance; }));
 }
 
-/// Of so many sorted ones the 1 % quantile.
+/// The index of the 1 % quantile among so many sorted values.
 std::size_t lowPlace(std::size_t count) { return (count - 1) / 100; }
 
 }  // namespace

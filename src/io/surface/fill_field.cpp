@@ -23,8 +23,8 @@ float ballRadius(double share, double node) {
   return static_cast<float>((0.53 + 0.45 * node) * std::clamp((among - share) / (among - lonely), 0.0, 1.0));
 }
 
-/// Of nodes within their grid cells, so that nothing that is well placed, a lattice or a wall, meets them exactly:
-/// crossings at nodes make slivers.
+/// How far nodes are from the corners of their grid cells. Nothing that is placed well, a lattice or a wall, meets
+/// them exactly then: crossings at nodes make slivers.
 constexpr double offset = 0.37;
 
 /// B-spline of third order; the argument in spacings.

@@ -34,7 +34,7 @@ class FillField {
   bool values(const Block& block, float* out) const;
   static constexpr float outside = 0.5F, within = -0.5F;
 
-  /// Of a place between nodes, counted in nodes from that of block (0, 0, 0) [m].
+  /// The coordinates of a place between nodes [m], which is counted in nodes from that of block (0, 0, 0).
   Vec<3> place(const Vec<3>& nodes) const;
 
   /// For what fills the place, counted in nodes, by its share; some particle at least within a spacing of the

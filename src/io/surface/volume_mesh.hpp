@@ -16,7 +16,8 @@ struct BlockedField {
   std::vector<std::array<int, 3>> blocks,
       inside;  // which are to be asked for, and where it is `within` throughout
   float outside = 0, within = 0;
-  /// Of blocks[k], the last axis running fastest; by several threads at once. False: outside throughout.
+  /// Sets the values of blocks[k], the last axis running fastest. Several threads call it at once. Returns false
+  /// if all are `outside`.
   std::function<bool(std::size_t k, float* values)> values;
 };
 

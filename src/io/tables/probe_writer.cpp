@@ -19,7 +19,7 @@ std::string axes(const Case& c, const std::string& name) {
   return text;
 }
 
-/// Of fields that not all cases have.
+/// Names of the columns of fields that not all cases have.
 std::string ownFields(const Case& c) {
   return std::string(c.hasOwnViscosities() ? ",dynamic_viscosity,shear_rate" : "") +
          (c.heat ? ",temperature" : "");

@@ -183,7 +183,7 @@ void warnShortRadii(const Case& c, std::vector<std::string>& warnings) {
   check("viscosity_radius", m.viscosityRadius, published ? 1.5 : 2);
 }
 
-/// Of the longest step that a run makes.
+/// The Courant number of the longest step that a run makes.
 double courantNumberAt(const Case& c, double speed) {
   const double number = speed * c.time.step / c.spacing;
   const double most = c.time.mostCourant();
@@ -243,7 +243,7 @@ void warnKeysOfOthers(const Case& c, std::vector<std::string>& warnings) {
   }
 }
 
-/// Of bodies of which only one has friction.
+/// Warns of bodies that may touch if only one of them has friction.
 void warnFriction(const Case& c, std::vector<std::string>& warnings) {
   for (const Body& body : c.bodies) {
     const auto rubs = [&](const Body& other) {

@@ -24,7 +24,7 @@ bool assigns(const std::string& text) {
 constexpr const char* coordinates[] = {"x", "y", "z"};
 constexpr const char* timeAlone[] = {"t"};
 
-/// Of a text too long for a message.
+/// The text, or its beginning if it is too long for a message.
 std::string beginningOf(const std::string& text) {
   constexpr std::size_t longest = 200;
   return text.size() <= longest ? text : text.substr(0, longest) + "...";

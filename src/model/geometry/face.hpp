@@ -39,7 +39,8 @@ struct Face {
   std::optional<Behind> behind(const Vec<D>& x) const;
 
  private:
-  /// Of a cone: away from its axis at x, how far x is from it, and the radius there.
+  /// A place x beside the axis of a cone: the direction away from the axis, the distance to it, and the radius
+  /// there.
   struct Across {
     Vec<D> outwards;
     double distance, radius;

@@ -14,7 +14,7 @@ Facet<3> facetOf(const Triangles& t, std::size_t k) {
   return {t.vertices[t.corners[k][0]], t.vertices[t.corners[k][1]], t.vertices[t.corners[k][2]]};
 }
 
-/// Of triangles that are that thin nothing is left but rounding.
+/// Whether a triangle is so thin that its normal is nothing but rounding.
 bool isFlat(const Facet<3>& f) {
   const double longest = std::max({norm2(f[1] - f[0]), norm2(f[2] - f[1]), norm2(f[0] - f[2])});
   return !(norm(facetNormal<3>(f)) > 1e-14 * longest);

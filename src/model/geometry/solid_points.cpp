@@ -18,8 +18,8 @@ struct Rows {
   Vec<D, std::int64_t> count;
 };
 
-/// Those of the lattice that may be of the solid and are in the domain, or a spacing beside it: there a particle
-/// shows that the body reaches out.
+/// The rows of the lattice that may lie in the solid, in the domain and a spacing beside it: a particle there
+/// shows that the body reaches out of the domain.
 template <int D>
 Rows<D> rowsOf(const Case& c, const Body& body, const Solid<D>& solid) {
   const Domain& domain = c.domain;

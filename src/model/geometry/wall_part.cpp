@@ -70,7 +70,6 @@ template class WallPart<3>;
 bool moveAlike(const Body& a, const Body& b) {
   constexpr double rounding = 1e-12;
   if (a.displacement != b.displacement) return false;
-  if ((a.rotation && a.rotation->angle) || (b.rotation && b.rotation->angle)) return a.rotation == b.rotation;
   const auto spin = [](const Body& body) {
     return body.rotation ? body.rotation->speed * body.rotation->direction() : Vec<3>{};
   };
@@ -80,6 +79,7 @@ bool moveAlike(const Body& a, const Body& b) {
   if (a.kind != BodyKind::Wall || b.kind != BodyKind::Wall) return false;
   if (a.velocity != b.velocity || swings(a) != swings(b)) return false;
   if (swings(a) && a.oscillation != b.oscillation) return false;
+  if ((a.rotation && a.rotation->angle) || (b.rotation && b.rotation->angle)) return a.rotation == b.rotation;
   const Vec<3> turn = spin(a);
   if (norm(turn - spin(b)) > rounding * norm(turn)) return false;
   if (norm(turn) == 0) return true;

@@ -190,7 +190,7 @@ class SurfaceFinder {
     for (const Candidate<D>& a : candidates_) {
       const bool second = norm2(first) > 0;
       if (a.behind && !second) continue;
-      // Of a particle on the surface at least the direction is to be known.
+      // A particle on the surface has no distance to it; its direction is enough.
       const bool near = a.distance < margin();
       const Vec<D> direction = near ? a.out : a.way * (1 / a.distance);
       if (second && dot(direction, first) > 0.5 + 1e-6) continue;
@@ -209,7 +209,7 @@ class SurfaceFinder {
   std::vector<std::unique_ptr<Expression>> where_;
   std::vector<Part> parts_;
   std::vector<std::vector<const WallPart<D>*>> around_;  // of each body: what its particles can see
-  // Of the particle at hand:
+  // These belong to the particle at hand.
   NearWalls<D> near_;
   std::vector<typename Solid<D>::Way> ways_;
   std::vector<NearFace> faces_;

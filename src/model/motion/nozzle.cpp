@@ -36,7 +36,7 @@ std::array<Vec<D>, D - 1> axesAcross(const Nozzle& nozzle, const Vec<D>& directi
   }
 }
 
-/// Of the places i + shift along each axis those in [-most, most] that are kept, in spacings.
+/// The places i + shift along each axis that lie in [-most, most] and are kept, in spacings.
 template <int N, class Keep>
 std::vector<Vec<N>> latticeOf(const Vec<N>& most, const Vec<N>& shift, Keep&& keep) {
   std::vector<Vec<N>> places;
@@ -92,8 +92,8 @@ Vec<2> centroidOf(const std::vector<Vec<2>>& polygon) {
   return (1 / area) * sum;
 }
 
-/// Of lattices that are shifted by quarters of a spacing the one whose number is the nearest to `wanted`, and of
-/// these the one whose middle is the nearest to that of the polygon.
+/// Tries lattices that are shifted by quarters of a spacing. Takes the one whose number of places is the nearest
+/// to `wanted`, and among equal ones that whose middle is the nearest to that of the polygon.
 std::vector<Vec<2>> polygonOf(const std::vector<Vec<2>>& points, double spacing, double wanted) {
   Vec<2> most{};
   for (const Vec<2>& x : points)

@@ -26,7 +26,7 @@ Vec<3> rateOf(const TimeVector& f, double t, double dt) {
   return rate;
 }
 
-/// Of what is smooth: the corners of tables are not.
+/// The second derivative, by differences. It means nothing at the corners of tables.
 Vec<3> accelerationOf(const TimeVector& f, double t) {
   constexpr double e = 1e-4;
   Vec<3> a{};

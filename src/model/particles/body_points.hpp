@@ -41,9 +41,9 @@ struct BodyPoints {
 template <int D>
 BodyPoints<D> bodyPoints(const Case& c, const Body& body, std::vector<std::string>& notes);
 
-/// Of an inflow, as it starts: the layers behind its opening, which count as wall, and the layer in front of it,
-/// fluid, if it flows from the start. Errors: InputError for a nozzle without particles, for the first one outside
-/// the domain.
+/// The points of an inflow as it starts: the layers behind its opening, which count as wall, and, if it flows from
+/// the start, the layer of fluid in front of it. Errors: InputError for a nozzle without particles, for the first
+/// one outside the domain.
 template <int D>
 BodyPoints<D> nozzlePoints(const Case& c, const Body& body, BodyKind kind, std::vector<std::string>& notes);
 
@@ -59,7 +59,7 @@ class InitialState {
   Vec<D> velocityAt(const BodyPoints<D>& points, std::size_t k) const;
   /// Likewise, of a fluid in a case with heat [K]. Errors: InputError where it is not a positive number.
   double temperatureAt(const BodyPoints<D>& points, std::size_t k) const;
-  /// Of a fluid at a place [-]. Errors likewise.
+  /// The viscosity factor of a fluid at a place [-]. Errors likewise.
   double viscosityFactorAt(const Vec<D>& x) const;
 
  private:

@@ -23,7 +23,7 @@ bool someWallMoves(const Case& c, const Particles<D>& particles) {
   return false;
 }
 
-/// Of a rigid body in a step of dt [s] that changes its velocities from those that it had `before`.
+/// The motion of a rigid body in a step of dt [s] that changes its velocities from those that it had `before`.
 template <int D>
 WallMotion<D> rigidMotion(const RigidBody& before, const RigidBody& body, double dt) {
   WallMotion<D> m = rigidMotion<D>(body, dt);
@@ -32,7 +32,8 @@ WallMotion<D> rigidMotion(const RigidBody& before, const RigidBody& body, double
   return m;
 }
 
-/// Of body b of the case, which is not rigid, over dt from time t on: nozzles with the speeds that they have.
+/// The motion of body b of the case, which is not rigid, over dt from time t on; nozzles have their present
+/// speeds.
 template <int D, class Backend>
 WallMotion<D> drivenMotion(const FlowState<D, Backend>& state, std::size_t b, double t, double dt) {
   const Case& c = state.theCase;

@@ -1,8 +1,8 @@
 #pragma once
 
+#include "affine_solve.hpp"
 #include "moving_bodies.hpp"
 #include "treacle/core/error.hpp"
-#include "treacle/linear/affine_solve.hpp"
 #include "treacle/model/motion/friction.hpp"
 #include "treacle/step/bodies/contacts.hpp"
 #include "treacle/step/readings/balance_sums.hpp"

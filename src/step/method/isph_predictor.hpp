@@ -53,7 +53,7 @@ class IsphPredictor {
 
   /// v* of fluid, for ghosts once they are filled; the velocities of active walls.
   Buffer<Vec<D>, Backend>& velocity() { return velocity_; }
-  /// Those that the viscous step has taken its forces of.
+  /// The velocities that the viscous forces of the step are of.
   std::span<const Vec<D>> viscousVelocity() const {
     return isImplicit() ? velocity_.span() : std::span<const Vec<D>>(state_.particles.velocity);
   }

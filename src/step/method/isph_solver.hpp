@@ -91,7 +91,8 @@ class IsphSystem final : public StagedSystem<Backend> {
       f(double_);
   }
 
-  /// Of the processes, which pack all or none: a coefficient stands in rows of two, and must be the same in both.
+  /// The mean number of rows of a process. Either all processes pack their rows or none does: a coefficient stands
+  /// in the rows of two particles, and must be the same in both.
   static std::uint64_t meanRows(const Context<Backend>& context, std::uint32_t own) {
     return context.halo ? context.halo->fluidOfAll / context.communicator->size() : own;
   }

@@ -75,7 +75,7 @@ class IsphStep final : public StepMethod<D, Backend> {
     return bodies_ ? solveWithBodies() : solvePressure();
   }
 
-  /// Of the pressure equation.
+  /// Solves the pressure equation.
   SolverTrial solveBy(const SolverSettings& settings) override {
     const SolverSettings stage = singleStage(state_.theCase, settings);
     IsphSolver<D, Backend, PressureRow<D>> solver({stage});

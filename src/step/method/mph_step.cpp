@@ -192,7 +192,7 @@ class MphStep final : public StepMethod<D, Backend> {
     return bodies_->solve(pairs_, wallSurface_, flow, [&] { return loads(); });
   }
 
-  /// Those that the walls have now, into the right-hand side and state.velocity, whose fluid stays.
+  /// Brings the present velocities of walls into the right-hand side and into state.velocity, whose fluid stays.
   void takeWallVelocities() {
     const std::uint32_t fluid = pairs_.fluidCount;
     found_.resize(state_.context, fluid);

@@ -57,7 +57,7 @@ StagedReport StagedSolver<D, Backend>::solve(Context<Backend>& context, std::spa
   }
 }
 
-/// Of the guess that a stage started from and what it made of it, for the next one.
+/// Keeps the better one of the guess that a stage started from and its result, for the next stage.
 template <int D, class Backend>
 void StagedSolver<D, Backend>::keepBetter(Context<Backend>& context, const SolveReport& report,
                                           std::span<double> x) {

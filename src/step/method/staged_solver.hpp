@@ -14,7 +14,7 @@ struct StagedReport : SolveReport {
   int fallbacks = 0;     // stages that were tried before the last one
   std::string failures;  // which these were, and why they were given up
 
-  /// Of a solve that followed: all is its own but the iterations, which are those of both.
+  /// Takes the report of a solve that followed, with the iterations of both.
   void follow(const SolveReport& next) {
     const int before = iterations;
     static_cast<SolveReport&>(*this) = next;
@@ -63,7 +63,7 @@ class StagedSolver {
   StagedSolver(StagedSystem<Backend>& system, std::vector<SolverSettings> stages)
       : system_(system), stages_(std::move(stages)) {}
 
-  /// Of a new system: the first stage is next.
+  /// Prepare a new system; its first stage is next.
   void prepareOperator(Context<Backend>&);
   void preparePreconditioner(Context<Backend>&);
 

@@ -74,7 +74,7 @@ class StepHeat {
     copyValues(state.context, std::span<const double>(next_), state.particles.temperature.data());
   }
 
-  /// Of the step that was solved last, with particles of that volume.
+  /// The balance of the step that was solved last, for particles of that volume.
   HeatBalance balance(double volume) const {
     return {volume * sums_[HeatSums::Energy], volume * sums_[HeatSums::Heating], volume * sums_[HeatSums::Walls],
             volume * sums_[HeatSums::Surface]};

@@ -15,7 +15,7 @@
 
 namespace treacle {
 
-/// Those of all processes, at the first one. Collective.
+/// The particles of all processes, at the first one. Collective.
 template <int D>
 Particles<D> collected(const Communicator& processes, const Particles<D>& own) {
   std::array<std::uint64_t, 2> numbers{own.fluidCount, own.wallCount()};

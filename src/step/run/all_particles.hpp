@@ -9,7 +9,7 @@
 
 namespace treacle {
 
-/// Those of all processes that share the state, and the walls that it does without.
+/// The numbers of all processes that share the state, with the walls that the simulation does not hold.
 template <int D, class Backend>
 ParticleNumbers numbersOfAll(const FlowState<D, Backend>& state, const DistantWalls<D>& distant) {
   ParticleNumbers all = state.particles.numbers();

@@ -50,10 +50,10 @@ struct Bytes {
   double on(BackendKind backend) const { return backend == BackendKind::Cpu ? host : device; }
 };
 
-/// Of a step of MPH-I for each fluid particle beside its state, as measured at dam breaks of 10^3 to 4*10^6 fluid
-/// particles (docs/notes/performance.md#memory): with the projected multigrid, with that on buckets, and with no
-/// coarse levels; more with the first in double precision; more with A as a matrix; less with neighbours =
-/// "ranges".
+/// What a step of MPH-I takes for each fluid particle beside its state, as measured at dam breaks of 10^3 to
+/// 4*10^6 fluid particles (docs/notes/performance.md#memory): with the projected multigrid, with that on buckets,
+/// and with no coarse levels; more with the first in double precision; more with A as a matrix; less with
+/// neighbours = "ranges".
 struct MphBytes {
   Bytes projected, buckets, local, twice, matrix, ranges;
 };

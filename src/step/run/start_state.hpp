@@ -48,7 +48,7 @@ void setExtras(const Case& c, Particles<D>& particles) {
   setField(c.hasViscosityFactors(), &FluidExtras::viscosityFactors, &Particles<D>::viscosityFactor, 1, particles);
 }
 
-/// Of the fluid [kg; per metre of depth in 2D].
+/// The mass of the fluid [kg; per metre of depth in 2D].
 template <int D>
 double fluidMass(const Case& c, const Particles<D>& particles) {
   double density = 0;

@@ -25,7 +25,7 @@ StepControl::StepControl(const Case& c)
 /// Equal steps lead to the next time that is to be met: no short one is left over.
 StepControl::Step StepControl::next(const StepMemory& memory, double time, double fastest) const {
   double step = planned(memory);
-  // Of a step that follows none the error is not seen where velocities follow from positions.
+  // The error of a first step is not seen if velocities follow from positions.
   const double reach = memory.last > 0 ? reach_ : std::min(reach_, tolerance_ * spacing_);
   if (fastest * step > reach) step = std::max(reach / fastest, least_);
   const double target = nextMeeting(time), rest = target - time;

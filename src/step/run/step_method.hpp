@@ -32,7 +32,7 @@ class StepMethod {
   /// The linear system. Errors: RunError.
   virtual StagedReport solve() = 0;
   /// Solves the same system, once it is prepared, in another way from the same first guess, without any fallback.
-  /// Of the state nothing is changed.
+  /// Solves the system of the step by other settings. The state does not change.
   virtual SolverTrial solveBy(const SolverSettings&) = 0;
   /// Leaves the velocities of the fluid at the end of the step in state.velocity.
   virtual void correctVelocities() {}
@@ -42,7 +42,7 @@ class StepMethod {
   virtual double longestWay(double speed) const = 0;
   /// Writes what the particles shall hold but for position and velocity, which are still those before the step.
   virtual void accept() = 0;
-  /// Of the step that was accepted last, where the case wants it.
+  /// The balance of the step that was accepted last, if the case wants it.
   virtual std::optional<Balance> balance() const { return {}; }
   /// What walls bear in that step, where the case wants it: per wall body, in the order of the case.
   virtual std::vector<WallLoad> loads() const { return {}; }
@@ -50,7 +50,7 @@ class StepMethod {
   virtual void describe(DiagnosticsInput<D>&) const {}
 
   virtual const CellGrid<D>& grid() const = 0;
-  /// Of the last sort, where processes share the state.
+  /// Owners of cells since the last sort, if processes share the state.
   virtual const CellOwners<D>& owners() const = 0;
   virtual const MaterialTable& materials() const = 0;
   virtual std::size_t bytes() const = 0;

@@ -61,7 +61,7 @@ Watched Watch::look(double dt, const Diagnostics& d, std::vector<std::string>& w
   w.energy = wallsMove_ ? 0 : energyRise(dt, d);
   w.courant = d.maxSpeed * dt / case_.spacing;
   w.insideWalls = particles_ > 0 ? d.insideWalls / particles_ : 0;
-  // Of MPH-I a few particles inside tell nothing: thin sheets and threads have hardly any.
+  // With MPH-I a few particles inside tell nothing: thin sheets and threads have hardly any.
   const bool tells = case_.method.kind == MethodKind::Isph || d.interiorParticles > 0.25 * particles_;
   w.density = std::max(d.excessDensity, tells ? d.meanDensityError : 0.0);
   for (std::size_t k = 0; k < bounds().size(); ++k) {
@@ -83,7 +83,7 @@ void Watch::requireSlow(double dt, double speed) const {
   if (most > 0 && value > most) throw RunError(exceeded(describeCourant(value, dt), "courant", most));
 }
 
-/// Of walls at rest the fluid gets nothing, and gravity gives what it has fallen: the sum of both energies can
+/// Walls at rest give the fluid no energy, and gravity gives what it has fallen: the sum of both energies can
 /// only fall, but for what is elastic. Measured against the lowest sum so far, so that what friction has taken
 /// does not hide a rise. The potential is summed up from the power of gravity, since particles that cross a
 /// periodic end change that of the diagnostics.

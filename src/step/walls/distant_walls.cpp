@@ -70,7 +70,7 @@ void DistantWalls<D>::store(const Particles<D>& particles, std::span<const std::
   for (const Vec<D>& x : position_) stored_[near_.blockOf(x)] = 1;
 }
 
-/// Of walls each process comes with a part of those that are near.
+/// Each process comes with a part of the walls that are near.
 template <int D>
 void DistantWalls<D>::holdThoseOfAll(Particles<D>& particles) {
   processes_->anyOf(stored_);
@@ -131,7 +131,7 @@ void DistantWalls<D>::countMissing() {
   countOfAll_ = static_cast<std::uint32_t>(count);
 }
 
-/// Those of the store that are not held.
+/// The walls of the store that are not held.
 template <int D>
 Buffer<std::uint32_t> DistantWalls<D>::missing() const {
   return selected(0, static_cast<std::uint32_t>(position_.size()),

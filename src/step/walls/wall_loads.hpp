@@ -27,7 +27,7 @@ std::vector<LoadSums> loadsOfBodies(FlowState<D, Backend>& state, std::uint32_t 
   return loads;
 }
 
-/// Those of walls, in the order of the case, with torques about their centres.
+/// The loads of walls in the order of the case, with torques about their centres.
 template <int D, class Backend>
 std::vector<WallLoad> wallLoads(const FlowState<D, Backend>& state, const std::vector<LoadSums>& loads) {
   std::vector<WallLoad> walls;

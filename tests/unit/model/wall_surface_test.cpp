@@ -329,6 +329,11 @@ TEST(createWallSurfaces, wallsThatMoveDifferentlyHaveSurfacesOfTheirOwn) {
   expectFaces(lid.at({0.5, -0.5}), {0, 0.5}, nothing);
   lid.c.bodies[0].rotation.reset(), lid.c.bodies[1].rotation->speed = 0;
   expectFaces(lid.at({0.5, -0.5}), nothing, nothing);
+  lid.c.bodies[0].rotation = lid.c.bodies[1].rotation =
+      Rotation{{0, 5}, {0, 0, 1}, 0, TimeFunction{0, {}, {0, 1}, {0, 1}}};
+  expectFaces(lid.at({0.5, -0.5}), nothing, nothing);
+  lid.c.bodies[1].velocity = {1, 0};
+  expectFaces(lid.at({0.5, -0.5}), {0, 0.5}, nothing);
 }
 
 TEST(createWallSurfaces, fluidDoesNotCoverWalls) {

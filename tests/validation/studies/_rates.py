@@ -6,6 +6,10 @@ from study import Outcome
 rates, length = np.array([0.3, 1, 3, 10, 30]), 0.02  # [1/s], plates [m]
 
 
+# No order is asked for. What is left of the errors is that of a sum over a lattice within 3.5 spacings, whatever the
+# spacing: Newtonian fluid has the same, and 4 spacings have 0.1 to 0.3 %.
+
+
 def measurement(viscosity):
     """viscosity(rate): the exact one [Pa s]."""
 

@@ -1,4 +1,4 @@
-#include "treacle/linear/affine_solve.hpp"
+#include "affine_solve.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,29 +13,32 @@ constexpr double nearby = 1e-3;  // from values that much of the scale aside
 
 using Vector = std::vector<double>;
 
-/// Gauss with pivots; a column without one gives zero.
-Vector solved(Vector a, Vector b) {
-  const std::size_t n = b.size();
+/// a^-1 b of n x n and n x m numbers, row by row: Gauss with pivots, once for all columns of b. A column of a
+/// without a pivot gives zero.
+Vector solved(Vector a, Vector b, std::size_t n) {
+  const std::size_t m = b.size() / n;
+  const auto subtract = [&](std::size_t from, double factor, std::size_t row) {
+    for (std::size_t c = 0; c < m; ++c) b[row * m + c] -= factor * b[from * m + c];
+  };
   for (std::size_t k = 0; k < n; ++k) {
     std::size_t pivot = k;
     for (std::size_t i = k + 1; i < n; ++i)
       if (std::abs(a[i * n + k]) > std::abs(a[pivot * n + k])) pivot = i;
     if (a[pivot * n + k] == 0) continue;
     for (std::size_t j = 0; j < n; ++j) std::swap(a[k * n + j], a[pivot * n + j]);
-    std::swap(b[k], b[pivot]);
+    for (std::size_t c = 0; c < m; ++c) std::swap(b[k * m + c], b[pivot * m + c]);
     for (std::size_t i = k + 1; i < n; ++i) {
       const double factor = a[i * n + k] / a[k * n + k];
       for (std::size_t j = k; j < n; ++j) a[i * n + j] -= factor * a[k * n + j];
-      b[i] -= factor * b[k];
+      subtract(k, factor, i);
     }
   }
-  Vector x(n);
   for (std::size_t k = n; k-- > 0;) {
-    double sum = b[k];
-    for (std::size_t j = k + 1; j < n; ++j) sum -= a[k * n + j] * x[j];
-    x[k] = a[k * n + k] == 0 ? 0 : sum / a[k * n + k];
+    for (std::size_t j = k + 1; j < n; ++j) subtract(j, a[k * n + j], k);
+    const double pivot = a[k * n + k];
+    for (std::size_t c = 0; c < m; ++c) b[k * m + c] = pivot == 0 ? 0 : b[k * m + c] / pivot;
   }
-  return x;
+  return b;
 }
 
 double largest(const Vector& v) {
@@ -102,16 +105,13 @@ void restrain(const Vector& derivative, const std::vector<Restraint>& restraints
   constexpr int mostRounds = 2000;
   if (restraints.empty()) return;
   const std::size_t n = x.size();
-  std::vector<Vector> ways;  // by which a residual of 1 in one place moves the zero
-  for (std::size_t j = 0; j < n; ++j) {
-    Vector unit(n);
-    unit[j] = 1;
-    ways.push_back(solved(derivative, unit));
-  }
+  Vector unit(n * n);
+  for (std::size_t k = 0; k < n; ++k) unit[k * n + k] = 1;
+  const Vector ways = solved(derivative, unit, n);  // column j: by which a residual of 1 in place j moves the zero
   const auto mover = [&](const Vector& row, const Vector& push) {
     Mover m{&row, Vector(n)};
     for (std::size_t j = 0; j < n; ++j)
-      for (std::size_t k = 0; k < n && push[j] != 0; ++k) m.way[k] += push[j] * ways[j][k];
+      for (std::size_t k = 0; k < n && push[j] != 0; ++k) m.way[k] += push[j] * ways[k * n + j];
     m.rate = product(row, m.way);
     return m;
   };
@@ -124,7 +124,7 @@ void restrain(const Vector& derivative, const std::vector<Restraint>& restraints
     for (const Mover& a : h.slides)
       for (const Mover& b : h.slides) rate2 += product(*a.row, b.way) * product(*a.row, b.way);
     h.rate = std::sqrt(rate2);
-    // Of what is locked, and of derivatives that are not yet any good.
+    // The body is locked, or the derivative is not any good yet.
     if (h.rate == 0 || std::ranges::any_of(h.slides, [](const Mover& m) { return m.rate < 0; })) h.slides.clear();
     held.push_back(std::move(h));
   }
@@ -162,7 +162,7 @@ AffineSolve::Result AffineSolve::run(const Function& f, Vector& x, Vector& deriv
   };
   if (derivative.size() != n * n) differentiate(scale);
   for (int k = 0;; ++k) {
-    Vector step = solved(derivative, y);
+    Vector step = solved(derivative, y, n);
     for (std::size_t i = 0; i < n; ++i) step[i] = x[i] - step[i];
     restrain(derivative, restraints, 0.1 * tolerance * scale, step);
     for (std::size_t i = 0; i < n; ++i) step[i] -= x[i];

@@ -1,4 +1,4 @@
-#include "treacle/linear/affine_solve.hpp"
+#include "bodies/affine_solve.hpp"
 
 #include "treacle/core/pseudo_random.hpp"
 
