@@ -45,6 +45,7 @@ void printVerdict(const RunDifference& difference, const CompareOptions& options
 
 bool compareCommand(const CompareOptions& options) {
   startThreads(0);
+  if (!options.csv.empty()) RunDirectory::requireForeign(options.csv, "--csv");
   if (isParticleFile(options.a) || isParticleFile(options.b)) return compareFiles(options);
   if (options.time)
     throw InputError("--time: two runs are compared at all times that they share; expected a CSV file as A or B");

@@ -51,6 +51,7 @@ Recorder::Recorder(const Case& c, RunDirectory& directory, RunLog& log, double s
         omp_set_num_threads(threads);
         write(snapshot);
       }) {
+  prepareCheckpoints();
   if (c.output.balance) balance_.emplace(directory.balance(), c);
   if (c.hasRigid()) rigid_.emplace(directory.rigidBodies(), c);
 }
@@ -223,7 +224,8 @@ void Recorder::write(const Snapshot& s) {
   }
   if (s.checkpoint) {
     s.particles.visit([&](const auto& p) {
-      treacle::writeCheckpoint(directory_.checkpoint(), p, s.step, s.time, case_.method.kind);
+      treacle::writeCheckpoint(directory_.checkpoint(), p, s.step, s.time, case_.method.kind,
+                               StateNames::of(case_));
     });
     checkpointStep_ = s.step;
   }

@@ -4,6 +4,7 @@
 #include "treacle/io/checkpoint/checkpoint.hpp"
 #include "treacle/model/case/checks.hpp"
 #include "treacle/model/case/names.hpp"
+#include "treacle/model/motion/wall_motion.hpp"
 #include "treacle/model/particles/create.hpp"
 
 #include <fmt/format.h>
@@ -31,6 +32,49 @@ void requireMethod(const Case& c, const std::filesystem::path& file, MethodKind 
   if (method != c.method.kind)
     refuse(file, fmt::format("a state of the method '{}', but that of the case is '{}'", nameOf(method),
                              nameOf(c.method.kind)));
+}
+
+std::string listed(const std::vector<std::string>& names) { return fmt::format("'{}'", fmt::join(names, "', '")); }
+
+/// Gives particles the numbers that their materials have in the case, which may list them in another order.
+/// Errors: InputError for materials that the case does not have.
+template <int D>
+void matchMaterials(const Case& c, const std::filesystem::path& file, const StateNames& names, Particles<D>& p) {
+  if (names.materials.empty()) return;
+  const std::vector<std::string> here = StateNames::of(c).materials;
+  std::vector<std::uint8_t> number(names.materials.size());
+  for (std::size_t m = 0; m < number.size(); ++m) {
+    const auto found = std::ranges::find(here, names.materials[m]);
+    const bool used = std::ranges::find(p.material, m) != p.material.end();
+    if (found == here.end() && used)
+      refuse(file,
+             fmt::format("its particles are of the material '{}', but the case has {}; expected the materials of "
+                         "the run, in any order",
+                         names.materials[m], listed(here)));
+    number[m] = static_cast<std::uint8_t>(found == here.end() ? 0 : found - here.begin());
+  }
+  for (std::uint8_t& m : p.material)
+    if (m < number.size()) m = number[m];
+}
+
+/// What is known of bodies stands in their order. Errors: InputError for other bodies, or another order.
+void requireSameBodies(const Case& c, const std::filesystem::path& file, const StateNames& names) {
+  const std::vector<std::string> here = StateNames::of(c).bodies;
+  for (std::size_t b = 0; b < names.bodies.size(); ++b)
+    if (b >= here.size() || here[b] != names.bodies[b])
+      refuse(file,
+             fmt::format("its bodies are {}, but the case has {}; expected the bodies of the run in their order",
+                         listed(names.bodies), listed(here)));
+}
+
+/// Walls that keep their velocity go on with that of the case; others get theirs in each step.
+template <int D>
+void setWallVelocities(const Case& c, const Particles<D>& made, std::uint32_t first, Particles<D>& p) {
+  const auto keepsIt = [&](const Body& b) {
+    return b.kind == BodyKind::Wall && !b.rotation && b.oscillation.period == 0 && !isDriven(b.displacement);
+  };
+  for (std::uint32_t i = p.fluidCount; i < p.count; ++i)
+    if (keepsIt(c.bodies[p.body[i]])) p.velocity[i] = made.velocity[made.fluidCount + p.id[i] - first];
 }
 
 /// Numbers of particles of the kinds.
@@ -139,12 +183,16 @@ StartState fittingState(const Case& c, const std::filesystem::path& file, const 
     Checkpoint<D> state = readCheckpoint<D>(file, made.part);
     const Kinds kinds = kindsOf(made);
     requireMethod(c, file, state.method);
+    requireSameBodies(c, file, state.names);
+    matchMaterials(c, file, state.names, state.particles);
     requireFit(c, file, state, kinds);
     requireFields(c, file, state.particles);
     requireFlow(c, file, state.particles.flow);
     requireRigid(c, file, state.particles.rigid);
     requireBodies(c, file, state.particles);
-    setWallSurfaces(created, kinds.fluid + made.part.begin(kinds.walls), state.particles);
+    const std::uint32_t firstWall = kinds.fluid + made.part.begin(kinds.walls);
+    setWallSurfaces(created, firstWall, state.particles);
+    setWallVelocities(c, created, firstWall, state.particles);
     return {std::move(state.particles), state.step, state.time};
   });
   if (!c.time.stepsVary()) start.step = stepAt(start.time, c.time, file);

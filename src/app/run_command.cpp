@@ -10,6 +10,7 @@
 #include "together.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/io/case/case_reader.hpp"
+#include "treacle/io/checkpoint/checkpoint.hpp"
 #include "treacle/io/shapes/shape_files.hpp"
 #include "treacle/io/surface/free_surface.hpp"
 #include "treacle/model/case/case_error.hpp"
@@ -117,6 +118,7 @@ void follow(const Case& c, StartState start, const ParticleNumbers& particles, B
 }  // namespace
 
 void runCommand(const RunOptions& options, const Communicator& processes) {
+  prepareCheckpoints();
   const bool shared = processes.size() > 1;
   std::optional<DeviceInfo> device;
   together(processes, [&] { device = deviceFor(options.backend, processes.localRank()); });

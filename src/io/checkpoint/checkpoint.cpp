@@ -14,6 +14,7 @@
 #include <array>
 #include <cmath>
 #include <fstream>
+#include <new>
 #include <span>
 #include <string>
 #include <string_view>
@@ -25,7 +26,10 @@ namespace treacle {
 namespace {
 
 constexpr std::string_view formatName = "treacle checkpoint";
-constexpr std::int32_t formatVersion = 11;  // no other one is read
+/// Takes memory and gives it back: HDF5 does not survive it where there is none. Errors: std::bad_alloc.
+void requireRoom(std::size_t bytes) { ::operator delete(::operator new(bytes)); }
+
+constexpr std::int32_t formatVersion = 12;  // no other one is read
 
 bool isFinite(double x) { return std::isfinite(x); }
 template <int D, class T>
@@ -171,8 +175,23 @@ OpenFlow readFlow(hid_t file) {
   return flow;
 }
 
+void writeNames(hid_t file, const std::string& kind, const std::vector<std::string>& names) {
+  writeAttribute(file, (kind + "_name_count").c_str(), static_cast<std::uint32_t>(names.size()));
+  for (std::size_t k = 0; k < names.size(); ++k)
+    writeText(file, fmt::format("{}_name_{}", kind, k).c_str(), names[k]);
+}
+std::vector<std::string> readNames(hid_t file, const std::string& kind, std::uint32_t most) {
+  const auto count = readAttribute<std::uint32_t>(file, (kind + "_name_count").c_str());
+  if (count > most) throw Hdf5Error(fmt::format("names of {} {}s, more than {}", count, kind, most));
+  std::vector<std::string> names;
+  for (std::uint32_t k = 0; k < count; ++k)
+    names.push_back(readText(file, fmt::format("{}_name_{}", kind, k).c_str()));
+  return names;
+}
+
 template <int D>
-void fill(hid_t file, const Particles<D>& particles, std::int64_t step, double time, MethodKind method) {
+void fill(hid_t file, const Particles<D>& particles, std::int64_t step, double time, MethodKind method,
+          const StateNames& names) {
   writeText(file, "format", formatName);
   writeAttribute(file, "version", formatVersion);
   writeText(file, "method", nameOf(method));
@@ -195,6 +214,7 @@ void fill(hid_t file, const Particles<D>& particles, std::int64_t step, double t
   writeAttribute(file, "time_step", particles.steps.last);
   writeAttribute(file, "planned_time_step", particles.steps.planned);
   writeAttribute(file, "time_step_error_rate", particles.steps.rate);
+  writeNames(file, "material", names.materials), writeNames(file, "body", names.bodies);
   writeFlow(file, particles.flow);
   writeRigid(file, particles.rigid);
   forEachNamedField(particles, [&](const FieldInfo& info, const auto& field) { writeField(file, info, field); });
@@ -295,6 +315,7 @@ Checkpoint<D> readContent(const std::filesystem::path& path, ParticlePart part) 
   Checkpoint<D> checkpoint;
   readNumbers(file, checkpoint);
   checkpoint.method = readMethod(file);
+  checkpoint.names = {readNames(file, "material", maxMaterials), readNames(file, "body", maxBodies)};
   Particles<D>& particles = checkpoint.particles;
   const std::uint32_t modes = readModeNumbers(file, particles.modes.age);
   particles.modes.pressure = readEigenvalue(file);
@@ -316,9 +337,22 @@ Checkpoint<D> readContent(const std::filesystem::path& path, ParticlePart part) 
 
 }  // namespace
 
+void prepareCheckpoints() {
+  requireRoom(6 << 20);
+  const Hdf5Silence silence;
+  if (H5open() < 0) throw RunError("HDF5 cannot be started, which writes checkpoints");
+}
+
+StateNames StateNames::of(const Case& c) {
+  StateNames names;
+  for (const Material& m : c.materials) names.materials.push_back(m.name);
+  for (const Body& b : c.bodies) names.bodies.push_back(b.name);
+  return names;
+}
+
 template <int D>
 void writeCheckpoint(const std::filesystem::path& path, const Particles<D>& particles, std::int64_t step,
-                     double time, MethodKind method) {
+                     double time, MethodKind method, const StateNames& names) {
   const Hdf5Silence silence;
   try {
     requireSound(particles);  // what cannot be read back must not replace what can
@@ -326,12 +360,13 @@ void writeCheckpoint(const std::filesystem::path& path, const Particles<D>& part
     // HDF5 makes the file in memory: it cannot close a file that a full disk keeps it from finishing.
     std::size_t bytes = 1 << 16;
     forEachNamedField(particles, [&](const FieldInfo&, const auto& field) { bytes += field.bytes(); });
+    requireRoom(bytes + (4 << 20));
     const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
     hdf5Checked(H5Pset_fapl_core(access, bytes, false));
     // It would read an existing file of this name first; below a file there is none.
     const auto name = path / "memory";
     const Hdf5Handle file(H5Fcreate(name.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose);
-    fill(file, particles, step, time, method);
+    fill(file, particles, step, time, method, names);
     hdf5Checked(H5Fflush(file, H5F_SCOPE_LOCAL));
     const ssize_t size = hdf5Checked(H5Fget_file_image(file, nullptr, 0));
     void* image = nullptr;  // takes the address of the driver's pointer to its memory: the bytes without a copy
@@ -370,9 +405,9 @@ Checkpoint<D> readCheckpoint(const std::filesystem::path& path, ParticlePart par
 }
 
 template void writeCheckpoint<2>(const std::filesystem::path&, const Particles<2>&, std::int64_t, double,
-                                 MethodKind);
+                                 MethodKind, const StateNames&);
 template void writeCheckpoint<3>(const std::filesystem::path&, const Particles<3>&, std::int64_t, double,
-                                 MethodKind);
+                                 MethodKind, const StateNames&);
 template Checkpoint<2> readCheckpoint<2>(const std::filesystem::path&, ParticlePart);
 template Checkpoint<3> readCheckpoint<3>(const std::filesystem::path&, ParticlePart);
 

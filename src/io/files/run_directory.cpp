@@ -101,6 +101,23 @@ RunDirectory RunDirectory::open(const fs::path& path) {
   return run;
 }
 
+void RunDirectory::requireForeign(const fs::path& file, std::string_view option) {
+  std::error_code error;
+  const fs::path whole = fs::weakly_canonical(file, error), folder = whole.parent_path();
+  const auto isOf = [&](const fs::path& directory) {
+    const RunDirectory run(directory);
+    if (!run.holdsRun()) return false;
+    const std::string name = whole.filename().string(), kind = whole.extension().string();
+    if (folder != directory) return kind == ".vtp" || kind == ".pvtp" || kind == ".ply" || kind == ".csv";
+    return name == "case.toml" || name == "run.log" || name == "checkpoint.h5" || name == "summary.json" ||
+           kind == ".csv" || kind == ".pvd";
+  };
+  const bool inside = folder.filename() == "frames" || folder.filename() == "probes";
+  if (fs::exists(whole, error) && (isOf(folder) || (inside && isOf(folder.parent_path()))))
+    throw InputError(
+        fmt::format("{} {}: a run has written this file; choose another name", option, file.string()));
+}
+
 bool RunDirectory::holdsRun() const {
   std::error_code error;
   return fs::exists(fluidIndex(), error) || fs::exists(history(), error) || fs::exists(summary(), error) ||

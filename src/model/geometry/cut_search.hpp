@@ -49,6 +49,9 @@ class CutSearch {
   void find(const Vec<D>& x, const NearWalls<D>& walls, std::vector<Exit>& found) const;
 
  private:
+  /// The same for the straight line in one direction.
+  bool mayLeave(const Vec<D>& x, const Vec<D>& d, const NearWalls<D>& walls) const;
+
   class Ray;
   struct Start {
     int direction;

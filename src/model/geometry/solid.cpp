@@ -4,10 +4,14 @@
 #include "treacle/model/geometry/mesh.hpp"
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <cmath>
 
 namespace treacle {
 namespace {
+
+std::atomic<std::uint64_t> solids{0};
 
 template <int D>
 std::shared_ptr<const FacetTree<D>> treeOf(const Shape& s) {
@@ -27,7 +31,8 @@ Solid<D>::Solid(const Shape& s, double needed, double spacing)
       sign_(s.flip ? -1 : 1),
       thickness_((s.thickness > 0 ? s.thickness : needed) / similarity_.scale()),
       slack_(1e-6 * spacing / similarity_.scale()),
-      spacing_(spacing / similarity_.scale()) {
+      spacing_(spacing / similarity_.scale()),
+      number_(++solids) {
   Shape layered = s;
   layered.thickness = thickness_ * similarity_.scale();
   const Extent box = boundingBox(layered, D);
@@ -47,13 +52,40 @@ typename Solid<D>::Answer Solid<D>::filled(const Vec<D>& x) const {
   if (layer && d > end) return answer(false, d - end);
   if (d <= slack_) return answer(fill_ != FillKind::Outside, 0);
   const double w = sign_ * tree_->winding(local);
-  // Beside holes winding numbers change with the place. They are harmonic: where they are within 1.5 of their
-  // middle in a ball of radius d, none changes by more than 1.5 D r / (d - r) on a way of r.
-  const double off = std::abs(w - 0.5);
-  double sure = closed_ ? d - slack_ : (d - slack_) * off / (off + 1.5 * D);
+  double sure = sureDistance(d, w);
   const bool within = (w >= 0.5) != (fill_ == FillKind::Outside);
   if (layer && within) sure = std::min(sure, end - d);
   return answer(within, sure);
+}
+
+/// Beside holes winding numbers change with the place. They are harmonic: where they are within 1.5 of their
+/// middle in a ball of radius d, none changes by more than 1.5 D r / (d - r) on a way of r.
+template <int D>
+double Solid<D>::sureDistance(double d, double w) const {
+  const double off = std::abs(w - 0.5);
+  return closed_ ? d - slack_ : (d - slack_) * off / (off + 1.5 * D);
+}
+
+template <int D>
+bool Solid<D>::inside(const Vec<D>& local) const {
+  struct Ball {
+    std::uint64_t solid = 0;
+    Vec<D> middle{};
+    double square = 0;  // of its radius
+    bool within = false;
+  };
+  constexpr std::size_t balls = 64;
+  thread_local std::array<Ball, balls> known;
+  thread_local std::size_t next = 0;
+  for (std::size_t k = 1; k <= balls; ++k) {
+    const Ball& ball = known[(next + balls - k) % balls];  // the last one first
+    if (ball.solid == number_ && norm2(local - ball.middle) < ball.square) return ball.within;
+  }
+  const double w = sign_ * tree_->winding(local), limit = thickness_ + 16 * spacing_;
+  const bool within = w >= 0.5;
+  const double sure = sureDistance(std::min(tree_->nearest(local, limit).distance, limit), w) - slack_;
+  if (sure > 0) known[next] = {number_, local, sure * sure, within}, next = (next + 1) % balls;
+  return within;
 }
 
 template <int D>

@@ -17,9 +17,15 @@ class WallPart {
   WallPart(const Body& body, const Vec<D>& shift, const Expression* where, const Solid<D>* solid, double spacing);
 
   /// The surface belongs to the part, but for what `where` says of it.
-  bool contains(const Vec<D>& x) const { return shapeContains(x) && whereHolds(x); }
+  /// A condition is asked before a polygon or mesh, which takes far longer.
+  bool contains(const Vec<D>& x) const {
+    return solid_ ? whereHolds(x) && shapeContains(x) : shapeContains(x) && whereHolds(x);
+  }
   /// Whether a point is where the shape is, but its condition does not hold.
-  bool cutAt(const Vec<D>& x) const { return where_ && shapeContains(x) && !whereHolds(x); }
+  bool cutAt(const Vec<D>& x) const {
+    if (!where_) return false;
+    return solid_ ? !whereHolds(x) && shapeContains(x) : shapeContains(x) && !whereHolds(x);
+  }
   bool cut() const { return where_ != nullptr; }
   /// Whether its condition does not hold at a point, be it of the shape or not.
   bool excludes(const Vec<D>& x) const { return !whereHolds(x); }

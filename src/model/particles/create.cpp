@@ -183,6 +183,19 @@ void append(const Case& c, BodyKind kind, const std::vector<Filled<D>>& filled, 
   }
 }
 
+/// How large fluid bodies are that hold no particle: a mesh in metres may have been taken for one in millimetres.
+std::string sizesOfFluid(const Case& c) {
+  std::string text;
+  for (const Body& body : c.bodies) {
+    if (body.kind != BodyKind::Fluid) continue;
+    const Extent box = boundingBox(body.shape, c.dimensions);
+    const Vec<3> size = box.max - box.min;
+    text += fmt::format("; '{}' is {:.3g} m x {:.3g} m", body.name, size[0], size[1]);
+    if (c.dimensions == 3) text += fmt::format(" x {:.3g} m", size[2]);
+  }
+  return text.empty() ? text : fmt::format("{} large, and the spacing is {:.3g} m", text, c.spacing);
+}
+
 /// For the velocities that fluid meets at walls, and for the gaps of rigid bodies.
 bool needsWallSurfaces(const Case& c) {
   if (c.method.kind == MethodKind::Isph) return c.hasRigid();
@@ -197,8 +210,8 @@ Particles<D> createParticles(const Case& c, std::vector<std::string>& notes, std
   auto fluid = fillBodies<D>(c, BodyKind::Fluid, notes);
   auto walls = fillBodies<D>(c, BodyKind::Wall, notes);
   if (total(fluid) == 0)
-    throw InputError(fmt::format("the case has no fluid: no body of type \"fluid\" holds a particle{}",
-                                 c.hasInflow() ? ", and no inflow flows at the start" : ""));
+    throw InputError(fmt::format("the case has no fluid: no body of type \"fluid\" holds a particle{}{}",
+                                 c.hasInflow() ? ", and no inflow flows at the start" : "", sizesOfFluid(c)));
   if (total(fluid) + total(walls) > maxParticles)
     throw InputError(fmt::format("the case would have {} particles, more than the limit of {}",
                                  total(fluid) + total(walls), maxParticles));

@@ -446,6 +446,9 @@ TEST(readCase, nameOfMaterialAndBodyNeedsTheList) {
   Workshop shop;
   shop.put("case.toml", replaced(smallCase, "name = \"column\"", "name = \"syrup\""));
   const std::string ambiguous[] = {"syrup.density=1"}, clear[] = {"material.syrup.density=1"};
+  EXPECT_THAT(
+      messageOf<std::runtime_error>([&] { readCase(shop / "case.toml", ambiguous); }),
+      testing::HasSubstr("'syrup' is the name of a material and a body; write material.syrup or body.syrup"));
   EXPECT_THROW(readCase(shop / "case.toml", ambiguous), std::runtime_error);
   EXPECT_EQ(readCase(shop / "case.toml", clear).materials[0].density, 1);
 }

@@ -74,7 +74,18 @@ TEST(OpenCase, TablesOfTimeComeFromFiles) {
               HasSubstr("pump.csv:2: no column 'pressure'; expected 'speed' or 'back pressure'"));
   EXPECT_THAT(message("{file = 'data/bare.txt', column = 'x'}"), HasSubstr("no column 'x'"));
   shop.put("data/bare.txt", "0 1\n0.5 x\n");
-  EXPECT_THAT(message("{file = 'data/bare.txt'}"), HasSubstr("bare.txt:2: expected numbers, found 'x'"));
+  EXPECT_THAT(message("{file = 'data/bare.txt'}"), HasSubstr("bare.txt:2: expected a number, found 'x'"));
+  for (const char* commas : {"0,00;0,1\n0,5;0,2\n", "time;speed\n0,00;0,1\n", "0,00\t0,1\n"}) {
+    shop.put("data/bare.txt", commas);
+    EXPECT_THAT(message("{file = 'data/bare.txt'}"),
+                HasSubstr("is it a decimal comma? Write numbers with decimal points"))
+        << commas;
+  }
+  shop.put("data/bare.txt", std::string("\xFF\xFE\0", 3));
+  EXPECT_THAT(message("{file = 'data/bare.txt'}"), HasSubstr("bare.txt: UTF-16 text; expected UTF-8"));
+  shop.put("data/bare.txt", "time,speed,\n+0.0E+00,+0.1,\n0.5D+00,2.0d-1,\n,,\n");
+  EXPECT_THAT(speedOf("{file = 'data/bare.txt'}").times, testing::ElementsAre(0, 0.5));
+  EXPECT_THAT(speedOf("{file = 'data/bare.txt'}").values, testing::ElementsAre(0.1, 0.2));
   shop.put("data/bare.txt", "0 1\n0.5\n");
   EXPECT_THAT(message("{file = 'data/bare.txt'}"), HasSubstr("bare.txt:2: expected 2 numbers or more, found 1"));
   shop.put("data/bare.txt", "0 1\n1 1\n0.5 1\n");
