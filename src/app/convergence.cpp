@@ -21,6 +21,7 @@
 
 #include <algorithm>
 #include <system_error>
+#include <utility>
 
 namespace treacle {
 namespace {
@@ -31,9 +32,12 @@ namespace fs = std::filesystem;
 StartState startOf(Case& until, const ConvergenceOptions& options, MadeParticles made) {
   StartState start =
       options.resume.empty() ? StartState{std::move(made.particles)} : fittingState(until, options.resume, made);
-  until.time.end = options.at.value_or(start.time);
+  const double end = std::exchange(until.time.end, options.at.value_or(start.time));
   if (const double steps = until.time.end / until.time.step; steps > maxSteps)
     throw InputError(fmt::format("--at: {:.3g} steps to it are too many", steps));
+  if (until.time.end > 100 * end)
+    throw InputError(fmt::format(
+        "--at: {:g} s is more than a hundred times the end of the case, {:g} s (time.end)", until.time.end, end));
   if (until.time.stepsVary() ? until.time.end < start.time * (1 - 1e-9) : until.steps() < start.step)
     throw InputError(fmt::format("--at: expected at least the checkpoint's time, {:g} s, found {:g}", start.time,
                                  until.time.end));

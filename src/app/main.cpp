@@ -347,7 +347,10 @@ int execute(int argc, char** argv, const Communicator& job) {
       throw InputError(fmt::format("expected a command: {}; treacle --help tells more", commandList(app)));
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return app.exit(e);  // help and version
-    return report(fmt::format("{}; --help tells more", e.what()), ExitCode::BadInput);
+    std::string text = e.what();                     // "--threads: At Most 1 required but received 2"
+    if (const std::size_t at = text.find(": At Most 1 required"); at != text.npos)
+      text = text.substr(0, at) + " is given more than once";
+    return report(fmt::format("{}; --help tells more", text), ExitCode::BadInput);
   } catch (const InputError& e) {
     return report(e.what(), ExitCode::BadInput);
   } catch (const DeviceMemoryExhausted& e) {

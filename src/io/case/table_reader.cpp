@@ -195,6 +195,9 @@ void TableReader::operator()(const Key& key, int& x) const {
   const std::string expected = expectedInteger(key);
   const toml::node* node = section_.value(key, expected);
   if (!node) return;
+  if (const auto* real = node->as_floating_point())
+    throw section_.error(key.name,
+                         fmt::format("expected {}, found {:#}; write it without a point", expected, real->get()));
   const auto* value = node->as_integer();
   if (!value || !key.bound.holds(static_cast<double>(value->get())) ||
       value->get() > std::numeric_limits<int>::max())

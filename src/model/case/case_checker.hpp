@@ -43,6 +43,16 @@ class Checker {
         fail({key}, fmt::format("expected rising {}, found {} after {}", what, numbers[k], numbers[k - 1]));
   }
 
+  /// Names stand in messages and in names of files.
+  void requireName(const std::string& name) const {
+    constexpr std::size_t longest = 100;
+    if (name.size() > longest)
+      fail({"name"}, fmt::format("expected at most {} bytes, found {}", longest, name.size()));
+    for (const char c : name)
+      if (static_cast<unsigned char>(c) < ' ' || c == 0x7f)
+        fail({"name"}, fmt::format("expected no control characters, found one with the code {}", int{c}));
+  }
+
   void requireDirection(std::string_view key, const Vec<3>& v) const {
     if (const double length = norm(v); length == 0 || !std::isfinite(length))
       fail({key}, fmt::format("expected a direction, found a vector of length {}", length));
@@ -65,6 +75,7 @@ class Checker {
   }
   void operator()(const Key& key, const std::string& text) const {
     if (key.required && text.empty()) fail({key.name}, "missing; expected a string");
+    if (key.name == "name") requireName(text);
   }
   void operator()(const Key& key, const std::string& text, keys::ExpressionTag) const {
     if (text.empty()) return;

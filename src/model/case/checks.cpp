@@ -204,6 +204,42 @@ void warnCourant(const Case& c, std::vector<std::string>& warnings) {
       c.time.step * largest / number));
 }
 
+/// Steps that are longer than a twentieth of an oscillation miss much of it.
+void warnOscillations(const Case& c, std::vector<std::string>& warnings) {
+  constexpr double stepsOfPeriod = 20;
+  for (const Body& body : c.bodies) {
+    const double period = body.oscillation.period;
+    if (period == 0 || norm(body.oscillation.amplitude) == 0 ||
+        c.time.step * stepsOfPeriod <= period * (1 + rounding))
+      continue;
+    warnings.push_back(fmt::format(
+        "body '{}' oscillates with a period of {:g} s, {:.3g} steps of {:g} s; take {} <= {:.2g}", body.name,
+        period, period / c.time.step, c.time.step, c.time.stepKey(), period / stepsOfPeriod));
+  }
+}
+
+/// Numbers that no material has: a unit is wrong, or a key.
+void warnUnlikely(const Case& c, std::vector<std::string>& warnings) {
+  const auto look = [&](const std::string& of, std::string_view key, double x, double least, double most,
+                        std::string_view unit) {
+    if (x == 0 || (x >= least && x <= most)) return;
+    warnings.push_back(fmt::format("{} has {} = {:g} {}; fluids and solids have {:g} to {:g}: is it in SI units?",
+                                   of, key, x, unit, least, most));
+  };
+  for (const Material& m : c.materials) {
+    const std::string of = fmt::format("material '{}'", m.name);
+    look(of, "density", m.density, 0.01, 3e4, "kg/m3");
+    look(of, "surface_tension", m.surfaceTension, 1e-6, 100, "N/m");
+    if (!c.heat) continue;
+    look(of, "conductivity", m.conductivity, 1e-3, 1e4, "W/(m K)");
+    look(of, "specific_heat", m.specificHeat, 10, 2e4, "J/(kg K)");
+  }
+  if (c.heat)
+    for (const Body& b : c.bodies)
+      if (b.temperatureExpression.empty())
+        look(fmt::format("body '{}'", b.name), "temperature", b.temperature, 50, 5000, "K");
+}
+
 /// Surface tension acts as it is at the start of a step: a step is not to be much longer than what viscosity and
 /// inertia take to move a particle by its spacing (docs/surface-tension.md).
 void warnTension(const Case& c, std::vector<std::string>& warnings) {
@@ -325,6 +361,8 @@ std::vector<std::string> caseWarnings(const Case& c) {
     warnSoftFluids(c, warnings);
   }
   warnCourant(c, warnings);
+  warnOscillations(c, warnings);
+  warnUnlikely(c, warnings);
   warnTension(c, warnings);
   warnKeysOfOthers(c, warnings);
   warnThinWalls(c, warnings);

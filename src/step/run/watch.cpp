@@ -2,6 +2,7 @@
 
 #include "treacle/core/error.hpp"
 #include "treacle/model/case/checks.hpp"
+#include "treacle/model/case/flow_scales.hpp"
 #include "treacle/step/run/simulation.hpp"
 
 #include <fmt/format.h>
@@ -110,6 +111,9 @@ std::string Watch::describeCourant(double value, double dt) const {
       "the fastest particle goes at {:.3g} m/s, {:.3g} spacings in a step of {:.3g} s", speed, value, dt);
   if (const std::string cause = unstableMaterial(dt); !cause.empty())
     return fmt::format("{}: the step is unstable; {}", numbers, cause);
+  if (flowScales(case_).given > 0.5 * speed)
+    return fmt::format("{}, which the case gives; take {} <= {:.2g} or time.courant = {:g}", numbers,
+                       case_.time.stepKey(), wanted * case_.spacing / speed, wanted);
   if (value > 1000) return fmt::format("{}: the step is unstable; {}", numbers, remedy(dt));  // nobody means that
   return fmt::format(
       "{}; take {} <= {:.2g} or time.courant = {:g}. Speeds that the flow cannot have come from "

@@ -279,6 +279,11 @@ constexpr BadCase badCases[] = {
      "the case has no fluid: no body of type \"fluid\" holds a particle"},
     {"oscillationWithoutPeriod", "max = [12e-3, 0]", "max = [12e-3, 0]\noscillation = { amplitude = [1e-3, 0] }",
      "bad.toml:34:15: period in the oscillation of [[body]] 'floor': missing; expected a positive number [s]"},
+    {"dimensionsWithAPoint", "dimensions = 2", "dimensions = 2.0",
+     "bad.toml:2:14: dimensions in the case file: expected 2 or 3, found 2.0; write it without a point"},
+    {"aNameWithControlCharacters", "name = \"floor\"", "name = \"fl\\u001b[31moor\"",
+     "bad.toml:28:8: name in [[body]] 'fl?[31moor' (box): expected no control characters, found one with the code "
+     "27"},
     {"oscillationWithoutAmplitude", "max = [12e-3, 0]", "max = [12e-3, 0]\noscillation = { period = 1 }",
      "bad.toml:34:15: amplitude in the oscillation of [[body]] 'floor': missing; expected an array of 2 finite "
      "numbers [m]"},

@@ -65,7 +65,7 @@ TEST(WatchedRun, EndsWhereADropIsTooFastForItsSteps) {
   EXPECT_EQ(outcome.exitCode, 3);
   EXPECT_THAT(outcome.err,
               HasSubstr("after step 0 (t = 0 s): the fastest particle goes at 100 m/s, 100 spacings in a "
-                        "step of 0.001 s; take time.step <= 5e-06 or time.courant = 0.5"));
+                        "step of 0.001 s, which the case gives; take time.step <= 5e-06 or time.courant = 0.5"));
   // What is advised does it, although the impact compresses the drop.
   outcome = shop.call("run drop.toml --force --end-time 2e-4 --set time.courant=0.5");
   EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
@@ -78,7 +78,8 @@ TEST(WatchedRun, WarnsBeforeItEnds) {
       shop.call("run drop.toml --set time.step=5e-5 --end-time 1e-4 --set watch.courant=15 --set watch.energy=0");
   EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
   const std::string warning =
-      "warning: step 1: the fastest particle goes at 100 m/s, 5 spacings in a step of 5e-05 s; take time.step <= "
+      "warning: step 1: the fastest particle goes at 100 m/s, 5 spacings in a step of 5e-05 s, which the case "
+      "gives; take time.step <= "
       "5e-06";
   EXPECT_THAT(outcome.err, AllOf(HasSubstr(warning), HasSubstr("the run ends above watch.courant = 15"),
                                  Not(HasSubstr("step 2"))));

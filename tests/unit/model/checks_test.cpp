@@ -111,6 +111,20 @@ TEST(stabilityNumbers, haveNoCompressionForIsph) {
   EXPECT_DOUBLE_EQ(numbers[0].shearDiffusion, 1);
 }
 
+TEST(caseWarnings, numbersThatNoMaterialHas) {
+  Case c = damBreak();
+  const std::size_t before = caseWarnings(c).size();
+  c.materials[0].density = 1e-20;
+  EXPECT_THAT(caseWarnings(c),
+              testing::Contains(testing::HasSubstr("has density = 1e-20 kg/m3; fluids and solids have "
+                                                   "0.01 to 30000: is it in SI units?")));
+  c = damBreak();
+  c.bodies.back().oscillation = {{1e-6, 0, 0}, 5 * c.time.step, 0};
+  EXPECT_THAT(caseWarnings(c), testing::Contains(testing::HasSubstr(" s, 5 steps of ")));
+  c.bodies.back().oscillation.period = 20 * c.time.step;
+  EXPECT_EQ(caseWarnings(c).size(), before);
+}
+
 TEST(caseWarnings, noneForTheIsphDamBreak) { EXPECT_THAT(caseWarnings(isphDamBreak()), IsEmpty()); }
 
 TEST(caseWarnings, longStepsOfIsph) {
