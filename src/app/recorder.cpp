@@ -51,7 +51,6 @@ Recorder::Recorder(const Case& c, RunDirectory& directory, RunLog& log, double s
         omp_set_num_threads(threads);
         write(snapshot);
       }) {
-  prepareCheckpoints();
   if (c.output.balance) balance_.emplace(directory.balance(), c);
   if (c.hasRigid()) rigid_.emplace(directory.rigidBodies(), c);
 }

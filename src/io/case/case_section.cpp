@@ -9,20 +9,17 @@
 namespace treacle {
 namespace {
 
-/// A text as messages show it: cut, and without characters that a terminal would obey.
-std::string printable(const std::string& text) {
+/// A text as messages show it.
+std::string beginning(const std::string& text) {
   constexpr std::size_t longest = 200;
-  std::string shown = text.size() <= longest ? text : text.substr(0, longest) + "...";
-  for (char& c : shown)
-    if (static_cast<unsigned char>(c) < ' ' || c == 0x7f) c = '?';
-  return shown;
+  return text.size() <= longest ? text : text.substr(0, longest) + "...";
 }
 
 /// A value in words: what was found.
 std::string describe(const toml::node& node) {
   switch (node.type()) {
     case toml::node_type::string:
-      return fmt::format("the string \"{}\"", printable(node.as_string()->get()));
+      return fmt::format("the string \"{}\"", beginning(node.as_string()->get()));
     case toml::node_type::integer:
       return fmt::format("{}", node.as_integer()->get());
     case toml::node_type::floating_point:

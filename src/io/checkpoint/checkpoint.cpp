@@ -27,10 +27,10 @@ namespace treacle {
 namespace {
 
 constexpr std::string_view formatName = "treacle checkpoint";
-/// Takes memory and gives it back: HDF5 does not survive it where there is none. Errors: std::bad_alloc.
-void requireRoom(std::size_t bytes) { ::operator delete(::operator new(bytes)); }
-
 constexpr std::int32_t formatVersion = 12;  // no other one is read
+
+/// Takes so many bytes and gives them back: HDF5 ends the program where memory gives out. Errors: std::bad_alloc.
+void requireRoom(std::size_t bytes) { ::operator delete(::operator new(bytes)); }
 
 bool isFinite(double x) { return std::isfinite(x); }
 template <int D, class T>

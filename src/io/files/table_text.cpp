@@ -1,6 +1,6 @@
 #include "table_text.hpp"
 
-#include "shapes/parse_number.hpp"
+#include "parse_number.hpp"
 
 #include <algorithm>
 
@@ -68,7 +68,6 @@ void splitLine(std::string_view line, char separator, std::vector<std::string_vi
 }
 
 std::optional<double> tableNumber(std::string_view text) {
-  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
   const std::size_t exponent = text.find_first_of("dD");
   if (exponent == text.npos) return parseNumber<double>(text);
   std::string plain(text);

@@ -26,7 +26,7 @@ class TextLines {
 /// stands for any number of blanks and tabs.
 char separatorOf(std::string_view line);
 
-/// A number as tables have it: also with a plus, and with Fortran's exponents (1.5D-3).
+/// A number as tables have it, also with an exponent of Fortran (1.5D-3).
 std::optional<double> tableNumber(std::string_view text);
 /// "expected a number, found '…'", and what may be the reason.
 std::string expectedNumber(std::string_view found);
