@@ -10,7 +10,9 @@
 #include "treacle/io/tables/summary.hpp"
 #include "treacle/step/run/any_simulation.hpp"
 
+#include <cstddef>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -62,6 +64,7 @@ class Run {
   std::optional<AnySimulation> simulation_;
   std::optional<Recorder> recorder_;
   RunSummary summary_;
+  std::unique_ptr<std::byte[]> reserve_;  // memory that libraries need to write the last state, when there is no more
   std::string failure_;
   bool fellBack_ = false;
   bool isDeviceLost_ = false;

@@ -239,6 +239,7 @@ Checkpoint<D> readContent(const std::filesystem::path& path, ParticlePart part) 
 
 void prepareCheckpoints() {
   requireRoom(6 << 20);
+  H5dont_atexit();  // all files are closed; after a lack of memory its end would be that of the program
   const Hdf5Silence silence;
   if (H5open() < 0) throw RunError("HDF5 cannot be started, which writes checkpoints");
 }
@@ -260,7 +261,7 @@ void writeCheckpoint(const std::filesystem::path& path, const Particles<D>& part
     // HDF5 makes the file in memory: it cannot close a file that a full disk keeps it from finishing.
     std::size_t bytes = 1 << 16;
     forEachNamedField(particles, [&](const FieldInfo&, const auto& field) { bytes += field.bytes(); });
-    requireRoom(bytes + (4 << 20));
+    requireRoom(bytes + (8 << 20));
     const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
     hdf5Checked(H5Pset_fapl_core(access, bytes, false));
     // It would read an existing file of this name first; below a file there is none.
