@@ -175,9 +175,14 @@ template <int D>
 bool CutSearch<D>::mayLeave(const Vec<D>& x, const Vec<D>& d, const NearWalls<D>& walls) const {
   for (const WallPart<D>* part : walls.parts) {
     if (!part->cut()) continue;
-    if (!part->solid() || part->excludes(x)) return true;
-    for (double t = spacing_ / 4; t < beyond * reach_ + spacing_ / 4; t += spacing_ / 4)
-      if (part->excludes(x + d * t)) return true;
+    if (!part->solid()) return true;
+    // An image that excludes all around, as one does that sticks out of a periodic domain, leaves no surface.
+    bool before = part->excludes(x);
+    for (double t = spacing_ / 4; t < beyond * reach_ + spacing_ / 4; t += spacing_ / 4) {
+      const bool now = part->excludes(x + d * t);
+      if (now && !before) return true;
+      before = now;
+    }
   }
   return false;
 }

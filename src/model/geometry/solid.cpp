@@ -67,25 +67,30 @@ double Solid<D>::sureDistance(double d, double w) const {
 }
 
 template <int D>
-bool Solid<D>::inside(const Vec<D>& local) const {
+typename Solid<D>::Surroundings Solid<D>::around(const Vec<D>& local) const {
   struct Ball {
     std::uint64_t solid = 0;
     Vec<D> middle{};
-    double square = 0;  // of its radius
-    bool within = false;
+    double square = 0;  // of the radius in which `within` holds
+    Surroundings known{};
   };
   constexpr std::size_t balls = 64;
-  thread_local std::array<Ball, balls> known;
+  thread_local std::array<Ball, balls> memory;
   thread_local std::size_t next = 0;
   for (std::size_t k = 1; k <= balls; ++k) {
-    const Ball& ball = known[(next + balls - k) % balls];  // the last one first
-    if (ball.solid == number_ && norm2(local - ball.middle) < ball.square) return ball.within;
+    const Ball& ball = memory[(next + balls - k) % balls];  // the last one first
+    if (ball.solid != number_) continue;
+    if (const double r2 = norm2(local - ball.middle); r2 < ball.square) {
+      const double r = std::sqrt(r2);
+      return {ball.known.within, ball.known.least - r, ball.known.most + r};
+    }
   }
-  const double w = sign_ * tree_->winding(local), limit = thickness_ + 16 * spacing_;
-  const bool within = w >= 0.5;
-  const double sure = sureDistance(std::min(tree_->nearest(local, limit).distance, limit), w) - slack_;
-  if (sure > 0) known[next] = {number_, local, sure * sure, within}, next = (next + 1) % balls;
-  return within;
+  const double limit = thickness_ + 16 * spacing_, w = sign_ * tree_->winding(local);
+  const Near near = tree_->nearest(local, limit);
+  const Surroundings known{w >= 0.5, std::min(near.distance, limit), near.distance};
+  if (const double sure = sureDistance(known.least, w) - slack_; sure > 0)
+    memory[next] = {number_, local, sure * sure, known}, next = (next + 1) % balls;
+  return known;
 }
 
 template <int D>
@@ -97,8 +102,12 @@ bool Solid<D>::contains(const Vec<D>& x) const {
     case FillKind::Inside:
     case FillKind::Shell:
       break;
-    case FillKind::Outside:
-      return tree_->nearest(local, thickness_ + slack_).facet != tree_->none && !inside(local);
+    case FillKind::Outside: {
+      const Surroundings known = around(local);
+      const double end = thickness_ + slack_;
+      if (known.within || known.least > end) return false;
+      return known.most <= end || tree_->nearest(local, end).facet != tree_->none;
+    }
     case FillKind::Sheet:
       return tree_->nearest(local, thickness_ / 2 + slack_).facet != tree_->none;
   }

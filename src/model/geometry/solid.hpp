@@ -53,8 +53,14 @@ class Solid {
  private:
   using Near = typename FacetTree<D>::Near;
 
-  /// Whether the surface goes round a point. Asked again nearby it answers from memory, which each thread has.
-  bool inside(const Vec<D>& local) const;
+  /// Whether the surface goes round a point, and between what limits its distance is. Asked again nearby it answers
+  /// from memory, which each thread has.
+  struct Surroundings {
+    bool within;
+    double least, most;
+  };
+  Surroundings around(const Vec<D>& local) const;
+  bool inside(const Vec<D>& local) const { return around(local).within; }
   /// How far from a point at distance d of the surface, with the winding number w, nothing changes.
   double sureDistance(double d, double w) const;
   Vec<D> direction(const Vec<D>& local, const Near& near) const;
