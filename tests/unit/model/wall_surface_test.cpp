@@ -296,6 +296,23 @@ TEST(createWallSurfaces, periodicFloorHasNoEnds) {
   expectFaces(floor.at({19.5, 1.5}, 1), {0.5, 0}, {-3.5, 0});
 }
 
+TEST(createWallSurfaces, aRoomThatSticksOutOfAPeriodicDomainHasNoEnds) {
+  Shape room;
+  room.kind = ShapeKind::Polygon, room.fill = FillKind::Outside, room.thickness = 9;
+  room.points = {{-5, 0}, {25, 0}, {25, 20}, {-5, 20}};
+  Walls<2> pipe({room});
+  pipe.c.domain = {{0, -20}, {20, 40}, {true, false, false}};
+  pipe.c.bodies[0].where = "x > 0 && x < 20";
+  for (const double x : {0.5, 2.5, 19.5}) expectFaces(pipe.at({x, -1.5}), {0, 1.5}, nothing);
+  pipe.c.domain.periodic[0] = false;
+  expectFaces(pipe.at({0.5, -1.5}), {-0.5, 0}, {0, 1.5}, 1e-4);
+  // What a condition takes away of each image leaves a surface.
+  pipe.c.domain.periodic[0] = true;
+  pipe.c.bodies[0].where = "x > 0 && x < 18";
+  expectFaces(pipe.at({17.5, -1.5}), {0.5, 0}, {0, 1.5}, 1e-4);
+  expectFaces(pipe.at({0.5, -1.5}), {-0.5, 0}, {0, 1.5}, 1e-4);
+}
+
 TEST(createWallSurfaces, conditionsGoAlongWithImages) {
   Walls<2> bed({box({0, -9}, {20, 9})});
   bed.c.domain = {{0, -20}, {20, 20}, {true, false, false}};
