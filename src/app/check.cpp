@@ -4,6 +4,7 @@
 #include "estimate.hpp"
 #include "machine.hpp"
 #include "memory.hpp"
+#include "patience.hpp"
 #include "print.hpp"
 #include "progress.hpp"
 #include "run_log.hpp"
@@ -132,6 +133,7 @@ void printNumbers(const Case& c) {
 }  // namespace
 
 void checkCommand(const CheckOptions& options) {
+  const Patience patience("checking the case");
   startThreads(options.threads);
   const Case c = readCase(options.input.file, options.input.overrides);
   std::vector<std::string> warnings;

@@ -4,6 +4,7 @@
 #include "compared_solvers.hpp"
 #include "machine.hpp"
 #include "memory.hpp"
+#include "patience.hpp"
 #include "print.hpp"
 #include "progress.hpp"
 #include "resume.hpp"
@@ -124,6 +125,7 @@ fs::path directoryOf(const ConvergenceOptions& options) {
 }  // namespace
 
 void convergenceCommand(const ConvergenceOptions& options) {
+  const Patience patience("comparing the solvers");
   const std::optional<DeviceInfo> device = deviceFor(options.backend);
   startThreads(options.threads);
   Case c = readCase(options.input.file, overridesOf(options));

@@ -14,9 +14,10 @@ OutputThread::OutputThread(std::function<void(const Snapshot&)> write) : write_(
   try {
     thread_ = std::thread([this] { run(); });
   } catch (const std::system_error& e) {
-    throw RunError(fmt::format("the system gives no thread for the output ({}): too little memory, or a limit of the "
-                               "number of processes (ulimit -u)",
-                               e.what()));
+    throw RunError(
+        fmt::format("the system gives no thread for the output ({}): too little memory, or a limit of the "
+                    "number of processes (ulimit -u)",
+                    e.what()));
   }
 }
 

@@ -64,7 +64,8 @@ class Run {
   std::optional<AnySimulation> simulation_;
   std::optional<Recorder> recorder_;
   RunSummary summary_;
-  std::unique_ptr<std::byte[]> reserve_;  // memory that libraries need to write the last state, when there is no more
+  std::unique_ptr<std::byte[]>
+      reserve_;  // memory that libraries need to write the last state, when there is no more
   std::string failure_;
   bool fellBack_ = false;
   bool isDeviceLost_ = false;

@@ -3,6 +3,7 @@
 #include "interrupt.hpp"
 #include "machine.hpp"
 #include "memory.hpp"
+#include "patience.hpp"
 #include "piece_writer.hpp"
 #include "resume.hpp"
 #include "run.hpp"
@@ -120,6 +121,8 @@ void follow(const Case& c, StartState start, const ParticleNumbers& particles, B
 void runCommand(const RunOptions& options, const Communicator& processes) {
   prepareCheckpoints();
   const bool shared = processes.size() > 1;
+  std::optional<Patience> patience;
+  patience.emplace("preparing the run", options.quiet || processes.rank() > 0);
   std::optional<DeviceInfo> device;
   together(processes, [&] { device = deviceFor(options.backend, processes.localRank()); });
   if (!allHaveOne(processes, device.has_value())) device.reset();
@@ -155,6 +158,7 @@ void runCommand(const RunOptions& options, const Communicator& processes) {
     requireElsewhere(directory, options.resume);
     files.emplace(RunDirectory::create(directory, options.force));
   });
+  patience.reset();
   if (processes.rank() > 0) return follow(c, std::move(start), all, backend, directory, processes);
   const Followers followers(processes);
   if (!device)

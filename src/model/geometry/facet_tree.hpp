@@ -23,8 +23,8 @@ Vec<D> facetNormal(const Facet<D>& facet);
 template <int D>
 Vec<D> nearestOn(const Facet<D>& facet, const Vec<D>& x);
 
-/// Cosine and sine, times a common length, of an angle that is to pi as the directions from x that a facet covers are
-/// to half of all directions; negative seen from outside. In space [Van Oosterom, Strackee 1983].
+/// Cosine and sine, times a common length, of an angle that is to pi as the directions from x that a facet covers
+/// are to half of all directions; negative seen from outside. In space [Van Oosterom, Strackee 1983].
 template <int D>
 Vec<2> coveredAngle(const Facet<D>& facet, const Vec<D>& x);
 

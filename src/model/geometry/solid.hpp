@@ -53,8 +53,8 @@ class Solid {
  private:
   using Near = typename FacetTree<D>::Near;
 
-  /// Whether the surface goes round a point, and between what limits its distance is. Asked again nearby it answers
-  /// from memory, which each thread has.
+  /// Whether the surface goes round a point, and between what limits its distance is. Asked again nearby it
+  /// answers from memory, which each thread has.
   struct Surroundings {
     bool within;
     double least, most;

@@ -3,6 +3,7 @@
 #include "cut_search.hpp"
 #include "face_corner.hpp"
 #include "solid.hpp"
+#include "treacle/core/work_in_hand.hpp"
 #include "treacle/model/geometry/wall_sight.hpp"
 #include "treacle/model/particles/particles.hpp"
 #include "wall_part.hpp"
@@ -233,9 +234,15 @@ std::vector<WallSurface<D>> createWallSurfaces(const Case& c, std::span<const Ve
   const Solids<D> solids = wallSolids<D>(c);
   std::deque<SurfaceFinder<D>> finders;
   for (int k = 0; k < threads; ++k) finders.emplace_back(c, solids);
-#pragma omp parallel for num_threads(threads) schedule(dynamic, 64)
-  for (std::size_t k = 0; k < position.size(); ++k)
-    surfaces[k] = finders[static_cast<std::size_t>(omp_get_thread_num())].at(position[k], body[k]);
+  constexpr std::size_t some = 64;
+  WorkInHand work("finding the surfaces of walls", position.size());
+#pragma omp parallel for num_threads(threads) schedule(dynamic, 1)
+  for (std::size_t begin = 0; begin < position.size(); begin += some) {
+    const std::size_t end = std::min(begin + some, position.size());
+    for (std::size_t k = begin; k < end; ++k)
+      surfaces[k] = finders[static_cast<std::size_t>(omp_get_thread_num())].at(position[k], body[k]);
+    work.add(end - begin);
+  }
 
   noteBlindWalls(c, wallSight<D>(c, body, surfaces), notes);
   return surfaces;
