@@ -46,6 +46,7 @@ Recorder::Recorder(const Case& c, RunDirectory& directory, RunLog& log, double s
       frames_(c.output.interval, c.time, start),
       checkpoints_(c.output.checkpointInterval, c.time, start),
       watch_(c),
+      hanging_(c),
       // OpenMP forgets in a new thread how many it was given.
       output_([this, threads = omp_get_max_threads()](const Snapshot& snapshot) {
         omp_set_num_threads(threads);
@@ -220,6 +221,10 @@ void Recorder::write(const Snapshot& s) {
                                        SurfaceFormat::Vtp, case_.output.compression);
     frameStep_ = s.step;
     note(s.step, s.time, s.iterations, arrangement, {bytes, timer.lap()});
+    if (std::optional<std::string> warning = hanging_.look(fluid, walls, arrangement)) {
+      const std::lock_guard lock(warningsMutex_);
+      warnings_.push_back(std::move(*warning));
+    }
   }
   if (s.checkpoint) {
     s.particles.visit([&](const auto& p) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "arrangement_watch.hpp"
+#include "hanging_watch.hpp"
 #include "interval.hpp"
 #include "output_thread.hpp"
 #include "piece_writer.hpp"
@@ -102,6 +103,7 @@ class Recorder {
   double smallestLeast_ = nearestReach, smallestLow_ = nearestReach;
   FrameCost frameCost_;  // likewise
   ArrangementWatch watch_;
+  HangingWatch hanging_;  // the output thread's
   std::mutex warningsMutex_;
   std::vector<std::string> warnings_;
   bool isLost_ = false;
