@@ -7,6 +7,7 @@
 #include "patience.hpp"
 #include "print.hpp"
 #include "progress.hpp"
+#include "resume.hpp"
 #include "run_log.hpp"
 #include "threads.hpp"
 #include "treacle/core/error.hpp"
@@ -16,7 +17,6 @@
 #include "treacle/model/case/names.hpp"
 #include "treacle/model/geometry/mesh.hpp"
 #include "treacle/model/geometry/shape.hpp"
-#include "treacle/model/particles/create.hpp"
 #include "treacle/step/method/solve_stages.hpp"
 #include "treacle/step/run/shareable.hpp"
 
@@ -137,12 +137,12 @@ void checkCommand(const CheckOptions& options) {
   startThreads(options.threads);
   const Case c = readCase(options.input.file, options.input.overrides);
   std::vector<std::string> warnings;
-  std::vector<BodyCount> ofBodies;
   requireRoomForParticles(c);
-  AnyParticles particles = createParticles(c, warnings, &ofBodies);
+  MadeParticles made = MadeParticles::of(c, warnings);
+  AnyParticles& particles = made.particles;
   for (std::string& warning : caseWarnings(c)) warnings.push_back(std::move(warning));
   if (c.output.surface && !hasFreeSurface()) warnings.push_back("output.surface: " + whyNoFreeSurface());
-  printParticles(c, particles.numbers(), ofBodies);
+  printParticles(c, particles.numbers(), made.ofBodies);
   printMeshes(c);
   if (options.processes > 1)
     printSharedMemory(c, particles, options.processes);

@@ -6,6 +6,7 @@
 #include "treacle/model/case/names.hpp"
 #include "treacle/model/motion/wall_motion.hpp"
 #include "treacle/model/particles/create.hpp"
+#include "treacle/step/flow/outflow_start.hpp"
 
 #include <fmt/format.h>
 
@@ -175,6 +176,8 @@ MadeParticles MadeParticles::of(const Case& c, std::vector<std::string>& notes, 
   MadeParticles made;
   made.part = part;
   made.particles = createParticles(c, notes, &made.ofBodies, part);
+  if (part.isAll())
+    noteFluidInOutflows(c, fluidInOutflows(c, made.particles), made.particles.numbers().fluid, notes);
   return made;
 }
 

@@ -155,6 +155,9 @@ void Run::attempt(const std::function<void()>& action) {
   } catch (const InputError& e) {
     diagnosis = e.what();
     isBadInput_ = failure_.empty() && (!simulation_ || simulation_->step() == start_.step);
+  } catch (const EndOfRun& e) {
+    diagnosis = e.what();
+    isOver_ = true;
   } catch (const std::runtime_error& e) {
     diagnosis = e.what();
   }
@@ -210,7 +213,7 @@ std::string Run::lastStateText() const {
     text += fmt::format("\nThe last state written is frame {} (t = {:.6g} s) in {}", last,
                         directory_.frameTime(last), directory_.path().string());
   }
-  if (std::error_code error; std::filesystem::exists(directory_.checkpoint(), error))
+  if (std::error_code error; !isOver_ && std::filesystem::exists(directory_.checkpoint(), error))
     text += fmt::format("\nContinue from the last checkpoint with --resume {}", directory_.checkpoint().string());
   return text;
 }

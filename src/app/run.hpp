@@ -70,6 +70,7 @@ class Run {
   bool fellBack_ = false;
   bool isDeviceLost_ = false;
   bool isBadInput_ = false;  // what failed first is what the user gave
+  bool isOver_ = false;      // to continue is of no use
   Watched watched_;          // the largest of all steps
 };
 

@@ -17,6 +17,7 @@
 #include "treacle/model/case/case_error.hpp"
 #include "treacle/model/case/checks.hpp"
 #include "treacle/model/geometry/wall_sight.hpp"
+#include "treacle/step/flow/outflow_start.hpp"
 #include "treacle/step/run/shareable.hpp"
 
 #include <fmt/format.h>
@@ -75,9 +76,13 @@ ParticleNumbers numbersOfAll(const Communicator& processes, const ParticleNumber
   return all;
 }
 
-/// What createParticles notes where one process makes all of them.
-void noteWalls(const Case& c, const AnyParticles& part, const Communicator& processes,
-               std::vector<std::string>& notes) {
+/// What MadeParticles notes where one process makes all of them. Collective; errors: those of noteFluidInOutflows.
+void noteParticles(const Case& c, const AnyParticles& part, const Communicator& processes,
+                   std::vector<std::string>& notes) {
+  std::vector<std::uint64_t> held = fluidInOutflows(c, part);
+  held.push_back(part.numbers().fluid);
+  processes.sum(std::span(held));
+  noteFluidInOutflows(c, std::span(held).first(held.size() - 1), held.back(), notes);
   if (!c.isAccurate()) return;
   std::vector<WallSight> sight = part.visit([&]<int D>(const Particles<D>& p) {
     return wallSight<D>(c, p.body.span().subspan(p.wallBegin()), p.wallSurface.span());
@@ -140,7 +145,7 @@ void runCommand(const RunOptions& options, const Communicator& processes) {
     for (std::string& warning : caseWarnings(c)) warnings.push_back(std::move(warning));
     releaseShapeFiles(c);
   });
-  if (shared) noteWalls(c, made.particles, processes, warnings);
+  if (shared) noteParticles(c, made.particles, processes, warnings);
   const ParticleNumbers all = numbersOfAll(processes, made.particles.numbers());
   StartState start{AnyParticles(2)};
   together(processes, [&] {

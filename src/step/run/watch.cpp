@@ -65,6 +65,7 @@ Watched Watch::look(double dt, const Diagnostics& d, std::vector<std::string>& w
   // With MPH-I a few particles inside tell nothing: thin sheets and threads have hardly any.
   const bool tells = case_.method.kind == MethodKind::Isph || d.interiorParticles > 0.25 * particles_;
   w.density = std::max(d.excessDensity, tells ? d.meanDensityError : 0.0);
+  pressed_ = d.excessDensity > 0.5 * w.density;
   for (std::size_t k = 0; k < bounds().size(); ++k) {
     const Bound& bound = bounds()[k];
     const double value = w.*bound.value, most = case_.watch.*bound.most;
@@ -131,7 +132,11 @@ std::string Watch::describeInsideWalls(double value, double dt) const {
 }
 
 std::string Watch::describeDensity(double value, double dt) const {
-  return fmt::format("the density of the fluid is off by {:.3g} % in the mean: {}{}", 100 * value,
+  return fmt::format("the density of the fluid is off by {:.3g} % in the mean: {}{}{}", 100 * value,
+                     pressed_ && wallsMove_
+                         ? "walls that move press it together. Where they leave it no room, stop them "
+                           "sooner or let it out; elsewhere "
+                         : "",
                      case_.method.kind == MethodKind::Isph
                          ? ""
                          : "raise bulk_viscosity where it is small, dynamic_viscosity where a light "

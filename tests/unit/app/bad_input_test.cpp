@@ -380,6 +380,13 @@ constexpr BadCase badCases[] = {
      "1000000000"},
     {"tooManyParticles", "spacing = 1e-3", "spacing = 1e-9",
      "body 'column' would have more than 4294966272 particles; take a larger spacing or a lower resolution"},
+    {"outflowOverAllFluid", bulk,
+     "bulk_viscosity = 1e4\nbulk_modulus = 1e6\n[[outflow]]\nname = \"drain\"\nshape = \"box\"\nmin = [-4e-3, "
+     "0]\nmax = [12e-3, "
+     "12e-3]\n",
+     "outflow 'drain' holds 36 of 36 fluid particles at the start, which leave in the first step; no fluid would "
+     "be "
+     "left: expected an outflow beside the fluid"},
     {"baseMissing", "title", "base = \"none.toml\"\ntitle", "bad.toml:1:8: base: no such case file: none.toml"},
     {"baseIsItself", "title", "base = \"bad.toml\"\ntitle", "bad.toml:1:8: base: 'bad.toml' inherits from itself"},
 };
@@ -562,6 +569,9 @@ constexpr Warning warnings[] = {
      "wall 'floor' is 2 mm thick along y, thinner than the viscosity radius h_v = 3.5 mm (3.5 spacings): fluid "
      "next "
      "to it misses neighbours"},
+    {"fluidInAnOutflow", "[output]",
+     "[[outflow]]\nname = \"drain\"\nshape = \"box\"\nmin = [4e-3, 0]\nmax = [12e-3, 12e-3]\n[output]",
+     "outflow 'drain' holds 12 of 36 fluid particles at the start, which leave in the first step"},
     {"shortRadius", "[output]", "[method]\nscheme = \"accurate\"\npressure_radius = 2\n[output]",
      "method.pressure_radius = 2 spacings is short for the scheme 'accurate', expected at least 2.5: sums over "
      "so "

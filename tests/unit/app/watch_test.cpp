@@ -101,6 +101,38 @@ TEST(WatchedRun, EndsWhereFluidHasFallenIntoAWall) {
                     HasSubstr("watch.inside_walls = 0.05 is exceeded")));
 }
 
+/// To go on from the last checkpoint is of no use then.
+TEST(WatchedRun, EndsWhenNoFluidIsLeft) {
+  Workshop shop;
+  shop.put("case.toml",
+           smallCase +
+               "\n[[outflow]]\nname = \"below\"\nshape = \"box\"\nmin = [-4e-3, -3e-3]\nmax = [12e-3, -1e-3]\n");
+  const Outcome outcome = shop.call("run case.toml --threads 1 --end-time 0.1 --set 'floor.max=[12e-3,-3.5e-3]'");
+  EXPECT_EQ(outcome.exitCode, 3);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("no fluid is left: all of it has gone out by the outflows"),
+                                 Not(HasSubstr("--resume"))));
+}
+
+TEST(WatchedRun, SaysThatMovingWallsPressFluidTogether) {
+  Workshop shop;
+  shop.put("press.toml", R"(dimensions = 2
+spacing = 1e-3
+domain = { min = [0, 0], max = [0.02, 0.03] }
+time = { step = 5e-4, end = 0.3 }
+material = [{ name = "honey", density = 1400, dynamic_viscosity = 10, bulk_viscosity = 1e4, bulk_modulus = 1e6 }]
+body = [
+  { name = "pool", type = "fluid", material = "honey", shape = "box", min = [4e-3, 4e-3], max = [16e-3, 12e-3] },
+  { name = "cup", type = "wall", material = "honey", shape = "box", min = [0, 0], max = [0.02, 0.03], where = "x < 4e-3 || x > 16e-3 || y < 4e-3" },
+  { name = "lid", type = "wall", material = "honey", shape = "box", min = [4e-3, 13e-3], max = [16e-3, 17e-3], velocity = [0, -0.1] },
+]
+)");
+  const Outcome outcome = shop.call("run press.toml --threads 1");
+  EXPECT_EQ(outcome.exitCode, 3);
+  EXPECT_THAT(outcome.err,
+              HasSubstr("walls that move press it together. Where they leave it no room, stop them sooner or "
+                        "let it out; elsewhere raise bulk_viscosity"));
+}
+
 /// The light one is as stiff as the heavy one, but has next to no inertia and viscosity to keep its particles in
 /// order: the heavy one sinks in, and the density rises.
 TEST(WatchedRun, EndsWhereAHeavyFluidSinksIntoALightOne) {
