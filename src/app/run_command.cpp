@@ -168,8 +168,8 @@ void runCommand(const RunOptions& options, const Communicator& processes) {
   const Followers followers(processes);
   if (!device)
     for (std::string& warning : cpuWarnings(c)) warnings.push_back(std::move(warning));
-  Run run(c, std::move(start), all, backend, std::move(*files), options,
-          device ? deviceText(*device) : processorName(), processes);
+  RunStart from{std::move(start), all, backend, device ? deviceText(*device) : processorName()};
+  Run run(c, std::move(from), std::move(*files), options, processes);
   run.execute(warnings);
 }
 

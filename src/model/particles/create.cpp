@@ -145,11 +145,15 @@ void requireApart(const std::vector<Filled<D>>& fluid, const PointGrid<D>& grid,
   }
 }
 
-/// Makes particles of those points whose ids are in [first, end); `id`: of the next point, `at`: where the next
-/// particle is to stand.
+/// The ids that become particles, [first, end); the id of the next point; and where the next particle is to stand.
+struct Place {
+  std::uint32_t first, end, id = 0, at = 0;
+};
+
 template <int D>
-void append(const Case& c, BodyKind kind, const std::vector<Filled<D>>& filled, std::uint32_t first,
-            std::uint32_t end, Particles<D>& particles, std::uint32_t& id, std::uint32_t& at) {
+void append(const Case& c, BodyKind kind, const std::vector<Filled<D>>& filled, Particles<D>& particles,
+            Place& next) {
+  auto& [first, end, id, at] = next;
   for (const Filled<D>& f : filled) {
     const auto body = static_cast<std::uint8_t>(f.body - c.bodies.data());
     const auto count = static_cast<std::uint32_t>(f.points.size());
@@ -237,10 +241,10 @@ Particles<D> createParticles(const Case& c, std::vector<std::string>& notes, std
   ParticleNumbers numbers{n, count};
   numbers.has.temperatures = c.heat.has_value(), numbers.has.viscosityFactors = c.hasViscosityFactors();
   particles.resize(numbers);
-  std::uint32_t id = 0, at = 0;
-  append(c, BodyKind::Fluid, fluid, part.begin(fluidCount), part.end(fluidCount), particles, id, at);
-  append(c, BodyKind::Wall, walls, fluidCount + part.begin(wallCount), fluidCount + part.end(wallCount), particles,
-         id, at);
+  Place next{part.begin(fluidCount), part.end(fluidCount)};
+  append(c, BodyKind::Fluid, fluid, particles, next);
+  next.first = fluidCount + part.begin(wallCount), next.end = fluidCount + part.end(wallCount);
+  append(c, BodyKind::Wall, walls, particles, next);
   if (needsWallSurfaces(c)) {
     std::vector<std::string> untold;
     // What the notes say is about the viscosity of MPH-I at walls.
