@@ -161,6 +161,7 @@ class Collector {
   void operator()(const Key& key, double, const std::string&) { put(key, "float | str"); }
   void operator()(const Key& key, const std::vector<double>&) { put(key, "Sequence[float]"); }
   void operator()(const Key& key, const std::vector<Vec<2>>&) { put(key, "Sequence[Sequence[float]]"); }
+  void operator()(const Key& key, const std::vector<std::string>&) { put(key, "Sequence[str]"); }
   void operator()(const Key& key, const std::string&) { put(key, "str"); }
   void operator()(const Key& key, const std::string&, keys::FileTag) { put(key, "str | PathLike[str]"); }
   void operator()(const Key& key, const std::string&, keys::ExpressionTag) { put(key, "str"); }

@@ -347,17 +347,25 @@ void TableReader::operator()(const Key& key, TimeVector& functions) const {
   for (std::size_t k = 0; array && k < array->size(); ++k) functions[k] = function(key, (*array)[k]);
 }
 
-void TableReader::operator()(const Key& key, OutputFields& fields) const {
+void TableReader::operator()(const Key& key, std::vector<std::string>& names) const {
   const std::string expected = "an array of strings";
   const toml::node* node = section_.value(key, expected);
   if (!node) return;
   const toml::array* words = node->as_array();
   if (!words || !(words->empty() || words->is_homogeneous(toml::node_type::string)))
     throw section_.unexpected(key, expected, *node);
+  names.clear();
+  for (const toml::node& entry : *words) names.push_back(entry.as_string()->get());
+}
+
+void TableReader::operator()(const Key& key, OutputFields& fields) const {
+  std::vector<std::string> words;
+  for (const OutputFieldName& f : outputFieldNames)
+    if (fields.*(f.flag)) words.emplace_back(f.name);
+  (*this)(key, words);
   std::vector<std::string_view> names;
   for (const OutputFieldName& f : outputFieldNames) names.push_back(f.name), fields.*(f.flag) = false;
-  for (const toml::node& entry : *words) {
-    const std::string& word = entry.as_string()->get();
+  for (const std::string& word : words) {
     const auto field = std::ranges::find(outputFieldNames, word, &OutputFieldName::name);
     if (field == std::end(outputFieldNames)) throw section_.error(key.name, wrongWord(names, word));
     fields.*(field->flag) = true;

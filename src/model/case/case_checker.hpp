@@ -73,6 +73,7 @@ class Checker {
   void operator()(const Key& key, const Vec<3>& x) const {
     requireVector(key, x, expectedVector(key, case_.dimensions));
   }
+  void operator()(const Key&, const std::vector<std::string>&) const {}
   void operator()(const Key& key, const std::string& text) const {
     if (key.required && text.empty()) fail({key.name}, "missing; expected a string");
     if (key.name == "name") requireName(text);

@@ -88,6 +88,27 @@ void requireRigid(const Checker& at) {
       at.fail({"type"}, fmt::format("there can be no rigid body in a domain that is periodic along {}", "xyz"[k]));
 }
 
+/// Errors also where a body takes its own places from itself, by whichever way.
+void requireSubtracted(const Checker& at, const Body& b, const Body& from, std::size_t depth) {
+  const std::vector<Body>& bodies = at.wholeCase().bodies;
+  for (const std::string& name : from.subtract) {
+    const auto found = std::ranges::find(bodies, name, &Body::name);
+    if (found == bodies.end()) {
+      std::vector<std::string_view> names;
+      for (const Body& other : bodies)
+        if (other.kind != BodyKind::Inflow && other.name != b.name) names.push_back(other.name);
+      at.fail({"subtract"}, wrongWord(names, name));
+    }
+    if (found->kind == BodyKind::Inflow)
+      at.fail({"subtract"}, fmt::format("'{}' is an inflow; expected bodies that have a shape", name));
+    if (found->name == b.name)
+      at.fail({"subtract"}, from.name == b.name
+                                ? fmt::format("expected other bodies than '{}' itself", name)
+                                : fmt::format("'{}' and '{}' subtract each other", b.name, from.name));
+    if (depth < bodies.size()) requireSubtracted(at, b, *found, depth + 1);
+  }
+}
+
 }  // namespace
 
 void requireSound(const Checker& at, const Rotation& r) {
@@ -132,6 +153,7 @@ void requireSound(const Checker& at, const Outflow& o) {
 void requireSound(const Checker& at, const Body& b) {
   if (b.kind == BodyKind::Inflow) return requireSound(at, b.inflow);
   requireShape(at, b.shape);
+  requireSubtracted(at, b, b, 0);
   if (b.kind == BodyKind::Rigid) requireRigid(at);
   if (b.kind == BodyKind::Fluid) {
     constexpr const char* text = "only a body of type \"wall\" can have one";

@@ -22,9 +22,9 @@ struct NearWalls {
       if (part->cutAt(x)) return true;
     return false;
   }
-  bool cut() const {
+  bool cutIn(const Vec<D>& min, const Vec<D>& max) const {
     for (const WallPart<D>* part : parts)
-      if (part->cut()) return true;
+      if (part->cutIn(min, max)) return true;
     return false;
   }
 };

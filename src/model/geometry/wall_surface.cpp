@@ -51,8 +51,8 @@ class SurfaceFinder {
   SurfaceFinder(const Case& c, const Solids<D>& solids)
       : spacing_(c.spacing), reach_(c.viscosityRadius()), search_(c.spacing, reach_, margin()), solids_(solids) {
     for (const Body& body : c.bodies) {
-      const bool cut = body.isWall() && !body.where.empty();
-      where_.push_back(cut ? std::make_unique<Expression>(body.where, D) : nullptr);
+      const bool cut = body.isWall() && !BodyCondition<D>::isEmpty(body);
+      conditions_.push_back(cut ? std::make_unique<BodyCondition<D>>(c, body) : nullptr);
     }
     for (std::size_t b = 0; b < c.bodies.size(); ++b)
       if (c.bodies[b].isWall()) addImages(c.domain, c.bodies[b], b);
@@ -76,7 +76,7 @@ class SurfaceFinder {
     candidates_.clear();
     addPoints(x);
     if (near_.parts.size() > 1) addCorners(x);
-    if (near_.cut() && search_.mayFind(x, near_)) addExits(x);
+    if (near_.cutIn(x - far, x + far) && search_.mayFind(x, near_)) addExits(x);
     return chosen(x);
   }
 
@@ -99,7 +99,7 @@ class SurfaceFinder {
     Vec<D> image = low;
     for (int k = 0; k < D;) {
       for (int m = 0; m < D; ++m) shift[m] = image[m] * (domain.max[m] - domain.min[m]);
-      parts_.push_back({b, WallPart<D>(body, shift, where_[b].get(), solids_[b].get(), spacing_)});
+      parts_.push_back({b, WallPart<D>(body, shift, conditions_[b].get(), solids_[b].get(), spacing_)});
       for (k = 0; k < D; ++k) {
         if (++image[k] <= -low[k]) break;
         image[k] = low[k];
@@ -207,7 +207,7 @@ class SurfaceFinder {
   double spacing_, reach_;  // [m]
   CutSearch<D> search_;
   const Solids<D>& solids_;
-  std::vector<std::unique_ptr<Expression>> where_;
+  std::vector<std::unique_ptr<BodyCondition<D>>> conditions_;
   std::vector<Part> parts_;
   std::vector<std::vector<const WallPart<D>*>> around_;  // of each body: what its particles can see
   // These belong to the particle at hand.

@@ -40,6 +40,25 @@ std::vector<Filled<D>> fillBodies(const Case& c, BodyKind kind, std::vector<std:
   return filled;
 }
 
+/// Takes from each body that subtracts others what is closer to their particles than the radius.
+template <int D>
+void subtract(const Domain& domain, double radius, const std::vector<const std::vector<Filled<D>>*>& groups,
+              std::vector<Filled<D>>& filled) {
+  for (Filled<D>& f : filled) {
+    if (f.body->subtract.empty()) continue;
+    std::vector<const Filled<D>*> others;
+    std::size_t count = 0;
+    for (const auto* group : groups)
+      for (const Filled<D>& other : *group)
+        if (std::ranges::find(f.body->subtract, other.body->name) != f.body->subtract.end())
+          others.push_back(&other), count += other.points.size();
+    PointGrid<D> grid(domain, radius, count);
+    for (const Filled<D>* other : others)
+      for (const Vec<D>& x : other->points.place) grid.add(x, 0);
+    f.points.filter([&](std::size_t k) { return grid.find(f.points.place[k]) == PointGrid<D>::none; });
+  }
+}
+
 template <int D>
 std::size_t total(const std::vector<Filled<D>>& filled) {
   std::size_t count = 0;
@@ -136,12 +155,12 @@ void requireApart(const std::vector<Filled<D>>& fluid, const PointGrid<D>& grid,
       if (const std::uint32_t tag = grid.find(x); tag != PointGrid<D>::none) hits.push_back({tag, x});
     }
     if (!hits.empty())
-      throw InputError(
-          fmt::format("fluid body '{}' and wall body '{}' overlap: {} wall particle{} closer than half a spacing "
-                      "to the fluid, "
-                      "the first at {}",
-                      fluid[hits[0].first].body->name, wall.body->name, hits.size(), hits.size() == 1 ? "" : "s",
-                      positionText(resized<3>(hits[0].second), D)));
+      throw InputError(fmt::format(
+          "fluid body '{}' and wall body '{}' overlap: {} wall particle{} closer than half a spacing "
+          "to the fluid, "
+          "the first at {}; subtract = [\"{}\"] of '{}' leaves it the room",
+          fluid[hits[0].first].body->name, wall.body->name, hits.size(), hits.size() == 1 ? "" : "s",
+          positionText(resized<3>(hits[0].second), D), wall.body->name, fluid[hits[0].first].body->name));
   }
 }
 
@@ -213,6 +232,10 @@ Particles<D> createParticles(const Case& c, std::vector<std::string>& notes, std
                              ParticlePart part) {
   auto fluid = fillBodies<D>(c, BodyKind::Fluid, notes);
   auto walls = fillBodies<D>(c, BodyKind::Wall, notes);
+  // Points exactly half a spacing apart, give or take rounding, do not count as overlapping.
+  const double radius = 0.5 * c.spacing * (1 - 1e-6);
+  subtract<D>(c.domain, radius, {&fluid, &walls}, fluid);
+  subtract<D>(c.domain, radius, {&fluid, &walls}, walls);
   if (total(fluid) == 0)
     throw InputError(fmt::format("the case has no fluid: no body of type \"fluid\" holds a particle{}{}",
                                  c.hasInflow() ? ", and no inflow flows at the start" : "", sizesOfFluid(c)));
@@ -221,8 +244,6 @@ Particles<D> createParticles(const Case& c, std::vector<std::string>& notes, std
                                  total(fluid) + total(walls), maxParticles));
   for (const auto& f : walls) requireTurnable(c.domain, c.spacing, f);
 
-  // Points exactly half a spacing apart, give or take rounding, do not count as overlapping.
-  const double radius = 0.5 * c.spacing * (1 - 1e-6);
   PointBoxes<D> boxes(c.domain, radius);
   for (const auto* group : {&fluid, &walls})
     for (const Filled<D>& f : *group) boxes.add(f.body, f.points.place);

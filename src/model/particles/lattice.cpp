@@ -117,7 +117,7 @@ double boxPoints(const Case& c) {
   std::vector<std::string> notes;
   double points = 0;
   for (const Body& body : c.bodies) {
-    if (!body.where.empty()) continue;
+    if (!body.where.empty() || !body.subtract.empty()) continue;
     const Shape& s = body.shape;
     const double spacing = spacingOf(body, c.spacing);
     if (s.kind == ShapeKind::Box)

@@ -64,7 +64,8 @@ constexpr BadCase badCases[] = {
      "bad.toml:9:2: unknown key 'gravty' in the case file; did you mean 'gravity'?"},
     {"keyOfAnotherShape", "max = [6e-3, 6e-3]", "max = [6e-3, 6e-3]\nradius = 1",
      "bad.toml:26:1: unknown key 'radius' in [[body]] 'column' (box); expected 'name', 'type', 'material', "
-     "'shape', 'where', 'velocity', 'disorder', 'viscosity_factor', 'oscillation', 'displacement', 'rotation', "
+     "'shape', 'where', 'subtract', 'velocity', 'disorder', 'viscosity_factor', 'oscillation', 'displacement', "
+     "'rotation', "
      "'min', "
      "'max' or 'transform'"},
     {"missingKey", "density = 1000\n", "",

@@ -184,6 +184,7 @@ radius = 4.1
 inner_radius = 0.5
 velocity = [1, "-2*sin(2*pi*z)*\t1", 3.5]
 where = "x > 0 || y != 1e-3"
+subtract = ["rod"]
 disorder = 0.2
 [[body]]
 name = "rod"
@@ -263,6 +264,7 @@ TEST(readCase, takesEveryKey) {
   expected.bodies[0].velocityExpression[1] = "-2*sin(2*pi*z)*\t1";
   expected.bodies[1].rotation = Rotation{{1, 0.3, -2}, {0.1, -0.7, 3}, -2.5};
   expected.bodies[0].where = "x > 0 || y != 1e-3";
+  expected.bodies[0].subtract = {"rod"};
   expected.bodies[0].disorder = 0.2;
   expected.time = {1e-3 / 1.5, 7, 0.3};
   expected.method.scheme = SchemeKind::Published;

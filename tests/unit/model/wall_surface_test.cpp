@@ -215,6 +215,18 @@ TEST(createWallSurfaces, cornersOfCuts) {
   expectFace(notch3.at({0.5, 0.2, -2}).face[0], {-0.5, -0.2, 2}, 1e-2);
 }
 
+TEST(createWallSurfaces, subtractedBodiesLeaveTheirSurface) {
+  Walls<2> block({box({-20, -20}, {20, 20}), sphere({0, 0}, 8)});
+  block.c.bodies[0].subtract = {"wall 1"};
+  block.c.bodies[1].kind = BodyKind::Fluid;
+  expectFaces(block.at({0, 9.5}), {0, -1.5}, nothing, 1e-4);
+  expectFaces(block.at({6, 8}), Vec<2>{-0.6, -0.8} * 2, nothing, 1e-4);
+  expectFaces(block.at({18.5, 0}), {1.5, 0}, nothing);
+  // A wall in the hole that moves along fills it.
+  block.c.bodies[1].kind = BodyKind::Wall;
+  expectFaces(block.at({0, 9.5}), nothing, nothing);
+}
+
 TEST(createWallSurfaces, curvedCuts) {
   Walls<2> hole({box({-20, -20}, {20, 20})});
   hole.c.bodies[0].where = "x*x + y*y > 4";

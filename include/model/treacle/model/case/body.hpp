@@ -95,6 +95,7 @@ struct Body {
   std::optional<Rotation> rotation{};               // likewise, on top of all
   std::array<std::string, 3> velocityExpression{};  // of a fluid, in place of a component of its velocity [m/s]
   std::string where{};                              // there are particles only where it is not zero
+  std::vector<std::string> subtract{};              // and only where these bodies hold no place
   double disorder = 0;                              // of a fluid at the start: how far off its places [spacings]
   // In cases with heat. Of a fluid that at the start; of a wall that of its surface or, where it has a
   // conductance, of what is behind it; 0: the wall is adiabatic [K].

@@ -204,6 +204,8 @@ void visit(auto& v, Like<Body> auto& b, const Case& c) {
   }
   v({"shape", "Shape that is filled with particles", required}, b.shape.kind);
   v({"where", "Only those particles are made at which this is not zero"}, b.where, expression);
+  v({"subtract", "Names of bodies whose places it leaves to them, so that its particles do not overlap theirs"},
+    b.subtract);
   v({"velocity", "Velocity: of a fluid or rigid body at the start, of a wall for the whole run", optional, "m/s"},
     b.velocity, b.velocityExpression);
   if (b.kind == BodyKind::Fluid)
