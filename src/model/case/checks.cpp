@@ -240,6 +240,45 @@ void warnUnlikely(const Case& c, std::vector<std::string>& warnings) {
         look(fmt::format("body '{}'", b.name), "temperature", b.temperature, 50, 5000, "K");
 }
 
+/// Whether a viscosity is known at a temperature: between the rows of its table, or where its law is not cut off.
+bool isKnownAt(const ViscosityShift& shift, double temperature) {
+  if (shift.model == ShiftModel::Table)
+    return temperature >= shift.temperatures.front() && temperature <= shift.temperatures.back();
+  const double factor = ShiftFactor::make(shift)(temperature);
+  return factor > shift.least * (1 + rounding) && factor < shift.most * (1 - rounding);
+}
+
+std::string knownRange(const ViscosityShift& shift) {
+  if (shift.model == ShiftModel::Table)
+    return fmt::format("from {:g} to {:g} K", shift.temperatures.front(), shift.temperatures.back());
+  return fmt::format("for factors from {:g} to {:g}", shift.least, shift.most);
+}
+
+/// Of walls only tables count: a law that is cut off there is meant so.
+void warnTemperatures(const Case& c, std::vector<std::string>& warnings) {
+  constexpr double zeroCelsius = 273.15, coldest = 200;
+  if (!c.heat) return;
+  for (const Body& body : c.bodies) {
+    if (!body.temperatureExpression.empty() || body.fileTemperatures || body.temperature == 0) continue;
+    for (const Material& m : c.materials) {
+      const auto& shift = m.viscosityShift;
+      const bool meets = body.holdsFluid() ? &materialOf(c, body) == &m
+                                           : shift && shift->model == ShiftModel::Table &&
+                                                 std::ranges::any_of(c.bodies, [&](const Body& b) {
+                                                   return b.holdsFluid() && &materialOf(c, b) == &m;
+                                                 });
+      if (!meets || !shift || isKnownAt(*shift, body.temperature)) continue;
+      warnings.push_back(fmt::format(
+          "body '{}' has temperature = {:g} K, where viscosity_shift of material '{}' is cut off: it is given "
+          "{}{}",
+          body.name, body.temperature, m.name, knownRange(*shift),
+          body.temperature < coldest
+              ? fmt::format(". Are these degrees Celsius? Expected kelvin, {:g}", body.temperature + zeroCelsius)
+              : ""));
+    }
+  }
+}
+
 /// Surface tension acts as it is at the start of a step: a step is not to be much longer than what viscosity and
 /// inertia take to move a particle by its spacing (docs/surface-tension.md).
 void warnTension(const Case& c, std::vector<std::string>& warnings) {
@@ -363,6 +402,7 @@ std::vector<std::string> caseWarnings(const Case& c) {
   warnCourant(c, warnings);
   warnOscillations(c, warnings);
   warnUnlikely(c, warnings);
+  warnTemperatures(c, warnings);
   warnTension(c, warnings);
   warnKeysOfOthers(c, warnings);
   warnThinWalls(c, warnings);
