@@ -23,6 +23,8 @@ constexpr const char* classOf(const TimeSettings&) { return "Time"; }
 constexpr const char* classOf(const Material&) { return "Material"; }
 constexpr const char* classOf(const Rheology&) { return "Rheology"; }
 constexpr const char* classOf(const ContactAngle&) { return "ContactAngle"; }
+constexpr const char* classOf(const Spring&) { return "Spring"; }
+constexpr const char* classOf(const Hinge&) { return "Hinge"; }
 constexpr const char* classOf(const ViscosityShift&) { return "ViscosityShift"; }
 constexpr const char* classOf(const Body&) { return "Body"; }
 constexpr const char* classOf(const Oscillation&) { return "Oscillation"; }

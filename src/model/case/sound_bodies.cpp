@@ -81,8 +81,16 @@ void requireShape(const Checker& at, const Shape& s) {
 }
 
 /// Its torque has no nearest image.
-void requireRigid(const Checker& at) {
+void requireRigid(const Checker& at, const Body& b) {
   const Case& c = at.wholeCase();
+  const RigidSettings &r = b.rigid, free{};
+  if (r.hinge && (r.translates != free.translates || r.rotates != free.rotates))
+    at.fail({"hinge"}, "expected either a hinge or translates and rotates, found both");
+  if (r.hinge && norm(b.velocity) > 0)
+    at.fail({"velocity"}, "a body on a hinge only turns; expected angular_velocity in its place");
+  if (r.release > 0 && norm(b.velocity) > 0) at.fail({"velocity"}, "a body stands still until its release");
+  if (r.release > 0 && norm(r.angularVelocity) > 0)
+    at.fail({"angular_velocity"}, "a body stands still until its release");
   for (int k = 0; k < c.dimensions; ++k)
     if (c.domain.periodic[static_cast<std::size_t>(k)])
       at.fail({"type"}, fmt::format("there can be no rigid body in a domain that is periodic along {}", "xyz"[k]));
@@ -115,6 +123,8 @@ void requireSound(const Checker& at, const Rotation& r) {
   if (r.angle && r.speed != 0) at.fail({"angle"}, "expected one of speed and angle, found both");
   at.requireDirection("axis", r.axis);
 }
+
+void requireSound(const Checker& at, const Hinge& h) { at.requireDirection("axis", h.axis); }
 
 void requireSound(const Checker& at, const Transform& t) {
   at.requireDirection("axis", t.axis);
@@ -154,7 +164,7 @@ void requireSound(const Checker& at, const Body& b) {
   if (b.kind == BodyKind::Inflow) return requireSound(at, b.inflow);
   requireShape(at, b.shape);
   requireSubtracted(at, b, b, 0);
-  if (b.kind == BodyKind::Rigid) requireRigid(at);
+  if (b.kind == BodyKind::Rigid) requireRigid(at, b);
   if (b.kind == BodyKind::Fluid) {
     constexpr const char* text = "only a body of type \"wall\" can have one";
     if (b.displacement != TimeVector{}) at.fail({"displacement"}, text);
