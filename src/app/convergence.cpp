@@ -103,12 +103,10 @@ void compareSolvers(const Case& c, AnySimulation simulation, const std::vector<S
   printTable(curves);
   writeConvergence(directory / "convergence.csv", curves);
   writeSolvers(directory / "solvers.csv", curves);
-  try {
-    drawCurves(directory, directory / "convergence.png",
-               {"--convergence", "--title=" + c.title, "--remark=" + where});
-  } catch (const InputError& error) {  // what was compared is told, and is in the tables
-    printWarning(error.what());
-  }
+  // What was compared is told, and is in the tables.
+  if (!tryDrawCurves(directory, directory / "convergence.png",
+                     {"--convergence", "--title=" + c.title, "--remark=" + where}))
+    printWarning("convergence.png was not drawn");
 }
 
 fs::path directoryOf(const ConvergenceOptions& options) {
@@ -133,6 +131,7 @@ void convergenceCommand(const ConvergenceOptions& options) {
   std::vector<std::string> warnings;
   requireRoomForParticles(c);
   MadeParticles made = MadeParticles::of(c, warnings);
+  if (options.resume.empty()) made.requireFluid(c);
   for (std::string& warning : caseWarnings(c)) warnings.push_back(std::move(warning));
   if (!device)
     for (std::string& warning : cpuWarnings(c)) warnings.push_back(std::move(warning));

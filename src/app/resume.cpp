@@ -137,6 +137,48 @@ void requireRigid(const Case& c, const std::filesystem::path& file, const RigidM
   }
 }
 
+/// Rigid bodies have the masses that the case gives them now; inertia goes with mass.
+template <int D>
+void setMasses(const Case& c, const MadeParticles& made, RigidMotion& rigid) {
+  for (std::size_t b = 0; b < rigid.bodies.size(); ++b) {
+    RigidBody& body = rigid.bodies[b];
+    if (body.mass == 0) continue;
+    const double given = c.bodies[b].rigid.mass,
+                 own = c.materials[static_cast<std::size_t>(c.bodies[b].material)].density *
+                       std::pow(c.spacing, D) * made.ofBodies[b].wall;
+    const double ratio = (given > 0 ? given : own) / body.mass;
+    if (std::abs(ratio - 1) < 1e-9) continue;  // the rounding of a sum
+    body.mass *= ratio;
+    for (double& moment : body.inertia) moment *= ratio;
+    rigid.response.clear();
+  }
+}
+
+/// Where the layers of an inflow are only the state says; its nozzle must be where it was in the run. Those that
+/// turn are not looked at. Errors: InputError.
+template <int D>
+void requireNozzles(const Case& c, const std::filesystem::path& file, const Particles<D>& made,
+                    const Checkpoint<D>& state) {
+  const Particles<D>& p = state.particles;
+  for (std::uint32_t i = p.wallBegin(); i < p.count; ++i) {
+    const Body& body = c.bodies[p.body[i]];
+    if (body.kind != BodyKind::Inflow || body.rotation) continue;
+    const std::uint32_t place = p.id[i] - state.firstWall;  // among the walls of all
+    if (place >= made.wallCount()) continue;                // of another process
+    Vec<D> off =
+        p.position[i] - made.position[made.fluidCount + place] - resized<D>(wallDisplacement(body, state.time));
+    const Vec<D> direction = resized<D>(body.inflow.nozzle.direction * (1 / norm(body.inflow.nozzle.direction)));
+    for (int k = 0; k < D; ++k)
+      if (c.domain.periodic[static_cast<std::size_t>(k)]) {
+        const double period = c.domain.max[k] - c.domain.min[k];
+        off[k] -= period * std::round(off[k] / period);
+      }
+    if (norm(off - dot(off, direction) * direction) > 0.01 * c.spacing)
+      refuse(file,
+             fmt::format("inflow '{}' is not where it was in the run; expected its nozzle unchanged", body.name));
+  }
+}
+
 /// Errors: InputError for a body that the case does not have, or that is of the other kind.
 template <int D>
 void requireBodies(const Case& c, const std::filesystem::path& file, const Particles<D>& p) {
@@ -181,6 +223,15 @@ MadeParticles MadeParticles::of(const Case& c, std::vector<std::string>& notes, 
   return made;
 }
 
+void MadeParticles::requireFluid(const Case& c) const {
+  const bool some = std::ranges::any_of(ofBodies, [](const BodyCount& body) { return body.fluid > 0; });
+  if (!some && c.hasInflow())
+    throw InputError(
+        "the case has no fluid at the start: no body of type \"fluid\" holds a particle, and no inflow flows yet; "
+        "give "
+        "an inflow a small speed at t = 0, or add a body of fluid");
+}
+
 StartState fittingState(const Case& c, const std::filesystem::path& file, const MadeParticles& made) {
   StartState start = made.particles.visit([&]<int D>(const Particles<D>& created) -> StartState {
     Checkpoint<D> state = readCheckpoint<D>(file, made.part);
@@ -192,8 +243,10 @@ StartState fittingState(const Case& c, const std::filesystem::path& file, const 
     requireFields(c, file, state.particles);
     requireFlow(c, file, state.particles.flow);
     requireRigid(c, file, state.particles.rigid);
+    setMasses<D>(c, made, state.particles.rigid);
     requireBodies(c, file, state.particles);
-    const std::uint32_t firstWall = kinds.fluid + made.part.begin(kinds.walls);
+    requireNozzles(c, file, created, state);
+    const std::uint32_t firstWall = state.firstWall + made.part.begin(kinds.walls);
     setWallSurfaces(created, firstWall, state.particles);
     setWallVelocities(c, created, firstWall, state.particles);
     return {std::move(state.particles), state.step, state.time};

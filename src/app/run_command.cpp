@@ -47,13 +47,23 @@ Case caseOf(const RunOptions& options) {
   return c;
 }
 
-/// --force would remove the checkpoint before another one exists.
-void requireElsewhere(const std::filesystem::path& directory, const std::filesystem::path& checkpoint) {
+/// --force would remove what the run begins with before it has anything to put in its place.
+void requireElsewhere(const std::filesystem::path& directory, const RunOptions& options, const Case& c) {
   std::error_code error;  // what is not found here is not found later
   const auto canonical = [&](const auto& path) { return std::filesystem::weakly_canonical(path, error); };
-  if (!checkpoint.empty() && canonical(checkpoint).parent_path() == canonical(directory) && !error)
+  const std::filesystem::path run = canonical(directory);
+  const auto isInside = [&](const std::filesystem::path& file) {
+    if (file.empty()) return false;
+    const std::filesystem::path folder = canonical(file).parent_path();
+    return !error && (folder == run || folder == run / "frames" || folder == run / "probes");
+  };
+  if (isInside(options.resume))
     throw InputError(fmt::format("--resume {}: lies in the run directory; choose another one with --output",
-                                 checkpoint.string()));
+                                 options.resume.string()));
+  for (const Body& body : c.bodies)
+    if (isInside(body.shape.file.path))
+      throw InputError(fmt::format("body '{}': {} lies in the run directory; choose another one with --output",
+                                   body.name, body.shape.file.path));
 }
 
 /// Every host has about as many.
@@ -142,6 +152,7 @@ void runCommand(const RunOptions& options, const Communicator& processes) {
     if (shared) requireShareable(c, backend);
     requireRoomForParticles(c);
     made = MadeParticles::of(c, warnings, partOf(processes));
+    if (options.resume.empty()) made.requireFluid(c);
     for (std::string& warning : caseWarnings(c)) warnings.push_back(std::move(warning));
     releaseShapeFiles(c);
   });
@@ -160,7 +171,7 @@ void runCommand(const RunOptions& options, const Communicator& processes) {
   const auto directory = options.directory.empty() ? options.input.file.stem().concat("-run") : options.directory;
   together(processes, [&] {
     if (processes.rank() > 0) return;
-    requireElsewhere(directory, options.resume);
+    requireElsewhere(directory, options, c);
     files.emplace(RunDirectory::create(directory, options.force));
   });
   patience.reset();

@@ -158,7 +158,8 @@ toml::table withBase(toml::table document, const fs::path& folder, std::vector<f
   if (!base) return document;
 
   const auto* name = base->as_string();
-  if (!name || name->get().empty()) throw errorAt(base->source(), "base: expected the name of a case file");
+  if (!name || name->get().empty() || name->get().find('\0') != std::string::npos)
+    throw errorAt(base->source(), "base: expected the name of a case file");
   const fs::path basePath = (folder / name->get()).lexically_normal();
   if (std::ranges::find(chain, resolved(basePath)) != chain.end())
     throw errorAt(base->source(), fmt::format("base: '{}' inherits from itself", name->get()));

@@ -1,5 +1,7 @@
 #include "table_reader.hpp"
 
+#include "toml_string.hpp"
+
 #include "case_document.hpp"
 #include "suggestion.hpp"
 #include "time_table.hpp"
@@ -277,7 +279,12 @@ void TableReader::operator()(const Key& key, std::string& path, keys::FileTag) c
   const std::string* name = word(key);
   if (!name) return;
   if (name->empty()) throw section_.error(key.name, "expected the name of a file, found \"\"");
+  if (name->find('\0') != std::string::npos)
+    throw section_.error(key.name, "expected the name of a file, found a NUL");
   path = fileNamedAt(section_.table().get(key.name)->source(), *name).string();
+  if (!isUtf8(path))
+    throw section_.error(key.name,
+                         fmt::format("{}: the folder's name is no UTF-8, in which a run writes it down", path));
 }
 
 void TableReader::operator()(const Key& key, std::string& text) const {

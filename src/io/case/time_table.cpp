@@ -32,6 +32,7 @@ TimeFunction readTimeTable(const std::filesystem::path& path, const std::string&
           "no column '{}'{}", column,
           named && fields.size() > 1 ? "; expected " + listOf({fields.begin() + 1, fields.end()}) : ""));
     values = static_cast<std::size_t>(found - fields.begin());
+    if (values == 0) refuse(fmt::format("column '{}' is the first one, which holds the times", column));
   };
   for (bool first = true; const auto line = lines.next(); first = false) {
     if (first) separator = separatorOf(*line);

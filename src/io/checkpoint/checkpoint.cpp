@@ -192,19 +192,20 @@ void requireReadable(const std::filesystem::path& path) {
     throw InputError(fmt::format("{}: not a treacle checkpoint: not an HDF5 file", path.string()));
 }
 
-/// The walls of a part; it also looks at all ids, since a part does not see whether others have the same. Errors:
-/// Hdf5Error.
-void chooseWalls(hid_t file, const OpenFlow& flow, Selection& selection) {
+/// The walls of a part; it also looks at all ids, since a part does not see whether others have the same. Returns
+/// the id of the first wall of all. Errors: Hdf5Error.
+std::uint32_t chooseWalls(hid_t file, const OpenFlow& flow, Selection& selection) {
   const std::uint32_t fluid = selection.fluid, walls = selection.walls;
   const FieldInfo info{"id", Of::All, std::uint64_t{fluid} + walls};
   const FieldReader<std::uint32_t> reader(file, info);
   Buffer<std::uint32_t> ids(info.count);
   reader.read({0, info.count}, ids.data());
-  const std::uint32_t first = requireIds(ids, fluid, flow) + selection.part.begin(walls);
+  const std::uint32_t firstOfAll = requireIds(ids, fluid, flow), first = firstOfAll + selection.part.begin(walls);
   selection.chosenWalls.resize(selection.part.size(walls));
   for (std::uint32_t k = 0; k < walls; ++k)
     if (const std::uint32_t place = ids[fluid + k] - first; place < selection.chosenWalls.size())
       selection.chosenWalls[place] = k;
+  return firstOfAll;
 }
 
 /// Errors: Hdf5Error.
@@ -225,11 +226,11 @@ Checkpoint<D> readContent(const std::filesystem::path& path, ParticlePart part) 
   particles.flow = readFlow(file), particles.rigid = readRigid(file);
   Selection selection{part, particles.fluidCount, particles.wallCount(), {}};
   checkpoint.fluidOfAll = selection.fluid, checkpoint.wallsOfAll = selection.walls;
-  if (!part.isAll()) chooseWalls(file, particles.flow, selection);
+  if (!part.isAll()) checkpoint.firstWall = chooseWalls(file, particles.flow, selection);
   forEachNamedField(particles, std::uint64_t{selection.fluid} * modes,
                     [&](const FieldInfo& info, auto& field) { readField(file, info, selection, field); });
   requireSound(particles);
-  if (part.isAll()) requireIds(particles.id, particles.fluidCount, particles.flow);
+  if (part.isAll()) checkpoint.firstWall = requireIds(particles.id, particles.fluidCount, particles.flow);
   particles.fluidCount = part.size(selection.fluid);
   particles.count = particles.fluidCount + part.size(selection.walls);
   return checkpoint;

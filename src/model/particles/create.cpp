@@ -236,9 +236,8 @@ Particles<D> createParticles(const Case& c, std::vector<std::string>& notes, std
   const double radius = 0.5 * c.spacing * (1 - 1e-6);
   subtract<D>(c.domain, radius, {&fluid, &walls}, fluid);
   subtract<D>(c.domain, radius, {&fluid, &walls}, walls);
-  if (total(fluid) == 0)
-    throw InputError(fmt::format("the case has no fluid: no body of type \"fluid\" holds a particle{}{}",
-                                 c.hasInflow() ? ", and no inflow flows at the start" : "", sizesOfFluid(c)));
+  if (total(fluid) == 0 && !c.hasInflow())
+    throw InputError("the case has no fluid: no body of type \"fluid\" holds a particle" + sizesOfFluid(c));
   if (total(fluid) + total(walls) > maxParticles)
     throw InputError(fmt::format("the case would have {} particles, more than the limit of {}",
                                  total(fluid) + total(walls), maxParticles));

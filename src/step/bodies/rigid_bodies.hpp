@@ -165,7 +165,8 @@ class RigidSystem {
       const double gap = contact.gap - early() * opening(contact, motion[contact.other]);
       const double speed = opening(contact, motion[contact.other]);
       double apart = (gap > 0 ? -gap : std::min(-0.2 * gap, most)) / dt;
-      if (gap + dt * speed <= 0 && -speed > least) apart = std::max(apart, -speed * bounce(contact));
+      if (const double part = bounce(contact); part > 0 && gap + dt * speed <= 0 && -speed > least)
+        apart = std::max(apart, -speed * part);
       all.push_back(along(contact, contact.place, contact.normal, motion[contact.other], apart));
       addFriction(contact, motion[contact.other], all.back());
     }

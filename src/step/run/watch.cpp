@@ -132,16 +132,17 @@ std::string Watch::describeInsideWalls(double value, double dt) const {
 }
 
 std::string Watch::describeDensity(double value, double dt) const {
-  return fmt::format("the density of the fluid is off by {:.3g} % in the mean: {}{}{}", 100 * value,
-                     pressed_ && wallsMove_
-                         ? "walls that move press it together. Where they leave it no room, stop them "
-                           "sooner or let it out; elsewhere "
-                         : "",
-                     case_.method.kind == MethodKind::Isph
-                         ? ""
-                         : "raise bulk_viscosity where it is small, dynamic_viscosity where a light "
-                           "fluid carries a heavy one, and ",
-                     remedy(dt));
+  return fmt::format(
+      "the density of the fluid is off by {:.3g} % in the mean: {}{}{}", 100 * value,
+      pressed_ && wallsMove_
+          ? "walls that move or fluid that comes in press it together. Where there is no room for it, "
+            "stop them sooner or let it out; elsewhere "
+          : "",
+      case_.method.kind == MethodKind::Isph
+          ? ""
+          : "raise bulk_viscosity where it is small, dynamic_viscosity where a light "
+            "fluid carries a heavy one, and ",
+      remedy(dt));
 }
 
 std::string Watch::remedy(double dt) const {

@@ -245,12 +245,69 @@ TEST(resume, refusesOtherBodiesAndTakesOtherVelocitiesOfWalls) {
       "their order");
 }
 
+/// Of a hundred bytes, the most that they may have.
+TEST(resume, findsBodiesWithLongNames) {
+  Workshop shop;
+  shop.put("case.toml", replaced(smallCase, "\"column\"", '"' + std::string(100, 'c') + '"'));
+  ASSERT_EQ(shop.call("run case.toml --threads 1").exitCode, 0);
+  EXPECT_EQ(
+      shop.call("run case.toml --threads 1 -o rest --end-time 4e-3 --resume case-run/checkpoint.h5").exitCode, 0);
+}
+
+TEST(resume, takesOtherMassesOfRigidBodies) {
+  Workshop shop;
+  shop.put("case.toml", smallCase + R"(
+[[body]]
+name = "stone"
+type = "rigid"
+material = "syrup"
+shape = "box"
+min = [8e-3, 4e-3]
+max = [10e-3, 6e-3]
+)");
+  const auto height = [&](const std::string& arguments) {
+    const Outcome outcome = shop.call("run case.toml --threads 1 --force " + arguments);
+    EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+    const std::string rows = shop.content("rest/rigid_bodies.csv");
+    return rows.substr(rows.rfind("\n", rows.size() - 2));
+  };
+  height("-o rest --end-time 6e-3");
+  ASSERT_EQ(shop.call("run case.toml --threads 1 --end-time 4e-3 -o part --set 'stone.force=[0.05,0]'").exitCode,
+            0);
+  const std::string resume = "-o rest --end-time 6e-3 --resume part/checkpoint.h5 --set 'stone.force=[0.05,0]'";
+  const std::string same = height(resume), heavier = height(resume + " --set stone.mass=5"),
+                    again = height(resume + " --set stone.mass=4e-3");  // of its particles
+  EXPECT_NE(heavier, same);
+  EXPECT_EQ(again, same);
+}
+
 TEST(resume, refusesTheStateOfAnotherMethod) {
   Workshop shop;
   shop.put("case.toml", smallCase);
   ASSERT_EQ(shop.call("run case.toml -o whole --threads 1 --end-time 1e-3").exitCode, 0);
   shop.put("case.toml", smallIsphCase);
   expectRefused(shop, "whole/checkpoint.h5", "a state of the method 'mph-i', but that of the case is 'isph'");
+}
+
+TEST(resume, takesNoEmptyName) {
+  Workshop shop;
+  shop.put("case.toml", smallCase);
+  const Outcome outcome = shop.call("run case.toml --resume ''");
+  EXPECT_EQ(outcome.exitCode, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("--resume: expected a name, found \"\""));
+}
+
+/// A run that begins with a frame of the run that it would replace.
+TEST(resume, refusesToReplaceWhatItBeginsWith) {
+  Workshop shop;
+  shop.put("case.toml", smallCase);
+  ASSERT_EQ(shop.call("run case.toml --threads 1 -o first").exitCode, 0);
+  shop.put("second.toml", replaced(smallCase, "shape = \"box\"\nmin = [0, 0]\nmax = [6e-3, 6e-3]",
+                                   "shape = \"particles\"\nfile = \"first/frames/fluid_000001.vtp\""));
+  const Outcome outcome = shop.call("run second.toml --threads 1 -o first --force");
+  EXPECT_EQ(outcome.exitCode, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("fluid_000001.vtp lies in the run directory"));
+  EXPECT_EQ(shop.call("run second.toml --threads 1 -o other").exitCode, 0);
 }
 
 TEST(resume, refusesToReplaceItsOwnCheckpoint) {

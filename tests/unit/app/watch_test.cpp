@@ -128,9 +128,9 @@ body = [
 )");
   const Outcome outcome = shop.call("run press.toml --threads 1");
   EXPECT_EQ(outcome.exitCode, 3);
-  EXPECT_THAT(outcome.err,
-              HasSubstr("walls that move press it together. Where they leave it no room, stop them sooner or "
-                        "let it out; elsewhere raise bulk_viscosity"));
+  EXPECT_THAT(outcome.err, HasSubstr("walls that move or fluid that comes in press it together. Where there is no "
+                                     "room for it, stop them sooner or "
+                                     "let it out; elsewhere raise bulk_viscosity"));
 }
 
 /// The light one is as stiff as the heavy one, but has next to no inertia and viscosity to keep its particles in

@@ -28,6 +28,7 @@ struct Checkpoint {
   MethodKind method = {};  // that it was computed by
   StateNames names;        // empty: not known
   std::uint32_t fluidOfAll = 0, wallsOfAll = 0;  // in the file, of which `particles` may have a part
+  std::uint32_t firstWall = 0;                   // id of the first wall particle in the file
 };
 
 /// Starts HDF5, which ends the program if memory gives out meanwhile: a run does so before it has any to lose.
