@@ -1,5 +1,5 @@
-"""What the site has beside docs/ (mkdocs.yml): pages of the top folder, and the files of the repository that pages
-link to, so that the links of GitHub hold on the site, too."""
+"""What the site has beside docs/ (mkdocs.yml): pages of the top folder, the pages of the C++ headers, and the files of the
+repository that pages link to, so that the links of GitHub hold on the site, too."""
 
 import pathlib
 import posixpath
@@ -15,6 +15,7 @@ top_pages = {
     "CHANGELOG.md": "changelog.md",
     "THIRD-PARTY-NOTICES.md": "third-party-notices.md",
 }
+headers = root / "build/site-cpp"  # of doxygen (scripts/site)
 link = re.compile(r"(\]\()([^)#\s]+)([^)\s]*\))")
 fence = re.compile(r"^(```.*?^```)", re.MULTILINE | re.DOTALL)
 
@@ -68,6 +69,9 @@ def on_files(files, config):
         if (root / path).is_dir():
             rows = [f"- [{name}]({posixpath.relpath(name, path)}.txt)" for name in contained]
             files.append(File.generated(config, uri, content=f"# {path}\n\n" + "\n".join(rows) + "\n"))
+    for path in sorted(path for path in headers.rglob("*") if path.is_file()):
+        uri = f"cpp/{path.relative_to(headers).as_posix()}"
+        files.append(File.generated(config, uri, abs_src_path=str(path)))
     return files
 
 

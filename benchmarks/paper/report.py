@@ -22,7 +22,7 @@ benchmarks/paper/reproduce.py --report benchmarks/results/RECORD.json           
 - The figures in the papers have no readable points. This page therefore judges the statements of the papers, and compares iterations with those of the authors' published program. Rounding changes counts of late states by some 5 %.
 - A number agrees with a printed one if it is within 0.6 %, the rounding of three digits.
 - The authors' machines are one NVIDIA A100 (80 GB) and one Xeon Gold 6252.
-- Tables show the first and the last case, pictures and the record all.
+- Tables show the first and the last case, pictures and the record all. The commit of the record, named below, may be an earlier state of the program.
 """
 
 

@@ -4,8 +4,10 @@
 #include "estimate.hpp"
 #include "machine.hpp"
 #include "memory.hpp"
+#include "patience.hpp"
 #include "print.hpp"
 #include "progress.hpp"
+#include "resume.hpp"
 #include "run_log.hpp"
 #include "threads.hpp"
 #include "treacle/core/error.hpp"
@@ -15,7 +17,6 @@
 #include "treacle/model/case/names.hpp"
 #include "treacle/model/geometry/mesh.hpp"
 #include "treacle/model/geometry/shape.hpp"
-#include "treacle/model/particles/create.hpp"
 #include "treacle/step/method/solve_stages.hpp"
 #include "treacle/step/run/shareable.hpp"
 
@@ -132,15 +133,17 @@ void printNumbers(const Case& c) {
 }  // namespace
 
 void checkCommand(const CheckOptions& options) {
+  const Patience patience("checking the case");
   startThreads(options.threads);
   const Case c = readCase(options.input.file, options.input.overrides);
   std::vector<std::string> warnings;
-  std::vector<BodyCount> ofBodies;
   requireRoomForParticles(c);
-  AnyParticles particles = createParticles(c, warnings, &ofBodies);
+  MadeParticles made = MadeParticles::of(c, warnings);
+  made.requireFluid(c);
+  AnyParticles& particles = made.particles;
   for (std::string& warning : caseWarnings(c)) warnings.push_back(std::move(warning));
   if (c.output.surface && !hasFreeSurface()) warnings.push_back("output.surface: " + whyNoFreeSurface());
-  printParticles(c, particles.numbers(), ofBodies);
+  printParticles(c, particles.numbers(), made.ofBodies);
   printMeshes(c);
   if (options.processes > 1)
     printSharedMemory(c, particles, options.processes);

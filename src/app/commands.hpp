@@ -103,9 +103,14 @@ void convergenceCommand(const ConvergenceOptions& options);
 /// `command`: its name in messages. Errors: InputError where there is no interpreter.
 void pythonCommand(const std::string& command, const std::string& module,
                    const std::vector<std::string>& arguments);
+/// In a process of its own. Returns whether that did well.
+bool tryPythonCommand(const std::string& command, const std::string& module,
+                      const std::vector<std::string>& arguments);
 /// Likewise: draws a table of a directory, with options of treacle.plot that say which.
 void drawCurves(const std::filesystem::path& directory, const std::filesystem::path& picture,
                 std::vector<std::string> options);
+bool tryDrawCurves(const std::filesystem::path& directory, const std::filesystem::path& picture,
+                   std::vector<std::string> options);
 /// Whether the runs agree within the bound.
 bool compareCommand(const CompareOptions& options);
 

@@ -2,6 +2,7 @@
 #include "commands.hpp"
 #include "compare_files.hpp"
 #include "compare_tables.hpp"
+#include "patience.hpp"
 #include "print.hpp"
 #include "threads.hpp"
 #include "treacle/core/error.hpp"
@@ -44,7 +45,9 @@ void printVerdict(const RunDifference& difference, const CompareOptions& options
 }  // namespace
 
 bool compareCommand(const CompareOptions& options) {
+  const Patience patience("comparing", options.quiet);
   startThreads(0);
+  if (!options.csv.empty()) RunDirectory::requireForeign(options.csv, "--csv");
   if (isParticleFile(options.a) || isParticleFile(options.b)) return compareFiles(options);
   if (options.time)
     throw InputError("--time: two runs are compared at all times that they share; expected a CSV file as A or B");

@@ -4,6 +4,7 @@
 #include "compared_solvers.hpp"
 #include "machine.hpp"
 #include "memory.hpp"
+#include "patience.hpp"
 #include "print.hpp"
 #include "progress.hpp"
 #include "resume.hpp"
@@ -21,6 +22,7 @@
 
 #include <algorithm>
 #include <system_error>
+#include <utility>
 
 namespace treacle {
 namespace {
@@ -31,9 +33,12 @@ namespace fs = std::filesystem;
 StartState startOf(Case& until, const ConvergenceOptions& options, MadeParticles made) {
   StartState start =
       options.resume.empty() ? StartState{std::move(made.particles)} : fittingState(until, options.resume, made);
-  until.time.end = options.at.value_or(start.time);
+  const double end = std::exchange(until.time.end, options.at.value_or(start.time));
   if (const double steps = until.time.end / until.time.step; steps > maxSteps)
     throw InputError(fmt::format("--at: {:.3g} steps to it are too many", steps));
+  if (until.time.end > 100 * end)
+    throw InputError(fmt::format(
+        "--at: {:g} s is more than a hundred times the end of the case, {:g} s (time.end)", until.time.end, end));
   if (until.time.stepsVary() ? until.time.end < start.time * (1 - 1e-9) : until.steps() < start.step)
     throw InputError(fmt::format("--at: expected at least the checkpoint's time, {:g} s, found {:g}", start.time,
                                  until.time.end));
@@ -98,12 +103,10 @@ void compareSolvers(const Case& c, AnySimulation simulation, const std::vector<S
   printTable(curves);
   writeConvergence(directory / "convergence.csv", curves);
   writeSolvers(directory / "solvers.csv", curves);
-  try {
-    drawCurves(directory, directory / "convergence.png",
-               {"--convergence", "--title=" + c.title, "--remark=" + where});
-  } catch (const InputError& error) {  // what was compared is told, and is in the tables
-    printWarning(error.what());
-  }
+  // What was compared is told, and is in the tables.
+  if (!tryDrawCurves(directory, directory / "convergence.png",
+                     {"--convergence", "--title=" + c.title, "--remark=" + where}))
+    printWarning("convergence.png was not drawn");
 }
 
 fs::path directoryOf(const ConvergenceOptions& options) {
@@ -120,6 +123,7 @@ fs::path directoryOf(const ConvergenceOptions& options) {
 }  // namespace
 
 void convergenceCommand(const ConvergenceOptions& options) {
+  const Patience patience("comparing the solvers");
   const std::optional<DeviceInfo> device = deviceFor(options.backend);
   startThreads(options.threads);
   Case c = readCase(options.input.file, overridesOf(options));
@@ -127,6 +131,7 @@ void convergenceCommand(const ConvergenceOptions& options) {
   std::vector<std::string> warnings;
   requireRoomForParticles(c);
   MadeParticles made = MadeParticles::of(c, warnings);
+  if (options.resume.empty()) made.requireFluid(c);
   for (std::string& warning : caseWarnings(c)) warnings.push_back(std::move(warning));
   if (!device)
     for (std::string& warning : cpuWarnings(c)) warnings.push_back(std::move(warning));

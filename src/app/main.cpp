@@ -124,6 +124,12 @@ void addCase(CLI::App& command, CaseOptions& options) {
       ->allow_extra_args(false);
 }
 
+/// A variable of the shell that is not set must not be taken for an option that is not there.
+CLI::Validator notEmpty() {
+  return {[](const std::string& text) { return text.empty() ? "expected a name, found \"\"" : std::string(); },
+          ""};
+}
+
 /// What a case is computed with, and from where on.
 template <class Options>
 void addMachine(CLI::App& command, Options& options) {
@@ -132,14 +138,17 @@ void addMachine(CLI::App& command, Options& options) {
   command.add_option("--threads", options.threads, "Number of threads")->type_name("N")->check(threadNumber());
   addChoice<Precision>(command, "--precision", namesOf<Precision>, options.precision,
                        "mixed: preconditioner in single precision; default: solver.precision of the case");
-  command.add_option("--resume", options.resume, "Checkpoint to continue from")->type_name("FILE");
+  command.add_option("--resume", options.resume, "Checkpoint to continue from")
+      ->type_name("FILE")
+      ->check(notEmpty());
 }
 
 void addRun(CLI::App& app, RunOptions& options, const Communicator& job) {
   CLI::App* run = app.add_subcommand("run", "Run a case");
   addCase(*run, options.input);
   run->add_option("-o,--output", options.directory, "Run directory; default: the case's name with -run")
-      ->type_name("DIR");
+      ->type_name("DIR")
+      ->check(notEmpty());
   addMachine(*run, options);
   run->add_option("--end-time", options.endTime, "End of the run instead of time.end [s]")
       ->type_name("T")
@@ -347,7 +356,10 @@ int execute(int argc, char** argv, const Communicator& job) {
       throw InputError(fmt::format("expected a command: {}; treacle --help tells more", commandList(app)));
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return app.exit(e);  // help and version
-    return report(fmt::format("{}; --help tells more", e.what()), ExitCode::BadInput);
+    std::string text = e.what();                     // "--threads: At Most 1 required but received 2"
+    if (const std::size_t at = text.find(": At Most 1 required"); at != text.npos)
+      text = text.substr(0, at) + " is given more than once";
+    return report(fmt::format("{}; --help tells more", text), ExitCode::BadInput);
   } catch (const InputError& e) {
     return report(e.what(), ExitCode::BadInput);
   } catch (const DeviceMemoryExhausted& e) {

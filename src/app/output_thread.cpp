@@ -1,13 +1,25 @@
 #include "output_thread.hpp"
 
+#include "treacle/core/error.hpp"
 #include "treacle/core/timer.hpp"
 
+#include <fmt/format.h>
+
+#include <system_error>
 #include <utility>
 
 namespace treacle {
 
-OutputThread::OutputThread(std::function<void(const Snapshot&)> write)
-    : write_(std::move(write)), thread_([this] { run(); }) {}
+OutputThread::OutputThread(std::function<void(const Snapshot&)> write) : write_(std::move(write)) {
+  try {
+    thread_ = std::thread([this] { run(); });
+  } catch (const std::system_error& e) {
+    throw RunError(
+        fmt::format("the system gives no thread for the output ({}): too little memory, or a limit of the "
+                    "number of processes (ulimit -u)",
+                    e.what()));
+  }
+}
 
 OutputThread::~OutputThread() {
   {

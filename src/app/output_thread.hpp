@@ -17,7 +17,8 @@ namespace treacle {
 /// once; snapshots that were handed over meanwhile are written nevertheless.
 class OutputThread {
  public:
-  /// `write` is called by the thread, for one snapshot at a time.
+  /// `write` is called by the thread, for one snapshot at a time. Errors: RunError where the system gives no
+  /// thread.
   explicit OutputThread(std::function<void(const Snapshot&)> write);
   OutputThread(const OutputThread&) = delete;
   OutputThread& operator=(const OutputThread&) = delete;

@@ -33,6 +33,7 @@ void plotCommand(const PlotOptions& options, std::string_view field) {
   const RunDirectory run = RunDirectory::open(options.directory);
   const Case c = readCase(run.caseFile(), {}, ShapeFiles::Leave);
   std::filesystem::path output = options.output;
+  if (!output.empty()) RunDirectory::requireForeign(output, "--output");
   if (!options.probe.empty()) {
     const Probe& probe = probeNamed(options.probe, c);
     if (output.empty()) output = run.probePicture(probe.name);

@@ -26,7 +26,12 @@ void flushPrinted() {
   if (failure == 0) note(std::fflush(stdout) == 0);
 }
 
-void printError(const std::string& text) { std::fwrite(text.data(), 1, text.size(), stderr); }
+void printError(const std::string& text) {
+  std::string shown = text;  // names may hold what a terminal would obey
+  for (char& c : shown)
+    if ((static_cast<unsigned char>(c) < ' ' && c != '\n' && c != '\t' && c != '\r') || c == 0x7f) c = '?';
+  std::fwrite(shown.data(), 1, shown.size(), stderr);
+}
 
 std::string printFailure() {
   return failure == 0 || failure == EPIPE ? std::string{} : std::generic_category().message(failure);

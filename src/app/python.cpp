@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -53,10 +54,34 @@ void pythonCommand(const std::string& command, const std::string& module,
                   command, interpreter, std::strerror(errno)));
 }
 
+bool tryPythonCommand(const std::string& command, const std::string& module,
+                      const std::vector<std::string>& arguments) {
+  flushPrinted();
+  const pid_t child = fork();
+  if (child < 0) return false;
+  if (child == 0) {
+    try {
+      pythonCommand(command, module, arguments);
+    } catch (const InputError& error) {
+      printWarning(error.what());
+    }
+    std::_Exit(static_cast<int>(ExitCode::BadInput));
+  }
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0 && errno == EINTR) continue;
+  return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
 void drawCurves(const std::filesystem::path& directory, const std::filesystem::path& picture,
                 std::vector<std::string> options) {
   options.insert(options.end(), {"--output=" + picture.string(), "--", directory.string()});
   pythonCommand("plot", "plot", options);
+}
+
+bool tryDrawCurves(const std::filesystem::path& directory, const std::filesystem::path& picture,
+                   std::vector<std::string> options) {
+  options.insert(options.end(), {"--output=" + picture.string(), "--", directory.string()});
+  return tryPythonCommand("plot", "plot", options);
 }
 
 }  // namespace treacle

@@ -34,18 +34,15 @@ ProbeRecorder::Target filesOf(const RunDirectory& directory) {
 
 }  // namespace
 
-Recorder::Recorder(const Case& c, RunDirectory& directory, RunLog& log, double start, bool timings,
-                   CopyState copyState, ProbeRecorder::Measure measure, OrderPieces orderPieces)
+Recorder::Recorder(const Case& c, RunDirectory& directory, RunLog& log, double start, bool timings, Source source)
     : case_(c),
       directory_(directory),
-      log_(log),
-      copyState_(std::move(copyState)),
-      orderPieces_(std::move(orderPieces)),
+      source_(std::move(source)),
       history_(directory.history(), {.flow = c.isOpen(), .timings = timings}),
-      probes_(c, filesOf(directory), start, std::move(measure)),
+      probes_(c, filesOf(directory), start, source_.measure),
       frames_(c.output.interval, c.time, start),
       checkpoints_(c.output.checkpointInterval, c.time, start),
-      watch_(c),
+      watch_(c, log),
       // OpenMP forgets in a new thread how many it was given.
       output_([this, threads = omp_get_max_threads()](const Snapshot& snapshot) {
         omp_set_num_threads(threads);
@@ -63,21 +60,9 @@ void Recorder::begin() {
 }
 
 void Recorder::record(const StepReport& report) {
-  if (steps_++ == 0) firstIterations_ = report.iterations;
-  lastIterations_ = report.iterations, lastStep_ = report.step;
-  iterations_ += report.iterations;
-  fallbacks_ += report.fallbacks;
-  rejected_ += report.rejected;
-  leastStep_ = steps_ == 1 ? report.timeStep : std::min(leastStep_, report.timeStep);
-  longestStep_ = std::max(longestStep_, report.timeStep);
-  stepTime_ += report.timeStep;
-  seconds_ += report.seconds;
-  meanDensity_ = report.diagnostics.meanDensityRatio;
-  densityError_ = report.diagnostics.meanDensityError;
-  largestDensityError_ = std::max(largestDensityError_, densityError_);
+  tally_.add(report);
   Timer timer;
   history_.append(historyRow(case_, report));
-  if (report.flow) flow_ = *report.flow;
   if (balance_ && report.balance) balance_->append(report.step, report.time, *report.balance);
   if (rigid_) rigid_->append(report.step, report.time, report.rigid);
   probes_.record(report);
@@ -95,8 +80,8 @@ void Recorder::save(bool frame, bool checkpoint) {
 
 void Recorder::takePieces() {
   Timer timer;
-  orderPieces_(PieceOrder::Take, directory_.frameCount() + openFrames_.size());
-  openFrames_.push_back(lastIterations_);
+  source_.orderPieces(PieceOrder::Take, directory_.frameCount() + openFrames_.size());
+  openFrames_.push_back(tally_.lastIterations());
   outputSeconds_ += timer.lap();
 }
 
@@ -105,10 +90,10 @@ void Recorder::joinPieces(PieceOrder order) {
   if (openFrames_.empty()) return;
   Timer timer;
   try {
-    for (const PiecedFrame& f : orderPieces_(order, 0)) {
+    for (const PiecedFrame& f : source_.orderPieces(order, 0)) {
       directory_.joinPieces(f.pieces);
       frameStep_ = f.step;
-      note(f.step, f.pieces.time, openFrames_.front(), f.arrangement, f.cost);
+      watch_.note(directory_.frameCount() - 1, f.step, f.pieces.time, openFrames_.front(), f.arrangement, f.cost);
       openFrames_.pop_front();
     }
   } catch (...) {
@@ -128,7 +113,7 @@ void Recorder::wait() {
 void Recorder::writeFrame() {
   wait();
   if (inPieces()) {
-    if (frameStep_ >= 0 && (steps_ == 0 || frameStep_ == lastStep_)) return;
+    if (frameStep_ >= 0 && (tally_.steps() == 0 || frameStep_ == tally_.lastStep())) return;
     takePieces();
     return joinPieces(PieceOrder::Finish);
   }
@@ -156,30 +141,14 @@ void Recorder::drawPicture() {
   drawFrame(directory_.finalPicture(), fluidFrame(case_, *state), wallsFrame(*state), options);
 }
 
-std::vector<std::string> Recorder::takeWarnings() {
-  const std::lock_guard lock(warningsMutex_);
-  return std::exchange(warnings_, {});
-}
-
 void Recorder::summarise(RunSummary& summary) const {
-  summary.meanIterations = steps_ > 0 ? static_cast<double>(iterations_) / static_cast<double>(steps_) : 0;
-  summary.firstIterations = firstIterations_;
-  summary.lastIterations = lastIterations_;
-  summary.fallbacks = fallbacks_;
-  summary.rejectedSteps = rejected_;
-  summary.leastStep = leastStep_, summary.longestStep = longestStep_;
-  summary.meanStep = steps_ > 0 ? stepTime_ / static_cast<double>(steps_) : 0;
-  summary.meanDensity = meanDensity_;
-  summary.densityError = densityError_;
-  summary.largestDensityError = largestDensityError_;
-  summary.arrangement = lastArrangement_;
-  summary.smallestLeast = smallestLeast_, summary.smallestLow = smallestLow_;
-  if (flow_) summary.flow = {flow_->particles, flow_->in.particles, flow_->out.particles};
+  const PhaseSeconds& seconds = tally_.seconds();
+  summary.tally = tally_.tally(), summary.frames = watch_.tally();
+  summary.frames.count = directory_.frameCount();
   summary.phaseSeconds = {
-      {"search", seconds_.search}, {"lists", seconds_.lists}, {"coefficients", seconds_.coefficients},
-      {"coarse", seconds_.coarse}, {"solve", seconds_.solve}, {"update", seconds_.update},
+      {"search", seconds.search}, {"lists", seconds.lists}, {"coefficients", seconds.coefficients},
+      {"coarse", seconds.coarse}, {"solve", seconds.solve}, {"update", seconds.update},
       {"output", outputSeconds_}};
-  summary.frames = directory_.frameCount(), summary.frameCost = frameCost_;
   summary.outputThreadSeconds = output_.busySeconds();
 }
 
@@ -187,7 +156,7 @@ Snapshot& Recorder::takeSnapshot() {
   Timer timer;
   Snapshot& snapshot = output_.next();
   snapshot.whole = false;
-  copyState_(snapshot);
+  source_.copyState(snapshot);
   snapshot.whole = true;
   outputSeconds_ += timer.lap();
   return snapshot;
@@ -201,7 +170,7 @@ Snapshot* Recorder::finalSnapshot() {
 }
 
 void Recorder::handOver(Snapshot& snapshot, bool frame, bool checkpoint) {
-  snapshot.iterations = lastIterations_;
+  snapshot.iterations = tally_.lastIterations();
   snapshot.frame = frame, snapshot.checkpoint = checkpoint;
   output_.handOver();
 }
@@ -219,30 +188,16 @@ void Recorder::write(const Snapshot& s) {
       bytes += directory_.writeSurface(directory_.frameCount() - 1, freeSurface(fluid, case_.spacing),
                                        SurfaceFormat::Vtp, case_.output.compression);
     frameStep_ = s.step;
-    note(s.step, s.time, s.iterations, arrangement, {bytes, timer.lap()});
+    watch_.note(directory_.frameCount() - 1, s.step, s.time, s.iterations, arrangement, {bytes, timer.lap()});
+    watch_.look(fluid, walls, arrangement);
   }
   if (s.checkpoint) {
     s.particles.visit([&](const auto& p) {
-      treacle::writeCheckpoint(directory_.checkpoint(), p, s.step, s.time, case_.method.kind);
+      treacle::writeCheckpoint(directory_.checkpoint(), p, s.step, s.time, case_.method.kind,
+                               StateNames::of(case_));
     });
     checkpointStep_ = s.step;
   }
-}
-
-/// Notes in the log that a frame is on disk. The output thread calls it, or, if frames are in pieces, that of the
-/// run.
-void Recorder::note(std::int64_t step, double time, int iterations, const Arrangement& arrangement,
-                    const FrameCost& cost) {
-  log_.info(fmt::format("frame {}: step {}, t = {:.6g} s, {} iterations, {}; {:.3g} MB in {:.3g} s",
-                        directory_.frameCount() - 1, step, time, iterations, textOf(arrangement),
-                        static_cast<double>(cost.bytes) / 1e6, cost.seconds));
-  frameCost_ += cost;
-  lastArrangement_ = arrangement;
-  smallestLeast_ = std::min(smallestLeast_, arrangement.least);
-  smallestLow_ = std::min(smallestLow_, arrangement.low);
-  const std::vector<std::string> warnings = watch_.look(arrangement, time);
-  const std::lock_guard lock(warningsMutex_);
-  warnings_.insert(warnings_.end(), warnings.begin(), warnings.end());
 }
 
 }  // namespace treacle

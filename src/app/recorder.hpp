@@ -1,11 +1,12 @@
 #pragma once
 
-#include "arrangement_watch.hpp"
+#include "frame_watch.hpp"
 #include "interval.hpp"
 #include "output_thread.hpp"
 #include "piece_writer.hpp"
 #include "probe_recorder.hpp"
 #include "run_log.hpp"
+#include "run_tally.hpp"
 #include "treacle/io/files/run_directory.hpp"
 #include "treacle/io/tables/balance_writer.hpp"
 #include "treacle/io/tables/history.hpp"
@@ -17,7 +18,6 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,16 +31,16 @@ namespace treacle {
 /// but summarise: RunError or std::bad_alloc, also for what was to be written since the call before.
 class Recorder {
  public:
-  /// Copies particles, step and time of the simulation into a snapshot.
-  using CopyState = std::function<void(Snapshot&)>;
-
-  /// Has the PieceWriters of all processes do something.
-  using OrderPieces = std::function<std::vector<PiecedFrame>(PieceOrder order, std::size_t frame)>;
+  /// Where what is written comes from.
+  struct Source {
+    std::function<void(Snapshot&)> copyState;  // particles, step and time of the simulation
+    ProbeRecorder::Measure measure;
+    // Has the PieceWriters of all processes do something; empty: frames are not written in pieces.
+    std::function<std::vector<PiecedFrame>(PieceOrder order, std::size_t frame)> orderPieces{};
+  };
 
   /// `start`: simulation time at which the run starts [s]. `timings`: the history has the seconds of the phases.
-  /// `orderPieces`: frames are written in pieces; empty: they are not.
-  Recorder(const Case& c, RunDirectory& directory, RunLog& log, double start, bool timings, CopyState copyState,
-           ProbeRecorder::Measure measure, OrderPieces orderPieces = {});
+  Recorder(const Case& c, RunDirectory& directory, RunLog& log, double start, bool timings, Source source);
 
   /// The frame of the state at the start, and what probes read there.
   void begin();
@@ -63,7 +63,7 @@ class Recorder {
   void loseSimulation() { isLost_ = true; }
 
   /// What is to be said about frames written since the call before.
-  std::vector<std::string> takeWarnings();
+  std::vector<std::string> takeWarnings() { return watch_.takeWarnings(); }
 
   /// Fills in iterations, fallbacks, densities, distances and seconds. To be called after wait().
   void summarise(RunSummary& summary) const;
@@ -74,39 +74,24 @@ class Recorder {
   void save(bool frame, bool checkpoint);
   void handOver(Snapshot& snapshot, bool frame, bool checkpoint);
   void write(const Snapshot& snapshot);
-  void note(std::int64_t step, double time, int iterations, const Arrangement& arrangement, const FrameCost& cost);
 
-  bool inPieces() const { return static_cast<bool>(orderPieces_); }
+  bool inPieces() const { return static_cast<bool>(source_.orderPieces); }
   void takePieces();
   void joinPieces(PieceOrder order);
 
   const Case& case_;
   RunDirectory& directory_;
-  RunLog& log_;
-  CopyState copyState_;
-  OrderPieces orderPieces_;
+  Source source_;
   std::deque<int> openFrames_;  // in pieces that may not all be on disk: iterations of their steps
   HistoryWriter history_;
   std::optional<BalanceWriter> balance_;
   std::optional<RigidWriter> rigid_;
   ProbeRecorder probes_;
   Interval frames_, checkpoints_;
-  std::int64_t frameStep_ = -1, checkpointStep_ = -1;  // of the last ones on disk; written by the output thread
-  std::int64_t lastStep_ = -1;                         // of the last report
-  std::int64_t steps_ = 0, iterations_ = 0;
-  int firstIterations_ = 0, lastIterations_ = 0;
-  std::int64_t fallbacks_ = 0, rejected_ = 0;
-  double leastStep_ = 0, longestStep_ = 0, stepTime_ = 0;
-  double meanDensity_ = 0, densityError_ = 0, largestDensityError_ = 0;
-  Arrangement lastArrangement_;  // written by the output thread, as are the next two, or where pieces are joined
-  double smallestLeast_ = nearestReach, smallestLow_ = nearestReach;
-  FrameCost frameCost_;  // likewise
-  ArrangementWatch watch_;
-  std::mutex warningsMutex_;
-  std::vector<std::string> warnings_;
+  RunTally tally_;
+  FrameWatch watch_;  // the output thread's, or that of the run where pieces are joined
+  std::int64_t frameStep_ = -1, checkpointStep_ = -1;  // of the last ones on disk; likewise
   bool isLost_ = false;
-  std::optional<FlowReport> flow_;  // of the last step, where the case is open
-  PhaseSeconds seconds_;
   double outputSeconds_ = 0;  // that the simulation had to wait
   OutputThread output_;       // last: it uses the others
 };

@@ -4,7 +4,9 @@
 #include "treacle/io/checkpoint/checkpoint.hpp"
 #include "treacle/model/case/checks.hpp"
 #include "treacle/model/case/names.hpp"
+#include "treacle/model/motion/wall_motion.hpp"
 #include "treacle/model/particles/create.hpp"
+#include "treacle/step/flow/outflow_start.hpp"
 
 #include <fmt/format.h>
 
@@ -31,6 +33,49 @@ void requireMethod(const Case& c, const std::filesystem::path& file, MethodKind 
   if (method != c.method.kind)
     refuse(file, fmt::format("a state of the method '{}', but that of the case is '{}'", nameOf(method),
                              nameOf(c.method.kind)));
+}
+
+std::string listed(const std::vector<std::string>& names) { return fmt::format("'{}'", fmt::join(names, "', '")); }
+
+/// Gives particles the numbers that their materials have in the case, which may list them in another order.
+/// Errors: InputError for materials that the case does not have.
+template <int D>
+void matchMaterials(const Case& c, const std::filesystem::path& file, const StateNames& names, Particles<D>& p) {
+  if (names.materials.empty()) return;
+  const std::vector<std::string> here = StateNames::of(c).materials;
+  std::vector<std::uint8_t> number(names.materials.size());
+  for (std::size_t m = 0; m < number.size(); ++m) {
+    const auto found = std::ranges::find(here, names.materials[m]);
+    const bool used = std::ranges::find(p.material, m) != p.material.end();
+    if (found == here.end() && used)
+      refuse(file,
+             fmt::format("its particles are of the material '{}', but the case has {}; expected the materials of "
+                         "the run, in any order",
+                         names.materials[m], listed(here)));
+    number[m] = static_cast<std::uint8_t>(found == here.end() ? 0 : found - here.begin());
+  }
+  for (std::uint8_t& m : p.material)
+    if (m < number.size()) m = number[m];
+}
+
+/// What is known of bodies stands in their order. Errors: InputError for other bodies, or another order.
+void requireSameBodies(const Case& c, const std::filesystem::path& file, const StateNames& names) {
+  const std::vector<std::string> here = StateNames::of(c).bodies;
+  for (std::size_t b = 0; b < names.bodies.size(); ++b)
+    if (b >= here.size() || here[b] != names.bodies[b])
+      refuse(file,
+             fmt::format("its bodies are {}, but the case has {}; expected the bodies of the run in their order",
+                         listed(names.bodies), listed(here)));
+}
+
+/// Walls that keep their velocity go on with that of the case; others get theirs in each step.
+template <int D>
+void setWallVelocities(const Case& c, const Particles<D>& made, std::uint32_t first, Particles<D>& p) {
+  const auto keepsIt = [&](const Body& b) {
+    return b.kind == BodyKind::Wall && !b.rotation && b.oscillation.period == 0 && !isDriven(b.displacement);
+  };
+  for (std::uint32_t i = p.fluidCount; i < p.count; ++i)
+    if (keepsIt(c.bodies[p.body[i]])) p.velocity[i] = made.velocity[made.fluidCount + p.id[i] - first];
 }
 
 /// Numbers of particles of the kinds.
@@ -92,6 +137,48 @@ void requireRigid(const Case& c, const std::filesystem::path& file, const RigidM
   }
 }
 
+/// Rigid bodies have the masses that the case gives them now; inertia goes with mass.
+template <int D>
+void setMasses(const Case& c, const MadeParticles& made, RigidMotion& rigid) {
+  for (std::size_t b = 0; b < rigid.bodies.size(); ++b) {
+    RigidBody& body = rigid.bodies[b];
+    if (body.mass == 0) continue;
+    const double given = c.bodies[b].rigid.mass,
+                 own = c.materials[static_cast<std::size_t>(c.bodies[b].material)].density *
+                       std::pow(c.spacing, D) * made.ofBodies[b].wall;
+    const double ratio = (given > 0 ? given : own) / body.mass;
+    if (std::abs(ratio - 1) < 1e-9) continue;  // the rounding of a sum
+    body.mass *= ratio;
+    for (double& moment : body.inertia) moment *= ratio;
+    rigid.response.clear();
+  }
+}
+
+/// Where the layers of an inflow are only the state says; its nozzle must be where it was in the run. Those that
+/// turn are not looked at. Errors: InputError.
+template <int D>
+void requireNozzles(const Case& c, const std::filesystem::path& file, const Particles<D>& made,
+                    const Checkpoint<D>& state) {
+  const Particles<D>& p = state.particles;
+  for (std::uint32_t i = p.wallBegin(); i < p.count; ++i) {
+    const Body& body = c.bodies[p.body[i]];
+    if (body.kind != BodyKind::Inflow || body.rotation) continue;
+    const std::uint32_t place = p.id[i] - state.firstWall;  // among the walls of all
+    if (place >= made.wallCount()) continue;                // of another process
+    Vec<D> off =
+        p.position[i] - made.position[made.fluidCount + place] - resized<D>(wallDisplacement(body, state.time));
+    const Vec<D> direction = resized<D>(body.inflow.nozzle.direction * (1 / norm(body.inflow.nozzle.direction)));
+    for (int k = 0; k < D; ++k)
+      if (c.domain.periodic[static_cast<std::size_t>(k)]) {
+        const double period = c.domain.max[k] - c.domain.min[k];
+        off[k] -= period * std::round(off[k] / period);
+      }
+    if (norm(off - dot(off, direction) * direction) > 0.01 * c.spacing)
+      refuse(file,
+             fmt::format("inflow '{}' is not where it was in the run; expected its nozzle unchanged", body.name));
+  }
+}
+
 /// Errors: InputError for a body that the case does not have, or that is of the other kind.
 template <int D>
 void requireBodies(const Case& c, const std::filesystem::path& file, const Particles<D>& p) {
@@ -131,7 +218,18 @@ MadeParticles MadeParticles::of(const Case& c, std::vector<std::string>& notes, 
   MadeParticles made;
   made.part = part;
   made.particles = createParticles(c, notes, &made.ofBodies, part);
+  if (part.isAll())
+    noteFluidInOutflows(c, fluidInOutflows(c, made.particles), made.particles.numbers().fluid, notes);
   return made;
+}
+
+void MadeParticles::requireFluid(const Case& c) const {
+  const bool some = std::ranges::any_of(ofBodies, [](const BodyCount& body) { return body.fluid > 0; });
+  if (!some && c.hasInflow())
+    throw InputError(
+        "the case has no fluid at the start: no body of type \"fluid\" holds a particle, and no inflow flows yet; "
+        "give "
+        "an inflow a small speed at t = 0, or add a body of fluid");
 }
 
 StartState fittingState(const Case& c, const std::filesystem::path& file, const MadeParticles& made) {
@@ -139,12 +237,18 @@ StartState fittingState(const Case& c, const std::filesystem::path& file, const 
     Checkpoint<D> state = readCheckpoint<D>(file, made.part);
     const Kinds kinds = kindsOf(made);
     requireMethod(c, file, state.method);
+    requireSameBodies(c, file, state.names);
+    matchMaterials(c, file, state.names, state.particles);
     requireFit(c, file, state, kinds);
     requireFields(c, file, state.particles);
     requireFlow(c, file, state.particles.flow);
     requireRigid(c, file, state.particles.rigid);
+    setMasses<D>(c, made, state.particles.rigid);
     requireBodies(c, file, state.particles);
-    setWallSurfaces(created, kinds.fluid + made.part.begin(kinds.walls), state.particles);
+    requireNozzles(c, file, created, state);
+    const std::uint32_t firstWall = state.firstWall + made.part.begin(kinds.walls);
+    setWallSurfaces(created, firstWall, state.particles);
+    setWallVelocities(c, created, firstWall, state.particles);
     return {std::move(state.particles), state.step, state.time};
   });
   if (!c.time.stepsVary()) start.step = stepAt(start.time, c.time, file);

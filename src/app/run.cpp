@@ -3,7 +3,6 @@
 #include "interrupt.hpp"
 #include "memory.hpp"
 #include "pinned_snapshot.hpp"
-#include "run_summary.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/core/peak_memory.hpp"
 #include "treacle/io/case/case_reader.hpp"
@@ -19,20 +18,23 @@
 #include <utility>
 
 namespace treacle {
+namespace {
 
-Run::Run(const Case& c, StartState start, const ParticleNumbers& particles, BackendKind backend,
-         RunDirectory directory, const RunOptions& options, std::string device, const Communicator& processes)
+/// HDF5 and the fonts of the picture end the program where they get no memory; they take some 18 MB.
+constexpr std::size_t reserveBytes = 24 << 20;
+
+}  // namespace
+
+Run::Run(const Case& c, RunStart start, RunDirectory directory, const RunOptions& options,
+         const Communicator& processes)
     : case_(c),
-      backend_(backend),
-      device_(std::move(device)),
       processes_(processes),
       start_(std::move(start)),
-      particles_(particles),
       directory_(std::move(directory)),
       timings_(options.timings),
       log_(directory_.log(), options.quiet),
-      progress_(c, start_.step, start_.time, options.quiet) {
-  if (writesPieces(c, particles, static_cast<std::uint64_t>(processes.size())))
+      progress_(c, start_.state.step, start_.state.time, options.quiet) {
+  if (writesPieces(c, start_.particles, static_cast<std::uint64_t>(processes.size())))
     pieces_.emplace(c, directory_, processes);
 }
 
@@ -40,15 +42,17 @@ void Run::execute(const std::vector<std::string>& warnings) {
   describe();
   for (const std::string& warning : warnings) log_.warning(warning);
   attempt([&] {
+    reserve_ = std::make_unique_for_overwrite<std::byte[]>(reserveBytes);
     writeFile(directory_.caseFile(), caseText(case_));
-    simulation_.emplace(case_, std::move(start_.particles), backend_, start_.step, start_.time, &processes_);
+    simulation_.emplace(case_, std::move(start_.state.particles), start_.backend, start_.state.step,
+                        start_.state.time, &processes_);
     if (const std::string link = simulation_->linkName(); !link.empty())
       log_.info("the devices of the processes exchange by " + link);
-    Recorder::OrderPieces ofPieces;
-    if (pieces_) ofPieces = [this](PieceOrder order, std::size_t frame) { return orderPieces(order, frame); };
-    recorder_.emplace(
-        case_, directory_, log_, start_.time, timings_, [this](Snapshot& s) { copyState(s); },
-        [this](std::uint64_t probes) { return simulation_->measure(probes); }, std::move(ofPieces));
+    Recorder::Source source{[this](Snapshot& s) { copyState(s); },
+                            [this](std::uint64_t probes) { return simulation_->measure(probes); }};
+    if (pieces_)
+      source.orderPieces = [this](PieceOrder order, std::size_t frame) { return orderPieces(order, frame); };
+    recorder_.emplace(case_, directory_, log_, start_.state.time, timings_, std::move(source));
     recorder_->begin();
     advanceToEnd();
   });
@@ -56,16 +60,17 @@ void Run::execute(const std::vector<std::string>& warnings) {
 }
 
 void Run::describe() {
-  summary_ = startOfSummary(case_, onDevice(), device_, particles_);
-  log_.info(fmt::format("treacle {} ({}), backend {}, {}, {} threads of the host{}", summary_.version,
-                        summary_.commit, summary_.backend, device_, summary_.threads,
+  summary_.origin = originOf(case_, onDevice(), start_.device, start_.particles);
+  log_.info(fmt::format("treacle {} ({}), backend {}, {}, {} threads of the host{}", summary_.origin.version,
+                        summary_.origin.commit, summary_.origin.backend, start_.device, summary_.origin.threads,
                         processes_.size() > 1 ? fmt::format(" in each of {} processes", processes_.size()) : ""));
   say(fmt::format("{}: {} fluid and {} wall particles, {}, into {}", case_.title.empty() ? "case" : case_.title,
-                  particles_.fluid, particles_.wall, stepsText(), directory_.path().string()));
+                  start_.particles.fluid, start_.particles.wall, stepsText(), directory_.path().string()));
   log_.info("solver: " + solverText(solveStages(case_).front()));
   if (processes_.size() > 1) say(fmt::format("shared by {} processes", processes_.size()));
   if (case_.method.kind == MethodKind::Isph) log_.info("viscous step: " + viscousText(case_));
-  if (start_.step > 0) say(fmt::format("continues after step {} (t = {:.6g} s)", start_.step, start_.time));
+  if (const StartState& from = start_.state; from.step > 0)
+    say(fmt::format("continues after step {} (t = {:.6g} s)", from.step, from.time));
 }
 
 std::string Run::stepsText() const {
@@ -147,7 +152,10 @@ void Run::attempt(const std::function<void()>& action) {
     if (recorder_) recorder_->loseSimulation();
   } catch (const InputError& e) {
     diagnosis = e.what();
-    isBadInput_ = failure_.empty() && (!simulation_ || simulation_->step() == start_.step);
+    isBadInput_ = failure_.empty() && (!simulation_ || simulation_->step() == start_.state.step);
+  } catch (const EndOfRun& e) {
+    diagnosis = e.what();
+    isOver_ = true;
   } catch (const std::runtime_error& e) {
     diagnosis = e.what();
   }
@@ -159,6 +167,7 @@ void Run::attempt(const std::function<void()>& action) {
 }
 
 void Run::finish() {
+  reserve_.reset();
   if (simulation_ && recorder_) {
     attempt([&] { recorder_->wait(); });
     attempt([&] { recorder_->writeCheckpoint(); });
@@ -179,14 +188,18 @@ void Run::finish() {
   if (simulation_ && !isDeviceLost_) attempt([&] { summary_.peakDeviceMemory = simulation_->peakBytes(); });
   summary_.wallSeconds = timer_.lap();
   summary_.peakMemory = peakMemory();
+  // After a run that took all memory the summary still needs a little.
+  recorder_.reset();
+  if (!isDeviceLost_) simulation_.reset();
   summary_.done = failure_.empty();
   summary_.message = failure_;
   attempt([&] { writeSummary(directory_.summary(), summary_); });
   if (isBadInput_) throw InputError(failure_);
   if (!failure_.empty()) throw RunError(failure_ + lastStateText());
   say(fmt::format("done: {} steps{} in {}, {:.1f} iterations per step, {} of memory{}", summary_.steps,
-                  case_.time.automatic ? fmt::format(" ({} rejected)", summary_.rejectedSteps) : "",
-                  durationText(summary_.wallSeconds), summary_.meanIterations, bytesText(summary_.peakMemory),
+                  case_.time.automatic ? fmt::format(" ({} rejected)", summary_.tally.rejectedSteps) : "",
+                  durationText(summary_.wallSeconds), summary_.tally.meanIterations,
+                  bytesText(summary_.peakMemory),
                   onDevice() ? fmt::format(", {} of the device's", bytesText(summary_.peakDeviceMemory)) : ""));
   progress_.message(fmt::format("picture: {}\nParaView: {}", directory_.finalPicture().string(),
                                 directory_.fluidIndex().string()));
@@ -199,7 +212,7 @@ std::string Run::lastStateText() const {
     text += fmt::format("\nThe last state written is frame {} (t = {:.6g} s) in {}", last,
                         directory_.frameTime(last), directory_.path().string());
   }
-  if (std::error_code error; std::filesystem::exists(directory_.checkpoint(), error))
+  if (std::error_code error; !isOver_ && std::filesystem::exists(directory_.checkpoint(), error))
     text += fmt::format("\nContinue from the last checkpoint with --resume {}", directory_.checkpoint().string());
   return text;
 }

@@ -10,21 +10,30 @@
 #include "treacle/io/tables/summary.hpp"
 #include "treacle/step/run/any_simulation.hpp"
 
+#include <cstddef>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace treacle {
 
+/// What a run begins with.
+struct RunStart {
+  StartState state;
+  ParticleNumbers particles;  // of all processes
+  BackendKind backend = BackendKind::Cpu;
+  std::string device;  // its name for the user
+};
+
 /// One run from the first frame to the summary. Whatever goes wrong on the way, the last good state (checkpoint
 /// and frame), the picture and the summary are still written as far as that is possible.
 class Run {
  public:
-  /// `particles`: those of all processes. `device`: its name for the user. `processes`: those that share the run,
-  /// of which this is the first.
-  Run(const Case& c, StartState start, const ParticleNumbers& particles, BackendKind backend,
-      RunDirectory directory, const RunOptions& options, std::string device, const Communicator& processes);
+  /// `processes`: those that share the run, of which this is the first.
+  Run(const Case& c, RunStart start, RunDirectory directory, const RunOptions& options,
+      const Communicator& processes);
 
   /// Errors: RunError with the diagnosis, after everything is written; InputError where it could not begin.
   void execute(const std::vector<std::string>& warnings);
@@ -41,7 +50,7 @@ class Run {
   void attempt(const std::function<void()>& action);
   void finish();
 
-  bool onDevice() const { return backend_ == BackendKind::Cuda; }
+  bool onDevice() const { return start_.backend == BackendKind::Cuda; }
   bool atEnd() const { return case_.atEnd(simulation_->step(), simulation_->time()); }
   std::string stepsText() const;
   std::string lastStateText() const;
@@ -49,11 +58,8 @@ class Run {
 
   Timer timer_;
   const Case& case_;
-  BackendKind backend_;
-  std::string device_;
   const Communicator& processes_;
-  StartState start_;
-  ParticleNumbers particles_;  // of all processes
+  RunStart start_;  // the particles of its state go to the simulation
   RunDirectory directory_;
   bool timings_;
   RunLog log_;
@@ -62,10 +68,13 @@ class Run {
   std::optional<AnySimulation> simulation_;
   std::optional<Recorder> recorder_;
   RunSummary summary_;
+  std::unique_ptr<std::byte[]>
+      reserve_;  // memory that libraries need to write the last state, when there is no more
   std::string failure_;
   bool fellBack_ = false;
   bool isDeviceLost_ = false;
   bool isBadInput_ = false;  // what failed first is what the user gave
+  bool isOver_ = false;      // to continue is of no use
   Watched watched_;          // the largest of all steps
 };
 

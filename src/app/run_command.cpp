@@ -3,6 +3,7 @@
 #include "interrupt.hpp"
 #include "machine.hpp"
 #include "memory.hpp"
+#include "patience.hpp"
 #include "piece_writer.hpp"
 #include "resume.hpp"
 #include "run.hpp"
@@ -10,11 +11,13 @@
 #include "together.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/io/case/case_reader.hpp"
+#include "treacle/io/checkpoint/checkpoint.hpp"
 #include "treacle/io/shapes/shape_files.hpp"
 #include "treacle/io/surface/free_surface.hpp"
 #include "treacle/model/case/case_error.hpp"
 #include "treacle/model/case/checks.hpp"
 #include "treacle/model/geometry/wall_sight.hpp"
+#include "treacle/step/flow/outflow_start.hpp"
 #include "treacle/step/run/shareable.hpp"
 
 #include <fmt/format.h>
@@ -44,13 +47,23 @@ Case caseOf(const RunOptions& options) {
   return c;
 }
 
-/// --force would remove the checkpoint before another one exists.
-void requireElsewhere(const std::filesystem::path& directory, const std::filesystem::path& checkpoint) {
+/// --force would remove what the run begins with before it has anything to put in its place.
+void requireElsewhere(const std::filesystem::path& directory, const RunOptions& options, const Case& c) {
   std::error_code error;  // what is not found here is not found later
   const auto canonical = [&](const auto& path) { return std::filesystem::weakly_canonical(path, error); };
-  if (!checkpoint.empty() && canonical(checkpoint).parent_path() == canonical(directory) && !error)
+  const std::filesystem::path run = canonical(directory);
+  const auto isInside = [&](const std::filesystem::path& file) {
+    if (file.empty()) return false;
+    const std::filesystem::path folder = canonical(file).parent_path();
+    return !error && (folder == run || folder == run / "frames" || folder == run / "probes");
+  };
+  if (isInside(options.resume))
     throw InputError(fmt::format("--resume {}: lies in the run directory; choose another one with --output",
-                                 checkpoint.string()));
+                                 options.resume.string()));
+  for (const Body& body : c.bodies)
+    if (isInside(body.shape.file.path))
+      throw InputError(fmt::format("body '{}': {} lies in the run directory; choose another one with --output",
+                                   body.name, body.shape.file.path));
 }
 
 /// Every host has about as many.
@@ -73,9 +86,13 @@ ParticleNumbers numbersOfAll(const Communicator& processes, const ParticleNumber
   return all;
 }
 
-/// What createParticles notes where one process makes all of them.
-void noteWalls(const Case& c, const AnyParticles& part, const Communicator& processes,
-               std::vector<std::string>& notes) {
+/// What MadeParticles notes where one process makes all of them. Collective; errors: those of noteFluidInOutflows.
+void noteParticles(const Case& c, const AnyParticles& part, const Communicator& processes,
+                   std::vector<std::string>& notes) {
+  std::vector<std::uint64_t> held = fluidInOutflows(c, part);
+  held.push_back(part.numbers().fluid);
+  processes.sum(std::span(held));
+  noteFluidInOutflows(c, std::span(held).first(held.size() - 1), held.back(), notes);
   if (!c.isAccurate()) return;
   std::vector<WallSight> sight = part.visit([&]<int D>(const Particles<D>& p) {
     return wallSight<D>(c, p.body.span().subspan(p.wallBegin()), p.wallSurface.span());
@@ -117,7 +134,10 @@ void follow(const Case& c, StartState start, const ParticleNumbers& particles, B
 }  // namespace
 
 void runCommand(const RunOptions& options, const Communicator& processes) {
+  prepareCheckpoints();
   const bool shared = processes.size() > 1;
+  std::optional<Patience> patience;
+  patience.emplace("preparing the run", options.quiet || processes.rank() > 0);
   std::optional<DeviceInfo> device;
   together(processes, [&] { device = deviceFor(options.backend, processes.localRank()); });
   if (!allHaveOne(processes, device.has_value())) device.reset();
@@ -132,10 +152,11 @@ void runCommand(const RunOptions& options, const Communicator& processes) {
     if (shared) requireShareable(c, backend);
     requireRoomForParticles(c);
     made = MadeParticles::of(c, warnings, partOf(processes));
+    if (options.resume.empty()) made.requireFluid(c);
     for (std::string& warning : caseWarnings(c)) warnings.push_back(std::move(warning));
     releaseShapeFiles(c);
   });
-  if (shared) noteWalls(c, made.particles, processes, warnings);
+  if (shared) noteParticles(c, made.particles, processes, warnings);
   const ParticleNumbers all = numbersOfAll(processes, made.particles.numbers());
   StartState start{AnyParticles(2)};
   together(processes, [&] {
@@ -150,15 +171,16 @@ void runCommand(const RunOptions& options, const Communicator& processes) {
   const auto directory = options.directory.empty() ? options.input.file.stem().concat("-run") : options.directory;
   together(processes, [&] {
     if (processes.rank() > 0) return;
-    requireElsewhere(directory, options.resume);
+    requireElsewhere(directory, options, c);
     files.emplace(RunDirectory::create(directory, options.force));
   });
+  patience.reset();
   if (processes.rank() > 0) return follow(c, std::move(start), all, backend, directory, processes);
   const Followers followers(processes);
   if (!device)
     for (std::string& warning : cpuWarnings(c)) warnings.push_back(std::move(warning));
-  Run run(c, std::move(start), all, backend, std::move(*files), options,
-          device ? deviceText(*device) : processorName(), processes);
+  RunStart from{std::move(start), all, backend, device ? deviceText(*device) : processorName()};
+  Run run(c, std::move(from), std::move(*files), options, processes);
   run.execute(warnings);
 }
 

@@ -3,10 +3,9 @@
 namespace treacle {
 
 template <class Backend>
-SolveReport conjugateGradient(Context<Backend>& context, const Product& a, const Product& k,
-                              std::span<const double> b, std::span<double> x, const StoppingRule& rule,
-                              KrylovWorkspace<Backend>& workspace, Deflation<Backend>* deflation,
-                              const Product* single) {
+SolveReport conjugateGradient(Context<Backend>& context, const LinearSystem& system, const StoppingRule& rule,
+                              KrylovWorkspace<Backend>& workspace, Deflation<Backend>* deflation) {
+  const auto& [a, k, b, x, single] = system;
   workspace.resize(context, b.size(), 4);
   auto& [r, z, p, q, none] = workspace.vectors;
   // z = K r is new in every iteration: nothing to refresh.
@@ -34,9 +33,9 @@ SolveReport conjugateGradient(Context<Backend>& context, const Product& a, const
 }
 
 template <class Backend>
-SolveReport conjugateResidual(Context<Backend>& context, const Product& a, const Product& k,
-                              std::span<const double> b, std::span<double> x, const StoppingRule& rule,
+SolveReport conjugateResidual(Context<Backend>& context, const LinearSystem& system, const StoppingRule& rule,
                               KrylovWorkspace<Backend>& workspace) {
+  const auto& [a, k, b, x, single] = system;
   workspace.resize(context, b.size(), 5);
   // u = K q and y = A s are never alive together: one vector serves both.
   auto& [r, s, p, q, y] = workspace.vectors;
@@ -64,12 +63,10 @@ SolveReport conjugateResidual(Context<Backend>& context, const Product& a, const
   return report;
 }
 
-#define TREACLE_INSTANTIATE(Backend)                                                                      \
-  template SolveReport conjugateGradient(Context<Backend>&, const Product&, const Product&,               \
-                                         std::span<const double>, std::span<double>, const StoppingRule&, \
-                                         KrylovWorkspace<Backend>&, Deflation<Backend>*, const Product*); \
-  template SolveReport conjugateResidual(Context<Backend>&, const Product&, const Product&,               \
-                                         std::span<const double>, std::span<double>, const StoppingRule&, \
+#define TREACLE_INSTANTIATE(Backend)                                                                  \
+  template SolveReport conjugateGradient(Context<Backend>&, const LinearSystem&, const StoppingRule&, \
+                                         KrylovWorkspace<Backend>&, Deflation<Backend>*);             \
+  template SolveReport conjugateResidual(Context<Backend>&, const LinearSystem&, const StoppingRule&, \
                                          KrylovWorkspace<Backend>&);
 TREACLE_FOR_EACH_BACKEND(TREACLE_INSTANTIATE)
 #undef TREACLE_INSTANTIATE

@@ -23,6 +23,8 @@ constexpr const char* classOf(const TimeSettings&) { return "Time"; }
 constexpr const char* classOf(const Material&) { return "Material"; }
 constexpr const char* classOf(const Rheology&) { return "Rheology"; }
 constexpr const char* classOf(const ContactAngle&) { return "ContactAngle"; }
+constexpr const char* classOf(const Spring&) { return "Spring"; }
+constexpr const char* classOf(const Hinge&) { return "Hinge"; }
 constexpr const char* classOf(const ViscosityShift&) { return "ViscosityShift"; }
 constexpr const char* classOf(const Body&) { return "Body"; }
 constexpr const char* classOf(const Oscillation&) { return "Oscillation"; }
@@ -161,6 +163,7 @@ class Collector {
   void operator()(const Key& key, double, const std::string&) { put(key, "float | str"); }
   void operator()(const Key& key, const std::vector<double>&) { put(key, "Sequence[float]"); }
   void operator()(const Key& key, const std::vector<Vec<2>>&) { put(key, "Sequence[Sequence[float]]"); }
+  void operator()(const Key& key, const std::vector<std::string>&) { put(key, "Sequence[str]"); }
   void operator()(const Key& key, const std::string&) { put(key, "str"); }
   void operator()(const Key& key, const std::string&, keys::FileTag) { put(key, "str | PathLike[str]"); }
   void operator()(const Key& key, const std::string&, keys::ExpressionTag) { put(key, "str"); }

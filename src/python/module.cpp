@@ -92,7 +92,7 @@ std::uint64_t writeFrame(const Session& session, const std::filesystem::path& pa
 void writeCheckpointOf(const Session& session, const std::filesystem::path& path) {
   session.particles().visit([&](const auto& p) {
     writeCheckpoint(path, p, session.simulation().step(), session.simulation().time(),
-                    session.theCase().method.kind);
+                    session.theCase().method.kind, StateNames::of(session.theCase()));
   });
 }
 

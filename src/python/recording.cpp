@@ -1,6 +1,6 @@
 #include "recording.hpp"
 
-#include "run_summary.hpp"
+#include "run_tally.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/core/peak_memory.hpp"
 #include "treacle/io/case/case_reader.hpp"
@@ -29,18 +29,18 @@ Recording::Recording(Session& session, const std::filesystem::path& directory, b
     : session_(session),
       directory_(made(session, directory, force)),
       log_(directory_.log(), true),
-      summary_(
-          startOfSummary(session.theCase(), session.onDevice(), session.device(), session.simulation().numbers())),
-      recorder_(
-          session.theCase(), directory_, log_, session.simulation().time(), true,
-          [this](Snapshot& s) {
-            writeCase();
-            session_.simulation().copyParticles(s.particles);
-            s.step = session_.simulation().step(), s.time = session_.simulation().time();
-          },
-          [this](std::uint64_t probes) { return session_.simulation().measure(probes); }) {
-  log_.info(fmt::format("treacle {} ({}) from Python, backend {}, {}, {} threads of the host", summary_.version,
-                        summary_.commit, summary_.backend, session.device(), summary_.threads));
+      summary_{.origin = originOf(session.theCase(), session.onDevice(), session.device(),
+                                  session.simulation().numbers())},
+      recorder_(session.theCase(), directory_, log_, session.simulation().time(), true,
+                {[this](Snapshot& s) {
+                   writeCase();
+                   session_.simulation().copyParticles(s.particles);
+                   s.step = session_.simulation().step(), s.time = session_.simulation().time();
+                 },
+                 [this](std::uint64_t probes) { return session_.simulation().measure(probes); }}) {
+  log_.info(fmt::format("treacle {} ({}) from Python, backend {}, {}, {} threads of the host",
+                        summary_.origin.version, summary_.origin.commit, summary_.origin.backend, session.device(),
+                        summary_.origin.threads));
   log_.info("solver: " + solverText(solveStages(session.theCase()).front()));
   writeCase();
   recorder_.begin();

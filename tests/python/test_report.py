@@ -43,7 +43,7 @@ def test_one_file_with_all_parts(flat):
         ">done<",
         "<th>Fluid particles</th><td>400</td>",
         "MPH-I, accurate scheme, 2D",
-        "treacle 0.1.0",
+        "treacle 0.2.0",
         "bulk_modulus = 1000000",
     ):
         assert words in page

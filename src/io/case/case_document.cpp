@@ -17,8 +17,8 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view setPrefix = "--set ";
 constexpr std::string_view namedLists[] = {"material", "body", "outflow",
-                                           "probe"};           // arrays of tables addressed by name
-constexpr std::string_view namedBelow[] = {"contact_angles"};  // those of other tables, merged by name
+                                           "probe"};                      // arrays of tables addressed by name
+constexpr std::string_view namedBelow[] = {"contact_angles", "springs"};  // those of other tables, merged by name
 
 CaseFileError errorAt(const toml::source_region& source, const std::string& text) {
   return treacle::errorAt(source, {}, text);
@@ -158,7 +158,8 @@ toml::table withBase(toml::table document, const fs::path& folder, std::vector<f
   if (!base) return document;
 
   const auto* name = base->as_string();
-  if (!name || name->get().empty()) throw errorAt(base->source(), "base: expected the name of a case file");
+  if (!name || name->get().empty() || name->get().find('\0') != std::string::npos)
+    throw errorAt(base->source(), "base: expected the name of a case file");
   const fs::path basePath = (folder / name->get()).lexically_normal();
   if (std::ranges::find(chain, resolved(basePath)) != chain.end())
     throw errorAt(base->source(), fmt::format("base: '{}' inherits from itself", name->get()));
@@ -227,19 +228,21 @@ void applyOverride(toml::table& document, const std::string& text) {
     for (auto&& [name, entry] : *value.as_table()) overrideEntry(document, key.str(), name.str(), entry);
     return;
   }
-  std::vector<std::string_view> candidates = topLevelKeys(), owners;
+  // Bodies and materials come first: where one has the name of a probe or an outflow, it is meant.
+  std::vector<std::string_view> candidates = topLevelKeys(), owners, others;
   if (std::ranges::find(candidates, key.str()) != candidates.end()) return merge(document, std::move(given));
 
   for (std::string_view listName : namedLists)
     for (std::string_view name : namesIn(document, listName)) {
       candidates.push_back(name);
-      if (name == key.str()) owners.push_back(listName);
+      if (name == key.str()) (listName == "body" || listName == "material" ? owners : others).push_back(listName);
     }
+  if (owners.empty()) owners = others;
   if (owners.empty())
     throw errorAt(value.source(), fmt::format("unknown key '{}'{}", key.str(), suggestion(key.str(), candidates)));
   if (owners.size() > 1)
-    throw errorAt(value.source(),
-                  fmt::format("'{0}' is a material and a body; write material.{0} or body.{0}", key.str()));
+    throw errorAt(value.source(), fmt::format("'{0}' is the name of a {1} and a {2}; write {1}.{0} or {2}.{0}",
+                                              key.str(), owners[0], owners[1]));
   overrideEntry(document, owners[0], key.str(), value);
 }
 

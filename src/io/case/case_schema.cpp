@@ -140,6 +140,8 @@ class Schema {
         return {{"type", "array"}, {"items", arrayOf(numberOf(r.bound), 2, 2)}, {"minItems", 3}};
       case ValueKind::Text:
         return {{"type", "string"}};
+      case ValueKind::Names:
+        return {{"type", "array"}, {"items", stringOf()}};
       case ValueKind::File:
       case ValueKind::Formula:
       case ValueKind::MaterialName:

@@ -4,16 +4,22 @@
 #include "suggestion.hpp"
 
 #include <fmt/format.h>
-#include <algorithm>
 
+#include <algorithm>
 namespace treacle {
 namespace {
+
+/// A text as messages show it.
+std::string beginning(const std::string& text) {
+  constexpr std::size_t longest = 200;
+  return text.size() <= longest ? text : text.substr(0, longest) + "...";
+}
 
 /// A value in words: what was found.
 std::string describe(const toml::node& node) {
   switch (node.type()) {
     case toml::node_type::string:
-      return fmt::format("the string \"{}\"", node.as_string()->get());
+      return fmt::format("the string \"{}\"", beginning(node.as_string()->get()));
     case toml::node_type::integer:
       return fmt::format("{}", node.as_integer()->get());
     case toml::node_type::floating_point:

@@ -49,6 +49,11 @@ class TableText {
     for (const Vec<2>& x : points) pairs.push_back(fmt::format("[{}, {}]", x[0], x[1]));
     put(key, array(pairs));
   }
+  void operator()(const Key& key, const std::vector<std::string>& names) {
+    std::vector<std::string> words;
+    for (const std::string& name : names) words.push_back(tomlString(name));
+    if (!words.empty()) put(key, array(words));
+  }
   void operator()(const Key& key, const std::string& text) { put(key, tomlString(text)); }
   void operator()(const Key& key, const std::string& path, keys::FileTag) { put(key, tomlString(path)); }
   void operator()(const Key& key, const std::string& text, keys::ExpressionTag) {

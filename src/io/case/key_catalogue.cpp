@@ -78,6 +78,7 @@ class Catalogue {
     }
     void operator()(const Key& key, const std::vector<double>&) { note(key, ValueKind::Numbers); }
     void operator()(const Key& key, const std::vector<Vec<2>>&) { note(key, ValueKind::Points); }
+    void operator()(const Key& key, const std::vector<std::string>&) { note(key, ValueKind::Names); }
     void operator()(const Key& key, const std::string& text) { note(key, ValueKind::Text, text); }
     void operator()(const Key& key, const std::string&, keys::FileTag) { note(key, ValueKind::File); }
     void operator()(const Key& key, const std::string&, keys::ExpressionTag) { note(key, ValueKind::Formula); }

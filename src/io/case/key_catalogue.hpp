@@ -23,6 +23,7 @@ enum class ValueKind {
   VectorOrFormulas,
   Points,
   Text,
+  Names,
   File,
   Formula,
   MaterialName,

@@ -83,6 +83,8 @@ std::string valueText(const KeyRow& r, const std::vector<KeyTable>& all) {
     case ValueKind::Text:
     case ValueKind::MaterialName:
       return "string";
+    case ValueKind::Names:
+      return "array of strings";
     case ValueKind::File:
       return "file name";
     case ValueKind::Formula:

@@ -1,5 +1,7 @@
 #include "table_reader.hpp"
 
+#include "toml_string.hpp"
+
 #include "case_document.hpp"
 #include "suggestion.hpp"
 #include "time_table.hpp"
@@ -195,6 +197,9 @@ void TableReader::operator()(const Key& key, int& x) const {
   const std::string expected = expectedInteger(key);
   const toml::node* node = section_.value(key, expected);
   if (!node) return;
+  if (const auto* real = node->as_floating_point())
+    throw section_.error(key.name,
+                         fmt::format("expected {}, found {:#}; write it without a point", expected, real->get()));
   const auto* value = node->as_integer();
   if (!value || !key.bound.holds(static_cast<double>(value->get())) ||
       value->get() > std::numeric_limits<int>::max())
@@ -274,7 +279,12 @@ void TableReader::operator()(const Key& key, std::string& path, keys::FileTag) c
   const std::string* name = word(key);
   if (!name) return;
   if (name->empty()) throw section_.error(key.name, "expected the name of a file, found \"\"");
+  if (name->find('\0') != std::string::npos)
+    throw section_.error(key.name, "expected the name of a file, found a NUL");
   path = fileNamedAt(section_.table().get(key.name)->source(), *name).string();
+  if (!isUtf8(path))
+    throw section_.error(key.name,
+                         fmt::format("{}: the folder's name is no UTF-8, in which a run writes it down", path));
 }
 
 void TableReader::operator()(const Key& key, std::string& text) const {
@@ -344,17 +354,25 @@ void TableReader::operator()(const Key& key, TimeVector& functions) const {
   for (std::size_t k = 0; array && k < array->size(); ++k) functions[k] = function(key, (*array)[k]);
 }
 
-void TableReader::operator()(const Key& key, OutputFields& fields) const {
+void TableReader::operator()(const Key& key, std::vector<std::string>& names) const {
   const std::string expected = "an array of strings";
   const toml::node* node = section_.value(key, expected);
   if (!node) return;
   const toml::array* words = node->as_array();
   if (!words || !(words->empty() || words->is_homogeneous(toml::node_type::string)))
     throw section_.unexpected(key, expected, *node);
+  names.clear();
+  for (const toml::node& entry : *words) names.push_back(entry.as_string()->get());
+}
+
+void TableReader::operator()(const Key& key, OutputFields& fields) const {
+  std::vector<std::string> words;
+  for (const OutputFieldName& f : outputFieldNames)
+    if (fields.*(f.flag)) words.emplace_back(f.name);
+  (*this)(key, words);
   std::vector<std::string_view> names;
   for (const OutputFieldName& f : outputFieldNames) names.push_back(f.name), fields.*(f.flag) = false;
-  for (const toml::node& entry : *words) {
-    const std::string& word = entry.as_string()->get();
+  for (const std::string& word : words) {
     const auto field = std::ranges::find(outputFieldNames, word, &OutputFieldName::name);
     if (field == std::end(outputFieldNames)) throw section_.error(key.name, wrongWord(names, word));
     fields.*(field->flag) = true;

@@ -39,6 +39,7 @@ class TableReader {
   void operator()(const Key& key, double& x, std::string& text) const;
   void operator()(const Key& key, std::vector<double>& numbers) const;
   void operator()(const Key& key, std::vector<Vec<2>>& points) const;
+  void operator()(const Key& key, std::vector<std::string>& names) const;
   void operator()(const Key& key, std::string& text) const;
   void operator()(const Key& key, std::string& path, keys::FileTag) const;  // made absolute
   void operator()(const Key& key, std::string& text, keys::ExpressionTag) const;

@@ -1,6 +1,7 @@
 #include "treacle/io/checkpoint/checkpoint.hpp"
 
 #include "checkpoint_fields.hpp"
+#include "checkpoint_motion.hpp"
 #include "files/checksum.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/io/files/atomic_file.hpp"
@@ -14,6 +15,7 @@
 #include <array>
 #include <cmath>
 #include <fstream>
+#include <new>
 #include <span>
 #include <string>
 #include <string_view>
@@ -25,7 +27,10 @@ namespace treacle {
 namespace {
 
 constexpr std::string_view formatName = "treacle checkpoint";
-constexpr std::int32_t formatVersion = 11;  // no other one is read
+constexpr std::int32_t formatVersion = 12;  // no other one is read
+
+/// Takes so many bytes and gives them back: HDF5 ends the program where memory gives out. Errors: std::bad_alloc.
+void requireRoom(std::size_t bytes) { ::operator delete(::operator new(bytes)); }
 
 bool isFinite(double x) { return std::isfinite(x); }
 template <int D, class T>
@@ -70,109 +75,23 @@ std::uint32_t requireIds(std::span<const std::uint32_t> ids, std::uint32_t fluid
   return first;
 }
 
-void writeCount(hid_t file, const std::string& name, const FlowCount& count) {
-  writeAttribute(file, (name + "_particles").c_str(), static_cast<std::int64_t>(count.particles));
-  writeAttribute(file, (name + "_mass").c_str(), count.mass);
+void writeNames(hid_t file, const std::string& kind, const std::vector<std::string>& names) {
+  writeAttribute(file, (kind + "_name_count").c_str(), static_cast<std::uint32_t>(names.size()));
+  for (std::size_t k = 0; k < names.size(); ++k)
+    writeText(file, fmt::format("{}_name_{}", kind, k).c_str(), names[k]);
 }
-FlowCount readCount(hid_t file, const std::string& name) {
-  const auto particles = readAttribute<std::int64_t>(file, (name + "_particles").c_str());
-  const auto mass = readAttribute<double>(file, (name + "_mass").c_str());
-  if (particles < 0 || !(mass >= 0) || !std::isfinite(mass))
-    throw Hdf5Error(
-        fmt::format("{} particles of {} kg came or went, expected numbers not less than 0", particles, mass));
-  return {static_cast<std::uint64_t>(particles), mass};
-}
-
-/// Numbers of a rigid body in the order of the file.
-template <class Body, class F>
-void forEachNumber(Body& b, F&& f) {
-  f(b.mass);
-  for (auto& x : b.inertia) f(x);
-  for (auto* v : {&b.center, &b.velocity, &b.spin})
-    for (int k = 0; k < 3; ++k) f((*v)[k]);
-  for (auto& x : b.orientation) f(x);
-}
-constexpr std::uint64_t rigidNumbers = 20;
-
-void writeRigid(hid_t file, const RigidMotion& rigid) {
-  Buffer<double> numbers(rigid.bodies.size() * rigidNumbers);
-  double* to = numbers.data();
-  for (const RigidBody& body : rigid.bodies) forEachNumber(body, [&](double x) { *to++ = x; });
-  const auto put = [&](const char* name, std::span<const double> values) {
-    Buffer<double> field(values.size());
-    std::copy(values.begin(), values.end(), field.begin());
-    writeAttribute(file, (std::string(name) + "_count").c_str(), static_cast<std::uint32_t>(values.size()));
-    writeField(file, FieldInfo{name, Of::All, values.size()}, field);
-  };
-  put("rigid_bodies", numbers);
-  put("rigid_response", rigid.response);
-  put("rigid_change", rigid.change);
-}
-
-/// Errors: Hdf5Error for what no body is.
-RigidMotion readRigid(hid_t file) {
-  constexpr std::uint64_t mostUnknowns = 6 * maxBodies;
-  const auto get = [&](const char* name, std::uint64_t most) {
-    const auto count = readAttribute<std::uint32_t>(file, (std::string(name) + "_count").c_str());
-    if (count > most) throw Hdf5Error(fmt::format("{} values of {}, more than {}", count, name, most));
-    std::vector<double> values(count);
-    FieldReader<double>(file, FieldInfo{name, Of::All, count}).read({0, count}, values.data());
-    for (const double x : values)
-      if (!std::isfinite(x)) throw Hdf5Error(fmt::format("a value of {} is not finite", name));
-    return values;
-  };
-  RigidMotion rigid;
-  const std::vector<double> numbers = get("rigid_bodies", maxBodies * rigidNumbers);
-  if (numbers.size() % rigidNumbers != 0) throw Hdf5Error("the numbers of the rigid bodies are not complete");
-  const double* from = numbers.data();
-  rigid.bodies.resize(numbers.size() / rigidNumbers);
-  for (RigidBody& body : rigid.bodies) {
-    forEachNumber(body, [&](double& x) { x = *from++; });
-    if (!(body.mass >= 0)) throw Hdf5Error(fmt::format("a rigid body has a mass of {} kg", body.mass));
-  }
-  rigid.response = get("rigid_response", mostUnknowns * mostUnknowns);
-  rigid.change = get("rigid_change", mostUnknowns);
-  if (rigid.response.size() != rigid.change.size() * rigid.change.size() && !rigid.response.empty())
-    throw Hdf5Error("the response of the rigid bodies does not fit their number");
-  return rigid;
-}
-
-void writeFlow(hid_t file, const OpenFlow& flow) {
-  writeAttribute(file, "next_id", flow.nextId);
-  writeAttribute(file, "flow_body_count", static_cast<std::uint32_t>(flow.inflows.size()));
-  writeAttribute(file, "outflow_count", static_cast<std::uint32_t>(flow.outflows.size()));
-  for (std::size_t k = 0; k < flow.inflows.size(); ++k) {
-    const std::string name = fmt::format("inflow_{}", k);
-    writeCount(file, name, flow.inflows[k]);
-    writeAttribute(file, (name + "_way").c_str(), flow.inflows[k].way);
-  }
-  for (std::size_t k = 0; k < flow.outflows.size(); ++k)
-    writeCount(file, fmt::format("outflow_{}", k), flow.outflows[k]);
-}
-
-/// Errors: Hdf5Error for what no run remembers.
-OpenFlow readFlow(hid_t file) {
-  OpenFlow flow;
-  flow.nextId = readAttribute<std::uint32_t>(file, "next_id");
-  const auto bodies = readAttribute<std::uint32_t>(file, "flow_body_count"),
-             outflows = readAttribute<std::uint32_t>(file, "outflow_count");
-  if (bodies > maxBodies || outflows > maxOutflows)
-    throw Hdf5Error(fmt::format("{} bodies and {} outflows, more than the limits of {} and {}", bodies, outflows,
-                                maxBodies, maxOutflows));
-  for (std::uint32_t k = 0; k < bodies; ++k) {
-    const std::string name = fmt::format("inflow_{}", k);
-    OpenFlow::Inflow inflow{readCount(file, name), readAttribute<double>(file, (name + "_way").c_str())};
-    if (!(inflow.way >= 0) || !std::isfinite(inflow.way))
-      throw Hdf5Error(fmt::format("the layers of an inflow have gone {} m, expected at least 0", inflow.way));
-    flow.inflows.push_back(inflow);
-  }
-  for (std::uint32_t k = 0; k < outflows; ++k)
-    flow.outflows.push_back(readCount(file, fmt::format("outflow_{}", k)));
-  return flow;
+std::vector<std::string> readNames(hid_t file, const std::string& kind, std::uint32_t most) {
+  const auto count = readAttribute<std::uint32_t>(file, (kind + "_name_count").c_str());
+  if (count > most) throw Hdf5Error(fmt::format("names of {} {}s, more than {}", count, kind, most));
+  std::vector<std::string> names;
+  for (std::uint32_t k = 0; k < count; ++k)
+    names.push_back(readText(file, fmt::format("{}_name_{}", kind, k).c_str()));
+  return names;
 }
 
 template <int D>
-void fill(hid_t file, const Particles<D>& particles, std::int64_t step, double time, MethodKind method) {
+void fill(hid_t file, const Particles<D>& particles, std::int64_t step, double time, MethodKind method,
+          const StateNames& names) {
   writeText(file, "format", formatName);
   writeAttribute(file, "version", formatVersion);
   writeText(file, "method", nameOf(method));
@@ -195,6 +114,7 @@ void fill(hid_t file, const Particles<D>& particles, std::int64_t step, double t
   writeAttribute(file, "time_step", particles.steps.last);
   writeAttribute(file, "planned_time_step", particles.steps.planned);
   writeAttribute(file, "time_step_error_rate", particles.steps.rate);
+  writeNames(file, "material", names.materials), writeNames(file, "body", names.bodies);
   writeFlow(file, particles.flow);
   writeRigid(file, particles.rigid);
   forEachNamedField(particles, [&](const FieldInfo& info, const auto& field) { writeField(file, info, field); });
@@ -272,19 +192,20 @@ void requireReadable(const std::filesystem::path& path) {
     throw InputError(fmt::format("{}: not a treacle checkpoint: not an HDF5 file", path.string()));
 }
 
-/// The walls of a part; it also looks at all ids, since a part does not see whether others have the same. Errors:
-/// Hdf5Error.
-void chooseWalls(hid_t file, const OpenFlow& flow, Selection& selection) {
+/// The walls of a part; it also looks at all ids, since a part does not see whether others have the same. Returns
+/// the id of the first wall of all. Errors: Hdf5Error.
+std::uint32_t chooseWalls(hid_t file, const OpenFlow& flow, Selection& selection) {
   const std::uint32_t fluid = selection.fluid, walls = selection.walls;
   const FieldInfo info{"id", Of::All, std::uint64_t{fluid} + walls};
   const FieldReader<std::uint32_t> reader(file, info);
   Buffer<std::uint32_t> ids(info.count);
   reader.read({0, info.count}, ids.data());
-  const std::uint32_t first = requireIds(ids, fluid, flow) + selection.part.begin(walls);
+  const std::uint32_t firstOfAll = requireIds(ids, fluid, flow), first = firstOfAll + selection.part.begin(walls);
   selection.chosenWalls.resize(selection.part.size(walls));
   for (std::uint32_t k = 0; k < walls; ++k)
     if (const std::uint32_t place = ids[fluid + k] - first; place < selection.chosenWalls.size())
       selection.chosenWalls[place] = k;
+  return firstOfAll;
 }
 
 /// Errors: Hdf5Error.
@@ -295,6 +216,7 @@ Checkpoint<D> readContent(const std::filesystem::path& path, ParticlePart part) 
   Checkpoint<D> checkpoint;
   readNumbers(file, checkpoint);
   checkpoint.method = readMethod(file);
+  checkpoint.names = {readNames(file, "material", maxMaterials), readNames(file, "body", maxBodies)};
   Particles<D>& particles = checkpoint.particles;
   const std::uint32_t modes = readModeNumbers(file, particles.modes.age);
   particles.modes.pressure = readEigenvalue(file);
@@ -304,11 +226,11 @@ Checkpoint<D> readContent(const std::filesystem::path& path, ParticlePart part) 
   particles.flow = readFlow(file), particles.rigid = readRigid(file);
   Selection selection{part, particles.fluidCount, particles.wallCount(), {}};
   checkpoint.fluidOfAll = selection.fluid, checkpoint.wallsOfAll = selection.walls;
-  if (!part.isAll()) chooseWalls(file, particles.flow, selection);
+  if (!part.isAll()) checkpoint.firstWall = chooseWalls(file, particles.flow, selection);
   forEachNamedField(particles, std::uint64_t{selection.fluid} * modes,
                     [&](const FieldInfo& info, auto& field) { readField(file, info, selection, field); });
   requireSound(particles);
-  if (part.isAll()) requireIds(particles.id, particles.fluidCount, particles.flow);
+  if (part.isAll()) checkpoint.firstWall = requireIds(particles.id, particles.fluidCount, particles.flow);
   particles.fluidCount = part.size(selection.fluid);
   particles.count = particles.fluidCount + part.size(selection.walls);
   return checkpoint;
@@ -316,9 +238,23 @@ Checkpoint<D> readContent(const std::filesystem::path& path, ParticlePart part) 
 
 }  // namespace
 
+void prepareCheckpoints() {
+  requireRoom(6 << 20);
+  H5dont_atexit();  // all files are closed; after a lack of memory its end would be that of the program
+  const Hdf5Silence silence;
+  if (H5open() < 0) throw RunError("HDF5 cannot be started, which writes checkpoints");
+}
+
+StateNames StateNames::of(const Case& c) {
+  StateNames names;
+  for (const Material& m : c.materials) names.materials.push_back(m.name);
+  for (const Body& b : c.bodies) names.bodies.push_back(b.name);
+  return names;
+}
+
 template <int D>
 void writeCheckpoint(const std::filesystem::path& path, const Particles<D>& particles, std::int64_t step,
-                     double time, MethodKind method) {
+                     double time, MethodKind method, const StateNames& names) {
   const Hdf5Silence silence;
   try {
     requireSound(particles);  // what cannot be read back must not replace what can
@@ -326,12 +262,13 @@ void writeCheckpoint(const std::filesystem::path& path, const Particles<D>& part
     // HDF5 makes the file in memory: it cannot close a file that a full disk keeps it from finishing.
     std::size_t bytes = 1 << 16;
     forEachNamedField(particles, [&](const FieldInfo&, const auto& field) { bytes += field.bytes(); });
+    requireRoom(bytes + (8 << 20));
     const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
     hdf5Checked(H5Pset_fapl_core(access, bytes, false));
     // It would read an existing file of this name first; below a file there is none.
     const auto name = path / "memory";
     const Hdf5Handle file(H5Fcreate(name.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose);
-    fill(file, particles, step, time, method);
+    fill(file, particles, step, time, method, names);
     hdf5Checked(H5Fflush(file, H5F_SCOPE_LOCAL));
     const ssize_t size = hdf5Checked(H5Fget_file_image(file, nullptr, 0));
     void* image = nullptr;  // takes the address of the driver's pointer to its memory: the bytes without a copy
@@ -370,9 +307,9 @@ Checkpoint<D> readCheckpoint(const std::filesystem::path& path, ParticlePart par
 }
 
 template void writeCheckpoint<2>(const std::filesystem::path&, const Particles<2>&, std::int64_t, double,
-                                 MethodKind);
+                                 MethodKind, const StateNames&);
 template void writeCheckpoint<3>(const std::filesystem::path&, const Particles<3>&, std::int64_t, double,
-                                 MethodKind);
+                                 MethodKind, const StateNames&);
 template Checkpoint<2> readCheckpoint<2>(const std::filesystem::path&, ParticlePart);
 template Checkpoint<3> readCheckpoint<3>(const std::filesystem::path&, ParticlePart);
 

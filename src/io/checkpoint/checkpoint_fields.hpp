@@ -70,7 +70,7 @@ void writeField(hid_t file, const FieldInfo& info, const Buffer<T>& field) {
   hdf5Checked(H5Dwrite(dataset, layout.memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, field.data()));
 }
 
-/// RowRange that follow each other in the file.
+/// Rows that follow each other in the file.
 struct RowRange {
   std::uint64_t begin, count;
 };

@@ -98,7 +98,7 @@ T readAttribute(hid_t file, const char* name) {
 inline std::string readText(hid_t file, const char* name) {
   if (hdf5Checked(H5Aexists(file, name)) == 0) return {};
   const Attribute attribute(file, name, H5T_STRING);
-  constexpr std::size_t longest = 100;
+  constexpr std::size_t longest = 101;  // a name of 100 bytes and its end
   const std::size_t bytes = H5Tget_size(attribute.type);
   if (H5Tis_variable_str(attribute.type) != 0 || bytes == 0 || bytes > longest)
     throw Hdf5Error(fmt::format("the attribute {} is no short text", name));

@@ -28,10 +28,10 @@ AtomicFile::AtomicFile(std::filesystem::path path) : path_(std::move(path)), tar
   for (int links = 0; isFile_ && links < 40 && fs::is_symlink(target_, error); ++links)
     target_ = target_.parent_path() / fs::read_symlink(target_, error);
   temporary_ = temporaryName(target_);
+  pending_.reserve(pendingLimit);  // before there is a file that would stay
   descriptor_ = isFile_ ? ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)
                         : ::open(path_.c_str(), O_WRONLY | O_CLOEXEC);
   if (descriptor_ < 0) throw RunError(writeFailure(path_, errno));
-  pending_.reserve(pendingLimit);
 }
 
 AtomicFile::~AtomicFile() { discard(); }

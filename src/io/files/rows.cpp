@@ -1,6 +1,6 @@
 #include "treacle/io/files/rows.hpp"
 
-#include "shapes/parse_number.hpp"
+#include "parse_number.hpp"
 #include "table_text.hpp"
 
 #include <algorithm>

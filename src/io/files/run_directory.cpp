@@ -1,6 +1,8 @@
 #include "treacle/io/files/run_directory.hpp"
 
+#include "case/toml_string.hpp"
 #include "posix.hpp"
+#include "text_file.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/io/files/atomic_file.hpp"
 #include "treacle/io/frames/pvtp.hpp"
@@ -48,10 +50,12 @@ bool isFrameName(std::string_view name) {
   return rest == ".vtp" || rest == ".pvtp" || rest == ".ply" || rest == ".png";
 }
 
-/// Likewise of probe() and probePicture().
-bool isProbeName(std::string_view name) {
+/// Likewise of probe() and probePicture(), for a probe of the case whose text this is: others' files may stand
+/// there, too.
+bool isProbeName(std::string_view name, const std::string& caseText) {
   if (name.ends_with(".tmp")) name.remove_suffix(4);
-  return name.ends_with(".csv") || name.ends_with(".png");
+  if (!name.ends_with(".csv") && !name.ends_with(".png")) return false;
+  return caseText.find(tomlString(name.substr(0, name.size() - 4))) != std::string::npos;
 }
 
 [[noreturn]] void unusable(const fs::path& path, std::string_view why) {
@@ -101,6 +105,23 @@ RunDirectory RunDirectory::open(const fs::path& path) {
   return run;
 }
 
+void RunDirectory::requireForeign(const fs::path& file, std::string_view option) {
+  std::error_code error;
+  const fs::path whole = fs::weakly_canonical(file, error), folder = whole.parent_path();
+  const auto isOf = [&](const fs::path& directory) {
+    const RunDirectory run(directory);
+    if (!run.holdsRun()) return false;
+    const std::string name = whole.filename().string(), kind = whole.extension().string();
+    if (folder != directory) return kind == ".vtp" || kind == ".pvtp" || kind == ".ply" || kind == ".csv";
+    return name == "case.toml" || name == "run.log" || name == "checkpoint.h5" || name == "summary.json" ||
+           kind == ".csv" || kind == ".pvd";
+  };
+  const bool inside = folder.filename() == "frames" || folder.filename() == "probes";
+  if (fs::exists(whole, error) && (isOf(folder) || (inside && isOf(folder.parent_path()))))
+    throw InputError(
+        fmt::format("{} {}: a run has written this file; choose another name", option, file.string()));
+}
+
 bool RunDirectory::holdsRun() const {
   std::error_code error;
   return fs::exists(fluidIndex(), error) || fs::exists(history(), error) || fs::exists(summary(), error) ||
@@ -124,10 +145,12 @@ void RunDirectory::removeRun() const {
   for (std::size_t i = 0, named = files.size(); i < named; ++i)
     files.push_back(AtomicFile::temporaryName(files[i]));
   std::error_code error;
+  const std::string caseText =
+      holdsRun() && fs::exists(caseFile(), error) ? readTextFile(caseFile()) : std::string();
   for (const auto& entry : fs::directory_iterator(path_ / "frames", error))
     if (isFrameName(entry.path().filename().string())) files.push_back(entry.path());
   for (const auto& entry : fs::directory_iterator(path_ / "probes", error))
-    if (isProbeName(entry.path().filename().string())) files.push_back(entry.path());
+    if (isProbeName(entry.path().filename().string(), caseText)) files.push_back(entry.path());
   for (const fs::path& file : files) {
     fs::remove(file, error);
     if (error) unusable(path_, fmt::format("cannot remove {}: {}", file.string(), error.message()));
@@ -222,9 +245,14 @@ void RunDirectory::addFrame(double time, std::string_view fluidExtension, std::s
   const std::size_t frame = frameCount();
   fluidFrames_.push_back({time, frameName("fluid", frame, fluidExtension)});
   wallsFrames_.push_back({time, frameName("walls", frame, wallsExtension)});
-  // The index that makes a directory that of a run comes last.
-  writePvd(wallsIndex(), wallsFrames_);
-  writePvd(fluidIndex(), fluidFrames_);
+  try {
+    // The index that makes a directory that of a run comes last.
+    writePvd(wallsIndex(), wallsFrames_);
+    writePvd(fluidIndex(), fluidFrames_);
+  } catch (...) {
+    fluidFrames_.pop_back(), wallsFrames_.pop_back();
+    throw;
+  }
 }
 
 }  // namespace treacle

@@ -1,5 +1,7 @@
 #include "table_text.hpp"
 
+#include "parse_number.hpp"
+
 #include <algorithm>
 
 namespace treacle {
@@ -63,6 +65,23 @@ void splitLine(std::string_view line, char separator, std::vector<std::string_vi
     line.remove_prefix(size + 1);
     if (byBlanks) line = trimmed(line);
   }
+}
+
+std::optional<double> tableNumber(std::string_view text) {
+  const std::size_t exponent = text.find_first_of("dD");
+  if (exponent == text.npos) return parseNumber<double>(text);
+  std::string plain(text);
+  plain[exponent] = 'e';
+  return parseNumber<double>(plain);
+}
+
+std::string expectedNumber(std::string_view found) {
+  const std::string text = "expected a number, found '" + std::string(found.substr(0, 40)) + "'";
+  constexpr std::string_view ofNumbers = "0123456789+-.,;eEdD \t";
+  const bool isNumeric =
+      found.find_first_of("0123456789") != found.npos && found.find_first_not_of(ofNumbers) == found.npos;
+  const bool decimalComma = isNumeric && found.find_first_of(",;\t") != found.npos;
+  return decimalComma ? text + ": is it a decimal comma? Write numbers with decimal points" : text;
 }
 
 }  // namespace treacle

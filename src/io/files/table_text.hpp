@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -24,6 +25,11 @@ class TextLines {
 /// Between the fields of a line: the first comma, semicolon or tab outside of double quotes, otherwise ' ', which
 /// stands for any number of blanks and tabs.
 char separatorOf(std::string_view line);
+
+/// A number as tables have it, also with an exponent of Fortran (1.5D-3).
+std::optional<double> tableNumber(std::string_view text);
+/// "expected a number, found '…'", and what may be the reason.
+std::string expectedNumber(std::string_view found);
 
 /// The fields without the blanks and the double quotes around them.
 void splitLine(std::string_view line, char separator, std::vector<std::string_view>& fields);

@@ -17,6 +17,9 @@ std::string readTextFile(const std::filesystem::path& path) {
   std::ifstream stream(path, std::ios::binary);
   stream.read(text.data(), static_cast<std::streamsize>(text.size()));
   if (!stream) throw InputError(fmt::format("{}: cannot be read", path.string()));
+  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
+    throw InputError(
+        fmt::format("{}: UTF-16 text; expected UTF-8 (\"CSV UTF-8\" of a spreadsheet program)", path.string()));
   return text;
 }
 

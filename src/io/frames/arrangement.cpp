@@ -1,5 +1,6 @@
 #include "treacle/io/frames/arrangement.hpp"
 
+#include "compare/nearest_points.hpp"
 #include "particle_cells.hpp"
 #include "treacle/core/parallel.hpp"
 
@@ -37,6 +38,22 @@ std::vector<double> nearestDistances(const ParticleCells& cells, std::size_t flu
     }
   });
   return distances;
+}
+
+bool touchesWalls(const ParticleCells& cells, double reach) {
+  for (std::size_t cell = 0; cell < cells.size(); ++cell) {
+    bool touches = false;
+    for (std::size_t i = cells.begin(cell); i < cells.begin(cell + 1) && !touches; ++i) {
+      if (cells.point(i).index != ParticleCells::wall) continue;
+      cells.forEachRow(cell, 1, [&](std::size_t first, std::size_t last) {
+        for (std::size_t j = cells.begin(first); j < cells.begin(last); ++j)
+          touches = touches || (cells.point(j).isParticle() &&
+                                norm2(cells.point(j).position - cells.point(i).position) < reach * reach);
+      });
+    }
+    if (touches) return true;
+  }
+  return false;
 }
 
 /// Particles around a place, weighted by distance and over their number in a lattice. The weight is Wendland's C2,
@@ -111,6 +128,7 @@ Arrangement measureArrangement(Frame& fluid, const Frame& walls, const Domain& d
   if (fluid.position.empty()) return result;
   const ParticleCells cells(fluid, walls, {}, domain, nearestReach * spacing);
   fluid.nearestDistance = nearestDistances(cells, fluid.position.size(), spacing);
+  result.touchesWalls = touchesWalls(cells, nearestReach * spacing);
   result.density = densityInside(cells, fluid.dimensions, spacing).mean();
   std::vector<double> sorted = fluid.nearestDistance;
   const auto low = sorted.begin() + static_cast<std::ptrdiff_t>(lowPlace(sorted.size()));
@@ -118,6 +136,14 @@ Arrangement measureArrangement(Frame& fluid, const Frame& walls, const Domain& d
   result.close = static_cast<double>(closeOnes(sorted)) / static_cast<double>(sorted.size());
   result.low = *low, result.least = *std::min_element(sorted.begin(), low + 1);
   return result;
+}
+
+double distanceToWalls(const Frame& fluid, const Frame& walls, const Domain& domain) {
+  double least2 = std::numeric_limits<double>::infinity();
+  if (fluid.position.empty() || walls.position.empty()) return least2;
+  for (const NearestPoint& p : nearestPoints(fluid.position, walls.position, domain))
+    least2 = std::min(least2, p.distance2);
+  return std::sqrt(least2);
 }
 
 ArrangementPart measureArrangementPart(Frame& fluid, std::span<const Vec<3>> others, const Domain& domain,

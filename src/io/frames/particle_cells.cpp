@@ -14,9 +14,9 @@ ParticleCells::ParticleCells(const Frame& fluid, const Frame& walls, std::span<c
   min_ = box.min, max_ = box.max;
   points_.reserve(fluid.position.size() + walls.position.size());
   for (std::size_t i = 0; i < fluid.position.size(); ++i) add(fluid.position[i], static_cast<std::uint32_t>(i));
-  for (const Vec<3>& x : walls.position) add(x, wall);
   addImages(domain);
   // The fluid's own box need not reach the end of the domain beyond which these are.
+  for (const Vec<3>& x : walls.position) addWithImages(x, domain);
   for (const Vec<3>& x : others) addWithImages(x, domain);
   std::sort(points_.begin(), points_.end(), [](const Point& a, const Point& b) { return a.key < b.key; });
   for (std::size_t i = 0; i < points_.size(); ++i)
@@ -39,10 +39,9 @@ void ParticleCells::addImages(const Domain& domain) {
     const double period = domain.max[k] - domain.min[k];
     for (std::size_t i = 0, count = points_.size(); i < count; ++i) {
       Vec<3> x = points_[i].position;
-      const std::uint32_t index = points_[i].index == wall ? wall : image;
       const double at = x[k];
-      if (at < domain.min[k] + margin) x[k] = at + period, add(x, index);
-      if (at > domain.max[k] - margin) x[k] = at - period, add(x, index);
+      if (at < domain.min[k] + margin) x[k] = at + period, add(x, image);
+      if (at > domain.max[k] - margin) x[k] = at - period, add(x, image);
     }
   }
 }

@@ -1,5 +1,6 @@
 #include "treacle/io/frames/particle_csv.hpp"
 
+#include "files/parse_number.hpp"
 #include "files/table_text.hpp"
 #include "files/text_file.hpp"
 #include "treacle/core/error.hpp"
@@ -8,7 +9,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <string>
 #include <string_view>
@@ -122,7 +122,7 @@ class ParticleCsv {
     if (has(NumberDensity)) frame_.numberDensity.push_back(number(NumberDensity));
     if (has(NearestDistance)) frame_.nearestDistance.push_back(number(NearestDistance));
     if (has(Temperature)) frame_.temperature.push_back(number(Temperature));
-    if (has(Id)) frame_.id.push_back(parsed<std::uint32_t>(Id, "a whole number from 0 to 4294967295"));
+    if (has(Id)) frame_.id.push_back(id());
   }
 
   void finish() {
@@ -135,18 +135,19 @@ class ParticleCsv {
 
   std::string_view field(Column column) const { return fields_[place_[column]]; }
 
-  template <class T>
-  T parsed(Column column, std::string_view expected) const {
-    std::string_view text = field(column);
-    if (text.starts_with('+')) text.remove_prefix(1);  // as some programs write, and from_chars does not read
-    T value{};
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc{} || end != text.data() + text.size())
-      bad(fmt::format("{}: expected {}, found '{}'", spellings[column][0], expected, field(column)));
-    return value;
+  std::uint32_t id() const {
+    const auto value = parseNumber<std::uint32_t>(field(Id));
+    if (!value)
+      bad(fmt::format("{}: expected a whole number from 0 to 4294967295, found '{}'", spellings[Id][0],
+                      field(Id)));
+    return *value;
   }
 
-  double number(Column column) const { return parsed<double>(column, "a number"); }
+  double number(Column column) const {
+    const std::optional<double> value = tableNumber(field(column));
+    if (!value) bad(fmt::format("{}: {}", spellings[column][0], expectedNumber(field(column))));
+    return *value;
+  }
 
   double coordinate(Column column) const {
     const double x = number(column);

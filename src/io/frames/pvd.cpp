@@ -1,7 +1,7 @@
 #include "treacle/io/frames/pvd.hpp"
 
+#include "files/parse_number.hpp"
 #include "files/text_file.hpp"
-#include "shapes/parse_number.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/io/files/atomic_file.hpp"
 #include "vtk_xml.hpp"

@@ -1,4 +1,4 @@
-#include "shapes/parse_number.hpp"
+#include "files/parse_number.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/io/frames/vtp.hpp"
 #include "vtk_blocks.hpp"

@@ -42,7 +42,8 @@ double MeshLines::number(std::size_t word) const {
   const bool outOfRange = error == std::errc::result_out_of_range;
   if (outOfRange) value = std::strtod(std::string(text).c_str(), nullptr);  // as good as 0, or infinite
   if ((error != std::errc{} && !outOfRange) || !whole || !(std::abs(value) <= farthestVertex))
-    fail(fmt::format("expected a finite number of at most {:g}, found '{}'", farthestVertex, words_[word]));
+    fail(fmt::format("expected a finite number of at most {:g}, found '{}'{}", farthestVertex, words_[word],
+                     words_[word].find(',') == words_[word].npos ? "" : "; write decimal points, not commas"));
   return value;
 }
 

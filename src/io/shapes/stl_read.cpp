@@ -3,6 +3,8 @@
 #include "treacle/core/error.hpp"
 
 #include <fmt/format.h>
+
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -32,6 +34,9 @@ Triangles readBinary(const std::string& path, std::string_view content) {
   const std::uint32_t count = facetCount(content);
   const auto fail = [&](const std::string& what) { throw InputError(fmt::format("{}: {}", path, what)); };
   if (count == 0) fail("no faces: the header of this binary STL says 0");
+  if (content.size() >= binaryBytes(std::uint64_t{count} + 1))
+    fail(fmt::format("its header says {} faces, but the file has room for {}: as a binary STL it is damaged",
+                     count, (content.size() - binaryBytes(0)) / facetBytes));
   if (content.size() < binaryBytes(count))
     fail(
         fmt::format("truncated, or no STL: as a binary one its header promises {} faces in {} bytes, the file has "
@@ -56,6 +61,13 @@ Triangles readBinary(const std::string& path, std::string_view content) {
   return t;
 }
 
+std::string inSmallLetters(std::string_view text) {
+  std::string small(text);
+  std::ranges::transform(small, small.begin(),
+                         [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
+  return small;
+}
+
 class AsciiStl {
  public:
   AsciiStl(const std::string& path, std::string_view content) : lines_(path, content) {}
@@ -65,12 +77,12 @@ class AsciiStl {
     expect("solid");
     bool open = true;
     while (lines_.next()) {
-      if (lines_.key() == "endsolid" || lines_.key() == "solid") {
-        if (open == (lines_.key() == "solid")) wrong("facet' or 'endsolid");
+      if (isKey("endsolid") || isKey("solid")) {
+        if (open == isKey("solid")) wrong("facet' or 'endsolid");
         open = !open;
         continue;
       }
-      if (lines_.key() != "facet") wrong(open ? "facet' or 'endsolid" : "solid");
+      if (!isKey("facet")) wrong(open ? "facet' or 'endsolid" : "solid");
       readFacet(t);
     }
     if (open) lines_.fail("truncated: expected 'facet' or 'endsolid', found the end of the file");
@@ -93,8 +105,9 @@ class AsciiStl {
 
   void expect(std::string_view key) {
     if (!lines_.next()) lines_.fail(fmt::format("truncated: expected '{}', found the end of the file", key));
-    if (lines_.key() != key) wrong(key);
+    if (!isKey(key)) wrong(key);
   }
+  bool isKey(std::string_view key) const { return inSmallLetters(lines_.key().substr(0, key.size() + 1)) == key; }
   [[noreturn]] void wrong(std::string_view expected) const {
     lines_.fail(fmt::format("expected '{}' of an ASCII STL, found '{}'", expected, lines_.key()));
   }
@@ -104,13 +117,19 @@ class AsciiStl {
 
 }  // namespace
 
-/// Binary ones may begin with 'solid', too: the size tells.
+/// Binary ones may begin with 'solid', too: bytes that no text has tell, and the size, which some programs fill
+/// up.
 Triangles readStl(const std::string& path, std::string_view content) {
+  constexpr std::string_view mark = "\xEF\xBB\xBF";
   const bool longEnough = content.size() >= binaryBytes(0);
-  if (longEnough && content.size() == binaryBytes(facetCount(content))) return readBinary(path, content);
-  const std::size_t first = content.find_first_not_of(" \t\r\n");
-  const bool text = first != content.npos && content.substr(first).starts_with("solid");
-  if (text || !longEnough) return AsciiStl(path, content).triangles();
+  if (longEnough && content.size() >= binaryBytes(facetCount(content)) &&
+      content.size() < binaryBytes(std::uint64_t{facetCount(content)} + 1))
+    return readBinary(path, content);
+  const std::string_view text = content.starts_with(mark) ? content.substr(mark.size()) : content;
+  const std::size_t first = text.find_first_not_of(" \t\r\n");
+  const bool isText =
+      first != text.npos && inSmallLetters(text.substr(first, 5)) == "solid" && text.find('\0') == text.npos;
+  if (isText || !longEnough) return AsciiStl(path, text).triangles();
   return readBinary(path, content);
 }
 

@@ -40,45 +40,51 @@ void writeSummary(const std::filesystem::path& path, const RunSummary& s) {
   Json phases = Json::object();
   for (const auto& [phase, seconds] : s.phaseSeconds) phases[phase] = seconds;
 
+  const RunOrigin& origin = s.origin;
+  const StepTally& tally = s.tally;
+  const FrameTally& frames = s.frames;
   Json json;
   json["status"] = s.done ? "done" : "failed";
   json["message"] = s.message;
-  json["title"] = s.title;
-  json["version"] = s.version;
-  json["commit"] = s.commit;
-  json["backend"] = s.backend;
-  json["device"] = s.device;
-  json["threads"] = s.threads;
+  json["title"] = origin.title;
+  json["version"] = origin.version;
+  json["commit"] = origin.commit;
+  json["backend"] = origin.backend;
+  json["device"] = origin.device;
+  json["threads"] = origin.threads;
   json["processes"] = std::max<std::size_t>(s.processes.size(), 1);
-  json["precision"] = s.precision;
-  json["dimensions"] = s.dimensions;
-  json["fluid_particles"] = s.fluidParticles;
-  json["wall_particles"] = s.wallParticles;
-  if (s.flow)
-    json["flow"] = {{"fluid_particles", s.flow->particles},
-                    {"inflow_particles", s.flow->in},
-                    {"outflow_particles", s.flow->out}};
+  json["precision"] = origin.precision;
+  json["dimensions"] = origin.dimensions;
+  json["fluid_particles"] = origin.fluidParticles;
+  json["wall_particles"] = origin.wallParticles;
+  if (tally.flow)
+    json["flow"] = {{"fluid_particles", tally.flow->particles},
+                    {"inflow_particles", tally.flow->in},
+                    {"outflow_particles", tally.flow->out}};
   json["steps"] = s.steps;
   json["time"] = s.time;
-  json["time_step"] = {{"least", s.leastStep}, {"mean", s.meanStep}, {"longest", s.longestStep}};
-  json["rejected_steps"] = s.rejectedSteps;
-  json["iterations"] = {{"mean", s.meanIterations}, {"first", s.firstIterations}, {"last", s.lastIterations}};
-  json["fallbacks"] = s.fallbacks;
-  json["density"] = {{"mean", s.meanDensity}, {"error", s.densityError}, {"largest_error", s.largestDensityError}};
-  json["density"]["inside"] = s.arrangement.density ? Json(*s.arrangement.density) : Json();
-  json["nearest_distance"] = {{"least", s.arrangement.least},
-                              {"low", s.arrangement.low},
-                              {"smallest_least", s.smallestLeast},
-                              {"smallest_low", s.smallestLow}};
+  json["time_step"] = {{"least", tally.leastStep}, {"mean", tally.meanStep}, {"longest", tally.longestStep}};
+  json["rejected_steps"] = tally.rejectedSteps;
+  json["iterations"] = {
+      {"mean", tally.meanIterations}, {"first", tally.firstIterations}, {"last", tally.lastIterations}};
+  json["fallbacks"] = tally.fallbacks;
+  json["density"] = {
+      {"mean", tally.meanDensity}, {"error", tally.densityError}, {"largest_error", tally.largestDensityError}};
+  json["density"]["inside"] = frames.arrangement.density ? Json(*frames.arrangement.density) : Json();
+  json["nearest_distance"] = {{"least", frames.arrangement.least},
+                              {"low", frames.arrangement.low},
+                              {"smallest_least", frames.smallestLeast},
+                              {"smallest_low", frames.smallestLow}};
   json["seconds_per_phase"] = phases;
   if (!s.processes.empty()) json["shares"] = sharesOf(s.processes);
-  json["frames"] = {{"count", s.frames}, {"bytes", s.frameCost.bytes}, {"seconds", s.frameCost.seconds}};
+  json["frames"] = {{"count", frames.count}, {"bytes", frames.cost.bytes}, {"seconds", frames.cost.seconds}};
   json["output_thread_seconds"] = s.outputThreadSeconds;
   json["wall_seconds"] = s.wallSeconds;
   json["peak_memory_bytes"] = s.peakMemory;
   json["peak_device_memory_bytes"] = s.peakDeviceMemory;
   json["memory_bytes_per_fluid_particle"] =
-      s.fluidParticles > 0 ? static_cast<double>(s.peakMemory) / static_cast<double>(s.fluidParticles) : 0.0;
+      origin.fluidParticles > 0 ? static_cast<double>(s.peakMemory) / static_cast<double>(origin.fluidParticles)
+                                : 0.0;
   // Titles and messages may hold file names in any encoding; they must not cost the summary.
   writeFile(path, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }

@@ -43,6 +43,16 @@ class Checker {
         fail({key}, fmt::format("expected rising {}, found {} after {}", what, numbers[k], numbers[k - 1]));
   }
 
+  /// Names stand in messages and in names of files.
+  void requireName(const std::string& name) const {
+    constexpr std::size_t longest = 100;
+    if (name.size() > longest)
+      fail({"name"}, fmt::format("expected at most {} bytes, found {}", longest, name.size()));
+    for (const char c : name)
+      if (static_cast<unsigned char>(c) < ' ' || c == 0x7f)
+        fail({"name"}, fmt::format("expected no control characters, found one with the code {}", int{c}));
+  }
+
   void requireDirection(std::string_view key, const Vec<3>& v) const {
     if (const double length = norm(v); length == 0 || !std::isfinite(length))
       fail({key}, fmt::format("expected a direction, found a vector of length {}", length));
@@ -63,8 +73,10 @@ class Checker {
   void operator()(const Key& key, const Vec<3>& x) const {
     requireVector(key, x, expectedVector(key, case_.dimensions));
   }
+  void operator()(const Key&, const std::vector<std::string>&) const {}
   void operator()(const Key& key, const std::string& text) const {
     if (key.required && text.empty()) fail({key.name}, "missing; expected a string");
+    if (key.name == "name") requireName(text);
   }
   void operator()(const Key& key, const std::string& text, keys::ExpressionTag) const {
     if (text.empty()) return;
@@ -195,6 +207,7 @@ void requireSound(const Checker& at, const Material& material);
 // sound_bodies.cpp
 void requireSound(const Checker& at, const Transform& transform);
 void requireSound(const Checker& at, const Rotation& rotation);
+void requireSound(const Checker& at, const Hinge& hinge);
 void requireSound(const Checker& at, const Nozzle& nozzle);
 void requireSound(const Checker& at, const Inflow& inflow);
 void requireSound(const Checker& at, const Outflow& outflow);

@@ -204,6 +204,81 @@ void warnCourant(const Case& c, std::vector<std::string>& warnings) {
       c.time.step * largest / number));
 }
 
+/// Steps that are longer than a twentieth of an oscillation miss much of it.
+void warnOscillations(const Case& c, std::vector<std::string>& warnings) {
+  constexpr double stepsOfPeriod = 20;
+  for (const Body& body : c.bodies) {
+    const double period = body.oscillation.period;
+    if (period == 0 || norm(body.oscillation.amplitude) == 0 ||
+        c.time.step * stepsOfPeriod <= period * (1 + rounding))
+      continue;
+    warnings.push_back(fmt::format(
+        "body '{}' oscillates with a period of {:g} s, {:.3g} steps of {:g} s; take {} <= {:.2g}", body.name,
+        period, period / c.time.step, c.time.step, c.time.stepKey(), period / stepsOfPeriod));
+  }
+}
+
+/// Numbers that no material has: a unit is wrong, or a key.
+void warnUnlikely(const Case& c, std::vector<std::string>& warnings) {
+  const auto look = [&](const std::string& of, std::string_view key, double x, double least, double most,
+                        std::string_view unit) {
+    if (x == 0 || (x >= least && x <= most)) return;
+    warnings.push_back(fmt::format("{} has {} = {:g} {}; fluids and solids have {:g} to {:g}: is it in SI units?",
+                                   of, key, x, unit, least, most));
+  };
+  for (const Material& m : c.materials) {
+    const std::string of = fmt::format("material '{}'", m.name);
+    look(of, "density", m.density, 0.01, 3e4, "kg/m3");
+    look(of, "surface_tension", m.surfaceTension, 1e-6, 100, "N/m");
+    if (!c.heat) continue;
+    look(of, "conductivity", m.conductivity, 1e-3, 1e4, "W/(m K)");
+    look(of, "specific_heat", m.specificHeat, 10, 2e4, "J/(kg K)");
+  }
+  if (c.heat)
+    for (const Body& b : c.bodies)
+      if (b.temperatureExpression.empty())
+        look(fmt::format("body '{}'", b.name), "temperature", b.temperature, 50, 5000, "K");
+}
+
+/// Whether a viscosity is known at a temperature: between the rows of its table, or where its law is not cut off.
+bool isKnownAt(const ViscosityShift& shift, double temperature) {
+  if (shift.model == ShiftModel::Table)
+    return temperature >= shift.temperatures.front() && temperature <= shift.temperatures.back();
+  const double factor = ShiftFactor::make(shift)(temperature);
+  return factor > shift.least * (1 + rounding) && factor < shift.most * (1 - rounding);
+}
+
+std::string knownRange(const ViscosityShift& shift) {
+  if (shift.model == ShiftModel::Table)
+    return fmt::format("from {:g} to {:g} K", shift.temperatures.front(), shift.temperatures.back());
+  return fmt::format("for factors from {:g} to {:g}", shift.least, shift.most);
+}
+
+/// Of walls only tables count: a law that is cut off there is meant so.
+void warnTemperatures(const Case& c, std::vector<std::string>& warnings) {
+  constexpr double zeroCelsius = 273.15, coldest = 200;
+  if (!c.heat) return;
+  for (const Body& body : c.bodies) {
+    if (!body.temperatureExpression.empty() || body.fileTemperatures || body.temperature == 0) continue;
+    for (const Material& m : c.materials) {
+      const auto& shift = m.viscosityShift;
+      const bool meets = body.holdsFluid() ? &materialOf(c, body) == &m
+                                           : shift && shift->model == ShiftModel::Table &&
+                                                 std::ranges::any_of(c.bodies, [&](const Body& b) {
+                                                   return b.holdsFluid() && &materialOf(c, b) == &m;
+                                                 });
+      if (!meets || !shift || isKnownAt(*shift, body.temperature)) continue;
+      warnings.push_back(fmt::format(
+          "body '{}' has temperature = {:g} K, where viscosity_shift of material '{}' is cut off: it is given "
+          "{}{}",
+          body.name, body.temperature, m.name, knownRange(*shift),
+          body.temperature < coldest
+              ? fmt::format(". Are these degrees Celsius? Expected kelvin, {:g}", body.temperature + zeroCelsius)
+              : ""));
+    }
+  }
+}
+
 /// Surface tension acts as it is at the start of a step: a step is not to be much longer than what viscosity and
 /// inertia take to move a particle by its spacing (docs/surface-tension.md).
 void warnTension(const Case& c, std::vector<std::string>& warnings) {
@@ -325,6 +400,9 @@ std::vector<std::string> caseWarnings(const Case& c) {
     warnSoftFluids(c, warnings);
   }
   warnCourant(c, warnings);
+  warnOscillations(c, warnings);
+  warnUnlikely(c, warnings);
+  warnTemperatures(c, warnings);
   warnTension(c, warnings);
   warnKeysOfOthers(c, warnings);
   warnThinWalls(c, warnings);

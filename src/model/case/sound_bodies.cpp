@@ -81,11 +81,40 @@ void requireShape(const Checker& at, const Shape& s) {
 }
 
 /// Its torque has no nearest image.
-void requireRigid(const Checker& at) {
+void requireRigid(const Checker& at, const Body& b) {
   const Case& c = at.wholeCase();
+  const RigidSettings &r = b.rigid, free{};
+  if (r.hinge && (r.translates != free.translates || r.rotates != free.rotates))
+    at.fail({"hinge"}, "expected either a hinge or translates and rotates, found both");
+  if (r.hinge && norm(b.velocity) > 0)
+    at.fail({"velocity"}, "a body on a hinge only turns; expected angular_velocity in its place");
+  if (r.release > 0 && norm(b.velocity) > 0) at.fail({"velocity"}, "a body stands still until its release");
+  if (r.release > 0 && norm(r.angularVelocity) > 0)
+    at.fail({"angular_velocity"}, "a body stands still until its release");
   for (int k = 0; k < c.dimensions; ++k)
     if (c.domain.periodic[static_cast<std::size_t>(k)])
       at.fail({"type"}, fmt::format("there can be no rigid body in a domain that is periodic along {}", "xyz"[k]));
+}
+
+/// Errors also where a body takes its own places from itself, by whichever way.
+void requireSubtracted(const Checker& at, const Body& b, const Body& from, std::size_t depth) {
+  const std::vector<Body>& bodies = at.wholeCase().bodies;
+  for (const std::string& name : from.subtract) {
+    const auto found = std::ranges::find(bodies, name, &Body::name);
+    if (found == bodies.end()) {
+      std::vector<std::string_view> names;
+      for (const Body& other : bodies)
+        if (other.kind != BodyKind::Inflow && other.name != b.name) names.push_back(other.name);
+      at.fail({"subtract"}, wrongWord(names, name));
+    }
+    if (found->kind == BodyKind::Inflow)
+      at.fail({"subtract"}, fmt::format("'{}' is an inflow; expected bodies that have a shape", name));
+    if (found->name == b.name)
+      at.fail({"subtract"}, from.name == b.name
+                                ? fmt::format("expected other bodies than '{}' itself", name)
+                                : fmt::format("'{}' and '{}' subtract each other", b.name, from.name));
+    if (depth < bodies.size()) requireSubtracted(at, b, *found, depth + 1);
+  }
 }
 
 }  // namespace
@@ -94,6 +123,8 @@ void requireSound(const Checker& at, const Rotation& r) {
   if (r.angle && r.speed != 0) at.fail({"angle"}, "expected one of speed and angle, found both");
   at.requireDirection("axis", r.axis);
 }
+
+void requireSound(const Checker& at, const Hinge& h) { at.requireDirection("axis", h.axis); }
 
 void requireSound(const Checker& at, const Transform& t) {
   at.requireDirection("axis", t.axis);
@@ -132,7 +163,8 @@ void requireSound(const Checker& at, const Outflow& o) {
 void requireSound(const Checker& at, const Body& b) {
   if (b.kind == BodyKind::Inflow) return requireSound(at, b.inflow);
   requireShape(at, b.shape);
-  if (b.kind == BodyKind::Rigid) requireRigid(at);
+  requireSubtracted(at, b, b, 0);
+  if (b.kind == BodyKind::Rigid) requireRigid(at, b);
   if (b.kind == BodyKind::Fluid) {
     constexpr const char* text = "only a body of type \"wall\" can have one";
     if (b.displacement != TimeVector{}) at.fail({"displacement"}, text);

@@ -172,15 +172,24 @@ CutSearch<D>::CutSearch(double spacing, double reach, double margin)
 }
 
 template <int D>
-bool CutSearch<D>::mayFind(const Vec<D>& x, const NearWalls<D>& walls) const {
+bool CutSearch<D>::mayLeave(const Vec<D>& x, const Vec<D>& d, const NearWalls<D>& walls) const {
   for (const WallPart<D>* part : walls.parts) {
     if (!part->cut()) continue;
-    if (!part->solid() || part->excludes(x)) return true;
-    for (const Vec<D>& d : directions_)
-      for (double t = spacing_ / 4; t < beyond * reach_ + spacing_ / 4; t += spacing_ / 4)
-        if (part->excludes(x + d * t)) return true;
+    if (!part->solid()) return true;
+    // An image that excludes all around, as one does that sticks out of a periodic domain, leaves no surface.
+    bool before = part->excludes(x);
+    for (double t = spacing_ / 4; t < beyond * reach_ + spacing_ / 4; t += spacing_ / 4) {
+      const bool now = part->excludes(x + d * t);
+      if (now && !before) return true;
+      before = now;
+    }
   }
   return false;
+}
+
+template <int D>
+bool CutSearch<D>::mayFind(const Vec<D>& x, const NearWalls<D>& walls) const {
+  return std::ranges::any_of(directions_, [&](const Vec<D>& d) { return mayLeave(x, d, walls); });
 }
 
 /// The directions whose exits are cut ones, and nearer than those of the directions around them.
@@ -190,7 +199,7 @@ std::vector<typename CutSearch<D>::Start> CutSearch<D>::starts(const Vec<D>& x, 
   std::vector<double> distance(directions_.size());
   for (std::size_t k = 0; k < directions_.size(); ++k) {
     const Vec<D>& d = directions_[k];
-    distance[k] = ray.first(d, beyond * reach_, spacing_ / 50);
+    distance[k] = mayLeave(x, d, walls) ? ray.first(d, beyond * reach_, spacing_ / 50) : none;
     if (distance[k] != none && !walls.cutAt(x + d * (distance[k] + margin_))) distance[k] = none;
   }
   std::vector<Start> starts;

@@ -22,9 +22,9 @@ struct NearWalls {
       if (part->cutAt(x)) return true;
     return false;
   }
-  bool cut() const {
+  bool cutIn(const Vec<D>& min, const Vec<D>& max) const {
     for (const WallPart<D>* part : parts)
-      if (part->cut()) return true;
+      if (part->cutIn(min, max)) return true;
     return false;
   }
 };
@@ -49,6 +49,9 @@ class CutSearch {
   void find(const Vec<D>& x, const NearWalls<D>& walls, std::vector<Exit>& found) const;
 
  private:
+  /// The same for the straight line in one direction.
+  bool mayLeave(const Vec<D>& x, const Vec<D>& d, const NearWalls<D>& walls) const;
+
   class Ray;
   struct Start {
     int direction;

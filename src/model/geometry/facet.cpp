@@ -46,18 +46,15 @@ Vec<3> nearestOn<3>(const Facet<3>& f, const Vec<3>& x) {
 }
 
 template <>
-double covered<2>(const Facet<2>& f, const Vec<2>& x) {
+Vec<2> coveredAngle<2>(const Facet<2>& f, const Vec<2>& x) {
   const Vec<2> a = f[0] - x, b = f[1] - x;
-  return std::atan2(a[0] * b[1] - a[1] * b[0], dot(a, b)) / (2 * std::numbers::pi);
+  return {dot(a, b), a[0] * b[1] - a[1] * b[0]};
 }
-
-/// [van Oosterom, Strackee 1983]
 template <>
-double covered<3>(const Facet<3>& f, const Vec<3>& x) {
+Vec<2> coveredAngle<3>(const Facet<3>& f, const Vec<3>& x) {
   const Vec<3> a = f[0] - x, b = f[1] - x, c = f[2] - x;
   const double na = norm(a), nb = norm(b), nc = norm(c);
-  const double denominator = na * nb * nc + dot(a, b) * nc + dot(b, c) * na + dot(c, a) * nb;
-  return std::atan2(dot(a, cross(b, c)), denominator) / (2 * std::numbers::pi);
+  return {na * nb * nc + dot(a, b) * nc + dot(b, c) * na + dot(c, a) * nb, dot(a, cross(b, c))};
 }
 
 }  // namespace treacle

@@ -15,6 +15,36 @@ double coveredFromFar(const Vec<D>& flux, const Vec<D>& way, double distance) {
   return dot(flux, way) / (distance * sphere);
 }
 
+/// A sum of angles, by products of complex numbers: an arctangent takes longer than what it is of.
+class AngleSum {
+ public:
+  /// `a`: cosine and sine times a length.
+  void add(const Vec<2>& a) {
+    if (!(a[0] > std::abs(a[1]) / 2)) {
+      sum_ += std::atan2(a[1], a[0]);
+      return;
+    }
+    const double tangent = a[1] / a[0];
+    bound_ += std::abs(tangent);
+    if (bound_ > 3) take(), bound_ = std::abs(tangent);
+    product_ = {product_[0] - product_[1] * tangent, product_[1] + product_[0] * tangent};
+  }
+  double result() {
+    take();
+    return sum_;
+  }
+
+ private:
+  void take() {
+    sum_ += std::atan2(product_[1], product_[0]);
+    product_ = {1, 0}, bound_ = 0;
+  }
+
+  double sum_ = 0;
+  Vec<2> product_{1, 0};
+  double bound_ = 0;  // of its angle, which pi must not reach
+};
+
 template <int D>
 double angleBetween(const Vec<D>& a, const Vec<D>& b) {
   return std::acos(std::clamp(dot(a, b), -1.0, 1.0));
@@ -169,8 +199,9 @@ double FacetTree<D>::winding(const Vec<D>& x) const {
     if (isFar) sum += coveredFromFar<D>(node.flux, way, std::sqrt(d2));
     return !isFar;
   };
-  walk(enter, [&](std::uint32_t k) { sum += covered<D>(facets_[k], x); });
-  return sum;
+  AngleSum angles;
+  walk(enter, [&](std::uint32_t k) { angles.add(coveredAngle<D>(facets_[k], x)); });
+  return sum + angles.result() / (2 * std::numbers::pi);
 }
 
 template <int D>

@@ -23,9 +23,10 @@ Vec<D> facetNormal(const Facet<D>& facet);
 template <int D>
 Vec<D> nearestOn(const Facet<D>& facet, const Vec<D>& x);
 
-/// The share of the directions from x that a facet covers, negative seen from outside.
+/// Cosine and sine, times a common length, of an angle that is to pi as the directions from x that a facet covers
+/// are to half of all directions; negative seen from outside. In space [Van Oosterom, Strackee 1983].
 template <int D>
-double covered(const Facet<D>& facet, const Vec<D>& x);
+Vec<2> coveredAngle(const Facet<D>& facet, const Vec<D>& x);
 
 template <>
 Vec<2> facetNormal<2>(const Facet<2>& facet);
@@ -36,9 +37,9 @@ Vec<2> nearestOn<2>(const Facet<2>& facet, const Vec<2>& x);
 template <>
 Vec<3> nearestOn<3>(const Facet<3>& facet, const Vec<3>& x);
 template <>
-double covered<2>(const Facet<2>& facet, const Vec<2>& x);
+Vec<2> coveredAngle<2>(const Facet<2>& facet, const Vec<2>& x);
 template <>
-double covered<3>(const Facet<3>& facet, const Vec<3>& x);
+Vec<2> coveredAngle<3>(const Facet<3>& facet, const Vec<3>& x);
 
 /// Facets in a tree of boxes, with the questions how often they go round a point and which of them is near it.
 /// Nothing is asked of how they hang together.

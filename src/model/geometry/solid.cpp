@@ -4,10 +4,14 @@
 #include "treacle/model/geometry/mesh.hpp"
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <cmath>
 
 namespace treacle {
 namespace {
+
+std::atomic<std::uint64_t> solids{0};
 
 template <int D>
 std::shared_ptr<const FacetTree<D>> treeOf(const Shape& s) {
@@ -27,7 +31,8 @@ Solid<D>::Solid(const Shape& s, double needed, double spacing)
       sign_(s.flip ? -1 : 1),
       thickness_((s.thickness > 0 ? s.thickness : needed) / similarity_.scale()),
       slack_(1e-6 * spacing / similarity_.scale()),
-      spacing_(spacing / similarity_.scale()) {
+      spacing_(spacing / similarity_.scale()),
+      number_(++solids) {
   Shape layered = s;
   layered.thickness = thickness_ * similarity_.scale();
   const Extent box = boundingBox(layered, D);
@@ -47,13 +52,45 @@ typename Solid<D>::Answer Solid<D>::filled(const Vec<D>& x) const {
   if (layer && d > end) return answer(false, d - end);
   if (d <= slack_) return answer(fill_ != FillKind::Outside, 0);
   const double w = sign_ * tree_->winding(local);
-  // Beside holes winding numbers change with the place. They are harmonic: where they are within 1.5 of their
-  // middle in a ball of radius d, none changes by more than 1.5 D r / (d - r) on a way of r.
-  const double off = std::abs(w - 0.5);
-  double sure = closed_ ? d - slack_ : (d - slack_) * off / (off + 1.5 * D);
+  double sure = sureDistance(d, w);
   const bool within = (w >= 0.5) != (fill_ == FillKind::Outside);
   if (layer && within) sure = std::min(sure, end - d);
   return answer(within, sure);
+}
+
+/// Beside holes winding numbers change with the place. They are harmonic: where they are within 1.5 of their
+/// middle in a ball of radius d, none changes by more than 1.5 D r / (d - r) on a way of r.
+template <int D>
+double Solid<D>::sureDistance(double d, double w) const {
+  const double off = std::abs(w - 0.5);
+  return closed_ ? d - slack_ : (d - slack_) * off / (off + 1.5 * D);
+}
+
+template <int D>
+typename Solid<D>::Surroundings Solid<D>::around(const Vec<D>& local) const {
+  struct Ball {
+    std::uint64_t solid = 0;
+    Vec<D> middle{};
+    double square = 0;  // of the radius in which `within` holds
+    Surroundings known{};
+  };
+  constexpr std::size_t balls = 64;
+  thread_local std::array<Ball, balls> memory;
+  thread_local std::size_t next = 0;
+  for (std::size_t k = 1; k <= balls; ++k) {
+    const Ball& ball = memory[(next + balls - k) % balls];  // the last one first
+    if (ball.solid != number_) continue;
+    if (const double r2 = norm2(local - ball.middle); r2 < ball.square) {
+      const double r = std::sqrt(r2);
+      return {ball.known.within, ball.known.least - r, ball.known.most + r};
+    }
+  }
+  const double limit = thickness_ + 16 * spacing_, w = sign_ * tree_->winding(local);
+  const Near near = tree_->nearest(local, limit);
+  const Surroundings known{w >= 0.5, std::min(near.distance, limit), near.distance};
+  if (const double sure = sureDistance(known.least, w) - slack_; sure > 0)
+    memory[next] = {number_, local, sure * sure, known}, next = (next + 1) % balls;
+  return known;
 }
 
 template <int D>
@@ -65,8 +102,12 @@ bool Solid<D>::contains(const Vec<D>& x) const {
     case FillKind::Inside:
     case FillKind::Shell:
       break;
-    case FillKind::Outside:
-      return tree_->nearest(local, thickness_ + slack_).facet != tree_->none && !inside(local);
+    case FillKind::Outside: {
+      const Surroundings known = around(local);
+      const double end = thickness_ + slack_;
+      if (known.within || known.least > end) return false;
+      return known.most <= end || tree_->nearest(local, end).facet != tree_->none;
+    }
     case FillKind::Sheet:
       return tree_->nearest(local, thickness_ / 2 + slack_).facet != tree_->none;
   }

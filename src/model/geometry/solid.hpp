@@ -3,6 +3,7 @@
 #include "facet_tree.hpp"
 #include "treacle/model/geometry/shape.hpp"
 
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -52,7 +53,16 @@ class Solid {
  private:
   using Near = typename FacetTree<D>::Near;
 
-  bool inside(const Vec<D>& local) const { return sign_ * tree_->winding(local) >= 0.5; }
+  /// Whether the surface goes round a point, and between what limits its distance is. Asked again nearby it
+  /// answers from memory, which each thread has.
+  struct Surroundings {
+    bool within;
+    double least, most;
+  };
+  Surroundings around(const Vec<D>& local) const;
+  bool inside(const Vec<D>& local) const { return around(local).within; }
+  /// How far from a point at distance d of the surface, with the winding number w, nothing changes.
+  double sureDistance(double d, double w) const;
   Vec<D> direction(const Vec<D>& local, const Near& near) const;
   void otherWays(const Vec<D>& local, double reach, const Vec<D>& first, bool all, std::vector<Way>& found) const;
 
@@ -63,6 +73,7 @@ class Solid {
   double sign_ = 1;  // -1: inside-out
   double thickness_, slack_, spacing_;
   Vec<D> min_, max_;
+  std::uint64_t number_;  // of this solid, among all that there were
 };
 
 extern template class Solid<2>;

@@ -1,6 +1,7 @@
 #include "solid_points.hpp"
 
 #include "treacle/core/parallel.hpp"
+#include "treacle/core/work_in_hand.hpp"
 #include "treacle/model/case/names.hpp"
 #include "treacle/model/particles/create.hpp"
 
@@ -85,6 +86,7 @@ std::vector<Vec<D>> solidPoints(const Case& c, const Body& body, std::vector<std
   std::vector<char> within(static_cast<std::size_t>(length * some));
   std::vector<Vec<D>> points;
   bool any = false;
+  WorkInHand work(fmt::format("filling body '{}'", body.name), static_cast<std::size_t>(count));
   for (std::int64_t begin = 0; begin < count; begin += some) {
     const std::int64_t end = std::min(begin + some, count);
     parallelForDynamic(static_cast<std::size_t>(end - begin), 2, 1, [&](std::size_t r) {
@@ -95,6 +97,7 @@ std::vector<Vec<D>> solidPoints(const Case& c, const Body& body, std::vector<std
         const auto last = i + 1 + static_cast<std::int64_t>(std::clamp(further, 0.0, static_cast<double>(length)));
         for (; i < std::min(last, length); ++i) row[i] = is;
       }
+      work.add(1);
     });
     for (std::int64_t k = 0; k < (end - begin) * length; ++k) {
       if (!within[static_cast<std::size_t>(k)]) continue;

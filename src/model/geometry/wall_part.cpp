@@ -14,12 +14,12 @@ bool isConvex(const Shape& s) {
 }  // namespace
 
 template <int D>
-WallPart<D>::WallPart(const Body& body, const Vec<D>& shift, const Expression* where, const Solid<D>* solid,
-                      double spacing)
+WallPart<D>::WallPart(const Body& body, const Vec<D>& shift, const BodyCondition<D>* condition,
+                      const Solid<D>* solid, double spacing)
     : shape_(body.shape),
       similarity_(similarityOf<D>(body.shape)),
       shift_(shift),
-      where_(where),
+      condition_(condition),
       solid_(solid),
       slack_(1e-6 * spacing),
       convex_(isConvex(body.shape)) {
@@ -56,12 +56,9 @@ bool WallPart<D>::shapeContains(const Vec<D>& x) const {
          treacle::contains<D>(shape_, similarity_.pointBefore(x - shift_), slack);
 }
 
-/// Beside particles a condition may have no value; there is no wall then.
 template <int D>
-bool WallPart<D>::whereHolds(const Vec<D>& x) const {
-  if (!where_) return true;
-  const double value = (*where_)(resized<3>(x - shift_));
-  return std::isfinite(value) && value != 0;
+bool WallPart<D>::conditionHolds(const Vec<D>& x) const {
+  return !condition_ || condition_->holds(x - shift_);
 }
 
 template class WallPart<2>;

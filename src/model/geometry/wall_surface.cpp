@@ -3,6 +3,7 @@
 #include "cut_search.hpp"
 #include "face_corner.hpp"
 #include "solid.hpp"
+#include "treacle/core/work_in_hand.hpp"
 #include "treacle/model/geometry/wall_sight.hpp"
 #include "treacle/model/particles/particles.hpp"
 #include "wall_part.hpp"
@@ -50,8 +51,8 @@ class SurfaceFinder {
   SurfaceFinder(const Case& c, const Solids<D>& solids)
       : spacing_(c.spacing), reach_(c.viscosityRadius()), search_(c.spacing, reach_, margin()), solids_(solids) {
     for (const Body& body : c.bodies) {
-      const bool cut = body.isWall() && !body.where.empty();
-      where_.push_back(cut ? std::make_unique<Expression>(body.where, D) : nullptr);
+      const bool cut = body.isWall() && !BodyCondition<D>::isEmpty(body);
+      conditions_.push_back(cut ? std::make_unique<BodyCondition<D>>(c, body) : nullptr);
     }
     for (std::size_t b = 0; b < c.bodies.size(); ++b)
       if (c.bodies[b].isWall()) addImages(c.domain, c.bodies[b], b);
@@ -75,7 +76,7 @@ class SurfaceFinder {
     candidates_.clear();
     addPoints(x);
     if (near_.parts.size() > 1) addCorners(x);
-    if (near_.cut() && search_.mayFind(x, near_)) addExits(x);
+    if (near_.cutIn(x - far, x + far) && search_.mayFind(x, near_)) addExits(x);
     return chosen(x);
   }
 
@@ -98,7 +99,7 @@ class SurfaceFinder {
     Vec<D> image = low;
     for (int k = 0; k < D;) {
       for (int m = 0; m < D; ++m) shift[m] = image[m] * (domain.max[m] - domain.min[m]);
-      parts_.push_back({b, WallPart<D>(body, shift, where_[b].get(), solids_[b].get(), spacing_)});
+      parts_.push_back({b, WallPart<D>(body, shift, conditions_[b].get(), solids_[b].get(), spacing_)});
       for (k = 0; k < D; ++k) {
         if (++image[k] <= -low[k]) break;
         image[k] = low[k];
@@ -206,7 +207,7 @@ class SurfaceFinder {
   double spacing_, reach_;  // [m]
   CutSearch<D> search_;
   const Solids<D>& solids_;
-  std::vector<std::unique_ptr<Expression>> where_;
+  std::vector<std::unique_ptr<BodyCondition<D>>> conditions_;
   std::vector<Part> parts_;
   std::vector<std::vector<const WallPart<D>*>> around_;  // of each body: what its particles can see
   // These belong to the particle at hand.
@@ -233,9 +234,15 @@ std::vector<WallSurface<D>> createWallSurfaces(const Case& c, std::span<const Ve
   const Solids<D> solids = wallSolids<D>(c);
   std::deque<SurfaceFinder<D>> finders;
   for (int k = 0; k < threads; ++k) finders.emplace_back(c, solids);
-#pragma omp parallel for num_threads(threads) schedule(dynamic, 64)
-  for (std::size_t k = 0; k < position.size(); ++k)
-    surfaces[k] = finders[static_cast<std::size_t>(omp_get_thread_num())].at(position[k], body[k]);
+  constexpr std::size_t some = 64;
+  WorkInHand work("finding the surfaces of walls", position.size());
+#pragma omp parallel for num_threads(threads) schedule(dynamic, 1)
+  for (std::size_t begin = 0; begin < position.size(); begin += some) {
+    const std::size_t end = std::min(begin + some, position.size());
+    for (std::size_t k = begin; k < end; ++k)
+      surfaces[k] = finders[static_cast<std::size_t>(omp_get_thread_num())].at(position[k], body[k]);
+    work.add(end - begin);
+  }
 
   noteBlindWalls(c, wallSight<D>(c, body, surfaces), notes);
   return surfaces;

@@ -190,10 +190,16 @@ double NozzleLayers<D>::speed(double t, double dt) const {
   const double end = inflow.end > 0 ? inflow.end : t + dt + 1;
   const TimeFunction& rate = inflow.speed ? *inflow.speed : *inflow.flowRate;
   const double over = inflow.speed ? 1 : area_;
-  if (dt == 0) return t >= inflow.start && t < end ? std::max(0.0, rate.at(t)) / over : 0;
+  const auto required = [&](double value) {
+    if (value < 0)
+      throw InputError(fmt::format("{} of inflow '{}' is {:g} at t = {:g} s; expected no negative numbers",
+                                   inflow.speed ? "speed" : "flow_rate", body_.name, value, t));
+    return value / over;
+  };
+  if (dt == 0) return t >= inflow.start && t < end ? required(rate.at(t)) : 0;
   const double from = std::max(t, inflow.start), to = std::min(t + dt, end);
   if (!(from < to)) return 0;
-  return std::max(0.0, rate.isConstant() && to - from == dt ? rate.value : rate.integral(from, to) / dt) / over;
+  return required(rate.isConstant() && to - from == dt ? rate.value : rate.integral(from, to) / dt);
 }
 
 template <int D>

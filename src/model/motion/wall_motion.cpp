@@ -4,6 +4,7 @@
 #include "treacle/core/arithmetic.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <numbers>
 
@@ -13,10 +14,21 @@ namespace {
 /// A function of time as seen in a step, as what it changes by over the step's length; where that is zero over a
 /// millionth of a second about t, which is what a derivative is then taken for.
 struct Interval {
-  double from, length;
+  double from, to, length;
 
-  Interval(double t, double dt) : from(dt > 0 ? t : t - 0.5e-6), length(dt > 0 ? dt : 1e-6) {}
-  double rate(const TimeFunction& f) const { return (f.at(from + length) - f.at(from)) / length; }
+  Interval(double t, double dt) : from(snapped(t)), to(snapped(t + dt)), length(dt) {
+    if (dt == 0) from = t - 0.5e-6, to = t + 0.5e-6, length = 1e-6;
+  }
+  double rate(const TimeFunction& f) const { return (f.at(to) - f.at(from)) / length; }
+
+  /// The end of a step must be the start of the next one, whatever rounding made of both: a function that jumps
+  /// there would else jump twice, or never.
+  static double snapped(double t) {
+    constexpr double bits = 1LL << 48;
+    int exponent = 0;
+    const double mantissa = std::frexp(t, &exponent);
+    return std::ldexp(std::round(mantissa * bits) / bits, exponent);
+  }
 };
 
 Vec<3> rateOf(const TimeVector& f, double t, double dt) {
@@ -75,6 +87,8 @@ Vec<3> wallVelocity(const Body& body, double t, double dt) {
   const double rate = omega * std::cos(omega * (t + dt / 2) + o.phase) * sinc(omega * dt / 2);
   return given + rate * o.amplitude;
 }
+
+double wallSpin(const Body& body, double t) { return body.rotation ? spinOver(*body.rotation, t, 0) : 0; }
 
 Vec<3> wallCenter(const Body& body, double t) {
   return body.rotation ? body.rotation->center + wallDisplacement(body, t) : Vec<3>{};

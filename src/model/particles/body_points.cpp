@@ -1,5 +1,6 @@
 #include "body_points.hpp"
 
+#include "geometry/body_region.hpp"
 #include "geometry/mesh_notes.hpp"
 #include "given_points.hpp"
 #include "lattice.hpp"
@@ -62,10 +63,13 @@ BodyPoints<D> bodyPoints(const Case& c, const Body& body, std::vector<std::strin
   requireContent(body);
   std::optional<Expression> where;
   if (!body.where.empty()) where.emplace(body.where, D);
+  const std::vector<BodyRegion<D>> subtracted = subtractedRegions<D>(c, body);
   std::size_t all = 0;
   BodyPoints<D> points = pointsOf<D>(c, body, notes, [&](const Vec<D>& x) {
     ++all;
     if (where && valueAt(x, *where, body, "where", body.where) == 0) return false;
+    for (const BodyRegion<D>& region : subtracted)
+      if (region.holds(x)) return false;
     requireInside(c.domain, body, x);
     return true;
   });

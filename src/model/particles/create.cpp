@@ -40,6 +40,25 @@ std::vector<Filled<D>> fillBodies(const Case& c, BodyKind kind, std::vector<std:
   return filled;
 }
 
+/// Takes from each body that subtracts others what is closer to their particles than the radius.
+template <int D>
+void subtract(const Domain& domain, double radius, const std::vector<const std::vector<Filled<D>>*>& groups,
+              std::vector<Filled<D>>& filled) {
+  for (Filled<D>& f : filled) {
+    if (f.body->subtract.empty()) continue;
+    std::vector<const Filled<D>*> others;
+    std::size_t count = 0;
+    for (const auto* group : groups)
+      for (const Filled<D>& other : *group)
+        if (std::ranges::find(f.body->subtract, other.body->name) != f.body->subtract.end())
+          others.push_back(&other), count += other.points.size();
+    PointGrid<D> grid(domain, radius, count);
+    for (const Filled<D>* other : others)
+      for (const Vec<D>& x : other->points.place) grid.add(x, 0);
+    f.points.filter([&](std::size_t k) { return grid.find(f.points.place[k]) == PointGrid<D>::none; });
+  }
+}
+
 template <int D>
 std::size_t total(const std::vector<Filled<D>>& filled) {
   std::size_t count = 0;
@@ -136,20 +155,24 @@ void requireApart(const std::vector<Filled<D>>& fluid, const PointGrid<D>& grid,
       if (const std::uint32_t tag = grid.find(x); tag != PointGrid<D>::none) hits.push_back({tag, x});
     }
     if (!hits.empty())
-      throw InputError(
-          fmt::format("fluid body '{}' and wall body '{}' overlap: {} wall particle{} closer than half a spacing "
-                      "to the fluid, "
-                      "the first at {}",
-                      fluid[hits[0].first].body->name, wall.body->name, hits.size(), hits.size() == 1 ? "" : "s",
-                      positionText(resized<3>(hits[0].second), D)));
+      throw InputError(fmt::format(
+          "fluid body '{}' and wall body '{}' overlap: {} wall particle{} closer than half a spacing "
+          "to the fluid, "
+          "the first at {}; subtract = [\"{}\"] of '{}' leaves it the room",
+          fluid[hits[0].first].body->name, wall.body->name, hits.size(), hits.size() == 1 ? "" : "s",
+          positionText(resized<3>(hits[0].second), D), wall.body->name, fluid[hits[0].first].body->name));
   }
 }
 
-/// Makes particles of those points whose ids are in [first, end); `id`: of the next point, `at`: where the next
-/// particle is to stand.
+/// The ids that become particles, [first, end); the id of the next point; and where the next particle is to stand.
+struct Place {
+  std::uint32_t first, end, id = 0, at = 0;
+};
+
 template <int D>
-void append(const Case& c, BodyKind kind, const std::vector<Filled<D>>& filled, std::uint32_t first,
-            std::uint32_t end, Particles<D>& particles, std::uint32_t& id, std::uint32_t& at) {
+void append(const Case& c, BodyKind kind, const std::vector<Filled<D>>& filled, Particles<D>& particles,
+            Place& next) {
+  auto& [first, end, id, at] = next;
   for (const Filled<D>& f : filled) {
     const auto body = static_cast<std::uint8_t>(f.body - c.bodies.data());
     const auto count = static_cast<std::uint32_t>(f.points.size());
@@ -183,6 +206,19 @@ void append(const Case& c, BodyKind kind, const std::vector<Filled<D>>& filled, 
   }
 }
 
+/// How large fluid bodies are that hold no particle: a mesh in metres may have been taken for one in millimetres.
+std::string sizesOfFluid(const Case& c) {
+  std::string text;
+  for (const Body& body : c.bodies) {
+    if (body.kind != BodyKind::Fluid) continue;
+    const Extent box = boundingBox(body.shape, c.dimensions);
+    const Vec<3> size = box.max - box.min;
+    text += fmt::format("; '{}' is {:.3g} m x {:.3g} m", body.name, size[0], size[1]);
+    if (c.dimensions == 3) text += fmt::format(" x {:.3g} m", size[2]);
+  }
+  return text.empty() ? text : fmt::format("{} large, and the spacing is {:.3g} m", text, c.spacing);
+}
+
 /// For the velocities that fluid meets at walls, and for the gaps of rigid bodies.
 bool needsWallSurfaces(const Case& c) {
   if (c.method.kind == MethodKind::Isph) return c.hasRigid();
@@ -196,16 +232,17 @@ Particles<D> createParticles(const Case& c, std::vector<std::string>& notes, std
                              ParticlePart part) {
   auto fluid = fillBodies<D>(c, BodyKind::Fluid, notes);
   auto walls = fillBodies<D>(c, BodyKind::Wall, notes);
-  if (total(fluid) == 0)
-    throw InputError(fmt::format("the case has no fluid: no body of type \"fluid\" holds a particle{}",
-                                 c.hasInflow() ? ", and no inflow flows at the start" : ""));
+  // Points exactly half a spacing apart, give or take rounding, do not count as overlapping.
+  const double radius = 0.5 * c.spacing * (1 - 1e-6);
+  subtract<D>(c.domain, radius, {&fluid, &walls}, fluid);
+  subtract<D>(c.domain, radius, {&fluid, &walls}, walls);
+  if (total(fluid) == 0 && !c.hasInflow())
+    throw InputError("the case has no fluid: no body of type \"fluid\" holds a particle" + sizesOfFluid(c));
   if (total(fluid) + total(walls) > maxParticles)
     throw InputError(fmt::format("the case would have {} particles, more than the limit of {}",
                                  total(fluid) + total(walls), maxParticles));
   for (const auto& f : walls) requireTurnable(c.domain, c.spacing, f);
 
-  // Points exactly half a spacing apart, give or take rounding, do not count as overlapping.
-  const double radius = 0.5 * c.spacing * (1 - 1e-6);
   PointBoxes<D> boxes(c.domain, radius);
   for (const auto* group : {&fluid, &walls})
     for (const Filled<D>& f : *group) boxes.add(f.body, f.points.place);
@@ -224,10 +261,10 @@ Particles<D> createParticles(const Case& c, std::vector<std::string>& notes, std
   ParticleNumbers numbers{n, count};
   numbers.has.temperatures = c.heat.has_value(), numbers.has.viscosityFactors = c.hasViscosityFactors();
   particles.resize(numbers);
-  std::uint32_t id = 0, at = 0;
-  append(c, BodyKind::Fluid, fluid, part.begin(fluidCount), part.end(fluidCount), particles, id, at);
-  append(c, BodyKind::Wall, walls, fluidCount + part.begin(wallCount), fluidCount + part.end(wallCount), particles,
-         id, at);
+  Place next{part.begin(fluidCount), part.end(fluidCount)};
+  append(c, BodyKind::Fluid, fluid, particles, next);
+  next.first = fluidCount + part.begin(wallCount), next.end = fluidCount + part.end(wallCount);
+  append(c, BodyKind::Wall, walls, particles, next);
   if (needsWallSurfaces(c)) {
     std::vector<std::string> untold;
     // What the notes say is about the viscosity of MPH-I at walls.

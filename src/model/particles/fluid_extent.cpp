@@ -3,31 +3,62 @@
 #include "body_points.hpp"
 #include "treacle/model/motion/wall_motion.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace treacle {
 namespace {
 
+/// When a wall or nozzle moves fastest, and when it turns fastest: among many times of the run, and those between
+/// the rows of its tables.
+struct Fastest {
+  double translation = 0;  // speed of the wall, or of its centre [m/s]
+  double turning = 0;      // time [s]
+};
+
+Fastest fastestOf(const Body& body, double end) {
+  constexpr int samples = 1000;
+  std::vector<double> times{0};
+  const auto addTable = [&](const std::optional<TimeFunction>& f) {
+    for (std::size_t k = 1; f && k < f->times.size(); ++k)
+      if (const double t = (f->times[k - 1] + f->times[k]) / 2; t > 0 && t < end) times.push_back(t);
+  };
+  for (const auto& component : body.displacement) addTable(component);
+  if (body.rotation) addTable(body.rotation->angle);
+  if (isDriven(body.displacement) || (body.rotation && body.rotation->angle))
+    for (int k = 0; k < samples; ++k) times.push_back((k + 0.5) / samples * end);
+  Fastest fastest;
+  double spin = 0;
+  for (const double t : times) {
+    fastest.translation = std::max(fastest.translation, norm(wallVelocity(body, t, 0)));
+    if (const double now = std::abs(wallSpin(body, t)); now > spin) spin = now, fastest.turning = t;
+  }
+  return fastest;
+}
+
 /// Largest speed of a fluid body at the start, of a wall at any time [m/s].
 template <int D>
 double largestSpeed(const Case& c, const Body& body) {
   const Oscillation& o = body.oscillation;
-  const double carried =
-      norm(body.velocity) + (o.period > 0 ? 2 * std::numbers::pi * norm(o.amplitude) / o.period : 0);
+  const Fastest fastest = fastestOf(body, c.time.end);
+  const double swing = o.period > 0 ? 2 * std::numbers::pi * norm(o.amplitude) / o.period : 0;
+  const double carried = std::max(norm(body.velocity) + swing, fastest.translation);
   const bool expressions = body.velocityExpression != decltype(body.velocityExpression){};
   if (!expressions && !body.fileVelocities && !body.rotation) return carried;
   const InitialState<D> initial(c, body);
-  const WallMotion<D> wall = wallMotion<D>(c.domain, body, 0, 0);
+  const WallMotion<D> wall = wallMotion<D>(c.domain, body, fastest.turning, 0);
+  const Vec<D> center = resized<D>(body.rotation ? body.rotation->center : Vec<3>{});
   std::vector<std::string> notes;
   double speed = 0;
   const BodyPoints<D> points = body.kind == BodyKind::Inflow ? nozzlePoints<D>(c, body, BodyKind::Wall, notes)
                                                              : bodyPoints<D>(c, body, notes);
   for (std::size_t k = 0; k < points.size(); ++k)
     speed = std::max(speed,
-                     norm(body.rotation ? wall.swirl(wall.arm(points.place[k])) : initial.velocityAt(points, k)));
+                     norm(body.rotation ? wall.swirl(points.place[k] - center) : initial.velocityAt(points, k)));
   return body.rotation ? carried + speed : speed;
 }
 

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace treacle {
 namespace {
@@ -111,18 +112,43 @@ double meshPoints(const Mesh& mesh, double spacing) {
   return mesh.facts().closed() ? std::max(0.0, std::abs(mesh.facts().volume) - rim) / std::pow(spacing, 3) : 0;
 }
 
+bool isInDomain(const Case& c, const Shape& s) {
+  const Extent box = boundingBox(s, c.dimensions);
+  for (int k = 0; k < c.dimensions; ++k)
+    if (box.min[k] < c.domain.min[k] || box.max[k] > c.domain.max[k]) return false;
+  return true;
+}
+
+/// What a round shape holds at least: the volume that is farther from its surface than a spacing.
+double roundPoints(const Shape& s, int dimensions, double spacing) {
+  constexpr double pi = std::numbers::pi;
+  const auto ball = [&](double r) { return dimensions == 2 ? pi * r * r : 4 * pi / 3 * r * r * r; };
+  const auto across = [&](double r) { return dimensions == 2 ? 2 * r : pi * r * r; };
+  const auto shell = [&](auto&& content, double outer, double inner) {
+    const double in = inner > 0 ? inner + spacing : 0, out = outer - spacing;
+    return out > in ? content(out) - content(in) : 0;
+  };
+  double volume = 0;
+  if (s.kind == ShapeKind::Sphere) volume = shell(ball, s.radius, s.innerRadius);
+  if (s.kind == ShapeKind::Cylinder)
+    volume = shell(across, s.radius, s.innerRadius) * std::max(0.0, norm(s.end - s.start) - 2 * spacing);
+  if (s.kind == ShapeKind::Torus) volume = 2 * pi * s.radius * shell(across, s.tubeRadius, s.innerRadius);
+  return volume / std::pow(spacing, dimensions);
+}
+
 }  // namespace
 
 double boxPoints(const Case& c) {
   std::vector<std::string> notes;
   double points = 0;
   for (const Body& body : c.bodies) {
-    if (!body.where.empty()) continue;
+    if (!body.where.empty() || !body.subtract.empty()) continue;
     const Shape& s = body.shape;
     const double spacing = spacingOf(body, c.spacing);
     if (s.kind == ShapeKind::Box)
       points += c.dimensions == 2 ? boxLattice<2>(c, body, spacing, notes).points()
                                   : boxLattice<3>(c, body, spacing, notes).points();
+    if (isInDomain(c, s)) points += roundPoints(s, c.dimensions, spacing);  // else its first particle ends it
     if (s.kind == ShapeKind::Mesh && s.fill == FillKind::Inside && s.file.mesh.value)
       points += meshPoints(*s.file.mesh.value, spacing);
     if (s.kind == ShapeKind::Particles && s.file.particles.value)

@@ -47,9 +47,15 @@ template <int D, class Backend>
 std::vector<WallMotion<D>> waysOfBodies(const FlowState<D, Backend>& state, const std::vector<RigidBody>& rigid,
                                         double dt) {
   std::vector<WallMotion<D>> motion;
-  for (std::size_t b = 0; b < state.theCase.bodies.size(); ++b)
-    motion.push_back(state.theCase.bodies[b].kind == BodyKind::Rigid ? rigidMotion<D>(rigid[b], dt)
-                                                                     : drivenMotion<D>(state, b, state.time, dt));
+  for (std::size_t b = 0; b < state.theCase.bodies.size(); ++b) {
+    if (state.theCase.bodies[b].kind == BodyKind::Rigid) {
+      RigidBody body = rigid[b];
+      body.center = state.particles.rigid.bodies[b].center;  // at the start, whatever that of the velocities is
+      motion.push_back(rigidMotion<D>(body, dt));
+    } else {
+      motion.push_back(drivenMotion<D>(state, b, state.time, dt));
+    }
+  }
   return motion;
 }
 

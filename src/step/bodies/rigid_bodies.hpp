@@ -1,6 +1,7 @@
 #pragma once
 
 #include "affine_solve.hpp"
+#include "given_forces.hpp"
 #include "moving_bodies.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/model/motion/friction.hpp"
@@ -24,21 +25,12 @@ namespace treacle {
 template <int D, class Backend>
 class RigidSystem {
  public:
-  explicit RigidSystem(FlowState<D, Backend>& state) : state_(state) {
-    const Case& c = state.theCase;
-    for (std::size_t b = 0; b < c.bodies.size(); ++b) {
-      const RigidSettings& r = c.bodies[b].rigid;
-      if (c.bodies[b].kind != BodyKind::Rigid) continue;
-      for (int k = 0; k < D; ++k)
-        if (r.translates[static_cast<std::size_t>(k)]) unknowns_.push_back({b, k});
-      for (int k = D == 2 ? 2 : 0; k < 3; ++k)
-        if (r.rotates[static_cast<std::size_t>(k)]) unknowns_.push_back({b, 3 + k});
-    }
-  }
+  explicit RigidSystem(FlowState<D, Backend>& state) : state_(state) {}
 
   /// The bodies of the step at hand start with the velocities that they had, changed as in the last step, and so
   /// do their walls.
   void start() {
+    findUnknowns();
     state_.rigid = state_.particles.rigid;
     for (RigidBody& b : state_.rigid.bodies)
       if (b.mass > 0) b.advance(early());
@@ -55,6 +47,10 @@ class RigidSystem {
   template <class F>
   void solve(const std::vector<Contact<D>>& contacts, F&& loads) {
     std::vector<double> x = values(state_.rigid.bodies);
+    if (x.empty()) {
+      loads();
+      return;
+    }
     const double dt = state_.timeStep, scale = scaleOf(x);
     bool isStart = true;  // whose velocities the walls and the right-hand side have
     const auto result = AffineSolve::run(
@@ -74,10 +70,46 @@ class RigidSystem {
   }
 
  private:
+  static constexpr int ofHinge = 6;
   struct Unknown {
     std::size_t body;
-    int component;  // 0 to 2: velocity, 3 to 5: spin times the radius of gyration
+    int component;  // 0 to 2: velocity, 3 to 5: spin times the radius of gyration; that about its hinge likewise
   };
+
+  /// What a hinge leaves to a body.
+  struct Turn {
+    Vec<3> axis, point;
+    double inertia;  // about it [kg m2]
+
+    static Turn of(const Hinge& hinge, const RigidBody& b) {
+      const Vec<3> axis = hinge.direction();
+      return {axis, hinge.point,
+              dot(axis, b.inertiaTimes(axis)) + b.mass * norm2(cross(axis, b.center - hinge.point))};
+    }
+    double gyration(const RigidBody& b) const { return std::sqrt(inertia / b.mass); }
+  };
+
+  Turn turnOf(std::size_t body) const {
+    return Turn::of(*state_.theCase.bodies[body].rigid.hinge, state_.particles.rigid.bodies[body]);
+  }
+
+  /// Those of the bodies that are let go.
+  void findUnknowns() {
+    unknowns_.clear();
+    const Case& c = state_.theCase;
+    for (std::size_t b = 0; b < c.bodies.size(); ++b) {
+      const RigidSettings& r = c.bodies[b].rigid;
+      if (c.bodies[b].kind != BodyKind::Rigid || state_.time < r.release - 0.5 * state_.timeStep) continue;
+      if (r.hinge) {
+        unknowns_.push_back({b, ofHinge});
+        continue;
+      }
+      for (int k = 0; k < D; ++k)
+        if (r.translates[static_cast<std::size_t>(k)]) unknowns_.push_back({b, k});
+      for (int k = D == 2 ? 2 : 0; k < 3; ++k)
+        if (r.rotates[static_cast<std::size_t>(k)]) unknowns_.push_back({b, 3 + k});
+    }
+  }
 
   static constexpr double tolerance = 1e-6;  // of a step to the solution, of the speeds that count
   static constexpr int mostSteps = 40;
@@ -86,7 +118,12 @@ class RigidSystem {
     std::vector<double> x;
     for (const Unknown& u : unknowns_) {
       const RigidBody& b = bodies[u.body];
-      x.push_back(u.component < 3 ? b.velocity[u.component] : b.spin[u.component - 3] * b.gyration());
+      if (u.component == ofHinge) {
+        const Turn turn = turnOf(u.body);
+        x.push_back(dot(b.spin, turn.axis) * turn.gyration(b));
+      } else {
+        x.push_back(u.component < 3 ? b.velocity[u.component] : b.spin[u.component - 3] * b.gyration());
+      }
     }
     return x;
   }
@@ -95,11 +132,25 @@ class RigidSystem {
     for (std::size_t k = 0; k < x.size(); ++k) {
       RigidBody& b = state_.rigid.bodies[unknowns_[k].body];
       const int component = unknowns_[k].component;
-      if (component < 3)
+      if (component == ofHinge)
+        turnOnHinge(unknowns_[k].body, x[k], b);
+      else if (component < 3)
         b.velocity[component] = x[k];
       else
         b.spin[component - 3] = x[k] / b.gyration();
     }
+  }
+
+  /// The velocity is that of the way that the centre takes in the step, which ends where the hinge has it.
+  void turnOnHinge(std::size_t body, double x, RigidBody& b) const {
+    const RigidBody& before = state_.particles.rigid.bodies[body];
+    const Turn turn = turnOf(body);
+    b.spin = (x / turn.gyration(before)) * turn.axis;
+    RigidBody turned = before;
+    turned.orientation = {1, 0, 0, 0}, turned.velocity = {}, turned.spin = b.spin;
+    turned.advance(state_.timeStep);
+    const Vec<3> arm = before.center - turn.point;
+    b.velocity = (1 / state_.timeStep) * (turnedBy(turned.orientation, arm) - arm);
   }
 
   /// That no surfaces that touch go into each other, in the step at hand, and that those that do come apart: of an
@@ -107,15 +158,23 @@ class RigidSystem {
   std::vector<Restraint> restraints(const std::vector<Contact<D>>& contacts) const {
     if (contacts.empty()) return {};
     const double dt = state_.timeStep, most = 0.01 * state_.theCase.spacing;
+    const double least = 4 * dt * norm(state_.theCase.gravity);  // of an impact: what rests does not bounce [m/s]
     const std::vector<WallMotion<D>> motion = bodyMotions(state_);
     std::vector<Restraint> all;
     for (const Contact<D>& contact : contacts) {
       const double gap = contact.gap - early() * opening(contact, motion[contact.other]);
-      const double apart = (gap > 0 ? -gap : std::min(-0.2 * gap, most)) / dt;
+      const double speed = opening(contact, motion[contact.other]);
+      double apart = (gap > 0 ? -gap : std::min(-0.2 * gap, most)) / dt;
+      if (const double part = bounce(contact); part > 0 && gap + dt * speed <= 0 && -speed > least)
+        apart = std::max(apart, -speed * part);
       all.push_back(along(contact, contact.place, contact.normal, motion[contact.other], apart));
       addFriction(contact, motion[contact.other], all.back());
     }
     return all;
+  }
+
+  double bounce(const Contact<D>& contact) const {
+    return restitutionBetween(state_.theCase.bodies[contact.body], state_.theCase.bodies[contact.other]);
   }
 
   /// By how much of a step the bodies have gone on to where their walls are [s].
@@ -179,6 +238,7 @@ class RigidSystem {
     const RigidBody& b = state_.rigid.bodies[body];
     const RigidBody& before = state_.particles.rigid.bodies[body];
     const Vec<3> arm = place - b.center, turn = cross(arm, direction);
+    if (state_.theCase.bodies[body].rigid.hinge) return addTurn(body, place, direction, r);
     r.least -= dot(direction, before.velocity + cross(before.spin, arm));
     for (std::size_t k = 0; k < unknowns_.size(); ++k) {
       if (unknowns_[k].body != body) continue;
@@ -187,6 +247,17 @@ class RigidSystem {
       r.push[k] = r.row[k] / b.mass;
       r.least += component < 3 ? direction[component] * before.velocity[component]
                                : turn[component - 3] * before.spin[component - 3];
+    }
+  }
+
+  /// The same of a body on a hinge, on which nothing else is locked.
+  void addTurn(std::size_t body, const Vec<3>& place, const Vec<3>& direction, Restraint& r) const {
+    const RigidBody& b = state_.rigid.bodies[body];
+    const Turn turn = turnOf(body);
+    for (std::size_t k = 0; k < unknowns_.size(); ++k) {
+      if (unknowns_[k].body != body) continue;
+      r.row[k] = dot(cross(turn.axis, place - turn.point), direction) / turn.gyration(b);
+      r.push[k] = r.row[k] / b.mass;
     }
   }
 
@@ -205,18 +276,35 @@ class RigidSystem {
     for (const Unknown& u : unknowns_) {
       const RigidBody &b = state_.rigid.bodies[u.body], &before = state_.particles.rigid.bodies[u.body];
       const LoadSums& load = loads[u.body];
+      const GivenForces given = givenForces(state_.theCase.bodies[u.body].rigid, before, b, interval());
+      const Vec<3> weight = b.mass * state_.theCase.gravity;
+      if (u.component == ofHinge) {
+        const Turn turn = turnOf(u.body);
+        const Vec<3> torque =
+            load.torque - cross(turn.point, load.force) + given.torque +
+            cross(forcePlace(before, b, state_.timeStep).center - turn.point, weight + given.force);
+        r.push_back((turn.inertia * dot(turn.axis, b.spin - before.spin) - dt * dot(turn.axis, torque)) /
+                    (b.mass * turn.gyration(b)));
+        continue;
+      }
       if (u.component < 3) {
-        const double force = load.force[u.component] + b.mass * state_.theCase.gravity[u.component];
+        const double force = (load.force + weight + given.force)[u.component];
         r.push_back(b.velocity[u.component] - before.velocity[u.component] - dt * force / b.mass);
         continue;
       }
       // The inertia is that of where the body is, about axes that rest.
-      const Vec<3> torque =
-          load.torque - cross(b.center, load.force) - cross(before.spin, b.inertiaTimes(before.spin));
+      const Vec<3> torque = load.torque - cross(b.center, load.force) + given.torque -
+                            cross(before.spin, b.inertiaTimes(before.spin));
       const Vec<3> change = b.inertiaTimes(b.spin - before.spin) - dt * torque;
       r.push_back(change[u.component - 3] / (b.mass * b.gyration()));
     }
     return r;
+  }
+
+  /// Velocities belong to the middles of steps.
+  ForceInterval interval() const {
+    const double dt = state_.timeStep, to = state_.time + dt / 2;
+    return {to - state_.velocityStep, to, dt};
   }
 
   FlowState<D, Backend>& state_;

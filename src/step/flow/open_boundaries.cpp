@@ -69,7 +69,7 @@ bool OpenBoundaries<D, Backend>::follow(const CellGrid<D>& grid, double start, d
   letOut(change);
   letIn(grid, start, change);
   const std::uint64_t came = change.added.fluidCount, all = state_.fluidOfAll + came - change.left;
-  if (all == 0) throw RunError("no fluid is left: all of it has gone out by the outflows");
+  if (all == 0) throw EndOfRun("no fluid is left: all of it has gone out by the outflows");
   if (all > maxParticles)
     throw RunError(fmt::format("inflows have filled the case with {} fluid particles, more than the limit of {}",
                                all, maxParticles));

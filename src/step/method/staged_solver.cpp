@@ -77,16 +77,15 @@ SolveReport StagedSolver<D, Backend>::solveStage(Context<Backend>& context, std:
   const Product k = [&](std::span<const double> r, std::span<double> z) { system_.precondition(context, r, z); };
   const double refresh = stage().precision == Precision::Mixed ? refreshOfMixed : 0;
   const StoppingRule rule{stage().tolerance, stage().maxIterations, refresh, history};
-  if (stage().krylov == KrylovKind::Cr) return conjugateResidual(context, a, k, b, x, rule, krylov_);
+  if (stage().krylov == KrylovKind::Cr) return conjugateResidual(context, {a, k, b, x}, rule, krylov_);
   if (!modes || stage_ > 0 || !stage().deflates()) {
     const Product single = [&](std::span<const double> from, std::span<double> to) {
       system_.multiplySingle(context, from, to);
     };
-    return conjugateGradient(context, a, k, b, x, rule, krylov_, static_cast<Deflation<Backend>*>(nullptr),
-                             system_.likesSingle() ? &single : nullptr);
+    return conjugateGradient(context, {a, k, b, x, system_.likesSingle() ? &single : nullptr}, rule, krylov_);
   }
   Deflation<Backend>& deflation = keeper_.prepare(context, *modes, x.size() / D, stage().deflation);
-  const SolveReport report = conjugateGradient(context, a, k, b, x, rule, krylov_, &deflation);
+  const SolveReport report = conjugateGradient(context, {a, k, b, x}, rule, krylov_, &deflation);
   keeper_.finish(context, *modes, report, stage().deflation);
   return report;
 }

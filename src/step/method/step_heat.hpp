@@ -62,8 +62,8 @@ class StepHeat {
     const Product k = [&](std::span<const double> r, std::span<double> z) {
       setEach(context, Scaled{inverse_.span(), r, z}, own);
     };
-    requireSolved(
-        conjugateGradient(context, a, k, rhs_, change_, {settings_.tolerance, settings_.maxIterations}, krylov_));
+    requireSolved(conjugateGradient(context, {a, k, rhs_, change_}, {settings_.tolerance, settings_.maxIterations},
+                                    krylov_));
     a(change_, product_);
     setEach(context, HeatResult{constants, material, T, change_, rhs_, product_, next_}, own);
     if (state.theCase.needsBalance())

@@ -39,7 +39,7 @@ std::string describeFailure(const SolveReport& report, double tolerance, const s
   switch (report.status) {
     case SolveStatus::IterationLimit:
       return "the linear solver did not converge: " + numbers +
-             "; raise solver.max_iterations, or reduce the time step or the bulk viscosity";
+             "; raise solver.max_iterations, or reduce the time step or, of MPH-I, the bulk viscosity";
     case SolveStatus::Breakdown:
       return "the linear solver broke down, operator or preconditioner is not positive definite in working "
              "precision: " +

@@ -2,6 +2,7 @@
 
 #include "treacle/core/error.hpp"
 #include "treacle/model/case/checks.hpp"
+#include "treacle/model/case/flow_scales.hpp"
 #include "treacle/step/run/simulation.hpp"
 
 #include <fmt/format.h>
@@ -64,6 +65,7 @@ Watched Watch::look(double dt, const Diagnostics& d, std::vector<std::string>& w
   // With MPH-I a few particles inside tell nothing: thin sheets and threads have hardly any.
   const bool tells = case_.method.kind == MethodKind::Isph || d.interiorParticles > 0.25 * particles_;
   w.density = std::max(d.excessDensity, tells ? d.meanDensityError : 0.0);
+  pressed_ = d.excessDensity > 0.5 * w.density;
   for (std::size_t k = 0; k < bounds().size(); ++k) {
     const Bound& bound = bounds()[k];
     const double value = w.*bound.value, most = case_.watch.*bound.most;
@@ -110,6 +112,9 @@ std::string Watch::describeCourant(double value, double dt) const {
       "the fastest particle goes at {:.3g} m/s, {:.3g} spacings in a step of {:.3g} s", speed, value, dt);
   if (const std::string cause = unstableMaterial(dt); !cause.empty())
     return fmt::format("{}: the step is unstable; {}", numbers, cause);
+  if (flowScales(case_).given > 0.5 * speed)
+    return fmt::format("{}, which the case gives; take {} <= {:.2g} or time.courant = {:g}", numbers,
+                       case_.time.stepKey(), wanted * case_.spacing / speed, wanted);
   if (value > 1000) return fmt::format("{}: the step is unstable; {}", numbers, remedy(dt));  // nobody means that
   return fmt::format(
       "{}; take {} <= {:.2g} or time.courant = {:g}. Speeds that the flow cannot have come from "
@@ -127,12 +132,17 @@ std::string Watch::describeInsideWalls(double value, double dt) const {
 }
 
 std::string Watch::describeDensity(double value, double dt) const {
-  return fmt::format("the density of the fluid is off by {:.3g} % in the mean: {}{}", 100 * value,
-                     case_.method.kind == MethodKind::Isph
-                         ? ""
-                         : "raise bulk_viscosity where it is small, dynamic_viscosity where a light "
-                           "fluid carries a heavy one, and ",
-                     remedy(dt));
+  return fmt::format(
+      "the density of the fluid is off by {:.3g} % in the mean: {}{}{}", 100 * value,
+      pressed_ && wallsMove_
+          ? "walls that move or fluid that comes in press it together. Where there is no room for it, "
+            "stop them sooner or let it out; elsewhere "
+          : "",
+      case_.method.kind == MethodKind::Isph
+          ? ""
+          : "raise bulk_viscosity where it is small, dynamic_viscosity where a light "
+            "fluid carries a heavy one, and ",
+      remedy(dt));
 }
 
 std::string Watch::remedy(double dt) const {

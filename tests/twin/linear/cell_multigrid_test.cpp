@@ -71,7 +71,7 @@ struct Twins {
     };
     const auto m = [&](std::span<const double> r, std::span<double> z) { multigrid.apply(backend, r, z); };
     KrylovWorkspace<Backend> workspace;
-    return conjugateGradient(backend, multiplyA, m, b, x, {1e-20, 1000}, workspace);
+    return conjugateGradient(backend, {multiplyA, m, b, x}, {1e-20, 1000}, workspace);
   }
 
   /// On the device the iteration is a graph: the preconditioner must work in one.

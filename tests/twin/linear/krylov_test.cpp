@@ -47,8 +47,8 @@ struct SpoiltSolve {
     };
     const Product k = [&](std::span<const double> r, std::span<double> z) { copy(context, r, z); };
     const StoppingRule rule{1e-20, 5000, 0, nullptr};
-    return kind == KrylovKind::Cg ? conjugateGradient(context, a, k, b, x, rule, workspace)
-                                  : conjugateResidual(context, a, k, b, x, rule, workspace);
+    return kind == KrylovKind::Cg ? conjugateGradient(context, {a, k, b, x}, rule, workspace)
+                                  : conjugateResidual(context, {a, k, b, x}, rule, workspace);
   }
 };
 

@@ -116,8 +116,8 @@ SolveReport solveIdentity(Context<Backend>& context, std::span<const double> b, 
                           const StoppingRule& rule) {
   KrylovWorkspace<Backend> workspace;
   const auto identity = [&](std::span<const double> in, std::span<double> out) { copy(context, in, out); };
-  return cg ? conjugateGradient(context, identity, identity, b, x, rule, workspace)
-            : conjugateResidual(context, identity, identity, b, x, rule, workspace);
+  return cg ? conjugateGradient(context, {identity, identity, b, x}, rule, workspace)
+            : conjugateResidual(context, {identity, identity, b, x}, rule, workspace);
 }
 
 TEST(KrylovLoopTwin, EndsAsOnTheCpu) {

@@ -104,6 +104,30 @@ TEST(ArrangementWatch, aRunInWhichParticlesClumpSaysSoOnce) {
   EXPECT_EQ(shop.call("compare clump-run clump-run --quiet --bound 0 --field nearest_distance").exitCode, 0);
 }
 
+TEST(HangingWatch, saysThatAStiffDropRestsAboveTheFloor) {
+  Workshop shop;
+  shop.put("drop.toml", R"(dimensions = 2
+spacing = 1e-3
+domain = { min = [0, 0], max = [0.03, 0.03] }
+gravity = { acceleration = [0, -9.81] }
+time = { step = 1e-3, end = 0.14 }
+output = { interval = 0.02 }
+material = [{ name = "pitch", density = 1400, dynamic_viscosity = 1e6, bulk_viscosity = 1e8, bulk_modulus = 1e6 }]
+body = [
+  { name = "drop", type = "fluid", material = "pitch", shape = "sphere", center = [0.015, 0.012], radius = 0.004 },
+  { name = "floor", type = "wall", material = "pitch", shape = "box", min = [0, 0], max = [0.03, 0.004] },
+]
+)");
+  const auto warnings = [&](const std::string& settings) {
+    const Outcome outcome = shop.call("run drop.toml -o run --force --threads 1" + settings);
+    EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+    return countOf("touches no wall and yet rests", outcome.err);
+  };
+  EXPECT_EQ(warnings(""), 1u);
+  EXPECT_EQ(warnings(" --set pitch.dynamic_viscosity=1 --set pitch.bulk_viscosity=1e3"), 0u);
+  EXPECT_EQ(warnings(" --set drop.center=[0.015,0.008]"), 0u) << "it begins in contact";
+}
+
 /// A splash of water has single pairs that are closer than MPH-I may have any.
 TEST(ArrangementWatch, theDamBreakOfWaterIsWithinTheBoundOfIsph) {
   Workshop shop;

@@ -64,7 +64,8 @@ constexpr BadCase badCases[] = {
      "bad.toml:9:2: unknown key 'gravty' in the case file; did you mean 'gravity'?"},
     {"keyOfAnotherShape", "max = [6e-3, 6e-3]", "max = [6e-3, 6e-3]\nradius = 1",
      "bad.toml:26:1: unknown key 'radius' in [[body]] 'column' (box); expected 'name', 'type', 'material', "
-     "'shape', 'where', 'velocity', 'disorder', 'viscosity_factor', 'oscillation', 'displacement', 'rotation', "
+     "'shape', 'where', 'subtract', 'velocity', 'disorder', 'viscosity_factor', 'oscillation', 'displacement', "
+     "'rotation', "
      "'min', "
      "'max' or 'transform'"},
     {"missingKey", "density = 1000\n", "",
@@ -279,6 +280,11 @@ constexpr BadCase badCases[] = {
      "the case has no fluid: no body of type \"fluid\" holds a particle"},
     {"oscillationWithoutPeriod", "max = [12e-3, 0]", "max = [12e-3, 0]\noscillation = { amplitude = [1e-3, 0] }",
      "bad.toml:34:15: period in the oscillation of [[body]] 'floor': missing; expected a positive number [s]"},
+    {"dimensionsWithAPoint", "dimensions = 2", "dimensions = 2.0",
+     "bad.toml:2:14: dimensions in the case file: expected 2 or 3, found 2.0; write it without a point"},
+    {"aNameWithControlCharacters", "name = \"floor\"", "name = \"fl\\u001b[31moor\"",
+     "bad.toml:28:8: name in [[body]] 'fl?[31moor' (box): expected no control characters, found one with the code "
+     "27"},
     {"oscillationWithoutAmplitude", "max = [12e-3, 0]", "max = [12e-3, 0]\noscillation = { period = 1 }",
      "bad.toml:34:15: amplitude in the oscillation of [[body]] 'floor': missing; expected an array of 2 finite "
      "numbers [m]"},
@@ -375,6 +381,13 @@ constexpr BadCase badCases[] = {
      "1000000000"},
     {"tooManyParticles", "spacing = 1e-3", "spacing = 1e-9",
      "body 'column' would have more than 4294966272 particles; take a larger spacing or a lower resolution"},
+    {"outflowOverAllFluid", bulk,
+     "bulk_viscosity = 1e4\nbulk_modulus = 1e6\n[[outflow]]\nname = \"drain\"\nshape = \"box\"\nmin = [-4e-3, "
+     "0]\nmax = [12e-3, "
+     "12e-3]\n",
+     "outflow 'drain' holds 36 of 36 fluid particles at the start, which leave in the first step; no fluid would "
+     "be "
+     "left: expected an outflow beside the fluid"},
     {"baseMissing", "title", "base = \"none.toml\"\ntitle", "bad.toml:1:8: base: no such case file: none.toml"},
     {"baseIsItself", "title", "base = \"bad.toml\"\ntitle", "bad.toml:1:8: base: 'bad.toml' inherits from itself"},
 };
@@ -557,6 +570,9 @@ constexpr Warning warnings[] = {
      "wall 'floor' is 2 mm thick along y, thinner than the viscosity radius h_v = 3.5 mm (3.5 spacings): fluid "
      "next "
      "to it misses neighbours"},
+    {"fluidInAnOutflow", "[output]",
+     "[[outflow]]\nname = \"drain\"\nshape = \"box\"\nmin = [4e-3, 0]\nmax = [12e-3, 12e-3]\n[output]",
+     "outflow 'drain' holds 12 of 36 fluid particles at the start, which leave in the first step"},
     {"shortRadius", "[output]", "[method]\nscheme = \"accurate\"\npressure_radius = 2\n[output]",
      "method.pressure_radius = 2 spacings is short for the scheme 'accurate', expected at least 2.5: sums over "
      "so "

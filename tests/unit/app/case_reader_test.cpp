@@ -184,6 +184,7 @@ radius = 4.1
 inner_radius = 0.5
 velocity = [1, "-2*sin(2*pi*z)*\t1", 3.5]
 where = "x > 0 || y != 1e-3"
+subtract = ["rod"]
 disorder = 0.2
 [[body]]
 name = "rod"
@@ -263,6 +264,7 @@ TEST(readCase, takesEveryKey) {
   expected.bodies[0].velocityExpression[1] = "-2*sin(2*pi*z)*\t1";
   expected.bodies[1].rotation = Rotation{{1, 0.3, -2}, {0.1, -0.7, 3}, -2.5};
   expected.bodies[0].where = "x > 0 || y != 1e-3";
+  expected.bodies[0].subtract = {"rod"};
   expected.bodies[0].disorder = 0.2;
   expected.time = {1e-3 / 1.5, 7, 0.3};
   expected.method.scheme = SchemeKind::Published;
@@ -446,6 +448,9 @@ TEST(readCase, nameOfMaterialAndBodyNeedsTheList) {
   Workshop shop;
   shop.put("case.toml", replaced(smallCase, "name = \"column\"", "name = \"syrup\""));
   const std::string ambiguous[] = {"syrup.density=1"}, clear[] = {"material.syrup.density=1"};
+  EXPECT_THAT(
+      messageOf<std::runtime_error>([&] { readCase(shop / "case.toml", ambiguous); }),
+      testing::HasSubstr("'syrup' is the name of a material and a body; write material.syrup or body.syrup"));
   EXPECT_THROW(readCase(shop / "case.toml", ambiguous), std::runtime_error);
   EXPECT_EQ(readCase(shop / "case.toml", clear).materials[0].density, 1);
 }

@@ -441,6 +441,14 @@ TEST(plot, drawsFrames) {
   ASSERT_EQ(withSmallCase(shop).call("run small.toml --threads 1 --quiet").exitCode, 0);
   EXPECT_EQ(shop.call("plot small-run --frame 1 --field pressure").out, "small-run/frames/fluid_000001.png\n");
   EXPECT_THAT(shop.content("small-run/frames/fluid_000001.png"), StartsWith(std::string(pngSignature)));
+  for (const char* own : {"case.toml", "checkpoint.h5", "history.csv", "fluid.pvd", "frames/fluid_000001.vtp"}) {
+    const std::string before = shop.content(std::string("small-run/") + own);
+    const Outcome refused = shop.call(std::string("plot small-run -o small-run/") + own);
+    EXPECT_EQ(refused.exitCode, 2) << own;
+    EXPECT_THAT(refused.err, HasSubstr("a run has written this file; choose another name"));
+    EXPECT_EQ(shop.call(std::string("compare small-run small-run --csv ./small-run/") + own).exitCode, 2) << own;
+    EXPECT_EQ(shop.content(std::string("small-run/") + own), before);
+  }
   EXPECT_EQ(shop.call("plot small-run -o last.png").exitCode, 0);
   EXPECT_THAT(shop.content("last.png"), StartsWith(std::string(pngSignature)));
   Frame odd = readVtp(shop / "small-run/frames/fluid_000001.vtp");

@@ -72,9 +72,22 @@ TEST(OpenCase, TablesOfTimeComeFromFiles) {
   const auto message = [&](const std::string& value) { return messageOf<InputError>([&] { speedOf(value); }); };
   EXPECT_THAT(message("{file = 'data/pump.csv', column = 'pressure'}"),
               HasSubstr("pump.csv:2: no column 'pressure'; expected 'speed' or 'back pressure'"));
+  EXPECT_THAT(message("{file = 'data/pump.csv', column = 'time'}"),
+              HasSubstr("is the first one, which holds the times"));
   EXPECT_THAT(message("{file = 'data/bare.txt', column = 'x'}"), HasSubstr("no column 'x'"));
   shop.put("data/bare.txt", "0 1\n0.5 x\n");
-  EXPECT_THAT(message("{file = 'data/bare.txt'}"), HasSubstr("bare.txt:2: expected numbers, found 'x'"));
+  EXPECT_THAT(message("{file = 'data/bare.txt'}"), HasSubstr("bare.txt:2: expected a number, found 'x'"));
+  for (const char* commas : {"0,00;0,1\n0,5;0,2\n", "time;speed\n0,00;0,1\n", "0,00\t0,1\n"}) {
+    shop.put("data/bare.txt", commas);
+    EXPECT_THAT(message("{file = 'data/bare.txt'}"),
+                HasSubstr("is it a decimal comma? Write numbers with decimal points"))
+        << commas;
+  }
+  shop.put("data/bare.txt", std::string("\xFF\xFE\0", 3));
+  EXPECT_THAT(message("{file = 'data/bare.txt'}"), HasSubstr("bare.txt: UTF-16 text; expected UTF-8"));
+  shop.put("data/bare.txt", "time,speed,\n+0.0E+00,+0.1,\n0.5D+00,2.0d-1,\n,,\n");
+  EXPECT_THAT(speedOf("{file = 'data/bare.txt'}").times, testing::ElementsAre(0, 0.5));
+  EXPECT_THAT(speedOf("{file = 'data/bare.txt'}").values, testing::ElementsAre(0.1, 0.2));
   shop.put("data/bare.txt", "0 1\n0.5\n");
   EXPECT_THAT(message("{file = 'data/bare.txt'}"), HasSubstr("bare.txt:2: expected 2 numbers or more, found 1"));
   shop.put("data/bare.txt", "0 1\n1 1\n0.5 1\n");
@@ -164,7 +177,17 @@ TEST(OpenCase, ANozzleNeedsItsRoom) {
               HasSubstr("fluid body 'jet' and wall body 'floor' overlap"));
   EXPECT_THAT(messageOfCreation({"jet.nozzle.center=[0,12e-3]"}),
               HasSubstr("body 'jet' reaches out of the domain"));
-  EXPECT_THAT(messageOfCreation({"jet.start=0.01"}), HasSubstr("and no inflow flows at the start"));
+}
+
+/// A run that goes on has the fluid of its checkpoint.
+TEST(OpenCase, ARunBeginsWithSomeFluid) {
+  Workshop shop;
+  shop.put("case.toml", pouring);
+  for (const char* command : {"check", "run"}) {
+    const Outcome outcome = shop.call(std::string(command) + " case.toml --set jet.start=0.01");
+    EXPECT_EQ(outcome.exitCode, 2);
+    EXPECT_THAT(outcome.err, HasSubstr("no inflow flows yet; give an inflow a small speed at t = 0"));
+  }
 }
 
 /// What a run leaves, and what it is when it is continued from a checkpoint.
@@ -191,6 +214,42 @@ TEST(OpenCase, ARunCountsWhatComesAndGoes) {
       "normal=[-1,0]}]\"");
   EXPECT_EQ(other.exitCode, 2);
   EXPECT_THAT(other.err, HasSubstr("outflows"));
+}
+
+TEST(OpenCase, ANozzleDoesNotSuck) {
+  Workshop shop;
+  shop.put("case.toml", pouring);
+  const Outcome outcome = shop.call("run case.toml --set 'jet.speed=\"0.2 - 20*t\"' --threads 1");
+  EXPECT_EQ(outcome.exitCode, 3);
+  EXPECT_THAT(outcome.err,
+              HasSubstr("speed of inflow 'jet' is -0.005 at t = 0.01 s; expected no negative numbers"));
+}
+
+/// Walls are found whatever number of fluid particles the case would start with; nozzles must stay where they are.
+TEST(OpenCase, ContinuesWithOtherFluidAndClosedNozzles) {
+  Workshop shop;
+  const std::string drop =
+      "{name = \"drop\", type = \"fluid\", material = \"syrup\", shape = \"box\", min = [-9e-3, 0], max = [-7e-3, "
+      "4e-3]},\n";
+  shop.put("case.toml", replaced(pouring, "body = [\n", "body = [\n  " + drop));
+  const auto resume = [&](const std::string& settings) {
+    return shop.call("run case.toml -o rest --force --threads 1 --end-time 0.03 --resume case-run/checkpoint.h5 " +
+                     settings);
+  };
+  ASSERT_EQ(shop.call("run case.toml --threads 1 --end-time 0.02").exitCode, 0);
+  ASSERT_EQ(resume("").exitCode, 0);
+  const std::string walls = shop.content("rest/frames/walls_000001.vtp"),
+                    fluid = shop.content("rest/frames/fluid_000001.vtp");
+  for (const char* top : {"2e-3", "7e-3"}) {
+    const Outcome outcome = resume(std::string("--set drop.max=[-7e-3,") + top + "]");
+    EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+    EXPECT_EQ(shop.content("rest/frames/walls_000001.vtp"), walls);
+    EXPECT_EQ(shop.content("rest/frames/fluid_000001.vtp"), fluid);
+  }
+  EXPECT_EQ(resume("--set jet.speed=0").exitCode, 0);
+  const Outcome moved = resume("--set jet.nozzle.center=[2e-3,8e-3]");
+  EXPECT_EQ(moved.exitCode, 2);
+  EXPECT_THAT(moved.err, HasSubstr("inflow 'jet' is not where it was in the run"));
 }
 
 TEST(OpenCase, TheShippedOneHasNoWarning) {

@@ -32,7 +32,7 @@ struct Recorded {
       : c((shop.put("case.toml", smallCase), readCase(shop / "case.toml"))),
         directory(RunDirectory::create(shop / "run", false)),
         log(directory.log(), true),
-        recorder(c, directory, log, 0, false, [this](Snapshot& s) { copyState(s); }, {}) {}
+        recorder(c, directory, log, 0, false, {[this](Snapshot& s) { copyState(s); }, {}}) {}
 
   void copyState(Snapshot& snapshot) {
     std::vector<std::string> notes;
@@ -102,9 +102,10 @@ struct RecordedPieces {
       : c((shop.put("case.toml", smallCase), readCase(shop / "case.toml"))),
         directory(RunDirectory::create(shop / "run", false)),
         log(directory.log(), true),
-        recorder(
-            c, directory, log, 0, false, [](Snapshot&) { FAIL() << "all particles were asked for"; }, {},
-            [this](PieceOrder order, std::size_t frame) { return answer(order, frame); }) {}
+        recorder(c, directory, log, 0, false,
+                 {[](Snapshot&) { FAIL() << "all particles were asked for"; },
+                  {},
+                  [this](PieceOrder order, std::size_t frame) { return answer(order, frame); }}) {}
 
   std::vector<PiecedFrame> answer(PieceOrder order, std::size_t frame) {
     if (order == PieceOrder::Take) {
@@ -145,9 +146,9 @@ TEST(Recorder, PiecesBecomeFramesWhenAllAreThere) {
   EXPECT_EQ(readFrame(r.directory.fluidFrame(2)).time, 2e-3);
   RunSummary summary;
   r.recorder.summarise(summary);
-  EXPECT_EQ(summary.frames, 4u);
-  EXPECT_EQ(summary.frameCost.bytes, 4000u);
-  EXPECT_EQ(summary.frameCost.seconds, 1);
+  EXPECT_EQ(summary.frames.count, 4u);
+  EXPECT_EQ(summary.frames.cost.bytes, 4000u);
+  EXPECT_EQ(summary.frames.cost.seconds, 1);
   EXPECT_EQ(readPvd(r.directory.fluidIndex()).at(3).file, "frames/fluid_000003.pvtp");
 }
 

@@ -193,12 +193,121 @@ TEST(resume, refusesWhatDoesNotFit) {
                 "a state with factors of the viscosity, but no body of the case has a viscosity_factor");
 }
 
+TEST(resume, findsMaterialsByTheirNames) {
+  Workshop shop;
+  const auto material = [](const std::string& name, int viscosity) {
+    return fmt::format(
+        "[[material]]\nname = \"{}\"\ndensity = 1000\ndynamic_viscosity = {}\n"
+        "bulk_viscosity = 1e4\nbulk_modulus = 1e6\n\n",
+        name, viscosity);
+  };
+  const std::string syrup = material("syrup", 10), oil = material("oil", 1);
+  const auto put = [&](const std::string& name, const std::string& materials) {
+    shop.put(name, replaced(smallCase, syrup.substr(0, syrup.size() - 1), materials));
+  };
+  put("case.toml", syrup + oil);
+  put("turned.toml", oil + syrup);
+  const std::string options =
+      " --threads 1 --set output.precision=double --end-time 4e-3 --resume half/checkpoint.h5";
+  ASSERT_EQ(shop.call("run case.toml -o half --threads 1 --end-time 2e-3").exitCode, 0);
+  ASSERT_EQ(shop.call("run case.toml -o same" + options).exitCode, 0);
+  ASSERT_EQ(shop.call("run turned.toml -o turned" + options).exitCode, 0);
+  EXPECT_EQ(shop.call("compare same turned --bound 0").exitCode, 0);
+  put("case.toml", material("honey", 10) + oil);
+  shop.put("case.toml",
+           replaced(replaced(shop.content("case.toml"), "material = \"syrup\"", "material = \"honey\""),
+                    "material = \"syrup\"", "material = \"honey\""));
+  expectRefused(
+      shop, "half/checkpoint.h5 --end-time 4e-3",
+      "its particles are of the material 'syrup', but the case has 'honey', 'oil'; expected the materials of "
+      "the run, in any order");
+}
+
+TEST(resume, refusesOtherBodiesAndTakesOtherVelocitiesOfWalls) {
+  Workshop shop;
+  ASSERT_EQ(withMovingFloor(shop).call("run case.toml -o half --threads 1 --end-time 3e-3").exitCode, 0);
+  ASSERT_EQ(
+      shop.call("run case.toml -o faster --threads 1 --resume half/checkpoint.h5 --set 'floor.velocity=[0.06, 0]' "
+                "--end-time 5e-3")
+          .exitCode,
+      0);
+  const Checkpoint<2> before = readCheckpoint<2>(shop / "half/checkpoint.h5"),
+                      after = readCheckpoint<2>(shop / "faster/checkpoint.h5");
+  const std::uint32_t wall = before.particles.fluidCount;
+  const std::uint32_t id = before.particles.id[wall];
+  const auto place = std::ranges::find(after.particles.id, id) - after.particles.id.begin();
+  EXPECT_EQ(after.particles.velocity[place], (Vec<2>{0.06, 0}));
+  EXPECT_NEAR(after.particles.position[place][0] - before.particles.position[wall][0], 0.06 * 2e-3, 1e-12);
+  shop.put("case.toml", replaced(shop.content("case.toml"), "name = \"column\"", "name = \"pile\""));
+  expectRefused(
+      shop, "half/checkpoint.h5 --end-time 4e-3",
+      "its bodies are 'column', 'floor', but the case has 'pile', 'floor'; expected the bodies of the run in "
+      "their order");
+}
+
+/// Of a hundred bytes, the most that they may have.
+TEST(resume, findsBodiesWithLongNames) {
+  Workshop shop;
+  shop.put("case.toml", replaced(smallCase, "\"column\"", '"' + std::string(100, 'c') + '"'));
+  ASSERT_EQ(shop.call("run case.toml --threads 1").exitCode, 0);
+  EXPECT_EQ(
+      shop.call("run case.toml --threads 1 -o rest --end-time 4e-3 --resume case-run/checkpoint.h5").exitCode, 0);
+}
+
+TEST(resume, takesOtherMassesOfRigidBodies) {
+  Workshop shop;
+  shop.put("case.toml", smallCase + R"(
+[[body]]
+name = "stone"
+type = "rigid"
+material = "syrup"
+shape = "box"
+min = [8e-3, 4e-3]
+max = [10e-3, 6e-3]
+)");
+  const auto height = [&](const std::string& arguments) {
+    const Outcome outcome = shop.call("run case.toml --threads 1 --force " + arguments);
+    EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+    const std::string rows = shop.content("rest/rigid_bodies.csv");
+    return rows.substr(rows.rfind("\n", rows.size() - 2));
+  };
+  height("-o rest --end-time 6e-3");
+  ASSERT_EQ(shop.call("run case.toml --threads 1 --end-time 4e-3 -o part --set 'stone.force=[0.05,0]'").exitCode,
+            0);
+  const std::string resume = "-o rest --end-time 6e-3 --resume part/checkpoint.h5 --set 'stone.force=[0.05,0]'";
+  const std::string same = height(resume), heavier = height(resume + " --set stone.mass=5"),
+                    again = height(resume + " --set stone.mass=4e-3");  // of its particles
+  EXPECT_NE(heavier, same);
+  EXPECT_EQ(again, same);
+}
+
 TEST(resume, refusesTheStateOfAnotherMethod) {
   Workshop shop;
   shop.put("case.toml", smallCase);
   ASSERT_EQ(shop.call("run case.toml -o whole --threads 1 --end-time 1e-3").exitCode, 0);
   shop.put("case.toml", smallIsphCase);
   expectRefused(shop, "whole/checkpoint.h5", "a state of the method 'mph-i', but that of the case is 'isph'");
+}
+
+TEST(resume, takesNoEmptyName) {
+  Workshop shop;
+  shop.put("case.toml", smallCase);
+  const Outcome outcome = shop.call("run case.toml --resume ''");
+  EXPECT_EQ(outcome.exitCode, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("--resume: expected a name, found \"\""));
+}
+
+/// A run that begins with a frame of the run that it would replace.
+TEST(resume, refusesToReplaceWhatItBeginsWith) {
+  Workshop shop;
+  shop.put("case.toml", smallCase);
+  ASSERT_EQ(shop.call("run case.toml --threads 1 -o first").exitCode, 0);
+  shop.put("second.toml", replaced(smallCase, "shape = \"box\"\nmin = [0, 0]\nmax = [6e-3, 6e-3]",
+                                   "shape = \"particles\"\nfile = \"first/frames/fluid_000001.vtp\""));
+  const Outcome outcome = shop.call("run second.toml --threads 1 -o first --force");
+  EXPECT_EQ(outcome.exitCode, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("fluid_000001.vtp lies in the run directory"));
+  EXPECT_EQ(shop.call("run second.toml --threads 1 -o other").exitCode, 0);
 }
 
 TEST(resume, refusesToReplaceItsOwnCheckpoint) {

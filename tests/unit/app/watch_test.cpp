@@ -65,7 +65,7 @@ TEST(WatchedRun, EndsWhereADropIsTooFastForItsSteps) {
   EXPECT_EQ(outcome.exitCode, 3);
   EXPECT_THAT(outcome.err,
               HasSubstr("after step 0 (t = 0 s): the fastest particle goes at 100 m/s, 100 spacings in a "
-                        "step of 0.001 s; take time.step <= 5e-06 or time.courant = 0.5"));
+                        "step of 0.001 s, which the case gives; take time.step <= 5e-06 or time.courant = 0.5"));
   // What is advised does it, although the impact compresses the drop.
   outcome = shop.call("run drop.toml --force --end-time 2e-4 --set time.courant=0.5");
   EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
@@ -78,7 +78,8 @@ TEST(WatchedRun, WarnsBeforeItEnds) {
       shop.call("run drop.toml --set time.step=5e-5 --end-time 1e-4 --set watch.courant=15 --set watch.energy=0");
   EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
   const std::string warning =
-      "warning: step 1: the fastest particle goes at 100 m/s, 5 spacings in a step of 5e-05 s; take time.step <= "
+      "warning: step 1: the fastest particle goes at 100 m/s, 5 spacings in a step of 5e-05 s, which the case "
+      "gives; take time.step <= "
       "5e-06";
   EXPECT_THAT(outcome.err, AllOf(HasSubstr(warning), HasSubstr("the run ends above watch.courant = 15"),
                                  Not(HasSubstr("step 2"))));
@@ -98,6 +99,38 @@ TEST(WatchedRun, EndsWhereFluidHasFallenIntoAWall) {
   EXPECT_THAT(outcome.err,
               AllOf(HasSubstr("fluid particles are inside walls: the pressure does not hold them back"),
                     HasSubstr("watch.inside_walls = 0.05 is exceeded")));
+}
+
+/// To go on from the last checkpoint is of no use then.
+TEST(WatchedRun, EndsWhenNoFluidIsLeft) {
+  Workshop shop;
+  shop.put("case.toml",
+           smallCase +
+               "\n[[outflow]]\nname = \"below\"\nshape = \"box\"\nmin = [-4e-3, -3e-3]\nmax = [12e-3, -1e-3]\n");
+  const Outcome outcome = shop.call("run case.toml --threads 1 --end-time 0.1 --set 'floor.max=[12e-3,-3.5e-3]'");
+  EXPECT_EQ(outcome.exitCode, 3);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("no fluid is left: all of it has gone out by the outflows"),
+                                 Not(HasSubstr("--resume"))));
+}
+
+TEST(WatchedRun, SaysThatMovingWallsPressFluidTogether) {
+  Workshop shop;
+  shop.put("press.toml", R"(dimensions = 2
+spacing = 1e-3
+domain = { min = [0, 0], max = [0.02, 0.03] }
+time = { step = 5e-4, end = 0.3 }
+material = [{ name = "honey", density = 1400, dynamic_viscosity = 10, bulk_viscosity = 1e4, bulk_modulus = 1e6 }]
+body = [
+  { name = "pool", type = "fluid", material = "honey", shape = "box", min = [4e-3, 4e-3], max = [16e-3, 12e-3] },
+  { name = "cup", type = "wall", material = "honey", shape = "box", min = [0, 0], max = [0.02, 0.03], where = "x < 4e-3 || x > 16e-3 || y < 4e-3" },
+  { name = "lid", type = "wall", material = "honey", shape = "box", min = [4e-3, 13e-3], max = [16e-3, 17e-3], velocity = [0, -0.1] },
+]
+)");
+  const Outcome outcome = shop.call("run press.toml --threads 1");
+  EXPECT_EQ(outcome.exitCode, 3);
+  EXPECT_THAT(outcome.err, HasSubstr("walls that move or fluid that comes in press it together. Where there is no "
+                                     "room for it, stop them sooner or "
+                                     "let it out; elsewhere raise bulk_viscosity"));
 }
 
 /// The light one is as stiff as the heavy one, but has next to no inertia and viscosity to keep its particles in

@@ -250,6 +250,18 @@ TEST(Arrangement, OfAPartWithoutParticles) {
   EXPECT_FALSE(part.distances.empty()) << "all processes add up equally many";
 }
 
+TEST(Arrangement, TellsWhetherFluidTouchesWallsAndHowFarTheyAre) {
+  const Domain domain = periodicBox(20 * latticeSpacing, {true, false});
+  for (const double gap : {1.4, 1.6}) {
+    Frame fluid = frameOf(2, {Vec<3>{0.2 * latticeSpacing, 0, 0}});
+    const Frame walls = frameOf(2, {Vec<3>{(20.2 - gap) * latticeSpacing, 0, 0}});
+    EXPECT_EQ(measureArrangement(fluid, walls, domain, latticeSpacing).touchesWalls, gap < nearestReach);
+    EXPECT_NEAR(distanceToWalls(fluid, walls, domain), gap * latticeSpacing, 1e-12);
+    EXPECT_FALSE(measureArrangement(fluid, frameOf(2, {}), domain, latticeSpacing).touchesWalls);
+    EXPECT_EQ(distanceToWalls(fluid, frameOf(2, {}), domain), std::numeric_limits<double>::infinity());
+  }
+}
+
 /// Also particles that lie nowhere: what is written of a run that failed must not end the program.
 TEST(Arrangement, OfNoParticlesAndOfPositionsThatAreNotFinite) {
   Frame none = frameOf(2, {});

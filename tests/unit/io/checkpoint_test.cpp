@@ -275,9 +275,9 @@ TEST(Checkpoint, OtherFormatsAndDimensionsAreRefused) {
   const auto path = directory / "c.h5";
   writeCheckpoint<3>(path, randomParticles<3>(5, 5), 1, 1, MethodKind::MphI);
   EXPECT_THAT(refusal<2>(path), HasSubstr("3 dimensions, expected 2"));
-  for (const int format : {0, 3, 10, 12}) {
+  for (const int format : {0, 3, 11, 13}) {
     changeAttribute(path, "version", format);
-    EXPECT_THAT(refusal<3>(path), HasSubstr(fmt::format("a checkpoint of format {}, expected format 11", format)));
+    EXPECT_THAT(refusal<3>(path), HasSubstr(fmt::format("a checkpoint of format {}, expected format 12", format)));
   }
 }
 

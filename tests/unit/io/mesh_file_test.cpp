@@ -141,6 +141,25 @@ TEST_F(MeshFile, mayBeABinaryStlThatBeginsWithSolid) {
   EXPECT_EQ(read("a.stl", text).corners.size(), 12u);
 }
 
+/// As exporters write them.
+TEST_F(MeshFile, mayBeAnStlWithCapitalsAMarkOrFilling) {
+  std::string capitals = asciiStl;
+  for (const std::string word : {"solid", "facet", "outer", "loop", "vertex"})
+    for (std::size_t at = 0; (at = capitals.find(word, at)) != capitals.npos; at += word.size())
+      for (std::size_t k = 0; k < word.size(); ++k) capitals[at + k] = static_cast<char>(word[k] - 'a' + 'A');
+  EXPECT_EQ(read("a.stl", capitals).corners.size(), 2u);
+  EXPECT_EQ(read("a.stl", "\xEF\xBB\xBF" + asciiStl).corners.size(), 2u);
+  std::string filled = stlText(boxMesh({0, 0, 0}, {1, 1, 1})) + std::string(2, ' ');
+  EXPECT_EQ(read("a.stl", filled).corners.size(), 12u);
+  filled.replace(0, 5, "solid");
+  EXPECT_EQ(read("a.stl", filled).corners.size(), 12u);
+  filled.replace(80, 4, std::string("\x03\0\0\0", 4));
+  EXPECT_EQ(message("a.stl", filled),
+            "a.stl: its header says 3 faces, but the file has room for 12: as a binary STL it is damaged");
+  EXPECT_THAT(message("a.stl", replaced(asciiStl, "vertex 0 1 0", "vertex 0 1,5 0")),
+              EndsWith("found '1,5'; write decimal points, not commas"));
+}
+
 TEST_F(MeshFile, ofBadStlIsRefusedWithItsPlace) {
   const std::string good = stlText(boxMesh({0, 0, 0}, {1, 1, 1}));
   EXPECT_EQ(

@@ -103,7 +103,8 @@ TEST(ParticleCsv, BadInputSaysWhereAndWhat) {
   EXPECT_EQ(complaint("x,y\n1,2\n# here\n1,2,3\n"),
             "4: expected 2 values, as many as there are column names, found 3");
   EXPECT_EQ(complaint("x,y\n1,2\n1\n"), "3: expected 2 values, as many as there are column names, found 1");
-  EXPECT_EQ(complaint("x;y\n1;2,5\n"), "2: y: expected a number, found '2,5'");
+  EXPECT_EQ(complaint("x;y\n1;2,5\n"),
+            "2: y: expected a number, found '2,5': is it a decimal comma? Write numbers with decimal points");
   EXPECT_EQ(complaint("x,y,vx,vy\n1,2,,0\n"), "2: vx: expected a number, found ''");
   EXPECT_EQ(complaint("Points:0,y\ninf,2\n"), "2: x: expected a finite number, found 'inf'");
   for (const char* id : {"-1", "1.5", "4294967296", "a"})

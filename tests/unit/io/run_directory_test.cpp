@@ -165,7 +165,13 @@ TEST(RunDirectory, ForceRemovesTheOldRunAndNothingElse) {
         directory / "frames/fluid_000003.p0.vtp.tmp", run.surfaceIndex(), run.surfaceFile(2, SurfaceFormat::Vtp),
         run.surfaceFile(1000000, SurfaceFormat::Ply), directory / "frames/surface_000003.ply.tmp"})
     put(path, "old");
+  put(run.caseFile(), "[[probe]]\nname = \"level\"\n");
+  fs::create_directory(directory / "probes");
+  for (const char* name : {"probes/level.csv", "probes/level.png", "probes/level.csv.tmp"})
+    put(directory / name, "old");
   const std::set<std::string> foreign{"notes.txt",
+                                      "probes/experiment.csv",
+                                      "probes/figure.png",
                                       "frames/fluid_1.vtp",
                                       "frames/fluid_00000a.vtp",
                                       "frames/my.png",
@@ -193,6 +199,19 @@ TEST(RunDirectory, ForceDoesNotTakeTheUsersCase) {
   put(directory / "case.toml", "mine");
   expectRefused(directory.path(), true, "case.toml");
   EXPECT_EQ(content(directory / "case.toml"), "mine");
+}
+
+/// A frame that the index could not be written for is none.
+TEST(RunDirectory, FramesAreThoseOfTheIndex) {
+  TemporaryDirectory directory;
+  RunDirectory run = RunDirectory::create(directory.path(), false);
+  run.writeFrame(frameAt(0, 3), frameAt(0, 3), {});
+  fs::create_directory(AtomicFile::temporaryName(run.wallsIndex()));  // in the way
+  EXPECT_THROW(run.writeFrame(frameAt(1, 3), frameAt(1, 3), {}), RunError);
+  EXPECT_EQ(run.frameCount(), 1u);
+  fs::remove(AtomicFile::temporaryName(run.wallsIndex()));
+  run.writeFrame(frameAt(2, 3), frameAt(2, 3), {});
+  EXPECT_EQ(readPvd(run.fluidIndex()).size(), 2u);
 }
 
 TEST(RunDirectory, UnusablePaths) {

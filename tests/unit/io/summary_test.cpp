@@ -11,15 +11,14 @@ namespace {
 
 RunSummary summary() {
   RunSummary s;
-  s.version = "1.2.3", s.commit = "abcdef", s.backend = "cpu", s.device = "some processor", s.threads = 2;
+  s.origin = {"1.2.3", "abcdef", "cpu", "some processor", 2, "double", "Dam \"break\" µ", 2, 400, 900};
   s.processes = {{100, 1000, 10, 0.5}, {300, 3000, 12, 0.25}};
-  s.precision = "double", s.title = "Dam \"break\" µ", s.dimensions = 2;
-  s.fluidParticles = 400, s.wallParticles = 900, s.steps = 200, s.time = 0.2;
-  s.meanIterations = 233.25, s.firstIterations = 338, s.lastIterations = 243, s.fallbacks = 7;
-  s.meanDensity = 0.998, s.densityError = 0.0625, s.largestDensityError = 0.125;
-  s.arrangement = {0.5, 0.75, 1.25}, s.smallestLeast = 0.0625, s.smallestLow = 0.25;
+  s.steps = 200, s.time = 0.2;
+  s.tally.meanIterations = 233.25, s.tally.firstIterations = 338, s.tally.lastIterations = 243;
+  s.tally.fallbacks = 7;
+  s.tally.meanDensity = 0.998, s.tally.densityError = 0.0625, s.tally.largestDensityError = 0.125;
+  s.frames = {21, {5000000000, 1.75}, {0.5, 0.75, 1.25}, 0.0625, 0.25};
   s.phaseSeconds = {{"search", 0.5}, {"solve", 1.5}};
-  s.frames = 21, s.frameCost = {5000000000, 1.75};
   s.outputThreadSeconds = 0.125, s.wallSeconds = 2.25, s.peakMemory = 1000000, s.peakDeviceMemory = 3000000,
   s.done = true;
   return s;
@@ -71,8 +70,8 @@ TEST(Summary, FailedRunWithoutParticlesAndWithAForeignFileName) {
   RunSummary s = summary();
   s.done = false;
   s.message = "cannot write /tmp/\xff.vtp";  // no UTF-8
-  s.fluidParticles = 0;
-  s.arrangement.density.reset();
+  s.origin.fluidParticles = 0;
+  s.frames.arrangement.density.reset();
   writeSummary(directory / "summary.json", s);
   const auto json = nlohmann::ordered_json::parse(content(directory / "summary.json"));
   EXPECT_EQ(json["status"], "failed");

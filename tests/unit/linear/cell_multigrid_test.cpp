@@ -21,8 +21,7 @@ int iterations(const PressureColumn& column, const M& m) {
     multiply<1, double>(context, column.a, {reinterpret_cast<const Vec<1>*>(in.data()), in.size()},
                         {reinterpret_cast<Vec<1>*>(out.data()), out.size()});
   };
-  const SolveReport report = conjugateGradient(context, multiplyA, m, std::span<const double>(b),
-                                               std::span<double>(x), {1e-12, 1000}, workspace);
+  const SolveReport report = conjugateGradient(context, {multiplyA, m, b, x}, {1e-12, 1000}, workspace);
   EXPECT_EQ(report.status, SolveStatus::Converged);
   for (std::uint32_t i = 0; i < column.count(); ++i)
     EXPECT_TRUE(column.unknown[i] || x[i] == 0) << "a known pressure has changed";

@@ -37,7 +37,7 @@ struct Diagonal {
       for (std::size_t i = 0; i < u.size(); ++i) v[i] = values[i] * u[i];
     };
     const auto identity = [](Flat r, std::span<double> z) { std::copy(r.begin(), r.end(), z.begin()); };
-    return conjugateGradient<Cpu>(context, a, identity, b, x, {tolerance, 200}, workspace, how);
+    return conjugateGradient<Cpu>(context, {a, identity, b, x}, {tolerance, 200}, workspace, how);
   }
   SolveReport plain(double tolerance = 1e-12) { return solve(nullptr, tolerance); }
   SolveReport recorded() {

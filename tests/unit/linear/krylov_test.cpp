@@ -35,17 +35,17 @@ struct System {
   template <class Solve, class K>
   SolveReport run(Solve&& solve, const K& k, Vector& x, StoppingRule rule) {
     KrylovWorkspace<> workspace;
-    return solve(multiply(), k, Flat(b), std::span<double>(x), rule, workspace);
+    return solve({multiply(), k, Flat(b), std::span<double>(x)}, rule, workspace);
   }
 };
 
-const auto cg = [](auto&&... args) {
+const auto cg = [](const LinearSystem& system, const StoppingRule& rule, KrylovWorkspace<>& workspace) {
   static Context<Cpu> context;
-  return conjugateGradient(context, args...);
+  return conjugateGradient(context, system, rule, workspace);
 };
-const auto cr = [](auto&&... args) {
+const auto cr = [](const LinearSystem& system, const StoppingRule& rule, KrylovWorkspace<>& workspace) {
   static Context<Cpu> context;
-  return conjugateResidual(context, args...);
+  return conjugateResidual(context, system, rule, workspace);
 };
 
 TEST(Krylov, AgreesWithTheDirectSolution) {
@@ -76,8 +76,8 @@ TEST(Krylov, FollowsDirectionsInSinglePrecision) {
   };
   const auto solve = [&](const Product* product, Vector& x) {
     KrylovWorkspace<> workspace;
-    return conjugateGradient(s.context, s.multiply(), s.jacobi(), Flat(s.b), std::span<double>(x), {1e-16, 5000},
-                             workspace, static_cast<Deflation<>*>(nullptr), product);
+    return conjugateGradient(s.context, {s.multiply(), s.jacobi(), Flat(s.b), std::span<double>(x), product},
+                             {1e-16, 5000}, workspace);
   };
   Vector x = Vector::Zero(s.b.size()), y = x;
   const SolveReport report = solve(&single, x), usual = solve(nullptr, y);

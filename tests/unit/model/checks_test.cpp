@@ -1,5 +1,6 @@
 #include "treacle/model/case/checks.hpp"
 #include "treacle/model/case/case_keys.hpp"
+#include "treacle/model/case/flow_scales.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -109,6 +110,61 @@ TEST(stabilityNumbers, haveNoCompressionForIsph) {
   const auto numbers = stabilityNumbers(isphDamBreak());
   EXPECT_EQ(numbers[0].compression, 0);
   EXPECT_DOUBLE_EQ(numbers[0].shearDiffusion, 1);
+}
+
+TEST(caseWarnings, numbersThatNoMaterialHas) {
+  Case c = damBreak();
+  const std::size_t before = caseWarnings(c).size();
+  c.materials[0].density = 1e-20;
+  EXPECT_THAT(caseWarnings(c),
+              testing::Contains(testing::HasSubstr("has density = 1e-20 kg/m3; fluids and solids have "
+                                                   "0.01 to 30000: is it in SI units?")));
+  c = damBreak();
+  c.bodies.back().oscillation = {{1e-6, 0, 0}, 5 * c.time.step, 0};
+  EXPECT_THAT(caseWarnings(c), testing::Contains(testing::HasSubstr(" s, 5 steps of ")));
+  c.bodies.back().oscillation.period = 20 * c.time.step;
+  EXPECT_EQ(caseWarnings(c).size(), before);
+}
+
+TEST(caseWarnings, temperaturesBeyondTheTableOfAViscosity) {
+  Case c = damBreak();
+  c.heat.emplace();
+  ViscosityShift& shift = c.materials[0].viscosityShift.emplace();
+  shift.model = ShiftModel::Table, shift.temperatures = {300, 350, 400}, shift.factors = {10, 3, 1};
+  Body &fluid = c.bodies[0], &wall = c.bodies[1];
+  fluid.temperature = 400, wall.temperature = 300;
+  EXPECT_THAT(caseWarnings(c), IsEmpty());
+  fluid.temperature = 60, wall.temperature = 450;
+  const std::string given = "viscosity_shift of material 'syrup' is cut off: it is given from 300 to 400 K";
+  EXPECT_THAT(caseWarnings(c), ElementsAre("body '" + fluid.name + "' has temperature = 60 K, where " + given +
+                                               ". Are these degrees Celsius? Expected kelvin, 333.15",
+                                           "body '" + wall.name + "' has temperature = 450 K, where " + given));
+  // A law is cut off at walls where it is meant to be.
+  shift.model = ShiftModel::Vft, shift.reference = 350, shift.slope = 1000, shift.divergence = 200;
+  fluid.temperature = 350, wall.temperature = 100;
+  EXPECT_THAT(caseWarnings(c), IsEmpty());
+  fluid.temperature = 210;
+  EXPECT_THAT(caseWarnings(c), ElementsAre(HasSubstr("it is given for factors from 1e-06 to 1e+06")));
+}
+
+TEST(caseWarnings, wallsThatTablesMoveTooFast) {
+  Case c = damBreak();
+  TimeFunction& x = c.bodies[1].displacement[0].emplace();
+  const double spacings = c.spacing / c.time.step;  // one in a step [m/s]
+  x.times = {0, 0.1, 0.11}, x.values = {0, 0, 0.5 * spacings * 0.01};
+  c.time.end = 0.2;
+  EXPECT_THAT(caseWarnings(c), IsEmpty());
+  x.values.back() *= 8;
+  EXPECT_THAT(caseWarnings(c), ElementsAre(HasSubstr("is 4, more than 1")));
+  c.time.end = 0.1;
+  EXPECT_THAT(caseWarnings(c), IsEmpty());
+  c.bodies[1].displacement = {};
+  Rotation& r = c.bodies[1].rotation.emplace();
+  r.axis = {0, 0, 1};
+  r.angle.emplace().expression = "5*t^2";
+  const double before = flowScales(c).given;
+  c.time.end = 0.2;
+  EXPECT_NEAR(flowScales(c).given, 2 * before, 2e-3 * before);
 }
 
 TEST(caseWarnings, noneForTheIsphDamBreak) { EXPECT_THAT(caseWarnings(isphDamBreak()), IsEmpty()); }

@@ -268,6 +268,32 @@ TEST(createParticles, conditionsCutBodies) {
     EXPECT_EQ(p.position[i][1] > 4.2 + 2 * std::sin(M_PI * p.position[i][0] / 10), i < p.fluidCount);
 }
 
+/// The ball's lattice does not meet that of the box: what is too near its particles goes as well as what is inside
+/// it.
+TEST(createParticles, bodiesAreSubtracted) {
+  Case c = emptyCase(2);
+  c.bodies = {makeBody("sea", BodyKind::Fluid, box({0, 0}, {20, 20})),
+              makeBody("ball", BodyKind::Wall, sphere({10.2, 9.7}, 4)),
+              makeBody("core", BodyKind::Fluid, sphere({10.2, 9.7}, 2))};
+  EXPECT_THAT(messageOfCreation<2>(c), HasSubstr("subtract = [\"ball\"] of 'sea' leaves it the room"));
+  c.bodies[0].subtract = {"ball", "core"};
+  c.bodies[1].subtract = {"core"};
+  std::vector<std::string> notes;
+  std::vector<BodyCount> counts;
+  const Particles<2> p = createParticles<2>(c, notes, &counts);
+  EXPECT_EQ(counts[2].fluid, 13u);
+  EXPECT_NEAR(counts[1].wall, M_PI * (16 - 4), 4);
+  for (std::uint32_t i = 0; i < p.count; ++i) {
+    const double r = norm(p.position[i] - Vec<2>{10.2, 9.7});
+    if (p.body[i] == 0) {
+      EXPECT_GT(r, 4);
+    } else {
+      EXPECT_TRUE(p.body[i] == 1 ? r > 2 && r < 4 + 1e-9 : r < 2 + 1e-9) << r;
+    }
+    for (std::uint32_t j = 0; j < i; ++j) EXPECT_GE(norm(p.position[i] - p.position[j]), 0.5 * (1 - 1e-6));
+  }
+}
+
 TEST(createParticles, conditionsThatNeverHoldAreNoted) {
   Case c = emptyCase(2);
   c.bodies = {makeBody("sea", BodyKind::Fluid, box({0, 0}, {4, 2})),
@@ -418,7 +444,7 @@ TEST(createParticles, rejectsFluidInsideWall) {
   EXPECT_EQ(
       messageOfCreation<2>(c),
       "fluid body 'column' and wall body 'floor' overlap: 4 wall particles closer than half a spacing to the "
-      "fluid, the first at (500, 500) mm");
+      "fluid, the first at (500, 500) mm; subtract = [\"floor\"] of 'column' leaves it the room");
   c.bodies[1].shape = box({0, -4.4}, {10, 0.6});  // lattices 0.4 apart: still too near
   EXPECT_THAT(messageOfCreation<2>(c), HasSubstr("4 wall particles"));
   c.bodies[1].shape = box({0, -4.5}, {10, 0.5});  // half a spacing exactly is allowed

@@ -215,6 +215,18 @@ TEST(createWallSurfaces, cornersOfCuts) {
   expectFace(notch3.at({0.5, 0.2, -2}).face[0], {-0.5, -0.2, 2}, 1e-2);
 }
 
+TEST(createWallSurfaces, subtractedBodiesLeaveTheirSurface) {
+  Walls<2> block({box({-20, -20}, {20, 20}), sphere({0, 0}, 8)});
+  block.c.bodies[0].subtract = {"wall 1"};
+  block.c.bodies[1].kind = BodyKind::Fluid;
+  expectFaces(block.at({0, 9.5}), {0, -1.5}, nothing, 1e-4);
+  expectFaces(block.at({6, 8}), Vec<2>{-0.6, -0.8} * 2, nothing, 1e-4);
+  expectFaces(block.at({18.5, 0}), {1.5, 0}, nothing);
+  // A wall in the hole that moves along fills it.
+  block.c.bodies[1].kind = BodyKind::Wall;
+  expectFaces(block.at({0, 9.5}), nothing, nothing);
+}
+
 TEST(createWallSurfaces, curvedCuts) {
   Walls<2> hole({box({-20, -20}, {20, 20})});
   hole.c.bodies[0].where = "x*x + y*y > 4";
@@ -294,6 +306,23 @@ TEST(createWallSurfaces, periodicFloorHasNoEnds) {
   expectFace(floor.at({17.5, -1.5}).face[0], {-1.5, 1.5});
   expectFaces(floor.at({0.5, -1.5}), {0, 1.5}, nothing);
   expectFaces(floor.at({19.5, 1.5}, 1), {0.5, 0}, {-3.5, 0});
+}
+
+TEST(createWallSurfaces, aRoomThatSticksOutOfAPeriodicDomainHasNoEnds) {
+  Shape room;
+  room.kind = ShapeKind::Polygon, room.fill = FillKind::Outside, room.thickness = 9;
+  room.points = {{-5, 0}, {25, 0}, {25, 20}, {-5, 20}};
+  Walls<2> pipe({room});
+  pipe.c.domain = {{0, -20}, {20, 40}, {true, false, false}};
+  pipe.c.bodies[0].where = "x > 0 && x < 20";
+  for (const double x : {0.5, 2.5, 19.5}) expectFaces(pipe.at({x, -1.5}), {0, 1.5}, nothing);
+  pipe.c.domain.periodic[0] = false;
+  expectFaces(pipe.at({0.5, -1.5}), {-0.5, 0}, {0, 1.5}, 1e-4);
+  // What a condition takes away of each image leaves a surface.
+  pipe.c.domain.periodic[0] = true;
+  pipe.c.bodies[0].where = "x > 0 && x < 18";
+  expectFaces(pipe.at({17.5, -1.5}), {0.5, 0}, {0, 1.5}, 1e-4);
+  expectFaces(pipe.at({0.5, -1.5}), {-0.5, 0}, {0, 1.5}, 1e-4);
 }
 
 TEST(createWallSurfaces, conditionsGoAlongWithImages) {

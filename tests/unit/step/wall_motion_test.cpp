@@ -34,6 +34,21 @@ TEST(WallMotion, VelocityTakesTheWallToItsPlaceAtTheEndOfTheStep) {
   }
 }
 
+/// Steps that end where others begin, but for rounding, see a jump there once.
+TEST(WallMotion, JumpsOnce) {
+  Body body;
+  body.kind = BodyKind::Wall;
+  body.displacement[1].emplace();
+  for (const char* jump : {"t > 0.01 ? 1 : 0", "t > 0.02 ? 1 : 0", "t > 0.0125 ? 1 : 0", "t >= 0.03 ? 1 : 0"}) {
+    body.displacement[1]->expression = jump;
+    for (const double dt : {1e-3, 7e-4}) {
+      double way = 0;
+      for (int k = 0; k < 60; ++k) way += dt * wallVelocity(body, k * dt, dt)[1];
+      EXPECT_NEAR(way, 1, 1e-12) << jump << ", steps of " << dt;
+    }
+  }
+}
+
 TEST(WallMotion, AccelerationIsThatOfTheDisplacement) {
   const double e = 1e-4;
   for (double t = 0; t < 1; t += 0.037) {

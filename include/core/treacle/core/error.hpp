@@ -22,4 +22,10 @@ class RunError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// A run came to an end that no settings put off, so that to continue it is of no use.
+class EndOfRun : public RunError {
+ public:
+  using RunError::RunError;
+};
+
 }  // namespace treacle

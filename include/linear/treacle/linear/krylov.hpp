@@ -29,21 +29,26 @@ struct KrylovWorkspace {
   }
 };
 
-/// Preconditioned conjugate gradients [K23 eqs. (21)-(32), M = A^-1]. `x`: first guess and solution; `a`: y = A x,
-/// `k`: z = K r, both symmetric positive definite. `deflation`: how directions are chosen; null: as usual.
-/// `single`: y = A p of directions p whose numbers are single precision; where it is given directions are rounded
-/// to such ones. x and r follow the rounded directions, so that the solution is no less accurate.
+/// A x = b with a preconditioner K, both symmetric positive definite.
+struct LinearSystem {
+  const Product& a;  // y = A x
+  const Product& k;  // z = K r
+  std::span<const double> b;
+  std::span<double> x;              // first guess and solution
+  const Product* single = nullptr;  // y = A p of directions p whose numbers are single precision
+};
+
+/// Preconditioned conjugate gradients [K23 eqs. (21)-(32), M = A^-1]. `deflation`: how directions are chosen;
+/// null: as usual. Where the system has `single`, directions are rounded to single precision; x and r follow the
+/// rounded directions, so that the solution is no less accurate.
 template <class Backend>
-SolveReport conjugateGradient(Context<Backend>& context, const Product& a, const Product& k,
-                              std::span<const double> b, std::span<double> x, const StoppingRule& rule,
-                              KrylovWorkspace<Backend>& workspace, Deflation<Backend>* deflation = nullptr,
-                              const Product* single = nullptr);
+SolveReport conjugateGradient(Context<Backend>& context, const LinearSystem& system, const StoppingRule& rule,
+                              KrylovWorkspace<Backend>& workspace, Deflation<Backend>* deflation = nullptr);
 
 /// Preconditioned conjugate residuals [K23 eqs. (21)-(32), M = K]; s = K r is carried along, so that an iteration
 /// needs one product with A and one with K.
 template <class Backend>
-SolveReport conjugateResidual(Context<Backend>& context, const Product& a, const Product& k,
-                              std::span<const double> b, std::span<double> x, const StoppingRule& rule,
+SolveReport conjugateResidual(Context<Backend>& context, const LinearSystem& system, const StoppingRule& rule,
                               KrylovWorkspace<Backend>& workspace);
 
 }  // namespace treacle

@@ -38,6 +38,10 @@ class RunDirectory {
   /// Opens the directory of an existing run. Errors: InputError if there is none.
   static RunDirectory open(const std::filesystem::path& path);
 
+  /// Errors: InputError if a file that somebody chose for a picture or a table is one that a run has written: what
+  /// it needs to be read again, or continued. `option`: that named the file.
+  static void requireForeign(const std::filesystem::path& file, std::string_view option);
+
   /// Makes the directory of the files of probes. Errors: RunError.
   void makeRoomForProbes() const;
 

@@ -23,7 +23,8 @@ struct Arrangement {
   /// Particles per spacing^dimensions inside the fluid: its density over that of the material [-]. The mean over
   /// places with nothing but fluid for at least 2.25 spacings around; empty where there is none.
   std::optional<double> density{};
-  double close = 0;  // share of the particles with another one within closeDistance [-]
+  double close = 0;          // share of the particles with another one within closeDistance [-]
+  bool touchesWalls = true;  // a particle has one of a wall within nearestReach; true, too, where nobody looked
 
   bool operator==(const Arrangement&) const = default;
 };
@@ -31,6 +32,10 @@ struct Arrangement {
 /// Fills in fluid.nearestDistance, in which walls and periodic images count. Time and memory are proportional to
 /// the number of particles (their sort apart), wherever they lie. Periodic axes: at least 4.5 spacings long.
 Arrangement measureArrangement(Frame& fluid, const Frame& walls, const Domain& domain, double spacing);
+
+/// From the fluid particle that is nearest to a wall's to that one, across periodic ends, too [m]; infinite where
+/// there are none of one kind. In O(n log n), wherever they lie.
+double distanceToWalls(const Frame& fluid, const Frame& walls, const Domain& domain);
 
 /// What a process that has a part of the fluid can say: with what the others say it makes the arrangement of all.
 struct ArrangementPart {

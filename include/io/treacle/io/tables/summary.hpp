@@ -32,24 +32,20 @@ struct FrameCost {
   }
 };
 
-/// What a run was and what it took: `summary.json`.
-struct RunSummary {
+/// By what a run was made, and of what.
+struct RunOrigin {
   std::string version, commit;
-  std::string backend;                  // "cpu" or "cuda"
-  std::string device;                   // name of the processor or accelerator
-  int threads = 0;                      // of the host, of each process
-  std::vector<ProcessShare> processes;  // that shared the run, if there were several
-  std::string precision;                // "double" or "mixed"
-  std::string title;                    // of the case
+  std::string backend;    // "cpu" or "cuda"
+  std::string device;     // name of the processor or accelerator
+  int threads = 0;        // of the host, of each process
+  std::string precision;  // "double" or "mixed"
+  std::string title;      // of the case
   int dimensions = 0;
   std::uint64_t fluidParticles = 0, wallParticles = 0;  // at the start of the run
-  struct Flow {
-    std::uint64_t particles = 0, in = 0, out = 0;  // at the end; since the start of the case
-  };
-  std::optional<Flow> flow{};  // of a case where fluid comes or goes
+};
 
-  std::int64_t steps = 0;
-  double time = 0;                                      // simulation time reached [s]
+/// What the steps of a run come to.
+struct StepTally {
   double leastStep = 0, meanStep = 0, longestStep = 0;  // [s]
   std::int64_t rejectedSteps = 0;                       // automatic ones that were repeated with shorter ones
   double meanIterations = 0;
@@ -57,12 +53,28 @@ struct RunSummary {
   std::int64_t fallbacks = 0;                // of the linear solver, all steps together
   double meanDensity = 0, densityError = 0;  // of the last step, as in the history
   double largestDensityError = 0;            // of all steps
+  struct Flow {
+    std::uint64_t particles = 0, in = 0, out = 0;  // at the end; since the start of the case
+  };
+  std::optional<Flow> flow{};  // of a case where fluid comes or goes
+};
 
-  Arrangement arrangement;                                          // of the last frame
-  double smallestLeast = nearestReach, smallestLow = nearestReach;  // of all frames
+/// What the frames of a run come to.
+struct FrameTally {
+  std::uint64_t count = 0;                                          // of those written
+  FrameCost cost;                                                   // of all
+  Arrangement arrangement;                                          // of the last one
+  double smallestLeast = nearestReach, smallestLow = nearestReach;  // of all
+};
 
-  std::uint64_t frames = 0;  // written
-  FrameCost frameCost;       // of all
+/// What a run was and what it took: `summary.json`.
+struct RunSummary {
+  RunOrigin origin;
+  std::int64_t steps = 0;
+  double time = 0;  // simulation time reached [s]
+  StepTally tally;
+  FrameTally frames;
+  std::vector<ProcessShare> processes;  // that shared the run, if there were several
   std::vector<std::pair<std::string, double>>
       phaseSeconds;                    // wall-clock time by phase, in the order of a step [s]
   double outputThreadSeconds = 0;      // writing frames and checkpoints beside the computation [s]

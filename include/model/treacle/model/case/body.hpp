@@ -72,12 +72,41 @@ struct Rotation {
   bool operator==(const Rotation&) const = default;
 };
 
+inline constexpr int maxSprings = 64;  // of a body
+
+/// A spring from a place at rest to a rigid body.
+struct Spring {
+  std::string name;
+  Vec<3> anchor{};       // the place at rest [m]
+  Vec<3> arm{};          // from the body's centre of mass to where the spring holds it, at the start [m]
+  double length = 0;     // without a load [m]
+  double stiffness = 0;  // [N/m; N/m2 in 2D]
+  double damping = 0;    // against its change of length [N s/m; N s/m2 in 2D]
+
+  bool operator==(const Spring&) const = default;
+};
+
+/// An axis at rest that a rigid body can only turn about.
+struct Hinge {
+  Vec<3> point{};        // of the axis [m]
+  Vec<3> axis{0, 0, 1};  // of any length but zero; in two dimensions this one
+
+  Vec<3> direction() const { return axis * (1 / norm(axis)); }
+
+  bool operator==(const Hinge&) const = default;
+};
+
 /// What a rigid body has beside its particles.
 struct RigidSettings {
   double mass = 0;           // [kg; per metre of depth in 2D]; 0: that of its material's density
   Vec<3> angularVelocity{};  // at the start [rad/s]
   std::array<bool, 3> translates{true, true, true};  // along these axes
   std::array<bool, 3> rotates{true, true, true};     // about them; in two dimensions about z
+  std::optional<Hinge> hinge{};                      // in place of both
+  double release = 0;                                // when it is let go; it stands still until then [s]
+  TimeVector force{}, torque{};            // on the centre of mass, and about it [N, N m; in 2D per metre]
+  double damping = 0, angularDamping = 0;  // force over speed and torque over spin [kg/s, kg m2/s]
+  std::vector<Spring> springs{};
 
   bool operator==(const RigidSettings&) const = default;
 };
@@ -95,6 +124,7 @@ struct Body {
   std::optional<Rotation> rotation{};               // likewise, on top of all
   std::array<std::string, 3> velocityExpression{};  // of a fluid, in place of a component of its velocity [m/s]
   std::string where{};                              // there are particles only where it is not zero
+  std::vector<std::string> subtract{};              // and only where these bodies hold no place
   double disorder = 0;                              // of a fluid at the start: how far off its places [spacings]
   // In cases with heat. Of a fluid that at the start; of a wall that of its surface or, where it has a
   // conductance, of what is behind it; 0: the wall is adiabatic [K].
@@ -110,6 +140,7 @@ struct Body {
   Inflow inflow{};                // of an inflow, in place of a shape
   RigidSettings rigid{};          // of a rigid body
   double friction = 0;            // of a rigid body or wall that others touch: its coefficient
+  double restitution = 0;         // likewise: the speed after an impact over that before
 
   bool holdsFluid() const { return kind == BodyKind::Fluid || kind == BodyKind::Inflow; }
   /// Whether fluid meets its surface.

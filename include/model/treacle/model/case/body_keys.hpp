@@ -170,19 +170,56 @@ void visit(auto& v, Like<Outflow> auto& o, const Case&) {
     o.normal);
 }
 
+void visit(auto& v, Like<Spring> auto& s, const Case& c) {
+  const bool plane = c.dimensions == 2;
+  v({"name", "Name of the spring, unique among those of the body", required}, s.name);
+  v({"anchor", "Its end at rest", required, "m"}, s.anchor);
+  v({"arm", "From the body's centre of mass to its other end, as the body stands at the start", optional, "m"},
+    s.arm);
+  v({"length", "Its length without a load", optional, "m", notNegative}, s.length);
+  v({"stiffness", "Force over the change of its length", optional, plane ? "N/m2" : "N/m", notNegative},
+    s.stiffness);
+  v({"damping", "Force over the speed of that change, against it", optional, plane ? "N s/m2" : "N s/m",
+     notNegative},
+    s.damping);
+}
+
+void visit(auto& v, Like<Hinge> auto& h, const Case& c) {
+  v({"point", "A point of the axis", required, "m"}, h.point);
+  if (c.dimensions == 3)
+    v({"axis", "Direction of the axis, of any length but zero", required, "any unit"}, h.axis);
+}
+
 /// What a rigid body has among the keys of its body.
 void visit(auto& v, Like<RigidSettings> auto& r, const Case& c) {
+  const bool plane = c.dimensions == 2;
   v({"mass", "Mass of the body; 0: that of its particles with the density of its material", optional,
-     c.dimensions == 2 ? "kg/m" : "kg", notNegative},
+     plane ? "kg/m" : "kg", notNegative},
     r.mass);
   v({"translates", "Along which axes the body may move; along others it keeps its velocity"}, r.translates);
-  if (c.dimensions == 2) {
+  if (plane) {
     v({"angular_velocity", "Angular velocity at the start", optional, "rad/s"}, r.angularVelocity[2]);
     v({"rotates", "Whether the body may turn"}, r.rotates[2]);
   } else {
     v({"angular_velocity", "Angular velocity at the start", optional, "rad/s"}, r.angularVelocity);
     v({"rotates", "About which axes the body may turn"}, r.rotates);
   }
+  v({"hinge", "An axis at rest that the body turns about, and nothing else"}, r.hinge);
+  v({"release", "When the body is let go; it stands still until then", optional, "s", notNegative}, r.release);
+  v({"force", "Force on its centre of mass, beside those of the fluid, gravity and contacts", optional,
+     plane ? "N/m" : "N"},
+    r.force);
+  const Key torque{"torque", "Torque about its centre of mass, likewise", optional, plane ? "N" : "N m"};
+  if (plane)
+    v(torque, r.torque[2]);
+  else
+    v(torque, r.torque);
+  v({"damping", "Force over its speed, against it", optional, plane ? "kg/(m s)" : "kg/s", notNegative},
+    r.damping);
+  v({"angular_damping", "Torque over its angular velocity, against it", optional, plane ? "kg m/s" : "kg m2/s",
+     notNegative},
+    r.angularDamping);
+  v({"springs", "Springs from places at rest to the body", optional, "", {0, maxSprings}}, r.springs);
 }
 
 void visit(auto& v, Like<Body> auto& b, const Case& c) {
@@ -204,6 +241,8 @@ void visit(auto& v, Like<Body> auto& b, const Case& c) {
   }
   v({"shape", "Shape that is filled with particles", required}, b.shape.kind);
   v({"where", "Only those particles are made at which this is not zero"}, b.where, expression);
+  v({"subtract", "Names of bodies whose places it leaves to them, so that its particles do not overlap theirs"},
+    b.subtract);
   v({"velocity", "Velocity: of a fluid or rigid body at the start, of a wall for the whole run", optional, "m/s"},
     b.velocity, b.velocityExpression);
   if (b.kind == BodyKind::Fluid)
@@ -236,6 +275,13 @@ void visit(auto& v, Like<Body> auto& b, const Case& c) {
        "Coefficient of Coulomb friction where rigid bodies touch; of two bodies the geometric mean counts",
        optional, "", notNegative},
       b.friction);
+  if (b.isWall())
+    v({"restitution",
+       "Speed after an impact of rigid bodies over that before; of two bodies the geometric mean counts",
+       optional,
+       "",
+       {0, 1}},
+      b.restitution);
   if (c.heat) {
     const bool fluid = b.kind == BodyKind::Fluid;
     if (ofFile)

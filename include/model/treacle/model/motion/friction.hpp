@@ -12,4 +12,9 @@ inline double frictionBetween(const Body& a, const Body& b) {
   return a.isWall() && b.isWall() ? std::sqrt(a.friction * b.friction) : 0;
 }
 
+/// By what the speed after an impact of two bodies is that before, likewise.
+inline double restitutionBetween(const Body& a, const Body& b) {
+  return a.isWall() && b.isWall() ? std::sqrt(a.restitution * b.restitution) : 0;
+}
+
 }  // namespace treacle

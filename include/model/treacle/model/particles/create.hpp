@@ -25,7 +25,8 @@ struct BodyCount {
   bool operator==(const BodyCount&) const = default;
 };
 
-/// Lattice points of the boxes that no condition leaves any out of: createParticles needs room for at least these.
+/// Lattice points of the shapes that no condition leaves any out of: createParticles needs room for at least
+/// these.
 double boxPoints(const Case& c);
 
 /// Fills the case's bodies with particles on lattices of the case's spacing, where their conditions hold. A box
@@ -37,9 +38,9 @@ double boxPoints(const Case& c);
 /// never holds); `bodyCounts` takes the number of particles of every body in file order. `part`: only these are
 /// made, with the ids that they have in the whole; all places are looked at nevertheless, and numbers are those of
 /// the whole case, as are notes, but for those about surfaces of walls, which a part does not know. Errors:
-/// InputError if there is no fluid, if fluid and wall overlap, if a particle lies outside the domain, if a wall
-/// cannot rotate in a periodic one, if there are more particles than maxParticles, if an expression is not finite
-/// at a particle.
+/// InputError if there is no fluid and no inflow, if fluid and wall overlap, if a particle lies outside the
+/// domain, if a wall cannot rotate in a periodic one, if there are more particles than maxParticles, if an
+/// expression is not finite at a particle.
 template <int D>
 Particles<D> createParticles(const Case& c, std::vector<std::string>& notes,
                              std::vector<BodyCount>* bodyCounts = nullptr, ParticlePart part = {});

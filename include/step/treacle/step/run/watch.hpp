@@ -51,6 +51,7 @@ class Watch {
 
   Case case_;
   bool wallsMove_;
+  bool pressed_ = false;  // the density was off by being too large
   double particles_;
   double given_;                               // at the start, and what is allowed for [J]
   double potential_ = 0;                       // since the start [J]

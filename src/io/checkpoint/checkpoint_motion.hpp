@@ -1,0 +1,122 @@
+#pragma once
+
+#include "checkpoint_fields.hpp"
+#include "treacle/model/case/case.hpp"
+#include "treacle/model/particles/particles.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace treacle {
+
+// What a checkpoint holds of rigid bodies and of fluid that enters and leaves. Errors, of all functions:
+// Hdf5Error.
+
+inline void writeCount(hid_t file, const std::string& name, const FlowCount& count) {
+  writeAttribute(file, (name + "_particles").c_str(), static_cast<std::int64_t>(count.particles));
+  writeAttribute(file, (name + "_mass").c_str(), count.mass);
+}
+inline FlowCount readCount(hid_t file, const std::string& name) {
+  const auto particles = readAttribute<std::int64_t>(file, (name + "_particles").c_str());
+  const auto mass = readAttribute<double>(file, (name + "_mass").c_str());
+  if (particles < 0 || !(mass >= 0) || !std::isfinite(mass))
+    throw Hdf5Error(
+        fmt::format("{} particles of {} kg came or went, expected numbers not less than 0", particles, mass));
+  return {static_cast<std::uint64_t>(particles), mass};
+}
+
+/// Numbers of a rigid body in the order of the file.
+template <class Body, class F>
+inline void forEachNumber(Body& b, F&& f) {
+  f(b.mass);
+  for (auto& x : b.inertia) f(x);
+  for (auto* v : {&b.center, &b.velocity, &b.spin})
+    for (int k = 0; k < 3; ++k) f((*v)[k]);
+  for (auto& x : b.orientation) f(x);
+}
+inline constexpr std::uint64_t rigidNumbers = 20;
+
+inline void writeRigid(hid_t file, const RigidMotion& rigid) {
+  Buffer<double> numbers(rigid.bodies.size() * rigidNumbers);
+  double* to = numbers.data();
+  for (const RigidBody& body : rigid.bodies) forEachNumber(body, [&](double x) { *to++ = x; });
+  const auto put = [&](const char* name, std::span<const double> values) {
+    Buffer<double> field(values.size());
+    std::copy(values.begin(), values.end(), field.begin());
+    writeAttribute(file, (std::string(name) + "_count").c_str(), static_cast<std::uint32_t>(values.size()));
+    writeField(file, FieldInfo{name, Of::All, values.size()}, field);
+  };
+  put("rigid_bodies", numbers);
+  put("rigid_response", rigid.response);
+  put("rigid_change", rigid.change);
+}
+
+/// Errors: Hdf5Error for what no body is.
+inline RigidMotion readRigid(hid_t file) {
+  constexpr std::uint64_t mostUnknowns = 6 * maxBodies;
+  const auto get = [&](const char* name, std::uint64_t most) {
+    const auto count = readAttribute<std::uint32_t>(file, (std::string(name) + "_count").c_str());
+    if (count > most) throw Hdf5Error(fmt::format("{} values of {}, more than {}", count, name, most));
+    std::vector<double> values(count);
+    FieldReader<double>(file, FieldInfo{name, Of::All, count}).read({0, count}, values.data());
+    for (const double x : values)
+      if (!std::isfinite(x)) throw Hdf5Error(fmt::format("a value of {} is not finite", name));
+    return values;
+  };
+  RigidMotion rigid;
+  const std::vector<double> numbers = get("rigid_bodies", maxBodies * rigidNumbers);
+  if (numbers.size() % rigidNumbers != 0) throw Hdf5Error("the numbers of the rigid bodies are not complete");
+  const double* from = numbers.data();
+  rigid.bodies.resize(numbers.size() / rigidNumbers);
+  for (RigidBody& body : rigid.bodies) {
+    forEachNumber(body, [&](double& x) { x = *from++; });
+    if (!(body.mass >= 0)) throw Hdf5Error(fmt::format("a rigid body has a mass of {} kg", body.mass));
+  }
+  rigid.response = get("rigid_response", mostUnknowns * mostUnknowns);
+  rigid.change = get("rigid_change", mostUnknowns);
+  if (rigid.response.size() != rigid.change.size() * rigid.change.size() && !rigid.response.empty())
+    throw Hdf5Error("the response of the rigid bodies does not fit their number");
+  return rigid;
+}
+
+inline void writeFlow(hid_t file, const OpenFlow& flow) {
+  writeAttribute(file, "next_id", flow.nextId);
+  writeAttribute(file, "flow_body_count", static_cast<std::uint32_t>(flow.inflows.size()));
+  writeAttribute(file, "outflow_count", static_cast<std::uint32_t>(flow.outflows.size()));
+  for (std::size_t k = 0; k < flow.inflows.size(); ++k) {
+    const std::string name = fmt::format("inflow_{}", k);
+    writeCount(file, name, flow.inflows[k]);
+    writeAttribute(file, (name + "_way").c_str(), flow.inflows[k].way);
+  }
+  for (std::size_t k = 0; k < flow.outflows.size(); ++k)
+    writeCount(file, fmt::format("outflow_{}", k), flow.outflows[k]);
+}
+
+/// Errors: Hdf5Error for what no run remembers.
+inline OpenFlow readFlow(hid_t file) {
+  OpenFlow flow;
+  flow.nextId = readAttribute<std::uint32_t>(file, "next_id");
+  const auto bodies = readAttribute<std::uint32_t>(file, "flow_body_count"),
+             outflows = readAttribute<std::uint32_t>(file, "outflow_count");
+  if (bodies > maxBodies || outflows > maxOutflows)
+    throw Hdf5Error(fmt::format("{} bodies and {} outflows, more than the limits of {} and {}", bodies, outflows,
+                                maxBodies, maxOutflows));
+  for (std::uint32_t k = 0; k < bodies; ++k) {
+    const std::string name = fmt::format("inflow_{}", k);
+    OpenFlow::Inflow inflow{readCount(file, name), readAttribute<double>(file, (name + "_way").c_str())};
+    if (!(inflow.way >= 0) || !std::isfinite(inflow.way))
+      throw Hdf5Error(fmt::format("the layers of an inflow have gone {} m, expected at least 0", inflow.way));
+    flow.inflows.push_back(inflow);
+  }
+  for (std::uint32_t k = 0; k < outflows; ++k)
+    flow.outflows.push_back(readCount(file, fmt::format("outflow_{}", k)));
+  return flow;
+}
+
+}  // namespace treacle
