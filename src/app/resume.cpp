@@ -154,8 +154,8 @@ void setMasses(const Case& c, const MadeParticles& made, RigidMotion& rigid) {
   }
 }
 
-/// Where the layers of an inflow are only the state says; its nozzle must be where it was in the run. Those that
-/// turn are not looked at. Errors: InputError.
+/// The layers of an inflow stand where the state says, so its nozzle must be where it was in the run. Nozzles that
+/// turn are not checked. Errors: InputError.
 template <int D>
 void requireNozzles(const Case& c, const std::filesystem::path& file, const Particles<D>& made,
                     const Checkpoint<D>& state) {
