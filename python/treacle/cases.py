@@ -33,7 +33,7 @@ class Domain:
 
 @dataclass(kw_only=True)
 class Gravity:
-    acceleration: Sequence[float] | None = None
+    acceleration: Sequence[float | str | TimeTable] | None = None
     """[m/s2]"""
 
 
@@ -176,12 +176,36 @@ class Nozzle:
 
 
 @dataclass(kw_only=True)
+class Hinge:
+    point: Sequence[float] | None = None
+    """[m]"""
+    axis: Sequence[float] | None = None
+    """[any unit]"""
+
+
+@dataclass(kw_only=True)
+class Spring:
+    name: str | None = None
+    anchor: Sequence[float] | None = None
+    """[m]"""
+    arm: Sequence[float] | None = None
+    """[m]"""
+    length: float | None = None
+    """[m]"""
+    stiffness: float | None = None
+    """[N/m2]"""
+    damping: float | None = None
+    """[N s/m2]"""
+
+
+@dataclass(kw_only=True)
 class Body:
     name: str | None = None
     type: Literal["fluid", "wall", "inflow", "rigid"] | None = None
     material: str | None = None
     shape: Literal["box", "sphere", "cylinder", "cone", "torus", "polygon", "mesh", "particles"] | None = None
     where: str | None = None
+    subtract: Sequence[str] | None = None
     velocity: Sequence[float | str] | Sequence[float] | None = None
     """[m/s]"""
     disorder: float | None = None
@@ -226,6 +250,7 @@ class Body:
     flip: bool | None = None
     file_velocities: bool | None = None
     friction: float | None = None
+    restitution: float | None = None
     nozzle: Nozzle | None = None
     speed: float | str | TimeTable | None = None
     """[m/s]"""
@@ -237,6 +262,18 @@ class Body:
     angular_velocity: float | Sequence[float] | None = None
     """[rad/s]"""
     rotates: bool | bool | Sequence[bool] | None = None
+    hinge: Hinge | None = None
+    release: float | None = None
+    """[s]"""
+    force: Sequence[float | str | TimeTable] | None = None
+    """[N/m]"""
+    torque: float | str | TimeTable | Sequence[float | str | TimeTable] | None = None
+    """[N or N m]"""
+    damping: float | None = None
+    """[kg/(m s) or kg/s]"""
+    angular_damping: float | None = None
+    """[kg m/s or kg m2/s]"""
+    springs: Sequence[Spring] | None = None
     temperature: float | str | None = None
     """[K]"""
     file_temperatures: bool | None = None

@@ -103,7 +103,7 @@ void convergenceCommand(const ConvergenceOptions& options);
 /// `command`: its name in messages. Errors: InputError where there is no interpreter.
 void pythonCommand(const std::string& command, const std::string& module,
                    const std::vector<std::string>& arguments);
-/// In a process of its own. Returns whether that did well.
+/// Runs it in a child process. Returns whether it succeeded.
 bool tryPythonCommand(const std::string& command, const std::string& module,
                       const std::vector<std::string>& arguments);
 /// Likewise: draws a table of a directory, with options of treacle.plot that say which.

@@ -41,6 +41,9 @@ void plotCommand(const PlotOptions& options, std::string_view field) {
   }
   if (options.history)
     return drawCurves(options.directory, output.empty() ? run.historyPicture() : output, {"--history"});
+  if (const std::string kind = output.extension().string(); !kind.empty() && kind != ".png")
+    throw InputError(fmt::format("--output {}: pictures of frames are PNG; expected a name that ends in .png",
+                                 output.string()));
   PictureOptions picture;
   picture.field = options.field;
   picture.spacing = c.spacing;

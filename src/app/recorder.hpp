@@ -31,7 +31,7 @@ namespace treacle {
 /// but summarise: RunError or std::bad_alloc, also for what was to be written since the call before.
 class Recorder {
  public:
-  /// Where what is written comes from.
+  /// The simulation that a recorder reads.
   struct Source {
     std::function<void(Snapshot&)> copyState;  // particles, step and time of the simulation
     ProbeRecorder::Measure measure;

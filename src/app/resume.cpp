@@ -154,19 +154,17 @@ void setMasses(const Case& c, const MadeParticles& made, RigidMotion& rigid) {
   }
 }
 
-/// Where the layers of an inflow are only the state says; its nozzle must be where it was in the run. Those that
-/// turn are not looked at. Errors: InputError.
+/// The layers of an inflow stand where the state says, so its nozzle must be where it was in the run. Nozzles that
+/// turn are not checked. Errors: InputError.
 template <int D>
 void requireNozzles(const Case& c, const std::filesystem::path& file, const Particles<D>& made,
-                    const Checkpoint<D>& state) {
+                    std::uint32_t first, const Checkpoint<D>& state) {
   const Particles<D>& p = state.particles;
   for (std::uint32_t i = p.wallBegin(); i < p.count; ++i) {
     const Body& body = c.bodies[p.body[i]];
     if (body.kind != BodyKind::Inflow || body.rotation) continue;
-    const std::uint32_t place = p.id[i] - state.firstWall;  // among the walls of all
-    if (place >= made.wallCount()) continue;                // of another process
-    Vec<D> off =
-        p.position[i] - made.position[made.fluidCount + place] - resized<D>(wallDisplacement(body, state.time));
+    Vec<D> off = p.position[i] - made.position[made.fluidCount + p.id[i] - first] -
+                 resized<D>(wallDisplacement(body, state.time));
     const Vec<D> direction = resized<D>(body.inflow.nozzle.direction * (1 / norm(body.inflow.nozzle.direction)));
     for (int k = 0; k < D; ++k)
       if (c.domain.periodic[static_cast<std::size_t>(k)]) {
@@ -245,8 +243,8 @@ StartState fittingState(const Case& c, const std::filesystem::path& file, const 
     requireRigid(c, file, state.particles.rigid);
     setMasses<D>(c, made, state.particles.rigid);
     requireBodies(c, file, state.particles);
-    requireNozzles(c, file, created, state);
     const std::uint32_t firstWall = state.firstWall + made.part.begin(kinds.walls);
+    requireNozzles(c, file, created, firstWall, state);
     setWallSurfaces(created, firstWall, state.particles);
     setWallVelocities(c, created, firstWall, state.particles);
     return {std::move(state.particles), state.step, state.time};

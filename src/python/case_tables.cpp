@@ -14,8 +14,8 @@ namespace {
 
 // Names of the tables. One that has none here does not compile.
 constexpr const char* classOf(const Domain&) { return "Domain"; }
-template <class V>
-constexpr const char* classOf(const keys::Gravity<V>&) {
+template <class V, class F>
+constexpr const char* classOf(const keys::Gravity<V, F>&) {
   return "Gravity";
 }
 constexpr const char* classOf(const Width&) { return "Width"; }
@@ -176,6 +176,9 @@ class Collector {
   }
   void operator()(const Key& key, const std::optional<TimeFunction>&) { put(key, function); }
   void operator()(const Key& key, const TimeVector&) { put(key, fmt::format("Sequence[{}]", function)); }
+  void operator()(const Key& key, const Vec<3>&, const TimeVector&) {
+    put(key, fmt::format("Sequence[{}]", function));
+  }
   template <class E>
   requires std::is_enum_v<E>
   void operator()(const Key& key, E, auto&&...) { put(key, literal(wordsThat<E>(keys::AllFit{}))); }

@@ -29,8 +29,6 @@ Recording::Recording(Session& session, const std::filesystem::path& directory, b
     : session_(session),
       directory_(made(session, directory, force)),
       log_(directory_.log(), true),
-      summary_{.origin = originOf(session.theCase(), session.onDevice(), session.device(),
-                                  session.simulation().numbers())},
       recorder_(session.theCase(), directory_, log_, session.simulation().time(), true,
                 {[this](Snapshot& s) {
                    writeCase();
@@ -38,6 +36,8 @@ Recording::Recording(Session& session, const std::filesystem::path& directory, b
                    s.step = session_.simulation().step(), s.time = session_.simulation().time();
                  },
                  [this](std::uint64_t probes) { return session_.simulation().measure(probes); }}) {
+  summary_.origin =
+      originOf(session.theCase(), session.onDevice(), session.device(), session.simulation().numbers());
   log_.info(fmt::format("treacle {} ({}) from Python, backend {}, {}, {} threads of the host",
                         summary_.origin.version, summary_.origin.commit, summary_.origin.backend, session.device(),
                         summary_.origin.threads));

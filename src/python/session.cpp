@@ -24,7 +24,8 @@ bool hasSameParticles(const Case& c, Case next) {
   const bool sameMaterials = std::ranges::equal(c.materials, next.materials, {}, &Material::name, &Material::name);
   if (!sameMaterials || c.heat.has_value() != next.heat.has_value()) return false;
   if (c.hasSurfaceTension() != next.hasSurfaceTension()) return false;
-  next.materials = c.materials, next.gravity = c.gravity, next.rheology = c.rheology, next.heat = c.heat;
+  next.materials = c.materials, next.gravity = c.gravity, next.gravityInTime = c.gravityInTime,
+  next.rheology = c.rheology, next.heat = c.heat;
   next.solver = c.solver, next.watch = c.watch, next.title = c.title, next.resolution = c.resolution;
   next.time.end = c.time.end, next.time.tolerance = c.time.tolerance, next.time.least = c.time.least;
   if (c.time.stepsVary() && next.time.stepsVary())

@@ -51,6 +51,11 @@ def headings(labels):
     return [name if same else f"r{resolution} {name}".rstrip() for resolution, _, name in parts]
 
 
+def resolution(label):
+    """A level as pictures name it: r4 is resolution 4."""
+    return "r" + label.removeprefix("x")
+
+
 def merged(records):
     """Study to scheme to levels, from several records; the later one wins."""
     result: dict[str, dict[str, list]] = {}
@@ -103,10 +108,10 @@ def draw(study, of, path):
         for row, mark in zip(shown, ("o", "s", "."), strict=False):
             for k, (name, (x, y)) in enumerate(row["curves"].items()):
                 axes.plot(x, y, mark, markersize=3, markerfacecolor="none", color=f"C{k}", alpha=0.8,
-                          label=f"{name}, {row['level']}")
+                          label=f"{name}, {resolution(row['level'])}")
         for scheme, found in others:
             for name, (x, y) in found[-1]["curves"].items():
-                axes.plot(x, y, "x", markersize=2, color="0.6", zorder=0, label=f"{scheme}: {name}, {found[-1]['level']}")
+                axes.plot(x, y, "x", markersize=2, color="0.6", zorder=0, label=f"{scheme}: {name}, {resolution(found[-1]['level'])}")
 
 
 def blocks(records, studies):

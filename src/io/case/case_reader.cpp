@@ -18,6 +18,16 @@ CaseFileError placed(const CaseError& error, const Sections& sections) {
   return section->second.error(key, error.text());
 }
 
+/// Scales follow the mean over the run.
+void setGravity(Case& c) {
+  if (!c.gravityVaries() || !(c.time.end > 0)) return;
+  try {
+    c.gravity = c.meanGravity(0, c.time.end);
+  } catch (const InputError& error) {
+    throw CaseError({"gravity", "acceleration"}, error.what());
+  }
+}
+
 /// `folder`: that of the file.
 Case caseOf(const toml::table& document, const std::filesystem::path& folder, ShapeFiles files) {
   Case c;
@@ -32,6 +42,7 @@ Case caseOf(const toml::table& document, const std::filesystem::path& folder, Sh
     if (width) applyWidth(c, *width);
     if (files == ShapeFiles::Read) readShapeFiles(c, folder);
     requireValidMaterials(c);
+    setGravity(c);
     setStepBounds(c);  // which follow from materials, and from where bodies are
     requireValid(c);
   } catch (const CaseError& error) {

@@ -32,7 +32,7 @@ class TableText {
   void operator()(const Key& key, const std::array<bool, 3>& flags) {
     put(key, perAxis([&](std::size_t k) { return fmt::format("{}", flags[k]); }));
   }
-  void operator()(const Key& key, const Vec<3>& x) { (*this)(key, x, {}); }
+  void operator()(const Key& key, const Vec<3>& x) { (*this)(key, x, std::array<std::string, 3>{}); }
   void operator()(const Key& key, const Vec<3>& numbers, const std::array<std::string, 3>& texts) {
     put(key, perAxis([&](std::size_t k) {
           return texts[k].empty() ? fmt::format("{}", numbers[static_cast<int>(k)]) : tomlString(texts[k]);
@@ -91,6 +91,11 @@ class TableText {
   void operator()(const Key& key, const TimeVector& functions) {
     if (functions == TimeVector{}) return;
     put(key, perAxis([&](std::size_t k) { return functions[k] ? textOf(*functions[k]) : "0"; }));
+  }
+  void operator()(const Key& key, const Vec<3>& numbers, const TimeVector& varying) {
+    put(key, perAxis([&](std::size_t k) {
+          return varying[k] ? textOf(*varying[k]) : fmt::format("{}", numbers[static_cast<int>(k)]);
+        }));
   }
   template <class Table>
   void operator()(const Key& key, const std::optional<Table>& table) {

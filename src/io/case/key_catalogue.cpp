@@ -86,6 +86,7 @@ class Catalogue {
     void operator()(const Key& key, double, bool, keys::OrAutoTag) { note(key, ValueKind::NumberOrAuto); }
     void operator()(const Key& key, const std::optional<TimeFunction>&) { note(key, ValueKind::OfTime); }
     void operator()(const Key& key, const TimeVector&) { note(key, ValueKind::VectorOfTime); }
+    void operator()(const Key& key, const Vec<3>&, const TimeVector&) { note(key, ValueKind::VectorOfTime); }
     void operator()(const Key& key, const OutputFields&) {
       std::vector<std::string> words;
       for (const OutputFieldName& f : outputFieldNames) words.emplace_back(f.name);

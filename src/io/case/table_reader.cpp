@@ -354,6 +354,16 @@ void TableReader::operator()(const Key& key, TimeVector& functions) const {
   for (std::size_t k = 0; array && k < array->size(); ++k) functions[k] = function(key, (*array)[k]);
 }
 
+void TableReader::operator()(const Key& key, Vec<3>& numbers, TimeVector& varying) const {
+  TimeVector functions;
+  (*this)(key, functions);
+  for (std::size_t k = 0; k < functions.size(); ++k) {
+    if (!functions[k]) continue;
+    varying[k].reset(), numbers[static_cast<int>(k)] = functions[k]->value;
+    if (!functions[k]->isConstant()) varying[k] = std::move(functions[k]);
+  }
+}
+
 void TableReader::operator()(const Key& key, std::vector<std::string>& names) const {
   const std::string expected = "an array of strings";
   const toml::node* node = section_.value(key, expected);

@@ -48,6 +48,7 @@ class TableReader {
   void operator()(const Key& key, OutputFields& fields) const;
   void operator()(const Key& key, std::optional<TimeFunction>& function) const;
   void operator()(const Key& key, TimeVector& functions) const;
+  void operator()(const Key& key, Vec<3>& numbers, TimeVector& varying) const;
 
   template <class E, class Fits = keys::AllFit>
   requires std::is_enum_v<E>

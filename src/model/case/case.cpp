@@ -1,5 +1,7 @@
 #include "treacle/model/case/case.hpp"
 
+#include <algorithm>
+
 namespace treacle {
 
 double Case::typicalTemperature(const Material& m) const {
@@ -14,6 +16,15 @@ double Case::typicalTemperature(const Material& m) const {
 
 double Case::typicalShift(const Material& m) const {
   return heat && m.viscosityShift ? ShiftFactor::make(*m.viscosityShift)(typicalTemperature(m)) : 1;
+}
+
+Vec<3> Case::meanGravity(double from, double to) const {
+  Vec<3> mean = gravity;
+  const double start = std::max(from, 0.0);
+  for (std::size_t k = 0; k < gravityInTime.size(); ++k)
+    if (const auto& f = gravityInTime[k])
+      mean[static_cast<int>(k)] = to > start ? f->integral(start, to) / (to - start) : f->at(to);
+  return mean;
 }
 
 }  // namespace treacle

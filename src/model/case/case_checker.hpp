@@ -140,6 +140,12 @@ class Checker {
   void operator()(const Key& key, const TimeVector& functions) const {
     for (const auto& f : functions) (*this)(key, f);
   }
+  void operator()(const Key& key, Vec<3> x, const TimeVector& varying) const {
+    (*this)(key, varying);
+    for (std::size_t k = 0; k < varying.size(); ++k)
+      if (varying[k]) x[static_cast<int>(k)] = 0;  // does not count
+    requireVector(key, x, expectedFunction(key));
+  }
   template <class Table>
   void operator()(const Key& key, const std::optional<Table>& table) const {
     if (table) (*this)(key, *table);

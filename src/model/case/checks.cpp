@@ -254,7 +254,7 @@ std::string knownRange(const ViscosityShift& shift) {
   return fmt::format("for factors from {:g} to {:g}", shift.least, shift.most);
 }
 
-/// Of walls only tables count: a law that is cut off there is meant so.
+/// Walls are checked against tables only: where a law is cut off at a wall, the case intends it.
 void warnTemperatures(const Case& c, std::vector<std::string>& warnings) {
   constexpr double zeroCelsius = 273.15, coldest = 200;
   if (!c.heat) return;

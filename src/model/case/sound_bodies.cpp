@@ -96,7 +96,7 @@ void requireRigid(const Checker& at, const Body& b) {
       at.fail({"type"}, fmt::format("there can be no rigid body in a domain that is periodic along {}", "xyz"[k]));
 }
 
-/// Errors also where a body takes its own places from itself, by whichever way.
+/// Fails for bodies that the case does not have, for inflows, and for bodies that subtract each other.
 void requireSubtracted(const Checker& at, const Body& b, const Body& from, std::size_t depth) {
   const std::vector<Body>& bodies = at.wholeCase().bodies;
   for (const std::string& name : from.subtract) {

@@ -172,7 +172,8 @@ struct Place {
 template <int D>
 void append(const Case& c, BodyKind kind, const std::vector<Filled<D>>& filled, Particles<D>& particles,
             Place& next) {
-  auto& [first, end, id, at] = next;
+  const std::uint32_t first = next.first, end = next.end;
+  std::uint32_t &id = next.id, &at = next.at;
   for (const Filled<D>& f : filled) {
     const auto body = static_cast<std::uint8_t>(f.body - c.bodies.data());
     const auto count = static_cast<std::uint32_t>(f.points.size());

@@ -301,10 +301,9 @@ class RigidSystem {
     return r;
   }
 
-  /// Velocities belong to the middles of steps.
   ForceInterval interval() const {
-    const double dt = state_.timeStep, to = state_.time + dt / 2;
-    return {to - state_.velocityStep, to, dt};
+    const auto [from, to] = state_.velocityInterval();
+    return {from, to, state_.timeStep};
   }
 
   FlowState<D, Backend>& state_;

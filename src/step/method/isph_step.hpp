@@ -55,6 +55,7 @@ class IsphStep final : public StepMethod<D, Backend> {
     if (bodies_) bodies_->start();
     pairs_.wallMotion = state_.wallMotion.empty() ? nullptr : state_.wallMotion.data();
     pairs_.timeStep = state_.timeStep;
+    pairs_.gravity = resized<D>(state_.theCase.gravity);
     pairs_.materials.setTimeStep(state_.timeStep);
     prepareDensities();
     solution_.resize(state_.context, pairs_.fluidCount);

@@ -13,6 +13,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace treacle {
@@ -55,6 +56,13 @@ struct FlowState {
       link = DeviceLink::make(processes, context);
       context.link = link.get();
     }
+  }
+
+  /// From when to when velocities change in the step at hand [s]: they belong to the middles of steps where forces
+  /// do, else to their ends.
+  std::pair<double, double> velocityInterval() const {
+    const double to = time + (theCase.middleShare() > 0 ? 0.5 : 1) * timeStep;
+    return {to - velocityStep, to};
   }
 
   /// The step before that at hand; as long as this one where that is not known [s].

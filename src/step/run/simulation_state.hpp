@@ -122,6 +122,10 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     timeStep = next.length, endOfStep = next.end;
     // Velocities belong to the middles of steps where forces do.
     velocityStep = theCase.middleShare() > 0 ? 0.5 * (this->lastStep() + timeStep) : timeStep;
+    if (theCase.gravityVaries()) {
+      const auto [from, to] = this->velocityInterval();
+      theCase.gravity = theCase.meanGravity(from, to);
+    }
   }
 
   /// Where forces belong to the middle of the step at hand, all particles go there.

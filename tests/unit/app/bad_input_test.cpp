@@ -81,8 +81,8 @@ constexpr BadCase badCases[] = {
     {"numberForVector", "max = [6e-3, 6e-3]", "max = 6e-3",
      "bad.toml:25:7: max in [[body]] 'column' (box): expected an array of 2 finite numbers [m], found 0.006"},
     {"vectorOfWrongLength", "acceleration = [0, -10]", "acceleration = [0, 0, -10]",
-     "bad.toml:10:16: acceleration in [gravity]: expected an array of 2 finite numbers [m/s2], found an array of "
-     "3"},
+     "bad.toml:10:16: acceleration in [gravity]: expected an array of 2 of these: a finite number "
+     "[m/s2], an expression in t [s] or {times = [...], values = [...]}, found an array of 3"},
     {"fractionForInteger", "[output]", "[solver]\nmax_iterations = 1.5\n[output]",
      "bad.toml:40:18: max_iterations in [solver]: expected a whole number from 1 to 1000000, found 1.5"},
     {"wrongPeriodic", "[gravity]", "periodic = [true, 1]\n[gravity]",

@@ -161,7 +161,7 @@ min = [-20, -20, -20]
 max = [20, 20, 20]
 periodic = [false, true, false]
 [gravity]
-acceleration = [0.1, -9.81, 1e-300]
+acceleration = [0.1, "2*t - 9", { times = [0, 1], values = [0, 7] }]
 [[material]]
 name = "a"
 density = 1234.5678901234567
@@ -254,7 +254,10 @@ TEST(readCase, takesEveryKey) {
   expected.spacing = 0.3 / 1.5;
   expected.resolution = 1.5;
   expected.domain = {{-20, -20, -20}, {20, 20, 20}, {false, true, false}};
-  expected.gravity = {0.1, -9.81, 1e-300};
+  expected.gravityInTime[1] = TimeFunction{.expression = "2*t - 9"};
+  expected.gravityInTime[2] = TimeFunction{.times = {0, 1}, .values = {0, 7}};
+  expected.gravity = {0.1, 0, 0};
+  expected.gravity = expected.meanGravity(0, 7);
   expected.materials = {{"a", 1234.5678901234567, 0, 1e5, 3}, {"b c", 1, 0.1, 1e-7, 0}};
   Shape ball, rod;
   ball.kind = ShapeKind::Sphere, ball.center = {1, 2, 3}, ball.radius = 4.1, ball.innerRadius = 0.5;

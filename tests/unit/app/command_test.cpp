@@ -449,6 +449,9 @@ TEST(plot, drawsFrames) {
     EXPECT_EQ(shop.call(std::string("compare small-run small-run --csv ./small-run/") + own).exitCode, 2) << own;
     EXPECT_EQ(shop.content(std::string("small-run/") + own), before);
   }
+  const Outcome kind = shop.call("plot small-run -o picture.pdf");
+  EXPECT_EQ(kind.exitCode, 2);
+  EXPECT_THAT(kind.err, HasSubstr("--output picture.pdf: pictures of frames are PNG"));
   EXPECT_EQ(shop.call("plot small-run -o last.png").exitCode, 0);
   EXPECT_THAT(shop.content("last.png"), StartsWith(std::string(pngSignature)));
   Frame odd = readVtp(shop / "small-run/frames/fluid_000001.vtp");

@@ -157,7 +157,7 @@ const Mistake mistakes[] = {
      {"gravity.acceleration=[inf, -10]"},
      {"gravity", "acceleration"},
      "[gravity]",
-     "expected an array of 2 finite numbers [m/s2], found inf"},
+     "expected a finite number [m/s2], an expression in t [s] or {times = [...], values = [...]}, found inf"},
     {"density",
      mph,
      [](Case& c) { c.materials[0].density = 0; },

@@ -33,8 +33,8 @@ struct Arrangement {
 /// the number of particles (their sort apart), wherever they lie. Periodic axes: at least 4.5 spacings long.
 Arrangement measureArrangement(Frame& fluid, const Frame& walls, const Domain& domain, double spacing);
 
-/// From the fluid particle that is nearest to a wall's to that one, across periodic ends, too [m]; infinite where
-/// there are none of one kind. In O(n log n), wherever they lie.
+/// The smallest distance of a fluid particle from a wall particle, also across periodic ends [m]. It is infinite
+/// if there is no fluid or no wall. The function takes O(n log n).
 double distanceToWalls(const Frame& fluid, const Frame& walls, const Domain& domain);
 
 /// What a process that has a part of the fluid can say: with what the others say it makes the arrangement of all.

@@ -32,7 +32,7 @@ struct FrameCost {
   }
 };
 
-/// By what a run was made, and of what.
+/// Program, machine and case of a run.
 struct RunOrigin {
   std::string version, commit;
   std::string backend;    // "cpu" or "cuda"
@@ -44,7 +44,7 @@ struct RunOrigin {
   std::uint64_t fluidParticles = 0, wallParticles = 0;  // at the start of the run
 };
 
-/// What the steps of a run come to.
+/// Sums and extremes over the steps of a run.
 struct StepTally {
   double leastStep = 0, meanStep = 0, longestStep = 0;  // [s]
   std::int64_t rejectedSteps = 0;                       // automatic ones that were repeated with shorter ones
@@ -59,7 +59,7 @@ struct StepTally {
   std::optional<Flow> flow{};  // of a case where fluid comes or goes
 };
 
-/// What the frames of a run come to.
+/// Sums and extremes over the frames of a run.
 struct FrameTally {
   std::uint64_t count = 0;                                          // of those written
   FrameCost cost;                                                   // of all

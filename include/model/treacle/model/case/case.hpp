@@ -6,6 +6,7 @@
 #include "treacle/model/case/output_settings.hpp"
 #include "treacle/model/case/probe.hpp"
 #include "treacle/model/case/solver_settings.hpp"
+#include "treacle/model/case/time_function.hpp"
 #include "treacle/model/materials/material.hpp"
 
 #include <algorithm>
@@ -53,7 +54,8 @@ struct Case {
   double spacing = 0;     // l [m], resolution applied
   double resolution = 1;  // what spacing and time step were divided by
   Domain domain;
-  Vec<3> gravity{};  // [m/s2]
+  Vec<3> gravity{};            // of one that varies what scales and pictures follow: its mean over the run [m/s2]
+  TimeVector gravityInTime{};  // the components that vary
   std::vector<Material> materials;
   std::vector<Body> bodies;
   std::vector<Outflow> outflows{};
@@ -127,6 +129,12 @@ struct Case {
     return std::ranges::any_of(bodies, [](const Body& b) { return b.kind == BodyKind::Rigid; });
   }
   /// Whether the number of fluid particles changes.
+  bool gravityVaries() const {
+    return std::ranges::any_of(gravityInTime, [](const auto& component) { return component.has_value(); });
+  }
+  /// Its mean from one time to another, from 0 on [m/s2].
+  Vec<3> meanGravity(double from, double to) const;
+
   bool isOpen() const { return hasInflow() || !outflows.empty(); }
   bool hasLoads() const {
     return std::ranges::any_of(probes, [](const Probe& p) { return p.kind == ProbeKind::Load; });

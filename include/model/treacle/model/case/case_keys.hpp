@@ -53,13 +53,14 @@ namespace keys {
 inline constexpr Key baseKey{"base", "Case file, relative to this one, that this one changes"};
 inline constexpr Key widthKey{"width", "A stretch of one axis becomes wider or narrower"};
 
-/// The table of which a case holds nothing but its vector.
-template <class Vector>
+/// The table of which a case holds nothing but its vector, and the components of it that vary.
+template <class Vector, class Functions>
 struct Gravity {
   Vector& acceleration;
+  Functions& inTime;
 };
-template <class Vector>
-Gravity(Vector&) -> Gravity<Vector>;  // clang 14 does not find it by itself
+template <class Vector, class Functions>
+Gravity(Vector&, Functions&) -> Gravity<Vector, Functions>;  // clang 14 does not find it by itself
 
 void visit(auto& v, Like<Domain> auto& d, const Case&) {
   v({"min", "Corner of the domain with the least coordinates", required, "m"}, d.min);
@@ -70,9 +71,9 @@ void visit(auto& v, Like<Domain> auto& d, const Case&) {
     d.periodic);
 }
 
-template <class Vector>
-void visit(auto& v, const Gravity<Vector>& g, const Case&) {
-  v({"acceleration", "Gravity", optional, "m/s2"}, g.acceleration);
+template <class Vector, class Functions>
+void visit(auto& v, const Gravity<Vector, Functions>& g, const Case&) {
+  v({"acceleration", "Gravity", optional, "m/s2"}, g.acceleration, g.inTime);
 }
 
 void visit(auto& v, Like<Width> auto& w, const Case& c) {
@@ -104,7 +105,7 @@ void visit(auto& v, Like<TimeSettings> auto& t, const Case&) {
 }
 
 void visit(auto& v, Like<Case> auto& c, const Case&) {
-  const Gravity gravity{c.gravity};
+  const Gravity gravity{c.gravity, c.gravityInTime};
   v({"title", "Title in pictures and summary"}, c.title);
   v({"dimensions", "Number of dimensions, and of components of all vectors of the file", required, "", {2, 3}},
     c.dimensions);

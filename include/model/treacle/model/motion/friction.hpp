@@ -12,7 +12,7 @@ inline double frictionBetween(const Body& a, const Body& b) {
   return a.isWall() && b.isWall() ? std::sqrt(a.friction * b.friction) : 0;
 }
 
-/// By what the speed after an impact of two bodies is that before, likewise.
+/// The coefficient of restitution of two bodies that touch: the geometric mean, as for friction.
 inline double restitutionBetween(const Body& a, const Body& b) {
   return a.isWall() && b.isWall() ? std::sqrt(a.restitution * b.restitution) : 0;
 }

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "treacle/model/case/case.hpp"
-#include "treacle/model/particles/particles.hpp"
+#include "treacle/model/particles/any_particles.hpp"
 
 #include <cstdint>
 #include <span>
