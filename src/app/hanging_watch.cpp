@@ -28,8 +28,7 @@ std::optional<std::string> HangingWatch::look(const Frame& fluid, const Frame& w
   return fmt::format(
       "t = {:.6g} s: the fluid touches no wall and yet rests: its nearest particle is {:.2g} spacings "
       "from a wall's, where 1 is contact. Viscous fluid feels walls across a gap of up to {:.2g} spacings; a "
-      "smaller "
-      "spacing makes the gap smaller, a body that begins in contact with the wall has none",
+      "smaller spacing makes the gap smaller, a body that begins in contact with the wall has none",
       fluid.time, gap, case_.interactionRadius() / case_.spacing);
 }
 

@@ -226,8 +226,7 @@ void MadeParticles::requireFluid(const Case& c) const {
   if (!some && c.hasInflow())
     throw InputError(
         "the case has no fluid at the start: no body of type \"fluid\" holds a particle, and no inflow flows yet; "
-        "give "
-        "an inflow a small speed at t = 0, or add a body of fluid");
+        "give an inflow a small speed at t = 0, or add a body of fluid");
 }
 
 StartState fittingState(const Case& c, const std::filesystem::path& file, const MadeParticles& made) {

@@ -191,10 +191,11 @@ double NozzleLayers<D>::speed(double t, double dt) const {
   const TimeFunction& rate = inflow.speed ? *inflow.speed : *inflow.flowRate;
   const double over = inflow.speed ? 1 : area_;
   const auto required = [&](double value) {
-    if (value < 0)
+    // Formulas that fall to zero may miss it by rounding: what is less than 1e-9 spacings in a second is none.
+    if (value / over < -1e-9 * spacing_)
       throw InputError(fmt::format("{} of inflow '{}' is {:g} at t = {:g} s; expected no negative numbers",
                                    inflow.speed ? "speed" : "flow_rate", body_.name, value, t));
-    return value / over;
+    return std::max(0.0, value) / over;
   };
   if (dt == 0) return t >= inflow.start && t < end ? required(rate.at(t)) : 0;
   const double from = std::max(t, inflow.start), to = std::min(t + dt, end);
