@@ -24,10 +24,8 @@ double sumChunks(Context<Cpu>& context, std::size_t n, F&& body) {
   if (chunks <= 1) return body(std::size_t{0}, n);
   std::vector<double>& partial = context.partialSums;
   partial.resize(chunks);
-  parallelFor(chunks, 2, [&](std::size_t c) {
-    const std::size_t begin = c * reductionChunk;
-    partial[c] = body(begin, std::min(reductionChunk, n - begin));
-  });
+  forChunks(n,
+            [&](std::size_t begin, std::size_t length) { partial[begin / reductionChunk] = body(begin, length); });
   double sum = 0;
   for (double p : partial) sum += p;
   return sum;
