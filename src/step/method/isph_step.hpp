@@ -64,7 +64,10 @@ class IsphStep final : public StepMethod<D, Backend> {
 
   void prepareSystem() override {
     fillGhosts(state_.context, Held::Fluid, surface_.data());
+    if (pairs_.accurate) fillGhosts(state_.context, Held::Fluid, renormalisation_.data());
     closed_ = isClosed(state_.context, ownSurface());
+    if (closed_)
+      clearValues(state_.context, missing_.span());  // no surface that would hold the level of pressures
     computeSource();
     pressure_.prepareMatrix(state_.context, pairs_, ranges(), row());
   }
@@ -143,9 +146,9 @@ class IsphStep final : public StepMethod<D, Backend> {
   const MaterialTable& materials() const override { return pairs_.materials; }
   std::size_t bytes() const override {
     return sort_.bytes() + fluidOfFluid_.bytes() + wallsOfFluid_.bytes() + fluidOfWalls_.bytes() +
-           deficit_.bytes() + surface_.bytes() + predictor_.bytes() + source_.bytes() + solution_.bytes() +
-           transport_.bytes() + wallShare_.bytes() + forces_.bytes() + pressure_.bytes() +
-           (bodies_ ? bodies_->bytes() : 0) + pressing_.bytes() + wallSurface_.bytes();
+           deficit_.bytes() + renormalisation_.bytes() + missing_.bytes() + surface_.bytes() + predictor_.bytes() +
+           source_.bytes() + solution_.bytes() + transport_.bytes() + wallShare_.bytes() + forces_.bytes() +
+           pressure_.bytes() + (bodies_ ? bodies_->bytes() : 0) + pressing_.bytes() + wallSurface_.bytes();
   }
 
   /// Pairs up to this share of the kernel's radius make the smoother's matrix: 1.9 l with the usual kernel.
@@ -224,6 +227,12 @@ class IsphStep final : public StepMethod<D, Backend> {
     const std::uint32_t n = pairs_.fluidCount;
     deficit_.resize(state_.context, pairs_.ownFluid());
     surface_.resize(state_.context, n);
+    if (pairs_.accurate) {
+      renormalisation_.resize(state_.context, n);
+      missing_.resize(state_.context, pairs_.ownFluid());
+      pairs_.renormalisation = renormalisation_.data();
+      pairs_.missing = missing_.data();
+    }
     clearValues(state_.context, state_.particles.numberDensity.span().subspan(n));
   }
   DensityTerm<D> densityTerm() {
@@ -236,7 +245,9 @@ class IsphStep final : public StepMethod<D, Backend> {
   NeighbourRows<Backend> fluidOfFluid_, wallsOfFluid_, fluidOfWalls_;
   bool closed_ = false;  // no particle is at the free surface
   Buffer<Vec<D>, Backend> deficit_;
-  Buffer<std::uint8_t, Backend> surface_;  // with ghosts, which all that neighbours read has
+  Buffer<SymmetricBlock<D, float>, Backend> renormalisation_;  // with ghosts; of the accurate scheme
+  Buffer<float, Backend> missing_;                             // likewise, of own particles
+  Buffer<std::uint8_t, Backend> surface_;  // Place, with ghosts, which all that neighbours read has
   IsphPredictor<D, Backend> predictor_;
   Buffer<double, Backend> source_;    // of the pressure equation
   Buffer<double, Backend> solution_;  // with ghosts: of the pressure equation; before, a component of v*

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "treacle/core/macros.hpp"
+#include "treacle/isph/isph_pairs.hpp"
 #include "treacle/isph/isph_particles.hpp"
 
 namespace treacle {
@@ -11,7 +12,8 @@ namespace treacle {
 template <class Backend>
 void settlePressure(Context<Backend>& context, std::span<const std::uint8_t> surface, bool cut,
                     std::span<double> p) {
-  forEach(context, p.size(), [=] TREACLE_HD(std::size_t i) { p[i] = surface[i] || (cut && p[i] < 0) ? 0 : p[i]; });
+  forEach(context, p.size(),
+          [=] TREACLE_HD(std::size_t i) { p[i] = surface[i] == Place::Free || (cut && p[i] < 0) ? 0 : p[i]; });
 }
 
 template <class Backend>

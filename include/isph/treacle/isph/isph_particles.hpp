@@ -12,11 +12,11 @@ namespace treacle {
 /// What an ISPH step does fluid particle by fluid particle, without neighbours; spans of own fluid in the
 /// backend's memory.
 
-/// p = 0 at the free surface and, where `cut`, where it is negative.
+/// p = 0 for free particles and, where `cut`, where it is negative. `surface` holds a Place each.
 template <class Backend>
 void settlePressure(Context<Backend>&, std::span<const std::uint8_t> surface, bool cut, std::span<double> p);
 
-/// Whether no particle, of all processes, is at the free surface. Then the pressure equation has no Dirichlet
+/// Whether all particles, of all processes, are inside. Then the pressure equation has no Dirichlet
 /// value: its matrix is singular, and pressures are known up to a constant, their level.
 template <class Backend>
 bool isClosed(Context<Backend>&, std::span<const std::uint8_t> surface);

@@ -90,7 +90,7 @@ struct IsphMatrixRow {
     Vec<D> d{};
     if (row.isUnknown(i) && j != i) {
       d = pairs.grid.difference(x, pairs.position[j]);
-      c = row.coefficient(pairs, i, j, Distance(d));
+      c = row.coefficient(pairs, i, j, d, Distance(d));
       if (!row.isUnknown(j)) {
         sum[Known] += c;
         c = 0;
