@@ -23,8 +23,8 @@ class WallForces {
     if (!walls_.offset) return;
     // The lists of the step reach only as far as pressures.
     const double reach = std::max(pairs.terms.densityRadius, pairs.terms.viscosityRadius);
-    buildClusterList<D>(state.context, pairs.grid, neighbourhood.ranges(), pairs.position, n, pairs.ownEnd(),
-                        {reach, 0}, true, list_);
+    buildClusterList<D>(state.context, pairs.grid, neighbourhood.ranges(), pairs.position,
+                        {n, pairs.ownEnd(), {reach, 0}, true}, list_);
     walls_ = list_.view();
   }
 

@@ -81,25 +81,12 @@ void directionsCr(Context<Backend>& context, const CrDirections& v, const Krylov
 }
 
 template <class Backend>
-void updateCg(Context<Backend>& context, const CgVectors& v, KrylovScalars* scalars) {
+void updateSolution(Context<Backend>& context, const KrylovVectors& v, KrylovScalars* scalars) {
   reduceNumbers(
       context, v.x.size(), scalars,
       [=] TREACLE_HD(std::size_t i, const KrylovScalars& s) {
         v.x[i] += s.alpha * v.p[i];
-        const double ri = v.r[i] - s.alpha * v.q[i];
-        v.r[i] = ri;
-        return ri * ri;
-      },
-      [] TREACLE_HD(double rr, KrylovScalars& s) { s.endIteration(rr); });
-}
-
-template <class Backend>
-void updateCr(Context<Backend>& context, const CrVectors& v, KrylovScalars* scalars) {
-  reduceNumbers(
-      context, v.x.size(), scalars,
-      [=] TREACLE_HD(std::size_t i, const KrylovScalars& s) {
-        v.x[i] += s.alpha * v.p[i];
-        v.s[i] -= s.alpha * v.u[i];
+        if (!v.s.empty()) v.s[i] -= s.alpha * v.u[i];
         const double ri = v.r[i] - s.alpha * v.q[i];
         v.r[i] = ri;
         return ri * ri;
@@ -193,8 +180,7 @@ void setNumber(Context<Backend>& context, T value, T* to) {
   template void direction(Context<Backend>&, std::span<const double>, std::span<double>, const KrylovScalars*, \
                           bool);                                                                               \
   template void directionsCr(Context<Backend>&, const CrDirections&, const KrylovScalars*);                    \
-  template void updateCg(Context<Backend>&, const CgVectors&, KrylovScalars*);                                 \
-  template void updateCr(Context<Backend>&, const CrVectors&, KrylovScalars*);                                 \
+  template void updateSolution(Context<Backend>&, const KrylovVectors&, KrylovScalars*);                       \
   template void widen(Context<Backend>&, std::span<const float>, std::span<double>);                           \
   template void setInverse(Context<Backend>&, const ModeMatrix&, DeflationScalars*);                           \
   template void recordedDirection(Context<Backend>&, std::span<const double>, std::span<const double>,         \

@@ -45,20 +45,15 @@ struct CrDirections {
 template <class Backend>
 void directionsCr(Context<Backend>&, const CrDirections& v, const KrylovScalars* scalars);
 
-/// x += alpha p, r -= alpha q, and scalars.endIteration(r.r); 6 vectors of traffic
-struct CgVectors {
+/// x += alpha p, r -= alpha q, where they are given s -= alpha u, and scalars.endIteration(r.r); 6 vectors of
+/// traffic, with s and u 9
+struct KrylovVectors {
   std::span<const double> p, q;
   std::span<double> x, r;
+  std::span<const double> u{};
+  std::span<double> s{};
 };
 template <class Backend>
-void updateCg(Context<Backend>&, const CgVectors& v, KrylovScalars* scalars);
-
-/// x += alpha p, r -= alpha q, s -= alpha u, and scalars.endIteration(r.r); 9 vectors of traffic
-struct CrVectors {
-  std::span<const double> p, q, u;
-  std::span<double> x, r, s;
-};
-template <class Backend>
-void updateCr(Context<Backend>&, const CrVectors& v, KrylovScalars* scalars);
+void updateSolution(Context<Backend>&, const KrylovVectors& v, KrylovScalars* scalars);
 
 }  // namespace treacle
