@@ -65,7 +65,7 @@ class StudiedSystem {
     rhs_.resize(context, fluidCount());
     numberDensity<D>(context, pairs(), density);
     elasticPressure<D>(context, pairs(), density, {}, elastic);
-    inertiaAndGravity<D>(context, pairs(), firstGuess(), resized<D>(c.gravity), rhs_);
+    inertiaAndGravity<D>(context, pairs(), firstGuess(), {.gravity = resized<D>(c.gravity)}, rhs_);
     addPressureGradient<D>(context, pairs(), elastic, -1.0, rhs_);
   }
 

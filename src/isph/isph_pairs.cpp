@@ -55,7 +55,7 @@ IsphPairs<D> makeIsphPairs(const Case& c) {
   pairs.kernel = SmoothingKernel<D>::make(s.kernel, c.smoothingLength());
   pairs.materials = MaterialTable::make(c);
   setBounds(c, pairs);
-  pairs.gravity = resized<D>(c.gravity);
+  pairs.frame.gravity = resized<D>(c.gravity);
   pairs.volume = std::pow(c.spacing, D);
   const auto weight = [&](double r) { return pairs.kernel.value(r); };
   pairs.latticeDensity = pairs.volume * (weight(0) + latticeSum<D>(pairs.kernel.radius(), c.spacing, weight));

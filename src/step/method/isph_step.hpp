@@ -55,7 +55,7 @@ class IsphStep final : public StepMethod<D, Backend> {
     if (bodies_) bodies_->start();
     pairs_.wallMotion = state_.wallMotion.empty() ? nullptr : state_.wallMotion.data();
     pairs_.timeStep = state_.timeStep;
-    pairs_.gravity = resized<D>(state_.theCase.gravity);
+    pairs_.frame = state_.frame;
     pairs_.materials.setTimeStep(state_.timeStep);
     prepareDensities();
     solution_.resize(state_.context, pairs_.fluidCount);
@@ -120,10 +120,13 @@ class IsphStep final : public StepMethod<D, Backend> {
     copyValues(state_.context, std::span<const double>(solution_), pressure.data());
     clearValues(state_.context, pressure.subspan(pairs_.fluidCount));
     sumOnWalls(state_.context, pairs_, WallPressureTerm<D>{solution_.data(), pressure.data()});
-    if (state_.theCase.hasLoads()) loads_ = wallLoads(state_, loadsOfWalls());
+    if (!state_.theCase.hasLoads()) return;
+    loads_ = wallLoads(state_, loadsOfWalls());
+    patches_ = forces_.pressures(state_, pairs_);
   }
 
   std::vector<WallLoad> loads() const override { return loads_; }
+  std::vector<double> patchPressures() const override { return patches_; }
 
   void describe(DiagnosticsInput<D>& in) const override {
     const std::uint32_t n = state_.particles.fluidCount;
@@ -255,6 +258,7 @@ class IsphStep final : public StepMethod<D, Backend> {
   Buffer<double, Backend> wallShare_;  // of the density in a full lattice
   IsphWallForces<D, Backend> forces_;  // for rigid bodies and probes
   std::vector<WallLoad> loads_;        // of the last step
+  std::vector<double> patches_;        // pressures of the probes WallPressure [Pa]
   IsphSolver<D, Backend, PressureRow<D>> pressure_;
   std::optional<StepBodies<D, Backend>> bodies_;  // where the case has rigid bodies; then also:
   Buffer<double, Backend> pressing_;              // those of the step's first solve

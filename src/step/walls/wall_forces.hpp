@@ -50,6 +50,12 @@ class WallForces {
                                      force_.span().first(pairs.ownEnd() - pairs.fluidCount));
   }
 
+  /// On patches of walls, likewise.
+  std::vector<double> pressures(FlowState<D, Backend>& state, const MphPairs<D>& pairs) {
+    return patchPressures<D, Backend>(state, pairs.fluidCount, pairs.position,
+                                      force_.span().first(pairs.ownEnd() - pairs.fluidCount));
+  }
+
   const ClusterListView& walls() const { return walls_; }             // their neighbours, as far as any pair acts
   std::span<const double> divergence() const { return divergence_; }  // the fluid's part, per wall particle [1/s]
   std::span<const double> density() const { return density_; }        // likewise [-]

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "treacle/core/symmetric_block.hpp"
+#include "treacle/model/motion/frame_force.hpp"
 #include "treacle/model/motion/wall_motion.hpp"
 #include "treacle/model/particles/smoothing_kernel.hpp"
 #include "treacle/search/material_particles.hpp"
@@ -66,7 +67,7 @@ struct IsphPairs : MaterialParticles<D> {
   const WallMotion<D>* wallMotion = nullptr;  // per body; none: no wall accelerates
   SmoothingKernel<D> kernel{};
   SurfaceCriterion surface;
-  Vec<D> gravity{};                            // [m/s2]
+  FrameForce<D> frame{};
   double volume = 0;                           // of a particle, l^D [m^D]
   double latticeDensity = 0;                   // sum of V W over a full lattice [-]
   double latticeLaplacian = 0;                 // sum of 2 slope over one [1/m2]
@@ -104,7 +105,7 @@ struct IsphPairs : MaterialParticles<D> {
   /// Pressure that a fluid particle with pressure p sees in a wall at distance d: the wall holds it against
   /// gravity in the frame of the wall, dp/dn = rho (g - a_wall).n.
   TREACLE_HD double wallPressure(double p, std::uint32_t fluid, std::uint32_t wall, const Vec<D>& d) const {
-    Vec<D> g = gravity;
+    Vec<D> g = frame.at(this->position[wall]);
     if (wallMotion) g -= wallMotion[body[wall]].accelerationAt(this->position[wall]);
     const double outside = p + this->density(fluid) * dot(g, d);
     return negativePressure || outside > 0 ? outside : 0;

@@ -87,8 +87,8 @@ struct PredictorTerm {
   }
   TREACLE_HD void store(const IsphPairs<D>& pairs, std::uint32_t i, const double* sum) const {
     const double density = pairs.density(i);
-    for (int k = 0; k < D; ++k)
-      predicted[i][k] = velocity[i][k] + pairs.timeStep * (sum[k] / density + pairs.gravity[k]);
+    const Vec<D> u = pairs.frame.turned(velocity[i]), g = pairs.frame.at(pairs.position[i]);
+    for (int k = 0; k < D; ++k) predicted[i][k] = u[k] + pairs.timeStep * (sum[k] / density + g[k]);
   }
 };
 
@@ -135,8 +135,8 @@ struct ViscousSourceTerm {
   }
   TREACLE_HD void store(const IsphPairs<D>& pairs, std::uint32_t i, const double* sum) const {
     const double density = pairs.density(i);
-    for (int k = 0; k < D; ++k)
-      source[k][i] = density * (velocity[i][k] / pairs.timeStep + pairs.gravity[k]) + sum[k];
+    const Vec<D> u = pairs.frame.turned(velocity[i]), g = pairs.frame.at(pairs.position[i]);
+    for (int k = 0; k < D; ++k) source[k][i] = density * (u[k] / pairs.timeStep + g[k]) + sum[k];
   }
 };
 

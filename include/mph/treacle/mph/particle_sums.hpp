@@ -23,9 +23,9 @@ void elasticPressure(Context<Backend>& context, const MphPairs<D>& pairs, std::s
 
 template <int D, class Backend>
 void inertiaAndGravity(Context<Backend>& context, const MphPairs<D>& pairs, std::span<const Vec<D>> u,
-                       const Vec<D>& gravity, std::span<Vec<D>> b) {
+                       const FrameForce<D>& frame, std::span<Vec<D>> b) {
   forEachParticle(context, pairs, b.size(), [=] TREACLE_HD(const MphPairs<D>& of, std::uint32_t i) {
-    b[i] = inertiaAndGravityOf(of, i, u[i], gravity);
+    b[i] = inertiaAndGravityOf(of, i, u[i], frame);
   });
 }
 
@@ -96,16 +96,16 @@ void renormalisation(Context<Backend>& context, const MphPairs<D>& pairs, std::s
   forEach(context, b.size(), [=] TREACLE_HD(std::size_t i) { b[i] = renormalisationOf(b[i]); });
 }
 
-#define TREACLE_PARTICLE_SUMS(D, Backend)                                                                        \
-  template void elasticPressure(Context<Backend>&, const MphPairs<D>&, std::span<const double>,                  \
-                                std::span<const Adhesion<D>>, std::span<double>);                                \
-  template void inertiaAndGravity(Context<Backend>&, const MphPairs<D>&, std::span<const Vec<D>>, const Vec<D>&, \
-                                  std::span<Vec<D>>);                                                            \
-  template void bulkPressure(Context<Backend>&, const MphPairs<D>&, std::span<const double>,                     \
-                             std::span<const double>, std::span<double>);                                        \
-  template void placeSurfaces(Context<Backend>&, const KnownSurfaces<D>&, std::span<const std::uint8_t>,         \
-                              std::span<WallSurface<D>>);                                                        \
-  template void viscosityScale(Context<Backend>&, const MphPairs<D>&, double, std::span<double>);                \
+#define TREACLE_PARTICLE_SUMS(D, Backend)                                                                \
+  template void elasticPressure(Context<Backend>&, const MphPairs<D>&, std::span<const double>,          \
+                                std::span<const Adhesion<D>>, std::span<double>);                        \
+  template void inertiaAndGravity(Context<Backend>&, const MphPairs<D>&, std::span<const Vec<D>>,        \
+                                  const FrameForce<D>&, std::span<Vec<D>>);                              \
+  template void bulkPressure(Context<Backend>&, const MphPairs<D>&, std::span<const double>,             \
+                             std::span<const double>, std::span<double>);                                \
+  template void placeSurfaces(Context<Backend>&, const KnownSurfaces<D>&, std::span<const std::uint8_t>, \
+                              std::span<WallSurface<D>>);                                                \
+  template void viscosityScale(Context<Backend>&, const MphPairs<D>&, double, std::span<double>);        \
   template void renormalisation(Context<Backend>&, const MphPairs<D>&, std::span<SymmetricBlock<D>>);
 
 }  // namespace treacle

@@ -12,6 +12,7 @@
 #include "treacle/step/readings/balance_sums.hpp"
 #include "treacle/step/readings/probe_sums.hpp"
 #include "treacle/step/readings/step_change.hpp"
+#include "treacle/step/readings/wall_patch.hpp"
 #include "treacle/step/walls/wall_motion.hpp"
 
 #include <bit>
@@ -140,6 +141,17 @@ PartSums sumPart(Context<Backend>& context, const PartTerms<D>& terms) {
 }
 
 template <int D, class Backend>
+double patchPressure(Context<Backend>& context, const PatchTerms<D>& terms) {
+  using Terms = PatchTerms<D>;
+  const auto sums = sumEach<Terms::count>(context, terms.body.size(),
+                                          [=] TREACLE_HD(std::size_t i, double* to) { terms.add(i, to); });
+  if (sums[Terms::Shares] == 0) return std::numeric_limits<double>::quiet_NaN();
+  double into = 0;
+  for (int k = 0; k < D; ++k) into += sums[Terms::Force + k] * terms.patch.normal[k];
+  return std::copysign(into, into * sums[Terms::Side]) * std::pow(terms.patch.spacing, D) / terms.patch.area();
+}
+
+template <int D, class Backend>
 StepChange stepChange(Context<Backend>& context, const StepChangeTerms<D>& terms) {
   const auto all = sumEach<StepChangeTerms<D>::count>(
       context, terms.after.size(), [=] TREACLE_HD(std::size_t i, double* sums) { terms.add(i, sums); });
@@ -164,6 +176,7 @@ StepChange stepChange(Context<Backend>& context, const StepChangeTerms<D>& terms
   template std::array<double, PowerTerms<D>::count> sumPowers(Context<Backend>&, const PowerTerms<D>&,          \
                                                               std::size_t);                                     \
   template PartSums sumPart(Context<Backend>&, const PartTerms<D>&);                                            \
+  template double patchPressure(Context<Backend>&, const PatchTerms<D>&);                                       \
   template StepChange stepChange(Context<Backend>&, const StepChangeTerms<D>&);
 #define TREACLE_EACH_TEMPERATURE(Backend)                                        \
   template void setEach(Context<Backend>&, const HeatSystemTerms&, std::size_t); \
