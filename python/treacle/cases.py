@@ -38,6 +38,18 @@ class Gravity:
 
 
 @dataclass(kw_only=True)
+class Rotation:
+    center: Sequence[float] | None = None
+    """[m]"""
+    speed: float | None = None
+    """[rad/s]"""
+    angle: float | str | TimeTable | None = None
+    """[rad]"""
+    axis: Sequence[float] | None = None
+    """[any unit]"""
+
+
+@dataclass(kw_only=True)
 class Rheology:
     model: Literal["power-law", "cross", "carreau-yasuda", "bingham", "herschel-bulkley", "casson"] | None = None
     consistency: float | None = None
@@ -125,18 +137,6 @@ class Oscillation:
     """[s]"""
     phase: float | None = None
     """[rad]"""
-
-
-@dataclass(kw_only=True)
-class Rotation:
-    center: Sequence[float] | None = None
-    """[m]"""
-    speed: float | None = None
-    """[rad/s]"""
-    angle: float | str | TimeTable | None = None
-    """[rad]"""
-    axis: Sequence[float] | None = None
-    """[any unit]"""
 
 
 @dataclass(kw_only=True)
@@ -428,9 +428,10 @@ class ProbeBox:
 @dataclass(kw_only=True)
 class Probe:
     name: str | None = None
-    type: Literal["point", "line", "plane", "height", "flow", "region", "load"] | None = None
+    type: Literal["point", "line", "plane", "height", "flow", "region", "load", "wall-pressure"] | None = None
     interval: float | None = None
     """[s]"""
+    moves_with: str | None = None
     point: Sequence[float] | None = None
     """[m]"""
     from_: Sequence[float] | None = None
@@ -481,6 +482,7 @@ class Case:
     resolution: float | None = None
     domain: Domain | None = None
     gravity: Gravity | None = None
+    frame: Rotation | None = None
     material: Sequence[Material] | None = None
     body: Sequence[Body] | None = None
     outflow: Sequence[Outflow] | None = None
