@@ -214,6 +214,7 @@ void requireSound(const Checker& at, const Material& material);
 void requireSound(const Checker& at, const Transform& transform);
 void requireSound(const Checker& at, const Rotation& rotation);
 void requireSound(const Checker& at, const Hinge& hinge);
+void requireSound(const Checker& at, const Spring& spring);
 void requireSound(const Checker& at, const Nozzle& nozzle);
 void requireSound(const Checker& at, const Inflow& inflow);
 void requireSound(const Checker& at, const Outflow& outflow);

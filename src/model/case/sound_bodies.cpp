@@ -91,6 +91,8 @@ void requireRigid(const Checker& at, const Body& b) {
   if (r.release > 0 && norm(b.velocity) > 0) at.fail({"velocity"}, "a body stands still until its release");
   if (r.release > 0 && norm(r.angularVelocity) > 0)
     at.fail({"angular_velocity"}, "a body stands still until its release");
+  for (const Spring& s : r.springs)
+    if (s.to == b.name) at.fail({"springs", s.name, "to"}, "expected another body, found that of the spring");
   for (int k = 0; k < c.dimensions; ++k)
     if (c.domain.periodic[static_cast<std::size_t>(k)])
       at.fail({"type"}, fmt::format("there can be no rigid body in a domain that is periodic along {}", "xyz"[k]));
@@ -125,6 +127,12 @@ void requireSound(const Checker& at, const Rotation& r) {
 }
 
 void requireSound(const Checker& at, const Hinge& h) { at.requireDirection("axis", h.axis); }
+
+void requireSound(const Checker& at, const Spring& s) {
+  const auto isIt = [&](const Body& b) { return b.kind == BodyKind::Rigid && b.name == s.to; };
+  if (!s.to.empty() && std::ranges::none_of(at.wholeCase().bodies, isIt))
+    at.fail({"to"}, fmt::format("expected the name of a rigid body, found '{}'", s.to));
+}
 
 void requireSound(const Checker& at, const Transform& t) {
   at.requireDirection("axis", t.axis);

@@ -1,7 +1,10 @@
 #pragma once
 
-#include "treacle/model/case/body.hpp"
+#include "treacle/model/case/case.hpp"
 #include "treacle/model/motion/rigid_body.hpp"
+
+#include <span>
+#include <vector>
 
 namespace treacle {
 
@@ -20,10 +23,10 @@ struct ForceInterval {
 /// rule of Newmark with beta = 1/4, which neither takes nor gives energy, however stiff they are.
 RigidBody forcePlace(const RigidBody& before, const RigidBody& now, double dt);
 
-/// Forces of a step in which the body goes from the velocities of `before`, the state at its start, to those of
-/// `now`: given ones as their mean over the time in which velocities change, springs at forcePlace, dampers by the
-/// mean velocity.
-GivenForces givenForces(const RigidSettings& settings, const RigidBody& before, const RigidBody& now,
-                        const ForceInterval& interval);
+/// Forces of a step, per body of the case, in which the bodies go from the velocities of `before`, the state at
+/// its start, to those of `now`: given ones as their mean over the time in which velocities change, springs at
+/// forcePlace, dampers by the mean velocity. Those that are not rigid have none.
+std::vector<GivenForces> givenForces(const Case& c, std::span<const RigidBody> before,
+                                     std::span<const RigidBody> now, const ForceInterval& interval);
 
 }  // namespace treacle

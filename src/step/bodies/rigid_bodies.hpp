@@ -273,10 +273,12 @@ class RigidSystem {
   std::vector<double> residual(const std::vector<LoadSums>& loads) const {
     const double dt = state_.velocityStep;
     std::vector<double> r;
+    const std::vector<GivenForces> givens =
+        givenForces(state_.theCase, state_.particles.rigid.bodies, state_.rigid.bodies, interval());
     for (const Unknown& u : unknowns_) {
       const RigidBody &b = state_.rigid.bodies[u.body], &before = state_.particles.rigid.bodies[u.body];
       const LoadSums& load = loads[u.body];
-      const GivenForces given = givenForces(state_.theCase.bodies[u.body].rigid, before, b, interval());
+      const GivenForces& given = givens[u.body];
       const Vec<3> weight = b.mass * state_.theCase.gravity;
       if (u.component == ofHinge) {
         const Turn turn = turnOf(u.body);

@@ -145,7 +145,9 @@ TEST(ProbesTwin, PressuresOnPatchesAreThoseOfTheCpu) {
     const double found = patchPressure<3>(device, {patch, b.span(), y.span(), g.span()}),
                  expected = patchPressure<3>(host, {patch, body, x, f});
     EXPECT_EQ(std::isnan(found), std::isnan(expected));
-    if (count > 1000) EXPECT_NEAR(found, expected, 1e-10 * std::abs(expected));
+    if (count > 1000) {
+      EXPECT_NEAR(found, expected, 1e-10 * std::abs(expected));
+    }
   }
 }
 

@@ -1,12 +1,16 @@
 #include "support/rigid_cases.hpp"
 #include "support/state_of.hpp"
+#include "treacle/model/case/case_error.hpp"
+#include "treacle/model/case/checks.hpp"
 #include "treacle/step/run/simulation.hpp"
 #include "unit/model/sample_case.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
+#include <string>
 
 namespace treacle::test {
 namespace {
@@ -89,6 +93,77 @@ TEST(RigidForces, OfSpringsSwingForEver) {
       EXPECT_NEAR((lastCrossing - firstCrossing) / (crossings - 1), period, 1e-3 * period);
     }
   }
+}
+
+/// Two blocks, the second three times as heavy, on a spring that holds them off their centres by `off`.
+Case springCase(double off) {
+  Case c = freeBlock<2>();
+  Body other = c.bodies[1];
+  other.name = "other";
+  other.shape.min[0] += 0.04, other.shape.max[0] += 0.04;
+  other.rigid.mass = 3 * 2000 * 24e-6;
+  c.bodies.push_back(other);
+  const double omega = 2 * std::numbers::pi / 0.1;
+  c.bodies[1].rigid.springs = {{.name = "spring",
+                                .to = "other",
+                                .anchor = {0, off, 0},
+                                .arm = {0, -off, 0},
+                                .length = 0.038,
+                                .stiffness = 0.75 * 2000 * 24e-6 * omega * omega}};
+  return c;
+}
+
+TEST(RigidForces, OfSpringsBetweenBodiesAreOppositeAndEqual) {
+  const Case c = springCase(1e-3);
+  Simulation<2> simulation(c, created<2>(c));
+  double turned = 0;
+  for (int k = 0; k < 200; ++k) {
+    const StepReport report = simulation.advance();
+    const RigidBody &a = report.rigid[1], &b = report.rigid[3];
+    EXPECT_LE(norm(a.mass * a.velocity + b.mass * b.velocity), 1e-9 * a.mass);
+    const Vec<3> parts = a.inertia[2] * a.spin + b.inertia[2] * b.spin,
+                 ways = a.mass * cross(a.center, a.velocity) + b.mass * cross(b.center, b.velocity);
+    EXPECT_NEAR(parts[2] + ways[2], 0, 0.02 * a.inertia[2]);  // by steps in time
+    turned = std::max(turned, std::abs(a.spin[2]));
+  }
+  EXPECT_GT(turned, 0.5);
+}
+
+/// With the frequency of their reduced mass.
+TEST(RigidForces, OfASpringBetweenBodiesSwings) {
+  const Case c = springCase(0);
+  Simulation<2> simulation(c, created<2>(c));
+  double least = 1, most = -1, first = 0, last = 0, before = 1;
+  int crossings = 0;
+  for (int k = 0; k < 400; ++k) {
+    const StepReport report = simulation.advance();
+    const double apart = norm(report.rigid[3].center - report.rigid[1].center) - 0.038;
+    least = std::min(least, apart), most = std::max(most, apart);
+    if (before > 0 && apart <= 0) {
+      last = report.time - 1e-3 * apart / (apart - before);
+      if (crossings++ == 0) first = last;
+    }
+    before = apart;
+  }
+  ASSERT_GE(crossings, 3);
+  EXPECT_NEAR((last - first) / (crossings - 1), 0.1, 1e-3 * 0.1);
+  EXPECT_NEAR(most, 2e-3, 0.1e-3);
+  EXPECT_NEAR(least, -2e-3, 0.1e-3);
+}
+
+TEST(RigidForces, SpringsGoToOtherRigidBodies) {
+  Case c = freeBlock<3>();
+  const auto message = [&](const char* to) {
+    c.bodies[1].rigid.springs = {{.name = "spring", .to = to}};
+    try {
+      requireValid(c);
+    } catch (const CaseError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_THAT(message("floor"), testing::HasSubstr("expected the name of a rigid body, found 'floor'"));
+  EXPECT_THAT(message("block"), testing::HasSubstr("expected another body, found that of the spring"));
 }
 
 TEST(RigidForces, OfASpringOffTheCentreTurnThem) {

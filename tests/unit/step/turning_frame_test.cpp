@@ -2,6 +2,8 @@
 #include "support/isph_cases.hpp"
 #include "support/loaded_walls.hpp"
 #include "support/state_of.hpp"
+#include "treacle/model/case/case_error.hpp"
+#include "treacle/model/case/checks.hpp"
 #include "treacle/step/run/simulation.hpp"
 
 #include <gtest/gtest.h>
@@ -102,6 +104,20 @@ TEST(TurningFrame, EnergyIsBalanced) {
   const Diagnostics before = simulation.diagnostics();
   const StepEnergy energy(before, simulation.advance());
   EXPECT_NEAR(energy.gained + energy.lost, energy.given, 1e-4 * energy.scale());
+}
+
+TEST(TurningFrame, SaysWhatItCannotTurn) {
+  Case c = dropCase(3, {}, false);
+  c.frame = Rotation{.center = {}, .axis = {0, 0, 2}, .speed = 20};
+  requireValid(c);
+  c.domain.periodic = {false, false, true};
+  requireValid(c);
+  c.domain.periodic = {true, false, false};
+  EXPECT_THROW(requireValid(c), CaseError);
+  c.domain.periodic = {};
+  c.bodies.push_back(c.bodies[0]);
+  c.bodies[1].name = "ball", c.bodies[1].kind = BodyKind::Rigid;
+  EXPECT_THROW(requireValid(c), CaseError);
 }
 
 TEST(TurningFrame, ContinuesWithTheSameBits) {

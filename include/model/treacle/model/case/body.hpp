@@ -74,10 +74,11 @@ struct Rotation {
 
 inline constexpr int maxSprings = 64;  // of a body
 
-/// A spring from a place at rest to a rigid body.
+/// A spring to a rigid body from a place at rest or from another one.
 struct Spring {
   std::string name;
-  Vec<3> anchor{};       // the place at rest [m]
+  std::string to{};      // the other body; empty: a place at rest
+  Vec<3> anchor{};       // the place; on a body as the way from its centre of mass, at the start [m]
   Vec<3> arm{};          // from the body's centre of mass to where the spring holds it, at the start [m]
   double length = 0;     // without a load [m]
   double stiffness = 0;  // [N/m; N/m2 in 2D]

@@ -173,8 +173,14 @@ void visit(auto& v, Like<Outflow> auto& o, const Case&) {
 void visit(auto& v, Like<Spring> auto& s, const Case& c) {
   const bool plane = c.dimensions == 2;
   v({"name", "Name of the spring, unique among those of the body", required}, s.name);
-  v({"anchor", "Its end at rest", required, "m"}, s.anchor);
-  v({"arm", "From the body's centre of mass to its other end, as the body stands at the start", optional, "m"},
+  v({"to", "Name of the rigid body that its other end is on; empty: it is at rest"}, s.to);
+  v({"anchor",
+     "Where its other end is at rest, or on the body that `to` names, the way from that body's centre of mass as "
+     "it "
+     "stands at the start",
+     required, "m"},
+    s.anchor);
+  v({"arm", "From this body's centre of mass to its end there, as the body stands at the start", optional, "m"},
     s.arm);
   v({"length", "Its length without a load", optional, "m", notNegative}, s.length);
   v({"stiffness", "Force over the change of its length", optional, plane ? "N/m2" : "N/m", notNegative},
@@ -219,7 +225,8 @@ void visit(auto& v, Like<RigidSettings> auto& r, const Case& c) {
   v({"angular_damping", "Torque over its angular velocity, against it", optional, plane ? "kg m/s" : "kg m2/s",
      notNegative},
     r.angularDamping);
-  v({"springs", "Springs from places at rest to the body", optional, "", {0, maxSprings}}, r.springs);
+  v({"springs", "Springs to the body from places at rest or from other bodies", optional, "", {0, maxSprings}},
+    r.springs);
 }
 
 void visit(auto& v, Like<Body> auto& b, const Case& c) {
