@@ -6,7 +6,8 @@ benchmarks/experiments/compare.py table [--record FILE]
 Holds treacle against laboratory experiments: docs/experiments.md. A folder beside this file has the cases of an experiment, case.toml or
 case-CASE.toml; measured.csv, a number to compare in each line, with the error of the experiment and the largest deviation that is asked
 for, all in one unit; and curves, curve.csv or curve-CASE.csv. `run` runs the cases into DIR/NAME; `draw` measures all runs there, draws
-them beside the measured curve, and puts the numbers into the record; `table` prints the record as Markdown. `run --set KEY=VALUE` changes a key.
+them beside the measured curve, and puts the numbers into the record; `table`
+prints the record as Markdown. `run --set KEY=VALUE` changes a key.
 Needs Python 3.11, NumPy, and Matplotlib to draw."""
 
 import argparse
@@ -89,9 +90,11 @@ def rims(run):
 
 
 def lcpc_box(run):
+    """The depth is that of the volume from 20 to 60 mm from the end wall, away from the layer on the walls."""
     t, spread = probe(run, "spread", "height")
-    depth = probe(run, "depth", "height")[1]
-    return {"spread [mm]": 1e3 * at_rest(t, spread), "depth at the end wall [mm]": 1e3 * depth[-1]}, (t, 1e3 * spread)
+    x, y = run.frame().position[:, :2].T
+    depth = np.count_nonzero((x > 0.02) & (x < 0.06) & (abs(y) < 0.05)) * spacing(run) ** 3 / (0.04 * 0.1)
+    return {"spread [mm]": 1e3 * at_rest(t, spread), "depth at 40 mm [mm]": 1e3 * depth}, (t, 1e3 * spread)
 
 
 def mini_cone(run):
@@ -142,14 +145,14 @@ def xanthan_current(run):
 
 
 def extrudate_swell(run):
-    """From the area of the jet, three to six radii below the end of the tube."""
+    """At the end of the run, from the area of the jet three to six radii below the end of the tube."""
     step, found = spacing(run), []
     for frame in run.frames():
         z = frame.position[:, 2]
         part = np.count_nonzero((z < -0.012) & (z > -0.024)) * step**3 / 0.012
         found.append((frame.time, np.sqrt(part / np.pi) / 0.004))
     t, swell = np.transpose(found)
-    return {"swell": swell[t > 0.7 * t[-1]].mean()}, (t, swell)
+    return {"swell": swell[-1]}, (t, swell)
 
 
 def martin_moyce(run):
@@ -211,8 +214,10 @@ def whole_case(path):
         return case
     base = whole_case(path.parent / case["base"])
     for kind in ("material", "body"):
+        entries = {e["name"]: e for e in base[kind]}
         for entry in case.get(kind, []):
-            next(e for e in base[kind] if e["name"] == entry["name"]).update(entry)
+            entries[entry["name"]] = entries.get(entry["name"], {}) | entry
+        base[kind] = list(entries.values())
     return base
 
 
