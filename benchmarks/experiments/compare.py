@@ -35,6 +35,7 @@ class Experiment:
     that need to be computed, a function of the written case and the resolution."""
 
     title: str
+    source: str
     x_label: str
     y_label: str
     measure: Callable
@@ -189,16 +190,16 @@ def spheric_10(run):
 
 
 experiments = {
-    "lcpc-box": Experiment("LCPC box", "t [s]", "front [mm]", lcpc_box),
-    "mini-cone": Experiment("Mini cone", "t [s]", "radius [mm]", mini_cone),
-    "abrams-cone": Experiment("Abrams' cone", "t [s]", "slump [mm]", abrams_cone),
-    "settling-sphere": Experiment("Sphere that settles in a box", "t [s]", "speed [mm/s]", settling_sphere, sphere_mass),
-    "sphere-in-tube": Experiment("Ball in a tube", "t [s]", "speed [mm/s]", sphere_in_tube, sphere_mass),
-    "xanthan-current": Experiment("Current of xanthan gum", "t [s]", "radius [mm]", xanthan_current),
-    "extrudate-swell": Experiment("Swell of a Newtonian extrudate", "t [s]", "jet over tube", extrudate_swell),
-    "martin-moyce": Experiment("Dam break of Martin and Moyce", "T", "front over width", martin_moyce),
-    "kleefsman": Experiment("SPHERIC test 2", "t [s]", "H4 [mm]", kleefsman),
-    "spheric-10": Experiment("SPHERIC test 10", "t [s]", "pressure on the sensor [Pa]", spheric_10),
+    "lcpc-box": Experiment("LCPC box", "Roussel 2007", "t [s]", "front [mm]", lcpc_box),
+    "mini-cone": Experiment("Mini cone", "Roussel & Coussot 2005", "t [s]", "radius [mm]", mini_cone),
+    "abrams-cone": Experiment("Abrams' cone", "Ferraris & de Larrard 1998", "t [s]", "slump [mm]", abrams_cone),
+    "settling-sphere": Experiment("Sphere in a box", "ten Cate et al. 2002", "t [s]", "speed [mm/s]", settling_sphere, sphere_mass),
+    "sphere-in-tube": Experiment("Ball in a tube", "Haberman & Sayre 1958", "t [s]", "speed [mm/s]", sphere_in_tube, sphere_mass),
+    "xanthan-current": Experiment("Current of xanthan gum", "Sayag & Worster 2013", "t [s]", "radius [mm]", xanthan_current),
+    "extrudate-swell": Experiment("Swell of a Newtonian extrudate", "Middleman & Gavis 1961", "t [s]", "jet over tube", extrudate_swell),
+    "martin-moyce": Experiment("Dam break of Martin and Moyce", "Martin & Moyce 1952", "T", "front over width", martin_moyce),
+    "kleefsman": Experiment("SPHERIC test 2", "Kleefsman et al. 2005", "t [s]", "H4 [mm]", kleefsman),
+    "spheric-10": Experiment("SPHERIC test 10", "Botia-Vera et al. 2010", "t [s]", "pressure on the sensor [Pa]", spheric_10),
 }
 
 
@@ -297,7 +298,7 @@ def table(options):
     lines: dict = {}
     for e in json.loads(options.record.read_text()):
         lines.setdefault((e["experiment"], e["case"], e["quantity"]), []).append(e)
-    print("| experiment | compared | measured | its error | treacle | asked |\n|---|---|---|---|---|---|")
+    print("| experiment | source | compared | measured | its error | treacle | asked |\n|---|---|---|---|---|---|---|")
     for (name, case, quantity), found in lines.items():
         one = found[0]
 
@@ -307,8 +308,8 @@ def table(options):
         cells = [f"r{e['resolution']:g} {e['treacle']:.4g} ({percent(e['deviation'])})" for e in found]
         cells = [cell if e["met"] else f"**{cell}**" for cell, e in zip(cells, found, strict=True)]
         error = percent(one["error"] / one["measured"], "") if one["error"] else "not known"
-        print(f"| [{name}{' ' + case if case else ''}](#{name}) | {quantity} | {one['measured']:g} | {error} | {', '.join(cells)} "
-              f"| {percent(one['asked'] / one['measured'], '')} |")
+        print(f"| [{name}{' ' + case if case else ''}](#{name})", experiments[name].source, quantity, f"{one['measured']:g}", error,
+              ", ".join(cells), percent(one["asked"] / one["measured"], "") + " |", sep=" | ")
 
 
 def main():
