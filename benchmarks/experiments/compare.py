@@ -265,7 +265,7 @@ def draw(options):
                 for row in measured:
                     if row["case"] == label and row["quantity"] in values:
                         entry = entry_of(name, row, resolution, found.summary, values[row["quantity"]])
-                        same = ("experiment", "case", "quantity", "resolution", "backend")
+                        same = ("experiment", "case", "quantity", "resolution")
                         record = [other for other in record if any(other[key] != entry[key] for key in same)] + [entry]
             for label in labels:
                 points = curve_of(here / name / (f"curve-{label}.csv" if label else "curve.csv"))
