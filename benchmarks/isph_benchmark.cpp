@@ -30,7 +30,7 @@ void compare(const IsphOptions& options, const std::string& name, const Case& c,
              double timeStep, SolveRecord& record) {
   IsphPressureSystem<D> system(c, state, timeStep);
   IsphComparison<D> comparison(options, name, system, record);
-  for (const LibraryVariant& v : libraryVariants) comparison.runLibrary(v);
+  for (const IsphLibraryVariant& v : libraryVariants) comparison.runLibrary(v);
   for (const std::string& s : options.solvers.empty() ? defaultSolvers : options.solvers) comparison.runTreacle(s);
 }
 

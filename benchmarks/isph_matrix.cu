@@ -41,11 +41,12 @@ __global__ void fillKernel(const __grid_constant__ IsphPairs<D> pairs, double ra
   const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
   if (i >= pairs.fluidCount) return;
   std::int32_t place = start[i], own = place;
-  double diagonal = 0;
   const bool unknown = row.isUnknown(i);
+  double diagonal = unknown ? row.own(pairs, i) : 0;
   if (unknown)
-    forEachFluid(pairs, radius, i, [&](std::uint32_t j, double r) {
-      const double c = i == j ? 0 : row.coefficient(pairs, i, j, r);
+    forEachFluid(pairs, radius, i, [&](std::uint32_t j, double) {
+      const Vec<D> d = pairs.grid.difference(pairs.position[i], pairs.position[j]);
+      const double c = i == j ? 0 : row.coefficient(pairs, i, j, d, Distance(d));
       diagonal += c;
       if (!row.isUnknown(j)) return;
       if (i == j) own = place;

@@ -48,7 +48,7 @@ class IsphComparison {
     });
   }
 
-  void runLibrary(const LibraryVariant& variant) {
+  void runLibrary(const IsphLibraryVariant& variant) {
     attempt(variant.name, [&](SolveResult& result) { solveByLibrary(variant, result); });
   }
 
@@ -121,7 +121,7 @@ class IsphComparison {
     return more == few ? (ofWhole - ofHalf) / more : 0;
   }
 
-  void solveByLibrary(const LibraryVariant& variant, SolveResult& result) {
+  void solveByLibrary(const IsphLibraryVariant& variant, SolveResult& result) {
     if (!hasMatrix_) throw RunError("there is no matrix");
     BucketLevels<Cuda> levels;
     LibraryMgcg solver(context_, variant.algorithm);
@@ -147,7 +147,7 @@ class IsphComparison {
     result.how = solver.libraries() + ", " + solver.loop();
   }
 
-  void setup(const LibraryVariant& variant, BucketLevels<Cuda>& levels, LibraryMgcg& solver) {
+  void setup(const IsphLibraryVariant& variant, BucketLevels<Cuda>& levels, LibraryMgcg& solver) {
     if (!variant.preconditioned) return solver.setup(matrix_, inverse_, {}, 0);
     findBuckets(context_, system_.ranges().key, D * CellGrid<D>::subBits, D, levels);
     std::span<const Buffer<std::uint32_t, Cuda>> members = levels.begin;

@@ -12,13 +12,13 @@
 namespace treacle {
 
 /// MGCG(m, n) by the libraries, or plain CG.
-struct LibraryVariant {
+struct IsphLibraryVariant {
   const char* name;
   bool preconditioned;
   int levels, sweeps;  // m (0: all) and n
   cusparseSpMVAlg_t algorithm;
 };
-inline constexpr LibraryVariant libraryVariants[] = {
+inline constexpr IsphLibraryVariant libraryVariants[] = {
     {"libraries: cg", false, 0, 0, CUSPARSE_SPMV_CSR_ALG1},
     {"libraries: cg, SpMV ALG2", false, 0, 0, CUSPARSE_SPMV_CSR_ALG2},
     {"libraries: MGCG(1,4)", true, 1, 4, CUSPARSE_SPMV_CSR_ALG1},

@@ -6,8 +6,8 @@
 // breaks (with --steps: a later one). Names are SYSTEM/METHOD. Figures of one run belong together: compare them as
 // ratios. Exit code: 0, 1 when a method failed, 2 bad input.
 
-#include "linear_system.hpp"
 #include "solve_methods.hpp"
+#include "studied_system.hpp"
 #include "study_state.hpp"
 #include "treacle/core/device.hpp"
 #include "treacle/core/version.hpp"
@@ -36,7 +36,7 @@ bool wantsSystem(const SolveOptions& options, const std::string& name) {
 }
 
 template <int D>
-void compare(const SolveOptions& options, const std::string& name, LinearSystem<D, Cuda>& system,
+void compare(const SolveOptions& options, const std::string& name, StudiedSystem<D, Cuda>& system,
              SolveRecord& record) {
   SolveComparison<D> comparison(options, name, system, record);
   for (const LibraryVariant& v : libraryVariants) comparison.runLibrary(v);
@@ -46,7 +46,7 @@ void compare(const SolveOptions& options, const std::string& name, LinearSystem<
 /// The right-hand side must be the study's: else this is not its system. Its elastic part is a difference of
 /// nearly equal densities times kappa, which leaves 1e-10 of the rounding.
 template <int D>
-void checkRightHandSide(LinearSystem<D, Cuda>& system, const StudyState& s) {
+void checkRightHandSide(StudiedSystem<D, Cuda>& system, const StudyState& s) {
   Buffer<Vec<D>> b;
   Buffer<std::uint32_t> id;
   copyToHost(system.context, system.rightHandSide(), b);
@@ -68,7 +68,7 @@ void runState(const SolveOptions& options, const std::string& name, const StudyS
   const Case c = paperCase(options, D, 1e-3 / s.spacing);
   if (std::abs(c.time.step - s.timeStep) > 1e-9 * s.timeStep)
     throw InputError(fmt::format("time step {} s, that of the case is {} s", s.timeStep, c.time.step));
-  LinearSystem<D, Cuda> system(c, particlesOf<D>(s));
+  StudiedSystem<D, Cuda> system(c, particlesOf<D>(s));
   checkRightHandSide(system, s);
   compare(options, name, system, record);
 }
@@ -96,7 +96,7 @@ void runCheckpoint(const SolveOptions& options, Case c, SolveRecord& record) {
   const Particles<D>& p = state.particles;
   for (std::uint32_t i = p.fluidCount; i < p.count; ++i)
     if (norm2(p.velocity[i]) > 0) throw InputError(options.checkpoint + ": walls that move are not compared");
-  LinearSystem<D, Cuda> system(c, std::move(state.particles));
+  StudiedSystem<D, Cuda> system(c, std::move(state.particles));
   compare(options, name, system, record);
 }
 
@@ -114,7 +114,7 @@ void runDamBreak(const SolveOptions& options, double resolution, SolveRecord& re
       particles = {};
       simulation.copyParticles(particles);
     }
-    LinearSystem<D, Cuda> system(c, std::move(particles));
+    StudiedSystem<D, Cuda> system(c, std::move(particles));
     compare(options, name, system, record);
   });
 }

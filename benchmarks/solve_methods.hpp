@@ -1,9 +1,9 @@
 #pragma once
 
 #include "library_solver.hpp"
-#include "linear_system.hpp"
 #include "method/mph_solver.hpp"
 #include "solve_record.hpp"
+#include "studied_system.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/mph/mph_operator.hpp"
 
@@ -52,7 +52,7 @@ inline constexpr LibraryVariant libraryVariants[] = {
 template <int D>
 class SolveComparison {
  public:
-  SolveComparison(const SolveOptions& options, std::string name, LinearSystem<D, Cuda>& system,
+  SolveComparison(const SolveOptions& options, std::string name, StudiedSystem<D, Cuda>& system,
                   SolveRecord& record)
       : options_(options), name_(std::move(name)), system_(system), record_(record), context_(system.context) {
     u_.resize(context_, system.fluidCount());
@@ -168,7 +168,7 @@ class SolveComparison {
 
   const SolveOptions& options_;
   std::string name_;
-  LinearSystem<D, Cuda>& system_;
+  StudiedSystem<D, Cuda>& system_;
   SolveRecord& record_;
   Context<Cuda>& context_;
   PhaseClock<Cuda> clock_;

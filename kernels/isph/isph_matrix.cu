@@ -1,8 +1,7 @@
-#include "treacle/isph/isph_matrix.hpp"
-
 #include "core/launch.hpp"
 #include "core/scan.hpp"
 #include "isph/packed_sums.cuh"
+#include "treacle/isph/each_row.hpp"
 
 namespace treacle {
 namespace {
@@ -77,6 +76,8 @@ __global__ void __launch_bounds__(256) nearSumsKernel(PlainEntries<T> e, const T
   if (row < e.a.rows && threadIdx.x % nearLanes == 0) store(row, static_cast<T>(e.a.unit) * sum);
 }
 
+}  // namespace
+
 template <class T, class Store>
 void nearSums(const Context<Cuda>& context, const IsphMatrix<T>& a, const T* x, Store store) {
   if constexpr (std::is_same_v<T, float>)
@@ -87,75 +88,37 @@ void nearSums(const Context<Cuda>& context, const IsphMatrix<T>& a, const T* x, 
 
 /// `Staged`: what x is brought together as.
 template <class Staged, class T, class Store>
-void allSums(const Context<Cuda>& context, const IsphMatrix<T>& a, const double* x, Store store) {
+void forEachSum(const Context<Cuda>& context, const IsphMatrix<T>& a, const double* x, Store store) {
   if constexpr (std::is_same_v<T, float>)
     if (a.packed.word) return packedSums<packedAllLanes, false, Staged>(context, a, x, store);
   launch(context, blocksFor(std::size_t{a.rows} * allLanes, 256), 256, 0, allSumsKernel<T, Store>,
          PlainEntries<T>(a), x, store);
 }
 
-}  // namespace
-
-namespace {
-
-struct StoreProduct {
-  const double *diagonal, *x;
-  double* y;
-  __device__ void operator()(std::uint32_t i, double sum) const { y[i] = diagonal[i] * x[i] - sum; }
-};
-
-}  // namespace
-
-template <class T>
-void multiply(Context<Cuda>& context, const IsphMatrix<T>& a, std::span<const double> x, std::span<double> y) {
-  allSums<double>(context, a, x.data(), StoreProduct{a.diagonal, x.data(), y.data()});
-}
-
-template <class T>
-void multiplySingle(Context<Cuda>& context, const IsphMatrix<T>& a, std::span<const double> x,
-                    std::span<double> y) {
-  allSums<float>(context, a, x.data(), StoreProduct{a.diagonal, x.data(), y.data()});
-}
-
-template <class T>
-void firstSweep(Context<Cuda>& context, const IsphMatrix<T>& a, std::span<const double> r, std::span<T> x) {
-  forEach(context, a.rows, [inverse = a.inverseNear, r = r.data(), x = x.data()] __device__(std::size_t i) {
-    x[i] = inverse[i] * static_cast<T>(r[i]);
+template <class T, class Backend>
+void nearResidual(Context<Backend>& context, const IsphMatrix<T>& a, std::span<const double> r,
+                  std::span<const T> x, std::span<T> res) {
+  const T* const inverse = a.inverseNear;
+  nearSums(context, a, x.data(), [=] __device__(std::uint32_t i, T sum) {
+    const T d = inverse[i];
+    res[i] = d > 0 ? static_cast<T>(r[i]) - x[i] / d + sum : T(0);
   });
 }
 
-template <class T>
-void nearResidual(Context<Cuda>& context, const IsphMatrix<T>& a, std::span<const double> r, std::span<const T> x,
-                  std::span<T> res) {
-  nearSums(
-      context, a, x.data(),
-      [inverse = a.inverseNear, r = r.data(), x = x.data(), res = res.data()] __device__(std::uint32_t i, T sum) {
-        const T d = inverse[i];
-        res[i] = d > 0 ? static_cast<T>(r[i]) - x[i] / d + sum : T(0);
-      });
-}
-
-template <class T>
-void lastSweep(Context<Cuda>& context, const IsphMatrix<T>& a, std::span<const double> r, std::span<const T> x,
+template <class T, class Backend>
+void lastSweep(Context<Backend>& context, const IsphMatrix<T>& a, std::span<const double> r, std::span<const T> x,
                std::span<double> z) {
-  nearSums(context, a, x.data(),
-           [inverse = a.inverseNear, r = r.data(), x = x.data(), z = z.data()] __device__(std::uint32_t i, T sum) {
-             const T d = inverse[i];
-             z[i] = d > 0 ? x[i] + d * (static_cast<T>(r[i]) - x[i] / d + sum) : T(0);
-           });
-}
-
-template <class T>
-void jacobi(Context<Cuda>& context, const IsphMatrix<T>& a, std::span<const double> r, std::span<double> z) {
-  forEach(context, a.rows, [diagonal = a.diagonal, r = r.data(), z = z.data()] __device__(std::size_t i) {
-    z[i] = diagonal[i] > 0 ? r[i] / diagonal[i] : 0;
+  const T* const inverse = a.inverseNear;
+  nearSums(context, a, x.data(), [=] __device__(std::uint32_t i, T sum) {
+    const T d = inverse[i];
+    z[i] = d > 0 ? x[i] + d * (static_cast<T>(r[i]) - x[i] / d + sum) : T(0);
   });
 }
 
 /// Twice one thread per row: it counts its entries, then writes them.
-template <class T>
-void compressed(Context<Cuda>& context, const IsphMatrix<T>& a, std::uint32_t rows,
-                BlockCsr<1, double, Cuda>& result) {
+template <class T, class Backend>
+void compressed(Context<Backend>& context, const IsphMatrix<T>& a, std::uint32_t rows,
+                BlockCsr<1, double, Backend>& result) {
   const auto forEachEntry = [a] __device__(std::size_t i, auto&& f) {
     if (i >= a.rows || !(a.diagonal[i] > 0)) return;
     f(static_cast<std::uint32_t>(i), a.diagonal[i]);
@@ -183,19 +146,7 @@ void compressed(Context<Cuda>& context, const IsphMatrix<T>& a, std::uint32_t ro
           });
 }
 
-#define TREACLE_INSTANTIATE(T)                                                                                  \
-  template void multiply<T>(Context<Cuda>&, const IsphMatrix<T>&, std::span<const double>, std::span<double>);  \
-  template void multiplySingle<T>(Context<Cuda>&, const IsphMatrix<T>&, std::span<const double>,                \
-                                  std::span<double>);                                                           \
-  template void firstSweep<T>(Context<Cuda>&, const IsphMatrix<T>&, std::span<const double>, std::span<T>);     \
-  template void nearResidual<T>(Context<Cuda>&, const IsphMatrix<T>&, std::span<const double>,                  \
-                                std::span<const T>, std::span<T>);                                              \
-  template void lastSweep<T>(Context<Cuda>&, const IsphMatrix<T>&, std::span<const double>, std::span<const T>, \
-                             std::span<double>);                                                                \
-  template void jacobi<T>(Context<Cuda>&, const IsphMatrix<T>&, std::span<const double>, std::span<double>);    \
-  template void compressed<T>(Context<Cuda>&, const IsphMatrix<T>&, std::uint32_t, BlockCsr<1, double, Cuda>&);
-TREACLE_INSTANTIATE(double)
-TREACLE_INSTANTIATE(float)
-#undef TREACLE_INSTANTIATE
+TREACLE_EACH_ROW(double, Cuda)
+TREACLE_EACH_ROW(float, Cuda)
 
 }  // namespace treacle

@@ -131,14 +131,14 @@ __global__ void __launch_bounds__(128)
 
 }  // namespace
 
-template <int D, class Term>
-void sumOnFluid(Context<Cuda>& context, const IsphPairs<D>& pairs, const Term& term) {
+template <int D, class Term, class Backend>
+void sumOnFluid(Context<Backend>& context, const IsphPairs<D>& pairs, const Term& term) {
   launch(context, blocksFor(std::size_t{pairs.ownFluid()} * rowLanes, 128), 128, 0, fluidSumsKernel<D, Term>,
          pairs, term);
 }
 
-template <int D, class Term>
-void sumOnWalls(Context<Cuda>& context, const IsphPairs<D>& pairs, const Term& term) {
+template <int D, class Term, class Backend>
+void sumOnWalls(Context<Backend>& context, const IsphPairs<D>& pairs, const Term& term) {
   launch(context, blocksFor(std::size_t{pairs.fluidOfWalls.count} * rowLanes, 128), 128, 0,
          wallSumsKernel<D, Term>, pairs, term);
 }
@@ -156,8 +156,8 @@ void preparePacked(Context<Cuda>& context, const IsphPairs<D>& pairs, PackedEntr
   packed.word.resize(context, std::size_t{4} * startRows(context, packed.four));
 }
 
-template <int D, class T, class Row>
-void fillIsphMatrix(Context<Cuda>& context, const IsphPairs<D>& pairs, const Row& row,
+template <int D, class T, class Row, class Backend>
+void fillIsphMatrix(Context<Backend>& context, const IsphPairs<D>& pairs, const Row& row,
                     const IsphMatrixParts<D, T>& parts) {
   const unsigned blocks = blocksFor(std::size_t{pairs.ownFluid()} * rowLanes, 128);
   if constexpr (std::is_same_v<T, float>)
@@ -166,27 +166,9 @@ void fillIsphMatrix(Context<Cuda>& context, const IsphPairs<D>& pairs, const Row
   launch(context, blocks, 128, 0, isphMatrixKernel<false, D, T, Row>, pairs, row, parts);
 }
 
-#define TREACLE_INSTANTIATE(D)                                                                 \
-  template void sumOnFluid(Context<Cuda>&, const IsphPairs<D>&, const DensityTerm<D>&);        \
-  template void sumOnFluid(Context<Cuda>&, const IsphPairs<D>&, const PredictorTerm<D>&);      \
-  template void sumOnFluid(Context<Cuda>&, const IsphPairs<D>&,                                \
-                           const BothTerms<DensityTerm<D>, PredictorTerm<D>>&);                \
-  template void sumOnFluid(Context<Cuda>&, const IsphPairs<D>&, const ViscousSourceTerm<D>&);  \
-  template void sumOnFluid(Context<Cuda>&, const IsphPairs<D>&, const PressureSourceTerm<D>&); \
-  template void sumOnFluid(Context<Cuda>&, const IsphPairs<D>&, const CorrectorTerm<D>&);      \
-  template void sumOnWalls(Context<Cuda>&, const IsphPairs<D>&, const WallPressureTerm<D>&);   \
-  template void sumOnWalls(Context<Cuda>&, const IsphPairs<D>&, const WallForceTerm<D>&);      \
-  template void preparePacked(Context<Cuda>&, const IsphPairs<D>&, PackedEntries<Cuda>&);      \
-  template void fillIsphMatrix(Context<Cuda>&, const IsphPairs<D>&, const PressureRow<D>&,     \
-                               const IsphMatrixParts<D, double>&);                             \
-  template void fillIsphMatrix(Context<Cuda>&, const IsphPairs<D>&, const PressureRow<D>&,     \
-                               const IsphMatrixParts<D, float>&);                              \
-  template void fillIsphMatrix(Context<Cuda>&, const IsphPairs<D>&, const ViscousRow<D>&,      \
-                               const IsphMatrixParts<D, double>&);                             \
-  template void fillIsphMatrix(Context<Cuda>&, const IsphPairs<D>&, const ViscousRow<D>&,      \
-                               const IsphMatrixParts<D, float>&);
-TREACLE_INSTANTIATE(2)
-TREACLE_INSTANTIATE(3)
-#undef TREACLE_INSTANTIATE
+TREACLE_ISPH_SUMS(2, Cuda)
+TREACLE_ISPH_SUMS(3, Cuda)
+template void preparePacked(Context<Cuda>&, const IsphPairs<2>&, PackedEntries<Cuda>&);
+template void preparePacked(Context<Cuda>&, const IsphPairs<3>&, PackedEntries<Cuda>&);
 
 }  // namespace treacle

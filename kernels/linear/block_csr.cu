@@ -24,33 +24,20 @@ struct StoreInverse {
 
 }  // namespace
 
-template <int D, class T>
-void multiply(Context<Cuda>& context, const BlockCsr<D, T, Cuda>& a, std::span<const Vec<D, T>> x,
+template <int D, class T, class Backend>
+void multiply(Context<Backend>& context, const BlockCsr<D, T, Backend>& a, std::span<const Vec<D, T>> x,
               std::span<Vec<D, T>> y) {
   rowSums<Reading::Streamed>(context, viewOf(a), ProductWith<D, T>{x.data()}, StoreSum<D, T>{y.data()});
 }
 
-template <int D, class T, class S>
-void extendedJacobiInverse(Context<Cuda>& context, const BlockCsr<D, T, Cuda>& a, std::span<Vec<D, S>> inverse) {
+template <int D, class T, class S, class Backend>
+void extendedJacobiInverse(Context<Backend>& context, const BlockCsr<D, T, Backend>& a,
+                           std::span<Vec<D, S>> inverse) {
   rowSums<Reading::Streamed>(context, viewOf(a), Magnitude<T>{}, StoreInverse<D, T, S>{inverse.data()});
 }
 
-#define TREACLE_INSTANTIATE(D, T)                                                                       \
-  template void multiply<D, T>(Context<Cuda>&, const BlockCsr<D, T, Cuda>&, std::span<const Vec<D, T>>, \
-                               std::span<Vec<D, T>>);                                                   \
-  template void extendedJacobiInverse<D, T, T>(Context<Cuda>&, const BlockCsr<D, T, Cuda>&, std::span<Vec<D, T>>);
-TREACLE_INSTANTIATE(1, double)
-TREACLE_INSTANTIATE(2, double)
-TREACLE_INSTANTIATE(3, double)
-TREACLE_INSTANTIATE(1, float)
-TREACLE_INSTANTIATE(2, float)
-TREACLE_INSTANTIATE(3, float)
-#undef TREACLE_INSTANTIATE
-template void extendedJacobiInverse<1, double, float>(Context<Cuda>&, const BlockCsr<1, double, Cuda>&,
-                                                      std::span<Vec<1, float>>);
-template void extendedJacobiInverse<2, double, float>(Context<Cuda>&, const BlockCsr<2, double, Cuda>&,
-                                                      std::span<Vec<2, float>>);
-template void extendedJacobiInverse<3, double, float>(Context<Cuda>&, const BlockCsr<3, double, Cuda>&,
-                                                      std::span<Vec<3, float>>);
+TREACLE_BLOCK_CSR(1, Cuda)
+TREACLE_BLOCK_CSR(2, Cuda)
+TREACLE_BLOCK_CSR(3, Cuda)
 
 }  // namespace treacle

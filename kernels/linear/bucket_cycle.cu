@@ -93,36 +93,15 @@ __global__ void __launch_bounds__(256)
 
 }  // namespace
 
-void findParents(Context<Cuda>& context, std::span<const std::uint32_t> members, std::span<std::uint32_t> parent) {
-  forEach(context, members.size() - 1, [begin = members.data(), to = parent.data()] __device__(std::size_t row) {
-    for (std::uint32_t i = begin[row]; i < begin[row + 1]; ++i) to[i] = static_cast<std::uint32_t>(row);
-  });
-}
-
-/// One thread per number.
-template <int D, class T>
-void convert(Context<Cuda>& context, const BlockCsr<D, double, Cuda>& from, BlockCsr<D, T, Cuda>& to) {
-  to.rowStart.resize(context, from.rowStart.size());
-  to.column.resize(context, from.column.size());
-  to.value.resize(context, from.value.size());
-  copyBytesOnDevice(context, from.rowStart.data(), to.rowStart.data(),
-                    from.rowStart.size() * sizeof(std::uint64_t));
-  copyBytesOnDevice(context, from.column.data(), to.column.data(), from.column.size() * sizeof(std::uint32_t));
-  const double* source = reinterpret_cast<const double*>(from.value.data());
-  T* target = reinterpret_cast<T*>(to.value.data());
-  forEach(context, from.value.size() * D * D,
-          [=] __device__(std::size_t k) { target[k] = static_cast<T>(source[k]); });
-}
-
-template <int D, class T>
-void bucketRestrict(Context<Cuda>& context, const BucketLevel<D, T>& level, std::span<const Vec<D, T>> inverse,
+template <int D, class T, class Backend>
+void bucketRestrict(Context<Backend>& context, const BucketLevel<D, T>& level, std::span<const Vec<D, T>> inverse,
                     std::span<const Vec<D>> r, const BucketVectors<D, T>& v) {
   launch(context, blocksFor(level.a.rows, 4), 128, 0, restrictKernel<D, T>, level, inverse.data(), r.data(), v);
 }
 
 /// One thread per number of all columns.
-template <int D, class T>
-void bucketUnits(Context<Cuda>& context, const BucketLevel<D, T>& level, std::uint32_t first,
+template <int D, class T, class Backend>
+void bucketUnits(Context<Backend>& context, const BucketLevel<D, T>& level, std::uint32_t first,
                  const BucketVectors<D, T>& v) {
   const std::size_t n = std::size_t{D} * level.a.rows;
   forEach(context, n * v.columns,
@@ -134,8 +113,8 @@ void bucketUnits(Context<Cuda>& context, const BucketLevel<D, T>& level, std::ui
           });
 }
 
-template <int D, class T>
-void bucketSweep(Context<Cuda>& context, const BucketLevel<D, T>& level, const BucketVectors<D, T>& v,
+template <int D, class T, class Backend>
+void bucketSweep(Context<Backend>& context, const BucketLevel<D, T>& level, const BucketVectors<D, T>& v,
                  const BucketCorrection<D, T>* correction) {
   const auto sweep = [&](const auto& x) {
     using Store = StoreSweep<D, T, std::decay_t<decltype(x)>::corrected>;
@@ -148,26 +127,16 @@ void bucketSweep(Context<Cuda>& context, const BucketLevel<D, T>& level, const B
     sweep(Iterate<D, T, false>{v.x, level.a.rows, nullptr, nullptr, 0});
 }
 
-template <int D, class T>
-void bucketRestrictResidual(Context<Cuda>& context, const BucketLevel<D, T>& level, const BucketVectors<D, T>& v,
-                            const BucketLevel<D, T>& coarse, const BucketVectors<D, T>& coarseV) {
+template <int D, class T, class Backend>
+void bucketRestrictResidual(Context<Backend>& context, const BucketLevel<D, T>& level,
+                            const BucketVectors<D, T>& v, const BucketLevel<D, T>& coarse,
+                            const BucketVectors<D, T>& coarseV) {
   launch(context, dim3(coarse.a.rows, v.columns), 256, 0, restrictResidualKernel<D, T>, level, v, coarse, coarseV);
 }
 
-/// One thread per unknown.
-template <int D, class T>
-void bucketProlong(Context<Cuda>& context, const BucketLevel<D, T>& level, const Vec<D, T>* x,
-                   std::span<const Vec<D, T>> inverse, std::span<const Vec<D>> r, std::span<Vec<D>> z) {
-  forEach(context, r.size() * D,
-          [inverse = reinterpret_cast<const T*>(inverse.data()), r = reinterpret_cast<const double*>(r.data()),
-           bucketOf = level.parent, x, z = reinterpret_cast<double*>(z.data())] __device__(std::size_t k) {
-            z[k] = inverse[k] == 0 ? 0 : inverse[k] * r[k] + x[bucketOf[k / D]][static_cast<int>(k % D)];
-          });
-}
-
 /// One thread per pair of entries.
-template <class T>
-void symmetrise(Context<Cuda>& context, std::uint32_t rows, T* matrix) {
+template <class T, class Backend>
+void symmetrise(Context<Backend>& context, std::uint32_t rows, T* matrix) {
   const std::size_t n = rows;
   forEach(context, n * n, [=] __device__(std::size_t k) {
     const std::size_t i = k / n, j = k % n;
@@ -175,27 +144,13 @@ void symmetrise(Context<Cuda>& context, std::uint32_t rows, T* matrix) {
   });
 }
 
-#define TREACLE_INSTANTIATE(D, T)                                                                          \
-  template void convert<D, T>(Context<Cuda>&, const BlockCsr<D, double, Cuda>&, BlockCsr<D, T, Cuda>&);    \
-  template void bucketRestrict<D, T>(Context<Cuda>&, const BucketLevel<D, T>&, std::span<const Vec<D, T>>, \
-                                     std::span<const Vec<D>>, const BucketVectors<D, T>&);                 \
-  template void bucketUnits<D, T>(Context<Cuda>&, const BucketLevel<D, T>&, std::uint32_t,                 \
-                                  const BucketVectors<D, T>&);                                             \
-  template void bucketSweep<D, T>(Context<Cuda>&, const BucketLevel<D, T>&, const BucketVectors<D, T>&,    \
-                                  const BucketCorrection<D, T>*);                                          \
-  template void bucketRestrictResidual<D, T>(Context<Cuda>&, const BucketLevel<D, T>&,                     \
-                                             const BucketVectors<D, T>&, const BucketLevel<D, T>&,         \
-                                             const BucketVectors<D, T>&);                                  \
-  template void bucketProlong<D, T>(Context<Cuda>&, const BucketLevel<D, T>&, const Vec<D, T>*,            \
-                                    std::span<const Vec<D, T>>, std::span<const Vec<D>>, std::span<Vec<D>>);
-TREACLE_INSTANTIATE(1, double)
-TREACLE_INSTANTIATE(2, double)
-TREACLE_INSTANTIATE(3, double)
-TREACLE_INSTANTIATE(1, float)
-TREACLE_INSTANTIATE(2, float)
-TREACLE_INSTANTIATE(3, float)
+#define TREACLE_INSTANTIATE(T)     \
+  TREACLE_BUCKET_CYCLE(1, T, Cuda) \
+  TREACLE_BUCKET_CYCLE(2, T, Cuda) \
+  TREACLE_BUCKET_CYCLE(3, T, Cuda) \
+  template void symmetrise(Context<Cuda>&, std::uint32_t, T*);
+TREACLE_INSTANTIATE(double)
+TREACLE_INSTANTIATE(float)
 #undef TREACLE_INSTANTIATE
-template void symmetrise<double>(Context<Cuda>&, std::uint32_t, double*);
-template void symmetrise<float>(Context<Cuda>&, std::uint32_t, float*);
 
 }  // namespace treacle

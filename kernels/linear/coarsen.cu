@@ -65,9 +65,9 @@ __global__ void __launch_bounds__(256)
 
 }  // namespace
 
-template <int D, class T>
-void coarsen(Context<Cuda>& context, const BlockCsr<D, T, Cuda>& fine, std::span<const std::uint32_t> members,
-             BlockCsr<D, T, Cuda>& coarse) {
+template <int D, class T, class Backend>
+void coarsen(Context<Backend>& context, const BlockCsr<D, T, Backend>& fine,
+             std::span<const std::uint32_t> members, BlockCsr<D, T, Backend>& coarse) {
   const auto rows = static_cast<std::uint32_t>(members.size() - 1);
   Buffer<std::uint32_t, Cuda> parent(context, fine.rows());
   findParents(context, members, parent);
@@ -90,9 +90,9 @@ void coarsen(Context<Cuda>& context, const BlockCsr<D, T, Cuda>& fine, std::span
          coarse.rowStart.data(), coarse.column.data(), coarse.value.data());
 }
 
-#define TREACLE_INSTANTIATE(D, T)                                                                          \
-  template void coarsen<D, T>(Context<Cuda>&, const BlockCsr<D, T, Cuda>&, std::span<const std::uint32_t>, \
-                              BlockCsr<D, T, Cuda>&);
+#define TREACLE_INSTANTIATE(D, T)                                                                    \
+  template void coarsen(Context<Cuda>&, const BlockCsr<D, T, Cuda>&, std::span<const std::uint32_t>, \
+                        BlockCsr<D, T, Cuda>&);
 TREACLE_INSTANTIATE(1, double)
 TREACLE_INSTANTIATE(2, double)
 TREACLE_INSTANTIATE(3, double)

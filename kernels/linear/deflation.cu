@@ -53,22 +53,12 @@ void directionProducts(Context<Cuda>& context, const Deflated& d, std::span<cons
 
 }  // namespace
 
-void widen(Context<Cuda>& context, std::span<const float> from, std::span<double> to) {
-  forEach(context, from.size(),
-          [from = from.data(), to = to.data()] __device__(std::size_t i) { to[i] = from[i]; });
-}
-
 void galerkinRow(Context<Cuda>& context, const Deflated& d, int j) {
   const std::size_t n = d.w.size() / d.modes;
   products(context, d.w.data(), d.modes, d.aw.subspan(j * n, n),
            [j, modes = d.modes, s = d.scalars] __device__(const double* sums, int lane) {
              if (lane < modes) s->galerkin(j, lane) = sums[lane];
            });
-}
-
-/// The matrix travels as an argument of the kernel: nobody waits.
-void setInverse(Context<Cuda>& context, const ModeMatrix& inverse, DeflationScalars* to) {
-  forEach(context, 1, [=] __device__(std::size_t) { to->inverse = inverse; });
 }
 
 /// Two kernels, one thread per element in each: the first reads W and r and leaves c, the second reads W, A W and
@@ -114,28 +104,6 @@ void deflatedDirection(Context<Cuda>& context, const Deflated& d, std::span<cons
     double pi = krylov->iteration == 0 ? pz[i] : pz[i] + krylov->beta * pp[i];
     for (int j = 0; j < modes; ++j) pi -= s->weight[j] * double(w[j * n + i]);
     pp[i] = pi;
-  });
-}
-
-/// Two kernels, one thread per element in each: the first reads r and z and leaves beta, the second reads z and
-/// writes p and a column of the basis. One atomic per block.
-void recordedDirection(Context<Cuda>& context, std::span<const double> r, std::span<const double> z,
-                       std::span<double> p, KrylovScalars* krylov, DeflationScalars* scalars,
-                       std::span<float> basis) {
-  const double *pr = r.data(), *pz = z.data();
-  reduce(
-      context, z.size(), [=] __device__(std::size_t i) { return pr[i] * pz[i]; },
-      [=] __device__(double sum) {
-        krylov->setDirection(sum);
-        scalars->record(*krylov);
-      });
-  double* pp = p.data();
-  float* column = basis.empty() ? nullptr : basis.data();
-  forEach(context, z.size(), [=, n = z.size()] __device__(std::size_t i) {
-    const int k = krylov->iteration;
-    pp[i] = k == 0 ? pz[i] : pz[i] + krylov->beta * pp[i];
-    if (column && k < DeflationScalars::maxBasis)
-      column[k * n + i] = static_cast<float>((k % 2 ? -1 : 1) / sqrt(krylov->rho) * pz[i]);
   });
 }
 

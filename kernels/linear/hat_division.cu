@@ -103,10 +103,10 @@ void listSent(Context<Cuda>& context, const Ghosts& ghosts, const std::uint32_t*
 
 }  // namespace
 
-template <int D>
-void divideNodes(Context<Cuda>& context, const HatLattice<D>& lattice, Buffer<std::int32_t, Cuda> owner,
-                 Buffer<std::uint8_t, Cuda> active, std::span<const std::uint8_t> carried,
-                 HatNodes<D, Cuda>& nodes) {
+template <int D, class Backend>
+void divideNodes(Context<Backend>& context, const HatLattice<D>& lattice, Buffer<std::int32_t, Backend> owner,
+                 Buffer<std::uint8_t, Backend> active, std::span<const std::uint8_t> carried,
+                 HatNodes<D, Backend>& nodes) {
   const Communicator& job = *context.communicator;
   const std::size_t points = lattice.points();
   Buffer<std::uint32_t, Cuda> ownStart(context, points + 1), ghostStart(context, points + 1);
@@ -174,8 +174,9 @@ void spreadRows(Context<Cuda>& context, const HatNodes<D, Cuda>& nodes, const Bl
 }  // namespace
 
 /// What arrived is added for one neighbour after the other, because several may have a ghost of the same node.
-template <int D, int B>
-void sumRows(Context<Cuda>& context, const HatNodes<D, Cuda>& nodes, int reach, BlockCsr<B, double, Cuda>& a) {
+template <int D, int B, class Backend>
+void sumRows(Context<Backend>& context, const HatNodes<D, Backend>& nodes, int reach,
+             BlockCsr<B, double, Backend>& a) {
   if (!nodes.division) return sumOverDevices(context, a.value.span());
   Halo<Cuda>& halo = nodes.division->halo;
   const std::uint32_t own = nodes.own(), ghosts = nodes.count() - own;
@@ -203,15 +204,7 @@ void sumRows(Context<Cuda>& context, const HatNodes<D, Cuda>& nodes, int reach, 
   }
 }
 
-#define TREACLE_INSTANTIATE(D)                                                                   \
-  template void divideNodes<D>(Context<Cuda>&, const HatLattice<D>&, Buffer<std::int32_t, Cuda>, \
-                               Buffer<std::uint8_t, Cuda>, std::span<const std::uint8_t>, HatNodes<D, Cuda>&);
-TREACLE_INSTANTIATE(2)
-TREACLE_INSTANTIATE(3)
-template void sumRows<2, 1>(Context<Cuda>&, const HatNodes<2, Cuda>&, int, BlockCsr<1, double, Cuda>&);
-template void sumRows<2, 2>(Context<Cuda>&, const HatNodes<2, Cuda>&, int, BlockCsr<2, double, Cuda>&);
-template void sumRows<3, 1>(Context<Cuda>&, const HatNodes<3, Cuda>&, int, BlockCsr<1, double, Cuda>&);
-template void sumRows<3, 3>(Context<Cuda>&, const HatNodes<3, Cuda>&, int, BlockCsr<3, double, Cuda>&);
-#undef TREACLE_INSTANTIATE
+TREACLE_HAT_DIVISION(2, Cuda)
+TREACLE_HAT_DIVISION(3, Cuda)
 
 }  // namespace treacle

@@ -1,7 +1,7 @@
 #include "core/launch.hpp"
 #include "core/scan.hpp"
 #include "linear/row_sums.cuh"
-#include "treacle/linear/hat_nodes.hpp"
+#include "treacle/linear/each_node.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -81,68 +81,11 @@ __global__ void __launch_bounds__(32 * nodeWarpsPerBlock)
   }
 }
 
-/// number[p] = so many flags before p are not zero. Returns how many are; the host waits for it.
-std::uint32_t numbersOf(Context<Cuda>& context, std::span<const std::uint8_t> flags,
-                        Buffer<std::uint32_t, Cuda>& number) {
-  number.resize(context, flags.size() + 1);
-  forEach(context, flags.size(),
-          [a = flags.data(), n = number.data()] __device__(std::size_t p) { n[p] = a[p] != 0; });
-  return startRows(context, number);
-}
-
 }  // namespace
 
-std::uint32_t countNodes(Context<Cuda>& context, std::span<const std::uint8_t> active) {
-  Buffer<std::uint32_t, Cuda> number;
-  return numbersOf(context, active, number);
-}
-
-template <int D>
-void numberNodes(Context<Cuda>& context, const HatLattice<D>& lattice, std::span<const std::uint8_t> active,
-                 HatNodes<D, Cuda>& nodes) {
-  const std::size_t points = active.size();
-  Buffer<std::uint32_t, Cuda> number;
-  const std::uint32_t count = numbersOf(context, active, number);
-  nodes.lattice = lattice;
-  nodes.division.reset();
-  nodes.nodeAt.resize(context, points);
-  nodes.point.resize(context, count);
-  forEach(context, points,
-          [a = active.data(), n = number.data(), at = nodes.nodeAt.data(),
-           point = nodes.point.data()] __device__(std::size_t p) {
-            at[p] = a[p] ? n[p] : noNode;
-            if (a[p]) point[n[p]] = static_cast<std::uint32_t>(p);
-          });
-}
-
-template <int D>
-void coarserNodes(Context<Cuda>& context, const HatNodes<D, Cuda>& fine, HatNodes<D, Cuda>& coarse,
-                  std::uint64_t mostWhole) {
-  const HatLattice<D> lattice = fine.lattice.coarser();
-  const std::size_t points = lattice.points(), divided = fine.division ? points : 0;
-  Buffer<std::uint8_t, Cuda> active(context, points), carried(context, divided);
-  Buffer<std::int32_t, Cuda> owner(context, divided);
-  forEach(context, points,
-          [lattice, view = fine.view(), a = active.data(), carried = carried.data(), owner = owner.data(),
-           fineOwner = fine.division ? fine.division->owner.data() : nullptr] __device__(std::size_t p) {
-            const Vec<D, int> point = lattice.at(p);
-            bool any = false, mine = false;
-            forEachFine(view.lattice, point, [&](const Vec<D, int>& q, double) {
-              any = any || view.isNode(q);
-              mine = mine || view.at(q) != noNode;
-            });
-            a[p] = any;
-            if (!fineOwner) return;
-            carried[p] = mine;
-            owner[p] = fineOwner[pointBelow(view.lattice, point)];
-          });
-  if (!fine.division || countNodes(context, active) <= mostWhole)
-    return numberNodes<D>(context, lattice, active, coarse);
-  divideNodes<D>(context, lattice, std::move(owner), std::move(active), carried, coarse);
-}
-
-template <int D, int B>
-void hatPattern(Context<Cuda>& context, const HatNodes<D, Cuda>& nodes, BlockCsr<B, double, Cuda>& a, int reach) {
+template <int D, int B, class Backend>
+void hatPattern(Context<Backend>& context, const HatNodes<D, Backend>& nodes, BlockCsr<B, double, Backend>& a,
+                int reach) {
   const unsigned blocks = blocksFor(nodes.count(), nodeWarpsPerBlock), threads = 32 * nodeWarpsPerBlock;
   a.rowStart.resize(context, std::size_t{nodes.count()} + 1);
   std::uint32_t* none = nullptr;
@@ -154,9 +97,10 @@ void hatPattern(Context<Cuda>& context, const HatNodes<D, Cuda>& nodes, BlockCsr
          a.column.data());
 }
 
-template <int D, int B>
-void coarsenHats(Context<Cuda>& context, const HatNodes<D, Cuda>& fine, const BlockCsr<B, double, Cuda>& a,
-                 const HatNodes<D, Cuda>& coarse, BlockCsr<B, double, Cuda>& coarseA, int reach) {
+template <int D, int B, class Backend>
+void coarsenHats(Context<Backend>& context, const HatNodes<D, Backend>& fine,
+                 const BlockCsr<B, double, Backend>& a, const HatNodes<D, Backend>& coarse,
+                 BlockCsr<B, double, Backend>& coarseA, int reach) {
   hatPattern<D>(context, coarse, coarseA, reach);
   const unsigned places = hatGatherPlaces<D>(reach);
   const std::size_t bytesPerWarp = places * sizeof(Block<B>);
@@ -167,21 +111,8 @@ void coarsenHats(Context<Cuda>& context, const HatNodes<D, Cuda>& fine, const Bl
   if (fine.division) sumRows<D>(context, coarse, reach, coarseA);
 }
 
-#define TREACLE_INSTANTIATE(D)                                                                      \
-  template void numberNodes<D>(Context<Cuda>&, const HatLattice<D>&, std::span<const std::uint8_t>, \
-                               HatNodes<D, Cuda>&);                                                 \
-  template void coarserNodes<D>(Context<Cuda>&, const HatNodes<D, Cuda>&, HatNodes<D, Cuda>&, std::uint64_t);
-#define TREACLE_INSTANTIATE_MATRICES(D, B)                                                                    \
-  template void hatPattern<D, B>(Context<Cuda>&, const HatNodes<D, Cuda>&, BlockCsr<B, double, Cuda>&, int);  \
-  template void coarsenHats<D, B>(Context<Cuda>&, const HatNodes<D, Cuda>&, const BlockCsr<B, double, Cuda>&, \
-                                  const HatNodes<D, Cuda>&, BlockCsr<B, double, Cuda>&, int);
-TREACLE_INSTANTIATE(2)
-TREACLE_INSTANTIATE(3)
-TREACLE_INSTANTIATE_MATRICES(2, 1)
-TREACLE_INSTANTIATE_MATRICES(2, 2)
-TREACLE_INSTANTIATE_MATRICES(3, 1)
-TREACLE_INSTANTIATE_MATRICES(3, 3)
-#undef TREACLE_INSTANTIATE
-#undef TREACLE_INSTANTIATE_MATRICES
+template std::uint32_t countNodes(Context<Cuda>&, std::span<const std::uint8_t>);
+TREACLE_HAT_NODES(2, Cuda)
+TREACLE_HAT_NODES(3, Cuda)
 
 }  // namespace treacle

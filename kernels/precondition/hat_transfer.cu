@@ -2,10 +2,7 @@
 #include "precondition/cell_sums.cuh"
 #include "precondition/hat_corners.cuh"
 #include "precondition/placed_sums.cuh"
-#include "treacle/core/device_link.hpp"
-#include "treacle/precondition/hat_grid.hpp"
-
-#include <utility>
+#include "treacle/precondition/each_node.hpp"
 
 namespace treacle {
 namespace {
@@ -69,36 +66,6 @@ __device__ inline void forEachCorner(const HatCells<D>& cells, const HatNodesVie
 }
 
 }  // namespace
-
-template <int D>
-void findHatNodes(Context<Cuda>& context, const SortedParticles<D>& pairs, HatsOn what, HatNodes<D, Cuda>& nodes,
-                  std::uint64_t mostWhole) {
-  const HatCells<D> cells{pairs.grid};
-  HatLattice<D> lattice;
-  for (int k = 0; k < D; ++k) lattice.count[k] = cells.nodesOn(k);
-  lattice.periodic = pairs.grid.periodic;
-  Buffer<std::uint8_t, Cuda> active(context, lattice.points());
-  forEach(context, lattice.points(),
-          [cells, lattice, ranges = pairs.cells, walls = what == HatsOn::Active,
-           active = active.data()] __device__(std::size_t p) {
-            bool any = false;
-            cells.forEachCellAround(lattice.at(p), 1, [&](const Vec<D, int>& cell) {
-              const std::size_t c = cells.grid.linear(cell);
-              any = any || ranges.fluidEnd[c] > ranges.fluidBegin[c] ||
-                    (walls && ranges.wallEnd[c] > ranges.wallBegin[c]);
-            });
-            active[p] = any;
-          });
-  if (context.link) context.link->max(active.data(), active.size());
-  if (!context.link || countNodes(context, active) <= mostWhole)
-    return numberNodes<D>(context, lattice, active, nodes);
-  Buffer<std::int32_t, Cuda> owner(context, lattice.points());
-  forEach(context, owner.size(),
-          [cells, lattice, ofCell = pairs.owner, owner = owner.data()] __device__(std::size_t p) {
-            owner[p] = ofCell[cells.cellOfNode(lattice.at(p))];
-          });
-  divideNodes<D>(context, lattice, std::move(owner), std::move(active), {}, nodes);
-}
 
 template <int D, class T>
 void HatTransfer<D, T, Cuda>::prepare(Context<Cuda>& context, const SortedParticles<D>& pairs) {
@@ -184,10 +151,8 @@ void HatTransfer<D, T, Cuda>::prolong(Context<Cuda>& context, const HatNodes<D, 
           });
 }
 
-template void findHatNodes<2>(Context<Cuda>&, const SortedParticles<2>&, HatsOn, HatNodes<2, Cuda>&,
-                              std::uint64_t);
-template void findHatNodes<3>(Context<Cuda>&, const SortedParticles<3>&, HatsOn, HatNodes<3, Cuda>&,
-                              std::uint64_t);
+template void findHatNodes(Context<Cuda>&, const SortedParticles<2>&, HatsOn, HatNodes<2, Cuda>&, std::uint64_t);
+template void findHatNodes(Context<Cuda>&, const SortedParticles<3>&, HatsOn, HatNodes<3, Cuda>&, std::uint64_t);
 template class HatTransfer<2, double, Cuda>;
 template class HatTransfer<3, double, Cuda>;
 template class HatTransfer<2, float, Cuda>;

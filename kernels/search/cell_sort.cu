@@ -80,13 +80,13 @@ void sortByCell(Context<Cuda>& context, const CellGrid<D>& grid, Particles<D, Cu
   findFluidKeys(context, grid, particles, w);
   ranges.key.resize(context, fluid);
   sortGroup(context, 0, fluid, bits, w, ranges.key.data());
-  fillRanges(context, grid, 0, fluid, ranges.key.data(), w.sortedIndex.data(), bits, position, ranges.fluidBegin,
+  fillRanges(context, grid, {0, fluid, ranges.key.data(), w.sortedIndex.data(), bits}, position, ranges.fluidBegin,
              ranges.fluidEnd, w.count.data());
   markCellsNearFluid(context, grid, ranges.fluidEnd.data(), w.hasFluid);
 
   findWallKeys(context, grid, particles, w);
   sortGroup(context, fluid, count, bits + 1, w, w.sortedKey.data());
-  fillRanges(context, grid, fluid, walls, w.sortedKey.data(), w.sortedIndex.data() + fluid, bits, position,
+  fillRanges(context, grid, {fluid, walls, w.sortedKey.data(), w.sortedIndex.data() + fluid, bits}, position,
              ranges.wallBegin, ranges.wallEnd, w.count.data() + 1);
 
   makeRoom(context, particles, w);

@@ -30,32 +30,39 @@ void countNotFinite(Context<Cuda>& context, std::span<const Vec<D>> position, st
   });
 }
 
-/// One thread per particle of a sorted group; reads its key and its neighbours' in the sort, the position of those
-/// at an end of a run, writes begin and end of the run's cell and the number of particles that are not inactive;
-/// atomics no. `key`, `index`: of the group, which will start with particle `first`; `bits`: keys of inactive
-/// particles have one above them; `activeCount`: zero before.
+/// Particles of one kind, sorted by their cells; pointers to device memory.
+struct SortedGroup {
+  std::uint32_t first, size;   // the group will start with particle `first`
+  const std::uint64_t* key;    // in ascending order
+  const std::uint32_t* index;  // that the particles have had
+  int bits;                    // of a key; those of inactive particles have one above them
+};
+
+/// One thread per particle of the group; reads its key and its neighbours' in the sort, the position of those at
+/// an end of a run, writes begin and end of the run's cell and the number of particles that are not inactive;
+/// atomics no. `activeCount`: zero before.
 template <int D>
-void fillRanges(Context<Cuda>& context, const CellGrid<D>& grid, std::uint32_t first, std::uint32_t size,
-                const std::uint64_t* key, const std::uint32_t* index, int bits, const Vec<D>* position,
+void fillRanges(Context<Cuda>& context, const CellGrid<D>& grid, const SortedGroup& group, const Vec<D>* position,
                 Buffer<std::uint32_t, Cuda>& rangeBegin, Buffer<std::uint32_t, Cuda>& rangeEnd,
                 std::uint32_t* activeCount) {
   for (Buffer<std::uint32_t, Cuda>* range : {&rangeBegin, &rangeEnd}) {
     range->resize(context, grid.cellCount());
     clearBytes(context, range->data(), range->size() * sizeof(std::uint32_t));
   }
-  forEach(context, size, [=, begin = rangeBegin.data(), end = rangeEnd.data()] __device__(std::size_t k) {
+  forEach(context, group.size, [=, begin = rangeBegin.data(), end = rangeEnd.data()] __device__(std::size_t k) {
     constexpr int cellShift = D * CellGrid<D>::subBits;
-    if (key[k] >> bits) return;
+    const std::uint64_t* const key = group.key;
+    if (key[k] >> group.bits) return;
     const std::uint64_t cell = key[k] >> cellShift;
     const bool starts = k == 0 || key[k - 1] >> cellShift != cell;
-    const bool ends = k + 1 == size || key[k + 1] >> cellShift != cell;
+    const bool ends = k + 1 == group.size || key[k + 1] >> cellShift != cell;
     if (!starts && !ends) return;
-    const std::size_t c = grid.linear(grid.cellOf(position[index[k]]));
-    const auto i = static_cast<std::uint32_t>(first + k);
+    const std::size_t c = grid.linear(grid.cellOf(position[group.index[k]]));
+    const auto i = static_cast<std::uint32_t>(group.first + k);
     if (starts) begin[c] = i;
     if (!ends) return;
     end[c] = i + 1;
-    if (k + 1 == size || key[k + 1] >> bits) *activeCount = static_cast<std::uint32_t>(k + 1);
+    if (k + 1 == group.size || key[k + 1] >> group.bits) *activeCount = static_cast<std::uint32_t>(k + 1);
   });
 }
 

@@ -42,25 +42,24 @@ class ClusterCandidates {
   /// crosses a periodic end.
   template <class Visit>
   __device__ bool forEach(const ListRadii& radii, bool fluid, bool walls, Visit&& visit) const {
-    const Reach reach(*this, fmax(radii.near, radii.far));
+    Walk walk{radii, Reach(*this, fmax(radii.near, radii.far))};
     // Each lane looks one cell up; then all lanes go through the ranges found.
-    int queued = 0;
-    for (int base = 0; base < reach.cells; base += 32) {
-      const Cell mine = lookUp(reach, base + threadIdx.x % 32);
+    for (int base = 0; base < walk.reach.cells; base += 32) {
+      const Cell mine = lookUp(walk.reach, base + threadIdx.x % 32);
       for (unsigned left = __ballot_sync(~0u, mine.occupied); left != 0; left &= left - 1) {
         const int from = __ffs(left) - 1;
         const auto shared = [&](std::uint32_t v) { return __shfl_sync(~0u, v, from); };
         Vec<D> shift{};
-        if (reach.wraps)
+        if (walk.reach.wraps)
           for (int k = 0; k < D; ++k) shift[k] = __shfl_sync(~0u, mine.shift[k], from);
         const std::uint32_t fluidBegin = shared(mine.fluidBegin), fluidEnd = shared(mine.fluidEnd);
         const std::uint32_t wallBegin = shared(mine.wallBegin), wallEnd = shared(mine.wallEnd);
-        if (fluid) collect(fluidBegin, fluidEnd, shift, false, reach, radii, queued, visit);
-        if (walls) collect(wallBegin, wallEnd, shift, true, reach, radii, queued, visit);
+        if (fluid) collect(walk, fluidBegin, fluidEnd, shift, false, visit);
+        if (walls) collect(walk, wallBegin, wallEnd, shift, true, visit);
       }
     }
-    test(queued, reach.wraps, radii, visit);
-    return reach.wraps;
+    test(walk, walk.queued, visit);
+    return walk.reach.wraps;
   }
 
  private:
@@ -88,6 +87,11 @@ class ClusterCandidates {
         cells *= size[k];
       }
     }
+  };
+  struct Walk {
+    const ListRadii& radii;
+    Reach reach;
+    int queued = 0;  // candidates in Shared::entry
   };
   struct Cell {
     bool occupied = false;
@@ -142,10 +146,11 @@ class ClusterCandidates {
 
   /// Queues the particles of a range that are within reach of the bounding box.
   template <class Visit>
-  __device__ void collect(std::uint32_t begin, std::uint32_t end, const Vec<D>& shift, bool wall,
-                          const Reach& reach, const ListRadii& radii, int& queued, Visit&& visit) const {
+  __device__ void collect(Walk& walk, std::uint32_t begin, std::uint32_t end, const Vec<D>& shift, bool wall,
+                          Visit&& visit) const {
     // The margin is for the rounding of the shift.
-    const double reach2 = reach.radius * reach.radius * (1 + 1e-9);
+    const double reach2 = walk.reach.radius * walk.reach.radius * (1 + 1e-9);
+    int& queued = walk.queued;
     const int lane = threadIdx.x % 32;
     for (std::uint32_t chunk = begin; chunk < end; chunk += 32) {
       const std::uint32_t j = chunk + lane;
@@ -155,7 +160,7 @@ class ClusterCandidates {
         double box2 = 0;
         for (int k = 0; k < D; ++k) {
           const double gap = fmax(fmax(xj[k] - high_[k], low_[k] - xj[k]), 0.0);
-          if (!reach.around[k]) box2 += gap * gap;
+          if (!walk.reach.around[k]) box2 += gap * gap;
         }
         inside = box2 <= reach2;
       }
@@ -167,7 +172,7 @@ class ClusterCandidates {
       }
       queued += __popc(lanes);
       if (queued < 32) continue;
-      test(32, reach.wraps, radii, visit);
+      test(walk, 32, visit);
       queued -= 32;
       if (lane < queued) {
         shared_.entry[lane] = shared_.entry[lane + 32];
@@ -179,7 +184,7 @@ class ClusterCandidates {
 
   /// Measures the first `count` of the queue against all particles of the cluster.
   template <class Visit>
-  __device__ void test(int count, bool wraps, const ListRadii& radii, Visit&& visit) const {
+  __device__ void test(const Walk& walk, int count, Visit&& visit) const {
     __syncwarp();
     const int lane = threadIdx.x % 32;
     double r2 = 1e300;
@@ -192,11 +197,11 @@ class ClusterCandidates {
 #pragma unroll
       for (int t = 0; t < static_cast<int>(clusterSize); ++t) {
         const Vec<D> d = xj - shared_.x[t];
-        r2 = fmin(r2, norm2(wraps ? grid_.nearest(d) : d));
+        r2 = fmin(r2, norm2(walk.reach.wraps ? grid_.nearest(d) : d));
       }
     }
-    const bool near = r2 <= radii.near * radii.near;
-    visit(j, near, !near && r2 <= radii.far * radii.far, wall);
+    const bool near = r2 <= walk.radii.near * walk.radii.near;
+    visit(j, near, !near && r2 <= walk.radii.far * walk.radii.far, wall);
     __syncwarp();
   }
 

@@ -10,9 +10,8 @@ struct BuildArguments {
   CellGrid<D> grid;
   CellRangesView cells;
   const Vec<D>* position;
-  ListRadii radii;
-  bool onlyNextToFluid;
-  std::uint32_t first, last, clusters;
+  ListScope scope;
+  std::uint32_t clusters;
   std::uint64_t* offset;
   std::uint32_t* entry;
   std::uint8_t* wraps;
@@ -28,31 +27,32 @@ __global__ void __launch_bounds__(32 * warpsPerBlock, 6) buildKernel(const __gri
   if (cluster >= a.clusters) return;
   std::uint64_t* offset = a.offset + std::size_t{listSegments} * cluster;
   if (Fill && offset[0] == offset[listSegments]) return;
-  const std::uint32_t first = a.first + clusterSize * cluster;
+  const std::uint32_t first = a.scope.first + clusterSize * cluster;
   const unsigned lane = threadIdx.x % 32, before = (1u << lane) - 1;
 
   std::uint64_t next[listSegments] = {};
   if (Fill)
     for (int s = 0; s < listSegments; ++s) next[s] = offset[s];
   __shared__ typename ClusterCandidates<D>::Shared shared[warpsPerBlock];
-  const ClusterCandidates<D> candidates(a.grid, a.cells, a.position, first, min(clusterSize, a.last - first),
+  const ClusterCandidates<D> candidates(a.grid, a.cells, a.position, first, min(clusterSize, a.scope.last - first),
                                         shared[threadIdx.x / 32]);
-  const bool wraps = candidates.forEach(a.radii, true, true, [&](std::uint32_t j, bool near, bool far, bool wall) {
-    const auto append = [&](ListSegment segment, bool mine) {
-      const unsigned lanes = __ballot_sync(~0u, mine);
-      std::uint64_t& end = next[static_cast<int>(segment)];
-      if (Fill && mine) a.entry[end + __popc(lanes & before)] = j;
-      end += __popc(lanes);
-    };
-    append(ListSegment::NearFluid, near && !wall);
-    append(ListSegment::FarFluid, far && !wall);
-    append(ListSegment::NearWall, near && wall);
-    append(ListSegment::FarWall, far && wall);
-  });
+  const bool wraps =
+      candidates.forEach(a.scope.radii, true, true, [&](std::uint32_t j, bool near, bool far, bool wall) {
+        const auto append = [&](ListSegment segment, bool mine) {
+          const unsigned lanes = __ballot_sync(~0u, mine);
+          std::uint64_t& end = next[static_cast<int>(segment)];
+          if (Fill && mine) a.entry[end + __popc(lanes & before)] = j;
+          end += __popc(lanes);
+        };
+        append(ListSegment::NearFluid, near && !wall);
+        append(ListSegment::FarFluid, far && !wall);
+        append(ListSegment::NearWall, near && wall);
+        append(ListSegment::FarWall, far && wall);
+      });
   if (Fill || lane != 0) return;
   const bool fluid =
       next[static_cast<int>(ListSegment::NearFluid)] + next[static_cast<int>(ListSegment::FarFluid)] > 0;
-  const bool empty = a.onlyNextToFluid && !fluid;
+  const bool empty = a.scope.onlyNextToFluid && !fluid;
   for (int s = 0; s < listSegments; ++s) offset[s + 1] = empty ? 0 : next[s];
   a.wraps[cluster] = wraps;
   if (cluster == 0) a.offset[0] = 0;
@@ -62,10 +62,9 @@ __global__ void __launch_bounds__(32 * warpsPerBlock, 6) buildKernel(const __gri
 
 template <int D>
 void buildClusterList(Context<Cuda>& context, const CellGrid<D>& grid, const CellRanges<Cuda>& ranges,
-                      std::span<const Vec<D>> position, std::uint32_t first, std::uint32_t last, ListRadii radii,
-                      bool onlyNextToFluid, ClusterList<Cuda>& list) {
-  list.first = first;
-  list.last = last;
+                      std::span<const Vec<D>> position, const ListScope& scope, ClusterList<Cuda>& list) {
+  list.first = scope.first;
+  list.last = scope.last;
   const std::uint32_t clusters = list.clusterCount();
   const std::size_t offsets = std::size_t{listSegments} * clusters + 1;
   list.offset.resize(context, offsets);
@@ -75,8 +74,8 @@ void buildClusterList(Context<Cuda>& context, const CellGrid<D>& grid, const Cel
     list.entry.resize(context, 0);
     return;
   }
-  BuildArguments<D> arguments{grid, viewOf(ranges), position.data(),    radii,   onlyNextToFluid,  first,
-                              last, clusters,       list.offset.data(), nullptr, list.wraps.data()};
+  BuildArguments<D> arguments{grid,     viewOf(ranges),     position.data(), scope,
+                              clusters, list.offset.data(), nullptr,         list.wraps.data()};
   const unsigned blocks = blocksFor(clusters, warpsPerBlock);
   launch(context, blocks, 32 * warpsPerBlock, 0, buildKernel<D, false>, arguments);
 
@@ -87,10 +86,8 @@ void buildClusterList(Context<Cuda>& context, const CellGrid<D>& grid, const Cel
 }
 
 template void buildClusterList<2>(Context<Cuda>&, const CellGrid<2>&, const CellRanges<Cuda>&,
-                                  std::span<const Vec<2>>, std::uint32_t, std::uint32_t, ListRadii, bool,
-                                  ClusterList<Cuda>&);
+                                  std::span<const Vec<2>>, const ListScope&, ClusterList<Cuda>&);
 template void buildClusterList<3>(Context<Cuda>&, const CellGrid<3>&, const CellRanges<Cuda>&,
-                                  std::span<const Vec<3>>, std::uint32_t, std::uint32_t, ListRadii, bool,
-                                  ClusterList<Cuda>&);
+                                  std::span<const Vec<3>>, const ListScope&, ClusterList<Cuda>&);
 
 }  // namespace treacle

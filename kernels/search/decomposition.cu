@@ -109,7 +109,7 @@ void Decomposition<D, Cuda>::sort(Context<Cuda>& context, const CellGrid<D>& gri
   if (migrate(context, grid, p, w)) sortFluid(context, grid, p, owner_.data(), ranges, w);
 
   const std::uint32_t own = p.fluidCount;
-  fillRanges(context, grid, 0, own, ranges.key.data(), w.sortedIndex.data(), keyBits(grid), p.position.data(),
+  fillRanges(context, grid, {0, own, ranges.key.data(), w.sortedIndex.data(), keyBits(grid)}, p.position.data(),
              ranges.fluidBegin, ranges.fluidEnd, w.count.data());
   findActiveCells(context, grid, ranges, w);
   this->startHalo(job, own);

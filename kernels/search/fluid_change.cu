@@ -56,9 +56,9 @@ std::vector<std::byte> packed(const Particles<D>& added, std::uint32_t modes) {
 
 }  // namespace
 
-template <int D>
-void changeFluid(Context<Cuda>& context, std::span<const std::uint8_t> gone, const Particles<D>& added,
-                 Particles<D, Cuda>& particles) {
+template <int D, class Backend>
+void changeFluid(Context<Backend>& context, std::span<const std::uint8_t> gone, const Particles<D>& added,
+                 Particles<D, Backend>& particles) {
   Buffer<std::uint32_t, Cuda> kept;
   const std::uint32_t count = listKept(context, gone, particles.fluidCount, kept);
   Buffer<std::byte, Cuda> arrived, room;

@@ -127,7 +127,7 @@ void Decomposition<D, Cuda>::sortWalls(Context<Cuda>& context, const CellGrid<D>
 
   std::vector<std::uint32_t> counts(2 * ranks + 2);  // where what is for each rank starts, where its walls begin
   std::uint32_t* const onDevice = w.count.data();
-  fillRanges(context, grid, begin, walls, w.sortedKey.data(), index, bits + groupBits, p.position.data(),
+  fillRanges(context, grid, {begin, walls, w.sortedKey.data(), index, bits + groupBits}, p.position.data(),
              ranges.wallBegin, ranges.wallEnd, onDevice + counts.size());
   countSent(context, ranges.wallBegin, ranges.wallEnd, onDevice);
   findWallsOfRanks(context, w.sortedKey.data(), walls, bits, ranks, onDevice + ranks + 1);

@@ -62,8 +62,8 @@ __global__ void __launch_bounds__(blockSize)
 
 }  // namespace
 
-template <int D>
-Diagnostics computeDiagnostics(Context<Cuda>& context, const DiagnosticsInput<D>& in) {
+template <int D, class Backend>
+Diagnostics computeDiagnostics(Context<Backend>& context, const DiagnosticsInput<D>& in) {
   auto* partial = reinterpret_cast<Diagnostics*>(context.partialSums());
   const unsigned blocks = std::min(std::max(blocksFor(in.position.size(), 2 * blockSize), 1u), maxBlocks);
   launch(context, blocks, blockSize, 0, diagnosticsKernel<D>, in, DiagnosticsTerm<D>::make(in), partial,
@@ -74,7 +74,7 @@ Diagnostics computeDiagnostics(Context<Cuda>& context, const DiagnosticsInput<D>
   return averaged(all, joinedOverProcesses(context, in.position.size(), std::plus<>()), in.ownShare());
 }
 
-template Diagnostics computeDiagnostics<2>(Context<Cuda>&, const DiagnosticsInput<2>&);
-template Diagnostics computeDiagnostics<3>(Context<Cuda>&, const DiagnosticsInput<3>&);
+template Diagnostics computeDiagnostics(Context<Cuda>&, const DiagnosticsInput<2>&);
+template Diagnostics computeDiagnostics(Context<Cuda>&, const DiagnosticsInput<3>&);
 
 }  // namespace treacle

@@ -1,4 +1,5 @@
 #include "core/each.cuh"
+#include "core/list_where.cuh"
 #include "treacle/step/each_particle.hpp"
 
 namespace treacle {

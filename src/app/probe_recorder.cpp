@@ -6,7 +6,7 @@
 namespace treacle {
 
 ProbeRecorder::ProbeRecorder(const Case& c, const Target& target, double start, Measure measure)
-    : case_(c), start_(start), measure_(std::move(measure)) {
+    : case_(c), start_(start), measure_(std::move(measure)), patches_(c.probes.size()) {
   for (const Probe& probe : c.probes) {
     writers_.emplace_back(target(probe), c, probe);
     intervals_.emplace_back();
@@ -24,29 +24,40 @@ void ProbeRecorder::record(const StepReport& report) {
   std::uint64_t due = 0;
   for (std::size_t k = 0; k < intervals_.size(); ++k)
     if (!intervals_[k] || intervals_[k]->due(report.time)) due |= std::uint64_t{1} << k;
-  take(due, report.time, &report.loads);
+  meanPatches(report);
+  take(due, report.time, &report);
 }
 
-void ProbeRecorder::take(std::uint64_t probes, double time, const std::vector<WallLoad>* walls) {
+void ProbeRecorder::meanPatches(const StepReport& step) {
+  std::size_t patch = 0;
+  for (std::size_t k = 0; k < writers_.size(); ++k)
+    if (case_.probes[k].kind == ProbeKind::WallPressure) patches_[k].add(step.patches.at(patch++), step.timeStep);
+}
+
+void ProbeRecorder::take(std::uint64_t probes, double time, const StepReport* step) {
   std::uint64_t measured = 0;
   for (std::size_t k = 0; k < writers_.size(); ++k) {
     const std::uint64_t bit = probes & std::uint64_t{1} << k;
-    if (case_.probes[k].kind != ProbeKind::Load)
+    if (!case_.probes[k].isOnWall())
       measured |= bit;
-    else if (bit != 0 && walls)
-      writers_[k].append(time, *walls);
+    else if (bit == 0 || !step)
+      continue;
+    else if (case_.probes[k].kind == ProbeKind::Load)
+      writers_[k].append(time, step->loads);
+    else
+      writers_[k].append(time, std::exchange(patches_[k], {}));
   }
   if (measured == 0) return;
   for (const ProbeReading& reading : measure_(measured)) {
-    ProbeWriter& writer = writers_[reading.probe];
-    if (case_.probes[reading.probe].isSummed()) {
-      writer.append(time, reading.sums);
+    ProbeWriter& writer = writers_[reading.index];
+    if (reading.probe.isSummed()) {
+      writer.append(time, reading.probe, reading.sums);
       continue;
     }
     reading.particles.visit([&](const auto& p) {
       Frame fluid = makeFrame(p, 0, p.fluidCount, time);
       addViscosities(case_.materials, fluid);
-      writer.append(time, fluid, makeFrame(p, p.fluidCount, p.count, time));
+      writer.append(time, reading.probe, fluid, makeFrame(p, p.fluidCount, p.count, time));
     });
   }
 }

@@ -32,14 +32,16 @@ class ProbeRecorder {
   void record(const StepReport& report);
 
  private:
-  /// `walls`: what they bear, null where it is not known.
-  void take(std::uint64_t probes, double time, const std::vector<WallLoad>* walls);
+  /// `step`: null at the start, where it is not known what walls bear.
+  void take(std::uint64_t probes, double time, const StepReport* step);
+  void meanPatches(const StepReport& step);
 
   const Case& case_;
   double start_;  // [s]
   Measure measure_;
   std::deque<ProbeWriter> writers_;                 // per probe; they cannot be moved
   std::vector<std::optional<Interval>> intervals_;  // without one: every step
+  std::vector<PatchMean> patches_;                  // per probe; of WallPressure since its last reading
 };
 
 }  // namespace treacle

@@ -1,5 +1,6 @@
 #include "resume.hpp"
 
+#include "changed_bodies.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/io/checkpoint/checkpoint.hpp"
 #include "treacle/model/case/checks.hpp"
@@ -58,16 +59,6 @@ void matchMaterials(const Case& c, const std::filesystem::path& file, const Stat
     if (m < number.size()) m = number[m];
 }
 
-/// What is known of bodies stands in their order. Errors: InputError for other bodies, or another order.
-void requireSameBodies(const Case& c, const std::filesystem::path& file, const StateNames& names) {
-  const std::vector<std::string> here = StateNames::of(c).bodies;
-  for (std::size_t b = 0; b < names.bodies.size(); ++b)
-    if (b >= here.size() || here[b] != names.bodies[b])
-      refuse(file,
-             fmt::format("its bodies are {}, but the case has {}; expected the bodies of the run in their order",
-                         listed(names.bodies), listed(here)));
-}
-
 /// Walls that keep their velocity go on with that of the case; others get theirs in each step.
 template <int D>
 void setWallVelocities(const Case& c, const Particles<D>& made, std::uint32_t first, Particles<D>& p) {
@@ -103,9 +94,10 @@ void requireFields(const Case& c, const std::filesystem::path& file, const Parti
 }
 
 template <int D>
-void requireFit(const Case& c, const std::filesystem::path& file, const Checkpoint<D>& state, const Kinds& made) {
+void requireFit(const Case& c, const std::filesystem::path& file, const Checkpoint<D>& state, const Kinds& made,
+                bool isChanged) {
   const Particles<D>& p = state.particles;
-  if ((state.fluidOfAll != made.fluid && !c.isOpen()) || state.wallsOfAll != made.walls)
+  if ((state.fluidOfAll != made.fluid && !c.isOpen() && !isChanged) || state.wallsOfAll != made.walls)
     refuse(file,
            fmt::format("{} fluid and {} wall particles, but the case has {} and {}; expected the case and the "
                        "resolution that were run",
@@ -128,9 +120,16 @@ void requireFlow(const Case& c, const std::filesystem::path& file, const OpenFlo
 }
 
 /// Where rigid bodies are, and what they weigh, only the state says. Errors: InputError for other ones.
-void requireRigid(const Case& c, const std::filesystem::path& file, const RigidMotion& rigid) {
+void requireRigid(const Case& c, const std::filesystem::path& file, const StateNames& names,
+                  const RigidMotion& rigid) {
   for (std::size_t b = 0; b < c.bodies.size(); ++b) {
-    const bool known = b < rigid.bodies.size() && rigid.bodies[b].mass > 0;
+    std::size_t before = b;
+    if (!names.bodies.empty()) {
+      const auto found = std::ranges::find(names.bodies, c.bodies[b].name);
+      if (found == names.bodies.end()) continue;
+      before = static_cast<std::size_t>(found - names.bodies.begin());
+    }
+    const bool known = before < rigid.bodies.size() && rigid.bodies[before].mass > 0;
     if (known != (c.bodies[b].kind == BodyKind::Rigid))
       refuse(file, fmt::format("body '{}' is {} in the state", c.bodies[b].name,
                                known ? "a rigid one" : "no rigid one"));
@@ -233,20 +232,22 @@ StartState fittingState(const Case& c, const std::filesystem::path& file, const 
   StartState start = made.particles.visit([&]<int D>(const Particles<D>& created) -> StartState {
     Checkpoint<D> state = readCheckpoint<D>(file, made.part);
     const Kinds kinds = kindsOf(made);
+    std::vector<std::string> changes;
     requireMethod(c, file, state.method);
-    requireSameBodies(c, file, state.names);
     matchMaterials(c, file, state.names, state.particles);
-    requireFit(c, file, state, kinds);
     requireFields(c, file, state.particles);
+    requireRigid(c, file, state.names, state.particles.rigid);
+    if (!state.names.bodies.empty() && state.names.bodies != StateNames::of(c).bodies)
+      changeBodies<D>(c, file, made, created, state, changes);
+    requireFit(c, file, state, kinds, !changes.empty());
     requireFlow(c, file, state.particles.flow);
-    requireRigid(c, file, state.particles.rigid);
     setMasses<D>(c, made, state.particles.rigid);
     requireBodies(c, file, state.particles);
     const std::uint32_t firstWall = state.firstWall + made.part.begin(kinds.walls);
     requireNozzles(c, file, created, firstWall, state);
     setWallSurfaces(created, firstWall, state.particles);
     setWallVelocities(c, created, firstWall, state.particles);
-    return {std::move(state.particles), state.step, state.time};
+    return {std::move(state.particles), state.step, state.time, std::move(changes)};
   });
   if (!c.time.stepsVary()) start.step = stepAt(start.time, c.time, file);
   return start;

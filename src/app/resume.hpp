@@ -28,15 +28,16 @@ struct MadeParticles {
 /// What a simulation starts from; of several processes each has a part of them.
 struct StartState {
   AnyParticles particles;
-  std::int64_t step = 0;  // number of steps done
-  double time = 0;        // [s]
+  std::int64_t step = 0;             // number of steps done
+  double time = 0;                   // [s]
+  std::vector<std::string> notes{};  // what is no longer as in the run
 };
 
 /// The state in a checkpoint file, for the case; its step counts in time steps of the case, which need
 /// not be those of the interrupted run, or where these vary in length it is that of the file. `made`: the
-/// particles that the case starts with; the state is a part where they are. Errors: InputError if
-/// the file cannot be used, if it does not fit the case (numbers of particles, materials, bodies, domain, time
-/// step).
+/// particles that the case starts with; the state is a part where they are. Other bodies than those of the run are
+/// added or left out (changeBodies). Errors: InputError if the file cannot be used, if it does not fit the case
+/// (numbers of particles, materials, bodies, domain, time step).
 StartState fittingState(const Case& c, const std::filesystem::path& file, const MadeParticles& made);
 
 /// The same for a run of the case. Errors: InputError also if its time is not before the end.

@@ -157,11 +157,13 @@ void runCommand(const RunOptions& options, const Communicator& processes) {
     releaseShapeFiles(c);
   });
   if (shared) noteParticles(c, made.particles, processes, warnings);
-  const ParticleNumbers all = numbersOfAll(processes, made.particles.numbers());
+  ParticleNumbers all = numbersOfAll(processes, made.particles.numbers());
   StartState start{AnyParticles(2)};
   together(processes, [&] {
     start = options.resume.empty() ? StartState{std::move(made.particles)} : resumedState(c, options.resume, made);
     if (!shared) requireMemory(c, start.particles, device ? &*device : nullptr);
+    if (!start.notes.empty()) all = start.particles.numbers();
+    for (const std::string& note : start.notes) warnings.push_back(note);
   });
   if (shared) requireMemoryOfAll(c, start.particles, device ? &*device : nullptr, processes);
   made = {};

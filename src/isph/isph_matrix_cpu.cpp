@@ -1,6 +1,5 @@
-#include "treacle/isph/isph_matrix.hpp"
-
-#include "treacle/core/parallel.hpp"
+#include "treacle/core/each.hpp"
+#include "treacle/isph/each_row.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -8,6 +7,15 @@
 
 namespace treacle {
 namespace {
+
+template <class T>
+double sumOfRow(const IsphMatrix<T>& a, std::size_t row, const double* x) {
+  double sum = 0;
+  for (const std::size_t section : {row, a.rows + row})
+    for (std::uint64_t k = a.start[section]; k < a.start[section + 1]; ++k)
+      sum += a.coefficient[k] * x[a.column[k]];
+  return sum;
+}
 
 /// r - A x of a row with the smoothers' matrix.
 template <class T>
@@ -21,31 +29,21 @@ T nearRest(const IsphMatrix<T>& a, std::size_t row, double r, const T* x) {
 
 }  // namespace
 
-template <class T>
-void multiply(Context<Cpu>&, const IsphMatrix<T>& a, std::span<const double> x, std::span<double> y) {
-  parallelFor(a.rows, parallelGrain, [&](std::size_t i) {
-    double sum = 0;
-    for (const std::size_t section : {i, a.rows + i})
-      for (std::uint64_t k = a.start[section]; k < a.start[section + 1]; ++k)
-        sum += a.coefficient[k] * x[a.column[k]];
-    y[i] = a.diagonal[i] * x[i] - sum;
-  });
+template <class Staged, class T, class Store>
+void forEachSum(Context<Cpu>&, const IsphMatrix<T>& a, const double* x, const Store& store) {
+  parallelFor(a.rows, parallelGrain,
+              [=](std::size_t row) { store(static_cast<std::uint32_t>(row), sumOfRow(a, row, x)); });
 }
 
-template <class T>
-void firstSweep(Context<Cpu>&, const IsphMatrix<T>& a, std::span<const double> r, std::span<T> x) {
-  parallelFor(a.rows, parallelGrain, [&](std::size_t i) { x[i] = a.inverseNear[i] * static_cast<T>(r[i]); });
-}
-
-template <class T>
-void nearResidual(Context<Cpu>&, const IsphMatrix<T>& a, std::span<const double> r, std::span<const T> x,
+template <class T, class Backend>
+void nearResidual(Context<Backend>&, const IsphMatrix<T>& a, std::span<const double> r, std::span<const T> x,
                   std::span<T> res) {
   parallelFor(a.rows, parallelGrain,
               [&](std::size_t i) { res[i] = a.inverseNear[i] > 0 ? nearRest(a, i, r[i], x.data()) : T(0); });
 }
 
-template <class T>
-void lastSweep(Context<Cpu>&, const IsphMatrix<T>& a, std::span<const double> r, std::span<const T> x,
+template <class T, class Backend>
+void lastSweep(Context<Backend>&, const IsphMatrix<T>& a, std::span<const double> r, std::span<const T> x,
                std::span<double> z) {
   parallelFor(a.rows, parallelGrain, [&](std::size_t i) {
     const T inverse = a.inverseNear[i];
@@ -53,13 +51,9 @@ void lastSweep(Context<Cpu>&, const IsphMatrix<T>& a, std::span<const double> r,
   });
 }
 
-template <class T>
-void jacobi(Context<Cpu>&, const IsphMatrix<T>& a, std::span<const double> r, std::span<double> z) {
-  parallelFor(a.rows, parallelGrain, [&](std::size_t i) { z[i] = a.diagonal[i] > 0 ? r[i] / a.diagonal[i] : 0; });
-}
-
-template <class T>
-void compressed(Context<Cpu>&, const IsphMatrix<T>& a, std::uint32_t rows, BlockCsr<1>& result) {
+template <class T, class Backend>
+void compressed(Context<Backend>&, const IsphMatrix<T>& a, std::uint32_t rows,
+                BlockCsr<1, double, Backend>& result) {
   result.rowStart.resize(std::size_t{rows} + 1);
   result.rowStart[0] = 0;
   std::vector<std::pair<std::uint32_t, double>> entries;
@@ -88,17 +82,7 @@ void compressed(Context<Cpu>&, const IsphMatrix<T>& a, std::uint32_t rows, Block
   }
 }
 
-#define TREACLE_INSTANTIATE(T)                                                                                    \
-  template void multiply<T>(Context<Cpu>&, const IsphMatrix<T>&, std::span<const double>, std::span<double>);     \
-  template void firstSweep<T>(Context<Cpu>&, const IsphMatrix<T>&, std::span<const double>, std::span<T>);        \
-  template void nearResidual<T>(Context<Cpu>&, const IsphMatrix<T>&, std::span<const double>, std::span<const T>, \
-                                std::span<T>);                                                                    \
-  template void lastSweep<T>(Context<Cpu>&, const IsphMatrix<T>&, std::span<const double>, std::span<const T>,    \
-                             std::span<double>);                                                                  \
-  template void jacobi<T>(Context<Cpu>&, const IsphMatrix<T>&, std::span<const double>, std::span<double>);       \
-  template void compressed<T>(Context<Cpu>&, const IsphMatrix<T>&, std::uint32_t, BlockCsr<1>&);
-TREACLE_INSTANTIATE(double)
-TREACLE_INSTANTIATE(float)
-#undef TREACLE_INSTANTIATE
+TREACLE_EACH_ROW(double, Cpu)
+TREACLE_EACH_ROW(float, Cpu)
 
 }  // namespace treacle

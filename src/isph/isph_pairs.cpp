@@ -55,25 +55,26 @@ IsphPairs<D> makeIsphPairs(const Case& c) {
   pairs.kernel = SmoothingKernel<D>::make(s.kernel, c.smoothingLength());
   pairs.materials = MaterialTable::make(c);
   setBounds(c, pairs);
-  pairs.gravity = resized<D>(c.gravity);
+  pairs.frame.gravity = resized<D>(c.gravity);
   pairs.volume = std::pow(c.spacing, D);
   const auto weight = [&](double r) { return pairs.kernel.value(r); };
   pairs.latticeDensity = pairs.volume * (weight(0) + latticeSum<D>(pairs.kernel.radius(), c.spacing, weight));
+  pairs.latticeLaplacian =
+      latticeSum<D>(pairs.kernel.radius(), c.spacing, [&](double r) { return 2 * pairs.slope(r); });
   // A thousandth more, so that rounding does not decide about particles that start at that distance.
   pairs.contact.touching = 1.001 * shareOfHalfLattice(pairs);
   pairs.timeStep = c.time.step;
   pairs.alpha = s.alpha;
   pairs.noSlip = s.walls == WallSlip::NoSlip;
   pairs.negativePressure = s.negativePressure;
+  pairs.accurate = c.method.scheme == SchemeKind::Accurate;
   return pairs;
 }
 
 template <int D>
 double explicitViscousLimit(const IsphPairs<D>& pairs) {
-  const double slopes =
-      latticeSum<D>(pairs.kernel.radius(), pairs.spacing, [&](double r) { return 2 * pairs.slope(r); });
   const double diffusivity = pairs.mostDiffusivity;
-  return diffusivity > 0 ? 0.5 / (diffusivity * slopes) : std::numeric_limits<double>::infinity();
+  return diffusivity > 0 ? 0.5 / (diffusivity * pairs.latticeLaplacian) : std::numeric_limits<double>::infinity();
 }
 
 #define TREACLE_INSTANTIATE(D)                         \

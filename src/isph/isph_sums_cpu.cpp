@@ -4,8 +4,8 @@
 
 namespace treacle {
 
-template <int D, class Term>
-void sumOnFluid(Context<Cpu>&, const IsphPairs<D>& pairs, const Term& term) {
+template <int D, class Term, class Backend>
+void sumOnFluid(Context<Backend>&, const IsphPairs<D>& pairs, const Term& term) {
   parallelFor(pairs.ownFluid(), parallelGrain, [&](std::size_t row) {
     const auto i = static_cast<std::uint32_t>(row);
     const Vec<D> x = pairs.position[i];
@@ -24,8 +24,8 @@ void sumOnFluid(Context<Cpu>&, const IsphPairs<D>& pairs, const Term& term) {
   });
 }
 
-template <int D, class Term>
-void sumOnWalls(Context<Cpu>&, const IsphPairs<D>& pairs, const Term& term) {
+template <int D, class Term, class Backend>
+void sumOnWalls(Context<Backend>&, const IsphPairs<D>& pairs, const Term& term) {
   parallelFor(pairs.fluidOfWalls.count, parallelGrain, [&](std::size_t row) {
     const std::uint32_t i = pairs.fluidOfWalls.first + static_cast<std::uint32_t>(row);
     double sum[Term::values] = {};
@@ -38,8 +38,9 @@ void sumOnWalls(Context<Cpu>&, const IsphPairs<D>& pairs, const Term& term) {
   });
 }
 
-template <int D, class T, class Row>
-void fillIsphMatrix(Context<Cpu>&, const IsphPairs<D>& pairs, const Row& row, const IsphMatrixParts<D, T>& parts) {
+template <int D, class T, class Row, class Backend>
+void fillIsphMatrix(Context<Backend>&, const IsphPairs<D>& pairs, const Row& row,
+                    const IsphMatrixParts<D, T>& parts) {
   const IsphMatrixRow<D, T, Row> filler{pairs, row, parts};
   const std::uint64_t farBegin = pairs.fluidOfFluid.start[pairs.fluidOfFluid.count];
   parallelFor(pairs.ownFluid(), parallelGrain, [&](std::size_t index) {
@@ -54,26 +55,7 @@ void fillIsphMatrix(Context<Cpu>&, const IsphPairs<D>& pairs, const Row& row, co
   });
 }
 
-#define TREACLE_INSTANTIATE(D)                                                                \
-  template void sumOnFluid(Context<Cpu>&, const IsphPairs<D>&, const DensityTerm<D>&);        \
-  template void sumOnFluid(Context<Cpu>&, const IsphPairs<D>&, const PredictorTerm<D>&);      \
-  template void sumOnFluid(Context<Cpu>&, const IsphPairs<D>&,                                \
-                           const BothTerms<DensityTerm<D>, PredictorTerm<D>>&);               \
-  template void sumOnFluid(Context<Cpu>&, const IsphPairs<D>&, const ViscousSourceTerm<D>&);  \
-  template void sumOnFluid(Context<Cpu>&, const IsphPairs<D>&, const PressureSourceTerm<D>&); \
-  template void sumOnFluid(Context<Cpu>&, const IsphPairs<D>&, const CorrectorTerm<D>&);      \
-  template void sumOnWalls(Context<Cpu>&, const IsphPairs<D>&, const WallPressureTerm<D>&);   \
-  template void sumOnWalls(Context<Cpu>&, const IsphPairs<D>&, const WallForceTerm<D>&);      \
-  template void fillIsphMatrix(Context<Cpu>&, const IsphPairs<D>&, const PressureRow<D>&,     \
-                               const IsphMatrixParts<D, double>&);                            \
-  template void fillIsphMatrix(Context<Cpu>&, const IsphPairs<D>&, const PressureRow<D>&,     \
-                               const IsphMatrixParts<D, float>&);                             \
-  template void fillIsphMatrix(Context<Cpu>&, const IsphPairs<D>&, const ViscousRow<D>&,      \
-                               const IsphMatrixParts<D, double>&);                            \
-  template void fillIsphMatrix(Context<Cpu>&, const IsphPairs<D>&, const ViscousRow<D>&,      \
-                               const IsphMatrixParts<D, float>&);
-TREACLE_INSTANTIATE(2)
-TREACLE_INSTANTIATE(3)
-#undef TREACLE_INSTANTIATE
+TREACLE_ISPH_SUMS(2, Cpu)
+TREACLE_ISPH_SUMS(3, Cpu)
 
 }  // namespace treacle

@@ -4,14 +4,15 @@
 
 namespace treacle {
 
-template <int D, class T>
-void multiply(Context<Cpu>&, const BlockCsr<D, T>& a, std::span<const Vec<D, T>> x, std::span<Vec<D, T>> y) {
+template <int D, class T, class Backend>
+void multiply(Context<Backend>&, const BlockCsr<D, T, Backend>& a, std::span<const Vec<D, T>> x,
+              std::span<Vec<D, T>> y) {
   parallelFor(a.rows(), parallelGrain,
               [=, view = viewOf(a)](std::size_t i) { y[i] = rowProduct(view, i, x.data()); });
 }
 
-template <int D, class T, class S>
-void extendedJacobiInverse(Context<Cpu>&, const BlockCsr<D, T>& a, std::span<Vec<D, S>> inverse) {
+template <int D, class T, class S, class Backend>
+void extendedJacobiInverse(Context<Backend>&, const BlockCsr<D, T, Backend>& a, std::span<Vec<D, S>> inverse) {
   const std::uint32_t rows = a.rows();
   parallelFor(rows, parallelGrain, [&](std::size_t i) {
     Vec<D, T> sum{};
@@ -22,19 +23,8 @@ void extendedJacobiInverse(Context<Cpu>&, const BlockCsr<D, T>& a, std::span<Vec
   });
 }
 
-#define TREACLE_INSTANTIATE(D, T)                                                                \
-  template void multiply<D, T>(Context<Cpu>&, const BlockCsr<D, T>&, std::span<const Vec<D, T>>, \
-                               std::span<Vec<D, T>>);                                            \
-  template void extendedJacobiInverse<D, T, T>(Context<Cpu>&, const BlockCsr<D, T>&, std::span<Vec<D, T>>);
-TREACLE_INSTANTIATE(1, double)
-TREACLE_INSTANTIATE(2, double)
-TREACLE_INSTANTIATE(3, double)
-TREACLE_INSTANTIATE(1, float)
-TREACLE_INSTANTIATE(2, float)
-TREACLE_INSTANTIATE(3, float)
-#undef TREACLE_INSTANTIATE
-template void extendedJacobiInverse<1, double, float>(Context<Cpu>&, const BlockCsr<1>&, std::span<Vec<1, float>>);
-template void extendedJacobiInverse<2, double, float>(Context<Cpu>&, const BlockCsr<2>&, std::span<Vec<2, float>>);
-template void extendedJacobiInverse<3, double, float>(Context<Cpu>&, const BlockCsr<3>&, std::span<Vec<3, float>>);
+TREACLE_BLOCK_CSR(1, Cpu)
+TREACLE_BLOCK_CSR(2, Cpu)
+TREACLE_BLOCK_CSR(3, Cpu)
 
 }  // namespace treacle

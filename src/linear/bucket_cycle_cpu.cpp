@@ -18,25 +18,9 @@ Vec<D, T> scaled(const Vec<D, T>& diagonal, const Vec<D, T>& v) {
 
 }  // namespace
 
-void findParents(Context<Cpu>&, std::span<const std::uint32_t> members, std::span<std::uint32_t> parent) {
-  for (std::size_t p = 0; p + 1 < members.size(); ++p)
-    std::fill(parent.begin() + members[p], parent.begin() + members[p + 1], static_cast<std::uint32_t>(p));
-}
-
-template <int D, class T>
-void convert(Context<Cpu>&, const BlockCsr<D>& from, BlockCsr<D, T>& to) {
-  to.rowStart.resize(from.rowStart.size());
-  to.column.resize(from.column.size());
-  to.value.resize(from.value.size());
-  std::copy(from.rowStart.begin(), from.rowStart.end(), to.rowStart.begin());
-  std::copy(from.column.begin(), from.column.end(), to.column.begin());
-  for (std::size_t k = 0; k < from.value.size(); ++k)
-    for (int e = 0; e < D * D; ++e) to.value[k].a[e] = static_cast<T>(from.value[k].a[e]);
-}
-
-template <int D, class T>
-void coarsen(Context<Cpu>& context, const BlockCsr<D, T>& fine, std::span<const std::uint32_t> members,
-             BlockCsr<D, T>& coarse) {
+template <int D, class T, class Backend>
+void coarsen(Context<Backend>& context, const BlockCsr<D, T, Backend>& fine,
+             std::span<const std::uint32_t> members, BlockCsr<D, T, Backend>& coarse) {
   const auto rows = static_cast<std::uint32_t>(members.size() - 1);
   std::vector<std::uint32_t> parent(fine.rows());
   findParents(context, members, parent);
@@ -73,8 +57,8 @@ void coarsen(Context<Cpu>& context, const BlockCsr<D, T>& fine, std::span<const 
   });
 }
 
-template <int D, class T>
-void bucketRestrict(Context<Cpu>&, const BucketLevel<D, T>& level, std::span<const Vec<D, T>> inverse,
+template <int D, class T, class Backend>
+void bucketRestrict(Context<Backend>&, const BucketLevel<D, T>& level, std::span<const Vec<D, T>> inverse,
                     std::span<const Vec<D>> r, const BucketVectors<D, T>& v) {
   parallelFor(level.a.rows, parallelGrain, [&](std::size_t p) {
     Vec<D> sum{};
@@ -85,8 +69,8 @@ void bucketRestrict(Context<Cpu>&, const BucketLevel<D, T>& level, std::span<con
   });
 }
 
-template <int D, class T>
-void bucketUnits(Context<Cpu>&, const BucketLevel<D, T>& level, std::uint32_t first,
+template <int D, class T, class Backend>
+void bucketUnits(Context<Backend>&, const BucketLevel<D, T>& level, std::uint32_t first,
                  const BucketVectors<D, T>& v) {
   const std::uint32_t rows = level.a.rows;
   std::fill_n(v.b, std::size_t{rows} * v.columns, Vec<D, T>{});
@@ -98,8 +82,8 @@ void bucketUnits(Context<Cpu>&, const BucketLevel<D, T>& level, std::uint32_t fi
   }
 }
 
-template <int D, class T>
-void bucketSweep(Context<Cpu>&, const BucketLevel<D, T>& level, const BucketVectors<D, T>& v,
+template <int D, class T, class Backend>
+void bucketSweep(Context<Backend>&, const BucketLevel<D, T>& level, const BucketVectors<D, T>& v,
                  const BucketCorrection<D, T>* correction) {
   const std::size_t rows = level.a.rows;
   for (std::size_t column = 0; column < v.columns; ++column) {
@@ -116,8 +100,8 @@ void bucketSweep(Context<Cpu>&, const BucketLevel<D, T>& level, const BucketVect
   }
 }
 
-template <int D, class T>
-void bucketRestrictResidual(Context<Cpu>&, const BucketLevel<D, T>& level, const BucketVectors<D, T>& v,
+template <int D, class T, class Backend>
+void bucketRestrictResidual(Context<Backend>&, const BucketLevel<D, T>& level, const BucketVectors<D, T>& v,
                             const BucketLevel<D, T>& coarse, const BucketVectors<D, T>& coarseV) {
   const std::size_t rows = level.a.rows, coarseRows = coarse.a.rows;
   for (std::size_t column = 0; column < v.columns; ++column) {
@@ -133,44 +117,23 @@ void bucketRestrictResidual(Context<Cpu>&, const BucketLevel<D, T>& level, const
   }
 }
 
-template <int D, class T>
-void bucketProlong(Context<Cpu>&, const BucketLevel<D, T>& level, const Vec<D, T>* x,
-                   std::span<const Vec<D, T>> inverse, std::span<const Vec<D>> r, std::span<Vec<D>> z) {
-  parallelFor(level.a.rows, parallelGrain, [&](std::size_t p) {
-    for (std::uint32_t i = level.members[p]; i < level.members[p + 1]; ++i)
-      for (int c = 0; c < D; ++c) z[i][c] = inverse[i][c] == 0 ? 0 : inverse[i][c] * r[i][c] + x[p][c];
-  });
-}
-
-template <class T>
-void symmetrise(Context<Cpu>&, std::uint32_t n, T* matrix) {
+template <class T, class Backend>
+void symmetrise(Context<Backend>&, std::uint32_t n, T* matrix) {
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t j = i + 1; j < n; ++j)
       matrix[i * n + j] = matrix[j * n + i] = (matrix[i * n + j] + matrix[j * n + i]) / 2;
 }
 
-#define TREACLE_INSTANTIATE(D, T)                                                                                 \
-  template void convert<D, T>(Context<Cpu>&, const BlockCsr<D>&, BlockCsr<D, T>&);                                \
-  template void coarsen<D, T>(Context<Cpu>&, const BlockCsr<D, T>&, std::span<const std::uint32_t>,               \
-                              BlockCsr<D, T>&);                                                                   \
-  template void bucketRestrict<D, T>(Context<Cpu>&, const BucketLevel<D, T>&, std::span<const Vec<D, T>>,         \
-                                     std::span<const Vec<D>>, const BucketVectors<D, T>&);                        \
-  template void bucketUnits<D, T>(Context<Cpu>&, const BucketLevel<D, T>&, std::uint32_t,                         \
-                                  const BucketVectors<D, T>&);                                                    \
-  template void bucketSweep<D, T>(Context<Cpu>&, const BucketLevel<D, T>&, const BucketVectors<D, T>&,            \
-                                  const BucketCorrection<D, T>*);                                                 \
-  template void bucketRestrictResidual<D, T>(Context<Cpu>&, const BucketLevel<D, T>&, const BucketVectors<D, T>&, \
-                                             const BucketLevel<D, T>&, const BucketVectors<D, T>&);               \
-  template void bucketProlong<D, T>(Context<Cpu>&, const BucketLevel<D, T>&, const Vec<D, T>*,                    \
-                                    std::span<const Vec<D, T>>, std::span<const Vec<D>>, std::span<Vec<D>>);
-TREACLE_INSTANTIATE(1, double)
-TREACLE_INSTANTIATE(2, double)
-TREACLE_INSTANTIATE(3, double)
-TREACLE_INSTANTIATE(1, float)
-TREACLE_INSTANTIATE(2, float)
-TREACLE_INSTANTIATE(3, float)
+#define TREACLE_INSTANTIATE(T)                                                                                  \
+  TREACLE_BUCKET_CYCLE(1, T, Cpu)                                                                               \
+  TREACLE_BUCKET_CYCLE(2, T, Cpu)                                                                               \
+  TREACLE_BUCKET_CYCLE(3, T, Cpu)                                                                               \
+  template void coarsen(Context<Cpu>&, const BlockCsr<1, T>&, std::span<const std::uint32_t>, BlockCsr<1, T>&); \
+  template void coarsen(Context<Cpu>&, const BlockCsr<2, T>&, std::span<const std::uint32_t>, BlockCsr<2, T>&); \
+  template void coarsen(Context<Cpu>&, const BlockCsr<3, T>&, std::span<const std::uint32_t>, BlockCsr<3, T>&); \
+  template void symmetrise(Context<Cpu>&, std::uint32_t, T*);
+TREACLE_INSTANTIATE(double)
+TREACLE_INSTANTIATE(float)
 #undef TREACLE_INSTANTIATE
-template void symmetrise<double>(Context<Cpu>&, std::uint32_t, double*);
-template void symmetrise<float>(Context<Cpu>&, std::uint32_t, float*);
 
 }  // namespace treacle

@@ -1,30 +1,13 @@
 #include "treacle/linear/deflation.hpp"
 
 #include "sum_chunks.hpp"
-#include "treacle/core/processes.hpp"
 #include "treacle/linear/vector.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
 namespace treacle {
 namespace {
-
-void narrowChunk(double c, const double* x, float* y, std::size_t n) {
-#pragma omp simd
-  for (std::size_t i = 0; i < n; ++i) y[i] = static_cast<float>(c * x[i]);
-}
-
-/// Runs body(begin, length) on chunks of fixed length.
-template <class F>
-void forChunks(std::size_t n, F&& body) {
-  const std::size_t chunks = (n + reductionChunk - 1) / reductionChunk;
-  parallelFor(chunks, 2, [&](std::size_t c) {
-    const std::size_t begin = c * reductionChunk;
-    body(begin, std::min(reductionChunk, n - begin));
-  });
-}
 
 /// sums[j] = column j times y, chunk by chunk, so that y is read once.
 template <class T>
@@ -51,16 +34,10 @@ void setWeights(Context<Cpu>& context, const Deflated& d, const T* columns, std:
 
 }  // namespace
 
-void widen(Context<Cpu>&, std::span<const float> from, std::span<double> to) {
-  parallelFor(from.size(), parallelGrain, [&](std::size_t i) { to[i] = from[i]; });
-}
-
 void galerkinRow(Context<Cpu>& context, const Deflated& d, int j) {
   const std::size_t n = d.w.size() / d.modes;
   products(context, d.w.data(), d.modes, d.aw.subspan(j * n, n), &d.scalars->galerkin(j, 0));
 }
-
-void setInverse(Context<Cpu>&, const ModeMatrix& inverse, DeflationScalars* to) { to->inverse = inverse; }
 
 void deflateGuess(Context<Cpu>& context, const Deflated& d, std::span<double> x, std::span<double> r,
                   KrylovScalars* krylov) {
@@ -91,19 +68,6 @@ void deflatedDirection(Context<Cpu>& context, const Deflated& d, std::span<const
     for (int j = 0; j < d.modes; ++j)
       addChunk(-d.scalars->weight[j], d.w.data() + j * n + k, p.data() + k, length);
   });
-}
-
-void recordedDirection(Context<Cpu>& context, std::span<const double> r, std::span<const double> z,
-                       std::span<double> p, KrylovScalars* krylov, DeflationScalars* scalars,
-                       std::span<float> basis) {
-  directionDot(context, r, z, krylov);
-  scalars->record(*krylov);
-  direction(context, z, p, krylov);
-  const int i = krylov->iteration;
-  if (basis.empty() || i >= DeflationScalars::maxBasis) return;
-  const double c = (i % 2 ? -1 : 1) / std::sqrt(krylov->rho);
-  float* column = basis.data() + i * z.size();
-  forChunks(z.size(), [&](std::size_t k, std::size_t n) { narrowChunk(c, z.data() + k, column + k, n); });
 }
 
 void combine(Context<Cpu>&, std::span<const float> basis, const RitzVectors& ritz, std::span<float> w) {

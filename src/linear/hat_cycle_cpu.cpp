@@ -1,21 +1,20 @@
-#include "treacle/linear/hat_cycle.hpp"
-
-#include "treacle/core/parallel.hpp"
+#include "treacle/core/each.hpp"
+#include "treacle/linear/hat_rows.hpp"
 
 #include <algorithm>
 
 namespace treacle {
-namespace {
 
-/// store(k, number k of A x) for all numbers
 template <class T, int B, class Store>
-void rowSums(const BlockCsrView<B, T>& a, const T* x, Store&& store) {
+void forEachProduct(Context<Cpu>&, const BlockCsrView<B, T>& a, const T* x, const Store& store) {
   const auto* at = reinterpret_cast<const Vec<B, T>*>(x);
   parallelFor(a.rows, parallelGrain, [&](std::size_t row) {
     const Vec<B, T> total = rowProduct(a, row, at);
     for (int c = 0; c < B; ++c) store(row * B + c, total[c]);
   });
 }
+
+namespace {
 
 /// sum += weight v_node
 template <int B, class T>
@@ -25,8 +24,9 @@ void addScaled(Vec<B, T>& sum, double weight, const T* v, std::uint32_t node) {
 
 }  // namespace
 
-template <class T, int B>
-void hatValues(Context<Cpu>&, const BlockCsr<B>& a, std::span<Block<B, T>> value, std::span<T> inverseDiagonal) {
+template <class T, int B, class Backend>
+void hatValues(Context<Backend>&, const BlockCsr<B, double, Backend>& a, std::span<Block<B, T>> value,
+               std::span<T> inverseDiagonal) {
   parallelFor(a.rows(), parallelGrain, [&](std::size_t i) {
     Vec<B> diagonal{};
     for (std::uint64_t k = a.rowStart[i]; k < a.rowStart[i + 1]; ++k) {
@@ -39,41 +39,11 @@ void hatValues(Context<Cpu>&, const BlockCsr<B>& a, std::span<Block<B, T>> value
   });
 }
 
-template <class T, int B>
-void hatMultiply(Context<Cpu>&, const BlockCsrView<B, T>& a, std::span<const T> x, std::span<T> y) {
-  rowSums(a, x.data(), [&](std::size_t k, T sum) { y[k] = sum; });
-}
-
-template <class T>
-void hatFirstStep(Context<Cpu>&, std::size_t unknowns, const HatVectors<T>& v) {
-  const T gain = ChebyshevStep<T>::at(1).gain / hatLambdaMax;
-  parallelFor(unknowns, parallelGrain,
-              [&](std::size_t i) { v.x[i] = v.z[0][i] = gain * v.inverseDiagonal[i] * v.b[i]; });
-}
-
-template <class T, int B>
-void hatStep(Context<Cpu>&, const BlockCsrView<B, T>& a, ChebyshevStep<T> step, const HatVectors<T>& v,
-             const T* from, int last) {
-  const T* z = v.z[last];
-  T* next = v.z[1 - last];
-  const T gain = step.gain / hatLambdaMax;
-  rowSums(a, z, [&](std::size_t k, T sum) {
-    v.res[k] = from[k] - sum;
-    next[k] = step.previous * z[k] + gain * v.inverseDiagonal[k] * v.res[k];
-    v.x[k] += next[k];
-  });
-}
-
-template <class T, int B>
-void hatResidual(Context<Cpu>&, const BlockCsrView<B, T>& a, const HatVectors<T>& v, const T* from, int last) {
-  rowSums(a, v.z[last], [&](std::size_t k, T sum) { v.res[k] = from[k] - sum; });
-}
-
-template <int D, int B, class T>
-void hatRestrict(Context<Cpu>&, const HatNodes<D>& fine, const HatNodes<D>& coarse, const T* res,
-                 const HatVectors<T>& v) {
+template <int D, int B, class T, class Backend>
+void hatRestrict(Context<Backend>&, const HatNodes<D, Backend>& fine, const HatNodes<D, Backend>& coarse,
+                 const T* res, const HatVectors<T>& v) {
   const HatNodesView<D> from = fine.view(), to = coarse.view();
-  const T gain = ChebyshevStep<T>::at(1).gain / hatLambdaMax;
+  const FirstStep<T> first(v);
   parallelFor(to.count, parallelGrain, [&](std::size_t row) {
     Vec<B, T> sum{};
     forEachFine(from.lattice, to.pointOf(row), [&](const Vec<D, int>& p, double weight) {
@@ -83,14 +53,14 @@ void hatRestrict(Context<Cpu>&, const HatNodes<D>& fine, const HatNodes<D>& coar
     for (int c = 0; c < B; ++c) {
       const std::size_t k = row * B + c;
       v.b[k] = sum[c];
-      if (v.inverseDiagonal) v.x[k] = v.z[0][k] = gain * v.inverseDiagonal[k] * sum[c];
+      if (first.inverseDiagonal) first(k, sum[c]);
     }
   });
 }
 
-template <int D, int B, class T>
-void hatProlong(Context<Cpu>&, const HatNodes<D>& fine, const HatNodes<D>& coarse, const T* e,
-                const HatVectors<T>& v) {
+template <int D, int B, class T, class Backend>
+void hatProlong(Context<Backend>&, const HatNodes<D, Backend>& fine, const HatNodes<D, Backend>& coarse,
+                const T* e, const HatVectors<T>& v) {
   const HatNodesView<D> to = fine.view(), from = coarse.view();
   parallelFor(to.count, parallelGrain, [&](std::size_t row) {
     Vec<B, T> sum{};
@@ -104,8 +74,8 @@ void hatProlong(Context<Cpu>&, const HatNodes<D>& fine, const HatNodes<D>& coars
 }
 
 /// Columns instead of rows, the matrix being symmetric: sums then stand side by side in vector registers.
-template <class T>
-void denseMultiply(Context<Cpu>&, std::uint32_t rows, const T* matrix, const T* b, T* x) {
+template <class T, class Backend>
+void denseMultiply(Context<Backend>&, std::uint32_t rows, const T* matrix, const T* b, T* x) {
   constexpr std::size_t share = 32;
   parallelFor((rows + share - 1) / share, 2, [=](std::size_t s) {
     const std::size_t first = s * share, count = std::min(share, rows - first);
@@ -121,34 +91,7 @@ void denseMultiply(Context<Cpu>&, std::uint32_t rows, const T* matrix, const T* 
   });
 }
 
-#define TREACLE_INSTANTIATE(T)                                                     \
-  template void hatFirstStep<T>(Context<Cpu>&, std::size_t, const HatVectors<T>&); \
-  template void denseMultiply<T>(Context<Cpu>&, std::uint32_t, const T*, const T*, T*);
-#define TREACLE_INSTANTIATE_PRODUCTS(T, B)                                                                      \
-  template void hatValues<T, B>(Context<Cpu>&, const BlockCsr<B>&, std::span<Block<B, T>>, std::span<T>);       \
-  template void hatMultiply<T, B>(Context<Cpu>&, const BlockCsrView<B, T>&, std::span<const T>, std::span<T>);  \
-  template void hatStep<T, B>(Context<Cpu>&, const BlockCsrView<B, T>&, ChebyshevStep<T>, const HatVectors<T>&, \
-                              const T*, int);                                                                   \
-  template void hatResidual<T, B>(Context<Cpu>&, const BlockCsrView<B, T>&, const HatVectors<T>&, const T*, int);
-#define TREACLE_INSTANTIATE_TRANSFERS(D, B, T)                                                        \
-  template void hatRestrict<D, B, T>(Context<Cpu>&, const HatNodes<D>&, const HatNodes<D>&, const T*, \
-                                     const HatVectors<T>&);                                           \
-  template void hatProlong<D, B, T>(Context<Cpu>&, const HatNodes<D>&, const HatNodes<D>&, const T*,  \
-                                    const HatVectors<T>&);
-#define TREACLE_INSTANTIATE_ALL(T)       \
-  TREACLE_INSTANTIATE(T)                 \
-  TREACLE_INSTANTIATE_PRODUCTS(T, 1)     \
-  TREACLE_INSTANTIATE_PRODUCTS(T, 2)     \
-  TREACLE_INSTANTIATE_PRODUCTS(T, 3)     \
-  TREACLE_INSTANTIATE_TRANSFERS(2, 1, T) \
-  TREACLE_INSTANTIATE_TRANSFERS(2, 2, T) \
-  TREACLE_INSTANTIATE_TRANSFERS(3, 1, T) \
-  TREACLE_INSTANTIATE_TRANSFERS(3, 3, T)
-TREACLE_INSTANTIATE_ALL(double)
-TREACLE_INSTANTIATE_ALL(float)
-#undef TREACLE_INSTANTIATE
-#undef TREACLE_INSTANTIATE_PRODUCTS
-#undef TREACLE_INSTANTIATE_TRANSFERS
-#undef TREACLE_INSTANTIATE_ALL
+TREACLE_HAT_CYCLE(double, Cpu)
+TREACLE_HAT_CYCLE(float, Cpu)
 
 }  // namespace treacle

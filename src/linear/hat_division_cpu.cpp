@@ -6,9 +6,10 @@
 
 namespace treacle {
 
-template <int D>
-void divideNodes(Context<Cpu>& context, const HatLattice<D>& lattice, Buffer<std::int32_t> owner,
-                 Buffer<std::uint8_t> active, std::span<const std::uint8_t> carried, HatNodes<D>& nodes) {
+template <int D, class Backend>
+void divideNodes(Context<Backend>& context, const HatLattice<D>& lattice, Buffer<std::int32_t, Backend> owner,
+                 Buffer<std::uint8_t, Backend> active, std::span<const std::uint8_t> carried,
+                 HatNodes<D, Backend>& nodes) {
   const Communicator& job = *context.communicator;
   const DividedLattice<D> divided{lattice, owner.data(), active.data(), job.rank()};
   Buffer<NodePlace> place(lattice.points());
@@ -83,8 +84,9 @@ class SpreadRows {
 
 }  // namespace
 
-template <int D, int B>
-void sumRows(Context<Cpu>& context, const HatNodes<D>& nodes, int reach, BlockCsr<B>& a) {
+template <int D, int B, class Backend>
+void sumRows(Context<Backend>& context, const HatNodes<D, Backend>& nodes, int reach,
+             BlockCsr<B, double, Backend>& a) {
   if (!nodes.division) return sumOverProcesses(context, a.value.span());
   Halo<Cpu>& halo = nodes.division->halo;
   const std::uint32_t own = nodes.own(), ghosts = nodes.count() - own;
@@ -101,15 +103,7 @@ void sumRows(Context<Cpu>& context, const HatNodes<D>& nodes, int reach, BlockCs
   }
 }
 
-#define TREACLE_INSTANTIATE(D)                                                                                  \
-  template void divideNodes<D>(Context<Cpu>&, const HatLattice<D>&, Buffer<std::int32_t>, Buffer<std::uint8_t>, \
-                               std::span<const std::uint8_t>, HatNodes<D>&);
-TREACLE_INSTANTIATE(2)
-TREACLE_INSTANTIATE(3)
-template void sumRows<2, 1>(Context<Cpu>&, const HatNodes<2>&, int, BlockCsr<1>&);
-template void sumRows<2, 2>(Context<Cpu>&, const HatNodes<2>&, int, BlockCsr<2>&);
-template void sumRows<3, 1>(Context<Cpu>&, const HatNodes<3>&, int, BlockCsr<1>&);
-template void sumRows<3, 3>(Context<Cpu>&, const HatNodes<3>&, int, BlockCsr<3>&);
-#undef TREACLE_INSTANTIATE
+TREACLE_HAT_DIVISION(2, Cpu)
+TREACLE_HAT_DIVISION(3, Cpu)
 
 }  // namespace treacle

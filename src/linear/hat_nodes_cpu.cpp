@@ -1,55 +1,13 @@
-#include "treacle/linear/hat_nodes.hpp"
-
-#include "treacle/core/parallel.hpp"
+#include "treacle/core/each.hpp"
+#include "treacle/linear/each_node.hpp"
 
 #include <algorithm>
 #include <utility>
 
 namespace treacle {
 
-std::uint32_t countNodes(Context<Cpu>&, std::span<const std::uint8_t> active) {
-  return static_cast<std::uint32_t>(active.size() - std::count(active.begin(), active.end(), std::uint8_t{0}));
-}
-
-template <int D>
-void numberNodes(Context<Cpu>& context, const HatLattice<D>& lattice, std::span<const std::uint8_t> active,
-                 HatNodes<D>& nodes) {
-  nodes.lattice = lattice;
-  nodes.division.reset();
-  nodes.nodeAt.resize(active.size());
-  nodes.point.resize(countNodes(context, active));
-  std::uint32_t count = 0;
-  for (std::size_t p = 0; p < active.size(); ++p) {
-    nodes.nodeAt[p] = active[p] ? count : noNode;
-    if (active[p]) nodes.point[count++] = static_cast<std::uint32_t>(p);
-  }
-}
-
-template <int D>
-void coarserNodes(Context<Cpu>& context, const HatNodes<D>& fine, HatNodes<D>& coarse, std::uint64_t mostWhole) {
-  const HatLattice<D> lattice = fine.lattice.coarser();
-  const HatNodesView<D> view = fine.view();
-  Buffer<std::uint8_t> active(lattice.points()), carried(fine.division ? lattice.points() : 0);
-  Buffer<std::int32_t> owner(carried.size());
-  parallelFor(active.size(), parallelGrain, [&](std::size_t p) {
-    const Vec<D, int> point = lattice.at(p);
-    bool any = false, mine = false;
-    forEachFine(view.lattice, point, [&](const Vec<D, int>& q, double) {
-      any = any || view.isNode(q);
-      mine = mine || view.at(q) != noNode;
-    });
-    active[p] = any;
-    if (!fine.division) return;
-    carried[p] = mine;
-    owner[p] = fine.division->owner[pointBelow(fine.lattice, point)];
-  });
-  if (!fine.division || countNodes(context, active) <= mostWhole)
-    return numberNodes<D>(context, lattice, active, coarse);
-  divideNodes<D>(context, lattice, std::move(owner), std::move(active), carried, coarse);
-}
-
-template <int D, int B>
-void hatPattern(Context<Cpu>&, const HatNodes<D>& nodes, BlockCsr<B>& a, int reach) {
+template <int D, int B, class Backend>
+void hatPattern(Context<Backend>&, const HatNodes<D, Backend>& nodes, BlockCsr<B, double, Backend>& a, int reach) {
   const HatNodesView<D> view = nodes.view();
   const auto forEachColumn = [&](std::size_t i, auto&& f) {
     forEachNear(view.lattice, view.pointOf(i), reach, [&](const Vec<D, int>& p) {
@@ -110,9 +68,10 @@ void coarseRow(const HatNodesView<D>& fine, const BlockCsr<B>& a, const HatNodes
 
 }  // namespace
 
-template <int D, int B>
-void coarsenHats(Context<Cpu>& context, const HatNodes<D>& fine, const BlockCsr<B>& a, const HatNodes<D>& coarse,
-                 BlockCsr<B>& coarseA, int reach) {
+template <int D, int B, class Backend>
+void coarsenHats(Context<Backend>& context, const HatNodes<D, Backend>& fine,
+                 const BlockCsr<B, double, Backend>& a, const HatNodes<D, Backend>& coarse,
+                 BlockCsr<B, double, Backend>& coarseA, int reach) {
   hatPattern<D>(context, coarse, coarseA, reach);
   const HatNodesView<D> fineView = fine.view(), coarseView = coarse.view();
   parallelFor(coarse.count(), 16, [&](std::size_t row) {
@@ -121,20 +80,8 @@ void coarsenHats(Context<Cpu>& context, const HatNodes<D>& fine, const BlockCsr<
   if (fine.division) sumRows<D>(context, coarse, reach, coarseA);
 }
 
-#define TREACLE_INSTANTIATE(D)                                                                                    \
-  template void numberNodes<D>(Context<Cpu>&, const HatLattice<D>&, std::span<const std::uint8_t>, HatNodes<D>&); \
-  template void coarserNodes<D>(Context<Cpu>&, const HatNodes<D>&, HatNodes<D>&, std::uint64_t);
-#define TREACLE_INSTANTIATE_MATRICES(D, B)                                                                   \
-  template void hatPattern<D, B>(Context<Cpu>&, const HatNodes<D>&, BlockCsr<B>&, int);                      \
-  template void coarsenHats<D, B>(Context<Cpu>&, const HatNodes<D>&, const BlockCsr<B>&, const HatNodes<D>&, \
-                                  BlockCsr<B>&, int);
-TREACLE_INSTANTIATE(2)
-TREACLE_INSTANTIATE(3)
-TREACLE_INSTANTIATE_MATRICES(2, 1)
-TREACLE_INSTANTIATE_MATRICES(2, 2)
-TREACLE_INSTANTIATE_MATRICES(3, 1)
-TREACLE_INSTANTIATE_MATRICES(3, 3)
-#undef TREACLE_INSTANTIATE
-#undef TREACLE_INSTANTIATE_MATRICES
+template std::uint32_t countNodes(Context<Cpu>&, std::span<const std::uint8_t>);
+TREACLE_HAT_NODES(2, Cpu)
+TREACLE_HAT_NODES(3, Cpu)
 
 }  // namespace treacle

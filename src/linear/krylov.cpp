@@ -24,7 +24,7 @@ SolveReport conjugateGradient(Context<Backend>& context, const LinearSystem& sys
       plainDirection(context, r, z, p.span(), scalars, single != nullptr);
     (single ? *single : a)(p.span(), q.span());
     stepDot(context, p, q, scalars);
-    updateCg(context, {p, q, x, r}, scalars);
+    updateSolution(context, {p, q, x, r}, scalars);
   });
   SolveReport report = workspace.loop.report(context);
   if (report.status == SolveStatus::Running) report = workspace.loop.run(context);
@@ -53,7 +53,7 @@ SolveReport conjugateResidual(Context<Backend>& context, const LinearSystem& sys
     directionsCr(context, {s, y, p, q}, scalars);
     k(q.span(), u.span());
     stepDot(context, q, u, scalars);
-    updateCr(context, {p, q, u, x, r, s}, scalars);
+    updateSolution(context, {p, q, x, r, u, s}, scalars);
   });
   do {
     k(r.span(), s.span());

@@ -1,36 +1,10 @@
 #include "hat_loops.hpp"
-#include "treacle/core/parallel.hpp"
-#include "treacle/precondition/hat_grid.hpp"
+#include "treacle/core/each.hpp"
+#include "treacle/precondition/each_node.hpp"
 
 #include <algorithm>
-#include <utility>
 
 namespace treacle {
-
-template <int D>
-void findHatNodes(Context<Cpu>& context, const SortedParticles<D>& pairs, HatsOn what, HatNodes<D>& nodes,
-                  std::uint64_t mostWhole) {
-  const HatCells<D> cells{pairs.grid};
-  HatLattice<D> lattice;
-  for (int k = 0; k < D; ++k) lattice.count[k] = cells.nodesOn(k);
-  lattice.periodic = pairs.grid.periodic;
-  Buffer<std::uint8_t> active(lattice.points());
-  for (std::size_t p = 0; p < active.size(); ++p) {
-    bool any = false;
-    cells.forEachCellAround(lattice.at(p), 1, [&](const Vec<D, int>& cell) {
-      const std::size_t c = pairs.grid.linear(cell);
-      any = any || pairs.cells.fluidEnd[c] > pairs.cells.fluidBegin[c] ||
-            (what == HatsOn::Active && pairs.cells.wallEnd[c] > pairs.cells.wallBegin[c]);
-    });
-    active[p] = any;
-  }
-  if (context.communicator) context.communicator->anyOf(active);
-  if (!context.communicator || countNodes(context, active) <= mostWhole)
-    return numberNodes<D>(context, lattice, active, nodes);
-  Buffer<std::int32_t> owner(active.size());
-  for (std::size_t p = 0; p < owner.size(); ++p) owner[p] = pairs.owner[cells.cellOfNode(lattice.at(p))];
-  divideNodes<D>(context, lattice, std::move(owner), std::move(active), {}, nodes);
-}
 
 template <int D, class T>
 void HatTransfer<D, T, Cpu>::prepare(Context<Cpu>&, const SortedParticles<D>& pairs) {
@@ -128,8 +102,8 @@ void HatTransfer<D, T, Cpu>::prolong(Context<Cpu>&, const HatNodes<D>& nodes, st
   });
 }
 
-template void findHatNodes<2>(Context<Cpu>&, const SortedParticles<2>&, HatsOn, HatNodes<2>&, std::uint64_t);
-template void findHatNodes<3>(Context<Cpu>&, const SortedParticles<3>&, HatsOn, HatNodes<3>&, std::uint64_t);
+template void findHatNodes(Context<Cpu>&, const SortedParticles<2>&, HatsOn, HatNodes<2, Cpu>&, std::uint64_t);
+template void findHatNodes(Context<Cpu>&, const SortedParticles<3>&, HatsOn, HatNodes<3, Cpu>&, std::uint64_t);
 template class HatTransfer<2, double, Cpu>;
 template class HatTransfer<3, double, Cpu>;
 template class HatTransfer<2, float, Cpu>;

@@ -106,14 +106,13 @@ struct ListBuilder {
 
 template <int D>
 void buildClusterList(Context<Cpu>&, const CellGrid<D>& grid, const CellRanges<>& ranges,
-                      std::span<const Vec<D>> position, std::uint32_t first, std::uint32_t last, ListRadii radii,
-                      bool onlyNextToFluid, ClusterList<>& list) {
-  list.first = first;
-  list.last = last;
+                      std::span<const Vec<D>> position, const ListScope& scope, ClusterList<>& list) {
+  list.first = scope.first;
+  list.last = scope.last;
   const std::uint32_t clusters = list.clusterCount();
   list.offset.resize(std::size_t{listSegments} * clusters + 1);
   list.wraps.resize(clusters);
-  const ListBuilder<D> builder{grid, ranges, position, radii};
+  const ListBuilder<D> builder{grid, ranges, position, scope.radii};
   const auto rangeOf = [&](std::size_t c) { return ClusterRange(list, static_cast<std::uint32_t>(c)); };
 
   list.offset[0] = 0;
@@ -122,7 +121,7 @@ void buildClusterList(Context<Cpu>&, const CellGrid<D>& grid, const CellRanges<>
     list.wraps[c] = builder.visit(rangeOf(c), [&](int segment, std::uint32_t) { ++count[segment]; });
     const bool fluid =
         count[static_cast<int>(ListSegment::NearFluid)] + count[static_cast<int>(ListSegment::FarFluid)] > 0;
-    if (onlyNextToFluid && !fluid) count = {};
+    if (scope.onlyNextToFluid && !fluid) count = {};
     for (int s = 0; s < listSegments; ++s) list.offset[std::size_t{listSegments} * c + s + 1] = count[s];
   });
   for (std::size_t k = 1; k < list.offset.size(); ++k) list.offset[k] += list.offset[k - 1];
@@ -138,8 +137,8 @@ void buildClusterList(Context<Cpu>&, const CellGrid<D>& grid, const CellRanges<>
 }
 
 template void buildClusterList<2>(Context<Cpu>&, const CellGrid<2>&, const CellRanges<>&, std::span<const Vec<2>>,
-                                  std::uint32_t, std::uint32_t, ListRadii, bool, ClusterList<>&);
+                                  const ListScope&, ClusterList<>&);
 template void buildClusterList<3>(Context<Cpu>&, const CellGrid<3>&, const CellRanges<>&, std::span<const Vec<3>>,
-                                  std::uint32_t, std::uint32_t, ListRadii, bool, ClusterList<>&);
+                                  const ListScope&, ClusterList<>&);
 
 }  // namespace treacle

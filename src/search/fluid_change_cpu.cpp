@@ -7,9 +7,9 @@
 
 namespace treacle {
 
-template <int D>
-void changeFluid(Context<Cpu>&, std::span<const std::uint8_t> gone, const Particles<D>& added,
-                 Particles<D>& particles) {
+template <int D, class Backend>
+void changeFluid(Context<Backend>&, std::span<const std::uint8_t> gone, const Particles<D>& added,
+                 Particles<D, Backend>& particles) {
   std::vector<std::uint32_t> kept;
   kept.reserve(particles.fluidCount);
   for (std::uint32_t i = 0; i < particles.fluidCount; ++i)

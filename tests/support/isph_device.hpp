@@ -25,6 +25,8 @@ struct DeviceIsph {
   NeighbourRows<Cuda> fluidOfFluid, wallsOfFluid, fluidOfWalls;
   Buffer<double, Cuda> density;
   Buffer<std::uint8_t, Cuda> surface;
+  Buffer<SymmetricBlock<D, float>, Cuda> renormalisation;
+  Buffer<float, Cuda> missing;
   IsphPairs<D> pairs;  // looks at the members above
 
   explicit DeviceIsph(const IsphScene<D>& s) : pairs(s.pairs) {
@@ -35,6 +37,10 @@ struct DeviceIsph {
     fluidOfWalls = onDevice(context, s.fluidOfWalls);
     copyToDevice<double>(context, s.density, density);
     copyToDevice<std::uint8_t>(context, s.surface, surface);
+    copyToDevice<SymmetricBlock<D, float>>(context, s.renormalisation, renormalisation);
+    copyToDevice<float>(context, s.missing, missing);
+    pairs.renormalisation = renormalisation.data();
+    pairs.missing = missing.data();
     pairs.position = particles.position;
     pairs.material = particles.material;
     pairs.body = particles.body.data();

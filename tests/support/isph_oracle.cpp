@@ -1,5 +1,6 @@
 #include "support/isph_oracle.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -61,6 +62,14 @@ double IsphOracle<D>::latticeDensity() const {
 }
 
 template <int D>
+double IsphOracle<D>::latticeLaplacian() const {
+  double sum = 0;
+  for (const Vec<D>& x : latticeAt<D>(Vec<D>::filled(-3 * l), Vec<D, int>::filled(7), l))
+    if (norm(x) > 0.5 * l) sum -= 2 * volume * kernelSlope(norm(x)) / norm(x);
+  return sum;
+}
+
+template <int D>
 double IsphOracle<D>::density(std::uint32_t i) const {
   double sum = volume * kernel(0);
   forEachOther(i, [&](std::uint32_t j) { sum += volume * kernel(norm(apart(i, j))); });
@@ -72,6 +81,50 @@ Vec<D> IsphOracle<D>::deficit(std::uint32_t i) const {
   Vec<D> sum{};
   forEachOther(i, [&](std::uint32_t j) { sum += gradient(i, j); });
   return sum;
+}
+
+template <int D>
+Matrix IsphOracle<D>::renormalisation(std::uint32_t i) const {
+  if (!isAccurate()) return Matrix::Identity(D, D);
+  Eigen::Matrix<double, D, D> m = Eigen::Matrix<double, D, D>::Zero();
+  forEachOther(i, [&](std::uint32_t j) {
+    const Vec<D> g = gradient(i, j), d = apart(i, j);
+    for (int a = 0; a < D; ++a)
+      for (int b = 0; b < D; ++b) m(a, b) -= g[a] * d[b];
+  });
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, D, D>> solver(m);
+  const auto& v = solver.eigenvectors();
+  const Eigen::Matrix<double, D, D> inverse =
+      v * solver.eigenvalues().cwiseMax(0.3).cwiseInverse().asDiagonal() * v.transpose();
+  Matrix b = Matrix::Zero(D, D);
+  for (int r = 0; r < D; ++r)
+    for (int c = 0; c < D; ++c) b(r, c) = inverse(r, c);
+  return b;
+}
+
+template <int D>
+Vec<D> IsphOracle<D>::renormalised(std::uint32_t i, const Vec<D>& x) const {
+  const Matrix b = renormalisation(i);
+  Vec<D> y{};
+  for (int r = 0; r < D; ++r)
+    for (int c = 0; c < D; ++c) y[r] += b(r, c) * x[c];
+  return y;
+}
+
+template <int D>
+double IsphOracle<D>::along(std::uint32_t i, std::uint32_t j) const {
+  const Vec<D> e = (1 / norm(apart(i, j))) * apart(i, j);
+  return dot(e, renormalised(i, e));
+}
+
+template <int D>
+double IsphOracle<D>::missing(std::uint32_t i) const {
+  if (!isAccurate()) return 0;
+  double found = 0;
+  forEachOther(i, [&](std::uint32_t j) { found -= 2 * laplacian(i, j); });
+  const double share = 1 - found / latticeLaplacian(), lack = norm(deficit(i)) * l;
+  const double weight = std::clamp(std::max((lack - 0.05) / 0.1, (share - 0.15) / 0.1), 0.0, 1.0);
+  return weight * std::max(0.0, share);
 }
 
 template <int D>
@@ -92,13 +145,18 @@ Vec<D> IsphOracle<D>::predicted(const std::vector<Vec<D>>& v, std::uint32_t i) c
 template <int D>
 double IsphOracle<D>::divergence(const std::vector<Vec<D>>& v, std::uint32_t i) const {
   double sum = 0;
-  forEachOther(i, [&](std::uint32_t j) { sum += dot(seen(v, i, j) - v[i], gradient(i, j)); });
+  forEachOther(i, [&](std::uint32_t j) {
+    const Vec<D> relative = seen(v, i, j) - v[i];
+    sum +=
+        isWall(j) ? along(i, j) * dot(relative, gradient(i, j)) : dot(relative, renormalised(i, gradient(i, j)));
+  });
   return sum;
 }
 
 template <int D>
 double IsphOracle<D>::source(const std::vector<Vec<D>>& v, std::uint32_t i) const {
-  return -divergence(v, i) / dt - s.c.method.isph.alpha * (1 - density(i)) / (dt * dt);
+  const double share = missing(i), lack = share > 0 ? std::min(0.0, 1 - density(i)) : 1 - density(i);
+  return (1 - share) * (-divergence(v, i) / dt - s.c.method.isph.alpha * lack / (dt * dt));
 }
 
 template <int D>
@@ -114,7 +172,8 @@ Vec<D> IsphOracle<D>::corrected(const std::vector<Vec<D>>& v, const std::vector<
                                 const std::vector<Vec<D>>& acceleration) const {
   Vec<D> sum{};
   forEachOther(i, [&](std::uint32_t j) {
-    sum += (p[i] + (isWall(j) ? inWall(p[i], i, j, acceleration) : p[j])) * gradient(i, j);
+    const Vec<D> g = gradient(i, j), own = renormalised(i, g);
+    sum += p[i] * own + (isWall(j) ? inWall(p[i], i, j, acceleration) * own : p[j] * renormalised(j, g));
   });
   return v[i] - (dt / material(i).density) * sum;
 }
@@ -158,9 +217,11 @@ Matrix IsphOracle<D>::pressureMatrix(const std::function<bool(std::uint32_t)>& u
   Matrix a = Matrix::Zero(s.n(), s.n());
   for (std::uint32_t i = 0; i < s.n(); ++i) {
     if (!unknown(i)) continue;
+    a(i, i) = missing(i) * latticeLaplacian() / material(i).density;
     forEachOther(i, [&](std::uint32_t j) {
       if (isWall(j)) return;
-      const double c = -2 * laplacian(i, j) / (0.5 * (material(i).density + material(j).density));
+      const double c =
+          -(along(i, j) + along(j, i)) * laplacian(i, j) / (0.5 * (material(i).density + material(j).density));
       a(i, i) += c;
       if (unknown(j)) a(i, j) -= c;
     });

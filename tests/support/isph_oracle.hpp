@@ -42,6 +42,17 @@ struct IsphOracle {
 
   /// Of a full lattice.
   double latticeDensity() const;
+  double latticeLaplacian() const;
+  bool isAccurate() const { return s.c.method.scheme == SchemeKind::Accurate; }
+  /// Accurate scheme: the inverse of M = sum V grad W d^T, whose eigenvalues count as at least 0.3; the unit
+  /// matrix in the published one.
+  Matrix renormalisation(std::uint32_t i) const;
+  Vec<D> renormalised(std::uint32_t i, const Vec<D>& x) const;
+  /// By how much the Laplacian of a pair counts more, by its particle i.
+  double along(std::uint32_t i, std::uint32_t j) const;
+  /// Share of the neighbours that particle i misses of a full lattice's, by the Laplacian, where it is at the free
+  /// surface of the accurate scheme.
+  double missing(std::uint32_t i) const;
   /// eq. (3), in units of the full lattice's.
   double density(std::uint32_t i) const;
   Vec<D> deficit(std::uint32_t i) const;

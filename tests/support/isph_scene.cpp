@@ -18,6 +18,10 @@ IsphScene<D>::IsphScene(const Case& theCase, Particles<D> state)
   density.resize(n());
   deficit.resize(n());
   surface.resize(n());
+  renormalisation.resize(n());
+  missing.resize(n());
+  pairs.renormalisation = renormalisation.data();
+  pairs.missing = missing.data();
   sumOnFluid(context, pairs, DensityTerm<D>{density.data(), deficit.data(), surface.data()});
 }
 

@@ -23,12 +23,14 @@ struct IsphScene {
   Buffer<double> density;
   Buffer<Vec<D>> deficit;
   Buffer<std::uint8_t> surface;
+  Buffer<SymmetricBlock<D, float>> renormalisation;
+  Buffer<float> missing;
 
   IsphScene(const Case& theCase, Particles<D> state);
 
   std::uint32_t n() const { return particles.fluidCount; }
   std::uint32_t surfaceCount() const {
-    return static_cast<std::uint32_t>(std::count(surface.begin(), surface.end(), 1));
+    return n() - static_cast<std::uint32_t>(std::count(surface.begin(), surface.end(), Place::Inside));
   }
 
  private:

@@ -40,6 +40,8 @@ std::string columns(const Case& c, const Probe& p) {
       return fmt::format("time,volume,mass{}{},pressure,dynamic_viscosity{}{}", axes(c, "center"),
                          axes(c, "velocity"), c.hasOwnViscosities() ? ",shear_rate" : "",
                          c.heat ? ",temperature" : "");
+    case ProbeKind::WallPressure:
+      return "time,pressure,largest";
     case ProbeKind::Load:
       break;
   }
@@ -61,15 +63,14 @@ std::string ProbeWriter::components(const Vec<3>& v) const {
   return text;
 }
 
-void ProbeWriter::append(double time, const Frame& fluid, const Frame& walls) {
+void ProbeWriter::append(double time, const Probe& now, const Frame& fluid, const Frame& walls) {
   const FluidSampler sampler(fluid, walls, case_.domain, case_.spacing);
   if (probe_.kind == ProbeKind::Height) {
-    const Vec<3> way = probe_.to - probe_.from;
-    const double height = sampler.extent(probe_.from, probe_.to);
-    return rows_.append(
-        fmt::format("{},{}{}", time, height, components(probe_.from + (height / norm(way)) * way)));
+    const Vec<3> way = now.to - now.from;
+    const double height = sampler.extent(now.from, now.to);
+    return rows_.append(fmt::format("{},{}{}", time, height, components(now.from + (height / norm(way)) * way)));
   }
-  const ProbePlaces places = ProbePlaces::of(probe_, case_.spacing);
+  const ProbePlaces places = ProbePlaces::of(now, case_.spacing);
   std::vector<FluidSample> samples(places.count());
   parallelFor(samples.size(), parallelGrain, [&](std::size_t k) { samples[k] = sampler.at(places.at(k)); });
   std::string rows;
@@ -78,7 +79,7 @@ void ProbeWriter::append(double time, const Frame& fluid, const Frame& walls) {
     const FluidSample& s = samples[k];
     if (k > 0) rows += '\n';
     rows += fmt::format("{}", time);
-    if (probe_.kind == ProbeKind::Line) rows += fmt::format(",{}", norm(x - probe_.from));
+    if (probe_.kind == ProbeKind::Line) rows += fmt::format(",{}", norm(x - now.from));
     rows += components(x) + components(s.velocity) + fmt::format(",{}", s.pressure);
     if (hasOwnViscosities_) rows += fmt::format(",{},{}", s.viscosity, s.shearRate);
     if (case_.heat) rows += fmt::format(",{}", s.temperature);
@@ -87,9 +88,9 @@ void ProbeWriter::append(double time, const Frame& fluid, const Frame& walls) {
 }
 
 /// Means are those by volume. Of a part without fluid they are 0/0, not a number.
-void ProbeWriter::append(double time, const PartSums& s) {
+void ProbeWriter::append(double time, const Probe& now, const PartSums& s) {
   if (probe_.kind == ProbeKind::Flow) {
-    const Vec<3> downstream = (1 / norm(probe_.normal)) * probe_.normal;
+    const Vec<3> downstream = (1 / norm(now.normal)) * now.normal;
     return rows_.append(fmt::format("{},{},{}", time, dot(s.flow, downstream), dot(s.momentum, downstream)));
   }
   const auto mean = [&](double sum) { return sum / s.volume; };
@@ -100,6 +101,10 @@ void ProbeWriter::append(double time, const PartSums& s) {
   if (hasOwnViscosities_) row += fmt::format(",{}", mean(s.shearRate));
   if (case_.heat) row += fmt::format(",{}", mean(s.temperature));
   rows_.append(std::move(row));
+}
+
+void ProbeWriter::append(double time, const PatchMean& pressure) {
+  rows_.append(fmt::format("{},{},{}", time, pressure.impulse / pressure.time, pressure.largest));
 }
 
 void ProbeWriter::append(double time, const std::vector<WallLoad>& walls) {

@@ -26,6 +26,7 @@ ProbePlaces ProbePlaces::of(const Probe& p, double spacing) {
     case ProbeKind::Flow:
     case ProbeKind::Region:
     case ProbeKind::Load:
+    case ProbeKind::WallPressure:
       break;
   }
   return {p.point};

@@ -23,11 +23,17 @@ void requireOneOf(const Checker& at, std::string_view key, std::string_view what
     at.fail({key}, fmt::format("expected the name of {}, found '{}'", what, name));
 }
 
-void requireLoad(const Checker& at, const Probe& p) {
+void requireWall(const Checker& at, std::string_view key, const std::string& name) {
   const Case& c = at.wholeCase();
-  requireOneOf(at, "body", "a wall or rigid body", p.body, c.bodies);
-  if (!std::ranges::find(c.bodies, p.body, &Body::name)->isWall())
-    at.fail({"body"}, fmt::format("'{}' is fluid; expected the name of a wall or rigid body", p.body));
+  requireOneOf(at, key, "a wall or rigid body", name, c.bodies);
+  if (!std::ranges::find(c.bodies, name, &Body::name)->isWall())
+    at.fail({key}, fmt::format("'{}' is fluid; expected the name of a wall or rigid body", name));
+}
+
+/// Boxes lie along the axes.
+void requireCarrier(const Checker& at, const Probe& p) {
+  requireWall(at, "moves_with", p.movesWith);
+  if (p.box) at.fail({"box"}, "a probe that moves with a body has none; expected a plane, by point and normal");
 }
 
 /// Elsewhere nothing can ever be read.
@@ -52,9 +58,13 @@ void requireSound(const Checker& at, const ProbeBox& b) { at.requireOrder(b.min,
 
 void requireSound(const Checker& at, const Probe& p) {
   requireFileName(at, p.name);
-  if (p.kind == ProbeKind::Load) return requireLoad(at, p);
-  if (p.kind == ProbeKind::Point) requireInside(at, p.point);
-  if (p.kind == ProbeKind::Plane) requireRectangle(at, p);
+  if (p.isOnWall()) requireWall(at, "body", p.body);
+  if (p.kind == ProbeKind::Load) return;
+  if (!p.movesWith.empty()) requireCarrier(at, p);
+  if (p.kind == ProbeKind::Point && p.movesWith.empty()) requireInside(at, p.point);
+  if (p.kind == ProbeKind::Plane || (p.kind == ProbeKind::WallPressure && at.wholeCase().dimensions == 3))
+    requireRectangle(at, p);
+  if (p.kind == ProbeKind::WallPressure) return at.requireDirection("along", p.along);
   if ((p.kind == ProbeKind::Line || p.kind == ProbeKind::Height) && p.from == p.to)
     at.fail({"to"}, "expected a point other than from");
   if (p.kind == ProbeKind::Flow) at.requireDirection("normal", p.normal);

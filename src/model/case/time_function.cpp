@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <string>
+#include <unordered_map>
 
 namespace treacle {
 namespace {
@@ -16,6 +18,16 @@ double finite(double value, const std::string& text, double t) {
   if (std::isfinite(value)) return value;
   throw InputError(fmt::format("\"{}\" is {} at t = {:g} s; expected a finite number", text,
                                std::isnan(value) ? "not a number" : "infinite", t));
+}
+
+/// The formula of a text. Reading it takes as long as hundreds of its values, so that each thread keeps what it
+/// has read; a process that goes through many cases forgets it now and then.
+const Expression& formula(const std::string& text) {
+  constexpr std::size_t most = 256;
+  thread_local std::unordered_map<std::string, Expression> known;
+  if (const auto found = known.find(text); found != known.end()) return found->second;
+  if (known.size() >= most) known.clear();
+  return known.emplace(text, Expression::ofTime(text)).first->second;
 }
 
 double inTable(const TimeFunction& f, double t) {
@@ -45,13 +57,13 @@ double integralOfTable(const TimeFunction& f, double from, double to) {
 double TimeFunction::at(double t) const {
   if (isTable()) return inTable(*this, t);
   if (expression.empty()) return value;
-  return finite(Expression::ofTime(expression)({t, 0, 0}), expression, t);
+  return finite(formula(expression)({t, 0, 0}), expression, t);
 }
 
 double TimeFunction::integral(double from, double to) const {
   if (isTable()) return integralOfTable(*this, from, to);
   if (expression.empty()) return value * (to - from);
-  const Expression f = Expression::ofTime(expression);
+  const Expression& f = formula(expression);
   const double middle = (from + to) / 2, half = (to - from) / 2, node = half * std::sqrt(0.6);
   const auto at = [&](double t) { return finite(f({t, 0, 0}), expression, t); };
   return half * (5 * at(middle - node) + 8 * at(middle) + 5 * at(middle + node)) / 9;

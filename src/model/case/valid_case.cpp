@@ -153,6 +153,20 @@ void requireSurface(const Checker& at, const Case& c) {
         "found true beside pieces = \"each\"; expected \"one\" or \"auto\", or `treacle surface` after the run");
 }
 
+/// Images across a periodic end would be at the same place of another frame.
+void requireFrame(const Checker& at, const Case& c) {
+  if (!c.frame) return;
+  if (c.hasRigid()) at.fail({"frame"}, "found beside a rigid body; bodies in a frame that turns must be walls");
+  const Vec<3> axis = c.frame->direction();
+  for (int k = 0; k < c.dimensions; ++k)
+    if (c.domain.periodic[static_cast<std::size_t>(k)] && std::abs(std::abs(axis[k]) - 1) > 1e-12)
+      at.fail(
+          {"domain", "periodic"},
+          fmt::format("found a periodic axis {}; in a frame that turns only an axis along that of the frame may "
+                      "be periodic",
+                      "xyz"[k]));
+}
+
 void requireSound(const Checker& at, const Case& c) {
   if (c.heat && c.method.kind != MethodKind::MphI) at.fail({"heat"}, heatOfMphI);
   if (std::ranges::none_of(c.bodies, &Body::holdsFluid))
@@ -161,6 +175,7 @@ void requireSound(const Checker& at, const Case& c) {
   requireDomainSize(at, c);
   requirePeriodicLength(at, c);
   requireSurface(at, c);
+  requireFrame(at, c);
   for (const auto& [key, interval] :
        {std::pair("interval", c.output.interval), std::pair("checkpoint_interval", c.output.checkpointInterval)})
     if (interval > 0 && c.time.end / interval > maxSteps)

@@ -88,6 +88,10 @@ Vec<3> wallVelocity(const Body& body, double t, double dt) {
   return given + rate * o.amplitude;
 }
 
+double wallSpin(const Body& body, double t, double dt) {
+  return body.rotation ? spinOver(*body.rotation, t, dt) : 0;
+}
+
 Vec<3> wallCenter(const Body& body, double t) {
   return body.rotation ? body.rotation->center + wallDisplacement(body, t) : Vec<3>{};
 }

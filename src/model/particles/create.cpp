@@ -9,8 +9,8 @@
 #include "body_points.hpp"
 #include "geometry/mesh_notes.hpp"
 #include "geometry/point_boxes.hpp"
-#include "geometry/point_grid.hpp"
 #include "lattice.hpp"
+#include "treacle/model/geometry/point_grid.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>

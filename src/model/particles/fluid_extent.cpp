@@ -1,11 +1,9 @@
 #include "fluid_extent.hpp"
 
 #include "body_points.hpp"
-#include "treacle/model/case/expression.hpp"
 #include "treacle/model/motion/wall_motion.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -15,56 +13,29 @@
 namespace treacle {
 namespace {
 
-/// The rate of a function of time, which is asked many times: its expression is read once.
-class Rate {
- public:
-  explicit Rate(const std::optional<TimeFunction>& f) : function_(f && !f->isConstant() ? &*f : nullptr) {
-    if (function_ && !function_->expression.empty())
-      expression_.emplace(Expression::ofTime(function_->expression));
-  }
-  bool isDriven() const { return function_ != nullptr; }
-  double at(double t) const {
-    constexpr double half = 0.5e-6;  // [s]
-    return function_ ? (value(t + half) - value(t - half)) / (2 * half) : 0;
-  }
-  /// Appends the middles between the rows of its table, as far as they are before the end.
-  void addTimes(double end, std::vector<double>& times) const {
-    for (std::size_t k = 1; function_ && k < function_->times.size(); ++k)
-      if (const double t = (function_->times[k - 1] + function_->times[k]) / 2; t > 0 && t < end)
-        times.push_back(t);
-  }
-
- private:
-  double value(double t) const { return expression_ ? (*expression_)({t, 0, 0}) : function_->at(t); }
-
-  const TimeFunction* function_;
-  std::optional<Expression> expression_;
-};
-
 /// When a wall or nozzle moves fastest, and when it turns fastest: among many times of the run, and those between
 /// the rows of its tables.
 struct Fastest {
-  double translation = 0;  // speed of the wall, or of its centre, without its oscillation [m/s]
+  double translation = 0;  // speed of the wall, or of its centre [m/s]
   double turning = 0;      // time [s]
 };
 
 Fastest fastestOf(const Body& body, double end) {
   constexpr int samples = 1000;
-  const std::array<Rate, 3> way{Rate(body.displacement[0]), Rate(body.displacement[1]),
-                                Rate(body.displacement[2])};
-  static const std::optional<TimeFunction> none;
-  const Rate angle(body.rotation ? body.rotation->angle : none);
   std::vector<double> times{0};
-  for (const Rate* rate : {&way[0], &way[1], &way[2], &angle}) rate->addTimes(end, times);
-  if (angle.isDriven() || std::ranges::any_of(way, &Rate::isDriven))
+  const auto addTable = [&](const std::optional<TimeFunction>& f) {
+    for (std::size_t k = 1; f && k < f->times.size(); ++k)
+      if (const double t = (f->times[k - 1] + f->times[k]) / 2; t > 0 && t < end) times.push_back(t);
+  };
+  for (const auto& component : body.displacement) addTable(component);
+  if (body.rotation) addTable(body.rotation->angle);
+  if (isDriven(body.displacement) || (body.rotation && body.rotation->angle))
     for (int k = 0; k < samples; ++k) times.push_back((k + 0.5) / samples * end);
   Fastest fastest;
   double spin = 0;
   for (const double t : times) {
-    const Vec<3> velocity = body.velocity + Vec<3>{way[0].at(t), way[1].at(t), way[2].at(t)};
-    if (const double speed = norm(velocity); std::isfinite(speed))
-      fastest.translation = std::max(fastest.translation, speed);
-    if (const double now = std::abs(angle.at(t)); now > spin) spin = now, fastest.turning = t;
+    fastest.translation = std::max(fastest.translation, norm(wallVelocity(body, t, 0)));
+    if (const double now = std::abs(wallSpin(body, t)); now > spin) spin = now, fastest.turning = t;
   }
   return fastest;
 }
@@ -75,7 +46,7 @@ double largestSpeed(const Case& c, const Body& body) {
   const Oscillation& o = body.oscillation;
   const Fastest fastest = fastestOf(body, c.time.end);
   const double swing = o.period > 0 ? 2 * std::numbers::pi * norm(o.amplitude) / o.period : 0;
-  const double carried = fastest.translation + swing;
+  const double carried = std::max(norm(body.velocity) + swing, fastest.translation);
   const bool expressions = body.velocityExpression != decltype(body.velocityExpression){};
   if (!expressions && !body.fileVelocities && !body.rotation) return carried;
   const InitialState<D> initial(c, body);

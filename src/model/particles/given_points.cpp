@@ -1,6 +1,6 @@
 #include "given_points.hpp"
 
-#include "geometry/point_grid.hpp"
+#include "treacle/model/geometry/point_grid.hpp"
 #include "treacle/model/geometry/shape.hpp"
 
 #include <fmt/format.h>

@@ -113,8 +113,8 @@ class MovingBodies {
     const Case& c = state_.theCase;
     if (!c.hasRigid())
       particles.rigid = {};
-    else if (particles.rigid.bodies.empty())
-      particles.rigid.bodies = rigidBodies<D>(c, state_.context, particles);
+    else
+      begin(particles.rigid.bodies, rigidBodies<D>(c, state_.context, particles));
     state_.rigid = particles.rigid;
     reach_.resize(c.bodies.size());
     for (std::uint32_t i = particles.wallBegin(); i < particles.count; ++i)
@@ -175,6 +175,13 @@ class MovingBodies {
   std::size_t bytes() const { return way_.bytes() + chord_.bytes(); }
 
  private:
+  /// Those of which the state knows nothing begin as the case says.
+  static void begin(std::vector<RigidBody>& bodies, const std::vector<RigidBody>& ofCase) {
+    bodies.resize(ofCase.size());
+    for (std::size_t b = 0; b < bodies.size(); ++b)
+      if (bodies[b].mass == 0) bodies[b] = ofCase[b];
+  }
+
   Vec<3> centerOf(std::size_t b) const {
     const Body& body = state_.theCase.bodies[b];
     return body.kind == BodyKind::Rigid ? state_.rigid.bodies[b].center : wallCenter(body, state_.time);

@@ -7,6 +7,8 @@
 #include "treacle/search/shared_buckets.hpp"
 #include "treacle/step/method/solve_stages.hpp"
 
+#include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -135,11 +137,20 @@ class IsphSystem final : public StagedSystem<Backend> {
       findSharedBuckets(context, *pairs_, ranges_->key, shared_);
       const typename CellMultigrid<T, Backend>::SharedCells shared{
           shared_.local.begin[0], {shared_.all.count(0), shared_.own, shared_.number}};
-      data.cells.setup(context, compressed_, shared_.all.begin, stage_.cells.levels, stage_.cells.sweeps, &shared);
+      data.cells.setup(context, compressed_, severalCells(shared_.all), stage_.cells.levels, stage_.cells.sweeps,
+                       &shared);
     } else {
       findBuckets(context, ranges_->key, D * CellGrid<D>::subBits, D, levels_);
-      data.cells.setup(context, compressed_, levels_.begin, stage_.cells.levels, stage_.cells.sweeps);
+      data.cells.setup(context, compressed_, severalCells(levels_), stage_.cells.levels, stage_.cells.sweeps);
     }
+  }
+
+  /// The levels that have more than one cell, at least the first. Without a free surface pressures are known up to
+  /// a constant, and the matrix of one cell is nothing but rounding.
+  static std::span<const Buffer<std::uint32_t, Backend>> severalCells(const BucketLevels<Backend>& levels) {
+    std::size_t count = levels.begin.size();
+    while (count > 1 && levels.count(count - 1) == 1) --count;
+    return std::span(levels.begin).first(count);
   }
 
   SolverSettings stage_;  // the one that is prepared

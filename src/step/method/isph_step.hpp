@@ -55,7 +55,7 @@ class IsphStep final : public StepMethod<D, Backend> {
     if (bodies_) bodies_->start();
     pairs_.wallMotion = state_.wallMotion.empty() ? nullptr : state_.wallMotion.data();
     pairs_.timeStep = state_.timeStep;
-    pairs_.gravity = resized<D>(state_.theCase.gravity);
+    pairs_.frame = state_.frame;
     pairs_.materials.setTimeStep(state_.timeStep);
     prepareDensities();
     solution_.resize(state_.context, pairs_.fluidCount);
@@ -64,7 +64,10 @@ class IsphStep final : public StepMethod<D, Backend> {
 
   void prepareSystem() override {
     fillGhosts(state_.context, Held::Fluid, surface_.data());
+    if (pairs_.accurate) fillGhosts(state_.context, Held::Fluid, renormalisation_.data());
     closed_ = isClosed(state_.context, ownSurface());
+    if (closed_)
+      clearValues(state_.context, missing_.span());  // no surface that would hold the level of pressures
     computeSource();
     pressure_.prepareMatrix(state_.context, pairs_, ranges(), row());
   }
@@ -117,10 +120,13 @@ class IsphStep final : public StepMethod<D, Backend> {
     copyValues(state_.context, std::span<const double>(solution_), pressure.data());
     clearValues(state_.context, pressure.subspan(pairs_.fluidCount));
     sumOnWalls(state_.context, pairs_, WallPressureTerm<D>{solution_.data(), pressure.data()});
-    if (state_.theCase.hasLoads()) loads_ = wallLoads(state_, loadsOfWalls());
+    if (!state_.theCase.hasLoads()) return;
+    loads_ = wallLoads(state_, loadsOfWalls());
+    patches_ = forces_.pressures(state_, pairs_);
   }
 
   std::vector<WallLoad> loads() const override { return loads_; }
+  std::vector<double> patchPressures() const override { return patches_; }
 
   void describe(DiagnosticsInput<D>& in) const override {
     const std::uint32_t n = state_.particles.fluidCount;
@@ -143,9 +149,9 @@ class IsphStep final : public StepMethod<D, Backend> {
   const MaterialTable& materials() const override { return pairs_.materials; }
   std::size_t bytes() const override {
     return sort_.bytes() + fluidOfFluid_.bytes() + wallsOfFluid_.bytes() + fluidOfWalls_.bytes() +
-           deficit_.bytes() + surface_.bytes() + predictor_.bytes() + source_.bytes() + solution_.bytes() +
-           transport_.bytes() + wallShare_.bytes() + forces_.bytes() + pressure_.bytes() +
-           (bodies_ ? bodies_->bytes() : 0) + pressing_.bytes() + wallSurface_.bytes();
+           deficit_.bytes() + renormalisation_.bytes() + missing_.bytes() + surface_.bytes() + predictor_.bytes() +
+           source_.bytes() + solution_.bytes() + transport_.bytes() + wallShare_.bytes() + forces_.bytes() +
+           pressure_.bytes() + (bodies_ ? bodies_->bytes() : 0) + pressing_.bytes() + wallSurface_.bytes();
   }
 
   /// Pairs up to this share of the kernel's radius make the smoother's matrix: 1.9 l with the usual kernel.
@@ -224,6 +230,12 @@ class IsphStep final : public StepMethod<D, Backend> {
     const std::uint32_t n = pairs_.fluidCount;
     deficit_.resize(state_.context, pairs_.ownFluid());
     surface_.resize(state_.context, n);
+    if (pairs_.accurate) {
+      renormalisation_.resize(state_.context, n);
+      missing_.resize(state_.context, pairs_.ownFluid());
+      pairs_.renormalisation = renormalisation_.data();
+      pairs_.missing = missing_.data();
+    }
     clearValues(state_.context, state_.particles.numberDensity.span().subspan(n));
   }
   DensityTerm<D> densityTerm() {
@@ -236,7 +248,9 @@ class IsphStep final : public StepMethod<D, Backend> {
   NeighbourRows<Backend> fluidOfFluid_, wallsOfFluid_, fluidOfWalls_;
   bool closed_ = false;  // no particle is at the free surface
   Buffer<Vec<D>, Backend> deficit_;
-  Buffer<std::uint8_t, Backend> surface_;  // with ghosts, which all that neighbours read has
+  Buffer<SymmetricBlock<D, float>, Backend> renormalisation_;  // with ghosts; of the accurate scheme
+  Buffer<float, Backend> missing_;                             // likewise, of own particles
+  Buffer<std::uint8_t, Backend> surface_;  // Place, with ghosts, which all that neighbours read has
   IsphPredictor<D, Backend> predictor_;
   Buffer<double, Backend> source_;    // of the pressure equation
   Buffer<double, Backend> solution_;  // with ghosts: of the pressure equation; before, a component of v*
@@ -244,6 +258,7 @@ class IsphStep final : public StepMethod<D, Backend> {
   Buffer<double, Backend> wallShare_;  // of the density in a full lattice
   IsphWallForces<D, Backend> forces_;  // for rigid bodies and probes
   std::vector<WallLoad> loads_;        // of the last step
+  std::vector<double> patches_;        // pressures of the probes WallPressure [Pa]
   IsphSolver<D, Backend, PressureRow<D>> pressure_;
   std::optional<StepBodies<D, Backend>> bodies_;  // where the case has rigid bodies; then also:
   Buffer<double, Backend> pressing_;              // those of the step's first solve

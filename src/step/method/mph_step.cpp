@@ -155,6 +155,9 @@ class MphStep final : public StepMethod<D, Backend> {
   std::vector<WallLoad> loads() const override {
     return lastBalance_ ? lastBalance_->walls : std::vector<WallLoad>{};
   }
+  std::vector<double> patchPressures() const override {
+    return lastBalance_ ? lastBalance_->patches : std::vector<double>{};
+  }
 
   const CellGrid<D>& grid() const override { return pairs_.grid; }
   const CellOwners<D>& owners() const override { return neighbourhood_.owners(); }
@@ -309,8 +312,7 @@ class MphStep final : public StepMethod<D, Backend> {
                        surface_ ? surface_->adhesion() : std::span<const Adhesion<D>>{}, elastic_);
     rhs_.resize(state_.context, state_.particles.fluidCount);
     inertiaAndGravity<D>(state_.context, pairs_,
-                         state_.particles.velocity.span().first(state_.particles.fluidCount),
-                         resized<D>(state_.theCase.gravity), rhs_);
+                         state_.particles.velocity.span().first(state_.particles.fluidCount), state_.frame, rhs_);
     addPressureGradient<D>(state_.context, pairs_, elastic_, -1.0, rhs_);
     if (pairs_.terms.repulsionRadius > 0) addRepulsion<D>(state_.context, pairs_, 1 / state_.timeStep, rhs_);
     if (const auto* others = explicitForces()) others->addForces(state_, rhs_);

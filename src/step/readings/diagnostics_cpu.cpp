@@ -6,8 +6,8 @@
 
 namespace treacle {
 
-template <int D>
-Diagnostics computeDiagnostics(Context<Cpu>& context, const DiagnosticsInput<D>& in) {
+template <int D, class Backend>
+Diagnostics computeDiagnostics(Context<Backend>& context, const DiagnosticsInput<D>& in) {
   const auto term = DiagnosticsTerm<D>::make(in);
   Diagnostics d = noDiagnostics();
   for (std::size_t i = 0; i < in.position.size(); ++i) d = joined(d, term(in, i));
@@ -15,7 +15,7 @@ Diagnostics computeDiagnostics(Context<Cpu>& context, const DiagnosticsInput<D>&
   return averaged(d, joinedOverProcesses(context, in.position.size(), std::plus<>()), in.ownShare());
 }
 
-template Diagnostics computeDiagnostics<2>(Context<Cpu>&, const DiagnosticsInput<2>&);
-template Diagnostics computeDiagnostics<3>(Context<Cpu>&, const DiagnosticsInput<3>&);
+template Diagnostics computeDiagnostics(Context<Cpu>&, const DiagnosticsInput<2>&);
+template Diagnostics computeDiagnostics(Context<Cpu>&, const DiagnosticsInput<3>&);
 
 }  // namespace treacle

@@ -3,6 +3,7 @@
 #include "run/flow_state.hpp"
 #include "run/gather_particles.hpp"
 #include "treacle/core/halo.hpp"
+#include "treacle/model/motion/carried_probe.hpp"
 #include "treacle/search/near_places.hpp"
 #include "treacle/step/readings/probe_reading.hpp"
 #include "treacle/step/readings/probe_sums.hpp"
@@ -71,9 +72,9 @@ template <int D, class Backend>
 std::vector<ProbeReading> measure(const FlowState<D, Backend>& state, std::uint64_t probes) {
   std::vector<ProbeReading> readings;
   for (std::size_t k = 0; k < state.theCase.probes.size(); ++k) {
-    const Probe& probe = state.theCase.probes[k];
     if ((probes >> k & 1) == 0) continue;
-    ProbeReading reading{k};
+    const Probe probe = carriedProbe(state.theCase.probes[k], state.theCase, state.rigid.bodies, state.time);
+    ProbeReading reading{k, probe};
     if (probe.isSummed()) reading.sums = sumPart<D>(state.context, partTerms(state, probe));
     if (probe.isSampled()) reading.particles = particlesNear(state, probe);
     readings.push_back(std::move(reading));

@@ -1,6 +1,8 @@
 #include "treacle/step/readings/probe_sums.hpp"
+#include "treacle/step/readings/wall_patch.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <limits>
 
 namespace treacle {
@@ -22,7 +24,31 @@ PartWeight<D> PartWeight<D>::of(const Probe& probe, const Case& c) {
   return w;
 }
 
+template <int D>
+WallPatch<D> WallPatch<D>::of(const Probe& probe, const Case& c) {
+  WallPatch patch;
+  const auto body = std::ranges::find(c.bodies, probe.body, &Body::name);
+  patch.body = static_cast<std::uint8_t>(body - c.bodies.begin());
+  patch.corner = resized<D>(probe.corner);
+  patch.width = norm(probe.along);
+  patch.along = resized<D>((1 / patch.width) * probe.along);
+  if constexpr (D == 3) {
+    patch.height = norm(probe.up);
+    patch.up = (1 / patch.height) * probe.up;
+    patch.normal = cross(patch.along, patch.up);
+  } else {
+    patch.normal = {-patch.along[1], patch.along[0]};
+  }
+  for (int k = 0; k < D; ++k)
+    if (c.domain.periodic[static_cast<std::size_t>(k)]) patch.period[k] = c.domain.max[k] - c.domain.min[k];
+  patch.depth = c.interactionRadius();
+  patch.spacing = c.spacing;
+  return patch;
+}
+
 template struct PartWeight<2>;
 template struct PartWeight<3>;
+template struct WallPatch<2>;
+template struct WallPatch<3>;
 
 }  // namespace treacle

@@ -71,7 +71,9 @@ class StepBalance {
                       walls_.otherForce(),
                       surface ? surface->slope() : std::span<const SurfaceSlope<D>>{},
                       tension ? tension->transport() : std::span<const Vec<D>>{},
-                      state.velocityStep * resized<D>(state.theCase.gravity)};
+                      pairs.position,
+                      state.frame,
+                      state.velocityStep};
     const auto sums = sumPowers<D>(state.context, terms, pairs.ownEnd());
     const double volume = std::pow(pairs.spacing, D);  // [K23 eq. (11)]
     balance.shearDissipation = volume * sums[Terms::Shear];
@@ -88,6 +90,7 @@ class StepBalance {
   void setLoads(FlowState<D, Backend>& state, const MphPairs<D>& pairs, Balance& balance) {
     const std::vector<LoadSums> loads = walls_.loads(state, pairs, state.velocity);
     balance.walls = wallLoads(state, loads);
+    balance.patches = walls_.pressures(state, pairs);
     for (const WallLoad& load : balance.walls) balance.wallPower -= load.power;
   }
 

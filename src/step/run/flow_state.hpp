@@ -4,6 +4,7 @@
 #include "treacle/core/copy_values.hpp"
 #include "treacle/core/device_link.hpp"
 #include "treacle/model/case/case.hpp"
+#include "treacle/model/motion/frame_force.hpp"
 #include "treacle/model/motion/nozzle.hpp"
 #include "treacle/model/motion/wall_motion.hpp"
 #include "treacle/model/particles/particles.hpp"
@@ -26,6 +27,7 @@ struct FlowState {
   double time;          // [s]
   double timeStep;      // of the step at hand, or the last one [s]
   double velocityStep;  // over which velocities change in it [s]
+  FrameForce<D> frame;  // in the step at hand
   bool wallsMove = false;
   std::uint32_t fluidOfAll = 0;  // number of fluid particles, those of all processes
 
@@ -42,7 +44,12 @@ struct FlowState {
   StepPhases<Backend> phases;  // of the step at hand
 
   FlowState(const Case& c, std::int64_t startStep, double startTime)
-      : theCase(c), step(startStep), time(startTime), timeStep(c.time.step), velocityStep(c.time.step) {
+      : theCase(c),
+        step(startStep),
+        time(startTime),
+        timeStep(c.time.step),
+        velocityStep(c.time.step),
+        frame(FrameForce<D>::of(c, startTime, startTime)) {
     for (const Body& body : theCase.bodies) {
       nozzles.emplace_back();
       if (body.kind == BodyKind::Inflow) nozzles.back().emplace(theCase, body);

@@ -122,10 +122,9 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     timeStep = next.length, endOfStep = next.end;
     // Velocities belong to the middles of steps where forces do.
     velocityStep = theCase.middleShare() > 0 ? 0.5 * (this->lastStep() + timeStep) : timeStep;
-    if (theCase.gravityVaries()) {
-      const auto [from, to] = this->velocityInterval();
-      theCase.gravity = theCase.meanGravity(from, to);
-    }
+    const auto [from, to] = this->velocityInterval();
+    if (theCase.gravityVaries()) theCase.gravity = theCase.meanGravity(from, to);
+    this->frame = FrameForce<D>::of(theCase, from, to);
   }
 
   /// Where forces belong to the middle of the step at hand, all particles go there.
@@ -153,7 +152,7 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     in.velocity = u.first(n);
     in.material = particles.material.span().first(n);
     in.materials = method->materials();
-    in.gravity = resized<D>(theCase.gravity);
+    in.frame = this->frame;
     in.spacing = theCase.spacing;
     method->describe(in);
     return computeDiagnostics<D>(context, in);
@@ -269,6 +268,7 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     report.failures = std::move(solved.failures);
     report.balance = method->balance();
     report.loads = method->loads();
+    report.patches = method->patchPressures();
     report.rigid = particles.rigid.bodies;
     return report;
   }

@@ -46,6 +46,8 @@ class StepMethod {
   virtual std::optional<Balance> balance() const { return {}; }
   /// What walls bear in that step, where the case wants it: per wall body, in the order of the case.
   virtual std::vector<WallLoad> loads() const { return {}; }
+  /// The pressure on the patch of each probe WallPressure in that step [Pa].
+  virtual std::vector<double> patchPressures() const { return {}; }
   /// Completes what the diagnostics of a step are made of.
   virtual void describe(DiagnosticsInput<D>&) const {}
 

@@ -36,6 +36,11 @@ class IsphWallForces {
     return loadsOfBodies<D, Backend>(state, rows.first, pairs.position, state.particles.velocity, force_);
   }
 
+  /// On patches of walls, after loads().
+  std::vector<double> pressures(FlowState<D, Backend>& state, const IsphPairs<D>& pairs) {
+    return patchPressures<D, Backend>(state, pairs.fluidOfWalls.first, pairs.position, force_);
+  }
+
   std::size_t bytes() const { return stopped_.bytes() + force_.bytes(); }
 
  private:

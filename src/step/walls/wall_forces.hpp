@@ -23,8 +23,8 @@ class WallForces {
     if (!walls_.offset) return;
     // The lists of the step reach only as far as pressures.
     const double reach = std::max(pairs.terms.densityRadius, pairs.terms.viscosityRadius);
-    buildClusterList<D>(state.context, pairs.grid, neighbourhood.ranges(), pairs.position, n, pairs.ownEnd(),
-                        {reach, 0}, true, list_);
+    buildClusterList<D>(state.context, pairs.grid, neighbourhood.ranges(), pairs.position,
+                        {n, pairs.ownEnd(), {reach, 0}, true}, list_);
     walls_ = list_.view();
   }
 
@@ -48,6 +48,12 @@ class WallForces {
   std::vector<LoadSums> loads(FlowState<D, Backend>& state, const MphPairs<D>& pairs, std::span<const Vec<D>> u) {
     return loadsOfBodies<D, Backend>(state, pairs.fluidCount, pairs.position, u,
                                      force_.span().first(pairs.ownEnd() - pairs.fluidCount));
+  }
+
+  /// On patches of walls, likewise.
+  std::vector<double> pressures(FlowState<D, Backend>& state, const MphPairs<D>& pairs) {
+    return patchPressures<D, Backend>(state, pairs.fluidCount, pairs.position,
+                                      force_.span().first(pairs.ownEnd() - pairs.fluidCount));
   }
 
   const ClusterListView& walls() const { return walls_; }             // their neighbours, as far as any pair acts

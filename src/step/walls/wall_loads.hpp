@@ -1,8 +1,10 @@
 #pragma once
 
 #include "run/flow_state.hpp"
+#include "treacle/model/motion/carried_probe.hpp"
 #include "treacle/model/state/balance.hpp"
 #include "treacle/step/readings/balance_sums.hpp"
+#include "treacle/step/readings/wall_patch.hpp"
 
 #include <cmath>
 #include <cstddef>
@@ -25,6 +27,24 @@ std::vector<LoadSums> loadsOfBodies(FlowState<D, Backend>& state, std::uint32_t 
   const double volume = std::pow(state.theCase.spacing, D);  // [K23 eq. (11)]
   for (LoadSums& load : loads) load = {volume * load.force, volume * load.torque, volume * load.power};
   return loads;
+}
+
+/// The pressure on the patch of each probe WallPressure, in the order of the case [Pa]; arguments as above.
+/// Collective.
+template <int D, class Backend>
+std::vector<double> patchPressures(FlowState<D, Backend>& state, std::uint32_t first,
+                                   std::span<const Vec<D>> position, std::span<const Vec<D>> force) {
+  const std::size_t walls = force.size();
+  std::vector<double> pressures;
+  for (const Probe& probe : state.theCase.probes) {
+    if (probe.kind != ProbeKind::WallPressure) continue;
+    const Probe now = carriedProbe(probe, state.theCase, state.rigid.bodies, state.time);
+    pressures.push_back(patchPressure<D>(
+        state.context,
+        PatchTerms<D>{WallPatch<D>::of(now, state.theCase), state.particles.body.span().subspan(first, walls),
+                      position.subspan(first, walls), force}));
+  }
+  return pressures;
 }
 
 /// The loads of walls in the order of the case, with torques about their centres.

@@ -69,10 +69,10 @@ TEST(VectorTwin, EqualsTheCpu) {
     BothScalars k(cuda, start);
     const double scale = 1 + static_cast<double>(n);
 
-    updateCr(cpu, {p.host, q.host, u.host, x.host, r.host, s.host}, &k.host);
-    updateCr(cuda, {p.device, q.device, u.device, x.device, r.device, s.device}, k.device.data());
-    updateCg(cpu, {u.host, p.host, x.host, r.host}, &k.host);
-    updateCg(cuda, {u.device, p.device, x.device, r.device}, k.device.data());
+    updateSolution(cpu, {p.host, q.host, x.host, r.host, u.host, s.host}, &k.host);
+    updateSolution(cuda, {p.device, q.device, x.device, r.device, u.device, s.device}, k.device.data());
+    updateSolution(cpu, {u.host, p.host, x.host, r.host}, &k.host);
+    updateSolution(cuda, {u.device, p.device, x.device, r.device}, k.device.data());
     k.compare(cuda, scale);
     directionsCr(cpu, {s.host, r.host, p.host, q.host}, &k.host);
     directionsCr(cuda, {s.device, r.device, p.device, q.device}, k.device.data());

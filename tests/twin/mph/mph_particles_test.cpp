@@ -85,12 +85,15 @@ void checkPressures(Twins<D>& t) {
 template <int D>
 void checkInertia(Twins<D>& t) {
   const Particles<D>& p = t.r.particles;
-  Vec<D> gravity = Vec<D>::filled(0.3);
-  gravity[D - 1] = -9.81;
+  FrameForce<D> frame{.gravity = Vec<D>::filled(0.3), .turns = true, .center = Vec<D>::filled(0.01)};
+  frame.gravity[D - 1] = -9.81;
+  frame.axis = D == 2 ? Vec<3>{0, 0, 1} : Vec<3>{0.6, 0, 0.8};
+  frame.spin = 3 * frame.axis, frame.spinChange = -2 * frame.axis;
+  frame.sine = std::sin(0.3), frame.cosine = std::cos(0.3);
   Buffer<Vec<D>> b(p.fluidCount);
   Buffer<Vec<D>, Cuda> deviceB(t.context, p.fluidCount);
-  inertiaAndGravity<D>(t.r.context, t.hostPairs, p.velocity, gravity, b);
-  inertiaAndGravity<D>(t.context, t.devicePairs, t.device.velocity, gravity, deviceB);
+  inertiaAndGravity<D>(t.r.context, t.hostPairs, p.velocity, frame, b);
+  inertiaAndGravity<D>(t.context, t.devicePairs, t.device.velocity, frame, deviceB);
   t.expectEqual(b, deviceB);
 }
 

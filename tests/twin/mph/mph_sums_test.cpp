@@ -150,8 +150,8 @@ struct SumsTwin {
     EXPECT_LE(difference<double>(d.context, shear.span(), shearFound), kernelTolerance);
 
     ClusterList<> walls;
-    buildClusterList<D>(s.context, s.pairs().grid, s.ranges(), s.pairs().position, n, active,
-                        {s.pairs().terms.viscosityRadius, 0}, true, walls);
+    buildClusterList<D>(s.context, s.pairs().grid, s.ranges(), s.pairs().position,
+                        {n, active, {s.pairs().terms.viscosityRadius, 0}, true}, walls);
     const ClusterList<Cuda> wallsDevice = onDevice(d.context, walls);
     fluidAtWalls<D>(s.context, s.pairs(), walls, u, qs, {force.span(), divergence.span(), density.span()});
     fluidAtWalls<D>(d.context, d.pairs, d.pairs.wallList.offset ? wallsDevice.view() : d.pairs.wallList, uDevice,
@@ -323,7 +323,7 @@ void checkSurfaceTension(bool lists) {
   std::vector<SurfaceSlope<D>> slope(n);
   std::vector<WallSums<D>> atWalls(walls);
   std::vector<Adhesion<D>> adhesion(n + walls);
-  std::vector<Vec<D>> force(n), apart(n), press(n), normal(n), ofWalls(n), even(n), reaction(walls),
+  std::vector<Vec<D>> force(n), unshared(n), smoothed(n), normal(n), ofWalls(n), even(n), reaction(walls),
       load(walls, Vec<D>::filled(1));
   Buffer<SurfaceSums<D>, Cuda> sumsFound(d.context, n);
   Buffer<SurfaceFit, Cuda> fitFound(d.context, n), fittedFound(d.context, n);
@@ -331,18 +331,18 @@ void checkSurfaceTension(bool lists) {
   Buffer<WallSums<D>, Cuda> atWallsFound(d.context, walls);
   Buffer<Adhesion<D>, Cuda> adhesionFound(d.context, n + walls);
   Buffer<Vec<D>, Cuda> ofWallsFound(d.context, n), reactionFound(d.context, walls), forceFound(d.context, n),
-      apartFound(d.context, n), evenFound(d.context, n), pressFound(d.context, n), normalFound(d.context, n);
+      unsharedFound(d.context, n), evenFound(d.context, n), smoothedFound(d.context, n), normalFound(d.context, n);
   auto loadFound = copyToDevice<Vec<D>>(d.context, load);
-  const SurfaceForces<D> forces{force, apart, press, normal, fit, ofWalls};
-  const SurfaceForces<D> forcesFound{forceFound.span(),  apartFound.span(), pressFound.span(),
-                                     normalFound.span(), fitFound.span(),   ofWallsFound.span()};
+  const SurfaceForces<D> forces{force, unshared, smoothed, normal, fit, ofWalls};
+  const SurfaceForces<D> forcesFound{forceFound.span(),  unsharedFound.span(), smoothedFound.span(),
+                                     normalFound.span(), fitFound.span(),      ofWallsFound.span()};
   const auto expectSame = [&](std::span<const Vec<D>> expected, const Buffer<Vec<D>, Cuda>& found) {
     EXPECT_LE(difference<Vec<D>>(d.context, expected, found), operatorTolerance);
   };
 
   ClusterList<Cpu> wallList;  // those of a step do not reach as far
-  buildClusterList<D>(s.context, s.pairs().grid, s.ranges(), s.pairs().position, n, n + walls,
-                      {s.c.interactionRadius(), 0}, true, wallList);
+  buildClusterList<D>(s.context, s.pairs().grid, s.ranges(), s.pairs().position,
+                      {n, n + walls, {s.c.interactionRadius(), 0}, true}, wallList);
   const ClusterList<Cuda> wallsDevice = onDevice(d.context, wallList.view());
   const ClusterListView wallsFound = lists ? wallsDevice.view() : d.pairs.wallList;
 
@@ -358,24 +358,26 @@ void checkSurfaceTension(bool lists) {
   surfaceForces<D>(s.context, s.pairs(), terms, sums, slope, adhesion, forces);
   surfaceForces<D>(d.context, d.pairs, terms, sumsFound.span(), slopeFound.span(), adhesionFound.span(),
                    forcesFound);
-  expectSame(force, forceFound), expectSame(apart, apartFound), expectSame(press, pressFound);
+  expectSame(force, forceFound), expectSame(unshared, unsharedFound), expectSame(smoothed, smoothedFound);
   expectSame(normal, normalFound), expectSame(ofWalls, ofWallsFound);
   EXPECT_LE(difference<SurfaceFit>(d.context, fit, fitFound), operatorTolerance);
   bendSurface<D>(s.context, s.pairs(), terms, forces, fitted);
   bendSurface<D>(d.context, d.pairs, terms, forcesFound, fittedFound.span());
-  expectSame(force, forceFound), expectSame(apart, apartFound);
+  expectSame(force, forceFound), expectSame(unshared, unsharedFound);
   EXPECT_LE(difference<SurfaceFit>(d.context, fitted, fittedFound), operatorTolerance);
-  evenAlongSurface<D>(s.context, s.pairs(), terms, normal, fit, force, even, apart);
-  evenAlongSurface<D>(d.context, d.pairs, terms, normalFound.span(), fitFound.span(), forceFound.span(),
-                      evenFound.span(), apartFound.span());
+  evenAlongSurface<D>(s.context, s.pairs(), terms, {normal, fit, force, even, unshared});
+  evenAlongSurface<D>(
+      d.context, d.pairs, terms,
+      {normalFound.span(), fitFound.span(), forceFound.span(), evenFound.span(), unsharedFound.span()});
   expectSame(even, evenFound);
   auto addedFound = copyToDevice<Vec<D>>(d.context, force);
   addSurfaceForces<D>(s.context, even, force);
   addSurfaceForces<D>(d.context, evenFound.span(), addedFound.span());
   expectSame(force, addedFound);
-  surfaceOnWalls<D>(s.context, s.pairs(), terms, wallList.view(), ofWalls, adhesion, reaction, load);
-  surfaceOnWalls<D>(d.context, d.pairs, terms, wallsFound, copyToDevice<Vec<D>>(d.context, ofWalls),
-                    adhesionFound.span(), reactionFound.span(), loadFound.span());
+  surfaceOnWalls<D>(s.context, s.pairs(), terms, wallList.view(), {ofWalls, adhesion, reaction, load});
+  const auto ofWallsOnDevice = copyToDevice<Vec<D>>(d.context, ofWalls);
+  surfaceOnWalls<D>(d.context, d.pairs, terms, wallsFound,
+                    {ofWallsOnDevice.span(), adhesionFound.span(), reactionFound.span(), loadFound.span()});
   EXPECT_LE(difference<Vec<D>>(d.context, reaction, reactionFound), operatorTolerance);
   EXPECT_LE(difference<Vec<D>>(d.context, load, loadFound), operatorTolerance);
 }

@@ -32,9 +32,9 @@ void checkClusterListSizes() {
       for (const bool walls : {false, true}) {
         const std::uint32_t first = walls ? fluid : 0, last = walls ? r.ranges.activeCount : fluid;
         const ListRadii radii{r.radius / 2, walls ? 0 : r.radius};
-        buildClusterList<D>(r.context, r.grid, r.ranges, r.particles.position, first, last, radii, walls,
+        buildClusterList<D>(r.context, r.grid, r.ranges, r.particles.position, {first, last, radii, walls},
                             expected);
-        buildClusterList<D>(context, r.grid, ranges, particles.position, first, last, radii, walls, found);
+        buildClusterList<D>(context, r.grid, ranges, particles.position, {first, last, radii, walls}, found);
         expectSameLists(context, expected, found);
       }
     }

@@ -13,7 +13,7 @@ DiagnosticsInput<D> inputOf(const Particles<D, Backend>& p, const Vec<D>& gravit
                          p.velocity.span().first(p.fluidCount),
                          p.material.span().first(p.fluidCount),
                          {},
-                         gravity,
+                         {.gravity = gravity},
                          1e-3};
   in.materials.count = 3;
   for (int m = 0; m < 3; ++m) in.materials.density[m] = 1000 + 100 * m;

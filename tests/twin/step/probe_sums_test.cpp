@@ -1,15 +1,19 @@
 #include "treacle/step/readings/probe_sums.hpp"
 
+#include "support/drop_case.hpp"
 #include "support/gpu.hpp"
 #include "support/isph_cases.hpp"
 #include "support/isph_scene.hpp"
 #include "support/open_cases.hpp"
 #include "support/state_of.hpp"
+#include "treacle/step/readings/wall_patch.hpp"
 #include "treacle/step/run/simulation.hpp"
 
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <cmath>
+#include <vector>
 
 namespace treacle::test {
 namespace {
@@ -60,6 +64,24 @@ TEST(ProbesTwin, ReadWhatTheCpuReads) {
   compareProbes<3>();
 }
 
+TEST(FrameTwin, TurnsAsOnTheCpu) {
+  TREACLE_SKIP_WITHOUT_GPU();
+  for (const bool isph : {false, true}) {
+    Case c = dropCase(3, {12e-3, 5e-3, 3e-3}, isph);
+    c.frame =
+        Rotation{.center = {1e-3, 0, 0}, .axis = {1, 2, 2}, .angle = TimeFunction{.expression = "sin(50*t)"}};
+    c.gravity = {0, -1, 0.5};
+    c.solver.tolerance = 1e-20;
+    Simulation<3> cpu(c, created<3>(c));
+    Simulation<3, Cuda> cuda(c, created<3>(c));
+    for (int k = 0; k < 20; ++k) {
+      const Diagnostics a = cpu.advance().diagnostics, b = cuda.advance().diagnostics;
+      EXPECT_NEAR(a.kineticEnergy, b.kineticEnergy, 1e-8 * a.kineticEnergy);
+      EXPECT_NEAR(a.potentialEnergy, b.potentialEnergy, 1e-8 * std::abs(a.potentialEnergy));
+    }
+  }
+}
+
 /// The same sums of the same particles.
 TEST(ProbesTwin, SumsAreThoseOfTheCpu) {
   TREACLE_SKIP_WITHOUT_GPU();
@@ -94,6 +116,36 @@ TEST(ProbesTwin, SumsAreThoseOfTheCpu) {
     there.position = y, there.velocity = v, there.pressure = w, there.material = m;
     there.shearRate = r, there.temperature = w;
     expectNear(sumPart<3>(host, terms), sumPart<3>(device, there));
+  }
+}
+
+TEST(ProbesTwin, PressuresOnPatchesAreThoseOfTheCpu) {
+  TREACLE_SKIP_WITHOUT_GPU();
+  Context<Cpu> host;
+  Context<Cuda> device;
+  Case c;
+  c.dimensions = 3, c.spacing = 0.1;
+  c.domain.max = {2.5, 2.5, 2.5}, c.domain.periodic = {true, false, false};
+  c.bodies.resize(2);
+  c.bodies[1].name = "wall";
+  const Probe probe{.kind = ProbeKind::WallPressure,
+                    .corner = {-0.3, -0.2, 0.1},
+                    .along = {0.6, 0.2, 0},
+                    .up = {-0.2, 0.6, 0},
+                    .body = "wall"};
+  for (const std::size_t count : {1, 33, 20011}) {
+    const std::vector<Vec<3>> x = randomVelocities<3>(count, 5), f = randomVelocities<3>(count, 6);
+    std::vector<std::uint8_t> body;
+    for (std::size_t i = 0; i < count; ++i) body.push_back(i % 3 > 0);
+    WallPatch<3> patch = WallPatch<3>::of(probe, c);
+    patch.depth = 0.5;
+    const auto y = copyToDevice(device, std::span<const Vec<3>>(x)),
+               g = copyToDevice(device, std::span<const Vec<3>>(f));
+    const auto b = copyToDevice(device, std::span<const std::uint8_t>(body));
+    const double found = patchPressure<3>(device, {patch, b.span(), y.span(), g.span()}),
+                 expected = patchPressure<3>(host, {patch, body, x, f});
+    EXPECT_EQ(std::isnan(found), std::isnan(expected));
+    if (count > 1000) EXPECT_NEAR(found, expected, 1e-10 * std::abs(expected));
   }
 }
 

@@ -179,7 +179,8 @@ constexpr BadCase badCases[] = {
      "'ambient_pressure'"},
     {"keyOfMph", bulk, "[method]\nname = \"isph\"\npressure_radius = 2\n",
      "bad.toml:18:1: unknown key 'pressure_radius' in [method] (isph): it belongs to the method 'mph-i'; expected "
-     "'name', 'kernel', 'smoothing_ratio', 'alpha', 'walls', 'viscosity', 'shifting' or 'negative_pressure'"},
+     "'name', 'scheme', 'kernel', 'smoothing_ratio', 'alpha', 'walls', 'viscosity', 'shifting' or "
+     "'negative_pressure'"},
     {"misspeltKeyOfIsph", bulk, "[method]\nname = \"isph\"\nsmoothing = 1.2\n",
      "bad.toml:18:1: unknown key 'smoothing' in [method] (isph); did you mean 'smoothing_ratio'?"},
     {"bulkViscosityOfIsph", "bulk_modulus = 1e6\n", "[method]\nname = \"isph\"\n",

@@ -6,7 +6,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "support/probe_table.hpp"
 #include "unit/app/command.hpp"
@@ -87,7 +89,8 @@ TEST(ProbeCase, IsReadAndWritten) {
 
 const Mistake probeMistakes[] = {
     {"corner.kind='point'", "unknown key 'kind' in [[probe]] 'corner' (point)"},
-    {"corner.type='dot'", "expected 'point', 'line', 'plane', 'height', 'flow', 'region' or 'load', found 'dot'"},
+    {"corner.type='dot'",
+     "expected 'point', 'line', 'plane', 'height', 'flow', 'region', 'load' or 'wall-pressure', found 'dot'"},
     {"corner.normal=[1,0]", "unknown key 'normal' in [[probe]] 'corner' (point)"},
     {"corner.point=[1e-3,20e-3]", "expected a point of the domain, -0.004 to 0.012 m along y, found 0.02"},
     {"corner.name='a/b'", "expected letters, digits and . _ - +"},
@@ -100,6 +103,9 @@ const Mistake probeMistakes[] = {
     {"through.normal=[0,0]", "expected a direction, found a vector of length 0"},
     {"beyond.box={min=[0,0],max=[1,0]}", "expected more than min on every axis"},
     {"all.material='honey'", "expected the name of a material, found 'honey'"},
+    {"level.moves_with='roof'", "expected the name of a wall or rigid body, found 'roof'"},
+    {"level.moves_with='column'", "'column' is fluid; expected the name of a wall or rigid body"},
+    {"floor-load.moves_with='floor'", "unknown key 'moves_with' in [[probe]] 'floor-load' (load)"},
     {"floor-load.body='roof'", "expected the name of a wall or rigid body, found 'roof'"},
     {"floor-load.body='column'", "'column' is fluid; expected the name of a wall or rigid body"},
 };
@@ -183,6 +189,62 @@ TEST(ProbeCase, ProbesAreRead) {
   ASSERT_EQ(shop.call("run plain.toml -o run --force --backend cpu --threads 1 --quiet").exitCode, 0);
   EXPECT_FALSE(std::filesystem::exists(shop / "run/probes/corner.csv"));
   EXPECT_THAT(shop.call("plot run --probe corner").err, HasSubstr("the case has no probes"));
+}
+
+std::string wallPressure(const std::string& name, const std::string& place) {
+  return fmt::format("\n[[probe]]\nname = \"{}\"\ntype = \"wall-pressure\"\nbody = \"floor\"\n{}\n", name, place);
+}
+
+/// Patches that make up a wall bear its load, each by its area, and readings at intervals are means over steps.
+TEST(ProbeCase, PressuresOnPatches) {
+  for (const bool isph : {false, true}) {
+    Workshop shop;
+    shop.put("case.toml", (isph ? smallIsphCase : smallCase) +
+                              "\n[[probe]]\nname = \"load\"\ntype = \"load\"\nbody = \"floor\"\n" +
+                              wallPressure("all", "corner = [-4e-3, 0]\nalong = [16e-3, 0]") +
+                              wallPressure("left", "corner = [1.7e-3, 0]\nalong = [-6e-3, 0]") +
+                              wallPressure("right", "corner = [1.7e-3, 0]\nalong = [12e-3, 0]") +
+                              wallPressure("mean", "corner = [-4e-3, 0]\nalong = [16e-3, 0]\ninterval = 1e-2") +
+                              wallPressure("nowhere", "corner = [0, 9e-3]\nalong = [1e-3, 0]"));
+    ASSERT_EQ(shop.call("run case.toml -o run --backend cpu --threads 1 --quiet --end-time 0.02").exitCode, 0);
+    const auto read = [&](const std::string& name, const char* column) {
+      return *readProbe(shop / ("run/probes/" + name + ".csv")).column(column);
+    };
+    const auto load = read("load", "force_y"), all = read("all", "pressure"), left = read("left", "pressure"),
+               right = read("right", "pressure"), mean = read("mean", "pressure");
+    ASSERT_EQ(all.size(), 20u);
+    double sum = 0, largest = -1e9;
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      EXPECT_NEAR(16e-3 * all[k], -load[k], 1e-9 * std::abs(load[k]));
+      EXPECT_NEAR(6e-3 * left[k] + 12e-3 * right[k], -load[k], 1e-9 * std::abs(load[k]));
+      if (k >= 10) sum += all[k] / 10, largest = std::max(largest, all[k]);
+    }
+    EXPECT_GT(all.back(), 0);
+    ASSERT_EQ(mean.size(), 2u);
+    EXPECT_NEAR(mean[1], sum, 1e-9 * std::abs(sum));
+    EXPECT_EQ(read("mean", "largest")[1], largest);
+    EXPECT_TRUE(std::isnan(read("nowhere", "pressure")[0]));
+  }
+}
+
+/// Fluid that a floor carries along, read where both go.
+TEST(ProbeCase, MoveWithAWall) {
+  Workshop shop;
+  shop.put("case.toml", smallCase +
+                            "\n[[probe]]\nname = \"there\"\ntype = \"point\"\npoint = [3e-3, 1e-3]\n"
+                            "moves_with = \"floor\"\n");
+  ASSERT_EQ(
+      shop.call(
+              "run case.toml -o run --backend cpu --threads 1 --quiet --end-time 0.01 "
+              "--set 'floor.velocity=[0.1, 0]' --set 'column.velocity=[0.1, 0]' --set 'domain.max=[20e-3, 12e-3]'")
+          .exitCode,
+      0);
+  const ProbeTable table = readProbe(shop / "run/probes/there.csv");
+  ASSERT_EQ(table.rows(), 11u);
+  for (std::size_t k = 0; k < table.rows(); ++k) {
+    EXPECT_NEAR(table.column("x")->at(k), 3e-3 + 0.1 * table.column("time")->at(k), 1e-12);
+    EXPECT_NEAR(table.column("velocity_x")->at(k), 0.1, 0.01);
+  }
 }
 
 }  // namespace

@@ -241,8 +241,7 @@ TEST(resume, refusesOtherBodiesAndTakesOtherVelocitiesOfWalls) {
   shop.put("case.toml", replaced(shop.content("case.toml"), "name = \"column\"", "name = \"pile\""));
   expectRefused(
       shop, "half/checkpoint.h5 --end-time 4e-3",
-      "its bodies are 'column', 'floor', but the case has 'pile', 'floor'; expected the bodies of the run in "
-      "their order");
+      "its bodies are 'column', 'floor', but the case has 'pile', 'floor': none of its fluid would be left");
 }
 
 /// Of a hundred bytes, the most that they may have.

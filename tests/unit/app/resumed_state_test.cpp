@@ -10,6 +10,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <string>
 
 #include "command.hpp"
 
@@ -108,6 +110,109 @@ TEST(resumedState, refusesBodiesThatTheCaseDoesNotHave) {
   r.saved.body[3] = 0;
   r.saved.body[r.saved.fluidCount] = 0;
   EXPECT_THAT(r.message(1, 1e-3), HasSubstr("belongs to body 0, which is no wall body of the case"));
+}
+
+/// A run of the small case up to 2 ms.
+struct Interrupted {
+  Workshop shop;
+
+  Interrupted() {
+    shop.put("small.toml", smallCase);
+    EXPECT_EQ(shop.call("run small.toml -o first" + options).exitCode, 0);
+  }
+  Outcome resume(const std::string& text, const std::string& more = " --end-time 0.004") {
+    shop.put("next.toml", text);
+    return shop.call("run next.toml -o next --force --resume first/checkpoint.h5" + options + more);
+  }
+  Checkpoint<2> state(const char* directory) { return readCheckpoint<2>(shop / directory / "checkpoint.h5"); }
+
+  const std::string options = " --backend cpu --threads 1";
+};
+
+const std::string post = R"(
+[[body]]
+name = "post"
+type = "wall"
+material = "syrup"
+shape = "box"
+min = [9e-3, 0]
+max = [12e-3, 5e-3]
+)";
+const std::string drop = R"(
+[[body]]
+name = "drop"
+type = "fluid"
+material = "syrup"
+shape = "box"
+min = [1e-3, 8e-3]
+max = [4e-3, 10e-3]
+velocity = [0, -0.1]
+)";
+
+/// What was there before goes on as it was, and what is added is there.
+TEST(ResumedState, AddsBodies) {
+  Interrupted run;
+  const Outcome outcome = run.resume(smallCase + post + drop);
+  ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("--resume: body 'post' is added"));
+  EXPECT_THAT(outcome.err, HasSubstr("--resume: body 'drop' is added"));
+  const Checkpoint<2> before = run.state("first"), after = run.state("next");
+  EXPECT_EQ(after.particles.fluidCount, before.particles.fluidCount + 6);
+  EXPECT_EQ(after.particles.wallCount(), before.particles.wallCount() + 15);
+  EXPECT_EQ(after.time, 4e-3);
+  int drops = 0;
+  for (std::uint32_t i = 0; i < after.particles.fluidCount; ++i)
+    if (after.particles.body[i] == 3) {
+      ++drops;
+      EXPECT_LT(after.particles.velocity[i][1], -0.02);
+    }
+  EXPECT_EQ(drops, 6);
+}
+
+TEST(ResumedState, AddsAndLeavesOut) {
+  Interrupted run;
+  ASSERT_EQ(run.resume(smallCase + post + drop).exitCode, 0);
+  std::filesystem::rename(run.shop / "next", run.shop / "first2");
+  std::filesystem::remove_all(run.shop / "first");
+  std::filesystem::rename(run.shop / "first2", run.shop / "first");
+  const Outcome outcome = run.resume(smallCase + drop, " --end-time 0.006");
+  ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("--resume: body 'post' of the run is left out"));
+  const Checkpoint<2> before = run.state("first"), after = run.state("next");
+  EXPECT_EQ(after.particles.fluidCount, before.particles.fluidCount);
+  EXPECT_EQ(after.particles.wallCount(), before.particles.wallCount() - 15);
+  // Bodies have the numbers of the case.
+  EXPECT_EQ(std::ranges::count(after.particles.body, 2), 6);
+}
+
+/// A rigid body that is put in falls; without it all goes on.
+TEST(ResumedState, AddsRigidBodies) {
+  Interrupted run;
+  const std::string block = replaced(replaced(post, "\"wall\"", "\"rigid\""), "\"post\"", "\"block\"");
+  const std::string above = replaced(replaced(block, "min = [9e-3, 0]", "min = [9e-3, 4e-3]"), "5e-3]", "8e-3]");
+  const Outcome outcome = run.resume(smallCase + above);
+  ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+  const Checkpoint<2> after = run.state("next");
+  ASSERT_EQ(after.particles.rigid.bodies.size(), 3u);
+  EXPECT_NEAR(after.particles.rigid.bodies[2].mass, 12e-3, 1e-9);
+  EXPECT_NEAR(after.particles.rigid.bodies[2].velocity[1], -10 * 2e-3, 6e-3);
+}
+
+TEST(ResumedState, SaysWhichBodiesDoNotFit) {
+  Interrupted run;
+  const auto message = [&](const std::string& text) {
+    const Outcome outcome = run.resume(text);
+    EXPECT_EQ(outcome.exitCode, 2);
+    return outcome.err;
+  };
+  // What shape the fluid has had in the case does not matter: it is where the run has left it.
+  const std::string elsewhere =
+      replaced(smallCase, "min = [0, 0]\nmax = [6e-3, 6e-3]", "min = [0, 8e-3]\nmax = [6e-3, 9e-3]");
+  EXPECT_THAT(message(elsewhere + replaced(post, "9e-3, 0]", "5e-3, 0]")),
+              HasSubstr("body 'post' is added where fluid of the run is, at ("));
+  const std::string wider = replaced(smallCase, "max = [12e-3, 0]", "max = [11e-3, 0]");
+  EXPECT_THAT(message(wider + post),
+              HasSubstr("body 'floor' has 64 wall particles in the run and 60 in the case"));
 }
 
 }  // namespace

@@ -8,12 +8,15 @@
 namespace treacle::test {
 namespace {
 
+constexpr SchemeKind schemes[] = {SchemeKind::Published, SchemeKind::Accurate};
+
 /// A block of fluid in the middle of an open domain.
 template <int D>
-IsphScene<D> block(Vec<D, int> count, double jitter = 0) {
+IsphScene<D> block(SchemeKind scheme, Vec<D, int> count, double jitter = 0) {
   Vec<3> size{};
   for (int k = 0; k < D; ++k) size[k] = count[k] + 10;
-  const Case c = waterCase(D, size);
+  Case c = waterCase(D, size);
+  c.method.scheme = scheme;
   auto points = latticeAt<D>(Vec<D>::filled(5.5 * c.spacing), count, c.spacing);
   for (std::uint32_t i = 0; i < points.size(); ++i)
     for (int k = 0; k < D; ++k) points[i][k] += jitter * c.spacing * pseudoRandom(D * i + k);
@@ -32,8 +35,8 @@ bool isOuter(std::uint32_t id, const Vec<D, int>& count) {
 }
 
 template <int D>
-void checkBlock(Vec<D, int> count, double jitter) {
-  const IsphScene<D> s = block<D>(count, jitter);
+void checkBlock(SchemeKind scheme, Vec<D, int> count, double jitter) {
+  const IsphScene<D> s = block<D>(scheme, count, jitter);
   for (std::uint32_t i = 0; i < s.n(); ++i)
     EXPECT_EQ(s.surface[i] != 0, isOuter<D>(s.particles.id[i], count))
         << D << "D, jitter " << jitter << ": density " << s.density[i] << ", lack of neighbours "
@@ -41,44 +44,50 @@ void checkBlock(Vec<D, int> count, double jitter) {
 }
 
 TEST(FreeSurface, OfABlockIsItsOuterLayer) {
-  for (const double jitter : {0.0, 0.02}) {
-    checkBlock<2>({12, 9}, jitter);
-    checkBlock<2>({40, 40}, jitter);
-    checkBlock<3>({9, 8, 7}, jitter);
-  }
+  for (const SchemeKind scheme : schemes)
+    for (const double jitter : {0.0, 0.02}) {
+      checkBlock<2>(scheme, {12, 9}, jitter);
+      checkBlock<2>(scheme, {40, 40}, jitter);
+      checkBlock<3>(scheme, {9, 8, 7}, jitter);
+    }
 }
 
 TEST(FreeSurface, SingleParticlesPairsAndThreadsAreAllSurface) {
-  for (int length : {1, 2, 20}) {
-    EXPECT_EQ(block<2>({length, 1}).surfaceCount(), static_cast<std::uint32_t>(length));
-    EXPECT_EQ(block<3>({length, 1, 1}).surfaceCount(), static_cast<std::uint32_t>(length));
+  for (const SchemeKind scheme : schemes) {
+    for (int length : {1, 2, 20}) {
+      EXPECT_EQ(block<2>(scheme, {length, 1}).surfaceCount(), static_cast<std::uint32_t>(length));
+      EXPECT_EQ(block<3>(scheme, {length, 1, 1}).surfaceCount(), static_cast<std::uint32_t>(length));
+    }
+    EXPECT_EQ(block<2>(scheme, {20, 2}).surfaceCount(), 40u);
+    EXPECT_EQ(block<3>(scheme, {20, 2, 2}).surfaceCount(), 80u);
+    EXPECT_EQ(block<3>(scheme, {9, 9, 1}).surfaceCount(), 81u);
+    EXPECT_EQ(block<3>(scheme, {9, 9, 2}).surfaceCount(), 162u);
   }
-  EXPECT_EQ(block<2>({20, 2}).surfaceCount(), 40u);
-  EXPECT_EQ(block<3>({20, 2, 2}).surfaceCount(), 80u);
-  EXPECT_EQ(block<3>({9, 9, 1}).surfaceCount(), 81u);
-  EXPECT_EQ(block<3>({9, 9, 2}).surfaceCount(), 162u);
 }
 
 /// Fluid that fills a periodic domain.
 template <int D>
-IsphScene<D> full(double jitter) {
+IsphScene<D> full(SchemeKind scheme, double jitter) {
   Case c = waterCase(D, {12, 12, D == 3 ? 12.0 : 0});
+  c.method.scheme = scheme;
   for (int k = 0; k < D; ++k) c.domain.periodic[k] = true;
   const auto everywhere = [](const Vec<D>&) { return true; };
   return {c, jitteredLattice<D>(c, jitter, 3, everywhere, [](const Vec<D>&) { return false; })};
 }
 
 TEST(FreeSurface, AFullDomainHasNone) {
-  for (const double jitter : {0.0, 0.05}) {
-    EXPECT_EQ(full<2>(jitter).surfaceCount(), 0u);
-    EXPECT_EQ(full<3>(jitter).surfaceCount(), 0u);
-  }
-  for (const double density : full<3>(0).density) EXPECT_NEAR(density, 1, 1e-13);
+  for (const SchemeKind scheme : schemes)
+    for (const double jitter : {0.0, 0.05}) {
+      EXPECT_EQ(full<2>(scheme, jitter).surfaceCount(), 0u);
+      EXPECT_EQ(full<3>(scheme, jitter).surfaceCount(), 0u);
+    }
+  for (const double density : full<3>(SchemeKind::Accurate, 0).density) EXPECT_NEAR(density, 1, 1e-13);
 }
 
 template <int D>
-void checkTank() {
+void checkTank(SchemeKind scheme) {
   Case c = waterCase(D, {20, 20, D == 3 ? 20.0 : 0});
+  c.method.scheme = scheme;
   const double l = c.spacing;
   const auto inTank = [&](const Vec<D>& x) {
     bool inside = x[D - 1] > 4 * l;
@@ -94,8 +103,10 @@ void checkTank() {
 }
 
 TEST(FreeSurface, OfATankIsItsTop) {
-  checkTank<2>();
-  checkTank<3>();
+  for (const SchemeKind scheme : schemes) {
+    checkTank<2>(scheme);
+    checkTank<3>(scheme);
+  }
 }
 
 TEST(FreeSurface, ParticlesJammedIntoWallsCount) {
@@ -108,7 +119,7 @@ TEST(FreeSurface, ParticlesJammedIntoWallsCount) {
                               [](const Vec<3>&) { return true; }));
   ASSERT_EQ(s.n(), 1u);
   EXPECT_NEAR(s.density[0], 1, 1e-12);
-  EXPECT_EQ(s.surface[0], 1);
+  EXPECT_EQ(s.surface[0], Place::Free);
 }
 
 }  // namespace

@@ -77,7 +77,7 @@ void checkMatrices() {
       ASSERT_LT(s.surfaceCount(), s.n());
       const IsphOracle<D> oracle(s);
       const PressureRow<D> pressure{s.surface.data()};
-      const Matrix p = oracle.pressureMatrix([&](std::uint32_t i) { return !s.surface[i]; });
+      const Matrix p = oracle.pressureMatrix([&](std::uint32_t i) { return s.surface[i] != Place::Free; });
       checkMatrix<D, double>(s, pressure, p);
       checkMatrix<D, float>(s, pressure, p);
       const Matrix v = oracle.viscousMatrix();

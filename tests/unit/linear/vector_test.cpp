@@ -22,7 +22,7 @@ TEST(VectorOperations, EqualEigen) {
 
     scalars.alpha = 0.3;
     const Vector x1 = x + 0.3 * p, r1 = r - 0.3 * q, s1 = s - 0.3 * u;
-    updateCr(context, {p, q, u, x, r, s}, &scalars);
+    updateSolution(context, {p, q, x, r, u, s}, &scalars);
     EXPECT_LE((x - x1).norm() + (r - r1).norm() + (s - s1).norm(), kernelTolerance * (1 + x1.norm()));
     EXPECT_NEAR(scalars.rr, r1.squaredNorm(), kernelTolerance * (1 + r1.squaredNorm()));
 

@@ -39,8 +39,8 @@ struct Surface {
   ClusterList<Cpu> walls;  // those of a step do not reach as far
   std::vector<WallSums<D>> atWalls;
   std::vector<Adhesion<D>> adhesion;
-  std::vector<Vec<D>> press, normal, force, apart, even, ofWalls;
-  std::vector<Vec<D>> stress, core;  // force and apart before bendSurface()
+  std::vector<Vec<D>> smoothed, normal, force, unshared, even, ofWalls;
+  std::vector<Vec<D>> stress, core;  // force and unshared before bendSurface()
   std::vector<SurfaceFit> fit, fitted;
 
   Surface(const Case& c, Particles<D>&& of)
@@ -49,19 +49,19 @@ struct Surface {
     neighbourhood.sort(context, particles);
     neighbourhood.buildLists(context, particles);
     const std::uint32_t n = pairs().fluidCount;
-    sums.resize(n), slope.resize(n), force.resize(n), apart.resize(n), press.resize(n), normal.resize(n);
+    sums.resize(n), slope.resize(n), force.resize(n), unshared.resize(n), smoothed.resize(n), normal.resize(n);
     ofWalls.resize(n), fit.resize(n), fitted.resize(n), even.assign(n, Vec<D>{});
     atWalls.resize(pairs().activeCount - n), adhesion.resize(pairs().activeCount);
-    buildClusterList<D>(context, pairs().grid, neighbourhood.ranges(), pairs().position, n, pairs().ownEnd(),
-                        {c.interactionRadius(), 0}, true, walls);
-    const SurfaceForces<D> forces{force, apart, press, normal, fit, ofWalls};
+    buildClusterList<D>(context, pairs().grid, neighbourhood.ranges(), pairs().position,
+                        {n, pairs().ownEnd(), {c.interactionRadius(), 0}, true}, walls);
+    const SurfaceForces<D> forces{force, unshared, smoothed, normal, fit, ofWalls};
     const std::span<Adhesion<D>> adheres = adhesion;
     surfaceSlope<D>(context, pairs(), terms, sums, slope, adheres.first(n));
     wallAdhesion<D>(context, pairs(), terms, walls.view(), atWalls, adheres.subspan(n));
     surfaceForces<D>(context, pairs(), terms, sums, slope, adhesion, forces);
-    stress = force, core = apart;
+    stress = force, core = unshared;
     bendSurface<D>(context, pairs(), terms, forces, fitted);
-    evenAlongSurface<D>(context, pairs(), terms, normal, fit, force, even);
+    evenAlongSurface<D>(context, pairs(), terms, {normal, fit, force, even});
   }
   const MphPairs<D>& pairs() const { return neighbourhood.pairs(); }
 };
@@ -103,7 +103,7 @@ void checkPlane() {
   EXPECT_NEAR(tensionOf(s) / 0.07, 1, 0.02);  // 0.983 in 2D and 0.985 in 3D
   double most = 0;
   for (std::size_t i = 0; i < s.force.size(); ++i)
-    most = std::max({most, norm(s.stress[i]), norm(s.force[i] + s.apart[i])});
+    most = std::max({most, norm(s.stress[i]), norm(s.force[i] + s.unshared[i])});
   EXPECT_LE(most, 1e-9 * 0.07 / (s.c.spacing * s.c.spacing));
 }
 
@@ -117,7 +117,7 @@ void checkMomentum() {
   const Slab<D> s(0.3);
   Vec<D> total{};
   double sum = 0;
-  for (std::size_t i = 0; i < s.force.size(); ++i) total += s.force[i] + s.apart[i], sum += norm(s.stress[i]);
+  for (std::size_t i = 0; i < s.force.size(); ++i) total += s.force[i] + s.unshared[i], sum += norm(s.stress[i]);
   EXPECT_GT(sum, 0);
   EXPECT_LE(norm(total), operatorTolerance * sum);
   EXPECT_NEAR(tensionOf(s) / 0.07, 1, 0.45);  // 1.34 in 2D and 1.38 in 3D: a rough surface is larger
@@ -170,7 +170,9 @@ struct Drop : Surface<D> {
     return this->pairs().position[i] - Vec<D>::filled((spacings + 2) * spacing());
   }
   /// What bendSurface() adds [N/m3].
-  Vec<D> bend(std::uint32_t i) const { return this->force[i] + this->apart[i] - this->stress[i] - this->core[i]; }
+  Vec<D> bend(std::uint32_t i) const {
+    return this->force[i] + this->unshared[i] - this->stress[i] - this->core[i];
+  }
 };
 
 /// Mean depth of the tension of a plane surface, from its pairs.
@@ -297,8 +299,8 @@ struct EdgeOnFloor : Surface<D> {
     const MphPairs<D>& pairs = this->pairs();
     const std::uint32_t n = pairs.fluidCount;
     reaction.resize(pairs.activeCount - n), load.assign(pairs.activeCount - n, Vec<D>::filled(2));
-    surfaceOnWalls<D>(this->context, pairs, this->terms, this->walls.view(), this->ofWalls, this->adhesion,
-                      reaction, load);
+    surfaceOnWalls<D>(this->context, pairs, this->terms, this->walls.view(),
+                      {this->ofWalls, this->adhesion, reaction, load});
   }
   static Case edgeCase(double angle) {
     Case c = slabCase<D>();

@@ -80,6 +80,18 @@ TEST(CellGrid, TilesTheDomainByFloorOfExtentOverRadius) {
   EXPECT_EQ(exact.count, (Vec<2, int>{7, 3}));
 }
 
+/// A quotient that rounds up to a whole number must not lead below the lower end.
+TEST(CellGrid, WrapsPlacesJustBelowTheUpperEnd) {
+  for (const auto& [low, high] : {std::pair{-0.01, 0.03}, std::pair{-0.02, 0.02}, std::pair{-0.3, 0.7}}) {
+    const auto g = CellGrid<2>::make({low, 0}, {high, 1}, {true, false}, 0.003);
+    for (double x = high, k = 0; k < 100; ++k, x = std::nextafter(x, low)) {
+      Vec<2> place{x, 0.5};
+      ASSERT_TRUE(g.wrap(place)) << x;
+      ASSERT_TRUE(place[0] >= low && place[0] < high) << x;
+    }
+  }
+}
+
 TEST(CellGrid, WrapsPeriodicAxesAndReportsOpenOnes) {
   const auto g = CellGrid<2>::make({0, 0}, {1, 1}, {true, false}, 0.1);
   Vec<2> x{-0.25, 0.5};

@@ -20,7 +20,7 @@ void checkLists(std::uint32_t fluid, std::uint32_t wall) {
   const auto& x = r.particles.position;
   const ListRadii radii{0.5 * r.radius, r.radius};
   ClusterList<> list;
-  buildClusterList<D>(r.context, r.grid, r.ranges, x, 0, fluid, radii, false, list);
+  buildClusterList<D>(r.context, r.grid, r.ranges, x, {0, fluid, radii}, list);
 
   for (std::uint32_t c = 0; c < list.clusterCount(); ++c) {
     const std::uint32_t first = c * clusterSize, last = std::min(first + clusterSize, fluid);
@@ -66,8 +66,8 @@ TEST(ClusterList, DoesNotDependOnTheNumberOfThreads) {
   ClusterList<> one, many;
   const auto build = [&](int threads, ClusterList<>& list) {
     omp_set_num_threads(threads);
-    buildClusterList<3>(r.context, r.grid, r.ranges, r.particles.position, 0, 11000, {r.radius / 2, r.radius},
-                        false, list);
+    buildClusterList<3>(r.context, r.grid, r.ranges, r.particles.position, {0, 11000, {r.radius / 2, r.radius}},
+                        list);
   };
   build(1, one);
   build(3, many);
@@ -92,7 +92,7 @@ TEST(ClusterList, HasIndicesOf32Bits) {
   ranges.fluidBegin[0] = first, ranges.fluidEnd[0] = last;
   Context<Cpu> context;
   ClusterList<> list;
-  buildClusterList<2>(context, grid, ranges, x, first, last, {1, 1}, false, list);
+  buildClusterList<2>(context, grid, ranges, x, {first, last, {1, 1}}, list);
   ASSERT_EQ(list.entry.size(), few / clusterSize * few);
   for (std::uint32_t c = 0; c < list.clusterCount(); ++c)
     for (std::uint32_t k = 0; k < few; ++k) EXPECT_EQ(list.segment(c, ListSegment::NearFluid)[k], first + k);
@@ -103,8 +103,8 @@ TEST(ClusterList, OfWallsIsEmptyAwayFromFluid) {
   RandomParticles<2> r(2000, 2000, 9);
   sortByCell(r.context, r.grid, r.particles, r.ranges, r.workspace);
   ClusterList<> list;
-  buildClusterList<2>(r.context, r.grid, r.ranges, r.particles.position, 2000, r.ranges.activeCount,
-                      {0.3 * r.radius, 0}, true, list);
+  buildClusterList<2>(r.context, r.grid, r.ranges, r.particles.position,
+                      {2000, r.ranges.activeCount, {0.3 * r.radius, 0}, true}, list);
   for (std::uint32_t c = 0; c < list.clusterCount(); ++c)
     if (list.segment(c, ListSegment::NearFluid).empty()) {
       EXPECT_TRUE(list.segment(c, ListSegment::NearWall).empty());

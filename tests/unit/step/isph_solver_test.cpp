@@ -16,6 +16,7 @@ namespace {
 struct Column {
   static Case columnCase(Vec<3, int> size) {
     Case c = waterCase(3, {});
+    c.method.scheme = SchemeKind::Published;
     c.spacing = 1;
     c.materials[0].density = 1;
     c.time.step = 1;
@@ -42,8 +43,9 @@ struct Column {
   explicit Column(Vec<3, int> theSize) : size(theSize), s(columnCase(size), points(size)), b(s.n()) {
     for (std::uint32_t i = 0; i < s.n(); ++i) {
       const auto id = static_cast<int>(s.particles.id[i]);
-      s.surface[i] = id % size[2] == size[2] - 1 || id / (size[1] * size[2]) == size[0] - 1;
-      b[i] = s.surface[i] ? 0 : pseudoRandom(s.particles.id[i]);
+      const bool isOuter = id % size[2] == size[2] - 1 || id / (size[1] * size[2]) == size[0] - 1;
+      s.surface[i] = isOuter ? Place::Free : Place::Inside;
+      b[i] = isOuter ? 0 : pseudoRandom(s.particles.id[i]);
     }
   }
 

@@ -47,6 +47,15 @@ class Context<Cpu> : public Processes {
 
   /// Room for the chunks' sums of a reduction; kept, so that nothing is allocated inside an iteration.
   std::vector<double> partialSums;
+
+  /// As that of Context<Cuda>.
+  void* scratch(std::size_t bytes) {
+    if (scratch_.size() * sizeof(double) < bytes) scratch_.resize((bytes + sizeof(double) - 1) / sizeof(double));
+    return scratch_.data();
+  }
+
+ private:
+  std::vector<double> scratch_;
 };
 
 }  // namespace treacle

@@ -70,6 +70,7 @@ class Buffer<T, Cpu> {
 
   Buffer() = default;
   explicit Buffer(std::size_t size) { reallocate(size); }
+  Buffer(const Context<Cpu>&, std::size_t size) : Buffer(size) {}
   Buffer(Buffer&& other) noexcept
       : data_(std::exchange(other.data_, nullptr)),
         size_(std::exchange(other.size_, 0)),

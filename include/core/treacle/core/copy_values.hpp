@@ -42,6 +42,10 @@ template <class T>
 void copyToHost(const Context<Cuda>& context, std::span<const T> from, T* host) {
   if (!from.empty()) copyBytesToHost(context, from.data(), host, from.size_bytes());
 }
+template <class T>
+T valueOnHost(const Context<Cpu>&, const T* value) {
+  return *value;
+}
 /// All that is there, to a buffer that gets its size. Errors: std::bad_alloc.
 template <class T, class Backend>
 void fromHost(const Context<Backend>& context, std::span<const T> host, Buffer<T, Backend>& to) {

@@ -84,5 +84,14 @@ void sumOverSharing(const Context<Backend>& context, std::span<T> values) {
   else
     sumOverDevices(context, values);
 }
+/// flags[k]: the largest of all processes.
+template <class Backend>
+void anyOverSharing(const Context<Backend>& context, std::span<std::uint8_t> flags) {
+  if (!context.communicator) return;
+  if constexpr (std::is_same_v<Backend, Cpu>)
+    context.communicator->anyOf(flags);
+  else
+    context.link->max(flags.data(), flags.size());
+}
 
 }  // namespace treacle

@@ -87,52 +87,34 @@ struct IsphMatrix {
 
 /// y = A x; it reads 4 + sizeof(T) bytes per entry, 4 where packed, and 40 per row; the two that follow the same
 /// per near entry.
-template <class T>
-void multiply(Context<Cpu>&, const IsphMatrix<T>& a, std::span<const double> x, std::span<double> y);
-template <class T>
-void multiply(Context<Cuda>&, const IsphMatrix<T>& a, std::span<const double> x, std::span<double> y);
+template <class T, class Backend>
+void multiply(Context<Backend>&, const IsphMatrix<T>& a, std::span<const double> x, std::span<double> y);
 
 /// The same for x whose numbers are single precision, which a device then brings together as such.
-template <class T>
-void multiplySingle(Context<Cpu>& context, const IsphMatrix<T>& a, std::span<const double> x,
-                    std::span<double> y) {
-  multiply(context, a, x, y);
-}
-template <class T>
-void multiplySingle(Context<Cuda>&, const IsphMatrix<T>& a, std::span<const double> x, std::span<double> y);
+template <class T, class Backend>
+void multiplySingle(Context<Backend>&, const IsphMatrix<T>& a, std::span<const double> x, std::span<double> y);
 
 /// x = inverseNear r: one Jacobi sweep from zero.
-template <class T>
-void firstSweep(Context<Cpu>&, const IsphMatrix<T>& a, std::span<const double> r, std::span<T> x);
-template <class T>
-void firstSweep(Context<Cuda>&, const IsphMatrix<T>& a, std::span<const double> r, std::span<T> x);
+template <class T, class Backend>
+void firstSweep(Context<Backend>&, const IsphMatrix<T>& a, std::span<const double> r, std::span<T> x);
 
 /// res = r - A_near x
-template <class T>
-void nearResidual(Context<Cpu>&, const IsphMatrix<T>& a, std::span<const double> r, std::span<const T> x,
-                  std::span<T> res);
-template <class T>
-void nearResidual(Context<Cuda>&, const IsphMatrix<T>& a, std::span<const double> r, std::span<const T> x,
+template <class T, class Backend>
+void nearResidual(Context<Backend>&, const IsphMatrix<T>& a, std::span<const double> r, std::span<const T> x,
                   std::span<T> res);
 
 /// z = x + inverseNear (r - A_near x): one Jacobi sweep more.
-template <class T>
-void lastSweep(Context<Cpu>&, const IsphMatrix<T>& a, std::span<const double> r, std::span<const T> x,
-               std::span<double> z);
-template <class T>
-void lastSweep(Context<Cuda>&, const IsphMatrix<T>& a, std::span<const double> r, std::span<const T> x,
+template <class T, class Backend>
+void lastSweep(Context<Backend>&, const IsphMatrix<T>& a, std::span<const double> r, std::span<const T> x,
                std::span<double> z);
 
 /// z = r / diagonal, or 0 where that is not positive.
-template <class T>
-void jacobi(Context<Cpu>&, const IsphMatrix<T>& a, std::span<const double> r, std::span<double> z);
-template <class T>
-void jacobi(Context<Cuda>&, const IsphMatrix<T>& a, std::span<const double> r, std::span<double> z);
+template <class T, class Backend>
+void jacobi(Context<Backend>&, const IsphMatrix<T>& a, std::span<const double> r, std::span<double> z);
 
 /// The matrix as others take it, without its zeros; rows of zeros are empty, and those of ghosts, up to `rows`.
-template <class T>
-void compressed(Context<Cpu>&, const IsphMatrix<T>& a, std::uint32_t rows, BlockCsr<1>& result);
-template <class T>
-void compressed(Context<Cuda>&, const IsphMatrix<T>& a, std::uint32_t rows, BlockCsr<1, double, Cuda>& result);
+template <class T, class Backend>
+void compressed(Context<Backend>&, const IsphMatrix<T>& a, std::uint32_t rows,
+                BlockCsr<1, double, Backend>& result);
 
 }  // namespace treacle

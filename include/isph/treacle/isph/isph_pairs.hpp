@@ -1,5 +1,7 @@
 #pragma once
 
+#include "treacle/core/symmetric_block.hpp"
+#include "treacle/model/motion/frame_force.hpp"
 #include "treacle/model/motion/wall_motion.hpp"
 #include "treacle/model/particles/smoothing_kernel.hpp"
 #include "treacle/search/material_particles.hpp"
@@ -11,15 +13,40 @@
 
 namespace treacle {
 
-/// A particle is at the free surface where it has few neighbours, or where they stand on one side of it: its
-/// density is below `sparse` of that of a full lattice, or below `dense` with a lack of neighbours |sum V grad W|
-/// above `oneSided`, in units of 1/l. The first catches spray and threads, the second sheets and surfaces, and not
-/// the hollows that open for a few steps inside a splashing body. Single particles jammed into walls have no
-/// equation to take a pressure from: with less than fewest() fluid neighbours (a corner has 7 in 2D and 16 in 3D)
-/// they count, too.
+/// Where a fluid particle stands.
+struct Place {
+  enum : std::uint8_t {
+    Inside,
+    Surface,  // at the free surface; it has an equation, in which missing neighbours have the pressure zero
+    Free,     // it has no equation; its pressure is zero
+  };
+};
+
+/// The particles at the free surface.
+///
+/// Published scheme: those with few neighbours, or with neighbours on one side. The density is below `sparse` of
+/// that of a full lattice, or below `dense` with a lack of neighbours |sum V grad W| above `oneSided`, in units of
+/// 1/l. The first catches spray and threads, the second sheets and surfaces, and not the hollows that open for a
+/// few steps inside a splashing body. They are free.
+///
+/// Accurate scheme: those that miss `least` of a full lattice's neighbours. Particles miss the more of them the
+/// more their neighbours lack on one side, or many of them: not at all up to the first value of a pair, and all
+/// that is missing from the second on.
+///
+/// In both, single particles jammed into walls have no equation to take a pressure from. Particles with less than
+/// fewest() fluid neighbours (a corner has 7 in 2D and 16 in 3D) are free.
 struct SurfaceCriterion {
   double sparse = 0.75, dense = 1.05, oneSided = 0.2;
+  double lack[2] = {0.05, 0.15}, many[2] = {0.15, 0.25}, least = 0.1;
   TREACLE_HD static constexpr int fewest(int dimensions) { return dimensions == 2 ? 4 : 8; }
+
+  /// What counts as missing of the share of the neighbours that a particle does not have. `lackOf` in 1/l.
+  TREACLE_HD double missing(double lackOf, double share) const {
+    return std::fmax(ramp(lackOf, lack), ramp(share, many)) * std::fmax(0.0, share);
+  }
+  TREACLE_HD static double ramp(double x, const double (&between)[2]) {
+    return std::fmin(1.0, std::fmax(0.0, (x - between[0]) / (between[1] - between[0])));
+  }
 };
 
 /// Shares of a particle's density that walls make up.
@@ -40,27 +67,45 @@ struct IsphPairs : MaterialParticles<D> {
   const WallMotion<D>* wallMotion = nullptr;  // per body; none: no wall accelerates
   SmoothingKernel<D> kernel{};
   SurfaceCriterion surface;
-  Vec<D> gravity{};                            // [m/s2]
+  FrameForce<D> frame{};
   double volume = 0;                           // of a particle, l^D [m^D]
   double latticeDensity = 0;                   // sum of V W over a full lattice [-]
+  double latticeLaplacian = 0;                 // sum of 2 slope over one [1/m2]
   double leastDensity = 0, mostViscosity = 0;  // of fluids [kg/m3], [Pa s]
   double mostDiffusivity = 0;                  // of their momentum, next to walls, too [m2/s]
   WallContact contact;
-  double timeStep = 0;            // [s]
-  double alpha = 0;               // [-]
-  bool noSlip = true;             // walls hold the fluid by its viscosity
-  bool negativePressure = false;  // or cut to zero
+  double timeStep = 0;                        // [s]
+  double alpha = 0;                           // [-]
+  bool noSlip = true;                         // walls hold the fluid by its viscosity
+  bool negativePressure = false;              // or cut to zero
+  bool accurate = true;                       // the scheme
+  static constexpr double leastMoment = 0.3;  // as what lesser eigenvalues of M count (DensityTerm)
+  // Of the accurate scheme, per fluid particle, by DensityTerm:
+  SymmetricBlock<D, float>* renormalisation = nullptr;  // B [-]
+  float* missing = nullptr;                             // missingShare
 
   /// V |W'| / r [1/m2]: V grad_i W = slope (x_j - x_i).
   TREACLE_HD double slope(const Distance& r) const { return volume * kernel.slope(r); }
+  /// B_i d
+  TREACLE_HD Vec<D> renormalised(std::uint32_t i, const Vec<D>& d) const {
+    return accurate ? converted<double>(renormalisation[i]) * d : d;
+  }
+  /// e.B_i e with e = d / |d|: by how much the Laplacian of a particle weighs a neighbour at d.
+  TREACLE_HD double renormalisedAlong(std::uint32_t i, const Vec<D>& d) const {
+    return accurate ? dot(d, renormalised(i, d)) / norm2(d) : 1;
+  }
+  /// Share of its neighbours that a particle at the free surface misses, by latticeLaplacian.
+  TREACLE_HD double missingShare(std::uint32_t i) const { return accurate ? missing[i] : 0; }
   /// Coefficient of p_i - p_j in the pressure equation [O23 eq. (11)], with 1/rho of the pair's mean [m/kg].
-  TREACLE_HD double pressureCoefficient(const Distance& r, Substance a, Substance b) const {
-    return this->materials.pairMobility[a][b] * slope(r);
+  TREACLE_HD double pressureCoefficient(std::uint32_t i, std::uint32_t j, const Vec<D>& d,
+                                        const Distance& r) const {
+    const double c = this->materials.pairMobility[this->substance(i)][this->substance(j)] * slope(r);
+    return 0.5 * (renormalisedAlong(i, d) + renormalisedAlong(j, d)) * c;
   }
   /// Pressure that a fluid particle with pressure p sees in a wall at distance d: the wall holds it against
   /// gravity in the frame of the wall, dp/dn = rho (g - a_wall).n.
   TREACLE_HD double wallPressure(double p, std::uint32_t fluid, std::uint32_t wall, const Vec<D>& d) const {
-    Vec<D> g = gravity;
+    Vec<D> g = frame.at(this->position[wall]);
     if (wallMotion) g -= wallMotion[body[wall]].accelerationAt(this->position[wall]);
     const double outside = p + this->density(fluid) * dot(g, d);
     return negativePressure || outside > 0 ? outside : 0;

@@ -11,16 +11,12 @@ namespace treacle {
 /// there for ghosts, too (fillGhosts). All in the backend's memory.
 
 /// Calls `term` for every neighbour of every own fluid particle, walls included.
-template <int D, class Term>
-void sumOnFluid(Context<Cpu>&, const IsphPairs<D>& pairs, const Term& term);
-template <int D, class Term>
-void sumOnFluid(Context<Cuda>&, const IsphPairs<D>& pairs, const Term& term);
+template <int D, class Term, class Backend>
+void sumOnFluid(Context<Backend>&, const IsphPairs<D>& pairs, const Term& term);
 
 /// The same for the fluid neighbours of every own active wall particle.
-template <int D, class Term>
-void sumOnWalls(Context<Cpu>&, const IsphPairs<D>& pairs, const Term& term);
-template <int D, class Term>
-void sumOnWalls(Context<Cuda>&, const IsphPairs<D>& pairs, const Term& term);
+template <int D, class Term, class Backend>
+void sumOnWalls(Context<Backend>&, const IsphPairs<D>& pairs, const Term& term);
 
 /// What Galerkin operators take from the pairs of a particle: half the sum of c d d^T over the unknown ones, upper
 /// triangle, and the part of the diagonal that no pair of unknowns makes.
@@ -71,10 +67,9 @@ void preparePacked(Context<Cuda>&, const IsphPairs<D>& pairs, PackedEntries<Cuda
 
 /// Fills the parts of a matrix whose rows are PressureRow or ViscousRow. Diagonals are made of the coefficients as
 /// they are stored: a matrix in single precision is another one, but no less symmetric and semidefinite.
-template <int D, class T, class Row>
-void fillIsphMatrix(Context<Cpu>&, const IsphPairs<D>& pairs, const Row& row, const IsphMatrixParts<D, T>& parts);
-template <int D, class T, class Row>
-void fillIsphMatrix(Context<Cuda>&, const IsphPairs<D>& pairs, const Row& row, const IsphMatrixParts<D, T>& parts);
+template <int D, class T, class Row, class Backend>
+void fillIsphMatrix(Context<Backend>&, const IsphPairs<D>& pairs, const Row& row,
+                    const IsphMatrixParts<D, T>& parts);
 
 /// What both backends do with a row of such a matrix.
 template <int D, class T, class Row>
@@ -95,7 +90,7 @@ struct IsphMatrixRow {
     Vec<D> d{};
     if (row.isUnknown(i) && j != i) {
       d = pairs.grid.difference(x, pairs.position[j]);
-      c = row.coefficient(pairs, i, j, Distance(d));
+      c = row.coefficient(pairs, i, j, d, Distance(d));
       if (!row.isUnknown(j)) {
         sum[Known] += c;
         c = 0;
@@ -123,5 +118,23 @@ struct IsphMatrixRow {
     m.own = static_cast<float>(known);
   }
 };
+
+/// For the sources of both backends.
+#define TREACLE_ISPH_SUMS(D, Backend)                                                             \
+  template void sumOnFluid(Context<Backend>&, const IsphPairs<D>&, const DensityTerm<D>&);        \
+  template void sumOnFluid(Context<Backend>&, const IsphPairs<D>&, const PredictorTerm<D>&);      \
+  template void sumOnFluid(Context<Backend>&, const IsphPairs<D>&,                                \
+                           const BothTerms<DensityTerm<D>, PredictorTerm<D>>&);                   \
+  template void sumOnFluid(Context<Backend>&, const IsphPairs<D>&, const ViscousSourceTerm<D>&);  \
+  template void sumOnFluid(Context<Backend>&, const IsphPairs<D>&, const PressureSourceTerm<D>&); \
+  template void sumOnFluid(Context<Backend>&, const IsphPairs<D>&, const CorrectorTerm<D>&);      \
+  template void sumOnWalls(Context<Backend>&, const IsphPairs<D>&, const WallPressureTerm<D>&);   \
+  template void sumOnWalls(Context<Backend>&, const IsphPairs<D>&, const WallForceTerm<D>&);      \
+  TREACLE_ISPH_MATRIX(D, double, PressureRow<D>, Backend)                                         \
+  TREACLE_ISPH_MATRIX(D, float, PressureRow<D>, Backend)                                          \
+  TREACLE_ISPH_MATRIX(D, double, ViscousRow<D>, Backend)                                          \
+  TREACLE_ISPH_MATRIX(D, float, ViscousRow<D>, Backend)
+#define TREACLE_ISPH_MATRIX(D, T, Row, Backend) \
+  template void fillIsphMatrix(Context<Backend>&, const IsphPairs<D>&, const Row&, const IsphMatrixParts<D, T>&);
 
 }  // namespace treacle

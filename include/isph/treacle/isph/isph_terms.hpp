@@ -1,5 +1,6 @@
 #pragma once
 
+#include "treacle/core/floored_inverse.hpp"
 #include "treacle/isph/isph_pairs.hpp"
 
 #include <cmath>
@@ -12,35 +13,52 @@ namespace treacle {
 /// as `values`; the rows of fluid hold i itself, at r = 0. store() takes the sums. Pointers are in the backend's
 /// memory.
 
-/// Density and lack of neighbours, from which the free surface follows.
+/// Density and lack of neighbours, from which the free surface follows; in the accurate scheme B as well, the
+/// inverse of M = sum V W' / r d d^T, with which sums over gradients are exact for linear fields (Bonet, Lok
+/// 1999), and the share of its neighbours that a particle at the free surface misses.
 template <int D>
 struct DensityTerm {
-  static constexpr int values = 2 + D;
-  double* density;        // <rho> / rho [-]
+  static constexpr int moments = D * (D + 1) / 2, values = 3 + D + moments;
+  enum { Density, Lack, Others = Lack + D, Laplacian, Moments };  // places of the sums
+  double* density;                                                // <rho> / rho [-]
   Vec<D>* deficit;        // sum V grad W [1/m]: points to where the neighbours are
-  std::uint8_t* surface;  // 1: at the free surface, p = 0
+  std::uint8_t* surface;  // Place
 
   TREACLE_HD void fluid(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d,
                         const Distance& r, double* sum) const {
     wall(pairs, i, j, d, r, sum);
-    sum[1 + D] += 1;
+    sum[Others] += i != j;
   }
-  TREACLE_HD void wall(const IsphPairs<D>& pairs, std::uint32_t, std::uint32_t, const Vec<D>& d, const Distance& r,
-                       double* sum) const {
-    sum[0] += pairs.volume * pairs.kernel.value(r.r);
+  TREACLE_HD void wall(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d,
+                       const Distance& r, double* sum) const {
+    sum[Density] += pairs.volume * pairs.kernel.value(r.r);
     const double slope = pairs.slope(r);
-    for (int k = 0; k < D; ++k) sum[1 + k] += slope * d[k];
+    for (int k = 0; k < D; ++k) sum[Lack + k] += slope * d[k];
+    if (!pairs.accurate || i == j) return;
+    sum[Laplacian] += 2 * slope;
+    for (int a = 0, n = Moments; a < D; ++a)
+      for (int b = a; b < D; ++b, ++n) sum[n] += slope * d[a] * d[b];
   }
   TREACLE_HD void store(const IsphPairs<D>& pairs, std::uint32_t i, const double* sum) const {
-    const double ratio = sum[0] / pairs.latticeDensity;
+    const double ratio = sum[Density] / pairs.latticeDensity;
     Vec<D> lack;
-    for (int k = 0; k < D; ++k) lack[k] = sum[1 + k];
+    for (int k = 0; k < D; ++k) lack[k] = sum[Lack + k];
     const SurfaceCriterion& s = pairs.surface;
+    const double oneSided = norm(lack) * pairs.spacing;
+    const bool isFree = sum[Others] < s.fewest(D);
     density[i] = ratio;
     deficit[i] = lack;
-    const double others = sum[1 + D] - 1;  // its row holds the particle itself
-    surface[i] =
-        others < s.fewest(D) || ratio < s.sparse || (ratio < s.dense && norm(lack) * pairs.spacing > s.oneSided);
+    if (!pairs.accurate) {
+      const bool isSurface = ratio < s.sparse || (ratio < s.dense && oneSided > s.oneSided);
+      surface[i] = isFree || isSurface ? Place::Free : Place::Inside;
+      return;
+    }
+    SymmetricBlock<D> moment;
+    for (int n = 0; n < moments; ++n) moment.a[n] = sum[Moments + n];
+    pairs.renormalisation[i] = converted<float>(flooredInverse(moment, pairs.leastMoment, false));
+    const double missing = s.missing(oneSided, 1 - sum[Laplacian] / pairs.latticeLaplacian);
+    pairs.missing[i] = static_cast<float>(missing);
+    surface[i] = isFree ? Place::Free : missing > s.least ? Place::Surface : Place::Inside;
   }
 };
 
@@ -69,8 +87,8 @@ struct PredictorTerm {
   }
   TREACLE_HD void store(const IsphPairs<D>& pairs, std::uint32_t i, const double* sum) const {
     const double density = pairs.density(i);
-    for (int k = 0; k < D; ++k)
-      predicted[i][k] = velocity[i][k] + pairs.timeStep * (sum[k] / density + pairs.gravity[k]);
+    const Vec<D> u = pairs.frame.turned(velocity[i]), g = pairs.frame.at(pairs.position[i]);
+    for (int k = 0; k < D; ++k) predicted[i][k] = u[k] + pairs.timeStep * (sum[k] / density + g[k]);
   }
 };
 
@@ -117,14 +135,17 @@ struct ViscousSourceTerm {
   }
   TREACLE_HD void store(const IsphPairs<D>& pairs, std::uint32_t i, const double* sum) const {
     const double density = pairs.density(i);
-    for (int k = 0; k < D; ++k)
-      source[k][i] = density * (velocity[i][k] / pairs.timeStep + pairs.gravity[k]) + sum[k];
+    const Vec<D> u = pairs.frame.turned(velocity[i]), g = pairs.frame.at(pairs.position[i]);
+    for (int k = 0; k < D; ++k) source[k][i] = density * (u[k] / pairs.timeStep + g[k]) + sum[k];
   }
 };
 
 /// Right-hand side of the pressure equation [O23 eq. (10)], divided by -rho: -div v* / dt + alpha (<rho>/rho - 1)
-/// / dt^2, zero at the free surface. Compression raises p. Walls are met with v* mirrored at the wall's velocity:
-/// with the wall's velocity itself half of the flow into it would be missed.
+/// / dt^2, zero for free particles. Compression raises p. Walls are met with v* mirrored at the wall's velocity:
+/// with the wall's velocity itself half of the flow into it would be missed. Walls count in it as in the
+/// Laplacian, so that water at rest has the hydrostatic pressure. In the accurate scheme particles at the free
+/// surface lack neighbours, not volume: a density below 1 does not count, and the less the more neighbours are
+/// missing.
 template <int D>
 struct PressureSourceTerm {
   static constexpr int values = 1;
@@ -135,22 +156,26 @@ struct PressureSourceTerm {
 
   TREACLE_HD void fluid(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d,
                         const Distance& r, double* sum) const {
-    sum[0] += pairs.slope(r) * dot(predicted[j] - predicted[i], d);
+    sum[0] += pairs.slope(r) * dot(predicted[j] - predicted[i], pairs.renormalised(i, d));
   }
   TREACLE_HD void wall(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d,
                        const Distance& r, double* sum) const {
-    sum[0] += 2 * pairs.slope(r) * dot(predicted[j] - predicted[i], d);
+    sum[0] += 2 * pairs.slope(r) * pairs.renormalisedAlong(i, d) * dot(predicted[j] - predicted[i], d);
   }
   TREACLE_HD void store(const IsphPairs<D>& pairs, std::uint32_t i, const double* sum) const {
-    const double compression = pairs.alpha * (density[i] - 1) / (pairs.timeStep * pairs.timeStep);
-    source[i] = surface[i] ? 0 : compression - sum[0] / pairs.timeStep;
+    const double missing = pairs.missingShare(i);
+    const double excess = missing > 0 ? std::fmax(0.0, density[i] - 1) : density[i] - 1;
+    const double compression = pairs.alpha * excess / (pairs.timeStep * pairs.timeStep);
+    source[i] = surface[i] == Place::Free ? 0 : (1 - missing) * (compression - sum[0] / pairs.timeStep);
   }
 };
 
 /// v = v* - dt grad p / rho [O23 eq. (8)], the gradient in its symmetric form [O23 eq. (5)]: it keeps momentum and
-/// drives particles apart. Particles without pressure have nothing to stop them at a wall: those closer to it than
-/// half a spacing lose the velocity into it; others do when they are closer still, in impacts that a step does not
-/// resolve. Whoever got inside nevertheless leaves at a fiftieth of a spacing per step.
+/// drives particles apart. In the accurate scheme it is sum V (p_i B_i + p_j B_j) grad W, the adjoint of the
+/// divergence: a strained lattice under pressure does not resist shear. Particles without pressure have nothing to
+/// stop them at a wall: those closer to it than half a spacing lose the velocity into it; others do when they are
+/// closer still, in impacts that a step does not resolve. Whoever got inside nevertheless leaves at a fiftieth of
+/// a spacing per step.
 template <int D>
 struct CorrectorTerm {
   static constexpr int values = 3 * D + 2;
@@ -163,14 +188,16 @@ struct CorrectorTerm {
 
   TREACLE_HD void fluid(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d,
                         const Distance& r, double* sum) const {
-    const double c = (pressure[i] + pressure[j]) * pairs.slope(r);
-    for (int k = 0; k < D; ++k) sum[k] += c * d[k];
+    const Vec<D> pull =
+        pairs.slope(r) * (pressure[i] * pairs.renormalised(i, d) + pressure[j] * pairs.renormalised(j, d));
+    for (int k = 0; k < D; ++k) sum[k] += pull[k];
   }
   TREACLE_HD void wall(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d,
                        const Distance& r, double* sum) const {
     const double slope = pairs.slope(r), c = (pressure[i] + pairs.wallPressure(pressure[i], i, j, d)) * slope;
+    const Vec<D> pull = c * pairs.renormalised(i, d);
     for (int k = 0; k < D; ++k) {
-      sum[k] += c * d[k];
+      sum[k] += pull[k];
       sum[D + k] += slope * d[k];
       sum[2 * D + k] += slope * predicted[j][k];
     }
@@ -235,8 +262,9 @@ struct WallForceTerm {
     const double slope = pairs.slope(r), p = pressure[j];
     const double push = p + pairs.wallPressure(p, j, i, -1.0 * d), inertia = pairs.density(j) / pairs.timeStep;
     const double drag = viscous && pairs.noSlip ? 4 * pairs.pairViscosity(j, i) : 0;
+    const Vec<D> away = push * pairs.renormalised(j, d);
     for (int k = 0; k < D; ++k)
-      sum[k] += slope * (drag * (velocity[j][k] - velocity[i][k]) - push * d[k] + inertia * stopped[j][k]);
+      sum[k] += slope * (drag * (velocity[j][k] - velocity[i][k]) - away[k] + inertia * stopped[j][k]);
   }
   TREACLE_HD void store(const IsphPairs<D>&, std::uint32_t i, const double* sum) const {
     for (int k = 0; k < D; ++k) force[i - firstWall][k] = sum[k];
@@ -244,33 +272,38 @@ struct WallForceTerm {
 };
 
 /// Row i of the pressure matrix: off-diagonal elements of unknown neighbours in place of their columns, the
-/// diagonal with those of known pressure, zero. A particle at the free surface has a row of zeros.
+/// diagonal with those of known pressure, zero, and with missing neighbours, which have it as well. A free
+/// particle has a row of zeros.
 template <int D>
 struct PressureRow {
   const std::uint8_t* surface;
 
-  TREACLE_HD bool isUnknown(std::uint32_t i) const { return !surface[i]; }
-  TREACLE_HD double coefficient(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j,
+  TREACLE_HD bool isUnknown(std::uint32_t i) const { return surface[i] != Place::Free; }
+  TREACLE_HD double coefficient(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d,
                                 const Distance& r) const {
-    return pairs.pressureCoefficient(r, pairs.substance(i), pairs.substance(j));
+    return pairs.pressureCoefficient(i, j, d, r);
   }
   /// Bound on all of them.
-  double largest(const IsphPairs<D>& pairs) const { return 2 * pairs.slope(0) / pairs.leastDensity; }
+  double largest(const IsphPairs<D>& pairs) const {
+    return 2 * pairs.slope(0) / pairs.leastDensity / (pairs.accurate ? pairs.leastMoment : 1);
+  }
   TREACLE_HD double wall(const IsphPairs<D>&, std::uint32_t, std::uint32_t, const Distance&) const { return 0; }
-  TREACLE_HD double own(const IsphPairs<D>&, std::uint32_t) const { return 0; }
+  TREACLE_HD double own(const IsphPairs<D>& pairs, std::uint32_t i) const {
+    return pairs.missingShare(i) * pairs.latticeLaplacian / pairs.density(i);
+  }
 };
 
 /// The same of the implicit viscous step, rho/dt I - mu lap; all fluid is unknown.
 template <int D>
 struct ViscousRow {
   TREACLE_HD bool isUnknown(std::uint32_t) const { return true; }
-  TREACLE_HD double coefficient(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j,
+  TREACLE_HD double coefficient(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>&,
                                 const Distance& r) const {
     return 2 * pairs.slope(r) * pairs.pairViscosity(i, j);
   }
   double largest(const IsphPairs<D>& pairs) const { return 2 * pairs.slope(0) * pairs.mostViscosity; }
   TREACLE_HD double wall(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Distance& r) const {
-    return pairs.noSlip ? 2 * coefficient(pairs, i, j, r) : 0;
+    return pairs.noSlip ? 4 * pairs.slope(r) * pairs.pairViscosity(i, j) : 0;
   }
   TREACLE_HD double own(const IsphPairs<D>& pairs, std::uint32_t i) const {
     return pairs.density(i) / pairs.timeStep;

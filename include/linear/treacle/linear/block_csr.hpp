@@ -51,16 +51,25 @@ inline Vec<D, T> rowProduct(const BlockCsrView<D, T>& a, std::size_t row, const 
 }
 
 /// y = A x; spans of A.rows() blocks.
-template <int D, class T>
-void multiply(Context<Cpu>&, const BlockCsr<D, T>& a, std::span<const Vec<D, T>> x, std::span<Vec<D, T>> y);
-template <int D, class T>
-void multiply(Context<Cuda>&, const BlockCsr<D, T, Cuda>& a, std::span<const Vec<D, T>> x, std::span<Vec<D, T>> y);
+template <int D, class T, class Backend>
+void multiply(Context<Backend>&, const BlockCsr<D, T, Backend>& a, std::span<const Vec<D, T>> x,
+              std::span<Vec<D, T>> y);
 
 /// Diagonal of the extended Jacobi smoother, half the row sums of |A_ij| [K23 eq. (41)]; the inverse is stored,
 /// zero for a row without entries.
-template <int D, class T, class S>
-void extendedJacobiInverse(Context<Cpu>&, const BlockCsr<D, T>& a, std::span<Vec<D, S>> inverse);
-template <int D, class T, class S>
-void extendedJacobiInverse(Context<Cuda>&, const BlockCsr<D, T, Cuda>& a, std::span<Vec<D, S>> inverse);
+template <int D, class T, class S, class Backend>
+void extendedJacobiInverse(Context<Backend>&, const BlockCsr<D, T, Backend>& a, std::span<Vec<D, S>> inverse);
+
+/// For the sources of both backends.
+#define TREACLE_BLOCK_CSR(D, Backend)                                                                             \
+  template void multiply(Context<Backend>&, const BlockCsr<D, double, Backend>&, std::span<const Vec<D>>,         \
+                         std::span<Vec<D>>);                                                                      \
+  template void multiply(Context<Backend>&, const BlockCsr<D, float, Backend>&, std::span<const Vec<D, float>>,   \
+                         std::span<Vec<D, float>>);                                                               \
+  template void extendedJacobiInverse(Context<Backend>&, const BlockCsr<D, double, Backend>&, std::span<Vec<D>>); \
+  template void extendedJacobiInverse(Context<Backend>&, const BlockCsr<D, double, Backend>&,                     \
+                                      std::span<Vec<D, float>>);                                                  \
+  template void extendedJacobiInverse(Context<Backend>&, const BlockCsr<D, float, Backend>&,                      \
+                                      std::span<Vec<D, float>>);
 
 }  // namespace treacle

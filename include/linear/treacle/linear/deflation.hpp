@@ -20,15 +20,15 @@ struct Deflated {
 };
 
 /// to = from
-void widen(Context<Cpu>&, std::span<const float> from, std::span<double> to);
-void widen(Context<Cuda>&, std::span<const float> from, std::span<double> to);
+template <class Backend>
+void widen(Context<Backend>&, std::span<const float> from, std::span<double> to);
 
 /// Row j of E: the products of W with column j of A W.
 void galerkinRow(Context<Cpu>&, const Deflated& d, int j);
 void galerkinRow(Context<Cuda>&, const Deflated& d, int j);
 
-void setInverse(Context<Cpu>&, const ModeMatrix& inverse, DeflationScalars* to);
-void setInverse(Context<Cuda>&, const ModeMatrix& inverse, DeflationScalars* to);
+template <class Backend>
+void setInverse(Context<Backend>&, const ModeMatrix& inverse, DeflationScalars* to);
 
 /// c = E^-1 W^T r, x += W c, r -= A W c, and krylov.start(b.b, r.r) with the b.b that is known
 void deflateGuess(Context<Cpu>&, const Deflated& d, std::span<double> x, std::span<double> r,
@@ -45,10 +45,10 @@ void deflatedDirection(Context<Cuda>&, const Deflated& d, std::span<const double
 
 /// krylov.setDirection(r.z), then p = z + beta p; the first iterations leave their scalars, and as column i of
 /// `basis`, unless it is empty, the vector (-1)^i z / sqrt(rho) of Lanczos' method.
-void recordedDirection(Context<Cpu>&, std::span<const double> r, std::span<const double> z, std::span<double> p,
-                       KrylovScalars* krylov, DeflationScalars* scalars, std::span<float> basis);
-void recordedDirection(Context<Cuda>&, std::span<const double> r, std::span<const double> z, std::span<double> p,
-                       KrylovScalars* krylov, DeflationScalars* scalars, std::span<float> basis);
+template <class Backend>
+void recordedDirection(Context<Backend>&, std::span<const double> r, std::span<const double> z,
+                       std::span<double> p, KrylovScalars* krylov, DeflationScalars* scalars,
+                       std::span<float> basis);
 
 /// W = basis times the coefficients
 void combine(Context<Cpu>&, std::span<const float> basis, const RitzVectors& ritz, std::span<float> w);

@@ -11,31 +11,21 @@ namespace treacle {
 /// double. Spans of one element per unknown particle.
 
 /// K = diag(inverse)
-template <int D, class T>
-void applyDiagonal(Context<Cpu>&, std::span<const Vec<D, T>> inverse, std::span<const Vec<D>> r,
-                   std::span<Vec<D>> z);
-template <int D, class T>
-void applyDiagonal(Context<Cuda>&, std::span<const Vec<D, T>> inverse, std::span<const Vec<D>> r,
+template <int D, class T, class Backend>
+void applyDiagonal(Context<Backend>&, std::span<const Vec<D, T>> inverse, std::span<const Vec<D>> r,
                    std::span<Vec<D>> z);
 
 /// K = block diagonal
-template <int D, class T>
-void applyBlockDiagonal(Context<Cpu>&, std::span<const Block<D, T>> inverse, std::span<const Vec<D>> r,
-                        std::span<Vec<D>> z);
-template <int D, class T>
-void applyBlockDiagonal(Context<Cuda>&, std::span<const Block<D, T>> inverse, std::span<const Vec<D>> r,
+template <int D, class T, class Backend>
+void applyBlockDiagonal(Context<Backend>&, std::span<const Block<D, T>> inverse, std::span<const Vec<D>> r,
                         std::span<Vec<D>> z);
 
 /// 1 / A_ii of the diagonal blocks.
-template <int D, class T>
-void jacobiInverse(Context<Cpu>&, std::span<const Block<D>> diagonal, std::span<Vec<D, T>> inverse);
-template <int D, class T>
-void jacobiInverse(Context<Cuda>&, std::span<const Block<D>> diagonal, std::span<Vec<D, T>> inverse);
+template <int D, class T, class Backend>
+void jacobiInverse(Context<Backend>&, std::span<const Block<D>> diagonal, std::span<Vec<D, T>> inverse);
 
 /// Inverses of the diagonal blocks.
-template <int D, class T>
-void blockInverse(Context<Cpu>&, std::span<const Block<D>> diagonal, std::span<Block<D, T>> inverse);
-template <int D, class T>
-void blockInverse(Context<Cuda>&, std::span<const Block<D>> diagonal, std::span<Block<D, T>> inverse);
+template <int D, class T, class Backend>
+void blockInverse(Context<Backend>&, std::span<const Block<D>> diagonal, std::span<Block<D, T>> inverse);
 
 }  // namespace treacle

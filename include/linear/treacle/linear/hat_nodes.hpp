@@ -71,64 +71,48 @@ void sumAtNodes(const Context<Backend>& context, const HatNodes<D, Backend>& nod
 }
 
 /// Nodes at the points where `active` is not zero, one value per lattice point.
-template <int D>
-void numberNodes(Context<Cpu>&, const HatLattice<D>& lattice, std::span<const std::uint8_t> active,
-                 HatNodes<D>& nodes);
-template <int D>
-void numberNodes(Context<Cuda>&, const HatLattice<D>& lattice, std::span<const std::uint8_t> active,
-                 HatNodes<D, Cuda>& nodes);
+template <int D, class Backend>
+void numberNodes(Context<Backend>&, const HatLattice<D>& lattice, std::span<const std::uint8_t> active,
+                 HatNodes<D, Backend>& nodes);
 
 /// Number of values that are not zero.
-std::uint32_t countNodes(Context<Cpu>&, std::span<const std::uint8_t> active);
-std::uint32_t countNodes(Context<Cuda>&, std::span<const std::uint8_t> active);
+template <class Backend>
+std::uint32_t countNodes(Context<Backend>&, std::span<const std::uint8_t> active);
 
 /// The same, divided between processes. `owner`, `active`: per lattice point, the same at all processes;
 /// `carried`: per lattice point, not zero where this process has nodes of a finer grid at which the point's hat
 /// does not vanish, or empty. Collective.
-template <int D>
-void divideNodes(Context<Cpu>&, const HatLattice<D>& lattice, Buffer<std::int32_t> owner,
-                 Buffer<std::uint8_t> active, std::span<const std::uint8_t> carried, HatNodes<D>& nodes);
-template <int D>
-void divideNodes(Context<Cuda>&, const HatLattice<D>& lattice, Buffer<std::int32_t, Cuda> owner,
-                 Buffer<std::uint8_t, Cuda> active, std::span<const std::uint8_t> carried,
-                 HatNodes<D, Cuda>& nodes);
+template <int D, class Backend>
+void divideNodes(Context<Backend>&, const HatLattice<D>& lattice, Buffer<std::int32_t, Backend> owner,
+                 Buffer<std::uint8_t, Backend> active, std::span<const std::uint8_t> carried,
+                 HatNodes<D, Backend>& nodes);
 
 /// So many nodes are never divided.
 inline constexpr std::uint64_t anyNumber = std::numeric_limits<std::uint64_t>::max();
 
 /// Nodes of the lattice of twice the edge: those whose hats do not vanish at all fine nodes. Where those are
 /// divided these are, too, if there are more than `mostWhole`; then it is collective.
-template <int D>
-void coarserNodes(Context<Cpu>&, const HatNodes<D>& fine, HatNodes<D>& coarse,
-                  std::uint64_t mostWhole = anyNumber);
-template <int D>
-void coarserNodes(Context<Cuda>&, const HatNodes<D, Cuda>& fine, HatNodes<D, Cuda>& coarse,
+template <int D, class Backend>
+void coarserNodes(Context<Backend>&, const HatNodes<D, Backend>& fine, HatNodes<D, Backend>& coarse,
                   std::uint64_t mostWhole = anyNumber);
 
 /// Pattern that couples each node to all within `reach` (1 … hatReach), in the order of forEachNear on both
 /// backends; the blocks, B numbers per node, are there, but not set.
-template <int D, int B>
-void hatPattern(Context<Cpu>&, const HatNodes<D>& nodes, BlockCsr<B>& a, int reach = hatReach);
-template <int D, int B>
-void hatPattern(Context<Cuda>&, const HatNodes<D, Cuda>& nodes, BlockCsr<B, double, Cuda>& a,
+template <int D, int B, class Backend>
+void hatPattern(Context<Backend>&, const HatNodes<D, Backend>& nodes, BlockCsr<B, double, Backend>& a,
                 int reach = hatReach);
 
 /// Sums what the processes that share the simulation have of each element, in the pattern of hatPattern with this
 /// reach: then the rows of own nodes have the sums, and those of ghosts mean nothing.
-template <int D, int B>
-void sumRows(Context<Cpu>&, const HatNodes<D>& nodes, int reach, BlockCsr<B>& a);
-template <int D, int B>
-void sumRows(Context<Cuda>&, const HatNodes<D, Cuda>& nodes, int reach, BlockCsr<B, double, Cuda>& a);
+template <int D, int B, class Backend>
+void sumRows(Context<Backend>&, const HatNodes<D, Backend>& nodes, int reach, BlockCsr<B, double, Backend>& a);
 
 /// Galerkin operator P^T A P on the coarser nodes, P being the interpolation by hats of each of the B numbers per
 /// node; in the pattern of hatPattern with this reach, beyond which `a` must not reach either. Of divided nodes
 /// the rows of own ones.
-template <int D, int B>
-void coarsenHats(Context<Cpu>&, const HatNodes<D>& fine, const BlockCsr<B>& a, const HatNodes<D>& coarse,
-                 BlockCsr<B>& coarseA, int reach = hatReach);
-template <int D, int B>
-void coarsenHats(Context<Cuda>&, const HatNodes<D, Cuda>& fine, const BlockCsr<B, double, Cuda>& a,
-                 const HatNodes<D, Cuda>& coarse, BlockCsr<B, double, Cuda>& coarseA, int reach = hatReach);
+template <int D, int B, class Backend>
+void coarsenHats(Context<Backend>&, const HatNodes<D, Backend>& fine, const BlockCsr<B, double, Backend>& a,
+                 const HatNodes<D, Backend>& coarse, BlockCsr<B, double, Backend>& coarseA, int reach = hatReach);
 
 /// The fine points that a coarse row of coarsenHats sums over lie at most `reach` + 1 steps from its own: so many.
 template <int D>
@@ -136,5 +120,23 @@ constexpr int hatGatherPlaces(int reach) {
   const int wide = 2 * (reach + 1) + 1;
   return D == 2 ? wide * wide : wide * wide * wide;
 }
+
+/// For the sources of both backends: hat_nodes and hat_division.
+#define TREACLE_HAT_NODES(D, Backend)                                                               \
+  template void numberNodes(Context<Backend>&, const HatLattice<D>&, std::span<const std::uint8_t>, \
+                            HatNodes<D, Backend>&);                                                 \
+  template void coarserNodes(Context<Backend>&, const HatNodes<D, Backend>&, HatNodes<D, Backend>&, \
+                             std::uint64_t);                                                        \
+  TREACLE_HAT_MATRICES(D, 1, Backend)                                                               \
+  TREACLE_HAT_MATRICES(D, D, Backend)
+#define TREACLE_HAT_MATRICES(D, B, Backend)                                                                      \
+  template void hatPattern(Context<Backend>&, const HatNodes<D, Backend>&, BlockCsr<B, double, Backend>&, int);  \
+  template void coarsenHats(Context<Backend>&, const HatNodes<D, Backend>&, const BlockCsr<B, double, Backend>&, \
+                            const HatNodes<D, Backend>&, BlockCsr<B, double, Backend>&, int);
+#define TREACLE_HAT_DIVISION(D, Backend)                                                                          \
+  template void divideNodes(Context<Backend>&, const HatLattice<D>&, Buffer<std::int32_t, Backend>,               \
+                            Buffer<std::uint8_t, Backend>, std::span<const std::uint8_t>, HatNodes<D, Backend>&); \
+  template void sumRows(Context<Backend>&, const HatNodes<D, Backend>&, int, BlockCsr<1, double, Backend>&);      \
+  template void sumRows(Context<Backend>&, const HatNodes<D, Backend>&, int, BlockCsr<D, double, Backend>&);
 
 }  // namespace treacle

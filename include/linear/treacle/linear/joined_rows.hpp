@@ -17,10 +17,8 @@ struct JoinedRows {
 /// The sum of the parts that the processes have of a matrix, whole and the same bits at every process. The first
 /// `own` rows of a part have all columns that the whole has there; others, which are own rows of other processes,
 /// may lack some. Collective.
-template <int D>
-void joinRows(Context<Cpu>&, const BlockCsr<D>& part, const JoinedRows& place, BlockCsr<D>& whole);
-template <int D>
-void joinRows(Context<Cuda>&, const BlockCsr<D, double, Cuda>& part, const JoinedRows& place,
-              BlockCsr<D, double, Cuda>& whole);
+template <int D, class Backend>
+void joinRows(Context<Backend>&, const BlockCsr<D, double, Backend>& part, const JoinedRows& place,
+              BlockCsr<D, double, Backend>& whole);
 
 }  // namespace treacle

@@ -1,8 +1,7 @@
 #pragma once
 
-#include "treacle/core/backend.hpp"
 #include "treacle/core/buffer.hpp"
-#include "treacle/core/cuda.hpp"
+#include "treacle/core/copy_values.hpp"
 #include "treacle/core/pseudo_random.hpp"
 #include "treacle/linear/lanczos_scalars.hpp"
 
@@ -21,34 +20,24 @@ struct LanczosVectors {
 };
 
 /// r = D^1/2 u with pseudo-random u that depends on the index alone, p = D^-1 r; scalars.start(r.p)
-template <class T>
-void lanczosStart(Context<Cpu>&, const LanczosVectors<T>& v);
-template <class T>
-void lanczosStart(Context<Cuda>&, const LanczosVectors<T>& v);
+template <class T, class Backend>
+void lanczosStart(Context<Backend>&, const LanczosVectors<T>& v);
 
 /// scalars.setStep(p.q)
-template <class T>
-void lanczosStep(Context<Cpu>&, const LanczosVectors<T>& v);
-template <class T>
-void lanczosStep(Context<Cuda>&, const LanczosVectors<T>& v);
+template <class T, class Backend>
+void lanczosStep(Context<Backend>&, const LanczosVectors<T>& v);
 
 /// r -= alpha q; scalars.setDirection(r.D^-1 r); then p = D^-1 r + beta p
-template <class T>
-void lanczosDirection(Context<Cpu>&, const LanczosVectors<T>& v);
-template <class T>
-void lanczosDirection(Context<Cuda>&, const LanczosVectors<T>& v);
+template <class T, class Backend>
+void lanczosDirection(Context<Backend>&, const LanczosVectors<T>& v);
 
 /// The largest eigenvalue of the tridiagonal matrix times a margin, or 1 where it is empty.
-template <class T>
-void lanczosFinish(Context<Cpu>&, const LanczosScalars* scalars, double margin, T* largest);
-template <class T>
-void lanczosFinish(Context<Cuda>&, const LanczosScalars* scalars, double margin, T* largest);
+template <class T, class Backend>
+void lanczosFinish(Context<Backend>&, const LanczosScalars* scalars, double margin, T* largest);
 
 /// *to = value
-template <class T>
-void setNumber(Context<Cpu>&, T value, T* to);
-template <class T>
-void setNumber(Context<Cuda>&, T value, T* to);
+template <class T, class Backend>
+void setNumber(Context<Backend>&, T value, T* to);
 
 /// Largest eigenvalue of D^-1 A for symmetric positive (semi-)definite A and diagonal D, a little above rather
 /// than below: what a Chebyshev smoother divides by. The host never waits.
@@ -91,12 +80,7 @@ class SpectralEstimate {
   const T* largest() const { return largest_.data(); }
 
   /// The same, waited for.
-  T onHost(Context<Backend>& context) const {
-    if constexpr (std::is_same_v<Backend, Cpu>)
-      return *largest();
-    else
-      return valueOnHost(context, largest());
-  }
+  T onHost(Context<Backend>& context) const { return valueOnHost(context, largest()); }
 
   std::size_t bytes() const { return r_.bytes() + p_.bytes() + q_.bytes() + scalars_.bytes() + largest_.bytes(); }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "treacle/core/backend.hpp"
+#include "treacle/core/copy_values.hpp"
 #include "treacle/linear/krylov_scalars.hpp"
 
 #include <functional>
@@ -14,26 +14,27 @@ using Product = std::function<void(std::span<const double>, std::span<double>)>;
 /// The vector operations that a Krylov loop consists of. All spans have the same length; `scalars` and the spans
 /// are in the backend's memory. Sums have a fixed order: they do not depend on the number of threads.
 
-void copy(Context<Cpu>&, std::span<const double> from, std::span<double> to);
-void copy(Context<Cuda>&, std::span<const double> from, std::span<double> to);
+template <class Backend>
+void copy(Context<Backend>& context, std::span<const double> from, std::span<double> to) {
+  copyValues(context, from, to.data());
+}
 
 /// r = b - r, and scalars.start(b.b, r.r)
-void residual(Context<Cpu>&, std::span<const double> b, std::span<double> r, KrylovScalars* scalars);
-void residual(Context<Cuda>&, std::span<const double> b, std::span<double> r, KrylovScalars* scalars);
+template <class Backend>
+void residual(Context<Backend>&, std::span<const double> b, std::span<double> r, KrylovScalars* scalars);
 
 /// scalars.setDirection(x.y): beta
-void directionDot(Context<Cpu>&, std::span<const double> x, std::span<const double> y, KrylovScalars* scalars);
-void directionDot(Context<Cuda>&, std::span<const double> x, std::span<const double> y, KrylovScalars* scalars);
+template <class Backend>
+void directionDot(Context<Backend>&, std::span<const double> x, std::span<const double> y, KrylovScalars* scalars);
 
 /// scalars.setStep(x.y): alpha
-void stepDot(Context<Cpu>&, std::span<const double> x, std::span<const double> y, KrylovScalars* scalars);
-void stepDot(Context<Cuda>&, std::span<const double> x, std::span<const double> y, KrylovScalars* scalars);
+template <class Backend>
+void stepDot(Context<Backend>&, std::span<const double> x, std::span<const double> y, KrylovScalars* scalars);
 
 /// p = z + beta p, in the first iteration p = z; where `single`, rounded to numbers in single precision; 3 vectors
 /// of traffic
-void direction(Context<Cpu>&, std::span<const double> z, std::span<double> p, const KrylovScalars* scalars,
-               bool single = false);
-void direction(Context<Cuda>&, std::span<const double> z, std::span<double> p, const KrylovScalars* scalars,
+template <class Backend>
+void direction(Context<Backend>&, std::span<const double> z, std::span<double> p, const KrylovScalars* scalars,
                bool single = false);
 
 /// p = s + beta p, q = y + beta q, likewise; 6 vectors of traffic
@@ -41,23 +42,18 @@ struct CrDirections {
   std::span<const double> s, y;
   std::span<double> p, q;
 };
-void directionsCr(Context<Cpu>&, const CrDirections& v, const KrylovScalars* scalars);
-void directionsCr(Context<Cuda>&, const CrDirections& v, const KrylovScalars* scalars);
+template <class Backend>
+void directionsCr(Context<Backend>&, const CrDirections& v, const KrylovScalars* scalars);
 
-/// x += alpha p, r -= alpha q, and scalars.endIteration(r.r); 6 vectors of traffic
-struct CgVectors {
+/// x += alpha p, r -= alpha q, where they are given s -= alpha u, and scalars.endIteration(r.r); 6 vectors of
+/// traffic, with s and u 9
+struct KrylovVectors {
   std::span<const double> p, q;
   std::span<double> x, r;
+  std::span<const double> u{};
+  std::span<double> s{};
 };
-void updateCg(Context<Cpu>&, const CgVectors& v, KrylovScalars* scalars);
-void updateCg(Context<Cuda>&, const CgVectors& v, KrylovScalars* scalars);
-
-/// x += alpha p, r -= alpha q, s -= alpha u, and scalars.endIteration(r.r); 9 vectors of traffic
-struct CrVectors {
-  std::span<const double> p, q, u;
-  std::span<double> x, r, s;
-};
-void updateCr(Context<Cpu>&, const CrVectors& v, KrylovScalars* scalars);
-void updateCr(Context<Cuda>&, const CrVectors& v, KrylovScalars* scalars);
+template <class Backend>
+void updateSolution(Context<Backend>&, const KrylovVectors& v, KrylovScalars* scalars);
 
 }  // namespace treacle

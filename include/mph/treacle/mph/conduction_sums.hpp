@@ -2,35 +2,17 @@
 
 #include "treacle/mph/conduction.hpp"
 #include "treacle/mph/pair_sums.hpp"
-#include "treacle/mph/viscosity_scale.hpp"
+#include "treacle/mph/viscous_moment.hpp"
 
 namespace treacle {
 
 // The sums of conduction.hpp, for the sources of both backends, which instantiate them.
 
-/// Sum of c r^4 per fluid particle, of neighbours that conduct.
-template <int D>
-struct ConductingMoment {
-  static constexpr int values = 1;
-  static constexpr bool uses(ListSegment) { return true; }
-  template <class At>
-  using Own = At;
-
+/// Fluid, and the walls that have a temperature.
+struct ConductingNeighbours {
   Conduction terms;
-  double* scale;
-
-  template <class At>
-  TREACLE_HD At own(const MphPairs<D>&, const At& at) const {
-    return at;
-  }
-  template <class T, class O>
-  TREACLE_HD void add(const MphPairs<D>& pairs, T* sum, const Vec<D, T>& d, const PairDistance<T>& r, const O&,
-                      const OneParticle& other, ListSegment segment) const {
-    if (isWall(segment) && !terms.conducts(other.index)) return;
-    sum[0] += pairs.terms.resistanceShape(r) * norm2(d);
-  }
-  TREACLE_HD void store(const MphPairs<D>& pairs, std::uint32_t i, int, double sum) const {
-    scale[i] = viscosityScaleOf<D>(pairs.terms.viscousFactor * sum, 1);
+  TREACLE_HD bool operator()(std::uint32_t j, ListSegment segment) const {
+    return isFluid(segment) || terms.conducts(j);
   }
 };
 
@@ -128,7 +110,7 @@ struct Conduct {
 template <int D, class Backend>
 void conductionScale(Context<Backend>& context, const MphPairs<D>& pairs, const Conduction& terms,
                      std::span<double> scale) {
-  sumOnFluid(context, pairs, ConductingMoment<D>{terms, scale.data()});
+  sumOnFluid(context, pairs, ViscousMoment<D, ConductingNeighbours>{1, scale.data(), {terms}});
 }
 
 template <int D, class Backend>

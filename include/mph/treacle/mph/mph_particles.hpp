@@ -1,6 +1,7 @@
 #pragma once
 
 #include "treacle/core/cuda.hpp"
+#include "treacle/model/motion/frame_force.hpp"
 #include "treacle/mph/mph_pairs.hpp"
 #include "treacle/mph/surface_tension.hpp"
 
@@ -21,8 +22,8 @@ void elasticPressure(Context<Backend>&, const MphPairs<D>&, std::span<const doub
 
 /// rho/dt u + rho g per fluid particle: b of [K23 eq. (16)] before the pair sums.
 template <int D, class Backend>
-void inertiaAndGravity(Context<Backend>&, const MphPairs<D>&, std::span<const Vec<D>> u, const Vec<D>& gravity,
-                       std::span<Vec<D>> b);
+void inertiaAndGravity(Context<Backend>&, const MphPairs<D>&, std::span<const Vec<D>> u,
+                       const FrameForce<D>& frame, std::span<Vec<D>> b);
 
 /// pressure_i = lambda_i div_i + elastic_i per particle [Pa] [K23 eq. (14)]; an empty `elastic` counts as zero.
 /// `pressure` may be `div`.
@@ -41,8 +42,8 @@ TREACLE_HD double elasticPressureOf(const MphPairs<D>& pairs, std::uint32_t i, d
 
 template <int D>
 TREACLE_HD Vec<D> inertiaAndGravityOf(const MphPairs<D>& pairs, std::uint32_t i, const Vec<D>& u,
-                                      const Vec<D>& gravity) {
-  return pairs.inertia(i) * u + pairs.density(i) * gravity;
+                                      const FrameForce<D>& frame) {
+  return pairs.inertia(i) * frame.turned(u) + pairs.density(i) * frame.at(pairs.position[i]);
 }
 template <int D>
 TREACLE_HD double bulkPressureOf(const MphPairs<D>& pairs, std::uint32_t i, double div, double elastic) {

@@ -4,7 +4,7 @@
 #include "treacle/mph/pair_sums.hpp"
 #include "treacle/mph/particle_viscosity.hpp"
 #include "treacle/mph/renormalisation.hpp"
-#include "treacle/mph/viscosity_scale.hpp"
+#include "treacle/mph/viscous_moment.hpp"
 #include "treacle/mph/wall_surfaces.hpp"
 
 namespace treacle {
@@ -23,9 +23,9 @@ void elasticPressure(Context<Backend>& context, const MphPairs<D>& pairs, std::s
 
 template <int D, class Backend>
 void inertiaAndGravity(Context<Backend>& context, const MphPairs<D>& pairs, std::span<const Vec<D>> u,
-                       const Vec<D>& gravity, std::span<Vec<D>> b) {
+                       const FrameForce<D>& frame, std::span<Vec<D>> b) {
   forEachParticle(context, pairs, b.size(), [=] TREACLE_HD(const MphPairs<D>& of, std::uint32_t i) {
-    b[i] = inertiaAndGravityOf(of, i, u[i], gravity);
+    b[i] = inertiaAndGravityOf(of, i, u[i], frame);
   });
 }
 
@@ -58,29 +58,6 @@ void placeSurfaces(Context<Backend>& context, const KnownSurfaces<D>& known, std
                    std::span<WallSurface<D>> placed) {
   forEach(context, placed.size(), [=] TREACLE_HD(std::size_t k) { placed[k] = placedSurface(known, k, body[k]); });
 }
-
-/// Sum of c r^4 per fluid particle.
-template <int D>
-struct ViscousMoment {
-  static constexpr int values = 1;
-  static constexpr bool uses(ListSegment) { return true; }
-
-  double correction;
-  double* scale;
-
-  template <class At>
-  TREACLE_HD At own(const MphPairs<D>&, const At& at) const {
-    return at;
-  }
-  template <class T, class O>
-  TREACLE_HD void add(const MphPairs<D>& pairs, T* sum, const Vec<D, T>& d, const PairDistance<T>& r, const O&,
-                      const OneParticle&, ListSegment) const {
-    sum[0] += pairs.terms.resistanceShape(r) * norm2(d);
-  }
-  TREACLE_HD void store(const MphPairs<D>& pairs, std::uint32_t i, int, double sum) const {
-    scale[i] = viscosityScaleOf<D>(pairs.terms.viscousFactor * sum, correction);
-  }
-};
 
 template <int D, class Backend>
 void viscosityScale(Context<Backend>& context, const MphPairs<D>& pairs, double correction,
@@ -119,16 +96,16 @@ void renormalisation(Context<Backend>& context, const MphPairs<D>& pairs, std::s
   forEach(context, b.size(), [=] TREACLE_HD(std::size_t i) { b[i] = renormalisationOf(b[i]); });
 }
 
-#define TREACLE_PARTICLE_SUMS(D, Backend)                                                                        \
-  template void elasticPressure(Context<Backend>&, const MphPairs<D>&, std::span<const double>,                  \
-                                std::span<const Adhesion<D>>, std::span<double>);                                \
-  template void inertiaAndGravity(Context<Backend>&, const MphPairs<D>&, std::span<const Vec<D>>, const Vec<D>&, \
-                                  std::span<Vec<D>>);                                                            \
-  template void bulkPressure(Context<Backend>&, const MphPairs<D>&, std::span<const double>,                     \
-                             std::span<const double>, std::span<double>);                                        \
-  template void placeSurfaces(Context<Backend>&, const KnownSurfaces<D>&, std::span<const std::uint8_t>,         \
-                              std::span<WallSurface<D>>);                                                        \
-  template void viscosityScale(Context<Backend>&, const MphPairs<D>&, double, std::span<double>);                \
+#define TREACLE_PARTICLE_SUMS(D, Backend)                                                                \
+  template void elasticPressure(Context<Backend>&, const MphPairs<D>&, std::span<const double>,          \
+                                std::span<const Adhesion<D>>, std::span<double>);                        \
+  template void inertiaAndGravity(Context<Backend>&, const MphPairs<D>&, std::span<const Vec<D>>,        \
+                                  const FrameForce<D>&, std::span<Vec<D>>);                              \
+  template void bulkPressure(Context<Backend>&, const MphPairs<D>&, std::span<const double>,             \
+                             std::span<const double>, std::span<double>);                                \
+  template void placeSurfaces(Context<Backend>&, const KnownSurfaces<D>&, std::span<const std::uint8_t>, \
+                              std::span<WallSurface<D>>);                                                \
+  template void viscosityScale(Context<Backend>&, const MphPairs<D>&, double, std::span<double>);        \
   template void renormalisation(Context<Backend>&, const MphPairs<D>&, std::span<SymmetricBlock<D>>);
 
 }  // namespace treacle

@@ -102,7 +102,7 @@ struct SurfaceForce {
   SurfaceTerms<D> terms;
   const SurfaceSlope<D>* slope;
   const Adhesion<D>* adhesion;
-  Vec<D>*force, *apart, *press;
+  Vec<D>*force, *unshared, *smoothed;
 
   template <class At>
   TREACLE_HD Own<At> own(const MphPairs<D>& pairs, const At& at) const {
@@ -140,7 +140,7 @@ struct SurfaceForce {
     addScaled(sum + 2 * D, terms.weight(r.square) * sqrt(other2), other.m);
   }
   TREACLE_HD void store(const MphPairs<D>&, std::uint32_t i, int n, double sum) const {
-    (n < D ? force[i][n] : n < 2 * D ? apart[i][n - D] : press[i][n - 2 * D]) = sum;
+    (n < D ? force[i][n] : n < 2 * D ? unshared[i][n - D] : smoothed[i][n - 2 * D]) = sum;
   }
 };
 
@@ -173,18 +173,18 @@ struct SurfaceBend {
     const T closing = along(other.m, d) * squareRoot(norm2(own.m)) - along(own.m, d) * norm(other.m);
     addScaled(sum, terms.bending(r.square, r.inverse) * closing, d);
     const T near = terms.nearness(r.square);
-    sum[D] += near * other.fit.force;
-    sum[D + 1] += near * other.fit.press;
+    sum[D] += near * other.fit.along;
+    sum[D + 1] += near * other.fit.square;
   }
   TREACLE_HD void store(const MphPairs<D>&, std::uint32_t i, int n, double sum) const {
     if (n < D)
       of.force[i][n] += sum;
     else
-      (n == D ? fitted[i].force : fitted[i].press) = sum;
+      (n == D ? fitted[i].along : fitted[i].square) = sum;
   }
 };
 
-/// y = the force per fluid particle, what it shares of it along the surface with its neighbours, and `apart`.
+/// The sum of evenAlongSurface().
 template <int D>
 struct EvenForce {
   static constexpr int values = D;
@@ -196,15 +196,12 @@ struct EvenForce {
   };
 
   SurfaceTerms<D> terms;
-  std::span<const Vec<D>> normal;
-  std::span<const SurfaceFit> fit;
-  std::span<const Vec<D>> f, apart;  // the last may be empty
-  Vec<D>* y;
+  SharedForces<D> of;
 
   template <class At>
   TREACLE_HD Own<At> own(const MphPairs<D>&, const At& at) const {
-    return {at([&](std::uint32_t i) { return normal[i]; }), at([&](std::uint32_t i) { return f[i]; }),
-            at([&](std::uint32_t i) { return fit[i].press > 0 ? 1.0 : 0.0; })};
+    return {at([&](std::uint32_t i) { return of.normal[i]; }), at([&](std::uint32_t i) { return of.f[i]; }),
+            at([&](std::uint32_t i) { return of.fit[i].square > 0 ? 1.0 : 0.0; })};
   }
 
   template <class T, class O>
@@ -219,11 +216,11 @@ struct EvenForce {
     addScaled(sum, k * unit2 * differenceAlong(other.f, own.f, d), d);
   }
   TREACLE_HD void store(const MphPairs<D>&, std::uint32_t i, int n, double sum) const {
-    y[i][n] = f[i][n] + sum + (apart.empty() ? 0.0 : apart[i][n]);
+    of.y[i][n] = of.f[i][n] + sum + (of.unshared.empty() ? 0.0 : of.unshared[i][n]);
   }
 };
 
-/// The reaction per wall particle of the list.
+/// The sum of surfaceOnWalls().
 template <int D>
 struct SurfaceReaction {
   static constexpr int values = D;
@@ -236,17 +233,15 @@ struct SurfaceReaction {
   };
 
   SurfaceTerms<D> terms;
-  std::span<const Vec<D>> ofWalls;
-  std::span<const Adhesion<D>> adhesion;
-  std::span<Vec<D>> y, load;
+  WallReactions<D> of;
 
   template <class At>
   TREACLE_HD Own<At> own(const MphPairs<D>& pairs, const At& at) const {
-    return {at([&](std::uint32_t j) { return adhesion[j].along; }),
+    return {at([&](std::uint32_t j) { return of.adhesion[j].along; }),
             at([&](std::uint32_t j) { return int{pairs.material[j]}; })};
   }
   TREACLE_HD Own<OneParticle> other(const MphPairs<D>& pairs, std::uint32_t i) const {
-    return {{}, pairs.material[i], ofWalls[i]};
+    return {{}, pairs.material[i], of.ofWalls[i]};
   }
 
   template <class T, class O>
@@ -257,8 +252,8 @@ struct SurfaceReaction {
               terms.alongWall(d, r.square, own.along));
   }
   TREACLE_HD void store(const MphPairs<D>& pairs, std::uint32_t j, int n, double sum) const {
-    y[j - pairs.fluidCount][n] = sum;
-    load[j - pairs.fluidCount][n] += sum;
+    of.y[j - pairs.fluidCount][n] = sum;
+    of.load[j - pairs.fluidCount][n] += sum;
   }
 };
 
@@ -290,9 +285,9 @@ template <int D, class Backend>
 void surfaceForces(Context<Backend>& context, const MphPairs<D>& pairs, const SurfaceTerms<D>& terms,
                    std::span<const SurfaceSums<D>> sums, std::span<const SurfaceSlope<D>> slope,
                    std::span<const Adhesion<D>> adhesion, const SurfaceForces<D>& of) {
-  sumOnFluid(
-      context, pairs,
-      SurfaceForce<D>{terms, slope.data(), adhesion.data(), of.force.data(), of.apart.data(), of.press.data()});
+  sumOnFluid(context, pairs,
+             SurfaceForce<D>{terms, slope.data(), adhesion.data(), of.force.data(), of.unshared.data(),
+                             of.smoothed.data()});
   const std::span<const std::uint8_t> material = pairs.material;
   forEach(context, pairs.ownFluid(), [=] TREACLE_HD(std::size_t i) {
     terms.finish(material[i], static_cast<std::uint32_t>(i), sums[i], slope[i].m, of.force[i], of);
@@ -309,9 +304,8 @@ void bendSurface(Context<Backend>& context, const MphPairs<D>& pairs, const Surf
 
 template <int D, class Backend>
 void evenAlongSurface(Context<Backend>& context, const MphPairs<D>& pairs, const SurfaceTerms<D>& terms,
-                      std::span<const Vec<D>> normal, std::span<const SurfaceFit> fit, std::span<const Vec<D>> f,
-                      std::span<Vec<D>> y, std::span<const Vec<D>> apart) {
-  sumOnFluid(context, pairs, EvenForce<D>{terms, normal, fit, f, apart, y.data()});
+                      const SharedForces<D>& of) {
+  sumOnFluid(context, pairs, EvenForce<D>{terms, of});
 }
 
 template <int D, class Backend>
@@ -321,27 +315,24 @@ void addSurfaceForces(Context<Backend>& context, std::span<const Vec<D>> f, std:
 
 template <int D, class Backend>
 void surfaceOnWalls(Context<Backend>& context, const MphPairs<D>& pairs, const SurfaceTerms<D>& terms,
-                    const ClusterListView& walls, std::span<const Vec<D>> ofWalls,
-                    std::span<const Adhesion<D>> adhesion, std::span<Vec<D>> y, std::span<Vec<D>> load) {
-  sumOnList(context, pairs, walls, SurfaceReaction<D>{terms, ofWalls, adhesion, y, load});
+                    const ClusterListView& walls, const WallReactions<D>& of) {
+  sumOnList(context, pairs, walls, SurfaceReaction<D>{terms, of});
 }
 
-#define TREACLE_SURFACE_SUMS(D, Backend)                                                                        \
-  template void surfaceSlope(Context<Backend>&, const MphPairs<D>&, const SurfaceTerms<D>&,                     \
-                             std::span<SurfaceSums<D>>, std::span<SurfaceSlope<D>>, std::span<Adhesion<D>>);    \
-  template void wallAdhesion(Context<Backend>&, const MphPairs<D>&, const SurfaceTerms<D>&,                     \
-                             const ClusterListView&, std::span<WallSums<D>>, std::span<Adhesion<D>>);           \
-  template void surfaceForces(Context<Backend>&, const MphPairs<D>&, const SurfaceTerms<D>&,                    \
-                              std::span<const SurfaceSums<D>>, std::span<const SurfaceSlope<D>>,                \
-                              std::span<const Adhesion<D>>, const SurfaceForces<D>&);                           \
-  template void bendSurface(Context<Backend>&, const MphPairs<D>&, const SurfaceTerms<D>&,                      \
-                            const SurfaceForces<D>&, std::span<SurfaceFit>);                                    \
-  template void evenAlongSurface(Context<Backend>&, const MphPairs<D>&, const SurfaceTerms<D>&,                 \
-                                 std::span<const Vec<D>>, std::span<const SurfaceFit>, std::span<const Vec<D>>, \
-                                 std::span<Vec<D>>, std::span<const Vec<D>>);                                   \
-  template void addSurfaceForces(Context<Backend>&, std::span<const Vec<D>>, std::span<Vec<D>>);                \
-  template void surfaceOnWalls(Context<Backend>&, const MphPairs<D>&, const SurfaceTerms<D>&,                   \
-                               const ClusterListView&, std::span<const Vec<D>>, std::span<const Adhesion<D>>,   \
-                               std::span<Vec<D>>, std::span<Vec<D>>);
+#define TREACLE_SURFACE_SUMS(D, Backend)                                                                     \
+  template void surfaceSlope(Context<Backend>&, const MphPairs<D>&, const SurfaceTerms<D>&,                  \
+                             std::span<SurfaceSums<D>>, std::span<SurfaceSlope<D>>, std::span<Adhesion<D>>); \
+  template void wallAdhesion(Context<Backend>&, const MphPairs<D>&, const SurfaceTerms<D>&,                  \
+                             const ClusterListView&, std::span<WallSums<D>>, std::span<Adhesion<D>>);        \
+  template void surfaceForces(Context<Backend>&, const MphPairs<D>&, const SurfaceTerms<D>&,                 \
+                              std::span<const SurfaceSums<D>>, std::span<const SurfaceSlope<D>>,             \
+                              std::span<const Adhesion<D>>, const SurfaceForces<D>&);                        \
+  template void bendSurface(Context<Backend>&, const MphPairs<D>&, const SurfaceTerms<D>&,                   \
+                            const SurfaceForces<D>&, std::span<SurfaceFit>);                                 \
+  template void evenAlongSurface(Context<Backend>&, const MphPairs<D>&, const SurfaceTerms<D>&,              \
+                                 const SharedForces<D>&);                                                    \
+  template void addSurfaceForces(Context<Backend>&, std::span<const Vec<D>>, std::span<Vec<D>>);             \
+  template void surfaceOnWalls(Context<Backend>&, const MphPairs<D>&, const SurfaceTerms<D>&,                \
+                               const ClusterListView&, const WallReactions<D>&);
 
 }  // namespace treacle

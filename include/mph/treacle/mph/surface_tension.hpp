@@ -99,20 +99,20 @@ struct SurfaceSlope<3> {
   Vec<3> line;  // l [Pa^1/2]
 };
 
-/// How well q S is the force f of a particle: f.S [Pa N/m3] and S.S [Pa2]. Zero near walls and where there is no
-/// tension; anywhere else the second is not.
+/// How well q S is the force f of a particle. Zero near walls and where there is no tension; anywhere else the
+/// second is not.
 struct SurfaceFit {
-  double force;
-  double press;
+  double along;   // f.S [Pa N/m3]
+  double square;  // S.S [Pa2]
 };
 
 /// Fields of the fluid that surfaceForces() sets, of own particles alone.
 template <int D>
 struct SurfaceForces {
-  std::span<Vec<D>> force;   // of stress, and what ofWalls() has of it [N/m3]
-  std::span<Vec<D>> apart;   // what keeps particles apart and wetted walls pull; it is not shared [N/m3]
-  std::span<Vec<D>> press;   // S [Pa]
-  std::span<Vec<D>> normal;  // |m| n [Pa^1/2]
+  std::span<Vec<D>> force;     // of stress, and what ofWalls() has of it [N/m3]
+  std::span<Vec<D>> unshared;  // what keeps particles apart and wetted walls pull [N/m3]
+  std::span<Vec<D>> smoothed;  // S [Pa]
+  std::span<Vec<D>> normal;    // |m| n [Pa^1/2]
   std::span<SurfaceFit> fit;
   std::span<Vec<D>> ofWalls{};  // unless empty: ofWalls(), over what they fill around a particle [N/m3]
 };
@@ -270,22 +270,22 @@ struct SurfaceTerms {
   /// All of `of` for particle i, whose S is there, where the stress of the fluid gives `ofFluid`.
   TREACLE_HD void finish(int material, std::uint32_t i, const SurfaceSums<D>& s, const Vec<D>& m,
                          const Vec<D>& ofFluid, const SurfaceForces<D>& of) const {
-    const Vec<D> press = of.press[i], wall = ofWalls(s, m, ofFluid), force = ofFluid + wall;
-    const double size2 = norm2(press);
+    const Vec<D> smoothed = of.smoothed[i], wall = ofWalls(s, m, ofFluid), force = ofFluid + wall;
+    const double size2 = norm2(smoothed);
     of.force[i] = force;
-    of.normal[i] = size2 > 0 ? press * sqrt(norm2(m) / size2) : Vec<D>{};
+    of.normal[i] = size2 > 0 ? smoothed * sqrt(norm2(m) / size2) : Vec<D>{};
     // Never quite zero where forces are shared: S may be rounding alone.
     const double least = 1e-6 * evenNoise;
     of.fit[i] = s.walls > 0 || tension[material] == 0 ? SurfaceFit{0, 0}
-                                                      : SurfaceFit{dot(press, force), size2 + least * least};
+                                                      : SurfaceFit{dot(smoothed, force), size2 + least * least};
     if (!of.ofWalls.empty()) of.ofWalls[i] = s.walls > 0 ? wall * (1 / s.walls) : Vec<D>{};
   }
   /// Moves q S from the force of particle i to what is not shared; `fitted`: the sums of its neighbours.
   TREACLE_HD void split(std::uint32_t i, const SurfaceFit& fitted, const SurfaceForces<D>& of) const {
-    if (of.fit[i].press == 0) return;
-    const Vec<D> smooth = of.press[i] * (fitted.force / fitted.press);
+    if (of.fit[i].square == 0) return;
+    const Vec<D> smooth = of.smoothed[i] * (fitted.along / fitted.square);
     of.force[i] -= smooth;
-    of.apart[i] += smooth;
+    of.unshared[i] += smooth;
   }
 };
 
@@ -315,29 +315,41 @@ void surfaceForces(Context<Backend>&, const MphPairs<D>&, const SurfaceTerms<D>&
                    std::span<const Adhesion<D>> adhesion, const SurfaceForces<D>& of);
 
 /// Per own fluid particle: adds to `force` what makes up for the depth of the tension, and moves the smooth part
-/// of it along the surface's curvature, q S, to `apart`: what is left in `force` is to be shared. `normal` and
+/// of it along the surface's curvature, q S, to `unshared`: what is left in `force` is to be shared. `normal` and
 /// `fit` of all fluid, ghosts included; `fitted` is room for sums.
 template <int D, class Backend>
 void bendSurface(Context<Backend>&, const MphPairs<D>&, const SurfaceTerms<D>&, const SurfaceForces<D>& of,
                  std::span<SurfaceFit> fitted);
 
-/// y_i = f_i and what the particle shares of it with its neighbours along the surface, and apart_i unless `apart`
-/// is empty, per own fluid particle [N/m3]. `normal`, `fit` and f of all fluid, ghosts included; where `fit` is
-/// zero nothing is shared.
+/// What forces are shared by: `normal`, `fit` (see SurfaceForces) and f [N/m3] of all fluid, ghosts included.
+template <int D>
+struct SharedForces {
+  std::span<const Vec<D>> normal;
+  std::span<const SurfaceFit> fit;  // where it is zero nothing is shared
+  std::span<const Vec<D>> f;
+  std::span<Vec<D>> y;                    // the result, per own fluid particle [N/m3]
+  std::span<const Vec<D>> unshared = {};  // added to it unless empty
+};
+
+/// Sets y_i to f_i and what the particle shares of it with its neighbours along the surface.
 template <int D, class Backend>
-void evenAlongSurface(Context<Backend>&, const MphPairs<D>&, const SurfaceTerms<D>&,
-                      std::span<const Vec<D>> normal, std::span<const SurfaceFit> fit, std::span<const Vec<D>> f,
-                      std::span<Vec<D>> y, std::span<const Vec<D>> apart = {});
+void evenAlongSurface(Context<Backend>&, const MphPairs<D>&, const SurfaceTerms<D>&, const SharedForces<D>& of);
 
 /// y += f per own fluid particle [N/m3].
 template <int D, class Backend>
 void addSurfaceForces(Context<Backend>&, std::span<const Vec<D>> f, std::span<Vec<D>> y);
 
-/// Sets y per wall particle of the list to the reaction, as `ofWalls` has it of all fluid, ghosts included, and
-/// `adhesion` of active particles, and adds it to `load` [N/m3].
+/// The reaction of walls.
+template <int D>
+struct WallReactions {
+  std::span<const Vec<D>> ofWalls;        // SurfaceForces::ofWalls of all fluid, ghosts included
+  std::span<const Adhesion<D>> adhesion;  // of active particles
+  std::span<Vec<D>> y, load;              // per wall particle of the list [N/m3]
+};
+
+/// Sets y to the reaction and adds it to `load`.
 template <int D, class Backend>
 void surfaceOnWalls(Context<Backend>&, const MphPairs<D>&, const SurfaceTerms<D>&, const ClusterListView& walls,
-                    std::span<const Vec<D>> ofWalls, std::span<const Adhesion<D>> adhesion, std::span<Vec<D>> y,
-                    std::span<Vec<D>> load);
+                    const WallReactions<D>& of);
 
 }  // namespace treacle

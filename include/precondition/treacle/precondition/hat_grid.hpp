@@ -25,11 +25,8 @@ enum class HatsOn { Active, Fluid };
 /// The corners of the cells that hold active particles, or fluid. Where processes share the simulation and there
 /// are more than `mostWhole`, each has those at the lower corners of its cells and ghosts of others, which all
 /// that its particles, ghosts included, touch are among.
-template <int D>
-void findHatNodes(Context<Cpu>&, const SortedParticles<D>& pairs, HatsOn what, HatNodes<D>& nodes,
-                  std::uint64_t mostWhole = anyNumber);
-template <int D>
-void findHatNodes(Context<Cuda>&, const SortedParticles<D>& pairs, HatsOn what, HatNodes<D, Cuda>& nodes,
+template <int D, class Backend>
+void findHatNodes(Context<Backend>&, const SortedParticles<D>& pairs, HatsOn what, HatNodes<D, Backend>& nodes,
                   std::uint64_t mostWhole = anyNumber);
 
 /// Galerkin operator P^T S' P of the pressures, from pair sums; S' itself is not needed. Workspace in the

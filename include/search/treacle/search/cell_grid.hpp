@@ -118,7 +118,9 @@ struct CellGrid {
     for (int k = 0; k < D; ++k) {
       if (periodic[k]) {
         x[k] -= length[k] * std::floor((x[k] - origin[k]) / length[k]);
-        if (x[k] >= origin[k] + length[k]) x[k] = origin[k];  // rounding of a value just below the lower end
+        // Rounding of a value just below the lower end, or of one just below the upper end, whose quotient is a
+        // whole one.
+        if (x[k] >= origin[k] + length[k] || x[k] < origin[k]) x[k] = origin[k];
       }
       if (!(x[k] >= origin[k] && x[k] <= origin[k] + length[k])) return false;
     }

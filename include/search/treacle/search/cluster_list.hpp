@@ -64,15 +64,19 @@ struct ListRadii {
   double far = 0;   // [m], >= near; 0: no far parts
 };
 
-/// Builds the lists of particles [first, last). With `onlyNextToFluid`, clusters that have no fluid within
-/// reach get empty lists (walls: only those matter).
+/// The particles [first, last) that get lists, and how far these reach.
+struct ListScope {
+  std::uint32_t first = 0, last = 0;
+  ListRadii radii;
+  bool onlyNextToFluid = false;  // clusters without fluid within reach get empty lists
+};
+
+/// Builds the lists of the particles of `scope`; `position` [m] is that of all particles.
 template <int D>
 void buildClusterList(Context<Cpu>&, const CellGrid<D>& grid, const CellRanges<>& ranges,
-                      std::span<const Vec<D>> position, std::uint32_t first, std::uint32_t last, ListRadii radii,
-                      bool onlyNextToFluid, ClusterList<>& list);
+                      std::span<const Vec<D>> position, const ListScope& scope, ClusterList<>& list);
 template <int D>
 void buildClusterList(Context<Cuda>&, const CellGrid<D>& grid, const CellRanges<Cuda>& ranges,
-                      std::span<const Vec<D>> position, std::uint32_t first, std::uint32_t last, ListRadii radii,
-                      bool onlyNextToFluid, ClusterList<Cuda>& list);
+                      std::span<const Vec<D>> position, const ListScope& scope, ClusterList<Cuda>& list);
 
 }  // namespace treacle

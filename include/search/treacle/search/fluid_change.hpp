@@ -12,11 +12,8 @@ namespace treacle {
 /// `added`, which are on the host and fluid alone, behind the others, which keep their order. `gone`: per own
 /// fluid particle, in the backend's memory; empty: all stay. Ghosts are gone afterwards. New particles have no
 /// memory of an earlier flow, and zero in the modes. Errors: std::bad_alloc.
-template <int D>
-void changeFluid(Context<Cpu>&, std::span<const std::uint8_t> gone, const Particles<D>& added,
-                 Particles<D>& particles);
-template <int D>
-void changeFluid(Context<Cuda>&, std::span<const std::uint8_t> gone, const Particles<D>& added,
-                 Particles<D, Cuda>& particles);
+template <int D, class Backend>
+void changeFluid(Context<Backend>&, std::span<const std::uint8_t> gone, const Particles<D>& added,
+                 Particles<D, Backend>& particles);
 
 }  // namespace treacle

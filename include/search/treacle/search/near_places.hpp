@@ -58,11 +58,8 @@ ParticleNumbers numbersOfSome(const Particles<D, Backend>& particles, std::size_
 /// Copies the own fluid and the first `walls` walls that are in the surroundings to the host, with their fields,
 /// but without modes and surfaces. They keep their order.
 /// Errors: std::bad_alloc.
-template <int D>
-void copyNear(Context<Cpu>&, const Surroundings<D>&, const Particles<D>& particles, std::uint32_t walls,
-              Particles<D>& host);
-template <int D>
-void copyNear(Context<Cuda>&, const Surroundings<D>&, const Particles<D, Cuda>& particles, std::uint32_t walls,
-              Particles<D>& host);
+template <int D, class Backend>
+void copyNear(Context<Backend>&, const Surroundings<D>&, const Particles<D, Backend>& particles,
+              std::uint32_t walls, Particles<D>& host);
 
 }  // namespace treacle

@@ -28,14 +28,12 @@ void findSharedBuckets(Context<Backend>&, const SortedParticles<D>&, std::span<c
                        SharedBuckets<Backend>& buckets);
 
 /// cells[b] = key >> shift of the first particle of each bucket.
-void bucketCells(Context<Cpu>&, std::span<const std::uint64_t> key, std::span<const std::uint32_t> begin,
-                 int shift, std::span<std::uint64_t> cells);
-void bucketCells(Context<Cuda>&, std::span<const std::uint64_t> key, std::span<const std::uint32_t> begin,
+template <class Backend>
+void bucketCells(Context<Backend>&, std::span<const std::uint64_t> key, std::span<const std::uint32_t> begin,
                  int shift, std::span<std::uint64_t> cells);
 /// The sort keys of particles.
-template <int D>
-void sortKeys(Context<Cpu>&, const CellGrid<D>&, std::span<const Vec<D>> position, std::span<std::uint64_t> key);
-template <int D>
-void sortKeys(Context<Cuda>&, const CellGrid<D>&, std::span<const Vec<D>> position, std::span<std::uint64_t> key);
+template <int D, class Backend>
+void sortKeys(Context<Backend>&, const CellGrid<D>&, std::span<const Vec<D>> position,
+              std::span<std::uint64_t> key);
 
 }  // namespace treacle

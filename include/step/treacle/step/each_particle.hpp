@@ -1,12 +1,18 @@
 #pragma once
 
+#include "treacle/core/atomic.hpp"
+#include "treacle/core/copy_values.hpp"
 #include "treacle/core/macros.hpp"
 #include "treacle/core/processes.hpp"
+#include "treacle/step/bodies/contacts.hpp"
+#include "treacle/step/flow/outflow.hpp"
 #include "treacle/step/method/first_guess.hpp"
 #include "treacle/step/method/heat_terms.hpp"
+#include "treacle/step/method/move_particles.hpp"
 #include "treacle/step/readings/balance_sums.hpp"
 #include "treacle/step/readings/probe_sums.hpp"
 #include "treacle/step/readings/step_change.hpp"
+#include "treacle/step/readings/wall_patch.hpp"
 #include "treacle/step/walls/wall_motion.hpp"
 
 #include <bit>
@@ -15,7 +21,8 @@
 namespace treacle {
 
 // What a step does with each particle by itself, and sums over them, for the sources of both backends, which
-// instantiate it. A thread of a device has one particle; there are no atomics but those of the reductions.
+// instantiate it. A thread of a device has one particle; there are no atomics but those of the reductions and the
+// counts that are made by them.
 
 template <int D, class Backend>
 void setWallVelocities(Context<Backend>& context, const MovingWalls<D>& walls, std::span<Vec<D>> velocity) {
@@ -58,6 +65,56 @@ void updateFlowMemory(Context<Backend>& context, double dt, double lastStep, std
   });
 }
 
+/// The largest complement of an index belongs to the first particle, and zero to nobody.
+template <int D, class Backend>
+std::uint32_t moveParticles(Context<Backend>& context, const CellGrid<D>& grid, double dt,
+                            std::span<const Vec<D>> x, std::span<const Vec<D>> u, std::span<Vec<D>> moved) {
+  auto* firstOut = static_cast<std::uint32_t*>(context.scratch(sizeof(std::uint32_t)));
+  clearValues(context, std::span(firstOut, 1));
+  forEach(context, moved.size(), [=] TREACLE_HD(std::size_t i) {
+    Vec<D> place;
+    if (!moveParticle(grid, dt, x[i], u[i], place)) raiseAtomically(*firstOut, ~static_cast<std::uint32_t>(i));
+    moved[i] = place;
+  });
+  return ~valueOnHost(context, firstOut);
+}
+
+template <int D, class Backend>
+std::vector<std::uint32_t> markOutflow(Context<Backend>& context, const OutflowTest<D>& test,
+                                       std::span<std::uint8_t> gone) {
+  std::vector<std::uint32_t> counts(test.regions.size() * maxMaterials);
+  auto* sums = static_cast<std::uint32_t*>(context.scratch(counts.size() * sizeof(std::uint32_t)));
+  clearValues(context, std::span(sums, counts.size()));
+  forEach(context, gone.size(), [=] TREACLE_HD(std::size_t i) {
+    const std::uint8_t region = regionOf(test.regions.data(), test.regions.size(), test.position[i]);
+    gone[i] = region;
+    if (region > 0) addAtomically(sums[(region - 1u) * maxMaterials + test.material[i]], 1);
+  });
+  copyToHost(context, std::span<const std::uint32_t>(sums, counts.size()), counts.data());
+  return counts;
+}
+
+/// What is found is found once more when it is known how many there are.
+template <int D, class Backend>
+std::vector<Contact<D>> findContacts(Context<Backend>& context, const ContactSearch<D>& search,
+                                     std::uint32_t begin, std::uint32_t end) {
+  Buffer<std::uint32_t, Backend> list(context, end - begin);
+  std::uint32_t* const particle = list.data();
+  const std::uint32_t count = listWhere(
+      context, begin, end - begin,
+      [=] TREACLE_HD(std::uint32_t i) {
+        Contact<D> contact;
+        return search.find(i, contact);
+      },
+      particle);
+  Buffer<Contact<D>, Backend> found(context, count);
+  Contact<D>* const contact = found.data();
+  forEach(context, count, [=] TREACLE_HD(std::size_t k) { search.find(particle[k], contact[k]); });
+  std::vector<Contact<D>> contacts(count);
+  copyToHost(context, std::span<const Contact<D>>(found), contacts.data());
+  return contacts;
+}
+
 template <class Terms, class Backend>
 void setEach(Context<Backend>& context, const Terms& terms, std::size_t count) {
   forEach(context, count, [=] TREACLE_HD(std::size_t i) { terms.set(i); });
@@ -84,6 +141,17 @@ PartSums sumPart(Context<Backend>& context, const PartTerms<D>& terms) {
 }
 
 template <int D, class Backend>
+double patchPressure(Context<Backend>& context, const PatchTerms<D>& terms) {
+  using Terms = PatchTerms<D>;
+  const auto sums = sumEach<Terms::count>(context, terms.body.size(),
+                                          [=] TREACLE_HD(std::size_t i, double* to) { terms.add(i, to); });
+  if (sums[Terms::Shares] == 0) return std::numeric_limits<double>::quiet_NaN();
+  double into = 0;
+  for (int k = 0; k < D; ++k) into += sums[Terms::Force + k] * terms.patch.normal[k];
+  return std::copysign(into, into * sums[Terms::Side]) * std::pow(terms.patch.spacing, D) / terms.patch.area();
+}
+
+template <int D, class Backend>
 StepChange stepChange(Context<Backend>& context, const StepChangeTerms<D>& terms) {
   const auto all = sumEach<StepChangeTerms<D>::count>(
       context, terms.after.size(), [=] TREACLE_HD(std::size_t i, double* sums) { terms.add(i, sums); });
@@ -99,9 +167,16 @@ StepChange stepChange(Context<Backend>& context, const StepChangeTerms<D>& terms
                             std::span<Vec<D>>);                                                                 \
   template void updateFlowMemory(Context<Backend>&, double, double, std::span<const Vec<D>>,                    \
                                  std::span<const Vec<D>>, FlowMemory<D>);                                       \
+  template std::uint32_t moveParticles(Context<Backend>&, const CellGrid<D>&, double, std::span<const Vec<D>>,  \
+                                       std::span<const Vec<D>>, std::span<Vec<D>>);                             \
+  template std::vector<std::uint32_t> markOutflow(Context<Backend>&, const OutflowTest<D>&,                     \
+                                                  std::span<std::uint8_t>);                                     \
+  template std::vector<Contact<D>> findContacts(Context<Backend>&, const ContactSearch<D>&, std::uint32_t,      \
+                                                std::uint32_t);                                                 \
   template std::array<double, PowerTerms<D>::count> sumPowers(Context<Backend>&, const PowerTerms<D>&,          \
                                                               std::size_t);                                     \
   template PartSums sumPart(Context<Backend>&, const PartTerms<D>&);                                            \
+  template double patchPressure(Context<Backend>&, const PatchTerms<D>&);                                       \
   template StepChange stepChange(Context<Backend>&, const StepChangeTerms<D>&);
 #define TREACLE_EACH_TEMPERATURE(Backend)                                        \
   template void setEach(Context<Backend>&, const HeatSystemTerms&, std::size_t); \

@@ -5,10 +5,23 @@
 #include "treacle/model/case/case.hpp"
 #include "treacle/model/state/balance.hpp"
 
+#include <cmath>
 #include <filesystem>
+#include <limits>
 #include <string>
 
 namespace treacle {
+
+/// The pressure on a patch of a wall, over steps.
+struct PatchMean {
+  double time = 0, impulse = 0;                               // [s], [Pa s]
+  double largest = -std::numeric_limits<double>::infinity();  // of a step [Pa]
+
+  void add(double pressure, double timeStep) {
+    time += timeStep, impulse += timeStep * pressure;
+    largest = std::fmax(largest, pressure);
+  }
+};
 
 /// Appends what a probe reads to a new CSV file (docs/probes.md); numbers read back to the same bits. Errors:
 /// those of RowFile.
@@ -17,10 +30,13 @@ class ProbeWriter {
   /// Replaces what the target holds. `c` and `probe` must outlive this.
   ProbeWriter(RowTarget to, const Case& c, const Probe& probe);
 
-  /// At a time [s], of a probe that is sampled: all fluid and walls within probeReach of its places.
-  void append(double time, const Frame& fluid, const Frame& walls);
+  /// At a time [s], of a probe that is sampled: all fluid and walls within probeReach of its places. `now`: the
+  /// probe as it stands then.
+  void append(double time, const Probe& now, const Frame& fluid, const Frame& walls);
   /// Of one that is summed.
-  void append(double time, const PartSums& sums);
+  void append(double time, const Probe& now, const PartSums& sums);
+  /// Of the pressure on a wall since the last reading.
+  void append(double time, const PatchMean& pressure);
   /// Of a load; `walls`: what the walls of the case bear, in their order.
   void append(double time, const std::vector<WallLoad>& walls);
 

@@ -16,7 +16,7 @@ void visit(auto& v, Like<Rotation> auto& r, const Case& c) {
   v({"speed", "Speed of the rotation, positive counter-clockwise seen from the end of the axis", optional,
      "rad/s"},
     r.speed);
-  v({"angle", "How far the wall or nozzle has turned, in place of a speed", optional, "rad"}, r.angle);
+  v({"angle", "How far it has turned, in place of a speed", optional, "rad"}, r.angle);
   if (c.dimensions == 3)
     v({"axis", "Direction of the axis, of any length but zero", required, "any unit"}, r.axis);
 }

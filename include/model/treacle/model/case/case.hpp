@@ -56,6 +56,8 @@ struct Case {
   Domain domain;
   Vec<3> gravity{};            // of one that varies what scales and pictures follow: its mean over the run [m/s2]
   TimeVector gravityInTime{};  // the components that vary
+  // Of the frame that places and velocities are in, as seen from outside, where gravity is that of the case.
+  std::optional<Rotation> frame{};
   std::vector<Material> materials;
   std::vector<Body> bodies;
   std::vector<Outflow> outflows{};
@@ -137,7 +139,7 @@ struct Case {
 
   bool isOpen() const { return hasInflow() || !outflows.empty(); }
   bool hasLoads() const {
-    return std::ranges::any_of(probes, [](const Probe& p) { return p.kind == ProbeKind::Load; });
+    return std::ranges::any_of(probes, [](const Probe& p) { return p.isOnWall(); });
   }
   /// Whether the balance of each step is computed: for its file, or for what walls bear. Of MPH-I.
   bool needsBalance() const { return output.balance || hasLoads(); }

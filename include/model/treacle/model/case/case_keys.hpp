@@ -114,6 +114,8 @@ void visit(auto& v, Like<Case> auto& c, const Case&) {
     c.resolution);
   v({"domain", "Where particles may be", required}, c.domain);
   v({"gravity", "Gravity"}, gravity);
+  v({"frame", "Rotation of the frame that places and velocities are in; gravity is that outside, at the start"},
+    c.frame);
   v({"material", "Materials, of fluids and walls", required, "", {1, maxMaterials}}, c.materials);
   v({"body", "What particles are made of", required, "", {1, maxBodies}}, c.bodies);
   v({"outflow", "Where fluid leaves", optional, "", {0, maxOutflows}}, c.outflows);

@@ -20,15 +20,16 @@ struct IsphSettings {
   bool operator==(const IsphSettings&) const = default;
 };
 
-/// The formulas of MPH-I. Published: those of [K23]. Accurate: formulas that converge under refinement
-/// (docs/accurate.md). The scheme decides on
+/// The formulas of a method. Published: those of its paper. Accurate: formulas that converge under refinement
+/// (docs/accurate.md). For MPH-I the scheme decides on
 /// - the weights of divergences and pressure gradients, (1-q)^2 or Wendland's C2, (1-q)^4 (1+4q), with q = r/h,
 /// - the weight of the viscosity of a pair, (1-q)/q^3 or (1-q)^2/q,
 /// - the velocity that the fluid meets in a wall: that of each wall particle, or the wall's velocity extrapolated
 ///   through its surface,
 /// - the pressure gradient: the plain sum over neighbours, or a renormalised one whose transpose, the divergence,
 ///   is exact for velocities that are linear in space, also at free surfaces,
-/// and on the radii that a case does not give (defaultMethod).
+/// and on the radii that a case does not give (defaultMethod). For ISPH it decides between the sums of [O23] and
+/// those of docs/isph.md.
 enum class SchemeKind { Accurate, Published };
 
 /// Of MPH-I, the accurate scheme's.

@@ -38,10 +38,11 @@ inline constexpr Named<BodyKind> body[] = {{"fluid", BodyKind::Fluid},
 inline constexpr Named<NozzleKind> nozzle[] = {
     {"disc", NozzleKind::Disc}, {"rectangle", NozzleKind::Rectangle}, {"polygon", NozzleKind::Polygon}};
 inline constexpr Named<OutflowKind> outflow[] = {{"box", OutflowKind::Box}, {"plane", OutflowKind::Plane}};
-inline constexpr Named<ProbeKind> probe[] = {{"point", ProbeKind::Point}, {"line", ProbeKind::Line},
-                                             {"plane", ProbeKind::Plane}, {"height", ProbeKind::Height},
-                                             {"flow", ProbeKind::Flow},   {"region", ProbeKind::Region},
-                                             {"load", ProbeKind::Load}};
+inline constexpr Named<ProbeKind> probe[] = {
+    {"point", ProbeKind::Point}, {"line", ProbeKind::Line},
+    {"plane", ProbeKind::Plane}, {"height", ProbeKind::Height},
+    {"flow", ProbeKind::Flow},   {"region", ProbeKind::Region},
+    {"load", ProbeKind::Load},   {"wall-pressure", ProbeKind::WallPressure}};
 inline constexpr Named<MethodKind> method[] = {{"mph-i", MethodKind::MphI}, {"isph", MethodKind::Isph}};
 inline constexpr Named<SchemeKind> scheme[] = {{"accurate", SchemeKind::Accurate},
                                                {"published", SchemeKind::Published}};

@@ -10,8 +10,9 @@
 namespace treacle {
 
 /// What is measured: fields at places (Point, Line, Plane), where the free surface is along a line (Height), what
-/// flows through a plane (Flow), sums and means over a part of the fluid (Region), what a wall bears (Load).
-enum class ProbeKind { Point, Line, Plane, Height, Flow, Region, Load };
+/// flows through a plane (Flow), sums and means over a part of the fluid (Region), what a wall bears (Load), and
+/// the pressure on a part of one (WallPressure).
+enum class ProbeKind { Point, Line, Plane, Height, Flow, Region, Load, WallPressure };
 
 /// A part of space along the axes.
 struct ProbeBox {
@@ -31,16 +32,18 @@ struct Probe {
   Vec<3> point{};                 // Point; Flow, Region: a point of the plane [m]
   Vec<3> from{}, to{};            // Line, Height [m]
   int count = 0;                  // Line: places; 0: about one per spacing
-  Vec<3> corner{};                // Plane: of a rectangle [m]
-  Vec<3> along{}, up{};           // Plane: its edges, at right angles [m]
+  Vec<3> corner{};                // Plane, WallPressure: of a rectangle [m]
+  Vec<3> along{}, up{};           // likewise: its edges, at right angles; WallPressure in 2D: along alone [m]
   int columns = 0;                // Plane: places along these; 0: about one per spacing
   int rows = 0;                   // Plane
   Vec<3> normal{};                // Flow: downstream; Region: away from what counts, zero: no plane
   std::optional<ProbeBox> box{};  // Flow, Region: what lies in it alone
   std::string material{};         // Flow, Region: of it alone; empty: all
-  std::string body{};             // Load
+  std::string body{};             // Load, WallPressure
+  std::string movesWith{};        // others: the wall or rigid body that carries it (carriedProbe); empty: none
 
   bool isSampled() const { return kind <= ProbeKind::Height; }
+  bool isOnWall() const { return kind == ProbeKind::Load || kind == ProbeKind::WallPressure; }
   bool isSummed() const { return kind == ProbeKind::Flow || kind == ProbeKind::Region; }
 
   bool operator==(const Probe&) const = default;

@@ -12,10 +12,16 @@ void visit(auto& v, Like<ProbeBox> auto& b, const Case&) {
   v({"max", "Corner of the box with the largest coordinates", required, "m"}, b.max);
 }
 
-void visit(auto& v, Like<Probe> auto& p, const Case&) {
+void visit(auto& v, Like<Probe> auto& p, const Case& c) {
   v({"name", "Name of the probe and of its file: letters, digits and . _ - +", required}, p.name);
   v({"type", "What is measured", required}, p.kind);
   v({"interval", "Time between two readings; 0: one after every step", optional, "s", notNegative}, p.interval);
+  if (!p.isOnWall())
+    v({"moves_with",
+       "Name of a wall or rigid body that carries the probe. Places are those at the start; with a rigid body "
+       "they "
+       "are ways from its centre of mass as it stands at the start"},
+      p.movesWith);
   switch (p.kind) {
     case ProbeKind::Point:
       v({"point", "Place at which the fields are read", required, "m"}, p.point);
@@ -48,6 +54,15 @@ void visit(auto& v, Like<Probe> auto& p, const Case&) {
     }
     case ProbeKind::Load:
       v({"body", "Name of the wall or rigid body whose load is measured", required}, p.body);
+      break;
+    case ProbeKind::WallPressure:
+      v({"body", "Name of the wall or rigid body, with which the patch moves", required}, p.body);
+      v({"corner",
+         "A corner of the patch, on the surface of the wall; with a rigid body as the way from its centre of mass",
+         required, "m"},
+        p.corner);
+      v({"along", "One edge of the patch, from the corner", required, "m"}, p.along);
+      if (c.dimensions == 3) v({"up", "The other edge, at a right angle to the first", required, "m"}, p.up);
       break;
   }
 }

@@ -50,9 +50,10 @@ void visit(auto& v, Like<IsphSettings> auto& i, const Case&) {
 void visit(auto& v, Like<MethodSettings> auto& m, const Case& c) {
   v({"name", "Moving particle hydrodynamics for highly viscous flow, or incompressible SPH by projection"},
     m.kind);
-  if (c.method.kind == MethodKind::Isph) return visit(v, m.isph, c);
-  v({"scheme", "Formulas that converge, or those of the paper [K23]; sets the defaults of the keys below"},
+  v({"scheme",
+     "Formulas that converge, or those of the papers [K23], [O23]; for MPH-I it sets defaults of the radii"},
     m.scheme);
+  if (c.method.kind == MethodKind::Isph) return visit(v, m.isph, c);
   v({"pressure_radius", "Radius h_p of divergence and pressure gradient", optional, "spacings", radius},
     m.pressureRadius);
   v({"density_radius",

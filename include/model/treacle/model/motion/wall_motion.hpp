@@ -66,6 +66,8 @@ struct WallMotion {
 /// Mean velocity of a wall, or of its centre if it rotates, in the step of dt from time t on [m/s]: the walls are
 /// where their motion puts them at the end of each step. With dt = 0 that at time t.
 Vec<3> wallVelocity(const Body& body, double t, double dt);
+/// The speed of its rotation, mean over dt from time t on, with dt = 0 that at time t [rad/s].
+double wallSpin(const Body& body, double t, double dt = 0);
 /// Whether a vector changes.
 bool isDriven(const TimeVector& f);
 /// From where a wall, or its centre if it rotates, or a nozzle starts to where it is at time t [m].

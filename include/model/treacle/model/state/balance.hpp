@@ -39,6 +39,7 @@ struct Balance {
   double surfacePower = 0;            // what surface tension gives to the motion [W]
   double surfaceEnergy = 0;           // of the free surfaces, gamma times their area [J]
   std::optional<HeatBalance> heat{};  // in cases with heat
+  std::vector<double> patches{};      // pressures of the probes WallPressure, in the order of the case [Pa]
 };
 
 }  // namespace treacle

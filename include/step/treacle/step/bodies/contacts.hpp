@@ -100,11 +100,8 @@ struct ContactSearch {
 };
 
 /// The contacts of own particles [begin, end), in their order. Errors: std::bad_alloc.
-template <int D>
-std::vector<Contact<D>> findContacts(Context<Cpu>&, const ContactSearch<D>& search, std::uint32_t begin,
-                                     std::uint32_t end);
-template <int D>
-std::vector<Contact<D>> findContacts(Context<Cuda>&, const ContactSearch<D>& search, std::uint32_t begin,
+template <int D, class Backend>
+std::vector<Contact<D>> findContacts(Context<Backend>&, const ContactSearch<D>& search, std::uint32_t begin,
                                      std::uint32_t end);
 
 }  // namespace treacle

@@ -41,10 +41,9 @@ struct OutflowTest {
 
 /// Sets gone[i] to 1 + the first region that holds particle i, 0 where none does. Returns how many of each
 /// material every region takes, [region * maxMaterials + material].
-template <int D>
-std::vector<std::uint32_t> markOutflow(Context<Cpu>&, const OutflowTest<D>& test, std::span<std::uint8_t> gone);
-template <int D>
-std::vector<std::uint32_t> markOutflow(Context<Cuda>&, const OutflowTest<D>& test, std::span<std::uint8_t> gone);
+template <int D, class Backend>
+std::vector<std::uint32_t> markOutflow(Context<Backend>&, const OutflowTest<D>& test,
+                                       std::span<std::uint8_t> gone);
 
 /// The formula, for one place.
 template <int D>

@@ -2,6 +2,7 @@
 
 #include "treacle/core/cuda.hpp"
 #include "treacle/core/macros.hpp"
+#include "treacle/model/motion/frame_force.hpp"
 #include "treacle/mph/mph_pairs.hpp"
 #include "treacle/mph/surface_tension.hpp"
 
@@ -33,7 +34,9 @@ struct PowerTerms {
   std::span<const Vec<D>> force;                  // of ExplicitForces, on walls, too [N/m3], or empty
   std::span<const SurfaceSlope<D>> surfaceSlope;  // surface_tension.hpp; or empty
   std::span<const Vec<D>> transport;              // what own fluid goes with, if that is not `after` [m/s]
-  Vec<D> gravity;                                 // times that dt of the inertia [m/s]
+  std::span<const Vec<D>> position;               // [m]
+  FrameForce<D> frame;
+  double velocityStep;  // dt of the inertia [s]
 
   /// Pairs of walls do no work on the fluid, and what they are compressed by without fluid it cannot get back.
   TREACLE_HD void add(std::size_t i, double* sums) const {
@@ -51,9 +54,10 @@ struct PowerTerms {
     if (!fluid) return;
     sums[Shear] += shear[i];
     if (!repulsion.empty()) sums[Repulsion] += repulsion[i];
-    if (!transport.empty()) sums[Shift] -= materials.inertia[m] * dot(gravity, transport[i] - after[i]);
+    if (!transport.empty())
+      sums[Shift] -= materials.inertia[m] * velocityStep * dot(frame.at(position[i]), transport[i] - after[i]);
     if (!surfaceSlope.empty()) sums[SurfaceEnergy] += surfaceEnergyShare * norm2(surfaceSlope[i].m);
-    sums[Inertial] += 0.5 * materials.inertia[m] * norm2(after[i] - before[i]);
+    sums[Inertial] += 0.5 * materials.inertia[m] * norm2(after[i] - frame.turned(before[i]));
   }
 };
 

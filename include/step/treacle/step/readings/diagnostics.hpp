@@ -2,6 +2,7 @@
 
 #include "treacle/core/cuda.hpp"
 #include "treacle/core/macros.hpp"
+#include "treacle/model/motion/frame_force.hpp"
 #include "treacle/mph/cover.hpp"
 #include "treacle/mph/mph_pairs.hpp"
 #include "treacle/step/run/simulation.hpp"
@@ -20,7 +21,7 @@ struct DiagnosticsInput {
   std::span<const Vec<D>> velocity;  // [m/s]
   std::span<const std::uint8_t> material;
   MaterialTable materials;
-  Vec<D> gravity;      // [m/s2]
+  FrameForce<D> frame;
   double spacing = 0;  // [m]
   // Of ISPH, else empty.
   std::span<const double> density{};        // <rho> / rho
@@ -42,15 +43,16 @@ template <int D>
 struct DiagnosticsTerm {
   double mass[maxMaterials];  // of a particle, by material [kg; per metre of depth in 2D]
   double volume;
-  Vec<D> gravity, up;
+  FrameForce<D> frame;
+  Vec<D> up;
 
   static DiagnosticsTerm make(const DiagnosticsInput<D>& in) {
     DiagnosticsTerm t{};
     t.volume = std::pow(in.spacing, D);  // [K23 eq. (11)]
     for (int m = 0; m < in.materials.count; ++m) t.mass[m] = in.materials.density[m] * t.volume;
-    t.gravity = in.gravity;
+    t.frame = in.frame;
     t.up[D - 1] = 1;  // without gravity the last axis counts as height
-    if (const double g = norm(in.gravity); g > 0) t.up = in.gravity * (-1 / g);
+    if (const double g = norm(in.frame.gravity); g > 0) t.up = in.frame.gravity * (-1 / g);
     return t;
   }
 
@@ -58,8 +60,8 @@ struct DiagnosticsTerm {
   TREACLE_HD Diagnostics operator()(const DiagnosticsInput<D>& in, std::size_t i) const {
     const Vec<D>&x = in.position[i], &u = in.velocity[i];
     const double speed2 = norm2(u), m = mass[in.material[i]];
-    Diagnostics d{0.5 * m * speed2, -m * dot(gravity, x), x[0], dot(up, x), std::sqrt(speed2)};
-    d.gravityPower = m * dot(gravity, u);
+    Diagnostics d{0.5 * m * speed2, m * frame.potential(x), x[0], dot(up, x), std::sqrt(speed2)};
+    d.gravityPower = m * dot(frame.at(x), u);
     if (!in.wallDensity.empty()) d.insideWalls = in.wallDensity[i] > 0 && in.wallDensity[i] >= in.neighbourDensity;
     if (!in.numberDensity.empty()) {
       const double excess = in.numberDensity[i] - in.restDensity;
@@ -125,9 +127,7 @@ inline Diagnostics averaged(Diagnostics d, std::size_t count, double own) {
 
 /// Sums and extremes over the particles; the order of the sums depends on their number alone. Of no particles:
 /// zeros, and minus infinity for the two coordinates.
-template <int D>
-Diagnostics computeDiagnostics(Context<Cpu>&, const DiagnosticsInput<D>&);
-template <int D>
-Diagnostics computeDiagnostics(Context<Cuda>&, const DiagnosticsInput<D>&);
+template <int D, class Backend>
+Diagnostics computeDiagnostics(Context<Backend>&, const DiagnosticsInput<D>&);
 
 }  // namespace treacle

@@ -84,6 +84,7 @@ struct StepReport {
   std::vector<std::string> warnings;  // of the watch
   std::optional<Balance> balance;     // with OutputSettings::balance
   std::vector<WallLoad> loads;        // per wall body of the case, where one has a probe, or with a balance
+  std::vector<double> patches;        // pressures of the probes WallPressure, in the order of the case [Pa]
   std::optional<FlowReport> flow;     // where the case is open
   std::vector<RigidBody> rigid;       // per body of the case, after the step, where some are rigid
   PhaseSeconds seconds;

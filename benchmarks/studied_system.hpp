@@ -18,9 +18,9 @@ namespace treacle {
 
 /// The linear system A u = b of one step [K23 eq. (16)], walls at rest, with all that solvers start from.
 template <int D, class Backend>
-class LinearSystem {
+class StudiedSystem {
  public:
-  LinearSystem(const Case& theCase, Particles<D> state) : c(theCase), neighbourhood_(c) {
+  StudiedSystem(const Case& theCase, Particles<D> state) : c(theCase), neighbourhood_(c) {
     if constexpr (std::is_same_v<Backend, Cuda>)
       copyToDevice(context, state, particles);
     else
@@ -32,7 +32,7 @@ class LinearSystem {
     wallTerms<D>(context, pairs(), terms());
     computeRightHandSide();
   }
-  LinearSystem(const LinearSystem&) = delete;
+  StudiedSystem(const StudiedSystem&) = delete;
 
   std::uint32_t fluidCount() const { return particles.fluidCount; }
   const MphPairs<D>& pairs() const { return neighbourhood_.pairs(); }
@@ -65,7 +65,7 @@ class LinearSystem {
     rhs_.resize(context, fluidCount());
     numberDensity<D>(context, pairs(), density);
     elasticPressure<D>(context, pairs(), density, {}, elastic);
-    inertiaAndGravity<D>(context, pairs(), firstGuess(), resized<D>(c.gravity), rhs_);
+    inertiaAndGravity<D>(context, pairs(), firstGuess(), {.gravity = resized<D>(c.gravity)}, rhs_);
     addPressureGradient<D>(context, pairs(), elastic, -1.0, rhs_);
   }
 

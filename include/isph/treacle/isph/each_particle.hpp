@@ -1,0 +1,60 @@
+#pragma once
+
+#include "treacle/core/macros.hpp"
+#include "treacle/isph/isph_pairs.hpp"
+#include "treacle/isph/isph_particles.hpp"
+
+namespace treacle {
+
+// isph_particles.hpp for the sources of both backends, which instantiate it. A thread of a device has one
+// particle; there are no atomics but those of the reductions.
+
+template <class Backend>
+void settlePressure(Context<Backend>& context, std::span<const std::uint8_t> surface, bool cut,
+                    std::span<double> p) {
+  forEach(context, p.size(),
+          [=] TREACLE_HD(std::size_t i) { p[i] = surface[i] == Place::Free || (cut && p[i] < 0) ? 0 : p[i]; });
+}
+
+template <class Backend>
+bool isClosed(Context<Backend>& context, std::span<const std::uint8_t> surface) {
+  return sumEach<1>(context, surface.size(),
+                    [=] TREACLE_HD(std::size_t i, double* count) { *count += surface[i]; })[0] == 0;
+}
+
+template <class Backend>
+void takeLevel(Context<Backend>& context, Level level, std::span<double> x) {
+  const double zero = levelOf(context, level, x);
+  forEach(context, x.size(), [=] TREACLE_HD(std::size_t i) { x[i] -= zero; });
+}
+
+template <int D, class Backend>
+void shiftedVelocity(Context<Backend>& context, const Shifting& shifting, std::span<const Vec<D>> deficit,
+                     std::span<const std::uint8_t> surface, std::span<const Vec<D>> velocity,
+                     std::span<Vec<D>> transport) {
+  forEach(context, transport.size(), [=] TREACLE_HD(std::size_t i) {
+    transport[i] = surface[i] ? velocity[i] : shiftedVelocity(shifting, deficit[i], velocity[i]);
+  });
+}
+
+template <int D, class Backend>
+void takeComponent(Context<Backend>& context, std::span<const Vec<D>> v, int k, std::span<double> x) {
+  forEach(context, x.size(), [=] TREACLE_HD(std::size_t i) { x[i] = v[i][k]; });
+}
+
+template <int D, class Backend>
+void putComponent(Context<Backend>& context, std::span<const double> x, int k, std::span<Vec<D>> v) {
+  forEach(context, x.size(), [=] TREACLE_HD(std::size_t i) { v[i][k] = x[i]; });
+}
+
+#define TREACLE_EACH_NUMBER(Backend)                                                                       \
+  template void settlePressure(Context<Backend>&, std::span<const std::uint8_t>, bool, std::span<double>); \
+  template bool isClosed(Context<Backend>&, std::span<const std::uint8_t>);                                \
+  template void takeLevel(Context<Backend>&, Level, std::span<double>);
+#define TREACLE_EACH_VECTOR(D, Backend)                                                                     \
+  template void shiftedVelocity(Context<Backend>&, const Shifting&, std::span<const Vec<D>>,                \
+                                std::span<const std::uint8_t>, std::span<const Vec<D>>, std::span<Vec<D>>); \
+  template void takeComponent(Context<Backend>&, std::span<const Vec<D>>, int, std::span<double>);          \
+  template void putComponent(Context<Backend>&, std::span<const double>, int, std::span<Vec<D>>);
+
+}  // namespace treacle

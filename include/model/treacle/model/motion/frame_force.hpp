@@ -1,0 +1,53 @@
+#pragma once
+
+#include "treacle/core/macros.hpp"
+#include "treacle/core/vec.hpp"
+#include "treacle/model/case/case.hpp"
+
+namespace treacle {
+
+/// What accelerates all fluid in a step: gravity and, in a frame that turns, centrifugal, Euler and Coriolis
+/// forces. Velocities are those in the frame.
+template <int D>
+struct FrameForce {
+  Vec<D> gravity{};             // as the frame sees it [m/s2]
+  bool turns = false;           // else the rest does not count
+  Vec<D> center{};              // a point of the axis [m]
+  Vec<3> spin{};                // omega [rad/s]
+  Vec<3> spinChange{};          // d omega / dt [rad/s2]
+  Vec<3> axis{};                // of length 1
+  double sine = 0, cosine = 1;  // of the angle 2 omega dt that Coriolis forces turn a velocity back by in the step
+
+  /// Over a time from `from` to `to`, in which velocities change [s]; from == to: at that time.
+  static FrameForce of(const Case& c, double from, double to);
+
+  /// On what rests at x, with the acceleration of the frame's rotation at x taken off [m/s2].
+  TREACLE_HD Vec<D> at(const Vec<D>& x) const {
+    if (!turns) return gravity;
+    const Vec<D> d = x - center;
+    return gravity - product(spinChange, d) - product(spin, product(spin, d));
+  }
+  /// A velocity after the Coriolis force -2 omega x u of the step, which turns it and takes no energy [m/s].
+  TREACLE_HD Vec<D> turned(const Vec<D>& u) const {
+    if (!turns) return u;
+    const Vec<D> across = product(axis, u);
+    return u - sine * across + (1 - cosine) * product(axis, across);
+  }
+  /// -|omega x d|^2 / 2, the potential of the centrifugal force at x, less g.x [m2/s2].
+  TREACLE_HD double potential(const Vec<D>& x) const {
+    return -dot(gravity, x) - (turns ? 0.5 * norm2(product(spin, x - center)) : 0);
+  }
+
+ private:
+  TREACLE_HD static Vec<D> product(const Vec<3>& w, const Vec<D>& d) {
+    if constexpr (D == 2)
+      return {-w[2] * d[1], w[2] * d[0]};
+    else
+      return cross(w, d);
+  }
+};
+
+extern template struct FrameForce<2>;
+extern template struct FrameForce<3>;
+
+}  // namespace treacle

@@ -1,0 +1,79 @@
+#include "carried_fluids.hpp"
+
+#include "particles/fluid_extent.hpp"
+#include "treacle/model/case/checks.hpp"
+#include "treacle/model/geometry/shape.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+
+namespace treacle {
+namespace {
+
+// Spacings, and l^2/mu times the mean diagonal of V in a lattice: 2.2 to 2.6.
+constexpr double mostPushed = 0.5, latticeViscosity = 2.5;
+
+}  // namespace
+
+double weightOn(const Case& c, const Body& below, bool heavier) {
+  int down = 0;
+  for (int k = 1; k < c.dimensions; ++k)
+    if (std::abs(c.gravity[k]) > std::abs(c.gravity[down])) down = k;
+  const Extent box = boundingBox(below.shape, c.dimensions);
+  const Heights h = heightsOf(c, box);
+  double pressure = 0;
+  for (const Body& body : c.bodies) {
+    const double density = materialOf(c, body).density;
+    if (body.kind != BodyKind::Fluid || &body == &below) continue;
+    if (heavier && density <= materialOf(c, below).density) continue;
+    const Extent other = boundingBox(body.shape, c.dimensions);
+    const Heights its = heightsOf(c, other);
+    bool onIt = its.low + its.high > h.low + h.high;
+    for (int k = 0; k < c.dimensions; ++k)
+      onIt = onIt && (k == down || (other.min[k] < box.max[k] && box.min[k] < other.max[k]));
+    if (onIt) pressure += density * norm(c.gravity) * (its.high - std::max(its.low, h.low));
+  }
+  return pressure;
+}
+
+double longestCarryingStep(const Case& c, const Material& m, double p) {
+  const double inertia = m.density * c.spacing * c.spacing;
+  const double half = 0.5 * mostPushed * latticeViscosity * c.typicalViscosity(m) / p;
+  return half + std::sqrt(half * half + mostPushed * inertia / p);
+}
+
+void warnLightFluids(const Case& c, std::vector<std::string>& warnings) {
+  for (const Body& body : c.bodies) {
+    const double p = body.kind == BodyKind::Fluid ? weightOn(c, body, true) : 0;
+    if (p == 0) continue;
+    const Material& m = materialOf(c, body);
+    const double dt = c.time.step, inertia = m.density * c.spacing * c.spacing;  // times 1/dt like a viscosity
+    const double way = p * dt / (inertia / dt + latticeViscosity * c.typicalViscosity(m));
+    if (way <= mostPushed * (1 + rounding)) continue;
+    warnings.push_back(fmt::format(
+        "fluid '{}' is too light and too thin for the heavier fluid on it: a pressure of {:.3g} Pa can move its "
+        "particles by {:.3g} spacings in a step, more than {:g}, so that the heavier fluid may sink into it; take "
+        "steps of at most {:.2g} s, or a dynamic_viscosity of '{}' of at least {:.2g} Pa s",
+        body.name, p, way, mostPushed, longestCarryingStep(c, m, p), m.name,
+        (p * dt / mostPushed - inertia / dt) / latticeViscosity));
+  }
+}
+
+void warnSoftFluids(const Case& c, std::vector<std::string>& warnings) {
+  constexpr double most = 0.1;
+  for (const Body& body : c.bodies) {
+    if (body.kind != BodyKind::Fluid) continue;
+    const Material& m = materialOf(c, body);
+    const double own = heightsOf(c, boundingBox(body.shape, c.dimensions)).extent();
+    const double p = weightOn(c, body, false) + m.density * norm(c.gravity) * own;
+    const double share = std::min(p / m.bulkModulus, p * c.time.end / m.bulkViscosity);
+    if (!(share > most)) continue;
+    warnings.push_back(fmt::format(
+        "fluid '{}' is too soft for the weight that it carries: {:.3g} Pa may compress it by {:.2g} %; take a "
+        "bulk_modulus of '{}' of at least {:.2g} Pa, and a bulk_viscosity of at least {:.2g} Pa s",
+        body.name, p, 100 * std::min(share, 1.0), m.name, p / most, p / most * c.time.step / mostCompression(c)));
+  }
+}
+
+}  // namespace treacle
