@@ -108,22 +108,26 @@ def abrams_cone(run):
     return {"slump [mm]": 300 - 1e3 * top[-1]}, (t, 300 - 1e3 * top)
 
 
-def sphere_mass(case, resolution):
-    """The mass with which the ball has its true weight in the fluid: particles that are missing there are not quite its volume."""
+def ball_on_lattice(case, resolution):
+    """Puts the ball on the point of the fluid's lattice that is nearest to it, so that as many particles of fluid are missing as it has,
+    and gives it the mass with which its weight in the fluid is that of the true ball: the fluid carries its particles."""
     step = case["spacing"] / resolution
     ball = next(b for b in case["body"] if b["name"] == "sphere")
     density = {m["name"]: m["density"] for m in case["material"]}
     oil = next(b for b in case["body"] if b["name"] == "oil")
-    ball_center = np.array(ball["center"])
     # The lattice of a box begins half a spacing inside its corner, that of a cylinder on its axis, half a spacing from its start.
     first = np.array(oil["min"]) + step / 2 if oil["shape"] == "box" else np.array(oil["start"]) + [0, 0, step / 2]
-    k = np.arange(-40, 41)
-    near = first + step * np.rint((ball_center - first) / step)
-    axes = [(near[i] + k * step - ball_center[i]) ** 2 for i in range(3)]
-    missing = (axes[0][:, None, None] + axes[1][:, None] + axes[2] <= (ball["radius"] + 1e-6) ** 2).sum() * step**3
-    volume = 4 / 3 * np.pi * ball["radius"] ** 3
+    center = first + step * np.rint((np.array(ball["center"]) - first) / step)
+    k2 = (step * np.arange(-40, 41)) ** 2
+    radius = ball["radius"] + 1e-6
+    own = (k2[:, None, None] + k2[:, None] + k2 <= radius**2).sum() * step**3
     heavier = density[ball["material"]] - density["oil"]
-    return [f"body.sphere.mass={heavier * volume + density['oil'] * missing}"]
+    distance = " + ".join(f"({axis} - {x:.9g})^2" for axis, x in zip("xyz", center, strict=True))
+    return [
+        f"body.sphere.center=[{', '.join(f'{x:.9g}' for x in center)}]",
+        f"body.oil.where='{distance} > {radius:.9g}^2'",
+        f"body.sphere.mass={heavier * 4 / 3 * np.pi * ball['radius'] ** 3 + density['oil'] * own}",
+    ]
 
 
 def settling_sphere(run):
@@ -193,8 +197,8 @@ experiments = {
     "lcpc-box": Experiment("LCPC box", "Roussel 2007", "t [s]", "front [mm]", lcpc_box),
     "mini-cone": Experiment("Mini cone", "Roussel & Coussot 2005", "t [s]", "radius [mm]", mini_cone),
     "abrams-cone": Experiment("Abrams' cone", "Ferraris & de Larrard 1998", "t [s]", "slump [mm]", abrams_cone),
-    "settling-sphere": Experiment("Sphere in a box", "ten Cate et al. 2002", "t [s]", "speed [mm/s]", settling_sphere, sphere_mass),
-    "sphere-in-tube": Experiment("Ball in a tube", "Haberman & Sayre 1958", "t [s]", "speed [mm/s]", sphere_in_tube, sphere_mass),
+    "settling-sphere": Experiment("Sphere in a box", "ten Cate et al. 2002", "t [s]", "speed [mm/s]", settling_sphere, ball_on_lattice),
+    "sphere-in-tube": Experiment("Ball in a tube", "Haberman & Sayre 1958", "t [s]", "speed [mm/s]", sphere_in_tube, ball_on_lattice),
     "xanthan-current": Experiment("Current of xanthan gum", "Sayag & Worster 2013", "t [s]", "radius [mm]", xanthan_current),
     "extrudate-swell": Experiment("Swell of a Newtonian extrudate", "Middleman & Gavis 1961", "t [s]", "jet over tube", extrudate_swell),
     "martin-moyce": Experiment("Dam break of Martin and Moyce", "Martin & Moyce 1952", "T", "front over width", martin_moyce),
@@ -209,7 +213,7 @@ def case_files(name):
 
 
 def whole_case(path):
-    """A case file on top of its bases, as far as sphere_mass needs it."""
+    """A case file on top of its bases, as far as ball_on_lattice needs it."""
     case = tomllib.loads(path.read_text())
     if "base" not in case:
         return case
