@@ -186,6 +186,7 @@ class Hinge:
 @dataclass(kw_only=True)
 class Spring:
     name: str | None = None
+    to: str | None = None
     anchor: Sequence[float] | None = None
     """[m]"""
     arm: Sequence[float] | None = None
