@@ -62,9 +62,11 @@ void requireSound(const Checker& at, const Probe& p) {
   if (p.kind == ProbeKind::Load) return;
   if (!p.movesWith.empty()) requireCarrier(at, p);
   if (p.kind == ProbeKind::Point && p.movesWith.empty()) requireInside(at, p.point);
-  if (p.kind == ProbeKind::Plane || (p.kind == ProbeKind::WallPressure && at.wholeCase().dimensions == 3))
-    requireRectangle(at, p);
-  if (p.kind == ProbeKind::WallPressure) return at.requireDirection("along", p.along);
+  const bool isLine = p.kind == ProbeKind::WallPressure && at.wholeCase().dimensions == 2;
+  if (isLine && norm(p.up) > 0) at.fail({"up"}, "found in two dimensions, where a patch is a line; expected none");
+  if (isLine) at.requireDirection("along", p.along);
+  if (p.kind == ProbeKind::Plane || (p.kind == ProbeKind::WallPressure && !isLine)) requireRectangle(at, p);
+  if (p.kind == ProbeKind::WallPressure) return;
   if ((p.kind == ProbeKind::Line || p.kind == ProbeKind::Height) && p.from == p.to)
     at.fail({"to"}, "expected a point other than from");
   if (p.kind == ProbeKind::Flow) at.requireDirection("normal", p.normal);

@@ -62,7 +62,7 @@ void visit(auto& v, Like<Probe> auto& p, const Case& c) {
          required, "m"},
         p.corner);
       v({"along", "One edge of the patch, from the corner", required, "m"}, p.along);
-      if (c.dimensions == 3) v({"up", "The other edge, at a right angle to the first", required, "m"}, p.up);
+      v({"up", "In three dimensions the other edge, at a right angle to the first", c.dimensions == 3, "m"}, p.up);
       break;
   }
 }
