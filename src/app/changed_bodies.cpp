@@ -194,7 +194,7 @@ class BodyChange {
     }
   }
 
-  /// Those that are added begin as the case says (MovingBodies).
+  /// The state of each rigid body. MovingBodies fills in the bodies that are added, which have no mass here.
   RigidMotion rigidBodies() const {
     RigidMotion rigid;
     if (!case_.hasRigid()) return rigid;

@@ -25,7 +25,7 @@ RigidBody forcePlace(const RigidBody& before, const RigidBody& now, double dt);
 
 /// Forces of a step, per body of the case, in which the bodies go from the velocities of `before`, the state at
 /// its start, to those of `now`: given ones as their mean over the time in which velocities change, springs at
-/// forcePlace, dampers by the mean velocity. Those that are not rigid have none.
+/// forcePlace, dampers by the mean velocity. Bodies that are not rigid have none.
 std::vector<GivenForces> givenForces(const Case& c, std::span<const RigidBody> before,
                                      std::span<const RigidBody> now, const ForceInterval& interval);
 

@@ -6,6 +6,7 @@
 #include "treacle/io/checkpoint/checkpoint.hpp"
 #include "treacle/model/particles/create.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -129,25 +130,14 @@ struct Interrupted {
   const std::string options = " --backend cpu --threads 1";
 };
 
-const std::string post = R"(
-[[body]]
-name = "post"
-type = "wall"
-material = "syrup"
-shape = "box"
-min = [9e-3, 0]
-max = [12e-3, 5e-3]
-)";
-const std::string drop = R"(
-[[body]]
-name = "drop"
-type = "fluid"
-material = "syrup"
-shape = "box"
-min = [1e-3, 8e-3]
-max = [4e-3, 10e-3]
-velocity = [0, -0.1]
-)";
+std::string bodyText(const char* name, const char* type, const char* min, const char* max) {
+  return fmt::format(
+      "\n[[body]]\nname = \"{}\"\ntype = \"{}\"\nmaterial = \"syrup\"\nshape = \"box\"\nmin = {}\nmax = {}\n",
+      name, type, min, max);
+}
+
+const std::string post = bodyText("post", "wall", "[9e-3, 0]", "[12e-3, 5e-3]");
+const std::string drop = bodyText("drop", "fluid", "[1e-3, 8e-3]", "[4e-3, 10e-3]") + "velocity = [0, -0.1]\n";
 
 /// What was there before goes on as it was, and what is added is there.
 TEST(ResumedState, AddsBodies) {
@@ -188,8 +178,7 @@ TEST(ResumedState, AddsAndLeavesOut) {
 /// A rigid body that is put in falls; without it all goes on.
 TEST(ResumedState, AddsRigidBodies) {
   Interrupted run;
-  const std::string block = replaced(replaced(post, "\"wall\"", "\"rigid\""), "\"post\"", "\"block\"");
-  const std::string above = replaced(replaced(block, "min = [9e-3, 0]", "min = [9e-3, 4e-3]"), "5e-3]", "8e-3]");
+  const std::string above = bodyText("block", "rigid", "[9e-3, 4e-3]", "[12e-3, 8e-3]");
   const Outcome outcome = run.resume(smallCase + above);
   ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
   const Checkpoint<2> after = run.state("next");
