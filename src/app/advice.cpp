@@ -30,7 +30,7 @@ void printResolution(const Case& c, const FlowScales& flow) {
   print("\n");
 }
 
-void printFluid(const FluidNumbers& n, const FlowScales& flow, bool elastic) {
+void printFluid(const FluidNumbers& n, bool elastic) {
   print("# fluid '{}': ", n.material);
   if (n.viscousTime > 0)
     print("Reynolds number {:.3g} at {:.3g} m/s", n.reynolds, n.speed);
@@ -38,31 +38,31 @@ void printFluid(const FluidNumbers& n, const FlowScales& flow, bool elastic) {
     print("no viscosity, {:.3g} m/s", n.speed);
   if (n.viscousTime > 0) print(", viscous time {:.3g} s", n.viscousTime);
   if (elastic && n.ratio > 0) print(", lambda / mu = {:.4g}", n.ratio);
-  if (n.compression > 0)
-    print(", compressed by {:.2g} % under {:.3g} m of itself", 100 * n.compression, flow.height);
+  if (n.compression > 0) print(", compressed by up to {:.2g} %", 100 * n.compression);
   if (n.capillaryStep > 0) print(", Bond number {:.3g}, capillary step {:.3g} s", n.bond, n.capillaryStep);
   print("\n");
 }
 
-/// A bulk viscosity that is enough, and the bulk moduli that go with a step: stiff enough for the weight, soft
-/// enough for the step.
+/// A bulk viscosity that is enough, and the bulk moduli that go with a step: stiff enough for the weight and the
+/// pressures of openings, soft enough for the step.
 void printBulk(const Case& c, const Material& m, const FlowScales& flow) {
   const double mu = c.typicalViscosity(m), lambda = recommendedRatio * mu;
   if (mu == 0) return;
   const double most = mostCompression(c) * std::max(lambda, m.bulkViscosity) / c.time.step;
-  const double least = m.density * norm(c.gravity) * flow.height / mostCompressed;
+  const double pressure = std::max(m.density * norm(c.gravity) * flow.height, flow.pressure);
+  const double least = pressure / mostCompressed;
   print("# advice for '{}': bulk_viscosity {:.3g} ({:g} times the viscosity), ", m.name, lambda, recommendedRatio);
   if (c.time.automatic)
     print(
-        "bulk_modulus of at least {:.3g} (1 % under its own weight); steps may then be as long as {:g} "
+        "bulk_modulus of at least {:.3g} (compressed by 1 %); steps may then be as long as {:g} "
         "bulk_viscosity / bulk_modulus\n",
         least, mostCompression(c));
   else if (least == 0)
     print("bulk_modulus of at most {:.3g} (stable with this step)\n", most);
   else if (least < most)
-    print("bulk_modulus from {:.3g} (1 % under its own weight) to {:.3g} (stable with this step)\n", least, most);
+    print("bulk_modulus from {:.3g} (compressed by 1 %) to {:.3g} (stable with this step)\n", least, most);
   else
-    print("and a shorter step: a bulk_modulus of {:.3g}, 1 % under its own weight, needs {:.3g} s\n", least,
+    print("and a shorter step: a bulk_modulus of {:.3g}, compressed by 1 %, needs {:.3g} s\n", least,
           c.time.step * most / least);
 }
 
@@ -86,7 +86,7 @@ void printAdvice(const Case& c) {
   const FlowScales flow = flowScales(c);
   const std::vector<FluidNumbers> fluids = fluidNumbers(c);
   printResolution(c, flow);
-  for (const FluidNumbers& n : fluids) printFluid(n, flow, elastic);
+  for (const FluidNumbers& n : fluids) printFluid(n, elastic);
   if (!elastic) {
     const double speed = std::max(flow.given, flow.fall);
     if (speed > 0)

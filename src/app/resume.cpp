@@ -111,12 +111,14 @@ void requireFit(const Case& c, const std::filesystem::path& file, const Checkpoi
   }
 }
 
-/// What a file of a case without inflows and outflows does not have begins with the run.
+/// What a file of a case without inflows, outflows and openings does not have begins with the run.
 void requireFlow(const Case& c, const std::filesystem::path& file, const OpenFlow& flow) {
   if (flow.nextId == 0) return;
-  if (flow.inflows.size() != c.bodies.size() || flow.outflows.size() != c.outflows.size())
-    refuse(file, fmt::format("a state of {} bodies and {} outflows, but the case has {} and {}",
-                             flow.inflows.size(), flow.outflows.size(), c.bodies.size(), c.outflows.size()));
+  if (flow.inflows.size() != c.bodies.size() || flow.outflows.size() != c.outflows.size() ||
+      flow.openings.size() != c.openings.size())
+    refuse(file, fmt::format("a state of {} bodies, {} outflows and {} openings, but the case has {}, {} and {}",
+                             flow.inflows.size(), flow.outflows.size(), flow.openings.size(), c.bodies.size(),
+                             c.outflows.size(), c.openings.size()));
 }
 
 /// Where rigid bodies are, and what they weigh, only the state says. Errors: InputError for other ones.

@@ -32,6 +32,7 @@ constexpr const char* classOf(const Rotation&) { return "Rotation"; }
 constexpr const char* classOf(const Transform&) { return "Transform"; }
 constexpr const char* classOf(const Nozzle&) { return "Nozzle"; }
 constexpr const char* classOf(const Outflow&) { return "Outflow"; }
+constexpr const char* classOf(const Opening&) { return "Opening"; }
 constexpr const char* classOf(const MethodSettings&) { return "Method"; }
 constexpr const char* classOf(const RheologySettings&) { return "RheologyIteration"; }
 constexpr const char* classOf(const HeatSettings&) { return "Heat"; }

@@ -88,6 +88,11 @@ TEST(SharedSimulation, FluidThatComesAndGoes) {
                "nozzle.rotation={center=[0.002,0.062],angle='20*t'}"}});
 }
 
+/// Through openings, to and fro.
+TEST(SharedSimulation, FluidThatAPressureDrives) {
+  compare<2>({"pumped-channel-2d.toml", 40, {"solver.tolerance=1e-22", "solver.deflation=0", "resolution=2"}});
+}
+
 /// A nozzle narrower than a search cell: what it begins with is too little to be divided, and what comes is given
 /// to processes that had nothing, even if those that had some were as uneven before.
 TEST(SharedSimulation, BeginsWithALayerOfAnInflow) {

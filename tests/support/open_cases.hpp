@@ -3,6 +3,8 @@
 #include "treacle/model/case/case.hpp"
 #include "treacle/model/case/case_keys.hpp"
 
+#include <string>
+
 namespace treacle::test {
 
 /// Fluid that goes through an empty domain without gravity, from a nozzle to a plane where it leaves; lengths in
@@ -34,6 +36,42 @@ inline Case jetCase(int dimensions, MethodKind method = MethodKind::MphI,
   c.outflows = {{.name = "end", .kind = OutflowKind::Plane, .point = {0.02, 0, 0}, .normal = {1, 0, 0}}};
   c.time.step = 1e-3;
   c.time.end = 0.1;
+  return c;
+}
+
+/// Fluid between plates, 10 spacings apart, or in a square channel, between two openings 20 spacings apart of
+/// which the first has a pressure.
+inline Case channelCase(int dimensions, MethodKind method = MethodKind::MphI) {
+  Case c = jetCase(dimensions, method);
+  const double z = dimensions == 3 ? 1 : 0;
+  c.domain = {{-0.012, -0.01, -0.01 * z}, {0.032, 0.01, 0.01 * z}, {}};
+  Body fluid;
+  fluid.name = "fluid";
+  fluid.shape.min = {-0.007, -0.005, -0.005 * z};
+  fluid.shape.max = {0.027, 0.005, 0.005 * z};
+  c.bodies = {fluid};
+  for (int axis = 1; axis < dimensions; ++axis)
+    for (const double side : {-1.0, 1.0}) {
+      Body wall;
+      wall.name = std::string("wall ") + std::to_string(axis) + (side > 0 ? "+" : "-");
+      wall.kind = BodyKind::Wall;
+      wall.shape.min = {-0.012, -0.009, -0.009 * z};
+      wall.shape.max = {0.032, 0.009, 0.009 * z};
+      (side > 0 ? wall.shape.min : wall.shape.max)[axis] = side * 0.005;
+      if (axis == 2) wall.shape.min[1] = -0.005, wall.shape.max[1] = 0.005;
+      c.bodies.push_back(wall);
+    }
+  c.outflows.clear();
+  c.openings.resize(2);
+  c.openings[0].name = "inlet", c.openings[1].name = "outlet";
+  c.openings[0].pressure = TimeFunction{200};
+  for (Opening& o : c.openings) {
+    o.face.kind = NozzleKind::Rectangle;
+    o.face.width = o.face.height = 0.01;
+    o.face.direction = {1, 0, 0};
+  }
+  c.openings[1].face.center = {0.02, 0, 0};
+  c.openings[1].face.direction = {-1, 0, 0};
   return c;
 }
 

@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view setPrefix = "--set ";
-constexpr std::string_view namedLists[] = {"material", "body", "outflow",
+constexpr std::string_view namedLists[] = {"material", "body", "outflow", "opening",
                                            "probe"};                      // arrays of tables addressed by name
 constexpr std::string_view namedBelow[] = {"contact_angles", "springs"};  // those of other tables, merged by name
 

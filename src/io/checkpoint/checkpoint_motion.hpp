@@ -96,6 +96,13 @@ inline void writeFlow(hid_t file, const OpenFlow& flow) {
   }
   for (std::size_t k = 0; k < flow.outflows.size(); ++k)
     writeCount(file, fmt::format("outflow_{}", k), flow.outflows[k]);
+  if (!flow.openings.empty())
+    writeAttribute(file, "opening_count", static_cast<std::uint32_t>(flow.openings.size()));
+  for (std::size_t k = 0; k < flow.openings.size(); ++k) {
+    writeCount(file, fmt::format("opening_{}_in", k), flow.openings[k].in);
+    writeCount(file, fmt::format("opening_{}_out", k), flow.openings[k].out);
+    writeAttribute(file, fmt::format("opening_{}_drag", k).c_str(), flow.openings[k].drag);
+  }
 }
 
 /// Errors: Hdf5Error for what no run remembers.
@@ -116,6 +123,16 @@ inline OpenFlow readFlow(hid_t file) {
   }
   for (std::uint32_t k = 0; k < outflows; ++k)
     flow.outflows.push_back(readCount(file, fmt::format("outflow_{}", k)));
+  if (!hasAttribute(file, "opening_count")) return flow;
+  const auto openings = readAttribute<std::uint32_t>(file, "opening_count");
+  if (openings > maxOpenings)
+    throw Hdf5Error(fmt::format("{} openings, more than the limit of {}", openings, maxOpenings));
+  for (std::uint32_t k = 0; k < openings; ++k) {
+    const std::string name = fmt::format("opening_{}", k);
+    flow.openings.push_back({readCount(file, name + "_in"), readCount(file, name + "_out"),
+                             readAttribute<double>(file, (name + "_drag").c_str())});
+    if (!std::isfinite(flow.openings.back().drag)) throw Hdf5Error("the drag of an opening is not finite");
+  }
   return flow;
 }
 

@@ -94,9 +94,11 @@ T readAttribute(hid_t file, const char* name) {
   return value;
 }
 
+inline bool hasAttribute(hid_t file, const char* name) { return hdf5Checked(H5Aexists(file, name)) != 0; }
+
 /// Empty where there is no such attribute.
 inline std::string readText(hid_t file, const char* name) {
-  if (hdf5Checked(H5Aexists(file, name)) == 0) return {};
+  if (!hasAttribute(file, name)) return {};
   const Attribute attribute(file, name, H5T_STRING);
   constexpr std::size_t longest = 101;  // a name of 100 bytes and its end
   const std::size_t bytes = H5Tget_size(attribute.type);

@@ -218,6 +218,7 @@ void requireSound(const Checker& at, const Spring& spring);
 void requireSound(const Checker& at, const Nozzle& nozzle);
 void requireSound(const Checker& at, const Inflow& inflow);
 void requireSound(const Checker& at, const Outflow& outflow);
+void requireSound(const Checker& at, const Opening& opening);
 void requireSound(const Checker& at, const Body& body);
 // sound_probes.cpp
 void requireSound(const Checker& at, const ProbeBox& box);

@@ -33,12 +33,24 @@ double inflowSpeed(const Inflow& inflow) {
   return speed.isTable() ? *std::ranges::max_element(speed.values) : speed.at(inflow.start);
 }
 
+/// The largest size of the pressures of openings in the run [Pa].
+double openingPressure(const Case& c) {
+  constexpr int samples = 1000;
+  double most = 0;
+  for (const Opening& o : c.openings) {
+    if (!o.pressure) continue;
+    for (const double p : o.pressure->values) most = std::max(most, std::abs(p));
+    for (int k = 0; k < samples; ++k) most = std::max(most, std::abs(o.pressure->at(k * c.time.end / samples)));
+  }
+  return most;
+}
+
 FluidNumbers numbersOf(const Case& c, const Material& m, const FlowScales& flow) {
   FluidNumbers n{.material = m.name};
   const double mu = c.typicalViscosity(m), g = norm(c.gravity), inertia = m.density * flow.length * flow.length;
   // Where inertia rules a fluid falls freely, where viscosity does it flows as fast as its weight shears it.
   n.speed = std::max(flow.given, mu > 0 ? std::min(flow.fall, inertia * g / mu) : flow.fall);
-  if (m.bulkModulus > 0) n.compression = m.density * g * flow.height / m.bulkModulus;
+  if (m.bulkModulus > 0) n.compression = std::max(m.density * g * flow.height, flow.pressure) / m.bulkModulus;
   if (m.surfaceTension > 0) {
     n.capillaryStep = std::max(2 * mu * c.spacing / m.surfaceTension,
                                std::sqrt(m.density * std::pow(c.spacing, 3) / m.surfaceTension));
@@ -61,6 +73,7 @@ FlowScales flowScales(const Case& c) {
   flow.height = fluidHeight(c);
   flow.fall = std::sqrt(2 * norm(c.gravity) * flow.height);
   flow.given = givenSpeed(c);
+  flow.pressure = openingPressure(c);
   double shortest = std::numeric_limits<double>::infinity();
   for (const Body& body : c.bodies) {
     if (!body.holdsFluid()) continue;

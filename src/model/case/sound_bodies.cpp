@@ -1,5 +1,6 @@
 #include "case_checker.hpp"
 #include "geometry/polygon.hpp"
+#include "treacle/model/motion/opening.hpp"
 
 namespace treacle {
 namespace {
@@ -165,6 +166,33 @@ void requireSound(const Checker& at, const Inflow& i) {
 void requireSound(const Checker& at, const Outflow& o) {
   if (o.kind == OutflowKind::Box) return at.requireOrder(o.min, o.max);
   at.requireDirection("normal", o.normal);
+}
+
+template <int D>
+void requireReserve(const Checker& at, const Opening& o) {
+  const Case& c = at.wholeCase();
+  constexpr int depth = OpeningForce<D>::depth;
+  const OpeningFace<D> face(c, o);
+  for (std::size_t column = 0; column < face.columns(); ++column) {
+    const Vec<D> x = face.at(column, depth + 1);
+    for (int k = 0; k < D; ++k)
+      if (!(x[k] >= c.domain.min[k] && x[k] < c.domain.max[k]))
+        at.fail({"face", "center"},
+                fmt::format("the reserve behind the face, {} spacings or {}, reaches out of the domain along {}: "
+                            "expected the face farther inside, or a larger domain",
+                            depth + 1, lengthText((depth + 1) * c.spacing), "xyz"[k]));
+  }
+}
+
+void requireSound(const Checker& at, const Opening& o) {
+  const Nozzle& face = o.face;
+  if (face.kind == NozzleKind::Polygon || face.innerRadius > 0)
+    at.fail({"face", face.kind == NozzleKind::Polygon ? "shape" : "inner_radius"},
+            "the face of an opening is a whole \"disc\" or a \"rectangle\"");
+  const auto isIt = [&](const Body& b) { return b.holdsFluid() && b.material == o.material; };
+  if (std::ranges::none_of(at.wholeCase().bodies, isIt))
+    at.fail({"material"}, "expected the material of a body of type \"fluid\" or \"inflow\"");
+  at.wholeCase().dimensions == 2 ? requireReserve<2>(at, o) : requireReserve<3>(at, o);
 }
 
 /// Only fluids start with velocities of their own for each particle, only walls and nozzles are moved.

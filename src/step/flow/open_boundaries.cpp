@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -40,6 +41,7 @@ OpenBoundaries<D, Backend>::OpenBoundaries(FlowState<D, Backend>& state)
     : state_(state), volume_(std::pow(state.theCase.spacing, D)) {
   std::vector<OutflowRegion<D>> regions;
   for (const Outflow& o : state.theCase.outflows) regions.push_back(OutflowRegion<D>::of(o));
+  for (const OpeningFace<D>& face : state.faces) regions.push_back(OutflowRegion<D>::of(face.place()));
   fromHost(state.context, std::span<const OutflowRegion<D>>(regions), regions_);
 }
 
@@ -55,6 +57,7 @@ void OpenBoundaries<D, Backend>::begin(Particles<D>& particles) const {
   particles.flow.nextId = count;
   particles.flow.inflows.resize(c.bodies.size());
   particles.flow.outflows.resize(c.outflows.size());
+  particles.flow.openings.resize(c.openings.size());
 }
 
 template <int D, class Backend>
@@ -66,8 +69,10 @@ bool OpenBoundaries<D, Backend>::follow(const CellGrid<D>& grid, double start, d
   ParticleNumbers none;
   none.has = p.has;
   change.added.resize(none);
+  for (std::size_t k = 0; k < drag_.size(); ++k) change.flow.openings[k].drag = drag_[k];
   letOut(change);
   letIn(grid, start, change);
+  if (!state_.faces.empty()) fillReserves(grid, change);
   const std::uint64_t came = change.added.fluidCount, all = state_.fluidOfAll + came - change.left;
   if (all == 0) throw EndOfRun("no fluid is left: all of it has gone out by the outflows");
   if (all > maxParticles)
@@ -106,7 +111,8 @@ void OpenBoundaries<D, Backend>::letOut(Change& change) {
   for (std::size_t k = 0; k < counts.size(); ++k) {
     if (counts[k] == 0) continue;
     change.left += counts[k];
-    change.flow.outflows[k / maxMaterials] +=
+    const std::size_t region = k / maxMaterials, outflows = change.flow.outflows.size();
+    (region < outflows ? change.flow.outflows[region] : change.flow.openings[region - outflows].out) +=
         {counts[k], counts[k] * volume_ * state_.theCase.materials[k % maxMaterials].density};
   }
 }
@@ -139,30 +145,94 @@ void OpenBoundaries<D, Backend>::addLayer(const CellGrid<D>& grid, std::size_t b
                                           Change& change) const {
   const NozzleLayers<D>& nozzle = *state_.nozzles[body];
   const Body& b = state_.theCase.bodies[body];
-  std::vector<Vec<D>> places = nozzle.layer(way, state_.time);
+  const Incoming incoming{fmt::format("the nozzle of inflow '{}'", b.name), b.material, body, b.temperature,
+                          b.viscosityFactor};
+  std::uint32_t i = add(grid, incoming, nozzle.layer(way, state_.time), change.flow.inflows[body], change);
+  const WallMotion<D> motion =
+      nozzle.motionAtEnd(state_.theCase.domain, state_.time - state_.timeStep, state_.timeStep);
+  for (; i < change.added.fluidCount; ++i) change.added.velocity[i] = motion.velocityAt(change.added.position[i]);
+}
+
+template <int D, class Backend>
+void OpenBoundaries<D, Backend>::fillReserves(const CellGrid<D>& grid, Change& change) {
+  const Particles<D, Backend>& p = state_.particles;
+  const std::uint32_t n = p.fluidCount;
+  std::vector<ReserveParticle<D>> found = joinedLists(
+      state_.context, findReserves<D>(state_.context, state_.openings.span(), p.position.span().first(n),
+                                      p.velocity.span().first(n), gone_.span().first(n)));
+  std::ranges::stable_sort(found, {}, &ReserveParticle<D>::opening);
+  for (std::size_t k = 0; k < state_.faces.size(); ++k) {
+    const auto in = std::ranges::equal_range(found, k, {}, &ReserveParticle<D>::opening);
+    fillReserve(grid, k, {in.begin(), in.end()}, change);
+  }
+}
+
+/// Each column goes on behind its last particle to the end of the reserve, with the speed of that particle.
+template <int D, class Backend>
+void OpenBoundaries<D, Backend>::fillReserve(const CellGrid<D>& grid, std::size_t opening,
+                                             std::span<const ReserveParticle<D>> in, Change& change) const {
+  const OpeningFace<D>& face = state_.faces[opening];
+  std::vector<const ReserveParticle<D>*> last(face.columns());
+  for (const ReserveParticle<D>& particle : in)
+    face.forEachColumnNear(particle.x, [&](std::uint32_t column) {
+      if (!last[column] || last[column]->behind < particle.behind) last[column] = &particle;
+    });
+  std::vector<Vec<D>> places;
+  std::vector<double> speeds;
+  for (std::size_t column = 0; column < last.size(); ++column) {
+    if (!last[column]) continue;
+    for (double behind = last[column]->behind + 1; behind <= face.place().depth; ++behind) {
+      places.push_back(face.at(column, behind));
+      speeds.push_back(last[column]->speed);
+    }
+  }
+  if (places.empty()) return;
+  const Case& c = state_.theCase;
+  const Opening& o = c.openings[opening];
+  const auto body =
+      std::ranges::find_if(c.bodies, [&](const Body& b) { return b.holdsFluid() && b.material == o.material; });
+  const Incoming incoming{fmt::format("the reserve of opening '{}'", o.name), o.material,
+                          static_cast<std::size_t>(body - c.bodies.begin()), o.temperature, o.viscosityFactor};
+  const std::uint32_t first = add(grid, incoming, std::move(places), change.flow.openings[opening].in, change);
+  for (std::size_t k = 0; k < speeds.size(); ++k)
+    change.added.velocity[first + k] = speeds[k] * face.place().direction;
+}
+
+template <int D, class Backend>
+std::uint32_t OpenBoundaries<D, Backend>::add(const CellGrid<D>& grid, const Incoming& incoming,
+                                              std::vector<Vec<D>> places, FlowCount& count, Change& change) const {
   for (Vec<D>& x : places)
     if (!grid.wrap(x))
-      throw RunError(
-          fmt::format("the nozzle of inflow '{}' is outside the domain at t = {:.6g} s", b.name, state_.time));
+      throw RunError(fmt::format("{} is outside the domain at t = {:.6g} s", incoming.source, state_.time));
   if (places.size() > std::numeric_limits<std::uint32_t>::max() - change.flow.nextId)
     throw RunError(fmt::format("more than {} particles have been in the case: there are no numbers left for more",
                                std::numeric_limits<std::uint32_t>::max()));
   Particles<D>& added = change.added;
   const std::uint32_t first = added.fluidCount;
   appendParticles<D>(added, places);
-  const WallMotion<D> motion =
-      nozzle.motionAtEnd(state_.theCase.domain, state_.time - state_.timeStep, state_.timeStep);
   for (std::uint32_t i = first; i < added.fluidCount; ++i) {
-    added.pressure[i] = added.heldPressure[i] = 0;
-    added.velocity[i] = motion.velocityAt(added.position[i]);
-    added.material[i] = static_cast<std::uint8_t>(b.material);
-    added.body[i] = static_cast<std::uint8_t>(body);
+    added.material[i] = static_cast<std::uint8_t>(incoming.material);
+    added.body[i] = static_cast<std::uint8_t>(incoming.body);
     added.id[i] = change.flow.nextId++;
-    if (added.has.temperatures) added.temperature[i] = b.temperature;
-    if (added.has.viscosityFactors) added.viscosityFactor[i] = b.viscosityFactor > 0 ? b.viscosityFactor : 1;
+    if (added.has.temperatures) added.temperature[i] = incoming.temperature;
+    if (added.has.viscosityFactors)
+      added.viscosityFactor[i] = incoming.viscosityFactor > 0 ? incoming.viscosityFactor : 1;
   }
-  const double mass = state_.theCase.materials[static_cast<std::size_t>(b.material)].density * volume_;
-  static_cast<FlowCount&>(change.flow.inflows[body]) += {places.size(), static_cast<double>(places.size()) * mass};
+  const double mass = state_.theCase.materials[static_cast<std::size_t>(incoming.material)].density * volume_;
+  count += {places.size(), static_cast<double>(places.size()) * mass};
+  return first;
+}
+
+template <int D, class Backend>
+void OpenBoundaries<D, Backend>::measureFriction(StepMethod<D, Backend>& method) {
+  if (state_.faces.empty()) return;
+  const std::uint32_t n = state_.particles.fluidCount;
+  friction_.resize(state_.context, n);
+  method.wallFriction(friction_.span());
+  drag_.clear();
+  for (const OpeningFace<D>& face : state_.faces)
+    drag_.push_back(-meanInReserve<D>(state_.context, face.place(), state_.particles.position.span().first(n),
+                                      friction_.span()));
 }
 
 #define TREACLE_INSTANTIATE(Backend)         \

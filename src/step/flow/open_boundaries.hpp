@@ -1,6 +1,6 @@
 #pragma once
 
-#include "run/flow_state.hpp"
+#include "run/step_method.hpp"
 #include "treacle/search/cell_grid.hpp"
 #include "treacle/step/flow/outflow.hpp"
 
@@ -10,7 +10,8 @@
 
 namespace treacle {
 
-/// The fluid that comes into a state by the inflows of its case and leaves it by the outflows, after each step.
+/// The fluid that comes into a state by the inflows of its case, leaves it by the outflows, and goes either way
+/// through the openings, after each step.
 template <int D, class Backend>
 class OpenBoundaries {
  public:
@@ -24,7 +25,9 @@ class OpenBoundaries {
   /// RunError where a nozzle is outside the domain or no fluid is left; std::bad_alloc.
   bool follow(const CellGrid<D>& grid, double start, double density);
 
-  std::size_t bytes() const { return gone_.bytes(); }
+  /// The friction in the reserves of openings, once the step's velocities are there, for the next step.
+  void measureFriction(StepMethod<D, Backend>& method);
+  std::size_t bytes() const { return gone_.bytes() + friction_.bytes(); }
 
  private:
   /// What a step changes, before anything of the state is touched.
@@ -38,11 +41,27 @@ class OpenBoundaries {
   void letOut(Change& change);
   void letIn(const CellGrid<D>& grid, double start, Change& change) const;
   void addLayer(const CellGrid<D>& grid, std::size_t body, double way, Change& change) const;
+  void fillReserves(const CellGrid<D>& grid, Change& change);
+  void fillReserve(const CellGrid<D>& grid, std::size_t opening, std::span<const ReserveParticle<D>> in,
+                   Change& change) const;
+
+  /// What fluid of a source comes with.
+  struct Incoming {
+    std::string source;
+    int material;
+    std::size_t body;
+    double temperature, viscosityFactor;
+  };
+  /// Adds particles at rest; returns the first.
+  std::uint32_t add(const CellGrid<D>& grid, const Incoming& incoming, std::vector<Vec<D>> places,
+                    FlowCount& count, Change& change) const;
 
   FlowState<D, Backend>& state_;
   double volume_;  // of a particle [m3; m2 in 2D]
   Buffer<OutflowRegion<D>, Backend> regions_;
   Buffer<std::uint8_t, Backend> gone_;  // per own fluid particle
+  Buffer<Vec<D>, Backend> friction_;    // likewise, of cases with openings [N/m3]
+  std::vector<double> drag_;            // of the next step, per opening [N/m3]
 };
 
 }  // namespace treacle

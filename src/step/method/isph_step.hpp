@@ -101,6 +101,10 @@ class IsphStep final : public StepMethod<D, Backend> {
     if (!bodies_) correct(solution_);
   }
 
+  void wallFriction(std::span<Vec<D>> force) override {
+    sumOnFluid(state_.context, pairs_, WallFrictionTerm<D>{predictor_.viscousVelocity().data(), force.data()});
+  }
+
   std::span<const Vec<D>> transportVelocities() override {
     const double coefficient = state_.theCase.method.isph.shifting;
     if (coefficient == 0) return state_.velocity.span();

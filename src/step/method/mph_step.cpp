@@ -121,6 +121,11 @@ class MphStep final : public StepMethod<D, Backend> {
     if (heat_) heat_->solve(state_, pairs_);
   }
 
+  void wallFriction(std::span<Vec<D>> force) override {
+    treacle::wallFriction<D>(state_.context, pairs_, wallBlock_, state_.velocity, force);
+    addWallDrag<D>(state_.context, pairs_, state_.velocity, force);
+  }
+
   std::span<const Vec<D>> transportVelocities() override {
     if (!tension_) return state_.velocity.span().first(pairs_.ownFluid());
     return tension_->transport(state_, pairs_);

@@ -6,6 +6,7 @@
 #include "treacle/model/case/case.hpp"
 #include "treacle/model/motion/frame_force.hpp"
 #include "treacle/model/motion/nozzle.hpp"
+#include "treacle/model/motion/opening.hpp"
 #include "treacle/model/motion/wall_motion.hpp"
 #include "treacle/model/particles/particles.hpp"
 
@@ -38,6 +39,8 @@ struct FlowState {
   // where the case has none.
   RigidMotion rigid;
   std::vector<std::optional<NozzleLayers<D>>> nozzles;  // per body, of those that are inflows
+  std::vector<OpeningFace<D>> faces;                    // per opening
+  Buffer<OpeningForce<D>, Backend> openings;            // likewise; of the step at hand
   Buffer<WallMotion<D>, Backend> wallMotion;   // per body, where walls are; empty: all keep their velocities
   Buffer<Vec<D>, Backend> velocity, position;  // the step's results before they are accepted
 
@@ -54,6 +57,22 @@ struct FlowState {
       nozzles.emplace_back();
       if (body.kind == BodyKind::Inflow) nozzles.back().emplace(theCase, body);
     }
+    for (const Opening& opening : theCase.openings) faces.emplace_back(theCase, opening);
+  }
+
+  /// What acts on the fluid in the step at hand. Errors: InputError for a formula without a value.
+  void setFrame() {
+    const auto [from, to] = velocityInterval();
+    if (theCase.gravityVaries()) theCase.gravity = theCase.meanGravity(from, to);
+    frame = FrameForce<D>::of(theCase, from, to);
+    if (faces.empty()) return;
+    std::vector<OpeningForce<D>> forces;
+    for (const OpeningFace<D>& face : faces) {
+      forces.push_back(face.force(from, to));
+      forces.back().drag = particles.flow.openings[forces.size() - 1].drag;
+    }
+    fromHost(context, std::span<const OpeningForce<D>>(forces), openings);
+    frame.openings = openings.span();
   }
 
   /// With the others of these processes.

@@ -122,9 +122,7 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     timeStep = next.length, endOfStep = next.end;
     // Velocities belong to the middles of steps where forces do.
     velocityStep = theCase.middleShare() > 0 ? 0.5 * (this->lastStep() + timeStep) : timeStep;
-    const auto [from, to] = this->velocityInterval();
-    if (theCase.gravityVaries()) theCase.gravity = theCase.meanGravity(from, to);
-    this->frame = FrameForce<D>::of(theCase, from, to);
+    this->setFrame();
   }
 
   /// Where forces belong to the middle of the step at hand, all particles go there.
@@ -249,6 +247,7 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     StagedReport solved = control ? solveExactly(report) : solve();
     phases.run(context, treacle::phases::update, [&] {
       method->correctVelocities();
+      boundaries.measureFriction(*method);
       motion.move(method->grid(), *watch, timeStep, method->transportVelocities(), this->rigid.bodies);
       report.diagnostics = diagnosticsOf(position, velocity);
       report.watched = watch->look(timeStep, report.diagnostics, report.warnings);
@@ -294,8 +293,8 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
   }
 
   std::size_t bytes() const {
-    std::size_t sum = velocity.bytes() + position.bytes() + this->wallMotion.bytes() + bodies.bytes() +
-                      boundaries.bytes() + method->bytes();
+    std::size_t sum = velocity.bytes() + position.bytes() + this->wallMotion.bytes() + this->openings.bytes() +
+                      bodies.bytes() + boundaries.bytes() + method->bytes();
     particles.forEachField([&](const auto& field) { sum += field.bytes(); });
     if (!particles.has.starts) sum += particles.start.bytes();
     return std::is_same_v<Backend, Cpu> ? sum + distant->bytes() : sum;

@@ -36,6 +36,8 @@ class StepMethod {
   virtual SolverTrial solveBy(const SolverSettings&) = 0;
   /// Leaves the velocities of the fluid at the end of the step in state.velocity.
   virtual void correctVelocities() {}
+  /// The viscous force of walls on own fluid particles with these velocities [N/m3].
+  virtual void wallFriction(std::span<Vec<D>> force) = 0;
   /// What the fluid moves with, once they are there.
   virtual std::span<const Vec<D>> transportVelocities() = 0;
   /// How far a particle can have gone in the step if none is faster than `speed` [m/s] at its end [m].

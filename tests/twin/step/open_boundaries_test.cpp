@@ -66,6 +66,13 @@ TEST(OpenBoundariesTwin, StepsLikeTheCpu) {
   compareJets<2>(jetCase(2, MethodKind::Isph));
 }
 
+TEST(OpeningsTwin, StepLikeTheCpu) {
+  TREACLE_SKIP_WITHOUT_GPU();
+  compareJets<2>(channelCase(2));
+  compareJets<3>(channelCase(3));
+  compareJets<2>(channelCase(2, MethodKind::Isph));
+}
+
 TEST(OpenBoundariesTwin, ContinueFromACopyWithTheSameBits) {
   TREACLE_SKIP_WITHOUT_GPU();
   Case c = jetCase(2);

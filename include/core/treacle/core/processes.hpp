@@ -6,6 +6,7 @@
 
 #include <span>
 #include <string>
+#include <vector>
 
 namespace treacle {
 
@@ -27,6 +28,17 @@ inline double sumOverProcesses(const Processes& processes, double own) {
 template <class T>
 void sumOverProcesses(const Processes& processes, std::span<T> values) {
   if (processes.communicator) processes.communicator->sum(values);
+}
+
+/// Everybody's lists, one after the other in the order of ranks.
+template <class T>
+std::vector<T> joinedLists(const Processes& processes, std::vector<T> own) {
+  if (!processes.communicator) return own;
+  const auto ranks = static_cast<std::size_t>(processes.communicator->size());
+  std::vector<T> all;
+  for (const std::vector<T>& list : processes.communicator->swap(std::vector(ranks, own)))
+    all.insert(all.end(), list.begin(), list.end());
+  return all;
 }
 
 /// Does what may throw a RunError in one process only: then all throw it, with the rank of the first. Nothing

@@ -105,9 +105,10 @@ struct IsphPairs : MaterialParticles<D> {
   /// Pressure that a fluid particle with pressure p sees in a wall at distance d: the wall holds it against
   /// gravity in the frame of the wall, dp/dn = rho (g - a_wall).n.
   TREACLE_HD double wallPressure(double p, std::uint32_t fluid, std::uint32_t wall, const Vec<D>& d) const {
-    Vec<D> g = frame.at(this->position[wall]);
-    if (wallMotion) g -= wallMotion[body[wall]].accelerationAt(this->position[wall]);
-    const double outside = p + this->density(fluid) * dot(g, d);
+    const double density = this->density(fluid);
+    Vec<D> force = frame.on(this->position[wall], density);
+    if (wallMotion) force -= density * wallMotion[body[wall]].accelerationAt(this->position[wall]);
+    const double outside = p + dot(force, d);
     return negativePressure || outside > 0 ? outside : 0;
   }
 };

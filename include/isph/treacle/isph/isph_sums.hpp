@@ -126,6 +126,7 @@ struct IsphMatrixRow {
   template void sumOnFluid(Context<Backend>&, const IsphPairs<D>&,                                \
                            const BothTerms<DensityTerm<D>, PredictorTerm<D>>&);                   \
   template void sumOnFluid(Context<Backend>&, const IsphPairs<D>&, const ViscousSourceTerm<D>&);  \
+  template void sumOnFluid(Context<Backend>&, const IsphPairs<D>&, const WallFrictionTerm<D>&);   \
   template void sumOnFluid(Context<Backend>&, const IsphPairs<D>&, const PressureSourceTerm<D>&); \
   template void sumOnFluid(Context<Backend>&, const IsphPairs<D>&, const CorrectorTerm<D>&);      \
   template void sumOnWalls(Context<Backend>&, const IsphPairs<D>&, const WallPressureTerm<D>&);   \

@@ -87,8 +87,8 @@ struct PredictorTerm {
   }
   TREACLE_HD void store(const IsphPairs<D>& pairs, std::uint32_t i, const double* sum) const {
     const double density = pairs.density(i);
-    const Vec<D> u = pairs.frame.turned(velocity[i]), g = pairs.frame.at(pairs.position[i]);
-    for (int k = 0; k < D; ++k) predicted[i][k] = u[k] + pairs.timeStep * (sum[k] / density + g[k]);
+    const Vec<D> u = pairs.frame.turned(velocity[i]), f = pairs.frame.on(pairs.position[i], density);
+    for (int k = 0; k < D; ++k) predicted[i][k] = u[k] + pairs.timeStep * (sum[k] + f[k]) / density;
   }
 };
 
@@ -135,8 +135,27 @@ struct ViscousSourceTerm {
   }
   TREACLE_HD void store(const IsphPairs<D>& pairs, std::uint32_t i, const double* sum) const {
     const double density = pairs.density(i);
-    const Vec<D> u = pairs.frame.turned(velocity[i]), g = pairs.frame.at(pairs.position[i]);
-    for (int k = 0; k < D; ++k) source[k][i] = density * (u[k] / pairs.timeStep + g[k]) + sum[k];
+    const Vec<D> u = pairs.frame.turned(velocity[i]), f = pairs.frame.on(pairs.position[i], density);
+    for (int k = 0; k < D; ++k) source[k][i] = density / pairs.timeStep * u[k] + f[k] + sum[k];
+  }
+};
+
+/// The viscous force of no-slip walls [N/m3], as in PredictorTerm.
+template <int D>
+struct WallFrictionTerm {
+  static constexpr int values = D;
+  const Vec<D>* velocity;
+  Vec<D>* force;
+
+  TREACLE_HD void fluid(const IsphPairs<D>&, std::uint32_t, std::uint32_t, const Vec<D>&, const Distance&,
+                        double*) const {}
+  TREACLE_HD void wall(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>&,
+                       const Distance& r, double* sum) const {
+    const double c = pairs.noSlip ? 4 * pairs.slope(r) * pairs.pairViscosity(i, j) : 0;
+    for (int k = 0; k < D; ++k) sum[k] += c * (velocity[j][k] - velocity[i][k]);
+  }
+  TREACLE_HD void store(const IsphPairs<D>&, std::uint32_t i, const double* sum) const {
+    for (int k = 0; k < D; ++k) force[i][k] = sum[k];
   }
 };
 

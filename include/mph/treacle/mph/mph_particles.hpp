@@ -25,6 +25,12 @@ template <int D, class Backend>
 void inertiaAndGravity(Context<Backend>&, const MphPairs<D>&, std::span<const Vec<D>> u,
                        const FrameForce<D>& frame, std::span<Vec<D>> b);
 
+/// force_i = -(block_i - rho/dt) u_i per own fluid particle [N/m3]: the viscous force of walls that are at rest.
+/// `block`: that of WallTerms.
+template <int D, class Backend>
+void wallFriction(Context<Backend>&, const MphPairs<D>&, std::span<const Block<D>> block,
+                  std::span<const Vec<D>> u, std::span<Vec<D>> force);
+
 /// pressure_i = lambda_i div_i + elastic_i per particle [Pa] [K23 eq. (14)]; an empty `elastic` counts as zero.
 /// `pressure` may be `div`.
 template <int D, class Backend>
@@ -43,7 +49,7 @@ TREACLE_HD double elasticPressureOf(const MphPairs<D>& pairs, std::uint32_t i, d
 template <int D>
 TREACLE_HD Vec<D> inertiaAndGravityOf(const MphPairs<D>& pairs, std::uint32_t i, const Vec<D>& u,
                                       const FrameForce<D>& frame) {
-  return pairs.inertia(i) * frame.turned(u) + pairs.density(i) * frame.at(pairs.position[i]);
+  return pairs.inertia(i) * frame.turned(u) + frame.on(pairs.position[i], pairs.density(i));
 }
 template <int D>
 TREACLE_HD double bulkPressureOf(const MphPairs<D>& pairs, std::uint32_t i, double div, double elastic) {

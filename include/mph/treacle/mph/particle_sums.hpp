@@ -30,6 +30,14 @@ void inertiaAndGravity(Context<Backend>& context, const MphPairs<D>& pairs, std:
 }
 
 template <int D, class Backend>
+void wallFriction(Context<Backend>& context, const MphPairs<D>& pairs, std::span<const Block<D>> block,
+                  std::span<const Vec<D>> u, std::span<Vec<D>> force) {
+  forEachParticle(context, pairs, force.size(), [=] TREACLE_HD(const MphPairs<D>& of, std::uint32_t i) {
+    force[i] = of.inertia(i) * u[i] - block[i] * u[i];
+  });
+}
+
+template <int D, class Backend>
 void bulkPressure(Context<Backend>& context, const MphPairs<D>& pairs, std::span<const double> div,
                   std::span<const double> elastic, std::span<double> pressure) {
   forEachParticle(context, pairs, pressure.size(), [=] TREACLE_HD(const MphPairs<D>& of, std::uint32_t i) {
@@ -101,6 +109,8 @@ void renormalisation(Context<Backend>& context, const MphPairs<D>& pairs, std::s
                                 std::span<const Adhesion<D>>, std::span<double>);                        \
   template void inertiaAndGravity(Context<Backend>&, const MphPairs<D>&, std::span<const Vec<D>>,        \
                                   const FrameForce<D>&, std::span<Vec<D>>);                              \
+  template void wallFriction(Context<Backend>&, const MphPairs<D>&, std::span<const Block<D>>,           \
+                             std::span<const Vec<D>>, std::span<Vec<D>>);                                \
   template void bulkPressure(Context<Backend>&, const MphPairs<D>&, std::span<const double>,             \
                              std::span<const double>, std::span<double>);                                \
   template void placeSurfaces(Context<Backend>&, const KnownSurfaces<D>&, std::span<const std::uint8_t>, \

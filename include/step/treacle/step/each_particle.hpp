@@ -94,6 +94,42 @@ std::vector<std::uint32_t> markOutflow(Context<Backend>& context, const OutflowT
   return counts;
 }
 
+template <int D, class Backend>
+std::vector<ReserveParticle<D>> findReserves(Context<Backend>& context, std::span<const OpeningForce<D>> openings,
+                                             std::span<const Vec<D>> position, std::span<const Vec<D>> velocity,
+                                             std::span<const std::uint8_t> gone) {
+  Buffer<std::uint32_t, Backend> list(context, position.size());
+  std::uint32_t* const particle = list.data();
+  const std::uint32_t count = listWhere(
+      context, 0, static_cast<std::uint32_t>(position.size()),
+      [=] TREACLE_HD(std::uint32_t i) {
+        return gone[i] == 0 && openingAt(openings.data(), openings.size(), position[i]) < openings.size();
+      },
+      particle);
+  Buffer<ReserveParticle<D>, Backend> found(context, count);
+  ReserveParticle<D>* const to = found.data();
+  forEach(context, count, [=] TREACLE_HD(std::size_t k) {
+    const Vec<D>& x = position[particle[k]];
+    const std::size_t opening = openingAt(openings.data(), openings.size(), x);
+    const OpeningForce<D>& o = openings[opening];
+    to[k] = {static_cast<std::uint32_t>(opening), o.behind(x), dot(velocity[particle[k]], o.direction), x};
+  });
+  std::vector<ReserveParticle<D>> particles(count);
+  copyToHost(context, std::span<const ReserveParticle<D>>(found), particles.data());
+  return particles;
+}
+
+template <int D, class Backend>
+double meanInReserve(Context<Backend>& context, const OpeningForce<D>& opening, std::span<const Vec<D>> position,
+                     std::span<const Vec<D>> vector) {
+  const auto sums = sumEach<2>(context, position.size(), [=] TREACLE_HD(std::size_t i, double* to) {
+    if (!opening.isInReserve(position[i])) return;
+    to[0] += dot(vector[i], opening.direction);
+    to[1] += 1;
+  });
+  return sums[1] > 0 ? sums[0] / sums[1] : 0;
+}
+
 /// What is found is found once more when it is known how many there are.
 template <int D, class Backend>
 std::vector<Contact<D>> findContacts(Context<Backend>& context, const ContactSearch<D>& search,
@@ -171,6 +207,11 @@ StepChange stepChange(Context<Backend>& context, const StepChangeTerms<D>& terms
                                        std::span<const Vec<D>>, std::span<Vec<D>>);                             \
   template std::vector<std::uint32_t> markOutflow(Context<Backend>&, const OutflowTest<D>&,                     \
                                                   std::span<std::uint8_t>);                                     \
+  template std::vector<ReserveParticle<D>> findReserves(Context<Backend>&, std::span<const OpeningForce<D>>,    \
+                                                        std::span<const Vec<D>>, std::span<const Vec<D>>,       \
+                                                        std::span<const std::uint8_t>);                         \
+  template double meanInReserve(Context<Backend>&, const OpeningForce<D>&, std::span<const Vec<D>>,             \
+                                std::span<const Vec<D>>);                                                       \
   template std::vector<Contact<D>> findContacts(Context<Backend>&, const ContactSearch<D>&, std::uint32_t,      \
                                                 std::uint32_t);                                                 \
   template std::array<double, PowerTerms<D>::count> sumPowers(Context<Backend>&, const PowerTerms<D>&,          \

@@ -123,7 +123,8 @@ void visit(auto& v, Like<Shape> auto& s, const Case& c) {
 void visit(auto& v, Like<Nozzle> auto& n, const Case& c) {
   v({"shape", "Shape of the opening", required}, n.kind);
   v({"center", "Centre of the opening", required, "m"}, n.center);
-  v({"direction", "Direction that fluid leaves in, of any length", required, "any unit"}, n.direction);
+  v({"direction", "Direction in which fluid comes into the case, of any length", required, "any unit"},
+    n.direction);
   if (n.kind == NozzleKind::Disc) {
     v({"radius", "Radius of the disc, in two dimensions half the width of the opening", required, "m", positive},
       n.radius);
@@ -168,6 +169,19 @@ void visit(auto& v, Like<Outflow> auto& o, const Case&) {
   v({"normal", "Normal of the plane, of any length; what is beyond the plane in this direction is taken out",
      required, "any unit"},
     o.normal);
+}
+
+void visit(auto& v, Like<Opening> auto& o, const Case& c) {
+  v({"name", "Name of the opening, unique among them", required}, o.name);
+  v({"material", "Name of the material of fluid that comes in, which some body has", required}, o.material,
+    material);
+  v({"face", "Where fluid goes in or out; its direction leads into the case", required}, o.face);
+  v({"pressure", "Pressure at the centre of the face, above that of the air", optional, "Pa"}, o.pressure);
+  if (c.heat) v({"temperature", "Temperature of fluid that comes in", required, "K", positive}, o.temperature);
+  if (c.method.kind == MethodKind::MphI)
+    v({"viscosity_factor", "By what the viscosity of fluid that comes in is multiplied; 0: 1", optional, "",
+       notNegative},
+      o.viscosityFactor);
 }
 
 void visit(auto& v, Like<Spring> auto& s, const Case& c) {

@@ -61,6 +61,7 @@ struct Case {
   std::vector<Material> materials;
   std::vector<Body> bodies;
   std::vector<Outflow> outflows{};
+  std::vector<Opening> openings{};
   TimeSettings time;
   MethodSettings method;
   RheologySettings rheology;
@@ -137,7 +138,7 @@ struct Case {
   /// Its mean from one time to another, from 0 on [m/s2].
   Vec<3> meanGravity(double from, double to) const;
 
-  bool isOpen() const { return hasInflow() || !outflows.empty(); }
+  bool isOpen() const { return hasInflow() || !outflows.empty() || !openings.empty(); }
   bool hasLoads() const {
     return std::ranges::any_of(probes, [](const Probe& p) { return p.isOnWall(); });
   }

@@ -119,6 +119,7 @@ void visit(auto& v, Like<Case> auto& c, const Case&) {
   v({"material", "Materials, of fluids and walls", required, "", {1, maxMaterials}}, c.materials);
   v({"body", "What particles are made of", required, "", {1, maxBodies}}, c.bodies);
   v({"outflow", "Where fluid leaves", optional, "", {0, maxOutflows}}, c.outflows);
+  v({"opening", "Where fluid goes in or out by a pressure", optional, "", {0, maxOpenings}}, c.openings);
   v({"time", "Time step and end of the run", required}, c.time);
   v({"method", "Numerical method and its settings"}, c.method);
   if (c.method.kind == MethodKind::MphI) {

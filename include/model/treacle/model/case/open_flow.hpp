@@ -28,15 +28,24 @@ struct OpenFlow {
   std::uint32_t nextId = 0;           // of the next particle that comes
   std::vector<Inflow> inflows{};      // per body of the case, zero for those that are none
   std::vector<FlowCount> outflows{};  // per outflow of the case
+  struct Opening {
+    FlowCount in, out;
+    double drag = 0;  // OpeningForce::drag of the next step [N/m3]
+
+    bool operator==(const Opening&) const = default;
+  };
+  std::vector<Opening> openings{};  // per opening of the case
 
   FlowCount in() const {
     FlowCount sum;
     for (const Inflow& i : inflows) sum += i;
+    for (const Opening& o : openings) sum += o.in;
     return sum;
   }
   FlowCount out() const {
     FlowCount sum;
     for (const FlowCount& o : outflows) sum += o;
+    for (const Opening& o : openings) sum += o.out;
     return sum;
   }
 

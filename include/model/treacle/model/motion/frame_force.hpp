@@ -3,22 +3,26 @@
 #include "treacle/core/macros.hpp"
 #include "treacle/core/vec.hpp"
 #include "treacle/model/case/case.hpp"
+#include "treacle/model/motion/opening.hpp"
+
+#include <span>
 
 namespace treacle {
 
-/// What accelerates all fluid in a step: gravity and, in a frame that turns, centrifugal, Euler and Coriolis
-/// forces. Velocities are those in the frame.
+/// What acts on the fluid in a step by its place and velocity: gravity, the pressures of openings and, in a frame
+/// that turns, centrifugal, Euler and Coriolis forces. Velocities are those in the frame.
 template <int D>
 struct FrameForce {
-  Vec<D> gravity{};             // as the frame sees it [m/s2]
-  bool turns = false;           // else the rest does not count
-  Vec<D> center{};              // a point of the axis [m]
-  Vec<3> spin{};                // omega [rad/s]
-  Vec<3> spinChange{};          // d omega / dt [rad/s2]
-  Vec<3> axis{};                // of length 1
+  Vec<D> gravity{};                             // as the frame sees it [m/s2]
+  bool turns = false;                           // else the rest does not count
+  Vec<D> center{};                              // a point of the axis [m]
+  Vec<3> spin{};                                // omega [rad/s]
+  Vec<3> spinChange{};                          // d omega / dt [rad/s2]
+  Vec<3> axis{};                                // of length 1
+  std::span<const OpeningForce<D>> openings{};  // in the backend's memory
   double sine = 0, cosine = 1;  // of the angle 2 omega dt that Coriolis forces turn a velocity back by in the step
 
-  /// Over a time from `from` to `to`, in which velocities change [s]; from == to: at that time.
+  /// Without openings. Over a time from `from` to `to`, in which velocities change [s]; from == to: at that time.
   static FrameForce of(const Case& c, double from, double to);
 
   /// On what rests at x, with the acceleration of the frame's rotation at x taken off [m/s2].
@@ -26,6 +30,12 @@ struct FrameForce {
     if (!turns) return gravity;
     const Vec<D> d = x - center;
     return gravity - product(spinChange, d) - product(spin, product(spin, d));
+  }
+  /// On what has a density [kg/m3] and rests at x [N/m3].
+  TREACLE_HD Vec<D> on(const Vec<D>& x, double density) const {
+    Vec<D> force = density * at(x);
+    for (const OpeningForce<D>& opening : openings) force += opening.at(x, density, gravity);
+    return force;
   }
   /// A velocity after the Coriolis force -2 omega x u of the step, which turns it and takes no energy [m/s].
   TREACLE_HD Vec<D> turned(const Vec<D>& u) const {

@@ -55,7 +55,7 @@ struct PowerTerms {
     sums[Shear] += shear[i];
     if (!repulsion.empty()) sums[Repulsion] += repulsion[i];
     if (!transport.empty())
-      sums[Shift] -= materials.inertia[m] * velocityStep * dot(frame.at(position[i]), transport[i] - after[i]);
+      sums[Shift] -= dot(frame.on(position[i], materials.inertia[m] * velocityStep), transport[i] - after[i]);
     if (!surfaceSlope.empty()) sums[SurfaceEnergy] += surfaceEnergyShare * norm2(surfaceSlope[i].m);
     sums[Inertial] += 0.5 * materials.inertia[m] * norm2(after[i] - frame.turned(before[i]));
   }

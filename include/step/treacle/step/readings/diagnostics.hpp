@@ -61,7 +61,7 @@ struct DiagnosticsTerm {
     const Vec<D>&x = in.position[i], &u = in.velocity[i];
     const double speed2 = norm2(u), m = mass[in.material[i]];
     Diagnostics d{0.5 * m * speed2, m * frame.potential(x), x[0], dot(up, x), std::sqrt(speed2)};
-    d.gravityPower = m * dot(frame.at(x), u);
+    d.gravityPower = volume * dot(frame.on(x, in.materials.density[in.material[i]]), u);
     if (!in.wallDensity.empty()) d.insideWalls = in.wallDensity[i] > 0 && in.wallDensity[i] >= in.neighbourDensity;
     if (!in.numberDensity.empty()) {
       const double excess = in.numberDensity[i] - in.restDensity;
