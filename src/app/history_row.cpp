@@ -21,6 +21,7 @@ HistoryRow historyRow(const Case& c, const StepReport& r) {
     };
     row.particles = r.flow->particles, row.inflow = flow(r.flow->in), row.outflow = flow(r.flow->out);
   }
+  if (r.gas) row.gas = {r.gas->pockets, r.gas->volume, r.gas->pressure};
   row.timings = {s.search, s.lists, s.coefficients, s.coarse, s.solve, s.update};
   return row;
 }

@@ -38,7 +38,7 @@ Recorder::Recorder(const Case& c, RunDirectory& directory, RunLog& log, double s
     : case_(c),
       directory_(directory),
       source_(std::move(source)),
-      history_(directory.history(), {.flow = c.isOpen(), .timings = timings}),
+      history_(directory.history(), {.flow = c.isOpen(), .gas = c.gas.has_value(), .timings = timings}),
       probes_(c, filesOf(directory), start, source_.measure),
       frames_(c.output.interval, c.time, start),
       checkpoints_(c.output.checkpointInterval, c.time, start),

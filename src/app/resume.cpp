@@ -121,6 +121,15 @@ void requireFlow(const Case& c, const std::filesystem::path& file, const OpenFlo
                              c.outflows.size(), c.openings.size()));
 }
 
+/// Errors: InputError for gas of another domain or spacing.
+void requireGas(const Case& c, const std::filesystem::path& file, const GasState& gas) {
+  double cells = 1;
+  for (int k = 0; k < c.dimensions; ++k)
+    cells *= std::max(3.0, std::ceil((c.domain.max[k] - c.domain.min[k]) / c.spacing - 1e-6));
+  if (!gas.cells.empty() && *std::ranges::max_element(gas.cells) >= cells)
+    refuse(file, "its trapped gas is outside the domain of the case; expected the domain of the run");
+}
+
 /// Where rigid bodies are, and what they weigh, only the state says. Errors: InputError for other ones.
 void requireRigid(const Case& c, const std::filesystem::path& file, const StateNames& names,
                   const RigidMotion& rigid) {
@@ -239,6 +248,7 @@ StartState fittingState(const Case& c, const std::filesystem::path& file, const 
     matchMaterials(c, file, state.names, state.particles);
     requireFields(c, file, state.particles);
     requireRigid(c, file, state.names, state.particles.rigid);
+    requireGas(c, file, state.particles.gas);
     if (!state.names.bodies.empty() && state.names.bodies != StateNames::of(c).bodies)
       changeBodies<D>(c, file, made, created, state, changes);
     requireFit(c, file, state, kinds, !changes.empty());

@@ -36,6 +36,8 @@ constexpr const char* classOf(const Opening&) { return "Opening"; }
 constexpr const char* classOf(const MethodSettings&) { return "Method"; }
 constexpr const char* classOf(const RheologySettings&) { return "RheologyIteration"; }
 constexpr const char* classOf(const HeatSettings&) { return "Heat"; }
+constexpr const char* classOf(const GasSettings&) { return "Gas"; }
+constexpr const char* classOf(const Vent&) { return "Vent"; }
 constexpr const char* classOf(const SolverSettings&) { return "Solver"; }
 constexpr const char* classOf(const MultigridSettings&) { return "Multigrid"; }
 constexpr const char* classOf(const ProjectedSettings&) { return "Projected"; }

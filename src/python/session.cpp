@@ -62,7 +62,8 @@ Session::Session(Case c, const Options& options) : case_(std::move(c)), threads_
   requireMemory(case_, start.particles, device ? &*device : nullptr);
   simulation_.emplace(case_, std::move(start.particles), backend_, start.step, start.time);
 
-  historyWriter_.emplace(&history_, HistoryColumns{.flow = case_.isOpen(), .timings = true});
+  historyWriter_.emplace(&history_,
+                         HistoryColumns{.flow = case_.isOpen(), .gas = case_.gas.has_value(), .timings = true});
   if (case_.output.balance) balanceWriter_.emplace(&balance_, case_);
   if (case_.hasRigid()) rigidWriter_.emplace(&rigid_, case_);
   probeRecorder_.emplace(

@@ -117,6 +117,7 @@ void fill(hid_t file, const Particles<D>& particles, std::int64_t step, double t
   writeNames(file, "material", names.materials), writeNames(file, "body", names.bodies);
   writeFlow(file, particles.flow);
   writeRigid(file, particles.rigid);
+  writeGas(file, particles.gas);
   forEachNamedField(particles, [&](const FieldInfo& info, const auto& field) { writeField(file, info, field); });
 }
 
@@ -223,7 +224,7 @@ Checkpoint<D> readContent(const std::filesystem::path& path, ParticlePart part) 
   particles.steps = readSteps(file);
   const auto has = [&](const char* name) { return readAttribute<std::uint8_t>(file, name) != 0; };
   particles.has = {has("has_shear_rates"), has("has_temperatures"), has("has_viscosity_factors")};
-  particles.flow = readFlow(file), particles.rigid = readRigid(file);
+  particles.flow = readFlow(file), particles.rigid = readRigid(file), particles.gas = readGas(file);
   Selection selection{part, particles.fluidCount, particles.wallCount(), {}};
   checkpoint.fluidOfAll = selection.fluid, checkpoint.wallsOfAll = selection.walls;
   if (!part.isAll()) checkpoint.firstWall = chooseWalls(file, particles.flow, selection);

@@ -2,6 +2,7 @@
 
 #include "checkpoint_fields.hpp"
 #include "treacle/model/case/case.hpp"
+#include "treacle/model/particles/create.hpp"
 #include "treacle/model/particles/particles.hpp"
 
 #include <fmt/format.h>
@@ -42,35 +43,68 @@ inline void forEachNumber(Body& b, F&& f) {
 }
 inline constexpr std::uint64_t rigidNumbers = 20;
 
+/// A list of numbers, whose length is known from an attribute.
+inline void writeNumbers(hid_t file, const char* name, std::span<const double> values) {
+  Buffer<double> field(values.size());
+  std::copy(values.begin(), values.end(), field.begin());
+  writeAttribute(file, (std::string(name) + "_count").c_str(), static_cast<std::uint32_t>(values.size()));
+  writeField(file, FieldInfo{name, Of::All, values.size()}, field);
+}
+/// Errors: Hdf5Error for more than `most`, and for one that is not finite.
+inline std::vector<double> readNumbers(hid_t file, const char* name, std::uint64_t most) {
+  const auto count = readAttribute<std::uint32_t>(file, (std::string(name) + "_count").c_str());
+  if (count > most) throw Hdf5Error(fmt::format("{} values of {}, more than {}", count, name, most));
+  std::vector<double> values(count);
+  FieldReader<double>(file, FieldInfo{name, Of::All, count}).read({0, count}, values.data());
+  for (const double x : values)
+    if (!std::isfinite(x)) throw Hdf5Error(fmt::format("a value of {} is not finite", name));
+  return values;
+}
+
 inline void writeRigid(hid_t file, const RigidMotion& rigid) {
-  Buffer<double> numbers(rigid.bodies.size() * rigidNumbers);
-  double* to = numbers.data();
-  for (const RigidBody& body : rigid.bodies) forEachNumber(body, [&](double x) { *to++ = x; });
-  const auto put = [&](const char* name, std::span<const double> values) {
-    Buffer<double> field(values.size());
-    std::copy(values.begin(), values.end(), field.begin());
-    writeAttribute(file, (std::string(name) + "_count").c_str(), static_cast<std::uint32_t>(values.size()));
-    writeField(file, FieldInfo{name, Of::All, values.size()}, field);
+  std::vector<double> numbers;
+  for (const RigidBody& body : rigid.bodies) forEachNumber(body, [&](double x) { numbers.push_back(x); });
+  writeNumbers(file, "rigid_bodies", numbers);
+  writeNumbers(file, "rigid_response", rigid.response);
+  writeNumbers(file, "rigid_change", rigid.change);
+}
+
+/// Of a case with gas; others have nothing to write.
+inline void writeGas(hid_t file, const GasState& gas) {
+  if (gas.pockets.empty()) return;
+  std::vector<double> numbers;
+  for (const GasState::Pocket& pocket : gas.pockets)
+    for (const double x : {pocket.content, pocket.volume, pocket.pressure}) numbers.push_back(x);
+  writeNumbers(file, "gas_pockets", numbers);
+  writeNumbers(file, "gas_cells", gas.cells);
+  writeNumbers(file, "gas_labels", gas.labels);
+  writeNumbers(file, "gas_response", gas.response);
+}
+
+/// Errors: Hdf5Error for what no gas is.
+inline GasState readGas(hid_t file) {
+  GasState gas;
+  if (!hasAttribute(file, "gas_pockets_count")) return gas;
+  const std::vector<double> numbers = readNumbers(file, "gas_pockets", 3 * mostGasPockets);
+  for (std::size_t k = 0; k + 3 <= numbers.size(); k += 3)
+    gas.pockets.push_back({numbers[k], numbers[k + 1], numbers[k + 2]});
+  gas.cells = readNumbers(file, "gas_cells", maxParticles);
+  gas.labels = readNumbers(file, "gas_labels", maxParticles);
+  gas.response = readNumbers(file, "gas_response", mostGasPockets * mostGasPockets);
+  const auto isPocket = [&](double label) {
+    return label >= 0 && label < static_cast<double>(gas.pockets.size());
   };
-  put("rigid_bodies", numbers);
-  put("rigid_response", rigid.response);
-  put("rigid_change", rigid.change);
+  if (numbers.size() % 3 != 0 || gas.cells.size() != gas.labels.size() ||
+      !std::ranges::all_of(gas.labels, isPocket))
+    throw Hdf5Error("the cells of trapped gas do not fit its pockets");
+  return gas;
 }
 
 /// Errors: Hdf5Error for what no body is.
 inline RigidMotion readRigid(hid_t file) {
   constexpr std::uint64_t mostUnknowns = 6 * maxBodies;
-  const auto get = [&](const char* name, std::uint64_t most) {
-    const auto count = readAttribute<std::uint32_t>(file, (std::string(name) + "_count").c_str());
-    if (count > most) throw Hdf5Error(fmt::format("{} values of {}, more than {}", count, name, most));
-    std::vector<double> values(count);
-    FieldReader<double>(file, FieldInfo{name, Of::All, count}).read({0, count}, values.data());
-    for (const double x : values)
-      if (!std::isfinite(x)) throw Hdf5Error(fmt::format("a value of {} is not finite", name));
-    return values;
-  };
   RigidMotion rigid;
-  const std::vector<double> numbers = get("rigid_bodies", maxBodies * rigidNumbers);
+  const std::vector<double> numbers = readNumbers(file, "rigid_bodies", maxBodies * rigidNumbers);
   if (numbers.size() % rigidNumbers != 0) throw Hdf5Error("the numbers of the rigid bodies are not complete");
   const double* from = numbers.data();
   rigid.bodies.resize(numbers.size() / rigidNumbers);
@@ -78,8 +112,8 @@ inline RigidMotion readRigid(hid_t file) {
     forEachNumber(body, [&](double& x) { x = *from++; });
     if (!(body.mass >= 0)) throw Hdf5Error(fmt::format("a rigid body has a mass of {} kg", body.mass));
   }
-  rigid.response = get("rigid_response", mostUnknowns * mostUnknowns);
-  rigid.change = get("rigid_change", mostUnknowns);
+  rigid.response = readNumbers(file, "rigid_response", mostUnknowns * mostUnknowns);
+  rigid.change = readNumbers(file, "rigid_change", mostUnknowns);
   if (rigid.response.size() != rigid.change.size() * rigid.change.size() && !rigid.response.empty())
     throw Hdf5Error("the response of the rigid bodies does not fit their number");
   return rigid;

@@ -21,6 +21,8 @@ constexpr std::string_view timingColumns = ",search_s,lists_s,coefficients_s,coa
 constexpr std::string_view flowColumns =
     ",particles,inflow_particles,inflow_volume,inflow_mass,outflow_particles,outflow_volume,outflow_mass";
 
+constexpr std::string_view gasColumns = ",gas_pockets,gas_volume,gas_pressure";
+
 /// Which columns a file has beside those that all have.
 struct Layout : HistoryColumns {
   int version = newest;  // of the columns: 2 has fallbacks, 3 the time step and densities
@@ -30,10 +32,10 @@ struct Layout : HistoryColumns {
 
 /// The header without the end of its line.
 std::string columns(const Layout& layout) {
-  return fmt::format("step,time{}{}{},seconds{}{}{}", layout.version >= 3 ? ",time_step" : "", solveColumns,
+  return fmt::format("step,time{}{}{},seconds{}{}{}{}", layout.version >= 3 ? ",time_step" : "", solveColumns,
                      layout.version >= 3 ? ",mean_density,density_error" : "",
                      layout.version >= 2 ? ",fallbacks" : "", layout.flow ? flowColumns : "",
-                     layout.timings ? timingColumns : "");
+                     layout.gas ? gasColumns : "", layout.timings ? timingColumns : "");
 }
 
 std::string header(const Layout& layout) { return columns(layout) + '\n'; }
@@ -52,6 +54,7 @@ void forEachColumn(Row& row, const Layout& layout, F&& f) {
     f(row.particles);
     for (auto* flow : {&row.inflow, &row.outflow}) f(flow->particles), f(flow->volume), f(flow->mass);
   }
+  if (layout.gas) f(row.gas.pockets), f(row.gas.volume), f(row.gas.pressure);
   if (!layout.timings) return;
   auto& t = row.timings;
   f(t.search), f(t.lists), f(t.coefficients), f(t.coarse), f(t.solve), f(t.update);
@@ -60,10 +63,11 @@ void forEachColumn(Row& row, const Layout& layout, F&& f) {
 Layout layoutOf(std::string_view text, const std::filesystem::path& path) {
   for (int version = Layout::newest; version > 0; --version)
     for (const bool flow : {true, false})
-      for (const bool timings : {true, false}) {
-        const Layout layout{{flow, timings}, version};
-        if (text.starts_with(header(layout))) return layout;
-      }
+      for (const bool gas : {true, false})
+        for (const bool timings : {true, false}) {
+          const Layout layout{{flow, gas, timings}, version};
+          if (text.starts_with(header(layout))) return layout;
+        }
   throw InputError(
       fmt::format("{}:1: not a history written by treacle; expected the header {}", path.string(), columns({})));
 }

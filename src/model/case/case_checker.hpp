@@ -205,6 +205,7 @@ void requireSound(const Checker& at, const SolverSettings& solver);
 void requireSound(const Checker& at, const OutputSettings& output);
 void requireSound(const Checker& at, const MethodSettings& method);
 void requireSound(const Checker& at, const Width& width);
+void requireSound(const Checker& at, const Vent& vent);
 void requireSound(const Checker& at, const Case& c);
 // sound_materials.cpp
 void requireSound(const Checker& at, const Rheology& rheology);

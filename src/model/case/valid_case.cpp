@@ -96,6 +96,8 @@ void requireSound(const Checker& at, const Width& w) {
   if (!(w.from < w.to)) at.fail({"to"}, fmt::format("expected more than from = {}, found {}", w.from, w.to));
 }
 
+void requireSound(const Checker& at, const Vent& v) { at.requireOrder(v.min, v.max); }
+
 void requireSound(const Checker& at, const TimeSettings& t) {
   if (t.automatic) requireAutomaticSteps(at, t);
   const double steps = t.end / (t.automatic ? t.least : t.step);
@@ -167,6 +169,25 @@ void requireFrame(const Checker& at, const Case& c) {
                       "xyz"[k]));
 }
 
+/// The forces of gas are made for the places in the middle of a step, and its pressures are found in turn with the
+/// flow, as the velocities of rigid bodies are.
+void requireGas(const Checker& at, const Case& c) {
+  if (!c.gas) return;
+  if (c.method.kind != MethodKind::MphI) at.fail({"gas"}, gasOfMphI);
+  if (!c.keepsVolume())
+    at.fail({"gas"}, c.hasSurfaceTension() ? "found beside a surface tension; a case can have only one of them"
+                                           : "expected method.scheme = \"accurate\" beside it");
+  if (c.hasRigid()) at.fail({"gas"}, "found beside a rigid body; a case can have only one of them");
+  double cells = 1;
+  for (int k = 0; k < c.dimensions; ++k) cells *= (c.domain.max[k] - c.domain.min[k]) / c.spacing;
+  constexpr double most = 2e9;
+  if (cells > most)
+    at.fail({"gas"},
+            fmt::format("the domain has {:.3g} cells of a spacing, in which gas is looked for, expected at "
+                        "most {:.3g}: take a smaller domain",
+                        cells, most));
+}
+
 void requireSound(const Checker& at, const Case& c) {
   if (c.heat && c.method.kind != MethodKind::MphI) at.fail({"heat"}, heatOfMphI);
   if (std::ranges::none_of(c.bodies, &Body::holdsFluid))
@@ -176,6 +197,7 @@ void requireSound(const Checker& at, const Case& c) {
   requirePeriodicLength(at, c);
   requireSurface(at, c);
   requireFrame(at, c);
+  requireGas(at, c);
   for (const auto& [key, interval] :
        {std::pair("interval", c.output.interval), std::pair("checkpoint_interval", c.output.checkpointInterval)})
     if (interval > 0 && c.time.end / interval > maxSteps)

@@ -4,6 +4,7 @@
 #include "run/failure.hpp"
 #include "run/step_method.hpp"
 #include "run/take_trial.hpp"
+#include "step_gas.hpp"
 #include "step_heat.hpp"
 #include "step_places.hpp"
 #include "step_rheology.hpp"
@@ -41,6 +42,7 @@ class MphStep final : public StepMethod<D, Backend> {
     if (state.theCase.heat) heat_.emplace(state.theCase, pairs_);
     if (state.theCase.hasSurfaceTension()) surface_.emplace(state.theCase);
     if (state.theCase.keepsVolume()) tension_.emplace();
+    if (state.theCase.gas) gas_.emplace(state.theCase, *tension_);
     if (state.theCase.hasRigid()) bodies_.emplace(state);
   }
 
@@ -70,6 +72,7 @@ class MphStep final : public StepMethod<D, Backend> {
     if (surface_) surface_->prepare(state_, pairs_, wallForces_.walls());
     scaleViscosity();
     if (tension_) tension_->prepare(state_, pairs_, places_.of(state_));
+    if (gas_) gas_->prepare(state_);
     prepareViscous();
   }
 
@@ -83,6 +86,7 @@ class MphStep final : public StepMethod<D, Backend> {
   /// Leaves the walls' velocities in state.velocity, too.
   StagedReport solve() override {
     guessAll();
+    if (gas_) return solveWithGas();
     return bodies_ ? solveWithBodies() : solveFluid();
   }
 
@@ -145,8 +149,9 @@ class MphStep final : public StepMethod<D, Backend> {
     if (rheology_) rheology_->accept(state_);
     if (state_.theCase.needsBalance())
       lastBalance_ = balance_.make(state_, pairs_, divergence_, elastic_, surface_ ? &*surface_ : nullptr,
-                                   tension_ ? &*tension_ : nullptr);
+                                   tension_ ? &*tension_ : nullptr, explicitForces());
     if (heat_) acceptHeat();
+    if (gas_) gas_->accept(state_);
     if (tension_) tension_->accept(state_, pairs_, places_.of(state_));
     // The velocities of the start are given, no solution: nothing follows from the way to the first one.
     if (state_.step > 0)
@@ -172,7 +177,7 @@ class MphStep final : public StepMethod<D, Backend> {
            (rheology_ ? rheology_->bytes() : 0) + (heat_ ? heat_->bytes() : 0) +
            (surface_ ? surface_->bytes() : 0) + (tension_ ? tension_->bytes() : 0) + wallBlock_.bytes() +
            wallGradient_.bytes() + places_.bytes() + elastic_.bytes() + divergence_.bytes() + rhs_.bytes() +
-           found_.bytes() + solver_.bytes() + balance_.bytes() + wallForces_.bytes() +
+           found_.bytes() + solver_.bytes() + balance_.bytes() + wallForces_.bytes() + (gas_ ? gas_->bytes() : 0) +
            (bodies_ ? bodies_->bytes() : 0) + rhsAtRest_.bytes() + pressure_.bytes();
   }
 
@@ -198,6 +203,16 @@ class MphStep final : public StepMethod<D, Backend> {
       return solveOnce();
     };
     return bodies_->solve(pairs_, wallSurface_, flow, [&] { return loads(); });
+  }
+
+  /// The flow and the pressures of the gas that it has trapped.
+  StagedReport solveWithGas() {
+    return gas_->solve(state_, [&](bool isFirst) {
+      if (isFirst) return solveFluid();
+      copyValues(state_.context, std::span<const Vec<D>>(rhsAtRest_), rhs_.data());
+      gas_->addPressures(state_, rhs_);
+      return solveOnce();
+    });
   }
 
   /// Brings the present velocities of walls into the right-hand side and into state.velocity, whose fluid stays.
@@ -326,6 +341,10 @@ class MphStep final : public StepMethod<D, Backend> {
       copyValues(state_.context, std::span<const Vec<D>>(rhs_), rhsAtRest_.data());
     }
     if (state_.wallsMove) addWallVelocities();
+    if (!gas_) return;
+    rhsAtRest_.resize(state_.context, rhs_.size());
+    copyValues(state_.context, std::span<const Vec<D>>(rhs_), rhsAtRest_.data());
+    gas_->addPressures(state_, rhs_);
   }
 
   /// b -= A_full (0 on the fluid, u on the walls)
@@ -345,6 +364,7 @@ class MphStep final : public StepMethod<D, Backend> {
 
   const ExplicitForces<D, Backend>* explicitForces() const {
     if (surface_) return &*surface_;
+    if (gas_) return &*gas_;
     return tension_ ? &*tension_ : nullptr;
   }
 
@@ -375,8 +395,9 @@ class MphStep final : public StepMethod<D, Backend> {
   std::optional<StepHeat<D, Backend>> heat_;          // where the case has heat
   std::optional<StepSurface<D, Backend>> surface_;    // where some fluid has a surface tension
   std::optional<StepTension<D, Backend>> tension_;    // where the case keeps its volume
+  std::optional<StepGas<D, Backend>> gas_;            // where the case has gas
   std::optional<StepBodies<D, Backend>> bodies_;      // where the case has rigid bodies; then also:
-  Buffer<Vec<D>, Backend> rhsAtRest_;                 // the right-hand side without velocities of walls
+  Buffer<Vec<D>, Backend> rhsAtRest_;                 // the right-hand side without velocities of walls, or gas
   Buffer<double, Backend> pressure_;                  // per active particle [Pa]
   WallForces<D, Backend> wallForces_;                 // for rigid bodies, the balance and surface tension
   StepBalance<D, Backend> balance_{wallForces_};

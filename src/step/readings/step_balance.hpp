@@ -25,12 +25,11 @@ class StepBalance {
 
   /// Once state.velocity and the pressures are those of the end of the step; positions and particles' velocities
   /// are still those of its start. `divergence`: C^T u^{k+1}, `elastic`: elasticPressure(), per active particle;
-  /// `surface`, `tension`: null where the case has none; it has at most one of them.
+  /// `surface`, `tension`: null where the case has none; it has at most one of them. `others`: all explicit
+  /// forces, or null.
   Balance make(FlowState<D, Backend>& state, const MphPairs<D>& pairs, std::span<const double> divergence,
                std::span<const double> elastic, const StepSurface<D, Backend>* surface,
-               const StepTension<D, Backend>* tension) {
-    const ExplicitForces<D, Backend>* others = surface;
-    if (tension) others = tension;
+               const StepTension<D, Backend>* tension, const ExplicitForces<D, Backend>* others) {
     sumPairs(state, pairs, others);
     Balance balance;
     setPowers(state, pairs, divergence, elastic, surface, tension, balance);

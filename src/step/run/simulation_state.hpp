@@ -269,6 +269,18 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     report.loads = method->loads();
     report.patches = method->patchPressures();
     report.rigid = particles.rigid.bodies;
+    if (theCase.gas) report.gas = gasReport();
+    return report;
+  }
+
+  GasReport gasReport() const {
+    GasReport report;
+    double largest = 0;
+    for (const GasState::Pocket& pocket : particles.gas.pockets) {
+      ++report.pockets;
+      report.volume += pocket.volume;
+      if (pocket.volume > largest) largest = pocket.volume, report.pressure = pocket.pressure;
+    }
     return report;
   }
 

@@ -1,3 +1,4 @@
+#include "support/gas_case.hpp"
 #include "support/gpu.hpp"
 #include "support/isph_cases.hpp"
 #include "support/open_cases.hpp"
@@ -71,6 +72,28 @@ TEST(OpeningsTwin, StepLikeTheCpu) {
   compareJets<2>(channelCase(2));
   compareJets<3>(channelCase(3));
   compareJets<2>(channelCase(2, MethodKind::Isph));
+}
+
+template <int D>
+void comparePlugs() {
+  Case c = plugOnGas(D);
+  c.solver.tolerance = 1e-22;
+  c.solver.deflation = 0;
+  Simulation<D> cpu(c, created<D>(c));
+  Simulation<D, Cuda> cuda(c, created<D>(c));
+  for (int k = 0; k < 20; ++k) {
+    const StepReport a = cpu.advance(), b = cuda.advance();
+    ASSERT_EQ(a.gas->pockets, b.gas->pockets);
+    ASSERT_NEAR(a.gas->volume, b.gas->volume, 1e-8 * a.gas->volume);
+    ASSERT_NEAR(a.gas->pressure, b.gas->pressure, 1e-6 * c.gas->pressure);
+  }
+  EXPECT_EQ(cuda.particles().gas.cells, cpu.particles().gas.cells);
+}
+
+TEST(GasTwin, StepsLikeTheCpu) {
+  TREACLE_SKIP_WITHOUT_GPU();
+  comparePlugs<2>();
+  comparePlugs<3>();
 }
 
 TEST(OpenBoundariesTwin, ContinueFromACopyWithTheSameBits) {

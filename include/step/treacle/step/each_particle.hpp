@@ -5,6 +5,7 @@
 #include "treacle/core/macros.hpp"
 #include "treacle/core/processes.hpp"
 #include "treacle/step/bodies/contacts.hpp"
+#include "treacle/step/flow/gas_contact.hpp"
 #include "treacle/step/flow/outflow.hpp"
 #include "treacle/step/method/first_guess.hpp"
 #include "treacle/step/method/heat_terms.hpp"
@@ -130,6 +131,23 @@ double meanInReserve(Context<Backend>& context, const OpeningForce<D>& opening, 
   return sums[1] > 0 ? sums[0] / sums[1] : 0;
 }
 
+template <int D, class Backend>
+void addGasForces(Context<Backend>& context, std::span<const GasContact<D>> contacts,
+                  std::span<const double> pressure, double volume, std::span<Vec<D>> force) {
+  forEach(context, contacts.size(), [=] TREACLE_HD(std::size_t k) {
+    const GasContact<D>& c = contacts[k];
+    force[c.particle] += (pressure[c.pocket] / volume) * c.area;
+  });
+}
+
+template <int D, class Backend>
+double gasRate(Context<Backend>& context, std::span<const GasContact<D>> contacts, std::uint32_t pocket,
+               std::span<const Vec<D>> u) {
+  return sumEach<1>(context, contacts.size(), [=] TREACLE_HD(std::size_t k, double* sum) {
+    if (contacts[k].pocket == pocket) sum[0] += dot(contacts[k].area, u[contacts[k].particle]);
+  })[0];
+}
+
 /// What is found is found once more when it is known how many there are.
 template <int D, class Backend>
 std::vector<Contact<D>> findContacts(Context<Backend>& context, const ContactSearch<D>& search,
@@ -194,30 +212,34 @@ StepChange stepChange(Context<Backend>& context, const StepChangeTerms<D>& terms
   return StepChange::mean(all, joinedOverProcesses(context, terms.after.size(), std::plus<>()));
 }
 
-#define TREACLE_EACH_PARTICLE(D, Backend)                                                                       \
-  template void setWallVelocities(Context<Backend>&, const MovingWalls<D>&, std::span<Vec<D>>);                 \
-  template void setWallChords(Context<Backend>&, const MovingWalls<D>&, std::span<Vec<D>>);                     \
-  template void shiftBody(Context<Backend>&, const CellGrid<D>&, std::span<const std::uint8_t>, std::uint8_t,   \
-                          const Vec<D>&, std::span<Vec<D>>);                                                    \
-  template void extrapolate(Context<Backend>&, const Extrapolation<D>&, std::span<const Vec<D>>, FlowMemory<D>, \
-                            std::span<Vec<D>>);                                                                 \
-  template void updateFlowMemory(Context<Backend>&, double, double, std::span<const Vec<D>>,                    \
-                                 std::span<const Vec<D>>, FlowMemory<D>);                                       \
-  template std::uint32_t moveParticles(Context<Backend>&, const CellGrid<D>&, double, std::span<const Vec<D>>,  \
-                                       std::span<const Vec<D>>, std::span<Vec<D>>);                             \
-  template std::vector<std::uint32_t> markOutflow(Context<Backend>&, const OutflowTest<D>&,                     \
-                                                  std::span<std::uint8_t>);                                     \
-  template std::vector<ReserveParticle<D>> findReserves(Context<Backend>&, std::span<const OpeningForce<D>>,    \
-                                                        std::span<const Vec<D>>, std::span<const Vec<D>>,       \
-                                                        std::span<const std::uint8_t>);                         \
-  template double meanInReserve(Context<Backend>&, const OpeningForce<D>&, std::span<const Vec<D>>,             \
-                                std::span<const Vec<D>>);                                                       \
-  template std::vector<Contact<D>> findContacts(Context<Backend>&, const ContactSearch<D>&, std::uint32_t,      \
-                                                std::uint32_t);                                                 \
-  template std::array<double, PowerTerms<D>::count> sumPowers(Context<Backend>&, const PowerTerms<D>&,          \
-                                                              std::size_t);                                     \
-  template PartSums sumPart(Context<Backend>&, const PartTerms<D>&);                                            \
-  template double patchPressure(Context<Backend>&, const PatchTerms<D>&);                                       \
+#define TREACLE_EACH_PARTICLE(D, Backend)                                                                        \
+  template void setWallVelocities(Context<Backend>&, const MovingWalls<D>&, std::span<Vec<D>>);                  \
+  template void setWallChords(Context<Backend>&, const MovingWalls<D>&, std::span<Vec<D>>);                      \
+  template void shiftBody(Context<Backend>&, const CellGrid<D>&, std::span<const std::uint8_t>, std::uint8_t,    \
+                          const Vec<D>&, std::span<Vec<D>>);                                                     \
+  template void extrapolate(Context<Backend>&, const Extrapolation<D>&, std::span<const Vec<D>>, FlowMemory<D>,  \
+                            std::span<Vec<D>>);                                                                  \
+  template void updateFlowMemory(Context<Backend>&, double, double, std::span<const Vec<D>>,                     \
+                                 std::span<const Vec<D>>, FlowMemory<D>);                                        \
+  template std::uint32_t moveParticles(Context<Backend>&, const CellGrid<D>&, double, std::span<const Vec<D>>,   \
+                                       std::span<const Vec<D>>, std::span<Vec<D>>);                              \
+  template std::vector<std::uint32_t> markOutflow(Context<Backend>&, const OutflowTest<D>&,                      \
+                                                  std::span<std::uint8_t>);                                      \
+  template std::vector<ReserveParticle<D>> findReserves(Context<Backend>&, std::span<const OpeningForce<D>>,     \
+                                                        std::span<const Vec<D>>, std::span<const Vec<D>>,        \
+                                                        std::span<const std::uint8_t>);                          \
+  template double meanInReserve(Context<Backend>&, const OpeningForce<D>&, std::span<const Vec<D>>,              \
+                                std::span<const Vec<D>>);                                                        \
+  template void addGasForces(Context<Backend>&, std::span<const GasContact<D>>, std::span<const double>, double, \
+                             std::span<Vec<D>>);                                                                 \
+  template double gasRate(Context<Backend>&, std::span<const GasContact<D>>, std::uint32_t,                      \
+                          std::span<const Vec<D>>);                                                              \
+  template std::vector<Contact<D>> findContacts(Context<Backend>&, const ContactSearch<D>&, std::uint32_t,       \
+                                                std::uint32_t);                                                  \
+  template std::array<double, PowerTerms<D>::count> sumPowers(Context<Backend>&, const PowerTerms<D>&,           \
+                                                              std::size_t);                                      \
+  template PartSums sumPart(Context<Backend>&, const PartTerms<D>&);                                             \
+  template double patchPressure(Context<Backend>&, const PatchTerms<D>&);                                        \
   template StepChange stepChange(Context<Backend>&, const StepChangeTerms<D>&);
 #define TREACLE_EACH_TEMPERATURE(Backend)                                        \
   template void setEach(Context<Backend>&, const HeatSystemTerms&, std::size_t); \

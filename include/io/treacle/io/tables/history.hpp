@@ -19,6 +19,12 @@ struct HistoryFlow {
   double volume = 0, mass = 0;  // [m3; m2 in 2D], [kg; per metre of depth in 2D]
 };
 
+/// Gas that the fluid has trapped.
+struct HistoryGas {
+  std::uint64_t pockets = 0;
+  double volume = 0, pressure = 0;  // of all [m3; m2 in 2D], in the largest one above that of the air [Pa]
+};
+
 /// One time step in `history.csv`.
 struct HistoryRow {
   std::int64_t step = 0;
@@ -37,12 +43,14 @@ struct HistoryRow {
   int fallbacks = 0;           // of the linear solver; zero if the file, of an earlier version, does not hold them
   std::uint64_t particles = 0;  // of the fluid; zero, like the next two, if the file does not hold them
   HistoryFlow inflow{}, outflow{};
+  HistoryGas gas{};
   HistoryTimings timings{};  // zero if the file does not hold them
 };
 
 /// Columns that only some histories have.
 struct HistoryColumns {
   bool flow = false;     // fluid that comes and goes
+  bool gas = false;      // that is trapped
   bool timings = false;  // of the phases
 };
 

@@ -67,4 +67,22 @@ struct HeatSettings {
   bool operator==(const HeatSettings&) const = default;
 };
 
+inline constexpr std::size_t maxVents = 64;  // of a case
+/// Where trapped gas gets out: a box that counts as open air as far as no fluid and no wall fills it.
+struct Vent {
+  std::string name;
+  Vec<3> min{}, max{};  // [m]
+
+  bool operator==(const Vent&) const = default;
+};
+
+/// Gas that the fluid traps (docs/gas.md).
+struct GasSettings {
+  double pressure = 101325;  // of the air around the fluid [Pa]
+  double exponent = 1;       // k of p V^k = const in a pocket
+  std::vector<Vent> vents{};
+
+  bool operator==(const GasSettings&) const = default;
+};
+
 }  // namespace treacle

@@ -96,6 +96,20 @@ void visit(auto& v, Like<HeatSettings> auto& h, const Case&) {
   v({"max_iterations", "Largest number of iterations of that solve", optional, "", iterations}, h.maxIterations);
 }
 
+void visit(auto& v, Like<Vent> auto& vent, const Case&) {
+  v({"name", "Name of the vent, unique among them", required}, vent.name);
+  v({"min", "Corner of a box with the least coordinates", required, "m"}, vent.min);
+  v({"max", "Corner of the box with the largest coordinates", required, "m"}, vent.max);
+}
+
+void visit(auto& v, Like<GasSettings> auto& g, const Case&) {
+  v({"pressure", "Pressure of the air around the fluid, absolute", optional, "Pa", positive}, g.pressure);
+  v({"exponent", "k of p V^k = const in a pocket: 1 at one temperature, 1.4 without exchange of heat", optional,
+     "", positive},
+    g.exponent);
+  v({"vents", "Boxes through which trapped gas gets out", optional, "", {0, maxVents}}, g.vents);
+}
+
 void visit(auto& v, Like<MultigridSettings> auto& m, const Case&) {
   v({"finest_sweeps", "Smoothing sweeps before and after the coarse correction on the finest buckets", optional,
      "", sweeps},

@@ -5,6 +5,7 @@
 #include "treacle/model/case/open_flow.hpp"
 #include "treacle/model/geometry/wall_surface.hpp"
 #include "treacle/model/motion/rigid_body.hpp"
+#include "treacle/model/state/gas_state.hpp"
 #include "treacle/model/state/solver_modes.hpp"
 #include "treacle/model/state/step_memory.hpp"
 
@@ -117,6 +118,9 @@ struct Particles {
   // Of the bodies that it moves, likewise.
   RigidMotion rigid;
 
+  // Of the gas that it has trapped, likewise.
+  GasState gas;
+
   // Of wall particle wallBegin() + k. Empty: walls have no surface, and the fluid meets their velocities where
   // their particles are.
   Buffer<WallSurface<D>, Backend> wallSurface;
@@ -128,6 +132,7 @@ struct Particles {
     steps = from.steps;
     flow = from.flow;
     rigid = from.rigid;
+    gas = from.gas;
   }
 
   std::uint32_t wallBegin() const { return fluidCount + ghostCount; }
@@ -167,6 +172,7 @@ struct Particles {
     steps = {};
     flow = {};
     rigid = {};
+    gas = {};
     wallSurface.resize(context, numbers.surfaces);
   }
 

@@ -66,6 +66,13 @@ struct FlowReport {
   FlowCount in, out;
 };
 
+/// Of a case with gas, after the step.
+struct GasReport {
+  std::uint64_t pockets = 0;
+  double volume = 0;    // of all [m3; m2 in 2D]
+  double pressure = 0;  // in the largest one, above that of the air [Pa]
+};
+
 struct StepReport {
   std::int64_t step = 0;  // number of steps done
   double time = 0;        // [s], after the step
@@ -86,6 +93,7 @@ struct StepReport {
   std::vector<WallLoad> loads;        // per wall body of the case, where one has a probe, or with a balance
   std::vector<double> patches;        // pressures of the probes WallPressure, in the order of the case [Pa]
   std::optional<FlowReport> flow;     // where the case is open
+  std::optional<GasReport> gas;       // where it has gas
   std::vector<RigidBody> rigid;       // per body of the case, after the step, where some are rigid
   PhaseSeconds seconds;
 };

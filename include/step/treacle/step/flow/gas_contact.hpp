@@ -1,0 +1,29 @@
+#pragma once
+
+#include "treacle/core/cuda.hpp"
+#include "treacle/core/vec.hpp"
+
+#include <cstdint>
+#include <span>
+
+namespace treacle {
+
+/// What a particle has to do with the gas of a pocket.
+template <int D>
+struct GasContact {
+  std::uint32_t particle, pocket;
+  Vec<D> area;  // force on the particle over the pressure of the pocket, away from the gas [m2; m in 2D]
+};
+
+/// force_i += p area / volume of the contacts, whose particles are fluid and stand there once [N/m3]. `pressure`:
+/// of pockets [Pa]; `volume`: of a particle. All spans in the backend's memory.
+template <int D, class Backend>
+void addGasForces(Context<Backend>&, std::span<const GasContact<D>> contacts, std::span<const double> pressure,
+                  double volume, std::span<Vec<D>> force);
+
+/// Sum of area . u over the contacts of a pocket: the rate of its volume [m3/s; m2/s in 2D].
+template <int D, class Backend>
+double gasRate(Context<Backend>&, std::span<const GasContact<D>> contacts, std::uint32_t pocket,
+               std::span<const Vec<D>> u);
+
+}  // namespace treacle

@@ -1,0 +1,410 @@
+#include "gas_pockets.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <utility>
+
+namespace treacle {
+namespace {
+
+/// Weights of the quadratic B-spline on three cells, from the distance to the centre of the middle one in cells.
+struct Spline {
+  double weight[3], slope[3];
+
+  explicit Spline(double t)
+      : weight{0.5 * (0.5 - t) * (0.5 - t), 0.75 - t * t, 0.5 * (0.5 + t) * (0.5 + t)},
+        slope{t - 0.5, -2 * t, t + 0.5} {}
+};
+
+constexpr double correction = 0.05;   // by how much of its error a volume is corrected in a step
+constexpr double leastVolume = 0.05;  // of the volume that a pocket has at the pressure of the air
+
+}  // namespace
+
+template <int D>
+GasPockets<D>::GasPockets(const Case& c)
+    : gas_(*c.gas), spacing_(c.spacing), particle_(std::pow(c.spacing, D)), cell_(1), cells_(1) {
+  low_ = resized<D>(c.domain.min);
+  periodic_ = c.domain.periodic;
+  for (int k = 0; k < D; ++k) {
+    const double length = c.domain.max[k] - c.domain.min[k], cells = length / spacing_;
+    count_[k] = std::max(3, static_cast<int>(std::ceil(cells - 1e-6)));
+    edge_[k] = length / count_[k];
+    cell_ *= edge_[k];
+    cells_ *= static_cast<std::size_t>(count_[k]);
+  }
+}
+
+template <int D>
+auto GasPockets<D>::at(std::size_t cell) const -> Index {
+  Index i;
+  for (int k = 0; k < D; ++k) {
+    i[k] = static_cast<int>(cell % static_cast<std::size_t>(count_[k]));
+    cell /= static_cast<std::size_t>(count_[k]);
+  }
+  return i;
+}
+
+template <int D>
+std::size_t GasPockets<D>::cellOf(const Vec<D>& x) const {
+  std::size_t cell = 0;
+  for (int k = D - 1; k >= 0; --k) {
+    const int i = std::clamp(static_cast<int>(std::floor((x[k] - low_[k]) / edge_[k])), 0, count_[k] - 1);
+    cell = cell * static_cast<std::size_t>(count_[k]) + static_cast<std::size_t>(i);
+  }
+  return cell;
+}
+
+template <int D>
+Vec<D> GasPockets<D>::centerOf(std::size_t cell) const {
+  const Index i = at(cell);
+  Vec<D> x;
+  for (int k = 0; k < D; ++k) x[k] = low_[k] + (i[k] + 0.5) * edge_[k];
+  return x;
+}
+
+template <int D>
+template <class F>
+void GasPockets<D>::forEachAround(std::size_t cell, int far, F&& f) const {
+  const Index middle = at(cell);
+  const auto along = [&](auto&& self, int k, std::size_t sum, std::size_t stride) -> void {
+    if (k == D) {
+      f(sum);
+      return;
+    }
+    const std::size_t next = stride * static_cast<std::size_t>(count_[k]);
+    for (int i = middle[k] - far; i <= middle[k] + far; ++i) {
+      int place = i;
+      if (periodic_[static_cast<std::size_t>(k)]) place = (i + count_[k]) % count_[k];
+      if (place < 0 || place >= count_[k]) continue;
+      self(self, k + 1, sum + stride * static_cast<std::size_t>(place), next);
+    }
+  };
+  along(along, 0, 0, 1);
+}
+
+template <int D>
+template <class F>
+void GasPockets<D>::forEachNext(std::size_t cell, F&& f) const {
+  const Index middle = at(cell);
+  std::size_t stride = 1;
+  for (int k = 0; k < D; ++k) {
+    const auto count = static_cast<std::size_t>(count_[k]);
+    const bool wraps = periodic_[static_cast<std::size_t>(k)];
+    if (middle[k] > 0)
+      f(cell - stride);
+    else if (wraps)
+      f(cell + (count - 1) * stride);
+    if (middle[k] + 1 < count_[k])
+      f(cell + stride);
+    else if (wraps)
+      f(cell - (count - 1) * stride);
+    stride *= count;
+  }
+}
+
+template <int D>
+template <class F>
+void GasPockets<D>::forEachWeight(const Vec<D>& x, F&& f) const {
+  Index middle;
+  double weight[D][3], slope[D][3];
+  for (int k = 0; k < D; ++k) {
+    const double place = (x[k] - low_[k]) / edge_[k];
+    middle[k] = static_cast<int>(std::floor(place));
+    const Spline spline(place - middle[k] - 0.5);
+    for (int i = 0; i < 3; ++i) weight[k][i] = spline.weight[i], slope[k][i] = spline.slope[i] / edge_[k];
+  }
+  int way[D];
+  const auto along = [&](auto&& self, int k, std::size_t cell, std::size_t stride) -> void {
+    if (k == D) {
+      double product = 1;
+      Vec<D> gradient;
+      for (int a = 0; a < D; ++a) {
+        product *= weight[a][way[a]];
+        gradient[a] = 1;
+        for (int b = 0; b < D; ++b) gradient[a] *= (a == b ? slope : weight)[b][way[b]];
+      }
+      f(cell, product, gradient);
+      return;
+    }
+    const std::size_t next = stride * static_cast<std::size_t>(count_[k]);
+    for (way[k] = 0; way[k] < 3; ++way[k]) {
+      int place = middle[k] + way[k] - 1;
+      if (periodic_[static_cast<std::size_t>(k)]) place = (place + count_[k]) % count_[k];
+      if (place < 0 || place >= count_[k]) continue;
+      self(self, k + 1, cell + stride * static_cast<std::size_t>(place), next);
+    }
+  };
+  along(along, 0, 0, 1);
+}
+
+template <int D>
+void GasPockets<D>::find(std::span<const Vec<D>> position, std::uint32_t fluid, GasState& state) {
+  sort(position);
+  findEmpty(position);
+  const auto found = components();
+  inherit(found, state);
+  widen(found);
+  measure(position, fluid, state);
+  share();
+  meet(position, fluid);
+}
+
+/// Particles by cells.
+template <int D>
+void GasPockets<D>::sort(std::span<const Vec<D>> position) {
+  std::vector<std::uint32_t> cell(position.size());
+  start_.assign(cells_ + 1, 0);
+  for (std::size_t i = 0; i < position.size(); ++i) {
+    cell[i] = static_cast<std::uint32_t>(cellOf(position[i]));
+    ++start_[cell[i] + 1];
+  }
+  for (std::size_t c = 0; c < cells_; ++c) start_[c + 1] += start_[c];
+  items_.resize(position.size());
+  std::vector<std::uint32_t> next(start_.begin(), start_.end() - 1);
+  for (std::size_t i = 0; i < position.size(); ++i) items_[next[cell[i]]++] = static_cast<std::uint32_t>(i);
+}
+
+template <int D>
+void GasPockets<D>::findEmpty(std::span<const Vec<D>> position) {
+  empty_.assign(cells_, 1);
+  const double least2 = spacing_ * spacing_;
+  for (std::size_t cell = 0; cell < cells_; ++cell) {
+    if (start_[cell + 1] > start_[cell]) {
+      empty_[cell] = 0;
+      continue;
+    }
+    const Vec<D> x = centerOf(cell);
+    forEachAround(cell, 1, [&](std::size_t other) {
+      for (std::uint32_t k = start_[other]; k < start_[other + 1] && empty_[cell]; ++k) {
+        Vec<D> d = position[items_[k]] - x;
+        for (int a = 0; a < D; ++a)
+          if (periodic_[static_cast<std::size_t>(a)])
+            d[a] -= count_[a] * edge_[a] * std::round(d[a] / (count_[a] * edge_[a]));
+        if (norm2(d) < least2) empty_[cell] = 0;
+      }
+    });
+  }
+}
+
+/// Gives a label to all empty cells without one that hang together with these.
+template <int D>
+void GasPockets<D>::spread(std::vector<std::size_t> from, std::uint32_t label) {
+  while (!from.empty()) {
+    const std::size_t cell = from.back();
+    from.pop_back();
+    forEachNext(cell, [&](std::size_t next) {
+      if (!empty_[next] || label_[next] != nobody) return;
+      label_[next] = label;
+      from.push_back(next);
+    });
+  }
+}
+
+/// The cells of each pocket, ascending. All other empty cells are air.
+template <int D>
+std::vector<std::vector<std::size_t>> GasPockets<D>::components() {
+  label_.assign(cells_, nobody);
+  std::vector<std::size_t> open;
+  const auto add = [&](std::size_t cell) {
+    if (!empty_[cell] || label_[cell] != nobody) return;
+    label_[cell] = air;
+    open.push_back(cell);
+  };
+  for (std::size_t cell = 0; cell < cells_; ++cell) {
+    const Index i = at(cell);
+    for (int k = 0; k < D; ++k)
+      if (!periodic_[static_cast<std::size_t>(k)] && (i[k] == 0 || i[k] + 1 == count_[k])) add(cell);
+    if (gas_.vents.empty() || !empty_[cell]) continue;
+    const Vec<D> x = centerOf(cell);
+    for (const Vent& vent : gas_.vents) {
+      bool inside = true;
+      for (int k = 0; k < D; ++k) inside = inside && x[k] >= vent.min[k] && x[k] <= vent.max[k];
+      if (inside) add(cell);
+    }
+  }
+  spread(std::move(open), air);
+  std::vector<std::vector<std::size_t>> found;
+  for (std::size_t cell = 0; cell < cells_; ++cell) {
+    if (!empty_[cell]) continue;
+    if (label_[cell] == nobody) {
+      label_[cell] = static_cast<std::uint32_t>(found.size());
+      spread({cell}, label_[cell]);
+      found.emplace_back();
+    }
+    if (label_[cell] != air) found[label_[cell]].push_back(cell);
+  }
+  return found;
+}
+
+/// The content of a pocket goes to those that have its cells, in proportion; with cells that are air now, it is
+/// gone. Pockets that are new and small are none.
+template <int D>
+void GasPockets<D>::inherit(const std::vector<std::vector<std::size_t>>& found, GasState& state) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, double> shared;  // of pockets before and now: cells
+  std::vector<double> kept(state.pockets.size()), known(found.size());
+  for (std::size_t k = 0; k < state.cells.size(); ++k) {
+    const std::uint32_t now = label_[static_cast<std::size_t>(state.cells[k])];
+    if (now == nobody) continue;
+    const auto before = static_cast<std::uint32_t>(state.labels[k]);
+    ++kept[before];
+    if (now == air) continue;
+    ++shared[{before, now}];
+    ++known[now];
+  }
+  std::vector<GasState::Pocket> pockets(found.size());
+  std::vector<int> parents(found.size());
+  for (const auto& [which, cells] : shared) {
+    const double part = cells / kept[which.first];
+    const GasState::Pocket& before = state.pockets[which.first];
+    pockets[which.second].content += part * before.content;
+    pockets[which.second].volume += part * before.volume;
+    pockets[which.second].pressure = before.pressure;
+    ++parents[which.second];
+  }
+  std::size_t least = static_cast<std::size_t>(std::pow(3.0, D));
+  if (found.size() > mostGasPockets) {
+    std::vector<std::size_t> sizes;
+    for (const auto& cells : found) sizes.push_back(cells.size());
+    std::ranges::nth_element(sizes, sizes.begin() + mostGasPockets, std::greater<>());
+    least = std::max(least, sizes[mostGasPockets] + 1);
+  }
+  std::vector<std::uint32_t> number(found.size(), nobody);
+  GasState next;
+  bool same = found.size() == state.pockets.size();
+  for (std::uint32_t k = 0; k < found.size(); ++k) {
+    if (found[k].size() < (parents[k] > 0 && found.size() <= mostGasPockets ? 1 : least)) continue;
+    number[k] = static_cast<std::uint32_t>(next.pockets.size());
+    if (parents[k] == 0) pockets[k] = {};
+    same = same && parents[k] == 1 && shared.contains({number[k], k});
+    next.pockets.push_back(pockets[k]);
+    for (const std::size_t cell : found[k]) {
+      next.cells.push_back(static_cast<double>(cell));
+      next.labels.push_back(number[k]);
+    }
+  }
+  same = same && next.pockets.size() == state.pockets.size();
+  if (same) next.response = std::move(state.response);
+  for (std::size_t cell = 0; cell < cells_; ++cell)
+    if (label_[cell] < nobody) label_[cell] = number[label_[cell]];
+  state = std::move(next);
+}
+
+/// Rings of cells around the pockets that are not empty get the label of the pocket that is nearest.
+template <int D>
+void GasPockets<D>::widen(const std::vector<std::vector<std::size_t>>& found) {
+  near_.clear(), rings_.assign(1, 0);
+  for (const auto& cells : found)
+    for (const std::size_t cell : cells)
+      if (label_[cell] != nobody) near_.push_back(static_cast<std::uint32_t>(cell));
+  for (int ring = 0; ring < reach; ++ring) {
+    const std::size_t first = rings_.back(), last = near_.size();
+    rings_.push_back(static_cast<std::uint32_t>(last));
+    for (std::size_t k = first; k < last; ++k)
+      forEachNext(near_[k], [&](std::size_t next) {
+        if (empty_[next] || label_[next] != nobody) return;
+        label_[next] = label_[near_[k]];
+        near_.push_back(static_cast<std::uint32_t>(next));
+      });
+  }
+  rings_.push_back(static_cast<std::uint32_t>(near_.size()));
+}
+
+/// Volumes: what is empty of the cells of a pocket and next to it. A volume that is known from the step before is
+/// drawn towards it.
+template <int D>
+void GasPockets<D>::measure(std::span<const Vec<D>> position, std::uint32_t fluid, GasState& state) {
+  filled_.assign(cells_, 0), walls_.assign(cells_, 0);
+  for (const std::uint32_t cell : near_)
+    for (std::uint32_t k = start_[cell]; k < start_[cell + 1]; ++k)
+      forEachWeight(position[items_[k]], [&](std::size_t to, double weight, const Vec<D>&) {
+        filled_[to] += weight * particle_ / cell_;
+        if (items_[k] >= fluid) walls_[to] += weight * particle_ / cell_;
+      });
+  std::vector<double> volume(state.pockets.size());
+  for (std::size_t k = 0; k < rings_[rim + 1]; ++k) volume[label_[near_[k]]] += (1 - filled_[near_[k]]) * cell_;
+  const double k = gas_.exponent;
+  for (std::size_t p = 0; p < volume.size(); ++p) {
+    GasState::Pocket& pocket = state.pockets[p];
+    if (pocket.content == 0)
+      pocket = {std::pow(gas_.pressure, 1 / k) * volume[p], volume[p], 0};
+    else
+      pocket.volume += correction * (volume[p] - pocket.volume);
+  }
+}
+
+/// The mean of a field over neighbours, taken twice, in the cells of pockets and around them.
+template <int D>
+void GasPockets<D>::smooth(std::vector<double>& field) {
+  std::vector<double> next(near_.size());
+  for (int pass = 0; pass < 2; ++pass) {
+    for (std::size_t k = 0; k < near_.size(); ++k) {
+      const Index middle = at(near_[k]);
+      double sum = 0;
+      forEachAround(near_[k], 1, [&](std::size_t other) {
+        const Index i = at(other);
+        double weight = 1;
+        for (int a = 0; a < D; ++a) weight *= i[a] == middle[a] ? 0.5 : 0.25;
+        sum += weight * field[other];
+      });
+      next[k] = sum;
+    }
+    for (std::size_t k = 0; k < near_.size(); ++k) field[near_[k]] = next[k];
+  }
+}
+
+/// I: 2 in a pocket, 1 at its surface, and falling to 0 within some three spacings behind it. For the fluid it is
+/// twice the part of the space between walls that is empty, so that walls beside a surface do not change it.
+template <int D>
+void GasPockets<D>::share() {
+  std::vector<double> open(cells_, 1);
+  ofWalls_.assign(cells_, 0);
+  for (const std::uint32_t cell : near_) open[cell] = std::max(0.0, 1 - walls_[cell]);
+  for (std::size_t k = 0; k < rings_[rim + 1]; ++k)
+    ofWalls_[near_[k]] = std::clamp(1 - filled_[near_[k]], 0.0, 1.0);
+  smooth(ofWalls_);
+  smooth(open);
+  ofFluid_.assign(cells_, 0);
+  for (const std::uint32_t cell : near_) {
+    ofFluid_[cell] = open[cell] > 0.05 ? 2 * ofWalls_[cell] / open[cell] : 0;
+    ofWalls_[cell] *= 2;
+  }
+}
+
+/// The areas -V grad I of particles.
+template <int D>
+void GasPockets<D>::meet(std::span<const Vec<D>> position, std::uint32_t fluid) {
+  contacts_.clear();
+  for (const std::uint32_t cell : near_)
+    for (std::uint32_t k = start_[cell]; k < start_[cell + 1]; ++k) {
+      const std::uint32_t i = items_[k];
+      const std::vector<double>& share = i < fluid ? ofFluid_ : ofWalls_;
+      Vec<D> area{};
+      forEachWeight(position[i], [&](std::size_t to, double, const Vec<D>& gradient) {
+        area = area - (particle_ * share[to]) * gradient;
+      });
+      if (norm2(area) > 0) contacts_.push_back({i, label_[cell], area});
+    }
+  std::ranges::sort(contacts_, {}, &GasContact<D>::particle);
+}
+
+template <int D>
+double GasPockets<D>::pressure(const GasState::Pocket& pocket, double volume) const {
+  const double k = gas_.exponent, atAir = pocket.content / std::pow(gas_.pressure, 1 / k);
+  return gas_.pressure * (std::pow(atAir / std::max(volume, leastVolume * atAir), k) - 1);
+}
+
+template <int D>
+std::size_t GasPockets<D>::bytes() const {
+  return empty_.capacity() +
+         sizeof(std::uint32_t) * (label_.capacity() + start_.capacity() + items_.capacity() + near_.capacity()) +
+         sizeof(double) * (filled_.capacity() + walls_.capacity() + ofFluid_.capacity() + ofWalls_.capacity()) +
+         sizeof(GasContact<D>) * contacts_.capacity();
+}
+
+template class GasPockets<2>;
+template class GasPockets<3>;
+
+}  // namespace treacle

@@ -1,0 +1,86 @@
+#pragma once
+
+#include "treacle/core/vec.hpp"
+#include "treacle/model/case/case.hpp"
+#include "treacle/model/state/gas_state.hpp"
+#include "treacle/step/flow/gas_contact.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace treacle {
+
+/// Finds the gas that fluid and walls enclose, on a grid of cells as wide as particles are apart (docs/gas.md). A
+/// cell is empty if no particle is within a spacing of its centre. Empty cells that hang together and reach
+/// neither an end of the domain nor a vent are a pocket.
+template <int D>
+class GasPockets {
+ public:
+  explicit GasPockets(const Case& c);
+
+  /// Of the particles at these places, of which so many are fluid and the others walls. `state`: that of the step
+  /// before; what it says of pockets goes on in those that have their cells. Errors: std::bad_alloc.
+  void find(std::span<const Vec<D>> position, std::uint32_t fluid, GasState& state);
+  /// In the order of the particles.
+  std::span<const GasContact<D>> contacts() const { return contacts_; }
+
+  /// Pressure above that of the air in a pocket of this volume [Pa].
+  double pressure(const GasState::Pocket& pocket, double volume) const;
+
+  std::size_t bytes() const;
+
+ private:
+  static constexpr std::uint32_t air = 0xffffffff, nobody = 0xfffffffe;  // among labels
+  static constexpr int rim = 2;    // how many cells around a pocket count for its volume
+  static constexpr int reach = 5;  // and its force
+
+  using Index = Vec<D, int>;
+
+  Index at(std::size_t cell) const;
+  std::size_t cellOf(const Vec<D>& x) const;
+  Vec<D> centerOf(std::size_t cell) const;
+  /// Calls f(cell) for the cells around one, as far as `far`, or only for those that share a face with it.
+  template <class F>
+  void forEachAround(std::size_t cell, int far, F&& f) const;
+  template <class F>
+  void forEachNext(std::size_t cell, F&& f) const;
+  /// Calls f(cell, weight, gradient) for the cells of the quadratic B-spline at x.
+  template <class F>
+  void forEachWeight(const Vec<D>& x, F&& f) const;
+
+  void sort(std::span<const Vec<D>> position);
+  void findEmpty(std::span<const Vec<D>> position);
+  void spread(std::vector<std::size_t> from, std::uint32_t label);
+  std::vector<std::vector<std::size_t>> components();
+  void inherit(const std::vector<std::vector<std::size_t>>& found, GasState& state);
+  void widen(const std::vector<std::vector<std::size_t>>& found);
+  void measure(std::span<const Vec<D>> position, std::uint32_t fluid, GasState& state);
+  void smooth(std::vector<double>& field);
+  void share();
+  void meet(std::span<const Vec<D>> position, std::uint32_t fluid);
+
+  GasSettings gas_;
+  double spacing_, particle_;  // volume of a particle [m3; m2 in 2D]
+  double cell_;                // and of a cell
+  Vec<D> low_;
+  Vec<D> edge_;
+  Index count_;
+  std::array<bool, 3> periodic_;
+  std::size_t cells_;
+  std::vector<std::uint8_t> empty_;           // per cell
+  std::vector<std::uint32_t> label_;          // per cell: its pocket, air or nobody
+  std::vector<std::uint32_t> start_, items_;  // particles of cells
+  std::vector<std::uint32_t> near_;           // cells of pockets and around them, by rings
+  std::vector<std::uint32_t> rings_;          // where rings begin in near_
+  std::vector<double> filled_, walls_;        // per cell: the part of it that particles fill, and walls alone
+  std::vector<double> ofFluid_, ofWalls_;     // per cell: I, for particles of each kind
+  std::vector<GasContact<D>> contacts_;
+};
+
+extern template class GasPockets<2>;
+extern template class GasPockets<3>;
+
+}  // namespace treacle
