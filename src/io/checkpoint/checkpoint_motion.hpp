@@ -69,9 +69,9 @@ inline void writeRigid(hid_t file, const RigidMotion& rigid) {
   writeNumbers(file, "rigid_change", rigid.change);
 }
 
-/// Of a case with gas; others have nothing to write.
+/// Where there is something to write.
 inline void writeGas(hid_t file, const GasState& gas) {
-  if (gas.pockets.empty()) return;
+  if (gas == GasState{}) return;
   std::vector<double> numbers;
   for (const GasState::Pocket& pocket : gas.pockets)
     for (const double x : {pocket.content, pocket.volume, pocket.pressure}) numbers.push_back(x);
@@ -136,6 +136,7 @@ inline void writeFlow(hid_t file, const OpenFlow& flow) {
     writeCount(file, fmt::format("opening_{}_in", k), flow.openings[k].in);
     writeCount(file, fmt::format("opening_{}_out", k), flow.openings[k].out);
     writeAttribute(file, fmt::format("opening_{}_drag", k).c_str(), flow.openings[k].drag);
+    writeAttribute(file, fmt::format("opening_{}_pressure", k).c_str(), flow.openings[k].pressure);
   }
 }
 
@@ -164,8 +165,10 @@ inline OpenFlow readFlow(hid_t file) {
   for (std::uint32_t k = 0; k < openings; ++k) {
     const std::string name = fmt::format("opening_{}", k);
     flow.openings.push_back({readCount(file, name + "_in"), readCount(file, name + "_out"),
-                             readAttribute<double>(file, (name + "_drag").c_str())});
-    if (!std::isfinite(flow.openings.back().drag)) throw Hdf5Error("the drag of an opening is not finite");
+                             readAttribute<double>(file, (name + "_drag").c_str()),
+                             readAttribute<double>(file, (name + "_pressure").c_str())});
+    if (!std::isfinite(flow.openings.back().drag) || !std::isfinite(flow.openings.back().pressure))
+      throw Hdf5Error("the drag or the pressure of an opening is not finite");
   }
   return flow;
 }

@@ -9,9 +9,20 @@
 #include <cmath>
 
 namespace treacle {
+namespace {
+
+/// Functions of time begin with the case.
+double meanOf(const std::optional<TimeFunction>& f, double from, double to) {
+  if (!f) return 0;
+  const double start = std::max(from, 0.0);
+  return !f->isConstant() && to > start ? f->integral(start, to) / (to - start) : f->at(start);
+}
+
+}  // namespace
 
 template <int D>
-OpeningFace<D>::OpeningFace(const Case& c, const Opening& opening) : pressure_(opening.pressure) {
+OpeningFace<D>::OpeningFace(const Case& c, const Opening& opening)
+    : pressure_(opening.pressure), flowRate_(opening.flowRate) {
   const Nozzle& face = opening.face;
   place_.center = resized<D>(face.center);
   place_.direction = resized<D>(face.direction);
@@ -52,12 +63,13 @@ OpeningFace<D>::OpeningFace(const Case& c, const Opening& opening) : pressure_(o
 template <int D>
 OpeningForce<D> OpeningFace<D>::force(double from, double to) const {
   OpeningForce<D> force = place_;
-  // Functions of time begin with the case.
-  const double start = std::max(from, 0.0);
-  if (pressure_)
-    force.pressure = !pressure_->isConstant() && to > start ? pressure_->integral(start, to) / (to - start)
-                                                            : pressure_->at(start);
+  force.pressure = meanOf(pressure_, from, to);
   return force;
+}
+
+template <int D>
+double OpeningFace<D>::flowRate(double from, double to) const {
+  return meanOf(flowRate_, from, to);
 }
 
 template <int D>

@@ -180,7 +180,8 @@ AffineSolve::Result AffineSolve::run(const Function& f, Vector& x, Vector& deriv
     }
     const Vector before = std::exchange(y, value(x));
     isLast = true;
-    if (length2 == 0) continue;
+    // What a short step changes may be less than what values are known to.
+    if (largest(step) <= 10 * tolerance * scale) continue;
     for (std::size_t i = 0; i < n; ++i) {
       double error = y[i] - before[i];
       for (std::size_t j = 0; j < n; ++j) error -= derivative[i * n + j] * step[j];

@@ -227,12 +227,21 @@ template <int D, class Backend>
 void OpenBoundaries<D, Backend>::measureFriction(StepMethod<D, Backend>& method) {
   if (state_.faces.empty()) return;
   const std::uint32_t n = state_.particles.fluidCount;
-  friction_.resize(state_.context, n);
-  method.wallFriction(friction_.span());
+  vector_.resize(state_.context, n);
+  method.wallFriction(vector_.span());
   drag_.clear();
   for (const OpeningFace<D>& face : state_.faces)
     drag_.push_back(-meanInReserve<D>(state_.context, face.place(), state_.particles.position.span().first(n),
-                                      friction_.span()));
+                                      vector_.span()));
+}
+
+template <int D, class Backend>
+std::span<const Vec<D>> OpenBoundaries<D, Backend>::straightened(std::span<const Vec<D>> u) {
+  if (state_.faces.empty()) return u;
+  vector_.resize(state_.context, u.size());
+  straightenTails<D>(state_.context, state_.openings.span(), state_.particles.position.span().first(u.size()), u,
+                     vector_.span());
+  return vector_.span();
 }
 
 #define TREACLE_INSTANTIATE(Backend)         \

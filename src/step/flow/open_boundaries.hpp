@@ -27,7 +27,10 @@ class OpenBoundaries {
 
   /// The friction in the reserves of openings, once the step's velocities are there, for the next step.
   void measureFriction(StepMethod<D, Backend>& method);
-  std::size_t bytes() const { return gone_.bytes() + friction_.bytes(); }
+  /// What own fluid goes with: in the tails of reserves straight on.
+  std::span<const Vec<D>> straightened(std::span<const Vec<D>> u);
+
+  std::size_t bytes() const { return gone_.bytes() + vector_.bytes(); }
 
  private:
   /// What a step changes, before anything of the state is touched.
@@ -60,7 +63,7 @@ class OpenBoundaries {
   double volume_;  // of a particle [m3; m2 in 2D]
   Buffer<OutflowRegion<D>, Backend> regions_;
   Buffer<std::uint8_t, Backend> gone_;  // per own fluid particle
-  Buffer<Vec<D>, Backend> friction_;    // likewise, of cases with openings [N/m3]
+  Buffer<Vec<D>, Backend> vector_;      // likewise, of cases with openings
   std::vector<double> drag_;            // of the next step, per opening [N/m3]
 };
 

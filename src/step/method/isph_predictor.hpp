@@ -37,11 +37,11 @@ class IsphPredictor {
     return {};
   }
 
-  /// Once more in the same step, with the velocities that walls have now.
-  StagedReport follow(std::span<double> scratch) {
+  /// Once more in the same step, with the velocities that walls have now, and the forces.
+  StagedReport follow(std::span<double> scratch, bool withForces) {
     takeWalls();
     StagedReport total;
-    if (!isViscous() || !pairs_.noSlip) return total;  // walls do not matter
+    if (!withForces && (!isViscous() || !pairs_.noSlip)) return total;  // walls do not matter
     if (isImplicit()) {
       computeSource();
       for (int k = 0; k < D; ++k) total.follow(solveComponent(k, scratch));

@@ -6,6 +6,7 @@
 #include "isph_solver.hpp"
 #include "run/step_method.hpp"
 #include "run/take_trial.hpp"
+#include "step_pressures.hpp"
 #include "treacle/core/halo.hpp"
 #include "treacle/isph/isph_particles.hpp"
 #include "treacle/search/particle_sort.hpp"
@@ -26,7 +27,8 @@ class IsphStep final : public StepMethod<D, Backend> {
       : state_(state),
         pairs_(makeIsphPairs<D>(state.theCase)),
         predictor_(state, pairs_),
-        pressure_(solveStages(solvedCase(state.theCase))) {
+        pressure_(solveStages(solvedCase(state.theCase))),
+        pressures_(state) {
     if (state.theCase.hasRigid()) bodies_.emplace(state);
   }
 
@@ -76,7 +78,7 @@ class IsphStep final : public StepMethod<D, Backend> {
 
   StagedReport solve() override {
     guess(solution());
-    return bodies_ ? solveWithBodies() : solvePressure();
+    return bodies_ ? solveWithBodies() : solveWithPressures();
   }
 
   /// Solves the pressure equation.
@@ -98,7 +100,7 @@ class IsphStep final : public StepMethod<D, Backend> {
   }
 
   void correctVelocities() override {
-    if (!bodies_) correct(solution_);
+    if (!bodies_ && !pressures_.some()) correct(solution_);
   }
 
   void wallFriction(std::span<Vec<D>> force) override {
@@ -120,6 +122,7 @@ class IsphStep final : public StepMethod<D, Backend> {
   }
 
   void accept() override {
+    pressures_.accept();
     std::span<double> pressure = state_.particles.pressure;
     copyValues(state_.context, std::span<const double>(solution_), pressure.data());
     clearValues(state_.context, pressure.subspan(pairs_.fluidCount));
@@ -170,7 +173,7 @@ class IsphStep final : public StepMethod<D, Backend> {
     const auto flow = [&](bool isFirst) {
       StagedReport report;
       if (!isFirst) {
-        report = predictor_.follow(solution());
+        report = predictor_.follow(solution(), false);
         computeSource();
         guess(solution());
       }
@@ -180,6 +183,22 @@ class IsphStep final : public StepMethod<D, Backend> {
       return report;
     };
     return bodies_->solve(pairs_, wallSurface_, flow, [&] { return loadsOfWalls(); });
+  }
+
+  /// The pressures of the fluid and of openings with a flow rate.
+  StagedReport solveWithPressures() {
+    if (!pressures_.some()) return solvePressure();
+    return pressures_.solve(nullptr, [&](bool isFirst) {
+      StagedReport report;
+      if (!isFirst) {
+        report = predictor_.follow(solution(), true);
+        computeSource();
+        guess(solution());
+      }
+      report.follow(solvePressure());
+      correct(solution_);
+      return report;
+    });
   }
 
   void computeSource() {
@@ -264,6 +283,7 @@ class IsphStep final : public StepMethod<D, Backend> {
   std::vector<WallLoad> loads_;        // of the last step
   std::vector<double> patches_;        // pressures of the probes WallPressure [Pa]
   IsphSolver<D, Backend, PressureRow<D>> pressure_;
+  StepPressures<D, Backend> pressures_;
   std::optional<StepBodies<D, Backend>> bodies_;  // where the case has rigid bodies; then also:
   Buffer<double, Backend> pressing_;              // those of the step's first solve
   Buffer<WallSurface<D>, Backend> wallSurface_;   // per active wall particle

@@ -7,6 +7,7 @@
 #include "step_gas.hpp"
 #include "step_heat.hpp"
 #include "step_places.hpp"
+#include "step_pressures.hpp"
 #include "step_rheology.hpp"
 #include "step_surface.hpp"
 #include "step_tension.hpp"
@@ -37,7 +38,8 @@ class MphStep final : public StepMethod<D, Backend> {
         neighbourhood_(state.theCase),
         pairs_(neighbourhood_.pairs()),
         wholeRows_(needsAssembled<Backend>(state.theCase.solver)),
-        solver_(solveStages(solvedCase(state.theCase))) {
+        solver_(solveStages(solvedCase(state.theCase))),
+        pressures_(state) {
     if (state.theCase.hasOwnViscosities()) rheology_.emplace(state.theCase);
     if (state.theCase.heat) heat_.emplace(state.theCase, pairs_);
     if (state.theCase.hasSurfaceTension()) surface_.emplace(state.theCase);
@@ -86,8 +88,7 @@ class MphStep final : public StepMethod<D, Backend> {
   /// Leaves the walls' velocities in state.velocity, too.
   StagedReport solve() override {
     guessAll();
-    if (gas_) return solveWithGas();
-    return bodies_ ? solveWithBodies() : solveFluid();
+    return bodies_ ? solveWithBodies() : solveWithPressures();
   }
 
   /// With the modes of the state where the settings have it deflate, as the next step would.
@@ -152,6 +153,7 @@ class MphStep final : public StepMethod<D, Backend> {
                                    tension_ ? &*tension_ : nullptr, explicitForces());
     if (heat_) acceptHeat();
     if (gas_) gas_->accept(state_);
+    pressures_.accept();
     if (tension_) tension_->accept(state_, pairs_, places_.of(state_));
     // The velocities of the start are given, no solution: nothing follows from the way to the first one.
     if (state_.step > 0)
@@ -205,12 +207,14 @@ class MphStep final : public StepMethod<D, Backend> {
     return bodies_->solve(pairs_, wallSurface_, flow, [&] { return loads(); });
   }
 
-  /// The flow and the pressures of the gas that it has trapped.
-  StagedReport solveWithGas() {
-    return gas_->solve(state_, [&](bool isFirst) {
+  /// The flow, and the pressures that are found with it.
+  StagedReport solveWithPressures() {
+    return pressures_.solve(gas_ ? &*gas_ : nullptr, [&](bool isFirst) {
       if (isFirst) return solveFluid();
-      copyValues(state_.context, std::span<const Vec<D>>(rhsAtRest_), rhs_.data());
-      gas_->addPressures(state_, rhs_);
+      found_.resize(state_.context, state_.velocity.size());
+      copyValues(state_.context, std::span<const Vec<D>>(state_.velocity), found_.data());
+      computeRightHandSide();
+      copyValues(state_.context, std::span<const Vec<D>>(found_), state_.velocity.data());
       return solveOnce();
     });
   }
@@ -341,10 +345,7 @@ class MphStep final : public StepMethod<D, Backend> {
       copyValues(state_.context, std::span<const Vec<D>>(rhs_), rhsAtRest_.data());
     }
     if (state_.wallsMove) addWallVelocities();
-    if (!gas_) return;
-    rhsAtRest_.resize(state_.context, rhs_.size());
-    copyValues(state_.context, std::span<const Vec<D>>(rhs_), rhsAtRest_.data());
-    gas_->addPressures(state_, rhs_);
+    if (gas_) gas_->addPressures(state_, rhs_);
   }
 
   /// b -= A_full (0 on the fluid, u on the walls)
@@ -396,10 +397,11 @@ class MphStep final : public StepMethod<D, Backend> {
   std::optional<StepSurface<D, Backend>> surface_;    // where some fluid has a surface tension
   std::optional<StepTension<D, Backend>> tension_;    // where the case keeps its volume
   std::optional<StepGas<D, Backend>> gas_;            // where the case has gas
-  std::optional<StepBodies<D, Backend>> bodies_;      // where the case has rigid bodies; then also:
-  Buffer<Vec<D>, Backend> rhsAtRest_;                 // the right-hand side without velocities of walls, or gas
-  Buffer<double, Backend> pressure_;                  // per active particle [Pa]
-  WallForces<D, Backend> wallForces_;                 // for rigid bodies, the balance and surface tension
+  StepPressures<D, Backend> pressures_;
+  std::optional<StepBodies<D, Backend>> bodies_;  // where the case has rigid bodies; then also:
+  Buffer<Vec<D>, Backend> rhsAtRest_;             // the right-hand side without velocities of walls
+  Buffer<double, Backend> pressure_;              // per active particle [Pa]
+  WallForces<D, Backend> wallForces_;             // for rigid bodies, the balance and surface tension
   StepBalance<D, Backend> balance_{wallForces_};
   std::optional<Balance> lastBalance_;
 };

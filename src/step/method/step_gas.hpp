@@ -1,15 +1,12 @@
 #pragma once
 
-#include "bodies/affine_solve.hpp"
 #include "explicit_forces.hpp"
 #include "flow/gas_pockets.hpp"
-#include "staged_solver.hpp"
-#include "treacle/core/error.hpp"
 
-#include <fmt/format.h>
-
-#include <optional>
-#include <utility>
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <vector>
 
 namespace treacle {
 
@@ -42,39 +39,25 @@ class StepGas final : public ExplicitForces<D, Backend> {
     addGasForces<D>(state.context, ofFluid_.span(), pressure_.span(), particleVolume(state), y);
   }
 
-  /// Finds the pressures, and the flow with these. `flow(isFirst)`: solves it with the pressures at hand; what it
-  /// is made of has those of the first call already. Returns what became of all solves. Errors: RunError.
-  template <class Flow>
-  StagedReport solve(FlowState<D, Backend>& state, Flow&& flow) {
-    if (pressures_.empty()) return flow(true);
-    std::optional<StagedReport> report;
-    const auto missing = [&](const std::vector<double>& x) {
-      if (report) {
-        pressures_ = x;
-        setPressures(state);
-      }
-      const StagedReport next = flow(!report);
-      if (report)
-        report->follow(next);
-      else
-        report = next;
-      growth_ = growth(state);
-      std::vector<double> off;
-      for (std::size_t k = 0; k < x.size(); ++k)
-        off.push_back(x[k] - pockets_.pressure(gas_.pockets[k], gas_.pockets[k].volume + growth_[k]));
-      return off;
-    };
-    std::vector<double> x = pressures_;
-    const auto result =
-        AffineSolve::run(missing, x, gas_.response, state.theCase.gas->pressure, tolerance, mostSteps);
-    if (!result.converged)
-      throw RunError(
-          fmt::format("the pressures of {} pockets of trapped gas were not found in {} solves; take {} <= "
-                      "{:.3g}",
-                      x.size(), result.values, state.theCase.time.stepKey(), state.timeStep / 2));
-    return *report;
+  /// Of the pockets, with what the step before knew.
+  const GasState& gas() const { return gas_; }
+  const std::vector<double>& pressures() const { return pressures_; }
+  void set(const FlowState<D, Backend>& state, std::span<const double> pressures) {
+    pressures_.assign(pressures.begin(), pressures.end());
+    setPressures(state);
   }
 
+  /// By how much each pressure is more than what belongs to the volume of the pocket after the flow in
+  /// state.velocity [Pa].
+  std::vector<double> excess(FlowState<D, Backend>& state) {
+    growth_ = growth(state);
+    std::vector<double> excess;
+    for (std::size_t k = 0; k < pressures_.size(); ++k)
+      excess.push_back(pressures_[k] - pockets_.pressure(gas_.pockets[k], gas_.pockets[k].volume + growth_[k]));
+    return excess;
+  }
+
+  /// The pressures and the growth of the last excess() are those of the step.
   void accept(FlowState<D, Backend>& state) {
     for (std::size_t k = 0; k < gas_.pockets.size(); ++k) {
       gas_.pockets[k].volume += growth_[k];
@@ -96,9 +79,6 @@ class StepGas final : public ExplicitForces<D, Backend> {
   }
 
  private:
-  static constexpr double tolerance = 1e-6;  // of a step to the solution, of the pressure of the air
-  static constexpr int mostSteps = 60;
-
   static double particleVolume(const FlowState<D, Backend>& state) { return std::pow(state.theCase.spacing, D); }
 
   void setPressures(const FlowState<D, Backend>& state) {

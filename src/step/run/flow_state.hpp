@@ -40,7 +40,8 @@ struct FlowState {
   RigidMotion rigid;
   std::vector<std::optional<NozzleLayers<D>>> nozzles;  // per body, of those that are inflows
   std::vector<OpeningFace<D>> faces;                    // per opening
-  Buffer<OpeningForce<D>, Backend> openings;            // likewise; of the step at hand
+  std::vector<OpeningForce<D>> openingForces;           // likewise; of the step at hand
+  Buffer<OpeningForce<D>, Backend> openings;
   Buffer<WallMotion<D>, Backend> wallMotion;   // per body, where walls are; empty: all keep their velocities
   Buffer<Vec<D>, Backend> velocity, position;  // the step's results before they are accepted
 
@@ -66,12 +67,18 @@ struct FlowState {
     if (theCase.gravityVaries()) theCase.gravity = theCase.meanGravity(from, to);
     frame = FrameForce<D>::of(theCase, from, to);
     if (faces.empty()) return;
-    std::vector<OpeningForce<D>> forces;
+    openingForces.clear();
     for (const OpeningFace<D>& face : faces) {
-      forces.push_back(face.force(from, to));
-      forces.back().drag = particles.flow.openings[forces.size() - 1].drag;
+      const OpenFlow::Opening& before = particles.flow.openings[openingForces.size()];
+      openingForces.push_back(face.force(from, to));
+      openingForces.back().drag = before.drag;
+      if (face.hasFlowRate()) openingForces.back().pressure = before.pressure;
     }
-    fromHost(context, std::span<const OpeningForce<D>>(forces), openings);
+    takeOpenings();
+  }
+  /// Those in openingForces.
+  void takeOpenings() {
+    fromHost(context, std::span<const OpeningForce<D>>(openingForces), openings);
     frame.openings = openings.span();
   }
 

@@ -248,7 +248,8 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     phases.run(context, treacle::phases::update, [&] {
       method->correctVelocities();
       boundaries.measureFriction(*method);
-      motion.move(method->grid(), *watch, timeStep, method->transportVelocities(), this->rigid.bodies);
+      motion.move(method->grid(), *watch, timeStep, boundaries.straightened(method->transportVelocities()),
+                  this->rigid.bodies);
       report.diagnostics = diagnosticsOf(position, velocity);
       report.watched = watch->look(timeStep, report.diagnostics, report.warnings);
       lastSpeed = report.diagnostics.maxSpeed;

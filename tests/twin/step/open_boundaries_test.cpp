@@ -72,6 +72,10 @@ TEST(OpeningsTwin, StepLikeTheCpu) {
   compareJets<2>(channelCase(2));
   compareJets<3>(channelCase(3));
   compareJets<2>(channelCase(2, MethodKind::Isph));
+  Case pumped = channelCase(2);
+  pumped.openings[0].pressure.reset();
+  pumped.openings[0].flowRate = TimeFunction{5e-4};
+  compareJets<2>(pumped);
 }
 
 template <int D>

@@ -121,6 +121,26 @@ std::vector<ReserveParticle<D>> findReserves(Context<Backend>& context, std::spa
 }
 
 template <int D, class Backend>
+void straightenTails(Context<Backend>& context, std::span<const OpeningForce<D>> openings,
+                     std::span<const Vec<D>> position, std::span<const Vec<D>> u, std::span<Vec<D>> straight) {
+  forEach(context, straight.size(), [=] TREACLE_HD(std::size_t i) {
+    straight[i] = u[i];
+    for (const OpeningForce<D>& o : openings)
+      if (o.isInTail(position[i])) straight[i] = dot(u[i], o.direction) * o.direction;
+  });
+}
+
+template <int D, class Backend>
+double openingFlow(Context<Backend>& context, const OpeningForce<D>& opening, std::span<const Vec<D>> position,
+                   std::span<const Vec<D>> u) {
+  const auto sums = sumEach<1>(context, position.size(), [=] TREACLE_HD(std::size_t i, double* sum) {
+    const double rise = opening.rise(position[i]);
+    if (rise > 0) sum[0] += rise * dot(u[i], opening.direction);
+  });
+  return std::pow(opening.spacing, D) * sums[0];
+}
+
+template <int D, class Backend>
 double meanInReserve(Context<Backend>& context, const OpeningForce<D>& opening, std::span<const Vec<D>> position,
                      std::span<const Vec<D>> vector) {
   const auto sums = sumEach<2>(context, position.size(), [=] TREACLE_HD(std::size_t i, double* to) {
@@ -228,6 +248,10 @@ StepChange stepChange(Context<Backend>& context, const StepChangeTerms<D>& terms
   template std::vector<ReserveParticle<D>> findReserves(Context<Backend>&, std::span<const OpeningForce<D>>,     \
                                                         std::span<const Vec<D>>, std::span<const Vec<D>>,        \
                                                         std::span<const std::uint8_t>);                          \
+  template void straightenTails(Context<Backend>&, std::span<const OpeningForce<D>>, std::span<const Vec<D>>,    \
+                                std::span<const Vec<D>>, std::span<Vec<D>>);                                     \
+  template double openingFlow(Context<Backend>&, const OpeningForce<D>&, std::span<const Vec<D>>,                \
+                              std::span<const Vec<D>>);                                                          \
   template double meanInReserve(Context<Backend>&, const OpeningForce<D>&, std::span<const Vec<D>>,              \
                                 std::span<const Vec<D>>);                                                        \
   template void addGasForces(Context<Backend>&, std::span<const GasContact<D>>, std::span<const double>, double, \

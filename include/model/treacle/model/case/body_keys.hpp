@@ -177,6 +177,9 @@ void visit(auto& v, Like<Opening> auto& o, const Case& c) {
     material);
   v({"face", "Where fluid goes in or out; its direction leads into the case", required}, o.face);
   v({"pressure", "Pressure at the centre of the face, above that of the air", optional, "Pa"}, o.pressure);
+  v({"flow_rate", "Flow into the case through the face, in place of a pressure", optional,
+     c.dimensions == 2 ? "m2/s" : "m3/s"},
+    o.flowRate);
   if (c.heat) v({"temperature", "Temperature of fluid that comes in", required, "K", positive}, o.temperature);
   if (c.method.kind == MethodKind::MphI)
     v({"viscosity_factor", "By what the viscosity of fluid that comes in is multiplied; 0: 1", optional, "",

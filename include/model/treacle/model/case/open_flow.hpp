@@ -30,7 +30,8 @@ struct OpenFlow {
   std::vector<FlowCount> outflows{};  // per outflow of the case
   struct Opening {
     FlowCount in, out;
-    double drag = 0;  // OpeningForce::drag of the next step [N/m3]
+    double drag = 0;      // OpeningForce::drag of the next step [N/m3]
+    double pressure = 0;  // of the last step, where a flow rate is given [Pa]
 
     bool operator==(const Opening&) const = default;
   };

@@ -51,16 +51,18 @@ struct Outflow {
   bool operator==(const Outflow&) const = default;
 };
 
-/// A face through which fluid goes either way, at a given pressure (docs/inflow.md). Behind it, against its
-/// direction, is a reserve of fluid. A case has at most so many.
+/// A face through which fluid goes either way, by a pressure (docs/inflow.md). Behind it, against its direction,
+/// is a reserve of fluid. A case has at most so many.
 inline constexpr std::size_t maxOpenings = 32;
 struct Opening {
   std::string name;
   int material = 0;                        // index into Case::materials; of fluid that comes in
   Nozzle face;                             // a disc or a rectangle, whose direction leads into the case
   std::optional<TimeFunction> pressure{};  // at its centre, above that of the air; missing: 0 [Pa]
-  double temperature = 0;                  // of fluid that comes in, in cases with heat [K]
-  double viscosityFactor = 0;              // likewise, by which its viscosity is multiplied; 0: 1
+  // In its place, into the case through all of the face [m3/s; m2/s in 2D]: the pressure is then what that takes.
+  std::optional<TimeFunction> flowRate{};
+  double temperature = 0;      // of fluid that comes in, in cases with heat [K]
+  double viscosityFactor = 0;  // likewise, by which its viscosity is multiplied; 0: 1
 
   bool operator==(const Opening&) const = default;
 };

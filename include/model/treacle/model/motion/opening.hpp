@@ -46,15 +46,22 @@ struct OpeningForce {
     }
     return radius == 0 || square <= (radius + margin * spacing) * (radius + margin * spacing);
   }
+  /// In the last layers of the reserve, where no pressure acts.
+  TREACLE_HD bool isInTail(const Vec<D>& x) const { return behind(x) > rises + 1 && isAcross(x, 0.5); }
   TREACLE_HD bool isInReserve(const Vec<D>& x) const { return behind(x) > 0 && isAcross(x, 0.5); }
 
+  /// c' [1/m]; zero outside the reserve. Its mean over the fluid times the speed is the flow through the face.
+  TREACLE_HD double rise(const Vec<D>& x) const {
+    if (!isInReserve(x)) return 0;
+    const double t = behind(x), rest = rises + 1 - t;
+    return (t < 1 ? t : rest > 1 ? 1 : rest > 0 ? rest : 0) / (rises * spacing);
+  }
   /// f [N/m3] on fluid of a density [kg/m3] at x; zero outside the reserve.
   TREACLE_HD Vec<D> at(const Vec<D>& x, double density, const Vec<D>& gravity) const {
     if (!isInReserve(x)) return {};
     const double t = behind(x), rest = rises + 1 - t;
-    const double slope = t < 1 ? t : rest > 1 ? 1 : rest > 0 ? rest : 0;
     const double risen = t < 1 ? t * t / 2 : rest > 1 ? t - 0.5 : rest > 0 ? rises - rest * rest / 2 : rises;
-    const double push = (pressure + density * dot(gravity, x - center)) * slope / (rises * spacing);
+    const double push = (pressure + density * dot(gravity, x - center)) * rise(x);
     return (push + drag) * direction - (risen / rises * density) * gravity;
   }
 };
@@ -66,8 +73,12 @@ class OpeningFace {
   /// Errors: InputError where no particle has room in the face.
   OpeningFace(const Case& c, const Opening& opening);
 
-  /// Over a time from `from` to `to` [s]. Errors: InputError for a formula without a value.
+  /// Over a time from `from` to `to` [s]; without its pressure where a flow rate is given. Errors: InputError for
+  /// a formula without a value.
   OpeningForce<D> force(double from, double to) const;
+  bool hasFlowRate() const { return flowRate_.has_value(); }
+  /// Likewise [m3/s; m2/s in 2D].
+  double flowRate(double from, double to) const;
   const OpeningForce<D>& place() const { return place_; }
 
   std::size_t columns() const { return columns_.size(); }
@@ -87,7 +98,7 @@ class OpeningFace {
   std::span<const std::uint32_t> candidates(const Vec<D>& x) const;
   std::size_t cellOf(const Across& a) const;
 
-  std::optional<TimeFunction> pressure_;
+  std::optional<TimeFunction> pressure_, flowRate_;
   OpeningForce<D> place_;
   std::vector<Across> columns_;
   Across low_{};                                  // corner of a grid of cells with an edge of one spacing

@@ -64,6 +64,18 @@ std::vector<ReserveParticle<D>> findReserves(Context<Backend>&, std::span<const 
                                              std::span<const Vec<D>> position, std::span<const Vec<D>> velocity,
                                              std::span<const std::uint8_t> gone);
 
+/// straight_i = u_i, in the tails of reserves its part along the direction of the face: there nothing but the
+/// columns that it came in by holds the fluid together.
+template <int D, class Backend>
+void straightenTails(Context<Backend>&, std::span<const OpeningForce<D>> openings,
+                     std::span<const Vec<D>> position, std::span<const Vec<D>> u, std::span<Vec<D>> straight);
+
+/// Flow through the face of an opening, into the case, of all processes: the mean over what pressures push on
+/// [m3/s; m2/s in 2D].
+template <int D, class Backend>
+double openingFlow(Context<Backend>&, const OpeningForce<D>& opening, std::span<const Vec<D>> position,
+                   std::span<const Vec<D>> u);
+
 /// The mean of a vector of particles in the reserve of an opening, of all processes, along its direction; 0 where
 /// there are none.
 template <int D, class Backend>
