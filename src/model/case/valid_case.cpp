@@ -180,7 +180,7 @@ void requireGas(const Checker& at, const Case& c) {
   if (c.hasRigid()) at.fail({"gas"}, "found beside a rigid body; a case can have only one of them");
   double cells = 1;
   for (int k = 0; k < c.dimensions; ++k) cells *= (c.domain.max[k] - c.domain.min[k]) / c.spacing;
-  constexpr double most = 2e9;
+  constexpr double most = 2e8;  // some 50 bytes each
   if (cells > most)
     at.fail({"gas"},
             fmt::format("the domain has {:.3g} cells of a spacing, in which gas is looked for, expected at "

@@ -200,7 +200,7 @@ TEST(Gas, IsChecked) {
   c.solver = defaultSolver(c.method.kind);
   EXPECT_THAT(message(c), HasSubstr("only the method 'mph-i' has trapped gas"));
   c = plugOnGas(2);
-  c.domain.max[0] = 1e3, c.domain.max[1] = 1e3;
+  c.domain.max[0] = 1e2, c.domain.max[1] = 1e2;
   EXPECT_THAT(message(c), HasSubstr("in which gas is looked for"));
 }
 

@@ -32,6 +32,7 @@ struct OpeningForce {
   double drag = 0;                 // along the direction, against the friction [N/m3]
   static constexpr int rises = 4;  // c' is 1 / (4 l) between its ends
   static constexpr int depth = 7;  // of the reserve [spacings]
+  static constexpr int end = 10;   // beyond which fluid has nothing to do with the opening [spacings]
 
   /// How far behind the face [spacings].
   TREACLE_HD double behind(const Vec<D>& x) const { return -dot(x - center, direction) / spacing; }
@@ -46,9 +47,14 @@ struct OpeningForce {
     }
     return radius == 0 || square <= (radius + margin * spacing) * (radius + margin * spacing);
   }
+  /// Whether x is behind the face, or in front of it, by more than `from` spacings.
+  TREACLE_HD bool isBehind(const Vec<D>& x, double from) const {
+    const double t = behind(x);
+    return t > from && t < end && isAcross(x, 0.5);
+  }
   /// In the last layers of the reserve, where no pressure acts.
-  TREACLE_HD bool isInTail(const Vec<D>& x) const { return behind(x) > rises + 1 && isAcross(x, 0.5); }
-  TREACLE_HD bool isInReserve(const Vec<D>& x) const { return behind(x) > 0 && isAcross(x, 0.5); }
+  TREACLE_HD bool isInTail(const Vec<D>& x) const { return isBehind(x, rises + 1); }
+  TREACLE_HD bool isInReserve(const Vec<D>& x) const { return isBehind(x, 0); }
 
   /// c' [1/m]; zero outside the reserve. Its mean over the fluid times the speed is the flow through the face.
   TREACLE_HD double rise(const Vec<D>& x) const {

@@ -28,7 +28,7 @@ struct OutflowRegion {
 
   TREACLE_HD bool holds(const Vec<D>& x) const {
     if (isPlane) return dot(x - point, normal) > 0;
-    if (opening.spacing > 0) return opening.behind(x) > opening.depth + 0.5 && opening.isAcross(x, 0.5);
+    if (opening.spacing > 0) return opening.isBehind(x, opening.depth + 0.5);
     for (int k = 0; k < D; ++k)
       if (!(x[k] >= low[k] && x[k] <= high[k])) return false;
     return true;
@@ -86,7 +86,7 @@ double meanInReserve(Context<Backend>&, const OpeningForce<D>& opening, std::spa
 template <int D>
 TREACLE_HD std::size_t openingAt(const OpeningForce<D>* openings, std::size_t count, const Vec<D>& x) {
   for (std::size_t k = 0; k < count; ++k)
-    if (openings[k].behind(x) > -1.2 && openings[k].isAcross(x, 0.5)) return k;
+    if (openings[k].isBehind(x, -1.2)) return k;
   return count;
 }
 
