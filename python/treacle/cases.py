@@ -303,6 +303,20 @@ class Outflow:
 
 
 @dataclass(kw_only=True)
+class Opening:
+    name: str | None = None
+    material: str | None = None
+    face: Nozzle | None = None
+    pressure: float | str | TimeTable | None = None
+    """[Pa]"""
+    flow_rate: float | str | TimeTable | None = None
+    """[m2/s or m3/s]"""
+    viscosity_factor: float | None = None
+    temperature: float | None = None
+    """[K]"""
+
+
+@dataclass(kw_only=True)
 class Time:
     step: float | Literal["auto"] | None = None
     """[s]"""
@@ -354,6 +368,23 @@ class Heat:
     viscous_heating: bool | None = None
     tolerance: float | None = None
     max_iterations: int | None = None
+
+
+@dataclass(kw_only=True)
+class Vent:
+    name: str | None = None
+    min: Sequence[float] | None = None
+    """[m]"""
+    max: Sequence[float] | None = None
+    """[m]"""
+
+
+@dataclass(kw_only=True)
+class Gas:
+    pressure: float | None = None
+    """[Pa]"""
+    exponent: float | None = None
+    vents: Sequence[Vent] | None = None
 
 
 @dataclass(kw_only=True)
@@ -487,10 +518,12 @@ class Case:
     material: Sequence[Material] | None = None
     body: Sequence[Body] | None = None
     outflow: Sequence[Outflow] | None = None
+    opening: Sequence[Opening] | None = None
     time: Time | None = None
     method: Method | None = None
     rheology: RheologyIteration | None = None
     heat: Heat | None = None
+    gas: Gas | None = None
     solver: Solver | None = None
     output: Output | None = None
     probe: Sequence[Probe] | None = None

@@ -141,7 +141,7 @@ def test_tables_name_the_keys_of_every_case_of_the_repository():
         for name, cls in vars(cases).items()
         if hasattr(cls, "__dataclass_fields__")
     }
-    of = {"material": "Material", "body": "Body", "outflow": "Outflow", "probe": "Probe"}
+    of = {"material": "Material", "body": "Body", "outflow": "Outflow", "opening": "Opening", "probe": "Probe"}
     seen = 0
     for path in sorted((ROOT / "cases").glob("**/*.toml")):
         case = tomllib.loads(path.read_text())

@@ -94,8 +94,8 @@ inline GasState readGas(hid_t file) {
   const auto isPocket = [&](double label) {
     return label >= 0 && label < static_cast<double>(gas.pockets.size());
   };
-  if (numbers.size() % 3 != 0 || gas.cells.size() != gas.labels.size() ||
-      !std::ranges::all_of(gas.labels, isPocket))
+  if (numbers.size() % 3 != 0 || std::ranges::any_of(gas.cells, [](double cell) { return cell < 0; }) ||
+      gas.cells.size() != gas.labels.size() || !std::ranges::all_of(gas.labels, isPocket))
     throw Hdf5Error("the cells of trapped gas do not fit its pockets");
   return gas;
 }

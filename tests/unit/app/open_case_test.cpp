@@ -216,6 +216,22 @@ TEST(OpenCase, ARunCountsWhatComesAndGoes) {
   EXPECT_THAT(other.err, HasSubstr("outflows"));
 }
 
+/// With openings, one of which has a flow rate, and with trapped gas.
+TEST(OpenCase, PressuresGoOnFromAFile) {
+  const std::pair<const char*, const char*> cases[] = {{"pumped-channel-2d.toml", " --set end.flow_rate=-5e-4"},
+                                                       {"trapped-air-2d.toml", ""}};
+  for (const auto& [file, settings] : cases) {
+    Workshop shop;
+    const std::string run = "run '" + (std::filesystem::path(TREACLE_CASES) / file).string() +
+                            "' --backend cpu --threads 1 --quiet --set output.interval=0.01" + settings;
+    ASSERT_EQ(shop.call(run + " -o whole --end-time 0.04").exitCode, 0) << file;
+    ASSERT_EQ(shop.call(run + " -o half --end-time 0.02").exitCode, 0);
+    const Outcome rest = shop.call(run + " -o rest --end-time 0.04 --resume half/checkpoint.h5");
+    ASSERT_EQ(rest.exitCode, 0) << rest.err;
+    EXPECT_EQ(shop.content("rest/checkpoint.h5"), shop.content("whole/checkpoint.h5")) << file;
+  }
+}
+
 TEST(OpenCase, ANozzleDoesNotSuck) {
   Workshop shop;
   shop.put("case.toml", pouring);

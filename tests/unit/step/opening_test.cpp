@@ -110,6 +110,19 @@ TEST(Openings, KeepTheirFlowRate) {
   }
 }
 
+/// Whatever the pressure at the other end does.
+TEST(Openings, KeepTheirFlowRateAgainstAPressure) {
+  Case c = channelCase(2);
+  c.openings[0].pressure = TimeFunction{0, "100 + 200*sin(60*t)", {}, {}};
+  c.openings[1].flowRate = TimeFunction{-4e-4};
+  Simulation<2> simulation(c, created<2>(c));
+  flowed(simulation, 40);
+  for (int k = 0; k < 60; ++k) {
+    flowed(simulation, 1);
+    EXPECT_NEAR(meanSpeed(simulation) * 0.01 / 4e-4, 1, 0.1);  // measured: 0.06 off
+  }
+}
+
 /// The reserve behind a face is filled by what stands in front of it, and fluid at rest stays so.
 TEST(Openings, FillTheirReserves) {
   Case c = channelCase(3);

@@ -35,6 +35,7 @@ study = Study(
     title="Flow between openings",
     levels=[Level(1), Level(2), Level(4)],
     bars={"flow rate": 0.06, "pressure": 0.05, "volume in": 0.02, "volume out": 0.02},
+    orders={"flow rate": 0.5, "pressure": 0.5, "volume in": 0.0, "volume out": 0.0},
     measure=measure,
     x_label="x [m]",
     y_label="pressure [Pa]",
