@@ -104,8 +104,8 @@ void visit(auto& v, Like<Vent> auto& vent, const Case&) {
 
 void visit(auto& v, Like<GasSettings> auto& g, const Case&) {
   v({"pressure", "Pressure of the air around the fluid, absolute", optional, "Pa", positive}, g.pressure);
-  v({"exponent", "k of p V^k = const in a pocket: 1 at one temperature, 1.4 without exchange of heat", optional,
-     "", positive},
+  v({"exponent", "Exponent k of p V^k = const in a pocket: 1 at one temperature, 1.4 without exchange of heat",
+     optional, "", positive},
     g.exponent);
   v({"vents", "Boxes through which trapped gas gets out", optional, "", {0, maxVents}}, g.vents);
 }
