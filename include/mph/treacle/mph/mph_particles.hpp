@@ -1,5 +1,6 @@
 #pragma once
 
+#include "treacle/core/block.hpp"
 #include "treacle/core/cuda.hpp"
 #include "treacle/model/motion/frame_force.hpp"
 #include "treacle/mph/mph_pairs.hpp"

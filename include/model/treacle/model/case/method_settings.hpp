@@ -1,5 +1,11 @@
 #pragma once
 
+#include "treacle/core/vec.hpp"
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
 namespace treacle {
 
 enum class MethodKind { MphI, Isph };
