@@ -7,6 +7,7 @@
 #include "treacle/model/case/names.hpp"
 #include "treacle/model/motion/wall_motion.hpp"
 #include "treacle/model/particles/create.hpp"
+#include "treacle/step/flow/gas_cells.hpp"
 #include "treacle/step/flow/outflow_start.hpp"
 
 #include <fmt/format.h>
@@ -123,10 +124,7 @@ void requireFlow(const Case& c, const std::filesystem::path& file, const OpenFlo
 
 /// Errors: InputError for gas of another domain or spacing.
 void requireGas(const Case& c, const std::filesystem::path& file, const GasState& gas) {
-  double cells = 1;
-  for (int k = 0; k < c.dimensions; ++k)
-    cells *= std::max(3.0, std::ceil((c.domain.max[k] - c.domain.min[k]) / c.spacing - 1e-6));
-  if (!gas.cells.empty() && *std::ranges::max_element(gas.cells) >= cells)
+  if (!gas.cells.empty() && *std::ranges::max_element(gas.cells) >= static_cast<double>(gasCells(c)))
     refuse(file, "its trapped gas is outside the domain of the case; expected the domain of the run");
 }
 

@@ -1,5 +1,7 @@
 #include "gas_pockets.hpp"
 
+#include "treacle/step/flow/gas_cells.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -9,13 +11,17 @@
 namespace treacle {
 namespace {
 
-/// Weights of the quadratic B-spline on three cells, from the distance to the centre of the middle one in cells.
+/// The quadratic B-spline at the distance t from the centre of a cell, in cells, and its slope.
 struct Spline {
-  double weight[3], slope[3];
+  double weight, slope;
 
-  explicit Spline(double t)
-      : weight{0.5 * (0.5 - t) * (0.5 - t), 0.75 - t * t, 0.5 * (0.5 + t) * (0.5 + t)},
-        slope{t - 0.5, -2 * t, t + 0.5} {}
+  explicit Spline(double t) {
+    const double outside = 1.5 - std::abs(t);
+    if (outside > 1)
+      weight = 0.75 - t * t, slope = -2 * t;
+    else
+      weight = 0.5 * outside * outside, slope = std::copysign(outside, -t);
+  }
 };
 
 constexpr double correction = 0.05;   // by how much of its error a volume is corrected in a step
@@ -24,80 +30,51 @@ constexpr double leastVolume = 0.05;  // of the volume that a pocket has at the 
 }  // namespace
 
 template <int D>
+CellGrid<D> GasPockets<D>::gridOf(const Case& c) {
+  Vec<D, bool> periodic{};
+  for (int k = 0; k < D; ++k) periodic[k] = c.domain.periodic[static_cast<std::size_t>(k)];
+  auto grid = CellGrid<D>::make(resized<D>(c.domain.min), resized<D>(c.domain.max), periodic, c.spacing);
+  for (int k = 0; k < D; ++k) {  // no wider than a spacing: particles would leave holes in wider ones
+    grid.count[k] = std::max(3, static_cast<int>(std::ceil(grid.length[k] / c.spacing - 1e-6)));
+    grid.edge[k] = grid.length[k] / grid.count[k];
+    grid.inverseEdge[k] = grid.count[k] / grid.length[k];
+  }
+  return grid;
+}
+
+template <int D>
 GasPockets<D>::GasPockets(const Case& c)
-    : gas_(*c.gas), spacing_(c.spacing), particle_(std::pow(c.spacing, D)), cell_(1), cells_(1) {
-  low_ = resized<D>(c.domain.min);
-  periodic_ = c.domain.periodic;
-  for (int k = 0; k < D; ++k) {
-    const double length = c.domain.max[k] - c.domain.min[k], cells = length / spacing_;
-    count_[k] = std::max(3, static_cast<int>(std::ceil(cells - 1e-6)));
-    edge_[k] = length / count_[k];
-    cell_ *= edge_[k];
-    cells_ *= static_cast<std::size_t>(count_[k]);
-  }
-}
-
-template <int D>
-auto GasPockets<D>::at(std::size_t cell) const -> Index {
-  Index i;
-  for (int k = 0; k < D; ++k) {
-    i[k] = static_cast<int>(cell % static_cast<std::size_t>(count_[k]));
-    cell /= static_cast<std::size_t>(count_[k]);
-  }
-  return i;
-}
-
-template <int D>
-std::size_t GasPockets<D>::cellOf(const Vec<D>& x) const {
-  std::size_t cell = 0;
-  for (int k = D - 1; k >= 0; --k) {
-    const int i = std::clamp(static_cast<int>(std::floor((x[k] - low_[k]) / edge_[k])), 0, count_[k] - 1);
-    cell = cell * static_cast<std::size_t>(count_[k]) + static_cast<std::size_t>(i);
-  }
-  return cell;
+    : gas_(*c.gas), spacing_(c.spacing), particle_(std::pow(c.spacing, D)), cell_(1), grid_(gridOf(c)) {
+  for (int k = 0; k < D; ++k) cell_ *= grid_.edge[k];
 }
 
 template <int D>
 Vec<D> GasPockets<D>::centerOf(std::size_t cell) const {
-  const Index i = at(cell);
+  const Vec<D, int> i = grid_.cellAt(cell);
   Vec<D> x;
-  for (int k = 0; k < D; ++k) x[k] = low_[k] + (i[k] + 0.5) * edge_[k];
+  for (int k = 0; k < D; ++k) x[k] = grid_.origin[k] + (i[k] + 0.5) * grid_.edge[k];
   return x;
 }
 
 template <int D>
 template <class F>
-void GasPockets<D>::forEachAround(std::size_t cell, int far, F&& f) const {
-  const Index middle = at(cell);
-  const auto along = [&](auto&& self, int k, std::size_t sum, std::size_t stride) -> void {
-    if (k == D) {
-      f(sum);
-      return;
-    }
-    const std::size_t next = stride * static_cast<std::size_t>(count_[k]);
-    for (int i = middle[k] - far; i <= middle[k] + far; ++i) {
-      int place = i;
-      if (periodic_[static_cast<std::size_t>(k)]) place = (i + count_[k]) % count_[k];
-      if (place < 0 || place >= count_[k]) continue;
-      self(self, k + 1, sum + stride * static_cast<std::size_t>(place), next);
-    }
-  };
-  along(along, 0, 0, 1);
+void GasPockets<D>::forEachAround(std::size_t cell, F&& f) const {
+  forEachAdjacentCell(grid_, grid_.cellAt(cell), [&](const Vec<D, int>& at) { f(grid_.linear(at)); });
 }
 
 template <int D>
 template <class F>
 void GasPockets<D>::forEachNext(std::size_t cell, F&& f) const {
-  const Index middle = at(cell);
+  const Vec<D, int> middle = grid_.cellAt(cell);
   std::size_t stride = 1;
   for (int k = 0; k < D; ++k) {
-    const auto count = static_cast<std::size_t>(count_[k]);
-    const bool wraps = periodic_[static_cast<std::size_t>(k)];
+    const auto count = static_cast<std::size_t>(grid_.count[k]);
+    const bool wraps = grid_.periodic[k];
     if (middle[k] > 0)
       f(cell - stride);
     else if (wraps)
       f(cell + (count - 1) * stride);
-    if (middle[k] + 1 < count_[k])
+    if (middle[k] + 1 < grid_.count[k])
       f(cell + stride);
     else if (wraps)
       f(cell - (count - 1) * stride);
@@ -108,36 +85,17 @@ void GasPockets<D>::forEachNext(std::size_t cell, F&& f) const {
 template <int D>
 template <class F>
 void GasPockets<D>::forEachWeight(const Vec<D>& x, F&& f) const {
-  Index middle;
-  double weight[D][3], slope[D][3];
-  for (int k = 0; k < D; ++k) {
-    const double place = (x[k] - low_[k]) / edge_[k];
-    middle[k] = static_cast<int>(std::floor(place));
-    const Spline spline(place - middle[k] - 0.5);
-    for (int i = 0; i < 3; ++i) weight[k][i] = spline.weight[i], slope[k][i] = spline.slope[i] / edge_[k];
-  }
-  int way[D];
-  const auto along = [&](auto&& self, int k, std::size_t cell, std::size_t stride) -> void {
-    if (k == D) {
-      double product = 1;
-      Vec<D> gradient;
-      for (int a = 0; a < D; ++a) {
-        product *= weight[a][way[a]];
-        gradient[a] = 1;
-        for (int b = 0; b < D; ++b) gradient[a] *= (a == b ? slope : weight)[b][way[b]];
-      }
-      f(cell, product, gradient);
-      return;
+  forEachAround(grid_.linear(grid_.cellOf(x)), [&](std::size_t cell) {
+    const Vec<D> d = grid_.difference(centerOf(cell), x);
+    double weight = 1;
+    Vec<D> gradient = Vec<D>::filled(1);
+    for (int k = 0; k < D; ++k) {
+      const Spline spline(d[k] * grid_.inverseEdge[k]);
+      weight *= spline.weight;
+      for (int a = 0; a < D; ++a) gradient[a] *= a == k ? spline.slope * grid_.inverseEdge[k] : spline.weight;
     }
-    const std::size_t next = stride * static_cast<std::size_t>(count_[k]);
-    for (way[k] = 0; way[k] < 3; ++way[k]) {
-      int place = middle[k] + way[k] - 1;
-      if (periodic_[static_cast<std::size_t>(k)]) place = (place + count_[k]) % count_[k];
-      if (place < 0 || place >= count_[k]) continue;
-      self(self, k + 1, cell + stride * static_cast<std::size_t>(place), next);
-    }
-  };
-  along(along, 0, 0, 1);
+    f(cell, weight, gradient);
+  });
 }
 
 template <int D>
@@ -156,12 +114,12 @@ void GasPockets<D>::find(std::span<const Vec<D>> position, std::uint32_t fluid, 
 template <int D>
 void GasPockets<D>::sort(std::span<const Vec<D>> position) {
   std::vector<std::uint32_t> cell(position.size());
-  start_.assign(cells_ + 1, 0);
+  start_.assign(grid_.cellCount() + 1, 0);
   for (std::size_t i = 0; i < position.size(); ++i) {
-    cell[i] = static_cast<std::uint32_t>(cellOf(position[i]));
+    cell[i] = static_cast<std::uint32_t>(grid_.linear(grid_.cellOf(position[i])));
     ++start_[cell[i] + 1];
   }
-  for (std::size_t c = 0; c < cells_; ++c) start_[c + 1] += start_[c];
+  for (std::size_t c = 0; c + 1 < start_.size(); ++c) start_[c + 1] += start_[c];
   items_.resize(position.size());
   std::vector<std::uint32_t> next(start_.begin(), start_.end() - 1);
   for (std::size_t i = 0; i < position.size(); ++i) items_[next[cell[i]]++] = static_cast<std::uint32_t>(i);
@@ -169,21 +127,17 @@ void GasPockets<D>::sort(std::span<const Vec<D>> position) {
 
 template <int D>
 void GasPockets<D>::findEmpty(std::span<const Vec<D>> position) {
-  empty_.assign(cells_, 1);
+  empty_.assign(grid_.cellCount(), 1);
   const double least2 = spacing_ * spacing_;
-  for (std::size_t cell = 0; cell < cells_; ++cell) {
+  for (std::size_t cell = 0; cell < empty_.size(); ++cell) {
     if (start_[cell + 1] > start_[cell]) {
       empty_[cell] = 0;
       continue;
     }
     const Vec<D> x = centerOf(cell);
-    forEachAround(cell, 1, [&](std::size_t other) {
+    forEachAround(cell, [&](std::size_t other) {
       for (std::uint32_t k = start_[other]; k < start_[other + 1] && empty_[cell]; ++k) {
-        Vec<D> d = position[items_[k]] - x;
-        for (int a = 0; a < D; ++a)
-          if (periodic_[static_cast<std::size_t>(a)])
-            d[a] -= count_[a] * edge_[a] * std::round(d[a] / (count_[a] * edge_[a]));
-        if (norm2(d) < least2) empty_[cell] = 0;
+        if (norm2(grid_.difference(x, position[items_[k]])) < least2) empty_[cell] = 0;
       }
     });
   }
@@ -206,17 +160,17 @@ void GasPockets<D>::spread(std::vector<std::size_t> from, std::uint32_t label) {
 /// The cells of each pocket, ascending. All other empty cells are air.
 template <int D>
 std::vector<std::vector<std::size_t>> GasPockets<D>::components() {
-  label_.assign(cells_, nobody);
+  label_.assign(empty_.size(), nobody);
   std::vector<std::size_t> open;
   const auto add = [&](std::size_t cell) {
     if (!empty_[cell] || label_[cell] != nobody) return;
     label_[cell] = air;
     open.push_back(cell);
   };
-  for (std::size_t cell = 0; cell < cells_; ++cell) {
-    const Index i = at(cell);
+  for (std::size_t cell = 0; cell < empty_.size(); ++cell) {
+    const Vec<D, int> i = grid_.cellAt(cell);
     for (int k = 0; k < D; ++k)
-      if (!periodic_[static_cast<std::size_t>(k)] && (i[k] == 0 || i[k] + 1 == count_[k])) add(cell);
+      if (!grid_.periodic[k] && (i[k] == 0 || i[k] + 1 == grid_.count[k])) add(cell);
     if (gas_.vents.empty() || !empty_[cell]) continue;
     const Vec<D> x = centerOf(cell);
     for (const Vent& vent : gas_.vents) {
@@ -227,7 +181,7 @@ std::vector<std::vector<std::size_t>> GasPockets<D>::components() {
   }
   spread(std::move(open), air);
   std::vector<std::vector<std::size_t>> found;
-  for (std::size_t cell = 0; cell < cells_; ++cell) {
+  for (std::size_t cell = 0; cell < empty_.size(); ++cell) {
     if (!empty_[cell]) continue;
     if (label_[cell] == nobody) {
       label_[cell] = static_cast<std::uint32_t>(found.size());
@@ -244,15 +198,13 @@ std::vector<std::vector<std::size_t>> GasPockets<D>::components() {
 template <int D>
 void GasPockets<D>::inherit(const std::vector<std::vector<std::size_t>>& found, GasState& state) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, double> shared;  // of pockets before and now: cells
-  std::vector<double> kept(state.pockets.size()), known(found.size());
+  std::vector<double> kept(state.pockets.size());
   for (std::size_t k = 0; k < state.cells.size(); ++k) {
     const std::uint32_t now = label_[static_cast<std::size_t>(state.cells[k])];
     if (now == nobody) continue;
     const auto before = static_cast<std::uint32_t>(state.labels[k]);
     ++kept[before];
-    if (now == air) continue;
-    ++shared[{before, now}];
-    ++known[now];
+    if (now != air) ++shared[{before, now}];
   }
   std::vector<GasState::Pocket> pockets(found.size());
   std::vector<int> parents(found.size());
@@ -287,7 +239,7 @@ void GasPockets<D>::inherit(const std::vector<std::vector<std::size_t>>& found, 
   }
   same = same && next.pockets.size() == state.pockets.size();
   if (same) next.response = std::move(state.response);
-  for (std::size_t cell = 0; cell < cells_; ++cell)
+  for (std::size_t cell = 0; cell < empty_.size(); ++cell)
     if (label_[cell] < nobody) label_[cell] = number[label_[cell]];
   state = std::move(next);
 }
@@ -316,7 +268,7 @@ void GasPockets<D>::widen(const std::vector<std::vector<std::size_t>>& found) {
 /// drawn towards it.
 template <int D>
 void GasPockets<D>::measure(std::span<const Vec<D>> position, std::uint32_t fluid, GasState& state) {
-  filled_.assign(cells_, 0), walls_.assign(cells_, 0);
+  filled_.assign(empty_.size(), 0), walls_.assign(empty_.size(), 0);
   for (const std::uint32_t cell : near_)
     for (std::uint32_t k = start_[cell]; k < start_[cell + 1]; ++k)
       forEachWeight(position[items_[k]], [&](std::size_t to, double weight, const Vec<D>&) {
@@ -341,10 +293,10 @@ void GasPockets<D>::smooth(std::vector<double>& field) {
   std::vector<double> next(near_.size());
   for (int pass = 0; pass < 2; ++pass) {
     for (std::size_t k = 0; k < near_.size(); ++k) {
-      const Index middle = at(near_[k]);
+      const Vec<D, int> middle = grid_.cellAt(near_[k]);
       double sum = 0;
-      forEachAround(near_[k], 1, [&](std::size_t other) {
-        const Index i = at(other);
+      forEachAround(near_[k], [&](std::size_t other) {
+        const Vec<D, int> i = grid_.cellAt(other);
         double weight = 1;
         for (int a = 0; a < D; ++a) weight *= i[a] == middle[a] ? 0.5 : 0.25;
         sum += weight * field[other];
@@ -359,14 +311,14 @@ void GasPockets<D>::smooth(std::vector<double>& field) {
 /// twice the part of the space between walls that is empty, so that walls beside a surface do not change it.
 template <int D>
 void GasPockets<D>::share() {
-  std::vector<double> open(cells_, 1);
-  ofWalls_.assign(cells_, 0);
+  std::vector<double> open(empty_.size(), 1);
+  ofWalls_.assign(empty_.size(), 0);
   for (const std::uint32_t cell : near_) open[cell] = std::max(0.0, 1 - walls_[cell]);
   for (std::size_t k = 0; k < rings_[rim + 1]; ++k)
     ofWalls_[near_[k]] = std::clamp(1 - filled_[near_[k]], 0.0, 1.0);
   smooth(ofWalls_);
   smooth(open);
-  ofFluid_.assign(cells_, 0);
+  ofFluid_.assign(empty_.size(), 0);
   for (const std::uint32_t cell : near_) {
     ofFluid_[cell] = open[cell] > 0.05 ? 2 * ofWalls_[cell] / open[cell] : 0;
     ofWalls_[cell] *= 2;
@@ -402,6 +354,10 @@ std::size_t GasPockets<D>::bytes() const {
          sizeof(std::uint32_t) * (label_.capacity() + start_.capacity() + items_.capacity() + near_.capacity()) +
          sizeof(double) * (filled_.capacity() + walls_.capacity() + ofFluid_.capacity() + ofWalls_.capacity()) +
          sizeof(GasContact<D>) * contacts_.capacity();
+}
+
+std::uint64_t gasCells(const Case& c) {
+  return c.dimensions == 2 ? GasPockets<2>::gridOf(c).cellCount() : GasPockets<3>::gridOf(c).cellCount();
 }
 
 template class GasPockets<2>;

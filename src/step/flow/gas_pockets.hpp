@@ -3,9 +3,9 @@
 #include "treacle/core/vec.hpp"
 #include "treacle/model/case/case.hpp"
 #include "treacle/model/state/gas_state.hpp"
+#include "treacle/search/cell_grid.hpp"
 #include "treacle/step/flow/gas_contact.hpp"
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -32,24 +32,23 @@ class GasPockets {
 
   std::size_t bytes() const;
 
+  /// Of the cells of a case.
+  static CellGrid<D> gridOf(const Case& c);
+
  private:
   static constexpr std::uint32_t air = 0xffffffff, nobody = 0xfffffffe;  // among labels
   static constexpr int rim = 2;    // how many cells around a pocket count for its volume
   static constexpr int reach = 5;  // and its force
 
-  using Index = Vec<D, int>;
-
-  Index at(std::size_t cell) const;
-  std::size_t cellOf(const Vec<D>& x) const;
-  Vec<D> centerOf(std::size_t cell) const;
-  /// Calls f(cell) for the cells around one, as far as `far`, or only for those that share a face with it.
+  /// Calls f(cell) for the cells around one and itself, or for those alone that share a face with it.
   template <class F>
-  void forEachAround(std::size_t cell, int far, F&& f) const;
+  void forEachAround(std::size_t cell, F&& f) const;
   template <class F>
   void forEachNext(std::size_t cell, F&& f) const;
   /// Calls f(cell, weight, gradient) for the cells of the quadratic B-spline at x.
   template <class F>
   void forEachWeight(const Vec<D>& x, F&& f) const;
+  Vec<D> centerOf(std::size_t cell) const;
 
   void sort(std::span<const Vec<D>> position);
   void findEmpty(std::span<const Vec<D>> position);
@@ -63,13 +62,9 @@ class GasPockets {
   void meet(std::span<const Vec<D>> position, std::uint32_t fluid);
 
   GasSettings gas_;
-  double spacing_, particle_;  // volume of a particle [m3; m2 in 2D]
-  double cell_;                // and of a cell
-  Vec<D> low_;
-  Vec<D> edge_;
-  Index count_;
-  std::array<bool, 3> periodic_;
-  std::size_t cells_;
+  double spacing_;          // l [m]
+  double particle_, cell_;  // volumes of a particle and of a cell [m3; m2 in 2D]
+  CellGrid<D> grid_;
   std::vector<std::uint8_t> empty_;           // per cell
   std::vector<std::uint32_t> label_;          // per cell: its pocket, air or nobody
   std::vector<std::uint32_t> start_, items_;  // particles of cells

@@ -171,13 +171,7 @@ class IsphStep final : public StepMethod<D, Backend> {
     placeWallSurfaces(state_, pairs_.fluidCount, pairs_.activeCount - pairs_.fluidCount, wallSurface_);
     pressing_.resize(state_.context, pairs_.ownFluid());
     const auto flow = [&](bool isFirst) {
-      StagedReport report;
-      if (!isFirst) {
-        report = predictor_.follow(solution(), false);
-        computeSource();
-        guess(solution());
-      }
-      report.follow(solvePressure());
+      const StagedReport report = solvePressure(isFirst, false);
       correct(isFirst ? solution_ : pressing_);
       if (isFirst) copyValues(state_.context, std::span<const double>(solution()), pressing_.data());
       return report;
@@ -189,13 +183,7 @@ class IsphStep final : public StepMethod<D, Backend> {
   StagedReport solveWithPressures() {
     if (!pressures_.some()) return solvePressure();
     return pressures_.solve(nullptr, [&](bool isFirst) {
-      StagedReport report;
-      if (!isFirst) {
-        report = predictor_.follow(solution(), true);
-        computeSource();
-        guess(solution());
-      }
-      report.follow(solvePressure());
+      const StagedReport report = solvePressure(isFirst, true);
       correct(solution_);
       return report;
     });
@@ -209,6 +197,19 @@ class IsphStep final : public StepMethod<D, Backend> {
                PressureSourceTerm<D>{predicted.data(), state_.particles.numberDensity.data(), surface_.data(),
                                      source_.data()});
     if (closed_) takeLevel(state_.context, Level::Mean, source_);
+  }
+
+  /// The same again in the same step, with the velocities that walls have now and, where told, other forces; for
+  /// the first time from what is prepared. Errors: RunError.
+  StagedReport solvePressure(bool isFirst, bool withForces) {
+    StagedReport report;
+    if (!isFirst) {
+      report = predictor_.follow(solution(), withForces);
+      computeSource();
+      guess(solution());
+    }
+    report.follow(solvePressure());
+    return report;
   }
 
   /// From the guess in solution_, and to there. Errors: RunError.

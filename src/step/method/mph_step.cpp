@@ -211,10 +211,7 @@ class MphStep final : public StepMethod<D, Backend> {
   StagedReport solveWithPressures() {
     return pressures_.solve(gas_ ? &*gas_ : nullptr, [&](bool isFirst) {
       if (isFirst) return solveFluid();
-      found_.resize(state_.context, state_.velocity.size());
-      copyValues(state_.context, std::span<const Vec<D>>(state_.velocity), found_.data());
-      computeRightHandSide();
-      copyValues(state_.context, std::span<const Vec<D>>(found_), state_.velocity.data());
+      keepVelocities([&] { computeRightHandSide(); });
       return solveOnce();
     });
   }
@@ -258,10 +255,18 @@ class MphStep final : public StepMethod<D, Backend> {
 
   /// Once more with other viscosities, from the velocities that there are.
   void prepareAgain() {
+    keepVelocities([&] {
+      prepareViscous();
+      preparePreconditioner();
+    });
+  }
+
+  /// What `prepare` leaves in state.velocity is of no use: it is put back.
+  template <class F>
+  void keepVelocities(F&& prepare) {
     found_.resize(state_.context, state_.velocity.size());
     copyValues(state_.context, std::span<const Vec<D>>(state_.velocity), found_.data());
-    prepareViscous();
-    preparePreconditioner();
+    prepare();
     copyValues(state_.context, std::span<const Vec<D>>(found_), state_.velocity.data());
   }
 
