@@ -49,6 +49,11 @@ concept ReadsStored = requires(const Terms& terms, const MphPairs<D>& pairs, std
   terms.loadOther(pairs, j, stored);
 };
 
+/// Square of the distance of a pair that a thin sheet parts: all terms are zero at it, whatever the unit.
+template <class T>
+inline constexpr T partedDistance2 = 1e30;
+struct Nothing {};
+
 template <int D, class T, class S, class Terms>
 class ClusterSum {
  public:
@@ -67,7 +72,8 @@ class ClusterSum {
     const int lane = threadIdx.x % 32, group = lane / S::slots, slot = lane % S::slots;
     const auto origin = places.of(pairs_, first_);
     const Vec<D, T> mine = places.local(places.of(pairs_, particle(lane % clusterSize)), origin);
-    const bool apart = __any_sync(~0u, places.imagesMayDiffer(mine, S::ranges || list_.wraps[cluster_]));
+    const bool special = S::ranges || list_.special[cluster_];
+    const bool apart = __any_sync(~0u, places.imagesMayDiffer(mine, special)) || (pairs_.side && special);
     Vec<D, T> x[S::own];
     typename Terms::Own own[S::own];
     T sum[paddedSums] = {};
@@ -76,23 +82,31 @@ class ClusterSum {
       for (int k = 0; k < D; ++k) x[t][k] = __shfl_sync(~0u, mine[k], group * S::own + t);
       own[t] = terms.loadOwn(pairs_, particle(group * S::own + t));
     }
-    struct Loaded {
-      typename LocalPositions<D, T>::Stored x;
-      typename Terms::Other other;
-    };
-    const auto walk = [&](auto nearest) {
+    const auto walk = [&](auto kind) {
+      constexpr bool isApart = decltype(kind)::value;
+      struct Loaded {
+        typename LocalPositions<D, T>::Stored x;
+        typename Terms::Other other;
+        std::conditional_t<isApart, std::uint32_t, Nothing> side;
+      };
       const auto load = [&](std::uint32_t j) {
         const auto stored = places.of(pairs_, j);
-        return Loaded{stored, otherOf(terms, j, stored)};
+        Loaded loaded{stored, otherOf(terms, j, stored), {}};
+        if constexpr (isApart)
+          if (pairs_.side) loaded.side = pairs_.side[j];
+        return loaded;
       };
       const auto add = [&](const Loaded& loaded, ListSegment segment) {
         const Vec<D, T> local = places.local(loaded.x, origin);
 #pragma unroll
         for (int t = 0; t < S::own; ++t) {
           Vec<D, T> d = local - x[t];
-          if (nearest) d = places.nearest(pairs_, d);
+          if (isApart) d = places.nearest(pairs_, d);
           T r2 = places.floor;
           for (int k = 0; k < D; ++k) r2 = fma(d[k], d[k], r2);
+          if constexpr (isApart)
+            if (pairs_.side && !sides::seeEachOther(pairs_.side[particle(group * S::own + t)], loaded.side))
+              r2 = partedDistance2<T>;
           terms.add(pairs_, &sum[t * values], d, PairDistance<T>{r2, inverseSqrt(r2)}, own[t], loaded.other,
                     segment);
         }

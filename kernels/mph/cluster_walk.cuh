@@ -67,7 +67,7 @@ __device__ bool walkRanges(const MphPairs<D>& pairs, std::uint32_t first, std::u
   std::uint32_t* queue = queues[threadIdx.x / 32];
   const int lane = threadIdx.x % 32, slot = lane % S::slots;
   __shared__ typename ClusterCandidates<D>::Shared shared[S::warpsPerBlock];
-  const ClusterCandidates<D> candidates(pairs.grid, pairs.cells, pairs.position.data(), first, count,
+  const ClusterCandidates<D> candidates(pairs.grid, pairs.cells, pairs.position.data(), pairs.side, first, count,
                                         shared[threadIdx.x / 32]);
   const bool ofFluid = first < pairs.fluidCount;
   const double near =

@@ -44,7 +44,7 @@ __global__ void __launch_bounds__(128) listKernel(const Split split, const __gri
       for (int b = 0; b < batch; ++b) x[b] = pairs.position[j[b]];
 #pragma unroll
       for (int b = 0; b < batch; ++b) {
-        const bool near = j[b] != i && norm2(pairs.grid.difference(xi, x[b])) < h2;
+        const bool near = j[b] != i && norm2(pairs.grid.difference(xi, x[b])) < h2 && !pairs.areParted(i, j[b]);
         const unsigned all = __ballot_sync(~0u, near) & team;
         if (Fill && near && valid)
           entry[base + std::uint64_t{slice} * (count + __popc(all & ((1u << threadIdx.x % 32) - 1)))] = j[b];

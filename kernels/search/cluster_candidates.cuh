@@ -1,5 +1,6 @@
 #pragma once
 
+#include "treacle/model/geometry/side.hpp"
 #include "treacle/search/cell_sort.hpp"
 #include "treacle/search/cluster_list.hpp"
 
@@ -13,18 +14,19 @@ class ClusterCandidates {
   /// A warp's working memory.
   struct Shared {
     Vec<D> x[clusterSize];
-    Vec<D> beside[clusterSize];  // the images nearest to the first one
-    std::uint32_t entry[64];     // candidates near the cluster's bounding box, not yet tested
+    Vec<D> beside[clusterSize];       // the images nearest to the first one
+    std::uint32_t side[clusterSize];  // where thin sheets are
+    std::uint32_t entry[64];          // candidates near the cluster's bounding box, not yet tested
     bool wall[64];
   };
 
-  /// `count` particles from `first`; `position` of the whole set. With all lanes of the warp.
+  /// `count` particles from `first`; `position` and `side` (sides; null: there are no thin sheets) of the whole
+  /// set. With all lanes of the warp.
   __device__ ClusterCandidates(const CellGrid<D>& grid, const CellRangesView& cells, const Vec<D>* position,
-                               std::uint32_t first, std::uint32_t count, Shared& shared)
-      : grid_(grid), cells_(cells), position_(position), shared_(shared) {
-    const std::uint32_t own = threadIdx.x % clusterSize;
-    const Vec<D> there = position[first + (own < count ? own : count - 1)],
-                 x = grid.beside(position[first], there);
+                               const std::uint32_t* side, std::uint32_t first, std::uint32_t count, Shared& shared)
+      : grid_(grid), cells_(cells), position_(position), side_(side), shared_(shared) {
+    const std::uint32_t own = threadIdx.x % clusterSize, index = first + (own < count ? own : count - 1);
+    const Vec<D> there = position[index], x = grid.beside(position[first], there);
     for (int k = 0; k < D; ++k) {
       low_[k] = high_[k] = x[k];
       for (int offset = 1; offset < static_cast<int>(clusterSize); offset *= 2) {
@@ -33,13 +35,16 @@ class ClusterCandidates {
       }
     }
     __syncwarp();
-    if (threadIdx.x % 32 < clusterSize) shared.x[own] = there, shared.beside[own] = x;
+    if (threadIdx.x % 32 < clusterSize) {
+      shared.x[own] = there, shared.beside[own] = x;
+      if (side) shared.side[own] = side[index];
+    }
     __syncwarp();
   }
 
   /// Calls visit(index, near, far, wall) with all lanes of the warp, a candidate each: `near` where some particle
-  /// of the cluster lies within radii.near, `far` where not, but within radii.far. Returns whether the reach
-  /// crosses a periodic end.
+  /// of the cluster that sees the candidate lies within radii.near, `far` where not, but within radii.far. Returns
+  /// whether the reach crosses a periodic end, or thin sheets part some particles from candidates that others see.
   template <class Visit>
   __device__ bool forEach(const ListRadii& radii, bool fluid, bool walls, Visit&& visit) const {
     Walk walk{radii, Reach(*this, fmax(radii.near, radii.far))};
@@ -59,7 +64,7 @@ class ClusterCandidates {
       }
     }
     test(walk, walk.queued, visit);
-    return walk.reach.wraps;
+    return walk.reach.wraps || __any_sync(~0u, walk.someParted);
   }
 
  private:
@@ -91,7 +96,8 @@ class ClusterCandidates {
   struct Walk {
     const ListRadii& radii;
     Reach reach;
-    int queued = 0;  // candidates in Shared::entry
+    int queued = 0;           // candidates in Shared::entry
+    bool someParted = false;  // among those that the lane has tested
   };
   struct Cell {
     bool occupied = false;
@@ -184,10 +190,10 @@ class ClusterCandidates {
 
   /// Measures the first `count` of the queue against all particles of the cluster.
   template <class Visit>
-  __device__ void test(const Walk& walk, int count, Visit&& visit) const {
+  __device__ void test(Walk& walk, int count, Visit&& visit) const {
     __syncwarp();
     const int lane = threadIdx.x % 32;
-    double r2 = 1e300;
+    double r2 = 1e300, parted2 = 1e300;  // to the nearest one that sees the candidate, and that does not
     std::uint32_t j = 0;
     bool wall = false;
     if (lane < count) {
@@ -197,9 +203,15 @@ class ClusterCandidates {
 #pragma unroll
       for (int t = 0; t < static_cast<int>(clusterSize); ++t) {
         const Vec<D> d = xj - shared_.x[t];
-        r2 = fmin(r2, norm2(walk.reach.wraps ? grid_.nearest(d) : d));
+        const double square = norm2(walk.reach.wraps ? grid_.nearest(d) : d);
+        if (side_ && !sides::seeEachOther(shared_.side[t], side_[j]))
+          parted2 = fmin(parted2, square);
+        else
+          r2 = fmin(r2, square);
       }
     }
+    const double longest2 = walk.reach.radius * walk.reach.radius;
+    walk.someParted = walk.someParted || (r2 <= longest2 && parted2 <= longest2);
     const bool near = r2 <= walk.radii.near * walk.radii.near;
     visit(j, near, !near && r2 <= walk.radii.far * walk.radii.far, wall);
     __syncwarp();
@@ -208,6 +220,7 @@ class ClusterCandidates {
   const CellGrid<D>& grid_;
   const CellRangesView& cells_;
   const Vec<D>* position_;
+  const std::uint32_t* side_;
   Shared& shared_;
   Vec<D> low_{}, high_{};  // bounding box
 };

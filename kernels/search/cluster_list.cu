@@ -14,7 +14,7 @@ struct BuildArguments {
   std::uint32_t clusters;
   std::uint64_t* offset;
   std::uint32_t* entry;
-  std::uint8_t* wraps;
+  std::uint8_t* special;
 };
 
 constexpr int warpsPerBlock = 4;
@@ -34,9 +34,9 @@ __global__ void __launch_bounds__(32 * warpsPerBlock, 6) buildKernel(const __gri
   if (Fill)
     for (int s = 0; s < listSegments; ++s) next[s] = offset[s];
   __shared__ typename ClusterCandidates<D>::Shared shared[warpsPerBlock];
-  const ClusterCandidates<D> candidates(a.grid, a.cells, a.position, first, min(clusterSize, a.scope.last - first),
-                                        shared[threadIdx.x / 32]);
-  const bool wraps =
+  const ClusterCandidates<D> candidates(a.grid, a.cells, a.position, a.scope.side, first,
+                                        min(clusterSize, a.scope.last - first), shared[threadIdx.x / 32]);
+  const bool special =
       candidates.forEach(a.scope.radii, true, true, [&](std::uint32_t j, bool near, bool far, bool wall) {
         const auto append = [&](ListSegment segment, bool mine) {
           const unsigned lanes = __ballot_sync(~0u, mine);
@@ -54,7 +54,7 @@ __global__ void __launch_bounds__(32 * warpsPerBlock, 6) buildKernel(const __gri
       next[static_cast<int>(ListSegment::NearFluid)] + next[static_cast<int>(ListSegment::FarFluid)] > 0;
   const bool empty = a.scope.onlyNextToFluid && !fluid;
   for (int s = 0; s < listSegments; ++s) offset[s + 1] = empty ? 0 : next[s];
-  a.wraps[cluster] = wraps;
+  a.special[cluster] = special;
   if (cluster == 0) a.offset[0] = 0;
 }
 
@@ -68,14 +68,14 @@ void buildClusterList(Context<Cuda>& context, const CellGrid<D>& grid, const Cel
   const std::uint32_t clusters = list.clusterCount();
   const std::size_t offsets = std::size_t{listSegments} * clusters + 1;
   list.offset.resize(context, offsets);
-  list.wraps.resize(context, clusters);
+  list.special.resize(context, clusters);
   if (clusters == 0) {
     clearBytes(context, list.offset.data(), sizeof(std::uint64_t));
     list.entry.resize(context, 0);
     return;
   }
   BuildArguments<D> arguments{grid,     viewOf(ranges),     position.data(), scope,
-                              clusters, list.offset.data(), nullptr,         list.wraps.data()};
+                              clusters, list.offset.data(), nullptr,         list.special.data()};
   const unsigned blocks = blocksFor(clusters, warpsPerBlock);
   launch(context, blocks, 32 * warpsPerBlock, 0, buildKernel<D, false>, arguments);
 

@@ -25,22 +25,22 @@ void markFluidNearWalls(const Context<Cuda>& context, const CellGrid<D>& grid, c
 /// Places behind the last particle that are read, and mean nothing.
 constexpr std::uint32_t placesBehind = 3;
 
-/// One thread per particle.
+/// One thread per particle. `side`: null where there are no thin sheets.
 template <int D>
 void findRoughPlaces(const Context<Cuda>& context, const CellGrid<D>& grid, std::span<const Vec<D>> x,
-                     float4* rough) {
-  forEach(context, x.size() + placesBehind, [grid, x, rough] __device__(std::size_t i) {
+                     const std::uint32_t* side, float4* rough) {
+  forEach(context, x.size() + placesBehind, [grid, x, side, rough] __device__(std::size_t i) {
     const Vec<D> p = i < x.size() ? x[i] - grid.origin : Vec<D>::filled(INFINITY);
     rough[i] = {static_cast<float>(p[0]), static_cast<float>(p[1]), D == 3 ? static_cast<float>(p[D - 1]) : 0.0f,
-                0};
+                __uint_as_float(side && i < x.size() ? side[i] : 0)};
   });
 }
 
 /// One thread per row: counts its neighbours and keeps a bit for each, per slot and row. Reads the positions in
 /// the cells around. No atomics.
-template <int D, bool Periodic>
+template <int D, bool General>
 __global__ void __launch_bounds__(128)
-    countNeighboursKernel(const __grid_constant__ RoughSearch<D, Periodic> around, std::uint32_t first,
+    countNeighboursKernel(const __grid_constant__ RoughSearch<D, General> around, std::uint32_t first,
                           std::uint32_t count, std::uint32_t* found, std::uint64_t* start) {
   const std::uint32_t row = blockIdx.x * blockDim.x + threadIdx.x;
   if (row >= count) return;
@@ -65,9 +65,9 @@ constexpr std::uint32_t neighboursOfBlock = rowsOfBlock*(D == 3 ? 72 : 32);
 
 /// One thread per row: writes the neighbours that were counted. Those of a block follow each other, the near and
 /// the far ones, and are brought together first, where they fit. No atomics.
-template <int D, bool Periodic>
+template <int D, bool General>
 __global__ void __launch_bounds__(rowsOfBlock)
-    writeNeighboursKernel(const __grid_constant__ RoughSearch<D, Periodic> around, std::uint32_t first,
+    writeNeighboursKernel(const __grid_constant__ RoughSearch<D, General> around, std::uint32_t first,
                           std::uint32_t count, const std::uint32_t* found, const std::uint64_t* start,
                           std::uint32_t* column) {
   __shared__ std::uint32_t staged[neighboursOfBlock<D>];
@@ -104,13 +104,13 @@ __global__ void __launch_bounds__(rowsOfBlock)
   for (std::uint32_t k = threadIdx.x; k < far; k += rowsOfBlock) column[farBegin + k] = staged[near + k];
 }
 
-template <int D, bool Periodic>
-void findRoughly(Context<Cuda>& context, const RoughSearch<D, Periodic>& around, NeighbourRows<Cuda>& rows) {
+template <int D, bool General>
+void findRoughly(Context<Cuda>& context, const RoughSearch<D, General>& around, NeighbourRows<Cuda>& rows) {
   Buffer<std::uint32_t, Cuda> found(context, around.slots * std::size_t{rows.count});
-  launch(context, blocksFor(rows.count, 128), 128, 0, countNeighboursKernel<D, Periodic>, around, rows.first,
+  launch(context, blocksFor(rows.count, 128), 128, 0, countNeighboursKernel<D, General>, around, rows.first,
          rows.count, found.data(), rows.start.data());
   rows.column.resize(context, startRows(context, rows.start));
-  launch(context, blocksFor(rows.count, rowsOfBlock), rowsOfBlock, 0, writeNeighboursKernel<D, Periodic>, around,
+  launch(context, blocksFor(rows.count, rowsOfBlock), rowsOfBlock, 0, writeNeighboursKernel<D, General>, around,
          rows.first, rows.count, found.data(), rows.start.data(), rows.column.data());
 }
 
@@ -123,7 +123,7 @@ void findNeighbours(Context<Cuda>& context, const SortedParticles<D>& particles,
   const RowSearch search = RowSearch::make(kind, particles);
   const CellGrid<D>& grid = particles.grid;
   Buffer<float4, Cuda> rough(context, std::size_t{particles.activeCount} + placesBehind);
-  findRoughPlaces(context, grid, particles.position.first(particles.activeCount), rough.data());
+  findRoughPlaces(context, grid, particles.position.first(particles.activeCount), particles.side, rough.data());
   Buffer<std::uint8_t, Cuda> nearWalls;
   if (search.walls) {
     nearWalls.resize(context, grid.cellCount());
@@ -137,14 +137,15 @@ void findNeighbours(Context<Cuda>& context, const SortedParticles<D>& particles,
     around.cells = particles.cells;
     around.exact = particles.position.data();
     around.rough = rough.data();
+    around.hasSheets = particles.side != nullptr;
     around.walls = search.walls;
     around.used = nearWalls.data();
     around.setRadii(radii);
     findRoughly(context, around, rows);
   };
-  bool periodic = false;
-  for (int k = 0; k < D; ++k) periodic = periodic || grid.periodic[k];
-  periodic ? find(RoughSearch<D, true>{}) : find(RoughSearch<D, false>{});
+  bool general = particles.side != nullptr;
+  for (int k = 0; k < D; ++k) general = general || grid.periodic[k];
+  general ? find(RoughSearch<D, true>{}) : find(RoughSearch<D, false>{});
 }
 
 template void findNeighbours<2>(Context<Cuda>&, const SortedParticles<2>&, RowRadii, RowKind,

@@ -12,12 +12,14 @@ namespace treacle {
 /// Candidates for neighbours by positions in single precision, from the lower corner of the domain: enough to tell
 /// who is clearly inside or outside of the radii. Whoever is not is looked at again in double precision, so the
 /// rows are those of the CPU.
-template <int D, bool Periodic>
+/// General: the domain may be periodic, and have thin sheets.
+template <int D, bool General>
 struct RoughSearch {
   CellGrid<D> grid;
   CellRangesView cells;
   const Vec<D>* exact = nullptr;
-  const float4* rough = nullptr;
+  const float4* rough = nullptr;  // and the bits of a particle's word of sides
+  bool hasSheets = false;
   double near2 = 0, far2 = 0;  // squares of the radii [m2]
   // The squares less and plus a bound on the error of rough ones.
   float nearIn = 0, nearOut = 0, farIn = 0, farOut = 0;
@@ -161,9 +163,10 @@ struct RoughSearch {
     float sum = 0;
     for (int k = 0; k < D; ++k) {
       float away = fabsf(d[k]);
-      if (Periodic && grid.periodic[k]) away = fminf(away, length[k] - away);
+      if (General && grid.periodic[k]) away = fminf(away, length[k] - away);
       sum = fmaf(away, away, sum);
     }
+    if (General && hasSheets && !sides::seeEachOther(__float_as_uint(a.w), __float_as_uint(b.w))) return INFINITY;
     return sum;
   }
 };

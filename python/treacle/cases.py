@@ -204,7 +204,7 @@ class Body:
     name: str | None = None
     type: Literal["fluid", "wall", "inflow", "rigid"] | None = None
     material: str | None = None
-    shape: Literal["box", "sphere", "cylinder", "cone", "torus", "polygon", "mesh", "particles"] | None = None
+    shape: Literal["box", "sphere", "cylinder", "cone", "torus", "polygon", "polyline", "mesh", "particles"] | None = None
     where: str | None = None
     subtract: Sequence[str] | None = None
     velocity: Sequence[float | str] | Sequence[float] | None = None
@@ -243,7 +243,7 @@ class Body:
     """[m]"""
     points: Sequence[Sequence[float]] | None = None
     """[m]"""
-    fill: Literal["inside", "shell", "outside", "sheet"] | None = None
+    fill: Literal["inside", "shell", "outside", "sheet", "thin-sheet"] | None = None
     thickness: float | None = None
     """[m]"""
     file: str | PathLike[str] | None = None

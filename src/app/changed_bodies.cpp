@@ -72,6 +72,8 @@ class BodyChange {
   void make(std::vector<std::string>& notes) {
     if (case_.isOpen() || state_.particles.flow.nextId > 0)
       refuse("with inflows, outflows or openings bodies must have the names and the order of the run");
+    if (case_.hasThinSheets() || state_.particles.has.sides)
+      refuse("with thin sheets bodies must have the names and the order of the run");
     if (!made_.part.isAll()) refuse("other bodies than those of the run; start once with one process");
     choose();
     requireSameWalls();

@@ -182,7 +182,8 @@ void Recorder::write(const Snapshot& s) {
     Timer timer;
     Frame fluid = fluidFrame(case_, s);
     const Frame walls = wallsFrame(s);
-    const Arrangement arrangement = measureArrangement(fluid, walls, case_.domain, case_.spacing);
+    const Arrangement arrangement =
+        measureArrangement(fluid, solidWalls(case_, walls), case_.domain, case_.spacing);
     std::uint64_t bytes = directory_.writeFrame(fluid, walls, case_.output);
     if (case_.output.surface)
       bytes += directory_.writeSurface(directory_.frameCount() - 1, freeSurface(fluid, case_.spacing),

@@ -88,6 +88,9 @@ void requireFields(const Case& c, const std::filesystem::path& file, const Parti
   if (c.heat && !p.has.temperatures) refuse(file, "a state without temperatures, but the case has heat");
   if (c.hasViscosityFactors() && !p.has.viscosityFactors)
     refuse(file, "a state without factors of the viscosity, but a body of the case has a viscosity_factor");
+  if (c.hasThinSheets() != p.has.sides)
+    refuse(file, fmt::format("a state with{} thin sheets, but the case has {}; expected the case.toml of the run",
+                             p.has.sides ? "" : "out", p.has.sides ? "none" : "some"));
   if (!c.hasViscosityFactors() && p.has.viscosityFactors)
     refuse(file,
            "a state with factors of the viscosity, but no body of the case has a viscosity_factor; expected the "

@@ -96,7 +96,7 @@ void MphOperator<D, Cpu>::viscosityAndDivergence(std::span<const Vec<D>> u, std:
     if constexpr (Renormalised) b = loadBlocks<Lanes>(range, pairs.renormalisation);
     VecLanes<D> force = {};  // minus the viscous part of A u
     Lanes divergence = {};
-    withImages(list.wraps[c], [&]<bool Wraps>() {
+    withImages(list.special[c], [&]<bool Wraps>() {
       std::uint64_t nextViscous = viscousStart_[c], nextPressure = pressureStart_[c];
       const auto add = [&](std::uint32_t j, bool near) {
         const VecLanes<D> d = difference<Wraps, D>(pairs, j, x.x);
@@ -141,7 +141,7 @@ void MphOperator<D, Cpu>::wallDivergence(std::span<const Vec<D>> u) {
     const auto entries = list.segment(static_cast<std::uint32_t>(c), ListSegment::NearFluid);
     Lanes sum = {};
     if (!entries.empty()) {
-      const ClusterPlaces<D> x{loadLanes<D>(range, pairs.position), list.wraps[c] != 0};
+      const ClusterPlaces<D> x(pairs, list, range, static_cast<std::uint32_t>(c));
       for (std::uint32_t j : entries) {
         const PairLanes<D> pair(pairs, j, x, floor2);
         Lanes along = {};
@@ -164,7 +164,7 @@ void MphOperator<D, Cpu>::addGradient(std::span<Vec<D>> y) {
   forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const ClusterPlaces<D>& x, std::uint32_t c) {
     const Lanes qi = loadLanes(range, q_.span());
     VecLanes<D> sum = {};
-    withImages(list.wraps[c], [&]<bool Wraps>() {
+    withImages(list.special[c], [&]<bool Wraps>() {
       std::uint64_t next = pressureStart_[c];
       if constexpr (Renormalised) {
         VecLanes<D> own = {};  // of g d, which meets the particle's own q_i B_i

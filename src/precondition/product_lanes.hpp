@@ -44,7 +44,7 @@ class ClusterWalk {
   /// Always inline: the sums are to stay in registers.
   template <class F>
   [[gnu::always_inline]] void forEach(ListSegment segment, const T*& coefficient, F&& f) const {
-    list_.wraps[cluster_] ? walk<true>(segment, coefficient, f) : walk<false>(segment, coefficient, f);
+    list_.special[cluster_] ? walk<true>(segment, coefficient, f) : walk<false>(segment, coefficient, f);
   }
 
   const ClusterRange range;

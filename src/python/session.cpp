@@ -164,7 +164,7 @@ Frame Session::fluidFrame() const {
     walls = makeFrame(p, p.fluidCount, p.count, simulation_->time());
   });
   addViscosities(case_.materials, fluid);
-  measureArrangement(fluid, walls, case_.domain, case_.spacing);
+  measureArrangement(fluid, solidWalls(case_, walls), case_.domain, case_.spacing);
   return fluid;
 }
 

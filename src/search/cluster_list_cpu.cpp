@@ -2,10 +2,12 @@
 
 #include "treacle/core/lanes.hpp"
 #include "treacle/core/parallel.hpp"
+#include "treacle/model/geometry/side.hpp"
 #include "treacle/search/cluster_lanes.hpp"
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 namespace treacle {
 namespace {
@@ -66,6 +68,24 @@ void forEachCell(const CellGrid<D>& grid, const Reach<D>& reach, F&& f) {
   }
 }
 
+/// Thin sheets between the particles of a cluster and others.
+struct Partition {
+  const std::uint32_t* side;
+  std::uint32_t own[clusterSize];
+  bool someParted = false;
+
+  Partition(const std::uint32_t* all, const ClusterRange& cluster) : side(all) {
+    for (std::uint32_t lane = 0; side && lane < clusterSize; ++lane) own[lane] = side[cluster.particle(lane)];
+  }
+  /// Takes particle j out of reach of those that it is parted from.
+  void part(std::uint32_t j, double far2, Lanes& r2) {
+    const Lanes before = r2;
+    for (std::uint32_t lane = 0; lane < clusterSize; ++lane)
+      if (!sides::seeEachOther(own[lane], side[j])) r2[lane] = std::numeric_limits<double>::infinity();
+    someParted = someParted || (any_of(r2 <= far2) && any_of(before <= far2 && r2 > far2));
+  }
+};
+
 /// What visits one cluster's neighbours; the pass that counts and the one that fills differ in the sink alone.
 template <int D>
 struct ListBuilder {
@@ -73,14 +93,16 @@ struct ListBuilder {
   const CellRanges<>& ranges;
   std::span<const Vec<D>> position;
   ListRadii radii;
+  const std::uint32_t* side;
 
-  /// Calls sink(segment, index) for every neighbour of the cluster; returns whether its reach crosses a periodic
-  /// end.
+  /// Calls sink(segment, index) for every neighbour of the cluster; returns whether its pairs are special.
   template <class Sink>
   bool visit(const ClusterRange& cluster, Sink&& sink) const {
     const double near2 = radii.near * radii.near, far2 = radii.far * radii.far;
     const Reach<D> reach(grid, loadPositions<D>(cluster, position, grid), std::max(radii.near, radii.far));
     const VecLanes<D> x = loadLanes<D>(cluster, position);
+    const double longest2 = std::max(near2, far2);
+    Partition partition(side, cluster);
     const auto visitRange = [&](std::uint32_t begin, std::uint32_t end, int firstSegment) {
       for (std::uint32_t j = begin; j < end; ++j) {
         VecLanes<D> d;
@@ -88,6 +110,7 @@ struct ListBuilder {
         if (reach.wraps) moveToNearest(grid, d.v);
         Lanes r2 = {};
         for (int k = 0; k < D; ++k) r2 += d[k] * d[k];
+        if (side) partition.part(j, longest2, r2);
         if (any_of(r2 <= near2))
           sink(firstSegment, j);
         else if (any_of(r2 <= far2))
@@ -98,7 +121,7 @@ struct ListBuilder {
       visitRange(ranges.fluidBegin[cell], ranges.fluidEnd[cell], static_cast<int>(ListSegment::NearFluid));
       visitRange(ranges.wallBegin[cell], ranges.wallEnd[cell], static_cast<int>(ListSegment::NearWall));
     });
-    return reach.wraps;
+    return reach.wraps || partition.someParted;
   }
 };
 
@@ -111,14 +134,14 @@ void buildClusterList(Context<Cpu>&, const CellGrid<D>& grid, const CellRanges<>
   list.last = scope.last;
   const std::uint32_t clusters = list.clusterCount();
   list.offset.resize(std::size_t{listSegments} * clusters + 1);
-  list.wraps.resize(clusters);
-  const ListBuilder<D> builder{grid, ranges, position, scope.radii};
+  list.special.resize(clusters);
+  const ListBuilder<D> builder{grid, ranges, position, scope.radii, scope.side};
   const auto rangeOf = [&](std::size_t c) { return ClusterRange(list, static_cast<std::uint32_t>(c)); };
 
   list.offset[0] = 0;
   parallelForDynamic(clusters, parallelGrain / clusterSize, 8, [&](std::size_t c) {
     std::array<std::uint64_t, listSegments> count{};
-    list.wraps[c] = builder.visit(rangeOf(c), [&](int segment, std::uint32_t) { ++count[segment]; });
+    list.special[c] = builder.visit(rangeOf(c), [&](int segment, std::uint32_t) { ++count[segment]; });
     const bool fluid =
         count[static_cast<int>(ListSegment::NearFluid)] + count[static_cast<int>(ListSegment::FarFluid)] > 0;
     if (scope.onlyNextToFluid && !fluid) count = {};

@@ -14,7 +14,7 @@ inline ClusterList<Cuda> onDevice(const Context<Cuda>& context, const ClusterLis
   copy.last = list.last;
   copyToDevice<std::uint64_t>(context, {list.offset, offsets}, copy.offset);
   copyToDevice<std::uint32_t>(context, {list.entry, list.offset[offsets - 1]}, copy.entry);
-  copyToDevice<std::uint8_t>(context, {list.wraps, list.clusterCount()}, copy.wraps);
+  copyToDevice<std::uint8_t>(context, {list.special, list.clusterCount()}, copy.special);
   return copy;
 }
 

@@ -52,6 +52,18 @@ struct RandomParticles {
     }
   }
 
+  /// Thin sheets: random sides of two of them, and some walls that belong to one.
+  void addSides(unsigned seed) {
+    std::mt19937 random(seed);
+    particles.has.sides = true;
+    particles.side.resize(particles.count);
+    for (std::uint32_t i = 0; i < particles.count; ++i) {
+      particles.side[i] = static_cast<std::uint32_t>(random() % 3 | random() % 3 << 2);
+      if (i >= particles.fluidCount && random() % 2)
+        particles.side[i] = sides::sheetParticle(0, 1 + static_cast<std::uint32_t>(random() % 2));
+    }
+  }
+
   /// Of these particles, here or on a device, once they are sorted.
   template <class Backend>
   SortedParticles<D> sorted(const Particles<D, Backend>& p, const CellRanges<Backend>& r) const {

@@ -103,6 +103,7 @@ void fill(hid_t file, const Particles<D>& particles, std::int64_t step, double t
   writeAttribute(file, "has_shear_rates", std::uint8_t{particles.has.shearRates});
   writeAttribute(file, "has_temperatures", std::uint8_t{particles.has.temperatures});
   writeAttribute(file, "has_viscosity_factors", std::uint8_t{particles.has.viscosityFactors});
+  if (particles.has.sides) writeAttribute(file, "has_sides", std::uint8_t{1});
   const ModeAge& age = particles.modes.age;
   writeAttribute(file, "mode_count", particles.modeCount());
   writeAttribute(file, "modes_due", age.due);
@@ -224,6 +225,7 @@ Checkpoint<D> readContent(const std::filesystem::path& path, ParticlePart part) 
   particles.steps = readSteps(file);
   const auto has = [&](const char* name) { return readAttribute<std::uint8_t>(file, name) != 0; };
   particles.has = {has("has_shear_rates"), has("has_temperatures"), has("has_viscosity_factors")};
+  particles.has.sides = hasAttribute(file, "has_sides");
   particles.flow = readFlow(file), particles.rigid = readRigid(file), particles.gas = readGas(file);
   Selection selection{part, particles.fluidCount, particles.wallCount(), {}};
   checkpoint.fluidOfAll = selection.fluid, checkpoint.wallsOfAll = selection.walls;

@@ -34,8 +34,8 @@ struct FieldInfo {
 template <class P, class F>
 void forEachNamedField(P& particles, std::uint64_t modeValues, F&& f) {
   auto& [fluidCount, ghostCount, count, position, velocity, pressure, numberDensity, heldPressure, material, body,
-         id, start, acceleration, jerk, has, shearRate, temperature, viscosityFactor, modes, steps, flow, rigid,
-         gas, wallSurface] = particles;
+         id, start, side, acceleration, jerk, has, shearRate, temperature, viscosityFactor, modes, steps, flow,
+         rigid, gas, wallSurface] = particles;
   static_cast<void>(steps), static_cast<void>(flow), static_cast<void>(rigid), static_cast<void>(gas);  // numbers
   static_cast<void>(wallSurface), static_cast<void>(start);  // there is none between steps
   f(FieldInfo{"position", Of::All, count}, position), f(FieldInfo{"velocity", Of::All, count}, velocity);
@@ -44,6 +44,7 @@ void forEachNamedField(P& particles, std::uint64_t modeValues, F&& f) {
   f(FieldInfo{"held_pressure", Of::All, count}, heldPressure);
   f(FieldInfo{"material", Of::All, count}, material), f(FieldInfo{"body", Of::All, count}, body);
   f(FieldInfo{"id", Of::All, count}, id);
+  f(FieldInfo{"side", Of::All, has.sides ? count : 0}, side);
   f(FieldInfo{"acceleration", Of::Fluid, fluidCount}, acceleration);
   f(FieldInfo{"jerk", Of::Fluid, fluidCount}, jerk);
   f(FieldInfo{"shear_rate", Of::Fluid, has.shearRates ? fluidCount : 0}, shearRate);
@@ -139,7 +140,7 @@ void readField(hid_t file, const FieldInfo& info, const Selection& selection, Bu
   field.resize(selection.count(info));
   T* to = field.data();
   for (const RowRange& rows : selection.fluidRows(info)) reader.read(rows, std::exchange(to, to + rows.count));
-  if (info.of != Of::All) return;
+  if (info.of != Of::All || info.count == 0) return;
   const RowRange walls{selection.fluid, selection.walls};
   if (selection.part.isAll()) return reader.read(walls, to);
   Buffer<T> all(selection.walls);  // of one field they may stand anywhere

@@ -1,5 +1,7 @@
 #include "treacle/io/frames/frame.hpp"
 
+#include "treacle/model/geometry/side.hpp"
+
 #include <algorithm>
 #include <numeric>
 #include <optional>
@@ -21,6 +23,8 @@ template <int D>
 Frame makeFrame(const Particles<D>& particles, std::uint32_t begin, std::uint32_t end, double time) {
   std::vector<std::uint32_t> order(end - begin);
   std::iota(order.begin(), order.end(), begin);
+  const auto isHidden = [](std::uint32_t word) { return (word & sides::ofSheet) && !(word & sides::shown); };
+  if (particles.has.sides) std::erase_if(order, [&](std::uint32_t i) { return isHidden(particles.side[i]); });
   std::sort(order.begin(), order.end(), [&](auto a, auto b) { return particles.id[a] < particles.id[b]; });
 
   const auto inSpace = [](const Vec<D>& v) { return resized<3>(v); };
@@ -42,6 +46,14 @@ Frame makeFrame(const Particles<D>& particles, std::uint32_t begin, std::uint32_
   if (particles.has.viscosityFactors && end <= particles.fluidCount)
     frame.viscosityFactor = gathered<double>(particles.viscosityFactor, order, same);
   return frame;
+}
+
+Frame solidWalls(const Case& c, const Frame& walls) {
+  Frame solid;
+  for (std::size_t i = 0; i < walls.position.size(); ++i)
+    if (!c.bodies[static_cast<std::size_t>(walls.body[i])].shape.isThinSheet())
+      solid.position.push_back(walls.position[i]);
+  return solid;
 }
 
 void addViscosities(const std::vector<Material>& materials, Frame& frame) {

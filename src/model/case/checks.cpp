@@ -78,7 +78,7 @@ void warnCompression(const Case& c, std::vector<std::string>& warnings) {
 
 void warnThinWalls(const Case& c, std::vector<std::string>& warnings) {
   for (const Body& body : c.bodies) {
-    if (!body.isWall()) continue;
+    if (!body.isWall() || body.shape.isThinSheet()) continue;
     const auto [extent, where] = thickness(body.shape, c.dimensions);
     const double reach = c.interactionRadius();
     if (extent >= reach * (1 - rounding)) continue;

@@ -29,15 +29,16 @@ void requireTorus(const Checker& at, const Shape& s) {
 }
 
 /// Corners in order.
-void requireOutline(const Checker& at, const std::vector<Vec<2>>& points) {
+void requireOutline(const Checker& at, const std::vector<Vec<2>>& points, bool closed = true) {
   constexpr std::size_t most = 10'000;
-  const std::size_t count = points.size();
-  if (count < 3 || count > most)
-    at.fail({"points"}, fmt::format("expected 3 to {} points, the corners in order, found {}", most, count));
+  const std::size_t count = points.size(), least = closed ? 3 : 2;
+  if (count < least || count > most)
+    at.fail({"points"},
+            fmt::format("expected {} to {} points, the corners in order, found {}", least, most, count));
   const auto text = [&](std::size_t k) {
     return fmt::format("({}, {})", points[k % count][0], points[k % count][1]);
   };
-  if (const auto sides = crossingSides(points)) {
+  if (const auto sides = crossingSides(points, closed)) {
     const auto [a, b] = *sides;
     if (a == b)
       at.fail({"points"},
@@ -46,13 +47,25 @@ void requireOutline(const Checker& at, const std::vector<Vec<2>>& points) {
                                     "whose sides meet nowhere else",
                                     text(a), text(a + 1), text(b), text(b + 1)));
   }
-  if (signedArea2(points) == 0) at.fail({"points"}, "expected a polygon with an area, found points in a line");
+  if (closed && signedArea2(points) == 0)
+    at.fail({"points"}, "expected a polygon with an area, found points in a line");
 }
 
 void requirePolygon(const Checker& at, const Shape& s) {
-  requireOutline(at, s.points);
+  requireOutline(at, s.points, s.kind == ShapeKind::Polygon);
   if (at.wholeCase().dimensions == 3 && !(s.bottom < s.top))
     at.fail({"top"}, fmt::format("expected more than bottom = {}, found {}", s.bottom, s.top));
+}
+
+void requireThinSheet(const Checker& at, const Body& b) {
+  const bool line = b.shape.kind == ShapeKind::Polyline;
+  if (b.kind != BodyKind::Wall)
+    at.fail({line ? "shape" : "fill"},
+            fmt::format("a {} is for bodies of type \"wall\"", line ? "polyline" : "thin-sheet"));
+  const std::vector<Body>& bodies = at.wholeCase().bodies;
+  const auto count = std::ranges::count_if(bodies, [](const Body& body) { return body.shape.isThinSheet(); });
+  if (count > sides::mostSheets)
+    at.fail({"shape"}, fmt::format("expected at most {} thin sheets, found {}", sides::mostSheets, count));
 }
 
 void requireShape(const Checker& at, const Shape& s) {
@@ -62,6 +75,7 @@ void requireShape(const Checker& at, const Shape& s) {
     case ShapeKind::Torus:
       return requireTorus(at, s);
     case ShapeKind::Polygon:
+    case ShapeKind::Polyline:
       return requirePolygon(at, s);
     case ShapeKind::Mesh:
       if (at.wholeCase().dimensions == 2)
@@ -85,6 +99,9 @@ void requireShape(const Checker& at, const Shape& s) {
 void requireRigid(const Checker& at, const Body& b) {
   const Case& c = at.wholeCase();
   const RigidSettings &r = b.rigid, free{};
+  if (c.hasThinSheets())
+    at.fail({"type"},
+            "found beside a thin sheet; expected a case without rigid bodies, or walls with a thickness");
   if (r.hinge && (r.translates != free.translates || r.rotates != free.rotates))
     at.fail({"hinge"}, "expected either a hinge or translates and rotates, found both");
   if (r.hinge && norm(b.velocity) > 0)
@@ -112,6 +129,9 @@ void requireSubtracted(const Checker& at, const Body& b, const Body& from, std::
     }
     if (found->kind == BodyKind::Inflow)
       at.fail({"subtract"}, fmt::format("'{}' is an inflow; expected bodies that have a shape", name));
+    if (found->shape.isThinSheet())
+      at.fail({"subtract"},
+              fmt::format("'{}' is a thin sheet, which holds no place; fluid may be on both sides", name));
     if (found->name == b.name)
       at.fail({"subtract"}, from.name == b.name
                                 ? fmt::format("expected other bodies than '{}' itself", name)
@@ -203,6 +223,7 @@ void requireSound(const Checker& at, const Opening& o) {
 void requireSound(const Checker& at, const Body& b) {
   if (b.kind == BodyKind::Inflow) return requireSound(at, b.inflow);
   requireShape(at, b.shape);
+  if (b.shape.isThinSheet()) requireThinSheet(at, b);
   requireSubtracted(at, b, b, 0);
   if (b.kind == BodyKind::Rigid) requireRigid(at, b);
   if (b.kind == BodyKind::Fluid) {

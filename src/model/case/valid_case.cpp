@@ -188,6 +188,19 @@ void requireGas(const Checker& at, const Case& c) {
                         cells, most));
 }
 
+/// Solvers that assemble the matrix take all particles in reach for neighbours.
+void requireThinSheets(const Checker& at, const Case& c) {
+  if (!c.hasThinSheets()) return;
+  if (c.gas) at.fail({"gas"}, "found beside a thin sheet, which gas is not divided by; a case can have only one");
+  if (c.method.kind != MethodKind::MphI) return;
+  if (!c.isAccurate())
+    at.fail({"method", "scheme"}, "found \"published\" beside a thin sheet; expected \"accurate\"");
+  if (c.solver.operatorKind == OperatorKind::Assembled)
+    at.fail({"solver", "operator"}, "found \"assembled\" beside a thin sheet; expected \"matrix-free\"");
+  if (c.solver.preconditioner == PreconditionerKind::BucketMultigrid)
+    at.fail({"solver", "preconditioner"}, "found \"bucket-multigrid\" beside a thin sheet; expected another one");
+}
+
 void requireSound(const Checker& at, const Case& c) {
   if (c.heat && c.method.kind != MethodKind::MphI) at.fail({"heat"}, heatOfMphI);
   if (std::ranges::none_of(c.bodies, &Body::holdsFluid))
@@ -198,6 +211,7 @@ void requireSound(const Checker& at, const Case& c) {
   requireSurface(at, c);
   requireFrame(at, c);
   requireGas(at, c);
+  requireThinSheets(at, c);
   for (const auto& [key, interval] :
        {std::pair("interval", c.output.interval), std::pair("checkpoint_interval", c.output.checkpointInterval)})
     if (interval > 0 && c.time.end / interval > maxSteps)

@@ -191,8 +191,9 @@ std::vector<Face<D>> facesOf(const Shape& s, const Solid<D>* solid) {
     case ShapeKind::Mesh:
       addSolid(*solid, faces);
       break;
+    case ShapeKind::Polyline:
     case ShapeKind::Particles:
-      break;  // nobody knows where their surface is
+      break;  // nobody knows where the surface of particles is
   }
   return faces;
 }

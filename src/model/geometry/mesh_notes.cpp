@@ -14,6 +14,9 @@ std::string placeText(const Body& body, const Vec<3>& x) {
   return positionText(similarityOf<3>(body.shape).point(x), 3);
 }
 
+/// Whether a mesh need not have an inside.
+bool isSheet(const Shape& s) { return s.fill == FillKind::Sheet || s.isThinSheet(); }
+
 std::string counted(std::size_t count, std::string_view what) {
   return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
 }
@@ -43,7 +46,7 @@ void requireContent(const Body& body) {
   const Vec<3> size = facts.max - facts.min;
   const double least = facts.closed() ? 0 : -0.1 * size[0] * size[1] * size[2];
   const double volume = s.flip ? -facts.volume : facts.volume;
-  if (s.fill == FillKind::Sheet || volume >= least) return;
+  if (isSheet(s) || volume >= least) return;
   const double scale = similarityOf<3>(s).scale();
   throw InputError(fmt::format(
       "body '{}': {} is inside-out: its faces, whose corners must go round counter-clockwise seen from outside, "
@@ -63,12 +66,12 @@ void noteMesh(const Case& c, const Body& body, std::vector<std::string>& notes) 
   const auto note = [&](const std::string& text) {
     notes.push_back(fmt::format("body '{}': {}: {}", body.name, s.file.path, text));
   };
-  if (facts.openEdges > 0 && s.fill != FillKind::Sheet)
+  if (facts.openEdges > 0 && !isSheet(s))
     note(
         fmt::format("the mesh is open at {}, the first at {}; what is inside is decided by winding numbers, which "
                     "close small holes smoothly",
                     counted(facts.openEdges, "edge"), placeText(body, facts.opening)));
-  if (facts.turnedEdges > 0 && s.fill != FillKind::Sheet)
+  if (facts.turnedEdges > 0 && !isSheet(s))
     note(fmt::format(
         "faces on both sides of {} do not agree on where outside is, the first at {}; turn them in the "
         "program that made the file",

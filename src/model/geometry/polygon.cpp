@@ -68,18 +68,19 @@ double signedArea2(const Points& points) {
   return sum;
 }
 
-std::optional<std::pair<std::size_t, std::size_t>> crossingSides(const Points& points) {
-  const std::size_t n = points.size();
+std::optional<std::pair<std::size_t, std::size_t>> crossingSides(const Points& points, bool closed) {
+  const std::size_t n = points.size(), sides = closed ? n : n - 1;
   const auto point = [&](std::size_t k) -> const Vec<2>& { return points[k % n]; };
-  for (std::size_t i = 0; i < n; ++i)
+  for (std::size_t i = 0; i < sides; ++i)
     if (point(i) == point(i + 1)) return std::pair(i, i);
-  for (std::size_t i = 0; i < n; ++i) {
+  for (std::size_t i = 0; i < sides; ++i) {
     // The next side begins where this one ends; it may only not lead back.
-    if (leftOf(point(i), point(i + 1), point(i + 2)) == 0 &&
+    if ((closed || i + 1 < sides) && leftOf(point(i), point(i + 1), point(i + 2)) == 0 &&
         dot(point(i + 1) - point(i), point(i + 2) - point(i + 1)) < 0)
       return std::pair(i, (i + 1) % n);
-    for (std::size_t j = i + 2; j < n; ++j)
-      if ((j + 1) % n != i && meet(point(i), point(i + 1), point(j), point(j + 1))) return std::pair(i, j);
+    for (std::size_t j = i + 2; j < sides; ++j)
+      if ((!closed || (j + 1) % n != i) && meet(point(i), point(i + 1), point(j), point(j + 1)))
+        return std::pair(i, j);
   }
   return std::nullopt;
 }
@@ -105,6 +106,24 @@ std::vector<Facet<3>> polygonFacets<3>(const Shape& s) {
   for (const auto& [a, b, c] : triangulated(points)) {
     facets.push_back({at(a, s.top), at(b, s.top), at(c, s.top)});
     facets.push_back({at(c, s.bottom), at(b, s.bottom), at(a, s.bottom)});
+  }
+  return facets;
+}
+
+template <>
+std::vector<Facet<2>> polylineFacets<2>(const Shape& s) {
+  std::vector<Facet<2>> facets;
+  for (std::size_t k = 0; k + 1 < s.points.size(); ++k) facets.push_back({s.points[k], s.points[k + 1]});
+  return facets;
+}
+
+template <>
+std::vector<Facet<3>> polylineFacets<3>(const Shape& s) {
+  const auto at = [&](std::size_t k, double z) { return Vec<3>{s.points[k][0], s.points[k][1], z}; };
+  std::vector<Facet<3>> facets;
+  for (std::size_t k = 0; k + 1 < s.points.size(); ++k) {
+    facets.push_back({at(k, s.bottom), at(k + 1, s.bottom), at(k + 1, s.top)});
+    facets.push_back({at(k, s.bottom), at(k + 1, s.top), at(k, s.top)});
   }
   return facets;
 }

@@ -104,6 +104,7 @@ Extent untransformedBox(const Shape& s, int dimensions) {
       box = torusBox(s);
       break;
     case ShapeKind::Polygon:
+    case ShapeKind::Polyline:
       box = polygonBox(s);
       break;
     case ShapeKind::Mesh:

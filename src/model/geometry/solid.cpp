@@ -13,19 +13,20 @@ namespace {
 
 std::atomic<std::uint64_t> solids{0};
 
+}  // namespace
+
 template <int D>
-std::shared_ptr<const FacetTree<D>> treeOf(const Shape& s) {
+std::shared_ptr<const FacetTree<D>> facetsOf(const Shape& s) {
   if constexpr (D == 3)
     if (s.kind == ShapeKind::Mesh) return {s.file.mesh.value, &s.file.mesh.value->tree()};
-  return std::make_shared<const FacetTree<D>>(polygonFacets<D>(s));
+  return std::make_shared<const FacetTree<D>>(s.kind == ShapeKind::Polyline ? polylineFacets<D>(s)
+                                                                            : polygonFacets<D>(s));
 }
-
-}  // namespace
 
 template <int D>
 Solid<D>::Solid(const Shape& s, double needed, double spacing)
     : similarity_(similarityOf<D>(s)),
-      tree_(treeOf<D>(s)),
+      tree_(facetsOf<D>(s)),
       fill_(s.fill),
       closed_(s.kind != ShapeKind::Mesh || s.file.mesh.value->facts().closed()),
       sign_(s.flip ? -1 : 1),
@@ -110,6 +111,8 @@ bool Solid<D>::contains(const Vec<D>& x) const {
     }
     case FillKind::Sheet:
       return tree_->nearest(local, thickness_ / 2 + slack_).facet != tree_->none;
+    case FillKind::ThinSheet:
+      return false;
   }
   return inside(local);
 }
@@ -189,6 +192,8 @@ void Solid<D>::otherWays(const Vec<D>& local, double reach, const Vec<D>& first,
   }
 }
 
+template std::shared_ptr<const FacetTree<2>> facetsOf<2>(const Shape&);
+template std::shared_ptr<const FacetTree<3>> facetsOf<3>(const Shape&);
 template class Solid<2>;
 template class Solid<3>;
 

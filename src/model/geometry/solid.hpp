@@ -9,6 +9,10 @@
 
 namespace treacle {
 
+/// The boundary of a polygon or mesh, or a polyline, before its transform.
+template <int D>
+std::shared_ptr<const FacetTree<D>> facetsOf(const Shape& shape);
+
 /// A polygon or mesh, where it stands in the case: which points belong to it, and how far its surface is.
 template <int D>
 class Solid {
@@ -80,6 +84,8 @@ extern template class Solid<2>;
 extern template class Solid<3>;
 
 /// Whether a shape is one that Solid is for.
-inline bool isSolid(const Shape& s) { return s.kind == ShapeKind::Polygon || s.kind == ShapeKind::Mesh; }
+inline bool isSolid(const Shape& s) {
+  return (s.kind == ShapeKind::Polygon || s.kind == ShapeKind::Mesh) && !s.isThinSheet();
+}
 
 }  // namespace treacle

@@ -1,5 +1,6 @@
 #include "solid_points.hpp"
 
+#include "thin_sheet.hpp"
 #include "treacle/core/parallel.hpp"
 #include "treacle/core/work_in_hand.hpp"
 #include "treacle/model/case/names.hpp"
@@ -21,8 +22,8 @@ struct Rows {
 
 /// The rows of the lattice that may lie in the solid, in the domain and a spacing beside it: a particle there
 /// shows that the body reaches out of the domain.
-template <int D>
-Rows<D> rowsOf(const Case& c, const Body& body, const Solid<D>& solid) {
+template <int D, class Region>
+Rows<D> rowsOf(const Case& c, const Body& body, const Region& solid) {
   const Domain& domain = c.domain;
   double points = 1;
   Rows<D> rows{};
@@ -40,8 +41,8 @@ Rows<D> rowsOf(const Case& c, const Body& body, const Solid<D>& solid) {
 }
 
 /// Errors: InputError for one that cannot be meant so.
-template <int D>
-void requireNearDomain(const Case& c, const Body& body, const Solid<D>& solid) {
+template <int D, class Region>
+void requireNearDomain(const Case& c, const Body& body, const Region& solid) {
   constexpr double much = 10;
   const Domain& domain = c.domain;
   bool apart = false, larger = true;
@@ -60,21 +61,11 @@ void requireNearDomain(const Case& c, const Body& body, const Solid<D>& solid) {
           : ""));
 }
 
-}  // namespace
-
-InputError tooManyPoints(const Body& body) {
-  return InputError(
-      fmt::format("body '{}' would have more than {} particles; take a larger spacing or a lower "
-                  "resolution",
-                  body.name, maxParticles));
-}
-
-template <int D>
-std::vector<Vec<D>> solidPoints(const Case& c, const Body& body, std::vector<std::string>& notes,
-                                const std::function<bool(const Vec<D>&)>& keep) {
-  const Solid<D> solid(body.shape, c.interactionRadius(), c.spacing);
-  requireNearDomain(c, body, solid);
-  const Rows<D> rows = rowsOf(c, body, solid);
+template <int D, class Region>
+std::vector<Vec<D>> pointsIn(const Region& solid, const Case& c, const Body& body, std::vector<std::string>& notes,
+                             const std::function<bool(const Vec<D>&)>& keep) {
+  requireNearDomain<D>(c, body, solid);
+  const Rows<D> rows = rowsOf<D>(c, body, solid);
   const std::int64_t length = rows.count[0], count = rows.count[1] * (D == 3 ? rows.count[D - 1] : 1);
   const auto at = [&](std::int64_t i, std::int64_t row) {
     Vec<D> x = rows.origin;
@@ -113,9 +104,39 @@ std::vector<Vec<D>> solidPoints(const Case& c, const Body& body, std::vector<std
   return points;
 }
 
+}  // namespace
+
+InputError tooManyPoints(const Body& body) {
+  return InputError(
+      fmt::format("body '{}' would have more than {} particles; take a larger spacing or a lower "
+                  "resolution",
+                  body.name, maxParticles));
+}
+
+template <int D>
+std::vector<Vec<D>> solidPoints(const Case& c, const Body& body, std::vector<std::string>& notes,
+                                const std::function<bool(const Vec<D>&)>& keep) {
+  return pointsIn<D>(Solid<D>(body.shape, c.interactionRadius(), c.spacing), c, body, notes, keep);
+}
+
+template <int D>
+std::vector<Vec<D>> sheetPoints(const Case& c, const Body& body, std::vector<std::string>& notes,
+                                const std::function<bool(const Vec<D>&)>& keep) {
+  const ThinSheet<D> sheet(c, body);
+  return pointsIn<D>(sheet, c, body, notes, [&](const Vec<D>& x) {
+    for (int k = 0; k < D; ++k)
+      if (!(x[k] >= c.domain.min[k] && x[k] < c.domain.max[k])) return false;
+    return keep(x + sheet.at(x, c.interactionRadius()).way);
+  });
+}
+
 template std::vector<Vec<2>> solidPoints<2>(const Case&, const Body&, std::vector<std::string>&,
                                             const std::function<bool(const Vec<2>&)>&);
 template std::vector<Vec<3>> solidPoints<3>(const Case&, const Body&, std::vector<std::string>&,
+                                            const std::function<bool(const Vec<3>&)>&);
+template std::vector<Vec<2>> sheetPoints<2>(const Case&, const Body&, std::vector<std::string>&,
+                                            const std::function<bool(const Vec<2>&)>&);
+template std::vector<Vec<3>> sheetPoints<3>(const Case&, const Body&, std::vector<std::string>&,
                                             const std::function<bool(const Vec<3>&)>&);
 
 }  // namespace treacle

@@ -21,4 +21,10 @@ template <int D>
 std::vector<Vec<D>> solidPoints(const Case& c, const Body& body, std::vector<std::string>& notes,
                                 const std::function<bool(const Vec<D>&)>& keep);
 
+/// The places of that lattice on both sides of a thin sheet that its particles take, as far as particles act on
+/// each other and inside the domain. `keep`: asked of the nearest point of the sheet.
+template <int D>
+std::vector<Vec<D>> sheetPoints(const Case& c, const Body& body, std::vector<std::string>& notes,
+                                const std::function<bool(const Vec<D>&)>& keep);
+
 }  // namespace treacle

@@ -3,6 +3,7 @@
 #include "cut_search.hpp"
 #include "face_corner.hpp"
 #include "solid.hpp"
+#include "thin_sheet.hpp"
 #include "treacle/core/work_in_hand.hpp"
 #include "treacle/model/geometry/wall_sight.hpp"
 #include "treacle/model/particles/particles.hpp"
@@ -14,6 +15,7 @@
 #include <array>
 #include <cmath>
 #include <deque>
+#include <map>
 #include <memory>
 
 namespace treacle {
@@ -50,16 +52,18 @@ class SurfaceFinder {
   /// `solids`: of each body that is a polygon or mesh; they must outlive the finder.
   SurfaceFinder(const Case& c, const Solids<D>& solids)
       : spacing_(c.spacing), reach_(c.viscosityRadius()), search_(c.spacing, reach_, margin()), solids_(solids) {
+    for (std::size_t b = 0; b < c.bodies.size(); ++b)
+      if (c.bodies[b].shape.isThinSheet()) sheets_.emplace(b, ThinSheet<D>(c, c.bodies[b]));
     for (const Body& body : c.bodies) {
-      const bool cut = body.isWall() && !BodyCondition<D>::isEmpty(body);
+      const bool cut = isSolidWall(body) && !BodyCondition<D>::isEmpty(body);
       conditions_.push_back(cut ? std::make_unique<BodyCondition<D>>(c, body) : nullptr);
     }
     for (std::size_t b = 0; b < c.bodies.size(); ++b)
-      if (c.bodies[b].isWall()) addImages(c.domain, c.bodies[b], b);
+      if (isSolidWall(c.bodies[b])) addImages(c.domain, c.bodies[b], b);
     around_.resize(c.bodies.size());
     const Vec<D> far = Vec<D>::filled(reach_ + margin());
     for (std::size_t b = 0; b < c.bodies.size(); ++b) {
-      if (!c.bodies[b].isWall()) continue;
+      if (!isSolidWall(c.bodies[b])) continue;
       const WallPart<D> own(c.bodies[b], {}, nullptr, solids_[b].get(), spacing_);
       for (const Part& part : parts_)
         if ((part.body == b || moveAlike(c.bodies[b], c.bodies[part.body])) &&
@@ -69,6 +73,7 @@ class SurfaceFinder {
   }
 
   WallSurface<D> at(const Vec<D>& x, std::size_t body) {
+    if (const auto sheet = sheets_.find(body); sheet != sheets_.end()) return ofSheet(sheet->second, x);
     const Vec<D> far = Vec<D>::filled(reach_);
     near_.parts.clear();
     for (const WallPart<D>* part : around_[body])
@@ -89,6 +94,16 @@ class SurfaceFinder {
     const WallPart<D>* part;
     const Face<D>* face;
   };
+
+  static bool isSolidWall(const Body& body) { return body.isWall() && !body.shape.isThinSheet(); }
+
+  WallSurface<D> ofSheet(const ThinSheet<D>& sheet, const Vec<D>& x) const {
+    const auto place = sheet.at(x, 2 * reach_);
+    WallSurface<D> surface{};
+    if (place.side != sides::None)
+      surface.face[0] = converted<float>(place.normal * std::max(place.distance, margin()));
+    return surface;
+  }
 
   /// What is nearer than this counts as touching [m].
   double margin() const { return 1e-3 * spacing_; }
@@ -207,6 +222,7 @@ class SurfaceFinder {
   double spacing_, reach_;  // [m]
   CutSearch<D> search_;
   const Solids<D>& solids_;
+  std::map<std::size_t, ThinSheet<D>> sheets_;  // by body
   std::vector<std::unique_ptr<BodyCondition<D>>> conditions_;
   std::vector<Part> parts_;
   std::vector<std::vector<const WallPart<D>*>> around_;  // of each body: what its particles can see

@@ -70,7 +70,7 @@ BodyPoints<D> bodyPoints(const Case& c, const Body& body, std::vector<std::strin
     if (where && valueAt(x, *where, body, "where", body.where) == 0) return false;
     for (const BodyRegion<D>& region : subtracted)
       if (region.holds(x)) return false;
-    requireInside(c.domain, body, x);
+    if (!body.shape.isThinSheet()) requireInside(c.domain, body, x);  // a sheet may be larger
     return true;
   });
   if (where && points.size() == 0)

@@ -4,6 +4,7 @@
 #include "treacle/core/parallel.hpp"
 #include "treacle/model/case/names.hpp"
 #include "treacle/model/geometry/shape.hpp"
+#include "treacle/model/geometry/side_map.hpp"
 #include "treacle/model/geometry/wall_surface.hpp"
 
 #include "body_points.hpp"
@@ -246,7 +247,8 @@ Particles<D> createParticles(const Case& c, std::vector<std::string>& notes, std
 
   PointBoxes<D> boxes(c.domain, radius);
   for (const auto* group : {&fluid, &walls})
-    for (const Filled<D>& f : *group) boxes.add(f.body, f.points.place);
+    for (const Filled<D>& f : *group)
+      if (!f.body->shape.isThinSheet()) boxes.add(f.body, f.points.place);
   PointGrid<D> fluidGrid = gridFor(c.domain, radius, fluid, boxes);
   unite(BodyKind::Fluid, fluid, boxes, fluidGrid, notes);
   {
@@ -275,6 +277,7 @@ Particles<D> createParticles(const Case& c, std::vector<std::string>& notes, std
     particles.wallSurface.resize(count);
     std::copy(surfaces.begin(), surfaces.end(), particles.wallSurface.begin());
   }
+  if (c.hasThinSheets()) createSides<D>(c, particles);
   if (bodyCounts) {
     bodyCounts->assign(c.bodies.size(), {});
     const auto countOf = [&](const std::vector<Filled<D>>& group, std::uint32_t BodyCount::*ofKind) {

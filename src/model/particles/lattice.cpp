@@ -160,6 +160,7 @@ double boxPoints(const Case& c) {
 template <int D>
 std::vector<Vec<D>> latticePoints(const Case& c, const Body& body, std::vector<std::string>& notes,
                                   const std::function<bool(const Vec<D>&)>& keep) {
+  if (body.shape.isThinSheet()) return sheetPoints<D>(c, body, notes, keep);
   if (isSolid(body.shape)) return solidPoints<D>(c, body, notes, keep);
   const bool box = body.shape.kind == ShapeKind::Box;
   const double spacing = spacingOf(body, c.spacing);

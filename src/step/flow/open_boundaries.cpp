@@ -214,6 +214,7 @@ std::uint32_t OpenBoundaries<D, Backend>::add(const CellGrid<D>& grid, const Inc
     added.material[i] = static_cast<std::uint8_t>(incoming.material);
     added.body[i] = static_cast<std::uint8_t>(incoming.body);
     added.id[i] = change.flow.nextId++;
+    if (added.has.sides) added.side[i] = sides::None;
     if (added.has.temperatures) added.temperature[i] = incoming.temperature;
     if (added.has.viscosityFactors)
       added.viscosityFactor[i] = incoming.viscosityFactor > 0 ? incoming.viscosityFactor : 1;

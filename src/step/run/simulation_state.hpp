@@ -13,6 +13,7 @@
 #include "treacle/step/run/simulation.hpp"
 #include "treacle/step/run/step_control.hpp"
 #include "walls/held_walls.hpp"
+#include "walls/step_sides.hpp"
 
 #include <fmt/format.h>
 
@@ -35,6 +36,7 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
   MovingBodies<D, Backend> bodies;
   StepMotion<D, Backend> motion;
   OpenBoundaries<D, Backend> boundaries;
+  StepSides<D, Backend> sides;
   std::unique_ptr<StepMethod<D, Backend>> method;
   std::optional<DistantWalls<D>> distant;  // which `particles` has not
   double lastSpeed = 0;                    // of the fastest particle [m/s]
@@ -45,7 +47,7 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
   bool tooCoarse = false;              // an automatic step was, and it was said
 
   State(const Case& c, Particles<D> state, std::int64_t startStep, double startTime, const Communicator* processes)
-      : Flow(c, startStep, startTime), bodies(*this), motion(*this, bodies), boundaries(*this) {
+      : Flow(c, startStep, startTime), bodies(*this), motion(*this, bodies), boundaries(*this), sides(*this) {
     if (theCase.time.automatic) control.emplace(theCase);
     if (processes && processes->size() > 1) {
       requireShareable(theCase, std::is_same_v<Backend, Cpu> ? BackendKind::Cpu : BackendKind::Cuda);
@@ -65,6 +67,7 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     if (step == 0) forgetFlow();
     // A state that goes on is in the order that its last step has left it in, which the next one's sort follows.
     if (step == 0 || context.communicator || theCase.middleShare() == 0) method->sortParticles();
+    sides.update(*this, time);
     if (step == 0) {  // else the state has the densities of its last step
       method->findNeighbours();
       method->computeDensities();
@@ -215,6 +218,7 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
       goToMiddle();
       bodies.prepare();
       method->sortParticles();
+      sides.update(*this, time + theCase.middleShare() * timeStep);
     });
     phases.run(context, treacle::phases::lists, [&] { method->findNeighbours(); });
   }
@@ -307,7 +311,7 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
 
   std::size_t bytes() const {
     std::size_t sum = velocity.bytes() + position.bytes() + this->wallMotion.bytes() + this->openings.bytes() +
-                      bodies.bytes() + boundaries.bytes() + method->bytes();
+                      bodies.bytes() + boundaries.bytes() + sides.bytes() + method->bytes();
     particles.forEachField([&](const auto& field) { sum += field.bytes(); });
     if (!particles.has.starts) sum += particles.start.bytes();
     return std::is_same_v<Backend, Cpu> ? sum + distant->bytes() : sum;

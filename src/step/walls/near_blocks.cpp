@@ -12,7 +12,8 @@ namespace treacle {
 template <int D>
 NearBlocks<D>::NearBlocks(const Case& c, const CellGrid<D>& cells) : cells_(cells), blocks_(cells) {
   for (int k = 0; k < D; ++k) blocks_.count[k] = std::max(1, cells.count[k] / cellsOfBlock);
-  near_.resize(blocks_.cellCount(), c.gas ? 1 : 0);  // gas is bounded by walls wherever they are
+  // Gas is bounded by walls wherever they are, and walls have sides that nothing else remembers.
+  near_.resize(blocks_.cellCount(), c.gas || c.hasThinSheets() ? 1 : 0);
   for (const Body& body : c.bodies)
     bodyRests_.push_back(body.kind == BodyKind::Wall && body.velocity == Vec<3>{} &&
                          body.oscillation.period == 0 && !isDriven(body.displacement) && !body.rotation);

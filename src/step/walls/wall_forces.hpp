@@ -24,7 +24,7 @@ class WallForces {
     // The lists of the step reach only as far as pressures.
     const double reach = std::max(pairs.terms.densityRadius, pairs.terms.viscosityRadius);
     buildClusterList<D>(state.context, pairs.grid, neighbourhood.ranges(), pairs.position,
-                        {n, pairs.ownEnd(), {reach, 0}, true}, list_);
+                        {n, pairs.ownEnd(), {reach, 0}, true, pairs.side}, list_);
     walls_ = list_.view();
   }
 

@@ -42,6 +42,9 @@ void checkNeighbourRowsSizes() {
       RandomParticles<D> r(fluid, wall, fluid + 3 * wall + 7);
       checkRows(context, r, found);
     }
+  RandomParticles<D> divided(20011, 7001, 5);
+  divided.addSides(5);
+  checkRows(context, divided, found);
   // More in most cells than a word has bits, and more in rows than a block brings together.
   RandomParticles<D> r(20011, 7001, 1);
   r.radius *= 2;

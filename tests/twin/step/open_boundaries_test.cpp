@@ -2,6 +2,7 @@
 #include "support/gpu.hpp"
 #include "support/isph_cases.hpp"
 #include "support/open_cases.hpp"
+#include "support/sheet_cases.hpp"
 #include "support/state_of.hpp"
 #include "treacle/step/flow/outflow.hpp"
 #include "treacle/step/run/simulation.hpp"
@@ -98,6 +99,31 @@ TEST(GasTwin, StepsLikeTheCpu) {
   TREACLE_SKIP_WITHOUT_GPU();
   comparePlugs<2>();
   comparePlugs<3>();
+}
+
+template <int D>
+void comparePaddles(MethodKind method) {
+  Case c = paddleTank(D, method);
+  c.solver.tolerance = 1e-22;
+  c.solver.deflation = 0;
+  Simulation<D> cpu(c, created<D>(c));
+  Simulation<D, Cuda> cuda(c, created<D>(c));
+  for (int k = 0; k < 10; ++k) {
+    const StepReport a = cpu.advance(), b = cuda.advance();
+    ASSERT_NEAR(a.diagnostics.kineticEnergy, b.diagnostics.kineticEnergy, 1e-8 * a.diagnostics.kineticEnergy);
+  }
+  const Particles<D> here = stateOf(cpu), there = stateOf(cuda);
+  std::vector<std::uint32_t> side(here.count);
+  for (std::uint32_t i = 0; i < here.count; ++i) side[here.id[i]] = here.side[i];
+  for (std::uint32_t i = 0; i < there.count; ++i) ASSERT_EQ(there.side[i], side[there.id[i]]) << there.id[i];
+}
+
+TEST(ThinSheetTwin, StepsLikeTheCpu) {
+  TREACLE_SKIP_WITHOUT_GPU();
+  comparePaddles<2>(MethodKind::MphI);
+  comparePaddles<3>(MethodKind::MphI);
+  comparePaddles<2>(MethodKind::Isph);
+  comparePaddles<3>(MethodKind::Isph);
 }
 
 TEST(OpenBoundariesTwin, ContinueFromACopyWithTheSameBits) {

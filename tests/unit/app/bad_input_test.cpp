@@ -155,7 +155,7 @@ constexpr BadCase badCases[] = {
      "'ranges'"},
     {"unknownShape", "shape = \"box\"", "shape = \"cube\"",
      "bad.toml:23:9: shape in [[body]] 'column': expected 'box', 'sphere', 'cylinder', 'cone', 'torus', "
-     "'polygon', "
+     "'polygon', 'polyline', "
      "'mesh' or 'particles', found 'cube'"},
     {"unknownField", "interval = 1e-3", "interval = 1e-3\nfields = [\"speed\"]",
      "bad.toml:41:10: fields in [output]: expected 'velocity', 'pressure', 'number_density', 'nearest_distance', "

@@ -31,7 +31,8 @@ constexpr double time3 = 3 * 0.1;  // [s]; not the decimal 0.3
 template <int D>
 Particles<D> randomParticles(std::uint32_t fluid, std::uint32_t wall) {
   Particles<D> particles;
-  particles.resize({fluid, wall, fluid % 4, 0, 0, {fluid % 2 == 0, fluid % 2 == 0, fluid % 2 == 0}});
+  particles.resize(
+      {fluid, wall, fluid % 4, 0, 0, {fluid % 2 == 0, fluid % 2 == 0, fluid % 2 == 0, false, fluid % 2 == 0}});
   particles.modes.age = {7, 13};
   particles.modes.pressure = {3.75, 4, 6};
   particles.steps = {0.01, 0.02, 0.3};
@@ -62,6 +63,7 @@ void expectSame(const Particles<D>& a, const Particles<D>& b) {
   EXPECT_EQ(a.fluidCount, b.fluidCount);
   EXPECT_EQ(a.count, b.count);
   EXPECT_TRUE(sameBits(a.position, b.position));
+  EXPECT_TRUE(sameBits(a.side, b.side));
   EXPECT_TRUE(sameBits(a.velocity, b.velocity));
   EXPECT_TRUE(sameBits(a.pressure, b.pressure));
   EXPECT_TRUE(sameBits(a.numberDensity, b.numberDensity));

@@ -12,15 +12,21 @@ namespace treacle::test {
 namespace {
 
 /// Every pair within the radii is in its cluster's list exactly once, in the right segment; every entry is within
-/// reach of some lane; and clusters that do not wrap have no pairs across a periodic end.
+/// reach of some lane; and clusters that are not special have no pairs across a periodic end, or parted by a
+/// sheet.
 template <int D>
-void checkLists(std::uint32_t fluid, std::uint32_t wall) {
+void checkLists(std::uint32_t fluid, std::uint32_t wall, bool sheets) {
   RandomParticles<D> r(fluid, wall, fluid + 1);
+  if (sheets) r.addSides(fluid);
   sortByCell(r.context, r.grid, r.particles, r.ranges, r.workspace);
   const auto& x = r.particles.position;
   const ListRadii radii{0.5 * r.radius, r.radius};
   ClusterList<> list;
-  buildClusterList<D>(r.context, r.grid, r.ranges, x, {0, fluid, radii}, list);
+  buildClusterList<D>(r.context, r.grid, r.ranges, x,
+                      {0, fluid, radii, false, sheets ? r.particles.side.data() : nullptr}, list);
+  const auto sees = [&](std::uint32_t i, std::uint32_t j) {
+    return !sheets || sides::seeEachOther(r.particles.side[i], r.particles.side[j]);
+  };
 
   for (std::uint32_t c = 0; c < list.clusterCount(); ++c) {
     const std::uint32_t first = c * clusterSize, last = std::min(first + clusterSize, fluid);
@@ -32,14 +38,18 @@ void checkLists(std::uint32_t fluid, std::uint32_t wall) {
         for (std::uint32_t j : list.segment(c, ListSegment(s))) {
           ASSERT_EQ(j >= fluid, s >= int(ListSegment::NearWall));
           const double distance = r.distance(x[i], x[j]);
-          nearest[entry] = std::min(nearest[entry], distance);
+          if (sees(i, j)) nearest[entry] = std::min(nearest[entry], distance);
           ++entry;
-          if (distance <= radii.far) {
+          if (distance <= radii.far && !sees(i, j)) {
+            ASSERT_TRUE(list.special[c]) << i << " and " << j;
+          }
+          if (distance <= radii.far && sees(i, j)) {
             ++withinReach[j], segmentOf[j] = s % 2;
-            ASSERT_TRUE(list.wraps[c] || norm(x[j] - x[i]) == distance) << i << " and " << j;
+            ASSERT_TRUE(list.special[c] || norm(x[j] - x[i]) == distance) << i << " and " << j;
           }
         }
       for (std::uint32_t j = 0; j < r.ranges.activeCount; ++j) {
+        if (!sees(i, j)) continue;
         const double distance = r.distance(x[i], x[j]);
         if (distance < radii.far * (1 - 1e-12)) {
           ASSERT_EQ(withinReach[j], 1) << i << " and " << j;
@@ -55,8 +65,10 @@ void checkLists(std::uint32_t fluid, std::uint32_t wall) {
 
 TEST(ClusterList, HoldsExactlyThePairsWithinReach) {
   for (std::uint32_t n : {1u, 7u, 31u, 33u, 300u, 1500u}) {
-    checkLists<2>(n, n / 2);
-    checkLists<3>(n, n / 2);
+    for (const bool sheets : {false, true}) {
+      checkLists<2>(n, n / 2, sheets);
+      checkLists<3>(n, n / 2, sheets);
+    }
   }
 }
 

@@ -10,11 +10,19 @@ namespace treacle {
 /// cluster's list, and two may coincide; their differences are then zero and so is every term, whatever 1/r.
 inline constexpr double tinyDistance2 = 1e-20;
 
-/// Where the particles of a cluster stand [m], and whether neighbours may be nearer across a periodic end.
+/// Where the particles of a cluster stand [m], and whether neighbours may be nearer across a periodic end, or be
+/// parted from some of them by thin sheets.
 template <int D>
 struct ClusterPlaces {
   VecLanes<D> x;
-  bool wraps;
+  bool special;
+  std::uint32_t side[clusterSize];  // where thin sheets are
+
+  ClusterPlaces(const MphPairs<D>& pairs, const ClusterListView& list, const ClusterRange& range, std::uint32_t c)
+      : x(loadLanes<D>(range, pairs.position)), special(list.special[c] != 0) {
+    if (!special || !pairs.side) return;
+    for (std::uint32_t lane = 0; lane < clusterSize; ++lane) side[lane] = pairs.side[range.particle(lane)];
+  }
 };
 
 /// One neighbour as the lanes of a cluster see it.
@@ -31,8 +39,9 @@ struct PairLanes {
   PairLanes(const MphPairs<D>& pairs, std::uint32_t j, const ClusterPlaces<D>& own, double floor2) {
     const Vec<D>& xj = pairs.position[j];
     for (int k = 0; k < D; ++k) d[k] = xj[k] - own.x[k];
-    if (own.wraps) moveToNearest(pairs.grid, d.v);
+    if (own.special) moveToNearest(pairs.grid, d.v);
     measure(floor2);
+    if (own.special && pairs.side) part(pairs.side[j], own.side);
   }
 
  private:
@@ -41,6 +50,12 @@ struct PairLanes {
     for (int k = 0; k < D; ++k) r2 += d[k] * d[k];
     r.square = max(r2, Lanes(floor2));
     r.inverse = inverseSqrt(r.square);
+  }
+  /// All terms of pairs so far apart are zero.
+  void part(std::uint32_t other, const std::uint32_t (&own)[clusterSize]) {
+    constexpr double far = 1e15;
+    for (std::uint32_t lane = 0; lane < clusterSize; ++lane)
+      if (!sides::seeEachOther(own[lane], other)) r.square[lane] = far * far, r.inverse[lane] = 1 / far;
   }
 };
 
@@ -56,7 +71,7 @@ inline void forEachCluster(const MphPairs<D>& pairs, const ClusterListView& list
   parallelFor(list.clusterCount(), parallelGrain / clusterSize, [&] [[gnu::flatten]] (std::size_t index) {
     const auto c = static_cast<std::uint32_t>(index);
     const ClusterRange range(list, c);
-    body(range, ClusterPlaces<D>{loadLanes<D>(range, pairs.position), list.wraps[c] != 0}, c);
+    body(range, ClusterPlaces<D>(pairs, list, range, c), c);
   });
 }
 

@@ -38,9 +38,10 @@ class MphNeighbourhood {
     }
     const double hp = pairs_.terms.pressureRadius, hn = pairs_.terms.densityRadius;
     const double far = std::max({pairs_.terms.viscosityRadius, hn, wholeRows ? 2 * hp : hp});
-    buildClusterList<D>(context, pairs_.grid, ranges(), pairs_.position, {0, ownFluid, {hp, far}}, fluidList_);
     buildClusterList<D>(context, pairs_.grid, ranges(), pairs_.position,
-                        {fluid, ownEnd, {hp, hn > hp ? hn : 0}, true}, wallList_);
+                        {0, ownFluid, {hp, far}, false, pairs_.side}, fluidList_);
+    buildClusterList<D>(context, pairs_.grid, ranges(), pairs_.position,
+                        {fluid, ownEnd, {hp, hn > hp ? hn : 0}, true, pairs_.side}, wallList_);
     pairs_.fluidList = fluidList_.view();
     pairs_.wallList = wallList_.view();
   }

@@ -32,7 +32,7 @@ struct ClusterListView {
   std::uint32_t first = 0, last = 0;  // particles [first, last); cluster c holds particles first + 8 c …
   const std::uint64_t* offset = nullptr;
   const std::uint32_t* entry = nullptr;
-  const std::uint8_t* wraps = nullptr;
+  const std::uint8_t* special = nullptr;
 
   TREACLE_HD std::uint32_t clusterCount() const { return (last - first + clusterSize - 1) / clusterSize; }
   std::span<const std::uint32_t> segment(std::uint32_t cluster, ListSegment s) const {
@@ -48,15 +48,17 @@ struct ClusterList {
   std::uint32_t first = 0, last = 0;
   Buffer<std::uint64_t, Backend> offset;  // 4 clusterCount() + 1: start of every segment
   Buffer<std::uint32_t, Backend> entry;   // indices of particles
-  Buffer<std::uint8_t, Backend> wraps;    // per cluster: its reach crosses a periodic end
+  // Per cluster: its reach crosses a periodic end, or thin sheets part some of its particles from their
+  // neighbours.
+  Buffer<std::uint8_t, Backend> special;
 
-  ClusterListView view() const { return {first, last, offset.data(), entry.data(), wraps.data()}; }
+  ClusterListView view() const { return {first, last, offset.data(), entry.data(), special.data()}; }
   operator ClusterListView() const { return view(); }
   std::uint32_t clusterCount() const { return view().clusterCount(); }
   std::span<const std::uint32_t> segment(std::uint32_t cluster, ListSegment s) const {
     return view().segment(cluster, s);
   }
-  std::size_t bytes() const { return offset.bytes() + entry.bytes() + wraps.bytes(); }
+  std::size_t bytes() const { return offset.bytes() + entry.bytes() + special.bytes(); }
 };
 
 struct ListRadii {
@@ -64,11 +66,13 @@ struct ListRadii {
   double far = 0;   // [m], >= near; 0: no far parts
 };
 
-/// The particles [first, last) that get lists, and how far these reach.
+/// The particles [first, last) that get lists, and how far these reach. A list leaves out particles that thin
+/// sheets part from all particles of its cluster.
 struct ListScope {
   std::uint32_t first = 0, last = 0;
   ListRadii radii;
-  bool onlyNextToFluid = false;  // clusters without fluid within reach get empty lists
+  bool onlyNextToFluid = false;         // clusters without fluid within reach get empty lists
+  const std::uint32_t* side = nullptr;  // of all particles (sides); null: there are no thin sheets
 };
 
 /// Builds the lists of the particles of `scope`; `position` [m] is that of all particles.

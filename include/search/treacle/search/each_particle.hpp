@@ -4,11 +4,12 @@
 #include "treacle/core/macros.hpp"
 #include "treacle/search/near_places.hpp"
 #include "treacle/search/shared_buckets.hpp"
+#include "treacle/search/sheet_sides.hpp"
 
 namespace treacle {
 
-// near_places.hpp and shared_buckets.hpp for the sources of both backends, which instantiate them. A thread of a
-// device has one particle or bucket; there are no atomics.
+// near_places.hpp, shared_buckets.hpp and sheet_sides.hpp for the sources of both backends, which instantiate
+// them. A thread of a device has one particle or bucket; there are no atomics.
 
 /// The values of these particles.
 template <class T, class Backend>
@@ -49,10 +50,20 @@ void sortKeys(Context<Backend>& context, const CellGrid<D>& grid, std::span<cons
   forEach(context, position.size(), [=] TREACLE_HD(std::size_t i) { key[i] = grid.key(position[i]); });
 }
 
+template <int D, class Backend>
+void updateSides(Context<Backend>& context, std::span<const PlacedSheet<D>> sheets,
+                 std::span<const Vec<D>> position, std::span<std::uint32_t> side) {
+  forEach(context, side.size(),
+          [=] TREACLE_HD(std::size_t i) { side[i] = updatedSide(sheets, position[i], side[i]); });
+}
+
 #define TREACLE_EACH_PARTICLE(D, Backend)                                                                        \
   template void copyNear(Context<Backend>&, const Surroundings<D>&, const Particles<D, Backend>&, std::uint32_t, \
                          Particles<D>&);                                                                         \
-  template void sortKeys(Context<Backend>&, const CellGrid<D>&, std::span<const Vec<D>>, std::span<std::uint64_t>);
+  template void sortKeys(Context<Backend>&, const CellGrid<D>&, std::span<const Vec<D>>,                         \
+                         std::span<std::uint64_t>);                                                              \
+  template void updateSides(Context<Backend>&, std::span<const PlacedSheet<D>>, std::span<const Vec<D>>,         \
+                            std::span<std::uint32_t>);
 #define TREACLE_EACH_BUCKET(Backend)                                                                           \
   template void bucketCells(Context<Backend>&, std::span<const std::uint64_t>, std::span<const std::uint32_t>, \
                             int, std::span<std::uint64_t>);

@@ -83,7 +83,7 @@ TREACLE_HD void forEachNeighbour(const SortedParticles<D>& particles, std::uint3
     const std::uint32_t end = walls ? cells.wallEnd[c] : cells.fluidEnd[c];
     for (std::uint32_t j = walls ? cells.wallBegin[c] : cells.fluidBegin[c]; j < end; ++j) {
       const double r2 = norm2(grid.difference(x, position[j]));
-      if (r2 < far2) f(j, r2 < near2);
+      if (r2 < far2 && !particles.areParted(i, j)) f(j, r2 < near2);
     }
   });
 }

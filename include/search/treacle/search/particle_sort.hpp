@@ -19,6 +19,7 @@ void placeSorted(const Particles<D, Backend>& particles, const CellRanges<Backen
   sorted.ghostWalls = ranges.ghostWalls;
   sorted.position = particles.position;
   sorted.material = particles.material;
+  sorted.side = particles.has.sides ? particles.side.data() : nullptr;
   sorted.cells = viewOf(ranges);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "treacle/core/vec.hpp"
+#include "treacle/model/geometry/side.hpp"
 #include "treacle/search/cell_grid.hpp"
 #include "treacle/search/cell_sort.hpp"
 
@@ -41,6 +42,7 @@ struct SortedParticles {
   std::uint32_t ghostFluid = 0, ghostWalls = 0;  // the last ones of either, which other processes own
   std::span<const Vec<D>> position;              // [m]
   std::span<const std::uint8_t> material;
+  const std::uint32_t* side = nullptr;  // per particle, of thin sheets (sides); null: the case has none
   CellRangesView cells;
   const std::int32_t* owner = nullptr;  // per cell: the process whose it is; null in a simulation that is alone
   CellGrid<D> grid;
@@ -51,6 +53,11 @@ struct SortedParticles {
   TREACLE_HD std::uint32_t ownFluid() const { return fluidCount - ghostFluid; }
   TREACLE_HD std::uint32_t ownEnd() const { return activeCount - ghostWalls; }
   TREACLE_HD bool isOwn(std::uint32_t i) const { return i < fluidCount ? i < ownFluid() : i < ownEnd(); }
+
+  /// Whether a thin sheet keeps two particles from acting on each other.
+  TREACLE_HD bool areParted(std::uint32_t i, std::uint32_t j) const {
+    return side && !sides::seeEachOther(side[i], side[j]);
+  }
 
   /// The cells' ranges of own particles.
   TREACLE_HD OwnRanges ownRanges() const { return {cells, ownFluid(), ownEnd()}; }

@@ -43,9 +43,13 @@ void forEachFrameField(F&& f) {
 }
 
 /// Copies particles [begin, end), sorted by id: files do not depend on how the search sorts. Shear rates,
-/// temperatures and factors are those of fluid where it has some.
+/// temperatures and factors are those of fluid where it has some. Of thin sheets one layer is shown.
 template <int D>
 Frame makeFrame(const Particles<D>& particles, std::uint32_t begin, std::uint32_t end, double time);
+
+/// The places of those walls of a frame that have a thickness: fluid may be where the particles of thin sheets
+/// are.
+Frame solidWalls(const Case& c, const Frame& walls);
 
 /// Completes a frame of fluid with the viscosities of its shear rates, temperatures and factors, if it has some,
 /// in the materials of the case.

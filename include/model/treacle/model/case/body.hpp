@@ -16,14 +16,16 @@ namespace treacle {
 /// Largest number of bodies: particles keep theirs in one byte, of which one value says that it is not known.
 inline constexpr std::size_t maxBodies = 255;
 
-enum class ShapeKind { Box, Sphere, Cylinder, Cone, Torus, Polygon, Mesh, Particles };
+enum class ShapeKind { Box, Sphere, Cylinder, Cone, Torus, Polygon, Polyline, Mesh, Particles };
 
 /// Which side of its boundary a polygon or mesh stands for: all of the inside, the inside up to a distance from
-/// the boundary (of a wall whose rest nobody sees), a layer on the outside, or a sheet, half on each side.
-enum class FillKind { Inside, Shell, Outside, Sheet };
+/// the boundary (of a wall whose rest nobody sees), a layer on the outside, or a sheet, half on each side. A thin
+/// sheet has no thickness: its particles are for the fluid on their other side alone (sides).
+enum class FillKind { Inside, Shell, Outside, Sheet, ThinSheet };
 
 /// A region of space. In two dimensions a sphere is a disc, a cylinder a strip along its axis, a cone a strip
-/// whose width changes; a torus and a mesh have three. Particles stand where a file says.
+/// whose width changes; a torus and a mesh have three. A polyline is a thin sheet. Particles stand where a file
+/// says.
 struct Shape {
   ShapeKind kind = ShapeKind::Box;
   Vec<3> min{}, max{};                              // box corners [m]
@@ -35,13 +37,15 @@ struct Shape {
   double innerStartRadius = 0, innerEndRadius = 0;  // cone: hollow inside [m]
   double tubeRadius = 0;                            // torus [m]
   Vec<3> axis{0, 0, 1};                             // torus: of any length but zero
-  std::vector<Vec<2>> points{};                     // polygon: its corners in order, either way round [m]
-  double bottom = 0, top = 0;                       // polygon in three dimensions: where it ends along z [m]
+  std::vector<Vec<2>> points{};                     // polygon: corners in order, either way round; polyline [m]
+  double bottom = 0, top = 0;                       // of both in three dimensions: where they end along z [m]
   FillKind fill = FillKind::Inside;                 // polygon, mesh
   double thickness = 0;  // of what is not all of the inside; 0: as far as particles act on each other [m]
   ShapeFile file{};      // mesh, particles
   bool flip = false;     // mesh: the file has its inside and outside the wrong way round
   std::optional<Transform> transform{};
+
+  bool isThinSheet() const { return kind == ShapeKind::Polyline || fill == FillKind::ThinSheet; }
 
   bool operator==(const Shape&) const = default;
 };

@@ -61,9 +61,10 @@ void visit(auto& v, Like<Shape> auto& s, const Case& c) {
   };
   const auto filling = [&] {
     v({"fill",
-       "Which side of the boundary is filled: all of the inside, the inside up to thickness, a layer outside, or "
-       "a sheet on both sides"},
+       "Which side of the boundary is filled: all of the inside, the inside up to thickness, a layer outside, a "
+       "sheet on both sides, or, of a wall, a thin sheet without a thickness"},
       s.fill);
+    if (s.fill == FillKind::ThinSheet) return;
     v({"thickness",
        "Thickness of a shell, of a layer outside or of a sheet; 0: as far as particles act on each other",
        optional, "m", notNegative},
@@ -100,13 +101,18 @@ void visit(auto& v, Like<Shape> auto& s, const Case& c) {
       radii();
       break;
     case ShapeKind::Polygon:
-      v({"points", "Corners in order, either way round, from 3 to 10,000; sides meet nowhere else", required, "m"},
+    case ShapeKind::Polyline:
+      v({"points",
+         "Corners in order, of a polygon from 3 to 10,000 and either way round, of a polyline from 2; sides meet "
+         "nowhere else",
+         required, "m"},
         s.points);
       if (c.dimensions == 3) {
-        v({"bottom", "Where the prism of the polygon begins along z", required, "m"}, s.bottom);
+        v({"bottom", "Where the prism of a polygon or the ribbon of a polyline begins along z", required, "m"},
+          s.bottom);
         v({"top", "Where it ends along z", required, "m"}, s.top);
       }
-      filling();
+      if (s.kind == ShapeKind::Polygon) filling();
       break;
     case ShapeKind::Mesh:
       content();

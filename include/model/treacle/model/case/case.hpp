@@ -129,6 +129,9 @@ struct Case {
   bool hasInflow() const {
     return std::ranges::any_of(bodies, [](const Body& b) { return b.kind == BodyKind::Inflow; });
   }
+  bool hasThinSheets() const {
+    return std::ranges::any_of(bodies, [](const Body& b) { return b.shape.isThinSheet(); });
+  }
   bool hasRigid() const {
     return std::ranges::any_of(bodies, [](const Body& b) { return b.kind == BodyKind::Rigid; });
   }

@@ -24,13 +24,14 @@ inline constexpr std::span<const Named<E>> namesOf{};
 
 namespace names {
 inline constexpr Named<ShapeKind> shape[] = {
-    {"box", ShapeKind::Box},   {"sphere", ShapeKind::Sphere},      {"cylinder", ShapeKind::Cylinder},
-    {"cone", ShapeKind::Cone}, {"torus", ShapeKind::Torus},        {"polygon", ShapeKind::Polygon},
-    {"mesh", ShapeKind::Mesh}, {"particles", ShapeKind::Particles}};
+    {"box", ShapeKind::Box},           {"sphere", ShapeKind::Sphere}, {"cylinder", ShapeKind::Cylinder},
+    {"cone", ShapeKind::Cone},         {"torus", ShapeKind::Torus},   {"polygon", ShapeKind::Polygon},
+    {"polyline", ShapeKind::Polyline}, {"mesh", ShapeKind::Mesh},     {"particles", ShapeKind::Particles}};
 inline constexpr Named<FillKind> fill[] = {{"inside", FillKind::Inside},
                                            {"shell", FillKind::Shell},
                                            {"outside", FillKind::Outside},
-                                           {"sheet", FillKind::Sheet}};
+                                           {"sheet", FillKind::Sheet},
+                                           {"thin-sheet", FillKind::ThinSheet}};
 inline constexpr Named<BodyKind> body[] = {{"fluid", BodyKind::Fluid},
                                            {"wall", BodyKind::Wall},
                                            {"inflow", BodyKind::Inflow},

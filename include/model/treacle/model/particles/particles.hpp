@@ -20,6 +20,7 @@ struct FluidExtras {
   bool temperatures = false;      // with heat
   bool viscosityFactors = false;  // where some body gives one
   bool starts = false;            // within a step whose forces are those of its middle; walls have it, too
+  bool sides = false;             // with thin sheets; walls have them, too
 
   bool operator==(const FluidExtras&) const = default;
 };
@@ -46,6 +47,7 @@ void forEachSharedFieldOf(F&& f, Sets&... sets) {
   f(sets.position...), f(sets.velocity...), f(sets.pressure...), f(sets.numberDensity...), f(sets.heldPressure...),
       f(sets.material...), f(sets.body...), f(sets.id...);
   if ((sets.has.starts && ...)) f(sets.start...);
+  if ((sets.has.sides && ...)) f(sets.side...);
 }
 
 /// The fields that walls alone have; empty where nothing is known.
@@ -94,6 +96,8 @@ struct Particles {
   Buffer<std::uint32_t, Backend> id;
 
   Buffer<Vec<D>, Backend> start;  // x at the start of the step at hand [m]; empty unless it has it
+
+  Buffer<std::uint32_t, Backend> side;  // of thin sheets (sides); empty unless the case has some
 
   // The memory of the flow: what the first guess of a solve is extrapolated from. Walls have none, and it is not
   // part of the state that frames show. Undefined before the first step.
@@ -162,7 +166,7 @@ struct Particles {
       return [&, size](auto& field) { field.resize(context, size); };
     };
     has = numbers.has;
-    start.resize(context, 0);
+    start.resize(context, 0), side.resize(context, 0);
     for (auto* field : {&shearRate, &temperature, &viscosityFactor}) field->resize(context, 0);
     forEachSharedFieldOf(resizeTo(count), *this);
     forEachFluidFieldOf(resizeTo(fluid), *this);
