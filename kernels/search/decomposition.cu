@@ -124,6 +124,7 @@ void Decomposition<D, Cuda>::sort(Context<Cuda>& context, const CellGrid<D>& gri
   halo_.reserve(context, sizeof(SymmetricBlock<D>));  // the largest there are: in a graph nothing can be allocated
   fillGhosts(context, Held::Fluid, p.position.data());
   fillGhosts(context, Held::Fluid, p.material.data());
+  if (p.has.sides) fillGhosts(context, Held::Fluid, p.side.data());
   addGhostRanges(context, grid, p, ranges);
   giveUp(w.key, w.sortedKey, w.index, w.sortedIndex, w.field);
   context.giveUpScratch();

@@ -25,7 +25,8 @@ template <int D>
 std::vector<Vec<3>> positionsOfOthers(const Particles<D>& p) {
   std::vector<Vec<3>> positions;
   positions.reserve(p.count - p.fluidCount);
-  for (std::uint32_t i = p.fluidCount; i < p.count; ++i) positions.push_back(resized<3>(p.position[i]));
+  for (std::uint32_t i = p.fluidCount; i < p.count; ++i)
+    if (!p.has.sides || !(p.side[i] & sides::ofSheet)) positions.push_back(resized<3>(p.position[i]));
   return positions;
 }
 
@@ -118,7 +119,7 @@ PiecedFrame PieceWriter::joined(const Piece& own) const {
 /// Called by the output thread. What fails is for all processes to know, who learn it in collect().
 void PieceWriter::write(const Snapshot& s) {
   Timer timer;
-  Piece piece{s.step, s.time, 0, s.ownWalls, {}, {}};
+  Piece piece{s.step, s.time, 0, 0, {}, {}};
   std::string failure;
   try {
     s.particles.visit([&](const auto& p) {
@@ -127,9 +128,10 @@ void PieceWriter::write(const Snapshot& s) {
       Frame fluid = makeFrame(p, 0, p.fluidCount, s.time);
       addViscosities(case_.materials, fluid);
       piece.arrangement = measureArrangementPart(fluid, positionsOfOthers(p), case_.domain, case_.spacing);
+      const Frame walls = makeFrame(p, begin, begin + s.ownWalls, s.time);
+      piece.walls = static_cast<std::uint32_t>(walls.position.size());
       piece.cost.bytes = writePiece(directory_.fluidPiece(s.number, processes_.rank()), fluid) +
-                         writePiece(directory_.wallsPiece(s.number, processes_.rank()),
-                                    makeFrame(p, begin, begin + s.ownWalls, s.time));
+                         writePiece(directory_.wallsPiece(s.number, processes_.rank()), walls);
     });
     piece.cost.seconds = timer.lap();
   } catch (const std::bad_alloc&) {

@@ -34,6 +34,7 @@ void Decomposition<D, Cpu>::sort(Context<Cpu>& context, const CellGrid<D>& grid,
   context.halo = &halo_;
   fillGhosts(context, Held::Fluid, p.position.data());
   fillGhosts(context, Held::Fluid, p.material.data());
+  if (p.has.sides) fillGhosts(context, Held::Fluid, p.side.data());
   fillRanges<D>(grid, p.position, 0, halo_.fluid, ranges.fluidBegin, ranges.fluidEnd);
   fillRanges<D>(grid, p.position, halo_.fluid, ranges.activeCount, ranges.wallBegin, ranges.wallEnd);
   giveUp(workspace.keyed, workspace.field);

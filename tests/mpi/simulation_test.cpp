@@ -88,6 +88,11 @@ TEST(SharedSimulation, FluidThatComesAndGoes) {
                "nozzle.rotation={center=[0.002,0.062],angle='20*t'}"}});
 }
 
+/// Every process knows on which side of a thin sheet its particles and its ghosts are.
+TEST(SharedSimulation, ThinSheets) {
+  compare<2>({"thin-cup-2d.toml", 15, {"solver.tolerance=1e-22", "solver.deflation=0", "time.step=2e-3"}});
+}
+
 /// Through openings, to and fro.
 TEST(SharedSimulation, FluidThatAPressureDrives) {
   compare<2>({"pumped-channel-2d.toml", 40, {"solver.tolerance=1e-22", "solver.deflation=0", "resolution=2"}});

@@ -18,7 +18,7 @@ template <int D, class Backend>
 Particles<D> heldWalls(const FlowState<D, Backend>& state) {
   const Particles<D, Backend>& p = state.particles;
   Particles<D> walls;
-  walls.resize({0, p.wallCount(), 0, 0});
+  walls.resize({0, p.wallCount(), 0, 0, 0, p.has.ofWalls()});
   forEachSharedFieldOf([&](const auto& from,
                            auto& to) { copyToHost(state.context, from.span().subspan(p.wallBegin()), to.data()); },
                        p, walls);
@@ -40,7 +40,9 @@ std::uint32_t copyOwnParticles(FlowState<D, Backend>& state, const CellGrid<D>& 
   fillGhosts(state.context, Held::Fluid, p.position.data());
   fillGhosts(state.context, Held::Active, p.pressure.data());
   fillGhosts(state.context, Held::Active, p.numberDensity.data());
-  const Particles<D> walls = heldWalls(state), far = distant.ofPart();
+  const Particles<D> walls = heldWalls(state);
+  Particles<D> far = distant.ofPart();
+  far.has.sides = p.has.sides;  // cases with thin sheets have no distant walls
   const auto cellOf = [&](std::uint32_t i) { return cells.linear(cells.cellOf(walls.position[i])); };
   const auto own = selected(0, walls.count, [&](std::uint32_t i) { return owners.isOwn(cellOf(i)); });
   const auto beside = selected(0, walls.count, [&](std::uint32_t i) { return owners.isBesideOwn(cellOf(i)); });

@@ -20,7 +20,7 @@ Particles<D> wallsOfAll(const Communicator& processes, const Particles<D>& own, 
   std::uint64_t count = 0;
   for (const std::uint32_t n : counts) count += n;
   Particles<D> all;
-  all.resize({0, count, 0, surfaces ? count : 0});
+  all.resize({0, count, 0, surfaces ? count : 0, 0, own.has.ofWalls()});
   const auto exchange = [&]<class T>(const Buffer<T>& from, Buffer<T>& to) {
     std::vector<Communicator::Message> sent, received;
     T* place = to.data();

@@ -19,10 +19,10 @@ namespace treacle {
 ///
 /// sort() sorts by cell as sortByCell does, of each group the own particles first, and by id where keys are the
 /// same. Fluid that has left the own cells goes to the process that owns it now, with all its fields, and cells
-/// change hands where one process has too much to do. Ghosts have positions and materials; their other fields are
-/// not defined. The first time every process comes with some of the fluid, whichever, and all walls. Where there
-/// are more processes than cells with fluid some of them have none. Collective. Errors: RunError, at all
-/// processes, for positions that are not finite.
+/// change hands where one process has too much to do. Ghosts have positions, materials and sides of thin sheets;
+/// their other fields are not defined. The first time every process comes with some of the fluid, whichever, and
+/// all walls. Where there are more processes than cells with fluid some of them have none. Collective. Errors:
+/// RunError, at all processes, for positions that are not finite.
 template <int D, class Backend = Cpu>
 class Decomposition;
 

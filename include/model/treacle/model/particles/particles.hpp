@@ -3,6 +3,7 @@
 #include "treacle/core/buffer.hpp"
 #include "treacle/core/vec.hpp"
 #include "treacle/model/case/open_flow.hpp"
+#include "treacle/model/geometry/side.hpp"
 #include "treacle/model/geometry/wall_surface.hpp"
 #include "treacle/model/motion/rigid_body.hpp"
 #include "treacle/model/state/gas_state.hpp"
@@ -21,6 +22,13 @@ struct FluidExtras {
   bool viscosityFactors = false;  // where some body gives one
   bool starts = false;            // within a step whose forces are those of its middle; walls have it, too
   bool sides = false;             // with thin sheets; walls have them, too
+
+  /// Those that particles have where they are walls alone, between steps.
+  FluidExtras ofWalls() const {
+    FluidExtras walls;
+    walls.sides = sides;
+    return walls;
+  }
 
   bool operator==(const FluidExtras&) const = default;
 };

@@ -35,7 +35,7 @@ void copyToHost(const Context<Backend>& context, const Particles<D, Backend>& pa
 template <int D, class Backend>
 void copyWallsToHost(const Context<Backend>& context, const Particles<D, Backend>& particles,
                      Particles<D>& walls) {
-  walls.resize({0, particles.wallCount(), 0, particles.wallSurface.size()});
+  walls.resize({0, particles.wallCount(), 0, particles.wallSurface.size(), 0, particles.has.ofWalls()});
   const std::uint32_t n = particles.wallBegin();
   forEachSharedFieldOf([&](const auto& from, auto& to) { copyToHost(context, from.span().subspan(n), to.data()); },
                        particles, walls);
@@ -49,7 +49,7 @@ template <int D, class Backend>
 void replaceWalls(Context<Backend>& context, const Particles<D>& walls, Particles<D, Backend>& particles) {
   const std::uint32_t n = particles.wallBegin(), count = n + walls.wallCount();
   Particles<D, Backend> replaced;
-  replaced.resize(context, {0, count, 0, walls.wallSurface.size()});
+  replaced.resize(context, {0, count, 0, walls.wallSurface.size(), 0, walls.has.ofWalls()});
   forEachSharedFieldOf(
       [&]<class T, class Field>(const Buffer<T>& from, Field& old, Field& field) {
         copyValues(context, std::span<const T>(old).first(n), field.data());
