@@ -32,6 +32,10 @@ TEST_F(SharedOnDevices, DoublePrecision) {
   compare<2, Cuda>({"published/dam-break-2d.toml", 20, keys});
 }
 
+TEST_F(SharedOnDevices, ThinSheets) {
+  compare<2, Cuda>({"thin-cup-2d.toml", 10, {"solver.tolerance=1e-22", "solver.deflation=0", "time.step=2e-3"}});
+}
+
 TEST_F(SharedOnDevices, ProjectedMultigrid) {
   compare<2, Cuda>({"dam-break-2d.toml", 20, {"solver.tolerance=1e-16"}});
   compare<2, Cuda>({"published/dam-break-2d.toml", 20, {"solver.tolerance=1e-16"}});
