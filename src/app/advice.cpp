@@ -49,7 +49,7 @@ void printBulk(const Case& c, const Material& m, const FlowScales& flow) {
   const double mu = c.typicalViscosity(m), lambda = recommendedRatio * mu;
   if (mu == 0) return;
   const double most = mostCompression(c) * std::max(lambda, m.bulkViscosity) / c.time.step;
-  const double pressure = std::max(m.density * norm(c.gravity) * flow.height, flow.pressure);
+  const double pressure = std::max(m.density * flow.potential, flow.pressure);
   const double least = pressure / mostCompressed;
   print("# advice for '{}': bulk_viscosity {:.3g} ({:g} times the viscosity), ", m.name, lambda, recommendedRatio);
   if (c.time.automatic)

@@ -312,7 +312,8 @@ void setStepBounds(Case& c) {
 }
 
 double courantNumber(const Case& c) {
-  return courantNumberAt(c, std::max(givenSpeed(c), std::sqrt(2 * norm(c.gravity) * fluidHeight(c))));
+  const double fall = std::sqrt(2 * (norm(c.gravity) * fluidHeight(c) + centrifugalScale(c).potential));
+  return courantNumberAt(c, std::max(givenSpeed(c), fall));
 }
 
 std::vector<std::string> caseWarnings(const Case& c) {

@@ -47,10 +47,10 @@ double openingPressure(const Case& c) {
 
 FluidNumbers numbersOf(const Case& c, const Material& m, const FlowScales& flow) {
   FluidNumbers n{.material = m.name};
-  const double mu = c.typicalViscosity(m), g = norm(c.gravity), inertia = m.density * flow.length * flow.length;
+  const double mu = c.typicalViscosity(m), g = flow.acceleration, inertia = m.density * flow.length * flow.length;
   // Where inertia rules a fluid falls freely, where viscosity does it flows as fast as its weight shears it.
   n.speed = std::max(flow.given, mu > 0 ? std::min(flow.fall, inertia * g / mu) : flow.fall);
-  if (m.bulkModulus > 0) n.compression = std::max(m.density * g * flow.height, flow.pressure) / m.bulkModulus;
+  if (m.bulkModulus > 0) n.compression = std::max(m.density * flow.potential, flow.pressure) / m.bulkModulus;
   if (m.surfaceTension > 0) {
     n.capillaryStep = std::max(2 * mu * c.spacing / m.surfaceTension,
                                std::sqrt(m.density * std::pow(c.spacing, 3) / m.surfaceTension));
@@ -70,8 +70,10 @@ FluidNumbers numbersOf(const Case& c, const Material& m, const FlowScales& flow)
 
 FlowScales flowScales(const Case& c) {
   FlowScales flow;
-  flow.height = fluidHeight(c);
-  flow.fall = std::sqrt(2 * norm(c.gravity) * flow.height);
+  const CentrifugalScale centrifugal = centrifugalScale(c);
+  flow.acceleration = std::max(norm(c.gravity), centrifugal.acceleration);
+  flow.potential = norm(c.gravity) * fluidHeight(c) + centrifugal.potential;
+  flow.fall = std::sqrt(2 * flow.potential);
   flow.given = givenSpeed(c);
   flow.pressure = openingPressure(c);
   double shortest = std::numeric_limits<double>::infinity();

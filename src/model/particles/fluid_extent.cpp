@@ -1,6 +1,7 @@
 #include "fluid_extent.hpp"
 
 #include "body_points.hpp"
+#include "treacle/model/motion/frame_force.hpp"
 #include "treacle/model/motion/wall_motion.hpp"
 
 #include <algorithm>
@@ -62,7 +63,32 @@ double largestSpeed(const Case& c, const Body& body) {
   return body.rotation ? carried + speed : speed;
 }
 
+template <int D>
+CentrifugalScale centrifugalScaleOf(const Case& c) {
+  constexpr int samples = 1000;
+  FrameForce<D> fastest = FrameForce<D>::of(c, 0, 0);
+  for (int k = 1; k <= samples; ++k) {
+    const double t = c.time.end * k / samples;
+    if (const auto frame = FrameForce<D>::of(c, t, t); norm(frame.spin) > norm(fastest.spin)) fastest = frame;
+  }
+  fastest.gravity = {};
+  double low = std::numeric_limits<double>::infinity(), high = 0;  // of minus the potential
+  std::vector<std::string> notes;
+  for (const Body& body : c.bodies)
+    if (body.kind == BodyKind::Fluid)
+      for (const Vec<D>& x : bodyPoints<D>(c, body, notes).place) {
+        const double minus = -fastest.potential(x);
+        low = std::min(low, minus), high = std::max(high, minus);
+      }
+  return {norm(fastest.spin) * std::sqrt(2 * high), std::max(0.0, high - low)};
+}
+
 }  // namespace
+
+CentrifugalScale centrifugalScale(const Case& c) {
+  if (!c.frame) return {};
+  return c.dimensions == 2 ? centrifugalScaleOf<2>(c) : centrifugalScaleOf<3>(c);
+}
 
 Heights heightsOf(const Case& c, const Extent& box) {
   Heights h;

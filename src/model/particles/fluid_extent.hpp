@@ -19,6 +19,15 @@ Heights heightsOf(const Case& c, const Extent& box);
 /// Extent of all fluid bodies along gravity [m].
 double fluidHeight(const Case& c);
 
+/// Centrifugal forces on the fluid bodies where they start, while the frame turns fastest: the largest one, and
+/// how much work they do across the fluid. Zero without a frame that turns.
+struct CentrifugalScale {
+  double acceleration = 0;  // [m/s2]
+  double potential = 0;     // [m2/s2]
+};
+
+CentrifugalScale centrifugalScale(const Case& c);
+
 /// Largest of the initial speeds and those of the walls [m/s].
 double givenSpeed(const Case& c);
 

@@ -49,6 +49,20 @@ TEST(FlowScales, SurfaceTensionMovesFluidWithoutWeight) {
   EXPECT_EQ(n.compression, 0);
 }
 
+TEST(FlowScales, AFrameThatTurnsPressesTheFluid) {
+  Case c = blockOf(fluid(10));
+  c.gravity = {};
+  c.domain = {{-0.1, -0.1, 0}, {0.1, 0.1, 0}};
+  Rotation frame;
+  frame.speed = 60;
+  c.frame = frame;
+  const double square = 60 * 60 * (0.0395 * 0.0395 + 0.0195 * 0.0195), inner = 60 * 60 * 2 * 0.0005 * 0.0005;
+  const FlowScales flow = flowScales(c);
+  EXPECT_NEAR(flow.acceleration, 60 * std::sqrt(square), 1e-9);
+  EXPECT_NEAR(flow.potential, (square - inner) / 2, 1e-9);
+  EXPECT_NEAR(fluidNumbers(c).at(0).compression, 1000 * flow.potential / 1e6, 1e-12);
+}
+
 TEST(FlowScales, NozzlesCountByWidthAndSpeed) {
   Case c = blockOf(fluid(10));
   Body nozzle;

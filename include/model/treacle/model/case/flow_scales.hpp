@@ -9,11 +9,12 @@ namespace treacle {
 
 /// What a case says beforehand about the size and speed of its flow (docs/choosing.md).
 struct FlowScales {
-  double length = 0;    // L: shortest side of a box around a fluid body, or of a nozzle [m]
-  double height = 0;    // of all fluid along gravity [m]
-  double fall = 0;      // speed of a fall over that height [m/s]
-  double given = 0;     // largest of the speeds of fluid, walls and nozzles that the case gives [m/s]
-  double pressure = 0;  // largest one of openings [Pa]
+  double length = 0;        // L: shortest side of a box around a fluid body, or of a nozzle [m]
+  double acceleration = 0;  // largest of gravity and centrifugal forces [m/s2]
+  double potential = 0;     // work that they do per mass across the fluid: g H, in a frame that turns more [m2/s2]
+  double fall = 0;          // speed that they give [m/s]
+  double given = 0;         // largest of the speeds of fluid, walls and nozzles that the case gives [m/s]
+  double pressure = 0;      // largest one of openings [Pa]
 };
 
 /// 0 where the case does not say: of nozzles with a flow rate speeds are not looked at.
@@ -22,11 +23,11 @@ FlowScales flowScales(const Case& c);
 /// Numbers of one fluid of a case. Those of something that it does not have are 0.
 struct FluidNumbers {
   std::string material;
-  double speed = 0;        // U: given, or of a fall over the height that viscosity holds back, rho g L^2/mu [m/s]
+  double speed = 0;        // U: given, or of a fall that viscosity holds back, rho g L^2/mu [m/s]
   double reynolds = 0;     // rho U L / mu
   double viscousTime = 0;  // rho L^2 / mu, in which a flow comes to rest or up to speed [s]
   double ratio = 0;        // lambda / mu
-  double compression = 0;  // max(rho g H, the pressure of openings) / kappa, in the end
+  double compression = 0;  // max(rho times the potential, the pressure of openings) / kappa
   double capillaryStep =
       0;            // up to which surface tension lets a step be: max(2 mu l/gamma, sqrt(rho l^3/gamma)) [s]
   double bond = 0;  // rho g L^2 / gamma
