@@ -261,11 +261,13 @@ class RigidSystem {
     }
   }
 
-  /// Speeds that count in a step [m/s].
+  /// Speeds that count in a step [m/s]: those at hand, and those that a body without fluid would take.
   double scaleOf(const std::vector<double>& x) const {
     double scale =
         norm(state_.theCase.gravity) * state_.velocityStep + 1e-6 * state_.theCase.spacing / state_.timeStep;
     for (const double v : x) scale = std::max(scale, std::abs(v));
+    for (const double v : residual(std::vector<LoadSums>(state_.theCase.bodies.size())))
+      scale = std::max(scale, std::abs(v));
     return scale;
   }
 

@@ -54,6 +54,24 @@ TEST(RigidForces, MoveTheirCentre) {
   });
 }
 
+/// Where neither gravity nor the start tells how large the velocities are.
+TEST(RigidForces, MoveBodiesInFluidWithoutGravity) {
+  Case c = blockCase(3, 1100);
+  c.spacing = 2e-3;
+  c.domain = {{-0.02, -0.02, -0.02}, {0.02, 0.02, 0.02}, {}};
+  for (Material& m : c.materials) m.dynamicViscosity = 0.4;
+  const double inner = 10e-3, outer = 18e-3;
+  c.bodies[0].shape.min = {-inner, -inner, -inner}, c.bodies[0].shape.max = {inner, inner, inner};
+  c.bodies[0].where = "max(abs(x), abs(y), abs(z)) > 4e-3";
+  c.bodies[1].shape.min = {-4e-3, -4e-3, -4e-3}, c.bodies[1].shape.max = {4e-3, 4e-3, 4e-3};
+  c.bodies.push_back(makeBody("cup", BodyKind::Wall, box({-outer, -outer, -outer}, {outer, outer, outer})));
+  c.bodies[2].where = "max(abs(x), abs(y), abs(z)) > 10e-3";
+  c.gravity = {};
+  c.bodies[1].rigid.force[2] = TimeFunction{.value = -1e-3};
+  Simulation<3> simulation(c, created<3>(c));
+  for (int k = 0; k < 3; ++k) EXPECT_LT(simulation.advance().rigid[1].velocity[2], -1e-4);
+}
+
 TEST(RigidForces, TurnThem) {
   Case c = freeBlock<2>();
   const double inertia = 2000 * 24e-6 * (36e-6 + 16e-6) / 12;
