@@ -23,7 +23,7 @@ struct FluidExtras {
   bool starts = false;            // within a step whose forces are those of its middle; walls have it, too
   bool sides = false;             // with thin sheets; walls have them, too
 
-  /// Those that particles have where they are walls alone, between steps.
+  /// The extra fields of a set of walls without fluid, between steps.
   FluidExtras ofWalls() const {
     FluidExtras walls;
     walls.sides = sides;
