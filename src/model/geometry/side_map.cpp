@@ -99,11 +99,8 @@ std::uint32_t sheetWord(const ThinSheet<D>& sheet, int number, const Vec<D>& x, 
   return sides::sheetParticle(number, front ? sides::Back : sides::Front) | (layer ? sides::shown : 0);
 }
 
-}  // namespace
-
 template <int D>
-SideMap<D> makeSideMap(const Case& c, const Body& body) {
-  const ThinSheet<D> sheet(c, body);
+SideMap<D> sideMapOf(const Case& c, const Body& body, const ThinSheet<D>& sheet) {
   SideMap<D> map = emptyMap(c, body, sheet);
   const double reach = reachOf(c), unit = SideMap<D>::unitsOfSpacing / c.spacing;
   WorkInHand work(fmt::format("finding the sides of '{}'", body.name), map.height.size());
@@ -121,6 +118,13 @@ SideMap<D> makeSideMap(const Case& c, const Body& body) {
   requireApart(c, body, map);
   leaveOutCuts(c, body, sheet, map);
   return map;
+}
+
+}  // namespace
+
+template <int D>
+SideMap<D> makeSideMap(const Case& c, const Body& body) {
+  return sideMapOf(c, body, ThinSheet<D>(c, body));
 }
 
 template <int D>
@@ -152,7 +156,7 @@ void createSides(const Case& c, Particles<D>& particles) {
     const Body& body = c.bodies[b];
     if (!body.shape.isThinSheet()) continue;
     const ThinSheet<D> surface(c, body);
-    const SideMap<D> map = makeSideMap<D>(c, body);
+    const SideMap<D> map = sideMapOf(c, body, surface);
     const PlacedSheet<D> placed = placedSheet<D>(c, body, map, map.height.data(), 0);
     parallelFor(particles.count, parallelGrain, [&](std::size_t i) {
       std::uint32_t& word = particles.side[i];

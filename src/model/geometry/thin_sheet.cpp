@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <set>
 
 namespace treacle {
 namespace {
@@ -81,25 +82,25 @@ void ThinSheet<D>::findEnds(const std::string& name) {
     ++meeting.facets, meeting.forward += forward;
   });
   for (const auto& [joint, meeting] : joints) {
+    if (meeting.facets < 2 || (meeting.facets == 2 && meeting.forward == 1)) continue;
     const std::string place = positionText(resized<3>(similarity_.point(joint[0])), D);
     if (meeting.facets > 2)
       throw InputError(
           fmt::format("thin sheet '{}': {} of its faces meet at {}; expected at most two, and a body "
                       "of its own for what branches off",
                       name, meeting.facets, place));
-    if (meeting.facets == 2 && meeting.forward != 1)
-      throw InputError(
-          fmt::format("thin sheet '{}': two faces that meet at {} do not agree on which side is the "
-                      "front; turn one of them in the program that made the file",
-                      name, place));
+    throw InputError(
+        fmt::format("thin sheet '{}': two faces that meet at {} do not agree on which side is the "
+                    "front; turn one of them in the program that made the file",
+                    name, place));
   }
   ends_.assign(tree_->size(), 0);
   const auto before = [](const Vec<D>& a, const Vec<D>& b) { return isBefore<D>(a, b); };
-  std::map<Vec<D>, bool, decltype(before)> corners(before);
+  std::set<Vec<D>, decltype(before)> corners(before);
   forEachJoint([&](std::uint32_t facet, std::size_t k, const Meeting& meeting, const Joint<D>& joint, bool) {
     if (meeting.facets != 1) return;
     ends_[facet] |= static_cast<std::uint8_t>(1u << k);
-    for (const Vec<D>& corner : joint) corners[corner] = true;
+    corners.insert(joint.begin(), joint.end());
   });
   for (std::uint32_t facet = 0; facet < tree_->size(); ++facet)
     for (std::size_t k = 0; k < D; ++k)
