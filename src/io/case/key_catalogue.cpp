@@ -107,7 +107,8 @@ class Catalogue {
     }
     template <class T>
     void operator()(const Key& key, const std::vector<T>&) {
-      nested(key, ValueKind::Tables, T{});
+      const T sample;
+      nested(key, ValueKind::Tables, sample);
     }
 
    private:
