@@ -116,10 +116,11 @@ void expectSameFields(const Case& c, const Particles<D>& a, const Particles<D>& 
     EXPECT_EQ(a.body[i], b.body[j]);
     ASSERT_LT(norm(a.position[i] - b.position[j]), 2e-8 * c.spacing) << id;
     ASSERT_LT(norm(a.velocity[i] - b.velocity[j]), 1e-6 * speed) << id;
-    ASSERT_NEAR(a.pressure[i], b.pressure[j], 1e-4 * stress) << id;  // the bulk viscosity amplifies what is left
-    // Wall particles without fluid in reach have a density only where one beside them in the sort has fluid.
+    // Wall particles without fluid in reach have a density and a pressure only where one beside them in the sort
+    // has fluid.
     const bool wall = i >= a.fluidCount, unknown = a.numberDensity[i] == 0 || b.numberDensity[j] == 0;
     if (!wall || !unknown) {
+      ASSERT_NEAR(a.pressure[i], b.pressure[j], 1e-4 * stress) << id;  // the bulk viscosity amplifies what is left
       ASSERT_NEAR(a.numberDensity[i], b.numberDensity[j], 1e-8 * b.numberDensity[j]) << id;
     }
     if (wall) continue;
