@@ -257,6 +257,7 @@ class Body:
     """[m/s]"""
     flow_rate: float | str | TimeTable | None = None
     """[m2/s or m3/s]"""
+    profile: str | None = None
     mass: float | None = None
     """[kg/m]"""
     translates: bool | Sequence[bool] | None = None

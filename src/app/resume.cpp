@@ -5,6 +5,7 @@
 #include "treacle/io/checkpoint/checkpoint.hpp"
 #include "treacle/model/case/checks.hpp"
 #include "treacle/model/case/names.hpp"
+#include "treacle/model/motion/nozzle.hpp"
 #include "treacle/model/motion/wall_motion.hpp"
 #include "treacle/model/particles/create.hpp"
 #include "treacle/step/flow/gas_cells.hpp"
@@ -123,6 +124,22 @@ void requireFlow(const Case& c, const std::filesystem::path& file, const OpenFlo
     refuse(file, fmt::format("a state of {} bodies, {} outflows and {} openings, but the case has {}, {} and {}",
                              flow.inflows.size(), flow.outflows.size(), flow.openings.size(), c.bodies.size(),
                              c.outflows.size(), c.openings.size()));
+}
+
+/// The columns of a nozzle go on from where each is; those of a plug are all at the same place. Errors:
+/// InputError.
+template <int D>
+void requireColumns(const Case& c, const std::filesystem::path& file, const OpenFlow& flow) {
+  for (std::size_t b = 0; b < flow.inflows.size(); ++b) {
+    const Body& body = c.bodies[b];
+    const std::size_t before = flow.inflows[b].ways.size();
+    const std::size_t now = body.kind == BodyKind::Inflow ? NozzleLayers<D>(c, body).profile().size() : 1;
+    if (before > 1 && before != now)
+      refuse(file,
+             fmt::format("the {} columns of particles in the nozzle of inflow '{}' went at speeds of their own; "
+                         "expected the nozzle of the run, and a profile other than \"{}\"",
+                         before, body.name, plugProfile));
+  }
 }
 
 /// Errors: InputError for gas of another domain or spacing.
@@ -254,6 +271,7 @@ StartState fittingState(const Case& c, const std::filesystem::path& file, const 
       changeBodies<D>(c, file, made, created, state, changes);
     requireFit(c, file, state, kinds, !changes.empty());
     requireFlow(c, file, state.particles.flow);
+    requireColumns<D>(c, file, state.particles.flow);
     setMasses<D>(c, made, state.particles.rigid);
     requireBodies(c, file, state.particles);
     const std::uint32_t firstWall = state.firstWall + made.part.begin(kinds.walls);

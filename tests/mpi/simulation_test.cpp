@@ -86,6 +86,7 @@ TEST(SharedSimulation, FluidThatComesAndGoes) {
               30,
               {exact, plain, "resolution=4", "drain.min=[-0.02,0]", "drain.max=[0.065,0.0595]",
                "nozzle.rotation={center=[0.002,0.062],angle='20*t'}"}});
+  compare<2>({"filling-2d.toml", 40, {exact, plain, "resolution=4", "nozzle.profile=parabolic"}});
 }
 
 /// Every process knows on which side of a thin sheet its particles and its ghosts are.

@@ -126,7 +126,11 @@ inline void writeFlow(hid_t file, const OpenFlow& flow) {
   for (std::size_t k = 0; k < flow.inflows.size(); ++k) {
     const std::string name = fmt::format("inflow_{}", k);
     writeCount(file, name, flow.inflows[k]);
-    writeAttribute(file, (name + "_way").c_str(), flow.inflows[k].way);
+    const std::vector<double>& ways = flow.inflows[k].ways;
+    if (ways.size() == 1)
+      writeAttribute(file, (name + "_way").c_str(), ways[0]);
+    else
+      writeNumbers(file, (name + "_ways").c_str(), ways);
   }
   for (std::size_t k = 0; k < flow.outflows.size(); ++k)
     writeCount(file, fmt::format("outflow_{}", k), flow.outflows[k]);
@@ -151,10 +155,17 @@ inline OpenFlow readFlow(hid_t file) {
                                 maxBodies, maxOutflows));
   for (std::uint32_t k = 0; k < bodies; ++k) {
     const std::string name = fmt::format("inflow_{}", k);
-    OpenFlow::Inflow inflow{readCount(file, name), readAttribute<double>(file, (name + "_way").c_str())};
-    if (!(inflow.way >= 0) || !std::isfinite(inflow.way))
-      throw Hdf5Error(fmt::format("the layers of an inflow have gone {} m, expected at least 0", inflow.way));
-    flow.inflows.push_back(inflow);
+    const std::string columns = name + "_ways";
+    OpenFlow::Inflow inflow{readCount(file, name), {}};
+    if (hasAttribute(file, (columns + "_count").c_str()))
+      inflow.ways = readNumbers(file, columns.c_str(), maxParticles);
+    else
+      inflow.ways = {readAttribute<double>(file, (name + "_way").c_str())};
+    if (inflow.ways.empty()) throw Hdf5Error("an inflow has no columns of particles");
+    for (const double way : inflow.ways)
+      if (!(way >= 0) || !std::isfinite(way))
+        throw Hdf5Error(fmt::format("the layers of an inflow have gone {} m, expected at least 0", way));
+    flow.inflows.push_back(std::move(inflow));
   }
   for (std::uint32_t k = 0; k < outflows; ++k)
     flow.outflows.push_back(readCount(file, fmt::format("outflow_{}", k)));

@@ -1,6 +1,7 @@
 #include "treacle/model/case/flow_scales.hpp"
 
 #include "particles/fluid_extent.hpp"
+#include "treacle/model/motion/nozzle.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -27,10 +28,17 @@ double shortestSide(const Case& c, const Body& body) {
   return side;
 }
 
-double inflowSpeed(const Inflow& inflow) {
-  if (!inflow.speed) return 0;
-  const TimeFunction& speed = *inflow.speed;
-  return speed.isTable() ? *std::ranges::max_element(speed.values) : speed.at(inflow.start);
+/// Of the fastest column over the mean.
+double fastestColumn(const Case& c, const Body& body) {
+  const auto of = [](const auto& layers) { return std::ranges::max(layers.profile()); };
+  return c.dimensions == 2 ? of(NozzleLayers<2>(c, body)) : of(NozzleLayers<3>(c, body));
+}
+
+double inflowSpeed(const Case& c, const Body& body) {
+  if (body.kind != BodyKind::Inflow || !body.inflow.speed) return 0;
+  const TimeFunction& speed = *body.inflow.speed;
+  const double mean = speed.isTable() ? *std::ranges::max_element(speed.values) : speed.at(body.inflow.start);
+  return body.inflow.profile == plugProfile ? mean : mean * fastestColumn(c, body);
 }
 
 /// The largest size of the pressures of openings in the run [Pa].
@@ -80,7 +88,7 @@ FlowScales flowScales(const Case& c) {
   for (const Body& body : c.bodies) {
     if (!body.holdsFluid()) continue;
     shortest = std::min(shortest, shortestSide(c, body));
-    flow.given = std::max(flow.given, inflowSpeed(body.inflow));
+    flow.given = std::max(flow.given, inflowSpeed(c, body));
   }
   if (std::isfinite(shortest)) flow.length = shortest;
   return flow;

@@ -1,5 +1,6 @@
 #include "case_checker.hpp"
 #include "geometry/polygon.hpp"
+#include "treacle/model/motion/nozzle.hpp"
 #include "treacle/model/motion/opening.hpp"
 
 namespace treacle {
@@ -183,6 +184,33 @@ void requireSound(const Checker& at, const Inflow& i) {
             fmt::format("expected 0, which is never, or more than start = {} s, found {}", i.start, i.end));
 }
 
+/// Once the nozzle is known to be sound.
+template <int D>
+void requireProfile(const Checker& at, const Body& body) {
+  const std::string& profile = body.inflow.profile;
+  if (profile == plugProfile) return;
+  if (profile != parabolicProfile) {
+    try {
+      Expression{profile, D};
+    } catch (const InputError& e) {
+      at.fail({"profile"}, fmt::format("\"{}\" is neither \"{}\" nor \"{}\"; {}", profile, plugProfile,
+                                       parabolicProfile, e.what()));
+    }
+  } else if (body.inflow.nozzle.kind == NozzleKind::Polygon) {
+    at.fail({"profile"}, fmt::format("\"{}\" is for a disc or a rectangle; expected \"{}\" or an expression of x, "
+                                     "y and z for a polygon",
+                                     profile, plugProfile));
+  }
+  Body plug = body;
+  plug.inflow.profile = plugProfile;
+  NozzleLayers<D>(at.wholeCase(), plug);  // where its errors are none of the profile
+  try {
+    NozzleLayers<D>(at.wholeCase(), body);
+  } catch (const InputError& e) {
+    at.fail({"profile"}, e.what());
+  }
+}
+
 void requireSound(const Checker& at, const Outflow& o) {
   if (o.kind == OutflowKind::Box) return at.requireOrder(o.min, o.max);
   at.requireDirection("normal", o.normal);
@@ -221,7 +249,10 @@ void requireSound(const Checker& at, const Opening& o) {
 
 /// Only fluids start with velocities of their own for each particle, only walls and nozzles are moved.
 void requireSound(const Checker& at, const Body& b) {
-  if (b.kind == BodyKind::Inflow) return requireSound(at, b.inflow);
+  if (b.kind == BodyKind::Inflow) {
+    requireSound(at, b.inflow);
+    return at.wholeCase().dimensions == 2 ? requireProfile<2>(at, b) : requireProfile<3>(at, b);
+  }
   requireShape(at, b.shape);
   if (b.shape.isThinSheet()) requireThinSheet(at, b);
   requireSubtracted(at, b, b, 0);

@@ -2,6 +2,7 @@
 
 #include "geometry/wall_turn.hpp"
 #include "nozzle_lattice.hpp"
+#include "nozzle_profile.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/model/particles/create.hpp"
 
@@ -9,8 +10,30 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace treacle {
+namespace {
+
+/// The one of a single vector is at its first place.
+template <int D>
+NozzleColumns<D> latticeOf(std::span<const Vec<D>> across, const std::array<Vec<D>, D - 1>& axes, double spacing) {
+  NozzleColumns<D> lattice;
+  lattice.spacing = spacing;
+  for (int k = 0; k < D - 1; ++k) {
+    lattice.axes[k] = axes[static_cast<std::size_t>(k)];
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const Vec<D>& x : across) {
+      const double along = dot(x, lattice.axes[k]);
+      low = std::min(low, along), high = std::max(high, along);
+    }
+    lattice.first += low * lattice.axes[k];
+    lattice.counts[k] = static_cast<int>(std::lround((high - low) / spacing)) + 1;
+  }
+  return lattice;
+}
+
+}  // namespace
 
 template <int D>
 NozzleLayers<D>::NozzleLayers(const Case& c, const Body& body)
@@ -32,6 +55,8 @@ NozzleLayers<D>::NozzleLayers(const Case& c, const Body& body)
     throw InputError(fmt::format(
         "inflow '{}': no particle has room in its nozzle; it must be as wide as one spacing", body.name));
   area_ = static_cast<double>(across_.size()) * std::pow(spacing_, D - 1);
+  profile_ = nozzleProfile<D>(body, across_, axes);
+  lattice_ = latticeOf<D>(std::span(across_).first(profile_.size()), axes, spacing_);
 }
 
 template <int D>
@@ -40,20 +65,55 @@ Vec<D> NozzleLayers<D>::direction(double t) const {
 }
 
 template <int D>
-std::vector<Vec<D>> NozzleLayers<D>::layer(double way, double t) const {
+std::vector<Vec<D>> NozzleLayers<D>::layer(std::span<const double> ways, double t) const {
   std::vector<Vec<D>> places;
   places.reserve(across_.size());
   const Vec<3>& center = body_.inflow.nozzle.center;
+  const auto way = [&](std::size_t column) { return ways[ways.size() == 1 ? 0 : column] * direction_; };
   if (!body_.rotation) {
-    const Vec<D> middle = resized<D>(center + wallDisplacement(body_, t)) + way * direction_;
-    for (const Vec<D>& x : across_) places.push_back(middle + x);
+    const Vec<D> middle = resized<D>(center + wallDisplacement(body_, t));
+    for (std::size_t k = 0; k < across_.size(); ++k) places.push_back(middle + way(k) + across_[k]);
     return places;
   }
   const WallMotion<D> turn = wallTurn<D>(body_, t);
-  const Vec<D> pivot = resized<D>(wallCenter(body_, t)),
-               middle = resized<D>(center - body_.rotation->center) + way * direction_;
-  for (const Vec<D>& x : across_) places.push_back(pivot + turn.turned(middle + x));
+  const Vec<D> pivot = resized<D>(wallCenter(body_, t)), middle = resized<D>(center - body_.rotation->center);
+  for (std::size_t k = 0; k < across_.size(); ++k)
+    places.push_back(pivot + turn.turned(middle + way(k) + across_[k]));
   return places;
+}
+
+template <int D>
+std::vector<double> NozzleLayers<D>::excess() const {
+  std::vector<double> more(profile_);
+  for (double& x : more) x -= 1;
+  return more;
+}
+
+/// Where the nozzle is at time t, as layer() has it.
+template <int D>
+NozzleColumns<D> NozzleLayers<D>::columns(const Domain& domain, double t) const {
+  NozzleColumns<D> now = lattice_;
+  const Vec<3>& center = body_.inflow.nozzle.center;
+  if (body_.rotation) {
+    const WallMotion<D> turn = wallTurn<D>(body_, t);
+    for (Vec<D>& axis : now.axes) axis = turn.turned(axis);
+    now.first = resized<D>(wallCenter(body_, t)) +
+                turn.turned(resized<D>(center - body_.rotation->center) + lattice_.first);
+  } else {
+    now.first = resized<D>(center + wallDisplacement(body_, t)) + lattice_.first;
+  }
+  for (int k = 0; k < D; ++k)
+    if (domain.periodic[static_cast<std::size_t>(k)]) now.period[k] = domain.max[k] - domain.min[k];
+  return now;
+}
+
+template <int D>
+std::vector<Vec<D>> NozzleLayers<D>::eachOf(std::span<const double> multiples, const Vec<D>& of) const {
+  std::size_t places = 1;
+  for (const int count : lattice_.counts) places *= static_cast<std::size_t>(count);
+  std::vector<Vec<D>> each(places);
+  for (std::size_t k = 0; k < multiples.size(); ++k) each[lattice_.placeOf(across_[k])] = multiples[k] * of;
+  return each;
 }
 
 template <int D>

@@ -105,7 +105,12 @@ InitialState<D>::InitialState(const Case& c, const Body& body)
       wall_(wallMotion<D>(c.domain, body, 0, 0)),
       expressions_(D),
       similarity_(similarityOf<D>(body.shape)) {
-  if (body.kind == BodyKind::Inflow) wall_ = NozzleLayers<D>(c, body).motion(c.domain, 0, 0);
+  if (body.kind == BodyKind::Inflow) {
+    const NozzleLayers<D> layers(c, body);
+    wall_ = layers.motion(c.domain, 0, 0);
+    const Vec<D> mean = layers.speed(0, 0) * layers.direction(0);
+    for (const double share : layers.excess()) excess_.push_back(share * mean);
+  }
   for (std::size_t k = 0; k < D; ++k)
     if (const std::string& text = body.velocityExpression[k]; !text.empty()) expressions_[k].emplace(text, D);
   if (!body.temperatureExpression.empty()) temperature_.emplace(body.temperatureExpression, D);
@@ -124,6 +129,7 @@ Vec<D> InitialState<D>::placeOf(const BodyPoints<D>& points, std::size_t k, std:
 template <int D>
 Vec<D> InitialState<D>::velocityAt(const BodyPoints<D>& points, std::size_t k) const {
   const Vec<D>& x = points.place[k];
+  if (excess_.size() > 1) return wall_.velocityAt(x) + excess_[k % excess_.size()];
   if (body_.kind != BodyKind::Fluid) return wall_.velocityAt(x);
   Vec<D> u = resized<D>(body_.velocity);
   for (std::size_t axis = 0; axis < D; ++axis)

@@ -66,6 +66,7 @@ class InitialState {
   const Body& body_;
   double disorder_;  // [m]
   WallMotion<D> wall_;
+  std::vector<Vec<D>> excess_;  // of the columns of a nozzle, beside the velocity of its layers [m/s]
   std::vector<std::optional<Expression>> expressions_;  // of the components
   std::optional<Expression> temperature_, viscosityFactor_;
   Similarity<D> similarity_;

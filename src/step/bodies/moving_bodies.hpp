@@ -86,6 +86,21 @@ std::vector<WallMotion<D>> bodyMotions(const FlowState<D, Backend>& state) {
   return motion;
 }
 
+/// Adds to velocities of the layers of nozzles, in the step of dt from the start of that at hand on, what their
+/// columns have beside the mean. `position`: of wall particles at time t; `end`: whose directions they have [s].
+template <int D, class Backend>
+void addProfiles(FlowState<D, Backend>& state, double t, double end, double dt, std::span<const Vec<D>> position,
+                 std::span<Vec<D>> velocity) {
+  const Particles<D, Backend>& p = state.particles;
+  for (std::size_t b = 0; b < state.nozzles.size(); ++b) {
+    const auto& nozzle = state.nozzles[b];
+    if (!nozzle || nozzle->isPlug()) continue;
+    const Vec<D> mean = nozzle->speed(state.time, dt) * nozzle->direction(end);
+    addToColumns<D>(state.context, state.columnsOf(b, t, nozzle->excess(), mean),
+                    p.body.span().subspan(p.wallBegin()), position, velocity);
+  }
+}
+
 /// Sets motions and velocities of the walls to these.
 template <int D, class Backend>
 void setWallMotions(FlowState<D, Backend>& state) {
@@ -95,6 +110,9 @@ void setWallMotions(FlowState<D, Backend>& state) {
   const std::uint32_t n = p.wallBegin();
   setWallVelocities<D>(state.context, {state.wallMotion, p.body.span().subspan(n), p.position.span().subspan(n)},
                        p.velocity.span().subspan(n));
+  const double t = state.time, dt = state.timeStep, early = state.theCase.middleShare() * dt;
+  addProfiles<D>(state, t + early, t + (early > 0 ? early : dt), dt, p.position.span().subspan(n),
+                 p.velocity.span().subspan(n));
 }
 
 /// What the walls of a state that it refers to move with: those that oscillate or rotate by the motions of their
@@ -169,6 +187,7 @@ class MovingBodies {
     fromHost(state_.context, std::span<const WallMotion<D>>(motion), way_);
     chord_.resize(state_.context, p.wallCount());
     setWallChords<D>(state_.context, {way_, p.body.span().subspan(n), from}, chord_);
+    addProfiles<D>(state_, state_.time, state_.time + dt, dt, from, chord_.span());
     return chord_.span();
   }
 

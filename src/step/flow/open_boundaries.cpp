@@ -43,6 +43,10 @@ OpenBoundaries<D, Backend>::OpenBoundaries(FlowState<D, Backend>& state)
   for (const Outflow& o : state.theCase.outflows) regions.push_back(OutflowRegion<D>::of(o));
   for (const OpeningFace<D>& face : state.faces) regions.push_back(OutflowRegion<D>::of(face.place()));
   fromHost(state.context, std::span<const OutflowRegion<D>>(regions), regions_);
+  std::size_t columns = 0;
+  for (const auto& nozzle : state.nozzles)
+    if (nozzle) columns = std::max(columns, nozzle->eachOf({}, {}).size());
+  state.nozzleColumns.resize(state.context, columns);  // no step fails for them when it has changed the state
 }
 
 template <int D, class Backend>
@@ -90,10 +94,11 @@ bool OpenBoundaries<D, Backend>::follow(const CellGrid<D>& grid, double start, d
   }
   const std::uint32_t walls = p.wallBegin();
   for (std::size_t b = 0; b < change.setBack.size(); ++b)
-    if (change.setBack[b] > 0)
-      shiftBody<D>(state_.context, grid, p.body.span().subspan(walls), static_cast<std::uint8_t>(b),
-                   -change.setBack[b] * state_.nozzles[b]->direction(state_.time),
-                   p.position.span().subspan(walls));
+    if (!change.setBack[b].empty())
+      shiftColumns<D>(
+          state_.context, grid,
+          state_.columnsOf(b, state_.time, change.setBack[b], -1.0 * state_.nozzles[b]->direction(state_.time)),
+          p.body.span().subspan(walls), p.position.span().subspan(walls));
   p.flow = std::move(change.flow);
   return changes;
 }
@@ -117,7 +122,8 @@ void OpenBoundaries<D, Backend>::letOut(Change& change) {
   }
 }
 
-/// The layers of all inflows have gone on; those that have left their nozzles are fluid now, and as many follow.
+/// The columns of all inflows have gone on. Their particles that have left the nozzles are fluid now, and as many
+/// follow.
 template <int D, class Backend>
 void OpenBoundaries<D, Backend>::letIn(const CellGrid<D>& grid, double start, Change& change) const {
   const double spacing = state_.theCase.spacing, dt = state_.timeStep;
@@ -125,32 +131,56 @@ void OpenBoundaries<D, Backend>::letIn(const CellGrid<D>& grid, double start, Ch
   for (std::size_t b = 0; b < state_.nozzles.size(); ++b) {
     if (!state_.nozzles[b]) continue;
     const NozzleLayers<D>& nozzle = *state_.nozzles[b];
-    double& way = change.flow.inflows[b].way;
-    way += dt * nozzle.speed(start, dt);
-    const double layers = std::floor(way / spacing * (1 + 1e-9));
+    const std::span<const double> profile = nozzle.profile();
+    std::vector<double>& ways = change.flow.inflows[b].ways;
+    ways.resize(profile.size(), ways.front());
+    const double speed = nozzle.speed(start, dt);
+    std::vector<double> counts(ways.size());  // of particles that leave, per column
+    for (std::size_t k = 0; k < ways.size(); ++k) {
+      ways[k] += dt * (speed * profile[k]);
+      counts[k] = std::floor(ways[k] / spacing * (1 + 1e-9));
+    }
+    const double layers = std::ranges::max(counts);
     if (layers == 0) continue;
     if (layers > nozzle.depth())
       throw RunError(fmt::format(
           "inflow '{}' goes {:.3g} spacings in a step of {:.3g} s, expected at most {}; take "
           "shorter steps, {} <= {:.2g}",
           state_.theCase.bodies[b].name, layers, dt, nozzle.depth(), state_.theCase.time.stepKey(), dt / layers));
-    for (int k = 0; k < static_cast<int>(layers); ++k) addLayer(grid, b, way - (k + 0.5) * spacing, change);
-    change.setBack[b] = layers * spacing;
-    way = std::max(0.0, way - layers * spacing);
+    for (int layer = 0; layer < static_cast<int>(layers); ++layer) addLayer(grid, b, layer, counts, change);
+    for (std::size_t k = 0; k < ways.size(); ++k) {
+      change.setBack[b].push_back(counts[k] * spacing);
+      ways[k] = std::max(0.0, ways[k] - counts[k] * spacing);
+    }
   }
 }
 
+/// One particle of each column from which more than `layer` come.
 template <int D, class Backend>
-void OpenBoundaries<D, Backend>::addLayer(const CellGrid<D>& grid, std::size_t body, double way,
-                                          Change& change) const {
+void OpenBoundaries<D, Backend>::addLayer(const CellGrid<D>& grid, std::size_t body, int layer,
+                                          std::span<const double> counts, Change& change) const {
   const NozzleLayers<D>& nozzle = *state_.nozzles[body];
   const Body& b = state_.theCase.bodies[body];
   const Incoming incoming{fmt::format("the nozzle of inflow '{}'", b.name), b.material, body, b.temperature,
                           b.viscosityFactor};
-  std::uint32_t i = add(grid, incoming, nozzle.layer(way, state_.time), change.flow.inflows[body], change);
-  const WallMotion<D> motion =
-      nozzle.motionAtEnd(state_.theCase.domain, state_.time - state_.timeStep, state_.timeStep);
-  for (; i < change.added.fluidCount; ++i) change.added.velocity[i] = motion.velocityAt(change.added.position[i]);
+  const double spacing = state_.theCase.spacing, dt = state_.timeStep, start = state_.time - dt;
+  std::vector<double> ways = change.flow.inflows[body].ways;
+  for (double& way : ways) way -= (layer + 0.5) * spacing;
+  std::vector<Vec<D>> places = nozzle.layer(ways, state_.time);
+  std::vector<Vec<D>> excess;  // beside the motion of the layers [m/s]
+  if (!nozzle.isPlug()) {
+    const Vec<D> mean = nozzle.speed(start, dt) * nozzle.direction(state_.time);
+    const std::vector<double> parts = nozzle.excess();
+    std::vector<Vec<D>> out;
+    for (std::size_t k = 0; k < places.size(); ++k)
+      if (counts[k] > layer) out.push_back(places[k]), excess.push_back(parts[k] * mean);
+    places = std::move(out);
+  }
+  const std::uint32_t first = add(grid, incoming, std::move(places), change.flow.inflows[body], change);
+  const WallMotion<D> motion = nozzle.motionAtEnd(state_.theCase.domain, start, dt);
+  for (std::uint32_t i = first; i < change.added.fluidCount; ++i)
+    change.added.velocity[i] = motion.velocityAt(change.added.position[i]);
+  for (std::size_t k = 0; k < excess.size(); ++k) change.added.velocity[first + k] += excess[k];
 }
 
 template <int D, class Backend>

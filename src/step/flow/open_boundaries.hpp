@@ -35,15 +35,17 @@ class OpenBoundaries {
  private:
   /// What a step changes, before anything of the state is touched.
   struct Change {
-    OpenFlow flow;                // as it will be
-    std::uint64_t left = 0;       // particles that go, of all processes
-    Particles<D> added;           // that come
-    std::vector<double> setBack;  // per body: how far the layers of its nozzle are [m]
+    OpenFlow flow;           // as it will be
+    std::uint64_t left = 0;  // particles that go, of all processes
+    Particles<D> added;      // that come
+    // Per body: how far the columns of its nozzle are, or all of them together; empty where none is [m].
+    std::vector<std::vector<double>> setBack;
   };
 
   void letOut(Change& change);
   void letIn(const CellGrid<D>& grid, double start, Change& change) const;
-  void addLayer(const CellGrid<D>& grid, std::size_t body, double way, Change& change) const;
+  void addLayer(const CellGrid<D>& grid, std::size_t body, int layer, std::span<const double> counts,
+                Change& change) const;
   void fillReserves(const CellGrid<D>& grid, Change& change);
   void fillReserve(const CellGrid<D>& grid, std::size_t opening, std::span<const ReserveParticle<D>> in,
                    Change& change) const;

@@ -42,6 +42,7 @@ struct FlowState {
   std::vector<OpeningFace<D>> faces;                    // per opening
   std::vector<OpeningForce<D>> openingForces;           // likewise; of the step at hand
   Buffer<OpeningForce<D>, Backend> openings;
+  Buffer<Vec<D>, Backend> nozzleColumns;       // of the nozzle at hand, NozzleColumns::each
   Buffer<WallMotion<D>, Backend> wallMotion;   // per body, where walls are; empty: all keep their velocities
   Buffer<Vec<D>, Backend> velocity, position;  // the step's results before they are accepted
 
@@ -80,6 +81,16 @@ struct FlowState {
   void takeOpenings() {
     fromHost(context, std::span<const OpeningForce<D>>(openingForces), openings);
     frame.openings = openings.span();
+  }
+
+  /// The columns of the nozzle of a body at time t [s], each with its multiple of a vector, until the next call.
+  NozzleColumns<D> columnsOf(std::size_t body, double t, std::span<const double> multiples, const Vec<D>& of) {
+    const NozzleLayers<D>& nozzle = *nozzles[body];
+    fromHost(context, std::span<const Vec<D>>(nozzle.eachOf(multiples, of)), nozzleColumns);
+    NozzleColumns<D> columns = nozzle.columns(theCase.domain, t);
+    columns.body = static_cast<std::uint8_t>(body);
+    columns.each = nozzleColumns.span();
+    return columns;
   }
 
   /// With the others of these processes.

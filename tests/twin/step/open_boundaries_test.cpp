@@ -66,6 +66,11 @@ TEST(OpenBoundariesTwin, StepsLikeTheCpu) {
   compareJets<3>(jetCase(3));
   compareJets<2>(jetCase(2, MethodKind::MphI, SchemeKind::Published));
   compareJets<2>(jetCase(2, MethodKind::Isph));
+  for (const int dimensions : {2, 3}) {
+    Case c = jetCase(dimensions);
+    c.bodies[0].inflow.profile = "parabolic";
+    dimensions == 2 ? compareJets<2>(c) : compareJets<3>(c);
+  }
 }
 
 TEST(OpeningsTwin, StepLikeTheCpu) {

@@ -42,7 +42,8 @@ TEST(OpenCase, IsReadAndWritten) {
            {},
            {"jet.speed='0.1*sin(t)^2'", "jet.start=0.01", "jet.end=0.02"},
            {"jet.speed={times=[0,1],values=[0.1,0.2]}", "jet.velocity=[0.1,0]"},
-           {"jet.oscillation={amplitude=[1e-3,0],period=0.1}"},
+           {"jet.profile='parabolic'", "jet.oscillation={amplitude=[1e-3,0],period=0.1}"},
+           {"jet.profile='1 - (x/3e-3)^2'"},
            {"jet.rotation={center=[0,9e-3],speed=2}"},
            {"jet.rotation={center=[0,9e-3],angle='0.1*sin(9*t)'}"},
            {"outflow=[{name='end',shape='plane',point=[1e-3,0],normal=[1,1]}]"}}) {
@@ -124,6 +125,16 @@ const Mistake openMistakes[] = {
     {"jet.speed={times=[0,1],values=[1]}", "expected as many values as times, 2, found 1"},
     {"jet.speed={times=[0,1],values=[1,-2]}", "expected an array of finite numbers [m/s], found -2"},
     {"jet.flow_rate=1", "expected one of speed and flow_rate, found both"},
+    {"jet.profile=1", "profile in [[body]] 'jet' (inflow): expected a string, found 1"},
+    {"jet.profile='parabolik'",
+     "profile in [[body]] 'jet' (inflow): \"parabolik\" is neither \"plug\" nor \"parabolic\"; expected an "
+     "expression"},
+    {"jet.profile='x'",
+     "profile in [[body]] 'jet' (inflow): \"x\" is -0.0005 for the column of particles at (-0.5, 8) mm; expected "
+     "a "
+     "finite number not less than 0"},
+    {"jet.profile='1/(x-5e-4)'", "\"1/(x-5e-4)\" is inf for the column"},
+    {"jet.profile='0*x'", "\"0*x\" is 0 for all columns of particles together; expected more than 0"},
     {"jet.nozzle.direction=[0,0]", "expected a direction, found a vector of length 0"},
     {"jet.nozzle.radius=1", "unknown key 'radius' in the nozzle of [[body]] 'jet' (rectangle)"},
     {"jet.nozzle.width=0", "expected a positive number [m], found 0"},
@@ -159,6 +170,20 @@ TEST(OpenCase, APolygonIsAnOpeningInSpace) {
   };
   EXPECT_THAT(message("dimensions = 2", "[[0, 0], [1, 0], [0, 1]]"), HasSubstr("a polygon has two dimensions"));
   EXPECT_THAT(message("dimensions = 2", "[[0, 0], [1, 0, 3]]"), HasSubstr("points in the nozzle"));
+}
+
+TEST(OpenCase, APolygonHasNoParabolicProfile) {
+  Case c = openCaseWith({});
+  c.dimensions = 3;
+  c.domain.min[2] = -10e-3, c.domain.max[2] = 10e-3;
+  c.bodies.resize(1), c.outflows.clear();
+  c.bodies[0].inflow.nozzle.kind = NozzleKind::Polygon;
+  c.bodies[0].inflow.nozzle.points = {{-2e-3, -2e-3}, {2e-3, -2e-3}, {0, 2e-3}};
+  requireValid(c);
+  c.bodies[0].inflow.profile = "parabolic";
+  EXPECT_THAT(messageOf<InputError>([&] { requireValid(c); }),
+              HasSubstr("body.jet.profile: \"parabolic\" is for a disc or a rectangle; expected \"plug\" or an "
+                        "expression of x, y and z for a polygon"));
 }
 
 std::string messageOfCreation(const std::vector<std::string>& overrides) {
@@ -214,6 +239,28 @@ TEST(OpenCase, ARunCountsWhatComesAndGoes) {
       "normal=[-1,0]}]\"");
   EXPECT_EQ(other.exitCode, 2);
   EXPECT_THAT(other.err, HasSubstr("outflows"));
+}
+
+/// Each column of a nozzle goes on from where it is, also where the run had a plug; columns that are apart make
+/// none.
+TEST(OpenCase, ProfilesGoOnFromAFile) {
+  Workshop shop;
+  shop.put("case.toml", pouring);
+  const std::string run = "run case.toml --backend cpu --threads 1 --quiet ",
+                    resume = "--resume half/checkpoint.h5";
+  const std::string profile = "--set jet.profile=parabolic ";
+  ASSERT_EQ(shop.call(run + profile + "-o whole --end-time 0.04").exitCode, 0);
+  ASSERT_EQ(shop.call(run + profile + "-o half --end-time 0.023").exitCode, 0);
+  const Outcome rest = shop.call(run + profile + "-o rest --end-time 0.04 " + resume);
+  ASSERT_EQ(rest.exitCode, 0) << rest.err;
+  EXPECT_EQ(shop.content("rest/checkpoint.h5"), shop.content("whole/checkpoint.h5"));
+  const Outcome other = shop.call(run + "-o other " + resume);
+  EXPECT_EQ(other.exitCode, 2);
+  EXPECT_THAT(other.err,
+              HasSubstr("the 4 columns of particles in the nozzle of inflow 'jet' went at speeds of their own; "
+                        "expected the nozzle of the run, and a profile other than \"plug\""));
+  ASSERT_EQ(shop.call(run + "-o half --force --end-time 0.023").exitCode, 0);
+  EXPECT_EQ(shop.call(run + profile + "-o other " + resume).exitCode, 0);
 }
 
 /// With openings, one of which has a flow rate, and with trapped gas.

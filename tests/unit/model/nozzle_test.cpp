@@ -5,8 +5,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 namespace treacle::test {
 namespace {
@@ -159,6 +161,68 @@ TEST(NozzleLayers, TurnWithTheirNozzle) {
     const Vec<3> a = (1 / (e * e)) * (after[i] - 2.0 * from[i] + before[i]);
     EXPECT_LE(norm(leaving.velocityAt(from[i]) - u), 1e-6);
     EXPECT_LE(norm(leaving.accelerationAt(from[i]) - a), 1e-4);
+  }
+}
+
+/// By how much the fastest column is faster than the mean.
+template <int D>
+double peakOf(const Body& b) {
+  const NozzleLayers<D> layers(caseOf(D), b);
+  EXPECT_EQ(layers.profile().size(), layers.size());
+  const double count = static_cast<double>(layers.size());
+  EXPECT_NEAR(std::accumulate(layers.profile().begin(), layers.profile().end(), 0.0), count, 1e-12 * count);
+  EXPECT_GE(std::ranges::min(layers.profile()), 0);
+  return std::ranges::max(layers.profile());
+}
+
+/// What tables of flow in ducts have for the largest speed over the mean.
+TEST(NozzleProfiles, ArePoiseuilles) {
+  Body slit = inflow(NozzleKind::Rectangle);
+  slit.inflow.profile = "parabolic";
+  slit.inflow.nozzle.width = 4.1, slit.inflow.nozzle.height = 4.1;
+  Body disc = slit;
+  disc.inflow.nozzle.kind = NozzleKind::Disc;
+  disc.inflow.nozzle.radius = 2.05;
+  EXPECT_NEAR(peakOf<3>(slit), 2.0962, 0.01);
+  EXPECT_NEAR(peakOf<3>(disc), 2, 0.02);
+  for (Body* b : {&slit, &disc}) b->inflow.nozzle.direction = {1, 2, 0};
+  EXPECT_NEAR(peakOf<2>(slit), 1.5, 0.002);
+  EXPECT_NEAR(peakOf<2>(disc), 1.5, 0.002);
+  slit.inflow.nozzle.height = 2.1;
+  EXPECT_NEAR(peakOf<3>(slit), 1.992, 0.01);
+  slit.inflow.nozzle.width = 2.1, slit.inflow.nozzle.height = 40.1;
+  EXPECT_NEAR(peakOf<3>(slit), 1.5 / (1 - 0.63 * 2.1 / 40.1), 0.01);
+  disc.inflow.nozzle.innerRadius = 1.025;  // a ring of half the radius
+  EXPECT_NEAR(peakOf<3>(disc), 1.5078, 0.03);
+  EXPECT_NEAR(peakOf<2>(disc), 1.5, 0.06);  // 10 particles on each side
+}
+
+/// Of the place in the case, in proportion; equal on both sides of the middle of its own.
+TEST(NozzleProfiles, AreExpressionsOfThePlace) {
+  Case c = caseOf(3);
+  Body b = inflow(NozzleKind::Rectangle);
+  b.inflow.nozzle.direction = {0, 0, 2};
+  b.inflow.nozzle.width = 0.8, b.inflow.nozzle.height = 0.4;
+  b.inflow.profile = "7*(1 - ((x-1)/0.5)^2)*(y-1.5)*z";
+  b.rotation = Rotation{.speed = 2};  // about the origin
+  const NozzleLayers<3> layers(c, b);
+  const std::vector<Vec<3>> places = layers.layer(0, 0);
+  const auto at = [](const Vec<3>& x) { return (1 - 4 * (x[0] - 1) * (x[0] - 1)) * (x[1] - 1.5); };
+  for (std::size_t k = 1; k < places.size(); ++k)
+    EXPECT_NEAR(layers.profile()[k] / layers.profile()[0], at(places[k]) / at(places[0]), 1e-9);
+  // Each column is found wherever the nozzle has turned to, and how far it has gone.
+  std::vector<double> numbers(layers.size());
+  std::iota(numbers.begin(), numbers.end(), 0.0);
+  c.domain = {{-3, -3, 0}, {3, 3, 6}, {true, true, true}};
+  for (const double t : {0.0, 0.4, 1.3}) {
+    NozzleColumns<3> columns = layers.columns(c.domain, t);
+    const std::vector<Vec<3>> each = layers.eachOf(numbers, {1, 0, 0}), now = layers.layer(-0.23, t);
+    for (std::size_t k = 0; k < now.size(); ++k) {
+      Vec<3> x = now[k];
+      for (int axis = 0; axis < 3; ++axis)
+        x[axis] -= 6 * std::floor((x[axis] - c.domain.min[axis]) / 6);  // where the domain has it
+      EXPECT_EQ(each[columns.placeOf(x)][0], numbers[k]) << t;
+    }
   }
 }
 

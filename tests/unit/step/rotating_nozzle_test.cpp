@@ -9,7 +9,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <map>
+#include <vector>
 
 namespace treacle::test {
 namespace {
@@ -79,10 +81,24 @@ TEST(RotatingNozzle, GivesATurnedJet) {
   checkTurnedJet<2>(MethodKind::Isph);
 }
 
-/// What comes in has the velocity of the flow, in the direction that the nozzle has by then, and that of the place
-/// that it leaves from; there are as many as should be; and the layers stand where they would have been put.
+/// In which column of the nozzle a particle stands that leaves it at time t.
 template <int D>
-void checkThrow(MethodKind method) {
+std::size_t columnAt(const NozzleLayers<D>& layers, const Vec<D>& x, double t) {
+  std::size_t nearest = 0;
+  double least = std::numeric_limits<double>::infinity();
+  const std::vector<Vec<D>> places = layers.layer(0, t);
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    Vec<D> off = x - places[k];
+    off -= dot(off, layers.direction(t)) * layers.direction(t);
+    if (norm(off) < least) least = norm(off), nearest = k;
+  }
+  return nearest;
+}
+
+/// What comes in has the velocity of the flow, in the direction that the nozzle has by then, and that of the place
+/// that it leaves from. Each column gives as many as it should, and stands where it would have been put.
+template <int D>
+void checkThrow(MethodKind method, const char* profile = "plug") {
   Case c = jetCase(D, method);
   c.outflows.clear();
   c.domain.min = {-0.06, -0.06, D == 3 ? -0.02 : 0.0}, c.domain.max = {0.06, 0.06, D == 3 ? 0.02 : 0.0};
@@ -91,10 +107,13 @@ void checkThrow(MethodKind method) {
   c.bodies[0].inflow.nozzle.center = {6e-3, 0, 0};
   c.bodies[0].velocity = {0, 0, D == 3 ? along : 0};
   c.bodies[0].rotation = Rotation{.center = pivot, .speed = spin};
+  c.bodies[0].inflow.profile = profile;
   const NozzleLayers<D> layers(c, c.bodies[0]);
+  std::vector<double> parts(layers.profile().begin(), layers.profile().end());
+  parts.resize(layers.size(), 1);
   Simulation<D> simulation(c, created<D>(c));
   std::uint32_t known = simulation.particles().count;
-  std::size_t thrown = 0;
+  std::vector<std::uint32_t> thrown(layers.size());
   for (int k = 0; k < 80; ++k) {
     const StepReport report = simulation.advance();
     const Particles<D> p = stateOf(simulation);
@@ -105,27 +124,40 @@ void checkThrow(MethodKind method) {
     for (std::uint32_t i = 0; i < p.fluidCount; ++i) {
       if (p.id[i] < known) continue;
       const Vec<3> arm = resized<3>(p.position[i]) - pivot;
-      const Vec<3> u = speed * direction + cross({0, 0, spin}, arm) + c.bodies[0].velocity;
+      const std::size_t column = columnAt<D>(layers, p.position[i], t);
+      const Vec<3> u = parts[column] * speed * direction + cross({0, 0, spin}, arm) + c.bodies[0].velocity;
       ASSERT_LE(norm(resized<3>(p.velocity[i]) - u), 1e-12) << "t = " << t;
-      ++thrown;
+      ++thrown[column];
     }
     known = p.flow.nextId;
   }
-  EXPECT_EQ(thrown, layers.size() * 24);  // 80 ms at 0.3 m/s
+  for (std::size_t k = 0; k < thrown.size(); ++k)  // 80 ms at 0.3 m/s
+    EXPECT_EQ(thrown[k], static_cast<std::uint32_t>(24 * parts[k] + 1e-6)) << k;
   const Particles<D> p = stateOf(simulation);
   std::map<std::uint32_t, Vec<D>> places;
   for (std::uint32_t i = p.fluidCount; i < p.count; ++i) places[p.id[i]] = p.position[i];
   ASSERT_EQ(places.size(), layers.size() * static_cast<std::size_t>(layers.depth()));
   auto place = places.begin();
-  for (int k = 0; k < layers.depth(); ++k)
-    for (const Vec<D>& x : layers.layer(p.flow.inflows[0].way - (k + 0.5) * c.spacing, simulation.time()))
+  std::vector<double> ways = p.flow.inflows[0].ways;
+  for (double& way : ways) way -= 0.5 * c.spacing;
+  for (int k = 0; k < layers.depth(); ++k) {
+    for (const Vec<D>& x : layers.layer(ways, simulation.time()))
       ASSERT_LE(norm((place++)->second - x), 1e-9 * c.spacing);
+    for (double& way : ways) way -= c.spacing;
+  }
 }
 
 TEST(RotatingNozzle, ThrowsWhatItsMotionGives) {
   checkThrow<2>(MethodKind::MphI);
   checkThrow<3>(MethodKind::MphI);
   checkThrow<2>(MethodKind::Isph);
+}
+
+TEST(RotatingNozzle, ThrowsEachColumnByItself) {
+  checkThrow<2>(MethodKind::MphI, "parabolic");
+  checkThrow<3>(MethodKind::MphI, "parabolic");
+  checkThrow<2>(MethodKind::Isph, "parabolic");
+  checkThrow<3>(MethodKind::MphI, "0.01 + y");  // 14 times as fast on one side as on the other
 }
 
 template <int D>

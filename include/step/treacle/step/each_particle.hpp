@@ -39,11 +39,19 @@ void setWallChords(Context<Backend>& context, const MovingWalls<D>& walls, std::
 }
 
 template <int D, class Backend>
-void shiftBody(Context<Backend>& context, const CellGrid<D>& grid, std::span<const std::uint8_t> body,
-               std::uint8_t which, const Vec<D>& by, std::span<Vec<D>> position) {
+void addToColumns(Context<Backend>& context, const NozzleColumns<D>& columns, std::span<const std::uint8_t> body,
+                  std::span<const Vec<D>> position, std::span<Vec<D>> vector) {
+  forEach(context, vector.size(), [=] TREACLE_HD(std::size_t k) {
+    if (body[k] == columns.body) vector[k] += columns.each[columns.placeOf(position[k])];
+  });
+}
+
+template <int D, class Backend>
+void shiftColumns(Context<Backend>& context, const CellGrid<D>& grid, const NozzleColumns<D>& columns,
+                  std::span<const std::uint8_t> body, std::span<Vec<D>> position) {
   forEach(context, position.size(), [=] TREACLE_HD(std::size_t k) {
-    if (body[k] != which) return;
-    Vec<D> moved = position[k] + by;
+    if (body[k] != columns.body) return;
+    Vec<D> moved = position[k] + columns.each[columns.placeOf(position[k])];
     grid.wrap(moved);
     position[k] = moved;
   });
@@ -235,8 +243,10 @@ StepChange stepChange(Context<Backend>& context, const StepChangeTerms<D>& terms
 #define TREACLE_EACH_PARTICLE(D, Backend)                                                                        \
   template void setWallVelocities(Context<Backend>&, const MovingWalls<D>&, std::span<Vec<D>>);                  \
   template void setWallChords(Context<Backend>&, const MovingWalls<D>&, std::span<Vec<D>>);                      \
-  template void shiftBody(Context<Backend>&, const CellGrid<D>&, std::span<const std::uint8_t>, std::uint8_t,    \
-                          const Vec<D>&, std::span<Vec<D>>);                                                     \
+  template void addToColumns(Context<Backend>&, const NozzleColumns<D>&, std::span<const std::uint8_t>,          \
+                             std::span<const Vec<D>>, std::span<Vec<D>>);                                        \
+  template void shiftColumns(Context<Backend>&, const CellGrid<D>&, const NozzleColumns<D>&,                     \
+                             std::span<const std::uint8_t>, std::span<Vec<D>>);                                  \
   template void extrapolate(Context<Backend>&, const Extrapolation<D>&, std::span<const Vec<D>>, FlowMemory<D>,  \
                             std::span<Vec<D>>);                                                                  \
   template void updateFlowMemory(Context<Backend>&, double, double, std::span<const Vec<D>>,                     \

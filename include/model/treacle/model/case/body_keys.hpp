@@ -159,6 +159,10 @@ void visit(auto& v, Like<Inflow> auto& i, const Case& c) {
   v({"flow_rate", "Flow through all of the opening, in place of a speed", optional,
      c.dimensions == 2 ? "m2/s" : "m3/s", notNegative},
     i.flowRate);
+  v({"profile",
+     "How the speed differs over the opening: \"plug\", not at all, \"parabolic\", as in a steady viscous flow, "
+     "or an expression of the place at the start, which is divided by its mean"},
+    i.profile);
   v({"start", "When the flow begins", optional, "s", notNegative}, i.start);
   v({"end", "When the flow ends; 0: it does not", optional, "s", notNegative}, i.end);
 }

@@ -20,7 +20,8 @@ struct FlowCount {
 /// What a run remembers of the fluid that comes and goes; nothing, zero and empty, where none does.
 struct OpenFlow {
   struct Inflow : FlowCount {
-    double way = 0;  // of its layers since one of them left the nozzle [m]
+    // Of its columns of particles since one of theirs left the nozzle; one number where all go together [m].
+    std::vector<double> ways = {0.0};
 
     bool operator==(const Inflow&) const = default;
   };

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace treacle {
@@ -27,13 +28,18 @@ struct Nozzle {
   bool operator==(const Nozzle&) const = default;
 };
 
+inline constexpr std::string_view plugProfile = "plug", parabolicProfile = "parabolic";
+
 /// How fluid comes into a case (docs/inflow.md). Behind the opening stand some layers of particles that go with
-/// the given speed, as a wall does; whenever they have gone a spacing, the first layer becomes fluid, and another
-/// one follows at the end.
+/// the given speed, as a wall does. Whenever a column of particles has gone a spacing, its first one becomes
+/// fluid, and another one follows at the end.
 struct Inflow {
   Nozzle nozzle;
   // One of them: of the fluid relative to the nozzle [m/s]; through all of it [m3/s; m2/s in 2D].
   std::optional<TimeFunction> speed{}, flowRate{};
+  // Of the speed over the opening: one of the words above, or an expression of the place at the start, of which
+  // the ratios count.
+  std::string profile{plugProfile};
   double start = 0, end = 0;  // when it flows [s]; end 0: it does not end
 
   bool operator==(const Inflow&) const = default;

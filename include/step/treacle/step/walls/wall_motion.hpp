@@ -1,6 +1,7 @@
 #pragma once
 
 #include "treacle/core/cuda.hpp"
+#include "treacle/model/motion/nozzle_columns.hpp"
 #include "treacle/model/motion/wall_motion.hpp"
 #include "treacle/search/cell_grid.hpp"
 
@@ -25,9 +26,14 @@ void setWallVelocities(Context<Backend>&, const MovingWalls<D>& walls, std::span
 template <int D, class Backend>
 void setWallChords(Context<Backend>&, const MovingWalls<D>& walls, std::span<Vec<D>> chord);
 
-/// Moves the wall particles of one body by a vector [m]. `position`: per wall particle.
+/// Adds to a vector of the wall particles of a nozzle what their columns have. All spans: per wall particle.
 template <int D, class Backend>
-void shiftBody(Context<Backend>&, const CellGrid<D>& grid, std::span<const std::uint8_t> body, std::uint8_t which,
-               const Vec<D>& by, std::span<Vec<D>> position);
+void addToColumns(Context<Backend>&, const NozzleColumns<D>& columns, std::span<const std::uint8_t> body,
+                  std::span<const Vec<D>> position, std::span<Vec<D>> vector);
+
+/// Moves them by it [m].
+template <int D, class Backend>
+void shiftColumns(Context<Backend>&, const CellGrid<D>& grid, const NozzleColumns<D>& columns,
+                  std::span<const std::uint8_t> body, std::span<Vec<D>> position);
 
 }  // namespace treacle
