@@ -328,6 +328,12 @@ constexpr BadCase badCases[] = {
     {"noFluid", "type = \"fluid\"", "type = \"wall\"",
      "bad.toml:19:1: body in the case file: no fluid: expected at least one [[body]] with type = \"fluid\" or "
      "\"inflow\""},
+    {"negativeProfile", "[time]",
+     "[[body]]\nname = \"jet\"\ntype = \"inflow\"\nmaterial = \"syrup\"\nspeed = 1\nprofile = \"1 - (x/1e-3)^2\"\n"
+     "nozzle = {shape = \"rectangle\", center = [0, 8e-3], direction = [0, 1], width = 4e-3}\n[time]",
+     "bad.toml:40:11: profile in [[body]] 'jet' (inflow): \"1 - (x/1e-3)^2\" is -1.25 for the column of particles "
+     "at "
+     "(-1.5, 8) mm; expected a finite number not less than 0"},
     {"overlap", "max = [12e-3, 0]", "max = [12e-3, 1e-3]",
      "fluid body 'column' and wall body 'floor' overlap: 6 wall particles closer than half a spacing to the "
      "fluid, "
