@@ -23,7 +23,7 @@ class Fluid:
     GPU it gives the field itself (`DeviceArray`), which holds until the next step. Particles stand in the order that
     the search likes, which changes with every step; `ids` names them for good.
 
-    Positions, velocities, viscosities (or their factors) and temperatures can be assigned between steps: from an array
+    Positions, velocities, viscosities (or their factors), temperatures and states can be assigned between steps: from an array
     of the same shape in the present order, of NumPy or anything with DLPack, on the host or on the GPU that computes,
     or from one number or row for all. After other positions or velocities the flow has no memory of earlier steps, and
     the watch begins anew. Pressures and number densities stay those of the last step until the next one.
@@ -122,6 +122,14 @@ class Fluid:
         self.set(viscosity_factors=values)
 
     @property
+    def states(self) -> dict[str, Array]:
+        """By name, (n,) of each state of the case's materials; 0 of particles whose material does not have it.
+
+        `set(states={...})` assigns some of them.
+        """
+        return {name: self._field(f"state:{name}") for name in self._session.state_names}
+
+    @property
     def pressures(self) -> Array:
         """(n,) [Pa], of the last step."""
         return self._field("pressures")
@@ -158,8 +166,12 @@ class Fluid:
         velocities: Any = None,
         temperatures: Any = None,
         viscosity_factors: Any = None,
+        states: dict[str, Any] | None = None,
     ) -> None:
-        """Assigns several fields at once: all of them or, with InputError, none."""
+        """Assigns several fields at once: all of them or, with InputError, none.
+
+        `states`: by name, those of materials that are to change.
+        """
         n, d = len(self), self._session.dimensions
         given = [
             _expanded(given_array(values, what), shape, what)
@@ -170,7 +182,11 @@ class Fluid:
                 (viscosity_factors, (n,), "viscosity_factors"),
             )
         ]
-        self._session.give_fluid(*given)
+        of_states = {
+            name: _expanded(given_array(values, f"states[{name!r}]"), (n,), f"states[{name!r}]")
+            for name, values in (states or {}).items()
+        }
+        self._session.give_fluid(*given, of_states)
 
 
 def _expanded(values: Any, shape: tuple[int, ...], what: str) -> Any:

@@ -40,6 +40,8 @@ class Frame:
     """(n,) [K]; of fluid in cases with heat"""
     viscosity_factors: NDArray[np.float64] | None
     """(n,) [-]; of fluid where particles have them"""
+    states: dict[str, NDArray[np.float64]]
+    """By name, (n,) of each state of the materials; of fluid"""
     materials: NDArray[np.int32] | None
     """(n,) indices into the materials of the case"""
     bodies: NDArray[np.int32] | None
@@ -64,6 +66,7 @@ def frame_of(time: float, dimensions: int, arrays: dict[str, Any]) -> Frame:
         shear_rates=arrays["shear_rate"],
         temperatures=arrays["temperature"],
         viscosity_factors=arrays["viscosity_factor"],
+        states=arrays["states"],
         materials=arrays["material"],
         bodies=arrays["body"],
         ids=arrays["id"],

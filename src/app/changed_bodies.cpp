@@ -165,6 +165,8 @@ class BodyChange {
     if (to.has.viscosityFactors)
       copyChosen<double>(fluid_, from.viscosityFactor.span(), created_.viscosityFactor.span(),
                          to.viscosityFactor.data());
+    for (std::size_t k = 0; k < to.has.states; ++k)
+      copyChosen<double>(fluid_, from.states[k].span(), created_.states[k].span(), to.states[k].data());
     for (std::uint32_t k = 0; k < fluid_.kept.size(); ++k) toCase(to.body[k]);
     for (std::uint32_t k = 0; k < walls_.kept.size(); ++k) toCase(to.body[n + k]);
     const auto firstAdded = static_cast<std::uint32_t>(fluid_.kept.size());

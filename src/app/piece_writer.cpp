@@ -126,7 +126,7 @@ void PieceWriter::write(const Snapshot& s) {
       const std::uint32_t begin = p.wallBegin();
       piece.fluid = p.fluidCount;
       Frame fluid = makeFrame(p, 0, p.fluidCount, s.time);
-      addViscosities(case_.materials, fluid);
+      addViscosities(case_, fluid);
       piece.arrangement = measureArrangementPart(fluid, positionsOfOthers(p), case_.domain, case_.spacing);
       const Frame walls = makeFrame(p, begin, begin + s.ownWalls, s.time);
       piece.walls = static_cast<std::uint32_t>(walls.position.size());

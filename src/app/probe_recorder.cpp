@@ -56,7 +56,7 @@ void ProbeRecorder::take(std::uint64_t probes, double time, const StepReport* st
     }
     reading.particles.visit([&](const auto& p) {
       Frame fluid = makeFrame(p, 0, p.fluidCount, time);
-      addViscosities(case_.materials, fluid);
+      addViscosities(case_, fluid);
       writer.append(time, reading.probe, fluid, makeFrame(p, p.fluidCount, p.count, time));
     });
   }

@@ -17,7 +17,7 @@ namespace {
 
 Frame fluidFrame(const Case& c, const Snapshot& s) {
   Frame frame = s.particles.visit([&](const auto& p) { return makeFrame(p, 0, p.fluidCount, s.time); });
-  addViscosities(c.materials, frame);
+  addViscosities(c, frame);
   return frame;
 }
 

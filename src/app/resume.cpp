@@ -38,7 +38,9 @@ void requireMethod(const Case& c, const std::filesystem::path& file, MethodKind 
                              nameOf(c.method.kind)));
 }
 
-std::string listed(const std::vector<std::string>& names) { return fmt::format("'{}'", fmt::join(names, "', '")); }
+std::string listed(const std::vector<std::string>& names) {
+  return names.empty() ? "none" : fmt::format("'{}'", fmt::join(names, "', '"));
+}
 
 /// Gives particles the numbers that their materials have in the case, which may list them in another order.
 /// Errors: InputError for materials that the case does not have.
@@ -85,13 +87,18 @@ Kinds kindsOf(const MadeParticles& made) {
 /// What a fluid of unknown temperature would start with nobody can say, and factors of its viscosity that come or
 /// go would make another fluid of it.
 template <int D>
-void requireFields(const Case& c, const std::filesystem::path& file, const Particles<D>& p) {
+void requireFields(const Case& c, const std::filesystem::path& file, const StateNames& names,
+                   const Particles<D>& p) {
   if (c.heat && !p.has.temperatures) refuse(file, "a state without temperatures, but the case has heat");
   if (c.hasViscosityFactors() && !p.has.viscosityFactors)
     refuse(file, "a state without factors of the viscosity, but a body of the case has a viscosity_factor");
   if (c.hasThinSheets() != p.has.sides)
     refuse(file, fmt::format("a state with{} thin sheets, but the case has {}; expected the case.toml of the run",
                              p.has.sides ? "" : "out", p.has.sides ? "none" : "some"));
+  if (const auto here = c.stateNames(); here != names.states)
+    refuse(file, fmt::format("a state whose materials have the states {}, but those of the case have {}; expected "
+                             "the case.toml of the run",
+                             listed(names.states), listed(here)));
   if (!c.hasViscosityFactors() && p.has.viscosityFactors)
     refuse(file,
            "a state with factors of the viscosity, but no body of the case has a viscosity_factor; expected the "
@@ -264,7 +271,7 @@ StartState fittingState(const Case& c, const std::filesystem::path& file, const 
     std::vector<std::string> changes;
     requireMethod(c, file, state.method);
     matchMaterials(c, file, state.names, state.particles);
-    requireFields(c, file, state.particles);
+    requireFields(c, file, state.names, state.particles);
     requireRigid(c, file, state.names, state.particles.rigid);
     requireGas(c, file, state.particles.gas);
     if (!state.names.bodies.empty() && state.names.bodies != StateNames::of(c).bodies)

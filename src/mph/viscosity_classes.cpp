@@ -1,7 +1,10 @@
 #include "treacle/mph/viscosity_classes.hpp"
 
+#include "treacle/model/materials/state_table.hpp"
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace treacle {
 namespace {
@@ -48,20 +51,50 @@ Range factors(const Case& c) {
   return range;
 }
 
+/// What a formula of the material gives: at values of the states between their bounds, where these are all narrow,
+/// and three powers of ten on both sides where nobody knows.
+Range formulaRange(const Case& c, const Material& m, const std::string& text) {
+  if (text.empty()) return {1, 1};
+  constexpr double wide = 1e6;
+  constexpr int points = 9;
+  for (const MaterialState& s : m.states)
+    if (s.lowest() < -wide || s.highest() > wide) return {1e-3, 1e3};
+  const std::vector<std::string> names = c.stateNames();
+  const Formula formula(text, stateVariables(c, m));
+  Range range{std::numeric_limits<double>::infinity(), 0};
+  int all = 1;
+  for (std::size_t k = 0; k < m.states.size(); ++k) all *= points;
+  for (const double rate : {0.0, 1e-3, 1.0, 1e3})
+    for (int at = 0; at < all; ++at) {
+      double x[StateTable::variables] = {c.heat ? c.typicalTemperature(m) : 0, rate, 0};
+      int rest = at;
+      for (const MaterialState& s : m.states) {
+        const auto k = std::ranges::find(names, s.name) - names.begin();
+        x[StateTable::FirstState + k] = s.lowest() + rest % points * (s.highest() - s.lowest()) / (points - 1);
+        rest /= points;
+      }
+      if (const double value = formula(x); value > 0 && std::isfinite(value))
+        range = {std::min(range.least, value), std::max(range.most, value)};
+    }
+  return range.most > 0 ? range : Range{1, 1};
+}
+
 /// The viscosities at shear rates from rest to a million per second; no case here flows faster.
 Range viscosities(const Case& c, const Material& m) {
-  const Range shift = shifts(c, m), factor = factors(c);
-  Range range{m.viscosity(0, shift.least), m.viscosity(0, shift.most)};
+  const Range shift = shifts(c, m), factor = factors(c), yield = formulaRange(c, m, m.yieldFactor);
+  const Range ofFormula = formulaRange(c, m, m.viscosityFactor),
+              ofGel{1, m.gelling ? m.gelling->mostFactor : 1};
+  Range range{m.viscosity(0, shift.least, yield.least), m.viscosity(0, shift.most, yield.most)};
   for (double rate = 1e-6; rate < 2e6; rate *= 10) {
-    range.least = std::min(range.least, m.viscosity(rate, shift.least));
-    range.most = std::max(range.most, m.viscosity(rate, shift.most));
+    range.least = std::min(range.least, m.viscosity(rate, shift.least, yield.least));
+    range.most = std::max(range.most, m.viscosity(rate, shift.most, yield.most));
   }
-  return {factor.least * range.least, factor.most * range.most};
+  return {factor.least * ofFormula.least * range.least, factor.most * ofFormula.most * ofGel.most * range.most};
 }
 
 bool hasSteps(const ViscosityClasses& classes, const Case& c, const Material& m) {
   if (m.rheology) return true;
-  return m.dynamicViscosity > 0 && (m.viscosityShift || c.hasViscosityFactors() || classes.ofNeighbours);
+  return m.dynamicViscosity > 0 && (m.viscosityShift || m.hasFormulas() || c.hasViscosityFactors() || classes.ofNeighbours);
 }
 
 /// Among particles of another fluid, or at a surface, a particle may be resisted by a fraction of its viscosity,

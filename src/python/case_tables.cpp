@@ -169,6 +169,7 @@ class Collector {
   void operator()(const Key& key, const std::vector<std::string>&) { put(key, "Sequence[str]"); }
   void operator()(const Key& key, const std::string&) { put(key, "str"); }
   void operator()(const Key& key, const std::string&, keys::FileTag) { put(key, "str | PathLike[str]"); }
+  void operator()(const Key& key, const std::string&, keys::FormulaTag) { put(key, "str"); }
   void operator()(const Key& key, const std::string&, keys::ExpressionTag) { put(key, "str"); }
   void operator()(const Key& key, int, keys::MaterialTag) { put(key, "str"); }
   void operator()(const Key& key, double, bool, keys::OrAutoTag) { put(key, "float | Literal[\"auto\"]"); }

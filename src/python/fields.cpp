@@ -11,7 +11,9 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <type_traits>
+#include <vector>
 
 namespace treacle {
 namespace {
@@ -39,9 +41,13 @@ constexpr NamedField namedFields[] = {
     {"bodies", FluidField::Body, Number::Byte},
     {"ids", FluidField::Id, Number::Word}};
 
-const NamedField& fieldNamed(const std::string& name) {
+/// Fields of the table, and "state:NAME" of a state of the case's materials.
+NamedField fieldNamed(const Session& session, const std::string& name) {
   for (const NamedField& f : namedFields)
     if (name == f.name) return f;
+  const std::vector<std::string> states = session.theCase().stateNames();
+  for (std::size_t k = 0; k < states.size(); ++k)
+    if (name == "state:" + states[k]) return {"state", fieldOfState(k)};
   throw InputError(fmt::format("the fluid has no field '{}'", name));
 }
 
@@ -81,13 +87,13 @@ class Given {
 }  // namespace
 
 bool hasField(const Session& session, const std::string& name) {
-  const NamedField& named = fieldNamed(name);
+  const NamedField named = fieldNamed(session, name);
   return !named.isThere || named.isThere(session.theCase());
 }
 
 nb::object copiedField(const Session& session, const std::string& name) {
   if (!hasField(session, name)) return nb::none();
-  const NamedField& named = fieldNamed(name);
+  const NamedField named = fieldNamed(session, name);
   const FieldMemory m = session.simulation().field(named.field);
   return withNumber(named.number, [&]<class T>(T) -> nb::object {
     auto* values = new T[std::max<std::size_t>(m.bytes / sizeof(T), 1)];
@@ -99,7 +105,7 @@ nb::object copiedField(const Session& session, const std::string& name) {
 }
 
 nb::object fieldInPlace(const Session& session, const std::string& name, nb::handle owner) {
-  const NamedField& named = fieldNamed(name);
+  const NamedField named = fieldNamed(session, name);
   const FieldMemory m = session.simulation().field(named.field);
   const int device = m.where == BackendKind::Cuda ? nb::device::cuda::value : nb::device::cpu::value;
   return withNumber(named.number, [&]<class T>(T) -> nb::object {
@@ -110,7 +116,7 @@ nb::object fieldInPlace(const Session& session, const std::string& name, nb::han
 }
 
 nb::tuple fieldAddress(const Session& session, const std::string& name) {
-  const NamedField& named = fieldNamed(name);
+  const NamedField named = fieldNamed(session, name);
   const FieldMemory m = session.simulation().field(named.field);
   const nb::object shape =
       m.components > 1 ? nb::object(nb::make_tuple(m.count, m.components)) : nb::object(nb::make_tuple(m.count));
@@ -119,17 +125,29 @@ nb::tuple fieldAddress(const Session& session, const std::string& name) {
 }
 
 void giveFluid(Session& session, const nb::object& positions, const nb::object& velocities,
-               const nb::object& temperatures, const nb::object& viscosityFactors) {
+               const nb::object& temperatures, const nb::object& viscosityFactors, const nb::dict& states) {
   const Given x(positions, "positions"), u(velocities, "velocities"), warm(temperatures, "temperatures"),
       factors(viscosityFactors, "viscosity_factors");
   std::optional<bool> onDevice;
-  for (const Given* given : {&x, &u, &warm, &factors}) {
+  std::vector<const Given*> all{&x, &u, &warm, &factors};
+  const std::vector<std::string> names = session.theCase().stateNames();
+  std::vector<Given> ofStates;
+  ofStates.reserve(maxStates);
+  std::array<std::span<const double>, maxStates> values;
+  for (const auto& [name, state] : states) {
+    const auto found = std::ranges::find(names, nb::cast<std::string>(name));
+    if (found == names.end())
+      throw InputError(fmt::format("states: the case has no state '{}'", nb::cast<std::string>(name)));
+    all.push_back(&ofStates.emplace_back(nb::borrow(state), "states"));
+    values[static_cast<std::size_t>(found - names.begin())] = ofStates.back().span();
+  }
+  for (const Given* given : all) {
     if (!given->isThere()) continue;
     if (onDevice && *onDevice != given->isOnDevice())
       throw InputError("expected arrays in the memory of the host, or all in that of the GPU, found both");
     onDevice = given->isOnDevice();
   }
-  const GivenFluid given{x.span(), u.span(), warm.span(), factors.span(),
+  const GivenFluid given{x.span(), u.span(), warm.span(), factors.span(), values,
                          onDevice.value_or(false) ? BackendKind::Cuda : BackendKind::Cpu};
   const nb::gil_scoped_release release;
   session.giveFluid(given);
@@ -149,6 +167,9 @@ nb::dict arraysOf(const Frame& frame) {
     else
       arrays[name] = arrayOf(values);
   });
+  nb::dict states;
+  for (const FrameState& state : frame.states) states[state.name.c_str()] = arrayOf(state.values);
+  arrays["states"] = states;
   return arrays;
 }
 

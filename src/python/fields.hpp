@@ -22,9 +22,11 @@ nanobind::object fieldInPlace(const Session& session, const std::string& name, n
 /// (address, shape, type as in __cuda_array_interface__) of the same.
 nanobind::tuple fieldAddress(const Session& session, const std::string& name);
 
-/// Numbers in the memory of the host or of the device, each None or an array of doubles in the order of C.
+/// Numbers in the memory of the host or of the device, each None or an array of doubles in the order of C; of
+/// states by name.
 void giveFluid(Session& session, const nanobind::object& positions, const nanobind::object& velocities,
-               const nanobind::object& temperatures, const nanobind::object& viscosityFactors);
+               const nanobind::object& temperatures, const nanobind::object& viscosityFactors,
+               const nanobind::dict& states);
 
 /// Name, copied array of every field of walls, in the order of their ids.
 nanobind::dict arraysOf(const Frame& frame);

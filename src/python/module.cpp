@@ -187,6 +187,7 @@ void bindSession(nb::module_& m) {
                        viscosities.push_back(material.hasOwnViscosities() ? 0 : material.dynamicViscosity);
                      return viscosities;
                    })
+      .def_prop_ro("state_names", [](const Session& s) { return s.theCase().stateNames(); })
       .def_prop_ro("material_names",
                    [](const Session& s) {
                      std::vector<std::string> names;
@@ -228,7 +229,7 @@ void bindSession(nb::module_& m) {
           },
           "name"_a)
       .def("give_fluid", &giveFluid, "positions"_a.none(), "velocities"_a.none(), "temperatures"_a.none(),
-           "viscosity_factors"_a.none())
+           "viscosity_factors"_a.none(), "states"_a)
       .def_prop_ro("viscosities", [](const Session& s) { return nb::borrow<nb::any>(arrayOf(s.viscosities())); })
       .def_prop_ro("walls", [](const Session& s) { return Arrays(arraysOf(s.wallsFrame())); })
       .def("write_frame", &writeFrame, "path"_a, "walls"_a, Quiet())

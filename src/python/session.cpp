@@ -152,8 +152,11 @@ std::vector<double> Session::viscosities() const {
   fluid.shearRate = copied(FluidField::ShearRate, double{});
   fluid.temperature = copied(FluidField::Temperature, double{});
   fluid.viscosityFactor = copied(FluidField::ViscosityFactor, double{});
+  for (std::size_t k = 0; k < case_.stateNames().size(); ++k)
+    fluid.states.push_back({"", copied(fieldOfState(k), double{})});
+  fluid.time = simulation_->time();
   fluid.shearRate.resize(materials.size());  // where no material has a rheology they do not matter
-  addViscosities(case_.materials, fluid);
+  addViscosities(case_, fluid);
   return std::move(fluid.dynamicViscosity);
 }
 
@@ -163,7 +166,7 @@ Frame Session::fluidFrame() const {
     fluid = makeFrame(p, 0, p.fluidCount, simulation_->time());
     walls = makeFrame(p, p.fluidCount, p.count, simulation_->time());
   });
-  addViscosities(case_.materials, fluid);
+  addViscosities(case_, fluid);
   measureArrangement(fluid, solidWalls(case_, walls), case_.domain, case_.spacing);
   return fluid;
 }

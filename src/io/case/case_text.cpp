@@ -59,6 +59,9 @@ class TableText {
   void operator()(const Key& key, const std::string& text, keys::ExpressionTag) {
     if (!text.empty()) put(key, tomlString(text));
   }
+  void operator()(const Key& key, const std::string& text, keys::FormulaTag) {
+    if (!text.empty()) put(key, tomlString(text));
+  }
   void operator()(const Key& key, int index, keys::MaterialTag) {
     put(key, tomlString(case_.materials[static_cast<std::size_t>(index)].name));
   }

@@ -66,6 +66,12 @@ struct OwnAxes<Material> {
   }
 };
 template <>
+struct OwnAxes<MaterialState> {
+  static std::vector<OwnAxis<MaterialState>> of() {
+    return {wordAxis<StateLaw, MaterialState>("law", [](MaterialState& s, StateLaw law) { s.law = law; })};
+  }
+};
+template <>
 struct OwnAxes<Rheology> {
   static std::vector<OwnAxis<Rheology>> of() {
     return {wordAxis<RheologyModel, Rheology>("model", [](Rheology& r, RheologyModel model) { r.model = model; })};

@@ -82,6 +82,9 @@ class Catalogue {
     void operator()(const Key& key, const std::string& text) { note(key, ValueKind::Text, text); }
     void operator()(const Key& key, const std::string&, keys::FileTag) { note(key, ValueKind::File); }
     void operator()(const Key& key, const std::string&, keys::ExpressionTag) { note(key, ValueKind::Formula); }
+    void operator()(const Key& key, const std::string& text, keys::FormulaTag) {
+      note(key, ValueKind::Text, text);
+    }
     void operator()(const Key& key, int, keys::MaterialTag) { note(key, ValueKind::MaterialName); }
     void operator()(const Key& key, double, bool, keys::OrAutoTag) { note(key, ValueKind::NumberOrAuto); }
     void operator()(const Key& key, const std::optional<TimeFunction>&) { note(key, ValueKind::OfTime); }

@@ -45,6 +45,7 @@ void TableReader::prepareKind(std::string_view key, E& kind) {
   section_ = Section(section_.table(), fmt::format("{} ({})", section_.title(), nameOf(kind)));
 }
 
+void TableReader::prepare(MaterialState& state) { prepareKind("law", state.law); }
 void TableReader::prepare(Rheology& rheology) { prepareKind("model", rheology.model); }
 void TableReader::prepare(ViscosityShift& shift) { prepareKind("model", shift.model); }
 
@@ -117,6 +118,9 @@ std::vector<std::string_view> TableReader::knownKeys(const Outflow& outflow) con
 }
 std::vector<std::string_view> TableReader::knownKeys(const Probe& probe) const {
   return keysOfKind<ProbeKind>("type", probe, [](Probe& p, ProbeKind kind) { p.kind = kind; });
+}
+std::vector<std::string_view> TableReader::knownKeys(const MaterialState& state) const {
+  return keysOfKind<StateLaw>("law", state, [](MaterialState& s, StateLaw law) { s.law = law; });
 }
 std::vector<std::string_view> TableReader::knownKeys(const Rheology& rheology) const {
   return keysOfKind<RheologyModel>("model", rheology, [](Rheology& r, RheologyModel model) { r.model = model; });

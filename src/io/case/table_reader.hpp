@@ -43,6 +43,7 @@ class TableReader {
   void operator()(const Key& key, std::string& text) const;
   void operator()(const Key& key, std::string& path, keys::FileTag) const;  // made absolute
   void operator()(const Key& key, std::string& text, keys::ExpressionTag) const;
+  void operator()(const Key& key, std::string& text, keys::FormulaTag) const { (*this)(key, text); }
   void operator()(const Key& key, int& index, keys::MaterialTag) const;
   void operator()(const Key& key, double& x, bool& isAuto, keys::OrAutoTag) const;
   void operator()(const Key& key, OutputFields& fields) const;
@@ -87,6 +88,7 @@ class TableReader {
   void prepare(Case& c);
   void prepare(MethodSettings& method);
   void prepare(Material& material);
+  void prepare(MaterialState& state);
   void prepare(Rheology& rheology);
   void prepare(ViscosityShift& shift);
   void prepare(Body& body);
@@ -124,6 +126,7 @@ class TableReader {
   std::vector<std::string_view> knownKeys(const Nozzle& nozzle) const;
   std::vector<std::string_view> knownKeys(const Outflow& outflow) const;
   std::vector<std::string_view> knownKeys(const Probe& probe) const;
+  std::vector<std::string_view> knownKeys(const MaterialState& state) const;
   std::vector<std::string_view> knownKeys(const Rheology& rheology) const;
   std::vector<std::string_view> knownKeys(const ViscosityShift& shift) const;
   template <class E, class Table, class Set>

@@ -103,6 +103,7 @@ void fill(hid_t file, const Particles<D>& particles, std::int64_t step, double t
   writeAttribute(file, "has_shear_rates", std::uint8_t{particles.has.shearRates});
   writeAttribute(file, "has_temperatures", std::uint8_t{particles.has.temperatures});
   writeAttribute(file, "has_viscosity_factors", std::uint8_t{particles.has.viscosityFactors});
+  if (particles.has.states > 0) writeNames(file, "state", names.states);
   if (particles.has.sides) writeAttribute(file, "has_sides", std::uint8_t{1});
   const ModeAge& age = particles.modes.age;
   writeAttribute(file, "mode_count", particles.modeCount());
@@ -218,7 +219,7 @@ Checkpoint<D> readContent(const std::filesystem::path& path, ParticlePart part) 
   Checkpoint<D> checkpoint;
   readNumbers(file, checkpoint);
   checkpoint.method = readMethod(file);
-  checkpoint.names = {readNames(file, "material", maxMaterials), readNames(file, "body", maxBodies)};
+  checkpoint.names = {readNames(file, "material", maxMaterials), readNames(file, "body", maxBodies), {}};
   Particles<D>& particles = checkpoint.particles;
   const std::uint32_t modes = readModeNumbers(file, particles.modes.age);
   particles.modes.pressure = readEigenvalue(file);
@@ -226,6 +227,8 @@ Checkpoint<D> readContent(const std::filesystem::path& path, ParticlePart part) 
   const auto has = [&](const char* name) { return readAttribute<std::uint8_t>(file, name) != 0; };
   particles.has = {has("has_shear_rates"), has("has_temperatures"), has("has_viscosity_factors")};
   particles.has.sides = hasAttribute(file, "has_sides");
+  if (hasAttribute(file, "state_name_count")) checkpoint.names.states = readNames(file, "state", maxStates);
+  particles.has.states = static_cast<std::uint8_t>(checkpoint.names.states.size());
   particles.flow = readFlow(file), particles.rigid = readRigid(file), particles.gas = readGas(file);
   Selection selection{part, particles.fluidCount, particles.wallCount(), {}};
   checkpoint.fluidOfAll = selection.fluid, checkpoint.wallsOfAll = selection.walls;
@@ -252,6 +255,7 @@ StateNames StateNames::of(const Case& c) {
   StateNames names;
   for (const Material& m : c.materials) names.materials.push_back(m.name);
   for (const Body& b : c.bodies) names.bodies.push_back(b.name);
+  names.states = c.stateNames();
   return names;
 }
 

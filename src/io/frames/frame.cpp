@@ -1,10 +1,10 @@
 #include "treacle/io/frames/frame.hpp"
 
 #include "treacle/model/geometry/side.hpp"
+#include "treacle/model/materials/rheology_table.hpp"
 
 #include <algorithm>
 #include <numeric>
-#include <optional>
 
 namespace treacle {
 
@@ -45,6 +45,8 @@ Frame makeFrame(const Particles<D>& particles, std::uint32_t begin, std::uint32_
     frame.temperature = gathered<double>(particles.temperature, order, same);
   if (particles.has.viscosityFactors && end <= particles.fluidCount)
     frame.viscosityFactor = gathered<double>(particles.viscosityFactor, order, same);
+  for (std::size_t k = 0; k < particles.has.states && end <= particles.fluidCount; ++k)
+    frame.states.push_back({"", gathered<double>(particles.states[k], order, same)});
   return frame;
 }
 
@@ -56,17 +58,17 @@ Frame solidWalls(const Case& c, const Frame& walls) {
   return solid;
 }
 
-void addViscosities(const std::vector<Material>& materials, Frame& frame) {
-  std::vector<std::optional<ShiftFactor>> shifts(materials.size());
-  for (std::size_t m = 0; m < materials.size(); ++m)
-    if (materials[m].viscosityShift) shifts[m] = ShiftFactor::make(*materials[m].viscosityShift);
+void addViscosities(const Case& c, Frame& frame) {
+  const std::vector<std::string> names = c.stateNames();
+  for (std::size_t k = 0; k < frame.states.size(); ++k) frame.states[k].name = names[k];
   frame.dynamicViscosity.resize(frame.shearRate.size());
-  for (std::size_t i = 0; i < frame.shearRate.size(); ++i) {
-    const auto m = static_cast<std::size_t>(frame.material[i]);
-    const double shift = shifts[m] && !frame.temperature.empty() ? (*shifts[m])(frame.temperature[i]) : 1;
-    const double factor = frame.viscosityFactor.empty() ? 1 : frame.viscosityFactor[i];
-    frame.dynamicViscosity[i] = factor * materials[m].viscosity(frame.shearRate[i], shift);
-  }
+  std::vector<FormulaStep> steps;
+  RheologyTable table = RheologyTable::make(c, steps);
+  if (!steps.empty()) table.states.steps = steps.data();
+  table.temperature = frame.temperature, table.factor = frame.viscosityFactor, table.time = frame.time;
+  for (std::size_t k = 0; k < frame.states.size(); ++k) table.state[k] = frame.states[k].values.data();
+  for (std::size_t i = 0; i < frame.shearRate.size(); ++i)
+    frame.dynamicViscosity[i] = table.viscosity(i, frame.material[i], frame.shearRate[i]);
 }
 
 template Frame makeFrame<2>(const Particles<2>&, std::uint32_t, std::uint32_t, double);

@@ -84,6 +84,14 @@ void append(const fs::path& path, const Frame& piece, Frame& whole) {
       throw InputError(fmt::format("{}: '{}' is not in all pieces of the frame", path.string(), name));
     to.insert(to.end(), from.begin(), from.end());
   });
+  if (first) whole.states.resize(piece.states.size());
+  for (std::size_t k = 0; k < whole.states.size(); ++k) {
+    FrameState& to = whole.states[k];
+    if (k >= piece.states.size() || (!first && piece.states[k].name != to.name))
+      throw InputError(fmt::format("{}: '{}' is not in all pieces of the frame", path.string(), to.name));
+    to.name = piece.states[k].name;
+    to.values.insert(to.values.end(), piece.states[k].values.begin(), piece.states[k].values.end());
+  }
 }
 
 }  // namespace

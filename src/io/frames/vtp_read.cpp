@@ -50,6 +50,7 @@ class VtpReader {
     readScalars("material", frame.material);
     readScalars("body", frame.body);
     readScalars("id", frame.id);
+    readStates(frame);
     return frame;
   }
 
@@ -151,6 +152,15 @@ class VtpReader {
     const auto value = parseNumber<T>(text);
     if (!value) foreign(fmt::format("field '{}' is no number", name));
     return *value;
+  }
+
+  /// Fields of one number each that no frame has by itself.
+  void readStates(Frame& frame) {
+    for (const VtpContents::Array& array : contents().pointData) {
+      bool known = array.components != 1;
+      forEachFrameField([&](std::string_view name, auto) { known = known || name == array.name; });
+      if (!known) readScalars(array.name, frame.states.emplace_back(FrameState{array.name, {}}).values);
+    }
   }
 
   /// Moves the stream to an array; returns how many bytes the file has from there on.

@@ -34,6 +34,7 @@ std::vector<DataArray> pointData(const Frame& frame, const OutputFields& fields)
     arrays.push_back(scalarArray<Real>("temperature", frame.temperature));
   if (fields.viscosityFactor && !frame.viscosityFactor.empty())
     arrays.push_back(scalarArray<Real>("viscosity_factor", frame.viscosityFactor));
+  for (const FrameState& state : frame.states) arrays.push_back(scalarArray<Real>(state.name, state.values));
   if (fields.material && !frame.material.empty())
     arrays.push_back(scalarArray<std::int32_t>("material", frame.material));
   if (fields.body && !frame.body.empty()) arrays.push_back(scalarArray<std::int32_t>("body", frame.body));

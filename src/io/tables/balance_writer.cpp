@@ -17,6 +17,7 @@ std::string columns(const Case& c) {
   if (c.keepsVolume()) text += ",shift_power";
   if (c.hasSurfaceTension()) text += ",surface_power,surface_energy";
   if (c.heat) text += ",heat_energy,viscous_heating,heat_from_walls,heat_from_surface";
+  if (c.heat && c.hasStates()) text += ",heat_from_states";
   for (const Body& body : c.bodies) {
     if (!body.isWall()) continue;
     const auto add = [&](const std::string& quantity) { text += ',' + csvCell(body.name + quantity); };
@@ -36,6 +37,7 @@ BalanceWriter::BalanceWriter(RowTarget to, const Case& c)
       repels_(c.repulsionRadius() > 0),
       shifts_(c.keepsVolume()),
       hasSurface_(c.hasSurfaceTension()),
+      hasStates_(c.hasStates()),
       rows_(std::move(to), columns(c)) {}
 
 void BalanceWriter::append(std::int64_t step, double time, const Balance& b) {
@@ -45,6 +47,7 @@ void BalanceWriter::append(std::int64_t step, double time, const Balance& b) {
   if (shifts_) row += fmt::format(",{}", b.shiftPower);
   if (hasSurface_) row += fmt::format(",{},{}", b.surfacePower, b.surfaceEnergy);
   if (b.heat) row += fmt::format(",{},{},{},{}", b.heat->energy, b.heat->heating, b.heat->walls, b.heat->surface);
+  if (b.heat && hasStates_) row += fmt::format(",{}", b.heat->states);
   for (const WallLoad& load : b.walls) {
     for (int k = 0; k < dimensions_; ++k) row += fmt::format(",{}", load.force[k]);
     for (int k = dimensions_ == 2 ? 2 : 0; k < 3; ++k) row += fmt::format(",{}", load.torque[k]);

@@ -1,5 +1,7 @@
 #include "treacle/model/case/case.hpp"
 
+#include "treacle/model/materials/state_table.hpp"
+
 #include <algorithm>
 
 namespace treacle {
@@ -14,8 +16,39 @@ double Case::typicalTemperature(const Material& m) const {
   return s.model == ShiftModel::Table ? s.temperatures[s.temperatures.size() / 2] : s.reference;
 }
 
+std::vector<std::string> Case::stateNames() const {
+  std::vector<std::string> names;
+  for (const Material& m : materials)
+    for (const MaterialState& s : m.states)
+      if (std::ranges::find(names, s.name) == names.end()) names.push_back(s.name);
+  return names;
+}
+
+double Case::startOfState(int material, std::size_t state) const {
+  const Material& m = materials[static_cast<std::size_t>(material)];
+  const auto own = std::ranges::find(m.states, stateNames()[state], &MaterialState::name);
+  return own == m.states.end() ? 0 : own->start;
+}
+
 double Case::typicalShift(const Material& m) const {
   return heat && m.viscosityShift ? ShiftFactor::make(*m.viscosityShift)(typicalTemperature(m)) : 1;
+}
+
+double Case::typicalViscosity(const Material& m) const {
+  double factor = 1, yield = 1;
+  if (m.hasFormulas()) {
+    std::vector<double> x{heat ? typicalTemperature(m) : 0, 1, 0};
+    for (const std::string& name : stateNames()) {
+      const auto own = std::ranges::find(m.states, name, &MaterialState::name);
+      x.push_back(own == m.states.end() ? 0 : own->start);
+    }
+    const std::vector<std::string> variables = stateVariables(*this, m);
+    const auto value = [&](const std::string& text) {
+      return text.empty() ? 1 : Formula(text, variables)(x.data());
+    };
+    factor = value(m.viscosityFactor) * (m.gelling ? value(m.gelling->text()) : 1), yield = value(m.yieldFactor);
+  }
+  return factor * m.viscosity(1, typicalShift(m), yield);
 }
 
 Vec<3> Case::meanGravity(double from, double to) const {

@@ -93,6 +93,7 @@ class Checker {
   void operator()(const Key& key, const std::vector<double>& numbers) const {
     for (const double x : numbers) require(key.bound.holds(x), key, expectedNumbers(key), x);
   }
+  void operator()(const Key&, const std::string&, keys::FormulaTag) const {}  // with its material
   void operator()(const Key& key, const std::string& path, keys::FileTag) const { (*this)(key, path); }
   void operator()(const Key& key, const std::vector<Vec<2>>& points) const {
     for (const Vec<2>& x : points)
@@ -210,6 +211,7 @@ void requireSound(const Checker& at, const Case& c);
 // sound_materials.cpp
 void requireSound(const Checker& at, const Rheology& rheology);
 void requireSound(const Checker& at, const ViscosityShift& shift);
+void requireSound(const Checker& at, const MaterialState& state);
 void requireSound(const Checker& at, const Material& material);
 // sound_bodies.cpp
 void requireSound(const Checker& at, const Transform& transform);

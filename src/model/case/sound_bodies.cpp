@@ -247,6 +247,20 @@ void requireSound(const Checker& at, const Opening& o) {
   at.wholeCase().dimensions == 2 ? requireReserve<2>(at, o) : requireReserve<3>(at, o);
 }
 
+/// Errors: CaseError for states that the body's material does not have, or that start outside their bounds.
+void requireStates(const Checker& at, const Body& b) {
+  const Material& m = at.wholeCase().materials[static_cast<std::size_t>(b.material)];
+  for (const StateStart& start : b.states) {
+    const auto state = std::ranges::find(m.states, start.name, &MaterialState::name);
+    if (state == m.states.end())
+      at.fail({"state", start.name, "name"},
+              fmt::format("the material '{}' has no state '{}'", m.name, start.name));
+    if (start.expression.empty() && !(start.value >= state->lowest() && start.value <= state->highest()))
+      at.fail({"state", start.name, "value"}, fmt::format("expected a number from {} to {}, found {}",
+                                                          state->lowest(), state->highest(), start.value));
+  }
+}
+
 /// Only fluids start with velocities of their own for each particle, only walls and nozzles are moved.
 void requireSound(const Checker& at, const Body& b) {
   if (b.kind == BodyKind::Inflow) {
@@ -257,6 +271,7 @@ void requireSound(const Checker& at, const Body& b) {
   if (b.shape.isThinSheet()) requireThinSheet(at, b);
   requireSubtracted(at, b, b, 0);
   if (b.kind == BodyKind::Rigid) requireRigid(at, b);
+  requireStates(at, b);
   if (b.kind == BodyKind::Fluid) {
     constexpr const char* text = "only a body of type \"wall\" can have one";
     if (b.displacement != TimeVector{}) at.fail({"displacement"}, text);

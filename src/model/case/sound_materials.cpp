@@ -1,4 +1,7 @@
 #include "case_checker.hpp"
+#include "treacle/model/materials/state_table.hpp"
+
+#include <cctype>
 
 namespace treacle {
 
@@ -56,7 +59,63 @@ void requireSound(const Checker& at, const ViscosityShift& s) {
   at.requireRising("temperatures", "numbers", s.temperatures);
 }
 
+void requireSound(const Checker& at, const MaterialState& s) {
+  constexpr std::size_t longest = 30;
+  const auto isOfName = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; };
+  if (s.name.size() > longest || !std::ranges::all_of(s.name, isOfName) ||
+      std::isdigit(static_cast<unsigned char>(s.name.front())))
+    at.fail({"name"}, fmt::format("expected at most {} letters, digits and _, with a letter first, found '{}'",
+                                  longest, s.name));
+  for (const std::string_view taken : {"T", "t", "pi", "position"})
+    if (s.name == taken) at.fail({"name"}, fmt::format("'{}' is the name of another variable", taken));
+  for (const OutputFieldName& f : outputFieldNames)
+    if (s.name == f.name) at.fail({"name"}, fmt::format("'{}' is the name of another field of frames", f.name));
+  if (s.lowest() >= s.highest())
+    at.fail({"max"}, fmt::format("expected more than min = {}, found {}", s.lowest(), s.highest()));
+  if (!(s.start >= s.lowest() && s.start <= s.highest()))
+    at.fail({"start"},
+            fmt::format("expected a number from {} to {}, found {}", s.lowest(), s.highest(), s.start));
+  if (s.law != StateLaw::KamalSourour) return;
+  if (s.a1 == 0 && s.a2 == 0) at.fail({"a1"}, "expected a1 or a2 above 0: nothing reacts");
+  if (!at.wholeCase().heat && (s.e1 != 0 || s.e2 != 0))
+    at.fail({s.e1 != 0 ? "e1" : "e2"}, "there are no temperatures in a case without [heat]");
+}
+
+/// What only the whole material says: which states its expressions may read.
+void requireSoundStates(const Checker& at, const Material& m) {
+  const Case& c = at.wholeCase();
+  if (!m.hasFormulas()) return;
+  if (c.method.kind != MethodKind::MphI)
+    at.fail({!m.states.empty() ? "state" : !m.viscosityFactor.empty() ? "viscosity_factor" : "gelling"},
+            fmt::format("only the method '{}' has it, found '{}'", nameOf(MethodKind::MphI), nameOf(c.method.kind)));
+  if (const std::size_t count = c.stateNames().size(); count > maxStates)
+    at.fail({"state"}, fmt::format("the materials have {} states of different names, expected at most {}", count,
+                                   maxStates));
+  const std::vector<std::string> variables = stateVariables(c, m);
+  const auto require = [&](std::initializer_list<std::string_view> keys, const std::string& text) {
+    if (text.empty()) return;
+    try {
+      Formula(text, variables);
+    } catch (const InputError& e) {
+      at.fail(keys, e.what());
+    }
+  };
+  for (const MaterialState& s : m.states) require({"state", s.name, "rate"}, s.rateText());
+  require({"viscosity_factor"}, m.viscosityFactor);
+  require({"yield_factor"}, m.yieldFactor);
+  if (!m.yieldFactor.empty() && !(m.rheology && m.rheology->yields()))
+    at.fail({"yield_factor"}, "the material has no rheology with a yield stress");
+  if (!m.gelling) return;
+  const auto state = std::ranges::find(m.states, m.gelling->state, &MaterialState::name);
+  if (state == m.states.end())
+    at.fail({"gelling", "state"}, fmt::format("unknown state '{}' of the material", m.gelling->state));
+  if (state->start >= m.gelling->conversion)
+    at.fail({"gelling", "conversion"}, fmt::format("expected more than what '{}' starts with, {}, found {}",
+                                                   state->name, state->start, m.gelling->conversion));
+}
+
 void requireSound(const Checker& at, const Material& m) {
+  requireSoundStates(at, m);
   if (m.rheology && at.wholeCase().method.kind != MethodKind::MphI) at.fail({"rheology"}, rheologyOfMphI);
   if (m.viscosityShift && !at.wholeCase().heat)
     at.fail({"viscosity_shift"}, "there are no temperatures in a case without [heat]");

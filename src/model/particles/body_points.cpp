@@ -115,6 +115,24 @@ InitialState<D>::InitialState(const Case& c, const Body& body)
     if (const std::string& text = body.velocityExpression[k]; !text.empty()) expressions_[k].emplace(text, D);
   if (!body.temperatureExpression.empty()) temperature_.emplace(body.temperatureExpression, D);
   if (!body.viscosityFactorExpression.empty()) viscosityFactor_.emplace(body.viscosityFactorExpression, D);
+  const Material& material = c.materials[static_cast<std::size_t>(body.material)];
+  for (const std::string& name : c.stateNames()) {
+    StartingState& state = states_.emplace_back();
+    const auto own = std::ranges::find(material.states, name, &MaterialState::name);
+    if (own == material.states.end()) continue;
+    state.value = own->start, state.least = own->lowest(), state.most = own->highest();
+    const auto given = std::ranges::find(body.states, name, &StateStart::name);
+    if (given == body.states.end()) continue;
+    state.value = given->value, state.given = &*given;
+    if (!given->expression.empty()) state.expression.emplace(given->expression, D);
+  }
+}
+
+template <int D>
+bool InitialState<D>::hasExpressions() const {
+  const auto isThere = [](const auto& expression) { return expression.has_value(); };
+  return temperature_ || viscosityFactor_ || std::ranges::any_of(expressions_, isThere) ||
+         std::ranges::any_of(states_, isThere, &StartingState::expression);
 }
 
 template <int D>
@@ -154,6 +172,18 @@ double InitialState<D>::viscosityFactorAt(const Vec<D>& x) const {
   if (viscosityFactor_)
     return positiveAt(x, *viscosityFactor_, body_, "viscosity_factor", body_.viscosityFactorExpression, "");
   return body_.viscosityFactor > 0 ? body_.viscosityFactor : 1;
+}
+
+template <int D>
+double InitialState<D>::stateAt(std::size_t k, const Vec<D>& x) const {
+  const StartingState& state = states_[k];
+  if (!state.expression) return state.value;
+  const double value = valueAt(x, *state.expression, body_, "state", state.given->expression);
+  if (!(value >= state.least && value <= state.most))
+    throw InputError(fmt::format("body '{}': state '{}' = \"{}\" is {} at {}; expected a number from {} to {}",
+                                 body_.name, state.given->name, state.given->expression, value,
+                                 positionText(resized<3>(x), D), state.least, state.most));
+  return value;
 }
 
 template BodyPoints<2> bodyPoints<2>(const Case&, const Body&, std::vector<std::string>&);

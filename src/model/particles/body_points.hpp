@@ -61,6 +61,11 @@ class InitialState {
   double temperatureAt(const BodyPoints<D>& points, std::size_t k) const;
   /// The viscosity factor of a fluid at a place [-]. Errors likewise.
   double viscosityFactorAt(const Vec<D>& x) const;
+  /// State k of a fluid at a place, in the order of Case::stateNames; 0 if its material does not have it. Errors:
+  /// InputError where it is outside its bounds.
+  double stateAt(std::size_t k, const Vec<D>& x) const;
+  /// Whether values are those of expressions, which throw and are not for several threads at once.
+  bool hasExpressions() const;
 
  private:
   const Body& body_;
@@ -69,6 +74,12 @@ class InitialState {
   std::vector<Vec<D>> excess_;  // of the columns of a nozzle, beside the velocity of its layers [m/s]
   std::vector<std::optional<Expression>> expressions_;  // of the components
   std::optional<Expression> temperature_, viscosityFactor_;
+  struct StartingState {
+    double value = 0, least = 0, most = 0;
+    const StateStart* given = nullptr;
+    std::optional<Expression> expression{};
+  };
+  std::vector<StartingState> states_;
   Similarity<D> similarity_;
 };
 

@@ -183,6 +183,7 @@ void append(const Case& c, BodyKind kind, const std::vector<Filled<D>>& filled, 
     const InitialState<D> initial(c, *f.body);
     const bool warm = c.heat && kind == BodyKind::Fluid,
                factors = particles.has.viscosityFactors && kind == BodyKind::Fluid;
+    const std::size_t states = kind == BodyKind::Fluid ? particles.has.states : 0;
     const auto place = [&](std::size_t k) {
       const std::size_t i = at + k;
       particles.id[i] = static_cast<std::uint32_t>(id + begin + k);
@@ -190,6 +191,7 @@ void append(const Case& c, BodyKind kind, const std::vector<Filled<D>>& filled, 
       particles.velocity[i] = initial.velocityAt(f.points, begin + k);
       if (warm) particles.temperature[i] = initial.temperatureAt(f.points, begin + k);
       if (factors) particles.viscosityFactor[i] = initial.viscosityFactorAt(f.points.place[begin + k]);
+      for (std::size_t s = 0; s < states; ++s) particles.states[s][i] = initial.stateAt(s, f.points.place[begin + k]);
       particles.pressure[i] = 0;
       particles.heldPressure[i] = 0;
       particles.numberDensity[i] = 0;
@@ -197,10 +199,7 @@ void append(const Case& c, BodyKind kind, const std::vector<Filled<D>>& filled, 
       particles.body[i] = body;
     };
     const std::uint32_t size = made - begin;
-    // Expressions throw, and are not for several threads at once.
-    const bool expressions = f.body->velocityExpression != decltype(f.body->velocityExpression){} ||
-                             !f.body->temperatureExpression.empty() || !f.body->viscosityFactorExpression.empty();
-    if (expressions)
+    if (initial.hasExpressions())
       for (std::size_t k = 0; k < size; ++k) place(k);
     else
       parallelFor(size, parallelGrain, place);
@@ -263,6 +262,7 @@ Particles<D> createParticles(const Case& c, std::vector<std::string>& notes, std
   Particles<D> particles;
   ParticleNumbers numbers{n, count};
   numbers.has.temperatures = c.heat.has_value(), numbers.has.viscosityFactors = c.hasViscosityFactors();
+  numbers.has.states = static_cast<std::uint8_t>(c.stateNames().size());
   particles.resize(numbers);
   Place next{part.begin(fluidCount), part.end(fluidCount)};
   append(c, BodyKind::Fluid, fluid, particles, next);

@@ -9,6 +9,7 @@
 #include "step_places.hpp"
 #include "step_pressures.hpp"
 #include "step_rheology.hpp"
+#include "step_states.hpp"
 #include "step_surface.hpp"
 #include "step_tension.hpp"
 #include "treacle/core/halo.hpp"
@@ -41,6 +42,7 @@ class MphStep final : public StepMethod<D, Backend> {
         solver_(solveStages(solvedCase(state.theCase))),
         pressures_(state) {
     if (state.theCase.hasOwnViscosities()) rheology_.emplace(state.theCase);
+    if (state.theCase.hasStates()) states_.emplace();
     if (state.theCase.heat) heat_.emplace(state.theCase, pairs_);
     if (state.theCase.hasSurfaceTension()) surface_.emplace(state.theCase);
     if (state.theCase.keepsVolume()) tension_.emplace();
@@ -121,9 +123,10 @@ class MphStep final : public StepMethod<D, Backend> {
         });
   }
 
-  /// Temperatures, which may fail before anything is accepted.
+  /// States and temperatures, which may fail before anything is accepted.
   void correctVelocities() override {
-    if (heat_) heat_->solve(state_, pairs_);
+    if (states_) states_->solve(state_, *rheology_);
+    if (heat_) heat_->solve(state_, pairs_, states_ ? states_->heating() : std::span<const double>{});
   }
 
   void wallFriction(std::span<Vec<D>> force) override {
@@ -148,6 +151,7 @@ class MphStep final : public StepMethod<D, Backend> {
     fillGhosts(state_.context, Held::Active, divergence_.data());
     bulkPressure<D>(state_.context, pairs_, divergence_, elastic_, state_.particles.pressure.span().first(active));
     if (rheology_) rheology_->accept(state_);
+    if (states_) states_->accept(state_);
     if (state_.theCase.needsBalance())
       lastBalance_ = balance_.make(state_, pairs_, divergence_, elastic_, surface_ ? &*surface_ : nullptr,
                                    tension_ ? &*tension_ : nullptr, explicitForces());
@@ -176,7 +180,7 @@ class MphStep final : public StepMethod<D, Backend> {
   const MaterialTable& materials() const override { return pairs_.materials; }
   std::size_t bytes() const override {
     return neighbourhood_.bytes() + wallSurface_.bytes() + renormalisation_.bytes() + viscosityScale_.bytes() +
-           (rheology_ ? rheology_->bytes() : 0) + (heat_ ? heat_->bytes() : 0) +
+           (rheology_ ? rheology_->bytes() : 0) + (states_ ? states_->bytes() : 0) + (heat_ ? heat_->bytes() : 0) +
            (surface_ ? surface_->bytes() : 0) + (tension_ ? tension_->bytes() : 0) + wallBlock_.bytes() +
            wallGradient_.bytes() + places_.bytes() + elastic_.bytes() + divergence_.bytes() + rhs_.bytes() +
            found_.bytes() + solver_.bytes() + balance_.bytes() + wallForces_.bytes() + (gas_ ? gas_->bytes() : 0) +
@@ -240,7 +244,9 @@ class MphStep final : public StepMethod<D, Backend> {
 
   void acceptHeat() {
     heat_->accept(state_);
-    if (lastBalance_) lastBalance_->heat = heat_->balance(std::pow(pairs_.spacing, D));
+    if (!lastBalance_) return;
+    lastBalance_->heat = heat_->balance(std::pow(pairs_.spacing, D));
+    if (states_) lastBalance_->heat->states = states_->power();
   }
 
   /// All that the viscosity is in, on neighbours, densities and velocities that stay.
@@ -398,6 +404,7 @@ class MphStep final : public StepMethod<D, Backend> {
   MphSolver<D, Backend> solver_;
   std::optional<StepRheology<D, Backend>> rheology_;  // where particles have their own viscosities
   Buffer<Vec<D>, Backend> found_;                     // velocities of the last solve, while the next is prepared
+  std::optional<StepStates<D, Backend>> states_;      // where materials have states
   std::optional<StepHeat<D, Backend>> heat_;          // where the case has heat
   std::optional<StepSurface<D, Backend>> surface_;    // where some fluid has a surface tension
   std::optional<StepTension<D, Backend>> tension_;    // where the case keeps its volume

@@ -30,8 +30,9 @@ class StepHeat {
         surface_(SurfaceLack::make(pairs)),
         surfaceCounts_(hasSurfaceHeat(c)) {}
 
-  /// With state.velocity of the end of the step, ghosts included. Errors: RunError.
-  void solve(FlowState<D, Backend>& state, const MphPairs<D>& pairs) {
+  /// With state.velocity of the end of the step, ghosts included. `ofStates`: what states of materials set free per
+  /// own particle [W/m3], or empty. Errors: RunError.
+  void solve(FlowState<D, Backend>& state, const MphPairs<D>& pairs, std::span<const double> ofStates) {
     Context<Backend>& context = state.context;
     const std::uint32_t own = pairs.ownFluid();
     resize(context, pairs);
@@ -47,8 +48,8 @@ class StepHeat {
     const std::span<const double> T = state.particles.temperature.span().first(own);
     const std::span<const std::uint8_t> material = pairs.material.first(own);
     setEach(context,
-            HeatSystemTerms{constants, material, T, ofFluid_, ofWalls_, area_, heating_, ofSurface_, boundary_,
-                            source_, extra_, inverse_},
+            HeatSystemTerms{constants, material, T, ofFluid_, ofWalls_, area_, heating_, ofStates, ofSurface_,
+                            boundary_, source_, extra_, inverse_},
             own);
     const auto conductExtra = [&](std::span<const double> extra) {
       return [&, extra](std::span<const double> x, std::span<double> y) {
@@ -76,8 +77,10 @@ class StepHeat {
 
   /// The balance of the step that was solved last, for particles of that volume.
   HeatBalance balance(double volume) const {
-    return {volume * sums_[HeatSums::Energy], volume * sums_[HeatSums::Heating], volume * sums_[HeatSums::Walls],
-            volume * sums_[HeatSums::Surface]};
+    return {.energy = volume * sums_[HeatSums::Energy],
+            .heating = volume * sums_[HeatSums::Heating],
+            .walls = volume * sums_[HeatSums::Walls],
+            .surface = volume * sums_[HeatSums::Surface]};
   }
 
   std::size_t bytes() const {

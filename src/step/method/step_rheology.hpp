@@ -1,11 +1,14 @@
 #pragma once
 
+#include "run/failure.hpp"
 #include "run/flow_state.hpp"
 #include "treacle/core/halo.hpp"
 #include "treacle/mph/mph_balance.hpp"
 #include "treacle/mph/mph_neighbourhood.hpp"
 #include "treacle/mph/particle_viscosity.hpp"
 #include "treacle/mph/viscosity_scale.hpp"
+
+#include <vector>
 
 namespace treacle {
 
@@ -16,10 +19,18 @@ template <int D, class Backend>
 class StepRheology {
  public:
   explicit StepRheology(const Case& c)
-      : table_(RheologyTable::make(c)), settings_(c.rheology), correction_(c.method.viscosityCorrection) {}
+      : table_(RheologyTable::make(c, formulas_)),
+        settings_(c.rheology),
+        correction_(c.method.viscosityCorrection) {}
+
+  /// The laws of states, in the backend's memory, and what the particles carry in the step at hand.
+  const RheologyTable& table() const { return table_; }
+  /// The shear rates of the last solve [1/s].
+  std::span<const double> foundRates() const { return found_; }
 
   /// For the first solve of a step, on its neighbours and walls' surfaces; from its first guess, state.velocity,
-  /// ghosts included: with the rates of the step before, most steps would need another solve.
+  /// ghosts included: with the rates of the step before, most steps would need another solve. Errors: RunError for
+  /// viscosities that are not finite.
   void start(FlowState<D, Backend>& state, MphNeighbourhood<D, Backend>& neighbourhood) {
     const std::uint32_t fluid = neighbourhood.pairs().fluidCount, own = neighbourhood.pairs().ownFluid();
     for (Buffer<double, Backend>* field : {&share_, &viscosity_, &scaled_}) field->resize(state.context, fluid);
@@ -28,8 +39,11 @@ class StepRheology {
     neighbourhood.setViscosities({}, {});
     viscosityScale<D>(state.context, neighbourhood.pairs(), 1, share_.span());
     shearRate<D>(state.context, neighbourhood.pairs(), state.velocity, share_, rate_);
-    if (state.particles.has.temperatures) table_.temperature = state.particles.temperature.span().first(own);
-    if (state.particles.has.viscosityFactors) table_.factor = state.particles.viscosityFactor.span().first(own);
+    table_.read(state.particles, own, state.time);
+    if (!formulas_.empty() && steps_.empty()) {
+      fromHost(state.context, std::span<const FormulaStep>(formulas_), steps_);
+      table_.states.steps = steps_.data();
+    }
     solves_ = 0;
     apply(state, neighbourhood);
   }
@@ -58,7 +72,7 @@ class StepRheology {
   }
 
   std::size_t bytes() const {
-    return share_.bytes() + viscosity_.bytes() + scaled_.bytes() + rate_.bytes() + found_.bytes() + class_.bytes();
+    return steps_.bytes() + share_.bytes() + viscosity_.bytes() + scaled_.bytes() + rate_.bytes() + found_.bytes() + class_.bytes();
   }
 
  private:
@@ -67,12 +81,17 @@ class StepRheology {
     const MphPairs<D>& pairs = neighbourhood.pairs();
     setViscosities(state.context, ViscosityTerms{table_, correction_, pairs.material, rate_.span(), share_.span(),
                                                  viscosity_.span(), scaled_.span()});
+    if (!formulas_.empty())
+      if (const double bad = countNotFinite(state.context, viscosity_.span().first(pairs.ownFluid())); bad > 0)
+        throw RunError(describeViscosities(bad));
     fillGhosts(state.context, Held::Fluid, viscosity_.data());
     fillGhosts(state.context, Held::Fluid, scaled_.data());
     setClasses(state.context, ClassTerms{pairs.classes, pairs.material, viscosity_.span(), class_.span()});
     neighbourhood.setViscosities(scaled_, class_);
   }
 
+  std::vector<FormulaStep> formulas_;
+  Buffer<FormulaStep, Backend> steps_;  // the same
   RheologyTable table_;
   RheologySettings settings_;
   double correction_;

@@ -47,23 +47,29 @@ Particles<D> particlesNear(const FlowState<D, Backend>& state, const Probe& prob
   return processes ? collected(*processes, own) : std::move(own);
 }
 
-/// What a probe counts, as a test of particles; their fields come with the state.
+/// What a probe counts, as a test of particles; their fields come with the state. `steps`: takes the formulas of
+/// materials.
 template <int D, class Backend>
-PartTerms<D> partTerms(const FlowState<D, Backend>& state, const Probe& probe) {
+PartTerms<D> partTerms(const FlowState<D, Backend>& state, const Probe& probe,
+                       Buffer<FormulaStep, Backend>& steps) {
   const Case& c = state.theCase;
   const Particles<D, Backend>& p = state.particles;
   const std::uint32_t n = p.fluidCount;
   PartTerms<D> terms{};
   terms.weight = PartWeight<D>::of(probe, c);
-  terms.viscosities = RheologyTable::make(c);
+  std::vector<FormulaStep> formulas;
+  terms.viscosities = RheologyTable::make(c, formulas);
+  terms.viscosities.read(p, n, state.time);
+  if (!formulas.empty()) {
+    fromHost(state.context, std::span<const FormulaStep>(formulas), steps);
+    terms.viscosities.states.steps = steps.data();
+  }
   terms.volume = std::pow(c.spacing, D);  // [K23 eq. (11)]
   for (std::size_t m = 0; m < c.materials.size(); ++m) terms.density[m] = c.materials[m].density;
   terms.position = p.position.span().first(n), terms.velocity = p.velocity.span().first(n);
   terms.pressure = p.pressure.span().first(n), terms.material = p.material.span().first(n);
   if (p.has.shearRates) terms.shearRate = p.shearRate.span().first(n);
   if (p.has.temperatures) terms.temperature = p.temperature.span().first(n);
-  terms.viscosities.temperature = terms.temperature;
-  if (p.has.viscosityFactors) terms.viscosities.factor = p.viscosityFactor.span().first(n);
   return terms;
 }
 
@@ -71,11 +77,12 @@ PartTerms<D> partTerms(const FlowState<D, Backend>& state, const Probe& probe) {
 template <int D, class Backend>
 std::vector<ProbeReading> measure(const FlowState<D, Backend>& state, std::uint64_t probes) {
   std::vector<ProbeReading> readings;
+  Buffer<FormulaStep, Backend> formulas;
   for (std::size_t k = 0; k < state.theCase.probes.size(); ++k) {
     if ((probes >> k & 1) == 0) continue;
     const Probe probe = carriedProbe(state.theCase.probes[k], state.theCase, state.rigid.bodies, state.time);
     ProbeReading reading{k, probe};
-    if (probe.isSummed()) reading.sums = sumPart<D>(state.context, partTerms(state, probe));
+    if (probe.isSummed()) reading.sums = sumPart<D>(state.context, partTerms(state, probe, formulas));
     if (probe.isSampled()) reading.particles = particlesNear(state, probe);
     readings.push_back(std::move(reading));
   }

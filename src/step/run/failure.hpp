@@ -21,6 +21,10 @@ std::string describeFailure(const SolveReport& report, double tolerance, const s
 /// The same of a solve for temperatures.
 std::string describeHeatFailure(const SolveReport& report, const HeatSettings& settings);
 
+/// The diagnosis of viscosities that are not finite, of so many particles, and of states.
+std::string describeViscosities(double particles);
+std::string describeStates(double particles);
+
 /// Where the right-hand side b (per own fluid particle) is not finite, at some process.
 template <int D>
 std::string describeNotFinite(const Processes& processes, const Particles<D>& particles,

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -48,8 +49,11 @@ FieldMemory fieldMemory(const Particles<D, Backend>& p, FluidField field) {
       return of(p.body, 1);
     case FluidField::Id:
       return of(p.id, 1);
+    case FluidField::State:
+      break;
   }
-  return {};
+  const auto state = static_cast<std::size_t>(field) - static_cast<std::size_t>(FluidField::State);
+  return state < p.has.states ? of(p.states[state], 1) : FieldMemory{.where = where};
 }
 
 /// To the host; `host` has room for it.
@@ -117,6 +121,16 @@ void requirePositive(Context<Backend>& context, const Buffer<double, Backend>& v
           fmt::format("{}: expected positive numbers{}, found {:g} for particle {}", what, unit, host[i], i));
 }
 
+/// Errors: InputError for numbers that are not finite.
+template <class Backend>
+void requireFinite(Context<Backend>& context, const Buffer<double, Backend>& values, const char* what) {
+  Buffer<double> host(values.size());
+  copyToHost(context, values.span(), host.data());
+  for (std::size_t i = 0; i < host.size(); ++i)
+    if (!std::isfinite(host[i]))
+      throw InputError(fmt::format("{}: expected finite numbers, found {:g} for particle {}", what, host[i], i));
+}
+
 /// The fluid of a state gets room for factors of its viscosities, and for the shear rates that go with them.
 template <int D, class Backend>
 void haveViscosityFactors(FlowState<D, Backend>& state) {
@@ -134,6 +148,7 @@ template <int D, class Backend>
 struct CheckedFluid {
   Buffer<Vec<D>, Backend> position, velocity;
   Buffer<double, Backend> temperature, viscosityFactor;
+  std::array<Buffer<double, Backend>, maxStates> states;
 
   /// `energy(velocity)`: the kinetic energy with these. Errors: InputError.
   template <class Energy>
@@ -149,6 +164,10 @@ struct CheckedFluid {
     here(fluid.velocity, given.velocity, "velocities");
     here(fluid.temperature, given.temperature, "temperatures");
     here(fluid.viscosityFactor, given.viscosityFactor, "viscosity_factors");
+    for (std::size_t k = 0; k < particles.has.states; ++k) {
+      if (!given.states[k].empty()) here(fluid.states[k], given.states[k], "states");
+      requireFinite(context, fluid.states[k], "states");
+    }
     if (fluid.position.size() > 0) requireInside(context, grid, particles, fluid.position);
     if (fluid.velocity.size() > 0 && !std::isfinite(energy(fluid.velocity.span())))
       throw InputError("velocities: expected finite numbers [m/s], found others");
@@ -168,6 +187,7 @@ struct CheckedFluid {
     };
     copy(position, particles.position), copy(velocity, particles.velocity);
     copy(temperature, particles.temperature), copy(viscosityFactor, particles.viscosityFactor);
+    for (std::size_t k = 0; k < states.size(); ++k) copy(states[k], particles.states[k]);
   }
 };
 

@@ -31,7 +31,7 @@ std::uint64_t fieldBytes(const ParticleNumbers& n) {
   forEachFluidFieldOf(add(n.fluid), none);
   add(n.has.starts ? n.fluid + n.ghosts + n.wall : 0)(none.start);
   add(n.has.sides ? n.fluid + n.wall : 0)(none.side);
-  add(n.fluid * (n.has.shearRates + n.has.temperatures + n.has.viscosityFactors))(none.temperature);
+  add(n.fluid * (n.has.shearRates + n.has.temperatures + n.has.viscosityFactors + n.has.states))(none.temperature);
   add(n.fluid * n.modes)(none.modes.vectors);
   forEachWallFieldOf(add(n.surfaces), none);
   return sum;

@@ -40,10 +40,20 @@ void requireTemperatures(const Case& c, Particles<D>& particles) {
   if (!c.heat) setField(false, &FluidExtras::temperatures, &Particles<D>::temperature, 0, particles);
 }
 
-/// The fields that the case wants the fluid to have, and no others. Errors: those of requireTemperatures.
+/// Likewise of the states of materials, which the state has in the order of the case.
+template <int D>
+void requireStates(const Case& c, const Particles<D>& particles) {
+  if (particles.has.states != c.stateNames().size())
+    throw InputError(fmt::format("the case has {} states of materials, but its particles have {}",
+                                 c.stateNames().size(), particles.has.states));
+}
+
+/// The fields that the case wants the fluid to have, and no others. Errors: those of requireTemperatures and
+/// requireStates.
 template <int D>
 void setExtras(const Case& c, Particles<D>& particles) {
   requireTemperatures(c, particles);
+  requireStates(c, particles);
   setField(c.hasOwnViscosities(), &FluidExtras::shearRates, &Particles<D>::shearRate, 0, particles);
   setField(c.hasViscosityFactors(), &FluidExtras::viscosityFactors, &Particles<D>::viscosityFactor, 1, particles);
 }

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "treacle/core/cuda.hpp"
-#include "treacle/model/case/case.hpp"
+#include "treacle/model/materials/rheology_table.hpp"
 #include "treacle/mph/viscosity_classes.hpp"
 
 #include <array>
@@ -12,24 +12,8 @@
 
 namespace treacle {
 
-/// The viscosities of particles from their shear rates, temperatures and factors, particle by particle; the shear
-/// rates are those of mph_balance.hpp. Spans are in the backend's memory.
-
-/// By material.
-struct RheologyTable {
-  Rheology of[maxMaterials];
-  ShiftFactor shift[maxMaterials];
-  std::span<const double> temperature{};  // per particle [K]; empty: no viscosity follows it
-  std::span<const double> factor{};       // likewise, by which it is multiplied [-]; empty: 1
-
-  static RheologyTable make(const Case& c);
-
-  /// Of a particle i of material m at a shear rate of gamma [1/s], [Pa s].
-  TREACLE_HD double viscosity(std::size_t i, int m, double rate) const {
-    const double mu = of[m].viscosity(rate, temperature.empty() ? 1 : shift[m](temperature[i]));
-    return factor.empty() ? mu : factor[i] * mu;
-  }
-};
+/// The viscosities of particles (RheologyTable); the shear rates are those of mph_balance.hpp. Spans are in the
+/// backend's memory.
 
 /// Sets mu_i, and s_i mu_i, what MphPairs take as scale.
 struct ViscosityTerms {
@@ -41,8 +25,8 @@ struct ViscosityTerms {
   std::span<double> viscosity, scaled;  // [Pa s]
 
   TREACLE_HD void set(std::size_t i) const {
-    // None at all would look like a wall.
-    viscosity[i] = std::fmax(table.viscosity(i, material[i], rate[i]), 1e-30);
+    const double mu = table.viscosity(i, material[i], rate[i]);
+    viscosity[i] = mu < 1e-30 ? 1e-30 : mu;  // none at all would look like a wall; NaN stays
     scaled[i] = viscosity[i] * (1 + correction * (share[i] - 1));
   }
 };
@@ -50,6 +34,10 @@ struct ViscosityTerms {
 /// Of the first particles, as many as there are rates.
 template <class Backend>
 void setViscosities(Context<Backend>&, const ViscosityTerms&);
+
+/// How many of these viscosities are not finite, over all processes.
+template <class Backend>
+double countNotFinite(Context<Backend>&, std::span<const double> viscosity);
 
 /// Sets the class of a particle: fluid has a viscosity, walls are of their materials' class.
 struct ClassTerms {

@@ -10,6 +10,7 @@
 #include "treacle/step/method/first_guess.hpp"
 #include "treacle/step/method/heat_terms.hpp"
 #include "treacle/step/method/move_particles.hpp"
+#include "treacle/step/method/state_terms.hpp"
 #include "treacle/step/readings/balance_sums.hpp"
 #include "treacle/step/readings/probe_sums.hpp"
 #include "treacle/step/readings/step_change.hpp"
@@ -208,6 +209,12 @@ std::array<double, HeatSums::count> sumHeat(Context<Backend>& context, const Hea
                                   [=] TREACLE_HD(std::size_t i, double* sums) { terms.add(i, sums); });
 }
 
+template <class Backend>
+std::array<double, StateTerms::count> advanceStates(Context<Backend>& context, const StateTerms& terms) {
+  return sumEach<StateTerms::count>(context, terms.rate.size(),
+                                    [=] TREACLE_HD(std::size_t i, double* sums) { terms.add(i, sums); });
+}
+
 template <int D, class Backend>
 std::array<double, PowerTerms<D>::count> sumPowers(Context<Backend>& context, const PowerTerms<D>& terms,
                                                    std::size_t active) {
@@ -280,6 +287,7 @@ StepChange stepChange(Context<Backend>& context, const StepChangeTerms<D>& terms
   template void setEach(Context<Backend>&, const Difference&, std::size_t);      \
   template void setEach(Context<Backend>&, const Scaled&, std::size_t);          \
   template void setEach(Context<Backend>&, const HeatResult&, std::size_t);      \
-  template std::array<double, HeatSums::count> sumHeat(Context<Backend>&, const HeatSums&);
+  template std::array<double, HeatSums::count> sumHeat(Context<Backend>&, const HeatSums&); \
+  template std::array<double, StateTerms::count> advanceStates(Context<Backend>&, const StateTerms&);
 
 }  // namespace treacle

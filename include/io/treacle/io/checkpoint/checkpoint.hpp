@@ -13,7 +13,7 @@ namespace treacle {
 
 /// What the numbers of materials and bodies in a state stand for.
 struct StateNames {
-  std::vector<std::string> materials, bodies;
+  std::vector<std::string> materials, bodies, states;
 
   static StateNames of(const Case& c);
 };

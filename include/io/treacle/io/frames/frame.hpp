@@ -5,9 +5,18 @@
 #include "treacle/model/particles/particles.hpp"
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace treacle {
+
+/// A state of the fluid's materials.
+struct FrameState {
+  std::string name;
+  std::vector<double> values;
+
+  bool operator==(const FrameState&) const = default;
+};
 
 /// A copy of one group of particles (fluid or walls) at one instant: what is written to and read from files.
 /// Always three components; fields that a file does not hold are empty.
@@ -26,14 +35,16 @@ struct Frame {
   std::vector<std::int32_t> material;    // index into the case's materials
   std::vector<std::int32_t> body;        // index into the case's bodies
   std::vector<std::uint32_t> id;
+  std::vector<FrameState> states;        // of fluid in cases where materials have some
 };
 
-/// Calls f(name in files, pointer to member) for every field. The binding names all members of Frame: it does not
+/// Calls f(name in files, pointer to member) for every field but the states. The binding names all members of Frame: it does not
 /// compile once one is added that is not written here.
 template <class F>
 void forEachFrameField(F&& f) {
   [[maybe_unused]] const auto& [dimensions, time, position, velocity, pressure, numberDensity, nearestDistance,
-                                dynamicViscosity, shearRate, temperature, viscosityFactor, material, body, id] =
+                                dynamicViscosity, shearRate, temperature, viscosityFactor, material, body, id,
+                                states] =
       Frame{};
   f("position", &Frame::position), f("velocity", &Frame::velocity), f("pressure", &Frame::pressure);
   f("number_density", &Frame::numberDensity), f("nearest_distance", &Frame::nearestDistance);
@@ -51,9 +62,9 @@ Frame makeFrame(const Particles<D>& particles, std::uint32_t begin, std::uint32_
 /// are.
 Frame solidWalls(const Case& c, const Frame& walls);
 
-/// Completes a frame of fluid with the viscosities of its shear rates, temperatures and factors, if it has some,
-/// in the materials of the case.
-void addViscosities(const std::vector<Material>& materials, Frame& frame);
+/// Completes a frame of fluid, made from particles of the case: with the names of its states and with the
+/// viscosities of its shear rates, temperatures, factors and states, if it has some.
+void addViscosities(const Case& c, Frame& frame);
 
 extern template Frame makeFrame<2>(const Particles<2>&, std::uint32_t, std::uint32_t, double);
 extern template Frame makeFrame<3>(const Particles<3>&, std::uint32_t, std::uint32_t, double);

@@ -23,7 +23,7 @@ class BalanceWriter {
   int dimensions_;
   bool repels_;
   bool shifts_;
-  bool hasSurface_;
+  bool hasSurface_, hasStates_;
   Rows rows_;
 };
 

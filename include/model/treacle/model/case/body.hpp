@@ -3,6 +3,7 @@
 #include "treacle/core/vec.hpp"
 #include "treacle/model/geometry/shape_file.hpp"
 #include "treacle/model/geometry/transform.hpp"
+#include "treacle/model/materials/material_state.hpp"
 #include "treacle/model/motion/inflow.hpp"
 
 #include <array>
@@ -139,6 +140,7 @@ struct Body {
   // and no part of it where no body says more.
   double viscosityFactor = 0;
   std::string viscosityFactorExpression{};  // in place of it
+  std::vector<StateStart> states{};  // of a fluid, those that start with another value than the material says
   double wallConductance = 0;     // of a wall, its conductivity over its thickness [W/(m2 K)]; 0: infinite
   bool fileVelocities = false;    // fluid of a file has its velocities, on top of that of the body
   bool fileTemperatures = false;  // likewise, in place of its temperature

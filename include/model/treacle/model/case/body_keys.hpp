@@ -256,6 +256,11 @@ void visit(auto& v, Like<RigidSettings> auto& r, const Case& c) {
     r.springs);
 }
 
+void visit(auto& v, Like<StateStart> auto& s, const Case&) {
+  v({"name", "Name of a state of the body's material", required}, s.name);
+  v({"value", "What it starts with", required}, s.value, s.expression);
+}
+
 void visit(auto& v, Like<Body> auto& b, const Case& c) {
   v({"name", "Name of the body, unique among them", required}, b.name);
   v({"type", "Fluid, a wall, an inflow, or a rigid body, a wall that the fluid moves", required}, b.kind);
@@ -294,6 +299,9 @@ void visit(auto& v, Like<Body> auto& b, const Case& c) {
        "any",
        optional, "", notNegative},
       b.viscosityFactor, b.viscosityFactorExpression);
+  if (b.kind == BodyKind::Fluid && c.method.kind == MethodKind::MphI)
+    v({"state", "States that the fluid starts with, where not as the material says", optional, "", {0, maxStates}},
+      b.states);
   if (b.kind == BodyKind::Rigid) {
     visit(v, b.rigid, c);
   } else {

@@ -106,6 +106,13 @@ struct Case {
   bool hasViscosityFactors() const {
     return std::ranges::any_of(bodies, [](const Body& b) { return b.givesViscosityFactor(); });
   }
+  /// The names of the states of all materials, each once.
+  std::vector<std::string> stateNames() const;
+  bool hasStates() const {
+    return std::ranges::any_of(materials, [](const Material& m) { return !m.states.empty(); });
+  }
+  /// What fluid of a material starts with of which no body says more; 0 if it does not have the state.
+  double startOfState(int material, std::size_t state) const;
   /// Leaves viscosities what they are.
   void haveViscosityFactors() {
     if (hasViscosityFactors()) return;
@@ -117,7 +124,7 @@ struct Case {
   double typicalTemperature(const Material& m) const;
   double typicalShift(const Material& m) const;
   /// mu there, of a rheology that at a shear rate of 1/s: for what needs one number that stands for all [Pa s].
-  double typicalViscosity(const Material& m) const { return m.viscosity(1, typicalShift(m)); }
+  double typicalViscosity(const Material& m) const;
   /// Whether materials differ among the fluids: those of fluid bodies, or all where no body says which.
   bool hasSeveralFluids() const {
     const auto isFluid = [](const Body& body) { return body.holdsFluid(); };

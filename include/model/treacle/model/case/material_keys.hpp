@@ -62,6 +62,52 @@ void visit(auto& v, Like<ViscosityShift> auto& s, const Case&) {
   v({"max_factor", "The factor is at most this", optional, "", positive}, s.most);
 }
 
+void visit(auto& v, Like<MaterialState> auto& s, const Case& c) {
+  v({"name", "Name of the state, by which expressions and frames call it", required}, s.name);
+  v({"law", "How the state changes", required}, s.law);
+  v({"start", "What fluid starts with of which its body says nothing else", optional}, s.start);
+  const Key most{"max", "The state is at most this"};
+  switch (s.law) {
+    case StateLaw::Expression:
+      v({"rate", "Change per second, an expression in the states, T [K], shear_rate [1/s] and t [s]", required},
+        s.rate);
+      v({"min", "The state is at least this"}, s.least);
+      v(most, s.most);
+      break;
+    case StateLaw::KamalSourour:
+      v({"a1", "Factor A1 of the reaction that begins by itself", optional, "1/s", notNegative}, s.a1);
+      v({"e1", "Its activation energy", optional, "J/mol", notNegative}, s.e1);
+      v({"a2", "Factor A2 of the reaction that what has reacted speeds up", optional, "1/s", notNegative}, s.a2);
+      v({"e2", "Its activation energy", optional, "J/mol", notNegative}, s.e2);
+      v({"m", "Exponent of the state", optional, "", reactionOrder}, s.m);
+      v({"n", "Exponent of what is left to react", optional, "", reactionOrder}, s.n);
+      v({"max_conversion", "The state at which the reaction ends", optional, "", conversion}, s.mostConversion);
+      break;
+    case StateLaw::Houska:
+      v({"build_up", "Rate a at which structure builds up", required, "1/s", notNegative}, s.buildUp);
+      v({"break_down", "Factor b of its breakdown by shear", required, "s^(exponent-1)", notNegative},
+        s.breakDown);
+      v({"exponent", "Exponent of the shear rate in the breakdown", optional, "", flowIndex}, s.exponent);
+      break;
+    case StateLaw::Roussel:
+      v({"time", "Time in which the state grows by 1 at rest", required, "s", positive}, s.time);
+      v({"break_down", "Factor b of the breakdown by shear", required, "", notNegative}, s.breakDown);
+      v(most, s.most);
+      break;
+  }
+  if (c.heat) v({"heat", "Heat set free per unit of the state", optional, "J/kg"}, s.heat);
+}
+
+void visit(auto& v, Like<Gelling> auto& g, const Case&) {
+  v({"state", "Name of the state that comes to the gel point", required}, g.state);
+  v({"conversion", "The state at the gel point", required, "", positive}, g.conversion);
+  v({"a", "Constant a of the exponent a + b s", required, "", notNegative}, g.a);
+  v({"b", "Constant b of the exponent", optional}, g.b);
+  v({"max_factor", "The viscosity is multiplied by at most this, also beyond the gel point", optional, "",
+     gelFactor},
+    g.mostFactor);
+}
+
 void visit(auto& v, Like<ContactAngle> auto& a, const Case&) {
   v({"name", "Name of the material of the fluid, unique among them", required}, a.name);
   v({"angle", "Angle of its free surfaces with the wall, measured in the fluid", required, "deg", {0, 180}},
@@ -86,6 +132,13 @@ void visit(auto& v, Like<Material> auto& m, const Case& c) {
      "step with the default scheme",
      required, "Pa", notNegative},
     m.bulkModulus);
+  v({"state", "What particles of the material carry and a law changes", optional, "", {0, maxStates}}, m.states);
+  v({"viscosity_factor",
+     "What the viscosity is multiplied by, an expression in the states, T [K], shear_rate [1/s] and t [s]"},
+    m.viscosityFactor, keys::formula);
+  v({"yield_factor", "What the yield stress of a rheology is multiplied by, likewise"}, m.yieldFactor,
+    keys::formula);
+  v({"gelling", "Viscosity that grows without bound as a state comes to the gel point"}, m.gelling);
   v({"slip_length",
      "Of a fluid: how far behind the surface of a wall its velocity, extrapolated, meets the wall's; 0: no slip",
      optional, "m", notNegative},

@@ -62,6 +62,10 @@ inline constexpr Named<ShiftModel> shift[] = {{"arrhenius", ShiftModel::Arrheniu
                                               {"vft", ShiftModel::Vft},
                                               {"wlf", ShiftModel::Wlf},
                                               {"table", ShiftModel::Table}};
+inline constexpr Named<StateLaw> stateLaw[] = {{"expression", StateLaw::Expression},
+                                               {"kamal-sourour", StateLaw::KamalSourour},
+                                               {"houska", StateLaw::Houska},
+                                               {"roussel", StateLaw::Roussel}};
 inline constexpr Named<KrylovKind> krylov[] = {{"cg", KrylovKind::Cg}, {"cr", KrylovKind::Cr}};
 inline constexpr Named<PreconditionerKind> preconditioner[] = {
     {"projected-multigrid", PreconditionerKind::ProjectedMultigrid},
@@ -117,6 +121,8 @@ template <>
 inline constexpr std::span<const Named<ViscousStep>> namesOf<ViscousStep>{names::viscous};
 template <>
 inline constexpr std::span<const Named<RheologyModel>> namesOf<RheologyModel>{names::rheology};
+template <>
+inline constexpr std::span<const Named<StateLaw>> namesOf<StateLaw>{names::stateLaw};
 template <>
 inline constexpr std::span<const Named<ShiftModel>> namesOf<ShiftModel>{names::shift};
 template <>

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "treacle/model/materials/material_state.hpp"
 #include "treacle/model/materials/rheology.hpp"
 #include "treacle/model/materials/viscosity_shift.hpp"
 
@@ -30,15 +31,21 @@ struct Material {
   double contactAngle = 90;     // of a wall, with free surfaces of all other fluids than these [deg]
   std::vector<ContactAngle> contactAngles{};
   std::optional<Rheology> rheology{};  // of a fluid that is not Newtonian; MPH-I only
+  std::vector<MaterialState> states{};  // MPH-I only
+  // Expressions in them, the temperature T, shear_rate and t, by which the viscosity and a yield stress are
+  // multiplied; empty: 1. MPH-I only.
+  std::string viscosityFactor{}, yieldFactor{};
+  std::optional<Gelling> gelling{};
   // In cases with heat.
   double specificHeat = 0;                         // c_p [J/(kg K)]
   double conductivity = 0;                         // k [W/(m K)]
   double emissivity = 0;                           // of the free surface [-]
   std::optional<ViscosityShift> viscosityShift{};  // missing: the viscosity does not follow the temperature
 
-  /// mu at a shear rate [1/s], where a_T is `shift` [Pa s].
-  double viscosity(double rate, double shift) const {
-    return rheology ? rheology->viscosity(rate, shift) : shift * dynamicViscosity;
+  /// mu at a shear rate [1/s], where a_T is `shift` and the yield stress is multiplied by `yield` [Pa s]. Formulas
+  /// are not in it.
+  double viscosity(double rate, double shift, double yield = 1) const {
+    return rheology ? rheology->viscosity(rate, shift, yield) : shift * dynamicViscosity;
   }
   /// Of a wall of this material with a fluid [deg].
   double contactAngleWith(std::string_view fluid) const {
@@ -46,8 +53,13 @@ struct Material {
       if (a.name == fluid) return a.angle;
     return contactAngle;
   }
-  /// Whether its viscosity is not one number.
-  bool hasOwnViscosities() const { return rheology.has_value() || viscosityShift.has_value(); }
+  /// Whether its viscosity is not one number. Laws of states may need shear rates, which come with it.
+  bool hasOwnViscosities() const {
+    return rheology.has_value() || viscosityShift.has_value() || hasFormulas();
+  }
+  bool hasFormulas() const {
+    return !states.empty() || !viscosityFactor.empty() || !yieldFactor.empty() || gelling.has_value();
+  }
 
   bool operator==(const Material&) const = default;
 };

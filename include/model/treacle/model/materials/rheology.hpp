@@ -41,9 +41,9 @@ struct Rheology {
   /// mu(gamma) [Pa s], at a shear rate of at least 0 [1/s]. Yield stresses are regularised (T. C. Papanastasiou,
   /// J. Rheol. 31, 1987): tau_y / gamma is multiplied by 1 - exp(-m gamma), so that the fluid at rest has the
   /// viscosity tau_y m besides that of its flow. `shift`: a_T of the temperature (viscosity_shift.hpp); the bounds
-  /// hold at all temperatures.
-  TREACLE_HD double viscosity(double rate, double shift = 1) const {
-    const double mu = shift * unbounded(shift * rate);
+  /// hold at all temperatures. `yield`: by what the yield stress is multiplied.
+  TREACLE_HD double viscosity(double rate, double shift = 1, double yield = 1) const {
+    const double mu = shift * unbounded(shift * rate, yield * yieldStress);
     const double below = mostViscosity > 0 && !(mu < mostViscosity) ? mostViscosity : mu;
     return below > leastViscosity ? below : leastViscosity;
   }
@@ -62,7 +62,7 @@ struct Rheology {
   /// (1 - exp(-x)) / x
   TREACLE_HD static double grown(double x) { return x > 1e-9 ? -std::expm1(-x) / x : 1; }
 
-  TREACLE_HD double unbounded(double rate) const {
+  TREACLE_HD double unbounded(double rate, double stress) const {
     switch (model) {
       case RheologyModel::PowerLaw:
         return power(rate);
@@ -71,12 +71,12 @@ struct Rheology {
       case RheologyModel::CarreauYasuda:
         return between(std::pow(1 + std::pow(timeConstant * rate, transition), (flowIndex - 1) / transition));
       case RheologyModel::Bingham:
-        return plasticViscosity + yieldStress * regularisation * grown(regularisation * rate);
+        return plasticViscosity + stress * regularisation * grown(regularisation * rate);
       case RheologyModel::HerschelBulkley:
-        return power(rate) + yieldStress * regularisation * grown(regularisation * rate);
+        return power(rate) + stress * regularisation * grown(regularisation * rate);
       case RheologyModel::Casson: {
         const double root = std::sqrt(plasticViscosity) +
-                            std::sqrt(yieldStress * regularisation) * grown(std::sqrt(regularisation * rate));
+                            std::sqrt(stress * regularisation) * grown(std::sqrt(regularisation * rate));
         return root * root;
       }
     }

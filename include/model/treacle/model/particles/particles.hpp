@@ -5,11 +5,14 @@
 #include "treacle/model/case/open_flow.hpp"
 #include "treacle/model/geometry/side.hpp"
 #include "treacle/model/geometry/wall_surface.hpp"
+#include "treacle/model/materials/material_state.hpp"
 #include "treacle/model/motion/rigid_body.hpp"
 #include "treacle/model/state/gas_state.hpp"
 #include "treacle/model/state/solver_modes.hpp"
 #include "treacle/model/state/step_memory.hpp"
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <type_traits>
 
@@ -20,6 +23,7 @@ struct FluidExtras {
   bool shearRates = false;        // where viscosities are particles' own (Case::hasOwnViscosities)
   bool temperatures = false;      // with heat
   bool viscosityFactors = false;  // where some body gives one
+  std::uint8_t states = 0;        // how many materials have (Case::stateNames)
   bool starts = false;            // within a step whose forces are those of its middle; walls have it, too
   bool sides = false;             // with thin sheets; walls have them, too
 
@@ -41,12 +45,14 @@ void forEachFlowMemoryOf(F&& f, Sets&... sets) {
   if ((sets.has.shearRates && ...)) f(sets.shearRate...);
 }
 
-/// The fields that walls do not have. Likewise of temperatures and factors.
+/// The fields that walls do not have. Likewise of temperatures, factors and states.
 template <class F, class... Sets>
 void forEachFluidFieldOf(F&& f, Sets&... sets) {
   forEachFlowMemoryOf(f, sets...);
   if ((sets.has.temperatures && ...)) f(sets.temperature...);
   if ((sets.has.viscosityFactors && ...)) f(sets.viscosityFactor...);
+  for (std::size_t k = 0; k < maxStates; ++k)
+    if (((k < sets.has.states) && ...)) f(sets.states[k]...);
 }
 
 /// The fields that fluid and walls have.
@@ -117,6 +123,8 @@ struct Particles {
   Buffer<double, Backend> shearRate;        // sqrt(2 E:E) that the next solve takes the viscosity from [1/s]
   Buffer<double, Backend> temperature;      // T [K]
   Buffer<double, Backend> viscosityFactor;  // by which the viscosity of the material is multiplied [-]
+  // In the order of Case::stateNames; those that a particle's material does not have are 0.
+  std::array<Buffer<double, Backend>, maxStates> states;
 
   // The memory of the solver, likewise.
   SolverModes<D, Backend> modes;
@@ -176,6 +184,7 @@ struct Particles {
     has = numbers.has;
     start.resize(context, 0), side.resize(context, 0);
     for (auto* field : {&shearRate, &temperature, &viscosityFactor}) field->resize(context, 0);
+    for (auto& state : states) state.resize(context, 0);
     forEachSharedFieldOf(resizeTo(count), *this);
     forEachFluidFieldOf(resizeTo(fluid), *this);
     modes.vectors.resize(context, fluid * numbers.modes);

@@ -15,11 +15,12 @@ struct WallLoad {
   double power = 0;  // of the fluid on it [W]
 };
 
-/// The heat of the fluid in one step: the energy gains dt times the other three.
+/// The heat of the fluid in one step: the energy gains dt times the other four.
 struct HeatBalance {
   double energy = 0;   // sum of m c_p T, counted from 0 K, at the end of the step [J]
   double heating = 0;  // by the viscosity [W]
   double walls = 0;    // from walls [W]
+  double states = 0;   // set free by the states of materials [W]
   double surface = 0;  // from the surroundings through free surfaces [W]
 };
 

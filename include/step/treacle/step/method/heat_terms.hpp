@@ -47,6 +47,7 @@ struct HeatSystemTerms {
   std::span<const HeatExchange> walls;
   std::span<const double> area;        // of the free surface [1/m], or empty
   std::span<const double> heating;     // by the viscosity [W/m3], or empty
+  std::span<const double> ofStates;    // by the states of materials, likewise
   std::span<HeatExchange> surface;     // of the free surface; empty where area is
   std::span<double> boundary, source;  // [W/(m3 K)], [W/m3]
   std::span<double> extra, inverse;    // rho c_p / dt + boundary [W/(m3 K)]; 1 / diagonal
@@ -59,7 +60,7 @@ struct HeatSystemTerms {
       sum = {sum.coefficient + surface[i].coefficient, sum.gain + surface[i].gain};
     }
     boundary[i] = sum.coefficient;
-    source[i] = sum.gain + (heating.empty() ? 0 : heating[i]);
+    source[i] = sum.gain + (heating.empty() ? 0 : heating[i]) + (ofStates.empty() ? 0 : ofStates[i]);
     extra[i] = constants.inertia(material[i]) + sum.coefficient;
     inverse[i] = 1 / (extra[i] + ofFluid[i]);
   }

@@ -1,7 +1,9 @@
 #pragma once
 
 #include "treacle/core/backend.hpp"
+#include "treacle/model/materials/material_state.hpp"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -19,8 +21,12 @@ enum class FluidField {
   ViscosityFactor,
   Material,
   Body,
-  Id
+  Id,
+  State  // and those behind it: the states of materials, in the order of Case::stateNames
 };
+inline FluidField fieldOfState(std::size_t k) {
+  return static_cast<FluidField>(static_cast<std::size_t>(FluidField::State) + k);
+}
 
 /// Where one of them lies: `count` entries of `components` numbers each, of the type of Particles. What makes a
 /// step may move it, give up the memory, and put the particles into another order.
@@ -38,7 +44,8 @@ struct GivenFluid {
   std::span<const double> velocity;           // likewise [m/s]
   std::span<const double> temperature;        // [K]
   std::span<const double> viscosityFactor{};  // [-]; where there are none, the fluid has some then
-  BackendKind where = BackendKind::Cpu;       // whose memory these are in
+  std::array<std::span<const double>, maxStates> states{};  // in the order of Case::stateNames
+  BackendKind where = BackendKind::Cpu;                     // whose memory these are in
 };
 
 }  // namespace treacle

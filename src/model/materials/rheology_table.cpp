@@ -1,9 +1,10 @@
-#include "treacle/mph/particle_viscosity.hpp"
+#include "treacle/model/materials/rheology_table.hpp"
 
 namespace treacle {
 
-RheologyTable RheologyTable::make(const Case& c) {
+RheologyTable RheologyTable::make(const Case& c, std::vector<FormulaStep>& steps) {
   RheologyTable table;
+  table.states = StateTable::make(c, steps);
   for (std::size_t m = 0; m < c.materials.size(); ++m) {
     const Material& material = c.materials[m];
     table.of[m] = material.rheology.value_or(Rheology::newtonian(material.dynamicViscosity));

@@ -1,0 +1,55 @@
+#pragma once
+
+#include "treacle/model/case/case.hpp"
+#include "treacle/model/materials/state_table.hpp"
+#include "treacle/model/particles/particles.hpp"
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace treacle {
+
+/// The viscosities of particles from their shear rates, temperatures, factors and states, particle by particle.
+/// Spans and pointers are to a backend's memory.
+struct RheologyTable {
+  Rheology of[maxMaterials];  // by material
+  ShiftFactor shift[maxMaterials];
+  StateTable states;
+  std::span<const double> temperature{};   // per particle [K]; empty: no viscosity follows it
+  std::span<const double> factor{};        // likewise, by which it is multiplied [-]; empty: 1
+  const double* state[maxStates] = {};     // likewise, of the states; null: there is none
+  double time = 0;                         // [s]
+
+  /// Adds the steps of formulas, for whose place in the backend's memory states.steps has to be set. Errors:
+  /// InputError for expressions that are none.
+  static RheologyTable make(const Case& c, std::vector<FormulaStep>& steps);
+
+  /// What the first `count` particles carry.
+  template <int D, class Backend>
+  void read(const Particles<D, Backend>& p, std::size_t count, double now) {
+    temperature = p.has.temperatures ? p.temperature.span().first(count) : std::span<const double>{};
+    factor = p.has.viscosityFactors ? p.viscosityFactor.span().first(count) : std::span<const double>{};
+    for (std::size_t k = 0; k < maxStates; ++k) state[k] = k < p.has.states ? p.states[k].data() : nullptr;
+    time = now;
+  }
+
+  /// The variables of the formulas for particle i at a shear rate of gamma [1/s].
+  TREACLE_HD void variables(std::size_t i, double rate, double* x) const {
+    x[StateTable::Temperature] = temperature.empty() ? 0 : temperature[i];
+    x[StateTable::ShearRate] = rate;
+    x[StateTable::Time] = time;
+    for (int k = 0; k < maxStates; ++k) x[StateTable::FirstState + k] = state[k] ? state[k][i] : 0;
+  }
+
+  /// Of a particle i of material m at a shear rate of gamma [1/s], [Pa s].
+  TREACLE_HD double viscosity(std::size_t i, int m, double rate) const {
+    const double own = factor.empty() ? 1 : factor[i], a = temperature.empty() ? 1 : shift[m](temperature[i]);
+    if (!states.steps) return own * of[m].viscosity(rate, a);
+    double x[StateTable::variables];
+    variables(i, rate, x);
+    return own * states.viscosityFactor(m, x) * of[m].viscosity(rate, a, states.yieldFactor(m, x));
+  }
+};
+
+}  // namespace treacle
