@@ -47,6 +47,7 @@ struct PlotOptions {
   std::filesystem::path directory;
   std::string frame = "last";  // or a number
   PictureField field = PictureField::Speed;
+  std::string state{};           // the name of a State
   bool history = false;          // the curves of history.csv instead of a frame
   std::string probe;             // what it has read instead of a frame
   std::filesystem::path output;  // empty: into the run directory

@@ -212,13 +212,19 @@ void addPlot(CLI::App& app, PlotOptions& options) {
   CLI::App* plot = app.add_subcommand("plot", "Draw a frame, the history or a probe of a run as PNG");
   plot->add_option("DIR", options.directory, "Run directory")->required();
   plot->add_option("--frame", options.frame, "Number of the frame, or last")->type_name("N");
-  addChoice<PictureField>(*plot, "--field", fieldNames, options.field, "What the colours show; default: speed");
+  const auto storeField = [&options](const std::string& word) {
+    const auto* known = std::ranges::find(fieldNames, word, &Named<PictureField>::name);
+    options.field = known == std::end(fieldNames) ? PictureField::State : known->value;
+    options.state = word;
+  };
+  plot->add_option_function<std::string>("--field", storeField,
+                                         "What the colours show, or the name of a state; default: speed")
+      ->type_name(listOf<PictureField>(fieldNames));
   plot->add_flag("--history", options.history, "Curves of iterations, energies and extents over time");
   plot->add_option("--probe", options.probe, "What a probe of the case has read")->type_name("NAME");
   plot->add_option("-o,--output", options.output, "PNG file; default: in the run directory")->type_name("FILE");
   plot->callback([&options] {
-    for (const auto& [word, field] : fieldNames)
-      if (field == options.field) plotCommand(options, word);
+    plotCommand(options, options.state.empty() ? "speed" : options.state);
   });
 }
 

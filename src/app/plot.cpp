@@ -45,7 +45,7 @@ void plotCommand(const PlotOptions& options, std::string_view field) {
     throw InputError(fmt::format("--output {}: pictures of frames are PNG; expected a name that ends in .png",
                                  output.string()));
   PictureOptions picture;
-  picture.field = options.field;
+  picture.field = options.field, picture.state = options.state;
   picture.spacing = c.spacing;
   picture.gravity = c.gravity;
   picture.title = c.title;

@@ -25,6 +25,9 @@ constexpr const char* classOf(const Rheology&) { return "Rheology"; }
 constexpr const char* classOf(const ContactAngle&) { return "ContactAngle"; }
 constexpr const char* classOf(const Spring&) { return "Spring"; }
 constexpr const char* classOf(const Hinge&) { return "Hinge"; }
+constexpr const char* classOf(const MaterialState&) { return "MaterialState"; }
+constexpr const char* classOf(const Gelling&) { return "Gelling"; }
+constexpr const char* classOf(const StateStart&) { return "StateStart"; }
 constexpr const char* classOf(const ViscosityShift&) { return "ViscosityShift"; }
 constexpr const char* classOf(const Body&) { return "Body"; }
 constexpr const char* classOf(const Oscillation&) { return "Oscillation"; }
@@ -83,6 +86,11 @@ template <class F>
 void forEachKind(const Probe& probe, F&& f) {
   forEachWord<ProbeKind>(
       probe, [](Probe& p, ProbeKind kind) { p.kind = kind; }, f);
+}
+template <class F>
+void forEachKind(const MaterialState& state, F&& f) {
+  forEachWord<StateLaw>(
+      state, [](MaterialState& s, StateLaw law) { s.law = law; }, f);
 }
 template <class F>
 void forEachKind(const Rheology& rheology, F&& f) {

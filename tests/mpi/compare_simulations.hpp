@@ -132,6 +132,8 @@ void expectSameFields(const Case& c, const Particles<D>& a, const Particles<D>& 
     if (a.has.viscosityFactors) {
       ASSERT_EQ(a.viscosityFactor[i], b.viscosityFactor[j]) << id;
     }
+    ASSERT_EQ(a.has.states, b.has.states);
+    for (std::size_t k = 0; k < a.has.states; ++k) ASSERT_NEAR(a.states[k][i], b.states[k][j], 1e-6) << id;
     if (a.has.shearRates) {
       ASSERT_NEAR(a.shearRate[i], b.shearRate[j], 1e-6 * speed / c.spacing) << id;
     }

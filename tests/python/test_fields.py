@@ -182,6 +182,34 @@ def test_viscosities_of_particles_stay_with_them(sim, tmp_path):
     np.testing.assert_allclose(frame.viscosities, [2 * wanted[i] for i in frame.ids], rtol=1e-6)
 
 
+def test_states_can_be_read_and_set(drop, tmp_path):
+    drop["material"][0] |= {
+        "state": [{"name": "age", "law": "expression", "rate": "1", "start": 2}],
+        "viscosity_factor": "1 + age",
+    }
+    viscosity = drop["material"][0]["dynamic_viscosity"]
+    sim = treacle.Simulation(drop, backend="cpu")
+    sim.step()
+    dt = sim.time
+    np.testing.assert_allclose(sim.fluid.states["age"], 2 + dt)
+    np.testing.assert_allclose(sim.fluid.viscosities, viscosity * (3 + dt))
+    wanted = 0.5 * np.arange(len(sim.fluid))
+    sim.fluid.set(states={"age": wanted})
+    by_id = dict(zip(sim.fluid.ids, wanted, strict=True))
+    sim.step()
+    np.testing.assert_allclose(sim.fluid.states["age"], [by_id[i] + sim.time - dt for i in sim.fluid.ids])
+    sim.write_frame(tmp_path / "fluid.vtp")
+    frame = treacle.read_frame(tmp_path / "fluid.vtp")
+    np.testing.assert_allclose(frame.states["age"], [by_id[i] + sim.time - dt for i in frame.ids], rtol=1e-6)
+    with pytest.raises(treacle.InputError, match="the case has no state 'cure'"):
+        sim.fluid.set(states={"cure": 1.0})
+    with pytest.raises(treacle.InputError, match="states: expected finite numbers"):
+        sim.fluid.set(states={"age": np.nan})
+    with pytest.raises(treacle.InputError, match="follows from shear rates or temperatures"):
+        sim.fluid.viscosities = 5
+    sim.step()
+
+
 def test_film_with_a_graded_viscosity(drop):
     """A film that runs down a plate, of mu = mu_0 exp(3 y/H): u(H) = rho g H^2/mu_0 (1/3 - (1 - exp(-3))/9)."""
     del drop["probe"]

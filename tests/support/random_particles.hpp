@@ -24,7 +24,7 @@ struct RandomParticles {
     Vec<D, bool> periodic{};
     for (int k = 0; k + 1 < D; ++k) periodic[k] = true;
     grid = CellGrid<D>::make(Vec<D>{}, Vec<D>::filled(1), periodic, radius);
-    particles.resize({fluid, wall, seed % 3, seed % 2 * wall, 0, {seed % 2 > 0, seed % 2 > 0, seed % 2 > 0}});
+    particles.resize({fluid, wall, seed % 3, seed % 2 * wall, 0, {seed % 2 > 0, seed % 2 > 0, seed % 2 > 0, static_cast<std::uint8_t>(seed % 5)}});
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> unit(0, 1);
     for (std::uint32_t i = 0; i < particles.count; ++i) {
@@ -39,6 +39,7 @@ struct RandomParticles {
         if (particles.has.shearRates) particles.shearRate[i] = i + 0.5;
         if (particles.has.temperatures) particles.temperature[i] = 300.25 + i;
         if (particles.has.viscosityFactors) particles.viscosityFactor[i] = 0.25 + i;
+        for (std::size_t k = 0; k < particles.has.states; ++k) particles.states[k][i] = 0.125 * (k + 1) + i;
         for (std::uint32_t m = 0; m < particles.modeCount(); ++m)
           particles.modes.vectors[std::size_t{m} * fluid + i] =
               Vec<D, float>::filled(static_cast<float>(i + 0.25 * m));

@@ -19,7 +19,7 @@ constexpr std::string_view setPrefix = "--set ";
 constexpr std::string_view namedLists[] = {"material", "body", "outflow", "opening",
                                            "probe"};  // arrays of tables addressed by name
 constexpr std::string_view namedBelow[] = {"contact_angles", "springs",
-                                           "vents"};  // those of other tables, merged by name
+                                           "state", "vents"};  // those of other tables, merged by name
 
 CaseFileError errorAt(const toml::source_region& source, const std::string& text) {
   return treacle::errorAt(source, {}, text);
@@ -130,6 +130,17 @@ void mergeNamed(std::string_view listName, toml::array& into, toml::array&& from
   }
 }
 
+/// Merges what an override gives for entries of a list by their names: body.flap.springs.left.stiffness=5.
+void mergeByName(std::string_view listName, toml::array& into, toml::table&& from) {
+  for (auto&& [name, value] : from) {
+    toml::table* entry = findNamed(into, name.str());
+    if (!entry) throw errorAt(value.source(), fmt::format("there is no {} '{}'", listName, name.str()));
+    if (!value.is_table())
+      throw errorAt(value.source(), fmt::format("expected {}.{}.key=value", listName, name.str()));
+    merge(*entry, std::move(*value.as_table()));
+  }
+}
+
 void merge(toml::table& into, toml::table&& from) {
   for (auto&& [key, value] : from) {
     toml::node* existing = into.get(key);
@@ -138,6 +149,8 @@ void merge(toml::table& into, toml::table&& from) {
       merge(*existing->as_table(), std::move(*value.as_table()));
     else if (named && existing && existing->is_array_of_tables() && value.is_array_of_tables())
       mergeNamed(key.str(), *existing->as_array(), std::move(*value.as_array()));
+    else if (contains(namedBelow, key.str()) && existing && existing->is_array_of_tables() && value.is_table())
+      mergeByName(key.str(), *existing->as_array(), std::move(*value.as_table()));
     else
       into.insert_or_assign(key, std::move(value));
   }

@@ -103,7 +103,10 @@ void fill(hid_t file, const Particles<D>& particles, std::int64_t step, double t
   writeAttribute(file, "has_shear_rates", std::uint8_t{particles.has.shearRates});
   writeAttribute(file, "has_temperatures", std::uint8_t{particles.has.temperatures});
   writeAttribute(file, "has_viscosity_factors", std::uint8_t{particles.has.viscosityFactors});
-  if (particles.has.states > 0) writeNames(file, "state", names.states);
+  if (particles.has.states > 0) {
+    writeAttribute(file, "states", std::uint8_t{particles.has.states});
+    writeNames(file, "state", names.states);
+  }
   if (particles.has.sides) writeAttribute(file, "has_sides", std::uint8_t{1});
   const ModeAge& age = particles.modes.age;
   writeAttribute(file, "mode_count", particles.modeCount());
@@ -227,8 +230,12 @@ Checkpoint<D> readContent(const std::filesystem::path& path, ParticlePart part) 
   const auto has = [&](const char* name) { return readAttribute<std::uint8_t>(file, name) != 0; };
   particles.has = {has("has_shear_rates"), has("has_temperatures"), has("has_viscosity_factors")};
   particles.has.sides = hasAttribute(file, "has_sides");
-  if (hasAttribute(file, "state_name_count")) checkpoint.names.states = readNames(file, "state", maxStates);
-  particles.has.states = static_cast<std::uint8_t>(checkpoint.names.states.size());
+  if (hasAttribute(file, "states")) {
+    checkpoint.names.states = readNames(file, "state", maxStates);
+    particles.has.states = readAttribute<std::uint8_t>(file, "states");
+    if (particles.has.states > maxStates)
+      throw Hdf5Error(fmt::format("{} states, more than {}", particles.has.states, maxStates));
+  }
   particles.flow = readFlow(file), particles.rigid = readRigid(file), particles.gas = readGas(file);
   Selection selection{part, particles.fluidCount, particles.wallCount(), {}};
   checkpoint.fluidOfAll = selection.fluid, checkpoint.wallsOfAll = selection.walls;

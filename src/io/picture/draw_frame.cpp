@@ -20,7 +20,11 @@ struct FieldValues {
   bool fromZero = false;
 };
 
-FieldValues fieldValues(const Frame& fluid, PictureField field) {
+FieldValues fieldValues(const Frame& fluid, PictureField field, const std::string& state) {
+  if (field == PictureField::State) {
+    const auto found = std::ranges::find(fluid.states, state, &FrameState::name);
+    return {state, "", state, found == fluid.states.end() ? std::vector<double>{} : found->values};
+  }
   if (field == PictureField::Pressure) return {"pressure", "Pa", "pressure", fluid.pressure};
   if (field == PictureField::NumberDensity) return {"number density", "", "number_density", fluid.numberDensity};
   if (field == PictureField::NearestDistance)
@@ -138,7 +142,7 @@ void check(const Frame& fluid, const FieldValues& field, const PictureOptions& o
 
 std::size_t drawFrame(const std::filesystem::path& path, const Frame& fluid, const Frame& walls,
                       const PictureOptions& options) {
-  const FieldValues field = fieldValues(fluid, options.field);
+  const FieldValues field = fieldValues(fluid, options.field, options.state);
   check(fluid, field, options);
   const Range range = colorRange(field, options);
   const auto byValue = [&](std::size_t i) {

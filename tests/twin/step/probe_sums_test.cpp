@@ -102,7 +102,8 @@ TEST(ProbesTwin, SumsAreThoseOfTheCpu) {
     PartTerms<3> terms{};
     terms.weight = PartWeight<3>::of(probe, c);
     terms.density[0] = 1000, terms.density[1] = 2000;
-    terms.viscosities = RheologyTable::make(c);
+    std::vector<FormulaStep> formulas;
+    terms.viscosities = RheologyTable::make(c, formulas);
     terms.viscosities.of[0] = Rheology::newtonian(2), terms.viscosities.of[1] = Rheology::newtonian(5);
     terms.volume = 1e-3;
     PartTerms<3> there = terms;

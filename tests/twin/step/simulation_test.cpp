@@ -197,7 +197,7 @@ TEST(SimulationTwin, StepsLikeTheCpuWithARheology) {
     }
 }
 
-/// Two fluids with heat, one's viscosity following it, on a floor that they cool at, in warm surroundings.
+/// Two fluids with heat and states, one's viscosity following it, on a floor that they cool at, in warm surroundings.
 template <int D>
 void compareHeat(Precision precision) {
   SolverSettings settings;
@@ -209,6 +209,20 @@ void compareHeat(Precision precision) {
   for (Material& m : c.materials) m.specificHeat = 2, m.conductivity = 0.7, m.emissivity = 0.9;
   c.materials[0].viscosityShift =
       ViscosityShift{.model = ShiftModel::Arrhenius, .reference = 400, .activationEnergy = 3e4};
+  // One fluid cures, both have structure.
+  c.materials[0].states = {{.name = "cure",
+                            .law = StateLaw::KamalSourour,
+                            .a1 = 1e7,
+                            .e1 = 4e4,
+                            .a2 = 3e7,
+                            .e2 = 4e4,
+                            .m = 0.7,
+                            .n = 1.5,
+                            .heat = 20},
+                           {.name = "structure", .law = StateLaw::Houska, .buildUp = 30, .breakDown = 1}};
+  c.materials[0].gelling = Gelling{.state = "cure", .conversion = 0.6, .a = 1.5, .b = 1};
+  c.materials[1].states = {{.name = "structure", .rate = "shear_rate*T/400 - t", .start = 0.5}};
+  c.materials[1].viscosityFactor = "1 + structure/(1 + abs(structure))";
   c.bodies.resize(1);
   c.bodies[0].kind = BodyKind::Wall;
   c.bodies[0].temperature = 400;
@@ -217,6 +231,11 @@ void compareHeat(Precision precision) {
     p.has.temperatures = true;
     p.temperature.resize(p.fluidCount);
     for (std::uint32_t i = 0; i < p.fluidCount; ++i) p.temperature[i] = 400 + 5e3 * p.position[i][0];
+    p.has.states = 2;
+    for (std::size_t k = 0; k < 2; ++k) {
+      p.states[k].resize(p.fluidCount);
+      for (std::uint32_t i = 0; i < p.fluidCount; ++i) p.states[k][i] = 0.3 * static_cast<double>(k);
+    }
     return p;
   };
   Simulation<D> cpu(c, start());
@@ -228,17 +247,27 @@ void compareHeat(Precision precision) {
     EXPECT_NEAR(y.energy, x.energy, 1e-10 * x.energy);
     EXPECT_NEAR(y.heating, x.heating, 1e-7 * x.heating);
     EXPECT_NEAR(y.surface, x.surface, 1e-7 * std::abs(x.surface));
+    EXPECT_GT(x.states, 0);
+    EXPECT_NEAR(y.states, x.states, 1e-7 * x.states);
   }
   Particles<D> expected = stateOf(cpu), found;
   cuda.copyParticles(found);
   EXPECT_LE(farthest(expected, found), agreement * c.spacing);
-  std::vector<double> T(expected.fluidCount);
-  for (std::uint32_t i = 0; i < expected.fluidCount; ++i) T[expected.id[i]] = expected.temperature[i];
+  std::vector<double> T(expected.fluidCount), cure(expected.fluidCount), structure(expected.fluidCount);
+  for (std::uint32_t i = 0; i < expected.fluidCount; ++i) {
+    const std::uint32_t id = expected.id[i];
+    T[id] = expected.temperature[i], cure[id] = expected.states[0][i], structure[id] = expected.states[1][i];
+  }
+  EXPECT_GT(*std::ranges::max_element(cure), 0.01);
   ASSERT_TRUE(found.has.temperatures);
-  for (std::uint32_t i = 0; i < found.fluidCount; ++i) ASSERT_NEAR(found.temperature[i], T[found.id[i]], 1e-7);
+  for (std::uint32_t i = 0; i < found.fluidCount; ++i) {
+    ASSERT_NEAR(found.temperature[i], T[found.id[i]], 1e-7);
+    ASSERT_NEAR(found.states[0][i], cure[found.id[i]], 1e-9);
+    ASSERT_NEAR(found.states[1][i], structure[found.id[i]], 1e-7);
+  }
 }
 
-TEST(SimulationTwin, StepsLikeTheCpuWithHeat) {
+TEST(SimulationTwin, StepsLikeTheCpuWithHeatAndStates) {
   TREACLE_SKIP_WITHOUT_GPU();
   for (const Precision precision : {Precision::Mixed, Precision::Double}) {
     compareHeat<2>(precision);

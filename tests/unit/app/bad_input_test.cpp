@@ -64,10 +64,42 @@ constexpr BadCase badCases[] = {
      "bad.toml:9:2: unknown key 'gravty' in the case file; did you mean 'gravity'?"},
     {"keyOfAnotherShape", "max = [6e-3, 6e-3]", "max = [6e-3, 6e-3]\nradius = 1",
      "bad.toml:26:1: unknown key 'radius' in [[body]] 'column' (box); expected 'name', 'type', 'material', "
-     "'shape', 'where', 'subtract', 'velocity', 'disorder', 'viscosity_factor', 'oscillation', 'displacement', "
+     "'shape', 'where', 'subtract', 'velocity', 'disorder', 'viscosity_factor', 'state', 'oscillation', "
+     "'displacement', "
      "'rotation', "
      "'min', "
      "'max' or 'transform'"},
+    {"stateOfUnknownLaw", "density = 1000", "density = 1000\nstate = [{ name = \"cure\", law = \"kamal\" }]",
+     "bad.toml:15:32: law in the state of [[material]] 'syrup': expected 'expression', 'kamal-sourour', 'houska' or "
+     "'roussel', found 'kamal'"},
+    {"stateWithoutRate", "density = 1000", "density = 1000\nstate = [{ name = \"cure\", law = \"expression\" }]",
+     "bad.toml:15:10: rate in"},
+    {"rateOfUnknownState", "density = 1000",
+     "density = 1000\nstate = [{ name = \"a\", law = \"expression\", rate = \"b\" }]",
+     "bad.toml:15:53: rate in"},
+    {"keyOfAnotherLaw", "density = 1000",
+     "density = 1000\nstate = [{ name = \"a\", law = \"houska\", build_up = 1, break_down = 1, rate = \"b\" }]",
+     "bad.toml:15:"},
+    {"stateOfAFieldsName", "density = 1000",
+     "density = 1000\nstate = [{ name = \"pressure\", law = \"expression\", rate = \"1\" }]",
+     "bad.toml:15:19: name in"},
+    {"stateThatIsNoName", "density = 1000",
+     "density = 1000\nstate = [{ name = \"a b\", law = \"expression\", rate = \"1\" }]", "bad.toml:15:19: name in"},
+    {"stateBeyondItsBounds", "density = 1000",
+     "density = 1000\nstate = [{ name = \"a\", law = \"houska\", build_up = 1, break_down = 1, start = 2 }]",
+     "bad.toml:15:81: start in"},
+    {"curingWithoutHeat", "density = 1000",
+     "density = 1000\nstate = [{ name = \"a\", law = \"kamal-sourour\", a1 = 1, e1 = 5e4 }]",
+     "bad.toml:15:60: e1 in"},
+    {"gelOfUnknownState", "density = 1000",
+     "density = 1000\ngelling = { state = \"cure\", conversion = 0.6, a = 1 }",
+     "bad.toml:15:21: state in the gelling of [[material]] 'syrup': unknown state 'cure' of the material"},
+    {"yieldWithoutRheology", "density = 1000", "density = 1000\nyield_factor = \"2\"",
+     "bad.toml:15:16: yield_factor in [[material]] 'syrup': the material has no rheology with a yield stress"},
+    {"factorOfUnknownName", "density = 1000", "density = 1000\nviscosity_factor = \"T\"",
+     "bad.toml:15:20: viscosity_factor in [[material]] 'syrup': expected an expression in"},
+    {"bodyWithUnknownState", "shape = \"box\"", "shape = \"box\"\nstate = [{ name = \"cure\", value = 1 }]",
+     "bad.toml:24:19: name in the state of [[body]] 'column': the material 'syrup' has no state 'cure'"},
     {"missingKey", "density = 1000\n", "",
      "bad.toml:12:1: density in [[material]] 'syrup': missing; expected a positive number [kg/m3]"},
     {"missingTable", "[time]\nstep = 1e-3\nend = 2e-3\n", "",

@@ -76,6 +76,7 @@ void expectSame(const Particles<D>& a, const Particles<D>& b) {
   EXPECT_TRUE(sameBits(a.shearRate, b.shearRate));
   EXPECT_TRUE(sameBits(a.temperature, b.temperature));
   EXPECT_TRUE(sameBits(a.viscosityFactor, b.viscosityFactor));
+  for (std::size_t k = 0; k < maxStates; ++k) EXPECT_TRUE(sameBits(a.states[k], b.states[k]));
   EXPECT_EQ(a.modeCount(), b.modeCount());
   EXPECT_TRUE(sameBits(a.modes.vectors, b.modes.vectors));
   EXPECT_EQ(a.modes.age, b.modes.age);
@@ -317,6 +318,27 @@ TEST(Checkpoint, TemperaturesAreThereOrNot) {
 TEST(Checkpoint, FactorsOfViscositiesAreThereOrNot) {
   expectFieldOrNot("viscosity_factor", &FluidExtras::viscosityFactors, &Particles<2>::viscosityFactor, 0,
                    "a factor of the viscosity of 0, expected more than 0");
+}
+
+TEST(Checkpoint, StatesComeBackWithTheirNames) {
+  TemporaryDirectory directory;
+  Particles<2> particles = randomParticles<2>(100, 50);
+  particles.has.states = 2;
+  for (std::size_t k = 0; k < 2; ++k) {
+    particles.states[k].resize(100);
+    for (std::uint32_t i = 0; i < 100; ++i) particles.states[k][i] = 0.1 * i - static_cast<double>(k);
+  }
+  StateNames names;
+  names.states = {"cure", "structure"};
+  writeCheckpoint<2>(directory / "c.h5", particles, 7, time3, MethodKind::MphI, names);
+  const Checkpoint<2> read = readCheckpoint<2>(directory / "c.h5");
+  EXPECT_EQ(read.names.states, names.states);
+  expectSame(read.particles, particles);
+  particles.states[1][3] = std::nan("");
+  EXPECT_THAT(messageOf<RunError>([&] {
+                writeCheckpoint<2>(directory / "c.h5", particles, 7, time3, MethodKind::MphI, names);
+              }),
+              HasSubstr("value 3 of the field state_1 is not finite"));
 }
 
 TEST(Checkpoint, DamagedFilesAreRefused) {

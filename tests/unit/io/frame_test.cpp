@@ -57,23 +57,33 @@ void expectSortedCopy(std::uint32_t begin, std::uint32_t end) {
 
 TEST(Frame, HasViscositiesOfShearRates) {
   Frame frame = makeFrame(shuffledParticles<2>(5, 0), 0, 5, 0);
-  std::vector<Material> materials(5);
+  Case c;
+  std::vector<Material>& materials = c.materials;
+  materials.resize(5);
   for (Material& m : materials) m.dynamicViscosity = 7;
   materials[2].rheology =
       Rheology{.model = RheologyModel::Bingham, .yieldStress = 8, .plasticViscosity = 3, .regularisation = 1e3};
-  addViscosities(materials, frame);
+  addViscosities(c, frame);
   EXPECT_EQ(frame.dynamicViscosity, (std::vector<double>{7, 7, 3 + 8 / 8.0, 7, 7}));
   materials[3].viscosityShift =
       ViscosityShift{.model = ShiftModel::Table, .temperatures = {302, 304}, .factors = {4, 1}};
-  addViscosities(materials, frame);
+  addViscosities(c, frame);
   EXPECT_NEAR(frame.dynamicViscosity[3], 7 * 2, 1e-12);  // at 303 K
   frame.viscosityFactor = {1, 2, 0.5, 1, 1};
-  addViscosities(materials, frame);
+  addViscosities(c, frame);
   EXPECT_EQ(frame.dynamicViscosity[1], 14);
   EXPECT_EQ(frame.dynamicViscosity[2], 2);
+  materials[1].states = {{.name = "cure", .rate = "0"}};
+  materials[1].viscosityFactor = "1 + cure";
+  frame.states = {{"", {5, 6, 7, 8, 9}}};
+  addViscosities(c, frame);
+  EXPECT_EQ(frame.states[0].name, "cure");
+  EXPECT_EQ(frame.dynamicViscosity[1], 7 * 14);
+  EXPECT_EQ(frame.dynamicViscosity[2], 2);  // another material
+  frame.states.clear(), materials[1].states.clear(), materials[1].viscosityFactor.clear();
   Frame newtonian;
   newtonian.material = {0};
-  addViscosities(materials, newtonian);
+  addViscosities(c, newtonian);
   EXPECT_TRUE(newtonian.dynamicViscosity.empty());
 }
 

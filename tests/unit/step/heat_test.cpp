@@ -43,7 +43,8 @@ LoadedWalls<D> closed(SchemeKind scheme) {
 TEST(HeatSteps, TakeTheViscosityOfAMaterialWithoutAShift) {
   Case c = closed<2>(SchemeKind::Accurate).c;
   c.materials[0].rheology = Rheology::newtonian(3);
-  RheologyTable table = RheologyTable::make(c);
+  std::vector<FormulaStep> formulas;
+  RheologyTable table = RheologyTable::make(c, formulas);
   const double temperature[] = {350};
   table.temperature = temperature;
   EXPECT_EQ(table.viscosity(0, 0, 1), 3);

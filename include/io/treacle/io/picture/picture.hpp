@@ -18,11 +18,13 @@ enum class PictureField {
   Material,
   Temperature,
   DynamicViscosity,
-  ShearRate
+  ShearRate,
+  State
 };
 
 struct PictureOptions {
   PictureField field = PictureField::Speed;
+  std::string state{};  // the name of a State
   double spacing = 0;  // particle spacing: the diameter of the discs [m]
   Vec<3> gravity{};    // 3D: its main axis points down in the picture [m/s2]
   std::string title;
