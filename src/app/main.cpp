@@ -223,9 +223,7 @@ void addPlot(CLI::App& app, PlotOptions& options) {
   plot->add_flag("--history", options.history, "Curves of iterations, energies and extents over time");
   plot->add_option("--probe", options.probe, "What a probe of the case has read")->type_name("NAME");
   plot->add_option("-o,--output", options.output, "PNG file; default: in the run directory")->type_name("FILE");
-  plot->callback([&options] {
-    plotCommand(options, options.state.empty() ? "speed" : options.state);
-  });
+  plot->callback([&options] { plotCommand(options, options.state.empty() ? "speed" : options.state); });
 }
 
 void addSurface(CLI::App& app, SurfaceOptions& options) {

@@ -82,8 +82,7 @@ Range formulaRange(const Case& c, const Material& m, const std::string& text) {
 /// The viscosities at shear rates from rest to a million per second; no case here flows faster.
 Range viscosities(const Case& c, const Material& m) {
   const Range shift = shifts(c, m), factor = factors(c), yield = formulaRange(c, m, m.yieldFactor);
-  const Range ofFormula = formulaRange(c, m, m.viscosityFactor),
-              ofGel{1, m.gelling ? m.gelling->mostFactor : 1};
+  const Range ofFormula = formulaRange(c, m, m.viscosityFactor), ofGel{1, m.gelling ? m.gelling->mostFactor : 1};
   Range range{m.viscosity(0, shift.least, yield.least), m.viscosity(0, shift.most, yield.most)};
   for (double rate = 1e-6; rate < 2e6; rate *= 10) {
     range.least = std::min(range.least, m.viscosity(rate, shift.least, yield.least));
@@ -94,7 +93,8 @@ Range viscosities(const Case& c, const Material& m) {
 
 bool hasSteps(const ViscosityClasses& classes, const Case& c, const Material& m) {
   if (m.rheology) return true;
-  return m.dynamicViscosity > 0 && (m.viscosityShift || m.hasFormulas() || c.hasViscosityFactors() || classes.ofNeighbours);
+  return m.dynamicViscosity > 0 &&
+         (m.viscosityShift || m.hasFormulas() || c.hasViscosityFactors() || classes.ofNeighbours);
 }
 
 /// Among particles of another fluid, or at a surface, a particle may be resisted by a fraction of its viscosity,

@@ -147,8 +147,9 @@ void giveFluid(Session& session, const nb::object& positions, const nb::object& 
       throw InputError("expected arrays in the memory of the host, or all in that of the GPU, found both");
     onDevice = given->isOnDevice();
   }
-  const GivenFluid given{x.span(), u.span(), warm.span(), factors.span(), values,
-                         onDevice.value_or(false) ? BackendKind::Cuda : BackendKind::Cpu};
+  const GivenFluid given{x.span(),    u.span(),
+                         warm.span(), factors.span(),
+                         values,      onDevice.value_or(false) ? BackendKind::Cuda : BackendKind::Cpu};
   const nb::gil_scoped_release release;
   session.giveFluid(given);
 }

@@ -24,7 +24,12 @@ struct RandomParticles {
     Vec<D, bool> periodic{};
     for (int k = 0; k + 1 < D; ++k) periodic[k] = true;
     grid = CellGrid<D>::make(Vec<D>{}, Vec<D>::filled(1), periodic, radius);
-    particles.resize({fluid, wall, seed % 3, seed % 2 * wall, 0, {seed % 2 > 0, seed % 2 > 0, seed % 2 > 0, static_cast<std::uint8_t>(seed % 5)}});
+    particles.resize({fluid,
+                      wall,
+                      seed % 3,
+                      seed % 2 * wall,
+                      0,
+                      {seed % 2 > 0, seed % 2 > 0, seed % 2 > 0, static_cast<std::uint8_t>(seed % 5)}});
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> unit(0, 1);
     for (std::uint32_t i = 0; i < particles.count; ++i) {

@@ -22,20 +22,12 @@ struct NamedOperation {
   std::string_view name;
   Step::Operation operation;
 };
-constexpr NamedOperation functions[] = {{"abs", Step::Absolute},
-                                        {"sign", Step::Sign},
-                                        {"sqrt", Step::SquareRoot},
-                                        {"exp", Step::Exponential},
-                                        {"log", Step::Logarithm},
-                                        {"ln", Step::Logarithm},
-                                        {"log10", Step::Logarithm10},
-                                        {"sin", Step::Sine},
-                                        {"cos", Step::Cosine},
-                                        {"tan", Step::Tangent},
-                                        {"atan", Step::ArcTangent},
-                                        {"tanh", Step::HyperbolicTangent},
-                                        {"min", Step::Minimum},
-                                        {"max", Step::Maximum}};
+constexpr NamedOperation functions[] = {
+    {"abs", Step::Absolute},      {"sign", Step::Sign},       {"sqrt", Step::SquareRoot},
+    {"exp", Step::Exponential},   {"log", Step::Logarithm},   {"ln", Step::Logarithm},
+    {"log10", Step::Logarithm10}, {"sin", Step::Sine},        {"cos", Step::Cosine},
+    {"tan", Step::Tangent},       {"atan", Step::ArcTangent}, {"tanh", Step::HyperbolicTangent},
+    {"min", Step::Minimum},       {"max", Step::Maximum}};
 
 /// Operators between two values, by how tightly they bind; those of two characters stand before their beginnings.
 struct Level {
@@ -207,8 +199,11 @@ Formula::Formula(const std::string& text, std::span<const std::string> variables
     if (text.size() > longest) throw InputError(fmt::format("more than {} characters", longest));
     Reader(text, variables, steps_).read();
   } catch (const InputError& e) {
+    std::vector<std::string> known;
+    for (const std::string& name : variables)
+      if (!name.empty()) known.push_back(name);
     throw InputError(fmt::format("expected an expression in {} and the constant pi, found \"{}\": {}",
-                                 fmt::join(variables, ", "), text.substr(0, 200), e.what()));
+                                 fmt::join(known, ", "), text.substr(0, 200), e.what()));
   }
 }
 

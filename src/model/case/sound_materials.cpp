@@ -73,8 +73,7 @@ void requireSound(const Checker& at, const MaterialState& s) {
   if (s.lowest() >= s.highest())
     at.fail({"max"}, fmt::format("expected more than min = {}, found {}", s.lowest(), s.highest()));
   if (!(s.start >= s.lowest() && s.start <= s.highest()))
-    at.fail({"start"},
-            fmt::format("expected a number from {} to {}, found {}", s.lowest(), s.highest(), s.start));
+    at.fail({"start"}, fmt::format("expected a number from {} to {}, found {}", s.lowest(), s.highest(), s.start));
   if (s.law != StateLaw::KamalSourour) return;
   if (s.a1 == 0 && s.a2 == 0) at.fail({"a1"}, "expected a1 or a2 above 0: nothing reacts");
   if (!at.wholeCase().heat && (s.e1 != 0 || s.e2 != 0))
@@ -86,11 +85,14 @@ void requireSoundStates(const Checker& at, const Material& m) {
   const Case& c = at.wholeCase();
   if (!m.hasFormulas()) return;
   if (c.method.kind != MethodKind::MphI)
-    at.fail({!m.states.empty() ? "state" : !m.viscosityFactor.empty() ? "viscosity_factor" : "gelling"},
-            fmt::format("only the method '{}' has it, found '{}'", nameOf(MethodKind::MphI), nameOf(c.method.kind)));
+    at.fail(
+        {!m.states.empty()            ? "state"
+         : !m.viscosityFactor.empty() ? "viscosity_factor"
+                                      : "gelling"},
+        fmt::format("only the method '{}' has it, found '{}'", nameOf(MethodKind::MphI), nameOf(c.method.kind)));
   if (const std::size_t count = c.stateNames().size(); count > maxStates)
-    at.fail({"state"}, fmt::format("the materials have {} states of different names, expected at most {}", count,
-                                   maxStates));
+    at.fail({"state"},
+            fmt::format("the materials have {} states of different names, expected at most {}", count, maxStates));
   const std::vector<std::string> variables = stateVariables(c, m);
   const auto require = [&](std::initializer_list<std::string_view> keys, const std::string& text) {
     if (text.empty()) return;

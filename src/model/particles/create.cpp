@@ -191,7 +191,8 @@ void append(const Case& c, BodyKind kind, const std::vector<Filled<D>>& filled, 
       particles.velocity[i] = initial.velocityAt(f.points, begin + k);
       if (warm) particles.temperature[i] = initial.temperatureAt(f.points, begin + k);
       if (factors) particles.viscosityFactor[i] = initial.viscosityFactorAt(f.points.place[begin + k]);
-      for (std::size_t s = 0; s < states; ++s) particles.states[s][i] = initial.stateAt(s, f.points.place[begin + k]);
+      for (std::size_t s = 0; s < states; ++s)
+        particles.states[s][i] = initial.stateAt(s, f.points.place[begin + k]);
       particles.pressure[i] = 0;
       particles.heldPressure[i] = 0;
       particles.numberDensity[i] = 0;

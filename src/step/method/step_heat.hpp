@@ -30,8 +30,8 @@ class StepHeat {
         surface_(SurfaceLack::make(pairs)),
         surfaceCounts_(hasSurfaceHeat(c)) {}
 
-  /// With state.velocity of the end of the step, ghosts included. `ofStates`: what states of materials set free per
-  /// own particle [W/m3], or empty. Errors: RunError.
+  /// With state.velocity of the end of the step, ghosts included. `ofStates`: what states of materials set free
+  /// per own particle [W/m3], or empty. Errors: RunError.
   void solve(FlowState<D, Backend>& state, const MphPairs<D>& pairs, std::span<const double> ofStates) {
     Context<Backend>& context = state.context;
     const std::uint32_t own = pairs.ownFluid();

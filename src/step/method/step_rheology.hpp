@@ -72,7 +72,8 @@ class StepRheology {
   }
 
   std::size_t bytes() const {
-    return steps_.bytes() + share_.bytes() + viscosity_.bytes() + scaled_.bytes() + rate_.bytes() + found_.bytes() + class_.bytes();
+    return steps_.bytes() + share_.bytes() + viscosity_.bytes() + scaled_.bytes() + rate_.bytes() +
+           found_.bytes() + class_.bytes();
   }
 
  private:

@@ -19,7 +19,8 @@ class StepStates {
   void solve(FlowState<D, Backend>& state, const StepRheology<D, Backend>& rheology) {
     const Particles<D, Backend>& p = state.particles;
     const std::uint32_t own = p.fluidCount;
-    StateTerms terms{rheology.table(), state.timeStep, p.material.span().first(own), rheology.foundRates(), {}, {}};
+    StateTerms terms{
+        rheology.table(), state.timeStep, p.material.span().first(own), rheology.foundRates(), {}, {}};
     for (std::size_t k = 0; k < p.has.states; ++k) {
       next_[k].resize(state.context, own);
       terms.next[k] = next_[k].data();

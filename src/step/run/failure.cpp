@@ -62,15 +62,17 @@ std::string describeHeatFailure(const SolveReport& report, const HeatSettings& s
 }
 
 std::string describeViscosities(double particles) {
-  return fmt::format("the viscosities of {:.0f} particles are not finite; look at the viscosity_factor and "
-                     "yield_factor of their materials, and at the states and temperatures of the last frame",
-                     particles);
+  return fmt::format(
+      "the viscosities of {:.0f} particles are not finite; look at the viscosity_factor and "
+      "yield_factor of their materials, and at the states and temperatures of the last frame",
+      particles);
 }
 
 std::string describeStates(double particles) {
-  return fmt::format("the states of {:.0f} particles are not finite; look at the rates of their materials' states, "
-                     "and at the states, temperatures and shear rates of the last frame",
-                     particles);
+  return fmt::format(
+      "the states of {:.0f} particles are not finite; look at the rates of their materials' states, "
+      "and at the states, temperatures and shear rates of the last frame",
+      particles);
 }
 
 template <int D>

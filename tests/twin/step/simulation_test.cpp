@@ -197,7 +197,8 @@ TEST(SimulationTwin, StepsLikeTheCpuWithARheology) {
     }
 }
 
-/// Two fluids with heat and states, one's viscosity following it, on a floor that they cool at, in warm surroundings.
+/// Two fluids with heat and states, one's viscosity following it, on a floor that they cool at, in warm
+/// surroundings.
 template <int D>
 void compareHeat(Precision precision) {
   SolverSettings settings;

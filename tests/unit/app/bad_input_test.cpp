@@ -70,13 +70,15 @@ constexpr BadCase badCases[] = {
      "'min', "
      "'max' or 'transform'"},
     {"stateOfUnknownLaw", "density = 1000", "density = 1000\nstate = [{ name = \"cure\", law = \"kamal\" }]",
-     "bad.toml:15:32: law in the state of [[material]] 'syrup': expected 'expression', 'kamal-sourour', 'houska' or "
+     "bad.toml:15:33: law in [[state]] 'cure': expected 'expression', 'kamal-sourour', 'houska' or "
      "'roussel', found 'kamal'"},
     {"stateWithoutRate", "density = 1000", "density = 1000\nstate = [{ name = \"cure\", law = \"expression\" }]",
      "bad.toml:15:10: rate in"},
     {"rateOfUnknownState", "density = 1000",
      "density = 1000\nstate = [{ name = \"a\", law = \"expression\", rate = \"b\" }]",
-     "bad.toml:15:53: rate in"},
+     "bad.toml:15:51: rate in [[state]] 'a' (expression): expected an expression in shear_rate, t, a and the "
+     "constant "
+     "pi, found \"b\": unknown name \"b\""},
     {"keyOfAnotherLaw", "density = 1000",
      "density = 1000\nstate = [{ name = \"a\", law = \"houska\", build_up = 1, break_down = 1, rate = \"b\" }]",
      "bad.toml:15:"},
@@ -84,10 +86,11 @@ constexpr BadCase badCases[] = {
      "density = 1000\nstate = [{ name = \"pressure\", law = \"expression\", rate = \"1\" }]",
      "bad.toml:15:19: name in"},
     {"stateThatIsNoName", "density = 1000",
-     "density = 1000\nstate = [{ name = \"a b\", law = \"expression\", rate = \"1\" }]", "bad.toml:15:19: name in"},
+     "density = 1000\nstate = [{ name = \"a b\", law = \"expression\", rate = \"1\" }]",
+     "bad.toml:15:19: name in"},
     {"stateBeyondItsBounds", "density = 1000",
      "density = 1000\nstate = [{ name = \"a\", law = \"houska\", build_up = 1, break_down = 1, start = 2 }]",
-     "bad.toml:15:81: start in"},
+     "bad.toml:15:78: start in [[state]] 'a' (houska): expected a number from 0 to 1, found 2"},
     {"curingWithoutHeat", "density = 1000",
      "density = 1000\nstate = [{ name = \"a\", law = \"kamal-sourour\", a1 = 1, e1 = 5e4 }]",
      "bad.toml:15:60: e1 in"},
@@ -99,7 +102,7 @@ constexpr BadCase badCases[] = {
     {"factorOfUnknownName", "density = 1000", "density = 1000\nviscosity_factor = \"T\"",
      "bad.toml:15:20: viscosity_factor in [[material]] 'syrup': expected an expression in"},
     {"bodyWithUnknownState", "shape = \"box\"", "shape = \"box\"\nstate = [{ name = \"cure\", value = 1 }]",
-     "bad.toml:24:19: name in the state of [[body]] 'column': the material 'syrup' has no state 'cure'"},
+     "bad.toml:24:19: name in [[state]] 'cure': the material 'syrup' has no state 'cure'"},
     {"missingKey", "density = 1000\n", "",
      "bad.toml:12:1: density in [[material]] 'syrup': missing; expected a positive number [kg/m3]"},
     {"missingTable", "[time]\nstep = 1e-3\nend = 2e-3\n", "",

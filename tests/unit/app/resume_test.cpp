@@ -191,11 +191,13 @@ TEST(resume, refusesWhatDoesNotFit) {
       0);
   expectRefused(shop, "factors/checkpoint.h5",
                 "a state with factors of the viscosity, but no body of the case has a viscosity_factor");
-  shop.put("curing.toml", replaced(smallCase, "density = 1000",
-                                   "density = 1000\nstate = [{ name = \"cure\", law = \"expression\", rate = \"1\" }]"));
-  EXPECT_THAT(shop.call("run curing.toml -o curing --threads 1 --resume whole/checkpoint.h5 --end-time 4e-3").err,
-              HasSubstr("a state whose materials have the states none, but those of the case have 'cure'; expected "
-                        "the case.toml of the run"));
+  shop.put("curing.toml",
+           replaced(smallCase, "density = 1000",
+                    "density = 1000\nstate = [{ name = \"cure\", law = \"expression\", rate = \"1\" }]"));
+  EXPECT_THAT(
+      shop.call("run curing.toml -o curing --threads 1 --resume whole/checkpoint.h5 --end-time 4e-3").err,
+      HasSubstr("a state whose materials have the states none, but those of the case have 'cure'; expected "
+                "the case.toml of the run"));
 }
 
 TEST(resume, findsMaterialsByTheirNames) {

@@ -31,8 +31,13 @@ constexpr double time3 = 3 * 0.1;  // [s]; not the decimal 0.3
 template <int D>
 Particles<D> randomParticles(std::uint32_t fluid, std::uint32_t wall) {
   Particles<D> particles;
-  particles.resize(
-      {fluid, wall, fluid % 4, 0, 0, {fluid % 2 == 0, fluid % 2 == 0, fluid % 2 == 0, false, fluid % 2 == 0}});
+  particles.resize({fluid,
+                    wall,
+                    fluid % 4,
+                    0,
+                    0,
+                    {fluid % 2 == 0, fluid % 2 == 0, fluid % 2 == 0, static_cast<std::uint8_t>(fluid % 5), false,
+                     fluid % 2 == 0}});
   particles.modes.age = {7, 13};
   particles.modes.pressure = {3.75, 4, 6};
   particles.steps = {0.01, 0.02, 0.3};
@@ -335,9 +340,8 @@ TEST(Checkpoint, StatesComeBackWithTheirNames) {
   EXPECT_EQ(read.names.states, names.states);
   expectSame(read.particles, particles);
   particles.states[1][3] = std::nan("");
-  EXPECT_THAT(messageOf<RunError>([&] {
-                writeCheckpoint<2>(directory / "c.h5", particles, 7, time3, MethodKind::MphI, names);
-              }),
+  EXPECT_THAT(messageOf<RunError>(
+                  [&] { writeCheckpoint<2>(directory / "c.h5", particles, 7, time3, MethodKind::MphI, names); }),
               HasSubstr("value 3 of the field state_1 is not finite"));
 }
 

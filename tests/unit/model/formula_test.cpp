@@ -58,7 +58,8 @@ std::string faultOf(const std::string& text) {
 
 TEST(Formula, RefusesWhatIsNone) {
   using testing::HasSubstr;
-  EXPECT_THAT(faultOf(""), HasSubstr("expected an expression in x, y, z and the constant pi, found \"\": it ends"));
+  EXPECT_THAT(faultOf(""),
+              HasSubstr("expected an expression in x, y, z and the constant pi, found \"\": it ends"));
   EXPECT_THAT(faultOf("1 +"), HasSubstr("it ends where a value is expected"));
   EXPECT_THAT(faultOf("w"), HasSubstr("unknown name \"w\""));
   EXPECT_THAT(faultOf("foo(1)"), HasSubstr("unknown function \"foo\""));

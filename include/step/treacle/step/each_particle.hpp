@@ -282,11 +282,11 @@ StepChange stepChange(Context<Backend>& context, const StepChangeTerms<D>& terms
   template PartSums sumPart(Context<Backend>&, const PartTerms<D>&);                                             \
   template double patchPressure(Context<Backend>&, const PatchTerms<D>&);                                        \
   template StepChange stepChange(Context<Backend>&, const StepChangeTerms<D>&);
-#define TREACLE_EACH_TEMPERATURE(Backend)                                        \
-  template void setEach(Context<Backend>&, const HeatSystemTerms&, std::size_t); \
-  template void setEach(Context<Backend>&, const Difference&, std::size_t);      \
-  template void setEach(Context<Backend>&, const Scaled&, std::size_t);          \
-  template void setEach(Context<Backend>&, const HeatResult&, std::size_t);      \
+#define TREACLE_EACH_TEMPERATURE(Backend)                                                   \
+  template void setEach(Context<Backend>&, const HeatSystemTerms&, std::size_t);            \
+  template void setEach(Context<Backend>&, const Difference&, std::size_t);                 \
+  template void setEach(Context<Backend>&, const Scaled&, std::size_t);                     \
+  template void setEach(Context<Backend>&, const HeatResult&, std::size_t);                 \
   template std::array<double, HeatSums::count> sumHeat(Context<Backend>&, const HeatSums&); \
   template std::array<double, StateTerms::count> advanceStates(Context<Backend>&, const StateTerms&);
 

@@ -35,17 +35,16 @@ struct Frame {
   std::vector<std::int32_t> material;    // index into the case's materials
   std::vector<std::int32_t> body;        // index into the case's bodies
   std::vector<std::uint32_t> id;
-  std::vector<FrameState> states;        // of fluid in cases where materials have some
+  std::vector<FrameState> states;  // of fluid in cases where materials have some
 };
 
-/// Calls f(name in files, pointer to member) for every field but the states. The binding names all members of Frame: it does not
-/// compile once one is added that is not written here.
+/// Calls f(name in files, pointer to member) for every field but the states. The binding names all members of
+/// Frame: it does not compile once one is added that is not written here.
 template <class F>
 void forEachFrameField(F&& f) {
   [[maybe_unused]] const auto& [dimensions, time, position, velocity, pressure, numberDensity, nearestDistance,
                                 dynamicViscosity, shearRate, temperature, viscosityFactor, material, body, id,
-                                states] =
-      Frame{};
+                                states] = Frame{};
   f("position", &Frame::position), f("velocity", &Frame::velocity), f("pressure", &Frame::pressure);
   f("number_density", &Frame::numberDensity), f("nearest_distance", &Frame::nearestDistance);
   f("dynamic_viscosity", &Frame::dynamicViscosity), f("shear_rate", &Frame::shearRate);

@@ -25,8 +25,8 @@ enum class PictureField {
 struct PictureOptions {
   PictureField field = PictureField::Speed;
   std::string state{};  // the name of a State
-  double spacing = 0;  // particle spacing: the diameter of the discs [m]
-  Vec<3> gravity{};    // 3D: its main axis points down in the picture [m/s2]
+  double spacing = 0;   // particle spacing: the diameter of the discs [m]
+  Vec<3> gravity{};     // 3D: its main axis points down in the picture [m/s2]
   std::string title;
   int width = 1200;  // [px]; the height follows from the shape of what is drawn
   std::optional<double> minimum,

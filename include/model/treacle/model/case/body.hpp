@@ -141,13 +141,13 @@ struct Body {
   double viscosityFactor = 0;
   std::string viscosityFactorExpression{};  // in place of it
   std::vector<StateStart> states{};  // of a fluid, those that start with another value than the material says
-  double wallConductance = 0;     // of a wall, its conductivity over its thickness [W/(m2 K)]; 0: infinite
-  bool fileVelocities = false;    // fluid of a file has its velocities, on top of that of the body
-  bool fileTemperatures = false;  // likewise, in place of its temperature
-  Inflow inflow{};                // of an inflow, in place of a shape
-  RigidSettings rigid{};          // of a rigid body
-  double friction = 0;            // of a rigid body or wall that others touch: its coefficient
-  double restitution = 0;         // likewise: the speed after an impact over that before
+  double wallConductance = 0;        // of a wall, its conductivity over its thickness [W/(m2 K)]; 0: infinite
+  bool fileVelocities = false;       // fluid of a file has its velocities, on top of that of the body
+  bool fileTemperatures = false;     // likewise, in place of its temperature
+  Inflow inflow{};                   // of an inflow, in place of a shape
+  RigidSettings rigid{};             // of a rigid body
+  double friction = 0;               // of a rigid body or wall that others touch: its coefficient
+  double restitution = 0;            // likewise: the speed after an impact over that before
 
   bool holdsFluid() const { return kind == BodyKind::Fluid || kind == BodyKind::Inflow; }
   /// Whether fluid meets its surface.

@@ -55,7 +55,8 @@ class Formula {
  public:
   static constexpr int deepest = 16;  // numbers that wait on the stack
 
-  /// Errors: InputError with what was expected and what is wrong with the text.
+  /// Variables of an empty name cannot be read. Errors: InputError with what was expected and what is wrong with
+  /// the text.
   Formula(const std::string& text, std::span<const std::string> variables);
 
   const std::vector<FormulaStep>& steps() const { return steps_; }
@@ -86,34 +87,89 @@ TREACLE_HD inline double formulaValue(const FormulaStep* steps, int count, const
     double& a = stack[top];
     const double b = step.operation < Step::Choose ? stack[top + 1] : 0;
     switch (step.operation) {
-      case Step::Add: a += b; break;
-      case Step::Subtract: a -= b; break;
-      case Step::Multiply: a *= b; break;
-      case Step::Divide: a /= b; break;
-      case Step::Power: a = std::pow(a, b); break;
-      case Step::Less: a = a < b; break;
-      case Step::LessOrEqual: a = a <= b; break;
-      case Step::Greater: a = a > b; break;
-      case Step::GreaterOrEqual: a = a >= b; break;
-      case Step::Equal: a = a == b; break;
-      case Step::Unequal: a = a != b; break;
-      case Step::And: a = a != 0 && b != 0; break;
-      case Step::Or: a = a != 0 || b != 0; break;
-      case Step::Minimum: a = b < a ? b : a; break;
-      case Step::Maximum: a = b > a ? b : a; break;
-      case Step::Negate: a = -a; break;
-      case Step::Absolute: a = std::fabs(a); break;
-      case Step::Sign: a = (a > 0) - (a < 0); break;
-      case Step::SquareRoot: a = std::sqrt(a); break;
-      case Step::Exponential: a = std::exp(a); break;
-      case Step::Logarithm: a = std::log(a); break;
-      case Step::Logarithm10: a = std::log10(a); break;
-      case Step::Sine: a = std::sin(a); break;
-      case Step::Cosine: a = std::cos(a); break;
-      case Step::Tangent: a = std::tan(a); break;
-      case Step::ArcTangent: a = std::atan(a); break;
-      case Step::HyperbolicTangent: a = std::tanh(a); break;
-      default: break;
+      case Step::Add:
+        a += b;
+        break;
+      case Step::Subtract:
+        a -= b;
+        break;
+      case Step::Multiply:
+        a *= b;
+        break;
+      case Step::Divide:
+        a /= b;
+        break;
+      case Step::Power:
+        a = std::pow(a, b);
+        break;
+      case Step::Less:
+        a = a < b;
+        break;
+      case Step::LessOrEqual:
+        a = a <= b;
+        break;
+      case Step::Greater:
+        a = a > b;
+        break;
+      case Step::GreaterOrEqual:
+        a = a >= b;
+        break;
+      case Step::Equal:
+        a = a == b;
+        break;
+      case Step::Unequal:
+        a = a != b;
+        break;
+      case Step::And:
+        a = a != 0 && b != 0;
+        break;
+      case Step::Or:
+        a = a != 0 || b != 0;
+        break;
+      case Step::Minimum:
+        a = b < a ? b : a;
+        break;
+      case Step::Maximum:
+        a = b > a ? b : a;
+        break;
+      case Step::Negate:
+        a = -a;
+        break;
+      case Step::Absolute:
+        a = std::fabs(a);
+        break;
+      case Step::Sign:
+        a = (a > 0) - (a < 0);
+        break;
+      case Step::SquareRoot:
+        a = std::sqrt(a);
+        break;
+      case Step::Exponential:
+        a = std::exp(a);
+        break;
+      case Step::Logarithm:
+        a = std::log(a);
+        break;
+      case Step::Logarithm10:
+        a = std::log10(a);
+        break;
+      case Step::Sine:
+        a = std::sin(a);
+        break;
+      case Step::Cosine:
+        a = std::cos(a);
+        break;
+      case Step::Tangent:
+        a = std::tan(a);
+        break;
+      case Step::ArcTangent:
+        a = std::atan(a);
+        break;
+      case Step::HyperbolicTangent:
+        a = std::tanh(a);
+        break;
+      default:
+        break;
     }
   }
   return stack[0];

@@ -30,7 +30,7 @@ struct Material {
   double surfaceTension = 0;    // gamma of its free surface [N/m]; MPH-I only
   double contactAngle = 90;     // of a wall, with free surfaces of all other fluids than these [deg]
   std::vector<ContactAngle> contactAngles{};
-  std::optional<Rheology> rheology{};  // of a fluid that is not Newtonian; MPH-I only
+  std::optional<Rheology> rheology{};   // of a fluid that is not Newtonian; MPH-I only
   std::vector<MaterialState> states{};  // MPH-I only
   // Expressions in them, the temperature T, shear_rate and t, by which the viscosity and a yield stress are
   // multiplied; empty: 1. MPH-I only.
@@ -54,9 +54,7 @@ struct Material {
     return contactAngle;
   }
   /// Whether its viscosity is not one number. Laws of states may need shear rates, which come with it.
-  bool hasOwnViscosities() const {
-    return rheology.has_value() || viscosityShift.has_value() || hasFormulas();
-  }
+  bool hasOwnViscosities() const { return rheology.has_value() || viscosityShift.has_value() || hasFormulas(); }
   bool hasFormulas() const {
     return !states.empty() || !viscosityFactor.empty() || !yieldFactor.empty() || gelling.has_value();
   }

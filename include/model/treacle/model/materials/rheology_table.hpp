@@ -16,10 +16,10 @@ struct RheologyTable {
   Rheology of[maxMaterials];  // by material
   ShiftFactor shift[maxMaterials];
   StateTable states;
-  std::span<const double> temperature{};   // per particle [K]; empty: no viscosity follows it
-  std::span<const double> factor{};        // likewise, by which it is multiplied [-]; empty: 1
-  const double* state[maxStates] = {};     // likewise, of the states; null: there is none
-  double time = 0;                         // [s]
+  std::span<const double> temperature{};  // per particle [K]; empty: no viscosity follows it
+  std::span<const double> factor{};       // likewise, by which it is multiplied [-]; empty: 1
+  const double* state[maxStates] = {};    // likewise, of the states; null: there is none
+  double time = 0;                        // [s]
 
   /// Adds the steps of formulas, for whose place in the backend's memory states.steps has to be set. Errors:
   /// InputError for expressions that are none.

@@ -19,9 +19,9 @@ struct StateTerms {
   RheologyTable table;
   double timeStep;  // [s]
   std::span<const std::uint8_t> material;
-  std::span<const double> rate;    // [1/s]
-  double* next[maxStates];         // null: there is none
-  std::span<double> heating;       // what the states set free [W/m3], or empty
+  std::span<const double> rate;  // [1/s]
+  double* next[maxStates];       // null: there is none
+  std::span<double> heating;     // what the states set free [W/m3], or empty
 
   TREACLE_HD void add(std::size_t i, double* sums) const {
     const int m = material[i];
