@@ -103,6 +103,21 @@ class ViscosityShift:
 
 
 @dataclass(kw_only=True)
+class Freezing:
+    solidus: float | None = None
+    """[K]"""
+    liquidus: float | None = None
+    """[K]"""
+    latent_heat: float | None = None
+    """[J/kg]"""
+    solid_conductivity: float | None = None
+    """[W/(m K)]"""
+    solid_specific_heat: float | None = None
+    """[J/(kg K)]"""
+    solid_factor: float | None = None
+
+
+@dataclass(kw_only=True)
 class Material:
     name: str | None = None
     density: float | None = None
@@ -127,6 +142,7 @@ class Material:
     """[W/(m K)]"""
     emissivity: float | None = None
     viscosity_shift: ViscosityShift | None = None
+    freezing: Freezing | None = None
 
 
 @dataclass(kw_only=True)

@@ -83,18 +83,20 @@ Range formulaRange(const Case& c, const Material& m, const std::string& text) {
 Range viscosities(const Case& c, const Material& m) {
   const Range shift = shifts(c, m), factor = factors(c), yield = formulaRange(c, m, m.yieldFactor);
   const Range ofFormula = formulaRange(c, m, m.viscosityFactor), ofGel{1, m.gelling ? m.gelling->mostFactor : 1};
+  const double ofSolid = m.freezing ? m.freezing->solidFactor : 1;
   Range range{m.viscosity(0, shift.least, yield.least), m.viscosity(0, shift.most, yield.most)};
   for (double rate = 1e-6; rate < 2e6; rate *= 10) {
     range.least = std::min(range.least, m.viscosity(rate, shift.least, yield.least));
     range.most = std::max(range.most, m.viscosity(rate, shift.most, yield.most));
   }
-  return {factor.least * ofFormula.least * range.least, factor.most * ofFormula.most * ofGel.most * range.most};
+  return {factor.least * ofFormula.least * range.least,
+          ofSolid * factor.most * ofFormula.most * ofGel.most * range.most};
 }
 
 bool hasSteps(const ViscosityClasses& classes, const Case& c, const Material& m) {
   if (m.rheology) return true;
   return m.dynamicViscosity > 0 &&
-         (m.viscosityShift || m.hasFormulas() || c.hasViscosityFactors() || classes.ofNeighbours);
+         (m.viscosityShift || m.freezing || m.hasFormulas() || c.hasViscosityFactors() || classes.ofNeighbours);
 }
 
 /// Among particles of another fluid, or at a surface, a particle may be resisted by a fraction of its viscosity,

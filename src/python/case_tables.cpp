@@ -29,6 +29,7 @@ constexpr const char* classOf(const MaterialState&) { return "MaterialState"; }
 constexpr const char* classOf(const Gelling&) { return "Gelling"; }
 constexpr const char* classOf(const StateStart&) { return "StateStart"; }
 constexpr const char* classOf(const ViscosityShift&) { return "ViscosityShift"; }
+constexpr const char* classOf(const Freezing&) { return "Freezing"; }
 constexpr const char* classOf(const Body&) { return "Body"; }
 constexpr const char* classOf(const Oscillation&) { return "Oscillation"; }
 constexpr const char* classOf(const Rotation&) { return "Rotation"; }

@@ -59,6 +59,11 @@ void requireSound(const Checker& at, const ViscosityShift& s) {
   at.requireRising("temperatures", "numbers", s.temperatures);
 }
 
+void requireSound(const Checker& at, const Freezing& f) {
+  if (f.solidus >= f.liquidus)
+    at.fail({"liquidus"}, fmt::format("expected more than solidus = {} K, found {}", f.solidus, f.liquidus));
+}
+
 void requireSound(const Checker& at, const MaterialState& s) {
   constexpr std::size_t longest = 30;
   const auto isOfName = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; };
@@ -121,6 +126,8 @@ void requireSound(const Checker& at, const Material& m) {
   if (m.rheology && at.wholeCase().method.kind != MethodKind::MphI) at.fail({"rheology"}, rheologyOfMphI);
   if (m.viscosityShift && !at.wholeCase().heat)
     at.fail({"viscosity_shift"}, "there are no temperatures in a case without [heat]");
+  if (m.freezing && !at.wholeCase().heat)
+    at.fail({"freezing"}, "there are no temperatures in a case without [heat]");
   if (at.wholeCase().method.kind != MethodKind::MphI &&
       (m.surfaceTension != 0 || m.contactAngle != Material{}.contactAngle || !m.contactAngles.empty()))
     at.fail({m.surfaceTension != 0                       ? "surface_tension"

@@ -9,6 +9,7 @@ RheologyTable RheologyTable::make(const Case& c, std::vector<FormulaStep>& steps
     const Material& material = c.materials[m];
     table.of[m] = material.rheology.value_or(Rheology::newtonian(material.dynamicViscosity));
     if (material.viscosityShift) table.shift[m] = ShiftFactor::make(*material.viscosityShift);
+    if (material.freezing) table.frozen[m] = FrozenShare::make(*material.freezing);
   }
   return table;
 }

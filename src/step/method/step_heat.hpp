@@ -2,6 +2,7 @@
 
 #include "run/failure.hpp"
 #include "run/flow_state.hpp"
+#include "step_freezing.hpp"
 #include "surface_heat.hpp"
 #include "treacle/core/halo.hpp"
 #include "treacle/linear/krylov.hpp"
@@ -13,6 +14,7 @@
 #include "treacle/step/method/heat_terms.hpp"
 
 #include <array>
+#include <optional>
 #include <vector>
 
 namespace treacle {
@@ -26,9 +28,12 @@ class StepHeat {
   StepHeat(const Case& c, const MphPairs<D>& pairs)
       : settings_(*c.heat),
         table_(HeatTable::make(c)),
+        enthalpy_(EnthalpyTable::make(c.materials)),
         walls_(wallHeat(c)),
         surface_(SurfaceLack::make(pairs)),
-        surfaceCounts_(hasSurfaceHeat(c)) {}
+        surfaceCounts_(hasSurfaceHeat(c)) {
+    if (c.freezes()) freezing_.emplace(c);
+  }
 
   /// With state.velocity of the end of the step, ghosts included. `ofStates`: what states of materials set free
   /// per own particle [W/m3], or empty. Errors: RunError.
@@ -40,13 +45,14 @@ class StepHeat {
     conductionScale<D>(context, pairs, terms, scale_.span().first(own));
     fillGhosts(context, Held::Fluid, scale_.data());
     terms.scale = scale_.data();
+    const std::span<const double> T = state.particles.temperature.span().first(own);
+    const std::span<const std::uint8_t> material = pairs.material.first(own);
+    if (freezing_) terms.own = freezing_->conduction(context, pairs.material.first(pairs.fluidCount), T);
     conductionDiagonal<D>(context, pairs, terms, ofFluid_, ofWalls_);
     if (surfaceCounts_) surfaceArea<D>(context, pairs, surface_, lack_, area_);
     if (settings_.viscousHeating) shearDissipation<D>(context, pairs, state.velocity, heating_);
 
     const HeatConstants constants{table_, state.timeStep, settings_.ambient, settings_.transfer};
-    const std::span<const double> T = state.particles.temperature.span().first(own);
-    const std::span<const std::uint8_t> material = pairs.material.first(own);
     setEach(context,
             HeatSystemTerms{constants, material, T, ofFluid_, ofWalls_, area_, heating_, ofStates, ofSurface_,
                             boundary_, source_, extra_, inverse_},
@@ -56,19 +62,16 @@ class StepHeat {
         conduct<D>(context, pairs, terms, extra, withGhosts(context, x, withGhosts_), y);
       };
     };
-    conductExtra(boundary_)(T, product_);
-    setEach(context, Difference{source_, product_, rhs_.span()}, own);
-    clearValues(context, change_.span());
-    const Product a = conductExtra(extra_);
-    const Product k = [&](std::span<const double> r, std::span<double> z) {
-      setEach(context, Scaled{inverse_.span(), r, z}, own);
-    };
-    requireSolved(conjugateGradient(context, {a, k, rhs_, change_}, {settings_.tolerance, settings_.maxIterations},
-                                    krylov_));
-    a(change_, product_);
-    setEach(context, HeatResult{constants, material, T, change_, rhs_, product_, next_}, own);
+    if (freezing_)
+      freezing_->solve(context,
+                       {state.timeStep, material, T, boundary_, source_, ofFluid_, extra_.span(), inverse_.span(),
+                        rhs_.span(), product_.span(), change_.span(), next_.span()},
+                       conductExtra, krylov_);
+    else
+      solveLinear(context, constants, material, T, conductExtra);
     if (state.theCase.needsBalance())
-      sums_ = sumHeat(context, HeatSums{constants, material, T, change_, next_, heating_, ofWalls_, ofSurface_});
+      sums_ = sumHeat(context,
+                      HeatSums{constants, enthalpy_, material, T, change_, next_, heating_, ofWalls_, ofSurface_});
   }
 
   void accept(FlowState<D, Backend>& state) {
@@ -84,8 +87,8 @@ class StepHeat {
   }
 
   std::size_t bytes() const {
-    std::size_t sum =
-        ofWalls_.bytes() + ofSurface_.bytes() + lack_.bytes() + wallBuffer_.bytes() + krylov_.bytes();
+    std::size_t sum = ofWalls_.bytes() + ofSurface_.bytes() + lack_.bytes() + wallBuffer_.bytes() +
+                      krylov_.bytes() + (freezing_ ? freezing_->bytes() : 0);
     for (const auto* field : {&scale_, &ofFluid_, &area_, &heating_, &boundary_, &source_, &extra_, &inverse_,
                               &rhs_, &change_, &product_, &next_, &withGhosts_})
       sum += field->bytes();
@@ -106,6 +109,25 @@ class StepHeat {
     ofSurface_.resize(context, own);
   }
 
+  /// Where nothing freezes, the system is linear. Errors: RunError.
+  template <class ProductWith>
+  void solveLinear(Context<Backend>& context, const HeatConstants& constants,
+                   std::span<const std::uint8_t> material, std::span<const double> T,
+                   const ProductWith& conductExtra) {
+    const std::size_t own = T.size();
+    conductExtra(boundary_)(T, product_);
+    setEach(context, Difference{source_, product_, rhs_.span()}, own);
+    clearValues(context, change_.span());
+    const Product a = conductExtra(extra_);
+    const Product k = [&](std::span<const double> r, std::span<double> z) {
+      setEach(context, Scaled{inverse_.span(), r, z}, own);
+    };
+    requireSolved(conjugateGradient(context, {a, k, rhs_, change_}, {settings_.tolerance, settings_.maxIterations},
+                                    krylov_));
+    a(change_, product_);
+    setEach(context, HeatResult{constants, material, T, change_, rhs_, product_, next_}, own);
+  }
+
   const WallHeat* walls(Context<Backend>& context) {
     if (wallBuffer_.empty()) fromHost(context, std::span<const WallHeat>(walls_), wallBuffer_);
     return wallBuffer_.data();
@@ -118,6 +140,7 @@ class StepHeat {
 
   HeatSettings settings_;
   HeatTable table_;
+  EnthalpyTable enthalpy_;
   std::vector<WallHeat> walls_;
   SurfaceLack surface_;
   bool surfaceCounts_;  // whether anything is exchanged there
@@ -128,6 +151,7 @@ class StepHeat {
   Buffer<HeatExchange, Backend> ofWalls_, ofSurface_;
   Buffer<Vec<D>, Backend> lack_;
   KrylovWorkspace<Backend> krylov_;
+  std::optional<StepFreezing<Backend>> freezing_;  // where some material freezes
   std::array<double, HeatSums::count> sums_{};
 };
 

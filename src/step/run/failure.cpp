@@ -61,6 +61,13 @@ std::string describeHeatFailure(const SolveReport& report, const HeatSettings& s
       report.iterations);
 }
 
+std::string describeFreezingFailure(double left, int systems, const HeatSettings& settings) {
+  return fmt::format(
+      "the temperatures of fluid that freezes did not converge: |r|^2/|b|^2 = {:.3g} after {} linear systems "
+      "(tolerance {:.3g}); reduce the time step, or take freezing with a wider range from solidus to liquidus",
+      left, systems, settings.tolerance);
+}
+
 std::string describeViscosities(double particles) {
   return fmt::format(
       "the viscosities of {:.0f} particles are not finite; look at the viscosity_factor and "

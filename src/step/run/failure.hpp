@@ -20,6 +20,8 @@ std::string describeFailure(const SolveReport& report, double tolerance, const s
 
 /// The same of a solve for temperatures.
 std::string describeHeatFailure(const SolveReport& report, const HeatSettings& settings);
+/// Of one that follows the freezing, where so much is left, as |r|^2/|b|^2, after so many linear systems.
+std::string describeFreezingFailure(double left, int systems, const HeatSettings& settings);
 
 /// The diagnosis of viscosities that are not finite, of so many particles, and of states.
 std::string describeViscosities(double particles);

@@ -84,7 +84,7 @@ StepBytes mphBytes(const Case& c, BackendKind backend) {
   StepBytes bytes{(projected ? of.projected : buckets ? of.buckets : of.local).on(backend)};
   if (c.hasSurfaceTension()) bytes.fluid += D == 2 ? 200 : 350;
   if (c.hasOwnViscosities()) bytes.fluid += 70;
-  if (c.heat) bytes.fluid += 180;
+  if (c.heat) bytes.fluid += c.freezes() ? 228 : 180;
   if (modesOf(c) > 0) bytes.fluid += 128 * D;  // recorded vectors
   if (s.neighbours == NeighbourKind::Ranges) bytes.fluid -= of.ranges.on(backend);
   if (s.preconditioner == PreconditionerKind::None && onDevice) bytes.fluid -= 100 * (D - 1);

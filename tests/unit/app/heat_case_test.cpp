@@ -41,7 +41,10 @@ TEST(HeatCase, IsReadAndWritten) {
            {shift + "{model='arrhenius', reference_temperature=300, activation_energy=5e4}"},
            {shift + "{model='vft', reference_temperature=300, b=500, t0=100, max_factor=1e3}"},
            {shift + "{model='wlf', reference_temperature=300, c1=17, c2=50}"},
-           {shift + "{model='table', temperatures=[300, 310, 350], factors=[2, 1, 0.1]}"}}) {
+           {shift + "{model='table', temperatures=[300, 310, 350], factors=[2, 1, 0.1]}"},
+           {"syrup.freezing={solidus=300, liquidus=301, latent_heat=2e5}"},
+           {"syrup.freezing={solidus=300, liquidus=301, latent_heat=0, solid_conductivity=2, "
+            "solid_specific_heat=900, solid_factor=1e4}"}}) {
     const Case c = heatCaseWith(overrides);
     shop.put("written.toml", caseText(c));
     EXPECT_EQ(readCase(shop / "written.toml"), c) << caseText(c);
@@ -68,6 +71,14 @@ const Mistake heatMistakes[] = {
      "wall_conductance: a "
      "positive number [K]"},
     {"heat.max_iterations=0", "max_iterations in [heat]: expected a whole number from 1 to 1000000, found 0"},
+    {"syrup.freezing={solidus=301, liquidus=301, latent_heat=2e5}",
+     "liquidus in the freezing of [[material]] 'syrup': expected more than solidus = 301 K, found 301"},
+    {"syrup.freezing={solidus=300, liquidus=301, latent_heat=-1}",
+     "latent_heat in the freezing of [[material]] 'syrup': expected a number of at least 0 [J/kg], found -1"},
+    {"syrup.freezing={solidus=300, liquidus=301}",
+     "latent_heat in the freezing of [[material]] 'syrup': missing; expected a number of at least 0 [J/kg]"},
+    {"syrup.freezing={solidus=300, liquidus=301, latent_heat=1, solid_factor=0.5}",
+     "solid_factor in the freezing of [[material]] 'syrup': expected a number from 1 to 1000000000, found 0.5"},
     {"syrup.viscosity_shift={model='ideal'}",
      "model in the viscosity_shift of [[material]] 'syrup': expected 'arrhenius', 'vft', 'wlf' or 'table', found "
      "'ideal'"},
@@ -105,6 +116,10 @@ TEST(HeatCase, KeysOfHeatBelongToCasesWithIt) {
   shop.put("case.toml", replaced(warmCase, "heat = { heat_transfer = 5 }\n", ""));
   EXPECT_THAT(messageOf<InputError>([&] { readCase(shop / "case.toml"); }),
               HasSubstr("in [[material]] 'syrup': it belongs to cases with [heat]"));
+  const std::string freezing = "freezing = { solidus = 300, liquidus = 301, latent_heat = 1 }";
+  shop.put("freezing.toml", replaced(smallCase, "bulk_modulus = 1e6", "bulk_modulus = 1e6\n" + freezing));
+  EXPECT_THAT(messageOf<InputError>([&] { readCase(shop / "freezing.toml"); }),
+              HasSubstr("unknown key 'freezing' in [[material]] 'syrup': it belongs to cases with [heat]"));
   shop.put("missing.toml", replaced(warmCase, "temperature = 310", ""));
   EXPECT_THAT(messageOf<InputError>([&] { readCase(shop / "missing.toml"); }),
               EndsWith("temperature in [[body]] 'column' (box): missing; expected a positive number [K] or an "
@@ -115,6 +130,9 @@ TEST(HeatCase, KeysOfHeatBelongToCasesWithIt) {
   shop.put("rheology.toml", "rheology = {}\n" + smallIsphCase);
   EXPECT_THAT(messageOf<InputError>([&] { readCase(shop / "rheology.toml"); }),
               HasSubstr("only the method 'mph-i' has fluids that are not Newtonian, found 'isph'"));
+  Case cold = heatCaseWith({"syrup.freezing={solidus=300, liquidus=301, latent_heat=1}"});
+  cold.heat.reset();
+  EXPECT_THROW(requireValid(cold), CaseError);
   Case c = heatCaseWith({});
   c.method.kind = MethodKind::Isph;
   EXPECT_THROW(requireValid(c), CaseError);

@@ -2,6 +2,7 @@
 
 #include "support/oracle.hpp"
 #include "support/tolerances.hpp"
+#include "treacle/model/materials/enthalpy.hpp"
 #include "treacle/mph/free_surface.hpp"
 #include "treacle/mph/viscosity_scale.hpp"
 
@@ -157,6 +158,62 @@ Scene<D> lattice(SchemeKind scheme, const Where<D>& where) {
   for (auto& m : s.particles.material) m = 0;
   prepare(s);
   return s;
+}
+
+/// Within a material that freezes, the fluxes are those of Kirchhoff's transformation: differences of the integral
+/// of k(T). Between materials k is the harmonic mean.
+template <int D>
+void checkFreezing(SchemeKind scheme) {
+  WarmScene<D> w(scheme);
+  w.s.c.materials[0].freezing = Freezing{.solidus = 320, .liquidus = 330, .solidConductivity = 6};
+  const EnthalpyTable table = EnthalpyTable::make(w.s.c.materials);
+  std::vector<double> T = w.random(5), k, conducted, atWalls;
+  for (std::uint32_t i = 0; i < w.s.n(); ++i) {
+    T[i] = 300 + 50 * T[i];
+    const Enthalpy& h = table.of[w.s.particles.material[i]];
+    k.push_back(h.conductivity(T[i])), conducted.push_back(h.conducted(T[i]));
+  }
+  for (const Enthalpy& h : table.of) atWalls.push_back(h.conducted(400));
+  w.terms.own = {T.data(), k.data(), conducted.data(), atWalls.data()};
+  const std::vector<double> found = w.conducted(T);
+  std::vector<double> ofFluid(w.s.n());
+  std::vector<HeatExchange> ofWalls(w.s.n());
+  conductionDiagonal<D>(w.s.context, w.s.pairs(), w.terms, ofFluid, ofWalls);
+  const Oracle<D> oracle(w.s);
+  double total = 0, size = 0;
+  for (std::uint32_t i = 0; i < w.s.n(); ++i) {
+    double expected = 0, toWalls = 0;
+    for (std::uint32_t j = 0; j < oracle.count(); ++j) {
+      const double r = norm(oracle.difference(i, j));
+      if (j == i || r >= oracle.hv) continue;
+      const double c = oracle.viscousBlock(r) * r * r / (D + 2);
+      if (j >= w.s.n()) {
+        if (w.s.wallSurface.empty()) {
+          const int m = w.s.particles.material[i];
+          const double mean = (table.of[m].conducted(400) - conducted[i]) / (400 - T[i]);
+          toWalls += w.scale[i] * mean * c * r / (r + mean * 2e-4);
+        }
+        continue;
+      }
+      const double both = 0.5 * (w.scale[i] + w.scale[j]) * c;
+      const bool same = w.s.particles.material[i] == w.s.particles.material[j];
+      expected += both * (same ? conducted[i] - conducted[j] : 2 * k[i] * k[j] / (k[i] + k[j]) * (T[i] - T[j]));
+    }
+    size = std::max(size, std::abs(expected));
+    total += found[i];
+    ASSERT_NEAR(found[i], expected, 1e-8 * size + 1e-12);
+    if (w.s.wallSurface.empty()) {
+      ASSERT_NEAR(ofWalls[i].coefficient, toWalls, 1e-11 * toWalls);
+    }
+  }
+  EXPECT_NEAR(total, 0, 1e-9 * size);
+}
+
+TEST(Conduction, FollowsKirchhoffWithinAMaterialThatFreezes) {
+  for (const SchemeKind scheme : bothSchemes) {
+    checkFreezing<2>(scheme);
+    checkFreezing<3>(scheme);
+  }
 }
 
 /// In a full lattice the sum is a Laplacian: of a cosine that goes around the domain k^2 times itself, but for an

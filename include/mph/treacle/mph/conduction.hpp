@@ -4,6 +4,7 @@
 #include "treacle/model/case/case.hpp"
 #include "treacle/mph/mph_pairs.hpp"
 
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -14,10 +15,12 @@ namespace treacle {
 /// coefficients c_ij of d d^T have the sum 2 D (D + 2) of c_ij r^4, and so (c_ij r^2) / (D + 2) has that of a
 /// Laplacian,
 ///   div(k grad T)_i = sum_j kappa_ij (T_j - T_i),   kappa_ij = k_ij (s_i + s_j)/2 c_ij r^2 / (D + 2),
-/// symmetric, so that heat is conserved to rounding. k_ij is the harmonic mean, as of two layers; s_i makes up for
-/// neighbours that are missing or do not conduct (viscosity_scale.hpp). A wall has its temperature where its
-/// surface is, or that far behind it through which its conductance would let the fluid's conductivity conduct; the
-/// pair's coefficient is multiplied by wallFactor(), as its viscosity is.
+/// symmetric, so that heat is conserved to rounding. k_ij is the harmonic mean, as of two layers. Within a
+/// material that freezes it is the mean of k(T) between both temperatures, with which a flux through layers of
+/// solid and liquid is what it is by Kirchhoff's transformation. s_i makes up for neighbours that are missing or
+/// do not conduct (viscosity_scale.hpp). A wall has its temperature where its surface is, or that far behind it
+/// through which its conductance would let the fluid's conductivity conduct; the pair's coefficient is multiplied
+/// by wallFactor(), as its viscosity is.
 
 /// What the heat of the fluid meets in a wall body.
 struct WallHeat {
@@ -37,12 +40,23 @@ struct HeatTable {
   static HeatTable make(const Case& c);
 };
 
+/// Where some material freezes: what particles of fluid conduct by their temperatures, those of ghosts included,
+/// and the same at walls. Pointers are to the backend's memory.
+struct OwnConduction {
+  const double* temperature = nullptr;   // T [K]; null: nothing freezes
+  const double* conductivity = nullptr;  // k(T) [W/(m K)]
+  const double* conducted = nullptr;     // its integral over the temperature [W/m]
+  const double* atWalls = nullptr;       // that of material m at the temperature of body b: [b * maxMaterials + m]
+  static constexpr double close = 1e-3;  // below this difference of temperatures k is that of one of them [K]
+};
+
 /// What the sums of conduction read besides the pairs. Pointers are to the backend's memory.
 struct Conduction {
   HeatTable table;
   const WallHeat* walls;     // per body
   const std::uint8_t* body;  // per particle
   const double* scale;       // s per fluid particle, those of ghosts included; null: not made yet
+  OwnConduction own{};
 
   /// Whether a wall particle conducts.
   TREACLE_HD bool conducts(std::uint32_t wall) const { return walls[body[wall]].temperature > 0; }
@@ -51,12 +65,22 @@ struct Conduction {
   TREACLE_HD double ofWall(const MphPairs<D>& pairs, std::uint32_t fluid, std::uint32_t wall,
                            const Vec<D>& d) const {
     if (!conducts(wall)) return 0;
-    const double k = table.conductivity[pairs.material[fluid]], behind = k * walls[body[wall]].resistance;
+    const double k = own.temperature ? ofFreezing(fluid, wall, pairs.material[fluid])
+                                     : table.conductivity[pairs.material[fluid]];
+    const double behind = k * walls[body[wall]].resistance;
     // Walls without surfaces end where their particles are.
     const double factor = pairs.wallSurface ? treacle::wallFactor(pairs.wallSurface[wall - pairs.fluidCount], d,
                                                                   pairs.spacing, behind)
                                             : norm(d) / (norm(d) + behind);
     return scale[fluid] * k * factor;
+  }
+
+ private:
+  /// The mean of k between the temperatures of a fluid and a wall particle.
+  TREACLE_HD double ofFreezing(std::uint32_t fluid, std::uint32_t wall, std::uint8_t material) const {
+    const double difference = walls[body[wall]].temperature - own.temperature[fluid];
+    if (std::abs(difference) < OwnConduction::close) return own.conductivity[fluid];
+    return (own.atWalls[body[wall] * maxMaterials + material] - own.conducted[fluid]) / difference;
   }
 };
 

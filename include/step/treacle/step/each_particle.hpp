@@ -8,6 +8,7 @@
 #include "treacle/step/flow/gas_contact.hpp"
 #include "treacle/step/flow/outflow.hpp"
 #include "treacle/step/method/first_guess.hpp"
+#include "treacle/step/method/freezing_terms.hpp"
 #include "treacle/step/method/heat_terms.hpp"
 #include "treacle/step/method/move_particles.hpp"
 #include "treacle/step/method/state_terms.hpp"
@@ -210,6 +211,12 @@ std::array<double, HeatSums::count> sumHeat(Context<Backend>& context, const Hea
 }
 
 template <class Backend>
+std::array<double, FreezingTerms::count> sumFreezing(Context<Backend>& context, const FreezingTerms& terms) {
+  return sumEach<FreezingTerms::count>(context, terms.T.size(),
+                                       [=] TREACLE_HD(std::size_t i, double* sums) { terms.add(i, sums); });
+}
+
+template <class Backend>
 std::array<double, StateTerms::count> advanceStates(Context<Backend>& context, const StateTerms& terms) {
   return sumEach<StateTerms::count>(context, terms.rate.size(),
                                     [=] TREACLE_HD(std::size_t i, double* sums) { terms.add(i, sums); });
@@ -282,12 +289,16 @@ StepChange stepChange(Context<Backend>& context, const StepChangeTerms<D>& terms
   template PartSums sumPart(Context<Backend>&, const PartTerms<D>&);                                             \
   template double patchPressure(Context<Backend>&, const PatchTerms<D>&);                                        \
   template StepChange stepChange(Context<Backend>&, const StepChangeTerms<D>&);
-#define TREACLE_EACH_TEMPERATURE(Backend)                                                   \
-  template void setEach(Context<Backend>&, const HeatSystemTerms&, std::size_t);            \
-  template void setEach(Context<Backend>&, const Difference&, std::size_t);                 \
-  template void setEach(Context<Backend>&, const Scaled&, std::size_t);                     \
-  template void setEach(Context<Backend>&, const HeatResult&, std::size_t);                 \
-  template std::array<double, HeatSums::count> sumHeat(Context<Backend>&, const HeatSums&); \
+#define TREACLE_EACH_TEMPERATURE(Backend)                                                                 \
+  template void setEach(Context<Backend>&, const HeatSystemTerms&, std::size_t);                          \
+  template void setEach(Context<Backend>&, const Difference&, std::size_t);                               \
+  template void setEach(Context<Backend>&, const Scaled&, std::size_t);                                   \
+  template void setEach(Context<Backend>&, const HeatResult&, std::size_t);                               \
+  template void setEach(Context<Backend>&, const ConductivityTerms&, std::size_t);                        \
+  template void setEach(Context<Backend>&, const FreezingUpdate&, std::size_t);                           \
+  template void setEach(Context<Backend>&, const FreezingResult&, std::size_t);                           \
+  template std::array<double, FreezingTerms::count> sumFreezing(Context<Backend>&, const FreezingTerms&); \
+  template std::array<double, HeatSums::count> sumHeat(Context<Backend>&, const HeatSums&);               \
   template std::array<double, StateTerms::count> advanceStates(Context<Backend>&, const StateTerms&);
 
 }  // namespace treacle

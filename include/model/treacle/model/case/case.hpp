@@ -103,6 +103,9 @@ struct Case {
     return hasViscosityFactors() ||
            std::ranges::any_of(materials, [](const Material& m) { return m.hasOwnViscosities(); });
   }
+  bool freezes() const {
+    return std::ranges::any_of(materials, [](const Material& m) { return m.freezing.has_value(); });
+  }
   bool hasViscosityFactors() const {
     return std::ranges::any_of(bodies, [](const Body& b) { return b.givesViscosityFactor(); });
   }

@@ -108,6 +108,21 @@ void visit(auto& v, Like<Gelling> auto& g, const Case&) {
     g.mostFactor);
 }
 
+void visit(auto& v, Like<Freezing> auto& f, const Case&) {
+  v({"solidus", "Temperature up to which all is solid", required, "K", positive}, f.solidus);
+  v({"liquidus", "Temperature from which on all is liquid, above solidus", required, "K", positive}, f.liquidus);
+  v({"latent_heat", "Heat that is set free between them", required, "J/kg", notNegative}, f.latentHeat);
+  v({"solid_conductivity", "Thermal conductivity of the solid; 0: that of the liquid", optional, "W/(m K)",
+     notNegative},
+    f.solidConductivity);
+  v({"solid_specific_heat", "Specific heat capacity of the solid; 0: that of the liquid", optional, "J/(kg K)",
+     notNegative},
+    f.solidSpecificHeat);
+  v({"solid_factor", "What the viscosity of the solid is multiplied by: under load it creeps", optional, "",
+     solidFactor},
+    f.solidFactor);
+}
+
 void visit(auto& v, Like<ContactAngle> auto& a, const Case&) {
   v({"name", "Name of the material of the fluid, unique among them", required}, a.name);
   v({"angle", "Angle of its free surfaces with the wall, measured in the fluid", required, "deg", {0, 180}},
@@ -162,6 +177,7 @@ void visit(auto& v, Like<Material> auto& m, const Case& c) {
   v({"conductivity", "Thermal conductivity", required, "W/(m K)", notNegative}, m.conductivity);
   v({"emissivity", "Emissivity of free surfaces of this fluid", optional, "", {0, 1}}, m.emissivity);
   v({"viscosity_shift", "Viscosity that follows the temperature"}, m.viscosityShift);
+  v({"freezing", "Fluid that freezes and melts"}, m.freezing);
 }
 
 }  // namespace treacle::keys

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "treacle/model/materials/freezing.hpp"
 #include "treacle/model/materials/material_state.hpp"
 #include "treacle/model/materials/rheology.hpp"
 #include "treacle/model/materials/viscosity_shift.hpp"
@@ -41,6 +42,7 @@ struct Material {
   double conductivity = 0;                         // k [W/(m K)]
   double emissivity = 0;                           // of the free surface [-]
   std::optional<ViscosityShift> viscosityShift{};  // missing: the viscosity does not follow the temperature
+  std::optional<Freezing> freezing{};              // missing: it never freezes
 
   /// mu at a shear rate [1/s], where a_T is `shift` and the yield stress is multiplied by `yield` [Pa s]. Formulas
   /// are not in it.
@@ -54,7 +56,9 @@ struct Material {
     return contactAngle;
   }
   /// Whether its viscosity is not one number. Laws of states may need shear rates, which come with it.
-  bool hasOwnViscosities() const { return rheology.has_value() || viscosityShift.has_value() || hasFormulas(); }
+  bool hasOwnViscosities() const {
+    return rheology.has_value() || viscosityShift.has_value() || freezing.has_value() || hasFormulas();
+  }
   bool hasFormulas() const {
     return !states.empty() || !viscosityFactor.empty() || !yieldFactor.empty() || gelling.has_value();
   }

@@ -15,6 +15,7 @@ namespace treacle {
 struct RheologyTable {
   Rheology of[maxMaterials];  // by material
   ShiftFactor shift[maxMaterials];
+  FrozenShare frozen[maxMaterials];
   StateTable states;
   std::span<const double> temperature{};  // per particle [K]; empty: no viscosity follows it
   std::span<const double> factor{};       // likewise, by which it is multiplied [-]; empty: 1
@@ -44,7 +45,11 @@ struct RheologyTable {
 
   /// Of a particle i of material m at a shear rate of gamma [1/s], [Pa s].
   TREACLE_HD double viscosity(std::size_t i, int m, double rate) const {
-    const double own = factor.empty() ? 1 : factor[i], a = temperature.empty() ? 1 : shift[m](temperature[i]);
+    double own = factor.empty() ? 1 : factor[i], a = 1;
+    if (!temperature.empty()) {
+      a = shift[m](temperature[i]);
+      own *= frozen[m].viscosityFactor(temperature[i]);
+    }
     if (!states.steps) return own * of[m].viscosity(rate, a);
     double x[StateTable::variables];
     variables(i, rate, x);

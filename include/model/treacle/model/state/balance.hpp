@@ -17,7 +17,7 @@ struct WallLoad {
 
 /// The heat of the fluid in one step: the energy gains dt times the other four.
 struct HeatBalance {
-  double energy = 0;   // sum of m c_p T, counted from 0 K, at the end of the step [J]
+  double energy = 0;   // sum of the enthalpies, counted from 0 K, at the end of the step [J]
   double heating = 0;  // by the viscosity [W]
   double walls = 0;    // from walls [W]
   double states = 0;   // set free by the states of materials [W]

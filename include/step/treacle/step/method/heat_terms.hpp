@@ -2,6 +2,7 @@
 
 #include "treacle/core/cuda.hpp"
 #include "treacle/core/macros.hpp"
+#include "treacle/model/materials/enthalpy.hpp"
 #include "treacle/mph/conduction.hpp"
 
 #include <array>
@@ -99,6 +100,7 @@ struct HeatSums {
   enum { Energy, Heating, Walls, Surface, count };
 
   HeatConstants constants;
+  EnthalpyTable enthalpy;
   std::span<const std::uint8_t> material;
   std::span<const double> T, change, next;
   std::span<const double> heating;  // or empty
@@ -106,7 +108,7 @@ struct HeatSums {
 
   TREACLE_HD void add(std::size_t i, double* sums) const {
     const double met = T[i] + change[i];  // what the boundaries exchanged heat with
-    sums[Energy] += constants.table.capacity[material[i]] * next[i];
+    sums[Energy] += enthalpy.of[material[i]].at(next[i]);
     if (!heating.empty()) sums[Heating] += heating[i];
     sums[Walls] += walls[i].gain - walls[i].coefficient * met;
     if (!surface.empty()) sums[Surface] += surface[i].gain - surface[i].coefficient * met;
