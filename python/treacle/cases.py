@@ -143,6 +143,10 @@ class Material:
     emissivity: float | None = None
     viscosity_shift: ViscosityShift | None = None
     freezing: Freezing | None = None
+    thermal_expansion: float | None = None
+    """[1/K]"""
+    expansion_temperature: float | None = None
+    """[K]"""
 
 
 @dataclass(kw_only=True)

@@ -85,8 +85,8 @@ struct StepEnergy {
     const Balance& b = *report.balance;
     const double dt = report.velocityStep;
     lost = dt * (b.inertialLoss + b.shearDissipation + b.bulkDissipation);
-    given =
-        dt * (b.elasticPower + b.wallPower + b.repulsionPower + b.surfacePower + report.diagnostics.gravityPower);
+    given = dt * (b.elasticPower + b.wallPower + b.repulsionPower + b.surfacePower + b.buoyancyPower +
+                  report.diagnostics.gravityPower);
   }
   double scale() const { return std::abs(gained) + lost + std::abs(given); }
 };

@@ -88,6 +88,7 @@ def of_balance(balance: Table, history: Table) -> list[Chart]:
         "wall_power",
         "repulsion_power",
         "surface_power",
+        "buoyancy_power",
     ]
     powers = [name for name in names if name in balance and np.any(balance[name])]
     charts = [

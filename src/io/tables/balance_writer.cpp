@@ -16,6 +16,7 @@ std::string columns(const Case& c) {
   if (c.repulsionRadius() > 0) text += ",repulsion_power";
   if (c.keepsVolume()) text += ",shift_power";
   if (c.hasSurfaceTension()) text += ",surface_power,surface_energy";
+  if (c.hasBuoyancy()) text += ",buoyancy_power";
   if (c.heat) text += ",heat_energy,viscous_heating,heat_from_walls,heat_from_surface";
   if (c.heat && c.hasStates()) text += ",heat_from_states";
   for (const Body& body : c.bodies) {
@@ -37,6 +38,7 @@ BalanceWriter::BalanceWriter(RowTarget to, const Case& c)
       repels_(c.repulsionRadius() > 0),
       shifts_(c.keepsVolume()),
       hasSurface_(c.hasSurfaceTension()),
+      rises_(c.hasBuoyancy()),
       hasStates_(c.hasStates()),
       rows_(std::move(to), columns(c)) {}
 
@@ -46,6 +48,7 @@ void BalanceWriter::append(std::int64_t step, double time, const Balance& b) {
   if (repels_) row += fmt::format(",{}", b.repulsionPower);
   if (shifts_) row += fmt::format(",{}", b.shiftPower);
   if (hasSurface_) row += fmt::format(",{},{}", b.surfacePower, b.surfaceEnergy);
+  if (rises_) row += fmt::format(",{}", b.buoyancyPower);
   if (b.heat) row += fmt::format(",{},{},{},{}", b.heat->energy, b.heat->heating, b.heat->walls, b.heat->surface);
   if (b.heat && hasStates_) row += fmt::format(",{}", b.heat->states);
   for (const WallLoad& load : b.walls) {

@@ -211,6 +211,7 @@ void requireSound(const Checker& at, const Case& c);
 // sound_materials.cpp
 void requireSound(const Checker& at, const Rheology& rheology);
 void requireSound(const Checker& at, const ViscosityShift& shift);
+void requireSound(const Checker& at, const Freezing& freezing);
 void requireSound(const Checker& at, const MaterialState& state);
 void requireSound(const Checker& at, const Material& material);
 // sound_bodies.cpp

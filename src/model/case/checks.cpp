@@ -156,6 +156,7 @@ void warnUnlikely(const Case& c, std::vector<std::string>& warnings) {
     if (!c.heat) continue;
     look(of, "conductivity", m.conductivity, 1e-3, 1e4, "W/(m K)");
     look(of, "specific_heat", m.specificHeat, 10, 2e4, "J/(kg K)");
+    look(of, "thermal_expansion", std::abs(m.thermalExpansion), 1e-7, 0.02, "1/K");
   }
   if (c.heat)
     for (const Body& b : c.bodies)

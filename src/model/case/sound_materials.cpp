@@ -128,6 +128,10 @@ void requireSound(const Checker& at, const Material& m) {
     at.fail({"viscosity_shift"}, "there are no temperatures in a case without [heat]");
   if (m.freezing && !at.wholeCase().heat)
     at.fail({"freezing"}, "there are no temperatures in a case without [heat]");
+  if (m.thermalExpansion != 0 && !at.wholeCase().heat)
+    at.fail({"thermal_expansion"}, "there are no temperatures in a case without [heat]");
+  if (m.expansionTemperature != 0 && m.thermalExpansion == 0)
+    at.fail({"expansion_temperature"}, "the material has no thermal_expansion");
   if (at.wholeCase().method.kind != MethodKind::MphI &&
       (m.surfaceTension != 0 || m.contactAngle != Material{}.contactAngle || !m.contactAngles.empty()))
     at.fail({m.surfaceTension != 0                       ? "surface_tension"

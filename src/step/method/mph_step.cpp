@@ -19,6 +19,7 @@
 #include "treacle/mph/mph_repulsion.hpp"
 #include "treacle/mph/renormalisation.hpp"
 #include "treacle/mph/viscosity_scale.hpp"
+#include "treacle/step/method/buoyancy_terms.hpp"
 #include "treacle/step/method/first_guess.hpp"
 #include "treacle/step/method/solve_stages.hpp"
 #include "walls/placed_surfaces.hpp"
@@ -44,6 +45,7 @@ class MphStep final : public StepMethod<D, Backend> {
     if (state.theCase.hasOwnViscosities()) rheology_.emplace(state.theCase);
     if (state.theCase.hasStates()) states_.emplace();
     if (state.theCase.heat) heat_.emplace(state.theCase, pairs_);
+    if (state.theCase.hasBuoyancy()) expansion_ = ExpansionTable::make(state.theCase);
     if (state.theCase.hasSurfaceTension()) surface_.emplace(state.theCase);
     if (state.theCase.keepsVolume()) tension_.emplace();
     if (state.theCase.gas) gas_.emplace(state.theCase, *tension_);
@@ -154,7 +156,7 @@ class MphStep final : public StepMethod<D, Backend> {
     if (states_) states_->accept(state_);
     if (state_.theCase.needsBalance())
       lastBalance_ = balance_.make(state_, pairs_, divergence_, elastic_, surface_ ? &*surface_ : nullptr,
-                                   tension_ ? &*tension_ : nullptr, explicitForces());
+                                   tension_ ? &*tension_ : nullptr, explicitForces(), buoyancy());
     if (heat_) acceptHeat();
     if (gas_) gas_->accept(state_);
     pressures_.accept();
@@ -348,6 +350,7 @@ class MphStep final : public StepMethod<D, Backend> {
     rhs_.resize(state_.context, state_.particles.fluidCount);
     inertiaAndGravity<D>(state_.context, pairs_,
                          state_.particles.velocity.span().first(state_.particles.fluidCount), state_.frame, rhs_);
+    if (expansion_) setEach(state_.context, AddBuoyancy<D>{buoyancy(), rhs_.span()}, rhs_.size());
     addPressureGradient<D>(state_.context, pairs_, elastic_, -1.0, rhs_);
     if (pairs_.terms.repulsionRadius > 0) addRepulsion<D>(state_.context, pairs_, 1 / state_.timeStep, rhs_);
     if (const auto* others = explicitForces()) others->addForces(state_, rhs_);
@@ -372,6 +375,14 @@ class MphStep final : public StepMethod<D, Backend> {
     fillGhosts(state_.context, Held::Active, divergence_.data());
     bulkPressure<D>(state_.context, pairs_, divergence_, {}, divergence_);
     addPressureGradient<D>(state_.context, pairs_, divergence_, -1.0, rhs_);
+  }
+
+  /// Of own fluid, with the temperatures at the start of the step.
+  Buoyancy<D> buoyancy() const {
+    if (!expansion_) return {};
+    const std::uint32_t own = state_.particles.fluidCount;
+    return {*expansion_, state_.frame, pairs_.material.first(own), pairs_.position.first(own),
+            state_.particles.temperature.span().first(own)};
   }
 
   const ExplicitForces<D, Backend>* explicitForces() const {
@@ -406,6 +417,7 @@ class MphStep final : public StepMethod<D, Backend> {
   Buffer<Vec<D>, Backend> found_;                     // velocities of the last solve, while the next is prepared
   std::optional<StepStates<D, Backend>> states_;      // where materials have states
   std::optional<StepHeat<D, Backend>> heat_;          // where the case has heat
+  std::optional<ExpansionTable> expansion_;           // where some fluid expands
   std::optional<StepSurface<D, Backend>> surface_;    // where some fluid has a surface tension
   std::optional<StepTension<D, Backend>> tension_;    // where the case keeps its volume
   std::optional<StepGas<D, Backend>> gas_;            // where the case has gas

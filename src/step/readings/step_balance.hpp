@@ -26,13 +26,14 @@ class StepBalance {
   /// Once state.velocity and the pressures are those of the end of the step; positions and particles' velocities
   /// are still those of its start. `divergence`: C^T u^{k+1}, `elastic`: elasticPressure(), per active particle;
   /// `surface`, `tension`: null where the case has none; it has at most one of them. `others`: all explicit
-  /// forces, or null.
+  /// forces, or null. `buoyancy`: of own fluid.
   Balance make(FlowState<D, Backend>& state, const MphPairs<D>& pairs, std::span<const double> divergence,
                std::span<const double> elastic, const StepSurface<D, Backend>* surface,
-               const StepTension<D, Backend>* tension, const ExplicitForces<D, Backend>* others) {
+               const StepTension<D, Backend>* tension, const ExplicitForces<D, Backend>* others,
+               const Buoyancy<D>& buoyancy) {
     sumPairs(state, pairs, others);
     Balance balance;
-    setPowers(state, pairs, divergence, elastic, surface, tension, balance);
+    setPowers(state, pairs, divergence, elastic, surface, tension, buoyancy, balance);
     setLoads(state, pairs, balance);
     return balance;
   }
@@ -52,7 +53,7 @@ class StepBalance {
 
   void setPowers(FlowState<D, Backend>& state, const MphPairs<D>& pairs, std::span<const double> divergence,
                  std::span<const double> elastic, const StepSurface<D, Backend>* surface,
-                 const StepTension<D, Backend>* tension, Balance& balance) {
+                 const StepTension<D, Backend>* tension, const Buoyancy<D>& buoyancy, Balance& balance) {
     using Terms = PowerTerms<D>;
     const Terms terms{pairs.fluidCount,
                       pairs.ownFluid(),
@@ -72,7 +73,8 @@ class StepBalance {
                       tension ? tension->transport() : std::span<const Vec<D>>{},
                       pairs.position,
                       state.frame,
-                      state.velocityStep};
+                      state.velocityStep,
+                      buoyancy};
     const auto sums = sumPowers<D>(state.context, terms, pairs.ownEnd());
     const double volume = std::pow(pairs.spacing, D);  // [K23 eq. (11)]
     balance.shearDissipation = volume * sums[Terms::Shear];
@@ -82,6 +84,7 @@ class StepBalance {
     balance.repulsionPower = volume * sums[Terms::Repulsion];
     (surface ? balance.surfacePower : balance.elasticPower) += volume * sums[Terms::Force];
     balance.shiftPower = volume * sums[Terms::Shift];
+    balance.buoyancyPower = volume * sums[Terms::Buoyant];
     balance.surfaceEnergy = volume * sums[Terms::SurfaceEnergy];
     balance.elasticEnergy = volume * sums[Terms::ElasticEnergy];
   }

@@ -21,6 +21,7 @@ void expectCloseBalance(const Balance& expected, const Balance& found, double ar
   EXPECT_PRED2(close, expected.wallPower, found.wallPower);
   EXPECT_PRED2(close, expected.repulsionPower, found.repulsionPower);
   EXPECT_PRED2(close, expected.shiftPower, found.shiftPower);
+  EXPECT_PRED2(close, expected.buoyancyPower, found.buoyancyPower);
   ASSERT_EQ(expected.walls.size(), found.walls.size());
   for (std::size_t k = 0; k < expected.walls.size(); ++k) {
     const WallLoad &a = expected.walls[k], &b = found.walls[k];

@@ -200,7 +200,7 @@ TEST(SimulationTwin, StepsLikeTheCpuWithARheology) {
 /// Two fluids with heat and states, one's viscosity following it, on a floor that they cool at, in warm
 /// surroundings.
 template <int D>
-void compareHeat(Precision precision) {
+void compareHeat(Precision precision, bool freezes) {
   SolverSettings settings;
   settings.precision = precision;
   Case c = stepCase(D, settings, SchemeKind::Accurate);
@@ -227,6 +227,15 @@ void compareHeat(Precision precision) {
   c.bodies.resize(1);
   c.bodies[0].kind = BodyKind::Wall;
   c.bodies[0].temperature = 400;
+  if (freezes) {
+    c.materials[1].freezing = Freezing{.solidus = 415,
+                                       .liquidus = 425,
+                                       .latentHeat = 30,
+                                       .solidConductivity = 2,
+                                       .solidSpecificHeat = 1.5,
+                                       .solidFactor = 20};
+    c.materials[0].thermalExpansion = 0.01;
+  }
   const auto start = [&] {
     Particles<D> p = bodyOnFloor<D>(c, 0.02);
     p.has.temperatures = true;
@@ -250,6 +259,7 @@ void compareHeat(Precision precision) {
     EXPECT_NEAR(y.surface, x.surface, 1e-7 * std::abs(x.surface));
     EXPECT_GT(x.states, 0);
     EXPECT_NEAR(y.states, x.states, 1e-7 * x.states);
+    EXPECT_NEAR(b.balance->buoyancyPower, a.balance->buoyancyPower, 1e-6 * std::abs(a.balance->buoyancyPower));
   }
   Particles<D> expected = stateOf(cpu), found;
   cuda.copyParticles(found);
@@ -271,8 +281,16 @@ void compareHeat(Precision precision) {
 TEST(SimulationTwin, StepsLikeTheCpuWithHeatAndStates) {
   TREACLE_SKIP_WITHOUT_GPU();
   for (const Precision precision : {Precision::Mixed, Precision::Double}) {
-    compareHeat<2>(precision);
-    compareHeat<3>(precision);
+    compareHeat<2>(precision, false);
+    compareHeat<3>(precision, false);
+  }
+}
+
+TEST(SimulationTwin, StepsLikeTheCpuWhereFluidFreezesAndRises) {
+  TREACLE_SKIP_WITHOUT_GPU();
+  for (const Precision precision : {Precision::Mixed, Precision::Double}) {
+    compareHeat<2>(precision, true);
+    compareHeat<3>(precision, true);
   }
 }
 

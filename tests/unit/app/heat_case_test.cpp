@@ -42,6 +42,7 @@ TEST(HeatCase, IsReadAndWritten) {
            {shift + "{model='vft', reference_temperature=300, b=500, t0=100, max_factor=1e3}"},
            {shift + "{model='wlf', reference_temperature=300, c1=17, c2=50}"},
            {shift + "{model='table', temperatures=[300, 310, 350], factors=[2, 1, 0.1]}"},
+           {"syrup.thermal_expansion=5e-4", "syrup.expansion_temperature=310"},
            {"syrup.freezing={solidus=300, liquidus=301, latent_heat=2e5}"},
            {"syrup.freezing={solidus=300, liquidus=301, latent_heat=0, solid_conductivity=2, "
             "solid_specific_heat=900, solid_factor=1e4}"}}) {
@@ -71,12 +72,14 @@ const Mistake heatMistakes[] = {
      "wall_conductance: a "
      "positive number [K]"},
     {"heat.max_iterations=0", "max_iterations in [heat]: expected a whole number from 1 to 1000000, found 0"},
+    {"syrup.expansion_temperature=300",
+     "expansion_temperature in [[material]] 'syrup': the material has no thermal_expansion"},
     {"syrup.freezing={solidus=301, liquidus=301, latent_heat=2e5}",
      "liquidus in the freezing of [[material]] 'syrup': expected more than solidus = 301 K, found 301"},
     {"syrup.freezing={solidus=300, liquidus=301, latent_heat=-1}",
-     "latent_heat in the freezing of [[material]] 'syrup': expected a number of at least 0 [J/kg], found -1"},
+     "latent_heat in the freezing of [[material]] 'syrup': expected a number not less than 0 [J/kg], found -1"},
     {"syrup.freezing={solidus=300, liquidus=301}",
-     "latent_heat in the freezing of [[material]] 'syrup': missing; expected a number of at least 0 [J/kg]"},
+     "latent_heat in the freezing of [[material]] 'syrup': missing; expected a number not less than 0 [J/kg]"},
     {"syrup.freezing={solidus=300, liquidus=301, latent_heat=1, solid_factor=0.5}",
      "solid_factor in the freezing of [[material]] 'syrup': expected a number from 1 to 1000000000, found 0.5"},
     {"syrup.viscosity_shift={model='ideal'}",
@@ -131,6 +134,9 @@ TEST(HeatCase, KeysOfHeatBelongToCasesWithIt) {
   EXPECT_THAT(messageOf<InputError>([&] { readCase(shop / "rheology.toml"); }),
               HasSubstr("only the method 'mph-i' has fluids that are not Newtonian, found 'isph'"));
   Case cold = heatCaseWith({"syrup.freezing={solidus=300, liquidus=301, latent_heat=1}"});
+  cold.heat.reset();
+  EXPECT_THROW(requireValid(cold), CaseError);
+  cold = heatCaseWith({"syrup.thermal_expansion=1e-4"});
   cold.heat.reset();
   EXPECT_THROW(requireValid(cold), CaseError);
   Case c = heatCaseWith({});

@@ -75,6 +75,22 @@ TEST(BalanceWriter, SurfacesStandWhereSomeFluidHasATension) {
             std::string(powers) + ",surface_power,surface_energy\n3,0.003,1,2.5,0.001,-4,1e-20,0.1,-0.25,8\n");
 }
 
+TEST(BalanceWriter, BuoyancyStandsWhereSomeFluidExpands) {
+  TemporaryDirectory directory;
+  Case c = caseOf(2, {});
+  c.heat.emplace();
+  c.materials.emplace_back().thermalExpansion = 1e-3;
+  Balance balance{1, 2.5, 1e-3, -4, 1e-20, 0.1, {}};
+  balance.buoyancyPower = -0.25;
+  balance.heat = HeatBalance{.energy = 5, .heating = 6, .walls = 7, .surface = 8};
+  BalanceWriter writer(directory / "balance.csv", c);
+  writer.append(3, 0.003, balance);
+  EXPECT_EQ(content(directory / "balance.csv"),
+            std::string(powers) +
+                ",buoyancy_power,heat_energy,viscous_heating,heat_from_walls,heat_from_surface\n"
+                "3,0.003,1,2.5,0.001,-4,1e-20,0.1,-0.25,5,6,7,8\n");
+}
+
 TEST(BalanceWriter, NumbersReadBackToTheSameBits) {
   TemporaryDirectory directory;
   const auto value = [](int k) { return std::exp(20 * std::sin(k)) / 3; };

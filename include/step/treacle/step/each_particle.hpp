@@ -7,6 +7,7 @@
 #include "treacle/step/bodies/contacts.hpp"
 #include "treacle/step/flow/gas_contact.hpp"
 #include "treacle/step/flow/outflow.hpp"
+#include "treacle/step/method/buoyancy_terms.hpp"
 #include "treacle/step/method/first_guess.hpp"
 #include "treacle/step/method/freezing_terms.hpp"
 #include "treacle/step/method/heat_terms.hpp"
@@ -290,6 +291,8 @@ StepChange stepChange(Context<Backend>& context, const StepChangeTerms<D>& terms
   template double patchPressure(Context<Backend>&, const PatchTerms<D>&);                                        \
   template StepChange stepChange(Context<Backend>&, const StepChangeTerms<D>&);
 #define TREACLE_EACH_TEMPERATURE(Backend)                                                                 \
+  template void setEach(Context<Backend>&, const AddBuoyancy<2>&, std::size_t);                           \
+  template void setEach(Context<Backend>&, const AddBuoyancy<3>&, std::size_t);                           \
   template void setEach(Context<Backend>&, const HeatSystemTerms&, std::size_t);                          \
   template void setEach(Context<Backend>&, const Difference&, std::size_t);                               \
   template void setEach(Context<Backend>&, const Scaled&, std::size_t);                                   \

@@ -23,7 +23,7 @@ class BalanceWriter {
   int dimensions_;
   bool repels_;
   bool shifts_;
-  bool hasSurface_, hasStates_;
+  bool hasSurface_, rises_, hasStates_;
   Rows rows_;
 };
 

@@ -103,6 +103,9 @@ struct Case {
     return hasViscosityFactors() ||
            std::ranges::any_of(materials, [](const Material& m) { return m.hasOwnViscosities(); });
   }
+  bool hasBuoyancy() const {
+    return std::ranges::any_of(materials, [](const Material& m) { return m.thermalExpansion != 0; });
+  }
   bool freezes() const {
     return std::ranges::any_of(materials, [](const Material& m) { return m.freezing.has_value(); });
   }

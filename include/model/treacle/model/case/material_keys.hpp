@@ -178,6 +178,14 @@ void visit(auto& v, Like<Material> auto& m, const Case& c) {
   v({"emissivity", "Emissivity of free surfaces of this fluid", optional, "", {0, 1}}, m.emissivity);
   v({"viscosity_shift", "Viscosity that follows the temperature"}, m.viscosityShift);
   v({"freezing", "Fluid that freezes and melts"}, m.freezing);
+  v({"thermal_expansion",
+     "Thermal expansion beta by Boussinesq's approximation: weight follows the temperature, volume does not",
+     optional, "1/K"},
+    m.thermalExpansion);
+  v({"expansion_temperature",
+     "Temperature at which the weight is that of density; 0: ambient_temperature of [heat]", optional, "K",
+     notNegative},
+    m.expansionTemperature);
 }
 
 }  // namespace treacle::keys

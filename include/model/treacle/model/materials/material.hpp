@@ -43,6 +43,8 @@ struct Material {
   double emissivity = 0;                           // of the free surface [-]
   std::optional<ViscosityShift> viscosityShift{};  // missing: the viscosity does not follow the temperature
   std::optional<Freezing> freezing{};              // missing: it never freezes
+  double thermalExpansion = 0;                     // beta, in the weight alone [1/K]
+  double expansionTemperature = 0;                 // at which the density is rho; 0: the ambient one [K]
 
   /// mu at a shear rate [1/s], where a_T is `shift` and the yield stress is multiplied by `yield` [Pa s]. Formulas
   /// are not in it.

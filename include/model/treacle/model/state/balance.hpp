@@ -25,8 +25,8 @@ struct HeatBalance {
 };
 
 /// Where the energy of the fluid goes in one step of MPH-I, with the velocities at its end and the places at its
-/// start; in 2D per metre of depth. Kinetic energy gains dt times the power of gravity, elastic pressures,
-/// repulsion, surface tension, shift and walls less the two dissipations and the inertial loss.
+/// start; in 2D per metre of depth. Kinetic energy gains dt times the power of gravity, buoyancy, elastic
+/// pressures, repulsion, surface tension, shift and walls less the two dissipations and the inertial loss.
 struct Balance {
   double shearDissipation = 0;        // [W]
   double bulkDissipation = 0;         // [W]
@@ -38,6 +38,7 @@ struct Balance {
   double repulsionPower = 0;          // what the repulsion of close particles gives to the motion [W]
   double shiftPower = 0;              // what the shift of particles adds to their potential energy [W]
   double surfacePower = 0;            // what surface tension gives to the motion [W]
+  double buoyancyPower = 0;           // what thermal expansion adds to the power of gravity [W]
   double surfaceEnergy = 0;           // of the free surfaces, gamma times their area [J]
   std::optional<HeatBalance> heat{};  // in cases with heat
   std::vector<double> patches{};      // pressures of the probes WallPressure, in the order of the case [Pa]

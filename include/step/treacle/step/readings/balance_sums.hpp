@@ -5,6 +5,7 @@
 #include "treacle/model/motion/frame_force.hpp"
 #include "treacle/mph/mph_pairs.hpp"
 #include "treacle/mph/surface_tension.hpp"
+#include "treacle/step/method/buoyancy_terms.hpp"
 
 #include <array>
 #include <cstddef>
@@ -18,7 +19,7 @@ namespace treacle {
 /// those of walls start with the first wall particle.
 template <int D>
 struct PowerTerms {
-  enum { Shear, Bulk, Inertial, Elastic, ElasticEnergy, Repulsion, Shift, Force, SurfaceEnergy, count };
+  enum { Shear, Bulk, Inertial, Elastic, ElasticEnergy, Repulsion, Shift, Force, SurfaceEnergy, Buoyant, count };
 
   std::uint32_t fluidCount, ownFluid;  // fluid from ownFluid on is other processes'
   MaterialTable materials;
@@ -37,6 +38,7 @@ struct PowerTerms {
   std::span<const Vec<D>> position;               // [m]
   FrameForce<D> frame;
   double velocityStep;  // dt of the inertia [s]
+  Buoyancy<D> buoyancy;
 
   /// Pairs of walls do no work on the fluid, and what they are compressed by without fluid it cannot get back.
   TREACLE_HD void add(std::size_t i, double* sums) const {
@@ -53,6 +55,7 @@ struct PowerTerms {
     if (!force.empty()) sums[Force] += dot(force[i], after[i]);
     if (!fluid) return;
     sums[Shear] += shear[i];
+    if (!buoyancy.temperature.empty()) sums[Buoyant] += dot(buoyancy.on(i), after[i]);
     if (!repulsion.empty()) sums[Repulsion] += repulsion[i];
     if (!transport.empty())
       sums[Shift] -= dot(frame.on(position[i], materials.inertia[m] * velocityStep), transport[i] - after[i]);
