@@ -53,7 +53,8 @@ struct FreezingTerms {
     slope[i] = least ? h.leastSlope() : h.slope(T[i]);
     extra[i] = slope[i] / timeStep + boundary[i];
     inverse[i] = 1 / (extra[i] + ofFluid[i]);
-    const double left = rhs[i] * timeStep / h.leastSlope();
+    // As the change that it asks of this particle alone: rounding leaves some parts of T, whatever the fluxes are.
+    const double left = rhs[i] / (h.leastSlope() / timeStep + boundary[i] + ofFluid[i]);
     sums[Left] += left * left;
     sums[Size] += T[i] * T[i];
   }
