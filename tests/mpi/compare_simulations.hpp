@@ -83,6 +83,7 @@ inline void expectSame(const Case& c, const StepReport& a, const StepReport& b, 
   expectNear(a.balance->repulsionPower, b.balance->repulsionPower, power, "repulsion", b.step);
   expectNear(a.balance->shiftPower, b.balance->shiftPower, power, "shift", b.step);
   expectNear(a.balance->surfacePower, b.balance->surfacePower, power, "surface power", b.step);
+  expectNear(a.balance->buoyancyPower, b.balance->buoyancyPower, power, "buoyancy", b.step);
   expectNear(a.balance->surfaceEnergy, b.balance->surfaceEnergy, b.balance->surfaceEnergy, "surface energy",
              b.step);
 }

@@ -76,6 +76,14 @@ TEST(SharedSimulation, FluidWithHeat) {
   compare<2>({"glass-gob-2d.toml", 5, {"solver.tolerance=1e-18", "solver.deflation=0", "heat.tolerance=1e-20"}});
 }
 
+/// A drop that freezes on a cold plate, and rises where it is warm.
+TEST(SharedSimulation, FluidThatFreezesAndRises) {
+  compare<2>({"freezing-drop-2d.toml",
+              10,
+              {"solver.tolerance=1e-18", "solver.deflation=0", "heat.tolerance=1e-20", "drop.temperature=331.5",
+               "polymer.thermal_expansion=6e-3"}});
+}
+
 /// A nozzle pours into a mould, which overflows into a drain.
 TEST(SharedSimulation, FluidThatComesAndGoes) {
   const std::string exact = "solver.tolerance=1e-22", plain = "solver.deflation=0";

@@ -157,6 +157,11 @@ void warnUnlikely(const Case& c, std::vector<std::string>& warnings) {
     look(of, "conductivity", m.conductivity, 1e-3, 1e4, "W/(m K)");
     look(of, "specific_heat", m.specificHeat, 10, 2e4, "J/(kg K)");
     look(of, "thermal_expansion", std::abs(m.thermalExpansion), 1e-7, 0.02, "1/K");
+    if (!m.freezing) continue;
+    look("freezing of " + of, "latent_heat", m.freezing->latentHeat, 100, 1e7, "J/kg");
+    look("freezing of " + of, "solidus", m.freezing->solidus, 10, 5000, "K");
+    look("freezing of " + of, "solid_conductivity", m.freezing->solidConductivity, 1e-3, 1e4, "W/(m K)");
+    look("freezing of " + of, "solid_specific_heat", m.freezing->solidSpecificHeat, 10, 2e4, "J/(kg K)");
   }
   if (c.heat)
     for (const Body& b : c.bodies)
