@@ -115,6 +115,7 @@ function(treacle_compile_options TARGET)
     $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wshadow -fno-math-errno -fno-trapping-math>
     $<$<COMPILE_LANGUAGE:CXX>:${TREACLE_PROCESSOR_OPTIONS}>
     $<$<COMPILE_LANGUAGE:CXX>:-Wno-psabi>  # vectors may be wider than registers, and never leave one build
+    $<$<AND:$<CXX_COMPILER_ID:GNU>,$<COMPILE_LANGUAGE:CXX>>:-Wno-maybe-uninitialized>  # wrong about optionals in optionals (GCC bug 80635)
     $<$<AND:$<CXX_COMPILER_ID:GNU>,$<COMPILE_LANGUAGE:CXX>,$<BOOL:${CMAKE_UNITY_BUILD}>>:-Wno-subobject-linkage>  # takes a batch's sources for headers
     $<$<AND:$<COMPILE_LANGUAGE:CXX>,$<BOOL:${TREACLE_WERROR}>>:-Werror>
     $<$<COMPILE_LANGUAGE:CUDA>:${TREACLE_CUDA_OPTIONS}>

@@ -41,8 +41,8 @@ void findWallKeys(Context<Cuda>& context, const CellGrid<D>& grid, const Particl
 /// two fields would leave particles with the values of others.
 template <int D>
 void makeRoom(Context<Cuda>& context, const Particles<D, Cuda>& particles, SortWorkspace<Cuda>& w) {
-  w.field.resize(
-      context, std::max(particles.count * sizeof(Vec<D>), particles.modes.vectors.size() * sizeof(Vec<D, float>)));
+  w.field.resize(context, std::max(particles.largestField(particles.count, particles.fluidCount),
+                                   particles.modes.vectors.size() * sizeof(Vec<D, float>)));
 }
 
 }  // namespace

@@ -3,8 +3,8 @@
 #include "search/cell_sort.cuh"
 #include "search/decomposition.cuh"
 #include "search/migration.cuh"
+#include "treacle/core/block.hpp"
 #include "treacle/core/device_link.hpp"
-#include "treacle/core/symmetric_block.hpp"
 
 #include <algorithm>
 #include <string>
@@ -121,7 +121,7 @@ void Decomposition<D, Cuda>::sort(Context<Cuda>& context, const CellGrid<D>& gri
   if (halo_.someHaveNone) p.modes.drop();  // a process without fluid does not know how many there are
   arrange(context, p, w, halo_.fluid - own);
   context.halo = &halo_;
-  halo_.reserve(context, sizeof(SymmetricBlock<D>));  // the largest there are: in a graph nothing can be allocated
+  halo_.reserve(context, sizeof(Block<D>));  // the largest there are: in a graph nothing can be allocated
   fillGhosts(context, Held::Fluid, p.position.data());
   fillGhosts(context, Held::Fluid, p.material.data());
   if (p.has.sides) fillGhosts(context, Held::Fluid, p.side.data());

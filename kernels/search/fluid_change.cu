@@ -25,7 +25,7 @@ std::uint32_t listKept(Context<Cuda>& context, std::span<const std::uint8_t> gon
 template <int D>
 void makeRoom(Context<Cuda>& context, Particles<D, Cuda>& p, std::uint32_t fluid, Buffer<std::byte, Cuda>& room) {
   const std::size_t count = std::size_t{fluid} + p.wallCount(), modes = p.modeCount();
-  room.resize(context, std::max(count * sizeof(Vec<D>), modes * fluid * sizeof(Vec<D, float>)));
+  room.resize(context, std::max(p.largestField(count, fluid), modes * fluid * sizeof(Vec<D, float>)));
   const auto grow = [&]<class T>(Buffer<T, Cuda>& field, std::size_t size) {
     const std::size_t capacity = field.bytes() / sizeof(T);
     if (size <= capacity) return;

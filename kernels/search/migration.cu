@@ -31,11 +31,11 @@ void addMessages(std::vector<Message>& messages, std::byte* data, std::span<cons
   }
 }
 
-/// Room for the largest field, with so many particles and modes for so much fluid.
+/// Room for the largest field, and for so many numbers of modes.
 template <int D>
-std::byte* fieldRoom(Context<Cuda>& context, Buffer<std::byte, Cuda>& room, std::size_t count,
+std::byte* fieldRoom(Context<Cuda>& context, Buffer<std::byte, Cuda>& room, std::size_t largest,
                      std::size_t modeValues) {
-  room.resize(context, std::max(count * sizeof(Vec<D>), modeValues * sizeof(Vec<D, float>)));
+  room.resize(context, std::max(largest, modeValues * sizeof(Vec<D, float>)));
   return room.data();
 }
 
@@ -46,7 +46,8 @@ void joinFluid(Context<Cuda>& context, Particles<D, Cuda>& p, const std::uint32_
                const std::byte* arrived, std::uint32_t come, Buffer<std::byte, Cuda>& room) {
   const std::uint32_t before = p.fluidCount, fluid = kept + come, walls = p.wallCount(), wallBegin = p.wallBegin();
   const std::uint32_t modes = p.modeCount();
-  std::byte* one = fieldRoom<D>(context, room, std::size_t{fluid} + walls, std::size_t{modes} * fluid);
+  std::byte* one =
+      fieldRoom<D>(context, room, p.largestField(std::size_t{fluid} + walls, fluid), std::size_t{modes} * fluid);
   const auto join = [&]<class T>(const T* field, T* joint) {
     gather(context, field, index, kept, joint);
     copyBytesOnDevice(context, arrived, joint + kept, come * sizeof(T));
@@ -117,7 +118,7 @@ void arrange(Context<Cuda>& context, Particles<D, Cuda>& p, SortWorkspace<Cuda>&
   const std::uint32_t fluid = p.fluidCount, walls = p.wallCount(), wallBegin = fluid + ghosts;
   const std::uint32_t* index = w.sortedIndex.data();
   const std::size_t count = std::size_t{wallBegin} + walls;
-  std::byte* room = fieldRoom<D>(context, w.field, count, p.modes.vectors.size());
+  std::byte* room = fieldRoom<D>(context, w.field, p.largestField(count, fluid), p.modes.vectors.size());
   permuteModes(context, w, p);
   forEachSharedFieldOf(
       [&]<class T>(Buffer<T, Cuda>& field) {

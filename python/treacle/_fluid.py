@@ -186,7 +186,8 @@ class Fluid:
             name: _expanded(given_array(values, f"states[{name!r}]"), (n,), f"states[{name!r}]")
             for name, values in (states or {}).items()
         }
-        self._session.give_fluid(*given, of_states)
+        x, u, warm, factors = given
+        self._session.give_fluid(x, u, warm, factors, of_states)
 
 
 def _expanded(values: Any, shape: tuple[int, ...], what: str) -> Any:

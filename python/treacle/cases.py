@@ -75,6 +75,57 @@ class Rheology:
 
 
 @dataclass(kw_only=True)
+class ElasticMode:
+    name: str | None = None
+    model: Literal["oldroyd-b", "giesekus", "linear-ptt", "exponential-ptt"] | None = None
+    viscosity: float | None = None
+    """[Pa s]"""
+    relaxation_time: float | None = None
+    """[s]"""
+    mobility: float | None = None
+    extensibility: float | None = None
+
+
+@dataclass(kw_only=True)
+class MaterialState:
+    name: str | None = None
+    law: Literal["expression", "kamal-sourour", "houska", "roussel"] | None = None
+    start: float | None = None
+    rate: str | None = None
+    min: float | None = None
+    max: float | None = None
+    a1: float | None = None
+    """[1/s]"""
+    e1: float | None = None
+    """[J/mol]"""
+    a2: float | None = None
+    """[1/s]"""
+    e2: float | None = None
+    """[J/mol]"""
+    m: float | None = None
+    n: float | None = None
+    max_conversion: float | None = None
+    build_up: float | None = None
+    """[1/s]"""
+    break_down: float | None = None
+    """[s^(exponent-1)]"""
+    exponent: float | None = None
+    time: float | None = None
+    """[s]"""
+    heat: float | None = None
+    """[J/kg]"""
+
+
+@dataclass(kw_only=True)
+class Gelling:
+    state: str | None = None
+    conversion: float | None = None
+    a: float | None = None
+    b: float | None = None
+    max_factor: float | None = None
+
+
+@dataclass(kw_only=True)
 class ContactAngle:
     name: str | None = None
     angle: float | None = None
@@ -129,6 +180,11 @@ class Material:
     """[Pa s]"""
     bulk_modulus: float | None = None
     """[Pa]"""
+    elastic: Sequence[ElasticMode] | None = None
+    state: Sequence[MaterialState] | None = None
+    viscosity_factor: str | None = None
+    yield_factor: str | None = None
+    gelling: Gelling | None = None
     slip_length: float | None = None
     """[m]"""
     surface_tension: float | None = None
@@ -147,6 +203,12 @@ class Material:
     """[1/K]"""
     expansion_temperature: float | None = None
     """[K]"""
+
+
+@dataclass(kw_only=True)
+class StateStart:
+    name: str | None = None
+    value: float | str | None = None
 
 
 @dataclass(kw_only=True)
@@ -232,6 +294,7 @@ class Body:
     disorder: float | None = None
     """[spacings]"""
     viscosity_factor: float | str | None = None
+    state: Sequence[StateStart] | None = None
     oscillation: Oscillation | None = None
     displacement: Sequence[float | str | TimeTable] | None = None
     """[m]"""

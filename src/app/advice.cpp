@@ -3,12 +3,14 @@
 #include "print.hpp"
 #include "treacle/model/case/checks.hpp"
 #include "treacle/model/case/flow_scales.hpp"
+#include "treacle/model/materials/state_table.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <vector>
 
 namespace treacle {
 namespace {
@@ -41,6 +43,53 @@ void printFluid(const FluidNumbers& n, bool elastic) {
   if (n.compression > 0) print(", compressed by up to {:.2g} %", 100 * n.compression);
   if (n.capillaryStep > 0) print(", Bond number {:.3g}, capillary step {:.3g} s", n.bond, n.capillaryStep);
   print("\n");
+}
+
+/// When a state has gone half of the way to its upper bound at the temperature of the start, without shear; 0:
+/// later than the end of the run [s].
+double halfTime(const Case& c, std::size_t material, std::size_t state, const MaterialState& s) {
+  std::vector<FormulaStep> steps;
+  StateTable table = StateTable::make(c, steps);
+  table.steps = steps.data();
+  const Material& m = c.materials[material];
+  double x[StateTable::variables] = {c.heat ? c.typicalTemperature(m) : 0};
+  const std::vector<std::string> names = c.stateNames();
+  for (std::size_t k = 0; k < names.size(); ++k)
+    x[StateTable::FirstState + k] = c.startOfState(static_cast<int>(material), k);
+  constexpr int parts = 1000;
+  const double half = 0.5 * (s.start + s.highest());
+  for (int k = 1; k <= parts; ++k) {
+    table.advance(static_cast<int>(material), c.time.end / parts, x);
+    if (x[StateTable::FirstState + state] >= half) return k * c.time.end / parts;
+  }
+  return 0;
+}
+
+/// Times and numbers of what a material remembers.
+void printMemory(const Case& c, const FluidNumbers& n, const FlowScales& flow) {
+  const auto found = std::ranges::find(c.materials, n.material, &Material::name);
+  const Material& m = *found;
+  for (const ElasticMode& mode : m.elastic) {
+    print("# elastic mode '{}' of '{}': relaxation time {:.3g} s, {:.3g} steps", mode.name, m.name,
+          mode.relaxationTime, mode.relaxationTime / c.time.step);
+    if (flow.length > 0) print(", Weissenberg number {:.3g}", mode.relaxationTime * n.speed / flow.length);
+    print(", Deborah number {:.3g}\n", mode.relaxationTime / c.time.end);
+  }
+  const std::vector<std::string> names = c.stateNames();
+  for (const MaterialState& s : m.states) {
+    if (s.highest() >= 1e30) continue;
+    const auto state = static_cast<std::size_t>(std::ranges::find(names, s.name) - names.begin());
+    const double half = halfTime(c, static_cast<std::size_t>(found - c.materials.begin()), state, s);
+    if (half > 0)
+      print("# state '{}' of '{}': half of the way to {:g} at rest after {:.3g} s, {:.3g} steps\n", s.name, m.name,
+            s.highest(), half, half / c.time.step);
+    else
+      print("# state '{}' of '{}': less than half of the way to {:g} at rest until the end\n", s.name, m.name,
+            s.highest());
+  }
+  if (m.freezing && m.freezing->latentHeat > 0)
+    print("# freezing of '{}': Stefan number {:.3g}\n", m.name,
+          m.specificHeat * std::abs(c.typicalTemperature(m) - m.freezing->liquidus) / m.freezing->latentHeat);
 }
 
 /// A bulk viscosity that is enough, and the bulk moduli that go with a step: stiff enough for the weight and the
@@ -87,6 +136,7 @@ void printAdvice(const Case& c) {
   const std::vector<FluidNumbers> fluids = fluidNumbers(c);
   printResolution(c, flow);
   for (const FluidNumbers& n : fluids) printFluid(n, elastic);
+  for (const FluidNumbers& n : fluids) printMemory(c, n, flow);
   if (!elastic) {
     const double speed = std::max(flow.given, flow.fall);
     if (speed > 0)

@@ -165,6 +165,9 @@ class BodyChange {
     if (to.has.viscosityFactors)
       copyChosen<double>(fluid_, from.viscosityFactor.span(), created_.viscosityFactor.span(),
                          to.viscosityFactor.data());
+    for (std::size_t k = 0; k < to.has.elasticModes; ++k)
+      copyChosen<SymmetricBlock<D>>(fluid_, from.conformation[k].span(), created_.conformation[k].span(),
+                                    to.conformation[k].data());
     for (std::size_t k = 0; k < to.has.states; ++k)
       copyChosen<double>(fluid_, from.states[k].span(), created_.states[k].span(), to.states[k].data());
     for (std::uint32_t k = 0; k < fluid_.kept.size(); ++k) toCase(to.body[k]);

@@ -95,6 +95,10 @@ void requireFields(const Case& c, const std::filesystem::path& file, const State
   if (c.hasThinSheets() != p.has.sides)
     refuse(file, fmt::format("a state with{} thin sheets, but the case has {}; expected the case.toml of the run",
                              p.has.sides ? "" : "out", p.has.sides ? "none" : "some"));
+  if (c.elasticModes() != p.has.elasticModes)
+    refuse(file,
+           fmt::format("a state with {} elastic modes, but the case has {}; expected the case.toml of the run",
+                       p.has.elasticModes, c.elasticModes()));
   if (const auto here = c.stateNames(); here != names.states)
     refuse(file, fmt::format("a state whose materials have the states {}, but those of the case have {}; expected "
                              "the case.toml of the run",

@@ -12,7 +12,9 @@ namespace {
 /// For the constants of the preconditioner that are numbers per material: its degree was found to suit the fluid
 /// where it is thin, not where it is thick.
 double flowingViscosity(const Material& m, double shift) {
-  return std::min(m.viscosity(0.1, shift), m.viscosity(10, shift));
+  double elastic = 0;
+  for (const ElasticMode& mode : m.elastic) elastic += mode.viscosity;
+  return std::min(m.viscosity(0.1, shift), m.viscosity(10, shift)) + elastic;
 }
 
 struct Range {
@@ -89,14 +91,17 @@ Range viscosities(const Case& c, const Material& m) {
     range.least = std::min(range.least, m.viscosity(rate, shift.least, yield.least));
     range.most = std::max(range.most, m.viscosity(rate, shift.most, yield.most));
   }
-  return {factor.least * ofFormula.least * range.least,
-          ofSolid * factor.most * ofFormula.most * ofGel.most * range.most};
+  double elastic = 0;  // from steps of a tenth of the relaxation time to modes stretched tenfold
+  for (const ElasticMode& mode : m.elastic) elastic += mode.viscosity;
+  return {factor.least * ofFormula.least * range.least + 0.1 * elastic,
+          ofSolid * factor.most * ofFormula.most * ofGel.most * range.most + 10 * elastic};
 }
 
 bool hasSteps(const ViscosityClasses& classes, const Case& c, const Material& m) {
   if (m.rheology) return true;
-  return m.dynamicViscosity > 0 &&
-         (m.viscosityShift || m.freezing || m.hasFormulas() || c.hasViscosityFactors() || classes.ofNeighbours);
+  return (m.dynamicViscosity > 0 || !m.elastic.empty()) &&
+         (m.viscosityShift || m.freezing || m.hasFormulas() || !m.elastic.empty() || c.hasViscosityFactors() ||
+          classes.ofNeighbours);
 }
 
 /// Among particles of another fluid, or at a surface, a particle may be resisted by a fraction of its viscosity,

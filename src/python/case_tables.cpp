@@ -25,6 +25,7 @@ constexpr const char* classOf(const Rheology&) { return "Rheology"; }
 constexpr const char* classOf(const ContactAngle&) { return "ContactAngle"; }
 constexpr const char* classOf(const Spring&) { return "Spring"; }
 constexpr const char* classOf(const Hinge&) { return "Hinge"; }
+constexpr const char* classOf(const ElasticMode&) { return "ElasticMode"; }
 constexpr const char* classOf(const MaterialState&) { return "MaterialState"; }
 constexpr const char* classOf(const Gelling&) { return "Gelling"; }
 constexpr const char* classOf(const StateStart&) { return "StateStart"; }
@@ -87,6 +88,11 @@ template <class F>
 void forEachKind(const Probe& probe, F&& f) {
   forEachWord<ProbeKind>(
       probe, [](Probe& p, ProbeKind kind) { p.kind = kind; }, f);
+}
+template <class F>
+void forEachKind(const ElasticMode& mode, F&& f) {
+  forEachWord<ElasticModel>(
+      mode, [](ElasticMode& e, ElasticModel model) { e.model = model; }, f);
 }
 template <class F>
 void forEachKind(const MaterialState& state, F&& f) {

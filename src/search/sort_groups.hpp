@@ -47,9 +47,9 @@ void sortGroup(Particles<D>& particles, std::uint32_t begin, std::uint32_t end, 
   std::sort(keyed.begin(), keyed.end(), before);
   // All room is taken before the first field: memory that gives out between two would leave particles with the
   // values of others.
-  workspace.field.resize(keyed.size() * sizeof(Vec<D>));
+  workspace.field.resize(particles.largestField(keyed.size(), keyed.size()));
   const auto permute = [&]<class T>(T* field, std::uint32_t first = 0) {  // one value per particle from `first` on
-    static_assert(sizeof(T) <= sizeof(Vec<D>));
+    static_assert(sizeof(T) <= sizeof(SymmetricBlock<D>));
     T* sorted = reinterpret_cast<T*>(workspace.field.data());
     parallelFor(keyed.size(), parallelGrain, [&](std::size_t i) { sorted[i] = field[keyed[i].index - first]; });
     std::memcpy(field + (begin - first), sorted, keyed.size() * sizeof(T));

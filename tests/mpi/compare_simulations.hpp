@@ -133,6 +133,10 @@ void expectSameFields(const Case& c, const Particles<D>& a, const Particles<D>& 
     if (a.has.viscosityFactors) {
       ASSERT_EQ(a.viscosityFactor[i], b.viscosityFactor[j]) << id;
     }
+    ASSERT_EQ(a.has.elasticModes, b.has.elasticModes);
+    for (std::size_t k = 0; k < a.has.elasticModes; ++k)
+      for (int n = 0; n < SymmetricBlock<D>::size; ++n)
+        ASSERT_NEAR(a.conformation[k][i].a[n], b.conformation[k][j].a[n], 1e-6) << id;
     ASSERT_EQ(a.has.states, b.has.states);
     for (std::size_t k = 0; k < a.has.states; ++k) ASSERT_NEAR(a.states[k][i], b.states[k][j], 1e-6) << id;
     if (a.has.shearRates) {

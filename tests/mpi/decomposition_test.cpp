@@ -1,6 +1,7 @@
 #include "treacle/search/decomposition.hpp"
 
 #include "mpi/job.hpp"
+#include "support/equal_blocks.hpp"
 #include "support/gpu.hpp"
 #include "treacle/core/device_link.hpp"
 #include "treacle/model/particles/particle_part.hpp"
@@ -64,7 +65,7 @@ struct Flow {
     }
     const ParticlePart part{static_cast<std::uint32_t>(job().rank()), static_cast<std::uint32_t>(job().size())};
     const std::uint32_t begin = part.begin(fluid), size = part.size(fluid);
-    particles.resize({size, walls, modes, walls, 0, {true, true, true, 2}});
+    particles.resize({size, walls, modes, walls, 0, {true, true, true, 2, 1}});
     for (std::uint32_t k = 0; k < particles.count; ++k) {
       const std::uint32_t i = k < size ? begin + k : fluid + (k - size);
       particles.position[k] = i < fluid ? position[i] : wallPosition[i - fluid];
@@ -83,6 +84,7 @@ struct Flow {
       particles.shearRate[k] = mark(begin + k, 9);
       particles.temperature[k] = mark(begin + k, 10);
       particles.viscosityFactor[k] = mark(begin + k, 11);
+      particles.conformation[0][k] = mark(begin + k, 15) * SymmetricBlock<D>::identity();
       for (std::size_t s = 0; s < 2; ++s) particles.states[s][k] = mark(begin + k, 13 + static_cast<int>(s));
       for (std::uint32_t m = 0; m < modes; ++m)
         particles.modes.vectors[m * size + k] = {static_cast<float>(mark(begin + k, 6 + m))};
@@ -161,6 +163,7 @@ struct Flow {
       EXPECT_EQ(p.shearRate[i], mark(id, 9));
       EXPECT_EQ(p.temperature[i], mark(id, 10));
       EXPECT_EQ(p.viscosityFactor[i], mark(id, 11));
+      EXPECT_EQ(p.conformation[0][i](D - 1, D - 1), mark(id, 15));
       for (std::size_t s = 0; s < 2; ++s) EXPECT_EQ(p.states[s][i], mark(id, 13 + static_cast<int>(s)));
       EXPECT_EQ(p.material[i], id % 3);
       EXPECT_EQ(p.body[i], id % 5);

@@ -76,6 +76,16 @@ TEST(SharedSimulation, FluidWithHeat) {
   compare<2>({"glass-gob-2d.toml", 5, {"solver.tolerance=1e-18", "solver.deflation=0", "heat.tolerance=1e-20"}});
 }
 
+/// What particles remember: a resin that cures, and a drop of an elastic fluid that hits a plate.
+TEST(SharedSimulation, FluidWithAMemory) {
+  compare<2>({"../tests/validation/cases/cure.toml",
+              5,
+              {"solver.tolerance=1e-18", "solver.deflation=0", "heat.tolerance=1e-20"}});
+  compare<2>({"elastic-drop-2d.toml",
+              10,
+              {"solver.tolerance=1e-18", "solver.deflation=0", "drop.center=[0,0.0102]", "resolution=0.5"}});
+}
+
 /// A drop that freezes on a cold plate, and rises where it is warm.
 TEST(SharedSimulation, FluidThatFreezesAndRises) {
   compare<2>({"freezing-drop-2d.toml",

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "support/equal_blocks.hpp"
 #include "treacle/model/particles/particles_copy.hpp"
 
 #include <gtest/gtest.h>

@@ -29,7 +29,8 @@ struct RandomParticles {
                       seed % 3,
                       seed % 2 * wall,
                       0,
-                      {seed % 2 > 0, seed % 2 > 0, seed % 2 > 0, static_cast<std::uint8_t>(seed % 5)}});
+                      {seed % 2 > 0, seed % 2 > 0, seed % 2 > 0, static_cast<std::uint8_t>(seed % 5),
+                       static_cast<std::uint8_t>(seed % 3)}});
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> unit(0, 1);
     for (std::uint32_t i = 0; i < particles.count; ++i) {
@@ -45,6 +46,8 @@ struct RandomParticles {
         if (particles.has.temperatures) particles.temperature[i] = 300.25 + i;
         if (particles.has.viscosityFactors) particles.viscosityFactor[i] = 0.25 + i;
         for (std::size_t k = 0; k < particles.has.states; ++k) particles.states[k][i] = 0.125 * (k + 1) + i;
+        for (std::size_t k = 0; k < particles.has.elasticModes; ++k)
+          particles.conformation[k][i] = (1.0 + 0.25 * (k + 1) + i) * SymmetricBlock<D>::identity();
         for (std::uint32_t m = 0; m < particles.modeCount(); ++m)
           particles.modes.vectors[std::size_t{m} * fluid + i] =
               Vec<D, float>::filled(static_cast<float>(i + 0.25 * m));

@@ -25,6 +25,8 @@ groups = {  # studies that share a table: its mark, and what their lines are cal
     "freezing": {"stefan-freezing": "warm liquid", "stefan-one-phase": "at its melting point"},
     "heated-cavities": {"heated-cavity-1e3": "Ra = 10³", "heated-cavity-1e4": "Ra = 10⁴", "heated-cavity-1e5": "Ra = 10⁵"},
     "heated-floors": {"heated-floor": "Ra = 2500", "heated-floor-resting": "Ra = 1366"},
+    "cure": {"cure-isothermal": "at 360 K", "cure-adiabatic": "by its own heat"},
+    "thixotropy": {"thixotropic-steps": "steps", "thixotropic-loop": "loop"},
     "two-layers": {"two-layer-couette": "10,000 to 1", "two-layer-couette-1000": "1,000 to 1"},
     "static-drops": {"static-drop": "drop", "static-drop-3d": "ball"},
     "relaxing-drops": {"relaxing-drop": "drop", "relaxing-drop-3d": "ball"},

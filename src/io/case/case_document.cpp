@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 constexpr std::string_view setPrefix = "--set ";
 constexpr std::string_view namedLists[] = {"material", "body", "outflow", "opening",
                                            "probe"};  // arrays of tables addressed by name
-constexpr std::string_view namedBelow[] = {"contact_angles", "springs", "state",
+constexpr std::string_view namedBelow[] = {"contact_angles", "elastic", "springs", "state",
                                            "vents"};  // those of other tables, merged by name
 
 CaseFileError errorAt(const toml::source_region& source, const std::string& text) {

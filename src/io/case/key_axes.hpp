@@ -72,6 +72,13 @@ struct OwnAxes<MaterialState> {
   }
 };
 template <>
+struct OwnAxes<ElasticMode> {
+  static std::vector<OwnAxis<ElasticMode>> of() {
+    return {
+        wordAxis<ElasticModel, ElasticMode>("model", [](ElasticMode& e, ElasticModel model) { e.model = model; })};
+  }
+};
+template <>
 struct OwnAxes<Rheology> {
   static std::vector<OwnAxis<Rheology>> of() {
     return {wordAxis<RheologyModel, Rheology>("model", [](Rheology& r, RheologyModel model) { r.model = model; })};

@@ -45,6 +45,7 @@ void TableReader::prepareKind(std::string_view key, E& kind) {
   section_ = Section(section_.table(), fmt::format("{} ({})", section_.title(), nameOf(kind)));
 }
 
+void TableReader::prepare(ElasticMode& mode) { prepareKind("model", mode.model); }
 void TableReader::prepare(MaterialState& state) { prepareKind("law", state.law); }
 void TableReader::prepare(Rheology& rheology) { prepareKind("model", rheology.model); }
 void TableReader::prepare(ViscosityShift& shift) { prepareKind("model", shift.model); }
@@ -118,6 +119,9 @@ std::vector<std::string_view> TableReader::knownKeys(const Outflow& outflow) con
 }
 std::vector<std::string_view> TableReader::knownKeys(const Probe& probe) const {
   return keysOfKind<ProbeKind>("type", probe, [](Probe& p, ProbeKind kind) { p.kind = kind; });
+}
+std::vector<std::string_view> TableReader::knownKeys(const ElasticMode& mode) const {
+  return keysOfKind<ElasticModel>("model", mode, [](ElasticMode& e, ElasticModel model) { e.model = model; });
 }
 std::vector<std::string_view> TableReader::knownKeys(const MaterialState& state) const {
   return keysOfKind<StateLaw>("law", state, [](MaterialState& s, StateLaw law) { s.law = law; });

@@ -88,6 +88,7 @@ class TableReader {
   void prepare(Case& c);
   void prepare(MethodSettings& method);
   void prepare(Material& material);
+  void prepare(ElasticMode& mode);
   void prepare(MaterialState& state);
   void prepare(Rheology& rheology);
   void prepare(ViscosityShift& shift);
@@ -126,6 +127,7 @@ class TableReader {
   std::vector<std::string_view> knownKeys(const Nozzle& nozzle) const;
   std::vector<std::string_view> knownKeys(const Outflow& outflow) const;
   std::vector<std::string_view> knownKeys(const Probe& probe) const;
+  std::vector<std::string_view> knownKeys(const ElasticMode& mode) const;
   std::vector<std::string_view> knownKeys(const MaterialState& state) const;
   std::vector<std::string_view> knownKeys(const Rheology& rheology) const;
   std::vector<std::string_view> knownKeys(const ViscosityShift& shift) const;

@@ -38,6 +38,11 @@ bool isFinite(const Vec<D, T>& x) {
   return std::all_of(x.v, x.v + D, [](T component) { return std::isfinite(component); });
 }
 
+template <int D>
+bool isFinite(const SymmetricBlock<D>& m) {
+  return std::all_of(m.a, m.a + m.size, [](double component) { return std::isfinite(component); });
+}
+
 /// Errors: Hdf5Error.
 template <int D>
 void requireSound(const Particles<D>& particles) {
@@ -107,6 +112,8 @@ void fill(hid_t file, const Particles<D>& particles, std::int64_t step, double t
     writeAttribute(file, "states", std::uint8_t{particles.has.states});
     writeNames(file, "state", names.states);
   }
+  if (particles.has.elasticModes > 0)
+    writeAttribute(file, "elastic_modes", std::uint8_t{particles.has.elasticModes});
   if (particles.has.sides) writeAttribute(file, "has_sides", std::uint8_t{1});
   const ModeAge& age = particles.modes.age;
   writeAttribute(file, "mode_count", particles.modeCount());
@@ -230,6 +237,11 @@ Checkpoint<D> readContent(const std::filesystem::path& path, ParticlePart part) 
   const auto has = [&](const char* name) { return readAttribute<std::uint8_t>(file, name) != 0; };
   particles.has = {has("has_shear_rates"), has("has_temperatures"), has("has_viscosity_factors")};
   particles.has.sides = hasAttribute(file, "has_sides");
+  if (hasAttribute(file, "elastic_modes")) {
+    particles.has.elasticModes = readAttribute<std::uint8_t>(file, "elastic_modes");
+    if (particles.has.elasticModes > maxElasticModes)
+      throw Hdf5Error(fmt::format("{} elastic modes, more than {}", particles.has.elasticModes, maxElasticModes));
+  }
   if (hasAttribute(file, "states")) {
     checkpoint.names.states = readNames(file, "state", maxStates);
     particles.has.states = readAttribute<std::uint8_t>(file, "states");

@@ -34,8 +34,8 @@ struct FieldInfo {
 template <class P, class F>
 void forEachNamedField(P& particles, std::uint64_t modeValues, F&& f) {
   auto& [fluidCount, ghostCount, count, position, velocity, pressure, numberDensity, heldPressure, material, body,
-         id, start, side, acceleration, jerk, has, shearRate, temperature, viscosityFactor, states, modes, steps,
-         flow, rigid, gas, wallSurface] = particles;
+         id, start, side, acceleration, jerk, has, shearRate, temperature, viscosityFactor, states, conformation,
+         modes, steps, flow, rigid, gas, wallSurface] = particles;
   static_cast<void>(steps), static_cast<void>(flow), static_cast<void>(rigid), static_cast<void>(gas);  // numbers
   static_cast<void>(wallSurface), static_cast<void>(start);  // there is none between steps
   f(FieldInfo{"position", Of::All, count}, position), f(FieldInfo{"velocity", Of::All, count}, velocity);
@@ -52,6 +52,10 @@ void forEachNamedField(P& particles, std::uint64_t modeValues, F&& f) {
   f(FieldInfo{"viscosity_factor", Of::Fluid, has.viscosityFactors ? fluidCount : 0}, viscosityFactor);
   constexpr std::array<const char*, maxStates> stateFields{"state_0", "state_1", "state_2", "state_3"};
   for (std::size_t k = 0; k < has.states; ++k) f(FieldInfo{stateFields[k], Of::Fluid, fluidCount}, states[k]);
+  constexpr std::array<const char*, maxElasticModes> modeFields{"conformation_0", "conformation_1",
+                                                                "conformation_2", "conformation_3"};
+  for (std::size_t k = 0; k < has.elasticModes; ++k)
+    f(FieldInfo{modeFields[k], Of::Fluid, fluidCount}, conformation[k]);
   f(FieldInfo{"modes", Of::Modes, modeValues}, modes.vectors);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "hdf5.hpp"
+#include "treacle/core/symmetric_block.hpp"
 #include "treacle/core/vec.hpp"
 
 #include <fmt/format.h>
@@ -38,7 +39,13 @@ Layout layoutOf(const Vec<D, float>*) {
   return {H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, D};
 }
 
-/// Vectors make a table of count rows and D columns.
+template <int D>
+Layout layoutOf(const SymmetricBlock<D>*) {
+  static_assert(sizeof(SymmetricBlock<D>) == SymmetricBlock<D>::size * sizeof(double));
+  return {H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, SymmetricBlock<D>::size};
+}
+
+/// Vectors and blocks make a table of count rows and D columns.
 struct Extents {
   int rank;
   std::array<hsize_t, 2> size;

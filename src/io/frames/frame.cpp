@@ -3,8 +3,11 @@
 #include "treacle/model/geometry/side.hpp"
 #include "treacle/model/materials/rheology_table.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 namespace treacle {
 
@@ -47,6 +50,14 @@ Frame makeFrame(const Particles<D>& particles, std::uint32_t begin, std::uint32_
     frame.viscosityFactor = gathered<double>(particles.viscosityFactor, order, same);
   for (std::size_t k = 0; k < particles.has.states && end <= particles.fluidCount; ++k)
     frame.states.push_back({"", gathered<double>(particles.states[k], order, same)});
+  const auto inSpaceToo = [](const SymmetricBlock<D>& c) {
+    auto whole = SymmetricBlock<3>::identity();
+    for (int r = 0; r < D; ++r)
+      for (int s = r; s < D; ++s) whole(r, s) = c(r, s);
+    return whole;
+  };
+  for (std::size_t k = 0; k < particles.has.elasticModes && end <= particles.fluidCount; ++k)
+    frame.conformation.push_back(gathered<SymmetricBlock<3>>(particles.conformation[k], order, inSpaceToo));
   return frame;
 }
 
@@ -57,6 +68,28 @@ Frame solidWalls(const Case& c, const Frame& walls) {
       solid.position.push_back(walls.position[i]);
   return solid;
 }
+
+namespace {
+
+/// The components of the elastic stress in place of the conformations.
+void addStresses(const Case& c, Frame& frame) {
+  if (frame.conformation.empty()) return;
+  for (int r = 0; r < frame.dimensions; ++r)
+    for (int s = r; s < frame.dimensions; ++s) {
+      FrameState stress{fmt::format("elastic_stress_{}{}", "xyz"[r], "xyz"[s]), {}};
+      stress.values.resize(frame.position.size());
+      for (std::size_t i = 0; i < stress.values.size(); ++i) {
+        const std::vector<ElasticMode>& modes = c.materials[static_cast<std::size_t>(frame.material[i])].elastic;
+        for (std::size_t k = 0; k < modes.size(); ++k)
+          stress.values[i] +=
+              modes[k].viscosity / modes[k].relaxationTime * (frame.conformation[k][i](r, s) - (r == s));
+      }
+      frame.states.push_back(std::move(stress));
+    }
+  frame.conformation.clear();
+}
+
+}  // namespace
 
 void addViscosities(const Case& c, Frame& frame) {
   const std::vector<std::string> names = c.stateNames();
@@ -69,6 +102,7 @@ void addViscosities(const Case& c, Frame& frame) {
   for (std::size_t k = 0; k < frame.states.size(); ++k) table.state[k] = frame.states[k].values.data();
   for (std::size_t i = 0; i < frame.shearRate.size(); ++i)
     frame.dynamicViscosity[i] = table.viscosity(i, frame.material[i], frame.shearRate[i]);
+  addStresses(c, frame);
 }
 
 template Frame makeFrame<2>(const Particles<2>&, std::uint32_t, std::uint32_t, double);

@@ -48,7 +48,9 @@ double Case::typicalViscosity(const Material& m) const {
     };
     factor = value(m.viscosityFactor) * (m.gelling ? value(m.gelling->text()) : 1), yield = value(m.yieldFactor);
   }
-  return factor * m.viscosity(1, typicalShift(m), yield);
+  double elastic = 0;
+  for (const ElasticMode& mode : m.elastic) elastic += mode.viscosity;
+  return factor * m.viscosity(1, typicalShift(m), yield) + elastic;
 }
 
 Vec<3> Case::meanGravity(double from, double to) const {

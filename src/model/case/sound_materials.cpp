@@ -85,6 +85,16 @@ void requireSound(const Checker& at, const MaterialState& s) {
     at.fail({s.e1 != 0 ? "e1" : "e2"}, "there are no temperatures in a case without [heat]");
 }
 
+/// Elastic stresses are sums of the accurate scheme.
+void requireSoundElasticity(const Checker& at, const Material& m) {
+  if (m.elastic.empty()) return;
+  const Case& c = at.wholeCase();
+  if (c.method.kind != MethodKind::MphI)
+    at.fail({"elastic"}, fmt::format("only the method '{}' has it, found '{}'", nameOf(MethodKind::MphI),
+                                     nameOf(c.method.kind)));
+  if (!c.isAccurate()) at.fail({"elastic"}, "expected method.scheme = \"accurate\" beside it");
+}
+
 /// What only the whole material says: which states its expressions may read.
 void requireSoundStates(const Checker& at, const Material& m) {
   const Case& c = at.wholeCase();
@@ -122,6 +132,7 @@ void requireSoundStates(const Checker& at, const Material& m) {
 }
 
 void requireSound(const Checker& at, const Material& m) {
+  requireSoundElasticity(at, m);
   requireSoundStates(at, m);
   if (m.rheology && at.wholeCase().method.kind != MethodKind::MphI) at.fail({"rheology"}, rheologyOfMphI);
   if (m.viscosityShift && !at.wholeCase().heat)

@@ -16,7 +16,7 @@ FrameForce<D> FrameForce<D>::of(const Case& c, double from, double to) {
     return f;
   }
   Body wall;
-  wall.rotation.emplace(*c.frame);
+  wall.rotation = c.frame;
   // Functions of time begin with the case.
   const double start = std::max(from, 0.0), length = std::max(to - start, 0.0), middle = start + 0.5 * length;
   f.turns = true;

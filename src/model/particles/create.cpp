@@ -183,7 +183,8 @@ void append(const Case& c, BodyKind kind, const std::vector<Filled<D>>& filled, 
     const InitialState<D> initial(c, *f.body);
     const bool warm = c.heat && kind == BodyKind::Fluid,
                factors = particles.has.viscosityFactors && kind == BodyKind::Fluid;
-    const std::size_t states = kind == BodyKind::Fluid ? particles.has.states : 0;
+    const std::size_t states = kind == BodyKind::Fluid ? particles.has.states : 0,
+                      elasticModes = kind == BodyKind::Fluid ? particles.has.elasticModes : 0;
     const auto place = [&](std::size_t k) {
       const std::size_t i = at + k;
       particles.id[i] = static_cast<std::uint32_t>(id + begin + k);
@@ -193,6 +194,7 @@ void append(const Case& c, BodyKind kind, const std::vector<Filled<D>>& filled, 
       if (factors) particles.viscosityFactor[i] = initial.viscosityFactorAt(f.points.place[begin + k]);
       for (std::size_t s = 0; s < states; ++s)
         particles.states[s][i] = initial.stateAt(s, f.points.place[begin + k]);
+      for (std::size_t m = 0; m < elasticModes; ++m) particles.conformation[m][i] = SymmetricBlock<D>::identity();
       particles.pressure[i] = 0;
       particles.heldPressure[i] = 0;
       particles.numberDensity[i] = 0;
@@ -264,6 +266,7 @@ Particles<D> createParticles(const Case& c, std::vector<std::string>& notes, std
   ParticleNumbers numbers{n, count};
   numbers.has.temperatures = c.heat.has_value(), numbers.has.viscosityFactors = c.hasViscosityFactors();
   numbers.has.states = static_cast<std::uint8_t>(c.stateNames().size());
+  numbers.has.elasticModes = static_cast<std::uint8_t>(c.elasticModes());
   particles.resize(numbers);
   Place next{part.begin(fluidCount), part.end(fluidCount)};
   append(c, BodyKind::Fluid, fluid, particles, next);

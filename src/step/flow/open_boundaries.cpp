@@ -248,6 +248,8 @@ std::uint32_t OpenBoundaries<D, Backend>::add(const CellGrid<D>& grid, const Inc
     if (added.has.temperatures) added.temperature[i] = incoming.temperature;
     if (added.has.viscosityFactors)
       added.viscosityFactor[i] = incoming.viscosityFactor > 0 ? incoming.viscosityFactor : 1;
+    for (std::size_t k = 0; k < added.has.elasticModes; ++k)
+      added.conformation[k][i] = SymmetricBlock<D>::identity();
     for (std::size_t k = 0; k < added.has.states; ++k)
       added.states[k][i] = state_.theCase.startOfState(incoming.material, k);
   }

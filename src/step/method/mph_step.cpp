@@ -4,6 +4,7 @@
 #include "run/failure.hpp"
 #include "run/step_method.hpp"
 #include "run/take_trial.hpp"
+#include "step_elasticity.hpp"
 #include "step_gas.hpp"
 #include "step_heat.hpp"
 #include "step_places.hpp"
@@ -49,6 +50,7 @@ class MphStep final : public StepMethod<D, Backend> {
     if (state.theCase.hasSurfaceTension()) surface_.emplace(state.theCase);
     if (state.theCase.keepsVolume()) tension_.emplace();
     if (state.theCase.gas) gas_.emplace(state.theCase, *tension_);
+    if (state.theCase.elasticModes() > 0) elasticity_.emplace(state.theCase, explicitForces());
     if (state.theCase.hasRigid()) bodies_.emplace(state);
   }
 
@@ -77,6 +79,7 @@ class MphStep final : public StepMethod<D, Backend> {
     if (state_.theCase.needsWallNeighbours()) wallForces_.prepare(state_, neighbourhood_);
     if (surface_) surface_->prepare(state_, pairs_, wallForces_.walls());
     scaleViscosity();
+    if (elasticity_) elasticity_->prepare(state_, pairs_);
     if (tension_) tension_->prepare(state_, pairs_, places_.of(state_));
     if (gas_) gas_->prepare(state_);
     prepareViscous();
@@ -125,8 +128,9 @@ class MphStep final : public StepMethod<D, Backend> {
         });
   }
 
-  /// States and temperatures, which may fail before anything is accepted.
+  /// Elastic stresses, states and temperatures, which may fail before anything is accepted.
   void correctVelocities() override {
+    if (elasticity_) elasticity_->solve(state_, pairs_);
     if (states_) states_->solve(state_, *rheology_);
     if (heat_) heat_->solve(state_, pairs_, states_ ? states_->heating() : std::span<const double>{});
   }
@@ -154,6 +158,7 @@ class MphStep final : public StepMethod<D, Backend> {
     bulkPressure<D>(state_.context, pairs_, divergence_, elastic_, state_.particles.pressure.span().first(active));
     if (rheology_) rheology_->accept(state_);
     if (states_) states_->accept(state_);
+    if (elasticity_) elasticity_->accept(state_);
     if (state_.theCase.needsBalance())
       lastBalance_ = balance_.make(state_, pairs_, divergence_, elastic_, surface_ ? &*surface_ : nullptr,
                                    tension_ ? &*tension_ : nullptr, explicitForces(), buoyancy());
@@ -186,7 +191,8 @@ class MphStep final : public StepMethod<D, Backend> {
            (surface_ ? surface_->bytes() : 0) + (tension_ ? tension_->bytes() : 0) + wallBlock_.bytes() +
            wallGradient_.bytes() + places_.bytes() + elastic_.bytes() + divergence_.bytes() + rhs_.bytes() +
            found_.bytes() + solver_.bytes() + balance_.bytes() + wallForces_.bytes() + (gas_ ? gas_->bytes() : 0) +
-           (bodies_ ? bodies_->bytes() : 0) + rhsAtRest_.bytes() + pressure_.bytes();
+           (elasticity_ ? elasticity_->bytes() : 0) + (bodies_ ? bodies_->bytes() : 0) + rhsAtRest_.bytes() +
+           pressure_.bytes();
   }
 
  private:
@@ -333,6 +339,7 @@ class MphStep final : public StepMethod<D, Backend> {
     if (rheology_) {
       guessAll();
       fillGhosts(state_.context, Held::Active, state_.velocity.data());
+      if (elasticity_) rheology_->setImplicit(elasticity_->implicitViscosity(state_, pairs_));
       return rheology_->start(state_, neighbourhood_);
     }
     const double correction = state_.theCase.method.viscosityCorrection;
@@ -386,6 +393,7 @@ class MphStep final : public StepMethod<D, Backend> {
   }
 
   const ExplicitForces<D, Backend>* explicitForces() const {
+    if (elasticity_) return &*elasticity_;
     if (surface_) return &*surface_;
     if (gas_) return &*gas_;
     return tension_ ? &*tension_ : nullptr;
@@ -415,12 +423,13 @@ class MphStep final : public StepMethod<D, Backend> {
   MphSolver<D, Backend> solver_;
   std::optional<StepRheology<D, Backend>> rheology_;  // where particles have their own viscosities
   Buffer<Vec<D>, Backend> found_;                     // velocities of the last solve, while the next is prepared
-  std::optional<StepStates<D, Backend>> states_;      // where materials have states
-  std::optional<StepHeat<D, Backend>> heat_;          // where the case has heat
-  std::optional<ExpansionTable> expansion_;           // where some fluid expands
-  std::optional<StepSurface<D, Backend>> surface_;    // where some fluid has a surface tension
-  std::optional<StepTension<D, Backend>> tension_;    // where the case keeps its volume
-  std::optional<StepGas<D, Backend>> gas_;            // where the case has gas
+  std::optional<StepElasticity<D, Backend>> elasticity_;  // where a fluid is elastic
+  std::optional<StepStates<D, Backend>> states_;          // where materials have states
+  std::optional<StepHeat<D, Backend>> heat_;              // where the case has heat
+  std::optional<ExpansionTable> expansion_;               // where some fluid expands
+  std::optional<StepSurface<D, Backend>> surface_;        // where some fluid has a surface tension
+  std::optional<StepTension<D, Backend>> tension_;        // where the case keeps its volume
+  std::optional<StepGas<D, Backend>> gas_;                // where the case has gas
   StepPressures<D, Backend> pressures_;
   std::optional<StepBodies<D, Backend>> bodies_;  // where the case has rigid bodies; then also:
   Buffer<Vec<D>, Backend> rhsAtRest_;             // the right-hand side without velocities of walls

@@ -28,6 +28,9 @@ class StepRheology {
   /// The shear rates of the last solve [1/s].
   std::span<const double> foundRates() const { return found_; }
 
+  /// What elastic modes add to the viscosity in the step at hand, per own particle [Pa s].
+  void setImplicit(std::span<const double> viscosity) { table_.implicit = viscosity; }
+
   /// For the first solve of a step, on its neighbours and walls' surfaces; from its first guess, state.velocity,
   /// ghosts included: with the rates of the step before, most steps would need another solve. Errors: RunError for
   /// viscosities that are not finite.

@@ -75,6 +75,13 @@ std::string describeViscosities(double particles) {
       particles);
 }
 
+std::string describeElasticity(double particles) {
+  return fmt::format(
+      "the elastic stresses of {:.0f} particles are not finite; reduce the time step, or give the "
+      "elastic modes a mobility or extensibility that bounds how far they stretch",
+      particles);
+}
+
 std::string describeStates(double particles) {
   return fmt::format(
       "the states of {:.0f} particles are not finite; look at the rates of their materials' states, "

@@ -23,9 +23,10 @@ std::string describeHeatFailure(const SolveReport& report, const HeatSettings& s
 /// Of one that follows the freezing, where so much is left, as |r|^2/|b|^2, after so many linear systems.
 std::string describeFreezingFailure(double left, int systems, const HeatSettings& settings);
 
-/// The diagnosis of viscosities that are not finite, of so many particles, and of states.
+/// The diagnosis of viscosities that are not finite, of so many particles, of states, and of elastic stresses.
 std::string describeViscosities(double particles);
 std::string describeStates(double particles);
+std::string describeElasticity(double particles);
 
 /// Where the right-hand side b (per own fluid particle) is not finite, at some process.
 template <int D>

@@ -32,6 +32,7 @@ std::uint64_t fieldBytes(const ParticleNumbers& n) {
   add(n.has.starts ? n.fluid + n.ghosts + n.wall : 0)(none.start);
   add(n.has.sides ? n.fluid + n.wall : 0)(none.side);
   add(n.fluid * (n.has.shearRates + n.has.temperatures + n.has.viscosityFactors + n.has.states))(none.temperature);
+  add(n.fluid * n.has.elasticModes)(none.conformation[0]);
   add(n.fluid * n.modes)(none.modes.vectors);
   forEachWallFieldOf(add(n.surfaces), none);
   return sum;

@@ -65,6 +65,7 @@ std::uint32_t copyOwnParticles(FlowState<D, Backend>& state, const CellGrid<D>& 
   show(p.has.shearRates, p.shearRate, host.shearRate), show(p.has.temperatures, p.temperature, host.temperature);
   show(p.has.viscosityFactors, p.viscosityFactor, host.viscosityFactor);
   for (std::size_t k = 0; k < p.has.states; ++k) show(true, p.states[k], host.states[k]);
+  for (std::size_t k = 0; k < p.has.elasticModes; ++k) show(true, p.conformation[k], host.conformation[k]);
   return static_cast<std::uint32_t>(own.size()) + far.count;
 }
 

@@ -40,12 +40,15 @@ void requireTemperatures(const Case& c, Particles<D>& particles) {
   if (!c.heat) setField(false, &FluidExtras::temperatures, &Particles<D>::temperature, 0, particles);
 }
 
-/// Likewise of the states of materials, which the state has in the order of the case.
+/// Likewise of the states of materials, which the state has in the order of the case, and of elastic modes.
 template <int D>
 void requireStates(const Case& c, const Particles<D>& particles) {
   if (particles.has.states != c.stateNames().size())
     throw InputError(fmt::format("the case has {} states of materials, but its particles have {}",
                                  c.stateNames().size(), particles.has.states));
+  if (particles.has.elasticModes != c.elasticModes())
+    throw InputError(fmt::format("the fluids of the case have {} elastic modes, but its particles have {}",
+                                 c.elasticModes(), particles.has.elasticModes));
 }
 
 /// The fields that the case wants the fluid to have, and no others. Errors: those of requireTemperatures and

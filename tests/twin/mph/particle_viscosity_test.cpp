@@ -67,7 +67,8 @@ TEST(ParticleViscosityTwin, EqualsTheCpu) {
     const auto found = copyToDevice<double>(cuda, f.found), share = copyToDevice<double>(cuda, f.share);
     const auto temperature = copyToDevice<double>(cuda, f.temperature),
                factor = copyToDevice<double>(cuda, f.factor);
-    RheologyTable table = RheologyTable::make(c), onDevice = table;
+    std::vector<FormulaStep> formulas;
+    RheologyTable table = RheologyTable::make(c, formulas), onDevice = table;
     table.temperature = f.temperature, onDevice.temperature = temperature.span();
     table.factor = f.factor, onDevice.factor = factor.span();
     Buffer<double, Cuda> viscosity(cuda, fluid), scaled(cuda, fluid);

@@ -1,4 +1,5 @@
 #include "treacle/step/run/simulation.hpp"
+#include "support/equal_blocks.hpp"
 #include "support/gpu.hpp"
 #include "support/isph_cases.hpp"
 #include "support/layer_with_gap.hpp"
@@ -291,6 +292,59 @@ TEST(SimulationTwin, StepsLikeTheCpuWhereFluidFreezesAndRises) {
   for (const Precision precision : {Precision::Mixed, Precision::Double}) {
     compareHeat<2>(precision, true);
     compareHeat<3>(precision, true);
+  }
+}
+
+/// Two fluids, of which one has two elastic modes, on a floor that moves.
+template <int D>
+void compareElasticity(Precision precision) {
+  SolverSettings settings;
+  settings.precision = precision;
+  Case c = stepCase(D, settings, SchemeKind::Accurate);
+  c.solver.tolerance = tightTolerance;
+  c.output.balance = true;
+  c.materials[0].elastic = {
+      {.name = "a", .model = ElasticModel::Giesekus, .viscosity = 5, .relaxationTime = 0.02, .mobility = 0.2},
+      {.name = "b", .model = ElasticModel::OldroydB, .viscosity = 1, .relaxationTime = 1e-3}};
+  c.bodies.resize(1);
+  c.bodies[0].kind = BodyKind::Wall;
+  const auto start = [&] {
+    Particles<D> p = bodyOnFloor<D>(c, 0.02);
+    p.has.elasticModes = 2;
+    for (std::size_t k = 0; k < 2; ++k) {
+      p.conformation[k].resize(p.fluidCount);
+      for (std::uint32_t i = 0; i < p.fluidCount; ++i) {
+        p.conformation[k][i] = SymmetricBlock<D>::identity();
+        p.conformation[k][i](0, D - 1) = 0.3 * std::sin(1e3 * p.position[i][0]);
+      }
+    }
+    return p;
+  };
+  Simulation<D> cpu(c, start());
+  Simulation<D, Cuda> cuda(c, start());
+  for (int step = 0; step < 5; ++step) {
+    const StepReport a = cpu.advance(), b = cuda.advance();
+    EXPECT_NEAR(b.diagnostics.kineticEnergy, a.diagnostics.kineticEnergy, agreement * a.diagnostics.kineticEnergy);
+    EXPECT_NEAR(b.balance->elasticPower, a.balance->elasticPower, 1e-6 * std::abs(a.balance->elasticPower));
+  }
+  Particles<D> expected = stateOf(cpu), found;
+  cuda.copyParticles(found);
+  EXPECT_LE(farthest(expected, found), agreement * c.spacing);
+  ASSERT_EQ(found.has.elasticModes, 2);
+  for (std::size_t k = 0; k < 2; ++k) {
+    std::vector<SymmetricBlock<D>> of(expected.fluidCount);
+    for (std::uint32_t i = 0; i < expected.fluidCount; ++i) of[expected.id[i]] = expected.conformation[k][i];
+    for (std::uint32_t i = 0; i < found.fluidCount; ++i)
+      for (int n = 0; n < SymmetricBlock<D>::size; ++n)
+        ASSERT_NEAR(found.conformation[k][i].a[n], of[found.id[i]].a[n], 1e-7);
+  }
+}
+
+TEST(SimulationTwin, StepsLikeTheCpuWithElasticFluid) {
+  TREACLE_SKIP_WITHOUT_GPU();
+  for (const Precision precision : {Precision::Mixed, Precision::Double}) {
+    compareElasticity<2>(precision);
+    compareElasticity<3>(precision);
   }
 }
 

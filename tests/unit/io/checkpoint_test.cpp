@@ -36,8 +36,8 @@ Particles<D> randomParticles(std::uint32_t fluid, std::uint32_t wall) {
                     fluid % 4,
                     0,
                     0,
-                    {fluid % 2 == 0, fluid % 2 == 0, fluid % 2 == 0, static_cast<std::uint8_t>(fluid % 5), false,
-                     fluid % 2 == 0}});
+                    {fluid % 2 == 0, fluid % 2 == 0, fluid % 2 == 0, static_cast<std::uint8_t>(fluid % 5),
+                     static_cast<std::uint8_t>(fluid % 3), false, fluid % 2 == 0}});
   particles.modes.age = {7, 13};
   particles.modes.pressure = {3.75, 4, 6};
   particles.steps = {0.01, 0.02, 0.3};
@@ -47,6 +47,8 @@ Particles<D> randomParticles(std::uint32_t fluid, std::uint32_t wall) {
     for (T& value : field)
       if constexpr (requires { value.v; })
         std::generate(std::begin(value.v), std::end(value.v), [&] { return real(random); });
+      else if constexpr (requires { value.a; })
+        std::generate(std::begin(value.a), std::end(value.a), [&] { return real(random); });
       else if constexpr (std::is_floating_point_v<T>)
         value = std::abs(real(random));
       else if constexpr (std::is_integral_v<T>)
@@ -82,6 +84,7 @@ void expectSame(const Particles<D>& a, const Particles<D>& b) {
   EXPECT_TRUE(sameBits(a.temperature, b.temperature));
   EXPECT_TRUE(sameBits(a.viscosityFactor, b.viscosityFactor));
   for (std::size_t k = 0; k < maxStates; ++k) EXPECT_TRUE(sameBits(a.states[k], b.states[k]));
+  for (std::size_t k = 0; k < maxElasticModes; ++k) EXPECT_TRUE(sameBits(a.conformation[k], b.conformation[k]));
   EXPECT_EQ(a.modeCount(), b.modeCount());
   EXPECT_TRUE(sameBits(a.modes.vectors, b.modes.vectors));
   EXPECT_EQ(a.modes.age, b.modes.age);
@@ -207,7 +210,7 @@ TEST(Checkpoint, PartsOfTheFluidAreRead) {
           walls.erase(walls.begin(), walls.begin() + part.begin(wall));
         }
         Particles<3> expected;
-        expected.resize(size, static_cast<std::uint32_t>(walls.size()), 3);
+        expected.resize({size, walls.size(), 3, 0, 0, whole.has});
         expected.copyNumbers(whole);
         forEachSharedFieldOf(
             [&](const auto& from, auto& to) {

@@ -21,7 +21,7 @@ def study(name, title, printing, end):
     def measure(run):
         time, speed = run.history["time"], run.history["max_speed"]
         fast = time[speed > 3e-4]
-        height = run.history["top"] / H
+        height = run.history["top"] / run.history["top"][0]
         if not collapses:
             return Outcome({"height": 1 - height[-1]}, {}, {"measured": (time, height)})
         found = fast[0] if len(fast) else end
@@ -39,6 +39,6 @@ def study(name, title, printing, end):
         x_label="t [s]",
         y_label="height over that at the start",
         case="../../../cases/concrete-wall-2d.toml",
-        settings=(f'gravity.acceleration=[0,"-9.81*t/{printing:g}"]', f"time.end={end:g}"),
+        settings=(f'gravity.acceleration=[0,"-9.81*t/{printing:g}"]', f"time.end={end:g}", "time.step=0.05"),
         refined=False,
     )

@@ -8,6 +8,7 @@
 #include "treacle/step/flow/gas_contact.hpp"
 #include "treacle/step/flow/outflow.hpp"
 #include "treacle/step/method/buoyancy_terms.hpp"
+#include "treacle/step/method/elastic_terms.hpp"
 #include "treacle/step/method/first_guess.hpp"
 #include "treacle/step/method/freezing_terms.hpp"
 #include "treacle/step/method/heat_terms.hpp"
@@ -224,6 +225,22 @@ std::array<double, StateTerms::count> advanceStates(Context<Backend>& context, c
 }
 
 template <int D, class Backend>
+void setImplicitViscosity(Context<Backend>& context, const ImplicitViscosity<D>& terms) {
+  forEach(context, terms.viscosity.size(), [=] TREACLE_HD(std::size_t i) { terms.set(i); });
+}
+
+template <int D, class Backend>
+void expectStress(Context<Backend>& context, const ExpectedStress<D>& terms) {
+  forEach(context, terms.carried.size(), [=] TREACLE_HD(std::size_t i) { terms.set(i); });
+}
+
+template <int D, class Backend>
+double advanceModes(Context<Backend>& context, const AdvancedModes<D>& terms) {
+  return sumEach<1>(context, terms.state.material.size(),
+                    [=] TREACLE_HD(std::size_t i, double* sum) { terms.add(i, sum); })[0];
+}
+
+template <int D, class Backend>
 std::array<double, PowerTerms<D>::count> sumPowers(Context<Backend>& context, const PowerTerms<D>& terms,
                                                    std::size_t active) {
   return sumEach<PowerTerms<D>::count>(context, active, [=] TREACLE_HD(std::size_t i, double* sums) {
@@ -285,6 +302,9 @@ StepChange stepChange(Context<Backend>& context, const StepChangeTerms<D>& terms
                           std::span<const Vec<D>>);                                                              \
   template std::vector<Contact<D>> findContacts(Context<Backend>&, const ContactSearch<D>&, std::uint32_t,       \
                                                 std::uint32_t);                                                  \
+  template void setImplicitViscosity(Context<Backend>&, const ImplicitViscosity<D>&);                            \
+  template void expectStress(Context<Backend>&, const ExpectedStress<D>&);                                       \
+  template double advanceModes(Context<Backend>&, const AdvancedModes<D>&);                                      \
   template std::array<double, PowerTerms<D>::count> sumPowers(Context<Backend>&, const PowerTerms<D>&,           \
                                                               std::size_t);                                      \
   template PartSums sumPart(Context<Backend>&, const PartTerms<D>&);                                             \

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "treacle/core/symmetric_block.hpp"
 #include "treacle/core/vec.hpp"
 #include "treacle/model/case/case.hpp"
 #include "treacle/model/particles/particles.hpp"
@@ -10,7 +11,7 @@
 
 namespace treacle {
 
-/// A state of the fluid's materials.
+/// A state of the fluid's materials, or a component of its elastic stress [Pa].
 struct FrameState {
   std::string name;
   std::vector<double> values;
@@ -36,6 +37,8 @@ struct Frame {
   std::vector<std::int32_t> body;        // index into the case's bodies
   std::vector<std::uint32_t> id;
   std::vector<FrameState> states;  // of fluid in cases where materials have some
+  // Of fluid, mode by mode, until addViscosities makes stresses of it.
+  std::vector<std::vector<SymmetricBlock<3>>> conformation;
 };
 
 /// Calls f(name in files, pointer to member) for every field but the states. The binding names all members of
@@ -44,7 +47,7 @@ template <class F>
 void forEachFrameField(F&& f) {
   [[maybe_unused]] const auto& [dimensions, time, position, velocity, pressure, numberDensity, nearestDistance,
                                 dynamicViscosity, shearRate, temperature, viscosityFactor, material, body, id,
-                                states] = Frame{};
+                                states, conformation] = Frame{};
   f("position", &Frame::position), f("velocity", &Frame::velocity), f("pressure", &Frame::pressure);
   f("number_density", &Frame::numberDensity), f("nearest_distance", &Frame::nearestDistance);
   f("dynamic_viscosity", &Frame::dynamicViscosity), f("shear_rate", &Frame::shearRate);
@@ -61,8 +64,8 @@ Frame makeFrame(const Particles<D>& particles, std::uint32_t begin, std::uint32_
 /// are.
 Frame solidWalls(const Case& c, const Frame& walls);
 
-/// Completes a frame of fluid, made from particles of the case: with the names of its states and with the
-/// viscosities of its shear rates, temperatures, factors and states, if it has some.
+/// Completes a frame of fluid, made from particles of the case: with the names of its states, its elastic stresses
+/// and the viscosities of its shear rates, temperatures, factors and states, if it has some.
 void addViscosities(const Case& c, Frame& frame);
 
 extern template Frame makeFrame<2>(const Particles<2>&, std::uint32_t, std::uint32_t, double);

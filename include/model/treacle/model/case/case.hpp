@@ -117,6 +117,12 @@ struct Case {
   bool hasStates() const {
     return std::ranges::any_of(materials, [](const Material& m) { return !m.states.empty(); });
   }
+  /// How many elastic modes the fluids have, at most.
+  std::size_t elasticModes() const {
+    std::size_t most = 0;
+    for (const Material& m : materials) most = std::max(most, m.elastic.size());
+    return most;
+  }
   /// What fluid of a material starts with of which no body says more; 0 if it does not have the state.
   double startOfState(int material, std::size_t state) const;
   /// Leaves viscosities what they are.

@@ -60,6 +60,7 @@ inline constexpr Bound positive{.least = 0, .open = true}, notNegative{.least = 
 // Beyond these a step or a solve would take as good as for ever.
 inline constexpr Bound radius{.least = 0, .most = 20, .open = true}, iterations{1, 1e6}, sweeps{1, 1000},
     degree{0, 1000}, stepTolerance{1e-6, 0.5}, flowIndex{.least = 0, .most = 5, .open = true};
+inline constexpr Bound mobility{0, 1}, extensibility{.least = 0, .most = 10, .open = true};
 inline constexpr Bound reactionOrder{0, 5}, conversion{0, 1}, gelFactor{1, 1e9}, solidFactor{1, 1e9};
 // Beyond it the power of a fast shear would overflow; fluids have 0.1 to 5.
 inline constexpr Bound yasuda{.least = 0, .most = 20, .open = true};

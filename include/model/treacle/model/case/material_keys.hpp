@@ -98,6 +98,20 @@ void visit(auto& v, Like<MaterialState> auto& s, const Case& c) {
   if (c.heat) v({"heat", "Heat set free per unit of the state", optional, "J/kg"}, s.heat);
 }
 
+void visit(auto& v, Like<ElasticMode> auto& e, const Case&) {
+  v({"name", "Name of the mode, unique among those of the material", required}, e.name);
+  v({"model", "How the stress of the mode relaxes", required}, e.model);
+  v({"viscosity", "Viscosity of the mode in slow flow, beside that of the solvent", required, "Pa s", positive},
+    e.viscosity);
+  v({"relaxation_time", "Time in which its stress relaxes", required, "s", positive}, e.relaxationTime);
+  if (e.model == ElasticModel::Giesekus)
+    v({"mobility", "Mobility alpha: above 0 the viscosity falls with the shear rate", required, "", mobility},
+      e.mobility);
+  if (e.model == ElasticModel::LinearPtt || e.model == ElasticModel::ExponentialPtt)
+    v({"extensibility", "Constant epsilon: the larger, the less the mode stretches", required, "", extensibility},
+      e.extensibility);
+}
+
 void visit(auto& v, Like<Gelling> auto& g, const Case&) {
   v({"state", "Name of the state that comes to the gel point", required}, g.state);
   v({"conversion", "The state at the gel point", required, "", positive}, g.conversion);
@@ -147,6 +161,12 @@ void visit(auto& v, Like<Material> auto& m, const Case& c) {
      "step with the default scheme",
      required, "Pa", notNegative},
     m.bulkModulus);
+  v({"elastic",
+     "Elastic modes of the fluid; its dynamic_viscosity or rheology is then that of the solvent",
+     optional,
+     "",
+     {0, maxElasticModes}},
+    m.elastic);
   v({"state", "What particles of the material carry and a law changes", optional, "", {0, maxStates}}, m.states);
   v({"viscosity_factor",
      "What the viscosity is multiplied by, an expression in the states, T [K], shear_rate [1/s] and t [s]"},

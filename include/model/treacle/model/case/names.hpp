@@ -66,6 +66,10 @@ inline constexpr Named<StateLaw> stateLaw[] = {{"expression", StateLaw::Expressi
                                                {"kamal-sourour", StateLaw::KamalSourour},
                                                {"houska", StateLaw::Houska},
                                                {"roussel", StateLaw::Roussel}};
+inline constexpr Named<ElasticModel> elastic[] = {{"oldroyd-b", ElasticModel::OldroydB},
+                                                  {"giesekus", ElasticModel::Giesekus},
+                                                  {"linear-ptt", ElasticModel::LinearPtt},
+                                                  {"exponential-ptt", ElasticModel::ExponentialPtt}};
 inline constexpr Named<KrylovKind> krylov[] = {{"cg", KrylovKind::Cg}, {"cr", KrylovKind::Cr}};
 inline constexpr Named<PreconditionerKind> preconditioner[] = {
     {"projected-multigrid", PreconditionerKind::ProjectedMultigrid},
@@ -121,6 +125,8 @@ template <>
 inline constexpr std::span<const Named<ViscousStep>> namesOf<ViscousStep>{names::viscous};
 template <>
 inline constexpr std::span<const Named<RheologyModel>> namesOf<RheologyModel>{names::rheology};
+template <>
+inline constexpr std::span<const Named<ElasticModel>> namesOf<ElasticModel>{names::elastic};
 template <>
 inline constexpr std::span<const Named<StateLaw>> namesOf<StateLaw>{names::stateLaw};
 template <>

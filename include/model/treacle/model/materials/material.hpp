@@ -1,5 +1,6 @@
 #pragma once
 
+#include "treacle/model/materials/elastic_mode.hpp"
 #include "treacle/model/materials/freezing.hpp"
 #include "treacle/model/materials/material_state.hpp"
 #include "treacle/model/materials/rheology.hpp"
@@ -32,6 +33,7 @@ struct Material {
   double contactAngle = 90;     // of a wall, with free surfaces of all other fluids than these [deg]
   std::vector<ContactAngle> contactAngles{};
   std::optional<Rheology> rheology{};   // of a fluid that is not Newtonian; MPH-I only
+  std::vector<ElasticMode> elastic{};   // of a fluid that is elastic, too; MPH-I only
   std::vector<MaterialState> states{};  // MPH-I only
   // Expressions in them, the temperature T, shear_rate and t, by which the viscosity and a yield stress are
   // multiplied; empty: 1. MPH-I only.
@@ -59,7 +61,8 @@ struct Material {
   }
   /// Whether its viscosity is not one number. Laws of states may need shear rates, which come with it.
   bool hasOwnViscosities() const {
-    return rheology.has_value() || viscosityShift.has_value() || freezing.has_value() || hasFormulas();
+    return rheology.has_value() || viscosityShift.has_value() || freezing.has_value() || hasFormulas() ||
+           !elastic.empty();
   }
   bool hasFormulas() const {
     return !states.empty() || !viscosityFactor.empty() || !yieldFactor.empty() || gelling.has_value();

@@ -21,6 +21,7 @@ struct RheologyTable {
   std::span<const double> factor{};       // likewise, by which it is multiplied [-]; empty: 1
   const double* state[maxStates] = {};    // likewise, of the states; null: there is none
   double time = 0;                        // [s]
+  std::span<const double> implicit{};     // likewise, what elastic modes add in a step [Pa s]; empty: nothing
 
   /// Adds the steps of formulas, for whose place in the backend's memory states.steps has to be set. Errors:
   /// InputError for expressions that are none.
@@ -50,10 +51,11 @@ struct RheologyTable {
       a = shift[m](temperature[i]);
       own *= frozen[m].viscosityFactor(temperature[i]);
     }
-    if (!states.steps) return own * of[m].viscosity(rate, a);
+    const double more = implicit.empty() ? 0 : implicit[i];
+    if (!states.steps) return own * of[m].viscosity(rate, a) + more;
     double x[StateTable::variables];
     variables(i, rate, x);
-    return own * states.viscosityFactor(m, x) * of[m].viscosity(rate, a, states.yieldFactor(m, x));
+    return own * states.viscosityFactor(m, x) * of[m].viscosity(rate, a, states.yieldFactor(m, x)) + more;
   }
 };
 

@@ -1,16 +1,19 @@
 #pragma once
 
 #include "treacle/core/buffer.hpp"
+#include "treacle/core/symmetric_block.hpp"
 #include "treacle/core/vec.hpp"
 #include "treacle/model/case/open_flow.hpp"
 #include "treacle/model/geometry/side.hpp"
 #include "treacle/model/geometry/wall_surface.hpp"
+#include "treacle/model/materials/elastic_mode.hpp"
 #include "treacle/model/materials/material_state.hpp"
 #include "treacle/model/motion/rigid_body.hpp"
 #include "treacle/model/state/gas_state.hpp"
 #include "treacle/model/state/solver_modes.hpp"
 #include "treacle/model/state/step_memory.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -24,6 +27,7 @@ struct FluidExtras {
   bool temperatures = false;      // with heat
   bool viscosityFactors = false;  // where some body gives one
   std::uint8_t states = 0;        // how many materials have (Case::stateNames)
+  std::uint8_t elasticModes = 0;  // how many fluids have
   bool starts = false;            // within a step whose forces are those of its middle; walls have it, too
   bool sides = false;             // with thin sheets; walls have them, too
 
@@ -53,6 +57,8 @@ void forEachFluidFieldOf(F&& f, Sets&... sets) {
   if ((sets.has.viscosityFactors && ...)) f(sets.viscosityFactor...);
   for (std::size_t k = 0; k < maxStates; ++k)
     if (((k < sets.has.states) && ...)) f(sets.states[k]...);
+  for (std::size_t k = 0; k < maxElasticModes; ++k)
+    if (((k < sets.has.elasticModes) && ...)) f(sets.conformation[k]...);
 }
 
 /// The fields that fluid and walls have.
@@ -125,6 +131,8 @@ struct Particles {
   Buffer<double, Backend> viscosityFactor;  // by which the viscosity of the material is multiplied [-]
   // In the order of Case::stateNames; those that a particle's material does not have are 0.
   std::array<Buffer<double, Backend>, maxStates> states;
+  // Of the elastic modes of its material: c; the unit matrix where it has none, or is relaxed.
+  std::array<Buffer<SymmetricBlock<D>, Backend>, maxElasticModes> conformation;
 
   // The memory of the solver, likewise.
   SolverModes<D, Backend> modes;
@@ -161,6 +169,11 @@ struct Particles {
     return fluidCount > 0 ? static_cast<std::uint32_t>(modes.vectors.size() / fluidCount) : 0;
   }
 
+  /// Bytes of the largest field of so many particles, `fluid` of them fluid.
+  std::size_t largestField(std::size_t particles, std::size_t fluid) const {
+    return std::max(particles * sizeof(Vec<D>), has.elasticModes > 0 ? fluid * sizeof(SymmetricBlock<D>) : 0);
+  }
+
   ParticleNumbers numbers() const {
     return {fluidCount, wallCount(), modeCount(), wallSurface.size(), ghostCount, has};
   }
@@ -185,6 +198,7 @@ struct Particles {
     start.resize(context, 0), side.resize(context, 0);
     for (auto* field : {&shearRate, &temperature, &viscosityFactor}) field->resize(context, 0);
     for (auto& state : states) state.resize(context, 0);
+    for (auto& mode : conformation) mode.resize(context, 0);
     forEachSharedFieldOf(resizeTo(count), *this);
     forEachFluidFieldOf(resizeTo(fluid), *this);
     modes.vectors.resize(context, fluid * numbers.modes);

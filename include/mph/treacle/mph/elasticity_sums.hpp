@@ -1,0 +1,177 @@
+#pragma once
+
+#include "treacle/core/floored_inverse.hpp"
+#include "treacle/mph/elasticity.hpp"
+#include "treacle/mph/pair_sums.hpp"
+
+namespace treacle {
+
+// The sums of elasticity.hpp, for the sources of both backends, which instantiate them.
+
+/// g of the pairs of elastic fluid.
+template <int D>
+using ElasticPairTerms = MphTerms<D, double, AccurateScheme>;
+
+template <int D>
+ElasticPairTerms<D> elasticTerms(const MphPairs<D>& pairs) {
+  const double radius = pairs.terms.viscosityRadius;
+  const auto weight = Weight<D>::make(radius, pairs.spacing, SchemeKind::Accurate);
+  return MphTerms<D>::make(weight, radius, pairs.spacing).with(AccurateScheme{});
+}
+
+/// sum of g d d^T.
+template <int D>
+struct ElasticMoment {
+  static constexpr int values = SymmetricBlock<D>::size;
+  static constexpr bool uses(ListSegment) { return true; }
+
+  ElasticPairTerms<D> mph;
+  SymmetricBlock<D>* moment;
+
+  template <class At>
+  TREACLE_HD At own(const MphPairs<D>&, const At& at) const {
+    return at;
+  }
+  template <class T, class O>
+  TREACLE_HD void add(const MphPairs<D>&, T* sum, const Vec<D, T>& d, const PairDistance<T>& r, const O&,
+                      const OneParticle&, ListSegment) const {
+    const T g = mph.gradient(r);
+    int n = 0;
+    for (int i = 0; i < D; ++i)
+      for (int k = i; k < D; ++k, ++n) sum[n] += g * d[i] * d[k];
+  }
+  TREACLE_HD void store(const MphPairs<D>&, std::uint32_t i, int n, double sum) const { moment[i].a[n] = sum; }
+};
+
+/// sum of g (u_j - u_i) d^T.
+template <int D>
+struct VelocityMoment {
+  static constexpr int values = D * D;
+  static constexpr bool uses(ListSegment) { return true; }
+  template <class At>
+  struct Own {
+    At at;
+    VecAt<D, At> u;
+  };
+
+  ElasticPairTerms<D> mph;
+  const Vec<D>* u;
+  Block<D>* moment;
+
+  template <class At>
+  TREACLE_HD Own<At> own(const MphPairs<D>&, const At& at) const {
+    return {at, at([&](std::uint32_t i) { return u[i]; })};
+  }
+  template <class T, class O>
+  TREACLE_HD void add(const MphPairs<D>& pairs, T* sum, const Vec<D, T>& d, const PairDistance<T>& r, const O& own,
+                      const Own<OneParticle>& other, ListSegment segment) const {
+    T g = mph.gradient(r);
+    if (isWall(segment)) g *= wallFactorOf<true>(pairs, own.at, other.at.index, d);
+    for (int i = 0; i < D; ++i) addScaled(sum + i * D, g * (other.u[i] - own.u[i]), d);
+  }
+  TREACLE_HD void store(const MphPairs<D>&, std::uint32_t i, int n, double sum) const { moment[i].a[n] = sum; }
+};
+
+/// sum of g (tau_i B_i + tau_j B_j) d.
+template <int D>
+struct StressForce {
+  static constexpr int values = 2 * D;  // of g d, which meets what the particle itself carries; of the others
+  static constexpr bool uses(ListSegment) { return true; }
+  using StoresAll = void;
+
+  ElasticPairTerms<D> mph;
+  const Block<D>* carried;
+  Vec<D>* force;
+
+  template <class At>
+  TREACLE_HD At own(const MphPairs<D>&, const At& at) const {
+    return at;
+  }
+  template <class T, class O>
+  TREACLE_HD void add(const MphPairs<D>&, T* sum, const Vec<D, T>& d, const PairDistance<T>& r, const O&,
+                      const OneParticle& other, ListSegment segment) const {
+    const T g = mph.gradient(r);
+    if (isWall(segment)) return addScaled(sum, 2.0 * g, d);
+    addScaled(sum, g, d);
+    const Block<D>& m = carried[other.index];
+    for (int i = 0; i < D; ++i)
+      for (int k = 0; k < D; ++k) sum[D + i] += g * m(i, k) * d[k];
+  }
+  TREACLE_HD void store(const MphPairs<D>&, std::uint32_t i, const double* sum) const {
+    Vec<D> own{}, others{};
+    for (int k = 0; k < D; ++k) own[k] = sum[k], others[k] = sum[D + k];
+    force[i] = carried[i] * own + others;
+  }
+};
+
+/// Of a wall particle: sum of 2 g tau_i B_i d over fluid.
+template <int D>
+struct StressOnWalls {
+  static constexpr int values = D;
+  static constexpr bool uses(ListSegment s) { return isFluid(s); }
+
+  ElasticPairTerms<D> mph;
+  const Block<D>* carried;
+  Vec<D>* force;  // of the first wall particle
+
+  template <class At>
+  TREACLE_HD At own(const MphPairs<D>&, const At& at) const {
+    return at;
+  }
+  template <class T, class O>
+  TREACLE_HD void add(const MphPairs<D>&, T* sum, const Vec<D, T>& d, const PairDistance<T>& r, const O&,
+                      const OneParticle& other, ListSegment) const {
+    const T g = 2.0 * mph.gradient(r);
+    const Block<D>& m = carried[other.index];
+    for (int i = 0; i < D; ++i)
+      for (int k = 0; k < D; ++k) sum[i] += g * m(i, k) * d[k];
+  }
+  TREACLE_HD void store(const MphPairs<D>& pairs, std::uint32_t j, int n, double sum) const {
+    force[j - pairs.fluidCount][n] = sum;
+  }
+};
+
+template <int D, class Backend>
+void gradientCorrection(Context<Backend>& context, const MphPairs<D>& pairs, std::span<SymmetricBlock<D>> b) {
+  sumOnFluid(context, pairs, ElasticMoment<D>{elasticTerms(pairs), b.data()});
+  forEach(context, b.size(),
+          [=] TREACLE_HD(std::size_t i) { b[i] = flooredInverse(b[i], leastElasticMoment, false); });
+}
+
+template <int D, class Backend>
+void velocityGradient(Context<Backend>& context, const MphPairs<D>& pairs, std::span<const SymmetricBlock<D>> b,
+                      std::span<const Vec<D>> u, std::span<Block<D>> gradient) {
+  sumOnFluid(context, pairs, VelocityMoment<D>{elasticTerms(pairs), u.data(), gradient.data()});
+  forEach(context, gradient.size(), [=] TREACLE_HD(std::size_t i) {
+    const Block<D> moment = gradient[i];
+    for (int r = 0; r < D; ++r)
+      for (int s = 0; s < D; ++s) {
+        double sum = 0;
+        for (int k = 0; k < D; ++k) sum += moment(r, k) * b[i](k, s);
+        gradient[i](r, s) = sum;
+      }
+  });
+}
+
+template <int D, class Backend>
+void stressForces(Context<Backend>& context, const MphPairs<D>& pairs, std::span<const Block<D>> carried,
+                  std::span<Vec<D>> force) {
+  sumOnFluid(context, pairs, StressForce<D>{elasticTerms(pairs), carried.data(), force.data()});
+}
+
+template <int D, class Backend>
+void stressOnWalls(Context<Backend>& context, const MphPairs<D>& pairs, const ClusterListView& walls,
+                   std::span<const Block<D>> carried, std::span<Vec<D>> force) {
+  sumOnList(context, pairs, walls, StressOnWalls<D>{elasticTerms(pairs), carried.data(), force.data()});
+}
+
+#define TREACLE_ELASTICITY_SUMS(D, Backend)                                                                 \
+  template void gradientCorrection(Context<Backend>&, const MphPairs<D>&, std::span<SymmetricBlock<D>>);    \
+  template void velocityGradient(Context<Backend>&, const MphPairs<D>&, std::span<const SymmetricBlock<D>>, \
+                                 std::span<const Vec<D>>, std::span<Block<D>>);                             \
+  template void stressForces(Context<Backend>&, const MphPairs<D>&, std::span<const Block<D>>,              \
+                             std::span<Vec<D>>);                                                            \
+  template void stressOnWalls(Context<Backend>&, const MphPairs<D>&, const ClusterListView&,                \
+                              std::span<const Block<D>>, std::span<Vec<D>>);
+
+}  // namespace treacle

@@ -1,0 +1,109 @@
+#pragma once
+
+#include "explicit_forces.hpp"
+#include "run/failure.hpp"
+#include "treacle/core/halo.hpp"
+#include "treacle/mph/elasticity.hpp"
+#include "treacle/mph/surface_tension.hpp"
+#include "treacle/step/method/elastic_terms.hpp"
+
+#include <array>
+
+namespace treacle {
+
+/// The elastic modes of the fluid in a step of MPH-I. The stress at the end of the step is that of the expected
+/// velocities, and the system solves for how it changes with the velocities as for a viscosity (StepRheology), so
+/// that the step may be long against the relaxation time.
+template <int D, class Backend>
+class StepElasticity final : public ExplicitForces<D, Backend> {
+ public:
+  /// `others`: forces that go with these, or null; must outlive this.
+  StepElasticity(const Case& c, const ExplicitForces<D, Backend>* others)
+      : table_(ElasticTable::make(c)), others_(others) {}
+
+  /// What the modes add to the viscosity in the step at hand, per own particle [Pa s].
+  std::span<const double> implicitViscosity(FlowState<D, Backend>& state, const MphPairs<D>& pairs) {
+    implicit_.resize(state.context, pairs.ownFluid());
+    setImplicitViscosity<D>(state.context, {conformations(state, pairs), implicit_.span()});
+    return implicit_;
+  }
+
+  /// With the expected velocities in state.velocity, of all active particles.
+  void prepare(FlowState<D, Backend>& state, const MphPairs<D>& pairs) {
+    Context<Backend>& context = state.context;
+    const std::uint32_t own = pairs.ownFluid();
+    correction_.resize(context, own), gradient_.resize(context, own), force_.resize(context, own);
+    carried_.resize(context, pairs.fluidCount);
+    gradientCorrection<D>(context, pairs, correction_.span());
+    expectStress<D>(context, {elasticState(state, pairs), correction_.span(), carried_.span().first(own)});
+    fillGhosts(context, Held::Fluid, carried_.data());
+    stressForces<D>(context, pairs, carried_.span(), force_.span());
+  }
+
+  /// The conformations that follow from the velocities of the solve. Errors: RunError if some are not finite.
+  void solve(FlowState<D, Backend>& state, const MphPairs<D>& pairs) {
+    AdvancedModes<D> terms{elasticState(state, pairs), {}};
+    for (std::size_t k = 0; k < state.particles.has.elasticModes; ++k) {
+      next_[k].resize(state.context, pairs.ownFluid());
+      terms.next[k] = next_[k].data();
+    }
+    if (const double bad = advanceModes<D>(state.context, terms); bad > 0) throw RunError(describeElasticity(bad));
+  }
+
+  void accept(FlowState<D, Backend>& state) {
+    for (std::size_t k = 0; k < state.particles.has.elasticModes; ++k)
+      copyValues(state.context, std::span<const SymmetricBlock<D>>(next_[k]),
+                 state.particles.conformation[k].data());
+  }
+
+  void addForces(FlowState<D, Backend>& state, std::span<Vec<D>> y) const override {
+    if (others_) others_->addForces(state, y);
+    addSurfaceForces<D>(state.context, force_.span().first(y.size()), y);
+  }
+  void allForces(FlowState<D, Backend>& state, const MphPairs<D>& pairs, const ClusterListView& walls,
+                 std::span<Vec<D>> y, std::span<Vec<D>> load) const override {
+    const std::uint32_t n = pairs.ownFluid();
+    if (others_)
+      others_->allForces(state, pairs, walls, y, load);
+    else
+      clearValues(state.context, y);
+    addSurfaceForces<D>(state.context, force_.span().first(n), y.first(n));
+    onWalls_.resize(state.context, y.size() - pairs.fluidCount);
+    clearValues(state.context, onWalls_.span());
+    stressOnWalls<D>(state.context, pairs, walls, carried_.span(), onWalls_.span());
+    addSurfaceForces<D>(state.context, onWalls_.span(), y.subspan(pairs.fluidCount));
+    addSurfaceForces<D>(state.context, onWalls_.span(), load);
+  }
+
+  std::size_t bytes() const {
+    std::size_t sum = implicit_.bytes() + correction_.bytes() + gradient_.bytes() + carried_.bytes() +
+                      force_.bytes() + onWalls_.bytes();
+    for (const auto& next : next_) sum += next.bytes();
+    return sum;
+  }
+
+ private:
+  /// With the gradient of state.velocity.
+  ElasticState<D> elasticState(FlowState<D, Backend>& state, const MphPairs<D>& pairs) {
+    velocityGradient<D>(state.context, pairs, correction_.span(), state.velocity.span(), gradient_.span());
+    return conformations(state, pairs);
+  }
+  ElasticState<D> conformations(const FlowState<D, Backend>& state, const MphPairs<D>& pairs) const {
+    ElasticState<D> of{table_, state.timeStep, pairs.material.first(pairs.ownFluid()), {}, gradient_.span()};
+    for (std::size_t k = 0; k < state.particles.has.elasticModes; ++k)
+      of.conformation[k] = state.particles.conformation[k].data();
+    return of;
+  }
+
+  ElasticTable table_;
+  const ExplicitForces<D, Backend>* others_;
+  Buffer<double, Backend> implicit_;               // [Pa s]
+  Buffer<SymmetricBlock<D>, Backend> correction_;  // B
+  Buffer<Block<D>, Backend> gradient_;             // [1/s]
+  Buffer<Block<D>, Backend> carried_;              // the stress times B, per fluid particle [Pa]
+  Buffer<Vec<D>, Backend> force_;                  // [N/m3]
+  mutable Buffer<Vec<D>, Backend> onWalls_;        // per active wall particle [N/m3]
+  std::array<Buffer<SymmetricBlock<D>, Backend>, maxElasticModes> next_;
+};
+
+}  // namespace treacle
