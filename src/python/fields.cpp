@@ -125,7 +125,8 @@ nb::tuple fieldAddress(const Session& session, const std::string& name) {
 }
 
 void giveFluid(Session& session, const nb::object& positions, const nb::object& velocities,
-               const nb::object& temperatures, const nb::object& viscosityFactors, const nb::dict& states) {
+               const nb::object& temperatures, const nb::object& viscosityFactors,
+               const nb::typed<nb::dict, nb::str, nb::object>& states) {
   const Given x(positions, "positions"), u(velocities, "velocities"), warm(temperatures, "temperatures"),
       factors(viscosityFactors, "viscosity_factors");
   std::optional<bool> onDevice;

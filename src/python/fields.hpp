@@ -26,7 +26,7 @@ nanobind::tuple fieldAddress(const Session& session, const std::string& name);
 /// states by name.
 void giveFluid(Session& session, const nanobind::object& positions, const nanobind::object& velocities,
                const nanobind::object& temperatures, const nanobind::object& viscosityFactors,
-               const nanobind::dict& states);
+               const nanobind::typed<nanobind::dict, nanobind::str, nanobind::object>& states);
 
 /// Name, copied array of every field of walls, in the order of their ids.
 nanobind::dict arraysOf(const Frame& frame);
