@@ -1,7 +1,9 @@
 #pragma once
 
 #include "treacle/core/floored_inverse.hpp"
+#include "treacle/core/product.hpp"
 #include "treacle/mph/elasticity.hpp"
+#include "treacle/mph/gradient_moment.hpp"
 #include "treacle/mph/pair_sums.hpp"
 
 namespace treacle {
@@ -18,30 +20,6 @@ ElasticPairTerms<D> elasticTerms(const MphPairs<D>& pairs) {
   const auto weight = Weight<D>::make(radius, pairs.spacing, SchemeKind::Accurate);
   return MphTerms<D>::make(weight, radius, pairs.spacing).with(AccurateScheme{});
 }
-
-/// sum of g d d^T.
-template <int D>
-struct ElasticMoment {
-  static constexpr int values = SymmetricBlock<D>::size;
-  static constexpr bool uses(ListSegment) { return true; }
-
-  ElasticPairTerms<D> mph;
-  SymmetricBlock<D>* moment;
-
-  template <class At>
-  TREACLE_HD At own(const MphPairs<D>&, const At& at) const {
-    return at;
-  }
-  template <class T, class O>
-  TREACLE_HD void add(const MphPairs<D>&, T* sum, const Vec<D, T>& d, const PairDistance<T>& r, const O&,
-                      const OneParticle&, ListSegment) const {
-    const T g = mph.gradient(r);
-    int n = 0;
-    for (int i = 0; i < D; ++i)
-      for (int k = i; k < D; ++k, ++n) sum[n] += g * d[i] * d[k];
-  }
-  TREACLE_HD void store(const MphPairs<D>&, std::uint32_t i, int n, double sum) const { moment[i].a[n] = sum; }
-};
 
 /// sum of g (u_j - u_i) d^T.
 template <int D>
@@ -133,7 +111,7 @@ struct StressOnWalls {
 
 template <int D, class Backend>
 void gradientCorrection(Context<Backend>& context, const MphPairs<D>& pairs, std::span<SymmetricBlock<D>> b) {
-  sumOnFluid(context, pairs, ElasticMoment<D>{elasticTerms(pairs), b.data()});
+  sumOnFluid(context, pairs, GradientMoment<D, ElasticPairTerms<D>, true>{elasticTerms(pairs), b.data()});
   forEach(context, b.size(),
           [=] TREACLE_HD(std::size_t i) { b[i] = flooredInverse(b[i], leastElasticMoment, false); });
 }
@@ -142,15 +120,8 @@ template <int D, class Backend>
 void velocityGradient(Context<Backend>& context, const MphPairs<D>& pairs, std::span<const SymmetricBlock<D>> b,
                       std::span<const Vec<D>> u, std::span<Block<D>> gradient) {
   sumOnFluid(context, pairs, VelocityMoment<D>{elasticTerms(pairs), u.data(), gradient.data()});
-  forEach(context, gradient.size(), [=] TREACLE_HD(std::size_t i) {
-    const Block<D> moment = gradient[i];
-    for (int r = 0; r < D; ++r)
-      for (int s = 0; s < D; ++s) {
-        double sum = 0;
-        for (int k = 0; k < D; ++k) sum += moment(r, k) * b[i](k, s);
-        gradient[i](r, s) = sum;
-      }
-  });
+  forEach(context, gradient.size(),
+          [=] TREACLE_HD(std::size_t i) { gradient[i] = product<D>(gradient[i], b[i]); });
 }
 
 template <int D, class Backend>

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "treacle/mph/gradient_moment.hpp"
 #include "treacle/mph/mph_particles.hpp"
 #include "treacle/mph/pair_sums.hpp"
 #include "treacle/mph/particle_viscosity.hpp"
@@ -81,34 +82,9 @@ void viscosityScale(Context<Backend>& context, const MphPairs<D>& pairs, double 
   sumOnFluid(context, pairs, ViscousMoment<D>{correction, scale.data()});
 }
 
-/// M_i = sum of g d d^T per fluid particle, its upper triangle.
-template <int D>
-struct Moments {
-  static constexpr int values = SymmetricBlock<D>::size;
-  static constexpr bool uses(ListSegment s) { return isNear(s); }
-
-  SymmetricBlock<D>* moment;
-
-  template <class At>
-  TREACLE_HD At own(const MphPairs<D>&, const At& at) const {
-    return at;
-  }
-  template <class T, class O>
-  TREACLE_HD void add(const MphPairs<D>& pairs, T* sum, const Vec<D, T>& d, const PairDistance<T>& r, const O&,
-                      const OneParticle&, ListSegment) const {
-    const T g = pairs.terms.gradientShape(r);
-    int n = 0;
-    for (int i = 0; i < D; ++i)
-      for (int k = i; k < D; ++k, ++n) sum[n] += g * d[i] * d[k];
-  }
-  TREACLE_HD void store(const MphPairs<D>& pairs, std::uint32_t i, int n, double sum) const {
-    moment[i].a[n] = pairs.terms.gradientFactor * sum;
-  }
-};
-
 template <int D, class Backend>
 void renormalisation(Context<Backend>& context, const MphPairs<D>& pairs, std::span<SymmetricBlock<D>> b) {
-  sumOnFluid(context, pairs, Moments<D>{b.data()});
+  sumOnFluid(context, pairs, GradientMoment<D, MphTerms<D>, false>{pairs.terms, b.data()});
   forEach(context, b.size(), [=] TREACLE_HD(std::size_t i) { b[i] = renormalisationOf(b[i]); });
 }
 

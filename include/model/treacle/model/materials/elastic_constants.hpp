@@ -2,6 +2,7 @@
 
 #include "treacle/core/block.hpp"
 #include "treacle/core/macros.hpp"
+#include "treacle/core/product.hpp"
 #include "treacle/core/symmetric_block.hpp"
 #include "treacle/model/materials/elastic_mode.hpp"
 
@@ -23,9 +24,9 @@ struct ElasticConstants {
             m.model == ElasticModel::ExponentialPtt};
   }
 
-  /// What of a velocity gradient of the end of a step of dt [s] the stress there follows at once: the viscosity
-  /// that the step solves for with the flow [Pa s]. For long steps it is eta. A conformation
-  /// that is stretched follows by as much more.
+  /// The viscosity that the step solves for with the flow [Pa s]: by how much the stress at the end of a step of
+  /// dt [s] changes with the velocity gradient of that end. For long steps it is eta. The stress of a conformation
+  /// that is stretched changes by as much more.
   TREACLE_HD double implicitViscosity(double dt) const { return -modulus / rate * std::expm1(-rate * dt); }
   template <int D>
   TREACLE_HD double implicitViscosity(double dt, const SymmetricBlock<D>& c) const {
@@ -58,27 +59,10 @@ struct ElasticConstants {
     return (rate * f) * ((1 - mobility) * SymmetricBlock<D>::identity() + mobility * c);
   }
 
-  template <int D>
-  TREACLE_HD static Block<D> product(const Block<D>& a, const Block<D>& b) {
-    Block<D> p{};
-    for (int r = 0; r < D; ++r)
-      for (int s = 0; s < D; ++s)
-        for (int k = 0; k < D; ++k) p(r, s) += a(r, k) * b(k, s);
-    return p;
-  }
-  /// a m
-  template <int D>
-  TREACLE_HD static Block<D> product(const Block<D>& a, const SymmetricBlock<D>& m) {
-    Block<D> p{};
-    for (int r = 0; r < D; ++r)
-      for (int s = 0; s < D; ++s)
-        for (int k = 0; k < D; ++k) p(r, s) += a(r, k) * m(k, s);
-    return p;
-  }
   /// a m + m a^T
   template <int D>
   TREACLE_HD static SymmetricBlock<D> both(const Block<D>& a, const SymmetricBlock<D>& m) {
-    const Block<D> am = product(a, m);
+    const Block<D> am = product<D>(a, m);
     SymmetricBlock<D> sum{};
     for (int r = 0; r < D; ++r)
       for (int s = r; s < D; ++s) sum(r, s) = am(r, s) + am(s, r);
@@ -87,7 +71,7 @@ struct ElasticConstants {
   /// p m p^T
   template <int D>
   TREACLE_HD static SymmetricBlock<D> carried(const Block<D>& p, const SymmetricBlock<D>& m) {
-    const Block<D> pm = product(p, m);
+    const Block<D> pm = product<D>(p, m);
     SymmetricBlock<D> sum{};
     for (int r = 0; r < D; ++r)
       for (int s = r; s < D; ++s)
@@ -117,12 +101,12 @@ struct ElasticConstants {
       factor *= h / k;
       x += factor * term;
       term = both(a, term);
-      power = product(power, a);
+      power = product<D>(power, a);
       for (int n = 0; n < D * D; ++n) p.a[n] += factor * power.a[n];
     }
     for (int k = 0; k < doublings; ++k) {
       x += carried(p, x);
-      p = product(p, p);
+      p = product<D>(p, p);
     }
     return carried(p, c) + x;
   }

@@ -50,7 +50,7 @@ struct Enthalpy {
   }
 };
 
-/// Of all materials of a case.
+/// The enthalpies of all materials of a case.
 struct EnthalpyTable {
   Enthalpy of[maxMaterials];
 

@@ -2,6 +2,7 @@
 
 #include "treacle/core/block.hpp"
 #include "treacle/core/cuda.hpp"
+#include "treacle/core/product.hpp"
 #include "treacle/model/case/case.hpp"
 #include "treacle/model/materials/elastic_constants.hpp"
 
@@ -86,18 +87,13 @@ struct ExpectedStress {
       for (int r = 0; r < D; ++r)
         for (int s = r; s < D; ++s) stress(r, s) += mode.modulus * (c(r, s) - (r == s));
     }
-    for (int r = 0; r < D; ++r)
-      for (int s = 0; s < D; ++s) {
-        double sum = 0;
-        for (int k = 0; k < D; ++k) sum += stress(r, k) * correction[i](k, s);
-        carried[i](r, s) = sum;
-      }
+    carried[i] = product<D>(stress, correction[i]);
   }
 };
 template <int D, class Backend>
 void expectStress(Context<Backend>&, const ExpectedStress<D>& terms);
 
-/// The conformations at the end of the step.
+/// Sets the conformations at the end of the step.
 template <int D>
 struct AdvancedModes {
   ElasticState<D> state;
@@ -118,7 +114,7 @@ struct AdvancedModes {
     if (!finite) *sum += 1;
   }
 };
-/// How many particles' are not finite, over all processes.
+/// Sets them; the number of particles whose conformations are not finite, over all processes.
 template <int D, class Backend>
 double advanceModes(Context<Backend>&, const AdvancedModes<D>& terms);
 
