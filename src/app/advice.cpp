@@ -53,9 +53,7 @@ double halfTime(const Case& c, std::size_t material, std::size_t state, const Ma
   table.steps = steps.data();
   const Material& m = c.materials[material];
   double x[StateTable::variables] = {c.heat ? c.typicalTemperature(m) : 0};
-  const std::vector<std::string> names = c.stateNames();
-  for (std::size_t k = 0; k < names.size(); ++k)
-    x[StateTable::FirstState + k] = c.startOfState(static_cast<int>(material), k);
+  std::ranges::copy(c.startsOfStates(m), x + StateTable::FirstState);
   constexpr int parts = 1000;
   const double half = 0.5 * (s.start + s.highest());
   for (int k = 1; k <= parts; ++k) {
@@ -66,7 +64,7 @@ double halfTime(const Case& c, std::size_t material, std::size_t state, const Ma
 }
 
 /// Times and numbers of what a material remembers.
-void printMemory(const Case& c, const FluidNumbers& n, const FlowScales& flow) {
+void printRemembered(const Case& c, const FluidNumbers& n, const FlowScales& flow) {
   const auto found = std::ranges::find(c.materials, n.material, &Material::name);
   const Material& m = *found;
   for (const ElasticMode& mode : m.elastic) {
@@ -136,7 +134,7 @@ void printAdvice(const Case& c) {
   const std::vector<FluidNumbers> fluids = fluidNumbers(c);
   printResolution(c, flow);
   for (const FluidNumbers& n : fluids) printFluid(n, elastic);
-  for (const FluidNumbers& n : fluids) printMemory(c, n, flow);
+  for (const FluidNumbers& n : fluids) printRemembered(c, n, flow);
   if (!elastic) {
     const double speed = std::max(flow.given, flow.fall);
     if (speed > 0)

@@ -1,6 +1,7 @@
 #include "case_tables.hpp"
 
 #include "treacle/model/case/case_keys.hpp"
+#include "treacle/model/case/kind_key.hpp"
 
 #include <fmt/format.h>
 
@@ -65,6 +66,12 @@ void forEachWord(Table table, Set set, F&& f) {
     f(table);
   }
 }
+template <HasKind Table, class F>
+void forEachKind(const Table& table, F&& f) {
+  constexpr auto key = kindKey(static_cast<const Table*>(nullptr));
+  forEachWord<KindOf<Table>>(
+      table, [](Table& t, KindOf<Table> kind) { t.*(key.member) = kind; }, f);
+}
 template <class F>
 void forEachKind(const Body& body, F&& f) {
   forEachWord<BodyKind>(
@@ -73,41 +80,6 @@ void forEachKind(const Body& body, F&& f) {
         forEachWord<ShapeKind>(
             ofKind, [](Body& b, ShapeKind kind) { b.shape.kind = kind; }, f);
       });
-}
-template <class F>
-void forEachKind(const Nozzle& nozzle, F&& f) {
-  forEachWord<NozzleKind>(
-      nozzle, [](Nozzle& n, NozzleKind kind) { n.kind = kind; }, f);
-}
-template <class F>
-void forEachKind(const Outflow& outflow, F&& f) {
-  forEachWord<OutflowKind>(
-      outflow, [](Outflow& o, OutflowKind kind) { o.kind = kind; }, f);
-}
-template <class F>
-void forEachKind(const Probe& probe, F&& f) {
-  forEachWord<ProbeKind>(
-      probe, [](Probe& p, ProbeKind kind) { p.kind = kind; }, f);
-}
-template <class F>
-void forEachKind(const ElasticMode& mode, F&& f) {
-  forEachWord<ElasticModel>(
-      mode, [](ElasticMode& e, ElasticModel model) { e.model = model; }, f);
-}
-template <class F>
-void forEachKind(const MaterialState& state, F&& f) {
-  forEachWord<StateLaw>(
-      state, [](MaterialState& s, StateLaw law) { s.law = law; }, f);
-}
-template <class F>
-void forEachKind(const Rheology& rheology, F&& f) {
-  forEachWord<RheologyModel>(
-      rheology, [](Rheology& r, RheologyModel model) { r.model = model; }, f);
-}
-template <class F>
-void forEachKind(const ViscosityShift& shift, F&& f) {
-  forEachWord<ShiftModel>(
-      shift, [](ViscosityShift& s, ShiftModel model) { s.model = model; }, f);
 }
 template <class F>
 void forEachKind(const Material& material, F&& f) {

@@ -2,6 +2,7 @@
 
 #include "key_catalogue.hpp"
 #include "treacle/model/case/case_keys.hpp"
+#include "treacle/model/case/kind_key.hpp"
 
 #include <functional>
 #include <string>
@@ -32,6 +33,13 @@ OwnAxis<T> wordAxis(const char* key, Set set) {
 template <class T>
 struct OwnAxes {
   static std::vector<OwnAxis<T>> of() { return {}; }
+};
+template <HasKind T>
+struct OwnAxes<T> {
+  static std::vector<OwnAxis<T>> of() {
+    constexpr auto key = kindKey(static_cast<const T*>(nullptr));
+    return {wordAxis<KindOf<T>, T>(key.name.data(), [](T& table, KindOf<T> kind) { table.*(key.member) = kind; })};
+  }
 };
 template <>
 struct OwnAxes<MethodSettings> {
@@ -66,56 +74,12 @@ struct OwnAxes<Material> {
   }
 };
 template <>
-struct OwnAxes<MaterialState> {
-  static std::vector<OwnAxis<MaterialState>> of() {
-    return {wordAxis<StateLaw, MaterialState>("law", [](MaterialState& s, StateLaw law) { s.law = law; })};
-  }
-};
-template <>
-struct OwnAxes<ElasticMode> {
-  static std::vector<OwnAxis<ElasticMode>> of() {
-    return {
-        wordAxis<ElasticModel, ElasticMode>("model", [](ElasticMode& e, ElasticModel model) { e.model = model; })};
-  }
-};
-template <>
-struct OwnAxes<Rheology> {
-  static std::vector<OwnAxis<Rheology>> of() {
-    return {wordAxis<RheologyModel, Rheology>("model", [](Rheology& r, RheologyModel model) { r.model = model; })};
-  }
-};
-template <>
-struct OwnAxes<ViscosityShift> {
-  static std::vector<OwnAxis<ViscosityShift>> of() {
-    return {wordAxis<ShiftModel, ViscosityShift>("model",
-                                                 [](ViscosityShift& s, ShiftModel model) { s.model = model; })};
-  }
-};
-template <>
 struct OwnAxes<Body> {
   static std::vector<OwnAxis<Body>> of() {
     return {wordAxis<BodyKind, Body>("type", [](Body& b, BodyKind kind) { b.kind = kind; }),
             wordAxis<ShapeKind, Body>("shape", [](Body& b, ShapeKind kind) { b.shape.kind = kind; }),
             {{"file_temperatures", {"false", "true"}},
              [](Body& b, std::size_t value) { b.fileTemperatures = value == 1; }}};
-  }
-};
-template <>
-struct OwnAxes<Nozzle> {
-  static std::vector<OwnAxis<Nozzle>> of() {
-    return {wordAxis<NozzleKind, Nozzle>("shape", [](Nozzle& n, NozzleKind kind) { n.kind = kind; })};
-  }
-};
-template <>
-struct OwnAxes<Outflow> {
-  static std::vector<OwnAxis<Outflow>> of() {
-    return {wordAxis<OutflowKind, Outflow>("shape", [](Outflow& o, OutflowKind kind) { o.kind = kind; })};
-  }
-};
-template <>
-struct OwnAxes<Probe> {
-  static std::vector<OwnAxis<Probe>> of() {
-    return {wordAxis<ProbeKind, Probe>("type", [](Probe& p, ProbeKind kind) { p.kind = kind; })};
   }
 };
 

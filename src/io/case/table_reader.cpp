@@ -36,20 +36,6 @@ void TableReader::prepare(Material&) {
     throw section_.error("dynamic_viscosity", viscosityBesideRheology);
 }
 
-/// Which keys there are the word at `key` says, which messages then name.
-template <class E>
-void TableReader::prepareKind(std::string_view key, E& kind) {
-  const auto named = lookUp<E>(key);
-  if (!named) return;
-  kind = *named;
-  section_ = Section(section_.table(), fmt::format("{} ({})", section_.title(), nameOf(kind)));
-}
-
-void TableReader::prepare(ElasticMode& mode) { prepareKind("model", mode.model); }
-void TableReader::prepare(MaterialState& state) { prepareKind("law", state.law); }
-void TableReader::prepare(Rheology& rheology) { prepareKind("model", rheology.model); }
-void TableReader::prepare(ViscosityShift& shift) { prepareKind("model", shift.model); }
-
 void TableReader::prepare(Body& body) {
   if (const auto kind = lookUp<BodyKind>("type")) body.kind = *kind;
   if (body.kind == BodyKind::Inflow) {
@@ -64,11 +50,6 @@ void TableReader::prepare(Rotation&) {
   if (!section_.table().contains("speed") && !section_.table().contains("angle"))
     throw section_.error("speed", "missing; expected a finite number [rad/s], or angle");
 }
-
-void TableReader::prepare(Nozzle& nozzle) { prepareKind("shape", nozzle.kind); }
-
-void TableReader::prepare(Outflow& outflow) { prepareKind("shape", outflow.kind); }
-void TableReader::prepare(Probe& probe) { prepareKind("type", probe.kind); }
 
 void TableReader::prepare(SolverSettings& solver) {
   if (const auto preconditioner = lookUp<PreconditionerKind>("preconditioner"))
@@ -93,45 +74,9 @@ void TableReader::requireKnownKeys(const TimeSettings& time) const {
 
 std::vector<std::string_view> TableReader::knownKeys(const Case&) const { return topLevelKeys(); }
 
-/// Only the keys of the kind at hand, which the word at `key` says, so that a radius given to a box is an error;
-/// all while it is unclear. set(table, kind) makes a table of a kind.
-template <class E, class Table, class Set>
-std::vector<std::string_view> TableReader::keysOfKind(std::string_view key, const Table& member, Set set) const {
-  if (lookUp<E>(key)) return keys::namesIn(member, case_);
-  std::vector<std::string_view> known;
-  for (const Named<E>& kind : namesOf<E>) {
-    Table other;
-    set(other, kind.value);
-    for (std::string_view name : keys::namesIn(other, case_))
-      if (std::ranges::find(known, name) == known.end()) known.push_back(name);
-  }
-  return known;
-}
 std::vector<std::string_view> TableReader::knownKeys(const Body& body) const {
   if (body.kind == BodyKind::Inflow) return keys::namesIn(body, case_);
   return keysOfKind<ShapeKind>("shape", body, [](Body& b, ShapeKind kind) { b.shape.kind = kind; });
-}
-std::vector<std::string_view> TableReader::knownKeys(const Nozzle& nozzle) const {
-  return keysOfKind<NozzleKind>("shape", nozzle, [](Nozzle& n, NozzleKind kind) { n.kind = kind; });
-}
-std::vector<std::string_view> TableReader::knownKeys(const Outflow& outflow) const {
-  return keysOfKind<OutflowKind>("shape", outflow, [](Outflow& o, OutflowKind kind) { o.kind = kind; });
-}
-std::vector<std::string_view> TableReader::knownKeys(const Probe& probe) const {
-  return keysOfKind<ProbeKind>("type", probe, [](Probe& p, ProbeKind kind) { p.kind = kind; });
-}
-std::vector<std::string_view> TableReader::knownKeys(const ElasticMode& mode) const {
-  return keysOfKind<ElasticModel>("model", mode, [](ElasticMode& e, ElasticModel model) { e.model = model; });
-}
-std::vector<std::string_view> TableReader::knownKeys(const MaterialState& state) const {
-  return keysOfKind<StateLaw>("law", state, [](MaterialState& s, StateLaw law) { s.law = law; });
-}
-std::vector<std::string_view> TableReader::knownKeys(const Rheology& rheology) const {
-  return keysOfKind<RheologyModel>("model", rheology, [](Rheology& r, RheologyModel model) { r.model = model; });
-}
-
-std::vector<std::string_view> TableReader::knownKeys(const ViscosityShift& shift) const {
-  return keysOfKind<ShiftModel>("model", shift, [](ViscosityShift& s, ShiftModel model) { s.model = model; });
 }
 
 std::string TableReader::titleOf(std::string_view key) const {

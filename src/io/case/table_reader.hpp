@@ -2,8 +2,10 @@
 
 #include "case_section.hpp"
 #include "treacle/model/case/case_error.hpp"
+#include "treacle/model/case/kind_key.hpp"
 
 #include <fmt/format.h>
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <utility>
@@ -85,23 +87,27 @@ class TableReader {
   /// What must be known before the keys are: which there are, and what they are unless the file says otherwise.
   template <class Table>
   void prepare(Table&) {}
+  template <HasKind Table>
+  void prepare(Table& table) {
+    constexpr auto key = kindKey(static_cast<const Table*>(nullptr));
+    prepareKind(key.name, table.*(key.member));
+  }
   void prepare(Case& c);
   void prepare(MethodSettings& method);
   void prepare(Material& material);
-  void prepare(ElasticMode& mode);
-  void prepare(MaterialState& state);
-  void prepare(Rheology& rheology);
-  void prepare(ViscosityShift& shift);
   void prepare(Body& body);
   void prepare(Rotation& rotation);
-  void prepare(Nozzle& nozzle);
-  void prepare(Outflow& outflow);
-  void prepare(Probe& probe);
   void prepare(SolverSettings& solver);
   void prepare(TimeSettings& time);
   void nameMethod();
+  /// Which keys there are the word at `key` says, which messages then name.
   template <class E>
-  void prepareKind(std::string_view key, E& kind);
+  void prepareKind(std::string_view key, E& kind) {
+    const auto named = lookUp<E>(key);
+    if (!named) return;
+    kind = *named;
+    section_ = Section(section_.table(), fmt::format("{} ({})", section_.title(), nameOf(kind)));
+  }
 
   template <class Table>
   void requireKnownKeys(const Table& member) const {
@@ -122,17 +128,28 @@ class TableReader {
   std::vector<std::string_view> knownKeys(const Table& member) const {
     return keys::namesIn(member, case_);
   }
+  template <HasKind Table>
+  std::vector<std::string_view> knownKeys(const Table& member) const {
+    constexpr auto key = kindKey(static_cast<const Table*>(nullptr));
+    return keysOfKind<KindOf<Table>>(key.name, member,
+                                     [](Table& table, KindOf<Table> kind) { table.*(key.member) = kind; });
+  }
   std::vector<std::string_view> knownKeys(const Case&) const;
   std::vector<std::string_view> knownKeys(const Body& body) const;
-  std::vector<std::string_view> knownKeys(const Nozzle& nozzle) const;
-  std::vector<std::string_view> knownKeys(const Outflow& outflow) const;
-  std::vector<std::string_view> knownKeys(const Probe& probe) const;
-  std::vector<std::string_view> knownKeys(const ElasticMode& mode) const;
-  std::vector<std::string_view> knownKeys(const MaterialState& state) const;
-  std::vector<std::string_view> knownKeys(const Rheology& rheology) const;
-  std::vector<std::string_view> knownKeys(const ViscosityShift& shift) const;
+  /// Only the keys of the kind at hand, which the word at `key` says, so that a radius given to a box is an error;
+  /// all while it is unclear. set(table, kind) makes a table of a kind.
   template <class E, class Table, class Set>
-  std::vector<std::string_view> keysOfKind(std::string_view key, const Table& member, Set set) const;
+  std::vector<std::string_view> keysOfKind(std::string_view key, const Table& member, Set set) const {
+    if (lookUp<E>(key)) return keys::namesIn(member, case_);
+    std::vector<std::string_view> known;
+    for (const Named<E>& kind : namesOf<E>) {
+      Table other;
+      set(other, kind.value);
+      for (std::string_view name : keys::namesIn(other, case_))
+        if (std::ranges::find(known, name) == known.end()) known.push_back(name);
+    }
+    return known;
+  }
 
   const std::string* word(const Key& key) const;
   const toml::table* table(const Key& key) const;

@@ -24,10 +24,13 @@ std::vector<std::string> Case::stateNames() const {
   return names;
 }
 
-double Case::startOfState(int material, std::size_t state) const {
-  const Material& m = materials[static_cast<std::size_t>(material)];
-  const auto own = std::ranges::find(m.states, stateNames()[state], &MaterialState::name);
-  return own == m.states.end() ? 0 : own->start;
+std::vector<double> Case::startsOfStates(const Material& m) const {
+  std::vector<double> starts;
+  for (const std::string& name : stateNames()) {
+    const auto own = std::ranges::find(m.states, name, &MaterialState::name);
+    starts.push_back(own == m.states.end() ? 0 : own->start);
+  }
+  return starts;
 }
 
 double Case::typicalShift(const Material& m) const {
@@ -38,10 +41,8 @@ double Case::typicalViscosity(const Material& m) const {
   double factor = 1, yield = 1;
   if (m.hasFormulas()) {
     std::vector<double> x{heat ? typicalTemperature(m) : 0, 1, 0};
-    for (const std::string& name : stateNames()) {
-      const auto own = std::ranges::find(m.states, name, &MaterialState::name);
-      x.push_back(own == m.states.end() ? 0 : own->start);
-    }
+    const std::vector<double> starts = startsOfStates(m);
+    x.insert(x.end(), starts.begin(), starts.end());
     const std::vector<std::string> variables = stateVariables(*this, m);
     const auto value = [&](const std::string& text) {
       return text.empty() ? 1 : Formula(text, variables)(x.data());

@@ -207,12 +207,6 @@ Formula::Formula(const std::string& text, std::span<const std::string> variables
   }
 }
 
-bool Formula::uses(std::size_t variable) const {
-  return std::ranges::any_of(steps_, [&](const FormulaStep& step) {
-    return step.operation == FormulaStep::Variable && step.variable == variable;
-  });
-}
-
 double Formula::operator()(const double* variables) const {
   return formulaValue(steps_.data(), static_cast<int>(steps_.size()), variables);
 }

@@ -239,6 +239,8 @@ std::uint32_t OpenBoundaries<D, Backend>::add(const CellGrid<D>& grid, const Inc
                                std::numeric_limits<std::uint32_t>::max()));
   Particles<D>& added = change.added;
   const std::uint32_t first = added.fluidCount;
+  const Material& material = state_.theCase.materials[static_cast<std::size_t>(incoming.material)];
+  const std::vector<double> starts = state_.theCase.startsOfStates(material);
   appendParticles<D>(added, places);
   for (std::uint32_t i = first; i < added.fluidCount; ++i) {
     added.material[i] = static_cast<std::uint8_t>(incoming.material);
@@ -250,10 +252,9 @@ std::uint32_t OpenBoundaries<D, Backend>::add(const CellGrid<D>& grid, const Inc
       added.viscosityFactor[i] = incoming.viscosityFactor > 0 ? incoming.viscosityFactor : 1;
     for (std::size_t k = 0; k < added.has.elasticModes; ++k)
       added.conformation[k][i] = SymmetricBlock<D>::identity();
-    for (std::size_t k = 0; k < added.has.states; ++k)
-      added.states[k][i] = state_.theCase.startOfState(incoming.material, k);
+    for (std::size_t k = 0; k < added.has.states; ++k) added.states[k][i] = starts[k];
   }
-  const double mass = state_.theCase.materials[static_cast<std::size_t>(incoming.material)].density * volume_;
+  const double mass = material.density * volume_;
   count += {places.size(), static_cast<double>(places.size()) * mass};
   return first;
 }

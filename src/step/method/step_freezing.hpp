@@ -33,7 +33,8 @@ class StepFreezing {
       for (const Enthalpy& h : table_.of) conductedAtWalls_.push_back(h.conducted(wall.temperature));
   }
 
-  /// Of all fluid particles at the temperatures T of own ones, ghosts included; `material`: likewise.
+  /// What the pairs conduct by, at the temperatures T of own particles; ghosts are filled. `material`: of all
+  /// fluid particles.
   OwnConduction conduction(Context<Backend>& context, std::span<const std::uint8_t> material,
                            std::span<const double> T) {
     const std::size_t fluid = material.size();

@@ -109,26 +109,16 @@ void requireInside(Context<Backend>& context, const CellGrid<D>& grid, const Par
   position = std::move(inside);
 }
 
-/// Errors: InputError for numbers that are not positive.
-template <class Backend>
-void requirePositive(Context<Backend>& context, const Buffer<double, Backend>& values, const char* what,
-                     const char* unit) {
+/// Errors: InputError for numbers that are not finite, or of which holds(number) is false. `expected`: as in
+/// messages.
+template <class Backend, class Holds>
+void requireNumbers(Context<Backend>& context, const Buffer<double, Backend>& values, const char* what,
+                    const char* expected, Holds&& holds) {
   Buffer<double> host(values.size());
   copyToHost(context, values.span(), host.data());
   for (std::size_t i = 0; i < host.size(); ++i)
-    if (!(std::isfinite(host[i]) && host[i] > 0))
-      throw InputError(
-          fmt::format("{}: expected positive numbers{}, found {:g} for particle {}", what, unit, host[i], i));
-}
-
-/// Errors: InputError for numbers that are not finite.
-template <class Backend>
-void requireFinite(Context<Backend>& context, const Buffer<double, Backend>& values, const char* what) {
-  Buffer<double> host(values.size());
-  copyToHost(context, values.span(), host.data());
-  for (std::size_t i = 0; i < host.size(); ++i)
-    if (!std::isfinite(host[i]))
-      throw InputError(fmt::format("{}: expected finite numbers, found {:g} for particle {}", what, host[i], i));
+    if (!(std::isfinite(host[i]) && holds(host[i])))
+      throw InputError(fmt::format("{}: expected {}, found {:g} for particle {}", what, expected, host[i], i));
 }
 
 /// The fluid of a state gets room for factors of its viscosities, and for the shear rates that go with them.
@@ -166,7 +156,7 @@ struct CheckedFluid {
     here(fluid.viscosityFactor, given.viscosityFactor, "viscosity_factors");
     for (std::size_t k = 0; k < particles.has.states; ++k) {
       if (!given.states[k].empty()) here(fluid.states[k], given.states[k], "states");
-      requireFinite(context, fluid.states[k], "states");
+      requireNumbers(context, fluid.states[k], "states", "finite numbers", [](double) { return true; });
     }
     if (fluid.position.size() > 0) requireInside(context, grid, particles, fluid.position);
     if (fluid.velocity.size() > 0 && !std::isfinite(energy(fluid.velocity.span())))
@@ -176,8 +166,9 @@ struct CheckedFluid {
     if (fluid.viscosityFactor.size() > 0 && method != MethodKind::MphI)
       throw InputError(
           "viscosity_factors: expected a case of the method 'mph-i', where particles can have their own");
-    requirePositive(context, fluid.temperature, "temperatures", " [K]");
-    requirePositive(context, fluid.viscosityFactor, "viscosity_factors", "");
+    const auto isPositive = [](double x) { return x > 0; };
+    requireNumbers(context, fluid.temperature, "temperatures", "positive numbers [K]", isPositive);
+    requireNumbers(context, fluid.viscosityFactor, "viscosity_factors", "positive numbers", isPositive);
     return fluid;
   }
 

@@ -41,12 +41,6 @@ TEST(Formula, HasTheValuesOfExpressions) {
   }
 }
 
-TEST(Formula, SaysWhatItUses) {
-  const Formula formula("1 + z", variables);
-  EXPECT_FALSE(formula.uses(0));
-  EXPECT_TRUE(formula.uses(2));
-}
-
 std::string faultOf(const std::string& text) {
   try {
     Formula(text, variables);

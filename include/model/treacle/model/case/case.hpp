@@ -123,8 +123,9 @@ struct Case {
     for (const Material& m : materials) most = std::max(most, m.elastic.size());
     return most;
   }
-  /// What fluid of a material starts with of which no body says more; 0 if it does not have the state.
-  double startOfState(int material, std::size_t state) const;
+  /// What fluid of a material starts with of which no body says more, in the order of stateNames(); 0 for states
+  /// that it does not have.
+  std::vector<double> startsOfStates(const Material& m) const;
   /// Leaves viscosities what they are.
   void haveViscosityFactors() {
     if (hasViscosityFactors()) return;

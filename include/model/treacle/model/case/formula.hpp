@@ -60,7 +60,6 @@ class Formula {
   Formula(const std::string& text, std::span<const std::string> variables);
 
   const std::vector<FormulaStep>& steps() const { return steps_; }
-  bool uses(std::size_t variable) const;
   double operator()(const double* variables) const;
 
  private:
