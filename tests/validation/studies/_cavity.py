@@ -28,7 +28,7 @@ def study(name, rayleigh, step, end, bars, levels=(1, 2, 4)):
                        {"Nusselt number": found, "its spread": np.ptp(numbers[late]), "at the start of the mean": numbers[late][0]},
                        {"found": (times, numbers)}, {"de Vahl Davis": (times[[0, -1]], np.array([expected, expected]))})
 
-    return Study(name=name, title=f"Natural convection, Rayleigh number {rayleigh:g}", case="heated-cavity.toml",
-                 settings=(f"gravity.acceleration=[0, {-0.880282 * rayleigh / 1e3:g}]", f"time.step={step:g}", f"time.end={end:g}", f"fluid.bulk_modulus={200 / step:g}",
-                           f"output.interval={end / 60:g}"),
+    settings = (f"gravity.acceleration=[0, {-0.880282 * rayleigh / 1e3:g}]", f"time.step={step:g}", f"time.end={end:g}",
+                f"fluid.bulk_modulus={200 / step:g}", f"output.interval={end / 60:g}")
+    return Study(name=name, title=f"Natural convection, Rayleigh number {rayleigh:g}", case="heated-cavity.toml", settings=settings,
                  levels=[Level(resolution) for resolution in levels], bars=bars, measure=measure, x_label="t [s]", y_label="Nu")

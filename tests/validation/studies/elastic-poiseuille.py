@@ -1,4 +1,5 @@
-"""Velocities and stresses against the exact solution (N. D. Waters, M. J. King, Rheol. Acta 9, 1970), mode by mode of its Fourier series."""
+"""Velocities and stresses against the exact solution (N. D. Waters, M. J. King, Rheol. Acta 9, 1970).
+The solution is a Fourier series; each mode is taken by itself."""
 
 import numpy as np
 from study import Level, Outcome, Study
