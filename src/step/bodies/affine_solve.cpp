@@ -10,6 +10,7 @@ namespace {
 
 constexpr int patience = 8;      // steps by which the derivative is made better before it is found anew
 constexpr double nearby = 1e-3;  // from values that much of the scale aside
+constexpr double known = 100;    // tolerances that are enough once a derivative that was found anew did not do
 
 using Vector = std::vector<double>;
 
@@ -166,7 +167,7 @@ AffineSolve::Result AffineSolve::run(const Function& f, Vector& x, Vector& deriv
     for (std::size_t i = 0; i < n; ++i) step[i] = x[i] - step[i];
     restrain(derivative, restraints, 0.1 * tolerance * scale, step);
     for (std::size_t i = 0; i < n; ++i) step[i] -= x[i];
-    result.converged = largest(step) <= tolerance * scale;
+    result.converged = largest(step) <= (k <= 2 * patience ? 1 : known) * tolerance * scale;
     // What was computed last must be what the unknowns are.
     if ((result.converged && isLast) || k == most) return result;
     if (k > 0 && k % patience == 0) {

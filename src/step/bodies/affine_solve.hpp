@@ -25,9 +25,9 @@ struct Restraint {
 /// Finds where a function of few unknowns is zero that is affine, or nearly so, and takes long to compute: by
 /// steps with its derivative, which each value makes better (Broyden). An affine one of n unknowns takes n + 2
 /// values with a derivative that is not known, and two or three with one that was so shortly before. One with
-/// kinks leads such a derivative astray: where eight steps do not do, it is found anew from values nearby. With
-/// restraints it finds where the function is a sum of their pushes, of those alone that hold with equality, and of
-/// those of their slides.
+/// kinks leads such a derivative astray: where eight steps do not do, it is found anew from values nearby, and
+/// steps of a hundred tolerances are then enough, because values have errors, too. With restraints it finds where
+/// the function is a sum of their pushes, of those alone that hold with equality, and of those of their slides.
 class AffineSolve {
  public:
   using Function = std::function<std::vector<double>(const std::vector<double>& x)>;

@@ -55,6 +55,21 @@ TEST(AffineSolve, FindsAnewADerivativeThatLeadsAstray) {
   for (const double found : x) EXPECT_NEAR(found, 0.5, 1e-6);
 }
 
+/// Values of a solver have errors, which may be worth more than the tolerance of a step.
+TEST(AffineSolve, TakesWhatValuesWithErrorsGive) {
+  std::size_t calls = 0;
+  const auto f = [&](const std::vector<double>& x) {
+    const double noise = 2e-5 * pseudoRandom(++calls);
+    return std::vector<double>{3 * (x[0] - 0.5) + x[1] + noise, x[0] - 0.5 + 2 * x[1] - noise};
+  };
+  std::vector<double> x{0, 0}, derivative;
+  const auto result = AffineSolve::run(f, x, derivative, 1, 1e-6, 40);
+  EXPECT_TRUE(result.converged);
+  EXPECT_LE(result.values, 25);
+  EXPECT_NEAR(x[0], 0.5, 1e-4);
+  EXPECT_NEAR(x[1], 0, 1e-4);
+}
+
 /// Two unknowns of which one, coupled to the other, is held: the solution of the complementarity problem by hand.
 TEST(AffineSolve, KeepsToRestraints) {
   const auto f = [](const std::vector<double>& x) {
