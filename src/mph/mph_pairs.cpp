@@ -8,10 +8,10 @@ namespace {
 /// The pressures of surfaces with a surface tension were found with the weight of pressures and 3 spacings
 /// (docs/surface-tension.md); the window leaves currents in drops at rest.
 template <int D>
-DensityWeight<D> densityWeightOf(const Case& c) {
-  if (c.keepsVolume()) return DensityWeight<D>::window(c.densityRadius(), c.spacing);
-  const double radius = c.isAccurate() ? 3 * c.spacing : c.densityRadius();
-  return DensityWeight<D>::make(radius, c.spacing, c.method.scheme);
+Weight<D> densityWeightOf(const Case& c) {
+  if (c.keepsVolume()) return Weight<D>::make(c.densityRadius(), c.spacing, WeightShape::DensityWindow);
+  if (c.isAccurate()) return Weight<D>::make(3 * c.spacing, c.spacing, WeightShape::Wendland);
+  return Weight<D>::make(c.densityRadius(), c.spacing, WeightShape::Published);
 }
 
 }  // namespace
@@ -24,8 +24,7 @@ MphPairs<D> makeMphPairs(const Case& c) {
   MphPairs<D> pairs;
   pairs.spacing = c.spacing;
   pairs.grid = CellGrid<D>::make(resized<D>(c.domain.min), resized<D>(c.domain.max), periodic, c.searchEdge());
-  const auto pressure = Weight<D>::make(hp, c.spacing, c.method.scheme);
-  pairs.terms = MphTerms<D>::make(pressure, hv, c.spacing);
+  pairs.terms = MphTerms<D>::make(c.method.scheme, hp, hv, c.spacing);
   // A lattice's sum is not quite the integral. Where B is to make the gradient exact, a full lattice needs none.
   if (c.isAccurate())
     pairs.terms.gradientFactor *= D / latticeSum<D>(hp, c.spacing, [&](double r) {

@@ -7,41 +7,42 @@ namespace treacle::test {
 
 namespace {
 
-/// f(q) of a weight l^d / (S h^d) f(r/h) and its derivative, and S, as they stand in text-books.
-struct WeightFunction {
-  double (*value)(double q);
-  double (*slope)(double q);
-  double integral2D, integral3D;
-};
-
-WeightFunction functionOf(SchemeKind scheme) {
-  if (scheme == SchemeKind::Published)
-    return {[](double q) { return std::pow(1 - q, 2); }, [](double q) { return -2 * (1 - q); }, M_PI / 6,
-            2 * M_PI / 15};
-  return {[](double q) { return std::pow(1 - q, 4) * (4 * q + 1); },
-          [](double q) { return -20 * q * std::pow(1 - q, 3); }, M_PI / 7, 2 * M_PI / 21};
+/// S of a weight l^d / (S h^d) f(r/h).
+template <int D>
+double integralOf(WeightShape shape) {
+  static const double ofDensity = DensityWindow::integral<D>(), ofGradient = GradientWindow::integral<D>();
+  switch (shape) {
+    case WeightShape::Published:
+      return D == 2 ? M_PI / 6 : 2 * M_PI / 15;
+    case WeightShape::Wendland:
+      return D == 2 ? M_PI / 7 : 2 * M_PI / 21;
+    case WeightShape::DensityWindow:
+      return ofDensity;
+    case WeightShape::GradientWindow:
+      return ofGradient;
+  }
+  return 0;
 }
 
 }  // namespace
 
-template <int D>
-double Oracle<D>::w(double r, double h) const {
-  const WeightFunction f = functionOf(s.c.method.scheme);
-  return r > h ? 0 : std::pow(l / h, D) / (D == 2 ? f.integral2D : f.integral3D) * f.value(r / h);
-}
-
+/// Windows have a test of their own.
 template <int D>
 double Oracle<D>::dw(double r, double h) const {
-  const WeightFunction f = functionOf(s.c.method.scheme);
-  return r > h ? 0 : slopeScale * std::pow(l / h, D) / (D == 2 ? f.integral2D : f.integral3D) * f.slope(r / h) / h;
+  const double q = r / h;
+  if (q > 1) return 0;
+  const double slope = s.c.isAccurate() ? -2 * q * GradientWindow::slope<double>(1 - q * q) : -2 * (1 - q);
+  return slopeScale * std::pow(l / h, D) / integralOf<D>(gradientWeight(s.c.method.scheme)) * slope / h;
 }
 
-/// The window has a test of its own.
 template <int D>
 double Oracle<D>::densityWeight(double r) const {
-  if (!s.c.keepsVolume()) return w(r, hn);
   const double q = r / hn;
-  return q > 1 ? 0 : std::pow(l / hn, D) / DensityWindow::integral<D>() * DensityWindow::at(1 - q * q);
+  if (q > 1) return 0;
+  const auto weight = [&](WeightShape shape, double f) { return std::pow(l / hn, D) / integralOf<D>(shape) * f; };
+  if (s.c.keepsVolume()) return weight(WeightShape::DensityWindow, DensityWindow::at(1 - q * q));
+  if (s.c.isAccurate()) return weight(WeightShape::Wendland, std::pow(1 - q, 4) * (4 * q + 1));
+  return weight(WeightShape::Published, std::pow(1 - q, 2));
 }
 
 /// With the weight of [K23] what its eq. (4) makes of it. For c = A f(r/h) / r^2 a full neighbourhood has the

@@ -40,10 +40,9 @@ struct Oracle {
     return i < s.wallShare.size() ? s.wallShare[i] * whole : whole;
   }
 
-  /// w and dw/dr of the case's weight, as of eq. (3), with l^d.
-  double w(double r, double h) const;
+  /// dw/dr of the case's weight of gradients, as of eq. (3), with l^d.
   double dw(double r, double h) const;
-  /// That of densities with the radius h_n.
+  /// The weight of densities with the radius h_n.
   double densityWeight(double r) const;
   /// c of a viscous pair block mu c d d^T.
   double viscousBlock(double r) const;

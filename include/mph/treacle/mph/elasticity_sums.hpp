@@ -17,8 +17,7 @@ using ElasticPairTerms = MphTerms<D, double, AccurateScheme>;
 template <int D>
 ElasticPairTerms<D> elasticTerms(const MphPairs<D>& pairs) {
   const double radius = pairs.terms.viscosityRadius;
-  const auto weight = Weight<D>::make(radius, pairs.spacing, SchemeKind::Accurate);
-  return MphTerms<D>::make(weight, radius, pairs.spacing).with(AccurateScheme{});
+  return MphTerms<D>::make(SchemeKind::Accurate, radius, radius, pairs.spacing).with(AccurateScheme{});
 }
 
 /// sum of g (u_j - u_i) d^T.

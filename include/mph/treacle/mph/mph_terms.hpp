@@ -55,21 +55,24 @@ struct MphTerms {
   T densityFactor, gradientFactor, viscousFactor;
   Scheme scheme;
   T repulsionRadius = 0;  // r_0; 0: no repulsion
-  bool window = false;    // whether densities have DensityWindow for their weight
+  WeightShape densityShape = WeightShape::Published;
 
-  /// For the radius h_v and the spacing l [m]; lengths in metres. Densities have the radius of pressures.
-  static MphTerms make(const Weight<D>& pressure, double viscosityRadius, double spacing) {
-    const double hp = pressure.radius, hv = viscosityRadius;
-    return {
-        static_cast<T>(hp),
-        static_cast<T>(1 / hp),
-        static_cast<T>(hv),
-        static_cast<T>(1 / hv),
-        static_cast<T>(hp),
-        static_cast<T>(pressure.scale),
-        static_cast<T>(pressure.slopeFactor() * pressure.scale / hp),
-        static_cast<T>(viscosityFactor(pressure.scheme) * 4 * (D + 2) * Weight<D>::make(hv, spacing).scale / hv),
-        {pressure.scheme}};
+  /// For the radii h_p, h_v and the spacing l [m]; lengths in metres. Densities have the weight of [K23], or
+  /// another one by setDensityWeight().
+  static MphTerms make(SchemeKind scheme, double pressureRadius, double viscosityRadius, double spacing) {
+    const double hp = pressureRadius, hv = viscosityRadius;
+    const auto pressure = Weight<D>::make(hp, spacing, gradientWeight(scheme));
+    const auto density = Weight<D>::make(hp, spacing, WeightShape::Published);
+    const auto viscosity = Weight<D>::make(hv, spacing, WeightShape::Published);
+    return {static_cast<T>(hp),
+            static_cast<T>(1 / hp),
+            static_cast<T>(hv),
+            static_cast<T>(1 / hv),
+            static_cast<T>(hp),
+            static_cast<T>(density.scale),
+            static_cast<T>(2 * pressure.scale / hp),
+            static_cast<T>(viscosityFactor(scheme) * 4 * (D + 2) * viscosity.scale / hv),
+            {scheme}};
   }
   /// The same for lengths in another unit [m]. Pair blocks d d^T and gradients d are still those per metre.
   template <class U>
@@ -84,28 +87,29 @@ struct MphTerms {
             static_cast<U>(viscousFactor / unit),
             scheme,
             static_cast<U>(repulsionRadius / unit),
-            window};
+            densityShape};
   }
   /// The same with their scheme known.
   template <class Known>
   MphTerms<D, T, Known> with(Known known) const {
     return {pressureRadius, inversePressureRadius, viscosityRadius, inverseViscosityRadius,
             densityRadius,  densityFactor,         gradientFactor,  viscousFactor,
-            known,          repulsionRadius,       window};
+            known,          repulsionRadius,       densityShape};
   }
   /// Another weight of densities; lengths in metres.
-  void setDensityWeight(const DensityWeight<D>& density) {
+  void setDensityWeight(const Weight<D>& density) {
     densityRadius = static_cast<T>(density.radius);
     densityFactor = static_cast<T>(density.scale);
-    window = density.isWindow;
+    densityShape = density.shape;
   }
 
   /// w
   template <class Factor, class Distance>
   TREACLE_HD auto density(Factor factor, const Distance& r) const {
-    if (window) return factor * DensityWindow::at(positivePart(T(1) - r.square / (densityRadius * densityRadius)));
+    if (densityShape == WeightShape::DensityWindow)
+      return factor * DensityWindow::at(positivePart(T(1) - r.square / (densityRadius * densityRadius)));
     const auto part = positivePart(T(1) - T(1) / (r.inverse * densityRadius));
-    if (scheme.kind == SchemeKind::Published) return factor * part * part;
+    if (densityShape == WeightShape::Published) return factor * part * part;
     const auto q = T(1) - part, square = part * part;
     return factor * square * square * (T(1) + T(4) * q);
   }
@@ -119,14 +123,14 @@ struct MphTerms {
   template <class Distance>
   TREACLE_HD auto densityGradient(const Distance& r) const {
     const T square = densityRadius * densityRadius;
-    return (2 * densityFactor / square) * DensityWindow::slope(positivePart(T(1) - r.square * (T(1) / square)));
+    return (2 * densityFactor / square) * DensityWindow::slope<T>(positivePart(T(1) - r.square * (T(1) / square)));
   }
-  /// -w' / r: factor times (1/r - 1/h_p) or (1-q)^3/h_p
+  /// -w' / r: factor times (1/r - 1/h_p), or 1/h_p times the slope of the window.
   template <class Distance>
   TREACLE_HD auto gradientShape(const Distance& r) const {
     if (scheme.kind == SchemeKind::Published) return positivePart(r.inverse - inversePressureRadius);
-    const auto q = r.square * r.inverse * inversePressureRadius, s = positivePart(T(1) - q);
-    return inversePressureRadius * s * s * s;
+    const T inverseSquare = inversePressureRadius * inversePressureRadius;
+    return inversePressureRadius * GradientWindow::slope<T>(positivePart(T(1) - r.square * inverseSquare));
   }
   template <class Distance>
   TREACLE_HD auto gradient(const Distance& r) const {

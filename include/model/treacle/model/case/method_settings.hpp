@@ -28,7 +28,7 @@ struct IsphSettings {
 
 /// The formulas of a method. Published: those of its paper. Accurate: formulas that converge under refinement
 /// (docs/accurate.md). For MPH-I the scheme decides on
-/// - the weights of divergences and pressure gradients, (1-q)^2 or Wendland's C2, (1-q)^4 (1+4q), with q = r/h,
+/// - the weights of divergences and pressure gradients, (1-q)^2 or a folded window, with q = r/h,
 /// - the weight of the viscosity of a pair, (1-q)/q^3 or (1-q)^2/q,
 /// - the velocity that the fluid meets in a wall: that of each wall particle, or the wall's velocity extrapolated
 ///   through its surface,
