@@ -10,16 +10,15 @@ namespace {
 /// S of a weight l^d / (S h^d) f(r/h).
 template <int D>
 double integralOf(WeightShape shape) {
-  static const double ofDensity = DensityWindow::integral<D>(), ofGradient = GradientWindow::integral<D>();
   switch (shape) {
     case WeightShape::Published:
       return D == 2 ? M_PI / 6 : 2 * M_PI / 15;
     case WeightShape::Wendland:
       return D == 2 ? M_PI / 7 : 2 * M_PI / 21;
     case WeightShape::DensityWindow:
-      return ofDensity;
+      return DensityWindow::integral<D>();
     case WeightShape::GradientWindow:
-      return ofGradient;
+      return GradientWindow::integral<D>();
   }
   return 0;
 }

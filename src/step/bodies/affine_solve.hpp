@@ -34,7 +34,7 @@ class AffineSolve {
 
   struct Result {
     int values = 0;          // of the function that were computed; its last one is that at x
-    bool converged = false;  // the next step would have been within the tolerance
+    bool converged = false;  // the next step would have been short enough
   };
 
   /// `derivative`: n x n, row by row; empty: not known; takes what it is in the end. `scale`: of the unknowns, by

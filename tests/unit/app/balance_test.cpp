@@ -53,7 +53,7 @@ TEST(balance, closesWithTheHistory) {
                           history[k - 1].potentialEnergy;
     const double lost = 1e-3 * (row[2] + row[3] + row[4]), given = 1e-3 * (row[5] + row[7] + row[8] + row[9]);
     EXPECT_GT(lost, 0);
-    EXPECT_NEAR(gained + lost, given, 5e-8 * lost);
+    EXPECT_NEAR(gained + lost, given, 2e-8 * lost);
     // The floor has one velocity: its power is that of the force it exerts.
     EXPECT_NEAR(row[7], -0.05 * row[10], 1e-12 * row[7]);
   }

@@ -1,6 +1,7 @@
 #include "support/loaded_walls.hpp"
 #include "support/same_bits.hpp"
 #include "support/state_of.hpp"
+#include "support/temperature_range.hpp"
 #include "treacle/model/materials/enthalpy.hpp"
 
 #include <gtest/gtest.h>
@@ -100,19 +101,7 @@ TEST(FreezingSteps, AreSolvedToTheTolerance) {
 TEST(FreezingSteps, HaveNoNewExtremes) {
   LoadedWalls<2> start = freezing<2>(SchemeKind::Accurate);
   start.c.heat->viscousHeating = false;
-  Simulation<2> s = start.simulation<Cpu>();
-  const auto range = [&] {
-    const auto& T = s.particles().temperature;
-    return std::pair{*std::min_element(T.begin(), T.end()), *std::max_element(T.begin(), T.end())};
-  };
-  const auto first = range();
-  for (int k = 0; k < 5; ++k) {
-    const auto before = range();
-    s.advance();
-    EXPECT_GE(range().first, before.first - 1e-6);
-    EXPECT_LE(range().second, before.second + 1e-6);
-  }
-  EXPECT_LT(range().second - range().first, 0.9 * (first.second - first.first));
+  expectNoNewExtremes(start, 0.9);
 }
 
 /// A reaction heats all fluid at a given rate through melting: temperatures follow the enthalpy.

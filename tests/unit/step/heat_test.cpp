@@ -1,6 +1,7 @@
 #include "support/loaded_walls.hpp"
 #include "support/same_bits.hpp"
 #include "support/state_of.hpp"
+#include "support/temperature_range.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/io/case/case_reader.hpp"
 #include "treacle/model/particles/create.hpp"
@@ -8,8 +9,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
-#include <algorithm>
 
 namespace treacle::test {
 namespace {
@@ -93,20 +92,7 @@ TEST(HeatSteps, ConserveHeat) {
 TEST(HeatSteps, HaveNoNewExtremes) {
   LoadedWalls<2> start = closed<2>(SchemeKind::Accurate);
   start.c.heat->viscousHeating = false;
-  Simulation<2> s = start.simulation<Cpu>();
-  const auto range = [&] {
-    const auto& T = s.particles().temperature;
-    return std::pair{*std::min_element(T.begin(), T.end()), *std::max_element(T.begin(), T.end())};
-  };
-  const auto first = range();
-  for (int k = 0; k < 5; ++k) {
-    const auto before = range();
-    s.advance();
-    const auto after = range();
-    EXPECT_GE(after.first, before.first - 1e-6);
-    EXPECT_LE(after.second, before.second + 1e-6);
-  }
-  EXPECT_LT(range().second - range().first, 0.8 * (first.second - first.first));
+  expectNoNewExtremes(start, 0.8);
 }
 
 /// Nothing changes where everything has one temperature, the surroundings that it radiates to, too.

@@ -172,7 +172,7 @@ TEST(RheologySteps, SettleWithinAStep) {
 /// Once the flow is known the first guess has its viscosities, and one solve of a step is nearly as good as many.
 /// With those of the step before it would leave 3e-3 and 3e-4.
 TEST(RheologySteps, WantOneSolveInTheLongRun) {
-  for (const auto& [n, bound] : {std::pair{0.5, 5e-4}, {2.0, 2e-5}}) {  // measured: 3.4e-4, 5e-6
+  for (const auto& [n, bound] : {std::pair{0.5, 5e-4}, {2.0, 1e-5}}) {  // measured: 3.4e-4, 5e-6
     Case c = damBreak({.model = RheologyModel::PowerLaw,
                        .consistency = 10,
                        .flowIndex = n,

@@ -71,7 +71,7 @@ void checkTurnedJet(MethodKind method) {
     offSpeed = std::max(offSpeed, norm(pa.velocity[i] - resized<D>(turn.turned({0.3, 0, 0}))));
   }
   EXPECT_LE(off, 1e-6 * straight.spacing);
-  EXPECT_LE(offBack, 1e-4 * straight.spacing);  // solutions are within the tolerance; measured: 1e-5
+  EXPECT_LE(offBack, 3e-5 * straight.spacing);  // solutions are within the tolerance; measured: 1e-5
   EXPECT_LE(offSpeed, 1e-4 * 0.3);  // the density at the surfaces of a jet is known to 0.5 %; measured: 4e-5
 }
 

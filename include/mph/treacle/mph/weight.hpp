@@ -31,14 +31,17 @@ struct WindowPolynomial {
   /// Its integral over all space, in units of h.
   template <int D>
   static double integral() {
-    constexpr double pi = std::numbers::pi;
-    double sum = 0;
-    constexpr int steps = 2000;
-    for (int k = 0; k < steps; ++k) {
-      const double q = (k + 0.5) / steps;
-      sum += at(1 - q * q) * (D == 2 ? 2 * pi * q : 4 * pi * q * q) / steps;
-    }
-    return sum;
+    static const double whole = [] {
+      constexpr double pi = std::numbers::pi;
+      double sum = 0;
+      constexpr int steps = 2000;
+      for (int k = 0; k < steps; ++k) {
+        const double q = (k + 0.5) / steps;
+        sum += at(1 - q * q) * (D == 2 ? 2 * pi * q : 4 * pi * q * q) / steps;
+      }
+      return sum;
+    }();
+    return whole;
   }
 };
 
