@@ -425,7 +425,7 @@ class Method:
     viscosity_radius: float | None = None
     """[spacings]"""
     viscosity_correction: float | None = None
-    ambient_pressure: float | None = None
+    tension_limit: float | None = None
     """[Pa]"""
     kernel: Literal["cubic-spline", "wendland-c2"] | None = None
     smoothing_ratio: float | None = None

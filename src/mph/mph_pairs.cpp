@@ -1,6 +1,7 @@
 #include "treacle/mph/mph_pairs.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace treacle {
 namespace {
@@ -36,7 +37,8 @@ MphPairs<D> makeMphPairs(const Case& c) {
   pairs.restDensity = latticeNumberDensity(densityWeight, c.spacing);
   pairs.wideScale = 1 / latticeSum<D>(densityWeight.radius, c.spacing,
                                       [&](double r) { return pairs.terms.openness(ExactDistance(r * r)); });
-  pairs.ambientPressure = c.method.ambientPressure;
+  pairs.ambientPressure =
+      c.method.tensionLimit > 0 ? c.method.tensionLimit : std::numeric_limits<double>::infinity();
   pairs.materials = MaterialTable::make(c);
   pairs.classes = ViscosityClasses::make(c);
   if (c.hasOwnViscosities()) {

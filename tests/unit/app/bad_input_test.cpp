@@ -211,7 +211,7 @@ constexpr BadCase badCases[] = {
     {"keyOfIsph", "[output]", "[method]\nviscosity = \"explicit\"\n[output]",
      "bad.toml:40:1: unknown key 'viscosity' in [method]: it belongs to the method 'isph'; expected 'name', "
      "'scheme', 'pressure_radius', 'density_radius', 'viscosity_radius', 'viscosity_correction' or "
-     "'ambient_pressure'"},
+     "'tension_limit'"},
     {"keyOfMph", bulk, "[method]\nname = \"isph\"\npressure_radius = 2\n",
      "bad.toml:18:1: unknown key 'pressure_radius' in [method] (isph): it belongs to the method 'mph-i'; expected "
      "'name', 'scheme', 'kernel', 'smoothing_ratio', 'alpha', 'walls', 'viscosity', 'shifting' or "

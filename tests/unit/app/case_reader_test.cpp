@@ -206,7 +206,7 @@ pressure_radius = 2
 density_radius = 2.25
 viscosity_radius = 3
 viscosity_correction = 0.25
-ambient_pressure = 77
+tension_limit = 77
 [solver]
 krylov = "cg"
 preconditioner = "block-jacobi"
@@ -273,7 +273,7 @@ TEST(readCase, takesEveryKey) {
   expected.method.scheme = SchemeKind::Published;
   expected.method.pressureRadius = 2, expected.method.densityRadius = 2.25, expected.method.viscosityRadius = 3;
   expected.method.viscosityCorrection = 0.25;
-  expected.method.ambientPressure = 77;
+  expected.method.tensionLimit = 77;
   expected.solver.krylov = KrylovKind::Cg;
   expected.solver.preconditioner = PreconditionerKind::BlockJacobi;
   expected.solver.operatorKind = OperatorKind::Assembled;

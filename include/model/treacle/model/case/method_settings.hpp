@@ -48,7 +48,7 @@ struct MethodSettings {
   double viscosityRadius = 3.5;  // h_v / l
   // Which share of the viscosity that its missing neighbours would give it a particle gets from those it has.
   double viscosityCorrection = 0.5;
-  double ambientPressure = 101325;  // around the fluid; it parts where its own is less than minus that [Pa]
+  double tensionLimit = 0;  // the fluid parts where its tension is more; 0: it bears any [Pa]
   IsphSettings isph;
 
   bool operator==(const MethodSettings&) const = default;

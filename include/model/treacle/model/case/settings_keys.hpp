@@ -69,11 +69,11 @@ void visit(auto& v, Like<MethodSettings> auto& m, const Case& c) {
      "",
      {0, 1}},
     m.viscosityCorrection);
-  v({"ambient_pressure",
-     "The fluid bears pressures down to minus this one where it has no free surface, and parts below; of the "
-     "accurate scheme",
+  v({"tension_limit",
+     "The fluid bears tensions up to this one where it has no free surface, and parts beyond; 0: it bears any; of "
+     "the accurate scheme",
      optional, "Pa", notNegative},
-    m.ambientPressure);
+    m.tensionLimit);
 }
 
 void visit(auto& v, Like<RheologySettings> auto& r, const Case&) {
