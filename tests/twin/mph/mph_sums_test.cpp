@@ -230,7 +230,7 @@ void checkTension(bool lists) {
   DeviceScene<D> d(s);
   if (!lists) d.pairs.fluidList.offset = d.pairs.wallList.offset = nullptr;
   MphPairs<D> host = s.pairs();
-  host.ambientPressure = d.pairs.ambientPressure = 400;  // some would have less
+  host.tensionLimit = d.pairs.tensionLimit = 400;  // some would have less
   const std::uint32_t n = host.fluidCount, active = host.activeCount;
   std::vector<double> density(active), open(active), wide(active), walls(n), tension(active), mean(active);
   for (std::uint32_t i = 0; i < active; ++i) {

@@ -64,11 +64,11 @@ TEST(KeepsVolume, TheDensityInsideIsMeasured) {
   EXPECT_GT(d.interiorParticles, 0.3 * s.particles().fluidCount);
 }
 
-/// Of fluid without tension: its tension after a step of 1 ms, over the bulk modulus.
-double tensionAfter(double open, double n, double ambient) {
+/// The tension over the bulk modulus after a step of 1 ms. It is 0 before.
+double tensionAfter(double open, double n, double limit) {
   const Scene<2> s = makeScene<2>({.scheme = SchemeKind::Accurate});
   MphPairs<2> pairs = s.pairs();
-  pairs.ambientPressure = ambient;
+  pairs.tensionLimit = limit;
   const double density = n * pairs.restDensity, walls = 0;
   const Places around{{&density, 1}, {&open, 1}, {&n, 1}, {&walls, 1}};
   const Covered lack = lackOf<2>(pairs, 0, around);
@@ -76,7 +76,7 @@ double tensionAfter(double open, double n, double ambient) {
   return tensionOf<2>(pairs, 0, 1e-3, around, mean, 0) / pairs.bulkModulus(0);
 }
 
-TEST(KeepsVolume, TensionFollowsTheDensityDownToTheAmbientPressure) {
+TEST(KeepsVolume, TensionFollowsTheDensityDownToItsLimit) {
   const double inside = tensionAfter(0, 0.99, 1e9);
   EXPECT_LT(inside, 0);
   EXPECT_EQ(tensionAfter(0, 1.01, 1e9), 0) << "nothing lacks";
@@ -84,7 +84,7 @@ TEST(KeepsVolume, TensionFollowsTheDensityDownToTheAmbientPressure) {
   EXPECT_GT(tensionAfter(0, 0.94, 1e9), 1.5 * inside) << "beside a gap";
   EXPECT_EQ(tensionAfter(0.4, 0.8, 1e9), 0) << "at a free surface";
   EXPECT_EQ(tensionAfter(0, 0.5, 1e9), 0) << "nearly alone";
-  EXPECT_EQ(tensionAfter(0, 0.99, 0), 0) << "without air around it";
+  EXPECT_EQ(tensionAfter(0, 0.99, 0), 0) << "where it bears none";
 }
 
 /// What a wall fills does not lack: where the surface of a fluid ends at a wall, and where it is covered by one.

@@ -36,7 +36,7 @@ struct MphPairs : MaterialParticles<D> {
   MphTerms<D> terms{};         // lengths in metres
   double restDensity = 0;      // n_0 [-]
   double wideScale = 0;        // of sums of MphTerms::openness, to be 1 in a full lattice
-  double ambientPressure = 0;  // elastic pressures are never below minus this [Pa]
+  double tensionLimit = 0;  // elastic pressures are never below minus this [Pa]
   const WallSurface<D>* wallSurface =
       nullptr;  // of the first wall particle; null: the fluid meets walls as they are
   const SymmetricBlock<D>* renormalisation = nullptr;  // B per fluid particle (renormalisation.hpp); null: I

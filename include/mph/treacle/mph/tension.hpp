@@ -104,7 +104,7 @@ TREACLE_HD Covered coveredTensionOf(const MphPairs<D>& pairs, std::uint32_t i, c
 ///   P^{k+1} = f P^k + (1 - f) kappa <min(0, n - n_0)>,   f = exp(-dt / T),   T = 3 lambda / kappa
 ///
 /// Only covered particles have it, beside gaps by the root of Places::resists as other pressures, and it is not
-/// below minus the ambient pressure. Where little resists, tension would move particles to and fro and give them
+/// below minus the limit of tension. Where little resists, tension would move particles to and fro and give them
 /// energy. `lack`: the mean.
 template <int D>
 TREACLE_HD double tensionOf(const MphPairs<D>& pairs, std::uint32_t i, double dt, const Places& around,
@@ -113,7 +113,7 @@ TREACLE_HD double tensionOf(const MphPairs<D>& pairs, std::uint32_t i, double dt
   if (kappa == 0 || lambda == 0) return 0;
   const double kept = exp(-dt * kappa / (tensionTime * lambda));
   return sqrt(around.resists(i, pairs.restDensity)) * around.cover(i, pairs.restDensity).bears *
-         fmax(kept * before + (1 - kept) * kappa * lack, -pairs.ambientPressure);
+         fmax(kept * before + (1 - kept) * kappa * lack, -pairs.tensionLimit);
 }
 
 /// 2 kappa_j / (kappa_i + kappa_j), by the materials of a pair.
