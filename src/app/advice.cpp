@@ -68,10 +68,11 @@ void printRemembered(const Case& c, const FluidNumbers& n, const FlowScales& flo
   const auto found = std::ranges::find(c.materials, n.material, &Material::name);
   const Material& m = *found;
   for (const ElasticMode& mode : m.elastic) {
-    print("# elastic mode '{}' of '{}': relaxation time {:.3g} s, {:.3g} steps", mode.name, m.name,
-          mode.relaxationTime, mode.relaxationTime / c.time.step);
-    if (flow.length > 0) print(", Weissenberg number {:.3g}", mode.relaxationTime * n.speed / flow.length);
-    print(", Deborah number {:.3g}\n", mode.relaxationTime / c.time.end);
+    const double time = c.typicalShift(m) * mode.relaxationTime;
+    print("# elastic mode '{}' of '{}': relaxation time {:.3g} s, {:.3g} steps", mode.name, m.name, time,
+          time / c.time.step);
+    if (flow.length > 0) print(", Weissenberg number {:.3g}", time * n.speed / flow.length);
+    print(", Deborah number {:.3g}\n", time / c.time.end);
   }
   const std::vector<std::string> names = c.stateNames();
   for (const MaterialState& s : m.states) {
@@ -90,14 +91,13 @@ void printRemembered(const Case& c, const FluidNumbers& n, const FlowScales& flo
           m.specificHeat * std::abs(c.typicalTemperature(m) - m.freezing->liquidus) / m.freezing->latentHeat);
 }
 
-/// A bulk viscosity that is enough, and the bulk moduli that go with a step: stiff enough for the weight and the
-/// pressures of openings, soft enough for the step.
+/// A bulk viscosity that is enough, and the bulk moduli that go with a step: stiff enough for the pressures, soft
+/// enough for the step.
 void printBulk(const Case& c, const Material& m, const FlowScales& flow) {
   const double mu = c.typicalViscosity(m), lambda = recommendedRatio * mu;
   if (mu == 0) return;
   const double most = mostCompression(c) * std::max(lambda, m.bulkViscosity) / c.time.step;
-  const double pressure = std::max(m.density * flow.potential, flow.pressure);
-  const double least = pressure / mostCompressed;
+  const double least = flow.pressureOf(m.density, mu) / mostCompressed;
   print("# advice for '{}': bulk_viscosity {:.3g} ({:g} times the viscosity), ", m.name, lambda, recommendedRatio);
   if (c.time.automatic)
     print(

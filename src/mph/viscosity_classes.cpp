@@ -14,7 +14,7 @@ namespace {
 double flowingViscosity(const Material& m, double shift) {
   double elastic = 0;
   for (const ElasticMode& mode : m.elastic) elastic += mode.viscosity;
-  return std::min(m.viscosity(0.1, shift), m.viscosity(10, shift)) + elastic;
+  return std::min(m.viscosity(0.1, shift), m.viscosity(10, shift)) + shift * elastic;
 }
 
 struct Range {
@@ -93,8 +93,8 @@ Range viscosities(const Case& c, const Material& m) {
   }
   double elastic = 0;  // from steps of a tenth of the relaxation time to modes stretched tenfold
   for (const ElasticMode& mode : m.elastic) elastic += mode.viscosity;
-  return {factor.least * ofFormula.least * range.least + 0.1 * elastic,
-          ofSolid * factor.most * ofFormula.most * ofGel.most * range.most + 10 * elastic};
+  return {factor.least * ofFormula.least * (range.least + 0.1 * shift.least * elastic),
+          ofSolid * factor.most * ofFormula.most * ofGel.most * (range.most + 10 * shift.most * elastic)};
 }
 
 bool hasSteps(const ViscosityClasses& classes, const Case& c, const Material& m) {

@@ -51,7 +51,8 @@ double Case::typicalViscosity(const Material& m) const {
   }
   double elastic = 0;
   for (const ElasticMode& mode : m.elastic) elastic += mode.viscosity;
-  return factor * m.viscosity(1, typicalShift(m), yield) + elastic;
+  const double shift = typicalShift(m);
+  return factor * (m.viscosity(1, shift, yield) + shift * elastic);
 }
 
 Vec<3> Case::meanGravity(double from, double to) const {

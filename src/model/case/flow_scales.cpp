@@ -58,7 +58,7 @@ FluidNumbers numbersOf(const Case& c, const Material& m, const FlowScales& flow)
   const double mu = c.typicalViscosity(m), g = flow.acceleration, inertia = m.density * flow.length * flow.length;
   // Where inertia rules a fluid falls freely, where viscosity does it flows as fast as its weight shears it.
   n.speed = std::max(flow.given, mu > 0 ? std::min(flow.fall, inertia * g / mu) : flow.fall);
-  if (m.bulkModulus > 0) n.compression = std::max(m.density * flow.potential, flow.pressure) / m.bulkModulus;
+  if (m.bulkModulus > 0) n.compression = flow.pressureOf(m.density, mu) / m.bulkModulus;
   if (m.surfaceTension > 0) {
     n.capillaryStep = std::max(2 * mu * c.spacing / m.surfaceTension,
                                std::sqrt(m.density * std::pow(c.spacing, 3) / m.surfaceTension));
@@ -87,8 +87,10 @@ FlowScales flowScales(const Case& c) {
   double shortest = std::numeric_limits<double>::infinity();
   for (const Body& body : c.bodies) {
     if (!body.holdsFluid()) continue;
-    shortest = std::min(shortest, shortestSide(c, body));
-    flow.given = std::max(flow.given, inflowSpeed(c, body));
+    const double side = shortestSide(c, body), speed = inflowSpeed(c, body);
+    shortest = std::min(shortest, side);
+    flow.given = std::max(flow.given, speed);
+    if (side > 0) flow.shear = std::max(flow.shear, speed / side);
   }
   if (std::isfinite(shortest)) flow.length = shortest;
   return flow;

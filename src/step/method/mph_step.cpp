@@ -132,7 +132,9 @@ class MphStep final : public StepMethod<D, Backend> {
   void correctVelocities() override {
     if (elasticity_) elasticity_->solve(state_, pairs_);
     if (states_) states_->solve(state_, *rheology_);
-    if (heat_) heat_->solve(state_, pairs_, states_ ? states_->heating() : std::span<const double>{});
+    if (heat_)
+      heat_->solve(state_, pairs_, states_ ? states_->heating() : std::span<const double>{},
+                   elasticity_ ? elasticity_->power() : std::span<const double>{});
   }
 
   void wallFriction(std::span<Vec<D>> force) override {
@@ -339,8 +341,9 @@ class MphStep final : public StepMethod<D, Backend> {
     if (rheology_) {
       guessAll();
       fillGhosts(state_.context, Held::Active, state_.velocity.data());
-      if (elasticity_) rheology_->setImplicit(elasticity_->implicitViscosity(state_, pairs_));
-      return rheology_->start(state_, neighbourhood_);
+      rheology_->start(state_, neighbourhood_);
+      if (elasticity_) rheology_->setImplicit(elasticity_->implicitViscosity(state_, pairs_, *rheology_));
+      return rheology_->apply(state_, neighbourhood_);
     }
     const double correction = state_.theCase.method.viscosityCorrection;
     if (correction == 0) return;

@@ -2,6 +2,7 @@
 
 #include "explicit_forces.hpp"
 #include "run/failure.hpp"
+#include "step_rheology.hpp"
 #include "treacle/core/halo.hpp"
 #include "treacle/mph/elasticity.hpp"
 #include "treacle/mph/surface_tension.hpp"
@@ -21,8 +22,14 @@ class StepElasticity final : public ExplicitForces<D, Backend> {
   StepElasticity(const Case& c, const ExplicitForces<D, Backend>* others)
       : table_(ElasticTable::make(c)), others_(others) {}
 
-  /// What the modes add to the viscosity in the step at hand, per own particle [Pa s].
-  std::span<const double> implicitViscosity(FlowState<D, Backend>& state, const MphPairs<D>& pairs) {
+  /// What the modes add to the viscosity in the step at hand, per own particle [Pa s]. `rheology`: of the step.
+  std::span<const double> implicitViscosity(FlowState<D, Backend>& state, const MphPairs<D>& pairs,
+                                            const StepRheology<D, Backend>& rheology) {
+    if (rheology.table().hasSlowness()) {
+      slowness_.resize(state.context, pairs.ownFluid());
+      setSlowness(state.context,
+                  {rheology.table(), pairs.material.first(pairs.ownFluid()), rheology.rates(), slowness_.span()});
+    }
     implicit_.resize(state.context, pairs.ownFluid());
     setImplicitViscosity<D>(state.context, {conformations(state, pairs), implicit_.span()});
     return implicit_;
@@ -42,13 +49,18 @@ class StepElasticity final : public ExplicitForces<D, Backend> {
 
   /// The conformations that follow from the velocities of the solve. Errors: RunError if some are not finite.
   void solve(FlowState<D, Backend>& state, const MphPairs<D>& pairs) {
-    AdvancedModes<D> terms{elasticState(state, pairs), {}};
+    if (state.theCase.heat) power_.resize(state.context, pairs.ownFluid());
+    AdvancedModes<D> terms{elasticState(state, pairs), {}, power_.span()};
     for (std::size_t k = 0; k < state.particles.has.elasticModes; ++k) {
       next_[k].resize(state.context, pairs.ownFluid());
       terms.next[k] = next_[k].data();
     }
     if (const double bad = advanceModes<D>(state.context, terms); bad > 0) throw RunError(describeElasticity(bad));
   }
+
+  /// The power of the stresses of the last solve beside what the system had of them as a viscosity, per own
+  /// particle [W/m3]; empty without heat.
+  std::span<const double> power() const { return power_; }
 
   void accept(FlowState<D, Backend>& state) {
     for (std::size_t k = 0; k < state.particles.has.elasticModes; ++k)
@@ -77,7 +89,7 @@ class StepElasticity final : public ExplicitForces<D, Backend> {
 
   std::size_t bytes() const {
     std::size_t sum = implicit_.bytes() + correction_.bytes() + gradient_.bytes() + carried_.bytes() +
-                      force_.bytes() + onWalls_.bytes();
+                      force_.bytes() + onWalls_.bytes() + slowness_.bytes() + power_.bytes();
     for (const auto& next : next_) sum += next.bytes();
     return sum;
   }
@@ -89,7 +101,8 @@ class StepElasticity final : public ExplicitForces<D, Backend> {
     return conformations(state, pairs);
   }
   ElasticState<D> conformations(const FlowState<D, Backend>& state, const MphPairs<D>& pairs) const {
-    ElasticState<D> of{table_, state.timeStep, pairs.material.first(pairs.ownFluid()), {}, gradient_.span()};
+    ElasticState<D> of{table_, state.timeStep,   pairs.material.first(pairs.ownFluid()),
+                       {},     gradient_.span(), slowness_.span()};
     for (std::size_t k = 0; k < state.particles.has.elasticModes; ++k)
       of.conformation[k] = state.particles.conformation[k].data();
     return of;
@@ -98,6 +111,8 @@ class StepElasticity final : public ExplicitForces<D, Backend> {
   ElasticTable table_;
   const ExplicitForces<D, Backend>* others_;
   Buffer<double, Backend> implicit_;               // [Pa s]
+  Buffer<double, Backend> slowness_;               // RheologyTable::slowness [-]
+  Buffer<double, Backend> power_;                  // [W/m3]
   Buffer<SymmetricBlock<D>, Backend> correction_;  // B
   Buffer<Block<D>, Backend> gradient_;             // [1/s]
   Buffer<Block<D>, Backend> carried_;              // the stress times B, per fluid particle [Pa]

@@ -36,8 +36,10 @@ class StepHeat {
   }
 
   /// With state.velocity of the end of the step, ghosts included. `ofStates`: what states of materials set free
-  /// per own particle [W/m3], or empty. Errors: RunError.
-  void solve(FlowState<D, Backend>& state, const MphPairs<D>& pairs, std::span<const double> ofStates) {
+  /// per own particle [W/m3], or empty; `ofModes`: likewise the power of elastic stresses that no viscosity has.
+  /// Errors: RunError.
+  void solve(FlowState<D, Backend>& state, const MphPairs<D>& pairs, std::span<const double> ofStates,
+             std::span<const double> ofModes) {
     Context<Backend>& context = state.context;
     const std::uint32_t own = pairs.ownFluid();
     resize(context, pairs);
@@ -50,7 +52,10 @@ class StepHeat {
     if (freezing_) terms.own = freezing_->conduction(context, pairs.material.first(pairs.fluidCount), T);
     conductionDiagonal<D>(context, pairs, terms, ofFluid_, ofWalls_);
     if (surfaceCounts_) surfaceArea<D>(context, pairs, surface_, lack_, area_);
-    if (settings_.viscousHeating) shearDissipation<D>(context, pairs, state.velocity, heating_);
+    if (settings_.viscousHeating) {
+      shearDissipation<D>(context, pairs, state.velocity, heating_);
+      if (!ofModes.empty()) setEach(context, Sum{heating_, ofModes, heating_.span()}, own);
+    }
 
     const HeatConstants constants{table_, state.timeStep, settings_.ambient, settings_.transfer};
     setEach(context,

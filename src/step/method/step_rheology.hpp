@@ -25,15 +25,16 @@ class StepRheology {
 
   /// The laws of states, in the backend's memory, and what the particles carry in the step at hand.
   const RheologyTable& table() const { return table_; }
-  /// The shear rates of the last solve [1/s].
+  /// The shear rates of the viscosities, and those of the last solve [1/s].
+  std::span<const double> rates() const { return rate_; }
   std::span<const double> foundRates() const { return found_; }
 
   /// What elastic modes add to the viscosity in the step at hand, per own particle [Pa s].
   void setImplicit(std::span<const double> viscosity) { table_.implicit = viscosity; }
 
   /// For the first solve of a step, on its neighbours and walls' surfaces; from its first guess, state.velocity,
-  /// ghosts included: with the rates of the step before, most steps would need another solve. Errors: RunError for
-  /// viscosities that are not finite.
+  /// ghosts included: with the rates of the step before, most steps would need another solve. apply() is to
+  /// follow.
   void start(FlowState<D, Backend>& state, MphNeighbourhood<D, Backend>& neighbourhood) {
     const std::uint32_t fluid = neighbourhood.pairs().fluidCount, own = neighbourhood.pairs().ownFluid();
     for (Buffer<double, Backend>* field : {&share_, &viscosity_, &scaled_}) field->resize(state.context, fluid);
@@ -48,7 +49,20 @@ class StepRheology {
       table_.states.steps = steps_.data();
     }
     solves_ = 0;
-    apply(state, neighbourhood);
+  }
+
+  /// Sets the viscosities of rates(). Errors: RunError for viscosities that are not finite.
+  void apply(FlowState<D, Backend>& state, MphNeighbourhood<D, Backend>& neighbourhood) {
+    const MphPairs<D>& pairs = neighbourhood.pairs();
+    setViscosities(state.context, ViscosityTerms{table_, correction_, pairs.material, rate_.span(), share_.span(),
+                                                 viscosity_.span(), scaled_.span()});
+    if (!formulas_.empty())
+      if (const double bad = countNotFinite(state.context, viscosity_.span().first(pairs.ownFluid())); bad > 0)
+        throw RunError(describeViscosities(bad));
+    fillGhosts(state.context, Held::Fluid, viscosity_.data());
+    fillGhosts(state.context, Held::Fluid, scaled_.data());
+    setClasses(state.context, ClassTerms{pairs.classes, pairs.material, viscosity_.span(), class_.span()});
+    neighbourhood.setViscosities(scaled_, class_);
   }
 
   /// Takes the velocities of a solve, state.velocity, ghosts included; whether the step is to be solved once more,
@@ -80,20 +94,6 @@ class StepRheology {
   }
 
  private:
-  /// The viscosities of rate_.
-  void apply(FlowState<D, Backend>& state, MphNeighbourhood<D, Backend>& neighbourhood) {
-    const MphPairs<D>& pairs = neighbourhood.pairs();
-    setViscosities(state.context, ViscosityTerms{table_, correction_, pairs.material, rate_.span(), share_.span(),
-                                                 viscosity_.span(), scaled_.span()});
-    if (!formulas_.empty())
-      if (const double bad = countNotFinite(state.context, viscosity_.span().first(pairs.ownFluid())); bad > 0)
-        throw RunError(describeViscosities(bad));
-    fillGhosts(state.context, Held::Fluid, viscosity_.data());
-    fillGhosts(state.context, Held::Fluid, scaled_.data());
-    setClasses(state.context, ClassTerms{pairs.classes, pairs.material, viscosity_.span(), class_.span()});
-    neighbourhood.setViscosities(scaled_, class_);
-  }
-
   std::vector<FormulaStep> formulas_;
   Buffer<FormulaStep, Backend> steps_;  // the same
   RheologyTable table_;

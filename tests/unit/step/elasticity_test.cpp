@@ -2,8 +2,10 @@
 #include "treacle/step/run/simulation.hpp"
 
 #include <gtest/gtest.h>
+#include <algorithm>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 namespace treacle::test {
 namespace {
@@ -65,6 +67,52 @@ void checkFreeBlock() {
 TEST(ElasticSteps, KeepMomentum) {
   checkFreeBlock<2>();
   checkFreeBlock<3>();
+}
+
+/// The velocities and the xy of the conformations after some steps of a block in shear, with the constants of a
+/// fluid times `constants` and a shift factor at its temperature.
+template <int D>
+std::vector<double> shearedBlock(double constants, double shift) {
+  Case c = freeCase<D>();
+  c.heat.emplace().viscousHeating = false;
+  for (Material& each : c.materials) each.specificHeat = 1000, each.conductivity = 0.1;
+  Material& m = c.materials[0];
+  m.dynamicViscosity = 10 * constants;
+  m.elastic[0].viscosity *= constants, m.elastic[0].relaxationTime *= constants;
+  m.viscosityShift = ViscosityShift{.model = ShiftModel::Table, .temperatures = {300, 400}, .factors = {1, shift}};
+  Particles<D> p = freeBlock<D>(c, 2);
+  p.has.temperatures = true;
+  p.temperature.resize(p.fluidCount);
+  for (std::uint32_t i = 0; i < p.fluidCount; ++i) p.temperature[i] = 400, p.velocity[i][0] = 3 * p.position[i][1];
+  Simulation<D> s(c, std::move(p));
+  for (int k = 0; k < 3; ++k) s.advance();
+  s.copyParticles(p);
+  std::vector<double> found;
+  for (std::uint32_t i = 0; i < p.fluidCount; ++i) {
+    for (int k = 0; k < D; ++k) found.push_back(p.velocity[i][k]);
+    found.push_back(p.conformation[0][i](0, 1));
+  }
+  return found;
+}
+
+/// A warm fluid with constants of a cold one flows as one with the constants times its shift factor.
+template <int D>
+void checkShift() {
+  const std::vector<double> shifted = shearedBlock<D>(2, 0.25), given = shearedBlock<D>(0.5, 1);
+  const std::vector<double> cold = shearedBlock<D>(2, 1);
+  ASSERT_EQ(shifted.size(), given.size());
+  double most = 0, error = 0, change = 0;
+  for (std::size_t k = 0; k < given.size(); ++k) {
+    most = std::max(most, std::abs(given[k]));
+    error = std::max(error, std::abs(shifted[k] - given[k]));
+    change = std::max(change, std::abs(cold[k] - given[k]));
+  }
+  EXPECT_LT(error, 1e-9 * most);
+  EXPECT_GT(change, 0.01 * most);
+}
+TEST(ElasticSteps, ModesFollowTheTemperature) {
+  checkShift<2>();
+  checkShift<3>();
 }
 
 }  // namespace

@@ -31,12 +31,12 @@ struct BulkShare {
 /// What every pair sum of a step reads.
 template <int D>
 struct MphPairs : MaterialParticles<D> {
-  ClusterListView fluidList;   // near h_p, far h_v, h_n or, to assemble A, 2 h_p, whichever is most
-  ClusterListView wallList;    // near h_p, far h_n if that is more
-  MphTerms<D> terms{};         // lengths in metres
-  double restDensity = 0;      // n_0 [-]
-  double wideScale = 0;        // of sums of MphTerms::openness, to be 1 in a full lattice
-  double tensionLimit = 0;  // elastic pressures are never below minus this [Pa]
+  ClusterListView fluidList;  // near h_p, far h_v, h_n or, to assemble A, 2 h_p, whichever is most
+  ClusterListView wallList;   // near h_p, far h_n if that is more
+  MphTerms<D> terms{};        // lengths in metres
+  double restDensity = 0;     // n_0 [-]
+  double wideScale = 0;       // of sums of MphTerms::openness, to be 1 in a full lattice
+  double tensionLimit = 0;    // elastic pressures are never below minus this [Pa]
   const WallSurface<D>* wallSurface =
       nullptr;  // of the first wall particle; null: the fluid meets walls as they are
   const SymmetricBlock<D>* renormalisation = nullptr;  // B per fluid particle (renormalisation.hpp); null: I

@@ -2,6 +2,7 @@
 
 #include "treacle/model/case/case.hpp"
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,11 @@ struct FlowScales {
   double fall = 0;          // speed that they give [m/s]
   double given = 0;         // largest of the speeds of fluid, walls and nozzles that the case gives [m/s]
   double pressure = 0;      // largest one of openings [Pa]
+  double shear = 0;         // largest speed over width of nozzles [1/s]
+
+  /// A pressure that a fluid of density rho [kg/m3] and viscosity mu [Pa s] has to bear [Pa]: of its weight, of
+  /// openings, or what drives it through one width of a nozzle, for a tube 32 mu U / width.
+  double pressureOf(double rho, double mu) const { return std::max({rho * potential, pressure, 32 * mu * shear}); }
 };
 
 /// 0 where the case does not say: of nozzles with a flow rate speeds are not looked at.
@@ -27,7 +33,7 @@ struct FluidNumbers {
   double reynolds = 0;     // rho U L / mu
   double viscousTime = 0;  // rho L^2 / mu, in which a flow comes to rest or up to speed [s]
   double ratio = 0;        // lambda / mu
-  double compression = 0;  // max(rho times the potential, the pressure of openings) / kappa
+  double compression = 0;  // FlowScales::pressureOf / kappa
   double capillaryStep =
       0;            // up to which surface tension lets a step be: max(2 mu l/gamma, sqrt(rho l^3/gamma)) [s]
   double bond = 0;  // rho g L^2 / gamma

@@ -24,6 +24,13 @@ struct ElasticConstants {
             m.model == ElasticModel::ExponentialPtt};
   }
 
+  /// With `a` times its viscosity and relaxation time.
+  TREACLE_HD ElasticConstants slowed(double a) const {
+    ElasticConstants slow = *this;
+    slow.rate /= a;
+    return slow;
+  }
+
   /// The viscosity that the step solves for with the flow [Pa s]: by how much the stress at the end of a step of
   /// dt [s] changes with the velocity gradient of that end. For long steps it is eta. The stress of a conformation
   /// that is stretched changes by as much more.

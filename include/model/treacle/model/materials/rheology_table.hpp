@@ -46,16 +46,36 @@ struct RheologyTable {
 
   /// Of a particle i of material m at a shear rate of gamma [1/s], [Pa s].
   TREACLE_HD double viscosity(std::size_t i, int m, double rate) const {
-    double own = factor.empty() ? 1 : factor[i], a = 1;
+    const Factors f = factors(i, m, rate);
+    return f.viscosity * of[m].viscosity(rate, f.shift, f.yield) + (implicit.empty() ? 0 : implicit[i]);
+  }
+
+  /// Whether particles differ in slowness().
+  bool hasSlowness() const { return !temperature.empty() || !factor.empty() || states.steps; }
+  /// By what the viscosities and relaxation times of the elastic modes of particle i are multiplied [-]: what
+  /// multiplies the viscosity of a Newtonian fluid.
+  TREACLE_HD double slowness(std::size_t i, int m, double rate) const {
+    const Factors f = factors(i, m, rate);
+    return f.viscosity * f.shift;
+  }
+
+ private:
+  struct Factors {
+    double viscosity = 1, shift = 1, yield = 1;
+  };
+  TREACLE_HD Factors factors(std::size_t i, int m, double rate) const {
+    Factors f;
+    if (!factor.empty()) f.viscosity = factor[i];
     if (!temperature.empty()) {
-      a = shift[m](temperature[i]);
-      own *= frozen[m].viscosityFactor(temperature[i]);
+      f.shift = shift[m](temperature[i]);
+      f.viscosity *= frozen[m].viscosityFactor(temperature[i]);
     }
-    const double more = implicit.empty() ? 0 : implicit[i];
-    if (!states.steps) return own * of[m].viscosity(rate, a) + more;
+    if (!states.steps) return f;
     double x[StateTable::variables];
     variables(i, rate, x);
-    return own * states.viscosityFactor(m, x) * of[m].viscosity(rate, a, states.yieldFactor(m, x)) + more;
+    f.viscosity *= states.viscosityFactor(m, x);
+    f.yield = states.yieldFactor(m, x);
+    return f;
   }
 };
 

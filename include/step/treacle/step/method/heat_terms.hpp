@@ -47,7 +47,7 @@ struct HeatSystemTerms {
   std::span<const double> ofFluid;  // sum of kappa [W/(m3 K)]
   std::span<const HeatExchange> walls;
   std::span<const double> area;        // of the free surface [1/m], or empty
-  std::span<const double> heating;     // by the viscosity [W/m3], or empty
+  std::span<const double> heating;     // by the viscosity and elastic modes [W/m3], or empty
   std::span<const double> ofStates;    // by the states of materials, likewise
   std::span<HeatExchange> surface;     // of the free surface; empty where area is
   std::span<double> boundary, source;  // [W/(m3 K)], [W/m3]
@@ -67,7 +67,12 @@ struct HeatSystemTerms {
   }
 };
 
-/// z = a - b, and z = a b.
+/// z = a + b, z = a - b, and z = a b.
+struct Sum {
+  std::span<const double> a, b;
+  std::span<double> z;
+  TREACLE_HD void set(std::size_t i) const { z[i] = a[i] + b[i]; }
+};
 struct Difference {
   std::span<const double> a, b;
   std::span<double> z;
