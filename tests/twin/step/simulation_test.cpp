@@ -295,9 +295,10 @@ TEST(SimulationTwin, StepsLikeTheCpuWhereFluidFreezesAndRises) {
   }
 }
 
-/// Two fluids, of which one has two elastic modes, on a floor that moves.
+/// Two fluids, of which one has two elastic modes, on a floor that moves. Warm ones have temperatures that modes
+/// follow and heat.
 template <int D>
-void compareElasticity(Precision precision) {
+void compareElasticity(Precision precision, bool warm) {
   SolverSettings settings;
   settings.precision = precision;
   Case c = stepCase(D, settings, SchemeKind::Accurate);
@@ -308,9 +309,18 @@ void compareElasticity(Precision precision) {
       {.name = "b", .model = ElasticModel::OldroydB, .viscosity = 1, .relaxationTime = 1e-3}};
   c.bodies.resize(1);
   c.bodies[0].kind = BodyKind::Wall;
+  if (warm) c.heat.emplace();
+  for (Material& m : c.materials) m.specificHeat = 1, m.conductivity = 0.1;
+  if (warm)
+    c.materials[0].viscosityShift =
+        ViscosityShift{.model = ShiftModel::Table, .temperatures = {300, 400}, .factors = {3, 0.3}};
   const auto start = [&] {
     Particles<D> p = bodyOnFloor<D>(c, 0.02);
     p.has.elasticModes = 2;
+    p.has.temperatures = warm;
+    if (warm) p.temperature.resize(p.fluidCount);
+    for (std::uint32_t i = 0; i < (warm ? p.fluidCount : 0); ++i)
+      p.temperature[i] = 350 + 40 * std::sin(2e3 * p.position[i][0]);
     for (std::size_t k = 0; k < 2; ++k) {
       p.conformation[k].resize(p.fluidCount);
       for (std::uint32_t i = 0; i < p.fluidCount; ++i) {
@@ -338,13 +348,19 @@ void compareElasticity(Precision precision) {
       for (int n = 0; n < SymmetricBlock<D>::size; ++n)
         ASSERT_NEAR(found.conformation[k][i].a[n], of[found.id[i]].a[n], 1e-7);
   }
+  if (!warm) return;
+  std::vector<double> of(expected.fluidCount);
+  for (std::uint32_t i = 0; i < expected.fluidCount; ++i) of[expected.id[i]] = expected.temperature[i];
+  for (std::uint32_t i = 0; i < found.fluidCount; ++i) ASSERT_NEAR(found.temperature[i], of[found.id[i]], 1e-6);
 }
 
 TEST(SimulationTwin, StepsLikeTheCpuWithElasticFluid) {
   TREACLE_SKIP_WITHOUT_GPU();
   for (const Precision precision : {Precision::Mixed, Precision::Double}) {
-    compareElasticity<2>(precision);
-    compareElasticity<3>(precision);
+    for (const bool warm : {false, true}) {
+      compareElasticity<2>(precision, warm);
+      compareElasticity<3>(precision, warm);
+    }
   }
 }
 
