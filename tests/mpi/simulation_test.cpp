@@ -68,12 +68,23 @@ TEST(SharedSimulation, FluidWithARheology) {
   compare<2>({"grease-dam-break-2d.toml", 5, {"resolution=0.5", "solver.tolerance=1e-18", "solver.deflation=0"}});
 }
 
-/// Temperatures from plates, from what the viscosity takes, and of a gob that a wall and its surroundings cool.
+/// Temperatures from plates, from what the viscosity and elastic stresses take, and of a gob that a wall and its
+/// surroundings cool.
 TEST(SharedSimulation, FluidWithHeat) {
   compare<2>({"../tests/validation/cases/heated-couette.toml",
               10,
               {"solver.tolerance=1e-18", "solver.deflation=0", "heat.tolerance=1e-20"}});
+  compare<2>({"../tests/validation/cases/heated-couette-elastic.toml",
+              10,
+              {"solver.tolerance=1e-18", "solver.deflation=0", "heat.tolerance=1e-20"}});
   compare<2>({"glass-gob-2d.toml", 5, {"solver.tolerance=1e-18", "solver.deflation=0", "heat.tolerance=1e-20"}});
+}
+
+/// Oil in a tank that takes more volume.
+TEST(SharedSimulation, FluidThatExpands) {
+  compare<2>({"../tests/validation/cases/expanding-tank.toml",
+              20,
+              {"solver.tolerance=1e-20", "solver.deflation=0", "material.oil.volume_factor=1 + t"}});
 }
 
 /// What particles remember: a resin that cures, and a drop of an elastic fluid that hits a plate.

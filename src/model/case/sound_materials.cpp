@@ -122,6 +122,12 @@ void requireSoundStates(const Checker& at, const Material& m) {
   require({"yield_factor"}, m.yieldFactor);
   if (!m.yieldFactor.empty() && !(m.rheology && m.rheology->yields()))
     at.fail({"yield_factor"}, "the material has no rheology with a yield stress");
+  require({"volume_factor"}, m.volumeFactor);
+  if (!m.volumeFactor.empty()) {
+    if (!c.isAccurate()) at.fail({"volume_factor"}, "expected method.scheme = \"accurate\" beside it");
+    if (m.thermalExpansion != 0)
+      at.fail({"volume_factor"}, "the weight follows it: expected no thermal_expansion beside it");
+  }
   if (!m.gelling) return;
   const auto state = std::ranges::find(m.states, m.gelling->state, &MaterialState::name);
   if (state == m.states.end())

@@ -44,6 +44,7 @@ StateTable StateTable::make(const Case& c, std::vector<FormulaStep>& steps) {
     }
     t.viscosity[m] = add(material.viscosityFactor, variables, steps);
     t.yield[m] = add(material.yieldFactor, variables, steps);
+    t.volume[m] = add(material.volumeFactor, variables, steps);
     if (material.gelling) t.gelling[m] = add(material.gelling->text(), variables, steps);
   }
   return t;

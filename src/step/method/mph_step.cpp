@@ -62,7 +62,7 @@ class MphStep final : public StepMethod<D, Backend> {
     clearValues(state_.context, state_.particles.pressure.span().subspan(active));
     clearValues(state_.context, state_.particles.heldPressure.span().subspan(active));
     elastic_.resize(state_.context, active);
-    places_.compute(state_, pairs_);
+    places_.compute(state_, pairs_, rheology_ ? rheology_->setVolumes(state_, pairs_) : std::span<const double>{});
   }
 
   /// Walls go with what rigid bodies are tried with first.
@@ -387,12 +387,17 @@ class MphStep final : public StepMethod<D, Backend> {
     addPressureGradient<D>(state_.context, pairs_, divergence_, -1.0, rhs_);
   }
 
-  /// Of own fluid, with the temperatures at the start of the step.
+  /// Of own fluid, with the temperatures and volumes at the start of the step.
   Buoyancy<D> buoyancy() const {
     if (!expansion_) return {};
     const std::uint32_t own = state_.particles.fluidCount;
-    return {*expansion_, state_.frame, pairs_.material.first(own), pairs_.position.first(own),
-            state_.particles.temperature.span().first(own)};
+    return {*expansion_,
+            state_.frame,
+            pairs_.material.first(own),
+            pairs_.position.first(own),
+            state_.particles.has.temperatures ? state_.particles.temperature.span().first(own)
+                                              : std::span<const double>{},
+            state_.theCase.hasVolumeFactors() ? rheology_->volumes().first(own) : std::span<const double>{}};
   }
 
   const ExplicitForces<D, Backend>* explicitForces() const {

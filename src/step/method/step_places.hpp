@@ -15,8 +15,8 @@ namespace treacle {
 template <int D, class Backend>
 class StepPlaces {
  public:
-  /// n goes into the state's particles, ghosts included.
-  void compute(FlowState<D, Backend>& state, const MphPairs<D>& pairs) {
+  /// n goes into the state's particles, ghosts included. `volume`: that of numberDensity().
+  void compute(FlowState<D, Backend>& state, const MphPairs<D>& pairs, std::span<const double> volume) {
     const std::uint32_t active = pairs.activeCount;
     std::span<double> n = state.particles.numberDensity;
     clearValues(state.context, n.subspan(active));
@@ -24,7 +24,7 @@ class StepPlaces {
       open_.resize(state.context, active);
       wide_.resize(state.context, active);
     }
-    numberDensity<D>(state.context, pairs, n.first(active), {open_.span(), wide_.span()});
+    numberDensity<D>(state.context, pairs, n.first(active), {open_.span(), wide_.span()}, volume);
     fillGhosts(state.context, Held::Active, n.data());
     walls_.resize(state.context, state.particles.fluidCount);
     wallDensity<D>(state.context, pairs, walls_);

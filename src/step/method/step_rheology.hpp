@@ -29,6 +29,23 @@ class StepRheology {
   std::span<const double> rates() const { return rate_; }
   std::span<const double> foundRates() const { return found_; }
 
+  /// By what the volumes of fluid particles are multiplied in the step at hand, ghosts included [-]; empty where
+  /// no material has a factor. At the shear rates of the step before. Errors: RunError for factors out of bounds.
+  std::span<const double> setVolumes(FlowState<D, Backend>& state, const MphPairs<D>& pairs) {
+    if (!state.theCase.hasVolumeFactors()) return {};
+    const std::uint32_t own = pairs.ownFluid();
+    read(state, own);
+    volume_.resize(state.context, pairs.fluidCount);
+    const double bad = treacle::setVolumes(
+        state.context, VolumeTerms{table_, pairs.material.first(own), state.particles.shearRate.span().first(own),
+                                   volume_.span()});
+    if (bad > 0) throw RunError(describeVolumes(bad));
+    fillGhosts(state.context, Held::Fluid, volume_.data());
+    return volume_;
+  }
+  /// Those of the step at hand.
+  std::span<const double> volumes() const { return volume_; }
+
   /// What elastic modes add to the viscosity in the step at hand, per own particle [Pa s].
   void setImplicit(std::span<const double> viscosity) { table_.implicit = viscosity; }
 
@@ -43,11 +60,7 @@ class StepRheology {
     neighbourhood.setViscosities({}, {});
     viscosityScale<D>(state.context, neighbourhood.pairs(), 1, share_.span());
     shearRate<D>(state.context, neighbourhood.pairs(), state.velocity, share_, rate_);
-    table_.read(state.particles, own, state.time);
-    if (!formulas_.empty() && steps_.empty()) {
-      fromHost(state.context, std::span<const FormulaStep>(formulas_), steps_);
-      table_.states.steps = steps_.data();
-    }
+    read(state, own);
     solves_ = 0;
   }
 
@@ -90,10 +103,17 @@ class StepRheology {
 
   std::size_t bytes() const {
     return steps_.bytes() + share_.bytes() + viscosity_.bytes() + scaled_.bytes() + rate_.bytes() +
-           found_.bytes() + class_.bytes();
+           found_.bytes() + class_.bytes() + volume_.bytes();
   }
 
  private:
+  void read(FlowState<D, Backend>& state, std::uint32_t own) {
+    table_.read(state.particles, own, state.time);
+    if (formulas_.empty() || !steps_.empty()) return;
+    fromHost(state.context, std::span<const FormulaStep>(formulas_), steps_);
+    table_.states.steps = steps_.data();
+  }
+
   std::vector<FormulaStep> formulas_;
   Buffer<FormulaStep, Backend> steps_;  // the same
   RheologyTable table_;
@@ -104,6 +124,7 @@ class StepRheology {
   Buffer<double, Backend> share_, viscosity_, scaled_;  // per fluid particle: 1/m_i [-], mu_i and s_i mu_i [Pa s]
   Buffer<double, Backend> rate_, found_;  // per own one: gamma of these viscosities, and of the last solve [1/s]
   Buffer<std::uint8_t, Backend> class_;   // per active particle
+  Buffer<double, Backend> volume_;        // per fluid particle [-]
 };
 
 }  // namespace treacle

@@ -82,6 +82,13 @@ std::string describeElasticity(double particles) {
       particles);
 }
 
+std::string describeVolumes(double particles) {
+  return fmt::format(
+      "the volume_factor of {:.0f} particles is not between 0.75 and 1.33; look at those of the "
+      "materials, and at the states and temperatures of the last frame",
+      particles);
+}
+
 std::string describeStates(double particles) {
   return fmt::format(
       "the states of {:.0f} particles are not finite; look at the rates of their materials' states, "

@@ -27,6 +27,8 @@ std::string describeFreezingFailure(double left, int systems, const HeatSettings
 std::string describeViscosities(double particles);
 std::string describeStates(double particles);
 std::string describeElasticity(double particles);
+/// Of volume factors out of bounds.
+std::string describeVolumes(double particles);
 
 /// Where the right-hand side b (per own fluid particle) is not finite, at some process.
 template <int D>

@@ -84,7 +84,7 @@ StepBytes mphBytes(const Case& c, BackendKind backend) {
   const MphBytes& of = accurate ? (D == 2 ? accurate2 : accurate3) : (D == 2 ? published2 : published3);
   StepBytes bytes{(projected ? of.projected : buckets ? of.buckets : of.local).on(backend)};
   if (c.hasSurfaceTension()) bytes.fluid += D == 2 ? 200 : 350;
-  if (c.hasOwnViscosities()) bytes.fluid += 70;
+  if (c.hasOwnViscosities()) bytes.fluid += c.hasVolumeFactors() ? 78 : 70;
   if (c.heat) bytes.fluid += c.freezes() ? 228 : 180;
   if (modesOf(c) > 0) bytes.fluid += 128 * D;  // recorded vectors
   if (s.neighbours == NeighbourKind::Ranges) bytes.fluid -= of.ranges.on(backend);

@@ -59,7 +59,7 @@ Watch::Watch(const Case& c, const Diagnostics& start, double mass, double partic
 
 Watched Watch::look(double dt, const Diagnostics& d, std::vector<std::string>& warnings) {
   Watched w;
-  w.energy = wallsMove_ ? 0 : energyRise(dt, d);
+  w.energy = wallsMove_ || case_.hasVolumeFactors() ? 0 : energyRise(dt, d);
   w.courant = d.maxSpeed * dt / case_.spacing;
   w.insideWalls = particles_ > 0 ? d.insideWalls / particles_ : 0;
   // With MPH-I a few particles inside tell nothing: thin sheets and threads have hardly any.
@@ -85,10 +85,10 @@ void Watch::requireSlow(double dt, double speed) const {
   if (most > 0 && value > most) throw RunError(exceeded(describeCourant(value, dt), "courant", most));
 }
 
-/// Walls at rest give the fluid no energy, and gravity gives what it has fallen: the sum of both energies can
-/// only fall, but for what is elastic. Measured against the lowest sum so far, so that what friction has taken
-/// does not hide a rise. The potential is summed up from the power of gravity, since particles that cross a
-/// periodic end change that of the diagnostics.
+/// Walls at rest give the fluid no energy, unless it expands, and gravity gives what it has fallen: the sum of
+/// both energies can only fall, but for what is elastic. Measured against the lowest sum so far, so that what
+/// friction has taken does not hide a rise. The potential is summed up from the power of gravity, since particles
+/// that cross a periodic end change that of the diagnostics.
 double Watch::energyRise(double dt, const Diagnostics& d) {
   potential_ -= dt * d.gravityPower;
   const double energy = d.kineticEnergy + potential_;

@@ -99,6 +99,15 @@ struct SumsTwin {
     EXPECT_LE(difference<double>(d.context, open.span(), openFound), operatorTolerance);
     EXPECT_LE(difference<double>(d.context, wide.span(), wideFound), kernelTolerance);
 
+    Buffer<double> volume(s.pairs().fluidCount);
+    for (std::size_t i = 0; i < volume.size(); ++i) volume[i] = 1 + 0.2 * std::sin(0.7 * i);
+    const auto volumeFound = copyToDevice<double>(d.context, volume);
+    numberDensity<D>(s.context, s.pairs(), expected, {open, wide}, volume);
+    numberDensity<D>(d.context, d.pairs, found, {openFound, wideFound}, volumeFound);
+    EXPECT_LE(difference<double>(d.context, expected.span(), found), kernelTolerance);
+    EXPECT_LE(difference<double>(d.context, open.span(), openFound), operatorTolerance);
+    EXPECT_LE(difference<double>(d.context, wide.span(), wideFound), kernelTolerance);
+
     Buffer<double> wallsExpected(n);
     Buffer<double, Cuda> wallsFound(d.context, n);
     wallDensity<D>(s.context, s.pairs(), wallsExpected);

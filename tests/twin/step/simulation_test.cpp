@@ -296,7 +296,7 @@ TEST(SimulationTwin, StepsLikeTheCpuWhereFluidFreezesAndRises) {
 }
 
 /// Two fluids, of which one has two elastic modes, on a floor that moves. Warm ones have temperatures that modes
-/// follow and heat.
+/// follow and heat, and that one fluid expands with.
 template <int D>
 void compareElasticity(Precision precision, bool warm) {
   SolverSettings settings;
@@ -314,6 +314,7 @@ void compareElasticity(Precision precision, bool warm) {
   if (warm)
     c.materials[0].viscosityShift =
         ViscosityShift{.model = ShiftModel::Table, .temperatures = {300, 400}, .factors = {3, 0.3}};
+  if (warm) c.materials[1].volumeFactor = "1 + 5e-4*(T - 350)";
   const auto start = [&] {
     Particles<D> p = bodyOnFloor<D>(c, 0.02);
     p.has.elasticModes = 2;

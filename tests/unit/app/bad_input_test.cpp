@@ -99,6 +99,8 @@ constexpr BadCase badCases[] = {
      "bad.toml:15:21: state in the gelling of [[material]] 'syrup': unknown state 'cure' of the material"},
     {"yieldWithoutRheology", "density = 1000", "density = 1000\nyield_factor = \"2\"",
      "bad.toml:15:16: yield_factor in [[material]] 'syrup': the material has no rheology with a yield stress"},
+    {"volumeOfUnknownName", "density = 1000", "density = 1000\nvolume_factor = \"1 + 1e-3*T\"",
+     "bad.toml:15:17: volume_factor in [[material]] 'syrup': expected an expression in"},
     {"factorOfUnknownName", "density = 1000", "density = 1000\nviscosity_factor = \"T\"",
      "bad.toml:15:20: viscosity_factor in [[material]] 'syrup': expected an expression in"},
     {"bodyWithUnknownState", "shape = \"box\"", "shape = \"box\"\nstate = [{ name = \"cure\", value = 1 }]",

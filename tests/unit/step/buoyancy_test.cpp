@@ -28,6 +28,9 @@ TEST(Buoyancy, IsTheWeightOfTheDensityThatExpansionTakesOff) {
   EXPECT_NEAR(buoyancy.on(1)[1], -1000 * 2e-4 * 50 * 10, 1e-10);
   EXPECT_EQ(buoyancy.on(2)[1], 0);
   for (const std::size_t i : {0, 1, 2}) EXPECT_EQ(buoyancy.on(i)[0], 0);
+  const double volume[] = {1, 1, 1.25};
+  const Buoyancy<2> swollen{ExpansionTable::make(c), FrameForce<2>::of(c, 0, 0), material, position, T, volume};
+  EXPECT_NEAR(swollen.on(2)[1], 3000 * 0.2 * 10, 1e-10);
 }
 
 /// In a frame that turns, warm fluid is driven to the axis: by -rho beta (T - T_r) omega^2 r.

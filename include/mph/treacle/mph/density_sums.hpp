@@ -30,8 +30,8 @@ struct NumberDensity {
   }
 };
 
-/// The same with what else there is to know of the particle's place (PlaceSums).
-template <int D>
+/// The same with what else there is to know of the particle's place (PlaceSums), and with volumes or without.
+template <int D, bool OfVolumes>
 struct DensityAndPlace {
   static constexpr int values = D + 2;
   static constexpr bool uses(ListSegment) { return true; }
@@ -39,6 +39,7 @@ struct DensityAndPlace {
 
   double* n;
   PlaceSums places;
+  const double* volume;
 
   template <class At>
   TREACLE_HD At own(const MphPairs<D>&, const At& at) const {
@@ -46,19 +47,24 @@ struct DensityAndPlace {
   }
   template <class T, class At>
   TREACLE_HD void add(const MphPairs<D>& pairs, T* sum, const Vec<D, T>& d, const PairDistance<T>& r,
-                      const At& own, const OneParticle& other, ListSegment) const {
-    const auto another = isAnother(own, other.index);
-    const T v = another * pairs.terms.openness(r);
-    sum[0] += another * pairs.terms.density(1.0, r);
+                      const At& own, const OneParticle& other, ListSegment segment) const {
+    T share = isAnother(own, other.index);
+    if constexpr (OfVolumes)
+      if (!isWall(segment)) share *= volume[other.index];
+    const T v = share * pairs.terms.openness(r);
+    sum[0] += share * pairs.terms.density(1.0, r);
     addScaled(sum + 1, v, d);
     sum[1 + D] += v;
   }
   TREACLE_HD void store(const MphPairs<D>& pairs, std::uint32_t i, const double* sum) const {
-    n[i] = pairs.terms.densityFactor * sum[0];
+    double more = 0;  // of the particle itself
+    if constexpr (OfVolumes)
+      if (i < pairs.fluidCount) more = volume[i] - 1;
+    n[i] = pairs.terms.densityFactor * (sum[0] + more * pairs.terms.density(1.0, ExactDistance(0)));
     double square = 0;
     for (int k = 0; k < D; ++k) square += sum[1 + k] * sum[1 + k];
     places.open[i] = pairs.opennessFactor() * sqrt(square);
-    places.wide[i] = pairs.wideScale * sum[1 + D];
+    places.wide[i] = pairs.wideScale * (sum[1 + D] + more * pairs.terms.openness(ExactDistance(0)));
   }
 };
 
@@ -159,8 +165,9 @@ struct WallDrag {
 
 template <int D, class Backend>
 void numberDensity(Context<Backend>& context, const MphPairs<D>& pairs, std::span<double> n,
-                   const PlaceSums& places) {
-  if (!places.open.empty()) return sumOnAll(context, pairs, DensityAndPlace<D>{n.data(), places});
+                   const PlaceSums& places, std::span<const double> volume) {
+  if (!volume.empty()) return sumOnAll(context, pairs, DensityAndPlace<D, true>{n.data(), places, volume.data()});
+  if (!places.open.empty()) return sumOnAll(context, pairs, DensityAndPlace<D, false>{n.data(), places, nullptr});
   if (pairs.terms.densityRadius > pairs.terms.pressureRadius)
     return sumOnAll(context, pairs, NumberDensity<D, MphTerms<D>, true>{pairs.terms, n.data()});
   withScheme(pairs.terms, [&]<class Mph>(const Mph& mph) {
@@ -194,10 +201,11 @@ void addWallDrag(Context<Backend>& context, const MphPairs<D>& pairs, std::span<
   });
 }
 
-#define TREACLE_DENSITY_SUMS(D, Backend)                                                                   \
-  template void numberDensity(Context<Backend>&, const MphPairs<D>&, std::span<double>, const PlaceSums&); \
-  template void wallDensity(Context<Backend>&, const MphPairs<D>&, std::span<double>);                     \
-  template void wallTerms(Context<Backend>&, const MphPairs<D>&, const WallTerms<D>&);                     \
+#define TREACLE_DENSITY_SUMS(D, Backend)                                                                  \
+  template void numberDensity(Context<Backend>&, const MphPairs<D>&, std::span<double>, const PlaceSums&, \
+                              std::span<const double>);                                                   \
+  template void wallDensity(Context<Backend>&, const MphPairs<D>&, std::span<double>);                    \
+  template void wallTerms(Context<Backend>&, const MphPairs<D>&, const WallTerms<D>&);                    \
   template void addWallDrag(Context<Backend>&, const MphPairs<D>&, std::span<const Vec<D>>, std::span<Vec<D>>);
 
 }  // namespace treacle

@@ -18,8 +18,13 @@ struct PlaceSums {
 };
 
 /// n_i = sum_j w_ij^p, per particle [K23 eq. (7)].
+///
+/// `volume`: v by which the volumes of fluid particles, ghosts included, are multiplied [-], beside places only;
+/// empty: 1. Then n_i = sum_j v_j w_ij + (v_i - 1) w(0), which is n_0 where the volumes fill the space, and places
+/// likewise.
 template <int D, class Backend>
-void numberDensity(Context<Backend>&, const MphPairs<D>&, std::span<double> n, const PlaceSums& places = {});
+void numberDensity(Context<Backend>&, const MphPairs<D>&, std::span<double> n, const PlaceSums& places = {},
+                   std::span<const double> volume = {});
 
 /// The part of n_i that wall particles make up, per fluid particle.
 template <int D, class Backend>

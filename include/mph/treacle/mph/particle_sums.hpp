@@ -60,6 +60,12 @@ double countNotFinite(Context<Backend>& context, std::span<const double> viscosi
 }
 
 template <class Backend>
+double setVolumes(Context<Backend>& context, const VolumeTerms& terms) {
+  return sumEach<1>(context, terms.rate.size(),
+                    [=] TREACLE_HD(std::size_t i, double* sum) { terms.add(i, sum); })[0];
+}
+
+template <class Backend>
 void setClasses(Context<Backend>& context, const ClassTerms& terms) {
   forEach(context, terms.kind.size(), [=] TREACLE_HD(std::size_t i) { terms.set(i); });
 }

@@ -39,6 +39,26 @@ void setViscosities(Context<Backend>&, const ViscosityTerms&);
 template <class Backend>
 double countNotFinite(Context<Backend>&, std::span<const double> viscosity);
 
+/// Sets by what the volumes of particles are multiplied, and counts those that the sums over neighbours are not
+/// made for: the spacing would differ too much.
+struct VolumeTerms {
+  static constexpr double least = 0.75, most = 4.0 / 3;
+
+  RheologyTable table;
+  std::span<const std::uint8_t> material;
+  std::span<const double> rate;  // gamma [1/s]
+  std::span<double> volume;      // [-]
+
+  TREACLE_HD void add(std::size_t i, double* sum) const {
+    volume[i] = table.volume(i, material[i], rate[i]);
+    if (!(volume[i] >= least && volume[i] <= most)) *sum += 1;
+  }
+};
+
+/// Sets all; how many are out of bounds, over all processes.
+template <class Backend>
+double setVolumes(Context<Backend>&, const VolumeTerms&);
+
 /// Sets the class of a particle: fluid has a viscosity, walls are of their materials' class.
 struct ClassTerms {
   ViscosityClasses classes;

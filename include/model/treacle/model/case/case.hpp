@@ -103,8 +103,13 @@ struct Case {
     return hasViscosityFactors() ||
            std::ranges::any_of(materials, [](const Material& m) { return m.hasOwnViscosities(); });
   }
+  /// Whether the density of some fluid follows its temperature or states.
   bool hasBuoyancy() const {
-    return std::ranges::any_of(materials, [](const Material& m) { return m.thermalExpansion != 0; });
+    return hasVolumeFactors() ||
+           std::ranges::any_of(materials, [](const Material& m) { return m.thermalExpansion != 0; });
+  }
+  bool hasVolumeFactors() const {
+    return std::ranges::any_of(materials, [](const Material& m) { return !m.volumeFactor.empty(); });
   }
   bool freezes() const {
     return std::ranges::any_of(materials, [](const Material& m) { return m.freezing.has_value(); });

@@ -173,6 +173,9 @@ void visit(auto& v, Like<Material> auto& m, const Case& c) {
     m.viscosityFactor, keys::formula);
   v({"yield_factor", "What the yield stress of a rheology is multiplied by, likewise"}, m.yieldFactor,
     keys::formula);
+  v({"volume_factor",
+     "What the volume of the fluid is multiplied by, likewise, from 0.75 to 1.33; its weight per volume follows"},
+    m.volumeFactor, keys::formula);
   v({"gelling", "Viscosity that grows without bound as a state comes to the gel point"}, m.gelling);
   v({"slip_length",
      "Of a fluid: how far behind the surface of a wall its velocity, extrapolated, meets the wall's; 0: no slip",

@@ -35,9 +35,9 @@ struct Material {
   std::optional<Rheology> rheology{};   // of a fluid that is not Newtonian; MPH-I only
   std::vector<ElasticMode> elastic{};   // of a fluid that is elastic, too; MPH-I only
   std::vector<MaterialState> states{};  // MPH-I only
-  // Expressions in them, the temperature T, shear_rate and t, by which the viscosity and a yield stress are
-  // multiplied; empty: 1. MPH-I only.
-  std::string viscosityFactor{}, yieldFactor{};
+  // Expressions in them, the temperature T, shear_rate and t, by which the viscosity, a yield stress and the
+  // volume are multiplied; empty: 1. MPH-I only.
+  std::string viscosityFactor{}, yieldFactor{}, volumeFactor{};
   std::optional<Gelling> gelling{};
   // In cases with heat.
   double specificHeat = 0;                         // c_p [J/(kg K)]
@@ -65,7 +65,8 @@ struct Material {
            !elastic.empty();
   }
   bool hasFormulas() const {
-    return !states.empty() || !viscosityFactor.empty() || !yieldFactor.empty() || gelling.has_value();
+    return !states.empty() || !viscosityFactor.empty() || !yieldFactor.empty() || !volumeFactor.empty() ||
+           gelling.has_value();
   }
 
   bool operator==(const Material&) const = default;

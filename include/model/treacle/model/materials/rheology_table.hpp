@@ -50,6 +50,14 @@ struct RheologyTable {
     return f.viscosity * of[m].viscosity(rate, f.shift, f.yield) + (implicit.empty() ? 0 : implicit[i]);
   }
 
+  /// By what the volume of particle i is multiplied [-].
+  TREACLE_HD double volume(std::size_t i, int m, double rate) const {
+    if (!states.steps) return 1;
+    double x[StateTable::variables];
+    variables(i, rate, x);
+    return states.volumeFactor(m, x);
+  }
+
   /// Whether particles differ in slowness().
   bool hasSlowness() const { return !temperature.empty() || !factor.empty() || states.steps; }
   /// By what the viscosities and relaxation times of the elastic modes of particle i are multiplied [-]: what

@@ -26,7 +26,7 @@ struct StateTable {
 
   const FormulaStep* steps = nullptr;
   Part rate[maxMaterials][maxStates];
-  Part viscosity[maxMaterials], gelling[maxMaterials], yield[maxMaterials];
+  Part viscosity[maxMaterials], gelling[maxMaterials], yield[maxMaterials], volume[maxMaterials];
   double least[maxMaterials][maxStates], most[maxMaterials][maxStates];
   double heat[maxMaterials][maxStates];     // set free per unit and volume [J/m3]
   double warming[maxMaterials][maxStates];  // and by how much it warms the particle by itself [K]; 0: no heat
@@ -37,11 +37,12 @@ struct StateTable {
   TREACLE_HD double value(const Part& part, const double* x) const {
     return part.count > 0 ? formulaValue(steps + part.first, part.count, x) : 1;
   }
-  /// By what a viscosity and a yield stress are multiplied, with the variables x.
+  /// By what a viscosity, a yield stress and a volume are multiplied, with the variables x.
   TREACLE_HD double viscosityFactor(int m, const double* x) const {
     return value(viscosity[m], x) * value(gelling[m], x);
   }
   TREACLE_HD double yieldFactor(int m, const double* x) const { return value(yield[m], x); }
+  TREACLE_HD double volumeFactor(int m, const double* x) const { return value(volume[m], x); }
 
   /// Integrates the states of a particle of material m over dt [s] from its values x of all variables, which are
   /// those of the end afterwards; the temperature follows the heat that is set free. The method is ROS2, of second

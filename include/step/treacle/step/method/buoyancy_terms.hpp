@@ -10,9 +10,10 @@
 
 namespace treacle {
 
-/// By how much the weight of a fluid follows its temperature, by Boussinesq's approximation: its density is that
-/// of its material everywhere else.
+/// By how much the weight of a fluid per volume follows its temperature and volume, by Boussinesq's approximation:
+/// its inertia is that of its density.
 struct ExpansionTable {
+  double rho[maxMaterials] = {};        // [kg/m3]
   double perKelvin[maxMaterials] = {};  // rho beta [kg/(m3 K)]
   double reference[maxMaterials] = {};  // the temperature at which the density is rho [K]
 
@@ -20,14 +21,17 @@ struct ExpansionTable {
     ExpansionTable table;
     for (std::size_t m = 0; m < c.materials.size(); ++m) {
       const Material& of = c.materials[m];
+      table.rho[m] = of.density;
       table.perKelvin[m] = of.density * of.thermalExpansion;
-      table.reference[m] = of.expansionTemperature > 0 ? of.expansionTemperature : c.heat->ambient;
+      if (c.heat) table.reference[m] = of.expansionTemperature > 0 ? of.expansionTemperature : c.heat->ambient;
     }
     return table;
   }
 
-  /// What is added to the density of material m at T [K], [kg/m3].
-  TREACLE_HD double density(int m, double T) const { return -perKelvin[m] * (T - reference[m]); }
+  /// What is added to the density of material m at T [K] with v times its volume, [kg/m3].
+  TREACLE_HD double density(int m, double T, double v) const {
+    return rho[m] * (1 / v - 1) - perKelvin[m] * (T - reference[m]);
+  }
 };
 
 /// What acts on own fluid particles. Spans are in the backend's memory.
@@ -37,11 +41,14 @@ struct Buoyancy {
   FrameForce<D> frame;
   std::span<const std::uint8_t> material;
   std::span<const Vec<D>> position;     // [m]
-  std::span<const double> temperature;  // at the start of the step [K]; empty: no fluid expands
+  std::span<const double> temperature;  // at the start of the step [K]; empty: there is none
+  std::span<const double> volume{};     // by which volumes are multiplied [-]; empty: 1
 
+  TREACLE_HD bool acts() const { return !temperature.empty() || !volume.empty(); }
   /// Of particle i [N/m3].
   TREACLE_HD Vec<D> on(std::size_t i) const {
-    return table.density(material[i], temperature[i]) * frame.at(position[i]);
+    const double T = temperature.empty() ? 0 : temperature[i], v = volume.empty() ? 1 : volume[i];
+    return table.density(material[i], T, v) * frame.at(position[i]);
   }
 };
 

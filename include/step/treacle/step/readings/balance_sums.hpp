@@ -55,7 +55,7 @@ struct PowerTerms {
     if (!force.empty()) sums[Force] += dot(force[i], after[i]);
     if (!fluid) return;
     sums[Shear] += shear[i];
-    if (!buoyancy.temperature.empty()) sums[Buoyant] += dot(buoyancy.on(i), after[i]);
+    if (buoyancy.acts()) sums[Buoyant] += dot(buoyancy.on(i), after[i]);
     if (!repulsion.empty()) sums[Repulsion] += repulsion[i];
     if (!transport.empty())
       sums[Shift] -= dot(frame.on(position[i], materials.inertia[m] * velocityStep), transport[i] - after[i]);
