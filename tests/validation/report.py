@@ -27,6 +27,7 @@ groups = {  # studies that share a table: its mark, and what their lines are cal
     "heated-floors": {"heated-floor": "Ra = 2500", "heated-floor-resting": "Ra = 1366"},
     "cure": {"cure-isothermal": "at 360 K", "cure-adiabatic": "by its own heat"},
     "thixotropy": {"thixotropic-steps": "steps", "thixotropic-loop": "loop"},
+    "elastic-filaments": {"elastic-sheet": "sheet", "elastic-filament": "bar"},
     "two-layers": {"two-layer-couette": "10,000 to 1", "two-layer-couette-1000": "1,000 to 1"},
     "static-drops": {"static-drop": "drop", "static-drop-3d": "ball"},
     "relaxing-drops": {"relaxing-drop": "drop", "relaxing-drop-3d": "ball"},

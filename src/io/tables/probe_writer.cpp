@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <cstddef>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -87,15 +88,19 @@ void ProbeWriter::append(double time, const Probe& now, const Frame& fluid, cons
   rows_.append(std::move(rows));
 }
 
-/// Means are those by volume. Of a part without fluid they are 0/0, not a number.
+/// Means are those by volume. A part without fluid has nan, of which 0/0 would have the sign that a processor
+/// likes.
 void ProbeWriter::append(double time, const Probe& now, const PartSums& s) {
   if (probe_.kind == ProbeKind::Flow) {
     const Vec<3> downstream = (1 / norm(now.normal)) * now.normal;
     return rows_.append(fmt::format("{},{},{}", time, dot(s.flow, downstream), dot(s.momentum, downstream)));
   }
-  const auto mean = [&](double sum) { return sum / s.volume; };
+  const auto over = [](double sum, double all) {
+    return all > 0 ? sum / all : std::numeric_limits<double>::quiet_NaN();
+  };
+  const auto mean = [&](double sum) { return over(sum, s.volume); };
   std::string row = fmt::format("{},{},{}", time, s.volume, s.mass);
-  for (int k = 0; k < case_.dimensions; ++k) row += fmt::format(",{}", s.moment[k] / s.mass);
+  for (int k = 0; k < case_.dimensions; ++k) row += fmt::format(",{}", over(s.moment[k], s.mass));
   for (int k = 0; k < case_.dimensions; ++k) row += fmt::format(",{}", mean(s.flow[k]));
   row += fmt::format(",{},{}", mean(s.pressure), mean(s.viscosity));
   if (hasOwnViscosities_) row += fmt::format(",{}", mean(s.shearRate));
