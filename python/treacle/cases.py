@@ -184,6 +184,7 @@ class Material:
     state: Sequence[MaterialState] | None = None
     viscosity_factor: str | None = None
     yield_factor: str | None = None
+    volume_factor: str | None = None
     gelling: Gelling | None = None
     slip_length: float | None = None
     """[m]"""
