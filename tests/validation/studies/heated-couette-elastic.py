@@ -1,5 +1,5 @@
-from study import Level
 from studies._self_heating import study as heating
+from study import Level
 
 study = heating(
     "heated-couette-elastic",

@@ -1,6 +1,6 @@
 import numpy as np
-from study import Level
 from studies._self_heating import study as heating
+from study import Level
 
 study = heating(
     "heated-couette",
