@@ -8,16 +8,17 @@ solvent, polymer, relaxation = 50.0, 150.0, 0.2  # [Pa s], [Pa s], [s]
 
 
 def exact(below, times, dimensions, steps=6000):
-    """Stretch and its rate [1/s] at the times of rows that bear the weight of a length `below` [m]. The stress along the filament is that
-    weight times the stretch, as the cross-section shrinks; inertia is neglected: it delays the start by rho L^2 / eta. Integrated with the midpoint rule."""
+    """Stretch and its rate [1/s] at the times of rows that bear the weight of a length `below` [m]. The stress along the filament is
+    that weight times the stretch, as the cross-section shrinks; inertia, which delays the start by rho L^2 / eta, is neglected.
+    Integrated with the midpoint rule."""
     side = 1 / (dimensions - 1)  # rate of strain across over that along, negative
     modulus, trouton = polymer / relaxation, 2 * (1 + side)
 
     def rates(state):
         stretch, along, across = state
         rate = (density * gravity * below * stretch - modulus * (along - across)) / (trouton * solvent)
-        change = np.array([rate * stretch, 2 * rate * along - (along - 1) / relaxation, -2 * side * rate * across - (across - 1) / relaxation])
-        return rate, change
+        stretched = 2 * rate * along - (along - 1) / relaxation, -2 * side * rate * across - (across - 1) / relaxation
+        return rate, np.array([rate * stretch, *stretched])
 
     state, dt = np.ones((3, len(below))), times[-1] / steps
     found = []
@@ -49,10 +50,10 @@ def measurement(dimensions, length, width):
             speed = np.array([frame.velocity[k, -1].mean() for k in of])
             apart = height[2:] - height[:-2]
             found = (apart / (rows[2:] - rows[:-2]))[middle]
-            foundRate = ((speed[2:] - speed[:-2]) / apart)[middle]
+            found_rate = ((speed[2:] - speed[:-2]) / apart)[middle]
             errors[f"elongation at {t:g} s"] = np.sqrt(np.mean((found - stretch) ** 2) / np.mean((stretch - 1) ** 2))
             if number == numbers[-1]:
-                errors[f"rate of strain at {t:g} s"] = np.sqrt(np.mean((foundRate - rate) ** 2) / np.mean(rate**2))
+                errors[f"rate of strain at {t:g} s"] = np.sqrt(np.mean((found_rate - rate) ** 2) / np.mean(rate**2))
             curves[f"{t:g} s"] = (above[middle] * 1e3, found)
             lines[f"exact, {t:g} s"] = (above[middle] * 1e3, stretch)
         return Outcome(errors, {"longest stretch": found.max()}, curves, lines)

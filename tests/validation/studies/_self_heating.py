@@ -1,7 +1,7 @@
 """Couette flow that heats itself between two plates of one temperature."""
 
 import numpy as np
-from study import Level, Outcome, Study
+from study import Outcome, Study
 
 H, U, mu, k, wall = 0.02, 0.2, 10.0, 0.1, 300.0  # plates [m], [m/s], [Pa s], [W/(m K)], [K]
 most = mu * U**2 / (8 * k)  # in the middle [K]
