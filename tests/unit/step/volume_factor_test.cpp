@@ -73,6 +73,19 @@ TEST(VolumeFactors, WeighTheNumberDensity) {
     ASSERT_NEAR(weighted[i], factor * (n[i] - walls[i]) + walls[i] + (factor - 1) * self, 1e-12);
 }
 
+TEST(VolumeFactors, AreRefusedBesideWhatContradictsThem) {
+  using testing::HasSubstr;
+  using testing::ThrowsMessage;
+  EXPECT_THAT([] { tank("1 + t", {"method.scheme=published"}); },
+              ThrowsMessage<InputError>(HasSubstr("expected method.scheme = \"accurate\" beside it")));
+  const std::vector<std::string> heat{"heat.ambient_temperature=300",       "material.oil.specific_heat=1000",
+                                      "material.oil.conductivity=1",        "material.steel.specific_heat=1000",
+                                      "material.steel.conductivity=1",      "body.oil.temperature=300",
+                                      "material.oil.thermal_expansion=1e-3"};
+  EXPECT_THAT([&] { tank("1 + t", heat); },
+              ThrowsMessage<InputError>(HasSubstr("expected no thermal_expansion beside it")));
+}
+
 TEST(VolumeFactors, OutOfBoundsEndARun) {
   const Case c = tank("1 - min(t, 0.3)");
   std::vector<std::string> notes;
