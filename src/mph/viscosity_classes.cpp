@@ -12,9 +12,7 @@ namespace {
 /// For the constants of the preconditioner that are numbers per material: its degree was found to suit the fluid
 /// where it is thin, not where it is thick.
 double flowingViscosity(const Material& m, double shift) {
-  double elastic = 0;
-  for (const ElasticMode& mode : m.elastic) elastic += mode.viscosity;
-  return std::min(m.viscosity(0.1, shift), m.viscosity(10, shift)) + shift * elastic;
+  return std::min(m.viscosity(0.1, shift), m.viscosity(10, shift)) + shift * m.elasticViscosity();
 }
 
 struct Range {
@@ -91,8 +89,8 @@ Range viscosities(const Case& c, const Material& m) {
     range.least = std::min(range.least, m.viscosity(rate, shift.least, yield.least));
     range.most = std::max(range.most, m.viscosity(rate, shift.most, yield.most));
   }
-  double elastic = 0;  // from steps of a tenth of the relaxation time to modes stretched tenfold
-  for (const ElasticMode& mode : m.elastic) elastic += mode.viscosity;
+  const double elastic =
+      m.elasticViscosity();  // from steps of a tenth of the relaxation time to modes stretched tenfold
   return {factor.least * ofFormula.least * (range.least + 0.1 * shift.least * elastic),
           ofSolid * factor.most * ofFormula.most * ofGel.most * (range.most + 10 * shift.most * elastic)};
 }

@@ -49,10 +49,8 @@ double Case::typicalViscosity(const Material& m) const {
     };
     factor = value(m.viscosityFactor) * (m.gelling ? value(m.gelling->text()) : 1), yield = value(m.yieldFactor);
   }
-  double elastic = 0;
-  for (const ElasticMode& mode : m.elastic) elastic += mode.viscosity;
   const double shift = typicalShift(m);
-  return factor * (m.viscosity(1, shift, yield) + shift * elastic);
+  return factor * (m.viscosity(1, shift, yield) + shift * m.elasticViscosity());
 }
 
 Vec<3> Case::meanGravity(double from, double to) const {

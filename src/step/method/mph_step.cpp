@@ -1,4 +1,5 @@
 #include "bodies/step_bodies.hpp"
+#include "mph_right_hand_side.hpp"
 #include "mph_solver.hpp"
 #include "readings/step_balance.hpp"
 #include "run/failure.hpp"
@@ -17,10 +18,8 @@
 #include "treacle/model/particles/particles_copy.hpp"
 #include "treacle/mph/mph_neighbourhood.hpp"
 #include "treacle/mph/mph_particles.hpp"
-#include "treacle/mph/mph_repulsion.hpp"
 #include "treacle/mph/renormalisation.hpp"
 #include "treacle/mph/viscosity_scale.hpp"
-#include "treacle/step/method/buoyancy_terms.hpp"
 #include "treacle/step/method/first_guess.hpp"
 #include "treacle/step/method/solve_stages.hpp"
 #include "walls/placed_surfaces.hpp"
@@ -46,7 +45,6 @@ class MphStep final : public StepMethod<D, Backend> {
     if (state.theCase.hasOwnViscosities()) rheology_.emplace(state.theCase);
     if (state.theCase.hasStates()) states_.emplace();
     if (state.theCase.heat) heat_.emplace(state.theCase, pairs_);
-    if (state.theCase.hasBuoyancy()) expansion_ = ExpansionTable::make(state.theCase);
     if (state.theCase.hasSurfaceTension()) surface_.emplace(state.theCase);
     if (state.theCase.keepsVolume()) tension_.emplace();
     if (state.theCase.gas) gas_.emplace(state.theCase, *tension_);
@@ -61,7 +59,6 @@ class MphStep final : public StepMethod<D, Backend> {
     const std::uint32_t active = pairs_.activeCount;
     clearValues(state_.context, state_.particles.pressure.span().subspan(active));
     clearValues(state_.context, state_.particles.heldPressure.span().subspan(active));
-    elastic_.resize(state_.context, active);
     places_.compute(state_, pairs_, rheology_ ? rheology_->setVolumes(state_, pairs_) : std::span<const double>{});
   }
 
@@ -124,7 +121,7 @@ class MphStep final : public StepMethod<D, Backend> {
           modes.vectors.resize(state_.context, kept.vectors.size());
           copyValues(state_.context, kept.vectors.span(), modes.vectors.data());
           modes.age = kept.age;
-          return solver.solve(state_.context, rhs_, u, &modes, history);
+          return solver.solve(state_.context, rhs_.values(), u, &modes, history);
         });
   }
 
@@ -157,13 +154,14 @@ class MphStep final : public StepMethod<D, Backend> {
     divergence_.resize(state_.context, active);
     divergence<D>(state_.context, pairs_, state_.velocity.span().first(active), divergence_);
     fillGhosts(state_.context, Held::Active, divergence_.data());
-    bulkPressure<D>(state_.context, pairs_, divergence_, elastic_, state_.particles.pressure.span().first(active));
+    bulkPressure<D>(state_.context, pairs_, divergence_, rhs_.elastic(),
+                    state_.particles.pressure.span().first(active));
     if (rheology_) rheology_->accept(state_);
     if (states_) states_->accept(state_);
     if (elasticity_) elasticity_->accept(state_);
     if (state_.theCase.needsBalance())
-      lastBalance_ = balance_.make(state_, pairs_, divergence_, elastic_, surface_ ? &*surface_ : nullptr,
-                                   tension_ ? &*tension_ : nullptr, explicitForces(), buoyancy());
+      lastBalance_ = balance_.make(state_, pairs_, divergence_, rhs_.elastic(), surface_ ? &*surface_ : nullptr,
+                                   tension_ ? &*tension_ : nullptr, explicitForces(), rhs_.buoyancy());
     if (heat_) acceptHeat();
     if (gas_) gas_->accept(state_);
     pressures_.accept();
@@ -191,10 +189,9 @@ class MphStep final : public StepMethod<D, Backend> {
     return neighbourhood_.bytes() + wallSurface_.bytes() + renormalisation_.bytes() + viscosityScale_.bytes() +
            (rheology_ ? rheology_->bytes() : 0) + (states_ ? states_->bytes() : 0) + (heat_ ? heat_->bytes() : 0) +
            (surface_ ? surface_->bytes() : 0) + (tension_ ? tension_->bytes() : 0) + wallBlock_.bytes() +
-           wallGradient_.bytes() + places_.bytes() + elastic_.bytes() + divergence_.bytes() + rhs_.bytes() +
-           found_.bytes() + solver_.bytes() + balance_.bytes() + wallForces_.bytes() + (gas_ ? gas_->bytes() : 0) +
-           (elasticity_ ? elasticity_->bytes() : 0) + (bodies_ ? bodies_->bytes() : 0) + rhsAtRest_.bytes() +
-           pressure_.bytes();
+           wallGradient_.bytes() + places_.bytes() + divergence_.bytes() + rhs_.bytes() + found_.bytes() +
+           solver_.bytes() + balance_.bytes() + wallForces_.bytes() + (gas_ ? gas_->bytes() : 0) +
+           (elasticity_ ? elasticity_->bytes() : 0) + (bodies_ ? bodies_->bytes() : 0) + pressure_.bytes();
   }
 
  private:
@@ -235,8 +232,7 @@ class MphStep final : public StepMethod<D, Backend> {
     const std::uint32_t fluid = pairs_.fluidCount;
     found_.resize(state_.context, fluid);
     copyValues(state_.context, std::span<const Vec<D>>(state_.velocity).first(fluid), found_.data());
-    copyValues(state_.context, std::span<const Vec<D>>(rhsAtRest_), rhs_.data());
-    addWallVelocities();
+    rhs_.takeWallVelocities();
     copyValues(state_.context, std::span<const Vec<D>>(found_), state_.velocity.data());
   }
 
@@ -247,7 +243,7 @@ class MphStep final : public StepMethod<D, Backend> {
     divergence<D>(state_.context, pairs_, state_.velocity.span().first(active), divergence_);
     fillGhosts(state_.context, Held::Active, divergence_.data());
     pressure_.resize(state_.context, active);
-    bulkPressure<D>(state_.context, pairs_, divergence_, elastic_, pressure_);
+    bulkPressure<D>(state_.context, pairs_, divergence_, rhs_.elastic(), pressure_);
     wallForces_.sum(state_, pairs_, state_.velocity, pressure_, explicitForces());
     return wallForces_.loads(state_, pairs_, state_.velocity);
   }
@@ -290,8 +286,9 @@ class MphStep final : public StepMethod<D, Backend> {
   StagedReport solveOnce() {
     SolverModes<D, Backend>& modes = state_.particles.modes;
     const bool noModes = state_.context.halo && state_.context.halo->someHaveNone;
-    StagedReport report = solver_.solve(state_.context, rhs_, state_.velocity.span().first(pairs_.ownFluid()),
-                                        noModes ? nullptr : &modes);
+    StagedReport report =
+        solver_.solve(state_.context, rhs_.values(), state_.velocity.span().first(pairs_.ownFluid()),
+                      noModes ? nullptr : &modes);
     fillGhosts(state_.context, Held::Fluid, state_.velocity.data());
     if (report.fallbacks == 0 && report.status == SolveStatus::Converged)
       modes.pressure.solved(report.iterations);
@@ -353,51 +350,12 @@ class MphStep final : public StepMethod<D, Backend> {
     neighbourhood_.setViscosityScale(viscosityScale_);
   }
 
-  /// b of [K23 eq. (16)], and the terms of the repulsion and of prescribed wall velocities.
   void computeRightHandSide() {
-    elasticPressure<D>(state_.context, pairs_, state_.particles.numberDensity.span().first(pairs_.activeCount),
-                       surface_ ? surface_->adhesion() : std::span<const Adhesion<D>>{}, elastic_);
-    rhs_.resize(state_.context, state_.particles.fluidCount);
-    inertiaAndGravity<D>(state_.context, pairs_,
-                         state_.particles.velocity.span().first(state_.particles.fluidCount), state_.frame, rhs_);
-    if (expansion_) setEach(state_.context, AddBuoyancy<D>{buoyancy(), rhs_.span()}, rhs_.size());
-    addPressureGradient<D>(state_.context, pairs_, elastic_, -1.0, rhs_);
-    if (pairs_.terms.repulsionRadius > 0) addRepulsion<D>(state_.context, pairs_, 1 / state_.timeStep, rhs_);
-    if (const auto* others = explicitForces()) others->addForces(state_, rhs_);
-    if (bodies_) {
-      rhsAtRest_.resize(state_.context, rhs_.size());
-      copyValues(state_.context, std::span<const Vec<D>>(rhs_), rhsAtRest_.data());
-    }
-    if (state_.wallsMove) addWallVelocities();
-    if (gas_) gas_->addPressures(state_, rhs_);
-  }
-
-  /// b -= A_full (0 on the fluid, u on the walls)
-  void addWallVelocities() {
-    const std::uint32_t n = pairs_.fluidCount, active = pairs_.activeCount;
-    const std::span<const Vec<D>> u = state_.particles.velocity;
-    state_.velocity.resize(state_.context, active);
-    clearValues(state_.context, state_.velocity.span().first(n));
-    copyValues(state_.context, u.subspan(n, active - n), state_.velocity.data() + n);
-    addWallDrag<D>(state_.context, pairs_, state_.velocity, rhs_);
-    divergence_.resize(state_.context, active);
-    divergence<D>(state_.context, pairs_, state_.velocity, divergence_);
-    fillGhosts(state_.context, Held::Active, divergence_.data());
-    bulkPressure<D>(state_.context, pairs_, divergence_, {}, divergence_);
-    addPressureGradient<D>(state_.context, pairs_, divergence_, -1.0, rhs_);
-  }
-
-  /// Of own fluid, with the temperatures and volumes at the start of the step.
-  Buoyancy<D> buoyancy() const {
-    if (!expansion_) return {};
-    const std::uint32_t own = state_.particles.fluidCount;
-    return {*expansion_,
-            state_.frame,
-            pairs_.material.first(own),
-            pairs_.position.first(own),
-            state_.particles.has.temperatures ? state_.particles.temperature.span().first(own)
-                                              : std::span<const double>{},
-            state_.theCase.hasVolumeFactors() ? rheology_->volumes().first(own) : std::span<const double>{}};
+    rhs_.compute(surface_ ? surface_->adhesion() : std::span<const Adhesion<D>>{},
+                 state_.theCase.hasVolumeFactors() ? rheology_->volumes().first(state_.particles.fluidCount)
+                                                   : std::span<const double>{},
+                 explicitForces());
+    if (gas_) gas_->addPressures(state_, rhs_.values());
   }
 
   const ExplicitForces<D, Backend>* explicitForces() const {
@@ -410,8 +368,8 @@ class MphStep final : public StepMethod<D, Backend> {
   std::string notFiniteOnHost() {
     Particles<D> host;
     copyToHost(state_.context, state_.particles, host);
-    Buffer<Vec<D>> b(rhs_.size());
-    copyToHost(state_.context, std::span<const Vec<D>>(rhs_), b.data());
+    Buffer<Vec<D>> b(rhs_.values().size());
+    copyToHost(state_.context, std::span<const Vec<D>>(rhs_.values()), b.data());
     return describeNotFinite<D>(state_.context, host, b);
   }
 
@@ -425,22 +383,19 @@ class MphStep final : public StepMethod<D, Backend> {
   Buffer<Block<D>, Backend> wallBlock_;
   Buffer<Vec<D>, Backend> wallGradient_;
   StepPlaces<D, Backend> places_;
-  Buffer<double, Backend> elastic_;     // elasticPressure() per particle [Pa]
   Buffer<double, Backend> divergence_;  // C^T u per particle [1/s]
-  Buffer<Vec<D>, Backend> rhs_;
+  MphRightHandSide<D, Backend> rhs_{state_, pairs_, divergence_};
   MphSolver<D, Backend> solver_;
   std::optional<StepRheology<D, Backend>> rheology_;  // where particles have their own viscosities
   Buffer<Vec<D>, Backend> found_;                     // velocities of the last solve, while the next is prepared
   std::optional<StepElasticity<D, Backend>> elasticity_;  // where a fluid is elastic
   std::optional<StepStates<D, Backend>> states_;          // where materials have states
   std::optional<StepHeat<D, Backend>> heat_;              // where the case has heat
-  std::optional<ExpansionTable> expansion_;               // where some fluid expands
   std::optional<StepSurface<D, Backend>> surface_;        // where some fluid has a surface tension
   std::optional<StepTension<D, Backend>> tension_;        // where the case keeps its volume
   std::optional<StepGas<D, Backend>> gas_;                // where the case has gas
   StepPressures<D, Backend> pressures_;
   std::optional<StepBodies<D, Backend>> bodies_;  // where the case has rigid bodies; then also:
-  Buffer<Vec<D>, Backend> rhsAtRest_;             // the right-hand side without velocities of walls
   Buffer<double, Backend> pressure_;              // per active particle [Pa]
   WallForces<D, Backend> wallForces_;             // for rigid bodies, the balance and surface tension
   StepBalance<D, Backend> balance_{wallForces_};

@@ -7,6 +7,7 @@
 #include "treacle/mph/elasticity.hpp"
 #include "treacle/mph/surface_tension.hpp"
 #include "treacle/step/method/elastic_terms.hpp"
+#include "treacle/step/method/heat_terms.hpp"
 
 #include <array>
 
@@ -27,8 +28,10 @@ class StepElasticity final : public ExplicitForces<D, Backend> {
                                             const StepRheology<D, Backend>& rheology) {
     if (rheology.table().hasSlowness()) {
       slowness_.resize(state.context, pairs.ownFluid());
-      setSlowness(state.context,
-                  {rheology.table(), pairs.material.first(pairs.ownFluid()), rheology.rates(), slowness_.span()});
+      setEach(
+          state.context,
+          Slowness{rheology.table(), pairs.material.first(pairs.ownFluid()), rheology.rates(), slowness_.span()},
+          slowness_.size());
     }
     implicit_.resize(state.context, pairs.ownFluid());
     setImplicitViscosity<D>(state.context, {conformations(state, pairs), implicit_.span()});

@@ -224,11 +224,6 @@ std::array<double, StateTerms::count> advanceStates(Context<Backend>& context, c
                                     [=] TREACLE_HD(std::size_t i, double* sums) { terms.add(i, sums); });
 }
 
-template <class Backend>
-void setSlowness(Context<Backend>& context, const Slowness& terms) {
-  setEach(context, terms, terms.slowness.size());
-}
-
 template <int D, class Backend>
 void setImplicitViscosity(Context<Backend>& context, const ImplicitViscosity<D>& terms) {
   forEach(context, terms.viscosity.size(), [=] TREACLE_HD(std::size_t i) { terms.set(i); });
@@ -321,7 +316,7 @@ StepChange stepChange(Context<Backend>& context, const StepChangeTerms<D>& terms
   template void setEach(Context<Backend>&, const HeatSystemTerms&, std::size_t);                          \
   template void setEach(Context<Backend>&, const Sum&, std::size_t);                                      \
   template void setEach(Context<Backend>&, const Difference&, std::size_t);                               \
-  template void setSlowness(Context<Backend>&, const Slowness&);                                          \
+  template void setEach(Context<Backend>&, const Slowness&, std::size_t);                                 \
   template void setEach(Context<Backend>&, const Scaled&, std::size_t);                                   \
   template void setEach(Context<Backend>&, const HeatResult&, std::size_t);                               \
   template void setEach(Context<Backend>&, const ConductivityTerms&, std::size_t);                        \

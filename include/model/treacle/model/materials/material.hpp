@@ -64,6 +64,12 @@ struct Material {
     return rheology.has_value() || viscosityShift.has_value() || freezing.has_value() || hasFormulas() ||
            !elastic.empty();
   }
+  /// Of all elastic modes together [Pa s].
+  double elasticViscosity() const {
+    double sum = 0;
+    for (const ElasticMode& mode : elastic) sum += mode.viscosity;
+    return sum;
+  }
   bool hasFormulas() const {
     return !states.empty() || !viscosityFactor.empty() || !yieldFactor.empty() || !volumeFactor.empty() ||
            gelling.has_value();

@@ -37,8 +37,6 @@ struct Slowness {
 
   TREACLE_HD void set(std::size_t i) const { slowness[i] = table.slowness(i, material[i], rate[i]); }
 };
-template <class Backend>
-void setSlowness(Context<Backend>&, const Slowness& terms);
 
 /// What particles have in a step of dt [s].
 template <int D>
