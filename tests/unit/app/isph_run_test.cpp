@@ -136,5 +136,19 @@ TEST(runIsph, stepsFollowTheCourantNumber) {
   EXPECT_NEAR(rows.back().time, 4e-3, 1e-15);
 }
 
+/// Pressures go with 1/dt: a last step that is short for no reason would end the run with noise.
+TEST(runIsph, theLastTwoStepsShareWhatIsLeft) {
+  Workshop shop;
+  shop.put("water.toml", isphCase(2));
+  const char* command =
+      "run water.toml --threads 1 --quiet --set time.step=5e-4 --set time.courant=1 --end-time 1.02e-3";
+  ASSERT_EQ(shop.call(command).exitCode, 0);
+  const auto rows = readHistory(shop / "water-run/history.csv");
+  ASSERT_EQ(rows.size(), 3u);
+  EXPECT_NEAR(rows[0].timeStep, 5e-4, 1e-12);
+  EXPECT_NEAR(rows[1].timeStep, 2.6e-4, 1e-12);
+  EXPECT_NEAR(rows[2].timeStep, 2.6e-4, 1e-12);
+}
+
 }  // namespace
 }  // namespace treacle::test
