@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """benchmarks/experiments/compare.py run NAME [--resolution N] [--case CASE] [--program P] [--backend cpu|cuda|auto] [--out DIR]
+    [--check TEXT]
 benchmarks/experiments/compare.py draw NAME... [--out DIR] [--record FILE] [--images DIR]
 benchmarks/experiments/compare.py table [--record FILE]
 
@@ -7,7 +8,8 @@ Compares treacle with laboratory experiments: docs/experiments.md. A folder besi
 case-CASE.toml; measured.csv, which has in each line a number to compare, the error of the experiment and the largest deviation that is
 allowed, all in one unit; and measured curves, curve.csv or curve-CASE.csv. `run` runs the cases into DIR/NAME; `draw` measures all runs
 there, draws them beside the measured curve, and puts the numbers into the record; `table` prints the record as Markdown.
-`run --set KEY=VALUE` changes a key.
+`run --set KEY=VALUE` changes a key; `run --check TEXT` ends with 1 if a number
+with TEXT in its name misses that the record has within what is allowed.
 Needs Python 3.11, NumPy, and Matplotlib to draw."""
 
 import argparse
@@ -228,8 +230,18 @@ def whole_case(path):
     return base
 
 
+def lost(options, label, values):
+    """The numbers to check that the record has within what is allowed at this resolution and that these values have not."""
+    wanted = (options.name, label, float(options.resolution), True)
+    met = [e for e in json.loads(options.record.read_text())
+           if (e["experiment"], e["case"], e["resolution"], e["met"]) == wanted and options.check in e["quantity"]]
+    if not met:
+        sys.exit(f"{options.record}: no '{options.check}' of {options.name} {label}, resolution {options.resolution}, is as allowed")
+    return [e["quantity"] for e in met if not abs(values[e["quantity"]] - e["measured"]) <= e["asked"]]
+
+
 def run(options):
-    experiment = experiments[options.name]
+    experiment, failed = experiments[options.name], False
     for label, path in case_files(options.name).items():
         if options.case not in (None, label):
             continue
@@ -240,6 +252,10 @@ def run(options):
         done = run_case(options.program, path, directory, settings, words)
         values = experiment.measure(done)[0]
         print(f"{directory}: {done.seconds:.0f} s", *(f"{key}: {value:.4g}" for key, value in values.items()), sep="\n  ")
+        for quantity in lost(options, label, values) if options.check is not None else []:
+            failed = True
+            print(f"  {quantity} is no longer within what is allowed")
+    sys.exit(failed)
 
 
 def runs_of(options, name):
@@ -334,6 +350,7 @@ def main():
     one.add_argument("--backend", choices=["auto", "cpu", "cuda"], default="auto")
     one.add_argument("--threads")
     one.add_argument("--set", action="append", default=[])
+    one.add_argument("--check")
     one.set_defaults(do=run)
     some = commands.add_parser("draw", parents=[common])
     some.add_argument("names", nargs="+", choices=experiments)
