@@ -89,8 +89,8 @@ Range viscosities(const Case& c, const Material& m) {
     range.least = std::min(range.least, m.viscosity(rate, shift.least, yield.least));
     range.most = std::max(range.most, m.viscosity(rate, shift.most, yield.most));
   }
-  const double elastic =
-      m.elasticViscosity();  // from steps of a tenth of the relaxation time to modes stretched tenfold
+  // From steps of a tenth of the relaxation time to modes stretched tenfold.
+  const double elastic = m.elasticViscosity();
   return {factor.least * ofFormula.least * (range.least + 0.1 * shift.least * elastic),
           ofSolid * factor.most * ofFormula.most * ofGel.most * (range.most + 10 * shift.most * elastic)};
 }

@@ -69,9 +69,8 @@ class MphRightHandSide {
   }
 
   std::span<Vec<D>> values() { return b_.span(); }
-  std::span<const double> elastic() const {
-    return elastic_.span();
-  }  // elasticPressure() per active particle [Pa]
+  /// elasticPressure() per active particle [Pa].
+  std::span<const double> elastic() const { return elastic_.span(); }
   std::size_t bytes() const { return b_.bytes() + atRest_.bytes() + elastic_.bytes(); }
 
  private:
