@@ -64,7 +64,7 @@ struct Material {
     return rheology.has_value() || viscosityShift.has_value() || freezing.has_value() || hasFormulas() ||
            !elastic.empty();
   }
-  /// Of all elastic modes together [Pa s].
+  /// Sum of the viscosities of its elastic modes [Pa s].
   double elasticViscosity() const {
     double sum = 0;
     for (const ElasticMode& mode : elastic) sum += mode.viscosity;
