@@ -8,8 +8,8 @@ Compares treacle with laboratory experiments: docs/experiments.md. A folder besi
 case-CASE.toml; measured.csv, which has in each line a number to compare, the error of the experiment and the largest deviation that is
 allowed, all in one unit; and measured curves, curve.csv or curve-CASE.csv. `run` runs the cases into DIR/NAME; `draw` measures all runs
 there, draws them beside the measured curve, and puts the numbers into the record; `table` prints the record as Markdown.
-`run --set KEY=VALUE` changes a key; `run --check TEXT` ends with 1 if a number
-with TEXT in its name misses that the record has within what is allowed.
+`run --set KEY=VALUE` changes a key. `run --check TEXT` ends with exit code 1 if a number whose name contains TEXT, and which is within what
+is allowed in the record, no longer is.
 Needs Python 3.11, NumPy, and Matplotlib to draw."""
 
 import argparse
@@ -237,7 +237,7 @@ def lost(options, label, values):
            if (e["experiment"], e["case"], e["resolution"], e["met"]) == wanted and options.check in e["quantity"]]
     if not met:
         sys.exit(f"{options.record}: no '{options.check}' of {options.name} {label}, resolution {options.resolution}, is as allowed")
-    return [e["quantity"] for e in met if not abs(values[e["quantity"]] - e["measured"]) <= e["asked"]]
+    return [e["quantity"] for e in met if not abs(values.get(e["quantity"], np.nan) - e["measured"]) <= e["asked"]]
 
 
 def run(options):

@@ -22,7 +22,7 @@ class MphRightHandSide {
  public:
   /// `scratch`: what it holds does not outlive a call here.
   MphRightHandSide(FlowState<D, Backend>& state, const MphPairs<D>& pairs, Buffer<double, Backend>& scratch)
-      : state_(state), pairs_(pairs), divergence_(scratch), keepsRest_(state.theCase.hasRigid()) {
+      : state_(state), pairs_(pairs), scratch_(scratch) {
     if (state.theCase.hasBuoyancy()) expansion_ = ExpansionTable::make(state.theCase);
   }
 
@@ -30,18 +30,17 @@ class MphRightHandSide {
   /// fluid, or empty. `others` may be null. Changes state.velocity where walls move.
   void compute(std::span<const Adhesion<D>> adhesion, std::span<const double> volume,
                const ExplicitForces<D, Backend>* others) {
-    volume_ = volume;
     elastic_.resize(state_.context, pairs_.activeCount);
     elasticPressure<D>(state_.context, pairs_, state_.particles.numberDensity.span().first(pairs_.activeCount),
                        adhesion, elastic_);
     b_.resize(state_.context, state_.particles.fluidCount);
     inertiaAndGravity<D>(state_.context, pairs_,
                          state_.particles.velocity.span().first(state_.particles.fluidCount), state_.frame, b_);
-    if (expansion_) setEach(state_.context, AddBuoyancy<D>{buoyancy(), b_.span()}, b_.size());
+    if (expansion_) setEach(state_.context, AddBuoyancy<D>{buoyancy(volume), b_.span()}, b_.size());
     addPressureGradient<D>(state_.context, pairs_, elastic_, -1.0, b_);
     if (pairs_.terms.repulsionRadius > 0) addRepulsion<D>(state_.context, pairs_, 1 / state_.timeStep, b_);
     if (others) others->addForces(state_, b_);
-    if (keepsRest_) {
+    if (state_.theCase.hasRigid()) {
       atRest_.resize(state_.context, b_.size());
       copyValues(state_.context, std::span<const Vec<D>>(b_), atRest_.data());
     }
@@ -55,8 +54,8 @@ class MphRightHandSide {
     addWallVelocities();
   }
 
-  /// What expands, with the temperatures and volumes at the start of the step.
-  Buoyancy<D> buoyancy() const {
+  /// With the temperatures at the start of the step; `volume`: of compute().
+  Buoyancy<D> buoyancy(std::span<const double> volume) const {
     if (!expansion_) return {};
     const std::uint32_t own = state_.particles.fluidCount;
     return {*expansion_,
@@ -65,9 +64,10 @@ class MphRightHandSide {
             pairs_.position.first(own),
             state_.particles.has.temperatures ? state_.particles.temperature.span().first(own)
                                               : std::span<const double>{},
-            volume_};
+            volume};
   }
 
+  /// b per own fluid particle [N/m3].
   std::span<Vec<D>> values() { return b_.span(); }
   /// elasticPressure() per active particle [Pa].
   std::span<const double> elastic() const { return elastic_.span(); }
@@ -82,22 +82,20 @@ class MphRightHandSide {
     clearValues(state_.context, state_.velocity.span().first(n));
     copyValues(state_.context, u.subspan(n, active - n), state_.velocity.data() + n);
     addWallDrag<D>(state_.context, pairs_, state_.velocity, b_);
-    divergence_.resize(state_.context, active);
-    divergence<D>(state_.context, pairs_, state_.velocity, divergence_);
-    fillGhosts(state_.context, Held::Active, divergence_.data());
-    bulkPressure<D>(state_.context, pairs_, divergence_, {}, divergence_);
-    addPressureGradient<D>(state_.context, pairs_, divergence_, -1.0, b_);
+    scratch_.resize(state_.context, active);
+    divergence<D>(state_.context, pairs_, state_.velocity, scratch_);
+    fillGhosts(state_.context, Held::Active, scratch_.data());
+    bulkPressure<D>(state_.context, pairs_, scratch_, {}, scratch_);
+    addPressureGradient<D>(state_.context, pairs_, scratch_, -1.0, b_);
   }
 
   FlowState<D, Backend>& state_;
   const MphPairs<D>& pairs_;
-  Buffer<double, Backend>& divergence_;
-  bool keepsRest_;  // where the velocities of rigid bodies are found with the flow
-  std::optional<ExpansionTable> expansion_;
-  std::span<const double> volume_;
+  Buffer<double, Backend>& scratch_;
+  std::optional<ExpansionTable> expansion_;  // where some fluid expands
   Buffer<double, Backend> elastic_;
-  Buffer<Vec<D>, Backend> b_;
-  Buffer<Vec<D>, Backend> atRest_;  // without velocities of walls
+  Buffer<Vec<D>, Backend> b_;       // [N/m3]
+  Buffer<Vec<D>, Backend> atRest_;  // b without velocities of walls, for rigid bodies
 };
 
 }  // namespace treacle

@@ -148,20 +148,15 @@ class MphStep final : public StepMethod<D, Backend> {
     return speed * state_.timeStep + (tension_ ? longestShift * state_.theCase.spacing : 0);
   }
 
-  /// Psi of [K23 eq. (14)] with the new velocities.
   void accept() override {
-    const std::uint32_t active = pairs_.activeCount, n = pairs_.ownFluid();
-    divergence_.resize(state_.context, active);
-    divergence<D>(state_.context, pairs_, state_.velocity.span().first(active), divergence_);
-    fillGhosts(state_.context, Held::Active, divergence_.data());
-    bulkPressure<D>(state_.context, pairs_, divergence_, rhs_.elastic(),
-                    state_.particles.pressure.span().first(active));
+    const std::uint32_t n = pairs_.ownFluid();
+    computePressures(state_.particles.pressure.span().first(pairs_.activeCount));
     if (rheology_) rheology_->accept(state_);
     if (states_) states_->accept(state_);
     if (elasticity_) elasticity_->accept(state_);
     if (state_.theCase.needsBalance())
       lastBalance_ = balance_.make(state_, pairs_, divergence_, rhs_.elastic(), surface_ ? &*surface_ : nullptr,
-                                   tension_ ? &*tension_ : nullptr, explicitForces(), rhs_.buoyancy());
+                                   tension_ ? &*tension_ : nullptr, explicitForces(), rhs_.buoyancy(volumes()));
     if (heat_) acceptHeat();
     if (gas_) gas_->accept(state_);
     pressures_.accept();
@@ -236,14 +231,19 @@ class MphStep final : public StepMethod<D, Backend> {
     copyValues(state_.context, std::span<const Vec<D>>(found_), state_.velocity.data());
   }
 
-  /// What bodies bear with the velocities in state.velocity.
-  std::vector<LoadSums> loads() {
+  /// Psi of [K23 eq. (14)] per active particle, and divergence_, with the velocities in state.velocity [Pa].
+  void computePressures(std::span<double> pressure) {
     const std::uint32_t active = pairs_.activeCount;
     divergence_.resize(state_.context, active);
     divergence<D>(state_.context, pairs_, state_.velocity.span().first(active), divergence_);
     fillGhosts(state_.context, Held::Active, divergence_.data());
-    pressure_.resize(state_.context, active);
-    bulkPressure<D>(state_.context, pairs_, divergence_, rhs_.elastic(), pressure_);
+    bulkPressure<D>(state_.context, pairs_, divergence_, rhs_.elastic(), pressure);
+  }
+
+  /// What bodies bear with the velocities in state.velocity.
+  std::vector<LoadSums> loads() {
+    pressure_.resize(state_.context, pairs_.activeCount);
+    computePressures(pressure_);
     wallForces_.sum(state_, pairs_, state_.velocity, pressure_, explicitForces());
     return wallForces_.loads(state_, pairs_, state_.velocity);
   }
@@ -351,11 +351,14 @@ class MphStep final : public StepMethod<D, Backend> {
   }
 
   void computeRightHandSide() {
-    rhs_.compute(surface_ ? surface_->adhesion() : std::span<const Adhesion<D>>{},
-                 state_.theCase.hasVolumeFactors() ? rheology_->volumes().first(state_.particles.fluidCount)
-                                                   : std::span<const double>{},
-                 explicitForces());
+    rhs_.compute(surface_ ? surface_->adhesion() : std::span<const Adhesion<D>>{}, volumes(), explicitForces());
     if (gas_) gas_->addPressures(state_, rhs_.values());
+  }
+
+  /// Factors of own fluid [-]; empty where there are none.
+  std::span<const double> volumes() const {
+    if (!state_.theCase.hasVolumeFactors()) return {};
+    return rheology_->volumes().first(state_.particles.fluidCount);
   }
 
   const ExplicitForces<D, Backend>* explicitForces() const {
