@@ -29,16 +29,31 @@ void setBounds(const Case& c, IsphPairs<D>& pairs) {
   }
 }
 
-/// Share of a lattice's density that the half of it below a particle makes up.
-template <int D>
-double shareOfHalfLattice(const IsphPairs<D>& pairs) {
+/// Sum of value(r, y) over the half of a lattice that is below a particle; r: distance, y: depth [m].
+template <int D, class Value>
+double sumOfHalfLattice(const IsphPairs<D>& pairs, const Value& value) {
   const int reach = static_cast<int>(std::ceil(pairs.kernel.radius() / pairs.spacing));
   double sum = 0;
   for (int z = D == 3 ? -reach : 0; z <= (D == 3 ? reach : 0); ++z)
     for (int x = -reach; x <= reach; ++x)
       for (int y = 1; y <= reach; ++y)
-        sum += pairs.volume * pairs.kernel.value(pairs.spacing * std::sqrt(double(x * x + y * y + z * z)));
-  return sum / pairs.latticeDensity;
+        sum += value(pairs.spacing * std::sqrt(double(x * x + y * y + z * z)), pairs.spacing * y);
+  return sum;
+}
+
+/// Share of a lattice's density that the half of it below a particle makes up.
+template <int D>
+double shareOfHalfLattice(const IsphPairs<D>& pairs) {
+  const auto density = [&](double r, double) { return pairs.volume * pairs.kernel.value(r); };
+  return sumOfHalfLattice(pairs, density) / pairs.latticeDensity;
+}
+
+/// Constants of the turbulence model.
+template <int D>
+void setTurbulence(const Case& c, IsphPairs<D>& pairs) {
+  pairs.mixingLength = c.method.isph.smagorinsky * c.spacing;
+  pairs.meanDistance = sumOfHalfLattice(pairs, [&](double r, double y) { return pairs.slope(r) * y; }) /
+                       sumOfHalfLattice(pairs, [&](double r, double) { return pairs.slope(r); });
 }
 
 }  // namespace
@@ -63,6 +78,7 @@ IsphPairs<D> makeIsphPairs(const Case& c) {
       latticeSum<D>(pairs.kernel.radius(), c.spacing, [&](double r) { return 2 * pairs.slope(r); });
   // A thousandth more, so that rounding does not decide about particles that start at that distance.
   pairs.contact.touching = 1.001 * shareOfHalfLattice(pairs);
+  setTurbulence(c, pairs);
   pairs.timeStep = c.time.step;
   pairs.alpha = s.alpha;
   pairs.noSlip = s.walls == WallSlip::NoSlip;

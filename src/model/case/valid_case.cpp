@@ -76,6 +76,10 @@ void requireMaterials(const Checker& at, const Case& c) {
           "found 0, and bulk_modulus = 0: such a fluid has no pressure and falls through walls; expected one of "
           "them positive, and bulk_modulus <= " +
               mostBulkModulusText(c));
+    if (c.method.kind == MethodKind::Isph && c.method.isph.smagorinsky > 0 && m.dynamicViscosity == 0)
+      at.fail({"material", m.name, "dynamic_viscosity"},
+              "found 0 with smagorinsky in [method] above 0: the law of the wall needs a viscosity; expected a "
+              "positive number, such as 1e-3 Pa s for water");
     if (!lightest || m.density < lightest->density) lightest = &m;
     if (!heaviest || m.density > heaviest->density) heaviest = &m;
   }

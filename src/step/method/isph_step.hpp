@@ -61,6 +61,7 @@ class IsphStep final : public StepMethod<D, Backend> {
     pairs_.materials.setTimeStep(state_.timeStep);
     prepareDensities();
     solution_.resize(state_.context, pairs_.fluidCount);
+    if (pairs_.mixingLength > 0) computeEddies();
     return predictor_.predict(ranges(), densityTerm(), solution());
   }
 
@@ -156,9 +157,10 @@ class IsphStep final : public StepMethod<D, Backend> {
   const MaterialTable& materials() const override { return pairs_.materials; }
   std::size_t bytes() const override {
     return sort_.bytes() + fluidOfFluid_.bytes() + wallsOfFluid_.bytes() + fluidOfWalls_.bytes() +
-           deficit_.bytes() + renormalisation_.bytes() + missing_.bytes() + surface_.bytes() + predictor_.bytes() +
-           source_.bytes() + solution_.bytes() + transport_.bytes() + wallShare_.bytes() + forces_.bytes() +
-           pressure_.bytes() + (bodies_ ? bodies_->bytes() : 0) + pressing_.bytes() + wallSurface_.bytes();
+           deficit_.bytes() + eddyViscosity_.bytes() + wallViscosity_.bytes() + renormalisation_.bytes() +
+           missing_.bytes() + surface_.bytes() + predictor_.bytes() + source_.bytes() + solution_.bytes() +
+           transport_.bytes() + wallShare_.bytes() + forces_.bytes() + pressure_.bytes() +
+           (bodies_ ? bodies_->bytes() : 0) + pressing_.bytes() + wallSurface_.bytes();
   }
 
   /// Pairs up to this share of the kernel's radius make the smoother's matrix: 1.9 l with the usual kernel.
@@ -262,6 +264,24 @@ class IsphStep final : public StepMethod<D, Backend> {
     }
     clearValues(state_.context, state_.particles.numberDensity.span().subspan(n));
   }
+
+  /// The viscosities of the turbulence model, by the velocities at the start of the step.
+  void computeEddies() {
+    state_.phases.run(state_.context, phases::coefficients, [&] {
+      eddyViscosity_.resize(state_.context, pairs_.fluidCount);
+      wallViscosity_.resize(state_.context, pairs_.fluidCount);
+      pairs_.eddyViscosity = eddyViscosity_.data();
+      pairs_.wallViscosity = wallViscosity_.data();
+      pairs_.mostEddyViscosity = pairs_.leastDensity * stableDiffusivity(pairs_);
+      fillGhosts(state_.context, Held::Fluid, state_.particles.velocity.data());
+      sumOnFluid(state_.context, pairs_, densityTerm());  // B
+      sumOnFluid(state_.context, pairs_,
+                 EddyTerm<D>{state_.particles.velocity.data(), eddyViscosity_.data(), wallViscosity_.data()});
+      fillGhosts(state_.context, Held::Fluid, eddyViscosity_.data());
+      fillGhosts(state_.context, Held::Fluid, wallViscosity_.data());
+    });
+  }
+
   DensityTerm<D> densityTerm() {
     return {state_.particles.numberDensity.data(), deficit_.data(), surface_.data()};
   }
@@ -274,6 +294,7 @@ class IsphStep final : public StepMethod<D, Backend> {
   Buffer<Vec<D>, Backend> deficit_;
   Buffer<SymmetricBlock<D, float>, Backend> renormalisation_;  // with ghosts; of the accurate scheme
   Buffer<float, Backend> missing_;                             // likewise, of own particles
+  Buffer<float, Backend> eddyViscosity_, wallViscosity_;       // of IsphPairs; of the turbulence model
   Buffer<std::uint8_t, Backend> surface_;  // Place, with ghosts, which all that neighbours read has
   IsphPredictor<D, Backend> predictor_;
   Buffer<double, Backend> source_;    // of the pressure equation

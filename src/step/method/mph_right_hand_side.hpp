@@ -6,7 +6,7 @@
 #include "treacle/mph/mph_repulsion.hpp"
 #include "treacle/mph/mph_sums.hpp"
 #include "treacle/step/method/buoyancy_terms.hpp"
-#include "treacle/step/method/heat_terms.hpp"
+#include "treacle/step/method/set_each.hpp"
 
 #include <cstddef>
 #include <cstdint>

@@ -7,7 +7,7 @@
 #include "treacle/mph/elasticity.hpp"
 #include "treacle/mph/surface_tension.hpp"
 #include "treacle/step/method/elastic_terms.hpp"
-#include "treacle/step/method/heat_terms.hpp"
+#include "treacle/step/method/set_each.hpp"
 
 #include <array>
 

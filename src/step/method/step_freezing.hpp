@@ -7,6 +7,7 @@
 #include "treacle/model/materials/enthalpy.hpp"
 #include "treacle/step/method/freezing_terms.hpp"
 #include "treacle/step/method/heat_terms.hpp"
+#include "treacle/step/method/set_each.hpp"
 
 #include <algorithm>
 #include <cmath>

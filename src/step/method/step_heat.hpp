@@ -12,6 +12,7 @@
 #include "treacle/mph/mph_balance.hpp"
 #include "treacle/mph/mph_neighbourhood.hpp"
 #include "treacle/step/method/heat_terms.hpp"
+#include "treacle/step/method/set_each.hpp"
 
 #include <array>
 #include <optional>

@@ -111,10 +111,33 @@ struct SumsTwin {
     expectClose(foundForce, force, "force on walls");
   }
 
+  /// The viscosities of the turbulence model, and the predictor by them.
+  void checkEddies() {
+    s.pairs.mixingLength = d.pairs.mixingLength = 0.2 * s.c.spacing;
+    s.pairs.mostEddyViscosity = d.pairs.mostEddyViscosity = 5;
+    std::vector<float> eddies(n), walls(n);
+    Buffer<float, Cuda> foundEddies(d.context, n), foundWalls(d.context, n);
+    sumOnFluid(s.context, s.pairs, EddyTerm<D>{v.data(), eddies.data(), walls.data()});
+    sumOnFluid(d.context, d.pairs, EddyTerm<D>{vOnDevice.data(), foundEddies.data(), foundWalls.data()});
+    const Buffer<float> eddiesThere = copyToHost(d.context, foundEddies),
+                        wallsThere = copyToHost(d.context, foundWalls);
+    for (std::uint32_t i = 0; i < n; ++i) {
+      ASSERT_NEAR(eddiesThere[i], eddies[i], 1e-6 * eddies[i]);
+      ASSERT_NEAR(wallsThere[i], walls[i], 1e-6 * walls[i]);
+    }
+    // They are rounded to single precision, so that both must go on with the same ones.
+    copyToDevice<float>(d.context, eddies, foundEddies);
+    copyToDevice<float>(d.context, walls, foundWalls);
+    s.pairs.eddyViscosity = eddies.data(), s.pairs.wallViscosity = walls.data();
+    d.pairs.eddyViscosity = foundEddies.data(), d.pairs.wallViscosity = foundWalls.data();
+    checkPredictor();
+  }
+
   void checkAll() {
     checkDensity();
     checkPredictor();
     checkPressure();
+    checkEddies();
   }
 };
 

@@ -216,8 +216,10 @@ constexpr BadCase badCases[] = {
      "'tension_limit'"},
     {"keyOfMph", bulk, "[method]\nname = \"isph\"\npressure_radius = 2\n",
      "bad.toml:18:1: unknown key 'pressure_radius' in [method] (isph): it belongs to the method 'mph-i'; expected "
-     "'name', 'scheme', 'kernel', 'smoothing_ratio', 'alpha', 'walls', 'viscosity', 'shifting' or "
-     "'negative_pressure'"},
+     "'name', 'scheme', 'kernel', 'smoothing_ratio', 'alpha', 'walls', 'viscosity', 'smagorinsky', 'shifting' "
+     "or 'negative_pressure'"},
+    {"largeSmagorinsky", bulk, "[method]\nname = \"isph\"\nsmagorinsky = 12\n",
+     "bad.toml:18:15: smagorinsky in [method] (isph): expected a number from 0 to 0.3, found 12"},
     {"misspeltKeyOfIsph", bulk, "[method]\nname = \"isph\"\nsmoothing = 1.2\n",
      "bad.toml:18:1: unknown key 'smoothing' in [method] (isph); did you mean 'smoothing_ratio'?"},
     {"bulkViscosityOfIsph", "bulk_modulus = 1e6\n", "[method]\nname = \"isph\"\n",

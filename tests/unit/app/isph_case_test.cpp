@@ -121,7 +121,8 @@ grid_degree = 5
 iteration_bound = 44
 )";
   Case expected = readText(smallIsphCase);
-  expected.method.isph = {KernelKind::WendlandC2, 1.5, 0.2, WallSlip::FreeSlip, ViscousStep::Implicit, 0.3, true};
+  expected.method.isph = {KernelKind::WendlandC2, 1.5,  0.2, WallSlip::FreeSlip,
+                          ViscousStep::Implicit,  0.12, 0.3, true};
   expected.solver.krylov = KrylovKind::Cr;
   expected.solver.preconditioner = PreconditionerKind::CellMultigrid;
   expected.solver.precision = Precision::Double;
@@ -132,7 +133,7 @@ iteration_bound = 44
   const Case c =
       readText(replaced(text, "name = \"isph\"\n",
                         "name = \"isph\"\nkernel = \"wendland-c2\"\nsmoothing_ratio = 1.5\nalpha = 0.2\n"
-                        "walls = \"free-slip\"\nviscosity = \"implicit\"\nshifting = 0.3\n"
+                        "walls = \"free-slip\"\nviscosity = \"implicit\"\nsmagorinsky = 0.12\nshifting = 0.3\n"
                         "negative_pressure = true\n"));
   EXPECT_EQ(c, expected);
   EXPECT_EQ(readText(caseText(c)), c);
@@ -154,6 +155,11 @@ TEST(readIsph, defaultsAreThoseOfTheMethod) {
 
 TEST(readIsph, fluidsMayHaveNoViscosity) {
   EXPECT_EQ(readText(smallIsphCase, {"syrup.dynamic_viscosity=0"}).materials[0].dynamicViscosity, 0);
+}
+
+TEST(readIsph, turbulenceNeedsAViscosity) {
+  EXPECT_THAT(messageFor(smallIsphCase, {"syrup.dynamic_viscosity=0", "method.smagorinsky=0.12"}),
+              HasSubstr("found 0 with smagorinsky in [method] above 0: the law of the wall needs a viscosity"));
 }
 
 TEST(readIsph, resolvedTextHoldsNoKeyOfMph) {

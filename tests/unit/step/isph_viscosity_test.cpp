@@ -75,6 +75,26 @@ TEST(IsphViscosity, FreeSlipFloorsDoNotHoldTheFluid) {
   }
 }
 
+/// The friction of a floor under water that flows at one speed is rho u*^2 with u = u* ln(9.8 u* d / nu) / 0.41 at
+/// half a spacing.
+TEST(IsphViscosity, TurbulentFloorsHoldTheFluidByTheLawOfTheWall) {
+  Layer layer(12, 1e-3);
+  const double u = 1, l = layer.c.spacing, nu = layer.kinematic();
+  double friction = 0.05;
+  for (int n = 0; n < 50; ++n) friction = 0.41 * u / std::log(9.8 * friction * 0.5 * l / nu);
+  layer.c.time.step = 1e-3;
+  for (const double smagorinsky : {0.0, 0.12}) {
+    layer.c.method.isph.smagorinsky = smagorinsky;
+    Particles<2> start = layer.particles();
+    for (std::uint32_t i = 0; i < start.fluidCount; ++i) start.velocity[i] = {u, 0};
+    Simulation<2> simulation(layer.c, std::move(start));
+    for (int k = 0; k < 3; ++k) simulation.advance();
+    const double stress = (u - meanVelocity(simulation.particles())[0]) * 1000 * layer.depth / simulation.time();
+    const double expected = smagorinsky > 0 ? 1000 * friction * friction : 1e-3 * u / (0.5 * l);
+    EXPECT_NEAR(stress, expected, 0.15 * expected) << smagorinsky;
+  }
+}
+
 /// Farthest apart of the velocities of two runs, over the largest change of velocity.
 double difference(const Simulation<2>& a, const Simulation<2>& b, const Particles<2>& start) {
   const Particles<2> endOfA = stateOf(a), endOfB = stateOf(b);

@@ -83,9 +83,30 @@ struct IsphPairs : MaterialParticles<D> {
   // Of the accurate scheme, per fluid particle, by DensityTerm:
   SymmetricBlock<D, float>* renormalisation = nullptr;  // B [-]
   float* missing = nullptr;                             // missingShare
+  // With a model of turbulence, per fluid particle, by EddyTerm:
+  double mixingLength = 0;         // C l of Smagorinsky's model; 0: laminar [m]
+  double mostEddyViscosity = 0;    // that the explicit viscous step bears [Pa s]
+  double meanDistance = 0;         // of the neighbours in a wall half a spacing away, across it [m]
+  float* eddyViscosity = nullptr;  // [Pa s]
+  float* wallViscosity = nullptr;  // towards walls, instead of that of the materials [Pa s]
 
   /// V |W'| / r [1/m2]: V grad_i W = slope (x_j - x_i).
   TREACLE_HD double slope(const Distance& r) const { return volume * kernel.slope(r); }
+  /// Of two fluid particles, with the eddies around them [Pa s].
+  TREACLE_HD double viscosityBetween(std::uint32_t i, std::uint32_t j) const {
+    const double mu = this->pairViscosity(i, j);
+    return eddyViscosity ? mu + 0.5 * (eddyViscosity[i] + eddyViscosity[j]) : mu;
+  }
+  /// Of a fluid particle and a wall [Pa s].
+  TREACLE_HD double viscosityAtWall(std::uint32_t fluid, std::uint32_t wall) const {
+    return wallViscosity ? wallViscosity[fluid] : this->pairViscosity(fluid, wall);
+  }
+  /// Distance from a flat wall whose particles are `mean` away in the mean, across the wall; right at half a
+  /// spacing and at the kernel's radius.
+  TREACLE_HD double wallDistance(double mean) const {
+    const double radius = kernel.radius(), half = 0.5 * this->spacing;
+    return std::fmax(0.5 * half, radius - (radius - mean) * (radius - half) / (radius - meanDistance));
+  }
   /// B_i d
   TREACLE_HD Vec<D> renormalised(std::uint32_t i, const Vec<D>& d) const {
     return accurate ? converted<double>(renormalisation[i]) * d : d;
@@ -121,6 +142,13 @@ IsphPairs<D> makeIsphPairs(const Case& c);
 /// neighbourhood; infinite without viscosity.
 template <int D>
 double explicitViscousLimit(const IsphPairs<D>& pairs);
+
+/// Half of the diffusivity of momentum [m2/s] with which an explicit viscous step is stable in a full
+/// neighbourhood.
+template <int D>
+double stableDiffusivity(const IsphPairs<D>& pairs) {
+  return 0.5 / (pairs.timeStep * pairs.latticeLaplacian);
+}
 
 /// Whether a step of dt [s] is implicit in the viscosity; `limit`: explicitViscousLimit.
 inline bool isViscousStepImplicit(ViscousStep wanted, double limit, double dt) {

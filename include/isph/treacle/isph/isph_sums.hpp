@@ -2,6 +2,7 @@
 
 #include "treacle/isph/isph_matrix.hpp"
 #include "treacle/isph/isph_terms.hpp"
+#include "treacle/isph/isph_turbulence.hpp"
 
 #include <span>
 
@@ -125,6 +126,7 @@ struct IsphMatrixRow {
   template void sumOnFluid(Context<Backend>&, const IsphPairs<D>&, const PredictorTerm<D>&);      \
   template void sumOnFluid(Context<Backend>&, const IsphPairs<D>&,                                \
                            const BothTerms<DensityTerm<D>, PredictorTerm<D>>&);                   \
+  template void sumOnFluid(Context<Backend>&, const IsphPairs<D>&, const EddyTerm<D>&);           \
   template void sumOnFluid(Context<Backend>&, const IsphPairs<D>&, const ViscousSourceTerm<D>&);  \
   template void sumOnFluid(Context<Backend>&, const IsphPairs<D>&, const WallFrictionTerm<D>&);   \
   template void sumOnFluid(Context<Backend>&, const IsphPairs<D>&, const PressureSourceTerm<D>&); \

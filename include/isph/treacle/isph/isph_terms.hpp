@@ -73,16 +73,14 @@ struct PredictorTerm {
 
   TREACLE_HD void fluid(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>&,
                         const Distance& r, double* sum) const {
-    add(pairs, i, j, 2 * pairs.slope(r), sum);
+    add(2 * pairs.slope(r) * pairs.viscosityBetween(i, j), i, j, sum);
   }
   TREACLE_HD void wall(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>&,
                        const Distance& r, double* sum) const {
-    if (pairs.noSlip) add(pairs, i, j, 4 * pairs.slope(r), sum);
+    if (pairs.noSlip) add(4 * pairs.slope(r) * pairs.viscosityAtWall(i, j), i, j, sum);
   }
-  TREACLE_HD void add(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, double factor,
-                      double* sum) const {
+  TREACLE_HD void add(double c, std::uint32_t i, std::uint32_t j, double* sum) const {
     if (!viscous) return;
-    const double c = factor * pairs.pairViscosity(i, j);
     for (int k = 0; k < D; ++k) sum[k] += c * (velocity[j][k] - velocity[i][k]);
   }
   TREACLE_HD void store(const IsphPairs<D>& pairs, std::uint32_t i, const double* sum) const {
@@ -130,7 +128,7 @@ struct ViscousSourceTerm {
   TREACLE_HD void wall(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>&,
                        const Distance& r, double* sum) const {
     if (!pairs.noSlip) return;
-    const double c = 4 * pairs.slope(r) * pairs.pairViscosity(i, j);
+    const double c = 4 * pairs.slope(r) * pairs.viscosityAtWall(i, j);
     for (int k = 0; k < D; ++k) sum[k] += c * velocity[j][k];
   }
   TREACLE_HD void store(const IsphPairs<D>& pairs, std::uint32_t i, const double* sum) const {
@@ -151,7 +149,7 @@ struct WallFrictionTerm {
                         double*) const {}
   TREACLE_HD void wall(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>&,
                        const Distance& r, double* sum) const {
-    const double c = pairs.noSlip ? 4 * pairs.slope(r) * pairs.pairViscosity(i, j) : 0;
+    const double c = pairs.noSlip ? 4 * pairs.slope(r) * pairs.viscosityAtWall(i, j) : 0;
     for (int k = 0; k < D; ++k) sum[k] += c * (velocity[j][k] - velocity[i][k]);
   }
   TREACLE_HD void store(const IsphPairs<D>&, std::uint32_t i, const double* sum) const {
@@ -280,7 +278,7 @@ struct WallForceTerm {
                         const Distance& r, double* sum) const {
     const double slope = pairs.slope(r), p = pressure[j];
     const double push = p + pairs.wallPressure(p, j, i, -1.0 * d), inertia = pairs.density(j) / pairs.timeStep;
-    const double drag = viscous && pairs.noSlip ? 4 * pairs.pairViscosity(j, i) : 0;
+    const double drag = viscous && pairs.noSlip ? 4 * pairs.viscosityAtWall(j, i) : 0;
     const Vec<D> away = push * pairs.renormalised(j, d);
     for (int k = 0; k < D; ++k)
       sum[k] += slope * (drag * (velocity[j][k] - velocity[i][k]) - away[k] + inertia * stopped[j][k]);
@@ -318,11 +316,13 @@ struct ViscousRow {
   TREACLE_HD bool isUnknown(std::uint32_t) const { return true; }
   TREACLE_HD double coefficient(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>&,
                                 const Distance& r) const {
-    return 2 * pairs.slope(r) * pairs.pairViscosity(i, j);
+    return 2 * pairs.slope(r) * pairs.viscosityBetween(i, j);
   }
-  double largest(const IsphPairs<D>& pairs) const { return 2 * pairs.slope(0) * pairs.mostViscosity; }
+  double largest(const IsphPairs<D>& pairs) const {
+    return 2 * pairs.slope(0) * (pairs.mostViscosity + pairs.mostEddyViscosity);
+  }
   TREACLE_HD double wall(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Distance& r) const {
-    return pairs.noSlip ? 4 * pairs.slope(r) * pairs.pairViscosity(i, j) : 0;
+    return pairs.noSlip ? 4 * pairs.slope(r) * pairs.viscosityAtWall(i, j) : 0;
   }
   TREACLE_HD double own(const IsphPairs<D>& pairs, std::uint32_t i) const {
     return pairs.density(i) / pairs.timeStep;

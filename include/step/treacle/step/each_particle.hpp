@@ -13,6 +13,7 @@
 #include "treacle/step/method/freezing_terms.hpp"
 #include "treacle/step/method/heat_terms.hpp"
 #include "treacle/step/method/move_particles.hpp"
+#include "treacle/step/method/set_each.hpp"
 #include "treacle/step/method/state_terms.hpp"
 #include "treacle/step/readings/balance_sums.hpp"
 #include "treacle/step/readings/probe_sums.hpp"

@@ -20,8 +20,9 @@ struct IsphSettings {
   double alpha = 0.01;          // share of the density error that a step is to correct [O23 eq. (10)]
   WallSlip walls = WallSlip::NoSlip;
   ViscousStep viscosity = ViscousStep::Auto;  // Auto: implicit where the explicit step would be unstable
-  double shifting = 0;                        // coefficient of particle shifting, 0: off
-  bool negativePressure = false;              // false: negative pressures are cut to zero
+  double smagorinsky = 0;         // C of the eddy viscosity rho (C l)^2 |S|, with the law of the wall; 0: laminar
+  double shifting = 0;            // coefficient of particle shifting, 0: off
+  bool negativePressure = false;  // false: negative pressures are cut to zero
 
   bool operator==(const IsphSettings&) const = default;
 };

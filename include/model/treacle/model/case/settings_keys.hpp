@@ -40,6 +40,12 @@ void visit(auto& v, Like<IsphSettings> auto& i, const Case&) {
   v({"walls", "Whether fluid sticks to walls or slides along them"}, i.walls);
   v({"viscosity", "How the viscous step is made; auto: implicit where the explicit step would be unstable"},
     i.viscosity);
+  v({"smagorinsky",
+     "Constant C of the turbulence model of Smagorinsky, with the law of the wall; 0: laminar",
+     optional,
+     "",
+     {0, 0.3}},
+    i.smagorinsky);
   v({"shifting", "Coefficient of particle shifting, which keeps particles evenly spread; 0: off", optional, "",
      notNegative},
     i.shifting);

@@ -96,10 +96,6 @@ struct HeatResult {
   }
 };
 
-/// terms.set(i) for i < count.
-template <class Terms, class Backend>
-void setEach(Context<Backend>&, const Terms& terms, std::size_t count);
-
 /// What a particle adds to the heat balance of a step, per volume of a particle.
 struct HeatSums {
   enum { Energy, Heating, Walls, Surface, count };
