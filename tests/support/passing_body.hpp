@@ -43,11 +43,11 @@ inline Case passingBody(int dimensions, MethodKind kind, SchemeKind scheme = Sch
     body.velocity[0] = velocity[0], body.velocity[up] = velocity[1];
     c.bodies.push_back(body);
   };
-  box("block", BodyKind::Fluid, {8 * l, 28 * l}, {13 * l, 33 * l}, {2, -1.2});
-  box("floor", BodyKind::Wall, {0, 4 * l}, {100 * l, 12 * l}, {});
-  box("plate", BodyKind::Wall, {90 * l, 12 * l}, {94 * l, 16 * l}, {-0.25, 0});
-  c.domain.max = {200 * l, 48 * l, 0};
-  if (dimensions == 3) c.domain.max = {200 * l, across, 48 * l}, c.domain.periodic[1] = true;
+  box("block", BodyKind::Fluid, {50 * l, 44 * l}, {55 * l, 49 * l}, {2, -1.2});
+  box("floor", BodyKind::Wall, {0, 6 * l}, {250 * l, 14 * l}, {});
+  box("plate", BodyKind::Wall, {240 * l, 14 * l}, {244 * l, 18 * l}, {-0.25, 0});
+  c.domain.max = {300 * l, 64 * l, 0};
+  if (dimensions == 3) c.domain.max = {300 * l, across, 64 * l}, c.domain.periodic[1] = true;
   return c;
 }
 

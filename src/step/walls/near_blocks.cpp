@@ -5,7 +5,6 @@
 #include "treacle/search/cell_sort.hpp"
 
 #include <atomic>
-#include <utility>
 
 namespace treacle {
 
@@ -13,26 +12,28 @@ template <int D>
 NearBlocks<D>::NearBlocks(const Case& c, const CellGrid<D>& cells) : cells_(cells), blocks_(cells) {
   for (int k = 0; k < D; ++k) blocks_.count[k] = std::max(1, cells.count[k] / cellsOfBlock);
   // Gas is bounded by walls wherever they are, and walls have sides that nothing else remembers.
-  near_.resize(blocks_.cellCount(), c.gas || c.hasThinSheets() ? 1 : 0);
+  steps_.resize(blocks_.cellCount(), c.gas || c.hasThinSheets() ? blocksBetween + 1 : 0);
   for (const Body& body : c.bodies)
     bodyRests_.push_back(body.kind == BodyKind::Wall && body.velocity == Vec<3>{} &&
                          body.oscillation.period == 0 && !isDriven(body.displacement) && !body.rotation);
 }
 
+/// Threads may store fewer steps over more of another one, which has gone on with its own then: what is near is
+/// the same.
+template <int D>
+void NearBlocks<D>::spread(const Vec<D, int>& block, std::uint8_t steps) {
+  const std::atomic_ref known(steps_[blocks_.linear(block)]);
+  if (known.load(std::memory_order_relaxed) >= steps) return;
+  known.store(steps, std::memory_order_relaxed);
+  if (steps > 1)
+    forEachAdjacentCell(blocks_, block, [&](const Vec<D, int>& touching) { spread(touching, steps - 1); });
+}
+
 template <int D>
 void NearBlocks<D>::addMoving(std::span<const Vec<D>> position) {
-  constexpr std::size_t piece = 4096;
-  parallelFor((position.size() + piece - 1) / piece, 2, [&](std::size_t p) {
-    std::size_t last = near_.size();  // particles that follow each other are in the same block, most of them
-    for (const Vec<D>& x : position.subspan(p * piece, std::min(piece, position.size() - p * piece))) {
-      if (!isFinitePosition(x)) continue;  // the sort says so
-      const Vec<D, int> at = blockAt(x);
-      const std::size_t block = blocks_.linear(at);
-      if (std::exchange(last, block) == block) continue;
-      forEachAdjacentCell(blocks_, at, [&](const Vec<D, int>& touching) {
-        std::atomic_ref(near_[blocks_.linear(touching)]).store(1, std::memory_order_relaxed);
-      });
-    }
+  parallelFor(position.size(), parallelGrain, [&](std::size_t i) {
+    if (isFinitePosition(position[i]))
+      spread(blockAt(position[i]), blocksBetween + 1);  // of others the sort says so
   });
 }
 
@@ -60,11 +61,11 @@ Buffer<std::uint32_t> NearBlocks<D>::movingWalls(const Particles<D>& particles) 
   return selected(particles.fluidCount, particles.count, [&](std::uint32_t i) { return !rests(particles, i); });
 }
 
-/// Between something that moves and a wall that is not near there are two cells or more. Before their cells touch
-/// it has crossed one of them.
+/// The cells of these blocks lie between something that moves and a wall that is not near. Before their cells
+/// touch it has crossed all of them but one.
 template <int D>
 double NearBlocks<D>::margin() const {
-  return 0.99 * *std::min_element(cells_.edge.v, cells_.edge.v + D);
+  return 0.99 * (blocksBetween * cellsOfBlock - 1) * *std::min_element(cells_.edge.v, cells_.edge.v + D);
 }
 
 template <int D>

@@ -9,8 +9,8 @@ TEST(DistantWallsTwin, StepsAreThoseOfARunThatHasAllWalls) {
   for (const SchemeKind scheme : {SchemeKind::Published, SchemeKind::Accurate})
     expectSameAsWithAllWalls<2, Cuda>(passingBody(2, MethodKind::MphI, scheme), 32, 4);
   expectSameAsWithAllWalls<2, Cuda>(passingBody(2, MethodKind::Isph), 64, 4);
-  expectSameAsWithAllWalls<3, Cuda>(passingBody(3, MethodKind::MphI), 22, 4);
-  expectSameAsWithAllWalls<3, Cuda>(passingBody(3, MethodKind::Isph), 44, 4);
+  expectSameAsWithAllWalls<3, Cuda>(passingBody(3, MethodKind::MphI), 26, 4);
+  expectSameAsWithAllWalls<3, Cuda>(passingBody(3, MethodKind::Isph), 56, 4);
 }
 
 /// Both backends hold the same walls.

@@ -16,7 +16,7 @@ namespace treacle {
 
 /// Which parts of the domain are near something that moves, fluid or walls. The search cells are put together in
 /// blocks, two along each axis, three at the end of an odd number of them; a block is near where there is
-/// something that moves in it or in one that touches it. Walls at rest in other blocks take part in no sum before
+/// something that moves in it or at most two blocks away. Walls at rest in other blocks take part in no sum before
 /// something has moved by margin(), and nothing that moves gets into their cells.
 template <int D>
 class NearBlocks {
@@ -28,8 +28,8 @@ class NearBlocks {
   void addMoving(std::span<const Vec<D>> position);
   /// Those wall particles that move are where they are.
   void addMovingWalls(const Particles<D>& particles);
-  /// And what is so to any of these processes, at all of them. Collective.
-  void unite(const Communicator& processes) { processes.anyOf(near_); }
+  /// And what is so to any of these processes, at all of them, once all that moves is added. Collective.
+  void unite(const Communicator& processes) { processes.anyOf(steps_); }
   /// All fluid, and those wall particles that move.
   void add(const Particles<D>& particles);
 
@@ -43,9 +43,9 @@ class NearBlocks {
   /// The wall particles that may move, ascending.
   Buffer<std::uint32_t> movingWalls(const Particles<D>& particles) const;
 
-  std::size_t count() const { return near_.size(); }
+  std::size_t count() const { return steps_.size(); }
   std::size_t blockOf(const Vec<D>& x) const { return blocks_.linear(blockAt(x)); }
-  bool isNear(std::size_t block) const { return near_[block] != 0; }
+  bool isNear(std::size_t block) const { return steps_[block] != 0; }
 
   /// How far the fastest may go until what is near is to be found anew [m].
   double margin() const;
@@ -56,11 +56,14 @@ class NearBlocks {
     for (int k = 0; k < D; ++k) at[k] = std::min(at[k] / cellsOfBlock, blocks_.count[k] - 1);
     return at;
   }
+  void spread(const Vec<D, int>& block, std::uint8_t steps);
+
   static constexpr int cellsOfBlock = 2;
+  static constexpr std::uint8_t blocksBetween = 2;  // that lie between something that moves and what is far
 
   CellGrid<D> cells_, blocks_;  // of the second only numbers and ends are meant
   std::vector<bool> bodyRests_;
-  std::vector<std::uint8_t> near_;  // per block
+  std::vector<std::uint8_t> steps_;  // per block: from it to what is far; 0: it is far itself
 };
 
 /// A copy of the particles without the walls that are far from all that moves, in their order.
