@@ -23,6 +23,16 @@ double weightOn(const Case& c, const Body& below, bool heavier);
 /// The longest step of a fluid that carries the pressure p [Pa] of heavier ones [s].
 double longestCarryingStep(const Case& c, const Material& m, double p);
 
+/// The pressure at the foot of a fluid body by its own weight and that of the fluid on it [Pa].
+double pressureIn(const Case& c, const Body& body);
+
+/// The longest step with which a fluid under the pressure p [Pa] stays at rest [s]; infinite where no bound is
+/// known: in the published scheme, whose fluid is never quite at rest, and for viscosities that follow the flow.
+double longestRestingStep(const Case& c, const Material& m, double p);
+
+/// Warns of fluids whose steps are longer than that.
+void warnRestlessFluids(const Case& c, std::vector<std::string>& warnings);
+
 /// Warns of fluids that are too light and too thin for the heavier fluid on them, by the way in spacings that a
 /// particle goes in a step if the pressure acts on one side of it alone. Light and thin fluids cannot keep their
 /// particles in order under a heavy one: those give way, the density rises, and the heavy fluid sinks in. Measured

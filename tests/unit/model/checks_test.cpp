@@ -177,7 +177,7 @@ TEST(caseWarnings, longStepsOfIsph) {
   EXPECT_THAT(caseWarnings(c), IsEmpty());
   c.time.courant = 0;
   c.method.kind = MethodKind::MphI;
-  c.materials[0].bulkViscosity = 1e12;  // carries anything
+  c.materials[0].bulkViscosity = c.materials[0].dynamicViscosity = 1e12;  // carries anything
   EXPECT_THAT(caseWarnings(c), IsEmpty());
   c.bodies[0].velocity = {10.1, 0};
   EXPECT_THAT(caseWarnings(c), ElementsAre(AllOf(HasSubstr("is 1.01, more than 1: particles may pass each other"),
@@ -354,6 +354,43 @@ TEST(longestStableStep, isThatOfElasticPressuresAndOfLightFluids) {
   EXPECT_THAT(caseWarnings(c), ElementsAre(HasSubstr("is too light and too thin")));
 }
 
+/// A tank of 10 Pa s at rest under 720 Pa, which stays at rest with a way of 0.4 and not with one of 0.46.
+Case deepTank() {
+  Case c = damBreak();
+  c.gravity = {0, -10};
+  c.materials[0] = {.name = "syrup", .density = 1000, .dynamicViscosity = 10, .bulkViscosity = 4e4};
+  c.materials[0].bulkModulus = 1e5;
+  c.spacing = 2e-3;
+  c.bodies[0].shape = box({10e-3, 10e-3}, {70e-3, 82e-3});
+  c.domain.max = {100e-3, 100e-3};
+  c.time = {0.014, 1.4};
+  return c;
+}
+
+TEST(caseWarnings, fluidUnderItsOwnWeightThatDoesNotComeToRest) {
+  Case c = deepTank();
+  const auto restless = HasSubstr("it may not come to rest");
+  EXPECT_THAT(caseWarnings(c), Not(Contains(restless)));
+  c.time.step = 0.016;
+  EXPECT_THAT(caseWarnings(c),
+              Contains(AllOf(HasSubstr("a pressure of 720 Pa, that of its weight, can move its particles by 0.46"),
+                             HasSubstr("more than 0.4"), HasSubstr("steps of at most 0.014 s"), restless)));
+  EXPECT_NEAR(longestStableStep(c).length, 0.014, 1e-4);
+  EXPECT_TRUE(longestStableStep(c).reason.starts_with("the weight of"));
+  c.method.pressureRadius = 3;
+  c.time.step = 0.041;
+  EXPECT_THAT(caseWarnings(c), Not(Contains(restless)));
+  c.time.step = 0.043;
+  EXPECT_THAT(caseWarnings(c), Contains(restless));
+  c.method.pressureRadius = 3.5;
+  c.time.step = 0.13;
+  EXPECT_THAT(caseWarnings(c), Not(Contains(restless)));
+  c = deepTank();
+  c.time.step = 0.04;
+  c.method = defaultMethod(SchemeKind::Published);
+  EXPECT_THAT(caseWarnings(c), Not(Contains(restless)));
+}
+
 TEST(setStepBounds, fillsInWhatTheCaseLeavesOpen) {
   Case c = damBreak();
   const TimeSettings fixed = c.time;
@@ -375,6 +412,7 @@ TEST(setStepBounds, fillsInWhatTheCaseLeavesOpen) {
   EXPECT_EQ(given.time.least, 1e-3);
   EXPECT_THAT(caseWarnings(given), ElementsAre(HasSubstr("dt kappa / lambda = 1 is greater than 0.5")));
   stiff.materials[0].bulkViscosity = 0;  // no step is stable: that is said in another place
+  stiff.gravity = {};
   setStepBounds(stiff);
   EXPECT_EQ(stiff.time.step, 0.2);
   EXPECT_THAT(caseWarnings(stiff), ElementsAre(HasSubstr("give it a bulk_viscosity")));
