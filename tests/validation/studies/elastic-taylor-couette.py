@@ -1,6 +1,6 @@
-"""Taylor-Couette flow of an Oldroyd-B fluid: the pressure that its hoop stress makes. With u = A r + B / r the velocity is that of a Newtonian
-fluid, tau_tt - tau_rr = 2 eta lambda (2 B / r^2)^2, and dp/dr = rho u^2 / r - (tau_tt - tau_rr) / r (R. B. Bird, R. C. Armstrong, O. Hassager,
-Dynamics of Polymeric Liquids 1, 1987)."""
+"""Taylor-Couette flow of an Oldroyd-B fluid: the pressure that its hoop stress makes. The velocity is that of a Newtonian fluid,
+A r + B / r, tau_tt - tau_rr = 2 eta lambda (2 B / r^2)^2, and dp/dr = rho u^2 / r - (tau_tt - tau_rr) / r (R. B. Bird,
+R. C. Armstrong, O. Hassager, Dynamics of Polymeric Liquids 1, 1987)."""
 
 import itertools
 
@@ -13,8 +13,10 @@ density, solvent, polymer, relaxation = 1000.0, 5.0, 5.0, 0.05
 
 def pressure(r):
     """Less that in the middle of the gap [Pa]."""
+
     def integral(x):
-        return density * (A**2 * x**2 / 2 + 2 * A * B * np.log(x) - B**2 / (2 * x**2)) + 2 * polymer * relaxation * B**2 / x**4
+        inertia = density * (A**2 * x**2 / 2 + 2 * A * B * np.log(x) - B**2 / (2 * x**2))
+        return inertia + 2 * polymer * relaxation * B**2 / x**4
 
     return integral(r) - integral((inner + outer) / 2)
 
@@ -29,9 +31,10 @@ def measure(run):
     frames = [frame for frame in run.frames() if frame.time > half]
     r, along, across = polar(frames)
     late = run.balance["time"] > half
-    torque = {name: abs(np.mean(run.balance[f"{name}_torque"][late])) / (4 * np.pi * (solvent + polymer) * B) for name in ("inner", "outer")}
-    field = {name: np.concatenate([getattr(frame, name) for frame in frames]) for name in ("pressure", "elastic_stress_xx", "elastic_stress_xy",
-                                                                                          "elastic_stress_yy")}
+    exact = 4 * np.pi * (solvent + polymer) * B  # torque per metre [N]
+    torque = {name: abs(np.mean(run.balance[f"{name}_torque"][late])) / exact for name in ("inner", "outer")}
+    names = ["pressure", "elastic_stress_xx", "elastic_stress_xy", "elastic_stress_yy"]
+    field = {name: np.concatenate([getattr(frame, name) for frame in frames]) for name in names}
     position = np.concatenate([frame.position for frame in frames])
     c, s = position[:, 0] / r, position[:, 1] / r
     xx, xy, yy = (field[f"elastic_stress_{k}"] for k in ("xx", "xy", "yy"))

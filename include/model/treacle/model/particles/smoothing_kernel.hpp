@@ -37,7 +37,7 @@ struct SmoothingKernel {
     return {kind, 1 / h, unit / std::pow(h, D)};
   }
 
-  double radius() const { return 2 / inverseLength; }  // [m]
+  TREACLE_HD double radius() const { return 2 / inverseLength; }  // [m]
 
   TREACLE_HD double value(double r) const {
     const double q = r * inverseLength, rest = q < 2 ? 2 - q : 0;
