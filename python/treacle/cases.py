@@ -434,6 +434,7 @@ class Method:
     alpha: float | None = None
     walls: Literal["no-slip", "free-slip"] | None = None
     viscosity: Literal["auto", "explicit", "implicit"] | None = None
+    smagorinsky: float | None = None
     shifting: float | None = None
     negative_pressure: bool | None = None
 

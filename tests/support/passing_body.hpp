@@ -43,7 +43,7 @@ inline Case passingBody(int dimensions, MethodKind kind, SchemeKind scheme = Sch
     body.velocity[0] = velocity[0], body.velocity[up] = velocity[1];
     c.bodies.push_back(body);
   };
-  box("block", BodyKind::Fluid, {50 * l, 44 * l}, {55 * l, 49 * l}, {2, -1.2});
+  box("block", BodyKind::Fluid, {48 * l, 44 * l}, {53 * l, 49 * l}, {2, -1.2});
   box("floor", BodyKind::Wall, {0, 6 * l}, {250 * l, 14 * l}, {});
   box("plate", BodyKind::Wall, {240 * l, 14 * l}, {244 * l, 18 * l}, {-0.25, 0});
   c.domain.max = {300 * l, 64 * l, 0};

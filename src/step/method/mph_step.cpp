@@ -82,9 +82,10 @@ class MphStep final : public StepMethod<D, Backend> {
     prepareViscous();
   }
 
-  /// What is kept of another step's system is that of one of about the same length.
+  /// What is kept of another step's system is that of one of about the same length, with the same viscosities.
   void preparePreconditioner() override {
-    if (std::abs(state_.timeStep - state_.lastStep()) > 0.1 * state_.lastStep())
+    if (state_.theCase.hasOwnViscosities() ||
+        std::abs(state_.timeStep - state_.lastStep()) > 0.1 * state_.lastStep())
       state_.particles.modes.pressure = {};
     solver_.preparePreconditioner(state_.context, &state_.particles.modes.pressure);
   }
