@@ -9,7 +9,8 @@ namespace treacle {
 
 /// Viscosity [Pa s] with which a straight velocity profile from a smooth wall to the speed `u` [m/s] of the fluid
 /// at the distance `d` [m] has the shear stress of the law of the wall: u/u* = y for y = u* d/nu below
-/// 11.53, and ln(9.8 y)/0.41 above. At least mu. `mu` must be positive.
+/// 11.53, and ln(9.8 y)/0.41 above (B. E. Launder, D. B. Spalding, Comput. Methods Appl. Mech. Eng. 3, 1974). At
+/// least mu. `density` in kg/m3; `mu` [Pa s] must be positive.
 TREACLE_HD inline double wallLawViscosity(double u, double d, double density, double mu) {
   constexpr double karman = 0.41, smooth = 9.8, laminar = 11.53;
   const double nu = mu / density, speed = std::fabs(u), reynolds = speed * d / nu;
@@ -22,16 +23,16 @@ TREACLE_HD inline double wallLawViscosity(double u, double d, double density, do
   return std::fmax(mu, mu * y * y / reynolds);
 }
 
-/// The eddy viscosity of Smagorinsky's model, rho (C l)^2 |S| with |S|^2 = 2 S:S and the strain rate S of a
-/// particle, and the viscosity between it and no-slip walls. Walls do not count in S, because next to them the law
-/// of the wall stands for the steep part of the profile.
+/// The eddy viscosity of Smagorinsky's model (Mon. Weather Rev. 91, 1963), rho (C l)^2 |S| with |S|^2 = 2 S:S and
+/// the strain rate S of a particle, and the viscosity between it and no-slip walls. Walls do not count in S,
+/// because next to them the law of the wall stands for the steep part of the profile.
 template <int D>
 struct EddyTerm {
   static constexpr int values = D * D + 2 * D + 1;
   enum { Gradient, Towards = D * D, Wall = Towards + D, Slopes = Wall + D };  // places of the sums
-  const Vec<D>* velocity;
-  float* eddyViscosity;  // of IsphPairs
-  float* wallViscosity;
+  const Vec<D>* velocity;                                                     // of fluid and active walls [m/s]
+  float* eddyViscosity;                                                       // of IsphPairs [Pa s]
+  float* wallViscosity;                                                       // likewise
 
   TREACLE_HD void fluid(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d,
                         const Distance& r, double* sum) const {
