@@ -37,6 +37,7 @@ MphPairs<D> makeMphPairs(const Case& c) {
   pairs.restDensity = latticeNumberDensity(densityWeight, c.spacing);
   pairs.wideScale = 1 / latticeSum<D>(densityWeight.radius, c.spacing,
                                       [&](double r) { return pairs.terms.openness(ExactDistance(r * r)); });
+  pairs.background = c.method.backgroundPressure;
   pairs.tensionLimit = c.method.tensionLimit > 0 ? c.method.tensionLimit : std::numeric_limits<double>::infinity();
   pairs.materials = MaterialTable::make(c);
   pairs.classes = ViscosityClasses::make(c);

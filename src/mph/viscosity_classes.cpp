@@ -99,13 +99,14 @@ bool hasSteps(const ViscosityClasses& classes, const Case& c, const Material& m)
   if (m.rheology) return true;
   return (m.dynamicViscosity > 0 || !m.elastic.empty()) &&
          (m.viscosityShift || m.freezing || m.hasFormulas() || !m.elastic.empty() || c.hasViscosityFactors() ||
-          classes.ofNeighbours);
+          classes.ofNeighbours || c.isAccurate());
 }
 
 /// Among particles of another fluid, or at a surface, a particle may be resisted by a fraction of its viscosity,
-/// and at a wall by a multiple.
+/// at a wall by a multiple, and under pressure by what long steps take (pressure_stiffness.hpp).
 Range rangeOf(const ViscosityClasses& classes, const Case& c, const Material& m) {
-  const Range own = viscosities(c, m);
+  Range own = viscosities(c, m);
+  if (c.isAccurate()) own.most = std::max(own.most, 100 * own.least);
   return classes.ofNeighbours ? Range{own.least / 16, 8 * own.most} : own;
 }
 

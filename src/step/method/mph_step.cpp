@@ -12,6 +12,7 @@
 #include "step_pressures.hpp"
 #include "step_rheology.hpp"
 #include "step_states.hpp"
+#include "step_stiffness.hpp"
 #include "step_surface.hpp"
 #include "step_tension.hpp"
 #include "treacle/core/halo.hpp"
@@ -49,6 +50,7 @@ class MphStep final : public StepMethod<D, Backend> {
     if (state.theCase.keepsVolume()) tension_.emplace();
     if (state.theCase.gas) gas_.emplace(state.theCase, *tension_);
     if (state.theCase.elasticModes() > 0) elasticity_.emplace(state.theCase, explicitForces());
+    if (state.theCase.isAccurate()) stiffness_.emplace(state.theCase, explicitForces());
     if (state.theCase.hasRigid()) bodies_.emplace(state);
   }
 
@@ -77,6 +79,9 @@ class MphStep final : public StepMethod<D, Backend> {
     if (surface_) surface_->prepare(state_, pairs_, wallForces_.walls());
     scaleViscosity();
     if (elasticity_) elasticity_->prepare(state_, pairs_);
+    if (stiffness_)
+      rheology_ ? stiffness_->prepare(state_, pairs_, rheology_->viscosities(), rheology_->scaled())
+                : stiffness_->prepare(state_, pairs_, stiffness_->sum(), viscosityScale_);
     if (tension_) tension_->prepare(state_, pairs_, places_.of(state_));
     if (gas_) gas_->prepare(state_);
     prepareViscous();
@@ -84,7 +89,7 @@ class MphStep final : public StepMethod<D, Backend> {
 
   /// What is kept of another step's system is that of one of about the same length, with the same viscosities.
   void preparePreconditioner() override {
-    if (state_.theCase.hasOwnViscosities() ||
+    if (state_.theCase.hasOwnViscosities() || isStiff() ||
         std::abs(state_.timeStep - state_.lastStep()) > 0.1 * state_.lastStep())
       state_.particles.modes.pressure = {};
     solver_.preparePreconditioner(state_.context, &state_.particles.modes.pressure);
@@ -162,6 +167,7 @@ class MphStep final : public StepMethod<D, Backend> {
     if (gas_) gas_->accept(state_);
     pressures_.accept();
     if (tension_) tension_->accept(state_, pairs_, places_.of(state_));
+    if (isStiff()) state_.particles.modes.pressure = {};
     // The velocities of the start are given, no solution: nothing follows from the way to the first one.
     if (state_.step > 0)
       updateFlowMemory<D>(state_.context, state_.velocityStep, state_.lastStep(),
@@ -187,7 +193,8 @@ class MphStep final : public StepMethod<D, Backend> {
            (surface_ ? surface_->bytes() : 0) + (tension_ ? tension_->bytes() : 0) + wallBlock_.bytes() +
            wallGradient_.bytes() + places_.bytes() + divergence_.bytes() + rhs_.bytes() + found_.bytes() +
            solver_.bytes() + balance_.bytes() + wallForces_.bytes() + (gas_ ? gas_->bytes() : 0) +
-           (elasticity_ ? elasticity_->bytes() : 0) + (bodies_ ? bodies_->bytes() : 0) + pressure_.bytes();
+           (elasticity_ ? elasticity_->bytes() : 0) + (stiffness_ ? stiffness_->bytes() : 0) +
+           (bodies_ ? bodies_->bytes() : 0) + pressure_.bytes();
   }
 
  private:
@@ -340,13 +347,19 @@ class MphStep final : public StepMethod<D, Backend> {
       guessAll();
       fillGhosts(state_.context, Held::Active, state_.velocity.data());
       rheology_->start(state_, neighbourhood_);
-      if (elasticity_) rheology_->setImplicit(elasticity_->implicitViscosity(state_, pairs_, *rheology_));
+      std::span<const double> implicit;
+      if (stiffness_ && stiffness_->find(state_, pairs_, &*rheology_)) implicit = stiffness_->viscosity();
+      if (elasticity_) implicit = elasticity_->implicitViscosity(state_, pairs_, *rheology_, implicit);
+      rheology_->setImplicit(implicit);
       return rheology_->apply(state_, neighbourhood_);
     }
+    if (stiffness_) stiffness_->find(state_, pairs_, nullptr);
     const double correction = state_.theCase.method.viscosityCorrection;
-    if (correction == 0) return;
+    neighbourhood_.setViscosities({}, {});
+    if (correction == 0 && !isStiff()) return;
     viscosityScale_.resize(state_.context, pairs_.fluidCount);
     viscosityScale<D>(state_.context, pairs_, correction, viscosityScale_.span());
+    if (isStiff()) stiffness_->scale(state_, neighbourhood_, viscosityScale_.span());
     fillGhosts(state_.context, Held::Fluid, viscosityScale_.data());
     neighbourhood_.setViscosityScale(viscosityScale_);
   }
@@ -362,7 +375,11 @@ class MphStep final : public StepMethod<D, Backend> {
     return rheology_->volumes().first(state_.particles.fluidCount);
   }
 
+  /// Whether some viscosities are those of a stiffness, too.
+  bool isStiff() const { return stiffness_ && stiffness_->acts(); }
+
   const ExplicitForces<D, Backend>* explicitForces() const {
+    if (stiffness_) return &*stiffness_;
     if (elasticity_) return &*elasticity_;
     if (surface_) return &*surface_;
     if (gas_) return &*gas_;
@@ -393,6 +410,7 @@ class MphStep final : public StepMethod<D, Backend> {
   std::optional<StepRheology<D, Backend>> rheology_;  // where particles have their own viscosities
   Buffer<Vec<D>, Backend> found_;                     // velocities of the last solve, while the next is prepared
   std::optional<StepElasticity<D, Backend>> elasticity_;  // where a fluid is elastic
+  std::optional<StepStiffness<D, Backend>> stiffness_;    // in the accurate scheme
   std::optional<StepStates<D, Backend>> states_;          // where materials have states
   std::optional<StepHeat<D, Backend>> heat_;              // where the case has heat
   std::optional<StepSurface<D, Backend>> surface_;        // where some fluid has a surface tension

@@ -23,9 +23,11 @@ class StepElasticity final : public ExplicitForces<D, Backend> {
   StepElasticity(const Case& c, const ExplicitForces<D, Backend>* others)
       : table_(ElasticTable::make(c)), others_(others) {}
 
-  /// What the modes add to the viscosity in the step at hand, per own particle [Pa s]. `rheology`: of the step.
+  /// What the modes add to the viscosity in the step at hand, per own particle [Pa s], and `others` do; empty: no
+  /// others. `rheology`: of the step.
   std::span<const double> implicitViscosity(FlowState<D, Backend>& state, const MphPairs<D>& pairs,
-                                            const StepRheology<D, Backend>& rheology) {
+                                            const StepRheology<D, Backend>& rheology,
+                                            std::span<const double> others) {
     if (rheology.table().hasSlowness()) {
       slowness_.resize(state.context, pairs.ownFluid());
       setEach(
@@ -34,7 +36,7 @@ class StepElasticity final : public ExplicitForces<D, Backend> {
           slowness_.size());
     }
     implicit_.resize(state.context, pairs.ownFluid());
-    setImplicitViscosity<D>(state.context, {conformations(state, pairs), implicit_.span()});
+    setImplicitViscosity<D>(state.context, {conformations(state, pairs), others, implicit_.span()});
     return implicit_;
   }
 
@@ -44,7 +46,7 @@ class StepElasticity final : public ExplicitForces<D, Backend> {
     const std::uint32_t own = pairs.ownFluid();
     correction_.resize(context, own), gradient_.resize(context, own), force_.resize(context, own);
     carried_.resize(context, pairs.fluidCount);
-    gradientCorrection<D>(context, pairs, correction_.span());
+    gradientCorrection<D>(context, pairs, correction_.span(), false);
     expectStress<D>(context, {elasticState(state, pairs), correction_.span(), carried_.span().first(own)});
     fillGhosts(context, Held::Fluid, carried_.data());
     stressForces<D>(context, pairs, carried_.span(), force_.span());

@@ -43,10 +43,13 @@ class StepRheology {
     fillGhosts(state.context, Held::Fluid, volume_.data());
     return volume_;
   }
+  /// The viscosities of fluid particles, ghosts included, and what the pairs take as scale [Pa s].
+  std::span<const double> viscosities() const { return viscosity_; }
+  std::span<const double> scaled() const { return scaled_; }
   /// Those of the step at hand.
   std::span<const double> volumes() const { return volume_; }
 
-  /// What elastic modes add to the viscosity in the step at hand, per own particle [Pa s].
+  /// What is added to the viscosity in the step at hand, per own particle [Pa s]; empty: nothing.
   void setImplicit(std::span<const double> viscosity) { table_.implicit = viscosity; }
 
   /// For the first solve of a step, on its neighbours and walls' surfaces; from its first guess, state.velocity,
@@ -54,6 +57,7 @@ class StepRheology {
   /// follow.
   void start(FlowState<D, Backend>& state, MphNeighbourhood<D, Backend>& neighbourhood) {
     const std::uint32_t fluid = neighbourhood.pairs().fluidCount, own = neighbourhood.pairs().ownFluid();
+    setImplicit({});
     for (Buffer<double, Backend>* field : {&share_, &viscosity_, &scaled_}) field->resize(state.context, fluid);
     for (Buffer<double, Backend>* field : {&rate_, &found_}) field->resize(state.context, own);
     class_.resize(state.context, neighbourhood.pairs().activeCount);

@@ -1,4 +1,5 @@
 #include "treacle/step/run/simulation.hpp"
+#include "support/deep_layer.hpp"
 #include "support/equal_blocks.hpp"
 #include "support/gpu.hpp"
 #include "support/isph_cases.hpp"
@@ -137,6 +138,39 @@ TEST(SimulationTwin, BearsTensionLikeTheCpu) {
   const double least = *std::min_element(found.heldPressure.begin(), found.heldPressure.end());
   EXPECT_LT(least, -1) << "none bears tension";
   EXPECT_LE(farthest(stateOf(cpu), found), 1e-6 * c.spacing);
+}
+
+/// Steps in which the weight of the fluid moves its particles by more than a spacing.
+template <int D>
+void compareLongSteps(Case c, Precision precision) {
+  c.solver.tolerance = tightTolerance;
+  c.solver.precision = precision;
+  c.output.balance = true;
+  Simulation<D> cpu(c, created<D>(c));
+  Simulation<D, Cuda> cuda(c, created<D>(c));
+  for (int step = 0; step < 8; ++step) {
+    const StepReport a = cpu.advance(), b = cuda.advance();
+    EXPECT_NEAR(b.diagnostics.kineticEnergy, a.diagnostics.kineticEnergy, 1e-6 * a.diagnostics.kineticEnergy);
+    EXPECT_NEAR(b.balance->elasticPower, a.balance->elasticPower, 1e-6 * std::abs(a.balance->elasticPower));
+  }
+  EXPECT_LE(farthest(stateOf(cpu), stateOf(cuda)), agreement * c.spacing);
+}
+
+TEST(SimulationTwin, TakesLongStepsUnderPressureLikeTheCpu) {
+  TREACLE_SKIP_WITHOUT_GPU();
+  for (const Precision precision : {Precision::Mixed, Precision::Double}) {
+    compareLongSteps<2>(deepLayer(2), precision);
+    compareLongSteps<3>(deepLayer(3), precision);
+    compareLongSteps<2>(layerOnAir(2), precision);
+    compareLongSteps<2>(fullVessel(2), precision);
+    Case c = deepLayer(2);
+    c.materials[0].rheology = {
+        .model = RheologyModel::Cross, .flowIndex = 0.5, .zeroViscosity = 1, .timeConstant = 0.1};
+    compareLongSteps<2>(c, precision);
+    c.materials[0].elastic = {
+        {.name = "a", .model = ElasticModel::OldroydB, .viscosity = 1, .relaxationTime = 0.05}};
+    compareLongSteps<2>(c, precision);
+  }
 }
 
 /// Until the gap is closed and after.

@@ -20,9 +20,9 @@ namespace treacle {
 /// nothing of the gradient across.
 inline constexpr double leastElasticMoment = 0.2;
 
-/// B.
+/// B; `atMostOne`: reduced, so that no eigenvalue is above 1 (flooredInverse()).
 template <int D, class Backend>
-void gradientCorrection(Context<Backend>&, const MphPairs<D>&, std::span<SymmetricBlock<D>> b);
+void gradientCorrection(Context<Backend>&, const MphPairs<D>&, std::span<SymmetricBlock<D>> b, bool atMostOne);
 
 /// L(r, s) = du_r/dx_s [1/s]; u per active particle.
 template <int D, class Backend>

@@ -109,10 +109,11 @@ struct StressOnWalls {
 };
 
 template <int D, class Backend>
-void gradientCorrection(Context<Backend>& context, const MphPairs<D>& pairs, std::span<SymmetricBlock<D>> b) {
+void gradientCorrection(Context<Backend>& context, const MphPairs<D>& pairs, std::span<SymmetricBlock<D>> b,
+                        bool atMostOne) {
   sumOnFluid(context, pairs, GradientMoment<D, ElasticPairTerms<D>, true>{elasticTerms(pairs), b.data()});
   forEach(context, b.size(),
-          [=] TREACLE_HD(std::size_t i) { b[i] = flooredInverse(b[i], leastElasticMoment, false); });
+          [=] TREACLE_HD(std::size_t i) { b[i] = flooredInverse(b[i], leastElasticMoment, atMostOne); });
 }
 
 template <int D, class Backend>
@@ -135,13 +136,13 @@ void stressOnWalls(Context<Backend>& context, const MphPairs<D>& pairs, const Cl
   sumOnList(context, pairs, walls, StressOnWalls<D>{elasticTerms(pairs), carried.data(), force.data()});
 }
 
-#define TREACLE_ELASTICITY_SUMS(D, Backend)                                                                 \
-  template void gradientCorrection(Context<Backend>&, const MphPairs<D>&, std::span<SymmetricBlock<D>>);    \
-  template void velocityGradient(Context<Backend>&, const MphPairs<D>&, std::span<const SymmetricBlock<D>>, \
-                                 std::span<const Vec<D>>, std::span<Block<D>>);                             \
-  template void stressForces(Context<Backend>&, const MphPairs<D>&, std::span<const Block<D>>,              \
-                             std::span<Vec<D>>);                                                            \
-  template void stressOnWalls(Context<Backend>&, const MphPairs<D>&, const ClusterListView&,                \
+#define TREACLE_ELASTICITY_SUMS(D, Backend)                                                                    \
+  template void gradientCorrection(Context<Backend>&, const MphPairs<D>&, std::span<SymmetricBlock<D>>, bool); \
+  template void velocityGradient(Context<Backend>&, const MphPairs<D>&, std::span<const SymmetricBlock<D>>,    \
+                                 std::span<const Vec<D>>, std::span<Block<D>>);                                \
+  template void stressForces(Context<Backend>&, const MphPairs<D>&, std::span<const Block<D>>,                 \
+                             std::span<Vec<D>>);                                                               \
+  template void stressOnWalls(Context<Backend>&, const MphPairs<D>&, const ClusterListView&,                   \
                               std::span<const Block<D>>, std::span<Vec<D>>);
 
 }  // namespace treacle

@@ -69,8 +69,10 @@ class MphNeighbourhood {
   /// outlive the sums of the step.
   void setViscosities(std::span<const double> scaled, std::span<const std::uint8_t> classes) {
     setViscosityScale(scaled);
-    pairs_.viscosityClass = classes.data();
+    setViscosityClasses(classes);
   }
+  /// The latter; empty: those of the materials.
+  void setViscosityClasses(std::span<const std::uint8_t> classes) { pairs_.viscosityClass = classes.data(); }
 
   /// Of the step at hand [s].
   void setTimeStep(double dt) { pairs_.materials.setTimeStep(dt); }

@@ -36,6 +36,7 @@ struct MphPairs : MaterialParticles<D> {
   MphTerms<D> terms{};        // lengths in metres
   double restDensity = 0;     // n_0 [-]
   double wideScale = 0;       // of sums of MphTerms::openness, to be 1 in a full lattice
+  double background = 0;      // pressure of fluid of density n_0 [Pa]
   double tensionLimit = 0;    // elastic pressures are never below minus this [Pa]
   const WallSurface<D>* wallSurface =
       nullptr;  // of the first wall particle; null: the fluid meets walls as they are
@@ -53,6 +54,11 @@ struct MphPairs : MaterialParticles<D> {
     return this->materials.bulkViscosity[this->material[i]] * bulkShare().of(i);
   }
   TREACLE_HD BulkShare bulkShare() const { return {wallShare, this->fluidCount}; }
+
+  /// n where the pressure of particle i is zero [-].
+  TREACLE_HD double densityWithoutPressure(std::uint32_t i) const {
+    return background > 0 ? restDensity - background / this->bulkModulus(i) : restDensity;
+  }
 
   /// By what sums of MphTerms::openness are multiplied.
   TREACLE_HD double opennessFactor() const { return terms.densityFactor / (restDensity * this->spacing); }
@@ -99,16 +105,19 @@ struct MphPairs : MaterialParticles<D> {
   /// Whether all particles have those of class 0.
   TREACLE_HD bool isOneClass() const { return this->isOneSubstance() && !viscosityClass; }
 
-  /// By what the viscosity of fluid particle i with wall particle j is multiplied; d = x_j - x_i [m]. Where
-  /// several fluids may touch a wall of one material, its surface holds each by its own viscosity.
+  /// By what the viscosity of fluid particle i with wall particle j is multiplied; d = x_j - x_i [m].
   TREACLE_HD double wallFactor(std::uint32_t i, std::uint32_t j, const Vec<D>& d) const {
     if (!wallSurface) return 1;
-    const double factor = treacle::wallFactor(wallSurface[j - this->fluidCount], d, this->spacing,
-                                              this->materials.slipLength[this->material[i]]);
+    return ownShareAtWall(i, j) * treacle::wallFactor(wallSurface[j - this->fluidCount], d, this->spacing,
+                                                      this->materials.slipLength[this->material[i]]);
+  }
+  /// The part of it that is not the walls' places: where several fluids may touch a wall of one material, its
+  /// surface holds each by its own viscosity.
+  TREACLE_HD double ownShareAtWall(std::uint32_t i, std::uint32_t j) const {
     const Substance fluid = this->substance(i), wall = this->substance(j);
-    if (!classes.ofNeighbours || ownViscosities || fluid == wall) return factor;
+    if (!wallSurface || !classes.ofNeighbours || ownViscosities || fluid == wall) return 1;
     const double mean = this->viscosity(fluid, wall);
-    return mean > 0 ? factor * this->viscosity(fluid, fluid) / mean : factor;
+    return mean > 0 ? this->viscosity(fluid, fluid) / mean : 1;
   }
 };
 

@@ -42,7 +42,7 @@ void bulkPressure(Context<Backend>&, const MphPairs<D>&, std::span<const double>
 template <int D>
 TREACLE_HD double elasticPressureOf(const MphPairs<D>& pairs, std::uint32_t i, double n,
                                     std::span<const Adhesion<D>> adhesion) {
-  const double compressed = pairs.bulkModulus(i) * positivePart(n - pairs.restDensity);
+  const double compressed = pairs.bulkModulus(i) * positivePart(n - pairs.densityWithoutPressure(i));
   if (adhesion.empty() || n >= pairs.restDensity) return compressed;
   return -pairs.bulkModulus(i) * adhesion[i].bears * positivePart(pairs.restDensity * adhesion[i].rest - n);
 }

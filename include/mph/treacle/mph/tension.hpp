@@ -73,7 +73,7 @@ void actingPressures(Context<Backend>&, const MphPairs<D>&, const Places&, std::
 template <int D>
 TREACLE_HD Covered lackOf(const MphPairs<D>& pairs, std::uint32_t i, const Places& around) {
   const Cover cover = around.cover(i, pairs.restDensity);
-  return {cover.tells * fmin(0.0, around.n[i] - cover.rest * pairs.restDensity), cover.tells};
+  return {cover.tells * fmin(0.0, around.n[i] - cover.rest * pairs.densityWithoutPressure(i)), cover.tells};
 }
 
 /// The mean, from the sums of w b q and w b without the factor of w. Where the weights come to less than 1 % of

@@ -49,7 +49,8 @@ struct MethodSettings {
   double viscosityRadius = 3.5;  // h_v / l
   // Which share of the viscosity that its missing neighbours would give it a particle gets from those it has.
   double viscosityCorrection = 0.5;
-  double tensionLimit = 0;  // the fluid parts where its tension is more; 0: it bears any [Pa]
+  double tensionLimit = 0;        // the fluid parts where its tension is more; 0: it bears any [Pa]
+  double backgroundPressure = 0;  // of fluid of its own density [Pa]
   IsphSettings isph;
 
   bool operator==(const MethodSettings&) const = default;

@@ -80,6 +80,10 @@ void visit(auto& v, Like<MethodSettings> auto& m, const Case& c) {
      "the accurate scheme",
      optional, "Pa", notNegative},
     m.tensionLimit);
+  v({"background_pressure",
+     "Pressure of fluid that is neither compressed nor stretched, for vessels that fluid fills", optional, "Pa",
+     notNegative},
+    m.backgroundPressure);
 }
 
 void visit(auto& v, Like<RheologySettings> auto& r, const Case&) {

@@ -21,7 +21,7 @@ struct RheologyTable {
   std::span<const double> factor{};       // likewise, by which it is multiplied [-]; empty: 1
   const double* state[maxStates] = {};    // likewise, of the states; null: there is none
   double time = 0;                        // [s]
-  std::span<const double> implicit{};     // likewise, what elastic modes add in a step [Pa s]; empty: nothing
+  std::span<const double> implicit{};     // likewise, what is added in a step [Pa s]; empty: nothing
 
   /// Adds the steps of formulas, for whose place in the backend's memory states.steps has to be set. Errors:
   /// InputError for expressions that are none.

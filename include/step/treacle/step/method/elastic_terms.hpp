@@ -87,13 +87,16 @@ struct ElasticState {
   }
 };
 
-/// Sets that viscosity, without gradients.
+/// Sets that viscosity, without gradients, and adds others.
 template <int D>
 struct ImplicitViscosity {
   ElasticState<D> state;
+  std::span<const double> others;  // [Pa s]; empty: none
   std::span<double> viscosity;
 
-  TREACLE_HD void set(std::size_t i) const { viscosity[i] = state.implicitViscosity(i); }
+  TREACLE_HD void set(std::size_t i) const {
+    viscosity[i] = state.implicitViscosity(i) + (others.empty() ? 0 : others[i]);
+  }
 };
 template <int D, class Backend>
 void setImplicitViscosity(Context<Backend>&, const ImplicitViscosity<D>& terms);

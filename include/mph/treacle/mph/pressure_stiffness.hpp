@@ -1,0 +1,106 @@
+#pragma once
+
+#include "treacle/core/block.hpp"
+#include "treacle/core/cuda.hpp"
+#include "treacle/model/materials/rheology_table.hpp"
+#include "treacle/mph/mph_pairs.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace treacle {
+
+/// What lets fluid under pressure take long steps (docs/accurate.md). A particle that is out of place is driven
+/// back by the pressure p around it, like by a spring. The forces of a step are those of its start, and so the
+/// spring is explicit: where p dt is large against R = rho l^2 / dt + 2.5 mu, it carries the particle beyond its
+/// place. The particle then has a viscosity in proportion to p dt beside its own, of which the step gives back
+/// what resists smooth flow (StepStiffness).
+struct StiffnessLimits {
+  double most;  // p dt / R up to which particles keep their places without it, in spacings
+  double kept;  // the same that is left of large values by it
+
+  /// Measured (docs/notes/trouble.md); h_p in spacings.
+  static StiffnessLimits of(double pressureRadius);
+};
+
+/// What it takes of the materials.
+struct StiffMaterials {
+  double density[maxMaterials] = {};    // [kg/m3]
+  double viscosity[maxMaterials] = {};  // where it is a constant [Pa s]
+
+  static StiffMaterials make(const Case& c);
+};
+
+/// Spans are per own fluid particle in the backend's memory.
+struct StiffnessTerms {
+  static constexpr double latticeViscosity = 2.5;  // l^2/mu times the mean diagonal of V in a lattice: 2.2 to 2.6
+
+  StiffMaterials materials;
+  RheologyTable table;  // where particles have viscosities of their own; without what is implicit
+  StiffnessLimits limits;
+  double spacing, timeStep;  // [m], [s]
+  std::span<const std::uint8_t> material;
+  std::span<const double> rate;      // shear rates of these viscosities [1/s]; empty: those of the materials
+  std::span<const double> pressure;  // of the last step [Pa]
+  std::span<double> viscosity;       // [Pa s]
+
+  /// Sets the viscosity of particle i, and counts it if that is not zero.
+  TREACLE_HD void add(std::size_t i, double* count) const {
+    const int m = material[i];
+    const double mu = rate.empty() ? materials.viscosity[m] : table.viscosity(i, m, rate[i]);
+    const double resistance = materials.density[m] * spacing * spacing / timeStep + latticeViscosity * mu;
+    const double pushed = pressure[i] * timeStep, way = pushed / resistance;
+    // From half of the limit on, so that a pressure that grows does not switch it.
+    const double share = 2 * way / limits.most - 1;
+    viscosity[i] = share > 0 && mu > 0 ? (share < 1 ? share : 1) * pushed / (latticeViscosity * limits.kept) : 0;
+    if (viscosity[i] > 0) *count += 1;
+  }
+};
+
+/// Sets all; how many particles have one, over all processes.
+template <class Backend>
+double setStiffness(Context<Backend>&, const StiffnessTerms&);
+
+/// scale *= 1 + viscosity / mu of own particles whose viscosity is that of their material.
+struct StiffScale {
+  StiffMaterials materials;
+  std::span<const std::uint8_t> material;
+  std::span<const double> viscosity;  // of StiffnessTerms [Pa s]
+  std::span<double> scale, sum;       // MphPairs::viscosityScale; both viscosities together [Pa s]
+
+  TREACLE_HD void set(std::size_t i) const {
+    const double mu = materials.viscosity[material[i]];
+    sum[i] = mu + viscosity[i];
+    if (mu > 0) scale[i] *= sum[i] / mu;
+  }
+};
+template <class Backend>
+void setStiffScale(Context<Backend>&, const StiffScale&);
+
+/// What of MphPairs::viscosityScale is the stiffness's, never quite zero: zero would look like a wall.
+struct GivenScale {
+  std::span<const double> viscosity, sum, scale;  // as above
+  std::span<double> given;
+
+  TREACLE_HD void set(std::size_t i) const {
+    const double part = sum[i] > 0 ? scale[i] * viscosity[i] / sum[i] : 0;
+    given[i] = part > 1e-200 ? part : 1e-200;
+  }
+};
+template <class Backend>
+void setGivenScale(Context<Backend>&, const GivenScale&);
+
+/// force_i -= what pairs of a viscosity resist where the velocity has the gradient L [N/m3]: those of fluid where
+/// d L d is the mean of both particles', with walls that of the fluid particle. `pairs`: with what is given in
+/// place of the viscosity scale; `gradient`: per fluid particle, ghosts included [1/s]. Pairs give equal and
+/// opposite forces along d.
+template <int D, class Backend>
+void giveBack(Context<Backend>&, const MphPairs<D>& pairs, std::span<const Block<D>> gradient,
+              std::span<Vec<D>> force);
+/// The same of the wall particles of a list, from the first wall particle on.
+template <int D, class Backend>
+void giveBackOnWalls(Context<Backend>&, const MphPairs<D>& pairs, const ClusterListView& walls,
+                     std::span<const Block<D>> gradient, std::span<Vec<D>> force);
+
+}  // namespace treacle
