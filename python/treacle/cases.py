@@ -428,6 +428,8 @@ class Method:
     viscosity_correction: float | None = None
     tension_limit: float | None = None
     """[Pa]"""
+    background_pressure: float | None = None
+    """[Pa]"""
     kernel: Literal["cubic-spline", "wendland-c2"] | None = None
     smoothing_ratio: float | None = None
     """[spacings]"""

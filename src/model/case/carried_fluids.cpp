@@ -15,16 +15,6 @@ namespace {
 // Spacings, and l^2/mu times the mean diagonal of V in a lattice: 2.2 to 2.6.
 constexpr double mostPushed = 0.5, latticeViscosity = 2.5;
 
-/// Ways in spacings up to which fluid under pressure stays at rest in the accurate scheme, by the radius of the
-/// pressure in spacings (docs/notes/trouble.md).
-double mostJostled(double radius) {
-  constexpr double radii[] = {2.5, 3, 3.5}, ways[] = {0.4, 1.2, 4};
-  if (radius <= radii[0]) return ways[0];
-  if (radius >= radii[2]) return ways[2];
-  const int k = radius < radii[1] ? 0 : 1;
-  return ways[k] + (ways[k + 1] - ways[k]) * (radius - radii[k]) / (radii[k + 1] - radii[k]);
-}
-
 /// How far an unbalanced pressure p [Pa] moves a particle in a step of dt [s], in spacings: inertia resists it
 /// like a viscosity.
 double wayOfPressure(const Case& c, const Material& m, double p, double dt) {
@@ -36,6 +26,9 @@ double stepOfWay(const Case& c, const Material& m, double p, double way) {
   const double half = 0.5 * way * latticeViscosity * c.typicalViscosity(m) / p;
   return half + std::sqrt(half * half + way * m.density * c.spacing * c.spacing / p);
 }
+
+/// Whether the steps of the scheme keep particles under pressure in their places (mph/pressure_stiffness.hpp).
+bool keepsPlaces(const Case& c, const Material& m) { return c.isAccurate() && c.typicalViscosity(m) > 0; }
 
 }  // namespace
 
@@ -60,32 +53,13 @@ double weightOn(const Case& c, const Body& below, bool heavier) {
   return pressure;
 }
 
-double longestCarryingStep(const Case& c, const Material& m, double p) { return stepOfWay(c, m, p, mostPushed); }
+double longestCarryingStep(const Case& c, const Material& m, double p) {
+  return keepsPlaces(c, m) ? std::numeric_limits<double>::infinity() : stepOfWay(c, m, p, mostPushed);
+}
 
 double pressureIn(const Case& c, const Body& body) {
   const double own = heightsOf(c, boundingBox(body.shape, c.dimensions)).extent();
   return weightOn(c, body, false) + materialOf(c, body).density * norm(c.gravity) * own;
-}
-
-double longestRestingStep(const Case& c, const Material& m, double p) {
-  if (c.method.scheme == SchemeKind::Published || m.hasOwnViscosities())
-    return std::numeric_limits<double>::infinity();
-  return stepOfWay(c, m, p, mostJostled(c.method.pressureRadius));
-}
-
-void warnRestlessFluids(const Case& c, std::vector<std::string>& warnings) {
-  for (const Body& body : c.bodies) {
-    if (body.kind != BodyKind::Fluid || weightOn(c, body, true) > 0) continue;
-    const Material& m = materialOf(c, body);
-    const double p = pressureIn(c, body), longest = longestRestingStep(c, m, p);
-    if (c.time.step <= longest * (1 + rounding)) continue;
-    warnings.push_back(fmt::format(
-        "fluid '{}': in a step of {:g} s a pressure of {:.3g} Pa, that of its weight, can move its particles by "
-        "{:.2g} spacings, more than {:.2g}, so that it may not come to rest and may lose volume; take steps of at "
-        "most {:.2g} s, or method.pressure_radius = 3.5",
-        body.name, c.time.step, p, wayOfPressure(c, m, p, c.time.step), mostJostled(c.method.pressureRadius),
-        longest));
-  }
 }
 
 void warnLightFluids(const Case& c, std::vector<std::string>& warnings) {
@@ -93,6 +67,7 @@ void warnLightFluids(const Case& c, std::vector<std::string>& warnings) {
     const double p = body.kind == BodyKind::Fluid ? weightOn(c, body, true) : 0;
     if (p == 0) continue;
     const Material& m = materialOf(c, body);
+    if (keepsPlaces(c, m)) continue;
     const double dt = c.time.step, inertia = m.density * c.spacing * c.spacing;
     const double way = wayOfPressure(c, m, p, dt);
     if (way <= mostPushed * (1 + rounding)) continue;

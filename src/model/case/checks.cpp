@@ -304,11 +304,8 @@ StableStep longestStableStep(const Case& c) {
             fmt::format("dt kappa / lambda of '{}'", m.name));
   for (const Body& body : c.bodies) {
     if (body.kind != BodyKind::Fluid || norm(c.gravity) == 0) continue;
-    const Material& m = materialOf(c, body);
     if (const double p = weightOn(c, body, true); p > 0)
-      bound(longestCarryingStep(c, m, p), fmt::format("the heavier fluid on '{}'", body.name));
-    else
-      bound(longestRestingStep(c, m, pressureIn(c, body)), fmt::format("the weight of '{}'", body.name));
+      bound(longestCarryingStep(c, materialOf(c, body), p), fmt::format("the heavier fluid on '{}'", body.name));
   }
   return stable;
 }
@@ -330,7 +327,6 @@ std::vector<std::string> caseWarnings(const Case& c) {
   warnCompression(c, warnings);
   if (c.method.kind == MethodKind::MphI && norm(c.gravity) > 0) {
     warnLightFluids(c, warnings);
-    warnRestlessFluids(c, warnings);
     warnSoftFluids(c, warnings);
   }
   warnCourant(c, warnings);

@@ -64,6 +64,18 @@ std::set<int> fluidMaterials(const Case& c) {
   return found;
 }
 
+/// Fluid is compressed by its background pressure.
+void requireBackground(const Checker& at, double pressure, const Material& m) {
+  constexpr double most = 0.1;
+  if (pressure > 0 && m.surfaceTension > 0)
+    at.fail({"method", "background_pressure"},
+            fmt::format("found beside the surface_tension of '{}'; a case can have only one of them", m.name));
+  if (pressure > most * m.bulkModulus)
+    at.fail({"method", "background_pressure"},
+            fmt::format("expected at most {:g} times the bulk_modulus of '{}', {:g} Pa, found {:g}", most, m.name,
+                        m.bulkModulus, pressure));
+}
+
 /// What holds a fluid together in MPH-I, and what the pressure equation of ISPH can do.
 void requireMaterials(const Checker& at, const Case& c) {
   const Material* lightest = nullptr;
@@ -76,6 +88,7 @@ void requireMaterials(const Checker& at, const Case& c) {
           "found 0, and bulk_modulus = 0: such a fluid has no pressure and falls through walls; expected one of "
           "them positive, and bulk_modulus <= " +
               mostBulkModulusText(c));
+    if (c.method.kind == MethodKind::MphI) requireBackground(at, c.method.backgroundPressure, m);
     if (c.method.kind == MethodKind::Isph && c.method.isph.smagorinsky > 0 && m.dynamicViscosity == 0)
       at.fail({"material", m.name, "dynamic_viscosity"},
               "found 0 with smagorinsky in [method] above 0: the law of the wall needs a viscosity; expected a "

@@ -212,8 +212,12 @@ constexpr BadCase badCases[] = {
      "bad.toml:40:8: name in [method]: expected a string, found 1"},
     {"keyOfIsph", "[output]", "[method]\nviscosity = \"explicit\"\n[output]",
      "bad.toml:40:1: unknown key 'viscosity' in [method]: it belongs to the method 'isph'; expected 'name', "
-     "'scheme', 'pressure_radius', 'density_radius', 'viscosity_radius', 'viscosity_correction' or "
-     "'tension_limit'"},
+     "'scheme', 'pressure_radius', 'density_radius', 'viscosity_radius', 'viscosity_correction', 'tension_limit' "
+     "or 'background_pressure'"},
+    {"largeBackground", "[output]", "[method]\nbackground_pressure = 2e5\n[output]",
+     "bad.toml:40:23: background_pressure in [method]: expected at most 0.1 times the bulk_modulus of 'fluid', "
+     "1e+06 "
+     "Pa, found 200000"},
     {"keyOfMph", bulk, "[method]\nname = \"isph\"\npressure_radius = 2\n",
      "bad.toml:18:1: unknown key 'pressure_radius' in [method] (isph): it belongs to the method 'mph-i'; expected "
      "'name', 'scheme', 'kernel', 'smoothing_ratio', 'alpha', 'walls', 'viscosity', 'smagorinsky', 'shifting' "

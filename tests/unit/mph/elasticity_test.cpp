@@ -30,7 +30,7 @@ void checkVelocityGradients() {
     }
   Buffer<SymmetricBlock<D>> b(n);
   Buffer<Block<D>> gradient(n);
-  gradientCorrection<D>(s.context, pairs, b.span());
+  gradientCorrection<D>(s.context, pairs, b.span(), false);
   velocityGradient<D>(s.context, pairs, b.span(), u.span(), gradient.span());
   std::uint32_t exact = 0;
   for (std::uint32_t i = 0; i < n; ++i) {
@@ -62,7 +62,7 @@ void checkElasticPower() {
     for (int k = 0; k < D; ++k) u[i][k] = std::sin(i * (k + 1.0));
     for (int k = 0; k < SymmetricBlock<D>::size; ++k) stress[i].a[k] = std::cos(i * (k + 2.0));
   }
-  gradientCorrection<D>(s.context, pairs, b.span());
+  gradientCorrection<D>(s.context, pairs, b.span(), false);
   velocityGradient<D>(s.context, pairs, b.span(), u.span(), gradient.span());
   double ofStress = 0, ofForce = 0, size = 0;
   for (std::uint32_t i = 0; i < n; ++i)
