@@ -21,10 +21,11 @@ def measure(run):
     rate = np.polyfit(time[linear], np.log(speed[linear]), 1)[0]
     k = speed.argmax()
     late = time[k] + np.log(began / amplitude) / rate
-    scatter = np.std(speed[k - 8:k + 9] / speed[k])
+    scatter = np.std(speed[k - 8 : k + 9] / speed[k])
     errors = {"largest speed": abs(speed[k] / most - 1), "time": abs(late / when - 1), "scatter": scatter}
     values = {"largest": speed[k], "at": late, "amplitude": began}
-    return Outcome(errors, values, {"measured": (time, speed)}, {"van Keken et al.": (np.array([when, when, 0]), np.array([0, most, most]))})
+    exact = {"van Keken et al.": (np.array([when, when, 0]), np.array([0, most, most]))}
+    return Outcome(errors, values, {"measured": (time, speed)}, exact)
 
 
 study = Study(
