@@ -17,6 +17,7 @@
 #include "treacle/model/case/names.hpp"
 #include "treacle/model/geometry/mesh.hpp"
 #include "treacle/model/geometry/shape.hpp"
+#include "treacle/model/motion/nozzle.hpp"
 #include "treacle/step/method/solve_stages.hpp"
 #include "treacle/step/run/shareable.hpp"
 
@@ -83,6 +84,21 @@ void printMeshes(const Case& c) {
   }
 }
 
+/// How many particles come out of all nozzles until the end of the run.
+template <int D>
+double particlesFromNozzles(const Case& c) {
+  constexpr int samples = 200;  // of speeds that vary
+  const double dt = c.time.end / samples;
+  double sum = 0;
+  for (const Body& body : c.bodies) {
+    if (body.kind != BodyKind::Inflow) continue;
+    const NozzleLayers<D> layers(c, body);
+    for (int k = 0; k < samples; ++k)
+      sum += static_cast<double>(layers.size()) * std::max(0.0, layers.speed(k * dt, dt)) * dt / c.spacing;
+  }
+  return sum;
+}
+
 /// Seconds of a step per fluid particle on one thread, as measured on one machine for the shipped cases.
 double secondsPerParticle(const Case& c) {
   const bool plane = c.dimensions == 2;
@@ -92,7 +108,11 @@ double secondsPerParticle(const Case& c) {
 }
 
 void printTime(const Case& c, ParticleNumbers particles) {
-  const double step = secondsPerParticle(c) * static_cast<double>(particles.fluid) / omp_get_max_threads();
+  const double entering = c.dimensions == 2 ? particlesFromNozzles<2>(c) : particlesFromNozzles<3>(c);
+  if (entering > 0) print("# inflow: about {:.0f} particles enter until the end\n", entering);
+  // In the mean, if none leave.
+  const double fluid = static_cast<double>(particles.fluid) + entering / 2;
+  const double step = secondsPerParticle(c) * fluid / omp_get_max_threads();
   print(
       "# time per step: very roughly {:.2g} s on {} threads of a processor, {} for {} steps or more (--estimate "
       "measures)\n",

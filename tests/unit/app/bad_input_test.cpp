@@ -215,7 +215,7 @@ constexpr BadCase badCases[] = {
      "'scheme', 'pressure_radius', 'density_radius', 'viscosity_radius', 'viscosity_correction', 'tension_limit' "
      "or 'background_pressure'"},
     {"largeBackground", "[output]", "[method]\nbackground_pressure = 2e5\n[output]",
-     "bad.toml:40:23: background_pressure in [method]: expected at most 0.1 times the bulk_modulus of 'fluid', "
+     "bad.toml:40:23: background_pressure in [method]: expected at most 0.1 times the bulk_modulus of 'syrup', "
      "1e+06 "
      "Pa, found 200000"},
     {"keyOfMph", bulk, "[method]\nname = \"isph\"\npressure_radius = 2\n",

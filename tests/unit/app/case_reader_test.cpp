@@ -207,7 +207,6 @@ density_radius = 2.25
 viscosity_radius = 3
 viscosity_correction = 0.25
 tension_limit = 77
-background_pressure = 55
 [solver]
 krylov = "cg"
 preconditioner = "block-jacobi"
@@ -275,7 +274,6 @@ TEST(readCase, takesEveryKey) {
   expected.method.pressureRadius = 2, expected.method.densityRadius = 2.25, expected.method.viscosityRadius = 3;
   expected.method.viscosityCorrection = 0.25;
   expected.method.tensionLimit = 77;
-  expected.method.backgroundPressure = 55;
   expected.solver.krylov = KrylovKind::Cg;
   expected.solver.preconditioner = PreconditionerKind::BlockJacobi;
   expected.solver.operatorKind = OperatorKind::Assembled;

@@ -41,6 +41,13 @@ TEST(info, namesVersionAndThreads) {
   EXPECT_THAT(outcome.out, HasSubstr("CUDA "));
 }
 
+TEST(check, takesABackgroundPressure) {
+  Workshop shop;
+  const Outcome outcome = withSmallCase(shop).call("check small.toml --set method.background_pressure=55");
+  EXPECT_EQ(outcome.exitCode, 0);
+  EXPECT_THAT(outcome.out, HasSubstr("background_pressure = 55\n"));
+}
+
 TEST(check, printsCountsNumbersAndCaseThatCanBeRunAgain) {
   Workshop shop;
   const Outcome outcome =

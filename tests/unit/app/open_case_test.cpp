@@ -56,6 +56,15 @@ TEST(OpenCase, IsReadAndWritten) {
   EXPECT_EQ(c.outflows[0].max[1], 14e-3);
 }
 
+/// Four columns at 0.2 m/s for 0.05 s, or while the nozzle is open.
+TEST(OpenCase, CheckSaysHowMuchComesIn) {
+  Workshop shop;
+  shop.put("case.toml", pouring);
+  EXPECT_THAT(shop.call("check case.toml").out, HasSubstr("# inflow: about 40 particles enter until the end\n"));
+  EXPECT_THAT(shop.call("check case.toml --set jet.end=0.02").out,
+              HasSubstr("# inflow: about 16 particles enter until the end\n"));
+}
+
 /// Beside the case, by name or the second column; what is wrong is said with the line.
 TEST(OpenCase, TablesOfTimeComeFromFiles) {
   Workshop shop;
