@@ -89,7 +89,8 @@ void ProjectedMultigrid<D, T, Backend>::setup(Context<Backend>& context, const M
     products_.schur(context, table_, products_.scalars(),
                     StorePressure<T, Backend>{table_, pairs.classOf(), products_.scalars(), y.data()});
   };
-  lambdaMax_.run(context, product, inversePressure_);
+  // Where particles have viscosities of their own a few of them decide on it, which Lanczos' method finds late.
+  lambdaMax_.run(context, product, inversePressure_, pairs.viscosityClass ? 16 : 10);
   if (kept) kept->estimated(lambdaMax_.onHost(context));
 }
 
