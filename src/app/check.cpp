@@ -107,11 +107,8 @@ double secondsPerParticle(const Case& c) {
   return plane ? 6e-6 : 2e-5;
 }
 
-void printTime(const Case& c, ParticleNumbers particles) {
-  const double entering = c.dimensions == 2 ? particlesFromNozzles<2>(c) : particlesFromNozzles<3>(c);
-  if (entering > 0) print("# inflow: about {:.0f} particles enter until the end\n", entering);
-  // In the mean, if none leave.
-  const double fluid = static_cast<double>(particles.fluid) + entering / 2;
+/// `fluid`: particles in the mean over the run.
+void printTime(const Case& c, double fluid) {
   const double step = secondsPerParticle(c) * fluid / omp_get_max_threads();
   print(
       "# time per step: very roughly {:.2g} s on {} threads of a processor, {} for {} steps or more (--estimate "
@@ -164,12 +161,15 @@ void checkCommand(const CheckOptions& options) {
   for (std::string& warning : caseWarnings(c)) warnings.push_back(std::move(warning));
   if (c.output.surface && !hasFreeSurface()) warnings.push_back("output.surface: " + whyNoFreeSurface());
   printParticles(c, particles.numbers(), made.ofBodies);
+  const double entering = c.dimensions == 2 ? particlesFromNozzles<2>(c) : particlesFromNozzles<3>(c);
+  if (entering > 0) print("# inflow: about {:.0f} particles enter until the end\n", entering);
   printMeshes(c);
   if (options.processes > 1)
     printSharedMemory(c, particles, options.processes);
   else
     printMemory(c, particles, warnings);
-  if (!options.estimate) printTime(c, particles.numbers());
+  // In the mean half of them are there, if none leave.
+  if (!options.estimate) printTime(c, static_cast<double>(particles.numbers().fluid) + entering / 2);
   printNumbers(c);
   printAdvice(c);
   if (options.estimate) {

@@ -66,17 +66,18 @@ void checkDamBreak(const std::string& resolution, const std::string& exactStep, 
 TEST(AutomaticSteps, FrontOfTheDamBreak) { checkDamBreak("1", "0.125e-3", 1e-3); }
 TEST(AutomaticSteps, FrontOfTheDamBreakHalfTheSpacing) { checkDamBreak("2", "0.5e-3", 0.5e-3); }
 
-/// With a softer fluid nothing but the tolerance bounds the steps.
+/// With a softer fluid nothing but the tolerance bounds the steps. In the longest of them the stiffness of fluid
+/// under pressure acts, which makes their error smaller and is no part of the order.
 TEST(AutomaticSteps, ErrorOfTheDamBreakFallsWithTheTolerance) {
   const std::string soft = "fluid.bulk_modulus=1e5", whole = "output.interval=0";
   const Outcome exact = front({soft, whole, "time.step=0.125e-3"}, {0.2});
   double last = 0;
-  for (const double tolerance : {0.02, 0.01, 0.005}) {
+  for (const double tolerance : {0.02, 0.01, 0.005, 0.0025}) {
     const Outcome o = front({soft, whole, "time.step=auto", "time.tolerance=" + std::to_string(tolerance)}, {0.2});
     const double error = largestError(o, exact, 19.5e-3);
-    EXPECT_LT(error, 0.3 * tolerance);  // measured: 0.17 of it
-    if (last > 0) {
-      EXPECT_GT(std::log2(last / error), 0.35) << tolerance;  // measured: 0.40, 0.56
+    EXPECT_LT(error, 0.2 * tolerance);  // measured: 0.06, 0.09, 0.13, 0.16 of it
+    if (tolerance < 0.01) {
+      EXPECT_GT(std::log2(last / error), 0.45) << tolerance;  // measured: 0.56, 0.67
     }
     last = error;
   }

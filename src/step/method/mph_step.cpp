@@ -5,23 +5,20 @@
 #include "run/failure.hpp"
 #include "run/step_method.hpp"
 #include "run/take_trial.hpp"
-#include "step_elasticity.hpp"
 #include "step_gas.hpp"
+#include "step_guess.hpp"
 #include "step_heat.hpp"
 #include "step_places.hpp"
 #include "step_pressures.hpp"
-#include "step_rheology.hpp"
 #include "step_states.hpp"
-#include "step_stiffness.hpp"
 #include "step_surface.hpp"
 #include "step_tension.hpp"
+#include "step_viscosities.hpp"
 #include "treacle/core/halo.hpp"
 #include "treacle/model/particles/particles_copy.hpp"
 #include "treacle/mph/mph_neighbourhood.hpp"
 #include "treacle/mph/mph_particles.hpp"
 #include "treacle/mph/renormalisation.hpp"
-#include "treacle/mph/viscosity_scale.hpp"
-#include "treacle/step/method/first_guess.hpp"
 #include "treacle/step/method/solve_stages.hpp"
 #include "walls/placed_surfaces.hpp"
 #include "walls/wall_forces.hpp"
@@ -42,15 +39,15 @@ class MphStep final : public StepMethod<D, Backend> {
         pairs_(neighbourhood_.pairs()),
         wholeRows_(needsAssembled<Backend>(state.theCase.solver)),
         solver_(solveStages(solvedCase(state.theCase))),
+        viscosities_(state.theCase),
         pressures_(state) {
-    if (state.theCase.hasOwnViscosities()) rheology_.emplace(state.theCase);
     if (state.theCase.hasStates()) states_.emplace();
     if (state.theCase.heat) heat_.emplace(state.theCase, pairs_);
     if (state.theCase.hasSurfaceTension()) surface_.emplace(state.theCase);
     if (state.theCase.keepsVolume()) tension_.emplace();
     if (state.theCase.gas) gas_.emplace(state.theCase, *tension_);
     if (state.theCase.elasticModes() > 0) elasticity_.emplace(state.theCase, explicitForces());
-    if (state.theCase.isAccurate()) stiffness_.emplace(state.theCase, explicitForces());
+    if (state.theCase.isAccurate()) viscosities_.addStiffness(state.theCase, explicitForces());
     if (state.theCase.hasRigid()) bodies_.emplace(state);
   }
 
@@ -61,7 +58,8 @@ class MphStep final : public StepMethod<D, Backend> {
     const std::uint32_t active = pairs_.activeCount;
     clearValues(state_.context, state_.particles.pressure.span().subspan(active));
     clearValues(state_.context, state_.particles.heldPressure.span().subspan(active));
-    places_.compute(state_, pairs_, rheology_ ? rheology_->setVolumes(state_, pairs_) : std::span<const double>{});
+    places_.compute(state_, pairs_,
+                    rheology() ? rheology()->setVolumes(state_, pairs_) : std::span<const double>{});
   }
 
   /// Walls go with what rigid bodies are tried with first.
@@ -77,11 +75,9 @@ class MphStep final : public StepMethod<D, Backend> {
     renormalise();
     if (state_.theCase.needsWallNeighbours()) wallForces_.prepare(state_, neighbourhood_);
     if (surface_) surface_->prepare(state_, pairs_, wallForces_.walls());
-    scaleViscosity();
+    setViscosities();
     if (elasticity_) elasticity_->prepare(state_, pairs_);
-    if (stiffness_)
-      rheology_ ? stiffness_->prepare(state_, pairs_, rheology_->viscosities(), rheology_->scaled())
-                : stiffness_->prepare(state_, pairs_, stiffness_->sum(), viscosityScale_);
+    viscosities_.giveBack(state_, pairs_);
     if (tension_) tension_->prepare(state_, pairs_, places_.of(state_));
     if (gas_) gas_->prepare(state_);
     prepareViscous();
@@ -89,15 +85,14 @@ class MphStep final : public StepMethod<D, Backend> {
 
   /// What is kept of another step's system is that of one of about the same length, with the same viscosities.
   void preparePreconditioner() override {
-    if (state_.theCase.hasOwnViscosities() || isStiff() ||
-        std::abs(state_.timeStep - state_.lastStep()) > 0.1 * state_.lastStep())
+    if (viscosities_.change() || std::abs(state_.timeStep - state_.lastStep()) > 0.1 * state_.lastStep())
       state_.particles.modes.pressure = {};
     solver_.preparePreconditioner(state_.context, &state_.particles.modes.pressure);
   }
 
   /// Leaves the walls' velocities in state.velocity, too.
   StagedReport solve() override {
-    guessAll();
+    guess_.setAll(pairs_);
     return bodies_ ? solveWithBodies() : solveWithPressures();
   }
 
@@ -121,7 +116,7 @@ class MphStep final : public StepMethod<D, Backend> {
           solver.preparePreconditioner(state_.context, &pressure);
         },
         [&](double* history) {
-          guess(u);
+          guess_.set(u);
           const SolverModes<D, Backend>& kept = state_.particles.modes;
           SolverModes<D, Backend> modes;
           modes.vectors.resize(state_.context, kept.vectors.size());
@@ -134,7 +129,7 @@ class MphStep final : public StepMethod<D, Backend> {
   /// Elastic stresses, states and temperatures, which may fail before anything is accepted.
   void correctVelocities() override {
     if (elasticity_) elasticity_->solve(state_, pairs_);
-    if (states_) states_->solve(state_, *rheology_);
+    if (states_) states_->solve(state_, *rheology());
     if (heat_)
       heat_->solve(state_, pairs_, states_ ? states_->heating() : std::span<const double>{},
                    elasticity_ ? elasticity_->power() : std::span<const double>{});
@@ -157,7 +152,7 @@ class MphStep final : public StepMethod<D, Backend> {
   void accept() override {
     const std::uint32_t n = pairs_.ownFluid();
     computePressures(state_.particles.pressure.span().first(pairs_.activeCount));
-    if (rheology_) rheology_->accept(state_);
+    if (rheology()) rheology()->accept(state_);
     if (states_) states_->accept(state_);
     if (elasticity_) elasticity_->accept(state_);
     if (state_.theCase.needsBalance())
@@ -167,11 +162,8 @@ class MphStep final : public StepMethod<D, Backend> {
     if (gas_) gas_->accept(state_);
     pressures_.accept();
     if (tension_) tension_->accept(state_, pairs_, places_.of(state_));
-    if (isStiff()) state_.particles.modes.pressure = {};
-    // The velocities of the start are given, no solution: nothing follows from the way to the first one.
-    if (state_.step > 0)
-      updateFlowMemory<D>(state_.context, state_.velocityStep, state_.lastStep(),
-                          state_.particles.velocity.span().first(n), state_.velocity.span().first(n), memory());
+    if (viscosities_.change()) state_.particles.modes.pressure = {};  // those of the next step may not
+    guess_.accept(n);
   }
 
   void describe(DiagnosticsInput<D>& in) const override { places_.describe(state_, pairs_, in); }
@@ -188,12 +180,11 @@ class MphStep final : public StepMethod<D, Backend> {
   const CellOwners<D>& owners() const override { return neighbourhood_.owners(); }
   const MaterialTable& materials() const override { return pairs_.materials; }
   std::size_t bytes() const override {
-    return neighbourhood_.bytes() + wallSurface_.bytes() + renormalisation_.bytes() + viscosityScale_.bytes() +
-           (rheology_ ? rheology_->bytes() : 0) + (states_ ? states_->bytes() : 0) + (heat_ ? heat_->bytes() : 0) +
-           (surface_ ? surface_->bytes() : 0) + (tension_ ? tension_->bytes() : 0) + wallBlock_.bytes() +
-           wallGradient_.bytes() + places_.bytes() + divergence_.bytes() + rhs_.bytes() + found_.bytes() +
-           solver_.bytes() + balance_.bytes() + wallForces_.bytes() + (gas_ ? gas_->bytes() : 0) +
-           (elasticity_ ? elasticity_->bytes() : 0) + (stiffness_ ? stiffness_->bytes() : 0) +
+    return neighbourhood_.bytes() + wallSurface_.bytes() + renormalisation_.bytes() + viscosities_.bytes() +
+           (states_ ? states_->bytes() : 0) + (heat_ ? heat_->bytes() : 0) + (surface_ ? surface_->bytes() : 0) +
+           (tension_ ? tension_->bytes() : 0) + wallBlock_.bytes() + wallGradient_.bytes() + places_.bytes() +
+           divergence_.bytes() + rhs_.bytes() + found_.bytes() + solver_.bytes() + balance_.bytes() +
+           wallForces_.bytes() + (gas_ ? gas_->bytes() : 0) + (elasticity_ ? elasticity_->bytes() : 0) +
            (bodies_ ? bodies_->bytes() : 0) + pressure_.bytes();
   }
 
@@ -201,9 +192,9 @@ class MphStep final : public StepMethod<D, Backend> {
   /// The flow for the velocities that walls have, from the guess in state.velocity.
   StagedReport solveFluid() {
     StagedReport report = solveOnce();
-    while (rheology_) {
-      const bool again = rheology_->follow(state_, neighbourhood_);
-      if (rheology_->isAnother()) state_.particles.modes.pressure = {};
+    while (rheology()) {
+      const bool again = rheology()->follow(state_, neighbourhood_);
+      if (rheology()->isAnother()) state_.particles.modes.pressure = {};
       if (!again) break;
       prepareAgain();
       report.follow(solveOnce());
@@ -308,21 +299,6 @@ class MphStep final : public StepMethod<D, Backend> {
     throw RunError(diagnosis);
   }
 
-  FlowMemory<D> memory() { return {state_.particles.acceleration.span(), state_.particles.jerk.span()}; }
-  void guess(std::span<Vec<D>> u) {
-    extrapolate<D>(
-        state_.context,
-        Extrapolation<D>::make(state_.theCase.solver.firstGuess, state_.velocityStep, state_.lastStep()),
-        state_.particles.velocity.span().first(u.size()), memory(), u);
-  }
-  /// Into state.velocity, with the velocities of the walls.
-  void guessAll() {
-    const std::uint32_t walls = pairs_.fluidCount, active = pairs_.activeCount;
-    const std::span<const Vec<D>> last = state_.particles.velocity;
-    state_.velocity.resize(state_.context, active);
-    copyValues(state_.context, last.subspan(walls, active - walls), state_.velocity.data() + walls);
-    guess(state_.velocity.span().first(pairs_.ownFluid()));
-  }
   WallTerms<D> wallTermsView() { return {wallBlock_.span(), wallGradient_.span()}; }
 
   void placeWallSurfaces() {
@@ -342,26 +318,12 @@ class MphStep final : public StepMethod<D, Backend> {
     neighbourhood_.setRenormalisation(renormalisation_);
   }
 
-  void scaleViscosity() {
-    if (rheology_) {
-      guessAll();
+  void setViscosities() {
+    if (rheology()) {
+      guess_.setAll(pairs_);
       fillGhosts(state_.context, Held::Active, state_.velocity.data());
-      rheology_->start(state_, neighbourhood_);
-      std::span<const double> implicit;
-      if (stiffness_ && stiffness_->find(state_, pairs_, &*rheology_)) implicit = stiffness_->viscosity();
-      if (elasticity_) implicit = elasticity_->implicitViscosity(state_, pairs_, *rheology_, implicit);
-      rheology_->setImplicit(implicit);
-      return rheology_->apply(state_, neighbourhood_);
     }
-    if (stiffness_) stiffness_->find(state_, pairs_, nullptr);
-    const double correction = state_.theCase.method.viscosityCorrection;
-    neighbourhood_.setViscosities({}, {});
-    if (correction == 0 && !isStiff()) return;
-    viscosityScale_.resize(state_.context, pairs_.fluidCount);
-    viscosityScale<D>(state_.context, pairs_, correction, viscosityScale_.span());
-    if (isStiff()) stiffness_->scale(state_, neighbourhood_, viscosityScale_.span());
-    fillGhosts(state_.context, Held::Fluid, viscosityScale_.data());
-    neighbourhood_.setViscosityScale(viscosityScale_);
+    viscosities_.set(state_, neighbourhood_, elasticity_ ? &*elasticity_ : nullptr);
   }
 
   void computeRightHandSide() {
@@ -372,14 +334,13 @@ class MphStep final : public StepMethod<D, Backend> {
   /// Factors of own fluid [-]; empty where there are none.
   std::span<const double> volumes() const {
     if (!state_.theCase.hasVolumeFactors()) return {};
-    return rheology_->volumes().first(state_.particles.fluidCount);
+    return viscosities_.rheology()->volumes().first(state_.particles.fluidCount);
   }
 
-  /// Whether some viscosities are those of a stiffness, too.
-  bool isStiff() const { return stiffness_ && stiffness_->acts(); }
+  StepRheology<D, Backend>* rheology() { return viscosities_.rheology(); }
 
   const ExplicitForces<D, Backend>* explicitForces() const {
-    if (stiffness_) return &*stiffness_;
+    if (viscosities_.stiffness()) return viscosities_.stiffness();
     if (elasticity_) return &*elasticity_;
     if (surface_) return &*surface_;
     if (gas_) return &*gas_;
@@ -400,17 +361,16 @@ class MphStep final : public StepMethod<D, Backend> {
   bool wholeRows_;                               // of A in the lists
   Buffer<WallSurface<D>, Backend> wallSurface_;  // per active wall particle
   Buffer<SymmetricBlock<D>, Backend> renormalisation_;
-  Buffer<double, Backend> viscosityScale_;
   Buffer<Block<D>, Backend> wallBlock_;
   Buffer<Vec<D>, Backend> wallGradient_;
   StepPlaces<D, Backend> places_;
   Buffer<double, Backend> divergence_;  // C^T u per particle [1/s]
+  StepGuess<D, Backend> guess_{state_};
   MphRightHandSide<D, Backend> rhs_{state_, pairs_, divergence_};
   MphSolver<D, Backend> solver_;
-  std::optional<StepRheology<D, Backend>> rheology_;  // where particles have their own viscosities
-  Buffer<Vec<D>, Backend> found_;                     // velocities of the last solve, while the next is prepared
+  StepViscosities<D, Backend> viscosities_;
+  Buffer<Vec<D>, Backend> found_;  // velocities of the last solve, while the next is prepared
   std::optional<StepElasticity<D, Backend>> elasticity_;  // where a fluid is elastic
-  std::optional<StepStiffness<D, Backend>> stiffness_;    // in the accurate scheme
   std::optional<StepStates<D, Backend>> states_;          // where materials have states
   std::optional<StepHeat<D, Backend>> heat_;              // where the case has heat
   std::optional<StepSurface<D, Backend>> surface_;        // where some fluid has a surface tension

@@ -1,11 +1,10 @@
 #pragma once
 
-#include "explicit_forces.hpp"
+#include "forces_around.hpp"
 #include "run/failure.hpp"
 #include "step_rheology.hpp"
 #include "treacle/core/halo.hpp"
 #include "treacle/mph/elasticity.hpp"
-#include "treacle/mph/surface_tension.hpp"
 #include "treacle/step/method/elastic_terms.hpp"
 #include "treacle/step/method/set_each.hpp"
 
@@ -17,11 +16,11 @@ namespace treacle {
 /// velocities, and the system solves for how it changes with the velocities as for a viscosity (StepRheology), so
 /// that the step may be long against the relaxation time.
 template <int D, class Backend>
-class StepElasticity final : public ExplicitForces<D, Backend> {
+class StepElasticity final : public ForcesAround<D, Backend> {
  public:
   /// `others`: forces that go with these, or null; must outlive this.
   StepElasticity(const Case& c, const ExplicitForces<D, Backend>* others)
-      : table_(ElasticTable::make(c)), others_(others) {}
+      : ForcesAround<D, Backend>(others), table_(ElasticTable::make(c)) {}
 
   /// What the modes add to the viscosity in the step at hand, per own particle [Pa s], and `others` do; empty: no
   /// others. `rheology`: of the step.
@@ -44,12 +43,12 @@ class StepElasticity final : public ExplicitForces<D, Backend> {
   void prepare(FlowState<D, Backend>& state, const MphPairs<D>& pairs) {
     Context<Backend>& context = state.context;
     const std::uint32_t own = pairs.ownFluid();
-    correction_.resize(context, own), gradient_.resize(context, own), force_.resize(context, own);
+    correction_.resize(context, own), gradient_.resize(context, own);
     carried_.resize(context, pairs.fluidCount);
     gradientCorrection<D>(context, pairs, correction_.span(), false);
     expectStress<D>(context, {elasticState(state, pairs), correction_.span(), carried_.span().first(own)});
     fillGhosts(context, Held::Fluid, carried_.data());
-    stressForces<D>(context, pairs, carried_.span(), force_.span());
+    stressForces<D>(context, pairs, carried_.span(), this->makeForces(context, own));
   }
 
   /// The conformations that follow from the velocities of the solve. Errors: RunError if some are not finite.
@@ -73,33 +72,18 @@ class StepElasticity final : public ExplicitForces<D, Backend> {
                  state.particles.conformation[k].data());
   }
 
-  void addForces(FlowState<D, Backend>& state, std::span<Vec<D>> y) const override {
-    if (others_) others_->addForces(state, y);
-    addSurfaceForces<D>(state.context, force_.span().first(y.size()), y);
-  }
-  void allForces(FlowState<D, Backend>& state, const MphPairs<D>& pairs, const ClusterListView& walls,
-                 std::span<Vec<D>> y, std::span<Vec<D>> load) const override {
-    const std::uint32_t n = pairs.ownFluid();
-    if (others_)
-      others_->allForces(state, pairs, walls, y, load);
-    else
-      clearValues(state.context, y);
-    addSurfaceForces<D>(state.context, force_.span().first(n), y.first(n));
-    onWalls_.resize(state.context, y.size() - pairs.fluidCount);
-    clearValues(state.context, onWalls_.span());
-    stressOnWalls<D>(state.context, pairs, walls, carried_.span(), onWalls_.span());
-    addSurfaceForces<D>(state.context, onWalls_.span(), y.subspan(pairs.fluidCount));
-    addSurfaceForces<D>(state.context, onWalls_.span(), load);
-  }
-
   std::size_t bytes() const {
     std::size_t sum = implicit_.bytes() + correction_.bytes() + gradient_.bytes() + carried_.bytes() +
-                      force_.bytes() + onWalls_.bytes() + slowness_.bytes() + power_.bytes();
+                      slowness_.bytes() + power_.bytes() + this->forceBytes();
     for (const auto& next : next_) sum += next.bytes();
     return sum;
   }
 
  private:
+  void addWallForces(FlowState<D, Backend>& state, const MphPairs<D>& pairs, const ClusterListView& walls,
+                     std::span<Vec<D>> force) const override {
+    stressOnWalls<D>(state.context, pairs, walls, carried_.span(), force);
+  }
   /// With the gradient of state.velocity.
   ElasticState<D> elasticState(FlowState<D, Backend>& state, const MphPairs<D>& pairs) {
     velocityGradient<D>(state.context, pairs, correction_.span(), state.velocity.span(), gradient_.span());
@@ -114,15 +98,12 @@ class StepElasticity final : public ExplicitForces<D, Backend> {
   }
 
   ElasticTable table_;
-  const ExplicitForces<D, Backend>* others_;
   Buffer<double, Backend> implicit_;               // [Pa s]
   Buffer<double, Backend> slowness_;               // RheologyTable::slowness [-]
   Buffer<double, Backend> power_;                  // [W/m3]
   Buffer<SymmetricBlock<D>, Backend> correction_;  // B
   Buffer<Block<D>, Backend> gradient_;             // [1/s]
   Buffer<Block<D>, Backend> carried_;              // the stress times B, per fluid particle [Pa]
-  Buffer<Vec<D>, Backend> force_;                  // [N/m3]
-  mutable Buffer<Vec<D>, Backend> onWalls_;        // per active wall particle [N/m3]
   std::array<Buffer<SymmetricBlock<D>, Backend>, maxElasticModes> next_;
 };
 

@@ -1,5 +1,4 @@
 #include "support/deep_layer.hpp"
-#include "support/ring_in_drum.hpp"
 #include "support/same_bits.hpp"
 #include "support/state_of.hpp"
 #include "treacle/mph/pressure_stiffness.hpp"

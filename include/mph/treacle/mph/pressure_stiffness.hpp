@@ -78,7 +78,8 @@ struct StiffScale {
 template <class Backend>
 void setStiffScale(Context<Backend>&, const StiffScale&);
 
-/// What of MphPairs::viscosityScale is the stiffness's, never quite zero: zero would look like a wall.
+/// Sets the part of MphPairs::viscosityScale that the additional viscosity has. It is never quite zero, because
+/// pairs take a particle whose scale is zero for a wall.
 struct GivenScale {
   std::span<const double> viscosity, sum, scale;  // as above
   std::span<double> given;
