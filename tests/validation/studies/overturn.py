@@ -36,5 +36,5 @@ study = Study(
     orders={"largest speed": 0.7, "time": 0.7},
     measure=measure,
     x_label="t / T",
-    y_label="root mean square of the velocity, T/h",
+    y_label="root mean square of the velocity over h/T",
 )
