@@ -2,7 +2,9 @@
 
 #include "particles/fluid_extent.hpp"
 #include "treacle/model/case/checks.hpp"
+#include "treacle/model/case/flow_scales.hpp"
 #include "treacle/model/geometry/shape.hpp"
+#include "treacle/model/materials/pressed_particle.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -12,22 +14,20 @@
 namespace treacle {
 namespace {
 
-// Spacings, and l^2/mu times the mean diagonal of V in a lattice: 2.2 to 2.6.
-constexpr double mostPushed = 0.5, latticeViscosity = 2.5;
+constexpr double mostPushed = 0.5;  // spacings
+constexpr double latticeViscosity = PressedParticle::latticeViscosity;
 
-/// How far an unbalanced pressure p [Pa] moves a particle in a step of dt [s], in spacings: inertia resists it
-/// like a viscosity.
-double wayOfPressure(const Case& c, const Material& m, double p, double dt) {
-  return p * dt / (m.density * c.spacing * c.spacing / dt + latticeViscosity * c.typicalViscosity(m));
+PressedParticle particleOf(const Case& c, const Material& m) {
+  return {m.density, c.typicalViscosity(m), c.spacing, c.time.step};
 }
 
-/// The step for which that is `way` [s].
+/// The step in which the pressure p [Pa] carries a particle by `way` [s].
 double stepOfWay(const Case& c, const Material& m, double p, double way) {
   const double half = 0.5 * way * latticeViscosity * c.typicalViscosity(m) / p;
   return half + std::sqrt(half * half + way * m.density * c.spacing * c.spacing / p);
 }
 
-/// Whether the steps of the scheme keep particles under pressure in their places (mph/pressure_stiffness.hpp).
+/// Whether the steps of the scheme keep particles under pressure in their places (StiffnessLimits).
 bool keepsPlaces(const Case& c, const Material& m) { return c.isAccurate() && c.typicalViscosity(m) > 0; }
 
 }  // namespace
@@ -45,12 +45,24 @@ double weightOn(const Case& c, const Body& below, bool heavier) {
     if (heavier && density <= materialOf(c, below).density) continue;
     const Extent other = boundingBox(body.shape, c.dimensions);
     const Heights its = heightsOf(c, other);
-    bool onIt = its.low + its.high > h.low + h.high;
+    bool onIt = its.high > h.high;
     for (int k = 0; k < c.dimensions; ++k)
       onIt = onIt && (k == down || (other.min[k] < box.max[k] && box.min[k] < other.max[k]));
     if (onIt) pressure += density * norm(c.gravity) * (its.high - std::max(its.low, h.low));
   }
   return pressure;
+}
+
+double pressureOfHeavier(const Case& c, const Material& m) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Body& body : c.bodies)
+    if (body.kind == BodyKind::Fluid && &materialOf(c, body) == &m)
+      least = std::min(least, weightOn(c, body, true));
+  return std::isinf(least) ? 0 : least;
+}
+
+double additionalViscosity(const Case& c, const Material& m, double p) {
+  return c.isAccurate() ? StiffnessLimits::of(c.method.pressureRadius).viscosity(particleOf(c, m), p) : 0;
 }
 
 double longestCarryingStep(const Case& c, const Material& m, double p) {
@@ -69,7 +81,7 @@ void warnLightFluids(const Case& c, std::vector<std::string>& warnings) {
     const Material& m = materialOf(c, body);
     if (keepsPlaces(c, m)) continue;
     const double dt = c.time.step, inertia = m.density * c.spacing * c.spacing;
-    const double way = wayOfPressure(c, m, p, dt);
+    const double way = particleOf(c, m).way(p);
     if (way <= mostPushed * (1 + rounding)) continue;
     warnings.push_back(fmt::format(
         "fluid '{}' is too light and too thin for the heavier fluid on it: a pressure of {:.3g} Pa can move its "

@@ -1,6 +1,7 @@
 #include "treacle/step/method/solve_stages.hpp"
 
 #include "treacle/isph/isph_pairs.hpp"
+#include "treacle/model/case/flow_scales.hpp"
 #include "treacle/model/case/names.hpp"
 #include "treacle/precondition/projected_multigrid.hpp"
 
@@ -12,8 +13,17 @@
 namespace treacle {
 namespace {
 
+/// Light fluids under heavy ones have an additional viscosity once there is a pressure, which there is not in the
+/// first step. They count with the geometric mean of both.
+template <int D>
 ProjectionConstants constantsOf(const Case& c) {
-  return c.dimensions == 2 ? projectionConstants(makeMphPairs<2>(c)) : projectionConstants(makeMphPairs<3>(c));
+  MphPairs<D> pairs = makeMphPairs<D>(c);
+  for (std::size_t m = 0; m < c.materials.size(); ++m) {
+    const Material& material = c.materials[m];
+    double& mu = pairs.classes.viscosity[m];
+    mu = std::sqrt(mu * (mu + additionalViscosity(c, material, pressureOfHeavier(c, material))));
+  }
+  return projectionConstants(pairs);
 }
 
 /// The hat multigrid gives up early and is tried again in double precision; the last resort takes no
@@ -38,7 +48,7 @@ std::vector<SolverSettings> isphStages(const Case& c) {
 std::vector<SolverSettings> solveStages(const Case& c) {
   if (c.method.kind == MethodKind::Isph) return isphStages(c);
   if (c.solver.preconditioner != PreconditionerKind::ProjectedMultigrid) return {c.solver};
-  const ProjectionConstants constants = constantsOf(c);
+  const ProjectionConstants constants = c.dimensions == 2 ? constantsOf<2>(c) : constantsOf<3>(c);
   const ProjectedSettings& chosen = c.solver.projected;
   const ProjectionDegrees degrees =
       chooseDegrees({chosen.pressureDegree, chosen.gridDegree, chosen.velocityDegree}, constants);

@@ -44,6 +44,28 @@ TEST(SolveStages, DegreesAreChosenByTheStiffnessOfTheCase) {
   EXPECT_GT(pressureDegree(1e4), 4 * single);
 }
 
+TEST(SolveStages, DegreesOfGasesUnderLiquidsCountTheViscosityOfLongSteps) {
+  Case c = sceneCase(2, true, SchemeKind::Accurate);
+  Material gas = c.materials[0];
+  gas.density = 1, gas.dynamicViscosity = 1e-4;
+  c.materials.push_back(gas);
+  for (Material& m : c.materials) m.bulkViscosity = 100;
+  c.gravity = {};
+  c.bodies.resize(2);
+  for (int k = 0; k < 2; ++k) {
+    Body& body = c.bodies[k];
+    body.kind = BodyKind::Fluid;
+    body.material = k == 0 ? 2 : 0;
+    body.shape.min = {0, 10.0 * k * c.spacing, 0}, body.shape.max = {c.spacing, 10.0 * (k + 1) * c.spacing, 0};
+  }
+  const auto degree = [&] { return solveStages(c).front().projected.pressureDegree; };
+  const int without = degree();
+  c.gravity[1] = -10;
+  EXPECT_LT(degree(), 0.7 * without);
+  c.gravity[1] = 10;  // the gas lies on the liquid
+  EXPECT_EQ(degree(), without);
+}
+
 TEST(SolveStages, SystemsTooStiffForSinglePrecisionBeginInDouble) {
   Case c = sceneCase(2, false);
   EXPECT_EQ(solveStages(c).front().precision, Precision::Mixed);

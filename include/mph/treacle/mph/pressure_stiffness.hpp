@@ -2,6 +2,7 @@
 
 #include "treacle/core/block.hpp"
 #include "treacle/core/cuda.hpp"
+#include "treacle/model/materials/pressed_particle.hpp"
 #include "treacle/model/materials/rheology_table.hpp"
 #include "treacle/mph/mph_pairs.hpp"
 
@@ -11,18 +12,11 @@
 
 namespace treacle {
 
-/// What lets fluid under pressure take long steps (docs/accurate.md). A particle that is out of place is driven
-/// back by the pressure p around it, like by a spring. The forces of a step are those of its start, and so the
-/// spring is explicit: where p dt is large against R = rho l^2 / dt + 2.5 mu, it carries the particle beyond its
-/// place. The particle then has a viscosity in proportion to p dt beside its own, of which the step gives back
-/// what resists smooth flow (StepStiffness).
-struct StiffnessLimits {
-  double most;  // p dt / R up to which particles keep their places without it, in spacings
-  double kept;  // the same that is left of large values by it
-
-  /// Measured (docs/notes/trouble.md); h_p in spacings.
-  static StiffnessLimits of(double pressureRadius);
-};
+// What lets fluid under pressure take long steps (docs/accurate.md). A particle that is out of place is driven
+// back by the pressure p around it, like by a spring. The forces of a step are those of its start, and so the
+// spring is explicit: where p dt is large against R of PressedParticle, it carries the particle beyond its place.
+// The particle then has a viscosity in proportion to p dt beside its own, of which the step gives back what
+// resists smooth flow (StepStiffness).
 
 /// What it takes of the materials.
 struct StiffMaterials {
@@ -34,8 +28,6 @@ struct StiffMaterials {
 
 /// Spans are per own fluid particle in the backend's memory.
 struct StiffnessTerms {
-  static constexpr double latticeViscosity = 2.5;  // l^2/mu times the mean diagonal of V in a lattice: 2.2 to 2.6
-
   StiffMaterials materials;
   RheologyTable table;  // where particles have viscosities of their own; without what is implicit
   StiffnessLimits limits;
@@ -49,11 +41,7 @@ struct StiffnessTerms {
   TREACLE_HD void add(std::size_t i, double* count) const {
     const int m = material[i];
     const double mu = rate.empty() ? materials.viscosity[m] : table.viscosity(i, m, rate[i]);
-    const double resistance = materials.density[m] * spacing * spacing / timeStep + latticeViscosity * mu;
-    const double pushed = pressure[i] * timeStep, way = pushed / resistance;
-    // From half of the limit on, so that a pressure that grows does not switch it.
-    const double share = 2 * way / limits.most - 1;
-    viscosity[i] = share > 0 && mu > 0 ? (share < 1 ? share : 1) * pushed / (latticeViscosity * limits.kept) : 0;
+    viscosity[i] = limits.viscosity({materials.density[m], mu, spacing, timeStep}, pressure[i]);
     if (viscosity[i] > 0) *count += 1;
   }
 };

@@ -42,4 +42,11 @@ struct FluidNumbers {
 /// Of the materials that some fluid body or inflow is made of.
 std::vector<FluidNumbers> fluidNumbers(const Case& c);
 
+/// The additional viscosity that a material has under the pressure p [Pa] in steps of the case's length [Pa s]
+/// (StiffnessLimits); 0 in the published scheme.
+double additionalViscosity(const Case& c, const Material& m, double p);
+
+/// The pressure that each fluid body of a material bears at least by the weight of heavier fluids [Pa].
+double pressureOfHeavier(const Case& c, const Material& m);
+
 }  // namespace treacle
