@@ -41,10 +41,15 @@ Particles<D> partOf(const Case& c) {
 }
 
 /// Of two sums or coordinates that may be zero; `scale`: what they are made of.
-inline void expectNear(double a, double b, double scale, const char* what, std::int64_t step) {
+inline void expectNear(double a, double b, double scale, const char* what, std::int64_t step,
+                       double rounding = 1e-9) {
   if (a == b) return;  // infinities, too
-  EXPECT_NEAR(a, b, 1e-9 * scale) << what << " in step " << step;
+  EXPECT_NEAR(a, b, rounding * scale) << what << " in step " << step;
 }
+
+/// Of sums in another order, after some steps. ISPH rounds gradients to single precision, and damps by the root of
+/// pressures that may be nothing but rounding.
+inline double roundingOf(const Case& c) { return c.method.kind == MethodKind::Isph ? 1e-7 : 1e-9; }
 
 inline void expectSame(const Case& c, const StepReport& a, const StepReport& b, bool alone) {
   if (alone) {
@@ -58,12 +63,15 @@ inline void expectSame(const Case& c, const StepReport& a, const StepReport& b, 
   const Diagnostics &p = a.diagnostics, &q = b.diagnostics;
   double extent = 0;
   for (int k = 0; k < c.dimensions; ++k) extent = std::max(extent, c.domain.max[k] - c.domain.min[k]);
-  expectNear(p.kineticEnergy, q.kineticEnergy, q.kineticEnergy, "kinetic energy", b.step);
-  expectNear(p.potentialEnergy, q.potentialEnergy, std::abs(q.potentialEnergy), "potential energy", b.step);
-  expectNear(p.elasticEnergy, q.elasticEnergy, q.elasticEnergy + q.kineticEnergy, "elastic energy", b.step);
-  expectNear(p.frontX, q.frontX, extent, "front", b.step);
-  expectNear(p.top, q.top, extent, "top", b.step);
-  expectNear(p.maxSpeed, q.maxSpeed, q.maxSpeed, "speed", b.step);
+  const double rounding = roundingOf(c);
+  expectNear(p.kineticEnergy, q.kineticEnergy, q.kineticEnergy, "kinetic energy", b.step, rounding);
+  expectNear(p.potentialEnergy, q.potentialEnergy, std::abs(q.potentialEnergy), "potential energy", b.step,
+             rounding);
+  expectNear(p.elasticEnergy, q.elasticEnergy, q.elasticEnergy + q.kineticEnergy, "elastic energy", b.step,
+             rounding);
+  expectNear(p.frontX, q.frontX, extent, "front", b.step, rounding);
+  expectNear(p.top, q.top, extent, "top", b.step, rounding);
+  expectNear(p.maxSpeed, q.maxSpeed, q.maxSpeed, "speed", b.step, rounding);
   EXPECT_EQ(p.insideWalls, q.insideWalls);
   EXPECT_EQ(p.interiorParticles, q.interiorParticles);
   expectNear(p.meanDensityRatio, q.meanDensityRatio, 1, "density", b.step);
@@ -115,7 +123,7 @@ void expectSameFields(const Case& c, const Particles<D>& a, const Particles<D>& 
     ASSERT_EQ(i < a.fluidCount, j < b.fluidCount);
     EXPECT_EQ(a.material[i], b.material[j]);
     EXPECT_EQ(a.body[i], b.body[j]);
-    ASSERT_LT(norm(a.position[i] - b.position[j]), 2e-8 * c.spacing) << id;
+    ASSERT_LT(norm(a.position[i] - b.position[j]), 20 * roundingOf(c) * c.spacing) << id;
     ASSERT_LT(norm(a.velocity[i] - b.velocity[j]), 1e-6 * speed) << id;
     // Wall particles without fluid in reach have a density and a pressure only where one beside them in the sort
     // has fluid.

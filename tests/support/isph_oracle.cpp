@@ -154,9 +154,45 @@ double IsphOracle<D>::divergence(const std::vector<Vec<D>>& v, std::uint32_t i) 
 }
 
 template <int D>
-double IsphOracle<D>::source(const std::vector<Vec<D>>& v, std::uint32_t i) const {
+Matrix IsphOracle<D>::velocityGradient(const std::vector<Vec<D>>& v, std::uint32_t i) const {
+  Matrix sum = Matrix::Zero(D, D);
+  forEachOther(i, [&](std::uint32_t j) {
+    if (isWall(j)) return;
+    const Vec<D> g = renormalised(i, gradient(i, j));
+    for (int a = 0; a < D; ++a)
+      for (int b = 0; b < D; ++b) sum(a, b) += (v[j][a] - v[i][a]) * g[b];
+  });
+  return sum;
+}
+
+template <int D>
+Vec<D> IsphOracle<D>::damped(const std::vector<Vec<D>>& v, const std::vector<double>& p, std::uint32_t i) const {
+  const Matrix own = velocityGradient(v, i);
+  const auto speed = [&](std::uint32_t k) { return std::sqrt(std::abs(p[k]) / material(k).density); };
+  Vec<D> sum{};
+  forEachOther(i, [&](std::uint32_t j) {
+    if (isWall(j)) return;
+    const Vec<D> e = (1 / norm(apart(i, j))) * apart(i, j);
+    const Matrix both = own + velocityGradient(v, j);
+    double jump = dot(v[j] - v[i], e);
+    for (int a = 0; a < D; ++a)
+      for (int b = 0; b < D; ++b) jump += 0.5 * both(a, b) * e[a] * apart(i, j)[b];
+    const double light = 2 * material(j).density / (material(i).density + material(j).density);
+    const double part = std::min(0.5, 0.5 * (speed(i) + speed(j)) * dt / l);
+    sum += (-2 * laplacian(i, j) / latticeLaplacian() * light * part * jump) * e;
+  });
+  return v[i] + sum;
+}
+
+template <int D>
+double IsphOracle<D>::flowSource(const std::vector<Vec<D>>& v, std::uint32_t i) const {
+  return (missing(i) - 1) * divergence(v, i) / dt;
+}
+
+template <int D>
+double IsphOracle<D>::densitySource(std::uint32_t i) const {
   const double share = missing(i), lack = share > 0 ? std::min(0.0, 1 - density(i)) : 1 - density(i);
-  return (1 - share) * (-divergence(v, i) / dt - s.c.method.isph.alpha * lack / (dt * dt));
+  return (share - 1) * s.c.method.isph.alpha * lack / (dt * dt);
 }
 
 template <int D>

@@ -63,8 +63,14 @@ struct IsphOracle {
   Vec<D> predicted(const std::vector<Vec<D>>& v, std::uint32_t i) const;
   /// eq. (4), of a velocity.
   double divergence(const std::vector<Vec<D>>& v, std::uint32_t i) const;
-  /// eq. (10) with both signs turned, by rho.
-  double source(const std::vector<Vec<D>>& v, std::uint32_t i) const;
+  /// The velocity gradient of fluid alone.
+  Matrix velocityGradient(const std::vector<Vec<D>>& v, std::uint32_t i) const;
+  /// A velocity without a part of what pairs have that their gradients do not, along the pair: sqrt(p / rho)
+  /// dt / l, at most half; `p`: last pressures of fluid.
+  Vec<D> damped(const std::vector<Vec<D>>& v, const std::vector<double>& p, std::uint32_t i) const;
+  /// eq. (10) with both signs turned, by rho: the term of the divergence and that of the density.
+  double flowSource(const std::vector<Vec<D>>& v, std::uint32_t i) const;
+  double densitySource(std::uint32_t i) const;
 
   /// p of fluid particle i carried on to wall j hydrostatically, in the frame of the wall; accelerations of walls
   /// by particle.

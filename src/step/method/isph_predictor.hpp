@@ -14,7 +14,8 @@
 
 namespace treacle {
 
-/// The velocities v* of a step of ISPH without pressure [O23 eq. (7)], by an explicit or an implicit viscous step.
+/// The velocities v* of a step of ISPH without pressure [O23 eq. (7)], by an explicit or an implicit viscous step;
+/// in the accurate scheme without hourglass modes.
 template <int D, class Backend>
 class IsphPredictor {
  public:
@@ -28,13 +29,18 @@ class IsphPredictor {
   /// In phases of its own, with densities beside. `scratch`: a number per own fluid particle. Errors: RunError.
   StagedReport predict(const CellRanges<Backend>& ranges, const DensityTerm<D>& density,
                        std::span<double> scratch) {
-    if (isImplicit()) return solveViscosity(ranges, density, scratch);
-    state_.phases.run(state_.context, phases::coefficients, [&] {
-      takeWalls();
-      if (isViscous()) fillGhosts(state_.context, Held::Fluid, state_.particles.velocity.data());
-      sumOnFluid(state_.context, pairs_, BothTerms<DensityTerm<D>, PredictorTerm<D>>{density, term()});
-    });
-    return {};
+    StagedReport report;
+    if (isImplicit()) {
+      report = solveViscosity(ranges, density, scratch);
+    } else {
+      state_.phases.run(state_.context, phases::coefficients, [&] {
+        takeWalls();
+        if (isViscous()) fillGhosts(state_.context, Held::Fluid, state_.particles.velocity.data());
+        sumOnFluid(state_.context, pairs_, BothTerms<DensityTerm<D>, PredictorTerm<D>>{density, term()});
+      });
+    }
+    state_.phases.run(state_.context, phases::coefficients, [&] { dampHourglass(); });
+    return report;
   }
 
   /// Once more in the same step, with the velocities that walls have now, and the forces.
@@ -48,11 +54,12 @@ class IsphPredictor {
     } else {
       sumOnFluid(state_.context, pairs_, term());
     }
+    dampHourglass();
     return total;
   }
 
   /// v* of fluid, for ghosts once they are filled; the velocities of active walls.
-  Buffer<Vec<D>, Backend>& velocity() { return velocity_; }
+  Buffer<Vec<D>, Backend>& velocity() { return pairs_.accurate ? damped_ : velocity_; }
   /// The velocities that the viscous forces of the step are of.
   std::span<const Vec<D>> viscousVelocity() const {
     return isImplicit() ? velocity_.span() : std::span<const Vec<D>>(state_.particles.velocity);
@@ -60,7 +67,7 @@ class IsphPredictor {
   bool isViscous() const { return std::isfinite(viscousLimit_); }
 
   std::size_t bytes() const {
-    std::size_t sum = velocity_.bytes() + viscosity_.bytes();
+    std::size_t sum = velocity_.bytes() + flow_.bytes() + damped_.bytes() + viscosity_.bytes();
     for (const auto& component : component_) sum += component.bytes();
     return sum;
   }
@@ -74,9 +81,22 @@ class IsphPredictor {
 
   void takeWalls() {
     const std::uint32_t n = pairs_.fluidCount, active = pairs_.activeCount;
-    velocity_.resize(state_.context, active);
-    copyValues(state_.context, std::span<const Vec<D>>(state_.particles.velocity).subspan(n, active - n),
-               velocity_.data() + n);
+    for (Buffer<Vec<D>, Backend>* v : {&velocity_, &velocity()}) {
+      v->resize(state_.context, active);
+      copyValues(state_.context, std::span<const Vec<D>>(state_.particles.velocity).subspan(n, active - n),
+                 v->data() + n);
+    }
+  }
+
+  /// See isph_hourglass.hpp.
+  void dampHourglass() {
+    if (!pairs_.accurate) return;
+    flow_.resize(state_.context, pairs_.fluidCount);
+    fillGhosts(state_.context, Held::Fluid, velocity_.data());
+    sumOnFluid(state_.context, pairs_,
+               SmoothFlowTerm<D>{velocity_.data(), state_.particles.pressure.data(), flow_.data()});
+    fillGhosts(state_.context, Held::Fluid, flow_.data());
+    sumOnFluid(state_.context, pairs_, HourglassTerm<D>{velocity_.data(), flow_.data(), damped_.data()});
   }
 
   /// v* of (rho/dt - mu lap) v* = rho/dt v + rho g, one component after the other.
@@ -116,9 +136,10 @@ class IsphPredictor {
 
   FlowState<D, Backend>& state_;
   const IsphPairs<D>& pairs_;
-  double viscousLimit_;  // [s]
-  Buffer<Vec<D>, Backend> velocity_;
-  Buffer<double, Backend> component_[D];  // of the viscous step's right-hand side
+  double viscousLimit_;                        // [s]
+  Buffer<Vec<D>, Backend> velocity_, damped_;  // v* with hourglass modes and, in the accurate scheme, without
+  Buffer<SmoothFlow<D>, Backend> flow_;        // of the first, with ghosts
+  Buffer<double, Backend> component_[D];       // of the viscous step's right-hand side
   IsphSolver<D, Backend, ViscousRow<D>> viscosity_;
 };
 

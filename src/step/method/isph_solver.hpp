@@ -186,8 +186,8 @@ class IsphSolver {
 
   /// `x`: first guess and solution; what a row of zeros has there stays as it is. The rest: StagedSolver.
   StagedReport solve(Context<Backend>& context, std::span<const double> b, std::span<double> x,
-                     double* history = nullptr) {
-    return solver_.solve(context, b, x, nullptr, history);
+                     double* history = nullptr, double looser = 1) {
+    return solver_.solve(context, b, x, nullptr, history, looser);
   }
 
   std::size_t bytes() const { return system_.bytes() + solver_.bytes(); }

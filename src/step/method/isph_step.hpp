@@ -1,6 +1,7 @@
 #pragma once
 
 #include "bodies/step_bodies.hpp"
+#include "isph_arrangement.hpp"
 #include "isph_failure.hpp"
 #include "isph_predictor.hpp"
 #include "isph_solver.hpp"
@@ -30,6 +31,7 @@ class IsphStep final : public StepMethod<D, Backend> {
         pressure_(solveStages(solvedCase(state.theCase))),
         pressures_(state) {
     if (state.theCase.hasRigid()) bodies_.emplace(state);
+    if (pairs_.accurate) arrangement_.emplace(state);
   }
 
   void sortParticles() override { sort_.sort(state_.context, pairs_.grid, state_.particles); }
@@ -79,7 +81,11 @@ class IsphStep final : public StepMethod<D, Backend> {
 
   StagedReport solve() override {
     guess(solution());
-    return bodies_ ? solveWithBodies() : solveWithPressures();
+    const StagedReport flow = bodies_ ? solveWithBodies() : solveWithPressures();
+    if (!arrangement_) return flow;
+    StagedReport report = arrangement_->solve(pressure_, pairs_, closed_);
+    report.follow(flow);  // the residual is that of the flow
+    return report;
   }
 
   /// Solves the pressure equation.
@@ -110,16 +116,20 @@ class IsphStep final : public StepMethod<D, Backend> {
 
   std::span<const Vec<D>> transportVelocities() override {
     const double coefficient = state_.theCase.method.isph.shifting;
-    if (coefficient == 0) return state_.velocity.span();
-    transport_.resize(state_.context, pairs_.ownFluid());
+    std::span<const Vec<D>> transport = state_.velocity;
+    if (arrangement_)
+      transport = arrangement_->transport(pairs_, closed_, ownSurface(), solution(), predictor_.velocity().data(),
+                                          state_.velocity);
+    if (coefficient == 0) return transport;
+    shifted_.resize(state_.context, pairs_.ownFluid());
     shiftedVelocity<D>(state_.context, {coefficient, state_.theCase.spacing, state_.timeStep}, deficit_,
-                       ownSurface(), state_.velocity, transport_);
-    return transport_.span();
+                       ownSurface(), transport, shifted_);
+    return shifted_.span();
   }
 
   double longestWay(double speed) const override {
-    const double shift = state_.theCase.method.isph.shifting == 0 ? 0 : longestShift * state_.theCase.spacing;
-    return speed * state_.timeStep + shift;
+    const int shifts = (state_.theCase.method.isph.shifting > 0) + arrangement_.has_value();
+    return speed * state_.timeStep + shifts * longestShift * state_.theCase.spacing;
   }
 
   void accept() override {
@@ -159,8 +169,8 @@ class IsphStep final : public StepMethod<D, Backend> {
     return sort_.bytes() + fluidOfFluid_.bytes() + wallsOfFluid_.bytes() + fluidOfWalls_.bytes() +
            deficit_.bytes() + eddyViscosity_.bytes() + wallViscosity_.bytes() + renormalisation_.bytes() +
            missing_.bytes() + surface_.bytes() + predictor_.bytes() + source_.bytes() + solution_.bytes() +
-           transport_.bytes() + wallShare_.bytes() + forces_.bytes() + pressure_.bytes() +
-           (bodies_ ? bodies_->bytes() : 0) + pressing_.bytes() + wallSurface_.bytes();
+           shifted_.bytes() + (arrangement_ ? arrangement_->bytes() : 0) + wallShare_.bytes() + forces_.bytes() +
+           pressure_.bytes() + (bodies_ ? bodies_->bytes() : 0) + pressing_.bytes() + wallSurface_.bytes();
   }
 
   /// Pairs up to this share of the kernel's radius make the smoother's matrix: 1.9 l with the usual kernel.
@@ -193,11 +203,12 @@ class IsphStep final : public StepMethod<D, Backend> {
 
   void computeSource() {
     Buffer<Vec<D>, Backend>& predicted = predictor_.velocity();
+    const std::uint32_t own = pairs_.ownFluid();
     fillGhosts(state_.context, Held::Fluid, predicted.data());
-    source_.resize(state_.context, pairs_.ownFluid());
+    source_.resize(state_.context, own);
     sumOnFluid(state_.context, pairs_,
                PressureSourceTerm<D>{predicted.data(), state_.particles.numberDensity.data(), surface_.data(),
-                                     source_.data()});
+                                     source_.data(), arrangement_ ? arrangement_->source(own) : nullptr});
     if (closed_) takeLevel(state_.context, Level::Mean, source_);
   }
 
@@ -299,11 +310,12 @@ class IsphStep final : public StepMethod<D, Backend> {
   IsphPredictor<D, Backend> predictor_;
   Buffer<double, Backend> source_;    // of the pressure equation
   Buffer<double, Backend> solution_;  // with ghosts: of the pressure equation; before, a component of v*
-  Buffer<Vec<D>, Backend> transport_;
-  Buffer<double, Backend> wallShare_;  // of the density in a full lattice
-  IsphWallForces<D, Backend> forces_;  // for rigid bodies and probes
-  std::vector<WallLoad> loads_;        // of the last step
-  std::vector<double> patches_;        // pressures of the probes WallPressure [Pa]
+  Buffer<Vec<D>, Backend> shifted_;
+  std::optional<IsphArrangement<D, Backend>> arrangement_;  // of the accurate scheme
+  Buffer<double, Backend> wallShare_;                       // of the density in a full lattice
+  IsphWallForces<D, Backend> forces_;                       // for rigid bodies and probes
+  std::vector<WallLoad> loads_;                             // of the last step
+  std::vector<double> patches_;                             // pressures of the probes WallPressure [Pa]
   IsphSolver<D, Backend, PressureRow<D>> pressure_;
   StepPressures<D, Backend> pressures_;
   std::optional<StepBodies<D, Backend>> bodies_;  // where the case has rigid bodies; then also:

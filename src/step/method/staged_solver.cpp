@@ -31,8 +31,8 @@ void StagedSolver<D, Backend>::preparePreconditioner(Context<Backend>& context) 
 
 template <int D, class Backend>
 StagedReport StagedSolver<D, Backend>::solve(Context<Backend>& context, std::span<const double> b,
-                                             std::span<double> x, SolverModes<D, Backend>* modes,
-                                             double* history) {
+                                             std::span<double> x, SolverModes<D, Backend>* modes, double* history,
+                                             double looser) {
   if (modes && !stages_.front().deflates()) modes->drop();  // of a state that another solver made
   if (!isLastStage()) {
     guess_.resize(context, x.size());
@@ -40,7 +40,7 @@ StagedReport StagedSolver<D, Backend>::solve(Context<Backend>& context, std::spa
   }
   StagedReport total;
   while (true) {
-    const SolveReport report = solveStage(context, b, x, modes, history);
+    const SolveReport report = solveStage(context, b, x, modes, history, looser);
     total.follow(report);
     // No other way helps where the system itself or the guess is not finite.
     const bool hopeless = !std::isfinite(report.startResidual);
@@ -70,13 +70,13 @@ void StagedSolver<D, Backend>::keepBetter(Context<Backend>& context, const Solve
 template <int D, class Backend>
 SolveReport StagedSolver<D, Backend>::solveStage(Context<Backend>& context, std::span<const double> b,
                                                  std::span<double> x, SolverModes<D, Backend>* modes,
-                                                 double* history) {
+                                                 double* history, double looser) {
   const Product a = [&](std::span<const double> from, std::span<double> to) {
     system_.multiply(context, from, to);
   };
   const Product k = [&](std::span<const double> r, std::span<double> z) { system_.precondition(context, r, z); };
   const double refresh = stage().precision == Precision::Mixed ? refreshOfMixed : 0;
-  const StoppingRule rule{stage().tolerance, stage().maxIterations, refresh, history};
+  const StoppingRule rule{looser * stage().tolerance, stage().maxIterations, refresh, history};
   if (stage().krylov == KrylovKind::Cr) return conjugateResidual(context, {a, k, b, x}, rule, krylov_);
   if (!modes || stage_ > 0 || !stage().deflates()) {
     const Product single = [&](std::span<const double> from, std::span<double> to) {

@@ -70,8 +70,9 @@ class StagedSolver {
   /// `x`: first guess and solution. Several solves may follow each other with one system; a stage that failed is
   /// not tried again. `modes`: those that the first stage is deflated by, where it is, and takes anew when they
   /// are due; a failure drops them. Null: no solve is deflated. `history`: StoppingRule's, of the last stage.
+  /// `looser`: times the tolerance of the stage.
   StagedReport solve(Context<Backend>&, std::span<const double> b, std::span<double> x,
-                     SolverModes<D, Backend>* modes = nullptr, double* history = nullptr);
+                     SolverModes<D, Backend>* modes = nullptr, double* history = nullptr, double looser = 1);
 
   std::size_t bytes() const { return guess_.bytes() + krylov_.bytes() + keeper_.bytes(); }
 
@@ -79,7 +80,7 @@ class StagedSolver {
   const SolverSettings& stage() const { return stages_[stage_]; }
   bool isLastStage() const { return stage_ + 1 == stages_.size(); }
   SolveReport solveStage(Context<Backend>&, std::span<const double> b, std::span<double> x,
-                         SolverModes<D, Backend>* modes, double* history);
+                         SolverModes<D, Backend>* modes, double* history, double looser);
   void keepBetter(Context<Backend>&, const SolveReport&, std::span<double> x);
 
   StagedSystem<Backend>& system_;

@@ -3,6 +3,7 @@
 #include "method/mph_solver.hpp"
 #include "treacle/isph/isph_pairs.hpp"
 #include "treacle/isph/isph_sums.hpp"
+#include "treacle/model/case/flow_scales.hpp"
 #include "treacle/mph/mph_pairs.hpp"
 #include "treacle/step/method/solve_stages.hpp"
 #include "treacle/step/walls/near_blocks.hpp"
@@ -74,6 +75,14 @@ double productBytes(const Case& c) { return c.dimensions == 2 ? 4300 : 27800; }
 
 bool isDouble(const Case& c) { return solveStages(c).front().precision != Precision::Mixed; }
 
+/// Whether fluids have an additional viscosity under the pressures that the case is known to have.
+bool mayTakeLongSteps(const Case& c) {
+  const FlowScales flow = flowScales(c);
+  return std::ranges::any_of(c.materials, [&](const Material& m) {
+    return additionalViscosity(c, m, flow.pressureOf(m.density, c.typicalViscosity(m))) > 0;
+  });
+}
+
 template <int D>
 StepBytes mphBytes(const Case& c, BackendKind backend) {
   const SolverSettings& s = c.solver;
@@ -85,6 +94,7 @@ StepBytes mphBytes(const Case& c, BackendKind backend) {
   StepBytes bytes{(projected ? of.projected : buckets ? of.buckets : of.local).on(backend)};
   if (c.hasSurfaceTension()) bytes.fluid += D == 2 ? 200 : 350;
   if (c.hasOwnViscosities()) bytes.fluid += c.hasVolumeFactors() ? 78 : 70;
+  if (mayTakeLongSteps(c)) bytes.fluid += 8 * (D * D + D * (D + 1) / 2 + D) + 25;  // StepStiffness
   if (c.heat) bytes.fluid += c.freezes() ? 228 : 180;
   if (modesOf(c) > 0) bytes.fluid += 128 * D;  // recorded vectors
   if (s.neighbours == NeighbourKind::Ranges) bytes.fluid -= of.ranges.on(backend);
@@ -112,7 +122,9 @@ StepBytes isphBytes(const Case& c, BackendKind backend) {
   if (c.solver.preconditioner == PreconditionerKind::CellMultigrid)
     bytes.fluid += (D == 2 ? 250 : 700) + (onDevice ? productBytes(c) / 4 : 0);
   if (isDouble(c)) bytes.fluid += D == 2 ? 100 : 260;
-  if (c.method.scheme == SchemeKind::Accurate) bytes.fluid += sizeof(SymmetricBlock<D, float>) + sizeof(float);
+  if (c.method.scheme == SchemeKind::Accurate)  // B, missing share, gradient, IsphArrangement
+    bytes.fluid +=
+        sizeof(SymmetricBlock<D, float>) + sizeof(float) + sizeof(SmoothFlow<D>) + 16 + 2 * sizeof(Vec<D>);
   if (c.method.isph.smagorinsky > 0) bytes.fluid += 2 * sizeof(float);
   if (isViscousStepImplicit(c.method.isph.viscosity, explicitViscousLimit(makeIsphPairs<D>(c)), c.time.step))
     bytes.fluid += D == 2 ? 250 : 460;

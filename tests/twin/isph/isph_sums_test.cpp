@@ -79,6 +79,17 @@ struct SumsTwin {
                PressureSourceTerm<D>{vOnDevice.data(), d.density.data(), d.surface.data(), found.data()});
     expectClose(found, expected, "pressure source");
 
+    std::vector<double> density(n);
+    Buffer<double, Cuda> foundDensity(d.context, n);
+    sumOnFluid(
+        s.context, s.pairs,
+        PressureSourceTerm<D>{v.data(), s.density.data(), s.surface.data(), expected.data(), density.data()});
+    sumOnFluid(d.context, d.pairs,
+               PressureSourceTerm<D>{vOnDevice.data(), d.density.data(), d.surface.data(), found.data(),
+                                     foundDensity.data()});
+    expectClose(found, expected, "source of the flow");
+    expectClose(foundDensity, density, "source of the density");
+
     std::vector<Vec<D>> corrected(n);
     Buffer<Vec<D>, Cuda> foundVelocity(d.context, n);
     std::vector<double> share(n);
@@ -111,6 +122,29 @@ struct SumsTwin {
     expectClose(foundForce, force, "force on walls");
   }
 
+  void checkHourglass() {
+    std::vector<SmoothFlow<D>> flow(n);
+    Buffer<SmoothFlow<D>, Cuda> foundFlow(d.context, n);
+    sumOnFluid(s.context, s.pairs, SmoothFlowTerm<D>{v.data(), p.data(), flow.data()});
+    sumOnFluid(d.context, d.pairs, SmoothFlowTerm<D>{vOnDevice.data(), pOnDevice.data(), foundFlow.data()});
+    const Buffer<SmoothFlow<D>> there = copyToHost(d.context, foundFlow);
+    float largest = 0;
+    for (const SmoothFlow<D>& f : flow)
+      for (int r = 0; r < D; ++r)
+        for (int c = 0; c < D; ++c) largest = std::max(largest, std::abs(f.gradient(r, c)));
+    for (std::uint32_t i = 0; i < n; ++i) {
+      for (int r = 0; r < D; ++r)
+        for (int c = 0; c < D; ++c) ASSERT_NEAR(there[i].gradient(r, c), flow[i].gradient(r, c), 1e-6 * largest);
+      ASSERT_NEAR(there[i].speed, flow[i].speed, 1e-6 * flow[i].speed);
+    }
+    copyToDevice<SmoothFlow<D>>(d.context, flow, foundFlow);
+    std::vector<Vec<D>> damped(n);
+    Buffer<Vec<D>, Cuda> foundDamped(d.context, n);
+    sumOnFluid(s.context, s.pairs, HourglassTerm<D>{v.data(), flow.data(), damped.data()});
+    sumOnFluid(d.context, d.pairs, HourglassTerm<D>{vOnDevice.data(), foundFlow.data(), foundDamped.data()});
+    expectClose(foundDamped, damped, "damped hourglass modes");
+  }
+
   /// The viscosities of the turbulence model, and the predictor by them.
   void checkEddies() {
     s.pairs.mixingLength = d.pairs.mixingLength = 0.2 * s.c.spacing;
@@ -137,6 +171,7 @@ struct SumsTwin {
     checkDensity();
     checkPredictor();
     checkPressure();
+    checkHourglass();
     checkEddies();
   }
 };
@@ -203,6 +238,9 @@ void checkParticles() {
     shiftedVelocity<D>(host, shifting, deficit, surface, v, expected);
     shiftedVelocity<D>(context, shifting, copyToDevice<Vec<D>>(context, deficit), surfaceOnDevice, vOnDevice,
                        found);
+    EXPECT_LE(differ<Vec<D>>(context, found, expected), kernelTolerance);
+    limitTransport<D>(host, 0.01, 1e-2, v, expected);
+    limitTransport<D>(context, 0.01, 1e-2, vOnDevice, found);
     EXPECT_LE(differ<Vec<D>>(context, found, expected), kernelTolerance);
     for (int k = 0; k < D; ++k) {
       std::vector<double> x(n);

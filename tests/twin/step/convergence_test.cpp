@@ -50,7 +50,11 @@ void compareAll(const Case& c, const std::vector<SolverSettings>& solvers, const
       // elements of C on the CPU. In double precision the inverses of nearly singular coarse operators, by sweeps
       // in another order on either side, differ by 3e-5.
       expectSameCurve(found[k], expected[k], solvers[k].precision == Precision::Mixed ? 5e-2 : 1e-4);
-    EXPECT_EQ(cuda.advance().iterations, found.back().report.iterations) << "the case's own solver";
+    const int iterations = cuda.advance().iterations;
+    if (c.method.kind == MethodKind::MphI)
+      EXPECT_EQ(iterations, found.back().report.iterations) << "the case's own solver";
+    else
+      EXPECT_GT(iterations, found.back().report.iterations) << "there is another solve";
     cpu.advance();
   }
 }

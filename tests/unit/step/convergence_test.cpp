@@ -47,10 +47,11 @@ struct Seconds {
   }
 };
 
-/// The case's own solver does what it does in the next step, and the others leave no trace in it.
+/// The case's own solver does what it does in the next step, which may have other solves as well, and the others
+/// leave no trace in it.
 template <int D>
 void checkTrials(Simulation<D>& compared, Simulation<D>& plain, const std::vector<SolverSettings>& solvers,
-                 int steps) {
+                 int steps, bool otherSolves = false) {
   Seconds seconds;
   for (int step = 0; step < steps; ++step) {
     const std::vector<SolverTrial> trials = seconds.convergence(compared, solvers);
@@ -66,7 +67,10 @@ void checkTrials(Simulation<D>& compared, Simulation<D>& plain, const std::vecto
         EXPECT_NEAR(trials[k].report.startResidual, start, 1e-12 * start);
       }
     }
-    EXPECT_EQ(trials.back().report.iterations, expected.iterations) << "step " << step;
+    if (otherSolves)
+      EXPECT_LT(trials.back().report.iterations, expected.iterations) << "step " << step;
+    else
+      EXPECT_EQ(trials.back().report.iterations, expected.iterations) << "step " << step;
     EXPECT_EQ(trials.back().report.residual, expected.residual);
     EXPECT_EQ(report.residual, expected.residual);
     expectSameBits(stateOf(compared), stateOf(plain));
@@ -112,7 +116,7 @@ void checkIsph() {
     solvers.back().preconditioner = kind;
   }
   Simulation<D> compared(c, created<D>(c)), plain(c, created<D>(c));
-  checkTrials(compared, plain, solvers, 4);
+  checkTrials(compared, plain, solvers, 4, true);
 }
 
 /// |r| / |b| of the conjugate residual method on dense matrices, without a preconditioner.

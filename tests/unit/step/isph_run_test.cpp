@@ -35,6 +35,7 @@ TEST(IsphRun, TimeStepFollowsTheCourantNumberAndMeetsTheEnd) {
 
 TEST(IsphRun, ShiftingLeavesTheSurfaceWhereItsVelocityTakesIt) {
   Case c = tankCase(2, 12, 10);
+  c.method.scheme = SchemeKind::Published;  // nothing else moves particles off their ways
   c.method.isph.shifting = 0.5;
   Particles<2> start = created<2>(c);
   for (std::uint32_t i = 0; i < start.fluidCount; ++i)
@@ -90,10 +91,10 @@ TEST(IsphRun, RunsWithUnlikeRoundingStayTogether) {
     for (std::size_t i = 0; i < x.size(); ++i) most = std::max(most, norm(x[i] - reference[i]));
     return most / c.spacing;
   };
-  // Measured: 1.3e-13, 3.6e-13, 5.9e-9.
-  EXPECT_LE(apart(after(Jacobi, Precision::Double)), 1e-11);
-  EXPECT_LE(apart(after(CellMultigrid, Precision::Double)), 1e-11);
-  EXPECT_LE(apart(after(HatMultigrid, Precision::Mixed)), 5e-8);
+  // Measured: 1.5e-11, 4.8e-11, 5.5e-8.
+  EXPECT_LE(apart(after(Jacobi, Precision::Double)), 2e-10);
+  EXPECT_LE(apart(after(CellMultigrid, Precision::Double)), 2e-10);
+  EXPECT_LE(apart(after(HatMultigrid, Precision::Mixed)), 2e-7);
 }
 
 TEST(IsphRun, ResultsDoNotDependOnTheNumberOfThreads) {

@@ -6,7 +6,7 @@ study = Study(
     title="ISPH: elliptic drop, stretched along the diagonals",
     levels=[Level(1), Level(2), Level(4)],
     bars={"long axis, t = 0.5 s": 0.002, "short axis, t = 0.5 s": 0.0025, "long axis, t = 1 s": 0.003, "short axis, t = 1 s": 0.01,
-          "velocity, t = 1 s": 0.03, "pressure, t = 0.5 s": 0.045},
+          "velocity, t = 1 s": 0.03, "pressure, t = 0.5 s": 0.035},
     measure=measure,
     x_label="t [s]",
     y_label="semi-axis [m]",

@@ -10,6 +10,11 @@ namespace treacle {
 // particle; there are no atomics but those of the reductions.
 
 template <class Backend>
+void addPressure(Context<Backend>& context, std::span<const double> more, std::span<double> p) {
+  forEach(context, p.size(), [=] TREACLE_HD(std::size_t i) { p[i] += more[i]; });
+}
+
+template <class Backend>
 void settlePressure(Context<Backend>& context, std::span<const std::uint8_t> surface, bool cut,
                     std::span<double> p) {
   forEach(context, p.size(),
@@ -38,6 +43,15 @@ void shiftedVelocity(Context<Backend>& context, const Shifting& shifting, std::s
 }
 
 template <int D, class Backend>
+void limitTransport(Context<Backend>& context, double spacing, double timeStep, std::span<const Vec<D>> velocity,
+                    std::span<Vec<D>> transport) {
+  forEach(context, transport.size(), [=] TREACLE_HD(std::size_t i) {
+    const Vec<D> way = timeStep * (transport[i] - velocity[i]);
+    transport[i] = velocity[i] + (1 / timeStep) * limitedShift(way, spacing);
+  });
+}
+
+template <int D, class Backend>
 void takeComponent(Context<Backend>& context, std::span<const Vec<D>> v, int k, std::span<double> x) {
   forEach(context, x.size(), [=] TREACLE_HD(std::size_t i) { x[i] = v[i][k]; });
 }
@@ -48,13 +62,15 @@ void putComponent(Context<Backend>& context, std::span<const double> x, int k, s
 }
 
 #define TREACLE_EACH_NUMBER(Backend)                                                                       \
+  template void addPressure(Context<Backend>&, std::span<const double>, std::span<double>);                \
   template void settlePressure(Context<Backend>&, std::span<const std::uint8_t>, bool, std::span<double>); \
   template bool isClosed(Context<Backend>&, std::span<const std::uint8_t>);                                \
   template void takeLevel(Context<Backend>&, Level, std::span<double>);
-#define TREACLE_EACH_VECTOR(D, Backend)                                                                     \
-  template void shiftedVelocity(Context<Backend>&, const Shifting&, std::span<const Vec<D>>,                \
-                                std::span<const std::uint8_t>, std::span<const Vec<D>>, std::span<Vec<D>>); \
-  template void takeComponent(Context<Backend>&, std::span<const Vec<D>>, int, std::span<double>);          \
+#define TREACLE_EACH_VECTOR(D, Backend)                                                                        \
+  template void shiftedVelocity(Context<Backend>&, const Shifting&, std::span<const Vec<D>>,                   \
+                                std::span<const std::uint8_t>, std::span<const Vec<D>>, std::span<Vec<D>>);    \
+  template void limitTransport(Context<Backend>&, double, double, std::span<const Vec<D>>, std::span<Vec<D>>); \
+  template void takeComponent(Context<Backend>&, std::span<const Vec<D>>, int, std::span<double>);             \
   template void putComponent(Context<Backend>&, std::span<const double>, int, std::span<Vec<D>>);
 
 }  // namespace treacle

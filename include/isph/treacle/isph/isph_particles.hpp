@@ -12,6 +12,10 @@ namespace treacle {
 /// What an ISPH step does fluid particle by fluid particle, without neighbours; spans of own fluid in the
 /// backend's memory.
 
+/// p += more
+template <class Backend>
+void addPressure(Context<Backend>&, std::span<const double> more, std::span<double> p);
+
 /// p = 0 for free particles and, where `cut`, where it is negative. `surface` holds a Place each.
 template <class Backend>
 void settlePressure(Context<Backend>&, std::span<const std::uint8_t> surface, bool cut, std::span<double> p);
@@ -33,6 +37,11 @@ template <int D, class Backend>
 void shiftedVelocity(Context<Backend>&, const Shifting& shifting, std::span<const Vec<D>> deficit,
                      std::span<const std::uint8_t> surface, std::span<const Vec<D>> velocity,
                      std::span<Vec<D>> transport);
+
+/// transport: cut to velocities that lead at most longestShift away from where `velocity` does. `timeStep` in s.
+template <int D, class Backend>
+void limitTransport(Context<Backend>&, double spacing, double timeStep, std::span<const Vec<D>> velocity,
+                    std::span<Vec<D>> transport);
 
 /// component k of v as a vector of numbers, and back.
 template <int D, class Backend>

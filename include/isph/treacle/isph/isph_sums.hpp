@@ -1,5 +1,6 @@
 #pragma once
 
+#include "treacle/isph/isph_hourglass.hpp"
 #include "treacle/isph/isph_matrix.hpp"
 #include "treacle/isph/isph_terms.hpp"
 #include "treacle/isph/isph_turbulence.hpp"
@@ -127,6 +128,8 @@ struct IsphMatrixRow {
   template void sumOnFluid(Context<Backend>&, const IsphPairs<D>&,                                \
                            const BothTerms<DensityTerm<D>, PredictorTerm<D>>&);                   \
   template void sumOnFluid(Context<Backend>&, const IsphPairs<D>&, const EddyTerm<D>&);           \
+  template void sumOnFluid(Context<Backend>&, const IsphPairs<D>&, const SmoothFlowTerm<D>&);     \
+  template void sumOnFluid(Context<Backend>&, const IsphPairs<D>&, const HourglassTerm<D>&);      \
   template void sumOnFluid(Context<Backend>&, const IsphPairs<D>&, const ViscousSourceTerm<D>&);  \
   template void sumOnFluid(Context<Backend>&, const IsphPairs<D>&, const WallFrictionTerm<D>&);   \
   template void sumOnFluid(Context<Backend>&, const IsphPairs<D>&, const PressureSourceTerm<D>&); \

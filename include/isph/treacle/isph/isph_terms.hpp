@@ -162,7 +162,7 @@ struct WallFrictionTerm {
 /// with the wall's velocity itself half of the flow into it would be missed. Walls count in it as in the
 /// Laplacian, so that water at rest has the hydrostatic pressure. In the accurate scheme particles at the free
 /// surface lack neighbours, not volume: a density below 1 does not count, and the less the more neighbours are
-/// missing.
+/// missing. The term with alpha has an equation of its own there, by which particles move (IsphArrangement).
 template <int D>
 struct PressureSourceTerm {
   static constexpr int values = 1;
@@ -170,6 +170,7 @@ struct PressureSourceTerm {
   const double* density;    // <rho> / rho
   const std::uint8_t* surface;
   double* source;
+  double* arrangement = nullptr;  // where it is not null, it takes the term with alpha
 
   TREACLE_HD void fluid(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d,
                         const Distance& r, double* sum) const {
@@ -182,8 +183,10 @@ struct PressureSourceTerm {
   TREACLE_HD void store(const IsphPairs<D>& pairs, std::uint32_t i, const double* sum) const {
     const double missing = pairs.missingShare(i);
     const double excess = missing > 0 ? std::fmax(0.0, density[i] - 1) : density[i] - 1;
+    const bool isFree = surface[i] == Place::Free;  // its sum may not be finite
     const double compression = pairs.alpha * excess / (pairs.timeStep * pairs.timeStep);
-    source[i] = surface[i] == Place::Free ? 0 : (1 - missing) * (compression - sum[0] / pairs.timeStep);
+    source[i] = isFree ? 0 : (1 - missing) * ((arrangement ? 0 : compression) - sum[0] / pairs.timeStep);
+    if (arrangement) arrangement[i] = isFree ? 0 : (1 - missing) * compression;
   }
 };
 

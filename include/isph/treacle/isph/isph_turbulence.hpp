@@ -1,6 +1,6 @@
 #pragma once
 
-#include "treacle/isph/isph_pairs.hpp"
+#include "treacle/isph/isph_hourglass.hpp"
 
 #include <cmath>
 #include <cstdint>
@@ -36,10 +36,7 @@ struct EddyTerm {
 
   TREACLE_HD void fluid(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d,
                         const Distance& r, double* sum) const {
-    const Vec<D> b = pairs.renormalised(i, d), v = velocity[j] - velocity[i];
-    const double slope = pairs.slope(r);
-    for (int k = 0; k < D; ++k)
-      for (int m = 0; m < D; ++m) sum[Gradient + k * D + m] += slope * v[k] * b[m];
+    addGradient(pairs, velocity, i, j, d, r, sum + Gradient);
   }
   TREACLE_HD void wall(const IsphPairs<D>& pairs, std::uint32_t, std::uint32_t j, const Vec<D>& d,
                        const Distance& r, double* sum) const {

@@ -13,17 +13,23 @@ struct Shifting {
   double timeStep;     // [s]
 };
 
-/// No particle is shifted farther in a step [spacings].
+/// No particle moves farther from where its velocity takes it in a step [spacings].
 inline constexpr double longestShift = 0.1;
+
+/// A displacement [m], cut to longestShift.
+template <int D>
+TREACLE_HD Vec<D> limitedShift(Vec<D> displacement, double spacing) {
+  const double length = norm(displacement), most = longestShift * spacing;
+  if (length > most) displacement *= most / length;
+  return displacement;
+}
 
 /// What a particle moves with: velocity + displacement / dt. `crowding`: sum V grad W, or C 1 of MPH-I, which
 /// points to where neighbours crowd [1/m].
 template <int D>
 TREACLE_HD Vec<D> shiftedVelocity(const Shifting& s, const Vec<D>& crowding, const Vec<D>& velocity) {
-  Vec<D> displacement = (-s.coefficient * s.spacing * s.spacing) * crowding;
-  const double length = norm(displacement), most = longestShift * s.spacing;
-  if (length > most) displacement *= most / length;
-  return velocity + (1 / s.timeStep) * displacement;
+  const Vec<D> displacement = (-s.coefficient * s.spacing * s.spacing) * crowding;
+  return velocity + (1 / s.timeStep) * limitedShift(displacement, s.spacing);
 }
 
 }  // namespace treacle
