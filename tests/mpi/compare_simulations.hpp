@@ -130,7 +130,7 @@ void expectSameFields(const Case& c, const Particles<D>& a, const Particles<D>& 
     const bool wall = i >= a.fluidCount, unknown = a.numberDensity[i] == 0 || b.numberDensity[j] == 0;
     if (!wall || !unknown) {
       ASSERT_NEAR(a.pressure[i], b.pressure[j], 1e-4 * stress) << id;  // the bulk viscosity amplifies what is left
-      ASSERT_NEAR(a.numberDensity[i], b.numberDensity[j], 1e-8 * b.numberDensity[j]) << id;
+      ASSERT_NEAR(a.numberDensity[i], b.numberDensity[j], 10 * roundingOf(c) * b.numberDensity[j]) << id;
     }
     if (wall) continue;
     ASSERT_LT(norm(a.acceleration[i] - b.acceleration[j]) * c.time.step, 1e-6 * speed) << id;

@@ -29,7 +29,7 @@ study = Study(
     name="isph-poiseuille",
     title="ISPH: start-up of plane Poiseuille flow",
     levels=[Level(1), Level(2), Level(4)],
-    bars={"t = 0.02 s": 0.0035, "t = 0.05 s": 0.0075, "t = 0.4 s": 0.003, "flow rate": 0.003},
+    bars={"t = 0.02 s": 0.0035, "t = 0.05 s": 0.0075, "t = 0.4 s": 0.004, "flow rate": 0.006},
     measure=measure,
     x_label="y [m]",
     y_label="u / U",
