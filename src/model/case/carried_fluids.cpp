@@ -54,11 +54,20 @@ double weightOn(const Case& c, const Body& below, bool heavier) {
 }
 
 double pressureOfHeavier(const Case& c, const Material& m) {
+  if (norm(c.gravity) == 0) return 0;
   double least = std::numeric_limits<double>::infinity();
   for (const Body& body : c.bodies)
     if (body.kind == BodyKind::Fluid && &materialOf(c, body) == &m)
       least = std::min(least, weightOn(c, body, true));
   return std::isinf(least) ? 0 : least;
+}
+
+double pressureOfWeight(const Case& c, const Material& m) {
+  if (norm(c.gravity) == 0) return 0;
+  double most = 0;
+  for (const Body& body : c.bodies)
+    if (body.kind == BodyKind::Fluid && &materialOf(c, body) == &m) most = std::max(most, pressureIn(c, body));
+  return most;
 }
 
 double additionalViscosity(const Case& c, const Material& m, double p) {

@@ -75,12 +75,10 @@ double productBytes(const Case& c) { return c.dimensions == 2 ? 4300 : 27800; }
 
 bool isDouble(const Case& c) { return solveStages(c).front().precision != Precision::Mixed; }
 
-/// Whether fluids have an additional viscosity under the pressures that the case is known to have.
+/// Whether fluids have an additional viscosity under their weight.
 bool mayTakeLongSteps(const Case& c) {
-  const FlowScales flow = flowScales(c);
-  return std::ranges::any_of(c.materials, [&](const Material& m) {
-    return additionalViscosity(c, m, flow.pressureOf(m.density, c.typicalViscosity(m))) > 0;
-  });
+  return std::ranges::any_of(
+      c.materials, [&](const Material& m) { return additionalViscosity(c, m, pressureOfWeight(c, m)) > 0; });
 }
 
 template <int D>

@@ -46,7 +46,10 @@ std::vector<FluidNumbers> fluidNumbers(const Case& c);
 /// (StiffnessLimits); 0 in the published scheme.
 double additionalViscosity(const Case& c, const Material& m, double p);
 
-/// The pressure that each fluid body of a material bears at least by the weight of heavier fluids [Pa].
+/// The pressure that each fluid body of a material bears at least by the weight of heavier fluids [Pa], and the
+/// largest one that its bodies have by their own weight and that of the fluids on them. Bodies whose files are not
+/// there count as if they had no weight.
 double pressureOfHeavier(const Case& c, const Material& m);
+double pressureOfWeight(const Case& c, const Material& m);
 
 }  // namespace treacle
