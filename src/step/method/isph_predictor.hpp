@@ -81,11 +81,13 @@ class IsphPredictor {
 
   void takeWalls() {
     const std::uint32_t n = pairs_.fluidCount, active = pairs_.activeCount;
-    for (Buffer<Vec<D>, Backend>* v : {&velocity_, &velocity()}) {
-      v->resize(state_.context, active);
+    const auto take = [&](Buffer<Vec<D>, Backend>& v) {
+      v.resize(state_.context, active);
       copyValues(state_.context, std::span<const Vec<D>>(state_.particles.velocity).subspan(n, active - n),
-                 v->data() + n);
-    }
+                 v.data() + n);
+    };
+    take(velocity_);
+    if (pairs_.accurate) take(damped_);
   }
 
   /// See isph_hourglass.hpp.

@@ -27,15 +27,16 @@ TREACLE_HD inline void addGradient(const IsphPairs<D>& pairs, const Vec<D>* velo
 /// What HourglassTerm needs of each particle.
 template <int D>
 struct SmoothFlow {
-  Block<D, float> gradient;  // L of the velocity in fluid alone, exact for linear velocities [1/s]
+  Block<D, float> gradient;  // L, without the velocities of walls; exact for linear ones away from walls [1/s]
   float speed;               // c, by the last pressure [m/s]
 };
 
+/// Finds it, for v* of fluid.
 template <int D>
 struct SmoothFlowTerm {
   static constexpr int values = D * D;
-  const Vec<D>* velocity;
-  const double* pressure;  // [Pa]
+  const Vec<D>* velocity;  // [m/s]
+  const double* pressure;  // of the last step [Pa]
   SmoothFlow<D>* flow;
 
   TREACLE_HD void fluid(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d,
@@ -51,11 +52,11 @@ struct SmoothFlowTerm {
   }
 };
 
-/// v_i + sum w gamma (e.(v_j - v_i - (L_i + L_j) d / 2)) e with e = d / |d|, the weights w = slope 2 rho_j /
-/// (rho_i
-/// + rho_j) over the sum of the slopes in a full lattice, and gamma = (c_i + c_j)/2 dt/l, at most `most`. It
-/// keeps momentum, and linear velocities as they are. A quarter of gamma is too little to end the swinging of a
-/// column of 60 rows, half of it does (docs/notes/isph.md).
+/// v_i + sum w gamma (e.(v_j - v_i - (L_i + L_j) d / 2)) e [m/s] with e = d / |d|, the weights
+/// w = slope 2 rho_j / (rho_i + rho_j) over the sum of the slopes in a full lattice, and gamma =
+/// (c_i + c_j)/2 dt/l, at most `most`. It keeps momentum and, away from walls, linear velocities as they are. A
+/// quarter of gamma is too little to end the swinging of a column of 60 rows, half of it does
+/// (docs/notes/isph.md).
 template <int D>
 struct HourglassTerm {
   static constexpr int values = D;

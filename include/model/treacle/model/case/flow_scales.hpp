@@ -42,6 +42,8 @@ struct FluidNumbers {
 /// Of the materials that some fluid body or inflow is made of.
 std::vector<FluidNumbers> fluidNumbers(const Case& c);
 
+// What follows stands in carried_fluids.cpp.
+
 /// The additional viscosity that a material has under the pressure p [Pa] in steps of the case's length [Pa s]
 /// (StiffnessLimits); 0 in the published scheme.
 double additionalViscosity(const Case& c, const Material& m, double p);
