@@ -45,6 +45,7 @@ TREACLE_HD inline SymmetricBlock<2> flooredInverse(const SymmetricBlock<2>& matr
   return {{middle + part * half, part * off, middle - part * half}};
 }
 TREACLE_HD inline SymmetricBlock<3> flooredInverse(const SymmetricBlock<3>& matrix, double floor, bool atMostOne) {
+  if (!atMostOne && isAbove(matrix, floor)) return inverse(matrix);
   // Jacobi's method doubles the valid digits with every sweep; after five, nothing is left to do.
   constexpr int sweeps = 5;
   const double* a = matrix.a;

@@ -4,9 +4,10 @@
 
 namespace treacle {
 
-/// Symmetric D x D matrix: its upper triangle, row by row. An aggregate; `SymmetricBlock<2>{}` is zero.
+/// Symmetric D x D matrix: its upper triangle, row by row. An aggregate; `SymmetricBlock<2>{}` is zero. Six floats
+/// are aligned as doubles are, which halves the loads of a device.
 template <int D, class T = double>
-struct SymmetricBlock {
+struct alignas(sizeof(T) == 4 && D == 3 ? 8 : alignof(T)) SymmetricBlock {
   static constexpr int size = D * (D + 1) / 2;
 
   T a[size];
@@ -53,6 +54,20 @@ struct SymmetricBlock {
     return y;
   }
 };
+
+TREACLE_HD constexpr SymmetricBlock<3> inverse(const SymmetricBlock<3>& m) {
+  const double* a = m.a;
+  const SymmetricBlock<3> cofactor{{a[3] * a[5] - a[4] * a[4], a[2] * a[4] - a[1] * a[5],
+                                    a[1] * a[4] - a[2] * a[3], a[0] * a[5] - a[2] * a[2],
+                                    a[1] * a[2] - a[0] * a[4], a[0] * a[3] - a[1] * a[1]}};
+  return 1 / (a[0] * cofactor.a[0] + a[1] * cofactor.a[1] + a[2] * cofactor.a[2]) * cofactor;
+}
+
+/// Whether all eigenvalues are above `least`.
+TREACLE_HD constexpr bool isAbove(const SymmetricBlock<3>& m, double least) {
+  const double a = m.a[0] - least, b = m.a[3] - least, c = m.a[5] - least, d = m.a[1], e = m.a[2], f = m.a[4];
+  return a > 0 && a * b > d * d && a * (b * c - f * f) > d * (d * c - f * e) - e * (d * f - b * e);
+}
 
 template <class U, int D, class T>
 TREACLE_HD constexpr SymmetricBlock<D, U> converted(const SymmetricBlock<D, T>& m) {
