@@ -45,9 +45,13 @@ __device__ inline void visitRow(const IsphPairs<D>& pairs, const NeighbourRowsVi
 }
 
 /// Eight lanes per fluid particle; reads its neighbours and what the term reads; writes what the term stores. The
-/// bound leaves 72 registers: with more too few threads wait for memory at a time. No atomics.
+/// bound leaves 72 registers, and up to 96 where there are many sums: with more too few threads wait for memory at
+/// a time. No atomics.
 template <int D, class Term>
-__global__ void __launch_bounds__(128, 7) fluidSumsKernel(const __grid_constant__ IsphPairs<D> pairs, Term term) {
+__global__ void __launch_bounds__(128, Term::values > 20   ? 5
+                                       : Term::values > 12 ? 6
+                                                           : 7)
+    fluidSumsKernel(const __grid_constant__ IsphPairs<D> pairs, Term term) {
   const std::uint32_t i = blockIdx.x * (blockDim.x / rowLanes) + threadIdx.x / rowLanes;
   const bool used = i < pairs.ownFluid();
   double sum[Term::values] = {};

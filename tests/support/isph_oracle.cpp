@@ -84,10 +84,10 @@ Vec<D> IsphOracle<D>::deficit(std::uint32_t i) const {
 }
 
 template <int D>
-Matrix IsphOracle<D>::renormalisation(std::uint32_t i) const {
-  if (!isAccurate()) return Matrix::Identity(D, D);
+Matrix IsphOracle<D>::inverseMoment(std::uint32_t i, bool walls) const {
   Eigen::Matrix<double, D, D> m = Eigen::Matrix<double, D, D>::Zero();
   forEachOther(i, [&](std::uint32_t j) {
+    if (isWall(j) && !walls) return;
     const Vec<D> g = gradient(i, j), d = apart(i, j);
     for (int a = 0; a < D; ++a)
       for (int b = 0; b < D; ++b) m(a, b) -= g[a] * d[b];
@@ -103,12 +103,21 @@ Matrix IsphOracle<D>::renormalisation(std::uint32_t i) const {
 }
 
 template <int D>
-Vec<D> IsphOracle<D>::renormalised(std::uint32_t i, const Vec<D>& x) const {
-  const Matrix b = renormalisation(i);
+Matrix IsphOracle<D>::renormalisation(std::uint32_t i) const {
+  return isAccurate() ? inverseMoment(i, true) : Matrix(Matrix::Identity(D, D));
+}
+
+template <int D>
+Vec<D> product(const Matrix& b, const Vec<D>& x) {
   Vec<D> y{};
   for (int r = 0; r < D; ++r)
     for (int c = 0; c < D; ++c) y[r] += b(r, c) * x[c];
   return y;
+}
+
+template <int D>
+Vec<D> IsphOracle<D>::renormalised(std::uint32_t i, const Vec<D>& x) const {
+  return product(renormalisation(i), x);
 }
 
 template <int D>
@@ -156,11 +165,25 @@ double IsphOracle<D>::divergence(const std::vector<Vec<D>>& v, std::uint32_t i) 
 template <int D>
 Matrix IsphOracle<D>::velocityGradient(const std::vector<Vec<D>>& v, std::uint32_t i) const {
   Matrix sum = Matrix::Zero(D, D);
+  const Matrix inverse = inverseMoment(i, false);
   forEachOther(i, [&](std::uint32_t j) {
     if (isWall(j)) return;
-    const Vec<D> g = renormalised(i, gradient(i, j));
+    const Vec<D> g = product(inverse, gradient(i, j));
     for (int a = 0; a < D; ++a)
       for (int b = 0; b < D; ++b) sum(a, b) += (v[j][a] - v[i][a]) * g[b];
+  });
+  return sum;
+}
+
+template <int D>
+Vec<D> IsphOracle<D>::transposedForce(const std::vector<Vec<D>>& v, std::uint32_t i) const {
+  const Matrix own = velocityGradient(v, i);
+  Vec<D> sum{};
+  forEachOther(i, [&](std::uint32_t j) {
+    const Matrix both = own + (isWall(j) ? own : velocityGradient(v, j));
+    const Vec<D> g = mu(i, isWall(j) ? i : j) * gradient(i, j);
+    for (int a = 0; a < D; ++a)
+      for (int b = 0; b < D; ++b) sum[b] += both(a, b) * g[a];
   });
   return sum;
 }

@@ -44,8 +44,9 @@ struct IsphOracle {
   double latticeDensity() const;
   double latticeLaplacian() const;
   bool isAccurate() const { return s.c.method.scheme == SchemeKind::Accurate; }
-  /// Accurate scheme: the inverse of M = sum V grad W d^T, whose eigenvalues count as at least 0.3; the unit
-  /// matrix in the published one.
+  /// The inverse of M = sum V grad W d^T, whose eigenvalues count as at least 0.3, with or without walls.
+  Matrix inverseMoment(std::uint32_t i, bool walls) const;
+  /// That with walls in the accurate scheme, the unit matrix in the published one.
   Matrix renormalisation(std::uint32_t i) const;
   Vec<D> renormalised(std::uint32_t i, const Vec<D>& x) const;
   /// By how much the Laplacian of a pair counts more, by its particle i.
@@ -65,6 +66,8 @@ struct IsphOracle {
   double divergence(const std::vector<Vec<D>>& v, std::uint32_t i) const;
   /// The velocity gradient of fluid alone.
   Matrix velocityGradient(const std::vector<Vec<D>>& v, std::uint32_t i) const;
+  /// mu (L_i + L_j)^T V grad W of particle i, with its own L in walls: the divergence of mu L^T [N/m3].
+  Vec<D> transposedForce(const std::vector<Vec<D>>& v, std::uint32_t i) const;
   /// A velocity without a part of what pairs have that their gradients do not, along the pair: sqrt(p / rho)
   /// dt / l, at most half; `p`: last pressures of fluid.
   Vec<D> damped(const std::vector<Vec<D>>& v, const std::vector<double>& p, std::uint32_t i) const;

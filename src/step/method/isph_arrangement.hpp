@@ -29,40 +29,45 @@ class IsphArrangement {
   /// Solves for the pressure, `closed` where no particle is at a free surface. Errors: RunError.
   StagedReport solve(IsphSolver<D, Backend, PressureRow<D>>& solver, const IsphPairs<D>& pairs, bool closed) {
     if (closed) takeLevel(state_.context, Level::Mean, source_);
-    pressure_.resize(state_.context, pairs.fluidCount);
-    const std::span<double> own = pressure_.span().first(pairs.ownFluid());
-    clearValues(state_.context, own);
-    const StagedReport report = solver.solve(state_.context, source_, own, nullptr, looser);
+    pressure_.resize(state_.context, pairs.ownFluid());
+    clearValues(state_.context, pressure_.span());
+    const StagedReport report = solver.solve(state_.context, source_, pressure_, nullptr, looser);
     requireConverged(state_, "arrangement", report);
     return report;
   }
 
-  /// What particles move with: v* corrected by both pressures. `flow`: that of the flow [Pa]; `predicted`: v*, and
-  /// velocities of walls; `velocity`: of own fluid at the end of the step.
-  std::span<Vec<D>> transport(const IsphPairs<D>& pairs, bool closed, std::span<const std::uint8_t> surface,
-                              std::span<const double> flow, const Vec<D>* predicted,
-                              std::span<const Vec<D>> velocity) {
+  /// Has the corrector find what particles move with: v* corrected by the sum of this pressure and that of the
+  /// flow [Pa].
+  void addTo(CorrectorTerm<D>& term, const IsphPairs<D>& pairs, bool closed, std::span<const std::uint8_t> surface,
+             std::span<const double> flow) {
     Context<Backend>& context = state_.context;
-    const std::span<double> own = pressure_.span().first(pairs.ownFluid());
-    addPressure(context, flow.first(own.size()), own);
+    both_.resize(context, pairs.fluidCount);
+    transport_.resize(context, pairs.ownFluid());
+    const std::span<double> own = both_.span().first(pairs.ownFluid());
+    addPressures(context, flow, pressure_, own);
     if (closed) takeLevel(context, Level::Least, own);
     settlePressure(context, surface, closed || !pairs.negativePressure, own);
-    fillGhosts(context, Held::Fluid, pressure_.data());
-    transport_.resize(context, own.size());
-    sumOnFluid(context, pairs, CorrectorTerm<D>{pressure_.data(), pressure_.data(), predicted, transport_.data()});
-    limitTransport<D>(context, pairs.spacing, pairs.timeStep, velocity, transport_);
+    fillGhosts(context, Held::Fluid, both_.data());
+    term.moving = both_.data();
+    term.transport = transport_.data();
+  }
+
+  /// That, at most longestShift away from where `velocity`, that at the end of the step, leads.
+  std::span<const Vec<D>> limited(const IsphPairs<D>& pairs, std::span<const Vec<D>> velocity) {
+    limitTransport<D>(state_.context, pairs.spacing, pairs.timeStep, velocity, transport_);
     return transport_.span();
   }
 
-  std::size_t bytes() const { return source_.bytes() + pressure_.bytes() + transport_.bytes(); }
+  std::size_t bytes() const { return source_.bytes() + pressure_.bytes() + both_.bytes() + transport_.bytes(); }
 
  private:
   /// Times the tolerance for |r|^2 / |b|^2: more would not show in where particles are.
-  static constexpr double looser = 1e6;
+  static constexpr double looser = 1e8;
 
   FlowState<D, Backend>& state_;
   Buffer<double, Backend> source_;
-  Buffer<double, Backend> pressure_;  // of the arrangement, then of both together, with ghosts [Pa]
+  Buffer<double, Backend> pressure_;  // [Pa]
+  Buffer<double, Backend> both_;      // and that of the flow, with ghosts [Pa]
   Buffer<Vec<D>, Backend> transport_;
 };
 

@@ -14,8 +14,8 @@
 
 namespace treacle {
 
-/// The velocities v* of a step of ISPH without pressure [O23 eq. (7)], by an explicit or an implicit viscous step;
-/// in the accurate scheme without hourglass modes.
+/// The velocities v* of a step of ISPH without pressure [O23 eq. (7)], by an explicit or an implicit viscous step,
+/// in the accurate scheme with the forces of isph_flow.hpp.
 template <int D, class Backend>
 class IsphPredictor {
  public:
@@ -26,21 +26,28 @@ class IsphPredictor {
         viscousLimit_(explicitViscousLimit(pairs)),
         viscosity_(solveStages(solvedCase(state.theCase))) {}
 
-  /// In phases of its own, with densities beside. `scratch`: a number per own fluid particle. Errors: RunError.
-  StagedReport predict(const CellRanges<Backend>& ranges, const DensityTerm<D>& density,
-                       std::span<double> scratch) {
-    StagedReport report;
-    if (isImplicit()) {
-      report = solveViscosity(ranges, density, scratch);
-    } else {
-      state_.phases.run(state_.context, phases::coefficients, [&] {
-        takeWalls();
-        if (isViscous()) fillGhosts(state_.context, Held::Fluid, state_.particles.velocity.data());
-        sumOnFluid(state_.context, pairs_, BothTerms<DensityTerm<D>, PredictorTerm<D>>{density, term()});
-      });
-    }
-    state_.phases.run(state_.context, phases::coefficients, [&] { dampHourglass(); });
-    return report;
+  /// Finds densities and, where the scheme or the turbulence needs it, flow().
+  void start(const DensityTerm<D>& density) {
+    density_ = density;
+    if (isViscous() || hasFlow()) fillGhosts(state_.context, Held::Fluid, state_.particles.velocity.data());
+    if (!hasFlow()) return;
+    flow_.resize(state_.context, pairs_.fluidCount);
+    const SmoothFlowTerm<D> flow{state_.particles.velocity.data(), state_.particles.pressure.data(), flow_.data()};
+    sumOnFluid(state_.context, pairs_, BothTerms<DensityTerm<D>, SmoothFlowTerm<D>>{density, flow});
+    fillGhosts(state_.context, Held::Fluid, flow_.data());
+  }
+
+  /// After start(), in phases of its own. `scratch`: a number per own fluid particle. Errors: RunError.
+  StagedReport predict(const CellRanges<Backend>& ranges, std::span<double> scratch) {
+    if (isImplicit()) return solveViscosity(ranges, scratch);
+    state_.phases.run(state_.context, phases::coefficients, [&] {
+      takeWalls();
+      if (hasFlow())
+        sumOnFluid(state_.context, pairs_, term());
+      else
+        sumOnFluid(state_.context, pairs_, BothTerms<DensityTerm<D>, PredictorTerm<D>>{density_, term()});
+    });
+    return {};
   }
 
   /// Once more in the same step, with the velocities that walls have now, and the forces.
@@ -54,12 +61,15 @@ class IsphPredictor {
     } else {
       sumOnFluid(state_.context, pairs_, term());
     }
-    dampHourglass();
     return total;
   }
 
+  /// Of the fluid at the start of the step.
+  const SmoothFlow<D>* flow() const { return flow_.data(); }
+  /// That of the explicit step's viscous forces, if any.
+  const SmoothFlow<D>* viscousFlow() const { return isImplicit() ? nullptr : dampedFlow(); }
   /// v* of fluid, for ghosts once they are filled; the velocities of active walls.
-  Buffer<Vec<D>, Backend>& velocity() { return pairs_.accurate ? damped_ : velocity_; }
+  Buffer<Vec<D>, Backend>& velocity() { return velocity_; }
   /// The velocities that the viscous forces of the step are of.
   std::span<const Vec<D>> viscousVelocity() const {
     return isImplicit() ? velocity_.span() : std::span<const Vec<D>>(state_.particles.velocity);
@@ -67,7 +77,7 @@ class IsphPredictor {
   bool isViscous() const { return std::isfinite(viscousLimit_); }
 
   std::size_t bytes() const {
-    std::size_t sum = velocity_.bytes() + flow_.bytes() + damped_.bytes() + viscosity_.bytes();
+    std::size_t sum = velocity_.bytes() + flow_.bytes() + viscosity_.bytes();
     for (const auto& component : component_) sum += component.bytes();
     return sum;
   }
@@ -77,36 +87,24 @@ class IsphPredictor {
     return isViscousStepImplicit(state_.theCase.method.isph.viscosity, viscousLimit_, state_.timeStep);
   }
 
-  PredictorTerm<D> term() { return {state_.particles.velocity.data(), velocity_.data(), isViscous()}; }
+  const SmoothFlow<D>* dampedFlow() const { return pairs_.accurate ? flow_.data() : nullptr; }
+  bool hasFlow() const { return pairs_.accurate || pairs_.mixingLength > 0; }
+  PredictorTerm<D> term() {
+    return {state_.particles.velocity.data(), velocity_.data(), isViscous(), dampedFlow()};
+  }
 
   void takeWalls() {
     const std::uint32_t n = pairs_.fluidCount, active = pairs_.activeCount;
-    const auto take = [&](Buffer<Vec<D>, Backend>& v) {
-      v.resize(state_.context, active);
-      copyValues(state_.context, std::span<const Vec<D>>(state_.particles.velocity).subspan(n, active - n),
-                 v.data() + n);
-    };
-    take(velocity_);
-    if (pairs_.accurate) take(damped_);
-  }
-
-  /// See isph_hourglass.hpp.
-  void dampHourglass() {
-    if (!pairs_.accurate) return;
-    flow_.resize(state_.context, pairs_.fluidCount);
-    fillGhosts(state_.context, Held::Fluid, velocity_.data());
-    sumOnFluid(state_.context, pairs_,
-               SmoothFlowTerm<D>{velocity_.data(), state_.particles.pressure.data(), flow_.data()});
-    fillGhosts(state_.context, Held::Fluid, flow_.data());
-    sumOnFluid(state_.context, pairs_, HourglassTerm<D>{velocity_.data(), flow_.data(), damped_.data()});
+    velocity_.resize(state_.context, active);
+    copyValues(state_.context, std::span<const Vec<D>>(state_.particles.velocity).subspan(n, active - n),
+               velocity_.data() + n);
   }
 
   /// v* of (rho/dt - mu lap) v* = rho/dt v + rho g, one component after the other.
-  StagedReport solveViscosity(const CellRanges<Backend>& ranges, const DensityTerm<D>& density,
-                              std::span<double> scratch) {
+  StagedReport solveViscosity(const CellRanges<Backend>& ranges, std::span<double> scratch) {
     state_.phases.run(state_.context, phases::coefficients, [&] {
       takeWalls();
-      sumOnFluid(state_.context, pairs_, density);
+      if (!hasFlow()) sumOnFluid(state_.context, pairs_, density_);
       viscosity_.prepareMatrix(state_.context, pairs_, ranges, ViscousRow<D>{});
       computeSource();
     });
@@ -119,7 +117,7 @@ class IsphPredictor {
   }
 
   void computeSource() {
-    ViscousSourceTerm<D> term{state_.particles.velocity.data(), {}};
+    ViscousSourceTerm<D> term{state_.particles.velocity.data(), {}, dampedFlow()};
     for (int k = 0; k < D; ++k) {
       component_[k].resize(state_.context, pairs_.ownFluid());
       term.source[k] = component_[k].data();
@@ -138,10 +136,11 @@ class IsphPredictor {
 
   FlowState<D, Backend>& state_;
   const IsphPairs<D>& pairs_;
-  double viscousLimit_;                        // [s]
-  Buffer<Vec<D>, Backend> velocity_, damped_;  // v* with hourglass modes and, in the accurate scheme, without
-  Buffer<SmoothFlow<D>, Backend> flow_;        // of the first, with ghosts
-  Buffer<double, Backend> component_[D];       // of the viscous step's right-hand side
+  double viscousLimit_;                   // [s]
+  DensityTerm<D> density_{};              // of the step
+  Buffer<Vec<D>, Backend> velocity_;      // v*
+  Buffer<SmoothFlow<D>, Backend> flow_;   // with ghosts
+  Buffer<double, Backend> component_[D];  // of the viscous step's right-hand side
   IsphSolver<D, Backend, ViscousRow<D>> viscosity_;
 };
 

@@ -63,8 +63,11 @@ class IsphStep final : public StepMethod<D, Backend> {
     pairs_.materials.setTimeStep(state_.timeStep);
     prepareDensities();
     solution_.resize(state_.context, pairs_.fluidCount);
-    if (pairs_.mixingLength > 0) computeEddies();
-    return predictor_.predict(ranges(), densityTerm(), solution());
+    state_.phases.run(state_.context, phases::coefficients, [&] {
+      predictor_.start(densityTerm());
+      if (pairs_.mixingLength > 0) computeEddies();
+    });
+    return predictor_.predict(ranges(), solution());
   }
 
   void prepareSystem() override {
@@ -80,11 +83,10 @@ class IsphStep final : public StepMethod<D, Backend> {
   void preparePreconditioner() override { pressure_.preparePreconditioner(state_.context); }
 
   StagedReport solve() override {
+    StagedReport report;
+    if (arrangement_) report = arrangement_->solve(pressure_, pairs_, closed_);
     guess(solution());
-    const StagedReport flow = bodies_ ? solveWithBodies() : solveWithPressures();
-    if (!arrangement_) return flow;
-    StagedReport report = arrangement_->solve(pressure_, pairs_, closed_);
-    report.follow(flow);  // the residual is that of the flow
+    report.follow(bodies_ ? solveWithBodies() : solveWithPressures());  // the residual is that of the flow
     return report;
   }
 
@@ -116,10 +118,8 @@ class IsphStep final : public StepMethod<D, Backend> {
 
   std::span<const Vec<D>> transportVelocities() override {
     const double coefficient = state_.theCase.method.isph.shifting;
-    std::span<const Vec<D>> transport = state_.velocity;
-    if (arrangement_)
-      transport = arrangement_->transport(pairs_, closed_, ownSurface(), solution(), predictor_.velocity().data(),
-                                          state_.velocity);
+    const std::span<const Vec<D>> transport =
+        arrangement_ ? arrangement_->limited(pairs_, state_.velocity) : std::span<const Vec<D>>(state_.velocity);
     if (coefficient == 0) return transport;
     shifted_.resize(state_.context, pairs_.ownFluid());
     shiftedVelocity<D>(state_.context, {coefficient, state_.theCase.spacing, state_.timeStep}, deficit_,
@@ -240,14 +240,16 @@ class IsphStep final : public StepMethod<D, Backend> {
     state_.velocity.resize(state_.context, pairs_.ownFluid());
     wallShare_.resize(state_.context, pairs_.ownFluid());
     Vec<D>* stopped = bodies_ || state_.theCase.hasLoads() ? forces_.prepare(state_, pairs_) : nullptr;
-    sumOnFluid(state_.context, pairs_,
-               CorrectorTerm<D>{solution_.data(), pressing.data(), predictor_.velocity().data(),
-                                state_.velocity.data(), wallShare_.data(), stopped});
+    CorrectorTerm<D> term{solution_.data(),       pressing.data(),   predictor_.velocity().data(),
+                          state_.velocity.data(), wallShare_.data(), stopped};
+    if (arrangement_) arrangement_->addTo(term, pairs_, closed_, ownSurface(), solution());
+    sumOnFluid(state_.context, pairs_, term);
   }
 
   /// Before the step changes the particles' velocities, which an explicit viscous step has taken its forces of.
   std::vector<LoadSums> loadsOfWalls() {
-    return forces_.loads(state_, pairs_, solution_, predictor_.viscousVelocity(), predictor_.isViscous());
+    return forces_.loads(state_, pairs_, solution_, predictor_.viscousVelocity(), predictor_.isViscous(),
+                         predictor_.viscousFlow());
   }
 
   void find(RowKind kind, NeighbourRows<Backend>& rows) {
@@ -278,19 +280,16 @@ class IsphStep final : public StepMethod<D, Backend> {
 
   /// The viscosities of the turbulence model, by the velocities at the start of the step.
   void computeEddies() {
-    state_.phases.run(state_.context, phases::coefficients, [&] {
-      eddyViscosity_.resize(state_.context, pairs_.fluidCount);
-      wallViscosity_.resize(state_.context, pairs_.fluidCount);
-      pairs_.eddyViscosity = eddyViscosity_.data();
-      pairs_.wallViscosity = wallViscosity_.data();
-      pairs_.mostEddyViscosity = pairs_.leastDensity * stableDiffusivity(pairs_);
-      fillGhosts(state_.context, Held::Fluid, state_.particles.velocity.data());
-      sumOnFluid(state_.context, pairs_, densityTerm());  // B
-      sumOnFluid(state_.context, pairs_,
-                 EddyTerm<D>{state_.particles.velocity.data(), eddyViscosity_.data(), wallViscosity_.data()});
-      fillGhosts(state_.context, Held::Fluid, eddyViscosity_.data());
-      fillGhosts(state_.context, Held::Fluid, wallViscosity_.data());
-    });
+    eddyViscosity_.resize(state_.context, pairs_.fluidCount);
+    wallViscosity_.resize(state_.context, pairs_.fluidCount);
+    pairs_.eddyViscosity = eddyViscosity_.data();
+    pairs_.wallViscosity = wallViscosity_.data();
+    pairs_.mostEddyViscosity = pairs_.leastDensity * stableDiffusivity(pairs_);
+    sumOnFluid(state_.context, pairs_,
+               EddyTerm<D>{state_.particles.velocity.data(), predictor_.flow(), eddyViscosity_.data(),
+                           wallViscosity_.data()});
+    fillGhosts(state_.context, Held::Fluid, eddyViscosity_.data());
+    fillGhosts(state_.context, Held::Fluid, wallViscosity_.data());
   }
 
   DensityTerm<D> densityTerm() {

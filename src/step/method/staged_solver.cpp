@@ -2,6 +2,7 @@
 
 #include "run/failure.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace treacle {
@@ -76,7 +77,8 @@ SolveReport StagedSolver<D, Backend>::solveStage(Context<Backend>& context, std:
   };
   const Product k = [&](std::span<const double> r, std::span<double> z) { system_.precondition(context, r, z); };
   const double refresh = stage().precision == Precision::Mixed ? refreshOfMixed : 0;
-  const StoppingRule rule{looser * stage().tolerance, stage().maxIterations, refresh, history};
+  const double wanted = stage().tolerance, tolerance = std::max(wanted, std::min(looser * wanted, loosest));
+  const StoppingRule rule{tolerance, stage().maxIterations, refresh, history};
   if (stage().krylov == KrylovKind::Cr) return conjugateResidual(context, {a, k, b, x}, rule, krylov_);
   if (!modes || stage_ > 0 || !stage().deflates()) {
     const Product single = [&](std::span<const double> from, std::span<double> to) {

@@ -70,9 +70,10 @@ class StagedSolver {
   /// `x`: first guess and solution. Several solves may follow each other with one system; a stage that failed is
   /// not tried again. `modes`: those that the first stage is deflated by, where it is, and takes anew when they
   /// are due; a failure drops them. Null: no solve is deflated. `history`: StoppingRule's, of the last stage.
-  /// `looser`: times the tolerance of the stage.
+  /// `looser`: times the tolerance of the stage, up to `loosest`.
   StagedReport solve(Context<Backend>&, std::span<const double> b, std::span<double> x,
                      SolverModes<D, Backend>* modes = nullptr, double* history = nullptr, double looser = 1);
+  static constexpr double loosest = 1e-4;
 
   std::size_t bytes() const { return guess_.bytes() + krylov_.bytes() + keeper_.bytes(); }
 

@@ -23,16 +23,17 @@ class IsphWallForces {
   }
 
   /// Per body of the case, of all processes, after the corrector [N], [N m] and [W]; in 2D per metre of depth.
-  /// `pressure`, with ghosts, and `velocity`, that the viscous step has taken its forces of, are those of the
-  /// step; `viscous`: there is one.
+  /// `pressure`, with ghosts, `velocity`, that the viscous step has taken its forces of, and `flow`
+  /// (WallForceTerm) are those of the step; `viscous`: there is one.
   std::vector<LoadSums> loads(FlowState<D, Backend>& state, const IsphPairs<D>& pairs,
-                              std::span<const double> pressure, std::span<const Vec<D>> velocity, bool viscous) {
+                              std::span<const double> pressure, std::span<const Vec<D>> velocity, bool viscous,
+                              const SmoothFlow<D>* flow) {
     const auto& rows = pairs.fluidOfWalls;
     fillGhosts(state.context, Held::Fluid, stopped_.data());
     force_.resize(state.context, rows.count);
-    sumOnWalls(
-        state.context, pairs,
-        WallForceTerm<D>{pressure.data(), velocity.data(), stopped_.data(), viscous, rows.first, force_.data()});
+    const WallForceTerm<D> term{
+        pressure.data(), velocity.data(), stopped_.data(), viscous, rows.first, force_.data(), flow};
+    sumOnWalls(state.context, pairs, term);
     return loadsOfBodies<D, Backend>(state, rows.first, pairs.position, state.particles.velocity, force_);
   }
 

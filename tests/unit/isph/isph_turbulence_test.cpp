@@ -51,7 +51,11 @@ struct Eddies {
     std::vector<Vec<D>> v(s.particles.count);
     for (std::uint32_t i = 0; i < s.n(); ++i) v[i] = velocity(s.particles.position[i]);
     s.pairs.mostEddyViscosity = 1e3;
-    sumOnFluid(s.context, s.pairs, EddyTerm<D>{v.data(), eddy.data(), wall.data()});
+    std::vector<SmoothFlow<D>> flow(s.n());
+    const BothTerms<DensityTerm<D>, SmoothFlowTerm<D>> both{{s.density.data(), s.deficit.data(), s.surface.data()},
+                                                            {v.data(), s.particles.pressure.data(), flow.data()}};
+    sumOnFluid(s.context, s.pairs, both);
+    sumOnFluid(s.context, s.pairs, EddyTerm<D>{v.data(), flow.data(), eddy.data(), wall.data()});
   }
 };
 

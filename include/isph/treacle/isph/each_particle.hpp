@@ -10,8 +10,9 @@ namespace treacle {
 // particle; there are no atomics but those of the reductions.
 
 template <class Backend>
-void addPressure(Context<Backend>& context, std::span<const double> more, std::span<double> p) {
-  forEach(context, p.size(), [=] TREACLE_HD(std::size_t i) { p[i] += more[i]; });
+void addPressures(Context<Backend>& context, std::span<const double> p, std::span<const double> q,
+                  std::span<double> sum) {
+  forEach(context, sum.size(), [=] TREACLE_HD(std::size_t i) { sum[i] = p[i] + q[i]; });
 }
 
 template <class Backend>
@@ -62,7 +63,8 @@ void putComponent(Context<Backend>& context, std::span<const double> x, int k, s
 }
 
 #define TREACLE_EACH_NUMBER(Backend)                                                                       \
-  template void addPressure(Context<Backend>&, std::span<const double>, std::span<double>);                \
+  template void addPressures(Context<Backend>&, std::span<const double>, std::span<const double>,          \
+                             std::span<double>);                                                           \
   template void settlePressure(Context<Backend>&, std::span<const std::uint8_t>, bool, std::span<double>); \
   template bool isClosed(Context<Backend>&, std::span<const std::uint8_t>);                                \
   template void takeLevel(Context<Backend>&, Level, std::span<double>);

@@ -49,6 +49,21 @@ struct SurfaceCriterion {
   }
 };
 
+/// sum += c d d^T, upper triangle by rows.
+template <int D>
+TREACLE_HD inline void addSquare(double c, const Vec<D>& d, double* sum) {
+  for (int a = 0, n = 0; a < D; ++a)
+    for (int b = a; b < D; ++b, ++n) sum[n] += c * d[a] * d[b];
+}
+
+/// The matrix of such a sum.
+template <int D>
+TREACLE_HD inline SymmetricBlock<D> squareOf(const double* sum) {
+  SymmetricBlock<D> result;
+  for (int n = 0; n < D * (D + 1) / 2; ++n) result.a[n] = sum[n];
+  return result;
+}
+
 /// Shares of a particle's density that walls make up.
 struct WallContact {
   double touching = 0;    // with a flat wall whose first layer is one spacing away
@@ -94,7 +109,7 @@ struct IsphPairs : MaterialParticles<D> {
   TREACLE_HD double slope(const Distance& r) const { return volume * kernel.slope(r); }
   /// Of two fluid particles, with the eddies around them [Pa s].
   TREACLE_HD double viscosityBetween(std::uint32_t i, std::uint32_t j) const {
-    const double mu = this->pairViscosity(i, j);
+    const double mu = this->isOneSubstance() ? this->onlyViscosity() : this->pairViscosity(i, j);
     return eddyViscosity ? mu + 0.5 * (eddyViscosity[i] + eddyViscosity[j]) : mu;
   }
   /// Of a fluid particle and a wall [Pa s].
@@ -117,11 +132,20 @@ struct IsphPairs : MaterialParticles<D> {
   }
   /// Share of its neighbours that a particle at the free surface misses, by latticeLaplacian.
   TREACLE_HD double missingShare(std::uint32_t i) const { return accurate ? missing[i] : 0; }
+  /// 2/rho of two fluid particles, by their mean density [m3/kg].
+  TREACLE_HD double mobilityBetween(std::uint32_t i, std::uint32_t j) const {
+    const auto& mobility = this->materials.pairMobility;
+    return this->isOneSubstance() ? mobility[0][0] : mobility[this->substance(i)][this->substance(j)];
+  }
+  /// Harmonic mean of their densities [kg/m3].
+  TREACLE_HD double inertiaBetween(std::uint32_t i, std::uint32_t j) const {
+    const double a = this->density(i);
+    return this->isOneSubstance() ? a : 0.5 * a * this->density(j) * mobilityBetween(i, j);
+  }
   /// Coefficient of p_i - p_j in the pressure equation [O23 eq. (11)], with 1/rho of the pair's mean [m/kg].
   TREACLE_HD double pressureCoefficient(std::uint32_t i, std::uint32_t j, const Vec<D>& d,
                                         const Distance& r) const {
-    const double c = this->materials.pairMobility[this->substance(i)][this->substance(j)] * slope(r);
-    return 0.5 * (renormalisedAlong(i, d) + renormalisedAlong(j, d)) * c;
+    return 0.5 * (renormalisedAlong(i, d) + renormalisedAlong(j, d)) * mobilityBetween(i, j) * slope(r);
   }
   /// Pressure that a fluid particle with pressure p sees in a wall at distance d: the wall holds it against
   /// gravity in the frame of the wall, dp/dn = rho (g - a_wall).n.

@@ -12,9 +12,9 @@ namespace treacle {
 /// What an ISPH step does fluid particle by fluid particle, without neighbours; spans of own fluid in the
 /// backend's memory.
 
-/// p += more
+/// sum = p + q
 template <class Backend>
-void addPressure(Context<Backend>&, std::span<const double> more, std::span<double> p);
+void addPressures(Context<Backend>&, std::span<const double> p, std::span<const double> q, std::span<double> sum);
 
 /// p = 0 for free particles and, where `cut`, where it is negative. `surface` holds a Place each.
 template <class Backend>

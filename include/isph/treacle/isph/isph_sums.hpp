@@ -1,6 +1,6 @@
 #pragma once
 
-#include "treacle/isph/isph_hourglass.hpp"
+#include "treacle/isph/isph_flow.hpp"
 #include "treacle/isph/isph_matrix.hpp"
 #include "treacle/isph/isph_terms.hpp"
 #include "treacle/isph/isph_turbulence.hpp"
@@ -101,8 +101,7 @@ struct IsphMatrixRow {
     const StoredCoefficient stored = put(j, c);
     sum[All] += stored.value;
     if (near) sum[Near] += parts.unit * stored.whole;
-    for (int a = 0, n = Moments; a < D; ++a)
-      for (int b = a; b < D; ++b, ++n) sum[n] += 0.5 * stored.value * d[a] * d[b];
+    addSquare(0.5 * stored.value, d, sum + Moments);
   }
   /// A wall next to it.
   TREACLE_HD void wall(std::uint32_t i, const Vec<D>& x, std::uint64_t k, double* sum) const {
@@ -127,9 +126,9 @@ struct IsphMatrixRow {
   template void sumOnFluid(Context<Backend>&, const IsphPairs<D>&, const PredictorTerm<D>&);      \
   template void sumOnFluid(Context<Backend>&, const IsphPairs<D>&,                                \
                            const BothTerms<DensityTerm<D>, PredictorTerm<D>>&);                   \
+  template void sumOnFluid(Context<Backend>&, const IsphPairs<D>&,                                \
+                           const BothTerms<DensityTerm<D>, SmoothFlowTerm<D>>&);                  \
   template void sumOnFluid(Context<Backend>&, const IsphPairs<D>&, const EddyTerm<D>&);           \
-  template void sumOnFluid(Context<Backend>&, const IsphPairs<D>&, const SmoothFlowTerm<D>&);     \
-  template void sumOnFluid(Context<Backend>&, const IsphPairs<D>&, const HourglassTerm<D>&);      \
   template void sumOnFluid(Context<Backend>&, const IsphPairs<D>&, const ViscousSourceTerm<D>&);  \
   template void sumOnFluid(Context<Backend>&, const IsphPairs<D>&, const WallFrictionTerm<D>&);   \
   template void sumOnFluid(Context<Backend>&, const IsphPairs<D>&, const PressureSourceTerm<D>&); \

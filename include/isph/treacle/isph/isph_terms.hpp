@@ -1,7 +1,7 @@
 #pragma once
 
 #include "treacle/core/floored_inverse.hpp"
-#include "treacle/isph/isph_pairs.hpp"
+#include "treacle/isph/isph_flow.hpp"
 
 #include <cmath>
 #include <cstdint>
@@ -36,8 +36,7 @@ struct DensityTerm {
     for (int k = 0; k < D; ++k) sum[Lack + k] += slope * d[k];
     if (!pairs.accurate || i == j) return;
     sum[Laplacian] += 2 * slope;
-    for (int a = 0, n = Moments; a < D; ++a)
-      for (int b = a; b < D; ++b, ++n) sum[n] += slope * d[a] * d[b];
+    addSquare(slope, d, sum + Moments);
   }
   TREACLE_HD void store(const IsphPairs<D>& pairs, std::uint32_t i, const double* sum) const {
     const double ratio = sum[Density] / pairs.latticeDensity;
@@ -53,8 +52,7 @@ struct DensityTerm {
       surface[i] = isFree || isSurface ? Place::Free : Place::Inside;
       return;
     }
-    SymmetricBlock<D> moment;
-    for (int n = 0; n < moments; ++n) moment.a[n] = sum[Moments + n];
+    const SymmetricBlock<D> moment = squareOf<D>(sum + Moments);
     pairs.renormalisation[i] = converted<float>(flooredInverse(moment, pairs.leastMoment, false));
     const double missing = s.missing(oneSided, 1 - sum[Laplacian] / pairs.latticeLaplacian);
     pairs.missing[i] = static_cast<float>(missing);
@@ -62,22 +60,31 @@ struct DensityTerm {
   }
 };
 
-/// v* = v + dt (nu lap v + g) [O23 eq. (7)] with the Laplacian of [O23 eq. (6)]. A no-slip wall is met with the
-/// fluid's velocity mirrored at the wall's.
+/// v* = v + dt (nu lap v + g) [O23 eq. (7)] with the Laplacian of [O23 eq. (6)], and with the forces of
+/// isph_flow.hpp where there is a `flow`. A no-slip wall is met with the fluid's velocity mirrored at the wall's.
 template <int D>
 struct PredictorTerm {
   static constexpr int values = D;
   const Vec<D>* velocity;
   Vec<D>* predicted;
   bool viscous;
+  const SmoothFlow<D>* flow = nullptr;  // of velocity
 
-  TREACLE_HD void fluid(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>&,
+  TREACLE_HD void fluid(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d,
                         const Distance& r, double* sum) const {
-    add(2 * pairs.slope(r) * pairs.viscosityBetween(i, j), i, j, sum);
+    const double viscosity = viscous ? pairs.viscosityBetween(i, j) : 0;
+    add(2 * pairs.slope(r) * viscosity, i, j, sum);
+    if (!flow) return;
+    const Vec<D> force = hourglassForce(pairs, velocity, flow, i, j, d, r) +
+                         transposedForce(viscosity, pairs.slope(r), flow[i], flow[j], d);
+    for (int k = 0; k < D; ++k) sum[k] += force[k];
   }
-  TREACLE_HD void wall(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>&,
+  TREACLE_HD void wall(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d,
                        const Distance& r, double* sum) const {
     if (pairs.noSlip) add(4 * pairs.slope(r) * pairs.viscosityAtWall(i, j), i, j, sum);
+    if (!flow || !viscous) return;
+    const Vec<D> force = transposedForce(pairs.viscosityBetween(i, i), pairs.slope(r), flow[i], flow[i], d);
+    for (int k = 0; k < D; ++k) sum[k] += force[k];
   }
   TREACLE_HD void add(double c, std::uint32_t i, std::uint32_t j, double* sum) const {
     if (!viscous) return;
@@ -116,19 +123,26 @@ struct BothTerms {
   }
 };
 
-/// Right-hand side of the implicit viscous step, rho/dt v + rho g and the pull of no-slip walls, by component.
+/// Right-hand side of the implicit viscous step, rho/dt v + rho g, the pull of no-slip walls and, where there
+/// is a `flow`, the damping of hourglass modes, by component. The rest of the viscous stress, div(mu L^T), is left
+/// out: as an explicit part beside an implicit one it turns around what compresses in each long step, and the
+/// arrangement suffers (docs/notes/isph.md).
 template <int D>
 struct ViscousSourceTerm {
   static constexpr int values = D;
   const Vec<D>* velocity;
   double* source[D];
+  const SmoothFlow<D>* flow = nullptr;  // of velocity
 
-  TREACLE_HD void fluid(const IsphPairs<D>&, std::uint32_t, std::uint32_t, const Vec<D>&, const Distance&,
-                        double*) const {}
+  TREACLE_HD void fluid(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d,
+                        const Distance& r, double* sum) const {
+    if (!flow) return;
+    const Vec<D> force = hourglassForce(pairs, velocity, flow, i, j, d, r);
+    for (int k = 0; k < D; ++k) sum[k] += force[k];
+  }
   TREACLE_HD void wall(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>&,
                        const Distance& r, double* sum) const {
-    if (!pairs.noSlip) return;
-    const double c = 4 * pairs.slope(r) * pairs.viscosityAtWall(i, j);
+    const double c = pairs.noSlip ? 4 * pairs.slope(r) * pairs.viscosityAtWall(i, j) : 0;
     for (int k = 0; k < D; ++k) sum[k] += c * velocity[j][k];
   }
   TREACLE_HD void store(const IsphPairs<D>& pairs, std::uint32_t i, const double* sum) const {
@@ -196,53 +210,74 @@ struct PressureSourceTerm {
 /// stop them at a wall: those closer to it than half a spacing lose the velocity into it; others do when they are
 /// closer still, in impacts that a step does not resolve. Whoever got inside nevertheless leaves at a fiftieth of
 /// a spacing per step.
+///
+/// In the accurate scheme particles move with what another pressure makes of v* (IsphArrangement).
 template <int D>
 struct CorrectorTerm {
-  static constexpr int values = 3 * D + 2;
+  static constexpr int values = 4 * D + 2;
+  enum { Pull, Moved = D, Towards = 2 * D, Wall = 3 * D, Slopes = 4 * D, Share };  // places of the sums
   const double* pressure;
   const double* pressing;   // pressure by which a particle has one; what is solved again must not jump by that
   const Vec<D>* predicted;  // of fluid; walls: their velocity
   Vec<D>* velocity;
   double* wallShare = nullptr;  // of the particle's density in a full lattice, what walls make up [-]; may be null
   Vec<D>* stopped = nullptr;  // velocity that it loses at walls, over the sum of their slopes [m3/s]; may be null
+  const double* moving = nullptr;  // the pressure by which particles move; may be null
+  Vec<D>* transport = nullptr;     // velocity by it; with `moving`
 
   TREACLE_HD void fluid(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d,
                         const Distance& r, double* sum) const {
-    const Vec<D> pull =
-        pairs.slope(r) * (pressure[i] * pairs.renormalised(i, d) + pressure[j] * pairs.renormalised(j, d));
-    for (int k = 0; k < D; ++k) sum[k] += pull[k];
+    const Vec<D> mine = pairs.renormalised(i, d), other = pairs.renormalised(j, d);
+    const double slope = pairs.slope(r);
+    addPull(slope * pressure[i], mine, slope * pressure[j], other, sum + Pull);
+    if (moving) addPull(slope * moving[i], mine, slope * moving[j], other, sum + Moved);
   }
   TREACLE_HD void wall(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d,
                        const Distance& r, double* sum) const {
-    const double slope = pairs.slope(r), c = (pressure[i] + pairs.wallPressure(pressure[i], i, j, d)) * slope;
-    const Vec<D> pull = c * pairs.renormalised(i, d);
+    const Vec<D> mine = pairs.renormalised(i, d);
+    const double slope = pairs.slope(r);
+    addPull(slope * pressure[i], mine, slope * pairs.wallPressure(pressure[i], i, j, d), mine, sum + Pull);
+    if (moving)
+      addPull(slope * moving[i], mine, slope * pairs.wallPressure(moving[i], i, j, d), mine, sum + Moved);
     for (int k = 0; k < D; ++k) {
-      sum[k] += pull[k];
-      sum[D + k] += slope * d[k];
-      sum[2 * D + k] += slope * predicted[j][k];
+      sum[Towards + k] += slope * d[k];
+      sum[Wall + k] += slope * predicted[j][k];
     }
-    sum[3 * D] += slope;
-    sum[3 * D + 1] += pairs.kernel.value(r.r);
+    sum[Slopes] += slope;
+    sum[Share] += pairs.kernel.value(r.r);
   }
   TREACLE_HD void store(const IsphPairs<D>& pairs, std::uint32_t i, const double* sum) const {
+    const double share = sum[Share] * pairs.volume / pairs.latticeDensity;
+    if (wallShare) wallShare[i] = share;
+    Vec<D> lost;
+    velocity[i] = corrected(pairs, i, sum + Pull, pressing[i] > 0, share, sum, lost);
+    if (stopped) stopped[i] = lost;
+    if (moving) transport[i] = corrected(pairs, i, sum + Moved, moving[i] > 0, share, sum, lost);
+  }
+
+ private:
+  TREACLE_HD static void addPull(double a, const Vec<D>& mine, double b, const Vec<D>& other, double* sum) {
+    for (int k = 0; k < D; ++k) sum[k] += a * mine[k] + b * other[k];
+  }
+
+  /// The velocity by the sum `pull`, of which walls take what `lost` says.
+  TREACLE_HD Vec<D> corrected(const IsphPairs<D>& pairs, std::uint32_t i, const double* pull, bool isPressed,
+                              double share, const double* sum, Vec<D>& lost) const {
     const double factor = pairs.timeStep / pairs.density(i);
     Vec<D> v, towards, wallVelocity;
     for (int k = 0; k < D; ++k) {
-      v[k] = predicted[i][k] - factor * sum[k];
-      towards[k] = sum[D + k];
-      wallVelocity[k] = sum[2 * D + k] / (sum[3 * D] > 0 ? sum[3 * D] : 1);
+      v[k] = predicted[i][k] - factor * pull[k];
+      towards[k] = sum[Towards + k];
+      wallVelocity[k] = sum[Wall + k] / (sum[Slopes] > 0 ? sum[Slopes] : 1);
     }
+    lost = {};
     const WallContact& contact = pairs.contact;
-    const double share = sum[3 * D + 1] * pairs.volume / pairs.latticeDensity;
-    if (wallShare) wallShare[i] = share;
-    if (stopped) stopped[i] = {};
-    if (share > (pressing[i] > 0 ? contact.pressed : contact.touching) && norm2(towards) > 0) {
-      const double away = share > contact.inside ? 0.02 * pairs.spacing / pairs.timeStep : 0, g = norm(towards);
-      const double into = dot(v - wallVelocity, towards) / g + away;
-      if (into > 0) v -= (into / g) * towards;
-      if (into > 0 && stopped) stopped[i] = (into / (g * sum[3 * D])) * towards;
-    }
-    velocity[i] = v;
+    if (share <= (isPressed ? contact.pressed : contact.touching) || norm2(towards) == 0) return v;
+    const double away = share > contact.inside ? 0.02 * pairs.spacing / pairs.timeStep : 0, g = norm(towards);
+    const double into = dot(v - wallVelocity, towards) / g + away;
+    if (into <= 0) return v;
+    lost = (into / (g * sum[Slopes])) * towards;
+    return v - (into / g) * towards;
   }
 };
 
@@ -264,18 +299,19 @@ struct WallPressureTerm {
   }
 };
 
-/// Force on walls: what no-slip walls, pressures and the walls that stop particles take from the momentum of the
+/// Force on walls: what viscous forces, pressures and the walls that stop particles take from the momentum of the
 /// fluid in a step. What stops a particle is shared out by slopes and has one direction: walls on two sides of it
 /// are not driven apart. Rows of walls: i is the wall.
 template <int D>
 struct WallForceTerm {
   static constexpr int values = D;
-  const double* pressure;   // of fluid [Pa]
-  const Vec<D>* velocity;   // that the viscous step takes its forces of, of fluid and walls [m/s]
-  const Vec<D>* stopped;    // of CorrectorTerm
-  bool viscous;             // there is a viscous step
-  std::uint32_t firstWall;  // index of the first one that has a force
-  Vec<D>* force;            // [N/m3]
+  const double* pressure;               // of fluid [Pa]
+  const Vec<D>* velocity;               // that the viscous step takes its forces of, of fluid and walls [m/s]
+  const Vec<D>* stopped;                // of CorrectorTerm
+  bool viscous;                         // there is a viscous step
+  std::uint32_t firstWall;              // index of the first one that has a force
+  Vec<D>* force;                        // [N/m3]
+  const SmoothFlow<D>* flow = nullptr;  // that of PredictorTerm
 
   TREACLE_HD void fluid(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d,
                         const Distance& r, double* sum) const {
@@ -285,6 +321,9 @@ struct WallForceTerm {
     const Vec<D> away = push * pairs.renormalised(j, d);
     for (int k = 0; k < D; ++k)
       sum[k] += slope * (drag * (velocity[j][k] - velocity[i][k]) - away[k] + inertia * stopped[j][k]);
+    if (!viscous || !flow) return;
+    const Vec<D> stress = transposedForce(pairs.viscosityBetween(j, j), slope, flow[j], flow[j], d);
+    for (int k = 0; k < D; ++k) sum[k] += stress[k];
   }
   TREACLE_HD void store(const IsphPairs<D>&, std::uint32_t i, const double* sum) const {
     for (int k = 0; k < D; ++k) force[i - firstWall][k] = sum[k];

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "treacle/isph/isph_hourglass.hpp"
+#include "treacle/isph/isph_flow.hpp"
 
 #include <cmath>
 #include <cstdint>
@@ -24,20 +24,19 @@ TREACLE_HD inline double wallLawViscosity(double u, double d, double density, do
 }
 
 /// The eddy viscosity of Smagorinsky's model (Mon. Weather Rev. 91, 1963), rho (C l)^2 |S| with |S|^2 = 2 S:S and
-/// the strain rate S of a particle, and the viscosity between it and no-slip walls. Walls do not count in S,
-/// because next to them the law of the wall stands for the steep part of the profile.
+/// the strain rate S of a particle, and the viscosity between it and no-slip walls. Walls do not count in S
+/// (SmoothFlow), because next to them the law of the wall stands for the steep part of the profile.
 template <int D>
 struct EddyTerm {
-  static constexpr int values = D * D + 2 * D + 1;
-  enum { Gradient, Towards = D * D, Wall = Towards + D, Slopes = Wall + D };  // places of the sums
-  const Vec<D>* velocity;                                                     // of fluid and active walls [m/s]
-  float* eddyViscosity;                                                       // of IsphPairs [Pa s]
-  float* wallViscosity;                                                       // likewise
+  static constexpr int values = 2 * D + 1;
+  enum { Towards, Wall = D, Slopes = 2 * D };  // places of the sums
+  const Vec<D>* velocity;                      // of fluid and active walls [m/s]
+  const SmoothFlow<D>* flow;                   // of it
+  float* eddyViscosity;                        // of IsphPairs [Pa s]
+  float* wallViscosity;                        // likewise
 
-  TREACLE_HD void fluid(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d,
-                        const Distance& r, double* sum) const {
-    addGradient(pairs, velocity, i, j, d, r, sum + Gradient);
-  }
+  TREACLE_HD void fluid(const IsphPairs<D>&, std::uint32_t, std::uint32_t, const Vec<D>&, const Distance&,
+                        double*) const {}
   TREACLE_HD void wall(const IsphPairs<D>& pairs, std::uint32_t, std::uint32_t j, const Vec<D>& d,
                        const Distance& r, double* sum) const {
     const double slope = pairs.slope(r);
@@ -51,7 +50,7 @@ struct EddyTerm {
     double square = 0;
     for (int k = 0; k < D; ++k)
       for (int m = 0; m < D; ++m) {
-        const double twice = sum[Gradient + k * D + m] + sum[Gradient + m * D + k];
+        const double twice = flow[i].gradient(k, m) + flow[i].gradient(m, k);
         square += 0.5 * twice * twice;
       }
     const double density = pairs.density(i), most = pairs.mostEddyViscosity;
