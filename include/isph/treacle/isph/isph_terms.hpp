@@ -125,8 +125,7 @@ struct BothTerms {
 
 /// Right-hand side of the implicit viscous step, rho/dt v + rho g, the pull of no-slip walls and, where there
 /// is a `flow`, the damping of hourglass modes, by component. The rest of the viscous stress, div(mu L^T), is left
-/// out: as an explicit part beside an implicit one it turns around what compresses in each long step, and the
-/// arrangement suffers (docs/notes/isph.md).
+/// out: taken explicitly in long steps it disturbs the arrangement (docs/notes/isph.md).
 template <int D>
 struct ViscousSourceTerm {
   static constexpr int values = D;
