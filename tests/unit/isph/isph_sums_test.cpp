@@ -177,17 +177,17 @@ struct Sums {
   void checkTransport() {
     std::vector<double> moving = pressure;
     std::reverse(moving.begin(), moving.end());
-    std::vector<Vec<D>> flow(s.n()), expected(s.n()), found(s.n()), transport(s.n());
-    CorrectorTerm<D> term{pressure.data(), pressure.data(), velocity.data(), flow.data()};
+    std::vector<Vec<D>> alone(s.n()), expected(s.n()), found(s.n()), transport(s.n());
+    CorrectorTerm<D> term{pressure.data(), pressure.data(), velocity.data(), alone.data()};
     sumOnFluid(s.context, s.pairs, term);
     term = {moving.data(), moving.data(), velocity.data(), expected.data()};
     sumOnFluid(s.context, s.pairs, term);
     term = {pressure.data(), pressure.data(), velocity.data(), found.data()};
     term.moving = moving.data(), term.transport = transport.data();
     sumOnFluid(s.context, s.pairs, term);
-    EXPECT_EQ(found, flow);
+    EXPECT_EQ(found, alone);
     EXPECT_EQ(transport, expected);
-    EXPECT_NE(transport, flow);
+    EXPECT_NE(transport, alone);
   }
 
   void checkWallPressure() {

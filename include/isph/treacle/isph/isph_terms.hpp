@@ -151,7 +151,7 @@ struct ViscousSourceTerm {
   }
 };
 
-/// The viscous force of no-slip walls [N/m3], as in PredictorTerm.
+/// The viscous force of no-slip walls [N/m3], as in PredictorTerm but for div(mu L^T), which makes none on them.
 template <int D>
 struct WallFrictionTerm {
   static constexpr int values = D;
