@@ -178,7 +178,8 @@ void requireRigid(const Case& c, const std::filesystem::path& file, const StateN
 
 /// Rigid bodies have the masses that the case gives them now; inertia goes with mass.
 template <int D>
-void setMasses(const Case& c, const MadeParticles& made, RigidMotion& rigid) {
+void setMasses(const Case& c, const MadeParticles& made, Particles<D>& state) {
+  RigidMotion& rigid = state.rigid;
   for (std::size_t b = 0; b < rigid.bodies.size(); ++b) {
     RigidBody& body = rigid.bodies[b];
     if (body.mass == 0) continue;
@@ -189,7 +190,7 @@ void setMasses(const Case& c, const MadeParticles& made, RigidMotion& rigid) {
     if (std::abs(ratio - 1) < 1e-9) continue;  // the rounding of a sum
     body.mass *= ratio;
     for (double& moment : body.inertia) moment *= ratio;
-    rigid.response.clear();
+    state.response.clear();
   }
 }
 
@@ -283,7 +284,7 @@ StartState fittingState(const Case& c, const std::filesystem::path& file, const 
     requireFit(c, file, state, kinds, !changes.empty());
     requireFlow(c, file, state.particles.flow);
     requireColumns<D>(c, file, state.particles.flow);
-    setMasses<D>(c, made, state.particles.rigid);
+    setMasses<D>(c, made, state.particles);
     requireBodies(c, file, state.particles);
     const std::uint32_t firstWall = state.firstWall + made.part.begin(kinds.walls);
     requireNozzles(c, file, created, firstWall, state);

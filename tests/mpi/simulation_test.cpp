@@ -1,4 +1,5 @@
 #include "mpi/compare_simulations.hpp"
+#include "support/gas_case.hpp"
 #include "support/passing_body.hpp"
 #include "support/rigid_cases.hpp"
 #include "treacle/mph/mph_pairs.hpp"
@@ -233,6 +234,34 @@ TEST(SharedSimulation, RigidBodiesThatTouch) {
       EXPECT_LT(norm(a.center - b.center), 1e-3 * c.spacing);
     }
   }
+}
+
+/// Gas whose pockets reach over all processes, and one that carries a rigid body.
+TEST(SharedSimulation, TrappedGas) {
+  const auto expectSameGas = [](const Case& c, const StepReport& a, const StepReport& b) {
+    ASSERT_EQ(b.gas->pockets, 1u);
+    ASSERT_EQ(a.gas->pockets, 1u);
+    EXPECT_NEAR(a.gas->volume, b.gas->volume, 1e-8 * b.gas->volume);
+    EXPECT_NEAR(a.gas->pressure, b.gas->pressure, 1e-6 * c.gas->pressure);
+  };
+  const auto compareGas = [&]<int D>(const Case& c, int steps) {
+    Simulation<D> shared(c, partOf<D>(c), 0, 0, &job()), alone(c, made<D>(c));
+    for (int k = 0; k < steps; ++k) {
+      const StepReport a = shared.advance(), b = alone.advance();
+      expectSameGas(c, a, b);
+      for (std::size_t body = 0; body < b.rigid.size(); ++body)
+        EXPECT_LT(norm(a.rigid[body].center - b.rigid[body].center), 1e-6 * c.spacing);
+    }
+    EXPECT_EQ(shared.particles().gas.cells, alone.particles().gas.cells);
+  };
+  for (const int dimensions : {2, 3}) {
+    Case c = plugOnGas(dimensions);
+    c.solver.tolerance = 1e-22, c.solver.deflation = 0;
+    dimensions == 2 ? compareGas.operator()<2>(c, 10) : compareGas.operator()<3>(c, 3);
+  }
+  Case bell = bellInHoney(400);
+  bell.solver.deflation = 0;
+  compareGas.operator()<2>(bell, 5);
 }
 
 TEST(SharedSimulation, SeveralFluids) {

@@ -45,4 +45,28 @@ inline Case plugOnGas(int dimensions) {
   return c;
 }
 
+/// A bell, open below and full of air, in a tank of honey: a rigid body that the air carries. Its walls are 4
+/// spacings thick, inside it is 12 wide and 10 high.
+inline Case bellInHoney(double mass) {
+  Case c = plugOnGas(2);
+  const double l = c.spacing;
+  c.domain.max = {45 * l, 45 * l, 0};
+  c.gas->pressure = 101325;
+  c.materials[0].slipLength = 0, c.materials[0].dynamicViscosity = 3;
+  Body &honey = c.bodies[0], &tank = c.bodies[1];
+  honey.shape.min = {}, honey.shape.max = {40 * l, 24 * l, 0};
+  honey.where = "x < 0.02 || x > 0.06 || y < 0.02";
+  tank.shape.max = {44 * l, 40 * l, 0};
+  tank.where = "x < 0 || x > 0.08 || y < 0";
+  Body bell = tank;
+  bell.name = "bell";
+  bell.kind = BodyKind::Rigid;
+  bell.shape.min = {10 * l, 10 * l, 0}, bell.shape.max = {30 * l, 24 * l, 0};
+  bell.where = "x < 0.028 || x > 0.052 || y > 0.04";
+  bell.rigid.mass = mass, bell.rigid.rotates = {false, false, false};
+  c.bodies.push_back(bell);
+  c.time.step = 2e-3;
+  return c;
+}
+
 }  // namespace treacle::test

@@ -16,8 +16,7 @@ namespace treacle {
 void TableReader::prepare(Case& c) {
   (*this)({"method", "Numerical method"}, c.method);
   if (c.method.kind != MethodKind::MphI)
-    for (const auto& [key, text] :
-         {std::pair("heat", heatOfMphI), std::pair("gas", gasOfMphI), std::pair("rheology", rheologyOfMphI)})
+    for (const auto& [key, text] : {std::pair("heat", heatOfMphI), std::pair("rheology", rheologyOfMphI)})
       if (section_.table().contains(key)) throw section_.error(key, text);
   if (section_.table().contains("heat")) c.heat.emplace();
   c.solver = defaultSolver(c.method.kind);

@@ -130,6 +130,7 @@ void fill(hid_t file, const Particles<D>& particles, std::int64_t step, double t
   writeFlow(file, particles.flow);
   writeRigid(file, particles.rigid);
   writeGas(file, particles.gas);
+  writeResponse(file, particles.response);
   forEachNamedField(particles, [&](const FieldInfo& info, const auto& field) { writeField(file, info, field); });
 }
 
@@ -249,6 +250,7 @@ Checkpoint<D> readContent(const std::filesystem::path& path, ParticlePart part) 
       throw Hdf5Error(fmt::format("{} states, more than {}", particles.has.states, maxStates));
   }
   particles.flow = readFlow(file), particles.rigid = readRigid(file), particles.gas = readGas(file);
+  particles.response = readResponse(file);
   Selection selection{part, particles.fluidCount, particles.wallCount(), {}};
   checkpoint.fluidOfAll = selection.fluid, checkpoint.wallsOfAll = selection.walls;
   if (!part.isAll()) checkpoint.firstWall = chooseWalls(file, particles.flow, selection);

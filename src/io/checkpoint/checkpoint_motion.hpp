@@ -65,7 +65,6 @@ inline void writeRigid(hid_t file, const RigidMotion& rigid) {
   std::vector<double> numbers;
   for (const RigidBody& body : rigid.bodies) forEachNumber(body, [&](double x) { numbers.push_back(x); });
   writeNumbers(file, "rigid_bodies", numbers);
-  writeNumbers(file, "rigid_response", rigid.response);
   writeNumbers(file, "rigid_change", rigid.change);
 }
 
@@ -78,7 +77,6 @@ inline void writeGas(hid_t file, const GasState& gas) {
   writeNumbers(file, "gas_pockets", numbers);
   writeNumbers(file, "gas_cells", gas.cells);
   writeNumbers(file, "gas_labels", gas.labels);
-  writeNumbers(file, "gas_response", gas.response);
 }
 
 /// Errors: Hdf5Error for what no gas is.
@@ -90,7 +88,6 @@ inline GasState readGas(hid_t file) {
     gas.pockets.push_back({numbers[k], numbers[k + 1], numbers[k + 2]});
   gas.cells = readNumbers(file, "gas_cells", maxParticles);
   gas.labels = readNumbers(file, "gas_labels", maxParticles);
-  gas.response = readNumbers(file, "gas_response", mostGasPockets * mostGasPockets);
   const auto isPocket = [&](double label) {
     return label >= 0 && label < static_cast<double>(gas.pockets.size());
   };
@@ -98,6 +95,15 @@ inline GasState readGas(hid_t file) {
       gas.cells.size() != gas.labels.size() || !std::ranges::all_of(gas.labels, isPocket))
     throw Hdf5Error("the cells of trapped gas do not fit its pockets");
   return gas;
+}
+
+/// Where there is something to write.
+inline void writeResponse(hid_t file, const std::vector<double>& response) {
+  if (!response.empty()) writeNumbers(file, "response", response);
+}
+inline std::vector<double> readResponse(hid_t file) {
+  constexpr std::uint64_t most = 6 * maxBodies + maxOpenings + mostGasPockets;
+  return hasAttribute(file, "response_count") ? readNumbers(file, "response", most * most) : std::vector<double>{};
 }
 
 /// Errors: Hdf5Error for what no body is.
@@ -112,10 +118,7 @@ inline RigidMotion readRigid(hid_t file) {
     forEachNumber(body, [&](double& x) { x = *from++; });
     if (!(body.mass >= 0)) throw Hdf5Error(fmt::format("a rigid body has a mass of {} kg", body.mass));
   }
-  rigid.response = readNumbers(file, "rigid_response", mostUnknowns * mostUnknowns);
   rigid.change = readNumbers(file, "rigid_change", mostUnknowns);
-  if (rigid.response.size() != rigid.change.size() * rigid.change.size() && !rigid.response.empty())
-    throw Hdf5Error("the response of the rigid bodies does not fit their number");
   return rigid;
 }
 

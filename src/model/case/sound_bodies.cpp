@@ -239,8 +239,6 @@ void requireSound(const Checker& at, const Opening& o) {
             "the face of an opening is a whole \"disc\" or a \"rectangle\"");
   if (o.pressure && o.flowRate)
     at.fail({"flow_rate"}, "expected at most one of pressure and flow_rate, found both");
-  if (o.flowRate && at.wholeCase().hasRigid())
-    at.fail({"flow_rate"}, "found beside a rigid body; expected a pressure, or a case without rigid bodies");
   const auto isIt = [&](const Body& b) { return b.holdsFluid() && b.material == o.material; };
   if (std::ranges::none_of(at.wholeCase().bodies, isIt))
     at.fail({"material"}, "expected the material of a body of type \"fluid\" or \"inflow\"");

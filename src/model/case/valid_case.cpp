@@ -190,11 +190,8 @@ void requireFrame(const Checker& at, const Case& c) {
 /// flow, as the velocities of rigid bodies are.
 void requireGas(const Checker& at, const Case& c) {
   if (!c.gas) return;
-  if (c.method.kind != MethodKind::MphI) at.fail({"gas"}, gasOfMphI);
-  if (!c.keepsVolume())
-    at.fail({"gas"}, c.hasSurfaceTension() ? "found beside a surface tension; a case can have only one of them"
-                                           : "expected method.scheme = \"accurate\" beside it");
-  if (c.hasRigid()) at.fail({"gas"}, "found beside a rigid body; a case can have only one of them");
+  if (c.method.kind == MethodKind::MphI && !c.isAccurate())
+    at.fail({"gas"}, "expected method.scheme = \"accurate\" beside it");
   double cells = 1;
   for (int k = 0; k < c.dimensions; ++k) cells *= (c.domain.max[k] - c.domain.min[k]) / c.spacing;
   constexpr double most = 2e8;  // some 50 bytes each

@@ -42,9 +42,10 @@ Vector solved(Vector a, Vector b, std::size_t n) {
   return b;
 }
 
-double largest(const Vector& v) {
+/// Of the values over their scales.
+double largest(const Vector& v, const Vector& scale) {
   double most = 0;
-  for (const double x : v) most = std::max(most, std::abs(x));
+  for (std::size_t k = 0; k < v.size(); ++k) most = std::max(most, std::abs(v[k]) / scale[k]);
   return most;
 }
 
@@ -57,18 +58,19 @@ double product(const Vector& a, const Vector& b) {
 /// What moves the zero along one row.
 struct Mover {
   const Vector* row;
-  Vector way;       // by which a push of 1 moves the zero
-  double rate = 0;  // of row . x along it
+  Vector way;         // by which a push of 1 moves the zero
+  double length = 0;  // of that, over the scales of the unknowns
+  double rate = 0;    // of row . x along it
   double push = 0;
 
   /// What row . x lacks of `aim`.
   double missing(double aim, const Vector& x) const { return aim - product(*row, x); }
-  /// Returns how far x has gone.
+  /// Returns how far x has gone, over the scales.
   double change(double by, Vector& x) {
     if (by == 0) return 0;
     push += by;
     for (std::size_t k = 0; k < x.size(); ++k) x[k] += by * way[k];
-    return std::abs(by) * largest(way);
+    return std::abs(by) * length;
   }
 };
 
@@ -101,8 +103,10 @@ struct HeldRestraint {
 };
 
 /// Moves what the derivative would take for the zero to where all restraints hold, by their pushes: one after the
-/// other until none moves it by more than `least` (projected Gauss-Seidel). What they cannot do together stays.
-void restrain(const Vector& derivative, const std::vector<Restraint>& restraints, double least, Vector& x) {
+/// other until none moves it by more than `least` of the scales (projected Gauss-Seidel). What they cannot do
+/// together stays.
+void restrain(const Vector& derivative, const std::vector<Restraint>& restraints, const Vector& scale,
+              double least, Vector& x) {
   constexpr int mostRounds = 2000;
   if (restraints.empty()) return;
   const std::size_t n = x.size();
@@ -113,6 +117,7 @@ void restrain(const Vector& derivative, const std::vector<Restraint>& restraints
     Mover m{&row, Vector(n)};
     for (std::size_t j = 0; j < n; ++j)
       for (std::size_t k = 0; k < n && push[j] != 0; ++k) m.way[k] += push[j] * ways[k * n + j];
+    m.length = largest(m.way, scale);
     m.rate = product(row, m.way);
     return m;
   };
@@ -141,7 +146,7 @@ void restrain(const Vector& derivative, const std::vector<Restraint>& restraints
 
 }  // namespace
 
-AffineSolve::Result AffineSolve::run(const Function& f, Vector& x, Vector& derivative, double scale,
+AffineSolve::Result AffineSolve::run(const Function& f, Vector& x, Vector& derivative, const Vector& scale,
                                      double tolerance, int most, const std::vector<Restraint>& restraints) {
   const std::size_t n = x.size();
   Result result;
@@ -155,38 +160,39 @@ AffineSolve::Result AffineSolve::run(const Function& f, Vector& x, Vector& deriv
     derivative.assign(n * n, 0);
     for (std::size_t j = 0; j < n; ++j) {
       Vector aside = x;
-      aside[j] += by;
+      aside[j] += by * scale[j];
       const Vector there = value(aside);
-      for (std::size_t i = 0; i < n; ++i) derivative[i * n + j] = (there[i] - y[i]) / by;
+      for (std::size_t i = 0; i < n; ++i) derivative[i * n + j] = (there[i] - y[i]) / (by * scale[j]);
     }
     isLast = false;
   };
-  if (derivative.size() != n * n) differentiate(scale);
+  if (derivative.size() != n * n) differentiate(1);
   for (int k = 0;; ++k) {
     Vector step = solved(derivative, y, n);
     for (std::size_t i = 0; i < n; ++i) step[i] = x[i] - step[i];
-    restrain(derivative, restraints, 0.1 * tolerance * scale, step);
+    restrain(derivative, restraints, scale, 0.1 * tolerance, step);
     for (std::size_t i = 0; i < n; ++i) step[i] -= x[i];
-    result.converged = largest(step) <= (k <= 2 * patience ? 1 : known) * tolerance * scale;
+    result.converged = largest(step, scale) <= (k <= 2 * patience ? 1 : known) * tolerance;
     // What was computed last must be what the unknowns are.
     if ((result.converged && isLast) || k == most) return result;
     if (k > 0 && k % patience == 0) {
-      differentiate(nearby * scale);
+      differentiate(nearby);
       continue;
     }
     double length2 = 0;
     for (std::size_t i = 0; i < n; ++i) {
       x[i] += step[i];
-      length2 += step[i] * step[i];
+      length2 += (step[i] / scale[i]) * (step[i] / scale[i]);
     }
     const Vector before = std::exchange(y, value(x));
     isLast = true;
     // What a short step changes may be less than what values are known to.
-    if (largest(step) <= 10 * tolerance * scale) continue;
+    if (largest(step, scale) <= 10 * tolerance) continue;
     for (std::size_t i = 0; i < n; ++i) {
       double error = y[i] - before[i];
       for (std::size_t j = 0; j < n; ++j) error -= derivative[i * n + j] * step[j];
-      for (std::size_t j = 0; j < n; ++j) derivative[i * n + j] += error * step[j] / length2;
+      for (std::size_t j = 0; j < n; ++j)
+        derivative[i * n + j] += error * step[j] / (scale[j] * scale[j] * length2);
     }
   }
 }

@@ -2,18 +2,19 @@
 
 #include "affine_solve.hpp"
 #include "given_forces.hpp"
+#include "method/flow_unknowns.hpp"
 #include "moving_bodies.hpp"
-#include "treacle/core/error.hpp"
 #include "treacle/model/motion/friction.hpp"
 #include "treacle/step/bodies/contacts.hpp"
 #include "treacle/step/readings/balance_sums.hpp"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <functional>
+#include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -23,8 +24,9 @@ namespace treacle {
 /// them by way of its own velocities, and of gravity accelerate the bodies to them. Both are of the end of the
 /// step, so that a light body in a stiff fluid is as stable as the fluid is.
 template <int D, class Backend>
-class RigidSystem {
+class RigidSystem final : public FlowUnknowns {
  public:
+  /// `state` must outlive this.
   explicit RigidSystem(FlowState<D, Backend>& state) : state_(state) {}
 
   /// The bodies of the step at hand start with the velocities that they had, changed as in the last step, and so
@@ -34,39 +36,42 @@ class RigidSystem {
     state_.rigid = state_.particles.rigid;
     for (RigidBody& b : state_.rigid.bodies)
       if (b.mass > 0) b.advance(early());
-    std::vector<double> x = values(state_.rigid.bodies);
+    std::vector<double> x = values();
     if (state_.rigid.change.size() == x.size())
       for (std::size_t k = 0; k < x.size(); ++k) x[k] += state_.rigid.change[k];
     set(x);
-    setWallMotions(state_);
   }
 
-  /// `loads(velocities)`: solves the flow with the velocities that state.rigid has, and returns what the bodies
-  /// then bear. The last flow that it solves is that of the velocities that are found. `contacts`: of bodies with
-  /// each other and with walls, which push them apart and do not hold them. Errors: RunError.
-  template <class F>
-  void solve(const std::vector<Contact<D>>& contacts, F&& loads) {
-    std::vector<double> x = values(state_.rigid.bodies);
-    if (x.empty()) {
-      loads();
-      return;
-    }
-    const double dt = state_.timeStep, scale = scaleOf(x);
-    bool isStart = true;  // whose velocities the walls and the right-hand side have
-    const auto result = AffineSolve::run(
-        [&](const std::vector<double>& at) {
-          if (!std::exchange(isStart, false)) set(at), setWallMotions(state_);
-          return residual(loads());
-        },
-        x, state_.rigid.response, scale, tolerance, mostSteps, restraints(contacts));
-    if (!result.converged)
-      throw RunError(
-          fmt::format("the velocities of the rigid bodies were not found in {} solves; take {} <= {:.3g}",
-                      result.values, state_.theCase.time.stepKey(), dt / 2));
-    set(x);
-    const std::vector<double> before = values(state_.particles.rigid.bodies);
+  /// `loads()`: what bodies bear of the flow at hand, for missing().
+  void setLoads(std::function<std::vector<LoadSums>()> loads) { loads_ = std::move(loads); }
+
+  std::string name() const override { return "the velocities of the rigid bodies"; }
+  std::vector<double> values() const override { return values(state_.rigid.bodies); }
+  std::vector<double> scales() const override { return std::vector(unknowns_.size(), scaleOf(values())); }
+  void set(std::span<const double> x) override {
+    setBodies(x);
+    setWallMotions(state_);
+  }
+  std::vector<double> missing() override { return residual(loads_()); }
+
+  /// The velocities of the last flow are those of the step.
+  void keepChange() {
+    const std::vector<double> x = values(), before = values(state_.particles.rigid.bodies);
     state_.rigid.change.resize(x.size());
     for (std::size_t k = 0; k < x.size(); ++k) state_.rigid.change[k] = x[k] - before[k];
+  }
+
+  /// Contacts of bodies with each other and with walls push them apart and do not hold them: that no surfaces that
+  /// touch go into each other, in the step at hand, and that those that do come apart: of an overlap a fifth in a
+  /// step, at most a hundredth of a spacing, which takes no energy worth naming. Among `all` unknowns of the step
+  /// the bodies' are the first.
+  std::vector<Restraint> restraints(const std::vector<Contact<D>>& contacts, std::size_t all) const {
+    std::vector<Restraint> restraints = restraintsOf(contacts);
+    for (Restraint& r : restraints) {
+      r.row.resize(all), r.push.resize(all);
+      for (Restraint::Slide& slide : r.slides) slide.row.resize(all), slide.push.resize(all);
+    }
+    return restraints;
   }
 
  private:
@@ -111,9 +116,6 @@ class RigidSystem {
     }
   }
 
-  static constexpr double tolerance = 1e-6;  // of a step to the solution, of the speeds that count
-  static constexpr int mostSteps = 40;
-
   std::vector<double> values(const std::vector<RigidBody>& bodies) const {
     std::vector<double> x;
     for (const Unknown& u : unknowns_) {
@@ -128,7 +130,7 @@ class RigidSystem {
     return x;
   }
 
-  void set(const std::vector<double>& x) {
+  void setBodies(std::span<const double> x) {
     for (std::size_t k = 0; k < x.size(); ++k) {
       RigidBody& b = state_.rigid.bodies[unknowns_[k].body];
       const int component = unknowns_[k].component;
@@ -153,9 +155,7 @@ class RigidSystem {
     b.velocity = (1 / state_.timeStep) * (turnedBy(turned.orientation, arm) - arm);
   }
 
-  /// That no surfaces that touch go into each other, in the step at hand, and that those that do come apart: of an
-  /// overlap a fifth in a step, at most a hundredth of a spacing, which takes no energy worth naming.
-  std::vector<Restraint> restraints(const std::vector<Contact<D>>& contacts) const {
+  std::vector<Restraint> restraintsOf(const std::vector<Contact<D>>& contacts) const {
     if (contacts.empty()) return {};
     const double dt = state_.timeStep, most = 0.01 * state_.theCase.spacing;
     const double least = 4 * dt * norm(state_.theCase.gravity);  // of an impact: what rests does not bounce [m/s]
@@ -312,6 +312,7 @@ class RigidSystem {
 
   FlowState<D, Backend>& state_;
   std::vector<Unknown> unknowns_;
+  std::function<std::vector<LoadSums>()> loads_;
 };
 
 }  // namespace treacle

@@ -99,15 +99,18 @@ void GasPockets<D>::forEachWeight(const Vec<D>& x, F&& f) const {
 }
 
 template <int D>
-void GasPockets<D>::find(std::span<const Vec<D>> position, std::uint32_t fluid, GasState& state) {
+bool GasPockets<D>::find(const Processes& processes, std::span<const Vec<D>> position, std::uint32_t fluid,
+                         GasState& state) {
   sort(position);
-  findEmpty(position);
+  findEmpty(processes, position);
   const auto found = components();
-  inherit(found, state);
+  const bool isNew = inherit(found, state);
   widen(found);
-  measure(position, fluid, state);
+  measure(processes, position, fluid);
+  setVolumes(state);
   share();
   meet(position, fluid);
+  return isNew;
 }
 
 /// Particles by cells.
@@ -126,7 +129,7 @@ void GasPockets<D>::sort(std::span<const Vec<D>> position) {
 }
 
 template <int D>
-void GasPockets<D>::findEmpty(std::span<const Vec<D>> position) {
+void GasPockets<D>::findEmpty(const Processes& processes, std::span<const Vec<D>> position) {
   empty_.assign(grid_.cellCount(), 1);
   const double least2 = spacing_ * spacing_;
   for (std::size_t cell = 0; cell < empty_.size(); ++cell) {
@@ -141,6 +144,10 @@ void GasPockets<D>::findEmpty(std::span<const Vec<D>> position) {
       }
     });
   }
+  if (!processes.communicator) return;
+  for (std::uint8_t& cell : empty_) cell = 1 - cell;
+  processes.communicator->anyOf(empty_);
+  for (std::uint8_t& cell : empty_) cell = 1 - cell;
 }
 
 /// Gives a label to all empty cells without one that hang together with these.
@@ -194,9 +201,9 @@ std::vector<std::vector<std::size_t>> GasPockets<D>::components() {
 }
 
 /// The content of a pocket goes to those that have its cells, in proportion; with cells that are air now, it is
-/// gone. Pockets that are new and small are none.
+/// gone. Pockets that are new and small are none. Returns whether the pockets are other ones than before.
 template <int D>
-void GasPockets<D>::inherit(const std::vector<std::vector<std::size_t>>& found, GasState& state) {
+bool GasPockets<D>::inherit(const std::vector<std::vector<std::size_t>>& found, GasState& state) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, double> shared;  // of pockets before and now: cells
   std::vector<double> kept(state.pockets.size());
   for (std::size_t k = 0; k < state.cells.size(); ++k) {
@@ -238,10 +245,10 @@ void GasPockets<D>::inherit(const std::vector<std::vector<std::size_t>>& found, 
     }
   }
   same = same && next.pockets.size() == state.pockets.size();
-  if (same) next.response = std::move(state.response);
   for (std::size_t cell = 0; cell < empty_.size(); ++cell)
     if (label_[cell] < nobody) label_[cell] = number[label_[cell]];
   state = std::move(next);
+  return !same;
 }
 
 /// Rings of cells around the pockets that are not empty get the label of the pocket that is nearest.
@@ -264,10 +271,9 @@ void GasPockets<D>::widen(const std::vector<std::vector<std::size_t>>& found) {
   rings_.push_back(static_cast<std::uint32_t>(near_.size()));
 }
 
-/// Volumes: what is empty of the cells of a pocket and next to it. A volume that is known from the step before is
-/// drawn towards it.
+/// What particles fill of the cells of pockets and around them.
 template <int D>
-void GasPockets<D>::measure(std::span<const Vec<D>> position, std::uint32_t fluid, GasState& state) {
+void GasPockets<D>::measure(const Processes& processes, std::span<const Vec<D>> position, std::uint32_t fluid) {
   filled_.assign(empty_.size(), 0), walls_.assign(empty_.size(), 0);
   for (const std::uint32_t cell : near_)
     for (std::uint32_t k = start_[cell]; k < start_[cell + 1]; ++k)
@@ -275,6 +281,19 @@ void GasPockets<D>::measure(std::span<const Vec<D>> position, std::uint32_t flui
         filled_[to] += weight * particle_ / cell_;
         if (items_[k] >= fluid) walls_[to] += weight * particle_ / cell_;
       });
+  if (!processes.communicator) return;
+  std::vector<double> sums;
+  for (const std::uint32_t cell : near_) sums.push_back(filled_[cell]), sums.push_back(walls_[cell]);
+  sumOverProcesses(processes, std::span(sums));
+  filled_.assign(empty_.size(), 0), walls_.assign(empty_.size(), 0);
+  for (std::size_t k = 0; k < near_.size(); ++k)
+    filled_[near_[k]] = sums[2 * k], walls_[near_[k]] = sums[2 * k + 1];
+}
+
+/// What is empty of the cells of a pocket and next to it. A volume that is known from the step before is drawn
+/// towards it.
+template <int D>
+void GasPockets<D>::setVolumes(GasState& state) const {
   std::vector<double> volume(state.pockets.size());
   for (std::size_t k = 0; k < rings_[rim + 1]; ++k) volume[label_[near_[k]]] += (1 - filled_[near_[k]]) * cell_;
   const double k = gas_.exponent;
@@ -311,21 +330,22 @@ void GasPockets<D>::smooth(std::vector<double>& field) {
 /// twice the part of the space between walls that is empty, so that walls beside a surface do not change it.
 template <int D>
 void GasPockets<D>::share() {
-  std::vector<double> open(empty_.size(), 1);
+  open_.assign(empty_.size(), 1);
   ofWalls_.assign(empty_.size(), 0);
-  for (const std::uint32_t cell : near_) open[cell] = std::max(0.0, 1 - walls_[cell]);
+  for (const std::uint32_t cell : near_) open_[cell] = std::max(0.0, 1 - walls_[cell]);
   for (std::size_t k = 0; k < rings_[rim + 1]; ++k)
     ofWalls_[near_[k]] = std::clamp(1 - filled_[near_[k]], 0.0, 1.0);
   smooth(ofWalls_);
-  smooth(open);
+  smooth(open_);
   ofFluid_.assign(empty_.size(), 0);
   for (const std::uint32_t cell : near_) {
-    ofFluid_[cell] = open[cell] > 0.05 ? 2 * ofWalls_[cell] / open[cell] : 0;
+    ofFluid_[cell] = open_[cell] > 0.05 ? 2 * ofWalls_[cell] / open_[cell] : 0;
     ofWalls_[cell] *= 2;
   }
 }
 
-/// The areas -V grad I of particles.
+/// The areas -V grad I of particles. Gas presses on a wall along its normal alone: where fluid meets the wall, I
+/// falls along it as well, by what is the fluid's.
 template <int D>
 void GasPockets<D>::meet(std::span<const Vec<D>> position, std::uint32_t fluid) {
   contacts_.clear();
@@ -333,10 +353,12 @@ void GasPockets<D>::meet(std::span<const Vec<D>> position, std::uint32_t fluid) 
     for (std::uint32_t k = start_[cell]; k < start_[cell + 1]; ++k) {
       const std::uint32_t i = items_[k];
       const std::vector<double>& share = i < fluid ? ofFluid_ : ofWalls_;
-      Vec<D> area{};
+      Vec<D> area{}, normal{};
       forEachWeight(position[i], [&](std::size_t to, double, const Vec<D>& gradient) {
         area = area - (particle_ * share[to]) * gradient;
+        normal += open_[to] * gradient;
       });
+      if (i >= fluid && norm2(normal) > 0) area = (dot(area, normal) / norm2(normal)) * normal;
       if (norm2(area) > 0) contacts_.push_back({i, label_[cell], area});
     }
   std::ranges::sort(contacts_, {}, &GasContact<D>::particle);
@@ -352,7 +374,8 @@ template <int D>
 std::size_t GasPockets<D>::bytes() const {
   return empty_.capacity() +
          sizeof(std::uint32_t) * (label_.capacity() + start_.capacity() + items_.capacity() + near_.capacity()) +
-         sizeof(double) * (filled_.capacity() + walls_.capacity() + ofFluid_.capacity() + ofWalls_.capacity()) +
+         sizeof(double) * (filled_.capacity() + walls_.capacity() + open_.capacity() + ofFluid_.capacity() +
+                           ofWalls_.capacity()) +
          sizeof(GasContact<D>) * contacts_.capacity();
 }
 

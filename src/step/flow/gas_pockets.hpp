@@ -1,5 +1,6 @@
 #pragma once
 
+#include "treacle/core/processes.hpp"
 #include "treacle/core/vec.hpp"
 #include "treacle/model/case/case.hpp"
 #include "treacle/model/state/gas_state.hpp"
@@ -21,10 +22,12 @@ class GasPockets {
  public:
   explicit GasPockets(const Case& c);
 
-  /// Of the particles at these places, of which so many are fluid and the others walls. `state`: that of the step
-  /// before; what it says of pockets goes on in those that have their cells. Errors: std::bad_alloc.
-  void find(std::span<const Vec<D>> position, std::uint32_t fluid, GasState& state);
-  /// In the order of the particles.
+  /// Of the particles at these places, of which so many are fluid and the others walls; several processes come
+  /// each with particles of its own. `state`: that of the step before; what it says of pockets goes on in those
+  /// that have their cells. Returns whether the pockets are other ones than before. Collective. Errors:
+  /// std::bad_alloc.
+  bool find(const Processes& processes, std::span<const Vec<D>> position, std::uint32_t fluid, GasState& state);
+  /// Of the process's own particles, in their order.
   std::span<const GasContact<D>> contacts() const { return contacts_; }
 
   /// Pressure above that of the air in a pocket of this volume [Pa].
@@ -51,12 +54,13 @@ class GasPockets {
   Vec<D> centerOf(std::size_t cell) const;
 
   void sort(std::span<const Vec<D>> position);
-  void findEmpty(std::span<const Vec<D>> position);
+  void findEmpty(const Processes& processes, std::span<const Vec<D>> position);
   void spread(std::vector<std::size_t> from, std::uint32_t label);
   std::vector<std::vector<std::size_t>> components();
-  void inherit(const std::vector<std::vector<std::size_t>>& found, GasState& state);
+  bool inherit(const std::vector<std::vector<std::size_t>>& found, GasState& state);
   void widen(const std::vector<std::vector<std::size_t>>& found);
-  void measure(std::span<const Vec<D>> position, std::uint32_t fluid, GasState& state);
+  void measure(const Processes& processes, std::span<const Vec<D>> position, std::uint32_t fluid);
+  void setVolumes(GasState& state) const;
   void smooth(std::vector<double>& field);
   void share();
   void meet(std::span<const Vec<D>> position, std::uint32_t fluid);
@@ -71,6 +75,7 @@ class GasPockets {
   std::vector<std::uint32_t> near_;           // cells of pockets and around them, by rings
   std::vector<std::uint32_t> rings_;          // where rings begin in near_
   std::vector<double> filled_, walls_;        // per cell: the part of it that particles fill, and walls alone
+  std::vector<double> open_;                  // per cell, where a pocket is near: the part without walls, smoothed
   std::vector<double> ofFluid_, ofWalls_;     // per cell: I, for particles of each kind
   std::vector<GasContact<D>> contacts_;
 };

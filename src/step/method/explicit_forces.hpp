@@ -2,6 +2,7 @@
 
 #include "run/flow_state.hpp"
 #include "treacle/mph/mph_pairs.hpp"
+#include "treacle/step/readings/balance_sums.hpp"
 
 #include <span>
 
@@ -21,6 +22,9 @@ class ExplicitForces {
   /// `walls`, which are added to `load` [N/m3]. Of cases with a balance or rigid bodies.
   virtual void allForces(FlowState<D, Backend>&, const MphPairs<D>&, const ClusterListView& walls,
                          std::span<Vec<D>> y, std::span<Vec<D>> load) const = 0;
+
+  /// Adds forces and torques on bodies of the case that are in no pair of particles [N], [N m]; in 2D per metre.
+  virtual void addLoads(std::span<LoadSums>) const {}
 };
 
 }  // namespace treacle

@@ -32,6 +32,9 @@ class ForcesAround : public ExplicitForces<D, Backend> {
     addSurfaceForces<D>(state.context, onWalls_.span(), y.subspan(pairs.fluidCount));
     addSurfaceForces<D>(state.context, onWalls_.span(), load);
   }
+  void addLoads(std::span<LoadSums> loads) const final {
+    if (others_) others_->addLoads(loads);
+  }
 
  protected:
   /// `others`: forces that go with these, or null; must outlive this.

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "bodies/step_bodies.hpp"
 #include "isph_failure.hpp"
 #include "isph_solver.hpp"
+#include "step_unknowns.hpp"
 #include "treacle/core/halo.hpp"
 #include "treacle/isph/isph_particles.hpp"
 #include "treacle/isph/isph_sums.hpp"

@@ -1,13 +1,13 @@
 #pragma once
 
-#include "bodies/step_bodies.hpp"
 #include "isph_arrangement.hpp"
 #include "isph_failure.hpp"
 #include "isph_predictor.hpp"
 #include "isph_solver.hpp"
 #include "run/step_method.hpp"
 #include "run/take_trial.hpp"
-#include "step_pressures.hpp"
+#include "step_gas.hpp"
+#include "step_unknowns.hpp"
 #include "treacle/core/halo.hpp"
 #include "treacle/isph/isph_particles.hpp"
 #include "treacle/search/particle_sort.hpp"
@@ -29,9 +29,9 @@ class IsphStep final : public StepMethod<D, Backend> {
         pairs_(makeIsphPairs<D>(state.theCase)),
         predictor_(state, pairs_),
         pressure_(solveStages(solvedCase(state.theCase))),
-        pressures_(state) {
-    if (state.theCase.hasRigid()) bodies_.emplace(state);
+        unknowns_(state) {
     if (pairs_.accurate) arrangement_.emplace(state);
+    if (state.theCase.gas) gas_.emplace(state.theCase, nullptr), unknowns_.add(*gas_);
   }
 
   void sortParticles() override { sort_.sort(state_.context, pairs_.grid, state_.particles); }
@@ -56,7 +56,7 @@ class IsphStep final : public StepMethod<D, Backend> {
 
   /// v*, with walls that go with what rigid bodies are tried with first.
   StagedReport predict() override {
-    if (bodies_) bodies_->start();
+    unknowns_.start();
     pairs_.wallMotion = state_.wallMotion.empty() ? nullptr : state_.wallMotion.data();
     pairs_.timeStep = state_.timeStep;
     pairs_.frame = state_.frame;
@@ -76,6 +76,8 @@ class IsphStep final : public StepMethod<D, Backend> {
     closed_ = isClosed(state_.context, ownSurface());
     if (closed_)
       clearValues(state_.context, missing_.span());  // no surface that would hold the level of pressures
+    if (gas_) gas_->prepare(state_, pairs_.grid, sort_.owners());
+    addGas();
     computeSource();
     pressure_.prepareMatrix(state_.context, pairs_, ranges(), row());
   }
@@ -86,7 +88,7 @@ class IsphStep final : public StepMethod<D, Backend> {
     StagedReport report;
     if (arrangement_) report = arrangement_->solve(pressure_, pairs_, closed_);
     guess(solution());
-    report.follow(bodies_ ? solveWithBodies() : solveWithPressures());  // the residual is that of the flow
+    report.follow(solveFlow());  // the residual is that of the flow
     return report;
   }
 
@@ -109,7 +111,7 @@ class IsphStep final : public StepMethod<D, Backend> {
   }
 
   void correctVelocities() override {
-    if (!bodies_ && !pressures_.some()) correct(solution_);
+    if (!unknowns_.some()) correct(solution_);
   }
 
   void wallFriction(std::span<Vec<D>> force) override {
@@ -133,7 +135,8 @@ class IsphStep final : public StepMethod<D, Backend> {
   }
 
   void accept() override {
-    pressures_.accept();
+    if (gas_) gas_->accept(state_);
+    unknowns_.accept();
     std::span<double> pressure = state_.particles.pressure;
     copyValues(state_.context, std::span<const double>(solution_), pressure.data());
     clearValues(state_.context, pressure.subspan(pairs_.fluidCount));
@@ -170,35 +173,39 @@ class IsphStep final : public StepMethod<D, Backend> {
            deficit_.bytes() + eddyViscosity_.bytes() + wallViscosity_.bytes() + renormalisation_.bytes() +
            missing_.bytes() + surface_.bytes() + predictor_.bytes() + source_.bytes() + solution_.bytes() +
            shifted_.bytes() + (arrangement_ ? arrangement_->bytes() : 0) + wallShare_.bytes() + forces_.bytes() +
-           pressure_.bytes() + (bodies_ ? bodies_->bytes() : 0) + pressing_.bytes() + wallSurface_.bytes();
+           pressure_.bytes() + unknowns_.bytes() + (gas_ ? gas_->bytes() : 0) + withoutGas_.bytes() +
+           pressing_.bytes() + wallSurface_.bytes();
   }
 
   /// Pairs up to this share of the kernel's radius make the smoother's matrix: 1.9 l with the usual kernel.
   static constexpr double nearShare = 0.79;
 
  private:
-  /// The flow and the velocities of the rigid bodies. Each solve starts from what the last step has left, which is
-  /// zero where nothing moves and a right-hand side may be.
-  StagedReport solveWithBodies() {
-    placeWallSurfaces(state_, pairs_.fluidCount, pairs_.activeCount - pairs_.fluidCount, wallSurface_);
-    pressing_.resize(state_.context, pairs_.ownFluid());
+  /// The flow, and the velocities and pressures that are found with it. Each solve starts from what the last step
+  /// has left, which is zero where nothing moves and a right-hand side may be.
+  StagedReport solveFlow() {
+    if (unknowns_.hasBodies()) {
+      placeWallSurfaces(state_, pairs_.fluidCount, pairs_.activeCount - pairs_.fluidCount, wallSurface_);
+      pressing_.resize(state_.context, pairs_.ownFluid());
+    }
     const auto flow = [&](bool isFirst) {
-      const StagedReport report = solvePressure(isFirst, false);
-      correct(isFirst ? solution_ : pressing_);
-      if (isFirst) copyValues(state_.context, std::span<const double>(solution()), pressing_.data());
+      const StagedReport report = solvePressure(isFirst);
+      if (!unknowns_.some()) return report;
+      correct(isFirst || !unknowns_.hasBodies() ? solution_ : pressing_);
+      if (isFirst && unknowns_.hasBodies())
+        copyValues(state_.context, std::span<const double>(solution()), pressing_.data());
       return report;
     };
-    return bodies_->solve(pairs_, wallSurface_, flow, [&] { return loadsOfWalls(); });
+    return unknowns_.solve(pairs_, wallSurface_, flow, [&] { return loadsOfWalls(); });
   }
 
-  /// The pressures of the fluid and of openings with a flow rate.
-  StagedReport solveWithPressures() {
-    if (!pressures_.some()) return solvePressure();
-    return pressures_.solve(nullptr, [&](bool isFirst) {
-      const StagedReport report = solvePressure(isFirst, true);
-      correct(solution_);
-      return report;
-    });
+  /// To v*: as pressures do, gas acts on what viscosity has left.
+  void addGas() {
+    if (!gas_) return;
+    const std::span<Vec<D>> predicted = predictor_.velocity().span().first(pairs_.ownFluid());
+    withoutGas_.resize(state_.context, predicted.size());
+    copyValues(state_.context, std::span<const Vec<D>>(predicted), withoutGas_.data());
+    gas_->addVelocities(state_, predicted);
   }
 
   void computeSource() {
@@ -212,12 +219,14 @@ class IsphStep final : public StepMethod<D, Backend> {
     if (closed_) takeLevel(state_.context, Level::Mean, source_);
   }
 
-  /// The same again in the same step, with the velocities that walls have now and, where told, other forces; for
-  /// the first time from what is prepared. Errors: RunError.
-  StagedReport solvePressure(bool isFirst, bool withForces) {
+  /// The same again in the same step, with the velocities and forces of the unknowns; for the first time from what
+  /// is prepared. Errors: RunError.
+  StagedReport solvePressure(bool isFirst) {
     StagedReport report;
     if (!isFirst) {
-      report = predictor_.follow(solution(), withForces);
+      if (gas_) copyValues(state_.context, std::span<const Vec<D>>(withoutGas_), predictor_.velocity().data());
+      report = predictor_.follow(solution(), unknowns_.hasPumps());
+      addGas();
       computeSource();
       guess(solution());
     }
@@ -239,7 +248,8 @@ class IsphStep final : public StepMethod<D, Backend> {
     fillGhosts(state_.context, Held::Fluid, solution_.data());
     state_.velocity.resize(state_.context, pairs_.ownFluid());
     wallShare_.resize(state_.context, pairs_.ownFluid());
-    Vec<D>* stopped = bodies_ || state_.theCase.hasLoads() ? forces_.prepare(state_, pairs_) : nullptr;
+    Vec<D>* stopped =
+        unknowns_.hasBodies() || state_.theCase.hasLoads() ? forces_.prepare(state_, pairs_) : nullptr;
     CorrectorTerm<D> term{solution_.data(),       pressing.data(),   predictor_.velocity().data(),
                           state_.velocity.data(), wallShare_.data(), stopped};
     if (arrangement_) arrangement_->addTo(term, pairs_, closed_, ownSurface(), solution());
@@ -248,8 +258,10 @@ class IsphStep final : public StepMethod<D, Backend> {
 
   /// Before the step changes the particles' velocities, which an explicit viscous step has taken its forces of.
   std::vector<LoadSums> loadsOfWalls() {
-    return forces_.loads(state_, pairs_, solution_, predictor_.viscousVelocity(), predictor_.isViscous(),
-                         predictor_.viscousFlow());
+    std::vector<LoadSums> loads = forces_.loads(state_, pairs_, solution_, predictor_.viscousVelocity(),
+                                                predictor_.isViscous(), predictor_.viscousFlow());
+    if (gas_) gas_->addLoads(loads);
+    return loads;
   }
 
   void find(RowKind kind, NeighbourRows<Backend>& rows) {
@@ -316,10 +328,11 @@ class IsphStep final : public StepMethod<D, Backend> {
   std::vector<WallLoad> loads_;                             // of the last step
   std::vector<double> patches_;                             // pressures of the probes WallPressure [Pa]
   IsphSolver<D, Backend, PressureRow<D>> pressure_;
-  StepPressures<D, Backend> pressures_;
-  std::optional<StepBodies<D, Backend>> bodies_;  // where the case has rigid bodies; then also:
-  Buffer<double, Backend> pressing_;              // those of the step's first solve
-  Buffer<WallSurface<D>, Backend> wallSurface_;   // per active wall particle
+  std::optional<StepGas<D, Backend>> gas_;       // where the case has gas; then also:
+  Buffer<Vec<D>, Backend> withoutGas_;           // v* of own fluid [m/s]
+  StepUnknowns<D, Backend> unknowns_;            // where the case has rigid bodies, also:
+  Buffer<double, Backend> pressing_;             // those of the step's first solve
+  Buffer<WallSurface<D>, Backend> wallSurface_;  // per active wall particle
 };
 
 }  // namespace treacle

@@ -1,4 +1,3 @@
-#include "bodies/step_bodies.hpp"
 #include "mph_right_hand_side.hpp"
 #include "mph_solver.hpp"
 #include "readings/step_balance.hpp"
@@ -9,10 +8,10 @@
 #include "step_guess.hpp"
 #include "step_heat.hpp"
 #include "step_places.hpp"
-#include "step_pressures.hpp"
 #include "step_states.hpp"
 #include "step_surface.hpp"
 #include "step_tension.hpp"
+#include "step_unknowns.hpp"
 #include "step_viscosities.hpp"
 #include "treacle/core/halo.hpp"
 #include "treacle/model/particles/particles_copy.hpp"
@@ -40,15 +39,14 @@ class MphStep final : public StepMethod<D, Backend> {
         wholeRows_(needsAssembled<Backend>(state.theCase.solver)),
         solver_(solveStages(solvedCase(state.theCase))),
         viscosities_(state.theCase),
-        pressures_(state) {
+        unknowns_(state) {
     if (state.theCase.hasStates()) states_.emplace();
     if (state.theCase.heat) heat_.emplace(state.theCase, pairs_);
     if (state.theCase.hasSurfaceTension()) surface_.emplace(state.theCase);
     if (state.theCase.keepsVolume()) tension_.emplace();
-    if (state.theCase.gas) gas_.emplace(state.theCase, *tension_);
+    if (state.theCase.gas) gas_.emplace(state.theCase, explicitForces()), unknowns_.add(*gas_);
     if (state.theCase.elasticModes() > 0) elasticity_.emplace(state.theCase, explicitForces());
     if (state.theCase.isAccurate()) viscosities_.addStiffness(state.theCase, explicitForces());
-    if (state.theCase.hasRigid()) bodies_.emplace(state);
   }
 
   void sortParticles() override { neighbourhood_.sort(state_.context, state_.particles); }
@@ -64,7 +62,7 @@ class MphStep final : public StepMethod<D, Backend> {
 
   /// Walls go with what rigid bodies are tried with first.
   StagedReport predict() override {
-    if (bodies_) bodies_->start();
+    unknowns_.start();
     return {};
   }
 
@@ -79,7 +77,7 @@ class MphStep final : public StepMethod<D, Backend> {
     if (elasticity_) elasticity_->prepare(state_, pairs_);
     viscosities_.giveBack(state_, pairs_);
     if (tension_) tension_->prepare(state_, pairs_, places_.of(state_));
-    if (gas_) gas_->prepare(state_);
+    if (gas_) gas_->prepare(state_, pairs_.grid, neighbourhood_.owners());
     prepareViscous();
   }
 
@@ -93,7 +91,12 @@ class MphStep final : public StepMethod<D, Backend> {
   /// Leaves the walls' velocities in state.velocity, too.
   StagedReport solve() override {
     guess_.setAll(pairs_);
-    return bodies_ ? solveWithBodies() : solveWithPressures();
+    const auto flow = [&](bool isFirst) {
+      if (isFirst) return solveFluid();
+      keepVelocities([&] { unknowns_.hasPressures() ? computeRightHandSide() : rhs_.takeWallVelocities(); });
+      return solveOnce();
+    };
+    return unknowns_.solve(pairs_, wallSurface_, flow, [&] { return loads(); });
   }
 
   /// With the modes of the state where the settings have it deflate, as the next step would.
@@ -160,7 +163,7 @@ class MphStep final : public StepMethod<D, Backend> {
                                    tension_ ? &*tension_ : nullptr, explicitForces(), rhs_.buoyancy(volumes()));
     if (heat_) acceptHeat();
     if (gas_) gas_->accept(state_);
-    pressures_.accept();
+    unknowns_.accept();
     if (tension_) tension_->accept(state_, pairs_, places_.of(state_));
     if (viscosities_.change()) state_.particles.modes.pressure = {};  // those of the next step may not
     guess_.accept(n);
@@ -185,7 +188,7 @@ class MphStep final : public StepMethod<D, Backend> {
            (tension_ ? tension_->bytes() : 0) + wallBlock_.bytes() + wallGradient_.bytes() + places_.bytes() +
            divergence_.bytes() + rhs_.bytes() + found_.bytes() + solver_.bytes() + balance_.bytes() +
            wallForces_.bytes() + (gas_ ? gas_->bytes() : 0) + (elasticity_ ? elasticity_->bytes() : 0) +
-           (bodies_ ? bodies_->bytes() : 0) + pressure_.bytes();
+           unknowns_.bytes() + pressure_.bytes();
   }
 
  private:
@@ -200,34 +203,6 @@ class MphStep final : public StepMethod<D, Backend> {
       report.follow(solveOnce());
     }
     return report;
-  }
-
-  /// The flow and the velocities of the rigid bodies.
-  StagedReport solveWithBodies() {
-    const auto flow = [&](bool isFirst) {
-      if (isFirst) return solveFluid();
-      takeWallVelocities();
-      return solveOnce();
-    };
-    return bodies_->solve(pairs_, wallSurface_, flow, [&] { return loads(); });
-  }
-
-  /// The flow, and the pressures that are found with it.
-  StagedReport solveWithPressures() {
-    return pressures_.solve(gas_ ? &*gas_ : nullptr, [&](bool isFirst) {
-      if (isFirst) return solveFluid();
-      keepVelocities([&] { computeRightHandSide(); });
-      return solveOnce();
-    });
-  }
-
-  /// Brings the present velocities of walls into the right-hand side and into state.velocity, whose fluid stays.
-  void takeWallVelocities() {
-    const std::uint32_t fluid = pairs_.fluidCount;
-    found_.resize(state_.context, fluid);
-    copyValues(state_.context, std::span<const Vec<D>>(state_.velocity).first(fluid), found_.data());
-    rhs_.takeWallVelocities();
-    copyValues(state_.context, std::span<const Vec<D>>(found_), state_.velocity.data());
   }
 
   /// Psi of [K23 eq. (14)] per active particle, and divergence_, with the velocities in state.velocity [Pa].
@@ -272,11 +247,13 @@ class MphStep final : public StepMethod<D, Backend> {
     });
   }
 
-  /// What `prepare` leaves in state.velocity is of no use: it is put back.
+  /// What `prepare` leaves of the fluid in state.velocity is of no use: it is put back. Walls have their present
+  /// velocities then.
   template <class F>
   void keepVelocities(F&& prepare) {
-    found_.resize(state_.context, state_.velocity.size());
-    copyValues(state_.context, std::span<const Vec<D>>(state_.velocity), found_.data());
+    const std::uint32_t fluid = pairs_.fluidCount;
+    found_.resize(state_.context, fluid);
+    copyValues(state_.context, std::span<const Vec<D>>(state_.velocity).first(fluid), found_.data());
     prepare();
     copyValues(state_.context, std::span<const Vec<D>>(found_), state_.velocity.data());
   }
@@ -342,8 +319,8 @@ class MphStep final : public StepMethod<D, Backend> {
   const ExplicitForces<D, Backend>* explicitForces() const {
     if (viscosities_.stiffness()) return viscosities_.stiffness();
     if (elasticity_) return &*elasticity_;
-    if (surface_) return &*surface_;
     if (gas_) return &*gas_;
+    if (surface_) return &*surface_;
     return tension_ ? &*tension_ : nullptr;
   }
 
@@ -376,10 +353,9 @@ class MphStep final : public StepMethod<D, Backend> {
   std::optional<StepSurface<D, Backend>> surface_;        // where some fluid has a surface tension
   std::optional<StepTension<D, Backend>> tension_;        // where the case keeps its volume
   std::optional<StepGas<D, Backend>> gas_;                // where the case has gas
-  StepPressures<D, Backend> pressures_;
-  std::optional<StepBodies<D, Backend>> bodies_;  // where the case has rigid bodies; then also:
-  Buffer<double, Backend> pressure_;              // per active particle [Pa]
-  WallForces<D, Backend> wallForces_;             // for rigid bodies, the balance and surface tension
+  StepUnknowns<D, Backend> unknowns_;
+  Buffer<double, Backend> pressure_;   // per active particle, where the case has rigid bodies [Pa]
+  WallForces<D, Backend> wallForces_;  // for rigid bodies, the balance and surface tension
   StepBalance<D, Backend> balance_{wallForces_};
   std::optional<Balance> lastBalance_;
 };

@@ -2,45 +2,64 @@
 
 #include "explicit_forces.hpp"
 #include "flow/gas_pockets.hpp"
+#include "run/selected.hpp"
+#include "treacle/core/processes.hpp"
+#include "treacle/search/cell_owners.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
 namespace treacle {
 
-/// The gas that the fluid has trapped in a step of MPH-I: its pockets, and their pressures at the end of the step,
-/// in which the flow with these pressures leaves them the volume that goes with them.
+/// The gas that the fluid has trapped in a step: its pockets, and their pressures at the end of the step, in which
+/// the flow with these pressures leaves them the volume that goes with them. In MPH-I it is one of the explicit
+/// forces.
 template <int D, class Backend>
 class StepGas final : public ExplicitForces<D, Backend> {
  public:
-  /// `others`: forces that go with those of the gas in allForces(); must outlive this.
-  StepGas(const Case& c, const ExplicitForces<D, Backend>& others) : pockets_(c), others_(others) {}
+  /// `others`: forces that go with those of the gas in allForces(), or null with ISPH; must outlive this.
+  StepGas(const Case& c, const ExplicitForces<D, Backend>* others) : pockets_(c), others_(others) {}
 
-  /// On the places in the middle of the step.
-  void prepare(const FlowState<D, Backend>& state) {
+  /// On the places where the forces of the step are. `grid`, `owners`: of the search. Collective.
+  void prepare(const FlowState<D, Backend>& state, const CellGrid<D>& grid, const CellOwners<D>& owners) {
     const Particles<D, Backend>& p = state.particles;
     position_.resize(p.count);
     copyToHost(state.context, std::span<const Vec<D>>(p.position), position_.data());
+    const bool isAlone = !state.context.communicator;
+    if (!isAlone) takeOwn(p, grid, owners);
     gas_ = p.gas;
-    pockets_.find(position_, p.fluidCount, gas_);
-    const std::span<const GasContact<D>> all = pockets_.contacts();
-    const auto walls = std::ranges::lower_bound(all, p.fluidCount, {}, &GasContact<D>::particle);
-    fromHost(state.context, std::span<const GasContact<D>>(all.begin(), walls), ofFluid_);
-    fromHost(state.context, std::span<const GasContact<D>>(walls, all.end()), ofWalls_);
+    isNew_ = pockets_.find(state.context, isAlone ? position_.span() : ownPosition_.span(), p.fluidCount, gas_);
+    std::vector<GasContact<D>> contacts(pockets_.contacts().begin(), pockets_.contacts().end());
+    if (!isAlone)
+      for (GasContact<D>& contact : contacts) contact.particle = own_[contact.particle];
+    const auto walls = std::ranges::lower_bound(contacts, p.wallBegin(), {}, &GasContact<D>::particle);
+    fromHost(state.context, std::span<const GasContact<D>>(contacts.begin(), walls), ofFluid_);
+    fromHost(state.context, std::span<const GasContact<D>>(walls, contacts.end()), ofWalls_);
+    if (state.theCase.needsWallNeighbours() || state.theCase.hasLoads()) findSides(state, {walls, contacts.end()});
+    if (!others_) setVelocities(state, {contacts.begin(), walls});
     pressures_.clear();
     for (const GasState::Pocket& pocket : gas_.pockets) pressures_.push_back(pocket.pressure);
     setPressures(state);
   }
+
+  /// Whether the pockets are other ones than in the step before.
+  bool isNew() const { return isNew_; }
 
   /// y += the forces of the pressures at hand per own fluid particle [N/m3].
   void addPressures(FlowState<D, Backend>& state, std::span<Vec<D>> y) const {
     addGasForces<D>(state.context, ofFluid_.span(), pressure_.span(), particleVolume(state), y);
   }
 
-  /// Of the pockets, with what the step before knew.
-  const GasState& gas() const { return gas_; }
+  /// Adds what the pressures at hand make of the velocities of own fluid particles in the step [m/s]. With ISPH.
+  void addVelocities(FlowState<D, Backend>& state, std::span<Vec<D>> u) const {
+    addGasForces<D>(state.context, ofVelocity_.span(), pressure_.span(),
+                    particleVolume(state) / state.velocityStep, u);
+  }
+
   const std::vector<double>& pressures() const { return pressures_; }
   void set(const FlowState<D, Backend>& state, std::span<const double> pressures) {
     pressures_.assign(pressures.begin(), pressures.end());
@@ -66,19 +85,73 @@ class StepGas final : public ExplicitForces<D, Backend> {
     state.particles.gas = gas_;
   }
 
-  void addForces(FlowState<D, Backend>& state, std::span<Vec<D>> y) const override { others_.addForces(state, y); }
+  void addForces(FlowState<D, Backend>& state, std::span<Vec<D>> y) const override {
+    others_->addForces(state, y);
+  }
   void allForces(FlowState<D, Backend>& state, const MphPairs<D>& pairs, const ClusterListView& walls,
                  std::span<Vec<D>> y, std::span<Vec<D>> load) const override {
-    others_.allForces(state, pairs, walls, y, load);
+    others_->allForces(state, pairs, walls, y, load);
     addPressures(state, y);
+  }
+  void addLoads(std::span<LoadSums> loads) const override {
+    if (others_) others_->addLoads(loads);
+    for (std::size_t k = 0; k < pressures_.size(); ++k)
+      for (std::size_t b = 0; b < loads.size(); ++b) {
+        const Side& side = sides_[k * loads.size() + b];
+        loads[b].force += pressures_[k] * side.area;
+        loads[b].torque += pressures_[k] * side.moment;
+      }
   }
 
   std::size_t bytes() const {
-    const std::size_t onHost = std::is_same_v<Backend, Cpu> ? position_.bytes() + pockets_.bytes() : 0;
-    return onHost + ofFluid_.bytes() + ofWalls_.bytes() + pressure_.bytes();
+    const std::size_t onHost = std::is_same_v<Backend, Cpu>
+                                   ? position_.bytes() + ownPosition_.bytes() + own_.bytes() + pockets_.bytes()
+                                   : 0;
+    return onHost + ofFluid_.bytes() + ofWalls_.bytes() + ofVelocity_.bytes() + pressure_.bytes();
   }
 
  private:
+  /// What a pocket and a body have in common: force and torque about the origin over the pressure.
+  struct Side {
+    Vec<3> area{}, moment{};  // [m2], [m3]; per metre in 2D
+  };
+
+  /// The process's own fluid, and the walls in its cells: of all walls, which every process holds in cases with
+  /// gas.
+  void takeOwn(const Particles<D, Backend>& p, const CellGrid<D>& grid, const CellOwners<D>& owners) {
+    own_ = selected(0, p.count, [&](std::uint32_t i) {
+      return i < p.fluidCount || (i >= p.wallBegin() && owners.isOwn(grid.linear(grid.cellOf(position_[i]))));
+    });
+    ownPosition_.resize(own_.size());
+    gather(std::span<const Vec<D>>(position_), own_, ownPosition_.data());
+  }
+
+  void findSides(const FlowState<D, Backend>& state, std::span<const GasContact<D>> ofWalls) {
+    const std::size_t bodies = state.theCase.bodies.size();
+    Buffer<std::uint8_t> body(state.particles.count);
+    copyToHost(state.context, std::span<const std::uint8_t>(state.particles.body), body.data());
+    sides_.assign(gas_.pockets.size() * bodies, {});
+    for (const GasContact<D>& contact : ofWalls) {
+      if (body[contact.particle] >= bodies) continue;
+      Side& side = sides_[contact.pocket * bodies + body[contact.particle]];
+      const Vec<3> area = resized<3>(contact.area);
+      side.area += area;
+      side.moment += cross(resized<3>(position_[contact.particle]), area);
+    }
+    static_assert(sizeof(Side) == 6 * sizeof(double));
+    sumOverProcesses(state.context, std::span(sides_.empty() ? nullptr : sides_[0].area.v, 6 * sides_.size()));
+  }
+
+  void setVelocities(const FlowState<D, Backend>& state, std::span<const GasContact<D>> ofFluid) {
+    Buffer<std::uint8_t> material(state.particles.fluidCount);
+    copyToHost(state.context, std::span<const std::uint8_t>(state.particles.material).first(material.size()),
+               material.data());
+    std::vector<GasContact<D>> contacts(ofFluid.begin(), ofFluid.end());
+    for (GasContact<D>& contact : contacts)
+      contact.area = (1 / state.theCase.materials[material[contact.particle]].density) * contact.area;
+    fromHost(state.context, std::span<const GasContact<D>>(contacts), ofVelocity_);
+  }
+
   static double particleVolume(const FlowState<D, Backend>& state) { return std::pow(state.theCase.spacing, D); }
 
   void setPressures(const FlowState<D, Backend>& state) {
@@ -96,12 +169,17 @@ class StepGas final : public ExplicitForces<D, Backend> {
   }
 
   GasPockets<D> pockets_;
-  const ExplicitForces<D, Backend>& others_;
+  const ExplicitForces<D, Backend>* others_;
   GasState gas_;                   // of the step at hand
   std::vector<double> pressures_;  // that are tried [Pa]
   std::vector<double> growth_;     // with them [m3; m2 in 2D]
-  Buffer<Vec<D>> position_;
+  bool isNew_ = false;
+  std::vector<Side> sides_;     // of pockets, and of each of them per body of the case; of all processes
+  Buffer<Vec<D>> position_;     // of all particles
+  Buffer<std::uint32_t> own_;   // where processes share a case: who counts here
+  Buffer<Vec<D>> ownPosition_;  // and where they are
   Buffer<GasContact<D>, Backend> ofFluid_, ofWalls_;
+  Buffer<GasContact<D>, Backend> ofVelocity_;  // ofFluid_ over the densities
   Buffer<double, Backend> pressure_;
 };
 

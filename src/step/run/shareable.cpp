@@ -16,7 +16,6 @@ void requireShareable(const Case& c, BackendKind backend) {
     throw InputError(
         fmt::format("several processes cannot share {}; expected {}, or one process", what, expected));
   };
-  if (c.gas) refuse("trapped gas", "a case without [gas]");
   if (c.method.kind == MethodKind::Isph) return;  // its matrix and its rows are the same whatever else is set
   if (backend == BackendKind::Cuda && c.solver.neighbours != NeighbourKind::Lists)
     refuse(fmt::format("solver.neighbours = {}", nameOf(c.solver.neighbours)),

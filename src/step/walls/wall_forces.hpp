@@ -38,6 +38,7 @@ class WallForces {
     fluidAtWalls<D>(state.context, pairs, walls_, u, pressure,
                     {force_.span(), divergence_.span(), density_.span()});
     if (pairs.terms.repulsionRadius > 0) addRepulsionOnWalls<D>(state.context, pairs, 1 / state.timeStep, force_);
+    others_ = others;
     if (!others) return;
     otherForce_.resize(state.context, active);
     others->allForces(state, pairs, walls_, otherForce_.span(), force_.span());
@@ -46,8 +47,10 @@ class WallForces {
   /// Per body of the case, of all processes, after sum() with the velocities `u` [N], [N m] and [W]; in 2D per
   /// metre of depth.
   std::vector<LoadSums> loads(FlowState<D, Backend>& state, const MphPairs<D>& pairs, std::span<const Vec<D>> u) {
-    return loadsOfBodies<D, Backend>(state, pairs.fluidCount, pairs.position, u,
-                                     force_.span().first(pairs.ownEnd() - pairs.fluidCount));
+    std::vector<LoadSums> loads = loadsOfBodies<D, Backend>(
+        state, pairs.fluidCount, pairs.position, u, force_.span().first(pairs.ownEnd() - pairs.fluidCount));
+    if (others_) others_->addLoads(loads);
+    return loads;
   }
 
   /// On patches of walls, likewise.
@@ -71,10 +74,11 @@ class WallForces {
  private:
   ClusterList<Backend> list_;
   ClusterListView walls_;
-  Buffer<Vec<D>, Backend> force_;       // per active wall particle [N/m3]
-  Buffer<double, Backend> divergence_;  // [1/s]
-  Buffer<double, Backend> density_;     // [-]
-  Buffer<Vec<D>, Backend> otherForce_;  // of ExplicitForces, per active particle [N/m3]
+  Buffer<Vec<D>, Backend> force_;                       // per active wall particle [N/m3]
+  Buffer<double, Backend> divergence_;                  // [1/s]
+  Buffer<double, Backend> density_;                     // [-]
+  Buffer<Vec<D>, Backend> otherForce_;                  // of ExplicitForces, per active particle [N/m3]
+  const ExplicitForces<D, Backend>* others_ = nullptr;  // of the last sum()
 };
 
 }  // namespace treacle

@@ -24,14 +24,14 @@ TEST(AffineSolve, FindsTheZeroOfAnAffineFunction) {
       return y;
     };
     std::vector<double> x(n, 3.0), derivative;
-    const auto result = AffineSolve::run(f, x, derivative, 1, 1e-9, 20);
+    const auto result = AffineSolve::run(f, x, derivative, std::vector<double>(x.size(), 1.0), 1e-9, 20);
     EXPECT_TRUE(result.converged);
     EXPECT_LE(result.values, static_cast<int>(n) + 3);
     for (std::size_t i = 0; i < n; ++i) EXPECT_NEAR(x[i], zero[i], 1e-9);
     // From a derivative of a function that is not far.
     for (double& d : a) d *= 1.05;
     x.assign(n, 3.0);
-    const auto again = AffineSolve::run(f, x, derivative, 1, 1e-6, 20);
+    const auto again = AffineSolve::run(f, x, derivative, std::vector<double>(x.size(), 1.0), 1e-6, 20);
     EXPECT_TRUE(again.converged);
     EXPECT_LE(again.values, 6);
     for (std::size_t i = 0; i < n; ++i) EXPECT_NEAR(x[i], zero[i], 1e-6);
@@ -49,7 +49,7 @@ TEST(AffineSolve, FindsAnewADerivativeThatLeadsAstray) {
   };
   std::vector<double> x(n, 3.0), derivative(n * n);
   for (std::size_t k = 0; k < n * n; ++k) derivative[k] = pseudoRandom(1000 + k);
-  const auto result = AffineSolve::run(f, x, derivative, 1, 1e-6, 12);
+  const auto result = AffineSolve::run(f, x, derivative, std::vector<double>(x.size(), 1.0), 1e-6, 12);
   EXPECT_TRUE(result.converged);
   EXPECT_LE(result.values, 25);
   for (const double found : x) EXPECT_NEAR(found, 0.5, 1e-6);
@@ -63,7 +63,7 @@ TEST(AffineSolve, TakesWhatValuesWithErrorsGive) {
     return std::vector<double>{3 * (x[0] - 0.5) + x[1] + noise, x[0] - 0.5 + 2 * x[1] - noise};
   };
   std::vector<double> x{0, 0}, derivative;
-  const auto result = AffineSolve::run(f, x, derivative, 1, 1e-6, 40);
+  const auto result = AffineSolve::run(f, x, derivative, std::vector<double>(x.size(), 1.0), 1e-6, 40);
   EXPECT_TRUE(result.converged);
   EXPECT_LE(result.values, 25);
   EXPECT_NEAR(x[0], 0.5, 1e-4);
@@ -77,13 +77,14 @@ TEST(AffineSolve, KeepsToRestraints) {
   };
   std::vector<double> x{0, 0}, derivative;
   const Restraint floor{{0, 1}, {0, 0.5}, -1}, redundant{{0, 2}, {0, 3}, -2}, slack{{1, 0}, {1, 0}, -10};
-  auto result = AffineSolve::run(f, x, derivative, 1, 1e-9, 20, {slack, floor, redundant});
+  auto result =
+      AffineSolve::run(f, x, derivative, std::vector<double>(x.size(), 1.0), 1e-9, 20, {slack, floor, redundant});
   EXPECT_TRUE(result.converged);
   EXPECT_NEAR(x[1], -1, 1e-9);  // without it -2.6
   EXPECT_NEAR(x[0], 2, 1e-9);
   // One that pulls is none.
   const Restraint below{{0, 1}, {0, 0.5}, -4};
-  result = AffineSolve::run(f, x, derivative, 1, 1e-9, 20, {below});
+  result = AffineSolve::run(f, x, derivative, std::vector<double>(x.size(), 1.0), 1e-9, 20, {below});
   EXPECT_TRUE(result.converged);
   EXPECT_NEAR(x[1], -2.6, 1e-9);
   EXPECT_NEAR(x[0], 2.8, 1e-9);
@@ -97,7 +98,8 @@ TEST(AffineSolve, GripsWhatItHolds) {
   Restraint floor{{0, 1, 0}, {0, 1, 0}, 0, {{{1, 0, 0}, {1, 0, 0}, 0}, {{0, 0, 1}, {0, 0, 1}, 0}}, 0.5};
   const auto found = [&] {
     std::vector<double> x{0, 0, 0}, derivative;
-    EXPECT_TRUE(AffineSolve::run(f, x, derivative, 1, 1e-9, 20, {floor}).converged);
+    EXPECT_TRUE(
+        AffineSolve::run(f, x, derivative, std::vector<double>(x.size(), 1.0), 1e-9, 20, {floor}).converged);
     return x;
   };
   // The plane pushes with 2, friction with 1 in the direction (-3, -4)/5.

@@ -2,6 +2,7 @@
 #include "support/continued_jet.hpp"
 #include "support/gas_case.hpp"
 #include "support/isph_cases.hpp"
+#include "support/rigid_cases.hpp"
 #include "support/state_of.hpp"
 #include "support/temporary_directory.hpp"
 #include "treacle/core/error.hpp"
@@ -12,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 namespace treacle::test {
 namespace {
@@ -43,7 +45,7 @@ Case boxOf20(double l) {
 
 template <int D>
 GasState found(GasPockets<D>& pockets, const std::vector<Vec<D>>& places, GasState state = {}) {
-  pockets.find(places, static_cast<std::uint32_t>(places.size()), state);
+  pockets.find({}, places, static_cast<std::uint32_t>(places.size()), state);
   return state;
 }
 
@@ -166,6 +168,62 @@ TEST(Gas, BearsWhatIsAboveIt) {
   checkPlug<3>();
 }
 
+/// A bell that weighs as much as the honey that it and its air displace stays; its air has the pressure of the
+/// honey at its rim. One that is lighter rises until it does. Measured: pressures 2 % off, the rise a third of a
+/// spacing.
+TEST(Gas, CarriesABell) {
+  for (const double part : {1.0, 0.8}) {
+    const double l = 2e-3, displaced = 1000 * 20 * 14 * l * l;
+    const Case c = bellInHoney(part * displaced);
+    Simulation<2> simulation(c, created<2>(c));
+    const double start = simulation.particles().rigid.bodies[2].center[1];
+    StepReport report;
+    for (int k = 0; k < 400; ++k) report = simulation.advance();
+    ASSERT_EQ(report.gas->pockets, 1u);
+    const double depth = part * 14 * l;  // of the rim, where the level of the honey in the bell is
+    EXPECT_NEAR(report.gas->pressure / (1000 * 9.81 * depth), 1, 0.05) << part;
+    // The level falls by what less is displaced.
+    const double rise = (1 - part) * 14 * l * (1 - 20.0 / 40);
+    EXPECT_NEAR(report.rigid[2].center[1] - start, rise, 0.5 * l) << part;
+    EXPECT_LT(norm(report.rigid[2].velocity), 1e-3) << part;
+  }
+}
+
+/// With ISPH, too, the air in a bell that is held has the pressure of the fluid at its rim. Measured: 2 % off.
+TEST(Gas, IsUnderThePressureOfIsph) {
+  const double l = 2e-3;
+  Case c = withIsph(bellInHoney(1), 0.5);
+  c.bodies[2].kind = BodyKind::Wall;
+  c.bodies[2].rigid = {};
+  Simulation<2> simulation(c, created<2>(c));
+  StepReport report;
+  for (int k = 0; k < 200; ++k) report = simulation.advance();
+  ASSERT_EQ(report.gas->pockets, 1u);
+  EXPECT_NEAR(report.gas->pressure / (1000 * 9.81 * 14 * l), 1, 0.05);
+}
+
+/// The gas in a bubble bears the tension of its surface, and that of the drop around it. Measured: 0.5 % off.
+TEST(Gas, BearsASurfaceTension) {
+  Case c = plugOnGas(2);
+  const double l = c.spacing, tension = 0.05;
+  c.domain = {{-20 * l, -20 * l, 0}, {20 * l, 20 * l, 0}, {}};
+  c.gravity = {};
+  c.materials[0] = {"honey", 1400, 0.5, 500, 1e5};
+  c.materials[0].surfaceTension = tension;
+  Body drop = c.bodies[0];
+  drop.shape.kind = ShapeKind::Sphere;
+  drop.shape.radius = 18 * l;
+  drop.where = "x^2 + y^2 > 0.016^2";
+  c.bodies = {drop};
+  c.time.step = 4e-3;
+  Simulation<2> simulation(c, created<2>(c));
+  StepReport report;
+  for (int k = 0; k < 200; ++k) report = simulation.advance();
+  ASSERT_EQ(report.gas->pockets, 1u);
+  const double radius = std::sqrt(report.gas->volume / std::numbers::pi), outer = 18 * l;
+  EXPECT_NEAR(report.gas->pressure / (tension / radius + tension / outer), 1, 0.03);
+}
+
 TEST(Gas, ContinuesFromACopyWithTheSameBits) {
   const Case c = plugOnGas(2);
   Simulation<2> whole(c, created<2>(c));
@@ -183,16 +241,6 @@ TEST(Gas, IsChecked) {
   EXPECT_NO_THROW(requireValid(c));
   c.method.scheme = SchemeKind::Published;
   EXPECT_THAT(message(c), HasSubstr("gas: expected method.scheme = \"accurate\" beside it"));
-  c = plugOnGas(2);
-  c.materials[0].surfaceTension = 0.07;
-  EXPECT_THAT(message(c), HasSubstr("found beside a surface tension"));
-  c = plugOnGas(2);
-  c.bodies[1].kind = BodyKind::Rigid;
-  EXPECT_THAT(message(c), HasSubstr("found beside a rigid body"));
-  c = plugOnGas(2);
-  c.method.kind = MethodKind::Isph;
-  c.solver = defaultSolver(c.method.kind);
-  EXPECT_THAT(message(c), HasSubstr("only the method 'mph-i' has trapped gas"));
   c = plugOnGas(2);
   c.domain.max[0] = 1e2, c.domain.max[1] = 1e2;
   EXPECT_THAT(message(c), HasSubstr("in which gas is looked for"));

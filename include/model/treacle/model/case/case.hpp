@@ -66,7 +66,7 @@ struct Case {
   MethodSettings method;
   RheologySettings rheology;
   std::optional<HeatSettings> heat{};  // missing: there are no temperatures; MPH-I only
-  std::optional<GasSettings> gas{};    // missing: what is empty has no pressure; MPH-I only
+  std::optional<GasSettings> gas{};    // missing: what is empty has no pressure
   SolverSettings solver;
   OutputSettings output;
   std::vector<Probe> probes{};

@@ -19,7 +19,6 @@ inline constexpr const char* viscosityBesideRheology =
 
 /// What is said of a case of another method with heat, and of one with a rheology.
 inline constexpr const char* heatOfMphI = "only the method 'mph-i' has temperatures, found 'isph'";
-inline constexpr const char* gasOfMphI = "only the method 'mph-i' has trapped gas, found 'isph'";
 inline constexpr const char* rheologyOfMphI =
     "only the method 'mph-i' has fluids that are not Newtonian, found 'isph'";
 
@@ -126,8 +125,8 @@ void visit(auto& v, Like<Case> auto& c, const Case&) {
   if (c.method.kind == MethodKind::MphI) {
     v({"rheology", "How viscosity and flow are brought together where a material has a rheology"}, c.rheology);
     v({"heat", "The case has temperatures; may be empty"}, c.heat);
-    v({"gas", "The fluid may trap gas, which has a pressure; may be empty"}, c.gas);
   }
+  v({"gas", "The fluid may trap gas, which has a pressure; may be empty"}, c.gas);
   v({"solver", "How the linear system of a step is solved"}, c.solver);
   v({"output", "What is written"}, c.output);
   v({"probe", "What is measured while the case runs", optional, "", {0, maxProbes}}, c.probes);

@@ -33,8 +33,7 @@ struct RigidBody {
 /// The rigid bodies of a state, and what the search for their velocities remembers.
 struct RigidMotion {
   std::vector<RigidBody> bodies{};  // per body of the case; empty: none is rigid, or nothing is known
-  std::vector<double> response{};   // of the forces to the velocities (RigidSystem); empty: not known
-  std::vector<double> change{};     // of the velocities in the last step, likewise
+  std::vector<double> change{};     // of the velocities in the last step (RigidSystem); empty: not known
 
   bool operator==(const RigidMotion&) const = default;
 };

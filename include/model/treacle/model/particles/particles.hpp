@@ -149,6 +149,10 @@ struct Particles {
   // Of the gas that it has trapped, likewise.
   GasState gas;
 
+  // Of what steps find together with the flow, the derivative of what is missing to the unknowns (StepUnknowns),
+  // row by row; empty: not known.
+  std::vector<double> response;
+
   // Of wall particle wallBegin() + k. Empty: walls have no surface, and the fluid meets their velocities where
   // their particles are.
   Buffer<WallSurface<D>, Backend> wallSurface;
@@ -161,6 +165,7 @@ struct Particles {
     flow = from.flow;
     rigid = from.rigid;
     gas = from.gas;
+    response = from.response;
   }
 
   std::uint32_t wallBegin() const { return fluidCount + ghostCount; }
@@ -208,6 +213,7 @@ struct Particles {
     flow = {};
     rigid = {};
     gas = {};
+    response = {};
     wallSurface.resize(context, numbers.surfaces);
   }
 

@@ -21,9 +21,6 @@ struct GasState {
   std::vector<Pocket> pockets{};
   std::vector<double> cells{};   // of the grid that are in a pocket, ascending
   std::vector<double> labels{};  // of these: which pocket
-  // Of the pressures of openings with a flow rate, and of pockets, to what they should be (StepPressures); empty:
-  // not known.
-  std::vector<double> response{};
 
   bool operator==(const GasState&) const = default;
 };

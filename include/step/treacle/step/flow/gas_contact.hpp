@@ -21,7 +21,8 @@ template <int D, class Backend>
 void addGasForces(Context<Backend>&, std::span<const GasContact<D>> contacts, std::span<const double> pressure,
                   double volume, std::span<Vec<D>> force);
 
-/// Sum of area . u over the contacts of a pocket: the rate of its volume [m3/s; m2/s in 2D].
+/// Sum of area . u over the contacts of a pocket, those of all processes: the rate of its volume [m3/s; m2/s in
+/// 2D].
 template <int D, class Backend>
 double gasRate(Context<Backend>&, std::span<const GasContact<D>> contacts, std::uint32_t pocket,
                std::span<const Vec<D>> u);
