@@ -123,7 +123,8 @@ struct Sums {
     return found;
   }
 
-  /// The right-hand side of the implicit step is rho / dt v* of the explicit one without mu lap v.
+  /// The right-hand side of the implicit step is rho / dt v* of the explicit one without mu lap v, and with
+  /// div(mu L^T) beside the free surface alone.
   void checkViscousSource() {
     if (!oracle.isAccurate()) return;
     damped(velocity, pressure);
@@ -136,7 +137,8 @@ struct Sums {
     for (std::uint32_t i = 0; i < s.n(); ++i) {
       const double inertia = pairs.density(i) / pairs.timeStep;
       const Vec<D> force = pairs.density(i) * resized<D>(s.c.gravity);
-      const Vec<D> expected = inertia * oracle.damped(velocity, pressure, i) + force;
+      Vec<D> expected = inertia * oracle.damped(velocity, pressure, i) + force;
+      if (pairs.missingShare(i) > 0) expected += oracle.transposedForce(velocity, i);
       for (int k = 0; k < D; ++k) ASSERT_NEAR(source[k][i], expected[k], 1e-6 * inertia);
     }
   }

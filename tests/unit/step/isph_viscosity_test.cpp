@@ -131,6 +131,24 @@ TEST(IsphViscosity, ExplicitAndImplicitStepsAgreeForShortSteps) {
   }
 }
 
+/// A column that collapses by its weight, by explicit steps and by implicit ones: free surfaces bear no stress in
+/// either. Measured: fronts 0.2 % of the width apart; with mu lap v alone 3 %.
+TEST(IsphViscosity, FreeSurfacesAreWithoutStressInImplicitSteps) {
+  Case c = tankCase(2, 60, 16);
+  const double l = c.spacing;
+  c.bodies[0].shape.max[0] = c.bodies[0].shape.min[0] + 16 * l;
+  c.materials[0].dynamicViscosity = 1000 * std::sqrt(9.81 * std::pow(16 * l, 3)) / 14;
+  c.time.step = 0.4 * explicitViscousLimit(makeIsphPairs<2>(c));
+  const double end = 1.7 * std::sqrt(16 * l / 9.81);
+  const auto front = [&](ViscousStep step) {
+    c.method.isph.viscosity = step;
+    Simulation<2> simulation(c, created<2>(c));
+    while (simulation.time() < end) simulation.advance();
+    return simulation.diagnostics().frontX;
+  };
+  EXPECT_NEAR(front(ViscousStep::Implicit), front(ViscousStep::Explicit), 0.01 * 16 * l);
+}
+
 TEST(IsphViscosity, ImplicitStepIsTheDirectSolution) {
   Layer layer(8, 100);
   layer.c.solver.tolerance = 1e-26;

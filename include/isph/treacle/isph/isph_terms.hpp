@@ -124,8 +124,9 @@ struct BothTerms {
 };
 
 /// Right-hand side of the implicit viscous step, rho/dt v + rho g, the pull of no-slip walls and, where there
-/// is a `flow`, the damping of hourglass modes, by component. The rest of the viscous stress, div(mu L^T), is left
-/// out: taken explicitly in long steps it disturbs the arrangement (docs/notes/isph.md).
+/// is a `flow`, the damping of hourglass modes, by component, and div(mu L^T), the rest of the viscous stress, on
+/// particles that lack neighbours. Inside a fluid it is zero, but sums over particles in disorder push across the
+/// stream, which in long steps disturbs the arrangement (docs/notes/isph.md).
 template <int D>
 struct ViscousSourceTerm {
   static constexpr int values = D;
@@ -136,18 +137,28 @@ struct ViscousSourceTerm {
   TREACLE_HD void fluid(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d,
                         const Distance& r, double* sum) const {
     if (!flow) return;
-    const Vec<D> force = hourglassForce(pairs, velocity, flow, i, j, d, r);
+    Vec<D> force = hourglassForce(pairs, velocity, flow, i, j, d, r);
+    if (isNearSurface(pairs, i))
+      force += transposedForce(pairs.viscosityBetween(i, j), pairs.slope(r), flow[i], flow[j], d);
     for (int k = 0; k < D; ++k) sum[k] += force[k];
   }
-  TREACLE_HD void wall(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>&,
+  TREACLE_HD void wall(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d,
                        const Distance& r, double* sum) const {
     const double c = pairs.noSlip ? 4 * pairs.slope(r) * pairs.viscosityAtWall(i, j) : 0;
-    for (int k = 0; k < D; ++k) sum[k] += c * velocity[j][k];
+    Vec<D> force = c * velocity[j];
+    if (flow && isNearSurface(pairs, i))
+      force += transposedForce(pairs.viscosityBetween(i, i), pairs.slope(r), flow[i], flow[i], d);
+    for (int k = 0; k < D; ++k) sum[k] += force[k];
   }
   TREACLE_HD void store(const IsphPairs<D>& pairs, std::uint32_t i, const double* sum) const {
     const double density = pairs.density(i);
     const Vec<D> u = pairs.frame.turned(velocity[i]), f = pairs.frame.on(pairs.position[i], density);
     for (int k = 0; k < D; ++k) source[k][i] = density / pairs.timeStep * u[k] + f[k] + sum[k];
+  }
+
+ private:
+  TREACLE_HD static bool isNearSurface(const IsphPairs<D>& pairs, std::uint32_t i) {
+    return pairs.missingShare(i) > 0;
   }
 };
 
