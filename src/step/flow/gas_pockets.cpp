@@ -354,12 +354,14 @@ void GasPockets<D>::meet(std::span<const Vec<D>> position, std::uint32_t fluid) 
       const std::uint32_t i = items_[k];
       const std::vector<double>& share = i < fluid ? ofFluid_ : ofWalls_;
       Vec<D> area{}, normal{};
-      forEachWeight(position[i], [&](std::size_t to, double, const Vec<D>& gradient) {
+      double value = 0;
+      forEachWeight(position[i], [&](std::size_t to, double weight, const Vec<D>& gradient) {
+        value += weight * share[to];
         area = area - (particle_ * share[to]) * gradient;
         normal += open_[to] * gradient;
       });
       if (i >= fluid && norm2(normal) > 0) area = (dot(area, normal) / norm2(normal)) * normal;
-      if (norm2(area) > 0) contacts_.push_back({i, label_[cell], area});
+      if (value > 0) contacts_.push_back({i, label_[cell], area, value});
     }
   std::ranges::sort(contacts_, {}, &GasContact<D>::particle);
 }

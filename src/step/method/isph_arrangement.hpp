@@ -46,7 +46,7 @@ class IsphArrangement {
     const std::span<double> own = both_.span().first(pairs.ownFluid());
     addPressures(context, flow, pressure_, own);
     if (closed) takeLevel(context, Level::Least, own);
-    settlePressure(context, surface, closed || !pairs.negativePressure, own);
+    settlePressure(context, surface, pairs.outside, closed || !pairs.negativePressure, own);
     fillGhosts(context, Held::Fluid, both_.data());
     term.moving = both_.data();
     term.transport = transport_.data();

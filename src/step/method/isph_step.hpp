@@ -77,7 +77,6 @@ class IsphStep final : public StepMethod<D, Backend> {
     if (closed_)
       clearValues(state_.context, missing_.span());  // no surface that would hold the level of pressures
     if (gas_) gas_->prepare(state_, pairs_.grid, sort_.owners());
-    addGas();
     computeSource();
     pressure_.prepareMatrix(state_.context, pairs_, ranges(), row());
   }
@@ -173,8 +172,8 @@ class IsphStep final : public StepMethod<D, Backend> {
            deficit_.bytes() + eddyViscosity_.bytes() + wallViscosity_.bytes() + renormalisation_.bytes() +
            missing_.bytes() + surface_.bytes() + predictor_.bytes() + source_.bytes() + solution_.bytes() +
            shifted_.bytes() + (arrangement_ ? arrangement_->bytes() : 0) + wallShare_.bytes() + forces_.bytes() +
-           pressure_.bytes() + unknowns_.bytes() + (gas_ ? gas_->bytes() : 0) + withoutGas_.bytes() +
-           pressing_.bytes() + wallSurface_.bytes();
+           pressure_.bytes() + unknowns_.bytes() + (gas_ ? gas_->bytes() : 0) + pressing_.bytes() +
+           wallSurface_.bytes();
   }
 
   /// Pairs up to this share of the kernel's radius make the smoother's matrix: 1.9 l with the usual kernel.
@@ -199,15 +198,6 @@ class IsphStep final : public StepMethod<D, Backend> {
     return unknowns_.solve(pairs_, wallSurface_, flow, [&] { return loadsOfWalls(); });
   }
 
-  /// To v*: as pressures do, gas acts on what viscosity has left.
-  void addGas() {
-    if (!gas_) return;
-    const std::span<Vec<D>> predicted = predictor_.velocity().span().first(pairs_.ownFluid());
-    withoutGas_.resize(state_.context, predicted.size());
-    copyValues(state_.context, std::span<const Vec<D>>(predicted), withoutGas_.data());
-    gas_->addVelocities(state_, predicted);
-  }
-
   void computeSource() {
     Buffer<Vec<D>, Backend>& predicted = predictor_.velocity();
     const std::uint32_t own = pairs_.ownFluid();
@@ -216,6 +206,10 @@ class IsphStep final : public StepMethod<D, Backend> {
     sumOnFluid(state_.context, pairs_,
                PressureSourceTerm<D>{predicted.data(), state_.particles.numberDensity.data(), surface_.data(),
                                      source_.data(), arrangement_ ? arrangement_->source(own) : nullptr});
+    if (gas_) {
+      pairs_.outside = gas_->outside(state_).data();
+      sumOnFluid(state_.context, pairs_, OutsideTerm<D>{surface_.data(), source_.data()});
+    }
     if (closed_) takeLevel(state_.context, Level::Mean, source_);
   }
 
@@ -224,9 +218,7 @@ class IsphStep final : public StepMethod<D, Backend> {
   StagedReport solvePressure(bool isFirst) {
     StagedReport report;
     if (!isFirst) {
-      if (gas_) copyValues(state_.context, std::span<const Vec<D>>(withoutGas_), predictor_.velocity().data());
       report = predictor_.follow(solution(), unknowns_.hasPumps());
-      addGas();
       computeSource();
       guess(solution());
     }
@@ -244,7 +236,7 @@ class IsphStep final : public StepMethod<D, Backend> {
   /// The step's pressures, and velocities by them. `pressing`: CorrectorTerm.
   void correct(const Buffer<double, Backend>& pressing) {
     if (closed_) takeLevel(state_.context, pairs_.negativePressure ? Level::Mean : Level::Least, solution());
-    settlePressure(state_.context, ownSurface(), !pairs_.negativePressure, solution());
+    settlePressure(state_.context, ownSurface(), pairs_.outside, !pairs_.negativePressure, solution());
     fillGhosts(state_.context, Held::Fluid, solution_.data());
     state_.velocity.resize(state_.context, pairs_.ownFluid());
     wallShare_.resize(state_.context, pairs_.ownFluid());
@@ -328,8 +320,7 @@ class IsphStep final : public StepMethod<D, Backend> {
   std::vector<WallLoad> loads_;                             // of the last step
   std::vector<double> patches_;                             // pressures of the probes WallPressure [Pa]
   IsphSolver<D, Backend, PressureRow<D>> pressure_;
-  std::optional<StepGas<D, Backend>> gas_;       // where the case has gas; then also:
-  Buffer<Vec<D>, Backend> withoutGas_;           // v* of own fluid [m/s]
+  std::optional<StepGas<D, Backend>> gas_;       // where the case has gas
   StepUnknowns<D, Backend> unknowns_;            // where the case has rigid bodies, also:
   Buffer<double, Backend> pressing_;             // those of the step's first solve
   Buffer<WallSurface<D>, Backend> wallSurface_;  // per active wall particle

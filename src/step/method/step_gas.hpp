@@ -40,7 +40,6 @@ class StepGas final : public ExplicitForces<D, Backend> {
     fromHost(state.context, std::span<const GasContact<D>>(contacts.begin(), walls), ofFluid_);
     fromHost(state.context, std::span<const GasContact<D>>(walls, contacts.end()), ofWalls_);
     if (state.theCase.needsWallNeighbours() || state.theCase.hasLoads()) findSides(state, {walls, contacts.end()});
-    if (!others_) setVelocities(state, {contacts.begin(), walls});
     pressures_.clear();
     for (const GasState::Pocket& pocket : gas_.pockets) pressures_.push_back(pocket.pressure);
     setPressures(state);
@@ -54,10 +53,12 @@ class StepGas final : public ExplicitForces<D, Backend> {
     addGasForces<D>(state.context, ofFluid_.span(), pressure_.span(), particleVolume(state), y);
   }
 
-  /// Adds what the pressures at hand make of the velocities of own fluid particles in the step [m/s]. With ISPH.
-  void addVelocities(FlowState<D, Backend>& state, std::span<Vec<D>> u) const {
-    addGasForces<D>(state.context, ofVelocity_.span(), pressure_.span(),
-                    particleVolume(state) / state.velocityStep, u);
+  /// The pressures at hand around own fluid particles that are near a pocket, 0 elsewhere [Pa].
+  std::span<const double> outside(FlowState<D, Backend>& state) {
+    outside_.resize(state.context, state.particles.fluidCount);
+    clearValues(state.context, outside_.span());
+    setOutside<D>(state.context, ofFluid_.span(), pressure_.span(), outside_.span());
+    return outside_.span();
   }
 
   const std::vector<double>& pressures() const { return pressures_; }
@@ -107,7 +108,7 @@ class StepGas final : public ExplicitForces<D, Backend> {
     const std::size_t onHost = std::is_same_v<Backend, Cpu>
                                    ? position_.bytes() + ownPosition_.bytes() + own_.bytes() + pockets_.bytes()
                                    : 0;
-    return onHost + ofFluid_.bytes() + ofWalls_.bytes() + ofVelocity_.bytes() + pressure_.bytes();
+    return onHost + ofFluid_.bytes() + ofWalls_.bytes() + outside_.bytes() + pressure_.bytes();
   }
 
  private:
@@ -142,16 +143,6 @@ class StepGas final : public ExplicitForces<D, Backend> {
     sumOverProcesses(state.context, std::span(sides_.empty() ? nullptr : sides_[0].area.v, 6 * sides_.size()));
   }
 
-  void setVelocities(const FlowState<D, Backend>& state, std::span<const GasContact<D>> ofFluid) {
-    Buffer<std::uint8_t> material(state.particles.fluidCount);
-    copyToHost(state.context, std::span<const std::uint8_t>(state.particles.material).first(material.size()),
-               material.data());
-    std::vector<GasContact<D>> contacts(ofFluid.begin(), ofFluid.end());
-    for (GasContact<D>& contact : contacts)
-      contact.area = (1 / state.theCase.materials[material[contact.particle]].density) * contact.area;
-    fromHost(state.context, std::span<const GasContact<D>>(contacts), ofVelocity_);
-  }
-
   static double particleVolume(const FlowState<D, Backend>& state) { return std::pow(state.theCase.spacing, D); }
 
   void setPressures(const FlowState<D, Backend>& state) {
@@ -179,7 +170,7 @@ class StepGas final : public ExplicitForces<D, Backend> {
   Buffer<std::uint32_t> own_;   // where processes share a case: who counts here
   Buffer<Vec<D>> ownPosition_;  // and where they are
   Buffer<GasContact<D>, Backend> ofFluid_, ofWalls_;
-  Buffer<GasContact<D>, Backend> ofVelocity_;  // ofFluid_ over the densities
+  Buffer<double, Backend> outside_;  // outside(), with ISPH
   Buffer<double, Backend> pressure_;
 };
 

@@ -24,6 +24,7 @@ namespace treacle {
 /// rate is small, too.
 inline Case solvedCase(Case c) {
   const auto hasFlowRate = [](const Opening& o) { return o.flowRate.has_value(); };
+
   if (c.hasRigid() || std::ranges::any_of(c.openings, hasFlowRate))
     c.solver.tolerance = std::max(1e-4 * c.solver.tolerance, 1e-20);
   return c;

@@ -372,9 +372,9 @@ TEST(IsphParticles, SettlePressureCutsAndFreesTheSurface) {
   Context<Cpu> context;
   const std::vector<std::uint8_t> surface{Place::Inside, Place::Free, Place::Inside, Place::Free, Place::Surface};
   std::vector<double> p{-2, -3, 4, 5, 6};
-  settlePressure(context, surface, false, p);
+  settlePressure(context, surface, nullptr, false, p);
   EXPECT_EQ(p, (std::vector<double>{-2, 0, 4, 0, 6}));
-  settlePressure(context, surface, true, p);
+  settlePressure(context, surface, nullptr, true, p);
   EXPECT_EQ(p, (std::vector<double>{0, 0, 4, 0, 6}));
 }
 

@@ -16,10 +16,15 @@ void addPressures(Context<Backend>& context, std::span<const double> p, std::spa
 }
 
 template <class Backend>
-void settlePressure(Context<Backend>& context, std::span<const std::uint8_t> surface, bool cut,
-                    std::span<double> p) {
-  forEach(context, p.size(),
-          [=] TREACLE_HD(std::size_t i) { p[i] = surface[i] == Place::Free || (cut && p[i] < 0) ? 0 : p[i]; });
+void settlePressure(Context<Backend>& context, std::span<const std::uint8_t> surface, const double* outside,
+                    bool cut, std::span<double> p) {
+  forEach(context, p.size(), [=] TREACLE_HD(std::size_t i) {
+    const double around = outside ? outside[i] : 0;
+    if (surface[i] == Place::Free)
+      p[i] = around;
+    else if (cut && p[i] < 0 && p[i] < around)
+      p[i] = 0;
+  });
 }
 
 template <class Backend>
@@ -62,11 +67,12 @@ void putComponent(Context<Backend>& context, std::span<const double> x, int k, s
   forEach(context, x.size(), [=] TREACLE_HD(std::size_t i) { v[i][k] = x[i]; });
 }
 
-#define TREACLE_EACH_NUMBER(Backend)                                                                       \
-  template void addPressures(Context<Backend>&, std::span<const double>, std::span<const double>,          \
-                             std::span<double>);                                                           \
-  template void settlePressure(Context<Backend>&, std::span<const std::uint8_t>, bool, std::span<double>); \
-  template bool isClosed(Context<Backend>&, std::span<const std::uint8_t>);                                \
+#define TREACLE_EACH_NUMBER(Backend)                                                                  \
+  template void addPressures(Context<Backend>&, std::span<const double>, std::span<const double>,     \
+                             std::span<double>);                                                      \
+  template void settlePressure(Context<Backend>&, std::span<const std::uint8_t>, const double*, bool, \
+                               std::span<double>);                                                    \
+  template bool isClosed(Context<Backend>&, std::span<const std::uint8_t>);                           \
   template void takeLevel(Context<Backend>&, Level, std::span<double>);
 #define TREACLE_EACH_VECTOR(D, Backend)                                                                        \
   template void shiftedVelocity(Context<Backend>&, const Shifting&, std::span<const Vec<D>>,                   \

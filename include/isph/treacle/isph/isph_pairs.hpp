@@ -98,6 +98,7 @@ struct IsphPairs : MaterialParticles<D> {
   // Of the accurate scheme, per fluid particle, by DensityTerm:
   SymmetricBlock<D, float>* renormalisation = nullptr;  // B [-]
   float* missing = nullptr;                             // missingShare
+  const double* outside = nullptr;                      // outsidePressure, per own fluid particle; null: 0
   // With a model of turbulence, per fluid particle, by EddyTerm:
   double mixingLength = 0;         // C l of Smagorinsky's model; 0: laminar [m]
   double mostEddyViscosity = 0;    // that the explicit viscous step bears [Pa s]
@@ -132,6 +133,8 @@ struct IsphPairs : MaterialParticles<D> {
   }
   /// Share of its neighbours that a particle at the free surface misses, by latticeLaplacian.
   TREACLE_HD double missingShare(std::uint32_t i) const { return accurate ? missing[i] : 0; }
+  /// Pressure of the gas that particle i would meet at a free surface [Pa].
+  TREACLE_HD double outsidePressure(std::uint32_t i) const { return outside ? outside[i] : 0; }
   /// 2/rho of two fluid particles, by their mean density [m3/kg].
   TREACLE_HD double mobilityBetween(std::uint32_t i, std::uint32_t j) const {
     const auto& mobility = this->materials.pairMobility;
@@ -147,14 +150,18 @@ struct IsphPairs : MaterialParticles<D> {
                                         const Distance& r) const {
     return 0.5 * (renormalisedAlong(i, d) + renormalisedAlong(j, d)) * mobilityBetween(i, j) * slope(r);
   }
+  /// That of the difference to what missing neighbours have.
+  TREACLE_HD double missingCoefficient(std::uint32_t i) const {
+    return missingShare(i) * latticeLaplacian / this->density(i);
+  }
   /// Pressure that a fluid particle with pressure p sees in a wall at distance d: the wall holds it against
   /// gravity in the frame of the wall, dp/dn = rho (g - a_wall).n.
   TREACLE_HD double wallPressure(double p, std::uint32_t fluid, std::uint32_t wall, const Vec<D>& d) const {
     const double density = this->density(fluid);
     Vec<D> force = frame.on(this->position[wall], density);
     if (wallMotion) force -= density * wallMotion[body[wall]].accelerationAt(this->position[wall]);
-    const double outside = p + dot(force, d);
-    return negativePressure || outside > 0 ? outside : 0;
+    const double held = p + dot(force, d);
+    return negativePressure || held > 0 ? held : 0;
   }
 };
 

@@ -16,9 +16,11 @@ namespace treacle {
 template <class Backend>
 void addPressures(Context<Backend>&, std::span<const double> p, std::span<const double> q, std::span<double> sum);
 
-/// p = 0 for free particles and, where `cut`, where it is negative. `surface` holds a Place each.
+/// p = `outside` for free particles and, where `cut`, 0 where p is less than both 0 and that. `surface` holds a
+/// Place each. `outside`: IsphPairs::outside, or null where it is 0.
 template <class Backend>
-void settlePressure(Context<Backend>&, std::span<const std::uint8_t> surface, bool cut, std::span<double> p);
+void settlePressure(Context<Backend>&, std::span<const std::uint8_t> surface, const double* outside, bool cut,
+                    std::span<double> p);
 
 /// Whether all particles, of all processes, are inside. Then the pressure equation has no Dirichlet
 /// value: its matrix is singular, and pressures are known up to a constant, their level.

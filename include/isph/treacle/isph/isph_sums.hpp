@@ -133,6 +133,7 @@ struct IsphMatrixRow {
   template void sumOnFluid(Context<Backend>&, const IsphPairs<D>&, const WallFrictionTerm<D>&);   \
   template void sumOnFluid(Context<Backend>&, const IsphPairs<D>&, const PressureSourceTerm<D>&); \
   template void sumOnFluid(Context<Backend>&, const IsphPairs<D>&, const CorrectorTerm<D>&);      \
+  template void sumOnFluid(Context<Backend>&, const IsphPairs<D>&, const OutsideTerm<D>&);        \
   template void sumOnWalls(Context<Backend>&, const IsphPairs<D>&, const WallPressureTerm<D>&);   \
   template void sumOnWalls(Context<Backend>&, const IsphPairs<D>&, const WallForceTerm<D>&);      \
   TREACLE_ISPH_MATRIX(D, double, PressureRow<D>, Backend)                                         \

@@ -214,12 +214,33 @@ struct PressureSourceTerm {
   }
 };
 
+/// Adds to the right-hand side of the pressure equation what gas around the free surface does: missing neighbours
+/// and free particles have its pressure (IsphPairs::outside).
+template <int D>
+struct OutsideTerm {
+  static constexpr int values = 1;
+  const std::uint8_t* surface;
+  double* source;
+
+  TREACLE_HD void fluid(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d,
+                        const Distance& r, double* sum) const {
+    if (surface[j] == Place::Free) sum[0] += pairs.pressureCoefficient(i, j, d, r);
+  }
+  TREACLE_HD void wall(const IsphPairs<D>&, std::uint32_t, std::uint32_t, const Vec<D>&, const Distance&,
+                       double*) const {}
+  TREACLE_HD void store(const IsphPairs<D>& pairs, std::uint32_t i, const double* sum) const {
+    if (surface[i] == Place::Free) return;
+    source[i] += (pairs.missingCoefficient(i) + sum[0]) * pairs.outsidePressure(i);
+  }
+};
+
 /// v = v* - dt grad p / rho [O23 eq. (8)], the gradient in its symmetric form [O23 eq. (5)]: it keeps momentum and
 /// drives particles apart. In the accurate scheme it is sum V (p_i B_i + p_j B_j) grad W, the adjoint of the
-/// divergence: a strained lattice under pressure does not resist shear. Particles without pressure have nothing to
-/// stop them at a wall: those closer to it than half a spacing lose the velocity into it; others do when they are
-/// closer still, in impacts that a step does not resolve. Whoever got inside nevertheless leaves at a fiftieth of
-/// a spacing per step.
+/// divergence: a strained lattice under pressure does not resist shear. Pressures count above that of the gas
+/// outside, so that fluid all around which it is the same feels nothing of it. Particles without pressure have
+/// nothing to stop them at a wall: those closer to it than half a spacing lose the velocity into it; others do
+/// when they are closer still, in impacts that a step does not resolve. Whoever got inside nevertheless leaves at
+/// a fiftieth of a spacing per step.
 ///
 /// In the accurate scheme particles move with what another pressure makes of v* (IsphArrangement).
 template <int D>
@@ -238,17 +259,19 @@ struct CorrectorTerm {
   TREACLE_HD void fluid(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d,
                         const Distance& r, double* sum) const {
     const Vec<D> mine = pairs.renormalised(i, d), other = pairs.renormalised(j, d);
-    const double slope = pairs.slope(r);
-    addPull(slope * pressure[i], mine, slope * pressure[j], other, sum + Pull);
-    if (moving) addPull(slope * moving[i], mine, slope * moving[j], other, sum + Moved);
+    const double slope = pairs.slope(r), outside = pairs.outsidePressure(i);
+    addPull(slope * (pressure[i] - outside), mine, slope * (pressure[j] - outside), other, sum + Pull);
+    if (moving) addPull(slope * (moving[i] - outside), mine, slope * (moving[j] - outside), other, sum + Moved);
   }
   TREACLE_HD void wall(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d,
                        const Distance& r, double* sum) const {
     const Vec<D> mine = pairs.renormalised(i, d);
-    const double slope = pairs.slope(r);
-    addPull(slope * pressure[i], mine, slope * pairs.wallPressure(pressure[i], i, j, d), mine, sum + Pull);
+    const double slope = pairs.slope(r), outside = pairs.outsidePressure(i);
+    addPull(slope * (pressure[i] - outside), mine, slope * (pairs.wallPressure(pressure[i], i, j, d) - outside),
+            mine, sum + Pull);
     if (moving)
-      addPull(slope * moving[i], mine, slope * pairs.wallPressure(moving[i], i, j, d), mine, sum + Moved);
+      addPull(slope * (moving[i] - outside), mine, slope * (pairs.wallPressure(moving[i], i, j, d) - outside),
+              mine, sum + Moved);
     for (int k = 0; k < D; ++k) {
       sum[Towards + k] += slope * d[k];
       sum[Wall + k] += slope * predicted[j][k];
@@ -357,9 +380,7 @@ struct PressureRow {
     return 2 * pairs.slope(0) / pairs.leastDensity / (pairs.accurate ? pairs.leastMoment : 1);
   }
   TREACLE_HD double wall(const IsphPairs<D>&, std::uint32_t, std::uint32_t, const Distance&) const { return 0; }
-  TREACLE_HD double own(const IsphPairs<D>& pairs, std::uint32_t i) const {
-    return pairs.missingShare(i) * pairs.latticeLaplacian / pairs.density(i);
-  }
+  TREACLE_HD double own(const IsphPairs<D>& pairs, std::uint32_t i) const { return pairs.missingCoefficient(i); }
 };
 
 /// The same of the implicit viscous step, rho/dt I - mu lap; all fluid is unknown.

@@ -174,6 +174,14 @@ void addGasForces(Context<Backend>& context, std::span<const GasContact<D>> cont
 }
 
 template <int D, class Backend>
+void setOutside(Context<Backend>& context, std::span<const GasContact<D>> contacts,
+                std::span<const double> pressure, std::span<double> outside) {
+  forEach(context, contacts.size(), [=] TREACLE_HD(std::size_t k) {
+    if (contacts[k].isNear()) outside[contacts[k].particle] = pressure[contacts[k].pocket];
+  });
+}
+
+template <int D, class Backend>
 double gasRate(Context<Backend>& context, std::span<const GasContact<D>> contacts, std::uint32_t pocket,
                std::span<const Vec<D>> u) {
   return sumEach<1>(context, contacts.size(), [=] TREACLE_HD(std::size_t k, double* sum) {
@@ -299,6 +307,8 @@ StepChange stepChange(Context<Backend>& context, const StepChangeTerms<D>& terms
                                 std::span<const Vec<D>>);                                                        \
   template void addGasForces(Context<Backend>&, std::span<const GasContact<D>>, std::span<const double>, double, \
                              std::span<Vec<D>>);                                                                 \
+  template void setOutside(Context<Backend>&, std::span<const GasContact<D>>, std::span<const double>,           \
+                           std::span<double>);                                                                   \
   template double gasRate(Context<Backend>&, std::span<const GasContact<D>>, std::uint32_t,                      \
                           std::span<const Vec<D>>);                                                              \
   template std::vector<Contact<D>> findContacts(Context<Backend>&, const ContactSearch<D>&, std::uint32_t,       \
