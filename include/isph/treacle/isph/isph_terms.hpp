@@ -125,8 +125,8 @@ struct BothTerms {
 
 /// Right-hand side of the implicit viscous step, rho/dt v + rho g, the pull of no-slip walls and, where there
 /// is a `flow`, the damping of hourglass modes, by component, and div(mu L^T), the rest of the viscous stress, on
-/// particles that lack neighbours. Inside a fluid it is zero, but sums over particles in disorder push across the
-/// stream, which in long steps disturbs the arrangement (docs/notes/isph.md).
+/// particles that lack neighbours. Inside a fluid it is zero; taken there, too, in long steps, channels flow too
+/// fast (docs/notes/isph.md).
 template <int D>
 struct ViscousSourceTerm {
   static constexpr int values = D;
