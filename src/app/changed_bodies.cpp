@@ -180,6 +180,7 @@ class BodyChange {
       to.position[n + walls_.kept.size() + k] = placeNow(walls_.added[k]);
     to.steps = from.steps;
     to.rigid = rigidBodies();
+    to.gas = from.gas;
     state_.particles = std::move(to);
     state_.names.bodies = StateNames::of(case_).bodies;
     state_.fluidOfAll = n, state_.wallsOfAll = state_.particles.wallCount(), state_.firstWall = n;

@@ -7,6 +7,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
 #include "unit/app/command.hpp"
 #include "unit/app/mistakes.hpp"
 
@@ -286,6 +290,30 @@ TEST(OpenCase, PressuresGoOnFromAFile) {
     ASSERT_EQ(rest.exitCode, 0) << rest.err;
     EXPECT_EQ(shop.content("rest/checkpoint.h5"), shop.content("whole/checkpoint.h5")) << file;
   }
+}
+
+/// Gas keeps its content where bodies are added.
+TEST(OpenCase, GasGoesOnBesideAnAddedBody) {
+  Workshop shop;
+  std::ifstream file(std::filesystem::path(TREACLE_CASES) / "trapped-air-2d.toml");
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  shop.put("case.toml", text);
+  shop.put("added.toml", text +
+                             "[[body]]\nname = \"post\"\ntype = \"wall\"\nmaterial = \"resin\"\nshape = \"box\"\n"
+                             "min = [0.02, 0.034]\nmax = [0.026, 0.039]\n");
+  const std::string settings =
+      " --backend cpu --threads 1 --quiet --set gas.pressure=300 --set output.interval=0.01";
+  ASSERT_EQ(shop.call("run case.toml -o half --end-time 0.04" + settings).exitCode, 0);
+  const Outcome rest = shop.call("run added.toml -o rest --end-time 0.042 --resume half/checkpoint.h5" + settings);
+  ASSERT_EQ(rest.exitCode, 0) << rest.err;
+  // p V of the last step.
+  const auto content = [&](const char* history) {
+    const std::string table = shop.content(history);
+    const std::size_t pressure = table.rfind(','), volume = table.rfind(',', pressure - 1);
+    return (300 + std::stod(table.substr(pressure + 1))) * std::stod(table.substr(volume + 1));
+  };
+  EXPECT_GT(content("half/history.csv"), 1.05 * 300 * 1e-4);
+  EXPECT_NEAR(content("rest/history.csv") / content("half/history.csv"), 1, 0.01);
 }
 
 TEST(OpenCase, ANozzleDoesNotSuck) {
