@@ -149,8 +149,8 @@ struct Particles {
   // Of the gas that it has trapped, likewise.
   GasState gas;
 
-  // Of what steps find together with the flow, the derivative of what is missing to the unknowns (StepUnknowns),
-  // row by row; empty: not known.
+  // What the search for the unknowns of a step remembers: by how much each misses what it should be, derived by
+  // all of them, row by row (StepUnknowns); empty: nothing.
   std::vector<double> response;
 
   // Of wall particle wallBegin() + k. Empty: walls have no surface, and the fluid meets their velocities where
