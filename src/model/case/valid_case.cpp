@@ -186,8 +186,7 @@ void requireFrame(const Checker& at, const Case& c) {
                       "xyz"[k]));
 }
 
-/// The forces of gas are made for the places in the middle of a step, and its pressures are found in turn with the
-/// flow, as the velocities of rigid bodies are.
+/// Gas has not been tried with the published scheme of MPH-I.
 void requireGas(const Checker& at, const Case& c) {
   if (!c.gas) return;
   if (c.method.kind == MethodKind::MphI && !c.isAccurate())

@@ -97,13 +97,14 @@ TEST(Openings, DriveTheFlowOfAChannel) {
 
 /// A flow rate is kept in each step, by the pressure that it takes: that of a channel a little longer.
 TEST(Openings, KeepTheirFlowRate) {
-  for (const MethodKind method : {MethodKind::MphI, MethodKind::Isph}) {
+  // Measured with ISPH: 1.067.
+  for (const auto& [method, off] : {std::pair(MethodKind::MphI, 0.06), std::pair(MethodKind::Isph, 0.07)}) {
     Case c = channelCase(2, method);
     c.openings[0].pressure.reset();
     c.openings[0].flowRate = TimeFunction{0, "4e-4*min(t/0.02, 1)", {}, {}};
     Simulation<2> simulation(c, created<2>(c));
     const StepReport before = flowed(simulation, 60), after = flowed(simulation, 100);
-    EXPECT_NEAR(meanSpeed(simulation) * 0.01 / 4e-4, 1, 0.08) << int(method);  // measured with ISPH: 1.067
+    EXPECT_NEAR(meanSpeed(simulation) * 0.01 / 4e-4, 1, off) << int(method);
     const double went = static_cast<double>(after.flow->out.particles - before.flow->out.particles) * 1e-6;
     EXPECT_NEAR(went / (4e-4 * 0.1), 1, 0.1) << int(method);
     const double exact = 12 * 2 * 0.02 * 4e-4 / 1e-6;
