@@ -17,6 +17,7 @@
 #include "treacle/model/case/names.hpp"
 #include "treacle/model/geometry/mesh.hpp"
 #include "treacle/model/geometry/shape.hpp"
+#include "treacle/model/geometry/thickness.hpp"
 #include "treacle/model/motion/nozzle.hpp"
 #include "treacle/step/method/solve_stages.hpp"
 #include "treacle/step/run/shareable.hpp"
@@ -81,6 +82,8 @@ void printMeshes(const Case& c) {
     print("# mesh of '{}': {} triangles from {} to {}, area {:.6g} m2, volume enclosed {:.6g} m3, {} open edges\n",
           body.name, facts.triangles, positionText(box.min, c.dimensions), positionText(box.max, c.dimensions),
           facts.area * scale * scale, std::abs(facts.volume) * scale * scale * scale, facts.openEdges);
+    if (body.shape.isThinSheet() && isMiddleOfSolid(c, body))
+      print("#   a thin solid: '{}' is the sheet in its middle\n", body.name);
   }
 }
 

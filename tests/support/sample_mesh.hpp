@@ -9,6 +9,7 @@
 #include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace treacle::test {
 
@@ -49,6 +50,25 @@ inline Triangles boxMesh(const Vec<3>& min, const Vec<3>& max) {
     m.vertices.push_back({k & 1 ? max[0] : min[0], k & 2 ? max[1] : min[1], k & 4 ? max[2] : min[2]});
   m.corners = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
                {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  return m;
+}
+
+/// A solid of revolution around z. `outline`: radius and height, from the axis below around the outside to the
+/// axis above.
+inline Triangles turnedMesh(const std::vector<Vec<2>>& outline, int segments) {
+  Triangles m;
+  const auto n = static_cast<std::uint32_t>(segments);
+  for (const Vec<2>& x : outline)
+    for (int k = 0; k < segments; ++k) {
+      const double angle = 2 * std::acos(-1.0) * k / segments;
+      m.vertices.push_back({x[0] * std::cos(angle), x[0] * std::sin(angle), x[1]});
+    }
+  for (std::uint32_t i = 0; i + 1 < outline.size(); ++i)
+    for (std::uint32_t k = 0; k < n; ++k) {
+      const std::uint32_t a = i * n + k, b = i * n + (k + 1) % n, c = b + n, d = a + n;
+      if (outline[i][0] > 0) m.corners.push_back({a, b, outline[i + 1][0] > 0 ? c : d});
+      if (outline[i + 1][0] > 0) m.corners.push_back({a, c, d});
+    }
   return m;
 }
 

@@ -4,6 +4,7 @@
 #include "particles/fluid_extent.hpp"
 #include "treacle/model/case/names.hpp"
 #include "treacle/model/geometry/shape.hpp"
+#include "treacle/model/geometry/thickness.hpp"
 #include "treacle/model/motion/friction.hpp"
 
 #include <fmt/format.h>
@@ -85,6 +86,26 @@ void warnThinWalls(const Case& c, std::vector<std::string>& warnings) {
     warnings.push_back(fmt::format(
         "wall '{}' is {} thick {}, thinner than the {} = {} ({:g} spacings): fluid next to it misses neighbours",
         body.name, lengthText(extent), where, reachName(c), lengthText(reach), reach / c.spacing));
+  }
+}
+
+/// Rims are thin, too.
+void warnThinMeshes(const Case& c, std::vector<std::string>& warnings) {
+  constexpr double most = 0.2;  // of the surface
+  for (const Body& body : c.bodies) {
+    const Shape& s = body.shape;
+    const bool isFilled = s.fill == FillKind::Inside || s.fill == FillKind::Shell;
+    const bool isThere = s.kind == ShapeKind::Polygon || (s.kind == ShapeKind::Mesh && s.file.mesh.value);
+    if (body.kind != BodyKind::Wall || !isFilled || !isThere) continue;
+    const double reach = c.interactionRadius();
+    const ThinParts thin = thinParts(s, c.dimensions, reach * (1 - rounding));
+    if (thin.share < most) continue;
+    warnings.push_back(
+        fmt::format("wall '{}': {:.0f} % of its surface is on parts that are thinner than the {} = {}, such as {} "
+                    "at {}: fluid "
+                    "acts through them and may leak; take fill = \"thin-sheet\" or a spacing of at most {}",
+                    body.name, 100 * thin.share, reachName(c), lengthText(reach), lengthText(thin.thickness),
+                    positionText(thin.place, c.dimensions), lengthText(thin.thickness * c.spacing / reach)));
   }
 }
 
@@ -336,6 +357,7 @@ std::vector<std::string> caseWarnings(const Case& c) {
   warnTension(c, warnings);
   warnKeysOfOthers(c, warnings);
   warnThinWalls(c, warnings);
+  warnThinMeshes(c, warnings);
   warnFriction(c, warnings);
   warnShortRadii(c, warnings);
   if (!c.time.stepsVary()) warnTimes(c, warnings);

@@ -9,6 +9,8 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <optional>
 
 namespace treacle {
 namespace {
@@ -123,11 +125,29 @@ template <int D>
 std::vector<Vec<D>> sheetPoints(const Case& c, const Body& body, std::vector<std::string>& notes,
                                 const std::function<bool(const Vec<D>&)>& keep) {
   const ThinSheet<D> sheet(c, body);
-  return pointsIn<D>(sheet, c, body, notes, [&](const Vec<D>& x) {
+  const auto inDomain = [&](const Vec<D>& x) {
     for (int k = 0; k < D; ++k)
       if (!(x[k] >= c.domain.min[k] && x[k] < c.domain.max[k])) return false;
-    return keep(x + sheet.at(x, c.interactionRadius()).way);
+    return true;
+  };
+  std::size_t all = 0, outside = 0;
+  std::optional<Vec<D>> place;
+  std::vector<Vec<D>> points = pointsIn<D>(sheet, c, body, notes, [&](const Vec<D>& x) {
+    const Vec<D> seen = x + sheet.at(x, c.interactionRadius()).way;
+    const bool isThere = inDomain(x), isSeen = inDomain(seen);
+    if (isSeen) ++all;
+    if (isSeen && !isThere && outside++ == 0) place = seen;
+    return isThere && keep(seen);
   });
+  constexpr double most = 0.02;  // where a sheet leaves the domain aslant, a few are outside
+  if (static_cast<double>(outside) > most * static_cast<double>(all))
+    notes.push_back(fmt::format(
+        "thin sheet '{}': {:.0f} % of its particles are left out, because they would be outside of the domain: "
+        "fluid beside the sheet, such as at {}, does not feel all of it; expected a domain that goes on for {} "
+        "on both sides of the sheet",
+        body.name, 100.0 * static_cast<double>(outside) / static_cast<double>(all),
+        positionText(resized<3>(*place), D), lengthText(c.interactionRadius())));
+  return points;
 }
 
 template std::vector<Vec<2>> solidPoints<2>(const Case&, const Body&, std::vector<std::string>&,

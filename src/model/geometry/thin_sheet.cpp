@@ -1,47 +1,25 @@
 #include "thin_sheet.hpp"
 
+#include "facet_joint.hpp"
 #include "solid.hpp"
+#include "thin_solid.hpp"
 #include "treacle/core/error.hpp"
+#include "treacle/model/geometry/thickness.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <set>
+#include <string_view>
+#include <utility>
 
 namespace treacle {
 namespace {
 
-/// A corner in the plane or an edge in space, by its ends in the order of their coordinates.
 template <int D>
-using Joint = std::array<Vec<D>, D - 1>;
-
-template <int D>
-bool isBefore(const Vec<D>& a, const Vec<D>& b) {
-  return std::lexicographical_compare(a.v, a.v + D, b.v, b.v + D);
-}
-
-template <int D>
-struct JointOrder {
-  bool operator()(const Joint<D>& a, const Joint<D>& b) const {
-    return std::ranges::lexicographical_compare(a, b, isBefore<D>);
-  }
-};
-
-/// Joint k of a facet, and whether the facet begins there or, in space, goes along it in this order.
-template <int D>
-std::pair<Joint<D>, bool> jointOf(const Facet<D>& facet, std::size_t k) {
-  if constexpr (D == 2) return {{facet[k]}, k == 0};
-  if constexpr (D == 3) {
-    const Vec<3>&a = facet[k], &b = facet[(k + 1) % 3];
-    return isBefore(a, b) ? std::pair{Joint<3>{a, b}, true} : std::pair{Joint<3>{b, a}, false};
-  }
-}
-
-template <int D>
-double distanceTo(const Joint<D>& joint, const Vec<D>& x) {
+double distanceTo(const FacetJoint<D>& joint, const Vec<D>& x) {
   if constexpr (D == 2) return norm(x - joint[0]);
   if constexpr (D == 3) {
     const Vec<3> along = joint[1] - joint[0];
@@ -62,7 +40,20 @@ ThinSheet<D>::ThinSheet(const Case& c, const Body& body)
   const Extent box = boundingBox(body.shape, D);
   const Vec<D> margin = Vec<D>::filled(c.interactionRadius() + c.spacing);
   min_ = resized<D>(box.min) - margin, max_ = resized<D>(box.max) + margin;
+  takeMiddle(body.name);
   findEnds(body.name);
+}
+
+template <int D>
+void ThinSheet<D>::takeMiddle(const std::string& name) {
+  const auto refuse = [&](std::string_view problem, std::string_view part, const Vec<D>& place) {
+    throw InputError(
+        fmt::format("thin sheet '{}' is a thin solid that {} at {}; expected two sides, less than {} apart "
+                    "everywhere: make {} a body of its own",
+                    name, problem, positionText(resized<3>(similarity_.point(place)), D),
+                    lengthText(reach_ * similarity_.scale()), part));
+  };
+  if (auto middle = middleOfThinSolid<D>(*tree_, reach_, refuse)) tree_ = std::move(middle), isMiddle_ = true;
 }
 
 template <int D>
@@ -70,7 +61,7 @@ void ThinSheet<D>::findEnds(const std::string& name) {
   struct Meeting {
     int facets = 0, forward = 0;
   };
-  std::map<Joint<D>, Meeting, JointOrder<D>> joints;
+  std::map<FacetJoint<D>, Meeting, JointOrder<D>> joints;
   const auto forEachJoint = [&](auto&& f) {
     for (std::uint32_t facet = 0; facet < tree_->size(); ++facet)
       for (std::size_t k = 0; k < D; ++k) {
@@ -78,7 +69,7 @@ void ThinSheet<D>::findEnds(const std::string& name) {
         f(facet, k, joints[joint], joint, forward);
       }
   };
-  forEachJoint([](std::uint32_t, std::size_t, Meeting& meeting, const Joint<D>&, bool forward) {
+  forEachJoint([](std::uint32_t, std::size_t, Meeting& meeting, const FacetJoint<D>&, bool forward) {
     ++meeting.facets, meeting.forward += forward;
   });
   for (const auto& [joint, meeting] : joints) {
@@ -95,9 +86,8 @@ void ThinSheet<D>::findEnds(const std::string& name) {
                     name, place));
   }
   ends_.assign(tree_->size(), 0);
-  const auto before = [](const Vec<D>& a, const Vec<D>& b) { return isBefore<D>(a, b); };
-  std::set<Vec<D>, decltype(before)> corners(before);
-  forEachJoint([&](std::uint32_t facet, std::size_t k, const Meeting& meeting, const Joint<D>& joint, bool) {
+  std::set<Vec<D>, PointOrder<D>> corners;
+  forEachJoint([&](std::uint32_t facet, std::size_t k, const Meeting& meeting, const FacetJoint<D>& joint, bool) {
     if (meeting.facets != 1) return;
     ends_[facet] |= static_cast<std::uint8_t>(1u << k);
     corners.insert(joint.begin(), joint.end());
@@ -149,6 +139,10 @@ template <int D>
 typename ThinSheet<D>::Answer ThinSheet<D>::filled(const Vec<D>& x) const {
   const Place place = at(x, reach_ * similarity_.scale());
   return {place.side != sides::None, place.side == sides::None ? place.distance : 0};
+}
+
+bool isMiddleOfSolid(const Case& c, const Body& body) {
+  return c.dimensions == 2 ? ThinSheet<2>(c, body).isMiddle() : ThinSheet<3>(c, body).isMiddle();
 }
 
 template class ThinSheet<2>;

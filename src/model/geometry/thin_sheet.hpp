@@ -12,14 +12,17 @@
 
 namespace treacle {
 
-/// The surface of a body that is a thin sheet, as it stands at the start. The front is the side that its normals
-/// point to. Beside an edge of it, farther than the edge goes, a point is on neither side.
+/// The surface of a body that is a thin sheet, as it stands at the start; of a thin solid the surface in its
+/// middle. The front is the side that its normals point to. Beside an edge of it, farther than the edge goes, a
+/// point is on neither side.
 template <int D>
 class ThinSheet {
  public:
-  /// Errors: InputError for faces that disagree on their sides, and for more than two that meet in an edge.
+  /// Errors: InputError for faces that disagree on their sides, for more than two that meet in an edge, and for a
+  /// thin solid that branches or is thicker elsewhere.
   ThinSheet(const Case& c, const Body& body);
 
+  bool isMiddle() const { return isMiddle_; }
   /// Around the sheet and all that its particles may fill [m].
   const Vec<D>& min() const { return min_; }
   const Vec<D>& max() const { return max_; }
@@ -41,12 +44,14 @@ class ThinSheet {
   Answer filled(const Vec<D>& x) const;
 
  private:
+  void takeMiddle(const std::string& name);
   void findEnds(const std::string& name);
   bool isAtEnd(std::uint32_t facet, const Vec<D>& point) const;
 
   Similarity<D> similarity_;
   std::shared_ptr<const FacetTree<D>> tree_;  // before the transform; so are lengths here
   double sign_, reach_, slack_;
+  bool isMiddle_ = false;
   std::vector<std::uint8_t> ends_;  // per facet: 1 << k where side k ends the sheet, 8 << k where corner k does
   Vec<D> min_, max_;
 };

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "sample_case.hpp"
+#include "support/sample_mesh.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -437,6 +438,24 @@ TEST(caseWarnings, wallsThinnerThanTheViscosityRadius) {  // h_v = 3.5
     c.bodies[0].kind = BodyKind::Fluid;
     EXPECT_THAT(caseWarnings(c), IsEmpty());
   }
+}
+
+TEST(caseWarnings, meshesWithThinWalls) {
+  const auto warnings = [](double thickness, FillKind fill, BodyKind kind) {  // of a pot without a lid
+    Case c = emptyCase(3);
+    const double t = thickness;
+    c.bodies = {
+        makeBody("pot", kind,
+                 meshShape(turnedMesh({{0, 0}, {20 + t, 0}, {20 + t, 40}, {20, 40}, {20, t}, {0, t}}, 64), fill))};
+    return caseWarnings(c);
+  };
+  EXPECT_THAT(warnings(3.6, FillKind::Inside, BodyKind::Wall), IsEmpty());
+  EXPECT_THAT(warnings(0.2, FillKind::Inside, BodyKind::Wall),
+              ElementsAre(AllOf(HasSubstr("wall 'pot': "),
+                                HasSubstr("thinner than the viscosity radius h_v = 3.5 m, such as 199.759 mm at ("),
+                                HasSubstr("spacing of at most 57.074 mm"))));
+  EXPECT_THAT(warnings(0.2, FillKind::ThinSheet, BodyKind::Wall), IsEmpty());
+  EXPECT_THAT(warnings(0.2, FillKind::Inside, BodyKind::Fluid), IsEmpty());
 }
 
 TEST(caseWarnings, frictionThatMeetsNone) {

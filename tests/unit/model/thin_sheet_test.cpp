@@ -1,4 +1,5 @@
 #include "sample_case.hpp"
+#include "support/sample_mesh.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/model/geometry/mesh.hpp"
 #include "treacle/model/geometry/side_map.hpp"
@@ -189,6 +190,120 @@ TEST(ThinSheet, IsASurfaceWithTwoSides) {
   Triangles sound = branch;
   sound.corners = {{0, 1, 2}, {1, 0, 3}};
   EXPECT_EQ(refusal(sound), "none");
+}
+
+/// A polygon that is a thin sheet, or the outline of a thin solid.
+Body outlineBody(std::vector<Vec<2>> points) {
+  Body body = lineBody(std::move(points));
+  body.shape.kind = ShapeKind::Polygon;
+  body.shape.fill = FillKind::ThinSheet;
+  return body;
+}
+
+/// The largest distance of the points where the particles of a sheet see it from a middle at 0, by `height`.
+template <int D, class Height>
+double farthest(const Particles<D>& p, Height&& height) {
+  double most = 0;
+  for (std::uint32_t i = p.fluidCount; i < p.count; ++i)
+    most = std::max(most,
+                    std::abs(height(p.position[i] + converted<double>(p.wallSurface[i - p.fluidCount].face[0]))));
+  return most;
+}
+
+TEST(ThinSheet, IsInTheMiddleOfAThinCup) {
+  // A cup without a lid, 0.4 spacings thick, with fluid in it and around it.
+  const Particles<2> p = made(
+      planeCase(outlineBody({{1, 1}, {3, 1}, {3, 3}, {2.96, 3}, {2.96, 1.04}, {1.04, 1.04}, {1.04, 3}, {1, 3}})));
+  ASSERT_GT(p.count, p.fluidCount);
+  const auto height = [](const Vec<2>& x) {
+    return std::max({1.02 - x[1], 1.02 - x[0], x[0] - 2.98});  // 0 along the middle, as far as it goes
+  };
+  EXPECT_LT(farthest(p, height), 1e-6);
+  std::uint32_t inside = sides::None, outside = sides::None;
+  for (std::uint32_t i = 0; i < p.fluidCount; ++i) {
+    const std::uint32_t side = sides::of(p.side[i], 0);
+    if (std::abs(height(p.position[i])) > 0.3 || p.position[i][1] > 2.9) continue;
+    ASSERT_NE(side, sides::None);
+    std::uint32_t& all = height(p.position[i]) < 0 ? inside : outside;
+    if (all == sides::None) all = side;
+    EXPECT_EQ(side, all);
+  }
+  EXPECT_NE(inside, outside);
+}
+
+TEST(ThinSheet, OfAThinSolidEndsInTheMiddleOfItsRim) {
+  // A wedge, whose sides meet in sharp edges, and a bent strip with round ends.
+  const Particles<2> wedge = made(planeCase(outlineBody({{1, 2}, {2, 1.95}, {3, 2}, {2, 2.05}})));
+  EXPECT_LT(farthest(wedge, [](const Vec<2>& x) { return x[1] - 2; }),
+            1e-3);  // half a way at right angles to a side
+  std::vector<Vec<2>> strip;
+  const auto addEnd = [&](const Vec<2>& middle, double angle) {
+    for (int k = 0; k <= 8; ++k) {
+      const double a = angle + (k - 4) * std::acos(-1.0) / 8;
+      strip.push_back(middle + Vec<2>{0.1 * std::cos(a), 0.1 * std::sin(a)});
+    }
+  };
+  addEnd({1, 2}, std::acos(-1.0));
+  strip.push_back({2.1, 1.9}), addEnd({2, 3}, std::acos(-1.0) / 2), strip.push_back({1.9, 2.1});
+  const Particles<2> bent = made(planeCase(outlineBody(strip)));
+  const auto height = [](const Vec<2>& x) { return std::max(x[0] - 2, 2 - x[1]); };
+  EXPECT_LT(farthest(bent, height), 1e-6);
+  double left = 4, top = 0;
+  for (std::uint32_t i = bent.fluidCount; i < bent.count; ++i)
+    left = std::min(left, bent.position[i][0]), top = std::max(top, bent.position[i][1]);
+  EXPECT_NEAR(left, 1, 0.06);
+  EXPECT_NEAR(top, 3, 0.06);
+}
+
+TEST(ThinSheet, IsInTheMiddleOfAThinMesh) {
+  // A bowl with a foot: a disc, a cylinder and a rounded rim, 0.3 spacings thick.
+  constexpr double r = 0.4, t = 0.03;
+  std::vector<Vec<2>> outline{{0, 0.2}, {r + t, 0.2}};
+  for (int k = 0; k <= 6; ++k) {
+    const double angle = k * std::acos(-1.0) / 6;
+    outline.push_back({r + t / 2 + t / 2 * std::cos(angle), 0.8 + t / 2 * std::sin(angle)});
+  }
+  outline.insert(outline.end(), {{r, 0.2 + t}, {0, 0.2 + t}});
+  Case c = meshCase(test::turnedMesh(outline, 96));
+  Transform transform;
+  transform.translate = {0.5, 0.5, 0};
+  c.bodies[1].shape.transform = transform;
+  std::vector<std::string> notes;
+  const Particles<3> p = createParticles<3>(c, notes);
+  ASSERT_GT(p.count, p.fluidCount);
+  const auto height = [](const Vec<3>& x) {
+    return std::max(0.2 + t / 2 - x[2], std::hypot(x[0] - 0.5, x[1] - 0.5) - r - t / 2);
+  };
+  EXPECT_LT(farthest(p, height), 0.001);  // a chord is up to 0.0003 away from the circle
+  for (std::uint32_t i = 0; i < p.fluidCount; ++i)
+    if (std::abs(height(p.position[i])) < 0.3 && p.position[i][2] < 0.7) {
+      EXPECT_NE(sides::of(p.side[i], 0), sides::None);
+    }
+}
+
+TEST(ThinSheet, OfAThickSolidIsItsWholeSurface) {
+  const Particles<2> p = made(planeCase(outlineBody({{1, 1}, {3, 1}, {3, 3}, {1, 3}})));
+  const auto height = [](const Vec<2>& x) { return std::max(std::abs(x[0] - 2), std::abs(x[1] - 2)) - 1; };
+  EXPECT_LT(farthest(p, height), 1e-6);
+}
+
+TEST(ThinSheet, NeedsADomainOnBothSides) {
+  const auto notes = [](double height) {
+    std::vector<std::string> found;
+    createParticles<2>(planeCase(lineBody({{1, height}, {3, height}})), found);
+    return found;
+  };
+  EXPECT_THAT(notes(-0.6), testing::IsEmpty());
+  EXPECT_THAT(notes(-0.8),
+              testing::ElementsAre(HasSubstr("thin sheet 'sheet': 14 % of its particles are left out")));
+}
+
+TEST(ThinSheet, MayNotBranchNorBeThickInPlaces) {
+  expectRefused(planeCase(outlineBody(
+                    {{1, 1}, {3, 1}, {3, 1.04}, {2.02, 1.04}, {2.02, 3}, {1.98, 3}, {1.98, 1.04}, {1, 1.04}})),
+                "thin sheet 'sheet' is a thin solid that branches at (");
+  expectRefused(planeCase(outlineBody({{1, 1}, {2, 1}, {2, 2}, {1.04, 2}, {1.04, 4}, {1, 4}})),
+                "make the thick part a body of its own");
 }
 
 }  // namespace
