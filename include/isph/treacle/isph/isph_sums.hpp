@@ -2,8 +2,10 @@
 
 #include "treacle/isph/isph_flow.hpp"
 #include "treacle/isph/isph_matrix.hpp"
+#include "treacle/isph/isph_pressure_terms.hpp"
 #include "treacle/isph/isph_terms.hpp"
 #include "treacle/isph/isph_turbulence.hpp"
+#include "treacle/isph/isph_viscous_terms.hpp"
 
 #include <span>
 
