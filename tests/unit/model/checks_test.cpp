@@ -450,10 +450,11 @@ TEST(caseWarnings, meshesWithThinWalls) {
     return caseWarnings(c);
   };
   EXPECT_THAT(warnings(3.6, FillKind::Inside, BodyKind::Wall), IsEmpty());
-  EXPECT_THAT(warnings(0.2, FillKind::Inside, BodyKind::Wall),
-              ElementsAre(AllOf(HasSubstr("wall 'pot': "),
-                                HasSubstr("thinner than the viscosity radius h_v = 3.5 m, such as 199.759 mm at ("),
-                                HasSubstr("spacing of at most 57.074 mm"))));
+  EXPECT_THAT(
+      warnings(0.2, FillKind::Inside, BodyKind::Wall),
+      ElementsAre(AllOf(HasSubstr("wall 'pot': "),
+                        HasSubstr("thinner than the viscosity radius h_v = 3.5 m, such as 199.759 mm at ("),
+                        HasSubstr("spacing of at most 57.074 mm"))));
   EXPECT_THAT(warnings(0.2, FillKind::ThinSheet, BodyKind::Wall), IsEmpty());
   EXPECT_THAT(warnings(0.2, FillKind::Inside, BodyKind::Fluid), IsEmpty());
 }
