@@ -1,7 +1,7 @@
 #pragma once
 
 #include "linear/scalar_product.hpp"
-#include "treacle/isph/isph_terms.hpp"
+#include "treacle/isph/isph_pressure_terms.hpp"
 
 #include <cstdint>
 #include <span>

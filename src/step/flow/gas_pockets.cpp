@@ -24,7 +24,11 @@ struct Spline {
   }
 };
 
-constexpr double correction = 0.05;   // by how much of its error a volume is corrected in a step
+constexpr double correction = 0.05;  // by how much of its error a volume is corrected in a step
+/// The rows next to a pocket lack neighbours. In MPH-I their densities are too low for them to have a pressure,
+/// and what presses on them moves them together. Surface tension, which acts on the same rows, is balanced there.
+int layersOf(const Case& c) { return c.method.kind == MethodKind::MphI && !c.hasSurfaceTension() ? 3 : 0; }
+
 constexpr double leastVolume = 0.05;  // of the volume that a pocket has at the pressure of the air
 
 }  // namespace
@@ -44,7 +48,12 @@ CellGrid<D> GasPockets<D>::gridOf(const Case& c) {
 
 template <int D>
 GasPockets<D>::GasPockets(const Case& c)
-    : gas_(*c.gas), spacing_(c.spacing), particle_(std::pow(c.spacing, D)), cell_(1), grid_(gridOf(c)) {
+    : gas_(*c.gas),
+      spacing_(c.spacing),
+      particle_(std::pow(c.spacing, D)),
+      cell_(1),
+      layers_(layersOf(c)),
+      grid_(gridOf(c)) {
   for (int k = 0; k < D; ++k) cell_ *= grid_.edge[k];
 }
 
@@ -258,7 +267,7 @@ void GasPockets<D>::widen(const std::vector<std::vector<std::size_t>>& found) {
   for (const auto& cells : found)
     for (const std::size_t cell : cells)
       if (label_[cell] != nobody) near_.push_back(static_cast<std::uint32_t>(cell));
-  for (int ring = 0; ring < reach; ++ring) {
+  for (int ring = 0; ring < reach + layers_; ++ring) {
     const std::size_t first = rings_.back(), last = near_.size();
     rings_.push_back(static_cast<std::uint32_t>(last));
     for (std::size_t k = first; k < last; ++k)
@@ -306,41 +315,77 @@ void GasPockets<D>::setVolumes(GasState& state) const {
   }
 }
 
-/// The mean of a field over neighbours, taken twice, in the cells of pockets and around them.
+/// The mean of a field over neighbours, in the cells of pockets and around them; value(cell, of): the field in a
+/// cell, asked for one of these.
 template <int D>
-void GasPockets<D>::smooth(std::vector<double>& field) {
-  std::vector<double> next(near_.size());
+template <class F>
+std::vector<double> GasPockets<D>::mean(F&& value) const {
+  std::vector<double> result(near_.size());
+  for (std::size_t k = 0; k < near_.size(); ++k) {
+    const Vec<D, int> middle = grid_.cellAt(near_[k]);
+    forEachAround(near_[k], [&](std::size_t other) {
+      const Vec<D, int> i = grid_.cellAt(other);
+      double weight = 1;
+      for (int a = 0; a < D; ++a) weight *= i[a] == middle[a] ? 0.5 : 0.25;
+      result[k] += weight * value(other, near_[k]);
+    });
+  }
+  return result;
+}
+
+/// Takes the mean twice.
+template <int D>
+void GasPockets<D>::smooth(std::vector<double>& field) const {
   for (int pass = 0; pass < 2; ++pass) {
-    for (std::size_t k = 0; k < near_.size(); ++k) {
-      const Vec<D, int> middle = grid_.cellAt(near_[k]);
-      double sum = 0;
-      forEachAround(near_[k], [&](std::size_t other) {
-        const Vec<D, int> i = grid_.cellAt(other);
-        double weight = 1;
-        for (int a = 0; a < D; ++a) weight *= i[a] == middle[a] ? 0.5 : 0.25;
-        sum += weight * field[other];
-      });
-      next[k] = sum;
-    }
+    const std::vector<double> next = mean([&](std::size_t cell, std::size_t) { return field[cell]; });
     for (std::size_t k = 0; k < near_.size(); ++k) field[near_[k]] = next[k];
   }
 }
 
-/// I: 2 in a pocket, 1 at its surface, and falling to 0 within some three spacings behind it. For the fluid it is
-/// twice the part of the space between walls that is empty, so that walls beside a surface do not change it.
+/// I of the fluid: `factor` times the part of the space between walls that is empty, so that walls beside a
+/// surface do not change it.
+template <int D>
+void GasPockets<D>::shareFluid(double factor) {
+  ofFluid_.assign(empty_.size(), 0);
+  for (const std::uint32_t cell : near_)
+    ofFluid_[cell] = open_[cell] > 0.05 ? factor * ofWalls_[cell] / open_[cell] : 0;
+}
+
+/// I: at the surface of a pocket 1, and behind it 0. It falls to 0 within some three spacings of the surface or,
+/// where there are `layers`, within six spacings behind these.
 template <int D>
 void GasPockets<D>::share() {
   open_.assign(empty_.size(), 1);
   ofWalls_.assign(empty_.size(), 0);
   for (const std::uint32_t cell : near_) open_[cell] = std::max(0.0, 1 - walls_[cell]);
+  const std::vector<double> betweenWalls = open_;
   for (std::size_t k = 0; k < rings_[rim + 1]; ++k)
     ofWalls_[near_[k]] = std::clamp(1 - filled_[near_[k]], 0.0, 1.0);
   smooth(ofWalls_);
   smooth(open_);
-  ofFluid_.assign(empty_.size(), 0);
+  shareFluid(2);
+  if (layers_ > 0) deepen(betweenWalls);
+  for (const std::uint32_t cell : near_) ofWalls_[cell] *= 2;
+}
+
+/// Counts layers of fluid next to a pocket as empty, one after the other, but not those near the air and other
+/// pockets: a thin film between them has no other rows that could bear the pressure.
+template <int D>
+void GasPockets<D>::deepen(const std::vector<double>& betweenWalls) {
+  std::vector<double> fluid = ofFluid_, walls = ofWalls_, others(empty_.size());
+  const std::vector<double> next = mean(
+      [&](std::size_t cell, std::size_t of) { return empty_[cell] && label_[cell] != label_[of] ? 2.0 : 0.0; });
+  for (std::size_t k = 0; k < near_.size(); ++k) others[near_[k]] = next[k];
+  smooth(others);
+  for (int layer = 1; layer <= layers_; ++layer) {
+    for (const std::uint32_t cell : near_)
+      ofWalls_[cell] = std::max(0.0, std::min(1.0, ofFluid_[cell]) - others[cell]) * betweenWalls[cell];
+    smooth(ofWalls_);
+    shareFluid(layer < layers_ ? 2 : 1);
+  }
   for (const std::uint32_t cell : near_) {
-    ofFluid_[cell] = open_[cell] > 0.05 ? 2 * ofWalls_[cell] / open_[cell] : 0;
-    ofWalls_[cell] *= 2;
+    ofFluid_[cell] = std::max(ofFluid_[cell], std::min(1.0, fluid[cell]));
+    ofWalls_[cell] = std::max(ofWalls_[cell], walls[cell]);
   }
 }
 

@@ -41,7 +41,7 @@ class GasPockets {
  private:
   static constexpr std::uint32_t air = 0xffffffff, nobody = 0xfffffffe;  // among labels
   static constexpr int rim = 2;    // how many cells around a pocket count for its volume
-  static constexpr int reach = 5;  // and its force
+  static constexpr int reach = 5;  // and, beside the layers, for its force
 
   /// Calls f(cell) for the cells around one and itself, or for those alone that share a face with it.
   template <class F>
@@ -61,13 +61,18 @@ class GasPockets {
   void widen(const std::vector<std::vector<std::size_t>>& found);
   void measure(const Processes& processes, std::span<const Vec<D>> position, std::uint32_t fluid);
   void setVolumes(GasState& state) const;
-  void smooth(std::vector<double>& field);
+  template <class F>
+  std::vector<double> mean(F&& value) const;
+  void smooth(std::vector<double>& field) const;
+  void shareFluid(double factor);
   void share();
+  void deepen(const std::vector<double>& betweenWalls);
   void meet(std::span<const Vec<D>> position, std::uint32_t fluid);
 
   GasSettings gas_;
   double spacing_;          // l [m]
   double particle_, cell_;  // volumes of a particle and of a cell [m3; m2 in 2D]
+  int layers_;              // of fluid next to a pocket that its force does not act on
   CellGrid<D> grid_;
   std::vector<std::uint8_t> empty_;           // per cell
   std::vector<std::uint32_t> label_;          // per cell: its pocket, air or nobody
