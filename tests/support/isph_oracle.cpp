@@ -8,7 +8,7 @@ namespace treacle::test {
 
 template <int D>
 double IsphOracle<D>::mu(std::uint32_t i, std::uint32_t j) const {
-  const double a = material(i).dynamicViscosity, b = material(j).dynamicViscosity;
+  const double a = material(isWall(i) ? j : i).dynamicViscosity, b = material(isWall(j) ? i : j).dynamicViscosity;
   return 2 * a * b / (a + b);
 }
 
@@ -181,7 +181,7 @@ Vec<D> IsphOracle<D>::transposedForce(const std::vector<Vec<D>>& v, std::uint32_
   Vec<D> sum{};
   forEachOther(i, [&](std::uint32_t j) {
     const Matrix both = own + (isWall(j) ? own : velocityGradient(v, j));
-    const Vec<D> g = mu(i, isWall(j) ? i : j) * gradient(i, j);
+    const Vec<D> g = mu(i, j) * gradient(i, j);
     for (int a = 0; a < D; ++a)
       for (int b = 0; b < D; ++b) sum[b] += both(a, b) * g[a];
   });

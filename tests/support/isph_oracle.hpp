@@ -21,7 +21,7 @@ struct IsphOracle {
   std::uint32_t count() const { return s.particles.count; }
   bool isWall(std::uint32_t i) const { return i >= s.n(); }
   const Material& material(std::uint32_t i) const { return s.c.materials[s.particles.material[i]]; }
-  double mu(std::uint32_t i, std::uint32_t j) const;
+  double mu(std::uint32_t i, std::uint32_t j) const;  // with a wall that of the fluid
 
   /// Cubic spline of Monaghan, or Wendland's C2, and dW/dr by its text-book derivative.
   double kernel(double r) const;
@@ -60,7 +60,7 @@ struct IsphOracle {
 
   /// What particle i sees in j: its velocity, or that of a wall's image, 2 u_wall - v_i.
   Vec<D> seen(const std::vector<Vec<D>>& v, std::uint32_t i, std::uint32_t j) const;
-  /// eqs. (6) and (7); mu nu^-1 of a pair by their harmonic mean.
+  /// eqs. (6) and (7); mu nu^-1 of a pair by their harmonic mean, at walls mu of the fluid.
   Vec<D> predicted(const std::vector<Vec<D>>& v, std::uint32_t i) const;
   /// eq. (4), of a velocity.
   double divergence(const std::vector<Vec<D>>& v, std::uint32_t i) const;

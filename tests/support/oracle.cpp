@@ -115,8 +115,8 @@ double Oracle<D>::wallFactor(std::uint32_t i, std::uint32_t j) const {
     crossing = distance > 0 ? share : 0;
     factor = (held + depth) / (held + material(i).slipLength);
   }
-  // The wall holds each of several fluids by its own viscosity.
-  const double own = s.c.hasSeveralFluids() && !s.c.hasOwnViscosities() ? mu(i, i) / mu(i, j) : 1;
+  // The wall holds each fluid by the viscosity of this fluid.
+  const double own = !s.c.hasOwnViscosities() ? mu(i, i) / mu(i, j) : 1;
   return own * (factor > 0 ? factor : 1);
 }
 

@@ -1,6 +1,10 @@
 #include "treacle/step/run/simulation.hpp"
 
+#include "support/gas_case.hpp"
+#include "support/isph_cases.hpp"
 #include "support/oracle.hpp"
+#include "support/rigid_cases.hpp"
+#include "support/state_of.hpp"
 
 #include <gtest/gtest.h>
 
@@ -153,6 +157,30 @@ TEST(Simulation, DiagnosticsAreTheSumsTheyAreCalled) {
   EXPECT_NEAR(d.potentialEnergy, potential, 1e-12 * potential);
   EXPECT_EQ(d.frontX, front);
   EXPECT_EQ(d.top, top);
+}
+
+/// Walls hold a fluid by its own viscosity, whatever they are made of, but for walls without any.
+TEST(Simulation, WallsOfAnotherMaterialHoldAFluidAsItsOwn) {
+  for (const bool isph : {false, true}) {
+    const auto moved = [&](double viscosity) {
+      Case c = plugOnGas(2);
+      c.gas.reset();
+      c.materials[0].slipLength = 0;
+      if (isph) c = withIsph(c, 10);
+      c.materials.push_back(c.materials[0]);
+      c.materials[1].name = "steel", c.materials[1].dynamicViscosity = viscosity;
+      c.bodies[1].material = 1;
+      Simulation<2> simulation(c, created<2>(c));
+      for (int k = 0; k < 30; ++k) simulation.advance();
+      return stateOf(simulation).position;
+    };
+    const auto own = moved(10), other = moved(0.1), none = moved(0);
+    double most = 0, without = 0;
+    for (std::size_t k = 0; k < 100; ++k)
+      most = std::max(most, norm(own[k] - other[k])), without = std::max(without, norm(own[k] - none[k]));
+    EXPECT_LT(most, 1e-10) << isph;
+    EXPECT_GT(without, 1e-4) << isph;
+  }
 }
 
 }  // namespace

@@ -115,7 +115,8 @@ struct IsphPairs : MaterialParticles<D> {
   }
   /// Of a fluid particle and a wall [Pa s].
   TREACLE_HD double viscosityAtWall(std::uint32_t fluid, std::uint32_t wall) const {
-    return wallViscosity ? wallViscosity[fluid] : this->pairViscosity(fluid, wall);
+    if (wallViscosity) return wallViscosity[fluid];
+    return this->pairViscosity(fluid, wall) > 0 ? this->pairViscosity(fluid, fluid) : 0;
   }
   /// Distance from a flat wall whose particles are `mean` away in the mean, across the wall; right at half a
   /// spacing and at the kernel's radius.

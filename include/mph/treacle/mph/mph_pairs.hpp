@@ -111,11 +111,11 @@ struct MphPairs : MaterialParticles<D> {
     return ownShareAtWall(i, j) * treacle::wallFactor(wallSurface[j - this->fluidCount], d, this->spacing,
                                                       this->materials.slipLength[this->material[i]]);
   }
-  /// The part of it that is not the walls' places: where several fluids may touch a wall of one material, its
-  /// surface holds each by its own viscosity.
+  /// The part of it that is not the walls' places: a surface holds each fluid by the viscosity of this fluid,
+  /// whatever the wall is made of.
   TREACLE_HD double ownShareAtWall(std::uint32_t i, std::uint32_t j) const {
     const Substance fluid = this->substance(i), wall = this->substance(j);
-    if (!wallSurface || !classes.ofNeighbours || ownViscosities || fluid == wall) return 1;
+    if (!wallSurface || ownViscosities || fluid == wall) return 1;
     const double mean = this->viscosity(fluid, wall);
     return mean > 0 ? this->viscosity(fluid, fluid) / mean : 1;
   }
