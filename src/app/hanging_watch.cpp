@@ -23,7 +23,8 @@ std::optional<std::string> HangingWatch::look(const Frame& fluid, const Frame& w
   const bool rests = norm(mean) * duration < 0.1 * case_.spacing;
   if (!rests || norm(case_.gravity) * duration * duration < case_.spacing) return std::nullopt;
   const double gap = distanceToWalls(fluid, walls, case_.domain) / case_.spacing;
-  if (gap > 2 * case_.interactionRadius() / case_.spacing) return std::nullopt;
+  // Arrangements leave thin sheets out, which fluid may touch nevertheless.
+  if (gap < nearestReach || gap > 2 * case_.interactionRadius() / case_.spacing) return std::nullopt;
   warned_ = true;
   return fmt::format(
       "t = {:.6g} s: the fluid touches no wall and yet rests: its nearest particle is {:.2g} spacings "

@@ -5,11 +5,13 @@
 #include "treacle/io/checkpoint/checkpoint.hpp"
 #include "treacle/model/case/checks.hpp"
 #include "treacle/model/case/names.hpp"
+#include "treacle/model/motion/carried_probe.hpp"
 #include "treacle/model/motion/nozzle.hpp"
 #include "treacle/model/motion/wall_motion.hpp"
 #include "treacle/model/particles/create.hpp"
 #include "treacle/step/flow/gas_cells.hpp"
 #include "treacle/step/flow/outflow_start.hpp"
+#include "treacle/step/readings/wall_patch.hpp"
 
 #include <fmt/format.h>
 
@@ -250,14 +252,33 @@ std::int64_t stepAt(double time, const TimeSettings& settings, const std::filesy
   return static_cast<std::int64_t>(whole);
 }
 
+/// Patches that no wall particle is behind when the run starts.
+template <int D>
+void noteEmptyPatches(const Case& c, const Particles<D>& p, std::vector<std::string>& notes) {
+  for (const Probe& probe : c.probes) {
+    if (probe.kind != ProbeKind::WallPressure) continue;
+    const auto patch = WallPatch<D>::of(carriedProbe(probe, c, p.rigid.bodies, 0), c);
+    double particles = 0;
+    for (std::uint32_t i = p.wallBegin(); i < p.count; ++i)
+      if (p.body[i] == patch.body) particles += patch.share(patch.way(p.position[i]));
+    if (particles > 0) continue;
+    notes.push_back(fmt::format(
+        "probe '{}': no particle of '{}' is behind its patch, so it will read 0; expected a patch on the "
+        "surface of this body, and of the fluid's side",
+        probe.name, probe.body));
+  }
+}
+
 }  // namespace
 
 MadeParticles MadeParticles::of(const Case& c, std::vector<std::string>& notes, ParticlePart part) {
   MadeParticles made;
   made.part = part;
   made.particles = createParticles(c, notes, &made.ofBodies, part);
-  if (part.isAll())
+  if (part.isAll()) {
     noteFluidInOutflows(c, fluidInOutflows(c, made.particles), made.particles.numbers().fluid, notes);
+    made.particles.visit([&]<int D>(const Particles<D>& p) { noteEmptyPatches<D>(c, p, notes); });
+  }
   return made;
 }
 

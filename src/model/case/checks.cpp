@@ -6,6 +6,7 @@
 #include "treacle/model/geometry/shape.hpp"
 #include "treacle/model/geometry/thickness.hpp"
 #include "treacle/model/motion/friction.hpp"
+#include "treacle/model/motion/wall_motion.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -86,6 +87,33 @@ void warnThinWalls(const Case& c, std::vector<std::string>& warnings) {
     warnings.push_back(fmt::format(
         "wall '{}' is {} thick {}, thinner than the {} = {} ({:g} spacings): fluid next to it misses neighbours",
         body.name, lengthText(extent), where, reachName(c), lengthText(reach), reach / c.spacing));
+  }
+}
+
+/// A wall that moves on and on, such as a lid or a belt, needs a periodic axis.
+void warnLeavingWalls(const Case& c, std::vector<std::string>& warnings) {
+  constexpr int samples = 200;
+  for (const Body& body : c.bodies) {
+    if (body.kind != BodyKind::Wall || body.rotation || !body.where.empty() || body.shape.isThinSheet()) continue;
+    const Extent box = boundingBox(body.shape, c.dimensions);
+    for (int sample = 1; sample <= samples; ++sample) {
+      const double t = c.time.end * sample / samples;
+      const Vec<3> way = wallDisplacement(body, t);
+      int axis = 0;
+      const auto leaves = [&](int k) {  // particles are half a spacing inside
+        return !c.domain.periodic[static_cast<std::size_t>(k)] &&
+               (box.min[k] + way[k] < c.domain.min[k] - 0.5 * c.spacing ||
+                box.max[k] + way[k] > c.domain.max[k] + 0.5 * c.spacing);
+      };
+      while (axis < c.dimensions && !leaves(axis)) ++axis;
+      if (axis == c.dimensions) continue;
+      warnings.push_back(
+          fmt::format("wall '{}' leaves the domain along {} before t = {:.3g} s, where the run will end; make the "
+                      "axis periodic, "
+                      "the domain larger, or the motion one that stays",
+                      body.name, "xyz"[axis], t));
+      break;
+    }
   }
 }
 
@@ -358,6 +386,7 @@ std::vector<std::string> caseWarnings(const Case& c) {
   warnKeysOfOthers(c, warnings);
   warnThinWalls(c, warnings);
   warnThinMeshes(c, warnings);
+  warnLeavingWalls(c, warnings);
   warnFriction(c, warnings);
   warnShortRadii(c, warnings);
   if (!c.time.stepsVary()) warnTimes(c, warnings);

@@ -20,12 +20,18 @@ double nozzleWidth(const Nozzle& n, int dimensions) {
   return std::min(high[0] - low[0], high[1] - low[1]);
 }
 
+/// A body that goes on across periodic ends has no side there, but for one that does so along all axes.
 double shortestSide(const Case& c, const Body& body) {
   if (body.kind == BodyKind::Inflow) return nozzleWidth(body.inflow.nozzle, c.dimensions);
   const Extent box = boundingBox(body.shape, c.dimensions);
-  double side = std::numeric_limits<double>::infinity();
-  for (int k = 0; k < c.dimensions; ++k) side = std::min(side, box.max[k] - box.min[k]);
-  return side;
+  double side = std::numeric_limits<double>::infinity(), period = side;
+  for (int k = 0; k < c.dimensions; ++k) {
+    const double extent = box.max[k] - box.min[k], length = c.domain.max[k] - c.domain.min[k];
+    const bool goesOn = c.domain.periodic[static_cast<std::size_t>(k)] && extent > length - c.spacing;
+    double& least = goesOn ? period : side;
+    least = std::min(least, extent);
+  }
+  return std::isfinite(side) ? side : period;
 }
 
 /// Of the fastest column over the mean.

@@ -440,6 +440,20 @@ TEST(caseWarnings, wallsThinnerThanTheViscosityRadius) {  // h_v = 3.5
   }
 }
 
+TEST(caseWarnings, wallsThatLeaveTheDomain) {
+  Case c = emptyCase(2);  // of 200 m
+  c.time.end = 10;
+  c.bodies = {makeBody("lid", BodyKind::Wall, box({-100, 0}, {90, 10}))};
+  c.bodies[0].velocity = {1, 0, 0};
+  EXPECT_THAT(caseWarnings(c), IsEmpty());
+  c.bodies[0].velocity = {2, 0, 0};
+  EXPECT_THAT(caseWarnings(c), ElementsAre(HasSubstr("wall 'lid' leaves the domain along x before t = 5.3 s")));
+  c.domain.periodic[0] = true;
+  EXPECT_THAT(caseWarnings(c), IsEmpty());
+  c.bodies[0].velocity = {0, -20, 0};
+  EXPECT_THAT(caseWarnings(c), ElementsAre(HasSubstr("leaves the domain along y before t = 5.05 s")));
+}
+
 TEST(caseWarnings, meshesWithThinWalls) {
   const auto warnings = [](double thickness, FillKind fill, BodyKind kind) {  // of a pot without a lid
     Case c = emptyCase(3);

@@ -63,6 +63,18 @@ TEST(FlowScales, AFrameThatTurnsPressesTheFluid) {
   EXPECT_NEAR(fluidNumbers(c).at(0).compression, 1000 * flow.potential / 1e6, 1e-12);
 }
 
+TEST(FlowScales, FluidHasNoSideAlongAPeriodicAxis) {
+  Case c = blockOf(fluid(10));
+  Shape& block = c.bodies[0].shape;
+  block.min = {}, block.max = {10e-3, 40e-3, 0};
+  c.domain = {{0, -1, 0}, {10e-3, 1, 0}, {}};
+  EXPECT_NEAR(flowScales(c).length, 10e-3, 1e-15);
+  c.domain.periodic[0] = true;
+  EXPECT_NEAR(flowScales(c).length, 40e-3, 1e-15);
+  c.domain = {{0, 0, 0}, {10e-3, 40e-3, 0}, {true, true, false}};
+  EXPECT_NEAR(flowScales(c).length, 10e-3, 1e-15);
+}
+
 TEST(FlowScales, NozzlesCountByWidthAndSpeed) {
   Case c = blockOf(fluid(10));
   Body nozzle;

@@ -17,9 +17,11 @@ struct PatchMean {
   double time = 0, impulse = 0;                               // [s], [Pa s]
   double largest = -std::numeric_limits<double>::infinity();  // of a step [Pa]
 
+  /// `pressure`: not a number where the fluid is so far away that the patch has no active wall particles.
   void add(double pressure, double timeStep) {
-    time += timeStep, impulse += timeStep * pressure;
-    largest = std::fmax(largest, pressure);
+    const double felt = std::isnan(pressure) ? 0 : pressure;
+    time += timeStep, impulse += timeStep * felt;
+    largest = std::fmax(largest, felt);
   }
 };
 
