@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <optional>
 #include <utility>
 
 namespace treacle {
@@ -26,8 +27,18 @@ struct Spline {
 
 constexpr double correction = 0.05;  // by how much of its error a volume is corrected in a step
 /// The rows next to a pocket lack neighbours. In MPH-I their densities are too low for them to have a pressure,
-/// and what presses on them moves them together. Surface tension, which acts on the same rows, is balanced there.
-int layersOf(const Case& c) { return c.method.kind == MethodKind::MphI && !c.hasSurfaceTension() ? 3 : 0; }
+/// and a high pressure moves them together. But layers that the force does not act on fall around a bubble as a
+/// film would, so there are none where the pressure is low. Surface tension acts on the same rows and is balanced
+/// there.
+constexpr double lowPressure = 30, highPressure = 130;  // over the weight of a row
+
+/// The weight of a row of fluid over its area, or nothing where no layers are wanted [Pa].
+std::optional<double> rowWeight(const Case& c) {
+  if (c.method.kind != MethodKind::MphI || c.hasSurfaceTension()) return std::nullopt;
+  double density = 0;
+  for (const Material& m : c.materials) density = std::max(density, m.density);
+  return density * norm(c.gravity) * c.spacing;
+}
 
 constexpr double leastVolume = 0.05;  // of the volume that a pocket has at the pressure of the air
 
@@ -52,7 +63,7 @@ GasPockets<D>::GasPockets(const Case& c)
       spacing_(c.spacing),
       particle_(std::pow(c.spacing, D)),
       cell_(1),
-      layers_(layersOf(c)),
+      rowWeight_(rowWeight(c)),
       grid_(gridOf(c)) {
   for (int k = 0; k < D; ++k) cell_ *= grid_.edge[k];
 }
@@ -114,6 +125,7 @@ bool GasPockets<D>::find(const Processes& processes, std::span<const Vec<D>> pos
   findEmpty(processes, position);
   const auto found = components();
   const bool isNew = inherit(found, state);
+  setDepths(state);
   widen(found);
   measure(processes, position, fluid);
   setVolumes(state);
@@ -260,6 +272,19 @@ bool GasPockets<D>::inherit(const std::vector<std::vector<std::size_t>>& found, 
   return !same;
 }
 
+/// By how much the force of each pocket acts behind the layers.
+template <int D>
+void GasPockets<D>::setDepths(const GasState& state) {
+  depth_.assign(state.pockets.size(), 0);
+  if (rowWeight_)
+    for (std::size_t k = 0; k < depth_.size(); ++k) {
+      const double excess = std::abs(state.pockets[k].pressure) - lowPressure * *rowWeight_;
+      const double range = (highPressure - lowPressure) * *rowWeight_;
+      depth_[k] = excess >= range ? (excess > 0 ? 1 : 0) : std::max(0.0, excess / range);
+    }
+  deepest_ = depth_.empty() ? 0 : std::ranges::max(depth_);
+}
+
 /// Rings of cells around the pockets that are not empty get the label of the pocket that is nearest.
 template <int D>
 void GasPockets<D>::widen(const std::vector<std::vector<std::size_t>>& found) {
@@ -267,7 +292,7 @@ void GasPockets<D>::widen(const std::vector<std::vector<std::size_t>>& found) {
   for (const auto& cells : found)
     for (const std::size_t cell : cells)
       if (label_[cell] != nobody) near_.push_back(static_cast<std::uint32_t>(cell));
-  for (int ring = 0; ring < reach + layers_; ++ring) {
+  for (int ring = 0; ring < reach + (deepest_ > 0 ? layers : 0); ++ring) {
     const std::size_t first = rings_.back(), last = near_.size();
     rings_.push_back(static_cast<std::uint32_t>(last));
     for (std::size_t k = first; k < last; ++k)
@@ -352,7 +377,7 @@ void GasPockets<D>::shareFluid(double factor) {
 }
 
 /// I: at the surface of a pocket 1, and behind it 0. It falls to 0 within some three spacings of the surface or,
-/// where there are `layers`, within six spacings behind these.
+/// where its pressure is high, within six spacings behind the layers.
 template <int D>
 void GasPockets<D>::share() {
   open_.assign(empty_.size(), 1);
@@ -364,7 +389,7 @@ void GasPockets<D>::share() {
   smooth(ofWalls_);
   smooth(open_);
   shareFluid(2);
-  if (layers_ > 0) deepen(betweenWalls);
+  if (deepest_ > 0) deepen(betweenWalls);
   for (const std::uint32_t cell : near_) ofWalls_[cell] *= 2;
 }
 
@@ -377,15 +402,16 @@ void GasPockets<D>::deepen(const std::vector<double>& betweenWalls) {
       [&](std::size_t cell, std::size_t of) { return empty_[cell] && label_[cell] != label_[of] ? 2.0 : 0.0; });
   for (std::size_t k = 0; k < near_.size(); ++k) others[near_[k]] = next[k];
   smooth(others);
-  for (int layer = 1; layer <= layers_; ++layer) {
+  for (int layer = 1; layer <= layers; ++layer) {
     for (const std::uint32_t cell : near_)
       ofWalls_[cell] = std::max(0.0, std::min(1.0, ofFluid_[cell]) - others[cell]) * betweenWalls[cell];
     smooth(ofWalls_);
-    shareFluid(layer < layers_ ? 2 : 1);
+    shareFluid(layer < layers ? 2 : 1);
   }
   for (const std::uint32_t cell : near_) {
-    ofFluid_[cell] = std::max(ofFluid_[cell], std::min(1.0, fluid[cell]));
-    ofWalls_[cell] = std::max(ofWalls_[cell], walls[cell]);
+    const double depth = label_[cell] < depth_.size() ? depth_[label_[cell]] : 0;
+    ofFluid_[cell] = std::lerp(fluid[cell], std::max(ofFluid_[cell], std::min(1.0, fluid[cell])), depth);
+    ofWalls_[cell] = std::lerp(walls[cell], std::max(ofWalls_[cell], walls[cell]), depth);
   }
 }
 

@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -40,8 +41,9 @@ class GasPockets {
 
  private:
   static constexpr std::uint32_t air = 0xffffffff, nobody = 0xfffffffe;  // among labels
-  static constexpr int rim = 2;    // how many cells around a pocket count for its volume
-  static constexpr int reach = 5;  // and, beside the layers, for its force
+  static constexpr int rim = 2;     // how many cells around a pocket count for its volume
+  static constexpr int reach = 5;   // and, beside the layers, for its force
+  static constexpr int layers = 3;  // of fluid that the force of a high pressure does not act on
 
   /// Calls f(cell) for the cells around one and itself, or for those alone that share a face with it.
   template <class F>
@@ -58,6 +60,7 @@ class GasPockets {
   void spread(std::vector<std::size_t> from, std::uint32_t label);
   std::vector<std::vector<std::size_t>> components();
   bool inherit(const std::vector<std::vector<std::size_t>>& found, GasState& state);
+  void setDepths(const GasState& state);
   void widen(const std::vector<std::vector<std::size_t>>& found);
   void measure(const Processes& processes, std::span<const Vec<D>> position, std::uint32_t fluid);
   void setVolumes(GasState& state) const;
@@ -70,9 +73,9 @@ class GasPockets {
   void meet(std::span<const Vec<D>> position, std::uint32_t fluid);
 
   GasSettings gas_;
-  double spacing_;          // l [m]
-  double particle_, cell_;  // volumes of a particle and of a cell [m3; m2 in 2D]
-  int layers_;              // of fluid next to a pocket that its force does not act on
+  double spacing_;                   // l [m]
+  double particle_, cell_;           // volumes of a particle and of a cell [m3; m2 in 2D]
+  std::optional<double> rowWeight_;  // of fluid, over its area; nothing: no layers [Pa]
   CellGrid<D> grid_;
   std::vector<std::uint8_t> empty_;           // per cell
   std::vector<std::uint32_t> label_;          // per cell: its pocket, air or nobody
@@ -82,6 +85,8 @@ class GasPockets {
   std::vector<double> filled_, walls_;        // per cell: the part of it that particles fill, and walls alone
   std::vector<double> open_;                  // per cell, where a pocket is near: the part without walls, smoothed
   std::vector<double> ofFluid_, ofWalls_;     // per cell: I, for particles of each kind
+  std::vector<double> depth_;                 // of each pocket: the part of its force that acts behind the layers
+  double deepest_ = 0;
   std::vector<GasContact<D>> contacts_;
 };
 
