@@ -12,20 +12,9 @@
 namespace treacle {
 namespace {
 
-/// The quadratic B-spline at the distance t from the centre of a cell, in cells, and its slope.
-struct Spline {
-  double weight, slope;
+constexpr double correction = 0.05;   // by how much of its error a volume is corrected in a step
+constexpr double leastVolume = 0.05;  // of the volume that a pocket has at the pressure of the air
 
-  explicit Spline(double t) {
-    const double outside = 1.5 - std::abs(t);
-    if (outside > 1)
-      weight = 0.75 - t * t, slope = -2 * t;
-    else
-      weight = 0.5 * outside * outside, slope = std::copysign(outside, -t);
-  }
-};
-
-constexpr double correction = 0.05;  // by how much of its error a volume is corrected in a step
 /// The rows next to a pocket lack neighbours. In MPH-I their densities are too low for them to have a pressure,
 /// and a high pressure moves them together. But layers that the force does not act on fall around a bubble as a
 /// film would, so there are none where the pressure is low. Surface tension acts on the same rows and is balanced
@@ -40,22 +29,7 @@ std::optional<double> rowWeight(const Case& c) {
   return density * norm(c.gravity) * c.spacing;
 }
 
-constexpr double leastVolume = 0.05;  // of the volume that a pocket has at the pressure of the air
-
 }  // namespace
-
-template <int D>
-CellGrid<D> GasPockets<D>::gridOf(const Case& c) {
-  Vec<D, bool> periodic{};
-  for (int k = 0; k < D; ++k) periodic[k] = c.domain.periodic[static_cast<std::size_t>(k)];
-  auto grid = CellGrid<D>::make(resized<D>(c.domain.min), resized<D>(c.domain.max), periodic, c.spacing);
-  for (int k = 0; k < D; ++k) {  // no wider than a spacing: particles would leave holes in wider ones
-    grid.count[k] = std::max(3, static_cast<int>(std::ceil(grid.length[k] / c.spacing - 1e-6)));
-    grid.edge[k] = grid.length[k] / grid.count[k];
-    grid.inverseEdge[k] = grid.count[k] / grid.length[k];
-  }
-  return grid;
-}
 
 template <int D>
 GasPockets<D>::GasPockets(const Case& c)
@@ -64,58 +38,8 @@ GasPockets<D>::GasPockets(const Case& c)
       particle_(std::pow(c.spacing, D)),
       cell_(1),
       rowWeight_(rowWeight(c)),
-      grid_(gridOf(c)) {
+      grid_(c) {
   for (int k = 0; k < D; ++k) cell_ *= grid_.edge[k];
-}
-
-template <int D>
-Vec<D> GasPockets<D>::centerOf(std::size_t cell) const {
-  const Vec<D, int> i = grid_.cellAt(cell);
-  Vec<D> x;
-  for (int k = 0; k < D; ++k) x[k] = grid_.origin[k] + (i[k] + 0.5) * grid_.edge[k];
-  return x;
-}
-
-template <int D>
-template <class F>
-void GasPockets<D>::forEachAround(std::size_t cell, F&& f) const {
-  forEachAdjacentCell(grid_, grid_.cellAt(cell), [&](const Vec<D, int>& at) { f(grid_.linear(at)); });
-}
-
-template <int D>
-template <class F>
-void GasPockets<D>::forEachNext(std::size_t cell, F&& f) const {
-  const Vec<D, int> middle = grid_.cellAt(cell);
-  std::size_t stride = 1;
-  for (int k = 0; k < D; ++k) {
-    const auto count = static_cast<std::size_t>(grid_.count[k]);
-    const bool wraps = grid_.periodic[k];
-    if (middle[k] > 0)
-      f(cell - stride);
-    else if (wraps)
-      f(cell + (count - 1) * stride);
-    if (middle[k] + 1 < grid_.count[k])
-      f(cell + stride);
-    else if (wraps)
-      f(cell - (count - 1) * stride);
-    stride *= count;
-  }
-}
-
-template <int D>
-template <class F>
-void GasPockets<D>::forEachWeight(const Vec<D>& x, F&& f) const {
-  forEachAround(grid_.linear(grid_.cellOf(x)), [&](std::size_t cell) {
-    const Vec<D> d = grid_.difference(centerOf(cell), x);
-    double weight = 1;
-    Vec<D> gradient = Vec<D>::filled(1);
-    for (int k = 0; k < D; ++k) {
-      const Spline spline(d[k] * grid_.inverseEdge[k]);
-      weight *= spline.weight;
-      for (int a = 0; a < D; ++a) gradient[a] *= a == k ? spline.slope * grid_.inverseEdge[k] : spline.weight;
-    }
-    f(cell, weight, gradient);
-  });
 }
 
 template <int D>
@@ -158,8 +82,8 @@ void GasPockets<D>::findEmpty(const Processes& processes, std::span<const Vec<D>
       empty_[cell] = 0;
       continue;
     }
-    const Vec<D> x = centerOf(cell);
-    forEachAround(cell, [&](std::size_t other) {
+    const Vec<D> x = grid_.centerOf(cell);
+    grid_.forEachAround(cell, [&](std::size_t other) {
       for (std::uint32_t k = start_[other]; k < start_[other + 1] && empty_[cell]; ++k) {
         if (norm2(grid_.difference(x, position[items_[k]])) < least2) empty_[cell] = 0;
       }
@@ -177,7 +101,7 @@ void GasPockets<D>::spread(std::vector<std::size_t> from, std::uint32_t label) {
   while (!from.empty()) {
     const std::size_t cell = from.back();
     from.pop_back();
-    forEachNext(cell, [&](std::size_t next) {
+    grid_.forEachNext(cell, [&](std::size_t next) {
       if (!empty_[next] || label_[next] != nobody) return;
       label_[next] = label;
       from.push_back(next);
@@ -200,7 +124,7 @@ std::vector<std::vector<std::size_t>> GasPockets<D>::components() {
     for (int k = 0; k < D; ++k)
       if (!grid_.periodic[k] && (i[k] == 0 || i[k] + 1 == grid_.count[k])) add(cell);
     if (gas_.vents.empty() || !empty_[cell]) continue;
-    const Vec<D> x = centerOf(cell);
+    const Vec<D> x = grid_.centerOf(cell);
     for (const Vent& vent : gas_.vents) {
       bool inside = true;
       for (int k = 0; k < D; ++k) inside = inside && x[k] >= vent.min[k] && x[k] <= vent.max[k];
@@ -296,7 +220,7 @@ void GasPockets<D>::widen(const std::vector<std::vector<std::size_t>>& found) {
     const std::size_t first = rings_.back(), last = near_.size();
     rings_.push_back(static_cast<std::uint32_t>(last));
     for (std::size_t k = first; k < last; ++k)
-      forEachNext(near_[k], [&](std::size_t next) {
+      grid_.forEachNext(near_[k], [&](std::size_t next) {
         if (empty_[next] || label_[next] != nobody) return;
         label_[next] = label_[near_[k]];
         near_.push_back(static_cast<std::uint32_t>(next));
@@ -311,7 +235,7 @@ void GasPockets<D>::measure(const Processes& processes, std::span<const Vec<D>> 
   filled_.assign(empty_.size(), 0), walls_.assign(empty_.size(), 0);
   for (const std::uint32_t cell : near_)
     for (std::uint32_t k = start_[cell]; k < start_[cell + 1]; ++k)
-      forEachWeight(position[items_[k]], [&](std::size_t to, double weight, const Vec<D>&) {
+      grid_.forEachWeight(position[items_[k]], [&](std::size_t to, double weight, const Vec<D>&) {
         filled_[to] += weight * particle_ / cell_;
         if (items_[k] >= fluid) walls_[to] += weight * particle_ / cell_;
       });
@@ -348,7 +272,7 @@ std::vector<double> GasPockets<D>::mean(F&& value) const {
   std::vector<double> result(near_.size());
   for (std::size_t k = 0; k < near_.size(); ++k) {
     const Vec<D, int> middle = grid_.cellAt(near_[k]);
-    forEachAround(near_[k], [&](std::size_t other) {
+    grid_.forEachAround(near_[k], [&](std::size_t other) {
       const Vec<D, int> i = grid_.cellAt(other);
       double weight = 1;
       for (int a = 0; a < D; ++a) weight *= i[a] == middle[a] ? 0.5 : 0.25;
@@ -426,7 +350,7 @@ void GasPockets<D>::meet(std::span<const Vec<D>> position, std::uint32_t fluid) 
       const std::vector<double>& share = i < fluid ? ofFluid_ : ofWalls_;
       Vec<D> area{}, normal{};
       double value = 0;
-      forEachWeight(position[i], [&](std::size_t to, double weight, const Vec<D>& gradient) {
+      grid_.forEachWeight(position[i], [&](std::size_t to, double weight, const Vec<D>& gradient) {
         value += weight * share[to];
         area = area - (particle_ * share[to]) * gradient;
         normal += open_[to] * gradient;
@@ -453,7 +377,7 @@ std::size_t GasPockets<D>::bytes() const {
 }
 
 std::uint64_t gasCells(const Case& c) {
-  return c.dimensions == 2 ? GasPockets<2>::gridOf(c).cellCount() : GasPockets<3>::gridOf(c).cellCount();
+  return c.dimensions == 2 ? GasGrid<2>(c).cellCount() : GasGrid<3>(c).cellCount();
 }
 
 template class GasPockets<2>;

@@ -1,10 +1,10 @@
 #pragma once
 
+#include "gas_grid.hpp"
 #include "treacle/core/processes.hpp"
 #include "treacle/core/vec.hpp"
 #include "treacle/model/case/case.hpp"
 #include "treacle/model/state/gas_state.hpp"
-#include "treacle/search/cell_grid.hpp"
 #include "treacle/step/flow/gas_contact.hpp"
 
 #include <cstddef>
@@ -36,24 +36,11 @@ class GasPockets {
 
   std::size_t bytes() const;
 
-  /// Of the cells of a case.
-  static CellGrid<D> gridOf(const Case& c);
-
  private:
   static constexpr std::uint32_t air = 0xffffffff, nobody = 0xfffffffe;  // among labels
   static constexpr int rim = 2;     // how many cells around a pocket count for its volume
   static constexpr int reach = 5;   // and, beside the layers, for its force
   static constexpr int layers = 3;  // of fluid that the force of a high pressure does not act on
-
-  /// Calls f(cell) for the cells around one and itself, or for those alone that share a face with it.
-  template <class F>
-  void forEachAround(std::size_t cell, F&& f) const;
-  template <class F>
-  void forEachNext(std::size_t cell, F&& f) const;
-  /// Calls f(cell, weight, gradient) for the cells of the quadratic B-spline at x.
-  template <class F>
-  void forEachWeight(const Vec<D>& x, F&& f) const;
-  Vec<D> centerOf(std::size_t cell) const;
 
   void sort(std::span<const Vec<D>> position);
   void findEmpty(const Processes& processes, std::span<const Vec<D>> position);
@@ -76,7 +63,7 @@ class GasPockets {
   double spacing_;                   // l [m]
   double particle_, cell_;           // volumes of a particle and of a cell [m3; m2 in 2D]
   std::optional<double> rowWeight_;  // of fluid, over its area; nothing: no layers [Pa]
-  CellGrid<D> grid_;
+  GasGrid<D> grid_;
   std::vector<std::uint8_t> empty_;           // per cell
   std::vector<std::uint32_t> label_;          // per cell: its pocket, air or nobody
   std::vector<std::uint32_t> start_, items_;  // particles of cells

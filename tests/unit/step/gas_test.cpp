@@ -125,6 +125,37 @@ TEST(GasPockets, PushByTheirSides) {
   EXPECT_NEAR(down, -20 * l, 0.02 * 20 * l);
 }
 
+/// A high pressure acts behind the first rows of fluid, a low one on them; both push with all of the side.
+/// Measured: 0.08 and 0.60 of it on the first row.
+TEST(GasPockets, PressOnRowsThatBearThem) {
+  const double l = 1e-3;
+  Case c = boxOf20<2>(l);
+  c.domain = {{0, 0, 0}, {20 * l, 20 * l, 0}, {true, true, false}};
+  c.gravity = {0, -10, 0};
+  c.materials.push_back({"honey", 1000, 1, 1000, 1e5});
+  c.method = defaultMethod(SchemeKind::Accurate);
+  const auto places = lattice<2>(l, [&](const Vec<2>& x) { return std::abs(x[1] - 10 * l) > 2 * l; });
+  GasPockets<2> pockets(c);
+  GasState state = found<2>(pockets, places);
+  ASSERT_EQ(state.pockets.size(), 1u);
+  const auto shares = [&](double pressure) {
+    state.pockets[0].pressure = pressure;
+    found<2>(pockets, places, state);
+    Vec<2> share{};  // of the first row above, and of all above
+    for (const GasContact<2>& contact : pockets.contacts()) {
+      const double height = places[contact.particle][1] - 12 * l, part = contact.area[1] / (20 * l);
+      if (height > 0) share[1] += part;
+      if (height > 0 && height < l) share[0] += part;
+    }
+    return share;
+  };
+  const Vec<2> low = shares(100), middle = shares(800), high = shares(1e4);
+  for (const Vec<2>& share : {low, middle, high}) EXPECT_NEAR(share[1], 1, 0.03);
+  EXPECT_GT(low[0], 0.5);
+  EXPECT_LT(high[0], 0.12);
+  EXPECT_NEAR(middle[0], 0.5 * (low[0] + high[0]), 1e-9);
+}
+
 /// Pockets that are divided have the same pressure, and those that are united have all of the gas.
 TEST(GasPockets, KeepTheirContent) {
   const double l = 1e-3;
