@@ -109,8 +109,7 @@ void warnLeavingWalls(const Case& c, std::vector<std::string>& warnings) {
       if (axis == c.dimensions) continue;
       warnings.push_back(
           fmt::format("wall '{}' leaves the domain along {} before t = {:.3g} s, where the run will end; make the "
-                      "axis periodic, "
-                      "the domain larger, or the motion one that stays",
+                      "axis periodic, the domain larger, or the motion one that stays",
                       body.name, "xyz"[axis], t));
       break;
     }
@@ -128,12 +127,11 @@ void warnThinMeshes(const Case& c, std::vector<std::string>& warnings) {
     const double reach = c.interactionRadius();
     const ThinParts thin = thinParts(s, c.dimensions, reach * (1 - rounding));
     if (thin.share < most) continue;
-    warnings.push_back(
-        fmt::format("wall '{}': {:.0f} % of its surface is on parts that are thinner than the {} = {}, such as {} "
-                    "at {}: fluid "
-                    "acts through them and may leak; take fill = \"thin-sheet\" or a spacing of at most {}",
-                    body.name, 100 * thin.share, reachName(c), lengthText(reach), lengthText(thin.thickness),
-                    positionText(thin.place, c.dimensions), lengthText(thin.thickness * c.spacing / reach)));
+    warnings.push_back(fmt::format(
+        "wall '{}': {:.0f} % of its surface is on parts that are thinner than the {} = {}, such as {} "
+        "at {}: fluid acts through them and may leak; take fill = \"thin-sheet\" or a spacing of at most {}",
+        body.name, 100 * thin.share, reachName(c), lengthText(reach), lengthText(thin.thickness),
+        positionText(thin.place, c.dimensions), lengthText(thin.thickness * c.spacing / reach)));
   }
 }
 

@@ -1,5 +1,6 @@
 #include "gas_pockets.hpp"
 
+#include "treacle/model/case/flow_scales.hpp"
 #include "treacle/step/flow/gas_cells.hpp"
 
 #include <algorithm>
@@ -21,12 +22,14 @@ constexpr double leastVolume = 0.05;  // of the volume that a pocket has at the 
 /// there.
 constexpr double lowPressure = 30, highPressure = 130;  // over the weight of a row
 
-/// The weight of a row of fluid over its area, or nothing where no layers are wanted [Pa].
+/// The weight of a row of the heaviest fluid over its area, or nothing where no layers are wanted [Pa].
 std::optional<double> rowWeight(const Case& c) {
   if (c.method.kind != MethodKind::MphI || c.hasSurfaceTension()) return std::nullopt;
   double density = 0;
-  for (const Material& m : c.materials) density = std::max(density, m.density);
-  return density * norm(c.gravity) * c.spacing;
+  for (const Body& body : c.bodies)
+    if (body.holdsFluid())
+      density = std::max(density, c.materials[static_cast<std::size_t>(body.material)].density);
+  return density * flowScales(c).acceleration * c.spacing;
 }
 
 }  // namespace
@@ -202,9 +205,9 @@ void GasPockets<D>::setDepths(const GasState& state) {
   depth_.assign(state.pockets.size(), 0);
   if (rowWeight_)
     for (std::size_t k = 0; k < depth_.size(); ++k) {
-      const double excess = std::abs(state.pockets[k].pressure) - lowPressure * *rowWeight_;
-      const double range = (highPressure - lowPressure) * *rowWeight_;
-      depth_[k] = excess >= range ? (excess > 0 ? 1 : 0) : std::max(0.0, excess / range);
+      const double pressure = std::abs(state.pockets[k].pressure);  // without weight any one is high
+      const double low = lowPressure * *rowWeight_, high = highPressure * *rowWeight_;
+      if (pressure > low) depth_[k] = pressure < high ? (pressure - low) / (high - low) : 1;
     }
   deepest_ = depth_.empty() ? 0 : std::ranges::max(depth_);
 }
@@ -295,7 +298,6 @@ void GasPockets<D>::smooth(std::vector<double>& field) const {
 /// surface do not change it.
 template <int D>
 void GasPockets<D>::shareFluid(double factor) {
-  ofFluid_.assign(empty_.size(), 0);
   for (const std::uint32_t cell : near_)
     ofFluid_[cell] = open_[cell] > 0.05 ? factor * ofWalls_[cell] / open_[cell] : 0;
 }
@@ -305,22 +307,21 @@ void GasPockets<D>::shareFluid(double factor) {
 template <int D>
 void GasPockets<D>::share() {
   open_.assign(empty_.size(), 1);
-  ofWalls_.assign(empty_.size(), 0);
+  ofFluid_.assign(empty_.size(), 0), ofWalls_.assign(empty_.size(), 0);
   for (const std::uint32_t cell : near_) open_[cell] = std::max(0.0, 1 - walls_[cell]);
-  const std::vector<double> betweenWalls = open_;
   for (std::size_t k = 0; k < rings_[rim + 1]; ++k)
     ofWalls_[near_[k]] = std::clamp(1 - filled_[near_[k]], 0.0, 1.0);
   smooth(ofWalls_);
   smooth(open_);
   shareFluid(2);
-  if (deepest_ > 0) deepen(betweenWalls);
+  if (deepest_ > 0) deepen();
   for (const std::uint32_t cell : near_) ofWalls_[cell] *= 2;
 }
 
 /// Counts layers of fluid next to a pocket as empty, one after the other, but not those near the air and other
 /// pockets: a thin film between them has no other rows that could bear the pressure.
 template <int D>
-void GasPockets<D>::deepen(const std::vector<double>& betweenWalls) {
+void GasPockets<D>::deepen() {
   std::vector<double> fluid = ofFluid_, walls = ofWalls_, others(empty_.size());
   const std::vector<double> next = mean(
       [&](std::size_t cell, std::size_t of) { return empty_[cell] && label_[cell] != label_[of] ? 2.0 : 0.0; });
@@ -328,12 +329,13 @@ void GasPockets<D>::deepen(const std::vector<double>& betweenWalls) {
   smooth(others);
   for (int layer = 1; layer <= layers; ++layer) {
     for (const std::uint32_t cell : near_)
-      ofWalls_[cell] = std::max(0.0, std::min(1.0, ofFluid_[cell]) - others[cell]) * betweenWalls[cell];
+      ofWalls_[cell] =
+          std::max(0.0, std::min(1.0, ofFluid_[cell]) - others[cell]) * std::max(0.0, 1 - walls_[cell]);
     smooth(ofWalls_);
     shareFluid(layer < layers ? 2 : 1);
   }
   for (const std::uint32_t cell : near_) {
-    const double depth = label_[cell] < depth_.size() ? depth_[label_[cell]] : 0;
+    const double depth = depth_[label_[cell]];
     ofFluid_[cell] = std::lerp(fluid[cell], std::max(ofFluid_[cell], std::min(1.0, fluid[cell])), depth);
     ofWalls_[cell] = std::lerp(walls[cell], std::max(ofWalls_[cell], walls[cell]), depth);
   }

@@ -56,7 +56,7 @@ class GasPockets {
   void smooth(std::vector<double>& field) const;
   void shareFluid(double factor);
   void share();
-  void deepen(const std::vector<double>& betweenWalls);
+  void deepen();
   void meet(std::span<const Vec<D>> position, std::uint32_t fluid);
 
   GasSettings gas_;
@@ -73,7 +73,7 @@ class GasPockets {
   std::vector<double> open_;                  // per cell, where a pocket is near: the part without walls, smoothed
   std::vector<double> ofFluid_, ofWalls_;     // per cell: I, for particles of each kind
   std::vector<double> depth_;                 // of each pocket: the part of its force that acts behind the layers
-  double deepest_ = 0;
+  double deepest_ = 0;                        // the largest of them
   std::vector<GasContact<D>> contacts_;
 };
 

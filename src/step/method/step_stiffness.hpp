@@ -66,8 +66,8 @@ class StepStiffness final : public ForcesAround<D, Backend> {
     const std::span<Vec<D>> last = state.particles.velocity.span().first(pairs.activeCount);
     fillGhosts(context, Held::Active, last.data());
     gradientCorrection<D>(context, pairs, correction_.span(), true);
-    MphPairs<D> places = pairs;  // the velocity in walls is that of their places alone
-    places.classes.ofNeighbours = false;
+    MphPairs<D> places = pairs;    // the velocity in walls is that of their places alone,
+    places.ownViscosities = true;  // without ownShareAtWall()
     velocityGradient<D>(context, places, correction_.span(), last, gradient_.span().first(own));
     fillGhosts(context, Held::Fluid, given_.data());
     fillGhosts(context, Held::Fluid, gradient_.data());

@@ -133,6 +133,9 @@ TEST(GasPockets, PressOnRowsThatBearThem) {
   c.domain = {{0, 0, 0}, {20 * l, 20 * l, 0}, {true, true, false}};
   c.gravity = {0, -10, 0};
   c.materials.push_back({"honey", 1000, 1, 1000, 1e5});
+  c.materials.push_back({"lead", 11000, 1, 1000, 1e5});  // of a wall, which is not a row of fluid
+  c.bodies.resize(2);
+  c.bodies[1].kind = BodyKind::Wall, c.bodies[1].material = 1;
   c.method = defaultMethod(SchemeKind::Accurate);
   const auto places = lattice<2>(l, [&](const Vec<2>& x) { return std::abs(x[1] - 10 * l) > 2 * l; });
   GasPockets<2> pockets(c);

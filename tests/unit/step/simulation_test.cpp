@@ -159,27 +159,37 @@ TEST(Simulation, DiagnosticsAreTheSumsTheyAreCalled) {
   EXPECT_EQ(d.top, top);
 }
 
-/// Walls hold a fluid by its own viscosity, whatever they are made of, but for walls without any.
+/// Walls hold a fluid by its own viscosity, whatever they are made of, but for walls without any. Nor do they
+/// change the velocity gradients that elastic stresses and the stiffness under pressure are made of.
 TEST(Simulation, WallsOfAnotherMaterialHoldAFluidAsItsOwn) {
-  for (const bool isph : {false, true}) {
+  enum Kind { Viscous, Elastic, Stiff, Isph };
+  for (const Kind kind : {Viscous, Elastic, Stiff, Isph}) {
     const auto moved = [&](double viscosity) {
       Case c = plugOnGas(2);
       c.gas.reset();
-      c.materials[0].slipLength = 0;
-      if (isph) c = withIsph(c, 10);
+      Material& honey = c.materials[0];
+      honey.slipLength = 0;
+      if (kind == Elastic) honey.elastic = {{"polymer", ElasticModel::OldroydB, 10, 0.05}};
+      c.solver.tolerance = 1e-24;
+      if (kind == Stiff) honey.dynamicViscosity = 0.1, c.gravity[1] = -100, c.time.step = 2e-3;
+      if (kind == Isph) c = withIsph(c, 10);
       c.materials.push_back(c.materials[0]);
-      c.materials[1].name = "steel", c.materials[1].dynamicViscosity = viscosity;
+      c.materials[1].name = "steel", c.materials[1].dynamicViscosity *= viscosity, c.materials[1].elastic.clear();
       c.bodies[1].material = 1;
       Simulation<2> simulation(c, created<2>(c));
       for (int k = 0; k < 30; ++k) simulation.advance();
       return stateOf(simulation).position;
     };
-    const auto own = moved(10), other = moved(0.1), none = moved(0);
+    const auto own = moved(1), other = moved(0.01), none = moved(0);
     double most = 0, without = 0;
     for (std::size_t k = 0; k < 100; ++k)
       most = std::max(most, norm(own[k] - other[k])), without = std::max(without, norm(own[k] - none[k]));
-    EXPECT_LT(most, 1e-10) << isph;
-    EXPECT_GT(without, 1e-4) << isph;
+    // Where fluid falls on the floor, its repulsion has the mean of both viscosities.
+    EXPECT_LT(most, kind == Stiff ? 1e-6 : 1e-9) << kind;
+    // Elastic stresses hold fluid at any wall.
+    if (kind != Elastic) {
+      EXPECT_GT(without, 1e-5) << kind;
+    }
   }
 }
 
