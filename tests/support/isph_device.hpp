@@ -25,7 +25,7 @@ struct DeviceIsph {
   NeighbourRows<Cuda> fluidOfFluid, wallsOfFluid, fluidOfWalls;
   Buffer<double, Cuda> density;
   Buffer<std::uint8_t, Cuda> surface;
-  Buffer<SymmetricBlock<D, float>, Cuda> renormalisation;
+  Buffer<SymmetricBlock<D, float>, Cuda> renormalisation, acrossWalls;
   Buffer<float, Cuda> missing;
   IsphPairs<D> pairs;  // looks at the members above
 
@@ -39,7 +39,12 @@ struct DeviceIsph {
     copyToDevice<std::uint8_t>(context, s.surface, surface);
     copyToDevice<SymmetricBlock<D, float>>(context, s.renormalisation, renormalisation);
     copyToDevice<float>(context, s.missing, missing);
-    pairs.renormalisation = renormalisation.data();
+    pairs.renormalisation = pairs.acrossWalls = renormalisation.data();
+    if (pairs.wallSurface) {
+      copyToDevice<SymmetricBlock<D, float>>(context, s.acrossWalls, acrossWalls);
+      pairs.acrossWalls = acrossWalls.data();
+      pairs.wallSurface = particles.wallSurface.data();
+    }
     pairs.missing = missing.data();
     pairs.position = particles.position;
     pairs.material = particles.material;

@@ -7,6 +7,14 @@
 namespace treacle::test {
 
 template <int D>
+Vec<D> product(const Matrix& b, const Vec<D>& x) {
+  Vec<D> y{};
+  for (int r = 0; r < D; ++r)
+    for (int c = 0; c < D; ++c) y[r] += b(r, c) * x[c];
+  return y;
+}
+
+template <int D>
 double IsphOracle<D>::mu(std::uint32_t i, std::uint32_t j) const {
   const double a = material(isWall(i) ? j : i).dynamicViscosity, b = material(isWall(j) ? i : j).dynamicViscosity;
   return 2 * a * b / (a + b);
@@ -84,11 +92,35 @@ Vec<D> IsphOracle<D>::deficit(std::uint32_t i) const {
 }
 
 template <int D>
-Matrix IsphOracle<D>::inverseMoment(std::uint32_t i, bool walls) const {
+std::optional<typename IsphOracle<D>::Face> IsphOracle<D>::face(std::uint32_t i, std::uint32_t j) const {
+  if (!isAccurate() || s.particles.wallSurface.empty()) return {};
+  std::optional<Face> last;
+  for (const Vec<D, float>& way : s.particles.wallSurface[j - s.n()].face) {
+    const double depth = norm(converted<double>(way));
+    if (depth == 0) continue;
+    const Vec<D> normal = (1 / depth) * converted<double>(way);
+    const Face other{normal, dot(apart(i, j), normal) - depth, depth};
+    if (!last || (other.height > 0 && other.height / depth > last->height / last->depth)) last = other;
+  }
+  return last;
+}
+
+template <int D>
+double IsphOracle<D>::wallFactor(std::uint32_t i, std::uint32_t j) const {
+  const auto at = face(i, j);
+  if (!at) return 2;
+  const double height = std::max(at->height, 0.25 * l);
+  return (height + at->depth) / height;
+}
+
+template <int D>
+Matrix IsphOracle<D>::inverseMoment(std::uint32_t i, WallPart walls) const {
   Eigen::Matrix<double, D, D> m = Eigen::Matrix<double, D, D>::Zero();
   forEachOther(i, [&](std::uint32_t j) {
-    if (isWall(j) && !walls) return;
-    const Vec<D> g = gradient(i, j), d = apart(i, j);
+    if (isWall(j) && walls == WallPart::None) return;
+    Vec<D> g = gradient(i, j), d = apart(i, j);
+    if (const auto at = isWall(j) && walls == WallPart::Across ? face(i, j) : std::nullopt)
+      g = dot(g, at->normal) * at->normal, d = dot(d, at->normal) * at->normal;
     for (int a = 0; a < D; ++a)
       for (int b = 0; b < D; ++b) m(a, b) -= g[a] * d[b];
   });
@@ -104,15 +136,12 @@ Matrix IsphOracle<D>::inverseMoment(std::uint32_t i, bool walls) const {
 
 template <int D>
 Matrix IsphOracle<D>::renormalisation(std::uint32_t i) const {
-  return isAccurate() ? inverseMoment(i, true) : Matrix(Matrix::Identity(D, D));
+  return isAccurate() ? inverseMoment(i, WallPart::Whole) : Matrix(Matrix::Identity(D, D));
 }
 
 template <int D>
-Vec<D> product(const Matrix& b, const Vec<D>& x) {
-  Vec<D> y{};
-  for (int r = 0; r < D; ++r)
-    for (int c = 0; c < D; ++c) y[r] += b(r, c) * x[c];
-  return y;
+Matrix IsphOracle<D>::derivative(std::uint32_t i) const {
+  return isAccurate() ? inverseMoment(i, WallPart::Across) : Matrix(Matrix::Identity(D, D));
 }
 
 template <int D>
@@ -146,7 +175,8 @@ Vec<D> IsphOracle<D>::predicted(const std::vector<Vec<D>>& v, std::uint32_t i) c
   Vec<D> force = material(i).density * resized<D>(s.c.gravity);
   forEachOther(i, [&](std::uint32_t j) {
     if (isWall(j) && s.c.method.isph.walls == WallSlip::FreeSlip) return;
-    force += (2 * laplacian(i, j) * mu(i, j)) * (v[i] - seen(v, i, j));
+    const Vec<D> relative = isWall(j) ? wallFactor(i, j) * (v[i] - v[j]) : v[i] - v[j];
+    force += (2 * laplacian(i, j) * mu(i, j)) * relative;
   });
   return v[i] + (dt / material(i).density) * force;
 }
@@ -156,8 +186,8 @@ double IsphOracle<D>::divergence(const std::vector<Vec<D>>& v, std::uint32_t i) 
   double sum = 0;
   forEachOther(i, [&](std::uint32_t j) {
     const Vec<D> relative = seen(v, i, j) - v[i];
-    sum +=
-        isWall(j) ? along(i, j) * dot(relative, gradient(i, j)) : dot(relative, renormalised(i, gradient(i, j)));
+    sum += isWall(j) ? along(i, j) * dot(relative, gradient(i, j))
+                     : dot(relative, product(derivative(i), gradient(i, j)));
   });
   return sum;
 }
@@ -165,7 +195,7 @@ double IsphOracle<D>::divergence(const std::vector<Vec<D>>& v, std::uint32_t i) 
 template <int D>
 Matrix IsphOracle<D>::velocityGradient(const std::vector<Vec<D>>& v, std::uint32_t i) const {
   Matrix sum = Matrix::Zero(D, D);
-  const Matrix inverse = inverseMoment(i, false);
+  const Matrix inverse = inverseMoment(i, WallPart::None);
   forEachOther(i, [&](std::uint32_t j) {
     if (isWall(j)) return;
     const Vec<D> g = product(inverse, gradient(i, j));
@@ -296,7 +326,7 @@ Matrix IsphOracle<D>::viscousMatrix() const {
     forEachOther(i, [&](std::uint32_t j) {
       const double c = -2 * laplacian(i, j) * mu(i, j);
       if (isWall(j)) {
-        if (s.c.method.isph.walls == WallSlip::NoSlip) a(i, i) += 2 * c;
+        if (s.c.method.isph.walls == WallSlip::NoSlip) a(i, i) += wallFactor(i, j) * c;
       } else {
         a(i, i) += c;
         a(i, j) -= c;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "support/isph_scene.hpp"
 
 namespace treacle::test {
@@ -44,10 +46,22 @@ struct IsphOracle {
   double latticeDensity() const;
   double latticeLaplacian() const;
   bool isAccurate() const { return s.c.method.scheme == SchemeKind::Accurate; }
-  /// The inverse of M = sum V grad W d^T, whose eigenvalues count as at least 0.3, with or without walls.
-  Matrix inverseMoment(std::uint32_t i, bool walls) const;
-  /// That with walls in the accurate scheme, the unit matrix in the published one.
+  /// Where i and j are on both sides of a face of the wall j: of those that j has, the one that the line from i to
+  /// j crosses last.
+  struct Face {
+    Vec<D> normal;         // out of the wall
+    double height, depth;  // of i and j [m]
+  };
+  std::optional<Face> face(std::uint32_t i, std::uint32_t j) const;
+  /// How walls count in a moment.
+  enum class WallPart { None, Whole, Across };
+  /// The inverse of M = sum V grad W d^T, whose eigenvalues count as at least 0.3. Of walls that have a face their
+  /// part across it counts as it is in a row of such walls: sum V W' / r (n.d)^2 n n^T.
+  Matrix inverseMoment(std::uint32_t i, WallPart walls) const;
+  /// That with walls in the accurate scheme, the unit matrix in the published one, and for derivatives of
+  /// velocities.
   Matrix renormalisation(std::uint32_t i) const;
+  Matrix derivative(std::uint32_t i) const;
   Vec<D> renormalised(std::uint32_t i, const Vec<D>& x) const;
   /// By how much the Laplacian of a pair counts more, by its particle i.
   double along(std::uint32_t i, std::uint32_t j) const;
@@ -58,6 +72,9 @@ struct IsphOracle {
   double density(std::uint32_t i) const;
   Vec<D> deficit(std::uint32_t i) const;
 
+  /// By what the difference of velocities at a wall is multiplied for viscous forces: (height + depth) / height,
+  /// the height at least l / 4, or 2 without faces.
+  double wallFactor(std::uint32_t i, std::uint32_t j) const;
   /// What particle i sees in j: its velocity, or that of a wall's image, 2 u_wall - v_i.
   Vec<D> seen(const std::vector<Vec<D>>& v, std::uint32_t i, std::uint32_t j) const;
   /// eqs. (6) and (7); mu nu^-1 of a pair by their harmonic mean, at walls mu of the fluid.

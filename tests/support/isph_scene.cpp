@@ -20,7 +20,12 @@ IsphScene<D>::IsphScene(const Case& theCase, Particles<D> state)
   surface.resize(n());
   renormalisation.resize(n());
   missing.resize(n());
-  pairs.renormalisation = renormalisation.data();
+  pairs.renormalisation = pairs.acrossWalls = renormalisation.data();
+  if (pairs.accurate && !particles.wallSurface.empty()) {
+    acrossWalls.resize(n());
+    pairs.acrossWalls = acrossWalls.data();
+    pairs.wallSurface = particles.wallSurface.data();
+  }
   pairs.missing = missing.data();
   sumOnFluid(context, pairs, DensityTerm<D>{density.data(), deficit.data(), surface.data()});
 }
@@ -83,6 +88,20 @@ IsphScene<D> makeIsphScene(Walls walls, double jitter, unsigned seed) {
 }
 
 template <int D>
+void giveSurfaces(const Case& c, Particles<D>& particles) {
+  const double l = c.spacing;
+  particles.wallSurface.resize(particles.wallCount());
+  const std::vector<double> x = randomNumbers(2 * D * particles.wallCount(), 11);
+  for (std::size_t k = 0, n = 0; k < particles.wallCount(); ++k) {
+    WallSurface<D>& surface = particles.wallSurface[k] = {};
+    for (int a = 0; a < D; ++a) surface.face[0][a] = static_cast<float>(0.2 * l * x[n++]);
+    for (int a = 0; a < D; ++a) surface.face[1][a] = static_cast<float>(k % 3 == 0 ? 0.2 * l * x[n++] : 0);
+    surface.face[0][D - 1] += static_cast<float>(0.8 * l);
+    if (k % 3 == 0) surface.face[1][0] += static_cast<float>(0.7 * l);
+  }
+}
+
+template <int D>
 IsphScene<D> makeLargeIsphScene() {
   Case c = sceneCase(D);
   c.method.kind = MethodKind::Isph;
@@ -125,12 +144,14 @@ template struct IsphScene<2>;
 template Particles<2> particlesAt(const std::vector<Vec<2>>&, const std::vector<Vec<2>>&);
 template std::vector<Vec<2>> latticeAt(const Vec<2>&, const Vec<2, int>&, double);
 template IsphScene<2> makeIsphScene(Walls, double, unsigned);
+template void giveSurfaces(const Case&, Particles<2>&);
 template IsphScene<2> makeLargeIsphScene();
 template std::vector<Vec<2>> randomVelocities(std::size_t, unsigned);
 template struct IsphScene<3>;
 template Particles<3> particlesAt(const std::vector<Vec<3>>&, const std::vector<Vec<3>>&);
 template std::vector<Vec<3>> latticeAt(const Vec<3>&, const Vec<3, int>&, double);
 template IsphScene<3> makeIsphScene(Walls, double, unsigned);
+template void giveSurfaces(const Case&, Particles<3>&);
 template IsphScene<3> makeLargeIsphScene();
 template std::vector<Vec<3>> randomVelocities(std::size_t, unsigned);
 template Matrix dense(const IsphMatrix<double>&);

@@ -23,7 +23,7 @@ struct IsphScene {
   Buffer<double> density;
   Buffer<Vec<D>> deficit;
   Buffer<std::uint8_t> surface;
-  Buffer<SymmetricBlock<D, float>> renormalisation;
+  Buffer<SymmetricBlock<D, float>> renormalisation, acrossWalls;
   Buffer<float> missing;
 
   IsphScene(const Case& theCase, Particles<D> state);
@@ -52,6 +52,10 @@ Case waterCase(int dimensions, const Vec<3>& size);
 /// (or without it); it lies across periodic ends.
 template <int D>
 IsphScene<D> makeIsphScene(Walls walls = Walls::Floor, double jitter = 0.1, unsigned seed = 1);
+
+/// Surfaces for all walls, in no order: one face above each particle, tilted, and for some a second one beside it.
+template <int D>
+void giveSurfaces(const Case& c, Particles<D>& particles);
 
 /// More than enough fluid for every way in which kernels share work, on a floor, free of symmetries.
 template <int D>

@@ -225,8 +225,7 @@ std::string sizesOfFluid(const Case& c) {
 
 /// For the velocities that fluid meets at walls, and for the gaps of rigid bodies.
 bool needsWallSurfaces(const Case& c) {
-  if (c.method.kind == MethodKind::Isph) return c.hasRigid();
-  return c.isAccurate();
+  return c.method.scheme == SchemeKind::Accurate || (c.method.kind == MethodKind::Isph && c.hasRigid());
 }
 
 }  // namespace

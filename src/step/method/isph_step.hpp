@@ -47,6 +47,7 @@ class IsphStep final : public StepMethod<D, Backend> {
     pairs_.fluidEntries = fluidOfFluid_.column.size();
     pairs_.wallsOfFluid = wallsOfFluid_.view();
     pairs_.fluidOfWalls = fluidOfWalls_.view();
+    pairs_.wallSurface = nullptr;  // until they are placed
   }
 
   void computeDensities() override {
@@ -61,6 +62,8 @@ class IsphStep final : public StepMethod<D, Backend> {
     pairs_.timeStep = state_.timeStep;
     pairs_.frame = state_.frame;
     pairs_.materials.setTimeStep(state_.timeStep);
+    placeWallSurfaces(state_, pairs_.fluidCount, pairs_.activeCount - pairs_.fluidCount, wallSurface_);
+    if (pairs_.accurate && !state_.particles.wallSurface.empty()) pairs_.wallSurface = wallSurface_.data();
     prepareDensities();
     solution_.resize(state_.context, pairs_.fluidCount);
     state_.phases.run(state_.context, phases::coefficients, [&] {
@@ -170,10 +173,10 @@ class IsphStep final : public StepMethod<D, Backend> {
   std::size_t bytes() const override {
     return sort_.bytes() + fluidOfFluid_.bytes() + wallsOfFluid_.bytes() + fluidOfWalls_.bytes() +
            deficit_.bytes() + eddyViscosity_.bytes() + wallViscosity_.bytes() + renormalisation_.bytes() +
-           missing_.bytes() + surface_.bytes() + predictor_.bytes() + source_.bytes() + solution_.bytes() +
-           shifted_.bytes() + (arrangement_ ? arrangement_->bytes() : 0) + wallShare_.bytes() + forces_.bytes() +
-           pressure_.bytes() + unknowns_.bytes() + (gas_ ? gas_->bytes() : 0) + pressing_.bytes() +
-           wallSurface_.bytes();
+           acrossWalls_.bytes() + missing_.bytes() + surface_.bytes() + predictor_.bytes() + source_.bytes() +
+           solution_.bytes() + shifted_.bytes() + (arrangement_ ? arrangement_->bytes() : 0) + wallShare_.bytes() +
+           forces_.bytes() + pressure_.bytes() + unknowns_.bytes() + (gas_ ? gas_->bytes() : 0) +
+           pressing_.bytes() + wallSurface_.bytes();
   }
 
   /// Pairs up to this share of the kernel's radius make the smoother's matrix: 1.9 l with the usual kernel.
@@ -183,10 +186,7 @@ class IsphStep final : public StepMethod<D, Backend> {
   /// The flow, and the velocities and pressures that are found with it. Each solve starts from what the last step
   /// has left, which is zero where nothing moves and a right-hand side may be.
   StagedReport solveFlow() {
-    if (unknowns_.hasBodies()) {
-      placeWallSurfaces(state_, pairs_.fluidCount, pairs_.activeCount - pairs_.fluidCount, wallSurface_);
-      pressing_.resize(state_.context, pairs_.ownFluid());
-    }
+    if (unknowns_.hasBodies()) pressing_.resize(state_.context, pairs_.ownFluid());
     const auto flow = [&](bool isFirst) {
       const StagedReport report = solvePressure(isFirst);
       if (!unknowns_.some()) return report;
@@ -276,7 +276,11 @@ class IsphStep final : public StepMethod<D, Backend> {
     if (pairs_.accurate) {
       renormalisation_.resize(state_.context, n);
       missing_.resize(state_.context, pairs_.ownFluid());
-      pairs_.renormalisation = renormalisation_.data();
+      pairs_.renormalisation = pairs_.acrossWalls = renormalisation_.data();
+      if (pairs_.wallSurface) {
+        acrossWalls_.resize(state_.context, pairs_.ownFluid());
+        pairs_.acrossWalls = acrossWalls_.data();
+      }
       pairs_.missing = missing_.data();
     }
     clearValues(state_.context, state_.particles.numberDensity.span().subspan(n));
@@ -307,8 +311,9 @@ class IsphStep final : public StepMethod<D, Backend> {
   bool closed_ = false;  // no particle is at the free surface
   Buffer<Vec<D>, Backend> deficit_;
   Buffer<SymmetricBlock<D, float>, Backend> renormalisation_;  // with ghosts; of the accurate scheme
-  Buffer<float, Backend> missing_;                             // likewise, of own particles
-  Buffer<float, Backend> eddyViscosity_, wallViscosity_;       // of IsphPairs; of the turbulence model
+  Buffer<SymmetricBlock<D, float>, Backend> acrossWalls_;  // likewise, of own particles; where surfaces are known
+  Buffer<float, Backend> missing_;                         // likewise, of own particles
+  Buffer<float, Backend> eddyViscosity_, wallViscosity_;   // of IsphPairs; of the turbulence model
   Buffer<std::uint8_t, Backend> surface_;  // Place, with ghosts, which all that neighbours read has
   IsphPredictor<D, Backend> predictor_;
   Buffer<double, Backend> source_;    // of the pressure equation

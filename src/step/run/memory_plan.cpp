@@ -120,8 +120,11 @@ StepBytes isphBytes(const Case& c, BackendKind backend) {
   if (c.solver.preconditioner == PreconditionerKind::CellMultigrid)
     bytes.fluid += (D == 2 ? 250 : 700) + (onDevice ? productBytes(c) / 4 : 0);
   if (isDouble(c)) bytes.fluid += D == 2 ? 100 : 260;
-  if (c.method.scheme == SchemeKind::Accurate)  // B, missing share, gradient, IsphArrangement
-    bytes.fluid += sizeof(SymmetricBlock<D, float>) + sizeof(float) + sizeof(SmoothFlow<D>) + 24 + sizeof(Vec<D>);
+  if (c.method.scheme == SchemeKind::Accurate) {  // B and B', missing share, gradient, IsphArrangement
+    bytes.fluid +=
+        2 * sizeof(SymmetricBlock<D, float>) + sizeof(float) + sizeof(SmoothFlow<D>) + 24 + sizeof(Vec<D>);
+    bytes.wall += sizeof(WallSurface<D>);
+  }
   if (c.method.isph.smagorinsky > 0) bytes.fluid += 2 * sizeof(float);
   if (isViscousStepImplicit(c.method.isph.viscosity, explicitViscousLimit(makeIsphPairs<D>(c)), c.time.step))
     bytes.fluid += D == 2 ? 250 : 460;

@@ -212,6 +212,7 @@ void checkScenes() {
     for (const KernelKind kernel : {KernelKind::CubicSpline, KernelKind::WendlandC2}) {
       IsphScene<D> s = makeIsphScene<D>(walls);
       s.c.method.isph.kernel = kernel;
+      if (kernel == KernelKind::CubicSpline) giveSurfaces(s.c, s.particles);
       SumsTwin<D>(IsphScene<D>(s.c, std::move(s.particles))).checkAll();
     }
   SumsTwin<D>(makeLargeIsphScene<D>()).checkAll();

@@ -74,9 +74,9 @@ double meanSpeed(const Simulation<D>& simulation) {
 }
 
 /// MPH-I has the flow of a channel that is a little longer, because streamlines bend at its ends; with ten
-/// particles across ISPH has too thin layers at walls. Measured: 0.930 and 1.10 of the exact flow.
+/// particles across ISPH has too thin layers at walls. Measured: 0.930 and 1.14 of the exact flow.
 TEST(Openings, DriveTheFlowOfAChannel) {
-  for (const auto& [method, share] : {std::pair(MethodKind::MphI, 0.93), std::pair(MethodKind::Isph, 1.1)}) {
+  for (const auto& [method, share] : {std::pair(MethodKind::MphI, 0.93), std::pair(MethodKind::Isph, 1.14)}) {
     Case c = channelCase(2, method);
     const double exact = 200 * 1e-4 / (12 * 2 * 0.02);
     Simulation<2> simulation(c, created<2>(c));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "treacle/core/symmetric_block.hpp"
+#include "treacle/model/geometry/seen_face.hpp"
 #include "treacle/model/motion/frame_force.hpp"
 #include "treacle/model/motion/wall_motion.hpp"
 #include "treacle/model/particles/smoothing_kernel.hpp"
@@ -79,7 +80,8 @@ struct IsphPairs : MaterialParticles<D> {
   NeighbourRowsView wallsOfFluid;  // WallsOfFluid
   NeighbourRowsView fluidOfWalls;  // FluidOfWalls
   const std::uint8_t* body = nullptr;
-  const WallMotion<D>* wallMotion = nullptr;  // per body; none: no wall accelerates
+  const WallSurface<D>* wallSurface = nullptr;  // per active wall particle, as it is placed; null: not known
+  const WallMotion<D>* wallMotion = nullptr;    // per body; none: no wall accelerates
   SmoothingKernel<D> kernel{};
   SurfaceCriterion surface;
   FrameForce<D> frame{};
@@ -97,6 +99,7 @@ struct IsphPairs : MaterialParticles<D> {
   static constexpr double leastMoment = 0.3;  // as what lesser eigenvalues of M count (DensityTerm)
   // Of the accurate scheme, per fluid particle, by DensityTerm:
   SymmetricBlock<D, float>* renormalisation = nullptr;  // B [-]
+  SymmetricBlock<D, float>* acrossWalls = nullptr;      // B' [-]; B where surfaces are not known
   float* missing = nullptr;                             // missingShare
   const double* outside = nullptr;                      // outsidePressure, per own fluid particle; null: 0
   // With a model of turbulence, per fluid particle, by EddyTerm:
@@ -113,10 +116,21 @@ struct IsphPairs : MaterialParticles<D> {
     const double mu = this->isOneSubstance() ? this->onlyViscosity() : this->pairViscosity(i, j);
     return eddyViscosity ? mu + 0.5 * (eddyViscosity[i] + eddyViscosity[j]) : mu;
   }
-  /// Of a fluid particle and a wall [Pa s].
-  TREACLE_HD double viscosityAtWall(std::uint32_t fluid, std::uint32_t wall) const {
-    if (wallViscosity) return wallViscosity[fluid];
-    return this->pairViscosity(fluid, wall) > 0 ? this->pairViscosity(fluid, fluid) : 0;
+  /// Of a fluid particle and a wall at d, multiplied so that with their difference of velocities the fluid meets
+  /// the wall's velocity at its surface: by wallFactor, or by 2, as in a mirror, where the surface is not known or
+  /// a law of the wall has the viscosity. Zero: the wall does not hold the fluid [Pa s].
+  TREACLE_HD double viscosityAtWall(std::uint32_t fluid, std::uint32_t wall, const Vec<D>& d) const {
+    if (!noSlip) return 0;
+    if (wallViscosity) return 2 * wallViscosity[fluid];
+    if (!(this->pairViscosity(fluid, wall) > 0)) return 0;
+    const bool known = wallSurface && norm2(surfaceOf(wall).face[0]) > 0;
+    return (known ? wallFactor(surfaceOf(wall), d, this->spacing, 0) : 2) * this->pairViscosity(fluid, fluid);
+  }
+  /// The part across the wall's surface of d, from a fluid particle to a wall; d where the surface is not known.
+  TREACLE_HD Vec<D> across(std::uint32_t wall, const Vec<D>& d) const {
+    if (!wallSurface) return d;
+    const SeenFace<D> face = seenFace(surfaceOf(wall), d);
+    return face.exists() ? (dot(face.way, d) / (face.below * face.below)) * face.way : d;
   }
   /// Distance from a flat wall whose particles are `mean` away in the mean, across the wall; right at half a
   /// spacing and at the kernel's radius.
@@ -127,6 +141,10 @@ struct IsphPairs : MaterialParticles<D> {
   /// B_i d
   TREACLE_HD Vec<D> renormalised(std::uint32_t i, const Vec<D>& d) const {
     return accurate ? converted<double>(renormalisation[i]) * d : d;
+  }
+  /// B'_i d
+  TREACLE_HD Vec<D> derivative(std::uint32_t i, const Vec<D>& d) const {
+    return accurate ? converted<double>(acrossWalls[i]) * d : d;
   }
   /// e.B_i e with e = d / |d|: by how much the Laplacian of a particle weighs a neighbour at d.
   TREACLE_HD double renormalisedAlong(std::uint32_t i, const Vec<D>& d) const {
@@ -163,6 +181,11 @@ struct IsphPairs : MaterialParticles<D> {
     if (wallMotion) force -= density * wallMotion[body[wall]].accelerationAt(this->position[wall]);
     const double held = p + dot(force, d);
     return negativePressure || held > 0 ? held : 0;
+  }
+
+ private:
+  TREACLE_HD const WallSurface<D>& surfaceOf(std::uint32_t wall) const {
+    return wallSurface[wall - this->fluidCount];
   }
 };
 

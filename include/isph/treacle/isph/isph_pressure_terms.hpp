@@ -12,9 +12,10 @@ namespace treacle {
 /// Right-hand side of the pressure equation [O23 eq. (10)], divided by -rho: -div v* / dt + alpha (<rho>/rho - 1)
 /// / dt^2, zero for free particles. Compression raises p. Walls are met with v* mirrored at the wall's velocity:
 /// with the wall's velocity itself half of the flow into it would be missed. Walls count in it as in the
-/// Laplacian, so that water at rest has the hydrostatic pressure. In the accurate scheme particles at the free
-/// surface lack neighbours, not volume: a density below 1 does not count, and the less the more neighbours are
-/// missing. The term with alpha has an equation of its own there, by which particles move (IsphArrangement).
+/// Laplacian, so that water at rest has the hydrostatic pressure, and derivatives along them are those of the
+/// fluid (DensityTerm). In the accurate scheme particles at the free surface lack neighbours, not volume: a
+/// density below 1 does not count, and the less the more neighbours are missing. The term with alpha has an
+/// equation of its own there, by which particles move (IsphArrangement).
 template <int D>
 struct PressureSourceTerm {
   static constexpr int values = 1;
@@ -26,7 +27,7 @@ struct PressureSourceTerm {
 
   TREACLE_HD void fluid(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d,
                         const Distance& r, double* sum) const {
-    sum[0] += pairs.slope(r) * dot(predicted[j] - predicted[i], pairs.renormalised(i, d));
+    sum[0] += pairs.slope(r) * dot(predicted[j] - predicted[i], pairs.derivative(i, d));
   }
   TREACLE_HD void wall(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d,
                        const Distance& r, double* sum) const {
@@ -176,7 +177,9 @@ struct PressureRow {
   double largest(const IsphPairs<D>& pairs) const {
     return 2 * pairs.slope(0) / pairs.leastDensity / (pairs.accurate ? pairs.leastMoment : 1);
   }
-  TREACLE_HD double wall(const IsphPairs<D>&, std::uint32_t, std::uint32_t, const Distance&) const { return 0; }
+  TREACLE_HD double wall(const IsphPairs<D>&, std::uint32_t, std::uint32_t, const Vec<D>&, const Distance&) const {
+    return 0;
+  }
   TREACLE_HD double own(const IsphPairs<D>& pairs, std::uint32_t i) const { return pairs.missingCoefficient(i); }
 };
 

@@ -109,7 +109,8 @@ struct IsphMatrixRow {
   TREACLE_HD void wall(std::uint32_t i, const Vec<D>& x, std::uint64_t k, double* sum) const {
     if (!row.isUnknown(i)) return;
     const std::uint32_t j = pairs.wallsOfFluid.column[k];
-    sum[Known] += row.wall(pairs, i, j, Distance(pairs.grid.difference(x, pairs.position[j])));
+    const Vec<D> d = pairs.grid.difference(x, pairs.position[j]);
+    sum[Known] += row.wall(pairs, i, j, d, Distance(d));
   }
   TREACLE_HD void finish(std::uint32_t i, const double* sum) const {
     const double known = row.isUnknown(i) ? sum[Known] + row.own(pairs, i) : 0;

@@ -9,7 +9,8 @@ namespace treacle {
 /// The viscous step of ISPH, explicit and implicit (isph_terms.hpp).
 
 /// v* = v + dt (nu lap v + g) [O23 eq. (7)] with the Laplacian of [O23 eq. (6)], and with the forces of
-/// isph_flow.hpp where there is a `flow`. A no-slip wall is met with the fluid's velocity mirrored at the wall's.
+/// isph_flow.hpp where there is a `flow`. A no-slip wall is met with its velocity at its
+/// surface (IsphPairs::viscosityAtWall).
 template <int D>
 struct PredictorTerm {
   static constexpr int values = D;
@@ -29,7 +30,7 @@ struct PredictorTerm {
   }
   TREACLE_HD void wall(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d,
                        const Distance& r, double* sum) const {
-    if (pairs.noSlip) add(4 * pairs.slope(r) * pairs.viscosityAtWall(i, j), i, j, sum);
+    add(2 * pairs.slope(r) * pairs.viscosityAtWall(i, j, d), i, j, sum);
     if (!flow || !viscous) return;
     const Vec<D> force = transposedForce(pairs.viscosityBetween(i, i), pairs.slope(r), flow[i], flow[i], d);
     for (int k = 0; k < D; ++k) sum[k] += force[k];
@@ -66,7 +67,7 @@ struct ViscousSourceTerm {
   }
   TREACLE_HD void wall(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d,
                        const Distance& r, double* sum) const {
-    const double c = pairs.noSlip ? 4 * pairs.slope(r) * pairs.viscosityAtWall(i, j) : 0;
+    const double c = 2 * pairs.slope(r) * pairs.viscosityAtWall(i, j, d);
     Vec<D> force = c * velocity[j];
     if (flow && isNearSurface(pairs, i))
       force += transposedForce(pairs.viscosityBetween(i, i), pairs.slope(r), flow[i], flow[i], d);
@@ -93,9 +94,9 @@ struct WallFrictionTerm {
 
   TREACLE_HD void fluid(const IsphPairs<D>&, std::uint32_t, std::uint32_t, const Vec<D>&, const Distance&,
                         double*) const {}
-  TREACLE_HD void wall(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>&,
+  TREACLE_HD void wall(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d,
                        const Distance& r, double* sum) const {
-    const double c = pairs.noSlip ? 4 * pairs.slope(r) * pairs.viscosityAtWall(i, j) : 0;
+    const double c = 2 * pairs.slope(r) * pairs.viscosityAtWall(i, j, d);
     for (int k = 0; k < D; ++k) sum[k] += c * (velocity[j][k] - velocity[i][k]);
   }
   TREACLE_HD void store(const IsphPairs<D>&, std::uint32_t i, const double* sum) const {
@@ -114,8 +115,9 @@ struct ViscousRow {
   double largest(const IsphPairs<D>& pairs) const {
     return 2 * pairs.slope(0) * (pairs.mostViscosity + pairs.mostEddyViscosity);
   }
-  TREACLE_HD double wall(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Distance& r) const {
-    return pairs.noSlip ? 4 * pairs.slope(r) * pairs.viscosityAtWall(i, j) : 0;
+  TREACLE_HD double wall(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d,
+                         const Distance& r) const {
+    return 2 * pairs.slope(r) * pairs.viscosityAtWall(i, j, d);
   }
   TREACLE_HD double own(const IsphPairs<D>& pairs, std::uint32_t i) const {
     return pairs.density(i) / pairs.timeStep;

@@ -2,9 +2,9 @@
 
 #include "treacle/core/symmetric_block.hpp"
 #include "treacle/model/case/case.hpp"
+#include "treacle/model/geometry/seen_face.hpp"
 #include "treacle/mph/mph_terms.hpp"
 #include "treacle/mph/viscosity_classes.hpp"
-#include "treacle/mph/wall_surfaces.hpp"
 #include "treacle/search/cluster_list.hpp"
 #include "treacle/search/material_particles.hpp"
 
