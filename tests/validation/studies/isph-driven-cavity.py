@@ -38,7 +38,7 @@ study = Study(
     name="isph-driven-cavity",
     title="ISPH: driven cavity, Re = 100",
     levels=[Level(1), Level(2), Level(4)],
-    bars={"u, least": 0.06, "v, most": 0.08, "v, least": 0.05},
+    bars={"u, least": 0.07, "v, most": 0.09, "v, least": 0.065},
     measure=measure,
     x_label="x or y [m]",
     y_label="velocity [m/s]",
