@@ -46,14 +46,19 @@ __device__ inline void visitRow(const IsphPairs<D>& pairs, const NeighbourRowsVi
 
 /// Eight lanes per fluid particle; reads its neighbours and what the term reads; writes what the term stores. The
 /// bound leaves 72 registers, and up to 96 where there are many sums: with more too few threads wait for memory at
-/// a time. No atomics.
-template <int D, class Term>
+/// a time. `BesideWalls`: particles without walls only store. No atomics.
+template <bool BesideWalls, int D, class Term>
 __global__ void __launch_bounds__(128, Term::values > 20   ? 5
                                        : Term::values > 12 ? 6
                                                            : 7)
     fluidSumsKernel(const __grid_constant__ IsphPairs<D> pairs, Term term) {
   const std::uint32_t i = blockIdx.x * (blockDim.x / rowLanes) + threadIdx.x / rowLanes;
-  const bool used = i < pairs.ownFluid();
+  bool used = i < pairs.ownFluid();
+  if constexpr (BesideWalls)
+    if (used && !pairs.isBesideWalls(i)) {
+      if (threadIdx.x % rowLanes == 0) term.storeAway(pairs, i);
+      used = false;
+    }
   double sum[Term::values] = {};
   if (used) {
     const Vec<D> x = pairs.position[i];
@@ -137,7 +142,13 @@ __global__ void __launch_bounds__(128)
 
 template <int D, class Term, class Backend>
 void sumOnFluid(Context<Backend>& context, const IsphPairs<D>& pairs, const Term& term) {
-  launch(context, blocksFor(std::size_t{pairs.ownFluid()} * rowLanes, 128), 128, 0, fluidSumsKernel<D, Term>,
+  launch(context, blocksFor(std::size_t{pairs.ownFluid()} * rowLanes, 128), 128, 0,
+         fluidSumsKernel<false, D, Term>, pairs, term);
+}
+
+template <int D, class Term, class Backend>
+void sumBesideWalls(Context<Backend>& context, const IsphPairs<D>& pairs, const Term& term) {
+  launch(context, blocksFor(std::size_t{pairs.ownFluid()} * rowLanes, 128), 128, 0, fluidSumsKernel<true, D, Term>,
          pairs, term);
 }
 

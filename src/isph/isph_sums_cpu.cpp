@@ -3,24 +3,41 @@
 #include "treacle/core/parallel.hpp"
 
 namespace treacle {
+namespace {
+
+template <int D, class Term>
+void sumAround(const IsphPairs<D>& pairs, std::uint32_t i, const Term& term) {
+  const Vec<D> x = pairs.position[i];
+  double sum[Term::values] = {};
+  pairs.fluidOfFluid.forEachPlace(i, [&](std::uint64_t k) {
+    const std::uint32_t j = pairs.fluidOfFluid.column[k];
+    const Vec<D> d = pairs.grid.difference(x, pairs.position[j]);
+    term.fluid(pairs, i, j, d, Distance(d), sum);
+  });
+  pairs.wallsOfFluid.forEachPlace(i, [&](std::uint64_t k) {
+    const std::uint32_t j = pairs.wallsOfFluid.column[k];
+    const Vec<D> d = pairs.grid.difference(x, pairs.position[j]);
+    term.wall(pairs, i, j, d, Distance(d), sum);
+  });
+  term.store(pairs, i, sum);
+}
+
+}  // namespace
 
 template <int D, class Term, class Backend>
 void sumOnFluid(Context<Backend>&, const IsphPairs<D>& pairs, const Term& term) {
+  parallelFor(pairs.ownFluid(), parallelGrain,
+              [&](std::size_t i) { sumAround(pairs, static_cast<std::uint32_t>(i), term); });
+}
+
+template <int D, class Term, class Backend>
+void sumBesideWalls(Context<Backend>&, const IsphPairs<D>& pairs, const Term& term) {
   parallelFor(pairs.ownFluid(), parallelGrain, [&](std::size_t row) {
     const auto i = static_cast<std::uint32_t>(row);
-    const Vec<D> x = pairs.position[i];
-    double sum[Term::values] = {};
-    pairs.fluidOfFluid.forEachPlace(i, [&](std::uint64_t k) {
-      const std::uint32_t j = pairs.fluidOfFluid.column[k];
-      const Vec<D> d = pairs.grid.difference(x, pairs.position[j]);
-      term.fluid(pairs, i, j, d, Distance(d), sum);
-    });
-    pairs.wallsOfFluid.forEachPlace(i, [&](std::uint64_t k) {
-      const std::uint32_t j = pairs.wallsOfFluid.column[k];
-      const Vec<D> d = pairs.grid.difference(x, pairs.position[j]);
-      term.wall(pairs, i, j, d, Distance(d), sum);
-    });
-    term.store(pairs, i, sum);
+    if (!pairs.isBesideWalls(i))
+      term.storeAway(pairs, i);
+    else
+      sumAround(pairs, i, term);
   });
 }
 

@@ -28,6 +28,7 @@ IsphScene<D>::IsphScene(const Case& theCase, Particles<D> state)
   }
   pairs.missing = missing.data();
   sumOnFluid(context, pairs, DensityTerm<D>{density.data(), deficit.data(), surface.data()});
+  findAcrossWalls();
 }
 
 template <int D>

@@ -28,6 +28,10 @@ struct IsphScene {
 
   IsphScene(const Case& theCase, Particles<D> state);
 
+  /// B', after each DensityTerm.
+  void findAcrossWalls() {
+    if (pairs.wallSurface) sumBesideWalls(context, pairs, AcrossWallsTerm<D>{});
+  }
   std::uint32_t n() const { return particles.fluidCount; }
   std::uint32_t surfaceCount() const {
     return n() - static_cast<std::uint32_t>(std::count(surface.begin(), surface.end(), Place::Inside));

@@ -68,6 +68,7 @@ class IsphStep final : public StepMethod<D, Backend> {
     solution_.resize(state_.context, pairs_.fluidCount);
     state_.phases.run(state_.context, phases::coefficients, [&] {
       predictor_.start(densityTerm());
+      if (pairs_.wallSurface) sumBesideWalls(state_.context, pairs_, AcrossWallsTerm<D>{});
       if (pairs_.mixingLength > 0) computeEddies();
     });
     return predictor_.predict(ranges(), solution());

@@ -37,11 +37,20 @@ struct SumsTwin {
     EXPECT_LE(differ<V>(d.context, found, expected), 2 * kernelTolerance) << what;
   }
 
+  void findAcrossWalls() {
+    if (!d.pairs.wallSurface) return;
+    sumBesideWalls(d.context, d.pairs, AcrossWallsTerm<D>{});
+    const Buffer<SymmetricBlock<D, float>> found = copyToHost(d.context, d.acrossWalls);
+    for (std::uint32_t i = 0; i < n; ++i)
+      for (int k = 0; k < SymmetricBlock<D>::size; ++k) ASSERT_NEAR(found[i].a[k], s.acrossWalls[i].a[k], 1e-5);
+  }
+
   void checkDensity() {
     Buffer<double, Cuda> density(d.context, n);
     Buffer<Vec<D>, Cuda> deficit(d.context, n);
     Buffer<std::uint8_t, Cuda> surface(d.context, n);
     sumOnFluid(d.context, d.pairs, DensityTerm<D>{density.data(), deficit.data(), surface.data()});
+    findAcrossWalls();
     EXPECT_LE(differ<double>(d.context, density, s.density.span()), 2 * kernelTolerance);
     // Of a full lattice the sum is zero but for rounding.
     double apart = 0;
@@ -156,9 +165,11 @@ struct SumsTwin {
     const BothTerms<DensityTerm<D>, SmoothFlowTerm<D>> both{{s.density.data(), s.deficit.data(), s.surface.data()},
                                                             {v.data(), p.data(), flow.data()}};
     sumOnFluid(s.context, s.pairs, both);
+    s.findAcrossWalls();
     const BothTerms<DensityTerm<D>, SmoothFlowTerm<D>> device{
         {density.data(), deficit.data(), surface.data()}, {vOnDevice.data(), pOnDevice.data(), foundFlow.data()}};
     sumOnFluid(d.context, d.pairs, device);
+    findAcrossWalls();
     EXPECT_LE(differ<double>(d.context, density, s.density.span()), 2 * kernelTolerance);
     const Buffer<SmoothFlow<D>> there = copyToHost(d.context, foundFlow);
     float largest = 0;

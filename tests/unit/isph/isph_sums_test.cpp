@@ -121,6 +121,7 @@ struct Sums {
     const BothTerms<DensityTerm<D>, SmoothFlowTerm<D>> both{{s.density.data(), s.deficit.data(), s.surface.data()},
                                                             {v.data(), p.data(), flow.data()}};
     sumOnFluid(s.context, s.pairs, both);
+    s.findAcrossWalls();
     IsphPairs<D> pairs = s.pairs;
     pairs.frame = {};
     sumOnFluid(s.context, pairs, PredictorTerm<D>{v.data(), found.data(), viscous, flow.data()});

@@ -55,6 +55,7 @@ struct Eddies {
     const BothTerms<DensityTerm<D>, SmoothFlowTerm<D>> both{{s.density.data(), s.deficit.data(), s.surface.data()},
                                                             {v.data(), s.particles.pressure.data(), flow.data()}};
     sumOnFluid(s.context, s.pairs, both);
+    s.findAcrossWalls();
     sumOnFluid(s.context, s.pairs, EddyTerm<D>{v.data(), flow.data(), eddy.data(), wall.data()});
   }
 };

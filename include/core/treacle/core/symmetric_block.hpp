@@ -41,6 +41,11 @@ struct alignas(sizeof(T) == 4 && D == 3 ? 8 : alignof(T)) SymmetricBlock {
     for (int r = 0; r < D; ++r)
       for (int c = r; c < D; ++c) (*this)(r, c) += factor * v[r] * v[c];
   }
+  TREACLE_HD friend constexpr T trace(const SymmetricBlock& m) {
+    T sum = m(0, 0);
+    for (int k = 1; k < D; ++k) sum += m(k, k);
+    return sum;
+  }
   /// The r-th component of the product with anything that has D components.
   template <class X>
   TREACLE_HD constexpr auto row(int r, const X& x) const {

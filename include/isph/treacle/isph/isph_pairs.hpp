@@ -1,5 +1,6 @@
 #pragma once
 
+#include "treacle/core/floored_inverse.hpp"
 #include "treacle/core/symmetric_block.hpp"
 #include "treacle/model/geometry/seen_face.hpp"
 #include "treacle/model/motion/frame_force.hpp"
@@ -97,7 +98,7 @@ struct IsphPairs : MaterialParticles<D> {
   bool negativePressure = false;              // or cut to zero
   bool accurate = true;                       // the scheme
   static constexpr double leastMoment = 0.3;  // as what lesser eigenvalues of M count (DensityTerm)
-  // Of the accurate scheme, per fluid particle, by DensityTerm:
+  // Of the accurate scheme, per fluid particle, by DensityTerm and AcrossWallsTerm:
   SymmetricBlock<D, float>* renormalisation = nullptr;  // B [-]
   SymmetricBlock<D, float>* acrossWalls = nullptr;      // B' [-]; B where surfaces are not known
   float* missing = nullptr;                             // missingShare
@@ -137,6 +138,16 @@ struct IsphPairs : MaterialParticles<D> {
   TREACLE_HD double wallDistance(double mean) const {
     const double radius = kernel.radius(), half = 0.5 * this->spacing;
     return std::fmax(0.5 * half, radius - (radius - mean) * (radius - half) / (radius - meanDistance));
+  }
+  /// Whether a fluid particle has walls around it.
+  TREACLE_HD bool isBesideWalls(std::uint32_t i) const {
+    const NeighbourRowsView& rows = wallsOfFluid;
+    const std::uint64_t far = std::uint64_t{rows.count} + i;
+    return rows.start[i] < rows.start[i + 1] || rows.start[far] < rows.start[far + 1];
+  }
+  /// The inverse of a sum of moments (addSquare).
+  TREACLE_HD static SymmetricBlock<D, float> renormalisationOf(const double* moments) {
+    return converted<float>(flooredInverse(squareOf<D>(moments), leastMoment, false));
   }
   /// B_i d
   TREACLE_HD Vec<D> renormalised(std::uint32_t i, const Vec<D>& d) const {

@@ -18,6 +18,10 @@ namespace treacle {
 template <int D, class Term, class Backend>
 void sumOnFluid(Context<Backend>&, const IsphPairs<D>& pairs, const Term& term);
 
+/// The same for those that have walls around them; term.storeAway(pairs, i) for the others.
+template <int D, class Term, class Backend>
+void sumBesideWalls(Context<Backend>&, const IsphPairs<D>& pairs, const Term& term);
+
 /// The same for the fluid neighbours of every own active wall particle.
 template <int D, class Term, class Backend>
 void sumOnWalls(Context<Backend>&, const IsphPairs<D>& pairs, const Term& term);
@@ -124,24 +128,25 @@ struct IsphMatrixRow {
 };
 
 /// For the sources of both backends.
-#define TREACLE_ISPH_SUMS(D, Backend)                                                             \
-  template void sumOnFluid(Context<Backend>&, const IsphPairs<D>&, const DensityTerm<D>&);        \
-  template void sumOnFluid(Context<Backend>&, const IsphPairs<D>&, const PredictorTerm<D>&);      \
-  template void sumOnFluid(Context<Backend>&, const IsphPairs<D>&,                                \
-                           const BothTerms<DensityTerm<D>, PredictorTerm<D>>&);                   \
-  template void sumOnFluid(Context<Backend>&, const IsphPairs<D>&,                                \
-                           const BothTerms<DensityTerm<D>, SmoothFlowTerm<D>>&);                  \
-  template void sumOnFluid(Context<Backend>&, const IsphPairs<D>&, const EddyTerm<D>&);           \
-  template void sumOnFluid(Context<Backend>&, const IsphPairs<D>&, const ViscousSourceTerm<D>&);  \
-  template void sumOnFluid(Context<Backend>&, const IsphPairs<D>&, const WallFrictionTerm<D>&);   \
-  template void sumOnFluid(Context<Backend>&, const IsphPairs<D>&, const PressureSourceTerm<D>&); \
-  template void sumOnFluid(Context<Backend>&, const IsphPairs<D>&, const CorrectorTerm<D>&);      \
-  template void sumOnFluid(Context<Backend>&, const IsphPairs<D>&, const OutsideTerm<D>&);        \
-  template void sumOnWalls(Context<Backend>&, const IsphPairs<D>&, const WallPressureTerm<D>&);   \
-  template void sumOnWalls(Context<Backend>&, const IsphPairs<D>&, const WallForceTerm<D>&);      \
-  TREACLE_ISPH_MATRIX(D, double, PressureRow<D>, Backend)                                         \
-  TREACLE_ISPH_MATRIX(D, float, PressureRow<D>, Backend)                                          \
-  TREACLE_ISPH_MATRIX(D, double, ViscousRow<D>, Backend)                                          \
+#define TREACLE_ISPH_SUMS(D, Backend)                                                              \
+  template void sumOnFluid(Context<Backend>&, const IsphPairs<D>&, const DensityTerm<D>&);         \
+  template void sumOnFluid(Context<Backend>&, const IsphPairs<D>&, const PredictorTerm<D>&);       \
+  template void sumOnFluid(Context<Backend>&, const IsphPairs<D>&,                                 \
+                           const BothTerms<DensityTerm<D>, PredictorTerm<D>>&);                    \
+  template void sumOnFluid(Context<Backend>&, const IsphPairs<D>&,                                 \
+                           const BothTerms<DensityTerm<D>, SmoothFlowTerm<D>>&);                   \
+  template void sumOnFluid(Context<Backend>&, const IsphPairs<D>&, const EddyTerm<D>&);            \
+  template void sumOnFluid(Context<Backend>&, const IsphPairs<D>&, const ViscousSourceTerm<D>&);   \
+  template void sumOnFluid(Context<Backend>&, const IsphPairs<D>&, const PressureSourceTerm<D>&);  \
+  template void sumOnFluid(Context<Backend>&, const IsphPairs<D>&, const CorrectorTerm<D>&);       \
+  template void sumOnFluid(Context<Backend>&, const IsphPairs<D>&, const OutsideTerm<D>&);         \
+  template void sumOnFluid(Context<Backend>&, const IsphPairs<D>&, const WallFrictionTerm<D>&);    \
+  template void sumBesideWalls(Context<Backend>&, const IsphPairs<D>&, const AcrossWallsTerm<D>&); \
+  template void sumOnWalls(Context<Backend>&, const IsphPairs<D>&, const WallPressureTerm<D>&);    \
+  template void sumOnWalls(Context<Backend>&, const IsphPairs<D>&, const WallForceTerm<D>&);       \
+  TREACLE_ISPH_MATRIX(D, double, PressureRow<D>, Backend)                                          \
+  TREACLE_ISPH_MATRIX(D, float, PressureRow<D>, Backend)                                           \
+  TREACLE_ISPH_MATRIX(D, double, ViscousRow<D>, Backend)                                           \
   TREACLE_ISPH_MATRIX(D, float, ViscousRow<D>, Backend)
 #define TREACLE_ISPH_MATRIX(D, T, Row, Backend) \
   template void fillIsphMatrix(Context<Backend>&, const IsphPairs<D>&, const Row&, const IsphMatrixParts<D, T>&);

@@ -15,40 +15,27 @@ namespace treacle {
 /// Density and lack of neighbours, from which the free surface follows; in the accurate scheme B as well, the
 /// inverse of M = sum V W' / r d d^T, with which sums over gradients are exact for linear fields (Bonet, Lok
 /// 1999), and the share of its neighbours that a particle at the free surface misses.
-///
-/// What walls show of velocities is a boundary condition, the same all along the wall. So with B the particles
-/// next to a wall have 0.79 of the derivatives along it, in 2D with the usual kernel. B' makes up for that: in its
-/// moments walls count across their surface alone.
 template <int D>
 struct DensityTerm {
-  static constexpr int moments = D * (D + 1) / 2, values = 3 + D + 2 * moments;
-  enum { Density, Lack, Others = Lack + D, Laplacian, Moments, Across = Moments + moments };  // places of the sums
-  double* density;                                                                            // <rho> / rho [-]
+  static constexpr int moments = D * (D + 1) / 2, values = 3 + D + moments;
+  enum { Density, Lack, Others = Lack + D, Laplacian, Moments };  // places of the sums
+  double* density;                                                // <rho> / rho [-]
   Vec<D>* deficit;        // sum V grad W [1/m]: points to where the neighbours are
   std::uint8_t* surface;  // Place
 
   TREACLE_HD void fluid(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d,
                         const Distance& r, double* sum) const {
+    wall(pairs, i, j, d, r, sum);
     sum[Others] += i != j;
-    add(pairs, d, r, sum);
-    if (pairs.accurate && i != j) addMoments(pairs, d, d, r, sum);
   }
-  TREACLE_HD void wall(const IsphPairs<D>& pairs, std::uint32_t, std::uint32_t j, const Vec<D>& d,
+  TREACLE_HD void wall(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d,
                        const Distance& r, double* sum) const {
-    add(pairs, d, r, sum);
-    if (pairs.accurate) addMoments(pairs, d, pairs.across(j, d), r, sum);
-  }
-  TREACLE_HD static void add(const IsphPairs<D>& pairs, const Vec<D>& d, const Distance& r, double* sum) {
     sum[Density] += pairs.volume * pairs.kernel.value(r.r);
     const double slope = pairs.slope(r);
     for (int k = 0; k < D; ++k) sum[Lack + k] += slope * d[k];
-  }
-  TREACLE_HD static void addMoments(const IsphPairs<D>& pairs, const Vec<D>& d, const Vec<D>& across,
-                                    const Distance& r, double* sum) {
-    const double slope = pairs.slope(r);
+    if (!pairs.accurate || i == j) return;
     sum[Laplacian] += 2 * slope;
     addSquare(slope, d, sum + Moments);
-    addSquare(slope, across, sum + Across);
   }
   TREACLE_HD void store(const IsphPairs<D>& pairs, std::uint32_t i, const double* sum) const {
     const double ratio = sum[Density] / pairs.latticeDensity;
@@ -64,14 +51,34 @@ struct DensityTerm {
       surface[i] = isFree || isSurface ? Place::Free : Place::Inside;
       return;
     }
-    const auto inverseOf = [&](const double* m) {
-      return converted<float>(flooredInverse(squareOf<D>(m), pairs.leastMoment, false));
-    };
-    pairs.renormalisation[i] = inverseOf(sum + Moments);
-    if (pairs.wallSurface) pairs.acrossWalls[i] = inverseOf(sum + Across);
+    pairs.renormalisation[i] = pairs.renormalisationOf(sum + Moments);
     const double missing = s.missing(oneSided, 1 - sum[Laplacian] / pairs.latticeLaplacian);
     pairs.missing[i] = static_cast<float>(missing);
     surface[i] = isFree ? Place::Free : missing > s.least ? Place::Surface : Place::Inside;
+  }
+};
+
+/// B', where the surfaces of walls are known, after DensityTerm. What walls show of velocities is a boundary
+/// condition, the same all along the wall. So with B the particles next to a wall have 0.79 of the derivatives
+/// along it, in 2D with the usual kernel. B' makes up for that: in its moments walls count across their surfaces
+/// alone. Particles away from walls have B.
+template <int D>
+struct AcrossWallsTerm {
+  static constexpr int values = D * (D + 1) / 2;
+
+  TREACLE_HD void fluid(const IsphPairs<D>& pairs, std::uint32_t, std::uint32_t, const Vec<D>& d,
+                        const Distance& r, double* sum) const {
+    addSquare(pairs.slope(r), d, sum);
+  }
+  TREACLE_HD void wall(const IsphPairs<D>& pairs, std::uint32_t, std::uint32_t j, const Vec<D>& d,
+                       const Distance& r, double* sum) const {
+    addSquare(pairs.slope(r), pairs.across(j, d), sum);
+  }
+  TREACLE_HD void store(const IsphPairs<D>& pairs, std::uint32_t i, const double* sum) const {
+    pairs.acrossWalls[i] = pairs.renormalisationOf(sum);
+  }
+  TREACLE_HD void storeAway(const IsphPairs<D>& pairs, std::uint32_t i) const {
+    pairs.acrossWalls[i] = pairs.renormalisation[i];
   }
 };
 
