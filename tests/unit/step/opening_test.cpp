@@ -73,14 +73,16 @@ double meanSpeed(const Simulation<D>& simulation) {
   return sum / count;
 }
 
-/// MPH-I has the flow of a channel that is a little longer, because streamlines bend at its ends; with ten
-/// particles across ISPH has too thin layers at walls. Measured: 0.930 and 1.14 of the exact flow.
+/// MPH-I has the flow of a channel that is a little longer, because streamlines bend at its ends. Measured: 0.930
+/// and 1.03 of the exact flow.
 TEST(Openings, DriveTheFlowOfAChannel) {
-  for (const auto& [method, share] : {std::pair(MethodKind::MphI, 0.93), std::pair(MethodKind::Isph, 1.14)}) {
+  for (const auto& [method, share] : {std::pair(MethodKind::MphI, 0.93), std::pair(MethodKind::Isph, 1.03)}) {
     Case c = channelCase(2, method);
+    if (method == MethodKind::Isph) c.time.step = 2.5e-4;  // longer ones let the fluid slip (docs/isph.md)
+    const int steps = static_cast<int>(std::lround(0.1 / c.time.step));
     const double exact = 200 * 1e-4 / (12 * 2 * 0.02);
     Simulation<2> simulation(c, created<2>(c));
-    const StepReport report = flowed(simulation, 100);
+    const StepReport report = flowed(simulation, steps);
     EXPECT_NEAR(meanSpeed(simulation) / exact, share, 0.03) << int(method);
     const OpenFlow& flow = simulation.particles().flow;
     // What goes through is what comes in and goes out, to what the reserves hold more or less.
@@ -90,21 +92,36 @@ TEST(Openings, DriveTheFlowOfAChannel) {
     EXPECT_EQ(report.flow->particles, simulation.numbers().fluid);
     std::swap(c.openings[0].pressure, c.openings[1].pressure);
     Simulation<2> backwards(c, created<2>(c));
-    flowed(backwards, 100);
+    flowed(backwards, steps);
     EXPECT_NEAR(meanSpeed(backwards), -meanSpeed(simulation), 0.03 * exact);
   }
 }
 
+/// Fluid without friction, which bears no tension, is driven into the case for three times the depth of the
+/// reserve: no gap opens in it. The pressure has the mass of both reserves to move, too. Measured: 0.933; with two
+/// layers on which no pressure acts it would be 0.35.
+TEST(Openings, AccelerateFluidWithoutTension) {
+  Case c = channelCase(2, MethodKind::Isph);
+  c.method.isph.walls = WallSlip::FreeSlip;
+  c.materials[0].dynamicViscosity = 1e-3;
+  c.time.step = 2.5e-4;
+  Simulation<2> simulation(c, created<2>(c));
+  flowed(simulation, 400);
+  const double exact = 200 * 0.1 / (1400 * 0.034);
+  EXPECT_NEAR(meanSpeed(simulation) / exact, 0.93, 0.03);
+}
+
 /// A flow rate is kept in each step, by the pressure that it takes: that of a channel a little longer.
 TEST(Openings, KeepTheirFlowRate) {
-  // Measured with ISPH: 1.067.
-  for (const auto& [method, off] : {std::pair(MethodKind::MphI, 0.06), std::pair(MethodKind::Isph, 0.07)}) {
+  for (const MethodKind method : {MethodKind::MphI, MethodKind::Isph}) {
     Case c = channelCase(2, method);
+    if (method == MethodKind::Isph) c.time.step = 2.5e-4;
+    const int steps = static_cast<int>(std::lround(0.1 / c.time.step));
     c.openings[0].pressure.reset();
     c.openings[0].flowRate = TimeFunction{0, "4e-4*min(t/0.02, 1)", {}, {}};
     Simulation<2> simulation(c, created<2>(c));
-    const StepReport before = flowed(simulation, 60), after = flowed(simulation, 100);
-    EXPECT_NEAR(meanSpeed(simulation) * 0.01 / 4e-4, 1, off) << int(method);
+    const StepReport before = flowed(simulation, steps * 6 / 10), after = flowed(simulation, steps);
+    EXPECT_NEAR(meanSpeed(simulation) * 0.01 / 4e-4, 1, 0.06) << int(method);
     const double went = static_cast<double>(after.flow->out.particles - before.flow->out.particles) * 1e-6;
     EXPECT_NEAR(went / (4e-4 * 0.1), 1, 0.1) << int(method);
     const double exact = 12 * 2 * 0.02 * 4e-4 / 1e-6;

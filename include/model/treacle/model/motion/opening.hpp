@@ -19,8 +19,10 @@ namespace treacle {
 ///   p(x) = c P,   P = pressure + rho g.(x - center),   f = grad p - rho g = c' P n - (1 - c) rho g
 ///
 /// with the direction n of the face. c' is a trapezoid in the depth, one spacing wide at both ends, so that its
-/// sum over a lattice is the same wherever the layers stand. Behind it fluid has no weight. The friction of walls
-/// beside the reserve is made up for, too: their mean force in the last step acts the other way.
+/// sum over a lattice is the same wherever the layers stand. Behind it fluid has no weight. Fluid of MPH-I, which
+/// bears tension, pulls a tail of two layers along, on which nothing acts. Fluid of ISPH would leave such a tail
+/// behind, so there the pressure rises over all layers. The friction of walls beside the reserve is made up for,
+/// too: their mean force in the last step acts the other way.
 template <int D>
 struct OpeningForce {
   Vec<D> center{}, direction{};    // of the face [m]; into the case, of length 1
@@ -30,7 +32,8 @@ struct OpeningForce {
   double spacing = 0;              // l [m]
   double pressure = 0;             // at the centre [Pa]
   double drag = 0;                 // along the direction, against the friction [N/m3]
-  static constexpr int rises = 4;  // c' is 1 / (4 l) between its ends
+  int rises = 4;                   // c' is 1 / (rises l) between its ends; 6 with ISPH
+  static constexpr int tail = 5;   // from where on fluid goes straight on [spacings]
   static constexpr int depth = 7;  // of the reserve [spacings]
   static constexpr int end = 10;   // beyond which fluid has nothing to do with the opening [spacings]
 
@@ -52,8 +55,8 @@ struct OpeningForce {
     const double t = behind(x);
     return t > from && t < end && isAcross(x, 0.5);
   }
-  /// In the last layers of the reserve, where no pressure acts.
-  TREACLE_HD bool isInTail(const Vec<D>& x) const { return isBehind(x, rises + 1); }
+  /// In the last layers of the reserve.
+  TREACLE_HD bool isInTail(const Vec<D>& x) const { return isBehind(x, tail); }
   TREACLE_HD bool isInReserve(const Vec<D>& x) const { return isBehind(x, 0); }
 
   /// c' [1/m]; zero outside the reserve. Its mean over the fluid times the speed is the flow through the face.
