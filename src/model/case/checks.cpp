@@ -1,6 +1,7 @@
 #include "treacle/model/case/checks.hpp"
 
 #include "carried_fluids.hpp"
+#include "long_steps.hpp"
 #include "particles/fluid_extent.hpp"
 #include "treacle/model/case/names.hpp"
 #include "treacle/model/geometry/shape.hpp"
@@ -151,41 +152,6 @@ void warnShortRadii(const Case& c, std::vector<std::string>& warnings) {
   const bool published = m.scheme == SchemeKind::Published;
   check("pressure_radius", m.pressureRadius, published ? 1.5 : 2.5);
   check("viscosity_radius", m.viscosityRadius, published ? 1.5 : 2);
-}
-
-/// The Courant number of the longest step that a run makes.
-double courantNumberAt(const Case& c, double speed) {
-  const double number = speed * c.time.step / c.spacing;
-  const double most = c.time.mostCourant();
-  return most > 0 ? std::min(number, most) : number;
-}
-
-/// The forces of MPH-I are implicit but for gravity; ISPH moves on what it has at the start of a step. How fast a
-/// viscous fluid falls nobody knows before, so with MPH-I the speeds that the case gives count alone.
-void warnCourant(const Case& c, std::vector<std::string>& warnings) {
-  const bool isph = c.method.kind == MethodKind::Isph;
-  const double largest = isph ? 0.5 : 1, number = isph ? courantNumber(c) : courantNumberAt(c, givenSpeed(c));
-  if (number <= largest * (1 + rounding)) return;
-  warnings.push_back(fmt::format(
-      "the Courant number of steps of {:g} s is {:.3g}, more than {:g}: {}; take steps of at most {:.2g} "
-      "s, or let time.courant limit them",
-      c.time.step, number, largest,
-      isph ? "the step may be unstable" : "particles may pass each other or enter walls in a step",
-      c.time.step * largest / number));
-}
-
-/// Steps that are longer than a twentieth of an oscillation miss much of it.
-void warnOscillations(const Case& c, std::vector<std::string>& warnings) {
-  constexpr double stepsOfPeriod = 20;
-  for (const Body& body : c.bodies) {
-    const double period = body.oscillation.period;
-    if (period == 0 || norm(body.oscillation.amplitude) == 0 ||
-        c.time.step * stepsOfPeriod <= period * (1 + rounding))
-      continue;
-    warnings.push_back(fmt::format(
-        "body '{}' oscillates with a period of {:g} s, {:.3g} steps of {:g} s; take {} <= {:.2g}", body.name,
-        period, period / c.time.step, c.time.step, c.time.stepKey(), period / stepsOfPeriod));
-  }
 }
 
 /// Numbers that no material has: a unit is wrong, or a key.
@@ -364,11 +330,6 @@ void setStepBounds(Case& c) {
   if (t.least == 0) t.least = t.step / 1e4;
 }
 
-double courantNumber(const Case& c) {
-  const double fall = std::sqrt(2 * (norm(c.gravity) * fluidHeight(c) + centrifugalScale(c).potential));
-  return courantNumberAt(c, std::max(givenSpeed(c), fall));
-}
-
 std::vector<std::string> caseWarnings(const Case& c) {
   std::vector<std::string> warnings;
   warnCompression(c, warnings);
@@ -378,6 +339,7 @@ std::vector<std::string> caseWarnings(const Case& c) {
   }
   warnCourant(c, warnings);
   warnOscillations(c, warnings);
+  warnViscousSteps(c, warnings);
   warnUnlikely(c, warnings);
   warnTemperatures(c, warnings);
   warnTension(c, warnings);

@@ -1,5 +1,7 @@
 #include "case_checker.hpp"
 #include "geometry/polygon.hpp"
+#include "treacle/model/geometry/shape.hpp"
+#include "treacle/model/geometry/side.hpp"
 #include "treacle/model/motion/nozzle.hpp"
 #include "treacle/model/motion/opening.hpp"
 

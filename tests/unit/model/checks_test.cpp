@@ -523,5 +523,17 @@ TEST(caseWarnings, timesThatAreNotWholeNumbersOfSteps) {
   EXPECT_EQ(c.steps(), 12800);
 }
 
+TEST(caseWarnings, longViscousStepsOfIsph) {
+  Case c = isphDamBreak();
+  const double least = c.materials[0].density * c.spacing * c.spacing / c.time.step;
+  c.materials[0].dynamicViscosity = least;
+  EXPECT_THAT(caseWarnings(c), IsEmpty());
+  c.materials[0].dynamicViscosity = 2 * least;
+  EXPECT_THAT(caseWarnings(c), ElementsAre(AllOf(HasSubstr("are 2 rho l^2/mu of '" + c.materials[0].name + "'"),
+                                                 HasSubstr("or time.step <= 5e-05"))));
+  c.bodies.erase(c.bodies.begin());  // its walls may be of that material
+  EXPECT_THAT(caseWarnings(c), IsEmpty());
+}
+
 }  // namespace
 }  // namespace treacle::test
