@@ -125,8 +125,8 @@ TEST(convergence, comparesTheSolversOfEachMethod) {
   shop.put("small.toml", smallCase);
   shop.put("water.toml", smallIsphCase);
   for (const auto& [name, own] : {std::pair{"small", "projected-multigrid"}, {"water", "hat-multigrid"}}) {
-    const std::string file = name;
-    const std::vector<Row> rows = rowsOf(shop, file + ".toml", file + "-convergence");
+    const std::string file = name;  // of shorter steps ISPH does not warn
+    const std::vector<Row> rows = rowsOf(shop, file + ".toml --set time.step=1e-4", file + "-convergence");
     ASSERT_EQ(rows.size(), 5u);
     for (const Row& row : rows) {
       EXPECT_EQ(row.outcome, "converged") << row.solver;
