@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace treacle {
 namespace {
@@ -65,7 +66,7 @@ void warnViscousSteps(const Case& c, std::vector<std::string>& warnings) {
       "steps of {:g} s are {:.3g} rho l^2/mu of '{}', more than 1: in such steps of ISPH pressures let "
       "viscous fluid slip along walls, and fronts come out too far, by some 10 % with 2.5 and 20 % "
       "with 10; take method.name = \"mph-i\", or {} <= {:.2g}",
-      c.time.step, number, material, c.time.stepKey(), 1 / most * c.spacing * c.spacing));
+      c.time.step, number, material, c.time.stepKey(), c.spacing * c.spacing / most));
 }
 
 }  // namespace treacle

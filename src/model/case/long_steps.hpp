@@ -18,7 +18,7 @@ void warnOscillations(const Case& c, std::vector<std::string>& warnings);
 
 /// Implicit viscous steps of ISPH, longer than l^2/nu. In a step pressures change velocities after viscosity has,
 /// so fluid slips along walls by dt |grad p| / rho; and near free surfaces a part of the viscous stress is that of
-/// the last step. Measured for the dam break of docs/validation.md, 20 particles wide: the front is 3 to 8 % too
+/// the last step. Measured for the dam break of docs/validation.md, 20 particles wide: the front is 3 to 9 % too
 /// far with 0.6 l^2/nu, 10 to 13 % with 2.5, 20 to 24 % with 10 (docs/notes/isph.md).
 void warnViscousSteps(const Case& c, std::vector<std::string>& warnings);
 

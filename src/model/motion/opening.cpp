@@ -28,7 +28,7 @@ OpeningFace<D>::OpeningFace(const Case& c, const Opening& opening)
   place_.direction = resized<D>(face.direction);
   place_.direction = place_.direction * (1 / norm(place_.direction));
   place_.spacing = c.spacing;
-  if (c.method.kind == MethodKind::Isph) place_.rises = 6;
+  if (c.method.kind == MethodKind::Isph) place_.rises = place_.depth - 1;
   const auto axes = axesAcross<D>(face, place_.direction);
   for (std::size_t k = 0; k < D - 1; ++k) place_.axes[k] = axes[k];
   if (face.kind == NozzleKind::Disc && D == 3) {
