@@ -55,7 +55,7 @@ __global__ void __launch_bounds__(128, Term::values > 20   ? 5
   const std::uint32_t i = blockIdx.x * (blockDim.x / rowLanes) + threadIdx.x / rowLanes;
   bool used = i < pairs.ownFluid();
   if constexpr (BesideWalls)
-    if (used && !pairs.isBesideWalls(i)) {
+    if (used && pairs.wallsOfFluid.isEmpty(i)) {
       if (threadIdx.x % rowLanes == 0) term.storeAway(pairs, i);
       used = false;
     }

@@ -2,6 +2,7 @@
 
 #include "mph/step_sums.cuh"
 #include "treacle/core/halo.hpp"
+#include "treacle/mph/mph_sums.hpp"
 
 namespace treacle {
 namespace {
@@ -107,6 +108,7 @@ void MphOperator<D, Cuda>::multiplyRenormalised(Context<Cuda>& context, std::spa
   const OnAll sums{terms, u.data(), q_.data()};
   launchClusterSums<D, double, Sharing<4, 1, true>>(context, *pairs_, ListTask<OnAll>{pairs_->fluidList, sums},
                                                     ListTask<OnAll>{pairs_->wallList, sums}, places);
+  subtractBulkStressAlongWalls<D>(context, *pairs_, u, q_);
   fillGhosts(context, Held::Active, q_.data());
   addPressureGradient<D>(context, *pairs_, q_, 1.0, y);
 }

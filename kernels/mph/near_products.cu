@@ -3,6 +3,7 @@
 #include "core/launch.hpp"
 #include "core/scan.hpp"
 #include "mph/near_sums.cuh"
+#include "treacle/mph/mph_sums.hpp"
 
 namespace treacle {
 namespace {
@@ -108,6 +109,7 @@ void NearProducts<D>::addPressureGradient(Context<Cuda>& context, std::span<cons
     else
       nearGradient(context, view, scalars, add);
   });
+  subtractGradientAlongWalls<D>(context, *pairs_, q, 1.0, y);
 }
 
 template <int D>
@@ -120,6 +122,7 @@ void NearProducts<D>::bulkStress(Context<Cuda>& context, std::span<const Vec<D>>
   };
   const auto terms = pairs_->terms.with(AccurateScheme{});
   nearDivergence(context, NearView<D, double, AccurateScheme>::make(*pairs_, *this, terms), vectors, b, store);
+  subtractBulkStressAlongWalls<D>(context, *pairs_, u, q);
 }
 
 template class NearProducts<2>;

@@ -19,6 +19,7 @@ struct StagedRows {
   std::uint32_t ownEnd;  // of the walls
   Renormalised<D> tensors;
   float reach2;    // in the unit of near
+  float unit;      // of differences [m]
   float perShape;  // units of the elements in what gradientShape and a difference make
   std::uint32_t *member, *memberCount;
   std::uint64_t *start, *place;
@@ -145,10 +146,21 @@ __global__ void __launch_bounds__(StagedLists<D>::threads)
     member[k] = !torn && k < table.count ? table.key[k] : i;  // there is always somebody to be fetched
 }
 
+/// v of a pair without its part along a wall at which the fluid slips; d = x_j - x_i [m].
+template <int D>
+__device__ Vec<D, float> acting(const MphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d,
+                                const Vec<D, float>& v) {
+  const bool wall = i >= pairs.fluidCount;
+  if (!pairs.slips() || wall == (j >= pairs.fluidCount)) return v;
+  const Vec<D> whole = converted<double>(v);
+  return v - converted<float>(wall ? pairs.alongWall(j, i, -1.0 * d, whole) : pairs.alongWall(i, j, d, whole));
+}
+
 /// The same; reads positions, B and members, writes the rows. No atomics.
 template <class Split, int D, class Word>
 __global__ void __launch_bounds__(StagedLists<D>::threads)
-    rowsKernel(const Split split, const __grid_constant__ StagedRows<D, Word> out) {
+    rowsKernel(const Split split, const __grid_constant__ MphPairs<D> pairs,
+               const __grid_constant__ StagedRows<D, Word> out) {
   constexpr std::uint32_t particles = StagedLists<D>::threads / Split::value,
                           capacity = StagedLists<D>::capacity(Split::value);
   __shared__ std::uint32_t member[capacity];
@@ -179,10 +191,11 @@ __global__ void __launch_bounds__(StagedLists<D>::threads)
     const unsigned all = __ballot_sync(~0u, written) & team;
     if (written) {
       const Vec<D, float> g = counts ? out.perShape * gradientShape(near, d) * d : Vec<D, float>{};
-      const Word row = packElement<D, Word>(b * g);
+      const Vec<D> way = out.unit * converted<double>(d);
+      const Word row = packElement<D, Word>(acting(pairs, i, j, way, b * g));
       own += inUnits<D, Word>(unpackElement<D>(row));
       write(n + __popc(all & ((1u << threadIdx.x % 32) - 1)), torn ? 0 : placeAmong(member, members, j),
-            packElement<D, Word>(converted<float>(out.tensors.of(j)) * g), row);
+            packElement<D, Word>(acting(pairs, i, j, way, converted<float>(out.tensors.of(j)) * g)), row);
     }
     n += __popc(all);
   });
@@ -209,6 +222,7 @@ void StagedLists<D>::makeRows(Context<Cuda>& context, const MphPairs<D>& pairs, 
   rows.near = NearView<D, float, AccurateScheme>::make(pairs, near, pairs.terms.with(AccurateScheme{}));
   const float length = static_cast<float>(reach) * rows.near.mph.pressureRadius;
   rows.reach2 = length * length;
+  rows.unit = static_cast<float>(LocalPositions<D, float>::unit(pairs));
   rows.perShape = static_cast<float>(pairs.terms.gradientFactor / unit_);
   rows.tensors = {pairs.renormalisation, pairs.fluidCount};
   rows.hasInner = context.halo && !context.halo->sentFluid.empty();
@@ -222,7 +236,7 @@ void StagedLists<D>::makeRows(Context<Cuda>& context, const MphPairs<D>& pairs, 
     for (auto* elements : {&column_, &row_}) elements->resize(context, sizeof(Word) * room);
     rows.place = place_.data(), rows.own = own_.data();
     rows.column = reinterpret_cast<Word*>(column_.data()), rows.row = reinterpret_cast<Word*>(row_.data());
-    launch(context, blocks, threads, 0, rowsKernel<Split, D, Word>, split, rows);
+    launch(context, blocks, threads, 0, rowsKernel<Split, D, Word>, split, pairs, rows);
   });
 }
 

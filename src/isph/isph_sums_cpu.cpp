@@ -34,7 +34,7 @@ template <int D, class Term, class Backend>
 void sumBesideWalls(Context<Backend>&, const IsphPairs<D>& pairs, const Term& term) {
   parallelFor(pairs.ownFluid(), parallelGrain, [&](std::size_t row) {
     const auto i = static_cast<std::uint32_t>(row);
-    if (!pairs.isBesideWalls(i))
+    if (pairs.wallsOfFluid.isEmpty(i))
       term.storeAway(pairs, i);
     else
       sumAround(pairs, i, term);

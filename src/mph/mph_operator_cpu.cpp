@@ -2,6 +2,7 @@
 
 #include "treacle/core/halo.hpp"
 #include "treacle/mph/mph_lanes.hpp"
+#include "treacle/mph/mph_sums.hpp"
 
 namespace treacle {
 namespace {
@@ -79,8 +80,10 @@ void MphOperator<D, Cpu>::multiply(Context<Cpu>& context, std::span<const Vec<D>
   withRenormalisation(*pairs_, [&]<bool Renormalised>() {
     viscosityAndDivergence<Renormalised>(u, y);
     wallDivergence(u);
+    subtractBulkStressAlongWalls<D>(context, *pairs_, u, q_);
     fillGhosts(context, Held::Active, q_.data());
     addGradient<Renormalised>(y);
+    subtractGradientAlongWalls<D>(context, *pairs_, q_, 1.0, y);
   });
 }
 

@@ -41,6 +41,7 @@ MphPairs<D> makeMphPairs(const Case& c) {
   pairs.tensionLimit = c.method.tensionLimit > 0 ? c.method.tensionLimit : std::numeric_limits<double>::infinity();
   pairs.materials = MaterialTable::make(c);
   pairs.classes = ViscosityClasses::make(c);
+  pairs.smoothWalls = c.hasSmoothWalls();
   if (c.hasOwnViscosities()) {
     pairs.ownViscosities = true;
     for (auto& row : pairs.materials.pairViscosity) std::fill(std::begin(row), std::end(row), 1.0);

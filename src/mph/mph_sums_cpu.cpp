@@ -1,5 +1,6 @@
 #include "lane_sums.hpp"
 #include "treacle/mph/density_sums.hpp"
+#include "treacle/mph/slip_sums.hpp"
 
 namespace treacle {
 namespace {
@@ -61,8 +62,8 @@ void divergenceOf(const MphPairs<D>& pairs, const ClusterListView& list, std::sp
 }  // namespace
 
 template <int D, class Backend>
-void addPressureGradient(Context<Backend>&, const MphPairs<D>& pairs, std::span<const double> q, double factor,
-                         std::span<Vec<D>> y) {
+void addPressureGradient(Context<Backend>& context, const MphPairs<D>& pairs, std::span<const double> q,
+                         double factor, std::span<Vec<D>> y) {
   const ClusterListView& list = pairs.fluidList;
   forEachCluster<D>(pairs, list, [&](const ClusterRange& range, const ClusterPlaces<D>& x, std::uint32_t c) {
     const VecLanes<D> sum = pairs.renormalisation ? pressureGradient<true>(pairs, range, x, c, q)
@@ -71,17 +72,21 @@ void addPressureGradient(Context<Backend>&, const MphPairs<D>& pairs, std::span<
     for (int k = 0; k < D; ++k) yi[k] += factor * pairs.terms.gradientFactor * sum[k];
     storeLanes<D>(range, yi, y);
   });
+  subtractGradientAlongWalls(context, pairs, q, factor, y);
 }
 
 template <int D, class Backend>
-void divergence(Context<Backend>&, const MphPairs<D>& pairs, std::span<const Vec<D>> u, std::span<double> div) {
+void divergence(Context<Backend>& context, const MphPairs<D>& pairs, std::span<const Vec<D>> u,
+                std::span<double> div) {
   withRenormalisation(pairs,
                       [&]<bool Renormalised>() { divergenceOf<Renormalised>(pairs, pairs.fluidList, u, div); });
   divergenceOf<false>(pairs, pairs.wallList, u, div);
+  subtractDivergenceAlongWalls(context, pairs, u, div);
 }
 
 #define TREACLE_INSTANTIATE(D)                                                                          \
   TREACLE_DENSITY_SUMS(D, Cpu)                                                                          \
+  TREACLE_SLIP_SUMS(D, Cpu)                                                                             \
   template void addPressureGradient(Context<Cpu>&, const MphPairs<D>&, std::span<const double>, double, \
                                     std::span<Vec<D>>);                                                 \
   template void divergence(Context<Cpu>&, const MphPairs<D>&, std::span<const Vec<D>>, std::span<double>);

@@ -60,7 +60,10 @@ void ParticleProducts<D, T, Cpu>::pack() {
                         for (std::uint32_t j : pairs.fluidList.segment(c, s)) {
                           const PairLanes<D> pair(pairs, j, x, floor2);
                           const Lanes g = gradient(pair.r) / unit;
-                          columns.add(j, Element::pack(corrected(pairs, j, pair.d), g));
+                          VecLanes<D> column = corrected(pairs, j, pair.d);
+                          if (s == NearWall && pairs.slips())
+                            takeAlongWall<D>(pairs, range, j, pair.d.v, column.v);
+                          columns.add(j, Element::pack(column, g));
                           if (s == NearWall) continue;
                           VecLanes<D> bd = pair.d;
                           if (pairs.renormalisation)
@@ -68,13 +71,16 @@ void ParticleProducts<D, T, Cpu>::pack() {
                           divergence.add(j, Element::pack(bd, -g));
                         }
                     });
-  forEachCluster<D>(pairs, pairs.wallList, [&](const ClusterRange&, const ClusterPlaces<D>& x, std::uint32_t c) {
-    PackedWriter<D> divergence(wallRows_, c);
-    for (std::uint32_t j : pairs.wallList.segment(c, NearFluid)) {
-      const PairLanes<D> pair(pairs, j, x, floor2);
-      divergence.add(j, Element::pack(pair.d, -gradient(pair.r) / unit));
-    }
-  });
+  forEachCluster<D>(pairs, pairs.wallList,
+                    [&](const ClusterRange& range, const ClusterPlaces<D>& x, std::uint32_t c) {
+                      PackedWriter<D> divergence(wallRows_, c);
+                      for (std::uint32_t j : pairs.wallList.segment(c, NearFluid)) {
+                        const PairLanes<D> pair(pairs, j, x, floor2);
+                        VecLanes<D> row = pair.d;
+                        if (pairs.slips()) takeAlongWall<D>(pairs, range, j, pair.d.v, row.v);
+                        divergence.add(j, Element::pack(row, -gradient(pair.r) / unit));
+                      }
+                    });
 }
 
 template <int D, class T>

@@ -125,11 +125,24 @@ void ParticleProducts<D, T, Cpu>::renormalise() {
   const ClusterListView& list = pairs_->fluidList;
   forEachClusterOf(list, [&](std::uint32_t c) {
     const SymmetricBlock<D, LanesOf<T>> b = loadBlocks<LanesOf<T>>(ClusterRange(list, c), renormalisation_.data());
+    LanesOf<T> along[D] = {};  // parts along walls
+    if (pairs_->slips()) {
+      const ClusterWalk<D, T> walk(*pairs_, list, c, position_.data(), fluidLanes_.data());
+      const T* coefficient = pressure_.data() + pressureStart_[c] * clusterSize +
+                             list.segment(c, ListSegment::NearFluid).size() * clusterSize;
+      walk.forEach(ListSegment::NearWall, coefficient,
+                   [&](int, std::uint32_t j, const LanesOf<T>& g, const LanesOf<T>(&d)[D]) {
+                     LanesOf<T> whole[D], across[D];
+                     for (int k = 0; k < D; ++k) whole[k] = across[k] = b.row(k, d);
+                     takeAlongWall<D>(*pairs_, walk.range, j, d, across);
+                     for (int k = 0; k < D; ++k) along[k] += g * (whole[k] - across[k]);
+                   });
+    }
     for (Buffer<T>* gradient : {&gradient_, &wallGradient_}) {
       T* at = &(*gradient)[std::size_t{D} * clusterSize * c];
       LanesOf<T> v[D];
       for (int k = 0; k < D; ++k) v[k] = load<LanesOf<T>>(at + k * clusterSize);
-      for (int k = 0; k < D; ++k) store<T>(b.row(k, v), at + k * clusterSize);
+      for (int k = 0; k < D; ++k) store<T>(b.row(k, v) - along[k], at + k * clusterSize);
     }
   });
 }
@@ -146,10 +159,12 @@ void ParticleProducts<D, T, Cpu>::gradient(Context<Cpu>& context, ScalarField<T,
       LanesOf<T> sum[2][D] = {};
       const T* coefficient = pressure_.data() + pressureStart_[c] * clusterSize;
       const auto addFrom = [&](auto wall) {
-        return [&](int half, std::uint32_t j, const LanesOf<T>& g, const LanesOf<T>* d) {
+        return [&](int half, std::uint32_t j, const LanesOf<T>& g, const LanesOf<T>(&d)[D]) {
           const LanesOf<T> f = g * q[j];
           LanesOf<T> fd[D];
           for (int k = 0; k < D; ++k) fd[k] = f * d[k];
+          if constexpr (Renormalised && decltype(wall)::value)
+            if (pairs_->slips()) takeAlongWall<D>(*pairs_, walk.range, j, d, fd);
           for (int k = 0; k < D; ++k) {
             if constexpr (Renormalised && !decltype(wall)::value)
               sum[half][k] += renormalisation_[j].row(k, fd);
@@ -210,9 +225,11 @@ void ParticleProducts<D, T, Cpu>::divergence(Context<Cpu>& context, VectorField<
     if (walls.segment(c, ListSegment::NearFluid).empty())
       return storeSums(*pairs_, ClusterRange(walls, c), store, [](std::size_t, std::size_t) { return T(0); });
     const ClusterWalk<D, T> walk(*pairs_, walls, c, position_.data(), wallLanes_.data());
-    const auto along = [&](std::uint32_t j, const LanesOf<T>* d) {
-      LanesOf<T> sum = {};
-      for (int k = 0; k < D; ++k) sum += u[j][k] * d[k];
+    const auto along = [&](std::uint32_t j, const LanesOf<T>(&d)[D]) {
+      LanesOf<T> row[D], sum = {};
+      for (int k = 0; k < D; ++k) row[k] = d[k];
+      if (pairs_->slips()) takeAlongWall<D>(*pairs_, walk.range, j, d, row);
+      for (int k = 0; k < D; ++k) sum += u[j][k] * row[k];
       return sum;
     };
     const VectorSums<1, T> sums = sumOverFluid(walk, wall_.data() + wallStart_[c] * clusterSize, along);

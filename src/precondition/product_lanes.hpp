@@ -142,7 +142,7 @@ template <int D, class T, class Along>
                                                             Along&& along) {
   LanesOf<T> sum[2][1] = {};
   walk.forEach(ListSegment::NearFluid, coefficient,
-               [&](int half, std::uint32_t j, const LanesOf<T>& g, const LanesOf<T>* d) {
+               [&](int half, std::uint32_t j, const LanesOf<T>& g, const LanesOf<T>(&d)[D]) {
                  sum[half][0] += g * along(j, d);
                });
   return VectorSums<1, T>(sum);

@@ -23,6 +23,14 @@ double integralOf(WeightShape shape) {
   return 0;
 }
 
+template <int D>
+Vec<D> times(const Matrix& b, const Vec<D>& d) {
+  Vec<D> product{};
+  for (int k = 0; k < D; ++k)
+    for (int m = 0; m < D; ++m) product[k] += b(k, m) * d[m];
+  return product;
+}
+
 }  // namespace
 
 /// Windows have a test of their own.
@@ -101,23 +109,43 @@ double Oracle<D>::wallFactor(std::uint32_t i, std::uint32_t j) const {
   const std::uint32_t fluid = s.particles.fluidCount;
   if (i >= fluid && j < fluid) return wallFactor(j, i);
   if (j < fluid || s.particles.wallSurface.empty()) return 1;
-  const WallSurface<D>& surface = s.particles.wallSurface[j - fluid];
-  double crossing = 0, factor = 0;  // crossing: where the line from i meets the face, as a share of its length
-  for (const Vec<D, float>& face : surface.face) {
+  const Face seen = face(i, j);
+  const double held = std::max(seen.distance, l / 4);
+  // The wall holds each fluid by the viscosity of this fluid.
+  const double own = !s.c.hasOwnViscosities() ? mu(i, i) / mu(i, j) : 1;
+  return own * (seen.depth > 0 ? (held + seen.depth) / (held + material(i).slipLength) : 1);
+}
+
+template <int D>
+auto Oracle<D>::face(std::uint32_t i, std::uint32_t j) const -> Face {
+  Face seen;
+  double crossing = 0;  // where the line from i meets the face, as a share of its length
+  for (const Vec<D, float>& face : s.particles.wallSurface[j - s.particles.fluidCount].face) {
     double depth = 0, distance = 0;
     for (int k = 0; k < D; ++k) depth += std::pow(face[k], 2);
     depth = std::sqrt(depth);
     if (depth == 0) continue;
     for (int k = 0; k < D; ++k) distance -= face[k] / depth * difference(i, j)[k];
     distance -= depth;
-    const double share = distance / (distance + depth), held = std::max(distance, l / 4);
-    if (factor > 0 && (distance <= 0 || share <= crossing)) continue;
+    const double share = distance / (distance + depth);
+    if (seen.depth > 0 && (distance <= 0 || share <= crossing)) continue;
     crossing = distance > 0 ? share : 0;
-    factor = (held + depth) / (held + material(i).slipLength);
+    seen = {{}, depth, distance};
+    for (int k = 0; k < D; ++k) seen.normal[k] = face[k] / depth;
   }
-  // The wall holds each fluid by the viscosity of this fluid.
-  const double own = !s.c.hasOwnViscosities() ? mu(i, i) / mu(i, j) : 1;
-  return own * (factor > 0 ? factor : 1);
+  return seen;
+}
+
+template <int D>
+Vec<D> Oracle<D>::acting(std::uint32_t i, std::uint32_t j, const Vec<D>& v) const {
+  const std::uint32_t fluid = s.particles.fluidCount;
+  if (i >= fluid && j < fluid) return acting(j, i, v);
+  if (i >= fluid || j < fluid || s.particles.wallSurface.empty() || material(i).slipLength == 0) return v;
+  const Face seen = face(i, j);
+  if (seen.depth == 0) return v;
+  double across = 0;
+  for (int k = 0; k < D; ++k) across += seen.normal[k] * v[k];
+  return across * seen.normal;
 }
 
 template <int D>
@@ -194,8 +222,8 @@ double Oracle<D>::dissipation(const Vector& u, const std::function<Matrix(std::u
       if (r > std::max(hp, hv)) continue;
       double along = 0;
       for (int k = 0; k < D; ++k) along += (u[D * j + k] - u[D * i + k]) * d[k] / r;
-      for (int k = 0; k < D; ++k)
-        for (int m = 0; m < D; ++m) divergence += (u[D * j + k] - u[D * i + k]) * b(k, m) * d[m] / r * dw(r, hp);
+      const Vec<D> column = acting(i, j, times(b, d));
+      for (int k = 0; k < D; ++k) divergence += (u[D * j + k] - u[D * i + k]) * column[k] / r * dw(r, hp);
       if (j > i)
         sum += mu(i, j) * pairScale(i, j) * wallFactor(i, j) / 2 * viscousBlock(r) * r * r * along * along;
     }
@@ -216,8 +244,8 @@ Matrix Oracle<D>::gradientMatrix(double reach) const {
       const Vec<D> d = difference(i, j);
       if (norm(d) >= reach * hp) continue;
       const Vec<D> g = -dw(norm(d), hp) / norm(d) * d;
-      for (int k = 0; k < D; ++k)
-        for (int m = 0; m < D; ++m) c(D * i + k, j) += b[j](k, m) * g[m], c(D * i + k, i) += b[i](k, m) * g[m];
+      const Vec<D> ofOther = acting(i, j, times(b[j], g)), ofOwn = acting(i, j, times(b[i], g));
+      for (int k = 0; k < D; ++k) c(D * i + k, j) += ofOther[k], c(D * i + k, i) += ofOwn[k];
     }
   return c;
 }

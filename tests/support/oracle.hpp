@@ -55,6 +55,14 @@ struct Oracle {
   double pairScale(std::uint32_t i, std::uint32_t j) const;
   /// (d_i + d_j) / (d_i + b) where one of them is a wall particle that knows its surface, else 1.
   double wallFactor(std::uint32_t i, std::uint32_t j) const;
+  /// The face of wall particle j that the line from fluid particle i crosses last; depth 0: there is none.
+  struct Face {
+    Vec<D> normal{};
+    double depth = 0, distance = 0;  // of j and i from the face
+  };
+  Face face(std::uint32_t i, std::uint32_t j) const;
+  /// What of the vector v of a pair acts in products with C: across the wall alone where the fluid slips.
+  Vec<D> acting(std::uint32_t i, std::uint32_t j, const Vec<D>& v) const;
   /// Nearest periodic image of x_j - x_i.
   Vec<D> difference(std::uint32_t i, std::uint32_t j) const;
 

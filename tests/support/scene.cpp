@@ -106,6 +106,7 @@ template <int D>
 Scene<D> makeScene(const SceneOptions& options) {
   Scene<D> s;
   s.c = sceneCase(D, options.twoMaterials, options.scheme);
+  if (!options.slips) s.c.materials[1].slipLength = 0;
   // Off-centre, so that fluid and walls cross periodic ends and many cells are empty.
   const double l = s.c.spacing, height = D == 2 ? 8 * l : 5 * l, floor = 4 * l;
   const auto inWall = [&](const Vec<D>& x) { return options.walls == Walls::Floor && x[D - 1] < floor; };

@@ -69,6 +69,7 @@ struct SceneOptions {
   double jitter = 0.2;  // of the places [spacings]
   bool twoMaterials = true;
   SchemeKind scheme = SchemeKind::Published;
+  bool slips = true;  // the second of two materials; what assembles the matrix does not know that
 };
 template <int D>
 Scene<D> makeScene(const SceneOptions& options = {});

@@ -214,6 +214,12 @@ void requireThinSheets(const Checker& at, const Case& c) {
     at.fail({"solver", "preconditioner"}, "found \"bucket-multigrid\" beside a thin sheet; expected another one");
 }
 
+/// What assembles the matrix takes elements along walls, too (MphPairs::alongWall).
+void requireSlip(const Checker& at, const Case& c) {
+  if (c.hasSmoothWalls() && c.solver.operatorKind == OperatorKind::Assembled)
+    at.fail({"solver", "operator"}, "found \"assembled\" beside a slip_length; expected \"matrix-free\"");
+}
+
 void requireSound(const Checker& at, const Case& c) {
   if (c.heat && c.method.kind != MethodKind::MphI) at.fail({"heat"}, heatOfMphI);
   if (std::ranges::none_of(c.bodies, &Body::holdsFluid))
@@ -225,6 +231,7 @@ void requireSound(const Checker& at, const Case& c) {
   requireFrame(at, c);
   requireGas(at, c);
   requireThinSheets(at, c);
+  requireSlip(at, c);
   for (const auto& [key, interval] :
        {std::pair("interval", c.output.interval), std::pair("checkpoint_interval", c.output.checkpointInterval)})
     if (interval > 0 && c.time.end / interval > maxSteps)

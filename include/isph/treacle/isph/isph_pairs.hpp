@@ -131,19 +131,13 @@ struct IsphPairs : MaterialParticles<D> {
   TREACLE_HD Vec<D> across(std::uint32_t wall, const Vec<D>& d) const {
     if (!wallSurface) return d;
     const SeenFace<D> face = seenFace(surfaceOf(wall), d);
-    return face.exists() ? (dot(face.way, d) / (face.below * face.below)) * face.way : d;
+    return face.exists() ? face.across(d) : d;
   }
   /// Distance from a flat wall whose particles are `mean` away in the mean, across the wall; right at half a
   /// spacing and at the kernel's radius.
   TREACLE_HD double wallDistance(double mean) const {
     const double radius = kernel.radius(), half = 0.5 * this->spacing;
     return std::fmax(0.5 * half, radius - (radius - mean) * (radius - half) / (radius - meanDistance));
-  }
-  /// Whether a fluid particle has walls around it.
-  TREACLE_HD bool isBesideWalls(std::uint32_t i) const {
-    const NeighbourRowsView& rows = wallsOfFluid;
-    const std::uint64_t far = std::uint64_t{rows.count} + i;
-    return rows.start[i] < rows.start[i + 1] || rows.start[far] < rows.start[far + 1];
   }
   /// The inverse of a sum of moments (addSquare).
   TREACLE_HD static SymmetricBlock<D, float> renormalisationOf(const double* moments) {

@@ -79,11 +79,25 @@ struct FluidAtWall {
     if constexpr (Corrected) {
       addScaled(sum, viscous - g * own.pressure, d);
       addScaled(sum, -g * other.pressure, corrected(pairs, j, d));
+      if (pairs.slips()) addAlongWall(pairs, sum, g, d, own.side.at, j);
     } else {
       addScaled(sum, viscous - g * (own.pressure + other.pressure), d);
     }
     sum[D] -= g * along;
     sum[D + 1] += mph.density(1.0, r);
+  }
+  /// Takes out what is along the wall, where the fluid slips.
+  template <class T, class At>
+  TREACLE_HD void addAlongWall(const MphPairs<D>& pairs, T* sum, const T& g, const Vec<D, T>& d, const At& at,
+                               std::uint32_t j) const {
+    for (int k = 0; k < D; ++k)
+      sum[k] += g * ofEachPair(at, d, [&](std::uint32_t wall, const Vec<D>& toFluid) {
+                  const Vec<D> both = pressure[wall] * toFluid + pressure[j] * pairs.corrected(j, toFluid);
+                  return pairs.alongWall(j, wall, -1.0 * toFluid, both)[k];
+                });
+    sum[D] += g * ofEachPair(at, d, [&](std::uint32_t wall, const Vec<D>& toFluid) {
+                return dot(u[j] - u[wall], pairs.alongWall(j, wall, -1.0 * toFluid, toFluid));
+              });
   }
   TREACLE_HD void store(const MphPairs<D>& pairs, std::uint32_t i, int n, double sum) const {
     const std::uint32_t wall = i - pairs.fluidCount;

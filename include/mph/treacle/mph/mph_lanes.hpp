@@ -92,6 +92,22 @@ inline Lanes wallFactors(const MphPairs<D>& pairs, const ClusterRange& range, st
   return factors;
 }
 
+/// Takes out of eight vectors v what MphPairs::alongWall says, of the fluid particles of a cluster and a wall
+/// particle or of the wall particles of a cluster and a fluid particle; d: from the lanes' particles to it [m].
+template <int D, class LaneVector>
+inline void takeAlongWall(const MphPairs<D>& pairs, const ClusterRange& range, std::uint32_t j,
+                          const LaneVector (&d)[D], LaneVector (&v)[D]) {
+  const bool wall = j >= pairs.fluidCount;
+  for (std::uint32_t lane = 0; lane < range.count; ++lane) {
+    Vec<D> toOther, whole;
+    for (int k = 0; k < D; ++k) toOther[k] = d[k][lane], whole[k] = v[k][lane];
+    const std::uint32_t i = range.particle(lane);
+    const Vec<D> along =
+        wall ? pairs.alongWall(i, j, toOther, whole) : pairs.alongWall(j, i, -1.0 * toOther, whole);
+    for (int k = 0; k < D; ++k) v[k][lane] = static_cast<typename LaneVector::value_type>(whole[k] - along[k]);
+  }
+}
+
 /// The blocks of a cluster's particles, lane by lane, LaneVector having a lane for each.
 template <class LaneVector, int D, class T>
 inline SymmetricBlock<D, LaneVector> loadBlocks(const ClusterRange& range, const SymmetricBlock<D, T>* blocks) {

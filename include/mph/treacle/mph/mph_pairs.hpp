@@ -46,6 +46,7 @@ struct MphPairs : MaterialParticles<D> {
   // Whether particles have viscosities of their own (particle_viscosity.hpp): the scale is then times mu [Pa s],
   // and the viscosities of the materials are all 1.
   bool ownViscosities = false;
+  bool smoothWalls = false;  // Case::hasSmoothWalls
   ViscosityClasses classes;
   const std::uint8_t* viscosityClass = nullptr;  // per particle; null: the materials
 
@@ -118,6 +119,18 @@ struct MphPairs : MaterialParticles<D> {
     if (!wallSurface || ownViscosities || fluid == wall) return 1;
     const double mean = this->viscosity(fluid, wall);
     return mean > 0 ? this->viscosity(fluid, fluid) / mean : 1;
+  }
+
+  /// Whether some pair may have a part that alongWall() takes out.
+  TREACLE_HD bool slips() const { return smoothWalls && wallSurface; }
+  /// What does not act of a vector v of fluid particle i and wall particle j, d = x_j - x_i [m], in products with
+  /// C and C^T: the part along the wall's surface, where the fluid has a slip length. A wall presses across its
+  /// surface, and along it fluid flows freely, but its particles are points, on which fluid that slips would rub
+  /// as on a rough plate. Fluid that does not slip stands still there.
+  TREACLE_HD Vec<D> alongWall(std::uint32_t i, std::uint32_t j, const Vec<D>& d, const Vec<D>& v) const {
+    if (!(this->materials.slipLength[this->material[i]] > 0)) return {};
+    const SeenFace<D> face = seenFace(wallSurface[j - this->fluidCount], d);
+    return face.exists() ? v - face.across(v) : Vec<D>{};
   }
 };
 

@@ -31,7 +31,8 @@ template <int D, class Backend>
 void wallDensity(Context<Backend>&, const MphPairs<D>&, std::span<double> n);
 
 /// y_i += factor (C q)_i = -factor sum_j (q_i B_i + q_j B_j) e_ij w'_ij^p per fluid particle; q per particle. B:
-/// of the pairs (renormalisation.hpp), the unit matrix where they have none.
+/// of the pairs (renormalisation.hpp), the unit matrix where they have none. Of a wall and fluid that slips along
+/// it the part across the wall's surface counts (MphPairs::alongWall), here and in C^T.
 template <int D, class Backend>
 void addPressureGradient(Context<Backend>&, const MphPairs<D>&, std::span<const double> q, double factor,
                          std::span<Vec<D>> y);
@@ -39,6 +40,18 @@ void addPressureGradient(Context<Backend>&, const MphPairs<D>&, std::span<const 
 /// (C^T u)_i = sum_j (u_j - u_i).B_i e_ij w'_ij^p per particle [K23 eq. (14)]; u per particle, walls included.
 template <int D, class Backend>
 void divergence(Context<Backend>&, const MphPairs<D>&, std::span<const Vec<D>> u, std::span<double> div);
+
+/// What is along walls at which fluid slips, for products that have it: y -= factor C q, div -= C^T u with the
+/// velocities of all, q -= lambda C^T u with those of the fluid and walls at rest.
+template <int D, class Backend>
+void subtractGradientAlongWalls(Context<Backend>&, const MphPairs<D>& pairs, std::span<const double> q,
+                                double factor, std::span<Vec<D>> y);
+template <int D, class Backend>
+void subtractDivergenceAlongWalls(Context<Backend>&, const MphPairs<D>& pairs, std::span<const Vec<D>> u,
+                                  std::span<double> div);
+template <int D, class Backend>
+void subtractBulkStressAlongWalls(Context<Backend>&, const MphPairs<D>& pairs, std::span<const Vec<D>> u,
+                                  std::span<double> q);
 
 /// What the walls and the inertia put on a fluid particle's own velocity.
 template <int D>

@@ -31,6 +31,10 @@ struct NeighbourRowsView {
     for (const std::uint64_t section : {std::uint64_t{row}, std::uint64_t{count} + row})
       for (std::uint64_t k = start[section] + from, end = start[section + 1]; k < end; k += step) f(k);
   }
+  TREACLE_HD bool isEmpty(std::uint32_t row) const {
+    const std::uint64_t far = std::uint64_t{count} + row;
+    return start[row] == start[row + 1] && start[far] == start[far + 1];
+  }
 };
 
 template <class Backend = Cpu>

@@ -103,6 +103,12 @@ struct Case {
     return hasViscosityFactors() ||
            std::ranges::any_of(materials, [](const Material& m) { return m.hasOwnViscosities(); });
   }
+  /// Whether walls act on fluid that slips across their surfaces alone. The forces of a surface tension on the
+  /// edge of a drop do not cancel well enough for that: with an angle of 135 degrees it would not stay in its
+  /// place.
+  bool hasSmoothWalls() const {
+    return keepsVolume() && std::ranges::any_of(materials, [](const Material& m) { return m.slipLength > 0; });
+  }
   /// Whether the density of some fluid follows its temperature or states.
   bool hasBuoyancy() const {
     return hasVolumeFactors() ||

@@ -13,6 +13,8 @@ struct SeenFace {
   double above = 0;  // d_i, distance of i from the plane of the face [m]
 
   TREACLE_HD bool exists() const { return below > 0; }
+  /// The part of v across the face; there must be one.
+  TREACLE_HD Vec<D> across(const Vec<D>& v) const { return (dot(way, v) / (below * below)) * way; }
 };
 
 /// Of several faces the one that the line from i to j crosses last: it has i in front of it, and the largest

@@ -37,8 +37,7 @@ struct ElasticConstants {
   TREACLE_HD double implicitViscosity(double dt) const { return -modulus / rate * std::expm1(-rate * dt); }
   template <int D>
   TREACLE_HD double implicitViscosity(double dt, const SymmetricBlock<D>& c) const {
-    double stretch = 1 - D;
-    for (int k = 0; k < D; ++k) stretch += c(k, k);
+    const double stretch = 1 + trace(c) - D;
     return implicitViscosity(dt) * (stretch > 1 ? stretch : 1);
   }
 
@@ -58,10 +57,8 @@ struct ElasticConstants {
   /// K [1/s]
   template <int D>
   TREACLE_HD SymmetricBlock<D> relaxation(const SymmetricBlock<D>& c) const {
-    double trace = -D;
-    for (int k = 0; k < D; ++k) trace += c(k, k);
     constexpr double most = 20;  // of the exponent: the step is divided as the factor asks
-    const double x = extensibility * trace;
+    const double x = extensibility * (trace(c) - D);
     const double f = exponential ? std::exp(x < most ? x : most) : 1 + x;
     return (rate * f) * ((1 - mobility) * SymmetricBlock<D>::identity() + mobility * c);
   }
