@@ -1,5 +1,6 @@
 #include "treacle/precondition/particle_products.hpp"
 
+#include "precondition/acting.cuh"
 #include "precondition/coarse_positions.cuh"
 #include "precondition/placed_sums.cuh"
 #include "precondition/staged_sums.cuh"
@@ -65,9 +66,10 @@ struct RoundedTensors {
 /// One thread per particle: the inverse diagonal of S', from the positions of the neighbours. No atomics.
 template <int D, class T, class Scheme, class Columns>
 __global__ void __launch_bounds__(128)
-    pressureDiagonalKernel(const __grid_constant__ NearView<D, T, Scheme> view, const Columns columns,
+    pressureDiagonalKernel(const __grid_constant__ MphPairs<D> pairs,
+                           const __grid_constant__ NearView<D, T, Scheme> view, const Columns columns,
                            const std::uint8_t* material, const __grid_constant__ ProjectionTable<T> table,
-                           T reach2, T* inverseDiagonal) {
+                           T reach2, T unit, T* inverseDiagonal) {
   const std::uint32_t k = blockIdx.x * blockDim.x + threadIdx.x;
   if (k >= view.activeCount) return;
   const auto xk = view.own(k);
@@ -77,14 +79,18 @@ __global__ void __launch_bounds__(128)
   struct Loaded {
     typename NearLists<D, T>::Stored x;
     T weight;
+    std::uint32_t index;
   };
   const auto load = [&](std::uint32_t j) {
-    return Loaded{view.other(j), j < view.fluidCount ? table.weight[material[j]] : T(0)};
+    return Loaded{view.other(j), j < view.fluidCount ? table.weight[material[j]] : T(0), j};
   };
   alongList(view.sliceStart, view.entry, k, load, [&](const Loaded& other) {
     const Vec<D, T> d = view.difference(other.x, xk);
     const Vec<D, T> g = norm2(d) < reach2 ? gradientShape(view, d) * (b * d) : Vec<D, T>{};
-    own += g;
+    if constexpr (std::is_same_v<T, float>)
+      own += acting(pairs, k, other.index, converted<double>(unit * d), g);
+    else
+      own += g;
     others += other.weight * norm2(g);
   });
   if (k < view.fluidCount) others += table.weight[material[k]] * norm2(own);
@@ -284,13 +290,13 @@ void ParticleProducts<D, T, Cuda>::viscous(Context<Cuda>& context, Gathered<D, T
 template <int D, class T>
 void ParticleProducts<D, T, Cuda>::inverseDiagonals(Context<Cuda>& context, const ProjectionTable<T>& table,
                                                     std::span<T> pressure, std::span<Block<D, T>> velocity) const {
-  const double reach =
-      productReach<T>(*pairs_) * pairs_->terms.pressureRadius / LocalPositions<D, T>::unit(*pairs_);
+  const double unit = LocalPositions<D, T>::unit(*pairs_),
+               reach = productReach<T>(*pairs_) * pairs_->terms.pressureRadius / unit;
   const auto start = [&]<class Scheme, class Columns>(const MphTerms<D, double, Scheme>& terms,
                                                       const Columns& columns) {
     launch(context, blocksFor(pairs_->activeCount, 128), 128, 0, pressureDiagonalKernel<D, T, Scheme, Columns>,
-           NearView<D, T, Scheme>::make(*pairs_, a_->near(), terms), columns, pairs_->classOf(), table,
-           static_cast<T>(reach * reach), pressure.data());
+           *pairs_, NearView<D, T, Scheme>::make(*pairs_, a_->near(), terms), columns, pairs_->classOf(), table,
+           static_cast<T>(reach * reach), static_cast<T>(unit), pressure.data());
   };
   withSchemeTerms(*pairs_, [&](const auto& terms, auto renormalised) {
     if constexpr (renormalised)

@@ -2,6 +2,7 @@
 
 #include "core/launch.hpp"
 #include "core/scan.hpp"
+#include "precondition/acting.cuh"
 #include "precondition/staged_sums.cuh"
 #include "treacle/core/halo.hpp"
 
@@ -144,16 +145,6 @@ __global__ void __launch_bounds__(StagedLists<D>::threads)
   if (!torn) table.sort();
   for (unsigned k = threadIdx.x; k < capacity; k += blockDim.x)
     member[k] = !torn && k < table.count ? table.key[k] : i;  // there is always somebody to be fetched
-}
-
-/// v of a pair without its part along a wall at which the fluid slips; d = x_j - x_i [m].
-template <int D>
-__device__ Vec<D, float> acting(const MphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d,
-                                const Vec<D, float>& v) {
-  const bool wall = i >= pairs.fluidCount;
-  if (!pairs.slips() || wall == (j >= pairs.fluidCount)) return v;
-  const Vec<D> whole = converted<double>(v);
-  return v - converted<float>(wall ? pairs.alongWall(j, i, -1.0 * d, whole) : pairs.alongWall(i, j, d, whole));
 }
 
 /// The same; reads positions, B and members, writes the rows. No atomics.

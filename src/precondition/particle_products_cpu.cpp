@@ -126,7 +126,7 @@ void ParticleProducts<D, T, Cpu>::renormalise() {
   forEachClusterOf(list, [&](std::uint32_t c) {
     const SymmetricBlock<D, LanesOf<T>> b = loadBlocks<LanesOf<T>>(ClusterRange(list, c), renormalisation_.data());
     LanesOf<T> along[D] = {};  // parts along walls
-    if (pairs_->slips()) {
+    if (hasSmoothWalls()) {
       const ClusterWalk<D, T> walk(*pairs_, list, c, position_.data(), fluidLanes_.data());
       const T* coefficient = pressure_.data() + pressureStart_[c] * clusterSize +
                              list.segment(c, ListSegment::NearFluid).size() * clusterSize;
@@ -164,7 +164,7 @@ void ParticleProducts<D, T, Cpu>::gradient(Context<Cpu>& context, ScalarField<T,
           LanesOf<T> fd[D];
           for (int k = 0; k < D; ++k) fd[k] = f * d[k];
           if constexpr (Renormalised && decltype(wall)::value)
-            if (pairs_->slips()) takeAlongWall<D>(*pairs_, walk.range, j, d, fd);
+            if (hasSmoothWalls()) takeAlongWall<D>(*pairs_, walk.range, j, d, fd);
           for (int k = 0; k < D; ++k) {
             if constexpr (Renormalised && !decltype(wall)::value)
               sum[half][k] += renormalisation_[j].row(k, fd);
@@ -228,7 +228,7 @@ void ParticleProducts<D, T, Cpu>::divergence(Context<Cpu>& context, VectorField<
     const auto along = [&](std::uint32_t j, const LanesOf<T>(&d)[D]) {
       LanesOf<T> row[D], sum = {};
       for (int k = 0; k < D; ++k) row[k] = d[k];
-      if (pairs_->slips()) takeAlongWall<D>(*pairs_, walk.range, j, d, row);
+      if (hasSmoothWalls()) takeAlongWall<D>(*pairs_, walk.range, j, d, row);
       for (int k = 0; k < D; ++k) sum += u[j][k] * row[k];
       return sum;
     };

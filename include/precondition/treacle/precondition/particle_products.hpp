@@ -27,6 +27,7 @@ double productReach(const MphPairs<D>& pairs) {
 
 /// As MphOperator<D, Cpu>: one number per pair and term is kept. In single precision schur() has elements of C in
 /// few bits, with which S' is still symmetric (PackedRows): fewer operations, and no position and no B is read.
+/// Single precision alone leaves out what does not act along walls (MphPairs::alongWall), on devices, too.
 template <int D, class T>
 class ParticleProducts<D, T, Cpu> {
  public:
@@ -72,6 +73,7 @@ class ParticleProducts<D, T, Cpu> {
 
  private:
   void sumGradients();
+  bool hasSmoothWalls() const { return std::is_same_v<T, float> && pairs_->slips(); }
   // For schur() in single precision.
   static constexpr bool packed = std::is_same_v<T, float>;
   void pack();
