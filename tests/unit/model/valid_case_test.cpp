@@ -251,6 +251,13 @@ const Mistake mistakes[] = {
      {"solver", "operator"},
      "[solver]",
      "found \"assembled\" beside a thin sheet; expected \"matrix-free\""},
+    {"operatorBesideASlip",
+     mph,
+     [](Case& c) { c.materials[0].slipLength = 1e-3, c.solver.operatorKind = OperatorKind::Assembled; },
+     {"material.syrup.slip_length=1e-3", "solver.operator=assembled"},
+     {"solver", "operator"},
+     "[solver]",
+     "found \"assembled\" beside a slip_length; expected \"matrix-free\""},
     {"crossingSidesOfAPolygon",
      mph,
      [](Case& c) {
