@@ -69,14 +69,25 @@ regions ( boxToCell {{ box ({water[0]} 0 -1) ({tank} {water[1]} 1); fieldValues 
 def mesh(cell):
     """Five blocks around the step; "face" is its side towards the water."""
     xs, ys = (0, step[0], step[1], tank), (0, step[2], height)
-    corner = lambda i, j, k: 12 * k + 4 * j + i
-    side = lambda a, b: f"({a} {b} {b + 12} {a + 12})"
-    across = lambda i, j: side(corner(i, j, 0), corner(i + 1, j, 0))
-    along = lambda i, j: side(corner(i, j, 0), corner(i, j + 1, 0))
-    cells = lambda a, b: round((b - a) / cell)
+
+    def corner(i, j, k=0):
+        return 12 * k + 4 * j + i
+
+    def side(a, b):
+        return f"({a} {b} {b + 12} {a + 12})"
+
+    def across(i, j):
+        return side(corner(i, j), corner(i + 1, j))
+
+    def along(i, j):
+        return side(corner(i, j), corner(i, j + 1))
+
+    def cells(a, b):
+        return round((b - a) / cell)
+
     blocks, planes = [], []
     for i, j in [(0, 0), (2, 0), (0, 1), (1, 1), (2, 1)]:
-        ring = [corner(i, j, 0), corner(i + 1, j, 0), corner(i + 1, j + 1, 0), corner(i, j + 1, 0)]
+        ring = [corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)]
         above = [n + 12 for n in ring]
         blocks.append(f"hex ({' '.join(map(str, ring + above))}) ({cells(*xs[i:i + 2])} {cells(*ys[j:j + 2])} 1) simpleGrading (1 1 1)")
         planes += [f"({' '.join(map(str, ring))})", f"({' '.join(map(str, above))})"]
@@ -108,10 +119,15 @@ def cell_values(path):
     return np.array(found[1].split(), float)
 
 
+def impulse(time, value):
+    """The integral up to each time."""
+    return np.concatenate([[0], np.cumsum(np.diff(time) * (value[1:] + value[:-1]) / 2)])
+
+
 def mean(time, value, since):
     """Over time, from `since` to the end."""
     kept = time >= since
-    return float(np.trapezoid(value[kept], time[kept]) / np.ptp(time[kept]))
+    return float(impulse(time[kept], value[kept])[-1] / np.ptp(time[kept]))
 
 
 def solve(cell, walls, directory):
@@ -128,21 +144,20 @@ boundaryField {{ "walls|face" {{ type {walls}; }} top {{ type pressureInletOutle
         subprocess.run(command, cwd=directory, env=environment, stdout=subprocess.DEVNULL, check=True)
     out = Path(directory) / "postProcessing"
     time, pressure = table(out / "face" / "0" / "surfaceFieldValue.dat")
-    before = time <= impact
-    values = {"face [Pa]": mean(time, pressure, late),
-              "impulse [Pa s]": float(np.trapezoid(pressure[before], time[before]))}
     edges = np.linspace(0, end, round(end / window) + 1)
-    impulse = np.interp(edges, time, np.concatenate([[0], np.cumsum(np.diff(time) * (pressure[1:] + pressure[:-1]) / 2)]))
-    values["face over time [Pa]"] = (np.diff(impulse) / window).round(1).tolist()
+    so_far = impulse(time, pressure)
+    values = {"face [Pa]": mean(time, pressure, late), "impulse [Pa s]": float(np.interp(impact, time, so_far)),
+              "face over time [Pa]": (np.diff(np.interp(edges, time, so_far)) / window).round(1).tolist()}
     for name in points:
-        values[f"{name} [Pa]"] = mean(*table(out / name / "0" / "p"), late)
+        time, pressure = table(out / name / "0" / "p")
+        values[f"{name} [Pa]"] = mean(time, pressure, late)
     x = cell_values(Path(directory) / "0" / "Cx")
     times = sorted(float(p.name) for p in Path(directory).iterdir() if re.fullmatch(r"[\d.]+", p.name) and float(p.name) >= late - 1e-6)
     for name, place in columns.items():
         column = abs(x - place) < 0.51 * cell
         rows = len(np.unique(x[column].round(6)))
         depths = [cell_values(Path(directory) / f"{t:g}" / "alpha.fluid")[column].sum() * cell / rows for t in times]
-        values[f"{name} [m]"] = float(np.trapezoid(depths, times) / np.ptp(times))
+        values[f"{name} [m]"] = mean(np.array(times), np.array(depths), late - 1e-6)
     return values
 
 
