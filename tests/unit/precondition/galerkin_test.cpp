@@ -21,7 +21,7 @@ Matrix prolongation(std::span<const std::uint32_t> begin) {
 
 template <int D>
 void checkGalerkin(Walls walls, SchemeKind scheme) {
-  Scene<D> s = makeScene<D>({.walls = walls, .scheme = scheme});
+  Scene<D> s = makeScene<D>({.walls = walls, .scheme = scheme, .slips = false});
   BucketLevels<> levels;
   findBuckets(s.context, s.ranges().key, D * CellGrid<D>::subBits, D, levels);
   ASSERT_GT(levels.begin.size(), 1u);
