@@ -25,6 +25,14 @@ void storeHalves(const FloatPair<D>& sum, float factor, float* at) {
   for (int lane = 0; lane < laneCount; ++lane) at[lane] = factor * (both[lane] + both[laneCount + lane]);
 }
 
+/// d of the pairs of a cluster and a particle, one of them walls, across these.
+template <int D>
+VecLanes<D> acrossWall(const MphPairs<D>& pairs, const ClusterRange& range, std::uint32_t j, VecLanes<D> d) {
+  const VecLanes<D> whole = d;
+  takeAlongWall<D>(pairs, range, j, whole.v, d.v);
+  return d;
+}
+
 /// Products of C^T with u: the divergence of eight particles.
 template <int D>
 void divergenceOf(const PackedRows& rows, std::uint32_t c, const Gathered<D, float>* u, float unit, float* at) {
@@ -51,36 +59,37 @@ void ParticleProducts<D, T, Cpu>::pack() {
   allocate(gradientRows_, pairs.fluidList, {NearFluid, NearWall});
   allocate(divergenceRows_, pairs.fluidList, {NearFluid});
   allocate(wallRows_, pairs.wallList, {NearFluid});
-  forEachCluster<D>(pairs, pairs.fluidList,
-                    [&](const ClusterRange& range, const ClusterPlaces<D>& x, std::uint32_t c) {
-                      PackedWriter<D> columns(gradientRows_, c), divergence(divergenceRows_, c);
-                      SymmetricBlock<D, Lanes> b = {};
-                      if (pairs.renormalisation) b = loadBlocks<Lanes>(range, pairs.renormalisation);
-                      for (ListSegment s : {NearFluid, NearWall})
-                        for (std::uint32_t j : pairs.fluidList.segment(c, s)) {
-                          const PairLanes<D> pair(pairs, j, x, floor2);
-                          const Lanes g = gradient(pair.r) / unit;
-                          VecLanes<D> column = corrected(pairs, j, pair.d);
-                          if (s == NearWall && pairs.slips())
-                            takeAlongWall<D>(pairs, range, j, pair.d.v, column.v);
-                          columns.add(j, Element::pack(column, g));
-                          if (s == NearWall) continue;
-                          VecLanes<D> bd = pair.d;
-                          if (pairs.renormalisation)
-                            for (int k = 0; k < D; ++k) bd[k] = b.row(k, pair.d);
-                          divergence.add(j, Element::pack(bd, -g));
-                        }
-                    });
-  forEachCluster<D>(pairs, pairs.wallList,
-                    [&](const ClusterRange& range, const ClusterPlaces<D>& x, std::uint32_t c) {
-                      PackedWriter<D> divergence(wallRows_, c);
-                      for (std::uint32_t j : pairs.wallList.segment(c, NearFluid)) {
-                        const PairLanes<D> pair(pairs, j, x, floor2);
-                        VecLanes<D> row = pair.d;
-                        if (pairs.slips()) takeAlongWall<D>(pairs, range, j, pair.d.v, row.v);
-                        divergence.add(j, Element::pack(row, -gradient(pair.r) / unit));
-                      }
-                    });
+  withWalls([&]<bool, bool Smooth>() {
+    forEachCluster<D>(pairs, pairs.fluidList,
+                      [&](const ClusterRange& range, const ClusterPlaces<D>& x, std::uint32_t c) {
+                        PackedWriter<D> columns(gradientRows_, c), divergence(divergenceRows_, c);
+                        SymmetricBlock<D, Lanes> b = {};
+                        if (pairs.renormalisation) b = loadBlocks<Lanes>(range, pairs.renormalisation);
+                        for (ListSegment s : {NearFluid, NearWall})
+                          for (std::uint32_t j : pairs.fluidList.segment(c, s)) {
+                            const PairLanes<D> pair(pairs, j, x, floor2);
+                            const Lanes g = gradient(pair.r) / unit;
+                            if (Smooth && s == NearWall)
+                              columns.add(j, Element::pack(acrossWall(pairs, range, j, pair.d), g));
+                            else
+                              columns.add(j, Element::pack(corrected(pairs, j, pair.d), g));
+                            if (s == NearWall) continue;
+                            VecLanes<D> bd = pair.d;
+                            if (pairs.renormalisation)
+                              for (int k = 0; k < D; ++k) bd[k] = b.row(k, pair.d);
+                            divergence.add(j, Element::pack(bd, -g));
+                          }
+                      });
+    forEachCluster<D>(
+        pairs, pairs.wallList, [&](const ClusterRange& range, const ClusterPlaces<D>& x, std::uint32_t c) {
+          PackedWriter<D> divergence(wallRows_, c);
+          for (std::uint32_t j : pairs.wallList.segment(c, NearFluid)) {
+            const PairLanes<D> pair(pairs, j, x, floor2);
+            const Lanes g = -gradient(pair.r) / unit;
+            divergence.add(j, Element::pack(Smooth ? acrossWall(pairs, range, j, pair.d) : pair.d, g));
+          }
+        });
+  });
 }
 
 template <int D, class T>

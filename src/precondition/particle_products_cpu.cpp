@@ -125,24 +125,38 @@ void ParticleProducts<D, T, Cpu>::renormalise() {
   const ClusterListView& list = pairs_->fluidList;
   forEachClusterOf(list, [&](std::uint32_t c) {
     const SymmetricBlock<D, LanesOf<T>> b = loadBlocks<LanesOf<T>>(ClusterRange(list, c), renormalisation_.data());
-    LanesOf<T> along[D] = {};  // parts along walls
-    if (hasSmoothWalls()) {
-      const ClusterWalk<D, T> walk(*pairs_, list, c, position_.data(), fluidLanes_.data());
-      const T* coefficient = pressure_.data() + pressureStart_[c] * clusterSize +
-                             list.segment(c, ListSegment::NearFluid).size() * clusterSize;
-      walk.forEach(ListSegment::NearWall, coefficient,
-                   [&](int, std::uint32_t j, const LanesOf<T>& g, const LanesOf<T>(&d)[D]) {
-                     LanesOf<T> whole[D], across[D];
-                     for (int k = 0; k < D; ++k) whole[k] = across[k] = b.row(k, d);
-                     takeAlongWall<D>(*pairs_, walk.range, j, d, across);
-                     for (int k = 0; k < D; ++k) along[k] += g * (whole[k] - across[k]);
-                   });
-    }
     for (Buffer<T>* gradient : {&gradient_, &wallGradient_}) {
       T* at = &(*gradient)[std::size_t{D} * clusterSize * c];
       LanesOf<T> v[D];
       for (int k = 0; k < D; ++k) v[k] = load<LanesOf<T>>(at + k * clusterSize);
-      for (int k = 0; k < D; ++k) store<T>(b.row(k, v) - along[k], at + k * clusterSize);
+      for (int k = 0; k < D; ++k) store<T>(b.row(k, v), at + k * clusterSize);
+    }
+  });
+  if (hasSmoothWalls()) takeAlongWalls();
+}
+
+/// Takes the parts along walls out of both sums.
+template <int D, class T>
+void ParticleProducts<D, T, Cpu>::takeAlongWalls() {
+  const ClusterListView& list = pairs_->fluidList;
+  forEachClusterOf(list, [&](std::uint32_t c) {
+    const SymmetricBlock<D, LanesOf<T>> b = loadBlocks<LanesOf<T>>(ClusterRange(list, c), renormalisation_.data());
+    LanesOf<T> along[D] = {};
+    const ClusterWalk<D, T> walk(*pairs_, list, c, position_.data(), fluidLanes_.data());
+    const T* coefficient = pressure_.data() + pressureStart_[c] * clusterSize +
+                           list.segment(c, ListSegment::NearFluid).size() * clusterSize;
+    walk.forEach(ListSegment::NearWall, coefficient,
+                 [&](int, std::uint32_t j, const LanesOf<T>& g, const LanesOf<T>(&d)[D]) {
+                   LanesOf<T> whole[D], across[D];
+                   for (int k = 0; k < D; ++k) whole[k] = across[k] = b.row(k, d);
+                   takeAlongWall<D>(*pairs_, walk.range, j, d, across);
+                   for (int k = 0; k < D; ++k) along[k] += g * (whole[k] - across[k]);
+                 });
+    for (Buffer<T>* gradient : {&gradient_, &wallGradient_}) {
+      T* at = &(*gradient)[std::size_t{D} * clusterSize * c];
+      LanesOf<T> v[D];
+      for (int k = 0; k < D; ++k) v[k] = load<LanesOf<T>>(at + k * clusterSize);
+      for (int k = 0; k < D; ++k) store<T>(v[k] - along[k], at + k * clusterSize);
     }
   });
 }
@@ -152,7 +166,7 @@ template <class Store>
 void ParticleProducts<D, T, Cpu>::gradient(Context<Cpu>& context, ScalarField<T, Cpu> q,
                                            const Store& store) const {
   fillGhosts(context, Held::Active, q.at);
-  withRenormalisation(*pairs_, [&]<bool Renormalised>() {
+  withWalls([&]<bool Renormalised, bool Smooth>() {
     const ClusterListView& list = pairs_->fluidList;
     forEachClusterOf(list, [&](std::uint32_t c) {
       const ClusterWalk<D, T> walk(*pairs_, list, c, position_.data(), fluidLanes_.data());
@@ -163,8 +177,7 @@ void ParticleProducts<D, T, Cpu>::gradient(Context<Cpu>& context, ScalarField<T,
           const LanesOf<T> f = g * q[j];
           LanesOf<T> fd[D];
           for (int k = 0; k < D; ++k) fd[k] = f * d[k];
-          if constexpr (Renormalised && decltype(wall)::value)
-            if (hasSmoothWalls()) takeAlongWall<D>(*pairs_, walk.range, j, d, fd);
+          if constexpr (Smooth && decltype(wall)::value) takeAlongWall<D>(*pairs_, walk.range, j, d, fd);
           for (int k = 0; k < D; ++k) {
             if constexpr (Renormalised && !decltype(wall)::value)
               sum[half][k] += renormalisation_[j].row(k, fd);
@@ -221,19 +234,26 @@ void ParticleProducts<D, T, Cpu>::divergence(Context<Cpu>& context, VectorField<
     });
   });
   const ClusterListView& walls = pairs_->wallList;
-  forEachClusterOf(walls, [&](std::uint32_t c) {
-    if (walls.segment(c, ListSegment::NearFluid).empty())
-      return storeSums(*pairs_, ClusterRange(walls, c), store, [](std::size_t, std::size_t) { return T(0); });
-    const ClusterWalk<D, T> walk(*pairs_, walls, c, position_.data(), wallLanes_.data());
-    const auto along = [&](std::uint32_t j, const LanesOf<T>(&d)[D]) {
-      LanesOf<T> row[D], sum = {};
-      for (int k = 0; k < D; ++k) row[k] = d[k];
-      if (hasSmoothWalls()) takeAlongWall<D>(*pairs_, walk.range, j, d, row);
-      for (int k = 0; k < D; ++k) sum += u[j][k] * row[k];
-      return sum;
-    };
-    const VectorSums<1, T> sums = sumOverFluid(walk, wall_.data() + wallStart_[c] * clusterSize, along);
-    storeSums(*pairs_, walk.range, store, [&](std::size_t, std::size_t lane) { return -sums.at[0][lane]; });
+  withWalls([&]<bool, bool Smooth>() {
+    forEachClusterOf(walls, [&](std::uint32_t c) {
+      if (walls.segment(c, ListSegment::NearFluid).empty())
+        return storeSums(*pairs_, ClusterRange(walls, c), store, [](std::size_t, std::size_t) { return T(0); });
+      const ClusterWalk<D, T> walk(*pairs_, walls, c, position_.data(), wallLanes_.data());
+      const auto along = [&](std::uint32_t j, const LanesOf<T>(&d)[D]) {
+        LanesOf<T> sum = {};
+        if constexpr (Smooth) {
+          LanesOf<T> row[D];
+          for (int k = 0; k < D; ++k) row[k] = d[k];
+          takeAlongWall<D>(*pairs_, walk.range, j, d, row);
+          for (int k = 0; k < D; ++k) sum += u[j][k] * row[k];
+        } else {
+          for (int k = 0; k < D; ++k) sum += u[j][k] * d[k];
+        }
+        return sum;
+      };
+      const VectorSums<1, T> sums = sumOverFluid(walk, wall_.data() + wallStart_[c] * clusterSize, along);
+      storeSums(*pairs_, walk.range, store, [&](std::size_t, std::size_t lane) { return -sums.at[0][lane]; });
+    });
   });
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "treacle/core/vec.hpp"
 #include "treacle/linear/block_csr.hpp"
 
 #include <cstddef>
@@ -139,6 +140,15 @@ class DiagonalMatrix {
 };
 Matrix operator*(const DiagonalMatrix& d, const Matrix& a);
 Matrix operator*(const Matrix& a, const DiagonalMatrix& d);
+
+/// b x
+template <int D>
+Vec<D> times(const Matrix& b, const Vec<D>& x) {
+  Vec<D> product{};
+  for (int r = 0; r < D; ++r)
+    for (int c = 0; c < D; ++c) product[r] += b(r, c) * x[c];
+  return product;
+}
 
 // Of symmetric matrices, which must be positive definite but for `eigenvalues`.
 

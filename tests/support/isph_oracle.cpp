@@ -7,14 +7,6 @@
 namespace treacle::test {
 
 template <int D>
-Vec<D> product(const Matrix& b, const Vec<D>& x) {
-  Vec<D> y{};
-  for (int r = 0; r < D; ++r)
-    for (int c = 0; c < D; ++c) y[r] += b(r, c) * x[c];
-  return y;
-}
-
-template <int D>
 double IsphOracle<D>::mu(std::uint32_t i, std::uint32_t j) const {
   const double a = material(isWall(i) ? j : i).dynamicViscosity, b = material(isWall(j) ? i : j).dynamicViscosity;
   return 2 * a * b / (a + b);
@@ -146,7 +138,7 @@ Matrix IsphOracle<D>::derivative(std::uint32_t i) const {
 
 template <int D>
 Vec<D> IsphOracle<D>::renormalised(std::uint32_t i, const Vec<D>& x) const {
-  return product(renormalisation(i), x);
+  return times(renormalisation(i), x);
 }
 
 template <int D>
@@ -187,7 +179,7 @@ double IsphOracle<D>::divergence(const std::vector<Vec<D>>& v, std::uint32_t i) 
   forEachOther(i, [&](std::uint32_t j) {
     const Vec<D> relative = seen(v, i, j) - v[i];
     sum += isWall(j) ? along(i, j) * dot(relative, gradient(i, j))
-                     : dot(relative, product(derivative(i), gradient(i, j)));
+                     : dot(relative, times(derivative(i), gradient(i, j)));
   });
   return sum;
 }
@@ -198,7 +190,7 @@ Matrix IsphOracle<D>::velocityGradient(const std::vector<Vec<D>>& v, std::uint32
   const Matrix inverse = inverseMoment(i, WallPart::None);
   forEachOther(i, [&](std::uint32_t j) {
     if (isWall(j)) return;
-    const Vec<D> g = product(inverse, gradient(i, j));
+    const Vec<D> g = times(inverse, gradient(i, j));
     for (int a = 0; a < D; ++a)
       for (int b = 0; b < D; ++b) sum(a, b) += (v[j][a] - v[i][a]) * g[b];
   });

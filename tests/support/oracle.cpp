@@ -23,14 +23,6 @@ double integralOf(WeightShape shape) {
   return 0;
 }
 
-template <int D>
-Vec<D> times(const Matrix& b, const Vec<D>& d) {
-  Vec<D> product{};
-  for (int k = 0; k < D; ++k)
-    for (int m = 0; m < D; ++m) product[k] += b(k, m) * d[m];
-  return product;
-}
-
 }  // namespace
 
 /// Windows have a test of their own.

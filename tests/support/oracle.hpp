@@ -61,7 +61,7 @@ struct Oracle {
     double depth = 0, distance = 0;  // of j and i from the face
   };
   Face face(std::uint32_t i, std::uint32_t j) const;
-  /// What of the vector v of a pair acts in products with C: across the wall alone where the fluid slips.
+  /// The part of a pair's vector v that acts in products with C: across the wall, where the fluid slips along it.
   Vec<D> acting(std::uint32_t i, std::uint32_t j, const Vec<D>& v) const;
   /// Nearest periodic image of x_j - x_i.
   Vec<D> difference(std::uint32_t i, std::uint32_t j) const;

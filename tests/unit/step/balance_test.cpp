@@ -207,12 +207,6 @@ struct PlainBalance {
     }
     return sum;
   }
-  static Vec<D> times(const Matrix& b, const Vec<D>& d) {
-    Vec<D> product{};
-    for (int r = 0; r < D; ++r)
-      for (int c = 0; c < D; ++c) product[r] += b(r, c) * d[c];
-    return product;
-  }
   double overDensity(std::uint32_t i, bool withFluid) const {
     double n = 0;
     for (std::uint32_t j = 0; j < oracle.count(); ++j)

@@ -74,6 +74,14 @@ class ParticleProducts<D, T, Cpu> {
  private:
   void sumGradients();
   bool hasSmoothWalls() const { return std::is_same_v<T, float> && pairs_->slips(); }
+  /// f.operator()<Renormalised, Smooth>(), for loops whose roundings depend on what else they could compute.
+  template <class F>
+  void withWalls(F&& f) const {
+    if (hasSmoothWalls())
+      f.template operator()<true, true>();
+    else
+      withRenormalisation(*pairs_, [&]<bool Renormalised>() { f.template operator()<Renormalised, false>(); });
+  }
   // For schur() in single precision.
   static constexpr bool packed = std::is_same_v<T, float>;
   void pack();
@@ -82,6 +90,7 @@ class ParticleProducts<D, T, Cpu> {
                    const Store& store);
   // Where the pairs have B.
   void renormalise();
+  void takeAlongWalls();
 
   const MphPairs<D>* pairs_ = nullptr;
   WallTerms<D> terms_{};
