@@ -46,6 +46,32 @@ void divergenceOf(const PackedRows& rows, std::uint32_t c, const Gathered<D, flo
 
 }  // namespace
 
+/// Takes the parts along walls out of the sums of g B d over walls and over all neighbours.
+template <int D, class T>
+void ParticleProducts<D, T, Cpu>::takeAlongWalls() {
+  const ClusterListView& list = pairs_->fluidList;
+  forEachClusterOf(list, [&](std::uint32_t c) {
+    const SymmetricBlock<D, LanesOf<T>> b = loadBlocks<LanesOf<T>>(ClusterRange(list, c), renormalisation_.data());
+    LanesOf<T> along[D] = {};
+    const ClusterWalk<D, T> walk(*pairs_, list, c, position_.data(), fluidLanes_.data());
+    const T* coefficient = pressure_.data() + pressureStart_[c] * clusterSize +
+                           list.segment(c, ListSegment::NearFluid).size() * clusterSize;
+    walk.forEach(ListSegment::NearWall, coefficient,
+                 [&](int, std::uint32_t j, const LanesOf<T>& g, const LanesOf<T>(&d)[D]) {
+                   LanesOf<T> whole[D], across[D];
+                   for (int k = 0; k < D; ++k) whole[k] = across[k] = b.row(k, d);
+                   takeAlongWall<D>(*pairs_, walk.range, j, d, across);
+                   for (int k = 0; k < D; ++k) along[k] += g * (whole[k] - across[k]);
+                 });
+    for (Buffer<T>* gradient : {&gradient_, &wallGradient_}) {
+      T* at = &(*gradient)[std::size_t{D} * clusterSize * c];
+      LanesOf<T> v[D];
+      for (int k = 0; k < D; ++k) v[k] = load<LanesOf<T>>(at + k * clusterSize);
+      for (int k = 0; k < D; ++k) store<T>(v[k] - along[k], at + k * clusterSize);
+    }
+  });
+}
+
 template <int D, class T>
 void ParticleProducts<D, T, Cpu>::pack() {
   using enum ListSegment;
@@ -147,11 +173,12 @@ void ParticleProducts<D, T, Cpu>::packedSchur(const Context<Cpu>& context, const
 #define TREACLE_SCHUR(D, ...)                                                                                    \
   template void ParticleProducts<D, float, Cpu>::packedSchur(const Context<Cpu>&, const ProjectionTable<float>&, \
                                                              ScalarField<float, Cpu>, const __VA_ARGS__&);
-#define TREACLE_INSTANTIATE(D)                                   \
-  template void ParticleProducts<D, float, Cpu>::pack();         \
-  TREACLE_SCHUR(D, PressureStep<float, Cpu, StepKind::Residual>) \
-  TREACLE_SCHUR(D, PressureStep<float, Cpu, StepKind::Next>)     \
-  TREACLE_SCHUR(D, PressureStep<float, Cpu, StepKind::Last>)     \
+#define TREACLE_INSTANTIATE(D)                                     \
+  template void ParticleProducts<D, float, Cpu>::pack();           \
+  template void ParticleProducts<D, float, Cpu>::takeAlongWalls(); \
+  TREACLE_SCHUR(D, PressureStep<float, Cpu, StepKind::Residual>)   \
+  TREACLE_SCHUR(D, PressureStep<float, Cpu, StepKind::Next>)       \
+  TREACLE_SCHUR(D, PressureStep<float, Cpu, StepKind::Last>)       \
   TREACLE_SCHUR(D, StorePressure<float, Cpu>)
 TREACLE_INSTANTIATE(2)
 TREACLE_INSTANTIATE(3)

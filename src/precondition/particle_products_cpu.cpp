@@ -132,33 +132,8 @@ void ParticleProducts<D, T, Cpu>::renormalise() {
       for (int k = 0; k < D; ++k) store<T>(b.row(k, v), at + k * clusterSize);
     }
   });
-  if (hasSmoothWalls()) takeAlongWalls();
-}
-
-/// Takes the parts along walls out of both sums.
-template <int D, class T>
-void ParticleProducts<D, T, Cpu>::takeAlongWalls() {
-  const ClusterListView& list = pairs_->fluidList;
-  forEachClusterOf(list, [&](std::uint32_t c) {
-    const SymmetricBlock<D, LanesOf<T>> b = loadBlocks<LanesOf<T>>(ClusterRange(list, c), renormalisation_.data());
-    LanesOf<T> along[D] = {};
-    const ClusterWalk<D, T> walk(*pairs_, list, c, position_.data(), fluidLanes_.data());
-    const T* coefficient = pressure_.data() + pressureStart_[c] * clusterSize +
-                           list.segment(c, ListSegment::NearFluid).size() * clusterSize;
-    walk.forEach(ListSegment::NearWall, coefficient,
-                 [&](int, std::uint32_t j, const LanesOf<T>& g, const LanesOf<T>(&d)[D]) {
-                   LanesOf<T> whole[D], across[D];
-                   for (int k = 0; k < D; ++k) whole[k] = across[k] = b.row(k, d);
-                   takeAlongWall<D>(*pairs_, walk.range, j, d, across);
-                   for (int k = 0; k < D; ++k) along[k] += g * (whole[k] - across[k]);
-                 });
-    for (Buffer<T>* gradient : {&gradient_, &wallGradient_}) {
-      T* at = &(*gradient)[std::size_t{D} * clusterSize * c];
-      LanesOf<T> v[D];
-      for (int k = 0; k < D; ++k) v[k] = load<LanesOf<T>>(at + k * clusterSize);
-      for (int k = 0; k < D; ++k) store<T>(v[k] - along[k], at + k * clusterSize);
-    }
-  });
+  if constexpr (packed)
+    if (hasSmoothWalls()) takeAlongWalls();
 }
 
 template <int D, class T>

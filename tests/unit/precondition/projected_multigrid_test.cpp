@@ -181,8 +181,11 @@ TEST(ParticleProducts, AreThoseOfTheFormulasAndInverseDiagonalsAreTheirs) {
   for (const auto& [walls, scheme] : scenes) {
     checkProducts<2, double>(makeScene<2>({.walls = walls, .scheme = scheme, .slips = false}), operatorTolerance);
     checkProducts<3, double>(makeScene<3>({.walls = walls, .scheme = scheme, .slips = false}), operatorTolerance);
-    checkProducts<2, float>(makeScene<2>({.walls = walls, .scheme = scheme}), 3 * singleTolerance);
-    checkProducts<3, float>(makeScene<3>({.walls = walls, .scheme = scheme}), 3 * singleTolerance);
+    for (const bool slips : {false, true}) {
+      const SceneOptions options{.walls = walls, .scheme = scheme, .slips = slips};
+      checkProducts<2, float>(makeScene<2>(options), 3 * singleTolerance);
+      checkProducts<3, float>(makeScene<3>(options), 3 * singleTolerance);
+    }
   }
 }
 
