@@ -1,37 +1,47 @@
 #include "core/each.cuh"
+#include "core/list_where.cuh"
 #include "treacle/core/processes.hpp"
 #include "treacle/isph/each_particle.hpp"
+#include "treacle/isph/each_region.hpp"
 
+#include <thrust/iterator/counting_iterator.h>
+#include <thrust/iterator/transform_iterator.h>
 #include <cub/device/device_reduce.cuh>
 
-#include <algorithm>
-#include <functional>
 #include <limits>
 
 namespace treacle {
+namespace {
 
-template <class Backend>
-double levelOf(Context<Backend>& context, Level level, std::span<const double> x) {
-  if (level == Level::Mean) {
-    const double sum =
-        sumEach<1>(context, x.size(), [=] __device__(std::size_t i, double* total) { *total += x[i]; })[0];
-    return sum / static_cast<double>(joinedOverProcesses(context, x.size(), std::plus<>()));
+/// x where the label is `of`, and infinity elsewhere.
+struct Where {
+  const double* x;
+  const std::uint32_t* label;
+  std::uint32_t of;
+  __device__ double operator()(std::size_t i) const {
+    return label[i] == of ? x[i] : std::numeric_limits<double>::infinity();
   }
-  double least = std::numeric_limits<double>::infinity();
-  if (!x.empty()) {
-    // Behind the partial sums of blocks, until the next reduction.
-    double* result = context.partialSums() + Context<Cuda>::maxPartialSums - 1;
-    std::size_t bytes = 0;
-    TREACLE_CUDA_CHECK(cub::DeviceReduce::Min(nullptr, bytes, x.data(), result, x.size(), context.stream()));
-    TREACLE_CUDA_CHECK(
-        cub::DeviceReduce::Min(context.scratch(bytes), bytes, x.data(), result, x.size(), context.stream()));
-    least = valueOnHost(context, result);
-  }
-  return joinedOverProcesses(context, least, [](double a, double b) { return std::min(a, b); });
+};
+
+}  // namespace
+
+static double leastWhere(Context<Cuda>& context, std::span<const double> x, std::span<const std::uint32_t> label,
+                         std::uint32_t of) {
+  if (x.empty()) return std::numeric_limits<double>::infinity();
+  const auto values = thrust::make_transform_iterator(thrust::counting_iterator<std::size_t>(0),
+                                                      Where{x.data(), label.data(), of});
+  // Behind the partial sums of blocks, until the next reduction.
+  double* result = context.partialSums() + Context<Cuda>::maxPartialSums - 1;
+  std::size_t bytes = 0;
+  TREACLE_CUDA_CHECK(cub::DeviceReduce::Min(nullptr, bytes, values, result, x.size(), context.stream()));
+  TREACLE_CUDA_CHECK(
+      cub::DeviceReduce::Min(context.scratch(bytes), bytes, values, result, x.size(), context.stream()));
+  return valueOnHost(context, result);
 }
 
 TREACLE_EACH_NUMBER(Cuda)
 TREACLE_EACH_VECTOR(2, Cuda)
 TREACLE_EACH_VECTOR(3, Cuda)
+TREACLE_EACH_REGION(Cuda)
 
 }  // namespace treacle

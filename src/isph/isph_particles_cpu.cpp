@@ -1,26 +1,22 @@
 #include "treacle/core/each.hpp"
 #include "treacle/isph/each_particle.hpp"
+#include "treacle/isph/each_region.hpp"
 
 #include <algorithm>
-#include <functional>
 #include <limits>
-#include <numeric>
 
 namespace treacle {
 
-template <class Backend>
-double levelOf(Context<Backend>& context, Level level, std::span<const double> x) {
-  if (level == Level::Least) {
-    double least = std::numeric_limits<double>::infinity();
-    for (const double value : x) least = std::min(least, value);
-    return joinedOverProcesses(context, least, [](double a, double b) { return std::min(a, b); });
-  }
-  const double sum = sumOverProcesses(context, std::accumulate(x.begin(), x.end(), 0.0));
-  return sum / static_cast<double>(joinedOverProcesses(context, x.size(), std::plus<>()));
+static double leastWhere(Context<Cpu>&, std::span<const double> x, std::span<const std::uint32_t> label,
+                         std::uint32_t of) {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < x.size(); ++i)
+    if (label[i] == of) least = std::min(least, x[i]);
+  return least;
 }
-
 TREACLE_EACH_NUMBER(Cpu)
 TREACLE_EACH_VECTOR(2, Cpu)
 TREACLE_EACH_VECTOR(3, Cpu)
+TREACLE_EACH_REGION(Cpu)
 
 }  // namespace treacle

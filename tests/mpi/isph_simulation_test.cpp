@@ -39,6 +39,11 @@ TEST(SharedIsph, ImplicitViscosityWithoutSurface) {
   compare<2>({"../tests/validation/cases/isph-couette.toml", 10, {"solver.tolerance=1e-18"}});
 }
 
+/// Each full tank has a level of its own, which all processes with a part of it must find.
+TEST(SharedIsph, FullTanksBesideAnOpenOne) {
+  compare<2>({"../tests/mpi/tanks.toml", 10, {"solver.tolerance=1e-18"}});
+}
+
 /// Shifted particles that go around periodic ends; pressures of either sign.
 TEST(SharedIsph, ShiftingWithoutSurface) {
   compare<2>({"../tests/validation/cases/isph-taylor-green.toml", 10, {"solver.tolerance=1e-18"}});

@@ -142,11 +142,32 @@ Matrix dense(const IsphMatrix<T>& a) {
 }
 
 template struct IsphScene<2>;
+template <int D>
+IsphScene<D> makeRegions(unsigned seed) {
+  constexpr int block = 4, blocks = D == 2 ? 20 : 8;  // wider than the kernel's radius [spacings]
+  Case c = waterCase(D, Vec<3>::filled(block * blocks));
+  c.domain.periodic[0] = true;
+  Vec<D, int> count = Vec<D, int>::filled(block), all = Vec<D, int>::filled(blocks);
+  const auto places = latticeAt<D>(Vec<D>::filled(0.5 * c.spacing), all, block * c.spacing);
+  const std::vector<double> chance = randomNumbers(places.size(), seed);
+  std::vector<Vec<D>> points;
+  for (std::size_t k = 0; k < places.size(); ++k)
+    if (chance[k] < (D == 2 ? -0.35 : -0.8))
+      for (const Vec<D>& x : latticeAt<D>(places[k], count, c.spacing)) points.push_back(x);
+  const auto shifts = randomVelocities<D>(points.size(), seed + 1);
+  for (std::size_t i = 0; i < points.size(); ++i) points[i] += (0.1 * c.spacing) * shifts[i];
+  IsphScene<D> s(c, particlesAt<D>(points));
+  const std::vector<double> isSurface = randomNumbers(points.size(), seed + 2);
+  for (std::size_t i = 0; i < points.size(); ++i) s.surface[i] = isSurface[i] > 0.99 ? Place::Surface : 0;
+  return s;
+}
+
 template Particles<2> particlesAt(const std::vector<Vec<2>>&, const std::vector<Vec<2>>&);
 template std::vector<Vec<2>> latticeAt(const Vec<2>&, const Vec<2, int>&, double);
 template IsphScene<2> makeIsphScene(Walls, double, unsigned);
 template void giveSurfaces(const Case&, Particles<2>&);
 template IsphScene<2> makeLargeIsphScene();
+template IsphScene<2> makeRegions(unsigned);
 template std::vector<Vec<2>> randomVelocities(std::size_t, unsigned);
 template struct IsphScene<3>;
 template Particles<3> particlesAt(const std::vector<Vec<3>>&, const std::vector<Vec<3>>&);
@@ -154,6 +175,7 @@ template std::vector<Vec<3>> latticeAt(const Vec<3>&, const Vec<3, int>&, double
 template IsphScene<3> makeIsphScene(Walls, double, unsigned);
 template void giveSurfaces(const Case&, Particles<3>&);
 template IsphScene<3> makeLargeIsphScene();
+template IsphScene<3> makeRegions(unsigned);
 template std::vector<Vec<3>> randomVelocities(std::size_t, unsigned);
 template Matrix dense(const IsphMatrix<double>&);
 template Matrix dense(const IsphMatrix<float>&);

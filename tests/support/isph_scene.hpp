@@ -65,6 +65,11 @@ void giveSurfaces(const Case& c, Particles<D>& particles);
 template <int D>
 IsphScene<D> makeLargeIsphScene();
 
+/// Regions of fluid of all shapes, with gaps between them, some across a periodic end. `surface` is set by chance,
+/// so that some regions have none.
+template <int D>
+IsphScene<D> makeRegions(unsigned seed);
+
 /// Random numbers in (-1, 1), the same for the same seed.
 std::vector<double> randomNumbers(std::size_t n, unsigned seed);
 template <int D>

@@ -3,6 +3,7 @@
 #include "isph_failure.hpp"
 #include "isph_solver.hpp"
 #include "treacle/core/halo.hpp"
+#include "treacle/isph/closed_regions.hpp"
 #include "treacle/isph/isph_particles.hpp"
 #include "treacle/isph/isph_sums.hpp"
 #include "treacle/model/motion/shifting.hpp"
@@ -26,9 +27,10 @@ class IsphArrangement {
     return source_.data();
   }
 
-  /// Solves for the pressure, `closed` where no particle is at a free surface. Errors: RunError.
-  StagedReport solve(IsphSolver<D, Backend, PressureRow<D>>& solver, const IsphPairs<D>& pairs, bool closed) {
-    if (closed) takeLevel(state_.context, Level::Mean, source_);
+  /// Solves for the pressure. Errors: RunError.
+  StagedReport solve(IsphSolver<D, Backend, PressureRow<D>>& solver, const IsphPairs<D>& pairs,
+                     const ClosedRegions<Backend>& closed) {
+    takeLevels(state_.context, closed, Level::Mean, source_.span());
     pressure_.resize(state_.context, pairs.ownFluid());
     clearValues(state_.context, pressure_.span());
     const StagedReport report = solver.solve(state_.context, source_, pressure_, nullptr, looser);
@@ -38,15 +40,15 @@ class IsphArrangement {
 
   /// Has the corrector find what particles move with: v* corrected by the sum of this pressure and that of the
   /// flow [Pa].
-  void addTo(CorrectorTerm<D>& term, const IsphPairs<D>& pairs, bool closed, std::span<const std::uint8_t> surface,
-             std::span<const double> flow) {
+  void addTo(CorrectorTerm<D>& term, const IsphPairs<D>& pairs, const ClosedRegions<Backend>& closed,
+             std::span<const std::uint8_t> surface, std::span<const double> flow) {
     Context<Backend>& context = state_.context;
     both_.resize(context, pairs.fluidCount);
     transport_.resize(context, pairs.ownFluid());
     const std::span<double> own = both_.span().first(pairs.ownFluid());
     addPressures(context, flow, pressure_, own);
-    if (closed) takeLevel(context, Level::Least, own);
-    settlePressure(context, surface, pairs.outside, closed || !pairs.negativePressure, own);
+    takeLevels(context, closed, Level::Least, own);
+    settlePressure(context, surface, pairs.outside, !pairs.negativePressure, own);
     fillGhosts(context, Held::Fluid, both_.data());
     term.moving = both_.data();
     term.transport = transport_.data();

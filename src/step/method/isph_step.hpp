@@ -9,6 +9,7 @@
 #include "step_gas.hpp"
 #include "step_unknowns.hpp"
 #include "treacle/core/halo.hpp"
+#include "treacle/isph/closed_regions.hpp"
 #include "treacle/isph/isph_particles.hpp"
 #include "treacle/search/particle_sort.hpp"
 #include "treacle/step/method/solve_stages.hpp"
@@ -77,9 +78,8 @@ class IsphStep final : public StepMethod<D, Backend> {
   void prepareSystem() override {
     fillGhosts(state_.context, Held::Fluid, surface_.data());
     if (pairs_.accurate) fillGhosts(state_.context, Held::Fluid, renormalisation_.data());
-    closed_ = isClosed(state_.context, ownSurface());
-    if (closed_)
-      clearValues(state_.context, missing_.span());  // no surface that would hold the level of pressures
+    findClosedRegions(state_.context, pairs_, ownSurface(), closed_);
+    fillRegions(state_.context, closed_, missing_.span());
     if (gas_) gas_->prepare(state_, pairs_.grid, sort_.owners());
     computeSource();
     pressure_.prepareMatrix(state_.context, pairs_, ranges(), row());
@@ -177,7 +177,7 @@ class IsphStep final : public StepMethod<D, Backend> {
            acrossWalls_.bytes() + missing_.bytes() + surface_.bytes() + predictor_.bytes() + source_.bytes() +
            solution_.bytes() + shifted_.bytes() + (arrangement_ ? arrangement_->bytes() : 0) + wallShare_.bytes() +
            forces_.bytes() + pressure_.bytes() + unknowns_.bytes() + (gas_ ? gas_->bytes() : 0) +
-           pressing_.bytes() + wallSurface_.bytes();
+           pressing_.bytes() + wallSurface_.bytes() + closed_.bytes();
   }
 
   /// Pairs up to this share of the kernel's radius make the smoother's matrix: 1.9 l with the usual kernel.
@@ -211,7 +211,7 @@ class IsphStep final : public StepMethod<D, Backend> {
       pairs_.outside = gas_->outside(state_).data();
       sumOnFluid(state_.context, pairs_, OutsideTerm<D>{surface_.data(), source_.data()});
     }
-    if (closed_) takeLevel(state_.context, Level::Mean, source_);
+    takeLevels(state_.context, closed_, Level::Mean, source_.span());
   }
 
   /// The same again in the same step, with the velocities and forces of the unknowns; for the first time from what
@@ -236,7 +236,7 @@ class IsphStep final : public StepMethod<D, Backend> {
 
   /// The step's pressures, and velocities by them. `pressing`: CorrectorTerm.
   void correct(const Buffer<double, Backend>& pressing) {
-    if (closed_) takeLevel(state_.context, pairs_.negativePressure ? Level::Mean : Level::Least, solution());
+    takeLevels(state_.context, closed_, pairs_.negativePressure ? Level::Mean : Level::Least, solution());
     settlePressure(state_.context, ownSurface(), pairs_.outside, !pairs_.negativePressure, solution());
     fillGhosts(state_.context, Held::Fluid, solution_.data());
     state_.velocity.resize(state_.context, pairs_.ownFluid());
@@ -309,7 +309,7 @@ class IsphStep final : public StepMethod<D, Backend> {
   IsphPairs<D> pairs_;
   ParticleSort<D, Backend> sort_;
   NeighbourRows<Backend> fluidOfFluid_, wallsOfFluid_, fluidOfWalls_;
-  bool closed_ = false;  // no particle is at the free surface
+  ClosedRegions<Backend> closed_;
   Buffer<Vec<D>, Backend> deficit_;
   Buffer<SymmetricBlock<D, float>, Backend> renormalisation_;  // with ghosts; of the accurate scheme
   Buffer<SymmetricBlock<D, float>, Backend> acrossWalls_;  // likewise, of own particles; where surfaces are known

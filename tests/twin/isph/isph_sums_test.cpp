@@ -2,6 +2,7 @@
 #include "support/isph_device.hpp"
 #include "support/tolerances.hpp"
 #include "support/wall_motions.hpp"
+#include "treacle/isph/closed_regions.hpp"
 #include "treacle/isph/isph_particles.hpp"
 
 #include <gtest/gtest.h>
@@ -263,15 +264,6 @@ void checkParticles() {
       settlePressure(context, surfaceOnDevice, nullptr, cut, found);
       EXPECT_EQ(differ<double>(context, found, expected), 0);
     }
-    EXPECT_EQ(isClosed(context, surfaceOnDevice), isClosed(host, surface));
-    EXPECT_TRUE(isClosed(context, copyToDevice<std::uint8_t>(context, std::vector<std::uint8_t>(n))));
-    for (const Level level : {Level::Mean, Level::Least}) {
-      std::vector<double> expected = p;
-      auto found = copyToDevice<double>(context, p);
-      takeLevel(host, level, expected);
-      takeLevel(context, level, found);
-      EXPECT_LE(differ<double>(context, found, expected), kernelTolerance);
-    }
     const auto deficit = randomVelocities<D>(n, 2), v = randomVelocities<D>(n, 3);
     const auto vOnDevice = copyToDevice<Vec<D>>(context, v);
     std::vector<Vec<D>> expected(n);
@@ -295,6 +287,38 @@ void checkParticles() {
     }
     EXPECT_EQ(differ<Vec<D>>(context, found, expected), 0);
   }
+}
+
+template <int D>
+void checkRegions() {
+  IsphScene<D> s = makeRegions<D>(1);
+  const DeviceIsph<D> d(s);
+  Context<Cuda> context;
+  ClosedRegions<Cpu> expected;
+  ClosedRegions<Cuda> found;
+  findClosedRegions(s.context, s.pairs, s.surface.span(), expected);
+  findClosedRegions(context, d.pairs, d.surface.span(), found);
+  EXPECT_EQ(found.labels, expected.labels);
+  EXPECT_GE(found.labels.size(), 2u);
+  expectSameBits(context, expected.label, found.label);
+  for (const Level level : {Level::Mean, Level::Least}) {
+    std::vector<double> x = randomNumbers(s.n(), 1);
+    auto xOnDevice = copyToDevice<double>(context, x);
+    takeLevels(s.context, expected, level, std::span(x));
+    takeLevels(context, found, level, xOnDevice.span());
+    EXPECT_LE(differ<double>(context, xOnDevice, x), kernelTolerance);
+  }
+  std::vector<float> missing(s.n(), 1);
+  auto missingOnDevice = copyToDevice<float>(context, missing);
+  fillRegions(s.context, expected, std::span(missing));
+  fillRegions(context, found, missingOnDevice.span());
+  EXPECT_EQ(differ<float>(context, missingOnDevice, missing), 0);
+}
+
+TEST(ClosedRegionsTwin, EqualTheCpu) {
+  TREACLE_SKIP_WITHOUT_GPU();
+  checkRegions<2>();
+  checkRegions<3>();
 }
 
 TEST(IsphParticlesTwin, EqualTheCpu) {

@@ -128,15 +128,21 @@ TEST(IsphRun, AContinuedRunGivesTheSameBits) {
   EXPECT_TRUE(sameBits(stateOf(whole), stateOf(second)));
 }
 
+/// With a roof on its fluid.
+Case fullTankCase(int dimensions, double width, double depth) {
+  Case c = tankCase(dimensions, width, depth);
+  Body roof = c.bodies[0];  // a fluid that fills the tank
+  roof.name = "roof", roof.kind = BodyKind::Wall;
+  roof.shape.min[dimensions - 1] = roof.shape.max[dimensions - 1];
+  roof.shape.max[dimensions - 1] += tankWall * c.spacing;
+  c.bodies.push_back(roof);
+  return c;
+}
+
 /// A tank that is full to its roof: nothing says how high the pressure is but that it is not negative.
 template <int D>
 void checkFullTank(double width, double depth, int steps) {
-  Case c = tankCase(D, width, depth);
-  Body roof = c.bodies[0];  // a fluid that fills the tank
-  roof.name = "roof", roof.kind = BodyKind::Wall;
-  roof.shape.min[D - 1] = roof.shape.max[D - 1];
-  roof.shape.max[D - 1] += tankWall * c.spacing;
-  c.bodies.push_back(roof);
+  const Case c = fullTankCase(D, width, depth);
   Simulation<D> simulation(c, created<D>(c));
   for (int k = 0; k < steps; ++k) {
     const StepReport report = simulation.advance();
@@ -158,6 +164,43 @@ void checkFullTank(double width, double depth, int steps) {
 TEST(IsphRun, AFullTankHasThePressureOfItsDepth) {
   checkFullTank<2>(12, 10, 100);
   checkFullTank<3>(7, 6, 30);
+}
+
+/// The pressure equation is singular in the full ones alone.
+TEST(IsphRun, FullTanksStandBesideAnOpenOne) {
+  constexpr double width = 12, depth = 10, pitch = width + 3 * tankWall;
+  Case c = fullTankCase(2, width, depth);
+  const std::vector<Body> full = c.bodies, open = tankCase(2, width, depth - 2).bodies;
+  for (const int tank : {1, 2})
+    for (Body body : tank == 1 ? open : full) {
+      body.name += std::to_string(tank);
+      body.shape.min[0] += tank * pitch * c.spacing, body.shape.max[0] += tank * pitch * c.spacing;
+      c.bodies.push_back(body);
+    }
+  c.domain.max[0] += 2 * pitch * c.spacing;
+  Simulation<2> simulation(c, created<2>(c));
+  for (int k = 0; k < 100; ++k) {
+    const StepReport report = simulation.advance();
+    EXPECT_EQ(report.fallbacks, 0) << report.failures;
+    EXPECT_LE(report.iterations, 14);
+    EXPECT_LE(report.diagnostics.maxSpeed, 0.1 * std::sqrt(2 * 9.81 * depth * c.spacing));
+  }
+  const Particles<2>& p = simulation.particles();
+  for (const int tank : {0, 1, 2}) {
+    double least = std::numeric_limits<double>::infinity(), sum = 0, square = 0, count = 0;
+    for (std::uint32_t i = 0; i < p.fluidCount; ++i) {
+      const double x = p.position[i][0] / c.spacing - tankCorner - tank * pitch;
+      if (x < 0 || x > width) continue;
+      const double level = p.pressure[i] / (1000 * 9.81 * c.spacing) + p.position[i][1] / c.spacing - tankCorner;
+      least = std::min(least, p.pressure[i]);
+      sum += level, square += level * level, ++count;
+    }
+    const double mean = sum / count;
+    EXPECT_EQ(count, width * (tank == 1 ? depth - 2 : depth));
+    EXPECT_LE(least, tank == 1 ? 100 : 0);
+    EXPECT_NEAR(mean, tank == 1 ? depth - 2 : depth - 0.5, tank == 1 ? 0.2 : 1) << "tank " << tank;
+    EXPECT_LE(std::sqrt(square / count - mean * mean), 0.05 * depth) << "tank " << tank;
+  }
 }
 
 /// Vortices that fill a periodic square, where only differences of pressures have a meaning.

@@ -17,6 +17,18 @@ TREACLE_HD inline void addAtomically(std::uint32_t& to, std::uint32_t value) {
 #endif
 }
 
+/// to = min(to, value)
+TREACLE_HD inline void lowerAtomically(std::uint32_t& to, std::uint32_t value) {
+#ifdef __CUDA_ARCH__
+  atomicMin(&to, value);
+#else
+  std::atomic_ref shared(to);
+  std::uint32_t before = shared;
+  while (before > value && !shared.compare_exchange_weak(before, value)) {
+  }
+#endif
+}
+
 /// to = max(to, value)
 TREACLE_HD inline void raiseAtomically(std::uint32_t& to, std::uint32_t value) {
 #ifdef __CUDA_ARCH__

@@ -27,18 +27,6 @@ void settlePressure(Context<Backend>& context, std::span<const std::uint8_t> sur
   });
 }
 
-template <class Backend>
-bool isClosed(Context<Backend>& context, std::span<const std::uint8_t> surface) {
-  return sumEach<1>(context, surface.size(),
-                    [=] TREACLE_HD(std::size_t i, double* count) { *count += surface[i]; })[0] == 0;
-}
-
-template <class Backend>
-void takeLevel(Context<Backend>& context, Level level, std::span<double> x) {
-  const double zero = levelOf(context, level, x);
-  forEach(context, x.size(), [=] TREACLE_HD(std::size_t i) { x[i] -= zero; });
-}
-
 template <int D, class Backend>
 void shiftedVelocity(Context<Backend>& context, const Shifting& shifting, std::span<const Vec<D>> deficit,
                      std::span<const std::uint8_t> surface, std::span<const Vec<D>> velocity,
@@ -71,9 +59,7 @@ void putComponent(Context<Backend>& context, std::span<const double> x, int k, s
   template void addPressures(Context<Backend>&, std::span<const double>, std::span<const double>,     \
                              std::span<double>);                                                      \
   template void settlePressure(Context<Backend>&, std::span<const std::uint8_t>, const double*, bool, \
-                               std::span<double>);                                                    \
-  template bool isClosed(Context<Backend>&, std::span<const std::uint8_t>);                           \
-  template void takeLevel(Context<Backend>&, Level, std::span<double>);
+                               std::span<double>);
 #define TREACLE_EACH_VECTOR(D, Backend)                                                                        \
   template void shiftedVelocity(Context<Backend>&, const Shifting&, std::span<const Vec<D>>,                   \
                                 std::span<const std::uint8_t>, std::span<const Vec<D>>, std::span<Vec<D>>);    \

@@ -22,18 +22,6 @@ template <class Backend>
 void settlePressure(Context<Backend>&, std::span<const std::uint8_t> surface, const double* outside, bool cut,
                     std::span<double> p);
 
-/// Whether all particles, of all processes, are inside. Then the pressure equation has no Dirichlet
-/// value: its matrix is singular, and pressures are known up to a constant, their level.
-template <class Backend>
-bool isClosed(Context<Backend>&, std::span<const std::uint8_t> surface);
-
-/// x less its mean, or less its least value, over all processes. The order of the sum is fixed.
-enum class Level { Mean, Least };
-template <class Backend>
-void takeLevel(Context<Backend>&, Level level, std::span<double> x);
-template <class Backend>
-double levelOf(Context<Backend>&, Level level, std::span<const double> x);
-
 /// transport: what the particles move with (Shifting); those at the free surface are not shifted.
 template <int D, class Backend>
 void shiftedVelocity(Context<Backend>&, const Shifting& shifting, std::span<const Vec<D>> deficit,
