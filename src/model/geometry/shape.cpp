@@ -133,6 +133,11 @@ Similarity<D> similarityOf(const Shape& s) {
 
 template <int D>
 bool contains(const Shape& s, const Vec<D>& x, double slack) {
+  if (s.kind == ShapeKind::Box) {
+    for (int k = 0; k < D; ++k)
+      if (x[k] < s.min[k] - slack || x[k] > s.max[k] + slack) return false;
+    return true;
+  }
   if (s.kind == ShapeKind::Torus) return torusContains<D>(s, x, slack);
   if (s.kind == ShapeKind::Sphere) return between(norm(x - resized<D>(s.center)), s.radius, s.innerRadius, slack);
   const Vec<D> axis = resized<D>(s.end - s.start), offset = x - resized<D>(s.start);

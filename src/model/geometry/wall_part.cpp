@@ -45,15 +45,8 @@ bool WallPart<D>::shapeContains(const Vec<D>& x) const {
   for (int k = 0; k < D; ++k)
     if (x[k] < min_[k] || x[k] > max_[k]) return false;
   if (solid_) return solid_->contains(x - shift_);
-  const double slack = slack_ / similarity_.scale();
-  if (shape_.kind == ShapeKind::Box) {
-    const Vec<D> local = similarity_.pointBefore(x - shift_);
-    for (int k = 0; similarity_.turns() && k < D; ++k)
-      if (local[k] < shape_.min[k] - slack || local[k] > shape_.max[k] + slack) return false;
-    return true;
-  }
   return shape_.kind != ShapeKind::Particles &&
-         treacle::contains<D>(shape_, similarity_.pointBefore(x - shift_), slack);
+         treacle::contains<D>(shape_, similarity_.pointBefore(x - shift_), slack_ / similarity_.scale());
 }
 
 template <int D>

@@ -294,6 +294,26 @@ TEST(createParticles, bodiesAreSubtracted) {
   }
 }
 
+/// A box that is turned, in place and by its corners.
+TEST(createParticles, turnedBoxesAreSubtracted) {
+  for (const double angle : {3.0, 20.0, 45.0}) {
+    Case c = emptyCase(2);
+    c.bodies = {makeBody("sea", BodyKind::Fluid, box({0, 0}, {20, 20})),
+                makeBody("beam", BodyKind::Wall, box({5, 6}, {15, 14}))};
+    c.bodies[0].subtract = {"beam"};
+    Transform& turned = c.bodies[1].shape.transform.emplace();
+    turned.center = {10, 10, 0}, turned.angle = angle;
+    std::vector<std::string> notes;
+    const Particles<2> p = createParticles<2>(c, notes);
+    EXPECT_NEAR(p.fluidCount, 400 - 80, 8);
+    const double cosine = std::cos(angle * M_PI / 180), sine = std::sin(angle * M_PI / 180);
+    for (std::uint32_t i = 0; i < p.fluidCount; ++i) {
+      const Vec<2> d = p.position[i] - Vec<2>{10, 10};
+      EXPECT_FALSE(std::abs(cosine * d[0] + sine * d[1]) < 5 && std::abs(cosine * d[1] - sine * d[0]) < 4);
+    }
+  }
+}
+
 TEST(createParticles, conditionsThatNeverHoldAreNoted) {
   Case c = emptyCase(2);
   c.bodies = {makeBody("sea", BodyKind::Fluid, box({0, 0}, {4, 2})),

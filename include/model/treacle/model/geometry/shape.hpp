@@ -22,8 +22,8 @@ Extent untransformedBox(const Shape& shape, int dimensions);
 template <int D>
 Similarity<D> similarityOf(const Shape& shape);
 
-/// Whether a point belongs to a sphere, cylinder, cone or torus before its transform (boxes are filled by count,
-/// see createParticles; polygons and meshes by their boundary). The outer surface belongs to the shape, the inner
+/// Whether a point belongs to a box, sphere, cylinder, cone or torus before its transform (polygons and meshes are
+/// known by their boundary). The outer surface belongs to the shape, the inner
 /// one does not: a fluid sphere and a wall shell around it with the same radius never share a point. `slack` [m]
 /// absorbs rounding.
 template <int D>
