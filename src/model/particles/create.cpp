@@ -12,10 +12,12 @@
 #include "geometry/point_boxes.hpp"
 #include "lattice.hpp"
 #include "treacle/model/geometry/point_grid.hpp"
+#include "treacle/model/motion/opening.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace treacle {
 namespace {
@@ -57,6 +59,27 @@ void subtract(const Domain& domain, double radius, const std::vector<const std::
     for (const Filled<D>* other : others)
       for (const Vec<D>& x : other->points.place) grid.add(x, 0);
     f.points.filter([&](std::size_t k) { return grid.find(f.points.place[k]) == PointGrid<D>::none; });
+  }
+}
+
+/// Takes out fluid behind the reserves of openings, up to the first layer without any.
+template <int D>
+void clearBehindReserves(const Case& c, std::vector<Filled<D>>& fluid) {
+  for (const Opening& o : c.openings) {
+    const OpeningForce<D> opening = OpeningFace<D>(c, o).place();
+    const double from = opening.depth + 0.5;  // as in the steps (OutflowRegion)
+    const auto layerOf = [&](const Vec<D>& x) { return std::floor(opening.behind(x) - from); };
+    std::set<double> layers;
+    for (const Filled<D>& f : fluid)
+      for (const Vec<D>& x : f.points.place)
+        if (opening.isAcross(x, 0.5)) layers.insert(layerOf(x));
+    double end = 0;
+    while (layers.contains(end)) ++end;
+    for (Filled<D>& f : fluid)
+      f.points.filter([&](std::size_t k) {
+        const Vec<D>& x = f.points.place[k];
+        return !opening.isAcross(x, 0.5) || layerOf(x) < 0 || layerOf(x) >= end;
+      });
   }
 }
 
@@ -239,6 +262,7 @@ Particles<D> createParticles(const Case& c, std::vector<std::string>& notes, std
   const double radius = 0.5 * c.spacing * (1 - 1e-6);
   subtract<D>(c.domain, radius, {&fluid, &walls}, fluid);
   subtract<D>(c.domain, radius, {&fluid, &walls}, walls);
+  clearBehindReserves<D>(c, fluid);
   if (total(fluid) == 0 && !c.hasInflow())
     throw InputError("the case has no fluid: no body of type \"fluid\" holds a particle" + sizesOfFluid(c));
   if (total(fluid) + total(walls) > maxParticles)
