@@ -58,7 +58,7 @@ class StepHeat {
       if (!ofModes.empty()) setEach(context, Sum{heating_, ofModes, heating_.span()}, own);
     }
 
-    const HeatConstants constants{table_, state.timeStep, settings_.ambient, settings_.transfer};
+    const HeatConstants constants{table_, state.timeStep, settings_.ambient, settings_.transfer, pairs.spacing};
     setEach(context,
             HeatSystemTerms{constants, material, T, ofFluid_, ofWalls_, area_, heating_, ofStates, ofSurface_,
                             boundary_, source_, extra_, inverse_},

@@ -118,6 +118,46 @@ TEST(HeatSteps, RadiateByTheFourthPower) {
   for (const double t : found) EXPECT_NEAR((t - 1375) / (T - 1375), 1, 0.1);  // as its area is known
 }
 
+/// A slab on a hot floor, of `rows` layers of 1 mm, through whose surface all heat goes: 1/q = H/k + 1/h.
+template <int D>
+double slabFlux(int rows, double transfer) {
+  Case c;
+  c.dimensions = D, c.spacing = 1e-3;
+  c.time = {50, 5000};
+  c.heat = HeatSettings{.ambient = 300, .transfer = transfer};
+  Material m;
+  m.name = "slab", m.density = 1000, m.dynamicViscosity = 5000, m.bulkViscosity = 5e5, m.bulkModulus = 1;
+  m.specificHeat = 10, m.conductivity = 1;
+  c.materials = {m};
+  const Vec<3> top{D == 2 ? 0.016 : 0.008, D == 2 ? 1e-3 * rows : 0.008, D == 2 ? 0 : 1e-3 * rows};
+  Body slab, floor;
+  slab.name = "slab", slab.shape.max = top, slab.temperature = 350;
+  floor.name = "floor", floor.kind = BodyKind::Wall, floor.temperature = 400;
+  floor.shape.max = top, floor.shape.max[D - 1] = 0, floor.shape.min[D - 1] = -4e-3;
+  c.bodies = {slab, floor};
+  c.domain.max = top;
+  c.domain.min[D - 1] = -4e-3, c.domain.max[D - 1] += 4e-3;
+  for (int k = 0; k < D - 1; ++k) c.domain.periodic[static_cast<std::size_t>(k)] = true;
+  std::vector<std::string> notes;
+  Simulation<D> s(c, createParticles<D>(c, notes));
+  for (int k = 0; k < 100; ++k) s.advance();
+  const double between[2] = {6e-3, 1e-3 * (rows - 6)};  // away from both ends
+  double low = 0, high = 0;
+  const Particles<D>& p = s.particles();
+  for (std::uint32_t i = 0; i < p.fluidCount; ++i) {
+    if (std::abs(p.position[i][D - 1] - between[0]) < 0.6e-3) low += p.temperature[i];
+    if (std::abs(p.position[i][D - 1] - between[1]) < 0.6e-3) high += p.temperature[i];
+  }
+  const double perLayer = 2.0 * p.fluidCount / rows;  // both layers beside each place
+  return (low - high) / perLayer / (between[1] - between[0]);
+}
+
+TEST(HeatSteps, LoseTheHeatOfASlabThroughItsSurface) {
+  for (const double transfer : {20.0, 200.0, 2000.0})
+    EXPECT_NEAR(slabFlux<2>(20, transfer) / (100 / (0.02 + 1 / transfer)), 1, 1.5e-3) << transfer;
+  EXPECT_NEAR(slabFlux<3>(20, 200) / (100 / (0.02 + 1 / 200.0)), 1, 1.5e-3);
+}
+
 TEST(HeatSteps, ContinueFromACopyWithTheSameBits) {
   const Case c = gob();
   Simulation<2> whole(c, gobParticles(c));

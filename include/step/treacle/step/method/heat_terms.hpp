@@ -28,14 +28,22 @@ struct HeatConstants {
   double timeStep;  // [s]
   double ambient;   // [K]
   double transfer;  // [W/(m2 K)]
+  double spacing;   // l [m]
+
+  /// How far below a flat free surface the temperature of the first row is that of the fluid behind it,
+  /// extrapolated: 0.557 l in a square and 0.523 l in a cubic lattice.
+  static constexpr double depth = 0.54;  // [spacings]
 
   /// rho c_p / dt of material m [W/(m3 K)]
   TREACLE_HD double inertia(int m) const { return table.capacity[m] / timeStep; }
-  /// From a free surface at about T [K] per area: what is convected, and what is radiated, linear around T.
+  /// From a first row at about T [K] through the free surface per area: what is convected, and what is radiated,
+  /// linear around T, in series with the fluid between both. A fluid that does not conduct counts as stirred.
   TREACLE_HD HeatExchange surface(int m, double T) const {
     const double radiated = table.emissivity[m] * stefanBoltzmann, cube = T * T * T;
-    const double ambient2 = ambient * ambient;
-    return {transfer + 4 * radiated * cube, transfer * ambient + radiated * (ambient2 * ambient2 + 3 * cube * T)};
+    const double ambient2 = ambient * ambient, k = table.conductivity[m];
+    const double coefficient = transfer + 4 * radiated * cube;
+    const double share = k > 0 ? 1 / (1 + coefficient * depth * spacing / k) : 1;
+    return {share * coefficient, share * (transfer * ambient + radiated * (ambient2 * ambient2 + 3 * cube * T))};
   }
 };
 
