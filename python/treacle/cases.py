@@ -176,9 +176,9 @@ class Material:
     rheology: Rheology | None = None
     dynamic_viscosity: float | None = None
     """[Pa s]"""
-    bulk_viscosity: float | None = None
+    bulk_viscosity: float | Literal["auto"] | None = None
     """[Pa s]"""
-    bulk_modulus: float | None = None
+    bulk_modulus: float | Literal["auto"] | None = None
     """[Pa]"""
     elastic: Sequence[ElasticMode] | None = None
     state: Sequence[MaterialState] | None = None

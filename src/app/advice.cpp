@@ -1,6 +1,7 @@
 #include "advice.hpp"
 
 #include "print.hpp"
+#include "treacle/model/case/bulk_constants.hpp"
 #include "treacle/model/case/checks.hpp"
 #include "treacle/model/case/flow_scales.hpp"
 #include "treacle/model/materials/state_table.hpp"
@@ -15,8 +16,7 @@
 namespace treacle {
 namespace {
 
-constexpr double recommendedRatio = 1000;  // of bulk to shear viscosity [K23 Table 1]
-constexpr double mostCompressed = 0.01;    // by the weight of the fluid
+constexpr double mostCompressed = 0.01;  // by the weight of the fluid
 
 /// How many particles lie across the shortest side of the fluid, and the errors measured with so many
 /// (docs/validation.md).
@@ -94,11 +94,12 @@ void printRemembered(const Case& c, const FluidNumbers& n, const FlowScales& flo
 /// A bulk viscosity that is enough, and the bulk moduli that go with a step: stiff enough for the pressures, soft
 /// enough for the step.
 void printBulk(const Case& c, const Material& m, const FlowScales& flow) {
-  const double mu = c.typicalViscosity(m), lambda = recommendedRatio * mu;
+  const double mu = c.typicalViscosity(m), lambda = recommendedBulkRatio * mu;
   if (mu == 0) return;
   const double most = mostCompression(c) * std::max(lambda, m.bulkViscosity) / c.time.step;
   const double least = flow.pressureOf(m.density, mu) / mostCompressed;
-  print("# advice for '{}': bulk_viscosity {:.3g} ({:g} times the viscosity), ", m.name, lambda, recommendedRatio);
+  print("# advice for '{}': bulk_viscosity {:.3g} ({:g} times the viscosity), ", m.name, lambda,
+        recommendedBulkRatio);
   if (c.time.automatic)
     print(
         "bulk_modulus of at least {:.3g} (compressed by 1 %); steps may then be as long as {:g} "

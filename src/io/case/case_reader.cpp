@@ -3,6 +3,7 @@
 #include "case_document.hpp"
 #include "table_reader.hpp"
 #include "treacle/io/shapes/shape_files.hpp"
+#include "treacle/model/case/bulk_constants.hpp"
 #include "treacle/model/case/checks.hpp"
 
 namespace treacle {
@@ -43,6 +44,7 @@ Case caseOf(const toml::table& document, const std::filesystem::path& folder, Sh
     if (files == ShapeFiles::Read) readShapeFiles(c, folder);
     requireValidMaterials(c);
     setGravity(c);
+    setBulkConstants(c);
     setStepBounds(c);  // which follow from materials, and from where bodies are
     requireValid(c);
   } catch (const CaseError& error) {

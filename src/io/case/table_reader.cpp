@@ -263,8 +263,8 @@ void TableReader::operator()(const Key& key, int& index, keys::MaterialTag) cons
 void TableReader::operator()(const Key& key, double& x, bool& isAuto, keys::OrAutoTag) const {
   const std::string expected = expectedNumber(key, true);
   const toml::node* node = section_.value(key, expected);
-  isAuto = node && node->value<std::string_view>() == "auto";
-  if (node && !isAuto) x = number(key, *node, expected);
+  isAuto = !node || node->value<std::string_view>() == "auto";
+  if (!isAuto) x = number(key, *node, expected);
 }
 
 TimeFunction TableReader::function(const Key& key, const toml::node& node) const {

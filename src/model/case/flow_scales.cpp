@@ -34,17 +34,17 @@ double shortestSide(const Case& c, const Body& body) {
   return std::isfinite(side) ? side : period;
 }
 
-/// Of the fastest column over the mean.
-double fastestColumn(const Case& c, const Body& body) {
-  const auto of = [](const auto& layers) { return std::ranges::max(layers.profile()); };
-  return c.dimensions == 2 ? of(NozzleLayers<2>(c, body)) : of(NozzleLayers<3>(c, body));
-}
-
+/// Of the fastest column. For an expression what it is at the start counts.
 double inflowSpeed(const Case& c, const Body& body) {
-  if (body.kind != BodyKind::Inflow || !body.inflow.speed) return 0;
-  const TimeFunction& speed = *body.inflow.speed;
-  const double mean = speed.isTable() ? *std::ranges::max_element(speed.values) : speed.at(body.inflow.start);
-  return body.inflow.profile == plugProfile ? mean : mean * fastestColumn(c, body);
+  const Inflow& inflow = body.inflow;
+  if (body.kind != BodyKind::Inflow || (!inflow.speed && !inflow.flowRate)) return 0;
+  const TimeFunction& given = inflow.speed ? *inflow.speed : *inflow.flowRate;
+  const double most = given.isTable() ? *std::ranges::max_element(given.values) : given.at(inflow.start);
+  if (inflow.speed && inflow.profile == plugProfile) return most;
+  const auto of = [&](const auto& layers) {
+    return std::ranges::max(layers.profile()) * (inflow.speed ? most : most / layers.area());
+  };
+  return c.dimensions == 2 ? of(NozzleLayers<2>(c, body)) : of(NozzleLayers<3>(c, body));
 }
 
 /// The largest size of the pressures of openings in the run [Pa].

@@ -85,6 +85,10 @@ TEST(FlowScales, NozzlesCountByWidthAndSpeed) {
   EXPECT_NEAR(flowScales(c).length, 6e-3, 1e-15);
   EXPECT_NEAR(flowScales(c).given, 0.7, 1e-15);
   EXPECT_NEAR(fluidNumbers(c).at(0).compression, 32 * 10 * 0.7 / 6e-3 / 1e6, 1e-12);
+  c.bodies.back().inflow.speed.reset();
+  c.bodies.back().inflow.flowRate = TimeFunction{.value = 1.2e-3};
+  EXPECT_NEAR(flowScales(c).given, 0.2, 1e-15);
+  c.bodies.back().inflow.speed = TimeFunction{.value = 0.7};
   c.bodies.back().inflow.nozzle.innerRadius = 1e-3;  // a ring
   EXPECT_NEAR(flowScales(c).length, 2e-3, 1e-15);
   EXPECT_NEAR(fluidNumbers(c).at(0).speed, 0.7, 1e-15);

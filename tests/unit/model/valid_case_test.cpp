@@ -178,7 +178,7 @@ const Mistake mistakes[] = {
      {"syrup.bulk_modulus=nan"},
      {"material", "syrup", "bulk_modulus"},
      "[[material]] 'syrup'",
-     "expected a number not less than 0 [Pa], found nan"},
+     "expected a number not less than 0 [Pa] or \"auto\", found nan"},
     {"box",
      mph,
      [](Case& c) { c.bodies[0].shape.max[1] = -6e-3; },

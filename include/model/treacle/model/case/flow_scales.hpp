@@ -18,12 +18,16 @@ struct FlowScales {
   double pressure = 0;      // largest one of openings [Pa]
   double shear = 0;         // largest speed over width of nozzles [1/s]
 
+  /// What drives a fluid of viscosity mu [Pa s] through one width of a nozzle [Pa]: for a tube 32 mu U / width.
+  double nozzlePressure(double mu) const { return 32 * mu * shear; }
   /// A pressure that a fluid of density rho [kg/m3] and viscosity mu [Pa s] has to bear [Pa]: of its weight, of
-  /// openings, or what drives it through one width of a nozzle, for a tube 32 mu U / width.
-  double pressureOf(double rho, double mu) const { return std::max({rho * potential, pressure, 32 * mu * shear}); }
+  /// openings, or in a nozzle.
+  double pressureOf(double rho, double mu) const {
+    return std::max({rho * potential, pressure, nozzlePressure(mu)});
+  }
 };
 
-/// 0 where the case does not say: of nozzles with a flow rate speeds are not looked at.
+/// 0 where the case does not say. Errors: InputError for a nozzle in which no particle has room.
 FlowScales flowScales(const Case& c);
 
 /// Numbers of one fluid of a case. Those of something that it does not have are 0.

@@ -152,15 +152,15 @@ void visit(auto& v, Like<Material> auto& m, const Case& c) {
     v({"dynamic_viscosity", "Shear viscosity mu", required, "Pa s", notNegative}, m.dynamicViscosity);
   if (c.method.kind != MethodKind::MphI) return;
   v({"bulk_viscosity",
-     "Bulk viscosity lambda, which stands in for incompressibility, some 1000 times the shear viscosity; of a "
-     "fluid not 0 together with bulk_modulus",
-     required, "Pa s", notNegative},
-    m.bulkViscosity);
+     "Bulk viscosity lambda, which stands in for incompressibility; auto: 1000 times the shear viscosity, or what "
+     "the step needs; of a fluid not 0 together with bulk_modulus",
+     optional, "Pa s", notNegative},
+    m.bulkViscosity, m.autoBulkViscosity, orAuto);
   v({"bulk_modulus",
      "Bulk modulus kappa, with which the fluid takes its volume back, at most half of bulk_viscosity over the "
-     "step with the default scheme",
-     required, "Pa", notNegative},
-    m.bulkModulus);
+     "step with the default scheme; auto: by the pressures of the case",
+     optional, "Pa", notNegative},
+    m.bulkModulus, m.autoBulkModulus, orAuto);
   v({"elastic",
      "Elastic modes of the fluid; its dynamic_viscosity or rheology is then that of the solvent",
      optional,

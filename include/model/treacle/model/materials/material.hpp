@@ -47,6 +47,8 @@ struct Material {
   std::optional<Freezing> freezing{};              // missing: it never freezes
   double thermalExpansion = 0;                     // beta, in the weight alone [1/K]
   double expansionTemperature = 0;                 // at which the density is rho; 0: the ambient one [K]
+  // Whether the case leaves lambda and kappa to setBulkConstants().
+  bool autoBulkViscosity = false, autoBulkModulus = false;
 
   /// mu at a shear rate [1/s], where a_T is `shift` and the yield stress is multiplied by `yield` [Pa s]. Formulas
   /// are not in it.

@@ -1,0 +1,99 @@
+#include "treacle/model/case/bulk_constants.hpp"
+
+#include "particles/fluid_extent.hpp"
+#include "treacle/model/case/checks.hpp"
+#include "treacle/model/case/flow_scales.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace treacle {
+namespace {
+
+constexpr double compressed = 0.001, compressedInNozzles = 0.01;
+constexpr double shareOfStable = 0.5;  // of the longest step
+
+/// How far the highest fluid and the lowest place are apart to which it can fall [m].
+double tallestColumn(const Case& c) {
+  if (norm(c.gravity) == 0) return 0;
+  Heights fluid;
+  for (const Body& body : c.bodies) {
+    if (!body.holdsFluid()) continue;
+    const Vec<3>& center = body.inflow.nozzle.center;
+    const Heights h = heightsOf(
+        c, body.kind == BodyKind::Inflow ? Extent{center, center} : boundingBox(body.shape, c.dimensions));
+    fluid.low = std::min(fluid.low, h.low), fluid.high = std::max(fluid.high, h.high);
+  }
+  double low = fluid.low;
+  for (const Body& body : c.bodies) {
+    if (body.holdsFluid()) continue;
+    const Heights h = heightsOf(c, boundingBox(body.shape, c.dimensions));
+    if (h.high <= fluid.low) low = std::min(low, h.high);
+  }
+  return std::max(0.0, fluid.high - low);
+}
+
+/// What the case says of one fluid.
+struct Expected {
+  double viscosity;  // mu [Pa s]
+  double modulus;    // kappa by the pressures; 0 where the case names none [Pa]
+  double step;       // [s]
+};
+
+Expected expectedOf(const Case& c, const Material& m, double speed, const FlowScales& flow) {
+  const double mu = c.typicalViscosity(m);
+  double pressure = std::max({m.density * flow.potential, flow.pressure, m.density * speed * speed,
+                              m.density * norm(c.gravity) * tallestColumn(c)});
+  if (flow.length > 0)
+    pressure = std::max({pressure, mu * speed / flow.length, 4 * m.surfaceTension / flow.length});
+  double step = c.time.step;
+  if (c.time.automatic) {
+    const double courant = speed > 0 ? std::min(0.5 * c.spacing / speed, c.time.end) : c.time.end;
+    step = step > 0 ? std::min(step, courant) : courant;
+  }
+  return {mu, std::max(pressure / compressed, flow.nozzlePressure(mu) / compressedInNozzles), step};
+}
+
+/// With three digits, as people write such numbers.
+double rounded(double x) { return std::stod(fmt::format("{:.3g}", x)); }
+
+void setConstants(Case& c, Material& m, const Expected& is) {
+  const double stable = shareOfStable * mostCompression(c);  // dt kappa / lambda
+  if (m.autoBulkViscosity) {
+    const double kappa = m.autoBulkModulus ? is.modulus : m.bulkModulus;
+    m.bulkViscosity = rounded(std::max(recommendedBulkRatio * is.viscosity, kappa * is.step / stable));
+  }
+  if (!m.autoBulkModulus) return;
+  const double most = stable * m.bulkViscosity / is.step;
+  m.bulkModulus = rounded(is.modulus > 0 ? std::min(is.modulus, most) : 0.1 * most);
+}
+
+}  // namespace
+
+void setBulkConstants(Case& c) {
+  const auto isOpen = [](const Material& m) { return m.autoBulkViscosity || m.autoBulkModulus; };
+  if (c.method.kind != MethodKind::MphI || std::ranges::none_of(c.materials, isOpen)) return;
+  const FlowScales flow = flowScales(c);
+  const std::vector<FluidNumbers> fluids = fluidNumbers(c);
+  double viscosity = 0, modulus = 0;  // the largest ones of fluids
+  const auto numbersOf = [&](const Material& m) {
+    return std::ranges::find(fluids, m.name, &FluidNumbers::material);
+  };
+  for (Material& m : c.materials)
+    if (const auto of = numbersOf(m); of != fluids.end()) {
+      setConstants(c, m, expectedOf(c, m, of->speed, flow));
+      viscosity = std::max(viscosity, m.bulkViscosity), modulus = std::max(modulus, m.bulkModulus);
+    }
+  for (Material& m : c.materials) {
+    if (numbersOf(m) == fluids.end()) {
+      if (m.autoBulkViscosity) m.bulkViscosity = viscosity;
+      if (m.autoBulkModulus) m.bulkModulus = modulus;
+    }
+    m.autoBulkViscosity = m.autoBulkModulus = false;
+  }
+}
+
+}  // namespace treacle

@@ -1,0 +1,97 @@
+#include "treacle/model/case/bulk_constants.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace treacle {
+namespace {
+
+/// A block of 40 x 20 mm, 10 mm above a floor, with a spacing of 1 mm.
+Case blockOf(double viscosity) {
+  Case c;
+  c.dimensions = 2, c.spacing = 1e-3;
+  c.time = {1e-3, 1};
+  c.gravity = {0, -10, 0};
+  Material fluid;
+  fluid.name = "fluid", fluid.density = 1000, fluid.dynamicViscosity = viscosity;
+  fluid.autoBulkViscosity = fluid.autoBulkModulus = true;
+  Material wall = fluid;
+  wall.name = "wall", wall.density = 8000, wall.dynamicViscosity = 0;
+  c.materials = {fluid, wall};
+  Body block;
+  block.shape.min = {0, 0.01, 0}, block.shape.max = {0.04, 0.03, 0};
+  Body floor;
+  floor.kind = BodyKind::Wall, floor.material = 1;
+  floor.shape.min = {-0.1, -0.005, 0}, floor.shape.max = {0.1, 0, 0};
+  c.bodies = {block, floor};
+  return c;
+}
+
+const Material& set(Case& c) {
+  setBulkConstants(c);
+  EXPECT_FALSE(c.materials[0].autoBulkViscosity || c.materials[0].autoBulkModulus);
+  return c.materials[0];
+}
+
+TEST(BulkConstants, FollowTheWeightOfWhatCanStandOnTheFloor) {
+  Case c = blockOf(10);
+  const Material& m = set(c);
+  EXPECT_DOUBLE_EQ(m.bulkModulus, 1000 * 1000 * 10 * 0.03);
+  EXPECT_DOUBLE_EQ(m.bulkViscosity, 1e4);
+  EXPECT_EQ(c.materials[1].bulkViscosity, m.bulkViscosity);
+  EXPECT_EQ(c.materials[1].bulkModulus, m.bulkModulus);
+}
+
+TEST(BulkConstants, ViscosityIsWhatTheStepNeeds) {
+  Case c = blockOf(1e-3);
+  const double kappa = 1000 * 1000 * std::max(10 * 0.03, 2 * 10 * 0.02);  // it falls freely
+  Case published = c;
+  published.method.scheme = SchemeKind::Published;
+  published.method.densityRadius = published.method.pressureRadius;
+  Case automatic = c;
+  automatic.time.automatic = true, automatic.time.step = 0;
+  EXPECT_DOUBLE_EQ(set(c).bulkModulus, kappa);
+  EXPECT_DOUBLE_EQ(set(c).bulkViscosity, 4e-3 * kappa);
+  EXPECT_DOUBLE_EQ(set(published).bulkViscosity, 2e-3 * kappa);
+  const double step = 0.5 * 1e-3 / std::sqrt(2 * 10 * 0.02);
+  EXPECT_NEAR(set(automatic).bulkViscosity, 4 * step * kappa, 0.005 * 4 * step * kappa);
+}
+
+TEST(BulkConstants, KeepWhatTheCaseSays) {
+  Case modulus = blockOf(10);
+  modulus.materials[0].bulkModulus = 1e7, modulus.materials[0].autoBulkModulus = false;
+  EXPECT_EQ(set(modulus).bulkModulus, 1e7);
+  EXPECT_DOUBLE_EQ(modulus.materials[0].bulkViscosity, 4e4);
+  Case viscosity = blockOf(10);
+  viscosity.materials[0].bulkViscosity = 100, viscosity.materials[0].autoBulkViscosity = false;
+  EXPECT_EQ(set(viscosity).bulkViscosity, 100);
+  EXPECT_DOUBLE_EQ(viscosity.materials[0].bulkModulus, 25000);  // half of what is stable
+  Case water = blockOf(10);
+  water.method.kind = MethodKind::Isph;
+  setBulkConstants(water);
+  EXPECT_EQ(water.materials[0].bulkModulus, 0);
+}
+
+TEST(BulkConstants, FollowNozzlesOpeningsSpeedsAndSurfaceTension) {
+  Case c = blockOf(10);
+  c.gravity = {};
+  Case nozzle = c, opening = c, wall = c, drop = c;
+  Body& feed = nozzle.bodies.emplace_back();
+  feed.kind = BodyKind::Inflow;
+  feed.inflow.nozzle.radius = 3e-3;
+  feed.inflow.speed = TimeFunction{.value = 0.7};
+  EXPECT_NEAR(set(nozzle).bulkModulus, 100 * 32 * 10 * 0.7 / 6e-3, 0.005 * 100 * 32 * 10 * 0.7 / 6e-3);
+  opening.openings.emplace_back().pressure = TimeFunction{.times = {0}, .values = {-500}};
+  EXPECT_DOUBLE_EQ(set(opening).bulkModulus, 5e5);
+  wall.bodies[1].velocity = {0.2, 0, 0};
+  EXPECT_DOUBLE_EQ(set(wall).bulkModulus, 1000 * 10 * 0.2 / 0.02);
+  drop.materials[0].surfaceTension = 0.04;
+  EXPECT_DOUBLE_EQ(set(drop).bulkModulus, 1000 * 4 * 0.04 / 0.02);
+  // Nothing says how large pressures are: what a step that is short bears.
+  EXPECT_DOUBLE_EQ(set(c).bulkModulus, 0.1 * 0.25 * 1e4 / 1e-3);
+}
+
+}  // namespace
+}  // namespace treacle
