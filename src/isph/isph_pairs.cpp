@@ -74,6 +74,9 @@ IsphPairs<D> makeIsphPairs(const Case& c) {
   pairs.volume = std::pow(c.spacing, D);
   const auto weight = [&](double r) { return pairs.kernel.value(r); };
   pairs.latticeDensity = pairs.volume * (weight(0) + latticeSum<D>(pairs.kernel.radius(), c.spacing, weight));
+  pairs.accurate = c.method.scheme == SchemeKind::Accurate;
+  pairs.latticeWeight = pairs.densityWeight(0) + latticeSum<D>(pairs.kernel.radius(), c.spacing,
+                                                               [&](double r) { return pairs.densityWeight(r); });
   pairs.latticeLaplacian =
       latticeSum<D>(pairs.kernel.radius(), c.spacing, [&](double r) { return 2 * pairs.slope(r); });
   // A thousandth more, so that rounding does not decide about particles that start at that distance.
@@ -83,7 +86,6 @@ IsphPairs<D> makeIsphPairs(const Case& c) {
   pairs.alpha = s.alpha;
   pairs.noSlip = s.walls == WallSlip::NoSlip;
   pairs.negativePressure = s.negativePressure;
-  pairs.accurate = c.method.scheme == SchemeKind::Accurate;
   return pairs;
 }
 

@@ -54,14 +54,6 @@ double IsphOracle<D>::laplacian(std::uint32_t i, std::uint32_t j) const {
 }
 
 template <int D>
-double IsphOracle<D>::latticeDensity() const {
-  double sum = 0;
-  for (const Vec<D>& x : latticeAt<D>(Vec<D>::filled(-3 * l), Vec<D, int>::filled(7), l))
-    sum += volume * kernel(norm(x));
-  return sum;
-}
-
-template <int D>
 double IsphOracle<D>::latticeLaplacian() const {
   double sum = 0;
   for (const Vec<D>& x : latticeAt<D>(Vec<D>::filled(-3 * l), Vec<D, int>::filled(7), l))
@@ -71,9 +63,16 @@ double IsphOracle<D>::latticeLaplacian() const {
 
 template <int D>
 double IsphOracle<D>::density(std::uint32_t i) const {
-  double sum = volume * kernel(0);
-  forEachOther(i, [&](std::uint32_t j) { sum += volume * kernel(norm(apart(i, j))); });
-  return sum / latticeDensity();
+  const double radius = 2 * s.c.smoothingLength();
+  const auto weight = [&](double r) {
+    if (!isAccurate()) return kernel(r);
+    return r < radius ? RowWindow::at(1 - r * r / (radius * radius)) : 0;
+  };
+  double lattice = 0, sum = weight(0);
+  for (const Vec<D>& x : latticeAt<D>(Vec<D>::filled(-4 * l), Vec<D, int>::filled(9), l))
+    lattice += weight(norm(x));
+  forEachOther(i, [&](std::uint32_t j) { sum += weight(norm(apart(i, j))); });
+  return sum / lattice;
 }
 
 template <int D>

@@ -43,7 +43,6 @@ struct IsphOracle {
   }
 
   /// Of a full lattice.
-  double latticeDensity() const;
   double latticeLaplacian() const;
   bool isAccurate() const { return s.c.method.scheme == SchemeKind::Accurate; }
   /// Where i and j are on both sides of a face of the wall j: of those that j has, the one that the line from i to

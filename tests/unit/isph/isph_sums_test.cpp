@@ -377,6 +377,37 @@ TEST(IsphSums, HydrostaticPressureHoldsTheFluidAgainstGravity) {
   }
 }
 
+TEST(RowWindow, IsThatOfKaiserAndBessel) {
+  for (int k = 0; k <= 1000; ++k) {
+    const double s = 1e-3 * k, root = std::sqrt(s);
+    EXPECT_NEAR(RowWindow::at(s), root * std::cyl_bessel_i(1, 9 * root) / std::cyl_bessel_i(1, 9), 4e-6);
+  }
+}
+
+/// The density of a lattice that is stretched along one axis and pressed along the other one.
+TEST(RowWindow, KnowsHowMuchFluidThereIsAndNotHowItStands) {
+  Case c = waterCase(2, Vec<3>::filled(60));
+  for (const double strain : {0.1, 0.2, 0.35}) {
+    const double stretch = std::exp(strain), l = c.spacing;
+    std::vector<Vec<2>> points;
+    for (const Vec<2>& x : latticeAt<2>({-9.5 * l, -9.5 * l}, {20, 20}, l))
+      points.push_back({30 * l + stretch * x[0], 30 * l + x[1] / stretch});
+    for (const SchemeKind scheme : {SchemeKind::Published, SchemeKind::Accurate}) {
+      c.method.scheme = scheme;
+      const IsphScene<2> s(c, particlesAt<2>(points));
+      double worst = 0;
+      for (std::uint32_t i = 0; i < s.n(); ++i)
+        if (norm(s.particles.position[i] - Vec<2>{30 * l, 30 * l}) < 3 * l)
+          worst = std::max(worst, std::abs(s.density[i] - 1));
+      if (scheme == SchemeKind::Accurate) {
+        EXPECT_LE(worst, 1.3e-3) << strain;
+      } else if (strain > 0.3) {
+        EXPECT_GE(worst, 3e-3);
+      }
+    }
+  }
+}
+
 TEST(IsphParticles, SettlePressureCutsAndFreesTheSurface) {
   Context<Cpu> context;
   const std::vector<std::uint8_t> surface{Place::Inside, Place::Free, Place::Inside, Place::Free, Place::Surface};

@@ -73,6 +73,18 @@ struct WallContact {
   double inside = 0.6;    // on the first layer; three walls that meet come to 0.5
 };
 
+/// For the density of the accurate scheme: the window of Kaiser and Bessel [R. M. Lewitt, J. Opt. Soc. Am. A 7,
+/// 1990] of order 1 with the taper 9, sqrt(s) I_1(9 sqrt(s)) / I_1(9) with s = 1 - q^2, to within 4e-6. In
+/// lattices that are stretched by exp(0.35) across each other the density is right to 0.0012, with the cubic
+/// spline to 0.005.
+struct RowWindow {
+  TREACLE_HD static double at(double s) {
+    return s * (0.00462392 +
+                s * (0.03780282 +
+                     s * (0.20252082 + s * (0.04222768 + s * (0.6873731 + s * (-0.3014167 + s * 0.32686486))))));
+  }
+};
+
 /// What the sums of ISPH read: sorted particles, their neighbours and the constants of the case.
 template <int D>
 struct IsphPairs : MaterialParticles<D> {
@@ -88,6 +100,7 @@ struct IsphPairs : MaterialParticles<D> {
   FrameForce<D> frame{};
   double volume = 0;                           // of a particle, l^D [m^D]
   double latticeDensity = 0;                   // sum of V W over a full lattice [-]
+  double latticeWeight = 0;                    // sum of densityWeight over one
   double latticeLaplacian = 0;                 // sum of 2 slope over one [1/m2]
   double leastDensity = 0, mostViscosity = 0;  // of fluids [kg/m3], [Pa s]
   double mostDiffusivity = 0;                  // of their momentum, next to walls, too [m2/s]
@@ -110,6 +123,12 @@ struct IsphPairs : MaterialParticles<D> {
   float* eddyViscosity = nullptr;  // [Pa s]
   float* wallViscosity = nullptr;  // towards walls, instead of that of the materials [Pa s]
 
+  /// Of a neighbour in the density, which is their sum over latticeWeight.
+  TREACLE_HD double densityWeight(double r) const {
+    if (!accurate) return volume * kernel.value(r);
+    const double q = r / kernel.radius();
+    return q < 1 ? RowWindow::at(1 - q * q) : 0;
+  }
   /// V |W'| / r [1/m2]: V grad_i W = slope (x_j - x_i).
   TREACLE_HD double slope(const Distance& r) const { return volume * kernel.slope(r); }
   /// Of two fluid particles, with the eddies around them [Pa s].

@@ -30,7 +30,7 @@ struct DensityTerm {
   }
   TREACLE_HD void wall(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d,
                        const Distance& r, double* sum) const {
-    sum[Density] += pairs.volume * pairs.kernel.value(r.r);
+    sum[Density] += pairs.densityWeight(r.r);
     const double slope = pairs.slope(r);
     for (int k = 0; k < D; ++k) sum[Lack + k] += slope * d[k];
     if (!pairs.accurate || i == j) return;
@@ -38,7 +38,7 @@ struct DensityTerm {
     addSquare(slope, d, sum + Moments);
   }
   TREACLE_HD void store(const IsphPairs<D>& pairs, std::uint32_t i, const double* sum) const {
-    const double ratio = sum[Density] / pairs.latticeDensity;
+    const double ratio = sum[Density] / pairs.latticeWeight;
     Vec<D> lack;
     for (int k = 0; k < D; ++k) lack[k] = sum[Lack + k];
     const SurfaceCriterion& s = pairs.surface;
