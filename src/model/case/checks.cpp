@@ -2,6 +2,7 @@
 
 #include "carried_fluids.hpp"
 #include "long_steps.hpp"
+#include "particles/body_points.hpp"
 #include "particles/fluid_extent.hpp"
 #include "treacle/model/case/names.hpp"
 #include "treacle/model/geometry/shape.hpp"
@@ -91,23 +92,40 @@ void warnThinWalls(const Case& c, std::vector<std::string>& warnings) {
   }
 }
 
+/// Places of particles of a wall at the start, of which some leave the domain first if the wall does [m].
+template <int D>
+std::vector<Vec<D>> outermost(const Case& c, const Body& body) {
+  if (body.rotation) {
+    std::vector<std::string> notes;
+    return bodyPoints<D>(c, body, notes).place;
+  }
+  const Extent box = boundingBox(body.shape, c.dimensions);
+  const Vec<D> half = Vec<D>::filled(c.spacing / 2);  // particles are that far inside
+  return {resized<D>(box.min) + half, resized<D>(box.max) - half};
+}
+
 /// A wall that moves on and on, such as a lid or a belt, needs a periodic axis.
+template <int D>
 void warnLeavingWalls(const Case& c, std::vector<std::string>& warnings) {
   constexpr int samples = 200;
   for (const Body& body : c.bodies) {
-    if (body.kind != BodyKind::Wall || body.rotation || !body.where.empty() || body.shape.isThinSheet()) continue;
-    const Extent box = boundingBox(body.shape, c.dimensions);
+    const bool isKnown = body.rotation ? body.shape.kind != ShapeKind::Particles : body.where.empty();
+    if (body.kind != BodyKind::Wall || !isKnown || body.shape.isThinSheet()) continue;
+    const std::vector<Vec<D>> places = outermost<D>(c, body);
+    const auto leavesAlong = [&](const WallMotion<D>& motion, double t) {
+      for (const Vec<D>& place : places) {
+        const Vec<D> x = place + t * motion.chordAt(place);
+        for (int k = 0; k < D; ++k)
+          if (!c.domain.periodic[static_cast<std::size_t>(k)] &&
+              (x[k] < c.domain.min[k] - rounding * c.spacing || x[k] > c.domain.max[k] + rounding * c.spacing))
+            return k;
+      }
+      return D;
+    };
     for (int sample = 1; sample <= samples; ++sample) {
       const double t = c.time.end * sample / samples;
-      const Vec<3> way = wallDisplacement(body, t);
-      int axis = 0;
-      const auto leaves = [&](int k) {  // particles are half a spacing inside
-        return !c.domain.periodic[static_cast<std::size_t>(k)] &&
-               (box.min[k] + way[k] < c.domain.min[k] - 0.5 * c.spacing ||
-                box.max[k] + way[k] > c.domain.max[k] + 0.5 * c.spacing);
-      };
-      while (axis < c.dimensions && !leaves(axis)) ++axis;
-      if (axis == c.dimensions) continue;
+      const int axis = leavesAlong(wallMotion<D>(c.domain, body, 0, t), t);
+      if (axis == D) continue;
       warnings.push_back(
           fmt::format("wall '{}' leaves the domain along {} before t = {:.3g} s, where the run will end; make the "
                       "axis periodic, the domain larger, or the motion one that stays",
@@ -346,7 +364,7 @@ std::vector<std::string> caseWarnings(const Case& c) {
   warnKeysOfOthers(c, warnings);
   warnThinWalls(c, warnings);
   warnThinMeshes(c, warnings);
-  warnLeavingWalls(c, warnings);
+  c.dimensions == 2 ? warnLeavingWalls<2>(c, warnings) : warnLeavingWalls<3>(c, warnings);
   warnFriction(c, warnings);
   warnShortRadii(c, warnings);
   if (!c.time.stepsVary()) warnTimes(c, warnings);

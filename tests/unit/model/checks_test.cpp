@@ -454,6 +454,22 @@ TEST(caseWarnings, wallsThatLeaveTheDomain) {
   EXPECT_THAT(caseWarnings(c), ElementsAre(HasSubstr("leaves the domain along y before t = 5.05 s")));
 }
 
+TEST(caseWarnings, wallsThatTurnOutOfTheDomain) {
+  Case c = emptyCase(2);  // of 200 m
+  c.time.end = 10;
+  c.bodies = {makeBody("door", BodyKind::Wall, box({-90, 0}, {90, 4}))};
+  Rotation& rotation = c.bodies[0].rotation.emplace();
+  rotation.center = {50, 0, 0}, rotation.speed = 0.01;
+  EXPECT_THAT(caseWarnings(c), IsEmpty());
+  rotation.speed = 0.1;
+  const double t = std::asin(100 / std::hypot(139.5, 0.5)) + std::atan(0.5 / 139.5);
+  EXPECT_THAT(caseWarnings(c),
+              ElementsAre(HasSubstr(fmt::format("'door' leaves the domain along y before t = {:.3g} s",
+                                                0.05 * std::ceil(t / 0.1 / 0.05)))));
+  rotation.center = {0, 0, 0};
+  EXPECT_THAT(caseWarnings(c), IsEmpty());
+}
+
 TEST(caseWarnings, meshesWithThinWalls) {
   const auto warnings = [](double thickness, FillKind fill, BodyKind kind) {  // of a pot without a lid
     Case c = emptyCase(3);
