@@ -38,7 +38,7 @@ study = Study(
     name="isph-driven-cavity",
     title="ISPH: driven cavity, Re = 100",
     levels=[Level(1), Level(2), Level(4)],
-    bars={"u, least": 0.07, "v, most": 0.09, "v, least": 0.065},
+    bars={"u, least": 0.085, "v, most": 0.1, "v, least": 0.075},
     measure=measure,
     x_label="x or y [m]",
     y_label="velocity [m/s]",
