@@ -86,7 +86,7 @@ class Catalogue {
       note(key, ValueKind::Text, text);
     }
     void operator()(const Key& key, int, keys::MaterialTag) { note(key, ValueKind::MaterialName); }
-    void operator()(const Key& key, double, bool, keys::OrAutoTag) { note(key, ValueKind::NumberOrAuto); }
+    void operator()(const Key& key, double, bool, keys::OrAutoTag) { note(key, ValueKind::NumberOrAuto, "auto"); }
     void operator()(const Key& key, const std::optional<TimeFunction>&) { note(key, ValueKind::OfTime); }
     void operator()(const Key& key, const TimeVector&) { note(key, ValueKind::VectorOfTime); }
     void operator()(const Key& key, const Vec<3>&, const TimeVector&) { note(key, ValueKind::VectorOfTime); }
