@@ -132,7 +132,7 @@ void printStep(const Case& c, const std::vector<FluidNumbers>& fluids, const Flo
 void printAdvice(const Case& c) {
   const bool elastic = c.method.kind == MethodKind::MphI;
   const FlowScales flow = flowScales(c);
-  const std::vector<FluidNumbers> fluids = fluidNumbers(c);
+  const std::vector<FluidNumbers> fluids = fluidNumbers(c, flow);
   printResolution(c, flow);
   for (const FluidNumbers& n : fluids) printFluid(n, elastic);
   for (const FluidNumbers& n : fluids) printRemembered(c, n, flow);

@@ -43,10 +43,11 @@ struct Expected {
   double step;       // [s]
 };
 
-Expected expectedOf(const Case& c, const Material& m, double speed, const FlowScales& flow) {
+/// `tallest`: tallestColumn(c).
+Expected expectedOf(const Case& c, const Material& m, double speed, const FlowScales& flow, double tallest) {
   const double mu = c.typicalViscosity(m);
   double pressure = std::max({m.density * flow.potential, flow.pressure, m.density * speed * speed,
-                              m.density * norm(c.gravity) * tallestColumn(c)});
+                              m.density * norm(c.gravity) * tallest});
   if (flow.length > 0)
     pressure = std::max({pressure, mu * speed / flow.length, 4 * m.surfaceTension / flow.length});
   double step = c.time.step;
@@ -60,7 +61,7 @@ Expected expectedOf(const Case& c, const Material& m, double speed, const FlowSc
 /// With three digits, as people write such numbers.
 double rounded(double x) { return std::stod(fmt::format("{:.3g}", x)); }
 
-void setConstants(Case& c, Material& m, const Expected& is) {
+void setConstants(const Case& c, Material& m, const Expected& is) {
   const double stable = shareOfStable * mostCompression(c);  // dt kappa / lambda
   if (m.autoBulkViscosity) {
     const double kappa = m.autoBulkModulus ? is.modulus : m.bulkModulus;
@@ -77,14 +78,15 @@ void setBulkConstants(Case& c) {
   const auto isOpen = [](const Material& m) { return m.autoBulkViscosity || m.autoBulkModulus; };
   if (c.method.kind != MethodKind::MphI || std::ranges::none_of(c.materials, isOpen)) return;
   const FlowScales flow = flowScales(c);
-  const std::vector<FluidNumbers> fluids = fluidNumbers(c);
+  const std::vector<FluidNumbers> fluids = fluidNumbers(c, flow);
+  const double tallest = tallestColumn(c);
   double viscosity = 0, modulus = 0;  // the largest ones of fluids
   const auto numbersOf = [&](const Material& m) {
     return std::ranges::find(fluids, m.name, &FluidNumbers::material);
   };
   for (Material& m : c.materials)
     if (const auto of = numbersOf(m); of != fluids.end()) {
-      setConstants(c, m, expectedOf(c, m, of->speed, flow));
+      setConstants(c, m, expectedOf(c, m, of->speed, flow, tallest));
       viscosity = std::max(viscosity, m.bulkViscosity), modulus = std::max(modulus, m.bulkModulus);
     }
   for (Material& m : c.materials) {

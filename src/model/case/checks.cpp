@@ -92,12 +92,27 @@ void warnThinWalls(const Case& c, std::vector<std::string>& warnings) {
   }
 }
 
+/// How far a particle of a wall that turns may be from its centre without ever leaving the domain [m].
+double safeRadius(const Case& c, const Body& body, int samples) {
+  double radius = std::numeric_limits<double>::infinity();
+  for (int sample = 0; sample <= samples; ++sample) {
+    const Vec<3> center = body.rotation->center + wallDisplacement(body, c.time.end * sample / samples);
+    for (int k = 0; k < c.dimensions; ++k)
+      if (!c.domain.periodic[static_cast<std::size_t>(k)])
+        radius = std::min({radius, center[k] - c.domain.min[k], c.domain.max[k] - center[k]});
+  }
+  return radius;
+}
+
 /// Places of particles of a wall at the start, of which some leave the domain first if the wall does [m].
 template <int D>
-std::vector<Vec<D>> outermost(const Case& c, const Body& body) {
+std::vector<Vec<D>> outermost(const Case& c, const Body& body, int samples) {
   if (body.rotation) {
     std::vector<std::string> notes;
-    return bodyPoints<D>(c, body, notes).place;
+    std::vector<Vec<D>> places = bodyPoints<D>(c, body, notes).place;
+    const double safe = safeRadius(c, body, samples);
+    std::erase_if(places, [&](const Vec<D>& x) { return norm(x - resized<D>(body.rotation->center)) <= safe; });
+    return places;
   }
   const Extent box = boundingBox(body.shape, c.dimensions);
   const Vec<D> half = Vec<D>::filled(c.spacing / 2);  // particles are that far inside
@@ -111,7 +126,7 @@ void warnLeavingWalls(const Case& c, std::vector<std::string>& warnings) {
   for (const Body& body : c.bodies) {
     const bool isKnown = body.rotation ? body.shape.kind != ShapeKind::Particles : body.where.empty();
     if (body.kind != BodyKind::Wall || !isKnown || body.shape.isThinSheet()) continue;
-    const std::vector<Vec<D>> places = outermost<D>(c, body);
+    const std::vector<Vec<D>> places = outermost<D>(c, body, samples);
     const auto leavesAlong = [&](const WallMotion<D>& motion, double t) {
       for (const Vec<D>& place : places) {
         const Vec<D> x = place + t * motion.chordAt(place);

@@ -102,8 +102,7 @@ FlowScales flowScales(const Case& c) {
   return flow;
 }
 
-std::vector<FluidNumbers> fluidNumbers(const Case& c) {
-  const FlowScales flow = flowScales(c);
+std::vector<FluidNumbers> fluidNumbers(const Case& c, const FlowScales& flow) {
   std::vector<FluidNumbers> numbers;
   for (std::size_t k = 0; k < c.materials.size(); ++k)
     if (std::ranges::any_of(c.bodies,

@@ -16,8 +16,8 @@ namespace treacle {
 /// singular, and pressures are known up to a constant, their level. All arrays are in the backend's memory.
 template <class Backend>
 struct ClosedRegions {
-  std::vector<std::uint32_t> labels;     // of the closed regions of all processes, ascending; none is 0
-  Buffer<std::uint32_t, Backend> label;  // per particle, ghosts included: 0 where it is in none; empty if none is
+  std::vector<std::uint32_t> labels;            // of the closed regions of all processes, ascending; none is 0
+  Buffer<std::uint32_t, Backend> label;         // where some(), per particle with ghosts: 0 where it is in none
   Buffer<std::uint32_t, Backend> parent, next;  // to find them
 
   bool some() const { return !labels.empty(); }

@@ -92,7 +92,7 @@ template <class Backend>
 void joinOverProcesses(Context<Backend>& context, const NeighbourRowsView& rows, std::uint32_t first,
                        ClosedRegions<Backend>& regions) {
   const std::span<const std::uint32_t> parent = regions.parent.span();
-  const std::span<std::uint32_t> next = regions.next.span();  // per region, at its least particle
+  const std::span<std::uint32_t> next = regions.next.span();  // per region, at the particle that its label names
   const std::span<std::uint32_t> label = regions.label.span();
   forEach(context, next.size(),
           [=] TREACLE_HD(std::size_t i) { next[i] = first + static_cast<std::uint32_t>(i) + 1; });

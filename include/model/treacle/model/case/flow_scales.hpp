@@ -43,8 +43,9 @@ struct FluidNumbers {
   double bond = 0;  // rho g L^2 / gamma
 };
 
-/// Of the materials that some fluid body or inflow is made of.
-std::vector<FluidNumbers> fluidNumbers(const Case& c);
+/// Of the materials that some fluid body or inflow is made of. `flow`: that of the case.
+std::vector<FluidNumbers> fluidNumbers(const Case& c, const FlowScales& flow);
+inline std::vector<FluidNumbers> fluidNumbers(const Case& c) { return fluidNumbers(c, flowScales(c)); }
 
 // What follows stands in carried_fluids.cpp.
 
