@@ -179,6 +179,7 @@ class BodyChange {
     for (std::uint32_t k = 0; k < walls_.added.size(); ++k)
       to.position[n + walls_.kept.size() + k] = placeNow(walls_.added[k]);
     to.steps = from.steps;
+    to.bulk = from.bulk;
     to.rigid = rigidBodies();
     to.gas = from.gas;
     state_.particles = std::move(to);

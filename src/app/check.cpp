@@ -148,6 +148,10 @@ void printNumbers(const Case& c) {
           "# material '{}': dt kappa / lambda = {:.4g} (stable up to {:g}), diffusion numbers d_mu = {:.4g}, "
           "d_lambda = {:.4g}\n",
           n.material, n.compression, mostCompression(c), n.shearDiffusion, n.bulkDiffusion);
+  for (const Material& m : c.materials)
+    if (m.autoBulkViscosity || m.autoBulkModulus)
+      print("# automatic constants of '{}': bulk_viscosity {:.3g}, bulk_modulus {:.3g}\n", m.name, m.bulkViscosity,
+            m.bulkModulus);
 }
 
 }  // namespace

@@ -118,6 +118,8 @@ void Run::keepWatch(const StepReport& report) {
   watched_.density = std::max(watched_.density, w.density);
   if (!report.warnings.empty()) progress_.endLine();
   for (const std::string& text : report.warnings) log_.warning(fmt::format("step {}: {}", report.step, text));
+  if (!report.notes.empty()) progress_.endLine();
+  for (const std::string& text : report.notes) log_.info(fmt::format("step {}: {}", report.step, text));
 }
 
 void Run::copyState(Snapshot& snapshot) {

@@ -58,6 +58,8 @@ void Recording::record() {
   recorder_.record(session_.lastReport());
   for (const std::string& text : session_.lastReport().warnings)
     log_.warning(fmt::format("step {}: {}", session_.lastReport().step, text));
+  for (const std::string& text : session_.lastReport().notes)
+    log_.info(fmt::format("step {}: {}", session_.lastReport().step, text));
 }
 
 /// As much as is possible, whatever goes wrong on the way.

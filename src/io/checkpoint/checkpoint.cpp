@@ -126,6 +126,7 @@ void fill(hid_t file, const Particles<D>& particles, std::int64_t step, double t
   writeAttribute(file, "time_step", particles.steps.last);
   writeAttribute(file, "planned_time_step", particles.steps.planned);
   writeAttribute(file, "time_step_error_rate", particles.steps.rate);
+  writeBulk(file, particles.bulk);
   writeNames(file, "material", names.materials), writeNames(file, "body", names.bodies);
   writeFlow(file, particles.flow);
   writeRigid(file, particles.rigid);
@@ -235,6 +236,7 @@ Checkpoint<D> readContent(const std::filesystem::path& path, ParticlePart part) 
   const std::uint32_t modes = readModeNumbers(file, particles.modes.age);
   particles.modes.pressure = readEigenvalue(file);
   particles.steps = readSteps(file);
+  particles.bulk = readBulk(file);
   const auto has = [&](const char* name) { return readAttribute<std::uint8_t>(file, name) != 0; };
   particles.has = {has("has_shear_rates"), has("has_temperatures"), has("has_viscosity_factors")};
   particles.has.sides = hasAttribute(file, "has_sides");

@@ -35,9 +35,9 @@ template <class P, class F>
 void forEachNamedField(P& particles, std::uint64_t modeValues, F&& f) {
   auto& [fluidCount, ghostCount, count, position, velocity, pressure, numberDensity, heldPressure, material, body,
          id, start, side, acceleration, jerk, has, shearRate, temperature, viscosityFactor, states, conformation,
-         modes, steps, flow, rigid, gas, response, wallSurface] = particles;
-  static_cast<void>(steps), static_cast<void>(flow), static_cast<void>(rigid), static_cast<void>(gas);
-  static_cast<void>(response);                               // numbers, all of these
+         modes, steps, bulk, flow, rigid, gas, response, wallSurface] = particles;
+  static_cast<void>(steps), static_cast<void>(bulk), static_cast<void>(flow), static_cast<void>(rigid);
+  static_cast<void>(gas), static_cast<void>(response);       // numbers, all of these
   static_cast<void>(wallSurface), static_cast<void>(start);  // there is none between steps
   f(FieldInfo{"position", Of::All, count}, position), f(FieldInfo{"velocity", Of::All, count}, velocity);
   f(FieldInfo{"pressure", Of::All, count}, pressure);

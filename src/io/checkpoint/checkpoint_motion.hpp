@@ -16,8 +16,8 @@
 
 namespace treacle {
 
-// What a checkpoint holds of rigid bodies and of fluid that enters and leaves. Errors, of all functions:
-// Hdf5Error.
+// What a checkpoint holds of rigid bodies, of fluid that enters and leaves, and of other memories of a run.
+// Errors, of all functions: Hdf5Error.
 
 inline void writeCount(hid_t file, const std::string& name, const FlowCount& count) {
   writeAttribute(file, (name + "_particles").c_str(), static_cast<std::int64_t>(count.particles));
@@ -95,6 +95,27 @@ inline GasState readGas(hid_t file) {
       gas.cells.size() != gas.labels.size() || !std::ranges::all_of(gas.labels, isPocket))
     throw Hdf5Error("the cells of trapped gas do not fit its pockets");
   return gas;
+}
+
+/// Where there is something to write.
+inline void writeBulk(hid_t file, const BulkMemory& bulk) {
+  if (bulk == BulkMemory{}) return;
+  writeAttribute(file, "bulk_viscosity_raised", bulk.viscosity);
+  writeAttribute(file, "bulk_modulus_raised", bulk.modulus);
+  writeAttribute(file, "bulk_excess", bulk.excess);
+  writeAttribute(file, "bulk_rest", bulk.rest);
+}
+/// Errors: Hdf5Error for what no run remembers.
+inline BulkMemory readBulk(hid_t file) {
+  if (!hasAttribute(file, "bulk_rest")) return {};
+  const BulkMemory bulk{readAttribute<double>(file, "bulk_viscosity_raised"),
+                        readAttribute<double>(file, "bulk_modulus_raised"),
+                        readAttribute<double>(file, "bulk_excess"), readAttribute<double>(file, "bulk_rest")};
+  const bool isFinite = std::isfinite(bulk.viscosity + bulk.modulus + bulk.excess + bulk.rest);
+  if (!isFinite || bulk.viscosity < 1 || bulk.modulus < 1 || bulk.excess < 0 || bulk.rest < 0)
+    throw Hdf5Error(
+        fmt::format("bulk constants raised by {} and {}, for {} s", bulk.viscosity, bulk.modulus, bulk.rest));
+  return bulk;
 }
 
 /// Where there is something to write.

@@ -13,8 +13,10 @@
 namespace treacle {
 namespace {
 
-constexpr double compressed = 0.001, compressedInNozzles = 0.01;
+constexpr double compressed = 0.002, compressedInNozzles = 0.01;
 constexpr double shareOfStable = 0.5;  // of the longest step
+// Of constants that follow the density.
+constexpr double mostExcess = 0.005, mostViscosity = 16;  // the latter over that at first
 
 /// How far the highest fluid and the lowest place are apart to which it can fall [m].
 double tallestColumn(const Case& c) {
@@ -41,6 +43,7 @@ struct Expected {
   double viscosity;  // mu [Pa s]
   double modulus;    // kappa by the pressures; 0 where the case names none [Pa]
   double step;       // [s]
+  double settling;   // in which density errors are to vanish at the shortest, lambda/kappa [s]
 };
 
 /// `tallest`: tallestColumn(c).
@@ -55,7 +58,9 @@ Expected expectedOf(const Case& c, const Material& m, double speed, const FlowSc
     const double courant = speed > 0 ? std::min(0.5 * c.spacing / speed, c.time.end) : c.time.end;
     step = step > 0 ? std::min(step, courant) : courant;
   }
-  return {mu, std::max(pressure / compressed, flow.nozzlePressure(mu) / compressedInNozzles), step};
+  // Faster than gravity moves particles past each other, errors of the density keep them in motion.
+  const double settling = flow.acceleration > 0 ? 2 * std::sqrt(c.spacing / flow.acceleration) : 0;
+  return {mu, std::max(pressure / compressed, flow.nozzlePressure(mu) / compressedInNozzles), step, settling};
 }
 
 /// With three digits, as people write such numbers.
@@ -65,7 +70,9 @@ void setConstants(const Case& c, Material& m, const Expected& is) {
   const double stable = shareOfStable * mostCompression(c);  // dt kappa / lambda
   if (m.autoBulkViscosity) {
     const double kappa = m.autoBulkModulus ? is.modulus : m.bulkModulus;
-    m.bulkViscosity = rounded(std::max(recommendedBulkRatio * is.viscosity, kappa * is.step / stable));
+    const double settling = m.autoBulkModulus ? is.settling : 0;
+    m.bulkViscosity =
+        rounded(std::max(recommendedBulkRatio * is.viscosity, kappa * std::max(is.step / stable, settling)));
   }
   if (!m.autoBulkModulus) return;
   const double most = stable * m.bulkViscosity / is.step;
@@ -94,8 +101,29 @@ void setBulkConstants(Case& c) {
       if (m.autoBulkViscosity) m.bulkViscosity = viscosity;
       if (m.autoBulkModulus) m.bulkModulus = modulus;
     }
-    m.autoBulkViscosity = m.autoBulkModulus = false;
   }
+}
+
+bool adaptBulkConstants(const Case& c, double ratio, double dt, BulkMemory& memory) {
+  memory.rest = std::max(0.0, memory.rest - dt);
+  const double excess = ratio - 1;
+  if (excess <= (memory.rest > 0 ? 1.2 * memory.excess : mostExcess)) return false;
+  const double stable = shareOfStable * mostCompression(c) / c.time.step;
+  double rate = 0;  // kappa / lambda [1/s]
+  for (const Material& m : c.materials)
+    if (m.hasOpenBulk())
+      rate = std::max(rate, m.bulkModulus * memory.modulus / (m.bulkViscosity * memory.viscosity));
+  if (rate == 0) return false;
+  if (const double room = stable / rate; room >= 2) {
+    const double raise = std::min(4.0, room);
+    memory.modulus *= raise, rate *= raise;
+  } else if (memory.viscosity < mostViscosity) {
+    memory.modulus *= 2, memory.viscosity *= 2;
+  } else {
+    return false;
+  }
+  memory.excess = excess, memory.rest = 2 / rate;
+  return true;
 }
 
 }  // namespace treacle

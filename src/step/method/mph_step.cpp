@@ -68,6 +68,7 @@ class MphStep final : public StepMethod<D, Backend> {
 
   void prepareSystem() override {
     neighbourhood_.setTimeStep(state_.velocityStep);
+    neighbourhood_.raiseBulk(state_.theCase, state_.particles.bulk);
     placeWallSurfaces();
     computeDensities();
     renormalise();

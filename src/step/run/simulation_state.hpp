@@ -8,6 +8,7 @@
 #include "start_state.hpp"
 #include "step_method.hpp"
 #include "treacle/core/processes.hpp"
+#include "treacle/model/case/bulk_constants.hpp"
 #include "treacle/step/readings/diagnostics.hpp"
 #include "treacle/step/run/shareable.hpp"
 #include "treacle/step/run/simulation.hpp"
@@ -259,6 +260,7 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
       lastSpeed = report.diagnostics.maxSpeed;
       const double start = time;
       accept();
+      if (theCase.keepsVolume()) adaptBulk(report);
       if (theCase.isOpen()) report.flow = followFlow(start);
     });
     report.seconds = phases.seconds();
@@ -276,6 +278,17 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     report.rigid = particles.rigid.bodies;
     if (theCase.gas) report.gas = gasReport();
     return report;
+  }
+
+  void adaptBulk(StepReport& report) {
+    BulkMemory& bulk = particles.bulk;
+    const double ratio = report.diagnostics.meanDensityRatio;
+    if (!watch->tellsDensity(report.diagnostics) || !adaptBulkConstants(theCase, ratio, timeStep, bulk)) return;
+    particles.modes.pressure = {};
+    report.notes.push_back(fmt::format(
+        "the fluid is {:.2g} % too dense: its automatic bulk modulus is {:.3g} times, its bulk viscosity "
+        "{:g} times as large as at first from here on",
+        100 * (ratio - 1), bulk.modulus, bulk.viscosity));
   }
 
   GasReport gasReport() const {

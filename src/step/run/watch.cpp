@@ -63,7 +63,7 @@ Watched Watch::look(double dt, const Diagnostics& d, std::vector<std::string>& w
   w.courant = d.maxSpeed * dt / case_.spacing;
   w.insideWalls = particles_ > 0 ? d.insideWalls / particles_ : 0;
   // With MPH-I a few particles inside tell nothing: thin sheets and threads have hardly any.
-  const bool tells = case_.method.kind == MethodKind::Isph || d.interiorParticles > 0.25 * particles_;
+  const bool tells = case_.method.kind == MethodKind::Isph || tellsDensity(d);
   w.density = std::max(d.excessDensity, tells ? d.meanDensityError : 0.0);
   pressed_ = d.excessDensity > 0.5 * w.density;
   for (std::size_t k = 0; k < bounds().size(); ++k) {
@@ -79,6 +79,8 @@ Watched Watch::look(double dt, const Diagnostics& d, std::vector<std::string>& w
   }
   return w;
 }
+
+bool Watch::tellsDensity(const Diagnostics& d) const { return d.interiorParticles > 0.25 * particles_; }
 
 void Watch::requireSlow(double dt, double speed) const {
   const double value = speed * dt / case_.spacing, most = case_.watch.courant;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "treacle/model/case/case.hpp"
+#include "treacle/model/state/bulk_memory.hpp"
 
 namespace treacle {
 
@@ -13,5 +14,11 @@ inline constexpr double recommendedBulkRatio = 1000;
 /// as it may be. Materials that no fluid is made of have the largest constants of the fluids. Errors: InputError
 /// for a nozzle in which no particle has room.
 void setBulkConstants(Case& c);
+
+/// After a step of dt [s] with the mean density `ratio` inside the fluid, over that at rest: raises constants that
+/// the case leaves open where fluid is too dense. At first kappa grows, by up to 4 and as far as
+/// setBulkConstants() lets it for the step, then both double. The next time comes when kappa has had the time to
+/// act, 2 lambda/kappa, or when the fluid is denser by a fifth of its excess. Returns whether they are others now.
+bool adaptBulkConstants(const Case& c, double ratio, double dt, BulkMemory& memory);
 
 }  // namespace treacle

@@ -50,6 +50,9 @@ struct Material {
   // Whether the case leaves lambda and kappa to setBulkConstants().
   bool autoBulkViscosity = false, autoBulkModulus = false;
 
+  /// Whether both follow the density in the run (BulkMemory).
+  bool hasOpenBulk() const { return autoBulkViscosity && autoBulkModulus; }
+
   /// mu at a shear rate [1/s], where a_T is `shift` and the yield stress is multiplied by `yield` [Pa s]. Formulas
   /// are not in it.
   double viscosity(double rate, double shift, double yield = 1) const {

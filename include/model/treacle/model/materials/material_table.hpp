@@ -1,6 +1,9 @@
 #pragma once
 
 #include "treacle/model/case/case.hpp"
+#include "treacle/model/state/bulk_memory.hpp"
+
+#include <cstddef>
 
 namespace treacle {
 
@@ -20,6 +23,15 @@ struct MaterialTable {
   static MaterialTable make(const Case& c);
   void setTimeStep(double dt) {
     for (int m = 0; m < count; ++m) inertia[m] = density[m] / dt;
+  }
+  /// Of the materials of which the case leaves lambda and kappa open.
+  void raiseBulk(const Case& c, const BulkMemory& raised) {
+    for (int m = 0; m < count; ++m) {
+      const Material& material = c.materials[static_cast<std::size_t>(m)];
+      if (!material.hasOpenBulk()) continue;
+      bulkViscosity[m] = raised.viscosity * material.bulkViscosity;
+      bulkModulus[m] = raised.modulus * material.bulkModulus;
+    }
   }
 };
 

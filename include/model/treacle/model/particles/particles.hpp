@@ -9,6 +9,7 @@
 #include "treacle/model/materials/elastic_mode.hpp"
 #include "treacle/model/materials/material_state.hpp"
 #include "treacle/model/motion/rigid_body.hpp"
+#include "treacle/model/state/bulk_memory.hpp"
 #include "treacle/model/state/gas_state.hpp"
 #include "treacle/model/state/solver_modes.hpp"
 #include "treacle/model/state/step_memory.hpp"
@@ -140,6 +141,9 @@ struct Particles {
   // That of the time steps, likewise.
   StepMemory steps;
 
+  // That of bulk constants that follow the density, likewise.
+  BulkMemory bulk;
+
   // Of the fluid that comes and goes, which is part of the state.
   OpenFlow flow;
 
@@ -162,6 +166,7 @@ struct Particles {
   void copyNumbers(const Particles<D, Other>& from) {
     modes.copyNumbers(from.modes);
     steps = from.steps;
+    bulk = from.bulk;
     flow = from.flow;
     rigid = from.rigid;
     gas = from.gas;
@@ -210,6 +215,7 @@ struct Particles {
     modes.age = {};
     modes.pressure = {};
     steps = {};
+    bulk = {};
     flow = {};
     rigid = {};
     gas = {};

@@ -89,6 +89,7 @@ struct StepReport {
   Diagnostics diagnostics;
   Watched watched;
   std::vector<std::string> warnings;  // of the watch
+  std::vector<std::string> notes;     // what the run has changed by itself
   std::optional<Balance> balance;     // with OutputSettings::balance
   std::vector<WallLoad> loads;        // per wall body of the case, where one has a probe, or with a balance
   std::vector<double> patches;        // pressures of the probes WallPressure, in the order of the case [Pa]

@@ -31,6 +31,9 @@ class Watch {
   /// has doubled since. Errors: RunError beyond a bound, with what would help.
   Watched look(double dt, const Diagnostics& d, std::vector<std::string>& warnings);
 
+  /// Whether so much fluid is away from surfaces that its mean density means something.
+  bool tellsDensity(const Diagnostics& d) const;
+
   /// There is more or less fluid now.
   void setParticles(double particles) { particles_ = particles; }
 
