@@ -6,7 +6,7 @@ namespace treacle {
 TREACLE_PARTICLE_SUMS(2, Cuda)
 TREACLE_PARTICLE_SUMS(3, Cuda)
 template void setViscosities(Context<Cuda>&, const ViscosityTerms&);
-template double countNotFinite(Context<Cuda>&, std::span<const double>);
+template double countUnsound(Context<Cuda>&, std::span<const double>);
 template double setVolumes(Context<Cuda>&, const VolumeTerms&);
 template void setClasses(Context<Cuda>&, const ClassTerms&);
 template double nextRates(Context<Cuda>&, const RateTerms&);

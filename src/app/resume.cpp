@@ -257,6 +257,8 @@ template <int D>
 void noteEmptyPatches(const Case& c, const Particles<D>& p, std::vector<std::string>& notes) {
   for (const Probe& probe : c.probes) {
     if (probe.kind != ProbeKind::WallPressure) continue;
+    const auto body = std::ranges::find(c.bodies, probe.body, &Body::name);
+    if (body->kind == BodyKind::Rigid && p.rigid.bodies.empty()) continue;  // its centre of mass is not known yet
     const auto patch = WallPatch<D>::of(carriedProbe(probe, c, p.rigid.bodies, 0), c);
     double particles = 0;
     for (std::uint32_t i = p.wallBegin(); i < p.count; ++i)
@@ -288,6 +290,12 @@ void MadeParticles::requireFluid(const Case& c) const {
     throw InputError(
         "the case has no fluid at the start: no body of type \"fluid\" holds a particle, and no inflow flows yet; "
         "give an inflow a small speed at t = 0, or add a body of fluid");
+  for (std::size_t b = 0; b < c.bodies.size(); ++b)
+    if (c.bodies[b].kind == BodyKind::Rigid && ofBodies[b].wall == 0)
+      throw InputError(
+          fmt::format("rigid body '{}' has no particles; make it larger than the spacing {:g} m, or put "
+                      "it on points of the lattice",
+                      c.bodies[b].name, c.spacing));
 }
 
 StartState fittingState(const Case& c, const std::filesystem::path& file, const MadeParticles& made) {

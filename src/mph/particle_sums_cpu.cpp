@@ -6,7 +6,7 @@ namespace treacle {
 TREACLE_PARTICLE_SUMS(2, Cpu)
 TREACLE_PARTICLE_SUMS(3, Cpu)
 template void setViscosities(Context<Cpu>&, const ViscosityTerms&);
-template double countNotFinite(Context<Cpu>&, std::span<const double>);
+template double countUnsound(Context<Cpu>&, std::span<const double>);
 template double setVolumes(Context<Cpu>&, const VolumeTerms&);
 template void setClasses(Context<Cpu>&, const ClassTerms&);
 template double nextRates(Context<Cpu>&, const RateTerms&);

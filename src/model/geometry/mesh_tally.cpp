@@ -2,13 +2,17 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstdlib>
 #include <tuple>
+#include <utility>
 
 namespace treacle {
 namespace {
 
 using Corners = std::array<std::uint32_t, 3>;
+
+constexpr double weldReach = 1e-6;  // of the size of a mesh
 
 std::uint64_t hashOf(const Vec<3>& x) {
   std::uint64_t h = 0;
@@ -46,14 +50,43 @@ Corners turned(Corners c) {
 void weld(Triangles& t) {
   constexpr std::uint32_t none = ~0u;
   const std::size_t count = t.vertices.size();
-  std::vector<std::uint32_t> slots(std::bit_ceil(2 * count + 1), none), place(count);
+  if (count == 0) return;
+  Vec<3> min = t.vertices[0], max = min;
+  for (const Vec<3>& x : t.vertices)
+    for (int k = 0; k < 3; ++k) min[k] = std::min(min[k], x[k]), max[k] = std::max(max[k], x[k]);
+  const double reach = weldReach * norm(max - min), edge = 16 * reach;
+  // Vertices that are kept are in lists of the cells of a grid, whose edge is that.
+  const auto cellOf = [&](const Vec<3>& x) {
+    Vec<3> cell{};
+    if (edge > 0)
+      for (int k = 0; k < 3; ++k) cell[k] = std::floor((x[k] - min[k]) / edge);
+    return cell;
+  };
+  std::vector<std::uint32_t> lists(std::bit_ceil(2 * count + 1), none), next(count, none), place(count);
+  const auto listOf = [&](const Vec<3>& cell) -> std::uint32_t& {
+    return lists[hashOf(cell) & (lists.size() - 1)];
+  };
+  const auto isNear = [&](const Vec<3>& a, const Vec<3>& b) {
+    return a == b ||
+           (std::abs(a[0] - b[0]) <= reach && std::abs(a[1] - b[1]) <= reach && std::abs(a[2] - b[2]) <= reach);
+  };
   std::uint32_t kept = 0;
-  for (std::size_t k = 0; k < count; ++k) {
-    const Vec<3> x = t.vertices[k] + Vec<3>{};  // of -0 it makes 0
-    std::size_t slot = hashOf(x) & (slots.size() - 1);
-    while (slots[slot] != none && !(t.vertices[slots[slot]] == x)) slot = (slot + 1) & (slots.size() - 1);
-    if (slots[slot] == none) slots[slot] = kept, t.vertices[kept++] = x;
-    place[k] = slots[slot];
+  for (std::size_t v = 0; v < count; ++v) {
+    const Vec<3> x = t.vertices[v] + Vec<3>{};  // of -0 it makes 0
+    const Vec<3> low = cellOf(x - Vec<3>::filled(reach)), high = cellOf(x + Vec<3>::filled(reach));
+    std::uint32_t same = none;
+    for (double i = low[0]; i <= high[0]; ++i)
+      for (double j = low[1]; j <= high[1]; ++j)
+        for (double k = low[2]; k <= high[2]; ++k)
+          for (std::uint32_t other = listOf({i, j, k}); other != none; other = next[other])
+            if (isNear(t.vertices[other], x)) same = std::min(same, other);
+    if (same == none) {
+      std::uint32_t& list = listOf(cellOf(x));
+      next[kept] = std::exchange(list, kept);
+      same = kept;
+      t.vertices[kept++] = x;
+    }
+    place[v] = same;
   }
   t.vertices.resize(kept);
   for (Corners& c : t.corners)

@@ -6,7 +6,8 @@
 
 namespace treacle {
 
-/// Makes one vertex of those at the same place: files of triangles alone have each of them several times.
+/// Makes one vertex of those that are within a millionth of the mesh's size along each axis: files of triangles
+/// alone have each of them several times, and some programs round them differently.
 void weld(Triangles& triangles);
 
 /// Triangles that an earlier one is the same as, whichever corner they begin with, by their indices; in order.

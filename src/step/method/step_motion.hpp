@@ -84,7 +84,7 @@ class StepMotion {
     copyToHost(state_.context, u.subspan(out, 1), &uOut);
     if (std::isfinite(norm(uOut)))
       watch.requireSlow(state_.timeStep, norm(uOut));  // then it is not the domain that is too small
-    throw RunError(describeLeaving<D>(host, begin + out, uOut, state_.timeStep));
+    throw RunError(describeLeaving<D>(state_.theCase, host, begin + out, uOut, state_.timeStep));
   }
 
   void takeMoved() {

@@ -68,13 +68,13 @@ class StepRheology {
     solves_ = 0;
   }
 
-  /// Sets the viscosities of rates(). Errors: RunError for viscosities that are not finite.
+  /// Sets the viscosities of rates(). Errors: RunError for viscosities that are negative or not finite.
   void apply(FlowState<D, Backend>& state, MphNeighbourhood<D, Backend>& neighbourhood) {
     const MphPairs<D>& pairs = neighbourhood.pairs();
     setViscosities(state.context, ViscosityTerms{table_, correction_, pairs.material, rate_.span(), share_.span(),
                                                  viscosity_.span(), scaled_.span()});
     if (!formulas_.empty())
-      if (const double bad = countNotFinite(state.context, viscosity_.span().first(pairs.ownFluid())); bad > 0)
+      if (const double bad = countUnsound(state.context, viscosity_.span().first(pairs.ownFluid())); bad > 0)
         throw RunError(describeViscosities(bad));
     fillGhosts(state.context, Held::Fluid, viscosity_.data());
     fillGhosts(state.context, Held::Fluid, scaled_.data());

@@ -7,6 +7,19 @@
 
 namespace treacle {
 
+namespace {
+
+/// Of the domain; 0: none [m].
+template <int D>
+Vec<D> periodsOf(const Case& c) {
+  Vec<D> period{};
+  for (int k = 0; k < D; ++k)
+    if (c.domain.periodic[static_cast<std::size_t>(k)]) period[k] = c.domain.max[k] - c.domain.min[k];
+  return period;
+}
+
+}  // namespace
+
 template <int D>
 PartWeight<D> PartWeight<D>::of(const Probe& probe, const Case& c) {
   constexpr double everywhere = std::numeric_limits<double>::infinity();
@@ -14,6 +27,7 @@ PartWeight<D> PartWeight<D>::of(const Probe& probe, const Case& c) {
   w.low = probe.box ? resized<D>(probe.box->min) : Vec<D>::filled(-everywhere);
   w.high = probe.box ? resized<D>(probe.box->max) : Vec<D>::filled(everywhere);
   w.inverseSpacing = 1 / c.spacing;
+  w.period = periodsOf<D>(c);
   if (const double length = norm(probe.normal); length > 0) {
     w.plane = probe.kind == ProbeKind::Flow ? Across : Behind;
     w.point = resized<D>(probe.point), w.normal = resized<D>((1 / length) * probe.normal);
@@ -39,8 +53,7 @@ WallPatch<D> WallPatch<D>::of(const Probe& probe, const Case& c) {
   } else {
     patch.normal = {-patch.along[1], patch.along[0]};
   }
-  for (int k = 0; k < D; ++k)
-    if (c.domain.periodic[static_cast<std::size_t>(k)]) patch.period[k] = c.domain.max[k] - c.domain.min[k];
+  patch.period = periodsOf<D>(c);
   patch.depth = c.interactionRadius();
   patch.spacing = c.spacing;
   return patch;

@@ -70,7 +70,7 @@ std::string describeFreezingFailure(double left, int systems, const HeatSettings
 
 std::string describeViscosities(double particles) {
   return fmt::format(
-      "the viscosities of {:.0f} particles are not finite; look at the viscosity_factor and "
+      "the viscosities of {:.0f} particles are negative or not finite; look at the viscosity_factor and "
       "yield_factor of their materials, and at the states and temperatures of the last frame",
       particles);
 }
@@ -108,19 +108,20 @@ std::string describeNotFinite(const Processes& processes, const Particles<D>& pa
 }
 
 template <int D>
-std::string describeLeaving(const Particles<D>& particles, std::uint32_t i, const Vec<D>& u, double dt) {
+std::string describeLeaving(const Case& c, const Particles<D>& particles, std::uint32_t i, const Vec<D>& u,
+                            double dt) {
   const Vec<D>& x = particles.position[i];
-  const char* kind = i < particles.fluidCount ? "fluid" : "wall";
+  std::string which = fmt::format("{} particle {}", i < particles.fluidCount ? "fluid" : "wall", particles.id[i]);
+  if (particles.body[i] < c.bodies.size()) which += fmt::format(" of '{}'", c.bodies[particles.body[i]].name);
   if (isFinite(x) && !isFinite(u))
-    return fmt::format("the velocity of {} particle {} at {} m is not finite: {} m/s", kind, particles.id[i],
-                       describe(x), describe(u));
-  return fmt::format("{} particle {} left the domain: from {} m to {} m at velocity {} m/s", kind, particles.id[i],
-                     describe(x), describe(x + dt * u), describe(u));
+    return fmt::format("the velocity of {} at {} m is not finite: {} m/s", which, describe(x), describe(u));
+  return fmt::format("{} left the domain: from {} m to {} m at velocity {} m/s", which, describe(x),
+                     describe(x + dt * u), describe(u));
 }
 
 template std::string describeNotFinite<2>(const Processes&, const Particles<2>&, std::span<const Vec<2>>);
 template std::string describeNotFinite<3>(const Processes&, const Particles<3>&, std::span<const Vec<3>>);
-template std::string describeLeaving<2>(const Particles<2>&, std::uint32_t, const Vec<2>&, double);
-template std::string describeLeaving<3>(const Particles<3>&, std::uint32_t, const Vec<3>&, double);
+template std::string describeLeaving<2>(const Case&, const Particles<2>&, std::uint32_t, const Vec<2>&, double);
+template std::string describeLeaving<3>(const Case&, const Particles<3>&, std::uint32_t, const Vec<3>&, double);
 
 }  // namespace treacle

@@ -37,6 +37,7 @@ std::string describeNotFinite(const Processes& processes, const Particles<D>& pa
 
 /// Particle i has left the domain in a step of dt [s] at velocity u [m/s].
 template <int D>
-std::string describeLeaving(const Particles<D>& particles, std::uint32_t i, const Vec<D>& u, double dt);
+std::string describeLeaving(const Case& c, const Particles<D>& particles, std::uint32_t i, const Vec<D>& u,
+                            double dt);
 
 }  // namespace treacle

@@ -343,6 +343,17 @@ TEST(caseWarnings, lightFluidsUnderHeavyOnes) {
   EXPECT_THAT(caseWarnings(c), Contains(HasSubstr("is too light and too thin"))) << "by a viscosity";
 }
 
+TEST(longestStableStep, letsHeatSpreadWithAutomaticSteps) {
+  Case c = damBreak();
+  c.heat.emplace();
+  c.materials[0].conductivity = 1000, c.materials[0].specificHeat = 100;
+  EXPECT_DOUBLE_EQ(longestStableStep(c).length, 5e-3) << "steps that are given need not be told";
+  c.time.automatic = true;
+  const double length = flowScales(c).length;
+  EXPECT_NEAR(longestStableStep(c).length, 0.003 * c.materials[0].density * 100 * length * length / 1000, 1e-12);
+  EXPECT_EQ(longestStableStep(c).reason, "the conduction of heat in 'syrup'");
+}
+
 TEST(longestStableStep, isThatOfElasticPressuresAndOfLightFluids) {
   Case c = damBreak();
   EXPECT_DOUBLE_EQ(longestStableStep(c).length, 5e-3);

@@ -100,6 +100,14 @@ TEST(Mesh, verticesNeedNotBeShared) {
     apart.corners.push_back({first, first + 1, first + 2});
   }
   EXPECT_TRUE(Mesh(apart).facts().closed());
+  // Nor be rounded in the same way.
+  const double size = norm(Mesh(whole).facts().max - Mesh(whole).facts().min);
+  double sign = 1;
+  for (Vec<3>& x : apart.vertices) x[0] += (sign = -sign) * 2e-7 * size, x[2] -= sign * 2e-7 * size;
+  EXPECT_TRUE(Mesh(apart).facts().closed());
+  EXPECT_EQ(Mesh(apart).facts().flat, 0u);
+  for (Vec<3>& x : apart.vertices) x[1] += (sign = -sign) * 1e-4 * size;
+  EXPECT_FALSE(Mesh(apart).facts().closed()) << "a gap is one";
 }
 
 TEST(Mesh, flatTurnedAndCuttingFacesAreNoted) {

@@ -36,8 +36,9 @@ Particles<D> lattice(const Vec<D, int>& count, const Vec<D>& velocity) {
 }
 
 template <int D>
-PartSums sumsOf(const Particles<D>& p, const Probe& probe) {
+PartSums sumsOf(const Particles<D>& p, const Probe& probe, const Domain& domain = {}) {
   Case c;
+  c.domain = domain;
   c.dimensions = D;
   c.spacing = spacing;
   c.materials.resize(2);
@@ -86,6 +87,12 @@ TEST(ProbeSums, OfWhatFlowsThroughAPlane) {
     Probe part = across;
     part.box = {{0, 0, 0}, {1, 2e-3, 1}};
     EXPECT_NEAR(sumsOf<3>(p, part).flow[0], 0.1 * 10e-6, 1e-15) << x;
+  }
+  // The ends of a periodic domain are one plane, and no other one.
+  const Domain periodic{{0, -1, -1}, {20 * spacing, 1, 1}, {true, false, false}};
+  for (const double x : {0.0, 0.8, 19.0, 20.0}) {
+    const Probe end{.kind = ProbeKind::Flow, .point = {x * spacing, 0, 0}, .normal = {1, 0, 0}};
+    EXPECT_NEAR(sumsOf<3>(p, end, periodic).flow[0], 0.1 * 30e-6, 1e-15) << x;
   }
   const Particles<2> q = lattice<2>({60, 60}, {0.1, 0.3});
   const Vec<3> normal{0.6, 0.8, 0};

@@ -52,10 +52,9 @@ void setViscosities(Context<Backend>& context, const ViscosityTerms& terms) {
 }
 
 template <class Backend>
-double countNotFinite(Context<Backend>& context, std::span<const double> viscosity) {
+double countUnsound(Context<Backend>& context, std::span<const double> viscosity) {
   return sumEach<1>(context, viscosity.size(), [=] TREACLE_HD(std::size_t i, double* sum) {
-    // Infinite or not a number.
-    if (!(viscosity[i] - viscosity[i] == 0)) sum[0] += 1;
+    if (!(viscosity[i] >= 0 && viscosity[i] - viscosity[i] == 0)) sum[0] += 1;
   })[0];
 }
 

@@ -26,7 +26,7 @@ struct ViscosityTerms {
 
   TREACLE_HD void set(std::size_t i) const {
     const double mu = table.viscosity(i, material[i], rate[i]);
-    viscosity[i] = mu < 1e-30 ? 1e-30 : mu;  // none at all would look like a wall; NaN stays
+    viscosity[i] = mu >= 0 && mu < 1e-30 ? 1e-30 : mu;  // none at all would look like a wall
     scaled[i] = viscosity[i] * (1 + correction * (share[i] - 1));
   }
 };
@@ -35,9 +35,9 @@ struct ViscosityTerms {
 template <class Backend>
 void setViscosities(Context<Backend>&, const ViscosityTerms&);
 
-/// How many of these viscosities are not finite, over all processes.
+/// How many of these viscosities are negative or not finite, over all processes.
 template <class Backend>
-double countNotFinite(Context<Backend>&, std::span<const double> viscosity);
+double countUnsound(Context<Backend>&, std::span<const double> viscosity);
 
 /// Sets by what the volumes of particles are multiplied, and counts those that the sums over neighbours are not
 /// made for: the spacing would differ too much.

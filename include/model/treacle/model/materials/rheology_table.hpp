@@ -5,6 +5,7 @@
 #include "treacle/model/particles/particles.hpp"
 
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -83,6 +84,7 @@ struct RheologyTable {
     variables(i, rate, x);
     f.viscosity *= states.viscosityFactor(m, x);
     f.yield = states.yieldFactor(m, x);
+    if (f.yield < 0) f.viscosity = std::numeric_limits<double>::quiet_NaN();  // countUnsound() finds it
     return f;
   }
 };

@@ -17,6 +17,7 @@ template <int D>
 struct PartWeight {
   Vec<D> low{}, high{};      // of a box [m]
   Vec<D> point{}, normal{};  // of a plane [m], [-]
+  Vec<D> period{};           // of the domain; 0: none [m]
   double inverseSpacing = 0;
   int material = -1;  // of it alone; -1: all
   enum Plane { None, Behind, Across } plane = None;
@@ -32,8 +33,11 @@ struct PartWeight {
     for (int k = 0; k < D; ++k)
       weight *= share((x[k] - low[k]) * inverseSpacing) * share((high[k] - x[k]) * inverseSpacing);
     if (plane == None || weight == 0) return weight;
-    const double distance = dot(x - point, normal) * inverseSpacing;
-    if (plane == Behind) return weight * share(-distance);
+    Vec<D> from = x - point;
+    if (plane == Behind) return weight * share(-dot(from, normal) * inverseSpacing);
+    for (int k = 0; k < D; ++k)
+      if (period[k] > 0) from[k] -= period[k] * rint(from[k] / period[k]);
+    const double distance = dot(from, normal) * inverseSpacing;
     return weight * std::fmax(0.0, 1 - 0.5 * std::fabs(distance)) * 0.5 * inverseSpacing;
   }
 
