@@ -37,6 +37,15 @@ class StepStiffness final : public ForcesAround<D, Backend> {
     this->setActing(count > 0);
   }
 
+  /// In cases with rigid bodies: the velocities of now, before their walls take those that the step tries, which
+  /// are extrapolated.
+  void remember(const FlowState<D, Backend>& state, const MphPairs<D>& pairs) {
+    if (!state.theCase.hasRigid()) return;
+    last_.resize(state.context, pairs.activeCount);
+    copyValues(state.context, std::span<const Vec<D>>(state.particles.velocity).first(pairs.activeCount),
+               last_.data());
+  }
+
   /// Both viscosities together after scale(), per own particle [Pa s].
   std::span<const double> sum() const { return sum_; }
   /// The additional viscosity per own particle [Pa s].
@@ -64,7 +73,8 @@ class StepStiffness final : public ForcesAround<D, Backend> {
         gradient_.resize(context, pairs.fluidCount);
     correction_.resize(context, own);
     setGivenScale(context, GivenScale{viscosity_.span(), sum, scale, given_.span()});
-    const std::span<Vec<D>> u = state.particles.velocity.span().first(pairs.activeCount);
+    const std::span<Vec<D>> u =
+        (state.theCase.hasRigid() ? last_ : state.particles.velocity).span().first(pairs.activeCount);
     fillGhosts(context, Held::Active, u.data());
     gradientCorrection<D>(context, pairs, correction_.span(), true);
     MphPairs<D> places = pairs;    // the velocity in walls is that of their places alone,
@@ -80,7 +90,7 @@ class StepStiffness final : public ForcesAround<D, Backend> {
 
   std::size_t bytes() const {
     return viscosity_.bytes() + sum_.bytes() + class_.bytes() + given_.bytes() + gradient_.bytes() +
-           correction_.bytes() + this->forceBytes();
+           swings_.bytes() + correction_.bytes() + last_.bytes() + this->forceBytes();
   }
 
  private:
@@ -91,7 +101,8 @@ class StepStiffness final : public ForcesAround<D, Backend> {
   }
 
   SmoothVelocities<D> last(const FlowState<D, Backend>& state) const {
-    return {state.particles.velocity.data(), gradient_.data(), swings_.data()};
+    const Buffer<Vec<D>, Backend>& u = state.theCase.hasRigid() ? last_ : state.particles.velocity;
+    return {u.data(), gradient_.data(), swings_.data()};
   }
 
   void addWallForces(FlowState<D, Backend>& state, const MphPairs<D>& pairs, const ClusterListView& walls,
@@ -108,6 +119,7 @@ class StepStiffness final : public ForcesAround<D, Backend> {
   Buffer<double, Backend> swings_;                 // SwingShare, likewise
   Buffer<Block<D>, Backend> gradient_;             // of the last velocities, per fluid particle [1/s]
   Buffer<SymmetricBlock<D>, Backend> correction_;  // B
+  Buffer<Vec<D>, Backend> last_;                   // velocities, see remember() [m/s]
 };
 
 }  // namespace treacle
