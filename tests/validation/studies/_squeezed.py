@@ -18,7 +18,7 @@ def fall(gradient, h):
     return mean[0] - mean[1]
 
 
-def study(name, title, gradient, bar, settings=()):
+def study(name, title, gradient, bar, settings=(), refined=True):
     def measure(run):
         probes = [read_table(run.path / "probes" / f"{patch}.csv") for patch in ("middle", "outside")]
         t = probes[0]["time"]
@@ -44,4 +44,5 @@ def study(name, title, gradient, bar, settings=()):
         measure=measure,
         x_label="t [s]",
         y_label="pressure in the middle over that 16 mm outside [Pa]",
+        refined=refined,
     )

@@ -16,4 +16,5 @@ def gradient(x, h):
     return -2 * w / h
 
 
-study = squeezed("squeezed-paste", "Bingham fluid between plates that close", gradient, 0.05)
+# The theory is that of thin films, which leaves out normal stresses: the error does not fall with the spacing.
+study = squeezed("squeezed-paste", "Bingham fluid between plates that close", gradient, 0.05, refined=False)
