@@ -104,10 +104,13 @@ void setBulkConstants(Case& c) {
   }
 }
 
-bool adaptBulkConstants(const Case& c, double ratio, double dt, BulkMemory& memory) {
+bool adaptBulkConstants(const Case& c, double ratio, double dt, bool isFirst, BulkMemory& memory) {
   memory.rest = std::max(0.0, memory.rest - dt);
   const double excess = ratio - 1;
-  if (excess <= (memory.rest > 0 ? 1.2 * memory.excess : mostExcess)) return false;
+  if (isFirst) memory.excess = excess > mostExcess ? excess : 0;
+  const bool helped = memory.excess == 0 || (memory.modulus > 1 && excess < 0.9 * memory.excess);
+  if (excess <= (memory.rest == 0 && helped ? mostExcess : std::max(mostExcess, 1.2 * memory.excess)))
+    return false;
   const double stable = shareOfStable * mostCompression(c) / c.time.step;
   double rate = 0;  // kappa / lambda [1/s]
   for (const Material& m : c.materials)

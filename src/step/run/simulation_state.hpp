@@ -283,7 +283,8 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
   void adaptBulk(StepReport& report) {
     BulkMemory& bulk = particles.bulk;
     const double ratio = report.diagnostics.meanDensityRatio;
-    if (!watch->tellsDensity(report.diagnostics) || !adaptBulkConstants(theCase, ratio, timeStep, bulk)) return;
+    if (!watch->tellsDensity(report.diagnostics) || !adaptBulkConstants(theCase, ratio, timeStep, step == 1, bulk))
+      return;
     particles.modes.pressure = {};
     report.notes.push_back(fmt::format(
         "the fluid is {:.2g} % too dense: its automatic bulk modulus is {:.3g} times, its bulk viscosity "
