@@ -37,15 +37,6 @@ class StepStiffness final : public ForcesAround<D, Backend> {
     this->setActing(count > 0);
   }
 
-  /// In cases with rigid bodies: the velocities of now, before their walls take those that the step tries, which
-  /// are extrapolated.
-  void remember(const FlowState<D, Backend>& state, const MphPairs<D>& pairs) {
-    if (!state.theCase.hasRigid()) return;
-    last_.resize(state.context, pairs.activeCount);
-    copyValues(state.context, std::span<const Vec<D>>(state.particles.velocity).first(pairs.activeCount),
-               last_.data());
-  }
-
   /// Both viscosities together after scale(), per own particle [Pa s].
   std::span<const double> sum() const { return sum_; }
   /// The additional viscosity per own particle [Pa s].
@@ -69,28 +60,25 @@ class StepStiffness final : public ForcesAround<D, Backend> {
                std::span<const double> scale) {
     Context<Backend>& context = state.context;
     const std::uint32_t own = pairs.ownFluid();
-    given_.resize(context, pairs.fluidCount), swings_.resize(context, pairs.fluidCount),
-        gradient_.resize(context, pairs.fluidCount);
+    given_.resize(context, pairs.fluidCount), gradient_.resize(context, pairs.fluidCount);
     correction_.resize(context, own);
     setGivenScale(context, GivenScale{viscosity_.span(), sum, scale, given_.span()});
-    const std::span<Vec<D>> u =
-        (state.theCase.hasRigid() ? last_ : state.particles.velocity).span().first(pairs.activeCount);
-    fillGhosts(context, Held::Active, u.data());
+    const std::span<Vec<D>> last = state.particles.velocity.span().first(pairs.activeCount);
+    fillGhosts(context, Held::Active, last.data());
     gradientCorrection<D>(context, pairs, correction_.span(), true);
     MphPairs<D> places = pairs;    // the velocity in walls is that of their places alone,
     places.ownViscosities = true;  // without ownShareAtWall()
-    velocityGradient<D>(context, places, correction_.span(), u, gradient_.span().first(own));
+    velocityGradient<D>(context, places, correction_.span(), last, gradient_.span().first(own));
     fillGhosts(context, Held::Fluid, given_.data());
     fillGhosts(context, Held::Fluid, gradient_.data());
-    setSwingShare<D>(context, {gradient_.span().first(pairs.fluidCount), state.timeStep, swings_.span()});
     const std::span<Vec<D>> force = this->makeForces(context, own);
     clearValues(context, force);
-    giveBack<D>(context, withGiven(pairs), last(state), force);
+    giveBack<D>(context, withGiven(pairs), gradient_.span(), force);
   }
 
   std::size_t bytes() const {
     return viscosity_.bytes() + sum_.bytes() + class_.bytes() + given_.bytes() + gradient_.bytes() +
-           swings_.bytes() + correction_.bytes() + last_.bytes() + this->forceBytes();
+           correction_.bytes() + this->forceBytes();
   }
 
  private:
@@ -100,14 +88,9 @@ class StepStiffness final : public ForcesAround<D, Backend> {
     return given;
   }
 
-  SmoothVelocities<D> last(const FlowState<D, Backend>& state) const {
-    const Buffer<Vec<D>, Backend>& u = state.theCase.hasRigid() ? last_ : state.particles.velocity;
-    return {u.data(), gradient_.data(), swings_.data()};
-  }
-
   void addWallForces(FlowState<D, Backend>& state, const MphPairs<D>& pairs, const ClusterListView& walls,
                      std::span<Vec<D>> force) const override {
-    giveBackOnWalls<D>(state.context, withGiven(pairs), walls, last(state), force);
+    giveBackOnWalls<D>(state.context, withGiven(pairs), walls, gradient_.span(), force);
   }
 
   StiffMaterials materials_;
@@ -116,10 +99,8 @@ class StepStiffness final : public ForcesAround<D, Backend> {
   Buffer<double, Backend> sum_;                    // with the material's, per fluid particle [Pa s]
   Buffer<std::uint8_t, Backend> class_;            // per active particle
   Buffer<double, Backend> given_;                  // its share of the viscosity scale, per fluid particle
-  Buffer<double, Backend> swings_;                 // SwingShare, likewise
   Buffer<Block<D>, Backend> gradient_;             // of the last velocities, per fluid particle [1/s]
   Buffer<SymmetricBlock<D>, Backend> correction_;  // B
-  Buffer<Vec<D>, Backend> last_;                   // velocities, see remember() [m/s]
 };
 
 }  // namespace treacle

@@ -5,7 +5,6 @@
 #include "treacle/mph/mph_balance.hpp"
 #include "treacle/mph/mph_operator.hpp"
 #include "treacle/mph/mph_repulsion.hpp"
-#include "treacle/mph/pressure_stiffness.hpp"
 #include "treacle/mph/renormalisation.hpp"
 #include "treacle/mph/surface_tension.hpp"
 #include "treacle/mph/tension.hpp"
@@ -177,35 +176,6 @@ struct SumsTwin {
     EXPECT_LE(difference<double>(d.context, density.span(), densityFound), kernelTolerance);
   }
 
-  /// Of the accurate scheme.
-  void checkGivenBack() {
-    if (s.renormalisation.empty()) return;
-    const auto u = randomVectors<D>(active, 9), rows = randomVectors<D>(D * n, 10);
-    std::vector<Block<D>> gradient(n);
-    for (std::uint32_t i = 0; i < n; ++i)
-      for (int r = 0; r < D; ++r)
-        for (int c = 0; c < D; ++c) gradient[i](r, c) = rows[D * i + static_cast<std::uint32_t>(r)][c];
-    Buffer<double> share(n);
-    Buffer<double, Cuda> shareFound(d.context, n);
-    const auto uDevice = copyToDevice<Vec<D>>(d.context, u);
-    const auto gradientDevice = copyToDevice<Block<D>>(d.context, gradient);
-    setSwingShare<D>(s.context, {gradient, 0.02, share.span()});
-    setSwingShare<D>(d.context, {gradientDevice.span(), 0.02, shareFound.span()});
-    EXPECT_LE(difference<double>(d.context, share.span(), shareFound), kernelTolerance);
-
-    const SmoothVelocities<D> last{u.data(), gradient.data(), share.data()};
-    const SmoothVelocities<D> there{uDevice.data(), gradientDevice.data(), shareFound.data()};
-    std::vector<Vec<D>> force(n), onWalls(active - n);
-    auto forceFound = copyToDevice<Vec<D>>(d.context, force),
-         wallsFound = copyToDevice<Vec<D>>(d.context, onWalls);
-    giveBack<D>(s.context, s.pairs(), last, force);
-    giveBack<D>(d.context, d.pairs, there, forceFound.span());
-    EXPECT_LE(difference<Vec<D>>(d.context, force, forceFound), kernelTolerance);
-    giveBackOnWalls<D>(s.context, s.pairs(), s.pairs().wallList, last, onWalls);
-    giveBackOnWalls<D>(d.context, d.pairs, d.pairs.wallList, there, wallsFound.span());
-    EXPECT_LE(difference<Vec<D>>(d.context, onWalls, wallsFound), kernelTolerance);
-  }
-
   void checkOperator() {
     const auto u = randomVectors<D>(n, 5);
     std::vector<Vec<D>> expected(n);
@@ -240,7 +210,6 @@ void checkAll(bool lists) {
         twin.checkVectors();
         twin.checkWallTerms();
         twin.checkBalance();
-        twin.checkGivenBack();
         twin.checkOperator();
       }
 }

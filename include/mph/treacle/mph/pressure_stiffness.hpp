@@ -80,43 +80,16 @@ struct GivenScale {
 template <class Backend>
 void setGivenScale(Context<Backend>&, const GivenScale&);
 
-/// How far what a gradient does not show counts as a swing: wholly in fluid that hardly strains in a step, hardly
-/// where particles pass each other, whose velocities differ by what their places want.
-template <int D>
-struct SwingShare {
-  static constexpr double strain = 0.02;  // in a step, at which it is half
-
-  std::span<const Block<D>> gradient;  // [1/s]
-  double timeStep;                     // [s]
-  std::span<double> share;
-
-  TREACLE_HD void set(std::size_t i) const {
-    double square = 0;  // of the rate of strain, E:E
-    for (int r = 0; r < D; ++r)
-      for (int c = 0; c < D; ++c) square += 0.5 * gradient[i](r, c) * (gradient[i](r, c) + gradient[i](c, r));
-    share[i] = 1 / (1 + 2 * square * (timeStep / strain) * (timeStep / strain));
-  }
-};
+/// force_i -= what pairs of a viscosity resist where the velocity has the gradient L [N/m3]: those of fluid where
+/// d L d is the mean of both particles', with walls that of the fluid particle. `pairs`: with what is given in
+/// place of the viscosity scale; `gradient`: per fluid particle, ghosts included [1/s]. Pairs give equal and
+/// opposite forces along d.
 template <int D, class Backend>
-void setSwingShare(Context<Backend>&, const SwingShare<D>&);
-
-/// Velocities and their gradient L; views of the backend's memory.
-template <int D>
-struct SmoothVelocities {
-  const Vec<D>* u;           // per active particle, walls included [m/s]
-  const Block<D>* gradient;  // per fluid particle, ghosts included [1/s]
-  const double* swings;      // SwingShare, likewise
-};
-
-/// force_i -= what pairs of a viscosity resist in these velocities [N/m3]: fluid and a wall as they are, two of
-/// fluid with their share of swings as if they differed by L d with the mean L of both, and else as they are. (L
-/// of the fluid at a wall would lead past the wall's velocity where the profile is curved.) `pairs`: with what is
-/// given in place of the viscosity scale. Pairs give equal and opposite forces along d.
-template <int D, class Backend>
-void giveBack(Context<Backend>&, const MphPairs<D>& pairs, const SmoothVelocities<D>&, std::span<Vec<D>> force);
+void giveBack(Context<Backend>&, const MphPairs<D>& pairs, std::span<const Block<D>> gradient,
+              std::span<Vec<D>> force);
 /// The same of the wall particles of a list, from the first wall particle on.
 template <int D, class Backend>
 void giveBackOnWalls(Context<Backend>&, const MphPairs<D>& pairs, const ClusterListView& walls,
-                     const SmoothVelocities<D>&, std::span<Vec<D>> force);
+                     std::span<const Block<D>> gradient, std::span<Vec<D>> force);
 
 }  // namespace treacle

@@ -16,8 +16,7 @@ TREACLE_HD inline T rateAlong(const Vec<D, Number> (&L)[D], const Vec<D, T>& d) 
   return sum;
 }
 
-/// Sum of mu_ij viscous (d.v) d over the neighbours of a fluid particle, or over fluid for a wall particle, with
-/// the velocity v of one seen from the other, or L d in its place.
+/// Sum of mu_ij viscous (d.L d) d over the neighbours of a fluid particle, or over fluid for a wall particle.
 template <int D, bool OnWalls>
 struct GivenBack {
   static constexpr int values = D;
@@ -26,57 +25,50 @@ struct GivenBack {
   struct Own {
     At at;
     typename At::template Viscosity<D> viscosity;
-    VecAt<D, At> u;
-    NumberAt<At> swings;
     VecAt<D, At> gradient[D];  // rows of L
   };
   struct Neighbour {
     std::uint32_t index;
-    Vec<D> u;
-    double swings;
     Vec<D> gradient[D];
   };
 
   MphTerms<D, double, AccurateScheme> mph;
-  SmoothVelocities<D> last;
+  const Block<D>* gradient;
   std::uint32_t fluidCount;
   Vec<D>* force;  // of the first fluid or wall particle
 
   TREACLE_HD Vec<D> row(std::uint32_t i, int k) const {
     Vec<D> r{};
-    for (int s = 0; s < D; ++s) r[s] = i < fluidCount ? last.gradient[i](k, s) : 0;
+    for (int s = 0; s < D; ++s) r[s] = i < fluidCount ? gradient[i](k, s) : 0;
     return r;
   }
   template <class At>
   TREACLE_HD Own<At> own(const MphPairs<D>& pairs, const At& at) const {
-    Own<At> side{at,
-                 at.viscosity(pairs),
-                 at([&](std::uint32_t i) { return last.u[i]; }),
-                 at([&](std::uint32_t i) { return i < fluidCount ? last.swings[i] : 0.0; }),
-                 {}};
+    Own<At> side{at, at.viscosity(pairs), {}};
     if (!OnWalls)
       for (int k = 0; k < D; ++k) side.gradient[k] = at([&](std::uint32_t i) { return row(i, k); });
     return side;
   }
   TREACLE_HD Neighbour other(const MphPairs<D>&, std::uint32_t j) const {
-    Neighbour side{j, last.u[j], j < fluidCount ? last.swings[j] : 0.0, {}};
+    Neighbour side{j, {}};
     for (int k = 0; k < D; ++k) side.gradient[k] = row(j, k);
     return side;
   }
   template <class T, class O>
   TREACLE_HD void add(const MphPairs<D>& pairs, T* sum, const Vec<D, T>& d, const PairDistance<T>& r, const O& own,
                       const Neighbour& other, ListSegment segment) const {
-    const T resists = mph.viscousFactor * viscosityOf(pairs, own.viscosity, other.index) * mph.viscousShape(r);
+    T resists = mph.viscousFactor * viscosityOf(pairs, own.viscosity, other.index) * mph.viscousShape(r);
     if (OnWalls || isWall(segment))
-      addScaled(sum,
-                resists * wallFactorOf<true>(pairs, own.at, other.index, d) * differenceAlong(other.u, own.u, d),
-                d);
-    else {
-      const T swings = T(0.5) * (own.swings + other.swings);
-      const T smooth = T(0.5) * (rateAlong(own.gradient, d) + rateAlong(other.gradient, d));
-      const T actual = differenceAlong(other.u, own.u, d);
-      addScaled(sum, resists * (actual + swings * (smooth - actual)), d);
-    }
+      resists *= ofEachPair(own.at, d, [&](std::uint32_t i, const Vec<D>&) {
+        return OnWalls ? pairs.ownShareAtWall(other.index, i) : pairs.ownShareAtWall(i, other.index);
+      });
+    T rate;
+    if constexpr (OnWalls)
+      rate = rateAlong(other.gradient, d);
+    else
+      rate = isWall(segment) ? rateAlong(own.gradient, d)
+                             : T(0.5 * (rateAlong(own.gradient, d) + rateAlong(other.gradient, d)));
+    addScaled(sum, resists * rate, d);
   }
   TREACLE_HD void store(const MphPairs<D>& pairs, std::uint32_t i, int n, double sum) const {
     force[OnWalls ? i - pairs.fluidCount : i][n] -= sum;
@@ -100,29 +92,25 @@ void setGivenScale(Context<Backend>& context, const GivenScale& terms) {
 }
 
 template <int D, class Backend>
-void setSwingShare(Context<Backend>& context, const SwingShare<D>& terms) {
-  forEach(context, terms.share.size(), [=] TREACLE_HD(std::size_t i) { terms.set(i); });
-}
-
-template <int D, class Backend>
-void giveBack(Context<Backend>& context, const MphPairs<D>& pairs, const SmoothVelocities<D>& last,
+void giveBack(Context<Backend>& context, const MphPairs<D>& pairs, std::span<const Block<D>> gradient,
               std::span<Vec<D>> force) {
-  sumOnFluid(context, pairs,
-             GivenBack<D, false>{pairs.terms.with(AccurateScheme{}), last, pairs.fluidCount, force.data()});
+  sumOnFluid(
+      context, pairs,
+      GivenBack<D, false>{pairs.terms.with(AccurateScheme{}), gradient.data(), pairs.fluidCount, force.data()});
 }
 
 template <int D, class Backend>
 void giveBackOnWalls(Context<Backend>& context, const MphPairs<D>& pairs, const ClusterListView& walls,
-                     const SmoothVelocities<D>& last, std::span<Vec<D>> force) {
-  sumOnList(context, pairs, walls,
-            GivenBack<D, true>{pairs.terms.with(AccurateScheme{}), last, pairs.fluidCount, force.data()});
+                     std::span<const Block<D>> gradient, std::span<Vec<D>> force) {
+  sumOnList(
+      context, pairs, walls,
+      GivenBack<D, true>{pairs.terms.with(AccurateScheme{}), gradient.data(), pairs.fluidCount, force.data()});
 }
 
-#define TREACLE_STIFFNESS_SUMS(D, Backend)                                                                      \
-  template void setSwingShare(Context<Backend>&, const SwingShare<D>&);                                         \
-  template void giveBack(Context<Backend>&, const MphPairs<D>&, const SmoothVelocities<D>&, std::span<Vec<D>>); \
-  template void giveBackOnWalls(Context<Backend>&, const MphPairs<D>&, const ClusterListView&,                  \
-                                const SmoothVelocities<D>&, std::span<Vec<D>>);
+#define TREACLE_STIFFNESS_SUMS(D, Backend)                                                                     \
+  template void giveBack(Context<Backend>&, const MphPairs<D>&, std::span<const Block<D>>, std::span<Vec<D>>); \
+  template void giveBackOnWalls(Context<Backend>&, const MphPairs<D>&, const ClusterListView&,                 \
+                                std::span<const Block<D>>, std::span<Vec<D>>);
 #define TREACLE_STIFFNESS(Backend)                                        \
   template double setStiffness(Context<Backend>&, const StiffnessTerms&); \
   template void setStiffScale(Context<Backend>&, const StiffScale&);      \
