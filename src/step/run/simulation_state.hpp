@@ -260,7 +260,7 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
       lastSpeed = report.diagnostics.maxSpeed;
       const double start = time;
       accept();
-      if (theCase.keepsVolume()) adaptBulk(report);
+      if (theCase.keepsVolume() && !theCase.hasVolumeFactors()) adaptBulk(report);
       if (theCase.isOpen()) report.flow = followFlow(start);
     });
     report.seconds = phases.seconds();
