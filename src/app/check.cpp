@@ -163,7 +163,7 @@ void checkCommand(const CheckOptions& options) {
   std::vector<std::string> warnings;
   requireRoomForParticles(c);
   MadeParticles made = MadeParticles::of(c, warnings);
-  made.requireFluid(c);
+  made.requireParticles(c);
   AnyParticles& particles = made.particles;
   for (std::string& warning : caseWarnings(c)) warnings.push_back(std::move(warning));
   if (c.output.surface && !hasFreeSurface()) warnings.push_back("output.surface: " + whyNoFreeSurface());

@@ -131,7 +131,7 @@ void convergenceCommand(const ConvergenceOptions& options) {
   std::vector<std::string> warnings;
   requireRoomForParticles(c);
   MadeParticles made = MadeParticles::of(c, warnings);
-  if (options.resume.empty()) made.requireFluid(c);
+  if (options.resume.empty()) made.requireParticles(c);
   for (std::string& warning : caseWarnings(c)) warnings.push_back(std::move(warning));
   if (!device)
     for (std::string& warning : cpuWarnings(c)) warnings.push_back(std::move(warning));

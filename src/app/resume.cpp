@@ -284,7 +284,7 @@ MadeParticles MadeParticles::of(const Case& c, std::vector<std::string>& notes, 
   return made;
 }
 
-void MadeParticles::requireFluid(const Case& c) const {
+void MadeParticles::requireParticles(const Case& c) const {
   const bool some = std::ranges::any_of(ofBodies, [](const BodyCount& body) { return body.fluid > 0; });
   if (!some && c.hasInflow())
     throw InputError(

@@ -21,8 +21,9 @@ struct MadeParticles {
   /// Appends to `notes` as createParticles does. Errors: those of createParticles.
   static MadeParticles of(const Case& c, std::vector<std::string>& notes, ParticlePart part = {});
 
-  /// For a run that begins with them. Errors: InputError where there is no fluid yet.
-  void requireFluid(const Case& c) const;
+  /// For a run that begins with them. Errors: InputError where there is no fluid yet, or a
+  /// rigid body has none.
+  void requireParticles(const Case& c) const;
 };
 
 /// What a simulation starts from; of several processes each has a part of them.

@@ -152,7 +152,7 @@ void runCommand(const RunOptions& options, const Communicator& processes) {
     if (shared) requireShareable(c, backend);
     requireRoomForParticles(c);
     made = MadeParticles::of(c, warnings, partOf(processes));
-    if (options.resume.empty()) made.requireFluid(c);
+    if (options.resume.empty()) made.requireParticles(c);
     for (std::string& warning : caseWarnings(c)) warnings.push_back(std::move(warning));
     releaseShapeFiles(c);
   });

@@ -52,7 +52,7 @@ Session::Session(Case c, const Options& options) : case_(std::move(c)), threads_
   if (options.precision) case_.solver.precision = *options.precision;
   requireRoomForParticles(case_);
   MadeParticles made = MadeParticles::of(case_, warnings_);
-  if (options.checkpoint.empty()) made.requireFluid(case_);
+  if (options.checkpoint.empty()) made.requireParticles(case_);
   for (std::string& warning : caseWarnings(case_)) warnings_.push_back(std::move(warning));
   if (!device)
     for (std::string& warning : cpuWarnings(case_)) warnings_.push_back(std::move(warning));

@@ -76,6 +76,7 @@ class MphNeighbourhood {
 
   /// Of the step at hand [s].
   void setTimeStep(double dt) { pairs_.materials.setTimeStep(dt); }
+  /// Bulk constants that the case leaves open (MaterialTable).
   void raiseBulk(const Case& c, const BulkMemory& raised) { pairs_.materials.raiseBulk(c, raised); }
 
   const MphPairs<D>& pairs() const { return pairs_; }
