@@ -15,8 +15,9 @@ namespace {
 
 constexpr double compressed = 0.002, compressedInNozzles = 0.01;
 constexpr double shareOfStable = 0.5;  // of the longest step
-// Of constants that follow the density.
-constexpr double mostExcess = 0.005, mostViscosity = 16;  // the latter over that at first
+// Of constants that follow the density. The excess counts if pressures make up this part of it; the viscosity is
+// over that at first.
+constexpr double mostExcess = 0.005, leastCompression = 0.5, mostViscosity = 16;
 
 /// How far the highest fluid and the lowest place are apart to which it can fall [m].
 double tallestColumn(const Case& c) {
@@ -104,13 +105,14 @@ void setBulkConstants(Case& c) {
   }
 }
 
-bool adaptBulkConstants(const Case& c, double ratio, double dt, bool isFirst, BulkMemory& memory) {
+bool adaptBulkConstants(const Case& c, const FluidDensity& is, double dt, bool isFirst, BulkMemory& memory) {
   memory.rest = std::max(0.0, memory.rest - dt);
-  const double excess = ratio - 1;
+  const double excess = is.excess;
   if (isFirst) memory.excess = excess > mostExcess ? excess : 0;
   const bool helped = memory.excess == 0 || (memory.modulus > 1 && excess < 0.9 * memory.excess);
   if (excess <= (memory.rest == 0 && helped ? mostExcess : std::max(mostExcess, 1.2 * memory.excess)))
     return false;
+  if (is.compression < leastCompression * excess) return false;
   const double stable = shareOfStable * mostCompression(c) / c.time.step;
   double rate = 0;  // kappa / lambda [1/s]
   for (const Material& m : c.materials)

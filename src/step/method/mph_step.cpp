@@ -62,6 +62,7 @@ class MphStep final : public StepMethod<D, Backend> {
 
   /// Walls go with what rigid bodies are tried with first.
   StagedReport predict() override {
+    viscosities_.remember(state_, pairs_);
     unknowns_.start();
     return {};
   }

@@ -37,6 +37,7 @@ class StepPlaces {
   void describe(const FlowState<D, Backend>& state, const MphPairs<D>& pairs, DiagnosticsInput<D>& in) const {
     const std::uint32_t n = state.particles.fluidCount;
     in.numberDensity = state.particles.numberDensity.span().first(n);
+    in.pressure = state.particles.pressure.span().first(n);
     in.restDensity = in.neighbourDensity = pairs.restDensity;
     in.ownDensity = pairs.terms.density(pairs.terms.densityFactor, ExactDistance(0));
     if (walls_.size() == n) in.wallDensity = walls_;

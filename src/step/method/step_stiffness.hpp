@@ -37,6 +37,15 @@ class StepStiffness final : public ForcesAround<D, Backend> {
     this->setActing(count > 0);
   }
 
+  /// In cases with rigid bodies: the velocities of now, before their walls take those that the step tries. These
+  /// are extrapolated, and given back they would make bodies unstable.
+  void remember(const FlowState<D, Backend>& state, const MphPairs<D>& pairs) {
+    if (!state.theCase.hasRigid()) return;
+    last_.resize(state.context, pairs.activeCount);
+    copyValues(state.context, std::span<const Vec<D>>(state.particles.velocity).first(pairs.activeCount),
+               last_.data());
+  }
+
   /// Both viscosities together after scale(), per own particle [Pa s].
   std::span<const double> sum() const { return sum_; }
   /// The additional viscosity per own particle [Pa s].
@@ -63,7 +72,8 @@ class StepStiffness final : public ForcesAround<D, Backend> {
     given_.resize(context, pairs.fluidCount), gradient_.resize(context, pairs.fluidCount);
     correction_.resize(context, own);
     setGivenScale(context, GivenScale{viscosity_.span(), sum, scale, given_.span()});
-    const std::span<Vec<D>> last = state.particles.velocity.span().first(pairs.activeCount);
+    const std::span<Vec<D>> last =
+        (state.theCase.hasRigid() ? last_ : state.particles.velocity).span().first(pairs.activeCount);
     fillGhosts(context, Held::Active, last.data());
     gradientCorrection<D>(context, pairs, correction_.span(), true);
     MphPairs<D> places = pairs;    // the velocity in walls is that of their places alone,
@@ -78,7 +88,7 @@ class StepStiffness final : public ForcesAround<D, Backend> {
 
   std::size_t bytes() const {
     return viscosity_.bytes() + sum_.bytes() + class_.bytes() + given_.bytes() + gradient_.bytes() +
-           correction_.bytes() + this->forceBytes();
+           correction_.bytes() + last_.bytes() + this->forceBytes();
   }
 
  private:
@@ -101,6 +111,7 @@ class StepStiffness final : public ForcesAround<D, Backend> {
   Buffer<double, Backend> given_;                  // its share of the viscosity scale, per fluid particle
   Buffer<Block<D>, Backend> gradient_;             // of the last velocities, per fluid particle [1/s]
   Buffer<SymmetricBlock<D>, Backend> correction_;  // B
+  Buffer<Vec<D>, Backend> last_;                   // velocities, see remember() [m/s]
 };
 
 }  // namespace treacle

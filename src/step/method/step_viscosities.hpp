@@ -44,6 +44,11 @@ class StepViscosities {
     rheology_->apply(state, neighbourhood);
   }
 
+  /// Before walls of rigid bodies take the velocities that the step tries.
+  void remember(const FlowState<D, Backend>& state, const MphPairs<D>& pairs) {
+    if (stiffness_) stiffness_->remember(state, pairs);
+  }
+
   /// The forces that the stiffness gives back, with the viscosities of set().
   void giveBack(FlowState<D, Backend>& state, const MphPairs<D>& pairs) {
     if (!isStiff()) return;

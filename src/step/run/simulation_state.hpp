@@ -282,14 +282,14 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
 
   void adaptBulk(StepReport& report) {
     BulkMemory& bulk = particles.bulk;
-    const double ratio = report.diagnostics.meanDensityRatio;
-    if (!watch->tellsDensity(report.diagnostics) || !adaptBulkConstants(theCase, ratio, timeStep, step == 1, bulk))
+    const FluidDensity is{report.diagnostics.meanDensityRatio - 1, report.diagnostics.compression};
+    if (!watch->tellsDensity(report.diagnostics) || !adaptBulkConstants(theCase, is, timeStep, step == 1, bulk))
       return;
     particles.modes.pressure = {};
     report.notes.push_back(fmt::format(
         "the fluid is {:.2g} % too dense: its automatic bulk modulus is {:.3g} times, its bulk viscosity "
         "{:g} times as large as at first from here on",
-        100 * (ratio - 1), bulk.modulus, bulk.viscosity));
+        100 * is.excess, bulk.modulus, bulk.viscosity));
   }
 
   GasReport gasReport() const {

@@ -70,38 +70,51 @@ TEST(BulkConstants, LeaveParticlesTimeToSettle) {
   EXPECT_NEAR(m.bulkViscosity / m.bulkModulus, 2 * std::sqrt(1e-3 / 10), 0.01 * 0.02);
 }
 
+/// Fluid whose excess of density is the pressure's.
+FluidDensity pressed(double excess) { return {excess, excess}; }
+
 TEST(BulkConstants, FollowTheDensityInTheRun) {
   Case c = blockOf(10);
   setBulkConstants(c);
   const double kappa = c.materials[0].bulkModulus, lambda = c.materials[0].bulkViscosity;
   EXPECT_NEAR(0.25 * lambda / (kappa * c.time.step), 16.7, 0.1) << "as far as the step lets kappa grow";
   BulkMemory memory;
-  EXPECT_FALSE(adaptBulkConstants(c, 1.004, 1e-3, false, memory));
+  EXPECT_FALSE(adaptBulkConstants(c, pressed(0.004), 1e-3, false, memory));
   EXPECT_EQ(memory, BulkMemory{});
-  EXPECT_TRUE(adaptBulkConstants(c, 1.006, 1e-3, false, memory));
+  EXPECT_TRUE(adaptBulkConstants(c, pressed(0.006), 1e-3, false, memory));
   EXPECT_EQ(memory.modulus, 4);
   EXPECT_EQ(memory.viscosity, 1);
   EXPECT_NEAR(memory.rest, 2 * lambda / (4 * kappa), 1e-12);
-  EXPECT_FALSE(adaptBulkConstants(c, 1.006, 1e-3, false, memory)) << "it has had no time to act";
-  EXPECT_TRUE(adaptBulkConstants(c, 1.008, 1e-3, false, memory)) << "the fluid is pressed together faster";
+  EXPECT_FALSE(adaptBulkConstants(c, pressed(0.006), 1e-3, false, memory)) << "it has had no time to act";
+  EXPECT_TRUE(adaptBulkConstants(c, pressed(0.008), 1e-3, false, memory))
+      << "the fluid is pressed together faster";
   EXPECT_EQ(memory.modulus, 16);
-  EXPECT_FALSE(adaptBulkConstants(c, 1.008, 1.0, false, memory)) << "that did not help";
-  EXPECT_TRUE(adaptBulkConstants(c, 1.007, 1.0, false, memory)) << "it has helped";
+  EXPECT_FALSE(adaptBulkConstants(c, pressed(0.008), 1.0, false, memory)) << "that did not help";
+  EXPECT_TRUE(adaptBulkConstants(c, pressed(0.007), 1.0, false, memory)) << "it has helped";
   double excess = 0.01;
-  for (int k = 0; k < 20; ++k) adaptBulkConstants(c, 1 + (excess *= 1.21), 1.0, false, memory);
+  for (int k = 0; k < 20; ++k) adaptBulkConstants(c, pressed(excess *= 1.21), 1.0, false, memory);
   EXPECT_EQ(memory.modulus, 256) << "both, then no more";
   EXPECT_EQ(memory.viscosity, 16);
   BulkMemory full;
-  EXPECT_FALSE(adaptBulkConstants(c, 1.014, 1e-3, true, full)) << "it holds too much from the start";
-  EXPECT_FALSE(adaptBulkConstants(c, 1.012, 1e-3, false, full));
-  EXPECT_TRUE(adaptBulkConstants(c, 1.018, 1e-3, false, full)) << "and is pressed together now";
+  EXPECT_FALSE(adaptBulkConstants(c, pressed(0.014), 1e-3, true, full)) << "it holds too much from the start";
+  EXPECT_FALSE(adaptBulkConstants(c, pressed(0.012), 1e-3, false, full));
+  EXPECT_TRUE(adaptBulkConstants(c, pressed(0.018), 1e-3, false, full)) << "and is pressed together now";
   MaterialTable table = MaterialTable::make(c);
   table.raiseBulk(c, memory);
   EXPECT_DOUBLE_EQ(table.bulkViscosity[0], 16 * lambda);
   EXPECT_DOUBLE_EQ(table.bulkModulus[0], memory.modulus * kappa);
   c.materials[0].autoBulkModulus = c.materials[1].autoBulkModulus = false;
   memory = {};
-  EXPECT_FALSE(adaptBulkConstants(c, 1.1, 1e-3, false, memory)) << "the case gives one of them";
+  EXPECT_FALSE(adaptBulkConstants(c, pressed(0.1), 1e-3, false, memory)) << "the case gives one of them";
+}
+
+TEST(BulkConstants, DoNotFollowWhatNoPressureMakes) {
+  Case c = blockOf(10);
+  setBulkConstants(c);
+  BulkMemory memory;
+  EXPECT_FALSE(adaptBulkConstants(c, {0.02, 0.008}, 1e-3, false, memory));
+  EXPECT_EQ(memory, BulkMemory{});
+  EXPECT_TRUE(adaptBulkConstants(c, {0.02, 0.012}, 1e-3, false, memory));
 }
 
 TEST(BulkConstants, KeepWhatTheCaseSays) {

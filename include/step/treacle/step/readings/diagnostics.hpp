@@ -28,9 +28,10 @@ struct DiagnosticsInput {
   std::span<const std::uint8_t> surface{};  // 1: at the free surface
   // Of MPH-I, else empty.
   std::span<const double> numberDensity{};
-  double restDensity = 0;          // n_0 [-]
-  double ownDensity = 0;           // w(0), which n leaves out [-]
-  std::span<const double> open{};  // of numberDensity(), empty where it is not known
+  double restDensity = 0;              // n_0 [-]
+  double ownDensity = 0;               // w(0), which n leaves out [-]
+  std::span<const double> pressure{};  // of the last step [Pa]
+  std::span<const double> open{};      // of numberDensity(), empty where it is not known
   // What walls make up of the density, empty where it is not known, and what the neighbours in a full lattice do.
   std::span<const double> wallDensity{};
   double neighbourDensity = 0;
@@ -76,6 +77,7 @@ struct DiagnosticsTerm {
       if (Cover::isInside(in.open[i], ratio, walls)) {
         d.interiorParticles = 1;
         d.insideVolume = Cover::of(in.open[i], ratio).rest / ratio;
+        d.compression = in.pressure[i] / in.materials.bulkModulus[in.material[i]];
       }
     }
     if (in.density.empty()) return d;
@@ -107,7 +109,8 @@ TREACLE_HD inline Diagnostics joined(const Diagnostics& a, const Diagnostics& b)
           a.elasticEnergy + b.elasticEnergy,
           a.insideWalls + b.insideWalls,
           a.gravityPower + b.gravityPower,
-          a.insideVolume + b.insideVolume};
+          a.insideVolume + b.insideVolume,
+          a.compression + b.compression};
 }
 
 /// Sums into means; `count` of particles. n + w(0) is the sum that is proportional to the density: n alone changes
@@ -117,7 +120,7 @@ inline Diagnostics averaged(Diagnostics d, std::size_t count, double own) {
     d.meanDensityRatio /= static_cast<double>(count);
     d.excessDensity /= static_cast<double>(count);
   }
-  if (d.interiorParticles > 0) d.meanDensityError /= d.interiorParticles;
+  if (d.interiorParticles > 0) d.meanDensityError /= d.interiorParticles, d.compression /= d.interiorParticles;
   if (d.insideVolume > 0) {
     d.meanDensityRatio = (d.interiorParticles / d.insideVolume + own) / (1 + own);
     d.meanDensityError = std::abs(1 / d.meanDensityRatio - 1);

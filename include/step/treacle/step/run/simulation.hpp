@@ -40,6 +40,7 @@ struct Diagnostics {
   double insideWalls = 0;    // particles whose neighbourhood is filled by walls alone
   double gravityPower = 0;   // sum of m g.u [W; per metre of depth in 2D]
   double insideVolume = 0;   // of MPH-I: sum over the particles inside of their volumes, over l^d
+  double compression = 0;    // of MPH-I: mean of p / kappa inside, by which pressures make the fluid denser
 };
 
 /// Wall-clock seconds of one step, or summed over steps.
