@@ -171,6 +171,7 @@ class MphStep final : public StepMethod<D, Backend> {
     guess_.accept(n);
   }
 
+  double pressedWay() const override { return viscosities_.stiffness() ? viscosities_.stiffness()->way() : 0; }
   void describe(DiagnosticsInput<D>& in) const override { places_.describe(state_, pairs_, in); }
 
   std::optional<Balance> balance() const override { return lastBalance_; }

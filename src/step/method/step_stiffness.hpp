@@ -28,13 +28,14 @@ class StepStiffness final : public ForcesAround<D, Backend> {
   void find(FlowState<D, Backend>& state, const MphPairs<D>& pairs, const StepRheology<D, Backend>* rheology) {
     const std::uint32_t own = pairs.ownFluid();
     viscosity_.resize(state.context, own);
-    const double count = setStiffness(
+    const StiffFluid fluid = setStiffness(
         state.context,
         StiffnessTerms{materials_, rheology ? rheology->table() : RheologyTable{}, limits_, pairs.spacing,
                        state.timeStep, pairs.material.first(own),
                        rheology ? rheology->rates() : std::span<const double>{},
                        std::span<const double>(state.particles.pressure).first(own), viscosity_.span()});
-    this->setActing(count > 0);
+    this->setActing(fluid.particles > 0);
+    way_ = fluid.way;
   }
 
   /// In cases with rigid bodies: the velocities of now, before their walls take those that the step tries. These
@@ -48,6 +49,8 @@ class StepStiffness final : public ForcesAround<D, Backend> {
 
   /// Both viscosities together after scale(), per own particle [Pa s].
   std::span<const double> sum() const { return sum_; }
+  /// How far pressures carry particles in the step, in the mean, in spacings.
+  double way() const { return way_; }
   /// The additional viscosity per own particle [Pa s].
   std::span<const double> viscosity() const { return viscosity_; }
 
@@ -103,6 +106,7 @@ class StepStiffness final : public ForcesAround<D, Backend> {
     giveBackOnWalls<D>(state.context, withGiven(pairs), walls, gradient_.span(), force);
   }
 
+  double way_ = 0;
   StiffMaterials materials_;
   StiffnessLimits limits_;
   Buffer<double, Backend> viscosity_;              // per own particle [Pa s]

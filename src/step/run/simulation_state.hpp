@@ -5,6 +5,7 @@
 #include "give_fluid.hpp"
 #include "given_step.hpp"
 #include "method/step_motion.hpp"
+#include "pressed_steps.hpp"
 #include "start_state.hpp"
 #include "step_method.hpp"
 #include "treacle/core/processes.hpp"
@@ -46,6 +47,7 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
   std::optional<StepControl> control;  // of automatic steps
   double endOfStep = 0;                // time at the end of the step at hand [s]
   bool tooCoarse = false;              // an automatic step was, and it was said
+  PressedSteps pressedSteps;           // among equal ones
 
   State(const Case& c, Particles<D> state, std::int64_t startStep, double startTime, const Communicator* processes)
       : Flow(c, startStep, startTime), bodies(*this), motion(*this, bodies), boundaries(*this), sides(*this) {
@@ -198,12 +200,15 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
   }
 
   bool isExact(StepReport& report) {
+    double way = 0;
     phases.run(context, treacle::phases::update, [&] {
       const std::uint32_t n = particles.fluidCount;
       const StepChangeTerms<D> terms{particles.velocity.span().first(n), velocity.span().first(n)};
-      report.error = control->error(stepChange<D>(context, terms), timeStep, particles.steps);
+      const StepChange is = stepChange<D>(context, terms);
+      report.error = control->error(is, timeStep, particles.steps);
+      if (control->flows(is.speed, timeStep)) way = method->pressedWay();
     });
-    if (!control->accept(timeStep, report.error, particles.steps)) return false;
+    if (!control->accept(timeStep, report.error, way, particles.steps)) return false;
     const double most = theCase.time.tolerance;
     if (report.error > most && !std::exchange(tooCoarse, true))
       report.warnings.push_back(fmt::format(
@@ -260,6 +265,7 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
       lastSpeed = report.diagnostics.maxSpeed;
       const double start = time;
       accept();
+      if (!control) pressedSteps.look(theCase, method->pressedWay(), lastSpeed, report.warnings);
       if (theCase.keepsVolume() && !theCase.hasVolumeFactors()) adaptBulk(report);
       if (theCase.isOpen()) report.flow = followFlow(start);
     });

@@ -10,6 +10,8 @@ constexpr double safety = 0.9;  // of the step that the tolerance would just all
 constexpr double mostGrowth = 2, leastShare = 0.1;
 constexpr double stepsPerOctave = 4;  // planned steps are the longest one times 2^(-k / stepsPerOctave)
 constexpr double shareAfterFailure = 0.25;
+constexpr double mostWay = 10;       // of pressed particles, in spacings, over the tolerance
+constexpr double restsBelow = 1e-3;  // way of fluid in a step, in spacings
 
 }  // namespace
 
@@ -48,7 +50,9 @@ double StepControl::error(const StepChange& d, double length, const StepMemory& 
   return length * std::min(acceleration / (2 * d.speed), std::sqrt(acceleration / (2 * spacing_)));
 }
 
-bool StepControl::accept(double length, double error, StepMemory& memory) const {
+bool StepControl::flows(double speed, double length) const { return speed * length > restsBelow * spacing_; }
+
+bool StepControl::accept(double length, double error, double way, StepMemory& memory) const {
   if (error > tolerance_ && !isShortest(length)) {
     memory.planned = quantised(length * std::max(safety * tolerance_ / error, leastShare));
     return false;
@@ -57,7 +61,8 @@ bool StepControl::accept(double length, double error, StepMemory& memory) const 
   // safety.
   const double rate = error / length, mean = memory.rate > 0 ? std::sqrt(rate * memory.rate) : rate;
   const double now = memory.last > 0 ? planned(memory) : length, most = mostGrowth * now;
-  const double wanted = mean > 0 ? std::min(safety * tolerance_ / mean, most) : most;
+  double wanted = mean > 0 ? std::min(safety * tolerance_ / mean, most) : most;
+  if (way > 0) wanted = std::min(wanted, mostWay * tolerance_ / way * length);
   memory.planned = wanted < safety * now ? quantised(wanted) : std::max(quantised(wanted), now);
   memory.rate = rate;
   memory.last = length;

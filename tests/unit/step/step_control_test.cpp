@@ -72,7 +72,7 @@ Way follow(const Case& c, Particle p, const Velocity& velocity) {
   while (!c.atEnd(0, way.times.back())) {
     const StepControl::Step step = control.next(memory, way.times.back(), std::abs(p.u));
     const double u = velocity(p, step.length);
-    if (!control.accept(step.length, control.error(changeOf(p.u, u), step.length, memory), memory)) {
+    if (!control.accept(step.length, control.error(changeOf(p.u, u), step.length, memory), 0, memory)) {
       ++way.rejected;
       continue;
     }
@@ -172,17 +172,17 @@ TEST(StepControl, GrowsAtMostTwofoldAndStaysWhereItIsWhereNothingChanges) {
   const StepControl control(c);
   StepMemory memory{.last = 1e-3, .planned = 1.0 / 1024, .rate = 1e-9};
   for (double longest = 1.0 / 1024; longest < 1;) {
-    ASSERT_TRUE(control.accept(memory.planned, 0, memory));
+    ASSERT_TRUE(control.accept(memory.planned, 0, 0, memory));
     ASSERT_EQ(memory.planned, 2 * longest);
     longest = memory.planned;
   }
   // A rate that fits a step of a quarter: little more or less than that changes nothing.
   memory = {.last = 0.25, .planned = 0.25, .rate = 0.017 / 0.25};
   for (const double factor : {1.0, 1 + 1e-12, 0.97, 1.03, 1 - 1e-12}) {
-    ASSERT_TRUE(control.accept(0.25, 0.017 * factor, memory));
+    ASSERT_TRUE(control.accept(0.25, 0.017 * factor, 0, memory));
     EXPECT_EQ(memory.planned, 0.25);
   }
-  ASSERT_FALSE(control.accept(0.25, 0.0201, memory));
+  ASSERT_FALSE(control.accept(0.25, 0.0201, 0, memory));
   EXPECT_LT(memory.planned, 0.25);
   EXPECT_GT(memory.planned, 0.15);
 }
@@ -207,6 +207,19 @@ TEST(StepControl, MeetsFramesAndTheEndExactlyByEqualSteps) {
   EXPECT_EQ(control.next(memory, 0.4, 0).length, 0.03) << "beyond the end";
 }
 
+TEST(StepControl, KeepsToWhatPressedParticlesBear) {
+  const StepControl control(automaticCase(0.02, 1, 1000));
+  StepMemory memory{.last = 0.25, .planned = 0.25, .rate = 1e-9};
+  ASSERT_TRUE(control.accept(0.25, 0, 0.8, memory));
+  EXPECT_EQ(memory.planned, 0.0625) << "a way of 0.2 spacings";
+  ASSERT_TRUE(control.accept(0.0625, 0, 0.2, memory));
+  EXPECT_EQ(memory.planned, 0.0625);
+  ASSERT_TRUE(control.accept(0.0625, 0, 0.05, memory));
+  EXPECT_EQ(memory.planned, 0.125);
+  EXPECT_FALSE(control.flows(0.9e-3 * spacing / 0.1, 0.1));
+  EXPECT_TRUE(control.flows(1.1e-3 * spacing / 0.1, 0.1));
+}
+
 TEST(StepControl, KeepsToItsBounds) {
   Case c = automaticCase(0.02, 0.1, 10);
   c.time.least = 0.01;
@@ -217,7 +230,7 @@ TEST(StepControl, KeepsToItsBounds) {
   memory.last = 0.1;
   EXPECT_DOUBLE_EQ(control.next(memory, 0, 0.02).length, 0.5 * spacing / 0.02);
   EXPECT_NEAR(control.next(memory, 0, 1).length, 0.01, 1e-12) << "not shorter than the least";
-  EXPECT_TRUE(control.accept(0.01, 1, memory)) << "nothing shorter is to be had";
+  EXPECT_TRUE(control.accept(0.01, 1, 0, memory)) << "nothing shorter is to be had";
   EXPECT_EQ(memory.planned, 0.01);
   EXPECT_FALSE(control.shorten(0.01, memory));
   EXPECT_TRUE(control.shorten(0.1, memory));

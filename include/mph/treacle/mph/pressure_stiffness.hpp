@@ -26,6 +26,12 @@ struct StiffMaterials {
   static StiffMaterials make(const Case& c);
 };
 
+/// Of all fluid, over all processes.
+struct StiffFluid {
+  double particles;  // that have such a viscosity
+  double way;        // how far the pressure carries a particle in the step, in the mean, in spacings
+};
+
 /// Spans are per own fluid particle in the backend's memory.
 struct StiffnessTerms {
   StiffMaterials materials;
@@ -37,18 +43,22 @@ struct StiffnessTerms {
   std::span<const double> pressure;  // of the last step [Pa]
   std::span<double> viscosity;       // [Pa s]
 
-  /// Sets the viscosity of particle i, and counts it if that is not zero.
-  TREACLE_HD void add(std::size_t i, double* count) const {
+  static constexpr int count = 3;
+
+  /// Sets the viscosity of particle i. Sums: 1 if that is not zero, its way, 1.
+  TREACLE_HD void add(std::size_t i, double* sums) const {
     const int m = material[i];
     const double mu = rate.empty() ? materials.viscosity[m] : table.viscosity(i, m, rate[i]);
-    viscosity[i] = limits.viscosity({materials.density[m], mu, spacing, timeStep}, pressure[i]);
-    if (viscosity[i] > 0) *count += 1;
+    const PressedParticle particle{materials.density[m], mu, spacing, timeStep};
+    viscosity[i] = limits.viscosity(particle, pressure[i]);
+    if (viscosity[i] > 0) sums[0] += 1;
+    if (pressure[i] > 0) sums[1] += particle.way(pressure[i]);
+    sums[2] += 1;
   }
 };
 
-/// Sets all; how many particles have one, over all processes.
 template <class Backend>
-double setStiffness(Context<Backend>&, const StiffnessTerms&);
+StiffFluid setStiffness(Context<Backend>&, const StiffnessTerms&);
 
 /// scale *= 1 + viscosity / mu of own particles whose viscosity is that of their material.
 struct StiffScale {

@@ -76,9 +76,10 @@ struct GivenBack {
 };
 
 template <class Backend>
-double setStiffness(Context<Backend>& context, const StiffnessTerms& terms) {
-  return sumEach<1>(context, terms.viscosity.size(),
-                    [=] TREACLE_HD(std::size_t i, double* count) { terms.add(i, count); })[0];
+StiffFluid setStiffness(Context<Backend>& context, const StiffnessTerms& terms) {
+  const auto sums = sumEach<StiffnessTerms::count>(
+      context, terms.viscosity.size(), [=] TREACLE_HD(std::size_t i, double* each) { terms.add(i, each); });
+  return {sums[0], sums[2] > 0 ? sums[1] / sums[2] : 0};
 }
 
 template <class Backend>
@@ -111,9 +112,9 @@ void giveBackOnWalls(Context<Backend>& context, const MphPairs<D>& pairs, const 
   template void giveBack(Context<Backend>&, const MphPairs<D>&, std::span<const Block<D>>, std::span<Vec<D>>); \
   template void giveBackOnWalls(Context<Backend>&, const MphPairs<D>&, const ClusterListView&,                 \
                                 std::span<const Block<D>>, std::span<Vec<D>>);
-#define TREACLE_STIFFNESS(Backend)                                        \
-  template double setStiffness(Context<Backend>&, const StiffnessTerms&); \
-  template void setStiffScale(Context<Backend>&, const StiffScale&);      \
+#define TREACLE_STIFFNESS(Backend)                                            \
+  template StiffFluid setStiffness(Context<Backend>&, const StiffnessTerms&); \
+  template void setStiffScale(Context<Backend>&, const StiffScale&);          \
   template void setGivenScale(Context<Backend>&, const GivenScale&);
 
 }  // namespace treacle

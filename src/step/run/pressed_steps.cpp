@@ -1,0 +1,28 @@
+#include "pressed_steps.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+namespace treacle {
+namespace {
+
+constexpr double mostWay = 1, harmlessWay = 0.2;  // of pressed particles, in spacings
+constexpr double restsBelow = 0.05;               // way of the fastest particle, in spacings
+constexpr double leastShare = 0.02;               // of the steps of a run: impacts press for a moment
+
+}  // namespace
+
+void PressedSteps::look(const Case& c, double way, double fastest, std::vector<std::string>& warnings) {
+  if (warned_ || !(way > mostWay && fastest * c.time.step > restsBelow * c.spacing)) return;
+  if (++count_ * c.time.step < leastShare * c.time.end) return;
+  warned_ = true;
+  warnings.push_back(fmt::format(
+      "steps of {:g} s are long for the pressure, which could carry particles by {:.2g} spacings in "
+      "each: "
+      "fluid that shears is held back by 15 % or more; take time.step <= {:.2g}, or time.step = \"auto\"; further "
+      "steps are not reported",
+      c.time.step, way, harmlessWay / way * c.time.step));
+}
+
+}  // namespace treacle
