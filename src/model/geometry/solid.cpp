@@ -13,6 +13,13 @@ namespace {
 
 std::atomic<std::uint64_t> solids{0};
 
+/// Of length one, along no side that a case is likely to have.
+template <int D>
+Vec<D> asideDirection() {
+  const Vec<D> v = resized<D>(Vec<3>{1, 0.38471, 0.21137});
+  return v * (1 / norm(v));
+}
+
 }  // namespace
 
 template <int D>
@@ -51,12 +58,19 @@ typename Solid<D>::Answer Solid<D>::filled(const Vec<D>& x) const {
   const bool layer = fill_ != FillKind::Inside;
   const double end = thickness_ + slack_;
   if (layer && d > end) return answer(false, d - end);
-  if (d <= slack_) return answer(fill_ != FillKind::Outside, 0);
-  const double w = sign_ * tree_->winding(local);
+  const double w = windingAt(local, d);
   double sure = sureDistance(d, w);
   const bool within = (w >= 0.5) != (fill_ == FillKind::Outside);
   if (layer && within) sure = std::min(sure, end - d);
   return answer(within, sure);
+}
+
+/// The surface itself belongs to one of the two sides of it, that of a point just aside of it: of two solids that
+/// share a part of their surfaces to one.
+template <int D>
+double Solid<D>::windingAt(const Vec<D>& local, double distance) const {
+  const bool onSurface = distance <= 2 * slack_;
+  return sign_ * tree_->winding(onSurface ? local + asideDirection<D>() * slack_ : local);
 }
 
 /// Beside holes winding numbers change with the place. They are harmonic: where they are within 1.5 of their
@@ -86,8 +100,9 @@ typename Solid<D>::Surroundings Solid<D>::around(const Vec<D>& local) const {
       return {ball.known.within, ball.known.least - r, ball.known.most + r};
     }
   }
-  const double limit = thickness_ + 16 * spacing_, w = sign_ * tree_->winding(local);
+  const double limit = thickness_ + 16 * spacing_;
   const Near near = tree_->nearest(local, limit);
+  const double w = windingAt(local, near.distance);
   const Surroundings known{w >= 0.5, std::min(near.distance, limit), near.distance};
   if (const double sure = sureDistance(known.least, w) - slack_; sure > 0)
     memory[next] = {number_, local, sure * sure, known}, next = (next + 1) % balls;

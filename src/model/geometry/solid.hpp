@@ -65,6 +65,8 @@ class Solid {
   };
   Surroundings around(const Vec<D>& local) const;
   bool inside(const Vec<D>& local) const { return around(local).within; }
+  /// The winding number of the surface around a point at that distance from it [m].
+  double windingAt(const Vec<D>& local, double distance) const;
   /// How far from a point at distance d of the surface, with the winding number w, nothing changes.
   double sureDistance(double d, double w) const;
   Vec<D> direction(const Vec<D>& local, const Near& near) const;

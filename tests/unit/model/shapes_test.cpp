@@ -153,6 +153,26 @@ TEST(polygon, isFilledOnTheLatticeOfTheDomain) {
   EXPECT_EQ(placesOf<3>(polygon(other, -2, 3)), placesOf<3>(polygon(angle, -2, 3)));
 }
 
+/// Points of the lattice on a side belong to one of two polygons that share it.
+TEST(polygon, hasPointsOnItsSidesOnOneSideOnly) {
+  EXPECT_EQ(placesOf<2>(polygon({{10, 0}, {0, 10}, {-10, 0}, {0, -10}})).size(), 200u);
+  EXPECT_EQ(placesOf<3>(polygon({{10, 0}, {0, 10}, {-10, 0}, {0, -10}}, -3, 4)).size(), 7u * 200);
+  EXPECT_EQ(placesOf<2>(polygon({{0.5, 0.5}, {10.5, 0.5}, {10.5, 6.5}, {0.5, 6.5}})).size(), 60u);
+  EXPECT_EQ(placesOf<3>(polygon({{0.5, 0.5}, {10.5, 0.5}, {10.5, 6.5}, {0.5, 6.5}}, 0.5, 3.5)).size(), 180u);
+  Case c = emptyCase(2);
+  c.bodies = {makeBody("fluid", BodyKind::Fluid, polygon({{0, 0}, {20, 20}, {-20, 20}})),
+              makeBody("tank", BodyKind::Wall, polygon({{0, 0}, {30, 30}, {30, -6}, {-30, -6}, {-30, 30}}))};
+  std::vector<std::string> notes;
+  std::vector<BodyCount> counts;
+  createParticles<2>(c, notes, &counts);
+  EXPECT_THAT(notes, IsEmpty());
+  EXPECT_THAT(counts, ElementsAre(BodyCount{400, 0}, BodyCount{0, 60 * 36 - 900}));
+  c.bodies[1].shape = polygon({{-30, -6}, {30, -6}, {30, 30}, {-30, 30}});
+  c.bodies[1].subtract = {"fluid"};
+  createParticles<2>(c, notes, &counts);
+  EXPECT_THAT(counts, ElementsAre(BodyCount{400, 0}, BodyCount{0, 60 * 36 - 400}));
+}
+
 /// Fluid inside and a wall outside of one outline: every place of the lattice belongs to one of them.
 TEST(polygon, partsTheLatticeWithTheLayerOutside) {
   Case c = emptyCase(2);
