@@ -44,6 +44,18 @@ bool BodyRegion<D>::holds(const Vec<D>& x) const {
 }
 
 template <int D>
+bool BodyRegion<D>::fillsAround(const Vec<D>& x, double distance) const {
+  if (!fills(x)) return false;
+  for (int k = 0; k < D; ++k)
+    for (const double way : {-distance, distance}) {
+      Vec<D> beside = x;
+      beside[k] += way;
+      if (!fills(beside)) return false;
+    }
+  return true;
+}
+
+template <int D>
 std::vector<BodyRegion<D>> subtractedRegions(const Case& c, const Body& body) {
   std::vector<BodyRegion<D>> regions;
   for (const std::string& name : body.subtract)

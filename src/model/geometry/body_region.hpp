@@ -20,8 +20,13 @@ class BodyRegion {
 
   bool holds(const Vec<D>& x) const;
   bool touches(const Vec<D>& min, const Vec<D>& max) const;
+  /// Whether the body holds a place and all around it up to so far along the axes, and has particles there: behind
+  /// a shell it has none.
+  bool fillsAround(const Vec<D>& x, double distance) const;
 
  private:
+  bool fills(const Vec<D>& x) const { return holds(x) && (!solid_ || solid_->filled(x).within); }
+
   Shape shape_;
   Similarity<D> similarity_;
   std::unique_ptr<const Solid<D>> solid_;  // of a polygon or mesh

@@ -11,6 +11,7 @@
 #include "geometry/mesh_notes.hpp"
 #include "geometry/point_boxes.hpp"
 #include "lattice.hpp"
+#include "overlap.hpp"
 #include "treacle/model/geometry/point_grid.hpp"
 #include "treacle/model/motion/opening.hpp"
 
@@ -126,6 +127,17 @@ PointGrid<D> gridFor(const Domain& domain, double radius, const std::vector<Fill
   return PointGrid<D>(domain, radius, count);
 }
 
+/// Thin sheets overlap with nothing.
+template <int D>
+PointBoxes<D> boxesOf(const Domain& domain, double radius,
+                      const std::vector<const std::vector<Filled<D>>*>& groups) {
+  PointBoxes<D> boxes(domain, radius);
+  for (const auto* group : groups)
+    for (const Filled<D>& f : *group)
+      if (!f.body->shape.isThinSheet()) boxes.add(f.body, f.points.place);
+  return boxes;
+}
+
 /// What drives an inflow needs all its room. Errors: InputError for walls of which one is that of an inflow.
 template <int D>
 void requireNoNozzle(const Body& a, const Body& b, const Vec<D>& x) {
@@ -138,21 +150,26 @@ void requireNoNozzle(const Body& a, const Body& b, const Vec<D>& x) {
       positionText(resized<3>(x), D)));
 }
 
-/// Union in file order: drops points closer than half a spacing to an earlier one and puts those of the rest on
-/// the grid that may be so near to others.
+/// Union in file order: drops points that are in the place of an earlier body, and says so.
 template <int D>
-void unite(BodyKind kind, std::vector<Filled<D>>& filled, const PointBoxes<D>& boxes, PointGrid<D>& grid,
+void unite(const Case& c, BodyKind kind, const Overlap<D>& overlap, std::vector<Filled<D>>& filled,
            std::vector<std::string>& notes) {
+  const double radius = kind == BodyKind::Fluid ? overlap.reach() : overlap.radius();
+  const PointBoxes<D> boxes = boxesOf<D>(c.domain, radius, {&filled});
+  PointGrid<D> grid = gridFor(c.domain, radius, filled, boxes);
   for (std::uint32_t b = 0; b < filled.size(); ++b) {
     auto& points = filled[b].points;
     const auto near = boxes.near(filled[b].body);
     if (near.empty()) continue;
     const std::size_t all = points.size();
     std::uint32_t other = PointGrid<D>::none;
+    const auto taken = [&](std::uint32_t tag, const Vec<D>& point, const Vec<D>& x) {
+      return overlap.areClose(point, x) || (tag != b && overlap.isInside(*filled[tag].body, x));
+    };
     points.filter([&](std::size_t k) {
       const Vec<D>& x = points.place[k];
       if (!near.contain(x)) return true;
-      if (const std::uint32_t tag = grid.find(x); tag != PointGrid<D>::none) {
+      if (const std::uint32_t tag = grid.find(x, taken); tag != PointGrid<D>::none) {
         other = tag;
         if (kind == BodyKind::Wall) requireNoNozzle(*filled[b].body, *filled[other].body, x);
         return false;
@@ -168,23 +185,37 @@ void unite(BodyKind kind, std::vector<Filled<D>>& filled, const PointBoxes<D>& b
 
 /// Errors: InputError for the first wall that shares places with the fluid.
 template <int D>
-void requireApart(const std::vector<Filled<D>>& fluid, const PointGrid<D>& grid,
-                  const std::vector<Filled<D>>& walls, const PointBoxes<D>& boxes) {
+void requireApart(const Case& c, const Overlap<D>& overlap, const std::vector<Filled<D>>& fluid,
+                  const std::vector<Filled<D>>& walls) {
+  const PointBoxes<D> boxes = boxesOf<D>(c.domain, overlap.reach(), {&fluid, &walls});
+  PointGrid<D> grid = gridFor(c.domain, overlap.reach(), fluid, boxes);
+  for (std::uint32_t b = 0; b < fluid.size(); ++b)
+    if (const auto near = boxes.near(fluid[b].body); !near.empty())
+      for (const Vec<D>& x : fluid[b].points.place)
+        if (near.contain(x)) grid.add(x, b);
   for (const Filled<D>& wall : walls) {
     const auto near = boxes.near(wall.body);
     if (near.empty()) continue;
     std::vector<std::pair<std::uint32_t, Vec<D>>> hits;
+    bool close = true;
     for (const Vec<D>& x : wall.points.place) {
       if (!near.contain(x)) continue;
-      if (const std::uint32_t tag = grid.find(x); tag != PointGrid<D>::none) hits.push_back({tag, x});
+      const auto shared = [&](std::uint32_t tag, const Vec<D>& point, const Vec<D>& image) {
+        if (overlap.areClose(point, image)) return true;
+        const bool is = overlap.sharePlace(*fluid[tag].body, point - (image - x), *wall.body, image);
+        close = close && !is;
+        return is;
+      };
+      if (const std::uint32_t tag = grid.find(x, shared); tag != PointGrid<D>::none) hits.push_back({tag, x});
     }
-    if (!hits.empty())
-      throw InputError(fmt::format(
-          "fluid body '{}' and wall body '{}' overlap: {} wall particle{} closer than half a spacing "
-          "to the fluid, "
-          "the first at {}; subtract = [\"{}\"] of '{}' leaves it the room",
-          fluid[hits[0].first].body->name, wall.body->name, hits.size(), hits.size() == 1 ? "" : "s",
-          positionText(resized<3>(hits[0].second), D), wall.body->name, fluid[hits[0].first].body->name));
+    if (hits.empty()) continue;
+    const std::string& name = fluid[hits[0].first].body->name;
+    throw InputError(
+        fmt::format("fluid body '{}' and wall body '{}' overlap: {} wall particle{} {}the fluid, the first at {}; "
+                    "subtract = [\"{}\"] of '{}' leaves it the room",
+                    name, wall.body->name, hits.size(), hits.size() == 1 ? "" : "s",
+                    close ? "closer than half a spacing to " : "in the place of ",
+                    positionText(resized<3>(hits[0].second), D), wall.body->name, name));
   }
 }
 
@@ -258,8 +289,8 @@ Particles<D> createParticles(const Case& c, std::vector<std::string>& notes, std
                              ParticlePart part) {
   auto fluid = fillBodies<D>(c, BodyKind::Fluid, notes);
   auto walls = fillBodies<D>(c, BodyKind::Wall, notes);
-  // Points exactly half a spacing apart, give or take rounding, do not count as overlapping.
-  const double radius = 0.5 * c.spacing * (1 - 1e-6);
+  const Overlap<D> overlap(c);
+  const double radius = overlap.radius();
   subtract<D>(c.domain, radius, {&fluid, &walls}, fluid);
   subtract<D>(c.domain, radius, {&fluid, &walls}, walls);
   clearBehindReserves<D>(c, fluid);
@@ -270,17 +301,9 @@ Particles<D> createParticles(const Case& c, std::vector<std::string>& notes, std
                                  total(fluid) + total(walls), maxParticles));
   for (const auto& f : walls) requireTurnable(c.domain, c.spacing, f);
 
-  PointBoxes<D> boxes(c.domain, radius);
-  for (const auto* group : {&fluid, &walls})
-    for (const Filled<D>& f : *group)
-      if (!f.body->shape.isThinSheet()) boxes.add(f.body, f.points.place);
-  PointGrid<D> fluidGrid = gridFor(c.domain, radius, fluid, boxes);
-  unite(BodyKind::Fluid, fluid, boxes, fluidGrid, notes);
-  {
-    PointGrid<D> wallGrid = gridFor(c.domain, radius, walls, boxes);
-    unite(BodyKind::Wall, walls, boxes, wallGrid, notes);
-  }
-  requireApart(fluid, fluidGrid, walls, boxes);
+  unite<D>(c, BodyKind::Fluid, overlap, fluid, notes);
+  unite<D>(c, BodyKind::Wall, overlap, walls, notes);
+  requireApart<D>(c, overlap, fluid, walls);
 
   const auto fluidCount = static_cast<std::uint32_t>(total(fluid)),
              wallCount = static_cast<std::uint32_t>(total(walls));

@@ -386,10 +386,9 @@ TEST(createParticles, rejectsExpressionsThatAreNotFiniteAtAParticle) {
   Case c = emptyCase(2);
   c.bodies = {makeBody("drop", BodyKind::Fluid, box({0, 0}, {2, 1}))};
   c.bodies[0].velocityExpression = {"", "1/(x - 1.5)", ""};
-  EXPECT_EQ(
-      messageOfCreation<2>(c),
-      "velocity of body 'drop': \"1/(x - 1.5)\" is infinite for the particle at (1.5, 0.5) m; expected a finite "
-      "number");
+  EXPECT_EQ(messageOfCreation<2>(c),
+            "velocity of body 'drop': \"1/(x - 1.5)\" is infinite for the particle at (1.5, 0.5) m; expected a finite "
+            "number");
   c.bodies[0].where = "x < 1";  // no particle stands there
   EXPECT_EQ(messageOfCreation<2>(c), "no error");
   c.bodies[0].where = "sqrt(x - 1)";
@@ -427,23 +426,46 @@ void checkUnion(unsigned seed) {
     c.bodies.push_back(makeBody("body", BodyKind::Fluid,
                                 b % 4 == 3 ? sphere(center, half[1]) : box(center - half, center + half)));
   }
-  const auto nearest = [&](const Vec<D>& a, const Vec<D>& b) {
+  const auto way = [&](const Vec<D>& a, const Vec<D>& b) {
     Vec<D> d = b - a;
     for (int k = 0; k < D; ++k)
       if (k != 1) d[k] -= size * std::round(d[k] / size);
-    return norm(d);
+    return d;
+  };
+  const auto isWithin = [&](const Shape& s, const Vec<D>& x) {
+    if (s.kind == ShapeKind::Sphere) return norm(x - resized<D>(s.center)) <= s.radius + 1e-6;
+    for (int k = 0; k < D; ++k)
+      if (x[k] < s.min[k] - 1e-6 || x[k] > s.max[k] + 1e-6) return false;
+    return true;
+  };
+  const auto isDeep = [&](const Shape& s, const Vec<D>& x) {
+    bool deep = true;
+    for (int k = 0; k < D; ++k)
+      for (const double off : {-0.25, 0.25}) {
+        Vec<D> beside = x;
+        beside[k] += off;
+        deep = deep && isWithin(s, beside);
+      }
+    return deep;
   };
   std::vector<std::string> notes;
   std::vector<Vec<D>> expected;
+  std::vector<std::size_t> owner;
   std::size_t all = 0;
-  for (const Body& body : c.bodies) {
+  for (std::size_t b = 0; b < c.bodies.size(); ++b) {
     Case single = c;
-    single.bodies = {body};
+    single.bodies = {c.bodies[b]};
     const Particles<D> own = createParticles<D>(single, notes);
     all += own.count;
-    for (const Vec<D>& x : own.position)
-      if (std::ranges::none_of(expected, [&](const Vec<D>& y) { return nearest(x, y) < 0.5 * (1 - 1e-6); }))
-        expected.push_back(x);
+    for (const Vec<D>& x : own.position) {
+      bool taken = false;
+      for (std::size_t i = 0; i < expected.size() && !taken; ++i) {
+        const Vec<D> d = way(expected[i], x);
+        taken = norm(d) < 0.5 * (1 - 1e-6) || (owner[i] != b && norm(d) < 0.5 * std::sqrt(D) * (1 + 1e-6) &&
+                                               isDeep(c.bodies[owner[i]].shape, expected[i] + d));
+      }
+      if (!taken) expected.push_back(x), owner.push_back(b);
+    }
   }
   const Particles<D> p = createParticles<D>(c, notes);
   EXPECT_LT(p.count, all);
@@ -469,6 +491,46 @@ TEST(createParticles, rejectsFluidInsideWall) {
   EXPECT_THAT(messageOfCreation<2>(c), HasSubstr("4 wall particles"));
   c.bodies[1].shape = box({0, -4.5}, {10, 0.5});  // half a spacing exactly is allowed
   EXPECT_EQ(messageOfCreation<2>(c), "no error");
+}
+
+/// No particle of one lattice is closer than half a spacing to one of the other.
+TEST(createParticles, rejectsFluidInsideWallOnAShiftedLattice) {
+  Case c = emptyCase(2);
+  c.bodies = {makeBody("column", BodyKind::Fluid, box({0, 0}, {10, 10})),
+              makeBody("disc", BodyKind::Wall, sphere({5, 5}, 1.2))};
+  EXPECT_EQ(
+      messageOfCreation<2>(c),
+      "fluid body 'column' and wall body 'disc' overlap: 5 wall particles in the place of the fluid, the first "
+      "at (5, 4) m; subtract = [\"disc\"] of 'column' leaves it the room");
+  c.bodies[0].subtract = {"disc"};
+  EXPECT_EQ(messageOfCreation<2>(c), "no error");
+  c.bodies[0].subtract = {};
+  c.bodies[0].where = "(x-5)^2 + (y-5)^2 > 1.3^2";
+  EXPECT_EQ(messageOfCreation<2>(c), "no error");
+  c.bodies[0].where = {};
+  c.bodies[1].shape = sphere({5, -1}, 1.2);  // a fifth of a spacing deep, as by rounding
+  EXPECT_EQ(messageOfCreation<2>(c), "no error");
+  c.bodies[1].shape = box({-3.5, -3.5}, {13.5, 13.5});
+  EXPECT_THAT(messageOfCreation<2>(c), HasSubstr("overlap: 121 wall particles in the place of the fluid"));
+
+  Case space = emptyCase(3);
+  space.bodies = {makeBody("column", BodyKind::Fluid, box({0, 0, 0}, {10, 10, 10})),
+                  makeBody("ball", BodyKind::Rigid, sphere({5, 5, 6}, 2.4))};
+  EXPECT_THAT(messageOfCreation<3>(space),
+              HasSubstr("'ball' overlap: 57 wall particles in the place of the fluid"));
+}
+
+/// The earlier body keeps the place, whatever the lattice of the later one.
+TEST(createParticles, laterFluidLeavesTheShapeOfEarlierFluid) {
+  Case c = emptyCase(2);
+  c.bodies = {makeBody("drop", BodyKind::Fluid, sphere({5, 5}, 2.2)),
+              makeBody("pool", BodyKind::Fluid, box({0, 0}, {10, 10}))};
+  std::vector<std::string> notes;
+  std::vector<BodyCount> counts;
+  createParticles<2>(c, notes, &counts);
+  EXPECT_THAT(counts, ElementsAre(BodyCount{13, 0}, BodyCount{100 - 12, 0}));
+  EXPECT_THAT(notes,
+              ElementsAre("body 'pool': 12 of 100 particles left out, their place is taken by body 'drop'"));
 }
 
 TEST(createParticles, rejectsCaseWithoutFluid) {

@@ -26,7 +26,14 @@ class PointGrid {
   }
 
   /// The tag of a point closer to x than the radius, or `none`.
-  std::uint32_t find(const Vec<D>& x) const { return points_.empty() ? none : findImages(x, 0); }
+  std::uint32_t find(const Vec<D>& x) const {
+    return find(x, [](std::uint32_t, const Vec<D>&, const Vec<D>&) { return true; });
+  }
+  /// Likewise, only of points for which accept(tag, point, x) holds, where x is that of its images which is near.
+  template <class Accept>
+  std::uint32_t find(const Vec<D>& x, Accept&& accept) const {
+    return points_.empty() ? none : findImages(x, 0, accept);
+  }
 
  private:
   using Cell = Vec<D, std::int64_t>;
@@ -52,29 +59,32 @@ class PointGrid {
   }
 
   /// Looks at x and at its images across periodic boundaries nearer than the radius, axis by axis.
-  std::uint32_t findImages(Vec<D> x, int axis) const {
-    if (axis == D) return findNear(x);
-    if (const std::uint32_t tag = findImages(x, axis + 1); tag != none) return tag;
+  template <class Accept>
+  std::uint32_t findImages(Vec<D> x, int axis, Accept& accept) const {
+    if (axis == D) return findNear(x, accept);
+    if (const std::uint32_t tag = findImages(x, axis + 1, accept); tag != none) return tag;
     if (!domain_.periodic[axis]) return none;
     const double low = domain_.min[axis], high = domain_.max[axis];
     const double at = x[axis];
     if (at - low < radius_) {
       x[axis] = at + (high - low);
-      if (const std::uint32_t tag = findImages(x, axis + 1); tag != none) return tag;
+      if (const std::uint32_t tag = findImages(x, axis + 1, accept); tag != none) return tag;
     }
     if (high - at < radius_) {
       x[axis] = at - (high - low);
-      return findImages(x, axis + 1);
+      return findImages(x, axis + 1, accept);
     }
     return none;
   }
 
-  std::uint32_t findNear(const Vec<D>& x) const {
+  template <class Accept>
+  std::uint32_t findNear(const Vec<D>& x, Accept& accept) const {
     const Cell low = cellOf(x - Vec<D>::filled(radius_)), high = cellOf(x + Vec<D>::filled(radius_));
     Cell c = low;
     while (true) {
       for (std::uint32_t i = first_[slot(c)]; i != none; i = points_[i].next)
-        if (norm2(points_[i].x - x) < radius_ * radius_) return points_[i].tag;
+        if (norm2(points_[i].x - x) < radius_ * radius_ && accept(points_[i].tag, points_[i].x, x))
+          return points_[i].tag;
       int k = 0;
       while (k < D && c[k] == high[k]) c[k] = low[k], ++k;
       if (k == D) return none;
