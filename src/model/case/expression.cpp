@@ -1,11 +1,13 @@
 #include "treacle/model/case/expression.hpp"
 
 #include "treacle/core/error.hpp"
+#include "treacle/model/case/formula.hpp"
 
 #include <fmt/format.h>
 #include <muParser.h>
 #include <cstddef>
 #include <numbers>
+#include <vector>
 
 namespace treacle {
 namespace {
@@ -17,6 +19,23 @@ bool assigns(const std::string& text) {
     const bool comparesBefore = k > 0 && std::string("=<>!").find(text[k - 1]) != std::string::npos;
     const bool comparesAfter = k + 1 < text.size() && text[k + 1] == '=';
     if (!comparesBefore && !comparesAfter) return true;
+  }
+  return false;
+}
+
+/// Where a comparison follows another one in the same brackets: "0 < x < 1" would compare 0 or 1 with the last
+/// number.
+bool comparesInARow(const std::string& text) {
+  std::vector<bool> compared{false};  // in each of the brackets that are open
+  for (std::size_t k = 0; k < text.size(); ++k) {
+    const char c = text[k];
+    if (c == '(') compared.push_back(false);
+    if (c == ')' && compared.size() > 1) compared.pop_back();
+    if (c == '&' || c == '|' || c == '?' || c == ':' || c == ',') compared.back() = false;
+    if (c != '<' && c != '>' && c != '=' && c != '!') continue;
+    if (compared.back()) return true;
+    compared.back() = true;
+    if (k + 1 < text.size() && text[k + 1] == '=') ++k;
   }
   return false;
 }
@@ -52,7 +71,8 @@ struct Expression::Parser {
     } catch (const mu::Parser::exception_type& e) {
       return e.GetMsg();
     }
-    return parser.GetNumResults() > 1 ? "more than one value" : "";
+    if (parser.GetNumResults() > 1) return "more than one value";
+    return comparesInARow(text) ? twoComparisons : "";
   }
 };
 

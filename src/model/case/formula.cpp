@@ -32,6 +32,7 @@ constexpr NamedOperation functions[] = {
 /// Operators between two values, by how tightly they bind; those of two characters stand before their beginnings.
 struct Level {
   std::vector<NamedOperation> operators;
+  bool compares = false;
 };
 const Level levels[] = {{{{"||", Step::Or}}},
                         {{{"&&", Step::And}}},
@@ -40,7 +41,8 @@ const Level levels[] = {{{{"||", Step::Or}}},
                           {"==", Step::Equal},
                           {"!=", Step::Unequal},
                           {"<", Step::Less},
-                          {">", Step::Greater}}},
+                          {">", Step::Greater}},
+                         true},
                         {{{"+", Step::Add}, {"-", Step::Subtract}}},
                         {{{"*", Step::Multiply}, {"/", Step::Divide}}}};
 
@@ -94,7 +96,8 @@ class Reader {
   void between(std::size_t level) {
     if (level == std::size(levels)) return sign();
     between(level + 1);
-    while (const auto operation = operatorOf(levels[level])) {
+    for (bool first = true; const auto operation = operatorOf(levels[level]); first = false) {
+      if (levels[level].compares && !first) fail(twoComparisons);
       between(level + 1);
       put(*operation, -1);
     }

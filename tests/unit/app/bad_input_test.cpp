@@ -69,6 +69,9 @@ constexpr BadCase badCases[] = {
      "'rotation', "
      "'min', "
      "'max' or 'transform'"},
+    {"comparisonsInARow", "max = [6e-3, 6e-3]", "max = [6e-3, 6e-3]\nwhere = \"0 < x < 1\"",
+     "bad.toml:26:9: where in [[body]] 'column' (box): expected an expression in x, y [m] and the constant pi, "
+     "found \"0 < x < 1\": two comparisons in a row; write \"a < x && x < b\" for a range"},
     {"stateOfUnknownLaw", "density = 1000", "density = 1000\nstate = [{ name = \"cure\", law = \"kamal\" }]",
      "bad.toml:15:33: law in [[state]] 'cure': expected 'expression', 'kamal-sourour', 'houska' or "
      "'roussel', found 'kamal'"},

@@ -64,6 +64,15 @@ TEST(Expression, faultsAreNamed) {
     EXPECT_THAT(faultOf(assignment), HasSubstr("a single ="));
 }
 
+TEST(Expression, refusesComparisonsInARow) {
+  for (const char* chain :
+       {"-0.05<x<0.05", "x <= y <= 1", "(0 < x < 1) && y > 0", "y > 0 && 1 > x >= 0", "x < y == 1"})
+    EXPECT_THAT(faultOf(chain), HasSubstr("two comparisons in a row; write \"a < x && x < b\" for a range"));
+  for (const char* sound : {"0 < x && x < 1", "x < 0 ? y < 1 : y < 2", "(x < 0) == (y < 0)", "max(x < 0, y < 0)",
+                            "x < (y < 0) || x != 2"})
+    EXPECT_EQ(faultOf(sound), "none");
+}
+
 /// Numbers with a comma, thousands with a point.
 struct OtherNumbers : std::numpunct<char> {
   char do_decimal_point() const override { return ','; }

@@ -58,6 +58,7 @@ TEST(Formula, RefusesWhatIsNone) {
   EXPECT_THAT(faultOf("w"), HasSubstr("unknown name \"w\""));
   EXPECT_THAT(faultOf("foo(1)"), HasSubstr("unknown function \"foo\""));
   EXPECT_THAT(faultOf("(1"), HasSubstr("\")\" is missing"));
+  EXPECT_THAT(faultOf("0 < x < 1"), HasSubstr("two comparisons in a row; write \"a < x && x < b\""));
   EXPECT_THAT(faultOf("1 2"), HasSubstr("unexpected \"2\""));
   EXPECT_THAT(faultOf("x ? 1"), HasSubstr("\":\" is missing"));
   EXPECT_THAT(faultOf("x = 1"), HasSubstr("unexpected \"= 1\""));

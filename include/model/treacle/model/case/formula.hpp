@@ -49,6 +49,9 @@ struct FormulaStep {
   double number = 0;
 };
 
+/// What is wrong with "a < x < b", in which a number of 0 or 1 would be compared with b.
+inline constexpr const char* twoComparisons = "two comparisons in a row; write \"a < x && x < b\" for a range";
+
 /// An expression that both backends evaluate, particle by particle: the operators, functions and precedences of
 /// the expressions of case files (expression.hpp), with variables of any names.
 class Formula {
