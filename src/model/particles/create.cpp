@@ -63,9 +63,17 @@ void subtract(const Domain& domain, double radius, const std::vector<const std::
   }
 }
 
-/// Takes out fluid behind the reserves of openings, up to the first layer without any.
 template <int D>
-void clearBehindReserves(const Case& c, std::vector<Filled<D>>& fluid) {
+std::size_t total(const std::vector<Filled<D>>& filled) {
+  std::size_t count = 0;
+  for (const Filled<D>& f : filled) count += f.points.size();
+  return count;
+}
+
+/// Takes out fluid behind the reserves of openings, up to the first layer without any. Notes how much, as there is
+/// none but where a direction is the wrong one, or a body is longer than its reserve.
+template <int D>
+void clearBehindReserves(const Case& c, std::vector<Filled<D>>& fluid, std::vector<std::string>& notes) {
   for (const Opening& o : c.openings) {
     const OpeningForce<D> opening = OpeningFace<D>(c, o).place();
     const double from = opening.depth + 0.5;  // as in the steps (OutflowRegion)
@@ -76,19 +84,18 @@ void clearBehindReserves(const Case& c, std::vector<Filled<D>>& fluid) {
         if (opening.isAcross(x, 0.5)) layers.insert(layerOf(x));
     double end = 0;
     while (layers.contains(end)) ++end;
+    const std::size_t all = total(fluid);
     for (Filled<D>& f : fluid)
       f.points.filter([&](std::size_t k) {
         const Vec<D>& x = f.points.place[k];
         return !opening.isAcross(x, 0.5) || layerOf(x) < 0 || layerOf(x) >= end;
       });
+    if (const std::size_t left = all - total(fluid); left > 0)
+      notes.push_back(
+          fmt::format("opening '{}': {} of {} fluid particles left out, which are behind its reserve of {}; its "
+                      "direction is to lead into the fluid",
+                      o.name, left, all, lengthText(from * c.spacing)));
   }
-}
-
-template <int D>
-std::size_t total(const std::vector<Filled<D>>& filled) {
-  std::size_t count = 0;
-  for (const Filled<D>& f : filled) count += f.points.size();
-  return count;
 }
 
 /// The nearest image of its centre must stay the same one as a wall turns. Errors: InputError for a wall that
@@ -293,7 +300,7 @@ Particles<D> createParticles(const Case& c, std::vector<std::string>& notes, std
   const double radius = overlap.radius();
   subtract<D>(c.domain, radius, {&fluid, &walls}, fluid);
   subtract<D>(c.domain, radius, {&fluid, &walls}, walls);
-  clearBehindReserves<D>(c, fluid);
+  clearBehindReserves<D>(c, fluid, notes);
   if (total(fluid) == 0 && !c.hasInflow())
     throw InputError("the case has no fluid: no body of type \"fluid\" holds a particle" + sizesOfFluid(c));
   if (total(fluid) + total(walls) > maxParticles)

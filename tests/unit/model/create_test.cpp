@@ -533,6 +533,22 @@ TEST(createParticles, laterFluidLeavesTheShapeOfEarlierFluid) {
               ElementsAre("body 'pool': 12 of 100 particles left out, their place is taken by body 'drop'"));
 }
 
+TEST(createParticles, tellsOfFluidBehindReserves) {
+  Case c = emptyCase(2);
+  c.bodies = {makeBody("pool", BodyKind::Fluid, box({0, 0}, {20, 10}))};
+  Opening& o = c.openings.emplace_back();
+  o.name = "end", o.face.kind = NozzleKind::Rectangle, o.face.width = 10;
+  o.face.center = {13, 5}, o.face.direction = {1, 0};  // the other way would be that into the pool
+  std::vector<std::string> notes;
+  EXPECT_EQ(createParticles<2>(c, notes).fluidCount, 200u - 60);
+  EXPECT_THAT(notes,
+              ElementsAre("opening 'end': 60 of 200 fluid particles left out, which are behind its reserve of "
+                          "7.5 m; its direction is to lead into the fluid"));
+  o.face.center = {7, 5}, notes.clear();
+  createParticles<2>(c, notes);
+  EXPECT_THAT(notes, IsEmpty());
+}
+
 TEST(createParticles, rejectsCaseWithoutFluid) {
   Case c = emptyCase(2);
   c.bodies = {makeBody("floor", BodyKind::Wall, box({0, -4}, {10, 0}))};
