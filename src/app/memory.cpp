@@ -48,8 +48,8 @@ std::uint64_t placeBytes(const Case& c, const ParticleNumbers& n) {
   return (n.fluid + n.wall) * static_cast<std::uint64_t>(c.dimensions) * sizeof(double);
 }
 
-void require(const std::string& content, std::uint64_t needed) {
-  if (const std::uint64_t available = availableMemory(); needed > available)
+void require(const std::string& content, std::uint64_t needed, std::uint64_t available = availableMemory()) {
+  if (needed > available)
     throw RunError(
         fmt::format("{} need about {} of memory, {} available; take a lower resolution or a smaller domain",
                     content, bytesText(needed), bytesText(available)));
@@ -57,11 +57,14 @@ void require(const std::string& content, std::uint64_t needed) {
 
 }  // namespace
 
-void requireRoomForParticles(const Case& c) {
-  const double points = boxPoints(c);
+/// There are all of their places and a part of their fields at once.
+void requireRoomForParticles(const Case& c, std::uint64_t processes, std::uint64_t available) {
+  const double points = leastPoints(c);
   if (points > static_cast<double>(maxParticles)) return;  // createParticles says so
   const auto count = static_cast<std::uint64_t>(points);
-  require(fmt::format("{} particles", count), placeBytes(c, {.fluid = count}));
+  const ParticleNumbers particles{.wall = count};  // which have fewer fields
+  require(fmt::format("{} particles", count), placeBytes(c, particles) + stateBytes(c, particles) / processes,
+          available);
 }
 
 std::uint64_t leastMemory(const Case& c) { return programBytes(c) + cellBytes * searchCells(c); }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "machine.hpp"
 #include "treacle/core/communicator.hpp"
 #include "treacle/core/cuda.hpp"
 #include "treacle/core/device.hpp"
@@ -11,8 +12,10 @@
 namespace treacle {
 
 /// Before the particles of a case are made, which takes memory itself. Errors: RunError where there is not even
-/// enough for their places.
-void requireRoomForParticles(const Case& c);
+/// enough for them alone.
+/// `processes`: of which each makes its part of them; `available`: of the machine [B].
+void requireRoomForParticles(const Case& c, std::uint64_t processes = 1,
+                             std::uint64_t available = availableMemory());
 
 /// What a run needs at least, before anything is counted, which takes memory for the cells itself [B].
 std::uint64_t leastMemory(const Case& c);

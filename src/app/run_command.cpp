@@ -150,7 +150,7 @@ void runCommand(const RunOptions& options, const Communicator& processes) {
     c = caseOf(options);
     if (c.output.surface && !hasFreeSurface()) throw InputError("output.surface: " + whyNoFreeSurface());
     if (shared) requireShareable(c, backend);
-    requireRoomForParticles(c);
+    requireRoomForParticles(c, static_cast<std::uint64_t>(processes.size()));
     made = MadeParticles::of(c, warnings, partOf(processes));
     if (options.resume.empty()) made.requireParticles(c);
     for (std::string& warning : caseWarnings(c)) warnings.push_back(std::move(warning));

@@ -1,5 +1,6 @@
 #include "lattice.hpp"
 
+#include "geometry/polygon.hpp"
 #include "geometry/solid_points.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/model/geometry/mesh.hpp"
@@ -112,6 +113,17 @@ double meshPoints(const Mesh& mesh, double spacing) {
   return mesh.facts().closed() ? std::max(0.0, std::abs(mesh.facts().volume) - rim) / std::pow(spacing, 3) : 0;
 }
 
+/// What a polygon, or the prism of one, holds at least, likewise.
+double polygonPoints(const Shape& s, int dimensions, double spacing) {
+  double length = 0;
+  for (std::size_t k = 0; k < s.points.size(); ++k)
+    length += norm(s.points[(k + 1) % s.points.size()] - s.points[k]);
+  const double rim = std::sqrt(0.5) * spacing * length,
+               area = std::max(0.0, std::abs(signedArea2(s.points)) / 2 - rim);
+  const double layers = dimensions == 3 ? std::max(0.0, (s.top - s.bottom) / spacing - 1) : 1;
+  return area / (spacing * spacing) * layers;
+}
+
 bool isInDomain(const Case& c, const Shape& s) {
   const Extent box = boundingBox(s, c.dimensions);
   for (int k = 0; k < c.dimensions; ++k)
@@ -138,7 +150,7 @@ double roundPoints(const Shape& s, int dimensions, double spacing) {
 
 }  // namespace
 
-double boxPoints(const Case& c) {
+double leastPoints(const Case& c) {
   std::vector<std::string> notes;
   double points = 0;
   for (const Body& body : c.bodies) {
@@ -149,6 +161,8 @@ double boxPoints(const Case& c) {
       points += c.dimensions == 2 ? boxLattice<2>(c, body, spacing, notes).points()
                                   : boxLattice<3>(c, body, spacing, notes).points();
     if (isInDomain(c, s)) points += roundPoints(s, c.dimensions, spacing);  // else its first particle ends it
+    if (s.kind == ShapeKind::Polygon && s.fill == FillKind::Inside && isInDomain(c, s))
+      points += polygonPoints(s, c.dimensions, spacing);
     if (s.kind == ShapeKind::Mesh && s.fill == FillKind::Inside && s.file.mesh.value)
       points += meshPoints(*s.file.mesh.value, spacing);
     if (s.kind == ShapeKind::Particles && s.file.particles.value)

@@ -125,10 +125,14 @@ TEST(HostMemory, IsWhatARunTakes) {
 
 TEST(HostMemory, OfParticlesIsLookedAtBeforeTheyAreMade) {
   Case c = test::MemoryCase{"dam-break-3d.toml", {}}.read();
-  EXPECT_EQ(boxPoints(c), 44'000);
+  EXPECT_EQ(leastPoints(c), 44'000);
   EXPECT_NO_THROW(requireRoomForParticles(c));
+  // Not even their fields have room, which are more than their places.
+  EXPECT_NO_THROW(requireRoomForParticles(c, 1, 10 << 20));
+  EXPECT_THROW(requireRoomForParticles(c, 1, 2 << 20), RunError);
+  EXPECT_NO_THROW(requireRoomForParticles(c, 1000, 2 << 20));
   c.bodies[1].shape.max[2] = 10'000;  // [m]: 4e9 particles
-  EXPECT_LT(boxPoints(c), maxParticles);
+  EXPECT_LT(leastPoints(c), maxParticles);
   if (availableMemory() > 100'000'000'000) GTEST_SKIP() << "this machine has room for 4e9 particles";
   try {
     requireRoomForParticles(c);

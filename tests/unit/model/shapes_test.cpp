@@ -173,6 +173,17 @@ TEST(polygon, hasPointsOnItsSidesOnOneSideOnly) {
   EXPECT_THAT(counts, ElementsAre(BodyCount{400, 0}, BodyCount{0, 60 * 36 - 400}));
 }
 
+/// Never too many, so that no case is refused that has room.
+TEST(polygon, isCountedBeforeItIsFilled) {
+  Case plane = emptyCase(2), space = emptyCase(3);
+  plane.bodies = {makeBody("fluid", BodyKind::Fluid, polygon(angle))};
+  space.bodies = {makeBody("fluid", BodyKind::Fluid, polygon(angle, -2, 3))};
+  EXPECT_LE(leastPoints(plane), placesOf<2>(polygon(angle)).size());
+  EXPECT_GT(leastPoints(plane), 130);
+  EXPECT_LE(leastPoints(space), placesOf<3>(polygon(angle, -2, 3)).size());
+  EXPECT_GT(leastPoints(space), 4 * 130);
+}
+
 /// Fluid inside and a wall outside of one outline: every place of the lattice belongs to one of them.
 TEST(polygon, partsTheLatticeWithTheLayerOutside) {
   Case c = emptyCase(2);

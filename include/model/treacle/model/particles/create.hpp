@@ -27,20 +27,20 @@ struct BodyCount {
 
 /// Lattice points of the shapes that no condition leaves any out of: createParticles needs room for at least
 /// these.
-double boxPoints(const Case& c);
+double leastPoints(const Case& c);
 
 /// Fills the case's bodies with particles on lattices of the case's spacing, where their conditions hold. A box
 /// has its lattice cell-centred on its own corner `min`, a wall on the face nearer to the fluid; a sphere has a
 /// lattice point at `center`, a cylinder half a spacing from `start` along the axis. Fluid first, then walls, both
 /// in file order. Where bodies of the same kind overlap, the earlier one keeps the place (a particle closer than
-/// half a spacing to an earlier one is left out). Pressure and number density are 0; ids count from 0. Appends to
-/// `notes` what a user should know (a box that the spacing does not divide, particles left out, a condition that
-/// never holds); `bodyCounts` takes the number of particles of every body in file order. `part`: only these are
-/// made, with the ids that they have in the whole; all places are looked at nevertheless, and numbers are those of
-/// the whole case, as are notes, but for those about surfaces of walls, which a part does not know. Errors:
-/// InputError if there is no fluid and no inflow, if fluid and wall overlap, if a particle lies outside the
-/// domain, if a wall cannot rotate in a periodic one, if there are more particles than maxParticles, if an
-/// expression is not finite at a particle.
+/// half a spacing to an earlier one is left out, as is fluid inside the shape of earlier fluid). Pressure and
+/// number density are 0; ids count from 0. Appends to `notes` what a user should know (a box that the spacing does
+/// not divide, particles left out, a condition that never holds); `bodyCounts` takes the number of particles of
+/// every body in file order. `part`: only these are made, with the ids that they have in the whole; all places are
+/// looked at nevertheless, and numbers are those of the whole case, as are notes, but for those about surfaces of
+/// walls, which a part does not know. Errors: InputError if there is no fluid and no inflow, if fluid and wall
+/// overlap, if a particle lies outside the domain, if a wall cannot rotate in a periodic one, if there are more
+/// particles than maxParticles, if an expression is not finite at a particle.
 template <int D>
 Particles<D> createParticles(const Case& c, std::vector<std::string>& notes,
                              std::vector<BodyCount>* bodyCounts = nullptr, ParticlePart part = {});
