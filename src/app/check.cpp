@@ -1,5 +1,6 @@
 #include "advice.hpp"
 #include "backend.hpp"
+#include "case_input.hpp"
 #include "commands.hpp"
 #include "estimate.hpp"
 #include "machine.hpp"
@@ -162,7 +163,7 @@ void checkCommand(const CheckOptions& options) {
   const Case c = readCase(options.input.file, options.input.overrides);
   std::vector<std::string> warnings;
   requireRoomForParticles(c);
-  MadeParticles made = MadeParticles::of(c, warnings);
+  MadeParticles made = withPlaces(options.input, [&] { return MadeParticles::of(c, warnings); });
   made.requireParticles(c);
   AnyParticles& particles = made.particles;
   for (std::string& warning : caseWarnings(c)) warnings.push_back(std::move(warning));

@@ -1,5 +1,6 @@
 #include "treacle/io/tables/convergence.hpp"
 #include "backend.hpp"
+#include "case_input.hpp"
 #include "commands.hpp"
 #include "compared_solvers.hpp"
 #include "machine.hpp"
@@ -130,7 +131,7 @@ void convergenceCommand(const ConvergenceOptions& options) {
   const std::vector<SolverSettings> solvers = comparedSolvers(options, c.method.kind);
   std::vector<std::string> warnings;
   requireRoomForParticles(c);
-  MadeParticles made = MadeParticles::of(c, warnings);
+  MadeParticles made = withPlaces(options.input, [&] { return MadeParticles::of(c, warnings); });
   if (options.resume.empty()) made.requireParticles(c);
   for (std::string& warning : caseWarnings(c)) warnings.push_back(std::move(warning));
   if (!device)

@@ -1,4 +1,5 @@
 #include "backend.hpp"
+#include "case_input.hpp"
 #include "commands.hpp"
 #include "interrupt.hpp"
 #include "machine.hpp"
@@ -36,14 +37,7 @@ namespace {
 Case caseOf(const RunOptions& options) {
   Case c = readCase(options.input.file, options.input.overrides);
   if (options.precision) c.solver.precision = *options.precision;
-  if (options.endTime) {
-    c.time.end = *options.endTime;
-    try {
-      requireValid(c);
-    } catch (const CaseError& error) {  // all but the end was sound before
-      throw InputError(fmt::format("--end-time: {}", error.text()));
-    }
-  }
+  setEndTime(c, options.endTime);
   return c;
 }
 
@@ -151,7 +145,7 @@ void runCommand(const RunOptions& options, const Communicator& processes) {
     if (c.output.surface && !hasFreeSurface()) throw InputError("output.surface: " + whyNoFreeSurface());
     if (shared) requireShareable(c, backend);
     requireRoomForParticles(c, static_cast<std::uint64_t>(processes.size()));
-    made = MadeParticles::of(c, warnings, partOf(processes));
+    made = withPlaces(options.input, [&] { return MadeParticles::of(c, warnings, partOf(processes)); });
     if (options.resume.empty()) made.requireParticles(c);
     for (std::string& warning : caseWarnings(c)) warnings.push_back(std::move(warning));
     releaseShapeFiles(c);

@@ -59,6 +59,15 @@ Case readCase(const std::filesystem::path& path, std::span<const std::string> ov
   return caseOf(readDocument(path, overrides), path.parent_path(), files);
 }
 
+CaseFileError errorInFile(const CaseError& error, const std::filesystem::path& path,
+                          std::span<const std::string> overrides) {
+  const toml::table document = readDocument(path, overrides);
+  Case c;
+  Sections sections;
+  TableReader(c, sections, Section(document, "the case file"), {}).read(c);
+  return placed(error, sections);
+}
+
 Case readCaseText(std::string_view text, std::span<const std::string> overrides, ShapeFiles files) {
   return caseOf(documentOf(text, overrides), {}, files);
 }

@@ -43,6 +43,22 @@ class Checker {
         fail({key}, fmt::format("expected rising {}, found {} after {}", what, numbers[k], numbers[k - 1]));
   }
 
+  /// A function of time where the run asks for it: from a time on [s].
+  void requireFinite(std::initializer_list<std::string_view> keys, const std::optional<TimeFunction>& f,
+                     double from = 0) const {
+    constexpr int samples = 1000;
+    const double end = std::max(from, case_.time.end);
+    if (!f || f->expression.empty() || !std::isfinite(end)) return;
+    try {
+      for (int k = 0; k <= samples; ++k) f->at(from + (end - from) * k / samples);
+    } catch (const InputError& e) {
+      fail(keys, e.what());
+    }
+  }
+  void requireFinite(std::initializer_list<std::string_view> keys, const TimeVector& functions) const {
+    for (const auto& f : functions) requireFinite(keys, f);
+  }
+
   /// Names stand in messages and in names of files.
   void requireName(const std::string& name) const {
     constexpr std::size_t longest = 100;

@@ -148,6 +148,7 @@ void requireSubtracted(const Checker& at, const Body& b, const Body& from, std::
 void requireSound(const Checker& at, const Rotation& r) {
   if (r.angle && r.speed != 0) at.fail({"angle"}, "expected one of speed and angle, found both");
   at.requireDirection("axis", r.axis);
+  at.requireFinite({"angle"}, r.angle);
 }
 
 void requireSound(const Checker& at, const Hinge& h) { at.requireDirection("axis", h.axis); }
@@ -184,6 +185,8 @@ void requireSound(const Checker& at, const Inflow& i) {
   if (i.end > 0 && i.end <= i.start)
     at.fail({"end"},
             fmt::format("expected 0, which is never, or more than start = {} s, found {}", i.start, i.end));
+  at.requireFinite({"speed"}, i.speed, i.start);
+  at.requireFinite({"flow_rate"}, i.flowRate, i.start);
 }
 
 /// Once the nozzle is known to be sound.
@@ -241,6 +244,8 @@ void requireSound(const Checker& at, const Opening& o) {
             "the face of an opening is a whole \"disc\" or a \"rectangle\"");
   if (o.pressure && o.flowRate)
     at.fail({"flow_rate"}, "expected at most one of pressure and flow_rate, found both");
+  at.requireFinite({"pressure"}, o.pressure);
+  at.requireFinite({"flow_rate"}, o.flowRate);
   const auto isIt = [&](const Body& b) { return b.holdsFluid() && b.material == o.material; };
   if (std::ranges::none_of(at.wholeCase().bodies, isIt))
     at.fail({"material"}, "expected the material of a body of type \"fluid\" or \"inflow\"");
@@ -263,6 +268,7 @@ void requireStates(const Checker& at, const Body& b) {
 
 /// Only fluids start with velocities of their own for each particle, only walls and nozzles are moved.
 void requireSound(const Checker& at, const Body& b) {
+  at.requireFinite({"displacement"}, b.displacement);
   if (b.kind == BodyKind::Inflow) {
     requireSound(at, b.inflow);
     return at.wholeCase().dimensions == 2 ? requireProfile<2>(at, b) : requireProfile<3>(at, b);
@@ -271,6 +277,8 @@ void requireSound(const Checker& at, const Body& b) {
   if (b.shape.isThinSheet()) requireThinSheet(at, b);
   requireSubtracted(at, b, b, 0);
   if (b.kind == BodyKind::Rigid) requireRigid(at, b);
+  at.requireFinite({"force"}, b.rigid.force);
+  at.requireFinite({"torque"}, b.rigid.torque);
   requireStates(at, b);
   if (b.kind == BodyKind::Fluid) {
     constexpr const char* text = "only a body of type \"wall\" can have one";

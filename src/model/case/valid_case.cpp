@@ -224,6 +224,7 @@ void requireSound(const Checker& at, const Case& c) {
   if (c.heat && c.method.kind != MethodKind::MphI) at.fail({"heat"}, heatOfMphI);
   if (std::ranges::none_of(c.bodies, &Body::holdsFluid))
     at.fail({"body"}, "no fluid: expected at least one [[body]] with type = \"fluid\" or \"inflow\"");
+  at.requireFinite({"gravity", "acceleration"}, c.gravityInTime);
   requireMaterials(at, c);
   requireDomainSize(at, c);
   requirePeriodicLength(at, c);

@@ -6,6 +6,7 @@
 #include "lattice.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/core/pseudo_random.hpp"
+#include "treacle/model/case/case_error.hpp"
 #include "treacle/model/geometry/shape.hpp"
 #include "treacle/model/motion/nozzle.hpp"
 
@@ -23,9 +24,9 @@ double valueAt(const Vec<D>& x, const Expression& expression, const Body& body, 
                const std::string& text) {
   const double value = expression(resized<3>(x));
   if (!std::isfinite(value))
-    throw InputError(fmt::format("{} of body '{}': \"{}\" is {} for the particle at {}; expected a finite number",
-                                 key, body.name, text, std::isnan(value) ? "not a number" : "infinite",
-                                 positionText(resized<3>(x), D)));
+    throw CaseError({"body", body.name, key},
+                    fmt::format("\"{}\" is {} for the particle at {}; expected a finite number", text,
+                                std::isnan(value) ? "not a number" : "infinite", positionText(resized<3>(x), D)));
   return value;
 }
 
@@ -34,8 +35,9 @@ double positiveAt(const Vec<D>& x, const Expression& expression, const Body& bod
                   const std::string& text, const char* unit) {
   const double value = valueAt(x, expression, body, key, text);
   if (value > 0) return value;
-  throw InputError(fmt::format("{} of body '{}': \"{}\" is {}{} for the particle at {}; expected more than 0", key,
-                               body.name, text, value, unit, positionText(resized<3>(x), D)));
+  throw CaseError({"body", body.name, key},
+                  fmt::format("\"{}\" is {}{} for the particle at {}; expected more than 0", text, value, unit,
+                              positionText(resized<3>(x), D)));
 }
 
 /// Asked for each particle as it is made: a body that is too large by far ends there and not in all the memory.

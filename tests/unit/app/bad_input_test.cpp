@@ -72,6 +72,16 @@ constexpr BadCase badCases[] = {
     {"comparisonsInARow", "max = [6e-3, 6e-3]", "max = [6e-3, 6e-3]\nwhere = \"0 < x < 1\"",
      "bad.toml:26:9: where in [[body]] 'column' (box): expected an expression in x, y [m] and the constant pi, "
      "found \"0 < x < 1\": two comparisons in a row; write \"a < x && x < b\" for a range"},
+    {"conditionThatIsNoNumber", "max = [6e-3, 6e-3]", "max = [6e-3, 6e-3]\nwhere = \"sqrt(-x)\"",
+     "bad.toml:26:9: where in [[body]] 'column' (box): \"sqrt(-x)\" is not a number for the particle at (0.5, "
+     "0.5) mm; expected a finite number"},
+    {"infiniteDisplacement", "max = [12e-3, 0]", "max = [12e-3, 0]\ndisplacement = [\"1/t\", 0]",
+     "bad.toml:34:16: displacement in [[body]] 'floor' (box): \"1/t\" is infinite at t = 0 s; expected a finite "
+     "number"},
+    {"displacementThatEndsInTheRun", "max = [12e-3, 0]", "max = [12e-3, 0]\ndisplacement = [\"sqrt(1e-3-t)\", 0]",
+     "bad.toml:34:16: displacement in [[body]] 'floor' (box): \"sqrt(1e-3-t)\" is not a number at t = 0.001002 s"},
+    {"infiniteGravity", "acceleration = [0, -10]", "acceleration = [0, \"-1/t\"]",
+     "bad.toml:10:16: acceleration in [gravity]: \"-1/t\" is infinite at t = 0 s; expected a finite number"},
     {"stateOfUnknownLaw", "density = 1000", "density = 1000\nstate = [{ name = \"cure\", law = \"kamal\" }]",
      "bad.toml:15:33: law in [[state]] 'cure': expected 'expression', 'kamal-sourour', 'houska' or "
      "'roussel', found 'kamal'"},
@@ -308,9 +318,8 @@ constexpr BadCase badCases[] = {
      "bad.toml:26:12: velocity in [[body]] 'column' (box): expected an array of 2 finite numbers or expressions "
      "[m/s], found true"},
     {"velocityNotFinite", "max = [6e-3, 6e-3]", "max = [6e-3, 6e-3]\nvelocity = [0, \"log(y - 1e-3)\"]",
-     "velocity of body 'column': \"log(y - 1e-3)\" is not a number for the particle at (0.5, 0.5) mm; expected a "
-     "finite "
-     "number"},
+     "bad.toml:26:12: velocity in [[body]] 'column' (box): \"log(y - 1e-3)\" is not a number for the particle at "
+     "(0.5, 0.5) mm; expected a finite number"},
     {"expressionForAWallsVelocity", "max = [12e-3, 0]", "max = [12e-3, 0]\nvelocity = [\"y\", 0]",
      "bad.toml:34:12: velocity in [[body]] 'floor' (box): only a body of type \"fluid\" can have expressions; "
      "expected an array of 2 finite numbers [m/s], found \"y\""},

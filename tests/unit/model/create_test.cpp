@@ -387,13 +387,13 @@ TEST(createParticles, rejectsExpressionsThatAreNotFiniteAtAParticle) {
   c.bodies = {makeBody("drop", BodyKind::Fluid, box({0, 0}, {2, 1}))};
   c.bodies[0].velocityExpression = {"", "1/(x - 1.5)", ""};
   EXPECT_EQ(messageOfCreation<2>(c),
-            "velocity of body 'drop': \"1/(x - 1.5)\" is infinite for the particle at (1.5, 0.5) m; expected a finite "
+            "body.drop.velocity: \"1/(x - 1.5)\" is infinite for the particle at (1.5, 0.5) m; expected a finite "
             "number");
   c.bodies[0].where = "x < 1";  // no particle stands there
   EXPECT_EQ(messageOfCreation<2>(c), "no error");
   c.bodies[0].where = "sqrt(x - 1)";
   EXPECT_THAT(messageOfCreation<2>(c),
-              HasSubstr("where of body 'drop': \"sqrt(x - 1)\" is not a number for the particle"));
+              HasSubstr("body.drop.where: \"sqrt(x - 1)\" is not a number for the particle"));
 }
 
 TEST(createParticles, overlapCountsAcrossPeriodicBoundaries) {

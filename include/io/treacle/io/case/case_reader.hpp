@@ -2,6 +2,7 @@
 
 #include "treacle/core/error.hpp"
 #include "treacle/model/case/case.hpp"
+#include "treacle/model/case/case_error.hpp"
 
 #include <cstdint>
 #include <filesystem>
@@ -48,6 +49,10 @@ Case readCase(const std::filesystem::path& path, std::span<const std::string> ov
 /// key and its table alone.
 Case readCaseText(std::string_view text, std::span<const std::string> overrides = {},
                   ShapeFiles files = ShapeFiles::Read);
+
+/// An error that was found after a case was read, with its place in the files that it was read from.
+CaseFileError errorInFile(const CaseError& error, const std::filesystem::path& path,
+                          std::span<const std::string> overrides);
 
 /// The case as a complete TOML file: resolution applied (and therefore 1), every key explicit, files
 /// by absolute paths and with their checksums. Reading it gives the same case and the same particles.
