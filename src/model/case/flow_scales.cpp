@@ -82,6 +82,12 @@ FluidNumbers numbersOf(const Case& c, const Material& m, const FlowScales& flow)
 
 }  // namespace
 
+double inflowSpeed(const Case& c) {
+  double speed = 0;
+  for (const Body& body : c.bodies) speed = std::max(speed, inflowSpeed(c, body));
+  return speed;
+}
+
 FlowScales flowScales(const Case& c) {
   FlowScales flow;
   const CentrifugalScale centrifugal = centrifugalScale(c);

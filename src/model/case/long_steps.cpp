@@ -3,6 +3,7 @@
 #include "carried_fluids.hpp"
 #include "particles/fluid_extent.hpp"
 #include "treacle/model/case/checks.hpp"
+#include "treacle/model/case/flow_scales.hpp"
 
 #include <fmt/format.h>
 
@@ -19,16 +20,19 @@ double courantNumberAt(const Case& c, double speed) {
   return most > 0 ? std::min(number, most) : number;
 }
 
+/// What is known before the run, but for falls [m/s].
+double knownSpeed(const Case& c) { return std::max(givenSpeed(c), inflowSpeed(c)); }
+
 }  // namespace
 
 double courantNumber(const Case& c) {
   const double fall = std::sqrt(2 * (norm(c.gravity) * fluidHeight(c) + centrifugalScale(c).potential));
-  return courantNumberAt(c, std::max(givenSpeed(c), fall));
+  return courantNumberAt(c, std::max(knownSpeed(c), fall));
 }
 
 void warnCourant(const Case& c, std::vector<std::string>& warnings) {
   const bool isph = c.method.kind == MethodKind::Isph;
-  const double largest = isph ? 0.5 : 1, number = isph ? courantNumber(c) : courantNumberAt(c, givenSpeed(c));
+  const double largest = isph ? 0.5 : 1, number = isph ? courantNumber(c) : courantNumberAt(c, knownSpeed(c));
   if (number <= largest * (1 + rounding)) return;
   warnings.push_back(fmt::format(
       "the Courant number of steps of {:g} s is {:.3g}, more than {:g}: {}; take steps of at most {:.2g} "

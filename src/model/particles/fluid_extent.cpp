@@ -14,6 +14,8 @@
 namespace treacle {
 namespace {
 
+constexpr int samples = 1000;  // of a run
+
 /// When a wall or nozzle moves fastest, and when it turns fastest: among many times of the run, and those between
 /// the rows of its tables.
 struct Fastest {
@@ -21,8 +23,25 @@ struct Fastest {
   double turning = 0;      // time [s]
 };
 
-Fastest fastestOf(const Body& body, double end) {
-  constexpr int samples = 1000;
+/// The largest mean speed over a step of a wall or nozzle that formulas move: one that jumps moves by a finite way
+/// in a step [m/s].
+double fastestStep(const Body& body, const TimeSettings& time) {
+  const int parts = static_cast<int>(std::clamp(std::ceil(time.end / time.step), 1.0, double{samples}));
+  double fastest = 0;
+  for (int k = 0; k < parts; ++k) {
+    double length = time.end / parts, from = k * length;
+    while (length > time.step) {
+      length /= 2;
+      const auto way = [&](double start) { return norm(wallVelocity(body, start, length)); };
+      if (way(from + length) > way(from)) from += length;
+    }
+    fastest = std::max(fastest, norm(wallVelocity(body, from, length)) * length / time.step);
+  }
+  return fastest;
+}
+
+Fastest fastestOf(const Body& body, const TimeSettings& time) {
+  const double end = time.end;
   std::vector<double> times{0};
   const auto addTable = [&](const std::optional<TimeFunction>& f) {
     for (std::size_t k = 1; f && k < f->times.size(); ++k)
@@ -38,6 +57,12 @@ Fastest fastestOf(const Body& body, double end) {
     fastest.translation = std::max(fastest.translation, norm(wallVelocity(body, t, 0)));
     if (const double now = std::abs(wallSpin(body, t)); now > spin) spin = now, fastest.turning = t;
   }
+  const bool formula =
+      std::ranges::any_of(body.displacement, [](const auto& f) { return f && !f->expression.empty(); });
+  constexpr double jump = 2;  // times what no time but that of a jump has
+  if (formula && !time.automatic)
+    if (const double speed = fastestStep(body, time); speed > jump * fastest.translation)
+      fastest.translation = speed;
   return fastest;
 }
 
@@ -45,7 +70,7 @@ Fastest fastestOf(const Body& body, double end) {
 template <int D>
 double largestSpeed(const Case& c, const Body& body) {
   const Oscillation& o = body.oscillation;
-  const Fastest fastest = fastestOf(body, c.time.end);
+  const Fastest fastest = fastestOf(body, c.time);
   const double swing = o.period > 0 ? 2 * std::numbers::pi * norm(o.amplitude) / o.period : 0;
   const double carried = std::max(norm(body.velocity) + swing, fastest.translation);
   const bool expressions = body.velocityExpression != decltype(body.velocityExpression){};
@@ -65,7 +90,6 @@ double largestSpeed(const Case& c, const Body& body) {
 
 template <int D>
 CentrifugalScale centrifugalScaleOf(const Case& c) {
-  constexpr int samples = 1000;
   FrameForce<D> fastest = FrameForce<D>::of(c, 0, 0);
   for (int k = 1; k <= samples; ++k) {
     const double t = c.time.end * k / samples;

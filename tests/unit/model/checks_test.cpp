@@ -29,6 +29,21 @@ Case damBreak() {
   return c;
 }
 
+TEST(courantNumber, seesNozzlesAndJumpsOfFormulas) {
+  Case c = damBreak();
+  Body& jet = c.bodies.emplace_back(makeBody("jet", BodyKind::Inflow, {}));
+  jet.inflow.speed = TimeFunction{7};
+  jet.inflow.nozzle.kind = NozzleKind::Rectangle;
+  jet.inflow.nozzle.center = {10e-3, 50e-3}, jet.inflow.nozzle.direction = {0, -1}, jet.inflow.nozzle.width = 5e-3;
+  EXPECT_NEAR(courantNumber(c), 7, 1e-12);
+  EXPECT_THAT(caseWarnings(c), testing::Contains(HasSubstr("the Courant number of steps of 0.001 s is 7,")));
+  c.bodies.pop_back();
+  c.bodies[1].displacement[0] = TimeFunction{.expression = "t > 0.01234 ? 2e-3 : 0"};
+  EXPECT_NEAR(courantNumber(c), 2, 1e-9);
+  c.bodies[1].displacement[0] = TimeFunction{.expression = "1e-3*sin(100*t)"};
+  EXPECT_LT(courantNumber(c), 1);
+}
+
 TEST(stabilityNumbers, areThoseOfThePaper) {  // [K23 Table 2], case x1
   const auto numbers = stabilityNumbers(damBreak());
   ASSERT_EQ(numbers.size(), 1u);
