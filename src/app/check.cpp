@@ -160,7 +160,8 @@ void printNumbers(const Case& c) {
 void checkCommand(const CheckOptions& options) {
   const Patience patience("checking the case");
   startThreads(options.threads);
-  const Case c = readCase(options.input.file, options.input.overrides);
+  Case c = readCase(options.input.file, options.input.overrides);
+  setEndTime(c, options.endTime);
   std::vector<std::string> warnings;
   requireRoomForParticles(c);
   MadeParticles made = withPlaces(options.input, [&] { return MadeParticles::of(c, warnings); });

@@ -37,8 +37,9 @@ struct RunOptions {
 
 struct CheckOptions {
   CaseOptions input;
-  bool estimate = false;  // makes some steps
-  int processes = 1;      // whose memory is told
+  std::optional<double> endTime;  // [s] default: the case's
+  bool estimate = false;          // makes some steps
+  int processes = 1;              // whose memory is told
   BackendChoice backend = BackendChoice::Auto;
   int threads = 0;  // 0: as many as OpenMP takes by itself
 };

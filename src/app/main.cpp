@@ -143,6 +143,12 @@ void addMachine(CLI::App& command, Options& options) {
       ->check(notEmpty());
 }
 
+void addEndTime(CLI::App& command, std::optional<double>& end) {
+  command.add_option("--end-time", end, "End of the run instead of time.end [s]")
+      ->type_name("T")
+      ->check(positive());
+}
+
 void addRun(CLI::App& app, RunOptions& options, const Communicator& job) {
   CLI::App* run = app.add_subcommand("run", "Run a case");
   addCase(*run, options.input);
@@ -150,9 +156,7 @@ void addRun(CLI::App& app, RunOptions& options, const Communicator& job) {
       ->type_name("DIR")
       ->check(notEmpty());
   addMachine(*run, options);
-  run->add_option("--end-time", options.endTime, "End of the run instead of time.end [s]")
-      ->type_name("T")
-      ->check(positive());
+  addEndTime(*run, options.endTime);
   run->add_flag("--timings", options.timings, "Seconds of each phase of a step in history.csv");
   run->add_flag("--force", options.force, "Replace the run that the directory holds");
   run->add_flag("-q,--quiet", options.quiet, "Print nothing but errors");
@@ -163,6 +167,7 @@ void addCheck(CLI::App& app, CheckOptions& options) {
   CLI::App* check =
       app.add_subcommand("check", "Check a case; prints it with all keys, counts, stability and advice");
   addCase(*check, options.input);
+  addEndTime(*check, options.endTime);
   check->add_flag("--estimate", options.estimate, "Make some steps and tell how long all of them will take");
   check
       ->add_option("--processes", options.processes,

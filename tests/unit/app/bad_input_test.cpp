@@ -499,6 +499,8 @@ constexpr BadLine badLines[] = {
     {"factorWithoutWidth", "run small.toml --set width.factor=4",
      "--set width.factor=4: axis in [width]: missing; expected a string"},
     {"negativeEndTime", "run small.toml --end-time=-1", "--end-time: expected a positive number, found '-1'"},
+    {"endTimeOfACheckBelowStep", "check small.toml --end-time 1e-4",
+     "--end-time: expected at least one step of 0.001 s"},
     {"endTimeBelowStep", "run small.toml --end-time 1e-4", "--end-time: expected at least one step of 0.001 s"},
     {"setWithoutValue", "run small.toml --set spacing", "--set spacing: expected key=value"},
     {"setUnknownKey", "run small.toml --set spaceing=1",
