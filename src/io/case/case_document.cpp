@@ -244,11 +244,14 @@ void applyOverride(toml::table& document, const std::string& text) {
   }
   // Bodies and materials come first: where one has the name of a probe or an outflow, it is meant.
   std::vector<std::string_view> candidates = topLevelKeys(), owners, others;
-  if (std::ranges::find(candidates, key.str()) != candidates.end()) return merge(document, std::move(given));
+  const auto isNew = [&](std::string_view name) {
+    return std::ranges::find(candidates, name) == candidates.end();
+  };
+  if (!isNew(key.str())) return merge(document, std::move(given));
 
   for (std::string_view listName : namedLists)
     for (std::string_view name : namesIn(document, listName)) {
-      candidates.push_back(name);
+      if (isNew(name)) candidates.push_back(name);
       if (name == key.str()) (listName == "body" || listName == "material" ? owners : others).push_back(listName);
     }
   if (owners.empty()) owners = others;

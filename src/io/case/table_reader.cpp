@@ -286,7 +286,11 @@ TimeFunction TableReader::function(const Key& key, const toml::node& node) const
       std::string path, column;
       reader({"file", "Text file with the table", keys::required}, path, keys::file);
       reader({"column", "Name of its column"}, column);
-      return readTimeTable(path, column);
+      try {
+        return readTimeTable(path, column);
+      } catch (const InputError& e) {
+        throw section_.error(key.name, e.what());
+      }
     }
     reader({"times", "Rising times", keys::required, "s"}, f.times);
     if (f.times.empty()) throw section_.error(key.name, "expected at least one time, found none");

@@ -308,6 +308,14 @@ void warnFriction(const Case& c, std::vector<std::string>& warnings) {
   }
 }
 
+void warnSprings(const Case& c, std::vector<std::string>& warnings) {
+  for (const Body& body : c.bodies)
+    for (const Spring& s : body.rigid.springs)
+      if (s.stiffness == 0 && s.damping == 0)
+        warnings.push_back(fmt::format(
+            "spring '{}' of body '{}' is without effect: its stiffness and damping are 0", s.name, body.name));
+}
+
 void warnTimes(const Case& c, std::vector<std::string>& warnings) {
   if (!wholeNumber(c.time.end / c.time.step))
     warnings.push_back(fmt::format(
@@ -391,6 +399,7 @@ std::vector<std::string> caseWarnings(const Case& c) {
   warnThinMeshes(c, warnings);
   c.dimensions == 2 ? warnLeavingWalls<2>(c, warnings) : warnLeavingWalls<3>(c, warnings);
   warnFriction(c, warnings);
+  warnSprings(c, warnings);
   warnShortRadii(c, warnings);
   if (!c.time.stepsVary()) warnTimes(c, warnings);
   return warnings;

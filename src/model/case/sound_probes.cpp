@@ -1,4 +1,5 @@
 #include "case_checker.hpp"
+#include "treacle/model/geometry/shape.hpp"
 
 namespace treacle {
 namespace {
@@ -45,6 +46,25 @@ void requireInside(const Checker& at, const Vec<3>& x) {
                                      domain.min[k], domain.max[k], "xyz"[k], x[k]));
 }
 
+/// Of a line some part.
+void requireMeets(const Checker& at, const Vec<3>& from, const Vec<3>& to) {
+  const Domain& domain = at.wholeCase().domain;
+  double begin = 0, end = 1;  // of its part in the domain, as shares of the way
+  for (int k = 0; k < at.wholeCase().dimensions; ++k) {
+    const double way = to[k] - from[k], low = domain.min[k] - from[k], high = domain.max[k] - from[k];
+    if (way == 0) {
+      if (low > 0 || high < 0) end = -1;
+    } else {
+      begin = std::max(begin, std::min(low / way, high / way)),
+      end = std::min(end, std::max(low / way, high / way));
+    }
+  }
+  if (begin > end)
+    at.fail({"from"}, fmt::format("expected a line through the domain, {}, found {}",
+                                  rangeText(domain.min, domain.max, at.wholeCase().dimensions),
+                                  rangeText(from, to, at.wholeCase().dimensions)));
+}
+
 void requireRectangle(const Checker& at, const Probe& p) {
   at.requireDirection("along", p.along);
   at.requireDirection("up", p.up);
@@ -69,6 +89,8 @@ void requireSound(const Checker& at, const Probe& p) {
   if (p.kind == ProbeKind::WallPressure) return;
   if ((p.kind == ProbeKind::Line || p.kind == ProbeKind::Height) && p.from == p.to)
     at.fail({"to"}, "expected a point other than from");
+  if ((p.kind == ProbeKind::Line || p.kind == ProbeKind::Height) && p.movesWith.empty())
+    requireMeets(at, p.from, p.to);
   if (p.kind == ProbeKind::Flow) at.requireDirection("normal", p.normal);
   if (p.isSummed() && !p.material.empty())
     requireOneOf(at, "material", "a material", p.material, at.wholeCase().materials);

@@ -162,16 +162,33 @@ std::string lengthText(double length) {
   return std::abs(length) < 1 ? fmt::format("{:.6g} mm", 1e3 * length) : fmt::format("{:.6g} m", length);
 }
 
-std::string positionText(const Vec<3>& x, int dimensions) {
+namespace {
+
+double largestOf(const Vec<3>& x, int dimensions) {
   double largest = 0;
   for (int k = 0; k < dimensions; ++k) largest = std::max(largest, std::abs(x[k]));
-  const bool small = largest < 1;
+  return largest;
+}
+
+std::string positionText(const Vec<3>& x, int dimensions, bool small) {
   std::string text;
   for (int k = 0; k < dimensions; ++k) {
     if (k > 0) text += ", ";
-    text += fmt::format("{:.6g}", small ? 1e3 * x[k] : x[k]);
+    const double there = std::abs(x[k]) < 1e-12 ? 0 : x[k];  // but for rounding
+    text += fmt::format("{:.6g}", small ? 1e3 * there : there);
   }
   return fmt::format("({}) {}", text, small ? "mm" : "m");
+}
+
+}  // namespace
+
+std::string positionText(const Vec<3>& x, int dimensions) {
+  return positionText(x, dimensions, largestOf(x, dimensions) < 1);
+}
+
+std::string rangeText(const Vec<3>& min, const Vec<3>& max, int dimensions) {
+  const bool small = std::max(largestOf(min, dimensions), largestOf(max, dimensions)) < 1;
+  return fmt::format("{} to {}", positionText(min, dimensions, small), positionText(max, dimensions, small));
 }
 
 }  // namespace treacle

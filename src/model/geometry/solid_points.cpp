@@ -54,10 +54,9 @@ void requireNearDomain(const Case& c, const Body& body, const Region& solid) {
   }
   if (!apart && !larger) return;
   throw InputError(fmt::format(
-      "body '{}' {}: it reaches from {} to {}, the domain from {} to {}{}", body.name,
+      "body '{}' {}: it reaches from {}, the domain from {}{}", body.name,
       apart ? "is outside of the domain" : "is far larger than the domain",
-      positionText(resized<3>(solid.min()), D), positionText(resized<3>(solid.max()), D),
-      positionText(domain.min, D), positionText(domain.max, D),
+      rangeText(resized<3>(solid.min()), resized<3>(solid.max()), D), rangeText(domain.min, domain.max, D),
       body.shape.kind == ShapeKind::Mesh
           ? "; one metre is one unit of the file, or transform.scale of one: 1e-3 for a file in millimetres"
           : ""));

@@ -45,9 +45,9 @@ template <int D>
 void requireInside(const Domain& domain, const Body& body, const Vec<D>& x) {
   for (int k = 0; k < D; ++k)
     if (!(x[k] >= domain.min[k] && x[k] < domain.max[k]))
-      throw InputError(fmt::format("body '{}' reaches out of the domain: a particle at {}, the domain is {} to {}",
-                                   body.name, positionText(resized<3>(x), D), positionText(domain.min, D),
-                                   positionText(domain.max, D)));
+      throw InputError(fmt::format("body '{}' reaches out of the domain: a particle at {}, the domain is {}",
+                                   body.name, positionText(resized<3>(x), D),
+                                   rangeText(domain.min, domain.max, D)));
 }
 
 /// Before the condition of the body.

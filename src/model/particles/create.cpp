@@ -16,6 +16,7 @@
 #include "treacle/model/motion/opening.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -280,8 +281,11 @@ std::string sizesOfFluid(const Case& c) {
     const Vec<3> size = box.max - box.min;
     text += fmt::format("; '{}' is {:.3g} m x {:.3g} m", body.name, size[0], size[1]);
     if (c.dimensions == 3) text += fmt::format(" x {:.3g} m", size[2]);
+    text += " large";
+    if (!body.where.empty()) text += fmt::format(", of which where = \"{}\" leaves nothing", body.where);
+    if (!body.subtract.empty()) text += fmt::format(", less '{}'", fmt::join(body.subtract, "', '"));
   }
-  return text.empty() ? text : fmt::format("{} large, and the spacing is {:.3g} m", text, c.spacing);
+  return text.empty() ? text : fmt::format("{}, and the spacing is {:.3g} m", text, c.spacing);
 }
 
 /// For the velocities that fluid meets at walls, and for the gaps of rigid bodies.

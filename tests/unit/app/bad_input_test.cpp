@@ -75,6 +75,9 @@ constexpr BadCase badCases[] = {
     {"conditionThatIsNoNumber", "max = [6e-3, 6e-3]", "max = [6e-3, 6e-3]\nwhere = \"sqrt(-x)\"",
      "bad.toml:26:9: where in [[body]] 'column' (box): \"sqrt(-x)\" is not a number for the particle at (0.5, "
      "0.5) mm; expected a finite number"},
+    {"conditionThatLeavesNothing", "max = [6e-3, 6e-3]", "max = [6e-3, 6e-3]\nwhere = \"x > 1\"",
+     "the case has no fluid: no body of type \"fluid\" holds a particle; 'column' is 0.006 m x 0.006 m large, of "
+     "which where = \"x > 1\" leaves nothing, and the spacing is 0.001 m"},
     {"infiniteDisplacement", "max = [12e-3, 0]", "max = [12e-3, 0]\ndisplacement = [\"1/t\", 0]",
      "bad.toml:34:16: displacement in [[body]] 'floor' (box): \"1/t\" is infinite at t = 0 s; expected a finite "
      "number"},
@@ -82,6 +85,15 @@ constexpr BadCase badCases[] = {
      "bad.toml:34:16: displacement in [[body]] 'floor' (box): \"sqrt(1e-3-t)\" is not a number at t = 0.001002 s"},
     {"infiniteGravity", "acceleration = [0, -10]", "acceleration = [0, \"-1/t\"]",
      "bad.toml:10:16: acceleration in [gravity]: \"-1/t\" is infinite at t = 0 s; expected a finite number"},
+    {"noTableFile", "max = [12e-3, 0]", "max = [12e-3, 0]\ndisplacement = [{file = \"nope.csv\"}, 0]",
+     "bad.toml:34:16: displacement in [[body]] 'floor' (box): /"},
+    {"lineBesideTheDomain", "[output]",
+     "[[probe]]\nname = \"l\"\ntype = \"line\"\nfrom = [1, 0]\nto = [2, 0]\n\n[output]",
+     "bad.toml:42:8: from in [[probe]] 'l' (line): expected a line through the domain, (-4, -4) mm to (12, 12) "
+     "mm, found (1, 0) m to (2, 0) m"},
+    {"bodyOutOfAWideDomain", "max = [12e-3, 12e-3]", "max = [2, 5e-3]",
+     "body 'column' reaches out of the domain: a particle at (0.5, 5.5) mm, the domain is (-0.004, -0.004) m to "
+     "(2, 0.005) m"},
     {"stateOfUnknownLaw", "density = 1000", "density = 1000\nstate = [{ name = \"cure\", law = \"kamal\" }]",
      "bad.toml:15:33: law in [[state]] 'cure': expected 'expression', 'kamal-sourour', 'houska' or "
      "'roussel', found 'kamal'"},
@@ -503,6 +515,11 @@ constexpr BadLine badLines[] = {
      "--end-time: expected at least one step of 0.001 s"},
     {"endTimeBelowStep", "run small.toml --end-time 1e-4", "--end-time: expected at least one step of 0.001 s"},
     {"setWithoutValue", "run small.toml --set spacing", "--set spacing: expected key=value"},
+    {"setUnknownKeyNearNone", "run small.toml --set body.column.name=syrup --set nope=1",
+     "--set nope=1: unknown key 'nope'; expected 'title', 'dimensions', 'spacing', 'resolution', 'domain', "
+     "'gravity', 'frame', 'material', 'body', 'outflow', 'opening', 'time', 'method', 'rheology', 'heat', 'gas', "
+     "'solver', "
+     "'output', 'probe', 'watch', 'base', 'width', 'syrup' or 'floor'"},
     {"setUnknownKey", "run small.toml --set spaceing=1",
      "--set spaceing=1: unknown key 'spaceing'; did you mean "
      "'spacing'?"},

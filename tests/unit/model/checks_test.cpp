@@ -44,6 +44,16 @@ TEST(courantNumber, seesNozzlesAndJumpsOfFormulas) {
   EXPECT_LT(courantNumber(c), 1);
 }
 
+TEST(caseWarnings, tellOfSpringsWithoutEffect) {
+  Case c = damBreak();
+  c.bodies[1].kind = BodyKind::Rigid;
+  c.bodies[1].rigid.springs = {{.name = "left", .damping = 1}, {.name = "right"}};
+  EXPECT_THAT(caseWarnings(c),
+              testing::Contains("spring 'right' of body 'floor' is without effect: its stiffness and "
+                                "damping are 0"));
+  EXPECT_THAT(caseWarnings(c), testing::Not(testing::Contains(HasSubstr("spring 'left'"))));
+}
+
 TEST(stabilityNumbers, areThoseOfThePaper) {  // [K23 Table 2], case x1
   const auto numbers = stabilityNumbers(damBreak());
   ASSERT_EQ(numbers.size(), 1u);

@@ -39,5 +39,7 @@ std::string lengthText(double length);
 
 /// A position for messages: "(1, 2.5) mm".
 std::string positionText(const Vec<3>& x, int dimensions);
+/// Two of them in the same unit: "(1, 2.5) mm to (2, 1000) mm".
+std::string rangeText(const Vec<3>& min, const Vec<3>& max, int dimensions);
 
 }  // namespace treacle
