@@ -214,7 +214,8 @@ std::string Run::lastStateText() const {
     text += fmt::format("\nThe last state written is frame {} (t = {:.6g} s) in {}", last,
                         directory_.frameTime(last), directory_.path().string());
   }
-  if (std::error_code error; !isOver_ && std::filesystem::exists(directory_.checkpoint(), error))
+  const bool hasGoneOn = summary_.steps > start_.state.step;  // else it would fail again as it did
+  if (std::error_code error; hasGoneOn && !isOver_ && std::filesystem::exists(directory_.checkpoint(), error))
     text += fmt::format("\nContinue from the last checkpoint with --resume {}", directory_.checkpoint().string());
   return text;
 }

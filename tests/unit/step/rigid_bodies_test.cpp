@@ -277,6 +277,43 @@ TEST(RigidBodies, RestOnAFloorWithoutFluidBetweenInIsph) {
   checkFall<3>(withIsph(fallingBlockCase(3, 0), 5), 16, 4e-3);
 }
 
+/// A block that may go along the floor alone, which is turned by a rounding error. Friction has no hold there:
+/// what presses the block onto the floor is what locks it.
+TEST(RigidBodies, SlideAlongWallsThatStandAskewByRounding) {
+  Case c = slopeCase(2, 0.1, 0.5);
+  c.bodies[1].rigid.translates = {true, false, false};
+  c.bodies[1].rigid.rotates = {false, false, false};
+  c.bodies[2].shape.transform = Transform{};
+  c.bodies[2].shape.transform->angle = 360;
+  for (const Case& slide : {c, withIsph(c, 5)}) {
+    Simulation<2> simulation(slide, created<2>(slide));
+    for (int k = 0; k < 5; ++k) simulation.advance();
+    EXPECT_NEAR(simulation.particles().rigid.bodies[1].velocity[0], 5e-3 * c.gravity[0], 1e-3 * 5e-3);
+  }
+}
+
+/// What touches it there points at its axis, but for rounding. The fluid on both sides of it has the same weight.
+TEST(RigidBodies, RestOnAHingeAboveAFloor) {
+  Case c = blockCase(2, 1400);
+  c.gravity = {0, -10, 0};
+  Body &pool = c.bodies[0], &rotor = c.bodies[1];
+  rotor.name = "rotor";
+  rotor.shape = {};
+  rotor.shape.kind = ShapeKind::Sphere;
+  rotor.shape.center = {0, 10e-3, 0}, rotor.shape.radius = 10e-3;
+  rotor.rigid.hinge.emplace().point = rotor.shape.center;
+  pool.shape.min = {-20e-3, 0, 0}, pool.shape.max = {20e-3, 20e-3, 0};
+  pool.where.clear(), pool.subtract = {"rotor"};
+  Body floor;
+  floor.name = "floor", floor.kind = BodyKind::Wall;
+  floor.shape.kind = ShapeKind::Polygon;
+  floor.shape.points = {{-20e-3, -4e-3}, {20e-3, -4e-3}, {20e-3, 0}, {-20e-3, 0}};
+  c.bodies.push_back(floor);
+  Simulation<2> simulation(c, created<2>(c));
+  for (int k = 0; k < 5; ++k) simulation.advance();
+  EXPECT_LT(std::abs(simulation.particles().rigid.bodies[1].spin[2]), 1e-3);
+}
+
 /// They go on together, and what one loses the other gets.
 TEST(RigidBodies, DoNotGoThroughEachOther) {
   const Case heavy = meetingBlocksCase(7000, 7000), light = meetingBlocksCase(7000, 500);
