@@ -50,8 +50,8 @@ struct Expected {
 /// `tallest`: tallestColumn(c).
 Expected expectedOf(const Case& c, const Material& m, double speed, const FlowScales& flow, double tallest) {
   const double mu = c.typicalViscosity(m);
-  double pressure = std::max({m.density * flow.potential, flow.pressure, m.density * speed * speed,
-                              m.density * norm(c.gravity) * tallest});
+  double pressure = std::max({m.density * flow.potential, flow.pressure, mu * flow.shear,
+                              m.density * speed * speed, m.density * norm(c.gravity) * tallest});
   if (flow.length > 0)
     pressure = std::max({pressure, mu * speed / flow.length, 4 * m.surfaceTension / flow.length});
   double step = c.time.step;

@@ -1,5 +1,6 @@
 #include "treacle/model/case/flow_scales.hpp"
 
+#include "drives.hpp"
 #include "particles/fluid_extent.hpp"
 #include "treacle/model/motion/nozzle.hpp"
 
@@ -11,18 +12,9 @@
 namespace treacle {
 namespace {
 
-double nozzleWidth(const Nozzle& n, int dimensions) {
-  if (n.kind == NozzleKind::Disc) return n.innerRadius > 0 ? n.radius - n.innerRadius : 2 * n.radius;
-  if (n.kind == NozzleKind::Rectangle) return dimensions == 3 ? std::min(n.width, n.height) : n.width;
-  Vec<2> low{}, high{};
-  for (const Vec<2>& x : n.points)
-    for (int k = 0; k < 2; ++k) low[k] = std::min(low[k], x[k]), high[k] = std::max(high[k], x[k]);
-  return std::min(high[0] - low[0], high[1] - low[1]);
-}
-
 /// A body that goes on across periodic ends has no side there, but for one that does so along all axes.
 double shortestSide(const Case& c, const Body& body) {
-  if (body.kind == BodyKind::Inflow) return nozzleWidth(body.inflow.nozzle, c.dimensions);
+  if (body.kind == BodyKind::Inflow) return widthOf(body.inflow.nozzle, c.dimensions);
   const Extent box = boundingBox(body.shape, c.dimensions);
   double side = std::numeric_limits<double>::infinity(), period = side;
   for (int k = 0; k < c.dimensions; ++k) {
@@ -47,23 +39,13 @@ double inflowSpeed(const Case& c, const Body& body) {
   return c.dimensions == 2 ? of(NozzleLayers<2>(c, body)) : of(NozzleLayers<3>(c, body));
 }
 
-/// The largest size of the pressures of openings in the run [Pa].
-double openingPressure(const Case& c) {
-  constexpr int samples = 1000;
-  double most = 0;
-  for (const Opening& o : c.openings) {
-    if (!o.pressure) continue;
-    for (const double p : o.pressure->values) most = std::max(most, std::abs(p));
-    for (int k = 0; k < samples; ++k) most = std::max(most, std::abs(o.pressure->at(k * c.time.end / samples)));
-  }
-  return most;
-}
-
 FluidNumbers numbersOf(const Case& c, const Material& m, const FlowScales& flow) {
   FluidNumbers n{.material = m.name};
   const double mu = c.typicalViscosity(m), g = flow.acceleration, inertia = m.density * flow.length * flow.length;
   // Where inertia rules a fluid falls freely, where viscosity does it flows as fast as its weight shears it.
   n.speed = std::max(flow.given, mu > 0 ? std::min(flow.fall, inertia * g / mu) : flow.fall);
+  const double pressed = std::sqrt(2 * flow.pressure / m.density);
+  n.speed = std::max(n.speed, mu > 0 ? std::min(pressed, flow.seep / mu) : pressed);
   if (m.bulkModulus > 0) n.compression = flow.pressureOf(m.density, mu) / m.bulkModulus;
   if (m.surfaceTension > 0) {
     n.capillaryStep = std::max(2 * mu * c.spacing / m.surfaceTension,
@@ -95,16 +77,18 @@ FlowScales flowScales(const Case& c) {
   flow.potential = norm(c.gravity) * fluidHeight(c) + centrifugal.potential;
   flow.fall = std::sqrt(2 * flow.potential);
   flow.given = givenSpeed(c);
-  flow.pressure = openingPressure(c);
   double shortest = std::numeric_limits<double>::infinity();
   for (const Body& body : c.bodies) {
     if (!body.holdsFluid()) continue;
     const double side = shortestSide(c, body), speed = inflowSpeed(c, body);
     shortest = std::min(shortest, side);
     flow.given = std::max(flow.given, speed);
-    if (side > 0) flow.shear = std::max(flow.shear, speed / side);
+    if (side > 0) flow.nozzleShear = std::max(flow.nozzleShear, speed / side);
   }
   if (std::isfinite(shortest)) flow.length = shortest;
+  const Drives drives = drivesOf(c, flow.length);
+  flow.given = std::max(flow.given, drives.speed);
+  flow.pressure = drives.pressure, flow.seep = drives.seep, flow.shear = drives.shear;
   return flow;
 }
 

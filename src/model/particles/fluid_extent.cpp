@@ -136,10 +136,13 @@ double fluidHeight(const Case& c) {
   return all.extent();
 }
 
+double largestSpeedOf(const Case& c, const Body& body) {
+  return c.dimensions == 2 ? largestSpeed<2>(c, body) : largestSpeed<3>(c, body);
+}
+
 double givenSpeed(const Case& c) {
   double speed = 0;
-  for (const Body& body : c.bodies)
-    speed = std::max(speed, c.dimensions == 2 ? largestSpeed<2>(c, body) : largestSpeed<3>(c, body));
+  for (const Body& body : c.bodies) speed = std::max(speed, largestSpeedOf(c, body));
   return speed;
 }
 

@@ -28,6 +28,9 @@ struct CentrifugalScale {
 
 CentrifugalScale centrifugalScale(const Case& c);
 
+/// Largest speed of a fluid body at the start, of a wall or nozzle at any time [m/s].
+double largestSpeedOf(const Case& c, const Body& body);
+
 /// Largest of the initial speeds and those of the walls [m/s].
 double givenSpeed(const Case& c);
 

@@ -141,8 +141,12 @@ TEST(BulkConstants, FollowNozzlesOpeningsSpeedsAndSurfaceTension) {
   feed.inflow.nozzle.radius = 3e-3;
   feed.inflow.speed = TimeFunction{.value = 0.7};
   EXPECT_NEAR(set(nozzle).bulkModulus, 100 * 32 * 10 * 0.7 / 6e-3, 0.005 * 100 * 32 * 10 * 0.7 / 6e-3);
-  opening.openings.emplace_back().pressure = TimeFunction{.times = {0}, .values = {-500}};
+  Opening& gate = opening.openings.emplace_back();
+  gate.face.kind = NozzleKind::Rectangle, gate.face.width = 0.02;
+  gate.pressure = TimeFunction{.times = {0}, .values = {-500}};
   EXPECT_DOUBLE_EQ(set(opening).bulkModulus, 2.5e5);
+  opening.time.automatic = true, opening.time.step = 0;
+  EXPECT_LT(set(opening).bulkViscosity, 2e4) << "steps are as long as the pressure moves fluid by half a spacing";
   wall.bodies[1].velocity = {0.2, 0, 0};
   EXPECT_DOUBLE_EQ(set(wall).bulkModulus, 500 * 10 * 0.2 / 0.02);
   drop.materials[0].surfaceTension = 0.04;

@@ -94,6 +94,75 @@ TEST(FlowScales, NozzlesCountByWidthAndSpeed) {
   EXPECT_NEAR(fluidNumbers(c).at(0).speed, 0.7, 1e-15);
 }
 
+Opening slot(double width) {
+  Opening o;
+  o.face.kind = NozzleKind::Rectangle;
+  o.face.center = {0, 0.01, 0}, o.face.direction = {1, 0, 0}, o.face.width = width;
+  return o;
+}
+
+/// Whatever the sign, and as fast as through a slit of the opening's width and the fluid's length at most.
+TEST(FlowScales, PressuresOfOpeningsMoveTheFluid) {
+  Case c = blockOf(fluid(10));
+  c.gravity = {};
+  c.openings.push_back(slot(0.012));
+  c.openings[0].pressure = TimeFunction{.times = {0, 1}, .values = {100, -500}};
+  const FlowScales flow = flowScales(c);
+  EXPECT_NEAR(flow.pressure, 500, 1e-9);
+  EXPECT_NEAR(fluidNumbers(c)[0].speed, 500 * 0.012 * 0.012 / (8 * 10 * 0.04), 1e-12);
+  EXPECT_NEAR(fluidNumbers(c)[0].compression, 500 / 1e6, 1e-12);
+  c.materials[0] = fluid(1e-3);
+  EXPECT_NEAR(fluidNumbers(c)[0].speed, std::sqrt(2 * 500 / 1000.0), 1e-12);
+}
+
+TEST(FlowScales, FlowRatesOfOpeningsNeedAPressure) {
+  Case c = blockOf(fluid(10));
+  c.gravity = {};
+  c.openings.push_back(slot(0.012));
+  c.openings[0].flowRate = TimeFunction{.expression = "-1.2e-4*cos(t)"};
+  EXPECT_NEAR(flowScales(c).given, 0.01, 1e-12);
+  EXPECT_NEAR(fluidNumbers(c)[0].speed, 0.01, 1e-12);
+  EXPECT_NEAR(fluidNumbers(c)[0].compression, 12 * 10 * 0.01 * 0.04 / (0.012 * 0.012) / 1e6, 1e-12);
+}
+
+TEST(FlowScales, ForcesOnBodiesPressTheFluid) {
+  Case c = blockOf(fluid(10));
+  c.gravity = {};
+  Body piston;
+  piston.kind = BodyKind::Rigid;
+  piston.shape.min = {-0.01, 0, 0}, piston.shape.max = {0, 0.02, 0};
+  piston.rigid.force[0] = TimeFunction{.value = -100};
+  c.bodies.push_back(piston);
+  EXPECT_NEAR(flowScales(c).pressure, 5000, 1e-9);
+  EXPECT_NEAR(fluidNumbers(c)[0].speed, 5000 * 0.02 * 0.02 / (8 * 10 * 0.04), 1e-12);
+  c.bodies.back().rigid.translates[0] = false;
+  EXPECT_EQ(flowScales(c).pressure, 0) << "it cannot go where the force points";
+}
+
+/// A belt below a box of five times its height; open at one end, or a cavity, it builds up nothing.
+TEST(FlowScales, WallsThatDragFluidAlongAClosedGapBuildUpAPressure) {
+  Case c = blockOf(fluid(10));
+  c.gravity = {};
+  c.bodies[0].shape.max = {0.1, 0.02, 0};
+  const auto add = [&](const Vec<3>& min, const Vec<3>& max) {
+    Body& wall = c.bodies.emplace_back();
+    wall.kind = BodyKind::Wall;
+    wall.shape.min = min, wall.shape.max = max;
+  };
+  add({-0.02, -0.004, 0}, {0.2, 0, 0});
+  add({-0.004, 0.02, 0}, {0.104, 0.024, 0});
+  add({-0.004, 0, 0}, {0, 0.02, 0});
+  add({0.1, 0, 0}, {0.104, 0.02, 0});
+  EXPECT_EQ(flowScales(c).shear, 0) << "nothing moves";
+  c.bodies[1].velocity = {0.03, 0, 0};
+  EXPECT_NEAR(flowScales(c).shear, 6 * 0.03 * 4 / 0.02, 1e-9);
+  Case cavity = c, open = c;
+  cavity.bodies[0].shape.max = {0.02, 0.02, 0}, cavity.bodies[4].shape.min = {0.02, 0, 0};
+  EXPECT_EQ(flowScales(cavity).shear, 0);
+  open.bodies.pop_back();
+  EXPECT_EQ(flowScales(open).shear, 0);
+}
+
 TEST(FlowScales, MaterialsOfWallsAloneAreNoFluids) {
   Case c = blockOf(fluid(10));
   c.materials.push_back(fluid(1));

@@ -14,16 +14,18 @@ struct FlowScales {
   double acceleration = 0;  // largest of gravity and centrifugal forces [m/s2]
   double potential = 0;     // work that they do per mass across the fluid: g H, in a frame that turns more [m2/s2]
   double fall = 0;          // speed that they give [m/s]
-  double given = 0;         // largest of the speeds of fluid, walls and nozzles that the case gives [m/s]
-  double pressure = 0;      // largest one of openings [Pa]
-  double shear = 0;         // largest speed over width of nozzles [1/s]
+  double given = 0;         // largest of the speeds of fluid, walls, nozzles and openings that it gives [m/s]
+  double pressure = 0;      // largest one of openings, and of given forces on bodies over their sections [Pa]
+  double seep = 0;          // speed that the pressure gives against the viscosity, times the latter [Pa m]
+  double shear = 0;         // pressure that fluid builds up in narrow ways, over its viscosity [1/s]
+  double nozzleShear = 0;   // largest speed over width of nozzles [1/s]
 
   /// What drives a fluid of viscosity mu [Pa s] through one width of a nozzle [Pa]: for a tube 32 mu U / width.
-  double nozzlePressure(double mu) const { return 32 * mu * shear; }
+  double nozzlePressure(double mu) const { return 32 * mu * nozzleShear; }
   /// A pressure that a fluid of density rho [kg/m3] and viscosity mu [Pa s] has to bear [Pa]: of its weight, of
-  /// openings, or in a nozzle.
+  /// openings and forces, or in a nozzle or another narrow way.
   double pressureOf(double rho, double mu) const {
-    return std::max({rho * potential, pressure, nozzlePressure(mu)});
+    return std::max({rho * potential, pressure, mu * shear, nozzlePressure(mu)});
   }
 };
 
@@ -36,7 +38,7 @@ FlowScales flowScales(const Case& c);
 /// Numbers of one fluid of a case. Those of something that it does not have are 0.
 struct FluidNumbers {
   std::string material;
-  double speed = 0;        // U: given, or of a fall that viscosity holds back, rho g L^2/mu [m/s]
+  double speed = 0;        // U: given, or what weight and pressures give, which viscosity holds back [m/s]
   double reynolds = 0;     // rho U L / mu
   double viscousTime = 0;  // rho L^2 / mu, in which a flow comes to rest or up to speed [s]
   double ratio = 0;        // lambda / mu
