@@ -275,6 +275,22 @@ TEST(caseWarnings, unstableCompression) {
                                                  HasSubstr("give it a bulk_viscosity of at least"))));
 }
 
+/// That of a handbook needs a bulk viscosity that holds back the flow.
+TEST(caseWarnings, bulkModulusOfAHandbook) {
+  Case c = damBreak();
+  c.materials[0].autoBulkViscosity = true;
+  c.materials[0].bulkModulus = 2.2e9, c.materials[0].bulkViscosity = 8.8e6;
+  EXPECT_THAT(
+      caseWarnings(c),
+      ElementsAre(AllOf(HasSubstr("its bulk viscosity of 8.8e+06 Pa s is 8.8e+05 times its viscosity, which "
+                                  "steps of 0.001 s need with bulk_modulus = 2.2e+09 Pa"),
+                        HasSubstr("take bulk_modulus = 2e+05"))));
+  c.materials[0].autoBulkViscosity = false;
+  EXPECT_THAT(caseWarnings(c), ElementsAre(HasSubstr("take bulk_viscosity = 1e+04, 1000 times the viscosity")));
+  c.materials[0].bulkModulus = 1e7, c.materials[0].bulkViscosity = 1e5;
+  EXPECT_THAT(caseWarnings(c), IsEmpty());
+}
+
 TEST(caseWarnings, compressionWhereDensitiesReachFartherThanDivergences) {
   Case c = damBreak();
   c.materials[0].bulkModulus = 0.5 * 1e4 / 1e-3;
