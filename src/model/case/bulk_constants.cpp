@@ -1,5 +1,6 @@
 #include "treacle/model/case/bulk_constants.hpp"
 
+#include "carried_fluids.hpp"
 #include "particles/fluid_extent.hpp"
 #include "treacle/model/case/checks.hpp"
 #include "treacle/model/case/flow_scales.hpp"
@@ -26,15 +27,15 @@ double tallestColumn(const Case& c) {
   for (const Body& body : c.bodies) {
     if (!body.holdsFluid()) continue;
     const Vec<3>& center = body.inflow.nozzle.center;
-    const Heights h = heightsOf(
-        c, body.kind == BodyKind::Inflow ? Extent{center, center} : boundingBox(body.shape, c.dimensions));
+    const Heights h =
+        body.kind == BodyKind::Inflow ? heightsOf(c, Extent{center, center}) : heightsOf(c, body.shape);
     fluid.low = std::min(fluid.low, h.low), fluid.high = std::max(fluid.high, h.high);
   }
   double low = fluid.low;
   for (const Body& body : c.bodies) {
     if (body.holdsFluid()) continue;
-    const Heights h = heightsOf(c, boundingBox(body.shape, c.dimensions));
-    if (h.high <= fluid.low) low = std::min(low, h.high);
+    const Heights h = heightsOf(c, body.shape);
+    if (h.high <= fluid.low + rounding * c.spacing) low = std::min(low, h.high);
   }
   return std::max(0.0, fluid.high - low);
 }

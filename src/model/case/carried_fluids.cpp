@@ -37,14 +37,14 @@ double weightOn(const Case& c, const Body& below, bool heavier) {
   for (int k = 1; k < c.dimensions; ++k)
     if (std::abs(c.gravity[k]) > std::abs(c.gravity[down])) down = k;
   const Extent box = boundingBox(below.shape, c.dimensions);
-  const Heights h = heightsOf(c, box);
+  const Heights h = heightsOf(c, below.shape);
   double pressure = 0;
   for (const Body& body : c.bodies) {
     const double density = materialOf(c, body).density;
     if (body.kind != BodyKind::Fluid || &body == &below) continue;
     if (heavier && density <= materialOf(c, below).density) continue;
     const Extent other = boundingBox(body.shape, c.dimensions);
-    const Heights its = heightsOf(c, other);
+    const Heights its = heightsOf(c, body.shape);
     bool onIt = its.high > h.high;
     for (int k = 0; k < c.dimensions; ++k)
       onIt = onIt && (k == down || (other.min[k] < box.max[k] && box.min[k] < other.max[k]));
@@ -79,7 +79,7 @@ double longestCarryingStep(const Case& c, const Material& m, double p) {
 }
 
 double pressureIn(const Case& c, const Body& body) {
-  const double own = heightsOf(c, boundingBox(body.shape, c.dimensions)).extent();
+  const double own = heightsOf(c, body.shape).extent();
   return weightOn(c, body, false) + materialOf(c, body).density * norm(c.gravity) * own;
 }
 

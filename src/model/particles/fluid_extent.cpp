@@ -107,6 +107,18 @@ CentrifugalScale centrifugalScaleOf(const Case& c) {
   return {norm(fastest.spin) * std::sqrt(2 * high), std::max(0.0, high - low)};
 }
 
+/// `placed`: where a corner of the box is.
+Heights heightsOfCorners(const Case& c, const Extent& box, auto&& placed) {
+  Heights h;
+  for (int k = 0; k < 8; ++k) {
+    const Vec<3> corner{k & 1 ? box.max[0] : box.min[0], k & 2 ? box.max[1] : box.min[1],
+                        k & 4 ? box.max[2] : box.min[2]};
+    const double up = -dot(placed(corner), c.gravity) / norm(c.gravity);
+    h.low = std::min(h.low, up), h.high = std::max(h.high, up);
+  }
+  return h;
+}
+
 }  // namespace
 
 CentrifugalScale centrifugalScale(const Case& c) {
@@ -115,14 +127,15 @@ CentrifugalScale centrifugalScale(const Case& c) {
 }
 
 Heights heightsOf(const Case& c, const Extent& box) {
-  Heights h;
-  for (int k = 0; k < 8; ++k) {
-    const Vec<3> corner{k & 1 ? box.max[0] : box.min[0], k & 2 ? box.max[1] : box.min[1],
-                        k & 4 ? box.max[2] : box.min[2]};
-    const double up = -dot(corner, c.gravity) / norm(c.gravity);
-    h.low = std::min(h.low, up), h.high = std::max(h.high, up);
-  }
-  return h;
+  return heightsOfCorners(c, box, [](const Vec<3>& x) { return x; });
+}
+
+Heights heightsOf(const Case& c, const Shape& shape) {
+  const Extent box = untransformedBox(shape, c.dimensions);
+  return heightsOfCorners(c, box, [&](const Vec<3>& x) {
+    return c.dimensions == 2 ? resized<3>(similarityOf<2>(shape).point(resized<2>(x)))
+                             : similarityOf<3>(shape).point(x);
+  });
 }
 
 double fluidHeight(const Case& c) {
@@ -130,7 +143,7 @@ double fluidHeight(const Case& c) {
   Heights all;
   for (const Body& body : c.bodies) {
     if (body.kind != BodyKind::Fluid) continue;
-    const Heights h = heightsOf(c, boundingBox(body.shape, c.dimensions));
+    const Heights h = heightsOf(c, body.shape);
     all.low = std::min(all.low, h.low), all.high = std::max(all.high, h.high);
   }
   return all.extent();

@@ -15,6 +15,8 @@ struct Heights {
 };
 
 Heights heightsOf(const Case& c, const Extent& box);
+/// Of the box around a shape before its transform, which turns with it.
+Heights heightsOf(const Case& c, const Shape& shape);
 
 /// Extent of all fluid bodies along gravity [m].
 double fluidHeight(const Case& c);

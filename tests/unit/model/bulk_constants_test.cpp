@@ -45,6 +45,14 @@ TEST(BulkConstants, FollowTheWeightOfWhatCanStandOnTheFloor) {
   EXPECT_EQ(c.materials[1].bulkModulus, m.bulkModulus);
 }
 
+/// The case turned as a whole.
+TEST(BulkConstants, DoNotDependOnTheAxes) {
+  Case c = blockOf(10);
+  c.gravity = {5, -5 * std::sqrt(3.0), 0};
+  for (Body& body : c.bodies) body.shape.transform.emplace().angle = 30;
+  EXPECT_DOUBLE_EQ(set(c).bulkModulus, 500 * 1000 * 10 * 0.03);
+}
+
 TEST(BulkConstants, ViscosityIsWhatTheStepNeeds) {
   Case c = blockOf(1e-3);
   c.spacing = 1e-6;

@@ -163,6 +163,16 @@ TEST(FlowScales, WallsThatDragFluidAlongAClosedGapBuildUpAPressure) {
   EXPECT_EQ(flowScales(open).shear, 0);
 }
 
+TEST(FlowScales, AreThoseOfATurnedCase) {
+  Case c = blockOf(fluid(0.01));
+  const FluidNumbers upright = fluidNumbers(c)[0];
+  c.bodies[0].shape.transform.emplace().angle = 30;
+  c.gravity = {5, -5 * std::sqrt(3.0), 0};
+  EXPECT_NEAR(flowScales(c).length, 0.02, 1e-12);
+  EXPECT_NEAR(flowScales(c).potential, 10 * 0.02, 1e-12);
+  EXPECT_NEAR(fluidNumbers(c)[0].compression, upright.compression, 1e-12);
+}
+
 TEST(FlowScales, MaterialsOfWallsAloneAreNoFluids) {
   Case c = blockOf(fluid(10));
   c.materials.push_back(fluid(1));
