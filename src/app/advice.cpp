@@ -91,27 +91,31 @@ void printRemembered(const Case& c, const FluidNumbers& n, const FlowScales& flo
           m.specificHeat * std::abs(c.typicalTemperature(m) - m.freezing->liquidus) / m.freezing->latentHeat);
 }
 
-/// A bulk viscosity that is enough, and the bulk moduli that go with a step: stiff enough for the pressures, soft
-/// enough for the step.
+/// A bulk viscosity that is enough, and the bulk moduli that go with it and the step: stiff enough for the
+/// pressures, soft enough for the step. Where the case leaves both to treacle, they are those that it has chosen.
 void printBulk(const Case& c, const Material& m, const FlowScales& flow) {
-  const double mu = c.typicalViscosity(m), lambda = recommendedBulkRatio * mu;
-  if (mu == 0) return;
-  const double most = mostCompression(c) * std::max(lambda, m.bulkViscosity) / c.time.step;
+  const double mu = c.typicalViscosity(m);
+  if (mu == 0 || (m.autoBulkViscosity && m.autoBulkModulus)) return;
+  const double lambda = recommendedBulkRatio * mu;
+  const double most = mostCompression(c) * lambda / c.time.step;
   const double least = flow.pressureOf(m.density, mu) / mostCompressed;
-  print("# advice for '{}': bulk_viscosity {:.3g} ({:g} times the viscosity), ", m.name, lambda,
-        recommendedBulkRatio);
-  if (c.time.automatic)
-    print(
-        "bulk_modulus of at least {:.3g} (compressed by 1 %); steps may then be as long as {:g} "
-        "bulk_viscosity / bulk_modulus\n",
+  std::string modulus;
+  if (c.time.automatic && least > 0)
+    modulus = fmt::format(
+        ", bulk_modulus of at least {:.3g} (compressed by 1 %); steps may then be as long as {:g} bulk_viscosity "
+        "/ "
+        "bulk_modulus",
         least, mostCompression(c));
-  else if (least == 0)
-    print("bulk_modulus of at most {:.3g} (stable with this step)\n", most);
-  else if (least < most)
-    print("bulk_modulus from {:.3g} (compressed by 1 %) to {:.3g} (stable with this step)\n", least, most);
-  else
-    print("and a shorter step: a bulk_modulus of {:.3g}, compressed by 1 %, needs {:.3g} s\n", least,
-          c.time.step * most / least);
+  else if (!c.time.automatic && least == 0)
+    modulus = fmt::format(", bulk_modulus of at most {:.3g} (stable with both)", most);
+  else if (!c.time.automatic && least < most)
+    modulus =
+        fmt::format(", bulk_modulus from {:.3g} (compressed by 1 %) to {:.3g} (stable with both)", least, most);
+  else if (!c.time.automatic)
+    modulus = fmt::format(", and a shorter step: a bulk_modulus of {:.3g}, compressed by 1 %, needs {:.3g} s",
+                          least, c.time.step * most / least);
+  print("# advice for '{}': bulk_viscosity {:.3g} ({:g} times the viscosity){}\n", m.name, lambda,
+        recommendedBulkRatio, modulus);
 }
 
 /// Prints the time step of a case of MPH-I, which stability, surface tension and the known speeds limit.

@@ -16,9 +16,11 @@
 namespace treacle::test {
 namespace {
 
+using testing::AllOf;
 using testing::ContainsRegex;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 using testing::StartsWith;
 
 constexpr std::string_view pngSignature = "\x89PNG";
@@ -106,10 +108,16 @@ TEST(check, printsNumbersOfFluidsAndAdvice) {
   EXPECT_THAT(outcome.out,
               HasSubstr("# fluid 'syrup': Reynolds number 0.0216 at 0.036 m/s, viscous time 0.0036 s, "
                         "lambda / mu = 1000, compressed by up to 0.006 %\n"));
-  EXPECT_THAT(outcome.out, HasSubstr("bulk_modulus from 6e+03 (compressed by 1 %) to 5e+06 (stable with this "
-                                     "step)\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("bulk_modulus from 6e+03 (compressed by 1 %) to 5e+06 (stable with "
+                                     "both)\n"));
   EXPECT_THAT(outcome.out, HasSubstr("# advice for the step: \"auto\", or at most 0.005 s (dt kappa / lambda of "
                                      "'syrup')\n"));
+  // Of the bulk viscosity that stands beside it, whatever that of the case is.
+  EXPECT_THAT(shop.call("check small.toml --set syrup.bulk_viscosity=1e6").out,
+              HasSubstr("to 5e+06 (stable with both)\n"));
+  shop.put("open.toml", replaced(smallCase, "bulk_viscosity = 1e4\nbulk_modulus = 1e6\n", ""));
+  EXPECT_THAT(shop.call("check open.toml").out,
+              AllOf(HasSubstr("# automatic constants of 'syrup'"), Not(HasSubstr("advice for 'syrup'"))));
   const Outcome tense = shop.call("check small.toml --set syrup.surface_tension=8");
   EXPECT_THAT(tense.out, HasSubstr("Bond number 0.045, capillary step 0.0025 s\n"));
   EXPECT_THAT(tense.out, HasSubstr("or at most 0.0025 s (surface tension of 'syrup')\n"));
