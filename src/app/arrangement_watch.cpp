@@ -24,11 +24,10 @@ bool ArrangementWatch::clumps(const Arrangement& a) {
     if (many) warnedClose_ = a.close;
     return many;
   }
-  // The least distance is that of one pair, which comes and goes: it is told once.
-  const bool many = a.low < lowBound && a.low < warnedLow_ / 2, one = a.least < leastBound && !clumped_;
+  // The least distance is that of one pair, which comes and goes, and does no harm.
+  const bool many = a.low < lowBound && a.low < warnedLow_ / 2;
   if (many) warnedLow_ = a.low;
-  if (many || one) clumped_ = true;
-  return many || one;
+  return many;
 }
 
 std::string ArrangementWatch::clumpText(const Arrangement& a) const {
@@ -36,16 +35,15 @@ std::string ArrangementWatch::clumpText(const Arrangement& a) const {
       isIsph()
           ? fmt::format("{:.3g} % have their nearest neighbour within {:g} spacings (warned of beyond {:g} %)",
                         100 * a.close, closeDistance, 100 * closeBound)
-          : fmt::format(
-                "one has its nearest neighbour at {:.3g} spacings, and 1 % have it within {:.3g} "
-                "(warned of below {:g} and {:g})",
-                a.least, a.low, leastBound, lowBound);
+          : fmt::format("1 % have their nearest neighbour within {:.3g} spacings (warned of below {:g})", a.low,
+                        lowBound);
   const char* cure = "";
-  if (published()) cure = "method.scheme = \"accurate\" or ";
-  if (isIsph() && case_.method.isph.negativePressure) cure = "method.negative_pressure = false or ";
+  if (published()) cure = "method.scheme = \"accurate\" helps, ";
+  if (isIsph() && case_.method.isph.negativePressure) cure = "method.negative_pressure = false helps, ";
   return fmt::format(
       "fluid particles clump: {}. Such pairs count for one particle, so that the fluid around them is "
-      "resolved more coarsely than the spacing says; {}a shorter time step may help",
+      "resolved more coarsely than the spacing says; {}shorter time steps help only where particles go by much of "
+      "a spacing in one",
       found, cure);
 }
 

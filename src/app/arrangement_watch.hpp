@@ -13,7 +13,8 @@ namespace treacle {
 /// bounds.
 class ArrangementWatch {
  public:
-  static constexpr double leastBound = closeDistance, lowBound = 0.4, densityBound = 0.02;
+  /// Of the 1 % quantile of nearest distances: with one of 0.38 the front of a dam break is the same to 1e-5.
+  static constexpr double lowBound = closeDistance, densityBound = 0.02;
   /// The share of close particles that is usual in ISPH, in whose splashes some always lie together.
   static constexpr double closeBound = 0.05;
 
@@ -30,7 +31,6 @@ class ArrangementWatch {
   bool isIsph() const { return case_.method.kind == MethodKind::Isph; }
 
   const Case& case_;
-  bool clumped_ = false;
   double warnedClose_ = 0;
   double warnedLow_ = std::numeric_limits<double>::infinity();
   double warnedError_ = 0;  // of the density
