@@ -409,15 +409,17 @@ void setStepBounds(Case& c) {
   TimeSettings& t = c.time;
   if (!t.automatic) return;
   if (t.step == 0) t.step = std::min(longestStableStep(c).length, t.end);
-  if (t.least == 0) t.least = t.step / 1e4;
+  if (t.least == 0) t.least = defaultLeastStep(t);
 }
+
+double defaultLeastStep(const TimeSettings& t) { return t.step / 1e4; }
 
 std::vector<std::string> caseWarnings(const Case& c) {
   std::vector<std::string> warnings;
   warnCompression(c, warnings);
+  warnLargeBulkViscosity(c, warnings);
   if (c.method.kind == MethodKind::MphI && norm(c.gravity) > 0) {
     warnLightFluids(c, warnings);
-  warnLargeBulkViscosity(c, warnings);
     warnSoftFluids(c, warnings);
   }
   warnCourant(c, warnings);

@@ -10,6 +10,7 @@
 #include "step_method.hpp"
 #include "treacle/core/processes.hpp"
 #include "treacle/model/case/bulk_constants.hpp"
+#include "treacle/model/case/checks.hpp"
 #include "treacle/step/readings/diagnostics.hpp"
 #include "treacle/step/run/shareable.hpp"
 #include "treacle/step/run/simulation.hpp"
@@ -209,12 +210,14 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
       if (control->flows(is.speed, timeStep)) way = method->pressedWay();
     });
     if (!control->accept(timeStep, report.error, way, particles.steps)) return false;
-    const double most = theCase.time.tolerance;
-    if (report.error > most && !std::exchange(tooCoarse, true))
+    const TimeSettings& t = theCase.time;
+    if (report.error > t.tolerance && !std::exchange(tooCoarse, true))
       report.warnings.push_back(fmt::format(
           "the error of a step of {:.3g} s is {:.2g}, more than time.tolerance = {:g}, but the step cannot be "
-          "shorter (time.min_step); further ones are not reported",
-          timeStep, report.error, most));
+          "shorter: time.min_step is {:.3g} s{}; further ones are not reported",
+          timeStep, report.error, t.tolerance, t.least,
+          t.least == defaultLeastStep(t) ? fmt::format(", by default a 10,000th of max_step = {:.3g} s", t.step)
+                                         : ""));
     return true;
   }
 

@@ -12,9 +12,11 @@
 namespace treacle::test {
 namespace {
 
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 
 /// A lattice of fluid that starts to fall onto a floor.
 Scene<2> fallingScene() {
@@ -135,8 +137,15 @@ TEST(AutomaticSteps, WarnOnceWhereTheyMayNotBeAsShortAsTheyShould) {
   s.c.time.tolerance = 1e-6;
   Simulation<2> simulation(s.c, std::move(s.particles));
   EXPECT_THAT(simulation.advance().warnings,
-              ElementsAre(HasSubstr("but the step cannot be shorter (time.min_step)")));
+              ElementsAre(AllOf(HasSubstr("but the step cannot be shorter: time.min_step is "),
+                                Not(HasSubstr("by default")))));
   EXPECT_THAT(simulation.advance().warnings, IsEmpty());
+
+  Scene<2> open = fallingScene();
+  open.c.time.least = open.c.time.step / 1e4;
+  open.c.time.tolerance = 1e-12;
+  Simulation<2> byDefault(open.c, std::move(open.particles));
+  EXPECT_THAT(byDefault.advance().warnings, ElementsAre(HasSubstr(", by default a 10,000th of max_step = ")));
 }
 
 }  // namespace

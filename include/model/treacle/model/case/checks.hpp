@@ -44,8 +44,10 @@ struct StableStep {
 StableStep longestStableStep(const Case& c);
 
 /// Gives automatic steps the bounds that the case leaves open, where they are 0: the longest is that which is
-/// known to be stable, at most the whole run, the shortest a 10,000th of it.
+/// known to be stable, at most the whole run, the shortest defaultLeastStep().
 void setStepBounds(Case& c);
+/// A 10,000th of the longest one [s].
+double defaultLeastStep(const TimeSettings& t);
 
 /// dt U / l, where U is the largest of the initial speeds, the wall speeds and the speed of a free fall over the
 /// height of the fluid; at most time.courant where that limits the steps.
